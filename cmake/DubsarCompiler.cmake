@@ -1,0 +1,31 @@
+# Language, warnings and sanitizers for every target of the project.
+set(CMAKE_CXX_STANDARD 23)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_C_STANDARD 11)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin)
+
+if(NOT CMAKE_BUILD_TYPE)
+  set(CMAKE_BUILD_TYPE Release)
+endif()
+
+find_program(CCACHE_PROGRAM ccache)
+if(CCACHE_PROGRAM AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CCACHE_PROGRAM})
+endif()
+
+add_library(dubsar_options INTERFACE)
+target_compile_options(dubsar_options INTERFACE
+  -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual -Wcast-qual -Wformat=2 -Werror
+  # Contracting a*b+c would make results differ between machines; the same input must give the same bytes.
+  -ffp-contract=off)
+
+set(DUBSAR_SANITIZE "" CACHE STRING "Sanitizers, e.g. address,undefined or thread")
+if(DUBSAR_SANITIZE)
+  target_compile_options(dubsar_options INTERFACE -fsanitize=${DUBSAR_SANITIZE} -fno-omit-frame-pointer
+    # GCC 12 reports spurious maybe-uninitialized reads in instrumented Eigen code.
+    -Wno-maybe-uninitialized)
+  target_link_options(dubsar_options INTERFACE -fsanitize=${DUBSAR_SANITIZE})
+endif()

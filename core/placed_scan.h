@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <vector>
+
+#include "core/range_grid.h"
+#include "core/rigid_transform.h"
+#include "core/sample_flags.h"
+
+namespace dubsar {
+
+/// A scan that is in its place: what planning and triangulation work on. Refers to the grid and its flags, owns neither.
+struct PlacedScan {
+  int id = 0;
+  const RangeGrid* grid = nullptr;
+  const SampleFlags* flags = nullptr;  ///< as long as the grid
+  RigidTransform model_from_scanner;
+  double sigma_mm = 0;                 ///< of the pose
+};
+
+}  // namespace dubsar

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/rig.h"
+#include "core/rigid_transform.h"
+
+namespace dubsar {
+
+enum class Face { kObverse, kReverse, kLeft, kRight, kTop, kBottom };
+inline constexpr int kFaceCount = 6;
+
+[[nodiscard]] constexpr const char* to_string(Face face) {
+  constexpr const char* kNames[] = {"obverse", "reverse", "left", "right", "top", "bottom"};
+  return kNames[static_cast<int>(face)];
+}
+
+enum class RegionState { kRed, kExcused };
+enum class Excuse { kNone, kUnreachable, kUnneeded };
+
+/// Counts of one scan's samples by state.
+struct RedScan {
+  int id = 0;
+  std::int64_t samples = 0;
+  std::int64_t potentially_sparse = 0;
+  std::int64_t sparse = 0;  ///< still red
+  std::int64_t cleared = 0;
+  std::int64_t excused = 0;
+};
+
+/// A connected patch of red or excused samples in the model frame, with the hole that it borders.
+struct RedRegion {
+  Face face = Face::kObverse;
+  Eigen::Vector3d center_mm{0, 0, 0};
+  Eigen::Vector3d normal{0, 0, 1};  ///< out of the clay
+  double area_mm2 = 0;              ///< of the hole that the red border encloses, estimated
+  RegionState state = RegionState::kRed;
+  Excuse excuse = Excuse::kNone;
+  std::string reason;  ///< of the excuse
+};
+
+/// A next placement, best first.
+struct NextView {
+  RigidTransform model_from_scanner;
+  double predicted_cleared_mm2 = 0;
+  std::string say;                     ///< words that an operator can follow
+  std::optional<Placement> placement;  ///< set when the rig can be driven or the operator asked
+};
+
+/// What is still missing (seed 001, 3.3; design.md "Red map").
+struct RedMap {
+  bool conclusive = false;
+  std::vector<RedScan> scans;
+  std::vector<RedRegion> regions;
+  std::vector<NextView> next;
+};
+
+}  // namespace dubsar

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+
+#include "core/rigid_transform.h"
+
+namespace dubsar {
+
+enum class PoseStatus { kRegistered, kUnsure, kFailed };
+
+/// The pose of one scan in the model frame, as registration judged it. Only kRegistered poses are meshed.
+struct ScanPose {
+  int id = 0;                         ///< the scan's number in its session or folder
+  std::string file;                   ///< its original name
+  RigidTransform model_from_scanner;  ///< the best guess there is; meaningless when failed
+  PoseStatus status = PoseStatus::kFailed;
+  double rms_mm = 0;    ///< point-to-plane residual over the overlap
+  double sigma_mm = 0;  ///< predicted surface displacement error of this pose
+  double overlap = 0;   ///< with the rest of the model, over the smaller scan, in [0,1]
+  std::string reason;   ///< why it is unsure or failed and what would settle it; empty when registered
+  bool locked = false;  ///< fixed by the operator; relaxation leaves it alone
+  /// Covariance of the left perturbation twist (omega rad, v mm) about the scan's centroid in the model
+  /// frame.
+  std::optional<Eigen::Matrix<double, 6, 6>> covariance;
+};
+
+[[nodiscard]] constexpr const char* to_string(PoseStatus status) {
+  switch (status) {
+    case PoseStatus::kRegistered:
+      return "registered";
+    case PoseStatus::kUnsure:
+      return "unsure";
+    case PoseStatus::kFailed:
+      break;
+  }
+  return "failed";
+}
+
+}  // namespace dubsar
