@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "core/grid_lookup.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/random.h"
+#include "tests/support/height_field.h"
+
+namespace dubsar {
+namespace {
+
+std::int64_t nearest_by_search(const RangeGrid& grid, const Eigen::Vector3f& p, float radius) {
+  float best2 = radius * radius;
+  std::int64_t best = -1;
+  for (std::size_t i = 0; i < grid.size(); ++i) {
+    if (grid.valid[i] != 0 && (grid.point(i) - p).squaredNorm() < best2) {
+      best2 = (grid.point(i) - p).squaredNorm();
+      best = static_cast<std::int64_t>(i);
+    }
+  }
+  return best;
+}
+
+/// Uneven spacing, holes and a step: what real scans look like.
+RangeGrid warped_grid(std::uint64_t seed) {
+  Random random(seed);
+  RangeGrid grid = test::height_field(40, 50, 0.2, [&](double x, double y) {
+    return std::sin(x) + 0.3 * y + (x > 2 ? 4.0 : 0.0) + 0.02 * random.normal();
+  });
+  for (std::size_t i = 0; i < grid.size(); ++i) {
+    grid.x[i] += static_cast<float>(0.08 * random.normal());
+    grid.y[i] += static_cast<float>(0.08 * random.normal());
+    grid.valid[i] = random.uniform() < 0.9 ? 1 : 0;
+  }
+  return grid;
+}
+
+TEST(GridLookup, AgreesWithASearchThroughAll) {
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    RangeGrid grid = warped_grid(seed);
+    grid.view.direction = Eigen::Vector3d(0.1 * static_cast<double>(seed), 0.2, -1).normalized();
+    const GridLookup lookup(grid);
+    Random random(seed + 100);
+    int found = 0;
+    for (int k = 0; k < 500; ++k) {
+      const Eigen::Vector3f p(static_cast<float>(random.uniform(-7, 7)),
+                              static_cast<float>(random.uniform(-6, 6)),
+                              static_cast<float>(random.uniform(-3, 6)));
+      const auto radius = static_cast<float>(random.uniform(0.05, 3.0));
+      const std::int64_t expected = nearest_by_search(grid, p, radius);
+      EXPECT_EQ(lookup.nearest(p, radius), expected);
+      found += expected >= 0 ? 1 : 0;
+    }
+    EXPECT_GT(found, 100);
+  }
+}
+
+TEST(GridLookup, OnlyKeptSamplesAnswer) {
+  const RangeGrid grid = test::height_field(5, 5, 1.0, [](double, double) { return 0.0; });
+  std::vector<std::uint8_t> keep(grid.size(), 0);
+  keep[grid.index(1, 3)] = 1;
+  const GridLookup lookup(grid, keep);
+  EXPECT_EQ(lookup.nearest({0, 0, 0}, 10), static_cast<std::int64_t>(grid.index(1, 3)));
+}
+
+TEST(GridLookup, EmptyFarAndNotANumber) {
+  RangeGrid grid = test::height_field(3, 3, 1.0, [](double, double) { return 0.0; });
+  EXPECT_EQ(GridLookup(grid).nearest({1e9F, 0, 0}, 5), -1);
+  EXPECT_EQ(GridLookup(grid).nearest({std::nanf(""), 0, 0}, 5), -1);
+  grid.valid.assign(grid.size(), 0);
+  EXPECT_EQ(GridLookup(grid).nearest({0, 0, 0}, 5), -1);
+  EXPECT_EQ(GridLookup(RangeGrid{}).nearest({0, 0, 0}, 5), -1);
+}
+
+TEST(GridLookup, OneOutlierDoesNotBlowUpTheRaster) {
+  RangeGrid grid = test::height_field(20, 20, 0.1, [](double, double) { return 0.0; });
+  grid.x[7] = 1e6F;
+  const GridLookup lookup(grid);
+  EXPECT_EQ(lookup.nearest(grid.point(210), 0.01F), 210);
+}
+
+TEST(GridLookup, VisitsAllWithinTheRadius) {
+  const RangeGrid grid = warped_grid(9);
+  const GridLookup lookup(grid);
+  const Eigen::Vector3f p(0.3F, -0.4F, 0.2F);
+  int near = 0;
+  lookup.for_each_near(p, 1.0F, [&](std::size_t i) { near += (grid.point(i) - p).norm() < 1.0F ? 1 : 0; });
+  int expected = 0;
+  for (std::size_t i = 0; i < grid.size(); ++i) {
+    expected += grid.valid[i] != 0 && (grid.point(i) - p).norm() < 1.0F ? 1 : 0;
+  }
+  EXPECT_EQ(near, expected);
+  EXPECT_GT(near, 10);
+}
+
+}  // namespace
+}  // namespace dubsar
