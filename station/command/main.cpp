@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+// The dubsar command: a skin over the engine and the stages. Contract: design.md, "Command".
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+#include <new>
+
+#include "core/log.h"
+#include "station/command/command.h"
+
+namespace dubsar {
+
+void CommandContext::print(const nlohmann::ordered_json& object) {
+  finish_progress();
+  std::puts(object.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace).c_str());
+}
+
+namespace {
+
+int report(const Error& error, bool json) {
+  finish_progress();
+  std::fprintf(stderr, "dubsar: %s\n", error.line().c_str());
+  if (json) {
+    CommandContext::print({{"error", {{"what", error.what}, {"where", error.where}, {"mend", error.mend}}}});
+  }
+  return exit_status(error.kind);
+}
+
+int run(int argc, char** argv) {
+  CLI::App app("Dubsar: the station beside a laser scanner for cuneiform tablets", "dubsar");
+  app.set_version_flag("--version", DUBSAR_VERSION);
+  app.require_subcommand(1);
+  bool json = false;
+  bool verbose = false;
+  bool quiet = false;
+  app.add_flag("--json", json, "Print one JSON object on standard output and nothing else there");
+  app.add_flag("-v,--verbose", verbose, "Log more");
+  app.add_flag("-q,--quiet", quiet, "Log warnings and errors only");
+  app.fallthrough();
+
+  Action action;
+  for (const auto add : {add_drivers, add_simulate, add_scan, add_register, add_plan, add_stitch, add_mesh, add_verify,
+                         add_session, add_bench}) {
+    add(app, action);
+  }
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& asked_for_help) {
+    return app.exit(asked_for_help);
+  } catch (const CLI::ParseError& bad) {
+    return report({ErrorKind::kUsage, bad.what(), {}, "see dubsar --help, or dubsar VERB --help"}, json);
+  }
+  set_log_level(verbose ? LogLevel::kDebug : quiet ? LogLevel::kWarning : LogLevel::kInfo);
+
+  CommandContext context;
+  context.json = json;
+  const InterruptScope interrupt(context.job);
+  try {
+    const Result<int> status = action(context);
+    finish_progress();
+    return status ? *status : report(status.error(), json);
+  } catch (const std::bad_alloc&) {
+    return report({ErrorKind::kInternal, "out of memory", {}, "close other programs or use fewer scans at once"}, json);
+  } catch (const std::exception& defect) {
+    return report({ErrorKind::kInternal, defect.what(), {}, "this is a defect of the program: please report it"}, json);
+  }
+}
+
+}  // namespace
+}  // namespace dubsar
+
+int main(int argc, char** argv) { return dubsar::run(argc, argv); }

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "core/job.h"
+
+namespace dubsar {
+
+/// Progress on standard error: a bar that redraws itself on a terminal, a plain line per stage and tenth otherwise.
+/// Thread-safe.
+[[nodiscard]] JobContext::ProgressSink terminal_progress();
+
+/// Ends a bar that stands on the terminal, so that the next line starts clean.
+void finish_progress();
+
+/// The first Ctrl-C (or SIGTERM) cancels the job in good order; the second ends the program at once.
+class InterruptScope {
+ public:
+  explicit InterruptScope(JobContext& job);
+  ~InterruptScope();
+  InterruptScope(const InterruptScope&) = delete;
+  InterruptScope& operator=(const InterruptScope&) = delete;
+};
+
+}  // namespace dubsar

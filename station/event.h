@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "core/range_grid.h"
+#include "core/red_map.h"
+#include "core/sample_flags.h"
+#include "core/scan_pose.h"
+
+namespace dubsar {
+
+/// One profile has arrived and its flags are as current as the stream allows. Refers to the growing grid: valid
+/// during the call only.
+struct ProfileArrived {
+  int row = 0;
+  const RangeGrid* grid = nullptr;
+  const SampleFlags* flags = nullptr;
+};
+/// The scan is on the disk, whole: it survives whatever happens now.
+struct ScanStored {
+  int id = 0;
+  std::string file;
+  std::int64_t samples = 0;
+};
+/// Registration has judged the scan; relaxation may have moved the others.
+struct ScanPlaced {
+  ScanPose pose;
+  std::vector<ScanPose> all;
+};
+struct RedMapChanged {
+  RedMap red_map;
+};
+/// The rig is about to be moved, or the operator is asked for a turn.
+struct NextPlacement {
+  NextView view;
+};
+/// Something that the operator should know and that stops nothing.
+struct Notice {
+  std::string text;
+};
+
+using Event = std::variant<ProfileArrived, ScanStored, ScanPlaced, RedMapChanged, NextPlacement, Notice>;
+
+/// Called on the engine's threads, one call at a time per stage: be quick, take snapshots, and never call back into
+/// the engine.
+using EventSink = std::function<void(const Event&)>;
+
+}  // namespace dubsar
