@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+// dubsar session list | undo | drop | restore: what the operator does to a scan.
+
+#include <cstdio>
+#include <memory>
+
+#include "acquisition/session_store.h"
+#include "station/command/command.h"
+
+namespace dubsar {
+
+namespace {
+
+struct SessionOptions {
+  std::string path;
+  int id = -1;
+  std::string why;
+};
+
+Result<int> list(const SessionOptions& options, CommandContext& context) {
+  const Result<SessionStore> store = SessionStore::open(options.path, SessionStore::Access::kReadOnly);
+  if (!store) {
+    return std::unexpected(store.error());
+  }
+  const auto scans = store->scans();
+  if (!scans) {
+    return std::unexpected(scans.error());
+  }
+  const auto poses = store->poses();
+  if (!poses) {
+    return std::unexpected(poses.error());
+  }
+  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+  for (const StoredScan& scan : *scans) {
+    std::string status = scan.damaged ? "damaged" : scan.dropped ? "dropped" : "stored";
+    for (const ScanPose& pose : *poses) {
+      if (pose.id == scan.id && !scan.dropped && !scan.damaged) {
+        status = to_string(pose.status);
+      }
+    }
+    rows.push_back({{"id", scan.id},
+                    {"grid", scan.file},
+                    {"file", scan.source},
+                    {"device", scan.device},
+                    {"samples", scan.samples},
+                    {"status", status},
+                    {"note", scan.note}});
+  }
+  if (context.json) {
+    CommandContext::print({{"session", options.path}, {"scans", rows}});
+    return 0;
+  }
+  for (const auto& row : rows) {
+    std::printf("%3d  %-10s %9ld samples  %s %s\n", row["id"].get<int>(), row["status"].get<std::string>().c_str(),
+                row["samples"].get<long>(), row["file"].get<std::string>().c_str(),
+                row["note"].get<std::string>().c_str());
+  }
+  return 0;
+}
+
+/// Undo, drop and restore mark scans; the poses and the mesh follow with the next register and stitch.
+template <class Change>
+Result<int> change(const SessionOptions& options, CommandContext& context, const Change& apply) {
+  Result<SessionStore> store = SessionStore::open(options.path);
+  if (!store) {
+    return std::unexpected(store.error());
+  }
+  const Result<int> id = apply(*store);
+  if (!id) {
+    return std::unexpected(id.error());
+  }
+  if (context.json) {
+    CommandContext::print({{"session", options.path}, {"scan", *id}});
+  } else {
+    std::printf("scan %d; run register and stitch on the session to follow\n", *id);
+  }
+  return 0;
+}
+
+Result<int> undo(SessionStore& store) {
+  const auto dropped = store.undo_last_scan();
+  if (!dropped) {
+    return std::unexpected(dropped.error());
+  }
+  if (!*dropped) {
+    return fail(ErrorKind::kUsage, "there is no scan to undo", store.folder().string());
+  }
+  return **dropped;
+}
+
+}  // namespace
+
+void add_session(CLI::App& app, Action& chosen) {
+  CLI::App* verb = app.add_subcommand("session", "What the operator does to a scan");
+  verb->require_subcommand(1);
+  verb->fallthrough();
+  const auto options = std::make_shared<SessionOptions>();
+  const auto add = [&](const char* name, const char* help, bool needs_id, auto action) {
+    CLI::App* sub = verb->add_subcommand(name, help);
+    sub->add_option("session", options->path)->required();
+    if (needs_id) {
+      sub->add_option("scan", options->id, "the scan's number")->required();
+    }
+    sub->fallthrough();
+    sub->callback([&chosen, options, action] {
+      chosen = [options, action](CommandContext& context) { return action(*options, context); };
+    });
+    return sub;
+  };
+  add("list", "The scans and their states", false, list);
+  add("undo", "Take the newest scan out", false, [](const SessionOptions& o, CommandContext& c) {
+    return change(o, c, [](SessionStore& store) { return undo(store); });
+  });
+  add("drop", "Take a scan out; nothing is deleted", true,
+      [](const SessionOptions& o, CommandContext& c) {
+        return change(o, c, [&o](SessionStore& store) -> Result<int> {
+          const Status done = store.drop_scan(o.id, o.why);
+          return done ? Result<int>(o.id) : std::unexpected(done.error());
+        });
+      })
+      ->add_option("--why", options->why, "the reason");
+  add("restore", "Put a dropped scan back", true, [](const SessionOptions& o, CommandContext& c) {
+    return change(o, c, [&o](SessionStore& store) -> Result<int> {
+      const Status done = store.restore_scan(o.id);
+      return done ? Result<int>(o.id) : std::unexpected(done.error());
+    });
+  });
+}
+
+}  // namespace dubsar

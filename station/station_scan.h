@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "core/pin_set.h"
+#include "core/range_grid.h"
+#include "core/sample_flags.h"
+
+namespace dubsar {
+
+/// One scan as the stages behind the store see it: pins and arms taken out, flags final. Shared, never changed.
+struct StationScan {
+  int id = 0;
+  std::string file;                           ///< original name, or "scan ID"
+  std::shared_ptr<const RangeGrid> grid;
+  std::shared_ptr<const SampleFlags> flags;
+};
+
+/// Takes pins and arms out of the grid (they are not clay: neither registered, nor meshed, nor red) and flags what is
+/// left. `flags`, when given, are those of the stream; they stand when nothing had to be taken out.
+[[nodiscard]] StationScan prepare_scan(int id, RangeGrid grid, const std::optional<PinSet>& pins,
+                                       std::optional<SampleFlags> flags = std::nullopt);
+
+}  // namespace dubsar
