@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "drivers/abi.h"
+
+#include <cmath>
+#include <sstream>
+
+namespace dubsar::abi {
+
+namespace {
+
+/// More than any scanner has, and small enough that rows x cols of a few rows cannot exhaust the memory.
+constexpr std::int32_t kMaxCols = 1 << 20;
+constexpr std::uint32_t kMaxChunk = 1U << 26U;
+
+ErrorKind kind_of(std::int32_t code) {
+  switch (code) {
+    case DUBSAR_USAGE:
+      return ErrorKind::kUsage;
+    case DUBSAR_BAD_INPUT:
+      return ErrorKind::kBadInput;
+    case DUBSAR_STORAGE:
+      return ErrorKind::kStorage;
+    case DUBSAR_CANCELLED:
+      return ErrorKind::kCancelled;
+    default:
+      return ErrorKind::kDevice;
+  }
+}
+
+Eigen::Vector3d vector_from(const double (&v)[3]) {
+  return {v[0], v[1], v[2]};
+}
+
+Error faulty(const std::string& where, const std::string& what) {
+  return {ErrorKind::kDevice, "the driver " + what, where,
+          "update the driver or report the fault to its makers"};
+}
+
+/// 0 for anything that is no length at all.
+double positive_or_zero(double value) {
+  return std::isfinite(value) && value > 0 ? value : 0.0;
+}
+
+}  // namespace
+
+Error error_from(std::int32_t code, const dubsar_error& error, const std::string& where) {
+  Error out{kind_of(code), text(error.what), text(error.where), text(error.mend)};
+  if (out.what.empty()) {
+    out.what = code == DUBSAR_CANCELLED ? "cancelled" : "the driver failed and did not say why";
+  }
+  if (out.where.empty()) {
+    out.where = where;
+  }
+  return out;
+}
+
+SettingInfo setting_from(const dubsar_setting& setting) {
+  SettingInfo out;
+  out.key = text(setting.key);
+  out.help = text(setting.help);
+  out.unit = text(setting.unit);
+  out.type = setting.type >= DUBSAR_TYPE_BOOL && setting.type <= DUBSAR_TYPE_CHOICE
+                 ? static_cast<SettingType>(setting.type)
+                 : SettingType::kText;
+  std::istringstream choices(text(setting.choices));
+  for (std::string choice; std::getline(choices, choice, '|');) {
+    out.choices.push_back(choice);
+  }
+  if (setting.minimum <= setting.maximum) {
+    out.range = {setting.minimum, setting.maximum};
+  }
+  out.step = setting.step;
+  out.readable = (setting.flags & DUBSAR_SETTING_READABLE) != 0;
+  out.writable = (setting.flags & DUBSAR_SETTING_WRITABLE) != 0;
+  return out;
+}
+
+ScannerView view_from(const dubsar_view& view) {
+  ScannerView out;
+  const Eigen::Vector3d direction = vector_from(view.direction);
+  if (direction.allFinite() && direction.norm() > 0.5) {
+    out.direction = direction.normalized();
+  }
+  const auto position = [&](std::uint32_t flag, const double(&at)[3]) -> std::optional<Eigen::Vector3d> {
+    const Eigen::Vector3d p = vector_from(at);
+    return (view.flags & flag) != 0 && p.allFinite() ? std::optional(p) : std::nullopt;
+  };
+  out.laser_mm = position(DUBSAR_VIEW_LASER, view.laser_mm);
+  out.camera_mm = position(DUBSAR_VIEW_CAMERA, view.camera_mm);
+  if (const Eigen::Vector3d motion = vector_from(view.motion_per_row_mm); motion.allFinite()) {
+    out.motion_per_row_mm = motion;
+  }
+  return out;
+}
+
+Result<DeviceCapabilities> capabilities_from(const dubsar_capabilities& from, const std::string& where) {
+  DeviceCapabilities out;
+  out.finite = (from.flags & DUBSAR_IS_FINITE) != 0;
+  if (out.finite && from.scan_count >= 0) {
+    out.scan_count = from.scan_count;
+  }
+  if ((from.flags & DUBSAR_HAS_RIG) == 0) {
+    return out;
+  }
+  Rig rig;
+  rig.name = text(from.name);
+  rig.view = view_from(from.view);
+  rig.spacing_mm = positive_or_zero(from.spacing_mm);
+  rig.field_x_mm = positive_or_zero(from.field_x_mm);
+  rig.field_y_mm = positive_or_zero(from.field_y_mm);
+  rig.depth_range_mm = positive_or_zero(from.depth_range_mm);
+  if (rig.spacing_mm == 0 || rig.field_x_mm == 0 || rig.field_y_mm == 0 || rig.depth_range_mm == 0) {
+    return std::unexpected(faulty(where, "told a rig without spacing, field or depth range"));
+  }
+  rig.has_turntable = (from.flags & DUBSAR_HAS_TURNTABLE) != 0;
+  if ((from.flags & DUBSAR_HAS_TILT) != 0) {
+    if (!(std::isfinite(from.tilt_min_rad) && std::isfinite(from.tilt_max_rad) &&
+          from.tilt_min_rad <= from.tilt_max_rad)) {
+      return std::unexpected(faulty(where, "told a tilt range that is none"));
+    }
+    rig.tilt_min_rad = from.tilt_min_rad;
+    rig.tilt_max_rad = from.tilt_max_rad;
+  }
+  rig.hand_turns = (from.flags & DUBSAR_HAS_HAND_TURNS) != 0;
+  rig.support_height_mm = std::isfinite(from.support_height_mm) ? from.support_height_mm : 0.0;
+  rig.calibration = text(from.calibration);
+  if (std::isfinite(from.calibration_age_days) && from.calibration_age_days >= 0) {
+    rig.calibration_age_days = from.calibration_age_days;
+  }
+  out.rig = std::move(rig);
+  return out;
+}
+
+Result<ScanInfo> scan_info_from(const dubsar_scan_info& from, const std::string& where) {
+  ScanInfo out;
+  out.organised = (from.flags & DUBSAR_SCAN_UNORDERED) == 0;
+  if (out.organised && (from.cols <= 0 || from.cols > kMaxCols)) {
+    return std::unexpected(faulty(where, "announced profiles of " + std::to_string(from.cols) + " samples"));
+  }
+  out.cols = out.organised ? from.cols : 0;
+  out.expected_rows = std::max(0, from.expected_rows);
+  out.spacing_mm = positive_or_zero(from.spacing_mm);
+  out.view = view_from(from.view);
+  if ((from.flags & DUBSAR_SCAN_NOMINAL) != 0) {
+    NominalPose nominal;
+    std::array<double, 16> pose{};
+    std::copy_n(from.tablet_from_scanner, 16, pose.begin());
+    nominal.tablet_from_scanner = RigidTransform::from_row_major(pose);
+    if (!nominal.tablet_from_scanner.is_rigid()) {
+      return std::unexpected(faulty(where, "told a nominal pose that is no rigid motion"));
+    }
+    nominal.placement = from.placement;
+    nominal.sigma_mm = positive_or_zero(from.sigma_mm);
+    nominal.sigma_rad = positive_or_zero(from.sigma_rad);
+    nominal.hand_sigma_mm = positive_or_zero(from.hand_sigma_mm);
+    nominal.hand_sigma_rad = positive_or_zero(from.hand_sigma_rad);
+    out.nominal = nominal;
+  }
+  out.pin_tip_diameter_mm = positive_or_zero(from.pin_tip_diameter_mm);
+  out.timestamp_ns = from.timestamp_ns;
+  out.device = text(from.device_id);
+  out.source = text(from.source);
+  return out;
+}
+
+Result<Profile> profile_from(const dubsar_profile& from, const std::string& where) {
+  const std::size_t n = from.count;
+  if (from.count > kMaxChunk || (n > 0 && (from.x == nullptr || from.y == nullptr || from.z == nullptr))) {
+    return std::unexpected(faulty(where, "sent a profile without samples"));
+  }
+  Profile out;
+  out.row = from.row;
+  const auto span = [](const auto* data, std::size_t count) {
+    return data == nullptr ? std::span<std::remove_pointer_t<decltype(data)>>{} : std::span(data, count);
+  };
+  out.x = span(from.x, n);
+  out.y = span(from.y, n);
+  out.z = span(from.z, n);
+  out.valid = span(from.valid, n);
+  out.intensity = span(from.intensity, n);
+  out.confidence = span(from.confidence, n);
+  out.rgb = span(from.rgb, 3 * n);
+  out.normals = span(from.normals, 3 * n);
+  out.timestamp_ns = from.timestamp_ns;
+  return out;
+}
+
+}  // namespace dubsar::abi

@@ -1,0 +1,265 @@
+/* SPDX-License-Identifier: Apache-2.0
+ * Copyright The Dubsar developers */
+#pragma once
+
+/* The plugin interface between Dubsar and a device driver: plain C11, also valid C++. A driver is a shared
+ * library with one exported function, dubsar_driver_entry(), and includes nothing of Dubsar but this file.
+ *
+ * Rules
+ * - No C++ type and no exception crosses this interface.
+ * - Every struct starts with struct_size (the driver itself with abi_version, then struct_size), set by
+ * whoever makes the struct, or lends it to be filled, to the sizeof that he was compiled with. Structs grow
+ * at their end only; nobody reads or writes a byte beyond struct_size.
+ * - Lengths are millimetres, angles radians, frames right-handed, matrices 4 x 4 row major and rigid.
+ * - Strings are UTF-8 and end with NUL; those that are handed to a callback live until it returns.
+ * - Dubsar uses a device from one thread at a time; different devices may be used at once. All callbacks come
+ * on the thread that made the call. A driver that captures with a thread of its own hands the profiles over
+ *   through a queue of fixed size and counts what it had to drop.
+ * - Functions return a dubsar_code; whenever it is neither DUBSAR_OK nor DUBSAR_END, the error is filled. */
+
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define DUBSAR_DRIVER_ABI_VERSION 1u
+
+typedef enum dubsar_code {
+  DUBSAR_OK = 0,
+  DUBSAR_END = 1,       /* the source has no further scan */
+  DUBSAR_USAGE = 2,     /* asked for something that does not exist */
+  DUBSAR_BAD_INPUT = 3, /* outside bytes are not what they claim to be */
+  DUBSAR_DEVICE = 4,    /* the device failed or is gone */
+  DUBSAR_STORAGE = 5,   /* the disk refused */
+  DUBSAR_CANCELLED = 6, /* a callback returned nonzero */
+  DUBSAR_INTERNAL = 7   /* a defect of the driver */
+} dubsar_code;
+
+/* What went wrong, where, and what to do about it: one line each, no trailing dot. */
+typedef struct dubsar_error {
+  uint32_t struct_size;
+  int32_t code; /* dubsar_code */
+  char what[256];
+  char where[256];
+  char mend[256];
+} dubsar_error;
+
+/* ---- Settings and options ---- */
+
+typedef enum dubsar_type {
+  DUBSAR_TYPE_BOOL = 0, /* integer, 0 or 1 */
+  DUBSAR_TYPE_INTEGER = 1,
+  DUBSAR_TYPE_NUMBER = 2,
+  DUBSAR_TYPE_TEXT = 3,
+  DUBSAR_TYPE_CHOICE = 4 /* text, one of choices */
+} dubsar_type;
+
+#define DUBSAR_SETTING_READABLE 1u
+#define DUBSAR_SETTING_WRITABLE 2u
+
+/* Describes an option of open() or a setting of an open device, so that a panel can build itself. */
+typedef struct dubsar_setting {
+  uint32_t struct_size;
+  int32_t type;   /* dubsar_type */
+  uint32_t flags; /* DUBSAR_SETTING_* */
+  const char* key;
+  const char* help;    /* one line for people */
+  const char* unit;    /* "mm", "us", ...; NULL without one */
+  const char* choices; /* words parted by '|'; NULL unless a choice */
+  double minimum;      /* of a number or integer; no range when minimum > maximum */
+  double maximum;
+  double step; /* 0: any value */
+} dubsar_setting;
+
+typedef struct dubsar_value {
+  uint32_t struct_size;
+  int32_t type; /* dubsar_type */
+  int64_t integer;
+  double number;
+  char text[256];
+} dubsar_value;
+
+typedef int32_t (*dubsar_setting_callback)(void* user, const dubsar_setting* setting);
+
+/* One key=value of a device URI, percent-decoded. An array of these never grows its element. */
+typedef struct dubsar_option {
+  const char* key;
+  const char* value;
+} dubsar_option;
+
+/* ---- Devices ---- */
+
+typedef struct dubsar_device dubsar_device; /* the driver's own */
+
+typedef struct dubsar_device_info {
+  uint32_t struct_size;
+  const char* uri; /* what opens it, e.g. "v4l2:/dev/video0" */
+  const char* description;
+} dubsar_device_info;
+
+typedef int32_t (*dubsar_device_callback)(void* user, const dubsar_device_info* info);
+
+#define DUBSAR_VIEW_LASER 1u  /* laser_mm is known */
+#define DUBSAR_VIEW_CAMERA 2u /* camera_mm is known */
+
+/* Embedded in other structs, so it never grows. Where the scanner looks from, in the scanner frame. A linear
+ * scanner moves by motion_per_row_mm between profiles; laser and camera are where they are at row 0. Without
+ * positions, direction stands in. */
+typedef struct dubsar_view {
+  uint32_t struct_size;
+  uint32_t flags;      /* DUBSAR_VIEW_* */
+  double direction[3]; /* unit, from the scanner to the object */
+  double laser_mm[3];
+  double camera_mm[3];
+  double motion_per_row_mm[3];
+} dubsar_view;
+
+#define DUBSAR_HAS_TURNTABLE 1u  /* a full turn about stage z, by motor */
+#define DUBSAR_HAS_TILT 2u       /* tilt of the scanner's axis from the vertical, by motor */
+#define DUBSAR_HAS_HAND_TURNS 4u /* the tablet can be laid on another side, by hand or in simulation */
+#define DUBSAR_IS_FINITE 8u      /* plays what was recorded: scan() ends with DUBSAR_END */
+#define DUBSAR_HAS_RIG 16u       /* the geometry below is that of the device; else it is not known */
+
+/* What a device can do, and its geometry. The stage frame has its origin at the turntable's centre on the
+ * support, z up. The scanner frame: origin in the centre of the measuring volume, x along a profile, y along
+ * the motion, z towards the scanner. */
+typedef struct dubsar_capabilities {
+  uint32_t struct_size;
+  uint32_t flags;     /* DUBSAR_HAS_*, DUBSAR_IS_* */
+  int64_t scan_count; /* of a finite source; -1 when not known before it has been read */
+  double tilt_min_rad;
+  double tilt_max_rad;
+  double spacing_mm;
+  double field_x_mm;
+  double field_y_mm;
+  double depth_range_mm;
+  double support_height_mm;    /* nothing below this stage height can be seen */
+  double calibration_age_days; /* negative when not known */
+  dubsar_view view;
+  char name[128];
+  char calibration[256]; /* what it was calibrated with; empty when not known */
+} dubsar_capabilities;
+
+/* Where the next scan is to be taken from. */
+typedef struct dubsar_placement {
+  uint32_t struct_size;
+  uint32_t has_hand_turn; /* nonzero: the tablet is first turned by hand */
+  double turntable_rad;
+  double tilt_rad;
+  /* The turn that is asked for, tablet_new_from_tablet_old in the stage frame, about the tablet's centre. */
+  double hand_turn[16];
+} dubsar_placement;
+
+/* ---- A scan, profile by profile ---- */
+
+#define DUBSAR_SCAN_UNORDERED 1u /* points without rows and columns; profiles are mere chunks */
+#define DUBSAR_SCAN_NOMINAL 2u   /* the nominal pose is known */
+
+typedef struct dubsar_scan_info {
+  uint32_t struct_size;
+  uint32_t flags;        /* DUBSAR_SCAN_* */
+  int32_t cols;          /* samples per profile; 0 when unordered */
+  int32_t expected_rows; /* 0 when not known */
+  double spacing_mm;     /* nominal lateral spacing; 0 when not known */
+  dubsar_view view;
+  /* The pose that the motors (and the asked-for hand turn) say, with standard deviations. Scans of one
+   * placement number were taken without lifting the tablet and agree to sigma_*; between placements they
+   * agree to hand_sigma_* only. */
+  double tablet_from_scanner[16];
+  int32_t placement;
+  int32_t reserved;
+  double sigma_mm;
+  double sigma_rad;
+  double hand_sigma_mm;
+  double hand_sigma_rad;
+  double pin_tip_diameter_mm; /* > 0 when fiducial pins stand in the scene */
+  int64_t timestamp_ns;       /* since 1970; 0 when not known */
+  const char* device_id;      /* of this one device, e.g. with its serial number; NULL when not known */
+  const char* source;         /* the scan's original name; NULL without one */
+} dubsar_scan_info;
+
+/* One row of the scan. Arrays are as long as count (rgb: three times) and live until the callback returns. */
+typedef struct dubsar_profile {
+  uint32_t struct_size;
+  uint32_t count; /* = cols unless unordered */
+  int64_t row;    /* ascending; a gap means rows that were lost */
+  const float* x; /* scanner frame, mm */
+  const float* y;
+  const float* z;
+  const uint8_t* valid;    /* 0 where there was no return; NULL: all returned */
+  const float* intensity;  /* in [0,1], or NULL */
+  const float* confidence; /* in [0,1], or NULL */
+  const uint8_t* rgb;      /* or NULL */
+  const float* normals;    /* 3 * count, unit, of unordered points; or NULL */
+  int64_t timestamp_ns;    /* 0 when not known */
+} dubsar_profile;
+
+typedef struct dubsar_scan_end {
+  uint32_t struct_size;
+  int32_t code;              /* dubsar_code: how the scan ended */
+  uint64_t profiles_sent;    /* to this sink */
+  uint64_t profiles_dropped; /* lost because nobody took them in time */
+  uint64_t frames_repeated;  /* came twice and were left out */
+} dubsar_scan_end;
+
+/* Where a scan goes: begin once, profile per row, end once whatever happened after begin. A callback that
+ * returns nonzero cancels: the driver stops its motion, calls end, and returns DUBSAR_CANCELLED. */
+typedef struct dubsar_sink {
+  uint32_t struct_size;
+  uint32_t reserved;
+  void* user;
+  int32_t (*begin)(void* user, const dubsar_scan_info* info);
+  int32_t (*profile)(void* user, const dubsar_profile* profile);
+  void (*end)(void* user, const dubsar_scan_end* end);
+} dubsar_sink;
+
+/* ---- The driver ---- */
+
+/* All pointers are set unless marked optional. Pointers stay good until the program ends. */
+typedef struct dubsar_driver {
+  uint32_t abi_version; /* DUBSAR_DRIVER_ABI_VERSION */
+  uint32_t struct_size;
+  const char* scheme;       /* of its URIs: a lower-case letter, then a-z, 0-9, '_' */
+  const char* description;  /* one line */
+  const char* version;      /* of the driver */
+  const char* locator_help; /* what stands between the colon and '?', for people; empty when nothing does */
+
+  /* Calls back for each option that open() knows. */
+  int32_t (*describe_options)(dubsar_setting_callback callback, void* user, dubsar_error* error);
+  /* Calls back for each device that is there; finding none is no error. Takes seconds at most. */
+  int32_t (*discover)(dubsar_device_callback callback, void* user, dubsar_error* error);
+  int32_t (*open)(const char* locator, const dubsar_option* options, uint32_t option_count,
+                  dubsar_device** device, dubsar_error* error);
+  void (*close)(dubsar_device* device);
+  int32_t (*capabilities)(dubsar_device* device, dubsar_capabilities* capabilities, dubsar_error* error);
+
+  /* Optional, all three or none: settings of an open device. */
+  int32_t (*describe_settings)(dubsar_device* device, dubsar_setting_callback callback, void* user,
+                               dubsar_error* error);
+  int32_t (*get_setting)(dubsar_device* device, const char* key, dubsar_value* value, dubsar_error* error);
+  int32_t (*set_setting)(dubsar_device* device, const char* key, const dubsar_value* value,
+                         dubsar_error* error);
+
+  /* Optional: drives to (or simulates) a placement. Returns when the device stands still. */
+  int32_t (*place)(dubsar_device* device, const dubsar_placement* placement, dubsar_error* error);
+  /* Runs the next scan into the sink, from begin to end. DUBSAR_END, with no callback made, when a finite
+   * source has played its last. After a bad scan of a finite source, the next call goes on with the one
+   * behind. */
+  int32_t (*scan)(dubsar_device* device, const dubsar_sink* sink, dubsar_error* error);
+} dubsar_driver;
+
+#if defined(_WIN32)
+#define DUBSAR_DRIVER_EXPORT __declspec(dllexport)
+#else
+#define DUBSAR_DRIVER_EXPORT __attribute__((visibility("default")))
+#endif
+
+#define DUBSAR_DRIVER_ENTRY "dubsar_driver_entry"
+
+/* The one symbol of a plugin. The answer is the same at every call. */
+DUBSAR_DRIVER_EXPORT const dubsar_driver* dubsar_driver_entry(void);
+
+#ifdef __cplusplus
+}
+#endif
