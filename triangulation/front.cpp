@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "triangulation/front.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/parallel.h"
+#include "core/units.h"
+
+namespace dubsar {
+
+namespace {
+
+constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+
+std::uint64_t key_of(std::uint32_t a, std::uint32_t b) {
+  return (static_cast<std::uint64_t>(a) << 32U) | b;
+}
+
+void take_out(std::vector<std::uint32_t>& values, std::uint32_t value) {
+  const auto at = std::find(values.begin(), values.end(), value);
+  if (at != values.end()) {
+    values.erase(at);
+  }
+}
+
+}  // namespace
+
+Front::Front(Sheet& sheet) : sheet_(&sheet), link_of_(sheet.positions.size(), kNone) {
+  float coarsest = 0;
+  for (const float mu : sheet.spacing_mm) {
+    coarsest = std::max(coarsest, mu);
+  }
+  cell_mm_ = coarsest > 0 ? 2.0F * coarsest : 1.0F;
+  const HalfEdges edges(sheet.faces, sheet.positions.size());
+  std::vector<std::uint8_t> open(3 * sheet.faces.size(), 0);
+  parallel_for_each_index(
+      sheet.faces.size(),
+      [&](std::size_t f) {
+        for (std::size_t k = 0; k < 3; ++k) {
+          open[3 * f + k] = edges.face(sheet.faces[f][(k + 1) % 3], sheet.faces[f][k]) < 0 ? 1 : 0;
+        }
+      },
+      4096);
+  for (std::size_t i = 0; i < open.size(); ++i) {
+    if (open[i] != 0) {
+      const Face& f = sheet.faces[i / 3];
+      const std::uint32_t a = f[i % 3];
+      const std::uint32_t b = f[(i % 3 + 1) % 3];
+      links(a).out.push_back(b);
+      links(b).in.push_back(a);
+    }
+  }
+  for (const Face& f : sheet.faces) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (find(f[k]) != nullptr && find(f[(k + 1) % 3]) != nullptr) {
+        half_edges_.insert(key_of(f[k], f[(k + 1) % 3]));
+      }
+    }
+  }
+}
+
+std::uint64_t Front::bucket(const Eigen::Vector3f& p, int du, int dv, int dw) const {
+  const auto cell = [&](float x, int d) {
+    const float c = std::clamp(std::floor(x / cell_mm_), -1.0e6F, 1.0e6F);
+    return static_cast<std::uint64_t>(static_cast<std::int64_t>(c) + d + (1 << 20)) & 0x1fffffU;
+  };
+  return (cell(p.x(), du) << 42U) | (cell(p.y(), dv) << 21U) | cell(p.z(), dw);
+}
+
+Front::Links& Front::links(std::uint32_t v) {
+  if (link_of_[v] == kNone) {
+    link_of_[v] = static_cast<std::uint32_t>(links_.size());
+    links_.emplace_back();
+    buckets_[bucket(sheet_->positions[v], 0, 0, 0)].push_back(v);
+  }
+  return links_[link_of_[v]];
+}
+
+const Front::Links* Front::find(std::uint32_t v) const {
+  return link_of_[v] == kNone ? nullptr : &links_[link_of_[v]];
+}
+
+std::vector<Front::Edge> Front::open_edges() const {
+  std::vector<Edge> out;
+  for (std::uint32_t v = 0; v < link_of_.size(); ++v) {
+    if (const Links* l = find(v)) {
+      for (const std::uint32_t b : l->out) {
+        out.push_back({v, b});
+      }
+    }
+  }
+  return out;
+}
+
+bool Front::is_open(std::uint32_t a, std::uint32_t b) const {
+  const Links* l = find(a);
+  return l != nullptr && std::find(l->out.begin(), l->out.end(), b) != l->out.end();
+}
+
+bool Front::on_front(std::uint32_t v) const {
+  const Links* l = find(v);
+  return l != nullptr && (l->free || !l->out.empty());
+}
+
+std::span<const std::uint32_t> Front::out_of(std::uint32_t v) const {
+  const Links* l = find(v);
+  return l == nullptr ? std::span<const std::uint32_t>{} : l->out;
+}
+
+std::span<const std::uint32_t> Front::into(std::uint32_t v) const {
+  const Links* l = find(v);
+  return l == nullptr ? std::span<const std::uint32_t>{} : l->in;
+}
+
+bool Front::accepts(const Face& f) const {
+  return f[0] != f[1] && f[1] != f[2] && f[2] != f[0] && !half_edges_.contains(key_of(f[0], f[1])) &&
+         !half_edges_.contains(key_of(f[1], f[2])) && !half_edges_.contains(key_of(f[2], f[0]));
+}
+
+void Front::add_face(const Face& f) {
+  sheet_->faces.push_back(f);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::uint32_t a = f[k];
+    const std::uint32_t b = f[(k + 1) % 3];
+    half_edges_.insert(key_of(a, b));
+    links(a).free = false;
+    if (half_edges_.contains(key_of(b, a))) {
+      take_out(links(b).out, a);
+      take_out(links(a).in, b);
+    } else {
+      links(a).out.push_back(b);
+      links(b).in.push_back(a);
+    }
+  }
+}
+
+std::uint32_t Front::add_vertex(const Eigen::Vector3f& position_mm, const Eigen::Vector3f& normal,
+                                float spacing_mm) {
+  const auto v = static_cast<std::uint32_t>(sheet_->positions.size());
+  sheet_->positions.push_back(position_mm);
+  sheet_->normals.push_back(normal);
+  sheet_->spacing_mm.push_back(spacing_mm);
+  link_of_.push_back(kNone);
+  links(v).free = true;
+  return v;
+}
+
+void Front::near(const Eigen::Vector3f& p_mm, float radius_mm, std::vector<std::uint32_t>& out) const {
+  out.clear();
+  const int reach = std::clamp(static_cast<int>(std::ceil(radius_mm / cell_mm_)), 1, 4);
+  for (int du = -reach; du <= reach; ++du) {
+    for (int dv = -reach; dv <= reach; ++dv) {
+      for (int dw = -reach; dw <= reach; ++dw) {
+        const auto found = buckets_.find(bucket(p_mm, du, dv, dw));
+        if (found != buckets_.end()) {
+          for (const std::uint32_t v : found->second) {
+            if (on_front(v) && (sheet_->positions[v] - p_mm).squaredNorm() <= radius_mm * radius_mm) {
+              out.push_back(v);
+            }
+          }
+        }
+      }
+    }
+  }
+}
+
+std::vector<std::vector<std::uint32_t>> Front::openings() const {
+  std::vector<std::vector<std::uint32_t>> loops;
+  std::unordered_set<std::uint64_t> walked;
+  for (const Edge& first : open_edges()) {
+    if (walked.contains(key_of(first.a, first.b))) {
+      continue;
+    }
+    std::vector<std::uint32_t> loop;
+    Edge at = first;
+    while (walked.insert(key_of(at.a, at.b)).second) {
+      loop.push_back(at.a);
+      const auto outs = out_of(at.b);
+      std::uint32_t next = kNone;
+      if (outs.size() == 1) {
+        next = outs[0];
+      } else {
+        // The opening lies to the right of a→b: turn counter-clockwise from b→a until an open edge leaves.
+        const Eigen::Vector3f& n = sheet_->normals[at.b];
+        const Eigen::Vector3f back = sheet_->positions[at.a] - sheet_->positions[at.b];
+        const Eigen::Vector3f side = n.cross(back);
+        double least = std::numeric_limits<double>::max();
+        for (const std::uint32_t head : outs) {
+          if (walked.contains(key_of(at.b, head))) {
+            continue;
+          }
+          const Eigen::Vector3f d = sheet_->positions[head] - sheet_->positions[at.b];
+          double angle = std::atan2(d.dot(side), d.dot(back));
+          angle = angle <= 0 ? angle + 2 * kPi : angle;
+          if (angle < least) {
+            least = angle;
+            next = head;
+          }
+        }
+      }
+      if (next == kNone) {
+        break;
+      }
+      at = {at.b, next};
+    }
+    loops.push_back(std::move(loop));
+  }
+  return loops;
+}
+
+}  // namespace dubsar

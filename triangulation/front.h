@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <span>
+#include <unordered_map>
+#include <unordered_set>
+#include <vector>
+
+#include "triangulation/manifold.h"
+
+namespace dubsar {
+
+/// A mesh under construction: what seams and gaps need to know of each vertex. Faces form an oriented
+/// edge-manifold (no half-edge twice).
+struct Sheet {
+  std::vector<Eigen::Vector3f> positions;  ///< mm
+  std::vector<Eigen::Vector3f> normals;    ///< unit, as measured, not from the faces
+  std::vector<float> spacing_mm;           ///< µ of the scan that a vertex comes from
+  std::vector<Face> faces;
+};
+
+/// The open edges of a sheet and the vertices on them, kept up to date while faces are added. An open edge
+/// (a, b) is the half-edge a→b of a face whose opposite b→a belongs to no face; a face on its free side runs
+/// b→a. Refuses whatever would use a half-edge twice.
+class Front {
+ public:
+  /// Refers to the sheet; faces must be added through add_face() while the front lives.
+  explicit Front(Sheet& sheet);
+
+  struct Edge {
+    std::uint32_t a = 0, b = 0;
+  };
+
+  [[nodiscard]] std::vector<Edge> open_edges() const;
+  [[nodiscard]] bool is_open(std::uint32_t a, std::uint32_t b) const;
+  /// On an open edge, or a vertex without any face that add_vertex() brought.
+  [[nodiscard]] bool on_front(std::uint32_t v) const;
+  [[nodiscard]] std::span<const std::uint32_t> out_of(std::uint32_t v) const;  ///< heads of open edges from v
+  [[nodiscard]] std::span<const std::uint32_t> into(std::uint32_t v) const;    ///< tails of open edges to v
+
+  /// True when face abc uses no half-edge that a face has already.
+  [[nodiscard]] bool accepts(const Face& f) const;
+  /// accepts() must hold.
+  void add_face(const Face& f);
+  std::uint32_t add_vertex(const Eigen::Vector3f& position_mm, const Eigen::Vector3f& normal,
+                           float spacing_mm);
+
+  /// Vertices of the front in buckets that meet the ball; a superset, in a fixed order.
+  void near(const Eigen::Vector3f& p_mm, float radius_mm, std::vector<std::uint32_t>& out) const;
+
+  /// Walks along open edges around each opening, in the direction of the faces beside it. Where several open
+  /// edges leave one vertex the walk goes on along the next one across the opening.
+  [[nodiscard]] std::vector<std::vector<std::uint32_t>> openings() const;
+
+  [[nodiscard]] const Sheet& sheet() const { return *sheet_; }
+
+ private:
+  struct Links {
+    std::vector<std::uint32_t> out, in;
+    bool free = false;  ///< without a face
+  };
+  [[nodiscard]] std::uint64_t bucket(const Eigen::Vector3f& p, int du, int dv, int dw) const;
+  Links& links(std::uint32_t v);
+  [[nodiscard]] const Links* find(std::uint32_t v) const;
+
+  Sheet* sheet_;
+  float cell_mm_ = 1;
+  std::vector<std::uint32_t> link_of_;  ///< [V] index into links_, or none
+  std::vector<Links> links_;
+  std::unordered_set<std::uint64_t> half_edges_;  ///< of faces, between vertices of the front; looked up only
+  std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> buckets_;  ///< looked up only
+};
+
+}  // namespace dubsar

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "triangulation/scan_surface.h"
+
+namespace dubsar {
+
+struct PairingOptions {
+  double reach_factor = 2.5;    ///< × µ of the coarser scan: how far apart two samples may pair
+  double sigma_factor = 3.0;    ///< × pose sigma of both scans together, added to the reach
+  double min_normal_cos = 0.5;  ///< normals of a pair agree within 60°
+  /// The reach grows with the measured mismatch of two scans up to this many µ: poses that are off still give
+  /// one surface.
+  double most_reach_factor = 8.0;
+};
+
+/// The pairs of one scan with one other: for each sample of the first, the nearest usable sample of the other
+/// within reach whose normal agrees, or -1.
+struct Pairs {
+  int other_id = 0;
+  float reach_mm = 0;
+  std::size_t count = 0;
+  std::vector<std::int32_t> match;
+};
+
+/// How far apart the two surfaces lie, measured on a spread of samples along the normal; robust (median).
+/// Negative when they do not overlap.
+[[nodiscard]] double mismatch_mm(const ScanSurface& from, const ScanSurface& to, double reach_mm);
+
+/// Distance within which samples of the two scans pair. The same whichever way round.
+[[nodiscard]] double pair_reach_mm(const ScanSurface& a, const ScanSurface& b, const PairingOptions& options);
+
+[[nodiscard]] Pairs find_pairs(const ScanSurface& from, const ScanSurface& to, double reach_mm,
+                               const PairingOptions& options);
+
+/// Where each sample goes when its pairs have had their say.
+struct FusedSamples {
+  std::vector<Eigen::Vector3f> points;  ///< model frame
+  std::vector<float> reliability;       ///< 1 - Π(1 - r) over the supporting scans
+  std::vector<std::uint8_t> scans;      ///< supporting scans, itself included
+};
+
+/// Seed 001, section 4: the reliability-weighted average of a sample and its projections on the triangles of
+/// the scans it pairs with. `others` and `pairs` run in parallel, in the order of scan ids. A projection onto
+/// the rim of the other scan (outside its triangles) counts for nothing.
+[[nodiscard]] FusedSamples fuse(const ScanSurface& from, std::span<const ScanSurface* const> others,
+                                std::span<const Pairs* const> pairs);
+
+}  // namespace dubsar

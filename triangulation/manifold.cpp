@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "triangulation/manifold.h"
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+
+namespace dubsar {
+
+namespace {
+
+constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+
+std::uint32_t find_root(std::vector<std::uint32_t>& parent, std::uint32_t i) {
+  while (parent[i] != i) {
+    parent[i] = parent[parent[i]];
+    i = parent[i];
+  }
+  return i;
+}
+
+/// The corner of the face at which it touches the vertex.
+int corner_of(const Face& f, std::uint32_t vertex) {
+  return f[0] == vertex ? 0 : f[1] == vertex ? 1 : 2;
+}
+
+/// Keeps entry i where keep[i] != 0; empty arrays stay empty.
+template <class T>
+void keep_entries(std::vector<T>& values, const std::vector<std::uint32_t>& target) {
+  if (values.empty()) {
+    return;
+  }
+  std::size_t out = 0;
+  for (std::size_t i = 0; i < target.size(); ++i) {
+    if (target[i] != kNone) {
+      values[out++] = values[i];
+    }
+  }
+  values.resize(out);
+}
+
+}  // namespace
+
+HalfEdges::HalfEdges(std::span<const Face> faces, std::size_t vertex_count)
+    : start_(vertex_count + 1, 0), out_(3 * faces.size()) {
+  for (const Face& f : faces) {
+    for (const std::uint32_t v : f) {
+      ++start_[v + 1];
+    }
+  }
+  for (std::size_t v = 0; v < vertex_count; ++v) {
+    start_[v + 1] += start_[v];
+  }
+  std::vector<std::uint32_t> next(start_.begin(), start_.end() - 1);
+  for (std::size_t i = 0; i < faces.size(); ++i) {
+    const Face& f = faces[i];
+    for (std::size_t k = 0; k < 3; ++k) {
+      out_[next[f[k]]++] = {f[(k + 1) % 3], static_cast<std::uint32_t>(i)};
+    }
+  }
+}
+
+int HalfEdges::count(std::uint32_t a, std::uint32_t b) const {
+  int n = 0;
+  for (const Out& out : from(a)) {
+    n += out.to == b ? 1 : 0;
+  }
+  return n;
+}
+
+std::int64_t HalfEdges::face(std::uint32_t a, std::uint32_t b) const {
+  for (const Out& out : from(a)) {
+    if (out.to == b) {
+      return out.face;
+    }
+  }
+  return -1;
+}
+
+FaceComponents face_components(std::span<const Face> faces, const HalfEdges& edges) {
+  std::vector<std::uint32_t> parent(faces.size());
+  std::iota(parent.begin(), parent.end(), 0U);
+  for (std::size_t i = 0; i < faces.size(); ++i) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::int64_t other = edges.face(faces[i][(k + 1) % 3], faces[i][k]);
+      if (other >= 0) {
+        const std::uint32_t a = find_root(parent, static_cast<std::uint32_t>(i));
+        const std::uint32_t b = find_root(parent, static_cast<std::uint32_t>(other));
+        parent[std::max(a, b)] = std::min(a, b);
+      }
+    }
+  }
+  FaceComponents out;
+  out.of_face.resize(faces.size());
+  for (std::size_t i = 0; i < faces.size(); ++i) {
+    const std::uint32_t root = find_root(parent, static_cast<std::uint32_t>(i));
+    if (root == i) {
+      out.of_face[i] = static_cast<std::uint32_t>(out.sizes.size());
+      out.sizes.push_back(0);
+    } else {
+      out.of_face[i] = out.of_face[root];
+    }
+    ++out.sizes[out.of_face[i]];
+  }
+  return out;
+}
+
+std::vector<std::vector<std::uint32_t>> boundary_loops(std::span<const Face> faces, const HalfEdges& edges) {
+  std::vector<std::vector<std::uint32_t>> loops;
+  std::vector<std::uint8_t> walked(3 * faces.size(), 0);
+  for (std::size_t i = 0; i < faces.size(); ++i) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (walked[3 * i + k] != 0 || edges.face(faces[i][(k + 1) % 3], faces[i][k]) >= 0) {
+        continue;
+      }
+      std::vector<std::uint32_t> loop;
+      std::size_t face = i;
+      std::size_t corner = k;
+      while (walked[3 * face + corner] == 0) {
+        walked[3 * face + corner] = 1;
+        loop.push_back(faces[face][corner]);
+        // Around the end vertex, face by face, until an edge has no face on its other side.
+        const std::uint32_t pivot = faces[face][(corner + 1) % 3];
+        corner = (corner + 1) % 3;
+        for (std::size_t turn = 0; turn < faces.size(); ++turn) {
+          const std::uint32_t to = faces[face][(corner + 1) % 3];
+          const std::int64_t across = edges.face(to, pivot);
+          if (across < 0) {
+            break;
+          }
+          face = static_cast<std::size_t>(across);
+          corner = static_cast<std::size_t>(corner_of(faces[face], pivot));
+        }
+      }
+      loops.push_back(std::move(loop));
+    }
+  }
+  return loops;
+}
+
+std::vector<std::uint32_t> make_manifold(std::vector<Face>& faces, std::size_t vertex_count) {
+  std::erase_if(faces, [](const Face& f) { return f[0] == f[1] || f[1] == f[2] || f[2] == f[0]; });
+  {
+    const HalfEdges edges(faces, vertex_count);
+    std::vector<std::uint8_t> gone(faces.size(), 0);
+    for (std::size_t i = 0; i < faces.size(); ++i) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        for (const HalfEdges::Out& out : edges.from(faces[i][k])) {
+          if (out.to == faces[i][(k + 1) % 3] && out.face < i && gone[out.face] == 0) {
+            gone[i] = 1;
+          }
+        }
+      }
+    }
+    std::size_t at = 0;
+    std::erase_if(faces, [&](const Face&) { return gone[at++] != 0; });
+  }
+  const HalfEdges edges(faces, vertex_count);
+  std::vector<std::uint32_t> copies;
+  std::vector<std::uint32_t> fan;
+  std::vector<std::array<std::uint32_t, 3>> replaced;  // face, corner, new vertex
+  for (std::uint32_t v = 0; v < vertex_count; ++v) {
+    const std::span<const HalfEdges::Out> outs = edges.from(v);
+    fan.assign(outs.size(), kNone);
+    std::uint32_t fans = 0;
+    for (std::size_t first = 0; first < outs.size(); ++first) {
+      if (fan[first] != kNone) {
+        continue;
+      }
+      // Both ways round from this face; a closed fan comes back to it.
+      const std::uint32_t mine = fans++;
+      std::size_t at = first;
+      for (bool more = true; more;) {
+        more = false;
+        fan[at] = mine;
+        const Face& f = faces[outs[at].face];
+        const int corner = corner_of(f, v);
+        const std::uint32_t previous = f[static_cast<std::size_t>((corner + 2) % 3)];
+        for (std::size_t other = 0; other < outs.size(); ++other) {
+          if (fan[other] == kNone && outs[other].to == previous) {
+            at = other;
+            more = true;
+            break;
+          }
+        }
+      }
+      at = first;
+      for (bool more = true; more;) {
+        more = false;
+        for (std::size_t other = 0; other < outs.size(); ++other) {
+          const Face& g = faces[outs[other].face];
+          const std::uint32_t previous = g[static_cast<std::size_t>((corner_of(g, v) + 2) % 3)];
+          if (fan[other] == kNone && previous == outs[at].to) {
+            fan[other] = mine;
+            at = other;
+            more = true;
+            break;
+          }
+        }
+      }
+    }
+    for (std::uint32_t extra = 1; extra < fans; ++extra) {
+      const auto copy = static_cast<std::uint32_t>(vertex_count + copies.size());
+      copies.push_back(v);
+      for (std::size_t o = 0; o < outs.size(); ++o) {
+        if (fan[o] == extra) {
+          const auto corner = static_cast<std::uint32_t>(corner_of(faces[outs[o].face], v));
+          replaced.push_back({outs[o].face, corner, copy});
+        }
+      }
+    }
+  }
+  for (const auto& [face, corner, copy] : replaced) {
+    faces[face][corner] = copy;
+  }
+  return copies;
+}
+
+void remove_small_components(Mesh& mesh, std::size_t least_faces) {
+  const HalfEdges edges(mesh.faces, mesh.positions.size());
+  const FaceComponents parts = face_components(mesh.faces, edges);
+  std::size_t at = 0;
+  std::erase_if(mesh.faces, [&](const Face&) { return parts.sizes[parts.of_face[at++]] < least_faces; });
+  compact_vertices(mesh);
+}
+
+void compact_vertices(Mesh& mesh) {
+  std::vector<std::uint32_t> target(mesh.positions.size(), kNone);
+  for (const Face& f : mesh.faces) {
+    for (const std::uint32_t v : f) {
+      target[v] = 0;
+    }
+  }
+  std::uint32_t count = 0;
+  for (std::uint32_t& t : target) {
+    if (t != kNone) {
+      t = count++;
+    }
+  }
+  keep_entries(mesh.positions, target);
+  keep_entries(mesh.normals, target);
+  keep_entries(mesh.reliability, target);
+  keep_entries(mesh.scans, target);
+  keep_entries(mesh.flags, target);
+  keep_entries(mesh.colours, target);
+  for (Face& f : mesh.faces) {
+    for (std::uint32_t& v : f) {
+      v = target[v];
+    }
+  }
+}
+
+}  // namespace dubsar

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/mesh.h"
+
+namespace dubsar {
+
+using Face = std::array<std::uint32_t, 3>;
+
+/// Half-edges that leave each vertex, in compressed rows: for face f and corner k the half-edge from corner k
+/// to the next one. Faces must have indices below the vertex count.
+class HalfEdges {
+ public:
+  struct Out {
+    std::uint32_t to = 0;    ///< the vertex it runs to
+    std::uint32_t face = 0;  ///< the face on its left
+  };
+
+  HalfEdges(std::span<const Face> faces, std::size_t vertex_count);
+
+  [[nodiscard]] std::span<const Out> from(std::uint32_t vertex) const {
+    return {out_.data() + start_[vertex], out_.data() + start_[vertex + 1]};
+  }
+  /// How many faces run from a to b.
+  [[nodiscard]] int count(std::uint32_t a, std::uint32_t b) const;
+  /// The lowest face that runs from a to b, or -1.
+  [[nodiscard]] std::int64_t face(std::uint32_t a, std::uint32_t b) const;
+  [[nodiscard]] std::size_t vertex_count() const { return start_.size() - 1; }
+
+ private:
+  std::vector<std::uint32_t> start_;
+  std::vector<Out> out_;
+};
+
+/// Component number of each face (0, 1, … in order of their first face), faces being joined across edges that
+/// two faces share in opposite directions.
+struct FaceComponents {
+  std::vector<std::uint32_t> of_face;
+  std::vector<std::size_t> sizes;  ///< faces per component
+};
+[[nodiscard]] FaceComponents face_components(std::span<const Face> faces, const HalfEdges& edges);
+
+/// Closed walks along the boundary, each as its vertices in the direction of the faces beside it. Where fans
+/// touch in one vertex each walk stays with its own fan.
+[[nodiscard]] std::vector<std::vector<std::uint32_t>> boundary_loops(std::span<const Face> faces,
+                                                                     const HalfEdges& edges);
+
+/// Makes an oriented 2-manifold of any faces whose indices are in range, by the least deletion this finds in
+/// one pass over the faces in order: faces with a repeated vertex and repeated half-edges go (the later face
+/// yields), then each vertex with several fans is split, one copy per fan. Returns, for each vertex that was
+/// appended, the one it copies.
+[[nodiscard]] std::vector<std::uint32_t> make_manifold(std::vector<Face>& faces, std::size_t vertex_count);
+
+/// Drops the faces of components with fewer than `faces` faces, then vertices without a face; per-vertex
+/// arrays follow.
+void remove_small_components(Mesh& mesh, std::size_t least_faces);
+
+/// Drops vertices without a face; per-vertex arrays follow, the order stays.
+void compact_vertices(Mesh& mesh);
+
+}  // namespace dubsar

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/job.h"
+#include "triangulation/fusion.h"
+#include "triangulation/scan_surface.h"
+
+namespace dubsar {
+
+struct OwnershipOptions {
+  /// Half the side of the window in which the majority decides who is primary, samples.
+  int majority_radius_samples = 2;
+  /// Patches with fewer samples than this are left to other scans.
+  int least_patch_samples = 12;
+  /// Samples of another scan stay this far, × the coarser µ, from a patch that is kept: the seam between them
+  /// is closed by triangles of about the size of the grid's own.
+  double clearance_factor = 0.65;
+  /// How far around a pair's sample the kept patch of the other scan is looked at, samples.
+  int look_around_samples = 2;
+};
+
+/// A scan with what others know of it, as ownership needs it; the pairs are sorted by the id of the other
+/// scan, which stands at position `other[k]` of the same list.
+struct OwnedScan {
+  const ScanSurface* surface = nullptr;
+  const FusedSamples* fused = nullptr;
+  std::vector<const Pairs*> pairs;
+  std::vector<std::size_t> other;
+  std::vector<std::uint8_t> kept;   ///< out: 1 where the sample is a vertex of the stitched mesh
+  std::vector<std::uint8_t> cells;  ///< out: CellBit codes of the triangles that are kept
+};
+
+/// Gives each place of the surface one primary scan, the view closest to the normal there (seed 001, 4), and
+/// keeps that scan's samples and triangles: patches of single scans that nowhere overlap, with a seam about
+/// one spacing wide between them. No place that any scan covers with triangles is left without a patch, but
+/// for the seams. Scans must be sorted by id. Returns false when cancelled.
+[[nodiscard]] bool assign_owners(std::vector<OwnedScan>& scans, const GridTriangulationOptions& grid,
+                                 const OwnershipOptions& options, const JobContext& job);
+
+}  // namespace dubsar

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "core/grid_lookup.h"
+#include "core/placed_scan.h"
+#include "triangulation/grid_triangulation.h"
+
+namespace dubsar {
+
+struct ScanSurfaceOptions {
+  GridTriangulationOptions grid;
+  /// Samples from the rim of a scan over which its weight rises from nothing to full, so that no step shows
+  /// where a scan ends.
+  int feather_samples = 6;
+  /// Radius of the mean over which incidence is compared between scans, samples: the primary scan changes
+  /// along a line, not from sample to sample with the noise of the normals.
+  int incidence_radius_samples = 5;
+};
+
+/// One placed scan made ready for stitching: its samples in the model frame, the triangles of its grid, and
+/// how far each sample is to be trusted. All arrays are [rows*cols] of the grid.
+struct ScanSurface {
+  PlacedScan scan;
+  double spacing_mm = 0;
+  bool mirrored = false;
+  ScannerView view;                      ///< in the model frame
+  std::vector<Eigen::Vector3f> points;   ///< model frame, mm
+  std::vector<Eigen::Vector3f> normals;  ///< model frame, out of the clay; zero where undefined
+  std::vector<std::uint8_t> usable;      ///< 1 where the sample is a corner of a triangle of its own grid
+  std::vector<std::uint8_t> cells;       ///< CellBit codes
+  std::vector<float> reliability;  ///< of the sample alone, in [0,1]: cos² of the incidence × confidence
+  std::vector<float> weight;  ///< for averaging: reliability / µ², faded towards the rim; > 0 if usable
+  std::vector<float> score;   ///< how much this scan wants to be primary here
+  Eigen::AlignedBox3f box;    ///< of the usable samples, model frame
+  RigidTransform scanner_from_model;
+  std::unique_ptr<GridLookup> lookup;  ///< of the usable samples, scanner frame
+
+  [[nodiscard]] GridSurface surface() const {
+    return {scan.grid->rows, scan.grid->cols, spacing_mm, points, normals, view};
+  }
+};
+
+/// Never fails: a scan without a triangle has no usable sample.
+[[nodiscard]] ScanSurface make_scan_surface(const PlacedScan& scan, const ScanSurfaceOptions& options);
+
+/// In place: each value becomes the mean over the (2·radius+1)² window around it, of those with mask != 0;
+/// zero where the mask is 0.
+void box_mean(std::vector<float>& values, const std::vector<std::uint8_t>& mask, int rows, int cols,
+              int radius);
+
+}  // namespace dubsar

@@ -1,0 +1,260 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "triangulation/seam_closer.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <queue>
+
+namespace dubsar {
+
+namespace {
+
+using Eigen::Vector2f;
+using Eigen::Vector3f;
+
+constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+
+struct Limits {
+  float most_edge_factor;
+  float least_sine;  ///< of the smallest angle
+  float min_normal_cos;
+};
+
+float cross2(const Vector2f& a, const Vector2f& b) {
+  return a.x() * b.y() - a.y() * b.x();
+}
+
+bool segments_cross(const Vector2f& a, const Vector2f& b, const Vector2f& c, const Vector2f& d) {
+  return (cross2(b - a, c - a) > 0) != (cross2(b - a, d - a) > 0) &&
+         (cross2(d - c, a - c) > 0) != (cross2(d - c, b - c) > 0);
+}
+
+/// Sine of the smallest angle: the altitude on the longest side over the middle side.
+float least_sine(const Vector3f& a, const Vector3f& b, const Vector3f& c) {
+  float ab = (b - a).norm();
+  float bc = (c - b).norm();
+  float ca = (a - c).norm();
+  const float area2 = (b - a).cross(c - a).norm();
+  if (ab > bc) {
+    std::swap(ab, bc);
+  }
+  if (bc > ca) {
+    std::swap(bc, ca);
+  }
+  if (ab > bc) {
+    std::swap(ab, bc);
+  }
+  return bc * ca > 0 ? area2 / (bc * ca) : 0.0F;
+}
+
+struct Choice {
+  std::uint32_t c = kNone;
+  float key = std::numeric_limits<float>::max();  ///< smaller goes first
+};
+
+/// Looks for the third corner of a face on the free side of an open edge.
+class Chooser {
+ public:
+  Chooser(const Front& front, const Limits& limits) : front_(&front), limits_(limits) {}
+
+  Choice choose(std::uint32_t a, std::uint32_t b) {
+    const Sheet& sheet = front_->sheet();
+    const Vector3f& pa = sheet.positions[a];
+    const Vector3f& pb = sheet.positions[b];
+    const Vector3f middle = 0.5F * (pa + pb);
+    Vector3f n = sheet.normals[a] + sheet.normals[b];
+    const Vector3f ab = pb - pa;
+    // Made tangent to the edge, so that the edge keeps its length in the plane.
+    n -= ab * (n.dot(ab) / std::max(ab.squaredNorm(), 1e-20F));
+    const float n_norm = n.norm();
+    const float length = ab.norm();
+    if (!(n_norm > 1e-6F) || !(length > 0)) {
+      return {};
+    }
+    n /= n_norm;
+    const Vector3f along = ab / length;
+    const Vector3f free_side = along.cross(n);
+    const float mu = std::max(sheet.spacing_mm[a], sheet.spacing_mm[b]);
+    const float most = limits_.most_edge_factor * mu;
+    const float radius = 1.5F * most + 0.5F * length;
+    front_->near(middle, radius, near_);
+
+    flat_.resize(near_.size());
+    layer_.resize(near_.size());
+    candidates_.clear();
+    for (std::size_t k = 0; k < near_.size(); ++k) {
+      const std::uint32_t v = near_[k];
+      const Vector3f d = sheet.positions[v] - pa;
+      flat_[k] = {d.dot(along), d.dot(free_side)};
+      const float height = std::abs(d.dot(n));
+      layer_[k] = sheet.normals[v].dot(n) > 0.2F && height <= most ? 1 : 0;
+      if (v == a || v == b || layer_[k] == 0 || sheet.normals[v].dot(n) < limits_.min_normal_cos ||
+          flat_[k].y() < 1e-3F * length) {
+        continue;
+      }
+      const Vector3f ca = pa - sheet.positions[v];
+      const Vector3f cb = pb - sheet.positions[v];
+      const float longest = std::max(ca.norm(), cb.norm());
+      if (longest > limits_.most_edge_factor * std::max(mu, sheet.spacing_mm[v])) {
+        continue;
+      }
+      candidates_.push_back({ca.dot(cb) / (ca.norm() * cb.norm()), k});
+    }
+    std::sort(candidates_.begin(), candidates_.end(), [&](const Candidate& x, const Candidate& y) {
+      return x.cosine != y.cosine ? x.cosine < y.cosine : near_[x.at] < near_[y.at];
+    });
+    for (const Candidate& candidate : candidates_) {
+      const std::uint32_t c = near_[candidate.at];
+      const Vector3f& pc = sheet.positions[c];
+      const float sine = least_sine(pa, pb, pc);
+      if (sine < limits_.least_sine || !front_->accepts({b, a, c})) {
+        continue;
+      }
+      const Vector3f face_normal = (pa - pb).cross(pc - pb).normalized();
+      const Vector3f measured = (sheet.normals[a] + sheet.normals[b] + sheet.normals[c]).normalized();
+      if (face_normal.dot(measured) < limits_.min_normal_cos ||
+          blocked(a, b, c, length, flat_[candidate.at])) {
+        continue;
+      }
+      // Short triangles first, well shaped ones before needles of the same size.
+      const float size = std::max((pc - pa).norm(), (pc - pb).norm()) / mu;
+      return {c, size + 0.5F * (1.0F - sine)};
+    }
+    return {};
+  }
+
+ private:
+  struct Candidate {
+    float cosine;    ///< of the angle at the third corner
+    std::size_t at;  ///< in near_
+  };
+
+  [[nodiscard]] bool blocked(std::uint32_t a, std::uint32_t b, std::uint32_t c, float length,
+                             const Vector2f& fc) const {
+    const Vector2f fa(0, 0);
+    const Vector2f fb(length, 0);
+    const float slack = 1e-4F * length * length;
+    for (std::size_t k = 0; k < near_.size(); ++k) {
+      const std::uint32_t v = near_[k];
+      if (v == a || v == b || v == c || layer_[k] == 0) {
+        continue;
+      }
+      const Vector2f& p = flat_[k];
+      if (cross2(fb - fa, p - fa) > -slack && cross2(fc - fb, p - fb) > -slack &&
+          cross2(fa - fc, p - fc) > -slack) {
+        return true;
+      }
+    }
+    for (std::size_t k = 0; k < near_.size(); ++k) {
+      if (layer_[k] == 0) {
+        continue;
+      }
+      const std::uint32_t v = near_[k];
+      for (const std::uint32_t w : front_->out_of(v)) {
+        const Vector2f head = flat_of(w, k);
+        if (v != a && w != a && v != c && w != c && segments_cross(fa, fc, flat_[k], head)) {
+          return true;
+        }
+        if (v != b && w != b && v != c && w != c && segments_cross(fb, fc, flat_[k], head)) {
+          return true;
+        }
+      }
+    }
+    return false;
+  }
+
+  /// The head of an open edge from near_[tail]; a head outside the neighbourhood is as good as its tail.
+  [[nodiscard]] Vector2f flat_of(std::uint32_t w, std::size_t tail) const {
+    for (std::size_t k = 0; k < near_.size(); ++k) {
+      if (near_[k] == w) {
+        return flat_[k];
+      }
+    }
+    return flat_[tail];
+  }
+
+  const Front* front_;
+  Limits limits_;
+  std::vector<std::uint32_t> near_;
+  std::vector<Vector2f> flat_;
+  std::vector<std::uint8_t> layer_;
+  std::vector<Candidate> candidates_;
+};
+
+struct Task {
+  float key;
+  std::uint32_t a, b, c;
+  bool operator<(const Task& o) const {  // the queue serves the greatest: the smallest key
+    if (key != o.key) {
+      return key > o.key;
+    }
+    return a != o.a ? a > o.a : b > o.b;
+  }
+};
+
+std::size_t advance(Front& front, std::vector<Front::Edge> edges, const Limits& limits) {
+  Chooser chooser(front, limits);
+  std::priority_queue<Task> queue;
+  const auto offer = [&](std::uint32_t a, std::uint32_t b) {
+    const Choice choice = chooser.choose(a, b);
+    if (choice.c != kNone) {
+      queue.push({choice.key, a, b, choice.c});
+    }
+  };
+  for (const Front::Edge& e : edges) {
+    offer(e.a, e.b);
+  }
+  std::size_t added = 0;
+  while (!queue.empty()) {
+    const Task task = queue.top();
+    queue.pop();
+    if (!front.is_open(task.a, task.b)) {
+      continue;
+    }
+    const Choice now = chooser.choose(task.a, task.b);
+    if (now.c == kNone) {
+      continue;
+    }
+    if (now.c != task.c && now.key > task.key) {
+      queue.push({now.key, task.a, task.b, now.c});
+      continue;
+    }
+    front.add_face({task.b, task.a, now.c});
+    ++added;
+    // The face's other half-edges are a→c and c→b; they are new front where nothing lay beyond.
+    if (front.is_open(task.a, now.c)) {
+      offer(task.a, now.c);
+    }
+    if (front.is_open(now.c, task.b)) {
+      offer(now.c, task.b);
+    }
+  }
+  return added;
+}
+
+}  // namespace
+
+std::size_t close_seams(Front& front, const SeamOptions& options) {
+  return advance(
+      front, front.open_edges(),
+      {static_cast<float>(options.most_edge_factor), static_cast<float>(std::sin(options.least_angle_rad)),
+       static_cast<float>(options.min_normal_cos)});
+}
+
+std::size_t close_openings(Front& front, const std::vector<std::vector<std::uint32_t>>& openings,
+                           double least_angle_rad, const SeamOptions& options) {
+  std::vector<Front::Edge> edges;
+  for (const auto& loop : openings) {
+    for (std::size_t i = 0; i < loop.size(); ++i) {
+      edges.push_back({loop[i], loop[(i + 1) % loop.size()]});
+    }
+  }
+  return advance(front, std::move(edges),
+                 {static_cast<float>(options.most_gap_edge_factor),
+                  static_cast<float>(std::sin(least_angle_rad)), static_cast<float>(options.min_normal_cos)});
+}
+
+}  // namespace dubsar

@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "triangulation/stitcher.h"
+
+#include <algorithm>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/parallel.h"
+#include "triangulation/assembly.h"
+
+namespace dubsar {
+
+namespace {
+
+struct Entry {
+  ScanSurface surface;
+  std::map<int, Pairs> pairs;  ///< by the id of the other scan; those without a pair hold no matches
+  FusedSamples fused;
+  bool stale = true;  ///< fused does not know all pairs yet
+};
+
+std::string name_of(const PlacedScan& scan) {
+  return "scan " + std::to_string(scan.id);
+}
+
+Status check(const PlacedScan& scan) {
+  if (scan.grid == nullptr) {
+    return bad_input(name_of(scan), "no range grid");
+  }
+  const std::size_t cells = static_cast<std::size_t>(std::max(scan.grid->rows, 0)) *
+                            static_cast<std::size_t>(std::max(scan.grid->cols, 0));
+  if (scan.grid->size() != cells || scan.grid->valid.size() != cells) {
+    return bad_input(name_of(scan), "the grid's arrays do not fit its rows and columns");
+  }
+  if (scan.flags != nullptr && !scan.flags->empty() && scan.flags->size() != cells) {
+    return bad_input(name_of(scan), "flags and grid have different sizes", "flag the grid again");
+  }
+  if (!scan.model_from_scanner.is_rigid() || !scan.model_from_scanner.translation_mm.allFinite()) {
+    return bad_input(name_of(scan), "its pose is not a rigid transform", "register the scan again");
+  }
+  return {};
+}
+
+std::unexpected<Error> cancelled() {
+  return fail(ErrorKind::kCancelled, "stitching was stopped");
+}
+
+}  // namespace
+
+struct Stitcher::Impl {
+  StitchOptions options;
+  std::map<int, Entry> entries;
+
+  Status insert(const PlacedScan& scan) {
+    if (entries.contains(scan.id)) {
+      return fail(ErrorKind::kUsage, "stitched already", name_of(scan), "remove it first");
+    }
+    if (const Status ok = check(scan); !ok) {
+      return ok;
+    }
+    Entry entry;
+    entry.surface = make_scan_surface(scan, options.surface);
+    entries.emplace(scan.id, std::move(entry));
+    return {};
+  }
+
+  /// Pairs the new scan with those that its box touches.
+  void pair(int id) {
+    Entry& entry = entries.at(id);
+    for (auto& [other_id, other] : entries) {
+      if (other_id == id || entry.pairs.contains(other_id)) {
+        continue;
+      }
+      Eigen::AlignedBox3f box = other.surface.box;
+      const auto margin = static_cast<float>(options.pairing.most_reach_factor *
+                                             std::max(entry.surface.spacing_mm, other.surface.spacing_mm));
+      if (!box.isEmpty()) {
+        box.min().array() -= margin;
+        box.max().array() += margin;
+      }
+      if (!box.intersects(entry.surface.box)) {
+        continue;
+      }
+      const double reach = pair_reach_mm(entry.surface, other.surface, options.pairing);
+      Pairs there = find_pairs(entry.surface, other.surface, reach, options.pairing);
+      Pairs back = find_pairs(other.surface, entry.surface, reach, options.pairing);
+      if (there.count == 0 && back.count == 0) {
+        continue;
+      }
+      // Either side may be asked about any of its samples.
+      there.match.resize(entry.surface.points.size(), -1);
+      back.match.resize(other.surface.points.size(), -1);
+      entry.pairs.emplace(other_id, std::move(there));
+      other.pairs.emplace(id, std::move(back));
+      other.stale = true;
+    }
+    entry.stale = true;
+  }
+
+  void refresh() {
+    for (auto& [id, entry] : entries) {
+      if (!entry.stale) {
+        continue;
+      }
+      std::vector<const ScanSurface*> others;
+      std::vector<const Pairs*> pairs;
+      for (const auto& [other_id, found] : entry.pairs) {
+        others.push_back(&entries.at(other_id).surface);
+        pairs.push_back(&found);
+      }
+      entry.fused = fuse(entry.surface, others, pairs);
+      entry.stale = false;
+    }
+  }
+
+  bool erase(int id) {
+    if (entries.erase(id) == 0) {
+      return false;
+    }
+    for (auto& [other_id, other] : entries) {
+      if (other.pairs.erase(id) > 0) {
+        other.stale = true;
+      }
+    }
+    refresh();
+    return true;
+  }
+};
+
+Stitcher::Stitcher(StitchOptions options) : impl_(std::make_unique<Impl>()) {
+  impl_->options = options;
+}
+Stitcher::~Stitcher() = default;
+Stitcher::Stitcher(Stitcher&&) noexcept = default;
+Stitcher& Stitcher::operator=(Stitcher&&) noexcept = default;
+
+Status Stitcher::add(const PlacedScan& scan, const JobContext& job) {
+  if (job.cancelled()) {
+    return cancelled();
+  }
+  if (const Status ok = impl_->insert(scan); !ok) {
+    return ok;
+  }
+  impl_->pair(scan.id);
+  if (job.cancelled()) {
+    impl_->erase(scan.id);
+    return cancelled();
+  }
+  impl_->refresh();
+  return {};
+}
+
+bool Stitcher::remove(int id) {
+  return impl_->erase(id);
+}
+
+std::vector<Stitcher::Overlap> Stitcher::overlaps() const {
+  std::vector<Overlap> out;
+  for (const auto& [id, entry] : impl_->entries) {
+    for (const auto& [other_id, pairs] : entry.pairs) {
+      if (id < other_id) {
+        const ScanSurface& other = impl_->entries.at(other_id).surface;
+        out.push_back({id, other_id, pairs.count, mismatch_mm(entry.surface, other, pairs.reach_mm),
+                       std::max(entry.surface.spacing_mm, other.spacing_mm)});
+      }
+    }
+  }
+  return out;
+}
+
+Result<Mesh> Stitcher::mesh(const JobContext& job) const {
+  std::vector<OwnedScan> scans;
+  std::map<int, std::size_t> position;
+  for (const auto& [id, entry] : impl_->entries) {
+    position[id] = position.size();
+  }
+  for (const auto& [id, entry] : impl_->entries) {
+    OwnedScan scan;
+    scan.surface = &entry.surface;
+    scan.fused = &entry.fused;
+    for (const auto& [other_id, pairs] : entry.pairs) {
+      scan.pairs.push_back(&pairs);
+      scan.other.push_back(position.at(other_id));
+    }
+    scans.push_back(std::move(scan));
+  }
+  if (!assign_owners(scans, impl_->options.surface.grid, impl_->options.ownership, job)) {
+    return cancelled();
+  }
+  job.progress("close seams", 0.0);
+  AssemblyOptions assembly{impl_->options.seam, impl_->options.gap, impl_->options.least_component_faces};
+  Mesh mesh = assemble(scans, assembly);
+  if (job.cancelled()) {
+    return cancelled();
+  }
+  return mesh;
+}
+
+Mesh Stitcher::mesh() const {
+  const JobContext job;
+  return mesh(job).value_or(Mesh{});
+}
+
+Result<Mesh> stitch(std::span<const PlacedScan> scans, const StitchOptions& options, const JobContext& job) {
+  Stitcher stitcher(options);
+  std::size_t done = 0;
+  for (const PlacedScan& scan : scans) {
+    if (job.cancelled()) {
+      return cancelled();
+    }
+    job.progress("triangulate grids", static_cast<double>(done++) / static_cast<double>(scans.size()));
+    if (const Status ok = stitcher.impl_->insert(scan); !ok) {
+      return std::unexpected(ok.error());
+    }
+  }
+  done = 0;
+  for (const PlacedScan& scan : scans) {
+    if (job.cancelled()) {
+      return cancelled();
+    }
+    job.progress("pair samples", static_cast<double>(done++) / static_cast<double>(scans.size()));
+    stitcher.impl_->pair(scan.id);
+  }
+  stitcher.impl_->refresh();
+  return stitcher.mesh(job);
+}
+
+}  // namespace dubsar

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <memory>
+#include <span>
+
+#include "core/job.h"
+#include "core/mesh.h"
+#include "core/placed_scan.h"
+#include "core/result.h"
+#include "triangulation/fusion.h"
+#include "triangulation/gap_fill.h"
+#include "triangulation/grid_triangulation.h"
+#include "triangulation/ownership.h"
+#include "triangulation/scan_surface.h"
+#include "triangulation/seam_closer.h"
+
+namespace dubsar {
+
+struct StitchOptions {
+  ScanSurfaceOptions surface;
+  PairingOptions pairing;
+  OwnershipOptions ownership;
+  SeamOptions seam;
+  GapFillOptions gap;
+  /// Pieces with fewer faces than this are specks of dust and noise, and left out.
+  int least_component_faces = 40;
+};
+
+/// Stitches placed scans into one mesh (seed 001, section 4): samples move to the reliability-weighted
+/// average of themselves and their projections on the scans they pair with; each place takes its triangles
+/// from its primary scan, the view closest to the normal; seams between primaries and gaps of a few samples
+/// are closed. Nothing is smoothed or resampled, and nothing new is made but the interpolated vertices, which
+/// are marked. The mesh is an oriented 2-manifold with boundary, whatever the scans.
+///
+/// Scans come one by one, in any order, and can be taken out again; what is worked out anew is only what
+/// overlaps. The mesh depends on the set of scans alone, not on the order, nor on the number of threads.
+class Stitcher {
+ public:
+  explicit Stitcher(StitchOptions options = {});
+  ~Stitcher();
+  Stitcher(Stitcher&&) noexcept;
+  Stitcher& operator=(Stitcher&&) noexcept;
+  Stitcher(const Stitcher&) = delete;
+  Stitcher& operator=(const Stitcher&) = delete;
+
+  /// Keeps a reference to the scan's grid and flags: they stay alive and unchanged until remove() or the end.
+  /// Errors: kUsage when the id is there already, kBadInput when the scan has no grid, its flags have another
+  /// size or its pose is not rigid; kCancelled, and then the scan is not in.
+  Status add(const PlacedScan& scan, const JobContext& job);
+  /// False when there is no such scan.
+  bool remove(int id);
+  /// How far apart the surfaces of two scans lie where they overlap (median along the normal, mm), and what
+  /// their poses promised; for warnings about poses that are off.
+  struct Overlap {
+    int id = 0, other_id = 0;
+    std::size_t pairs = 0;
+    double mismatch_mm = 0;
+    double spacing_mm = 0;
+  };
+  [[nodiscard]] std::vector<Overlap> overlaps() const;
+  /// The mesh of all scans, with normals, reliability, scans and flags; kCancelled is its only error.
+  [[nodiscard]] Result<Mesh> mesh(const JobContext& job) const;
+  [[nodiscard]] Mesh mesh() const;
+
+ private:
+  friend Result<Mesh> stitch(std::span<const PlacedScan> scans, const StitchOptions& options,
+                             const JobContext& job);
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// All scans at once. Errors as Stitcher::add(). No scans: an empty mesh.
+[[nodiscard]] Result<Mesh> stitch(std::span<const PlacedScan> scans, const StitchOptions& options,
+                                  const JobContext& job);
+
+}  // namespace dubsar
