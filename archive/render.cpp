@@ -15,14 +15,16 @@ namespace {
 
 constexpr int kMaxSidePx = 16384;
 constexpr double kMaxSubpixels = 400e6;
+constexpr float kShadowLight =
+    0.3F;  // of the lamp's light stays in its shadow, so that wedges keep their faces
 
 /// Light on clay: a warm raking lamp, a cool sky from above, and a little light from the viewer, so that no
 /// side is black. Shadows take the lamp, recesses take the sky and some of the lamp.
 struct Lights {
   Eigen::Vector3f lamp;
-  LinearRgb lamp_colour{1.28F, 1.22F, 1.12F};
-  LinearRgb sky_colour{0.33F, 0.36F, 0.42F};
-  LinearRgb front_colour{0.16F, 0.16F, 0.16F};
+  LinearRgb lamp_colour{1.30F, 1.24F, 1.14F};
+  LinearRgb sky_colour{0.37F, 0.40F, 0.46F};
+  LinearRgb front_colour{0.24F, 0.24F, 0.24F};
 };
 
 /// Everything up to kKnee is kept; what is lighter is bent to stay below 1, so that lit ridges keep their
@@ -53,7 +55,8 @@ Image shade(const SurfacePixels& pixels, const RenderOptions& options, double mm
     Eigen::Vector3f n(pixels.nx[i], pixels.ny[i], pixels.nz[i]);
     n.normalize();
     const float open = sky[i] * sky[i];
-    const float lambert = std::max(0.0F, n.dot(lights.lamp)) * lamp[i] * (0.4F + 0.6F * open);
+    const float lambert = std::max(0.0F, n.dot(lights.lamp)) *
+                          (kShadowLight + (1.0F - kShadowLight) * lamp[i]) * (0.4F + 0.6F * open);
     const float dome = (0.62F + 0.38F * n.y()) * open;
     const float front = n.z() * (0.5F + 0.5F * open);
     const float crease = std::exp(relief * bend[i]);

@@ -23,11 +23,11 @@ struct RenderOptions {
   Rgb8 background = kPaper;
   RenderStyle style = RenderStyle::kClay;
   /// Towards the lamp, x right, y up, z to the viewer: raking from the upper left, as epigraphers light a
-  /// tablet, about 33 degrees above it. Need not be a unit vector.
-  Eigen::Vector3d towards_lamp{-0.64, 0.54, 0.54};
+  /// tablet, about 36 degrees above it. Need not be a unit vector.
+  Eigen::Vector3d towards_lamp{-0.62, 0.52, 0.58};
   double recess_radius_mm = 2.5;  ///< surroundings that take light from a recess; a wedge is 1 to 5 mm
   double shadow_reach_mm = 4.0;
-  double relief = 0.5;  ///< how far ridges are lightened and valleys darkened, 0 to 1
+  double relief = 0.3;  ///< how far ridges are lightened and valleys darkened, 0 to 1
 
   [[nodiscard]] Status check() const;
 };

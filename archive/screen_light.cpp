@@ -147,20 +147,24 @@ std::vector<float> lamp_visibility(const SurfacePixels& pixels, double mm_per_px
 }
 
 std::vector<float> bending(const SurfacePixels& pixels, double mm_per_px, double scale_mm) {
+  // Differences over four pixels: over two, the facets of a coarse mesh would show as a net of lines.
+  constexpr int kReach = 2;
   std::vector<float> bend(pixels.size(), 0.0F);
-  const int width = pixels.width;
-  const auto factor = static_cast<float>(scale_mm / (2.0 * mm_per_px));
+  const auto width = static_cast<std::size_t>(pixels.width);
+  const auto factor = static_cast<float>(scale_mm / (2.0 * kReach * mm_per_px));
   parallel_for_each_index(
-      static_cast<std::size_t>(std::max(0, pixels.height - 2)),
+      static_cast<std::size_t>(std::max(0, pixels.height - 2 * kReach)),
       [&](std::size_t row) {
-        for (int x = 1; x + 1 < width; ++x) {
-          const std::size_t i = (row + 1) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
-          const std::size_t up = i - static_cast<std::size_t>(width);
-          const std::size_t down = i + static_cast<std::size_t>(width);
+        for (int x = kReach; x + kReach < pixels.width; ++x) {
+          const std::size_t i = (row + kReach) * width + static_cast<std::size_t>(x);
+          const std::size_t up = i - kReach * width;
+          const std::size_t down = i + kReach * width;
+          const std::size_t left = i - kReach;
+          const std::size_t right = i + kReach;
           const float covered = std::min(
-              {pixels.coverage[i - 1], pixels.coverage[i + 1], pixels.coverage[up], pixels.coverage[down]});
+              {pixels.coverage[left], pixels.coverage[right], pixels.coverage[up], pixels.coverage[down]});
           if (covered == 1.0F) {
-            const float diverges = pixels.nx[i + 1] - pixels.nx[i - 1] + pixels.ny[up] - pixels.ny[down];
+            const float diverges = pixels.nx[right] - pixels.nx[left] + pixels.ny[up] - pixels.ny[down];
             bend[i] = std::tanh(diverges * factor);
           }
         }
