@@ -43,7 +43,7 @@ ScaleBar scale_bar_for(double mm_per_px, int picture_width_px) {
       }
     }
   }
-  bar.text_scale = std::clamp(picture_width_px / 450, 1, 6);
+  bar.text_scale = std::clamp(picture_width_px / 280, 1, 6);
   const int text_px = text_width(words(bar.length_mm), bar.text_scale);
   bar.width_px = bar_px(bar.length_mm, mm_per_px) + 3 * kGlyphAdvance / 2 * bar.text_scale + text_px;
   bar.height_px = kGlyphHeight * bar.text_scale;

@@ -13,7 +13,7 @@ namespace dubsar {
 namespace {
 
 constexpr Rgb8 kClayTone{205, 176, 143};
-constexpr Rgb8 kPaleClay{214, 205, 192};
+constexpr Rgb8 kPaleClay{204, 194, 180};
 constexpr Rgb8 kAmber{226, 160, 42};
 constexpr Rgb8 kInside{58, 54, 56};
 constexpr int kManyScans = 6;
