@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "archive/render_scene.h"
+#include "core/checklist.h"
+#include "core/job.h"
+#include "core/mesh.h"
+#include "core/red_map.h"
+#include "core/result.h"
+#include "core/rigid_transform.h"
+#include "core/scan_pose.h"
+
+namespace dubsar {
+
+struct StageTiming {
+  std::string stage;
+  double seconds = 0;
+};
+
+/// Everything that the report tells. The references must outlive the call.
+struct ReportInput {
+  std::string title;         ///< what was scanned, such as a museum number
+  std::string tool_version;  ///< "Dubsar 0.1.0"
+  std::string when;          ///< ISO 8601, as the caller says it: nothing here looks at a clock
+  std::string device;
+  const Mesh& model;
+  const RedMap& red_map;
+  const Checklist& checklist;
+  const std::vector<ScanPose>& scans;
+  ColouredPoints red_points;          ///< red and excused samples in the model frame
+  RigidTransform tablet_from_model;   ///< which way the faces look; see face_camera()
+  std::vector<std::string> accuracy;  ///< sentences on how good the registration is and how it was measured
+  std::vector<std::string> calibration;  ///< sentences beyond checklist.calibration
+  std::vector<std::string> not_measured;
+  std::vector<StageTiming> timings;
+  int longest_px = 1000;  ///< of the longest side in the pictures
+};
+
+/// One self-contained HTML page: verdict in plain words, pictures of the six sides, red map, next views,
+/// checklist, regions, scans, accuracy, what was not measured, times. No script, no link to anything outside,
+/// pictures inside as data URIs; every outside text escaped; life size on paper where it fits. The same input
+/// gives the same bytes. Without a surface the page says so instead of showing pictures. Errors: a picture
+/// that cannot be drawn, cancelled.
+[[nodiscard]] Result<std::string> report_html(const ReportInput& input, const JobContext& job);
+
+}  // namespace dubsar

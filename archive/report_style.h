@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+namespace dubsar {
+
+/// The report's only style sheet. No font, picture or script from outside; black on white paper in print.
+inline constexpr const char* kReportStyle = R"css(
+:root { --ink: #1d1b19; --soft: #6b645c; --rule: #d9d2c7; --paper: #fdfcfa; --red: #b3161f; --green: #2f6b45; }
+* { box-sizing: border-box; }
+html { background: var(--paper); color: var(--ink); }
+body { margin: 0; font: 17px/1.55 "Iowan Old Style", "Palatino Linotype", Palatino, "Book Antiqua", Georgia,
+  "DejaVu Serif", serif; font-variant-numeric: oldstyle-nums; }
+main { max-width: 62rem; margin: 0 auto; padding: 3.5rem 1.5rem 5rem; }
+header { border-bottom: 1px solid var(--rule); padding-bottom: 1.2rem; margin-bottom: 2rem; }
+.kicker { margin: 0; color: var(--soft); font-variant-caps: all-small-caps; letter-spacing: .09em; }
+h1 { font-size: 2.3rem; line-height: 1.15; font-weight: 500; margin: .2rem 0 1rem; overflow-wrap: anywhere; }
+h2 { font-size: 1.3rem; font-weight: 600; margin: 0 0 .7rem; }
+section { margin: 0 0 2.8rem; }
+p, ul, ol { margin: 0 0 .8rem; max-width: 44rem; }
+dl { display: grid; grid-template-columns: max-content 1fr; gap: .15rem 1.4rem; margin: .8rem 0 0; }
+dt { color: var(--soft); }
+dd { margin: 0; overflow-wrap: anywhere; }
+.aside, figcaption { color: var(--soft); font-size: .88em; }
+.verdict { border-left: 5px solid var(--red); padding: .9rem 1.3rem .3rem; background: #f9efe9; }
+.verdict.yes { border-color: var(--green); background: #eef4ee; }
+.verdict h2 { font-size: 1.7rem; color: var(--red); margin-bottom: .3rem; }
+.verdict.yes h2 { color: var(--green); }
+.cross { display: grid; justify-content: center; justify-items: center; align-items: center; gap: 1rem 1.2rem;
+  grid-template-areas: ". top ." "left obverse right" ". bottom ." ". reverse ."; }
+figure { margin: 0; text-align: center; }
+figure img { display: block; margin: 0 auto .25rem; max-width: 100%; }
+.cross img { width: calc(var(--mm) * var(--scale)); height: auto; max-width: none; }
+.sheet img { width: auto; max-height: 60rem; }
+.swatch { display: inline-block; width: .8em; height: .8em; margin: 0 .35em 0 1em; border: 1px solid #0003; }
+.wide { overflow-x: auto; }
+table { border-collapse: collapse; font-size: .88rem; line-height: 1.35; font-variant-numeric: tabular-nums lining-nums;
+  border-top: 2px solid var(--ink); border-bottom: 1px solid var(--ink); }
+th { text-align: left; font-weight: 600; padding: .35rem .9rem .35rem 0; border-bottom: 1px solid var(--ink);
+  vertical-align: bottom; }
+td { padding: .28rem .9rem .28rem 0; border-bottom: 1px solid var(--rule); vertical-align: top;
+  overflow-wrap: anywhere; }
+tr.open td:first-child, tr.open td:nth-child(3), .regions tr.open td:first-child { color: var(--red); }
+tr.sum td { border-top: 1px solid var(--ink); font-weight: 600; }
+.faces td:nth-child(n+2):nth-child(-n+4), .faces th:nth-child(n+2):nth-child(-n+4),
+.scans td:nth-child(n+4):nth-child(-n+10), .scans th:nth-child(n+4):nth-child(-n+10),
+.regions td:nth-child(4), .regions th:nth-child(4), .times td:nth-child(2), .times th:nth-child(2)
+  { text-align: right; }
+footer { border-top: 1px solid var(--rule); padding-top: 1rem; color: var(--soft); font-size: .88em; }
+@page { margin: 15mm; }
+@media print {
+  html { background: #fff; }
+  body { font-size: 10.5pt; }
+  main { max-width: none; padding: 0; }
+  section { break-inside: auto; margin-bottom: 8mm; }
+  h2 { break-after: avoid; }
+  figure, tr { break-inside: avoid; }
+  .cross { --scale: var(--print-scale) !important; }
+  .sheet img { max-height: 230mm; }
+  .wide { overflow: visible; }
+}
+)css";
+
+}  // namespace dubsar

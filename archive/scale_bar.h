@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include "archive/image.h"
+
+namespace dubsar {
+
+/// A ruled bar with its length in words.
+struct ScaleBar {
+  double length_mm = 10;
+  int width_px = 0;   ///< of the bar and its words
+  int height_px = 0;  ///< likewise
+  int text_scale = 2;
+};
+
+/// 10 mm where that suits the picture's width; 1, 2, 5, 20, 50 … mm where it would be too long or too short
+/// to read.
+[[nodiscard]] ScaleBar scale_bar_for(double mm_per_px, int picture_width_px);
+
+/// Draws the bar with its top left corner at (x, y): alternating fifths, and "10 mm" beside them. The bar is
+/// as long on the picture as its length at image.mm_per_px, to the nearest pixel.
+void draw_scale_bar(Image& image, const ScaleBar& bar, int x, int y, Rgb8 ink);
+
+}  // namespace dubsar

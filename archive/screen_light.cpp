@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "archive/screen_light.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/parallel.h"
+#include "core/units.h"
+
+namespace dubsar {
+
+namespace {
+
+constexpr int kDirections = 12;
+constexpr int kMaxReachPx = 96;
+constexpr std::size_t kRowGrain = 16;
+
+/// Depths with a rim of kFarAway, so that no step needs a bounds check.
+struct PaddedDepth {
+  int pad = 0;
+  std::size_t stride = 0;
+  std::vector<float> z_mm;
+
+  PaddedDepth(const SurfacePixels& pixels, int pad_px) : pad(pad_px) {
+    stride = static_cast<std::size_t>(pixels.width + 2 * pad);
+    z_mm.assign(stride * static_cast<std::size_t>(pixels.height + 2 * pad), kFarAway);
+    for (int y = 0; y < pixels.height; ++y) {
+      const auto from = pixels.z_mm.begin() + static_cast<std::ptrdiff_t>(y) * pixels.width;
+      std::copy(from, from + pixels.width,
+                z_mm.begin() + static_cast<std::ptrdiff_t>(static_cast<std::size_t>(y + pad) * stride) + pad);
+    }
+  }
+  [[nodiscard]] const float* row(std::size_t y, int dx, int dy) const {
+    return z_mm.data() + (y + static_cast<std::size_t>(pad + dy)) * stride +
+           static_cast<std::size_t>(pad + dx);
+  }
+};
+
+struct Step {
+  int dx = 0, dy = 0;  ///< pixels, dy downwards
+  float distance_mm = 0;
+  float fade = 1;
+};
+
+int reach_px(double reach_mm, double mm_per_px) {
+  return std::clamp(static_cast<int>(std::ceil(reach_mm / mm_per_px)), 2, kMaxReachPx);
+}
+
+/// Steps outwards along (ux, uy), y upwards, whose lengths grow by `growth`; pixels that repeat are left out.
+std::vector<Step> steps_along(double ux, double uy, int reach, double growth, double mm_per_px) {
+  std::vector<Step> steps;
+  for (double r = 1.0; r <= reach; r = std::max(r + 1.0, r * growth)) {
+    const int dx = static_cast<int>(std::lround(ux * r));
+    const int dy = static_cast<int>(std::lround(-uy * r));
+    const double px = std::hypot(dx, dy);
+    const double share = px / (reach + 1.0);
+    steps.push_back({dx, dy, static_cast<float>(px * mm_per_px), static_cast<float>(1.0 - share * share)});
+  }
+  return steps;
+}
+
+}  // namespace
+
+std::vector<float> sky_visibility(const SurfacePixels& pixels, double mm_per_px, double radius_mm) {
+  const int reach = reach_px(radius_mm, mm_per_px);
+  const PaddedDepth depth(pixels, reach + 1);
+  // What stands far in front is another part of the body: it hides the clay, it is not its surroundings.
+  const auto too_high_mm = static_cast<float>(2.0 * reach * mm_per_px);
+  const auto width = static_cast<std::size_t>(pixels.width);
+  std::vector<float> open(pixels.size(), 1.0F);
+  parallel_chunks(static_cast<std::size_t>(pixels.height), kRowGrain,
+                  [&](std::size_t begin, std::size_t end) {
+                    std::vector<float> rise(width), hidden(width);
+                    for (std::size_t y = begin; y < end; ++y) {
+                      std::fill(hidden.begin(), hidden.end(), 0.0F);
+                      const float* here = depth.row(y, 0, 0);
+                      const float* nx = pixels.nx.data() + y * width;
+                      const float* ny = pixels.ny.data() + y * width;
+                      const float* nz = pixels.nz.data() + y * width;
+                      for (int d = 0; d < kDirections; ++d) {
+                        // Half a step of turn keeps the directions off the pixel axes, where lines of writing
+                        // run.
+                        const double angle = 2.0 * kPi * (d + 0.5) / kDirections;
+                        const auto ux = static_cast<float>(std::cos(angle));
+                        const auto uy = static_cast<float>(std::sin(angle));
+                        std::fill(rise.begin(), rise.end(), 0.0F);
+                        for (const Step& step : steps_along(ux, uy, reach, 1.6, mm_per_px)) {
+                          const float* there = depth.row(y, step.dx, step.dy);
+                          const float per_mm = 1.0F / step.distance_mm;
+                          for (std::size_t x = 0; x < width; ++x) {
+                            const float up = there[x] - here[x];
+                            const float tangent = -(nx[x] * ux + ny[x] * uy) / std::max(nz[x], 0.2F);
+                            const float above = (up * per_mm - tangent) * step.fade;
+                            rise[x] = std::max(rise[x], up < too_high_mm ? above : 0.0F);
+                          }
+                        }
+                        for (std::size_t x = 0; x < width; ++x) {
+                          hidden[x] += rise[x] / std::sqrt(1.0F + rise[x] * rise[x]);
+                        }
+                      }
+                      for (std::size_t x = 0; x < width; ++x) {
+                        open[y * width + x] = 1.0F - hidden[x] / kDirections;
+                      }
+                    }
+                  });
+  return open;
+}
+
+std::vector<float> lamp_visibility(const SurfacePixels& pixels, double mm_per_px, double reach_mm,
+                                   const Eigen::Vector3d& towards_lamp) {
+  const double across = std::hypot(towards_lamp.x(), towards_lamp.y());
+  std::vector<float> open(pixels.size(), 1.0F);
+  if (across < 1e-6 || towards_lamp.z() <= 0) {
+    return open;
+  }
+  const int reach = reach_px(reach_mm, mm_per_px);
+  const PaddedDepth depth(pixels, reach + 1);
+  const auto steps =
+      steps_along(towards_lamp.x() / across, towards_lamp.y() / across, reach, 1.12, mm_per_px);
+  const auto climb = static_cast<float>(towards_lamp.z() / across);
+  constexpr float kPenumbra = 0.35F;  // of the tangent: a lamp some 15 degrees wide
+  const auto too_high_mm = static_cast<float>(2.0 * reach * mm_per_px);
+  const auto width = static_cast<std::size_t>(pixels.width);
+  parallel_chunks(static_cast<std::size_t>(pixels.height), kRowGrain,
+                  [&](std::size_t begin, std::size_t end) {
+                    std::vector<float> over(width);
+                    for (std::size_t y = begin; y < end; ++y) {
+                      std::fill(over.begin(), over.end(), 0.0F);
+                      const float* here = depth.row(y, 0, 0);
+                      for (const Step& step : steps) {
+                        const float* there = depth.row(y, step.dx, step.dy);
+                        const float per_mm = 1.0F / step.distance_mm;
+                        for (std::size_t x = 0; x < width; ++x) {
+                          const float up = there[x] - here[x];
+                          const float above = (up * per_mm - climb) * step.fade;
+                          over[x] = std::max(over[x], up < too_high_mm ? above : 0.0F);
+                        }
+                      }
+                      for (std::size_t x = 0; x < width; ++x) {
+                        const float t = std::min(over[x] / kPenumbra, 1.0F);
+                        open[y * width + x] = 1.0F - t * t * (3.0F - 2.0F * t);
+                      }
+                    }
+                  });
+  return open;
+}
+
+std::vector<float> bending(const SurfacePixels& pixels, double mm_per_px, double scale_mm) {
+  // Differences over four pixels: over two, the facets of a coarse mesh would show as a net of lines.
+  constexpr int kReach = 2;
+  std::vector<float> bend(pixels.size(), 0.0F);
+  const auto width = static_cast<std::size_t>(pixels.width);
+  const auto factor = static_cast<float>(scale_mm / (2.0 * kReach * mm_per_px));
+  parallel_for_each_index(
+      static_cast<std::size_t>(std::max(0, pixels.height - 2 * kReach)),
+      [&](std::size_t row) {
+        for (int x = kReach; x + kReach < pixels.width; ++x) {
+          const std::size_t i = (row + kReach) * width + static_cast<std::size_t>(x);
+          const std::size_t up = i - kReach * width;
+          const std::size_t down = i + kReach * width;
+          const std::size_t left = i - kReach;
+          const std::size_t right = i + kReach;
+          const float covered = std::min(
+              {pixels.coverage[left], pixels.coverage[right], pixels.coverage[up], pixels.coverage[down]});
+          if (covered == 1.0F) {
+            const float diverges = pixels.nx[right] - pixels.nx[left] + pixels.ny[up] - pixels.ny[down];
+            bend[i] = std::tanh(diverges * factor);
+          }
+        }
+      },
+      16);
+  return bend;
+}
+
+}  // namespace dubsar
