@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "registration/depth_raster.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace dubsar {
+
+namespace {
+
+/// A raster with more cells than this per sample is mostly air (a stray sample far away): its cells grow.
+constexpr double kMostCellsPerSample = 16.0;
+
+}  // namespace
+
+DepthRaster::DepthRaster(const RangeGrid& grid, double cell_mm) {
+  const Eigen::Vector3d& w = grid.view.direction;
+  const Eigen::Vector3d u = w.unitOrthogonal();
+  u_axis_ = u.cast<float>();
+  v_axis_ = w.cross(u).cast<float>();
+  up_ = (-w).cast<float>();
+  Eigen::Vector2f low = Eigen::Vector2f::Constant(std::numeric_limits<float>::max());
+  Eigen::Vector2f high = -low;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < grid.size(); ++i) {
+    if (grid.valid[i] != 0) {
+      const Eigen::Vector2f uv(u_axis_.dot(grid.point(i)), v_axis_.dot(grid.point(i)));
+      low = low.cwiseMin(uv);
+      high = high.cwiseMax(uv);
+      ++count;
+    }
+  }
+  if (count == 0 || !(cell_mm > 0)) {
+    return;
+  }
+  const double span_u = static_cast<double>(high.x()) - low.x();
+  const double span_v = static_cast<double>(high.y()) - low.y();
+  while ((span_u / cell_mm + 1) * (span_v / cell_mm + 1) > kMostCellsPerSample * static_cast<double>(count) + 1024.0) {
+    cell_mm *= 1.5;
+  }
+  u_min_ = low.x();
+  v_min_ = low.y();
+  per_cell_ = static_cast<float>(1.0 / cell_mm);
+  width_ = static_cast<int>(span_u / cell_mm) + 2;
+  height_ = static_cast<int>(span_v / cell_mm) + 2;
+  cells_.resize(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_));
+  for (std::size_t i = 0; i < grid.size(); ++i) {
+    if (grid.valid[i] == 0) {
+      continue;
+    }
+    const Eigen::Vector3f p = grid.point(i);
+    const auto cu = static_cast<std::size_t>(std::max(0.0F, (u_axis_.dot(p) - u_min_) * per_cell_));
+    const auto cv = static_cast<std::size_t>(std::max(0.0F, (v_axis_.dot(p) - v_min_) * per_cell_));
+    Cell& cell = cells_[cv * static_cast<std::size_t>(width_) + cu];
+    const float h = up_.dot(p);
+    if (cell.sample < 0 || h > cell.height_mm) {
+      cell = {h, static_cast<std::int32_t>(i)};
+    }
+  }
+}
+
+bool DepthRaster::seen_through(const Eigen::Vector3f& p_mm, float margin_mm, int reach) const {
+  const int u = static_cast<int>(std::floor((u_axis_.dot(p_mm) - u_min_) * per_cell_));
+  const int v = static_cast<int>(std::floor((v_axis_.dot(p_mm) - v_min_) * per_cell_));
+  if (u - reach < 0 || v - reach < 0 || u + reach >= width_ || v + reach >= height_) {
+    return false;
+  }
+  const float limit = height(p_mm) - margin_mm;
+  for (int dv = -reach; dv <= reach; ++dv) {
+    for (int du = -reach; du <= reach; ++du) {
+      const Cell& cell = cells_[static_cast<std::size_t>(v + dv) * static_cast<std::size_t>(width_) +
+                                static_cast<std::size_t>(u + du)];
+      if (cell.sample < 0 || cell.height_mm > limit) {
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
+bool DepthRaster::empty_around(const Eigen::Vector3f& p_mm, int reach) const {
+  const float fu = std::floor((u_axis_.dot(p_mm) - u_min_) * per_cell_);
+  const float fv = std::floor((v_axis_.dot(p_mm) - v_min_) * per_cell_);
+  if (!(std::abs(fu) < 1e6F && std::abs(fv) < 1e6F)) {
+    return true;
+  }
+  const int u = static_cast<int>(fu);
+  const int v = static_cast<int>(fv);
+  for (int y = std::max(v - reach, 0); y <= std::min(v + reach, height_ - 1); ++y) {
+    for (int x = std::max(u - reach, 0); x <= std::min(u + reach, width_ - 1); ++x) {
+      if (cells_[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x)].sample >=
+          0) {
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
+}  // namespace dubsar

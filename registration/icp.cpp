@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+// Chen and Medioni 1992 (point-to-plane); Turk and Levoy 1994 (weights, no boundary pairs); Rusinkiewicz, A symmetric
+// objective function for ICP, ACM TOG 38 (2019).
+#include "registration/icp.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <cmath>
+
+#include "core/parallel.h"
+
+namespace dubsar {
+
+namespace {
+
+struct Sums {
+  Matrix6d h = Matrix6d::Zero();
+  Vector6d g = Vector6d::Zero();
+  double weight = 0;
+  double residual2 = 0;
+  double radius2 = 0;
+  int pairs = 0;
+
+  void add(const Sums& b) {
+    h += b.h;
+    g += b.g;
+    weight += b.weight;
+    residual2 += b.residual2;
+    radius2 += b.radius2;
+    pairs += b.pairs;
+  }
+};
+
+/// Tukey's weight; pairs far off say nothing.
+double robust_weight(double residual, double scale) {
+  const double u = residual / (4.685 * scale);
+  const double v = 1.0 - u * u;
+  return v > 0 ? v * v : 0.0;
+}
+
+/// Pairs each sample of `from` with the nearest usable sample of `into`. `moving_is_from` tells which side the
+/// perturbation acts on. Both frames are given in the model frame.
+void accumulate(const SurfaceLevel& from, const RigidTransform& model_from_from, const SurfaceLevel& into,
+                const RigidTransform& model_from_into, bool moving_is_from, const Eigen::Vector3d& center_mm,
+                const IcpOptions& options, Sums& total) {
+  const RigidTransform into_from_from = model_from_into.inverse() * model_from_from;
+  const Eigen::Matrix3f rotation = into_from_from.rotation.cast<float>();
+  const Eigen::Vector3f shift = into_from_from.translation_mm.cast<float>();
+  const auto reach = static_cast<float>(options.reach_mm);
+  const auto least_cosine = static_cast<float>(options.normal_cosine);
+  total.add(parallel_reduce_ordered(
+      from.samples.size(), 512, Sums{},
+      [&](std::size_t begin, std::size_t end) {
+        Sums sums;
+        for (std::size_t k = begin; k < end; ++k) {
+          const SurfaceSample& sample = from.samples[k];
+          const Eigen::Vector3f p = rotation * sample.position_mm + shift;
+          const std::int64_t found = into.lookup->nearest(p, reach);
+          if (found < 0) {
+            continue;
+          }
+          const auto j = static_cast<std::size_t>(found);
+          const Eigen::Vector3f n_from = rotation * sample.normal;
+          const Eigen::Vector3f& n_into = into.normals[j];
+          if (n_from.dot(n_into) < least_cosine) {
+            continue;
+          }
+          const Eigen::Vector3f n = (n_from + n_into).normalized();
+          const double residual = static_cast<double>(n.dot(p - into.grid.point(j)));
+          const double w = static_cast<double>(sample.weight) * robust_weight(residual, options.kernel_mm);
+          if (w <= 0) {
+            continue;
+          }
+          const Eigen::Vector3d normal = model_from_into.rotation * n.cast<double>();
+          const Eigen::Vector3d arm =
+              model_from_into * Eigen::Vector3d((moving_is_from ? p : into.grid.point(j)).cast<double>()) - center_mm;
+          Vector6d jacobian;
+          jacobian << arm.cross(normal), normal;
+          if (!moving_is_from) {
+            jacobian = -jacobian;
+          }
+          sums.h.noalias() += w * jacobian * jacobian.transpose();
+          sums.g += w * residual * jacobian;
+          sums.weight += w;
+          sums.residual2 += w * residual * residual;
+          sums.radius2 += w * arm.squaredNorm();
+          ++sums.pairs;
+        }
+        return sums;
+      },
+      [](Sums& into_sum, const Sums& part) { into_sum.add(part); }));
+}
+
+}  // namespace
+
+IcpResult icp(const SurfaceLevel& source, std::span<const IcpTarget> targets, const RigidTransform& model_from_source,
+              const IcpOptions& options) {
+  IcpResult out;
+  out.model_from_source = model_from_source;
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+  for (const SurfaceSample& sample : source.samples) {
+    middle += sample.position_mm.cast<double>();
+  }
+  middle /= std::max<double>(1.0, static_cast<double>(source.samples.size()));
+  const auto evaluate = [&] {
+    Sums sums;
+    out.center_mm = out.model_from_source * middle;
+    for (const IcpTarget& target : targets) {
+      accumulate(source, out.model_from_source, *target.level, target.model_from_scanner, true, out.center_mm, options,
+                 sums);
+      if (options.two_way) {
+        accumulate(*target.level, target.model_from_scanner, source, out.model_from_source, false, out.center_mm,
+                   options, sums);
+      }
+    }
+    return sums;
+  };
+  Sums sums = evaluate();
+  for (int iteration = 0; iteration < options.iterations && sums.pairs >= 6; ++iteration) {
+    const double radius2 = sums.radius2 / sums.weight;
+    Matrix6d damped = sums.h;
+    // A thousandth of the mean strength: enough to hold what nothing else holds, too little to slow the rest.
+    const double hold = 1e-3 * sums.weight;
+    damped.topLeftCorner<3, 3>().diagonal().array() += hold * radius2;
+    damped.bottomRightCorner<3, 3>().diagonal().array() += hold;
+    const Vector6d step = damped.ldlt().solve(-sums.g);
+    if (!step.allFinite()) {
+      break;
+    }
+    const RigidTransform turn = RigidTransform::from_twist(step.head<3>(), Eigen::Vector3d::Zero());
+    RigidTransform& pose = out.model_from_source;
+    pose.rotation = turn.rotation * pose.rotation;
+    pose.translation_mm = turn.rotation * (pose.translation_mm - out.center_mm) + out.center_mm + step.tail<3>();
+    pose = pose.orthonormalised();
+    sums = evaluate();
+    if (step.head<3>().norm() * std::sqrt(radius2) + step.tail<3>().norm() < options.converged_mm) {
+      out.converged = true;
+      break;
+    }
+  }
+  out.pairs = sums.pairs;
+  out.weight = sums.weight;
+  out.normal_matrix = sums.h;
+  if (sums.pairs >= 6 && sums.weight > 0) {
+    out.rms_mm = std::sqrt(sums.residual2 / sums.weight);
+    const double radius = std::max(1e-9, std::sqrt(sums.radius2 / sums.weight));
+    Vector6d scale;
+    scale << Eigen::Vector3d::Constant(1.0 / radius), Eigen::Vector3d::Ones();
+    const Matrix6d scaled = scale.asDiagonal() * sums.h * scale.asDiagonal() / sums.weight;
+    const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(scaled);
+    out.stability = std::max(0.0, eigen.eigenvalues()[0]);
+    out.weakest = eigen.eigenvectors().col(0);
+  }
+  return out;
+}
+
+}  // namespace dubsar

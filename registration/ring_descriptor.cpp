@@ -1,0 +1,266 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "registration/ring_descriptor.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "core/parallel.h"
+#include "core/units.h"
+
+namespace dubsar {
+
+namespace {
+
+constexpr int kRings = RingDescriptors::kRings;
+constexpr int kSectors = RingDescriptors::kSectors;
+constexpr int kHarmonics = RingDescriptors::kHarmonics;
+
+using Heights = std::array<float, static_cast<std::size_t>(kRings) * kSectors>;
+
+struct Frame {
+  Eigen::Vector3f origin, normal, u, v;
+};
+
+/// Plane through the samples within radius_mm of p, oriented like `hint`. Nothing when they are too few.
+std::optional<Eigen::Vector3f> plane_normal(const SurfaceLevel& level, const Eigen::Vector3f& p,
+                                            const Eigen::Vector3f& hint, float radius_mm) {
+  Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+  int count = 0;
+  level.lookup->for_each_near(p, radius_mm, [&](std::size_t i) {
+    if ((level.grid.point(i) - p).squaredNorm() <= radius_mm * radius_mm && level.normals[i].dot(hint) > 0.3F) {
+      sum += level.normals[i];
+      ++count;
+    }
+  });
+  if (count < 5 || sum.norm() < 1e-3F) {
+    return std::nullopt;
+  }
+  return sum.normalized();
+}
+
+/// Mean heights over the tangent plane in rings × sectors, in units of the radius; nothing when too much is missing.
+std::optional<Heights> ring_heights(const SurfaceLevel& level, const Frame& frame, float radius_mm,
+                                    double least_filled) {
+  Heights sum{};
+  std::array<int, static_cast<std::size_t>(kRings) * kSectors> count{};
+  level.lookup->for_each_near(frame.origin, radius_mm, [&](std::size_t i) {
+    const Eigen::Vector3f d = level.grid.point(i) - frame.origin;
+    const float h = d.dot(frame.normal);
+    const float a = d.dot(frame.u);
+    const float b = d.dot(frame.v);
+    const float rho = std::sqrt(a * a + b * b);
+    if (rho >= radius_mm || std::abs(h) > radius_mm) {
+      return;
+    }
+    const int ring = std::min(static_cast<int>(rho / radius_mm * kRings), kRings - 1);
+    const float turn = (std::atan2(b, a) + static_cast<float>(kPi)) / static_cast<float>(2 * kPi);
+    const int sector = std::min(static_cast<int>(turn * kSectors), kSectors - 1);
+    const auto cell = static_cast<std::size_t>(ring * kSectors + sector);
+    sum[cell] += h;
+    ++count[cell];
+  });
+  int filled = 0;
+  int expected = 0;
+  for (int ring = 0; ring < kRings; ++ring) {
+    for (int sector = 0; sector < kSectors; ++sector) {
+      const auto cell = static_cast<std::size_t>(ring * kSectors + sector);
+      // The innermost sectors are narrower than the sample spacing.
+      expected += ring == 0 ? 0 : 1;
+      filled += ring > 0 && count[cell] > 0 ? 1 : 0;
+      sum[cell] = count[cell] > 0 ? sum[cell] / (static_cast<float>(count[cell]) * radius_mm) : 0.0F;
+    }
+  }
+  if (filled < least_filled * expected) {
+    return std::nullopt;
+  }
+  for (int ring = 0; ring < kRings; ++ring) {  // fill the gaps with the nearest filled sector of the ring
+    for (int sector = 0; sector < kSectors; ++sector) {
+      const auto cell = static_cast<std::size_t>(ring * kSectors + sector);
+      for (int away = 1; count[cell] == 0 && away <= kSectors / 2; ++away) {
+        for (const int side : {away, kSectors - away}) {
+          const auto other = static_cast<std::size_t>(ring * kSectors + (sector + side) % kSectors);
+          if (count[other] > 0) {
+            sum[cell] = sum[other];
+            away = kSectors;
+            break;
+          }
+        }
+      }
+    }
+  }
+  return sum;
+}
+
+/// The sectors' angles and the Fourier basis on them, once.
+struct Basis {
+  std::array<std::array<std::complex<float>, kSectors>, kHarmonics> wave;
+  Basis() {
+    for (int k = 0; k < kHarmonics; ++k) {
+      for (int s = 0; s < kSectors; ++s) {
+        const double angle = 2 * kPi * (s + 0.5) / kSectors - kPi;
+        wave[static_cast<std::size_t>(k)][static_cast<std::size_t>(s)] =
+            std::complex<float>(static_cast<float>(std::cos(k * angle) / kSectors),
+                                static_cast<float>(-std::sin(k * angle) / kSectors));
+      }
+    }
+  }
+};
+
+}  // namespace
+
+RingDescriptors::RingDescriptors(const ScanSurface& surface, double scale_mm, const RingDescriptorOptions& options) {
+  const SurfaceLevel& level = *surface.medium;
+  std::vector<std::uint32_t> usable;
+  for (std::size_t i = 0; i < level.usable.size(); ++i) {
+    if (level.usable[i] != 0) {
+      usable.push_back(static_cast<std::uint32_t>(i));
+    }
+  }
+  const std::size_t wanted = std::min(usable.size(), static_cast<std::size_t>(options.keypoints));
+  struct Candidate {
+    bool good = false;
+    SurfaceSample keypoint;
+    Eigen::Vector3f tangent;
+    Coefficients coefficients{};
+  };
+  static const Basis basis;
+  std::vector<Candidate> candidates(wanted);
+  parallel_for_each_index(
+      wanted,
+      [&](std::size_t k) {
+        const std::size_t i = usable[(2 * k + 1) * usable.size() / (2 * wanted)];
+        Candidate& out = candidates[k];
+        const auto inner = static_cast<float>(options.radius[0] * scale_mm);
+        const std::optional<Eigen::Vector3f> normal =
+            plane_normal(level, level.grid.point(i), level.normals[i], 0.6F * inner);
+        if (!normal) {
+          return;
+        }
+        Frame frame{level.grid.point(i), *normal, normal->unitOrthogonal(), {}};
+        frame.v = frame.normal.cross(frame.u);
+        for (int s = 0; s < kScales; ++s) {
+          const auto radius = static_cast<float>(options.radius[static_cast<std::size_t>(s)] * scale_mm);
+          const std::optional<Heights> heights = ring_heights(level, frame, radius, options.least_filled);
+          if (!heights) {
+            return;
+          }
+          for (int ring = 0; ring < kRings; ++ring) {
+            for (int h = 0; h < kHarmonics; ++h) {
+              std::complex<float> sum = 0;
+              for (int sector = 0; sector < kSectors; ++sector) {
+                sum += (*heights)[static_cast<std::size_t>(ring * kSectors + sector)] *
+                       basis.wave[static_cast<std::size_t>(h)][static_cast<std::size_t>(sector)];
+              }
+              out.coefficients[static_cast<std::size_t>((s * kRings + ring) * kHarmonics + h)] = sum;
+            }
+          }
+        }
+        out.good = true;
+        out.keypoint = {frame.origin, frame.normal, 1.0F};
+        out.tangent = frame.u;
+      },
+      16);
+  for (const Candidate& c : candidates) {
+    if (c.good) {
+      keypoints_.push_back(c.keypoint);
+      tangents_.push_back(c.tangent);
+      coefficients_.push_back(c.coefficients);
+    }
+  }
+  magnitudes_.resize(kLength, static_cast<Eigen::Index>(keypoints_.size()));
+  for (std::size_t k = 0; k < keypoints_.size(); ++k) {
+    for (int c = 0; c < kLength; ++c) {
+      const std::complex<float> value = coefficients_[k][static_cast<std::size_t>(c)];
+      // The mean height has a sign that tells hollows from bumps; a harmonic's own sign is a turn.
+      magnitudes_(c, static_cast<Eigen::Index>(k)) =
+          c % kHarmonics == 0 ? value.real() : 1.4142F * std::abs(value);
+    }
+  }
+}
+
+std::vector<RingDescriptors::Match> RingDescriptors::match(const RingDescriptors& source,
+                                                           const RingDescriptors& target,
+                                                           const RingDescriptorOptions& options) {
+  std::vector<Match> out;
+  if (source.size() == 0 || target.size() == 0) {
+    return out;
+  }
+  const Eigen::VectorXf target_norm2 = target.magnitudes_.colwise().squaredNorm();
+  const Eigen::MatrixXf dots = target.magnitudes_.transpose() * source.magnitudes_;
+  const int keep = std::min(options.matches_per_keypoint, static_cast<int>(target.size()));
+  for (Eigen::Index s = 0; s < dots.cols(); ++s) {
+    std::array<std::pair<float, int>, 8> best;
+    best.fill({std::numeric_limits<float>::max(), -1});
+    const float own = source.magnitudes_.col(s).squaredNorm();
+    for (Eigen::Index t = 0; t < dots.rows(); ++t) {
+      std::pair<float, int> entry{own + target_norm2[t] - 2 * dots(t, s), static_cast<int>(t)};
+      for (int k = 0; k < keep && k < static_cast<int>(best.size()); ++k) {
+        if (entry.first < best[static_cast<std::size_t>(k)].first) {
+          std::swap(entry, best[static_cast<std::size_t>(k)]);
+        }
+      }
+    }
+    for (int k = 0; k < keep && k < static_cast<int>(best.size()); ++k) {
+      const auto& [d2, t] = best[static_cast<std::size_t>(k)];
+      if (t >= 0) {
+        // Flat places resemble all flat places: what counts is the distance against the shape's own strength.
+        out.push_back({static_cast<int>(s), t, std::sqrt(std::max(d2, 0.0F) / (own + target_norm2[t] + 1e-6F))});
+      }
+    }
+  }
+  std::stable_sort(out.begin(), out.end(), [](const Match& a, const Match& b) { return a.distance < b.distance; });
+  return out;
+}
+
+RigidTransform RingDescriptors::pose_of(const RingDescriptors& source, const RingDescriptors& target,
+                                        const Match& m) {
+  const auto s = static_cast<std::size_t>(m.source);
+  const auto t = static_cast<std::size_t>(m.target);
+  // A turn by theta multiplies harmonic k by exp(-i k theta): correlate over all turns.
+  std::array<std::complex<float>, kHarmonics> product{};
+  for (int scale = 0; scale < kScales; ++scale) {
+    for (int ring = 0; ring < kRings; ++ring) {
+      for (int h = 1; h < kHarmonics; ++h) {
+        const auto c = static_cast<std::size_t>((scale * kRings + ring) * kHarmonics + h);
+        // Outer rings hold more surface.
+        product[static_cast<std::size_t>(h)] +=
+            static_cast<float>(ring + 1) * source.coefficients_[s][c] * std::conj(target.coefficients_[t][c]);
+      }
+    }
+  }
+  constexpr int kTurns = 72;
+  float best = -std::numeric_limits<float>::max();
+  double turn = 0;
+  for (int k = 0; k < kTurns; ++k) {
+    const double theta = 2 * kPi * k / kTurns;
+    float value = 0;
+    for (int h = 1; h < kHarmonics; ++h) {
+      const std::complex<float> wave(static_cast<float>(std::cos(h * theta)), static_cast<float>(-std::sin(h * theta)));
+      value += (product[static_cast<std::size_t>(h)] * wave).real();
+    }
+    if (value > best) {
+      best = value;
+      turn = theta;
+    }
+  }
+  const auto basis = [](const Eigen::Vector3f& normal, const Eigen::Vector3f& tangent) {
+    Eigen::Matrix3d b;
+    const Eigen::Vector3d n = normal.cast<double>();
+    const Eigen::Vector3d u = tangent.cast<double>();
+    b << u, n.cross(u), n;
+    return b;
+  };
+  const Eigen::Matrix3d from = basis(source.keypoints_[s].normal, source.tangents_[s]);
+  const Eigen::Matrix3d to = basis(target.keypoints_[t].normal, target.tangents_[t]);
+  RigidTransform out;
+  out.rotation = to * Eigen::AngleAxisd(turn, Eigen::Vector3d::UnitZ()).toRotationMatrix() * from.transpose();
+  out = out.orthonormalised();
+  out.translation_mm = target.keypoints_[t].position_mm.cast<double>() -
+                       out.rotation * source.keypoints_[s].position_mm.cast<double>();
+  return out;
+}
+
+}  // namespace dubsar

@@ -1,0 +1,311 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "registration/scan_surface.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/grid_geometry.h"
+#include "core/parallel.h"
+
+namespace dubsar {
+
+namespace {
+
+/// Neighbours farther apart than this many spacings are on two sheets.
+constexpr float kStepFactor = 5.0F;
+/// A block that holds less than this share of its samples lies at a border or a drop-out.
+constexpr double kLeastBlockShare = 0.7;
+/// A raster cell of this many spacings seldom stays empty on a slope or a warped grid.
+constexpr double kRasterCell = 1.5;
+constexpr std::array<std::array<int, 2>, 4> kFourNeighbours{{{0, 1}, {0, -1}, {1, 0}, {-1, 0}}};
+
+/// Decimates by averaging blocks of stride × stride samples that lie on the sheet of the block's middle sample.
+/// full[i] tells which blocks are complete.
+RangeGrid averaged(const RangeGrid& grid, const std::vector<std::uint8_t>& keep, int stride, double spacing_mm,
+                   std::vector<std::uint8_t>& full) {
+  RangeGrid out;
+  out.allocate((grid.rows + stride - 1) / stride, (grid.cols + stride - 1) / stride);
+  out.spacing_mm = spacing_mm * stride;
+  out.view = grid.view;
+  out.view.motion_per_row_mm *= stride;
+  full.assign(out.size(), 0);
+  const float reach2 = std::pow(kStepFactor * 0.5F * static_cast<float>(spacing_mm) * static_cast<float>(stride), 2.0F);
+  parallel_for_each_index(
+      static_cast<std::size_t>(out.rows),
+      [&](std::size_t r) {
+        const int row = static_cast<int>(r);
+        for (int col = 0; col < out.cols; ++col) {
+          std::int64_t middle = -1;
+          int nearest = 1 << 20;
+          for (int dr = 0; dr < stride; ++dr) {
+            for (int dc = 0; dc < stride; ++dc) {
+              if (!grid.inside(row * stride + dr, col * stride + dc)) {
+                continue;
+              }
+              const std::size_t i = grid.index(row * stride + dr, col * stride + dc);
+              const int away = std::abs(2 * dr - stride + 1) + std::abs(2 * dc - stride + 1);
+              if (keep[i] != 0 && away < nearest) {
+                nearest = away;
+                middle = static_cast<std::int64_t>(i);
+              }
+            }
+          }
+          if (middle < 0) {
+            continue;
+          }
+          const Eigen::Vector3f base = grid.point(static_cast<std::size_t>(middle));
+          Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+          int count = 0;
+          for (int dr = 0; dr < stride; ++dr) {
+            for (int dc = 0; dc < stride; ++dc) {
+              if (!grid.inside(row * stride + dr, col * stride + dc)) {
+                continue;
+              }
+              const std::size_t i = grid.index(row * stride + dr, col * stride + dc);
+              const Eigen::Vector3f d = grid.point(i) - base;
+              if (keep[i] != 0 && d.squaredNorm() <= reach2) {
+                sum += d;
+                ++count;
+              }
+            }
+          }
+          const Eigen::Vector3f p = base + sum / static_cast<float>(count);
+          const std::size_t to = out.index(row, col);
+          out.x[to] = p.x();
+          out.y[to] = p.y();
+          out.z[to] = p.z();
+          out.valid[to] = 1;
+          full[to] = count >= kLeastBlockShare * stride * stride ? 1 : 0;
+        }
+      },
+      8);
+  return out;
+}
+
+/// Mean of the normals over the 3×3 neighbours on the same sheet.
+std::vector<Eigen::Vector3f> smoothed_normals(const RangeGrid& grid, const std::vector<Eigen::Vector3f>& normals) {
+  std::vector<Eigen::Vector3f> out(normals.size(), Eigen::Vector3f::Zero());
+  const float step2 = std::pow(kStepFactor * static_cast<float>(grid.spacing_mm), 2.0F);
+  parallel_for_each_index(
+      static_cast<std::size_t>(grid.rows),
+      [&](std::size_t r) {
+        const int row = static_cast<int>(r);
+        for (int col = 0; col < grid.cols; ++col) {
+          const std::size_t i = grid.index(row, col);
+          if (grid.valid[i] == 0 || normals[i].isZero()) {
+            continue;
+          }
+          Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+          for (int dr = -1; dr <= 1; ++dr) {
+            for (int dc = -1; dc <= 1; ++dc) {
+              if (grid.is_valid(row + dr, col + dc)) {
+                const std::size_t j = grid.index(row + dr, col + dc);
+                if ((grid.point(j) - grid.point(i)).squaredNorm() <= step2) {
+                  sum += normals[j];
+                }
+              }
+            }
+          }
+          const float length = sum.norm();
+          out[i] = length > 1e-6F ? Eigen::Vector3f(sum / length) : normals[i];
+        }
+      },
+      8);
+  return out;
+}
+
+/// `count` of the indices in `from`, evenly spread over their order.
+void take_spread(const std::vector<std::uint32_t>& from, std::size_t count, std::vector<std::uint32_t>& into) {
+  count = std::min(count, from.size());
+  for (std::size_t k = 0; k < count; ++k) {
+    into.push_back(from[(2 * k + 1) * from.size() / (2 * count)]);
+  }
+}
+
+/// Points on crease edges and in their neighbourhoods, and the rest spread evenly (seed 001, 3.2: edges suffice at high
+/// resolution; a smooth object has few).
+void choose_samples(SurfaceLevel& level, int count, const ScanSurfaceOptions& options) {
+  const RangeGrid& grid = level.grid;
+  const auto turns = static_cast<float>(std::cos(options.crease_angle_rad));
+  std::vector<std::uint8_t> crease(grid.size(), 0);
+  std::vector<float> closeness(grid.size(), 0.0F);
+  for (std::size_t i = 0; i < grid.size(); ++i) {
+    if (level.usable[i] == 0) {
+      continue;
+    }
+    float sum = 0;
+    for (const auto& [dr, dc] : kFourNeighbours) {
+      const std::size_t j = grid.index(grid.row_of(i) + dr, grid.col_of(i) + dc);  // inside: i is no boundary sample
+      sum += 1.0F / std::max((grid.point(j) - grid.point(i)).norm(), 1e-3F * static_cast<float>(grid.spacing_mm));
+      if (!level.normals[j].isZero() && level.normals[j].dot(level.normals[i]) < turns) {
+        crease[i] = 1;
+      }
+    }
+    closeness[i] = sum / 4.0F;
+  }
+  std::vector<std::uint32_t> edges;
+  std::vector<std::uint32_t> all;
+  double mean = 0;
+  for (std::size_t i = 0; i < grid.size(); ++i) {
+    if (level.usable[i] == 0) {
+      continue;
+    }
+    all.push_back(static_cast<std::uint32_t>(i));
+    mean += static_cast<double>(closeness[i]);
+    bool near_edge = crease[i] != 0;
+    for (const auto& [dr, dc] : kFourNeighbours) {
+      near_edge = near_edge || crease[grid.index(grid.row_of(i) + dr, grid.col_of(i) + dc)] != 0;
+    }
+    if (near_edge) {
+      edges.push_back(static_cast<std::uint32_t>(i));
+    }
+  }
+  if (all.empty()) {
+    return;
+  }
+  mean /= static_cast<double>(all.size());
+  std::vector<std::uint32_t> chosen;
+  const auto on_edges = std::min(static_cast<std::size_t>(options.most_crease_share * count), edges.size());
+  take_spread(edges, on_edges, chosen);
+  take_spread(all, static_cast<std::size_t>(count) - on_edges, chosen);
+  std::sort(chosen.begin(), chosen.end());
+  chosen.erase(std::unique(chosen.begin(), chosen.end()), chosen.end());
+  level.samples.reserve(chosen.size());
+  for (const std::uint32_t i : chosen) {
+    level.samples.push_back({grid.point(i), level.normals[i], closeness[i] / static_cast<float>(mean)});
+  }
+}
+
+std::unique_ptr<SurfaceLevel> make_level(const RangeGrid& grid, const std::vector<std::uint8_t>& keep, int stride,
+                                         double spacing_mm, int points, const ScanSurfaceOptions& options) {
+  auto level = std::make_unique<SurfaceLevel>();
+  std::vector<std::uint8_t> full;
+  level->grid = averaged(grid, keep, stride, spacing_mm, full);
+  level->spacing_mm = level->grid.spacing_mm;
+  const GridGeometry geometry = grid_geometry(level->grid, static_cast<double>(kStepFactor));
+  level->normals = smoothed_normals(level->grid, geometry.normals);
+  level->usable.assign(level->grid.size(), 0);
+  for (std::size_t i = 0; i < level->grid.size(); ++i) {
+    level->usable[i] =
+        level->grid.valid[i] != 0 && full[i] != 0 && geometry.boundary[i] == 0 && !level->normals[i].isZero() ? 1 : 0;
+  }
+  level->lookup = std::make_unique<GridLookup>(level->grid, level->usable);
+  level->raster = DepthRaster(level->grid, kRasterCell * level->spacing_mm);
+  choose_samples(*level, points, options);
+  return level;
+}
+
+/// Noise of one sample along the view: second differences over neighbours of one sheet, by their median.
+double estimate_noise_mm(const RangeGrid& grid, const std::vector<std::uint8_t>& keep, double spacing_mm) {
+  const Eigen::Vector3f up = (-grid.view.direction).cast<float>();
+  std::vector<float> second;
+  const std::size_t stride = std::max<std::size_t>(1, grid.size() / 200000);
+  const auto step = 3.0F * static_cast<float>(spacing_mm);
+  for (std::size_t i = 0; i < grid.size(); i += stride) {
+    const int row = grid.row_of(i);
+    const int col = grid.col_of(i);
+    if (col < 1 || col + 1 >= grid.cols || row >= grid.rows || keep[i] == 0 || keep[i - 1] == 0 || keep[i + 1] == 0) {
+      continue;
+    }
+    const Eigen::Vector3f a = grid.point(i - 1) - grid.point(i);
+    const Eigen::Vector3f b = grid.point(i + 1) - grid.point(i);
+    if (a.norm() < step && b.norm() < step) {
+      second.push_back(std::abs(up.dot(a + b)));
+    }
+  }
+  if (second.empty()) {
+    return 0;
+  }
+  const auto middle = second.begin() + static_cast<std::ptrdiff_t>(second.size() / 2);
+  std::nth_element(second.begin(), middle, second.end());
+  // Median to standard deviation, and the variance of a - 2b + c is six times that of one sample.
+  return 1.4826 * static_cast<double>(*middle) / std::sqrt(6.0);
+}
+
+std::vector<std::uint8_t> kept_samples(const RangeGrid& grid, const std::vector<std::uint8_t>& ignore) {
+  std::vector<std::uint8_t> keep(grid.size(), 0);
+  for (std::size_t i = 0; i < grid.size(); ++i) {
+    keep[i] = grid.valid[i] != 0 && (ignore.empty() || ignore[i] == 0) && grid.point(i).allFinite() ? 1 : 0;
+  }
+  return keep;
+}
+
+}  // namespace
+
+double surface_scale_mm(const RangeGrid& grid) {
+  const double spacing_mm = grid.spacing_mm > 0 ? grid.spacing_mm : estimate_spacing_mm(grid);
+  const auto step2 = static_cast<float>(std::pow(static_cast<double>(kStepFactor) * spacing_mm, 2.0));
+  double area_mm2 = 0;
+  for (int row = 0; row + 1 < grid.rows; ++row) {
+    for (int col = 0; col + 1 < grid.cols; ++col) {
+      if (!grid.is_valid(row, col) || !grid.is_valid(row, col + 1) || !grid.is_valid(row + 1, col)) {
+        continue;
+      }
+      const Eigen::Vector3f a = grid.point(grid.index(row, col + 1)) - grid.point(grid.index(row, col));
+      const Eigen::Vector3f b = grid.point(grid.index(row + 1, col)) - grid.point(grid.index(row, col));
+      if (a.squaredNorm() <= step2 && b.squaredNorm() <= step2) {
+        area_mm2 += static_cast<double>(a.cross(b).norm());
+      }
+    }
+  }
+  return std::sqrt(area_mm2);
+}
+
+std::shared_ptr<const ScanSurface> make_scan_surface(const RangeGrid& grid, const std::vector<std::uint8_t>& ignore,
+                                                     const ScanSurfaceOptions& options) {
+  auto out = std::make_shared<ScanSurface>();
+  const std::vector<std::uint8_t> keep = kept_samples(grid, ignore);
+  for (const std::uint8_t k : keep) {
+    out->valid += k;
+  }
+  out->spacing_mm = grid.spacing_mm > 0 ? grid.spacing_mm : estimate_spacing_mm(grid);
+  if (!(out->spacing_mm > 0) || !std::isfinite(out->spacing_mm)) {
+    out->spacing_mm = 1.0;  // no two neighbours: there is nothing that a spacing could be wrong for
+  }
+  out->scale_mm = options.scale_mm > 0 ? options.scale_mm : surface_scale_mm(grid);
+  out->toward_camera = -grid.view.direction;
+  out->noise_mm = estimate_noise_mm(grid, keep, out->spacing_mm);
+  const auto stride_for = [&](double spacing_mm) {
+    return std::clamp(static_cast<int>(std::lround(spacing_mm / out->spacing_mm)), 1, 1 << 12);
+  };
+  int fine = 1;
+  while (out->valid / (static_cast<std::size_t>(fine) * static_cast<std::size_t>(fine)) > options.most_fine_samples) {
+    ++fine;
+  }
+  const int medium = std::max(fine, stride_for(options.medium_spacing * out->scale_mm));
+  const int coarse = std::max(medium, stride_for(options.coarse_spacing * out->scale_mm));
+  out->fine = make_level(grid, keep, fine, out->spacing_mm, options.fine_points, options);
+  out->medium = make_level(grid, keep, medium, out->spacing_mm, options.medium_points, options);
+  out->coarse = make_level(grid, keep, coarse, out->spacing_mm, options.coarse_points, options);
+
+  const SurfaceLevel& level = *out->medium;
+  std::size_t count = 0;
+  double spread = 0;
+  for (int pass = 0; pass < 2; ++pass) {
+    for (std::size_t i = 0; i < level.grid.size(); ++i) {
+      if (level.usable[i] == 0) {
+        continue;
+      }
+      const Eigen::Vector3d p = level.grid.point(i).cast<double>();
+      if (pass == 0) {
+        out->centroid_mm += p;
+        ++count;
+      } else {
+        spread += (p - out->centroid_mm).squaredNorm();
+      }
+    }
+    if (count == 0) {
+      break;
+    }
+    if (pass == 0) {
+      out->centroid_mm /= static_cast<double>(count);
+    }
+  }
+  out->extent_mm = count == 0 ? 0 : 2.0 * std::sqrt(spread / static_cast<double>(count));
+  return out;
+}
+
+}  // namespace dubsar
