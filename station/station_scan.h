@@ -16,7 +16,8 @@ namespace dubsar {
 struct StationScan {
   int id = 0;
   std::string file;                           ///< original name, or "scan ID"
-  std::shared_ptr<const RangeGrid> grid;
+  std::shared_ptr<const RangeGrid> measured;  ///< as it came, pins and all: registration finds the pins in it
+  std::shared_ptr<const RangeGrid> grid;      ///< the tablet alone
   std::shared_ptr<const SampleFlags> flags;
 };
 

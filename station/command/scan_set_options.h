@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+
+#include "station/scan_set.h"
+
+namespace dubsar {
+
+/// The options that register, plan and stitch share.
+struct ScanSetArguments {
+  std::string path;
+  std::string unit;
+  std::string pins;
+  std::string poses;
+  std::string out;
+
+  void add_to(CLI::App& verb, bool takes_poses) {
+    verb.add_option("path", path, "a session, or a folder or file of range grids")->required();
+    verb.add_option("--unit", unit, "what the numbers in the files are")->check(CLI::IsMember({"m", "mm", "um"}));
+    verb.add_option("--pins", pins, "the operator's pins (pins.json)");
+    if (takes_poses) {
+      verb.add_option("--poses", poses, "take the poses from this file");
+    }
+    verb.fallthrough();
+  }
+  [[nodiscard]] ScanSetOptions options() const { return {unit, pins}; }
+};
+
+}  // namespace dubsar

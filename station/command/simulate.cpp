@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+// dubsar simulate tablet | scans: test pieces whose truth is known.
+
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+
+#include "core/mesh_query.h"
+#include "formats/grid_ply.h"
+#include "formats/mesh_io.h"
+#include "formats/pins_json.h"
+#include "formats/poses_json.h"
+#include "formats/truth_json.h"
+#include "sim/pins.h"
+#include "sim/scan_plan.h"
+#include "sim/scanner.h"
+#include "sim/tablet.h"
+#include "station/command/command.h"
+#include "station/tablet_file.h"
+
+namespace dubsar {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct SimulateOptions {
+  std::uint64_t seed = 1;
+  std::string size = "50x40x20";
+  double spacing_mm = 0.1;
+  double text = 1.0;
+  double damage = 0.3;
+  std::string out;
+  std::string tablet;
+  int views = 12;
+  double noise_mm = 0.02;
+  bool pins = false;
+};
+
+Result<Eigen::Vector3d> parse_size(const std::string& text) {
+  Eigen::Vector3d size;
+  char rest = 0;
+  if (std::sscanf(text.c_str(), "%lfx%lfx%lf%c", &size.x(), &size.y(), &size.z(), &rest) != 3 || !(size.minCoeff() > 0)) {
+    return fail(ErrorKind::kUsage, "\"" + text + "\" is no size", "--size", "give width x height x thickness in mm, 50x40x20");
+  }
+  return size;
+}
+
+Status make_folder(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) {
+    return fail(ErrorKind::kStorage, error.message(), folder.string(), "choose a folder that can be written");
+  }
+  return {};
+}
+
+Result<int> simulate_tablet(const SimulateOptions& options, CommandContext& context) {
+  const Result<Eigen::Vector3d> size = parse_size(options.size);
+  if (!size) {
+    return std::unexpected(size.error());
+  }
+  sim::TabletOptions tablet_options;
+  tablet_options.seed = options.seed;
+  tablet_options.size_mm = *size;
+  tablet_options.spacing_mm = options.spacing_mm;
+  tablet_options.text_density = options.text;
+  tablet_options.damage = {options.damage, options.damage, options.damage, options.damage};
+  const Result<sim::SimTablet> tablet = sim::make_tablet(tablet_options, context.job);
+  if (!tablet) {
+    return std::unexpected(tablet.error());
+  }
+  if (const Status made = make_folder(options.out); !made) {
+    return std::unexpected(made.error());
+  }
+  const fs::path mesh_file = fs::path(options.out) / "tablet.ply";
+  const fs::path truth_file = fs::path(options.out) / "truth.json";
+  if (const Status written = write_tablet_file(mesh_file, *tablet); !written) {
+    return std::unexpected(written.error());
+  }
+  const TabletTruth truth{"tablet.ply", options.seed, *size, options.spacing_mm, tablet->wedges};
+  if (const Status written = write_truth(truth_file, truth); !written) {
+    return std::unexpected(written.error());
+  }
+  if (context.json) {
+    CommandContext::print({{"tablet", mesh_file.string()},
+                           {"truth", truth_file.string()},
+                           {"vertices", tablet->mesh.positions.size()},
+                           {"faces", tablet->mesh.faces.size()},
+                           {"wedges", tablet->wedges.size()}});
+  } else {
+    finish_progress();
+    std::printf("%s: %zu faces, %zu wedges; truth in %s\n", mesh_file.c_str(), tablet->mesh.faces.size(),
+                tablet->wedges.size(), truth_file.c_str());
+  }
+  return 0;
+}
+
+Result<int> simulate_scans(const SimulateOptions& options, CommandContext& context) {
+  const Result<sim::SimTablet> tablet = read_tablet_file(options.tablet);
+  if (!tablet) {
+    return std::unexpected(tablet.error());
+  }
+  if (const Status made = make_folder(options.out); !made) {
+    return std::unexpected(made.error());
+  }
+  const MeshQuery query(tablet->mesh);
+  sim::ScannerOptions scanner_options;
+  scanner_options.spacing_mm = options.spacing_mm;
+  scanner_options.noise_mm = options.noise_mm;
+  scanner_options.seed = options.seed;
+  const sim::TriangulationScanner scanner = sim::TriangulationScanner(fitted_to(scanner_options, *tablet));
+  std::optional<sim::PinStand> stand;
+  sim::PinOptions pin_options;
+  pin_options.seed = options.seed;
+  if (options.pins) {
+    stand.emplace(*tablet, query, pin_options);
+  }
+  PinSet clicked{pin_options.tip_diameter_mm, {}};
+  PinSet true_tips{pin_options.tip_diameter_mm, {}};
+  std::vector<ScanPose> truth;
+  const std::vector<sim::PlannedView> views = sim::plan_views(options.views, options.seed);
+  for (std::size_t k = 0; k < views.size(); ++k) {
+    context.job.progress("scanning", static_cast<double>(k) / static_cast<double>(views.size()));
+    sim::Scene scene{&*tablet, &query, {}, std::nullopt};
+    const int id = static_cast<int>(k);
+    if (stand) {
+      scene.pins = sim::standing_pins(stand->placed(id), scene, scanner, views[k].tablet_from_scanner);
+      true_tips.tips[id] = sim::tips_in_scanner(scene.pins, views[k].tablet_from_scanner);
+      clicked.tips[id] = sim::clicked_tips(true_tips.tips[id], 1.0, options.seed + k);
+    }
+    Result<RangeGrid> grid = scanner.scan_grid(scene, views[k].tablet_from_scanner, k, context.job);
+    if (!grid) {
+      return std::unexpected(grid.error());
+    }
+    grid->pin_tip_diameter_mm = stand ? pin_options.tip_diameter_mm : 0;
+    char name[32];
+    std::snprintf(name, sizeof name, "scan_%03zu.ply", k);
+    if (const Status written = write_grid_ply(fs::path(options.out) / name, *grid); !written) {
+      return std::unexpected(written.error());
+    }
+    ScanPose pose;
+    pose.id = id;
+    pose.file = name;
+    pose.model_from_scanner = views[k].tablet_from_scanner;
+    pose.status = PoseStatus::kRegistered;
+    pose.overlap = 1;
+    truth.push_back(pose);
+  }
+  context.job.progress("scanning", 1.0);
+  const fs::path truth_file = fs::path(options.out) / "truth_poses.json";
+  if (const Status written = write_poses(truth_file, truth); !written) {
+    return std::unexpected(written.error());
+  }
+  if (stand) {
+    for (const auto& [name, pins] : {std::pair{"pins.json", &clicked}, std::pair{"truth_pins.json", &true_tips}}) {
+      if (const Status written = write_pins(fs::path(options.out) / name, *pins); !written) {
+        return std::unexpected(written.error());
+      }
+    }
+  }
+  if (context.json) {
+    nlohmann::ordered_json files = nlohmann::ordered_json::array();
+    for (const ScanPose& pose : truth) {
+      files.push_back(pose.file);
+    }
+    CommandContext::print({{"folder", options.out}, {"scans", files}, {"truth", truth_file.string()}});
+  } else {
+    finish_progress();
+    std::printf("%zu scans in %s; truth in %s\n", truth.size(), options.out.c_str(), truth_file.c_str());
+  }
+  return 0;
+}
+
+}  // namespace
+
+void add_simulate(CLI::App& app, Action& chosen) {
+  CLI::App* verb = app.add_subcommand("simulate", "Tablets and scans whose truth is known");
+  verb->require_subcommand(1);
+  verb->fallthrough();
+  const auto options = std::make_shared<SimulateOptions>();
+
+  CLI::App* tablet = verb->add_subcommand("tablet", "A procedural tablet: tablet.ply and truth.json");
+  tablet->add_option("--size", options->size, "width x height x thickness, mm")->capture_default_str();
+  tablet->add_option("--text", options->text, "share of the room for text that is written on")->check(CLI::Range(0.0, 1.0));
+  tablet->add_option("--damage", options->damage, "fractures, erosion, dirt and cracks, 0 none to 1 badly")
+      ->check(CLI::Range(0.0, 1.0));
+  tablet->callback([&chosen, options] { chosen = [options](CommandContext& c) { return simulate_tablet(*options, c); }; });
+
+  CLI::App* scans = verb->add_subcommand("scans", "Range grids of a tablet: scan_000.ply … and truth_poses.json");
+  scans->add_option("--tablet", options->tablet, "the true surface, a mesh")->required();
+  scans->add_option("--views", options->views, "how many, turned by hand")->check(CLI::Range(1, 1000))->capture_default_str();
+  scans->add_option("--noise", options->noise_mm, "mm, at normal incidence")->check(CLI::Range(0.0, 1.0))->capture_default_str();
+  scans->add_flag("--pins", options->pins, "fifteen pins around the rim; writes pins.json, as an operator clicks them");
+  scans->callback([&chosen, options] { chosen = [options](CommandContext& c) { return simulate_scans(*options, c); }; });
+
+  for (CLI::App* sub : {tablet, scans}) {
+    sub->add_option("--seed", options->seed, "the same seed gives the same bytes")->capture_default_str();
+    sub->add_option("--spacing", options->spacing_mm, "mm")->check(CLI::Range(0.005, 5.0))->capture_default_str();
+    sub->add_option("-o,--out", options->out, "folder")->required();
+    sub->fallthrough();
+  }
+}
+
+}  // namespace dubsar

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "archive/report.h"
+#include "core/checklist.h"
+#include "core/job.h"
+#include "core/pin_set.h"
+#include "core/red_map.h"
+#include "core/result.h"
+#include "core/scan_pose.h"
+#include "station/deliverables.h"
+#include "station/event.h"
+
+namespace dubsar {
+
+struct EngineOptions {
+  std::string device;                ///< URI
+  std::filesystem::path session;     ///< folder; made when it is not there, gone on with when it is
+  bool automatic = false;            ///< drive the rig (or ask for hand turns) until conclusive
+  int max_scans = 0;                 ///< of the whole session; 0: no limit (40 when automatic)
+  std::optional<PinSet> pins;
+};
+
+/// What a run of the engine leaves behind.
+struct EngineResult {
+  std::vector<ScanPose> poses;
+  RedMap red_map;
+  Checklist checklist;
+  Deliverables files;
+  std::vector<StageTiming> timings;
+  std::optional<Error> device_error;  ///< the device failed on the way; what it gave until then is kept
+  int stored_scans = 0;
+};
+
+/// The online engine: device → profiles and flags → store → registration → red map, next view, mesh. One thread per
+/// stage, bounded queues between them; every stage takes the scans in order, so the result does not depend on timing.
+///
+/// Cancelling the job stops it in good order: scans that were stored stay stored, a half-taken scan is given up,
+/// and run() returns kCancelled. Going on later is run() on the same session.
+class Engine {
+ public:
+  Engine(EngineOptions options, EventSink sink);
+  ~Engine();
+  Engine(const Engine&) = delete;
+  Engine& operator=(const Engine&) = delete;
+
+  [[nodiscard]] Result<EngineResult> run(JobContext& job);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace dubsar

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "station/scan_set.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "acquisition/device_uri.h"
+#include "acquisition/range_source.h"
+#include "core/log.h"
+#include "drivers/loader.h"
+#include "formats/pins_json.h"
+
+namespace dubsar {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+Status load_session(const fs::path& path, ScanSet& set, JobContext& job) {
+  Result<SessionStore> store = SessionStore::open(path);
+  if (!store) {
+    return std::unexpected(store.error());
+  }
+  for (const Error& damage : store->opening().damage) {
+    log_warning(damage.line());
+  }
+  const auto scans = store->scans();
+  if (!scans) {
+    return std::unexpected(scans.error());
+  }
+  if (!set.pins) {
+    const auto text = store->load_document("pins");
+    if (text && *text) {
+      const auto pins = parse_pins(**text, (path / "session.sqlite").string() + " (pins)");
+      if (!pins) {
+        return std::unexpected(pins.error());
+      }
+      set.pins = *pins;
+    }
+  }
+  std::size_t done = 0;
+  for (const StoredScan& scan : *scans) {
+    job.progress("reading scans", static_cast<double>(done++) / static_cast<double>(scans->size()));
+    if (job.cancelled()) {
+      return fail(ErrorKind::kCancelled, "stopped");
+    }
+    if (scan.dropped || scan.damaged) {
+      continue;
+    }
+    Result<RangeGrid> grid = store->load_grid(scan.id);
+    if (!grid) {
+      log_warning(grid.error().line());
+      continue;
+    }
+    set.scans.push_back(prepare_scan(scan.id, std::move(*grid), set.pins));
+  }
+  job.progress("reading scans", 1.0);
+  const auto poses = store->poses();
+  if (!poses) {
+    return std::unexpected(poses.error());
+  }
+  set.poses = *poses;
+  set.store = std::move(*store);
+  return {};
+}
+
+Status load_folder(const fs::path& path, const ScanSetOptions& options, ScanSet& set, JobContext& job) {
+  DeviceUri uri;
+  uri.scheme = "replay";
+  uri.locator = path.string();
+  if (!options.unit.empty()) {
+    uri.options.emplace_back("unit", options.unit);
+  }
+  const DriverRegistry registry;
+  Result<RangeSource> source = RangeSource::open(uri.text(), registry);
+  if (!source) {
+    return std::unexpected(source.error());
+  }
+  const double count = static_cast<double>(source->capabilities().scan_count.value_or(10));
+  for (int id = 0;; ++id) {
+    job.progress("reading scans", std::min(1.0, id / count));
+    Result<std::optional<RangeGrid>> grid = source->next([](const RangeGrid&, int) {}, job);
+    if (!grid) {
+      return std::unexpected(grid.error());
+    }
+    if (!*grid) {
+      break;
+    }
+    set.scans.push_back(prepare_scan(id, std::move(**grid), set.pins));
+  }
+  job.progress("reading scans", 1.0);
+  return {};
+}
+
+}  // namespace
+
+Result<ScanSet> load_scan_set(const fs::path& path, const ScanSetOptions& options, JobContext& job) {
+  ScanSet set;
+  std::error_code ignored;
+  if (!fs::exists(path, ignored)) {
+    return fail(ErrorKind::kUsage, "there is nothing here", path.string(), "give a session or a folder of range grids");
+  }
+  if (!options.pins_file.empty()) {
+    Result<PinSet> pins = read_pins(options.pins_file);
+    if (!pins) {
+      return std::unexpected(pins.error());
+    }
+    set.pins = std::move(*pins);
+  }
+  const Status loaded =
+      SessionStore::is_session(path) ? load_session(path, set, job) : load_folder(path, options, set, job);
+  if (!loaded) {
+    return std::unexpected(loaded.error());
+  }
+  if (set.scans.empty()) {
+    return bad_input(path.string(), "no scan in it", "give a session or a folder of range grids");
+  }
+  return set;
+}
+
+}  // namespace dubsar
