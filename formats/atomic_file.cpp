@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "formats/atomic_file.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cerrno>
+#include <cstring>
+#include <utility>
+
+namespace dubsar {
+
+namespace {
+
+/// An open file descriptor that closes itself.
+class Descriptor {
+ public:
+  explicit Descriptor(int fd) : fd_(fd) {}
+  ~Descriptor() { (void)close_now(); }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+
+  [[nodiscard]] int get() const { return fd_; }
+  /// False when the system reports a late write error.
+  [[nodiscard]] bool close_now() {
+    const int fd = std::exchange(fd_, -1);
+    return fd < 0 || ::close(fd) == 0;
+  }
+
+ private:
+  int fd_;
+};
+
+/// Removes the temporary file unless it was renamed.
+class Unlinker {
+ public:
+  explicit Unlinker(std::string path) : path_(std::move(path)) {}
+  ~Unlinker() {
+    if (!path_.empty()) {
+      ::unlink(path_.c_str());
+    }
+  }
+  Unlinker(const Unlinker&) = delete;
+  Unlinker& operator=(const Unlinker&) = delete;
+  void release() { path_.clear(); }
+
+ private:
+  std::string path_;
+};
+
+std::string mend_of(int error) {
+  switch (error) {
+    case ENOSPC:
+    case EDQUOT:
+      return "free some space on this disk and try again; what was stored before is untouched";
+    case EFBIG:
+      return "the file exceeds a size limit; store it on another disk or raise the limit";
+    case EROFS:
+    case EACCES:
+    case EPERM:
+      return "choose a folder that can be written to";
+    case ENOENT:
+    case ENOTDIR:
+      return "make the folder first";
+    case EISDIR:
+      return "name a file, not a folder";
+    default:
+      return "check the disk";
+  }
+}
+
+std::unexpected<Error> storage_error(const std::filesystem::path& path, const char* doing, int error) {
+  return fail(ErrorKind::kStorage, std::string(doing) + ": " + std::strerror(error), path.string(),
+              mend_of(error));
+}
+
+Status write_all(int fd, const std::filesystem::path& path, std::span<const std::byte> bytes) {
+  while (!bytes.empty()) {
+    // Linux writes at most 2 GiB at a time.
+    const ssize_t written = ::write(fd, bytes.data(), std::min<std::size_t>(bytes.size(), 1U << 30U));
+    if (written < 0) {
+      if (errno == EINTR) {
+        continue;
+      }
+      return storage_error(path, "cannot write", errno);
+    }
+    bytes = bytes.subspan(static_cast<std::size_t>(written));
+  }
+  return {};
+}
+
+Status write_to_device(const std::filesystem::path& path, const ByteProducer& produce) {
+  Descriptor file(::open(path.c_str(), O_WRONLY | O_CLOEXEC));
+  if (file.get() < 0) {
+    return storage_error(path, "cannot open", errno);
+  }
+  return produce([&](std::span<const std::byte> bytes) { return write_all(file.get(), path, bytes); });
+}
+
+std::filesystem::path temporary_beside(const std::filesystem::path& folder) {
+  static std::atomic<unsigned> counter{0};
+  return folder / (std::string(kTemporaryPrefix) + std::to_string(::getpid()) + "-" +
+                   std::to_string(counter.fetch_add(1)));
+}
+
+}  // namespace
+
+Status write_file_atomically(const std::filesystem::path& path, const ByteProducer& produce) {
+  struct stat existing {};
+  if (::stat(path.c_str(), &existing) == 0 && !S_ISREG(existing.st_mode)) {
+    return S_ISDIR(existing.st_mode) ? storage_error(path, "cannot write", EISDIR)
+                                     : write_to_device(path, produce);
+  }
+  const std::filesystem::path folder =
+      path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
+  std::filesystem::path temporary;
+  int fd = -1;
+  do {
+    temporary = temporary_beside(folder);
+    fd = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  } while (fd < 0 && (errno == EEXIST || errno == EINTR));
+  if (fd < 0) {
+    return storage_error(path, "cannot make a file here", errno);
+  }
+  Descriptor file(fd);
+  Unlinker unlinker(temporary.string());
+  if (Status done =
+          produce([&](std::span<const std::byte> bytes) { return write_all(file.get(), path, bytes); });
+      !done) {
+    return done;
+  }
+  if (::fsync(file.get()) != 0) {
+    return storage_error(path, "cannot sync", errno);
+  }
+  if (!file.close_now()) {
+    return storage_error(path, "cannot close", errno);
+  }
+  if (::rename(temporary.c_str(), path.c_str()) != 0) {
+    return storage_error(path, "cannot put the new file in its place", errno);
+  }
+  unlinker.release();
+  const Descriptor directory(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  // Some network file systems cannot sync a folder and say EINVAL: the rename is then as durable as it gets.
+  if (directory.get() < 0 || (::fsync(directory.get()) != 0 && errno != EINVAL)) {
+    return storage_error(folder, "cannot sync the folder", errno);
+  }
+  return {};
+}
+
+Status write_file_atomically(const std::filesystem::path& path, std::span<const std::byte> bytes) {
+  return write_file_atomically(path, [&](const ByteSink& sink) { return sink(bytes); });
+}
+
+Status write_file_atomically(const std::filesystem::path& path, std::string_view text) {
+  return write_file_atomically(path, std::as_bytes(std::span(text.data(), text.size())));
+}
+
+namespace {
+
+std::unexpected<Error> read_error(const std::filesystem::path& path, int error) {
+  if (error == EIO) {
+    return fail(ErrorKind::kStorage, "cannot read: the disk reports an error", path.string(),
+                "copy the file again from its source");
+  }
+  return bad_input(path.string(), std::string("cannot read: ") + std::strerror(error),
+                   error == EACCES ? "make it readable" : "check the name");
+}
+
+/// Reads up to `limit` bytes; a larger file is an error when the whole is asked for.
+Result<std::string> read_up_to(const std::filesystem::path& path, std::uint64_t limit, bool whole) {
+  Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  if (file.get() < 0) {
+    return read_error(path, errno);
+  }
+  struct stat status {};
+  if (::fstat(file.get(), &status) != 0) {
+    return read_error(path, errno);
+  }
+  if (!S_ISREG(status.st_mode)) {
+    return bad_input(path.string(), "not a file", "name a file");
+  }
+  const auto size = static_cast<std::uint64_t>(status.st_size);
+  if (whole && size > limit) {
+    return bad_input(
+        path.string(),
+        "holds " + std::to_string(size) + " bytes, more than the " + std::to_string(limit) + " that are read",
+        "split it or thin it out");
+  }
+  std::string bytes;
+  int error = 0;
+  bytes.resize_and_overwrite(static_cast<std::size_t>(std::min(size, limit)),
+                             [&](char* into, std::size_t count) {
+                               std::size_t have = 0;
+                               while (have < count) {
+                                 const ssize_t got = ::read(file.get(), into + have, count - have);
+                                 if (got < 0 && errno == EINTR) {
+                                   continue;
+                                 }
+                                 if (got < 0) {
+                                   error = errno;
+                                 }
+                                 if (got <= 0) {
+                                   break;
+                                 }
+                                 have += static_cast<std::size_t>(got);
+                               }
+                               return have;
+                             });
+  if (error != 0) {
+    return read_error(path, error);
+  }
+  return bytes;
+}
+
+}  // namespace
+
+Result<std::string> read_whole_file(const std::filesystem::path& path, std::uint64_t limit_bytes) {
+  return read_up_to(path, limit_bytes, true);
+}
+
+Result<std::string> read_file_head(const std::filesystem::path& path, std::size_t count) {
+  return read_up_to(path, count, false);
+}
+
+}  // namespace dubsar

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "core/result.h"
+
+namespace dubsar {
+
+/// Takes the next bytes of a file that is being written.
+using ByteSink = std::function<Status(std::span<const std::byte>)>;
+/// Writes a whole file into the sink; an error that it returns is handed on and nothing is kept.
+using ByteProducer = std::function<Status(const ByteSink&)>;
+
+/// Temporary files that a killed writer may leave behind begin with this; they are never read.
+inline constexpr std::string_view kTemporaryPrefix = ".dubsar-tmp-";
+
+/// Replaces `path` by the bytes, or leaves it as it was: writes a temporary file beside it, syncs it, renames
+/// it and syncs the folder. After success the file survives a power loss. On failure (ErrorKind::kStorage) no
+/// temporary file stays behind. A device or pipe at `path` is written to directly.
+[[nodiscard]] Status write_file_atomically(const std::filesystem::path& path,
+                                           std::span<const std::byte> bytes);
+[[nodiscard]] Status write_file_atomically(const std::filesystem::path& path, std::string_view text);
+[[nodiscard]] Status write_file_atomically(const std::filesystem::path& path, const ByteProducer& produce);
+
+/// Files above this are refused by read_whole_file() unless a caller says otherwise.
+inline constexpr std::uint64_t kMaxFileBytes = std::uint64_t{8} << 30U;
+
+/// The bytes of a regular file, read once (not mapped: a file that shrinks meanwhile must not kill the
+/// program). Errors: missing, unreadable, a folder, larger than `limit_bytes`.
+[[nodiscard]] Result<std::string> read_whole_file(const std::filesystem::path& path,
+                                                  std::uint64_t limit_bytes = kMaxFileBytes);
+/// The first bytes of a file, at most `count`.
+[[nodiscard]] Result<std::string> read_file_head(const std::filesystem::path& path, std::size_t count);
+
+}  // namespace dubsar

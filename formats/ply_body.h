@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/result.h"
+#include "formats/ply_header.h"
+#include "formats/text_scanner.h"
+
+namespace dubsar {
+
+/// One instance of an element while it is read.
+struct PlyRow {
+  std::vector<double> values;              ///< [properties]; for a list its length
+  std::vector<std::vector<double>> lists;  ///< [properties], empty for scalars
+
+  /// The scalar at `property`, or `otherwise` when there is none (-1).
+  [[nodiscard]] double value(int property, double otherwise = 0.0) const {
+    return property < 0 ? otherwise : values[static_cast<std::size_t>(property)];
+  }
+};
+
+/// Reads the elements of a PLY file in the order of its header, ASCII or binary of either byte order. Takes
+/// no more memory than a fixed multiple of the bytes that are there, whatever the header claims.
+class PlyBody {
+ public:
+  /// `file` is the whole file; both it and the header must outlive this.
+  PlyBody(const PlyHeader& header, std::string_view file, std::string where);
+
+  /// Calls visit(index, row) -> Status for each instance of the next element. Elements must be read (or
+  /// skipped) in header order.
+  template <class Visit>
+  [[nodiscard]] Status read(const PlyElement& element, const Visit& visit) {
+    if (Status claim = check_claim(element); !claim) {
+      return claim;
+    }
+    PlyRow row;
+    row.values.resize(element.properties.size());
+    row.lists.resize(element.properties.size());
+    for (std::uint64_t i = 0; i < element.count; ++i) {
+      if (!next(element, row)) {
+        return row_error(element, i);
+      }
+      if (Status seen = visit(i, std::as_const(row)); !seen) {
+        return seen;
+      }
+    }
+    return {};
+  }
+  [[nodiscard]] Status skip(const PlyElement& element);
+
+  /// An error at an instance of the element that was just read: "vertex 12 (line 34): what".
+  [[nodiscard]] std::unexpected<Error> error_at(const PlyElement& element, std::uint64_t index,
+                                                const std::string& what, const std::string& mend) const;
+
+  /// An element may not claim more instances than its bytes can hold.
+  [[nodiscard]] Status check_claim(const PlyElement& element) const;
+
+ private:
+  [[nodiscard]] bool next(const PlyElement& element, PlyRow& row);
+  [[nodiscard]] bool next_ascii(const PlyElement& element, PlyRow& row);
+  [[nodiscard]] bool next_binary(const PlyElement& element, PlyRow& row);
+  [[nodiscard]] std::unexpected<Error> row_error(const PlyElement& element, std::uint64_t index);
+  [[nodiscard]] std::size_t remaining() const;
+
+  PlyFormat format_;
+  std::string_view file_;
+  std::string where_;
+  TextScanner text_;    ///< over the whole file, so that line numbers are the file's
+  std::size_t at_ = 0;  ///< of the next byte, binary
+};
+
+}  // namespace dubsar

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "formats/atomic_file.h"
+
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <csignal>
+
+#include "tests/formats/format_support.h"
+
+namespace dubsar {
+namespace {
+
+using ::testing::HasSubstr;
+using testing::line_of;
+using testing::ScratchFolder;
+
+/// Lets no file grow past `bytes` while it lives: a full disk that a test can have.
+class FileSizeLimit {
+ public:
+  explicit FileSizeLimit(rlim_t bytes) {
+    ::getrlimit(RLIMIT_FSIZE, &before_);
+    handler_ = std::signal(SIGXFSZ, SIG_IGN);
+    const rlimit limit{bytes, before_.rlim_max};
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  ~FileSizeLimit() {
+    ::setrlimit(RLIMIT_FSIZE, &before_);
+    std::signal(SIGXFSZ, handler_);
+  }
+  FileSizeLimit(const FileSizeLimit&) = delete;
+  FileSizeLimit& operator=(const FileSizeLimit&) = delete;
+
+ private:
+  rlimit before_{};
+  void (*handler_)(int) = nullptr;
+};
+
+TEST(AtomicFile, WritesAndReplaces) {
+  const ScratchFolder folder;
+  ASSERT_TRUE(write_file_atomically(folder / "a", "first"));
+  ASSERT_TRUE(write_file_atomically(folder / "a", std::string_view("second\0x", 8)));
+  EXPECT_EQ(read_whole_file(folder / "a").value(), std::string("second\0x", 8));
+  EXPECT_EQ(folder.file_count(), 1U);
+}
+
+TEST(AtomicFile, KeepsTheOldFileWhenTheDiskIsFull) {
+  const ScratchFolder folder;
+  ASSERT_TRUE(write_file_atomically(folder / "a", "old"));
+  const std::string big(200000, 'x');
+  Status status;
+  {
+    const FileSizeLimit limit(100000);
+    status = write_file_atomically(folder / "a", big);
+  }
+  ASSERT_FALSE(status);
+  EXPECT_EQ(status.error().kind, ErrorKind::kStorage);
+  EXPECT_THAT(line_of(status), HasSubstr("cannot write: File too large"));
+  EXPECT_EQ(read_whole_file(folder / "a").value(), "old");
+  EXPECT_EQ(folder.file_count(), 1U) << "a temporary file stayed behind";
+}
+
+TEST(AtomicFile, KeepsTheOldFileWhenTheProducerFails) {
+  const ScratchFolder folder;
+  ASSERT_TRUE(write_file_atomically(folder / "a", "old"));
+  const Status status = write_file_atomically(folder / "a", [](const ByteSink& sink) -> Status {
+    const std::string part = "part";
+    if (Status written = sink(std::as_bytes(std::span(part))); !written) {
+      return written;
+    }
+    return fail(ErrorKind::kCancelled, "stopped");
+  });
+  ASSERT_FALSE(status);
+  EXPECT_EQ(status.error().kind, ErrorKind::kCancelled);
+  EXPECT_EQ(read_whole_file(folder / "a").value(), "old");
+  EXPECT_EQ(folder.file_count(), 1U);
+}
+
+TEST(AtomicFile, SaysWhenTheDeviceIsFullAndLeavesItADevice) {
+  if (::access("/dev/full", W_OK) != 0) {
+    GTEST_SKIP() << "no /dev/full here";
+  }
+  const Status status = write_file_atomically("/dev/full", "some bytes");
+  ASSERT_FALSE(status);
+  EXPECT_EQ(status.error().kind, ErrorKind::kStorage);
+  EXPECT_THAT(line_of(status), HasSubstr("No space left on device; free some space"));
+  EXPECT_TRUE(std::filesystem::is_character_file("/dev/full"));
+}
+
+TEST(AtomicFile, RefusesAReadOnlyFolder) {
+  if (::geteuid() == 0) {
+    GTEST_SKIP() << "the superuser may write anywhere";
+  }
+  const ScratchFolder folder;
+  ::chmod(folder.path().c_str(), 0555);
+  const Status status = write_file_atomically(folder / "a", "x");
+  ASSERT_FALSE(status);
+  EXPECT_EQ(status.error().kind, ErrorKind::kStorage);
+  EXPECT_THAT(line_of(status), HasSubstr("choose a folder that can be written to"));
+}
+
+TEST(AtomicFile, NamesAMissingFolder) {
+  const ScratchFolder folder;
+  const Status status = write_file_atomically(folder / "no/such/file", "x");
+  ASSERT_FALSE(status);
+  EXPECT_EQ(status.error().kind, ErrorKind::kStorage);
+  EXPECT_THAT(line_of(status), HasSubstr("make the folder first"));
+}
+
+TEST(AtomicFile, RefusesToReplaceAFolder) {
+  const ScratchFolder folder;
+  const Status status = write_file_atomically(folder.path(), "x");
+  ASSERT_FALSE(status);
+  EXPECT_THAT(line_of(status), HasSubstr("name a file, not a folder"));
+}
+
+TEST(ReadWholeFile, ErrorsNameTheFile) {
+  const ScratchFolder folder;
+  EXPECT_THAT(line_of(read_whole_file(folder / "none")), HasSubstr("none: cannot read: No such file"));
+  EXPECT_THAT(line_of(read_whole_file(folder.path())), HasSubstr("not a file"));
+  ASSERT_TRUE(write_file_atomically(folder / "a", "12345"));
+  EXPECT_THAT(line_of(read_whole_file(folder / "a", 4)), HasSubstr("holds 5 bytes, more than the 4"));
+  EXPECT_EQ(read_file_head(folder / "a", 3).value(), "123");
+}
+
+}  // namespace
+}  // namespace dubsar

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "formats/text_scans.h"
+
+#include "formats/atomic_file.h"
+#include "tests/formats/format_support.h"
+
+namespace dubsar {
+namespace {
+
+using ::testing::HasSubstr;
+using testing::line_of;
+using testing::ScratchFolder;
+
+/// Two profiles of three samples.
+const std::string kPtx =
+    "2\n3\n1 2 3\n1 0 0\n0 1 0\n0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\n1 2 3 1\n"
+    "0.0 0.1 -5 0.5 255 0 7\n0 0 0 0.5 0 0 0\n0.0 0.3 -5 0.25 1 2 3\n"
+    "0.1 0.1 -5 1 4 5 6\n0.1 0.2 -5 0 7 8 9\nnan 0.3 -5 0 0 0 0\n";
+
+TEST(Ptx, ReadsOneScanInTheScannersFrame) {
+  const auto scans = read_scan_bytes(kPtx, "dir/a.ptx", {.mm_per_unit = 1000.0});
+  ASSERT_TRUE(scans) << line_of(scans);
+  ASSERT_EQ(scans->size(), 1U);
+  const auto& grid = std::get<RangeGrid>(scans->front());
+  EXPECT_EQ(grid.rows, 2);
+  EXPECT_EQ(grid.cols, 3);
+  EXPECT_EQ(grid.valid, (std::vector<std::uint8_t>{1, 0, 1, 1, 1, 0}));
+  EXPECT_EQ(grid.point(4), Eigen::Vector3f(100, 200, -5000));
+  EXPECT_FLOAT_EQ(grid.intensity[2], 0.25F);
+  EXPECT_EQ(grid.rgb[0], 255);
+  EXPECT_EQ(grid.rgb[14], 9);
+  EXPECT_EQ(grid.view.camera_mm, Eigen::Vector3d(0, 0, 0));
+  EXPECT_LT(grid.view.direction.z(), -0.99);
+  EXPECT_NEAR(grid.spacing_mm, 100, 0.01);
+  EXPECT_EQ(grid.source, "a.ptx");
+}
+
+TEST(Ptx, ReadsSeveralScansAndCountsThem) {
+  const ScratchFolder folder;
+  std::string crlf;
+  for (const char c : kPtx + kPtx) {
+    crlf += c == '\n' ? "\r\n" : std::string(1, c);
+  }
+  ASSERT_TRUE(write_file_atomically(folder / "two.ptx", crlf));
+  EXPECT_TRUE(looks_like_scan(folder / "two.ptx"));
+  EXPECT_EQ(count_scans(folder / "two.ptx").value(), 2);
+  const auto scans = read_scan_file(folder / "two.ptx");
+  ASSERT_TRUE(scans) << line_of(scans);
+  ASSERT_EQ(scans->size(), 2U);
+  EXPECT_EQ(std::get<RangeGrid>((*scans)[1]).source, "two.ptx#1");
+}
+
+TEST(Ptx, NamesWhatIsWrong) {
+  const auto line = [](const std::string& text) { return line_of(read_scan_bytes(text, "a.ptx")); };
+  EXPECT_THAT(line(""), HasSubstr("a.ptx: line 1: '' stands where a count"));
+  EXPECT_THAT(line("-4\n3\n"), HasSubstr("line 1: '-4' stands where a count from 1 to 16777216 belongs"));
+  EXPECT_THAT(line("2\nx\n"), HasSubstr("line 2: 'x' stands where a count"));
+  EXPECT_THAT(line("2\n3\n1 2 oops"), HasSubstr("line 3: 'oops' stands where the scanner's pose belongs"));
+  std::string huge = kPtx;
+  huge.replace(0, 1, "9999999");
+  EXPECT_THAT(line(huge), HasSubstr("claims 9999999 x 3 samples, but only"));
+  EXPECT_THAT(line(kPtx.substr(0, kPtx.size() - 20)), HasSubstr("ends at sample 5 of 6"));
+  std::string bad = kPtx;
+  bad.replace(bad.find("0.25"), 4, "0.2x");
+  EXPECT_THAT(line(bad), HasSubstr("line 13: sample 2: '0.2x' is not a number"));
+}
+
+PointCloud read_cloud(const std::string& text) {
+  const auto scans = read_scan_bytes(text, "a.xyz");
+  EXPECT_TRUE(scans) << line_of(scans);
+  return scans ? std::get<PointCloud>(scans->front()) : PointCloud{};
+}
+
+TEST(PointText, ReadsPlainPoints) {
+  const PointCloud cloud = read_cloud("# a comment\n1 2 3\n\n 4,5;6\r\n+7\t8e0 9 # end\ninf 0 0\n");
+  ASSERT_EQ(cloud.points.size(), 3U);
+  EXPECT_EQ(cloud.points[1], Eigen::Vector3f(4, 5, 6));
+  EXPECT_EQ(cloud.points[2], Eigen::Vector3f(7, 8, 9));
+  EXPECT_EQ(cloud.source, "a.xyz");
+  EXPECT_TRUE(cloud.intensity.empty());
+}
+
+TEST(PointText, ReadsColumnsForWhatTheyAre) {
+  EXPECT_EQ(read_cloud("2\n1 2 3 255\n1 2 4 51\n").intensity, (std::vector<float>{1.0F, 0.2F}));
+  EXPECT_EQ(read_cloud("x y z r g b\n1 2 3 10 20 30\n").rgb, (std::vector<std::uint8_t>{10, 20, 30}));
+  const PointCloud normals = read_cloud("1 2 3 0 0.6 -0.8\n1 2 4 0 0 1\n");
+  ASSERT_EQ(normals.normals.size(), 2U);
+  EXPECT_NEAR(normals.normals[0].z(), -0.8F, 1e-6);
+  const PointCloud all = read_cloud("1 2 3 0.5 10 20 30\n");
+  EXPECT_EQ(all.intensity, (std::vector<float>{0.5F}));
+  EXPECT_EQ(all.rgb.size(), 3U);
+}
+
+TEST(PointText, NamesWhatIsWrong) {
+  const auto line = [](const std::string& text) { return line_of(read_scan_bytes(text, "a.xyz")); };
+  EXPECT_THAT(line(""), HasSubstr("a.xyz: the file is empty"));
+  EXPECT_THAT(line("1 2 3\n4 5\n"), HasSubstr("line 2: has 2 numbers where 3 belong"));
+  EXPECT_THAT(line("1 2 3\n4 5 six\n"), HasSubstr("line 2: 'six' is not a number"));
+  EXPECT_THAT(line("just words\n"), HasSubstr("holds no usable point"));
+  EXPECT_THAT(line("nan nan nan\n"), HasSubstr("holds no usable point"));
+}
+
+TEST(PointText, AProseFileIsNoScan) {
+  const ScratchFolder folder;
+  ASSERT_TRUE(write_file_atomically(folder / "notes.txt", "Scanned on a Monday.\nTen scans.\n"));
+  ASSERT_TRUE(write_file_atomically(folder / "a.asc", "1 2 3\n"));
+  EXPECT_FALSE(looks_like_scan(folder / "notes.txt"));
+  EXPECT_TRUE(looks_like_scan(folder / "a.asc"));
+  EXPECT_FALSE(looks_like_scan(folder / "none.ply"));
+  EXPECT_THAT(line_of(count_scans(folder / "notes.txt")), HasSubstr("not a scan"));
+}
+
+}  // namespace
+}  // namespace dubsar
