@@ -104,7 +104,8 @@ Result<DeviceUri> parse_device_uri(std::string_view text) {
     }
     const std::size_t equals = part.find('=');
     if (equals == std::string_view::npos || equals == 0) {
-      return fail(ErrorKind::kUsage, "option '" + std::string(part) + "' is not key=value", std::string(text));
+      return fail(ErrorKind::kUsage, "option '" + std::string(part) + "' is not key=value",
+                  std::string(text));
     }
     const Result<std::string> key = decoded(part.substr(0, equals), text);
     const Result<std::string> value = decoded(part.substr(equals + 1), text);

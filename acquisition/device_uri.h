@@ -22,8 +22,8 @@ struct DeviceUri {
   [[nodiscard]] std::string text() const;
 };
 
-/// Text without a scheme is a path and means replay:PATH, taken letter by letter. Errors (kUsage): empty text, a
-/// broken percent escape, an option without '=', a key given twice.
+/// Text without a scheme is a path and means replay:PATH, taken letter by letter. Errors (kUsage): empty
+/// text, a broken percent escape, an option without '=', a key given twice.
 [[nodiscard]] Result<DeviceUri> parse_device_uri(std::string_view text);
 
 /// Opens what the URI names; an unknown scheme or option is answered with those that there are.

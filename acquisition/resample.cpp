@@ -13,14 +13,15 @@ namespace dubsar {
 
 namespace {
 
-/// Points farther behind the first than this many µ belong to another surface (seed 001, 3.3: 3µ is a slope of 70°).
+/// Points farther behind the first than this many µ belong to another surface (seed 001, 3.3: 3µ is a slope
+/// of 70°).
 constexpr float kDepthStep = 3.0F;
 /// A mean of unit normals shorter than this points nowhere: the cloud is seen from all around.
 constexpr double kNormalsAgree = 0.3;
 /// An extent with more cells per point than this is held open by a few strays; the box is then trimmed.
 constexpr double kMostCellsPerPoint = 64.0;
-/// A spare point fills an empty cell beside its own when it lies this much nearer to it than the point that its own
-/// cell keeps, in cells: the order of the points along rows and columns stays what it was.
+/// A spare point fills an empty cell beside its own when it lies this much nearer to it than the point that
+/// its own cell keeps, in cells: the order of the points along rows and columns stays what it was.
 constexpr float kSpareLead = 0.25F;
 constexpr std::uint32_t kNone = 0xffffffffU;
 
@@ -65,7 +66,8 @@ Eigen::Vector3d direction_of(const PointCloud& cloud, const std::vector<std::uin
 
 Frame frame_of(const Eigen::Vector3d& direction) {
   const Eigen::Vector3d w = -direction;
-  // The column axis follows the frame's own x as far as the view allows, so that a scan along z keeps its axes.
+  // The column axis follows the frame's own x as far as the view allows, so that a scan along z keeps its
+  // axes.
   const Eigen::Vector3d along = std::abs(w.x()) < 0.9 ? Eigen::Vector3d::UnitX() : Eigen::Vector3d::UnitY();
   const Eigen::Vector3d u = (along - w * w.dot(along)).normalized();
   return {u.cast<float>(), w.cross(u).cast<float>(), w.cast<float>()};
@@ -188,8 +190,8 @@ Choice choose(const Raster& raster) {
   return out;
 }
 
-/// A regular cloud whose rows lie askew to the cells leaves some empty and puts two points into others. The spare
-/// ones go to the empty cells beside theirs: a grid need not be rectilinear.
+/// A regular cloud whose rows lie askew to the cells leaves some empty and puts two points into others. The
+/// spare ones go to the empty cells beside theirs: a grid need not be rectilinear.
 void place_spares(const Raster& raster, Choice& choice) {
   const std::vector<std::uint32_t> first = choice.point;
   std::vector<std::uint8_t> placed(raster.uvw.size(), 0);

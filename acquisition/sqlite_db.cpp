@@ -3,7 +3,11 @@
 #include "acquisition/sqlite_db.h"
 
 #include <sqlite3.h>
+// The checksum's state lives on the stack: SQLite calls for every row.
+#define XXH_STATIC_LINKING_ONLY
 #include <xxhash.h>
+
+#include <cstdio>
 
 namespace dubsar {
 
