@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "acquisition/device_uri.h"
+#include "acquisition/grid_builder.h"
+#include "acquisition/resample.h"
+#include "core/job.h"
+#include "core/range_grid.h"
+#include "core/result.h"
+#include "core/rig.h"
+#include "drivers/device.h"
+
+namespace dubsar {
+
+/// How a scan came in, besides its grid.
+struct ScanRecord {
+  ScanTally tally;  ///< as the driver counted
+  ProfileFaults faults;
+  bool resampled = false;  ///< the device gave points without an order
+};
+
+/// A device opened by its URI, as a source of range grids. Use from one thread at a time.
+class RangeSource {
+ public:
+  /// Called on the scanning thread after each row that was appended: `grid` is complete up to row `row`, its
+  /// last, and grows with the next. Rows that were lost before it are there, empty, without a call of their
+  /// own. A slow observer holds up the device.
+  using RowObserver = std::function<void(const RangeGrid& grid, int row)>;
+
+  [[nodiscard]] static Result<RangeSource> open(std::string_view uri, const DriverRegistry& registry,
+                                                const ResampleOptions& resampling = {});
+
+  [[nodiscard]] const DeviceUri& uri() const { return uri_; }
+  [[nodiscard]] const DeviceCapabilities& capabilities() const { return capabilities_; }
+  [[nodiscard]] Device& device() { return device_; }
+
+  /// Asks for where the next scan is taken from.
+  Status place(const Placement& placement) { return device_.place(placement); }
+
+  /// Runs the next scan. Nothing: the source is exhausted. On an error (kDevice, kBadInput, kCancelled when
+  /// `job` was cancelled) the rows that came are in partial(); a finite source goes on with its next scan at
+  /// the next call. Points without an order are resampled first and then handed on row by row.
+  [[nodiscard]] Result<std::optional<RangeGrid>> next(const RowObserver& observer, JobContext& job);
+
+  /// The rows of the last scan when next() failed in the middle of it; moved out.
+  [[nodiscard]] std::optional<RangeGrid> take_partial() { return std::exchange(partial_, std::nullopt); }
+  /// About the last scan.
+  [[nodiscard]] const ScanRecord& record() const { return record_; }
+
+ private:
+  RangeSource(DeviceUri uri, Device device, DeviceCapabilities capabilities, ResampleOptions resampling);
+
+  DeviceUri uri_;
+  Device device_;
+  DeviceCapabilities capabilities_;
+  ResampleOptions resampling_;
+  std::optional<RangeGrid> partial_;
+  ScanRecord record_;
+};
+
+}  // namespace dubsar

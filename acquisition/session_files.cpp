@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "acquisition/session_files.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+#include <xxhash.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <charconv>
+#include <cstring>
+#include <fstream>
+#include <memory>
+#include <sstream>
+#include <utility>
+
+#include "formats/atomic_file.h"
+
+namespace dubsar::session {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr std::size_t kPieceBytes = std::size_t{1} << 20U;
+
+std::unexpected<Error> refused(const fs::path& path, const char* doing, int error) {
+  return fail(ErrorKind::kStorage, std::string(doing) + ": " + std::strerror(error), path.string(),
+              error == ENOSPC || error == EDQUOT ? "free some space on this disk"
+                                                 : "choose a folder that can be written to");
+}
+
+struct StateFreer {
+  void operator()(XXH64_state_t* state) const { XXH64_freeState(state); }
+};
+
+}  // namespace
+
+Result<FolderLock> FolderLock::take(const fs::path& folder) {
+  const fs::path path = folder / kLock;
+  const int fd = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+  if (fd < 0) {
+    return refused(path, "cannot lock the session", errno);
+  }
+  FolderLock lock(fd);
+  if (::flock(fd, LOCK_EX | LOCK_NB) != 0) {
+    if (errno != EWOULDBLOCK) {
+      return refused(path, "cannot lock the session", errno);
+    }
+    std::array<char, 32> pid{};
+    const ssize_t got = ::pread(fd, pid.data(), pid.size() - 1, 0);
+    std::string who(pid.data(), static_cast<std::size_t>(std::max<ssize_t>(0, got)));
+    who.erase(std::find_if_not(who.begin(), who.end(), [](char c) { return c >= '0' && c <= '9'; }),
+              who.end());
+    return fail(ErrorKind::kUsage,
+                "another program is writing to this session" +
+                    (who.empty() ? std::string() : " (process " + who + ")"),
+                folder.string(), "close it first, or open the session for reading only");
+  }
+  // Only for the words above: the lock itself holds without.
+  const std::string pid = std::to_string(::getpid()) + "\n";
+  if (::ftruncate(fd, 0) == 0) {
+    [[maybe_unused]] const ssize_t written = ::pwrite(fd, pid.data(), pid.size(), 0);
+  }
+  return lock;
+}
+
+FolderLock::FolderLock(FolderLock&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
+FolderLock& FolderLock::operator=(FolderLock&& other) noexcept {
+  std::swap(fd_, other.fd_);
+  return *this;
+}
+FolderLock::~FolderLock() {
+  if (fd_ >= 0) {
+    ::close(fd_);
+  }
+}
+
+Status sync_folder(const fs::path& folder) {
+  const int fd = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (fd < 0) {
+    return refused(folder, "cannot sync the folder", errno);
+  }
+  // Some network file systems cannot sync a folder and say EINVAL.
+  const int error = ::fsync(fd) == 0 || errno == EINVAL ? 0 : errno;
+  ::close(fd);
+  return error == 0 ? Status{} : refused(folder, "cannot sync the folder", error);
+}
+
+Status make_folders(const fs::path& folder) {
+  std::error_code error;
+  const bool there = fs::exists(folder, error);
+  if (there && !fs::is_directory(folder, error)) {
+    return fail(ErrorKind::kUsage, "not a folder", folder.string(), "name a folder for the session");
+  }
+  if (there && !fs::exists(folder / kDatabase) && !fs::exists(folder / kGrids) &&
+      !fs::exists(folder / kBackup)) {
+    fs::directory_iterator it(folder, error);
+    if (error) {
+      return refused(folder, "cannot read the folder", error.value());
+    }
+    // A store that was killed while it made its first folders leaves its lock alone.
+    const bool foreign = std::any_of(it, fs::directory_iterator(), [](const fs::directory_entry& entry) {
+      return entry.path().filename() != kLock;
+    });
+    if (foreign) {
+      return fail(ErrorKind::kUsage, "the folder holds other things and no session", folder.string(),
+                  "name a new or an empty folder");
+    }
+  }
+  std::vector<fs::path> made;
+  for (fs::path up = fs::absolute(folder).lexically_normal(); !up.empty() && !fs::exists(up, error);
+       up = up.parent_path()) {
+    made.push_back(up);
+  }
+  fs::create_directories(folder, error);
+  if (error) {
+    return refused(folder, "cannot make the folder", error.value());
+  }
+  for (const char* name : kFolders) {
+    fs::create_directory(folder / name, error);
+    if (error) {
+      return refused(folder / name, "cannot make the folder", error.value());
+    }
+  }
+  for (const fs::path& one : made) {
+    if (Status synced = sync_folder(one.parent_path()); !synced) {
+      return synced;
+    }
+  }
+  return sync_folder(folder);
+}
+
+int remove_temporaries(const fs::path& folder) {
+  int removed = 0;
+  for (const fs::path& place :
+       {folder, folder / kGrids, folder / "mesh", folder / "analysis", folder / "export"}) {
+    std::error_code ignored;
+    std::vector<fs::path> found;
+    for (fs::directory_iterator it(place, ignored), end; !ignored && it != end; it.increment(ignored)) {
+      if (it->path().filename().string().starts_with(kTemporaryPrefix)) {
+        found.push_back(it->path());
+      }
+    }
+    for (const fs::path& path : found) {
+      removed += fs::remove(path, ignored) ? 1 : 0;
+    }
+  }
+  return removed;
+}
+
+std::string grid_name(int id) {
+  std::string digits = std::to_string(id);
+  digits.insert(0, digits.size() < 3 ? 3 - digits.size() : 0, '0');
+  return std::string(kGrids) + "/" + digits + ".grid";
+}
+
+std::vector<int> grid_ids(const fs::path& folder) {
+  std::vector<int> out;
+  std::error_code ignored;
+  for (fs::directory_iterator it(folder / kGrids, ignored), end; !ignored && it != end;
+       it.increment(ignored)) {
+    const std::string stem = it->path().stem().string();
+    int id = -1;
+    const auto [rest, problem] = std::from_chars(stem.data(), stem.data() + stem.size(), id);
+    if (problem == std::errc{} && rest == stem.data() + stem.size() && id >= 0 &&
+        it->path().filename() == fs::path(grid_name(id)).filename()) {
+      out.push_back(id);
+    }
+  }
+  std::ranges::sort(out);
+  return out;
+}
+
+std::int64_t hash_of(std::string_view bytes) {
+  return static_cast<std::int64_t>(XXH64(bytes.data(), bytes.size(), 0));
+}
+
+Result<FileSum> sum_of_file(const fs::path& path, const JobContext* job) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file) {
+    return bad_input(path.string(), "missing or unreadable", "bring it back from a copy");
+  }
+  const std::unique_ptr<XXH64_state_t, StateFreer> state(XXH64_createState());
+  XXH64_reset(state.get(), 0);
+  std::vector<char> piece(kPieceBytes);
+  FileSum sum;
+  while (file) {
+    if (job != nullptr && job->cancelled()) {
+      return fail(ErrorKind::kCancelled, "verification cancelled");
+    }
+    file.read(piece.data(), static_cast<std::streamsize>(piece.size()));
+    const auto got = static_cast<std::size_t>(file.gcount());
+    XXH64_update(state.get(), piece.data(), got);
+    sum.bytes += static_cast<std::int64_t>(got);
+  }
+  if (file.bad()) {
+    return fail(ErrorKind::kStorage, "cannot be read to its end", path.string(), "check the disk");
+  }
+  sum.hash = static_cast<std::int64_t>(XXH64_digest(state.get()));
+  return sum;
+}
+
+Result<std::map<std::string, FileSum>> read_sums(const fs::path& folder) {
+  std::map<std::string, FileSum> out;
+  std::error_code error;
+  if (!fs::exists(folder / kSums, error)) {
+    return out;
+  }
+  const Result<std::string> text = read_whole_file(folder / kSums, 4096);
+  if (!text) {
+    return std::unexpected(text.error());
+  }
+  const std::size_t end = std::min(text->find('\n'), text->size());
+  const std::string body = text->substr(std::min(end + 1, text->size()));
+  if (text->substr(0, end) != std::to_string(hash_of(body))) {
+    return bad_input((folder / kSums).string(), "the list of checksums is damaged",
+                     "open the session for writing to have it made anew");
+  }
+  std::istringstream lines(body);
+  FileSum sum;
+  for (std::string name; lines >> sum.hash >> sum.bytes >> name;) {
+    out[name] = sum;
+  }
+  return out;
+}
+
+Status write_sums(const fs::path& folder, const std::map<std::string, FileSum>& sums) {
+  std::ostringstream body;
+  for (const auto& [name, sum] : sums) {
+    body << sum.hash << ' ' << sum.bytes << ' ' << name << '\n';
+  }
+  return write_file_atomically(folder / kSums, std::to_string(hash_of(body.view())) + "\n" + body.str());
+}
+
+}  // namespace dubsar::session

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/job.h"
+#include "core/result.h"
+
+/// The files of a session folder below the level of SessionStore.
+namespace dubsar::session {
+
+inline constexpr const char* kDatabase = "session.sqlite";
+inline constexpr const char* kBackup = "session.backup.sqlite";
+inline constexpr const char* kSums = "session.sums";
+inline constexpr const char* kLock = "session.lock";
+inline constexpr const char* kGrids = "grids";
+inline constexpr const char* kFolders[] = {kGrids, "mesh", "analysis", "export"};
+
+/// Held by the one program that writes; the system lets go of it when that program ends, however it ends.
+class FolderLock {
+ public:
+  /// kUsage with the process number when another program (or another store of this one) has it.
+  [[nodiscard]] static Result<FolderLock> take(const std::filesystem::path& folder);
+  FolderLock(FolderLock&& other) noexcept;
+  FolderLock& operator=(FolderLock&& other) noexcept;
+  FolderLock(const FolderLock&) = delete;
+  FolderLock& operator=(const FolderLock&) = delete;
+  ~FolderLock();
+
+ private:
+  explicit FolderLock(int fd) : fd_(fd) {}
+  int fd_ = -1;
+};
+
+/// Makes the session's folders, durably. Refuses a folder that holds other things and no session.
+[[nodiscard]] Status make_folders(const std::filesystem::path& folder);
+[[nodiscard]] Status sync_folder(const std::filesystem::path& folder);
+/// Removes what a killed writer left behind half-written; returns how many.
+int remove_temporaries(const std::filesystem::path& folder);
+
+/// "grids/007.grid"
+[[nodiscard]] std::string grid_name(int id);
+/// The ids of the grid files that are there, ascending.
+[[nodiscard]] std::vector<int> grid_ids(const std::filesystem::path& folder);
+
+/// XXH64 of bytes, as SQLite keeps it.
+[[nodiscard]] std::int64_t hash_of(std::string_view bytes);
+
+struct FileSum {
+  std::int64_t bytes = 0;
+  std::int64_t hash = 0;
+  bool operator==(const FileSum&) const = default;
+};
+/// Reads a file once, in pieces.
+[[nodiscard]] Result<FileSum> sum_of_file(const std::filesystem::path& path, const JobContext* job = nullptr);
+
+/// session.sums: what the database and its backup looked like when they were last closed.
+/// Empty without that file; an error when it does not match the checksum that it begins with.
+[[nodiscard]] Result<std::map<std::string, FileSum>> read_sums(const std::filesystem::path& folder);
+[[nodiscard]] Status write_sums(const std::filesystem::path& folder,
+                                const std::map<std::string, FileSum>& sums);
+
+}  // namespace dubsar::session

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <filesystem>
+#include <mutex>
+#include <optional>
+
+#include "acquisition/session_files.h"
+#include "acquisition/session_store.h"
+#include "acquisition/session_tables.h"
+#include "acquisition/sqlite_db.h"
+
+namespace dubsar {
+
+struct SessionStore::Impl {
+  std::filesystem::path folder;
+  Access access = Access::kReadWrite;
+  std::optional<session::FolderLock> lock;
+  std::optional<SqlDatabase> db;  ///< for reading: a copy in memory
+  bool rebuilt = false;           ///< db was put together from what a damaged one left
+  SessionOpening opening;
+  std::vector<int> damaged_grids;  ///< ids, as seen while opening
+  mutable std::mutex mutex;        ///< of db and damaged_grids
+
+  ~Impl();
+  /// kUsage when the session was opened for reading only.
+  [[nodiscard]] Status writable() const;
+  /// The checks of opening that follow once db stands: rows, grids without a row, rows without their grid.
+  [[nodiscard]] Status reconcile();
+};
+
+namespace session {
+
+/// Opens session.sqlite for writing, rebuilding it when it is damaged.
+[[nodiscard]] Result<SqlDatabase> open_for_writing(const std::filesystem::path& folder,
+                                                   SessionOpening& opening, bool& rebuilt);
+/// A copy of the database in memory, or what can be saved of it.
+[[nodiscard]] Result<SqlDatabase> open_for_reading(const std::filesystem::path& folder,
+                                                   SessionOpening& opening, bool& rebuilt);
+/// Closes db, leaving one file without a log beside it, its backup and their checksums.
+void close_cleanly(const std::filesystem::path& folder, std::optional<SqlDatabase>& db);
+
+}  // namespace session
+
+}  // namespace dubsar

@@ -1,0 +1,274 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdlib>
+
+#include "acquisition/session_impl.h"
+#include "formats/atomic_file.h"
+
+namespace dubsar::session {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// An error is one line.
+constexpr std::size_t kMostNamed = 8;
+
+constexpr const char* kSideFiles[] = {"-wal", "-shm"};
+
+/// Every commit reaches the disk before it returns; a log beside the file keeps readers and the writer apart.
+constexpr const char* kDurable = "PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL;";
+
+fs::path beside(const fs::path& path, const std::string& suffix) {
+  return path.string() + suffix;
+}
+
+bool has_content(const fs::path& path) {
+  std::error_code error;
+  const auto size = fs::file_size(path, error);
+  return !error && size > 0;
+}
+
+/// What is wrong with a database that opens, or nothing.
+std::optional<Error> fault_of(SqlDatabase& db, const std::string& where) {
+  if (const Status schema = prepare_schema(db, where); !schema) {
+    return schema.error();
+  }
+  if (const std::string fault = db.structure_fault(); !fault.empty()) {
+    return Error{ErrorKind::kBadInput, "the database is damaged (" + fault + ")", where, {}};
+  }
+  const Result<std::vector<std::string>> rows = damaged_rows(db);
+  if (!rows) {
+    return rows.error();
+  }
+  if (!rows->empty()) {
+    std::string list = rows->front();
+    for (std::size_t i = 1; i < rows->size() && i < kMostNamed; ++i) {
+      list += ", " + (*rows)[i];
+    }
+    list += rows->size() > kMostNamed ? ", and more" : "";
+    return Error{ErrorKind::kBadInput, "the database is damaged (" + list + ")", where, {}};
+  }
+  return std::nullopt;
+}
+
+void note_rebuilding(const Error& fault, std::int64_t rows, SessionOpening& opening) {
+  opening.damage.push_back(fault);
+  opening.notes.push_back("rebuilt the database: " + std::to_string(rows) +
+                          " rows saved from it and from its last backup");
+}
+
+/// Fills an empty database with what is readable in the damaged file and in the backup.
+Result<std::int64_t> fill_from_remains(const fs::path& folder, SqlDatabase& to) {
+  if (Status schema = prepare_schema(to, folder.string()); !schema) {
+    return std::unexpected(schema.error());
+  }
+  Result<SqlTransaction> transaction = SqlTransaction::begin(to);
+  if (!transaction) {
+    return std::unexpected(transaction.error());
+  }
+  std::int64_t rows = 0;
+  // With the log first; without it, should the log be what is damaged.
+  for (const auto mode : {SqlDatabase::Mode::kReadOnly, SqlDatabase::Mode::kImmutable}) {
+    if (Result<SqlDatabase> from = SqlDatabase::open(folder / kDatabase, mode); from) {
+      rows = salvage_rows(*from, to, true);
+    }
+  }
+  if (Result<SqlDatabase> backup = SqlDatabase::open(folder / kBackup, SqlDatabase::Mode::kImmutable);
+      backup) {
+    rows = std::max(rows, salvage_rows(*backup, to, rows == 0));
+  }
+  if (Status done = transaction->commit(); !done) {
+    return std::unexpected(done.error());
+  }
+  return rows;
+}
+
+/// Keeps the damaged files under a free name. Copies, so that there is a database at every moment.
+Result<std::string> keep_aside(const fs::path& folder) {
+  std::string name;
+  for (int i = 1; name.empty() || fs::exists(folder / name); ++i) {
+    name = std::string(kDatabase) + ".damaged-" + std::to_string(i);
+  }
+  for (const std::string suffix : {"", "-wal"}) {
+    const fs::path from = beside(folder / kDatabase, suffix);
+    if (!has_content(from)) {
+      continue;
+    }
+    const Result<std::string> bytes = read_whole_file(from);
+    if (!bytes) {
+      return std::unexpected(bytes.error());
+    }
+    if (Status kept = write_file_atomically(beside(folder / name, suffix), std::string_view(*bytes)); !kept) {
+      return std::unexpected(kept.error());
+    }
+  }
+  return name;
+}
+
+Result<SqlDatabase> rebuild(const fs::path& folder, const Error& fault, SessionOpening& opening) {
+  const fs::path fresh = folder / (std::string(kTemporaryPrefix) + "rebuilt.sqlite");
+  std::error_code ignored;
+  for (const char* suffix : {"", "-wal", "-shm", "-journal"}) {
+    fs::remove(beside(fresh, suffix), ignored);
+  }
+  std::int64_t rows = 0;
+  {
+    Result<SqlDatabase> to = SqlDatabase::open(fresh, SqlDatabase::Mode::kCreate);
+    if (!to) {
+      return to;
+    }
+    const Result<std::int64_t> filled = fill_from_remains(folder, *to);
+    if (!filled) {
+      return std::unexpected(filled.error());
+    }
+    rows = *filled;
+  }
+  const Result<std::string> aside = keep_aside(folder);
+  if (!aside) {
+    return std::unexpected(aside.error());
+  }
+  // The old log must go before the new file takes its place: SQLite would apply it to the wrong database.
+  for (const char* suffix : kSideFiles) {
+    fs::remove(beside(folder / kDatabase, suffix), ignored);
+  }
+  std::error_code error;
+  fs::rename(fresh, folder / kDatabase, error);
+  if (error) {
+    return fail(ErrorKind::kStorage, "cannot put the rebuilt database in its place: " + error.message(),
+                folder.string(), "see that the folder may be written to");
+  }
+  if (Status synced = sync_folder(folder); !synced) {
+    return std::unexpected(synced.error());
+  }
+  note_rebuilding(fault, rows, opening);
+  opening.notes.push_back("kept the damaged database as " + *aside);
+  return SqlDatabase::open(folder / kDatabase, SqlDatabase::Mode::kCreate);
+}
+
+/// Copies database and log to where the log can be played, for a session on a disk that cannot be written.
+Status copy_elsewhere(const fs::path& folder, SqlDatabase& memory) {
+  std::string place = (fs::temp_directory_path() / "dubsar-session-XXXXXX").string();
+  if (::mkdtemp(place.data()) == nullptr) {
+    return fail(ErrorKind::kStorage, "no temporary folder to read the session in", place, "set TMPDIR");
+  }
+  std::error_code error;
+  for (const char* suffix : {"", "-wal"}) {
+    fs::copy_file(beside(folder / kDatabase, suffix), beside(fs::path(place) / kDatabase, suffix), error);
+  }
+  Status copied;
+  if (Result<SqlDatabase> db = SqlDatabase::open(fs::path(place) / kDatabase, SqlDatabase::Mode::kCreate);
+      db) {
+    copied = memory.copy_from(*db);
+  } else {
+    copied = std::unexpected(db.error());
+  }
+  fs::remove_all(place, error);
+  return copied;
+}
+
+/// The database as of now, in memory. A log with content has commits that the file lacks.
+Status snapshot(const fs::path& folder, SqlDatabase& memory) {
+  const fs::path path = folder / kDatabase;
+  if (!has_content(beside(path, "-wal"))) {
+    Result<SqlDatabase> file = SqlDatabase::open(path, SqlDatabase::Mode::kImmutable);
+    return file ? memory.copy_from(*file) : std::unexpected(file.error());
+  }
+  Result<SqlDatabase> file = SqlDatabase::open(path, SqlDatabase::Mode::kReadOnly);
+  if (Status copied = file ? memory.copy_from(*file) : std::unexpected(file.error());
+      copied || copied.error().kind == ErrorKind::kBadInput) {
+    return copied;
+  }
+  return copy_elsewhere(folder, memory);
+}
+
+}  // namespace
+
+Result<SqlDatabase> open_for_writing(const fs::path& folder, SessionOpening& opening, bool& rebuilt) {
+  const fs::path path = folder / kDatabase;
+  opening.created = !fs::exists(path) && !fs::exists(folder / kBackup) && grid_ids(folder).empty();
+  const bool missing = !opening.created && !has_content(path);
+  // Once something is written the old checksum is wrong; the backup's stays good.
+  std::map<std::string, FileSum> sums = read_sums(folder).value_or(std::map<std::string, FileSum>());
+  if (sums.erase(kDatabase) > 0) {
+    if (Status written = write_sums(folder, sums); !written) {
+      return std::unexpected(written.error());
+    }
+  }
+  Result<SqlDatabase> db = SqlDatabase::open(path, SqlDatabase::Mode::kCreate);
+  std::optional<Error> fault;
+  if (missing) {
+    fault = Error{ErrorKind::kBadInput, "the database is missing or empty", path.string(), {}};
+  } else if (!db) {
+    fault = db.error();
+  } else {
+    fault = fault_of(*db, path.string());
+  }
+  if (fault && fault->kind == ErrorKind::kBadInput) {
+    db = std::unexpected(*fault);  // closes it
+    db = rebuild(folder, *fault, opening);
+    rebuilt = db.has_value();
+  } else if (fault) {
+    return std::unexpected(*fault);
+  }
+  if (!db) {
+    return db;
+  }
+  if (Status durable = db->execute(kDurable); !durable) {
+    return std::unexpected(durable.error());
+  }
+  if (Status synced = sync_folder(folder); !synced) {
+    return std::unexpected(synced.error());
+  }
+  return db;
+}
+
+Result<SqlDatabase> open_for_reading(const fs::path& folder, SessionOpening& opening, bool& rebuilt) {
+  Result<SqlDatabase> memory = SqlDatabase::open(folder / kDatabase, SqlDatabase::Mode::kMemory);
+  if (!memory) {
+    return memory;
+  }
+  const std::string where = (folder / kDatabase).string();
+  const Status copied = snapshot(folder, *memory);
+  std::optional<Error> fault = copied ? fault_of(*memory, where) : std::optional(copied.error());
+  if (!fault) {
+    return memory;
+  }
+  const bool gone = !has_content(folder / kDatabase);
+  if (fault->kind != ErrorKind::kBadInput && !gone) {
+    return std::unexpected(*fault);
+  }
+  memory = SqlDatabase::open(folder / kDatabase, SqlDatabase::Mode::kMemory);
+  if (!memory) {
+    return memory;
+  }
+  const Result<std::int64_t> rows = fill_from_remains(folder, *memory);
+  if (!rows) {
+    return std::unexpected(rows.error());
+  }
+  note_rebuilding(*fault, *rows, opening);
+  rebuilt = true;
+  return memory;
+}
+
+void close_cleanly(const fs::path& folder, std::optional<SqlDatabase>& db) {
+  const bool merged = db && db->execute("PRAGMA wal_checkpoint(TRUNCATE)").has_value();
+  db.reset();
+  if (!merged || has_content(beside(folder / kDatabase, "-wal"))) {
+    return;  // The log stays and is played at the next opening.
+  }
+  const Result<std::string> bytes = read_whole_file(folder / kDatabase);
+  if (!bytes) {
+    return;
+  }
+  const FileSum sum{static_cast<std::int64_t>(bytes->size()), hash_of(*bytes)};
+  if (write_file_atomically(folder / kBackup, std::string_view(*bytes))) {
+    // Without these sums verify() still has those of the rows.
+    (void)write_sums(folder, {{kDatabase, sum}, {kBackup, sum}});
+  }
+}
+
+}  // namespace dubsar::session

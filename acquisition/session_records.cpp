@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include <zstd.h>
+
+#include "acquisition/pose_json.h"
+#include "acquisition/session_impl.h"
+#include "acquisition/session_query.h"
+#include "acquisition/session_store.h"
+
+namespace dubsar {
+
+namespace fs = std::filesystem;
+using session::checked_row;
+using session::FileSum;
+using session::for_each_row;
+using session::in_transaction;
+
+namespace {
+
+/// Flags are nearly empty bytes: the quickest level packs them a hundredfold.
+constexpr int kFlagsLevel = 1;
+/// Larger than any grid; a damaged count must not ask for all memory.
+constexpr std::int64_t kMaxFlags = std::int64_t{1} << 31;
+
+}  // namespace
+
+Status SessionStore::save_poses(const std::vector<ScanPose>& poses) {
+  if (Status writable = impl_->writable(); !writable) {
+    return writable;
+  }
+  const std::scoped_lock hold(impl_->mutex);
+  return in_transaction(*impl_->db, [&]() -> Status {
+    if (Status cleared = impl_->db->execute("DELETE FROM poses"); !cleared) {
+      return cleared;
+    }
+    Result<SqlStatement> put = impl_->db->prepare(session::insert_sql(session::table_named("poses")).c_str());
+    if (!put) {
+      return std::unexpected(put.error());
+    }
+    for (const ScanPose& pose : poses) {
+      put->bind(1, pose.id).bind(2, session::json_from_pose(pose));
+      if (Status done = put->run(); !done) {
+        return done;
+      }
+    }
+    return {};
+  });
+}
+
+Result<std::vector<ScanPose>> SessionStore::poses() const {
+  const std::scoped_lock hold(impl_->mutex);
+  std::vector<ScanPose> out;
+  const Status read = for_each_row(
+      *impl_->db, "SELECT id, json FROM poses WHERE sum IS dubsar_sum(id,json) ORDER BY id",
+      [&](const SqlStatement& row) -> Status {
+        Result<ScanPose> pose = session::pose_from_json(static_cast<int>(row.integer(0)), row.text(1));
+        if (!pose) {
+          return std::unexpected(pose.error());
+        }
+        out.push_back(std::move(*pose));
+        return {};
+      });
+  if (!read) {
+    return std::unexpected(read.error());
+  }
+  return out;
+}
+
+Status SessionStore::save_flags(int id, const SampleFlags& flags) {
+  if (Status writable = impl_->writable(); !writable) {
+    return writable;
+  }
+  std::string packed(ZSTD_compressBound(flags.size()), '\0');
+  const std::size_t size =
+      ZSTD_compress(packed.data(), packed.size(), flags.data(), flags.size(), kFlagsLevel);
+  if (ZSTD_isError(size) != 0) {
+    return fail(ErrorKind::kInternal, "flags could not be packed", impl_->folder.string());
+  }
+  packed.resize(size);
+  const std::scoped_lock hold(impl_->mutex);
+  Result<SqlStatement> put = impl_->db->prepare(session::insert_sql(session::table_named("flags")).c_str());
+  if (!put) {
+    return std::unexpected(put.error());
+  }
+  put->bind(1, id).bind(2, static_cast<std::int64_t>(flags.size())).bind_blob(3, packed);
+  return put->run();
+}
+
+Result<std::optional<SampleFlags>> SessionStore::load_flags(int id) const {
+  const std::string where = "flags of scan " + std::to_string(id);
+  std::int64_t count = 0;
+  std::string packed;
+  {
+    const std::scoped_lock hold(impl_->mutex);
+    auto row = checked_row(
+        *impl_->db, "SELECT sum IS dubsar_sum(id,count,packed), count, packed FROM flags WHERE id = ?1", id,
+        where);
+    if (!row) {
+      return std::unexpected(row.error());
+    }
+    if (!*row) {
+      return std::optional<SampleFlags>();
+    }
+    count = (*row)->integer(1);
+    packed = (*row)->text(2);
+  }
+  if (count < 0 || count > kMaxFlags) {
+    return bad_input(where, "the stored count is no count", "flag the scan anew");
+  }
+  SampleFlags flags(static_cast<std::size_t>(count));
+  const std::size_t got = ZSTD_decompress(flags.data(), flags.size(), packed.data(), packed.size());
+  if (ZSTD_isError(got) != 0 || got != flags.size()) {
+    return bad_input(where, "the stored flags cannot be unpacked", "flag the scan anew");
+  }
+  return std::optional(std::move(flags));
+}
+
+Status SessionStore::save_document(std::string_view name, std::string_view json) {
+  if (Status writable = impl_->writable(); !writable) {
+    return writable;
+  }
+  const std::scoped_lock hold(impl_->mutex);
+  Result<SqlStatement> put =
+      impl_->db->prepare(session::insert_sql(session::table_named("documents")).c_str());
+  if (!put) {
+    return std::unexpected(put.error());
+  }
+  return put->bind(1, name).bind(2, json).run();
+}
+
+Result<std::optional<std::string>> SessionStore::load_document(std::string_view name) const {
+  const std::scoped_lock hold(impl_->mutex);
+  auto row =
+      checked_row(*impl_->db, "SELECT sum IS dubsar_sum(name,json), json FROM documents WHERE name = ?1",
+                  name, std::string(name));
+  if (!row) {
+    return std::unexpected(row.error());
+  }
+  return *row ? std::optional((*row)->text(1)) : std::nullopt;
+}
+
+Result<std::vector<std::string>> SessionStore::document_names() const {
+  const std::scoped_lock hold(impl_->mutex);
+  std::vector<std::string> out;
+  const Status read = for_each_row(*impl_->db, "SELECT name FROM documents ORDER BY name",
+                                   [&](const SqlStatement& row) -> Status {
+                                     out.push_back(row.text(0));
+                                     return {};
+                                   });
+  if (!read) {
+    return std::unexpected(read.error());
+  }
+  return out;
+}
+
+Status SessionStore::append_event(std::string_view kind, std::string_view json) {
+  if (Status writable = impl_->writable(); !writable) {
+    return writable;
+  }
+  const std::scoped_lock hold(impl_->mutex);
+  return in_transaction(*impl_->db, [&] { return session::insert_event(*impl_->db, kind, json); });
+}
+
+Result<std::vector<SessionEvent>> SessionStore::events() const {
+  const std::scoped_lock hold(impl_->mutex);
+  std::vector<SessionEvent> out;
+  const Status read =
+      for_each_row(*impl_->db, "SELECT number,time_ns,kind,json FROM events ORDER BY number",
+                   [&](const SqlStatement& row) -> Status {
+                     out.push_back({row.integer(0), row.integer(1), row.text(2), row.text(3)});
+                     return {};
+                   });
+  if (!read) {
+    return std::unexpected(read.error());
+  }
+  return out;
+}
+
+Status SessionStore::record_file(const fs::path& relative) {
+  if (Status writable = impl_->writable(); !writable) {
+    return writable;
+  }
+  const fs::path normal = relative.lexically_normal();
+  if (normal.is_absolute() || normal.empty() || *normal.begin() == "..") {
+    return fail(ErrorKind::kUsage, "not a file of the session", relative.string());
+  }
+  const Result<FileSum> sum = session::sum_of_file(impl_->folder / normal);
+  if (!sum) {
+    return std::unexpected(sum.error());
+  }
+  const std::scoped_lock hold(impl_->mutex);
+  Result<SqlStatement> put = impl_->db->prepare(session::insert_sql(session::table_named("files")).c_str());
+  if (!put) {
+    return std::unexpected(put.error());
+  }
+  return put->bind(1, normal.generic_string()).bind(2, sum->bytes).bind(3, sum->hash).run();
+}
+
+}  // namespace dubsar

@@ -1,0 +1,290 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "acquisition/session_store.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "acquisition/session_impl.h"
+#include "acquisition/session_query.h"
+#include "formats/atomic_file.h"
+#include "formats/grid_file.h"
+
+namespace dubsar {
+
+namespace fs = std::filesystem;
+using session::checked_row;
+using session::FileSum;
+using session::for_each_row;
+using session::in_transaction;
+
+namespace {
+
+Status check_arrays(const RangeGrid& grid) {
+  const auto n =
+      static_cast<std::size_t>(std::max(0, grid.rows)) * static_cast<std::size_t>(std::max(0, grid.cols));
+  const auto fits = [n](std::size_t have, std::size_t per, bool optional) {
+    return have == n * per || (optional && have == 0);
+  };
+  if (grid.rows < 0 || grid.cols < 0 || !fits(grid.x.size(), 1, false) || !fits(grid.y.size(), 1, false) ||
+      !fits(grid.z.size(), 1, false) || !fits(grid.valid.size(), 1, false) ||
+      !fits(grid.intensity.size(), 1, true) || !fits(grid.confidence.size(), 1, true) ||
+      !fits(grid.rgb.size(), 3, true)) {
+    return fail(ErrorKind::kInternal, "a grid whose arrays do not fit its rows and columns was to be stored",
+                grid.source);
+  }
+  return {};
+}
+
+}  // namespace
+
+SessionStore::Impl::~Impl() {
+  if (access == Access::kReadWrite && db) {
+    session::close_cleanly(folder, db);
+  }
+}
+
+Status SessionStore::Impl::writable() const {
+  if (access == Access::kReadWrite) {
+    return {};
+  }
+  return fail(ErrorKind::kUsage, "the session was opened for reading only", folder.string());
+}
+
+SessionStore::SessionStore(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+SessionStore::~SessionStore() = default;
+SessionStore::SessionStore(SessionStore&&) noexcept = default;
+SessionStore& SessionStore::operator=(SessionStore&&) noexcept = default;
+
+bool SessionStore::is_session(const fs::path& folder) {
+  std::error_code error;
+  return fs::exists(folder / session::kDatabase, error) || fs::exists(folder / session::kBackup, error) ||
+         !session::grid_ids(folder).empty();
+}
+
+Result<SessionStore> SessionStore::open_or_create(const fs::path& folder) {
+  if (Status made = session::make_folders(folder); !made) {
+    return std::unexpected(made.error());
+  }
+  auto impl = std::make_unique<Impl>();
+  impl->folder = folder;
+  Result<session::FolderLock> lock = session::FolderLock::take(folder);
+  if (!lock) {
+    return std::unexpected(lock.error());
+  }
+  impl->lock = std::move(*lock);
+  if (const int removed = session::remove_temporaries(folder); removed > 0) {
+    impl->opening.notes.push_back("removed " + std::to_string(removed) + " half-written files");
+  }
+  Result<SqlDatabase> db = session::open_for_writing(folder, impl->opening, impl->rebuilt);
+  if (!db) {
+    return std::unexpected(db.error());
+  }
+  impl->db = std::move(*db);
+  if (Status reconciled = impl->reconcile(); !reconciled) {
+    return std::unexpected(reconciled.error());
+  }
+  return SessionStore(std::move(impl));
+}
+
+Result<SessionStore> SessionStore::open(const fs::path& folder, Access access) {
+  if (!is_session(folder)) {
+    return fail(ErrorKind::kUsage, "no session there", folder.string(),
+                "name the folder that a scan was stored in");
+  }
+  if (access == Access::kReadWrite) {
+    return open_or_create(folder);
+  }
+  auto impl = std::make_unique<Impl>();
+  impl->folder = folder;
+  impl->access = access;
+  Result<SqlDatabase> db = session::open_for_reading(folder, impl->opening, impl->rebuilt);
+  if (!db) {
+    return std::unexpected(db.error());
+  }
+  impl->db = std::move(*db);
+  if (Status reconciled = impl->reconcile(); !reconciled) {
+    return std::unexpected(reconciled.error());
+  }
+  return SessionStore(std::move(impl));
+}
+
+const SessionOpening& SessionStore::opening() const {
+  return impl_->opening;
+}
+const fs::path& SessionStore::folder() const {
+  return impl_->folder;
+}
+
+double SessionStore::disk_free_gib() const {
+  std::error_code error;
+  const fs::space_info space = fs::space(impl_->folder, error);
+  return error ? 0.0 : static_cast<double>(space.available) / static_cast<double>(1U << 30U);
+}
+
+Result<int> SessionStore::add_grid(const RangeGrid& grid) {
+  if (Status writable = impl_->writable(); !writable) {
+    return std::unexpected(writable.error());
+  }
+  if (Status fits = check_arrays(grid); !fits) {
+    return std::unexpected(fits.error());
+  }
+  const std::vector<std::byte> bytes = encode_grid(grid);
+  const std::string_view view(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  const FileSum sum{static_cast<std::int64_t>(bytes.size()), session::hash_of(view)};
+
+  const std::scoped_lock hold(impl_->mutex);
+  const Result<std::int64_t> last = impl_->db->integer_of("SELECT coalesce(max(id), -1) FROM scans");
+  if (!last) {
+    return std::unexpected(last.error());
+  }
+  // A damaged grid whose row is lost keeps its number too.
+  const std::vector<int> there = session::grid_ids(impl_->folder);
+  const int id = std::max(static_cast<int>(*last), there.empty() ? -1 : there.back()) + 1;
+  const fs::path path = impl_->folder / session::grid_name(id);
+  if (Status written = write_file_atomically(path, std::span(bytes)); !written) {
+    return std::unexpected(written.error());
+  }
+  const Status listed = in_transaction(*impl_->db, [&]() -> Status {
+    if (Status put = session::insert_scan(*impl_->db, id, sum, grid); !put) {
+      return put;
+    }
+    return session::insert_event(*impl_->db, "scan stored",
+                                 nlohmann::json{{"id", id}, {"source", grid.source}}.dump(
+                                     -1, ' ', false, nlohmann::json::error_handler_t::replace));
+  });
+  if (!listed) {
+    std::error_code ignored;
+    fs::remove(path, ignored);  // It was never reported as stored.
+    return std::unexpected(listed.error());
+  }
+  return id;
+}
+
+Result<RangeGrid> SessionStore::load_grid(int id) const {
+  FileSum expected;
+  const std::string name = session::grid_name(id);
+  {
+    const std::scoped_lock hold(impl_->mutex);
+    auto row =
+        checked_row(*impl_->db,
+                    "SELECT sum IS dubsar_sum(id,file,bytes,hash,rows,cols,samples,spacing_mm,timestamp_ns,"
+                    "device,source,dropped,note), bytes, hash FROM scans WHERE id = ?1",
+                    id, name);
+    if (!row) {
+      return std::unexpected(row.error());
+    }
+    if (!*row) {
+      return fail(ErrorKind::kUsage, "no scan " + std::to_string(id), impl_->folder.string());
+    }
+    expected = {(*row)->integer(1), (*row)->integer(2)};
+  }
+  const fs::path path = impl_->folder / name;
+  const Result<std::string> bytes = read_whole_file(path);
+  if (!bytes) {
+    return std::unexpected(bytes.error());
+  }
+  if (FileSum{static_cast<std::int64_t>(bytes->size()), session::hash_of(*bytes)} != expected) {
+    return bad_input(path.string(), "not the bytes that were stored",
+                     "bring it back from a copy or scan again");
+  }
+  return decode_grid(std::as_bytes(std::span(*bytes)), path.string());
+}
+
+Result<std::vector<StoredScan>> SessionStore::scans() const {
+  const std::scoped_lock hold(impl_->mutex);
+  std::vector<StoredScan> out;
+  const Status read =
+      for_each_row(*impl_->db,
+                   "SELECT id,file,rows,cols,samples,spacing_mm,timestamp_ns,device,source,dropped,"
+                   "note FROM scans ORDER BY id",
+                   [&](const SqlStatement& row) -> Status {
+                     StoredScan scan;
+                     scan.id = static_cast<int>(row.integer(0));
+                     scan.file = row.text(1);
+                     scan.rows = static_cast<int>(row.integer(2));
+                     scan.cols = static_cast<int>(row.integer(3));
+                     scan.samples = row.integer(4);
+                     scan.spacing_mm = row.number(5);
+                     scan.timestamp_ns = row.integer(6);
+                     scan.device = row.text(7);
+                     scan.source = row.text(8);
+                     scan.dropped = row.integer(9) != 0;
+                     scan.note = row.text(10);
+                     scan.damaged = std::ranges::binary_search(impl_->damaged_grids, scan.id);
+                     out.push_back(std::move(scan));
+                     return {};
+                   });
+  if (!read) {
+    return std::unexpected(read.error());
+  }
+  return out;
+}
+
+namespace {
+
+Status mark_scan(SqlDatabase& db, int id, bool dropped, std::string_view why, const fs::path& folder) {
+  return in_transaction(db, [&]() -> Status {
+    const Result<std::int64_t> there =
+        db.integer_of(("SELECT count(*) FROM scans WHERE id = " + std::to_string(id)).c_str());
+    if (!there) {
+      return std::unexpected(there.error());
+    }
+    if (*there == 0) {
+      return fail(ErrorKind::kUsage, "no scan " + std::to_string(id), folder.string());
+    }
+    Result<SqlStatement> mark = db.prepare(
+        "UPDATE scans SET dropped = ?2, note = ?3, sum = dubsar_sum(id,file,bytes,hash,rows,cols,samples,"
+        "spacing_mm,timestamp_ns,device,source,?2,?3) WHERE id = ?1");
+    if (!mark) {
+      return std::unexpected(mark.error());
+    }
+    mark->bind(1, id).bind(2, dropped ? 1 : 0).bind(3, why);
+    if (Status marked = mark->run(); !marked) {
+      return marked;
+    }
+    const nlohmann::json detail{{"id", id}, {"why", std::string(why)}};
+    return session::insert_event(db, dropped ? "scan dropped" : "scan restored",
+                                 detail.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+  });
+}
+
+}  // namespace
+
+Status SessionStore::drop_scan(int id, std::string_view why) {
+  if (Status writable = impl_->writable(); !writable) {
+    return writable;
+  }
+  const std::scoped_lock hold(impl_->mutex);
+  return mark_scan(*impl_->db, id, true, why, impl_->folder);
+}
+
+Status SessionStore::restore_scan(int id) {
+  if (Status writable = impl_->writable(); !writable) {
+    return writable;
+  }
+  const std::scoped_lock hold(impl_->mutex);
+  return mark_scan(*impl_->db, id, false, {}, impl_->folder);
+}
+
+Result<std::optional<int>> SessionStore::undo_last_scan() {
+  if (Status writable = impl_->writable(); !writable) {
+    return std::unexpected(writable.error());
+  }
+  const std::scoped_lock hold(impl_->mutex);
+  const Result<std::int64_t> last =
+      impl_->db->integer_of("SELECT coalesce(max(id), -1) FROM scans WHERE dropped = 0");
+  if (!last) {
+    return std::unexpected(last.error());
+  }
+  if (*last < 0) {
+    return std::optional<int>();
+  }
+  const int id = static_cast<int>(*last);
+  if (Status marked = mark_scan(*impl_->db, id, true, "undone", impl_->folder); !marked) {
+    return std::unexpected(marked.error());
+  }
+  return std::optional(id);
+}
+
+}  // namespace dubsar

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/job.h"
+#include "core/range_grid.h"
+#include "core/result.h"
+#include "core/sample_flags.h"
+#include "core/scan_pose.h"
+
+namespace dubsar {
+
+/// A scan as the session's list has it; the samples are in its grid file.
+struct StoredScan {
+  int id = 0;
+  std::string file;  ///< relative to the session folder, "grids/007.grid"
+  int rows = 0;
+  int cols = 0;
+  std::int64_t samples = 0;  ///< valid ones
+  double spacing_mm = 0;
+  std::int64_t timestamp_ns = 0;
+  std::string device;
+  std::string source;  ///< original name, or empty
+  std::string note;    ///< why it was dropped; empty otherwise
+  bool dropped = false;
+  bool damaged = false;  ///< its grid file is missing or not what was stored
+};
+
+struct SessionEvent {
+  std::int64_t number = 0;   ///< ascending from 1
+  std::int64_t time_ns = 0;  ///< since 1970
+  std::string kind;
+  std::string json;
+};
+
+/// What opening found. Damage is one error per damaged thing; everything else in the session stands.
+struct SessionOpening {
+  bool created = false;
+  std::vector<Error> damage;
+  std::vector<std::string> notes;  ///< what was recovered, one line each
+};
+
+/// The answer of verify(). Names are relative to the session folder.
+struct VerifyReport {
+  std::vector<Error> damaged;
+  std::vector<std::string> whole;
+  std::vector<std::string> unrecorded;  ///< files that the session keeps no checksum of
+  [[nodiscard]] bool ok() const { return damaged.empty(); }
+};
+
+/// The durable folder of one tablet's scanning (contract "Session folder"): session.sqlite (WAL, every commit
+/// synced, every row with its checksum), grids/NNN.grid, and mesh/, analysis/, export/ for what is derived.
+/// What a function of this class reported as stored is there after kill -9, power loss or a full disk.
+///
+/// One program at a time may write; a second one is told who does. Readers come at any time and see the
+/// session as it was when they opened it. All functions may be called from several threads. Errors:
+/// kStorage when the disk refuses (the session is then as before the call), kBadInput for damage, kUsage for
+/// what is not there or not allowed.
+class SessionStore {
+ public:
+  enum class Access { kReadOnly, kReadWrite };
+
+  /// Opens the session in the folder for writing, or makes one: the folder is then new, empty or what is left
+  /// of a session. A folder with other things in it is refused.
+  [[nodiscard]] static Result<SessionStore> open_or_create(const std::filesystem::path& folder);
+  /// Opens a session that must exist. A damaged database is rebuilt from its readable rows, its last backup
+  /// and the grids: for writing, with the bad file kept aside; for reading, in memory.
+  [[nodiscard]] static Result<SessionStore> open(const std::filesystem::path& folder,
+                                                 Access access = Access::kReadWrite);
+  /// True when the folder looks like a session, whole or damaged.
+  [[nodiscard]] static bool is_session(const std::filesystem::path& folder);
+
+  /// Closes cleanly: writes the backup and the checksum of the database. Errors there lose nothing.
+  ~SessionStore();
+  SessionStore(SessionStore&&) noexcept;
+  SessionStore& operator=(SessionStore&&) noexcept;
+
+  [[nodiscard]] const SessionOpening& opening() const;
+  [[nodiscard]] const std::filesystem::path& folder() const;
+  [[nodiscard]] std::filesystem::path mesh_folder() const { return folder() / "mesh"; }
+  [[nodiscard]] std::filesystem::path analysis_folder() const { return folder() / "analysis"; }
+  [[nodiscard]] std::filesystem::path export_folder() const { return folder() / "export"; }
+  [[nodiscard]] double disk_free_gib() const;
+
+  /// Stores a grid and returns its id (0, 1, …, never used twice) once it is durable.
+  [[nodiscard]] Result<int> add_grid(const RangeGrid& grid);
+  /// The grid of a scan, dropped or not; its bytes are checked against their checksum.
+  [[nodiscard]] Result<RangeGrid> load_grid(int id) const;
+  [[nodiscard]] Result<std::vector<StoredScan>> scans() const;  ///< by id, dropped ones included
+  /// Marks a scan as taken out, with the operator's reason. Nothing is deleted.
+  Status drop_scan(int id, std::string_view why = {});
+  Status restore_scan(int id);
+  /// Drops the newest scan that stands and returns its id; nothing when there is none.
+  Result<std::optional<int>> undo_last_scan();
+
+  /// Replaces all poses at once.
+  Status save_poses(const std::vector<ScanPose>& poses);
+  [[nodiscard]] Result<std::vector<ScanPose>> poses() const;  ///< by id
+
+  Status save_flags(int id, const SampleFlags& flags);
+  /// Nothing when none were saved.
+  [[nodiscard]] Result<std::optional<SampleFlags>> load_flags(int id) const;
+
+  /// A named JSON text (rig, options, pins, red map, checklist, sign-off, …); replaces what had the name.
+  Status save_document(std::string_view name, std::string_view json);
+  [[nodiscard]] Result<std::optional<std::string>> load_document(std::string_view name) const;
+  [[nodiscard]] Result<std::vector<std::string>> document_names() const;
+
+  /// Adds to the record of what happened. Storing, dropping and restoring scans add events of their own.
+  Status append_event(std::string_view kind, std::string_view json = "{}");
+  [[nodiscard]] Result<std::vector<SessionEvent>> events() const;
+
+  /// Notes size and checksum of a finished file of the session (such as mesh/model.ply), so that verify()
+  /// covers it. Relative to the folder.
+  Status record_file(const std::filesystem::path& relative);
+
+  /// Reads every byte of the session: structure and row checksums of the database, every grid, every recorded
+  /// file.
+  [[nodiscard]] Result<VerifyReport> verify(JobContext& job) const;
+
+ private:
+  struct Impl;
+  explicit SessionStore(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace dubsar
