@@ -22,9 +22,9 @@ constexpr float kShadowLight =
 /// side is black. Shadows take the lamp, recesses take the sky and some of the lamp.
 struct Lights {
   Eigen::Vector3f lamp;
-  LinearRgb lamp_colour{1.30F, 1.24F, 1.14F};
+  LinearRgb lamp_colour{1.18F, 1.12F, 1.03F};
   LinearRgb sky_colour{0.37F, 0.40F, 0.46F};
-  LinearRgb front_colour{0.24F, 0.24F, 0.24F};
+  LinearRgb front_colour{0.21F, 0.21F, 0.21F};
 };
 
 /// Everything up to kKnee is kept; what is lighter is bent to stay below 1, so that lit ridges keep their

@@ -6,7 +6,7 @@ namespace dubsar {
 
 /// The report's only style sheet. No font, picture or script from outside; black on white paper in print.
 inline constexpr const char* kReportStyle = R"css(
-:root { --ink: #1d1b19; --soft: #6b645c; --rule: #d9d2c7; --paper: #fdfcfa; --red: #b3161f; --green: #2f6b45; }
+:root { --ink: #1d1b19; --soft: #6b645c; --rule: #d9d2c7; --paper: #fff; --red: #b3161f; --green: #2f6b45; }
 * { box-sizing: border-box; }
 html { background: var(--paper); color: var(--ink); }
 body { margin: 0; font: 17px/1.55 "Iowan Old Style", "Palatino Linotype", Palatino, "Book Antiqua", Georgia,
@@ -27,7 +27,10 @@ dd { margin: 0; overflow-wrap: anywhere; }
 .verdict h2 { font-size: 1.7rem; color: var(--red); margin-bottom: .3rem; }
 .verdict.yes h2 { color: var(--green); }
 .cross { display: grid; justify-content: center; justify-items: center; align-items: center; gap: 1rem 1.2rem;
-  grid-template-areas: ". top ." "left obverse right" ". bottom ." ". reverse ."; }
+  grid-template-areas: ". top ." "left obverse right" ". bottom ." ". reverse bar"; }
+.bar { align-self: end; justify-self: start; color: var(--soft); font-size: .88em; text-align: left; }
+.bar::before { content: ""; display: block; width: calc(10mm * var(--scale)); height: 7px; margin-bottom: .2rem;
+  border: solid var(--ink); border-width: 0 1px 2px; }
 figure { margin: 0; text-align: center; }
 figure img { display: block; margin: 0 auto .25rem; max-width: 100%; }
 .cross img { width: calc(var(--mm) * var(--scale)); height: auto; max-width: none; }
@@ -39,8 +42,9 @@ table { border-collapse: collapse; font-size: .88rem; line-height: 1.35; font-va
 th { text-align: left; font-weight: 600; padding: .35rem .9rem .35rem 0; border-bottom: 1px solid var(--ink);
   vertical-align: bottom; }
 td { padding: .28rem .9rem .28rem 0; border-bottom: 1px solid var(--rule); vertical-align: top;
-  overflow-wrap: anywhere; }
-tr.open td:first-child, tr.open td:nth-child(3), .regions tr.open td:first-child { color: var(--red); }
+  overflow-wrap: break-word; }
+.scans td:nth-child(2), td:last-child { overflow-wrap: anywhere; min-width: 7rem; }
+.regions tr.open td:first-child, .scans tr.open td:nth-child(3), .faces tr.open td:last-child { color: var(--red); }
 tr.sum td { border-top: 1px solid var(--ink); font-weight: 600; }
 .faces td:nth-child(n+2):nth-child(-n+4), .faces th:nth-child(n+2):nth-child(-n+4),
 .scans td:nth-child(n+4):nth-child(-n+10), .scans th:nth-child(n+4):nth-child(-n+10),

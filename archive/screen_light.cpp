@@ -39,6 +39,8 @@ struct PaddedDepth {
 
 struct Step {
   int dx = 0, dy = 0;  ///< pixels, dy downwards
+  float ux = 0,
+        uy = 0;  ///< unit vector of this step, uy upwards: whole pixels rarely lie on the line asked for
   float distance_mm = 0;
   float fade = 1;
 };
@@ -55,7 +57,8 @@ std::vector<Step> steps_along(double ux, double uy, int reach, double growth, do
     const int dy = static_cast<int>(std::lround(-uy * r));
     const double px = std::hypot(dx, dy);
     const double share = px / (reach + 1.0);
-    steps.push_back({dx, dy, static_cast<float>(px * mm_per_px), static_cast<float>(1.0 - share * share)});
+    steps.push_back({dx, dy, static_cast<float>(dx / px), static_cast<float>(-dy / px),
+                     static_cast<float>(px * mm_per_px), static_cast<float>(1.0 - share * share)});
   }
   return steps;
 }
@@ -69,41 +72,39 @@ std::vector<float> sky_visibility(const SurfacePixels& pixels, double mm_per_px,
   const auto too_high_mm = static_cast<float>(2.0 * reach * mm_per_px);
   const auto width = static_cast<std::size_t>(pixels.width);
   std::vector<float> open(pixels.size(), 1.0F);
-  parallel_chunks(static_cast<std::size_t>(pixels.height), kRowGrain,
-                  [&](std::size_t begin, std::size_t end) {
-                    std::vector<float> rise(width), hidden(width);
-                    for (std::size_t y = begin; y < end; ++y) {
-                      std::fill(hidden.begin(), hidden.end(), 0.0F);
-                      const float* here = depth.row(y, 0, 0);
-                      const float* nx = pixels.nx.data() + y * width;
-                      const float* ny = pixels.ny.data() + y * width;
-                      const float* nz = pixels.nz.data() + y * width;
-                      for (int d = 0; d < kDirections; ++d) {
-                        // Half a step of turn keeps the directions off the pixel axes, where lines of writing
-                        // run.
-                        const double angle = 2.0 * kPi * (d + 0.5) / kDirections;
-                        const auto ux = static_cast<float>(std::cos(angle));
-                        const auto uy = static_cast<float>(std::sin(angle));
-                        std::fill(rise.begin(), rise.end(), 0.0F);
-                        for (const Step& step : steps_along(ux, uy, reach, 1.6, mm_per_px)) {
-                          const float* there = depth.row(y, step.dx, step.dy);
-                          const float per_mm = 1.0F / step.distance_mm;
-                          for (std::size_t x = 0; x < width; ++x) {
-                            const float up = there[x] - here[x];
-                            const float tangent = -(nx[x] * ux + ny[x] * uy) / std::max(nz[x], 0.2F);
-                            const float above = (up * per_mm - tangent) * step.fade;
-                            rise[x] = std::max(rise[x], up < too_high_mm ? above : 0.0F);
-                          }
-                        }
-                        for (std::size_t x = 0; x < width; ++x) {
-                          hidden[x] += rise[x] / std::sqrt(1.0F + rise[x] * rise[x]);
-                        }
-                      }
-                      for (std::size_t x = 0; x < width; ++x) {
-                        open[y * width + x] = 1.0F - hidden[x] / kDirections;
-                      }
-                    }
-                  });
+  parallel_chunks(
+      static_cast<std::size_t>(pixels.height), kRowGrain, [&](std::size_t begin, std::size_t end) {
+        std::vector<float> rise(width), hidden(width);
+        for (std::size_t y = begin; y < end; ++y) {
+          std::fill(hidden.begin(), hidden.end(), 0.0F);
+          const float* here = depth.row(y, 0, 0);
+          const float* nx = pixels.nx.data() + y * width;
+          const float* ny = pixels.ny.data() + y * width;
+          const float* nz = pixels.nz.data() + y * width;
+          for (int d = 0; d < kDirections; ++d) {
+            // Half a step of turn keeps the directions off the pixel axes, where lines of writing
+            // run.
+            const double angle = 2.0 * kPi * (d + 0.5) / kDirections;
+            std::fill(rise.begin(), rise.end(), 0.0F);
+            for (const Step& step : steps_along(std::cos(angle), std::sin(angle), reach, 1.6, mm_per_px)) {
+              const float* there = depth.row(y, step.dx, step.dy);
+              const float per_mm = 1.0F / step.distance_mm;
+              for (std::size_t x = 0; x < width; ++x) {
+                const float up = there[x] - here[x];
+                const float tangent = -(nx[x] * step.ux + ny[x] * step.uy) / std::max(nz[x], 0.2F);
+                const float above = (up * per_mm - tangent) * step.fade;
+                rise[x] = std::max(rise[x], up < too_high_mm ? above : 0.0F);
+              }
+            }
+            for (std::size_t x = 0; x < width; ++x) {
+              hidden[x] += rise[x] / std::sqrt(1.0F + rise[x] * rise[x]);
+            }
+          }
+          for (std::size_t x = 0; x < width; ++x) {
+            open[y * width + x] = 1.0F - hidden[x] / kDirections;
+          }
+        }
+      });
   return open;
 }
 

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "archive/scale_bar.h"
+
+#include <gtest/gtest.h>
+
+#include "archive/glyphs.h"
+
+namespace dubsar {
+namespace {
+
+TEST(ScaleBar, IsTenMillimetresOnATablet) {
+  EXPECT_EQ(scale_bar_for(0.05, 1000).length_mm, 10.0);
+  EXPECT_EQ(scale_bar_for(0.1, 1200).length_mm, 10.0);
+}
+
+TEST(ScaleBar, ChangesItsLengthForTinyAndHugeThings) {
+  const ScaleBar tiny = scale_bar_for(0.002, 1000);  // 2 mm wide
+  EXPECT_LT(tiny.length_mm, 1.01);
+  EXPECT_GE(tiny.length_mm, 0.1);
+  const ScaleBar huge = scale_bar_for(1.0, 1000);
+  EXPECT_GE(huge.length_mm, 60.0);
+  EXPECT_LE(huge.length_mm, 500.0);
+}
+
+TEST(ScaleBar, IsAsLongAsItSays) {
+  Image image = filled_image(600, 60, {255, 255, 255});
+  image.mm_per_px = 0.05;
+  const ScaleBar bar = scale_bar_for(image.mm_per_px, 600);
+  draw_scale_bar(image, bar, 20, 10, {0, 0, 0});
+  const int row = 10 + 2 * bar.text_scale;  // the line along the top of the bar
+  EXPECT_EQ(image.rgb(19, row), (Rgb8{255, 255, 255}));
+  int length = 0;
+  while (image.rgb(20 + length, row) == Rgb8{0, 0, 0}) {
+    ++length;
+  }
+  EXPECT_EQ(length, 200);
+}
+
+TEST(ScaleBar, DoesNothingWithoutAScale) {
+  Image image = filled_image(50, 50, {9, 9, 9});
+  draw_scale_bar(image, scale_bar_for(0, 50), 0, 0, {255, 0, 0});
+  EXPECT_EQ(image.bytes, filled_image(50, 50, {9, 9, 9}).bytes);
+}
+
+TEST(Glyphs, DrawInsideThePictureOnly) {
+  Image image = filled_image(12, 9, {0, 0, 0});
+  draw_text(image, -3, -2, "10 mm\xC3\x9F", {255, 255, 255}, 3);
+  draw_text(image, 8, 5, "Wq", {255, 255, 255}, 2);
+  EXPECT_EQ(image.bytes.size(), 12U * 9U * 3U);
+  EXPECT_EQ(text_width("10 mm"), 29);
+  EXPECT_EQ(text_width(""), 0);
+}
+
+TEST(Glyphs, OneLooksLikeAOne) {
+  Image image = filled_image(5, 7, {0, 0, 0});
+  draw_text(image, 0, 0, "1", {255, 255, 255});
+  std::string art;
+  for (int y = 0; y < 7; ++y) {
+    for (int x = 0; x < 5; ++x) {
+      art += image.rgb(x, y)[0] != 0 ? '#' : '.';
+    }
+  }
+  EXPECT_EQ(art, "..#...##....#....#....#....#...###.");
+}
+
+}  // namespace
+}  // namespace dubsar
