@@ -11,9 +11,9 @@
 
 namespace dubsar {
 
-/// The hand-over between two stages: first in, first out, at most `capacity` items, so that a slow stage holds the
-/// fast one back instead of filling the memory. close() ends it: what is inside can still be taken out, nothing more
-/// goes in. Thread-safe.
+/// The hand-over between two stages: first in, first out, at most `capacity` items, so that a slow stage
+/// holds the fast one back instead of filling the memory. close() ends it: what is inside can still be taken
+/// out, nothing more goes in. Thread-safe.
 template <class T>
 class BoundedQueue {
  public:

@@ -15,8 +15,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-Status write_sheet(const fs::path& file, const RenderScene& scene, const ReportInput& input, RenderStyle style,
-                   const std::string& title, JobContext& job) {
+Status write_sheet(const fs::path& file, const RenderScene& scene, const ReportInput& input,
+                   RenderStyle style, const std::string& title, JobContext& job) {
   SixViewOptions options;
   options.tablet_from_model = input.tablet_from_model;
   options.render.longest_px = input.longest_px;
@@ -40,7 +40,8 @@ Result<Deliverables> write_deliverables(const fs::path& session, const ReportInp
   fs::create_directories(session / "mesh", error);
   fs::create_directories(session / "export", error);
   if (error) {
-    return fail(ErrorKind::kStorage, error.message(), session.string(), "free some space or choose another folder");
+    return fail(ErrorKind::kStorage, error.message(), session.string(),
+                "free some space or choose another folder");
   }
   const auto keep = [](Status status, const fs::path& made, fs::path& into) {
     if (status) {
@@ -56,8 +57,9 @@ Result<Deliverables> write_deliverables(const fs::path& session, const ReportInp
       return std::unexpected(s.error());
     }
     const fs::path six_views = session / "export" / "six_views.png";
-    if (Status s = keep(write_sheet(six_views, RenderScene(input.model), input, RenderStyle::kClay, input.title, job),
-                        six_views, files.six_views);
+    if (Status s = keep(
+            write_sheet(six_views, RenderScene(input.model), input, RenderStyle::kClay, input.title, job),
+            six_views, files.six_views);
         !s) {
       return std::unexpected(s.error());
     }
@@ -85,7 +87,9 @@ Result<Deliverables> write_deliverables(const fs::path& session, const ReportInp
   if (Status s = text(session / "export" / "poses.json", poses_to_json(input.scans), files.poses); !s) {
     return std::unexpected(s.error());
   }
-  if (Status s = text(session / "export" / "red_map.json", red_map_to_json(input.red_map), files.red_map_json); !s) {
+  if (Status s =
+          text(session / "export" / "red_map.json", red_map_to_json(input.red_map), files.red_map_json);
+      !s) {
     return std::unexpected(s.error());
   }
   job.progress("writing results", 1.0);

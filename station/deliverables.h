@@ -14,16 +14,16 @@ namespace dubsar {
 
 /// Paths of what a finished run writes into the session.
 struct Deliverables {
-  std::filesystem::path mesh;       ///< mesh/model.ply
-  std::filesystem::path six_views;  ///< export/six_views.png
-  std::filesystem::path red_map;    ///< export/red_map.png
-  std::filesystem::path report;     ///< export/report.html
-  std::filesystem::path poses;      ///< export/poses.json
+  std::filesystem::path mesh;          ///< mesh/model.ply
+  std::filesystem::path six_views;     ///< export/six_views.png
+  std::filesystem::path red_map;       ///< export/red_map.png
+  std::filesystem::path report;        ///< export/report.html
+  std::filesystem::path poses;         ///< export/poses.json
   std::filesystem::path red_map_json;  ///< export/red_map.json
 };
 
 /// Writes mesh, pictures, report, poses and red map, each atomically. An empty mesh gives no pictures.
-[[nodiscard]] Result<Deliverables> write_deliverables(const std::filesystem::path& session, const ReportInput& input,
-                                                      JobContext& job);
+[[nodiscard]] Result<Deliverables> write_deliverables(const std::filesystem::path& session,
+                                                      const ReportInput& input, JobContext& job);
 
 }  // namespace dubsar

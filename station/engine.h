@@ -21,10 +21,10 @@
 namespace dubsar {
 
 struct EngineOptions {
-  std::string device;                ///< URI
-  std::filesystem::path session;     ///< folder; made when it is not there, gone on with when it is
-  bool automatic = false;            ///< drive the rig (or ask for hand turns) until conclusive
-  int max_scans = 0;                 ///< of the whole session; 0: no limit (40 when automatic)
+  std::string device;             ///< URI
+  std::filesystem::path session;  ///< folder; made when it is not there, gone on with when it is
+  bool automatic = false;         ///< drive the rig (or ask for hand turns) until conclusive
+  int max_scans = 0;              ///< of the whole session; 0: no limit (40 when automatic)
   std::optional<PinSet> pins;
 };
 
@@ -39,11 +39,12 @@ struct EngineResult {
   int stored_scans = 0;
 };
 
-/// The online engine: device → profiles and flags → store → registration → red map, next view, mesh. One thread per
-/// stage, bounded queues between them; every stage takes the scans in order, so the result does not depend on timing.
+/// The online engine: device → profiles and flags → store → registration → red map, next view, mesh. One
+/// thread per stage, bounded queues between them; every stage takes the scans in order, so the result does
+/// not depend on timing.
 ///
-/// Cancelling the job stops it in good order: scans that were stored stay stored, a half-taken scan is given up,
-/// and run() returns kCancelled. Going on later is run() on the same session.
+/// Cancelling the job stops it in good order: scans that were stored stay stored, a half-taken scan is given
+/// up, and run() returns kCancelled. Going on later is run() on the same session.
 class Engine {
  public:
   Engine(EngineOptions options, EventSink sink);

@@ -15,8 +15,8 @@
 
 namespace dubsar {
 
-/// One profile has arrived and its flags are as current as the stream allows. Refers to the growing grid: valid
-/// during the call only.
+/// One profile has arrived and its flags are as current as the stream allows. Refers to the growing grid:
+/// valid during the call only.
 struct ProfileArrived {
   int row = 0;
   const RangeGrid* grid = nullptr;
@@ -47,8 +47,8 @@ struct Notice {
 
 using Event = std::variant<ProfileArrived, ScanStored, ScanPlaced, RedMapChanged, NextPlacement, Notice>;
 
-/// Called on the engine's threads, one call at a time per stage: be quick, take snapshots, and never call back into
-/// the engine.
+/// Called on the engine's threads, one call at a time per stage: be quick, take snapshots, and never call
+/// back into the engine.
 using EventSink = std::function<void(const Event&)>;
 
 }  // namespace dubsar

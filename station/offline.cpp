@@ -35,7 +35,8 @@ Result<std::vector<ScanPose>> register_scans(const ScanSet& set, JobContext& job
   return poses;
 }
 
-Result<std::vector<ScanPose>> poses_for(const ScanSet& set, const std::filesystem::path& poses_file, JobContext& job) {
+Result<std::vector<ScanPose>> poses_for(const ScanSet& set, const std::filesystem::path& poses_file,
+                                        JobContext& job) {
   if (poses_file.empty()) {
     return set.poses.empty() ? register_scans(set, job) : set.poses;
   }
@@ -43,14 +44,17 @@ Result<std::vector<ScanPose>> poses_for(const ScanSet& set, const std::filesyste
   if (!read) {
     return std::unexpected(read.error());
   }
-  const auto name_of = [](const std::string& file) { return std::filesystem::path(file).filename().string(); };
+  const auto name_of = [](const std::string& file) {
+    return std::filesystem::path(file).filename().string();
+  };
   std::vector<ScanPose> poses;
   for (const StationScan& scan : set.scans) {
     const auto by_name = std::find_if(read->begin(), read->end(), [&](const ScanPose& pose) {
       return !pose.file.empty() && name_of(pose.file) == name_of(scan.file);
     });
-    const auto by_id = std::find_if(read->begin(), read->end(),
-                                    [&](const ScanPose& pose) { return pose.file.empty() && pose.id == scan.id; });
+    const auto by_id = std::find_if(read->begin(), read->end(), [&](const ScanPose& pose) {
+      return pose.file.empty() && pose.id == scan.id;
+    });
     const auto found = by_name != read->end() ? by_name : by_id;
     if (found != read->end()) {
       poses.push_back(*found);
@@ -70,7 +74,8 @@ std::vector<PlacedScan> placed_scans(const ScanSet& set, const std::vector<ScanP
   for (const StationScan& scan : set.scans) {
     for (const ScanPose& pose : poses) {
       if (pose.id == scan.id && pose.status == PoseStatus::kRegistered) {
-        placed.push_back({scan.id, scan.grid.get(), scan.flags.get(), pose.model_from_scanner, pose.sigma_mm});
+        placed.push_back(
+            {scan.id, scan.grid.get(), scan.flags.get(), pose.model_from_scanner, pose.sigma_mm});
       }
     }
   }

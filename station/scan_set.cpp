@@ -10,6 +10,7 @@
 #include "core/log.h"
 #include "drivers/loader.h"
 #include "formats/pins_json.h"
+#include "formats/rig_json.h"
 
 namespace dubsar {
 
@@ -38,6 +39,13 @@ Status load_session(const fs::path& path, ScanSet& set, JobContext& job) {
       }
       set.pins = *pins;
     }
+  }
+  if (const auto text = store->load_document("rig"); text && *text) {
+    Result<Rig> rig = parse_rig(**text, (path / "session.sqlite").string() + " (rig)");
+    if (!rig) {
+      return std::unexpected(rig.error());
+    }
+    set.rig = std::move(*rig);
   }
   std::size_t done = 0;
   for (const StoredScan& scan : *scans) {
@@ -99,7 +107,8 @@ Result<ScanSet> load_scan_set(const fs::path& path, const ScanSetOptions& option
   ScanSet set;
   std::error_code ignored;
   if (!fs::exists(path, ignored)) {
-    return fail(ErrorKind::kUsage, "there is nothing here", path.string(), "give a session or a folder of range grids");
+    return fail(ErrorKind::kUsage, "there is nothing here", path.string(),
+                "give a session or a folder of range grids");
   }
   if (!options.pins_file.empty()) {
     Result<PinSet> pins = read_pins(options.pins_file);

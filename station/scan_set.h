@@ -18,17 +18,17 @@ namespace dubsar {
 
 /// The scans that a verb works on: those of a session, or of a plain folder or file of range grids.
 struct ScanSet {
-  std::vector<StationScan> scans;       ///< by id
-  std::vector<ScanPose> poses;          ///< as stored; empty for a folder
+  std::vector<StationScan> scans;  ///< by id
+  std::vector<ScanPose> poses;     ///< as stored; empty for a folder
   std::optional<PinSet> pins;
   std::optional<Rig> rig;
-  std::optional<SessionStore> store;    ///< open for writing when it is a session
+  std::optional<SessionStore> store;  ///< open for writing when it is a session
   [[nodiscard]] bool is_session() const { return store.has_value(); }
 };
 
 struct ScanSetOptions {
-  std::string unit;                     ///< "m", "mm", "um"; empty: the file's own word, else mm
-  std::filesystem::path pins_file;      ///< empty: the session's, or none
+  std::string unit;                 ///< "m", "mm", "um"; empty: the file's own word, else mm
+  std::filesystem::path pins_file;  ///< empty: the session's, or none
 };
 
 /// Reads a session or a folder. Damaged scans of a session are named in the log and left out.

@@ -11,7 +11,8 @@
 
 namespace dubsar {
 
-StationScan prepare_scan(int id, RangeGrid grid, const std::optional<PinSet>& pins, std::optional<SampleFlags> flags) {
+StationScan prepare_scan(int id, RangeGrid grid, const std::optional<PinSet>& pins,
+                         std::optional<SampleFlags> flags) {
   StationScan scan;
   scan.id = id;
   scan.file = grid.source.empty() ? "scan " + std::to_string(id) : grid.source;

@@ -12,7 +12,8 @@
 
 namespace dubsar {
 
-/// One scan as the stages behind the store see it: pins and arms taken out, flags final. Shared, never changed.
+/// One scan as the stages behind the store see it: pins and arms taken out, flags final. Shared, never
+/// changed.
 struct StationScan {
   int id = 0;
   std::string file;                           ///< original name, or "scan ID"
@@ -21,8 +22,8 @@ struct StationScan {
   std::shared_ptr<const SampleFlags> flags;
 };
 
-/// Takes pins and arms out of the grid (they are not clay: neither registered, nor meshed, nor red) and flags what is
-/// left. `flags`, when given, are those of the stream; they stand when nothing had to be taken out.
+/// Takes pins and arms out of the grid (they are not clay: neither registered, nor meshed, nor red) and flags
+/// what is left. `flags`, when given, are those of the stream; they stand when nothing had to be taken out.
 [[nodiscard]] StationScan prepare_scan(int id, RangeGrid grid, const std::optional<PinSet>& pins,
                                        std::optional<SampleFlags> flags = std::nullopt);
 

@@ -20,7 +20,8 @@ Status write_tablet_file(const std::filesystem::path& path, const sim::SimTablet
   Mesh mesh = tablet.mesh;
   mesh.colours.resize(mesh.positions.size());
   for (std::size_t i = 0; i < mesh.colours.size(); ++i) {
-    const auto grey = static_cast<std::uint8_t>(std::lround(255.0F * std::clamp(tablet.albedo[i], 0.0F, 1.0F)));
+    const auto grey =
+        static_cast<std::uint8_t>(std::lround(255.0F * std::clamp(tablet.albedo[i], 0.0F, 1.0F)));
     mesh.colours[i] = {grey, grey, grey};
   }
   return write_mesh(path, mesh);

@@ -13,8 +13,8 @@ namespace dubsar {
 /// A simulated tablet's surface as a mesh file; the albedo travels as grey vertex colour.
 [[nodiscard]] Status write_tablet_file(const std::filesystem::path& path, const sim::SimTablet& tablet);
 
-/// Any mesh as something to scan: albedo from its colours, else that of plain clay. Centred on the origin it is not:
-/// the mesh's own frame stays. Errors: bad input, a mesh without faces.
+/// Any mesh as something to scan: albedo from its colours, else that of plain clay. Centred on the origin it
+/// is not: the mesh's own frame stays. Errors: bad input, a mesh without faces.
 [[nodiscard]] Result<sim::SimTablet> read_tablet_file(const std::filesystem::path& path);
 
 /// The scanner with a field and depth range that take in the whole tablet from every side.

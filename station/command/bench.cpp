@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright The Dubsar developers
-// dubsar bench: the benchmarks are a program of their own beside this one, so that the station links no bench code.
+// dubsar bench: the benchmarks are a program of their own beside this one, so that the station links no bench
+// code.
 
 #include <unistd.h>
 
@@ -45,7 +46,8 @@ void add_bench(CLI::App& app, Action& chosen) {
   const auto words = std::make_shared<std::vector<std::string>>();
   verb->add_option("options", *words, "passed to Google Benchmark, e.g. -- --benchmark_filter=flags");
   verb->fallthrough();
-  verb->callback([&chosen, words] { chosen = [words](CommandContext& c) { return start_bench(*words, c); }; });
+  verb->callback(
+      [&chosen, words] { chosen = [words](CommandContext& c) { return start_bench(*words, c); }; });
 }
 
 }  // namespace dubsar

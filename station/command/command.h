@@ -12,7 +12,8 @@
 
 namespace dubsar {
 
-/// What every verb works with. A verb returns the exit status of the contract (0 done, 1 fell short) or an Error.
+/// What every verb works with. A verb returns the exit status of the contract (0 done, 1 fell short) or an
+/// Error.
 struct CommandContext {
   bool json = false;  ///< one JSON object on standard output and nothing else there
   JobContext job{terminal_progress()};

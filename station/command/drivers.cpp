@@ -77,7 +77,8 @@ Result<int> list_drivers(CommandContext& context) {
     return 0;
   }
   for (const auto& driver : drivers) {
-    std::printf("%s:%s  %s\n", driver["scheme"].get<std::string>().c_str(), driver["locator"].get<std::string>().c_str(),
+    std::printf("%s:%s  %s\n", driver["scheme"].get<std::string>().c_str(),
+                driver["locator"].get<std::string>().c_str(),
                 driver["description"].get<std::string>().c_str());
     for (const auto& option : driver["options"]) {
       std::printf("    ?%s=  %s\n", option["key"].get<std::string>().c_str(),

@@ -41,8 +41,8 @@ int run(int argc, char** argv) {
   app.fallthrough();
 
   Action action;
-  for (const auto add : {add_drivers, add_simulate, add_scan, add_register, add_plan, add_stitch, add_mesh, add_verify,
-                         add_session, add_bench}) {
+  for (const auto add : {add_drivers, add_simulate, add_scan, add_register, add_plan, add_stitch, add_mesh,
+                         add_verify, add_session, add_bench}) {
     add(app, action);
   }
   try {
@@ -62,13 +62,17 @@ int run(int argc, char** argv) {
     finish_progress();
     return status ? *status : report(status.error(), json);
   } catch (const std::bad_alloc&) {
-    return report({ErrorKind::kInternal, "out of memory", {}, "close other programs or use fewer scans at once"}, json);
+    return report(
+        {ErrorKind::kInternal, "out of memory", {}, "close other programs or use fewer scans at once"}, json);
   } catch (const std::exception& defect) {
-    return report({ErrorKind::kInternal, defect.what(), {}, "this is a defect of the program: please report it"}, json);
+    return report(
+        {ErrorKind::kInternal, defect.what(), {}, "this is a defect of the program: please report it"}, json);
   }
 }
 
 }  // namespace
 }  // namespace dubsar
 
-int main(int argc, char** argv) { return dubsar::run(argc, argv); }
+int main(int argc, char** argv) {
+  return dubsar::run(argc, argv);
+}

@@ -22,7 +22,8 @@ struct MeshOptions {
 };
 
 Result<Mesh> read(const MeshOptions& options) {
-  return read_mesh(options.in, {.mm_per_unit = options.unit.empty() ? std::nullopt : mm_per_unit(options.unit)});
+  return read_mesh(options.in,
+                   {.mm_per_unit = options.unit.empty() ? std::nullopt : mm_per_unit(options.unit)});
 }
 
 Result<int> check(const MeshOptions& options, CommandContext& context) {
@@ -51,9 +52,11 @@ Result<int> convert(const MeshOptions& options, CommandContext& context) {
     return std::unexpected(written.error());
   }
   if (context.json) {
-    CommandContext::print({{"mesh", options.out}, {"vertices", mesh->positions.size()}, {"faces", mesh->faces.size()}});
+    CommandContext::print(
+        {{"mesh", options.out}, {"vertices", mesh->positions.size()}, {"faces", mesh->faces.size()}});
   } else {
-    std::printf("%s: %zu vertices, %zu faces\n", options.out.c_str(), mesh->positions.size(), mesh->faces.size());
+    std::printf("%s: %zu vertices, %zu faces\n", options.out.c_str(), mesh->positions.size(),
+                mesh->faces.size());
   }
   return 0;
 }
@@ -65,17 +68,22 @@ void add_mesh(CLI::App& app, Action& chosen) {
   verb->require_subcommand(1);
   verb->fallthrough();
   const auto options = std::make_shared<MeshOptions>();
-  CLI::App* check_verb = verb->add_subcommand("check", "Topology and size of a mesh; status 1 when it is no 2-manifold");
+  CLI::App* check_verb =
+      verb->add_subcommand("check", "Topology and size of a mesh; status 1 when it is no 2-manifold");
   check_verb->add_option("mesh", options->in, "PLY, OBJ, STL or GLB")->required();
   check_verb->fallthrough();
-  check_verb->callback([&chosen, options] { chosen = [options](CommandContext& c) { return check(*options, c); }; });
-  CLI::App* convert_verb = verb->add_subcommand("convert", "From one format to another, by the names' endings");
+  check_verb->callback(
+      [&chosen, options] { chosen = [options](CommandContext& c) { return check(*options, c); }; });
+  CLI::App* convert_verb =
+      verb->add_subcommand("convert", "From one format to another, by the names' endings");
   convert_verb->add_option("in", options->in)->required();
   convert_verb->add_option("out", options->out)->required();
   convert_verb->fallthrough();
-  convert_verb->callback([&chosen, options] { chosen = [options](CommandContext& c) { return convert(*options, c); }; });
+  convert_verb->callback(
+      [&chosen, options] { chosen = [options](CommandContext& c) { return convert(*options, c); }; });
   for (CLI::App* sub : {check_verb, convert_verb}) {
-    sub->add_option("--unit", options->unit, "what the file's numbers are")->check(CLI::IsMember({"m", "mm", "um"}));
+    sub->add_option("--unit", options->unit, "what the file's numbers are")
+        ->check(CLI::IsMember({"m", "mm", "um"}));
   }
 }
 

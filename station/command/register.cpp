@@ -39,9 +39,9 @@ Result<int> register_all(const ScanSetArguments& arguments, CommandContext& cont
     CommandContext::print(nlohmann::ordered_json::parse(poses_to_json(*poses)));
   } else {
     for (const ScanPose& pose : *poses) {
-      std::printf("%3d  %-10s rms %.4f mm  sigma %.4f mm  overlap %3.0f %%  %s%s%s\n", pose.id, to_string(pose.status),
-                  pose.rms_mm, pose.sigma_mm, 100 * pose.overlap, pose.file.c_str(), pose.reason.empty() ? "" : ": ",
-                  pose.reason.c_str());
+      std::printf("%3d  %-10s rms %.4f mm  sigma %.4f mm  overlap %3.0f %%  %s%s%s\n", pose.id,
+                  to_string(pose.status), pose.rms_mm, pose.sigma_mm, 100 * pose.overlap, pose.file.c_str(),
+                  pose.reason.empty() ? "" : ": ", pose.reason.c_str());
     }
   }
   for (const ScanPose& pose : *poses) {
@@ -55,11 +55,14 @@ Result<int> register_all(const ScanSetArguments& arguments, CommandContext& cont
 }  // namespace
 
 void add_register(CLI::App& app, Action& chosen) {
-  CLI::App* verb = app.add_subcommand("register", "The poses of all scans; status 1 when one is not registered");
+  CLI::App* verb =
+      app.add_subcommand("register", "The poses of all scans; status 1 when one is not registered");
   const auto arguments = std::make_shared<ScanSetArguments>();
   arguments->add_to(*verb, false);
   verb->add_option("-o,--out", arguments->out, "write poses.json here");
-  verb->callback([&chosen, arguments] { chosen = [arguments](CommandContext& c) { return register_all(*arguments, c); }; });
+  verb->callback([&chosen, arguments] {
+    chosen = [arguments](CommandContext& c) { return register_all(*arguments, c); };
+  });
 }
 
 }  // namespace dubsar

@@ -19,7 +19,8 @@ struct ScanSetArguments {
 
   void add_to(CLI::App& verb, bool takes_poses) {
     verb.add_option("path", path, "a session, or a folder or file of range grids")->required();
-    verb.add_option("--unit", unit, "what the numbers in the files are")->check(CLI::IsMember({"m", "mm", "um"}));
+    verb.add_option("--unit", unit, "what the numbers in the files are")
+        ->check(CLI::IsMember({"m", "mm", "um"}));
     verb.add_option("--pins", pins, "the operator's pins (pins.json)");
     if (takes_poses) {
       verb.add_option("--poses", poses, "take the poses from this file");

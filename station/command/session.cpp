@@ -52,9 +52,9 @@ Result<int> list(const SessionOptions& options, CommandContext& context) {
     return 0;
   }
   for (const auto& row : rows) {
-    std::printf("%3d  %-10s %9ld samples  %s %s\n", row["id"].get<int>(), row["status"].get<std::string>().c_str(),
-                row["samples"].get<long>(), row["file"].get<std::string>().c_str(),
-                row["note"].get<std::string>().c_str());
+    std::printf("%3d  %-10s %9ld samples  %s %s\n", row["id"].get<int>(),
+                row["status"].get<std::string>().c_str(), row["samples"].get<long>(),
+                row["file"].get<std::string>().c_str(), row["note"].get<std::string>().c_str());
   }
   return 0;
 }
@@ -112,14 +112,12 @@ void add_session(CLI::App& app, Action& chosen) {
   add("undo", "Take the newest scan out", false, [](const SessionOptions& o, CommandContext& c) {
     return change(o, c, [](SessionStore& store) { return undo(store); });
   });
-  add("drop", "Take a scan out; nothing is deleted", true,
-      [](const SessionOptions& o, CommandContext& c) {
-        return change(o, c, [&o](SessionStore& store) -> Result<int> {
-          const Status done = store.drop_scan(o.id, o.why);
-          return done ? Result<int>(o.id) : std::unexpected(done.error());
-        });
-      })
-      ->add_option("--why", options->why, "the reason");
+  add("drop", "Take a scan out; nothing is deleted", true, [](const SessionOptions& o, CommandContext& c) {
+    return change(o, c, [&o](SessionStore& store) -> Result<int> {
+      const Status done = store.drop_scan(o.id, o.why);
+      return done ? Result<int>(o.id) : std::unexpected(done.error());
+    });
+  })->add_option("--why", options->why, "the reason");
   add("restore", "Put a dropped scan back", true, [](const SessionOptions& o, CommandContext& c) {
     return change(o, c, [&o](SessionStore& store) -> Result<int> {
       const Status done = store.restore_scan(o.id);

@@ -41,8 +41,10 @@ struct SimulateOptions {
 Result<Eigen::Vector3d> parse_size(const std::string& text) {
   Eigen::Vector3d size;
   char rest = 0;
-  if (std::sscanf(text.c_str(), "%lfx%lfx%lf%c", &size.x(), &size.y(), &size.z(), &rest) != 3 || !(size.minCoeff() > 0)) {
-    return fail(ErrorKind::kUsage, "\"" + text + "\" is no size", "--size", "give width x height x thickness in mm, 50x40x20");
+  if (std::sscanf(text.c_str(), "%lfx%lfx%lf%c", &size.x(), &size.y(), &size.z(), &rest) != 3 ||
+      !(size.minCoeff() > 0)) {
+    return fail(ErrorKind::kUsage, "\"" + text + "\" is no size", "--size",
+                "give width x height x thickness in mm, 50x40x20");
   }
   return size;
 }
@@ -154,7 +156,8 @@ Result<int> simulate_scans(const SimulateOptions& options, CommandContext& conte
     return std::unexpected(written.error());
   }
   if (stand) {
-    for (const auto& [name, pins] : {std::pair{"pins.json", &clicked}, std::pair{"truth_pins.json", &true_tips}}) {
+    for (const auto& [name, pins] :
+         {std::pair{"pins.json", &clicked}, std::pair{"truth_pins.json", &true_tips}}) {
       if (const Status written = write_pins(fs::path(options.out) / name, *pins); !written) {
         return std::unexpected(written.error());
       }
@@ -183,21 +186,32 @@ void add_simulate(CLI::App& app, Action& chosen) {
 
   CLI::App* tablet = verb->add_subcommand("tablet", "A procedural tablet: tablet.ply and truth.json");
   tablet->add_option("--size", options->size, "width x height x thickness, mm")->capture_default_str();
-  tablet->add_option("--text", options->text, "share of the room for text that is written on")->check(CLI::Range(0.0, 1.0));
+  tablet->add_option("--text", options->text, "share of the room for text that is written on")
+      ->check(CLI::Range(0.0, 1.0));
   tablet->add_option("--damage", options->damage, "fractures, erosion, dirt and cracks, 0 none to 1 badly")
       ->check(CLI::Range(0.0, 1.0));
-  tablet->callback([&chosen, options] { chosen = [options](CommandContext& c) { return simulate_tablet(*options, c); }; });
+  tablet->callback(
+      [&chosen, options] { chosen = [options](CommandContext& c) { return simulate_tablet(*options, c); }; });
 
-  CLI::App* scans = verb->add_subcommand("scans", "Range grids of a tablet: scan_000.ply … and truth_poses.json");
+  CLI::App* scans =
+      verb->add_subcommand("scans", "Range grids of a tablet: scan_000.ply … and truth_poses.json");
   scans->add_option("--tablet", options->tablet, "the true surface, a mesh")->required();
-  scans->add_option("--views", options->views, "how many, turned by hand")->check(CLI::Range(1, 1000))->capture_default_str();
-  scans->add_option("--noise", options->noise_mm, "mm, at normal incidence")->check(CLI::Range(0.0, 1.0))->capture_default_str();
-  scans->add_flag("--pins", options->pins, "fifteen pins around the rim; writes pins.json, as an operator clicks them");
-  scans->callback([&chosen, options] { chosen = [options](CommandContext& c) { return simulate_scans(*options, c); }; });
+  scans->add_option("--views", options->views, "how many, turned by hand")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  scans->add_option("--noise", options->noise_mm, "mm, at normal incidence")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
+  scans->add_flag("--pins", options->pins,
+                  "fifteen pins around the rim; writes pins.json, as an operator clicks them");
+  scans->callback(
+      [&chosen, options] { chosen = [options](CommandContext& c) { return simulate_scans(*options, c); }; });
 
   for (CLI::App* sub : {tablet, scans}) {
     sub->add_option("--seed", options->seed, "the same seed gives the same bytes")->capture_default_str();
-    sub->add_option("--spacing", options->spacing_mm, "mm")->check(CLI::Range(0.005, 5.0))->capture_default_str();
+    sub->add_option("--spacing", options->spacing_mm, "mm")
+        ->check(CLI::Range(0.005, 5.0))
+        ->capture_default_str();
     sub->add_option("-o,--out", options->out, "folder")->required();
     sub->fallthrough();
   }

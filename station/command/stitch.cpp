@@ -51,8 +51,8 @@ Result<int> stitch_all(const ScanSetArguments& arguments, CommandContext& contex
     CommandContext::print(json);
   } else {
     finish_progress();
-    std::printf("%s: %zu vertices, %zu faces of %zu scans, %s\n", arguments.out.c_str(), report.vertices, report.faces,
-                placed.size(), report.is_manifold() ? "2-manifold" : "NOT 2-manifold");
+    std::printf("%s: %zu vertices, %zu faces of %zu scans, %s\n", arguments.out.c_str(), report.vertices,
+                report.faces, placed.size(), report.is_manifold() ? "2-manifold" : "NOT 2-manifold");
   }
   return 0;
 }
@@ -64,7 +64,9 @@ void add_stitch(CLI::App& app, Action& chosen) {
   const auto arguments = std::make_shared<ScanSetArguments>();
   arguments->add_to(*verb, true);
   verb->add_option("-o,--out", arguments->out, "the mesh: PLY, OBJ, STL or GLB")->required();
-  verb->callback([&chosen, arguments] { chosen = [arguments](CommandContext& c) { return stitch_all(*arguments, c); }; });
+  verb->callback([&chosen, arguments] {
+    chosen = [arguments](CommandContext& c) { return stitch_all(*arguments, c); };
+  });
 }
 
 }  // namespace dubsar

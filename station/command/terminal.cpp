@@ -17,6 +17,7 @@ namespace {
 
 std::atomic<JobContext*> g_job{nullptr};  // a signal handler has no other way to reach the job
 std::atomic<bool> g_bar_stands{false};
+std::atomic<bool> g_progress_on{true};
 
 extern "C" void on_interrupt(int signal_number) {
   JobContext* job = g_job.load();
@@ -57,7 +58,8 @@ struct Painter {
     const double left_s = fraction > 0.02 ? spent.count() * (1 - fraction) / fraction : 0;
     const int filled = percent * 30 / 100;
     std::fprintf(stderr, "\r%-28.28s [%.*s%.*s] %3d %%  %4.0f s left ", stage.c_str(), filled,
-                 "##############################", 30 - filled, "..............................", percent, left_s);
+                 "##############################", 30 - filled, "..............................", percent,
+                 left_s);
     std::fflush(stderr);
     g_bar_stands = true;
   }
@@ -67,7 +69,15 @@ struct Painter {
 
 JobContext::ProgressSink terminal_progress() {
   auto painter = std::make_shared<Painter>();
-  return [painter](std::string_view stage, double fraction) { painter->paint(stage, fraction); };
+  return [painter](std::string_view stage, double fraction) {
+    if (g_progress_on) {
+      painter->paint(stage, fraction);
+    }
+  };
+}
+
+void show_progress(bool on) {
+  g_progress_on = on;
 }
 
 void finish_progress() {

@@ -9,9 +9,12 @@
 
 namespace dubsar {
 
-/// Progress on standard error: a bar that redraws itself on a terminal, a plain line per stage and tenth otherwise.
-/// Thread-safe.
+/// Progress on standard error: a bar that redraws itself on a terminal, a plain line per stage and tenth
+/// otherwise. Thread-safe.
 [[nodiscard]] JobContext::ProgressSink terminal_progress();
+
+/// Switches progress on and off; a verb that prints its own lines as things happen has no use for a bar.
+void show_progress(bool on);
 
 /// Ends a bar that stands on the terminal, so that the next line starts clean.
 void finish_progress();

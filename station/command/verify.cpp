@@ -54,7 +54,8 @@ Result<int> verify(const std::string& path, CommandContext& context) {
     return print_report(path, report, context.json);
   }
   if (!SessionStore::is_session(path)) {
-    return fail(ErrorKind::kUsage, "this folder is no session", path, "give a session folder or a .grid file");
+    return fail(ErrorKind::kUsage, "this folder is no session", path,
+                "give a session folder or a .grid file");
   }
   const Result<SessionStore> store = SessionStore::open(path, SessionStore::Access::kReadOnly);
   if (!store) {
@@ -70,7 +71,8 @@ Result<int> verify(const std::string& path, CommandContext& context) {
 }  // namespace
 
 void add_verify(CLI::App& app, Action& chosen) {
-  CLI::App* verb = app.add_subcommand("verify", "Integrity of a session or a grid; status 1 when anything is damaged");
+  CLI::App* verb =
+      app.add_subcommand("verify", "Integrity of a session or a grid; status 1 when anything is damaged");
   const auto path = std::make_shared<std::string>();
   verb->add_option("path", *path, "a session folder or a .grid file")->required();
   verb->fallthrough();

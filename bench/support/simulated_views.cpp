@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "bench/support/simulated_views.h"
+
+#include <cstdio>
+#include <cstdlib>
+#include <map>
+
+#include "planning/sparse_flags.h"
+#include "sim/scan_plan.h"
+#include "sim/scanner.h"
+#include "sim/tablet.h"
+
+namespace dubsar::bench {
+
+namespace {
+
+SimulatedViews make_views(int count) {
+  std::fprintf(stderr, "simulating %d scans of a million samples …\n", count);
+  JobContext job;
+  sim::TabletOptions tablet_options;
+  tablet_options.size_mm = {60, 50, 22};
+  tablet_options.spacing_mm = 0.12;
+  const auto tablet = sim::make_tablet(tablet_options, job);
+  if (!tablet) {
+    std::fprintf(stderr, "%s\n", tablet.error().line().c_str());
+    std::exit(4);
+  }
+  const MeshQuery query(tablet->mesh);
+  const sim::Scene scene{&*tablet, &query, {}, std::nullopt};
+  sim::ScannerOptions scanner_options;
+  scanner_options.spacing_mm = 0.05;
+  const sim::TriangulationScanner scanner(scanner_options);
+  SimulatedViews views;
+  const auto plan = sim::plan_views(count, 1);
+  for (std::size_t k = 0; k < plan.size(); ++k) {
+    auto grid = scanner.scan_grid(scene, plan[k].tablet_from_scanner, k, job);
+    if (!grid) {
+      std::fprintf(stderr, "%s\n", grid.error().line().c_str());
+      std::exit(4);
+    }
+    views.flags.push_back(flag_sparse(*grid));
+    views.poses.push_back(plan[k].tablet_from_scanner);
+    views.grids.push_back(std::make_shared<const RangeGrid>(std::move(*grid)));
+  }
+  return views;
+}
+
+}  // namespace
+
+std::vector<PlacedScan> SimulatedViews::placed() const {
+  std::vector<PlacedScan> scans;
+  for (std::size_t k = 0; k < grids.size(); ++k) {
+    scans.push_back({static_cast<int>(k), grids[k].get(), &flags[k], poses[k], 0.0});
+  }
+  return scans;
+}
+
+std::size_t SimulatedViews::samples() const {
+  std::size_t count = 0;
+  for (const auto& grid : grids) {
+    count += grid->valid_count();
+  }
+  return count;
+}
+
+const SimulatedViews& million_sample_views(int count) {
+  static std::map<int, SimulatedViews> made;
+  const auto found = made.find(count);
+  return found != made.end() ? found->second : made.emplace(count, make_views(count)).first->second;
+}
+
+}  // namespace dubsar::bench

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "core/placed_scan.h"
+#include "core/range_grid.h"
+#include "core/sample_flags.h"
+
+namespace dubsar::bench {
+
+/// Scans of a simulated tablet with their true poses and flags, made once and shared by the benchmarks.
+struct SimulatedViews {
+  std::vector<std::shared_ptr<const RangeGrid>> grids;
+  std::vector<SampleFlags> flags;
+  std::vector<RigidTransform> poses;
+  [[nodiscard]] std::vector<PlacedScan> placed() const;
+  [[nodiscard]] std::size_t samples() const;  ///< valid ones, of all scans
+};
+
+/// `count` views of a 60 x 50 x 22 mm tablet; about a million samples each at 0.05 mm, with 0.02 mm noise.
+[[nodiscard]] const SimulatedViews& million_sample_views(int count);
+
+}  // namespace dubsar::bench

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "formats/rig_json.h"
+
+#include "core/units.h"
+#include "formats/json_node.h"
+#include "formats/json_text.h"
+
+namespace dubsar {
+
+std::string rig_to_json(const Rig& rig) {
+  OrderedJson view{{"direction", json_of(rig.view.direction)}};
+  if (rig.view.laser_mm) {
+    view["laser"] = json_of(*rig.view.laser_mm);
+  }
+  if (rig.view.camera_mm) {
+    view["camera"] = json_of(*rig.view.camera_mm);
+  }
+  view["motion_per_row"] = json_of(rig.view.motion_per_row_mm);
+  OrderedJson json{{"unit", "mm"},
+                   {"name", rig.name},
+                   {"view", view},
+                   {"spacing", rig.spacing_mm},
+                   {"field", {rig.field_x_mm, rig.field_y_mm}},
+                   {"depth_range", rig.depth_range_mm},
+                   {"has_turntable", rig.has_turntable},
+                   {"tilt_deg", {deg_from_rad(rig.tilt_min_rad), deg_from_rad(rig.tilt_max_rad)}},
+                   {"hand_turns", rig.hand_turns},
+                   {"support_height", rig.support_height_mm},
+                   {"calibration", rig.calibration}};
+  if (rig.calibration_age_days) {
+    json["calibration_age_days"] = *rig.calibration_age_days;
+  }
+  return text_of(json);
+}
+
+Result<Rig> parse_rig(std::string_view text, const std::string& where) {
+  const Result<JsonDocument> document = JsonDocument::parse(text, where);
+  if (!document) {
+    return std::unexpected(document.error());
+  }
+  const JsonNode root = document->root();
+  Rig rig;
+  rig.name = root.at("name").text();
+  const JsonNode view = root.at("view");
+  rig.view.direction = view.at("direction").vector3();
+  if (const auto laser = view.find("laser")) {
+    rig.view.laser_mm = laser->vector3();
+  }
+  if (const auto camera = view.find("camera")) {
+    rig.view.camera_mm = camera->vector3();
+  }
+  rig.view.motion_per_row_mm = view.at("motion_per_row").vector3();
+  rig.spacing_mm = root.at("spacing").number(0, 1e3);
+  const std::vector<double> field = root.at("field").numbers(2);
+  rig.field_x_mm = field[0];
+  rig.field_y_mm = field[1];
+  rig.depth_range_mm = root.at("depth_range").number(0, 1e6);
+  rig.has_turntable = root.at("has_turntable").boolean();
+  const std::vector<double> tilt_deg = root.at("tilt_deg").numbers(2);
+  rig.tilt_min_rad = rad_from_deg(tilt_deg[0]);
+  rig.tilt_max_rad = rad_from_deg(tilt_deg[1]);
+  rig.hand_turns = root.at("hand_turns").boolean();
+  rig.support_height_mm = root.at("support_height").number(-1e6, 1e6);
+  rig.calibration = root.at("calibration").text();
+  if (const auto age = root.find("calibration_age_days")) {
+    rig.calibration_age_days = age->number(0, 1e6);
+  }
+  if (const Status status = document->status("scan again with the device, which writes it anew"); !status) {
+    return std::unexpected(status.error());
+  }
+  return rig;
+}
+
+}  // namespace dubsar

@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+// dubsar scan: the main job. Stream, flag, store, register, plan, stitch, until conclusive.
+
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+#include <mutex>
+
+#include "core/log.h"
+#include "formats/pins_json.h"
+#include "formats/poses_json.h"
+#include "formats/red_map_json.h"
+#include "station/command/command.h"
+#include "station/engine.h"
+
+namespace dubsar {
+
+namespace {
+
+struct ScanArguments {
+  std::string device;
+  std::string session;
+  std::string pins;
+  bool automatic = false;
+  int max_scans = 0;
+};
+
+double red_area_mm2(const RedMap& map) {
+  double area = 0;
+  for (const RedRegion& region : map.regions) {
+    area += region.state == RegionState::kRed ? region.area_mm2 : 0.0;
+  }
+  return area;
+}
+
+/// What an operator at the command line sees while it goes on: a line per thing that happened.
+class Narrator {
+ public:
+  void operator()(const Event& event) {
+    const std::scoped_lock lock(mutex_);
+    if (const auto* stored = std::get_if<ScanStored>(&event)) {
+      say("scan %d stored: %lld samples%s%s", stored->id, static_cast<long long>(stored->samples),
+          stored->file.empty() ? "" : " of ", stored->file.c_str());
+    } else if (const auto* placed = std::get_if<ScanPlaced>(&event)) {
+      const ScanPose& pose = placed->pose;
+      say("scan %d %s%s%s", pose.id, to_string(pose.status), pose.reason.empty() ? "" : ": ",
+          pose.reason.c_str());
+    } else if (const auto* changed = std::get_if<RedMapChanged>(&event)) {
+      say("red: about %.1f mm2 in %zu regions", red_area_mm2(changed->red_map),
+          static_cast<std::size_t>(
+              std::count_if(changed->red_map.regions.begin(), changed->red_map.regions.end(),
+                            [](const RedRegion& r) { return r.state == RegionState::kRed; })));
+    } else if (const auto* next = std::get_if<NextPlacement>(&event)) {
+      say("next: %s (about %.1f mm2)", next->view.say.c_str(), next->view.predicted_cleared_mm2);
+    } else if (const auto* notice = std::get_if<Notice>(&event)) {
+      log_warning(notice->text);
+    }
+  }
+
+ private:
+  template <class... Values>
+  void say(const char* format, Values... values) {
+    char line[600];
+    std::snprintf(line, sizeof line, format, values...);
+    log_info(line);
+  }
+  std::mutex mutex_;
+};
+
+std::string verdict(const EngineResult& result) {
+  const auto registered = std::count_if(result.poses.begin(), result.poses.end(), [](const ScanPose& pose) {
+    return pose.status == PoseStatus::kRegistered;
+  });
+  char text[300];
+  if (result.red_map.conclusive) {
+    std::snprintf(text, sizeof text, "conclusive after %zu scans, %td registered", result.poses.size(),
+                  registered);
+  } else {
+    std::snprintf(text, sizeof text,
+                  "not conclusive: about %.1f mm2 are still red after %zu scans, %td registered",
+                  red_area_mm2(result.red_map), result.poses.size(), registered);
+  }
+  return text;
+}
+
+nlohmann::ordered_json result_json(const ScanArguments& arguments, const EngineResult& result) {
+  nlohmann::ordered_json timings;
+  for (const StageTiming& timing : result.timings) {
+    timings[timing.stage] = timing.seconds;
+  }
+  return {{"session", arguments.session},
+          {"verdict", verdict(result)},
+          {"conclusive", result.red_map.conclusive},
+          {"scans", result.poses.size()},
+          {"mesh", result.files.mesh.string()},
+          {"report", result.files.report.string()},
+          {"red_map_picture", result.files.red_map.string()},
+          {"six_views", result.files.six_views.string()},
+          {"poses", nlohmann::ordered_json::parse(poses_to_json(result.poses))},
+          {"red_map", nlohmann::ordered_json::parse(red_map_to_json(result.red_map))},
+          {"timings_s", timings}};
+}
+
+void print_result(const EngineResult& result) {
+  std::printf("%s\n", verdict(result).c_str());
+  for (const auto& [name, path] :
+       {std::pair{"mesh", &result.files.mesh}, std::pair{"six views", &result.files.six_views},
+        std::pair{"red map", &result.files.red_map}, std::pair{"report", &result.files.report}}) {
+    if (!path->empty()) {
+      std::printf("  %-10s %s\n", name, path->c_str());
+    }
+  }
+  for (const NextView& view : result.red_map.next) {
+    if (!result.red_map.conclusive) {
+      std::printf("  next       %s (about %.1f mm2)\n", view.say.c_str(), view.predicted_cleared_mm2);
+      break;
+    }
+  }
+}
+
+Result<int> scan(const ScanArguments& arguments, CommandContext& context) {
+  EngineOptions options;
+  options.device = arguments.device;
+  options.session = arguments.session;
+  options.automatic = arguments.automatic;
+  options.max_scans = arguments.max_scans;
+  if (!arguments.pins.empty()) {
+    Result<PinSet> pins = read_pins(arguments.pins);
+    if (!pins) {
+      return std::unexpected(pins.error());
+    }
+    options.pins = std::move(*pins);
+  }
+  show_progress(false);
+  Narrator narrator;
+  Engine engine(std::move(options), [&narrator](const Event& event) { narrator(event); });
+  const Result<EngineResult> result = engine.run(context.job);
+  if (!result) {
+    return std::unexpected(result.error());
+  }
+  if (context.json) {
+    CommandContext::print(result_json(arguments, *result));
+  } else {
+    print_result(*result);
+  }
+  if (result->device_error) {
+    log_error(result->device_error->line());
+    return exit_status(result->device_error->kind);
+  }
+  return result->red_map.conclusive ? 0 : 1;
+}
+
+}  // namespace
+
+void add_scan(CLI::App& app, Action& chosen) {
+  CLI::App* verb = app.add_subcommand("scan", "The main job: scan until conclusive; status 1 when it is not");
+  const auto arguments = std::make_shared<ScanArguments>();
+  verb->add_option("--device", arguments->device,
+                   "URI of the device: sim:, replay:PATH, … (see dubsar drivers)")
+      ->required();
+  verb->add_option("--session", arguments->session, "folder of the session; gone on with when it is there")
+      ->default_val("session");
+  verb->add_option("--pins", arguments->pins, "the operator's pins (pins.json)");
+  verb->add_flag("--auto", arguments->automatic, "drive the rig, or ask for hand turns, until conclusive");
+  verb->add_option("--max-scans", arguments->max_scans, "of the whole session")->check(CLI::Range(1, 100000));
+  verb->fallthrough();
+  verb->callback(
+      [&chosen, arguments] { chosen = [arguments](CommandContext& c) { return scan(*arguments, c); }; });
+}
+
+}  // namespace dubsar

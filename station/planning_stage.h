@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "archive/render_scene.h"
+#include "core/job.h"
+#include "core/mesh.h"
+#include "core/red_map.h"
+#include "core/result.h"
+#include "core/rig.h"
+#include "core/scan_pose.h"
+#include "planning/cleared_map.h"
+#include "station/station_scan.h"
+#include "triangulation/stitcher.h"
+
+namespace dubsar {
+
+/// The stage behind registration: keeps the flags of all placed scans cleared against each other and the mesh
+/// stitched, scan by scan, and makes the red map from both. The online engine and the verbs `plan` and
+/// `stitch` work through it, so that both give the same. One thread at a time.
+class PlanningStage {
+ public:
+  /// Makes a scan known. It takes part once place() says that it is registered.
+  void add(const StationScan& scan);
+
+  /// Follows the poses: puts in what is newly registered, takes out what no longer is, moves what has moved.
+  /// `exact` moves every scan to its last digit; without it one that moved by less than a small part of µ
+  /// stays, which keeps the online work small. Errors: kCancelled, and the stitcher's.
+  Status place(const std::vector<ScanPose>& poses, bool exact, JobContext& job);
+
+  /// The red map over what is placed.
+  [[nodiscard]] Result<RedMap> red_map(const Rig* rig, JobContext& job);
+
+  /// The mesh of what is placed.
+  [[nodiscard]] Result<Mesh> mesh(const JobContext& job) const { return stitcher_.mesh(job); }
+
+  /// Red and excused samples in the model frame, for pictures.
+  [[nodiscard]] ColouredPoints red_points() const;
+
+ private:
+  std::map<int, StationScan> scans_;
+  std::map<int, PlacedScan> placed_;
+  ClearedMap cleared_;
+  Stitcher stitcher_;
+};
+
+}  // namespace dubsar

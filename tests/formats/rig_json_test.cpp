@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "formats/rig_json.h"
+
+#include <gtest/gtest.h>
+
+namespace dubsar {
+namespace {
+
+TEST(RigJson, RoundTrip) {
+  Rig rig;
+  rig.name = "bench \"A\"";
+  rig.view.laser_mm = Eigen::Vector3d(0, 0, 250);
+  rig.view.motion_per_row_mm = {0, 0.1, 0};
+  rig.spacing_mm = 0.05;
+  rig.has_turntable = true;
+  rig.tilt_max_rad = 1.2;
+  rig.support_height_mm = 2;
+  rig.calibration_age_days = 3.5;
+  const Result<Rig> back = parse_rig(rig_to_json(rig), "rig");
+  ASSERT_TRUE(back) << back.error().line();
+  EXPECT_EQ(back->name, rig.name);
+  EXPECT_EQ(*back->view.laser_mm, *rig.view.laser_mm);
+  EXPECT_FALSE(back->view.camera_mm);
+  EXPECT_EQ(back->spacing_mm, 0.05);
+  EXPECT_TRUE(back->has_turntable);
+  EXPECT_NEAR(back->tilt_max_rad, 1.2, 1e-12);
+  EXPECT_EQ(back->calibration_age_days, 3.5);
+  EXPECT_EQ(rig_to_json(*back), rig_to_json(*parse_rig(rig_to_json(*back), "rig")));
+}
+
+TEST(RigJson, NamesWhatIsMissing) {
+  const Result<Rig> rig = parse_rig(R"({"name":"x"})", "session");
+  ASSERT_FALSE(rig);
+  EXPECT_NE(rig.error().line().find("view"), std::string::npos) << rig.error().line();
+}
+
+}  // namespace
+}  // namespace dubsar
