@@ -145,4 +145,16 @@ SurfaceFrame TabletBody::walk(const SurfaceFrame& from, double du_mm, double dv_
   return at;
 }
 
+SurfaceFrame TabletBody::walk_line(const SurfaceFrame& from, const SurfaceFrame& line, double du_mm) const {
+  const int steps = std::max(1, static_cast<int>(std::ceil(std::abs(du_mm) / 0.5)));
+  SurfaceFrame at = from;
+  for (int i = 0; i < steps; ++i) {
+    const Eigen::Vector3d ahead = at.p_mm + at.u * (du_mm / steps);
+    const double off = line.v.dot(ahead - line.p_mm);
+    at = frame_at(ahead - off * at.v, line.v.cross(at.n));
+    at = frame_at(at.p_mm, line.v.cross(at.n));
+  }
+  return at;
+}
+
 }  // namespace dubsar::sim

@@ -38,6 +38,11 @@ class TabletBody {
   /// Goes along the surface by du to the right and dv up, straight ahead, carrying the directions along.
   [[nodiscard]] SurfaceFrame walk(const SurfaceFrame& from, double du_mm, double dv_mm) const;
 
+  /// Goes along a line of writing: as walk(), but staying in the plane through `line` across its v, so that
+  /// lines stay straight and parallel where the surface bends away.
+  [[nodiscard]] SurfaceFrame walk_line(const SurfaceFrame& from, const SurfaceFrame& line,
+                                       double du_mm) const;
+
   [[nodiscard]] const Eigen::Vector3d& half_size_mm() const { return half_; }
   /// The same body without its unevenness: symmetric about all three planes.
   [[nodiscard]] TabletBody even() const;

@@ -13,7 +13,9 @@ namespace dubsar::sim {
 namespace {
 
 constexpr int kCoarseCells = 18;
-constexpr int kRelaxSweeps = 160;
+constexpr int kRelaxSweeps = 320;
+/// Larger steps make neighbours swing against each other.
+constexpr double kRelaxStep = 0.4;
 
 /// Length of the body's outline in the plane of two axes, through the centre.
 double outline_mm(const TabletBody& body, int axis_a, int axis_b) {
@@ -58,7 +60,7 @@ std::vector<Eigen::Vector3d> relaxed_points(const TabletBody& even, const BoxLat
         sum += weight * to;
         weights += weight;
       }
-      next[i] = even.project(points[i] + 0.8 * sum / weights);
+      next[i] = even.project(points[i] + kRelaxStep * sum / weights);
     });
     points.swap(next);
   }

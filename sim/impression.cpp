@@ -39,8 +39,8 @@ Stroke winkelhaken(const Eigen::Vector2d& middle_mm, double angle_rad, double si
   const Eigen::Vector2d across(-along.y(), along.x());
   Stroke stroke;
   stroke.foot_mm = middle_mm + 0.05 * size_mm * along;
-  stroke.corners_mm = {0.62 * size_mm * along, -0.38 * size_mm * along + 0.45 * size_mm * across,
-                       -0.38 * size_mm * along - 0.45 * size_mm * across};
+  stroke.corners_mm = {0.68 * size_mm * along, -0.3 * size_mm * along + 0.52 * size_mm * across,
+                       -0.3 * size_mm * along - 0.52 * size_mm * across};
   stroke.depth_mm = depth_mm;
   return stroke;
 }
@@ -49,6 +49,7 @@ Impression::Impression(const TabletBody& body, const SurfaceFrame& origin, const
                        double dam_mm)
     : dam_mm_(dam_mm) {
   const SurfaceFrame foot = body.walk(origin, stroke.foot_mm.x(), stroke.foot_mm.y());
+  foot_ = foot.p_mm;
   normal_ = foot.n;
   depth_point_ = foot.p_mm - stroke.depth_mm * foot.n;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -83,8 +84,8 @@ double Impression::outside_mm(const Eigen::Vector3d& p) const {
 }
 
 double Impression::press(const Eigen::Vector3d& p, const Eigen::Vector3d& n, double height_mm,
-                         bool* cut) const {
-  *cut = false;
+                         int* face) const {
+  *face = -1;
   // The far side of a thin tablet lies within reach too, but faces away.
   if (n.dot(normal_) < 0.2 || (p - centre_).squaredNorm() > reach_mm_ * reach_mm_) {
     return height_mm;
@@ -97,18 +98,22 @@ double Impression::press(const Eigen::Vector3d& p, const Eigen::Vector3d& n, dou
     height_mm += height_mm < -2.0 * dam_mm_ ? kDamIntoHollow * rise : rise;
   }
   double floor = 1e9;
-  for (const Eigen::Vector3d& face : faces_) {
-    const double climb = face.dot(n);
-    const double side = face.dot(p - depth_point_);
+  int steepest = -1;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double climb = faces_[k].dot(n);
+    const double side = faces_[k].dot(p - depth_point_);
     if (climb > 0.02) {
-      floor = std::min(floor, side / climb);
+      if (side / climb < floor) {
+        floor = side / climb;
+        steepest = static_cast<int>(k);
+      }
     } else if (side <= 0) {
       return height_mm;
     }
   }
   // `floor` is how far below p the three planes lie: the ray along n meets them exactly there.
   if (floor < 1e8 && -floor < height_mm) {
-    *cut = outside < dam_width_mm_;
+    *face = outside < dam_width_mm_ ? steepest : -1;
     return -floor;
   }
   return height_mm;

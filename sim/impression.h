@@ -35,14 +35,15 @@ class Impression {
   Impression(const TabletBody& body, const SurfaceFrame& origin, const Stroke& stroke, double dam_mm);
 
   /// Height of the clay over the base point p along its normal n after this press, from height_mm before it.
-  /// `cut` says whether this press made the surface there.
+  /// `face` is set to the face that made the surface there, 0 to 2, or to -1 when this press made none.
   [[nodiscard]] double press(const Eigen::Vector3d& p, const Eigen::Vector3d& n, double height_mm,
-                             bool* cut) const;
+                             int* face) const;
   /// Radius about centre_mm outside which press() changes nothing.
   [[nodiscard]] double reach_mm() const { return reach_mm_; }
   [[nodiscard]] const Eigen::Vector3d& centre_mm() const { return centre_; }
   [[nodiscard]] const Eigen::Vector3d& depth_point_mm() const { return depth_point_; }
-  /// The free surface's normal at the press.
+  /// The free surface over the depth point, and its normal.
+  [[nodiscard]] const Eigen::Vector3d& foot_mm() const { return foot_; }
   [[nodiscard]] const Eigen::Vector3d& normal() const { return normal_; }
   /// What a perfect measurement of an undisturbed impression would find.
   [[nodiscard]] Wedge truth(const TabletBody& body) const;
@@ -50,6 +51,7 @@ class Impression {
  private:
   [[nodiscard]] double outside_mm(const Eigen::Vector3d& p) const;
 
+  Eigen::Vector3d foot_;
   Eigen::Vector3d depth_point_;
   Eigen::Vector3d normal_;
   Eigen::Vector3d centre_;

@@ -68,21 +68,21 @@ class Scribe {
 
  private:
   /// Goes left (-1) or right (1) until the surface has turned away by more than the cosine allows.
-  SurfaceFrame go_until(SurfaceFrame at, int side, double cosine) const {
-    const Eigen::Vector3d n = at.n;
+  SurfaceFrame go_until(const SurfaceFrame& line, int side, double cosine) const {
+    SurfaceFrame at = line;
     const double most = 2.2 * (body_.half_size_mm().x() + body_.half_size_mm().z());
-    for (double gone = 0; gone < most && at.n.dot(n) > cosine; gone += 0.3) {
-      at = body_.walk(at, 0.3 * side, 0);
+    for (double gone = 0; gone < most && at.n.dot(line.n) > cosine; gone += 0.3) {
+      at = body_.walk_line(at, line, 0.3 * side);
     }
     return at;
   }
 
   void write_line(const SurfaceFrame& middle) {
-    SurfaceFrame at = go_until(middle, -1, 0.72);
+    const SurfaceFrame at = go_until(middle, -1, 0.72);
     const bool runs_over = options_.edges && random_.uniform() < 0.35;
     const double cosine = runs_over ? -0.1 : 0.72;
     const double share = random_.uniform() < 0.15 ? random_.uniform(0.3, 0.8) : 1.0;
-    write_along(at, middle.n, cosine, share * 2.2 * body_.half_size_mm().x() + 6.0);
+    write_along(at, middle, cosine, share * 2.2 * body_.half_size_mm().x() + 6.0);
   }
 
   void write_left_edge() {
@@ -90,18 +90,18 @@ class Scribe {
     const SurfaceFrame middle = body_.frame_at({-half.x(), 0, 0}, -Eigen::Vector3d::UnitY());
     const SurfaceFrame low = body_.walk(middle, 0, -0.45 * hand_.line_height_mm);
     const SurfaceFrame start = go_until(low, -1, 0.8);
-    write_along(start, middle.n, 0.8, random_.uniform(0.4, 1.0) * 2.0 * half.y());
+    write_along(start, low, 0.8, random_.uniform(0.4, 1.0) * 2.0 * half.y());
   }
 
-  /// Signs from `at` to the right while the surface still faces along n (n·n_here above cosine).
-  void write_along(SurfaceFrame at, const Eigen::Vector3d& n, double cosine, double most_mm) {
+  /// Signs from `at` on along the line while the surface still faces as the line's middle does.
+  void write_along(SurfaceFrame at, const SurfaceFrame& line, double cosine, double most_mm) {
     const double unit = 0.84 * hand_.line_height_mm;
     for (double gone = 0; gone < most_mm;) {
       // Common signs are common: the square favours the front of the repertoire.
       const double pick = random_.uniform() * random_.uniform();
       const Sign& sign = repertoire_[static_cast<std::size_t>(pick * kRepertoire)];
       const double width = unit * sign.width * random_.uniform(0.95, 1.08);
-      if (body_.walk(at, 0.8 * width, 0).n.dot(n) < cosine) {
+      if (body_.walk_line(at, line, 0.8 * width).n.dot(line.n) < cosine) {
         return;
       }
       for (const SignStroke& stroke : sign.strokes) {
@@ -109,7 +109,7 @@ class Scribe {
                                   options_.dam_mm * random_.uniform(0.7, 1.3));
       }
       const double step = width + kSignGap * hand_.line_height_mm * random_.uniform(0.7, 1.6);
-      at = body_.walk(at, step, 0);
+      at = body_.walk_line(at, line, step);
       gone += step;
     }
   }

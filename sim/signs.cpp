@@ -3,6 +3,7 @@
 #include "sim/signs.h"
 
 #include <algorithm>
+#include <array>
 
 #include "core/units.h"
 
@@ -25,10 +26,13 @@ void row_of_verticals(Sign& sign, double x, int count, double step, double top, 
   }
 }
 
+/// Groups by how often they turn up in signs.
+constexpr std::array<int, 16> kGroups = {0, 1, 2, 3, 3, 4, 4, 5, 5, 6, 6, 7, 7, 8, 9, 9};
+
 /// Adds one group at x and returns its width.
 double add_group(Sign& sign, double x, Random& random) {
   const int count = 2 + static_cast<int>(random.below(2));
-  switch (random.below(10)) {
+  switch (kGroups[random.below(kGroups.size())]) {
     case 0:
       row_of_verticals(sign, x + 0.16, 1, 0, 1.0, 0.95);
       return 0.36;
@@ -112,7 +116,7 @@ Stroke write_stroke(const SignStroke& stroke, const Hand& hand, Random& random) 
     case StrokeKind::kWinkelhaken:
       break;
   }
-  return winkelhaken(at, 0.88 * kPi + turn, 1.55 * width, 1.05 * depth);
+  return winkelhaken(at, 0.98 * kPi + turn, 1.5 * width, 1.05 * depth);
 }
 
 }  // namespace dubsar::sim

@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "formats/red_map_json.h"
+
+#include <array>
+
+#include "core/units.h"
+#include "formats/atomic_file.h"
+#include "formats/json_node.h"
+#include "formats/json_text.h"
+
+namespace dubsar {
+
+namespace {
+
+constexpr std::array<Excuse, 2> kExcuses{Excuse::kUnreachable, Excuse::kUnneeded};
+
+std::vector<std::string> face_names() {
+  std::vector<std::string> names;
+  for (int face = 0; face < kFaceCount; ++face) {
+    names.emplace_back(to_string(static_cast<Face>(face)));
+  }
+  return names;
+}
+
+OrderedJson scan_json(const RedScan& scan) {
+  OrderedJson json;
+  json["id"] = scan.id;
+  json["samples"] = scan.samples;
+  json["potentially_sparse"] = scan.potentially_sparse;
+  json["sparse"] = scan.sparse;
+  json["cleared"] = scan.cleared;
+  json["excused"] = scan.excused;
+  return json;
+}
+
+OrderedJson region_json(const RedRegion& region) {
+  OrderedJson json;
+  json["face"] = to_string(region.face);
+  json["center"] = json_of(region.center_mm);
+  json["normal"] = json_of(region.normal);
+  json["area_mm2"] = region.area_mm2;
+  json["state"] = region.state == RegionState::kRed ? "red" : "excused";
+  if (region.excuse != Excuse::kNone) {
+    json["excuse"] = region.excuse == Excuse::kUnreachable ? "unreachable" : "unneeded";
+    json["reason"] = region.reason;
+  }
+  return json;
+}
+
+OrderedJson view_json(const NextView& view) {
+  OrderedJson json;
+  json["model_from_scanner"] = json_of(view.model_from_scanner);
+  json["predicted_cleared_mm2"] = view.predicted_cleared_mm2;
+  json["say"] = view.say;
+  if (view.placement) {
+    OrderedJson placement;
+    placement["turntable_deg"] = deg_from_rad(view.placement->turntable_rad);
+    placement["tilt_deg"] = deg_from_rad(view.placement->tilt_rad);
+    if (view.placement->hand_turn) {
+      placement["hand_turn"] = json_of(*view.placement->hand_turn);
+    }
+    json["placement"] = std::move(placement);
+  }
+  return json;
+}
+
+RedScan scan_from(const JsonNode& node) {
+  constexpr std::int64_t kMaxCount = std::int64_t{1} << 50U;
+  RedScan scan;
+  scan.id = static_cast<int>(node.at("id").integer(0, std::numeric_limits<int>::max()));
+  scan.samples = node.at("samples").integer(0, kMaxCount);
+  scan.potentially_sparse = node.at("potentially_sparse").integer(0, kMaxCount);
+  scan.sparse = node.at("sparse").integer(0, kMaxCount);
+  scan.cleared = node.at("cleared").integer(0, kMaxCount);
+  scan.excused = node.at("excused").integer(0, kMaxCount);
+  return scan;
+}
+
+RedRegion region_from(const JsonNode& node) {
+  RedRegion region;
+  region.face = static_cast<Face>(node.at("face").one_of(face_names()));
+  region.center_mm = node.at("center").vector3();
+  if (const auto normal = node.find("normal")) {
+    region.normal = normal->vector3();
+  }
+  region.area_mm2 = node.at("area_mm2").number(0);
+  region.state = node.at("state").one_of({"red", "excused"}) == 0 ? RegionState::kRed : RegionState::kExcused;
+  if (const auto excuse = node.find("excuse")) {
+    region.excuse = kExcuses[excuse->one_of({"unreachable", "unneeded"})];
+  } else if (region.state == RegionState::kExcused) {
+    node.complain("is excused but has no excuse");
+  }
+  if (const auto reason = node.find("reason")) {
+    region.reason = reason->text();
+  }
+  return region;
+}
+
+NextView view_from(const JsonNode& node) {
+  NextView view;
+  view.model_from_scanner = node.at("model_from_scanner").transform();
+  view.predicted_cleared_mm2 = node.at("predicted_cleared_mm2").number();
+  view.say = node.at("say").text();
+  if (const auto placement = node.find("placement")) {
+    view.placement = Placement{};
+    view.placement->turntable_rad = rad_from_deg(placement->at("turntable_deg").number());
+    view.placement->tilt_rad = rad_from_deg(placement->at("tilt_deg").number());
+    if (const auto turn = placement->find("hand_turn")) {
+      view.placement->hand_turn = turn->transform();
+    }
+  }
+  return view;
+}
+
+}  // namespace
+
+std::string red_map_to_json(const RedMap& map) {
+  OrderedJson root;
+  root["conclusive"] = map.conclusive;
+  root["scans"] = OrderedJson::array();
+  for (const RedScan& scan : map.scans) {
+    root["scans"].push_back(scan_json(scan));
+  }
+  root["regions"] = OrderedJson::array();
+  for (const RedRegion& region : map.regions) {
+    root["regions"].push_back(region_json(region));
+  }
+  root["next"] = OrderedJson::array();
+  for (const NextView& view : map.next) {
+    root["next"].push_back(view_json(view));
+  }
+  return text_of(root);
+}
+
+Status write_red_map(const std::filesystem::path& path, const RedMap& map) {
+  return write_file_atomically(path, red_map_to_json(map));
+}
+
+Result<RedMap> parse_red_map(std::string_view text, const std::string& where) {
+  const Result<JsonDocument> document = JsonDocument::parse(text, where);
+  if (!document) {
+    return std::unexpected(document.error());
+  }
+  const JsonNode root = document->root();
+  RedMap map;
+  map.conclusive = root.at("conclusive").boolean();
+  for (const JsonNode& node : root.at("scans").items()) {
+    map.scans.push_back(scan_from(node));
+  }
+  for (const JsonNode& node : root.at("regions").items()) {
+    map.regions.push_back(region_from(node));
+  }
+  for (const JsonNode& node : root.at("next").items()) {
+    map.next.push_back(view_from(node));
+  }
+  if (Status status = document->status("give a red map as docs/formats/red_map.md has it"); !status) {
+    return std::unexpected(status.error());
+  }
+  return map;
+}
+
+Result<RedMap> read_red_map(const std::filesystem::path& path) {
+  const Result<std::string> text = read_whole_file(path, kMaxJsonBytes);
+  return text ? parse_red_map(*text, path.string()) : std::unexpected(text.error());
+}
+
+}  // namespace dubsar

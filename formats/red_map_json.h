@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "core/red_map.h"
+#include "core/result.h"
+
+namespace dubsar {
+
+/// `plan --json` and the red map of a session (docs/formats/red_map.md).
+[[nodiscard]] std::string red_map_to_json(const RedMap& map);
+[[nodiscard]] Status write_red_map(const std::filesystem::path& path, const RedMap& map);
+[[nodiscard]] Result<RedMap> parse_red_map(std::string_view text, const std::string& where);
+[[nodiscard]] Result<RedMap> read_red_map(const std::filesystem::path& path);
+
+}  // namespace dubsar
