@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <cstddef>
+#include <deque>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/result.h"
+#include "formats/grid_reader.h"
+
+namespace dubsar::replay {
+
+/// The scans of a folder or a file in order, read from the disk one file at a time, when it is its turn.
+class ScanFiles {
+ public:
+  /// A folder: the files in it that look like scans, in name order, not recursed. A file: that one, whatever
+  /// it looks like. kBadInput when there is nothing to play.
+  [[nodiscard]] static Result<ScanFiles> open(const std::filesystem::path& path,
+                                              const GridReadOptions& options);
+
+  /// The next scan; nothing after the last. An error (with its file) is that file's alone: the next call goes
+  /// on behind it.
+  [[nodiscard]] Result<std::optional<ScanData>> next();
+
+  /// Nothing when some file must be read to know (PTX holds several scans).
+  [[nodiscard]] std::optional<std::int64_t> count() const { return count_; }
+
+ private:
+  ScanFiles(std::vector<std::filesystem::path> files, GridReadOptions options);
+
+  std::vector<std::filesystem::path> files_;
+  GridReadOptions options_;
+  std::optional<std::int64_t> count_;
+  std::size_t next_file_ = 0;
+  std::deque<ScanData> waiting_;  ///< the other scans of the file that was read last
+};
+
+}  // namespace dubsar::replay
