@@ -25,6 +25,8 @@ struct ColouredPoints {
 };
 
 inline constexpr Rgb8 kRedOfSparse{214, 30, 38};
+/// Excused samples and interpolated vertices.
+inline constexpr Rgb8 kAmberOfExcused{226, 160, 42};
 
 /// What is to be drawn, made ready once for many views: faces that cannot be drawn (an index out of range, a
 /// coordinate that is not a number) are left out, and normals are computed where the mesh has none. Refers to

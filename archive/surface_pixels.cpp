@@ -14,7 +14,6 @@ namespace {
 
 constexpr Rgb8 kClayTone{205, 176, 143};
 constexpr Rgb8 kPaleClay{204, 194, 180};
-constexpr Rgb8 kAmber{226, 160, 42};
 constexpr Rgb8 kInside{58, 54, 56};
 constexpr int kManyScans = 6;
 
@@ -59,7 +58,7 @@ class Paint {
   LinearRgb clay_ = to_linear(kClayTone);
   LinearRgb pale_ = to_linear(kPaleClay);
   LinearRgb red_ = to_linear(kRedOfSparse);
-  LinearRgb amber_ = to_linear(kAmber);
+  LinearRgb amber_ = to_linear(kAmberOfExcused);
 };
 
 /// One subpixel's share of a pixel.
