@@ -2,6 +2,7 @@
 // Copyright The Dubsar developers
 #include "registration/depth_raster.h"
 
+#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -38,7 +39,8 @@ DepthRaster::DepthRaster(const RangeGrid& grid, double cell_mm) {
   }
   const double span_u = static_cast<double>(high.x()) - low.x();
   const double span_v = static_cast<double>(high.y()) - low.y();
-  while ((span_u / cell_mm + 1) * (span_v / cell_mm + 1) > kMostCellsPerSample * static_cast<double>(count) + 1024.0) {
+  while ((span_u / cell_mm + 1) * (span_v / cell_mm + 1) >
+         kMostCellsPerSample * static_cast<double>(count) + 1024.0) {
     cell_mm *= 1.5;
   }
   u_min_ = low.x();
@@ -60,6 +62,44 @@ DepthRaster::DepthRaster(const RangeGrid& grid, double cell_mm) {
       cell = {h, static_cast<std::int32_t>(i)};
     }
   }
+  fit_field(grid);
+}
+
+void DepthRaster::fit_field(const RangeGrid& grid) {
+  Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
+  Eigen::Matrix<double, 3, 2> right = Eigen::Matrix<double, 3, 2>::Zero();
+  low_height_ = std::numeric_limits<float>::max();
+  high_height_ = -low_height_;
+  for (std::size_t i = 0; i < grid.size(); ++i) {
+    if (grid.valid[i] == 0) {
+      continue;
+    }
+    const Eigen::Vector3f p = grid.point(i);
+    const Eigen::Vector3d uv1(static_cast<double>(u_axis_.dot(p) - u_min_),
+                              static_cast<double>(v_axis_.dot(p) - v_min_), 1.0);
+    normal += uv1 * uv1.transpose();
+    right += uv1 * Eigen::RowVector2d(grid.row_of(i), grid.col_of(i));
+    low_height_ = std::min(low_height_, up_.dot(p));
+    high_height_ = std::max(high_height_, up_.dot(p));
+  }
+  const Eigen::Matrix<double, 3, 2> solution = normal.ldlt().solve(right);
+  if (solution.allFinite()) {
+    row_col_from_uv_ = solution.transpose().cast<float>();
+    rows_cols_ = {static_cast<float>(grid.rows), static_cast<float>(grid.cols)};
+  }
+}
+
+bool DepthRaster::in_field(const Eigen::Vector3f& p_mm) const {
+  const float h = height(p_mm);
+  if (!(h >= low_height_ && h <= high_height_)) {
+    return false;
+  }
+  const Eigen::Vector2f rc =
+      row_col_from_uv_ * Eigen::Vector3f(u_axis_.dot(p_mm) - u_min_, v_axis_.dot(p_mm) - v_min_, 1.0F);
+  // Warped and perspective grids follow the affine map to a few cells.
+  constexpr float kMargin = 0.03F;
+  return (rc.array() >= (kMargin * rows_cols_).array()).all() &&
+         (rc.array() <= ((1.0F - kMargin) * rows_cols_).array()).all();
 }
 
 bool DepthRaster::seen_through(const Eigen::Vector3f& p_mm, float margin_mm, int reach) const {
@@ -91,8 +131,8 @@ bool DepthRaster::empty_around(const Eigen::Vector3f& p_mm, int reach) const {
   const int v = static_cast<int>(fv);
   for (int y = std::max(v - reach, 0); y <= std::min(v + reach, height_ - 1); ++y) {
     for (int x = std::max(u - reach, 0); x <= std::min(u + reach, width_ - 1); ++x) {
-      if (cells_[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x)].sample >=
-          0) {
+      if (cells_[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x)]
+              .sample >= 0) {
         return false;
       }
     }

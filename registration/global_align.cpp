@@ -17,8 +17,8 @@ namespace {
 /// Free space weighs more than agreement: a right pose has next to none of it.
 constexpr double kFreeSpaceWeight = 2.0;
 
-double coarse_score(const ScanSurface& source, const ScanSurface& target, const RigidTransform& target_from_source,
-                    const EvidenceOptions& options, bool two_way) {
+double coarse_score(const ScanSurface& source, const ScanSurface& target,
+                    const RigidTransform& target_from_source, const EvidenceOptions& options, bool two_way) {
   PoseEvidence e = pose_evidence(*source.coarse, *target.coarse, target_from_source, options);
   if (two_way) {
     e.add(pose_evidence(*target.coarse, *source.coarse, target_from_source.inverse(), options));
@@ -47,7 +47,8 @@ RigidTransform consensus(const RingDescriptors& source, const RingDescriptors& t
     }
     const std::optional<RigidTransform> better =
         from.size() >= 4 ? absolute_orientation(from, to) : std::optional<RigidTransform>{};
-    if (!better || RigidTransform{better->rotation * pose.rotation.transpose(), {0, 0, 0}}.angle_rad() > 0.5) {
+    if (!better ||
+        RigidTransform{better->rotation * pose.rotation.transpose(), {0, 0, 0}}.angle_rad() > 0.5) {
       break;
     }
     pose = *better;
@@ -77,8 +78,8 @@ std::vector<PoseHypothesis> distinct(std::vector<PoseHypothesis> all, std::size_
 
 }  // namespace
 
-bool same_pose(const RigidTransform& a, const RigidTransform& b, const Eigen::Vector3d& center_mm, double turn_rad,
-               double shift_mm) {
+bool same_pose(const RigidTransform& a, const RigidTransform& b, const Eigen::Vector3d& center_mm,
+               double turn_rad, double shift_mm) {
   const RigidTransform turn{a.rotation * b.rotation.transpose(), {0, 0, 0}};
   return turn.angle_rad() < turn_rad && (a * center_mm - b * center_mm).norm() < shift_mm;
 }
@@ -102,15 +103,16 @@ std::vector<PoseHypothesis> align_pair(const ScanFeatures& source, const ScanFea
   parallel_for_each_index(
       tried,
       [&](std::size_t k) {
-        found[k].target_from_source = RingDescriptors::pose_of(source.descriptors, target.descriptors, matches[k]);
+        found[k].target_from_source =
+            RingDescriptors::pose_of(source.descriptors, target.descriptors, matches[k]);
         found[k].score = coarse_score(from, to, found[k].target_from_source, rough, false);
       },
       64);
 
   const double turn = options.distinct_turn_rad;
   const double shift_mm = options.distinct_shift * scale_mm;
-  found = distinct(std::move(found), static_cast<std::size_t>(options.most_consensus), from.centroid_mm, 0.5 * turn,
-                   0.5 * shift_mm);
+  found = distinct(std::move(found), static_cast<std::size_t>(options.most_consensus), from.centroid_mm,
+                   0.5 * turn, 0.5 * shift_mm);
   rough.most_samples = 1 << 30;
   parallel_for_each_index(
       found.size(),
@@ -125,7 +127,8 @@ std::vector<PoseHypothesis> align_pair(const ScanFeatures& source, const ScanFea
         }
       },
       4);
-  found = distinct(std::move(found), static_cast<std::size_t>(options.most_refined), from.centroid_mm, turn, shift_mm);
+  found = distinct(std::move(found), static_cast<std::size_t>(options.most_refined), from.centroid_mm, turn,
+                   shift_mm);
 
   EvidenceOptions close = rough;
   close.tolerance_mm = std::max(options.tolerance * scale_mm, 0.5 * to.coarse->spacing_mm);
@@ -147,7 +150,8 @@ std::vector<PoseHypothesis> align_pair(const ScanFeatures& source, const ScanFea
         found[k].score = coarse_score(from, to, found[k].target_from_source, close, true);
       },
       1);
-  return distinct(std::move(found), static_cast<std::size_t>(options.most_returned), from.centroid_mm, turn, shift_mm);
+  return distinct(std::move(found), static_cast<std::size_t>(options.most_returned), from.centroid_mm, turn,
+                  shift_mm);
 }
 
 }  // namespace dubsar

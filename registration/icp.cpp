@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright The Dubsar developers
-// Chen and Medioni 1992 (point-to-plane); Turk and Levoy 1994 (weights, no boundary pairs); Rusinkiewicz, A symmetric
-// objective function for ICP, ACM TOG 38 (2019).
+// Chen and Medioni 1992 (point-to-plane); Turk and Levoy 1994 (weights, no boundary pairs); Rusinkiewicz, A
+// symmetric objective function for ICP, ACM TOG 38 (2019).
 #include "registration/icp.h"
 
 #include <Eigen/Cholesky>
@@ -39,8 +39,8 @@ double robust_weight(double residual, double scale) {
   return v > 0 ? v * v : 0.0;
 }
 
-/// Pairs each sample of `from` with the nearest usable sample of `into`. `moving_is_from` tells which side the
-/// perturbation acts on. Both frames are given in the model frame.
+/// Pairs each sample of `from` with the nearest usable sample of `into`. `moving_is_from` tells which side
+/// the perturbation acts on. Both frames are given in the model frame.
 void accumulate(const SurfaceLevel& from, const RigidTransform& model_from_from, const SurfaceLevel& into,
                 const RigidTransform& model_from_into, bool moving_is_from, const Eigen::Vector3d& center_mm,
                 const IcpOptions& options, Sums& total) {
@@ -74,7 +74,8 @@ void accumulate(const SurfaceLevel& from, const RigidTransform& model_from_from,
           }
           const Eigen::Vector3d normal = model_from_into.rotation * n.cast<double>();
           const Eigen::Vector3d arm =
-              model_from_into * Eigen::Vector3d((moving_is_from ? p : into.grid.point(j)).cast<double>()) - center_mm;
+              model_from_into * Eigen::Vector3d((moving_is_from ? p : into.grid.point(j)).cast<double>()) -
+              center_mm;
           Vector6d jacobian;
           jacobian << arm.cross(normal), normal;
           if (!moving_is_from) {
@@ -94,8 +95,8 @@ void accumulate(const SurfaceLevel& from, const RigidTransform& model_from_from,
 
 }  // namespace
 
-IcpResult icp(const SurfaceLevel& source, std::span<const IcpTarget> targets, const RigidTransform& model_from_source,
-              const IcpOptions& options) {
+IcpResult icp(const SurfaceLevel& source, std::span<const IcpTarget> targets,
+              const RigidTransform& model_from_source, const IcpOptions& options) {
   IcpResult out;
   out.model_from_source = model_from_source;
   Eigen::Vector3d middle = Eigen::Vector3d::Zero();
@@ -107,11 +108,11 @@ IcpResult icp(const SurfaceLevel& source, std::span<const IcpTarget> targets, co
     Sums sums;
     out.center_mm = out.model_from_source * middle;
     for (const IcpTarget& target : targets) {
-      accumulate(source, out.model_from_source, *target.level, target.model_from_scanner, true, out.center_mm, options,
-                 sums);
+      accumulate(source, out.model_from_source, *target.level, target.model_from_scanner, true, out.center_mm,
+                 options, sums);
       if (options.two_way) {
-        accumulate(*target.level, target.model_from_scanner, source, out.model_from_source, false, out.center_mm,
-                   options, sums);
+        accumulate(*target.level, target.model_from_scanner, source, out.model_from_source, false,
+                   out.center_mm, options, sums);
       }
     }
     return sums;
@@ -131,7 +132,8 @@ IcpResult icp(const SurfaceLevel& source, std::span<const IcpTarget> targets, co
     const RigidTransform turn = RigidTransform::from_twist(step.head<3>(), Eigen::Vector3d::Zero());
     RigidTransform& pose = out.model_from_source;
     pose.rotation = turn.rotation * pose.rotation;
-    pose.translation_mm = turn.rotation * (pose.translation_mm - out.center_mm) + out.center_mm + step.tail<3>();
+    pose.translation_mm =
+        turn.rotation * (pose.translation_mm - out.center_mm) + out.center_mm + step.tail<3>();
     pose = pose.orthonormalised();
     sums = evaluate();
     if (step.head<3>().norm() * std::sqrt(radius2) + step.tail<3>().norm() < options.converged_mm) {

@@ -21,35 +21,37 @@ struct IcpTarget {
 };
 
 struct IcpOptions {
-  double reach_mm = 1.0;          ///< pairs farther apart are distant and dropped
-  double normal_cosine = 0.7;     ///< pairs whose normals agree less are dropped
-  double kernel_mm = 0.1;         ///< scale of the Tukey weight on the residual (its cut-off is 4.7 scales)
+  double reach_mm = 1.0;       ///< pairs farther apart are distant and dropped
+  double normal_cosine = 0.7;  ///< pairs whose normals agree less are dropped
+  double kernel_mm = 0.1;      ///< scale of the Tukey weight on the residual (its cut-off is 4.7 scales)
   int iterations = 15;
-  double converged_mm = 1e-5;     ///< stops when no point of the scan moves farther than this
-  bool two_way = false;           ///< also send the targets' samples into the source: symmetric, twice the work
+  double converged_mm = 1e-5;  ///< stops when no point of the scan moves farther than this
+  bool two_way = false;        ///< also send the targets' samples into the source: symmetric, twice the work
 };
 
-/// The end of an ICP run. The twist convention: left perturbation (omega rad, v mm) of model_from_source about
-/// `center_mm` in the model frame.
+/// The end of an ICP run. The twist convention: left perturbation (omega rad, v mm) of model_from_source
+/// about `center_mm` in the model frame.
 struct IcpResult {
   RigidTransform model_from_source;
   Eigen::Vector3d center_mm{0, 0, 0};
   int pairs = 0;
-  double weight = 0;              ///< sum of the weights of the pairs, robust weights included
-  double rms_mm = 0;              ///< weighted, of the point-to-plane residuals
-  Matrix6d normal_matrix = Matrix6d::Zero();  ///< sum of w J Jᵀ, lengths in mm; divide by the residual's variance
-  /// Smallest eigenvalue of the normal matrix per unit weight, turns scaled to displacement at the scan's rms radius: near
-  /// 0 when the scan can slide on its targets (plane, sphere, cylinder), up to 1/6 or so for a rugged one.
+  double weight = 0;  ///< sum of the weights of the pairs, robust weights included
+  double rms_mm = 0;  ///< weighted, of the point-to-plane residuals
+  Matrix6d normal_matrix =
+      Matrix6d::Zero();  ///< sum of w J Jᵀ, lengths in mm; divide by the residual's variance
+  /// Smallest eigenvalue of the normal matrix per unit weight, turns scaled to displacement at the scan's rms
+  /// radius: near 0 when the scan can slide on its targets (plane, sphere, cylinder), up to 1/6 or so for a
+  /// rugged one.
   double stability = 0;
   Vector6d weakest = Vector6d::Zero();  ///< the direction of that eigenvalue, turns scaled likewise
   bool converged = false;
 };
 
-/// Weighted ICP (seed 001, 3.2): pairs by projective lookup in the targets' grids; no boundary samples, no distant pairs,
-/// compatible normals; weights from the sample distances times a Tukey weight; point-to-plane against the mean of both
-/// normals (after Rusinkiewicz 2019), solved by Levenberg-damped Gauss-Newton, so that directions that nothing holds stay
-/// where they were. `source` is the level of the moved scan that matches the targets' resolution. Deterministic for any
-/// number of threads.
+/// Weighted ICP (seed 001, 3.2): pairs by projective lookup in the targets' grids; no boundary samples, no
+/// distant pairs, compatible normals; weights from the sample distances times a Tukey weight; point-to-plane
+/// against the mean of both normals (after Rusinkiewicz 2019), solved by Levenberg-damped Gauss-Newton, so
+/// that directions that nothing holds stay where they were. `source` is the level of the moved scan that
+/// matches the targets' resolution. Deterministic for any number of threads.
 [[nodiscard]] IcpResult icp(const SurfaceLevel& source, std::span<const IcpTarget> targets,
                             const RigidTransform& model_from_source, const IcpOptions& options);
 

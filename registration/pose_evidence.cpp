@@ -9,16 +9,20 @@ namespace dubsar {
 
 namespace {
 
-constexpr float kCompatible = 0.7F;      ///< cosine between normals of one surface
-constexpr float kFacing = 0.5F;          ///< cosine to the camera from which a scanner surely gets a return
-constexpr int kSeenThroughReach = 1;     ///< cells around a place that must all be seen through
-constexpr int kMissingReach = 2;         ///< cells around a place that must all be empty
+constexpr float kCompatible = 0.7F;   ///< cosine between normals of one surface
+constexpr float kFacing = 0.5F;       ///< cosine to the camera from which a scanner surely gets a return
+constexpr int kSeenThroughReach = 1;  ///< cells around a place that must all be seen through
+constexpr int kMissingReach = 2;      ///< cells around a place that must all be empty
 
 }  // namespace
 
 PoseEvidence pose_evidence(const SurfaceLevel& source, const SurfaceLevel& target,
-                           const RigidTransform& target_from_source, const EvidenceOptions& options) {
+                           const RigidTransform& target_from_source, const EvidenceOptions& options,
+                           std::vector<std::uint8_t>* close_marks) {
   PoseEvidence out;
+  if (close_marks != nullptr) {
+    close_marks->assign(source.samples.size(), 0);
+  }
   const Eigen::Matrix3f rotation = target_from_source.rotation.cast<float>();
   const Eigen::Vector3f shift = target_from_source.translation_mm.cast<float>();
   const Eigen::Vector3f up = (-target.grid.view.direction).cast<float>();
@@ -27,13 +31,17 @@ PoseEvidence pose_evidence(const SurfaceLevel& source, const SurfaceLevel& targe
   const std::size_t count = source.samples.size();
   const std::size_t used = std::min(count, static_cast<std::size_t>(options.most_samples));
   for (std::size_t k = 0; k < used; ++k) {
-    const SurfaceSample& sample = source.samples[(2 * k + 1) * count / (2 * used)];
+    const std::size_t i = (2 * k + 1) * count / (2 * used);
+    const SurfaceSample& sample = source.samples[i];
     const Eigen::Vector3f p = rotation * sample.position_mm + shift;
     const Eigen::Vector3f n = rotation * sample.normal;
     ++out.sent;
     const DepthRaster::Cell* cell = target.raster.at(p);
     if (cell == nullptr || cell->sample < 0) {
-      out.missing += n.dot(up) > kFacing && target.raster.empty_around(p, kMissingReach) ? 1 : 0;
+      out.missing +=
+          n.dot(up) > kFacing && target.raster.in_field(p) && target.raster.empty_around(p, kMissingReach)
+              ? 1
+              : 0;
       continue;
     }
     const auto j = static_cast<std::size_t>(cell->sample);
@@ -49,6 +57,9 @@ PoseEvidence pose_evidence(const SurfaceLevel& source, const SurfaceLevel& targe
     const float residual = n_target.dot(p - target.grid.point(j));
     if (std::abs(residual) <= tolerance && n.dot(n_target) > kCompatible) {
       ++out.close;
+      if (close_marks != nullptr) {
+        (*close_marks)[i] = 1;
+      }
       out.sum_r2_mm2 += static_cast<double>(residual * residual);
     } else {
       ++out.apart;

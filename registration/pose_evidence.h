@@ -7,13 +7,15 @@
 
 namespace dubsar {
 
-/// What the samples of one scan say about its pose against what another scan's camera saw, counted in samples.
+/// What the samples of one scan say about its pose against what another scan's camera saw, counted in
+/// samples.
 struct PoseEvidence {
-  int sent = 0;      ///< samples that were looked at
-  int close = 0;     ///< on the other's surface within the tolerance, normals compatible
-  int apart = 0;     ///< near the other's surface (within the band), but off by more than the tolerance, or turned
-  int in_front = 0;  ///< the other's rays went through this place: free space
-  int missing = 0;   ///< facing the other's camera, nothing in front, and yet it saw nothing there
+  int sent = 0;   ///< samples that were looked at
+  int close = 0;  ///< on the other's surface within the tolerance, normals compatible
+  int apart =
+      0;  ///< near the other's surface (within the band), but off by more than the tolerance, or turned
+  int in_front = 0;       ///< the other's rays went through this place: free space
+  int missing = 0;        ///< facing the other's camera, nothing in front, and yet it saw nothing there
   double sum_r2_mm2 = 0;  ///< of the point-to-plane residuals of the close samples
 
   void add(const PoseEvidence& b) {
@@ -32,6 +34,10 @@ struct PoseEvidence {
   [[nodiscard]] double violation() const {
     return close + apart + in_front == 0 ? 0.0 : static_cast<double>(in_front) / (close + apart + in_front);
   }
+  /// Of the samples that the other camera should have seen, how many it did not.
+  [[nodiscard]] double absence() const {
+    return close + missing == 0 ? 0.0 : static_cast<double>(missing) / (close + missing);
+  }
 };
 
 struct EvidenceOptions {
@@ -40,8 +46,11 @@ struct EvidenceOptions {
   int most_samples = 1 << 30;
 };
 
-/// Sends `source`'s samples into `target` (target_from_source) and counts.
+/// Sends `source`'s samples into `target` (target_from_source) and counts. When `close_marks` is given it
+/// becomes [samples], 1 where a sample was close.
 [[nodiscard]] PoseEvidence pose_evidence(const SurfaceLevel& source, const SurfaceLevel& target,
-                                         const RigidTransform& target_from_source, const EvidenceOptions& options);
+                                         const RigidTransform& target_from_source,
+                                         const EvidenceOptions& options,
+                                         std::vector<std::uint8_t>* close_marks = nullptr);
 
 }  // namespace dubsar

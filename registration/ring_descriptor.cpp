@@ -30,7 +30,8 @@ std::optional<Eigen::Vector3f> plane_normal(const SurfaceLevel& level, const Eig
   Eigen::Vector3f sum = Eigen::Vector3f::Zero();
   int count = 0;
   level.lookup->for_each_near(p, radius_mm, [&](std::size_t i) {
-    if ((level.grid.point(i) - p).squaredNorm() <= radius_mm * radius_mm && level.normals[i].dot(hint) > 0.3F) {
+    if ((level.grid.point(i) - p).squaredNorm() <= radius_mm * radius_mm &&
+        level.normals[i].dot(hint) > 0.3F) {
       sum += level.normals[i];
       ++count;
     }
@@ -41,7 +42,8 @@ std::optional<Eigen::Vector3f> plane_normal(const SurfaceLevel& level, const Eig
   return sum.normalized();
 }
 
-/// Mean heights over the tangent plane in rings × sectors, in units of the radius; nothing when too much is missing.
+/// Mean heights over the tangent plane in rings × sectors, in units of the radius; nothing when too much is
+/// missing.
 std::optional<Heights> ring_heights(const SurfaceLevel& level, const Frame& frame, float radius_mm,
                                     double least_filled) {
   Heights sum{};
@@ -111,7 +113,8 @@ struct Basis {
 
 }  // namespace
 
-RingDescriptors::RingDescriptors(const ScanSurface& surface, double scale_mm, const RingDescriptorOptions& options) {
+RingDescriptors::RingDescriptors(const ScanSurface& surface, double scale_mm,
+                                 const RingDescriptorOptions& options) {
   const SurfaceLevel& level = *surface.medium;
   std::vector<std::uint32_t> usable;
   for (std::size_t i = 0; i < level.usable.size(); ++i) {
@@ -207,11 +210,13 @@ std::vector<RingDescriptors::Match> RingDescriptors::match(const RingDescriptors
       const auto& [d2, t] = best[static_cast<std::size_t>(k)];
       if (t >= 0) {
         // Flat places resemble all flat places: what counts is the distance against the shape's own strength.
-        out.push_back({static_cast<int>(s), t, std::sqrt(std::max(d2, 0.0F) / (own + target_norm2[t] + 1e-6F))});
+        out.push_back(
+            {static_cast<int>(s), t, std::sqrt(std::max(d2, 0.0F) / (own + target_norm2[t] + 1e-6F))});
       }
     }
   }
-  std::stable_sort(out.begin(), out.end(), [](const Match& a, const Match& b) { return a.distance < b.distance; });
+  std::stable_sort(out.begin(), out.end(),
+                   [](const Match& a, const Match& b) { return a.distance < b.distance; });
   return out;
 }
 
@@ -238,7 +243,8 @@ RigidTransform RingDescriptors::pose_of(const RingDescriptors& source, const Rin
     const double theta = 2 * kPi * k / kTurns;
     float value = 0;
     for (int h = 1; h < kHarmonics; ++h) {
-      const std::complex<float> wave(static_cast<float>(std::cos(h * theta)), static_cast<float>(-std::sin(h * theta)));
+      const std::complex<float> wave(static_cast<float>(std::cos(h * theta)),
+                                     static_cast<float>(-std::sin(h * theta)));
       value += (product[static_cast<std::size_t>(h)] * wave).real();
     }
     if (value > best) {

@@ -19,9 +19,9 @@ struct RingDescriptorOptions {
   int matches_per_keypoint = 3;
 };
 
-/// Shape around a point as heights over its tangent plane on rings at two radii. The magnitudes of the Fourier
-/// coefficients along each ring do not depend on how the surface is turned about the normal; their phases give the turn
-/// back once two points are matched, so that one match is a whole pose.
+/// Shape around a point as heights over its tangent plane on rings at two radii. The magnitudes of the
+/// Fourier coefficients along each ring do not depend on how the surface is turned about the normal; their
+/// phases give the turn back once two points are matched, so that one match is a whole pose.
 class RingDescriptors {
  public:
   static constexpr int kRings = 4;
@@ -31,7 +31,8 @@ class RingDescriptors {
   static constexpr int kLength = kScales * kRings * kHarmonics;
 
   RingDescriptors() = default;
-  /// Keypoints spread over the medium level of the scan; `scale_mm` must be the same for all scans to be matched.
+  /// Keypoints spread over the medium level of the scan; `scale_mm` must be the same for all scans to be
+  /// matched.
   RingDescriptors(const ScanSurface& surface, double scale_mm, const RingDescriptorOptions& options);
 
   [[nodiscard]] std::size_t size() const { return keypoints_.size(); }
@@ -45,7 +46,8 @@ class RingDescriptors {
   /// The nearest target descriptors of each source keypoint, best matches first.
   [[nodiscard]] static std::vector<Match> match(const RingDescriptors& source, const RingDescriptors& target,
                                                 const RingDescriptorOptions& options);
-  /// target_from_source that lays keypoint m.source onto m.target, normals together, turned as the phases say.
+  /// target_from_source that lays keypoint m.source onto m.target, normals together, turned as the phases
+  /// say.
   [[nodiscard]] static RigidTransform pose_of(const RingDescriptors& source, const RingDescriptors& target,
                                               const Match& m);
 

@@ -22,17 +22,18 @@ constexpr double kLeastBlockShare = 0.7;
 constexpr double kRasterCell = 1.5;
 constexpr std::array<std::array<int, 2>, 4> kFourNeighbours{{{0, 1}, {0, -1}, {1, 0}, {-1, 0}}};
 
-/// Decimates by averaging blocks of stride × stride samples that lie on the sheet of the block's middle sample.
-/// full[i] tells which blocks are complete.
-RangeGrid averaged(const RangeGrid& grid, const std::vector<std::uint8_t>& keep, int stride, double spacing_mm,
-                   std::vector<std::uint8_t>& full) {
+/// Decimates by averaging blocks of stride × stride samples that lie on the sheet of the block's middle
+/// sample. full[i] tells which blocks are complete.
+RangeGrid averaged(const RangeGrid& grid, const std::vector<std::uint8_t>& keep, int stride,
+                   double spacing_mm, std::vector<std::uint8_t>& full) {
   RangeGrid out;
   out.allocate((grid.rows + stride - 1) / stride, (grid.cols + stride - 1) / stride);
   out.spacing_mm = spacing_mm * stride;
   out.view = grid.view;
   out.view.motion_per_row_mm *= stride;
   full.assign(out.size(), 0);
-  const float reach2 = std::pow(kStepFactor * 0.5F * static_cast<float>(spacing_mm) * static_cast<float>(stride), 2.0F);
+  const float reach2 =
+      std::pow(kStepFactor * 0.5F * static_cast<float>(spacing_mm) * static_cast<float>(stride), 2.0F);
   parallel_for_each_index(
       static_cast<std::size_t>(out.rows),
       [&](std::size_t r) {
@@ -86,7 +87,8 @@ RangeGrid averaged(const RangeGrid& grid, const std::vector<std::uint8_t>& keep,
 }
 
 /// Mean of the normals over the 3×3 neighbours on the same sheet.
-std::vector<Eigen::Vector3f> smoothed_normals(const RangeGrid& grid, const std::vector<Eigen::Vector3f>& normals) {
+std::vector<Eigen::Vector3f> smoothed_normals(const RangeGrid& grid,
+                                              const std::vector<Eigen::Vector3f>& normals) {
   std::vector<Eigen::Vector3f> out(normals.size(), Eigen::Vector3f::Zero());
   const float step2 = std::pow(kStepFactor * static_cast<float>(grid.spacing_mm), 2.0F);
   parallel_for_each_index(
@@ -118,15 +120,16 @@ std::vector<Eigen::Vector3f> smoothed_normals(const RangeGrid& grid, const std::
 }
 
 /// `count` of the indices in `from`, evenly spread over their order.
-void take_spread(const std::vector<std::uint32_t>& from, std::size_t count, std::vector<std::uint32_t>& into) {
+void take_spread(const std::vector<std::uint32_t>& from, std::size_t count,
+                 std::vector<std::uint32_t>& into) {
   count = std::min(count, from.size());
   for (std::size_t k = 0; k < count; ++k) {
     into.push_back(from[(2 * k + 1) * from.size() / (2 * count)]);
   }
 }
 
-/// Points on crease edges and in their neighbourhoods, and the rest spread evenly (seed 001, 3.2: edges suffice at high
-/// resolution; a smooth object has few).
+/// Points on crease edges and in their neighbourhoods, and the rest spread evenly (seed 001, 3.2: edges
+/// suffice at high resolution; a smooth object has few).
 void choose_samples(SurfaceLevel& level, int count, const ScanSurfaceOptions& options) {
   const RangeGrid& grid = level.grid;
   const auto turns = static_cast<float>(std::cos(options.crease_angle_rad));
@@ -138,8 +141,10 @@ void choose_samples(SurfaceLevel& level, int count, const ScanSurfaceOptions& op
     }
     float sum = 0;
     for (const auto& [dr, dc] : kFourNeighbours) {
-      const std::size_t j = grid.index(grid.row_of(i) + dr, grid.col_of(i) + dc);  // inside: i is no boundary sample
-      sum += 1.0F / std::max((grid.point(j) - grid.point(i)).norm(), 1e-3F * static_cast<float>(grid.spacing_mm));
+      const std::size_t j =
+          grid.index(grid.row_of(i) + dr, grid.col_of(i) + dc);  // inside: i is no boundary sample
+      sum += 1.0F /
+             std::max((grid.point(j) - grid.point(i)).norm(), 1e-3F * static_cast<float>(grid.spacing_mm));
       if (!level.normals[j].isZero() && level.normals[j].dot(level.normals[i]) < turns) {
         crease[i] = 1;
       }
@@ -179,8 +184,9 @@ void choose_samples(SurfaceLevel& level, int count, const ScanSurfaceOptions& op
   }
 }
 
-std::unique_ptr<SurfaceLevel> make_level(const RangeGrid& grid, const std::vector<std::uint8_t>& keep, int stride,
-                                         double spacing_mm, int points, const ScanSurfaceOptions& options) {
+std::unique_ptr<SurfaceLevel> make_level(const RangeGrid& grid, const std::vector<std::uint8_t>& keep,
+                                         int stride, double spacing_mm, int points,
+                                         const ScanSurfaceOptions& options) {
   auto level = std::make_unique<SurfaceLevel>();
   std::vector<std::uint8_t> full;
   level->grid = averaged(grid, keep, stride, spacing_mm, full);
@@ -190,7 +196,9 @@ std::unique_ptr<SurfaceLevel> make_level(const RangeGrid& grid, const std::vecto
   level->usable.assign(level->grid.size(), 0);
   for (std::size_t i = 0; i < level->grid.size(); ++i) {
     level->usable[i] =
-        level->grid.valid[i] != 0 && full[i] != 0 && geometry.boundary[i] == 0 && !level->normals[i].isZero() ? 1 : 0;
+        level->grid.valid[i] != 0 && full[i] != 0 && geometry.boundary[i] == 0 && !level->normals[i].isZero()
+            ? 1
+            : 0;
   }
   level->lookup = std::make_unique<GridLookup>(level->grid, level->usable);
   level->raster = DepthRaster(level->grid, kRasterCell * level->spacing_mm);
@@ -207,7 +215,8 @@ double estimate_noise_mm(const RangeGrid& grid, const std::vector<std::uint8_t>&
   for (std::size_t i = 0; i < grid.size(); i += stride) {
     const int row = grid.row_of(i);
     const int col = grid.col_of(i);
-    if (col < 1 || col + 1 >= grid.cols || row >= grid.rows || keep[i] == 0 || keep[i - 1] == 0 || keep[i + 1] == 0) {
+    if (col < 1 || col + 1 >= grid.cols || row >= grid.rows || keep[i] == 0 || keep[i - 1] == 0 ||
+        keep[i + 1] == 0) {
       continue;
     }
     const Eigen::Vector3f a = grid.point(i - 1) - grid.point(i);
@@ -254,7 +263,8 @@ double surface_scale_mm(const RangeGrid& grid) {
   return std::sqrt(area_mm2);
 }
 
-std::shared_ptr<const ScanSurface> make_scan_surface(const RangeGrid& grid, const std::vector<std::uint8_t>& ignore,
+std::shared_ptr<const ScanSurface> make_scan_surface(const RangeGrid& grid,
+                                                     const std::vector<std::uint8_t>& ignore,
                                                      const ScanSurfaceOptions& options) {
   auto out = std::make_shared<ScanSurface>();
   const std::vector<std::uint8_t> keep = kept_samples(grid, ignore);
@@ -272,7 +282,8 @@ std::shared_ptr<const ScanSurface> make_scan_surface(const RangeGrid& grid, cons
     return std::clamp(static_cast<int>(std::lround(spacing_mm / out->spacing_mm)), 1, 1 << 12);
   };
   int fine = 1;
-  while (out->valid / (static_cast<std::size_t>(fine) * static_cast<std::size_t>(fine)) > options.most_fine_samples) {
+  while (out->valid / (static_cast<std::size_t>(fine) * static_cast<std::size_t>(fine)) >
+         options.most_fine_samples) {
     ++fine;
   }
   const int medium = std::max(fine, stride_for(options.medium_spacing * out->scale_mm));

@@ -17,53 +17,58 @@ namespace dubsar {
 struct SurfaceSample {
   Eigen::Vector3f position_mm;
   Eigen::Vector3f normal;  ///< unit, out of the surface
-  float weight = 1;        ///< mean of 1/d_ik over its neighbours, relative to the scan's mean (seed 001, 3.2)
+  float weight = 1;  ///< mean of 1/d_ik over its neighbours, relative to the scan's mean (seed 001, 3.2)
 };
 
-/// A scan at one resolution. Cells of the decimated grid average the samples of a block that lie on one sheet.
+/// A scan at one resolution. Cells of the decimated grid average the samples of a block that lie on one
+/// sheet.
 struct SurfaceLevel {
-  RangeGrid grid;                        ///< geometry only
-  std::vector<Eigen::Vector3f> normals;  ///< [rows*cols], smoothed over the 3×3 neighbours of the same sheet; zero if none
-  /// [rows*cols], 1 where a sample may be matched: it has a normal and lies neither on the boundary nor beside a depth
-  /// step, where the spot's centroid shifts with the camera.
+  RangeGrid grid;  ///< geometry only
+  std::vector<Eigen::Vector3f>
+      normals;  ///< [rows*cols], smoothed over the 3×3 neighbours of the same sheet; zero if none
+  /// [rows*cols], 1 where a sample may be matched: it has a normal and lies neither on the boundary nor
+  /// beside a depth step, where the spot's centroid shifts with the camera.
   std::vector<std::uint8_t> usable;
   std::vector<SurfaceSample> samples;  ///< the points that registration sends into other scans
   std::unique_ptr<GridLookup> lookup;  ///< over the usable samples
-  DepthRaster raster;                  ///< over all valid samples: what this scan's camera saw, and in front of what
+  DepthRaster raster;  ///< over all valid samples: what this scan's camera saw, and in front of what
   double spacing_mm = 0;
 };
 
 struct ScanSurfaceOptions {
-  /// Length that the coarse levels and descriptors are scaled by (about the size of the object); 0: this scan's own.
+  /// Length that the coarse levels and descriptors are scaled by (about the size of the object); 0: this
+  /// scan's own.
   double scale_mm = 0;
   std::size_t most_fine_samples = 300000;  ///< the finest level is decimated until it has no more than this
   int fine_points = 8000;                  ///< how many samples each level sends
   int medium_points = 2500;
   int coarse_points = 500;
-  double medium_spacing = 0.01;      ///< of scale_mm
-  double coarse_spacing = 0.025;     ///< of scale_mm
-  double crease_angle_rad = 0.35;    ///< a normal that turns by more than this to a neighbour marks a crease edge
-  double most_crease_share = 0.6;    ///< of the samples that a level sends; the rest are spread evenly
+  double medium_spacing = 0.01;   ///< of scale_mm
+  double coarse_spacing = 0.025;  ///< of scale_mm
+  double crease_angle_rad =
+      0.35;  ///< a normal that turns by more than this to a neighbour marks a crease edge
+  double most_crease_share = 0.6;  ///< of the samples that a level sends; the rest are spread evenly
 };
 
-/// What registration keeps of a scan: three resolutions with normals, lookups and the samples to be matched. Immutable;
-/// the full grid is not referred to.
+/// What registration keeps of a scan: three resolutions with normals, lookups and the samples to be matched.
+/// Immutable; the full grid is not referred to.
 struct ScanSurface {
   std::unique_ptr<SurfaceLevel> fine, medium, coarse;
   Eigen::Vector3d centroid_mm{0, 0, 0};  ///< of the usable samples, scanner frame
   Eigen::Vector3d toward_camera{0, 0, 1};
-  double spacing_mm = 0;   ///< µ of the full grid
-  double noise_mm = 0;     ///< of one full-resolution sample along the view, from second differences
-  double extent_mm = 0;    ///< root mean square distance of the samples from the centroid, times two
-  double scale_mm = 0;     ///< that the levels were made for
-  std::size_t valid = 0;   ///< samples of the full grid that were entered
+  double spacing_mm = 0;  ///< µ of the full grid
+  double noise_mm = 0;    ///< of one full-resolution sample along the view, from second differences
+  double extent_mm = 0;   ///< root mean square distance of the samples from the centroid, times two
+  double scale_mm = 0;    ///< that the levels were made for
+  std::size_t valid = 0;  ///< samples of the full grid that were entered
 };
 
 /// Length to scale by: the square root of the area that the scan saw, mm. 0 for an empty grid.
 [[nodiscard]] double surface_scale_mm(const RangeGrid& grid);
 
-/// Samples with ignore[i] != 0 (pins, arms) are left out when `ignore` is not empty. Non-finite samples count as no
-/// return. Spacing is estimated where the grid does not know it. An empty grid gives levels without samples.
+/// Samples with ignore[i] != 0 (pins, arms) are left out when `ignore` is not empty. Non-finite samples count
+/// as no return. Spacing is estimated where the grid does not know it. An empty grid gives levels without
+/// samples.
 [[nodiscard]] std::shared_ptr<const ScanSurface> make_scan_surface(const RangeGrid& grid,
                                                                    const std::vector<std::uint8_t>& ignore,
                                                                    const ScanSurfaceOptions& options);

@@ -83,7 +83,8 @@ std::map<std::string, RigidTransform> read_conf(const std::filesystem::path& pat
 std::optional<std::filesystem::path> data_folder() {
   const char* set = std::getenv("DUBSAR_DATA");
   const std::filesystem::path folder =
-      set != nullptr ? std::filesystem::path(set) : std::filesystem::path(DUBSAR_SOURCE_DIR) / ".." / "shared" / "data";
+      set != nullptr ? std::filesystem::path(set)
+                     : std::filesystem::path(DUBSAR_SOURCE_DIR) / ".." / "shared" / "data";
   return std::filesystem::is_directory(folder) ? std::optional(folder) : std::nullopt;
 }
 

@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "registration/model_fit.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/parallel.h"
+#include "registration/global_align.h"
+
+namespace dubsar {
+
+namespace {
+
+constexpr double kFreeSpaceWeight = 2.0;
+
+struct Start {
+  RigidTransform pose;
+  double score = 0;
+};
+
+double coarse_score(const ScanSurface& scan, std::span<const ModelScan> model, const RigidTransform& pose,
+                    const EvidenceOptions& options) {
+  PoseEvidence sum;
+  int sent = 0;
+  for (const ModelScan& m : model) {
+    const RigidTransform m_from_scan = m.model_from_scanner.inverse() * pose;
+    const PoseEvidence out = pose_evidence(*scan.coarse, *m.surface->coarse, m_from_scan, options);
+    const PoseEvidence in = pose_evidence(*m.surface->coarse, *scan.coarse, m_from_scan.inverse(), options);
+    sent = std::max(sent, out.sent);
+    sum.add(out);
+    sum.add(in);
+  }
+  return sent == 0 ? 0.0 : (sum.close - kFreeSpaceWeight * sum.in_front) / static_cast<double>(sent);
+}
+
+/// The scans of the model that the scan overlaps in this pose.
+std::vector<std::size_t> touched(const ScanSurface& scan, std::span<const ModelScan> model,
+                                 const RigidTransform& pose, const EvidenceOptions& options, int least) {
+  std::vector<std::size_t> out;
+  for (std::size_t k = 0; k < model.size(); ++k) {
+    const RigidTransform m_from_scan = model[k].model_from_scanner.inverse() * pose;
+    const PoseEvidence e = pose_evidence(*scan.coarse, *model[k].surface->coarse, m_from_scan, options);
+    if (e.close >= least) {
+      out.push_back(k);
+    }
+  }
+  return out;
+}
+
+using LevelOf = std::unique_ptr<SurfaceLevel> ScanSurface::*;
+
+IcpResult icp_in_model(const ScanSurface& scan, std::span<const ModelScan> model,
+                       const std::vector<std::size_t>& members, LevelOf level, const RigidTransform& start,
+                       const IcpOptions& options) {
+  std::vector<IcpTarget> targets;
+  for (const std::size_t k : members) {
+    targets.push_back({(model[k].surface->*level).get(), model[k].model_from_scanner});
+  }
+  return icp(*(scan.*level), targets, start, options);
+}
+
+void keep_distinct(std::vector<Start>& starts, std::size_t most, const Eigen::Vector3d& center_mm,
+                   const ModelFitOptions& options, double scale_mm) {
+  std::stable_sort(starts.begin(), starts.end(),
+                   [](const Start& a, const Start& b) { return a.score > b.score; });
+  std::vector<Start> kept;
+  for (const Start& s : starts) {
+    if (kept.size() < most && std::none_of(kept.begin(), kept.end(), [&](const Start& k) {
+          return same_pose(s.pose, k.pose, center_mm, options.distinct_turn_rad,
+                           options.distinct_shift * scale_mm);
+        })) {
+      kept.push_back(s);
+    }
+  }
+  starts = std::move(kept);
+}
+
+}  // namespace
+
+double residual_sigma_mm(const ScanSurface& a, const ScanSurface& b, const ModelFitOptions& options) {
+  const double spacing_mm = std::max(a.fine->spacing_mm, b.fine->spacing_mm);
+  return std::hypot(a.noise_mm, b.noise_mm, options.systematic_of_spacing * spacing_mm);
+}
+
+ModelFit judge_in_model(const ScanSurface& scan, std::span<const ModelScan> model,
+                        const RigidTransform& model_from_scanner, const ModelFitOptions& options) {
+  ModelFit out;
+  out.model_from_scanner = model_from_scanner;
+  std::vector<PoseEvidence> outward(model.size());
+  std::vector<PoseEvidence> inward(model.size());
+  std::vector<std::vector<std::uint8_t>> marks(model.size());
+  parallel_for_each_index(
+      model.size(),
+      [&](std::size_t k) {
+        const ScanSurface& other = *model[k].surface;
+        EvidenceOptions evidence;
+        evidence.tolerance_mm = options.tolerance_sigmas * residual_sigma_mm(scan, other, options);
+        evidence.band_mm = options.band * scan.scale_mm;
+        const RigidTransform other_from_scan = model[k].model_from_scanner.inverse() * model_from_scanner;
+        outward[k] = pose_evidence(*scan.fine, *other.fine, other_from_scan, evidence, &marks[k]);
+        inward[k] = pose_evidence(*other.fine, *scan.fine, other_from_scan.inverse(), evidence);
+      },
+      1);
+  const std::size_t samples = scan.fine->samples.size();
+  std::vector<std::uint8_t> on_model(samples, 0);
+  double sigma_sum = 0;
+  double sigma_weight = 0;
+  for (std::size_t k = 0; k < model.size(); ++k) {
+    out.outward.add(outward[k]);
+    out.inward.add(inward[k]);
+    const auto share = [](const PoseEvidence& e) {
+      return e.sent == 0 ? 0.0 : static_cast<double>(e.close) / e.sent;
+    };
+    const double pair = std::max(share(outward[k]), share(inward[k]));
+    out.best_pair_overlap = std::max(out.best_pair_overlap, pair);
+    for (std::size_t i = 0; i < samples; ++i) {
+      on_model[i] |= marks[k][i];
+    }
+    if (pair > 0.02) {
+      out.touching.push_back(k);
+    }
+    sigma_sum += (outward[k].close + 1e-9) * residual_sigma_mm(scan, *model[k].surface, options);
+    sigma_weight += outward[k].close + 1e-9;
+  }
+  out.residual_sigma_mm = sigma_weight > 0 ? sigma_sum / sigma_weight : 0;
+  if (samples > 0) {
+    const auto on = std::count(on_model.begin(), on_model.end(), std::uint8_t{1});
+    out.overlap = static_cast<double>(on) / static_cast<double>(samples);
+  }
+  const PoseEvidence both = out.both();
+  out.score = out.overlap * both.agreement() * std::max(0.0, 1.0 - kFreeSpaceWeight * both.violation()) *
+              (1.0 - both.absence());
+  return out;
+}
+
+std::vector<ModelFit> fit_to_model(const ScanSurface& scan, std::span<const ModelScan> model,
+                                   std::span<const RigidTransform> starts, const ModelFitOptions& options) {
+  if (scan.fine->samples.empty() || model.empty()) {
+    return {};
+  }
+  const double scale_mm = scan.scale_mm;
+  EvidenceOptions rough;
+  rough.tolerance_mm = std::max(options.coarse_tolerance * scale_mm, 0.5 * scan.coarse->spacing_mm);
+  rough.band_mm = options.band * scale_mm;
+  std::vector<Start> tried(starts.size());
+  parallel_for_each_index(
+      starts.size(),
+      [&](std::size_t k) {
+        tried[k] = {starts[k], coarse_score(scan, model, starts[k], rough)};
+      },
+      1);
+  keep_distinct(tried, static_cast<std::size_t>(2 * options.most_medium), scan.centroid_mm, options,
+                scale_mm);
+
+  IcpOptions step;
+  step.normal_cosine = 0.6;
+  step.converged_mm = 2e-4 * scale_mm;
+  parallel_for_each_index(
+      tried.size(),
+      [&](std::size_t k) {
+        IcpOptions coarse = step;
+        coarse.reach_mm = 0.06 * scale_mm;
+        coarse.kernel_mm = 0.012 * scale_mm;
+        EvidenceOptions wide = rough;
+        wide.tolerance_mm *= 2.0;
+        const auto members = touched(scan, model, tried[k].pose, wide, options.least_overlap_samples / 2);
+        tried[k].pose =
+            icp_in_model(scan, model, members, &ScanSurface::coarse, tried[k].pose, coarse).model_from_source;
+        tried[k].score = coarse_score(scan, model, tried[k].pose, rough);
+      },
+      1);
+  keep_distinct(tried, static_cast<std::size_t>(options.most_medium), scan.centroid_mm, options, scale_mm);
+
+  std::vector<ModelFit> fits(tried.size());
+  parallel_for_each_index(
+      tried.size(),
+      [&](std::size_t k) {
+        const auto members = touched(scan, model, tried[k].pose, rough, options.least_overlap_samples);
+        for (const double reach : {0.03, 0.012}) {
+          IcpOptions medium = step;
+          medium.reach_mm = std::max(reach * scale_mm, 2.0 * scan.medium->spacing_mm);
+          medium.kernel_mm = std::max(0.12 * reach * scale_mm, 0.2 * scan.medium->spacing_mm);
+          tried[k].pose = icp_in_model(scan, model, members, &ScanSurface::medium, tried[k].pose, medium)
+                              .model_from_source;
+        }
+        fits[k] = judge_in_model(scan, model, tried[k].pose, options);
+      },
+      1);
+  const auto better = [](const ModelFit& a, const ModelFit& b) { return a.score > b.score; };
+  std::stable_sort(fits.begin(), fits.end(), better);
+  if (fits.size() > static_cast<std::size_t>(options.most_fine)) {
+    fits.resize(static_cast<std::size_t>(options.most_fine));
+  }
+  for (ModelFit& fit : fits) {
+    IcpOptions fine;
+    fine.converged_mm = 0.02 * scan.noise_mm + 1e-4 * scan.spacing_mm;
+    IcpResult result;
+    result.model_from_source = fit.model_from_scanner;
+    for (const double sigmas : {4.0, 1.5}) {
+      fine.kernel_mm = sigmas * fit.residual_sigma_mm;
+      fine.reach_mm = std::max(2.0 * scan.fine->spacing_mm, 5.0 * fine.kernel_mm);
+      fine.iterations = 12;
+      result = icp_in_model(scan, model, fit.touching, &ScanSurface::fine, result.model_from_source, fine);
+    }
+    fit = judge_in_model(scan, model, result.model_from_source, options);
+    fit.icp = result;
+  }
+  std::stable_sort(fits.begin(), fits.end(), better);
+  std::vector<ModelFit> out;
+  for (ModelFit& fit : fits) {
+    if (std::none_of(out.begin(), out.end(), [&](const ModelFit& o) {
+          return same_pose(fit.model_from_scanner, o.model_from_scanner, scan.centroid_mm,
+                           options.distinct_turn_rad, options.distinct_shift * scale_mm);
+        })) {
+      out.push_back(std::move(fit));
+    }
+  }
+  return out;
+}
+
+}  // namespace dubsar

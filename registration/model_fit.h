@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "registration/icp.h"
+#include "registration/pose_evidence.h"
+#include "registration/scan_surface.h"
+
+namespace dubsar {
+
+/// A scan of the model that others are fitted to.
+struct ModelScan {
+  const ScanSurface* surface = nullptr;
+  RigidTransform model_from_scanner;
+};
+
+struct ModelFitOptions {
+  // Lengths are parts of the surfaces' common scale where they are not in millimetres.
+  int most_medium = 5;  ///< distinct starts that are refined on the medium level
+  int most_fine = 3;    ///< and on the fine one
+  double coarse_tolerance = 0.02;
+  double band = 0.08;
+  double distinct_turn_rad = 0.15;
+  double distinct_shift = 0.04;
+  double systematic_of_spacing =
+      0.2;                         ///< residual that sampling and calibration leave, of µ, beside the noise
+  double tolerance_sigmas = 3.0;   ///< of a sample that lies on the other surface
+  int least_overlap_samples = 30;  ///< of the coarse level, for a scan to take part in the fit of another
+};
+
+/// A pose of a scan in the model and everything that speaks for and against it.
+struct ModelFit {
+  RigidTransform model_from_scanner;
+  IcpResult icp;  ///< of the fine level
+  PoseEvidence
+      outward;  ///< the scan's samples among what the model's cameras saw (summed over the model's scans)
+  PoseEvidence inward;           ///< the model's samples in what the scan's camera saw
+  double overlap = 0;            ///< share of the scan's samples that lie on a surface of the model
+  double best_pair_overlap = 0;  ///< largest overlap with one scan of the model, over the smaller of the two
+  double residual_sigma_mm = 0;  ///< expected standard deviation of a residual
+  double score = 0;              ///< for comparing poses of one scan
+  std::vector<std::size_t> touching;  ///< positions in the model of the scans that it overlaps
+
+  [[nodiscard]] PoseEvidence both() const {
+    PoseEvidence sum = outward;
+    sum.add(inward);
+    return sum;
+  }
+};
+
+/// Expected standard deviation of a point-to-plane residual between two scans in their right places, fine
+/// level.
+[[nodiscard]] double residual_sigma_mm(const ScanSurface& a, const ScanSurface& b,
+                                       const ModelFitOptions& options);
+
+/// Counts the evidence for a given pose without moving it; `icp` stays empty.
+[[nodiscard]] ModelFit judge_in_model(const ScanSurface& scan, std::span<const ModelScan> model,
+                                      const RigidTransform& model_from_scanner,
+                                      const ModelFitOptions& options);
+
+/// Refines the starts from coarse to fine against all scans of the model at once. Returns distinct fits, best
+/// first; none is verified (verify_pose.h).
+[[nodiscard]] std::vector<ModelFit> fit_to_model(const ScanSurface& scan, std::span<const ModelScan> model,
+                                                 std::span<const RigidTransform> starts,
+                                                 const ModelFitOptions& options);
+
+}  // namespace dubsar

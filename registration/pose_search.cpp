@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "registration/pose_search.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+#include "core/parallel.h"
+#include "core/units.h"
+
+namespace dubsar {
+
+namespace {
+
+/// Adds fits that are no copies of known ones, best first.
+void merge(std::vector<ModelFit>& into, std::vector<ModelFit> more, const ScanSurface& scan,
+           const ModelFitOptions& options) {
+  for (ModelFit& fit : more) {
+    into.push_back(std::move(fit));
+  }
+  std::stable_sort(into.begin(), into.end(),
+                   [](const ModelFit& a, const ModelFit& b) { return a.score > b.score; });
+  std::vector<ModelFit> kept;
+  for (ModelFit& fit : into) {
+    if (std::none_of(kept.begin(), kept.end(), [&](const ModelFit& k) {
+          return same_pose(fit.model_from_scanner, k.model_from_scanner, scan.centroid_mm,
+                           options.distinct_turn_rad, options.distinct_shift * scan.scale_mm);
+        })) {
+      kept.push_back(std::move(fit));
+    }
+  }
+  into = std::move(kept);
+}
+
+/// The pose turned by `angle` about an axis through the scan's centroid.
+RigidTransform turned(const RigidTransform& pose, const Eigen::Vector3d& center, const Eigen::Vector3d& axis,
+                      double angle) {
+  const Eigen::Matrix3d r = Eigen::AngleAxisd(angle, axis).toRotationMatrix();
+  return {r * pose.rotation, r * (pose.translation_mm - center) + center};
+}
+
+/// Half turns about the principal axes of the model, and of the scan, as the tablet is nearly symmetric under
+/// them.
+std::vector<RigidTransform> half_turns(const ScanSurface& scan, std::span<const ModelScan> model,
+                                       const RigidTransform& pose) {
+  std::vector<Eigen::Vector3d> points;
+  for (const ModelScan& m : model) {
+    for (const SurfaceSample& s : m.surface->coarse->samples) {
+      points.push_back(m.model_from_scanner * Eigen::Vector3d(s.position_mm.cast<double>()));
+    }
+  }
+  for (const SurfaceSample& s : scan.coarse->samples) {
+    points.push_back(pose * Eigen::Vector3d(s.position_mm.cast<double>()));
+  }
+  std::vector<RigidTransform> out;
+  if (points.empty()) {
+    return out;
+  }
+  Eigen::Vector3d low = points.front();
+  Eigen::Vector3d high = points.front();
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3d& p : points) {
+    mean += p / static_cast<double>(points.size());
+  }
+  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+  for (const Eigen::Vector3d& p : points) {
+    spread += (p - mean) * (p - mean).transpose();
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(spread);
+  const Eigen::Matrix3d axes = eigen.eigenvectors();
+  low.setConstant(1e300);
+  high = -low;
+  for (const Eigen::Vector3d& p : points) {
+    const Eigen::Vector3d q = axes.transpose() * p;
+    low = low.cwiseMin(q);
+    high = high.cwiseMax(q);
+  }
+  // The middle of the extent, not the mean: what was scanned often lies on one side.
+  const Eigen::Vector3d middle = axes * (0.5 * (low + high));
+  for (int k = 0; k < 3; ++k) {
+    out.push_back(turned(pose, middle, axes.col(k), kPi));
+    out.push_back(turned(pose, pose * scan.centroid_mm, axes.col(k), kPi));
+  }
+  return out;
+}
+
+bool near_asked(const RigidTransform& pose, const PoseHints& hints, const ScanSurface& scan,
+                const PoseSearchOptions& options) {
+  if (!hints.asked) {
+    return true;
+  }
+  // Two hand turns stand between two placements.
+  const double sigmas = options.prior_sigmas * std::sqrt(2.0);
+  const RigidTransform turn{pose.rotation * hints.asked->rotation.transpose(), {0, 0, 0}};
+  const double lever = hints.hand_sigma_rad * scan.scale_mm;
+  return turn.angle_rad() <= sigmas * hints.hand_sigma_rad &&
+         (pose * scan.centroid_mm - *hints.asked * scan.centroid_mm).norm() <=
+             sigmas * std::hypot(hints.hand_sigma_mm, lever);
+}
+
+/// The asked pose and turns about it, within what hands do.
+std::vector<RigidTransform> around_asked(const PoseHints& hints, const ScanSurface& scan) {
+  std::vector<RigidTransform> out{*hints.asked};
+  const Eigen::Vector3d center = *hints.asked * scan.centroid_mm;
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const double side : {-1.0, 1.0}) {
+      out.push_back(
+          turned(*hints.asked, center, Eigen::Vector3d::Unit(axis), 1.2 * side * hints.hand_sigma_rad));
+    }
+  }
+  return out;
+}
+
+bool enough(const FoundPose& found, const PoseSearchOptions& options) {
+  return found.verdict.status == PoseStatus::kRegistered &&
+         found.fits.front().overlap >= options.enough_overlap &&
+         found.fits.front().both().agreement() >= options.enough_agreement;
+}
+
+}  // namespace
+
+FoundPose search_pose(const ScanSurface& scan, std::span<const ModelScan> model, const PoseHints& hints,
+                      const PairHypotheses& pair_hypotheses, const PoseSearchOptions& options,
+                      const JobContext& job) {
+  FoundPose found;
+  const auto look = [&](std::span<const RigidTransform> starts) {
+    std::vector<ModelFit> fits = fit_to_model(scan, model, starts, options.fit);
+    std::erase_if(fits,
+                  [&](const ModelFit& f) { return !near_asked(f.model_from_scanner, hints, scan, options); });
+    merge(found.fits, std::move(fits), scan, options.fit);
+    found.verdict = verify_pose(found.fits, options.verify);
+  };
+
+  if (hints.stage) {
+    const RigidTransform& stage = *hints.stage;
+    std::vector<ModelFit> fits = fit_to_model(scan, model, {&stage, 1}, options.fit);
+    std::erase_if(fits, [&](const ModelFit& f) {
+      return !same_pose(
+          f.model_from_scanner, stage, scan.centroid_mm,
+          options.stage_sigmas * std::max(hints.stage_sigma_rad, 1e-4) + 0.002,
+          options.stage_sigmas * std::max(hints.stage_sigma_mm, 1e-3) + 2.0 * scan.fine->spacing_mm);
+    });
+    PoseVerdict verdict = verify_pose(fits, options.verify);
+    if (verdict.status == PoseStatus::kRegistered) {
+      return {std::move(fits), verdict, false};
+    }
+    ModelFit as_told = judge_in_model(scan, model, stage, options.fit);
+    if (consistent_pose(as_told, options.verify)) {
+      return {{std::move(as_told)}, {PoseStatus::kRegistered, {}}, true};
+    }
+    found.verdict = {PoseStatus::kUnsure,
+                     "it contradicts the stage's pose; check that the tablet did not move between the scans"};
+    found.fits.push_back(std::move(as_told));
+    return found;
+  }
+  if (!hints.starts.empty()) {
+    look(hints.starts);
+    if (enough(found, options)) {
+      return found;
+    }
+  }
+  if (hints.asked) {
+    look(around_asked(hints, scan));
+    if (enough(found, options)) {
+      return found;
+    }
+  }
+  for (std::size_t begin = 0; begin < model.size() && !job.cancelled(); begin += options.batch) {
+    const std::size_t end = std::min(begin + options.batch, model.size());
+    std::vector<std::vector<PoseHypothesis>> hypotheses(end - begin);
+    parallel_for_each_index(
+        end - begin, [&](std::size_t k) { hypotheses[k] = pair_hypotheses(begin + k); }, 1);
+    std::vector<RigidTransform> starts;
+    for (std::size_t k = begin; k < end; ++k) {
+      for (const PoseHypothesis& h : hypotheses[k - begin]) {
+        starts.push_back(model[k].model_from_scanner * h.target_from_source);
+      }
+    }
+    look(starts);
+    if (enough(found, options)) {
+      break;
+    }
+  }
+  if (found.verdict.status == PoseStatus::kRegistered && !job.cancelled()) {
+    look(half_turns(scan, model, found.fits.front().model_from_scanner));
+  }
+  if (found.fits.empty()) {
+    found.verdict = verify_pose({}, options.verify);
+  }
+  return found;
+}
+
+}  // namespace dubsar

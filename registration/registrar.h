@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "core/job.h"
+#include "core/pin_set.h"
+#include "core/range_grid.h"
+#include "core/result.h"
+#include "core/scan_pose.h"
+#include "registration/pose_search.h"
+#include "registration/relaxation.h"
+#include "registration/scan_surface.h"
+
+namespace dubsar {
+
+struct RegistrationOptions {
+  ScanSurfaceOptions surface;
+  PoseSearchOptions search;
+  RelaxationOptions relaxation;
+  std::size_t least_samples = 300;  ///< a scan with fewer that can be matched is not registered
+  double most_unit_ratio = 30.0;    ///< scans whose sizes differ by more are in different units
+  double pair_variance =
+      4.0;  ///< residuals of neighbouring samples are not independent: variances count this often
+  int final_rounds = 2;  ///< of pairwise ICP and relaxation in finalize()
+};
+
+/// The online model: scans come one by one, each is registered against all that are in place, and all are
+/// relaxed together. A pose that is not certain is never accepted: the scan stays kUnsure or kFailed with its
+/// reason and is tried again whenever the model has grown. The first scan is the model frame (with a nominal
+/// pose, the model frame is its tablet frame); scans that do not connect to it form groups of their own, and
+/// poses() reports those of the largest. Keeps features of each scan, not its grid. Not thread-safe; uses all
+/// cores inside. Same scans in the same order, same bytes.
+class Registrar {
+ public:
+  explicit Registrar(RegistrationOptions options = {});
+  ~Registrar();
+  Registrar(Registrar&&) noexcept;
+  Registrar& operator=(Registrar&&) noexcept;
+  Registrar(const Registrar&) = delete;
+  Registrar& operator=(const Registrar&) = delete;
+
+  /// Registers a scan; one of the same id is replaced. `pins` may be null. The grid is not kept. When the job
+  /// is cancelled the scan stays in, failed, and finalize() or a later add() tries it again.
+  ScanPose add(int id, const std::shared_ptr<const RangeGrid>& grid, const PinSet* pins, JobContext& job);
+  /// All scans, by id.
+  [[nodiscard]] std::vector<ScanPose> poses() const;
+  /// Takes a scan out; the others keep their poses. False when there is none of this id.
+  bool remove(int id);
+  /// The operator's word. Locked: the scan stays exactly there, registered, whatever the surfaces say. Not
+  /// locked: a hint, good to a few degrees and millimetres, from which the scan is fitted and verified; also
+  /// unlocks. False when there is no such scan, the pose is not rigid, or the hint led to no verified pose.
+  bool set_pose(int id, const RigidTransform& model_from_scanner, bool locked);
+  /// Tries again what is not registered, measures all overlapping pairs anew from where the scans are,
+  /// relaxes, and judges every scan once more. kCancelled when the job was stopped; the model is then as it
+  /// was between two steps.
+  Status finalize(JobContext& job);
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace dubsar

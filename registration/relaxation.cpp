@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "registration/relaxation.h"
+
+#include <ceres/ceres.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace dubsar {
+
+namespace {
+
+/// Quaternion (x y z w) and translation of model_from_scanner, as Ceres moves them.
+struct Block {
+  std::array<double, 4> q{0, 0, 0, 1};
+  std::array<double, 3> t{0, 0, 0};
+};
+
+Block to_block(const RigidTransform& pose) {
+  const Eigen::Quaterniond q(pose.rotation);
+  return {{q.x(), q.y(), q.z(), q.w()},
+          {pose.translation_mm.x(), pose.translation_mm.y(), pose.translation_mm.z()}};
+}
+
+RigidTransform from_block(const Block& block) {
+  const Eigen::Quaterniond q(block.q[3], block.q[0], block.q[1], block.q[2]);
+  return {q.normalized().toRotationMatrix(), {block.t[0], block.t[1], block.t[2]}};
+}
+
+/// Whitened twist of a_from_b_measured · (a_from_b_now)⁻¹ about the centre in the frame of a.
+struct PairCost {
+  Eigen::Quaterniond measured_q;
+  Eigen::Vector3d measured_t, center;
+  Matrix6d root;
+
+  template <class T>
+  bool operator()(const T* qa_raw, const T* ta_raw, const T* qb_raw, const T* tb_raw, T* residual) const {
+    using Quaternion = Eigen::Quaternion<T>;
+    using Vector = Eigen::Matrix<T, 3, 1>;
+    const Quaternion qa = Eigen::Map<const Quaternion>(qa_raw);
+    const Quaternion qb = Eigen::Map<const Quaternion>(qb_raw);
+    const Vector ta = Eigen::Map<const Vector>(ta_raw);
+    const Vector tb = Eigen::Map<const Vector>(tb_raw);
+    // b_from_a, then a_from_b as measured.
+    const Quaternion back_q = qb.conjugate() * qa;
+    const Vector back_t = qb.conjugate() * (ta - tb);
+    const Quaternion q = measured_q.cast<T>() * back_q;
+    const Vector c = center.cast<T>();
+    const Vector moved = measured_q.cast<T>() * (back_q * c + back_t) + measured_t.cast<T>();
+    const T sign = q.w() < T(0) ? T(-2) : T(2);
+    Eigen::Matrix<T, 6, 1> twist;
+    twist << sign * q.vec(), moved - c;
+    Eigen::Map<Eigen::Matrix<T, 6, 1>> out(residual);
+    out = root.cast<T>() * twist;
+    return true;
+  }
+};
+
+/// The symmetric root of the information.
+Matrix6d root_of(const Matrix6d& information) {
+  const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(information);
+  return eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal() *
+         eigen.eigenvectors().transpose();
+}
+
+Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v) {
+  Eigen::Matrix3d m;
+  m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
+  return m;
+}
+
+/// Takes a twist about the model's origin to the twist about `center` of the same motion, both in the model
+/// frame.
+Matrix6d about(const Eigen::Vector3d& center) {
+  Matrix6d m = Matrix6d::Identity();
+  m.bottomLeftCorner<3, 3>() = -cross_matrix(center);
+  return m;
+}
+
+PairCost cost_of(const PairConstraint& pair) {
+  return {Eigen::Quaterniond(pair.a_from_b.rotation), pair.a_from_b.translation_mm, pair.center_mm,
+          root_of(pair.information)};
+}
+
+/// Median over the pairs of the mean square whitened residual: 1 when the pairs agree as well as they claim.
+double variance_factor(const std::vector<Block>& blocks, const std::vector<PairConstraint>& pairs) {
+  std::vector<double> squares;
+  for (const PairConstraint& pair : pairs) {
+    Vector6d r;
+    cost_of(pair)(blocks[pair.a].q.data(), blocks[pair.a].t.data(), blocks[pair.b].q.data(),
+                  blocks[pair.b].t.data(), r.data());
+    squares.push_back(r.squaredNorm() / 6.0);
+  }
+  if (squares.empty()) {
+    return 1.0;
+  }
+  const auto middle = squares.begin() + static_cast<std::ptrdiff_t>(squares.size() / 2);
+  std::nth_element(squares.begin(), middle, squares.end());
+  return std::max(1.0, *middle);
+}
+
+}  // namespace
+
+Result<std::vector<RelaxedPose>> relax(const std::vector<RigidTransform>& start,
+                                       const std::vector<bool>& fixed,
+                                       const std::vector<Eigen::Vector3d>& centers_mm,
+                                       const std::vector<PairConstraint>& pairs,
+                                       const RelaxationOptions& options, const JobContext& job) {
+  const std::size_t count = start.size();
+  std::vector<bool> held = fixed;
+  if (count > 0 && std::none_of(held.begin(), held.end(), [](bool h) { return h; })) {
+    held[0] = true;
+  }
+  std::vector<Block> blocks;
+  blocks.reserve(count);
+  for (const RigidTransform& pose : start) {
+    blocks.push_back(to_block(pose));
+  }
+  double factor = 1.0;
+  const bool free_scans = std::any_of(held.begin(), held.end(), [](bool h) { return !h; });
+  for (int pass = 0; pass < 2 && !pairs.empty() && free_scans; ++pass) {
+    if (job.cancelled()) {
+      return fail(ErrorKind::kCancelled, "relaxation was stopped");
+    }
+    factor = variance_factor(blocks, pairs);
+    ceres::Problem problem;
+    for (const PairConstraint& pair : pairs) {
+      auto* cost = new ceres::AutoDiffCostFunction<PairCost, 6, 4, 3, 4, 3>(new PairCost(cost_of(pair)));
+      auto* loss = new ceres::HuberLoss(options.huber_sigmas * std::sqrt(6.0 * factor));
+      problem.AddResidualBlock(cost, loss, blocks[pair.a].q.data(), blocks[pair.a].t.data(),
+                               blocks[pair.b].q.data(), blocks[pair.b].t.data());
+    }
+    for (std::size_t k = 0; k < count; ++k) {
+      if (!problem.HasParameterBlock(blocks[k].q.data())) {
+        continue;
+      }
+      problem.SetManifold(blocks[k].q.data(), new ceres::EigenQuaternionManifold());
+      if (held[k]) {
+        problem.SetParameterBlockConstant(blocks[k].q.data());
+        problem.SetParameterBlockConstant(blocks[k].t.data());
+      }
+    }
+    ceres::Solver::Options solver;
+    solver.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
+    solver.num_threads = 1;
+    solver.max_num_iterations = options.iterations;
+    solver.function_tolerance = 1e-12;
+    solver.parameter_tolerance = 1e-12;
+    solver.logging_type = ceres::SILENT;
+    ceres::Solver::Summary summary;
+    ceres::Solve(solver, &problem, &summary);
+    if (!summary.IsSolutionUsable()) {
+      return fail(ErrorKind::kInternal, "relaxation found no solution: " + summary.message);
+    }
+  }
+  factor = variance_factor(blocks, pairs);
+
+  // Normal equations of left twists about the model's origin: E(a_from_b) moves by the difference of both
+  // scans' twists.
+  std::vector<RelaxedPose> out(count);
+  std::vector<int> place(count, -1);
+  int unknowns = 0;
+  for (std::size_t k = 0; k < count; ++k) {
+    out[k].model_from_scanner = held[k] ? start[k] : from_block(blocks[k]);
+    if (!held[k]) {
+      place[k] = 6 * unknowns++;
+    }
+  }
+  if (unknowns == 0) {
+    return out;
+  }
+  Eigen::MatrixXd normal = 1e-9 * Eigen::MatrixXd::Identity(6 * unknowns, 6 * unknowns);
+  for (const PairConstraint& pair : pairs) {
+    const RigidTransform& a = out[pair.a].model_from_scanner;
+    Matrix6d turn = Matrix6d::Zero();
+    turn.topLeftCorner<3, 3>() = a.rotation.transpose();
+    turn.bottomRightCorner<3, 3>() = a.rotation.transpose();
+    const Matrix6d j = turn * about(a * pair.center_mm);
+    const Matrix6d h = j.transpose() * (pair.information / factor) * j;
+    const int pa = place[pair.a];
+    const int pb = place[pair.b];
+    if (pa >= 0) {
+      normal.block<6, 6>(pa, pa) += h;
+    }
+    if (pb >= 0) {
+      normal.block<6, 6>(pb, pb) += h;
+    }
+    if (pa >= 0 && pb >= 0) {
+      normal.block<6, 6>(pa, pb) -= h;
+      normal.block<6, 6>(pb, pa) -= h;
+    }
+  }
+  const Eigen::MatrixXd inverse = normal.ldlt().solve(Eigen::MatrixXd::Identity(6 * unknowns, 6 * unknowns));
+  for (std::size_t k = 0; k < count; ++k) {
+    if (place[k] >= 0) {
+      const Matrix6d to_center = about(out[k].model_from_scanner * centers_mm[k]);
+      out[k].covariance = to_center * inverse.block<6, 6>(place[k], place[k]) * to_center.transpose();
+    }
+  }
+  return out;
+}
+
+}  // namespace dubsar

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "core/job.h"
+#include "core/result.h"
+#include "core/rigid_transform.h"
+#include "registration/icp.h"
+
+namespace dubsar {
+
+/// What one pair of scans says about their relative pose. The twist convention: left perturbation of a_from_b
+/// (omega rad, v mm) about center_mm in the frame of scan a.
+struct PairConstraint {
+  std::size_t a = 0;  ///< position in the list of poses
+  std::size_t b = 0;
+  RigidTransform a_from_b;
+  Eigen::Vector3d center_mm{0, 0, 0};
+  Matrix6d information = Matrix6d::Zero();  ///< inverse covariance of the twist
+};
+
+struct RelaxationOptions {
+  double huber_sigmas = 3.0;  ///< a pair that is off by more pulls with constant force
+  int iterations = 50;
+};
+
+struct RelaxedPose {
+  RigidTransform model_from_scanner;
+  Matrix6d covariance =
+      Matrix6d::Zero();  ///< of the left twist about the given centre; zero for a fixed scan
+};
+
+/// Relaxes all poses together: a pose graph over the pairs (Ceres), robust, fixed scans untouched. `start`,
+/// `fixed` and `centers_mm` (in each scan's frame: what its covariance is about) run over the same scans; at
+/// least one is fixed, or the first counts as fixed. Covariances are scaled by how well the pairs agree with
+/// each other, never below what they claim. One thread; deterministic.
+[[nodiscard]] Result<std::vector<RelaxedPose>> relax(const std::vector<RigidTransform>& start,
+                                                     const std::vector<bool>& fixed,
+                                                     const std::vector<Eigen::Vector3d>& centers_mm,
+                                                     const std::vector<PairConstraint>& pairs,
+                                                     const RelaxationOptions& options, const JobContext& job);
+
+}  // namespace dubsar

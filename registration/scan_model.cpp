@@ -1,0 +1,344 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "registration/scan_model.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "registration/pin_detection.h"
+#include "registration/pin_matching.h"
+
+namespace dubsar {
+
+namespace {
+
+constexpr const char* kStopped = "registration was stopped; run it again";
+constexpr const char* kOtherGroup =
+    "it fits other scans, but not the largest group; scan what connects them, with at least 30 % overlap";
+
+bool size_is_possible(double a_mm, double b_mm, double most_ratio) {
+  return a_mm <= most_ratio * b_mm && b_mm <= most_ratio * a_mm;
+}
+
+}  // namespace
+
+void ScanModel::enter(int id, const RangeGrid* grid, const PinSet* pins) {
+  Scan scan;
+  scan.group = next_group_++;
+  const RangeGrid empty;
+  const RangeGrid& g = grid != nullptr ? *grid : empty;
+  scan.file = g.source;
+  scan.nominal = g.nominal;
+  if (scan.nominal && !scan.nominal->tablet_from_scanner.is_rigid()) {
+    scan.nominal.reset();
+  }
+  std::vector<std::uint8_t> ignore;
+  const double tip_mm = pins != nullptr ? pins->tip_diameter_mm : g.pin_tip_diameter_mm;
+  if (tip_mm > 0) {
+    const PinDetection detection = detect_pins(g, tip_mm, {});
+    scan.pins = detection.tips;
+    ignore = detection.mask;
+    if (pins != nullptr && pins->tips.contains(id)) {
+      scan.pins = labelled_tips(detection.tips, pins->tips.at(id), tip_mm);
+    }
+  }
+  scan.own_scale_mm = surface_scale_mm(g);
+  if (!std::isfinite(scan.own_scale_mm)) {
+    scan.own_scale_mm = 0;
+  }
+  if (scale_mm_ == 0) {
+    scale_mm_ = scan.own_scale_mm;
+  }
+  ScanSurfaceOptions surface = options_.surface;
+  surface.scale_mm = scale_mm_;
+  if (scan.nominal) {
+    scan.group_from_scanner = scan.nominal->tablet_from_scanner.orthonormalised();
+  }
+  if (!(scan.own_scale_mm > 0)) {
+    scan.reason = "the scan has no surface in it; scan it again";
+  } else if (!size_is_possible(scan.own_scale_mm, scale_mm_, options_.most_unit_ratio)) {
+    const double ratio = scan.own_scale_mm / scale_mm_;
+    scan.reason = "it is " + std::to_string(std::lround(std::max(ratio, 1.0 / ratio))) + " times " +
+                  (ratio > 1 ? "larger" : "smaller") +
+                  " than the scans before it: its numbers are in another unit; give the right --unit";
+  } else {
+    scan.features.surface = make_scan_surface(g, ignore, surface);
+    scan.features.descriptors =
+        RingDescriptors(*scan.features.surface, scale_mm_, options_.search.align.descriptors);
+    scan.usable = scan.features.surface->fine->samples.size() >= options_.least_samples;
+    if (!scan.usable) {
+      scan.reason =
+          "too few of its samples can be matched; scan it again, nearer or with more of the surface in view";
+    }
+  }
+  scans_[id] = std::move(scan);
+}
+
+bool ScanModel::remove(int id) {
+  const bool known = scans_.erase(id) > 0;
+  std::erase_if(pairs_, [&](const auto& e) { return e.first.first == id || e.first.second == id; });
+  std::erase_if(hypotheses_, [&](const auto& e) { return e.first.first == id || e.first.second == id; });
+  return known;
+}
+
+std::vector<int> ScanModel::members(int group) const {
+  std::vector<int> out;
+  for (const auto& [id, scan] : scans_) {
+    if (scan.usable && scan.group == group) {
+      out.push_back(id);
+    }
+  }
+  return out;
+}
+
+std::vector<int> ScanModel::groups_by_size() const {
+  std::map<int, std::pair<int, int>> size_and_first;  // group -> (members, lowest id)
+  for (const auto& [id, scan] : scans_) {
+    if (scan.usable) {
+      auto& [size, first] = size_and_first.try_emplace(scan.group, 0, id).first->second;
+      ++size;
+    }
+  }
+  std::vector<int> out;
+  for (const auto& [group, entry] : size_and_first) {
+    out.push_back(group);
+  }
+  std::stable_sort(out.begin(), out.end(), [&](int a, int b) {
+    const auto& [size_a, first_a] = size_and_first[a];
+    const auto& [size_b, first_b] = size_and_first[b];
+    return size_a != size_b ? size_a > size_b : first_a < first_b;
+  });
+  return out;
+}
+
+int ScanModel::main_group() const {
+  const std::vector<int> groups = groups_by_size();
+  return groups.empty() ? -1 : groups.front();
+}
+
+std::vector<ModelScan> ScanModel::model_of(const std::vector<int>& ids) const {
+  std::vector<ModelScan> out;
+  for (const int id : ids) {
+    const Scan& scan = scans_.at(id);
+    out.push_back({scan.features.surface.get(), scan.group_from_scanner});
+  }
+  return out;
+}
+
+PoseHints ScanModel::hints_for(const Scan& scan, const std::vector<int>& group_ids) const {
+  PoseHints hints;
+  std::optional<RigidTransform> group_from_tablet;
+  for (const int id : group_ids) {
+    const Scan& other = scans_.at(id);
+    if (scan.nominal && other.nominal) {
+      const RigidTransform frame = other.group_from_scanner * other.nominal->tablet_from_scanner.inverse();
+      if (!group_from_tablet) {
+        group_from_tablet = frame;
+      }
+      if (!hints.stage && other.nominal->placement == scan.nominal->placement) {
+        hints.stage = (frame * scan.nominal->tablet_from_scanner).orthonormalised();
+        hints.stage_sigma_mm = std::hypot(scan.nominal->sigma_mm, other.nominal->sigma_mm);
+        hints.stage_sigma_rad = std::hypot(scan.nominal->sigma_rad, other.nominal->sigma_rad);
+      }
+    }
+    if (!scan.pins.empty() && !other.pins.empty()) {
+      if (const std::optional<PinMatch> match = match_pins(scan.pins, other.pins, {})) {
+        hints.starts.push_back(other.group_from_scanner * match->target_from_source);
+      }
+    }
+  }
+  if (group_from_tablet && !hints.stage) {
+    hints.asked = (*group_from_tablet * scan.nominal->tablet_from_scanner).orthonormalised();
+    hints.hand_sigma_mm = scan.nominal->hand_sigma_mm;
+    hints.hand_sigma_rad = scan.nominal->hand_sigma_rad;
+  }
+  return hints;
+}
+
+bool ScanModel::join(int id, JobContext& job) {
+  if (!scans_.at(id).usable) {
+    return false;
+  }
+  bool joined = false;
+  for (const int group : groups_by_size()) {
+    if (job.cancelled()) {
+      if (!joined && scans_.at(id).reason.empty()) {
+        scans_.at(id).reason = kStopped;
+      }
+      break;
+    }
+    if (group != scans_.at(id).group) {
+      joined = join_group(id, group, job) || joined;
+    }
+  }
+  return joined;
+}
+
+void ScanModel::retry(JobContext& job) {
+  bool grown = true;
+  while (grown && !job.cancelled()) {
+    grown = false;
+    const int main = main_group();
+    for (auto& [id, scan] : scans_) {
+      if (scan.usable && !job.cancelled() && scan.group != main && scan.group != main_group()) {
+        grown = join_group(id, main_group(), job) || grown;
+      }
+    }
+  }
+}
+
+bool ScanModel::join_group(int id, int group, JobContext& job) {
+  Scan& scan = scans_.at(id);
+  const std::vector<int> ids = members(group);
+  const std::vector<ModelScan> model = model_of(ids);
+  std::vector<std::vector<PoseHypothesis>> fresh(ids.size());
+  const PairHypotheses from_pairs = [&](std::size_t k) {
+    const auto known = hypotheses_.find({id, ids[k]});
+    if (known != hypotheses_.end()) {
+      return known->second;
+    }
+    fresh[k] = align_pair(scan.features, scans_.at(ids[k]).features, options_.search.align);
+    return fresh[k];
+  };
+  const FoundPose found =
+      search_pose(*scan.features.surface, model, hints_for(scan, ids), from_pairs, options_.search, job);
+  for (std::size_t k = 0; k < ids.size(); ++k) {
+    if (!fresh[k].empty()) {
+      hypotheses_[{id, ids[k]}] = std::move(fresh[k]);
+    }
+  }
+  if (found.verdict.status != PoseStatus::kRegistered || job.cancelled()) {
+    // What the largest group says counts; groups are tried by size.
+    if (members(scan.group).size() == 1 && (group == main_group() || scan.reason.empty())) {
+      scan.reason = job.cancelled() ? kStopped : found.verdict.reason;
+      scan.outcome =
+          found.verdict.status == PoseStatus::kRegistered ? PoseStatus::kUnsure : found.verdict.status;
+      if (!found.fits.empty()) {
+        scan.rms_mm = found.fits.front().icp.rms_mm;
+        scan.overlap = std::max(found.fits.front().overlap, found.fits.front().best_pair_overlap);
+      }
+    }
+    return false;
+  }
+  connect(id, found.fits.front(), found.by_stage, ids, group);
+  relax_group(scans_.at(id).group, job);
+  judge(id);
+  return true;
+}
+
+void ScanModel::connect(int id, const ModelFit& fit, bool by_stage, const std::vector<int>& group_ids,
+                        int group) {
+  Scan& scan = scans_.at(id);
+  scan.stage_sigma_mm = by_stage && scan.nominal ? scan.nominal->sigma_mm : 0.0;
+  const int own = scan.group;
+  const std::vector<int> own_ids = members(own);
+  const RigidTransform group_from_own = fit.model_from_scanner * scan.group_from_scanner.inverse();
+  // The larger group keeps its frame, so that what was stitched stays in place; so does one with a locked
+  // scan.
+  const auto locked = [&](const std::vector<int>& ids) {
+    return std::any_of(ids.begin(), ids.end(), [&](int i) { return scans_.at(i).locked; });
+  };
+  const bool own_moves = locked(own_ids) == locked(group_ids)
+                             ? own_ids.size() < group_ids.size() ||
+                                   (own_ids.size() == group_ids.size() && group_ids.front() < own_ids.front())
+                             : locked(group_ids);
+  const RigidTransform move = own_moves ? group_from_own : group_from_own.inverse();
+  for (const int i : own_moves ? own_ids : group_ids) {
+    Scan& moved = scans_.at(i);
+    moved.group_from_scanner = (move * moved.group_from_scanner).orthonormalised();
+    moved.group = own_moves ? group : own;
+  }
+  for (const int i : own_moves ? group_ids : own_ids) {
+    scans_.at(i).group = own_moves ? group : own;
+  }
+  for (const std::size_t k : fit.touching) {
+    measure_pair(id, group_ids[k]);
+  }
+  scan.reason.clear();
+}
+
+bool ScanModel::place(int id, const RigidTransform& model_from_scanner, bool locked) {
+  const auto found = scans_.find(id);
+  if (found == scans_.end() || !found->second.usable) {
+    return false;
+  }
+  Scan& scan = found->second;
+  int main = main_group();
+  if (scan.group == main && members(main).size() > 1) {
+    scan.group = next_group_++;  // out of the group while it is placed anew
+    main = main_group();
+  }
+  std::erase_if(pairs_, [&](const auto& e) { return e.first.first == id || e.first.second == id; });
+  scan.locked = locked;
+  const std::vector<int> ids = scan.group == main ? std::vector<int>{} : members(main);
+  const std::vector<ModelScan> model = model_of(ids);
+  JobContext job;
+  if (locked || ids.empty()) {
+    scan.group = main;
+    scan.group_from_scanner = model_from_scanner;
+    scan.reason.clear();
+    if (!ids.empty()) {
+      const ModelFit fit =
+          judge_in_model(*scan.features.surface, model, model_from_scanner, options_.search.fit);
+      for (const std::size_t k : fit.touching) {
+        measure_pair(id, ids[k]);
+      }
+    }
+    relax_group(main, job);
+    judge(id);
+    retry(job);
+    return true;
+  }
+  const std::vector<ModelFit> fits =
+      fit_to_model(*scan.features.surface, model, {&model_from_scanner, 1}, options_.search.fit);
+  const PoseVerdict verdict = verify_pose(fits, options_.search.verify);
+  if (verdict.status != PoseStatus::kRegistered) {
+    scan.reason = "the hint led to no certain pose: " + verdict.reason;
+    scan.outcome = verdict.status;
+    return false;
+  }
+  connect(id, fits.front(), false, ids, main);
+  relax_group(scan.group, job);
+  judge(id);
+  retry(job);
+  return true;
+}
+
+ScanPose ScanModel::pose(int id) const {
+  const Scan& scan = scans_.at(id);
+  ScanPose out;
+  out.id = id;
+  out.file = scan.file;
+  out.model_from_scanner = scan.group_from_scanner;
+  out.locked = scan.locked;
+  out.rms_mm = scan.rms_mm;
+  out.overlap = scan.overlap;
+  if (!scan.usable || scan.group != main_group()) {
+    const bool in_group = scan.usable && members(scan.group).size() > 1;
+    out.status = in_group ? PoseStatus::kUnsure : scan.outcome;
+    out.reason = in_group ? kOtherGroup : scan.reason;
+    if (out.reason.empty()) {
+      out.reason = "it was not tried; run registration again";
+    }
+    return out;
+  }
+  out.status = PoseStatus::kRegistered;
+  out.covariance = scan.covariance;
+  // Mean square displacement over points at rms radius r about the centroid: trace of the shift plus two
+  // thirds of r² times that of the turn.
+  const double radius_mm = 0.5 * scan.features.surface->extent_mm;
+  const double square = scan.covariance.bottomRightCorner<3, 3>().trace() +
+                        2.0 / 3.0 * radius_mm * radius_mm * scan.covariance.topLeftCorner<3, 3>().trace();
+  out.sigma_mm = std::max(std::sqrt(std::max(0.0, square)), scan.stage_sigma_mm);
+  return out;
+}
+
+std::vector<ScanPose> ScanModel::poses() const {
+  std::vector<ScanPose> out;
+  for (const auto& [id, scan] : scans_) {
+    out.push_back(pose(id));
+  }
+  return out;
+}
+
+}  // namespace dubsar

@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+// The pairs between the scans of a group and their relaxation: the other half of ScanModel.
+#include <algorithm>
+#include <cmath>
+
+#include "core/parallel.h"
+#include "registration/scan_model.h"
+
+namespace dubsar {
+
+namespace {
+
+/// A pair with fewer correspondences says too little to be worth its risk.
+constexpr int kLeastPairs = 150;
+/// A pairwise fit that leaves the joint one by more than this many residual sigmas has slid away.
+constexpr double kMostSlideSigmas = 6.0;
+
+}  // namespace
+
+void ScanModel::measure_pair(int first, int second) {
+  const int a = std::min(first, second);
+  const int b = std::max(first, second);
+  const ScanSurface& on = *scans_.at(a).features.surface;
+  const ScanSurface& moved = *scans_.at(b).features.surface;
+  const double sigma_mm = residual_sigma_mm(on, moved, options_.search.fit);
+  const RigidTransform start = scans_.at(a).group_from_scanner.inverse() * scans_.at(b).group_from_scanner;
+  const IcpTarget target{on.fine.get(), {}};
+  IcpOptions icp_options;
+  icp_options.two_way = true;
+  icp_options.kernel_mm = 1.5 * sigma_mm;
+  icp_options.reach_mm =
+      std::max(2.0 * std::max(on.fine->spacing_mm, moved.fine->spacing_mm), 5.0 * sigma_mm);
+  icp_options.iterations = 10;
+  icp_options.converged_mm = 0.005 * sigma_mm;
+  IcpResult result = icp(*moved.fine, {&target, 1}, start, icp_options);
+  const Eigen::Vector3d slide = result.model_from_source * moved.centroid_mm - start * moved.centroid_mm;
+  if (slide.norm() > kMostSlideSigmas * sigma_mm) {
+    // Too loose to tell anything along the slide; its Hessian still holds what it can hold at the joint pose.
+    icp_options.iterations = 0;
+    result = icp(*moved.fine, {&target, 1}, start, icp_options);
+  }
+  pairs_.erase({a, b});
+  if (result.pairs < kLeastPairs) {
+    return;
+  }
+  Pair pair;
+  pair.a_from_b = result.model_from_source;
+  pair.center_mm = result.center_mm;
+  const double variance = std::max(result.rms_mm * result.rms_mm, 0.25 * sigma_mm * sigma_mm);
+  pair.information = result.normal_matrix / (options_.pair_variance * variance);
+  pairs_[{a, b}] = pair;
+}
+
+void ScanModel::relax_group(int group, const JobContext& job) {
+  const std::vector<int> ids = members(group);
+  if (ids.size() < 2) {
+    return;
+  }
+  std::map<int, std::size_t> place;
+  std::vector<RigidTransform> start;
+  std::vector<bool> fixed;
+  std::vector<Eigen::Vector3d> centers;
+  for (const int id : ids) {
+    const Scan& scan = scans_.at(id);
+    place[id] = start.size();
+    start.push_back(scan.group_from_scanner);
+    fixed.push_back(scan.locked);
+    centers.push_back(scan.features.surface->centroid_mm);
+  }
+  std::vector<PairConstraint> constraints;
+  for (const auto& [key, pair] : pairs_) {
+    if (place.contains(key.first) && place.contains(key.second)) {
+      constraints.push_back(
+          {place[key.first], place[key.second], pair.a_from_b, pair.center_mm, pair.information});
+    }
+  }
+  // What the stage says of scans of one placement: each against the first of its placement.
+  std::map<int, int> first_of_placement;
+  for (const int id : ids) {
+    const Scan& scan = scans_.at(id);
+    if (!scan.nominal) {
+      continue;
+    }
+    const auto [first, is_first] = first_of_placement.try_emplace(scan.nominal->placement, id);
+    if (is_first) {
+      continue;
+    }
+    const NominalPose& base = *scans_.at(first->second).nominal;
+    PairConstraint stage;
+    stage.a = place[first->second];
+    stage.b = place[id];
+    stage.a_from_b =
+        (base.tablet_from_scanner.inverse() * scan.nominal->tablet_from_scanner).orthonormalised();
+    stage.center_mm = stage.a_from_b * scan.features.surface->centroid_mm;
+    const double mm = std::max(1e-4, std::hypot(base.sigma_mm, scan.nominal->sigma_mm));
+    const double rad = std::max(1e-6, std::hypot(base.sigma_rad, scan.nominal->sigma_rad));
+    stage.information.diagonal() << Eigen::Vector3d::Constant(1.0 / (rad * rad)),
+        Eigen::Vector3d::Constant(1.0 / (mm * mm));
+    constraints.push_back(stage);
+  }
+  const Result<std::vector<RelaxedPose>> relaxed =
+      relax(start, fixed, centers, constraints, options_.relaxation, job);
+  if (!relaxed) {
+    return;  // the poses stay as the fits left them
+  }
+  for (const int id : ids) {
+    Scan& scan = scans_.at(id);
+    scan.group_from_scanner = (*relaxed)[place[id]].model_from_scanner;
+    scan.covariance = (*relaxed)[place[id]].covariance;
+  }
+}
+
+void ScanModel::judge(int id) {
+  Scan& scan = scans_.at(id);
+  std::vector<int> others = members(scan.group);
+  std::erase(others, id);
+  if (others.empty()) {
+    return;
+  }
+  const ModelFit fit =
+      judge_in_model(*scan.features.surface, model_of(others), scan.group_from_scanner, options_.search.fit);
+  const PoseEvidence both = fit.both();
+  scan.rms_mm = both.close > 0 ? std::sqrt(both.sum_r2_mm2 / both.close) : 0.0;
+  scan.overlap = std::max(fit.overlap, fit.best_pair_overlap);
+}
+
+Status ScanModel::finalize(JobContext& job) {
+  for (auto& [id, scan] : scans_) {
+    if (scan.usable && scan.group != main_group()) {
+      join(id, job);
+    }
+    if (job.cancelled()) {
+      return fail(ErrorKind::kCancelled, "registration was stopped");
+    }
+  }
+  const int group = main_group();
+  const std::vector<int> ids = members(group);
+  for (int round = 0; round < options_.final_rounds && ids.size() > 1; ++round) {
+    for (std::size_t k = 0; k < ids.size(); ++k) {
+      job.progress("relax",
+                   (static_cast<double>(round) + static_cast<double>(k) / static_cast<double>(ids.size())) /
+                       options_.final_rounds);
+      if (job.cancelled()) {
+        return fail(ErrorKind::kCancelled, "registration was stopped");
+      }
+      const std::vector<int> later(ids.begin() + static_cast<std::ptrdiff_t>(k) + 1, ids.end());
+      const Scan& scan = scans_.at(ids[k]);
+      const ModelFit fit = judge_in_model(*scan.features.surface, model_of(later), scan.group_from_scanner,
+                                          options_.search.fit);
+      for (const std::size_t touching : fit.touching) {
+        measure_pair(ids[k], later[touching]);
+      }
+    }
+    relax_group(group, job);
+  }
+  for (const int id : ids) {
+    judge(id);
+  }
+  job.progress("relax", 1.0);
+  return {};
+}
+
+}  // namespace dubsar

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "registration/verify_pose.h"
+
+#include <cmath>
+#include <cstdio>
+
+#include "core/units.h"
+
+namespace dubsar {
+
+namespace {
+
+std::string percent(double share) {
+  return std::to_string(std::lround(100.0 * share)) + " %";
+}
+
+/// How the scan can move without anything changing, for people.
+std::string loose_direction(const IcpResult& icp) {
+  return icp.weakest.head<3>().norm() > icp.weakest.tail<3>().norm() ? "turn" : "slide";
+}
+
+PoseVerdict judged_alone(const ModelFit& fit, const VerifyOptions& o) {
+  const PoseEvidence both = fit.both();
+  if (fit.outward.close + fit.inward.close < o.least_close || fit.overlap < o.least_overlap) {
+    if (fit.overlap < 0.3 * o.least_overlap) {
+      return {PoseStatus::kFailed,
+              "no overlap with the registered scans was found; scan again with at least 30 % overlap"};
+    }
+    return {PoseStatus::kUnsure,
+            "only " + percent(fit.overlap) +
+                " of it overlaps the registered scans; scan again with at least 30 % overlap"};
+  }
+  if (both.agreement() < o.least_agreement) {
+    return {both.agreement() < 0.6 * o.least_agreement ? PoseStatus::kFailed : PoseStatus::kUnsure,
+            "the surfaces agree in only " + percent(both.agreement()) +
+                " of the overlap; scan again with more overlap, or click three points on both scans"};
+  }
+  if (both.violation() > o.most_violation) {
+    return {PoseStatus::kUnsure,
+            percent(both.violation()) +
+                " of it would stand where another scan saw through; click three points on both "
+                "scans, or take away what moved"};
+  }
+  if (both.absence() > o.most_absence) {
+    return {PoseStatus::kUnsure,
+            percent(both.absence()) +
+                " of the surface that one scan shows is missing from another that looked there; "
+                "scan again with more overlap, or click three points on both scans"};
+  }
+  if (fit.icp.rms_mm > o.most_residual_sigmas * fit.residual_sigma_mm) {
+    return {PoseStatus::kUnsure,
+            "the surfaces lie farther apart than noise explains; check the calibration, or that nothing "
+            "moved during "
+            "the scan"};
+  }
+  if (fit.icp.stability < o.least_stability) {
+    return {PoseStatus::kUnsure,
+            "the overlap is too even: the scan can " + loose_direction(fit.icp) +
+                " on it; scan again with an edge or more relief in the overlap, or use pins"};
+  }
+  return {PoseStatus::kRegistered, {}};
+}
+
+}  // namespace
+
+PoseVerdict verify_pose(std::span<const ModelFit> fits, const VerifyOptions& options) {
+  if (fits.empty()) {
+    return {
+        PoseStatus::kFailed,
+        "nothing in it resembles the registered scans; scan again with at least 30 % overlap, or click three "
+        "points on both scans"};
+  }
+  PoseVerdict verdict = judged_alone(fits.front(), options);
+  if (verdict.status != PoseStatus::kRegistered) {
+    return verdict;
+  }
+  for (const ModelFit& rival : fits.subspan(1)) {
+    const PoseEvidence both = rival.both();
+    if (rival.score > options.rival_score * fits.front().score &&
+        both.agreement() >= options.rival_agreement) {
+      const RigidTransform turn = rival.model_from_scanner * fits.front().model_from_scanner.inverse();
+      return {PoseStatus::kUnsure, "two poses fit, " +
+                                       std::to_string(std::lround(deg_from_rad(turn.angle_rad()))) +
+                                       " degrees apart; click one point on both scans"};
+    }
+  }
+  return verdict;
+}
+
+bool consistent_pose(const ModelFit& fit, const VerifyOptions& options) {
+  const PoseEvidence both = fit.both();
+  const bool enough = both.close + both.apart >= options.least_close;
+  return both.violation() <= options.most_violation &&
+         (!enough || both.agreement() >= options.least_agreement);
+}
+
+}  // namespace dubsar
