@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "station/planning_stage.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <utility>
+
+namespace dubsar {
+
+namespace {
+
+/// Online, a scan that moved by less than this part of µ stays where it is in the mesh until the final pass.
+constexpr double kStaysWithin = 0.25;
+
+/// The largest displacement of the grid's bounding box between two poses.
+double displacement_mm(const RangeGrid& grid, const RigidTransform& from, const RigidTransform& to) {
+  Eigen::AlignedBox3f box;
+  for (std::size_t i = 0; i < grid.size(); ++i) {
+    if (grid.valid[i] != 0) {
+      box.extend(grid.point(i));
+    }
+  }
+  double most = 0;
+  for (int corner = 0; corner < 8 && !box.isEmpty(); ++corner) {
+    const Eigen::Vector3d p = box.corner(static_cast<Eigen::AlignedBox3f::CornerType>(corner)).cast<double>();
+    most = std::max(most, (from * p - to * p).norm());
+  }
+  return most;
+}
+
+}  // namespace
+
+void PlanningStage::add(const StationScan& scan) { scans_[scan.id] = scan; }
+
+Status PlanningStage::place(const std::vector<ScanPose>& poses, bool exact, JobContext& job) {
+  std::map<int, PlacedScan> wanted;
+  for (const ScanPose& pose : poses) {
+    const auto scan = scans_.find(pose.id);
+    if (pose.status == PoseStatus::kRegistered && scan != scans_.end()) {
+      wanted[pose.id] = {pose.id, scan->second.grid.get(), scan->second.flags.get(), pose.model_from_scanner,
+                         pose.sigma_mm};
+    }
+  }
+  for (auto it = placed_.begin(); it != placed_.end();) {
+    if (wanted.contains(it->first)) {
+      ++it;
+      continue;
+    }
+    cleared_.remove(it->first);
+    stitcher_.remove(it->first);
+    it = placed_.erase(it);
+  }
+  std::size_t done = 0;
+  for (const auto& [id, scan] : wanted) {
+    job.progress("stitching", static_cast<double>(done++) / static_cast<double>(wanted.size()));
+    const auto there = placed_.find(id);
+    if (there != placed_.end()) {
+      const double moved_mm = displacement_mm(*scan.grid, there->second.model_from_scanner, scan.model_from_scanner);
+      if (moved_mm <= (exact ? 0.0 : kStaysWithin * scan.grid->spacing_mm)) {
+        continue;
+      }
+      cleared_.reposition(id, scan.model_from_scanner, scan.sigma_mm);
+      stitcher_.remove(id);
+    } else {
+      cleared_.add(scan);
+    }
+    if (const Status added = stitcher_.add(scan, job); !added) {
+      return added;
+    }
+    placed_[id] = scan;
+  }
+  job.progress("stitching", 1.0);
+  return {};
+}
+
+ColouredPoints PlanningStage::red_points() const {
+  ColouredPoints points;
+  for (const PlacedScan& scan : cleared_.scans()) {
+    for (std::size_t i = 0; i < scan.grid->size(); ++i) {
+      if (is_red((*scan.flags)[i])) {
+        points.positions_mm.push_back((scan.model_from_scanner * scan.grid->point(i).cast<double>()).cast<float>());
+      }
+    }
+  }
+  return points;
+}
+
+Result<RedMap> PlanningStage::red_map(const Rig* /*rig*/, JobContext& /*job*/) {
+  return fail(ErrorKind::kInternal, "no planner yet");
+}
+
+}  // namespace dubsar
