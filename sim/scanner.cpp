@@ -183,6 +183,22 @@ struct Bounds {
 
 }  // namespace
 
+ScannerOptions scanner_for(const Eigen::Vector3d& size_mm, double spacing_mm, double noise_mm) {
+  // Room for a hand that puts the tablet down 5 mm off.
+  constexpr double kSlipMm = 10;
+  ScannerOptions options;
+  options.spacing_mm = spacing_mm;
+  options.noise_mm = noise_mm;
+  const double need = size_mm.norm() + kSlipMm;
+  const double grow = std::max(1.0, need / options.field_x_mm);
+  options.standoff_mm *= grow;
+  options.baseline_mm *= grow;
+  options.field_x_mm *= grow;
+  options.field_y_mm *= grow;
+  options.depth_range_mm *= grow;
+  return options;
+}
+
 ScannerView TriangulationScanner::rig_view() const {
   ScannerView view;
   view.laser_mm = Eigen::Vector3d(0, 0, options_.standoff_mm);

@@ -38,6 +38,10 @@ struct ScannerOptions {
   std::uint64_t seed = 1;
 };
 
+/// A scanner whose measuring volume takes a tablet of this size on any side, with the same triangulation
+/// angle; the default one where that is big enough.
+[[nodiscard]] ScannerOptions scanner_for(const Eigen::Vector3d& size_mm, double spacing_mm, double noise_mm);
+
 /// Rows, columns and geometry of a scan that is about to be made.
 struct ScanLayout {
   int rows = 0;

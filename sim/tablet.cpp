@@ -3,7 +3,9 @@
 #include "sim/tablet.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <utility>
 
 #include "core/parallel.h"
 #include "sim/body.h"
@@ -22,6 +24,8 @@ constexpr std::size_t kCountGrain = 1U << 17U;
 /// A wedge's vertex that damage or a later wedge has moved by more than this is no longer its own.
 constexpr double kIntactMm = 0.03;
 constexpr double kErosionRadiusMm = 0.3;
+/// Colour of clay; the red laser sees the first channel.
+constexpr std::array<float, 3> kClayTint = {1.0F, 0.84F, 0.66F};
 
 Status check(const TabletOptions& options) {
   const Eigen::Vector3d& size = options.size_mm;
@@ -150,6 +154,24 @@ struct WedgeCounts {
 
 }  // namespace
 
+SimTablet tablet_from_mesh(Mesh mesh, float albedo) {
+  SimTablet tablet;
+  tablet.mesh = std::move(mesh);
+  const std::size_t count = tablet.mesh.positions.size();
+  if (tablet.mesh.normals.size() != count) {
+    tablet.mesh.normals = vertex_normals(tablet.mesh);
+  }
+  tablet.albedo.assign(count, albedo);
+  if (tablet.mesh.colours.size() == count) {
+    for (std::size_t i = 0; i < count; ++i) {
+      tablet.albedo[i] = static_cast<float>(tablet.mesh.colours[i][0]) / 255.0F;
+    }
+  }
+  tablet.kinds.assign(count, SurfaceKind::kBody);
+  tablet.wedge_of.assign(count, -1);
+  return tablet;
+}
+
 Result<SimTablet> make_tablet(const TabletOptions& options, JobContext& job) {
   if (Status ok = check(options); !ok) {
     return std::unexpected(ok.error());
@@ -217,6 +239,7 @@ Result<SimTablet> make_tablet(const TabletOptions& options, JobContext& job) {
 
   erode(grid.lattice, worn, options.spacing_mm, &heights);
   tablet.mesh.positions.resize(count);
+  tablet.mesh.colours.resize(count);
   tablet.albedo.resize(count);
   parallel_chunks(count, kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end && !job.cancelled(); ++i) {
@@ -244,6 +267,10 @@ Result<SimTablet> make_tablet(const TabletOptions& options, JobContext& job) {
       }
       tablet.mesh.positions[i] = at.cast<float>();
       tablet.albedo[i] = albedo_at(options, at, kind);
+      for (std::size_t c = 0; c < 3; ++c) {
+        tablet.mesh.colours[i][c] =
+            static_cast<std::uint8_t>(255.0F * kClayTint[c] * tablet.albedo[i] + 0.5F);
+      }
     }
   });
   for (const std::int32_t wedge : tablet.wedge_of) {

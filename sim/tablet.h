@@ -42,12 +42,17 @@ enum class SurfaceKind : std::uint8_t { kBody, kSeal, kWedge, kFracture, kErosio
 /// A tablet with all that is true about it. Its frame: origin at the centre of the body, obverse +z, top edge
 /// +y, right edge +x.
 struct SimTablet {
-  Mesh mesh;                           ///< watertight, oriented, with normals
+  Mesh mesh;                           ///< watertight, oriented, with normals and colours
   std::vector<float> albedo;           ///< [V], in [0,1]
   std::vector<SurfaceKind> kinds;      ///< [V]
   std::vector<std::int32_t> wedge_of;  ///< [V], id of the wedge whose face the vertex lies on, or -1
   std::vector<Wedge> wedges;           ///< in writing order, id = index; `intact` and `vertex_count` filled
 };
+
+/// A tablet of which only a mesh is known, as read from a file: albedo from the red channel of its colours
+/// (which make_tablet() fills), else even; normals computed where they are missing. The mesh is taken as it
+/// lies: its origin should be its centre.
+[[nodiscard]] SimTablet tablet_from_mesh(Mesh mesh, float albedo = 0.5F);
 
 /// Makes a tablet; the same options give the same bytes on every machine and for any number of threads.
 /// Errors: kUsage for a size or spacing that cannot be meshed, kCancelled.

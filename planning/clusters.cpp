@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "planning/clusters.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <tuple>
+
+namespace dubsar {
+
+namespace {
+
+using Cell = std::array<std::int32_t, 3>;
+
+Cell cell_of(const Eigen::Vector3d& p, double edge) {
+  Cell cell{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    cell[k] = static_cast<std::int32_t>(std::clamp(std::floor(p[static_cast<int>(k)] / edge), -1e9, 1e9));
+  }
+  return cell;
+}
+
+bool alike(const RedTarget& a, const RedTarget& b) {
+  return a.state == b.state && a.excuse == b.excuse;
+}
+
+void join_near(const RedTargets& red, std::span<const std::uint32_t> members, double radius_mm,
+               UnionFind& sets) {
+  std::map<Cell, std::vector<std::uint32_t>> cells;
+  for (const std::uint32_t i : members) {
+    cells[cell_of(red.targets[i].position_mm, radius_mm)].push_back(i);
+  }
+  for (const auto& [cell, own] : cells) {
+    for (int n = 0; n < 27; ++n) {
+      const Cell other{cell[0] + n % 3 - 1, cell[1] + n / 3 % 3 - 1, cell[2] + n / 9 - 1};
+      if (other < cell) {
+        continue;  // that pair of cells is met from the other one
+      }
+      const auto it = cells.find(other);
+      if (it == cells.end()) {
+        continue;
+      }
+      for (const std::uint32_t a : own) {
+        for (const std::uint32_t b : it->second) {
+          const RedTarget& ta = red.targets[a];
+          const RedTarget& tb = red.targets[b];
+          if (a != b && alike(ta, tb) &&
+              (ta.position_mm - tb.position_mm).squaredNorm() <= radius_mm * radius_mm) {
+            sets.join(a, b);
+          }
+        }
+      }
+    }
+  }
+}
+
+/// Two samples that are neighbours in a grid belong to the same rim, or to the two rims of one gap.
+void join_along_grids(const RedTargets& red, std::span<const PlacedScan> scans, double reach_mm,
+                      UnionFind& sets) {
+  std::vector<RedSampleRef> refs = red.samples;
+  std::sort(refs.begin(), refs.end(), [](const RedSampleRef& a, const RedSampleRef& b) {
+    return std::tie(a.scan, a.sample) < std::tie(b.scan, b.sample);
+  });
+  const auto join = [&](const RedSampleRef& a, const RedSampleRef& b) {
+    const RedTarget& ta = red.targets[a.target];
+    const RedTarget& tb = red.targets[b.target];
+    if (a.target != b.target && alike(ta, tb) && (ta.position_mm - tb.position_mm).norm() <= reach_mm) {
+      sets.join(a.target, b.target);
+    }
+  };
+  std::array<std::size_t, 4> ahead{};  // walks in step with i, one per kind of neighbour
+  for (std::size_t i = 0; i < refs.size(); ++i) {
+    const auto cols = static_cast<std::int64_t>(scans[refs[i].scan].grid->cols);
+    const std::array<std::int64_t, 4> steps = {1, cols - 1, cols, cols + 1};
+    for (std::size_t k = 0; k < steps.size(); ++k) {
+      const auto wanted = std::pair<std::int64_t, std::int64_t>(refs[i].scan, refs[i].sample + steps[k]);
+      ahead[k] = std::max(ahead[k], i + 1);
+      while (ahead[k] < refs.size() &&
+             std::pair<std::int64_t, std::int64_t>(refs[ahead[k]].scan, refs[ahead[k]].sample) < wanted) {
+        ++ahead[k];
+      }
+      if (ahead[k] < refs.size() && refs[ahead[k]].scan == refs[i].scan &&
+          refs[ahead[k]].sample == wanted.second) {
+        join(refs[i], refs[ahead[k]]);
+      }
+    }
+  }
+}
+
+}  // namespace
+
+UnionFind::UnionFind(std::size_t count) : parent_(count) {
+  std::iota(parent_.begin(), parent_.end(), 0U);
+}
+
+std::uint32_t UnionFind::find(std::uint32_t i) {
+  while (parent_[i] != i) {
+    parent_[i] = parent_[parent_[i]];
+    i = parent_[i];
+  }
+  return i;
+}
+
+void UnionFind::join(std::uint32_t a, std::uint32_t b) {
+  a = find(a);
+  b = find(b);
+  parent_[std::max(a, b)] = std::min(a, b);
+}
+
+std::vector<std::vector<std::uint32_t>> cluster_targets(const RedTargets& red,
+                                                        std::span<const PlacedScan> scans, double radius_mm,
+                                                        double grid_reach_mm, bool unseen_too) {
+  std::vector<std::uint32_t> members;
+  for (std::uint32_t i = 0; i < red.targets.size(); ++i) {
+    if (unseen_too || !red.targets[i].unseen) {
+      members.push_back(i);
+    }
+  }
+  UnionFind sets(red.targets.size());
+  join_near(red, members, radius_mm, sets);
+  join_along_grids(red, scans, grid_reach_mm, sets);
+  std::map<std::uint32_t, std::vector<std::uint32_t>> groups;
+  for (const std::uint32_t i : members) {
+    groups[sets.find(i)].push_back(i);
+  }
+  std::vector<std::vector<std::uint32_t>> out;
+  out.reserve(groups.size());
+  for (auto& [root, group] : groups) {
+    out.push_back(std::move(group));
+  }
+  return out;
+}
+
+}  // namespace dubsar

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "core/mesh.h"
+
+namespace dubsar {
+
+/// `count` unit vectors spread evenly over the sphere (Fibonacci lattice).
+[[nodiscard]] std::vector<Eigen::Vector3d> sphere_directions(std::size_t count);
+
+/// The points that lie farthest along each of `directions` directions, each once: a small set whose hull
+/// differs from the hull of all points by less than the extent times 1.5 / directions.
+[[nodiscard]] std::vector<Eigen::Vector3d> extreme_points(std::span<const Eigen::Vector3f> points,
+                                                          std::size_t directions = 600);
+
+/// Convex hull of some hundred points, faces counter-clockwise from outside; only its corners are used by the
+/// faces. No faces when the points lie in a plane. Incremental (de Berg et al., Computational Geometry,
+/// ch. 11), time O(n²): thin the points with extreme_points() first.
+[[nodiscard]] Mesh convex_hull(std::span<const Eigen::Vector3d> points);
+
+}  // namespace dubsar

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "planning/model_faces.h"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+#include <cmath>
+
+namespace dubsar {
+
+namespace {
+
+const PlacedScan* lowest(std::span<const PlacedScan> scans, bool with_nominal) {
+  const PlacedScan* first = nullptr;
+  for (const PlacedScan& s : scans) {
+    if ((!with_nominal || s.grid->nominal) && (first == nullptr || s.id < first->id)) {
+      first = &s;
+    }
+  }
+  return first;
+}
+
+/// The direction itself or its opposite, whichever is nearer to the wish.
+Eigen::Vector3d turned_towards(const Eigen::Vector3d& direction, const Eigen::Vector3d& wish) {
+  return direction.dot(wish) < 0 ? Eigen::Vector3d(-direction) : direction;
+}
+
+}  // namespace
+
+Eigen::Vector3d ModelFaces::normal(Face face) const {
+  switch (face) {
+    case Face::kObverse:
+      return model_from_faces.col(2);
+    case Face::kReverse:
+      return -model_from_faces.col(2);
+    case Face::kLeft:
+      return -model_from_faces.col(0);
+    case Face::kRight:
+      return model_from_faces.col(0);
+    case Face::kTop:
+      return model_from_faces.col(1);
+    case Face::kBottom:
+      break;
+  }
+  return -model_from_faces.col(1);
+}
+
+Face ModelFaces::of(const Eigen::Vector3d& normal_in_model) const {
+  const Eigen::Vector3d n = model_from_faces.transpose() * normal_in_model;
+  int axis = 2;
+  for (const int k : {1, 0}) {
+    axis = std::abs(n[k]) > std::abs(n[axis]) ? k : axis;
+  }
+  if (axis == 2) {
+    return n.z() < 0 ? Face::kReverse : Face::kObverse;
+  }
+  if (axis == 1) {
+    return n.y() < 0 ? Face::kBottom : Face::kTop;
+  }
+  return n.x() < 0 ? Face::kLeft : Face::kRight;
+}
+
+ModelFaces model_faces(std::span<const PlacedScan> scans, std::span<const Eigen::Vector3d> points) {
+  ModelFaces faces;
+  if (const PlacedScan* told = lowest(scans, true)) {
+    faces.model_from_faces =
+        (told->model_from_scanner * told->grid->nominal->tablet_from_scanner.inverse()).rotation;
+    return faces;
+  }
+  const PlacedScan* first = lowest(scans, false);
+  if (first == nullptr || points.size() < 4) {
+    return faces;
+  }
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3d& p : points) {
+    mean += p / static_cast<double>(points.size());
+  }
+  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+  for (const Eigen::Vector3d& p : points) {
+    spread += (p - mean) * (p - mean).transpose();
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(spread);
+  const Eigen::Matrix3d scanner = first->model_from_scanner.rotation;
+  const Eigen::Vector3d z =
+      turned_towards(axes.eigenvectors().col(0), -(scanner * first->grid->view.direction));
+  const Eigen::Vector3d height = axes.eigenvectors().col(2);
+  const bool along_y = std::abs(height.dot(scanner.col(1))) >= std::abs(height.dot(scanner.col(0)));
+  const Eigen::Vector3d y = turned_towards(height, scanner.col(along_y ? 1 : 0));
+  faces.model_from_faces.col(0) = y.cross(z);
+  faces.model_from_faces.col(1) = y;
+  faces.model_from_faces.col(2) = z;
+  return faces;
+}
+
+const char* spoken(Face face) {
+  constexpr const char* kNames[] = {"the obverse",    "the reverse",  "the left edge",
+                                    "the right edge", "the top edge", "the bottom edge"};
+  return kNames[static_cast<int>(face)];
+}
+
+}  // namespace dubsar

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "core/job.h"
+#include "core/red_map.h"
+#include "core/result.h"
+#include "planning/red_targets.h"
+#include "planning/view_candidates.h"
+
+namespace dubsar {
+
+struct NextViewOptions {
+  CandidateOptions candidates;
+  std::size_t max_targets = 1500;  ///< more are thinned, their areas shared out
+  double least_overlap = 0.3;      ///< with what has been seen, to register
+  double hand_turn_cost = 0.5;     ///< of lifting the tablet, in scans
+  double least_gain_mm2 = 0.01;    ///< a view that clears less is not proposed
+  std::size_t ranked = 5;          ///< views returned
+};
+
+/// How well the candidates see each target: the greatest chance over all of them.
+struct NextViews {
+  std::vector<NextView> ranked;    ///< best first
+  std::vector<float> best_chance;  ///< [targets]; -1 for targets that are not red
+};
+
+/// Notes for each red target which of the scans ought to have seen it (red_targets() leaves that empty).
+/// noise_mm: by scan.
+void note_tries(std::span<const PlacedScan> scans, std::span<const double> noise_mm,
+                const ModelSurface& surface, std::vector<RedTarget>& targets);
+
+/// The next best views: the area of red that each candidate is expected to clear, tested against incidence,
+/// field, support, and occlusion of laser and camera by the model so far, per scan of time. A target that was
+/// looked at in vain counts less, least from the same side. Candidates that overlap too little with what was
+/// seen are left out, unless none overlaps enough. Errors: kCancelled.
+[[nodiscard]] Result<NextViews> next_views(std::span<const ViewCandidate> candidates,
+                                           const ScannerModel& scanner, const ModelSurface& surface,
+                                           std::span<const RedTarget> targets, const NextViewOptions& options,
+                                           JobContext& job);
+
+}  // namespace dubsar

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "planning/red_regions.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "planning/clusters.h"
+
+namespace dubsar {
+
+namespace {
+
+/// Grid neighbours farther apart than this are rims of two holes, or of the object itself.
+constexpr double kGridReachMm = 5.0;
+
+RedRegion region_of(const RedTargets& red, std::span<const std::uint32_t> group, const ModelFaces& faces) {
+  RedRegion region;
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();
+  std::array<double, kFaceCount> by_face{};
+  for (const std::uint32_t i : group) {
+    const RedTarget& t = red.targets[i];
+    region.area_mm2 += t.area_mm2;
+    center += t.area_mm2 * t.position_mm;
+    normal += t.area_mm2 * t.normal;
+    by_face[static_cast<std::size_t>(faces.of(t.normal))] += t.area_mm2;
+  }
+  const RedTarget& lowest = red.targets[group.front()];
+  region.center_mm = region.area_mm2 > 0 ? Eigen::Vector3d(center / region.area_mm2) : lowest.position_mm;
+  region.normal = normal.norm() > 1e-9 ? normal.normalized() : lowest.normal;
+  region.face = static_cast<Face>(std::max_element(by_face.begin(), by_face.end()) - by_face.begin());
+  region.state = lowest.state;
+  region.excuse = lowest.excuse;
+  region.reason = lowest.reason;
+  return region;
+}
+
+}  // namespace
+
+std::vector<RedRegion> red_regions(const RedTargets& red, std::span<const PlacedScan> scans,
+                                   const ModelSurface& surface) {
+  double patch_mm = 0;
+  for (const SurfacePatch& patch : surface.unseen) {
+    patch_mm = std::max(patch_mm, std::sqrt(patch.area_mm2));
+  }
+  std::vector<RedRegion> regions;
+  for (const auto& group :
+       cluster_targets(red, scans, std::max(2.0 * red.cell_mm, 1.8 * patch_mm), kGridReachMm, true)) {
+    regions.push_back(region_of(red, group, surface.faces));
+  }
+  std::stable_sort(regions.begin(), regions.end(),
+                   [](const RedRegion& a, const RedRegion& b) { return a.area_mm2 > b.area_mm2; });
+  return regions;
+}
+
+}  // namespace dubsar

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "core/red_map.h"
+#include "planning/red_targets.h"
+
+namespace dubsar {
+
+/// Connected patches of red and of excused targets, largest first. A region's area is that of its holes: the
+/// gaps between the red samples, and the part of the closing surface (the model's convex hull) that they
+/// border, which stands for what nobody has seen. Centre and normal are means by area; the face is where most
+/// of the area faces.
+[[nodiscard]] std::vector<RedRegion> red_regions(const RedTargets& red, std::span<const PlacedScan> scans,
+                                                 const ModelSurface& surface);
+
+}  // namespace dubsar

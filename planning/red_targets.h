@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/placed_scan.h"
+#include "core/red_map.h"
+#include "planning/model_surface.h"
+
+namespace dubsar {
+
+/// A small piece of what is still missing: red samples of one cell of space, or a patch of surface that
+/// nobody has seen.
+struct RedTarget {
+  Eigen::Vector3d position_mm{0, 0, 0};  ///< model frame
+  Eigen::Vector3d normal{0, 0, 1};       ///< out of the clay: of the surface that is supposed to lie there
+  double area_mm2 = 0;
+  bool unseen = false;  ///< a patch of the closing surface, with no samples of its own
+  /// Directions towards the scanner (unit, model frame) of scans that ought to have seen it and did not.
+  std::vector<Eigen::Vector3d> tried;
+  RegionState state = RegionState::kRed;
+  Excuse excuse = Excuse::kNone;
+  std::string reason;
+};
+
+/// Where the target of each red sample is.
+struct RedSampleRef {
+  std::uint32_t scan = 0;    ///< position in the span of scans
+  std::uint32_t sample = 0;  ///< index in its grid
+  std::uint32_t target = 0;
+};
+
+struct RedTargets {
+  std::vector<RedTarget> targets;
+  std::vector<RedSampleRef> samples;  ///< by target, then scan, then sample
+  double cell_mm = 0;                 ///< edge of the cells that red samples were gathered in
+};
+
+struct RedTargetOptions {
+  double cell_mm = 0.3;            ///< at least 3 µ; doubled until there are few enough targets
+  std::size_t max_targets = 4000;  ///< of red samples
+  double longest_gap_mm =
+      5.0;  ///< a gap counts for no more than this: beyond lies another part of the object
+};
+
+/// Gathers red samples and unseen patches. The area of a red sample is half of each gap to the next sample
+/// along its row and its column, times µ: over both rims of a hole that adds up to the hole. Its normal is
+/// that of the surface which would close the gap. Where several scans are red at one place the largest area
+/// counts.
+[[nodiscard]] RedTargets red_targets(std::span<const PlacedScan> scans, const ModelSurface& surface,
+                                     const RedTargetOptions& options = {});
+
+}  // namespace dubsar

@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "planning/view_candidates.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/units.h"
+#include "planning/convex_hull.h"
+
+namespace dubsar {
+
+namespace {
+
+constexpr std::array<Face, kFaceCount> kFaces = {Face::kObverse, Face::kReverse, Face::kLeft,
+                                                 Face::kRight,   Face::kTop,     Face::kBottom};
+
+std::string degrees(double rad) {
+  return std::to_string(std::lround(deg_from_rad(rad))) + "°";
+}
+
+/// The least rotation that takes one unit vector to another; half turns go about `spare`.
+Eigen::Matrix3d least_turn(const Eigen::Vector3d& from, const Eigen::Vector3d& to,
+                           const Eigen::Vector3d& spare) {
+  if (from.dot(to) < -0.9) {
+    // Turned over about an axis across both that lies as near to `spare` as can be.
+    const Eigen::Vector3d axis = (spare - to * to.dot(spare)).normalized();
+    const Eigen::Matrix3d over = Eigen::AngleAxisd(kPi, axis).toRotationMatrix();
+    const Eigen::Vector3d half = over * from;
+    return Eigen::Quaterniond::FromTwoVectors(half, to).toRotationMatrix() * over;
+  }
+  return Eigen::Quaterniond::FromTwoVectors(from, to).toRotationMatrix();
+}
+
+std::vector<double> steps(double low, double high, double step) {
+  const int count = std::max(1, static_cast<int>(std::ceil((high - low) / step - 1e-9)));
+  std::vector<double> out;
+  for (int k = 0; k <= count; ++k) {
+    out.push_back(high > low ? low + (high - low) * k / count : low);
+    if (!(high > low)) {
+      break;
+    }
+  }
+  return out;
+}
+
+/// The tablet on one of its sides.
+struct Rest {
+  Eigen::Matrix3d stage_from_model;    ///< rotation
+  Eigen::Vector3d focus_mm{0, 0, 0};   ///< the point of the model that the scanner looks at
+  std::optional<RigidTransform> turn;  ///< as the operator is asked for it, none for the present rest
+  std::string say;
+};
+
+/// Corners and samples of the model that are lowest decide where the support is.
+HiddenHalf support_under(const Eigen::Matrix3d& stage_from_model, const ModelSurface& surface) {
+  HiddenHalf hidden;
+  hidden.normal = stage_from_model.row(2).transpose();
+  hidden.offset_mm = 0;
+  bool first = true;
+  for (const Eigen::Vector3d& p : surface.corners_mm) {
+    const double height = hidden.normal.dot(p);
+    hidden.offset_mm = first ? height : std::min(hidden.offset_mm, height);
+    first = false;
+  }
+  // The surface rests on the support: what touches it cannot be seen at all.
+  hidden.offset_mm += 0.1;
+  return hidden;
+}
+
+std::vector<Rest> rests(const Rig& rig, const Eigen::Matrix3d& stage_from_model,
+                        const Eigen::Matrix3d& nominal_stage_from_model, const Eigen::Vector3d& focus_mm,
+                        const ModelSurface& surface, const CandidateOptions& options) {
+  std::vector<Rest> out;
+  out.push_back({stage_from_model, focus_mm, std::nullopt, {}});
+  if (!rig.hand_turns) {
+    return out;
+  }
+  const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
+  const Face lies_up = surface.faces.of(stage_from_model.transpose() * up);
+  const int yaws = rig.has_turntable ? 1 : options.yaw_steps;
+  for (const Face face : kFaces) {
+    const Eigen::Vector3d normal = nominal_stage_from_model * surface.faces.normal(face);
+    const Eigen::Vector3d spare = nominal_stage_from_model * surface.faces.normal(Face::kTop);
+    const Eigen::Matrix3d tip = least_turn(normal, up, spare);
+    for (int yaw = 0; yaw < yaws; ++yaw) {
+      if (face == lies_up && yaw == 0) {
+        continue;
+      }
+      Rest rest;
+      const Eigen::Matrix3d turn = Eigen::AngleAxisd(2 * kPi * yaw / yaws, up).toRotationMatrix() * tip;
+      rest.stage_from_model = turn * nominal_stage_from_model;
+      rest.focus_mm = surface.center_mm;
+      rest.turn = RigidTransform{turn, Eigen::Vector3d::Zero()};
+      rest.say = say_turn(turn, nominal_stage_from_model, up, surface.faces);
+      out.push_back(std::move(rest));
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+std::string say_turn(const Eigen::Matrix3d& turn, const Eigen::Matrix3d& frame_from_model,
+                     const Eigen::Vector3d& up, const ModelFaces& faces) {
+  const double angle = Eigen::AngleAxisd(turn).angle();
+  const double tipped = std::acos(std::clamp(up.dot(turn * up), -1.0, 1.0));
+  if (tipped < rad_from_deg(5.0)) {
+    if (angle < rad_from_deg(2.0)) {
+      return "leave the tablet as it lies";
+    }
+    const Eigen::AngleAxisd about(turn);
+    const bool left = about.axis().dot(up) * about.angle() > 0;
+    return std::string("turn the tablet where it lies, ") + degrees(angle) +
+           (left ? " counter-clockwise seen from the camera" : " clockwise seen from the camera");
+  }
+  Face best = Face::kObverse;
+  double most = -1e9;
+  for (const Face face : kFaces) {
+    const Eigen::Vector3d n = frame_from_model * faces.normal(face);
+    const double gain = up.dot(turn * n) - up.dot(n);
+    if (gain > most + 1e-9) {
+      most = gain;
+      best = face;
+    }
+  }
+  return std::string("turn ") + spoken(best) + " towards the camera, " + degrees(tipped);
+}
+
+std::vector<ViewCandidate> rig_candidates(const Rig& rig, const StageState& state, const PlacedScan& last,
+                                          const ModelSurface& surface, const CandidateOptions& options) {
+  const Eigen::Matrix3d stage_from_scanner_now =
+      stage_from_scanner(state.drive.turntable_rad, state.drive.tilt_rad, Eigen::Vector3d::Zero()).rotation;
+  const Eigen::Matrix3d stage_from_model =
+      stage_from_scanner_now * last.model_from_scanner.rotation.transpose();
+  Eigen::Matrix3d nominal = stage_from_model;
+  if (last.grid->nominal) {
+    // faces.model_from_faces is model_from_tablet then.
+    nominal = stage_from_scanner_now * last.grid->nominal->tablet_from_scanner.rotation.transpose() *
+              surface.faces.model_from_faces.transpose();
+  }
+  // Motors turn about the point that the scanner looks at.
+  const Eigen::Vector3d focus = last.model_from_scanner.translation_mm;
+  std::vector<ViewCandidate> out;
+  const std::vector<double> tilts =
+      steps(rig.tilt_min_rad, rig.tilt_max_rad, rad_from_deg(options.tilt_step_deg));
+  for (const Rest& rest : rests(rig, stage_from_model, nominal, focus, surface, options)) {
+    const HiddenHalf hidden = support_under(rest.stage_from_model, surface);
+    for (const double tilt : tilts) {
+      // Straight from above, turning only rolls the view.
+      const int all = rig.has_turntable ? options.turntable_steps : 1;
+      const int turns = std::abs(tilt) < rad_from_deg(1.0) ? std::min(all, 4) : all;
+      for (int k = 0; k < turns; ++k) {
+        ViewCandidate candidate;
+        Placement placement;
+        placement.turntable_rad = rig.has_turntable ? 2 * kPi * k / turns : state.drive.turntable_rad;
+        placement.tilt_rad = tilt;
+        placement.hand_turn = rest.turn;
+        candidate.model_from_scanner.rotation =
+            rest.stage_from_model.transpose() *
+            stage_from_scanner(placement.turntable_rad, tilt, Eigen::Vector3d::Zero()).rotation;
+        candidate.model_from_scanner.translation_mm = rest.focus_mm;
+        candidate.hidden = hidden;
+        candidate.by_hand = rest.turn.has_value();
+        candidate.say = rest.say;
+        std::string drive;
+        if (rig.has_turntable) {
+          drive = "turntable to " + degrees(placement.turntable_rad);
+        }
+        if (rig.tilt_max_rad > rig.tilt_min_rad) {
+          drive += (drive.empty() ? "tilt to " : ", tilt to ") + degrees(tilt);
+        }
+        if (!drive.empty()) {
+          candidate.say += (candidate.say.empty() ? "" : "; then ") + drive;
+        }
+        candidate.placement = std::move(placement);
+        out.push_back(std::move(candidate));
+      }
+    }
+  }
+  return out;
+}
+
+std::vector<ViewCandidate> free_candidates(const PlacedScan& last, const ModelSurface& surface,
+                                           const CandidateOptions& options) {
+  std::vector<ViewCandidate> out;
+  const Eigen::Matrix3d& rotation = last.model_from_scanner.rotation;
+  const Eigen::Vector3d up_scanner = -last.grid->view.direction;
+  const Eigen::Vector3d up_model = rotation * up_scanner;
+  for (const Eigen::Vector3d& direction :
+       sphere_directions(static_cast<std::size_t>(std::max(options.free_directions, 1)))) {
+    // The scanner goes round the model by `move`; the tablet is turned the other way.
+    const Eigen::Matrix3d move = least_turn(up_model, direction, rotation * Eigen::Vector3d::UnitY());
+    const Eigen::Matrix3d turn = rotation.transpose() * move.transpose() * rotation;
+    ViewCandidate candidate;
+    candidate.model_from_scanner.rotation = move * rotation;
+    candidate.model_from_scanner.translation_mm =
+        surface.center_mm + move * (last.model_from_scanner.translation_mm - surface.center_mm);
+    candidate.by_hand = true;
+    candidate.say = say_turn(turn, rotation.transpose(), up_scanner, surface.faces);
+    out.push_back(std::move(candidate));
+  }
+  return out;
+}
+
+}  // namespace dubsar

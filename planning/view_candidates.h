@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/rig.h"
+#include "core/rigid_transform.h"
+#include "planning/model_surface.h"
+#include "planning/view_prediction.h"
+
+namespace dubsar {
+
+/// Where the tablet lies now: the drive that a registered scan was taken with.
+struct StageState {
+  int scan_id = 0;  ///< a registered scan of the present placement by hand
+  Placement drive;  ///< its turntable and tilt (hand_turn is not read)
+};
+
+/// A pose that can be asked for.
+struct ViewCandidate {
+  RigidTransform model_from_scanner;
+  std::optional<Placement> placement;  ///< none without a rig
+  std::optional<HiddenHalf> hidden;    ///< what the support covers
+  bool by_hand = false;                ///< the tablet has to be lifted
+  std::string say;
+};
+
+struct CandidateOptions {
+  int turntable_steps = 18;
+  double tilt_step_deg = 17.5;  ///< at most; the range is cut into equal steps
+  int yaw_steps = 6;            ///< hand-made turns about the vertical, of a rig with no turntable
+  int free_directions = 160;    ///< with no rig: directions all around
+};
+
+/// All poses that the rig allows: the tablet as it lies and on each of its other five sides (where the rig
+/// allows hand turns), times turntable and tilt. `last` is the scan that `state` speaks of: it tells how the
+/// tablet really lies. The hand turn that is asked for goes from how the tablet lies by the nominal pose,
+/// when the scan has one, so that errors of many turns do not add up.
+[[nodiscard]] std::vector<ViewCandidate> rig_candidates(const Rig& rig, const StageState& state,
+                                                        const PlacedScan& last, const ModelSurface& surface,
+                                                        const CandidateOptions& options = {});
+
+/// With no rig: the scanner of the last scan carried around the model's centre at its own stand-off, every
+/// turn made by hand and said relative to the last scan.
+[[nodiscard]] std::vector<ViewCandidate> free_candidates(const PlacedScan& last, const ModelSurface& surface,
+                                                         const CandidateOptions& options = {});
+
+/// "turn the top edge towards the camera, 40°": the face that a turn brings most towards `up`. The turn is in
+/// the frame of `up`; frame_from_model puts the faces into it, before the turn.
+[[nodiscard]] std::string say_turn(const Eigen::Matrix3d& turn, const Eigen::Matrix3d& frame_from_model,
+                                   const Eigen::Vector3d& up, const ModelFaces& faces);
+
+}  // namespace dubsar

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "planning/view_prediction.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/units.h"
+#include "planning/clearing.h"
+#include "planning/sparse_flags.h"
+
+namespace dubsar {
+
+namespace {
+
+/// Where the scanner's positions are not known, it stands this far off.
+constexpr double kFarMm = 1.0e4;
+/// Slope beyond which a camera gets too little light back from a laser line.
+const double kFlattestCosine = std::cos(rad_from_deg(70.0));
+
+double upper_tail(double z) {
+  return 0.5 * std::erfc(z / std::sqrt(2.0));
+}
+
+}  // namespace
+
+ScannerModel ScannerModel::of(const Rig& rig, double noise_mm) {
+  return {rig.view,
+          rig.spacing_mm,
+          noise_mm,
+          {0.5 * rig.field_x_mm, 0.5 * rig.field_y_mm, 0.5 * rig.depth_range_mm}};
+}
+
+ScannerModel ScannerModel::of(const RangeGrid& grid, double noise_mm) {
+  ScannerModel model;
+  model.view = grid.view;
+  model.spacing_mm = spacing_of(grid);
+  model.noise_mm = noise_mm;
+  return model;
+}
+
+double dense_sampling_chance(double cosine, double spacing_mm, double noise_mm) {
+  if (!(cosine > 1.0 / kGapInSpacings)) {
+    return 0.0;
+  }
+  const double tangent = std::sqrt(std::max(0.0, 1.0 - cosine * cosine)) / cosine;
+  // Across one µ the depth differs by µ tan; the link is too long when noise takes it beyond sqrt(8) µ.
+  const double room_mm = spacing_mm * (std::sqrt(kGapInSpacings * kGapInSpacings - 1.0) - tangent);
+  const double sigma_mm = std::sqrt(2.0) * noise_mm * (1.0 + 0.6 * (1.0 / cosine - 1.0));
+  const double too_long = sigma_mm > 0 ? upper_tail(room_mm / sigma_mm) : 0.0;
+  // Two links run down the slope; the other two are short.
+  return (1.0 - too_long) * (1.0 - too_long);
+}
+
+ViewPredictor::ViewPredictor(const ScannerModel& scanner, const RigidTransform& model_from_scanner,
+                             const MeshQuery& occluders, double clearance_mm,
+                             std::optional<HiddenHalf> hidden)
+    : scanner_(scanner),
+      model_from_scanner_(model_from_scanner),
+      scanner_from_model_(model_from_scanner.inverse()),
+      occluders_(&occluders),
+      clearance_mm_(clearance_mm),
+      hidden_(hidden),
+      towards_scanner_(model_from_scanner.rotation * -scanner.view.direction) {
+  if (scanner_.view.motion_per_row_mm.norm() > 0) {
+    motion_ = scanner_.view.motion_per_row_mm.normalized();
+  }
+}
+
+Eigen::Vector3d ViewPredictor::source(const std::optional<Eigen::Vector3d>& at_mm,
+                                      const Eigen::Vector3d& p_scanner_mm) const {
+  if (!at_mm) {
+    return p_scanner_mm - kFarMm * scanner_.view.direction;
+  }
+  // The scanner moves along until its laser meets the point.
+  const Eigen::Vector3d& laser_mm = scanner_.view.laser_mm ? *scanner_.view.laser_mm : *at_mm;
+  return *at_mm + motion_ * motion_.dot(p_scanner_mm - laser_mm);
+}
+
+double ViewPredictor::facing_chance(const Eigen::Vector3d& p_mm, const Eigen::Vector3d& normal) const {
+  if (hidden_ && hidden_->normal.dot(p_mm) < hidden_->offset_mm) {
+    return 0.0;
+  }
+  const Eigen::Vector3d p = scanner_from_model_ * p_mm;
+  if ((p.cwiseAbs().array() > scanner_.half_field_mm.array()).any()) {
+    return 0.0;
+  }
+  const Eigen::Vector3d n = scanner_from_model_.rotation * normal;
+  const double laser = n.dot((source(scanner_.view.laser_mm, p) - p).normalized());
+  if (laser <= kFlattestCosine) {
+    return 0.0;
+  }
+  const double camera = n.dot((source(scanner_.view.camera_mm, p) - p).normalized());
+  if (camera <= kFlattestCosine) {
+    return 0.0;
+  }
+  // Spacing follows the laser's incidence, noise the flatter of the two.
+  const double light = std::clamp((camera - kFlattestCosine) / 0.1, 0.0, 1.0);
+  return light * dense_sampling_chance(laser, scanner_.spacing_mm, scanner_.noise_mm);
+}
+
+bool ViewPredictor::unobstructed(const Eigen::Vector3d& p_mm, const Eigen::Vector3d& normal) const {
+  const Eigen::Vector3d p = scanner_from_model_ * p_mm;
+  const Eigen::Vector3f start = (p_mm + clearance_mm_ * normal).cast<float>();
+  const auto margin = static_cast<float>(clearance_mm_);
+  const Eigen::Vector3d laser = model_from_scanner_ * source(scanner_.view.laser_mm, p);
+  if (occluders_->occluded(start, laser.cast<float>(), margin)) {
+    return false;
+  }
+  if (!scanner_.view.camera_mm) {
+    return true;
+  }
+  const Eigen::Vector3d camera = model_from_scanner_ * source(scanner_.view.camera_mm, p);
+  return !occluders_->occluded(start, camera.cast<float>(), margin);
+}
+
+}  // namespace dubsar
