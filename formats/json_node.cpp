@@ -103,6 +103,23 @@ std::vector<JsonNode> JsonNode::items() const {
   return nodes;
 }
 
+JsonNode JsonNode::item(std::size_t index) const {
+  std::string path = path_;
+  path += '[';
+  path += std::to_string(index);
+  path += ']';
+  const bool there = value_ != nullptr && value_->is_array() && index < value_->size();
+  const JsonNode node(there ? &(*value_)[index] : nullptr, std::move(path), complaint_);
+  if (value_ != nullptr && !there) {
+    node.complain("is missing");
+  }
+  return node;
+}
+
+std::size_t JsonNode::size() const {
+  return value_ != nullptr && value_->is_array() ? value_->size() : 0;
+}
+
 double JsonNode::number(double low, double high) const {
   const double neutral = std::clamp(0.0, low, high);
   if (value_ == nullptr) {

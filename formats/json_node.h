@@ -32,6 +32,12 @@ class JsonNode {
 
   /// Elements of an array; anything else is noted and gives none.
   [[nodiscard]] std::vector<JsonNode> items() const;
+  /// The entry of an array; noted when there are not as many.
+  [[nodiscard]] JsonNode item(std::size_t index) const;
+  /// Entries of an array, 0 for anything else.
+  [[nodiscard]] std::size_t size() const;
+  /// Whether anything in the document was complained about.
+  [[nodiscard]] bool failed() const { return complaint_->has_value(); }
   [[nodiscard]] double number(double low = -std::numeric_limits<double>::max(),
                               double high = std::numeric_limits<double>::max()) const;
   [[nodiscard]] std::int64_t integer(std::int64_t low, std::int64_t high) const;

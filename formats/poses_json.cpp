@@ -79,7 +79,9 @@ std::string poses_to_json(std::span<const ScanPose> poses) {
     OrderedJson scan;
     scan["id"] = pose.id;
     scan["file"] = pose.file;
-    scan["model_from_scanner"] = json_of(pose.model_from_scanner);
+    // A failed pose may hold anything; the file keeps its shape.
+    scan["model_from_scanner"] =
+        json_of(pose.model_from_scanner.is_rigid() ? pose.model_from_scanner : RigidTransform{});
     scan["status"] = to_string(pose.status);
     scan["rms_mm"] = pose.rms_mm;
     scan["sigma_mm"] = pose.sigma_mm;

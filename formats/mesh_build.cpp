@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <vector>
+
+#include "formats/mesh_formats.h"
+
+namespace dubsar {
+
+namespace {
+
+using Key = std::array<std::uint32_t, 3>;
+
+/// -0 and 0 are one place.
+Key key_of(const Eigen::Vector3f& p) {
+  return {std::bit_cast<std::uint32_t>(p.x() + 0.0F), std::bit_cast<std::uint32_t>(p.y() + 0.0F),
+          std::bit_cast<std::uint32_t>(p.z() + 0.0F)};
+}
+
+std::size_t hash_of(const Key& key) {
+  std::uint64_t h = key[0] * 0x9e3779b97f4a7c15ULL;
+  h = (h ^ (h >> 32U) ^ key[1]) * 0xbf58476d1ce4e5b9ULL;
+  h = (h ^ (h >> 29U) ^ key[2]) * 0x94d049bb133111ebULL;
+  return static_cast<std::size_t>(h ^ (h >> 31U));
+}
+
+constexpr std::uint32_t kEmpty = 0xffffffffU;
+
+}  // namespace
+
+bool append_position(Mesh& mesh, double x_mm, double y_mm, double z_mm) {
+  const Eigen::Vector3f p(static_cast<float>(x_mm), static_cast<float>(y_mm), static_cast<float>(z_mm));
+  if (!p.allFinite()) {
+    return false;
+  }
+  mesh.positions.push_back(p);
+  return true;
+}
+
+void append_polygon(Mesh& mesh, std::span<const std::uint32_t> corners) {
+  for (std::size_t k = 2; k < corners.size(); ++k) {
+    mesh.faces.push_back({corners[0], corners[k - 1], corners[k]});
+  }
+}
+
+void weld_equal_positions(Mesh& mesh) {
+  // Open addressing at no more than half load; looked up only, so the order of the table never shows.
+  std::vector<std::uint32_t> table(std::bit_ceil(2 * mesh.positions.size() + 2), kEmpty);
+  std::vector<std::uint32_t> new_index(mesh.positions.size());
+  std::uint32_t kept = 0;
+  for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+    const Key key = key_of(mesh.positions[v]);
+    std::size_t slot = hash_of(key) & (table.size() - 1);
+    while (table[slot] != kEmpty && key_of(mesh.positions[table[slot]]) != key) {
+      slot = (slot + 1) & (table.size() - 1);
+    }
+    if (table[slot] == kEmpty) {
+      mesh.positions[kept] = mesh.positions[v];
+      table[slot] = kept++;
+    }
+    new_index[v] = table[slot];
+  }
+  mesh.positions.resize(kept);
+  for (auto& face : mesh.faces) {
+    for (std::uint32_t& corner : face) {
+      corner = new_index[corner];
+    }
+  }
+  std::erase_if(mesh.faces, [](const auto& f) { return f[0] == f[1] || f[1] == f[2] || f[2] == f[0]; });
+}
+
+}  // namespace dubsar

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "core/mesh.h"
+#include "core/result.h"
+#include "formats/mesh_io.h"
+
+namespace dubsar {
+
+// One encoder and one decoder per format, each in a file of its own (mesh_ply.cpp, mesh_obj.cpp, …). Decoders
+// take no more memory than a fixed multiple of the bytes given; `where` stands in errors.
+
+[[nodiscard]] std::string encode_mesh_ply(const Mesh& mesh);
+[[nodiscard]] Result<Mesh> decode_mesh_ply(std::string_view bytes, const std::string& where,
+                                           const MeshReadOptions& options);
+
+[[nodiscard]] std::string encode_mesh_obj(const Mesh& mesh);
+[[nodiscard]] Result<Mesh> decode_mesh_obj(std::string_view bytes, const std::string& where,
+                                           const MeshReadOptions& options);
+
+/// Binary; at most 4 294 967 295 faces.
+[[nodiscard]] std::string encode_mesh_stl(const Mesh& mesh);
+[[nodiscard]] Result<Mesh> decode_mesh_stl(std::string_view bytes, const std::string& where,
+                                           const MeshReadOptions& options);
+[[nodiscard]] bool is_binary_stl(std::string_view bytes);
+
+/// Positions stay in millimetres to the bit; the node scales them to metres.
+[[nodiscard]] Result<std::string> encode_mesh_glb(const Mesh& mesh, const std::string& where);
+[[nodiscard]] Result<Mesh> decode_mesh_glb(std::string_view bytes, const std::string& where,
+                                           const MeshReadOptions& options);
+[[nodiscard]] bool is_glb(std::string_view bytes);
+
+/// A vertex in millimetres, or nothing when it is not finite.
+[[nodiscard]] bool append_position(Mesh& mesh, double x_mm, double y_mm, double z_mm);
+
+/// Adds the fan of a polygon; fewer than three corners add nothing.
+void append_polygon(Mesh& mesh, std::span<const std::uint32_t> corners);
+
+/// Merges vertices of equal position (the first one stays) and drops faces that thereby lose a corner. Only
+/// for meshes without per-vertex arrays.
+void weld_equal_positions(Mesh& mesh);
+
+}  // namespace dubsar

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "formats/mesh_io.h"
+
+#include <algorithm>
+
+#include "formats/atomic_file.h"
+#include "formats/mesh_formats.h"
+#include "formats/ply_header.h"
+
+namespace dubsar {
+
+namespace {
+
+enum class MeshFormat { kPly, kObj, kStl, kGlb, kUnknown };
+
+constexpr const char* kKnown = "use .ply, .obj, .stl or .glb";
+
+MeshFormat format_of(const std::filesystem::path& name) {
+  std::string extension = name.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + ('a' - 'A')) : c; });
+  if (extension == ".ply") {
+    return MeshFormat::kPly;
+  }
+  if (extension == ".obj") {
+    return MeshFormat::kObj;
+  }
+  if (extension == ".stl") {
+    return MeshFormat::kStl;
+  }
+  return extension == ".glb" ? MeshFormat::kGlb : MeshFormat::kUnknown;
+}
+
+/// The bytes decide where they can.
+MeshFormat format_of(std::string_view bytes, const std::filesystem::path& name) {
+  if (is_ply(bytes)) {
+    return MeshFormat::kPly;
+  }
+  if (is_glb(bytes)) {
+    return MeshFormat::kGlb;
+  }
+  const MeshFormat named = format_of(name);
+  return named == MeshFormat::kUnknown && is_binary_stl(bytes) ? MeshFormat::kStl : named;
+}
+
+}  // namespace
+
+Result<Mesh> read_mesh_bytes(std::string_view bytes, const std::string& name,
+                             const MeshReadOptions& options) {
+  if (bytes.empty()) {
+    return bad_input(name, "the file is empty", "copy or export it again");
+  }
+  switch (format_of(bytes, name)) {
+    case MeshFormat::kPly:
+      return decode_mesh_ply(bytes, name, options);
+    case MeshFormat::kObj:
+      return decode_mesh_obj(bytes, name, options);
+    case MeshFormat::kStl:
+      return decode_mesh_stl(bytes, name, options);
+    case MeshFormat::kGlb:
+      return decode_mesh_glb(bytes, name, options);
+    case MeshFormat::kUnknown:
+      break;
+  }
+  return bad_input(name, "not a mesh that Dubsar reads", kKnown);
+}
+
+Result<Mesh> read_mesh(const std::filesystem::path& path, const MeshReadOptions& options) {
+  const Result<std::string> bytes = read_whole_file(path);
+  return bytes ? read_mesh_bytes(*bytes, path.string(), options) : std::unexpected(bytes.error());
+}
+
+Status write_mesh(const std::filesystem::path& path, const Mesh& mesh) {
+  switch (format_of(path)) {
+    case MeshFormat::kPly:
+      return write_file_atomically(path, encode_mesh_ply(mesh));
+    case MeshFormat::kObj:
+      return write_file_atomically(path, encode_mesh_obj(mesh));
+    case MeshFormat::kStl:
+      return write_file_atomically(path, encode_mesh_stl(mesh));
+    case MeshFormat::kGlb: {
+      const Result<std::string> bytes = encode_mesh_glb(mesh, path.string());
+      return bytes ? write_file_atomically(path, *bytes) : std::unexpected(bytes.error());
+    }
+    case MeshFormat::kUnknown:
+      break;
+  }
+  return fail(ErrorKind::kUsage, "cannot tell the mesh format from the name", path.string(), kKnown);
+}
+
+}  // namespace dubsar

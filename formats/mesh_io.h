@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "core/mesh.h"
+#include "core/result.h"
+
+namespace dubsar {
+
+struct MeshReadOptions {
+  /// What the file's numbers are; unset: the file's own word (PLY obj_info unit), metres for glTF, else
+  /// millimetres.
+  std::optional<double> mm_per_unit;
+};
+
+/// Reads a mesh by its extension (.ply .obj .stl .glb) or, where that says nothing, by its first bytes.
+/// Polygons are triangulated as fans; STL and GLB, which keep a vertex once per facet or texture seam, are
+/// welded where positions are equal. Topological faults stay as they are: see triangulation/mesh_check.h.
+/// Errors name the file, the vertex or face, and the mend.
+[[nodiscard]] Result<Mesh> read_mesh(const std::filesystem::path& path, const MeshReadOptions& options = {});
+[[nodiscard]] Result<Mesh> read_mesh_bytes(std::string_view bytes, const std::string& name,
+                                           const MeshReadOptions& options = {});
+
+/// Writes by extension, atomically. PLY keeps everything (docs/formats/mesh.md), GLB positions, normals and
+/// colours, OBJ positions, normals and faces, STL the triangles alone.
+[[nodiscard]] Status write_mesh(const std::filesystem::path& path, const Mesh& mesh);
+
+}  // namespace dubsar
