@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
 #include <csignal>
 #include <thread>
 
@@ -239,12 +240,18 @@ TEST_F(SessionDamageTest, WhatWasReportedStoredSurvivesAKill) {
       ::_exit(2);
     }
     ::close(pipe[1]);
-    std::this_thread::sleep_for(std::chrono::milliseconds(15 + random.below(60)));
+    // Some stores pass; the kill then falls anywhere in the next one or two.
+    int id = 0;
+    for (auto wanted = 1 + random.below(3); wanted > 0 && ::read(pipe[0], &id, sizeof id) == sizeof id;
+         --wanted) {
+      reported.push_back(id);
+    }
+    std::this_thread::sleep_for(std::chrono::microseconds(random.below(60000)));
     ::kill(child, SIGKILL);
     int status = 0;
     ::waitpid(child, &status, 0);
     ASSERT_TRUE(WIFSIGNALED(status)) << "the child ended by itself: " << WEXITSTATUS(status);
-    for (int id = 0; ::read(pipe[0], &id, sizeof id) == sizeof id;) {
+    while (::read(pipe[0], &id, sizeof id) == sizeof id) {
       reported.push_back(id);
     }
     ::close(pipe[0]);
@@ -253,14 +260,14 @@ TEST_F(SessionDamageTest, WhatWasReportedStoredSurvivesAKill) {
     EXPECT_THAT(store->opening().damage, IsEmpty()) << "round " << round;
     const auto scans = store->scans().value();
     EXPECT_GE(scans.size(), reported.size());
-    for (const int id : reported) {
-      const Result<RangeGrid> grid = store->load_grid(id);
+    for (const int stored : reported) {
+      const Result<RangeGrid> grid = store->load_grid(stored);
       ASSERT_TRUE(grid) << grid.error().line();
-      EXPECT_EQ(grid->z, small_grid(id).z) << id;
-      EXPECT_TRUE(store->load_flags(id).value()) << id;
+      EXPECT_EQ(grid->z, small_grid(stored).z) << stored;
+      EXPECT_TRUE(store->load_flags(stored).value()) << stored;
     }
   }
-  EXPECT_GT(reported.size(), 5U) << "the children were killed before they stored anything";
+  EXPECT_GE(reported.size(), 10U) << "children were killed before they stored anything";
 }
 
 }  // namespace
