@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "acquisition/device_uri.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+namespace dubsar {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Pair;
+
+TEST(DeviceUri, TakesSchemeLocatorAndOptionsApart) {
+  const DeviceUri uri = parse_device_uri("replay:/data/my%20scans?unit=m&rate=20").value();
+  EXPECT_EQ(uri.scheme, "replay");
+  EXPECT_EQ(uri.locator, "/data/my scans");
+  EXPECT_THAT(uri.options, ElementsAre(Pair("unit", "m"), Pair("rate", "20")));
+  EXPECT_THAT(parse_device_uri("sim:").value().options, IsEmpty());
+  EXPECT_EQ(parse_device_uri("usb_stage:1a86:7523").value().locator, "1a86:7523");
+  EXPECT_EQ(parse_device_uri("v4l2:/dev/video0").value().scheme, "v4l2");
+  EXPECT_THAT(parse_device_uri("sim:?a=1&&b=x%3Dy&").value().options,
+              ElementsAre(Pair("a", "1"), Pair("b", "x=y")));
+}
+
+TEST(DeviceUri, ABarePathIsReplayedLetterByLetter) {
+  for (const char* path : {"scans", "/a/b.ply", "./odd:name", "50%?", "C:scan", "Sim:x"}) {
+    const DeviceUri uri = parse_device_uri(path).value();
+    EXPECT_EQ(uri.scheme, "replay") << path;
+    EXPECT_EQ(uri.locator, path);
+    EXPECT_THAT(uri.options, IsEmpty());
+  }
+}
+
+TEST(DeviceUri, RefusesWhatIsBroken) {
+  for (const char* text :
+       {"", "sim:?seed", "sim:?=4", "sim:?a=1&a=2", "replay:50%", "replay:%zz", "replay:%00"}) {
+    const auto uri = parse_device_uri(text);
+    ASSERT_FALSE(uri) << text;
+    EXPECT_EQ(uri.error().kind, ErrorKind::kUsage);
+  }
+}
+
+TEST(DeviceUri, TextReadsBackTheSame) {
+  const DeviceUri uri{"replay", "/a b/50%?&=#\n\xc3\xbc", {{"unit", "m&m"}, {"r", ""}}};
+  const DeviceUri back = parse_device_uri(uri.text()).value();
+  EXPECT_EQ(back.scheme, uri.scheme);
+  EXPECT_EQ(back.locator, uri.locator);
+  EXPECT_EQ(back.options, uri.options);
+}
+
+TEST(DeviceUri, AnUnknownSchemeIsAnsweredWithThoseThatThereAre) {
+  const DriverRegistry registry({std::filesystem::path(DUBSAR_BINARY_DIR) / "lib/dubsar/drivers"});
+  const auto device = open_device(parse_device_uri("webcam:0").value(), registry);
+  ASSERT_FALSE(device);
+  EXPECT_THAT(device.error().line(), HasSubstr("replay:, sim:"));
+  const auto option = open_device(parse_device_uri("sim:?sede=4").value(), registry);
+  ASSERT_FALSE(option);
+  EXPECT_THAT(option.error().line(), HasSubstr("takes seed, size, spacing"));
+}
+
+}  // namespace
+}  // namespace dubsar

@@ -1,0 +1,274 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <thread>
+
+#include "acquisition/session_store.h"
+#include "tests/acquisition/session_support.h"
+#include "tests/support/temporary_folder.h"
+
+namespace dubsar {
+namespace {
+
+namespace fs = std::filesystem;
+using test::flip_byte;
+using test::small_grid;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+constexpr auto kReadOnly = SessionStore::Access::kReadOnly;
+
+class SessionDamageTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    SessionStore store = SessionStore::open_or_create(folder_).value();
+    for (int i = 0; i < 4; ++i) {
+      ASSERT_EQ(store.add_grid(small_grid(i)).value(), i);
+    }
+    ASSERT_TRUE(store.drop_scan(1, "blurred"));
+    ASSERT_TRUE(store.save_document("rig", "{\"name\":\"bench\"}"));
+    ScanPose pose;
+    pose.status = PoseStatus::kRegistered;
+    pose.id = 2;
+    ASSERT_TRUE(store.save_poses({pose}));
+  }
+
+  /// Everything that SetUp stored is there and whole, apart from the grids named.
+  static void expect_content(const SessionStore& store, const std::vector<int>& lost = {}) {
+    const auto scans = store.scans().value();
+    ASSERT_EQ(scans.size(), 4U);
+    for (int id = 0; id < 4; ++id) {
+      const bool gone = std::ranges::find(lost, id) != lost.end();
+      EXPECT_EQ(scans[static_cast<std::size_t>(id)].damaged, gone) << id;
+      const Result<RangeGrid> grid = store.load_grid(id);
+      EXPECT_EQ(grid.has_value(), !gone) << id;
+      if (grid) {
+        EXPECT_EQ(grid->z, small_grid(id).z);
+      }
+    }
+    EXPECT_TRUE(scans[1].dropped);
+    EXPECT_EQ(store.load_document("rig").value(), "{\"name\":\"bench\"}");
+  }
+
+  test::TemporaryFolder temporary_;
+  fs::path folder_ = temporary_.path() / "session";
+  JobContext job_;
+};
+
+TEST_F(SessionDamageTest, ADamagedGridIsNamedAndTheRestStands) {
+  flip_byte(folder_ / "grids/002.grid", 1234);
+  for (const auto access : {kReadOnly, SessionStore::Access::kReadWrite}) {
+    const SessionStore store = SessionStore::open(folder_, access).value();
+    ASSERT_EQ(store.opening().damage.size(), 1U);
+    EXPECT_EQ(store.opening().damage[0].where, "grids/002.grid");
+    expect_content(store, {2});
+    const VerifyReport report = store.verify(job_).value();
+    ASSERT_EQ(report.damaged.size(), 1U);
+    EXPECT_EQ(report.damaged[0].where, "grids/002.grid");
+  }
+}
+
+TEST_F(SessionDamageTest, AMissingOrCutGridIsNamed) {
+  fs::remove(folder_ / "grids/000.grid");
+  fs::resize_file(folder_ / "grids/003.grid", 100);
+  const SessionStore store = SessionStore::open(folder_).value();
+  EXPECT_EQ(store.opening().damage.size(), 2U);
+  expect_content(store, {0, 3});
+}
+
+TEST_F(SessionDamageTest, VerifyNoticesAFlippedByteAnywhere) {
+  Random random(11);
+  for (const char* name : {"session.sqlite", "session.backup.sqlite", "session.sums", "grids/000.grid"}) {
+    const auto size = fs::file_size(folder_ / name);
+    for (int round = 0; round < 12; ++round) {
+      const auto at = random.below(size);
+      flip_byte(folder_ / name, at);
+      const Result<SessionStore> store = SessionStore::open(folder_, kReadOnly);
+      EXPECT_FALSE(store && store->verify(job_).value().ok()) << name << " at " << at;
+      flip_byte(folder_ / name, at);
+    }
+  }
+  const VerifyReport report = SessionStore::open(folder_, kReadOnly).value().verify(job_).value();
+  EXPECT_TRUE(report.ok());
+  EXPECT_EQ(report.whole.size(), 6U);
+}
+
+TEST_F(SessionDamageTest, ADatabaseWithFlippedBytesKeepsTheScans) {
+  Random random(5);
+  const auto size = fs::file_size(folder_ / "session.sqlite");
+  for (int round = 0; round < 12; ++round) {
+    const fs::path copy = temporary_.path() / ("copy" + std::to_string(round));
+    fs::copy(folder_, copy, fs::copy_options::recursive);
+    const auto at = random.below(size);
+    flip_byte(copy / "session.sqlite", at);
+    for (const auto access : {kReadOnly, SessionStore::Access::kReadWrite}) {
+      const Result<SessionStore> store = SessionStore::open(copy, access);
+      ASSERT_TRUE(store) << "byte " << at << ": " << store.error().line();
+      expect_content(*store);
+    }
+  }
+}
+
+TEST_F(SessionDamageTest, AnUnreadableDatabaseIsRebuiltFromBackupAndGrids) {
+  std::ofstream(folder_ / "session.sqlite")
+      << "Not a database at all, but long enough to look like one. " << std::string(5000, '#');
+  {
+    const SessionStore reader = SessionStore::open(folder_, kReadOnly).value();
+    EXPECT_THAT(reader.opening().damage.at(0).line(), HasSubstr("damaged"));
+    expect_content(reader);
+    EXPECT_FALSE(reader.verify(job_).value().ok());
+  }
+  {
+    const SessionStore store = SessionStore::open(folder_).value();
+    EXPECT_THAT(store.opening().damage.at(0).line(), HasSubstr("damaged"));
+    expect_content(store);
+    EXPECT_TRUE(fs::exists(folder_ / "session.sqlite.damaged-1")) << "the bad file is kept";
+  }
+  const SessionStore again = SessionStore::open(folder_).value();
+  EXPECT_THAT(again.opening().damage, IsEmpty());
+  expect_content(again);
+}
+
+TEST_F(SessionDamageTest, WithoutDatabaseAndBackupTheGridsAreTakenIn) {
+  fs::remove(folder_ / "session.sqlite");
+  fs::remove(folder_ / "session.backup.sqlite");
+  const SessionStore store = SessionStore::open(folder_).value();
+  EXPECT_FALSE(store.opening().damage.empty());
+  ASSERT_EQ(store.scans().value().size(), 4U);
+  EXPECT_EQ(store.load_grid(3).value().z, small_grid(3).z);
+}
+
+/// Runs body in a child process and returns its exit status.
+template <class Body>
+int in_child(const Body& body) {
+  const pid_t child = ::fork();
+  if (child == 0) {
+    ::_exit(body());
+  }
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
+TEST_F(SessionDamageTest, AFullDiskLosesNothingThatWasStored) {
+  const int status = in_child([&] {
+    ::signal(SIGXFSZ, SIG_IGN);
+    SessionStore store = SessionStore::open(folder_).value();
+    // No file may grow past this: small for a grid file first, then for the database's log.
+    for (const rlim_t limit : {rlim_t{512}, rlim_t{12000}}) {
+      const rlimit small{limit, RLIM_INFINITY};
+      ::setrlimit(RLIMIT_FSIZE, &small);
+      RangeGrid grid = small_grid(8);
+      if (limit > 10000) {
+        grid = RangeGrid();
+        grid.allocate(2, 2);
+        grid.source = std::string(20000, 's');
+      }
+      const Result<int> id = store.add_grid(grid);
+      if (id || id.error().kind != ErrorKind::kStorage || id.error().mend.empty()) {
+        return 1;
+      }
+      const Status document = store.save_document("big", std::string(20000, ' '));
+      if (document || document.error().kind != ErrorKind::kStorage) {
+        return 2;
+      }
+    }
+    const rlimit free{RLIM_INFINITY, RLIM_INFINITY};
+    ::setrlimit(RLIMIT_FSIZE, &free);
+    // With room again the same store goes on.
+    return store.add_grid(small_grid(4)).value_or(-1) == 4 ? 0 : 3;
+  });
+  EXPECT_EQ(status, 0);
+  const SessionStore store = SessionStore::open(folder_).value();
+  EXPECT_THAT(store.opening().damage, IsEmpty());
+  EXPECT_EQ(store.scans().value().size(), 5U);
+  EXPECT_EQ(store.load_grid(4).value().z, small_grid(4).z);
+  EXPECT_FALSE(store.load_document("big").value());
+}
+
+TEST_F(SessionDamageTest, AWriteProtectedFolderIsToldAndCanBeRead) {
+  { SessionStore store = SessionStore::open(folder_).value(); }
+  const int status = in_child([&] {
+    for (const auto& entry : fs::recursive_directory_iterator(temporary_.path())) {
+      fs::permissions(entry.path(), entry.is_directory() ? fs::perms(0555) : fs::perms(0444));
+    }
+    fs::permissions(temporary_.path(), fs::perms(0555));
+    // Root may write anywhere; nobody may not.
+    if (::getuid() == 0 && ::setuid(65534) != 0) {
+      return 9;
+    }
+    const auto writer = SessionStore::open(folder_);
+    if (writer || writer.error().kind != ErrorKind::kStorage || writer.error().mend.empty()) {
+      return 1;
+    }
+    const auto reader = SessionStore::open(folder_, kReadOnly);
+    return reader && reader->load_grid(3) && reader->verify(job_).value().ok() ? 0 : 2;
+  });
+  for (const fs::path& path : {temporary_.path(), folder_, folder_ / "grids", folder_ / "mesh"}) {
+    fs::permissions(path, fs::perms(0755));
+  }
+  EXPECT_EQ(status, 0);
+}
+
+TEST_F(SessionDamageTest, WhatWasReportedStoredSurvivesAKill) {
+  const fs::path folder = temporary_.path() / "killed";
+  Random random(2026);
+  std::vector<int> reported;
+  for (int round = 0; round < 10; ++round) {
+    int pipe[2];
+    ASSERT_EQ(::pipe(pipe), 0);
+    const pid_t child = ::fork();
+    if (child == 0) {
+      Result<SessionStore> store = SessionStore::open_or_create(folder);
+      for (int i = 0; store && i < 100000; ++i) {
+        const auto scans = store->scans();
+        const int number = scans ? static_cast<int>(scans->size()) : -1;
+        const Result<int> id = store->add_grid(small_grid(number));
+        if (!id || !store->save_flags(*id, SampleFlags(2000, kSparse)) ||
+            ::write(pipe[1], &*id, sizeof *id) != sizeof *id) {
+          ::_exit(1);
+        }
+      }
+      ::_exit(2);
+    }
+    ::close(pipe[1]);
+    // Some stores pass; the kill then falls anywhere in the next one or two.
+    int id = 0;
+    for (auto wanted = 1 + random.below(3); wanted > 0 && ::read(pipe[0], &id, sizeof id) == sizeof id;
+         --wanted) {
+      reported.push_back(id);
+    }
+    std::this_thread::sleep_for(std::chrono::microseconds(random.below(60000)));
+    ::kill(child, SIGKILL);
+    int status = 0;
+    ::waitpid(child, &status, 0);
+    ASSERT_TRUE(WIFSIGNALED(status)) << "the child ended by itself: " << WEXITSTATUS(status);
+    while (::read(pipe[0], &id, sizeof id) == sizeof id) {
+      reported.push_back(id);
+    }
+    ::close(pipe[0]);
+    const Result<SessionStore> store = SessionStore::open_or_create(folder);
+    ASSERT_TRUE(store) << store.error().line();
+    EXPECT_THAT(store->opening().damage, IsEmpty()) << "round " << round;
+    const auto scans = store->scans().value();
+    EXPECT_GE(scans.size(), reported.size());
+    for (const int stored : reported) {
+      const Result<RangeGrid> grid = store->load_grid(stored);
+      ASSERT_TRUE(grid) << grid.error().line();
+      EXPECT_EQ(grid->z, small_grid(stored).z) << stored;
+      EXPECT_TRUE(store->load_flags(stored).value()) << stored;
+    }
+  }
+  EXPECT_GE(reported.size(), 10U) << "children were killed before they stored anything";
+}
+
+}  // namespace
+}  // namespace dubsar
