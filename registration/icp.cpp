@@ -39,6 +39,22 @@ double robust_weight(double residual, double scale) {
   return v > 0 ? v * v : 0.0;
 }
 
+/// The usable sample of `level` nearest to p within reach_mm, or -1. What the camera saw straight at p bounds the search,
+/// so that it seldom looks farther than the next cell; where nothing was seen, only the close neighbourhood is searched.
+std::int64_t nearest_usable(const SurfaceLevel& level, const Eigen::Vector3f& p, float reach_mm) {
+  const DepthRaster::Cell* cell = level.raster.at(p);
+  float radius_mm = std::min(reach_mm, 2.0F * static_cast<float>(level.raster.cell_mm()));
+  if (cell != nullptr && cell->sample >= 0) {
+    const auto straight = static_cast<std::size_t>(cell->sample);
+    if (std::abs(level.raster.height(p) - cell->height_mm) > 2.0F * reach_mm) {
+      return -1;
+    }
+    const float d = (level.grid.point(straight) - p).norm();
+    radius_mm = level.usable[straight] != 0 ? std::min(reach_mm, 1.0001F * d) : reach_mm;
+  }
+  return level.lookup->nearest(p, radius_mm);
+}
+
 /// Pairs each sample of `from` with the nearest usable sample of `into`. `moving_is_from` tells which side
 /// the perturbation acts on. Both frames are given in the model frame.
 void accumulate(const SurfaceLevel& from, const RigidTransform& model_from_from, const SurfaceLevel& into,
@@ -56,7 +72,7 @@ void accumulate(const SurfaceLevel& from, const RigidTransform& model_from_from,
         for (std::size_t k = begin; k < end; ++k) {
           const SurfaceSample& sample = from.samples[k];
           const Eigen::Vector3f p = rotation * sample.position_mm + shift;
-          const std::int64_t found = into.lookup->nearest(p, reach);
+          const std::int64_t found = nearest_usable(into, p, reach);
           if (found < 0) {
             continue;
           }

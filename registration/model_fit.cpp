@@ -66,7 +66,7 @@ void keep_distinct(std::vector<Start>& starts, std::size_t most, const Eigen::Ve
                    [](const Start& a, const Start& b) { return a.score > b.score; });
   std::vector<Start> kept;
   for (const Start& s : starts) {
-    if (kept.size() < most && std::none_of(kept.begin(), kept.end(), [&](const Start& k) {
+    if (kept.size() < most && (kept.size() < 2 || s.score > options.hopeless * kept.front().score) && std::none_of(kept.begin(), kept.end(), [&](const Start& k) {
           return same_pose(s.pose, k.pose, center_mm, options.distinct_turn_rad,
                            options.distinct_shift * scale_mm);
         })) {
@@ -189,8 +189,9 @@ std::vector<ModelFit> fit_to_model(const ScanSurface& scan, std::span<const Mode
       1);
   const auto better = [](const ModelFit& a, const ModelFit& b) { return a.score > b.score; };
   std::stable_sort(fits.begin(), fits.end(), better);
-  if (fits.size() > static_cast<std::size_t>(options.most_fine)) {
-    fits.resize(static_cast<std::size_t>(options.most_fine));
+  while (fits.size() > 1 && (fits.size() > static_cast<std::size_t>(options.most_fine) ||
+                             fits.back().score < options.hopeless * fits.front().score)) {
+    fits.pop_back();
   }
   for (ModelFit& fit : fits) {
     IcpOptions fine;
