@@ -14,8 +14,6 @@ namespace dubsar {
 
 namespace {
 
-constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
-
 std::uint64_t key_of(std::uint32_t a, std::uint32_t b) {
   return (static_cast<std::uint64_t>(a) << 32U) | b;
 }
@@ -34,7 +32,9 @@ Front::Front(Sheet& sheet) : sheet_(&sheet), link_of_(sheet.positions.size(), kN
   for (const float mu : sheet.spacing_mm) {
     coarsest = std::max(coarsest, mu);
   }
-  cell_mm_ = coarsest > 0 ? 2.0F * coarsest : 1.0F;
+  // About the radius that seams look around with: a query meets 27 buckets at most.
+  cell_mm_ = coarsest > 0 ? 4.5F * coarsest : 1.0F;
+  buckets_.resize(1U << 10U);
   const HalfEdges edges(sheet.faces, sheet.positions.size());
   std::vector<std::uint8_t> open(3 * sheet.faces.size(), 0);
   parallel_for_each_index(
@@ -63,19 +63,50 @@ Front::Front(Sheet& sheet) : sheet_(&sheet), link_of_(sheet.positions.size(), kN
   }
 }
 
-std::uint64_t Front::bucket(const Eigen::Vector3f& p, int du, int dv, int dw) const {
-  const auto cell = [&](float x, int d) {
-    const float c = std::clamp(std::floor(x / cell_mm_), -1.0e6F, 1.0e6F);
-    return static_cast<std::uint64_t>(static_cast<std::int64_t>(c) + d + (1 << 20)) & 0x1fffffU;
+Front::Cell Front::cell_of(const Eigen::Vector3f& p) const {
+  const auto cell = [&](float x) {
+    return static_cast<int>(std::clamp(std::floor(x / cell_mm_), -1.0e6F, 1.0e6F));
   };
-  return (cell(p.x(), du) << 42U) | (cell(p.y(), dv) << 21U) | cell(p.z(), dw);
+  return {cell(p.x()), cell(p.y()), cell(p.z())};
+}
+
+std::size_t Front::slot_of(const Cell& cell, std::uint64_t& key) const {
+  const auto part = [](int c) { return static_cast<std::uint64_t>(c + (1 << 20)) & 0x1fffffU; };
+  key = (part(cell[0]) << 42U) | (part(cell[1]) << 21U) | part(cell[2]);
+  std::uint64_t mixed = key * 0x9e3779b97f4a7c15ULL;
+  mixed ^= mixed >> 32U;
+  std::size_t slot = mixed & (buckets_.size() - 1);
+  while (buckets_[slot].first != kNone && buckets_[slot].key != key) {
+    slot = (slot + 1) & (buckets_.size() - 1);
+  }
+  return slot;
+}
+
+void Front::grow_buckets() {
+  std::vector<Bucket> old(2 * buckets_.size());
+  old.swap(buckets_);
+  for (const Bucket& bucket : old) {
+    if (bucket.first != kNone) {
+      std::uint64_t key = 0;
+      const std::size_t slot = slot_of(cell_of(links_[bucket.first].position), key);
+      buckets_[slot] = bucket;
+    }
+  }
 }
 
 Front::Links& Front::links(std::uint32_t v) {
   if (link_of_[v] == kNone) {
+    if (2 * (links_.size() + 1) > buckets_.size()) {
+      grow_buckets();
+    }
     link_of_[v] = static_cast<std::uint32_t>(links_.size());
-    links_.emplace_back();
-    buckets_[bucket(sheet_->positions[v], 0, 0, 0)].push_back(v);
+    Links& added = links_.emplace_back();
+    added.vertex = v;
+    added.position = sheet_->positions[v];
+    std::uint64_t key = 0;
+    Bucket& bucket = buckets_[slot_of(cell_of(added.position), key)];
+    added.next_in_bucket = bucket.first;
+    bucket = {key, link_of_[v]};
   }
   return links_[link_of_[v]];
 }
@@ -151,16 +182,19 @@ std::uint32_t Front::add_vertex(const Eigen::Vector3f& position_mm, const Eigen:
 
 void Front::near(const Eigen::Vector3f& p_mm, float radius_mm, std::vector<std::uint32_t>& out) const {
   out.clear();
-  const int reach = std::clamp(static_cast<int>(std::ceil(radius_mm / cell_mm_)), 1, 4);
-  for (int du = -reach; du <= reach; ++du) {
-    for (int dv = -reach; dv <= reach; ++dv) {
-      for (int dw = -reach; dw <= reach; ++dw) {
-        const auto found = buckets_.find(bucket(p_mm, du, dv, dw));
-        if (found != buckets_.end()) {
-          for (const std::uint32_t v : found->second) {
-            if (on_front(v) && (sheet_->positions[v] - p_mm).squaredNorm() <= radius_mm * radius_mm) {
-              out.push_back(v);
-            }
+  const Eigen::Vector3f reach = Eigen::Vector3f::Constant(radius_mm);
+  const Cell low = cell_of(p_mm - reach);
+  const Cell high = cell_of(p_mm + reach);
+  for (int u = low[0]; u <= high[0]; ++u) {
+    for (int v = low[1]; v <= high[1]; ++v) {
+      for (int w = low[2]; w <= high[2]; ++w) {
+        std::uint64_t key = 0;
+        for (std::uint32_t l = buckets_[slot_of({u, v, w}, key)].first; l != kNone;
+             l = links_[l].next_in_bucket) {
+          const Links& link = links_[l];
+          if ((link.position - p_mm).squaredNorm() <= radius_mm * radius_mm &&
+              (link.free || !link.out.empty())) {
+            out.push_back(link.vertex);
           }
         }
       }

@@ -3,9 +3,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstdint>
 #include <span>
-#include <unordered_map>
 #include <unordered_set>
 #include <vector>
 
@@ -58,20 +58,31 @@ class Front {
   [[nodiscard]] const Sheet& sheet() const { return *sheet_; }
 
  private:
+  static constexpr std::uint32_t kNone = 0xffffffffU;
   struct Links {
-    std::vector<std::uint32_t> out, in;
+    std::uint32_t vertex = 0;
+    std::uint32_t next_in_bucket = kNone;  ///< index into links_
+    Eigen::Vector3f position{0, 0, 0};
     bool free = false;  ///< without a face
+    std::vector<std::uint32_t> out, in;
   };
-  [[nodiscard]] std::uint64_t bucket(const Eigen::Vector3f& p, int du, int dv, int dw) const;
+  struct Bucket {
+    std::uint64_t key = ~std::uint64_t{0};
+    std::uint32_t first = kNone;  ///< index into links_
+  };
+  using Cell = std::array<int, 3>;
+  [[nodiscard]] Cell cell_of(const Eigen::Vector3f& p) const;
+  [[nodiscard]] std::size_t slot_of(const Cell& cell, std::uint64_t& key) const;
+  void grow_buckets();
   Links& links(std::uint32_t v);
   [[nodiscard]] const Links* find(std::uint32_t v) const;
 
   Sheet* sheet_;
   float cell_mm_ = 1;
-  std::vector<std::uint32_t> link_of_;  ///< [V] index into links_, or none
+  std::vector<std::uint32_t> link_of_;  ///< [V] index into links_, or kNone
   std::vector<Links> links_;
   std::unordered_set<std::uint64_t> half_edges_;  ///< of faces, between vertices of the front; looked up only
-  std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> buckets_;  ///< looked up only
+  std::vector<Bucket> buckets_;                   ///< open addressing, a power of two long
 };
 
 }  // namespace dubsar

@@ -68,6 +68,59 @@ Projection project_near(const ScanSurface& s, const GridSurface& surface, std::s
   return best;
 }
 
+/// Whether a surface element could face the scanner, with some leave for noise and for camera and laser
+/// standing apart.
+bool may_see(const ScannerView& view, const Vector3f& p, const Vector3f& normal) {
+  constexpr float kMostSine = -0.2F;
+  const Vector3f to_camera = view.camera_mm ? Vector3f((view.camera_mm->cast<float>() - p).normalized())
+                                            : Vector3f(-view.direction.cast<float>());
+  return normal.dot(to_camera) > kMostSine;
+}
+
+/// Goes from sample to sample of a grid towards a point: the neighbour of a point whose pair is known has its
+/// pair a step or two away.
+class Walker {
+ public:
+  explicit Walker(const ScanSurface& to) : to_(&to), rows_(to.scan.grid->rows), cols_(to.scan.grid->cols) {
+    const auto near = static_cast<float>(0.75 * to.spacing_mm);
+    near2_ = near * near;
+  }
+
+  /// The sample at which no neighbour is nearer, or -1 when it is not so near that it must be the nearest.
+  [[nodiscard]] std::int64_t walk(std::size_t at, const Vector3f& p) const {
+    constexpr int kMostSteps = 8;
+    float best2 = (to_->points[at] - p).squaredNorm();
+    for (int step = 0; step < kMostSteps; ++step) {
+      const int row = static_cast<int>(at / static_cast<std::size_t>(cols_));
+      const int col = static_cast<int>(at % static_cast<std::size_t>(cols_));
+      std::size_t next = at;
+      for (int r = std::max(row - 1, 0); r <= std::min(row + 1, rows_ - 1); ++r) {
+        for (int c = std::max(col - 1, 0); c <= std::min(col + 1, cols_ - 1); ++c) {
+          const std::size_t i =
+              static_cast<std::size_t>(r) * static_cast<std::size_t>(cols_) + static_cast<std::size_t>(c);
+          if (to_->usable[i] != 0) {
+            const float d2 = (to_->points[i] - p).squaredNorm();
+            if (d2 < best2) {
+              best2 = d2;
+              next = i;
+            }
+          }
+        }
+      }
+      if (next == at) {
+        return best2 <= near2_ ? static_cast<std::int64_t>(at) : -1;
+      }
+      at = next;
+    }
+    return -1;
+  }
+
+ private:
+  const ScanSurface* to_;
+  int rows_, cols_;
+  float near2_ = 0;
+};
+
 }  // namespace
 
 double mismatch_mm(const ScanSurface& from, const ScanSurface& to, double reach_mm) {
@@ -125,18 +178,29 @@ Pairs find_pairs(const ScanSurface& from, const ScanSurface& to, double reach_mm
   const Eigen::Matrix3f rotation = to.scanner_from_model.rotation.cast<float>();
   const Vector3f shift = to.scanner_from_model.translation_mm.cast<float>();
   const auto min_cos = static_cast<float>(options.min_normal_cos);
+  const Walker walker(to);
+  const auto cols = static_cast<std::size_t>(from.scan.grid->cols);
   pairs.count = parallel_reduce_ordered(
-      from.points.size(), 4096, std::size_t{0},
+      static_cast<std::size_t>(from.scan.grid->rows), 8, std::size_t{0},
       [&](std::size_t begin, std::size_t end) {
         std::size_t count = 0;
-        for (std::size_t i = begin; i < end; ++i) {
-          if (from.usable[i] == 0 || !box.contains(from.points[i])) {
-            continue;
-          }
-          const std::int64_t j = to.lookup->nearest(rotation * from.points[i] + shift, pairs.reach_mm);
-          if (j >= 0 && from.normals[i].dot(to.normals[static_cast<std::size_t>(j)]) > min_cos) {
-            pairs.match[i] = static_cast<std::int32_t>(j);
-            ++count;
+        for (std::size_t row = begin; row < end; ++row) {
+          std::int64_t last = -1;
+          for (std::size_t i = row * cols; i < (row + 1) * cols; ++i) {
+            // A scan cannot have seen what faces away from it.
+            if (from.usable[i] == 0 || !box.contains(from.points[i]) ||
+                !may_see(to.view, from.points[i], from.normals[i])) {
+              continue;
+            }
+            std::int64_t j = last < 0 ? -1 : walker.walk(static_cast<std::size_t>(last), from.points[i]);
+            if (j < 0) {
+              j = to.lookup->nearest(rotation * from.points[i] + shift, pairs.reach_mm);
+            }
+            last = j;
+            if (j >= 0 && from.normals[i].dot(to.normals[static_cast<std::size_t>(j)]) > min_cos) {
+              pairs.match[i] = static_cast<std::int32_t>(j);
+              ++count;
+            }
           }
         }
         return count;

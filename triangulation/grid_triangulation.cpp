@@ -136,14 +136,21 @@ bool is_mirrored(const GridSurface& surface, std::span<const std::uint8_t> keep)
   long votes = 0;
   for (int row = 0; row + 1 < surface.rows; row += step) {
     for (int col = 0; col + 1 < surface.cols; ++col) {
-      const std::size_t i = surface.index(row, col);
-      const std::size_t below = i + static_cast<std::size_t>(surface.cols);
-      if (keep[i] == 0 || keep[i + 1] == 0 || keep[below] == 0) {
+      const std::size_t i00 = surface.index(row, col);
+      const std::size_t i01 = i00 + 1;
+      const std::size_t i10 = i00 + static_cast<std::size_t>(surface.cols);
+      const std::size_t i11 = i10 + 1;
+      const bool left = keep[i00] != 0 && keep[i10] != 0;
+      const bool top = keep[i00] != 0 && keep[i01] != 0;
+      // Three corners or more always hold a whole side either way.
+      if ((!left && (keep[i01] == 0 || keep[i11] == 0)) || (!top && (keep[i10] == 0 || keep[i11] == 0))) {
         continue;
       }
-      const Vector3f& p = surface.points[i];
-      const Vector3f down = surface.points[below] - p;
-      const Vector3f along = surface.points[i + 1] - p;
+      const Vector3f& p = surface.points[keep[i00] != 0 ? i00 : i11];
+      const Vector3f down =
+          left ? surface.points[i10] - surface.points[i00] : surface.points[i11] - surface.points[i01];
+      const Vector3f along =
+          top ? surface.points[i01] - surface.points[i00] : surface.points[i11] - surface.points[i10];
       const float longest = static_cast<float>(2.0 * surface.spacing_mm);
       if (std::max(down.squaredNorm(), along.squaredNorm()) > longest * longest) {
         continue;

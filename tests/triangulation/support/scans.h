@@ -43,7 +43,8 @@ inline SampleFlags sparse_flags(const RangeGrid& grid) {
       for (int r = row - 1; r <= row + 1; ++r) {
         for (int c = col - 1; c <= col + 1; ++c) {
           const bool self = r == row && c == col;
-          around += !self && (!grid.is_valid(r, c) || (flags[grid.index(r, c)] & kPotentiallySparse) != 0) ? 1 : 0;
+          around +=
+              !self && (!grid.is_valid(r, c) || (flags[grid.index(r, c)] & kPotentiallySparse) != 0) ? 1 : 0;
         }
       }
       if (grid.is_valid(row, col) && around > 4) {
@@ -66,7 +67,8 @@ struct ScanSet {
     }
     flags.push_back(sparse_flags(grid));
     grids.push_back(std::move(grid));
-    placed.push_back({static_cast<int>(placed.size()), &grids.back(), &flags.back(), model_from_scanner, sigma_mm});
+    placed.push_back(
+        {static_cast<int>(placed.size()), &grids.back(), &flags.back(), model_from_scanner, sigma_mm});
   }
   [[nodiscard]] std::size_t samples() const {
     std::size_t n = 0;
@@ -77,10 +79,10 @@ struct ScanSet {
   }
 };
 
-/// A grid of rows × cols over the analytic height z(x, y) in the scanner frame, seen along -z; NaN heights are
-/// missing samples. Mirrored grids run their columns against x.
-inline RangeGrid height_grid(int rows, int cols, double spacing_mm, const std::function<double(double, double)>& z,
-                             bool mirrored = false) {
+/// A grid of rows × cols over the analytic height z(x, y) in the scanner frame, seen along -z; NaN heights
+/// are missing samples. Mirrored grids run their columns against x.
+inline RangeGrid height_grid(int rows, int cols, double spacing_mm,
+                             const std::function<double(double, double)>& z, bool mirrored = false) {
   RangeGrid grid;
   grid.allocate(rows, cols);
   grid.spacing_mm = spacing_mm;
@@ -125,7 +127,8 @@ inline ScanSet bunny(int stride = 1) {
     }
     RigidTransform model_from_scanner;
     // The file's quaternion takes model to scan: conjugated here.
-    model_from_scanner.rotation = Eigen::Quaterniond(q[3], -q[0], -q[1], -q[2]).normalized().toRotationMatrix();
+    model_from_scanner.rotation =
+        Eigen::Quaterniond(q[3], -q[0], -q[1], -q[2]).normalized().toRotationMatrix();
     model_from_scanner.translation_mm = 1000.0 * Eigen::Vector3d(t[0], t[1], t[2]);
     RangeGrid grid = std::get<RangeGrid>(std::move(scans->front()));
     if (!(grid.spacing_mm > 0)) {

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "triangulation/manifold.h"
+
+#include <gtest/gtest.h>
+
+#include "core/random.h"
+#include "triangulation/mesh_check.h"
+
+namespace dubsar {
+namespace {
+
+TEST(Manifold, SplitsAVertexWhereFansTouch) {
+  std::vector<Face> faces = {{0, 1, 2}, {0, 3, 4}};
+  const auto copies = make_manifold(faces, 5);
+  ASSERT_EQ(copies, std::vector<std::uint32_t>{0});
+  EXPECT_EQ(faces[0], (Face{0, 1, 2}));
+  EXPECT_EQ(faces[1], (Face{5, 3, 4}));
+}
+
+TEST(Manifold, LeavesASoundMeshAlone) {
+  std::vector<Face> faces = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
+  const std::vector<Face> before = faces;
+  EXPECT_TRUE(make_manifold(faces, 4).empty());
+  EXPECT_EQ(faces, before);
+}
+
+TEST(Manifold, MakesSomethingSoundOfAnyFaces) {
+  for (std::uint64_t seed = 0; seed < 50; ++seed) {
+    Random random(seed);
+    Mesh mesh;
+    constexpr std::uint32_t kVertices = 12;
+    for (std::uint32_t v = 0; v < kVertices; ++v) {
+      mesh.positions.emplace_back(random.normal(), random.normal(), random.normal());
+    }
+    for (int f = 0; f < 40; ++f) {
+      mesh.faces.push_back({static_cast<std::uint32_t>(random.below(kVertices)),
+                            static_cast<std::uint32_t>(random.below(kVertices)),
+                            static_cast<std::uint32_t>(random.below(kVertices))});
+    }
+    for (const std::uint32_t v : make_manifold(mesh.faces, kVertices)) {
+      mesh.positions.push_back(Eigen::Vector3f(mesh.positions[v]));
+    }
+    const MeshReport report = check_mesh(mesh);
+    EXPECT_GT(report.faces, 0U);
+    EXPECT_EQ(report.non_manifold_edges, 0U) << seed;
+    EXPECT_EQ(report.non_manifold_vertices, 0U) << seed;
+    EXPECT_EQ(report.inconsistent_faces, 0U) << seed;
+  }
+}
+
+TEST(Manifold, BoundaryLoopsStayWithTheirFans) {
+  const std::vector<Face> faces = {{0, 1, 2}, {0, 3, 4}};
+  const HalfEdges edges(faces, 5);
+  const auto loops = boundary_loops(faces, edges);
+  ASSERT_EQ(loops.size(), 2U);
+  EXPECT_EQ(loops[0], (std::vector<std::uint32_t>{0, 1, 2}));
+  EXPECT_EQ(loops[1], (std::vector<std::uint32_t>{0, 3, 4}));
+}
+
+TEST(Manifold, SmallComponentsGoWithTheirVertices) {
+  Mesh mesh;
+  mesh.positions = {{9, 9, 9}, {9, 8, 9}, {8, 9, 9}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}};
+  mesh.reliability = {0.F, 0.F, 0.F, .3F, .4F, .5F, .6F};
+  mesh.faces = {{0, 1, 2}, {3, 4, 5}, {4, 6, 5}};
+  remove_small_components(mesh, 2);
+  ASSERT_EQ(mesh.positions.size(), 4U);
+  EXPECT_EQ(mesh.faces, (std::vector<Face>{{0, 1, 2}, {1, 3, 2}}));
+  EXPECT_EQ(mesh.reliability, (std::vector<float>{.3F, .4F, .5F, .6F}));
+}
+
+}  // namespace
+}  // namespace dubsar

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "triangulation/mesh_check.h"
+
+#include <gtest/gtest.h>
+
+namespace dubsar {
+namespace {
+
+Mesh tetrahedron() {
+  Mesh mesh;
+  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  mesh.faces = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
+  return mesh;
+}
+
+TEST(MeshCheck, ClosedMesh) {
+  const MeshReport report = check_mesh(tetrahedron());
+  EXPECT_TRUE(report.is_closed());
+  EXPECT_EQ(report.components, 1U);
+  EXPECT_EQ(report.boundary_loops, 0U);
+  EXPECT_NEAR(report.area_mm2, 1.5 + 0.5 * std::sqrt(3.0), 1e-6);
+  EXPECT_NEAR(report.box.max().x(), 1.0, 1e-6);
+}
+
+TEST(MeshCheck, OpenMeshHasALoopOfKnownLength) {
+  Mesh mesh = tetrahedron();
+  mesh.faces.pop_back();
+  const MeshReport report = check_mesh(mesh);
+  EXPECT_TRUE(report.is_manifold());
+  EXPECT_FALSE(report.is_closed());
+  EXPECT_EQ(report.boundary_edges, 3U);
+  EXPECT_EQ(report.boundary_loops, 1U);
+  EXPECT_NEAR(report.boundary_length_mm, 2.0 + std::sqrt(2.0), 1e-6);
+}
+
+TEST(MeshCheck, TurnedFaceIsInconsistent) {
+  Mesh mesh = tetrahedron();
+  std::swap(mesh.faces[3][0], mesh.faces[3][1]);
+  const MeshReport report = check_mesh(mesh);
+  EXPECT_FALSE(report.is_manifold());
+  EXPECT_EQ(report.inconsistent_edges, 3U);
+  EXPECT_EQ(report.inconsistent_faces, 4U);
+  EXPECT_EQ(report.non_manifold_edges, 0U);
+}
+
+TEST(MeshCheck, ThirdFaceAtAnEdge) {
+  Mesh mesh = tetrahedron();
+  mesh.positions.push_back({1, -1, 0});
+  mesh.faces.push_back({0, 1, 4});
+  const MeshReport report = check_mesh(mesh);
+  EXPECT_EQ(report.non_manifold_edges, 1U);
+  EXPECT_FALSE(report.is_manifold());
+}
+
+TEST(MeshCheck, TwoFansAtAVertex) {
+  Mesh mesh;
+  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}};
+  mesh.faces = {{0, 1, 2}, {0, 3, 4}};
+  const MeshReport report = check_mesh(mesh);
+  EXPECT_EQ(report.non_manifold_vertices, 1U);
+  EXPECT_EQ(report.components, 2U);
+  EXPECT_FALSE(report.is_manifold());
+}
+
+TEST(MeshCheck, DegenerateDuplicateAndForeignIndices) {
+  Mesh mesh = tetrahedron();
+  mesh.positions.push_back({2, 0, 0});  // no face uses it
+  mesh.faces.push_back({1, 1, 2});
+  mesh.faces.push_back({0, 1, 99});
+  EXPECT_EQ(check_mesh(mesh).degenerate_faces, 2U);
+  EXPECT_EQ(check_mesh(mesh).unreferenced_vertices, 1U);
+  EXPECT_FALSE(check_mesh(mesh).is_manifold());
+
+  Mesh line;
+  line.positions = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}};
+  line.faces = {{0, 1, 2}};
+  EXPECT_EQ(check_mesh(line).degenerate_faces, 1U);
+  EXPECT_EQ(check_mesh(line).thin_share, 1.0);
+
+  Mesh twice = tetrahedron();
+  twice.faces.push_back({2, 1, 0});
+  EXPECT_EQ(check_mesh(twice).duplicate_faces, 1U);
+}
+
+TEST(MeshCheck, EmptyMesh) {
+  const MeshReport report = check_mesh(Mesh{});
+  EXPECT_TRUE(report.is_manifold());
+  EXPECT_FALSE(report.is_closed());
+  EXPECT_TRUE(report.box.isEmpty());
+}
+
+}  // namespace
+}  // namespace dubsar

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "triangulation/seam_closer.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "core/random.h"
+#include "tests/triangulation/support/scans.h"
+#include "triangulation/gap_fill.h"
+#include "triangulation/grid_triangulation.h"
+#include "triangulation/mesh_check.h"
+
+namespace dubsar {
+namespace {
+
+void append(Sheet& sheet, const Mesh& mesh, float spacing_mm) {
+  const auto base = static_cast<std::uint32_t>(sheet.positions.size());
+  sheet.positions.insert(sheet.positions.end(), mesh.positions.begin(), mesh.positions.end());
+  sheet.normals.insert(sheet.normals.end(), mesh.normals.begin(), mesh.normals.end());
+  sheet.spacing_mm.resize(sheet.positions.size(), spacing_mm);
+  for (const Face& f : mesh.faces) {
+    sheet.faces.push_back({f[0] + base, f[1] + base, f[2] + base});
+  }
+}
+
+MeshReport report_of(const Sheet& sheet) {
+  Mesh mesh;
+  mesh.positions = sheet.positions;
+  mesh.faces = sheet.faces;
+  return check_mesh(mesh);
+}
+
+TEST(SeamCloser, JoinsTwoPatchesWithoutACrack) {
+  // Two grids side by side, turned and shifted against each other, with jagged facing sides about 1.2 µ
+  // apart.
+  constexpr double kMu = 0.1;
+  const auto curve = [](double x, double y) { return 0.1 * std::sin(3 * x + y); };
+  Random random(4);
+  RangeGrid left = test::height_grid(40, 40, kMu, curve);
+  RangeGrid right = test::height_grid(40, 40, kMu, curve);
+  for (std::size_t i = 0; i < left.size(); ++i) {
+    const double border = 0.15 * std::sin(7 * left.y[i]);
+    left.valid[i] = left.x[i] < border - 0.06 ? 1 : 0;
+  }
+  for (std::size_t i = 0; i < right.size(); ++i) {
+    const double x = right.x[i] * std::cos(0.4) - right.y[i] * std::sin(0.4);
+    const double y = right.x[i] * std::sin(0.4) + right.y[i] * std::cos(0.4);
+    right.x[i] = static_cast<float>(x);
+    right.y[i] = static_cast<float>(y);
+    right.z[i] = static_cast<float>(curve(x, y));
+    right.valid[i] = x > 0.15 * std::sin(7 * y) + 0.06 && std::abs(y) < 1.6 ? 1 : 0;
+  }
+  Sheet sheet;
+  append(sheet, triangulate_grid(left, {}), kMu);
+  append(sheet, triangulate_grid(right, {}), kMu);
+  ASSERT_EQ(report_of(sheet).components, 2U);
+  Front front(sheet);
+  EXPECT_GT(close_seams(front, {}), 30U);
+  fill_gaps(front, {}, {});
+  const MeshReport report = report_of(sheet);
+  EXPECT_EQ(report.components, 1U);
+  EXPECT_EQ(report.boundary_loops, 1U);
+  EXPECT_EQ(report.non_manifold_edges, 0U);
+  EXPECT_EQ(report.inconsistent_faces, 0U);
+  EXPECT_LT(report.thin_share, 0.01);
+}
+
+TEST(SeamCloser, DoesNotBridgeADepthStep) {
+  Sheet sheet;
+  append(sheet,
+         triangulate_grid(test::height_grid(20, 20, 0.1, [](double x, double) { return x < 0 ? 0.0 : 0.6; }),
+                          {}),
+         0.1F);
+  Front front(sheet);
+  close_seams(front, {});
+  EXPECT_EQ(report_of(sheet).components, 2U);
+}
+
+TEST(GapFill, FillsAFewSamplesAndLeavesWideHoles) {
+  RangeGrid grid = test::height_grid(80, 80, 0.1, [](double x, double y) { return 0.05 * (x * x + y * y); });
+  const auto dig = [&](int row, int col, int radius) {
+    for (int r = row - radius; r <= row + radius; ++r) {
+      for (int c = col - radius; c <= col + radius; ++c) {
+        grid.valid[grid.index(r, c)] = 0;
+      }
+    }
+  };
+  dig(15, 15, 0);
+  dig(15, 40, 1);
+  dig(40, 15, 2);
+  dig(55, 55, 8);
+  Sheet sheet;
+  append(sheet, triangulate_grid(grid, {}), 0.1F);
+  const std::size_t measured = sheet.positions.size();
+  ASSERT_EQ(report_of(sheet).boundary_loops, 5U);
+  Front front(sheet);
+  close_seams(front, {});
+  const GapFillResult filled = fill_gaps(front, {}, {});
+  EXPECT_EQ(filled.first_interpolated, measured);
+  const MeshReport report = report_of(sheet);
+  EXPECT_EQ(report.boundary_loops, 2U);
+  EXPECT_TRUE(report.is_manifold());
+  ASSERT_GT(sheet.positions.size(), measured);
+  EXPECT_LT(sheet.positions.size(), measured + 40U);
+  for (std::size_t v = measured; v < sheet.positions.size(); ++v) {
+    const Eigen::Vector3f& p = sheet.positions[v];
+    EXPECT_NEAR(p.z(), 0.05F * (p.x() * p.x() + p.y() * p.y()), 0.01F);
+  }
+}
+
+TEST(Front, RefusesAHalfEdgeTwice) {
+  Sheet sheet;
+  append(sheet, triangulate_grid(test::height_grid(2, 2, 0.1, [](double, double) { return 0.0; }), {}), 0.1F);
+  Front front(sheet);
+  for (const Face& f : std::vector<Face>(sheet.faces)) {
+    EXPECT_FALSE(front.accepts(f));
+  }
+  EXPECT_EQ(front.open_edges().size(), 4U);
+  ASSERT_EQ(front.openings().size(), 1U);
+  EXPECT_EQ(front.openings()[0].size(), 4U);
+}
+
+}  // namespace
+}  // namespace dubsar

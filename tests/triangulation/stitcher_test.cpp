@@ -1,0 +1,259 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "triangulation/stitcher.h"
+
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <cmath>
+#include <limits>
+
+#include "core/mesh_query.h"
+#include "core/random.h"
+#include "tests/triangulation/support/scans.h"
+#include "triangulation/mesh_check.h"
+
+namespace dubsar {
+namespace {
+
+constexpr double kRadius = 4.0;
+
+/// A ball seen by an orthographic scanner from `side` (0 to 5: the axes), turned by a little.
+RangeGrid ball_grid(double spacing_mm, double noise_mm, std::uint64_t seed) {
+  Random random(seed);
+  const int n = static_cast<int>(2.4 * kRadius / spacing_mm);
+  return test::height_grid(n, n, spacing_mm, [&](double x, double y) {
+    const double z2 = kRadius * kRadius - x * x - y * y;
+    return z2 < 0.5 ? std::numeric_limits<double>::quiet_NaN() : std::sqrt(z2) + noise_mm * random.normal();
+  });
+}
+
+RigidTransform view_from(int side) {
+  static const double kTurns[6][3] = {{0, 0, 0},        {kPi, 0, 0},     {kPi / 2, 0, 0},
+                                      {-kPi / 2, 0, 0}, {0, kPi / 2, 0}, {0, -kPi / 2, 0}};
+  const Eigen::Vector3d turn(kTurns[side][0], kTurns[side][1], kTurns[side][2]);
+  return RigidTransform::from_twist(turn, {0, 0, 0}) *
+         RigidTransform::from_twist({0.02 * side, -0.03, 0.3 * side}, {0, 0, 0});
+}
+
+test::ScanSet ball(double spacing_mm = 0.15, double noise_mm = 0.01) {
+  test::ScanSet set;
+  for (int side = 0; side < 6; ++side) {
+    set.add(ball_grid(spacing_mm, noise_mm, static_cast<std::uint64_t>(side) + 1), view_from(side), 0.01);
+  }
+  return set;
+}
+
+Mesh stitched(const test::ScanSet& set) {
+  JobContext job;
+  Result<Mesh> mesh = stitch(set.placed, {}, job);
+  EXPECT_TRUE(mesh.has_value()) << (mesh ? "" : mesh.error().line());
+  return mesh ? std::move(*mesh) : Mesh{};
+}
+
+double rms_off_ball(const Mesh& mesh) {
+  double sum = 0;
+  for (const auto& p : mesh.positions) {
+    const double d = p.cast<double>().norm() - kRadius;
+    sum += d * d;
+  }
+  return std::sqrt(sum / static_cast<double>(mesh.positions.size()));
+}
+
+void expect_same(const Mesh& a, const Mesh& b) {
+  EXPECT_EQ(a.positions, b.positions);
+  EXPECT_EQ(a.faces, b.faces);
+  EXPECT_EQ(a.normals, b.normals);
+  EXPECT_EQ(a.reliability, b.reliability);
+  EXPECT_EQ(a.scans, b.scans);
+  EXPECT_EQ(a.flags, b.flags);
+}
+
+TEST(Stitcher, SixViewsOfABallMakeOneClosedSurface) {
+  const Mesh mesh = stitched(ball());
+  const MeshReport report = check_mesh(mesh);
+  EXPECT_TRUE(report.is_closed());
+  EXPECT_EQ(report.components, 1U);
+  EXPECT_NEAR(report.area_mm2, 4 * kPi * kRadius * kRadius, 0.02 * 4 * kPi * kRadius * kRadius);
+  EXPECT_LT(report.thin_share, 0.01);
+  // Outward everywhere, and nearer to the truth than a single sample.
+  for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+    ASSERT_GT(mesh.normals[v].dot(mesh.positions[v]), 0.0F);
+  }
+  EXPECT_LT(rms_off_ball(mesh), 0.01);
+  EXPECT_EQ(mesh.reliability.size(), mesh.positions.size());
+  EXPECT_EQ(*std::max_element(mesh.scans.begin(), mesh.scans.end()), 3);
+  for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+    ASSERT_GE(mesh.reliability[v], 0.0F);
+    ASSERT_LE(mesh.reliability[v], 1.0F);
+    ASSERT_EQ(mesh.flags[v] & kVertexBoundary, 0);
+  }
+}
+
+TEST(Stitcher, SameBytesForAnyNumberOfThreadsAndAnyOrder) {
+  const test::ScanSet set = ball();
+  Mesh one;
+  {
+    const tbb::global_control single(tbb::global_control::max_allowed_parallelism, 1);
+    one = stitched(set);
+  }
+  const tbb::global_control several(tbb::global_control::max_allowed_parallelism, 4);
+  expect_same(one, stitched(set));
+  JobContext job;
+  Stitcher stitcher;
+  for (const std::size_t k : {4U, 1U, 5U, 0U, 3U, 2U}) {
+    ASSERT_TRUE(stitcher.add(set.placed[k], job).has_value());
+  }
+  expect_same(one, stitcher.mesh());
+}
+
+TEST(Stitcher, ARemovedScanLeavesNoTrace) {
+  test::ScanSet set = ball();
+  JobContext job;
+  Stitcher stitcher;
+  for (const PlacedScan& scan : set.placed) {
+    ASSERT_TRUE(stitcher.add(scan, job).has_value());
+  }
+  EXPECT_TRUE(stitcher.remove(2));
+  EXPECT_FALSE(stitcher.remove(2));
+  const Mesh without = stitcher.mesh();
+  set.placed.erase(set.placed.begin() + 2);
+  expect_same(without, stitched(set));
+}
+
+TEST(Stitcher, ADuplicatedScanChangesNoTopology) {
+  test::ScanSet set = ball();
+  PlacedScan again = set.placed[0];
+  again.id = 6;
+  set.placed.push_back(again);
+  const Mesh mesh = stitched(set);
+  EXPECT_TRUE(check_mesh(mesh).is_closed());
+  EXPECT_EQ(check_mesh(mesh).components, 1U);
+  EXPECT_LT(rms_off_ball(mesh), 0.01);
+}
+
+TEST(Stitcher, PosesThatAreOffStillGiveOneSoundSurface) {
+  test::ScanSet set = ball();
+  Random random(5);
+  for (PlacedScan& scan : set.placed) {
+    const Eigen::Vector3d off =
+        0.2 * Eigen::Vector3d(random.normal(), random.normal(), random.normal()).normalized();
+    scan.model_from_scanner = RigidTransform::from_twist({0, 0, 0}, off) * scan.model_from_scanner;
+  }
+  const Mesh mesh = stitched(set);
+  const MeshReport report = check_mesh(mesh);
+  EXPECT_TRUE(report.is_manifold());
+  EXPECT_GT(static_cast<double>(report.largest_component), 0.98 * static_cast<double>(report.faces));
+  EXPECT_NEAR(report.area_mm2, 4 * kPi * kRadius * kRadius, 0.05 * 4 * kPi * kRadius * kRadius);
+  EXPECT_LT(rms_off_ball(mesh), 0.15);
+
+  JobContext job;
+  Stitcher stitcher;
+  double worst = 0;
+  for (const PlacedScan& scan : set.placed) {
+    ASSERT_TRUE(stitcher.add(scan, job).has_value());
+  }
+  for (const Stitcher::Overlap& overlap : stitcher.overlaps()) {
+    worst = std::max(worst, overlap.mismatch_mm);
+  }
+  EXPECT_GT(worst, 0.05);
+}
+
+TEST(Stitcher, ScansOfDifferentSpacing) {
+  test::ScanSet set;
+  for (int side = 0; side < 6; ++side) {
+    set.add(ball_grid(side % 2 == 0 ? 0.1 : 0.25, 0.005, static_cast<std::uint64_t>(side) + 1),
+            view_from(side));
+  }
+  const Mesh mesh = stitched(set);
+  EXPECT_TRUE(check_mesh(mesh).is_closed());
+  EXPECT_EQ(check_mesh(mesh).components, 1U);
+  EXPECT_LT(rms_off_ball(mesh), 0.01);
+}
+
+TEST(Stitcher, OpenWhereNothingWasSeen) {
+  test::ScanSet set = ball();
+  set.placed.erase(set.placed.begin() + 1);  // nobody looked from below; the sides see part of it
+  const MeshReport report = check_mesh(stitched(set));
+  EXPECT_TRUE(report.is_manifold());
+  EXPECT_EQ(report.components, 1U);
+  EXPECT_EQ(report.boundary_loops, 1U);
+}
+
+TEST(Stitcher, SmallGapsAreFilledAndMarked) {
+  RangeGrid grid = test::height_grid(60, 60, 0.1, [](double x, double y) { return 0.1 * x * y; });
+  for (int r = 30; r < 33; ++r) {
+    for (int c = 30; c < 33; ++c) {
+      grid.valid[grid.index(r, c)] = 0;
+    }
+  }
+  test::ScanSet set;
+  set.add(grid, {});
+  const Mesh mesh = stitched(set);
+  EXPECT_EQ(check_mesh(mesh).boundary_loops, 1U);
+  std::size_t interpolated = 0;
+  for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+    if ((mesh.flags[v] & kVertexInterpolated) != 0) {
+      ++interpolated;
+      EXPECT_EQ(mesh.scans[v], 0);
+      EXPECT_EQ(mesh.reliability[v], 0.0F);
+    }
+  }
+  EXPECT_GT(interpolated, 0U);
+  EXPECT_LT(interpolated, 40U);
+}
+
+TEST(Stitcher, SpecksGo) {
+  RangeGrid grid = test::height_grid(60, 60, 0.1, [](double x, double y) {
+    const bool speck = std::hypot(x - 2.5, y - 2.5) < 0.15;
+    return speck ? 5.0 : std::hypot(x, y) < 2 ? 0.0 : std::numeric_limits<double>::quiet_NaN();
+  });
+  test::ScanSet set;
+  set.add(grid, {});
+  std::fill(set.flags[0].begin(), set.flags[0].end(), std::uint8_t{0});
+  const MeshReport report = check_mesh(stitched(set));
+  EXPECT_EQ(report.components, 1U);
+  EXPECT_LT(report.box.max().z(), 1.0F);
+}
+
+TEST(Stitcher, NothingToStitch) {
+  JobContext job;
+  EXPECT_TRUE(stitch({}, {}, job)->faces.empty());
+  test::ScanSet set;
+  set.add(RangeGrid{}, {});
+  set.add(test::height_grid(1, 50, 0.1, [](double, double) { return 0.0; }), {});
+  RangeGrid invalid;
+  invalid.allocate(10, 10);
+  set.add(invalid, {});
+  set.add(ball_grid(0.3, 0, 1), {});
+  std::fill(set.flags[3].begin(), set.flags[3].end(), std::uint8_t{kSparse});
+  EXPECT_TRUE(stitched(set).faces.empty());
+}
+
+TEST(Stitcher, RefusesWhatItCannotPlace) {
+  test::ScanSet set = ball(0.4);
+  JobContext job;
+  Stitcher stitcher;
+  ASSERT_TRUE(stitcher.add(set.placed[0], job).has_value());
+  EXPECT_EQ(stitcher.add(set.placed[0], job).error().kind, ErrorKind::kUsage);
+  PlacedScan bad = set.placed[1];
+  bad.grid = nullptr;
+  EXPECT_EQ(stitcher.add(bad, job).error().kind, ErrorKind::kBadInput);
+  bad = set.placed[1];
+  bad.model_from_scanner.rotation *= 2.0;
+  EXPECT_EQ(stitcher.add(bad, job).error().kind, ErrorKind::kBadInput);
+  bad = set.placed[1];
+  bad.model_from_scanner.translation_mm.x() = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(stitcher.add(bad, job).error().kind, ErrorKind::kBadInput);
+  bad = set.placed[1];
+  const SampleFlags short_flags(3, 0);
+  bad.flags = &short_flags;
+  EXPECT_EQ(stitcher.add(bad, job).error().kind, ErrorKind::kBadInput);
+  job.cancel();
+  EXPECT_EQ(stitcher.add(set.placed[1], job).error().kind, ErrorKind::kCancelled);
+  EXPECT_EQ(stitch(set.placed, {}, job).error().kind, ErrorKind::kCancelled);
+  EXPECT_TRUE(check_mesh(stitcher.mesh()).is_manifold());
+}
+
+}  // namespace
+}  // namespace dubsar
