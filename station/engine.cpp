@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdio>
 #include <ctime>
 #include <map>
 #include <mutex>
@@ -23,6 +24,7 @@
 #include "planning/sparse_flags.h"
 #include "registration/registrar.h"
 #include "station/bounded_queue.h"
+#include "station/drives.h"
 #include "station/planning_stage.h"
 #include "station/scan_set.h"
 
@@ -38,15 +40,13 @@ constexpr int kAutomaticScans = 40;
 struct RawScan {
   RangeGrid grid;
   std::optional<SampleFlags> flags;
-};
-struct ScanToRegister {
-  StationScan scan;
-  bool last_of_batch = true;  ///< false for stored scans that a resumed session goes through again
+  std::optional<Placement> drive;
 };
 struct ScanToPlan {
   StationScan scan;
   std::vector<ScanPose> poses;
-  bool last_of_batch = true;
+  bool plan_now =
+      true;  ///< false for all but the last of the stored scans that a resumed session goes through again
 };
 /// The planner's answer to an automatic run: where to next, or that there is nothing more to do.
 using NextStep = std::optional<NextView>;
@@ -74,6 +74,37 @@ class StageClock {
   std::chrono::steady_clock::time_point start_;
 };
 
+std::string iso_time() {
+  const std::time_t now = std::time(nullptr);
+  std::tm utc{};
+  gmtime_r(&now, &utc);
+  char text[32];
+  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc);
+  return text;
+}
+
+std::vector<std::string> accuracy_sentences(const std::vector<ScanPose>& poses) {
+  double worst_sigma_mm = 0;
+  double worst_rms_mm = 0;
+  for (const ScanPose& pose : poses) {
+    if (pose.status == PoseStatus::kRegistered) {
+      worst_sigma_mm = std::max(worst_sigma_mm, pose.sigma_mm);
+      worst_rms_mm = std::max(worst_rms_mm, pose.rms_mm);
+    }
+  }
+  char residual[160];
+  std::snprintf(residual, sizeof residual,
+                "Where scans overlap, their surfaces lie within %.1f µm RMS of each other in the worst scan.",
+                1000 * worst_rms_mm);
+  char predicted[200];
+  std::snprintf(
+      predicted, sizeof predicted,
+      "The predicted error of a scan's place is at most %.1f µm (one standard deviation), from the overlaps "
+      "alone; the calibration of the scanner comes on top.",
+      1000 * worst_sigma_mm);
+  return {residual, predicted};
+}
+
 }  // namespace
 
 struct Engine::Impl {
@@ -83,13 +114,14 @@ struct Engine::Impl {
   std::optional<SessionStore> store;
   std::optional<RangeSource> source;
   std::optional<Rig> rig;
-  std::vector<StationScan> resumed;   ///< of an existing session
-  std::set<std::string> known_files;  ///< a replayed file that is stored already is not stored again
-  int placement_offset = 0;           ///< a resumed session starts with a lifted tablet
-  bool drives = false;                ///< automatic, and the device can be placed
+  std::vector<StationScan> resumed;          ///< of an existing session
+  std::set<std::string> known_files;         ///< a replayed file that is stored already is not stored again
+  int placement_offset = 0;                  ///< a resumed session starts with a lifted tablet
+  std::map<int, Placement> drives_of_scans;  ///< of the storing thread once the pipeline runs
+  bool drives = false;                       ///< automatic, and the device can be placed
 
   BoundedQueue<RawScan> to_store{kQueueLength};
-  BoundedQueue<ScanToRegister> to_register{kQueueLength};
+  BoundedQueue<StationScan> to_register{kQueueLength};
   BoundedQueue<ScanToPlan> to_plan{kQueueLength};
   BoundedQueue<NextStep> to_device{1};
 
@@ -129,11 +161,12 @@ struct Engine::Impl {
   Status open(JobContext& job);
   Status load_resumed(JobContext& job);
   void acquire(JobContext& job);
-  bool take_scan(JobContext& job);
+  bool take_scan(const std::optional<Placement>& drive, JobContext& job);
   void keep_stored();
   void register_all(JobContext& job);
   void plan_all(JobContext& job);
   Result<EngineResult> finish(JobContext& job);
+  Status keep_results(const EngineResult& result);
 };
 
 Engine::Engine(EngineOptions options, EventSink sink) : impl_(std::make_unique<Impl>()) {
@@ -164,6 +197,9 @@ Status Engine::Impl::load_resumed(JobContext& job) {
       placement_offset = std::max(placement_offset, grid->nominal->placement + 1);
     }
     resumed.push_back(prepare_scan(scan.id, std::move(*grid), options.pins));
+    if (const auto drive = drives_of_scans.find(scan.id); drive != drives_of_scans.end()) {
+      resumed.back().drive = drive->second;
+    }
   }
   stored_count = static_cast<int>(resumed.size());
   return {};
@@ -210,11 +246,16 @@ Status Engine::Impl::open(JobContext& job) {
       options.pins = std::move(*pins);
     }
   }
+  if (const auto text = store->load_document("drives"); text && *text) {
+    if (auto known = parse_drives(**text, "drives of the session")) {
+      drives_of_scans = std::move(*known);
+    }
+  }
   return load_resumed(job);
 }
 
 /// Takes the next scan of the device. False when there is none, or the run is over.
-bool Engine::Impl::take_scan(JobContext& job) {
+bool Engine::Impl::take_scan(const std::optional<Placement>& drive, JobContext& job) {
   std::optional<SparseFlagger> flagger;
   SampleFlags flags;
   const auto on_profile = [&](const RangeGrid& grid, int row) {
@@ -239,7 +280,7 @@ bool Engine::Impl::take_scan(JobContext& job) {
     // A device that stopped in mid-scan leaves profiles that are as good as any.
     if (std::optional<RangeGrid> partial = source->take_partial(); partial && partial->valid_count() > 0) {
       emit(Notice{"the half scan is kept"});
-      to_store.push({std::move(*partial), std::nullopt});
+      to_store.push({std::move(*partial), std::nullopt, drive});
     }
     // A bad file of a folder does not stop the others.
     return source->capabilities().finite && grid.error().kind == ErrorKind::kBadInput;
@@ -261,14 +302,23 @@ bool Engine::Impl::take_scan(JobContext& job) {
     (*grid)->nominal->placement += placement_offset;
   }
   const bool streamed = flagger.has_value() && flags.size() == (*grid)->size();
-  return to_store.push({std::move(**grid), streamed ? std::optional(std::move(flags)) : std::nullopt});
+  return to_store.push({std::move(**grid), streamed ? std::optional(std::move(flags)) : std::nullopt, drive});
 }
 
 void Engine::Impl::acquire(JobContext& job) {
   // A device without an end, and nobody to ask for the next placement, gives one scan.
   const bool endless = !source->capabilities().finite && !drives;
   const int limit = options.max_scans > 0 ? options.max_scans : endless ? stored_count + 1 : 0;
-  bool first = resumed.empty();
+  std::optional<Placement> drive = drives ? std::optional(Placement{}) : std::nullopt;
+  // A session that goes on begins with a scan of how the tablet lies now, unless it is conclusive already.
+  if (drives && stored_count > 0) {
+    const std::optional<NextStep> step = to_device.pop();
+    if (!step || !*step) {
+      to_store.close();
+      return;
+    }
+  }
+  bool first = true;
   for (int taken = stored_count; limit == 0 || taken < limit; ++taken) {
     if (job.cancelled()) {
       give_up({ErrorKind::kCancelled, "stopped", {}, {}});
@@ -280,14 +330,15 @@ void Engine::Impl::acquire(JobContext& job) {
         break;
       }
       emit(NextPlacement{**step});
-      if (const Status placed = source->place(*(*step)->placement); !placed) {
+      drive = (*step)->placement;
+      if (const Status placed = source->place(*drive); !placed) {
         const std::scoped_lock lock(mutex);
         device_error = placed.error();
         break;
       }
     }
     first = false;
-    if (!take_scan(job)) {
+    if (!take_scan(drive, job)) {
       break;
     }
   }
@@ -307,14 +358,22 @@ void Engine::Impl::keep_stored() {
       ++stored_count;
     }
     emit(ScanStored{*id, raw->grid.source, static_cast<std::int64_t>(raw->grid.valid_count())});
-    to_register.push({prepare_scan(*id, std::move(raw->grid), options.pins, std::move(raw->flags)), true});
+    StationScan scan = prepare_scan(*id, std::move(raw->grid), options.pins, std::move(raw->flags));
+    scan.drive = raw->drive;
+    if (scan.drive) {
+      drives_of_scans[*id] = *scan.drive;
+      if (const Status saved = store->save_document("drives", drives_to_json(drives_of_scans)); !saved) {
+        give_up(saved.error());
+      }
+    }
+    to_register.push(std::move(scan));
   }
   to_register.close();
 }
 
 void Engine::Impl::register_all(JobContext& job) {
   const PinSet* pins = options.pins ? &*options.pins : nullptr;
-  const auto handle = [&](StationScan scan, bool last_of_batch) {
+  const auto handle = [&](StationScan scan, bool plan_now) {
     ScanPose pose;
     {
       const StageClock timing = clock("registration");
@@ -322,14 +381,14 @@ void Engine::Impl::register_all(JobContext& job) {
     }
     std::vector<ScanPose> poses = registrar.poses();
     emit(ScanPlaced{pose, poses});
-    to_plan.push({std::move(scan), std::move(poses), last_of_batch});
+    to_plan.push({std::move(scan), std::move(poses), plan_now});
   };
   for (std::size_t k = 0; k < resumed.size() && !job.cancelled(); ++k) {
     handle(std::move(resumed[k]), k + 1 == resumed.size());
   }
-  while (std::optional<ScanToRegister> item = to_register.pop()) {
+  while (std::optional<StationScan> scan = to_register.pop()) {
     if (!job.cancelled()) {
-      handle(std::move(item->scan), item->last_of_batch);
+      handle(std::move(*scan), true);
     }
   }
   to_plan.close();
@@ -339,7 +398,7 @@ void Engine::Impl::plan_all(JobContext& job) {
   while (std::optional<ScanToPlan> item = to_plan.pop()) {
     all_scans.push_back(item->scan);
     planning.add(item->scan);
-    if (job.cancelled() || failed() || !item->last_of_batch) {
+    if (job.cancelled() || failed() || !item->plan_now) {
       continue;
     }
     const StageClock timing = clock("planning and meshing");
@@ -411,7 +470,62 @@ Result<EngineResult> Engine::Impl::finish(JobContext& job) {
     mesh = std::move(*stitched);
   }
   emit(RedMapChanged{result.red_map});
-  return std::unexpected(Error{});
+  result.checklist =
+      make_checklist(result.red_map, result.poses, planning.placed(), mesh, rig ? &*rig : nullptr);
+  result.checklist.disk_free_gib = store->disk_free_gib();
+  const Result<VerifyReport> whole = store->verify(job);
+  result.checklist.store_whole = whole && whole->ok();
+  for (const auto& [stage, spent] : seconds) {
+    result.timings.push_back({stage, spent});
+  }
+  result.stored_scans = stored_count;
+  result.device_error = device_error;
+
+  const ReportInput input{.title = options.session.filename().string(),
+                          .tool_version = "Dubsar " DUBSAR_VERSION,
+                          .when = iso_time(),
+                          .device = options.device,
+                          .model = mesh,
+                          .red_map = result.red_map,
+                          .checklist = result.checklist,
+                          .scans = result.poses,
+                          .red_points = planning.red_points(),
+                          .tablet_from_model = planning.tablet_from_model(mesh),
+                          .accuracy = accuracy_sentences(result.poses),
+                          .calibration = {},
+                          .not_measured = {"Wedges: they are not measured yet."},
+                          .timings = result.timings};
+  Result<Deliverables> files = write_deliverables(options.session, input, job);
+  if (!files) {
+    return std::unexpected(files.error());
+  }
+  result.files = std::move(*files);
+  if (const Status kept = keep_results(result); !kept) {
+    return std::unexpected(kept.error());
+  }
+  return result;
+}
+
+/// The verdict and what it rests on go into the session, so that anyone can work it out again.
+Status Engine::Impl::keep_results(const EngineResult& result) {
+  if (const Status s = store->save_document("red_map", red_map_to_json(result.red_map)); !s) {
+    return s;
+  }
+  if (const Status s = store->save_document("checklist", checklist_to_json(result.checklist)); !s) {
+    return s;
+  }
+  for (const std::filesystem::path* file :
+       {&result.files.mesh, &result.files.six_views, &result.files.red_map, &result.files.report,
+        &result.files.poses, &result.files.red_map_json}) {
+    if (file->empty()) {
+      continue;
+    }
+    if (const Status s = store->record_file(std::filesystem::relative(*file, options.session)); !s) {
+      return s;
+    }
+  }
+  return store->append_event(
+      "finished", result.red_map.conclusive ? R"({"conclusive":true})" : R"({"conclusive":false})");
 }
 
 Result<EngineResult> Engine::run(JobContext& job) {

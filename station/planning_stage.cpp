@@ -6,6 +6,9 @@
 #include <algorithm>
 #include <utility>
 
+#include "planning/model_faces.h"
+#include "planning/red_map.h"
+
 namespace dubsar {
 
 namespace {
@@ -31,7 +34,9 @@ double displacement_mm(const RangeGrid& grid, const RigidTransform& from, const 
 
 }  // namespace
 
-void PlanningStage::add(const StationScan& scan) { scans_[scan.id] = scan; }
+void PlanningStage::add(const StationScan& scan) {
+  scans_[scan.id] = scan;
+}
 
 Status PlanningStage::place(const std::vector<ScanPose>& poses, bool exact, JobContext& job) {
   std::map<int, PlacedScan> wanted;
@@ -56,7 +61,8 @@ Status PlanningStage::place(const std::vector<ScanPose>& poses, bool exact, JobC
     job.progress("stitching", static_cast<double>(done++) / static_cast<double>(wanted.size()));
     const auto there = placed_.find(id);
     if (there != placed_.end()) {
-      const double moved_mm = displacement_mm(*scan.grid, there->second.model_from_scanner, scan.model_from_scanner);
+      const double moved_mm =
+          displacement_mm(*scan.grid, there->second.model_from_scanner, scan.model_from_scanner);
       if (moved_mm <= (exact ? 0.0 : kStaysWithin * scan.grid->spacing_mm)) {
         continue;
       }
@@ -74,20 +80,51 @@ Status PlanningStage::place(const std::vector<ScanPose>& poses, bool exact, JobC
   return {};
 }
 
+Result<RedMap> PlanningStage::red_map(const Rig* rig, JobContext& job) {
+  const std::vector<PlacedScan> scans = cleared_.scans();
+  RedMapOptions options;
+  for (const PlacedScan& scan : scans) {
+    if (const auto& drive = scans_.at(scan.id).drive) {
+      options.stage = StageState{scan.id, *drive};  // the last registered one tells how the tablet lies now
+    }
+  }
+  // Without a mesh the scans themselves cast the shadows: as good, and it waits for no stitching.
+  Result<RedMapResult> result = make_red_map(scans, nullptr, rig, options, job);
+  if (!result) {
+    return std::unexpected(result.error());
+  }
+  excused_flags_ = std::move(result->flags);
+  return std::move(result->map);
+}
+
 ColouredPoints PlanningStage::red_points() const {
+  constexpr Rgb8 kExcusedAmber{226, 160, 44};
   ColouredPoints points;
-  for (const PlacedScan& scan : cleared_.scans()) {
-    for (std::size_t i = 0; i < scan.grid->size(); ++i) {
-      if (is_red((*scan.flags)[i])) {
-        points.positions_mm.push_back((scan.model_from_scanner * scan.grid->point(i).cast<double>()).cast<float>());
+  const std::vector<PlacedScan> scans = cleared_.scans();
+  for (std::size_t k = 0; k < scans.size() && k < excused_flags_.size(); ++k) {
+    const RangeGrid& grid = *scans[k].grid;
+    for (std::size_t i = 0; i < grid.size(); ++i) {
+      const std::uint8_t flags = excused_flags_[k][i];
+      const bool red = is_red(flags);
+      if (!red && (flags & kExcused) == 0) {
+        continue;
       }
+      points.positions_mm.push_back(
+          (scans[k].model_from_scanner * grid.point(i).cast<double>()).cast<float>());
+      points.colours.push_back(red ? kRedOfSparse : kExcusedAmber);
     }
   }
   return points;
 }
 
-Result<RedMap> PlanningStage::red_map(const Rig* /*rig*/, JobContext& /*job*/) {
-  return fail(ErrorKind::kInternal, "no planner yet");
+RigidTransform PlanningStage::tablet_from_model(const Mesh& mesh) const {
+  std::vector<Eigen::Vector3d> points;
+  points.reserve(mesh.positions.size());
+  for (const Eigen::Vector3f& p : mesh.positions) {
+    points.push_back(p.cast<double>());
+  }
+  const std::vector<PlacedScan> scans = cleared_.scans();
+  return {model_faces(scans, points).model_from_faces.transpose(), Eigen::Vector3d::Zero()};
 }
 
 }  // namespace dubsar

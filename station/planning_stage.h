@@ -39,14 +39,20 @@ class PlanningStage {
   /// The mesh of what is placed.
   [[nodiscard]] Result<Mesh> mesh(const JobContext& job) const { return stitcher_.mesh(job); }
 
-  /// Red and excused samples in the model frame, for pictures.
+  /// Red (and, paler, excused) samples of the last red_map() in the model frame, for pictures.
   [[nodiscard]] ColouredPoints red_points() const;
+
+  /// The placed scans, by id, with their flags as cleared.
+  [[nodiscard]] std::vector<PlacedScan> placed() const { return cleared_.scans(); }
+  /// Which way the tablet lies in the model frame.
+  [[nodiscard]] RigidTransform tablet_from_model(const Mesh& mesh) const;
 
  private:
   std::map<int, StationScan> scans_;
   std::map<int, PlacedScan> placed_;
   ClearedMap cleared_;
   Stitcher stitcher_;
+  std::vector<SampleFlags> excused_flags_;  ///< of the last red map, by position in placed()
 };
 
 }  // namespace dubsar

@@ -3,6 +3,7 @@
 #include "station/scan_set.h"
 
 #include <algorithm>
+#include <map>
 #include <utility>
 
 #include "acquisition/device_uri.h"
@@ -11,6 +12,7 @@
 #include "drivers/loader.h"
 #include "formats/pins_json.h"
 #include "formats/rig_json.h"
+#include "station/drives.h"
 
 namespace dubsar {
 
@@ -47,6 +49,15 @@ Status load_session(const fs::path& path, ScanSet& set, JobContext& job) {
     }
     set.rig = std::move(*rig);
   }
+  std::map<int, Placement> drives;
+  if (const auto text = store->load_document("drives"); text && *text) {
+    Result<std::map<int, Placement>> parsed =
+        parse_drives(**text, (path / "session.sqlite").string() + " (drives)");
+    if (!parsed) {
+      return std::unexpected(parsed.error());
+    }
+    drives = std::move(*parsed);
+  }
   std::size_t done = 0;
   for (const StoredScan& scan : *scans) {
     job.progress("reading scans", static_cast<double>(done++) / static_cast<double>(scans->size()));
@@ -62,6 +73,9 @@ Status load_session(const fs::path& path, ScanSet& set, JobContext& job) {
       continue;
     }
     set.scans.push_back(prepare_scan(scan.id, std::move(*grid), set.pins));
+    if (const auto drive = drives.find(scan.id); drive != drives.end()) {
+      set.scans.back().drive = drive->second;
+    }
   }
   job.progress("reading scans", 1.0);
   const auto poses = store->poses();

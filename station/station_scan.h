@@ -8,6 +8,7 @@
 
 #include "core/pin_set.h"
 #include "core/range_grid.h"
+#include "core/rig.h"
 #include "core/sample_flags.h"
 
 namespace dubsar {
@@ -20,6 +21,7 @@ struct StationScan {
   std::shared_ptr<const RangeGrid> measured;  ///< as it came, pins and all: registration finds the pins in it
   std::shared_ptr<const RangeGrid> grid;      ///< the tablet alone
   std::shared_ptr<const SampleFlags> flags;
+  std::optional<Placement> drive;  ///< turntable and tilt that it was taken with, where the rig has them
 };
 
 /// Takes pins and arms out of the grid (they are not clay: neither registered, nor meshed, nor red) and flags

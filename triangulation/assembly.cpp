@@ -60,17 +60,17 @@ void add_patch(const OwnedScan& scan, Draft& draft) {
 
 /// A vertex where patches of faces touch by a corner only keeps its largest fan: what is taken away is closed
 /// again as part of the seam.
-void open_pinches(std::vector<Face>& faces, std::size_t vertex_count) {
+void open_pinches(std::vector<Triangle>& faces, std::size_t vertex_count) {
   for (int round = 0; round < 8; ++round) {
-    std::vector<Face> split = faces;
+    std::vector<Triangle> split = faces;
     const std::vector<std::uint32_t> copies = make_manifold(split, vertex_count);
     if (copies.empty() && split.size() == faces.size()) {
       return;
     }
     if (split.size() != faces.size()) {  // repeated half-edges went; look at the rest again
       faces.clear();
-      for (const Face& f : split) {
-        Face g = f;
+      for (const Triangle& f : split) {
+        Triangle g = f;
         for (std::uint32_t& v : g) {
           v = v < vertex_count ? v : copies[v - vertex_count];
         }
@@ -79,7 +79,7 @@ void open_pinches(std::vector<Face>& faces, std::size_t vertex_count) {
       continue;
     }
     std::vector<std::uint32_t> fan_size(vertex_count + copies.size(), 0);
-    for (const Face& f : split) {
+    for (const Triangle& f : split) {
       for (const std::uint32_t v : f) {
         ++fan_size[v];
       }
@@ -117,7 +117,7 @@ std::size_t clear_around(Sheet& sheet, const std::vector<std::vector<std::uint32
       marked[v] = 1;
     }
   }
-  return std::erase_if(sheet.faces, [&](const Face& f) {
+  return std::erase_if(sheet.faces, [&](const Triangle& f) {
     return marked[f[0]] != 0 || marked[f[1]] != 0 || marked[f[2]] != 0;
   });
 }
@@ -161,7 +161,7 @@ Mesh assemble(const std::vector<OwnedScan>& scans, const AssemblyOptions& option
   mesh.scans = std::move(draft.scans);
   mesh.flags = std::move(draft.flags);
   const std::vector<Vector3f>& p = mesh.positions;
-  std::erase_if(mesh.faces, [&](const Face& f) {
+  std::erase_if(mesh.faces, [&](const Triangle& f) {
     return !((p[f[1]] - p[f[0]]).cast<double>().cross((p[f[2]] - p[f[0]]).cast<double>()).norm() > 0);
   });
   for (const std::uint32_t copied : make_manifold(mesh.faces, mesh.positions.size())) {
@@ -172,7 +172,7 @@ Mesh assemble(const std::vector<OwnedScan>& scans, const AssemblyOptions& option
   }
   remove_small_components(mesh, static_cast<std::size_t>(std::max(options.least_component_faces, 0)));
   const HalfEdges edges(mesh.faces, mesh.positions.size());
-  for (const Face& f : mesh.faces) {
+  for (const Triangle& f : mesh.faces) {
     for (std::size_t k = 0; k < 3; ++k) {
       if (edges.face(f[(k + 1) % 3], f[k]) < 0) {
         mesh.flags[f[k]] |= kVertexBoundary;

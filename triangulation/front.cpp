@@ -47,14 +47,14 @@ Front::Front(Sheet& sheet) : sheet_(&sheet), link_of_(sheet.positions.size(), kN
       4096);
   for (std::size_t i = 0; i < open.size(); ++i) {
     if (open[i] != 0) {
-      const Face& f = sheet.faces[i / 3];
+      const Triangle& f = sheet.faces[i / 3];
       const std::uint32_t a = f[i % 3];
       const std::uint32_t b = f[(i % 3 + 1) % 3];
       links(a).out.push_back(b);
       links(b).in.push_back(a);
     }
   }
-  for (const Face& f : sheet.faces) {
+  for (const Triangle& f : sheet.faces) {
     for (std::size_t k = 0; k < 3; ++k) {
       if (find(f[k]) != nullptr && find(f[(k + 1) % 3]) != nullptr) {
         half_edges_.insert(key_of(f[k], f[(k + 1) % 3]));
@@ -147,12 +147,12 @@ std::span<const std::uint32_t> Front::into(std::uint32_t v) const {
   return l == nullptr ? std::span<const std::uint32_t>{} : l->in;
 }
 
-bool Front::accepts(const Face& f) const {
+bool Front::accepts(const Triangle& f) const {
   return f[0] != f[1] && f[1] != f[2] && f[2] != f[0] && !half_edges_.contains(key_of(f[0], f[1])) &&
          !half_edges_.contains(key_of(f[1], f[2])) && !half_edges_.contains(key_of(f[2], f[0]));
 }
 
-void Front::add_face(const Face& f) {
+void Front::add_face(const Triangle& f) {
   sheet_->faces.push_back(f);
   for (std::size_t k = 0; k < 3; ++k) {
     const std::uint32_t a = f[k];

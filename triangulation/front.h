@@ -19,7 +19,7 @@ struct Sheet {
   std::vector<Eigen::Vector3f> positions;  ///< mm
   std::vector<Eigen::Vector3f> normals;    ///< unit, as measured, not from the faces
   std::vector<float> spacing_mm;           ///< µ of the scan that a vertex comes from
-  std::vector<Face> faces;
+  std::vector<Triangle> faces;
 };
 
 /// The open edges of a sheet and the vertices on them, kept up to date while faces are added. An open edge
@@ -42,9 +42,9 @@ class Front {
   [[nodiscard]] std::span<const std::uint32_t> into(std::uint32_t v) const;    ///< tails of open edges to v
 
   /// True when face abc uses no half-edge that a face has already.
-  [[nodiscard]] bool accepts(const Face& f) const;
+  [[nodiscard]] bool accepts(const Triangle& f) const;
   /// accepts() must hold.
-  void add_face(const Face& f);
+  void add_face(const Triangle& f);
   std::uint32_t add_vertex(const Eigen::Vector3f& position_mm, const Eigen::Vector3f& normal,
                            float spacing_mm);
 

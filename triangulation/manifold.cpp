@@ -21,7 +21,7 @@ std::uint32_t find_root(std::vector<std::uint32_t>& parent, std::uint32_t i) {
 }
 
 /// The corner of the face at which it touches the vertex.
-int corner_of(const Face& f, std::uint32_t vertex) {
+int corner_of(const Triangle& f, std::uint32_t vertex) {
   return f[0] == vertex ? 0 : f[1] == vertex ? 1 : 2;
 }
 
@@ -42,9 +42,9 @@ void keep_entries(std::vector<T>& values, const std::vector<std::uint32_t>& targ
 
 }  // namespace
 
-HalfEdges::HalfEdges(std::span<const Face> faces, std::size_t vertex_count)
+HalfEdges::HalfEdges(std::span<const Triangle> faces, std::size_t vertex_count)
     : start_(vertex_count + 1, 0), out_(3 * faces.size()) {
-  for (const Face& f : faces) {
+  for (const Triangle& f : faces) {
     for (const std::uint32_t v : f) {
       ++start_[v + 1];
     }
@@ -54,7 +54,7 @@ HalfEdges::HalfEdges(std::span<const Face> faces, std::size_t vertex_count)
   }
   std::vector<std::uint32_t> next(start_.begin(), start_.end() - 1);
   for (std::size_t i = 0; i < faces.size(); ++i) {
-    const Face& f = faces[i];
+    const Triangle& f = faces[i];
     for (std::size_t k = 0; k < 3; ++k) {
       out_[next[f[k]]++] = {f[(k + 1) % 3], static_cast<std::uint32_t>(i)};
     }
@@ -78,7 +78,7 @@ std::int64_t HalfEdges::face(std::uint32_t a, std::uint32_t b) const {
   return -1;
 }
 
-FaceComponents face_components(std::span<const Face> faces, const HalfEdges& edges) {
+FaceComponents face_components(std::span<const Triangle> faces, const HalfEdges& edges) {
   std::vector<std::uint32_t> parent(faces.size());
   std::iota(parent.begin(), parent.end(), 0U);
   for (std::size_t i = 0; i < faces.size(); ++i) {
@@ -106,7 +106,7 @@ FaceComponents face_components(std::span<const Face> faces, const HalfEdges& edg
   return out;
 }
 
-std::vector<std::vector<std::uint32_t>> boundary_loops(std::span<const Face> faces, const HalfEdges& edges) {
+std::vector<std::vector<std::uint32_t>> boundary_loops(std::span<const Triangle> faces, const HalfEdges& edges) {
   std::vector<std::vector<std::uint32_t>> loops;
   std::vector<std::uint8_t> walked(3 * faces.size(), 0);
   for (std::size_t i = 0; i < faces.size(); ++i) {
@@ -139,8 +139,8 @@ std::vector<std::vector<std::uint32_t>> boundary_loops(std::span<const Face> fac
   return loops;
 }
 
-std::vector<std::uint32_t> make_manifold(std::vector<Face>& faces, std::size_t vertex_count) {
-  std::erase_if(faces, [](const Face& f) { return f[0] == f[1] || f[1] == f[2] || f[2] == f[0]; });
+std::vector<std::uint32_t> make_manifold(std::vector<Triangle>& faces, std::size_t vertex_count) {
+  std::erase_if(faces, [](const Triangle& f) { return f[0] == f[1] || f[1] == f[2] || f[2] == f[0]; });
   {
     const HalfEdges edges(faces, vertex_count);
     std::vector<std::uint8_t> gone(faces.size(), 0);
@@ -154,7 +154,7 @@ std::vector<std::uint32_t> make_manifold(std::vector<Face>& faces, std::size_t v
       }
     }
     std::size_t at = 0;
-    std::erase_if(faces, [&](const Face&) { return gone[at++] != 0; });
+    std::erase_if(faces, [&](const Triangle&) { return gone[at++] != 0; });
   }
   const HalfEdges edges(faces, vertex_count);
   std::vector<std::uint32_t> copies;
@@ -174,7 +174,7 @@ std::vector<std::uint32_t> make_manifold(std::vector<Face>& faces, std::size_t v
       for (bool more = true; more;) {
         more = false;
         fan[at] = mine;
-        const Face& f = faces[outs[at].face];
+        const Triangle& f = faces[outs[at].face];
         const int corner = corner_of(f, v);
         const std::uint32_t previous = f[static_cast<std::size_t>((corner + 2) % 3)];
         for (std::size_t other = 0; other < outs.size(); ++other) {
@@ -189,7 +189,7 @@ std::vector<std::uint32_t> make_manifold(std::vector<Face>& faces, std::size_t v
       for (bool more = true; more;) {
         more = false;
         for (std::size_t other = 0; other < outs.size(); ++other) {
-          const Face& g = faces[outs[other].face];
+          const Triangle& g = faces[outs[other].face];
           const std::uint32_t previous = g[static_cast<std::size_t>((corner_of(g, v) + 2) % 3)];
           if (fan[other] == kNone && previous == outs[at].to) {
             fan[other] = mine;
@@ -221,13 +221,13 @@ void remove_small_components(Mesh& mesh, std::size_t least_faces) {
   const HalfEdges edges(mesh.faces, mesh.positions.size());
   const FaceComponents parts = face_components(mesh.faces, edges);
   std::size_t at = 0;
-  std::erase_if(mesh.faces, [&](const Face&) { return parts.sizes[parts.of_face[at++]] < least_faces; });
+  std::erase_if(mesh.faces, [&](const Triangle&) { return parts.sizes[parts.of_face[at++]] < least_faces; });
   compact_vertices(mesh);
 }
 
 void compact_vertices(Mesh& mesh) {
   std::vector<std::uint32_t> target(mesh.positions.size(), kNone);
-  for (const Face& f : mesh.faces) {
+  for (const Triangle& f : mesh.faces) {
     for (const std::uint32_t v : f) {
       target[v] = 0;
     }
@@ -244,7 +244,7 @@ void compact_vertices(Mesh& mesh) {
   keep_entries(mesh.scans, target);
   keep_entries(mesh.flags, target);
   keep_entries(mesh.colours, target);
-  for (Face& f : mesh.faces) {
+  for (Triangle& f : mesh.faces) {
     for (std::uint32_t& v : f) {
       v = target[v];
     }

@@ -12,7 +12,7 @@
 
 namespace dubsar {
 
-using Face = std::array<std::uint32_t, 3>;
+using Triangle = std::array<std::uint32_t, 3>;
 
 /// Half-edges that leave each vertex, in compressed rows: for face f and corner k the half-edge from corner k
 /// to the next one. Faces must have indices below the vertex count.
@@ -23,7 +23,7 @@ class HalfEdges {
     std::uint32_t face = 0;  ///< the face on its left
   };
 
-  HalfEdges(std::span<const Face> faces, std::size_t vertex_count);
+  HalfEdges(std::span<const Triangle> faces, std::size_t vertex_count);
 
   [[nodiscard]] std::span<const Out> from(std::uint32_t vertex) const {
     return {out_.data() + start_[vertex], out_.data() + start_[vertex + 1]};
@@ -45,18 +45,18 @@ struct FaceComponents {
   std::vector<std::uint32_t> of_face;
   std::vector<std::size_t> sizes;  ///< faces per component
 };
-[[nodiscard]] FaceComponents face_components(std::span<const Face> faces, const HalfEdges& edges);
+[[nodiscard]] FaceComponents face_components(std::span<const Triangle> faces, const HalfEdges& edges);
 
 /// Closed walks along the boundary, each as its vertices in the direction of the faces beside it. Where fans
 /// touch in one vertex each walk stays with its own fan.
-[[nodiscard]] std::vector<std::vector<std::uint32_t>> boundary_loops(std::span<const Face> faces,
+[[nodiscard]] std::vector<std::vector<std::uint32_t>> boundary_loops(std::span<const Triangle> faces,
                                                                      const HalfEdges& edges);
 
 /// Makes an oriented 2-manifold of any faces whose indices are in range, by the least deletion this finds in
 /// one pass over the faces in order: faces with a repeated vertex and repeated half-edges go (the later face
 /// yields), then each vertex with several fans is split, one copy per fan. Returns, for each vertex that was
 /// appended, the one it copies.
-[[nodiscard]] std::vector<std::uint32_t> make_manifold(std::vector<Face>& faces, std::size_t vertex_count);
+[[nodiscard]] std::vector<std::uint32_t> make_manifold(std::vector<Triangle>& faces, std::size_t vertex_count);
 
 /// Drops the faces of components with fewer than `faces` faces, then vertices without a face; per-vertex
 /// arrays follow.

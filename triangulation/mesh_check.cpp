@@ -27,7 +27,7 @@ double smallest_angle_rad(const Vector3d& a, const Vector3d& b, const Vector3d& 
 }
 
 /// How many fans the faces around a vertex form, joined across edges of exactly two opposite half-edges.
-int fan_count(const std::vector<Face>& faces, const HalfEdges& edges, std::uint32_t v) {
+int fan_count(const std::vector<Triangle>& faces, const HalfEdges& edges, std::uint32_t v) {
   const auto outs = edges.from(v);
   int fans = 0;
   // Each fan that is open has one face whose incoming edge has no face beyond; closed fans are found by
@@ -36,7 +36,7 @@ int fan_count(const std::vector<Face>& faces, const HalfEdges& edges, std::uint3
   const auto walk = [&](std::size_t at) {
     while (seen[at] == 0) {
       seen[at] = 1;
-      const Face& f = faces[outs[at].face];
+      const Triangle& f = faces[outs[at].face];
       const std::size_t corner = f[0] == v ? 0 : f[1] == v ? 1 : 2;
       const std::uint32_t previous = f[(corner + 2) % 3];
       for (std::size_t other = 0; other < outs.size(); ++other) {
@@ -68,11 +68,11 @@ MeshReport check_mesh(const Mesh& mesh) {
   MeshReport report;
   report.vertices = mesh.positions.size();
   report.faces = mesh.faces.size();
-  std::vector<Face> faces;
+  std::vector<Triangle> faces;
   faces.reserve(mesh.faces.size());
   std::size_t thin = 0;
   report.min_angle_rad = mesh.faces.empty() ? 0 : kPi;
-  for (const Face& f : mesh.faces) {
+  for (const Triangle& f : mesh.faces) {
     const bool in_range =
         std::all_of(f.begin(), f.end(), [&](std::uint32_t v) { return v < report.vertices; });
     if (!in_range || f[0] == f[1] || f[1] == f[2] || f[2] == f[0]) {
@@ -95,8 +95,8 @@ MeshReport check_mesh(const Mesh& mesh) {
   }
   report.thin_share = faces.empty() ? 0 : static_cast<double>(thin) / static_cast<double>(faces.size());
 
-  std::vector<Face> sorted = faces;
-  for (Face& f : sorted) {
+  std::vector<Triangle> sorted = faces;
+  for (Triangle& f : sorted) {
     std::sort(f.begin(), f.end());
   }
   std::sort(sorted.begin(), sorted.end());

@@ -11,16 +11,16 @@ namespace dubsar {
 namespace {
 
 TEST(Manifold, SplitsAVertexWhereFansTouch) {
-  std::vector<Face> faces = {{0, 1, 2}, {0, 3, 4}};
+  std::vector<Triangle> faces = {{0, 1, 2}, {0, 3, 4}};
   const auto copies = make_manifold(faces, 5);
   ASSERT_EQ(copies, std::vector<std::uint32_t>{0});
-  EXPECT_EQ(faces[0], (Face{0, 1, 2}));
-  EXPECT_EQ(faces[1], (Face{5, 3, 4}));
+  EXPECT_EQ(faces[0], (Triangle{0, 1, 2}));
+  EXPECT_EQ(faces[1], (Triangle{5, 3, 4}));
 }
 
 TEST(Manifold, LeavesASoundMeshAlone) {
-  std::vector<Face> faces = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
-  const std::vector<Face> before = faces;
+  std::vector<Triangle> faces = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
+  const std::vector<Triangle> before = faces;
   EXPECT_TRUE(make_manifold(faces, 4).empty());
   EXPECT_EQ(faces, before);
 }
@@ -50,7 +50,7 @@ TEST(Manifold, MakesSomethingSoundOfAnyFaces) {
 }
 
 TEST(Manifold, BoundaryLoopsStayWithTheirFans) {
-  const std::vector<Face> faces = {{0, 1, 2}, {0, 3, 4}};
+  const std::vector<Triangle> faces = {{0, 1, 2}, {0, 3, 4}};
   const HalfEdges edges(faces, 5);
   const auto loops = boundary_loops(faces, edges);
   ASSERT_EQ(loops.size(), 2U);
@@ -65,7 +65,7 @@ TEST(Manifold, SmallComponentsGoWithTheirVertices) {
   mesh.faces = {{0, 1, 2}, {3, 4, 5}, {4, 6, 5}};
   remove_small_components(mesh, 2);
   ASSERT_EQ(mesh.positions.size(), 4U);
-  EXPECT_EQ(mesh.faces, (std::vector<Face>{{0, 1, 2}, {1, 3, 2}}));
+  EXPECT_EQ(mesh.faces, (std::vector<Triangle>{{0, 1, 2}, {1, 3, 2}}));
   EXPECT_EQ(mesh.reliability, (std::vector<float>{.3F, .4F, .5F, .6F}));
 }
 

@@ -21,7 +21,7 @@ void append(Sheet& sheet, const Mesh& mesh, float spacing_mm) {
   sheet.positions.insert(sheet.positions.end(), mesh.positions.begin(), mesh.positions.end());
   sheet.normals.insert(sheet.normals.end(), mesh.normals.begin(), mesh.normals.end());
   sheet.spacing_mm.resize(sheet.positions.size(), spacing_mm);
-  for (const Face& f : mesh.faces) {
+  for (const Triangle& f : mesh.faces) {
     sheet.faces.push_back({f[0] + base, f[1] + base, f[2] + base});
   }
 }
@@ -115,7 +115,7 @@ TEST(Front, RefusesAHalfEdgeTwice) {
   Sheet sheet;
   append(sheet, triangulate_grid(test::height_grid(2, 2, 0.1, [](double, double) { return 0.0; }), {}), 0.1F);
   Front front(sheet);
-  for (const Face& f : std::vector<Face>(sheet.faces)) {
+  for (const Triangle& f : std::vector<Triangle>(sheet.faces)) {
     EXPECT_FALSE(front.accepts(f));
   }
   EXPECT_EQ(front.open_edges().size(), 4U);
