@@ -22,6 +22,8 @@ class Damage {
   [[nodiscard]] double dirt_level_mm(const Eigen::Vector3d& p) const;
   /// How deep a crack goes at p; 0 where there is none.
   [[nodiscard]] double crack_mm(const Eigen::Vector3d& p) const;
+  /// How far p lies beyond a fracture face; 0 where nothing broke.
+  [[nodiscard]] double broken_off_mm(const Eigen::Vector3d& p) const;
   /// Moves a surface point that has broken off onto the fracture face, towards the tablet's centre; false
   /// where nothing broke.
   [[nodiscard]] bool fracture(Eigen::Vector3d* p) const;
@@ -44,7 +46,9 @@ class Damage {
     std::uint64_t seed;
   };
   [[nodiscard]] static double strongest(const std::vector<Patch>& patches, const Eigen::Vector3d& p);
-  [[nodiscard]] static double beyond(const Break& broken, const Eigen::Vector3d& p);
+
+  /// Where the rough face lies along the break's normal, on the ray from the centre through p.
+  [[nodiscard]] static double face_along(const Break& broken, const Eigen::Vector3d& p, double along);
 
   std::vector<Patch> worn_, dirty_;
   std::vector<Crack> cracks_;

@@ -24,6 +24,7 @@ constexpr std::size_t kCountGrain = 1U << 17U;
 /// A wedge's vertex that damage or a later wedge has moved by more than this is no longer its own.
 constexpr double kIntactMm = 0.03;
 constexpr double kErosionRadiusMm = 0.3;
+constexpr double kFadeMm = 1.0;
 /// Colour of clay; the red laser sees the first channel.
 constexpr std::array<float, 3> kClayTint = {1.0F, 0.84F, 0.66F};
 
@@ -102,8 +103,8 @@ void erode(const BoxLattice& lattice, const std::vector<float>& worn, double spa
 float albedo_at(const TabletOptions& options, const Eigen::Vector3d& p, SurfaceKind kind) {
   double albedo = 0.5 + 0.12 * fractal_noise(p, 9.0, 4, options.seed ^ 0x61);
   // Fire leaves dark clouds on clay.
-  const double smoke = value_noise(p, 16.0, options.seed ^ 0x62);
-  albedo *= 1.0 - 0.65 * std::clamp((smoke - 0.45) / 0.2, 0.0, 1.0);
+  const double smoke = 1.3 * fractal_noise(p, 17.0, 5, options.seed ^ 0x62);
+  albedo *= 1.0 - 0.65 * std::clamp((smoke - 0.4) / 0.25, 0.0, 1.0);
   if (kind == SurfaceKind::kDirt) {
     albedo = 0.25 + 0.5 * albedo;
   } else if (kind == SurfaceKind::kFracture) {
@@ -258,6 +259,8 @@ Result<SimTablet> make_tablet(const TabletOptions& options, JobContext& job) {
         height -= crack;
         kind = SurfaceKind::kCrack;
       }
+      // Relief that broke off fades out beyond the face: drawn back with it, steep walls would fold over.
+      height *= std::max(0.0, 1.0 - damage.broken_off_mm(p) / kFadeMm);
       Eigen::Vector3d at = p + height * grid.normals[i];
       if (damage.fracture(&at)) {
         kind = SurfaceKind::kFracture;
