@@ -72,6 +72,8 @@ TEST(PosesJson, NeedsLittle) {
   ASSERT_TRUE(by_file) << line_of(by_file);
   EXPECT_EQ(by_file->front().id, -1);
   EXPECT_EQ(by_file->front().status, PoseStatus::kRegistered);
+  EXPECT_TRUE(parse_poses(poses_to_json(*by_file), "again"))
+      << "a pose known by its file alone is written so";
   const auto in_metres = parse_poses(
       R"({"unit":"m","scans":[{"id":3,"model_from_scanner":[1,0,0,0.5, 0,1,0,0, 0,0,1,0, 0,0,0,1]}]})", "p");
   ASSERT_TRUE(in_metres) << line_of(in_metres);
