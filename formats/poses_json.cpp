@@ -77,7 +77,9 @@ std::string poses_to_json(std::span<const ScanPose> poses) {
   OrderedJson scans = OrderedJson::array();
   for (const ScanPose& pose : poses) {
     OrderedJson scan;
-    scan["id"] = pose.id;
+    if (pose.id >= 0) {
+      scan["id"] = pose.id;
+    }
     scan["file"] = pose.file;
     // A failed pose may hold anything; the file keeps its shape.
     scan["model_from_scanner"] =

@@ -13,7 +13,7 @@
 
 namespace dubsar {
 
-/// poses.json, truth_poses.json and `register --json` (docs/formats/poses.md).
+/// poses.json, truth_poses.json and `register --json` (docs/formats/poses.md). A negative id is not written.
 [[nodiscard]] std::string poses_to_json(std::span<const ScanPose> poses);
 [[nodiscard]] Status write_poses(const std::filesystem::path& path, std::span<const ScanPose> poses);
 

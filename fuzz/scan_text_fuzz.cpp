@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "formats/grid_reader.h"
+#include "fuzz/fuzz_support.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const auto scans = dubsar::read_scan_bytes(dubsar::fuzz::text_of(data, size), "scan.xyz");
+  if (scans) {
+    for (const dubsar::ScanData& scan : *scans) {
+      if (const auto* grid = std::get_if<dubsar::RangeGrid>(&scan)) {
+        dubsar::fuzz::check_grid(*grid);
+      } else {
+        for (const auto& point : std::get<dubsar::PointCloud>(scan).points) {
+          dubsar::fuzz::require(point.allFinite());
+        }
+      }
+    }
+  }
+  return 0;
+}
