@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <complex>
 #include <cstdint>
+#include <functional>
 #include <limits>
 
 namespace dubsar {
@@ -16,6 +18,10 @@ constexpr std::size_t kProbes = 20000;
 /// Points looked at per probe: bounds the time for clouds with most points in a few cells.
 constexpr int kMostLooks = 4096;
 constexpr int kWidestRing = 8;
+/// Directions that agree less than this are those of a random cloud.
+constexpr double kShared = 0.4;
+/// Fewer points than this do not fill enough of the wider cells.
+constexpr std::size_t kFewPoints = 4096;
 constexpr std::int64_t kCellBits = 21;
 constexpr std::int64_t kCellMiddle = std::int64_t{1} << (kCellBits - 1);
 
@@ -32,31 +38,33 @@ class CubeCells {
     std::ranges::sort(sorted_);
   }
 
-  /// Distance to the nearest point at another place, 0 when there is none near.
-  [[nodiscard]] double nearest_mm(const Eigen::Vector3f& p) const {
+  /// From p to the nearest point at another place; zero when there is none near.
+  [[nodiscard]] Eigen::Vector3d to_nearest(const Eigen::Vector3f& p) const {
     const Cell at = cell_of(p);
     int looks = 0;
     for (int ring = 1; ring <= kWidestRing; ring *= 2) {
       double best = std::numeric_limits<double>::max();
+      Eigen::Vector3d way = Eigen::Vector3d::Zero();
       for (std::int64_t dz = -ring; dz <= ring; ++dz) {
         for (std::int64_t dy = -ring; dy <= ring; ++dy) {
           const std::uint64_t from = key({at[0] - ring, at[1] + dy, at[2] + dz});
           const std::uint64_t to = key({at[0] + ring, at[1] + dy, at[2] + dz});
           auto entry = std::ranges::lower_bound(sorted_, from, {}, &Entry::key);
           for (; entry != sorted_.end() && entry->key <= to && looks < kMostLooks; ++entry, ++looks) {
-            const double distance = (points_[entry->point] - p).cast<double>().norm();
-            if (distance > 0) {
-              best = std::min(best, distance);
+            const Eigen::Vector3d step = (points_[entry->point] - p).cast<double>();
+            if (const double distance = step.norm(); distance > 0 && distance < best) {
+              best = distance;
+              way = step;
             }
           }
         }
       }
       // A nearer one cannot lie outside the ring; when the looks are spent, this is the best bound there is.
       if (best <= ring * size_mm_ || (looks >= kMostLooks && best < std::numeric_limits<double>::max())) {
-        return best;
+        return way;
       }
     }
-    return 0.0;
+    return Eigen::Vector3d::Zero();
   }
 
  private:
@@ -104,38 +112,47 @@ std::array<double, 3> widths(const std::vector<Eigen::Vector3f>& points) {
 
 }  // namespace
 
-double median_nearest_mm(const std::vector<Eigen::Vector3f>& points) {
+NeighbourStatistics nearest_neighbours(const std::vector<Eigen::Vector3f>& points) {
+  NeighbourStatistics out;
   if (points.size() < 2) {
-    return 0.0;
+    return out;
   }
   const std::array<double, 3> width = widths(points);
   const auto n = static_cast<double>(points.size());
   // A surface covers about the product of its two widest extents; a line or a spot has at least its length.
   const double guess = std::max(std::sqrt(width[0] * width[1] / n), width[0] / n);
   if (!(guess > 0)) {
-    return 0.0;
+    return out;
   }
   const CubeCells cells(points, guess);
   const std::size_t stride = std::max<std::size_t>(1, points.size() / kProbes);
   std::vector<double> distances;
+  std::complex<double> sum = 0;
   for (std::size_t i = 0; i < points.size(); i += stride) {
-    if (const double distance = cells.nearest_mm(points[i]); distance > 0) {
+    const Eigen::Vector3d step = cells.to_nearest(points[i]);
+    if (const double distance = step.norm(); distance > 0) {
       distances.push_back(distance);
+      // Four times the angle: quarter turns fall together.
+      sum += std::polar(1.0, 4.0 * std::atan2(step.y(), step.x()));
     }
   }
   if (distances.empty()) {
-    return 0.0;
+    return out;
+  }
+  if (std::abs(sum) > kShared * static_cast<double>(distances.size())) {
+    out.lattice_rad = std::arg(sum) / 4.0;
   }
   const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
   std::nth_element(distances.begin(), middle, distances.end());
-  return *middle;
+  out.median_mm = *middle;
+  return out;
 }
 
 double even_spacing_mm(const std::vector<Eigen::Vector3f>& points, double nearest_mm) {
   if (!(nearest_mm > 0) || points.empty()) {
     return 0.0;
   }
-  const double cell = 4.0 * nearest_mm;
+  const double cell = (points.size() < kFewPoints ? 4.0 : 8.0) * nearest_mm;
   std::vector<std::pair<std::int64_t, std::int64_t>> occupied;
   occupied.reserve(points.size());
   for (const Eigen::Vector3f& p : points) {

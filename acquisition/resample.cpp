@@ -5,9 +5,12 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <complex>
+#include <limits>
 #include <numeric>
 
 #include "acquisition/point_spacing.h"
+#include "core/units.h"
 
 namespace dubsar {
 
@@ -23,6 +26,10 @@ constexpr double kMostCellsPerPoint = 64.0;
 /// A spare point fills an empty cell beside its own when it lies this much nearer to it than the point that
 /// its own cell keeps, in cells: the order of the points along rows and columns stays what it was.
 constexpr float kSpareLead = 0.25F;
+/// Points that look for the lattice, the trial spacings on either side, and the coherence that makes one.
+constexpr std::size_t kLatticeProbes = 4000;
+constexpr int kRefineSteps = 100;
+constexpr double kLatticeShare = 0.3;
 constexpr std::uint32_t kNone = 0xffffffffU;
 
 struct Frame {
@@ -78,6 +85,7 @@ struct Raster {
   std::vector<Eigen::Vector3f> uvw;  ///< by position in kept
   std::vector<std::uint32_t> kept;   ///< indices into the cloud
   float u_min = 0, v_min = 0, cell = 0;
+  std::optional<Eigen::Vector2d> lattice;  ///< where one row and one column of the points lie
   int cols = 0, rows = 0;
   std::vector<std::uint32_t> start;   ///< [rows*cols + 1]
   std::vector<std::uint32_t> points;  ///< positions in uvw, cell by cell, ascending in each
@@ -126,6 +134,31 @@ void trim(Raster& raster) {
   raster.kept.resize(to);
 }
 
+/// Finds the rows and columns of a regular cloud, so that its points sit in the middle of the cells: the
+/// phase of their Fourier coefficient at the spacing, which may be refined by a twentieth where a median has
+/// been taken for it.
+void lock_to_lattice(Raster& raster, bool refine) {
+  const std::size_t stride = std::max<std::size_t>(1, raster.uvw.size() / kLatticeProbes);
+  double best = kLatticeShare;
+  const double spacing = raster.cell;
+  for (int step = refine ? -kRefineSteps : 0; step <= (refine ? kRefineSteps : 0); ++step) {
+    const double period = spacing * (1.0 + 0.05 * step / kRefineSteps);
+    std::complex<double> u = 0;
+    std::complex<double> v = 0;
+    double count = 0;
+    for (std::size_t i = 0; i < raster.uvw.size(); i += stride) {
+      u += std::polar(1.0, 2.0 * kPi * raster.uvw[i].x() / period);
+      v += std::polar(1.0, 2.0 * kPi * raster.uvw[i].y() / period);
+      count += 1;
+    }
+    if (const double share = (std::abs(u) + std::abs(v)) / (2.0 * count); share > best) {
+      best = share;
+      raster.cell = static_cast<float>(period);
+      raster.lattice = Eigen::Vector2d(std::arg(u), std::arg(v)) * period / (2.0 * kPi);
+    }
+  }
+}
+
 /// Lays the cells; returns how many there would be.
 double lay_cells(Raster& raster) {
   Eigen::Vector2f low = raster.uvw.front().head<2>();
@@ -135,8 +168,13 @@ double lay_cells(Raster& raster) {
     high = high.cwiseMax(p.head<2>());
   }
   // Half a cell outside, so that points on the border sit in the middle of theirs.
-  raster.u_min = low.x() - 0.5F * raster.cell;
-  raster.v_min = low.y() - 0.5F * raster.cell;
+  Eigen::Vector2d corner = low.cast<double>().array() - 0.5 * raster.cell;
+  if (raster.lattice) {
+    const Eigen::Vector2d edge = raster.lattice->array() - 0.5 * raster.cell;
+    corner = edge + ((low.cast<double>() - edge) / raster.cell).array().floor().matrix() * raster.cell;
+  }
+  raster.u_min = static_cast<float>(corner.x());
+  raster.v_min = static_cast<float>(corner.y());
   const double across = std::floor(static_cast<double>(high.x() - raster.u_min) / raster.cell) + 1;
   const double down = std::floor(static_cast<double>(high.y() - raster.v_min) / raster.cell) + 1;
   raster.cols = static_cast<int>(std::min(across, 1e9));
@@ -293,10 +331,18 @@ Result<RangeGrid> resample(const PointCloud& cloud, const ResampleOptions& optio
     const Eigen::Vector3f& p = cloud.points[i];
     raster.uvw.emplace_back(frame.u.dot(p), frame.v.dot(p), frame.w.dot(p));
   }
+  const NeighbourStatistics neighbours = nearest_neighbours(raster.uvw);
+  if (neighbours.lattice_rad) {
+    // Cells along the rows that the points were scanned in: one point to a cell, few empty, few with two.
+    const auto cosine = static_cast<float>(std::cos(*neighbours.lattice_rad));
+    const auto sine = static_cast<float>(std::sin(*neighbours.lattice_rad));
+    for (Eigen::Vector3f& p : raster.uvw) {
+      p = {cosine * p.x() + sine * p.y(), cosine * p.y() - sine * p.x(), p.z()};
+    }
+  }
   double spacing = options.spacing_mm;
   if (spacing == 0) {
-    const double nearest = median_nearest_mm(raster.uvw);
-    spacing = std::max(nearest, even_spacing_mm(raster.uvw, nearest));
+    spacing = std::max(neighbours.median_mm, even_spacing_mm(raster.uvw, neighbours.median_mm));
   }
   if (!(spacing > 0)) {
     return bad_input(cloud.source, "all points lie on one spot", "scan again");
@@ -305,6 +351,7 @@ Result<RangeGrid> resample(const PointCloud& cloud, const ResampleOptions& optio
     return fail(ErrorKind::kCancelled, "resampling cancelled", cloud.source);
   }
   raster.cell = static_cast<float>(spacing);
+  lock_to_lattice(raster, options.spacing_mm == 0);
   double cells = lay_cells(raster);
   if (cells > kMostCellsPerPoint * static_cast<double>(raster.uvw.size()) + 4096) {
     trim(raster);
@@ -321,7 +368,7 @@ Result<RangeGrid> resample(const PointCloud& cloud, const ResampleOptions& optio
   }
   place_spares(raster, choice);
   RangeGrid grid = grid_of(cloud, raster, choice);
-  grid.spacing_mm = spacing;
+  grid.spacing_mm = raster.cell;
   grid.view.direction = direction;
   grid.source = cloud.source;
   return grid;

@@ -34,8 +34,9 @@ struct ResampleOptions {
 /// are as wide as the larger of µ and what an even spread needs, so that a regular cloud leaves no empty rows
 /// by aliasing.
 ///
-/// The grid stays in the frame of the points; rows run along the view's y, columns along its x. Points that
-/// are not finite are left out. Errors: kBadInput when fewer than three points are left or all lie on a spot;
+/// The grid's samples stay in the frame of the points. Columns run along the frame's x as far as the view
+/// allows, turned by at most 45° to follow the rows that the points were scanned in. Points that are not
+/// finite are left out. Errors: kBadInput when fewer than three points are left or all lie on a spot;
 /// kCancelled.
 [[nodiscard]] Result<RangeGrid> resample(const PointCloud& cloud, const ResampleOptions& options,
                                          JobContext& job);
