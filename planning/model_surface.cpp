@@ -14,7 +14,8 @@ namespace dubsar {
 
 namespace {
 
-/// Notes which scan surveyed each cell of space first, so that ten scans of one place give one surface.
+/// Notes which scan surveyed each cell of space first, so that ten scans of one place give one surface. A cell
+/// that its first scan only touched is open to the others.
 class OwnerGrid {
  public:
   OwnerGrid(const Eigen::AlignedBox3d& box, double cell_mm) : low_(box.min()), cell_mm_(cell_mm) {
@@ -28,9 +29,10 @@ class OwnerGrid {
       size_[static_cast<std::size_t>(k)] = static_cast<std::size_t>(extent[k] / cell_mm_) + 2;
     }
     owner_.assign(size_[0] * size_[1] * size_[2], -1);
+    triangles_.assign(owner_.size(), 0);
   }
 
-  /// True when the cell of p is free or the scan's own; it is its own then.
+  /// True when a triangle of the scan is wanted at p.
   bool claim(const Eigen::Vector3f& p_mm, int scan) {
     std::size_t index = 0;
     for (std::size_t k = 3; k-- > 0;) {
@@ -42,14 +44,22 @@ class OwnerGrid {
     if (owner_[index] < 0) {
       owner_[index] = scan;
     }
-    return owner_[index] == scan;
+    if (owner_[index] != scan && triangles_[index] >= kFull) {
+      return false;
+    }
+    triangles_[index] = static_cast<std::uint8_t>(std::min(triangles_[index] + 1, 255));
+    return true;
   }
 
  private:
+  /// A flat surface across a cell of two steps makes eight triangles.
+  static constexpr std::uint8_t kFull = 8;
+
   Eigen::Vector3d low_;
   double cell_mm_;
   std::array<std::size_t, 3> size_{};
   std::vector<int> owner_;
+  std::vector<std::uint8_t> triangles_;
 };
 
 bool carries(const PlacedScan& scan, std::size_t i) {
