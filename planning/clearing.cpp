@@ -108,8 +108,7 @@ std::vector<SparseSample> sparse_samples(const RangeGrid& grid, const SampleFlag
           s.facing = sample_normal(grid, s.index, step_mm);
         }
         if (s.facing.isZero()) {
-          s.facing =
-              grid.view.to_camera(s.position_mm.cast<double>(), grid.row_of(s.index)).cast<float>();
+          s.facing = grid.view.to_camera(s.position_mm.cast<double>(), grid.row_of(s.index)).cast<float>();
         }
       },
       kSamplesPerTask);
