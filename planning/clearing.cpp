@@ -101,7 +101,16 @@ std::vector<SparseSample> sparse_samples(const RangeGrid& grid, const SampleFlag
     }
   }
   parallel_for_each_index(
-      out.size(), [&](std::size_t k) { out[k].normal = sample_normal(grid, out[k].index, step_mm); },
+      out.size(),
+      [&](std::size_t k) {
+        SparseSample& s = out[k];
+        if ((flags[s.index] & kPotentiallySparse) == 0) {
+          s.facing = sample_normal(grid, s.index, step_mm);
+        }
+        if (s.facing.isZero()) {
+          s.facing = grid.view.to_camera(s.position_mm.cast<double>(), grid.row_of(s.index)).cast<float>();
+        }
+      },
       kSamplesPerTask);
   return out;
 }
@@ -129,7 +138,7 @@ std::vector<std::uint32_t> matched_samples(std::span<const SparseSample> sparse,
     if (nearest < 0) {
       return false;
     }
-    const Eigen::Vector3f normal = rotation * s.normal;
+    const Eigen::Vector3f normal = rotation * s.facing;
     if (compatible(normal, static_cast<std::size_t>(nearest))) {
       return true;
     }

@@ -18,8 +18,9 @@ struct ClearingOptions {
   double sigma_factor = 3.0;    ///< of the poses' and the samples' standard deviation together
   /// The radius never grows beyond this many µ: a bad pose must not clear what it cannot place.
   double max_spacing_factor = 6.0;
-  /// Normals farther apart do not match: the other side of a thin rim is another place.
-  double max_normal_angle_rad = 1.4;
+  /// Normals farther apart do not match: the other side of a thin rim is another place. More than a right
+  /// angle, since a red sample often lies where its own scan grazes the surface.
+  double max_normal_angle_rad = 1.83;
 };
 
 /// Standard deviation of a grid's depth noise: from second differences along the profiles, robustly. Relief
@@ -38,11 +39,13 @@ struct ClearingOptions {
                                         const RangeGrid& b, double noise_b_mm, double sigma_b_mm,
                                         const ClearingOptions& options);
 
-/// A sparse sample that may be cleared, in the model frame of no scan: its own scanner frame.
+/// A sparse sample that may be cleared; scanner frame of its own scan.
 struct SparseSample {
-  std::uint32_t index = 0;               ///< in its grid
-  Eigen::Vector3f position_mm{0, 0, 0};  ///< scanner frame
-  Eigen::Vector3f normal{0, 0, 0};       ///< scanner frame, zero where unknown
+  std::uint32_t index = 0;  ///< in its grid
+  Eigen::Vector3f position_mm{0, 0, 0};
+  /// Its normal where all its links are short; towards the camera otherwise, since differences across a gap
+  /// say nothing, but a surface that was seen faces the camera.
+  Eigen::Vector3f facing{0, 0, 0};
 };
 
 /// The sparse samples of a scan in index order.

@@ -14,7 +14,8 @@ namespace dubsar {
 
 namespace {
 
-/// Notes which scan surveyed each cell of space first, so that ten scans of one place give one surface.
+/// Notes which scan surveyed each cell of space first, so that ten scans of one place give one surface. A
+/// cell that its first scan only touched is open to the others.
 class OwnerGrid {
  public:
   OwnerGrid(const Eigen::AlignedBox3d& box, double cell_mm) : low_(box.min()), cell_mm_(cell_mm) {
@@ -28,9 +29,10 @@ class OwnerGrid {
       size_[static_cast<std::size_t>(k)] = static_cast<std::size_t>(extent[k] / cell_mm_) + 2;
     }
     owner_.assign(size_[0] * size_[1] * size_[2], -1);
+    triangles_.assign(owner_.size(), 0);
   }
 
-  /// True when the cell of p is free or the scan's own; it is its own then.
+  /// True when a triangle of the scan is wanted at p.
   bool claim(const Eigen::Vector3f& p_mm, int scan) {
     std::size_t index = 0;
     for (std::size_t k = 3; k-- > 0;) {
@@ -42,14 +44,22 @@ class OwnerGrid {
     if (owner_[index] < 0) {
       owner_[index] = scan;
     }
-    return owner_[index] == scan;
+    if (owner_[index] != scan && triangles_[index] >= kFull) {
+      return false;
+    }
+    triangles_[index] = static_cast<std::uint8_t>(std::min(triangles_[index] + 1, 255));
+    return true;
   }
 
  private:
+  /// A flat surface across a cell of two steps makes eight triangles.
+  static constexpr std::uint8_t kFull = 8;
+
   Eigen::Vector3d low_;
   double cell_mm_;
   std::array<std::size_t, 3> size_{};
   std::vector<int> owner_;
+  std::vector<std::uint8_t> triangles_;
 };
 
 bool carries(const PlacedScan& scan, std::size_t i) {
@@ -162,20 +172,27 @@ void sample_face(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen
   }
 }
 
+/// A slit between the triangles of two scans lets some rays through, a hole as wide as the patch nearly all;
+/// what is narrower than a patch is told by its red border.
 bool seen_from_outside(const MeshQuery& query, const SurfacePatch& patch, double step_mm, double depth_mm) {
+  constexpr int kRays = 9;
+  constexpr int kEnough = 3;
   const Eigen::Vector3f n = patch.normal.cast<float>();
   const Eigen::Vector3f u = n.unitOrthogonal();
   const Eigen::Vector3f v = n.cross(u);
-  const auto jitter = static_cast<float>(1.5 * step_mm);
+  const double reach_mm = std::max(1.5 * step_mm, 0.45 * std::sqrt(patch.area_mm2));
   int hits = 0;
-  // One ray may slip through the seam between two scans; a hole lets most of them through.
-  for (const auto& [du, dv] : {std::pair{0.0F, 0.0F}, {1.0F, 0.3F}, {-0.3F, 1.0F}, {-0.7F, -0.7F}}) {
-    const Eigen::Vector3f from =
-        patch.position_mm.cast<float>() + static_cast<float>(step_mm) * n + jitter * (du * u + dv * v);
+  for (int k = 0; k < kRays && hits < kEnough; ++k) {
+    // A sunflower spread over the patch, its first ray in the middle.
+    const double radius = reach_mm * std::sqrt(static_cast<double>(k) / (kRays - 1));
+    const double angle = 2.399963229728653 * k;
+    const Eigen::Vector3f from = patch.position_mm.cast<float>() + static_cast<float>(step_mm) * n +
+                                 static_cast<float>(radius * std::cos(angle)) * u +
+                                 static_cast<float>(radius * std::sin(angle)) * v;
     const auto hit = query.first_hit(from, -n, 0.0F, static_cast<float>(depth_mm));
     hits += hit && hit->normal.dot(n) > 0 ? 1 : 0;
   }
-  return hits >= 2;
+  return hits >= kEnough;
 }
 
 }  // namespace
