@@ -100,27 +100,23 @@ double Damage::crack_mm(const Eigen::Vector3d& p) const {
   return deepest;
 }
 
-double Damage::beyond(const Break& broken, const Eigen::Vector3d& p) {
-  return broken.normal.dot(p) - broken.offset - broken.rough_mm * fractal_noise(p, 6.0, 5, broken.seed) -
-         0.06 * fractal_noise(p, 0.6, 2, broken.seed ^ 3);
-}
-
 bool Damage::fracture(Eigen::Vector3d* p) const {
   bool moved = false;
   for (const Break& broken : breaks_) {
+    const double along = broken.normal.dot(*p);
     // Far from the face its roughness does not matter: most points are told apart without noise.
-    if (broken.normal.dot(*p) - broken.offset < -2.0 * broken.rough_mm || beyond(broken, *p) <= 0) {
+    if (along < broken.offset - 2.0 * broken.rough_mm) {
       continue;
     }
-    // The body is star-shaped: points drawn along their own rays to the centre never cross.
-    double low = 0;
-    double high = 1;
-    for (int i = 0; i < 30; ++i) {
-      const double middle = 0.5 * (low + high);
-      (beyond(broken, middle * *p) > 0 ? high : low) = middle;
+    // The body is star-shaped: points drawn along their own rays to the centre never cross. The roughness is
+    // taken where the ray meets the flat face, which keeps the face single-valued.
+    const Eigen::Vector3d flat = *p * (broken.offset / along);
+    const double face = broken.offset + broken.rough_mm * fractal_noise(flat, 6.0, 5, broken.seed) +
+                        0.06 * fractal_noise(flat, 0.6, 2, broken.seed ^ 3);
+    if (along > face) {
+      *p *= face / along;
+      moved = true;
     }
-    *p *= high;
-    moved = true;
   }
   return moved;
 }

@@ -44,7 +44,6 @@ class Damage {
     std::uint64_t seed;
   };
   [[nodiscard]] static double strongest(const std::vector<Patch>& patches, const Eigen::Vector3d& p);
-  [[nodiscard]] static double beyond(const Break& broken, const Eigen::Vector3d& p);
 
   std::vector<Patch> worn_, dirty_;
   std::vector<Crack> cracks_;

@@ -102,8 +102,8 @@ void erode(const BoxLattice& lattice, const std::vector<float>& worn, double spa
 float albedo_at(const TabletOptions& options, const Eigen::Vector3d& p, SurfaceKind kind) {
   double albedo = 0.5 + 0.12 * fractal_noise(p, 9.0, 4, options.seed ^ 0x61);
   // Fire leaves dark clouds on clay.
-  const double smoke = value_noise(p, 16.0, options.seed ^ 0x62);
-  albedo *= 1.0 - 0.65 * std::clamp((smoke - 0.45) / 0.2, 0.0, 1.0);
+  const double smoke = 1.3 * fractal_noise(p, 17.0, 5, options.seed ^ 0x62);
+  albedo *= 1.0 - 0.65 * std::clamp((smoke - 0.4) / 0.25, 0.0, 1.0);
   if (kind == SurfaceKind::kDirt) {
     albedo = 0.25 + 0.5 * albedo;
   } else if (kind == SurfaceKind::kFracture) {
