@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "core/range_grid.h"
+#include "core/rig.h"
+#include "sim/pins.h"
+#include "sim/scanner.h"
+
+namespace dubsar::sim {
+
+struct SimStationOptions {
+  ScannerOptions scanner;
+  std::optional<PinOptions> pins;
+  double tilt_max_deg = 70;
+  double hand_max_deg = 10;  ///< a hand turn comes out off by up to this
+  double hand_max_mm = 5;
+  double motor_sigma_deg = 0.005;  ///< of turntable and tilt, each move
+  double motor_sigma_mm = 0.01;
+  std::uint64_t seed = 1;
+};
+
+/// The whole simulated station: a tablet on a matt black support on a turntable, a scanner that tilts, an
+/// operator who turns the tablet over when asked. Knows the truth and what the motors say; only the latter
+/// may reach the engine. The model frame is the tablet's frame as the first placement's nominal pose has it.
+class SimStation {
+ public:
+  SimStation(SimTablet tablet, const SimStationOptions& options);
+
+  [[nodiscard]] Rig rig() const;
+  /// Drives turntable and tilt; with a hand turn the operator first turns the tablet and puts the pins back.
+  /// Errors: kUsage for a tilt out of limits or a turn that is no rotation; nothing has moved then.
+  [[nodiscard]] Status move(const Placement& placement);
+
+  /// What motors and asked turns say. Never the truth.
+  [[nodiscard]] NominalPose nominal() const;
+  /// What nominal().tablet_from_scanner would be after that move.
+  [[nodiscard]] RigidTransform nominal_after(const Placement& placement) const;
+
+  [[nodiscard]] RigidTransform true_tablet_from_scanner() const;
+  [[nodiscard]] RigidTransform true_stage_from_tablet() const { return true_stage_from_tablet_; }
+  /// Pins that stand in the present scan, true, in the scanner frame.
+  [[nodiscard]] std::vector<PinTip> true_tips() const;
+  /// The same as the operator clicks them, good to 1 mm.
+  [[nodiscard]] std::vector<PinTip> clicked_tips() const;
+  [[nodiscard]] const SimTablet& tablet() const { return *tablet_; }
+  [[nodiscard]] const MeshQuery& query() const { return *query_; }
+
+  /// Header of the scan that would be made now: an empty grid with geometry, nominal pose and pins filled in.
+  [[nodiscard]] RangeGrid empty_grid() const;
+  /// Scans from where everything stands, profile by profile; each call is a scan of its own.
+  [[nodiscard]] Status scan(const RowSink& sink, JobContext& job);
+  [[nodiscard]] Result<RangeGrid> scan_grid(JobContext& job);
+  [[nodiscard]] int scans_made() const { return scans_made_; }
+
+ private:
+  struct Drive {
+    double turntable_rad = 0;
+    double tilt_rad = 0;
+    Eigen::Vector3d focus_mm{0, 0, 0};
+  };
+  /// The height that an operator with a ruler expects.
+  [[nodiscard]] double resting_height_mm(const Eigen::Matrix3d& stage_from_tablet) const;
+  [[nodiscard]] RigidTransform asked_pose(const RigidTransform& from, const RigidTransform& turn) const;
+  /// Height of the centre at which the true surface just touches the support.
+  [[nodiscard]] double touching_height_mm(const Eigen::Matrix3d& stage_from_tablet) const;
+  /// How the tablet really comes to lie: within a hand's error both of the pose that was asked for and of
+  /// where a perfect turn of what lay there would have taken it.
+  [[nodiscard]] RigidTransform by_hand(const RigidTransform& asked, const RigidTransform& after_turn) const;
+  void drive_to(double turntable_rad, double tilt_rad);
+  void set_scene();
+
+  SimStationOptions options_;
+  TriangulationScanner scanner_;
+  std::unique_ptr<SimTablet> tablet_;
+  std::unique_ptr<MeshQuery> query_;
+  std::optional<PinStand> pins_;
+  Eigen::Vector3d half_size_mm_{0, 0, 0};
+  RigidTransform nominal_stage_from_tablet_;
+  RigidTransform true_stage_from_tablet_;
+  Drive nominal_drive_;
+  Drive true_drive_;
+  Scene scene_;
+  int placement_ = 0;
+  int moves_ = 0;
+  int scans_made_ = 0;
+};
+
+}  // namespace dubsar::sim
