@@ -39,8 +39,9 @@ double robust_weight(double residual, double scale) {
   return v > 0 ? v * v : 0.0;
 }
 
-/// The usable sample of `level` nearest to p within reach_mm, or -1. What the camera saw straight at p bounds the search,
-/// so that it seldom looks farther than the next cell; where nothing was seen, only the close neighbourhood is searched.
+/// The usable sample of `level` nearest to p within reach_mm, or -1. What the camera saw straight at p bounds
+/// the search, so that it seldom looks farther than the next cell; where nothing was seen, only the close
+/// neighbourhood is searched.
 std::int64_t nearest_usable(const SurfaceLevel& level, const Eigen::Vector3f& p, float reach_mm) {
   const DepthRaster::Cell* cell = level.raster.at(p);
   float radius_mm = std::min(reach_mm, 2.0F * static_cast<float>(level.raster.cell_mm()));

@@ -66,7 +66,8 @@ void keep_distinct(std::vector<Start>& starts, std::size_t most, const Eigen::Ve
                    [](const Start& a, const Start& b) { return a.score > b.score; });
   std::vector<Start> kept;
   for (const Start& s : starts) {
-    if (kept.size() < most && (kept.size() < 2 || s.score > options.hopeless * kept.front().score) && std::none_of(kept.begin(), kept.end(), [&](const Start& k) {
+    if (kept.size() < most && (kept.size() < 2 || s.score > options.hopeless * kept.front().score) &&
+        std::none_of(kept.begin(), kept.end(), [&](const Start& k) {
           return same_pose(s.pose, k.pose, center_mm, options.distinct_turn_rad,
                            options.distinct_shift * scale_mm);
         })) {
@@ -172,36 +173,44 @@ std::vector<ModelFit> fit_to_model(const ScanSurface& scan, std::span<const Mode
       1);
   keep_distinct(tried, static_cast<std::size_t>(options.most_medium), scan.centroid_mm, options, scale_mm);
 
+  // Most starts are wrong, and one medium pass shows it: only what is left deserves the closer ones.
   std::vector<ModelFit> fits(tried.size());
-  parallel_for_each_index(
-      tried.size(),
-      [&](std::size_t k) {
-        const auto members = touched(scan, model, tried[k].pose, rough, options.least_overlap_samples);
-        for (const double reach : {0.03, 0.012}) {
+  const auto better = [](const ModelFit& a, const ModelFit& b) { return a.score > b.score; };
+  for (const double reach : {0.03, 0.012}) {
+    parallel_for_each_index(
+        fits.size(),
+        [&](std::size_t k) {
+          if (reach == 0.03) {
+            fits[k].model_from_scanner = tried[k].pose;
+          }
+          RigidTransform& pose = fits[k].model_from_scanner;
+          const auto members = touched(scan, model, pose, rough, options.least_overlap_samples);
           IcpOptions medium = step;
+          medium.iterations = 10;
           medium.reach_mm = std::max(reach * scale_mm, 2.0 * scan.medium->spacing_mm);
           medium.kernel_mm = std::max(0.12 * reach * scale_mm, 0.2 * scan.medium->spacing_mm);
-          tried[k].pose = icp_in_model(scan, model, members, &ScanSurface::medium, tried[k].pose, medium)
-                              .model_from_source;
-        }
-        fits[k] = judge_in_model(scan, model, tried[k].pose, options);
-      },
-      1);
-  const auto better = [](const ModelFit& a, const ModelFit& b) { return a.score > b.score; };
-  std::stable_sort(fits.begin(), fits.end(), better);
-  while (fits.size() > 1 && (fits.size() > static_cast<std::size_t>(options.most_fine) ||
-                             fits.back().score < options.hopeless * fits.front().score)) {
-    fits.pop_back();
+          pose = icp_in_model(scan, model, members, &ScanSurface::medium, pose, medium).model_from_source;
+          fits[k] = judge_in_model(scan, model, pose, options);
+        },
+        1);
+    std::stable_sort(fits.begin(), fits.end(), better);
+    while (fits.size() > 1 && fits.back().score < options.hopeless * fits.front().score) {
+      fits.pop_back();
+    }
+  }
+  if (fits.size() > static_cast<std::size_t>(options.most_fine)) {
+    fits.resize(static_cast<std::size_t>(options.most_fine));
   }
   for (ModelFit& fit : fits) {
     IcpOptions fine;
-    fine.converged_mm = 0.02 * scan.noise_mm + 1e-4 * scan.spacing_mm;
+
     IcpResult result;
     result.model_from_source = fit.model_from_scanner;
     for (const double sigmas : {4.0, 1.5}) {
       fine.kernel_mm = sigmas * fit.residual_sigma_mm;
       fine.reach_mm = std::max(2.0 * scan.fine->spacing_mm, 5.0 * fine.kernel_mm);
-      fine.iterations = 12;
+      fine.iterations = 8;
+      fine.converged_mm = 0.03 * fit.residual_sigma_mm;
       result = icp_in_model(scan, model, fit.touching, &ScanSurface::fine, result.model_from_source, fine);
     }
     fit = judge_in_model(scan, model, result.model_from_source, options);

@@ -32,7 +32,7 @@ void ScanModel::measure_pair(int first, int second) {
   icp_options.reach_mm =
       std::max(2.0 * std::max(on.fine->spacing_mm, moved.fine->spacing_mm), 5.0 * sigma_mm);
   icp_options.iterations = 10;
-  icp_options.converged_mm = 0.005 * sigma_mm;
+  icp_options.converged_mm = 0.02 * sigma_mm;
   IcpResult result = icp(*moved.fine, {&target, 1}, start, icp_options);
   const Eigen::Vector3d slide = result.model_from_source * moved.centroid_mm - start * moved.centroid_mm;
   if (slide.norm() > kMostSlideSigmas * sigma_mm) {

@@ -2,9 +2,10 @@
 // Copyright The Dubsar developers
 #include "station/engine.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
-#include <cstdio>
 #include <ctime>
 #include <map>
 #include <mutex>
@@ -92,17 +93,13 @@ std::vector<std::string> accuracy_sentences(const std::vector<ScanPose>& poses) 
       worst_rms_mm = std::max(worst_rms_mm, pose.rms_mm);
     }
   }
-  char residual[160];
-  std::snprintf(residual, sizeof residual,
-                "Where scans overlap, their surfaces lie within %.1f µm RMS of each other in the worst scan.",
-                1000 * worst_rms_mm);
-  char predicted[200];
-  std::snprintf(
-      predicted, sizeof predicted,
-      "The predicted error of a scan's place is at most %.1f µm (one standard deviation), from the overlaps "
-      "alone; the calibration of the scanner comes on top.",
-      1000 * worst_sigma_mm);
-  return {residual, predicted};
+  return {fmt::format(
+              "Where scans overlap, their surfaces lie within {:.1f} µm RMS of each other in the worst scan.",
+              1000 * worst_rms_mm),
+          fmt::format(
+              "The predicted error of a scan's place is at most {:.1f} µm (one standard deviation), from the "
+              "overlaps alone; the calibration of the scanner comes on top.",
+              1000 * worst_sigma_mm)};
 }
 
 }  // namespace

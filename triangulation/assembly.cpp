@@ -24,7 +24,7 @@ struct Draft {
 };
 
 void add_patch(const OwnedScan& scan, Draft& draft) {
-  const ScanSurface& s = *scan.surface;
+  const StitchSurface& s = *scan.surface;
   const GridSurface g = s.surface();
   std::vector<std::uint32_t> vertex_of(scan.kept.size(), 0);
   for (std::size_t i = 0; i < scan.kept.size(); ++i) {

@@ -22,7 +22,7 @@ struct Projection {
 };
 
 /// Foot of p on the plane of one triangle, when it lies inside (with a hair's tolerance).
-void project_on(const ScanSurface& s, const std::array<std::size_t, 3>& t, const Vector3f& p,
+void project_on(const StitchSurface& s, const std::array<std::size_t, 3>& t, const Vector3f& p,
                 Projection& best) {
   const Vector3f& a = s.points[t[0]];
   const Vector3f ab = s.points[t[1]] - a;
@@ -49,7 +49,7 @@ void project_on(const ScanSurface& s, const std::array<std::size_t, 3>& t, const
   }
 }
 
-Projection project_near(const ScanSurface& s, const GridSurface& surface, std::size_t nearest,
+Projection project_near(const StitchSurface& s, const GridSurface& surface, std::size_t nearest,
                         const Vector3f& p) {
   Projection best;
   const int row = s.scan.grid->row_of(nearest);
@@ -81,7 +81,7 @@ bool may_see(const ScannerView& view, const Vector3f& p, const Vector3f& normal)
 /// pair a step or two away.
 class Walker {
  public:
-  explicit Walker(const ScanSurface& to) : to_(&to), rows_(to.scan.grid->rows), cols_(to.scan.grid->cols) {
+  explicit Walker(const StitchSurface& to) : to_(&to), rows_(to.scan.grid->rows), cols_(to.scan.grid->cols) {
     const auto near = static_cast<float>(0.75 * to.spacing_mm);
     near2_ = near * near;
   }
@@ -116,14 +116,14 @@ class Walker {
   }
 
  private:
-  const ScanSurface* to_;
+  const StitchSurface* to_;
   int rows_, cols_;
   float near2_ = 0;
 };
 
 }  // namespace
 
-double mismatch_mm(const ScanSurface& from, const ScanSurface& to, double reach_mm) {
+double mismatch_mm(const StitchSurface& from, const StitchSurface& to, double reach_mm) {
   constexpr std::size_t kProbes = 2000;
   const std::size_t n = from.points.size();
   const std::size_t step = std::max<std::size_t>(1, n / kProbes) | 1U;
@@ -152,7 +152,7 @@ double mismatch_mm(const ScanSurface& from, const ScanSurface& to, double reach_
   return *middle;
 }
 
-double pair_reach_mm(const ScanSurface& a, const ScanSurface& b, const PairingOptions& options) {
+double pair_reach_mm(const StitchSurface& a, const StitchSurface& b, const PairingOptions& options) {
   const double spacing = std::max(a.spacing_mm, b.spacing_mm);
   const double sigma = std::hypot(a.scan.sigma_mm, b.scan.sigma_mm);
   const double plain =
@@ -163,7 +163,7 @@ double pair_reach_mm(const ScanSurface& a, const ScanSurface& b, const PairingOp
   return std::clamp(4.0 * measured + spacing, plain, most);
 }
 
-Pairs find_pairs(const ScanSurface& from, const ScanSurface& to, double reach_mm,
+Pairs find_pairs(const StitchSurface& from, const StitchSurface& to, double reach_mm,
                  const PairingOptions& options) {
   Pairs pairs;
   pairs.other_id = to.scan.id;
@@ -212,7 +212,7 @@ Pairs find_pairs(const ScanSurface& from, const ScanSurface& to, double reach_mm
   return pairs;
 }
 
-FusedSamples fuse(const ScanSurface& from, std::span<const ScanSurface* const> others,
+FusedSamples fuse(const StitchSurface& from, std::span<const StitchSurface* const> others,
                   std::span<const Pairs* const> pairs) {
   FusedSamples out;
   const std::size_t n = from.points.size();
@@ -221,7 +221,7 @@ FusedSamples fuse(const ScanSurface& from, std::span<const ScanSurface* const> o
   out.scans.assign(n, 0);
   std::vector<GridSurface> surfaces;
   surfaces.reserve(others.size());
-  for (const ScanSurface* other : others) {
+  for (const StitchSurface* other : others) {
     surfaces.push_back(other->surface());
   }
   parallel_chunks(n, 4096, [&](std::size_t begin, std::size_t end) {

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "triangulation/scan_surface.h"
+#include "triangulation/stitch_surface.h"
 
 namespace dubsar {
 
@@ -31,12 +31,13 @@ struct Pairs {
 
 /// How far apart the two surfaces lie, measured on a spread of samples along the normal; robust (median).
 /// Negative when they do not overlap.
-[[nodiscard]] double mismatch_mm(const ScanSurface& from, const ScanSurface& to, double reach_mm);
+[[nodiscard]] double mismatch_mm(const StitchSurface& from, const StitchSurface& to, double reach_mm);
 
 /// Distance within which samples of the two scans pair. The same whichever way round.
-[[nodiscard]] double pair_reach_mm(const ScanSurface& a, const ScanSurface& b, const PairingOptions& options);
+[[nodiscard]] double pair_reach_mm(const StitchSurface& a, const StitchSurface& b,
+                                   const PairingOptions& options);
 
-[[nodiscard]] Pairs find_pairs(const ScanSurface& from, const ScanSurface& to, double reach_mm,
+[[nodiscard]] Pairs find_pairs(const StitchSurface& from, const StitchSurface& to, double reach_mm,
                                const PairingOptions& options);
 
 /// Where each sample goes when its pairs have had their say.
@@ -49,7 +50,7 @@ struct FusedSamples {
 /// Seed 001, section 4: the reliability-weighted average of a sample and its projections on the triangles of
 /// the scans it pairs with. `others` and `pairs` run in parallel, in the order of scan ids. A projection onto
 /// the rim of the other scan (outside its triangles) counts for nothing.
-[[nodiscard]] FusedSamples fuse(const ScanSurface& from, std::span<const ScanSurface* const> others,
+[[nodiscard]] FusedSamples fuse(const StitchSurface& from, std::span<const StitchSurface* const> others,
                                 std::span<const Pairs* const> pairs);
 
 }  // namespace dubsar

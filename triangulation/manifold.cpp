@@ -106,7 +106,8 @@ FaceComponents face_components(std::span<const Triangle> faces, const HalfEdges&
   return out;
 }
 
-std::vector<std::vector<std::uint32_t>> boundary_loops(std::span<const Triangle> faces, const HalfEdges& edges) {
+std::vector<std::vector<std::uint32_t>> boundary_loops(std::span<const Triangle> faces,
+                                                       const HalfEdges& edges) {
   std::vector<std::vector<std::uint32_t>> loops;
   std::vector<std::uint8_t> walked(3 * faces.size(), 0);
   for (std::size_t i = 0; i < faces.size(); ++i) {

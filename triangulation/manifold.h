@@ -56,7 +56,8 @@ struct FaceComponents {
 /// one pass over the faces in order: faces with a repeated vertex and repeated half-edges go (the later face
 /// yields), then each vertex with several fans is split, one copy per fan. Returns, for each vertex that was
 /// appended, the one it copies.
-[[nodiscard]] std::vector<std::uint32_t> make_manifold(std::vector<Triangle>& faces, std::size_t vertex_count);
+[[nodiscard]] std::vector<std::uint32_t> make_manifold(std::vector<Triangle>& faces,
+                                                       std::size_t vertex_count);
 
 /// Drops the faces of components with fewer than `faces` faces, then vertices without a face; per-vertex
 /// arrays follow.

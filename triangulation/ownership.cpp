@@ -20,7 +20,7 @@ constexpr std::size_t kGrain = 2048;
 /// 1 where this scan would be primary: no pair has a better score; of equals the lower id.
 std::vector<std::uint8_t> wanted_samples(const std::vector<OwnedScan>& scans, std::size_t self, int radius) {
   const OwnedScan& scan = scans[self];
-  const ScanSurface& s = *scan.surface;
+  const StitchSurface& s = *scan.surface;
   std::vector<float> wanted(s.points.size(), 0);
   parallel_chunks(wanted.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {

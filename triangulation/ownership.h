@@ -7,7 +7,7 @@
 
 #include "core/job.h"
 #include "triangulation/fusion.h"
-#include "triangulation/scan_surface.h"
+#include "triangulation/stitch_surface.h"
 
 namespace dubsar {
 
@@ -26,7 +26,7 @@ struct OwnershipOptions {
 /// A scan with what others know of it, as ownership needs it; the pairs are sorted by the id of the other
 /// scan, which stands at position `other[k]` of the same list.
 struct OwnedScan {
-  const ScanSurface* surface = nullptr;
+  const StitchSurface* surface = nullptr;
   const FusedSamples* fused = nullptr;
   std::vector<const Pairs*> pairs;
   std::vector<std::size_t> other;

@@ -16,7 +16,7 @@ namespace dubsar {
 namespace {
 
 struct Entry {
-  ScanSurface surface;
+  StitchSurface surface;
   std::map<int, Pairs> pairs;  ///< by the id of the other scan; those without a pair hold no matches
   FusedSamples fused;
   bool stale = true;  ///< fused does not know all pairs yet
@@ -105,7 +105,7 @@ struct Stitcher::Impl {
       if (!entry.stale) {
         continue;
       }
-      std::vector<const ScanSurface*> others;
+      std::vector<const StitchSurface*> others;
       std::vector<const Pairs*> pairs;
       for (const auto& [other_id, found] : entry.pairs) {
         others.push_back(&entries.at(other_id).surface);
@@ -162,7 +162,7 @@ std::vector<Stitcher::Overlap> Stitcher::overlaps() const {
   for (const auto& [id, entry] : impl_->entries) {
     for (const auto& [other_id, pairs] : entry.pairs) {
       if (id < other_id) {
-        const ScanSurface& other = impl_->entries.at(other_id).surface;
+        const StitchSurface& other = impl_->entries.at(other_id).surface;
         out.push_back({id, other_id, pairs.count, mismatch_mm(entry.surface, other, pairs.reach_mm),
                        std::max(entry.surface.spacing_mm, other.spacing_mm)});
       }

@@ -13,13 +13,13 @@
 #include "triangulation/gap_fill.h"
 #include "triangulation/grid_triangulation.h"
 #include "triangulation/ownership.h"
-#include "triangulation/scan_surface.h"
 #include "triangulation/seam_closer.h"
+#include "triangulation/stitch_surface.h"
 
 namespace dubsar {
 
 struct StitchOptions {
-  ScanSurfaceOptions surface;
+  StitchSurfaceOptions surface;
   PairingOptions pairing;
   OwnershipOptions ownership;
   SeamOptions seam;

@@ -2,6 +2,8 @@
 // Copyright The Dubsar developers
 // dubsar scan: the main job. Stream, flag, store, register, plan, stitch, until conclusive.
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstdio>
 #include <memory>
@@ -34,37 +36,34 @@ double red_area_mm2(const RedMap& map) {
   return area;
 }
 
+std::ptrdiff_t red_regions(const RedMap& map) {
+  return std::count_if(map.regions.begin(), map.regions.end(),
+                       [](const RedRegion& region) { return region.state == RegionState::kRed; });
+}
+
 /// What an operator at the command line sees while it goes on: a line per thing that happened.
 class Narrator {
  public:
   void operator()(const Event& event) {
     const std::scoped_lock lock(mutex_);
     if (const auto* stored = std::get_if<ScanStored>(&event)) {
-      say("scan %d stored: %lld samples%s%s", stored->id, static_cast<long long>(stored->samples),
-          stored->file.empty() ? "" : " of ", stored->file.c_str());
+      log_info(fmt::format("scan {} stored: {} samples{}{}", stored->id, stored->samples,
+                           stored->file.empty() ? "" : " of ", stored->file));
     } else if (const auto* placed = std::get_if<ScanPlaced>(&event)) {
       const ScanPose& pose = placed->pose;
-      say("scan %d %s%s%s", pose.id, to_string(pose.status), pose.reason.empty() ? "" : ": ",
-          pose.reason.c_str());
+      log_info(fmt::format("scan {} {}{}{}", pose.id, to_string(pose.status), pose.reason.empty() ? "" : ": ",
+                           pose.reason));
     } else if (const auto* changed = std::get_if<RedMapChanged>(&event)) {
-      say("red: about %.1f mm2 in %zu regions", red_area_mm2(changed->red_map),
-          static_cast<std::size_t>(
-              std::count_if(changed->red_map.regions.begin(), changed->red_map.regions.end(),
-                            [](const RedRegion& r) { return r.state == RegionState::kRed; })));
+      log_info(fmt::format("red: about {:.1f} mm2 in {} regions", red_area_mm2(changed->red_map),
+                           red_regions(changed->red_map)));
     } else if (const auto* next = std::get_if<NextPlacement>(&event)) {
-      say("next: %s (about %.1f mm2)", next->view.say.c_str(), next->view.predicted_cleared_mm2);
+      log_info(fmt::format("next: {} (about {:.1f} mm2)", next->view.say, next->view.predicted_cleared_mm2));
     } else if (const auto* notice = std::get_if<Notice>(&event)) {
       log_warning(notice->text);
     }
   }
 
  private:
-  template <class... Values>
-  void say(const char* format, Values... values) {
-    char line[600];
-    std::snprintf(line, sizeof line, format, values...);
-    log_info(line);
-  }
   std::mutex mutex_;
 };
 
@@ -72,16 +71,11 @@ std::string verdict(const EngineResult& result) {
   const auto registered = std::count_if(result.poses.begin(), result.poses.end(), [](const ScanPose& pose) {
     return pose.status == PoseStatus::kRegistered;
   });
-  char text[300];
   if (result.red_map.conclusive) {
-    std::snprintf(text, sizeof text, "conclusive after %zu scans, %td registered", result.poses.size(),
-                  registered);
-  } else {
-    std::snprintf(text, sizeof text,
-                  "not conclusive: about %.1f mm2 are still red after %zu scans, %td registered",
-                  red_area_mm2(result.red_map), result.poses.size(), registered);
+    return fmt::format("conclusive after {} scans, {} registered", result.poses.size(), registered);
   }
-  return text;
+  return fmt::format("not conclusive: about {:.1f} mm2 are still red after {} scans, {} registered",
+                     red_area_mm2(result.red_map), result.poses.size(), registered);
 }
 
 nlohmann::ordered_json result_json(const ScanArguments& arguments, const EngineResult& result) {

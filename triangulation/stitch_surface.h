@@ -14,7 +14,7 @@
 
 namespace dubsar {
 
-struct ScanSurfaceOptions {
+struct StitchSurfaceOptions {
   GridTriangulationOptions grid;
   /// Samples from the rim of a scan over which its weight rises from nothing to full, so that no step shows
   /// where a scan ends.
@@ -26,7 +26,7 @@ struct ScanSurfaceOptions {
 
 /// One placed scan made ready for stitching: its samples in the model frame, the triangles of its grid, and
 /// how far each sample is to be trusted. All arrays are [rows*cols] of the grid.
-struct ScanSurface {
+struct StitchSurface {
   PlacedScan scan;
   double spacing_mm = 0;
   bool mirrored = false;
@@ -48,7 +48,7 @@ struct ScanSurface {
 };
 
 /// Never fails: a scan without a triangle has no usable sample.
-[[nodiscard]] ScanSurface make_scan_surface(const PlacedScan& scan, const ScanSurfaceOptions& options);
+[[nodiscard]] StitchSurface make_scan_surface(const PlacedScan& scan, const StitchSurfaceOptions& options);
 
 /// In place: each value becomes the mean over the (2·radius+1)² window around it, of those with mask != 0;
 /// zero where the mask is 0.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright The Dubsar developers
-#include "triangulation/scan_surface.h"
+#include "triangulation/stitch_surface.h"
 
 #include <algorithm>
 
@@ -139,9 +139,9 @@ void box_mean(std::vector<float>& values, const std::vector<std::uint8_t>& mask,
   });
 }
 
-ScanSurface make_scan_surface(const PlacedScan& scan, const ScanSurfaceOptions& options) {
+StitchSurface make_scan_surface(const PlacedScan& scan, const StitchSurfaceOptions& options) {
   const RangeGrid& grid = *scan.grid;
-  ScanSurface out;
+  StitchSurface out;
   out.scan = scan;
   out.spacing_mm = grid.spacing_mm > 0 ? grid.spacing_mm : estimate_spacing_mm(grid);
   out.view = view_in_model(grid.view, scan.model_from_scanner);
