@@ -11,9 +11,11 @@
 #include <map>
 #include <optional>
 
+#include "core/parallel.h"
 #include "core/units.h"
 #include "planning/clearing.h"
 #include "planning/clusters.h"
+#include "planning/view_prediction.h"
 
 namespace dubsar {
 
@@ -167,6 +169,43 @@ void excuse_unneeded(std::span<const PlacedScan> scans, const ExcuseOptions& opt
       break;
     }
   }
+}
+
+void excuse_strays(std::span<const PlacedScan> scans, std::span<const double> noise_mm,
+                   const ModelSurface& surface, const ExcuseOptions& options, RedTargets& red) {
+  std::vector<ViewPredictor> views;
+  double apart_mm = options.stray_mm;
+  for (std::size_t s = 0; s < scans.size(); ++s) {
+    views.emplace_back(ScannerModel::of(*scans[s].grid, noise_mm[s]), scans[s].model_from_scanner,
+                       surface.query, options.stray_mm);
+    apart_mm = std::max(apart_mm, 3.0 * spacing_of(*scans[s].grid));
+  }
+  parallel_for_each_index(
+      red.targets.size(),
+      [&](std::size_t i) {
+        RedTarget& target = red.targets[i];
+        if (target.unseen || target.state != RegionState::kRed ||
+            surface.query.closest(target.sample_mm.cast<float>(), static_cast<float>(apart_mm))) {
+          return;
+        }
+        int past = 0;
+        double nearest_mm = 0;
+        for (const ViewPredictor& view : views) {
+          const double behind_mm = view.looks_past_mm(target.sample_mm);
+          if (behind_mm > 0) {
+            nearest_mm = past == 0 ? behind_mm : std::min(nearest_mm, behind_mm);
+            ++past;
+          }
+        }
+        if (past >= options.stray_views) {
+          std::array<char, 120> line{};
+          std::snprintf(line.data(), line.size(),
+                        "stray return in the air: %d scans look past it at the surface, %.1f mm behind", past,
+                        nearest_mm);
+          set_excuse(target, Excuse::kUnneeded, line.data());
+        }
+      },
+      16);
 }
 
 void excuse_out_of_reach(std::span<const float> best_chance, const ExcuseOptions& options, RedTargets& red) {

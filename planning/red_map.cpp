@@ -75,6 +75,7 @@ Result<RedMapResult> make_red_map(std::span<const PlacedScan> scans, const Mesh*
     noise_mm.push_back(estimate_noise_mm(*scan.grid));
   }
   excuse_unneeded(scans, options.excuse, out.targets);
+  excuse_strays(scans, noise_mm, surface, options.excuse, out.targets);
   note_tries(scans, noise_mm, surface, out.targets.targets);
   excuse_tried(options.excuse, out.targets);
   job.progress("red map", 0.5);

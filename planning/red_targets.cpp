@@ -22,6 +22,7 @@ struct Red {
   std::uint32_t sample = 0;
   Eigen::Vector3d position_mm{0, 0, 0};
   Eigen::Vector3d normal{0, 0, 0};  ///< weighted by area
+  Eigen::Vector3d sample_mm{0, 0, 0};
   double area_mm2 = 0;
   std::array<std::int32_t, 3> cell{};
 };
@@ -132,6 +133,7 @@ std::vector<Red> red_samples(std::span<const PlacedScan> scans, double longest_g
           Eigen::Vector3d normal;
           reader.read(red.sample, position, normal, red.area_mm2);
           red.position_mm = pose * position;
+          red.sample_mm = pose * grid.point(red.sample).cast<double>();
           red.normal = pose.rotation * normal;
         },
         512);
@@ -169,6 +171,7 @@ RedTarget merged(std::span<const Red> reds) {
     position += reds[i].area_mm2 * reds[i].position_mm;
     normal += reds[i].normal;
     total += reds[i].area_mm2;
+    target.sample_mm += reds[i].sample_mm / static_cast<double>(reds.size());
   }
   target.position_mm = position / total;
   target.normal = normal.norm() > 0.05 * total ? normal.normalized() : reds.front().normal.normalized();
@@ -203,6 +206,7 @@ RedTargets red_targets(std::span<const PlacedScan> scans, const ModelSurface& su
   for (const SurfacePatch& patch : surface.unseen) {
     RedTarget target;
     target.position_mm = patch.position_mm;
+    target.sample_mm = patch.position_mm;
     target.normal = patch.normal;
     target.area_mm2 = patch.area_mm2;
     target.unseen = true;

@@ -19,6 +19,8 @@ namespace dubsar {
 struct RedTarget {
   Eigen::Vector3d position_mm{0, 0, 0};  ///< model frame
   Eigen::Vector3d normal{0, 0, 1};       ///< out of the clay: of the surface that is supposed to lie there
+  /// Mean of the red samples themselves; position_mm lies in the gap beside them.
+  Eigen::Vector3d sample_mm{0, 0, 0};
   double area_mm2 = 0;
   bool unseen = false;  ///< a patch of the closing surface, with no samples of its own
   /// Directions towards the scanner (unit, model frame) of scans that ought to have seen it and did not.

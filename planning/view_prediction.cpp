@@ -99,6 +99,21 @@ double ViewPredictor::facing_chance(const Eigen::Vector3d& p_mm, const Eigen::Ve
   return light * dense_sampling_chance(laser, scanner_.spacing_mm, scanner_.noise_mm);
 }
 
+double ViewPredictor::looks_past_mm(const Eigen::Vector3d& p_mm) const {
+  constexpr double kCertain = 0.5;
+  const Eigen::Vector3d laser =
+      model_from_scanner_ * source(scanner_.view.laser_mm, scanner_from_model_ * p_mm);
+  const Eigen::Vector3d ray = (p_mm - laser).normalized();
+  const auto hit = occluders_->first_hit(p_mm.cast<float>(), ray.cast<float>(),
+                                         static_cast<float>(clearance_mm_), static_cast<float>(kFarMm));
+  if (!hit) {
+    return 0.0;
+  }
+  const Eigen::Vector3d behind = p_mm + hit->distance_mm * ray;
+  const Eigen::Vector3d normal = hit->normal.cast<double>();
+  return facing_chance(behind, normal) > kCertain && unobstructed(behind, normal) ? hit->distance_mm : 0.0;
+}
+
 bool ViewPredictor::unobstructed(const Eigen::Vector3d& p_mm, const Eigen::Vector3d& normal) const {
   const Eigen::Vector3d p = scanner_from_model_ * p_mm;
   const Eigen::Vector3f start = (p_mm + clearance_mm_ * normal).cast<float>();

@@ -52,6 +52,9 @@ class ViewPredictor {
     const double facing = facing_chance(p_mm, normal);
     return facing > 0.02 && unobstructed(p_mm, normal) ? facing : 0.0;
   }
+  /// How far behind the point this view samples the model well, along the laser's ray through the point: then
+  /// nothing solid can be at the point. 0 when it does not.
+  [[nodiscard]] double looks_past_mm(const Eigen::Vector3d& p_mm) const;
   /// Unit vector from the model to the scanner.
   [[nodiscard]] const Eigen::Vector3d& towards_scanner() const { return towards_scanner_; }
 
