@@ -55,8 +55,9 @@ Result<std::string> six_sides(const ReportInput& input, const SixViews& views) {
             "</figcaption></figure>\n";
   }
   html +=
-      "</div>\n<p class=\"aside\">Drawn from the mesh, all to one scale, " + fixed(1000.0 * mm_per_px, 1) +
-      " µm to a pixel, lit from the upper left. " +
+      "<div class=\"bar\" style=\"grid-area: bar\">10 mm</div>\n</div>\n<p class=\"aside\">Drawn from the "
+      "mesh, all to one scale, " +
+      fixed(1000.0 * mm_per_px, 1) + " µm to a pixel, lit from the upper left. " +
       (print_scale == 1.0 ? "Printed at 100 % they are life size."
                           : "Printed at 100 % they are " + fixed(100 * print_scale, 0) + " % of life size.") +
       "</p>\n</section>\n";

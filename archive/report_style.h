@@ -58,7 +58,7 @@ footer { border-top: 1px solid var(--rule); padding-top: 1rem; color: var(--soft
   main { max-width: none; padding: 0; }
   section { break-inside: auto; margin-bottom: 8mm; }
   h2 { break-after: avoid; }
-  figure, tr { break-inside: avoid; }
+  figure, tr, .cross { break-inside: avoid; }
   .cross { --scale: var(--print-scale) !important; }
   .sheet img { max-height: 230mm; }
   .wide { overflow: visible; }

@@ -81,6 +81,7 @@ TEST_F(Report, HoldsSixSidesAndTheRedMapAndLoadsNothing) {
   for (int f = 0; f < kFaceCount; ++f) {
     EXPECT_THAT(page, HasSubstr("<figcaption>" + std::string(to_string(static_cast<Face>(f)))));
   }
+  EXPECT_THAT(page, HasSubstr(">10 mm</div>")) << "the scale of the six sides";
   EXPECT_THAT(page, Not(HasSubstr("http://")));
   EXPECT_THAT(page, Not(HasSubstr("https://")));
   EXPECT_THAT(page, Not(HasSubstr("<script")));
