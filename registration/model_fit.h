@@ -19,9 +19,9 @@ struct ModelScan {
 
 struct ModelFitOptions {
   // Lengths are parts of the surfaces' common scale where they are not in millimetres.
-  int most_medium = 5;  ///< distinct starts that are refined on the medium level
-  int most_fine = 3;    ///< and on the fine one
-  double hopeless = 0.4;            ///< starts with less than this part of the best one's score are not refined
+  int most_medium = 5;    ///< distinct starts that are refined on the medium level
+  int most_fine = 3;      ///< and on the fine one
+  double hopeless = 0.4;  ///< starts with less than this part of the best one's score are not refined
   double coarse_tolerance = 0.02;
   double band = 0.08;
   double distinct_turn_rad = 0.15;

@@ -263,10 +263,13 @@ bool ScanModel::place(int id, const RigidTransform& model_from_scanner, bool loc
     return false;
   }
   Scan& scan = found->second;
-  int main = main_group();
-  if (scan.group == main && members(main).size() > 1) {
-    scan.group = next_group_++;  // out of the group while it is placed anew
-    main = main_group();
+  scan.group = next_group_++;  // out of its group while it is placed anew
+  int main = scan.group;
+  for (const int group : groups_by_size()) {
+    if (group != scan.group) {
+      main = group;
+      break;
+    }
   }
   std::erase_if(pairs_, [&](const auto& e) { return e.first.first == id || e.first.second == id; });
   scan.locked = locked;

@@ -31,22 +31,29 @@ PoseVerdict judged_alone(const ModelFit& fit, const VerifyOptions& o) {
             "only " + percent(fit.overlap) +
                 " of it overlaps the registered scans; scan again with at least 30 % overlap"};
   }
-  if (both.agreement() < o.least_agreement) {
-    return {both.agreement() < 0.6 * o.least_agreement ? PoseStatus::kFailed : PoseStatus::kUnsure,
-            "the surfaces agree in only " + percent(both.agreement()) +
-                " of the overlap; scan again with more overlap, or click three points on both scans"};
-  }
-  if (both.violation() > o.most_violation) {
-    return {PoseStatus::kUnsure,
-            percent(both.violation()) +
-                " of it would stand where another scan saw through; click three points on both "
-                "scans, or take away what moved"};
-  }
-  if (both.absence() > o.most_absence) {
-    return {PoseStatus::kUnsure,
-            percent(both.absence()) +
-                " of the surface that one scan shows is missing from another that looked there; "
-                "scan again with more overlap, or click three points on both scans"};
+  const double total = doubt(both, o);
+  if (total > 1.0) {
+    const PoseStatus status = total > 3.0 ? PoseStatus::kFailed : PoseStatus::kUnsure;
+    const double off = (1.0 - both.agreement()) / o.most_disagreement;
+    const double through = both.violation() / o.most_violation;
+    const double gone = both.absence() / o.most_absence;
+    if (off >= through && off >= gone) {
+      return {status,
+              "the surfaces agree in only " + percent(both.agreement()) +
+                  " of the overlap; scan again with more overlap, or click three points on both scans"};
+    }
+    if (through >= gone) {
+      return {
+          status,
+          percent(both.violation()) +
+              " of it would stand where another scan saw through; click three points on both scans, or take "
+              "away what moved"};
+    }
+    return {
+        status,
+        percent(both.absence()) +
+            " of the surface that one scan shows is missing from another that looked there; scan again with "
+            "more overlap, or click three points on both scans"};
   }
   if (fit.icp.rms_mm > o.most_residual_sigmas * fit.residual_sigma_mm) {
     return {PoseStatus::kUnsure,
@@ -64,6 +71,11 @@ PoseVerdict judged_alone(const ModelFit& fit, const VerifyOptions& o) {
 
 }  // namespace
 
+double doubt(const PoseEvidence& evidence, const VerifyOptions& options) {
+  return (1.0 - evidence.agreement()) / options.most_disagreement +
+         evidence.violation() / options.most_violation + evidence.absence() / options.most_absence;
+}
+
 PoseVerdict verify_pose(std::span<const ModelFit> fits, const VerifyOptions& options) {
   if (fits.empty()) {
     return {
@@ -76,9 +88,8 @@ PoseVerdict verify_pose(std::span<const ModelFit> fits, const VerifyOptions& opt
     return verdict;
   }
   for (const ModelFit& rival : fits.subspan(1)) {
-    const PoseEvidence both = rival.both();
     if (rival.score > options.rival_score * fits.front().score &&
-        both.agreement() >= options.rival_agreement) {
+        doubt(rival.both(), options) <= options.rival_doubt) {
       const RigidTransform turn = rival.model_from_scanner * fits.front().model_from_scanner.inverse();
       return {PoseStatus::kUnsure, "two poses fit, " +
                                        std::to_string(std::lround(deg_from_rad(turn.angle_rad()))) +
@@ -91,8 +102,7 @@ PoseVerdict verify_pose(std::span<const ModelFit> fits, const VerifyOptions& opt
 bool consistent_pose(const ModelFit& fit, const VerifyOptions& options) {
   const PoseEvidence both = fit.both();
   const bool enough = both.close + both.apart >= options.least_close;
-  return both.violation() <= options.most_violation &&
-         (!enough || both.agreement() >= options.least_agreement);
+  return enough ? doubt(both, options) <= 1.0 : both.violation() <= options.most_violation;
 }
 
 }  // namespace dubsar
