@@ -38,7 +38,7 @@ Checklist make_checklist(const RedMap& map, std::span<const ScanPose> poses,
     list.calibration = rig->calibration;
     list.calibration_age_days = rig->calibration_age_days;
   }
-  const ModelFaces faces = model_faces(registered, extreme_points(mesh.positions));
+  const ModelFaces faces = model_faces(registered, hull_points(mesh.positions));
   for (const auto& f : mesh.faces) {
     if (measured(mesh, f)) {
       const Eigen::Vector3d a = mesh.positions[f[0]].cast<double>();

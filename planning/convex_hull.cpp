@@ -128,16 +128,16 @@ std::vector<Eigen::Vector3d> sphere_directions(std::size_t count) {
   return out;
 }
 
-std::vector<Eigen::Vector3d> extreme_points(std::span<const Eigen::Vector3f> points, std::size_t directions) {
+std::vector<Eigen::Vector3d> extreme_points(std::span<const Eigen::Vector3f> points,
+                                            std::span<const Eigen::Vector3d> directions) {
   if (points.empty()) {
     return {};
   }
-  const std::vector<Eigen::Vector3d> dirs = sphere_directions(directions);
-  std::vector<std::size_t> best(directions, 0);
+  std::vector<std::size_t> best(directions.size(), 0);
   parallel_for_each_index(
-      directions,
+      directions.size(),
       [&](std::size_t k) {
-        const Eigen::Vector3f d = dirs[k].cast<float>();
+        const Eigen::Vector3f d = directions[k].cast<float>();
         float most = d.dot(points[0]);
         for (std::size_t i = 1; i < points.size(); ++i) {
           const float along = d.dot(points[i]);
@@ -155,6 +155,16 @@ std::vector<Eigen::Vector3d> extreme_points(std::span<const Eigen::Vector3f> poi
   for (const std::size_t i : best) {
     out.push_back(points[i].cast<double>());
   }
+  return out;
+}
+
+std::vector<Eigen::Vector3d> hull_points(std::span<const Eigen::Vector3f> points) {
+  std::vector<Eigen::Vector3d> directions = sphere_directions(300);
+  std::vector<Eigen::Vector3d> out = extreme_points(points, directions);
+  for (const HullFace& f : Hull(out).build()) {
+    directions.push_back(f.normal);
+  }
+  out = extreme_points(points, directions);
   return out;
 }
 

@@ -14,10 +14,14 @@ namespace dubsar {
 /// `count` unit vectors spread evenly over the sphere (Fibonacci lattice).
 [[nodiscard]] std::vector<Eigen::Vector3d> sphere_directions(std::size_t count);
 
-/// The points that lie farthest along each of `directions` directions, each once: a small set whose hull
-/// differs from the hull of all points by less than the extent times 1.5 / directions.
+/// The points that lie farthest along each of the directions, each once, in the order of the points: a small
+/// set whose hull is close to the hull of all.
 [[nodiscard]] std::vector<Eigen::Vector3d> extreme_points(std::span<const Eigen::Vector3f> points,
-                                                          std::size_t directions = 600);
+                                                          std::span<const Eigen::Vector3d> directions);
+
+/// Extreme points over the sphere, then along the normals of their hull's faces, where flat sides of the
+/// model would be cut short.
+[[nodiscard]] std::vector<Eigen::Vector3d> hull_points(std::span<const Eigen::Vector3f> points);
 
 /// Convex hull of some hundred points, faces counter-clockwise from outside; only its corners are used by the
 /// faces. No faces when the points lie in a plane. Incremental (de Berg et al., Computational Geometry,

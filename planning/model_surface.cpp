@@ -175,6 +175,8 @@ void sample_face(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen
 /// A slit between the triangles of two scans lets some rays through, a hole as wide as the patch nearly all;
 /// what is narrower than a patch is told by its red border.
 bool seen_from_outside(const MeshQuery& query, const SurfacePatch& patch, double step_mm, double depth_mm) {
+  // The hull of thinned points may lie a little inside the surface.
+  const double lift_mm = std::max(step_mm, 0.02 * depth_mm);
   constexpr int kRays = 9;
   constexpr int kEnough = 3;
   const Eigen::Vector3f n = patch.normal.cast<float>();
@@ -186,7 +188,7 @@ bool seen_from_outside(const MeshQuery& query, const SurfacePatch& patch, double
     // A sunflower spread over the patch, its first ray in the middle.
     const double radius = reach_mm * std::sqrt(static_cast<double>(k) / (kRays - 1));
     const double angle = 2.399963229728653 * k;
-    const Eigen::Vector3f from = patch.position_mm.cast<float>() + static_cast<float>(step_mm) * n +
+    const Eigen::Vector3f from = patch.position_mm.cast<float>() + static_cast<float>(lift_mm) * n +
                                  static_cast<float>(radius * std::cos(angle)) * u +
                                  static_cast<float>(radius * std::sin(angle)) * v;
     const auto hit = query.first_hit(from, -n, 0.0F, static_cast<float>(depth_mm));
@@ -218,7 +220,7 @@ ModelSurface model_surface(std::span<const PlacedScan> scans, const Mesh* model,
   for (std::size_t i = 0; i < out.mesh.positions.size(); i += stride) {
     thinned.push_back(out.mesh.positions[i]);
   }
-  const std::vector<Eigen::Vector3d> extremes = extreme_points(thinned);
+  const std::vector<Eigen::Vector3d> extremes = hull_points(thinned);
   const Mesh hull = convex_hull(extremes);
   out.corners_mm = extremes;
   out.faces = model_faces(scans, extremes);

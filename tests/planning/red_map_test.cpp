@@ -1,0 +1,248 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "planning/red_map.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+#include <optional>
+
+#include "core/units.h"
+#include "planning/checklist.h"
+#include "planning/cleared_map.h"
+#include "planning/convex_hull.h"
+#include "planning/sparse_flags.h"
+#include "planning/view_prediction.h"
+
+namespace dubsar {
+namespace {
+
+constexpr double kSpacingMm = 0.25;
+
+Rig turntable_rig() {
+  Rig rig;
+  rig.view.laser_mm = Eigen::Vector3d(0, 0, 250);
+  rig.view.camera_mm = Eigen::Vector3d(0, 110, 250);
+  rig.view.motion_per_row_mm = {0, kSpacingMm, 0};
+  rig.spacing_mm = kSpacingMm;
+  rig.has_turntable = true;
+  rig.tilt_max_rad = rad_from_deg(70);
+  return rig;
+}
+
+/// Distance along a ray to an ellipsoid with half axes a about the origin; none when it misses.
+std::optional<double> hit_ellipsoid(const Eigen::Vector3d& from, const Eigen::Vector3d& ray,
+                                    const Eigen::Vector3d& a) {
+  const Eigen::Vector3d f = from.cwiseQuotient(a);
+  const Eigen::Vector3d r = ray.cwiseQuotient(a);
+  const double b = f.dot(r);
+  const double c = f.squaredNorm() - 1;
+  const double root = b * b - r.squaredNorm() * c;
+  if (root < 0) {
+    return std::nullopt;
+  }
+  return (-b - std::sqrt(root)) / r.squaredNorm();
+}
+
+/// A pebble seen straight down the scanner's axis, no shadows: what a laser from far off would bring.
+RangeGrid scan_pebble(const RigidTransform& tablet_from_scanner) {
+  const Eigen::Vector3d half(12, 9, 5);
+  RangeGrid grid;
+  grid.allocate(110, 110);
+  grid.spacing_mm = kSpacingMm;
+  grid.view = turntable_rig().view;
+  grid.nominal = NominalPose{};
+  grid.nominal->tablet_from_scanner = tablet_from_scanner;
+  const Eigen::Vector3d ray = tablet_from_scanner.rotation * Eigen::Vector3d(0, 0, -1);
+  for (int r = 0; r < grid.rows; ++r) {
+    for (int c = 0; c < grid.cols; ++c) {
+      const Eigen::Vector3d from((c - 55) * kSpacingMm, (r - 55) * kSpacingMm, 60);
+      if (const auto distance = hit_ellipsoid(tablet_from_scanner * from, ray, half)) {
+        const std::size_t i = grid.index(r, c);
+        grid.x[i] = static_cast<float>(from.x());
+        grid.y[i] = static_cast<float>(from.y());
+        grid.z[i] = static_cast<float>(from.z() - *distance);
+        grid.valid[i] = 1;
+      }
+    }
+  }
+  return grid;
+}
+
+RigidTransform turned(double about_x_deg, double about_y_deg) {
+  RigidTransform t;
+  t.rotation = (Eigen::AngleAxisd(rad_from_deg(about_x_deg), Eigen::Vector3d::UnitX()) *
+                Eigen::AngleAxisd(rad_from_deg(about_y_deg), Eigen::Vector3d::UnitY()))
+                   .toRotationMatrix();
+  return t;
+}
+
+struct Session {
+  ClearedMap map;
+  std::vector<std::unique_ptr<RangeGrid>> grids;
+  void scan(const RigidTransform& pose) {
+    grids.push_back(std::make_unique<RangeGrid>(scan_pebble(pose)));
+    const SampleFlags flags = flag_sparse(*grids.back());
+    map.add({static_cast<int>(grids.size()) - 1, grids.back().get(), &flags, pose, 0.0});
+  }
+};
+
+double area_on(const RedMap& map, Face face) {
+  double area = 0;
+  for (const RedRegion& r : map.regions) {
+    area += r.face == face ? r.area_mm2 : 0.0;
+  }
+  return area;
+}
+
+TEST(RedMap, NothingScannedIsNotConclusive) {
+  JobContext job;
+  const auto result = make_red_map({}, nullptr, nullptr, {}, job);
+  ASSERT_TRUE(result);
+  EXPECT_FALSE(result->map.conclusive);
+}
+
+TEST(RedMap, TheUnseenUndersideIsOneLargeRegionOfTheReverse) {
+  Session session;
+  session.scan(turned(0, 0));
+  JobContext job;
+  const Rig rig = turntable_rig();
+  const auto result = make_red_map(session.map.scans(), nullptr, &rig, {}, job);
+  ASSERT_TRUE(result);
+  ASSERT_FALSE(result->map.regions.empty());
+  EXPECT_FALSE(result->map.conclusive);
+  // The silhouette that closes the first scan encloses pi · 12 · 9 = 339 mm², less the grazing rim.
+  EXPECT_GT(area_on(result->map, Face::kReverse), 200.0);
+  EXPECT_LT(area_on(result->map, Face::kReverse), 450.0);
+  EXPECT_EQ(result->map.regions.front().face, Face::kReverse);
+  EXPECT_LT(result->map.regions.front().normal.z(), -0.8);
+  ASSERT_FALSE(result->map.next.empty());
+  EXPECT_GT(result->map.next.front().predicted_cleared_mm2, 10.0);
+  EXPECT_TRUE(result->map.next.front().placement.has_value());
+}
+
+TEST(RedMap, AnObjectSeenFromAllSidesIsConclusive) {
+  Session session;
+  for (const double x : {0.0, 45.0, 90.0, 135.0, 180.0, 225.0, 270.0, 315.0}) {
+    session.scan(turned(x, 0));
+  }
+  for (const double y : {45.0, 90.0, 135.0, 225.0, 270.0, 315.0}) {
+    session.scan(turned(0, y));
+  }
+  JobContext job;
+  const Rig rig = turntable_rig();
+  const auto result = make_red_map(session.map.scans(), nullptr, &rig, {}, job);
+  ASSERT_TRUE(result);
+  EXPECT_TRUE(result->map.conclusive);
+  EXPECT_TRUE(result->map.next.empty());
+  for (const RedScan& scan : result->map.scans) {
+    EXPECT_EQ(scan.sparse, 0);
+    EXPECT_GT(scan.cleared, 0);
+  }
+}
+
+TEST(RedMap, SameInputSameResult) {
+  Session session;
+  session.scan(turned(0, 0));
+  session.scan(turned(60, 0));
+  JobContext job;
+  const Rig rig = turntable_rig();
+  const auto a = make_red_map(session.map.scans(), nullptr, &rig, {}, job);
+  const auto b = make_red_map(session.map.scans(), nullptr, &rig, {}, job);
+  ASSERT_TRUE(a && b);
+  EXPECT_EQ(a->flags, b->flags);
+  ASSERT_EQ(a->map.next.size(), b->map.next.size());
+  for (std::size_t k = 0; k < a->map.next.size(); ++k) {
+    EXPECT_EQ(a->map.next[k].predicted_cleared_mm2, b->map.next[k].predicted_cleared_mm2);
+    EXPECT_EQ(a->map.next[k].model_from_scanner.row_major(), b->map.next[k].model_from_scanner.row_major());
+  }
+}
+
+TEST(RedMap, WithoutARigNothingIsOutOfReachAndViewsGoByHand) {
+  Session session;
+  session.scan(turned(0, 0));
+  JobContext job;
+  const auto result = make_red_map(session.map.scans(), nullptr, nullptr, {}, job);
+  ASSERT_TRUE(result);
+  for (const RedRegion& region : result->map.regions) {
+    EXPECT_NE(region.excuse, Excuse::kUnreachable);
+  }
+  ASSERT_FALSE(result->map.next.empty());
+  EXPECT_FALSE(result->map.next.front().placement.has_value());
+  EXPECT_NE(result->map.next.front().say.find("towards the camera"), std::string::npos);
+}
+
+TEST(RedMap, ARigWithoutHandTurnsCannotReachTheUnderside) {
+  Session session;
+  session.scan(turned(0, 0));
+  Rig rig = turntable_rig();
+  rig.hand_turns = false;
+  rig.tilt_max_rad = rad_from_deg(20);
+  JobContext job;
+  const auto result = make_red_map(session.map.scans(), nullptr, &rig, {}, job);
+  ASSERT_TRUE(result);
+  double unreachable = 0;
+  for (const RedRegion& region : result->map.regions) {
+    if (region.excuse == Excuse::kUnreachable) {
+      EXPECT_FALSE(region.reason.empty());
+      unreachable += region.area_mm2;
+    }
+  }
+  EXPECT_GT(unreachable, 150.0);
+}
+
+TEST(RedMap, CancelledWorkSaysSo) {
+  Session session;
+  session.scan(turned(0, 0));
+  JobContext job;
+  job.cancel();
+  const auto result = make_red_map(session.map.scans(), nullptr, nullptr, {}, job);
+  ASSERT_FALSE(result);
+  EXPECT_EQ(result.error().kind, ErrorKind::kCancelled);
+}
+
+TEST(RedMap, ChecklistAddsUpFaces) {
+  Session session;
+  session.scan(turned(0, 0));
+  JobContext job;
+  const Rig rig = turntable_rig();
+  const auto result = make_red_map(session.map.scans(), nullptr, &rig, {}, job);
+  ASSERT_TRUE(result);
+  Mesh mesh;
+  mesh.positions = {{0, 0, 5}, {4, 0, 5}, {0, 3, 5}, {0, 0, -5}};
+  mesh.faces = {{0, 1, 2}};
+  ScanPose pose;
+  pose.status = PoseStatus::kRegistered;
+  const Checklist list =
+      make_checklist(result->map, std::vector<ScanPose>{pose}, session.map.scans(), mesh, &rig);
+  EXPECT_NEAR(list.faces[static_cast<std::size_t>(Face::kObverse)].seen_mm2, 6.0, 1e-6);
+  EXPECT_GT(list.faces[static_cast<std::size_t>(Face::kReverse)].red_mm2, 150.0);
+  EXPECT_EQ(list.scans_registered, 1);
+  EXPECT_FALSE(list.conclusive);
+}
+
+TEST(ViewPrediction, NoiseMakesGrazingLinksTooLong) {
+  // At 60°, µ = 0.05 mm and 0.02 mm noise about one link in nine is too long.
+  const double both = dense_sampling_chance(std::cos(rad_from_deg(60)), 0.05, 0.02);
+  EXPECT_NEAR(std::sqrt(both), 1.0 - 1.0 / 9.0, 0.05);
+  EXPECT_EQ(dense_sampling_chance(std::cos(rad_from_deg(71)), 0.05, 0.0), 0.0);
+  EXPECT_EQ(dense_sampling_chance(std::cos(rad_from_deg(69)), 0.05, 0.0), 1.0);
+  EXPECT_GT(dense_sampling_chance(std::cos(rad_from_deg(30)), 0.1, 0.02), 0.99);
+}
+
+TEST(ConvexHull, OfABoxIsTheBox) {
+  std::vector<Eigen::Vector3d> points;
+  for (const double x : {0.0, 1.0, 2.0}) {
+    for (const double y : {0.0, 1.0, 3.0}) {
+      for (const double z : {0.0, 1.0, 4.0}) {
+        points.emplace_back(x, y, z);
+      }
+    }
+  }
+  EXPECT_NEAR(surface_area_mm2(convex_hull(points)), 2 * (6 + 8 + 12), 1e-4);
+  EXPECT_TRUE(convex_hull(std::vector<Eigen::Vector3d>(5, Eigen::Vector3d::Zero())).faces.empty());
+}
+
+}  // namespace
+}  // namespace dubsar
