@@ -68,9 +68,9 @@ std::string verdict_section(const ReportInput& input) {
   const RegionSum excused = sum_of(input.red_map, RegionState::kExcused);
   std::string excuses;
   if (excused.count > 0) {
-    excuses = "<p>" + counted(excused.count, "place is", "places are") + " excused, " +
-              area(excused.area_mm2) +
-              " by estimate. Each is listed below with its reason; no samples were taken there.</p>\n";
+    excuses =
+        "<p>" + counted(excused.count, "place is", "places are") + " excused, " + area(excused.area_mm2) +
+        " by estimate. Each is listed below with its reason; the clay there is not sampled densely.</p>\n";
   }
   if (is_conclusive(input)) {
     return "<section class=\"verdict yes\">\n<h2>Conclusive</h2>\n<p>Every part of the tablet that this "
