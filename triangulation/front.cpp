@@ -33,7 +33,7 @@ Front::Front(Sheet& sheet) : sheet_(&sheet), link_of_(sheet.positions.size(), kN
     coarsest = std::max(coarsest, mu);
   }
   // About the radius that seams look around with: a query meets 27 buckets at most.
-  cell_mm_ = coarsest > 0 ? 4.5F * coarsest : 1.0F;
+  cell_mm_ = coarsest > 0 ? 3.3F * coarsest : 1.0F;
   buckets_.resize(1U << 10U);
   const HalfEdges edges(sheet.faces, sheet.positions.size());
   std::vector<std::uint8_t> open(3 * sheet.faces.size(), 0);
@@ -54,7 +54,8 @@ Front::Front(Sheet& sheet) : sheet_(&sheet), link_of_(sheet.positions.size(), kN
       links(b).in.push_back(a);
     }
   }
-  for (const Triangle& f : sheet.faces) {
+  half_edges_.reserve(4 * links_.size());
+  for (const Face& f : sheet.faces) {
     for (std::size_t k = 0; k < 3; ++k) {
       if (find(f[k]) != nullptr && find(f[(k + 1) % 3]) != nullptr) {
         half_edges_.insert(key_of(f[k], f[(k + 1) % 3]));

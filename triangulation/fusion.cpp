@@ -123,15 +123,22 @@ class Walker {
 
 }  // namespace
 
-double mismatch_mm(const StitchSurface& from, const StitchSurface& to, double reach_mm) {
-  constexpr std::size_t kProbes = 2000;
+double mismatch_mm(const ScanSurface& from, const ScanSurface& to, double reach_mm) {
+  constexpr std::size_t kProbes = 1500;
   const std::size_t n = from.points.size();
   const std::size_t step = std::max<std::size_t>(1, n / kProbes) | 1U;
+  Eigen::AlignedBox3f box = to.box;
+  if (box.isEmpty()) {
+    return -1;
+  }
+  box.min().array() -= static_cast<float>(reach_mm);
+  box.max().array() += static_cast<float>(reach_mm);
   std::vector<float> distances;
   const Eigen::Matrix3f rotation = to.scanner_from_model.rotation.cast<float>();
   const Vector3f shift = to.scanner_from_model.translation_mm.cast<float>();
   for (std::size_t i = 0; i < n; i += step) {
-    if (from.usable[i] == 0) {
+    if (from.usable[i] == 0 || !box.contains(from.points[i]) ||
+        !may_see(to.view, from.points[i], from.normals[i])) {
       continue;
     }
     const std::int64_t j =

@@ -6,6 +6,8 @@
 #include <limits>
 #include <numeric>
 
+#include "core/parallel.h"
+
 namespace dubsar {
 
 namespace {
@@ -23,6 +25,42 @@ std::uint32_t find_root(std::vector<std::uint32_t>& parent, std::uint32_t i) {
 /// The corner of the face at which it touches the vertex.
 int corner_of(const Triangle& f, std::uint32_t vertex) {
   return f[0] == vertex ? 0 : f[1] == vertex ? 1 : 2;
+}
+
+/// Whether the faces around a vertex form more than one fan; no half-edge may occur twice.
+bool is_pinched(std::span<const Face> faces, const HalfEdges& edges, std::uint32_t v) {
+  const std::span<const HalfEdges::Out> outs = edges.from(v);
+  if (outs.size() < 2) {
+    return false;
+  }
+  const auto tail = [&](std::size_t o) {
+    const Face& f = faces[outs[o].face];
+    return f[static_cast<std::size_t>((corner_of(f, v) + 2) % 3)];
+  };
+  // To the open end of the first face's fan, if it has one, then all the way back.
+  const auto neighbour = [&](std::size_t o, bool forward) {
+    for (std::size_t other = 0; other < outs.size(); ++other) {
+      if (forward ? outs[other].to == tail(o) : tail(other) == outs[o].to) {
+        return other;
+      }
+    }
+    return outs.size();
+  };
+  std::size_t first = 0;
+  for (std::size_t steps = 0; steps < outs.size(); ++steps) {
+    const std::size_t before = neighbour(first, false);
+    if (before == outs.size() || before == 0) {
+      break;
+    }
+    first = before;
+  }
+  std::size_t seen = 1;
+  for (std::size_t o = neighbour(first, true); o != outs.size() && o != first; o = neighbour(o, true)) {
+    if (++seen > outs.size()) {
+      break;
+    }
+  }
+  return seen != outs.size();
 }
 
 /// Keeps entry i where keep[i] != 0; empty arrays stay empty.
@@ -144,8 +182,21 @@ std::vector<std::uint32_t> make_manifold(std::vector<Triangle>& faces, std::size
   std::erase_if(faces, [](const Triangle& f) { return f[0] == f[1] || f[1] == f[2] || f[2] == f[0]; });
   {
     const HalfEdges edges(faces, vertex_count);
+    // Which faces share a half-edge is found in parallel; which of them yields, in order.
     std::vector<std::uint8_t> gone(faces.size(), 0);
+    parallel_for_each_index(
+        faces.size(),
+        [&](std::size_t i) {
+          for (std::size_t k = 0; k < 3; ++k) {
+            gone[i] |= edges.count(faces[i][k], faces[i][(k + 1) % 3]) > 1 ? 1 : 0;
+          }
+        },
+        4096);
     for (std::size_t i = 0; i < faces.size(); ++i) {
+      if (gone[i] == 0) {
+        continue;
+      }
+      gone[i] = 0;
       for (std::size_t k = 0; k < 3; ++k) {
         for (const HalfEdges::Out& out : edges.from(faces[i][k])) {
           if (out.to == faces[i][(k + 1) % 3] && out.face < i && gone[out.face] == 0) {
@@ -158,10 +209,18 @@ std::vector<std::uint32_t> make_manifold(std::vector<Triangle>& faces, std::size
     std::erase_if(faces, [&](const Triangle&) { return gone[at++] != 0; });
   }
   const HalfEdges edges(faces, vertex_count);
+  std::vector<std::uint8_t> pinched(vertex_count, 0);
+  parallel_for_each_index(
+      vertex_count,
+      [&](std::size_t v) { pinched[v] = is_pinched(faces, edges, static_cast<std::uint32_t>(v)) ? 1 : 0; },
+      4096);
   std::vector<std::uint32_t> copies;
   std::vector<std::uint32_t> fan;
   std::vector<std::array<std::uint32_t, 3>> replaced;  // face, corner, new vertex
   for (std::uint32_t v = 0; v < vertex_count; ++v) {
+    if (pinched[v] == 0) {
+      continue;
+    }
     const std::span<const HalfEdges::Out> outs = edges.from(v);
     fan.assign(outs.size(), kNone);
     std::uint32_t fans = 0;

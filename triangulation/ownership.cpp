@@ -43,8 +43,7 @@ std::vector<std::uint8_t> wanted_samples(const std::vector<OwnedScan>& scans, st
   return out;
 }
 
-/// Takes away patches (samples joined by cell neighbourhood) with fewer than `least` samples. When `old` is
-/// given, patches that touch a sample of it stay, whatever their size.
+/// Takes away patches (kept samples around cells with triangles) of fewer than `least` samples.
 void remove_specks(std::vector<std::uint8_t>& kept, const std::vector<std::uint8_t>& cells,
                    const GridSurface& g, int least) {
   std::vector<std::uint8_t> seen(kept.size(), 0);
@@ -329,11 +328,9 @@ bool assign_owners(std::vector<OwnedScan>& scans, const GridTriangulationOptions
     }
     job.progress("assign primary scans", static_cast<double>(self) / steps);
     std::vector<std::uint8_t> kept = wanted_samples(scans, self, options.majority_radius_samples);
-    const std::vector<std::uint8_t> wanted = kept;
     parallel_for_each_index(
         kept.size(),
-        [&](std::size_t i) { kept[i] = wanted[i] != 0 && !is_taken(scans, self, i, options) ? 1 : 0; },
-        kGrain);
+        [&](std::size_t i) { kept[i] = kept[i] != 0 && !is_taken(scans, self, i, options) ? 1 : 0; }, kGrain);
     rebuild(scans, self, std::move(kept), grid, options);
   }
   // What nobody keeps goes to the first scan that has it.

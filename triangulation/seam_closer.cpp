@@ -8,6 +8,8 @@
 #include <limits>
 #include <queue>
 
+#include "core/parallel.h"
+
 namespace dubsar {
 
 namespace {
@@ -79,7 +81,9 @@ class Chooser {
     const Vector3f free_side = along.cross(n);
     const float mu = std::max(sheet.spacing_mm[a], sheet.spacing_mm[b]);
     const float most = limits_.most_edge_factor * mu;
-    const float radius = 1.5F * most + 0.5F * length;
+    // The third corner lies within `most` of both ends; an open edge of up to 1.5 times that which crosses
+    // the triangle has an end in here.
+    const float radius = std::max(1.25F * most, 0.51F * length);
     front_->near(middle, radius, near_);
 
     flat_.resize(near_.size());
@@ -106,6 +110,9 @@ class Chooser {
     std::sort(candidates_.begin(), candidates_.end(), [&](const Candidate& x, const Candidate& y) {
       return x.cosine != y.cosine ? x.cosine < y.cosine : near_[x.at] < near_[y.at];
     });
+    if (!candidates_.empty()) {
+      lay_segments(pa, along, free_side);
+    }
     for (const Candidate& candidate : candidates_) {
       const std::uint32_t c = near_[candidate.at];
       const Vector3f& pc = sheet.positions[c];
@@ -148,32 +155,37 @@ class Chooser {
         return true;
       }
     }
+    const float low_x = std::min(0.0F, fc.x());
+    const float high_x = std::max(length, fc.x());
+    return std::any_of(segments_.begin(), segments_.end(), [&](const Segment& s) {
+      if (std::max(s.tail.y(), s.head.y()) < 0 || std::min(s.tail.y(), s.head.y()) > fc.y() ||
+          std::max(s.tail.x(), s.head.x()) < low_x || std::min(s.tail.x(), s.head.x()) > high_x || s.v == c ||
+          s.w == c) {
+        return false;
+      }
+      return (s.v != a && s.w != a && segments_cross(fa, fc, s.tail, s.head)) ||
+             (s.v != b && s.w != b && segments_cross(fb, fc, s.tail, s.head));
+    });
+  }
+
+  /// Open edges of the neighbourhood, laid into the plane.
+  struct Segment {
+    std::uint32_t v, w;
+    Vector2f tail, head;
+  };
+  void lay_segments(const Vector3f& origin, const Vector3f& along, const Vector3f& free_side) {
+    segments_.clear();
     for (std::size_t k = 0; k < near_.size(); ++k) {
       if (layer_[k] == 0) {
         continue;
       }
-      const std::uint32_t v = near_[k];
-      for (const std::uint32_t w : front_->out_of(v)) {
-        const Vector2f head = flat_of(w, k);
-        if (v != a && w != a && v != c && w != c && segments_cross(fa, fc, flat_[k], head)) {
-          return true;
-        }
-        if (v != b && w != b && v != c && w != c && segments_cross(fb, fc, flat_[k], head)) {
-          return true;
+      for (const std::span<const std::uint32_t> ends : {front_->out_of(near_[k]), front_->into(near_[k])}) {
+        for (const std::uint32_t w : ends) {
+          const Vector3f d = front_->sheet().positions[w] - origin;
+          segments_.push_back({near_[k], w, flat_[k], {d.dot(along), d.dot(free_side)}});
         }
       }
     }
-    return false;
-  }
-
-  /// The head of an open edge from near_[tail]; a head outside the neighbourhood is as good as its tail.
-  [[nodiscard]] Vector2f flat_of(std::uint32_t w, std::size_t tail) const {
-    for (std::size_t k = 0; k < near_.size(); ++k) {
-      if (near_[k] == w) {
-        return flat_[k];
-      }
-    }
-    return flat_[tail];
   }
 
   const Front* front_;
@@ -182,6 +194,7 @@ class Chooser {
   std::vector<Vector2f> flat_;
   std::vector<std::uint8_t> layer_;
   std::vector<Candidate> candidates_;
+  std::vector<Segment> segments_;
 };
 
 struct Task {
@@ -195,7 +208,7 @@ struct Task {
   }
 };
 
-std::size_t advance(Front& front, std::vector<Front::Edge> edges, const Limits& limits) {
+std::size_t advance(Front& front, const std::vector<Front::Edge>& edges, const Limits& limits) {
   Chooser chooser(front, limits);
   std::priority_queue<Task> queue;
   const auto offer = [&](std::uint32_t a, std::uint32_t b) {
@@ -204,8 +217,18 @@ std::size_t advance(Front& front, std::vector<Front::Edge> edges, const Limits& 
       queue.push({choice.key, a, b, choice.c});
     }
   };
-  for (const Front::Edge& e : edges) {
-    offer(e.a, e.b);
+  // The first choices depend on nothing but the front as it is.
+  std::vector<Choice> first(edges.size());
+  parallel_chunks(edges.size(), 128, [&](std::size_t begin, std::size_t end) {
+    Chooser mine(front, limits);
+    for (std::size_t i = begin; i < end; ++i) {
+      first[i] = mine.choose(edges[i].a, edges[i].b);
+    }
+  });
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    if (first[i].c != kNone) {
+      queue.push({first[i].key, edges[i].a, edges[i].b, first[i].c});
+    }
   }
   std::size_t added = 0;
   while (!queue.empty()) {
@@ -252,7 +275,7 @@ std::size_t close_openings(Front& front, const std::vector<std::vector<std::uint
       edges.push_back({loop[i], loop[(i + 1) % loop.size()]});
     }
   }
-  return advance(front, std::move(edges),
+  return advance(front, edges,
                  {static_cast<float>(options.most_gap_edge_factor),
                   static_cast<float>(std::sin(least_angle_rad)), static_cast<float>(options.min_normal_cos)});
 }
