@@ -103,6 +103,9 @@ ColouredPoints PlanningStage::red_points() const {
   const std::vector<PlacedScan> scans = cleared_.scans();
   for (std::size_t k = 0; k < scans.size() && k < excused_flags_.size(); ++k) {
     const RangeGrid& grid = *scans[k].grid;
+    // As wide as the gap that it stands beside: a thin rim would hardly show.
+    points.radius_mm = std::max(points.radius_mm, static_cast<float>(1.5 * grid.spacing_mm));
+    points.bury_mm = std::max(points.bury_mm, static_cast<float>(2.0 * grid.spacing_mm));
     for (std::size_t i = 0; i < grid.size(); ++i) {
       const std::uint8_t flags = excused_flags_[k][i];
       const bool red = is_red(flags);

@@ -55,7 +55,7 @@ Front::Front(Sheet& sheet) : sheet_(&sheet), link_of_(sheet.positions.size(), kN
     }
   }
   half_edges_.reserve(4 * links_.size());
-  for (const Face& f : sheet.faces) {
+  for (const Triangle& f : sheet.faces) {
     for (std::size_t k = 0; k < 3; ++k) {
       if (find(f[k]) != nullptr && find(f[(k + 1) % 3]) != nullptr) {
         half_edges_.insert(key_of(f[k], f[(k + 1) % 3]));

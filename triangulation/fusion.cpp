@@ -123,7 +123,7 @@ class Walker {
 
 }  // namespace
 
-double mismatch_mm(const ScanSurface& from, const ScanSurface& to, double reach_mm) {
+double mismatch_mm(const StitchSurface& from, const StitchSurface& to, double reach_mm) {
   constexpr std::size_t kProbes = 1500;
   const std::size_t n = from.points.size();
   const std::size_t step = std::max<std::size_t>(1, n / kProbes) | 1U;

@@ -28,13 +28,13 @@ int corner_of(const Triangle& f, std::uint32_t vertex) {
 }
 
 /// Whether the faces around a vertex form more than one fan; no half-edge may occur twice.
-bool is_pinched(std::span<const Face> faces, const HalfEdges& edges, std::uint32_t v) {
+bool is_pinched(std::span<const Triangle> faces, const HalfEdges& edges, std::uint32_t v) {
   const std::span<const HalfEdges::Out> outs = edges.from(v);
   if (outs.size() < 2) {
     return false;
   }
   const auto tail = [&](std::size_t o) {
-    const Face& f = faces[outs[o].face];
+    const Triangle& f = faces[outs[o].face];
     return f[static_cast<std::size_t>((corner_of(f, v) + 2) % 3)];
   };
   // To the open end of the first face's fan, if it has one, then all the way back.
