@@ -2,8 +2,8 @@
 // Copyright The Dubsar developers
 #include "registration/verify_pose.h"
 
+#include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "core/units.h"
 
@@ -20,6 +20,14 @@ std::string loose_direction(const IcpResult& icp) {
   return icp.weakest.head<3>().norm() > icp.weakest.tail<3>().norm() ? "turn" : "slide";
 }
 
+double residual_doubt(const ModelFit& fit, const VerifyOptions& o) {
+  if (!(fit.residual_sigma_mm > 0)) {
+    return 0;
+  }
+  return std::max(0.0, fit.icp.rms_mm / fit.residual_sigma_mm - o.usual_residual) /
+         (o.most_residual - o.usual_residual);
+}
+
 PoseVerdict judged_alone(const ModelFit& fit, const VerifyOptions& o) {
   const PoseEvidence both = fit.both();
   if (fit.outward.close + fit.inward.close < o.least_close || fit.overlap < o.least_overlap) {
@@ -31,12 +39,19 @@ PoseVerdict judged_alone(const ModelFit& fit, const VerifyOptions& o) {
             "only " + percent(fit.overlap) +
                 " of it overlaps the registered scans; scan again with at least 30 % overlap"};
   }
-  const double total = doubt(both, o);
+  const double total = doubt(fit, o);
   if (total > 1.0) {
     const PoseStatus status = total > 3.0 ? PoseStatus::kFailed : PoseStatus::kUnsure;
     const double off = (1.0 - both.agreement()) / o.most_disagreement;
     const double through = both.violation() / o.most_violation;
     const double gone = both.absence() / o.most_absence;
+    const double apart = residual_doubt(fit, o);
+    if (apart >= off && apart >= through && apart >= gone) {
+      return {status,
+              "the surfaces lie farther apart than noise explains; scan again with more overlap, or check "
+              "that nothing "
+              "moved during the scan"};
+    }
     if (off >= through && off >= gone) {
       return {status,
               "the surfaces agree in only " + percent(both.agreement()) +
@@ -55,12 +70,6 @@ PoseVerdict judged_alone(const ModelFit& fit, const VerifyOptions& o) {
             " of the surface that one scan shows is missing from another that looked there; scan again with "
             "more overlap, or click three points on both scans"};
   }
-  if (fit.icp.rms_mm > o.most_residual_sigmas * fit.residual_sigma_mm) {
-    return {PoseStatus::kUnsure,
-            "the surfaces lie farther apart than noise explains; check the calibration, or that nothing "
-            "moved during "
-            "the scan"};
-  }
   if (fit.icp.stability < o.least_stability) {
     return {PoseStatus::kUnsure,
             "the overlap is too even: the scan can " + loose_direction(fit.icp) +
@@ -71,9 +80,11 @@ PoseVerdict judged_alone(const ModelFit& fit, const VerifyOptions& o) {
 
 }  // namespace
 
-double doubt(const PoseEvidence& evidence, const VerifyOptions& options) {
+double doubt(const ModelFit& fit, const VerifyOptions& options) {
+  const PoseEvidence evidence = fit.both();
   return (1.0 - evidence.agreement()) / options.most_disagreement +
-         evidence.violation() / options.most_violation + evidence.absence() / options.most_absence;
+         evidence.violation() / options.most_violation + evidence.absence() / options.most_absence +
+         residual_doubt(fit, options);
 }
 
 PoseVerdict verify_pose(std::span<const ModelFit> fits, const VerifyOptions& options) {
@@ -89,7 +100,7 @@ PoseVerdict verify_pose(std::span<const ModelFit> fits, const VerifyOptions& opt
   }
   for (const ModelFit& rival : fits.subspan(1)) {
     if (rival.score > options.rival_score * fits.front().score &&
-        doubt(rival.both(), options) <= options.rival_doubt) {
+        doubt(rival, options) <= options.rival_doubt) {
       const RigidTransform turn = rival.model_from_scanner * fits.front().model_from_scanner.inverse();
       return {PoseStatus::kUnsure, "two poses fit, " +
                                        std::to_string(std::lround(deg_from_rad(turn.angle_rad()))) +
@@ -102,7 +113,7 @@ PoseVerdict verify_pose(std::span<const ModelFit> fits, const VerifyOptions& opt
 bool consistent_pose(const ModelFit& fit, const VerifyOptions& options) {
   const PoseEvidence both = fit.both();
   const bool enough = both.close + both.apart >= options.least_close;
-  return enough ? doubt(both, options) <= 1.0 : both.violation() <= options.most_violation;
+  return enough ? doubt(fit, options) <= 1.0 : both.violation() <= options.most_violation;
 }
 
 }  // namespace dubsar
