@@ -15,7 +15,7 @@ struct ExcuseOptions {
   double largest_gap_mm = 0.6;      ///< below half the smallest wedge: larger holes may hide a sign
   int fit_margin = 4;               ///< good samples around the hole that the fit uses, in cells
   double confidence_sigmas = 2.0;   ///< the interpolation error is stated at this many standard errors
-  double stray_mm = 0.5;            ///< farther than this from the surface a return is not of the surface
+  double stray_mm = 0.3;            ///< farther than this from the surface a return is not of the surface
   int stray_views = 2;              ///< scans that look past it
   /// Below this best predicted chance over all poses a place is out of reach.
   double least_chance = 0.05;
