@@ -178,7 +178,7 @@ void excuse_strays(std::span<const PlacedScan> scans, std::span<const double> no
   for (std::size_t s = 0; s < scans.size(); ++s) {
     views.emplace_back(ScannerModel::of(*scans[s].grid, noise_mm[s]), scans[s].model_from_scanner,
                        surface.query, options.stray_mm);
-    apart_mm = std::max(apart_mm, 3.0 * spacing_of(*scans[s].grid));
+    apart_mm = std::max(apart_mm, 2.0 * spacing_of(*scans[s].grid));
   }
   parallel_for_each_index(
       red.targets.size(),

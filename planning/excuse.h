@@ -15,7 +15,7 @@ struct ExcuseOptions {
   double largest_gap_mm = 0.6;      ///< below half the smallest wedge: larger holes may hide a sign
   int fit_margin = 4;               ///< good samples around the hole that the fit uses, in cells
   double confidence_sigmas = 2.0;   ///< the interpolation error is stated at this many standard errors
-  double stray_mm = 0.3;            ///< farther than this from the surface a return is not of the surface
+  double stray_mm = 0.2;            ///< farther than this from the surface a return is not of the surface
   int stray_views = 2;              ///< scans that look past it
   /// Below this best predicted chance over all poses a place is out of reach.
   double least_chance = 0.05;
@@ -30,7 +30,7 @@ struct ExcuseOptions {
 void excuse_unneeded(std::span<const PlacedScan> scans, const ExcuseOptions& options, RedTargets& red);
 
 /// Unneeded: strays, returns from nowhere (outliers, mixed pixels at depth edges). The test: no surface of
-/// the model lies within stray_mm (at least 3 µ) of the red samples, and at least stray_views scans sample
+/// the model lies within stray_mm (at least 2 µ) of the red samples, and at least stray_views scans sample
 /// the surface behind them well, through the very place. noise_mm: by scan.
 void excuse_strays(std::span<const PlacedScan> scans, std::span<const double> noise_mm,
                    const ModelSurface& surface, const ExcuseOptions& options, RedTargets& red);
