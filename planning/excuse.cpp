@@ -180,6 +180,14 @@ void excuse_strays(std::span<const PlacedScan> scans, std::span<const double> no
                        surface.query, options.stray_mm);
     apart_mm = std::max(apart_mm, 2.0 * spacing_of(*scans[s].grid));
   }
+  // A scan that made the return itself is no witness against it.
+  std::vector<std::vector<std::uint32_t>> makers(red.targets.size());
+  for (const RedSampleRef& ref : red.samples) {
+    std::vector<std::uint32_t>& m = makers[ref.target];
+    if (m.empty() || m.back() != ref.scan) {
+      m.push_back(ref.scan);
+    }
+  }
   parallel_for_each_index(
       red.targets.size(),
       [&](std::size_t i) {
@@ -190,8 +198,11 @@ void excuse_strays(std::span<const PlacedScan> scans, std::span<const double> no
         }
         int past = 0;
         double nearest_mm = 0;
-        for (const ViewPredictor& view : views) {
-          const double behind_mm = view.looks_past_mm(target.sample_mm);
+        for (std::uint32_t s = 0; s < views.size(); ++s) {
+          if (std::binary_search(makers[i].begin(), makers[i].end(), s)) {
+            continue;
+          }
+          const double behind_mm = views[s].looks_past_mm(target.sample_mm);
           if (behind_mm > 0) {
             nearest_mm = past == 0 ? behind_mm : std::min(nearest_mm, behind_mm);
             ++past;
@@ -219,11 +230,14 @@ void excuse_out_of_reach(std::span<const float> best_chance, const ExcuseOptions
   }
 }
 
-void excuse_tried(const ExcuseOptions& options, RedTargets& red) {
+void excuse_tried(double spacing_mm, const ExcuseOptions& options, RedTargets& red) {
+  const double speck_mm2 = options.speck_spacings2 * spacing_mm * spacing_mm;
   for (RedTarget& target : red.targets) {
-    if (target.state == RegionState::kRed && target.tried.size() >= static_cast<std::size_t>(options.tries)) {
+    const bool speck = !target.unseen && target.area_mm2 < speck_mm2;
+    const int enough = speck ? options.speck_tries : options.tries;
+    if (target.state == RegionState::kRed && target.tried.size() >= static_cast<std::size_t>(enough)) {
       set_excuse(target, Excuse::kUnreachable,
-                 "at least " + std::to_string(options.tries) +
+                 "at least " + std::to_string(enough) +
                      " scans looked at it and brought no dense samples: too deep, too dark or no surface");
     }
   }

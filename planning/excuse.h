@@ -16,9 +16,13 @@ struct ExcuseOptions {
   int fit_margin = 4;               ///< good samples around the hole that the fit uses, in cells
   double confidence_sigmas = 2.0;   ///< the interpolation error is stated at this many standard errors
   double stray_mm = 0.2;            ///< farther than this from the surface a return is not of the surface
-  int stray_views = 2;              ///< scans that look past it
+  int stray_views = 1;              ///< other scans that look past it
   /// Below this best predicted chance over all poses a place is out of reach.
   double least_chance = 0.05;
+  /// Red that covers less than this many µ² is a speck: of the size that noise makes; `speck_tries` settle
+  /// it.
+  double speck_spacings2 = 6.0;
+  int speck_tries = 2;
   int tries = 3;  ///< scans that ought to have seen a place before it is given up
 };
 
@@ -39,8 +43,8 @@ void excuse_strays(std::span<const PlacedScan> scans, std::span<const double> no
 /// NextViews, over all candidates; entries below 0 were not judged and stay red.
 void excuse_out_of_reach(std::span<const float> best_chance, const ExcuseOptions& options, RedTargets& red);
 
-/// Unreachable by trial: at least `tries` scans ought to have seen the place by all that is known, and none
-/// brought dense samples. Applies to rig and replay alike.
-void excuse_tried(const ExcuseOptions& options, RedTargets& red);
+/// Unreachable by trial: at least `tries` scans (`speck_tries` for a speck) ought to have seen the place by
+/// all that is known, and none brought dense samples. Applies to rig and replay alike.
+void excuse_tried(double spacing_mm, const ExcuseOptions& options, RedTargets& red);
 
 }  // namespace dubsar

@@ -77,7 +77,11 @@ Result<RedMapResult> make_red_map(std::span<const PlacedScan> scans, const Mesh*
   excuse_unneeded(scans, options.excuse, out.targets);
   excuse_strays(scans, noise_mm, surface, options.excuse, out.targets);
   note_tries(scans, noise_mm, surface, out.targets.targets);
-  excuse_tried(options.excuse, out.targets);
+  double spacing_mm = 0;
+  for (const PlacedScan& scan : scans) {
+    spacing_mm = std::max(spacing_mm, spacing_of(*scan.grid));
+  }
+  excuse_tried(spacing_mm, options.excuse, out.targets);
   job.progress("red map", 0.5);
 
   std::vector<double> sorted(noise_mm);
