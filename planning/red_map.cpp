@@ -67,6 +67,7 @@ Result<RedMapResult> make_red_map(std::span<const PlacedScan> scans, const Mesh*
   job.progress("red map", 0.0);
   const ModelSurface surface = model_surface(scans, model, options.surface);
   out.targets = red_targets(scans, surface, options.targets);
+  drop_unbordered_patches(scans, out.targets);
   if (job.cancelled()) {
     return fail(ErrorKind::kCancelled, "planning was stopped");
   }
@@ -74,8 +75,10 @@ Result<RedMapResult> make_red_map(std::span<const PlacedScan> scans, const Mesh*
   for (const PlacedScan& scan : scans) {
     noise_mm.push_back(estimate_noise_mm(*scan.grid));
   }
-  excuse_unneeded(scans, options.excuse, out.targets);
   excuse_strays(scans, noise_mm, surface, options.excuse, out.targets);
+  excuse_unneeded(scans, options.excuse, out.targets);
+  // Strays and interpolated gaps are no border of a hole.
+  drop_unbordered_patches(scans, out.targets);
   note_tries(scans, noise_mm, surface, out.targets.targets);
   double spacing_mm = 0;
   for (const PlacedScan& scan : scans) {
