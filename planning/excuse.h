@@ -21,7 +21,7 @@ struct ExcuseOptions {
   double least_chance = 0.05;
   /// Red that covers less than this many µ² is a speck: of the size that noise makes; `speck_tries` settle
   /// it.
-  double speck_spacings2 = 6.0;
+  double speck_spacings2 = 10.0;
   int speck_tries = 2;
   int tries = 3;  ///< scans that ought to have seen a place before it is given up
 };
@@ -35,7 +35,8 @@ void excuse_unneeded(std::span<const PlacedScan> scans, const ExcuseOptions& opt
 
 /// Unneeded: strays, returns from nowhere (outliers, mixed pixels at depth edges). The test: no surface of
 /// the model lies within stray_mm (at least 2 µ) of the red samples, and at least stray_views scans sample
-/// the surface behind them well, through the very place. noise_mm: by scan.
+/// the surface behind them well, through the very place; or the place
+/// lies inside the clay, surface around it on all sides. noise_mm: by scan.
 void excuse_strays(std::span<const PlacedScan> scans, std::span<const double> noise_mm,
                    const ModelSurface& surface, const ExcuseOptions& options, RedTargets& red);
 
