@@ -212,6 +212,7 @@ void excuse_strays(std::span<const PlacedScan> scans, std::span<const double> no
         }
         if (inside_clay(surface.query, target.sample_mm)) {
           set_excuse(target, Excuse::kUnneeded, "stray return: it lies inside the clay");
+          target.area_mm2 = 0;
           return;
         }
         int past = 0;
@@ -232,6 +233,7 @@ void excuse_strays(std::span<const PlacedScan> scans, std::span<const double> no
                         "stray return in the air: %d scans look past it at the surface, %.1f mm behind", past,
                         nearest_mm);
           set_excuse(target, Excuse::kUnneeded, line.data());
+          target.area_mm2 = 0;  // no surface is missing there
         }
       },
       16);
