@@ -94,7 +94,6 @@ double matching_radius_mm(const RangeGrid& a, double noise_a_mm, double sigma_a_
 
 std::vector<SparseSample> sparse_samples(const RangeGrid& grid, const SampleFlags& flags) {
   std::vector<SparseSample> out;
-  const auto step_mm = static_cast<float>(5.0 * spacing_of(grid));
   for (std::size_t i = 0; i < grid.size(); ++i) {
     if ((flags[i] & (kSparse | kNotTablet)) == kSparse && grid.valid[i] != 0) {
       out.push_back({static_cast<std::uint32_t>(i), grid.point(i), Eigen::Vector3f::Zero()});
@@ -104,12 +103,7 @@ std::vector<SparseSample> sparse_samples(const RangeGrid& grid, const SampleFlag
       out.size(),
       [&](std::size_t k) {
         SparseSample& s = out[k];
-        if ((flags[s.index] & kPotentiallySparse) == 0) {
-          s.facing = sample_normal(grid, s.index, step_mm);
-        }
-        if (s.facing.isZero()) {
-          s.facing = grid.view.to_camera(s.position_mm.cast<double>(), grid.row_of(s.index)).cast<float>();
-        }
+        s.facing = grid.view.to_camera(s.position_mm.cast<double>(), grid.row_of(s.index)).cast<float>();
       },
       kSamplesPerTask);
   return out;

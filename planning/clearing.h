@@ -43,8 +43,8 @@ struct ClearingOptions {
 struct SparseSample {
   std::uint32_t index = 0;  ///< in its grid
   Eigen::Vector3f position_mm{0, 0, 0};
-  /// Its normal where all its links are short; towards the camera otherwise, since differences across a gap
-  /// say nothing, but a surface that was seen faces the camera.
+  /// Towards the camera. Its own normal would not do: at a gap differences say nothing, and where the scan
+  /// grazes the surface their sign is a matter of luck; but a surface that was seen faces the camera.
   Eigen::Vector3f facing{0, 0, 0};
 };
 

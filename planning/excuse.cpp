@@ -15,6 +15,7 @@
 #include "core/units.h"
 #include "planning/clearing.h"
 #include "planning/clusters.h"
+#include "planning/convex_hull.h"
 #include "planning/view_prediction.h"
 
 namespace dubsar {
@@ -120,6 +121,19 @@ std::string describe(const Interpolation& fit, double spacing_mm) {
   return line.data();
 }
 
+/// True when rays in nearly all directions meet the surface from within.
+bool inside_clay(const MeshQuery& query, const Eigen::Vector3d& p_mm) {
+  constexpr std::size_t kRays = 40;
+  constexpr std::size_t kNearlyAll = 36;  // some slip through slits and holes
+  std::size_t within = 0;
+  for (const Eigen::Vector3d& direction : sphere_directions(kRays)) {
+    const Eigen::Vector3f ray = direction.cast<float>();
+    const auto hit = query.first_hit(p_mm.cast<float>(), ray, 0.0F, 1.0e4F);
+    within += hit && hit->normal.dot(ray) > 0 ? 1U : 0U;
+  }
+  return within >= kNearlyAll;
+}
+
 void set_excuse(RedTarget& target, Excuse excuse, std::string reason) {
   target.state = RegionState::kExcused;
   target.excuse = excuse;
@@ -178,7 +192,15 @@ void excuse_strays(std::span<const PlacedScan> scans, std::span<const double> no
   for (std::size_t s = 0; s < scans.size(); ++s) {
     views.emplace_back(ScannerModel::of(*scans[s].grid, noise_mm[s]), scans[s].model_from_scanner,
                        surface.query, options.stray_mm);
-    apart_mm = std::max(apart_mm, 3.0 * spacing_of(*scans[s].grid));
+    apart_mm = std::max(apart_mm, 2.0 * spacing_of(*scans[s].grid));
+  }
+  // A scan that made the return itself is no witness against it.
+  std::vector<std::vector<std::uint32_t>> makers(red.targets.size());
+  for (const RedSampleRef& ref : red.samples) {
+    std::vector<std::uint32_t>& m = makers[ref.target];
+    if (m.empty() || m.back() != ref.scan) {
+      m.push_back(ref.scan);
+    }
   }
   parallel_for_each_index(
       red.targets.size(),
@@ -188,10 +210,18 @@ void excuse_strays(std::span<const PlacedScan> scans, std::span<const double> no
             surface.query.closest(target.sample_mm.cast<float>(), static_cast<float>(apart_mm))) {
           return;
         }
+        if (inside_clay(surface.query, target.sample_mm)) {
+          set_excuse(target, Excuse::kUnneeded, "stray return: it lies inside the clay");
+          target.area_mm2 = 0;
+          return;
+        }
         int past = 0;
         double nearest_mm = 0;
-        for (const ViewPredictor& view : views) {
-          const double behind_mm = view.looks_past_mm(target.sample_mm);
+        for (std::uint32_t s = 0; s < views.size(); ++s) {
+          if (std::binary_search(makers[i].begin(), makers[i].end(), s)) {
+            continue;
+          }
+          const double behind_mm = views[s].looks_past_mm(target.sample_mm);
           if (behind_mm > 0) {
             nearest_mm = past == 0 ? behind_mm : std::min(nearest_mm, behind_mm);
             ++past;
@@ -203,6 +233,7 @@ void excuse_strays(std::span<const PlacedScan> scans, std::span<const double> no
                         "stray return in the air: %d scans look past it at the surface, %.1f mm behind", past,
                         nearest_mm);
           set_excuse(target, Excuse::kUnneeded, line.data());
+          target.area_mm2 = 0;  // no surface is missing there
         }
       },
       16);
@@ -219,11 +250,14 @@ void excuse_out_of_reach(std::span<const float> best_chance, const ExcuseOptions
   }
 }
 
-void excuse_tried(const ExcuseOptions& options, RedTargets& red) {
+void excuse_tried(double spacing_mm, const ExcuseOptions& options, RedTargets& red) {
+  const double speck_mm2 = options.speck_spacings2 * spacing_mm * spacing_mm;
   for (RedTarget& target : red.targets) {
-    if (target.state == RegionState::kRed && target.tried.size() >= static_cast<std::size_t>(options.tries)) {
+    const bool speck = !target.unseen && target.area_mm2 < speck_mm2;
+    const int enough = speck ? options.speck_tries : options.tries;
+    if (target.state == RegionState::kRed && target.tried.size() >= static_cast<std::size_t>(enough)) {
       set_excuse(target, Excuse::kUnreachable,
-                 "at least " + std::to_string(options.tries) +
+                 "at least " + std::to_string(enough) +
                      " scans looked at it and brought no dense samples: too deep, too dark or no surface");
     }
   }

@@ -15,10 +15,14 @@ struct ExcuseOptions {
   double largest_gap_mm = 0.6;      ///< below half the smallest wedge: larger holes may hide a sign
   int fit_margin = 4;               ///< good samples around the hole that the fit uses, in cells
   double confidence_sigmas = 2.0;   ///< the interpolation error is stated at this many standard errors
-  double stray_mm = 0.5;            ///< farther than this from the surface a return is not of the surface
-  int stray_views = 2;              ///< scans that look past it
+  double stray_mm = 0.2;            ///< farther than this from the surface a return is not of the surface
+  int stray_views = 1;              ///< other scans that look past it
   /// Below this best predicted chance over all poses a place is out of reach.
   double least_chance = 0.05;
+  /// Red that covers less than this many µ² is a speck: of the size that noise makes; `speck_tries` settle
+  /// it.
+  double speck_spacings2 = 10.0;
+  int speck_tries = 2;
   int tries = 3;  ///< scans that ought to have seen a place before it is given up
 };
 
@@ -30,8 +34,9 @@ struct ExcuseOptions {
 void excuse_unneeded(std::span<const PlacedScan> scans, const ExcuseOptions& options, RedTargets& red);
 
 /// Unneeded: strays, returns from nowhere (outliers, mixed pixels at depth edges). The test: no surface of
-/// the model lies within stray_mm (at least 3 µ) of the red samples, and at least stray_views scans sample
-/// the surface behind them well, through the very place. noise_mm: by scan.
+/// the model lies within stray_mm (at least 2 µ) of the red samples, and at least stray_views scans sample
+/// the surface behind them well, through the very place; or the place
+/// lies inside the clay, surface around it on all sides. noise_mm: by scan.
 void excuse_strays(std::span<const PlacedScan> scans, std::span<const double> noise_mm,
                    const ModelSurface& surface, const ExcuseOptions& options, RedTargets& red);
 
@@ -39,8 +44,8 @@ void excuse_strays(std::span<const PlacedScan> scans, std::span<const double> no
 /// NextViews, over all candidates; entries below 0 were not judged and stay red.
 void excuse_out_of_reach(std::span<const float> best_chance, const ExcuseOptions& options, RedTargets& red);
 
-/// Unreachable by trial: at least `tries` scans ought to have seen the place by all that is known, and none
-/// brought dense samples. Applies to rig and replay alike.
-void excuse_tried(const ExcuseOptions& options, RedTargets& red);
+/// Unreachable by trial: at least `tries` scans (`speck_tries` for a speck) ought to have seen the place by
+/// all that is known, and none brought dense samples. Applies to rig and replay alike.
+void excuse_tried(double spacing_mm, const ExcuseOptions& options, RedTargets& red);
 
 }  // namespace dubsar

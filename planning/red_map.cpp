@@ -67,6 +67,7 @@ Result<RedMapResult> make_red_map(std::span<const PlacedScan> scans, const Mesh*
   job.progress("red map", 0.0);
   const ModelSurface surface = model_surface(scans, model, options.surface);
   out.targets = red_targets(scans, surface, options.targets);
+  drop_unbordered_patches(scans, out.targets);
   if (job.cancelled()) {
     return fail(ErrorKind::kCancelled, "planning was stopped");
   }
@@ -74,10 +75,16 @@ Result<RedMapResult> make_red_map(std::span<const PlacedScan> scans, const Mesh*
   for (const PlacedScan& scan : scans) {
     noise_mm.push_back(estimate_noise_mm(*scan.grid));
   }
-  excuse_unneeded(scans, options.excuse, out.targets);
   excuse_strays(scans, noise_mm, surface, options.excuse, out.targets);
+  excuse_unneeded(scans, options.excuse, out.targets);
+  // Strays and interpolated gaps are no border of a hole.
+  drop_unbordered_patches(scans, out.targets);
   note_tries(scans, noise_mm, surface, out.targets.targets);
-  excuse_tried(options.excuse, out.targets);
+  double spacing_mm = 0;
+  for (const PlacedScan& scan : scans) {
+    spacing_mm = std::max(spacing_mm, spacing_of(*scan.grid));
+  }
+  excuse_tried(spacing_mm, options.excuse, out.targets);
   job.progress("red map", 0.5);
 
   std::vector<double> sorted(noise_mm);

@@ -10,6 +10,7 @@
 
 #include "core/parallel.h"
 #include "planning/clearing.h"
+#include "planning/clusters.h"
 #include "planning/sparse_flags.h"
 
 namespace dubsar {
@@ -213,6 +214,47 @@ RedTargets red_targets(std::span<const PlacedScan> scans, const ModelSurface& su
     out.targets.push_back(std::move(target));
   }
   return out;
+}
+
+void drop_unbordered_patches(std::span<const PlacedScan> scans, RedTargets& red) {
+  constexpr double kLargestSlitMm2 = 10.0;
+  constexpr double kLeastShareOfBorder = 0.25;
+  double patch_mm = 0;
+  for (const RedTarget& t : red.targets) {
+    patch_mm = t.unseen ? std::max(patch_mm, std::sqrt(t.area_mm2)) : patch_mm;
+  }
+  double spacing_mm = 0;
+  for (const PlacedScan& scan : scans) {
+    spacing_mm = std::max(spacing_mm, spacing_of(*scan.grid));
+  }
+  std::vector<std::size_t> samples(red.targets.size(), 0);
+  for (const RedSampleRef& ref : red.samples) {
+    ++samples[ref.target];
+  }
+  std::vector<std::uint8_t> drop(red.targets.size(), 0);
+  const double reach_mm = std::max(2.0 * red.cell_mm, 1.8 * patch_mm);
+  for (const auto& group : cluster_targets(red, scans, reach_mm, 0.0, true)) {
+    double area = 0;
+    std::size_t border = 0;
+    for (const std::uint32_t i : group) {
+      area += red.targets[i].unseen ? red.targets[i].area_mm2 : 0.0;
+      border += samples[i];
+    }
+    const double perimeter = 4.0 * std::sqrt(area) / std::max(spacing_mm, 1e-9);
+    if (area > kLargestSlitMm2 || static_cast<double>(border) >= kLeastShareOfBorder * perimeter) {
+      continue;
+    }
+    for (const std::uint32_t i : group) {
+      drop[i] = red.targets[i].unseen ? 1 : 0;
+    }
+  }
+  std::vector<RedTarget> kept;
+  for (std::size_t i = 0; i < red.targets.size(); ++i) {
+    if (drop[i] == 0) {
+      kept.push_back(std::move(red.targets[i]));
+    }
+  }
+  red.targets = std::move(kept);
 }
 
 }  // namespace dubsar

@@ -57,4 +57,9 @@ struct RedTargetOptions {
 [[nodiscard]] RedTargets red_targets(std::span<const PlacedScan> scans, const ModelSurface& surface,
                                      const RedTargetOptions& options = {});
 
+/// Removes small groups of unseen patches (below 10 mm²) that have less than a quarter of the red samples
+/// which the border of such a hole would have: they lie over slits of the thinned surface. Larger ones always
+/// stay. Only red samples are a border, excused ones are not.
+void drop_unbordered_patches(std::span<const PlacedScan> scans, RedTargets& red);
+
 }  // namespace dubsar
