@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/tablet_frame.h"
 #include "planning/model_faces.h"
 #include "planning/red_map.h"
 
@@ -98,7 +99,6 @@ Result<RedMap> PlanningStage::red_map(const Rig* rig, JobContext& job) {
 }
 
 ColouredPoints PlanningStage::red_points() const {
-  constexpr Rgb8 kExcusedAmber{226, 160, 44};
   ColouredPoints points;
   const std::vector<PlacedScan> scans = cleared_.scans();
   for (std::size_t k = 0; k < scans.size() && k < excused_flags_.size(); ++k) {
@@ -114,7 +114,7 @@ ColouredPoints PlanningStage::red_points() const {
       }
       points.positions_mm.push_back(
           (scans[k].model_from_scanner * grid.point(i).cast<double>()).cast<float>());
-      points.colours.push_back(red ? kRedOfSparse : kExcusedAmber);
+      points.colours.push_back(red ? kRedOfSparse : kAmberOfExcused);
     }
   }
   return points;
@@ -127,7 +127,15 @@ RigidTransform PlanningStage::tablet_from_model(const Mesh& mesh) const {
     points.push_back(p.cast<double>());
   }
   const std::vector<PlacedScan> scans = cleared_.scans();
-  return {model_faces(scans, points).model_from_faces.transpose(), Eigen::Vector3d::Zero()};
+  const RigidTransform named{model_faces(scans, points).model_from_faces.transpose(), Eigen::Vector3d::Zero()};
+  // The faces have their names; the tablet's own shape sets them straight (it was laid down by hand).
+  Mesh turned;
+  turned.faces = mesh.faces;
+  turned.positions.reserve(points.size());
+  for (const Eigen::Vector3d& p : points) {
+    turned.positions.emplace_back((named * p).cast<float>());
+  }
+  return tablet_frame(turned) * named;
 }
 
 }  // namespace dubsar

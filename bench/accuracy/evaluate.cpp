@@ -28,7 +28,11 @@ namespace dubsar::accuracy {
 namespace {
 
 namespace fs = std::filesystem;
-using Poses = std::map<std::string, RigidTransform>;  // by file name
+struct NamedPose {
+  int id = -1;
+  RigidTransform model_from_scanner;
+};
+using Poses = std::map<std::string, NamedPose>;  // by file name
 
 [[noreturn]] void die(const std::string& text) {
   std::fprintf(stderr, "dubsar-evaluate: %s\n", text.c_str());
@@ -46,8 +50,9 @@ Poses read_json_poses(const fs::path& path, bool registered_only) {
     if (registered_only && scan.value("status", "registered") != "registered") {
       continue;
     }
-    poses[fs::path(scan.at("file").get<std::string>()).filename()] =
-        RigidTransform::from_row_major(scan.at("model_from_scanner").get<std::array<double, 16>>());
+    poses[fs::path(scan.at("file").get<std::string>()).filename()] = {
+        scan.value("id", -1),
+        RigidTransform::from_row_major(scan.at("model_from_scanner").get<std::array<double, 16>>())};
   }
   return poses;
 }
@@ -65,7 +70,7 @@ Poses read_conf(const fs::path& path, double mm_per_file_unit) {
     Eigen::Quaterniond q;
     if (words >> key && key == "bmesh" &&
         words >> file >> t.x() >> t.y() >> t.z() >> q.x() >> q.y() >> q.z() >> q.w()) {
-      poses[file] = {q.normalized().conjugate().toRotationMatrix(), t * mm_per_file_unit};
+      poses[file] = {-1, {q.normalized().conjugate().toRotationMatrix(), t * mm_per_file_unit}};
     }
   }
   return poses;
@@ -100,7 +105,10 @@ int evaluate_poses(const fs::path& poses_file, const fs::path& scans, const fs::
   std::vector<PosePair> pairs;
   std::vector<std::string> names;
   for (const auto& [file, pose] : truth) {
-    if (!fs::exists(scans / file)) {
+    char number[32];
+    std::snprintf(number, sizeof number, "grids/%03d.grid", pose.id);
+    const fs::path path = fs::is_directory(scans / "grids") ? scans / number : scans / file;
+    if (!fs::exists(path)) {
       continue;
     }
     const auto found = estimated.find(file);
@@ -108,11 +116,12 @@ int evaluate_poses(const fs::path& poses_file, const fs::path& scans, const fs::
       std::printf("%-28s not registered\n", file.c_str());
       continue;
     }
-    const auto data = read_scan_file(scans / file, {.mm_per_unit = mm_per_file_unit});
+    const auto data = read_scan_file(path, {.mm_per_unit = mm_per_file_unit});
     if (!data) {
       die(data.error().line());
     }
-    pairs.push_back({sample_points(data->front()), pose, found->second});
+    pairs.push_back(
+        {sample_points(data->front()), pose.model_from_scanner, found->second.model_from_scanner});
     names.push_back(file);
   }
   const RigidTransform gauge = truth_from_model(pairs);
