@@ -10,13 +10,14 @@
 
 namespace dubsar {
 
-/// A scan that is in its place: what planning and triangulation work on. Refers to the grid and its flags, owns neither.
+/// A scan that is in its place: what planning and triangulation work on. Refers to the grid and its flags,
+/// owns neither.
 struct PlacedScan {
   int id = 0;
   const RangeGrid* grid = nullptr;
   const SampleFlags* flags = nullptr;  ///< as long as the grid
   RigidTransform model_from_scanner;
-  double sigma_mm = 0;                 ///< of the pose
+  double sigma_mm = 0;  ///< of the pose
 };
 
 }  // namespace dubsar

@@ -9,7 +9,8 @@
 
 namespace dubsar {
 
-/// Points without an order, millimetres, as some scanners export them; acquisition/ resamples them to a RangeGrid.
+/// Points without an order, millimetres, as some scanners export them; acquisition/ resamples them to a
+/// RangeGrid.
 struct PointCloud {
   std::vector<Eigen::Vector3f> points;   ///< [N], finite
   std::vector<Eigen::Vector3f> normals;  ///< [N] unit, or empty

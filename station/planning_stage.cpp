@@ -127,7 +127,8 @@ RigidTransform PlanningStage::tablet_from_model(const Mesh& mesh) const {
     points.push_back(p.cast<double>());
   }
   const std::vector<PlacedScan> scans = cleared_.scans();
-  const RigidTransform named{model_faces(scans, points).model_from_faces.transpose(), Eigen::Vector3d::Zero()};
+  const RigidTransform named{model_faces(scans, points).model_from_faces.transpose(),
+                             Eigen::Vector3d::Zero()};
   // The faces have their names; the tablet's own shape sets them straight (it was laid down by hand).
   Mesh turned;
   turned.faces = mesh.faces;
