@@ -7,7 +7,6 @@
 #include <cmath>
 #include <limits>
 
-#include "core/parallel.h"
 #include "core/units.h"
 
 namespace dubsar {
@@ -35,33 +34,27 @@ Front::Front(Sheet& sheet) : sheet_(&sheet), link_of_(sheet.positions.size(), kN
   // About the radius that seams look around with: a query meets 27 buckets at most.
   cell_mm_ = coarsest > 0 ? 3.3F * coarsest : 1.0F;
   buckets_.resize(1U << 10U);
-  const HalfEdges edges(sheet.faces, sheet.positions.size());
-  std::vector<std::uint8_t> open(3 * sheet.faces.size(), 0);
-  parallel_for_each_index(
-      sheet.faces.size(),
-      [&](std::size_t f) {
-        for (std::size_t k = 0; k < 3; ++k) {
-          open[3 * f + k] = edges.face(sheet.faces[f][(k + 1) % 3], sheet.faces[f][k]) < 0 ? 1 : 0;
+  const std::vector<std::uint8_t> rim = rim_vertices(sheet.faces, sheet.positions.size());
+  const HalfEdges edges(sheet.faces, sheet.positions.size(), rim);
+  const auto each_rim_edge = [&](const auto& visit) {
+    for (const Triangle& f : sheet.faces) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        if (rim[f[k]] != 0 && rim[f[(k + 1) % 3]] != 0) {
+          visit(f[k], f[(k + 1) % 3]);
         }
-      },
-      4096);
-  for (std::size_t i = 0; i < open.size(); ++i) {
-    if (open[i] != 0) {
-      const Triangle& f = sheet.faces[i / 3];
-      const std::uint32_t a = f[i % 3];
-      const std::uint32_t b = f[(i % 3 + 1) % 3];
+      }
+    }
+  };
+  std::size_t inner = 0;
+  each_rim_edge([&](std::uint32_t a, std::uint32_t b) {
+    ++inner;
+    if (edges.face(b, a) < 0) {
       links(a).out.push_back(b);
       links(b).in.push_back(a);
     }
-  }
-  half_edges_.reserve(4 * links_.size());
-  for (const Triangle& f : sheet.faces) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      if (find(f[k]) != nullptr && find(f[(k + 1) % 3]) != nullptr) {
-        half_edges_.insert(key_of(f[k], f[(k + 1) % 3]));
-      }
-    }
-  }
+  });
+  half_edges_.reserve(2 * inner);
+  each_rim_edge([&](std::uint32_t a, std::uint32_t b) { half_edges_.insert(key_of(a, b)); });
 }
 
 Front::Cell Front::cell_of(const Eigen::Vector3f& p) const {
