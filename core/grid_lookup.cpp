@@ -5,27 +5,51 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace dubsar {
 
 namespace {
 
-/// More buckets than this per sample and the raster is mostly air: the cells grow until it fits.
+using Eigen::Vector2f;
+using Eigen::Vector3f;
+
+/// More buckets than this per sample and the raster is mostly air: outliers are clipped, then the cells grow
+/// until it fits.
 constexpr double kMaxCellsPerSample = 8.0;
 
-int clamp_to_int(float cells) {
-  // A query may lie anywhere; the raster is far smaller than this.
-  return static_cast<int>(std::clamp(std::floor(cells), -1.0e6F, 1.0e6F));
+/// Rounding of a projected coordinate, per millimetre of the coordinates that it was made of.
+constexpr float kRounding = 16 * std::numeric_limits<float>::epsilon();
+
+constexpr float kFar = std::numeric_limits<float>::infinity();
+
+/// Where nearly all of the values lie, with as much again on either side.
+std::pair<float, float> window_of(std::vector<float>& values) {
+  const std::size_t skipped = values.size() / 64;
+  const auto at = [&](std::size_t k) { return values.begin() + static_cast<std::ptrdiff_t>(k); };
+  std::nth_element(values.begin(), at(skipped), values.end());
+  const float low = *at(skipped);
+  std::nth_element(values.begin(), at(values.size() - 1 - skipped), values.end());
+  const float high = *at(values.size() - 1 - skipped);
+  return {low - (high - low), high + (high - low)};
+}
+
+float gap(float low, float high, float x, float slack) {
+  return std::max({low - x - slack, x - high - slack, 0.0F});
 }
 
 }  // namespace
 
-int GridLookup::cell_u(float u) const {
-  return clamp_to_int(u / static_cast<float>(cell_mm_));
+int GridLookup::cell_at(float mm, int cells) const {
+  return static_cast<int>(std::clamp(std::floor(mm * per_mm_), 0.0F, static_cast<float>(cells - 1)));
 }
-int GridLookup::cell_v(float v) const {
-  return clamp_to_int(v / static_cast<float>(cell_mm_));
+
+std::pair<int, int> GridLookup::cells_between(float low_mm, float high_mm, int cells) const {
+  // What was clipped lies in the rim, however far outside it is.
+  const bool meets = high_mm * per_mm_ >= -1.0F && low_mm * per_mm_ <= static_cast<float>(cells);
+  if (cells == 0 || !(meets || clipped_)) {
+    return {0, -1};
+  }
+  return {cell_at(low_mm, cells), cell_at(high_mm, cells)};
 }
 
 GridLookup::GridLookup(const RangeGrid& grid, const std::vector<std::uint8_t>& keep, double cell_mm)
@@ -34,109 +58,225 @@ GridLookup::GridLookup(const RangeGrid& grid, const std::vector<std::uint8_t>& k
   const Eigen::Vector3d u = w.unitOrthogonal();
   u_axis_ = u.cast<float>();
   v_axis_ = w.cross(u).cast<float>();
-
-  const auto entered = [&](std::size_t i) { return grid.valid[i] != 0 && (keep.empty() || keep[i] != 0); };
-  Eigen::Vector2f low = Eigen::Vector2f::Constant(std::numeric_limits<float>::max());
-  Eigen::Vector2f high = -low;
-  std::size_t count = 0;
+  w_axis_ = w.cast<float>();
+  std::vector<Vector2f> uv;
+  std::vector<std::uint32_t> entered;
+  uv.reserve(grid.size());
+  entered.reserve(grid.size());
   for (std::size_t i = 0; i < grid.size(); ++i) {
-    if (entered(i)) {
-      const Eigen::Vector2f uv(u_axis_.dot(grid.point(i)), v_axis_.dot(grid.point(i)));
-      low = low.cwiseMin(uv);
-      high = high.cwiseMax(uv);
-      ++count;
+    if (grid.valid[i] == 0 || (!keep.empty() && keep[i] == 0)) {
+      continue;
+    }
+    const Vector3f p = grid.point(i);
+    const Vector2f projected = project(p);
+    if (projected.allFinite() && p.allFinite()) {
+      uv.push_back(projected);
+      entered.push_back(static_cast<std::uint32_t>(i));
+      extent_mm_ = std::max(extent_mm_, p.cwiseAbs().maxCoeff());
     }
   }
-  if (count == 0) {
+  if (entered.empty()) {
     start_.assign(1, 0);
     return;
   }
-  u_min_ = low.x();
-  v_min_ = low.y();
-  const double span_u = static_cast<double>(high.x()) - low.x();
-  const double span_v = static_cast<double>(high.y()) - low.y();
-  const double most_cells = kMaxCellsPerSample * static_cast<double>(count) + 1024.0;
-  if (!(cell_mm_ > 0)) {
-    cell_mm_ = std::max(1e-6, std::max(span_u, span_v) / 1024.0);
+  lay_raster(uv, entered);
+  fill_buckets(uv, entered);
+}
+
+void GridLookup::lay_raster(const std::vector<Vector2f>& uv, const std::vector<std::uint32_t>& entered) {
+  Vector2f low = uv[0];
+  Vector2f high = uv[0];
+  for (const Vector2f& p : uv) {
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
   }
-  while ((span_u / cell_mm_ + 1) * (span_v / cell_mm_ + 1) > most_cells) {
+  const double most_cells = kMaxCellsPerSample * static_cast<double>(entered.size()) + 1024.0;
+  const auto cells = [&] {
+    const Eigen::Array2d span = (high.cast<double>() - low.cast<double>()).array();
+    return (span / cell_mm_ + 1.0).prod();
+  };
+  if (!(cell_mm_ > 0) || cells() > most_cells) {
+    const std::size_t step = std::max<std::size_t>(1, uv.size() / 4096);
+    for (int axis = 0; axis < 2; ++axis) {
+      std::vector<float> some;
+      for (std::size_t k = 0; k < uv.size(); k += step) {
+        some.push_back(uv[k][axis]);
+      }
+      const auto [from, to] = window_of(some);
+      clipped_ = clipped_ || from > low[axis] || to < high[axis];
+      low[axis] = std::max(low[axis], from);
+      high[axis] = std::min(high[axis], to);
+    }
+  }
+  const double longest = static_cast<double>((high - low).maxCoeff());
+  if (!(cell_mm_ > 0)) {
+    cell_mm_ = longest / 1024.0;
+  }
+  // Cells below the rounding of the coordinates tell nothing apart.
+  cell_mm_ = std::max(
+      {cell_mm_, 1e-6,
+       static_cast<double>(kRounding * std::max(low.cwiseAbs().maxCoeff(), high.cwiseAbs().maxCoeff()))});
+  while (cells() > most_cells) {
     cell_mm_ *= 1.5;
   }
-  width_ = static_cast<int>(span_u / cell_mm_) + 1;
-  height_ = static_cast<int>(span_v / cell_mm_) + 1;
+  u_min_ = low.x();
+  v_min_ = low.y();
+  side_mm_ = static_cast<float>(cell_mm_);
+  per_mm_ = 1.0F / side_mm_;
+  width_ = static_cast<int>((static_cast<double>(high.x()) - u_min_) / cell_mm_) + 1;
+  height_ = static_cast<int>((static_cast<double>(high.y()) - v_min_) / cell_mm_) + 1;
+  blocks_across_ = (width_ + kBlockCells - 1) / kBlockCells;
+  blocks_down_ = (height_ + kBlockCells - 1) / kBlockCells;
+}
 
-  const auto cell_of = [&](std::size_t i) {
-    const Eigen::Vector2f uv = project(grid.point(i));
-    const int cu = std::clamp(cell_u(uv.x()), 0, width_ - 1);
-    const int cv = std::clamp(cell_v(uv.y()), 0, height_ - 1);
-    return static_cast<std::size_t>(cv) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(cu);
-  };
-  start_.assign(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_) + 1, 0);
-  for (std::size_t i = 0; i < grid.size(); ++i) {
-    if (entered(i)) {
-      ++start_[cell_of(i) + 1];
-    }
+void GridLookup::fill_buckets(const std::vector<Vector2f>& uv, const std::vector<std::uint32_t>& entered) {
+  const auto across = static_cast<std::size_t>(width_);
+  std::vector<std::uint32_t> cell(entered.size());
+  start_.assign(across * static_cast<std::size_t>(height_) + 1, 0);
+  blocks_.assign(static_cast<std::size_t>(blocks_across_) * static_cast<std::size_t>(blocks_down_), {});
+  for (std::size_t k = 0; k < entered.size(); ++k) {
+    const int cu = cell_at(uv[k].x() - u_min_, width_);
+    const int cv = cell_at(uv[k].y() - v_min_, height_);
+    cell[k] =
+        static_cast<std::uint32_t>(static_cast<std::size_t>(cv) * across + static_cast<std::size_t>(cu));
+    ++start_[cell[k] + 1];
+    const Vector3f p = grid_->point(entered[k]);
+    const float depth = w_axis_.dot(p);
+    Block& block =
+        blocks_[static_cast<std::size_t>(cv / kBlockCells) * static_cast<std::size_t>(blocks_across_) +
+                static_cast<std::size_t>(cu / kBlockCells)];
+    block.low = std::min(block.low, depth);
+    block.high = std::max(block.high, depth);
+    block.extent = std::max(block.extent, p.cwiseAbs().maxCoeff());
   }
   for (std::size_t c = 1; c < start_.size(); ++c) {
     start_[c] += start_[c - 1];
   }
-  samples_.resize(count);
+  samples_.resize(entered.size());
+  points_.resize(entered.size());
   std::vector<std::uint32_t> next(start_.begin(), start_.end() - 1);
-  for (std::size_t i = 0; i < grid.size(); ++i) {
-    if (entered(i)) {
-      samples_[next[cell_of(i)]++] = static_cast<std::uint32_t>(i);
-    }
+  for (std::size_t k = 0; k < entered.size(); ++k) {
+    const std::uint32_t at = next[cell[k]]++;
+    samples_[at] = entered[k];
+    points_[at] = grid_->point(entered[k]);
   }
 }
 
-std::int64_t GridLookup::nearest(const Eigen::Vector3f& p_mm, float radius_mm) const {
-  if (samples_.empty() || !p_mm.allFinite()) {
-    return -1;
-  }
-  const Eigen::Vector2f uv = project(p_mm);
-  const int cu = cell_u(uv.x());
-  const int cv = cell_v(uv.y());
-  const auto cell = static_cast<float>(cell_mm_);
-  float best2 = radius_mm * radius_mm;
+/// One nearest() under way. Bounds hold for clipped samples too: bringing both ends of a distance into the
+/// raster never makes it longer.
+struct GridLookup::Search {
+  const GridLookup& in;
+  Vector3f p;
+  float p_extent = 0;  ///< its largest coordinate
+  float u = 0, v = 0;  ///< p in the raster, brought to its rim where it lies outside
+  float w = 0;
+  float off2 = 0;  ///< squared distance of p to the raster
+  float best2 = 0;
   std::int64_t best = -1;
-  const auto visit_cell = [&](int u, int v) {
-    if (u < 0 || v < 0 || u >= width_ || v >= height_) {
-      return;
-    }
-    const std::size_t c =
-        static_cast<std::size_t>(v) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(u);
-    for (std::uint32_t k = start_[c]; k < start_[c + 1]; ++k) {
-      const float d2 = (grid_->point(samples_[k]) - p_mm).squaredNorm();
-      if (d2 < best2 || (d2 == best2 && best >= 0 && samples_[k] < best)) {
+
+  /// What rounding may take from a distance to samples with coordinates up to `extent_mm`.
+  [[nodiscard]] float slack(float extent_mm) const { return kRounding * (extent_mm + p_extent); }
+
+  /// The buckets of a row from one cell to another.
+  void visit(int row, int from, int to) {
+    const std::size_t base = static_cast<std::size_t>(row) * static_cast<std::size_t>(in.width_);
+    const std::uint32_t end = in.start_[base + static_cast<std::size_t>(to) + 1];
+    for (std::uint32_t k = in.start_[base + static_cast<std::size_t>(from)]; k < end; ++k) {
+      const float d2 = (in.points_[k] - p).squaredNorm();
+      if (d2 < best2 || (d2 == best2 && best >= 0 && in.samples_[k] < best)) {
         best2 = d2;
-        best = samples_[k];
+        best = in.samples_[k];
       }
     }
-  };
-  const int reach = static_cast<int>(std::min(radius_mm / cell, 1.0e6F)) + 1;
-  for (int ring = 0; ring <= reach; ++ring) {
-    // Nothing in this ring or beyond can be nearer than (ring - 1) cells.
-    const float bound = static_cast<float>(ring - 1) * cell;
-    if (ring > 1 && bound * bound > best2) {
-      break;
+  }
+
+  /// Squared distance beyond which everything lies that is outside cells low..high in both directions.
+  [[nodiscard]] float beyond2(int low_u, int high_u, int low_v, int high_v) const {
+    const float left = low_u <= 0 ? kFar : u - static_cast<float>(low_u) * in.side_mm_;
+    const float right = high_u + 1 >= in.width_ ? kFar : static_cast<float>(high_u + 1) * in.side_mm_ - u;
+    const float above = low_v <= 0 ? kFar : v - static_cast<float>(low_v) * in.side_mm_;
+    const float below = high_v + 1 >= in.height_ ? kFar : static_cast<float>(high_v + 1) * in.side_mm_ - v;
+    const float least = std::max(0.0F, std::min({left, right, above, below}) - slack(in.extent_mm_));
+    return least * least + off2;
+  }
+
+  void visit_block(int bu, int bv) {
+    const Block& block =
+        in.blocks_[static_cast<std::size_t>(bv) * static_cast<std::size_t>(in.blocks_across_) +
+                   static_cast<std::size_t>(bu)];
+    const float leave = slack(block.extent);
+    const float dw = gap(block.low, block.high, w, leave);
+    const int first_u = bu * kBlockCells;
+    const int last_u = std::min(first_u + kBlockCells, in.width_) - 1;
+    const float du = gap(static_cast<float>(first_u) * in.side_mm_,
+                         static_cast<float>(last_u + 1) * in.side_mm_, u, leave);
+    const float rest2 = dw * dw + off2;
+    if (!(rest2 + du * du <= best2)) {
+      return;
     }
-    if (cu + ring < 0 && cv + ring < 0) {
-      continue;
-    }
-    if (ring == 0) {
-      visit_cell(cu, cv);
-      continue;
-    }
-    for (int u = std::max(cu - ring, 0); u <= std::min(cu + ring, width_ - 1); ++u) {
-      visit_cell(u, cv - ring);
-      visit_cell(u, cv + ring);
-    }
-    for (int v = std::max(cv - ring + 1, 0); v <= std::min(cv + ring - 1, height_ - 1); ++v) {
-      visit_cell(cu - ring, v);
-      visit_cell(cu + ring, v);
+    for (int row = bv * kBlockCells; row < std::min((bv + 1) * kBlockCells, in.height_); ++row) {
+      const float low_v = static_cast<float>(row) * in.side_mm_;
+      const float dv = gap(low_v, low_v + in.side_mm_, v, leave);
+      const float left2 = best2 - rest2 - dv * dv;
+      if (left2 >= 0) {
+        const float reach = std::sqrt(left2) * 1.0001F + leave;
+        const int from = std::max(first_u, in.cell_at(u - reach, in.width_));
+        const int to = std::min(last_u, in.cell_at(u + reach, in.width_));
+        if (from <= to) {
+          visit(row, from, to);
+        }
+      }
     }
   }
-  return best;
+};
+
+std::int64_t GridLookup::nearest(const Vector3f& p_mm, float radius_mm) const {
+  if (samples_.empty() || !p_mm.allFinite() || !(radius_mm > 0)) {
+    return -1;
+  }
+  Search search{*this, p_mm};
+  const Vector2f uv = project(p_mm);
+  search.p_extent = p_mm.cwiseAbs().maxCoeff();
+  search.u = std::clamp(uv.x(), 0.0F, static_cast<float>(width_) * side_mm_);
+  search.v = std::clamp(uv.y(), 0.0F, static_cast<float>(height_) * side_mm_);
+  search.w = w_axis_.dot(p_mm);
+  search.best2 = radius_mm * radius_mm;
+  if (!clipped_) {
+    const float off = std::max(0.0F, (uv - Vector2f(search.u, search.v)).norm() - search.slack(extent_mm_));
+    search.off2 = off * off;
+    if (search.off2 > search.best2) {
+      return -1;
+    }
+  }
+  // Most answers lie in the bucket of the point or beside it.
+  const int cu = cell_at(search.u, width_);
+  const int cv = cell_at(search.v, height_);
+  for (int row = std::max(cv - 1, 0); row <= std::min(cv + 1, height_ - 1); ++row) {
+    search.visit(row, std::max(cu - 1, 0), std::min(cu + 1, width_ - 1));
+  }
+  if (search.beyond2(cu - 1, cu + 1, cv - 1, cv + 1) > search.best2) {
+    return search.best;
+  }
+  const int bu = cu / kBlockCells;
+  const int bv = cv / kBlockCells;
+  for (int ring = 0;; ++ring) {
+    const int left = bu - ring;
+    const int right = bu + ring;
+    for (int b = std::max(bv - ring, 0); b <= std::min(bv + ring, blocks_down_ - 1); ++b) {
+      const bool whole = b == bv - ring || b == bv + ring;
+      for (int a = whole ? std::max(left, 0) : left; a <= std::min(right, blocks_across_ - 1);
+           a += whole || ring == 0 ? 1 : 2 * ring) {
+        if (a >= 0) {
+          search.visit_block(a, b);
+        }
+      }
+    }
+    const float beyond2 = search.beyond2(left * kBlockCells, (right + 1) * kBlockCells - 1,
+                                         (bv - ring) * kBlockCells, (bv + ring + 1) * kBlockCells - 1);
+    if (!(beyond2 <= search.best2) || beyond2 == kFar) {
+      return search.best;
+    }
+  }
 }
 
 }  // namespace dubsar

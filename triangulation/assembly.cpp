@@ -3,9 +3,10 @@
 #include "triangulation/assembly.h"
 
 #include <algorithm>
-#include <limits>
+#include <iterator>
+#include <numeric>
+#include <span>
 
-#include "core/parallel.h"
 #include "triangulation/front.h"
 #include "triangulation/manifold.h"
 
@@ -21,6 +22,16 @@ struct Draft {
   std::vector<float> reliability;
   std::vector<std::uint8_t> scans;
   std::vector<std::uint8_t> flags;
+
+  void reserve(std::size_t vertices) {
+    sheet.positions.reserve(vertices);
+    sheet.normals.reserve(vertices);
+    sheet.spacing_mm.reserve(vertices);
+    sheet.faces.reserve(2 * vertices);
+    reliability.reserve(vertices);
+    scans.reserve(vertices);
+    flags.reserve(vertices);
+  }
 };
 
 void add_patch(const OwnedScan& scan, Draft& draft) {
@@ -58,54 +69,104 @@ void add_patch(const OwnedScan& scan, Draft& draft) {
   }
 }
 
+void mark(const Triangle& f, std::vector<std::uint8_t>& marks) {
+  for (const std::uint32_t v : f) {
+    marks[v] = 1;
+  }
+}
+
+/// One round of open_pinches() on the faces around the suspects; true when nothing had to go.
+bool open_once(std::vector<Triangle>& faces, std::size_t vertex_count,
+               std::span<const std::uint8_t> suspects) {
+  std::vector<Triangle> split = faces;
+  const std::vector<std::uint32_t> copies = make_manifold(split, vertex_count, suspects);
+  if (copies.empty() && split.size() == faces.size()) {
+    return true;
+  }
+  if (split.size() != faces.size()) {  // repeated half-edges went; look at the rest again
+    faces = std::move(split);
+    for (Triangle& f : faces) {
+      for (std::uint32_t& v : f) {
+        v = v < vertex_count ? v : copies[v - vertex_count];
+      }
+    }
+    return false;
+  }
+  std::vector<std::uint32_t> fan_size(vertex_count + copies.size(), 0);
+  for (const Triangle& f : split) {
+    for (const std::uint32_t v : f) {
+      ++fan_size[v];
+    }
+  }
+  std::vector<std::uint32_t> largest(vertex_count);
+  for (std::uint32_t v = 0; v < vertex_count; ++v) {
+    largest[v] = v;
+  }
+  for (std::size_t k = 0; k < copies.size(); ++k) {
+    const auto copy = static_cast<std::uint32_t>(vertex_count + k);
+    if (fan_size[copy] > fan_size[largest[copies[k]]]) {
+      largest[copies[k]] = copy;
+    }
+  }
+  std::size_t out = 0;
+  for (std::size_t i = 0; i < split.size(); ++i) {
+    bool stays = true;
+    for (const std::uint32_t v : split[i]) {
+      const std::uint32_t original = v < vertex_count ? v : copies[v - vertex_count];
+      stays = stays && largest[original] == v;
+    }
+    if (stays) {
+      faces[out++] = faces[i];
+    }
+  }
+  faces.resize(out);
+  return false;
+}
+
 /// A vertex where patches of faces touch by a corner only keeps its largest fan: what is taken away is closed
-/// again as part of the seam.
-void open_pinches(std::vector<Triangle>& faces, std::size_t vertex_count) {
+/// again as part of the seam. Only vertices on open edges and those in `touched` can be such.
+void open_pinches(std::vector<Triangle>& faces, std::size_t vertex_count,
+                  const std::vector<std::uint8_t>& touched) {
+  std::vector<std::uint8_t> suspects = rim_vertices(faces, vertex_count);
+  for (std::size_t v = 0; v < vertex_count; ++v) {
+    suspects[v] |= touched[v];
+  }
+  const auto is_near = [&](const Triangle& f) {
+    return (suspects[f[0]] | suspects[f[1]] | suspects[f[2]]) != 0;
+  };
+  std::vector<Triangle> near;
+  std::copy_if(faces.begin(), faces.end(), std::back_inserter(near), is_near);
+  // What goes makes new suspects of its corners, and those need all of their faces.
   for (int round = 0; round < 8; ++round) {
-    std::vector<Triangle> split = faces;
-    const std::vector<std::uint32_t> copies = make_manifold(split, vertex_count);
-    if (copies.empty() && split.size() == faces.size()) {
-      return;
+    const std::vector<Triangle> before = near;
+    if (open_once(near, vertex_count, suspects)) {
+      break;
     }
-    if (split.size() != faces.size()) {  // repeated half-edges went; look at the rest again
-      faces.clear();
-      for (const Triangle& f : split) {
-        Triangle g = f;
-        for (std::uint32_t& v : g) {
-          v = v < vertex_count ? v : copies[v - vertex_count];
-        }
-        faces.push_back(g);
-      }
-      continue;
-    }
-    std::vector<std::uint32_t> fan_size(vertex_count + copies.size(), 0);
-    for (const Triangle& f : split) {
-      for (const std::uint32_t v : f) {
-        ++fan_size[v];
+    std::vector<std::uint8_t> corners(vertex_count, 0);
+    std::size_t kept = 0;
+    for (const Triangle& f : before) {
+      if (kept < near.size() && near[kept] == f) {
+        ++kept;
+      } else {
+        mark(f, corners);
       }
     }
-    std::vector<std::uint32_t> largest(vertex_count);
-    for (std::uint32_t v = 0; v < vertex_count; ++v) {
-      largest[v] = v;
-    }
-    for (std::size_t k = 0; k < copies.size(); ++k) {
-      const auto copy = static_cast<std::uint32_t>(vertex_count + k);
-      if (fan_size[copy] > fan_size[largest[copies[k]]]) {
-        largest[copies[k]] = copy;
+    kept = 0;
+    std::size_t at = 0;
+    std::erase_if(faces, [&](const Triangle& f) {
+      if (!is_near(f)) {
+        return false;
       }
+      const Triangle& was = before[at++];
+      const bool stays = kept < near.size() && near[kept] == was;
+      kept += stays ? 1 : 0;
+      return !stays;
+    });
+    for (std::size_t v = 0; v < vertex_count; ++v) {
+      suspects[v] |= corners[v];
     }
-    std::size_t out = 0;
-    for (std::size_t i = 0; i < split.size(); ++i) {
-      bool stays = true;
-      for (const std::uint32_t v : split[i]) {
-        const std::uint32_t original = v < vertex_count ? v : copies[v - vertex_count];
-        stays = stays && largest[original] == v;
-      }
-      if (stays) {
-        faces[out++] = faces[i];
-      }
-    }
-    faces.resize(out);
+    near.clear();
+    std::copy_if(faces.begin(), faces.end(), std::back_inserter(near), is_near);
   }
 }
 
@@ -122,10 +183,13 @@ std::size_t clear_around(Sheet& sheet, const std::vector<std::vector<std::uint32
   });
 }
 
-void close_everything(Draft& draft, const AssemblyOptions& options) {
+/// Returns the vertices of faces that were added: no others can have come to hold two fans.
+std::vector<std::uint8_t> close_everything(Draft& draft, const AssemblyOptions& options) {
   constexpr int kTries = 3;
+  std::vector<std::uint8_t> touched(draft.sheet.positions.size(), 0);
   for (int attempt = 0; attempt < kTries; ++attempt) {
-    open_pinches(draft.sheet.faces, draft.sheet.positions.size());
+    open_pinches(draft.sheet.faces, draft.sheet.positions.size(), touched);
+    const std::size_t first_added = draft.sheet.faces.size();
     Front front(draft.sheet);
     close_seams(front, options.seam);
     const GapFillResult filled = fill_gaps(front, options.seam, options.gap);
@@ -134,6 +198,10 @@ void close_everything(Draft& draft, const AssemblyOptions& options) {
     draft.scans.resize(count, 0);
     draft.flags.resize(filled.first_interpolated);
     draft.flags.resize(count, kVertexInterpolated);
+    touched.resize(count, 1);
+    for (std::size_t f = first_added; f < draft.sheet.faces.size(); ++f) {
+      mark(draft.sheet.faces[f], touched);
+    }
     if (attempt + 1 == kTries) {
       break;
     }
@@ -143,16 +211,50 @@ void close_everything(Draft& draft, const AssemblyOptions& options) {
       break;
     }
   }
+  return touched;
+}
+
+/// Drops pieces of few faces, of a manifold: there faces that share a vertex are of one piece.
+void remove_pieces(Mesh& mesh, std::size_t least_faces) {
+  std::vector<std::uint32_t> parent(mesh.positions.size());
+  std::iota(parent.begin(), parent.end(), 0U);
+  const auto root = [&](std::uint32_t v) {
+    while (parent[v] != v) {
+      parent[v] = parent[parent[v]];
+      v = parent[v];
+    }
+    return v;
+  };
+  for (const Triangle& f : mesh.faces) {
+    const std::uint32_t a = root(f[0]);
+    for (const std::uint32_t v : {f[1], f[2]}) {
+      const std::uint32_t b = root(v);
+      const std::uint32_t top = root(a);
+      parent[std::max(top, b)] = std::min(top, b);
+    }
+  }
+  std::vector<std::uint32_t> size(mesh.positions.size(), 0);
+  for (const Triangle& f : mesh.faces) {
+    ++size[root(f[0])];
+  }
+  std::erase_if(mesh.faces, [&](const Triangle& f) { return size[root(f[0])] < least_faces; });
+  compact_vertices(mesh);
 }
 
 }  // namespace
 
 Mesh assemble(const std::vector<OwnedScan>& scans, const AssemblyOptions& options) {
   Draft draft;
+  std::size_t vertices = 0;
+  for (const OwnedScan& scan : scans) {
+    vertices += static_cast<std::size_t>(
+        std::count_if(scan.kept.begin(), scan.kept.end(), [](std::uint8_t k) { return k != 0; }));
+  }
+  draft.reserve(vertices);
   for (const OwnedScan& scan : scans) {
     add_patch(scan, draft);
   }
-  close_everything(draft, options);
+  std::vector<std::uint8_t> suspects = close_everything(draft, options);
 
   Mesh mesh;
   mesh.faces = std::move(draft.sheet.faces);
@@ -164,21 +266,21 @@ Mesh assemble(const std::vector<OwnedScan>& scans, const AssemblyOptions& option
   std::erase_if(mesh.faces, [&](const Triangle& f) {
     return !((p[f[1]] - p[f[0]]).cast<double>().cross((p[f[2]] - p[f[0]]).cast<double>()).norm() > 0);
   });
-  for (const std::uint32_t copied : make_manifold(mesh.faces, mesh.positions.size())) {
+  const std::vector<std::uint8_t> open = rim_vertices(mesh.faces, mesh.positions.size());
+  for (std::size_t v = 0; v < open.size(); ++v) {
+    suspects[v] |= open[v];
+  }
+  for (const std::uint32_t copied : make_manifold(mesh.faces, mesh.positions.size(), suspects)) {
     mesh.positions.push_back(Vector3f(mesh.positions[copied]));
     mesh.reliability.push_back(float(mesh.reliability[copied]));
     mesh.scans.push_back(std::uint8_t(mesh.scans[copied]));
     mesh.flags.push_back(std::uint8_t(mesh.flags[copied]));
   }
-  remove_small_components(mesh, static_cast<std::size_t>(std::max(options.least_component_faces, 0)));
-  const HalfEdges edges(mesh.faces, mesh.positions.size());
-  for (const Triangle& f : mesh.faces) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      if (edges.face(f[(k + 1) % 3], f[k]) < 0) {
-        mesh.flags[f[k]] |= kVertexBoundary;
-        mesh.flags[f[(k + 1) % 3]] |= kVertexBoundary;
-      }
-    }
+  remove_pieces(mesh, static_cast<std::size_t>(std::max(options.least_component_faces, 0)));
+  // After this every vertex holds one fan: it is on the boundary when that fan is open.
+  const std::vector<std::uint8_t> rim = rim_vertices(mesh.faces, mesh.positions.size());
+  for (std::size_t v = 0; v < rim.size(); ++v) {
+    mesh.flags[v] |= rim[v] != 0 ? kVertexBoundary : 0;
   }
   mesh.normals = vertex_normals(mesh);
   return mesh;

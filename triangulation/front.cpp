@@ -7,16 +7,11 @@
 #include <cmath>
 #include <limits>
 
-#include "core/parallel.h"
 #include "core/units.h"
 
 namespace dubsar {
 
 namespace {
-
-std::uint64_t key_of(std::uint32_t a, std::uint32_t b) {
-  return (static_cast<std::uint64_t>(a) << 32U) | b;
-}
 
 void take_out(std::vector<std::uint32_t>& values, std::uint32_t value) {
   const auto at = std::find(values.begin(), values.end(), value);
@@ -27,6 +22,34 @@ void take_out(std::vector<std::uint32_t>& values, std::uint32_t value) {
 
 }  // namespace
 
+void HalfEdgeSet::reserve(std::size_t count) {
+  std::size_t size = std::max<std::size_t>(slots_.size(), 16);
+  while (size < 2 * count) {
+    size *= 2;
+  }
+  if (size == slots_.size()) {
+    return;
+  }
+  std::vector<std::uint64_t> old(size, kEmpty);
+  old.swap(slots_);
+  for (const std::uint64_t key : old) {
+    if (key != kEmpty) {
+      slots_[slot_of(key)] = key;
+    }
+  }
+}
+
+bool HalfEdgeSet::insert(std::uint32_t a, std::uint32_t b) {
+  reserve(count_ + 1);
+  std::uint64_t& slot = slots_[slot_of(key_of(a, b))];
+  if (slot != kEmpty) {
+    return false;
+  }
+  slot = key_of(a, b);
+  ++count_;
+  return true;
+}
+
 Front::Front(Sheet& sheet) : sheet_(&sheet), link_of_(sheet.positions.size(), kNone) {
   float coarsest = 0;
   for (const float mu : sheet.spacing_mm) {
@@ -35,33 +58,27 @@ Front::Front(Sheet& sheet) : sheet_(&sheet), link_of_(sheet.positions.size(), kN
   // About the radius that seams look around with: a query meets 27 buckets at most.
   cell_mm_ = coarsest > 0 ? 3.3F * coarsest : 1.0F;
   buckets_.resize(1U << 10U);
-  const HalfEdges edges(sheet.faces, sheet.positions.size());
-  std::vector<std::uint8_t> open(3 * sheet.faces.size(), 0);
-  parallel_for_each_index(
-      sheet.faces.size(),
-      [&](std::size_t f) {
-        for (std::size_t k = 0; k < 3; ++k) {
-          open[3 * f + k] = edges.face(sheet.faces[f][(k + 1) % 3], sheet.faces[f][k]) < 0 ? 1 : 0;
+  const std::vector<std::uint8_t> rim = rim_vertices(sheet.faces, sheet.positions.size());
+  const HalfEdges edges(sheet.faces, sheet.positions.size(), rim);
+  const auto each_rim_edge = [&](const auto& visit) {
+    for (const Triangle& f : sheet.faces) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        if (rim[f[k]] != 0 && rim[f[(k + 1) % 3]] != 0) {
+          visit(f[k], f[(k + 1) % 3]);
         }
-      },
-      4096);
-  for (std::size_t i = 0; i < open.size(); ++i) {
-    if (open[i] != 0) {
-      const Triangle& f = sheet.faces[i / 3];
-      const std::uint32_t a = f[i % 3];
-      const std::uint32_t b = f[(i % 3 + 1) % 3];
+      }
+    }
+  };
+  std::size_t inner = 0;
+  each_rim_edge([&](std::uint32_t a, std::uint32_t b) {
+    ++inner;
+    if (edges.face(b, a) < 0) {
       links(a).out.push_back(b);
       links(b).in.push_back(a);
     }
-  }
-  half_edges_.reserve(4 * links_.size());
-  for (const Triangle& f : sheet.faces) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      if (find(f[k]) != nullptr && find(f[(k + 1) % 3]) != nullptr) {
-        half_edges_.insert(key_of(f[k], f[(k + 1) % 3]));
-      }
-    }
-  }
+  });
+  half_edges_.reserve(2 * inner);
+  each_rim_edge([&](std::uint32_t a, std::uint32_t b) { half_edges_.insert(a, b); });
 }
 
 Front::Cell Front::cell_of(const Eigen::Vector3f& p) const {
@@ -149,8 +166,8 @@ std::span<const std::uint32_t> Front::into(std::uint32_t v) const {
 }
 
 bool Front::accepts(const Triangle& f) const {
-  return f[0] != f[1] && f[1] != f[2] && f[2] != f[0] && !half_edges_.contains(key_of(f[0], f[1])) &&
-         !half_edges_.contains(key_of(f[1], f[2])) && !half_edges_.contains(key_of(f[2], f[0]));
+  return f[0] != f[1] && f[1] != f[2] && f[2] != f[0] && !half_edges_.contains(f[0], f[1]) &&
+         !half_edges_.contains(f[1], f[2]) && !half_edges_.contains(f[2], f[0]);
 }
 
 void Front::add_face(const Triangle& f) {
@@ -158,9 +175,9 @@ void Front::add_face(const Triangle& f) {
   for (std::size_t k = 0; k < 3; ++k) {
     const std::uint32_t a = f[k];
     const std::uint32_t b = f[(k + 1) % 3];
-    half_edges_.insert(key_of(a, b));
+    half_edges_.insert(a, b);
     links(a).free = false;
-    if (half_edges_.contains(key_of(b, a))) {
+    if (half_edges_.contains(b, a)) {
       take_out(links(b).out, a);
       take_out(links(a).in, b);
     } else {
@@ -205,14 +222,14 @@ void Front::near(const Eigen::Vector3f& p_mm, float radius_mm, std::vector<std::
 
 std::vector<std::vector<std::uint32_t>> Front::openings() const {
   std::vector<std::vector<std::uint32_t>> loops;
-  std::unordered_set<std::uint64_t> walked;
+  HalfEdgeSet walked;
   for (const Edge& first : open_edges()) {
-    if (walked.contains(key_of(first.a, first.b))) {
+    if (walked.contains(first.a, first.b)) {
       continue;
     }
     std::vector<std::uint32_t> loop;
     Edge at = first;
-    while (walked.insert(key_of(at.a, at.b)).second) {
+    while (walked.insert(at.a, at.b)) {
       loop.push_back(at.a);
       const auto outs = out_of(at.b);
       std::uint32_t next = kNone;
@@ -225,7 +242,7 @@ std::vector<std::vector<std::uint32_t>> Front::openings() const {
         const Eigen::Vector3f side = n.cross(back);
         double least = std::numeric_limits<double>::max();
         for (const std::uint32_t head : outs) {
-          if (walked.contains(key_of(at.b, head))) {
+          if (walked.contains(at.b, head)) {
             continue;
           }
           const Eigen::Vector3f d = sheet_->positions[head] - sheet_->positions[at.b];

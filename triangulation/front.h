@@ -6,7 +6,6 @@
 #include <array>
 #include <cstdint>
 #include <span>
-#include <unordered_set>
 #include <vector>
 
 #include "triangulation/manifold.h"
@@ -20,6 +19,35 @@ struct Sheet {
   std::vector<Eigen::Vector3f> normals;    ///< unit, as measured, not from the faces
   std::vector<float> spacing_mm;           ///< µ of the scan that a vertex comes from
   std::vector<Triangle> faces;
+};
+
+/// Half-edges a→b to look up; open addressing in one array.
+class HalfEdgeSet {
+ public:
+  [[nodiscard]] bool contains(std::uint32_t a, std::uint32_t b) const {
+    return !slots_.empty() && slots_[slot_of(key_of(a, b))] != kEmpty;
+  }
+  /// False when it was there.
+  bool insert(std::uint32_t a, std::uint32_t b);
+  void reserve(std::size_t count);
+
+ private:
+  static constexpr std::uint64_t kEmpty = ~std::uint64_t{0};
+  [[nodiscard]] static std::uint64_t key_of(std::uint32_t a, std::uint32_t b) {
+    return (static_cast<std::uint64_t>(a) << 32U) | b;
+  }
+  [[nodiscard]] std::size_t slot_of(std::uint64_t key) const {
+    std::uint64_t mixed = key * 0x9e3779b97f4a7c15ULL;
+    mixed ^= mixed >> 32U;
+    std::size_t slot = mixed & (slots_.size() - 1);
+    while (slots_[slot] != kEmpty && slots_[slot] != key) {
+      slot = (slot + 1) & (slots_.size() - 1);
+    }
+    return slot;
+  }
+
+  std::vector<std::uint64_t> slots_;  ///< a power of two, at most half full
+  std::size_t count_ = 0;
 };
 
 /// The open edges of a sheet and the vertices on them, kept up to date while faces are added. An open edge
@@ -81,8 +109,8 @@ class Front {
   float cell_mm_ = 1;
   std::vector<std::uint32_t> link_of_;  ///< [V] index into links_, or kNone
   std::vector<Links> links_;
-  std::unordered_set<std::uint64_t> half_edges_;  ///< of faces, between vertices of the front; looked up only
-  std::vector<Bucket> buckets_;                   ///< open addressing, a power of two long
+  HalfEdgeSet half_edges_;       ///< of faces, between vertices of the front
+  std::vector<Bucket> buckets_;  ///< open addressing, a power of two long
 };
 
 }  // namespace dubsar

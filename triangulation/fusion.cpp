@@ -185,6 +185,7 @@ Pairs find_pairs(const StitchSurface& from, const StitchSurface& to, double reac
   const Eigen::Matrix3f rotation = to.scanner_from_model.rotation.cast<float>();
   const Vector3f shift = to.scanner_from_model.translation_mm.cast<float>();
   const auto min_cos = static_cast<float>(options.min_normal_cos);
+  constexpr float kLookAhead = 4.0F;
   const Walker walker(to);
   const auto cols = static_cast<std::size_t>(from.scan.grid->cols);
   pairs.count = parallel_reduce_ordered(
@@ -193,6 +194,9 @@ Pairs find_pairs(const StitchSurface& from, const StitchSurface& to, double reac
         std::size_t count = 0;
         for (std::size_t row = begin; row < end; ++row) {
           std::int64_t last = -1;
+          // Around `bare` no sample lies within the reach of anything nearer than `bare_mm` to it.
+          Vector3f bare = Vector3f::Zero();
+          float bare_mm = 0;
           for (std::size_t i = row * cols; i < (row + 1) * cols; ++i) {
             // A scan cannot have seen what faces away from it.
             if (from.usable[i] == 0 || !box.contains(from.points[i]) ||
@@ -201,7 +205,21 @@ Pairs find_pairs(const StitchSurface& from, const StitchSurface& to, double reac
             }
             std::int64_t j = last < 0 ? -1 : walker.walk(static_cast<std::size_t>(last), from.points[i]);
             if (j < 0) {
-              j = to.lookup->nearest(rotation * from.points[i] + shift, pairs.reach_mm);
+              if (bare_mm > 0 && (from.points[i] - bare).squaredNorm() < bare_mm * bare_mm) {
+                last = -1;
+                continue;
+              }
+              const Vector3f p = rotation * from.points[i] + shift;
+              j = to.lookup->nearest(p, pairs.reach_mm);
+              if (j < 0) {
+                const float around_mm = kLookAhead * pairs.reach_mm;
+                const std::int64_t next = to.lookup->nearest(p, around_mm);
+                const float clear_mm =
+                    next < 0 ? around_mm : (to.scan.grid->point(static_cast<std::size_t>(next)) - p).norm();
+                bare = from.points[i];
+                // Rounding is far below a hundredth of the reach.
+                bare_mm = clear_mm - 1.01F * pairs.reach_mm;
+              }
             }
             last = j;
             if (j >= 0 && from.normals[i].dot(to.normals[static_cast<std::size_t>(j)]) > min_cos) {

@@ -80,23 +80,51 @@ void keep_entries(std::vector<T>& values, const std::vector<std::uint32_t>& targ
 
 }  // namespace
 
-HalfEdges::HalfEdges(std::span<const Triangle> faces, std::size_t vertex_count)
-    : start_(vertex_count + 1, 0), out_(3 * faces.size()) {
+HalfEdges::HalfEdges(std::span<const Triangle> faces, std::size_t vertex_count,
+                     std::span<const std::uint8_t> only)
+    : start_(vertex_count + 1, 0) {
+  const auto takes = [&](std::uint32_t v) { return only.empty() || only[v] != 0; };
   for (const Triangle& f : faces) {
     for (const std::uint32_t v : f) {
-      ++start_[v + 1];
+      start_[v + 1] += takes(v) ? 1 : 0;
     }
   }
   for (std::size_t v = 0; v < vertex_count; ++v) {
     start_[v + 1] += start_[v];
   }
+  out_.resize(start_.back());
   std::vector<std::uint32_t> next(start_.begin(), start_.end() - 1);
   for (std::size_t i = 0; i < faces.size(); ++i) {
     const Triangle& f = faces[i];
     for (std::size_t k = 0; k < 3; ++k) {
-      out_[next[f[k]]++] = {f[(k + 1) % 3], static_cast<std::uint32_t>(i)};
+      if (takes(f[k])) {
+        out_[next[f[k]]++] = {f[(k + 1) % 3], static_cast<std::uint32_t>(i)};
+      }
     }
   }
+}
+
+std::vector<std::uint8_t> rim_vertices(std::span<const Triangle> faces, std::size_t vertex_count) {
+  const auto hash = [](std::uint32_t v) {
+    std::uint64_t x = (v + 1) * 0x9e3779b97f4a7c15ULL;
+    x = (x ^ (x >> 30U)) * 0xbf58476d1ce4e5b9ULL;
+    x = (x ^ (x >> 27U)) * 0x94d049bb133111ebULL;
+    return x ^ (x >> 31U);
+  };
+  std::vector<std::uint64_t> heads_less_tails(vertex_count, 0);
+  for (const Triangle& f : faces) {
+    const std::uint64_t h0 = hash(f[0]);
+    const std::uint64_t h1 = hash(f[1]);
+    const std::uint64_t h2 = hash(f[2]);
+    heads_less_tails[f[0]] += h1 - h2;
+    heads_less_tails[f[1]] += h2 - h0;
+    heads_less_tails[f[2]] += h0 - h1;
+  }
+  std::vector<std::uint8_t> rim(vertex_count);
+  for (std::size_t v = 0; v < vertex_count; ++v) {
+    rim[v] = heads_less_tails[v] != 0 ? 1 : 0;
+  }
+  return rim;
 }
 
 int HalfEdges::count(std::uint32_t a, std::uint32_t b) const {
@@ -178,25 +206,30 @@ std::vector<std::vector<std::uint32_t>> boundary_loops(std::span<const Triangle>
   return loops;
 }
 
-std::vector<std::uint32_t> make_manifold(std::vector<Triangle>& faces, std::size_t vertex_count) {
+std::vector<std::uint32_t> make_manifold(std::vector<Triangle>& faces, std::size_t vertex_count,
+                                         std::span<const std::uint8_t> only) {
   std::erase_if(faces, [](const Triangle& f) { return f[0] == f[1] || f[1] == f[2] || f[2] == f[0]; });
-  {
-    const HalfEdges edges(faces, vertex_count);
-    // Which faces share a half-edge is found in parallel; which of them yields, in order.
-    std::vector<std::uint8_t> gone(faces.size(), 0);
-    parallel_for_each_index(
-        faces.size(),
-        [&](std::size_t i) {
-          for (std::size_t k = 0; k < 3; ++k) {
-            gone[i] |= edges.count(faces[i][k], faces[i][(k + 1) % 3]) > 1 ? 1 : 0;
+  HalfEdges edges(faces, vertex_count, only);
+  // Which vertices have a half-edge twice is found in parallel; which face yields, in order.
+  const bool repeated = parallel_reduce_ordered(
+      vertex_count, 4096, false,
+      [&](std::size_t begin, std::size_t end) {
+        for (std::size_t v = begin; v < end; ++v) {
+          const std::span<const HalfEdges::Out> outs = edges.from(static_cast<std::uint32_t>(v));
+          for (std::size_t i = 0; i < outs.size(); ++i) {
+            for (std::size_t j = 0; j < i; ++j) {
+              if (outs[i].to == outs[j].to) {
+                return true;
+              }
+            }
           }
-        },
-        4096);
+        }
+        return false;
+      },
+      [](bool& total, bool part) { total = total || part; });
+  if (repeated) {
+    std::vector<std::uint8_t> gone(faces.size(), 0);
     for (std::size_t i = 0; i < faces.size(); ++i) {
-      if (gone[i] == 0) {
-        continue;
-      }
-      gone[i] = 0;
       for (std::size_t k = 0; k < 3; ++k) {
         for (const HalfEdges::Out& out : edges.from(faces[i][k])) {
           if (out.to == faces[i][(k + 1) % 3] && out.face < i && gone[out.face] == 0) {
@@ -207,8 +240,8 @@ std::vector<std::uint32_t> make_manifold(std::vector<Triangle>& faces, std::size
     }
     std::size_t at = 0;
     std::erase_if(faces, [&](const Triangle&) { return gone[at++] != 0; });
+    edges = HalfEdges(faces, vertex_count, only);
   }
-  const HalfEdges edges(faces, vertex_count);
   std::vector<std::uint8_t> pinched(vertex_count, 0);
   parallel_for_each_index(
       vertex_count,

@@ -15,7 +15,8 @@ namespace dubsar {
 using Triangle = std::array<std::uint32_t, 3>;
 
 /// Half-edges that leave each vertex, in compressed rows: for face f and corner k the half-edge from corner k
-/// to the next one. Faces must have indices below the vertex count.
+/// to the next one. Faces must have indices below the vertex count. With `only` given, no more than those
+/// that leave vertices v with only[v] != 0.
 class HalfEdges {
  public:
   struct Out {
@@ -23,7 +24,8 @@ class HalfEdges {
     std::uint32_t face = 0;  ///< the face on its left
   };
 
-  HalfEdges(std::span<const Triangle> faces, std::size_t vertex_count);
+  HalfEdges(std::span<const Triangle> faces, std::size_t vertex_count,
+            std::span<const std::uint8_t> only = {});
 
   [[nodiscard]] std::span<const Out> from(std::uint32_t vertex) const {
     return {out_.data() + start_[vertex], out_.data() + start_[vertex + 1]};
@@ -47,6 +49,12 @@ struct FaceComponents {
 };
 [[nodiscard]] FaceComponents face_components(std::span<const Triangle> faces, const HalfEdges& edges);
 
+/// 1 for each vertex on an open edge (a half-edge a→b of a face while no face has b→a), 0 for each whose
+/// faces close around it: one pass that tells apart the few vertices where something can be wrong. Heads and
+/// tails around a vertex are compared by sums of 64-bit hashes.
+[[nodiscard]] std::vector<std::uint8_t> rim_vertices(std::span<const Triangle> faces,
+                                                     std::size_t vertex_count);
+
 /// Closed walks along the boundary, each as its vertices in the direction of the faces beside it. Where fans
 /// touch in one vertex each walk stays with its own fan.
 [[nodiscard]] std::vector<std::vector<std::uint32_t>> boundary_loops(std::span<const Triangle> faces,
@@ -55,9 +63,10 @@ struct FaceComponents {
 /// Makes an oriented 2-manifold of any faces whose indices are in range, by the least deletion this finds in
 /// one pass over the faces in order: faces with a repeated vertex and repeated half-edges go (the later face
 /// yields), then each vertex with several fans is split, one copy per fan. Returns, for each vertex that was
-/// appended, the one it copies.
-[[nodiscard]] std::vector<std::uint32_t> make_manifold(std::vector<Triangle>& faces,
-                                                       std::size_t vertex_count);
+/// appended, the one it copies. With `only` given, vertices v with only[v] == 0 are known to be in order, and
+/// so are the half-edges that leave them: they are not looked at.
+[[nodiscard]] std::vector<std::uint32_t> make_manifold(std::vector<Triangle>& faces, std::size_t vertex_count,
+                                                       std::span<const std::uint8_t> only = {});
 
 /// Drops the faces of components with fewer than `faces` faces, then vertices without a face; per-vertex
 /// arrays follow.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -53,17 +54,28 @@ std::unexpected<Error> cancelled() {
 struct Stitcher::Impl {
   StitchOptions options;
   std::map<int, Entry> entries;
+  std::set<int> unpaired;  ///< came since settle()
 
-  Status insert(const PlacedScan& scan) {
+  [[nodiscard]] Status may_enter(const PlacedScan& scan) const {
     if (entries.contains(scan.id)) {
       return fail(ErrorKind::kUsage, "stitched already", name_of(scan), "remove it first");
     }
-    if (const Status ok = check(scan); !ok) {
-      return ok;
+    return check(scan);
+  }
+
+  /// All checks first; then the surfaces side by side.
+  Status insert(std::span<const PlacedScan> scans) {
+    std::vector<Entry*> added;
+    for (const PlacedScan& scan : scans) {
+      if (const Status ok = may_enter(scan); !ok) {
+        return ok;
+      }
+      added.push_back(&entries[scan.id]);
+      unpaired.insert(scan.id);
     }
-    Entry entry;
-    entry.surface = make_scan_surface(scan, options.surface);
-    entries.emplace(scan.id, std::move(entry));
+    parallel_for_each_index(
+        scans.size(),
+        [&](std::size_t k) { added[k]->surface = make_scan_surface(scans[k], options.surface); }, 1);
     return {};
   }
 
@@ -71,7 +83,7 @@ struct Stitcher::Impl {
   void pair(int id) {
     Entry& entry = entries.at(id);
     for (auto& [other_id, other] : entries) {
-      if (other_id == id || entry.pairs.contains(other_id)) {
+      if (other_id == id || unpaired.contains(other_id)) {
         continue;
       }
       Eigen::AlignedBox3f box = other.surface.box;
@@ -100,6 +112,23 @@ struct Stitcher::Impl {
     entry.stale = true;
   }
 
+  /// Brings pairs and averages up to date: a scan that comes and goes again costs nothing but its surface.
+  bool settle(const JobContext& job) {
+    const double count = std::max(1.0, static_cast<double>(unpaired.size()));
+    double done = 0;
+    while (!unpaired.empty()) {
+      if (job.cancelled()) {
+        return false;
+      }
+      job.progress("pair samples", done++ / count);
+      const int id = *unpaired.begin();
+      unpaired.erase(unpaired.begin());
+      pair(id);
+    }
+    refresh();
+    return true;
+  }
+
   void refresh() {
     for (auto& [id, entry] : entries) {
       if (!entry.stale) {
@@ -120,12 +149,12 @@ struct Stitcher::Impl {
     if (entries.erase(id) == 0) {
       return false;
     }
+    unpaired.erase(id);
     for (auto& [other_id, other] : entries) {
       if (other.pairs.erase(id) > 0) {
         other.stale = true;
       }
     }
-    refresh();
     return true;
   }
 };
@@ -141,16 +170,7 @@ Status Stitcher::add(const PlacedScan& scan, const JobContext& job) {
   if (job.cancelled()) {
     return cancelled();
   }
-  if (const Status ok = impl_->insert(scan); !ok) {
-    return ok;
-  }
-  impl_->pair(scan.id);
-  if (job.cancelled()) {
-    impl_->erase(scan.id);
-    return cancelled();
-  }
-  impl_->refresh();
-  return {};
+  return impl_->insert({&scan, 1});
 }
 
 bool Stitcher::remove(int id) {
@@ -159,6 +179,7 @@ bool Stitcher::remove(int id) {
 
 std::vector<Stitcher::Overlap> Stitcher::overlaps() const {
   std::vector<Overlap> out;
+  impl_->settle(JobContext{});
   for (const auto& [id, entry] : impl_->entries) {
     for (const auto& [other_id, pairs] : entry.pairs) {
       if (id < other_id) {
@@ -172,6 +193,9 @@ std::vector<Stitcher::Overlap> Stitcher::overlaps() const {
 }
 
 Result<Mesh> Stitcher::mesh(const JobContext& job) const {
+  if (!impl_->settle(job)) {
+    return cancelled();
+  }
   std::vector<OwnedScan> scans;
   std::map<int, std::size_t> position;
   for (const auto& [id, entry] : impl_->entries) {
@@ -206,25 +230,13 @@ Mesh Stitcher::mesh() const {
 
 Result<Mesh> stitch(std::span<const PlacedScan> scans, const StitchOptions& options, const JobContext& job) {
   Stitcher stitcher(options);
-  std::size_t done = 0;
-  for (const PlacedScan& scan : scans) {
-    if (job.cancelled()) {
-      return cancelled();
-    }
-    job.progress("triangulate grids", static_cast<double>(done++) / static_cast<double>(scans.size()));
-    if (const Status ok = stitcher.impl_->insert(scan); !ok) {
-      return std::unexpected(ok.error());
-    }
+  if (job.cancelled()) {
+    return cancelled();
   }
-  done = 0;
-  for (const PlacedScan& scan : scans) {
-    if (job.cancelled()) {
-      return cancelled();
-    }
-    job.progress("pair samples", static_cast<double>(done++) / static_cast<double>(scans.size()));
-    stitcher.impl_->pair(scan.id);
+  job.progress("triangulate grids", 0.0);
+  if (const Status ok = stitcher.impl_->insert(scans); !ok) {
+    return std::unexpected(ok.error());
   }
-  stitcher.impl_->refresh();
   return stitcher.mesh(job);
 }
 

@@ -34,8 +34,10 @@ struct StitchOptions {
 /// are closed. Nothing is smoothed or resampled, and nothing new is made but the interpolated vertices, which
 /// are marked. The mesh is an oriented 2-manifold with boundary, whatever the scans.
 ///
-/// Scans come one by one, in any order, and can be taken out again; what is worked out anew is only what
-/// overlaps. The mesh depends on the set of scans alone, not on the order, nor on the number of threads.
+/// Scans come one by one, in any order, and can be taken out again. add() only triangulates the scan; pairs
+/// and averages are worked out when overlaps() or mesh() asks, and anew only for what has changed: those two
+/// are not for several threads at once, const as they are. The mesh depends on the set of scans alone, not on
+/// the order, nor on the number of threads.
 class Stitcher {
  public:
   explicit Stitcher(StitchOptions options = {});

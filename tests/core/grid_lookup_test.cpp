@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "core/random.h"
 #include "tests/support/height_field.h"
@@ -58,6 +59,55 @@ TEST(GridLookup, AgreesWithASearchThroughAll) {
   }
 }
 
+TEST(GridLookup, AgreesWhereSamplesAreFewAndFarApart) {
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    RangeGrid grid = warped_grid(seed);
+    Random random(seed + 40);
+    grid.view.direction = Eigen::Vector3d(random.normal(), random.normal(), -1).normalized();
+    for (std::uint8_t& valid : grid.valid) {
+      valid = valid != 0 && random.uniform() < 0.01 ? 1 : 0;
+    }
+    if (seed > 3) {  // one sample out of this world, and a few that are merely far away
+      grid.valid[11] = grid.valid[12] = grid.valid[900] = 1;
+      grid.x[11] = 1e6F;
+      grid.y[12] = -300.0F;
+      grid.z[900] = 80.0F;
+    }
+    const GridLookup lookup(grid, {}, 0.05);
+    int found = 0;
+    for (int k = 0; k < 600; ++k) {
+      const double spread = k % 3 == 0 ? 400.0 : 8.0;
+      const Eigen::Vector3f p(static_cast<float>(random.uniform(-spread, spread)),
+                              static_cast<float>(random.uniform(-spread, spread)),
+                              static_cast<float>(random.uniform(-spread, spread)));
+      const auto radius = static_cast<float>(random.uniform(0.5, k % 2 == 0 ? 10.0 : 500.0));
+      const std::int64_t expected = nearest_by_search(grid, p, radius);
+      EXPECT_EQ(lookup.nearest(p, radius), expected) << "seed " << seed << " radius " << radius;
+      found += expected >= 0 ? 1 : 0;
+    }
+    EXPECT_GT(found, 200);
+    EXPECT_LT(found, 590);
+    EXPECT_GE(lookup.nearest({0, 0, 0}, std::numeric_limits<float>::infinity()), 0);
+  }
+}
+
+TEST(GridLookup, AgreesFarFromTheOrigin) {
+  RangeGrid grid = warped_grid(4);
+  for (std::size_t i = 0; i < grid.size(); ++i) {
+    grid.x[i] += 50000.0F;
+    grid.y[i] -= 20000.0F;
+  }
+  grid.view.direction = Eigen::Vector3d(0.3, 0.2, -1).normalized();
+  const GridLookup lookup(grid);
+  Random random(7);
+  for (int k = 0; k < 300; ++k) {
+    const Eigen::Vector3f p(50000.0F + static_cast<float>(random.uniform(-7, 7)),
+                            -20000.0F + static_cast<float>(random.uniform(-6, 6)),
+                            static_cast<float>(random.uniform(-3, 6)));
+    EXPECT_EQ(lookup.nearest(p, 1.0F), nearest_by_search(grid, p, 1.0F));
+  }
+}
+
 TEST(GridLookup, OnlyKeptSamplesAnswer) {
   const RangeGrid grid = test::height_field(5, 5, 1.0, [](double, double) { return 0.0; });
   std::vector<std::uint8_t> keep(grid.size(), 0);
@@ -80,6 +130,11 @@ TEST(GridLookup, OneOutlierDoesNotBlowUpTheRaster) {
   grid.x[7] = 1e6F;
   const GridLookup lookup(grid);
   EXPECT_EQ(lookup.nearest(grid.point(210), 0.01F), 210);
+  EXPECT_EQ(lookup.nearest({1e6F, grid.y[7], 0}, 1.0F), 7);
+  EXPECT_LT(lookup.cell_mm(), 1.0);
+  int seen = 0;
+  lookup.for_each_near({1e6F, grid.y[7], 0}, 1.0F, [&](std::size_t i) { seen += i == 7 ? 1 : 0; });
+  EXPECT_EQ(seen, 1);
 }
 
 TEST(GridLookup, VisitsAllWithinTheRadius) {
