@@ -186,7 +186,7 @@ FoundPose search_pose(const ScanSurface& scan, std::span<const ModelScan> model,
     look(half_turns(scan, model, found.fits.front().model_from_scanner));
   }
   if (found.fits.empty()) {
-    found.verdict = verify_pose({}, options.verify);
+    found.verdict = verify_pose(found.fits, options.verify);
   }
   return found;
 }

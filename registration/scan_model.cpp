@@ -292,7 +292,7 @@ bool ScanModel::place(int id, const RigidTransform& model_from_scanner, bool loc
     retry(job);
     return true;
   }
-  const std::vector<ModelFit> fits =
+  std::vector<ModelFit> fits =
       fit_to_model(*scan.features.surface, model, {&model_from_scanner, 1}, options_.search.fit);
   const PoseVerdict verdict = verify_pose(fits, options_.search.verify);
   if (verdict.status != PoseStatus::kRegistered) {
