@@ -177,6 +177,9 @@ FoundPose search_pose(const ScanSurface& scan, std::span<const ModelScan> model,
         starts.push_back(model[k].model_from_scanner * h.target_from_source);
       }
     }
+    if (starts.empty()) {
+      continue;
+    }
     look(starts);
     if (enough(found, options)) {
       break;
