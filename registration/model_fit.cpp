@@ -19,6 +19,10 @@ struct Start {
   double score = 0;
 };
 
+bool better(const ModelFit& a, const ModelFit& b) {
+  return a.score > b.score;
+}
+
 double coarse_score(const ScanSurface& scan, std::span<const ModelScan> model, const RigidTransform& pose,
                     const EvidenceOptions& options) {
   PoseEvidence sum;
@@ -158,11 +162,11 @@ ModelFit judge_in_model(const ScanSurface& scan, std::span<const ModelScan> mode
   return out;
 }
 
-std::vector<ModelFit> fit_to_model(const ScanSurface& scan, std::span<const ModelScan> model,
-                                   std::span<const RigidTransform> starts, const ModelFitOptions& options) {
-  if (scan.fine->samples.empty() || model.empty() || starts.empty()) {
-    return {};
-  }
+namespace {
+
+/// Takes starts from anywhere in the ICP's reach to within that of the fine level.
+std::vector<ModelFit> approach(const ScanSurface& scan, std::span<const ModelScan> model,
+                               std::span<const RigidTransform> starts, const ModelFitOptions& options) {
   const double scale_mm = scan.scale_mm;
   EvidenceOptions rough;
   rough.tolerance_mm = std::max(options.coarse_tolerance * scale_mm, 0.5 * scan.coarse->spacing_mm);
@@ -199,7 +203,6 @@ std::vector<ModelFit> fit_to_model(const ScanSurface& scan, std::span<const Mode
 
   // Most starts are wrong, and one medium pass shows it: only what is left deserves the closer ones.
   std::vector<ModelFit> fits(tried.size());
-  const auto better = [](const ModelFit& a, const ModelFit& b) { return a.score > b.score; };
   for (const double reach : {0.03, 0.012}) {
     parallel_for_each_index(
         fits.size(),
@@ -222,6 +225,25 @@ std::vector<ModelFit> fit_to_model(const ScanSurface& scan, std::span<const Mode
     while (fits.size() > 1 && fits.back().score < options.hopeless * fits.front().score) {
       fits.pop_back();
     }
+  }
+  return fits;
+}
+
+}  // namespace
+
+std::vector<ModelFit> fit_to_model(const ScanSurface& scan, std::span<const ModelScan> model,
+                                   std::span<const RigidTransform> starts, const ModelFitOptions& options) {
+  if (scan.fine->samples.empty() || model.empty() || starts.empty()) {
+    return {};
+  }
+  std::vector<ModelFit> fits;
+  if (options.starts_are_close) {
+    for (const RigidTransform& start : starts) {
+      fits.push_back(judge_in_model(scan, model, start, options));
+    }
+    std::stable_sort(fits.begin(), fits.end(), better);
+  } else {
+    fits = approach(scan, model, starts, options);
   }
   if (fits.size() > static_cast<std::size_t>(options.most_fine)) {
     fits.resize(static_cast<std::size_t>(options.most_fine));
@@ -246,7 +268,7 @@ std::vector<ModelFit> fit_to_model(const ScanSurface& scan, std::span<const Mode
   for (ModelFit& fit : fits) {
     if (std::none_of(out.begin(), out.end(), [&](const ModelFit& o) {
           return same_pose(fit.model_from_scanner, o.model_from_scanner, scan.centroid_mm,
-                           options.distinct_turn_rad, options.distinct_shift * scale_mm);
+                           options.distinct_turn_rad, options.distinct_shift * scan.scale_mm);
         })) {
       out.push_back(std::move(fit));
     }

@@ -30,6 +30,7 @@ struct ModelFitOptions {
       0.2;                         ///< residual that sampling and calibration leave, of µ, beside the noise
   double tolerance_sigmas = 3.0;   ///< of a sample that lies on the other surface
   int least_overlap_samples = 30;  ///< of the coarse level, for a scan to take part in the fit of another
+  bool starts_are_close = false;   ///< to within the fine level's reach: nothing coarser is needed
   std::size_t most_targets = 6;    ///< scans that one is fitted to at once: those with the largest overlap
 };
 

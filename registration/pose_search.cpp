@@ -134,7 +134,9 @@ FoundPose search_pose(const ScanSurface& scan, std::span<const ModelScan> model,
 
   if (hints.stage) {
     const RigidTransform& stage = *hints.stage;
-    std::vector<ModelFit> fits = fit_to_model(scan, model, {&stage, 1}, options.fit);
+    ModelFitOptions close = options.fit;
+    close.starts_are_close = true;
+    std::vector<ModelFit> fits = fit_to_model(scan, model, {&stage, 1}, close);
     std::erase_if(fits, [&](const ModelFit& f) {
       return !same_pose(
           f.model_from_scanner, stage, scan.centroid_mm,
