@@ -19,6 +19,10 @@ struct Start {
   double score = 0;
 };
 
+bool better(const ModelFit& a, const ModelFit& b) {
+  return a.score > b.score;
+}
+
 double coarse_score(const ScanSurface& scan, std::span<const ModelScan> model, const RigidTransform& pose,
                     const EvidenceOptions& options) {
   PoseEvidence sum;
@@ -34,18 +38,38 @@ double coarse_score(const ScanSurface& scan, std::span<const ModelScan> model, c
   return sent == 0 ? 0.0 : (sum.close - kFreeSpaceWeight * sum.in_front) / static_cast<double>(sent);
 }
 
-/// The scans of the model that the scan overlaps in this pose.
-std::vector<std::size_t> touched(const ScanSurface& scan, std::span<const ModelScan> model,
-                                 const RigidTransform& pose, const EvidenceOptions& options, int least) {
+/// A scan of the model and how many samples it shares with the fitted one.
+struct Shared {
+  std::size_t place = 0;
+  int close = 0;
+};
+
+/// The places of those that share the most, in the model's order.
+std::vector<std::size_t> strongest(std::vector<Shared> shared, std::size_t most) {
+  std::stable_sort(shared.begin(), shared.end(),
+                   [](const Shared& a, const Shared& b) { return a.close > b.close; });
+  shared.resize(std::min(shared.size(), most));
   std::vector<std::size_t> out;
+  for (const Shared& s : shared) {
+    out.push_back(s.place);
+  }
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+/// The scans of the model that the scan overlaps most in this pose.
+std::vector<std::size_t> touched(const ScanSurface& scan, std::span<const ModelScan> model,
+                                 const RigidTransform& pose, const EvidenceOptions& options, int least,
+                                 std::size_t most) {
+  std::vector<Shared> out;
   for (std::size_t k = 0; k < model.size(); ++k) {
     const RigidTransform m_from_scan = model[k].model_from_scanner.inverse() * pose;
     const PoseEvidence e = pose_evidence(*scan.coarse, *model[k].surface->coarse, m_from_scan, options);
     if (e.close >= least) {
-      out.push_back(k);
+      out.push_back({k, e.close});
     }
   }
-  return out;
+  return strongest(std::move(out), most);
 }
 
 using LevelOf = std::unique_ptr<SurfaceLevel> ScanSurface::*;
@@ -105,6 +129,7 @@ ModelFit judge_in_model(const ScanSurface& scan, std::span<const ModelScan> mode
       1);
   const std::size_t samples = scan.fine->samples.size();
   std::vector<std::uint8_t> on_model(samples, 0);
+  std::vector<Shared> shared;
   double sigma_sum = 0;
   double sigma_weight = 0;
   for (std::size_t k = 0; k < model.size(); ++k) {
@@ -120,10 +145,12 @@ ModelFit judge_in_model(const ScanSurface& scan, std::span<const ModelScan> mode
     }
     if (pair > 0.02) {
       out.touching.push_back(k);
+      shared.push_back({k, outward[k].close + inward[k].close});
     }
     sigma_sum += (outward[k].close + 1e-9) * residual_sigma_mm(scan, *model[k].surface, options);
     sigma_weight += outward[k].close + 1e-9;
   }
+  out.targets = strongest(std::move(shared), options.most_targets);
   out.residual_sigma_mm = sigma_weight > 0 ? sigma_sum / sigma_weight : 0;
   if (samples > 0) {
     const auto on = std::count(on_model.begin(), on_model.end(), std::uint8_t{1});
@@ -135,11 +162,11 @@ ModelFit judge_in_model(const ScanSurface& scan, std::span<const ModelScan> mode
   return out;
 }
 
-std::vector<ModelFit> fit_to_model(const ScanSurface& scan, std::span<const ModelScan> model,
-                                   std::span<const RigidTransform> starts, const ModelFitOptions& options) {
-  if (scan.fine->samples.empty() || model.empty()) {
-    return {};
-  }
+namespace {
+
+/// Takes starts from anywhere in the ICP's reach to within that of the fine level.
+std::vector<ModelFit> approach(const ScanSurface& scan, std::span<const ModelScan> model,
+                               std::span<const RigidTransform> starts, const ModelFitOptions& options) {
   const double scale_mm = scan.scale_mm;
   EvidenceOptions rough;
   rough.tolerance_mm = std::max(options.coarse_tolerance * scale_mm, 0.5 * scan.coarse->spacing_mm);
@@ -165,7 +192,8 @@ std::vector<ModelFit> fit_to_model(const ScanSurface& scan, std::span<const Mode
         coarse.kernel_mm = 0.012 * scale_mm;
         EvidenceOptions wide = rough;
         wide.tolerance_mm *= 2.0;
-        const auto members = touched(scan, model, tried[k].pose, wide, options.least_overlap_samples / 2);
+        const auto members = touched(scan, model, tried[k].pose, wide, options.least_overlap_samples / 2,
+                                     options.most_targets);
         tried[k].pose =
             icp_in_model(scan, model, members, &ScanSurface::coarse, tried[k].pose, coarse).model_from_source;
         tried[k].score = coarse_score(scan, model, tried[k].pose, rough);
@@ -175,7 +203,6 @@ std::vector<ModelFit> fit_to_model(const ScanSurface& scan, std::span<const Mode
 
   // Most starts are wrong, and one medium pass shows it: only what is left deserves the closer ones.
   std::vector<ModelFit> fits(tried.size());
-  const auto better = [](const ModelFit& a, const ModelFit& b) { return a.score > b.score; };
   for (const double reach : {0.03, 0.012}) {
     parallel_for_each_index(
         fits.size(),
@@ -184,7 +211,8 @@ std::vector<ModelFit> fit_to_model(const ScanSurface& scan, std::span<const Mode
             fits[k].model_from_scanner = tried[k].pose;
           }
           RigidTransform& pose = fits[k].model_from_scanner;
-          const auto members = touched(scan, model, pose, rough, options.least_overlap_samples);
+          const auto members =
+              touched(scan, model, pose, rough, options.least_overlap_samples, options.most_targets);
           IcpOptions medium = step;
           medium.iterations = 10;
           medium.reach_mm = std::max(reach * scale_mm, 2.0 * scan.medium->spacing_mm);
@@ -197,6 +225,25 @@ std::vector<ModelFit> fit_to_model(const ScanSurface& scan, std::span<const Mode
     while (fits.size() > 1 && fits.back().score < options.hopeless * fits.front().score) {
       fits.pop_back();
     }
+  }
+  return fits;
+}
+
+}  // namespace
+
+std::vector<ModelFit> fit_to_model(const ScanSurface& scan, std::span<const ModelScan> model,
+                                   std::span<const RigidTransform> starts, const ModelFitOptions& options) {
+  if (scan.fine->samples.empty() || model.empty() || starts.empty()) {
+    return {};
+  }
+  std::vector<ModelFit> fits;
+  if (options.starts_are_close) {
+    for (const RigidTransform& start : starts) {
+      fits.push_back(judge_in_model(scan, model, start, options));
+    }
+    std::stable_sort(fits.begin(), fits.end(), better);
+  } else {
+    fits = approach(scan, model, starts, options);
   }
   if (fits.size() > static_cast<std::size_t>(options.most_fine)) {
     fits.resize(static_cast<std::size_t>(options.most_fine));
@@ -211,7 +258,7 @@ std::vector<ModelFit> fit_to_model(const ScanSurface& scan, std::span<const Mode
       fine.reach_mm = std::max(2.0 * scan.fine->spacing_mm, 5.0 * fine.kernel_mm);
       fine.iterations = 8;
       fine.converged_mm = 0.03 * fit.residual_sigma_mm;
-      result = icp_in_model(scan, model, fit.touching, &ScanSurface::fine, result.model_from_source, fine);
+      result = icp_in_model(scan, model, fit.targets, &ScanSurface::fine, result.model_from_source, fine);
     }
     fit = judge_in_model(scan, model, result.model_from_source, options);
     fit.icp = result;
@@ -221,7 +268,7 @@ std::vector<ModelFit> fit_to_model(const ScanSurface& scan, std::span<const Mode
   for (ModelFit& fit : fits) {
     if (std::none_of(out.begin(), out.end(), [&](const ModelFit& o) {
           return same_pose(fit.model_from_scanner, o.model_from_scanner, scan.centroid_mm,
-                           options.distinct_turn_rad, options.distinct_shift * scale_mm);
+                           options.distinct_turn_rad, options.distinct_shift * scan.scale_mm);
         })) {
       out.push_back(std::move(fit));
     }

@@ -30,6 +30,8 @@ struct ModelFitOptions {
       0.2;                         ///< residual that sampling and calibration leave, of µ, beside the noise
   double tolerance_sigmas = 3.0;   ///< of a sample that lies on the other surface
   int least_overlap_samples = 30;  ///< of the coarse level, for a scan to take part in the fit of another
+  bool starts_are_close = false;   ///< to within the fine level's reach: nothing coarser is needed
+  std::size_t most_targets = 6;    ///< scans that one is fitted to at once: those with the largest overlap
 };
 
 /// A pose of a scan in the model and everything that speaks for and against it.
@@ -44,6 +46,7 @@ struct ModelFit {
   double residual_sigma_mm = 0;  ///< expected standard deviation of a residual
   double score = 0;              ///< for comparing poses of one scan
   std::vector<std::size_t> touching;  ///< positions in the model of the scans that it overlaps
+  std::vector<std::size_t> targets;   ///< those of them that it is fitted to
 
   [[nodiscard]] PoseEvidence both() const {
     PoseEvidence sum = outward;

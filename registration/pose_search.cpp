@@ -134,7 +134,9 @@ FoundPose search_pose(const ScanSurface& scan, std::span<const ModelScan> model,
 
   if (hints.stage) {
     const RigidTransform& stage = *hints.stage;
-    std::vector<ModelFit> fits = fit_to_model(scan, model, {&stage, 1}, options.fit);
+    ModelFitOptions close = options.fit;
+    close.starts_are_close = true;
+    std::vector<ModelFit> fits = fit_to_model(scan, model, {&stage, 1}, close);
     std::erase_if(fits, [&](const ModelFit& f) {
       return !same_pose(
           f.model_from_scanner, stage, scan.centroid_mm,
@@ -177,6 +179,9 @@ FoundPose search_pose(const ScanSurface& scan, std::span<const ModelScan> model,
         starts.push_back(model[k].model_from_scanner * h.target_from_source);
       }
     }
+    if (starts.empty()) {
+      continue;
+    }
     look(starts);
     if (enough(found, options)) {
       break;
@@ -186,7 +191,7 @@ FoundPose search_pose(const ScanSurface& scan, std::span<const ModelScan> model,
     look(half_turns(scan, model, found.fits.front().model_from_scanner));
   }
   if (found.fits.empty()) {
-    found.verdict = verify_pose({}, options.verify);
+    found.verdict = verify_pose(found.fits, options.verify);
   }
   return found;
 }

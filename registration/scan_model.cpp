@@ -16,6 +16,9 @@ constexpr const char* kStopped = "registration was stopped; run it again";
 constexpr const char* kOtherGroup =
     "it fits other scans, but not the largest group; scan what connects them, with at least 30 % overlap";
 
+/// Poses of an unsettled search that are kept for the next.
+constexpr std::size_t kMostLeads = 5;
+
 bool size_is_possible(double a_mm, double b_mm, double most_ratio) {
   return a_mm <= most_ratio * b_mm && b_mm <= most_ratio * a_mm;
 }
@@ -77,7 +80,10 @@ void ScanModel::enter(int id, const RangeGrid* grid, const PinSet* pins) {
 bool ScanModel::remove(int id) {
   const bool known = scans_.erase(id) > 0;
   std::erase_if(pairs_, [&](const auto& e) { return e.first.first == id || e.first.second == id; });
-  std::erase_if(hypotheses_, [&](const auto& e) { return e.first.first == id || e.first.second == id; });
+  for (auto& [other, scan] : scans_) {
+    scan.tried_on.erase(id);
+    std::erase_if(scan.leads, [&](const Lead& lead) { return lead.on == id; });
+  }
   return known;
 }
 
@@ -180,7 +186,11 @@ void ScanModel::retry(JobContext& job) {
     grown = false;
     const int main = main_group();
     for (auto& [id, scan] : scans_) {
-      if (scan.usable && !job.cancelled() && scan.group != main && scan.group != main_group()) {
+      if (!scan.usable || job.cancelled() || scan.group == main || scan.group == main_group()) {
+        continue;
+      }
+      const std::vector<int> ids = members(main_group());
+      if (std::any_of(ids.begin(), ids.end(), [&](int i) { return !scan.tried_on.contains(i); })) {
         grown = join_group(id, main_group(), job) || grown;
       }
     }
@@ -191,20 +201,31 @@ bool ScanModel::join_group(int id, int group, JobContext& job) {
   Scan& scan = scans_.at(id);
   const std::vector<int> ids = members(group);
   const std::vector<ModelScan> model = model_of(ids);
-  std::vector<std::vector<PoseHypothesis>> fresh(ids.size());
+  std::vector<std::uint8_t> searched(ids.size(), 0);
   const PairHypotheses from_pairs = [&](std::size_t k) {
-    const auto known = hypotheses_.find({id, ids[k]});
-    if (known != hypotheses_.end()) {
-      return known->second;
+    if (scan.tried_on.contains(ids[k])) {
+      return std::vector<PoseHypothesis>{};
     }
-    fresh[k] = align_pair(scan.features, scans_.at(ids[k]).features, options_.search.align);
-    return fresh[k];
+    searched[k] = 1;
+    return align_pair(scan.features, scans_.at(ids[k]).features, options_.search.align);
   };
-  const FoundPose found =
-      search_pose(*scan.features.surface, model, hints_for(scan, ids), from_pairs, options_.search, job);
-  for (std::size_t k = 0; k < ids.size(); ++k) {
-    if (!fresh[k].empty()) {
-      hypotheses_[{id, ids[k]}] = std::move(fresh[k]);
+  PoseHints hints = hints_for(scan, ids);
+  for (const Lead& lead : scan.leads) {
+    if (scans_.at(lead.on).group == group) {
+      hints.starts.push_back(scans_.at(lead.on).group_from_scanner * lead.on_from_scanner);
+    }
+  }
+  const FoundPose found = search_pose(*scan.features.surface, model, hints, from_pairs, options_.search, job);
+  if (!job.cancelled()) {
+    for (std::size_t k = 0; k < ids.size(); ++k) {
+      if (searched[k] != 0) {
+        scan.tried_on.insert(ids[k]);
+      }
+    }
+    std::erase_if(scan.leads, [&](const Lead& lead) { return scans_.at(lead.on).group == group; });
+    for (std::size_t f = 0; f < std::min(found.fits.size(), kMostLeads); ++f) {
+      scan.leads.push_back({ids.front(), scans_.at(ids.front()).group_from_scanner.inverse() *
+                                             found.fits[f].model_from_scanner});
     }
   }
   if (found.verdict.status != PoseStatus::kRegistered || job.cancelled()) {
@@ -251,9 +272,11 @@ void ScanModel::connect(int id, const ModelFit& fit, bool by_stage, const std::v
   for (const int i : own_moves ? group_ids : own_ids) {
     scans_.at(i).group = own_moves ? group : own;
   }
+  std::vector<std::pair<int, int>> pairs;
   for (const std::size_t k : fit.touching) {
-    measure_pair(id, group_ids[k]);
+    pairs.push_back(std::minmax(id, group_ids[k]));
   }
+  measure_pairs(pairs);
   scan.reason.clear();
 }
 
@@ -283,16 +306,18 @@ bool ScanModel::place(int id, const RigidTransform& model_from_scanner, bool loc
     if (!ids.empty()) {
       const ModelFit fit =
           judge_in_model(*scan.features.surface, model, model_from_scanner, options_.search.fit);
+      std::vector<std::pair<int, int>> pairs;
       for (const std::size_t k : fit.touching) {
-        measure_pair(id, ids[k]);
+        pairs.push_back(std::minmax(id, ids[k]));
       }
+      measure_pairs(pairs);
     }
     relax_group(main, job);
     judge(id);
     retry(job);
     return true;
   }
-  const std::vector<ModelFit> fits =
+  std::vector<ModelFit> fits =
       fit_to_model(*scan.features.surface, model, {&model_from_scanner, 1}, options_.search.fit);
   const PoseVerdict verdict = verify_pose(fits, options_.search.verify);
   if (verdict.status != PoseStatus::kRegistered) {

@@ -4,6 +4,7 @@
 
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -24,7 +25,7 @@ class ScanModel {
   bool remove(int id);
   /// Tries to join the scan's group with every other group. True when it joined one.
   bool join(int id, JobContext& job);
-  /// Tries again the scans outside the main group until no more join.
+  /// Tries the scans outside the main group on what it has that is new to them, until no more join.
   void retry(JobContext& job);
   bool place(int id, const RigidTransform& model_from_scanner, bool locked);
   Status finalize(JobContext& job);
@@ -33,6 +34,11 @@ class ScanModel {
   [[nodiscard]] std::vector<ScanPose> poses() const;
 
  private:
+  /// The best poses of a search that settled nothing, relative to a scan of the group that was searched.
+  struct Lead {
+    int on = 0;
+    RigidTransform on_from_scanner;
+  };
   struct Scan {
     std::string file;
     ScanFeatures features;
@@ -47,9 +53,12 @@ class ScanModel {
     PoseStatus outcome = PoseStatus::kFailed;
     double rms_mm = 0, overlap = 0, stage_sigma_mm = 0;
     Matrix6d covariance = Matrix6d::Zero();
+    std::set<int> tried_on;  ///< scans that it was searched on: their hypotheses are known to lead nowhere …
+    std::vector<Lead> leads;  ///< … but for these, which a larger model may settle
   };
   /// a < b.
   struct Pair {
+    RigidTransform measured_from;  ///< a_from_b that the measurement started at
     RigidTransform a_from_b;
     Eigen::Vector3d center_mm{0, 0, 0};
     Matrix6d information = Matrix6d::Zero();
@@ -60,10 +69,14 @@ class ScanModel {
   [[nodiscard]] std::vector<int> groups_by_size() const;
   [[nodiscard]] PoseHints hints_for(const Scan& scan, const std::vector<int>& group_ids) const;
   [[nodiscard]] std::vector<ModelScan> model_of(const std::vector<int>& ids) const;
-  [[nodiscard]] std::vector<PoseHypothesis> hypotheses(int source, int target);
+  /// Looks for the scan's pose in the group: from its leads, and on the members that are new to it.
   bool join_group(int id, int group, JobContext& job);
   void connect(int id, const ModelFit& fit, bool by_stage, const std::vector<int>& group_ids, int group);
-  void measure_pair(int a, int b);
+  [[nodiscard]] std::optional<Pair> measured_pair(int a, int b) const;
+  /// Measures the pairs (a < b), both cores over pairs, and keeps what holds.
+  void measure_pairs(const std::vector<std::pair<int, int>>& pairs);
+  /// True when the pair was measured from about where its scans are.
+  [[nodiscard]] bool pair_is_fresh(int a, int b) const;
   void relax_group(int group, const JobContext& job);
   void judge(int id);
 
@@ -72,8 +85,6 @@ class ScanModel {
   int next_group_ = 0;
   std::map<int, Scan> scans_;
   std::map<std::pair<int, int>, Pair> pairs_;
-  std::map<std::pair<int, int>, std::vector<PoseHypothesis>>
-      hypotheses_;  ///< by (source, target): do not depend on poses
 };
 
 }  // namespace dubsar

@@ -15,12 +15,12 @@ namespace {
 constexpr int kLeastPairs = 150;
 /// A pairwise fit that leaves the joint one by more than this many residual sigmas has slid away.
 constexpr double kMostSlideSigmas = 6.0;
+/// A pair whose scans have moved by less than this many residual sigmas since would be measured alike.
+constexpr double kFreshSigmas = 0.5;
 
 }  // namespace
 
-void ScanModel::measure_pair(int first, int second) {
-  const int a = std::min(first, second);
-  const int b = std::max(first, second);
+std::optional<ScanModel::Pair> ScanModel::measured_pair(int a, int b) const {
   const ScanSurface& on = *scans_.at(a).features.surface;
   const ScanSurface& moved = *scans_.at(b).features.surface;
   const double sigma_mm = residual_sigma_mm(on, moved, options_.search.fit);
@@ -40,16 +40,42 @@ void ScanModel::measure_pair(int first, int second) {
     icp_options.iterations = 0;
     result = icp(*moved.fine, {&target, 1}, start, icp_options);
   }
-  pairs_.erase({a, b});
   if (result.pairs < kLeastPairs) {
-    return;
+    return std::nullopt;
   }
   Pair pair;
+  pair.measured_from = start;
   pair.a_from_b = result.model_from_source;
   pair.center_mm = result.center_mm;
   const double variance = std::max(result.rms_mm * result.rms_mm, 0.25 * sigma_mm * sigma_mm);
   pair.information = result.normal_matrix / (options_.pair_variance * variance);
-  pairs_[{a, b}] = pair;
+  return pair;
+}
+
+void ScanModel::measure_pairs(const std::vector<std::pair<int, int>>& pairs) {
+  std::vector<std::optional<Pair>> measured(pairs.size());
+  parallel_for_each_index(
+      pairs.size(), [&](std::size_t k) { measured[k] = measured_pair(pairs[k].first, pairs[k].second); }, 1);
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    pairs_.erase(pairs[k]);
+    if (measured[k]) {
+      pairs_[pairs[k]] = *measured[k];
+    }
+  }
+}
+
+bool ScanModel::pair_is_fresh(int a, int b) const {
+  const auto pair = pairs_.find({a, b});
+  if (pair == pairs_.end()) {
+    return false;
+  }
+  const ScanSurface& on = *scans_.at(a).features.surface;
+  const ScanSurface& moved = *scans_.at(b).features.surface;
+  const RigidTransform now = scans_.at(a).group_from_scanner.inverse() * scans_.at(b).group_from_scanner;
+  const double sigma_mm = residual_sigma_mm(on, moved, options_.search.fit);
+  const double most_mm = kFreshSigmas * sigma_mm;
+  return same_pose(now, pair->second.measured_from, moved.centroid_mm,
+                   most_mm / std::max(moved.extent_mm, 1e-6), most_mm);
 }
 
 void ScanModel::relax_group(int group, const JobContext& job) {
@@ -128,7 +154,7 @@ void ScanModel::judge(int id) {
 Status ScanModel::finalize(JobContext& job) {
   for (auto& [id, scan] : scans_) {
     if (scan.usable && scan.group != main_group()) {
-      join(id, job);
+      join_group(id, main_group(), job);
     }
     if (job.cancelled()) {
       return fail(ErrorKind::kCancelled, "registration was stopped");
@@ -137,6 +163,7 @@ Status ScanModel::finalize(JobContext& job) {
   const int group = main_group();
   const std::vector<int> ids = members(group);
   for (int round = 0; round < options_.final_rounds && ids.size() > 1; ++round) {
+    std::vector<std::pair<int, int>> moved;
     for (std::size_t k = 0; k < ids.size(); ++k) {
       job.progress("relax",
                    (static_cast<double>(round) + static_cast<double>(k) / static_cast<double>(ids.size())) /
@@ -149,9 +176,15 @@ Status ScanModel::finalize(JobContext& job) {
       const ModelFit fit = judge_in_model(*scan.features.surface, model_of(later), scan.group_from_scanner,
                                           options_.search.fit);
       for (const std::size_t touching : fit.touching) {
-        measure_pair(ids[k], later[touching]);
+        if (!pair_is_fresh(ids[k], later[touching])) {
+          moved.emplace_back(ids[k], later[touching]);
+        }
       }
     }
+    if (moved.empty()) {
+      break;
+    }
+    measure_pairs(moved);
     relax_group(group, job);
   }
   for (const int id : ids) {

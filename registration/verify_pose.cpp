@@ -87,27 +87,36 @@ double doubt(const ModelFit& fit, const VerifyOptions& options) {
          residual_doubt(fit, options);
 }
 
-PoseVerdict verify_pose(std::span<const ModelFit> fits, const VerifyOptions& options) {
+PoseVerdict verify_pose(std::vector<ModelFit>& fits, const VerifyOptions& options) {
   if (fits.empty()) {
     return {
         PoseStatus::kFailed,
         "nothing in it resembles the registered scans; scan again with at least 30 % overlap, or click three "
         "points on both scans"};
   }
-  PoseVerdict verdict = judged_alone(fits.front(), options);
-  if (verdict.status != PoseStatus::kRegistered) {
-    return verdict;
+  auto best = fits.end();
+  for (auto fit = fits.begin(); fit != fits.end(); ++fit) {
+    if (fit->score > options.rival_score * fits.front().score &&
+        judged_alone(*fit, options).status == PoseStatus::kRegistered &&
+        (best == fits.end() || doubt(*fit, options) < doubt(*best, options))) {
+      best = fit;
+    }
   }
-  for (const ModelFit& rival : fits.subspan(1)) {
-    if (rival.score > options.rival_score * fits.front().score &&
-        doubt(rival, options) <= options.rival_doubt) {
-      const RigidTransform turn = rival.model_from_scanner * fits.front().model_from_scanner.inverse();
+  if (best == fits.end()) {
+    return judged_alone(fits.front(), options);
+  }
+  std::rotate(fits.begin(), best, best + 1);
+  const ModelFit& chosen = fits.front();
+  const double least = options.rival_gap + options.rival_ratio * doubt(chosen, options);
+  for (auto rival = fits.begin() + 1; rival != fits.end(); ++rival) {
+    if (rival->score > options.rival_score * chosen.score && doubt(*rival, options) < least) {
+      const RigidTransform turn = rival->model_from_scanner * chosen.model_from_scanner.inverse();
       return {PoseStatus::kUnsure, "two poses fit, " +
                                        std::to_string(std::lround(deg_from_rad(turn.angle_rad()))) +
                                        " degrees apart; click one point on both scans"};
     }
   }
-  return verdict;
+  return {PoseStatus::kRegistered, {}};
 }
 
 bool consistent_pose(const ModelFit& fit, const VerifyOptions& options) {

@@ -2,8 +2,8 @@
 // Copyright The Dubsar developers
 #pragma once
 
-#include <span>
 #include <string>
+#include <vector>
 
 #include "core/scan_pose.h"
 #include "registration/model_fit.h"
@@ -24,8 +24,12 @@ struct VerifyOptions {
   double usual_residual = 0.75;    ///< rms over what noise and spacing explain, of a right pose …
   double most_residual = 1.7;      ///< … and where it alone is too much
   double least_stability = 0.003;  ///< see IcpResult::stability; below, the scan can slide or turn
-  double rival_score = 0.5;  ///< a second pose with more than this part of the best one's score is a rival …
-  double rival_doubt = 1.5;  ///< … when no more than this speaks against it
+  // Tablets are nearly symmetric: a wrong pose seldom comes alone. How little may speak against the next pose
+  // follows from how much speaks against the best: a right pose of a clean scan has next to none, and one of
+  // a rough scan must stand alone. Measured with dubsar-false-accepts.
+  double rival_score = 0.25;  ///< a pose with less than this part of another's score is no rival to it
+  double rival_gap = 0.5;     ///< a rival must have this much against it …
+  double rival_ratio = 6.0;   ///< … and this many times what speaks against the best
 };
 
 struct PoseVerdict {
@@ -36,9 +40,9 @@ struct PoseVerdict {
 /// What speaks against a pose, 1 being too much.
 [[nodiscard]] double doubt(const ModelFit& fit, const VerifyOptions& options);
 
-/// Accept, ask or reject: the one place that decides. `fits` are the distinct poses found for a scan, best
-/// first.
-[[nodiscard]] PoseVerdict verify_pose(std::span<const ModelFit> fits, const VerifyOptions& options);
+/// Accept, ask or reject: the one place that decides. `fits` are the distinct poses found for a scan, by
+/// falling score; of those that may be accepted, the one that least speaks against is moved to the front.
+[[nodiscard]] PoseVerdict verify_pose(std::vector<ModelFit>& fits, const VerifyOptions& options);
 
 /// True when nothing that was seen contradicts the pose: what a scan needs whose pose the stage guarantees.
 [[nodiscard]] bool consistent_pose(const ModelFit& fit, const VerifyOptions& options);
