@@ -4,9 +4,11 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <chrono>
 #include <ctime>
+#include <limits>
 #include <map>
 #include <mutex>
 #include <set>
@@ -51,6 +53,9 @@ struct ScanToPlan {
 };
 /// The planner's answer to an automatic run: where to next, or that there is nothing more to do.
 using NextStep = std::optional<NextView>;
+
+/// What asking the device for a scan led to.
+enum class Taken { kScan, kNothing, kEnd };
 
 /// Adds the time of a scope to a stage.
 class StageClock {
@@ -102,6 +107,25 @@ std::vector<std::string> accuracy_sentences(const std::vector<ScanPose>& poses) 
               1000 * worst_sigma_mm)};
 }
 
+/// Pictures with four pixels to a sample: more would cost time and show nothing new. Small objects are still
+/// drawn large enough to look at.
+int picture_size_px(const std::vector<PlacedScan>& scans, const Mesh& mesh) {
+  constexpr double kPxPerSample = 4;
+  constexpr double kLeastPx = 480;
+  constexpr double kMostPx = 1000;
+  double spacing_mm = std::numeric_limits<double>::infinity();
+  for (const PlacedScan& scan : scans) {
+    spacing_mm = std::min(spacing_mm, scan.grid->spacing_mm);
+  }
+  Eigen::AlignedBox3f box;
+  for (const Eigen::Vector3f& p : mesh.positions) {
+    box.extend(p);
+  }
+  const double longest_mm = box.isEmpty() ? 0.0 : static_cast<double>(box.sizes().maxCoeff());
+  const double wanted_px = spacing_mm > 0 ? kPxPerSample * longest_mm / spacing_mm : kMostPx;
+  return static_cast<int>(std::clamp(wanted_px, kLeastPx, kMostPx));
+}
+
 }  // namespace
 
 struct Engine::Impl {
@@ -115,16 +139,20 @@ struct Engine::Impl {
   std::set<std::string> known_files;         ///< a replayed file that is stored already is not stored again
   int placement_offset = 0;                  ///< a resumed session starts with a lifted tablet
   std::map<int, Placement> drives_of_scans;  ///< of the storing thread once the pipeline runs
+  bool wait_for_plan = false;                ///< the session that goes on says first whether it needs more
   bool drives = false;                       ///< automatic, and the device can be placed
 
-  BoundedQueue<RawScan> to_store{kQueueLength};
-  BoundedQueue<StationScan> to_register{kQueueLength};
-  BoundedQueue<ScanToPlan> to_plan{kQueueLength};
-  BoundedQueue<NextStep> to_device{1};
+  struct Queues {
+    BoundedQueue<RawScan> to_store{kQueueLength};
+    BoundedQueue<StationScan> to_register{kQueueLength};
+    BoundedQueue<ScanToPlan> to_plan{kQueueLength};
+    BoundedQueue<NextStep> to_device{1};
+  };
+  std::unique_ptr<Queues> queues;  ///< of the round that runs
 
   Registrar registrar;
   PlanningStage planning;
-  std::vector<StationScan> all_scans;  ///< of the planning thread; read by finish() after it has ended
+  std::map<int, std::string> names;  ///< original names by id; of the registering thread while it runs
 
   std::mutex mutex;  ///< of what follows
   std::optional<Error> first_error;
@@ -147,8 +175,8 @@ struct Engine::Impl {
         first_error = error;
       }
     }
-    to_store.close();
-    to_device.close();
+    queues->to_store.close();
+    queues->to_device.close();
   }
   bool failed() {
     const std::scoped_lock lock(mutex);
@@ -157,12 +185,16 @@ struct Engine::Impl {
 
   Status open(JobContext& job);
   Status load_resumed(JobContext& job);
-  void acquire(JobContext& job);
-  bool take_scan(const std::optional<Placement>& drive, JobContext& job);
+  void acquire(NextStep step, JobContext& job);
+  Taken take_scan(const std::optional<Placement>& drive, JobContext& job);
   void keep_stored();
   void register_all(JobContext& job);
   void plan_all(JobContext& job);
-  Result<EngineResult> finish(JobContext& job);
+  std::vector<ScanPose> named_poses() const;
+  Result<bool> run_round(NextStep step, EngineResult& result, JobContext& job);
+  Result<EngineResult> run(JobContext& job);
+  Status settle(EngineResult& result, JobContext& job);
+  Status finish(EngineResult& result, JobContext& job);
   Status keep_results(const EngineResult& result);
 };
 
@@ -248,11 +280,16 @@ Status Engine::Impl::open(JobContext& job) {
       drives_of_scans = std::move(*known);
     }
   }
-  return load_resumed(job);
+  if (const Status loaded = load_resumed(job); !loaded) {
+    return loaded;
+  }
+  wait_for_plan = drives && !resumed.empty();
+  return {};
 }
 
-/// Takes the next scan of the device. False when there is none, or the run is over.
-bool Engine::Impl::take_scan(const std::optional<Placement>& drive, JobContext& job) {
+/// Takes the next scan of the device. kEnd when there is none, or the run is over; kNothing when this one
+/// does not count, but others may follow.
+Taken Engine::Impl::take_scan(const std::optional<Placement>& drive, JobContext& job) {
   std::optional<SparseFlagger> flagger;
   SampleFlags flags;
   const auto on_profile = [&](const RangeGrid& grid, int row) {
@@ -277,20 +314,21 @@ bool Engine::Impl::take_scan(const std::optional<Placement>& drive, JobContext& 
     // A device that stopped in mid-scan leaves profiles that are as good as any.
     if (std::optional<RangeGrid> partial = source->take_partial(); partial && partial->valid_count() > 0) {
       emit(Notice{"the half scan is kept"});
-      to_store.push({std::move(*partial), std::nullopt, drive});
+      queues->to_store.push({std::move(*partial), std::nullopt, drive});
     }
     // A bad file of a folder does not stop the others.
-    return source->capabilities().finite && grid.error().kind == ErrorKind::kBadInput;
+    const bool others = source->capabilities().finite && grid.error().kind == ErrorKind::kBadInput;
+    return others ? Taken::kNothing : Taken::kEnd;
   }
   if (!grid) {
     give_up(grid.error());
-    return false;
+    return Taken::kEnd;
   }
   if (!*grid) {
-    return false;
+    return Taken::kEnd;
   }
   if (!(*grid)->source.empty() && known_files.contains((*grid)->source)) {
-    return true;
+    return Taken::kNothing;
   }
   if (flagger) {
     flagger->finish(**grid, flags);
@@ -299,51 +337,57 @@ bool Engine::Impl::take_scan(const std::optional<Placement>& drive, JobContext& 
     (*grid)->nominal->placement += placement_offset;
   }
   const bool streamed = flagger.has_value() && flags.size() == (*grid)->size();
-  return to_store.push({std::move(**grid), streamed ? std::optional(std::move(flags)) : std::nullopt, drive});
+  const bool taken = queues->to_store.push(
+      {std::move(**grid), streamed ? std::optional(std::move(flags)) : std::nullopt, drive});
+  return taken ? Taken::kScan : Taken::kEnd;
 }
 
-void Engine::Impl::acquire(JobContext& job) {
+/// `step` is where the scan before this round said to go next; nothing in the first round.
+void Engine::Impl::acquire(NextStep step, JobContext& job) {
   // A device without an end, and nobody to ask for the next placement, gives one scan.
   const bool endless = !source->capabilities().finite && !drives;
   const int limit = options.max_scans > 0 ? options.max_scans : endless ? stored_count + 1 : 0;
   std::optional<Placement> drive = drives ? std::optional(Placement{}) : std::nullopt;
   // A session that goes on begins with a scan of how the tablet lies now, unless it is conclusive already.
-  if (drives && stored_count > 0) {
-    const std::optional<NextStep> step = to_device.pop();
-    if (!step || !*step) {
-      to_store.close();
+  if (wait_for_plan) {
+    const std::optional<NextStep> planned = queues->to_device.pop();
+    if (!planned || !*planned) {
+      queues->to_store.close();
       return;
     }
   }
-  bool first = true;
-  for (int taken = stored_count; limit == 0 || taken < limit; ++taken) {
+  for (int taken = stored_count; limit == 0 || taken < limit;) {
     if (job.cancelled()) {
       give_up({ErrorKind::kCancelled, "stopped", {}, {}});
       break;
     }
-    if (drives && !first) {
-      const std::optional<NextStep> step = to_device.pop();
-      if (!step || !*step) {
-        break;
-      }
-      emit(NextPlacement{**step});
-      drive = (*step)->placement;
+    if (step) {
+      emit(NextPlacement{*step});
+      drive = step->placement;
       if (const Status placed = source->place(*drive); !placed) {
+        emit(Notice{placed.error().line()});
         const std::scoped_lock lock(mutex);
         device_error = placed.error();
         break;
       }
     }
-    first = false;
-    if (!take_scan(drive, job)) {
+    const Taken got = take_scan(drive, job);
+    if (got == Taken::kEnd) {
       break;
     }
+    taken += got == Taken::kScan ? 1 : 0;
+    if (drives) {
+      step = queues->to_device.pop().value_or(std::nullopt);
+      if (!step) {
+        break;
+      }
+    }
   }
-  to_store.close();
+  queues->to_store.close();
 }
 
 void Engine::Impl::keep_stored() {
-  while (std::optional<RawScan> raw = to_store.pop()) {
+  while (std::optional<RawScan> raw = queues->to_store.pop()) {
     const StageClock timing = clock("storing");
     const Result<int> id = store->add_grid(raw->grid);
     if (!id) {
@@ -363,9 +407,9 @@ void Engine::Impl::keep_stored() {
         give_up(saved.error());
       }
     }
-    to_register.push(std::move(scan));
+    queues->to_register.push(std::move(scan));
   }
-  to_register.close();
+  queues->to_register.close();
 }
 
 void Engine::Impl::register_all(JobContext& job) {
@@ -376,24 +420,32 @@ void Engine::Impl::register_all(JobContext& job) {
       const StageClock timing = clock("registration");
       pose = registrar.add(scan.id, scan.measured, pins, job);
     }
-    std::vector<ScanPose> poses = registrar.poses();
+    names[scan.id] = scan.file;
+    pose.file = scan.file;
+    std::vector<ScanPose> poses = named_poses();
+    // Whatever ends the run, what it found until now is in the session.
+    if (plan_now && !job.cancelled()) {
+      if (const Status saved = store->save_poses(poses); !saved) {
+        give_up(saved.error());
+      }
+    }
     emit(ScanPlaced{pose, poses});
-    to_plan.push({std::move(scan), std::move(poses), plan_now});
+    queues->to_plan.push({std::move(scan), std::move(poses), plan_now});
   };
   for (std::size_t k = 0; k < resumed.size() && !job.cancelled(); ++k) {
     handle(std::move(resumed[k]), k + 1 == resumed.size());
   }
-  while (std::optional<StationScan> scan = to_register.pop()) {
+  resumed.clear();
+  while (std::optional<StationScan> scan = queues->to_register.pop()) {
     if (!job.cancelled()) {
       handle(std::move(*scan), true);
     }
   }
-  to_plan.close();
+  queues->to_plan.close();
 }
 
 void Engine::Impl::plan_all(JobContext& job) {
-  while (std::optional<ScanToPlan> item = to_plan.pop()) {
-    all_scans.push_back(item->scan);
+  while (std::optional<ScanToPlan> item = queues->to_plan.pop()) {
     planning.add(item->scan);
     if (job.cancelled() || failed() || !item->plan_now) {
       continue;
@@ -410,63 +462,86 @@ void Engine::Impl::plan_all(JobContext& job) {
     }
     const bool can_go_on = !red_map->conclusive && !red_map->next.empty() && red_map->next.front().placement;
     if (drives) {
-      to_device.push(can_go_on ? NextStep(red_map->next.front()) : std::nullopt);
+      queues->to_device.push(can_go_on ? NextStep(red_map->next.front()) : std::nullopt);
     }
     emit(RedMapChanged{std::move(*red_map)});
   }
-  to_device.close();
+  queues->to_device.close();
 }
 
-Result<EngineResult> Engine::Impl::finish(JobContext& job) {
-  if (first_error) {
-    Error error = *first_error;
-    if (error.kind == ErrorKind::kCancelled) {
-      error = {ErrorKind::kCancelled, "stopped; " + std::to_string(stored_count) + " scans are stored",
-               options.session.string(), "the same command goes on with them"};
+std::vector<ScanPose> Engine::Impl::named_poses() const {
+  std::vector<ScanPose> poses = registrar.poses();
+  for (ScanPose& pose : poses) {
+    if (const auto name = names.find(pose.id); name != names.end()) {
+      pose.file = name->second;
     }
-    return std::unexpected(error);
+  }
+  return poses;
+}
+
+/// The final word on all scans that there are: poses, and the red map that follows from them.
+Status Engine::Impl::settle(EngineResult& result, JobContext& job) {
+  {
+    const StageClock timing = clock("final registration");
+    if (const Status done = registrar.finalize(job); !done) {
+      return done;
+    }
+  }
+  result.poses = named_poses();
+  if (const Status saved = store->save_poses(result.poses); !saved) {
+    return saved;
+  }
+  const StageClock timing = clock("final planning and meshing");
+  if (const Status placed = planning.place(result.poses, true, job); !placed) {
+    return placed;
+  }
+  Result<RedMap> red_map = planning.red_map(rig ? &*rig : nullptr, job);
+  if (!red_map) {
+    return std::unexpected(red_map.error());
+  }
+  result.red_map = std::move(*red_map);
+  emit(RedMapChanged{result.red_map});
+  return {};
+}
+
+/// Runs the pipeline from `step` until the device has no more, or until the online red map says that nothing
+/// is left to do; then settles. True when the settled map still has something to do.
+Result<bool> Engine::Impl::run_round(NextStep step, EngineResult& result, JobContext& job) {
+  queues = std::make_unique<Queues>();
+  {
+    std::jthread planner([&] { plan_all(job); });
+    std::jthread registration([&] { register_all(job); });
+    std::jthread storing([&] { keep_stored(); });
+    acquire(std::move(step), job);
+  }
+  if (first_error) {
+    return std::unexpected(*first_error);
   }
   if (stored_count == 0) {
     return std::unexpected(
         device_error.value_or(Error{ErrorKind::kBadInput, "the device gave no scan", options.device,
                                     "check what stands before the scanner"}));
   }
-  EngineResult result;
-  {
-    const StageClock timing = clock("final registration");
-    if (const Status done = registrar.finalize(job); !done) {
-      return std::unexpected(done.error());
-    }
+  if (const Status settled = settle(result, job); !settled) {
+    return std::unexpected(settled.error());
   }
-  result.poses = registrar.poses();
-  for (ScanPose& pose : result.poses) {
-    const auto scan = std::find_if(all_scans.begin(), all_scans.end(),
-                                   [&](const StationScan& s) { return s.id == pose.id; });
-    if (scan != all_scans.end()) {
-      pose.file = scan->file;
-    }
-  }
-  if (const Status saved = store->save_poses(result.poses); !saved) {
-    return std::unexpected(saved.error());
-  }
+  const bool goes_on = drives && !device_error && stored_count < options.max_scans &&
+                       !result.red_map.conclusive && !result.red_map.next.empty() &&
+                       result.red_map.next.front().placement;
+  return goes_on;
+}
+
+/// Mesh, checklist, pictures and report of the settled scans.
+Status Engine::Impl::finish(EngineResult& result, JobContext& job) {
   Mesh mesh;
   {
     const StageClock timing = clock("final planning and meshing");
-    if (const Status placed = planning.place(result.poses, true, job); !placed) {
-      return std::unexpected(placed.error());
-    }
-    Result<RedMap> red_map = planning.red_map(rig ? &*rig : nullptr, job);
-    if (!red_map) {
-      return std::unexpected(red_map.error());
-    }
-    result.red_map = std::move(*red_map);
     Result<Mesh> stitched = planning.mesh(job);
     if (!stitched) {
       return std::unexpected(stitched.error());
     }
     mesh = std::move(*stitched);
   }
-  emit(RedMapChanged{result.red_map});
   result.checklist =
       make_checklist(result.red_map, result.poses, planning.placed(), mesh, rig ? &*rig : nullptr);
   result.checklist.disk_free_gib = store->disk_free_gib();
@@ -478,6 +553,7 @@ Result<EngineResult> Engine::Impl::finish(JobContext& job) {
   result.stored_scans = stored_count;
   result.device_error = device_error;
 
+  const auto started = std::chrono::steady_clock::now();
   const ReportInput input{.title = options.session.filename().string(),
                           .tool_version = "Dubsar " DUBSAR_VERSION,
                           .when = iso_time(),
@@ -491,16 +567,16 @@ Result<EngineResult> Engine::Impl::finish(JobContext& job) {
                           .accuracy = accuracy_sentences(result.poses),
                           .calibration = {},
                           .not_measured = {"Wedges: they are not measured yet."},
-                          .timings = result.timings};
+                          .timings = result.timings,
+                          .longest_px = picture_size_px(planning.placed(), mesh)};
   Result<Deliverables> files = write_deliverables(options.session, input, job);
   if (!files) {
     return std::unexpected(files.error());
   }
   result.files = std::move(*files);
-  if (const Status kept = keep_results(result); !kept) {
-    return std::unexpected(kept.error());
-  }
-  return result;
+  const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - started;
+  result.timings.push_back({"pictures and report", spent.count()});
+  return keep_results(result);
 }
 
 /// The verdict and what it rests on go into the session, so that anyone can work it out again.
@@ -525,18 +601,40 @@ Status Engine::Impl::keep_results(const EngineResult& result) {
       "finished", result.red_map.conclusive ? R"({"conclusive":true})" : R"({"conclusive":false})");
 }
 
-Result<EngineResult> Engine::run(JobContext& job) {
-  Impl& impl = *impl_;
-  if (const Status opened = impl.open(job); !opened) {
+Result<EngineResult> Engine::Impl::run(JobContext& job) {
+  if (const Status opened = open(job); !opened) {
     return std::unexpected(opened.error());
   }
-  {
-    std::jthread planning([&] { impl.plan_all(job); });
-    std::jthread registration([&] { impl.register_all(job); });
-    std::jthread storing([&] { impl.keep_stored(); });
-    impl.acquire(job);
+  EngineResult result;
+  const int resumed_count = stored_count;
+  NextStep step;
+  for (;;) {
+    const Result<bool> goes_on = run_round(std::move(step), result, job);
+    if (!goes_on) {
+      return std::unexpected(goes_on.error());
+    }
+    if (!*goes_on) {
+      break;
+    }
+    wait_for_plan = false;
+    // How the tablet lies is known only once this run has scanned it.
+    step = stored_count > resumed_count ? NextStep(result.red_map.next.front()) : std::nullopt;
   }
-  return impl.finish(job);
+  if (const Status finished = finish(result, job); !finished) {
+    return std::unexpected(finished.error());
+  }
+  return result;
+}
+
+Result<EngineResult> Engine::run(JobContext& job) {
+  Result<EngineResult> result = impl_->run(job);
+  if (!result && result.error().kind == ErrorKind::kCancelled) {
+    const int stored = impl_->stored_count;
+    return fail(ErrorKind::kCancelled,
+                fmt::format("stopped; {} {} stored", stored, stored == 1 ? "scan is" : "scans are"),
+                impl_->options.session.string(), "the same command goes on with what is there");
+  }
+  return result;
 }
 
 }  // namespace dubsar

@@ -38,7 +38,11 @@ Result<std::vector<ScanPose>> register_scans(const ScanSet& set, JobContext& job
 Result<std::vector<ScanPose>> poses_for(const ScanSet& set, const std::filesystem::path& poses_file,
                                         JobContext& job) {
   if (poses_file.empty()) {
-    return set.poses.empty() ? register_scans(set, job) : set.poses;
+    // A session whose last run was stopped has scans that were never judged.
+    const bool all_judged = std::ranges::all_of(set.scans, [&](const StationScan& scan) {
+      return std::ranges::any_of(set.poses, [&](const ScanPose& pose) { return pose.id == scan.id; });
+    });
+    return all_judged ? set.poses : register_scans(set, job);
   }
   const Result<std::vector<ScanPose>> read = read_poses(poses_file);
   if (!read) {

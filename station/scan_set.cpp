@@ -100,16 +100,26 @@ Status load_folder(const fs::path& path, const ScanSetOptions& options, ScanSet&
     return std::unexpected(source.error());
   }
   const double count = static_cast<double>(source->capabilities().scan_count.value_or(10));
-  for (int id = 0;; ++id) {
-    job.progress("reading scans", std::min(1.0, id / count));
+  for (int read = 0;; ++read) {
+    job.progress("reading scans", std::min(1.0, read / count));
     Result<std::optional<RangeGrid>> grid = source->next([](const RangeGrid&, int) {}, job);
+    if (!grid && grid.error().kind == ErrorKind::kBadInput) {
+      set.left_out.push_back(grid.error());  // a bad file does not stop the others
+      continue;
+    }
     if (!grid) {
       return std::unexpected(grid.error());
     }
     if (!*grid) {
       break;
     }
-    set.scans.push_back(prepare_scan(id, std::move(**grid), set.pins));
+    set.scans.push_back(prepare_scan(static_cast<int>(set.scans.size()), std::move(**grid), set.pins));
+  }
+  if (set.scans.empty() && !set.left_out.empty()) {
+    return std::unexpected(set.left_out.front());
+  }
+  for (const Error& error : set.left_out) {
+    log_warning(error.line());
   }
   job.progress("reading scans", 1.0);
   return {};

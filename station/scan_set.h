@@ -22,6 +22,7 @@ struct ScanSet {
   std::vector<ScanPose> poses;     ///< as stored; empty for a folder
   std::optional<PinSet> pins;
   std::optional<Rig> rig;
+  std::vector<Error> left_out;        ///< bad files of a folder, one error each
   std::optional<SessionStore> store;  ///< open for writing when it is a session
   [[nodiscard]] bool is_session() const { return store.has_value(); }
 };
@@ -31,7 +32,8 @@ struct ScanSetOptions {
   std::filesystem::path pins_file;  ///< empty: the session's, or none
 };
 
-/// Reads a session or a folder. Damaged scans of a session are named in the log and left out.
+/// Reads a session or a folder. Damaged scans of a session are named in the log and left out; so are bad
+/// files of a folder, unless none is good.
 [[nodiscard]] Result<ScanSet> load_scan_set(const std::filesystem::path& path, const ScanSetOptions& options,
                                             JobContext& job);
 

@@ -22,6 +22,11 @@ struct CommandContext {
   static void print(const nlohmann::ordered_json& object);
 };
 
+/// What --json says of an error.
+[[nodiscard]] inline nlohmann::ordered_json error_json(const Error& error) {
+  return {{"error", {{"what", error.what}, {"where", error.where}, {"mend", error.mend}}}};
+}
+
 using Action = std::function<Result<int>(CommandContext&)>;
 
 /// Each registers its verb with the parser and, when the verb is chosen, sets `chosen`.

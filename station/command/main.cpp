@@ -3,9 +3,14 @@
 // The dubsar command: a skin over the engine and the stages. Contract: design.md, "Command".
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <new>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include "core/log.h"
 #include "station/command/command.h"
@@ -23,7 +28,7 @@ int report(const Error& error, bool json) {
   finish_progress();
   std::fprintf(stderr, "dubsar: %s\n", error.line().c_str());
   if (json) {
-    CommandContext::print({{"error", {{"what", error.what}, {"where", error.where}, {"mend", error.mend}}}});
+    CommandContext::print(error_json(error));
   }
   return exit_status(error.kind);
 }
@@ -50,10 +55,20 @@ int run(int argc, char** argv) {
   } catch (const CLI::Success& asked_for_help) {
     return app.exit(asked_for_help);
   } catch (const CLI::ParseError& bad) {
-    return report({ErrorKind::kUsage, bad.what(), {}, "see dubsar --help, or dubsar VERB --help"}, json);
+    // The parser may have stopped before it came to --json.
+    json = json || std::find(argv, argv + argc, std::string_view("--json")) != argv + argc;
+    const std::vector<std::string> unknown = app.remaining();
+    const bool no_verb = app.get_subcommands().empty() && !unknown.empty();
+    return report({ErrorKind::kUsage,
+                   no_verb ? "there is no verb " + unknown.front() : bad.what(),
+                   {},
+                   "see dubsar --help, or dubsar VERB --help"},
+                  json);
   }
   set_log_level(verbose ? LogLevel::kDebug : quiet ? LogLevel::kWarning : LogLevel::kInfo);
 
+  // A limit on the size of files is an error of the write, to be told in one line, not the program's end.
+  std::signal(SIGXFSZ, SIG_IGN);
   CommandContext context;
   context.json = json;
   const InterruptScope interrupt(context.job);

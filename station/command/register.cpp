@@ -49,14 +49,14 @@ Result<int> register_all(const ScanSetArguments& arguments, CommandContext& cont
       return 1;
     }
   }
-  return 0;
+  return set->left_out.empty() ? 0 : 1;
 }
 
 }  // namespace
 
 void add_register(CLI::App& app, Action& chosen) {
-  CLI::App* verb =
-      app.add_subcommand("register", "The poses of all scans; status 1 when one is not registered");
+  CLI::App* verb = app.add_subcommand(
+      "register", "The poses of all scans; status 1 when one is not registered or cannot be read");
   const auto arguments = std::make_shared<ScanSetArguments>();
   arguments->add_to(*verb, false);
   verb->add_option("-o,--out", arguments->out, "write poses.json here");

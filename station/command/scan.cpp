@@ -8,6 +8,8 @@
 #include <cstdio>
 #include <memory>
 #include <mutex>
+#include <set>
+#include <string>
 
 #include "core/log.h"
 #include "formats/pins_json.h"
@@ -60,11 +62,19 @@ class Narrator {
       log_info(fmt::format("next: {} (about {:.1f} mm2)", next->view.say, next->view.predicted_cleared_mm2));
     } else if (const auto* notice = std::get_if<Notice>(&event)) {
       log_warning(notice->text);
+      told_.insert(notice->text);
     }
   }
 
+  /// Whether the operator has read this line already.
+  [[nodiscard]] bool has_told(const Error& error) const {
+    const std::scoped_lock lock(mutex_);
+    return told_.contains(error.line());
+  }
+
  private:
-  std::mutex mutex_;
+  mutable std::mutex mutex_;
+  std::set<std::string> told_;
 };
 
 std::string verdict(const EngineResult& result) {
@@ -83,17 +93,21 @@ nlohmann::ordered_json result_json(const ScanArguments& arguments, const EngineR
   for (const StageTiming& timing : result.timings) {
     timings[timing.stage] = timing.seconds;
   }
-  return {{"session", arguments.session},
-          {"verdict", verdict(result)},
-          {"conclusive", result.red_map.conclusive},
-          {"scans", result.poses.size()},
-          {"mesh", result.files.mesh.string()},
-          {"report", result.files.report.string()},
-          {"red_map_picture", result.files.red_map.string()},
-          {"six_views", result.files.six_views.string()},
-          {"poses", nlohmann::ordered_json::parse(poses_to_json(result.poses))},
-          {"red_map", nlohmann::ordered_json::parse(red_map_to_json(result.red_map))},
-          {"timings_s", timings}};
+  nlohmann::ordered_json json{{"session", arguments.session},
+                              {"verdict", verdict(result)},
+                              {"conclusive", result.red_map.conclusive},
+                              {"scans", result.poses.size()},
+                              {"mesh", result.files.mesh.string()},
+                              {"report", result.files.report.string()},
+                              {"red_map_picture", result.files.red_map.string()},
+                              {"six_views", result.files.six_views.string()},
+                              {"poses", nlohmann::ordered_json::parse(poses_to_json(result.poses))},
+                              {"red_map", nlohmann::ordered_json::parse(red_map_to_json(result.red_map))},
+                              {"timings_s", timings}};
+  if (result.device_error) {
+    json.update(error_json(*result.device_error));
+  }
+  return json;
 }
 
 void print_result(const EngineResult& result) {
@@ -131,7 +145,13 @@ Result<int> scan(const ScanArguments& arguments, CommandContext& context) {
   Engine engine(std::move(options), [&narrator](const Event& event) { narrator(event); });
   const Result<EngineResult> result = engine.run(context.job);
   if (!result) {
-    return std::unexpected(result.error());
+    if (!narrator.has_told(result.error())) {
+      return std::unexpected(result.error());
+    }
+    if (context.json) {
+      CommandContext::print(error_json(result.error()));
+    }
+    return exit_status(result.error().kind);
   }
   if (context.json) {
     CommandContext::print(result_json(arguments, *result));
@@ -139,7 +159,9 @@ Result<int> scan(const ScanArguments& arguments, CommandContext& context) {
     print_result(*result);
   }
   if (result->device_error) {
-    log_error(result->device_error->line());
+    if (!narrator.has_told(*result->device_error)) {
+      log_error(result->device_error->line());
+    }
     return exit_status(result->device_error->kind);
   }
   return result->red_map.conclusive ? 0 : 1;

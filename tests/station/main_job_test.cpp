@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+// The main job: a made-up tablet, scanned until it is conclusive, and the same stages again on its session.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "formats/poses_json.h"
+#include "tests/station/support/command.h"
+#include "tests/support/temporary_folder.h"
+
+namespace dubsar {
+namespace {
+
+namespace fs = std::filesystem;
+using test::bytes_of;
+using test::Outcome;
+using test::run_command;
+
+class MainJob : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder_ = new test::TemporaryFolder;
+    first_ = scan("first", {});
+  }
+  static void TearDownTestSuite() { delete folder_; }
+
+  [[nodiscard]] static fs::path at(const std::string& name) { return folder_->path() / name; }
+  static Outcome scan(const std::string& session, const test::CommandOptions& options) {
+    return run_command({"scan", "--auto", "--json", "--device",
+                        "sim:?seed=2&size=24x20x10&spacing=0.3&truth=" + at("truth of " + session).string(),
+                        "--session", at(session).string()},
+                       options);
+  }
+  static void expect_the_same_bytes(const std::string& session) {
+    for (const char* file : {"export/poses.json", "export/red_map.json", "mesh/model.ply"}) {
+      EXPECT_FALSE(bytes_of(at("first") / file).empty()) << file;
+      EXPECT_TRUE(bytes_of(at("first") / file) == bytes_of(at(session) / file)) << file;
+    }
+  }
+
+  static test::TemporaryFolder* folder_;
+  static Outcome first_;
+};
+test::TemporaryFolder* MainJob::folder_ = nullptr;
+Outcome MainJob::first_;
+
+TEST_F(MainJob, EndsConclusiveWithAllThatIsPromised) {
+  ASSERT_EQ(first_.status, 0) << first_.err;
+  const nlohmann::json json = first_.json();
+  ASSERT_TRUE(json.is_object()) << first_.out;
+  EXPECT_EQ(json["conclusive"], true);
+  EXPECT_LE(json["scans"].get<int>(), 40);
+  for (const char* file : {"mesh", "report", "red_map_picture", "six_views"}) {
+    EXPECT_TRUE(fs::is_regular_file(json[file].get<std::string>())) << file;
+  }
+  EXPECT_EQ(run_command({"mesh", "check", json["mesh"].get<std::string>()}).status, 0);
+}
+
+TEST_F(MainJob, PosesAreTrueToATenthOfAMillimetre) {
+  const auto poses = read_poses(at("first") / "export" / "poses.json");
+  const auto truth = read_poses(at("truth of first") / "truth_poses.json");
+  ASSERT_TRUE(poses.has_value());
+  ASSERT_TRUE(truth.has_value());
+  std::map<std::string, RigidTransform> true_pose;
+  for (const ScanPose& pose : *truth) {
+    true_pose[fs::path(pose.file).stem().string()] = pose.model_from_scanner;
+  }
+  ASSERT_GE(poses->size(), 4U);
+  const ScanPose& gauge = poses->front();
+  const RigidTransform truth_from_model =
+      true_pose.at(fs::path(gauge.file).stem().string()) * gauge.model_from_scanner.inverse();
+  for (const ScanPose& pose : *poses) {
+    ASSERT_EQ(pose.status, PoseStatus::kRegistered) << pose.reason;
+    const RigidTransform mine = truth_from_model * pose.model_from_scanner;
+    const RigidTransform& theirs = true_pose.at(fs::path(pose.file).stem().string());
+    // How far the pose shifts the corners of the tablet, which lies about the middle of its own frame.
+    for (const Eigen::Vector3d& corner :
+         {Eigen::Vector3d(12, 10, 5), Eigen::Vector3d(-12, 10, -5), Eigen::Vector3d(12, -10, -5)}) {
+      const Eigen::Vector3d seen = theirs.inverse() * corner;
+      EXPECT_LT((mine * seen - corner).norm(), 0.1) << pose.file;
+    }
+  }
+}
+
+TEST_F(MainJob, TheStagesAgainSayTheSame) {
+  const std::string session = at("first").string();
+  const Outcome plan = run_command({"plan", session, "--json"});
+  EXPECT_EQ(plan.status, first_.status) << plan.err;
+  EXPECT_EQ(plan.json()["conclusive"], first_.json()["conclusive"]);
+  const Outcome verified = run_command({"verify", session, "--json"});
+  EXPECT_EQ(verified.status, 0) << verified.out;
+  EXPECT_EQ(verified.json()["ok"], true);
+  const std::string mesh = at("again.ply").string();
+  const Outcome stitched = run_command({"stitch", session, "-o", mesh, "--json"});
+  EXPECT_EQ(stitched.status, 0) << stitched.err;
+  EXPECT_EQ(run_command({"mesh", "check", mesh}).status, 0);
+  const Outcome registered = run_command({"register", session, "--json"});
+  EXPECT_EQ(registered.status, 0) << registered.err;
+  EXPECT_EQ(registered.json()["scans"].size(), first_.json()["scans"].get<std::size_t>());
+  EXPECT_EQ(run_command({"verify", session}).status, 0);
+}
+
+TEST_F(MainJob, AConclusiveSessionAsksForNothingMore) {
+  fs::copy(at("first"), at("gone on"), fs::copy_options::recursive);
+  const Outcome again = scan("gone on", {});
+  EXPECT_EQ(again.status, 0) << again.err;
+  EXPECT_EQ(again.json()["scans"], first_.json()["scans"]);
+}
+
+TEST_F(MainJob, TheSameCommandGivesTheSameBytesOnOneCoreToo) {
+  test::CommandOptions options;
+  options.one_core = true;
+  EXPECT_EQ(scan("on one core", options).status, 0);
+  expect_the_same_bytes("on one core");
+}
+
+}  // namespace
+}  // namespace dubsar

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+// What the command answers to words that it cannot act on, and the made-up tablets and scans.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "formats/pins_json.h"
+#include "formats/poses_json.h"
+#include "tests/station/support/command.h"
+#include "tests/support/temporary_folder.h"
+
+namespace dubsar {
+namespace {
+
+namespace fs = std::filesystem;
+using test::Arguments;
+using test::Outcome;
+using test::run_command;
+using ::testing::HasSubstr;
+using ::testing::SizeIs;
+
+TEST(CommandUsage, WrongWordsAreStatusTwoAndOneLine) {
+  const test::TemporaryFolder folder;
+  const std::string session = (folder.path() / "session").string();
+  const std::vector<Arguments> wrong{
+      {},
+      {"frobnicate"},
+      {"plan"},
+      {"plan", session},
+      {"plan", "--frob", session},
+      {"verify", session},
+      {"verify", folder.path().string()},
+      {"simulate", "tablet", "--size", "24x20", "-o", session},
+      {"simulate", "tablet", "--size", "0x20x10", "-o", session},
+      {"simulate", "tablet", "--spacing", "nan", "-o", session},
+      {"simulate", "scans", "--tablet", session, "-o", session},
+      {"scan"},
+      {"scan", "--device", "", "--session", session},
+      {"scan", "--device", "nonsense:x", "--session", session},
+      {"scan", "--device", "replay:" + session + "/nowhere", "--session", session},
+      {"scan", "--device", "sim:?sed=1", "--session", session},
+      {"scan", "--device", "sim:?size=24x20", "--session", session},
+      {"scan", "--device", "sim:", "--max-scans", "0", "--session", session},
+      {"scan", "--device", "sim:", "--pins", session, "--session", session},
+      {"mesh", "check", session},
+      {"stitch", folder.path().string()},
+  };
+  for (Arguments words : wrong) {
+    const std::string said = ::testing::PrintToString(words);
+    const Outcome plain = run_command(words);
+    EXPECT_EQ(plain.status, 2) << said << plain.err;
+    EXPECT_EQ(std::count(plain.err.begin(), plain.err.end(), '\n'), 1) << said << plain.err;
+    EXPECT_EQ(plain.out, "") << said;
+    words.emplace_back("--json");
+    const Outcome json = run_command(words);
+    EXPECT_EQ(json.status, 2) << said;
+    ASSERT_TRUE(json.json().is_object()) << said << json.out;
+    EXPECT_FALSE(json.json()["error"]["what"].get<std::string>().empty()) << said;
+  }
+  EXPECT_FALSE(fs::exists(session)) << "a wrong word must leave nothing behind";
+}
+
+TEST(CommandUsage, HelpIsStatusZero) {
+  for (const Arguments& words : std::vector<Arguments>{{"--help"}, {"scan", "--help"}, {"--version"}}) {
+    const Outcome asked = run_command(words);
+    EXPECT_EQ(asked.status, 0);
+    EXPECT_FALSE(asked.out.empty());
+    EXPECT_EQ(asked.err, "");
+  }
+}
+
+TEST(CommandUsage, DriversListsWhatIsThere) {
+  const nlohmann::json json = run_command({"drivers", "--json"}).json();
+  ASSERT_TRUE(json.is_object());
+  std::vector<std::string> schemes;
+  for (const auto& driver : json["drivers"]) {
+    schemes.push_back(driver["scheme"]);
+  }
+  EXPECT_THAT(schemes, ::testing::IsSupersetOf({"replay", "sim"}));
+}
+
+TEST(CommandSimulate, TheSameSeedGivesTheSameBytes) {
+  const test::TemporaryFolder folder;
+  const auto tablet = [&](const char* name, const char* seed) {
+    const fs::path made = folder.path() / name;
+    EXPECT_EQ(run_command({"simulate", "tablet", "--seed", seed, "--size", "24x20x10", "--spacing", "0.25",
+                           "-o", made.string()})
+                  .status,
+              0);
+    return made;
+  };
+  const fs::path first = tablet("a", "3");
+  const fs::path again = tablet("b", "3");
+  const fs::path other = tablet("c", "4");
+  EXPECT_EQ(run_command({"mesh", "check", (first / "tablet.ply").string()}).status, 0);
+  for (const char* file : {"tablet.ply", "truth.json"}) {
+    EXPECT_FALSE(test::bytes_of(first / file).empty());
+    EXPECT_TRUE(test::bytes_of(first / file) == test::bytes_of(again / file)) << file;
+    EXPECT_FALSE(test::bytes_of(first / file) == test::bytes_of(other / file)) << file;
+  }
+
+  const auto scans = [&](const char* name) {
+    const fs::path made = folder.path() / name;
+    EXPECT_EQ(run_command({"simulate", "scans", "--tablet", (first / "tablet.ply").string(), "--views", "6",
+                           "--spacing", "0.25", "--pins", "-o", made.string()})
+                  .status,
+              0);
+    return made;
+  };
+  const fs::path one = scans("one");
+  const fs::path two = scans("two");
+  for (const char* file : {"scan_000.ply", "scan_005.ply", "truth_poses.json", "pins.json"}) {
+    EXPECT_FALSE(test::bytes_of(one / file).empty()) << file;
+    EXPECT_TRUE(test::bytes_of(one / file) == test::bytes_of(two / file)) << file;
+  }
+  const auto truth = read_poses(one / "truth_poses.json");
+  ASSERT_TRUE(truth.has_value());
+  EXPECT_THAT(*truth, SizeIs(6));
+  EXPECT_TRUE(read_pins(one / "pins.json").has_value());
+}
+
+}  // namespace
+}  // namespace dubsar
