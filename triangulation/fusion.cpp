@@ -82,11 +82,12 @@ bool may_see(const ScannerView& view, const Vector3f& p, const Vector3f& normal)
 class Walker {
  public:
   explicit Walker(const StitchSurface& to) : to_(&to), rows_(to.scan.grid->rows), cols_(to.scan.grid->cols) {
-    const auto near = static_cast<float>(0.75 * to.spacing_mm);
+    const auto near = static_cast<float>(1.25 * to.spacing_mm);
     near2_ = near * near;
   }
 
-  /// The sample at which no neighbour is nearer, or -1 when it is not so near that it must be the nearest.
+  /// The sample at which no neighbour is nearer, or -1 when it is so far that one of
+  /// another fold of the surface may be nearer.
   [[nodiscard]] std::int64_t walk(std::size_t at, const Vector3f& p) const {
     constexpr int kMostSteps = 8;
     float best2 = (to_->points[at] - p).squaredNorm();

@@ -109,6 +109,26 @@ std::uint8_t cell_code(const GridSurface& s, std::span<const std::uint8_t> keep,
   return (other & kBoth) == kBoth || preferred == 0 ? other : preferred;
 }
 
+/// Calls visit(triangle) for those of the four cells around a sample that have it as a corner.
+template <class Visit>
+void for_each_triangle_at(const GridSurface& s, const std::vector<std::uint8_t>& cells, int row, int col,
+                          const Visit& visit) {
+  const std::size_t i = s.index(row, col);
+  for (int r = std::max(row - 1, 0); r <= std::min(row, s.rows - 2); ++r) {
+    for (int c = std::max(col - 1, 0); c <= std::min(col, s.cols - 2); ++c) {
+      const std::uint8_t cell = cells[s.index(r, c)];
+      for (int which = 0; cell != 0 && which < 2; ++which) {
+        if ((cell & (which == 0 ? kCellFirst : kCellSecond)) != 0) {
+          const auto t = cell_triangle(s, r, c, cell, which);
+          if (t[0] == i || t[1] == i || t[2] == i) {
+            visit(t);
+          }
+        }
+      }
+    }
+  }
+}
+
 TriangleTest make_test(const GridSurface& surface, bool mirrored, const GridTriangulationOptions& options) {
   const double max_edge = options.max_edge_factor * surface.spacing_mm;
   return {static_cast<float>(max_edge * max_edge),
@@ -201,60 +221,75 @@ Mesh triangulate_grid(const RangeGrid& grid, const SampleFlags& flags,
   const bool mirrored = is_mirrored(surface, keep);
   const std::vector<std::uint8_t> cells = triangulate_cells(surface, keep, mirrored, options);
 
-  // Faces over sample indices first: each row writes where the rows before it end.
-  std::vector<std::size_t> row_start(static_cast<std::size_t>(grid.rows) + 1, 0);
+  // Each row writes its vertices and faces where those of the rows before it end.
+  const auto rows = static_cast<std::size_t>(grid.rows);
+  std::vector<std::size_t> first_face(rows + 1, 0);
+  std::vector<std::size_t> first_vertex(rows + 1, 0);
+  std::vector<std::uint8_t>& used = keep;
   parallel_for_each_index(
-      static_cast<std::size_t>(grid.rows),
-      [&](std::size_t row) {
-        std::size_t count = 0;
-        const std::uint8_t* code = cells.data() + row * static_cast<std::size_t>(grid.cols);
+      rows,
+      [&](std::size_t r) {
+        const int row = static_cast<int>(r);
         for (int col = 0; col < grid.cols; ++col) {
-          count += static_cast<std::size_t>(((code[col] >> 1) & 1) + ((code[col] >> 2) & 1));
+          const std::size_t i = surface.index(row, col);
+          const std::uint8_t cell = cells[i];
+          first_face[r + 1] += static_cast<std::size_t>(((cell >> 1) & 1) + ((cell >> 2) & 1));
+          if (used[i] != 0 && (cell & (kCellFirst | kCellSecond)) != (kCellFirst | kCellSecond)) {
+            used[i] = 0;
+            for_each_triangle_at(surface, cells, row, col,
+                                 [&](const std::array<std::size_t, 3>&) { used[i] = 1; });
+          }
+          first_vertex[r + 1] += used[i];
         }
-        row_start[row + 1] = count;
       },
       kRowsPerChunk);
-  for (std::size_t row = 0; row < static_cast<std::size_t>(grid.rows); ++row) {
-    row_start[row + 1] += row_start[row];
+  for (std::size_t row = 0; row < rows; ++row) {
+    first_face[row + 1] += first_face[row];
+    first_vertex[row + 1] += first_vertex[row];
   }
-  mesh.faces.resize(row_start.back());
-  std::vector<std::uint8_t> used(grid.size(), 0);
-  for (int row = 0; row + 1 < grid.rows; ++row) {
-    std::size_t at = row_start[static_cast<std::size_t>(row)];
-    for (int col = 0; col + 1 < grid.cols; ++col) {
-      const std::uint8_t code = cells[surface.index(row, col)];
-      for (int which = 0; which < 2; ++which) {
-        if ((code & (which == 0 ? kCellFirst : kCellSecond)) == 0) {
-          continue;
-        }
-        std::array<std::size_t, 3> f = cell_triangle(surface, row, col, code, which);
-        if (mirrored) {
-          std::swap(f[1], f[2]);
-        }
-        for (std::size_t k = 0; k < 3; ++k) {
-          used[f[k]] = 1;
-          mesh.faces[at][k] = static_cast<std::uint32_t>(f[k]);
-        }
-        ++at;
-      }
-    }
-  }
-  std::vector<std::uint32_t> vertex_of(grid.size(), 0);
-  for (std::size_t i = 0; i < grid.size(); ++i) {
-    if (used[i] != 0) {
-      vertex_of[i] = static_cast<std::uint32_t>(mesh.positions.size());
-      mesh.positions.push_back(points[i]);
-    }
-  }
+  mesh.faces.resize(first_face.back());
+  mesh.positions.resize(first_vertex.back());
+  mesh.normals.resize(first_vertex.back());
+  std::vector<std::uint32_t> vertex_of(grid.size());
   parallel_for_each_index(
-      mesh.faces.size(),
-      [&](std::size_t f) {
-        for (std::uint32_t& v : mesh.faces[f]) {
-          v = vertex_of[v];
+      rows,
+      [&](std::size_t r) {
+        std::size_t at = first_vertex[r];
+        for (int col = 0; col < grid.cols; ++col) {
+          const std::size_t i = surface.index(static_cast<int>(r), col);
+          if (used[i] == 0) {
+            continue;
+          }
+          vertex_of[i] = static_cast<std::uint32_t>(at);
+          mesh.positions[at] = points[i];
+          Vector3f n = geometry.normals[i];
+          if (n.isZero()) {  // no neighbour along the row or the column: what its triangles say
+            for_each_triangle_at(surface, cells, static_cast<int>(r), col,
+                                 [&](const std::array<std::size_t, 3>& t) {
+                                   n += (points[t[1]] - points[t[0]]).cross(points[t[2]] - points[t[0]]);
+                                 });
+            n *= (mirrored ? -1.0F : 1.0F) / std::max(n.norm(), std::numeric_limits<float>::min());
+          }
+          mesh.normals[at++] = n;
         }
       },
-      4096);
-  mesh.normals = vertex_normals(mesh);
+      kRowsPerChunk);
+  parallel_for_each_index(
+      rows - 1,
+      [&](std::size_t r) {
+        std::size_t at = first_face[r];
+        for (int col = 0; col + 1 < grid.cols; ++col) {
+          const std::uint8_t cell = cells[surface.index(static_cast<int>(r), col)];
+          for (int which = 0; cell != 0 && which < 2; ++which) {
+            if ((cell & (which == 0 ? kCellFirst : kCellSecond)) != 0) {
+              const auto f = cell_triangle(surface, static_cast<int>(r), col, cell, which);
+              mesh.faces[at++] = {vertex_of[f[0]], vertex_of[f[mirrored ? 2 : 1]],
+                                  vertex_of[f[mirrored ? 1 : 2]]};
+            }
+          }
+        }
+      },
+      kRowsPerChunk);
   return mesh;
 }
 

@@ -64,8 +64,8 @@ struct GridSurface {
                                                           const GridTriangulationOptions& options);
 
 /// One grid's own mesh in the scanner frame: non-sparse samples (is_unflagged) joined on the grid's plane and
-/// oriented towards the scanner, with normals. `flags` may be empty: then every valid sample takes part. A
-/// grid without a triangle, or without a spacing, gives an empty mesh.
+/// oriented towards the scanner, with the normals of its samples (grid_geometry). `flags` may be empty: then
+/// every valid sample takes part. A grid without a triangle, or without a spacing, gives an empty mesh.
 [[nodiscard]] Mesh triangulate_grid(const RangeGrid& grid, const SampleFlags& flags,
                                     const GridTriangulationOptions& options = {});
 
