@@ -57,6 +57,10 @@ using NextStep = std::optional<NextView>;
 /// What asking the device for a scan led to.
 enum class Taken { kScan, kNothing, kEnd };
 
+Error stopped() {
+  return {ErrorKind::kCancelled, "stopped", {}, {}};
+}
+
 /// Adds the time of a scope to a stage.
 class StageClock {
  public:
@@ -358,7 +362,7 @@ void Engine::Impl::acquire(NextStep step, JobContext& job) {
   }
   for (int taken = stored_count; limit == 0 || taken < limit;) {
     if (job.cancelled()) {
-      give_up({ErrorKind::kCancelled, "stopped", {}, {}});
+      give_up(stopped());
       break;
     }
     if (step) {
@@ -436,10 +440,15 @@ void Engine::Impl::register_all(JobContext& job) {
     handle(std::move(resumed[k]), k + 1 == resumed.size());
   }
   resumed.clear();
+  if (job.cancelled()) {
+    give_up(stopped());
+  }
   while (std::optional<StationScan> scan = queues->to_register.pop()) {
-    if (!job.cancelled()) {
-      handle(std::move(*scan), true);
+    if (job.cancelled()) {
+      give_up(stopped());
+      continue;
     }
+    handle(std::move(*scan), true);
   }
   queues->to_plan.close();
 }
@@ -447,7 +456,10 @@ void Engine::Impl::register_all(JobContext& job) {
 void Engine::Impl::plan_all(JobContext& job) {
   while (std::optional<ScanToPlan> item = queues->to_plan.pop()) {
     planning.add(item->scan);
-    if (job.cancelled() || failed() || !item->plan_now) {
+    if (job.cancelled()) {
+      give_up(stopped());  // the device waits for a next step that will not come
+    }
+    if (failed() || !item->plan_now) {
       continue;
     }
     const StageClock timing = clock("planning and meshing");

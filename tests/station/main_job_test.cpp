@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <csignal>
 #include <map>
 
 #include "formats/poses_json.h"
@@ -108,6 +109,25 @@ TEST_F(MainJob, AConclusiveSessionAsksForNothingMore) {
   const Outcome again = scan("gone on", {});
   EXPECT_EQ(again.status, 0) << again.err;
   EXPECT_EQ(again.json()["scans"], first_.json()["scans"]);
+}
+
+TEST_F(MainJob, AStoppedRunIsGoneOnWithToTheEnd) {
+  {
+    test::RunningCommand running({"scan", "--auto", "--json", "--device",
+                                  "sim:?seed=2&size=24x20x10&spacing=0.3", "--session",
+                                  at("stopped").string()});
+    ASSERT_TRUE(running.says("scan 2 stored"));
+    running.send(SIGTERM);
+    const Outcome stopped = running.wait();
+    ASSERT_EQ(stopped.status, 1) << stopped.err;
+    EXPECT_THAT(stopped.complaints(), ::testing::SizeIs(1)) << stopped.err;
+    EXPECT_THAT(stopped.json()["error"]["what"].get<std::string>(), ::testing::HasSubstr("scans are stored"));
+  }
+  // Without a judged pose for every scan, the stages work the poses out themselves.
+  EXPECT_EQ(run_command({"plan", at("stopped").string(), "--json"}).status, 1);
+  const Outcome gone_on = scan("stopped", {});
+  EXPECT_EQ(gone_on.status, 0) << gone_on.err;
+  EXPECT_EQ(run_command({"verify", at("stopped").string()}).status, 0);
 }
 
 TEST_F(MainJob, TheSameCommandGivesTheSameBytesOnOneCoreToo) {

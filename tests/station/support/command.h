@@ -18,7 +18,7 @@ namespace dubsar::test {
 using Arguments = std::vector<std::string>;
 
 struct CommandOptions {
-  double timeout_s = 120;          ///< then it is killed and the outcome says so
+  double timeout_s = 60;           ///< then it is killed and the outcome says so
   std::uint64_t largest_file = 0;  ///< bytes, RLIMIT_FSIZE; 0: no limit
   bool one_core = false;
 };
