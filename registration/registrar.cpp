@@ -19,9 +19,8 @@ ScanPose Registrar::add(int id, const std::shared_ptr<const RangeGrid>& grid, co
                         JobContext& job) {
   state_->remove(id);
   state_->enter(id, grid.get(), pins);
-  if (state_->join(id, job)) {
-    state_->retry(job);
-  }
+  // Tries every group that is not connected yet, so that each is tried again on what is new.
+  state_->join(id, job);
   return state_->pose(id);
 }
 
