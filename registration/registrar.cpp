@@ -19,8 +19,9 @@ ScanPose Registrar::add(int id, const std::shared_ptr<const RangeGrid>& grid, co
                         JobContext& job) {
   state_->remove(id);
   state_->enter(id, grid.get(), pins);
-  // Tries every group that is not connected yet, so that each is tried again on what is new.
-  state_->join(id, job);
+  if (state_->join(id, job)) {
+    state_->retry(job);
+  }
   return state_->pose(id);
 }
 

@@ -152,17 +152,13 @@ void ScanModel::judge(int id) {
 }
 
 Status ScanModel::finalize(JobContext& job) {
-  bool grown = false;
   for (auto& [id, scan] : scans_) {
     if (scan.usable && scan.group != main_group()) {
-      grown = join_group(id, main_group(), job) || grown;
+      join_group(id, main_group(), job);
     }
     if (job.cancelled()) {
       return fail(ErrorKind::kCancelled, "registration was stopped");
     }
-  }
-  if (grown) {
-    retry(job);
   }
   const int group = main_group();
   const std::vector<int> ids = members(group);
