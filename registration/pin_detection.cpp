@@ -19,6 +19,8 @@ namespace {
 constexpr std::array<std::array<int, 2>, 4> kFourNeighbours{{{0, 1}, {0, -1}, {1, 0}, {-1, 0}}};
 /// Candidate centres tried per component: plenty for a ball of some tens of samples.
 constexpr std::size_t kMostCandidates = 400;
+/// Outliers that may lie beyond a tip, of the samples of half a ball.
+constexpr double kMostStrays = 0.05;
 
 struct Component {
   std::vector<std::uint32_t> samples;
@@ -145,9 +147,10 @@ Ball refine(const RangeGrid& grid, const Component& component, Eigen::Vector3d c
   return ball;
 }
 
-/// A ball is a tip when it ends its pin: next to nothing of the component lies beyond it, seen from the arm.
-bool ends_pin(const RangeGrid& grid, const Component& component, const Eigen::Vector3d& center,
-              double radius) {
+/// A ball is a tip when it ends its pin: no more than `strays` samples of the component lie beyond it, seen
+/// from the arm. A cone holds balls all along; only the last is the tip.
+bool ends_pin(const RangeGrid& grid, const Component& component, const Eigen::Vector3d& center, double radius,
+              std::size_t strays) {
   Eigen::Vector3d arm = Eigen::Vector3d::Zero();
   for (const std::uint32_t i : component.samples) {
     arm += grid.point(i).cast<double>() - center;
@@ -160,13 +163,15 @@ bool ends_pin(const RangeGrid& grid, const Component& component, const Eigen::Ve
   for (const std::uint32_t i : component.samples) {
     beyond += (grid.point(i).cast<double>() - center).dot(arm) < -1.3 * radius ? 1U : 0U;
   }
-  return beyond * 50 <= component.samples.size();
+  return beyond <= strays;
 }
 
 std::optional<Ball> find_ball(const RangeGrid& grid, const GridGeometry& geometry, const Component& component,
                               double radius, double spacing_mm, const PinDetectionOptions& options) {
   const double tolerance = options.ball_tolerance * radius;
   const std::size_t tried = std::min(component.samples.size(), kMostCandidates);
+  const double half_ball = kPi * radius * radius / (spacing_mm * spacing_mm);
+  const auto strays = static_cast<std::size_t>(std::max(1.0, kMostStrays * half_ball));
   std::vector<std::pair<int, Eigen::Vector3d>> candidates;
   for (std::size_t k = 0; k < tried; ++k) {
     const std::uint32_t i = component.samples[(2 * k + 1) * component.samples.size() / (2 * tried)];
@@ -174,11 +179,13 @@ std::optional<Ball> find_ball(const RangeGrid& grid, const GridGeometry& geometr
       continue;
     }
     const Eigen::Vector3d center = grid.point(i).cast<double>() - radius * geometry.normals[i].cast<double>();
+    if (!ends_pin(grid, component, center, radius, strays)) {
+      continue;
+    }
     candidates.emplace_back(support_of(grid, component, center, radius, 2.0 * tolerance), center);
   }
   std::stable_sort(candidates.begin(), candidates.end(),
                    [](const auto& a, const auto& b) { return a.first > b.first; });
-  const double half_ball = kPi * radius * radius / (spacing_mm * spacing_mm);
   for (std::size_t k = 0; k < std::min<std::size_t>(candidates.size(), 30); ++k) {
     const Ball rough = refine(grid, component, candidates[k].second, radius, 2.0 * tolerance);
     if (rough.support < 4) {
@@ -186,7 +193,8 @@ std::optional<Ball> find_ball(const RangeGrid& grid, const GridGeometry& geometr
     }
     const Ball ball = refine(grid, component, rough.center, radius, tolerance);
     if (ball.support >= std::max(6.0, options.least_ball_share * half_ball) &&
-        ball.rms_mm <= options.most_ball_rms * radius && ends_pin(grid, component, ball.center, radius)) {
+        ball.rms_mm <= options.most_ball_rms * radius &&
+        ends_pin(grid, component, ball.center, radius, strays)) {
       return ball;
     }
   }
