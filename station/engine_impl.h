@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <chrono>
+#include <ctime>
+#include <limits>
+#include <map>
+#include <mutex>
+#include <set>
+#include <thread>
+#include <utility>
+
+#include "acquisition/range_source.h"
+#include "acquisition/session_store.h"
+#include "core/log.h"
+#include "drivers/loader.h"
+#include "formats/checklist_json.h"
+#include "formats/pins_json.h"
+#include "formats/red_map_json.h"
+#include "formats/rig_json.h"
+#include "planning/checklist.h"
+#include "planning/sparse_flags.h"
+#include "registration/registrar.h"
+#include "station/bounded_queue.h"
+#include "station/drives.h"
+#include "station/planning_stage.h"
+#include "station/scan_set.h"
+
+#include "station/engine.h"
+
+namespace dubsar {
+
+/// Scans that wait between two stages: enough to keep both busy, few enough to bound the memory.
+inline constexpr std::size_t kQueueLength = 2;
+inline constexpr int kAutomaticScans = 40;
+
+/// A scan as the device gave it.
+struct RawScan {
+  RangeGrid grid;
+  std::optional<SampleFlags> flags;
+  std::optional<Placement> drive;
+};
+struct ScanToPlan {
+  StationScan scan;
+  std::vector<ScanPose> poses;
+  bool plan_now =
+      true;  ///< false for all but the last of the stored scans that a resumed session goes through again
+};
+/// The planner's answer to an automatic run: where to next, or that there is nothing more to do.
+using NextStep = std::optional<NextView>;
+
+/// What asking the device for a scan led to.
+enum class Taken { kScan, kNothing, kEnd };
+
+inline Error stopped() {
+  return {ErrorKind::kCancelled, "stopped", {}, {}};
+}
+
+/// Adds the time of a scope to a stage.
+class StageClock {
+ public:
+  StageClock(std::map<std::string, double>& seconds, std::mutex& mutex, std::string stage)
+      : seconds_(seconds),
+        mutex_(mutex),
+        stage_(std::move(stage)),
+        start_(std::chrono::steady_clock::now()) {}
+  ~StageClock() {
+    const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start_;
+    const std::scoped_lock lock(mutex_);
+    seconds_[stage_] += spent.count();
+  }
+  StageClock(const StageClock&) = delete;
+  StageClock& operator=(const StageClock&) = delete;
+
+ private:
+  std::map<std::string, double>& seconds_;
+  std::mutex& mutex_;
+  std::string stage_;
+  std::chrono::steady_clock::time_point start_;
+};
+
+/// The state of a run. What a stage thread alone touches is marked; the rest stands still while the threads
+/// run, or is under the mutex. engine_open.cpp opens device and session, engine_stages.cpp has the four
+/// threads, engine_results.cpp what is made at the end, engine.cpp the order of it all.
+struct Engine::Impl {
+  EngineOptions options;
+  EventSink sink;
+
+  std::optional<SessionStore> store;
+  std::optional<RangeSource> source;
+  std::optional<Rig> rig;
+  std::vector<StationScan> resumed;          ///< of an existing session
+  std::set<std::string> known_files;         ///< a replayed file that is stored already is not stored again
+  int placement_offset = 0;                  ///< a resumed session starts with a lifted tablet
+  std::map<int, Placement> drives_of_scans;  ///< of the storing thread once the pipeline runs
+  bool wait_for_plan = false;                ///< the session that goes on says first whether it needs more
+  bool drives = false;                       ///< automatic, and the device can be placed
+
+  struct Queues {
+    BoundedQueue<RawScan> to_store{kQueueLength};
+    BoundedQueue<StationScan> to_register{kQueueLength};
+    BoundedQueue<ScanToPlan> to_plan{kQueueLength};
+    BoundedQueue<NextStep> to_device{1};
+  };
+  std::unique_ptr<Queues> queues;  ///< of the round that runs
+
+  Registrar registrar;
+  PlanningStage planning;
+  std::map<int, std::string> names;  ///< original names by id; of the registering thread while it runs
+
+  std::mutex mutex;  ///< of what follows
+  std::optional<Error> first_error;
+  std::optional<Error> device_error;
+  std::map<std::string, double> seconds;
+  int stored_count = 0;
+
+  void emit(const Event& event) const {
+    if (sink) {
+      sink(event);
+    }
+  }
+  StageClock clock(const char* stage) { return {seconds, mutex, stage}; }
+
+  /// The first error ends the run; everything that is in the queues behind it still gets through.
+  void give_up(const Error& error) {
+    {
+      const std::scoped_lock lock(mutex);
+      if (!first_error) {
+        first_error = error;
+      }
+    }
+    queues->to_store.close();
+    queues->to_device.close();
+  }
+  bool failed() {
+    const std::scoped_lock lock(mutex);
+    return first_error.has_value();
+  }
+
+  Status open(JobContext& job);
+  Status load_resumed(JobContext& job);
+  void acquire(NextStep step, JobContext& job);
+  Taken take_scan(const std::optional<Placement>& drive, JobContext& job);
+  void keep_stored();
+  void register_all(JobContext& job);
+  void plan_all(JobContext& job);
+  std::vector<ScanPose> named_poses() const;
+  Result<bool> run_round(NextStep step, EngineResult& result, JobContext& job);
+  Result<EngineResult> run(JobContext& job);
+  Status settle(EngineResult& result, JobContext& job);
+  Status finish(EngineResult& result, JobContext& job);
+  Status keep_results(const EngineResult& result);
+};
+
+}  // namespace dubsar

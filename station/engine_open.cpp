@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "station/engine_impl.h"
+
+namespace dubsar {
+
+Status Engine::Impl::load_resumed(JobContext& job) {
+  const auto stored = store->scans();
+  if (!stored) {
+    return std::unexpected(stored.error());
+  }
+  for (const StoredScan& scan : *stored) {
+    if (!scan.source.empty() && source->capabilities().finite) {
+      known_files.insert(scan.source);
+    }
+    if (scan.dropped || scan.damaged) {
+      continue;
+    }
+    job.progress("reading the session", static_cast<double>(scan.id) / static_cast<double>(stored->size()));
+    Result<RangeGrid> grid = store->load_grid(scan.id);
+    if (!grid) {
+      emit(Notice{grid.error().line()});
+      continue;
+    }
+    if (grid->nominal) {
+      placement_offset = std::max(placement_offset, grid->nominal->placement + 1);
+    }
+    resumed.push_back(prepare_scan(scan.id, std::move(*grid), options.pins));
+    if (const auto drive = drives_of_scans.find(scan.id); drive != drives_of_scans.end()) {
+      resumed.back().drive = drive->second;
+    }
+  }
+  stored_count = static_cast<int>(resumed.size());
+  return {};
+}
+
+Status Engine::Impl::open(JobContext& job) {
+  // The device first: a wrong URI must not leave an empty session behind.
+  const DriverRegistry registry;
+  for (const Error& rejected : registry.rejected()) {
+    emit(Notice{"driver left out: " + rejected.line()});
+  }
+  Result<RangeSource> opened = RangeSource::open(options.device, registry);
+  if (!opened) {
+    return std::unexpected(opened.error());
+  }
+  source = std::move(*opened);
+  rig = source->capabilities().rig;
+  drives = options.automatic && source->capabilities().can_place;
+  if (drives && options.max_scans <= 0) {
+    options.max_scans = kAutomaticScans;
+  }
+  Result<SessionStore> session = SessionStore::open_or_create(options.session);
+  if (!session) {
+    return std::unexpected(session.error());
+  }
+  store = std::move(*session);
+  for (const Error& damage : store->opening().damage) {
+    emit(Notice{"damaged: " + damage.line()});
+  }
+  for (const std::string& note : store->opening().notes) {
+    emit(Notice{note});
+  }
+  if (rig) {
+    if (const Status saved = store->save_document("rig", rig_to_json(*rig)); !saved) {
+      return saved;
+    }
+  }
+  if (options.pins) {
+    if (const Status saved = store->save_document("pins", pins_to_json(*options.pins)); !saved) {
+      return saved;
+    }
+  } else if (const auto text = store->load_document("pins"); text && *text) {
+    if (auto pins = parse_pins(**text, "pins of the session")) {
+      options.pins = std::move(*pins);
+    }
+  }
+  if (const auto text = store->load_document("drives"); text && *text) {
+    if (auto known = parse_drives(**text, "drives of the session")) {
+      drives_of_scans = std::move(*known);
+    }
+  }
+  if (const Status loaded = load_resumed(job); !loaded) {
+    return loaded;
+  }
+  wait_for_plan = drives && !resumed.empty();
+  return {};
+}
+
+}  // namespace dubsar

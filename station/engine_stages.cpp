@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "station/engine_impl.h"
+
+namespace dubsar {
+
+/// Takes the next scan of the device. kEnd when there is none, or the run is over; kNothing when this one
+/// does not count, but others may follow.
+Taken Engine::Impl::take_scan(const std::optional<Placement>& drive, JobContext& job) {
+  std::optional<SparseFlagger> flagger;
+  SampleFlags flags;
+  const auto on_profile = [&](const RangeGrid& grid, int row) {
+    if (!flagger && grid.spacing_mm > 0) {
+      flagger.emplace(grid.cols, grid.spacing_mm);
+    }
+    if (flagger) {
+      flagger->update(grid, flags);
+    }
+    emit(ProfileArrived{row, &grid, &flags});
+  };
+  Result<std::optional<RangeGrid>> grid = [&] {
+    const StageClock timing = clock("acquisition");
+    return source->next(on_profile, job);
+  }();
+  if (!grid && grid.error().kind != ErrorKind::kCancelled) {
+    {
+      const std::scoped_lock lock(mutex);
+      device_error = device_error ? device_error : grid.error();
+    }
+    emit(Notice{grid.error().line()});
+    // A device that stopped in mid-scan leaves profiles that are as good as any.
+    if (std::optional<RangeGrid> partial = source->take_partial(); partial && partial->valid_count() > 0) {
+      emit(Notice{"the half scan is kept"});
+      queues->to_store.push({std::move(*partial), std::nullopt, drive});
+    }
+    // A bad file of a folder does not stop the others.
+    const bool others = source->capabilities().finite && grid.error().kind == ErrorKind::kBadInput;
+    return others ? Taken::kNothing : Taken::kEnd;
+  }
+  if (!grid) {
+    give_up(grid.error());
+    return Taken::kEnd;
+  }
+  if (!*grid) {
+    return Taken::kEnd;
+  }
+  if (!(*grid)->source.empty() && known_files.contains((*grid)->source)) {
+    return Taken::kNothing;
+  }
+  if (flagger) {
+    flagger->finish(**grid, flags);
+  }
+  if ((*grid)->nominal) {
+    (*grid)->nominal->placement += placement_offset;
+  }
+  const bool streamed = flagger.has_value() && flags.size() == (*grid)->size();
+  const bool taken = queues->to_store.push(
+      {std::move(**grid), streamed ? std::optional(std::move(flags)) : std::nullopt, drive});
+  return taken ? Taken::kScan : Taken::kEnd;
+}
+
+/// `step` is where the scan before this round said to go next; nothing in the first round.
+void Engine::Impl::acquire(NextStep step, JobContext& job) {
+  // A device without an end, and nobody to ask for the next placement, gives one scan.
+  const bool endless = !source->capabilities().finite && !drives;
+  const int limit = options.max_scans > 0 ? options.max_scans : endless ? stored_count + 1 : 0;
+  std::optional<Placement> drive = drives ? std::optional(Placement{}) : std::nullopt;
+  // A session that goes on begins with a scan of how the tablet lies now, unless it is conclusive already.
+  if (wait_for_plan) {
+    const std::optional<NextStep> planned = queues->to_device.pop();
+    if (!planned || !*planned) {
+      queues->to_store.close();
+      return;
+    }
+  }
+  for (int taken = stored_count; limit == 0 || taken < limit;) {
+    if (job.cancelled()) {
+      give_up(stopped());
+      break;
+    }
+    if (step) {
+      emit(NextPlacement{*step});
+      drive = step->placement;
+      if (const Status placed = source->place(*drive); !placed) {
+        emit(Notice{placed.error().line()});
+        const std::scoped_lock lock(mutex);
+        device_error = placed.error();
+        break;
+      }
+    }
+    const Taken got = take_scan(drive, job);
+    if (got == Taken::kEnd) {
+      break;
+    }
+    taken += got == Taken::kScan ? 1 : 0;
+    if (drives) {
+      step = queues->to_device.pop().value_or(std::nullopt);
+      if (!step) {
+        break;
+      }
+    }
+  }
+  queues->to_store.close();
+}
+
+void Engine::Impl::keep_stored() {
+  while (std::optional<RawScan> raw = queues->to_store.pop()) {
+    const StageClock timing = clock("storing");
+    const Result<int> id = store->add_grid(raw->grid);
+    if (!id) {
+      give_up(id.error());
+      continue;
+    }
+    {
+      const std::scoped_lock lock(mutex);
+      ++stored_count;
+    }
+    emit(ScanStored{*id, raw->grid.source, static_cast<std::int64_t>(raw->grid.valid_count())});
+    StationScan scan = prepare_scan(*id, std::move(raw->grid), options.pins, std::move(raw->flags));
+    scan.drive = raw->drive;
+    if (scan.drive) {
+      drives_of_scans[*id] = *scan.drive;
+      if (const Status saved = store->save_document("drives", drives_to_json(drives_of_scans)); !saved) {
+        give_up(saved.error());
+      }
+    }
+    queues->to_register.push(std::move(scan));
+  }
+  queues->to_register.close();
+}
+
+void Engine::Impl::register_all(JobContext& job) {
+  const PinSet* pins = options.pins ? &*options.pins : nullptr;
+  const auto handle = [&](StationScan scan, bool plan_now) {
+    ScanPose pose;
+    {
+      const StageClock timing = clock("registration");
+      pose = registrar.add(scan.id, scan.measured, pins, job);
+    }
+    names[scan.id] = scan.file;
+    pose.file = scan.file;
+    std::vector<ScanPose> poses = named_poses();
+    // Whatever ends the run, what it found until now is in the session.
+    if (plan_now && !job.cancelled()) {
+      if (const Status saved = store->save_poses(poses); !saved) {
+        give_up(saved.error());
+      }
+    }
+    emit(ScanPlaced{pose, poses});
+    queues->to_plan.push({std::move(scan), std::move(poses), plan_now});
+  };
+  for (std::size_t k = 0; k < resumed.size() && !job.cancelled(); ++k) {
+    handle(std::move(resumed[k]), k + 1 == resumed.size());
+  }
+  resumed.clear();
+  if (job.cancelled()) {
+    give_up(stopped());
+  }
+  while (std::optional<StationScan> scan = queues->to_register.pop()) {
+    if (job.cancelled()) {
+      give_up(stopped());
+      continue;
+    }
+    handle(std::move(*scan), true);
+  }
+  queues->to_plan.close();
+}
+
+void Engine::Impl::plan_all(JobContext& job) {
+  while (std::optional<ScanToPlan> item = queues->to_plan.pop()) {
+    planning.add(item->scan);
+    if (job.cancelled()) {
+      give_up(stopped());  // the device waits for a next step that will not come
+    }
+    if (failed() || !item->plan_now) {
+      continue;
+    }
+    const StageClock timing = clock("planning and meshing");
+    if (const Status placed = planning.place(item->poses, false, job); !placed) {
+      give_up(placed.error());
+      continue;
+    }
+    Result<RedMap> red_map = planning.red_map(rig ? &*rig : nullptr, job);
+    if (!red_map) {
+      give_up(red_map.error());
+      continue;
+    }
+    const bool can_go_on = !red_map->conclusive && !red_map->next.empty() && red_map->next.front().placement;
+    if (drives) {
+      queues->to_device.push(can_go_on ? NextStep(red_map->next.front()) : std::nullopt);
+    }
+    emit(RedMapChanged{std::move(*red_map)});
+  }
+  queues->to_device.close();
+}
+
+}  // namespace dubsar
