@@ -19,6 +19,8 @@ namespace {
 constexpr std::array<std::array<int, 2>, 4> kFourNeighbours{{{0, 1}, {0, -1}, {1, 0}, {-1, 0}}};
 /// Candidate centres tried per component: plenty for a ball of some tens of samples.
 constexpr std::size_t kMostCandidates = 400;
+/// A tip shows some third of its visible samples there, an arm's cut end a tenth.
+constexpr double kLeastCapShare = 0.15;
 /// Outliers that may lie beyond a tip, of the samples of half a ball.
 constexpr double kMostStrays = 0.05;
 
@@ -94,6 +96,7 @@ void measure_inside(const RangeGrid& grid, const std::vector<int>& label,
 }
 
 struct Ball {
+  bool tip = false;  ///< it shows its cap; else it is the cut end of an arm
   Eigen::Vector3d center{0, 0, 0};
   int support = 0;
   double rms_mm = 0;
@@ -134,7 +137,7 @@ Ball refine(const RangeGrid& grid, const Component& component, Eigen::Vector3d c
     if (count < 4) {
       return {};
     }
-    ball = {center, count, std::sqrt(sum2 / count)};
+    ball = {false, center, count, std::sqrt(sum2 / count)};
     const Eigen::Vector3d step = h.ldlt().solve(g);
     if (!step.allFinite()) {
       return {};
@@ -166,6 +169,23 @@ bool ends_pin(const RangeGrid& grid, const Component& component, const Eigen::Ve
   return beyond <= strays;
 }
 
+/// Share of the ball's samples on its cap, away from the arm. Where the field cuts an arm off, a ball fits
+/// its end too, but only around its waist.
+double cap_share(const RangeGrid& grid, const Component& component, const Ball& ball, double radius,
+                 double tolerance) {
+  Eigen::Vector3d arm = Eigen::Vector3d::Zero();
+  for (const std::uint32_t i : component.samples) {
+    arm += grid.point(i).cast<double>() - ball.center;
+  }
+  arm.normalize();
+  int cap = 0;
+  for (const std::uint32_t i : component.samples) {
+    const Eigen::Vector3d d = grid.point(i).cast<double>() - ball.center;
+    cap += std::abs(d.norm() - radius) <= tolerance && d.dot(arm) < -0.4 * radius ? 1 : 0;
+  }
+  return ball.support > 0 ? static_cast<double>(cap) / ball.support : 0.0;
+}
+
 std::optional<Ball> find_ball(const RangeGrid& grid, const GridGeometry& geometry, const Component& component,
                               double radius, double spacing_mm, const PinDetectionOptions& options) {
   const double tolerance = options.ball_tolerance * radius;
@@ -186,19 +206,25 @@ std::optional<Ball> find_ball(const RangeGrid& grid, const GridGeometry& geometr
   }
   std::stable_sort(candidates.begin(), candidates.end(),
                    [](const auto& a, const auto& b) { return a.first > b.first; });
-  for (std::size_t k = 0; k < std::min<std::size_t>(candidates.size(), 30); ++k) {
+  std::optional<Ball> cut_end;
+  for (std::size_t k = 0; k < std::min<std::size_t>(candidates.size(), 100); ++k) {
     const Ball rough = refine(grid, component, candidates[k].second, radius, 2.0 * tolerance);
     if (rough.support < 4) {
       continue;
     }
-    const Ball ball = refine(grid, component, rough.center, radius, tolerance);
-    if (ball.support >= std::max(6.0, options.least_ball_share * half_ball) &&
-        ball.rms_mm <= options.most_ball_rms * radius &&
-        ends_pin(grid, component, ball.center, radius, strays)) {
+    Ball ball = refine(grid, component, rough.center, radius, tolerance);
+    if (ball.support < std::max(6.0, options.least_ball_share * half_ball) ||
+        ball.rms_mm > options.most_ball_rms * radius ||
+        !ends_pin(grid, component, ball.center, radius, strays)) {
+      continue;
+    }
+    ball.tip = cap_share(grid, component, ball, radius, tolerance) >= kLeastCapShare;
+    if (ball.tip) {
       return ball;
     }
+    cut_end = cut_end ? cut_end : ball;
   }
-  return std::nullopt;
+  return cut_end;
 }
 
 }  // namespace
@@ -235,8 +261,10 @@ PinDetection detect_pins(const RangeGrid& grid, double tip_diameter_mm, const Pi
     }
     thin.push_back(c);
     if (const std::optional<Ball> ball = find_ball(grid, geometry, component, radius, spacing_mm, options)) {
-      out.tips.push_back({-1, ball->center});
-      out.rms_mm.push_back(ball->rms_mm);
+      if (ball->tip) {
+        out.tips.push_back({-1, ball->center});
+        out.rms_mm.push_back(ball->rms_mm);
+      }
       pins.push_back(c);
     }
   }
