@@ -6,6 +6,8 @@
 #include <cstdlib>
 #include <map>
 
+#include "core/random.h"
+#include "core/units.h"
 #include "planning/sparse_flags.h"
 #include "sim/scan_plan.h"
 #include "sim/scanner.h"
@@ -39,6 +41,12 @@ SimulatedViews make_views(int count) {
       std::fprintf(stderr, "%s\n", grid.error().line().c_str());
       std::exit(4);
     }
+    // What a stage would say after a hand turn: off by some degrees and millimetres.
+    Random hand(seed_for(7, k));
+    const RigidTransform off = RigidTransform::from_twist(
+        Eigen::Vector3d(hand.normal(), hand.normal(), hand.normal()) * rad_from_deg(3.0),
+        Eigen::Vector3d(hand.normal(), hand.normal(), hand.normal()) * 1.5);
+    grid->nominal = NominalPose{off * plan[k].tablet_from_scanner, static_cast<int>(k)};
     views.flags.push_back(flag_sparse(*grid));
     views.poses.push_back(plan[k].tablet_from_scanner);
     views.grids.push_back(std::make_shared<const RangeGrid>(std::move(*grid)));

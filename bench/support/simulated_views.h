@@ -11,7 +11,8 @@
 
 namespace dubsar::bench {
 
-/// Scans of a simulated tablet with their true poses and flags, made once and shared by the benchmarks.
+/// Scans of a simulated tablet with their nominal poses (as a hand turn leaves them), true poses and flags,
+/// made once and shared by the benchmarks.
 struct SimulatedViews {
   std::vector<std::shared_ptr<const RangeGrid>> grids;
   std::vector<SampleFlags> flags;
