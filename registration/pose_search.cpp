@@ -40,25 +40,14 @@ RigidTransform turned(const RigidTransform& pose, const Eigen::Vector3d& center,
   return {r * pose.rotation, r * (pose.translation_mm - center) + center};
 }
 
-/// Half turns about the principal axes of the model, and of the scan, as the tablet is nearly symmetric under
-/// them.
-std::vector<RigidTransform> half_turns(const ScanSurface& scan, std::span<const ModelScan> model,
-                                       const RigidTransform& pose) {
-  std::vector<Eigen::Vector3d> points;
-  for (const ModelScan& m : model) {
-    for (const SurfaceSample& s : m.surface->coarse->samples) {
-      points.push_back(m.model_from_scanner * Eigen::Vector3d(s.position_mm.cast<double>()));
-    }
-  }
-  for (const SurfaceSample& s : scan.coarse->samples) {
-    points.push_back(pose * Eigen::Vector3d(s.position_mm.cast<double>()));
-  }
-  std::vector<RigidTransform> out;
-  if (points.empty()) {
-    return out;
-  }
-  Eigen::Vector3d low = points.front();
-  Eigen::Vector3d high = points.front();
+/// The principal axes of points and the middle of their extent along these: not the mean, for what was
+/// scanned often lies on one side.
+struct Axes {
+  Eigen::Matrix3d directions = Eigen::Matrix3d::Identity();  ///< columns
+  Eigen::Vector3d middle_mm{0, 0, 0};
+};
+
+Axes axes_of(const std::vector<Eigen::Vector3d>& points) {
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
   for (const Eigen::Vector3d& p : points) {
     mean += p / static_cast<double>(points.size());
@@ -67,20 +56,45 @@ std::vector<RigidTransform> half_turns(const ScanSurface& scan, std::span<const 
   for (const Eigen::Vector3d& p : points) {
     spread += (p - mean) * (p - mean).transpose();
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(spread);
-  const Eigen::Matrix3d axes = eigen.eigenvectors();
-  low.setConstant(1e300);
-  high = -low;
+  Axes axes;
+  axes.directions = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvectors();
+  Eigen::Vector3d low = Eigen::Vector3d::Constant(1e300);
+  Eigen::Vector3d high = -low;
   for (const Eigen::Vector3d& p : points) {
-    const Eigen::Vector3d q = axes.transpose() * p;
+    const Eigen::Vector3d q = axes.directions.transpose() * p;
     low = low.cwiseMin(q);
     high = high.cwiseMax(q);
   }
-  // The middle of the extent, not the mean: what was scanned often lies on one side.
-  const Eigen::Vector3d middle = axes * (0.5 * (low + high));
-  for (int k = 0; k < 3; ++k) {
-    out.push_back(turned(pose, middle, axes.col(k), kPi));
-    out.push_back(turned(pose, pose * scan.centroid_mm, axes.col(k), kPi));
+  axes.middle_mm = axes.directions * (0.5 * (low + high));
+  return axes;
+}
+
+/// Half turns under which a nearly symmetric tablet would look the same: about the principal axes of the
+/// model, of the scan and of both together, through the middles of each. A pose that holds must outdo them.
+std::vector<RigidTransform> half_turns(const ScanSurface& scan, std::span<const ModelScan> model,
+                                       const RigidTransform& pose) {
+  std::vector<Eigen::Vector3d> of_model;
+  for (const ModelScan& m : model) {
+    for (const SurfaceSample& s : m.surface->coarse->samples) {
+      of_model.push_back(m.model_from_scanner * Eigen::Vector3d(s.position_mm.cast<double>()));
+    }
+  }
+  std::vector<Eigen::Vector3d> of_scan;
+  for (const SurfaceSample& s : scan.coarse->samples) {
+    of_scan.push_back(pose * Eigen::Vector3d(s.position_mm.cast<double>()));
+  }
+  std::vector<Eigen::Vector3d> of_both = of_model;
+  of_both.insert(of_both.end(), of_scan.begin(), of_scan.end());
+  std::vector<RigidTransform> out;
+  for (const std::vector<Eigen::Vector3d>* points : {&of_both, &of_model, &of_scan}) {
+    if (points->empty()) {
+      continue;
+    }
+    const Axes axes = axes_of(*points);
+    for (int k = 0; k < 3; ++k) {
+      out.push_back(turned(pose, axes.middle_mm, axes.directions.col(k), kPi));
+      out.push_back(turned(pose, pose * scan.centroid_mm, axes.directions.col(k), kPi));
+    }
   }
   return out;
 }
@@ -156,19 +170,19 @@ FoundPose search_pose(const ScanSurface& scan, std::span<const ModelScan> model,
     found.fits.push_back(std::move(as_told));
     return found;
   }
+  bool settled = false;
   if (!hints.starts.empty()) {
     look(hints.starts);
-    if (enough(found, options)) {
-      return found;
-    }
+    settled = enough(found, options);
   }
-  if (hints.asked) {
+  if (hints.asked && !settled) {
     look(around_asked(hints, scan));
-    if (enough(found, options)) {
-      return found;
-    }
+    settled = enough(found, options);
   }
-  for (std::size_t begin = 0; begin < model.size() && !job.cancelled(); begin += options.batch) {
+  if (hints.asked && settled) {
+    return found;  // a half turn is far from what was asked for
+  }
+  for (std::size_t begin = 0; begin < model.size() && !settled && !job.cancelled(); begin += options.batch) {
     const std::size_t end = std::min(begin + options.batch, model.size());
     std::vector<std::vector<PoseHypothesis>> hypotheses(end - begin);
     parallel_for_each_index(
@@ -183,12 +197,14 @@ FoundPose search_pose(const ScanSurface& scan, std::span<const ModelScan> model,
       continue;
     }
     look(starts);
-    if (enough(found, options)) {
-      break;
-    }
+    settled = enough(found, options);
   }
   if (found.verdict.status == PoseStatus::kRegistered && !job.cancelled()) {
-    look(half_turns(scan, model, found.fits.front().model_from_scanner));
+    // Few at a time: the fit refines only the best starts of a batch, and a rival must not be crowded out.
+    const std::vector<RigidTransform> turns = half_turns(scan, model, found.fits.front().model_from_scanner);
+    for (std::size_t k = 0; k + 1 < turns.size() && found.verdict.status == PoseStatus::kRegistered; k += 2) {
+      look(std::span(turns).subspan(k, 2));
+    }
   }
   if (found.fits.empty()) {
     found.verdict = verify_pose(found.fits, options.verify);
