@@ -85,7 +85,7 @@ Status Engine::Impl::finish(EngineResult& result, JobContext& job) {
                           .red_map = result.red_map,
                           .checklist = result.checklist,
                           .scans = result.poses,
-                          .red_points = planning.red_points(),
+                          .red_points = planning.red_points(mesh),
                           .tablet_from_model = planning.tablet_from_model(mesh),
                           .accuracy = accuracy_sentences(result.poses),
                           .calibration = {},

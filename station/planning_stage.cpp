@@ -98,7 +98,11 @@ Result<RedMap> PlanningStage::red_map(const Rig* rig, JobContext& job) {
   return std::move(result->map);
 }
 
-ColouredPoints PlanningStage::red_points() const {
+ColouredPoints PlanningStage::red_points(const Mesh& mesh) const {
+  Eigen::AlignedBox3f box;
+  for (const Eigen::Vector3f& p : mesh.positions) {
+    box.extend(p);
+  }
   ColouredPoints points;
   const std::vector<PlacedScan> scans = cleared_.scans();
   for (std::size_t k = 0; k < scans.size() && k < excused_flags_.size(); ++k) {
@@ -112,8 +116,11 @@ ColouredPoints PlanningStage::red_points() const {
       if (!red && (flags & kExcused) == 0) {
         continue;
       }
-      points.positions_mm.push_back(
-          (scans[k].model_from_scanner * grid.point(i).cast<double>()).cast<float>());
+      const Eigen::Vector3f p = (scans[k].model_from_scanner * grid.point(i).cast<double>()).cast<float>();
+      if (!red && !box.isEmpty() && box.exteriorDistance(p) > 2 * grid.spacing_mm) {
+        continue;
+      }
+      points.positions_mm.push_back(p);
       points.colours.push_back(red ? kRedOfSparse : kAmberOfExcused);
     }
   }

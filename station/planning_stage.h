@@ -39,8 +39,10 @@ class PlanningStage {
   /// The mesh of what is placed.
   [[nodiscard]] Result<Mesh> mesh(const JobContext& job) const { return stitcher_.mesh(job); }
 
-  /// Red (and, paler, excused) samples of the last red_map() in the model frame, for pictures.
-  [[nodiscard]] ColouredPoints red_points() const;
+  /// Red (and amber, excused) samples of the last red_map() in the model frame, for pictures of the mesh.
+  /// Excused strays that hang in the air around it are left out: they would make the picture of air; the red
+  /// map lists them.
+  [[nodiscard]] ColouredPoints red_points(const Mesh& mesh) const;
 
   /// The placed scans, by id, with their flags as cleared.
   [[nodiscard]] std::vector<PlacedScan> placed() const { return cleared_.scans(); }
