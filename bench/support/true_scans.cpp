@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "bench/support/true_scans.h"
+
+#include <cstdio>
+#include <cstdlib>
+
+#include "core/random.h"
+#include "core/units.h"
+#include "sim/pins.h"
+#include "sim/scan_plan.h"
+#include "sim/scanner.h"
+
+namespace dubsar::bench {
+
+namespace {
+
+[[noreturn]] void give_up(const Error& error) {
+  std::fprintf(stderr, "%s\n", error.line().c_str());
+  std::exit(2);
+}
+
+}  // namespace
+
+sim::TabletOptions random_tablet(std::uint64_t seed, std::string_view kind, double spacing_mm) {
+  Random random(seed * 1000 + 17);
+  sim::TabletOptions t;
+  t.seed = seed;
+  t.size_mm.x() = random.uniform(20, 50);
+  t.size_mm.y() = t.size_mm.x() * random.uniform(0.6, 1.2);
+  t.size_mm.z() = t.size_mm.x() * random.uniform(0.35, 0.6);
+  t.spacing_mm = spacing_mm;
+  if (kind == "blank" || kind == "symmetric") {
+    t.text_density = 0;
+    t.seal_um = 0;
+  }
+  if (kind == "symmetric") {
+    t.size_mm.y() = t.size_mm.x();
+    t.unevenness_mm = 0;
+    t.grain_um = 4;
+    t.damage = sim::DamageOptions::none();
+  }
+  if (kind == "worn") {
+    t.damage = {0.2, 1.0, 1.0, 0.2};
+    t.text_density = 0.5;
+  }
+  if (kind == "tiny") {
+    t.size_mm *= 20.0 / t.size_mm.maxCoeff();
+  }
+  return t;
+}
+
+std::vector<TrueScan> true_scans(const sim::TabletOptions& tablet_options, const TrueScanOptions& options) {
+  JobContext job;
+  const auto tablet = sim::make_tablet(tablet_options, job);
+  if (!tablet) {
+    give_up(tablet.error());
+  }
+  const MeshQuery query(tablet->mesh);
+  const sim::TriangulationScanner scanner(
+      sim::scanner_for(tablet_options.size_mm, options.spacing_mm, options.noise_mm));
+  sim::PinOptions pin_options;
+  pin_options.seed = options.seed;
+  const sim::PinStand stand(*tablet, query, pin_options);
+  const auto plan = sim::plan_views(options.views, options.seed);
+  std::vector<std::size_t> views = options.only;
+  for (std::size_t v = 0; options.only.empty() && v < plan.size(); ++v) {
+    views.push_back(v);
+  }
+  std::vector<TrueScan> scans;
+  for (const std::size_t v : views) {
+    const RigidTransform& pose = plan[v].tablet_from_scanner;
+    sim::Scene scene{&*tablet, &query, {}, std::nullopt};
+    if (options.pins != Pins::kNone) {
+      scene.pins = sim::standing_pins(stand.placed(static_cast<int>(v)), scene, scanner, pose);
+    }
+    auto grid = scanner.scan_grid(scene, pose, options.seed * 100 + v, job);
+    if (!grid) {
+      give_up(grid.error());
+    }
+    scans.push_back({std::make_shared<const RangeGrid>(std::move(*grid)), pose,
+                     sim::clicked_tips(sim::tips_in_scanner(scene.pins, pose), 1.0, options.seed * 100 + v),
+                     options.tablet_number});
+  }
+  return scans;
+}
+
+PinSet pin_set(const std::vector<TrueScan>& scans, Pins pins) {
+  PinSet set;
+  for (std::size_t k = 0; k < scans.size() && pins == Pins::kLabelled; ++k) {
+    set.tips[static_cast<int>(k)] = scans[k].clicked_tips;
+  }
+  return set;
+}
+
+PairError pair_error(const TrueScan& a, const TrueScan& b, const RigidTransform& a_from_b) {
+  const RigidTransform truth = a.tablet_from_scanner.inverse() * b.tablet_from_scanner;
+  const Eigen::Vector3d middle_mm = b.tablet_from_scanner.inverse() * Eigen::Vector3d(0, 0, 0);
+  const RigidTransform turn{a_from_b.rotation * truth.rotation.transpose(), {0, 0, 0}};
+  return {deg_from_rad(turn.angle_rad()), (a_from_b * middle_mm - truth * middle_mm).norm(),
+          a.tablet != b.tablet};
+}
+
+}  // namespace dubsar::bench
