@@ -291,6 +291,9 @@ std::shared_ptr<const ScanSurface> make_scan_surface(const RangeGrid& grid,
   out->fine = make_level(grid, keep, fine, out->spacing_mm, options.fine_points, options);
   out->medium = make_level(grid, keep, medium, out->spacing_mm, options.medium_points, options);
   out->coarse = make_level(grid, keep, coarse, out->spacing_mm, options.coarse_points, options);
+  out->relief = make_relief(*out->medium,
+                            std::max(options.relief_radius * out->scale_mm, 3.0 * out->medium->spacing_mm),
+                            static_cast<std::size_t>(options.relief_points));
 
   const SurfaceLevel& level = *out->medium;
   std::size_t count = 0;

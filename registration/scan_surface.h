@@ -10,6 +10,7 @@
 #include "core/grid_lookup.h"
 #include "core/range_grid.h"
 #include "registration/depth_raster.h"
+#include "registration/relief.h"
 
 namespace dubsar {
 
@@ -45,6 +46,8 @@ struct ScanSurfaceOptions {
   int coarse_points = 500;
   double medium_spacing = 0.01;   ///< of scale_mm
   double coarse_spacing = 0.025;  ///< of scale_mm
+  double relief_radius = 0.04;    ///< of scale_mm
+  int relief_points = 2500;
   double crease_angle_rad =
       0.35;  ///< a normal that turns by more than this to a neighbour marks a crease edge
   double most_crease_share = 0.6;  ///< of the samples that a level sends; the rest are spread evenly
@@ -54,6 +57,7 @@ struct ScanSurfaceOptions {
 /// Immutable; the full grid is not referred to.
 struct ScanSurface {
   std::unique_ptr<SurfaceLevel> fine, medium, coarse;
+  Relief relief;  ///< of the medium level
   Eigen::Vector3d centroid_mm{0, 0, 0};  ///< of the usable samples, scanner frame
   Eigen::Vector3d toward_camera{0, 0, 1};
   double spacing_mm = 0;  ///< µ of the full grid

@@ -17,6 +17,7 @@
 #include "bench/accuracy/gauge.h"
 #include "bench/support/true_scans.h"
 #include "registration/registrar.h"
+#include "registration/verify_pose.h"
 
 namespace {
 
@@ -32,6 +33,7 @@ struct Arguments {
   double noise_mm = 0.02;
   std::vector<double> size_mm;
   bool verbose = false;
+  bool at_truth = false;
 };
 
 struct Sums {
@@ -77,6 +79,91 @@ double normalised_error(const ScanPose& pose, const RigidTransform& model_from_s
   return twist.dot(pose.covariance->ldlt().solve(twist)) / 6.0;
 }
 
+/// What the true poses would be judged: tells a search that misses from a verdict that refuses. One line per
+/// scan, against all others and against each of the two sides of the tablet.
+void judge_truth(const std::vector<bench::TrueScan>& scans) {
+  RegistrationOptions options;
+  ScanSurfaceOptions surface_options = options.surface;
+  surface_options.scale_mm = surface_scale_mm(*scans.front().grid);
+  std::vector<std::shared_ptr<const ScanSurface>> surfaces;
+  for (const bench::TrueScan& scan : scans) {
+    surfaces.push_back(make_scan_surface(*scan.grid, {}, surface_options));
+  }
+  for (std::size_t k = 0; k < scans.size(); ++k) {
+    for (const char* side : {"all", "obverse", "reverse"}) {
+      std::vector<ModelScan> model;
+      for (std::size_t j = 0; j < scans.size(); ++j) {
+        const bool obverse = scans[j].tablet_from_scanner.rotation.col(2).z() > 0;
+        if (j != k && (*side == 'a' || (*side == 'o') == obverse)) {
+          model.push_back({surfaces[j].get(), scans[j].tablet_from_scanner});
+        }
+      }
+      ModelFitOptions close = options.search.fit;
+      close.starts_are_close = true;
+      std::vector<ModelFit> fits =
+          fit_to_model(*surfaces[k], model, {&scans[k].tablet_from_scanner, 1}, close);
+      const PoseVerdict verdict = verify_pose(fits, options.search.verify);
+      const PoseEvidence both = fits.empty() ? PoseEvidence{} : fits.front().both();
+      std::printf("    %2zu at the truth on %-8s overlap %.2f pair %.2f agree %.3f through %.4f absent %.3f stability %.4f rms/sigma %.2f doubt %.2f %s %s\n", k, side,
+                  fits.empty() ? 0.0 : fits.front().overlap, fits.empty() ? 0.0 : fits.front().best_pair_overlap, both.agreement(), both.violation(), both.absence(), fits.empty() ? 0.0 : fits.front().icp.stability,
+                  fits.empty() ? 0.0 : fits.front().icp.rms_mm / fits.front().residual_sigma_mm,
+                  fits.empty() ? 0.0 : doubt(fits.front(), options.search.verify), to_string(verdict.status),
+                  verdict.reason.c_str());
+    }
+  }
+}
+
+/// Which of the pairs that truly overlap are found from the surface alone: the rank of the right pose.
+void judge_pairs(const std::vector<bench::TrueScan>& scans) {
+  RegistrationOptions options;
+  ScanSurfaceOptions surface_options = options.surface;
+  surface_options.scale_mm = surface_scale_mm(*scans.front().grid);
+  std::vector<ScanFeatures> features;
+  for (const bench::TrueScan& scan : scans) {
+    ScanFeatures f;
+    f.surface = make_scan_surface(*scan.grid, {}, surface_options);
+    f.descriptors = RingDescriptors(*f.surface, surface_options.scale_mm, options.search.align.descriptors);
+    features.push_back(std::move(f));
+  }
+  for (std::size_t a = 0; a < scans.size(); ++a) {
+    for (std::size_t b = a + 1; b < scans.size(); ++b) {
+      const RigidTransform truth =
+          scans[a].tablet_from_scanner.inverse() * scans[b].tablet_from_scanner;
+      const std::vector<ModelScan> model{{features[a].surface.get(), {}}};
+      const ModelFit at_truth =
+          judge_in_model(*features[b].surface, model, truth, options.search.fit);
+      const auto hypotheses = align_pair(features[b], features[a], options.search.align);
+      int rank = -1;
+      double score = 0;
+      for (std::size_t h = 0; h < hypotheses.size() && rank < 0; ++h) {
+        const bench::PairError e =
+            bench::pair_error(scans[a], scans[b], hypotheses[h].target_from_source);
+        if (e.turn_deg < 8 && e.shift_mm < 3) {
+          rank = static_cast<int>(h);
+          score = hypotheses[h].score;
+        }
+      }
+      if (at_truth.best_pair_overlap > 0.08 || rank >= 0) {
+        const auto z = [&](const RigidTransform& pose) {
+          const ScanSurface& from = *features[b].surface;
+          const ScanSurface& to = *features[a].surface;
+          const ReliefAgreement r = relief_agreement(*from.medium, from.relief, *to.medium, to.relief, pose, 0.015 * from.scale_mm);
+          std::printf(" [%.2f z %.1f]", r.correlation(), r.significance(from.relief.radius_mm));
+        };
+        std::printf("    pair %2zu %2zu overlap %.2f rank %2d of %zu score %.3f best %.3f; truth", a, b,
+                    at_truth.best_pair_overlap, rank, hypotheses.size(), score,
+                    hypotheses.empty() ? 0.0 : hypotheses.front().score);
+        z(truth);
+        std::printf(" found");
+        for (const auto& h : hypotheses) {
+          z(h.target_from_source);
+        }
+        std::printf("\n");
+      }
+    }
+  }
+}
+
 void run(const Arguments& arguments, std::uint64_t seed, Sums& sums) {
   sim::TabletOptions tablet =
       bench::random_tablet(seed, arguments.kind, std::max(0.1, arguments.spacing_mm));
@@ -89,6 +176,10 @@ void run(const Arguments& arguments, std::uint64_t seed, Sums& sums) {
   const std::vector<bench::TrueScan> scans = bench::true_scans(
       tablet, {arguments.spacing_mm, arguments.noise_mm, arguments.views, {}, seed, pins, 0});
   const PinSet pin_set = bench::pin_set(scans, pins);
+  if (arguments.at_truth) {
+    judge_truth(scans);
+    judge_pairs(scans);
+  }
   JobContext job;
   Registrar registrar;
   double slowest_s = 0;
@@ -199,6 +290,7 @@ int main(int argc, char** argv) {
   app.add_option("--noise", arguments.noise_mm, "mm");
   app.add_option("--size", arguments.size_mm, "width height thickness, mm; else random")->expected(3);
   app.add_flag("-v,--verbose", arguments.verbose, "each scan");
+  app.add_flag("--at-truth", arguments.at_truth, "also judge the true poses");
   CLI11_PARSE(app, argc, argv);
   Sums sums;
   for (std::uint64_t k = 0; k < arguments.tablets; ++k) {
