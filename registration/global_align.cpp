@@ -26,29 +26,69 @@ double coarse_score(const ScanSurface& source, const ScanSurface& target,
   return e.sent == 0 ? 0.0 : (e.close - kFreeSpaceWeight * e.in_front) / static_cast<double>(e.sent);
 }
 
-/// Horn's solution over the matches that agree with the pose; the pose itself when they are too few.
-RigidTransform consensus(const RingDescriptors& source, const RingDescriptors& target,
-                         const std::vector<RingDescriptors::Match>& matches, const RigidTransform& start,
-                         double reach_mm) {
+/// A match of two keypoints with the pose that it gives.
+struct Vote {
+  RigidTransform pose;
+  Eigen::Quaternionf turn;
+  Eigen::Vector3f from, to;  ///< the keypoints, each in its scan's frame
+  float weight = 0;
+};
+
+void collect_votes(const RingDescriptors& source, const RingDescriptors& target,
+                   const RingDescriptorOptions& descriptors, int most, std::vector<Vote>& votes) {
+  const std::vector<RingDescriptors::Match> matches = RingDescriptors::match(source, target, descriptors);
+  const std::size_t first = votes.size();
+  votes.resize(first + std::min(matches.size(), static_cast<std::size_t>(most)));
+  parallel_for_each_index(
+      votes.size() - first,
+      [&](std::size_t k) {
+        const RingDescriptors::Match& m = matches[k];
+        Vote& vote = votes[first + k];
+        vote.pose = RingDescriptors::pose_of(source, target, m);
+        vote.turn = Eigen::Quaternionf(vote.pose.rotation.cast<float>());
+        vote.from = source.keypoint(static_cast<std::size_t>(m.source)).position_mm;
+        vote.to = target.keypoint(static_cast<std::size_t>(m.target)).position_mm;
+        vote.weight = std::max(0.05F, 1.0F - m.distance);
+      },
+      64);
+}
+
+/// Decides which votes agree with a pose.
+struct Agreement {
+  Agreement(const RigidTransform& pose, double turn_rad, double shift_mm)
+      : turn(pose.rotation.cast<float>()),
+        rotation(pose.rotation.cast<float>()),
+        shift(pose.translation_mm.cast<float>()),
+        half_cosine(static_cast<float>(std::cos(0.5 * turn_rad))),
+        reach2(static_cast<float>(shift_mm * shift_mm)) {}
+  [[nodiscard]] bool holds(const Vote& v) const {
+    return std::abs(turn.dot(v.turn)) >= half_cosine &&
+           (rotation * v.from + shift - v.to).squaredNorm() <= reach2;
+  }
+  Eigen::Quaternionf turn;
+  Eigen::Matrix3f rotation;
+  Eigen::Vector3f shift;
+  float half_cosine, reach2;
+};
+
+/// Horn's solution over the votes that agree with the pose; the pose itself when they are too few.
+RigidTransform consensus(const std::vector<Vote>& votes, const RigidTransform& start, double turn_rad,
+                         double shift_mm) {
   RigidTransform pose = start;
-  for (int round = 0; round < 2; ++round) {
+  for (int round = 0; round < 3; ++round) {
+    const Agreement agreement(pose, turn_rad, shift_mm);
     std::vector<Eigen::Vector3d> from;
     std::vector<Eigen::Vector3d> to;
-    for (const RingDescriptors::Match& m : matches) {
-      const SurfaceSample& a = source.keypoint(static_cast<std::size_t>(m.source));
-      const SurfaceSample& b = target.keypoint(static_cast<std::size_t>(m.target));
-      const Eigen::Vector3d p = a.position_mm.cast<double>();
-      const Eigen::Vector3d q = b.position_mm.cast<double>();
-      if ((pose * p - q).squaredNorm() <= reach_mm * reach_mm &&
-          (pose.rotation * a.normal.cast<double>()).dot(b.normal.cast<double>()) > 0.8) {
-        from.push_back(p);
-        to.push_back(q);
+    for (const Vote& v : votes) {
+      if (agreement.holds(v)) {
+        from.emplace_back(v.from.cast<double>());
+        to.emplace_back(v.to.cast<double>());
       }
     }
     const std::optional<RigidTransform> better =
         from.size() >= 4 ? absolute_orientation(from, to) : std::optional<RigidTransform>{};
     if (!better ||
-        RigidTransform{better->rotation * pose.rotation.transpose(), {0, 0, 0}}.angle_rad() > 0.5) {
+        RigidTransform{better->rotation * pose.rotation.transpose(), {0, 0, 0}}.angle_rad() > turn_rad) {
       break;
     }
     pose = *better;
@@ -56,11 +96,21 @@ RigidTransform consensus(const RingDescriptors& source, const RingDescriptors& t
   return pose;
 }
 
-/// The best `most` of the hypotheses that are no near-copies of a better one.
+double significance(const ScanSurface& source, const ScanSurface& target,
+                    const RigidTransform& target_from_source, double tolerance_mm) {
+  return relief_agreement(*source.medium, source.relief, *target.medium, target.relief, target_from_source,
+                          tolerance_mm)
+      .significance(source.relief.radius_mm);
+}
+
+/// The best `most` of the hypotheses by `value` that are no near-copies of a better one.
+template <class Value>
 std::vector<PoseHypothesis> distinct(std::vector<PoseHypothesis> all, std::size_t most,
-                                     const Eigen::Vector3d& center_mm, double turn_rad, double shift_mm) {
-  std::stable_sort(all.begin(), all.end(),
-                   [](const PoseHypothesis& a, const PoseHypothesis& b) { return a.score > b.score; });
+                                     const Eigen::Vector3d& center_mm, double turn_rad, double shift_mm,
+                                     const Value& value) {
+  std::stable_sort(all.begin(), all.end(), [&](const PoseHypothesis& a, const PoseHypothesis& b) {
+    return value(a) > value(b);
+  });
   std::vector<PoseHypothesis> out;
   for (const PoseHypothesis& h : all) {
     if (out.size() >= most) {
@@ -76,7 +126,31 @@ std::vector<PoseHypothesis> distinct(std::vector<PoseHypothesis> all, std::size_
   return out;
 }
 
+double by_shape(const PoseHypothesis& h) {
+  return h.shape_score;
+}
+double by_relief(const PoseHypothesis& h) {
+  return h.relief_significance;
+}
+double by_support(const PoseHypothesis& h) {
+  return h.support();
+}
+
 }  // namespace
+
+double PoseHypothesis::support() const {
+  // Among thousands of tried poses chance reaches three sigmas or so.
+  return shape_score + 0.15 * std::clamp(relief_significance - 3.0, 0.0, 20.0);
+}
+
+ScanFeatures make_scan_features(std::shared_ptr<const ScanSurface> surface,
+                                const GlobalAlignOptions& options) {
+  ScanFeatures out;
+  out.shape = RingDescriptors(*surface, surface->scale_mm, options.shape);
+  out.relief = RingDescriptors(*surface, surface->scale_mm, options.relief);
+  out.surface = std::move(surface);
+  return out;
+}
 
 bool same_pose(const RigidTransform& a, const RigidTransform& b, const Eigen::Vector3d& center_mm,
                double turn_rad, double shift_mm) {
@@ -89,52 +163,66 @@ std::vector<PoseHypothesis> align_pair(const ScanFeatures& source, const ScanFea
   const ScanSurface& from = *source.surface;
   const ScanSurface& to = *target.surface;
   const double scale_mm = to.scale_mm;
-  std::vector<RingDescriptors::Match> matches =
-      RingDescriptors::match(source.descriptors, target.descriptors, options.descriptors);
-  if (matches.empty()) {
+  const double turn = options.distinct_turn_rad;
+  const double shift_mm = options.distinct_shift * scale_mm;
+  std::vector<Vote> votes;
+  collect_votes(source.relief, target.relief, options.relief, options.most_matches, votes);
+  const std::size_t of_relief = votes.size();
+  collect_votes(source.shape, target.shape, options.shape, options.most_matches, votes);
+  if (votes.empty()) {
     return {};
   }
-  const std::size_t tried = std::min(matches.size(), static_cast<std::size_t>(options.most_matches));
+  const auto most_seeds = static_cast<std::size_t>(options.most_seeds);
+  std::vector<std::size_t> seeds;
+  for (std::size_t k = 0; k < votes.size(); ++k) {
+    if (k < std::min(most_seeds, of_relief) || (k >= of_relief && k < of_relief + most_seeds)) {
+      seeds.push_back(k);
+    }
+  }
   EvidenceOptions rough;
   rough.tolerance_mm = options.rough_tolerance * scale_mm;
   rough.band_mm = options.band * scale_mm;
-  rough.most_samples = options.quick_samples;
-  std::vector<PoseHypothesis> found(tried);
+  const double vote_mm = options.vote_shift * scale_mm;
+  std::vector<PoseHypothesis> found(seeds.size());
   parallel_for_each_index(
-      tried,
+      seeds.size(),
       [&](std::size_t k) {
-        found[k].target_from_source =
-            RingDescriptors::pose_of(source.descriptors, target.descriptors, matches[k]);
-        found[k].score = coarse_score(from, to, found[k].target_from_source, rough, false);
+        const RigidTransform& pose = votes[seeds[k]].pose;
+        const Agreement agreement(pose, options.vote_turn_rad, vote_mm);
+        double sum = 0;
+        for (const Vote& v : votes) {
+          sum += agreement.holds(v) ? static_cast<double>(v.weight) : 0.0;
+        }
+        found[k] = {pose, sum, 0.0};
       },
-      64);
-
-  const double turn = options.distinct_turn_rad;
-  const double shift_mm = options.distinct_shift * scale_mm;
-  found = distinct(std::move(found), static_cast<std::size_t>(options.most_consensus), from.centroid_mm,
-                   0.5 * turn, 0.5 * shift_mm);
-  rough.most_samples = 1 << 30;
+      16);
+  found = distinct(std::move(found), static_cast<std::size_t>(options.most_consensus), from.centroid_mm, turn,
+                   shift_mm, by_shape);
   parallel_for_each_index(
       found.size(),
       [&](std::size_t k) {
-        const RigidTransform better = consensus(source.descriptors, target.descriptors, matches,
-                                                found[k].target_from_source, 2.0 * rough.tolerance_mm);
-        const double as_found = coarse_score(from, to, found[k].target_from_source, rough, true);
-        const double as_better = coarse_score(from, to, better, rough, true);
-        found[k].score = std::max(as_found, as_better);
-        if (as_better > as_found) {
-          found[k].target_from_source = better;
-        }
+        RigidTransform& pose = found[k].target_from_source;
+        pose = consensus(votes, pose, options.vote_turn_rad, vote_mm);
+        found[k].shape_score = coarse_score(from, to, pose, rough, true);
+        found[k].relief_significance =
+            significance(from, to, pose, rough.tolerance_mm);
       },
       4);
-  found = distinct(std::move(found), static_cast<std::size_t>(options.most_refined), from.centroid_mm, turn,
-                   shift_mm);
+  std::vector<PoseHypothesis> chosen =
+      distinct(found, static_cast<std::size_t>(options.most_by_relief), from.centroid_mm, turn, shift_mm,
+               by_relief);
+  for (const PoseHypothesis& h : distinct(std::move(found), static_cast<std::size_t>(options.most_by_shape),
+                                          from.centroid_mm, turn, shift_mm, by_shape)) {
+    chosen.push_back(h);
+  }
+  chosen = distinct(std::move(chosen), chosen.size(), from.centroid_mm, turn, shift_mm, by_support);
 
   EvidenceOptions close = rough;
   close.tolerance_mm = std::max(options.tolerance * scale_mm, 0.5 * to.coarse->spacing_mm);
   parallel_for_each_index(
-      found.size(),
+      chosen.size(),
       [&](std::size_t k) {
+        RigidTransform& pose = chosen[k].target_from_source;
         IcpOptions icp_options;
         const IcpTarget onto{to.coarse.get(), {}};
         for (const double reach : {0.08, 0.04}) {
@@ -144,14 +232,15 @@ std::vector<PoseHypothesis> align_pair(const ScanFeatures& source, const ScanFea
           icp_options.iterations = 12;
           icp_options.converged_mm = 1e-3 * scale_mm;
           icp_options.two_way = true;
-          found[k].target_from_source =
-              icp(*from.coarse, {&onto, 1}, found[k].target_from_source, icp_options).model_from_source;
+          pose = icp(*from.coarse, {&onto, 1}, pose, icp_options).model_from_source;
         }
-        found[k].score = coarse_score(from, to, found[k].target_from_source, close, true);
+        chosen[k].shape_score = coarse_score(from, to, pose, close, true);
+        chosen[k].relief_significance =
+            significance(from, to, pose, close.tolerance_mm);
       },
       1);
-  return distinct(std::move(found), static_cast<std::size_t>(options.most_returned), from.centroid_mm, turn,
-                  shift_mm);
+  return distinct(std::move(chosen), static_cast<std::size_t>(options.most_returned), from.centroid_mm, turn,
+                  shift_mm, by_support);
 }
 
 }  // namespace dubsar

@@ -42,10 +42,13 @@ std::optional<Eigen::Vector3f> plane_normal(const SurfaceLevel& level, const Eig
   return sum.normalized();
 }
 
-/// Mean heights over the tangent plane in rings × sectors, in units of the radius; nothing when too much is
-/// missing.
-std::optional<Heights> ring_heights(const SurfaceLevel& level, const Frame& frame, float radius_mm,
-                                    double least_filled) {
+/// Mean heights in rings × sectors, nothing when too much is missing: over the tangent plane in units of the
+/// radius, or of the relief in units of its rms.
+std::optional<Heights> ring_heights(const ScanSurface& surface, RingContent content, const Frame& frame,
+                                    float radius_mm, double least_filled) {
+  const SurfaceLevel& level = *surface.medium;
+  const bool relief = content == RingContent::kRelief;
+  const float unit_mm = relief ? std::max(static_cast<float>(surface.relief.rms_mm), 1e-6F) : radius_mm;
   Heights sum{};
   std::array<int, static_cast<std::size_t>(kRings) * kSectors> count{};
   level.lookup->for_each_near(frame.origin, radius_mm, [&](std::size_t i) {
@@ -54,14 +57,14 @@ std::optional<Heights> ring_heights(const SurfaceLevel& level, const Frame& fram
     const float a = d.dot(frame.u);
     const float b = d.dot(frame.v);
     const float rho = std::sqrt(a * a + b * b);
-    if (rho >= radius_mm || std::abs(h) > radius_mm) {
+    if (rho >= radius_mm || std::abs(h) > radius_mm || (relief && std::isnan(surface.relief.height_mm[i]))) {
       return;
     }
     const int ring = std::min(static_cast<int>(rho / radius_mm * kRings), kRings - 1);
     const float turn = (std::atan2(b, a) + static_cast<float>(kPi)) / static_cast<float>(2 * kPi);
     const int sector = std::min(static_cast<int>(turn * kSectors), kSectors - 1);
     const auto cell = static_cast<std::size_t>(ring * kSectors + sector);
-    sum[cell] += h;
+    sum[cell] += relief ? surface.relief.height_mm[i] : h;
     ++count[cell];
   });
   int filled = 0;
@@ -72,7 +75,7 @@ std::optional<Heights> ring_heights(const SurfaceLevel& level, const Frame& fram
       // The innermost sectors are narrower than the sample spacing.
       expected += ring == 0 ? 0 : 1;
       filled += ring > 0 && count[cell] > 0 ? 1 : 0;
-      sum[cell] = count[cell] > 0 ? sum[cell] / (static_cast<float>(count[cell]) * radius_mm) : 0.0F;
+      sum[cell] = count[cell] > 0 ? sum[cell] / (static_cast<float>(count[cell]) * unit_mm) : 0.0F;
     }
   }
   if (filled < least_filled * expected) {
@@ -146,7 +149,7 @@ RingDescriptors::RingDescriptors(const ScanSurface& surface, double scale_mm,
         frame.v = frame.normal.cross(frame.u);
         for (int s = 0; s < kScales; ++s) {
           const auto radius = static_cast<float>(options.radius[static_cast<std::size_t>(s)] * scale_mm);
-          const std::optional<Heights> heights = ring_heights(level, frame, radius, options.least_filled);
+          const std::optional<Heights> heights = ring_heights(surface, options.content, frame, radius, options.least_filled);
           if (!heights) {
             return;
           }

@@ -12,7 +12,12 @@
 
 namespace dubsar {
 
+/// What is read on the rings: the surface's heights over the tangent plane tell the shape of any object; its
+/// relief (relief.h) tells what is written where the shape is the same all over.
+enum class RingContent { kShape, kRelief };
+
 struct RingDescriptorOptions {
+  RingContent content = RingContent::kShape;
   int keypoints = 1200;
   std::array<double, 2> radius{0.06, 0.13};  ///< of the scale of the object
   double least_filled = 0.7;                 ///< share of a descriptor's cells that must hold samples

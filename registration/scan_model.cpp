@@ -65,9 +65,7 @@ void ScanModel::enter(int id, const RangeGrid* grid, const PinSet* pins) {
                   (ratio > 1 ? "larger" : "smaller") +
                   " than the scans before it: its numbers are in another unit; give the right --unit";
   } else {
-    scan.features.surface = make_scan_surface(g, ignore, surface);
-    scan.features.descriptors =
-        RingDescriptors(*scan.features.surface, scale_mm_, options_.search.align.descriptors);
+    scan.features = make_scan_features(make_scan_surface(g, ignore, surface), options_.search.align);
     scan.usable = scan.features.surface->fine->samples.size() >= options_.least_samples;
     if (!scan.usable) {
       scan.reason =

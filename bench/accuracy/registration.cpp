@@ -120,10 +120,8 @@ void judge_pairs(const std::vector<bench::TrueScan>& scans) {
   surface_options.scale_mm = surface_scale_mm(*scans.front().grid);
   std::vector<ScanFeatures> features;
   for (const bench::TrueScan& scan : scans) {
-    ScanFeatures f;
-    f.surface = make_scan_surface(*scan.grid, {}, surface_options);
-    f.descriptors = RingDescriptors(*f.surface, surface_options.scale_mm, options.search.align.descriptors);
-    features.push_back(std::move(f));
+    features.push_back(
+        make_scan_features(make_scan_surface(*scan.grid, {}, surface_options), options.search.align));
   }
   for (std::size_t a = 0; a < scans.size(); ++a) {
     for (std::size_t b = a + 1; b < scans.size(); ++b) {
@@ -140,7 +138,7 @@ void judge_pairs(const std::vector<bench::TrueScan>& scans) {
             bench::pair_error(scans[a], scans[b], hypotheses[h].target_from_source);
         if (e.turn_deg < 8 && e.shift_mm < 3) {
           rank = static_cast<int>(h);
-          score = hypotheses[h].score;
+          score = hypotheses[h].shape_score;
         }
       }
       if (at_truth.best_pair_overlap > 0.08 || rank >= 0) {
@@ -152,7 +150,7 @@ void judge_pairs(const std::vector<bench::TrueScan>& scans) {
         };
         std::printf("    pair %2zu %2zu overlap %.2f rank %2d of %zu score %.3f best %.3f; truth", a, b,
                     at_truth.best_pair_overlap, rank, hypotheses.size(), score,
-                    hypotheses.empty() ? 0.0 : hypotheses.front().score);
+                    hypotheses.empty() ? 0.0 : hypotheses.front().shape_score);
         z(truth);
         std::printf(" found");
         for (const auto& h : hypotheses) {
