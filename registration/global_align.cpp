@@ -138,7 +138,7 @@ double by_support(const PoseHypothesis& h) {
 
 }  // namespace
 
-double PoseHypothesis::support() const {
+double pose_support(double shape_score, double relief_significance) {
   // Among thousands of tried poses chance reaches three sigmas or so.
   return shape_score + 0.15 * std::clamp(relief_significance - 3.0, 0.0, 20.0);
 }

@@ -39,6 +39,9 @@ struct GlobalAlignOptions {
 [[nodiscard]] ScanFeatures make_scan_features(std::shared_ptr<const ScanSurface> surface,
                                               const GlobalAlignOptions& options);
 
+/// For sorting poses: relief beyond chance outweighs any shape, for tablets look alike from many sides.
+[[nodiscard]] double pose_support(double shape_score, double relief_significance);
+
 /// A pose of one scan against another and what speaks for it. Comparable within one pair only.
 struct PoseHypothesis {
   RigidTransform target_from_source;
@@ -46,8 +49,7 @@ struct PoseHypothesis {
   double shape_score = 0;
   double relief_significance = 0;  ///< ReliefAgreement::significance
 
-  /// For sorting: relief beyond chance outweighs any shape, for tablets look alike from many sides.
-  [[nodiscard]] double support() const;
+  [[nodiscard]] double support() const { return pose_support(shape_score, relief_significance); }
 };
 
 /// True when two poses move the point at `center_mm` to within shift_mm of each other and differ by less than

@@ -23,8 +23,22 @@ bool better(const ModelFit& a, const ModelFit& b) {
   return a.score > b.score;
 }
 
-double coarse_score(const ScanSurface& scan, std::span<const ModelScan> model, const RigidTransform& pose,
-                    const EvidenceOptions& options) {
+/// The relief of the scan against that of all scans of the model. Clay that several of them show counts once.
+ReliefAgreement relief_in_model(const ScanSurface& scan, std::span<const ModelScan> model,
+                                const RigidTransform& pose, double tolerance_mm) {
+  ReliefAgreement sum;
+  for (const ModelScan& m : model) {
+    sum.add(relief_agreement(*scan.medium, scan.relief, *m.surface->medium, m.surface->relief,
+                             m.model_from_scanner.inverse() * pose, tolerance_mm));
+  }
+  sum.area_mm2 =
+      std::min(sum.area_mm2, scan.relief.cell_area_mm2 * static_cast<double>(scan.relief.cells.size()));
+  return sum;
+}
+
+/// For comparing rough poses of one scan.
+double coarse_support(const ScanSurface& scan, std::span<const ModelScan> model, const RigidTransform& pose,
+                      const EvidenceOptions& options) {
   PoseEvidence sum;
   int sent = 0;
   for (const ModelScan& m : model) {
@@ -35,7 +49,10 @@ double coarse_score(const ScanSurface& scan, std::span<const ModelScan> model, c
     sum.add(out);
     sum.add(in);
   }
-  return sent == 0 ? 0.0 : (sum.close - kFreeSpaceWeight * sum.in_front) / static_cast<double>(sent);
+  const double shape =
+      sent == 0 ? 0.0 : (sum.close - kFreeSpaceWeight * sum.in_front) / static_cast<double>(sent);
+  return pose_support(shape, relief_in_model(scan, model, pose, options.tolerance_mm)
+                                 .significance(scan.relief.radius_mm));
 }
 
 /// A scan of the model and how many samples it shares with the fitted one.
@@ -157,12 +174,36 @@ ModelFit judge_in_model(const ScanSurface& scan, std::span<const ModelScan> mode
     out.overlap = static_cast<double>(on) / static_cast<double>(samples);
   }
   const PoseEvidence both = out.both();
-  out.score = out.overlap * both.agreement() * std::max(0.0, 1.0 - kFreeSpaceWeight * both.violation()) *
-              (1.0 - both.absence());
+  const double shape = out.overlap * both.agreement() *
+                       std::max(0.0, 1.0 - kFreeSpaceWeight * both.violation()) * (1.0 - both.absence());
+  out.relief = relief_in_model(scan, model, model_from_scanner, options.coarse_tolerance * scan.scale_mm);
+  out.significance = out.relief.significance(scan.relief.radius_mm);
+  out.score = pose_support(shape, out.significance);
   return out;
 }
 
 namespace {
+
+/// What the relief says when the scan is slid, or turned, along the direction that its shape holds least: as
+/// far as half of what the relief is measured against.
+double slid_significance(const ScanSurface& scan, std::span<const ModelScan> model, const IcpResult& icp,
+                         const ModelFitOptions& options) {
+  double most = 0;
+  for (const double side : {-0.5, 0.5}) {
+    const double step_mm = side * scan.relief.radius_mm;
+    // `weakest` has its turns scaled to displacement at the scan's rms radius.
+    const double radius_mm = std::max(0.5 * scan.extent_mm, 1e-6);
+    const RigidTransform turn = RigidTransform::from_twist(
+        step_mm / radius_mm * icp.weakest.head<3>(), Eigen::Vector3d::Zero());
+    RigidTransform pose = icp.model_from_source;
+    pose.rotation = turn.rotation * pose.rotation;
+    pose.translation_mm = turn.rotation * (pose.translation_mm - icp.center_mm) + icp.center_mm +
+                          step_mm * icp.weakest.tail<3>();
+    most = std::max(most, relief_in_model(scan, model, pose, options.coarse_tolerance * scan.scale_mm)
+                              .significance(scan.relief.radius_mm));
+  }
+  return most;
+}
 
 /// Takes starts from anywhere in the ICP's reach to within that of the fine level.
 std::vector<ModelFit> approach(const ScanSurface& scan, std::span<const ModelScan> model,
@@ -175,7 +216,7 @@ std::vector<ModelFit> approach(const ScanSurface& scan, std::span<const ModelSca
   parallel_for_each_index(
       starts.size(),
       [&](std::size_t k) {
-        tried[k] = {starts[k], coarse_score(scan, model, starts[k], rough)};
+        tried[k] = {starts[k], coarse_support(scan, model, starts[k], rough)};
       },
       1);
   keep_distinct(tried, static_cast<std::size_t>(2 * options.most_medium), scan.centroid_mm, options,
@@ -196,7 +237,7 @@ std::vector<ModelFit> approach(const ScanSurface& scan, std::span<const ModelSca
                                      options.most_targets);
         tried[k].pose =
             icp_in_model(scan, model, members, &ScanSurface::coarse, tried[k].pose, coarse).model_from_source;
-        tried[k].score = coarse_score(scan, model, tried[k].pose, rough);
+        tried[k].score = coarse_support(scan, model, tried[k].pose, rough);
       },
       1);
   keep_distinct(tried, static_cast<std::size_t>(options.most_medium), scan.centroid_mm, options, scale_mm);
@@ -262,6 +303,7 @@ std::vector<ModelFit> fit_to_model(const ScanSurface& scan, std::span<const Mode
     }
     fit = judge_in_model(scan, model, result.model_from_source, options);
     fit.icp = result;
+    fit.slid_significance = slid_significance(scan, model, result, options);
   }
   std::stable_sort(fits.begin(), fits.end(), better);
   std::vector<ModelFit> out;

@@ -44,7 +44,10 @@ struct ModelFit {
   double overlap = 0;            ///< share of the scan's samples that lie on a surface of the model
   double best_pair_overlap = 0;  ///< largest overlap with one scan of the model, over the smaller of the two
   double residual_sigma_mm = 0;  ///< expected standard deviation of a residual
-  double score = 0;              ///< for comparing poses of one scan
+  ReliefAgreement relief;        ///< with all scans of the model
+  double significance = 0;       ///< of the relief's agreement, in standard deviations
+  double slid_significance = 0;  ///< the larger one of the scan moved either way along the ICP's weakest direction
+  double score = 0;              ///< for comparing poses of one scan: pose_support()
   std::vector<std::size_t> touching;  ///< positions in the model of the scans that it overlaps
   std::vector<std::size_t> targets;   ///< those of them that it is fitted to
 

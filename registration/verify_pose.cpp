@@ -28,6 +28,10 @@ double residual_doubt(const ModelFit& fit, const VerifyOptions& o) {
          (o.most_residual - o.usual_residual);
 }
 
+bool sure(const ModelFit& fit, const VerifyOptions& o) {
+  return fit.significance >= o.sure_relief;
+}
+
 PoseVerdict judged_alone(const ModelFit& fit, const VerifyOptions& o) {
   const PoseEvidence both = fit.both();
   if (fit.outward.close + fit.inward.close < o.least_close || fit.overlap < o.least_overlap) {
@@ -70,7 +74,8 @@ PoseVerdict judged_alone(const ModelFit& fit, const VerifyOptions& o) {
             " of the surface that one scan shows is missing from another that looked there; scan again with "
             "more overlap, or click three points on both scans"};
   }
-  if (fit.icp.stability < o.least_stability) {
+  const bool held_by_relief = sure(fit, o) && fit.slid_significance < o.most_slid * fit.significance;
+  if (fit.icp.stability < o.least_stability && !held_by_relief) {
     return {PoseStatus::kUnsure,
             "the overlap is too even: the scan can " + loose_direction(fit.icp) +
                 " on it; scan again with an edge or more relief in the overlap, or use pins"};
@@ -94,10 +99,14 @@ PoseVerdict verify_pose(std::vector<ModelFit>& fits, const VerifyOptions& option
         "nothing in it resembles the registered scans; scan again with at least 30 % overlap, or click three "
         "points on both scans"};
   }
-  auto best = fits.end();
-  for (auto fit = fits.begin(); fit != fits.end(); ++fit) {
+  const auto acceptable = [&](const ModelFit& fit) {
+    return judged_alone(fit, options).status == PoseStatus::kRegistered;
+  };
+  auto best = sure(fits.front(), options) && acceptable(fits.front()) ? fits.begin() : fits.end();
+  const bool settled = best != fits.end();
+  for (auto fit = fits.begin(); fit != fits.end() && !settled; ++fit) {
     if (fit->score > options.rival_score * fits.front().score &&
-        judged_alone(*fit, options).status == PoseStatus::kRegistered &&
+        acceptable(*fit) &&
         (best == fits.end() || doubt(*fit, options) < doubt(*best, options))) {
       best = fit;
     }
@@ -109,6 +118,9 @@ PoseVerdict verify_pose(std::vector<ModelFit>& fits, const VerifyOptions& option
   const ModelFit& chosen = fits.front();
   const double least = options.rival_gap + options.rival_ratio * doubt(chosen, options);
   for (auto rival = fits.begin() + 1; rival != fits.end(); ++rival) {
+    if (sure(chosen, options) && rival->significance < options.rival_relief * chosen.significance) {
+      continue;
+    }
     if (rival->score > options.rival_score * chosen.score && doubt(*rival, options) < least) {
       const RigidTransform turn = rival->model_from_scanner * chosen.model_from_scanner.inverse();
       return {PoseStatus::kUnsure, "two poses fit, " +
