@@ -216,6 +216,7 @@ std::vector<PoseHypothesis> align_pair(const ScanFeatures& source, const ScanFea
     chosen.push_back(h);
   }
   chosen = distinct(std::move(chosen), chosen.size(), from.centroid_mm, turn, shift_mm, by_support);
+  drop_outdone(chosen, by_relief);
 
   EvidenceOptions close = rough;
   close.tolerance_mm = std::max(options.tolerance * scale_mm, 0.5 * to.coarse->spacing_mm);

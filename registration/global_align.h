@@ -2,6 +2,7 @@
 // Copyright The Dubsar developers
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <vector>
 
@@ -51,6 +52,23 @@ struct PoseHypothesis {
 
   [[nodiscard]] double support() const { return pose_support(shape_score, relief_significance); }
 };
+
+/// Poses whose relief agrees like this, before they are refined, leave no room for others …
+inline constexpr double kSettledSignificance = 8.0;
+/// … that show less than this part of it.
+inline constexpr double kOutdone = 0.5;
+
+/// Takes out what a pose with settled relief outdoes. `significance` reads it from an entry.
+template <class Entry, class Significance>
+void drop_outdone(std::vector<Entry>& entries, const Significance& significance) {
+  double most = 0;
+  for (const Entry& entry : entries) {
+    most = std::max(most, significance(entry));
+  }
+  if (most >= kSettledSignificance) {
+    std::erase_if(entries, [&](const Entry& entry) { return significance(entry) < kOutdone * most; });
+  }
+}
 
 /// True when two poses move the point at `center_mm` to within shift_mm of each other and differ by less than
 /// turn_rad.

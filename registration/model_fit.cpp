@@ -17,7 +17,12 @@ constexpr double kFreeSpaceWeight = 2.0;
 struct Start {
   RigidTransform pose;
   double score = 0;
+  double significance = 0;
 };
+
+double significance_of(const Start& start) {
+  return start.significance;
+}
 
 bool better(const ModelFit& a, const ModelFit& b) {
   return a.score > b.score;
@@ -37,8 +42,8 @@ ReliefAgreement relief_in_model(const ScanSurface& scan, std::span<const ModelSc
 }
 
 /// For comparing rough poses of one scan.
-double coarse_support(const ScanSurface& scan, std::span<const ModelScan> model, const RigidTransform& pose,
-                      const EvidenceOptions& options) {
+Start coarse_support(const ScanSurface& scan, std::span<const ModelScan> model, const RigidTransform& pose,
+                     const EvidenceOptions& options) {
   PoseEvidence sum;
   int sent = 0;
   for (const ModelScan& m : model) {
@@ -51,8 +56,9 @@ double coarse_support(const ScanSurface& scan, std::span<const ModelScan> model,
   }
   const double shape =
       sent == 0 ? 0.0 : (sum.close - kFreeSpaceWeight * sum.in_front) / static_cast<double>(sent);
-  return pose_support(shape, relief_in_model(scan, model, pose, options.tolerance_mm)
-                                 .significance(scan.relief.radius_mm));
+  const double significance =
+      relief_in_model(scan, model, pose, options.tolerance_mm).significance(scan.relief.radius_mm);
+  return {pose, pose_support(shape, significance), significance};
 }
 
 /// A scan of the model and how many samples it shares with the fitted one.
@@ -216,9 +222,10 @@ std::vector<ModelFit> approach(const ScanSurface& scan, std::span<const ModelSca
   parallel_for_each_index(
       starts.size(),
       [&](std::size_t k) {
-        tried[k] = {starts[k], coarse_support(scan, model, starts[k], rough)};
+        tried[k] = coarse_support(scan, model, starts[k], rough);
       },
       1);
+  drop_outdone(tried, significance_of);
   keep_distinct(tried, static_cast<std::size_t>(2 * options.most_medium), scan.centroid_mm, options,
                 scale_mm);
 
@@ -237,9 +244,10 @@ std::vector<ModelFit> approach(const ScanSurface& scan, std::span<const ModelSca
                                      options.most_targets);
         tried[k].pose =
             icp_in_model(scan, model, members, &ScanSurface::coarse, tried[k].pose, coarse).model_from_source;
-        tried[k].score = coarse_support(scan, model, tried[k].pose, rough);
+        tried[k] = coarse_support(scan, model, tried[k].pose, rough);
       },
       1);
+  drop_outdone(tried, significance_of);
   keep_distinct(tried, static_cast<std::size_t>(options.most_medium), scan.centroid_mm, options, scale_mm);
 
   // Most starts are wrong, and one medium pass shows it: only what is left deserves the closer ones.
@@ -263,6 +271,7 @@ std::vector<ModelFit> approach(const ScanSurface& scan, std::span<const ModelSca
         },
         1);
     std::stable_sort(fits.begin(), fits.end(), better);
+    drop_outdone(fits, [](const ModelFit& fit) { return fit.significance; });
     while (fits.size() > 1 && fits.back().score < options.hopeless * fits.front().score) {
       fits.pop_back();
     }

@@ -128,8 +128,9 @@ std::vector<RigidTransform> around_asked(const PoseHints& hints, const ScanSurfa
 
 bool enough(const FoundPose& found, const PoseSearchOptions& options) {
   return found.verdict.status == PoseStatus::kRegistered &&
-         found.fits.front().overlap >= options.enough_overlap &&
-         found.fits.front().both().agreement() >= options.enough_agreement;
+         (found.fits.front().significance >= options.enough_significance ||
+          (found.fits.front().overlap >= options.enough_overlap &&
+           found.fits.front().both().agreement() >= options.enough_agreement));
 }
 
 }  // namespace
@@ -199,7 +200,9 @@ FoundPose search_pose(const ScanSurface& scan, std::span<const ModelScan> model,
     look(starts);
     settled = enough(found, options);
   }
-  if (found.verdict.status == PoseStatus::kRegistered && !job.cancelled()) {
+  // Relief that agrees beyond doubt has no rival.
+  if (found.verdict.status == PoseStatus::kRegistered && !job.cancelled() &&
+      found.fits.front().significance < options.enough_significance) {
     // Few at a time: the fit refines only the best starts of a batch, and a rival must not be crowded out.
     const std::vector<RigidTransform> turns = half_turns(scan, model, found.fits.front().model_from_scanner);
     for (std::size_t k = 0; k + 1 < turns.size() && found.verdict.status == PoseStatus::kRegistered; k += 2) {

@@ -18,9 +18,10 @@ struct PoseSearchOptions {
   GlobalAlignOptions align;
   ModelFitOptions fit;
   VerifyOptions verify;
-  std::size_t batch = 4;         ///< scans of the model that are searched before looking whether it is enough
+  std::size_t batch = 2;         ///< scans of the model that are searched before looking whether it is enough
   double enough_overlap = 0.35;  ///< a verified pose with this overlap and agreement ends the search
   double enough_agreement = 0.75;
+  double enough_significance = 10.0;  ///< as does a verified pose whose relief agrees like this
   double prior_sigmas = 4.0;  ///< poses farther from a nominal pose than this are out of the question
   double stage_sigmas = 8.0;  ///< a fit that leaves the stage's word by more is not believed
 };
