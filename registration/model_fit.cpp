@@ -299,8 +299,10 @@ std::vector<ModelFit> fit_to_model(const ScanSurface& scan, std::span<const Mode
     fits.resize(static_cast<std::size_t>(options.most_fine));
   }
   for (ModelFit& fit : fits) {
+    if (fit.significance < options.least_significance && options.least_significance > 0) {
+      continue;
+    }
     IcpOptions fine;
-
     IcpResult result;
     result.model_from_source = fit.model_from_scanner;
     for (const double sigmas : {4.0, 1.5}) {

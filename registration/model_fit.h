@@ -30,6 +30,9 @@ struct ModelFitOptions {
       0.2;                         ///< residual that sampling and calibration leave, of µ, beside the noise
   double tolerance_sigmas = 3.0;   ///< of a sample that lies on the other surface
   int least_overlap_samples = 30;  ///< of the coarse level, for a scan to take part in the fit of another
+  /// A fit whose relief agrees less than this before the fine level is not refined: it could not be accepted.
+  /// 0 where more than the surface speaks for the starts.
+  double least_significance = 2.5;
   bool starts_are_close = false;   ///< to within the fine level's reach: nothing coarser is needed
   std::size_t most_targets = 6;    ///< scans that one is fitted to at once: those with the largest overlap
 };
@@ -48,6 +51,7 @@ struct ModelFit {
   double significance = 0;       ///< of the relief's agreement, in standard deviations
   double slid_significance = 0;  ///< the larger one of the scan moved either way along the ICP's weakest direction
   double score = 0;              ///< for comparing poses of one scan: pose_support()
+  bool told = false;  ///< more than the surface speaks for the pose: pins, the stage or the operator
   std::vector<std::size_t> touching;  ///< positions in the model of the scans that it overlaps
   std::vector<std::size_t> targets;   ///< those of them that it is fitted to
 

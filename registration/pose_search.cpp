@@ -139,10 +139,19 @@ FoundPose search_pose(const ScanSurface& scan, std::span<const ModelScan> model,
                       const PairHypotheses& pair_hypotheses, const PoseSearchOptions& options,
                       const JobContext& job) {
   FoundPose found;
-  const auto look = [&](std::span<const RigidTransform> starts) {
-    std::vector<ModelFit> fits = fit_to_model(scan, model, starts, options.fit);
+  const auto look = [&](std::span<const RigidTransform> starts, bool told = false) {
+    ModelFitOptions fit_options = options.fit;
+    fit_options.least_significance = told ? 0.0 : options.fit.least_significance;
+    std::vector<ModelFit> fits = fit_to_model(scan, model, starts, fit_options);
     std::erase_if(fits,
                   [&](const ModelFit& f) { return !near_asked(f.model_from_scanner, hints, scan, options); });
+    for (ModelFit& fit : fits) {
+      fit.told = hints.asked.has_value() ||
+                 std::any_of(hints.told.begin(), hints.told.end(), [&](const RigidTransform& pose) {
+                   return same_pose(fit.model_from_scanner, pose, scan.centroid_mm, options.told_turn_rad,
+                                    options.told_mm);
+                 });
+    }
     merge(found.fits, std::move(fits), scan, options.fit);
     found.verdict = verify_pose(found.fits, options.verify);
   };
@@ -151,7 +160,11 @@ FoundPose search_pose(const ScanSurface& scan, std::span<const ModelScan> model,
     const RigidTransform& stage = *hints.stage;
     ModelFitOptions close = options.fit;
     close.starts_are_close = true;
+    close.least_significance = 0;
     std::vector<ModelFit> fits = fit_to_model(scan, model, {&stage, 1}, close);
+    for (ModelFit& fit : fits) {
+      fit.told = true;
+    }
     std::erase_if(fits, [&](const ModelFit& f) {
       return !same_pose(
           f.model_from_scanner, stage, scan.centroid_mm,
@@ -172,12 +185,16 @@ FoundPose search_pose(const ScanSurface& scan, std::span<const ModelScan> model,
     return found;
   }
   bool settled = false;
-  if (!hints.starts.empty()) {
+  if (!hints.told.empty()) {
+    look(hints.told, true);
+    settled = enough(found, options);
+  }
+  if (!hints.starts.empty() && !settled) {
     look(hints.starts);
     settled = enough(found, options);
   }
   if (hints.asked && !settled) {
-    look(around_asked(hints, scan));
+    look(around_asked(hints, scan), true);
     settled = enough(found, options);
   }
   if (hints.asked && settled) {

@@ -23,12 +23,15 @@ struct PoseSearchOptions {
   double enough_agreement = 0.75;
   double enough_significance = 10.0;  ///< as does a verified pose whose relief agrees like this
   double prior_sigmas = 4.0;  ///< poses farther from a nominal pose than this are out of the question
+  double told_turn_rad = 0.35;  ///< a fit this near to what was told is what was told
+  double told_mm = 5.0;
   double stage_sigmas = 8.0;  ///< a fit that leaves the stage's word by more is not believed
 };
 
 /// What the search is told of the scan beside its surface.
 struct PoseHints {
-  std::vector<RigidTransform> starts;  ///< model_from_scanner: from pins or from the operator
+  std::vector<RigidTransform> told;    ///< model_from_scanner: from labelled pins or from the operator
+  std::vector<RigidTransform> starts;  ///< model_from_scanner: to be tried, no more
   /// What the motors say when the model holds a scan of the same placement: model_from_scanner, good to
   /// sigma.
   std::optional<RigidTransform> stage;

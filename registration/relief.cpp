@@ -192,9 +192,9 @@ ReliefAgreement relief_agreement(const SurfaceLevel& source, const Relief& sourc
       continue;
     }
     const auto j = static_cast<std::size_t>(found);
+    const float off = std::abs(target.normals[j].dot(p - target.grid.point(j)));
     if (std::isnan(target_relief.height_mm[j]) ||
-        (rotation * source.normals[i]).dot(target.normals[j]) < kCompatible ||
-        std::abs(target.normals[j].dot(p - target.grid.point(j))) > tolerance) {
+        (rotation * source.normals[i]).dot(target.normals[j]) < kCompatible || off > tolerance) {
       continue;
     }
     const auto a = static_cast<double>(source_relief.height_mm[i]);
@@ -205,6 +205,7 @@ ReliefAgreement relief_agreement(const SurfaceLevel& source, const Relief& sourc
     out.ss += a * a;
     out.tt += b * b;
     out.st += a * b;
+    out.residual += static_cast<double>(off);
   }
   out.area_mm2 = out.pairs * source_relief.cell_area_mm2;
   return out;

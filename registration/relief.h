@@ -31,6 +31,7 @@ struct ReliefAgreement {
   double pairs = 0;
   double area_mm2 = 0;
   double s = 0, t = 0, ss = 0, tt = 0, st = 0;  ///< sums of source and target heights and their products
+  double residual = 0;  ///< sum of the cells' distances from the target's surface
 
   void add(const ReliefAgreement& b) {
     pairs += b.pairs;
@@ -40,6 +41,7 @@ struct ReliefAgreement {
     ss += b.ss;
     tt += b.tt;
     st += b.st;
+    residual += b.residual;
   }
   /// Pearson's, in [-1, 1]; 0 where there is nothing to compare.
   [[nodiscard]] double correlation() const;

@@ -147,7 +147,10 @@ PoseHints ScanModel::hints_for(const Scan& scan, const std::vector<int>& group_i
     }
     if (!scan.pins.empty() && !other.pins.empty()) {
       if (const std::optional<PinMatch> match = match_pins(scan.pins, other.pins, {})) {
-        hints.starts.push_back(other.group_from_scanner * match->target_from_source);
+        const bool labelled = std::any_of(match->pairs.begin(), match->pairs.end(), [&](const auto& pair) {
+          return scan.pins[static_cast<std::size_t>(pair.first)].label >= 0;
+        });
+        (labelled ? hints.told : hints.starts).push_back(other.group_from_scanner * match->target_from_source);
       }
     }
   }
@@ -315,8 +318,12 @@ bool ScanModel::place(int id, const RigidTransform& model_from_scanner, bool loc
     retry(job);
     return true;
   }
-  std::vector<ModelFit> fits =
-      fit_to_model(*scan.features.surface, model, {&model_from_scanner, 1}, options_.search.fit);
+  ModelFitOptions hinted = options_.search.fit;
+  hinted.least_significance = 0;
+  std::vector<ModelFit> fits = fit_to_model(*scan.features.surface, model, {&model_from_scanner, 1}, hinted);
+  for (ModelFit& fit : fits) {
+    fit.told = true;
+  }
   const PoseVerdict verdict = verify_pose(fits, options_.search.verify);
   if (verdict.status != PoseStatus::kRegistered) {
     scan.reason = "the hint led to no certain pose: " + verdict.reason;

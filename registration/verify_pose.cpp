@@ -28,11 +28,8 @@ double residual_doubt(const ModelFit& fit, const VerifyOptions& o) {
          (o.most_residual - o.usual_residual);
 }
 
-bool sure(const ModelFit& fit, const VerifyOptions& o) {
-  return fit.significance >= o.sure_relief;
-}
-
-PoseVerdict judged_alone(const ModelFit& fit, const VerifyOptions& o) {
+/// What overlap, fit and free space say, the relief left aside.
+PoseVerdict judged_by_shape(const ModelFit& fit, const VerifyOptions& o) {
   const PoseEvidence both = fit.both();
   if (fit.outward.close + fit.inward.close < o.least_close || fit.overlap < o.least_overlap) {
     if (fit.overlap < 0.3 * o.least_overlap) {
@@ -83,7 +80,17 @@ PoseVerdict judged_alone(const ModelFit& fit, const VerifyOptions& o) {
   return {PoseStatus::kRegistered, {}};
 }
 
+PoseVerdict two_poses(const ModelFit& a, const ModelFit& b) {
+  const RigidTransform turn = b.model_from_scanner * a.model_from_scanner.inverse();
+  return {PoseStatus::kUnsure, "two poses fit, " + std::to_string(std::lround(deg_from_rad(turn.angle_rad()))) +
+                                   " degrees apart; click one point on both scans"};
+}
+
 }  // namespace
+
+bool sure(const ModelFit& fit, const VerifyOptions& options) {
+  return fit.significance >= options.sure_relief && fit.relief.correlation() >= options.sure_correlation;
+}
 
 double doubt(const ModelFit& fit, const VerifyOptions& options) {
   const PoseEvidence evidence = fit.both();
@@ -99,20 +106,31 @@ PoseVerdict verify_pose(std::vector<ModelFit>& fits, const VerifyOptions& option
         "nothing in it resembles the registered scans; scan again with at least 30 % overlap, or click three "
         "points on both scans"};
   }
+  const auto fits_shape = [&](const ModelFit& fit) {
+    return judged_by_shape(fit, options).status == PoseStatus::kRegistered;
+  };
   const auto acceptable = [&](const ModelFit& fit) {
-    return judged_alone(fit, options).status == PoseStatus::kRegistered;
+    return (fit.told || sure(fit, options)) && fits_shape(fit);
   };
   auto best = sure(fits.front(), options) && acceptable(fits.front()) ? fits.begin() : fits.end();
   const bool settled = best != fits.end();
   for (auto fit = fits.begin(); fit != fits.end() && !settled; ++fit) {
-    if (fit->score > options.rival_score * fits.front().score &&
-        acceptable(*fit) &&
+    if (fit->score > options.rival_score * fits.front().score && acceptable(*fit) &&
         (best == fits.end() || doubt(*fit, options) < doubt(*best, options))) {
       best = fit;
     }
   }
   if (best == fits.end()) {
-    return judged_alone(fits.front(), options);
+    const auto first = std::find_if(fits.begin(), fits.end(), fits_shape);
+    if (first == fits.end()) {
+      return judged_by_shape(fits.front(), options);
+    }
+    const auto second = std::find_if(first + 1, fits.end(), fits_shape);
+    return second != fits.end()
+               ? two_poses(*first, *second)
+               : PoseVerdict{PoseStatus::kUnsure,
+                             "too little is written or broken in the overlap to tell this pose from others; scan "
+                             "again with more overlap, use pins, or click one point on both scans"};
   }
   std::rotate(fits.begin(), best, best + 1);
   const ModelFit& chosen = fits.front();
@@ -122,10 +140,7 @@ PoseVerdict verify_pose(std::vector<ModelFit>& fits, const VerifyOptions& option
       continue;
     }
     if (rival->score > options.rival_score * chosen.score && doubt(*rival, options) < least) {
-      const RigidTransform turn = rival->model_from_scanner * chosen.model_from_scanner.inverse();
-      return {PoseStatus::kUnsure, "two poses fit, " +
-                                       std::to_string(std::lround(deg_from_rad(turn.angle_rad()))) +
-                                       " degrees apart; click one point on both scans"};
+      return two_poses(chosen, *rival);
     }
   }
   return {PoseStatus::kRegistered, {}};

@@ -113,8 +113,9 @@ void judge_truth(const std::vector<bench::TrueScan>& scans) {
   }
 }
 
-/// Which of the pairs that truly overlap are found from the surface alone: the rank of the right pose.
-void judge_pairs(const std::vector<bench::TrueScan>& scans) {
+/// Every pose that is found for a pair of scans, right or wrong, with all that speaks for and against it: what
+/// verdicts are tuned on.
+void list_fits(const std::vector<bench::TrueScan>& scans, std::uint64_t seed) {
   RegistrationOptions options;
   ScanSurfaceOptions surface_options = options.surface;
   surface_options.scale_mm = surface_scale_mm(*scans.front().grid);
@@ -125,38 +126,24 @@ void judge_pairs(const std::vector<bench::TrueScan>& scans) {
   }
   for (std::size_t a = 0; a < scans.size(); ++a) {
     for (std::size_t b = a + 1; b < scans.size(); ++b) {
-      const RigidTransform truth =
-          scans[a].tablet_from_scanner.inverse() * scans[b].tablet_from_scanner;
       const std::vector<ModelScan> model{{features[a].surface.get(), {}}};
-      const ModelFit at_truth =
-          judge_in_model(*features[b].surface, model, truth, options.search.fit);
-      const auto hypotheses = align_pair(features[b], features[a], options.search.align);
-      int rank = -1;
-      double score = 0;
-      for (std::size_t h = 0; h < hypotheses.size() && rank < 0; ++h) {
-        const bench::PairError e =
-            bench::pair_error(scans[a], scans[b], hypotheses[h].target_from_source);
-        if (e.turn_deg < 8 && e.shift_mm < 3) {
-          rank = static_cast<int>(h);
-          score = hypotheses[h].shape_score;
-        }
+      std::vector<RigidTransform> starts;
+      for (const PoseHypothesis& h : align_pair(features[b], features[a], options.search.align)) {
+        starts.push_back(h.target_from_source);
       }
-      if (at_truth.best_pair_overlap > 0.08 || rank >= 0) {
-        const auto z = [&](const RigidTransform& pose) {
-          const ScanSurface& from = *features[b].surface;
-          const ScanSurface& to = *features[a].surface;
-          const ReliefAgreement r = relief_agreement(*from.medium, from.relief, *to.medium, to.relief, pose, 0.015 * from.scale_mm);
-          std::printf(" [%.2f z %.1f]", r.correlation(), r.significance(from.relief.radius_mm));
-        };
-        std::printf("    pair %2zu %2zu overlap %.2f rank %2d of %zu score %.3f best %.3f; truth", a, b,
-                    at_truth.best_pair_overlap, rank, hypotheses.size(), score,
-                    hypotheses.empty() ? 0.0 : hypotheses.front().shape_score);
-        z(truth);
-        std::printf(" found");
-        for (const auto& h : hypotheses) {
-          z(h.target_from_source);
-        }
-        std::printf("\n");
+      for (const ModelFit& fit : fit_to_model(*features[b].surface, model, starts, options.search.fit)) {
+        const bench::PairError error = bench::pair_error(scans[a], scans[b], fit.model_from_scanner);
+        const ScanSurface& on = *features[a].surface;
+        const ScanSurface& of = *features[b].surface;
+        const double stride = of.medium->spacing_mm / of.spacing_mm;
+        const double med = std::hypot(on.noise_mm, of.noise_mm) / stride;
+        const PoseEvidence both = fit.both();
+        std::printf("fit %llu %zu %zu %s turn %.2f shift %.2f overlap %.2f z %.1f rho %.2f slid %.1f agree %.3f through %.4f absent %.3f stability %.4f rms/s %.2f doubt %.2f medium %.4f noise %.4f relief %.4f\n",
+            static_cast<unsigned long long>(seed), a, b, error.wrong() ? "wrong" : "right", error.turn_deg,
+            error.shift_mm, fit.best_pair_overlap, fit.significance, fit.relief.correlation(),
+            fit.slid_significance, both.agreement(), both.violation(), both.absence(), fit.icp.stability,
+            fit.icp.rms_mm / fit.residual_sigma_mm, doubt(fit, options.search.verify),
+            fit.relief.residual / std::max(1.0, fit.relief.pairs), med, std::sqrt(fit.relief.ss / std::max(1.0, fit.relief.pairs)));
       }
     }
   }
@@ -176,7 +163,8 @@ void run(const Arguments& arguments, std::uint64_t seed, Sums& sums) {
   const PinSet pin_set = bench::pin_set(scans, pins);
   if (arguments.at_truth) {
     judge_truth(scans);
-    judge_pairs(scans);
+    list_fits(scans, seed);
+    return;
   }
   JobContext job;
   Registrar registrar;
