@@ -108,9 +108,8 @@ template <class Value>
 std::vector<PoseHypothesis> distinct(std::vector<PoseHypothesis> all, std::size_t most,
                                      const Eigen::Vector3d& center_mm, double turn_rad, double shift_mm,
                                      const Value& value) {
-  std::stable_sort(all.begin(), all.end(), [&](const PoseHypothesis& a, const PoseHypothesis& b) {
-    return value(a) > value(b);
-  });
+  std::stable_sort(all.begin(), all.end(),
+                   [&](const PoseHypothesis& a, const PoseHypothesis& b) { return value(a) > value(b); });
   std::vector<PoseHypothesis> out;
   for (const PoseHypothesis& h : all) {
     if (out.size() >= most) {
@@ -204,13 +203,11 @@ std::vector<PoseHypothesis> align_pair(const ScanFeatures& source, const ScanFea
         RigidTransform& pose = found[k].target_from_source;
         pose = consensus(votes, pose, options.vote_turn_rad, vote_mm);
         found[k].shape_score = coarse_score(from, to, pose, rough, true);
-        found[k].relief_significance =
-            significance(from, to, pose, rough.tolerance_mm);
+        found[k].relief_significance = significance(from, to, pose, rough.tolerance_mm);
       },
       4);
-  std::vector<PoseHypothesis> chosen =
-      distinct(found, static_cast<std::size_t>(options.most_by_relief), from.centroid_mm, turn, shift_mm,
-               by_relief);
+  std::vector<PoseHypothesis> chosen = distinct(found, static_cast<std::size_t>(options.most_by_relief),
+                                                from.centroid_mm, turn, shift_mm, by_relief);
   for (const PoseHypothesis& h : distinct(std::move(found), static_cast<std::size_t>(options.most_by_shape),
                                           from.centroid_mm, turn, shift_mm, by_shape)) {
     chosen.push_back(h);
@@ -236,8 +233,7 @@ std::vector<PoseHypothesis> align_pair(const ScanFeatures& source, const ScanFea
           pose = icp(*from.coarse, {&onto, 1}, pose, icp_options).model_from_source;
         }
         chosen[k].shape_score = coarse_score(from, to, pose, close, true);
-        chosen[k].relief_significance =
-            significance(from, to, pose, close.tolerance_mm);
+        chosen[k].relief_significance = significance(from, to, pose, close.tolerance_mm);
       },
       1);
   return distinct(std::move(chosen), static_cast<std::size_t>(options.most_returned), from.centroid_mm, turn,

@@ -22,12 +22,12 @@ struct GlobalAlignOptions {
   RingDescriptorOptions shape{RingContent::kShape};
   RingDescriptorOptions relief{RingContent::kRelief};
   // Lengths are parts of the surfaces' common scale.
-  int most_matches = 1600;         ///< of each content, the best ones
-  int most_seeds = 700;            ///< of each content, whose poses are put to the vote
-  double vote_turn_rad = 0.4;      ///< matches vote for a pose that theirs is this near to …
-  double vote_shift = 0.045;       ///< … and that brings their points this near
-  int most_consensus = 60;         ///< poses that are improved by the matches that agree with them
-  int most_by_relief = 8;          ///< distinct poses that ICP refines
+  int most_matches = 1600;     ///< of each content, the best ones
+  int most_seeds = 700;        ///< of each content, whose poses are put to the vote
+  double vote_turn_rad = 0.4;  ///< matches vote for a pose that theirs is this near to …
+  double vote_shift = 0.045;   ///< … and that brings their points this near
+  int most_consensus = 60;     ///< poses that are improved by the matches that agree with them
+  int most_by_relief = 8;      ///< distinct poses that ICP refines
   int most_by_shape = 8;
   int most_returned = 6;
   double rough_tolerance = 0.035;  ///< of a sample under a pose from matches

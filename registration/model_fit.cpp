@@ -199,8 +199,8 @@ double slid_significance(const ScanSurface& scan, std::span<const ModelScan> mod
     const double step_mm = side * scan.relief.radius_mm;
     // `weakest` has its turns scaled to displacement at the scan's rms radius.
     const double radius_mm = std::max(0.5 * scan.extent_mm, 1e-6);
-    const RigidTransform turn = RigidTransform::from_twist(
-        step_mm / radius_mm * icp.weakest.head<3>(), Eigen::Vector3d::Zero());
+    const RigidTransform turn =
+        RigidTransform::from_twist(step_mm / radius_mm * icp.weakest.head<3>(), Eigen::Vector3d::Zero());
     RigidTransform pose = icp.model_from_source;
     pose.rotation = turn.rotation * pose.rotation;
     pose.translation_mm = turn.rotation * (pose.translation_mm - icp.center_mm) + icp.center_mm +
@@ -220,11 +220,7 @@ std::vector<ModelFit> approach(const ScanSurface& scan, std::span<const ModelSca
   rough.band_mm = options.band * scale_mm;
   std::vector<Start> tried(starts.size());
   parallel_for_each_index(
-      starts.size(),
-      [&](std::size_t k) {
-        tried[k] = coarse_support(scan, model, starts[k], rough);
-      },
-      1);
+      starts.size(), [&](std::size_t k) { tried[k] = coarse_support(scan, model, starts[k], rough); }, 1);
   drop_outdone(tried, significance_of);
   keep_distinct(tried, static_cast<std::size_t>(2 * options.most_medium), scan.centroid_mm, options,
                 scale_mm);

@@ -33,8 +33,8 @@ struct ModelFitOptions {
   /// A fit whose relief agrees less than this before the fine level is not refined: it could not be accepted.
   /// 0 where more than the surface speaks for the starts.
   double least_significance = 2.5;
-  bool starts_are_close = false;   ///< to within the fine level's reach: nothing coarser is needed
-  std::size_t most_targets = 6;    ///< scans that one is fitted to at once: those with the largest overlap
+  bool starts_are_close = false;  ///< to within the fine level's reach: nothing coarser is needed
+  std::size_t most_targets = 6;   ///< scans that one is fitted to at once: those with the largest overlap
 };
 
 /// A pose of a scan in the model and everything that speaks for and against it.
@@ -49,8 +49,9 @@ struct ModelFit {
   double residual_sigma_mm = 0;  ///< expected standard deviation of a residual
   ReliefAgreement relief;        ///< with all scans of the model
   double significance = 0;       ///< of the relief's agreement, in standard deviations
-  double slid_significance = 0;  ///< the larger one of the scan moved either way along the ICP's weakest direction
-  double score = 0;              ///< for comparing poses of one scan: pose_support()
+  double slid_significance =
+      0;              ///< the larger one of the scan moved either way along the ICP's weakest direction
+  double score = 0;   ///< for comparing poses of one scan: pose_support()
   bool told = false;  ///< more than the surface speaks for the pose: pins, the stage or the operator
   std::vector<std::size_t> touching;  ///< positions in the model of the scans that it overlaps
   std::vector<std::size_t> targets;   ///< those of them that it is fitted to

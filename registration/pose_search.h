@@ -22,8 +22,8 @@ struct PoseSearchOptions {
   double enough_overlap = 0.35;  ///< a verified pose with this overlap and agreement ends the search
   double enough_agreement = 0.75;
   double enough_significance = 10.0;  ///< as does a verified pose whose relief agrees like this
-  double prior_sigmas = 4.0;  ///< poses farther from a nominal pose than this are out of the question
-  double told_turn_rad = 0.35;  ///< a fit this near to what was told is what was told
+  double prior_sigmas = 4.0;          ///< poses farther from a nominal pose than this are out of the question
+  double told_turn_rad = 0.35;        ///< a fit this near to what was told is what was told
   double told_mm = 5.0;
   double stage_sigmas = 8.0;  ///< a fit that leaves the stage's word by more is not believed
 };

@@ -15,9 +15,9 @@ namespace dubsar {
 namespace {
 
 constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
-constexpr float kSameSide = 0.3F;   ///< cosine between normals of one neighbourhood
-constexpr int kLeastAround = 8;     ///< cells that a neighbourhood must hold
-constexpr float kCompatible = 0.7F; ///< cosine between normals of one place in two scans
+constexpr float kSameSide = 0.3F;    ///< cosine between normals of one neighbourhood
+constexpr int kLeastAround = 8;      ///< cells that a neighbourhood must hold
+constexpr float kCompatible = 0.7F;  ///< cosine between normals of one place in two scans
 /// Correlations beyond this are taken as this: the rest is a matter of sampling.
 constexpr double kMostCorrelation = 0.995;
 
@@ -29,8 +29,7 @@ float weight_at(float distance2, float radius2) {
 /// off the surface.
 std::int64_t descend(const SurfaceLevel& level, const Eigen::Vector3f& p, float band_mm) {
   const DepthRaster::Cell* cell = level.raster.at(p);
-  if (cell == nullptr || cell->sample < 0 ||
-      std::abs(level.raster.height(p) - cell->height_mm) > band_mm) {
+  if (cell == nullptr || cell->sample < 0 || std::abs(level.raster.height(p) - cell->height_mm) > band_mm) {
     return -1;
   }
   const RangeGrid& grid = level.grid;
@@ -156,8 +155,8 @@ Relief make_relief(const SurfaceLevel& level, double radius_mm, std::size_t most
   for (std::size_t k = 0; k < sent; ++k) {
     out.cells.push_back(known[(2 * k + 1) * known.size() / (2 * sent)]);
   }
-  out.cell_area_mm2 = level.spacing_mm * level.spacing_mm * static_cast<double>(known.size()) /
-                      static_cast<double>(sent);
+  out.cell_area_mm2 =
+      level.spacing_mm * level.spacing_mm * static_cast<double>(known.size()) / static_cast<double>(sent);
   return out;
 }
 

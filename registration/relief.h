@@ -12,10 +12,10 @@ namespace dubsar {
 struct SurfaceLevel;
 
 /// What is written on the body: how far each cell of a level stands above or below the surface around it, the
-/// body's own bend taken off. Tablets are nearly symmetric in shape, never in relief: where two scans show the
-/// same relief at the same places, they lie right.
+/// body's own bend taken off. Tablets are nearly symmetric in shape, never in relief: where two scans show
+/// the same relief at the same places, they lie right.
 struct Relief {
-  std::vector<float> height_mm;      ///< [rows*cols] of the level, out of the clay positive; NaN where unknown
+  std::vector<float> height_mm;  ///< [rows*cols] of the level, out of the clay positive; NaN where unknown
   std::vector<std::uint32_t> cells;  ///< those that are known and sent into other scans, evenly spread
   double cell_area_mm2 = 0;          ///< of surface that one entry of `cells` stands for
   double rms_mm = 0;
@@ -31,7 +31,7 @@ struct ReliefAgreement {
   double pairs = 0;
   double area_mm2 = 0;
   double s = 0, t = 0, ss = 0, tt = 0, st = 0;  ///< sums of source and target heights and their products
-  double residual = 0;  ///< sum of the cells' distances from the target's surface
+  double residual = 0;                          ///< sum of the cells' distances from the target's surface
 
   void add(const ReliefAgreement& b) {
     pairs += b.pairs;

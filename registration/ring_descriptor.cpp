@@ -149,7 +149,8 @@ RingDescriptors::RingDescriptors(const ScanSurface& surface, double scale_mm,
         frame.v = frame.normal.cross(frame.u);
         for (int s = 0; s < kScales; ++s) {
           const auto radius = static_cast<float>(options.radius[static_cast<std::size_t>(s)] * scale_mm);
-          const std::optional<Heights> heights = ring_heights(surface, options.content, frame, radius, options.least_filled);
+          const std::optional<Heights> heights =
+              ring_heights(surface, options.content, frame, radius, options.least_filled);
           if (!heights) {
             return;
           }

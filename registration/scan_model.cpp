@@ -150,7 +150,8 @@ PoseHints ScanModel::hints_for(const Scan& scan, const std::vector<int>& group_i
         const bool labelled = std::any_of(match->pairs.begin(), match->pairs.end(), [&](const auto& pair) {
           return scan.pins[static_cast<std::size_t>(pair.first)].label >= 0;
         });
-        (labelled ? hints.told : hints.starts).push_back(other.group_from_scanner * match->target_from_source);
+        (labelled ? hints.told : hints.starts)
+            .push_back(other.group_from_scanner * match->target_from_source);
       }
     }
   }

@@ -57,7 +57,7 @@ struct ScanSurfaceOptions {
 /// Immutable; the full grid is not referred to.
 struct ScanSurface {
   std::unique_ptr<SurfaceLevel> fine, medium, coarse;
-  Relief relief;  ///< of the medium level
+  Relief relief;                         ///< of the medium level
   Eigen::Vector3d centroid_mm{0, 0, 0};  ///< of the usable samples, scanner frame
   Eigen::Vector3d toward_camera{0, 0, 1};
   double spacing_mm = 0;  ///< µ of the full grid

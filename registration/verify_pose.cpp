@@ -82,7 +82,8 @@ PoseVerdict judged_by_shape(const ModelFit& fit, const VerifyOptions& o) {
 
 PoseVerdict two_poses(const ModelFit& a, const ModelFit& b) {
   const RigidTransform turn = b.model_from_scanner * a.model_from_scanner.inverse();
-  return {PoseStatus::kUnsure, "two poses fit, " + std::to_string(std::lround(deg_from_rad(turn.angle_rad()))) +
+  return {PoseStatus::kUnsure, "two poses fit, " +
+                                   std::to_string(std::lround(deg_from_rad(turn.angle_rad()))) +
                                    " degrees apart; click one point on both scans"};
 }
 
@@ -128,9 +129,10 @@ PoseVerdict verify_pose(std::vector<ModelFit>& fits, const VerifyOptions& option
     const auto second = std::find_if(first + 1, fits.end(), fits_shape);
     return second != fits.end()
                ? two_poses(*first, *second)
-               : PoseVerdict{PoseStatus::kUnsure,
-                             "too little is written or broken in the overlap to tell this pose from others; scan "
-                             "again with more overlap, use pins, or click one point on both scans"};
+               : PoseVerdict{
+                     PoseStatus::kUnsure,
+                     "too little is written or broken in the overlap to tell this pose from others; scan "
+                     "again with more overlap, use pins, or click one point on both scans"};
   }
   std::rotate(fits.begin(), best, best + 1);
   const ModelFit& chosen = fits.front();

@@ -24,7 +24,7 @@ struct VerifyOptions {
   double usual_residual = 0.75;    ///< rms over what noise and spacing explain, of a right pose …
   double most_residual = 1.7;      ///< … and where it alone is too much
   double least_stability = 0.003;  ///< see IcpResult::stability; below, the scan can slide or turn …
-  double most_slid = 0.6;  ///< … unless the relief agrees less than this part as well when it does
+  double most_slid = 0.6;          ///< … unless the relief agrees less than this part as well when it does
   // The relief settles what the shape leaves open, and where nothing else speaks for a pose it must: a blank
   // tablet turned by half a turn fits its own back to within the noise. Among thousands of found poses the
   // wrong ones were seen to reach a significance of 4.7, where the lines of two sides fell together, and a

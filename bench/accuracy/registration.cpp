@@ -104,17 +104,21 @@ void judge_truth(const std::vector<bench::TrueScan>& scans) {
           fit_to_model(*surfaces[k], model, {&scans[k].tablet_from_scanner, 1}, close);
       const PoseVerdict verdict = verify_pose(fits, options.search.verify);
       const PoseEvidence both = fits.empty() ? PoseEvidence{} : fits.front().both();
-      std::printf("    %2zu at the truth on %-8s overlap %.2f pair %.2f agree %.3f through %.4f absent %.3f stability %.4f rms/sigma %.2f doubt %.2f %s %s\n", k, side,
-                  fits.empty() ? 0.0 : fits.front().overlap, fits.empty() ? 0.0 : fits.front().best_pair_overlap, both.agreement(), both.violation(), both.absence(), fits.empty() ? 0.0 : fits.front().icp.stability,
-                  fits.empty() ? 0.0 : fits.front().icp.rms_mm / fits.front().residual_sigma_mm,
-                  fits.empty() ? 0.0 : doubt(fits.front(), options.search.verify), to_string(verdict.status),
-                  verdict.reason.c_str());
+      std::printf(
+          "    %2zu at the truth on %-8s overlap %.2f pair %.2f agree %.3f through %.4f absent %.3f "
+          "stability %.4f rms/sigma %.2f doubt %.2f %s %s\n",
+          k, side, fits.empty() ? 0.0 : fits.front().overlap,
+          fits.empty() ? 0.0 : fits.front().best_pair_overlap, both.agreement(), both.violation(),
+          both.absence(), fits.empty() ? 0.0 : fits.front().icp.stability,
+          fits.empty() ? 0.0 : fits.front().icp.rms_mm / fits.front().residual_sigma_mm,
+          fits.empty() ? 0.0 : doubt(fits.front(), options.search.verify), to_string(verdict.status),
+          verdict.reason.c_str());
     }
   }
 }
 
-/// Every pose that is found for a pair of scans, right or wrong, with all that speaks for and against it: what
-/// verdicts are tuned on.
+/// Every pose that is found for a pair of scans, right or wrong, with all that speaks for and against it:
+/// what verdicts are tuned on.
 void list_fits(const std::vector<bench::TrueScan>& scans, std::uint64_t seed) {
   RegistrationOptions options;
   ScanSurfaceOptions surface_options = options.surface;
@@ -138,20 +142,23 @@ void list_fits(const std::vector<bench::TrueScan>& scans, std::uint64_t seed) {
         const double stride = of.medium->spacing_mm / of.spacing_mm;
         const double med = std::hypot(on.noise_mm, of.noise_mm) / stride;
         const PoseEvidence both = fit.both();
-        std::printf("fit %llu %zu %zu %s turn %.2f shift %.2f overlap %.2f z %.1f rho %.2f slid %.1f agree %.3f through %.4f absent %.3f stability %.4f rms/s %.2f doubt %.2f medium %.4f noise %.4f relief %.4f\n",
+        std::printf(
+            "fit %llu %zu %zu %s turn %.2f shift %.2f overlap %.2f z %.1f rho %.2f slid %.1f agree %.3f "
+            "through %.4f absent %.3f stability %.4f rms/s %.2f doubt %.2f medium %.4f noise %.4f relief "
+            "%.4f\n",
             static_cast<unsigned long long>(seed), a, b, error.wrong() ? "wrong" : "right", error.turn_deg,
             error.shift_mm, fit.best_pair_overlap, fit.significance, fit.relief.correlation(),
             fit.slid_significance, both.agreement(), both.violation(), both.absence(), fit.icp.stability,
             fit.icp.rms_mm / fit.residual_sigma_mm, doubt(fit, options.search.verify),
-            fit.relief.residual / std::max(1.0, fit.relief.pairs), med, std::sqrt(fit.relief.ss / std::max(1.0, fit.relief.pairs)));
+            fit.relief.residual / std::max(1.0, fit.relief.pairs), med,
+            std::sqrt(fit.relief.ss / std::max(1.0, fit.relief.pairs)));
       }
     }
   }
 }
 
 void run(const Arguments& arguments, std::uint64_t seed, Sums& sums) {
-  sim::TabletOptions tablet =
-      bench::random_tablet(seed, arguments.kind, std::max(0.1, arguments.spacing_mm));
+  sim::TabletOptions tablet = bench::random_tablet(seed, arguments.kind, std::max(0.1, arguments.spacing_mm));
   if (arguments.size_mm.size() == 3) {
     tablet.size_mm = {arguments.size_mm[0], arguments.size_mm[1], arguments.size_mm[2]};
   }
@@ -219,7 +226,8 @@ void run(const Arguments& arguments, std::uint64_t seed, Sums& sums) {
     if (error.wrong()) {
       ++wrong;
       std::printf("WRONG seed %llu scan %d: %.2f degrees %.2f mm off, overlap %.2f\n",
-                  static_cast<unsigned long long>(seed), pose.id, error.turn_deg, error.shift_mm, pose.overlap);
+                  static_cast<unsigned long long>(seed), pose.id, error.turn_deg, error.shift_mm,
+                  pose.overlap);
       continue;
     }
     if (pose.covariance) {
@@ -227,8 +235,8 @@ void run(const Arguments& arguments, std::uint64_t seed, Sums& sums) {
       for (const Eigen::Vector3d& p : pairs.back().points_mm) {
         centroid += p / static_cast<double>(pairs.back().points_mm.size());
       }
-      const RigidTransform truth = first->model_from_scanner * base.tablet_from_scanner.inverse() *
-                                   scan.tablet_from_scanner;
+      const RigidTransform truth =
+          first->model_from_scanner * base.tablet_from_scanner.inverse() * scan.tablet_from_scanner;
       sums.nees.push_back(normalised_error(pose, truth, centroid));
       nees += sums.nees.back() / std::max<std::size_t>(1, scans.size() - 1);
     }

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+//
+// Whole tablets with nothing told of the poses; dubsar-registration and dubsar-false-accepts do the same at
+// length.
+#include <gtest/gtest.h>
+
+#include "bench/support/true_scans.h"
+#include "registration/registrar.h"
+
+namespace dubsar {
+namespace {
+
+struct Outcome {
+  int registered = 0;
+  int wrong = 0;
+  double worst_mm = 0;  ///< displacement of the tablet's middle
+};
+
+Outcome register_all(const std::vector<bench::TrueScan>& scans) {
+  JobContext job;
+  Registrar registrar;
+  for (std::size_t k = 0; k < scans.size(); ++k) {
+    registrar.add(static_cast<int>(k), scans[k].grid, nullptr, job);
+  }
+  EXPECT_TRUE(registrar.finalize(job));
+  Outcome outcome;
+  const std::vector<ScanPose> poses = registrar.poses();
+  const ScanPose* first = nullptr;
+  for (const ScanPose& pose : poses) {
+    if (pose.status != PoseStatus::kRegistered) {
+      EXPECT_FALSE(pose.reason.empty());
+      continue;
+    }
+    ++outcome.registered;
+    if (first == nullptr) {
+      first = &pose;
+      continue;
+    }
+    const bench::PairError error = bench::pair_error(
+        scans[static_cast<std::size_t>(first->id)], scans[static_cast<std::size_t>(pose.id)],
+        first->model_from_scanner.inverse() * pose.model_from_scanner);
+    outcome.wrong += error.wrong() ? 1 : 0;
+    outcome.worst_mm = std::max(outcome.worst_mm, error.shift_mm);
+  }
+  return outcome;
+}
+
+TEST(SimulatedTablets, AWrittenOneIsRegisteredFromAnyHandPose) {
+  const auto scans = bench::true_scans(bench::random_tablet(2, "text", 0.2),
+                                       {0.2, 0.02, 12, {}, 2, bench::Pins::kNone, 0});
+  const Outcome outcome = register_all(scans);
+  EXPECT_EQ(outcome.registered, 12);
+  EXPECT_EQ(outcome.wrong, 0);
+  EXPECT_LT(outcome.worst_mm, 0.03);
+}
+
+TEST(SimulatedTablets, OnesThatLookTheSameTurnedAreAskedAbout) {
+  for (const char* kind : {"blank", "symmetric"}) {
+    const auto scans = bench::true_scans(bench::random_tablet(105, kind, 0.2),
+                                         {0.25, 0.02, 8, {0, 1, 2, 3, 4, 5}, 105, bench::Pins::kNone, 0});
+    EXPECT_EQ(register_all(scans).wrong, 0) << kind;
+  }
+}
+
+TEST(SimulatedTablets, ScansOfAnotherOneStayOut) {
+  auto scans = bench::true_scans(bench::random_tablet(7, "text", 0.2),
+                                 {0.25, 0.02, 8, {0, 2, 4}, 7, bench::Pins::kNone, 0});
+  sim::TabletOptions other = bench::random_tablet(7, "text", 0.2);
+  other.seed = 8;
+  for (bench::TrueScan& scan : bench::true_scans(other, {0.25, 0.02, 8, {0, 2}, 8, bench::Pins::kNone, 1})) {
+    scans.push_back(std::move(scan));
+  }
+  EXPECT_EQ(register_all(scans).wrong, 0);
+}
+
+}  // namespace
+}  // namespace dubsar
