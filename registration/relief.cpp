@@ -204,7 +204,6 @@ ReliefAgreement relief_agreement(const SurfaceLevel& source, const Relief& sourc
     out.ss += a * a;
     out.tt += b * b;
     out.st += a * b;
-    out.residual += static_cast<double>(off);
   }
   out.area_mm2 = out.pairs * source_relief.cell_area_mm2;
   return out;

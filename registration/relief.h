@@ -41,7 +41,6 @@ struct ReliefAgreement {
     ss += b.ss;
     tt += b.tt;
     st += b.st;
-    residual += b.residual;
   }
   /// Pearson's, in [-1, 1]; 0 where there is nothing to compare.
   [[nodiscard]] double correlation() const;

@@ -16,6 +16,11 @@ constexpr const char* kStopped = "registration was stopped; run it again";
 constexpr const char* kOtherGroup =
     "it fits other scans, but not the largest group; scan what connects them, with at least 30 % overlap";
 
+constexpr const char* kContradiction =
+    "it connects scans that contradict each other; one of them moved while it was scanned, or lies wrong: "
+    "take "
+    "that one out, or scan again what connects them";
+
 /// Poses of an unsettled search that are kept for the next.
 constexpr std::size_t kMostLeads = 5;
 
@@ -243,10 +248,30 @@ bool ScanModel::join_group(int id, int group, JobContext& job) {
     }
     return false;
   }
+  if (!groups_agree(id, found.fits.front().model_from_scanner, ids)) {
+    scan.reason = kContradiction;
+    scan.outcome = PoseStatus::kUnsure;
+    return false;
+  }
   connect(id, found.fits.front(), found.by_stage, ids, group);
   relax_group(scans_.at(id).group, job);
   judge(id);
   return true;
+}
+
+bool ScanModel::groups_agree(int id, const RigidTransform& group_from_scanner,
+                             const std::vector<int>& group_ids) const {
+  const Scan& scan = scans_.at(id);
+  const std::vector<ModelScan> model = model_of(group_ids);
+  const RigidTransform group_from_own = group_from_scanner * scan.group_from_scanner.inverse();
+  const std::vector<int> own_ids = members(scan.group);
+  return std::all_of(own_ids.begin(), own_ids.end(), [&](int other) {
+    const Scan& moved = scans_.at(other);
+    return other == id ||
+           consistent_pose(judge_in_model(*moved.features.surface, model,
+                                          group_from_own * moved.group_from_scanner, options_.search.fit),
+                           options_.search.verify);
+  });
 }
 
 void ScanModel::connect(int id, const ModelFit& fit, bool by_stage, const std::vector<int>& group_ids,

@@ -71,6 +71,9 @@ class ScanModel {
   [[nodiscard]] std::vector<ModelScan> model_of(const std::vector<int>& ids) const;
   /// Looks for the scan's pose in the group: from its leads, and on the members that are new to it.
   bool join_group(int id, int group, JobContext& job);
+  /// True when none of the scans that the scan brings along contradicts the group that it joins.
+  [[nodiscard]] bool groups_agree(int id, const RigidTransform& group_from_scanner,
+                                  const std::vector<int>& group_ids) const;
   void connect(int id, const ModelFit& fit, bool by_stage, const std::vector<int>& group_ids, int group);
   [[nodiscard]] std::optional<Pair> measured_pair(int a, int b) const;
   /// Measures the pairs (a < b), both cores over pairs, and keeps what holds.

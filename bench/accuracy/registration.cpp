@@ -79,48 +79,19 @@ double normalised_error(const ScanPose& pose, const RigidTransform& model_from_s
   return twist.dot(pose.covariance->ldlt().solve(twist)) / 6.0;
 }
 
-/// What the true poses would be judged: tells a search that misses from a verdict that refuses. One line per
-/// scan, against all others and against each of the two sides of the tablet.
-void judge_truth(const std::vector<bench::TrueScan>& scans) {
-  RegistrationOptions options;
-  ScanSurfaceOptions surface_options = options.surface;
-  surface_options.scale_mm = surface_scale_mm(*scans.front().grid);
-  std::vector<std::shared_ptr<const ScanSurface>> surfaces;
-  for (const bench::TrueScan& scan : scans) {
-    surfaces.push_back(make_scan_surface(*scan.grid, {}, surface_options));
-  }
-  for (std::size_t k = 0; k < scans.size(); ++k) {
-    for (const char* side : {"all", "obverse", "reverse"}) {
-      std::vector<ModelScan> model;
-      for (std::size_t j = 0; j < scans.size(); ++j) {
-        const bool obverse = scans[j].tablet_from_scanner.rotation.col(2).z() > 0;
-        if (j != k && (*side == 'a' || (*side == 'o') == obverse)) {
-          model.push_back({surfaces[j].get(), scans[j].tablet_from_scanner});
-        }
-      }
-      ModelFitOptions close = options.search.fit;
-      close.starts_are_close = true;
-      std::vector<ModelFit> fits =
-          fit_to_model(*surfaces[k], model, {&scans[k].tablet_from_scanner, 1}, close);
-      const PoseVerdict verdict = verify_pose(fits, options.search.verify);
-      const PoseEvidence both = fits.empty() ? PoseEvidence{} : fits.front().both();
-      std::printf(
-          "    %2zu at the truth on %-8s overlap %.2f pair %.2f agree %.3f through %.4f absent %.3f "
-          "stability %.4f rms/sigma %.2f doubt %.2f %s %s\n",
-          k, side, fits.empty() ? 0.0 : fits.front().overlap,
-          fits.empty() ? 0.0 : fits.front().best_pair_overlap, both.agreement(), both.violation(),
-          both.absence(), fits.empty() ? 0.0 : fits.front().icp.stability,
-          fits.empty() ? 0.0 : fits.front().icp.rms_mm / fits.front().residual_sigma_mm,
-          fits.empty() ? 0.0 : doubt(fits.front(), options.search.verify), to_string(verdict.status),
-          verdict.reason.c_str());
-    }
-  }
+/// All that speaks for and against a fit, as names and numbers in turn.
+void print_evidence(const ModelFit& fit, const RegistrationOptions& options) {
+  const PoseEvidence both = fit.both();
+  std::printf(
+      "overlap %.2f pair %.2f z %.1f rho %.2f slid %.1f agree %.3f through %.4f absent %.3f stability %.4f "
+      "rms/s %.2f doubt %.2f",
+      fit.overlap, fit.best_pair_overlap, fit.significance, fit.relief.correlation(), fit.slid_significance,
+      both.agreement(), both.violation(), both.absence(), fit.icp.stability,
+      fit.icp.rms_mm / fit.residual_sigma_mm, doubt(fit, options.search.verify));
 }
 
-/// Every pose that is found for a pair of scans, right or wrong, with all that speaks for and against it:
-/// what verdicts are tuned on.
-void list_fits(const std::vector<bench::TrueScan>& scans, std::uint64_t seed) {
-  RegistrationOptions options;
+std::vector<ScanFeatures> features_of(const std::vector<bench::TrueScan>& scans,
+                                      const RegistrationOptions& options) {
   ScanSurfaceOptions surface_options = options.surface;
   surface_options.scale_mm = surface_scale_mm(*scans.front().grid);
   std::vector<ScanFeatures> features;
@@ -128,6 +99,42 @@ void list_fits(const std::vector<bench::TrueScan>& scans, std::uint64_t seed) {
     features.push_back(
         make_scan_features(make_scan_surface(*scan.grid, {}, surface_options), options.search.align));
   }
+  return features;
+}
+
+/// What the true poses would be judged, against all other scans and against those of each side of the tablet:
+/// tells a search that misses from a verdict that refuses.
+void judge_truth(const std::vector<bench::TrueScan>& scans) {
+  const RegistrationOptions options;
+  const std::vector<ScanFeatures> features = features_of(scans, options);
+  ModelFitOptions close = options.search.fit;
+  close.starts_are_close = true;
+  close.least_significance = 0;
+  for (std::size_t k = 0; k < scans.size(); ++k) {
+    for (const std::string side : {"all", "obverse", "reverse"}) {
+      std::vector<ModelScan> model;
+      for (std::size_t j = 0; j < scans.size(); ++j) {
+        const bool obverse = scans[j].tablet_from_scanner.rotation.col(2).z() > 0;
+        if (j != k && (side == "all" || (side == "obverse") == obverse)) {
+          model.push_back({features[j].surface.get(), scans[j].tablet_from_scanner});
+        }
+      }
+      std::vector<ModelFit> fits =
+          fit_to_model(*features[k].surface, model, {&scans[k].tablet_from_scanner, 1}, close);
+      const PoseVerdict verdict = verify_pose(fits, options.search.verify);
+      std::printf("truth %zu %s %s ", k, side.c_str(), to_string(verdict.status));
+      if (!fits.empty()) {
+        print_evidence(fits.front(), options);
+      }
+      std::printf(" %s\n", verdict.reason.c_str());
+    }
+  }
+}
+
+/// Every pose that is found for a pair of scans, right or wrong: what verdicts are tuned on.
+void list_fits(const std::vector<bench::TrueScan>& scans, std::uint64_t seed) {
+  const RegistrationOptions options;
+  const std::vector<ScanFeatures> features = features_of(scans, options);
   for (std::size_t a = 0; a < scans.size(); ++a) {
     for (std::size_t b = a + 1; b < scans.size(); ++b) {
       const std::vector<ModelScan> model{{features[a].surface.get(), {}}};
@@ -137,21 +144,10 @@ void list_fits(const std::vector<bench::TrueScan>& scans, std::uint64_t seed) {
       }
       for (const ModelFit& fit : fit_to_model(*features[b].surface, model, starts, options.search.fit)) {
         const bench::PairError error = bench::pair_error(scans[a], scans[b], fit.model_from_scanner);
-        const ScanSurface& on = *features[a].surface;
-        const ScanSurface& of = *features[b].surface;
-        const double stride = of.medium->spacing_mm / of.spacing_mm;
-        const double med = std::hypot(on.noise_mm, of.noise_mm) / stride;
-        const PoseEvidence both = fit.both();
-        std::printf(
-            "fit %llu %zu %zu %s turn %.2f shift %.2f overlap %.2f z %.1f rho %.2f slid %.1f agree %.3f "
-            "through %.4f absent %.3f stability %.4f rms/s %.2f doubt %.2f medium %.4f noise %.4f relief "
-            "%.4f\n",
-            static_cast<unsigned long long>(seed), a, b, error.wrong() ? "wrong" : "right", error.turn_deg,
-            error.shift_mm, fit.best_pair_overlap, fit.significance, fit.relief.correlation(),
-            fit.slid_significance, both.agreement(), both.violation(), both.absence(), fit.icp.stability,
-            fit.icp.rms_mm / fit.residual_sigma_mm, doubt(fit, options.search.verify),
-            fit.relief.residual / std::max(1.0, fit.relief.pairs), med,
-            std::sqrt(fit.relief.ss / std::max(1.0, fit.relief.pairs)));
+        std::printf("fit %llu %zu %zu %s turn %.2f shift %.2f ", static_cast<unsigned long long>(seed), a, b,
+                    error.wrong() ? "wrong" : "right", error.turn_deg, error.shift_mm);
+        print_evidence(fit, options);
+        std::printf("\n");
       }
     }
   }
@@ -171,7 +167,6 @@ void run(const Arguments& arguments, std::uint64_t seed, Sums& sums) {
   if (arguments.at_truth) {
     judge_truth(scans);
     list_fits(scans, seed);
-    return;
   }
   JobContext job;
   Registrar registrar;
@@ -284,7 +279,8 @@ int main(int argc, char** argv) {
   app.add_option("--noise", arguments.noise_mm, "mm");
   app.add_option("--size", arguments.size_mm, "width height thickness, mm; else random")->expected(3);
   app.add_flag("-v,--verbose", arguments.verbose, "each scan");
-  app.add_flag("--at-truth", arguments.at_truth, "also judge the true poses");
+  app.add_flag("--at-truth", arguments.at_truth,
+               "also judge the true poses and list every pose that pairs are found in");
   CLI11_PARSE(app, argc, argv);
   Sums sums;
   for (std::uint64_t k = 0; k < arguments.tablets; ++k) {

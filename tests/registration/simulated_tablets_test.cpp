@@ -47,8 +47,8 @@ Outcome register_all(const std::vector<bench::TrueScan>& scans) {
 }
 
 TEST(SimulatedTablets, AWrittenOneIsRegisteredFromAnyHandPose) {
-  const auto scans = bench::true_scans(bench::random_tablet(2, "text", 0.2),
-                                       {0.2, 0.02, 12, {}, 2, bench::Pins::kNone, 0});
+  const auto scans =
+      bench::true_scans(bench::random_tablet(2, "text", 0.2), {0.2, 0.02, 12, {}, 2, bench::Pins::kNone, 0});
   const Outcome outcome = register_all(scans);
   EXPECT_EQ(outcome.registered, 12);
   EXPECT_EQ(outcome.wrong, 0);
