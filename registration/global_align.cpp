@@ -147,6 +147,9 @@ ScanFeatures make_scan_features(std::shared_ptr<const ScanSurface> surface,
   ScanFeatures out;
   out.shape = RingDescriptors(*surface, surface->scale_mm, options.shape);
   out.relief = RingDescriptors(*surface, surface->scale_mm, options.relief);
+  if (!surface->relief.tone.empty()) {
+    out.tone = RingDescriptors(*surface, surface->scale_mm, options.tone);
+  }
   out.surface = std::move(surface);
   return out;
 }
@@ -165,18 +168,21 @@ std::vector<PoseHypothesis> align_pair(const ScanFeatures& source, const ScanFea
   const double turn = options.distinct_turn_rad;
   const double shift_mm = options.distinct_shift * scale_mm;
   std::vector<Vote> votes;
-  collect_votes(source.relief, target.relief, options.relief, options.most_matches, votes);
-  const std::size_t of_relief = votes.size();
-  collect_votes(source.shape, target.shape, options.shape, options.most_matches, votes);
-  if (votes.empty()) {
-    return {};
-  }
-  const auto most_seeds = static_cast<std::size_t>(options.most_seeds);
   std::vector<std::size_t> seeds;
-  for (std::size_t k = 0; k < votes.size(); ++k) {
-    if (k < std::min(most_seeds, of_relief) || (k >= of_relief && k < of_relief + most_seeds)) {
+  const auto collect = [&](const RingDescriptors& of_source, const RingDescriptors& of_target,
+                           const RingDescriptorOptions& descriptors) {
+    const std::size_t first = votes.size();
+    collect_votes(of_source, of_target, descriptors, options.most_matches, votes);
+    const std::size_t end = std::min(votes.size(), first + static_cast<std::size_t>(options.most_seeds));
+    for (std::size_t k = first; k < end; ++k) {
       seeds.push_back(k);
     }
+  };
+  collect(source.relief, target.relief, options.relief);
+  collect(source.tone, target.tone, options.tone);
+  collect(source.shape, target.shape, options.shape);
+  if (votes.empty()) {
+    return {};
   }
   EvidenceOptions rough;
   rough.tolerance_mm = options.rough_tolerance * scale_mm;

@@ -15,12 +15,13 @@ namespace dubsar {
 /// What alignment from the surface alone needs of a scan; computed once.
 struct ScanFeatures {
   std::shared_ptr<const ScanSurface> surface;
-  RingDescriptors shape, relief;
+  RingDescriptors shape, relief, tone;  ///< tone: empty where the grid has no intensities
 };
 
 struct GlobalAlignOptions {
   RingDescriptorOptions shape{RingContent::kShape};
   RingDescriptorOptions relief{RingContent::kRelief};
+  RingDescriptorOptions tone{RingContent::kTone};
   // Lengths are parts of the surfaces' common scale.
   int most_matches = 1600;     ///< of each content, the best ones
   int most_seeds = 700;        ///< of each content, whose poses are put to the vote

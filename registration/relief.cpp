@@ -20,6 +20,7 @@ constexpr int kLeastAround = 8;      ///< cells that a neighbourhood must hold
 constexpr float kCompatible = 0.7F;  ///< cosine between normals of one place in two scans
 /// Correlations beyond this are taken as this: the rest is a matter of sampling.
 constexpr double kMostCorrelation = 0.995;
+constexpr float kLeastIntensity = 1.0F / 512.0F;  ///< darker is dark
 
 float weight_at(float distance2, float radius2) {
   return std::max(0.0F, 1.0F - distance2 / radius2);
@@ -58,13 +59,14 @@ std::int64_t descend(const SurfaceLevel& level, const Eigen::Vector3f& p, float 
   return static_cast<std::int64_t>(best);
 }
 
-/// The relief at p, near cell j, along the grid's own directions.
-float interpolated(const SurfaceLevel& level, const Relief& relief, std::size_t j, const Eigen::Vector3f& p) {
+/// The value at p, near cell j, along the grid's own directions.
+float interpolated(const SurfaceLevel& level, const std::vector<float>& values, std::size_t j,
+                   const Eigen::Vector3f& p) {
   const RangeGrid& grid = level.grid;
   const Eigen::Vector3f d = p - grid.point(j);
   const int row = grid.row_of(j);
   const int col = grid.col_of(j);
-  float value = relief.height_mm[j];
+  float value = values[j];
   for (const auto& [dr, dc] : {std::pair{1, 0}, std::pair{0, 1}}) {
     for (const int side : {1, -1}) {
       if (!grid.is_valid(row + side * dr, col + side * dc)) {
@@ -73,8 +75,8 @@ float interpolated(const SurfaceLevel& level, const Relief& relief, std::size_t 
       const std::size_t k = grid.index(row + side * dr, col + side * dc);
       const Eigen::Vector3f e = grid.point(k) - grid.point(j);
       const float along = d.dot(e) / std::max(e.squaredNorm(), 1e-12F);
-      if (along > 0 && !std::isnan(relief.height_mm[k])) {
-        value += std::min(along, 0.5F) * (relief.height_mm[k] - relief.height_mm[j]);
+      if (along > 0 && !std::isnan(values[k])) {
+        value += std::min(along, 0.5F) * (values[k] - values[j]);
         break;
       }
     }
@@ -82,9 +84,71 @@ float interpolated(const SurfaceLevel& level, const Relief& relief, std::size_t 
   return value;
 }
 
+/// Each known value less the mean of those in its neighbourhood.
+std::vector<float> less_surroundings(const SurfaceLevel& level, const std::vector<float>& values,
+                                     float radius) {
+  std::vector<float> out(values.size(), kUnknown);
+  const float radius2 = radius * radius;
+  parallel_for_each_index(
+      values.size(),
+      [&](std::size_t i) {
+        if (std::isnan(values[i])) {
+          return;
+        }
+        const Eigen::Vector3f p = level.grid.point(i);
+        float total = 0;
+        float sum = 0;
+        level.lookup->for_each_near(p, radius, [&](std::size_t j) {
+          const float w = weight_at((level.grid.point(j) - p).squaredNorm(), radius2);
+          if (w > 0 && !std::isnan(values[j])) {
+            total += w * values[j];
+            sum += w;
+          }
+        });
+        out[i] = values[i] - total / sum;  // it is in its own neighbourhood
+      },
+      128);
+  return out;
+}
+
+/// Takes the mean of each column and then of each row off.
+void take_off_lines(const RangeGrid& grid, std::vector<float>& values) {
+  const auto along = [&](int lines, int length, const auto& index) {
+    for (int line = 0; line < lines; ++line) {
+      double sum = 0;
+      int known = 0;
+      for (int k = 0; k < length; ++k) {
+        const float value = values[index(line, k)];
+        if (!std::isnan(value)) {
+          sum += static_cast<double>(value);
+          ++known;
+        }
+      }
+      for (int k = 0; k < length && known > 0; ++k) {
+        values[index(line, k)] -= static_cast<float>(sum / known);
+      }
+    }
+  };
+  along(grid.cols, grid.rows, [&](int col, int row) { return grid.index(row, col); });
+  along(grid.rows, grid.cols, [&](int row, int col) { return grid.index(row, col); });
+}
+
+double rms_of(const std::vector<float>& values) {
+  double square = 0;
+  std::size_t known = 0;
+  for (const float value : values) {
+    if (!std::isnan(value)) {
+      square += static_cast<double>(value) * static_cast<double>(value);
+      ++known;
+    }
+  }
+  return known > 0 ? std::sqrt(square / static_cast<double>(known)) : 0.0;
+}
+
 }  // namespace
 
-Relief make_relief(const SurfaceLevel& level, double radius_mm, std::size_t most_cells) {
+Relief make_relief(const SurfaceLevel& level, const std::vector<float>& intensity, double radius_mm,
+                   std::size_t most_cells) {
   Relief out;
   out.radius_mm = radius_mm;
   const std::size_t count = level.grid.size();
@@ -118,39 +182,33 @@ Relief make_relief(const SurfaceLevel& level, double radius_mm, std::size_t most
         }
       },
       128);
-  // The body bends: its bend, alike all around, is taken off again.
-  parallel_for_each_index(
-      count,
-      [&](std::size_t i) {
-        if (std::isnan(first[i])) {
-          return;
-        }
-        const Eigen::Vector3f p = level.grid.point(i);
-        float total = 0;
-        float sum = 0;
-        level.lookup->for_each_near(p, radius, [&](std::size_t j) {
-          const float w = weight_at((level.grid.point(j) - p).squaredNorm(), radius2);
-          if (w > 0 && !std::isnan(first[j])) {
-            total += w * first[j];
-            sum += w;
-          }
-        });
-        // A fold or another sheet is no relief; one such place must not outweigh all others.
-        out.height_mm[i] = std::clamp(first[i] - total / sum, -0.25F * radius, 0.25F * radius);
-      },
-      128);
+  // The body bends: its bend, alike all around, is taken off again. A fold or another sheet is no relief; one
+  // such place must not outweigh all others.
+  out.height_mm = less_surroundings(level, first, radius);
+  for (float& height : out.height_mm) {
+    height = std::clamp(height, -0.25F * radius, 0.25F * radius);
+  }
+  if (!intensity.empty()) {
+    std::vector<float> light(count, kUnknown);
+    for (std::size_t i = 0; i < count; ++i) {
+      if (level.usable[i] != 0 && intensity[i] > 0) {
+        light[i] = std::log(std::max(intensity[i], kLeastIntensity));
+      }
+    }
+    out.tone = less_surroundings(level, light, radius);
+    take_off_lines(level.grid, out.tone);
+    out.tone_rms = rms_of(out.tone);
+  }
+  out.rms_mm = rms_of(out.height_mm);
   std::vector<std::uint32_t> known;
-  double square = 0;
   for (std::size_t i = 0; i < count; ++i) {
     if (!std::isnan(out.height_mm[i])) {
       known.push_back(static_cast<std::uint32_t>(i));
-      square += static_cast<double>(out.height_mm[i]) * static_cast<double>(out.height_mm[i]);
     }
   }
   if (known.empty()) {
     return out;
   }
-  out.rms_mm = std::sqrt(square / static_cast<double>(known.size()));
   const std::size_t sent = std::min(known.size(), most_cells);
   for (std::size_t k = 0; k < sent; ++k) {
     out.cells.push_back(known[(2 * k + 1) * known.size() / (2 * sent)]);
@@ -160,20 +218,29 @@ Relief make_relief(const SurfaceLevel& level, double radius_mm, std::size_t most
   return out;
 }
 
-double ReliefAgreement::correlation() const {
-  if (pairs < 8) {
+double Correlation::value() const {
+  if (n < 8) {
     return 0;
   }
-  const double vs = ss - s * s / pairs;
-  const double vt = tt - t * t / pairs;
-  return vs > 0 && vt > 0 ? (st - s * t / pairs) / std::sqrt(vs * vt) : 0.0;
+  const double vs = ss - s * s / n;
+  const double vt = tt - t * t / n;
+  return vs > 0 && vt > 0 ? (st - s * t / n) / std::sqrt(vs * vt) : 0.0;
 }
 
 double ReliefAgreement::significance(double radius_mm) const {
   // What stands within half a radius belongs together.
   const double places = area_mm2 / (kPi * 0.25 * radius_mm * radius_mm);
-  const double rho = std::clamp(correlation(), -kMostCorrelation, kMostCorrelation);
-  return std::atanh(rho) * std::sqrt(std::max(0.0, places - 3.0));
+  const auto deviations = [&](const Correlation& c, double share) {
+    const double rho = std::clamp(c.value(), -kMostCorrelation, kMostCorrelation);
+    return std::atanh(rho) * std::sqrt(std::max(0.0, share * places - 3.0));
+  };
+  const double by_height = deviations(height, 1.0);
+  const double by_tone = deviations(tone, height.n > 0 ? tone.n / height.n : 0.0);
+  return by_tone <= 0 ? by_height : std::hypot(std::max(by_height, 0.0), by_tone);
+}
+
+double ReliefAgreement::correlation() const {
+  return std::max(height.value(), tone.value());
 }
 
 ReliefAgreement relief_agreement(const SurfaceLevel& source, const Relief& source_relief,
@@ -196,16 +263,15 @@ ReliefAgreement relief_agreement(const SurfaceLevel& source, const Relief& sourc
         (rotation * source.normals[i]).dot(target.normals[j]) < kCompatible || off > tolerance) {
       continue;
     }
-    const auto a = static_cast<double>(source_relief.height_mm[i]);
-    const auto b = static_cast<double>(interpolated(target, target_relief, j, p));
-    out.pairs += 1;
-    out.s += a;
-    out.t += b;
-    out.ss += a * a;
-    out.tt += b * b;
-    out.st += a * b;
+    out.height.add(static_cast<double>(source_relief.height_mm[i]),
+                   static_cast<double>(interpolated(target, target_relief.height_mm, j, p)));
+    if (!source_relief.tone.empty() && !target_relief.tone.empty() && !std::isnan(source_relief.tone[i]) &&
+        !std::isnan(target_relief.tone[j])) {
+      out.tone.add(static_cast<double>(source_relief.tone[i]),
+                   static_cast<double>(interpolated(target, target_relief.tone, j, p)));
+    }
   }
-  out.area_mm2 = out.pairs * source_relief.cell_area_mm2;
+  out.area_mm2 = out.height.n * source_relief.cell_area_mm2;
   return out;
 }
 

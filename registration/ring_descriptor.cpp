@@ -43,12 +43,15 @@ std::optional<Eigen::Vector3f> plane_normal(const SurfaceLevel& level, const Eig
 }
 
 /// Mean heights in rings × sectors, nothing when too much is missing: over the tangent plane in units of the
-/// radius, or of the relief in units of its rms.
+/// radius, or of what is on it in units of its rms.
 std::optional<Heights> ring_heights(const ScanSurface& surface, RingContent content, const Frame& frame,
                                     float radius_mm, double least_filled) {
   const SurfaceLevel& level = *surface.medium;
-  const bool relief = content == RingContent::kRelief;
-  const float unit_mm = relief ? std::max(static_cast<float>(surface.relief.rms_mm), 1e-6F) : radius_mm;
+  const std::vector<float>* values = content == RingContent::kRelief ? &surface.relief.height_mm
+                                     : content == RingContent::kTone ? &surface.relief.tone
+                                                                     : nullptr;
+  const double rms = content == RingContent::kTone ? surface.relief.tone_rms : surface.relief.rms_mm;
+  const float unit = values != nullptr ? std::max(static_cast<float>(rms), 1e-6F) : radius_mm;
   Heights sum{};
   std::array<int, static_cast<std::size_t>(kRings) * kSectors> count{};
   level.lookup->for_each_near(frame.origin, radius_mm, [&](std::size_t i) {
@@ -57,14 +60,14 @@ std::optional<Heights> ring_heights(const ScanSurface& surface, RingContent cont
     const float a = d.dot(frame.u);
     const float b = d.dot(frame.v);
     const float rho = std::sqrt(a * a + b * b);
-    if (rho >= radius_mm || std::abs(h) > radius_mm || (relief && std::isnan(surface.relief.height_mm[i]))) {
+    if (rho >= radius_mm || std::abs(h) > radius_mm || (values != nullptr && std::isnan((*values)[i]))) {
       return;
     }
     const int ring = std::min(static_cast<int>(rho / radius_mm * kRings), kRings - 1);
     const float turn = (std::atan2(b, a) + static_cast<float>(kPi)) / static_cast<float>(2 * kPi);
     const int sector = std::min(static_cast<int>(turn * kSectors), kSectors - 1);
     const auto cell = static_cast<std::size_t>(ring * kSectors + sector);
-    sum[cell] += relief ? surface.relief.height_mm[i] : h;
+    sum[cell] += values != nullptr ? (*values)[i] : h;
     ++count[cell];
   });
   int filled = 0;
@@ -75,7 +78,7 @@ std::optional<Heights> ring_heights(const ScanSurface& surface, RingContent cont
       // The innermost sectors are narrower than the sample spacing.
       expected += ring == 0 ? 0 : 1;
       filled += ring > 0 && count[cell] > 0 ? 1 : 0;
-      sum[cell] = count[cell] > 0 ? sum[cell] / (static_cast<float>(count[cell]) * unit_mm) : 0.0F;
+      sum[cell] = count[cell] > 0 ? sum[cell] / (static_cast<float>(count[cell]) * unit) : 0.0F;
     }
   }
   if (filled < least_filled * expected) {

@@ -13,8 +13,8 @@
 namespace dubsar {
 
 /// What is read on the rings: the surface's heights over the tangent plane tell the shape of any object; its
-/// relief (relief.h) tells what is written where the shape is the same all over.
-enum class RingContent { kShape, kRelief };
+/// relief and its tone (relief.h) tell what is on it where the shape is the same all over.
+enum class RingContent { kShape, kRelief, kTone };
 
 struct RingDescriptorOptions {
   RingContent content = RingContent::kShape;

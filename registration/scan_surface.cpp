@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "core/grid_geometry.h"
 #include "core/parallel.h"
@@ -234,6 +235,38 @@ double estimate_noise_mm(const RangeGrid& grid, const std::vector<std::uint8_t>&
   return 1.4826 * static_cast<double>(*middle) / std::sqrt(6.0);
 }
 
+/// Mean intensity of the kept samples of each block of stride × stride; empty when the grid has none.
+std::vector<float> block_intensity(const RangeGrid& grid, const std::vector<std::uint8_t>& keep, int stride) {
+  if (grid.intensity.empty()) {
+    return {};
+  }
+  const int rows = (grid.rows + stride - 1) / stride;
+  const int cols = (grid.cols + stride - 1) / stride;
+  std::vector<float> sum(static_cast<std::size_t>(rows) * static_cast<std::size_t>(cols), 0.0F);
+  parallel_for_each_index(
+      static_cast<std::size_t>(rows),
+      [&](std::size_t block_row) {
+        std::vector<int> count(static_cast<std::size_t>(cols), 0);
+        float* const out = &sum[block_row * static_cast<std::size_t>(cols)];
+        const int first = static_cast<int>(block_row) * stride;
+        for (int row = first; row < std::min(first + stride, grid.rows); ++row) {
+          for (int col = 0; col < grid.cols; ++col) {
+            const std::size_t i = grid.index(row, col);
+            if (keep[i] != 0 && std::isfinite(grid.intensity[i])) {
+              out[col / stride] += grid.intensity[i];
+              ++count[static_cast<std::size_t>(col / stride)];
+            }
+          }
+        }
+        for (int col = 0; col < cols; ++col) {
+          const int n = count[static_cast<std::size_t>(col)];
+          out[col] = n > 0 ? out[col] / static_cast<float>(n) : std::numeric_limits<float>::quiet_NaN();
+        }
+      },
+      4);
+  return sum;
+}
+
 std::vector<std::uint8_t> kept_samples(const RangeGrid& grid, const std::vector<std::uint8_t>& ignore) {
   std::vector<std::uint8_t> keep(grid.size(), 0);
   for (std::size_t i = 0; i < grid.size(); ++i) {
@@ -291,7 +324,7 @@ std::shared_ptr<const ScanSurface> make_scan_surface(const RangeGrid& grid,
   out->fine = make_level(grid, keep, fine, out->spacing_mm, options.fine_points, options);
   out->medium = make_level(grid, keep, medium, out->spacing_mm, options.medium_points, options);
   out->coarse = make_level(grid, keep, coarse, out->spacing_mm, options.coarse_points, options);
-  out->relief = make_relief(*out->medium,
+  out->relief = make_relief(*out->medium, block_intensity(grid, keep, medium),
                             std::max(options.relief_radius * out->scale_mm, 3.0 * out->medium->spacing_mm),
                             static_cast<std::size_t>(options.relief_points));
 
