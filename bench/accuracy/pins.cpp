@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+//
+// dubsar-pins: how well pins are found, masked and matched in scans of simulated tablets, against the truth.
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "bench/support/pinned_scans.h"
+#include "bench/support/true_scans.h"
+#include "core/units.h"
+#include "registration/pin_detection.h"
+
+namespace {
+
+using namespace dubsar;
+
+struct Arguments {
+  std::string kind = "text";
+  std::uint64_t first_seed = 1;
+  std::uint64_t tablets = 4;
+  int views = 12;
+  double spacing_mm = 0.1;
+  double noise_mm = 0.02;
+  double tip_mm = 1.0;
+  bool verbose = false;
+};
+
+/// Tips by how much of their ball is seen, in parts of the ball's whole disc: side on, the free half is 0.5.
+constexpr double kShareEdges[] = {0.0, 0.1, 0.25, 0.4};
+constexpr std::size_t kShares = std::size(kShareEdges);
+
+struct Sums {
+  int scans = 0;
+  std::size_t tips[kShares] = {};
+  std::size_t found_tips[kShares] = {};
+  std::size_t detected = 0, false_tips = 0;
+  std::size_t pin = 0, pin_unmasked = 0, stray_pin = 0, stray_pin_unmasked = 0;
+  std::size_t clay = 0, clay_masked = 0, stray_clay = 0, stray_clay_masked = 0;
+  std::vector<double> error_mm;
+  double seconds = 0, samples = 0;
+};
+
+double quantile(std::vector<double> values, double q) {
+  if (values.empty()) {
+    return 0;
+  }
+  const auto k = static_cast<std::ptrdiff_t>(q * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), values.begin() + k, values.end());
+  return values[static_cast<std::size_t>(k)];
+}
+
+double rms(const std::vector<double>& values) {
+  double sum = 0;
+  for (const double v : values) {
+    sum += v * v;
+  }
+  return values.empty() ? 0.0 : std::sqrt(sum / static_cast<double>(values.size()));
+}
+
+double share(std::size_t part, std::size_t whole) {
+  return whole > 0 ? static_cast<double>(part) / static_cast<double>(whole) : 0.0;
+}
+
+void measure(const Arguments& arguments, const bench::PinnedScan& scan, const std::string& name, Sums& sums) {
+  const auto start = std::chrono::steady_clock::now();
+  const PinDetection found = detect_pins(scan.grid, arguments.tip_mm, {});
+  sums.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  sums.samples += static_cast<double>(scan.grid.size());
+  ++sums.scans;
+  const double radius_mm = 0.5 * arguments.tip_mm;
+  const double disc = kPi * radius_mm * radius_mm / (arguments.spacing_mm * arguments.spacing_mm);
+  std::vector<bool> used(found.tips.size(), false);
+  for (const sim::Pin& pin : scan.pins) {
+    const int seen = bench::ball_samples(scan, pin);
+    if (seen == 0) {
+      continue;
+    }
+    std::size_t bin = 0;
+    while (bin + 1 < kShares && seen >= kShareEdges[bin + 1] * disc) {
+      ++bin;
+    }
+    ++sums.tips[bin];
+    double nearest_mm = radius_mm;
+    std::size_t best = found.tips.size();
+    for (std::size_t k = 0; k < found.tips.size(); ++k) {
+      const double off = (found.tips[k].position_mm - pin.tip_mm).norm();
+      if (!used[k] && off < nearest_mm) {
+        nearest_mm = off;
+        best = k;
+      }
+    }
+    if (best < found.tips.size()) {
+      used[best] = true;
+      ++sums.found_tips[bin];
+      sums.error_mm.push_back(nearest_mm);
+    }
+    if (arguments.verbose && (best == found.tips.size() || nearest_mm > 0.15)) {
+      std::printf("  %s pin %d %s (%.3f) at %.1f %.1f %.1f seen %.2f arm %.2f %.2f %.2f\n", name.c_str(),
+                  pin.label, best == found.tips.size() ? "missed" : "off", nearest_mm, pin.tip_mm.x(),
+                  pin.tip_mm.y(), pin.tip_mm.z(), seen / disc, pin.arm.x(), pin.arm.y(), pin.arm.z());
+    }
+  }
+  sums.detected += found.tips.size();
+  for (std::size_t k = 0; k < found.tips.size(); ++k) {
+    if (!used[k]) {
+      ++sums.false_tips;
+      if (arguments.verbose) {
+        const Eigen::Vector3d& p = found.tips[k].position_mm;
+        std::printf("  %s false tip at %.2f %.2f %.2f\n", name.c_str(), p.x(), p.y(), p.z());
+      }
+    }
+  }
+  std::size_t unmasked = 0;
+  std::size_t clay_masked = 0;
+  for (std::size_t i = 0; i < scan.grid.size(); ++i) {
+    const bool masked = found.mask[i] != 0;
+    switch (scan.truth[i]) {
+      case bench::SampleTruth::kPin:
+        ++sums.pin;
+        unmasked += masked ? 0 : 1;
+        break;
+      case bench::SampleTruth::kStrayPin:
+        ++sums.stray_pin;
+        sums.stray_pin_unmasked += masked ? 0 : 1;
+        break;
+      case bench::SampleTruth::kClay:
+        ++sums.clay;
+        clay_masked += masked ? 1 : 0;
+        break;
+      case bench::SampleTruth::kStrayClay:
+        ++sums.stray_clay;
+        sums.stray_clay_masked += masked ? 1 : 0;
+        break;
+      case bench::SampleTruth::kNothing:
+        break;
+    }
+  }
+  sums.pin_unmasked += unmasked;
+  sums.clay_masked += clay_masked;
+  if (arguments.verbose && (unmasked > 0 || clay_masked > 0)) {
+    std::printf("  %s pin samples not masked %zu, clay samples masked %zu\n", name.c_str(), unmasked,
+                clay_masked);
+  }
+}
+
+void print(const Arguments& arguments, const Sums& sums) {
+  std::printf("%s, spacing %.3f mm, noise %.3f mm, tips of %.1f mm: %d scans\n", arguments.kind.c_str(),
+              arguments.spacing_mm, arguments.noise_mm, arguments.tip_mm, sums.scans);
+  for (std::size_t k = kShares; k-- > 0;) {
+    std::printf("  balls seen to %.2f%s of their disc: %zu, found %.1f %%\n", kShareEdges[k],
+                k + 1 < kShares ? " and more" : " or more", sums.tips[k],
+                100 * share(sums.found_tips[k], sums.tips[k]));
+  }
+  std::printf("  precision %.2f %% (%zu of %zu false)\n", 100 * (1 - share(sums.false_tips, sums.detected)),
+              sums.false_tips, sums.detected);
+  std::printf("  centre off: rms %.1f um, 95 %% %.1f um, most %.1f um\n", 1000 * rms(sums.error_mm),
+              1000 * quantile(sums.error_mm, 0.95), 1000 * quantile(sums.error_mm, 1.0));
+  std::printf("  pin samples %zu, not masked %.1e; strays of pins %zu, not masked %.1e\n", sums.pin,
+              share(sums.pin_unmasked, sums.pin), sums.stray_pin,
+              share(sums.stray_pin_unmasked, sums.stray_pin));
+  std::printf("  clay samples %zu, masked %.1e; strays of clay %zu, masked %.1e\n", sums.clay,
+              share(sums.clay_masked, sums.clay), sums.stray_clay,
+              share(sums.stray_clay_masked, sums.stray_clay));
+  std::printf("  %.1f ms per million cells\n", 1e9 * sums.seconds / std::max(1.0, sums.samples));
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{"pins in scans of simulated tablets against the truth"};
+  Arguments arguments;
+  app.add_option("--kind", arguments.kind, "text, blank, worn, tiny or symmetric");
+  app.add_option("--first", arguments.first_seed, "first seed");
+  app.add_option("--tablets", arguments.tablets, "how many");
+  app.add_option("--views", arguments.views, "scans of each");
+  app.add_option("--spacing", arguments.spacing_mm, "of the scans, mm");
+  app.add_option("--noise", arguments.noise_mm, "mm");
+  app.add_option("--tip", arguments.tip_mm, "diameter of the tips, mm");
+  app.add_flag("-v,--verbose", arguments.verbose, "each miss");
+  CLI11_PARSE(app, argc, argv);
+  Sums sums;
+  for (std::uint64_t k = 0; k < arguments.tablets; ++k) {
+    const std::uint64_t seed = arguments.first_seed + k;
+    const auto scans = bench::pinned_scans(
+        bench::random_tablet(seed, arguments.kind, std::max(0.1, arguments.spacing_mm)),
+        {arguments.spacing_mm, arguments.noise_mm, arguments.tip_mm, arguments.views, seed});
+    for (std::size_t s = 0; s < scans.size(); ++s) {
+      measure(arguments, scans[s], "tablet " + std::to_string(seed) + " scan " + std::to_string(s), sums);
+    }
+  }
+  print(arguments, sums);
+  return 0;
+}
