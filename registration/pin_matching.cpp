@@ -18,7 +18,7 @@ using Pairs = std::vector<std::pair<int, int>>;
 /// Pin sets beyond this are false detections for the most part; the first ones are looked at.
 constexpr std::size_t kMostTips = 24;
 
-std::optional<RigidTransform> solve(const std::vector<PinTip>& source, const std::vector<PinTip>& target,
+std::optional<RigidTransform> solve(const std::vector<SeenPin>& source, const std::vector<SeenPin>& target,
                                     const Pairs& pairs) {
   std::vector<Eigen::Vector3d> from;
   std::vector<Eigen::Vector3d> to;
@@ -29,7 +29,7 @@ std::optional<RigidTransform> solve(const std::vector<PinTip>& source, const std
   return absolute_orientation(from, to);
 }
 
-double off_mm(const std::vector<PinTip>& source, const std::vector<PinTip>& target,
+double off_mm(const std::vector<SeenPin>& source, const std::vector<SeenPin>& target,
               const RigidTransform& pose, const std::pair<int, int>& pair) {
   return (pose * source[static_cast<std::size_t>(pair.first)].position_mm -
           target[static_cast<std::size_t>(pair.second)].position_mm)
@@ -37,7 +37,7 @@ double off_mm(const std::vector<PinTip>& source, const std::vector<PinTip>& targ
 }
 
 /// The candidate pairs that the pose brings together, each tip once, nearest first.
-Pairs inliers(const std::vector<PinTip>& source, const std::vector<PinTip>& target,
+Pairs inliers(const std::vector<SeenPin>& source, const std::vector<SeenPin>& target,
               const RigidTransform& pose, const Pairs& candidates, double most_mm) {
   std::vector<std::pair<double, std::pair<int, int>>> near;
   for (const auto& pair : candidates) {
@@ -68,9 +68,9 @@ struct Hypothesis {
 
 /// Every triple of candidate pairs whose mutual distances agree gives a pose; the one that most pairs agree
 /// with wins. Nothing when a different pose has as many.
-std::optional<Hypothesis> best_consensus(const std::vector<PinTip>& source, const std::vector<PinTip>& target,
-                                         const Pairs& candidates, const PinMatchOptions& options,
-                                         bool must_be_unique) {
+std::optional<Hypothesis> best_consensus(const std::vector<SeenPin>& source,
+                                         const std::vector<SeenPin>& target, const Pairs& candidates,
+                                         const PinMatchOptions& options, bool must_be_unique) {
   const double off = options.sigma_mm * std::sqrt(2.0);
   const double most_mm = options.outlier_sigmas * off;
   const double distance_mm = options.distance_sigmas * 2.0 * options.sigma_mm;
@@ -78,7 +78,7 @@ std::optional<Hypothesis> best_consensus(const std::vector<PinTip>& source, cons
     if (a.first == b.first || a.second == b.second) {
       return false;
     }
-    const auto position = [](const std::vector<PinTip>& tips, int k) {
+    const auto position = [](const std::vector<SeenPin>& tips, int k) {
       return tips[static_cast<std::size_t>(k)].position_mm;
     };
     const double in_source = (position(source, a.first) - position(source, b.first)).norm();
@@ -145,14 +145,14 @@ std::optional<Hypothesis> best_consensus(const std::vector<PinTip>& source, cons
 
 }  // namespace
 
-std::optional<PinMatch> match_pins(const std::vector<PinTip>& all_source,
-                                   const std::vector<PinTip>& all_target, const PinMatchOptions& options) {
-  const auto first = [](const std::vector<PinTip>& tips) {
-    return std::vector<PinTip>(tips.begin(),
-                               tips.begin() + static_cast<std::ptrdiff_t>(std::min(tips.size(), kMostTips)));
+std::optional<PinMatch> match_pins(const std::vector<SeenPin>& all_source,
+                                   const std::vector<SeenPin>& all_target, const PinMatchOptions& options) {
+  const auto first = [](const std::vector<SeenPin>& tips) {
+    return std::vector<SeenPin>(tips.begin(),
+                                tips.begin() + static_cast<std::ptrdiff_t>(std::min(tips.size(), kMostTips)));
   };
-  const std::vector<PinTip> source = first(all_source);
-  const std::vector<PinTip> target = first(all_target);
+  const std::vector<SeenPin> source = first(all_source);
+  const std::vector<SeenPin> target = first(all_target);
   Pairs by_label;
   Pairs all;
   for (std::size_t s = 0; s < source.size(); ++s) {

@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
-#include "core/pin_set.h"
 #include "core/rigid_transform.h"
+#include "registration/seen_pin.h"
 
 namespace dubsar {
 
@@ -27,8 +27,8 @@ struct PinMatch {
 /// Matches the tips of two scans by their labels where both carry any, else by mutual distances (the largest
 /// set of pairs whose distances agree), and solves by Horn with outliers rejected. A first pose for ICP,
 /// never the last. Nothing when too few agree, they lie on a line, or two sets agree equally well.
-[[nodiscard]] std::optional<PinMatch> match_pins(const std::vector<PinTip>& source,
-                                                 const std::vector<PinTip>& target,
+[[nodiscard]] std::optional<PinMatch> match_pins(const std::vector<SeenPin>& source,
+                                                 const std::vector<SeenPin>& target,
                                                  const PinMatchOptions& options);
 
 }  // namespace dubsar

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "registration/registrar.h"
+#include "registration/seen_pin.h"
 
 namespace dubsar {
 
@@ -43,7 +44,7 @@ class ScanModel {
     std::string file;
     ScanFeatures features;
     std::optional<NominalPose> nominal;
-    std::vector<PinTip> pins;
+    std::vector<SeenPin> pins;
     double own_scale_mm = 0;
     bool usable = false;
     int group = 0;

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <Eigen/Core>
+
+namespace dubsar {
+
+/// A pin's tip as one scan shows it.
+struct SeenPin {
+  int label = -1;                                            ///< the operator's number, -1 when unlabelled
+  Eigen::Vector3d position_mm{0, 0, 0};                      ///< centre of the tip ball, scanner frame
+  Eigen::Matrix3d covariance_mm2 = Eigen::Matrix3d::Zero();  ///< of position_mm, as measured in this scan
+};
+
+}  // namespace dubsar
