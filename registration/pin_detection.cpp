@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 #include <optional>
 
 #include "core/parallel.h"
@@ -29,6 +31,8 @@ constexpr double kLeastCapShare = 0.06;
 constexpr double kLeastCylinderRatio = 4.0;
 /// Where a click was made that no tip was found near.
 constexpr double kClickSigmaMm = 0.6;
+/// Samples of a piece whose surroundings are looked at.
+constexpr std::size_t kClearSamples = 96;
 
 /// What one scan's pins are measured by.
 struct Scale {
@@ -120,21 +124,71 @@ std::optional<Ball> tip_of(const RangeGrid& grid, const Piece& piece, const Cone
   return ball;
 }
 
-bool plausible_arm(const Cone& cone, const Scale& scale, const PinDetectionOptions& options) {
-  const double a = cone.radius_at(cone.low_mm);
-  const double b = cone.radius_at(cone.high_mm);
-  return std::min(a, b) >= options.least_arm_radius * scale.radius_mm &&
-         std::max(a, b) <= options.most_width * scale.radius_mm &&
-         cone.inlier_share >= options.least_arm_share && cone.coverage_rad >= options.least_coverage_rad &&
-         cone.high_mm - cone.low_mm >= a + b;
+/// Share of the piece's samples that no large thing comes near: clay that wedges and their shadows cut off
+/// from the rest still lies among it, while an arm runs away from it.
+double standing_clear(const RangeGrid& grid, const Sheets& sheets, const std::vector<std::uint8_t>& thin,
+                      const Piece& piece, double clear_mm, double spacing_mm) {
+  const int reach = static_cast<int>(std::ceil(clear_mm / spacing_mm));
+  const int hop = std::max(1, reach / 8);
+  const auto clear2 = static_cast<float>(clear_mm * clear_mm);
+  const std::size_t stride = std::max<std::size_t>(1, piece.samples.size() / kClearSamples);
+  std::size_t looked = 0;
+  std::size_t clear = 0;
+  for (std::size_t k = stride / 2; k < piece.samples.size(); k += stride) {
+    const std::uint32_t i = piece.samples[k];
+    bool near = false;
+    for (int dr = -reach; dr <= reach && !near; dr += hop) {
+      for (int dc = -reach; dc <= reach && !near; dc += hop) {
+        const int row = grid.row_of(i) + dr;
+        const int col = grid.col_of(i) + dc;
+        if (!grid.inside(row, col)) {
+          continue;
+        }
+        const std::size_t j = grid.index(row, col);
+        near = sheets.label[j] >= 0 && thin[static_cast<std::size_t>(sheets.label[j])] == 0 &&
+               (grid.point(j) - grid.point(i)).squaredNorm() < clear2;
+      }
+    }
+    ++looked;
+    clear += near ? 0U : 1U;
+  }
+  return looked > 0 ? static_cast<double>(clear) / static_cast<double>(looked) : 0.0;
 }
 
-std::optional<Body> body_of(const RangeGrid& grid, Piece piece, const Scale& scale,
+/// An arm seen in full shows almost half of its girth. Less is believed of a long piece only: something in
+/// front may hide it along its length, but small pieces of clay bend like that too.
+bool plausible_arm(const Cone& cone, std::size_t samples, const Scale& scale,
+                   const PinDetectionOptions& options) {
+  const double a = cone.radius_at(cone.low_mm);
+  const double b = cone.radius_at(cone.high_mm);
+  const bool in_full = cone.coverage_rad >= options.full_coverage_rad &&
+                       cone.high_mm - cone.low_mm >= options.least_length * (a + b);
+  const bool in_part = cone.coverage_rad >= options.least_coverage_rad &&
+                       cone.high_mm - cone.low_mm >= 2 * options.least_length * (a + b) &&
+                       static_cast<double>(samples) >= options.least_part_discs * scale.disc;
+  return std::min(a, b) >= options.least_arm_radius * scale.radius_mm &&
+         std::max(a, b) <= options.most_width * scale.radius_mm &&
+         cone.inlier_share >= options.least_arm_share &&
+         cone.rms_mm <= std::max(options.most_arm_noise * scale.noise_mm, 0.04 * scale.radius_mm) &&
+         (in_full || in_part);
+}
+
+std::optional<Body> body_of(const RangeGrid& grid, const Sheets& sheets,
+                            const std::vector<std::uint8_t>& thin, Piece piece, const Scale& scale,
                             const PinDetectionOptions& options) {
   const std::optional<Cone> cone = fit_cone(piece.points_mm, piece.to_camera, scale.on_arm_mm);
-  if (!cone || !plausible_arm(*cone, scale, options)) {
+  const double clear_mm = std::min(1.6 * scale.radius_mm, options.most_clear_mm);
+  if (!cone || !plausible_arm(*cone, piece.samples.size(), scale, options) ||
+      standing_clear(grid, sheets, thin, piece, clear_mm, scale.spacing_mm) < options.least_clear_share) {
     return std::nullopt;
   }
+  if (std::getenv("PINS_DEBUG"))
+    std::printf(
+        "BODY %u n %zu cov %.2f inl %.2f rms %.4f noise %.4f len %.2f Rlow %.2f Rhigh %.2f clear %.2f\n",
+        piece.samples[piece.samples.size() / 2], piece.samples.size(), cone->coverage_rad, cone->inlier_share,
+        cone->rms_mm, scale.noise_mm, cone->high_mm - cone->low_mm, cone->radius_at(cone->low_mm),
+        cone->radius_at(cone->high_mm),
+        standing_clear(grid, sheets, thin, piece, clear_mm, scale.spacing_mm));
   Body body;
   body.cone = cone->slope >= 0 ? *cone : cone->reversed();  // an arm widens from its tip
   body.ball = tip_of(grid, piece, body.cone, scale, options);
@@ -193,8 +247,9 @@ Eigen::Matrix3d covariance_of(const RangeGrid& grid, const Body& body, const Row
 /// True where the sample lies on the arm, or on what would be more of it farther out.
 bool in_envelope(const Body& body, const Eigen::Vector3d& p, double margin_mm, double radius_mm) {
   const double s = body.cone.along(p);
+  // Without its tip, which way an arm goes on is not known.
   const double begin_mm = body.ball ? body.cone.along(body.ball->center_mm) - radius_mm : body.cone.low_mm;
-  if (s < begin_mm - margin_mm) {
+  if (s < begin_mm - margin_mm || (!body.ball && s > body.cone.high_mm + margin_mm)) {
     return false;
   }
   return body.cone.from_axis(p) <= std::max(radius_mm, body.cone.radius_at(s)) + margin_mm;
@@ -293,11 +348,12 @@ PinDetection detect_pins(const RangeGrid& grid, double tip_diameter_mm, const Pi
   std::vector<std::uint8_t> thin(sheets.components.size(), 0);
   std::vector<std::optional<Body>> found(sheets.components.size());
   parallel_for_each_index(
+      sheets.components.size(), [&](std::size_t c) { thin[c] = is_thin(sheets, grid, c, side) ? 1 : 0; }, 1);
+  parallel_for_each_index(
       sheets.components.size(),
       [&](std::size_t c) {
-        thin[c] = is_thin(sheets, grid, c, side) ? 1 : 0;
         if (thin[c] != 0 && static_cast<double>(sheets.components[c].cells) >= 0.2 * scale.disc) {
-          found[c] = body_of(grid, piece_of(grid, sheets, c), scale, options);
+          found[c] = body_of(grid, sheets, thin, piece_of(grid, sheets, c), scale, options);
         }
       },
       1);

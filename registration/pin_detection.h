@@ -16,8 +16,14 @@ struct PinDetectionOptions {
   double step_factor = 4.0;         ///< neighbours farther apart than this many µ are on two things
   double most_width = 3.2;          ///< of the tip's diameter: anything wider is no arm
   double least_arm_radius = 0.5;    ///< of the tip's radius
-  double least_coverage_rad = 1.0;  ///< angle about its axis that an arm shows; seen side on it is almost π
-  double least_arm_share = 0.7;     ///< of a component's samples that lie on its arm
+  double full_coverage_rad = 2.0;   ///< angle about its axis that an arm shows; seen side on it is almost π
+  double least_coverage_rad = 1.0;  ///< the same for a long arm that is hidden in part
+  double least_part_discs = 2.0;    ///< samples of such an arm, in parts of those of a ball's whole disc
+  double least_length = 1.5;        ///< of an arm, of its mean width
+  double least_arm_share = 0.88;    ///< of a component's samples that lie on its arm
+  double most_arm_noise = 1.6;      ///< residuals of an arm, of the noise
+  double most_clear_mm = 0.8;       ///< from clay (less for small tips) …
+  double least_clear_share = 0.9;   ///< … is where at least this share of an arm's samples stands
   double least_disc_share = 0.08;   ///< of the samples of a ball's whole disc, for a tip
   double most_ball_rms = 0.1;       ///< of the tip's radius, beside three times the noise
   double most_sigma_mm = 0.25;      ///< a tip that is known worse than it is put back does not help
