@@ -18,6 +18,8 @@ constexpr std::size_t kNoiseStride = 61;
 constexpr float kMostBend = 1.2F;
 /// Residual of a straight continuation, in standard deviations of a sample: it adds up three samples.
 constexpr float kBendSigmas = 6.0F;
+/// Samples of a small component that are looked at for its neighbours; of a larger one every fourth.
+constexpr std::size_t kLookedAt = 24;
 
 bool usable(const RangeGrid& grid, std::size_t i) {
   return grid.valid[i] != 0 && std::isfinite(grid.x[i]) && std::isfinite(grid.y[i]) &&
@@ -226,6 +228,74 @@ bool is_thin(const Sheets& sheets, const RangeGrid& grid, std::size_t component,
     std::swap(above, here);
   }
   return true;
+}
+
+std::vector<std::uint8_t> connected_with_large(const Sheets& sheets, const RangeGrid& grid,
+                                               const std::vector<std::uint8_t>& large, double reach_mm,
+                                               double spacing_mm) {
+  const std::size_t count = sheets.components.size();
+  const int reach = std::max(1, static_cast<int>(std::ceil(reach_mm / spacing_mm)));
+  const int hop = std::max(1, reach / 6);
+  const auto near2 = static_cast<float>(reach_mm * reach_mm);
+  std::vector<std::vector<std::int32_t>> neighbours(count);
+  parallel_for_each_index(
+      count,
+      [&](std::size_t c) {
+        if (large[c] != 0) {
+          return;
+        }
+        const std::vector<std::uint32_t> samples = samples_of(sheets, grid, c);
+        const std::size_t stride = std::clamp<std::size_t>(samples.size() / kLookedAt, 1, 4);
+        std::vector<std::int32_t>& found = neighbours[c];
+        for (std::size_t k = 0; k < samples.size(); k += stride) {
+          const std::uint32_t i = samples[k];
+          for (int dr = -reach; dr <= reach; dr += hop) {
+            for (int dc = -reach; dc <= reach; dc += hop) {
+              const int row = grid.row_of(i) + dr;
+              const int col = grid.col_of(i) + dc;
+              if (!grid.inside(row, col)) {
+                continue;
+              }
+              const std::size_t j = grid.index(row, col);
+              const std::int32_t other = sheets.label[j];
+              if (other >= 0 && other != static_cast<std::int32_t>(c) &&
+                  (found.empty() || found.back() != other) &&
+                  (grid.point(j) - grid.point(i)).squaredNorm() < near2) {
+                found.push_back(other);
+              }
+            }
+          }
+        }
+        std::sort(found.begin(), found.end());
+        found.erase(std::unique(found.begin(), found.end()), found.end());
+      },
+      4);
+  std::vector<std::vector<std::size_t>> links(count);
+  for (std::size_t c = 0; c < count; ++c) {
+    for (const std::int32_t other : neighbours[c]) {
+      links[c].push_back(static_cast<std::size_t>(other));
+      links[static_cast<std::size_t>(other)].push_back(c);
+    }
+  }
+  std::vector<std::uint8_t> out(count, 0);
+  std::vector<std::size_t> open;
+  for (std::size_t c = 0; c < count; ++c) {
+    if (large[c] != 0) {
+      out[c] = 1;
+      open.push_back(c);
+    }
+  }
+  while (!open.empty()) {
+    const std::size_t c = open.back();
+    open.pop_back();
+    for (const std::size_t other : links[c]) {
+      if (out[other] == 0) {
+        out[other] = 1;
+        open.push_back(other);
+      }
+    }
+  }
+  return out;
 }
 
 std::vector<std::uint32_t> samples_of(const Sheets& sheets, const RangeGrid& grid, std::size_t component) {

@@ -42,6 +42,13 @@ struct Sheets {
 /// True when no square of more than `side` samples fits into the component.
 [[nodiscard]] bool is_thin(const Sheets& sheets, const RangeGrid& grid, std::size_t component, int side);
 
+/// [components], 1 for large ones (large[c] != 0) and whatever a chain of components, no farther than
+/// reach_mm from each other, connects with one. Looks at a part of the samples only: a distance may come out
+/// larger by a quarter of the reach.
+[[nodiscard]] std::vector<std::uint8_t> connected_with_large(const Sheets& sheets, const RangeGrid& grid,
+                                                             const std::vector<std::uint8_t>& large,
+                                                             double reach_mm, double spacing_mm);
+
 /// The component's samples in row order.
 [[nodiscard]] std::vector<std::uint32_t> samples_of(const Sheets& sheets, const RangeGrid& grid,
                                                     std::size_t component);

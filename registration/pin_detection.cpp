@@ -33,6 +33,8 @@ constexpr double kLeastCylinderRatio = 4.0;
 constexpr double kClickSigmaMm = 0.6;
 /// Samples of a piece whose surroundings are looked at.
 constexpr std::size_t kClearSamples = 96;
+/// The smallest piece that is looked at, of the samples of a ball's disc.
+constexpr double kLeastDiscs = 0.2;
 
 /// What one scan's pins are measured by.
 struct Scale {
@@ -69,16 +71,24 @@ Piece piece_of(const RangeGrid& grid, const Sheets& sheets, std::size_t componen
   return piece;
 }
 
+/// Samples of the piece at the border of the field.
+int at_border(const RangeGrid& grid, const std::vector<std::uint32_t>& samples) {
+  return static_cast<int>(std::count_if(samples.begin(), samples.end(), [&](std::uint32_t i) {
+    const int row = grid.row_of(i);
+    const int col = grid.col_of(i);
+    return row == 0 || col == 0 || row + 1 == grid.rows || col + 1 == grid.cols;
+  }));
+}
+
 /// True when the field ends where the cone's low end is.
 bool cut_by_field(const RangeGrid& grid, const Piece& piece, const Cone& cone, double radius_mm) {
-  int at_border = 0;
+  std::vector<std::uint32_t> low_end;
   for (std::size_t k = 0; k < piece.samples.size(); ++k) {
-    const int row = grid.row_of(piece.samples[k]);
-    const int col = grid.col_of(piece.samples[k]);
-    const bool border = row == 0 || col == 0 || row + 1 == grid.rows || col + 1 == grid.cols;
-    at_border += border && cone.along(piece.points_mm[k]) < cone.low_mm + 2 * radius_mm ? 1 : 0;
+    if (cone.along(piece.points_mm[k]) < cone.low_mm + 2 * radius_mm) {
+      low_end.push_back(piece.samples[k]);
+    }
   }
-  return at_border >= 2;
+  return at_border(grid, low_end) >= 2;
 }
 
 /// The ball at the cone's low end, if there is one.
@@ -126,7 +136,7 @@ std::optional<Ball> tip_of(const RangeGrid& grid, const Piece& piece, const Cone
 
 /// Share of the piece's samples that no large thing comes near: clay that wedges and their shadows cut off
 /// from the rest still lies among it, while an arm runs away from it.
-double standing_clear(const RangeGrid& grid, const Sheets& sheets, const std::vector<std::uint8_t>& thin,
+double standing_clear(const RangeGrid& grid, const Sheets& sheets, const std::vector<std::uint8_t>& large,
                       const Piece& piece, double clear_mm, double spacing_mm) {
   const int reach = static_cast<int>(std::ceil(clear_mm / spacing_mm));
   const int hop = std::max(1, reach / 8);
@@ -145,7 +155,7 @@ double standing_clear(const RangeGrid& grid, const Sheets& sheets, const std::ve
           continue;
         }
         const std::size_t j = grid.index(row, col);
-        near = sheets.label[j] >= 0 && thin[static_cast<std::size_t>(sheets.label[j])] == 0 &&
+        near = sheets.label[j] >= 0 && large[static_cast<std::size_t>(sheets.label[j])] != 0 &&
                (grid.point(j) - grid.point(i)).squaredNorm() < clear2;
       }
     }
@@ -157,7 +167,8 @@ double standing_clear(const RangeGrid& grid, const Sheets& sheets, const std::ve
 
 /// An arm seen in full shows almost half of its girth. Less is believed of a long piece only: something in
 /// front may hide it along its length, but small pieces of clay bend like that too.
-bool plausible_arm(const Cone& cone, std::size_t samples, const Scale& scale,
+/// `alone`: nothing connects it with clay, so that less has to speak for it.
+bool plausible_arm(const Cone& cone, std::size_t samples, bool alone, const Scale& scale,
                    const PinDetectionOptions& options) {
   const double a = cone.radius_at(cone.low_mm);
   const double b = cone.radius_at(cone.high_mm);
@@ -170,25 +181,21 @@ bool plausible_arm(const Cone& cone, std::size_t samples, const Scale& scale,
          std::max(a, b) <= options.most_width * scale.radius_mm &&
          cone.inlier_share >= options.least_arm_share &&
          cone.rms_mm <= std::max(options.most_arm_noise * scale.noise_mm, 0.04 * scale.radius_mm) &&
-         (in_full || in_part);
+         (alone || in_full || in_part);
 }
 
 std::optional<Body> body_of(const RangeGrid& grid, const Sheets& sheets,
-                            const std::vector<std::uint8_t>& thin, Piece piece, const Scale& scale,
-                            const PinDetectionOptions& options) {
+                            const std::vector<std::uint8_t>& large, bool alone, Piece piece,
+                            const Scale& scale, const PinDetectionOptions& options) {
   const std::optional<Cone> cone = fit_cone(piece.points_mm, piece.to_camera, scale.on_arm_mm);
-  const double clear_mm = std::min(1.6 * scale.radius_mm, options.most_clear_mm);
-  if (!cone || !plausible_arm(*cone, piece.samples.size(), scale, options) ||
-      standing_clear(grid, sheets, thin, piece, clear_mm, scale.spacing_mm) < options.least_clear_share) {
+  if (!cone || !plausible_arm(*cone, piece.samples.size(), alone, scale, options)) {
     return std::nullopt;
   }
-  if (std::getenv("PINS_DEBUG"))
-    std::printf(
-        "BODY %u n %zu cov %.2f inl %.2f rms %.4f noise %.4f len %.2f Rlow %.2f Rhigh %.2f clear %.2f\n",
-        piece.samples[piece.samples.size() / 2], piece.samples.size(), cone->coverage_rad, cone->inlier_share,
-        cone->rms_mm, scale.noise_mm, cone->high_mm - cone->low_mm, cone->radius_at(cone->low_mm),
-        cone->radius_at(cone->high_mm),
-        standing_clear(grid, sheets, thin, piece, clear_mm, scale.spacing_mm));
+  const double clear_mm = std::min(1.6 * scale.radius_mm, options.most_clear_mm);
+  if (!alone &&
+      standing_clear(grid, sheets, large, piece, clear_mm, scale.spacing_mm) < options.least_clear_share) {
+    return std::nullopt;
+  }
   Body body;
   body.cone = cone->slope >= 0 ? *cone : cone->reversed();  // an arm widens from its tip
   body.ball = tip_of(grid, piece, body.cone, scale, options);
@@ -257,7 +264,7 @@ bool in_envelope(const Body& body, const Eigen::Vector3d& p, double margin_mm, d
 
 /// Marks the bodies, what lies in their envelopes and is no part of a large thing, and single samples beside
 /// them that hang on to nothing else.
-void fill_mask(const RangeGrid& grid, const Sheets& sheets, const std::vector<std::uint8_t>& thin,
+void fill_mask(const RangeGrid& grid, const Sheets& sheets, const std::vector<std::uint8_t>& large,
                const std::vector<Body>& bodies, const Scale& scale, std::vector<std::uint8_t>& mask) {
   const double margin_mm = std::max(1.5 * scale.spacing_mm, 6.0 * scale.noise_mm);
   const auto in_any = [&](std::size_t i) {
@@ -274,7 +281,7 @@ void fill_mask(const RangeGrid& grid, const Sheets& sheets, const std::vector<st
   parallel_for_each_index(
       sheets.components.size(),
       [&](std::size_t c) {
-        if (thin[c] == 0) {
+        if (large[c] != 0) {
           return;
         }
         const std::vector<std::uint32_t> samples = samples_of(sheets, grid, c);
@@ -345,15 +352,26 @@ PinDetection detect_pins(const RangeGrid& grid, double tip_diameter_mm, const Pi
   parting.step_factor = options.step_factor;
   const Sheets sheets = part_at_steps(grid, parting);
   const int side = static_cast<int>(options.most_width * tip_diameter_mm / scale.spacing_mm) + 1;
-  std::vector<std::uint8_t> thin(sheets.components.size(), 0);
-  std::vector<std::optional<Body>> found(sheets.components.size());
+  std::vector<std::uint8_t> large(sheets.components.size(), 0);
   parallel_for_each_index(
-      sheets.components.size(), [&](std::size_t c) { thin[c] = is_thin(sheets, grid, c, side) ? 1 : 0; }, 1);
+      large.size(), [&](std::size_t c) { large[c] = is_thin(sheets, grid, c, side) ? 0 : 1; }, 1);
+  const std::vector<std::uint8_t> clay =
+      connected_with_large(sheets, grid, large, options.alone_mm, scale.spacing_mm);
+  std::vector<std::optional<Body>> found(sheets.components.size());
   parallel_for_each_index(
       sheets.components.size(),
       [&](std::size_t c) {
-        if (thin[c] != 0 && static_cast<double>(sheets.components[c].cells) >= 0.2 * scale.disc) {
-          found[c] = body_of(grid, sheets, thin, piece_of(grid, sheets, c), scale, options);
+        if (large[c] == 0 && static_cast<double>(sheets.components[c].cells) >= kLeastDiscs * scale.disc) {
+          found[c] = body_of(grid, sheets, large, clay[c] == 0, piece_of(grid, sheets, c), scale, options);
+        }
+        if (clay[c] == 0) {
+          // An arm that is hidden but for a corner: the tablet never comes to the field's border in parts.
+          const std::vector<std::uint32_t> samples = samples_of(sheets, grid, c);
+          if (at_border(grid, samples) >= 2) {
+            for (const std::uint32_t i : samples) {
+              out.mask[i] = 1;
+            }
+          }
         }
       },
       1);
@@ -379,7 +397,7 @@ PinDetection detect_pins(const RangeGrid& grid, double tip_diameter_mm, const Pi
     out.tips.push_back({-1, body.ball->center_mm, covariance});
     out.rms_mm.push_back(body.ball->rms_mm);
   }
-  fill_mask(grid, sheets, thin, bodies, scale, out.mask);
+  fill_mask(grid, sheets, large, bodies, scale, out.mask);
   return out;
 }
 
