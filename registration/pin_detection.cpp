@@ -134,14 +134,15 @@ std::optional<Ball> tip_of(const RangeGrid& grid, const Piece& piece, const Cone
   return ball;
 }
 
-/// Share of the piece's samples that no large thing comes near: clay that wedges and their shadows cut off
-/// from the rest still lies among it, while an arm runs away from it.
+/// Share of the piece's samples that no other component with large[c] != 0 comes near: clay that wedges and
+/// their shadows cut off from the rest still lies among it, while an arm runs away from it.
 double standing_clear(const RangeGrid& grid, const Sheets& sheets, const std::vector<std::uint8_t>& large,
                       const Piece& piece, double clear_mm, double spacing_mm) {
   const int reach = static_cast<int>(std::ceil(clear_mm / spacing_mm));
   const int hop = std::max(1, reach / 8);
   const auto clear2 = static_cast<float>(clear_mm * clear_mm);
   const std::size_t stride = std::max<std::size_t>(1, piece.samples.size() / kClearSamples);
+  const std::int32_t own = sheets.label[piece.samples.front()];
   std::size_t looked = 0;
   std::size_t clear = 0;
   for (std::size_t k = stride / 2; k < piece.samples.size(); k += stride) {
@@ -155,7 +156,8 @@ double standing_clear(const RangeGrid& grid, const Sheets& sheets, const std::ve
           continue;
         }
         const std::size_t j = grid.index(row, col);
-        near = sheets.label[j] >= 0 && large[static_cast<std::size_t>(sheets.label[j])] != 0 &&
+        near = sheets.label[j] >= 0 && sheets.label[j] != own &&
+               large[static_cast<std::size_t>(sheets.label[j])] != 0 &&
                (grid.point(j) - grid.point(i)).squaredNorm() < clear2;
       }
     }
@@ -252,25 +254,55 @@ Eigen::Matrix3d covariance_of(const RangeGrid& grid, const Body& body, const Row
 }
 
 /// True where the sample lies on the arm, or on what would be more of it farther out.
-bool in_envelope(const Body& body, const Eigen::Vector3d& p, double margin_mm, double radius_mm) {
+bool in_envelope(const Body& body, const Eigen::Vector3d& p, double margin_mm, double radius_mm, bool alone) {
   const double s = body.cone.along(p);
-  // Without its tip, which way an arm goes on is not known.
-  const double begin_mm = body.ball ? body.cone.along(body.ball->center_mm) - radius_mm : body.cone.low_mm;
-  if (s < begin_mm - margin_mm || (!body.ball && s > body.cone.high_mm + margin_mm)) {
+  // Without its tip, which way an arm goes on is not known: the tablet may be there.
+  const bool before_tip = body.ball && s < body.cone.along(body.ball->center_mm) - radius_mm - margin_mm;
+  const bool off_end =
+      !body.ball && !alone && (s < body.cone.low_mm - margin_mm || s > body.cone.high_mm + margin_mm);
+  if (before_tip || off_end) {
     return false;
   }
   return body.cone.from_axis(p) <= std::max(radius_mm, body.cone.radius_at(s)) + margin_mm;
 }
 
+/// Marks what is left of an arm that is hidden but for a corner: pieces that nothing connects with clay and
+/// that reach the border of the field, or have nothing but arms around them. Clay that shadows cut into
+/// pieces has more of its pieces near.
+void mask_remnants(const RangeGrid& grid, const Sheets& sheets, const std::vector<std::uint8_t>& clay,
+                   const std::vector<std::optional<Body>>& found, double far_mm, double spacing_mm,
+                   std::vector<std::uint8_t>& mask) {
+  std::vector<std::uint8_t> other(sheets.components.size(), 1);
+  for (std::size_t c = 0; c < other.size(); ++c) {
+    other[c] = found[c] ? 0 : 1;
+  }
+  parallel_for_each_index(
+      sheets.components.size(),
+      [&](std::size_t c) {
+        if (clay[c] != 0 || found[c]) {
+          return;
+        }
+        const Piece piece = piece_of(grid, sheets, c);
+        if (at_border(grid, piece.samples) >= 2 ||
+            standing_clear(grid, sheets, other, piece, far_mm, spacing_mm) >= 1.0) {
+          for (const std::uint32_t i : piece.samples) {
+            mask[i] = 1;
+          }
+        }
+      },
+      4);
+}
+
 /// Marks the bodies, what lies in their envelopes and is no part of a large thing, and single samples beside
 /// them that hang on to nothing else.
 void fill_mask(const RangeGrid& grid, const Sheets& sheets, const std::vector<std::uint8_t>& large,
-               const std::vector<Body>& bodies, const Scale& scale, std::vector<std::uint8_t>& mask) {
+               const std::vector<std::uint8_t>& clay, const std::vector<Body>& bodies, const Scale& scale,
+               std::vector<std::uint8_t>& mask) {
   const double margin_mm = std::max(1.5 * scale.spacing_mm, 6.0 * scale.noise_mm);
-  const auto in_any = [&](std::size_t i) {
+  const auto in_any = [&](std::size_t i, bool alone) {
     const Eigen::Vector3d p = grid.point(i).cast<double>();
     return std::any_of(bodies.begin(), bodies.end(),
-                       [&](const Body& b) { return in_envelope(b, p, margin_mm, scale.radius_mm); });
+                       [&](const Body& b) { return in_envelope(b, p, margin_mm, scale.radius_mm, alone); });
   };
   for (const Body& body : bodies) {
     for (const std::uint32_t i : body.samples) {
@@ -288,7 +320,8 @@ void fill_mask(const RangeGrid& grid, const Sheets& sheets, const std::vector<st
         if (samples.empty() || mask[samples.front()] != 0) {
           return;
         }
-        const auto inside = static_cast<std::size_t>(std::count_if(samples.begin(), samples.end(), in_any));
+        const auto inside = static_cast<std::size_t>(std::count_if(
+            samples.begin(), samples.end(), [&](std::uint32_t i) { return in_any(i, clay[c] == 0); }));
         if (10 * inside >= 7 * samples.size()) {
           for (const std::uint32_t i : samples) {
             mask[i] = 1;
@@ -306,7 +339,7 @@ void fill_mask(const RangeGrid& grid, const Sheets& sheets, const std::vector<st
           if (grid.valid[i] == 0 || sheets.label[i] >= 0 || !grid.point(i).allFinite()) {
             continue;
           }
-          if (in_any(i)) {
+          if (in_any(i, false)) {
             mask[i] = 1;
             continue;
           }
@@ -364,17 +397,9 @@ PinDetection detect_pins(const RangeGrid& grid, double tip_diameter_mm, const Pi
         if (large[c] == 0 && static_cast<double>(sheets.components[c].cells) >= kLeastDiscs * scale.disc) {
           found[c] = body_of(grid, sheets, large, clay[c] == 0, piece_of(grid, sheets, c), scale, options);
         }
-        if (clay[c] == 0) {
-          // An arm that is hidden but for a corner: the tablet never comes to the field's border in parts.
-          const std::vector<std::uint32_t> samples = samples_of(sheets, grid, c);
-          if (at_border(grid, samples) >= 2) {
-            for (const std::uint32_t i : samples) {
-              out.mask[i] = 1;
-            }
-          }
-        }
       },
       1);
+  mask_remnants(grid, sheets, clay, found, options.far_mm, scale.spacing_mm, out.mask);
   std::vector<Body> bodies;
   RowNoiseSums sums;
   for (std::optional<Body>& body : found) {
@@ -397,7 +422,7 @@ PinDetection detect_pins(const RangeGrid& grid, double tip_diameter_mm, const Pi
     out.tips.push_back({-1, body.ball->center_mm, covariance});
     out.rms_mm.push_back(body.ball->rms_mm);
   }
-  fill_mask(grid, sheets, large, bodies, scale, out.mask);
+  fill_mask(grid, sheets, large, clay, bodies, scale, out.mask);
   return out;
 }
 
