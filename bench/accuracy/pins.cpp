@@ -4,6 +4,7 @@
 // dubsar-pins: how well pins are found, masked and matched in scans of simulated tablets, against the truth.
 
 #include <CLI/CLI.hpp>
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -43,6 +44,7 @@ struct Sums {
   std::size_t pin = 0, pin_unmasked = 0, stray_pin = 0, stray_pin_unmasked = 0;
   std::size_t clay = 0, clay_masked = 0, stray_clay = 0, stray_clay_masked = 0;
   std::vector<double> error_mm;
+  std::vector<double> normalised;  ///< squared error in parts of the tip's covariance, per degree of freedom
   double seconds = 0, samples = 0;
 };
 
@@ -61,6 +63,14 @@ double rms(const std::vector<double>& values) {
     sum += v * v;
   }
   return values.empty() ? 0.0 : std::sqrt(sum / static_cast<double>(values.size()));
+}
+
+double mean(const std::vector<double>& values) {
+  double sum = 0;
+  for (const double v : values) {
+    sum += v;
+  }
+  return values.empty() ? 0.0 : sum / static_cast<double>(values.size());
 }
 
 double share(std::size_t part, std::size_t whole) {
@@ -99,6 +109,8 @@ void measure(const Arguments& arguments, const bench::PinnedScan& scan, const st
       used[best] = true;
       ++sums.found_tips[bin];
       sums.error_mm.push_back(nearest_mm);
+      const Eigen::Vector3d off = found.tips[best].position_mm - pin.tip_mm;
+      sums.normalised.push_back(off.dot(found.tips[best].covariance_mm2.ldlt().solve(off)) / 3.0);
     }
     if (arguments.verbose && (best == found.tips.size() || nearest_mm > 0.15)) {
       std::printf("  %s pin %d %s (%.3f) at %.1f %.1f %.1f seen %.2f arm %.2f %.2f %.2f\n", name.c_str(),
@@ -161,6 +173,9 @@ void print(const Arguments& arguments, const Sums& sums) {
               sums.false_tips, sums.detected);
   std::printf("  centre off: rms %.1f um, 95 %% %.1f um, most %.1f um\n", 1000 * rms(sums.error_mm),
               1000 * quantile(sums.error_mm, 0.95), 1000 * quantile(sums.error_mm, 1.0));
+  std::printf(
+      "  squared error in parts of the covariance: median %.2f, mean %.2f, 95 %% %.2f (0.79, 1 and 2.60)\n",
+      quantile(sums.normalised, 0.5), mean(sums.normalised), quantile(sums.normalised, 0.95));
   std::printf("  pin samples %zu, not masked %.1e; strays of pins %zu, not masked %.1e\n", sums.pin,
               share(sums.pin_unmasked, sums.pin), sums.stray_pin,
               share(sums.stray_pin_unmasked, sums.stray_pin));
