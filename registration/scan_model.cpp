@@ -148,8 +148,8 @@ PoseHints ScanModel::hints_for(const Scan& scan, const std::vector<int>& group_i
       }
     }
     if (!scan.pins.empty() && !other.pins.empty()) {
-      if (const std::optional<PinMatch> match = match_pins(scan.pins, other.pins, {})) {
-        hints.starts.push_back(other.group_from_scanner * match->target_from_source);
+      for (const PinMatch& match : match_pins(scan.pins, other.pins, {})) {
+        hints.starts.push_back(other.group_from_scanner * match.target_from_source);
       }
     }
   }

@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 #include <Eigen/Cholesky>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -14,8 +15,11 @@
 
 #include "bench/support/pinned_scans.h"
 #include "bench/support/true_scans.h"
+#include "core/random.h"
 #include "core/units.h"
 #include "registration/pin_detection.h"
+#include "registration/pin_matching.h"
+#include "sim/pins.h"
 
 namespace {
 
@@ -30,6 +34,7 @@ struct Arguments {
   double noise_mm = 0.02;
   double tip_mm = 1.0;
   bool verbose = false;
+  std::uint64_t matching = 0;
 };
 
 /// Tips by how much of their ball is seen, in parts of the ball's whole disc: side on, the free half is 0.5.
@@ -161,6 +166,140 @@ void measure(const Arguments& arguments, const bench::PinnedScan& scan, const st
   }
 }
 
+/// Two placements of a tablet's pins, thinned out and soiled.
+struct Trial {
+  const char* name;
+  bool labels;
+  double mislabelled;  ///< share of each scan's labels
+  int seen;            ///< of the true pins, in each scan
+  int false_tips;      ///< in each scan
+  std::size_t least_shared;
+};
+
+struct TrialSums {
+  std::size_t pairs = 0, first = 0, among = 0, candidates = 0;
+  double seconds = 0, most_seconds = 0;
+};
+
+RigidTransform random_pose(Random& random) {
+  const Eigen::Quaterniond q(random.normal(), random.normal(), random.normal(), random.normal());
+  return {q.normalized().toRotationMatrix(),
+          {random.uniform(-20, 20), random.uniform(-20, 20), random.uniform(-20, 20)}};
+}
+
+/// The pins of a placement as a scan from `tablet_from_scanner` shows them.
+std::vector<SeenPin> seen_pins(const std::vector<sim::Pin>& pins, const Trial& trial,
+                               const RigidTransform& tablet_from_scanner, Random& random) {
+  constexpr double kTipSigmaMm = 0.02;
+  std::vector<sim::Pin> left = pins;
+  for (std::size_t k = left.size(); k > 1; --k) {
+    std::swap(left[k - 1], left[random.below(k)]);
+  }
+  left.resize(std::min(left.size(), static_cast<std::size_t>(trial.seen)));
+  std::vector<SeenPin> out;
+  Eigen::AlignedBox3d box;
+  for (const sim::Pin& pin : pins) {
+    box.extend(pin.tip_mm);
+  }
+  const auto add = [&](int label, const Eigen::Vector3d& at) {
+    const Eigen::Vector3d off(random.normal(), random.normal(), random.normal());
+    out.push_back({trial.labels ? label : -1,
+                   tablet_from_scanner.inverse() * Eigen::Vector3d(at + kTipSigmaMm * off),
+                   kTipSigmaMm * kTipSigmaMm * Eigen::Matrix3d::Identity()});
+  };
+  for (const sim::Pin& pin : left) {
+    add(random.uniform() < trial.mislabelled ? static_cast<int>(1 + random.below(15)) : pin.label,
+        pin.tip_mm);
+  }
+  for (int k = 0; k < trial.false_tips; ++k) {
+    const Eigen::Vector3d at =
+        box.min() +
+        Eigen::Vector3d(random.uniform(), random.uniform(), random.uniform()).cwiseProduct(box.sizes());
+    add(-1, at);
+  }
+  return out;
+}
+
+bool right(const RigidTransform& found, const RigidTransform& truth, const Eigen::Vector3d& middle_mm) {
+  const RigidTransform turn{found.rotation * truth.rotation.transpose(), {0, 0, 0}};
+  return turn.angle_rad() <= rad_from_deg(5) && (found * middle_mm - truth * middle_mm).norm() <= 3.0;
+}
+
+TrialSums match_trial(const Arguments& arguments, const Trial& trial) {
+  TrialSums sums;
+  for (std::uint64_t seed = 1; seed <= arguments.matching; ++seed) {
+    JobContext job;
+    const auto tablet = sim::make_tablet(bench::random_tablet(seed, arguments.kind, 0.8), job);
+    if (!tablet) {
+      continue;
+    }
+    const MeshQuery query(tablet->mesh);
+    sim::PinOptions options;
+    options.seed = seed;
+    const sim::PinStand stand(*tablet, query, options);
+    Random random(seed_for(seed, 7));
+    for (int repeat = 0; repeat < 10; ++repeat) {
+      const RigidTransform a = random_pose(random);
+      const RigidTransform b = random_pose(random);
+      const std::vector<sim::Pin> pins_a = stand.placed(1 + 2 * repeat);
+      const std::vector<sim::Pin> pins_b = stand.placed(2 + 2 * repeat);
+      Random marks_a(seed_for(seed, static_cast<std::uint64_t>(100 + repeat)));
+      Random marks_b(seed_for(seed, static_cast<std::uint64_t>(200 + repeat)));
+      const std::vector<SeenPin> source = seen_pins(pins_a, trial, a, marks_a);
+      const std::vector<SeenPin> target = seen_pins(pins_b, trial, b, marks_b);
+      std::size_t shared = 0;  // by place, for labels may be wrong or missing
+      for (const SeenPin& s : source) {
+        shared += std::any_of(
+                      target.begin(), target.end(),
+                      [&](const SeenPin& t) { return (a * s.position_mm - b * t.position_mm).norm() < 1.5; })
+                      ? 1U
+                      : 0U;
+      }
+      if (shared < trial.least_shared) {
+        continue;
+      }
+      const auto start = std::chrono::steady_clock::now();
+      const std::vector<PinMatch> found = match_pins(source, target, {});
+      const double took = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+      const RigidTransform truth = b.inverse() * a;
+      const Eigen::Vector3d middle = a.inverse() * Eigen::Vector3d(0, 0, 0);
+      const auto is_right = [&](const PinMatch& m) { return right(m.target_from_source, truth, middle); };
+      ++sums.pairs;
+      sums.first += !found.empty() && is_right(found.front()) ? 1U : 0U;
+      sums.among += std::any_of(found.begin(), found.end(), is_right) ? 1U : 0U;
+      sums.candidates += found.size();
+      sums.seconds += took;
+      sums.most_seconds = std::max(sums.most_seconds, took);
+    }
+  }
+  return sums;
+}
+
+void measure_matching(const Arguments& arguments) {
+  constexpr Trial kTrials[] = {
+      {"labelled, 8 of 15 seen, 4 shared or more", true, 0, 8, 0, 4},
+      {"labelled, 8 seen, 4 false", true, 0, 8, 4, 4},
+      {"labelled, 10 seen, 20 % mislabelled", true, 0.2, 10, 0, 4},
+      {"labelled, 8 seen, 4 false, 20 % mislabelled", true, 0.2, 8, 4, 4},
+      {"unlabelled, 15 seen", false, 0, 15, 0, 5},
+      {"unlabelled, 10 seen, 5 shared or more", false, 0, 10, 0, 5},
+      {"unlabelled, 8 seen, 5 shared or more", false, 0, 8, 0, 5},
+      {"unlabelled, 8 seen, 4 shared or more", false, 0, 8, 0, 4},
+      {"unlabelled, 10 seen, 5 false", false, 0, 10, 5, 5},
+      {"unlabelled, 8 seen, 4 false", false, 0, 8, 4, 5},
+  };
+  std::printf("matching: right to 5 degrees and 3 mm\n");
+  for (const Trial& trial : kTrials) {
+    const TrialSums sums = match_trial(arguments, trial);
+    const double pairs = static_cast<double>(std::max<std::size_t>(1, sums.pairs));
+    std::printf(
+        "  %-46s %5zu pairs: first %.1f %%, among all %.1f %% of %.1f candidates; %.2f ms, most %.1f ms\n",
+        trial.name, sums.pairs, 100 * share(sums.first, sums.pairs), 100 * share(sums.among, sums.pairs),
+        static_cast<double>(sums.candidates) / pairs, 1000 * sums.seconds / pairs, 1000 * sums.most_seconds);
+    std::fflush(stdout);
+  }
+}
+
 void print(const Arguments& arguments, const Sums& sums) {
   std::printf("%s, spacing %.3f mm, noise %.3f mm, tips of %.1f mm: %d scans\n", arguments.kind.c_str(),
               arguments.spacing_mm, arguments.noise_mm, arguments.tip_mm, sums.scans);
@@ -198,6 +337,7 @@ int main(int argc, char** argv) {
   app.add_option("--noise", arguments.noise_mm, "mm");
   app.add_option("--tip", arguments.tip_mm, "diameter of the tips, mm");
   app.add_flag("-v,--verbose", arguments.verbose, "each miss");
+  app.add_option("--matching", arguments.matching, "tablets whose pins are matched, without scans of them");
   CLI11_PARSE(app, argc, argv);
   Sums sums;
   for (std::uint64_t k = 0; k < arguments.tablets; ++k) {
@@ -209,6 +349,11 @@ int main(int argc, char** argv) {
       measure(arguments, scans[s], "tablet " + std::to_string(seed) + " scan " + std::to_string(s), sums);
     }
   }
-  print(arguments, sums);
+  if (arguments.tablets > 0) {
+    print(arguments, sums);
+  }
+  if (arguments.matching > 0) {
+    measure_matching(arguments);
+  }
   return 0;
 }
