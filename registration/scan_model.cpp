@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "registration/pin_advice.h"
 #include "registration/pin_detection.h"
 #include "registration/pin_matching.h"
 
@@ -37,7 +38,8 @@ void ScanModel::enter(int id, const RangeGrid* grid, const PinSet* pins) {
   }
   std::vector<std::uint8_t> ignore;
   const double tip_mm = pins != nullptr ? pins->tip_diameter_mm : g.pin_tip_diameter_mm;
-  if (tip_mm > 0) {
+  scan.pins_expected = tip_mm > 0;
+  if (scan.pins_expected) {
     const PinDetection detection = detect_pins(g, tip_mm, {});
     scan.pins = detection.tips;
     ignore = detection.mask;
@@ -332,6 +334,16 @@ bool ScanModel::place(int id, const RigidTransform& model_from_scanner, bool loc
   return true;
 }
 
+ScanPins ScanModel::pins_of(int id) const {
+  const Scan& scan = scans_.at(id);
+  ScanPins pins{id, scan.pins, {0, 0, 0}, 0.5 * scan.own_scale_mm};
+  if (scan.features.surface) {
+    pins.surface_center_mm = scan.features.surface->centroid_mm;
+    pins.surface_radius_mm = 0.5 * scan.features.surface->extent_mm;
+  }
+  return pins;
+}
+
 ScanPose ScanModel::pose(int id) const {
   const Scan& scan = scans_.at(id);
   ScanPose out;
@@ -347,6 +359,16 @@ ScanPose ScanModel::pose(int id) const {
     out.reason = in_group ? kOtherGroup : scan.reason;
     if (out.reason.empty()) {
       out.reason = "it was not tried; run registration again";
+    }
+    if (scan.pins_expected) {
+      std::vector<ScanPins> others;
+      for (const auto& [other_id, other] : scans_) {
+        if (other_id != id && other.usable && other.group == main_group()) {
+          others.push_back(pins_of(other_id));
+        }
+      }
+      const PinAdvice advice = advise_pins(pins_of(id), others);
+      out.reason += advice.say.empty() ? "" : "; " + advice.say;
     }
     return out;
   }
