@@ -63,7 +63,7 @@ Tips tips_of(const std::vector<SeenPin>& seen, const PinMatchOptions& options) {
   Tips tips;
   for (const std::size_t k : order) {
     tips.at.push_back(seen[k].position_mm);
-    tips.variance.push_back(std::pow(options.replaced_sigma_mm, 2) +
+    tips.variance.push_back(std::pow(options.replaced_sigma_mm, 2) / std::max(1, seen[k].placements) +
                             std::max(0.0, seen[k].covariance_mm2.trace() / 3.0));
     tips.label.push_back(seen[k].label);
     tips.index.push_back(static_cast<int>(k));

@@ -17,7 +17,9 @@ struct PinMatchOptions {
   double outlier_sigmas = 3.4;     ///< of a tip's residual; beyond, it was put back wrong or is another pin
   double label_is_right = 0.7;     ///< chance that both scans name a pin rightly, at the worst
   int least_labelled = 3;          ///< matched pins of a candidate when as many labels agree
-  int least_unlabelled = 4;        ///< and without: three distances coincide too easily
+  /// And without. Three distances coincide by chance (see PinMatch::chance), but seldom often: where a scan
+  /// shows no more, the surface has few candidates to choose from.
+  int least_unlabelled = 3;
   std::size_t most_candidates = 5;
   double least_score_below_best =
       15;                          ///< candidates whose log likelihood is lower by more are not worth a try

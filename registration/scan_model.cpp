@@ -8,6 +8,7 @@
 #include "registration/pin_advice.h"
 #include "registration/pin_detection.h"
 #include "registration/pin_matching.h"
+#include "registration/pin_merge.h"
 
 namespace dubsar {
 
@@ -136,6 +137,7 @@ std::vector<ModelScan> ScanModel::model_of(const std::vector<int>& ids) const {
 PoseHints ScanModel::hints_for(const Scan& scan, const std::vector<int>& group_ids) const {
   PoseHints hints;
   std::optional<RigidTransform> group_from_tablet;
+  std::vector<PlacedPins> pins;
   for (const int id : group_ids) {
     const Scan& other = scans_.at(id);
     if (scan.nominal && other.nominal) {
@@ -149,11 +151,10 @@ PoseHints ScanModel::hints_for(const Scan& scan, const std::vector<int>& group_i
         hints.stage_sigma_rad = std::hypot(scan.nominal->sigma_rad, other.nominal->sigma_rad);
       }
     }
-    if (!scan.pins.empty() && !other.pins.empty()) {
-      for (const PinMatch& match : match_pins(scan.pins, other.pins, {})) {
-        hints.starts.push_back(other.group_from_scanner * match.target_from_source);
-      }
-    }
+    pins.push_back({other.pins, other.group_from_scanner});
+  }
+  for (const PinMatch& match : match_pins(scan.pins, merged_pins(pins), {})) {
+    hints.starts.push_back(match.target_from_source);
   }
   if (group_from_tablet && !hints.stage) {
     hints.asked = (*group_from_tablet * scan.nominal->tablet_from_scanner).orthonormalised();

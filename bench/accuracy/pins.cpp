@@ -20,6 +20,7 @@
 #include "registration/absolute_orientation.h"
 #include "registration/pin_detection.h"
 #include "registration/pin_matching.h"
+#include "registration/pin_merge.h"
 #include "sim/pins.h"
 
 namespace {
@@ -227,6 +228,74 @@ bool right(const RigidTransform& found, const RigidTransform& truth, const Eigen
   return turn.angle_rad() <= rad_from_deg(5) && (found * middle_mm - truth * middle_mm).norm() <= 3.0;
 }
 
+struct ScanPairSums {
+  std::size_t pairs = 0, right = 0;                ///< of two scans that share four true tips that both found
+  std::size_t scans = 0, with_any = 0, first = 0;  ///< scans with a right start on the earlier ones, merged
+  std::size_t starts = 0;
+};
+
+/// Matches the detected tips of all scans of one tablet, with labels as an operator clicks them or without.
+void match_scans(const Arguments& arguments, const std::vector<bench::PinnedScan>& scans, bool labels,
+                 const std::string& name, ScanPairSums& sums) {
+  std::vector<std::vector<SeenPin>> tips;
+  for (std::size_t k = 0; k < scans.size(); ++k) {
+    tips.push_back(detect_pins(scans[k].grid, arguments.tip_mm, {}).tips);
+    if (labels) {
+      tips.back() = labelled_tips(
+          tips.back(), sim::clicked_tips(sim::tips_in_scanner(scans[k].pins, {}), 1.0, k), arguments.tip_mm);
+    }
+  }
+  const auto true_label = [&](std::size_t scan, const SeenPin& tip) {
+    for (const sim::Pin& pin : scans[scan].pins) {
+      if ((pin.tip_mm - tip.position_mm).norm() < 0.3) {
+        return pin.label;
+      }
+    }
+    return -1;
+  };
+  for (std::size_t b = 1; b < scans.size(); ++b) {
+    std::vector<PlacedPins> placed;
+    for (std::size_t a = 0; a < b; ++a) {
+      placed.push_back({tips[a], scans[a].tablet_from_scanner});
+      std::size_t shared = 0;
+      for (const SeenPin& s : tips[b]) {
+        shared += std::any_of(tips[a].begin(), tips[a].end(),
+                              [&](const SeenPin& t) {
+                                return true_label(b, s) >= 0 && true_label(b, s) == true_label(a, t);
+                              })
+                      ? 1U
+                      : 0U;
+      }
+      const RigidTransform truth = scans[a].tablet_from_scanner.inverse() * scans[b].tablet_from_scanner;
+      const Eigen::Vector3d middle = scans[b].tablet_from_scanner.inverse() * Eigen::Vector3d(0, 0, 0);
+      const std::vector<PinMatch> found = match_pins(tips[b], tips[a], {});
+      bool here = false;
+      for (std::size_t k = 0; k < found.size(); ++k) {
+        const bool good = right(found[k].target_from_source, truth, middle);
+        here = here || good;
+      }
+      if (shared >= 4) {
+        ++sums.pairs;
+        sums.right += here ? 1U : 0U;
+      }
+    }
+    const std::vector<PinMatch> starts = match_pins(tips[b], merged_pins(placed), {});
+    const auto good = [&](const PinMatch& m) {
+      return right(m.target_from_source, scans[b].tablet_from_scanner,
+                   scans[b].tablet_from_scanner.inverse() * Eigen::Vector3d(0, 0, 0));
+    };
+    const bool any = std::any_of(starts.begin(), starts.end(), good);
+    sums.starts += starts.size();
+    sums.first += !starts.empty() && good(starts.front()) ? 1U : 0U;
+    ++sums.scans;
+    sums.with_any += any ? 1U : 0U;
+    if (arguments.verbose && !any) {
+      std::printf("  %s scan %zu: %zu tips, no right start%s\n", name.c_str(), b, tips[b].size(),
+                  labels ? " with labels" : "");
+    }
+  }
+}
+
 TrialSums match_trial(const Arguments& arguments, const Trial& trial) {
   TrialSums sums;
   for (std::uint64_t seed = 1; seed <= arguments.matching; ++seed) {
@@ -351,6 +420,7 @@ int main(int argc, char** argv) {
   app.add_option("--matching", arguments.matching, "tablets whose pins are matched, without scans of them");
   CLI11_PARSE(app, argc, argv);
   Sums sums;
+  ScanPairSums from_scans[2];
   for (std::uint64_t k = 0; k < arguments.tablets; ++k) {
     const std::uint64_t seed = arguments.first_seed + k;
     const auto scans = bench::pinned_scans(
@@ -359,9 +429,22 @@ int main(int argc, char** argv) {
     for (std::size_t s = 0; s < scans.size(); ++s) {
       measure(arguments, scans[s], "tablet " + std::to_string(seed) + " scan " + std::to_string(s), sums);
     }
+    for (const bool labels : {false, true}) {
+      match_scans(arguments, scans, labels, "tablet " + std::to_string(seed), from_scans[labels ? 1 : 0]);
+    }
   }
   if (arguments.tablets > 0) {
     print(arguments, sums);
+    for (const bool labels : {false, true}) {
+      const ScanPairSums& m = from_scans[labels ? 1 : 0];
+      std::printf(
+          "  %s: pairs of scans that share 4 tips %zu, right pose among the candidates %.1f %%; scans %zu "
+          "with a right "
+          "start on the earlier ones %.1f %%, as the first %.1f %%; %.1f starts a scan\n",
+          labels ? "labelled" : "unlabelled", m.pairs, 100 * share(m.right, m.pairs), m.scans,
+          100 * share(m.with_any, m.scans), 100 * share(m.first, m.scans),
+          static_cast<double>(m.starts) / static_cast<double>(std::max<std::size_t>(1, m.scans)));
+    }
   }
   if (arguments.matching > 0) {
     measure_matching(arguments);
