@@ -21,6 +21,9 @@ namespace {
 /// An error that no set of pins is good enough to bring down.
 constexpr double kOpen = std::numeric_limits<double>::infinity();
 
+/// Tips narrower than this, of their spread along the line, leave the turn about it to chance.
+constexpr double kLineWidth = 0.15;
+
 struct Edge {
   const char* name;
   Eigen::Vector3d way;
@@ -35,7 +38,7 @@ const std::array<Edge, 4>& edges() {
 struct Expected {
   double turn_deg = kOpen;
   double surface_mm = kOpen;
-  double across_line_mm = 0;  ///< standard deviation of the tips across the line that fits them best
+  double width = 0;  ///< spread of the tips across the line that fits them best, of that along it
 };
 
 /// Horn's normal matrix for small errors: Σ w (|d|² I - d dᵀ) for the turn about the weighted middle of the
@@ -59,7 +62,7 @@ Expected expected_error(const std::vector<Eigen::Vector3d>& at, const std::vecto
     moments += d * d.transpose() / variance[k];
   }
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> spread(moments);
-  out.across_line_mm = std::sqrt(std::max(0.0, spread.eigenvalues()[1]) / total);
+  out.width = std::sqrt(std::max(0.0, spread.eigenvalues()[1]) / std::max(1e-12, spread.eigenvalues()[2]));
   const Eigen::Matrix3d information = moments.trace() * Eigen::Matrix3d::Identity() - moments;
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(information);
   if (!(eigen.eigenvalues()[0] > 1e-9)) {
@@ -104,7 +107,7 @@ class Adviser {
                        (labelled_ < at_.size() ? " (fewer when they are labelled)" : "") +
                        ": set more at the " + best_edge(at_.size()).name + " edge");
     }
-    if (now.across_line_mm < 0.15 * scan_.surface_radius_mm) {
+    if (now.width < kLineWidth) {
       return move(PinFault::kInLine, "the pins stand nearly in one line");
     }
     if (const PinAdvice close = too_close(); close.fault != PinFault::kNone) {
