@@ -51,6 +51,7 @@ struct Body {
   std::optional<Ball> ball;
   std::vector<std::uint32_t> samples;
   RowNoiseSums noise;
+  bool settled = true;  ///< else only its place among the others can tell that it is no clay
 };
 
 struct Piece {
@@ -169,36 +170,42 @@ double standing_clear(const RangeGrid& grid, const Sheets& sheets, const std::ve
 
 /// An arm seen in full shows almost half of its girth. Less is believed of a long piece only: something in
 /// front may hide it along its length, but small pieces of clay bend like that too.
-/// `alone`: nothing connects it with clay, so that less has to speak for it.
-bool plausible_arm(const Cone& cone, std::size_t samples, bool alone, const Scale& scale,
-                   const PinDetectionOptions& options) {
+bool shows_enough(const Cone& cone, std::size_t samples, const Scale& scale,
+                  const PinDetectionOptions& options) {
+  const double width = cone.radius_at(cone.low_mm) + cone.radius_at(cone.high_mm);
+  const bool in_full = cone.coverage_rad >= options.full_coverage_rad &&
+                       cone.high_mm - cone.low_mm >= options.least_length * width;
+  const bool in_part = cone.coverage_rad >= options.least_coverage_rad &&
+                       cone.high_mm - cone.low_mm >= 2 * options.least_length * width &&
+                       static_cast<double>(samples) >= options.least_part_discs * scale.disc;
+  return in_full || in_part;
+}
+
+bool plausible_arm(const Cone& cone, const Scale& scale, const PinDetectionOptions& options) {
   const double a = cone.radius_at(cone.low_mm);
   const double b = cone.radius_at(cone.high_mm);
-  const bool in_full = cone.coverage_rad >= options.full_coverage_rad &&
-                       cone.high_mm - cone.low_mm >= options.least_length * (a + b);
-  const bool in_part = cone.coverage_rad >= options.least_coverage_rad &&
-                       cone.high_mm - cone.low_mm >= 2 * options.least_length * (a + b) &&
-                       static_cast<double>(samples) >= options.least_part_discs * scale.disc;
   return std::min(a, b) >= options.least_arm_radius * scale.radius_mm &&
          std::max(a, b) <= options.most_width * scale.radius_mm &&
          cone.inlier_share >= options.least_arm_share &&
-         cone.rms_mm <= std::max(options.most_arm_noise * scale.noise_mm, 0.04 * scale.radius_mm) &&
-         (alone || in_full || in_part);
+         cone.rms_mm <= std::max(options.most_arm_noise * scale.noise_mm, 0.04 * scale.radius_mm);
 }
 
 std::optional<Body> body_of(const RangeGrid& grid, const Sheets& sheets,
                             const std::vector<std::uint8_t>& large, bool alone, Piece piece,
                             const Scale& scale, const PinDetectionOptions& options) {
   const std::optional<Cone> cone = fit_cone(piece.points_mm, piece.to_camera, scale.on_arm_mm);
-  if (!cone || !plausible_arm(*cone, piece.samples.size(), alone, scale, options)) {
+  if (!cone || !plausible_arm(*cone, scale, options)) {
     return std::nullopt;
   }
   const double clear_mm = std::min(1.6 * scale.radius_mm, options.most_clear_mm);
-  if (!alone &&
-      standing_clear(grid, sheets, large, piece, clear_mm, scale.spacing_mm) < options.least_clear_share) {
+  const bool settled = shows_enough(*cone, piece.samples.size(), scale, options) &&
+                       (alone || standing_clear(grid, sheets, large, piece, clear_mm, scale.spacing_mm) >=
+                                     options.least_clear_share);
+  if (!settled && !alone) {
     return std::nullopt;
   }
   Body body;
+  body.settled = settled;
   body.cone = cone->slope >= 0 ? *cone : cone->reversed();  // an arm widens from its tip
   body.ball = tip_of(grid, piece, body.cone, scale, options);
   if (!body.ball) {
@@ -264,6 +271,24 @@ bool in_envelope(const Body& body, const Eigen::Vector3d& p, double margin_mm, d
     return false;
   }
   return body.cone.from_axis(p) <= std::max(radius_mm, body.cone.radius_at(s)) + margin_mm;
+}
+
+/// Drops the bodies that are not settled and have pieces of other shapes near: clay that shadows cut up.
+void drop_unsettled(const RangeGrid& grid, const Sheets& sheets, double far_mm, double spacing_mm,
+                    std::vector<std::optional<Body>>& found) {
+  std::vector<std::uint8_t> other(sheets.components.size(), 1);
+  for (std::size_t c = 0; c < other.size(); ++c) {
+    other[c] = found[c] ? 0 : 1;
+  }
+  parallel_for_each_index(
+      found.size(),
+      [&](std::size_t c) {
+        if (found[c] && !found[c]->settled &&
+            standing_clear(grid, sheets, other, piece_of(grid, sheets, c), far_mm, spacing_mm) < 1.0) {
+          found[c].reset();
+        }
+      },
+      4);
 }
 
 /// Marks what is left of an arm that is hidden but for a corner: pieces that nothing connects with clay and
@@ -399,6 +424,7 @@ PinDetection detect_pins(const RangeGrid& grid, double tip_diameter_mm, const Pi
         }
       },
       1);
+  drop_unsettled(grid, sheets, options.far_mm, scale.spacing_mm, found);
   mask_remnants(grid, sheets, clay, found, options.far_mm, scale.spacing_mm, out.mask);
   std::vector<Body> bodies;
   RowNoiseSums sums;
