@@ -29,6 +29,9 @@ constexpr double kMostStrays = 0.05;
 constexpr double kLeastCapShare = 0.06;
 /// How much worse a cut-off arm must explain the cap than a ball.
 constexpr double kLeastCylinderRatio = 4.0;
+/// Offset of a ball from its arm's axis: what pins are bent, of the radius, and what the fit's error makes.
+constexpr double kMostOffAxis = 0.08;
+constexpr double kOffAxisSigmas = 4.0;
 /// Where a click was made that no tip was found near.
 constexpr double kClickSigmaMm = 0.6;
 /// Samples of a piece whose surroundings are looked at.
@@ -274,7 +277,7 @@ bool in_envelope(const Body& body, const Eigen::Vector3d& p, double margin_mm, d
 }
 
 /// Drops the bodies that are not settled and have pieces of other shapes near: clay that shadows cut up.
-void drop_unsettled(const RangeGrid& grid, const Sheets& sheets, double far_mm, double spacing_mm,
+void drop_unsettled(const RangeGrid& grid, const Sheets& sheets, double near_mm, double spacing_mm,
                     std::vector<std::optional<Body>>& found) {
   std::vector<std::uint8_t> other(sheets.components.size(), 1);
   for (std::size_t c = 0; c < other.size(); ++c) {
@@ -284,7 +287,7 @@ void drop_unsettled(const RangeGrid& grid, const Sheets& sheets, double far_mm, 
       found.size(),
       [&](std::size_t c) {
         if (found[c] && !found[c]->settled &&
-            standing_clear(grid, sheets, other, piece_of(grid, sheets, c), far_mm, spacing_mm) < 1.0) {
+            standing_clear(grid, sheets, other, piece_of(grid, sheets, c), near_mm, spacing_mm) < 0.9) {
           found[c].reset();
         }
       },
@@ -424,7 +427,7 @@ PinDetection detect_pins(const RangeGrid& grid, double tip_diameter_mm, const Pi
         }
       },
       1);
-  drop_unsettled(grid, sheets, options.far_mm, scale.spacing_mm, found);
+  drop_unsettled(grid, sheets, options.near_mm, scale.spacing_mm, found);
   mask_remnants(grid, sheets, clay, found, options.far_mm, scale.spacing_mm, out.mask);
   std::vector<Body> bodies;
   RowNoiseSums sums;
@@ -443,6 +446,11 @@ PinDetection detect_pins(const RangeGrid& grid, double tip_diameter_mm, const Pi
     const Eigen::Matrix3d covariance = covariance_of(grid, body, noise);
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(covariance);
     if (!covariance.allFinite() || eigen.eigenvalues()[2] > std::pow(options.most_sigma_mm, 2)) {
+      continue;
+    }
+    // A ball sits on its arm's axis, as far as its fit can tell.
+    const double off_axis_mm = body.cone.from_axis(body.ball->center_mm);
+    if (off_axis_mm > kMostOffAxis * scale.radius_mm + kOffAxisSigmas * std::sqrt(eigen.eigenvalues()[2])) {
       continue;
     }
     out.tips.push_back({-1, body.ball->center_mm, covariance});

@@ -25,6 +25,7 @@ struct PinDetectionOptions {
   double most_clear_mm = 0.8;       ///< from clay (less for small tips) …
   double least_clear_share = 0.9;   ///< … is where at least this share of an arm's samples stands
   double alone_mm = 1.0;            ///< farther than this from anything that hangs together with clay
+  double near_mm = 1.5;             ///< around a piece that is an arm by its place only, nothing but arms
   double far_mm = 3.0;              ///< from everything but arms, no piece of the grid is clay
   double least_disc_share = 0.08;   ///< of the samples of a ball's whole disc, for a tip
   double most_ball_rms = 0.1;       ///< of the tip's radius, beside three times the noise
