@@ -29,6 +29,8 @@ constexpr double kMostStrays = 0.05;
 constexpr double kLeastCapShare = 0.06;
 /// How much worse a cut-off arm must explain the cap than a ball.
 constexpr double kLeastCylinderRatio = 4.0;
+/// Where a ball explains the cap so much better, nothing else is asked.
+constexpr double kClearCylinderRatio = 15.0;
 /// Offset of a ball from its arm's axis: what pins are bent, of the radius, and what the fit's error makes.
 constexpr double kMostOffAxis = 0.08;
 constexpr double kOffAxisSigmas = 4.0;
@@ -448,9 +450,10 @@ PinDetection detect_pins(const RangeGrid& grid, double tip_diameter_mm, const Pi
     if (!covariance.allFinite() || eigen.eigenvalues()[2] > std::pow(options.most_sigma_mm, 2)) {
       continue;
     }
-    // A ball sits on its arm's axis, as far as its fit can tell.
+    // A ball sits on its arm's axis, as far as its fit can tell: where its cap alone leaves a doubt.
     const double off_axis_mm = body.cone.from_axis(body.ball->center_mm);
-    if (off_axis_mm > kMostOffAxis * scale.radius_mm + kOffAxisSigmas * std::sqrt(eigen.eigenvalues()[2])) {
+    if (body.ball->cylinder_ratio < kClearCylinderRatio &&
+        off_axis_mm > kMostOffAxis * scale.radius_mm + kOffAxisSigmas * std::sqrt(eigen.eigenvalues()[2])) {
       continue;
     }
     out.tips.push_back({-1, body.ball->center_mm, covariance});
