@@ -5,7 +5,6 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -34,8 +33,6 @@ constexpr double kClearCylinderRatio = 15.0;
 /// Offset of a ball from its arm's axis: what pins are bent, of the radius, and what the fit's error makes.
 constexpr double kMostOffAxis = 0.08;
 constexpr double kOffAxisSigmas = 4.0;
-/// Where a click was made that no tip was found near.
-constexpr double kClickSigmaMm = 0.6;
 /// Samples of a piece whose surroundings are looked at.
 constexpr std::size_t kClearSamples = 96;
 /// The smallest piece that is looked at, of the samples of a ball's disc.
@@ -466,47 +463,6 @@ PinDetection detect_pins(const RangeGrid& grid, double tip_diameter_mm, const Pi
 std::vector<std::uint8_t> pin_mask(const RangeGrid& grid, double tip_diameter_mm,
                                    const PinDetectionOptions& options) {
   return detect_pins(grid, tip_diameter_mm, options).mask;
-}
-
-std::vector<SeenPin> labelled_tips(const std::vector<SeenPin>& detected, const std::vector<PinTip>& clicked,
-                                   double tip_diameter_mm) {
-  const double reach_mm = tip_diameter_mm + 1.0;
-  std::vector<std::array<double, 3>> pairs;  // distance, click, detected
-  for (std::size_t c = 0; c < clicked.size(); ++c) {
-    for (std::size_t d = 0; d < detected.size(); ++d) {
-      const double off = (detected[d].position_mm - clicked[c].position_mm).norm();
-      if (off < reach_mm) {
-        pairs.push_back({off, static_cast<double>(c), static_cast<double>(d)});
-      }
-    }
-  }
-  std::sort(pairs.begin(), pairs.end());
-  std::vector<std::size_t> tip_of_click(clicked.size(), detected.size());
-  std::vector<bool> used(detected.size(), false);
-  for (const auto& [off, click, tip] : pairs) {
-    const auto c = static_cast<std::size_t>(click);
-    const auto d = static_cast<std::size_t>(tip);
-    if (tip_of_click[c] == detected.size() && !used[d]) {
-      tip_of_click[c] = d;
-      used[d] = true;
-    }
-  }
-  std::vector<SeenPin> out;
-  for (std::size_t c = 0; c < clicked.size(); ++c) {
-    if (tip_of_click[c] < detected.size()) {
-      out.push_back(detected[tip_of_click[c]]);
-      out.back().label = clicked[c].label;
-    } else if (clicked[c].position_mm.allFinite()) {
-      out.push_back({clicked[c].label, clicked[c].position_mm,
-                     kClickSigmaMm * kClickSigmaMm * Eigen::Matrix3d::Identity()});
-    }
-  }
-  for (std::size_t d = 0; d < detected.size(); ++d) {
-    if (!used[d]) {
-      out.push_back(detected[d]);
-    }
-  }
-  return out;
 }
 
 }  // namespace dubsar

@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/pin_set.h"
 #include "core/range_grid.h"
 #include "registration/seen_pin.h"
 
@@ -51,11 +50,5 @@ struct PinDetection {
 /// [rows*cols], 1 on samples of pins and arms: SampleFlag kNotTablet.
 [[nodiscard]] std::vector<std::uint8_t> pin_mask(const RangeGrid& grid, double tip_diameter_mm,
                                                  const PinDetectionOptions& options = {});
-
-/// The operator's tips, each moved onto the nearest detected one within the diameter and a millimetre (clicks
-/// are good to 1 mm), nearest pairs first; clicks with no tip stay where they were made, with their own
-/// uncertainty; detected tips that nobody labelled follow unlabelled.
-[[nodiscard]] std::vector<SeenPin> labelled_tips(const std::vector<SeenPin>& detected,
-                                                 const std::vector<PinTip>& clicked, double tip_diameter_mm);
 
 }  // namespace dubsar

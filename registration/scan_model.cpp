@@ -7,6 +7,7 @@
 
 #include "registration/pin_advice.h"
 #include "registration/pin_detection.h"
+#include "registration/pin_labels.h"
 #include "registration/pin_matching.h"
 #include "registration/pin_merge.h"
 

@@ -19,6 +19,7 @@
 #include "core/units.h"
 #include "registration/absolute_orientation.h"
 #include "registration/pin_detection.h"
+#include "registration/pin_labels.h"
 #include "registration/pin_matching.h"
 #include "registration/pin_merge.h"
 #include "sim/pins.h"

@@ -11,6 +11,7 @@
 
 #include "core/random.h"
 #include "core/units.h"
+#include "registration/pin_labels.h"
 #include "sim/pins.h"
 #include "sim/scan_plan.h"
 #include "sim/scanner.h"
