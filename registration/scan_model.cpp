@@ -5,8 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "registration/pin_advice.h"
 #include "registration/pin_detection.h"
+#include "registration/pin_labels.h"
 #include "registration/pin_matching.h"
+#include "registration/pin_merge.h"
 
 namespace dubsar {
 
@@ -28,6 +31,15 @@ bool size_is_possible(double a_mm, double b_mm, double most_ratio) {
   return a_mm <= most_ratio * b_mm && b_mm <= most_ratio * a_mm;
 }
 
+/// True when the pins alone leave no doubt that the first match is the right one.
+bool pins_tell(const std::vector<PinMatch>& matches) {
+  constexpr double kMostChance = 1e-4;
+  constexpr double kLeastLead = 10.0;  // of the log likelihood, against the next match
+  const PinMatch& first = matches.front();
+  const bool enough = first.labels_agree >= 3 || (first.pairs.size() >= 5 && first.chance < kMostChance);
+  return enough && (matches.size() < 2 || matches[1].score < first.score - kLeastLead);
+}
+
 }  // namespace
 
 void ScanModel::enter(int id, const RangeGrid* grid, const PinSet* pins) {
@@ -42,7 +54,8 @@ void ScanModel::enter(int id, const RangeGrid* grid, const PinSet* pins) {
   }
   std::vector<std::uint8_t> ignore;
   const double tip_mm = pins != nullptr ? pins->tip_diameter_mm : g.pin_tip_diameter_mm;
-  if (tip_mm > 0) {
+  scan.pins_expected = tip_mm > 0;
+  if (scan.pins_expected) {
     const PinDetection detection = detect_pins(g, tip_mm, {});
     scan.pins = detection.tips;
     ignore = detection.mask;
@@ -137,6 +150,7 @@ std::vector<ModelScan> ScanModel::model_of(const std::vector<int>& ids) const {
 PoseHints ScanModel::hints_for(const Scan& scan, const std::vector<int>& group_ids) const {
   PoseHints hints;
   std::optional<RigidTransform> group_from_tablet;
+  std::vector<PlacedPins> pins;
   for (const int id : group_ids) {
     const Scan& other = scans_.at(id);
     if (scan.nominal && other.nominal) {
@@ -150,15 +164,12 @@ PoseHints ScanModel::hints_for(const Scan& scan, const std::vector<int>& group_i
         hints.stage_sigma_rad = std::hypot(scan.nominal->sigma_rad, other.nominal->sigma_rad);
       }
     }
-    if (!scan.pins.empty() && !other.pins.empty()) {
-      if (const std::optional<PinMatch> match = match_pins(scan.pins, other.pins, {})) {
-        const bool labelled = std::any_of(match->pairs.begin(), match->pairs.end(), [&](const auto& pair) {
-          return scan.pins[static_cast<std::size_t>(pair.first)].label >= 0;
-        });
-        (labelled ? hints.told : hints.starts)
-            .push_back(other.group_from_scanner * match->target_from_source);
-      }
-    }
+    pins.push_back({other.pins, other.group_from_scanner});
+  }
+  const std::vector<PinMatch> matches = match_pins(scan.pins, merged_pins(pins), {});
+  for (std::size_t k = 0; k < matches.size(); ++k) {
+    const bool told = k == 0 && pins_tell(matches);
+    (told ? hints.told : hints.starts).push_back(matches[k].target_from_source);
   }
   if (group_from_tablet && !hints.stage) {
     hints.asked = (*group_from_tablet * scan.nominal->tablet_from_scanner).orthonormalised();
@@ -363,6 +374,16 @@ bool ScanModel::place(int id, const RigidTransform& model_from_scanner, bool loc
   return true;
 }
 
+ScanPins ScanModel::pins_of(int id) const {
+  const Scan& scan = scans_.at(id);
+  ScanPins pins{id, scan.pins, {0, 0, 0}, 0.5 * scan.own_scale_mm};
+  if (scan.features.surface) {
+    pins.surface_center_mm = scan.features.surface->centroid_mm;
+    pins.surface_radius_mm = 0.5 * scan.features.surface->extent_mm;
+  }
+  return pins;
+}
+
 ScanPose ScanModel::pose(int id) const {
   const Scan& scan = scans_.at(id);
   ScanPose out;
@@ -378,6 +399,16 @@ ScanPose ScanModel::pose(int id) const {
     out.reason = in_group ? kOtherGroup : scan.reason;
     if (out.reason.empty()) {
       out.reason = "it was not tried; run registration again";
+    }
+    if (scan.pins_expected) {
+      std::vector<ScanPins> others;
+      for (const auto& [other_id, other] : scans_) {
+        if (other_id != id && other.usable && other.group == main_group()) {
+          others.push_back(pins_of(other_id));
+        }
+      }
+      const PinAdvice advice = advise_pins(pins_of(id), others);
+      out.reason += advice.say.empty() ? "" : "; " + advice.say;
     }
     return out;
   }

@@ -9,7 +9,9 @@
 #include <utility>
 #include <vector>
 
+#include "registration/pin_advice.h"
 #include "registration/registrar.h"
+#include "registration/seen_pin.h"
 
 namespace dubsar {
 
@@ -43,7 +45,8 @@ class ScanModel {
     std::string file;
     ScanFeatures features;
     std::optional<NominalPose> nominal;
-    std::vector<PinTip> pins;
+    std::vector<SeenPin> pins;
+    bool pins_expected = false;
     double own_scale_mm = 0;
     bool usable = false;
     int group = 0;
@@ -68,6 +71,7 @@ class ScanModel {
   [[nodiscard]] int main_group() const;
   [[nodiscard]] std::vector<int> groups_by_size() const;
   [[nodiscard]] PoseHints hints_for(const Scan& scan, const std::vector<int>& group_ids) const;
+  [[nodiscard]] ScanPins pins_of(int id) const;
   [[nodiscard]] std::vector<ModelScan> model_of(const std::vector<int>& ids) const;
   /// Looks for the scan's pose in the group: from its leads, and on the members that are new to it.
   bool join_group(int id, int group, JobContext& job);
