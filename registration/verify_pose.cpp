@@ -72,7 +72,8 @@ PoseVerdict judged_by_shape(const ModelFit& fit, const VerifyOptions& o) {
             "more overlap, or click three points on both scans"};
   }
   const bool held_by_relief = sure(fit, o) && fit.slid_significance < o.most_slid * fit.significance;
-  if (fit.icp.stability < o.least_stability && !held_by_relief) {
+  const bool refined = fit.icp.pairs > 0;  // else it was not worth it, and its stability is not known
+  if (refined && fit.icp.stability < o.least_stability && !held_by_relief) {
     return {PoseStatus::kUnsure,
             "the overlap is too even: the scan can " + loose_direction(fit.icp) +
                 " on it; scan again with an edge or more relief in the overlap, or use pins"};
@@ -138,6 +139,9 @@ PoseVerdict verify_pose(std::vector<ModelFit>& fits, const VerifyOptions& option
   const ModelFit& chosen = fits.front();
   const double least = options.rival_gap + options.rival_ratio * doubt(chosen, options);
   for (auto rival = fits.begin() + 1; rival != fits.end(); ++rival) {
+    if (chosen.told && !rival->told) {
+      continue;
+    }
     if (sure(chosen, options) && rival->significance < options.rival_relief * chosen.significance) {
       continue;
     }
