@@ -119,6 +119,12 @@ std::vector<int> ScanModel::groups_by_size() const {
 
 int ScanModel::main_group() const {
   const std::vector<int> groups = groups_by_size();
+  for (const int group : groups) {
+    const std::vector<int> ids = members(group);
+    if (std::any_of(ids.begin(), ids.end(), [&](int i) { return scans_.at(i).locked; })) {
+      return group;  // what the operator has fixed is the model, however little it is
+    }
+  }
   return groups.empty() ? -1 : groups.front();
 }
 
@@ -200,6 +206,13 @@ void ScanModel::retry(JobContext& job) {
 bool ScanModel::join_group(int id, int group, JobContext& job) {
   Scan& scan = scans_.at(id);
   const std::vector<int> ids = members(group);
+  if (const std::optional<int> hinted = hint_between(scan.group, group)) {
+    scan.tried_on.insert(ids.begin(), ids.end());
+    return join_by_hint(*hinted, job);
+  }
+  if (scan.given) {
+    return join_as_given(id, group, job);
+  }
   const std::vector<ModelScan> model = model_of(ids);
   std::vector<std::uint8_t> searched(ids.size(), 0);
   const PairHypotheses from_pairs = [&](std::size_t k) {
