@@ -90,10 +90,10 @@ Status check_point_pairs(std::span<const PointPair> pairs, const std::string& wh
       const double here = (pairs[a].point_mm - pairs[b].point_mm).norm();
       const double there = (pairs[a].on_point_mm - pairs[b].on_point_mm).norm();
       if (std::min(here, there) < kOnePlaceMm) {
-        return bad_input(where,
-                         "point pairs " + std::to_string(b + 1) + " and " + std::to_string(a + 1) +
-                             " are one place",
-                         "click places that lie well apart");
+        return bad_input(
+            where,
+            "point pairs " + std::to_string(b + 1) + " and " + std::to_string(a + 1) + " are one place",
+            "click places that lie well apart");
       }
       if (pairs.size() == 2 && std::abs(here - there) > kMostClickMissMm) {
         return bad_input(where,
@@ -134,7 +134,8 @@ Result<RigidTransform> solve_point_pairs(std::span<const PointPair> pairs, const
   }
   const std::optional<RigidTransform> pose = pairs.size() < 3 ? std::nullopt : fitted(pairs);
   if (!pose) {
-    return bad_input(where, "fewer than three point pairs settle no pose", "click three places in both scans");
+    return bad_input(where, "fewer than three point pairs settle no pose",
+                     "click three places in both scans");
   }
   return *pose;
 }

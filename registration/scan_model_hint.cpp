@@ -58,9 +58,9 @@ bool ScanModel::join_from(int id, int group, const std::vector<RigidTransform>& 
   scan.tried_on.insert(ids.begin(), ids.end());
   std::vector<ModelFit> fits;
   for (std::size_t k = 0; k < starts.size() && !job.cancelled(); k += kBatch) {
-    for (ModelFit& fit :
-         fit_to_model(*scan.features.surface, model,
-                      std::span(starts).subspan(k, std::min(kBatch, starts.size() - k)), options_.search.fit)) {
+    for (ModelFit& fit : fit_to_model(*scan.features.surface, model,
+                                      std::span(starts).subspan(k, std::min(kBatch, starts.size() - k)),
+                                      options_.search.fit)) {
       const auto copy = std::find_if(fits.begin(), fits.end(), [&](const ModelFit& known) {
         return same_pose(fit.model_from_scanner, known.model_from_scanner, scan.features.surface->centroid_mm,
                          options_.search.fit.distinct_turn_rad,
