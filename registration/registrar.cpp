@@ -79,7 +79,10 @@ ScanPose Registrar::add_at(int id, const std::shared_ptr<const RangeGrid>& grid,
     return state_->pose(id);
   }
   if (locked) {
-    state_->place(id, model_from_scanner.orthonormalised(), true);
+    // Not put onto SO(3) once more: what is fixed stays as it was to the last digit.
+    state_->place(
+        id, model_from_scanner.is_rigid(1e-9) ? model_from_scanner : model_from_scanner.orthonormalised(),
+        true);
     return state_->pose(id);
   }
   state_->enter_at(id, model_from_scanner);

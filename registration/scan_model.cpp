@@ -7,6 +7,7 @@
 
 #include "registration/pin_detection.h"
 #include "registration/pin_matching.h"
+#include "registration/unit_check.h"
 
 namespace dubsar {
 
@@ -49,9 +50,13 @@ void ScanModel::enter(int id, const RangeGrid* grid, const PinSet* pins) {
   if (!std::isfinite(scan.own_scale_mm)) {
     scan.own_scale_mm = 0;
   }
-  if (scale_mm_ == 0) {
+  const ScanSize size{scan.own_scale_mm, g.spacing_mm > 0 ? g.spacing_mm : estimate_spacing_mm(g)};
+  const std::string impossible = impossible_size(size, options_.least_size_mm, options_.most_size_mm);
+  if (scale_mm_ == 0 && impossible.empty()) {
     scale_mm_ = scan.own_scale_mm;
+    first_spacing_mm_ = size.spacing_mm;
   }
+  const ScanSize before{scale_mm_, first_spacing_mm_};
   ScanSurfaceOptions surface = options_.surface;
   surface.scale_mm = scale_mm_;
   if (scan.nominal) {
@@ -59,15 +64,15 @@ void ScanModel::enter(int id, const RangeGrid* grid, const PinSet* pins) {
   }
   if (!(scan.own_scale_mm > 0)) {
     scan.reason = "the scan has no surface in it; scan it again";
+  } else if (!impossible.empty()) {
+    scan.reason = impossible;
   } else if (!size_is_possible(scan.own_scale_mm, scale_mm_, options_.most_unit_ratio)) {
-    const double ratio = scan.own_scale_mm / scale_mm_;
-    scan.reason = "it is " + std::to_string(std::lround(std::max(ratio, 1.0 / ratio))) + " times " +
-                  (ratio > 1 ? "larger" : "smaller") +
-                  " than the scans before it: its numbers are in another unit; give the right --unit";
+    scan.reason = other_unit(size, before);
   } else {
     scan.features.surface = make_scan_surface(g, ignore, surface);
     scan.features.descriptors =
         RingDescriptors(*scan.features.surface, scale_mm_, options_.search.align.descriptors);
+    scan.suspicion = perhaps_other_unit(size, before);
     scan.usable = scan.features.surface->fine->samples.size() >= options_.least_samples;
     if (!scan.usable) {
       scan.reason =
@@ -357,7 +362,7 @@ ScanPose ScanModel::pose(int id) const {
   if (!scan.usable || scan.group != main_group()) {
     const bool in_group = scan.usable && members(scan.group).size() > 1;
     out.status = in_group ? PoseStatus::kUnsure : scan.outcome;
-    out.reason = in_group ? kOtherGroup : scan.reason;
+    out.reason = in_group ? kOtherGroup : !scan.suspicion.empty() ? scan.suspicion : scan.reason;
     if (out.reason.empty()) {
       out.reason = "it was not tried; run registration again";
     }

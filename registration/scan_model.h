@@ -63,8 +63,9 @@ class ScanModel {
     int group = 0;
     RigidTransform group_from_scanner;
     bool locked = false;
-    bool given = false;  ///< joins from where it is or not at all
-    std::string reason;  ///< why it does not join; empty when it has joined or was not tried
+    bool given = false;     ///< joins from where it is or not at all
+    std::string reason;     ///< why it does not join; empty when it has joined or was not tried
+    std::string suspicion;  ///< what may ail it when it joins nothing; empty for nothing in particular
     PoseStatus outcome = PoseStatus::kFailed;
     double rms_mm = 0, overlap = 0, stage_sigma_mm = 0;
     Matrix6d covariance = Matrix6d::Zero();
@@ -105,6 +106,7 @@ class ScanModel {
 
   RegistrationOptions options_;
   double scale_mm_ = 0;
+  double first_spacing_mm_ = 0;
   int next_group_ = 0;
   std::map<int, Scan> scans_;
   std::map<std::pair<int, int>, Pair> pairs_;
