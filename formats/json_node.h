@@ -78,6 +78,9 @@ class JsonDocument {
  private:
   JsonDocument() = default;
   struct State {
+    State() = default;
+    State(const State&) = delete;  // nodes point into it
+    State& operator=(const State&) = delete;
     nlohmann::json value;
     std::string where;
     std::optional<std::string> complaint;

@@ -363,6 +363,9 @@ ScanPose ScanModel::pose(int id) const {
     const bool in_group = scan.usable && members(scan.group).size() > 1;
     out.status = in_group ? PoseStatus::kUnsure : scan.outcome;
     out.reason = in_group ? kOtherGroup : !scan.suspicion.empty() ? scan.suspicion : scan.reason;
+    if (!scan.hint_reason.empty()) {
+      out.reason = scan.hint_reason;
+    }
     if (out.reason.empty()) {
       out.reason = "it was not tried; run registration again";
     }

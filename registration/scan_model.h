@@ -63,9 +63,10 @@ class ScanModel {
     int group = 0;
     RigidTransform group_from_scanner;
     bool locked = false;
-    bool given = false;     ///< joins from where it is or not at all
-    std::string reason;     ///< why it does not join; empty when it has joined or was not tried
-    std::string suspicion;  ///< what may ail it when it joins nothing; empty for nothing in particular
+    bool given = false;       ///< joins from where it is or not at all
+    std::string reason;       ///< why it does not join; empty when it has joined or was not tried
+    std::string hint_reason;  ///< why its hint led to no pose
+    std::string suspicion;    ///< what may ail it when it joins nothing; empty for nothing in particular
     PoseStatus outcome = PoseStatus::kFailed;
     double rms_mm = 0, overlap = 0, stage_sigma_mm = 0;
     Matrix6d covariance = Matrix6d::Zero();

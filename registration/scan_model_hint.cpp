@@ -89,6 +89,7 @@ bool ScanModel::join_from(int id, int group, const std::vector<RigidTransform>& 
     return false;
   }
   connect(id, fits.front(), false, ids, group);
+  scan.hint_reason.clear();
   relax_group(scans_.at(id).group, job);
   judge(id);
   return true;
@@ -108,7 +109,14 @@ bool ScanModel::join_by_hint(int hinted, JobContext& job) {
   };
   const std::vector<RigidTransform> starts =
       in_group(starts_from_hint(hint, *scan.features.surface, *on.features.surface));
-  if (!starts.empty() && join_from(hinted, group, starts, job)) {
+  const auto joined = [&](const std::vector<RigidTransform>& from) {
+    const bool done = !from.empty() && join_from(hinted, group, from, job);
+    if (done) {
+      scans_.at(hint.on).hint_reason.clear();
+    }
+    return done;
+  };
+  if (joined(starts)) {
     return true;
   }
   // One or two clicks beside a crease can give a poor normal: what the surfaces resemble, filtered by them.
@@ -121,16 +129,14 @@ bool ScanModel::join_by_hint(int hinted, JobContext& job) {
       }
     }
     found.insert(found.end(), starts.begin(), starts.end());
-    if (join_from(hinted, group, found, job)) {
+    if (joined(found)) {
       return true;
     }
   }
   if (!job.cancelled()) {
-    scan.reason = "the hint leads to no certain pose: " + scan.reason;
-    Scan& other = scans_.at(hint.on);
-    if (other.reason.empty()) {
-      other.reason = scan.reason;  // shown when it is the other that is left out
-    }
+    // Whichever of the two is left out says so.
+    scan.hint_reason = "the hint leads to no certain pose: " + scan.reason;
+    scans_.at(hint.on).hint_reason = scan.hint_reason;
   }
   return false;
 }
@@ -140,7 +146,16 @@ void ScanModel::set_hint(int id, const PoseHint& hint) {
 }
 
 void ScanModel::clear_hint(int id) {
-  hints_.erase(id);
+  const auto hint = hints_.find(id);
+  if (hint == hints_.end()) {
+    return;
+  }
+  for (const int either : {id, hint->second.on}) {
+    if (const auto scan = scans_.find(either); scan != scans_.end()) {
+      scan->second.hint_reason.clear();
+    }
+  }
+  hints_.erase(hint);
 }
 
 bool ScanModel::follow_hint(int id, JobContext& job) {
