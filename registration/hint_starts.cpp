@@ -19,6 +19,9 @@ constexpr int kTurns = 36;
 /// The normal is that of the clay around the click: a single sample may lie on the slope of a wedge, and the
 /// click is good to a millimetre only.
 constexpr double kNormalRadiusMm = 3.0;
+/// Turns about the line through two clicks, to either side of what the normals say.
+constexpr int kRolls = 5;
+constexpr double kRollStepRad = 15.0 * kPi / 180.0;
 /// Two points nearer than this do not settle the turn about the normal.
 constexpr double kLeastBaseMm = 4.0;
 
@@ -79,8 +82,17 @@ std::vector<RigidTransform> from_two_points(const PointPair& a, const PointPair&
   const auto frame = [](const ScanSurface& surface, const Eigen::Vector3d& p, const Eigen::Vector3d& q) {
     return axes(q - p, normal_around(surface, p) + normal_around(surface, q));
   };
-  return {frame_on_frame(frame(scan, a.point_mm, b.point_mm), 0.5 * (a.point_mm + b.point_mm),
-                         frame(on, a.on_point_mm, b.on_point_mm), 0.5 * (a.on_point_mm + b.on_point_mm))};
+  const Eigen::Matrix3d from = frame(scan, a.point_mm, b.point_mm);
+  const Eigen::Matrix3d to = frame(on, a.on_point_mm, b.on_point_mm);
+  std::vector<RigidTransform> out;
+  // Near an edge of the tablet the normals are far from those that another view shows.
+  for (int k = -kRolls; k <= kRolls; ++k) {
+    const Eigen::Matrix3d roll =
+        Eigen::AngleAxisd(k * kRollStepRad, Eigen::Vector3d(to.col(0))).toRotationMatrix();
+    out.push_back(frame_on_frame(from, 0.5 * (a.point_mm + b.point_mm), roll * to,
+                                 0.5 * (a.on_point_mm + b.on_point_mm)));
+  }
+  return out;
 }
 
 std::vector<RigidTransform> around(const RigidTransform& pose, const Eigen::Vector3d& center_mm) {
