@@ -23,7 +23,7 @@ struct RegistrationOptions {
   RelaxationOptions relaxation;
   std::size_t least_samples = 300;  ///< a scan with fewer that can be matched is not registered
   double most_unit_ratio = 30.0;    ///< scans whose sizes differ by more are in different units
-  double least_size_mm = 1.0;       ///< nothing that is scanned is smaller …
+  double least_size_mm = 0.5;       ///< nothing that is scanned is smaller …
   double most_size_mm = 5000.0;     ///< … or larger: the numbers are in another unit
   double pair_variance =
       4.0;  ///< residuals of neighbouring samples are not independent: variances count this often

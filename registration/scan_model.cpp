@@ -64,10 +64,10 @@ void ScanModel::enter(int id, const RangeGrid* grid, const PinSet* pins) {
   }
   if (!(scan.own_scale_mm > 0)) {
     scan.reason = "the scan has no surface in it; scan it again";
+  } else if (scale_mm_ > 0 && !size_is_possible(scan.own_scale_mm, scale_mm_, options_.most_unit_ratio)) {
+    scan.reason = other_unit(size, before);
   } else if (!impossible.empty()) {
     scan.reason = impossible;
-  } else if (!size_is_possible(scan.own_scale_mm, scale_mm_, options_.most_unit_ratio)) {
-    scan.reason = other_unit(size, before);
   } else {
     scan.features.surface = make_scan_surface(g, ignore, surface);
     scan.features.descriptors =
