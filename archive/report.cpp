@@ -51,8 +51,8 @@ Result<std::string> six_sides(const ReportInput& input, const SixViews& views) {
     if (!img) {
       return img;
     }
-    html += "<figure style=\"grid-area: " + name + "\">" + *img + "<figcaption>" + name +
-            "</figcaption></figure>\n";
+    html.append("<figure style=\"grid-area: ").append(name).append("\">").append(*img);
+    html.append("<figcaption>").append(name).append("</figcaption></figure>\n");
   }
   html +=
       "<div class=\"bar\" style=\"grid-area: bar\">10 mm</div>\n</div>\n<p class=\"aside\">Drawn from the "

@@ -88,6 +88,7 @@ std::string checklist_section(const ReportInput& input) {
 
 std::string regions_section(const ReportInput& input) {
   std::vector<const RedRegion*> regions;
+  regions.reserve(input.red_map.regions.size());
   for (const RedRegion& region : input.red_map.regions) {
     regions.push_back(&region);
   }

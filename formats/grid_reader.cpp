@@ -116,7 +116,8 @@ bool looks_like_scan(const std::filesystem::path& path) {
   switch (format_of(*head, path)) {
     case ScanFormat::kPly: {
       const Result<PlyHeader> header = parse_ply_header(*head, path.string());
-      return header && is_scan_header(*header);
+      // A PLY that cannot be made out is a scan that was damaged: leaving it out would hide that.
+      return !header || is_scan_header(*header);
     }
     case ScanFormat::kGrid:
       return is_grid_file(*head);

@@ -37,8 +37,8 @@ inline constexpr double kMaxCoordinateMm = 1e6;
 [[nodiscard]] Result<std::vector<ScanData>> read_scan_bytes(std::string_view bytes, const std::string& name,
                                                             const GridReadOptions& options = {});
 
-/// True when the beginning of the file is that of a scan; loads no more than the header. Meshes (a PLY with
-/// faces), .conf files and unreadable files are not.
+/// True when the beginning of the file is that of a scan, or of a PLY that cannot be made out; loads no more
+/// than the header. Meshes (a PLY with faces), .conf files and unreadable files are not.
 [[nodiscard]] bool looks_like_scan(const std::filesystem::path& path);
 
 /// How many scans the file holds, without keeping any sample. 1 but for PTX.

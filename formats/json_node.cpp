@@ -65,7 +65,7 @@ JsonNode JsonNode::at(const char* key) const {
     return {nullptr, path, complaint_};
   }
   const auto member = value_->find(key);
-  const JsonNode node(member == value_->end() ? nullptr : &*member, path, complaint_);
+  JsonNode node(member == value_->end() ? nullptr : &*member, path, complaint_);
   if (node.value_ == nullptr) {
     node.complain("is missing");
   }
@@ -109,7 +109,7 @@ JsonNode JsonNode::item(std::size_t index) const {
   path += std::to_string(index);
   path += ']';
   const bool there = value_ != nullptr && value_->is_array() && index < value_->size();
-  const JsonNode node(there ? &(*value_)[index] : nullptr, std::move(path), complaint_);
+  JsonNode node(there ? &(*value_)[index] : nullptr, std::move(path), complaint_);
   if (value_ != nullptr && !there) {
     node.complain("is missing");
   }

@@ -78,6 +78,9 @@ class JsonDocument {
  private:
   JsonDocument() = default;
   struct State {
+    State() noexcept(false) {}     // the value's own constructor may throw, though it does not say so
+    State(const State&) = delete;  // nodes point into it
+    State& operator=(const State&) = delete;
     nlohmann::json value;
     std::string where;
     std::optional<std::string> complaint;

@@ -130,7 +130,8 @@ bool PlyBody::next_binary(const PlyElement& element, PlyRow& row) {
       continue;
     }
     const std::size_t item_bytes = size_of(property.type);
-    if (row.values[p] < 0 || row.values[p] > static_cast<double>((file_.size() - at_) / item_bytes)) {
+    const std::size_t most_items = (file_.size() - at_) / item_bytes;
+    if (row.values[p] < 0 || row.values[p] > static_cast<double>(most_items)) {
       return false;
     }
     row.lists[p].resize(static_cast<std::size_t>(row.values[p]));

@@ -17,6 +17,7 @@ constexpr std::array<Excuse, 2> kExcuses{Excuse::kUnreachable, Excuse::kUnneeded
 
 std::vector<std::string> face_names() {
   std::vector<std::string> names;
+  names.reserve(kFaceCount);
   for (int face = 0; face < kFaceCount; ++face) {
     names.emplace_back(to_string(static_cast<Face>(face)));
   }

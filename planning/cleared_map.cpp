@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <map>
 
+#include "core/grid_noise.h"
 #include "core/parallel.h"
 
 namespace dubsar {

@@ -23,10 +23,6 @@ struct ClearingOptions {
   double max_normal_angle_rad = 1.83;
 };
 
-/// Standard deviation of a grid's depth noise: from second differences along the profiles, robustly. Relief
-/// counts as noise, so this is an upper bound; never more than µ / 2.
-[[nodiscard]] double estimate_noise_mm(const RangeGrid& grid);
-
 /// µ of the grid, estimated where it is not known.
 [[nodiscard]] double spacing_of(const RangeGrid& grid);
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "core/grid_noise.h"
 #include "planning/clearing.h"
 #include "planning/red_regions.h"
 

@@ -13,7 +13,6 @@ namespace dubsar {
 namespace {
 
 /// Every so many samples tell the noise.
-constexpr std::size_t kNoiseStride = 61;
 /// A surface whose slope changes between two samples, in µ; steeper changes are steps.
 constexpr float kMostBend = 1.2F;
 /// Residual of a straight continuation, in standard deviations of a sample: it adds up three samples.
@@ -190,23 +189,6 @@ Sheets part_at_steps(const RangeGrid& grid, const SheetOptions& options) {
       },
       16);
   return out;
-}
-
-double estimate_noise_mm(const RangeGrid& grid) {
-  std::vector<float> bends;
-  for (std::size_t i = 1; i + 1 < grid.size(); i += kNoiseStride) {
-    if (grid.col_of(i) > 0 && grid.col_of(i) + 1 < grid.cols && usable(grid, i - 1) && usable(grid, i) &&
-        usable(grid, i + 1)) {
-      bends.push_back((grid.point(i - 1) + grid.point(i + 1) - 2.0F * grid.point(i)).norm());
-    }
-  }
-  if (bends.size() < 30) {
-    return 0;
-  }
-  const auto middle = bends.begin() + static_cast<std::ptrdiff_t>(bends.size() / 2);
-  std::nth_element(bends.begin(), middle, bends.end());
-  // Of a normal variable the median size is 0.6745 σ; the second difference has √6 times a sample's.
-  return static_cast<double>(*middle) / (0.6745 * std::sqrt(6.0));
 }
 
 bool is_thin(const Sheets& sheets, const RangeGrid& grid, std::size_t component, int side) {

@@ -35,10 +35,6 @@ struct Sheets {
 /// that a single sample between two surfaces (a mixed pixel) bridges nothing.
 [[nodiscard]] Sheets part_at_steps(const RangeGrid& grid, const SheetOptions& options);
 
-/// Noise of a sample along the ray, from second differences along the rows (their median, so that edges and
-/// steps do not count); 0 when there are too few samples.
-[[nodiscard]] double estimate_noise_mm(const RangeGrid& grid);
-
 /// True when no square of more than `side` samples fits into the component.
 [[nodiscard]] bool is_thin(const Sheets& sheets, const RangeGrid& grid, std::size_t component, int side);
 

@@ -10,6 +10,7 @@
 #include <cstdlib>
 #include <optional>
 
+#include "core/grid_noise.h"
 #include "core/parallel.h"
 #include "core/units.h"
 #include "registration/pin_body.h"

@@ -2,6 +2,9 @@
 // Copyright The Dubsar developers
 #include "registration/registrar.h"
 
+#include <string>
+
+#include "registration/point_pairs.h"
 #include "registration/scan_model.h"
 
 namespace dubsar {
@@ -35,6 +38,58 @@ bool Registrar::remove(int id) {
 
 bool Registrar::set_pose(int id, const RigidTransform& model_from_scanner, bool locked) {
   return model_from_scanner.is_rigid() && state_->place(id, model_from_scanner.orthonormalised(), locked);
+}
+
+Status Registrar::set_hint(int id, const PoseHint& hint, JobContext& job) {
+  const std::string where = "hint for scan " + std::to_string(id);
+  if (hint.on == id || hint.on < 0) {
+    return fail(ErrorKind::kUsage, "a hint needs another scan", where, "name the scan that it lies on");
+  }
+  if (hint.on_from_scanner && !hint.on_from_scanner->is_rigid()) {
+    return bad_input(where, "its pose is not a rigid transform", "give a turn and a shift, row by row");
+  }
+  if (!hint.on_from_scanner) {
+    if (const Status good = check_point_pairs(hint.points, where); !good) {
+      return good;
+    }
+  }
+  for (const ScanPose& pose : state_->poses()) {
+    if (pose.id == id && pose.locked) {
+      return fail(ErrorKind::kUsage, "the scan is locked", where, "unlock it first");
+    }
+  }
+  state_->set_hint(id, hint);
+  state_->follow_hint(id, job);
+  return {};
+}
+
+void Registrar::clear_hint(int id) {
+  state_->clear_hint(id);
+}
+
+bool Registrar::set_locked(int id, bool locked) {
+  return state_->set_locked(id, locked);
+}
+
+ScanPose Registrar::add_at(int id, const std::shared_ptr<const RangeGrid>& grid, const PinSet* pins,
+                           const RigidTransform& model_from_scanner, bool locked, JobContext& job) {
+  state_->remove(id);
+  state_->enter(id, grid.get(), pins);
+  if (!model_from_scanner.is_rigid()) {
+    return state_->pose(id);
+  }
+  if (locked) {
+    // Not put onto SO(3) once more: what is fixed stays as it was to the last digit.
+    state_->place(
+        id, model_from_scanner.is_rigid(1e-9) ? model_from_scanner : model_from_scanner.orthonormalised(),
+        true);
+    return state_->pose(id);
+  }
+  state_->enter_at(id, model_from_scanner);
+  if (state_->join(id, job)) {
+    state_->retry(job);
+  }
+  return state_->pose(id);
 }
 
 Status Registrar::finalize(JobContext& job) {

@@ -7,6 +7,7 @@
 
 #include "core/job.h"
 #include "core/pin_set.h"
+#include "core/pose_hint.h"
 #include "core/range_grid.h"
 #include "core/result.h"
 #include "core/scan_pose.h"
@@ -22,6 +23,8 @@ struct RegistrationOptions {
   RelaxationOptions relaxation;
   std::size_t least_samples = 300;  ///< a scan with fewer that can be matched is not registered
   double most_unit_ratio = 30.0;    ///< scans whose sizes differ by more are in different units
+  double least_size_mm = 0.5;       ///< nothing that is scanned is smaller …
+  double most_size_mm = 5000.0;     ///< … or larger: the numbers are in another unit
   double pair_variance =
       4.0;  ///< residuals of neighbouring samples are not independent: variances count this often
   int final_rounds = 2;  ///< of pairwise ICP and relaxation in finalize()
@@ -53,6 +56,20 @@ class Registrar {
   /// locked: a hint, good to a few degrees and millimetres, from which the scan is fitted and verified; also
   /// unlocks. False when there is no such scan, the pose is not rigid, or the hint led to no verified pose.
   bool set_pose(int id, const RigidTransform& model_from_scanner, bool locked);
+  /// The operator's word on how a scan lies to another; may come before either scan is there and stands until
+  /// clear_hint(), also when the scan is taken out and added again. Groups of scans that it spans are joined
+  /// only where it says, and only when that pose verifies like any other; otherwise the scan is unsure, with
+  /// the reason. Errors: kBadInput for points that settle nothing (point_pairs.h) or a pose that is not
+  /// rigid, kUsage for a hint of a scan on itself or for a locked scan.
+  Status set_hint(int id, const PoseHint& hint, JobContext& job);
+  void clear_hint(int id);
+  /// Locks a scan where it is, or unlocks it. False when there is none that could be registered.
+  bool set_locked(int id, bool locked);
+  /// As add(), from a given pose: the scan is refined from there and verified against the others, and nothing
+  /// else is looked for. Locked: it stays there, whatever the surfaces say; add such scans before the others.
+  /// All poses that are given must be in one frame.
+  ScanPose add_at(int id, const std::shared_ptr<const RangeGrid>& grid, const PinSet* pins,
+                  const RigidTransform& model_from_scanner, bool locked, JobContext& job);
   /// Tries again what is not registered, measures all overlapping pairs anew from where the scans are,
   /// relaxes, and judges every scan once more. kCancelled when the job was stopped; the model is then as it
   /// was between two steps.

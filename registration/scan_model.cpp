@@ -10,6 +10,7 @@
 #include "registration/pin_labels.h"
 #include "registration/pin_matching.h"
 #include "registration/pin_merge.h"
+#include "registration/unit_check.h"
 
 namespace dubsar {
 
@@ -67,9 +68,13 @@ void ScanModel::enter(int id, const RangeGrid* grid, const PinSet* pins) {
   if (!std::isfinite(scan.own_scale_mm)) {
     scan.own_scale_mm = 0;
   }
-  if (scale_mm_ == 0) {
+  const ScanSize size{scan.own_scale_mm, g.spacing_mm > 0 ? g.spacing_mm : estimate_spacing_mm(g)};
+  const std::string impossible = impossible_size(size, options_.least_size_mm, options_.most_size_mm);
+  if (scale_mm_ == 0 && impossible.empty()) {
     scale_mm_ = scan.own_scale_mm;
+    first_spacing_mm_ = size.spacing_mm;
   }
+  const ScanSize before{scale_mm_, first_spacing_mm_};
   ScanSurfaceOptions surface = options_.surface;
   surface.scale_mm = scale_mm_;
   if (scan.nominal) {
@@ -77,13 +82,13 @@ void ScanModel::enter(int id, const RangeGrid* grid, const PinSet* pins) {
   }
   if (!(scan.own_scale_mm > 0)) {
     scan.reason = "the scan has no surface in it; scan it again";
-  } else if (!size_is_possible(scan.own_scale_mm, scale_mm_, options_.most_unit_ratio)) {
-    const double ratio = scan.own_scale_mm / scale_mm_;
-    scan.reason = "it is " + std::to_string(std::lround(std::max(ratio, 1.0 / ratio))) + " times " +
-                  (ratio > 1 ? "larger" : "smaller") +
-                  " than the scans before it: its numbers are in another unit; give the right --unit";
+  } else if (scale_mm_ > 0 && !size_is_possible(scan.own_scale_mm, scale_mm_, options_.most_unit_ratio)) {
+    scan.reason = other_unit(size, before);
+  } else if (!impossible.empty()) {
+    scan.reason = impossible;
   } else {
     scan.features = make_scan_features(make_scan_surface(g, ignore, surface), options_.search.align);
+    scan.suspicion = perhaps_other_unit(size, before);
     scan.usable = scan.features.surface->fine->samples.size() >= options_.least_samples;
     if (!scan.usable) {
       scan.reason =
@@ -135,6 +140,12 @@ std::vector<int> ScanModel::groups_by_size() const {
 
 int ScanModel::main_group() const {
   const std::vector<int> groups = groups_by_size();
+  for (const int group : groups) {
+    const std::vector<int> ids = members(group);
+    if (std::any_of(ids.begin(), ids.end(), [&](int i) { return scans_.at(i).locked; })) {
+      return group;  // what the operator has fixed is the model, however little it is
+    }
+  }
   return groups.empty() ? -1 : groups.front();
 }
 
@@ -218,6 +229,13 @@ void ScanModel::retry(JobContext& job) {
 bool ScanModel::join_group(int id, int group, JobContext& job) {
   Scan& scan = scans_.at(id);
   const std::vector<int> ids = members(group);
+  if (const std::optional<int> hinted = hint_between(scan.group, group)) {
+    scan.tried_on.insert(ids.begin(), ids.end());
+    return join_by_hint(*hinted, job);
+  }
+  if (scan.given) {
+    return join_as_given(id, group, job);
+  }
   const std::vector<ModelScan> model = model_of(ids);
   std::vector<std::uint8_t> searched(ids.size(), 0);
   const PairHypotheses from_pairs = [&](std::size_t k) {
@@ -396,7 +414,10 @@ ScanPose ScanModel::pose(int id) const {
   if (!scan.usable || scan.group != main_group()) {
     const bool in_group = scan.usable && members(scan.group).size() > 1;
     out.status = in_group ? PoseStatus::kUnsure : scan.outcome;
-    out.reason = in_group ? kOtherGroup : scan.reason;
+    out.reason = in_group ? kOtherGroup : !scan.suspicion.empty() ? scan.suspicion : scan.reason;
+    if (!scan.hint_reason.empty()) {
+      out.reason = scan.hint_reason;
+    }
     if (out.reason.empty()) {
       out.reason = "it was not tried; run registration again";
     }

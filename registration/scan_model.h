@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/pose_hint.h"
 #include "registration/pin_advice.h"
 #include "registration/registrar.h"
 #include "registration/seen_pin.h"
@@ -35,6 +36,19 @@ class ScanModel {
   [[nodiscard]] ScanPose pose(int id) const;
   [[nodiscard]] std::vector<ScanPose> poses() const;
 
+  // The operator's word (scan_model_hint.cpp). A hint stands from when it is given, whether its scans are in
+  // or not: groups that it spans are joined by it and by nothing else.
+  void set_hint(int id, const PoseHint& hint);
+  void clear_hint(int id);
+  /// Places a scan that is in by its hint, taking it out of a place that the hint contradicts. True when it
+  /// then stands where the hint says, verified.
+  bool follow_hint(int id, JobContext& job);
+  /// Locks a scan where it is, or unlocks it.
+  bool set_locked(int id, bool locked);
+  /// Gives a scan that was just entered its pose, to be refined and verified when it joins; nothing else is
+  /// looked for. All such poses are in one frame.
+  void enter_at(int id, const RigidTransform& model_from_scanner);
+
  private:
   /// The best poses of a search that settled nothing, relative to a scan of the group that was searched.
   struct Lead {
@@ -52,7 +66,10 @@ class ScanModel {
     int group = 0;
     RigidTransform group_from_scanner;
     bool locked = false;
-    std::string reason;  ///< why it does not join; empty when it has joined or was not tried
+    bool given = false;       ///< joins from where it is or not at all
+    std::string reason;       ///< why it does not join; empty when it has joined or was not tried
+    std::string hint_reason;  ///< why its hint led to no pose
+    std::string suspicion;    ///< what may ail it when it joins nothing; empty for nothing in particular
     PoseStatus outcome = PoseStatus::kFailed;
     double rms_mm = 0, overlap = 0, stage_sigma_mm = 0;
     Matrix6d covariance = Matrix6d::Zero();
@@ -86,12 +103,22 @@ class ScanModel {
   [[nodiscard]] bool pair_is_fresh(int a, int b) const;
   void relax_group(int group, const JobContext& job);
   void judge(int id);
+  /// The scan whose hint says how two groups lie to each other.
+  [[nodiscard]] std::optional<int> hint_between(int group_a, int group_b) const;
+  /// Whether no hint between the scan's group and the other contradicts the pose.
+  [[nodiscard]] bool hints_hold(int id, int group, const RigidTransform& group_from_scanner) const;
+  /// Joins the scan's group with the other from these poses alone, or says why not.
+  bool join_from(int id, int group, const std::vector<RigidTransform>& starts, JobContext& job);
+  bool join_by_hint(int hinted, JobContext& job);
+  bool join_as_given(int id, int group, JobContext& job);
 
   RegistrationOptions options_;
   double scale_mm_ = 0;
+  double first_spacing_mm_ = 0;
   int next_group_ = 0;
   std::map<int, Scan> scans_;
   std::map<std::pair<int, int>, Pair> pairs_;
+  std::map<int, PoseHint> hints_;  ///< by the id of the scan that they are for
 };
 
 }  // namespace dubsar

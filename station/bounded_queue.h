@@ -31,6 +31,17 @@ class BoundedQueue {
     return true;
   }
 
+  /// Puts the item in only where that needs no waiting.
+  bool try_push(T item) {
+    const std::scoped_lock lock(mutex_);
+    if (closed_ || items_.size() >= capacity_) {
+      return false;
+    }
+    items_.push_back(std::move(item));
+    filled_.notify_one();
+    return true;
+  }
+
   /// Waits for an item. Nothing once the queue is closed and empty.
   std::optional<T> pop() {
     std::unique_lock lock(mutex_);

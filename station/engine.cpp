@@ -48,7 +48,14 @@ Status Engine::Impl::settle(EngineResult& result, JobContext& job) {
 /// Runs the pipeline from `step` until the device has no more, or until the online red map says that nothing
 /// is left to do; then settles. True when the settled map still has something to do.
 Result<bool> Engine::Impl::run_round(NextStep step, EngineResult& result, JobContext& job) {
-  queues = std::make_unique<Queues>();
+  {
+    const std::scoped_lock lock(mutex);
+    queues = std::make_unique<Queues>();
+    takes_commands = true;
+    if (!commands.empty()) {
+      queues->to_register.try_push(CommandsWait{});
+    }
+  }
   {
     std::jthread planner([&] { plan_all(job); });
     std::jthread registration([&] { register_all(job); });
@@ -91,6 +98,16 @@ Result<EngineResult> Engine::Impl::run(JobContext& job) {
     // How the tablet lies is known only once this run has scanned it.
     step = stored_count > resumed_count ? NextStep(result.red_map.next.front()) : std::nullopt;
   }
+  while (!close_commands()) {
+    {
+      const std::scoped_lock lock(mutex);
+      queues.reset();  // no thread of a round is there to plan after them
+    }
+    obey_commands(job);
+    if (const Status settled = settle(result, job); !settled) {
+      return std::unexpected(settled.error());
+    }
+  }
   if (const Status finished = finish(result, job); !finished) {
     return std::unexpected(finished.error());
   }
@@ -99,6 +116,10 @@ Result<EngineResult> Engine::Impl::run(JobContext& job) {
 
 Result<EngineResult> Engine::run(JobContext& job) {
   Result<EngineResult> result = impl_->run(job);
+  {
+    const std::scoped_lock lock(impl_->mutex);
+    impl_->takes_commands = false;
+  }
   if (!result && result.error().kind == ErrorKind::kCancelled) {
     const int stored = impl_->stored_count;
     return fail(ErrorKind::kCancelled,

@@ -17,6 +17,7 @@
 #include "core/scan_pose.h"
 #include "station/deliverables.h"
 #include "station/event.h"
+#include "station/operator_command.h"
 
 namespace dubsar {
 
@@ -53,6 +54,11 @@ class Engine {
   Engine& operator=(const Engine&) = delete;
 
   [[nodiscard]] Result<EngineResult> run(JobContext& job);
+
+  /// Asks for something while run() is under way: it is done between two scans, stored, and answered by an
+  /// OperatorObeyed, or by a Notice that says why not. From any thread, never from the event sink; returns at
+  /// once. False when the engine is not running, or already writes its final results.
+  bool post(OperatorCommand command);
 
  private:
   struct Impl;

@@ -8,13 +8,16 @@
 #include <algorithm>
 #include <chrono>
 #include <ctime>
+#include <deque>
 #include <limits>
 #include <map>
 #include <mutex>
 #include <set>
 #include <thread>
 #include <utility>
+#include <variant>
 
+#include "acquisition/operator_log.h"
 #include "acquisition/range_source.h"
 #include "acquisition/session_store.h"
 #include "core/log.h"
@@ -45,11 +48,15 @@ struct RawScan {
   std::optional<SampleFlags> flags;
   std::optional<Placement> drive;
 };
+/// Stands in the queue to registration for commands of the operator that wait beside it.
+struct CommandsWait {};
+using ToRegister = std::variant<StationScan, CommandsWait>;
 struct ScanToPlan {
-  StationScan scan;
+  std::optional<StationScan> scan;  ///< nothing: only the poses have changed
   std::vector<ScanPose> poses;
   bool plan_now =
       true;  ///< false for all but the last of the stored scans that a resumed session goes through again
+  bool device_waits = false;  ///< the device waits for what to do after it
 };
 /// The planner's answer to an automatic run: where to next, or that there is nothing more to do.
 using NextStep = std::optional<NextView>;
@@ -86,7 +93,8 @@ class StageClock {
 
 /// The state of a run. What a stage thread alone touches is marked; the rest stands still while the threads
 /// run, or is under the mutex. engine_open.cpp opens device and session, engine_stages.cpp has the four
-/// threads, engine_results.cpp what is made at the end, engine.cpp the order of it all.
+/// threads, engine_commands.cpp what the operator asks for meanwhile, engine_results.cpp what is made at the
+/// end, engine.cpp the order of it all.
 struct Engine::Impl {
   EngineOptions options;
   EventSink sink;
@@ -103,21 +111,25 @@ struct Engine::Impl {
 
   struct Queues {
     BoundedQueue<RawScan> to_store{kQueueLength};
-    BoundedQueue<StationScan> to_register{kQueueLength};
+    BoundedQueue<ToRegister> to_register{kQueueLength};
     BoundedQueue<ScanToPlan> to_plan{kQueueLength};
     BoundedQueue<NextStep> to_device{1};
   };
-  std::unique_ptr<Queues> queues;  ///< of the round that runs
+  std::unique_ptr<Queues> queues;  ///< of the round that runs; replaced under the mutex
 
   Registrar registrar;
   PlanningStage planning;
-  std::map<int, std::string> names;  ///< original names by id; of the registering thread while it runs
+  // Of the registering thread while it runs:
+  std::map<int, std::string> names;  ///< original names by id
+  OperatorWord word;
 
   std::mutex mutex;  ///< of what follows
   std::optional<Error> first_error;
   std::optional<Error> device_error;
   std::map<std::string, double> seconds;
   int stored_count = 0;
+  std::deque<OperatorCommand> commands;
+  bool takes_commands = false;
 
   void emit(const Event& event) const {
     if (sink) {
@@ -147,9 +159,17 @@ struct Engine::Impl {
   void acquire(NextStep step, JobContext& job);
   Taken take_scan(const std::optional<Placement>& drive, JobContext& job);
   void keep_stored();
+  /// Into the model, as the operator's word on it has it.
+  ScanPose register_scan(const StationScan& scan, JobContext& job);
   void register_all(JobContext& job);
   void plan_all(JobContext& job);
   std::vector<ScanPose> named_poses() const;
+  // engine_commands.cpp
+  void obey_commands(JobContext& job);  ///< those that wait, on the thread that owns the registrar
+  /// Whether it moved, removed or added anything; the scan, when one came back.
+  Result<std::optional<StationScan>> obey(const OperatorCommand& command, std::string& what, JobContext& job);
+  Result<std::optional<StationScan>> bring_back(int id, JobContext& job);
+  bool close_commands();  ///< false when some came at the last moment: they are still to be obeyed
   Result<bool> run_round(NextStep step, EngineResult& result, JobContext& job);
   Result<EngineResult> run(JobContext& job);
   Status settle(EngineResult& result, JobContext& job);

@@ -30,6 +30,9 @@ Status Engine::Impl::load_resumed(JobContext& job) {
       resumed.back().drive = drive->second;
     }
   }
+  // What the operator has fixed comes first: the others are registered to it, and its frame is the model's.
+  std::ranges::stable_partition(resumed,
+                                [&](const StationScan& scan) { return word.locked.contains(scan.id); });
   stored_count = static_cast<int>(resumed.size());
   return {};
 }
@@ -78,6 +81,19 @@ Status Engine::Impl::open(JobContext& job) {
   if (const auto text = store->load_document("drives"); text && *text) {
     if (auto known = parse_drives(**text, "drives of the session")) {
       drives_of_scans = std::move(*known);
+    }
+  }
+  Result<OperatorLog> log = read_operator_log(*store);
+  if (!log) {
+    return std::unexpected(log.error());
+  }
+  for (const Error& damage : log->damage) {
+    emit(Notice{"damaged: " + damage.line()});
+  }
+  word = std::move(log->word);
+  for (const auto& [id, hint] : word.hints) {
+    if (const Status given = registrar.set_hint(id, hint, job); !given) {
+      emit(Notice{given.error().line()});
     }
   }
   if (const Status loaded = load_resumed(job); !loaded) {

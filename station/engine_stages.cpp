@@ -129,15 +129,19 @@ void Engine::Impl::keep_stored() {
   queues->to_register.close();
 }
 
-void Engine::Impl::register_all(JobContext& job) {
+ScanPose Engine::Impl::register_scan(const StationScan& scan, JobContext& job) {
+  const StageClock timing = clock("registration");
   const PinSet* pins = options.pins ? &*options.pins : nullptr;
+  const auto locked = word.locked.find(scan.id);
+  return locked != word.locked.end()
+             ? registrar.add_at(scan.id, scan.measured, pins, locked->second, true, job)
+             : registrar.add(scan.id, scan.measured, pins, job);
+}
+
+void Engine::Impl::register_all(JobContext& job) {
   const auto handle = [&](StationScan scan, bool plan_now) {
-    ScanPose pose;
-    {
-      const StageClock timing = clock("registration");
-      pose = registrar.add(scan.id, scan.measured, pins, job);
-    }
     names[scan.id] = scan.file;
+    ScanPose pose = register_scan(scan, job);
     pose.file = scan.file;
     std::vector<ScanPose> poses = named_poses();
     // Whatever ends the run, what it found until now is in the session.
@@ -147,7 +151,7 @@ void Engine::Impl::register_all(JobContext& job) {
       }
     }
     emit(ScanPlaced{pose, poses});
-    queues->to_plan.push({std::move(scan), std::move(poses), plan_now});
+    queues->to_plan.push({std::move(scan), std::move(poses), plan_now, true});
   };
   for (std::size_t k = 0; k < resumed.size() && !job.cancelled(); ++k) {
     handle(std::move(resumed[k]), k + 1 == resumed.size());
@@ -156,19 +160,27 @@ void Engine::Impl::register_all(JobContext& job) {
   if (job.cancelled()) {
     give_up(stopped());
   }
-  while (std::optional<StationScan> scan = queues->to_register.pop()) {
+  while (std::optional<ToRegister> item = queues->to_register.pop()) {
     if (job.cancelled()) {
       give_up(stopped());
       continue;
     }
-    handle(std::move(*scan), true);
+    obey_commands(job);
+    if (auto* scan = std::get_if<StationScan>(&*item)) {
+      handle(std::move(*scan), true);
+    }
+  }
+  if (!job.cancelled()) {
+    obey_commands(job);
   }
   queues->to_plan.close();
 }
 
 void Engine::Impl::plan_all(JobContext& job) {
   while (std::optional<ScanToPlan> item = queues->to_plan.pop()) {
-    planning.add(item->scan);
+    if (item->scan) {
+      planning.add(*item->scan);
+    }
     if (job.cancelled()) {
       give_up(stopped());  // the device waits for a next step that will not come
     }
@@ -186,7 +198,7 @@ void Engine::Impl::plan_all(JobContext& job) {
       continue;
     }
     const bool can_go_on = !red_map->conclusive && !red_map->next.empty() && red_map->next.front().placement;
-    if (drives) {
+    if (drives && item->device_waits) {
       queues->to_device.push(can_go_on ? NextStep(red_map->next.front()) : std::nullopt);
     }
     emit(RedMapChanged{std::move(*red_map)});

@@ -33,6 +33,11 @@ struct ScanPlaced {
   ScanPose pose;
   std::vector<ScanPose> all;
 };
+/// What the operator asked for is done and stored; the poses are those that follow from it.
+struct OperatorObeyed {
+  std::string what;
+  std::vector<ScanPose> all;
+};
 struct RedMapChanged {
   RedMap red_map;
 };
@@ -45,7 +50,8 @@ struct Notice {
   std::string text;
 };
 
-using Event = std::variant<ProfileArrived, ScanStored, ScanPlaced, RedMapChanged, NextPlacement, Notice>;
+using Event = std::variant<ProfileArrived, ScanStored, ScanPlaced, OperatorObeyed, RedMapChanged,
+                           NextPlacement, Notice>;
 
 /// Called on the engine's threads, one call at a time per stage: be quick, take snapshots, and never call
 /// back into the engine.

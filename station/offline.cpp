@@ -3,47 +3,143 @@
 #include "station/offline.h"
 
 #include <algorithm>
-#include <map>
+#include <utility>
 
+#include "core/log.h"
 #include "formats/poses_json.h"
 #include "registration/registrar.h"
 
 namespace dubsar {
 
-Result<std::vector<ScanPose>> register_scans(const ScanSet& set, JobContext& job) {
-  Registrar registrar;
-  const PinSet* pins = set.pins ? &*set.pins : nullptr;
-  for (std::size_t k = 0; k < set.scans.size(); ++k) {
-    job.progress("registering", static_cast<double>(k) / static_cast<double>(set.scans.size() + 1));
-    if (job.cancelled()) {
-      return fail(ErrorKind::kCancelled, "stopped");
+namespace {
+
+const ScanPose* pose_of(const std::vector<ScanPose>& poses, int id) {
+  const auto found = std::ranges::find(poses, id, &ScanPose::id);
+  return found == poses.end() ? nullptr : &*found;
+}
+
+/// How a scan goes into the registrar.
+enum class Entry {
+  kSearched,
+  kGiven,    ///< from a pose, refined and verified
+  kLocked,   ///< by the operator
+  kStaying,  ///< as it was, for this run only
+  kLeftOut,
+};
+
+struct PlannedEntry {
+  const StationScan* scan = nullptr;
+  Entry entry = Entry::kSearched;
+  RigidTransform pose;
+  std::string why;  ///< it is left out
+};
+
+PlannedEntry plan_entry(const StationScan& scan, const ScanSet& set, const RegisterOptions& options) {
+  const bool named = options.only.empty() || std::ranges::find(options.only, scan.id) != options.only.end();
+  if (const auto locked = set.word.locked.find(scan.id); locked != set.word.locked.end()) {
+    return {&scan, Entry::kLocked, locked->second, {}};
+  }
+  const ScanPose* base = pose_of(options.from_poses ? *options.from_poses : set.poses, scan.id);
+  if (!named) {
+    return base != nullptr && base->status == PoseStatus::kRegistered
+               ? PlannedEntry{&scan, Entry::kStaying, base->model_from_scanner, {}}
+               : PlannedEntry{&scan, Entry::kLeftOut, {}, "it was left out of this run"};
+  }
+  if (!options.from_poses) {
+    return {&scan, Entry::kSearched, {}, {}};
+  }
+  return base != nullptr ? PlannedEntry{&scan, Entry::kGiven, base->model_from_scanner, {}}
+                         : PlannedEntry{&scan, Entry::kLeftOut, {}, "there is no pose for it to start from"};
+}
+
+/// What the registrar is given: without pins neither clicks nor the word that some stand there.
+std::shared_ptr<const RangeGrid> grid_for(const StationScan& scan, bool use_pins) {
+  if (use_pins || scan.measured->pin_tip_diameter_mm <= 0) {
+    return scan.measured;
+  }
+  RangeGrid bare = *scan.grid;
+  bare.pin_tip_diameter_mm = 0;
+  return std::make_shared<const RangeGrid>(std::move(bare));
+}
+
+Status check_only(const ScanSet& set, const std::vector<int>& only) {
+  for (const int id : only) {
+    const std::string name = "scan " + std::to_string(id);
+    if (std::ranges::find(set.scans, id, &StationScan::id) == set.scans.end()) {
+      return fail(ErrorKind::kUsage, "there is no " + name, "--only", "see the list of scans");
     }
-    registrar.add(set.scans[k].id, set.scans[k].measured, pins, job);
+    if (set.word.locked.contains(id)) {
+      return fail(ErrorKind::kUsage, name + " is locked", "--only", "unlock it first");
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<std::vector<ScanPose>> register_scans(const ScanSet& set, const RegisterOptions& options,
+                                             JobContext& job) {
+  if (const Status good = check_only(set, options.only); !good) {
+    return std::unexpected(good.error());
+  }
+  RegistrationOptions registration;
+  registration.final_rounds = options.rounds.value_or(registration.final_rounds);
+  Registrar registrar(registration);
+  const PinSet* pins = set.pins && options.use_pins ? &*set.pins : nullptr;
+  for (const auto& [id, hint] : set.word.hints) {
+    if (const Status given = registrar.set_hint(id, hint, job); !given) {
+      log_warning(given.error().line());
+    }
+  }
+  std::vector<PlannedEntry> entries;
+  for (const StationScan& scan : set.scans) {
+    entries.push_back(plan_entry(scan, set, options));
+  }
+  // What stands fast comes first: the others are registered to it, and its frame is the model's.
+  std::ranges::stable_partition(
+      entries, [](const PlannedEntry& e) { return e.entry == Entry::kLocked || e.entry == Entry::kStaying; });
+  for (std::size_t k = 0; k < entries.size(); ++k) {
+    job.progress("registering", static_cast<double>(k) / static_cast<double>(entries.size() + 1));
+    if (job.cancelled()) {
+      return fail(ErrorKind::kCancelled, "stopped", {}, "the poses are as they were");
+    }
+    const PlannedEntry& e = entries[k];
+    if (e.entry == Entry::kLeftOut) {
+      continue;
+    }
+    const std::shared_ptr<const RangeGrid> grid = grid_for(*e.scan, options.use_pins);
+    if (e.entry == Entry::kSearched) {
+      registrar.add(e.scan->id, grid, pins, job);
+    } else {
+      registrar.add_at(e.scan->id, grid, pins, e.pose, e.entry != Entry::kGiven, job);
+    }
   }
   if (const Status done = registrar.finalize(job); !done) {
     return std::unexpected(done.error());
   }
   job.progress("registering", 1.0);
   std::vector<ScanPose> poses = registrar.poses();
-  for (ScanPose& pose : poses) {
-    for (const StationScan& scan : set.scans) {
-      if (scan.id == pose.id) {
-        pose.file = scan.file;
-      }
+  for (const PlannedEntry& e : entries) {
+    if (e.entry == Entry::kLeftOut) {
+      ScanPose left_out;
+      left_out.id = e.scan->id;
+      left_out.reason = e.why;
+      // What was known of it still is.
+      const ScanPose* known = options.from_poses ? nullptr : pose_of(set.poses, e.scan->id);
+      poses.push_back(known != nullptr ? *known : left_out);
+    } else if (e.entry == Entry::kStaying) {
+      *std::ranges::find(poses, e.scan->id, &ScanPose::id) =
+          *pose_of(options.from_poses ? *options.from_poses : set.poses, e.scan->id);
     }
+  }
+  std::ranges::sort(poses, {}, &ScanPose::id);
+  for (ScanPose& pose : poses) {
+    pose.file = std::ranges::find(set.scans, pose.id, &StationScan::id)->file;
   }
   return poses;
 }
 
-Result<std::vector<ScanPose>> poses_for(const ScanSet& set, const std::filesystem::path& poses_file,
-                                        JobContext& job) {
-  if (poses_file.empty()) {
-    // A session whose last run was stopped has scans that were never judged.
-    const bool all_judged = std::ranges::all_of(set.scans, [&](const StationScan& scan) {
-      return std::ranges::any_of(set.poses, [&](const ScanPose& pose) { return pose.id == scan.id; });
-    });
-    return all_judged ? set.poses : register_scans(set, job);
-  }
+Result<std::vector<ScanPose>> poses_from_file(const ScanSet& set, const std::filesystem::path& poses_file) {
   const Result<std::vector<ScanPose>> read = read_poses(poses_file);
   if (!read) {
     return std::unexpected(read.error());
@@ -71,6 +167,17 @@ Result<std::vector<ScanPose>> poses_for(const ScanSet& set, const std::filesyste
                      "its `file` or `id` must name the scans");
   }
   return poses;
+}
+
+Result<std::vector<ScanPose>> poses_for(const ScanSet& set, const std::filesystem::path& poses_file,
+                                        JobContext& job) {
+  if (!poses_file.empty()) {
+    return poses_from_file(set, poses_file);
+  }
+  // A session whose last run was stopped has scans that were never judged.
+  const bool all_judged = std::ranges::all_of(
+      set.scans, [&](const StationScan& scan) { return pose_of(set.poses, scan.id) != nullptr; });
+  return all_judged ? set.poses : register_scans(set, {}, job);
 }
 
 std::vector<PlacedScan> placed_scans(const ScanSet& set, const std::vector<ScanPose>& poses) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <vector>
 
 #include "core/job.h"
@@ -13,8 +14,25 @@
 
 namespace dubsar {
 
-/// Registers all scans of the set from nothing, in order, with a final relaxation.
-[[nodiscard]] Result<std::vector<ScanPose>> register_scans(const ScanSet& set, JobContext& job);
+struct RegisterOptions {
+  bool use_pins = true;
+  std::optional<int> rounds;  ///< of pairwise fits and relaxation at the end; the registrar's default
+  std::vector<int> only;      ///< ids to register anew; empty: all
+  /// Poses to start from, of scans of the set: these are refined and verified, and nothing else is looked
+  /// for. A scan without one is failed. With `only`, the other scans stay where these poses (or, without
+  /// them, those of the set) have them; with neither, the others take no part.
+  std::optional<std::vector<ScanPose>> from_poses;
+};
+
+/// Registers the scans of the set, in order, with a final relaxation, as the operator's hints and locks of
+/// the set have it. kUsage when `only` names a scan that is not there or is locked; kCancelled.
+[[nodiscard]] Result<std::vector<ScanPose>> register_scans(const ScanSet& set, const RegisterOptions& options,
+                                                           JobContext& job);
+
+/// The poses of a file for scans of the set (matched by the scans' file names, else by id). kBadInput when it
+/// has none.
+[[nodiscard]] Result<std::vector<ScanPose>> poses_from_file(const ScanSet& set,
+                                                            const std::filesystem::path& poses_file);
 
 /// The poses for `plan` and `stitch`: those of the file when one is named (matched by the scans' file names,
 /// else by id), those of the session when it has any, else a registration.

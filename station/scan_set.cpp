@@ -49,6 +49,14 @@ Status load_session(const fs::path& path, ScanSet& set, JobContext& job) {
     }
     set.rig = std::move(*rig);
   }
+  Result<OperatorLog> log = read_operator_log(*store);
+  if (!log) {
+    return std::unexpected(log.error());
+  }
+  for (const Error& damage : log->damage) {
+    log_warning(damage.line());
+  }
+  set.word = std::move(log->word);
   std::map<int, Placement> drives;
   if (const auto text = store->load_document("drives"); text && *text) {
     Result<std::map<int, Placement>> parsed =

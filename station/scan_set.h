@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "acquisition/operator_log.h"
 #include "acquisition/session_store.h"
 #include "core/job.h"
 #include "core/pin_set.h"
@@ -22,6 +23,7 @@ struct ScanSet {
   std::vector<ScanPose> poses;     ///< as stored; empty for a folder
   std::optional<PinSet> pins;
   std::optional<Rig> rig;
+  OperatorWord word;                  ///< hints and locks of a session
   std::vector<Error> left_out;        ///< bad files of a folder, one error each
   std::optional<SessionStore> store;  ///< open for writing when it is a session
   [[nodiscard]] bool is_session() const { return store.has_value(); }

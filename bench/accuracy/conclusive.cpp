@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/grid_lookup.h"
+#include "core/grid_noise.h"
 #include "core/units.h"
 #include "planning/cleared_map.h"
 #include "planning/clearing.h"

@@ -2,8 +2,12 @@
 // Copyright The Dubsar developers
 // dubsar register: all poses of a session or a folder, from nothing.
 
+#include <tbb/global_control.h>
+
 #include <cstdio>
 #include <memory>
+#include <optional>
+#include <utility>
 
 #include "formats/atomic_file.h"
 #include "formats/poses_json.h"
@@ -15,12 +19,38 @@ namespace dubsar {
 
 namespace {
 
-Result<int> register_all(const ScanSetArguments& arguments, CommandContext& context) {
+struct RegisterArguments : ScanSetArguments {
+  bool no_pins = false;
+  int rounds = 0;
+  int threads = 0;
+  std::vector<int> only;
+  std::string from_poses;
+};
+
+Result<int> register_all(const RegisterArguments& arguments, CommandContext& context) {
+  // The result is the same for any number of threads: this is for machines that have other work.
+  std::optional<tbb::global_control> limit;
+  if (arguments.threads > 0) {
+    limit.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(arguments.threads));
+  }
   Result<ScanSet> set = load_scan_set(arguments.path, arguments.options(), context.job);
   if (!set) {
     return std::unexpected(set.error());
   }
-  const Result<std::vector<ScanPose>> poses = register_scans(*set, context.job);
+  RegisterOptions options;
+  options.use_pins = !arguments.no_pins;
+  options.only = arguments.only;
+  if (arguments.rounds > 0) {
+    options.rounds = arguments.rounds;
+  }
+  if (!arguments.from_poses.empty()) {
+    Result<std::vector<ScanPose>> from = poses_from_file(*set, arguments.from_poses);
+    if (!from) {
+      return std::unexpected(from.error());
+    }
+    options.from_poses = std::move(*from);
+  }
+  const Result<std::vector<ScanPose>> poses = register_scans(*set, options, context.job);
   if (!poses) {
     return std::unexpected(poses.error());
   }
@@ -57,9 +87,19 @@ Result<int> register_all(const ScanSetArguments& arguments, CommandContext& cont
 void add_register(CLI::App& app, Action& chosen) {
   CLI::App* verb = app.add_subcommand(
       "register", "The poses of all scans; status 1 when one is not registered or cannot be read");
-  const auto arguments = std::make_shared<ScanSetArguments>();
+  const auto arguments = std::make_shared<RegisterArguments>();
   arguments->add_to(*verb, false);
   verb->add_option("-o,--out", arguments->out, "write poses.json here");
+  verb->add_flag("--no-pins", arguments->no_pins, "use no pins: from the surfaces alone")->excludes("--pins");
+  verb->add_option("--only", arguments->only,
+                   "register these scans anew (0,3,5) and leave the others as they are")
+      ->delimiter(',');
+  verb->add_option("--from-poses", arguments->from_poses,
+                   "start from the poses of this file: refine and verify them, look for no others");
+  verb->add_option("--rounds", arguments->rounds, "of pairwise fits and relaxation at the end")
+      ->check(CLI::Range(1, 50));
+  verb->add_option("--threads", arguments->threads, "at most; the result does not depend on it")
+      ->check(CLI::Range(1, 1024));
   verb->callback([&chosen, arguments] {
     chosen = [arguments](CommandContext& c) { return register_all(*arguments, c); };
   });

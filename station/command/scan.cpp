@@ -55,6 +55,8 @@ class Narrator {
       const ScanPose& pose = placed->pose;
       log_info(fmt::format("scan {} {}{}{}", pose.id, to_string(pose.status), pose.reason.empty() ? "" : ": ",
                            pose.reason));
+    } else if (const auto* obeyed = std::get_if<OperatorObeyed>(&event)) {
+      log_info(obeyed->what);
     } else if (const auto* changed = std::get_if<RedMapChanged>(&event)) {
       log_info(fmt::format("red: about {:.1f} mm2 in {} regions", red_area_mm2(changed->red_map),
                            red_regions(changed->red_map)));

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright The Dubsar developers
-// dubsar session list | undo | drop | restore: what the operator does to a scan.
+// dubsar session list | undo | drop | restore: what the operator does to a scan (hint, lock and unlock:
+// session_hint.cpp).
 
 #include <cstdio>
 #include <memory>
 
+#include "acquisition/operator_log.h"
 #include "acquisition/session_store.h"
-#include "station/command/command.h"
+#include "station/command/session_verbs.h"
 
 namespace dubsar {
 
@@ -31,12 +33,18 @@ Result<int> list(const SessionOptions& options, CommandContext& context) {
   if (!poses) {
     return std::unexpected(poses.error());
   }
+  const Result<OperatorLog> log = read_operator_log(*store);
+  if (!log) {
+    return std::unexpected(log.error());
+  }
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
   for (const StoredScan& scan : *scans) {
     std::string status = scan.damaged ? "damaged" : scan.dropped ? "dropped" : "stored";
+    std::string reason;
     for (const ScanPose& pose : *poses) {
       if (pose.id == scan.id && !scan.dropped && !scan.damaged) {
         status = to_string(pose.status);
+        reason = pose.reason;
       }
     }
     rows.push_back({{"id", scan.id},
@@ -45,16 +53,29 @@ Result<int> list(const SessionOptions& options, CommandContext& context) {
                     {"device", scan.device},
                     {"samples", scan.samples},
                     {"status", status},
+                    {"reason", reason},
+                    {"locked", log->word.locked.contains(scan.id)},
+                    {"hint_on", nullptr},
                     {"note", scan.note}});
+    if (const auto hint = log->word.hints.find(scan.id); hint != log->word.hints.end()) {
+      rows.back()["hint_on"] = hint->second.on;
+    }
   }
   if (context.json) {
     CommandContext::print({{"session", options.path}, {"scans", rows}});
     return 0;
   }
   for (const auto& row : rows) {
-    std::printf("%3d  %-10s %9ld samples  %s %s\n", row["id"].get<int>(),
+    std::string more = row["note"].get<std::string>() + row["reason"].get<std::string>();
+    if (row["locked"].get<bool>()) {
+      more = "locked" + (more.empty() ? "" : "; " + more);
+    }
+    if (!row["hint_on"].is_null()) {
+      more = "hint on scan " + std::to_string(row["hint_on"].get<int>()) + (more.empty() ? "" : "; " + more);
+    }
+    std::printf("%3d  %-10s %9ld samples  %s%s%s\n", row["id"].get<int>(),
                 row["status"].get<std::string>().c_str(), row["samples"].get<long>(),
-                row["file"].get<std::string>().c_str(), row["note"].get<std::string>().c_str());
+                row["file"].get<std::string>().c_str(), more.empty() ? "" : ": ", more.c_str());
   }
   return 0;
 }
@@ -118,6 +139,7 @@ void add_session(CLI::App& app, Action& chosen) {
       return done ? Result<int>(o.id) : std::unexpected(done.error());
     });
   })->add_option("--why", options->why, "the reason");
+  add_session_hints(*verb, chosen);
   add("restore", "Put a dropped scan back", true, [](const SessionOptions& o, CommandContext& c) {
     return change(o, c, [&o](SessionStore& store) -> Result<int> {
       const Status done = store.restore_scan(o.id);

@@ -111,5 +111,20 @@ TEST(PointText, AProseFileIsNoScan) {
   EXPECT_THAT(line_of(count_scans(folder / "notes.txt")), HasSubstr("not a scan"));
 }
 
+TEST(ScanFiles, AGarbledPlyIsNotTakenForSomethingElse) {
+  const ScratchFolder folder;
+  for (const char* bytes : {"", "ply\nformat ascii 1.0\nelement ver", "PK\x03\x04 not a ply at all"}) {
+    ASSERT_TRUE(write_file_atomically(folder / "scan.ply", bytes));
+    EXPECT_TRUE(looks_like_scan(folder / "scan.ply")) << bytes;
+    EXPECT_FALSE(read_scan_file(folder / "scan.ply")) << bytes;
+  }
+  ASSERT_TRUE(write_file_atomically(folder / "mesh.ply",
+                                    "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\n"
+                                    "property float y\nproperty float z\nelement face 1\n"
+                                    "property list uchar int vertex_indices\nend_header\n"
+                                    "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"));
+  EXPECT_FALSE(looks_like_scan(folder / "mesh.ply"));
+}
+
 }  // namespace
 }  // namespace dubsar

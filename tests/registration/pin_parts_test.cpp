@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "core/grid_noise.h"
 #include "core/random.h"
 #include "core/units.h"
 #include "registration/pin_body.h"

@@ -55,5 +55,16 @@ TEST(BoundedQueue, CloseWakesBothEnds) {
   EXPECT_FALSE(full.push(3));
 }
 
+TEST(BoundedQueue, TryPushNeverWaits) {
+  BoundedQueue<int> queue(1);
+  EXPECT_TRUE(queue.try_push(1));
+  EXPECT_FALSE(queue.try_push(2));
+  EXPECT_EQ(queue.pop(), 1);
+  EXPECT_TRUE(queue.try_push(3));
+  queue.close();
+  EXPECT_EQ(queue.pop(), 3);
+  EXPECT_FALSE(queue.try_push(4));
+}
+
 }  // namespace
 }  // namespace dubsar

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright The Dubsar developers
+// The readers of scans: one target per format that the file's name can call up (FUZZED_FILE_NAME).
 #include "formats/grid_reader.h"
 #include "fuzz/fuzz_support.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  const auto scans = dubsar::read_scan_bytes(dubsar::fuzz::text_of(data, size), "scan.xyz");
+  const auto scans = dubsar::read_scan_bytes(dubsar::fuzz::text_of(data, size), FUZZED_FILE_NAME);
   if (scans) {
     for (const dubsar::ScanData& scan : *scans) {
       if (const auto* grid = std::get_if<dubsar::RangeGrid>(&scan)) {

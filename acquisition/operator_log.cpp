@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "acquisition/operator_log.h"
+
+#include <algorithm>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "formats/hint_json.h"
+#include "formats/json_node.h"
+
+namespace dubsar {
+
+namespace {
+
+constexpr const char* kHint = "pose hint";
+constexpr const char* kHintWithdrawn = "pose hint withdrawn";
+constexpr const char* kLock = "scan locked";
+constexpr const char* kUnlock = "scan unlocked";
+
+Status read_event(const SessionEvent& event, OperatorWord& word) {
+  const std::string where = "event " + std::to_string(event.number) + " of the session";
+  const Result<JsonDocument> document = JsonDocument::parse(event.json, where);
+  if (!document) {
+    return std::unexpected(document.error());
+  }
+  const JsonNode root = document->root();
+  const int id = static_cast<int>(root.at("id").integer(0, std::numeric_limits<int>::max()));
+  std::optional<RigidTransform> pose;
+  std::optional<PoseHint> hint;
+  if (event.kind == kLock) {
+    pose = root.at("model_from_scanner").transform();
+  } else if (event.kind == kHint) {
+    const Result<HintFile> file = parse_hint(root.at("hint").text(), where);
+    if (!file) {
+      return std::unexpected(file.error());
+    }
+    hint = file->hint;
+  }
+  if (Status status = document->status("give the hint or the lock again"); !status) {
+    return status;
+  }
+  if (hint) {
+    word.hints[id] = std::move(*hint);
+  } else if (pose) {
+    word.locked[id] = *pose;
+  } else if (event.kind == kUnlock) {
+    word.locked.erase(id);
+  } else {
+    word.hints.erase(id);
+  }
+  return {};
+}
+
+}  // namespace
+
+Status check_scan_stands(const SessionStore& store, int id) {
+  const auto scans = store.scans();
+  if (!scans) {
+    return std::unexpected(scans.error());
+  }
+  const auto scan = std::ranges::find(*scans, id, &StoredScan::id);
+  const std::string name = "scan " + std::to_string(id);
+  if (scan == scans->end()) {
+    return fail(ErrorKind::kUsage, "there is no " + name, store.folder().string(), "see dubsar session list");
+  }
+  if (scan->dropped) {
+    return fail(ErrorKind::kUsage, name + " was taken out", store.folder().string(), "restore it first");
+  }
+  if (scan->damaged) {
+    return bad_input(store.folder().string(), name + " is damaged", "bring it back from a copy");
+  }
+  return {};
+}
+
+Status record_hint(SessionStore& store, int id, const PoseHint& hint) {
+  for (const int scan : {id, hint.on}) {
+    if (Status stands = check_scan_stands(store, scan); !stands) {
+      return stands;
+    }
+  }
+  return store.append_event(kHint, nlohmann::ordered_json{{"id", id}, {"hint", hint_to_json(hint)}}.dump());
+}
+
+Status record_hint_withdrawn(SessionStore& store, int id) {
+  return store.append_event(kHintWithdrawn, nlohmann::ordered_json{{"id", id}}.dump());
+}
+
+Status record_lock(SessionStore& store, int id, const RigidTransform& model_from_scanner) {
+  if (Status stands = check_scan_stands(store, id); !stands) {
+    return stands;
+  }
+  return store.append_event(
+      kLock,
+      nlohmann::ordered_json{{"id", id}, {"model_from_scanner", model_from_scanner.row_major()}}.dump());
+}
+
+Status record_unlock(SessionStore& store, int id) {
+  return store.append_event(kUnlock, nlohmann::ordered_json{{"id", id}}.dump());
+}
+
+Result<OperatorLog> read_operator_log(const SessionStore& store) {
+  const auto events = store.events();
+  if (!events) {
+    return std::unexpected(events.error());
+  }
+  OperatorLog log;
+  for (const SessionEvent& event : *events) {
+    if (event.kind != kHint && event.kind != kHintWithdrawn && event.kind != kLock && event.kind != kUnlock) {
+      continue;
+    }
+    if (const Status read = read_event(event, log.word); !read) {
+      log.damage.push_back(read.error());
+    }
+  }
+  return log;
+}
+
+}  // namespace dubsar

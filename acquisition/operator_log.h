@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <map>
+
+#include "acquisition/session_store.h"
+#include "core/pose_hint.h"
+#include "core/result.h"
+
+namespace dubsar {
+
+/// What the operator has said of where scans lie, as it stands now. By scan id.
+struct OperatorWord {
+  std::map<int, PoseHint> hints;
+  std::map<int, RigidTransform> locked;  ///< model_from_scanner that must not change
+};
+
+// The operator's word is kept in the session's record of what happened, one event each, so that it is as
+// durable as that, and the history stays. Errors are those of SessionStore::append_event, and kUsage for a
+// scan that is not there or was taken out (`hint`, `lock`).
+Status record_hint(SessionStore& store, int id, const PoseHint& hint);  ///< replaces an earlier one
+Status record_hint_withdrawn(SessionStore& store, int id);
+Status record_lock(SessionStore& store, int id, const RigidTransform& model_from_scanner);
+Status record_unlock(SessionStore& store, int id);
+
+/// Goes through the record. An event that cannot be read is left out and named in `damage`.
+struct OperatorLog {
+  OperatorWord word;
+  std::vector<Error> damage;
+};
+[[nodiscard]] Result<OperatorLog> read_operator_log(const SessionStore& store);
+
+/// kUsage unless the scan is there, whole and not taken out.
+[[nodiscard]] Status check_scan_stands(const SessionStore& store, int id);
+
+}  // namespace dubsar

@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+// The operator's word on single scans: hints, locks and given poses. The third part of ScanModel.
+#include <algorithm>
+
+#include "registration/hint_starts.h"
+#include "registration/point_pairs.h"
+#include "registration/scan_model.h"
+
+namespace dubsar {
+
+namespace {
+
+/// Starts per fit: it refines only the best few of a batch, and the right one must not be crowded out.
+constexpr std::size_t kBatch = 6;
+
+}  // namespace
+
+std::optional<int> ScanModel::hint_between(int a, int b) const {
+  for (const auto& [id, hint] : hints_) {
+    const auto scan = scans_.find(id);
+    const auto on = scans_.find(hint.on);
+    if (scan == scans_.end() || on == scans_.end() || !scan->second.usable || !on->second.usable) {
+      continue;
+    }
+    const int own = scan->second.group;
+    const int other = on->second.group;
+    if ((own == a && other == b) || (own == b && other == a)) {
+      return id;
+    }
+  }
+  return std::nullopt;
+}
+
+bool ScanModel::hints_hold(int id, int group, const RigidTransform& group_from_scanner) const {
+  const Scan& scan = scans_.at(id);
+  const RigidTransform group_from_own = group_from_scanner * scan.group_from_scanner.inverse();
+  const auto in_group = [&](const Scan& s) {
+    return s.group == group ? s.group_from_scanner : group_from_own * s.group_from_scanner;
+  };
+  return std::all_of(hints_.begin(), hints_.end(), [&](const auto& entry) {
+    const auto hinted = scans_.find(entry.first);
+    const auto on = scans_.find(entry.second.on);
+    if (hinted == scans_.end() || on == scans_.end() || !hinted->second.usable || !on->second.usable) {
+      return true;
+    }
+    const bool spans = (hinted->second.group == scan.group && on->second.group == group) ||
+                       (hinted->second.group == group && on->second.group == scan.group);
+    return !spans || agrees_with(entry.second, in_group(on->second).inverse() * in_group(hinted->second),
+                                 hinted->second.features.surface->centroid_mm);
+  });
+}
+
+bool ScanModel::join_from(int id, int group, const std::vector<RigidTransform>& starts, JobContext& job) {
+  Scan& scan = scans_.at(id);
+  const std::vector<int> ids = members(group);
+  const std::vector<ModelScan> model = model_of(ids);
+  scan.tried_on.insert(ids.begin(), ids.end());
+  ModelFitOptions fit_options = options_.search.fit;
+  fit_options.least_significance = 0;
+  std::vector<ModelFit> fits;
+  for (std::size_t k = 0; k < starts.size() && !job.cancelled(); k += kBatch) {
+    for (ModelFit& fit :
+         fit_to_model(*scan.features.surface, model,
+                      std::span(starts).subspan(k, std::min(kBatch, starts.size() - k)), fit_options)) {
+      fit.told = true;
+      const auto copy = std::find_if(fits.begin(), fits.end(), [&](const ModelFit& known) {
+        return same_pose(fit.model_from_scanner, known.model_from_scanner, scan.features.surface->centroid_mm,
+                         options_.search.fit.distinct_turn_rad,
+                         options_.search.fit.distinct_shift * scan.features.surface->scale_mm);
+      });
+      if (!hints_hold(id, group, fit.model_from_scanner)) {
+        continue;  // the operator's word tells it from the right one
+      }
+      if (copy == fits.end()) {
+        fits.push_back(std::move(fit));
+      } else if (copy->score < fit.score) {
+        *copy = std::move(fit);
+      }
+    }
+  }
+  if (job.cancelled()) {
+    scan.reason = "registration was stopped; run it again";
+    return false;
+  }
+  std::stable_sort(fits.begin(), fits.end(),
+                   [](const ModelFit& a, const ModelFit& b) { return a.score > b.score; });
+  const PoseVerdict verdict = verify_pose(fits, options_.search.verify);
+  if (verdict.status != PoseStatus::kRegistered) {
+    scan.reason = verdict.reason;
+    scan.outcome = verdict.status;
+    return false;
+  }
+  connect(id, fits.front(), false, ids, group);
+  scan.hint_reason.clear();
+  relax_group(scans_.at(id).group, job);
+  judge(id);
+  return true;
+}
+
+bool ScanModel::join_by_hint(int hinted, JobContext& job) {
+  Scan& scan = scans_.at(hinted);
+  const PoseHint& hint = hints_.at(hinted);
+  const Scan& on = scans_.at(hint.on);
+  const RigidTransform group_from_on = on.group_from_scanner;
+  const int group = on.group;
+  const auto in_group = [&](std::vector<RigidTransform> on_from_scanner) {
+    for (RigidTransform& pose : on_from_scanner) {
+      pose = group_from_on * pose;
+    }
+    return on_from_scanner;
+  };
+  const std::vector<RigidTransform> starts =
+      in_group(starts_from_hint(hint, *scan.features.surface, *on.features.surface));
+  const auto joined = [&](const std::vector<RigidTransform>& from) {
+    const bool done = !from.empty() && join_from(hinted, group, from, job);
+    if (done) {
+      scans_.at(hint.on).hint_reason.clear();
+    }
+    return done;
+  };
+  if (joined(starts)) {
+    return true;
+  }
+  // One or two clicks beside a crease can give a poor normal: what the surfaces resemble, filtered by them.
+  if (hint.points.size() < 3 && !hint.on_from_scanner && !job.cancelled()) {
+    std::vector<RigidTransform> found;
+    for (const int id : members(group)) {
+      for (const PoseHypothesis& h :
+           align_pair(scan.features, scans_.at(id).features, options_.search.align)) {
+        found.push_back(scans_.at(id).group_from_scanner * h.target_from_source);
+      }
+    }
+    found.insert(found.end(), starts.begin(), starts.end());
+    if (joined(found)) {
+      return true;
+    }
+  }
+  if (!job.cancelled()) {
+    // Whichever of the two is left out says so.
+    scan.hint_reason = "the hint leads to no certain pose: " + scan.reason;
+    scans_.at(hint.on).hint_reason = scan.hint_reason;
+  }
+  return false;
+}
+
+void ScanModel::set_hint(int id, const PoseHint& hint) {
+  hints_[id] = hint;
+}
+
+void ScanModel::clear_hint(int id) {
+  const auto hint = hints_.find(id);
+  if (hint == hints_.end()) {
+    return;
+  }
+  for (const int either : {id, hint->second.on}) {
+    if (const auto scan = scans_.find(either); scan != scans_.end()) {
+      scan->second.hint_reason.clear();
+    }
+  }
+  hints_.erase(hint);
+}
+
+bool ScanModel::follow_hint(int id, JobContext& job) {
+  const auto found = scans_.find(id);
+  const auto hint = hints_.find(id);
+  if (found == scans_.end() || hint == hints_.end() || !found->second.usable) {
+    return false;
+  }
+  const auto on = scans_.find(hint->second.on);
+  if (on == scans_.end() || !on->second.usable || hint->second.on == id) {
+    return false;
+  }
+  Scan& scan = found->second;
+  if (scan.group == on->second.group) {
+    const RigidTransform now = on->second.group_from_scanner.inverse() * scan.group_from_scanner;
+    if (agrees_with(hint->second, now, scan.features.surface->centroid_mm)) {
+      return true;
+    }
+    if (scan.locked) {
+      return false;
+    }
+    // It stands in the wrong place: out of its group, and in again where the hint says.
+    scan.group = next_group_++;
+    scan.leads.clear();
+    std::erase_if(pairs_, [&](const auto& e) { return e.first.first == id || e.first.second == id; });
+  }
+  const bool followed = join_group(id, on->second.group, job);
+  if (followed) {
+    retry(job);
+  }
+  return followed;
+}
+
+bool ScanModel::set_locked(int id, bool locked) {
+  const auto found = scans_.find(id);
+  if (found == scans_.end() || !found->second.usable) {
+    return false;
+  }
+  found->second.locked = locked;
+  return true;
+}
+
+bool ScanModel::join_as_given(int id, int group, JobContext& job) {
+  Scan& scan = scans_.at(id);
+  const std::vector<int> ids = members(group);
+  scan.tried_on.insert(ids.begin(), ids.end());
+  // Groups keep the frame of the poses that they were given in.
+  PoseHints hints;
+  hints.told.push_back(scan.group_from_scanner);
+  const FoundPose found = search_pose(
+      *scan.features.surface, model_of(ids), hints, [](std::size_t) { return std::vector<PoseHypothesis>{}; },
+      options_.search, job);
+  const bool registered = found.verdict.status == PoseStatus::kRegistered && !job.cancelled();
+  // A rival that the given pose called up may fit better: then the given one is wrong, and no word says so.
+  const PoseHint given{-1, {}, scan.group_from_scanner};
+  if (!registered ||
+      !agrees_with(given, found.fits.front().model_from_scanner, scan.features.surface->centroid_mm)) {
+    if (members(scan.group).size() == 1) {
+      scan.reason = job.cancelled() ? "registration was stopped; run it again"
+                    : registered    ? "the pose that was given does not fit; register it without"
+                                    : found.verdict.reason;
+      scan.outcome = registered ? PoseStatus::kUnsure : found.verdict.status;
+    }
+    return false;
+  }
+  connect(id, found.fits.front(), false, ids, group);
+  relax_group(scans_.at(id).group, job);
+  judge(id);
+  return true;
+}
+
+void ScanModel::enter_at(int id, const RigidTransform& model_from_scanner) {
+  Scan& scan = scans_.at(id);
+  scan.given = true;
+  scan.group_from_scanner = model_from_scanner.orthonormalised();
+}
+
+}  // namespace dubsar

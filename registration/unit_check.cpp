@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "registration/unit_check.h"
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <optional>
+
+namespace dubsar {
+
+namespace {
+
+/// A unit that scans come in, against the millimetre that is wanted.
+struct Unit {
+  double mm;
+  const char* numbers;  ///< what the smaller (or, under a millimetre, the larger) numbers look like
+  const char* mend;
+};
+constexpr std::array<Unit, 4> kUnits{
+    {{1000.0, "metres", "give its unit: --unit m for a folder, or `obj_info unit m` in its header"},
+     {25.4, "inches", "export it in millimetres"},
+     {10.0, "centimetres", "export it in millimetres"},
+     {0.001, "micrometres", "give its unit: --unit um for a folder, or `obj_info unit um` in its header"}}};
+
+/// One scanner keeps its spacing; what it sees of the object in one view varies.
+constexpr double kSpacingWithin = 1.3;
+constexpr double kSizeWithin = 3.0;
+
+bool near(double ratio, double factor, double within) {
+  return std::abs(std::log(ratio / factor)) <= std::log(within);
+}
+
+/// How many times smaller (below 1: larger) a scan is when read as millimetres, rounded for people.
+std::string times(double ratio) {
+  return std::to_string(std::lround(ratio >= 1.0 ? ratio : 1.0 / ratio)) + " times " +
+         (ratio >= 1.0 ? "smaller" : "larger");
+}
+
+std::optional<Unit> unit_of(double smaller_by, double within) {
+  for (const Unit& unit : kUnits) {
+    if (near(smaller_by, unit.mm, within)) {
+      return unit;
+    }
+  }
+  return std::nullopt;
+}
+
+/// The same where it is the scans before that are in the odd unit.
+std::optional<Unit> unit_of_others(double smaller_by, double within) {
+  for (const Unit& unit : kUnits) {
+    if (unit.mm > 1.0 && unit.mm < 1000.0 && near(smaller_by, 1.0 / unit.mm, within)) {
+      return unit;
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::string impossible_size(const ScanSize& scan, double least_mm, double most_mm) {
+  if (scan.scale_mm >= least_mm && scan.scale_mm <= most_mm) {
+    return {};
+  }
+  const Unit& unit = scan.scale_mm < least_mm ? kUnits.front() : kUnits.back();
+  char across[32];
+  std::snprintf(across, sizeof across, "%.3g", scan.scale_mm);
+  return std::string("it would be ") + across + " mm across: its numbers look like " + unit.numbers +
+         ", another unit than was said; " + unit.mend;
+}
+
+std::string other_unit(const ScanSize& scan, const ScanSize& before) {
+  const double by_size = before.scale_mm / scan.scale_mm;
+  const double by_spacing =
+      scan.spacing_mm > 0 && before.spacing_mm > 0 ? before.spacing_mm / scan.spacing_mm : by_size;
+  const std::string what =
+      "it is " + times(by_size) + " than the scans before it: its numbers are in another unit";
+  std::optional<Unit> unit = unit_of(by_spacing, kSpacingWithin);
+  if (!unit) {
+    unit = unit_of(by_size, kSizeWithin);
+  }
+  return unit ? what + " and look like " + unit->numbers + "; " + unit->mend
+              : what + "; give the right --unit, or export it in millimetres";
+}
+
+std::string perhaps_other_unit(const ScanSize& scan, const ScanSize& before) {
+  if (!(scan.scale_mm > 0 && scan.spacing_mm > 0 && before.scale_mm > 0 && before.spacing_mm > 0)) {
+    return {};
+  }
+  const double by_size = before.scale_mm / scan.scale_mm;
+  const double by_spacing = before.spacing_mm / scan.spacing_mm;
+  if (const auto unit = unit_of(by_spacing, kSpacingWithin); unit && near(by_size, unit->mm, kSizeWithin)) {
+    return "it is about " + times(by_size) +
+           " than the scans before it, in size and in spacing: if its numbers "
+           "are " +
+           unit->numbers + ", that is the wrong unit; " + unit->mend;
+  }
+  if (const auto unit = unit_of_others(by_spacing, kSpacingWithin);
+      unit && near(by_size, 1.0 / unit->mm, kSizeWithin)) {
+    return "it is about " + times(by_size) +
+           " than the scans before it, in size and in spacing: if their "
+           "numbers are " +
+           unit->numbers + ", that is the wrong unit; export them in millimetres";
+  }
+  return {};
+}
+
+}  // namespace dubsar

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include "station/command/command.h"
+
+namespace dubsar {
+
+/// Adds hint, lock and unlock to the verb `session`.
+void add_session_hints(CLI::App& session, Action& chosen);
+
+}  // namespace dubsar

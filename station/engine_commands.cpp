@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+// What the operator asks of the engine while it runs. Everything is stored before it takes effect, so that a
+// session that goes on later stands where the operator left it.
+#include "station/engine_impl.h"
+
+namespace dubsar {
+
+bool Engine::post(OperatorCommand command) {
+  const std::scoped_lock lock(impl_->mutex);
+  if (!impl_->takes_commands) {
+    return false;
+  }
+  impl_->commands.push_back(std::move(command));
+  if (impl_->queues) {
+    // A full queue wakes the registering thread by itself.
+    impl_->queues->to_register.try_push(CommandsWait{});
+  }
+  return true;
+}
+
+bool Engine::Impl::close_commands() {
+  const std::scoped_lock lock(mutex);
+  takes_commands = !commands.empty();
+  return commands.empty();
+}
+
+Result<std::optional<StationScan>> Engine::Impl::bring_back(int id, JobContext& job) {
+  if (const Status restored = store->restore_scan(id); !restored) {
+    return std::unexpected(restored.error());
+  }
+  Result<RangeGrid> grid = store->load_grid(id);
+  if (!grid) {
+    return std::unexpected(grid.error());
+  }
+  StationScan scan = prepare_scan(id, std::move(*grid), options.pins);
+  names[id] = scan.file;
+  register_scan(scan, job);
+  return std::optional(std::move(scan));
+}
+
+Result<std::optional<StationScan>> Engine::Impl::obey(const OperatorCommand& command, std::string& what,
+                                                      JobContext& job) {
+  const auto done = [&](const Status& status, int id,
+                        const char* said) -> Result<std::optional<StationScan>> {
+    if (!status) {
+      return std::unexpected(status.error());
+    }
+    what = "scan " + std::to_string(id) + " " + said;
+    return std::optional<StationScan>();
+  };
+  if (const auto* drop = std::get_if<DropScan>(&command)) {
+    int id = drop->id;
+    Status dropped;
+    if (id < 0) {
+      const auto newest = store->undo_last_scan();
+      if (!newest || !*newest) {
+        return std::unexpected(newest ? Error{ErrorKind::kUsage, "there is no scan to undo", {}, {}}
+                                      : newest.error());
+      }
+      id = **newest;
+    } else {
+      dropped = store->drop_scan(id, drop->why);
+    }
+    if (dropped) {
+      registrar.remove(id);
+    }
+    return done(dropped, id, "is taken out");
+  }
+  if (const auto* restore = std::get_if<RestoreScan>(&command)) {
+    what = "scan " + std::to_string(restore->id) + " is put back";
+    return bring_back(restore->id, job);
+  }
+  if (const auto* hint = std::get_if<HintScan>(&command)) {
+    const Result<PoseHint> settled = settled_hint(*store, hint->id, hint->given);
+    Status status = settled ? record_hint(*store, hint->id, *settled) : std::unexpected(settled.error());
+    if (status) {
+      word.hints[hint->id] = *settled;
+      status = registrar.set_hint(hint->id, *settled, job);
+    }
+    return done(status, hint->id, "has a hint");
+  }
+  if (const auto* withdraw = std::get_if<WithdrawHint>(&command)) {
+    if (word.hints.erase(withdraw->id) == 0) {
+      return fail(ErrorKind::kUsage, "there is no hint for scan " + std::to_string(withdraw->id));
+    }
+    registrar.clear_hint(withdraw->id);
+    return done(record_hint_withdrawn(*store, withdraw->id), withdraw->id, "has no hint any more");
+  }
+  if (const auto* lock = std::get_if<LockScan>(&command)) {
+    const Result<RigidTransform> pose = lockable_pose(*store, lock->id);
+    const Status status = pose ? record_lock(*store, lock->id, *pose) : std::unexpected(pose.error());
+    if (status) {
+      word.locked[lock->id] = *pose;
+      registrar.set_locked(lock->id, true);
+    }
+    return done(status, lock->id, "is locked");
+  }
+  const int id = std::get<UnlockScan>(command).id;
+  if (word.locked.erase(id) == 0) {
+    return fail(ErrorKind::kUsage, "scan " + std::to_string(id) + " is not locked");
+  }
+  registrar.set_locked(id, false);
+  return done(record_unlock(*store, id), id, "is unlocked");
+}
+
+void Engine::Impl::obey_commands(JobContext& job) {
+  for (;;) {
+    OperatorCommand command;
+    {
+      const std::scoped_lock lock(mutex);
+      if (commands.empty()) {
+        return;
+      }
+      command = std::move(commands.front());
+      commands.pop_front();
+    }
+    std::string what;
+    Result<std::optional<StationScan>> obeyed = obey(command, what, job);
+    if (!obeyed) {
+      emit(Notice{obeyed.error().line()});
+      continue;
+    }
+    std::vector<ScanPose> poses = named_poses();
+    const Status saved = store->save_poses(poses);
+    if (!saved && queues) {
+      give_up(saved.error());  // after the rounds, settling saves them once more and says so
+    }
+    emit(OperatorObeyed{what, poses});
+    if (queues) {
+      queues->to_plan.push({std::move(*obeyed), std::move(poses), true});
+    } else if (*obeyed) {
+      planning.add(**obeyed);
+    }
+  }
+}
+
+}  // namespace dubsar

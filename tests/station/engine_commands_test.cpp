@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+// What the operator asks of the engine while it runs: done between two scans, stored, and followed by all
+// stages.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <condition_variable>
+#include <mutex>
+#include <thread>
+
+#include "acquisition/operator_log.h"
+#include "station/engine.h"
+#include "tests/station/support/bumpy_scans.h"
+#include "tests/station/support/two_fold_scans.h"
+#include "tests/support/temporary_folder.h"
+
+namespace dubsar {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+/// Runs an engine on scans that come slowly, and lets the test wait for what it says.
+class RunningEngine {
+ public:
+  RunningEngine(const std::filesystem::path& scans, const std::filesystem::path& session, double rate)
+      : engine_(
+            {"replay:" + scans.string() + "?rate=" + std::to_string(rate), session, false, 0, std::nullopt},
+            [this](const Event& event) { hear(event); }),
+        thread_([this] { result_.emplace(engine_.run(job_)); }) {}
+  ~RunningEngine() { join(); }
+  RunningEngine(const RunningEngine&) = delete;
+  RunningEngine& operator=(const RunningEngine&) = delete;
+
+  bool post(OperatorCommand command) { return engine_.post(std::move(command)); }
+  /// Waits until something said holds the text.
+  [[nodiscard]] bool says(const std::string& text) {
+    std::unique_lock lock(mutex_);
+    return heard_.wait_for(lock, std::chrono::seconds(30),
+                           [&] { return said_.find(text) != std::string::npos; });
+  }
+  const Result<EngineResult>& join() {
+    if (thread_.joinable()) {
+      thread_.join();
+    }
+    return *result_;
+  }
+  [[nodiscard]] int red_maps() {
+    const std::scoped_lock lock(mutex_);
+    return red_maps_;
+  }
+
+ private:
+  void hear(const Event& event) {
+    const std::scoped_lock lock(mutex_);
+    if (const auto* placed = std::get_if<ScanPlaced>(&event)) {
+      said_ += "placed " + std::to_string(placed->pose.id) + " " + to_string(placed->pose.status) + "\n";
+    } else if (const auto* obeyed = std::get_if<OperatorObeyed>(&event)) {
+      said_ += obeyed->what + "\n";
+    } else if (const auto* notice = std::get_if<Notice>(&event)) {
+      said_ += notice->text + "\n";
+    } else if (std::holds_alternative<RedMapChanged>(event)) {
+      ++red_maps_;
+    }
+    heard_.notify_all();
+  }
+
+  std::mutex mutex_;
+  std::condition_variable heard_;
+  std::string said_;
+  int red_maps_ = 0;
+  JobContext job_;
+  Engine engine_;
+  std::optional<Result<EngineResult>> result_;
+  std::thread thread_;
+};
+
+std::vector<int> ids_of(const std::vector<ScanPose>& poses) {
+  std::vector<int> ids;
+  for (const ScanPose& pose : poses) {
+    ids.push_back(pose.id);
+  }
+  return ids;
+}
+
+TEST(EngineCommands, DropRestoreAndLock) {
+  const test::TemporaryFolder folder;
+  const auto scans = test::write_bumpy_scans(folder.path() / "scans", 4);
+  const auto session = folder.path() / "session";
+  RunningEngine engine(scans, session, 120);
+  ASSERT_TRUE(engine.says("placed 1"));
+  ASSERT_TRUE(engine.post(DropScan{0, "hand in view"}));
+  ASSERT_TRUE(engine.says("scan 0 is taken out"));
+  ASSERT_TRUE(engine.post(LockScan{1}));
+  ASSERT_TRUE(engine.says("scan 1 is locked"));
+  ASSERT_TRUE(engine.post(LockScan{9}));
+  ASSERT_TRUE(engine.says("there is no scan 9"));
+  ASSERT_TRUE(engine.post(DropScan{}));
+  ASSERT_TRUE(engine.post(RestoreScan{0}));
+  ASSERT_TRUE(engine.says("scan 0 is put back"));
+  const Result<EngineResult>& result = engine.join();
+  ASSERT_TRUE(result.has_value()) << result.error().line();
+  EXPECT_FALSE(engine.post(UnlockScan{1}));
+  const Result<SessionStore> store = SessionStore::open(session, SessionStore::Access::kReadOnly);
+  ASSERT_TRUE(store.has_value());
+  std::vector<int> standing;
+  const auto stored = store->scans();
+  for (const StoredScan& scan : *stored) {
+    if (!scan.dropped) {
+      standing.push_back(scan.id);
+    }
+  }
+  EXPECT_EQ(standing.size(), 3U);
+  EXPECT_EQ(ids_of(result->poses), standing);
+  EXPECT_EQ(result->red_map.scans.size(), 3U);
+  for (const ScanPose& pose : result->poses) {
+    EXPECT_EQ(pose.status, PoseStatus::kRegistered) << pose.id << pose.reason;
+    EXPECT_EQ(pose.locked, pose.id == 1);
+  }
+  const auto log = read_operator_log(*store);
+  ASSERT_TRUE(log.has_value());
+  EXPECT_TRUE(log->word.locked.contains(1));
+}
+
+TEST(EngineCommands, AHintSettlesAScanAtOnce) {
+  const test::TemporaryFolder folder;
+  const auto scans = test::write_two_fold_scans(folder.path() / "scans");
+  // A third scan keeps the engine at work while the operator clicks.
+  std::filesystem::copy_file(scans / "scan_0.ply", scans / "scan_2.ply");
+  RunningEngine engine(scans, folder.path() / "session", 120);
+  ASSERT_TRUE(engine.says("placed 1 unsure"));
+  const Eigen::Vector3d p(14, -9, test::two_fold_surface()(14, -9));
+  GivenHint given;
+  given.hint.on = 0;
+  given.hint.points = {{test::two_fold_pose(1).inverse() * p, p}};
+  ASSERT_TRUE(engine.post(HintScan{1, given}));
+  ASSERT_TRUE(engine.says("scan 1 has a hint"));
+  const Result<EngineResult>& result = engine.join();
+  ASSERT_TRUE(result.has_value()) << result.error().line();
+  const ScanPose& pose = result->poses.at(1);
+  EXPECT_EQ(pose.status, PoseStatus::kRegistered) << pose.reason;
+  EXPECT_LT((pose.model_from_scanner * given.hint.points[0].point_mm - p).norm(), 0.05);
+}
+
+TEST(EngineCommands, NothingIsTakenBeforeItRuns) {
+  const test::TemporaryFolder folder;
+  Engine engine({"replay:" + folder.path().string(), folder.path() / "session", false, 0, std::nullopt}, {});
+  EXPECT_FALSE(engine.post(LockScan{0}));
+}
+
+}  // namespace
+}  // namespace dubsar
