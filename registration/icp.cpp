@@ -7,8 +7,10 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <cmath>
+#include <optional>
 
 #include "core/parallel.h"
+#include "registration/absolute_orientation.h"
 
 namespace dubsar {
 
@@ -110,6 +112,81 @@ void accumulate(const SurfaceLevel& from, const RigidTransform& model_from_from,
       [](Sums& into_sum, const Sums& part) { into_sum.add(part); }));
 }
 
+/// Pairs of points in the model frame with their weights, the moved scan's first.
+struct PointPairs {
+  std::vector<Eigen::Vector3d> moved, still;
+  std::vector<double> weights;
+};
+
+/// The samples of `from` with their nearest neighbours in `into`, as accumulate() pairs them, but the Tukey
+/// weight is that of the distance.
+void collect(const SurfaceLevel& from, const RigidTransform& model_from_from, const SurfaceLevel& into,
+             const RigidTransform& model_from_into, bool moving_is_from, const IcpOptions& options,
+             PointPairs& pairs) {
+  const RigidTransform into_from_from = model_from_into.inverse() * model_from_from;
+  const Eigen::Matrix3f rotation = into_from_from.rotation.cast<float>();
+  const Eigen::Vector3f shift = into_from_from.translation_mm.cast<float>();
+  std::vector<std::int64_t> partner(from.samples.size(), -1);
+  parallel_for_each_index(
+      partner.size(),
+      [&](std::size_t k) {
+        const SurfaceSample& sample = from.samples[k];
+        const std::int64_t found = nearest_usable(into, rotation * sample.position_mm + shift,
+                                                  static_cast<float>(options.reach_mm));
+        if (found >= 0 && (rotation * sample.normal).dot(into.normals[static_cast<std::size_t>(found)]) >=
+                              static_cast<float>(options.normal_cosine)) {
+          partner[k] = found;
+        }
+      },
+      512);
+  for (std::size_t k = 0; k < partner.size(); ++k) {
+    if (partner[k] < 0) {
+      continue;
+    }
+    const SurfaceSample& sample = from.samples[k];
+    const Eigen::Vector3d p = model_from_from * Eigen::Vector3d(sample.position_mm.cast<double>());
+    const Eigen::Vector3d q =
+        model_from_into *
+        Eigen::Vector3d(into.grid.point(static_cast<std::size_t>(partner[k])).cast<double>());
+    const double w =
+        static_cast<double>(sample.weight) * robust_weight((p - q).norm(), options.kernel_mm);
+    if (w > 0) {
+      pairs.moved.push_back(moving_is_from ? p : q);
+      pairs.still.push_back(moving_is_from ? q : p);
+      pairs.weights.push_back(w);
+    }
+  }
+}
+
+/// Steps in closed form. True when it converged.
+bool point_to_point(const SurfaceLevel& source, std::span<const IcpTarget> targets,
+                    const Eigen::Vector3d& middle, const IcpOptions& options, RigidTransform& pose) {
+  for (int iteration = 0; iteration < options.iterations; ++iteration) {
+    PointPairs pairs;
+    for (const IcpTarget& target : targets) {
+      collect(source, pose, *target.level, target.model_from_scanner, true, options, pairs);
+      if (options.two_way) {
+        collect(*target.level, target.model_from_scanner, source, pose, false, options, pairs);
+      }
+    }
+    const std::optional<RigidTransform> step =
+        absolute_orientation(pairs.moved, pairs.still, pairs.weights);
+    if (!step) {
+      return false;
+    }
+    const Eigen::Vector3d center = pose * middle;
+    double radius2 = 0;
+    for (const Eigen::Vector3d& p : pairs.moved) {
+      radius2 += (p - center).squaredNorm() / static_cast<double>(pairs.moved.size());
+    }
+    pose = (*step * pose).orthonormalised();
+    if (step->angle_rad() * std::sqrt(radius2) + (*step * center - center).norm() < options.converged_mm) {
+      return true;
+    }
+  }
+  return false;
+}
+
 }  // namespace
 
 IcpResult icp(const SurfaceLevel& source, std::span<const IcpTarget> targets,
@@ -134,8 +211,13 @@ IcpResult icp(const SurfaceLevel& source, std::span<const IcpTarget> targets,
     }
     return sums;
   };
+  int steps = options.iterations;
+  if (options.metric == IcpMetric::kPointToPoint) {
+    out.converged = point_to_point(source, targets, middle, options, out.model_from_source);
+    steps = 0;
+  }
   Sums sums = evaluate();
-  for (int iteration = 0; iteration < options.iterations && sums.pairs >= 6; ++iteration) {
+  for (int iteration = 0; iteration < steps && sums.pairs >= 6; ++iteration) {
     const double radius2 = sums.radius2 / sums.weight;
     Matrix6d damped = sums.h;
     // A thousandth of the mean strength: enough to hold what nothing else holds, too little to slow the rest.

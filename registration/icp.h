@@ -20,7 +20,13 @@ struct IcpTarget {
   RigidTransform model_from_scanner;
 };
 
+enum class IcpMetric {
+  kPointToPlane,  ///< once close: symmetric, converges in few steps, slides freely
+  kPointToPoint,  ///< when far: the seed's formula, which pulls along the surface too
+};
+
 struct IcpOptions {
+  IcpMetric metric = IcpMetric::kPointToPlane;
   double reach_mm = 1.0;       ///< pairs farther apart are distant and dropped
   double normal_cosine = 0.7;  ///< pairs whose normals agree less are dropped
   double kernel_mm = 0.1;      ///< scale of the Tukey weight on the residual (its cut-off is 4.7 scales)
@@ -48,9 +54,10 @@ struct IcpResult {
 };
 
 /// Weighted ICP (seed 001, 3.2): pairs by projective lookup in the targets' grids; no boundary samples, no
-/// distant pairs, compatible normals; weights from the sample distances times a Tukey weight; point-to-plane
-/// against the mean of both normals (after Rusinkiewicz 2019), solved by Levenberg-damped Gauss-Newton, so
-/// that directions that nothing holds stay where they were. `source` is the level of the moved scan that
+/// distant pairs, compatible normals; weights from the sample distances times a Tukey weight. Point-to-plane
+/// is against the mean of both normals (after Rusinkiewicz 2019), solved by Levenberg-damped Gauss-Newton, so
+/// that directions that nothing holds stay where they were; point-to-point is solved in closed form
+/// (absolute_orientation.h). The sums of the result are point-to-plane for both. `source` is the level of the moved scan that
 /// matches the targets' resolution. Deterministic for any number of threads.
 [[nodiscard]] IcpResult icp(const SurfaceLevel& source, std::span<const IcpTarget> targets,
                             const RigidTransform& model_from_source, const IcpOptions& options);

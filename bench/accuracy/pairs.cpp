@@ -6,7 +6,7 @@
 #include <cstdio>
 
 #include "bench/support/pair_cases.h"
-#include "registration/model_fit.h"
+#include "registration/align_near.h"
 
 int main(int argc, char** argv) {
   using namespace dubsar;
@@ -45,6 +45,11 @@ int main(int argc, char** argv) {
     const auto fits = fit_to_model(*surfaces[moved], {&target, 1}, {&start, 1}, {});
     return fits.empty() ? start : fits.front().model_from_scanner;
   }};
-  bench::print_pair_table(scans, pairs, {model}, starts, 1, verbose);
+  bench::PairMethod near{"align_near", prepare, [&](std::size_t on, std::size_t moved, const RigidTransform& start) {
+    const ModelScan target{surfaces[on].get(), {}};
+    const auto fits = align_near(*surfaces[moved], {&target, 1}, start, {});
+    return fits.empty() ? start : fits.front().model_from_scanner;
+  }};
+  bench::print_pair_table(scans, pairs, {model, near}, starts, 1, verbose);
   return 0;
 }
