@@ -48,10 +48,11 @@ struct AlignError {
                                                         double mm_per_file_unit);
 
 /// All pairs of scans whose overlap is at least `least_overlap`, the smaller scan moved. A sample overlaps
-/// when the other scan has one within two and a half spacings.
+/// when the other scan has one within a millimetre.
 [[nodiscard]] std::vector<PairCase> overlapping_pairs(const std::vector<PublishedScan>& scans,
                                                       double least_overlap);
 
+/// The published pose, turned and shifted away from.
 [[nodiscard]] RigidTransform off_start(const PairCase& pair, const PublishedScan& moved,
                                        const StartClass& by, std::uint64_t seed);
 
