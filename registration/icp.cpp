@@ -41,19 +41,23 @@ double robust_weight(double residual, double scale) {
   return v > 0 ? v * v : 0.0;
 }
 
+/// How far beyond a boundary sample the usable ones begin, in raster cells.
+constexpr float kRimCells = 2.0F;
+
 /// The usable sample of `level` nearest to p within reach_mm, or -1. What the camera saw straight at p bounds
-/// the search, so that it seldom looks farther than the next cell; where nothing was seen, only the close
-/// neighbourhood is searched.
+/// the search, so that it seldom looks farther than the next cell; where nothing was seen, only the next
+/// cells are searched: the nearest sample would be one of the border.
 std::int64_t nearest_usable(const SurfaceLevel& level, const Eigen::Vector3f& p, float reach_mm) {
   const DepthRaster::Cell* cell = level.raster.at(p);
-  float radius_mm = std::min(reach_mm, 2.0F * static_cast<float>(level.raster.cell_mm()));
+  const auto cell_mm = static_cast<float>(level.raster.cell_mm());
+  float radius_mm = std::min(reach_mm, cell_mm);
   if (cell != nullptr && cell->sample >= 0) {
     const auto straight = static_cast<std::size_t>(cell->sample);
     if (std::abs(level.raster.height(p) - cell->height_mm) > 2.0F * reach_mm) {
       return -1;
     }
-    const float d = (level.grid.point(straight) - p).norm();
-    radius_mm = level.usable[straight] != 0 ? std::min(reach_mm, 1.0001F * d) : reach_mm;
+    const float d = 1.0001F * (level.grid.point(straight) - p).norm();
+    radius_mm = std::min(reach_mm, level.usable[straight] != 0 ? d : d + kRimCells * cell_mm);
   }
   return level.lookup->nearest(p, radius_mm);
 }
