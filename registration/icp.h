@@ -7,12 +7,10 @@
 #include <vector>
 
 #include "core/rigid_transform.h"
+#include "registration/icp_information.h"
 #include "registration/scan_surface.h"
 
 namespace dubsar {
-
-using Matrix6d = Eigen::Matrix<double, 6, 6>;
-using Vector6d = Eigen::Matrix<double, 6, 1>;
 
 /// A scan that stays where it is while another is moved onto it.
 struct IcpTarget {
@@ -33,6 +31,7 @@ struct IcpOptions {
   int iterations = 15;
   double converged_mm = 1e-5;  ///< stops when no point of the scan moves farther than this
   bool two_way = false;        ///< also send the targets' samples into the source: symmetric, twice the work
+  bool information = false;    ///< also work out IcpResult::information
 };
 
 /// The end of an ICP run. The twist convention: left perturbation (omega rad, v mm) of model_from_source
@@ -45,6 +44,10 @@ struct IcpResult {
   double rms_mm = 0;  ///< weighted, of the point-to-plane residuals
   Matrix6d normal_matrix =
       Matrix6d::Zero();  ///< sum of w J Jᵀ, lengths in mm; divide by the residual's variance
+  /// Inverse covariance of the twist (icp_information.h), where asked for and there is enough to tell; zero
+  /// otherwise.
+  Matrix6d information = Matrix6d::Zero();
+  int blocks = 0;  ///< that the information was estimated from
   /// Smallest eigenvalue of the normal matrix per unit weight, turns scaled to displacement at the scan's rms
   /// radius: near 0 when the scan can slide on its targets (plane, sphere, cylinder), up to 1/6 or so for a
   /// rugged one.
