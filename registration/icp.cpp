@@ -120,7 +120,7 @@ void accumulate(const SurfaceLevel& from, const RigidTransform& model_from_from,
           sums.h.noalias() += w * jacobian * jacobian.transpose();
           sums.g += w * residual * jacobian;
           if (terms != nullptr) {
-            (*terms)[first_term + k] = {w * residual * jacobian, arm, normal, true};
+            (*terms)[first_term + k] = {w * residual * jacobian, arm, normal, sample.crease, true};
           }
           sums.weight += w;
           sums.residual2 += w * residual * residual;

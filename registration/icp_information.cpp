@@ -23,10 +23,10 @@ constexpr int kLeastBlocks = 12;
 /// Normals are alike within one over so much, per axis: some 30 degrees.
 constexpr double kSlopeBins = 2.0;
 /// What sampling leaves however many samples there are, of the spacing (dubsar-pairs --simulated).
-constexpr double kSystematicOfSpacing = 0.0;
+constexpr double kSystematicOfSpacing = 0.003;
 
 /// Pulls that share a cause: what they are grouped by.
-using GroupKey = std::array<int, 6>;
+using GroupKey = std::array<int, 7>;
 struct Keyed {
   GroupKey key;
   std::size_t term;
@@ -79,9 +79,10 @@ std::pair<Matrix6d, int> meat_of(const std::vector<PullTerm>& terms, double side
     if (terms[k].used) {
       const Eigen::Vector3i block = (terms[k].at_mm / side_mm).array().floor().cast<int>();
       const Eigen::Vector3i slope = (terms[k].normal * kSlopeBins).array().round().cast<int>();
-      by_place.push_back({{block.x(), block.y(), block.z(), 0, 0, 0}, k});
-      by_slope.push_back({{0, 0, 0, slope.x(), slope.y(), slope.z()}, k});
-      by_both.push_back({{block.x(), block.y(), block.z(), slope.x(), slope.y(), slope.z()}, k});
+      const int crease = terms[k].crease ? 1 : 0;
+      by_place.push_back({{block.x(), block.y(), block.z(), 0, 0, 0, 0}, k});
+      by_slope.push_back({{0, 0, 0, slope.x(), slope.y(), slope.z(), crease}, k});
+      by_both.push_back({{block.x(), block.y(), block.z(), slope.x(), slope.y(), slope.z(), crease}, k});
     }
   }
   const auto [place, blocks] = group_meat(terms, by_place);

@@ -15,6 +15,7 @@ struct PullTerm {
   Vector6d pull = Vector6d::Zero();  ///< weight · residual · Jacobian of the twist
   Eigen::Vector3d at_mm{0, 0, 0};    ///< from the twist's centre, model frame
   Eigen::Vector3d normal{0, 0, 0};   ///< model frame
+  bool crease = false;               ///< of a sample on a crease edge or beside one
   bool used = false;                 ///< false where a sample has no partner
 };
 
@@ -34,7 +35,8 @@ struct FitInformation {
 /// twist, and the variance of the total pull. Residuals of neighbouring samples are not independent (speckle is
 /// correlated along the profile, levels and normals are averages, both scans sample one surface), so that
 /// variance is taken from the residuals themselves, summed over what they have in common: the place, in
-/// blocks, and the slope of the surface, for what a scanner does to every flank that faces one way (Huber
+/// blocks, and the slope and kind of surface, for what a scanner does to every flank that faces one way and to
+/// every edge (Huber
 /// 1967; Liang and Zeger 1986; two ways at once: Cameron, Gelbach and Miller 2011). What a finite number of
 /// blocks leaves uncertain is taken off, and so is what sampling leaves in any fit.
 [[nodiscard]] FitInformation fit_information(const Matrix6d& slope, const std::vector<PullTerm>& terms,

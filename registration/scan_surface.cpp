@@ -152,6 +152,7 @@ void choose_samples(SurfaceLevel& level, int count, const ScanSurfaceOptions& op
     closeness[i] = sum / 4.0F;
   }
   std::vector<std::uint32_t> edges;
+  std::vector<std::uint8_t> beside(grid.size(), 0);
   std::vector<std::uint32_t> all;
   double mean = 0;
   for (std::size_t i = 0; i < grid.size(); ++i) {
@@ -164,6 +165,7 @@ void choose_samples(SurfaceLevel& level, int count, const ScanSurfaceOptions& op
     for (const auto& [dr, dc] : kFourNeighbours) {
       near_edge = near_edge || crease[grid.index(grid.row_of(i) + dr, grid.col_of(i) + dc)] != 0;
     }
+    beside[i] = near_edge ? 1 : 0;
     if (near_edge) {
       edges.push_back(static_cast<std::uint32_t>(i));
     }
@@ -180,7 +182,7 @@ void choose_samples(SurfaceLevel& level, int count, const ScanSurfaceOptions& op
   chosen.erase(std::unique(chosen.begin(), chosen.end()), chosen.end());
   level.samples.reserve(chosen.size());
   for (const std::uint32_t i : chosen) {
-    level.samples.push_back({grid.point(i), level.normals[i], closeness[i] / static_cast<float>(mean)});
+    level.samples.push_back({grid.point(i), level.normals[i], closeness[i] / static_cast<float>(mean), beside[i] != 0});
   }
 }
 
