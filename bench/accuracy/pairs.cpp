@@ -4,15 +4,18 @@
 // dubsar-pairs FOLDER: registers pairs of real scans from starts that are off, and prints how many of them
 // come within half a degree and half a millimetre of the published pose, with the CPU time of a pair on one
 // core. The peers that CMake found stand in the same table.
+// dubsar-pairs --simulated N: whether the covariance of a pair is what it claims.
 
 #include <tbb/global_control.h>
 
 #include <CLI/CLI.hpp>
+#include <cstdint>
 #include <cstdio>
 #include <string>
 #include <vector>
 
 #include "bench/accuracy/pairs_dubsar.h"
+#include "bench/accuracy/pairs_simulated.h"
 #include "bench/accuracy/peers.h"
 #include "bench/support/pair_cases.h"
 #include "core/units.h"
@@ -28,7 +31,10 @@ int main(int argc, char** argv) {
   std::uint64_t seed = 1;
   bool peers = false;
   bool verbose = false;
-  app.add_option("folder", folder, "of the scans and their .conf")->required();
+  int simulated = 0;
+  app.add_option("folder", folder, "of the scans and their .conf");
+  app.add_option("--simulated", simulated,
+                 "instead: so many simulated tablets of each kind, and whether covariances are what they claim");
   app.add_option("--conf", conf, "published poses, in the folder");
   app.add_option("--unit", unit, "of the scans and the .conf: m, mm or um");
   app.add_option("--least-overlap", least_overlap, "of a pair, over the smaller scan");
@@ -37,6 +43,14 @@ int main(int argc, char** argv) {
   app.add_flag("--peers", peers, "the other libraries as well, where they were found");
   app.add_flag("--verbose", verbose, "the pairs, and what failed");
   CLI11_PARSE(app, argc, argv);
+  if (simulated > 0) {
+    bench::print_simulated_pairs(simulated, seed);
+    return 0;
+  }
+  if (folder.empty()) {
+    std::fprintf(stderr, "dubsar-pairs: name the folder of the scans, or --simulated N\n");
+    return 2;
+  }
   const tbb::global_control one_core(tbb::global_control::max_allowed_parallelism, 1);
   const auto scans = bench::read_published(folder, conf, mm_per_unit(unit).value_or(1.0));
   const auto pairs = bench::overlapping_pairs(scans, least_overlap);
