@@ -60,8 +60,8 @@ std::vector<Candidate> neighbourhood(const ScanSurface& scan, const RigidTransfo
   return out;
 }
 
-void keep_best(std::vector<Candidate>& candidates, std::size_t most, const ScanSurface& scan,
-               double turn_rad, double shift_mm) {
+void keep_best(std::vector<Candidate>& candidates, std::size_t most, const ScanSurface& scan, double turn_rad,
+               double shift_mm) {
   std::stable_sort(candidates.begin(), candidates.end(),
                    [](const Candidate& a, const Candidate& b) { return a.score > b.score; });
   std::vector<Candidate> kept;
@@ -128,9 +128,7 @@ std::vector<ModelFit> align_near(const ScanSurface& scan, std::span<const ModelS
             options.fit.distinct_shift * scan.scale_mm);
   parallel_for_each_index(
       around.size(),
-      [&](std::size_t k) {
-        around[k].pose = brought_closer(scan, model, around[k].pose, 0.5 * reach_mm);
-      },
+      [&](std::size_t k) { around[k].pose = brought_closer(scan, model, around[k].pose, 0.5 * reach_mm); },
       1);
   std::vector<RigidTransform> starts;
   for (const Candidate& c : around) {

@@ -159,8 +159,8 @@ void collect(const SurfaceLevel& from, const RigidTransform& model_from_from, co
       partner.size(),
       [&](std::size_t k) {
         const SurfaceSample& sample = from.samples[k];
-        const std::int64_t found = nearest_usable(into, rotation * sample.position_mm + shift,
-                                                  static_cast<float>(options.reach_mm));
+        const std::int64_t found =
+            nearest_usable(into, rotation * sample.position_mm + shift, static_cast<float>(options.reach_mm));
         if (found >= 0 && (rotation * sample.normal).dot(into.normals[static_cast<std::size_t>(found)]) >=
                               static_cast<float>(options.normal_cosine)) {
           partner[k] = found;
@@ -176,8 +176,7 @@ void collect(const SurfaceLevel& from, const RigidTransform& model_from_from, co
     const Eigen::Vector3d q =
         model_from_into *
         Eigen::Vector3d(into.grid.point(static_cast<std::size_t>(partner[k])).cast<double>());
-    const double w =
-        static_cast<double>(sample.weight) * robust_weight((p - q).norm(), options.kernel_mm);
+    const double w = static_cast<double>(sample.weight) * robust_weight((p - q).norm(), options.kernel_mm);
     if (w > 0) {
       pairs.moved.push_back(moving_is_from ? p : q);
       pairs.still.push_back(moving_is_from ? q : p);
@@ -197,8 +196,7 @@ bool point_to_point(const SurfaceLevel& source, std::span<const IcpTarget> targe
         collect(*target.level, target.model_from_scanner, source, pose, false, options, pairs);
       }
     }
-    const std::optional<RigidTransform> step =
-        absolute_orientation(pairs.moved, pairs.still, pairs.weights);
+    const std::optional<RigidTransform> step = absolute_orientation(pairs.moved, pairs.still, pairs.weights);
     if (!step) {
       return false;
     }

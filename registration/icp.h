@@ -60,8 +60,8 @@ struct IcpResult {
 /// distant pairs, compatible normals; weights from the sample distances times a Tukey weight. Point-to-plane
 /// is against the mean of both normals (after Rusinkiewicz 2019), solved by Levenberg-damped Gauss-Newton, so
 /// that directions that nothing holds stay where they were; point-to-point is solved in closed form
-/// (absolute_orientation.h). The sums of the result are point-to-plane for both. `source` is the level of the moved scan that
-/// matches the targets' resolution. Deterministic for any number of threads.
+/// (absolute_orientation.h). The sums of the result are point-to-plane for both. `source` is the level of the
+/// moved scan that matches the targets' resolution. Deterministic for any number of threads.
 [[nodiscard]] IcpResult icp(const SurfaceLevel& source, std::span<const IcpTarget> targets,
                             const RigidTransform& model_from_source, const IcpOptions& options);
 

@@ -13,8 +13,8 @@ namespace dubsar {
 
 namespace {
 
-/// Side of a block of surface, of the rms radius of the pairs: far longer than residuals stay alike, and yet a
-/// scan has some hundred.
+/// Side of a block of surface, of the rms radius of the pairs: far longer than residuals stay alike, and yet
+/// a scan has some hundred.
 constexpr double kBlockOfRadius = 1.0 / 6.0;
 /// The least side, in spacings.
 constexpr double kLeastBlockSpacings = 6.0;
@@ -34,9 +34,8 @@ struct Keyed {
 
 /// Sum over groups of (sum of the pulls)(sum of the pulls)ᵀ, and how many groups there are. Sorts `keyed`.
 std::pair<Matrix6d, int> group_meat(const std::vector<PullTerm>& terms, std::vector<Keyed>& keyed) {
-  std::sort(keyed.begin(), keyed.end(), [](const Keyed& a, const Keyed& b) {
-    return a.key != b.key ? a.key < b.key : a.term < b.term;
-  });
+  std::sort(keyed.begin(), keyed.end(),
+            [](const Keyed& a, const Keyed& b) { return a.key != b.key ? a.key < b.key : a.term < b.term; });
   Matrix6d meat = Matrix6d::Zero();
   int groups = 0;
   for (std::size_t k = 0; k < keyed.size();) {
@@ -95,8 +94,7 @@ std::pair<Matrix6d, int> meat_of(const std::vector<PullTerm>& terms, double side
 
 FitInformation fit_information(const Matrix6d& slope, const std::vector<PullTerm>& terms,
                                const PullScale& scale) {
-  const double side_mm =
-      std::max(kBlockOfRadius * scale.radius_mm, kLeastBlockSpacings * scale.spacing_mm);
+  const double side_mm = std::max(kBlockOfRadius * scale.radius_mm, kLeastBlockSpacings * scale.spacing_mm);
   const auto [meat, blocks] = meat_of(terms, side_mm, scale.radius_mm);
   if (blocks < kLeastBlocks) {
     return {Matrix6d::Zero(), blocks};

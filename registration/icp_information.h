@@ -32,13 +32,12 @@ struct FitInformation {
 };
 
 /// Inverse covariance of a fit at its end: the sandwich of `slope`, the derivative of the total pull by the
-/// twist, and the variance of the total pull. Residuals of neighbouring samples are not independent (speckle is
-/// correlated along the profile, levels and normals are averages, both scans sample one surface), so that
+/// twist, and the variance of the total pull. Residuals of neighbouring samples are not independent (speckle
+/// is correlated along the profile, levels and normals are averages, both scans sample one surface), so that
 /// variance is taken from the residuals themselves, summed over what they have in common: the place, in
-/// blocks, and the slope and kind of surface, for what a scanner does to every flank that faces one way and to
-/// every edge (Huber
-/// 1967; Liang and Zeger 1986; two ways at once: Cameron, Gelbach and Miller 2011). What a finite number of
-/// blocks leaves uncertain is taken off, and so is what sampling leaves in any fit.
+/// blocks, and the slope and kind of surface, for what a scanner does to every flank that faces one way and
+/// to every edge (Huber 1967; Liang and Zeger 1986; two ways at once: Cameron, Gelbach and Miller 2011). What
+/// a finite number of blocks leaves uncertain is taken off, and so is what sampling leaves in any fit.
 [[nodiscard]] FitInformation fit_information(const Matrix6d& slope, const std::vector<PullTerm>& terms,
                                              const PullScale& scale);
 

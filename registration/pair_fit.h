@@ -9,8 +9,8 @@
 
 namespace dubsar {
 
-/// What two scans that lie about right say of their relative pose: the measurement that relaxation weighs. The
-/// twist convention of IcpResult, in the frame of the scan that stays.
+/// What two scans that lie about right say of their relative pose: the measurement that relaxation weighs.
+/// The twist convention of IcpResult, in the frame of the scan that stays.
 struct PairFit {
   RigidTransform on_from_moved;
   Eigen::Vector3d center_mm{0, 0, 0};
@@ -21,7 +21,7 @@ struct PairFit {
 };
 
 struct PairFitOptions {
-  int least_pairs = 150;          ///< fewer say too little to be worth their risk
+  int least_pairs = 150;           ///< fewer say too little to be worth their risk
   double most_slide_sigmas = 6.0;  ///< a fit that leaves the start by more residual sigmas has slid away
 };
 

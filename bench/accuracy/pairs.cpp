@@ -33,8 +33,9 @@ int main(int argc, char** argv) {
   bool verbose = false;
   int simulated = 0;
   app.add_option("folder", folder, "of the scans and their .conf");
-  app.add_option("--simulated", simulated,
-                 "instead: so many simulated tablets of each kind, and whether covariances are what they claim");
+  app.add_option(
+      "--simulated", simulated,
+      "instead: so many simulated tablets of each kind, and whether covariances are what they claim");
   app.add_option("--conf", conf, "published poses, in the folder");
   app.add_option("--unit", unit, "of the scans and the .conf: m, mm or um");
   app.add_option("--least-overlap", least_overlap, "of a pair, over the smaller scan");

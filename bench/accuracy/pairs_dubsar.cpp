@@ -15,8 +15,7 @@ PairMethod dubsar_method(const std::vector<PublishedScan>& scans) {
     surfaces->push_back(make_scan_surface(*scan.grid, {}, options));
   }
   const double prepare_ms = 1e3 * (cpu_s() - before_s) / static_cast<double>(scans.size());
-  return {"Dubsar", prepare_ms,
-          [surfaces](std::size_t on, std::size_t moved, const RigidTransform& start) {
+  return {"Dubsar", prepare_ms, [surfaces](std::size_t on, std::size_t moved, const RigidTransform& start) {
             const ModelScan target{(*surfaces)[on].get(), {}};
             const auto fits = align_near(*(*surfaces)[moved], {&target, 1}, start, {});
             return fits.empty() ? start : fits.front().model_from_scanner;

@@ -8,8 +8,8 @@
 
 namespace dubsar::bench {
 
-/// What the product does with a rough start (align_near.h). Its preparation of a scan is what registration keeps
-/// of one.
+/// What the product does with a rough start (align_near.h). Its preparation of a scan is what registration
+/// keeps of one.
 [[nodiscard]] PairMethod dubsar_method(const std::vector<PublishedScan>& scans);
 
 }  // namespace dubsar::bench

@@ -62,8 +62,8 @@ void measure(const TrueScan& a, const TrueScan& b, const ScanSurface& on, const 
 }  // namespace
 
 void print_simulated_pairs(int tablets, std::uint64_t first_seed) {
-  std::printf("%-6s %8s %7s %6s %5s %5s %9s %9s %9s %12s\n", "kind", "spacing", "noise", "pairs", "slid", "none",
-              "NEES/dof", "median", "largest", "across um");
+  std::printf("%-6s %8s %7s %6s %5s %5s %9s %9s %9s %12s\n", "kind", "spacing", "noise", "pairs", "slid",
+              "none", "NEES/dof", "median", "largest", "across um");
   double all = 0;
   std::size_t count = 0;
   for (const double spacing_mm : {0.1, 0.2}) {
@@ -72,8 +72,9 @@ void print_simulated_pairs(int tablets, std::uint64_t first_seed) {
         Sums sums;
         for (int t = 0; t < tablets; ++t) {
           const std::uint64_t seed = first_seed + static_cast<std::uint64_t>(t);
-          const auto scans = true_scans(random_tablet(seed, kind, 0.1),
-                                        {spacing_mm, noise_mm, 12, {0, 2, 4, 6, 8, 10}, seed, Pins::kNone, 0});
+          const auto scans =
+              true_scans(random_tablet(seed, kind, 0.1),
+                         {spacing_mm, noise_mm, 12, {0, 2, 4, 6, 8, 10}, seed, Pins::kNone, 0});
           ScanSurfaceOptions options;
           options.scale_mm = surface_scale_mm(*scans.front().grid);
           std::vector<std::shared_ptr<const ScanSurface>> surfaces;

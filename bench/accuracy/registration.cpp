@@ -78,8 +78,7 @@ double normalised_error(const ScanPose& pose, const RigidTransform& model_from_s
 }
 
 void run(const Arguments& arguments, std::uint64_t seed, Sums& sums) {
-  sim::TabletOptions tablet =
-      bench::random_tablet(seed, arguments.kind, std::max(0.1, arguments.spacing_mm));
+  sim::TabletOptions tablet = bench::random_tablet(seed, arguments.kind, std::max(0.1, arguments.spacing_mm));
   if (arguments.size_mm.size() == 3) {
     tablet.size_mm = {arguments.size_mm[0], arguments.size_mm[1], arguments.size_mm[2]};
   }
@@ -142,7 +141,8 @@ void run(const Arguments& arguments, std::uint64_t seed, Sums& sums) {
     if (error.wrong()) {
       ++wrong;
       std::printf("WRONG seed %llu scan %d: %.2f degrees %.2f mm off, overlap %.2f\n",
-                  static_cast<unsigned long long>(seed), pose.id, error.turn_deg, error.shift_mm, pose.overlap);
+                  static_cast<unsigned long long>(seed), pose.id, error.turn_deg, error.shift_mm,
+                  pose.overlap);
       continue;
     }
     if (pose.covariance) {
@@ -150,8 +150,8 @@ void run(const Arguments& arguments, std::uint64_t seed, Sums& sums) {
       for (const Eigen::Vector3d& p : pairs.back().points_mm) {
         centroid += p / static_cast<double>(pairs.back().points_mm.size());
       }
-      const RigidTransform truth = first->model_from_scanner * base.tablet_from_scanner.inverse() *
-                                   scan.tablet_from_scanner;
+      const RigidTransform truth =
+          first->model_from_scanner * base.tablet_from_scanner.inverse() * scan.tablet_from_scanner;
       sums.nees.push_back(normalised_error(pose, truth, centroid));
       nees += sums.nees.back() / std::max<std::size_t>(1, scans.size() - 1);
     }

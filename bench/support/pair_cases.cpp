@@ -68,8 +68,9 @@ void print_row(const std::vector<PublishedScan>& scans, const std::vector<PairCa
     }
     for (std::size_t c = 0; c < std::size(kStartClasses); ++c) {
       for (int s = 0; s < starts; ++s) {
-        const RigidTransform start = off_start(pair, scans[pair.moved], kStartClasses[c],
-                                               seed_for(seed, 10000 * p + 1000 * c + static_cast<std::size_t>(s)));
+        const RigidTransform start =
+            off_start(pair, scans[pair.moved], kStartClasses[c],
+                      seed_for(seed, 10000 * p + 1000 * c + static_cast<std::size_t>(s)));
         const double before_s = cpu_s();
         const RigidTransform found = method.align(pair.on, pair.moved, start);
         cpu_ms.push_back(1e3 * (cpu_s() - before_s));
@@ -82,7 +83,8 @@ void print_row(const std::vector<PublishedScan>& scans, const std::vector<PairCa
         } else if (verbose) {
           std::printf("    %s: %s onto %s from %.0f deg / %.0f mm, start %d: off by %.2f deg %.2f mm\n",
                       method.name.c_str(), scans[pair.moved].name.c_str(), scans[pair.on].name.c_str(),
-                      kStartClasses[c].turn_deg, kStartClasses[c].shift_mm, s, error.turn_deg, error.shift_mm);
+                      kStartClasses[c].turn_deg, kStartClasses[c].shift_mm, s, error.turn_deg,
+                      error.shift_mm);
         }
       }
     }
@@ -146,11 +148,10 @@ std::vector<PairCase> overlapping_pairs(const std::vector<PublishedScan>& scans,
       const bool a_is_smaller = scans[a].grid->valid_count() < scans[b].grid->valid_count();
       const std::size_t moved = a_is_smaller ? a : b;
       const std::size_t on = a_is_smaller ? b : a;
-      const double overlap =
-          share_on(scans[moved], scans[on], *lookups[on], kOverlapReachMm);
+      const double overlap = share_on(scans[moved], scans[on], *lookups[on], kOverlapReachMm);
       if (overlap >= least_overlap) {
-        pairs.push_back({on, moved, overlap,
-                         scans[on].model_from_scanner.inverse() * scans[moved].model_from_scanner});
+        pairs.push_back(
+            {on, moved, overlap, scans[on].model_from_scanner.inverse() * scans[moved].model_from_scanner});
       }
     }
   }

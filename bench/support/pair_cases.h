@@ -53,11 +53,11 @@ struct AlignError {
                                                       double least_overlap);
 
 /// The published pose, turned and shifted away from.
-[[nodiscard]] RigidTransform off_start(const PairCase& pair, const PublishedScan& moved,
-                                       const StartClass& by, std::uint64_t seed);
+[[nodiscard]] RigidTransform off_start(const PairCase& pair, const PublishedScan& moved, const StartClass& by,
+                                       std::uint64_t seed);
 
 [[nodiscard]] AlignError error_of(const PairCase& pair, const PublishedScan& moved,
-                                 const RigidTransform& on_from_moved);
+                                  const RigidTransform& on_from_moved);
 
 /// CPU time of this process, seconds.
 [[nodiscard]] double cpu_s();

@@ -10,8 +10,8 @@
 namespace dubsar {
 namespace {
 
-std::shared_ptr<const ScanSurface> view(const testing::Height& height, const RigidTransform& model_from_scanner,
-                                        std::uint64_t seed) {
+std::shared_ptr<const ScanSurface> view(const testing::Height& height,
+                                        const RigidTransform& model_from_scanner, std::uint64_t seed) {
   testing::FieldScan scan;
   scan.seed = seed;
   return make_scan_surface(testing::scan_field(height, model_from_scanner, scan), {}, {.scale_mm = 50});
@@ -29,15 +29,17 @@ TEST(AlignNear, FindsThePoseFromFarOff) {
     const RigidTransform turn =
         RigidTransform::from_twist(side * rad_from_deg(18.0) * Eigen::Vector3d::Unit(k / 2), {0, 0, 0});
     const Eigen::Vector3d center = model_from_b * b->centroid_mm;
-    const RigidTransform start{
-        turn.rotation * model_from_b.rotation,
-        turn.rotation * (model_from_b.translation_mm - center) + center +
-            side * 6.0 * Eigen::Vector3d::Unit((k / 2 + 1) % 3)};
+    const RigidTransform start{turn.rotation * model_from_b.rotation,
+                               turn.rotation * (model_from_b.translation_mm - center) + center +
+                                   side * 6.0 * Eigen::Vector3d::Unit((k / 2 + 1) % 3)};
     const auto fits = align_near(*b, {&model, 1}, start, {});
     ASSERT_FALSE(fits.empty());
     const RigidTransform& found = fits.front().model_from_scanner;
     EXPECT_LT((found * b->centroid_mm - center).norm(), 0.05) << k;
-    EXPECT_LT(deg_from_rad(RigidTransform{found.rotation * model_from_b.rotation.transpose(), {0, 0, 0}}.angle_rad()), 0.1) << k;
+    EXPECT_LT(deg_from_rad(
+                  RigidTransform{found.rotation * model_from_b.rotation.transpose(), {0, 0, 0}}.angle_rad()),
+              0.1)
+        << k;
   }
 }
 

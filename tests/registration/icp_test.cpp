@@ -53,15 +53,16 @@ RigidTransform off(const Pair& pair, const Eigen::Vector3d& omega_rad, const Eig
           turn.rotation * (pair.a_from_b.translation_mm - center) + center + shift_mm};
 }
 
-/// Seed 001, 3.2: w[i] = Average{1/d_ik} over the neighbours k of the sample, in parts of the mean over the scan.
+/// Seed 001, 3.2: w[i] = Average{1/d_ik} over the neighbours k of the sample, in parts of the mean over the
+/// scan.
 TEST(Icp, SampleWeightsAreMeanReciprocalDistances) {
   const Pair pair = two_views(3, 0.5, 0.01);
   const SurfaceLevel& level = *pair.b->fine;
   const RangeGrid& grid = level.grid;
   const auto closeness = [&](std::size_t i) {
     double sum = 0;
-    for (const std::size_t k : {i - 1, i + 1, i - static_cast<std::size_t>(grid.cols),
-                                i + static_cast<std::size_t>(grid.cols)}) {
+    for (const std::size_t k :
+         {i - 1, i + 1, i - static_cast<std::size_t>(grid.cols), i + static_cast<std::size_t>(grid.cols)}) {
       EXPECT_TRUE(grid.valid[k]) << "a boundary sample takes part";
       sum += 1.0 / static_cast<double>((grid.point(k) - grid.point(i)).norm());
     }
@@ -89,9 +90,9 @@ TEST(Icp, SampleWeightsAreMeanReciprocalDistances) {
   EXPECT_GT(most / least, 1.1) << "a field with slopes has samples near and far";
 }
 
-/// One step of point-to-point ICP against the seed's formula worked out here: pairs by brute force, the weights
-/// w = average(1/d_ik), x -> R(x - C') + C' + T with T = C - C', R from the weighted cross-covariance (by its
-/// singular values).
+/// One step of point-to-point ICP against the seed's formula worked out here: pairs by brute force, the
+/// weights w = average(1/d_ik), x -> R(x - C') + C' + T with T = C - C', R from the weighted cross-covariance
+/// (by its singular values).
 TEST(Icp, PointToPointStepIsTheSeedsWeightedFormula) {
   const Pair pair = two_views(4, 1.0, 0.02, 15);  // all of b lies on a: no sample meets a border
   const RigidTransform start = off(pair, {0.01, -0.02, 0.03}, {0.3, -0.2, 0.25});
@@ -145,7 +146,8 @@ TEST(Icp, PointToPointStepIsTheSeedsWeightedFormula) {
   const Eigen::Matrix3d r = svd.matrixV() * sign.asDiagonal() * svd.matrixU().transpose();
   const Eigen::Vector3d t = c - c_prime;
   ASSERT_GT(moved.size(), 300U);
-  for (const Eigen::Vector3d& x : {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(20, 10, 2), Eigen::Vector3d(-15, 18, -1)}) {
+  for (const Eigen::Vector3d& x :
+       {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(20, 10, 2), Eigen::Vector3d(-15, 18, -1)}) {
     const Eigen::Vector3d seed = r * (x - c_prime) + c_prime + t;
     const Eigen::Vector3d ours = result.model_from_source * (start.inverse() * x);
     EXPECT_GT((seed - x).norm(), 0.05) << "the step is no small one";
@@ -170,8 +172,12 @@ TEST(Icp, BothMetricsFindThePose) {
   close.kernel_mm = 0.2;
   const IcpResult there = icp(*pair.b->fine, {&fine, 1}, near.model_from_source, close);
   EXPECT_TRUE(there.converged);
-  EXPECT_LT((there.model_from_source * pair.b->centroid_mm - pair.a_from_b * pair.b->centroid_mm).norm(), 0.02);
-  EXPECT_LT(deg_from_rad(RigidTransform{there.model_from_source.rotation * pair.a_from_b.rotation.transpose(), {0, 0, 0}}.angle_rad()), 0.05);
+  EXPECT_LT((there.model_from_source * pair.b->centroid_mm - pair.a_from_b * pair.b->centroid_mm).norm(),
+            0.02);
+  EXPECT_LT(deg_from_rad(RigidTransform{
+                there.model_from_source.rotation * pair.a_from_b.rotation.transpose(),
+                {0, 0, 0}}.angle_rad()),
+            0.05);
 }
 
 /// The covariance of a pair is what it says: the normalised squared error over pairs of scans with different
