@@ -59,7 +59,8 @@ TEST(Relaxation, FindsThePosesThatThePairsAgreeOn) {
     const RigidTransform& pose = (*relaxed)[k].model_from_scanner;
     EXPECT_LT((pose * r.centers_mm[k] - r.truth[k] * r.centers_mm[k]).norm(), 0.01) << k;
   }
-  EXPECT_EQ((*relaxed)[0].model_from_scanner.translation_mm, r.truth[0].translation_mm) << "a fixed scan stays";
+  EXPECT_EQ((*relaxed)[0].model_from_scanner.translation_mm, r.truth[0].translation_mm)
+      << "a fixed scan stays";
   EXPECT_TRUE((*relaxed)[0].covariance.isZero());
 }
 
@@ -70,7 +71,8 @@ TEST(Relaxation, OneWrongPairDoesNotBendTheRing) {
   const auto relaxed = relax(r.start, r.fixed, r.centers_mm, r.pairs, {}, job);
   ASSERT_TRUE(relaxed);
   for (std::size_t k = 0; k < r.truth.size(); ++k) {
-    EXPECT_LT(((*relaxed)[k].model_from_scanner * r.centers_mm[k] - r.truth[k] * r.centers_mm[k]).norm(), 0.02);
+    EXPECT_LT(((*relaxed)[k].model_from_scanner * r.centers_mm[k] - r.truth[k] * r.centers_mm[k]).norm(),
+              0.02);
   }
 }
 
