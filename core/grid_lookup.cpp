@@ -40,7 +40,7 @@ float gap(float low, float high, float x, float slack) {
 }  // namespace
 
 int GridLookup::cell_at(float mm, int cells) const {
-  return static_cast<int>(std::clamp(std::floor(mm * per_mm_), 0.0F, static_cast<float>(cells - 1)));
+  return static_cast<int>(std::clamp(mm * per_mm_, 0.0F, static_cast<float>(cells - 1)));
 }
 
 std::pair<int, int> GridLookup::cells_between(float low_mm, float high_mm, int cells) const {
@@ -251,8 +251,14 @@ std::int64_t GridLookup::nearest(const Vector3f& p_mm, float radius_mm) const {
   // Most answers lie in the bucket of the point or beside it.
   const int cu = cell_at(search.u, width_);
   const int cv = cell_at(search.v, height_);
-  for (int row = std::max(cv - 1, 0); row <= std::min(cv + 1, height_ - 1); ++row) {
-    search.visit(row, std::max(cu - 1, 0), std::min(cu + 1, width_ - 1));
+  // Of these, what lies beyond the radius need not be looked at.
+  const float reach = radius_mm + search.slack(extent_mm_);
+  const int left_u = std::max(cu - 1, cell_at(search.u - reach, width_));
+  const int right_u = std::min(cu + 1, cell_at(search.u + reach, width_));
+  const int low_v = std::max(cv - 1, cell_at(search.v - reach, height_));
+  const int high_v = std::min(cv + 1, cell_at(search.v + reach, height_));
+  for (int row = low_v; row <= high_v; ++row) {
+    search.visit(row, left_u, right_u);
   }
   if (search.beyond2(cu - 1, cu + 1, cv - 1, cv + 1) > search.best2) {
     return search.best;

@@ -4,11 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <vector>
 
 namespace dubsar {
 
-double estimate_noise_mm(const RangeGrid& grid) {
+double estimate_noise_mm(const RangeGrid& grid, const std::vector<std::uint8_t>& keep) {
   const double spacing_mm = grid.spacing_mm > 0 ? grid.spacing_mm : estimate_spacing_mm(grid);
   const auto near2 = static_cast<float>(9.0 * spacing_mm * spacing_mm);
   const Eigen::Vector3f view = grid.view.direction.cast<float>();
@@ -18,7 +17,8 @@ double estimate_noise_mm(const RangeGrid& grid) {
   for (std::size_t i = 0; i < grid.size(); i += stride) {
     const int row = grid.row_of(i);
     const int col = grid.col_of(i);
-    if (!grid.is_valid(row, col) || !grid.is_valid(row, col - 1) || !grid.is_valid(row, col + 1)) {
+    if (!grid.is_valid(row, col) || !grid.is_valid(row, col - 1) || !grid.is_valid(row, col + 1) ||
+        (!keep.empty() && (keep[i] == 0 || keep[i - 1] == 0 || keep[i + 1] == 0))) {
       continue;
     }
     const Eigen::Vector3f a = grid.point(i - 1) - grid.point(i);

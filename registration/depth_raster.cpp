@@ -8,12 +8,16 @@
 #include <cmath>
 #include <limits>
 
+#include "core/parallel.h"
+
 namespace dubsar {
 
 namespace {
 
 /// A raster with more cells than this per sample is mostly air (a stray sample far away): its cells grow.
 constexpr double kMostCellsPerSample = 16.0;
+/// Samples that one task goes over.
+constexpr std::size_t kGrain = 16384;
 
 }  // namespace
 
@@ -23,17 +27,31 @@ DepthRaster::DepthRaster(const RangeGrid& grid, double cell_mm) {
   u_axis_ = u.cast<float>();
   v_axis_ = w.cross(u).cast<float>();
   up_ = (-w).cast<float>();
-  Eigen::Vector2f low = Eigen::Vector2f::Constant(std::numeric_limits<float>::max());
-  Eigen::Vector2f high = -low;
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < grid.size(); ++i) {
-    if (grid.valid[i] != 0) {
-      const Eigen::Vector2f uv(u_axis_.dot(grid.point(i)), v_axis_.dot(grid.point(i)));
-      low = low.cwiseMin(uv);
-      high = high.cwiseMax(uv);
-      ++count;
-    }
-  }
+  struct Bounds {
+    Eigen::Vector2f low = Eigen::Vector2f::Constant(std::numeric_limits<float>::max());
+    Eigen::Vector2f high = Eigen::Vector2f::Constant(-std::numeric_limits<float>::max());
+    std::size_t count = 0;
+  };
+  const Bounds bounds = parallel_reduce_ordered(
+      grid.size(), kGrain, Bounds{},
+      [&](std::size_t begin, std::size_t end) {
+        Bounds part;
+        for (std::size_t i = begin; i < end; ++i) {
+          if (grid.valid[i] != 0) {
+            const Eigen::Vector2f uv(u_axis_.dot(grid.point(i)), v_axis_.dot(grid.point(i)));
+            part.low = part.low.cwiseMin(uv);
+            part.high = part.high.cwiseMax(uv);
+            ++part.count;
+          }
+        }
+        return part;
+      },
+      [](Bounds& into, const Bounds& part) {
+        into.low = into.low.cwiseMin(part.low);
+        into.high = into.high.cwiseMax(part.high);
+        into.count += part.count;
+      });
+  const auto& [low, high, count] = bounds;
   if (count == 0 || !(cell_mm > 0)) {
     return;
   }
@@ -66,22 +84,42 @@ DepthRaster::DepthRaster(const RangeGrid& grid, double cell_mm) {
 }
 
 void DepthRaster::fit_field(const RangeGrid& grid) {
-  Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
-  Eigen::Matrix<double, 3, 2> right = Eigen::Matrix<double, 3, 2>::Zero();
-  low_height_ = std::numeric_limits<float>::max();
-  high_height_ = -low_height_;
-  for (std::size_t i = 0; i < grid.size(); ++i) {
-    if (grid.valid[i] == 0) {
-      continue;
-    }
-    const Eigen::Vector3f p = grid.point(i);
-    const Eigen::Vector3d uv1(static_cast<double>(u_axis_.dot(p) - u_min_),
-                              static_cast<double>(v_axis_.dot(p) - v_min_), 1.0);
-    normal += uv1 * uv1.transpose();
-    right += uv1 * Eigen::RowVector2d(grid.row_of(i), grid.col_of(i));
-    low_height_ = std::min(low_height_, up_.dot(p));
-    high_height_ = std::max(high_height_, up_.dot(p));
-  }
+  struct Sums {
+    Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
+    Eigen::Matrix<double, 3, 2> right = Eigen::Matrix<double, 3, 2>::Zero();
+    float low = std::numeric_limits<float>::max();
+    float high = -std::numeric_limits<float>::max();
+  };
+  const auto cols = static_cast<std::size_t>(grid.cols);
+  const auto [normal, right, low, high] = parallel_reduce_ordered(
+      static_cast<std::size_t>(grid.rows), 16, Sums{},
+      [&](std::size_t begin, std::size_t end) {
+        Sums part;
+        for (std::size_t row = begin; row < end; ++row) {
+          for (std::size_t col = 0; col < cols; ++col) {
+            const std::size_t i = row * cols + col;
+            if (grid.valid[i] == 0) {
+              continue;
+            }
+            const Eigen::Vector3f p = grid.point(i);
+            const Eigen::Vector3d uv1(static_cast<double>(u_axis_.dot(p) - u_min_),
+                                      static_cast<double>(v_axis_.dot(p) - v_min_), 1.0);
+            part.normal += uv1 * uv1.transpose();
+            part.right += uv1 * Eigen::RowVector2d(static_cast<double>(row), static_cast<double>(col));
+            part.low = std::min(part.low, up_.dot(p));
+            part.high = std::max(part.high, up_.dot(p));
+          }
+        }
+        return part;
+      },
+      [](Sums& into, const Sums& part) {
+        into.normal += part.normal;
+        into.right += part.right;
+        into.low = std::min(into.low, part.low);
+        into.high = std::max(into.high, part.high);
+      });
+  low_height_ = low;
+  high_height_ = high;
   const Eigen::Matrix<double, 3, 2> solution = normal.ldlt().solve(right);
   if (solution.allFinite()) {
     row_col_from_uv_ = solution.transpose().cast<float>();

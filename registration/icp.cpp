@@ -6,9 +6,13 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "core/parallel.h"
+#include "registration/absolute_orientation.h"
+#include "registration/icp_information.h"
 
 namespace dubsar {
 
@@ -39,19 +43,29 @@ double robust_weight(double residual, double scale) {
   return v > 0 ? v * v : 0.0;
 }
 
+/// The slope of the pull is measured over moves of so many spacings …
+constexpr double kSlopeStepSpacings = 0.5;
+/// … on each so-manieth sample.
+constexpr std::size_t kSlopeEvery = 4;
+/// Steps that are taken with it.
+constexpr int kLastSteps = 2;
+/// How far beyond a boundary sample the usable ones begin, in raster cells.
+constexpr float kRimCells = 2.0F;
+
 /// The usable sample of `level` nearest to p within reach_mm, or -1. What the camera saw straight at p bounds
-/// the search, so that it seldom looks farther than the next cell; where nothing was seen, only the close
-/// neighbourhood is searched.
+/// the search, so that it seldom looks farther than the next cell; where nothing was seen, only the next
+/// cells are searched: the nearest sample would be one of the border.
 std::int64_t nearest_usable(const SurfaceLevel& level, const Eigen::Vector3f& p, float reach_mm) {
   const DepthRaster::Cell* cell = level.raster.at(p);
-  float radius_mm = std::min(reach_mm, 2.0F * static_cast<float>(level.raster.cell_mm()));
+  const auto cell_mm = static_cast<float>(level.raster.cell_mm());
+  float radius_mm = std::min(reach_mm, cell_mm);
   if (cell != nullptr && cell->sample >= 0) {
     const auto straight = static_cast<std::size_t>(cell->sample);
     if (std::abs(level.raster.height(p) - cell->height_mm) > 2.0F * reach_mm) {
       return -1;
     }
-    const float d = (level.grid.point(straight) - p).norm();
-    radius_mm = level.usable[straight] != 0 ? std::min(reach_mm, 1.0001F * d) : reach_mm;
+    const float d = 1.0001F * (level.grid.point(straight) - p).norm();
+    radius_mm = std::min(reach_mm, level.usable[straight] != 0 ? d : d + kRimCells * cell_mm);
   }
   return level.lookup->nearest(p, radius_mm);
 }
@@ -60,7 +74,12 @@ std::int64_t nearest_usable(const SurfaceLevel& level, const Eigen::Vector3f& p,
 /// the perturbation acts on. Both frames are given in the model frame.
 void accumulate(const SurfaceLevel& from, const RigidTransform& model_from_from, const SurfaceLevel& into,
                 const RigidTransform& model_from_into, bool moving_is_from, const Eigen::Vector3d& center_mm,
-                const IcpOptions& options, Sums& total) {
+                const IcpOptions& options, std::size_t every, Sums& total, std::vector<PullTerm>* terms) {
+  std::size_t first_term = 0;
+  if (terms != nullptr) {
+    first_term = terms->size();
+    terms->resize(first_term + from.samples.size());
+  }
   const RigidTransform into_from_from = model_from_into.inverse() * model_from_from;
   const Eigen::Matrix3f rotation = into_from_from.rotation.cast<float>();
   const Eigen::Vector3f shift = into_from_from.translation_mm.cast<float>();
@@ -70,7 +89,7 @@ void accumulate(const SurfaceLevel& from, const RigidTransform& model_from_from,
       from.samples.size(), 512, Sums{},
       [&](std::size_t begin, std::size_t end) {
         Sums sums;
-        for (std::size_t k = begin; k < end; ++k) {
+        for (std::size_t k = begin; k < end; k += every) {
           const SurfaceSample& sample = from.samples[k];
           const Eigen::Vector3f p = rotation * sample.position_mm + shift;
           const std::int64_t found = nearest_usable(into, p, reach);
@@ -100,6 +119,9 @@ void accumulate(const SurfaceLevel& from, const RigidTransform& model_from_from,
           }
           sums.h.noalias() += w * jacobian * jacobian.transpose();
           sums.g += w * residual * jacobian;
+          if (terms != nullptr) {
+            (*terms)[first_term + k] = {w * residual * jacobian, arm, normal, sample.crease, true};
+          }
           sums.weight += w;
           sums.residual2 += w * residual * residual;
           sums.radius2 += w * arm.squaredNorm();
@@ -108,6 +130,87 @@ void accumulate(const SurfaceLevel& from, const RigidTransform& model_from_from,
         return sums;
       },
       [](Sums& into_sum, const Sums& part) { into_sum.add(part); }));
+}
+
+/// The pose after a left twist about the centre.
+RigidTransform twisted(const RigidTransform& pose, const Vector6d& twist, const Eigen::Vector3d& center_mm) {
+  const RigidTransform turn = RigidTransform::from_twist(twist.head<3>(), Eigen::Vector3d::Zero());
+  return RigidTransform{turn.rotation * pose.rotation,
+                        turn.rotation * (pose.translation_mm - center_mm) + center_mm + twist.tail<3>()}
+      .orthonormalised();
+}
+
+/// Pairs of points in the model frame with their weights, the moved scan's first.
+struct PointPairs {
+  std::vector<Eigen::Vector3d> moved, still;
+  std::vector<double> weights;
+};
+
+/// The samples of `from` with their nearest neighbours in `into`, as accumulate() pairs them, but the Tukey
+/// weight is that of the distance.
+void collect(const SurfaceLevel& from, const RigidTransform& model_from_from, const SurfaceLevel& into,
+             const RigidTransform& model_from_into, bool moving_is_from, const IcpOptions& options,
+             PointPairs& pairs) {
+  const RigidTransform into_from_from = model_from_into.inverse() * model_from_from;
+  const Eigen::Matrix3f rotation = into_from_from.rotation.cast<float>();
+  const Eigen::Vector3f shift = into_from_from.translation_mm.cast<float>();
+  std::vector<std::int64_t> partner(from.samples.size(), -1);
+  parallel_for_each_index(
+      partner.size(),
+      [&](std::size_t k) {
+        const SurfaceSample& sample = from.samples[k];
+        const std::int64_t found =
+            nearest_usable(into, rotation * sample.position_mm + shift, static_cast<float>(options.reach_mm));
+        if (found >= 0 && (rotation * sample.normal).dot(into.normals[static_cast<std::size_t>(found)]) >=
+                              static_cast<float>(options.normal_cosine)) {
+          partner[k] = found;
+        }
+      },
+      512);
+  for (std::size_t k = 0; k < partner.size(); ++k) {
+    if (partner[k] < 0) {
+      continue;
+    }
+    const SurfaceSample& sample = from.samples[k];
+    const Eigen::Vector3d p = model_from_from * Eigen::Vector3d(sample.position_mm.cast<double>());
+    const Eigen::Vector3d q =
+        model_from_into *
+        Eigen::Vector3d(into.grid.point(static_cast<std::size_t>(partner[k])).cast<double>());
+    const double w = static_cast<double>(sample.weight) * robust_weight((p - q).norm(), options.kernel_mm);
+    if (w > 0) {
+      pairs.moved.push_back(moving_is_from ? p : q);
+      pairs.still.push_back(moving_is_from ? q : p);
+      pairs.weights.push_back(w);
+    }
+  }
+}
+
+/// Steps in closed form. True when it converged.
+bool point_to_point(const SurfaceLevel& source, std::span<const IcpTarget> targets,
+                    const Eigen::Vector3d& middle, const IcpOptions& options, RigidTransform& pose) {
+  for (int iteration = 0; iteration < options.iterations; ++iteration) {
+    PointPairs pairs;
+    for (const IcpTarget& target : targets) {
+      collect(source, pose, *target.level, target.model_from_scanner, true, options, pairs);
+      if (options.two_way) {
+        collect(*target.level, target.model_from_scanner, source, pose, false, options, pairs);
+      }
+    }
+    const std::optional<RigidTransform> step = absolute_orientation(pairs.moved, pairs.still, pairs.weights);
+    if (!step) {
+      return false;
+    }
+    const Eigen::Vector3d center = pose * middle;
+    double radius2 = 0;
+    for (const Eigen::Vector3d& p : pairs.moved) {
+      radius2 += (p - center).squaredNorm() / static_cast<double>(pairs.moved.size());
+    }
+    pose = (*step * pose).orthonormalised();
+    if (step->angle_rad() * std::sqrt(radius2) + (*step * center - center).norm() < options.converged_mm) {
+      return true;
+    }
+  }
+  return false;
 }
 
 }  // namespace
@@ -121,21 +224,29 @@ IcpResult icp(const SurfaceLevel& source, std::span<const IcpTarget> targets,
     middle += sample.position_mm.cast<double>();
   }
   middle /= std::max<double>(1.0, static_cast<double>(source.samples.size()));
-  const auto evaluate = [&] {
+  const auto sums_at = [&](const RigidTransform& pose, std::size_t every, std::vector<PullTerm>* terms) {
     Sums sums;
-    out.center_mm = out.model_from_source * middle;
     for (const IcpTarget& target : targets) {
-      accumulate(source, out.model_from_source, *target.level, target.model_from_scanner, true, out.center_mm,
-                 options, sums);
+      accumulate(source, pose, *target.level, target.model_from_scanner, true, out.center_mm, options, every,
+                 sums, terms);
       if (options.two_way) {
-        accumulate(*target.level, target.model_from_scanner, source, out.model_from_source, false,
-                   out.center_mm, options, sums);
+        accumulate(*target.level, target.model_from_scanner, source, pose, false, out.center_mm, options,
+                   every, sums, terms);
       }
     }
     return sums;
   };
+  const auto evaluate = [&] {
+    out.center_mm = out.model_from_source * middle;
+    return sums_at(out.model_from_source, 1, nullptr);
+  };
+  int steps = options.iterations;
+  if (options.metric == IcpMetric::kPointToPoint) {
+    out.converged = point_to_point(source, targets, middle, options, out.model_from_source);
+    steps = 0;
+  }
   Sums sums = evaluate();
-  for (int iteration = 0; iteration < options.iterations && sums.pairs >= 6; ++iteration) {
+  for (int iteration = 0; iteration < steps && sums.pairs >= 6; ++iteration) {
     const double radius2 = sums.radius2 / sums.weight;
     Matrix6d damped = sums.h;
     // A thousandth of the mean strength: enough to hold what nothing else holds, too little to slow the rest.
@@ -146,17 +257,41 @@ IcpResult icp(const SurfaceLevel& source, std::span<const IcpTarget> targets,
     if (!step.allFinite()) {
       break;
     }
-    const RigidTransform turn = RigidTransform::from_twist(step.head<3>(), Eigen::Vector3d::Zero());
-    RigidTransform& pose = out.model_from_source;
-    pose.rotation = turn.rotation * pose.rotation;
-    pose.translation_mm =
-        turn.rotation * (pose.translation_mm - out.center_mm) + out.center_mm + step.tail<3>();
-    pose = pose.orthonormalised();
+    out.model_from_source = twisted(out.model_from_source, step, out.center_mm);
     sums = evaluate();
     if (step.head<3>().norm() * std::sqrt(radius2) + step.tail<3>().norm() < options.converged_mm) {
       out.converged = true;
       break;
     }
+  }
+  if (options.information && sums.pairs >= 6 && sums.weight > 0) {
+    // The slope of the pull, measured: the scan is moved and its pairs are made anew. The normal matrix takes
+    // every partner for fixed, and so counts the noise of the normals as slopes of the surface that hold the
+    // scan; and the nearest of noisy samples lies too near, so that the pull is too weak. The last steps are
+    // taken with it too: along weak directions the normal matrix makes them too short.
+    const double radius = std::max(1e-9, std::sqrt(sums.radius2 / sums.weight));
+    const double h_mm = kSlopeStepSpacings * source.spacing_mm;
+    Matrix6d slope;
+    for (int k = 0; k < 6; ++k) {
+      const double h = k < 3 ? h_mm / radius : h_mm;
+      const Vector6d step = h * Vector6d::Unit(k);
+      const Sums ahead = sums_at(twisted(out.model_from_source, step, out.center_mm), kSlopeEvery, nullptr);
+      const Sums behind = sums_at(twisted(out.model_from_source, -step, out.center_mm), kSlopeEvery, nullptr);
+      slope.col(k) = static_cast<double>(kSlopeEvery) * (ahead.g - behind.g) / (2.0 * h);
+    }
+    std::vector<PullTerm> terms;
+    for (int k = 0; k < kLastSteps && steps > 0; ++k) {
+      const Vector6d step = held_step(slope, sums.g, sums.weight, radius, h_mm);
+      out.model_from_source = twisted(out.model_from_source, step, out.center_mm);
+      terms.clear();
+      sums = sums_at(out.model_from_source, 1, &terms);
+    }
+    if (steps == 0) {
+      sums = sums_at(out.model_from_source, 1, &terms);
+    }
+    const FitInformation found = fit_information(slope, terms, {radius, source.spacing_mm});
+    out.information = found.information;
+    out.blocks = found.blocks;
   }
   out.pairs = sums.pairs;
   out.weight = sums.weight;

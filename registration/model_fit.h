@@ -53,6 +53,7 @@ struct ModelFit {
       0;              ///< the larger one of the scan moved either way along the ICP's weakest direction
   double score = 0;   ///< for comparing poses of one scan: pose_support()
   bool told = false;  ///< more than the surface speaks for the pose: pins, the stage or the operator
+  bool distinctive = false;           ///< the shape of what overlaps is like nothing else on the object
   std::vector<std::size_t> touching;  ///< positions in the model of the scans that it overlaps
   std::vector<std::size_t> targets;   ///< those of them that it is fitted to
 

@@ -2,16 +2,19 @@
 // Copyright The Dubsar developers
 #include "registration/pose_search.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
 #include "core/parallel.h"
 #include "core/units.h"
+#include "registration/self_similarity.h"
 
 namespace dubsar {
 
 namespace {
+
+/// Poses whose shape is looked at when no relief settles one.
+constexpr std::size_t kMostByShape = 3;
 
 /// Adds fits that are no copies of known ones, best first.
 void merge(std::vector<ModelFit>& into, std::vector<ModelFit> more, const ScanSurface& scan,
@@ -40,35 +43,6 @@ RigidTransform turned(const RigidTransform& pose, const Eigen::Vector3d& center,
   return {r * pose.rotation, r * (pose.translation_mm - center) + center};
 }
 
-/// The principal axes of points and the middle of their extent along these: not the mean, for what was
-/// scanned often lies on one side.
-struct Axes {
-  Eigen::Matrix3d directions = Eigen::Matrix3d::Identity();  ///< columns
-  Eigen::Vector3d middle_mm{0, 0, 0};
-};
-
-Axes axes_of(const std::vector<Eigen::Vector3d>& points) {
-  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-  for (const Eigen::Vector3d& p : points) {
-    mean += p / static_cast<double>(points.size());
-  }
-  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
-  for (const Eigen::Vector3d& p : points) {
-    spread += (p - mean) * (p - mean).transpose();
-  }
-  Axes axes;
-  axes.directions = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvectors();
-  Eigen::Vector3d low = Eigen::Vector3d::Constant(1e300);
-  Eigen::Vector3d high = -low;
-  for (const Eigen::Vector3d& p : points) {
-    const Eigen::Vector3d q = axes.directions.transpose() * p;
-    low = low.cwiseMin(q);
-    high = high.cwiseMax(q);
-  }
-  axes.middle_mm = axes.directions * (0.5 * (low + high));
-  return axes;
-}
-
 /// Half turns under which a nearly symmetric tablet would look the same: about the principal axes of the
 /// model, of the scan and of both together, through the middles of each. A pose that holds must outdo them.
 std::vector<RigidTransform> half_turns(const ScanSurface& scan, std::span<const ModelScan> model,
@@ -87,13 +61,8 @@ std::vector<RigidTransform> half_turns(const ScanSurface& scan, std::span<const 
   of_both.insert(of_both.end(), of_scan.begin(), of_scan.end());
   std::vector<RigidTransform> out;
   for (const std::vector<Eigen::Vector3d>* points : {&of_both, &of_model, &of_scan}) {
-    if (points->empty()) {
-      continue;
-    }
-    const Axes axes = axes_of(*points);
-    for (int k = 0; k < 3; ++k) {
-      out.push_back(turned(pose, axes.middle_mm, axes.directions.col(k), kPi));
-      out.push_back(turned(pose, pose * scan.centroid_mm, axes.directions.col(k), kPi));
+    for (const RigidTransform& symmetry : likely_symmetries(*points, false)) {
+      out.push_back(symmetry * pose);
     }
   }
   return out;
@@ -136,8 +105,8 @@ bool enough(const FoundPose& found, const PoseSearchOptions& options) {
 }  // namespace
 
 FoundPose search_pose(const ScanSurface& scan, std::span<const ModelScan> model, const PoseHints& hints,
-                      const PairHypotheses& pair_hypotheses, const PoseSearchOptions& options,
-                      const JobContext& job) {
+                      const PairHypotheses& pair_hypotheses, const ShapeTest& shape_is_distinctive,
+                      const PoseSearchOptions& options, const JobContext& job) {
   FoundPose found;
   const auto look = [&](std::span<const RigidTransform> starts, bool told = false) {
     ModelFitOptions fit_options = options.fit;
@@ -151,6 +120,31 @@ FoundPose search_pose(const ScanSurface& scan, std::span<const ModelScan> model,
                    return same_pose(fit.model_from_scanner, pose, scan.centroid_mm, options.told_turn_rad,
                                     options.told_mm);
                  });
+    }
+    merge(found.fits, std::move(fits), scan, options.fit);
+    found.verdict = verify_pose(found.fits, options.verify);
+  };
+
+  // What relief does not settle the shape may, where it is like nothing else: the fits so far were not worth
+  // refining by their relief.
+  const auto look_by_shape = [&] {
+    std::vector<RigidTransform> starts;
+    std::erase_if(found.fits, [&](const ModelFit& fit) {
+      const bool taken = fit.overlap >= 0.5 * options.verify.shape_overlap && starts.size() < kMostByShape;
+      if (taken) {
+        starts.push_back(fit.model_from_scanner);
+      }
+      return taken;
+    });
+    if (starts.empty()) {
+      return;
+    }
+    ModelFitOptions close = options.fit;
+    close.starts_are_close = true;
+    close.least_significance = 0;
+    std::vector<ModelFit> fits = fit_to_model(scan, model, starts, close);
+    for (ModelFit& fit : fits) {
+      fit.distinctive = fit.overlap >= options.verify.shape_overlap && shape_is_distinctive(fit);
     }
     merge(found.fits, std::move(fits), scan, options.fit);
     found.verdict = verify_pose(found.fits, options.verify);
@@ -216,6 +210,9 @@ FoundPose search_pose(const ScanSurface& scan, std::span<const ModelScan> model,
     }
     look(starts);
     settled = enough(found, options);
+  }
+  if (found.verdict.status != PoseStatus::kRegistered && !found.fits.empty() && !job.cancelled()) {
+    look_by_shape();
   }
   // Relief that agrees beyond doubt has no rival.
   if (found.verdict.status == PoseStatus::kRegistered && !job.cancelled() &&

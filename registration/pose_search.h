@@ -53,11 +53,16 @@ struct FoundPose {
 /// cached by the caller; must be safe to call from several threads.
 using PairHypotheses = std::function<std::vector<PoseHypothesis>(std::size_t k)>;
 
+/// Tells whether the surfaces that overlap in a fit are of a shape that does not come again
+/// (self_similarity.h). May be cached by the caller.
+using ShapeTest = std::function<bool(const ModelFit& fit)>;
+
 /// Looks for the pose of a scan in a model: hints first, then the surface alone against one batch of the
 /// model's scans after the other; everything that is found is refined against the whole model and judged
 /// (verify_pose.h).
 [[nodiscard]] FoundPose search_pose(const ScanSurface& scan, std::span<const ModelScan> model,
                                     const PoseHints& hints, const PairHypotheses& pair_hypotheses,
-                                    const PoseSearchOptions& options, const JobContext& job);
+                                    const ShapeTest& shape_is_distinctive, const PoseSearchOptions& options,
+                                    const JobContext& job);
 
 }  // namespace dubsar

@@ -25,9 +25,7 @@ struct RegistrationOptions {
   double most_unit_ratio = 30.0;    ///< scans whose sizes differ by more are in different units
   double least_size_mm = 0.5;       ///< nothing that is scanned is smaller …
   double most_size_mm = 5000.0;     ///< … or larger: the numbers are in another unit
-  double pair_variance =
-      4.0;  ///< residuals of neighbouring samples are not independent: variances count this often
-  int final_rounds = 2;  ///< of pairwise ICP and relaxation in finalize()
+  int final_rounds = 2;             ///< of pairwise ICP and relaxation in finalize()
 };
 
 /// The online model: scans come one by one, each is registered against all that are in place, and all are

@@ -9,10 +9,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string>
 
 namespace dubsar {
 
 namespace {
+
+/// The scale of the loss follows from the last solution: a far start or a wrong pair makes the first too
+/// wide.
+constexpr int kPasses = 4;
 
 /// Quaternion (x y z w) and translation of model_from_scanner, as Ceres moves them.
 struct Block {
@@ -103,6 +108,29 @@ double variance_factor(const std::vector<Block>& blocks, const std::vector<PairC
   return std::max(1.0, *middle);
 }
 
+/// What would make Ceres fail with a word that nobody understands, or give poses that are none.
+Status check(const std::vector<RigidTransform>& start, const std::vector<bool>& fixed,
+             const std::vector<Eigen::Vector3d>& centers_mm, const std::vector<PairConstraint>& pairs) {
+  if (fixed.size() != start.size() || centers_mm.size() != start.size()) {
+    return fail(ErrorKind::kInternal, "relaxation: as many fixed marks and centres as poses are needed");
+  }
+  for (std::size_t k = 0; k < start.size(); ++k) {
+    if (!start[k].is_rigid() || !centers_mm[k].allFinite()) {
+      return fail(ErrorKind::kInternal,
+                  "relaxation: the pose of scan " + std::to_string(k) + " of the group is not rigid");
+    }
+  }
+  for (const PairConstraint& pair : pairs) {
+    const bool known = pair.a < start.size() && pair.b < start.size() && pair.a != pair.b;
+    if (!known || !pair.a_from_b.is_rigid() || !pair.center_mm.allFinite() || !pair.information.allFinite()) {
+      return fail(ErrorKind::kInternal, "relaxation: what scans " + std::to_string(pair.a) + " and " +
+                                            std::to_string(pair.b) +
+                                            " of the group say of each other is not finite");
+    }
+  }
+  return {};
+}
+
 }  // namespace
 
 Result<std::vector<RelaxedPose>> relax(const std::vector<RigidTransform>& start,
@@ -111,6 +139,9 @@ Result<std::vector<RelaxedPose>> relax(const std::vector<RigidTransform>& start,
                                        const std::vector<PairConstraint>& pairs,
                                        const RelaxationOptions& options, const JobContext& job) {
   const std::size_t count = start.size();
+  if (Status sound = check(start, fixed, centers_mm, pairs); !sound) {
+    return std::unexpected(sound.error());
+  }
   std::vector<bool> held = fixed;
   if (count > 0 && std::none_of(held.begin(), held.end(), [](bool h) { return h; })) {
     held[0] = true;
@@ -122,7 +153,7 @@ Result<std::vector<RelaxedPose>> relax(const std::vector<RigidTransform>& start,
   }
   double factor = 1.0;
   const bool free_scans = std::any_of(held.begin(), held.end(), [](bool h) { return !h; });
-  for (int pass = 0; pass < 2 && !pairs.empty() && free_scans; ++pass) {
+  for (int pass = 0; pass < kPasses && !pairs.empty() && free_scans; ++pass) {
     if (job.cancelled()) {
       return fail(ErrorKind::kCancelled, "relaxation was stopped");
     }
@@ -195,6 +226,9 @@ Result<std::vector<RelaxedPose>> relax(const std::vector<RigidTransform>& start,
     }
   }
   const Eigen::MatrixXd inverse = normal.ldlt().solve(Eigen::MatrixXd::Identity(6 * unknowns, 6 * unknowns));
+  if (!inverse.allFinite()) {
+    return fail(ErrorKind::kInternal, "relaxation: the pairs give no covariance");
+  }
   for (std::size_t k = 0; k < count; ++k) {
     if (place[k] >= 0) {
       const Matrix6d to_center = about(out[k].model_from_scanner * centers_mm[k]);

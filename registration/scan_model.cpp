@@ -10,6 +10,7 @@
 #include "registration/pin_labels.h"
 #include "registration/pin_matching.h"
 #include "registration/pin_merge.h"
+#include "registration/self_similarity.h"
 #include "registration/unit_check.h"
 
 namespace dubsar {
@@ -251,7 +252,9 @@ bool ScanModel::join_group(int id, int group, JobContext& job) {
       hints.starts.push_back(scans_.at(lead.on).group_from_scanner * lead.on_from_scanner);
     }
   }
-  const FoundPose found = search_pose(*scan.features.surface, model, hints, from_pairs, options_.search, job);
+  const FoundPose found = search_pose(
+      *scan.features.surface, model, hints, from_pairs,
+      [&](const ModelFit& fit) { return shape_is_distinctive(id, fit, ids); }, options_.search, job);
   if (!job.cancelled()) {
     for (std::size_t k = 0; k < ids.size(); ++k) {
       if (searched[k] != 0) {
@@ -283,9 +286,21 @@ bool ScanModel::join_group(int id, int group, JobContext& job) {
     return false;
   }
   connect(id, found.fits.front(), found.by_stage, ids, group);
-  relax_group(scans_.at(id).group, job);
+  settle_group(scans_.at(id).group, job);
   judge(id);
   return true;
+}
+
+bool ScanModel::shape_is_distinctive(int id, const ModelFit& fit, const std::vector<int>& group_ids) {
+  const auto similar = [&](int i) {
+    Scan& scan = scans_.at(i);
+    if (!scan.self_similar) {
+      scan.self_similar = self_similar(*scan.features.surface, options_.search.fit, options_.search.verify);
+    }
+    return *scan.self_similar;
+  };
+  return !similar(id) && std::none_of(fit.targets.begin(), fit.targets.end(),
+                                      [&](std::size_t k) { return similar(group_ids[k]); });
 }
 
 bool ScanModel::groups_agree(int id, const RigidTransform& group_from_scanner,
@@ -368,7 +383,7 @@ bool ScanModel::place(int id, const RigidTransform& model_from_scanner, bool loc
       }
       measure_pairs(pairs);
     }
-    relax_group(main, job);
+    settle_group(main, job);
     judge(id);
     retry(job);
     return true;
@@ -386,7 +401,7 @@ bool ScanModel::place(int id, const RigidTransform& model_from_scanner, bool loc
     return false;
   }
   connect(id, fits.front(), false, ids, main);
-  relax_group(scan.group, job);
+  settle_group(scan.group, job);
   judge(id);
   retry(job);
   return true;

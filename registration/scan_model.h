@@ -63,6 +63,7 @@ class ScanModel {
     bool pins_expected = false;
     double own_scale_mm = 0;
     bool usable = false;
+    std::optional<bool> self_similar;  ///< once it was asked for
     int group = 0;
     RigidTransform group_from_scanner;
     bool locked = false;
@@ -92,6 +93,8 @@ class ScanModel {
   [[nodiscard]] std::vector<ModelScan> model_of(const std::vector<int>& ids) const;
   /// Looks for the scan's pose in the group: from its leads, and on the members that are new to it.
   bool join_group(int id, int group, JobContext& job);
+  /// True when neither the scan nor what it was fitted to looks the same turned.
+  bool shape_is_distinctive(int id, const ModelFit& fit, const std::vector<int>& group_ids);
   /// True when none of the scans that the scan brings along contradicts the group that it joins.
   [[nodiscard]] bool groups_agree(int id, const RigidTransform& group_from_scanner,
                                   const std::vector<int>& group_ids) const;
@@ -101,7 +104,10 @@ class ScanModel {
   void measure_pairs(const std::vector<std::pair<int, int>>& pairs);
   /// True when the pair was measured from about where its scans are.
   [[nodiscard]] bool pair_is_fresh(int a, int b) const;
-  void relax_group(int group, const JobContext& job);
+  /// Where it fails the poses stay as the fits left them.
+  Status relax_group(int group, const JobContext& job);
+  /// The same while scans come in: a failure is logged, and the next scan or finalize() tries again.
+  void settle_group(int group, const JobContext& job);
   void judge(int id);
   /// The scan whose hint says how two groups lie to each other.
   [[nodiscard]] std::optional<int> hint_between(int group_a, int group_b) const;

@@ -93,7 +93,7 @@ bool ScanModel::join_from(int id, int group, const std::vector<RigidTransform>& 
   }
   connect(id, fits.front(), false, ids, group);
   scan.hint_reason.clear();
-  relax_group(scans_.at(id).group, job);
+  settle_group(scans_.at(id).group, job);
   judge(id);
   return true;
 }
@@ -210,7 +210,7 @@ bool ScanModel::join_as_given(int id, int group, JobContext& job) {
   hints.told.push_back(scan.group_from_scanner);
   const FoundPose found = search_pose(
       *scan.features.surface, model_of(ids), hints, [](std::size_t) { return std::vector<PoseHypothesis>{}; },
-      options_.search, job);
+      [&](const ModelFit& fit) { return shape_is_distinctive(id, fit, ids); }, options_.search, job);
   const bool registered = found.verdict.status == PoseStatus::kRegistered && !job.cancelled();
   // A rival that the given pose called up may fit better: then the given one is wrong, and no word says so.
   const PoseHint given{-1, {}, scan.group_from_scanner};
@@ -225,7 +225,7 @@ bool ScanModel::join_as_given(int id, int group, JobContext& job) {
     return false;
   }
   connect(id, found.fits.front(), false, ids, group);
-  relax_group(scans_.at(id).group, job);
+  settle_group(scans_.at(id).group, job);
   judge(id);
   return true;
 }

@@ -4,17 +4,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/log.h"
 #include "core/parallel.h"
+#include "registration/pair_fit.h"
 #include "registration/scan_model.h"
 
 namespace dubsar {
 
 namespace {
 
-/// A pair with fewer correspondences says too little to be worth its risk.
-constexpr int kLeastPairs = 150;
-/// A pairwise fit that leaves the joint one by more than this many residual sigmas has slid away.
-constexpr double kMostSlideSigmas = 6.0;
 /// A pair whose scans have moved by less than this many residual sigmas since would be measured alike.
 constexpr double kFreshSigmas = 0.5;
 
@@ -23,32 +21,17 @@ constexpr double kFreshSigmas = 0.5;
 std::optional<ScanModel::Pair> ScanModel::measured_pair(int a, int b) const {
   const ScanSurface& on = *scans_.at(a).features.surface;
   const ScanSurface& moved = *scans_.at(b).features.surface;
-  const double sigma_mm = residual_sigma_mm(on, moved, options_.search.fit);
   const RigidTransform start = scans_.at(a).group_from_scanner.inverse() * scans_.at(b).group_from_scanner;
-  const IcpTarget target{on.fine.get(), {}};
-  IcpOptions icp_options;
-  icp_options.two_way = true;
-  icp_options.kernel_mm = 1.5 * sigma_mm;
-  icp_options.reach_mm =
-      std::max(2.0 * std::max(on.fine->spacing_mm, moved.fine->spacing_mm), 5.0 * sigma_mm);
-  icp_options.iterations = 10;
-  icp_options.converged_mm = 0.02 * sigma_mm;
-  IcpResult result = icp(*moved.fine, {&target, 1}, start, icp_options);
-  const Eigen::Vector3d slide = result.model_from_source * moved.centroid_mm - start * moved.centroid_mm;
-  if (slide.norm() > kMostSlideSigmas * sigma_mm) {
-    // Too loose to tell anything along the slide; its Hessian still holds what it can hold at the joint pose.
-    icp_options.iterations = 0;
-    result = icp(*moved.fine, {&target, 1}, start, icp_options);
-  }
-  if (result.pairs < kLeastPairs) {
+  const std::optional<PairFit> fit =
+      fit_pair(on, moved, start, residual_sigma_mm(on, moved, options_.search.fit));
+  if (!fit) {
     return std::nullopt;
   }
   Pair pair;
   pair.measured_from = start;
-  pair.a_from_b = result.model_from_source;
-  pair.center_mm = result.center_mm;
-  const double variance = std::max(result.rms_mm * result.rms_mm, 0.25 * sigma_mm * sigma_mm);
-  pair.information = result.normal_matrix / (options_.pair_variance * variance);
+  pair.a_from_b = fit->on_from_moved;
+  pair.center_mm = fit->center_mm;
+  pair.information = fit->information;
   return pair;
 }
 
@@ -78,10 +61,10 @@ bool ScanModel::pair_is_fresh(int a, int b) const {
                    most_mm / std::max(moved.extent_mm, 1e-6), most_mm);
 }
 
-void ScanModel::relax_group(int group, const JobContext& job) {
+Status ScanModel::relax_group(int group, const JobContext& job) {
   const std::vector<int> ids = members(group);
   if (ids.size() < 2) {
-    return;
+    return {};
   }
   std::map<int, std::size_t> place;
   std::vector<RigidTransform> start;
@@ -128,12 +111,20 @@ void ScanModel::relax_group(int group, const JobContext& job) {
   const Result<std::vector<RelaxedPose>> relaxed =
       relax(start, fixed, centers, constraints, options_.relaxation, job);
   if (!relaxed) {
-    return;  // the poses stay as the fits left them
+    return std::unexpected(relaxed.error());
   }
   for (const int id : ids) {
     Scan& scan = scans_.at(id);
     scan.group_from_scanner = (*relaxed)[place[id]].model_from_scanner;
     scan.covariance = (*relaxed)[place[id]].covariance;
+  }
+  return {};
+}
+
+void ScanModel::settle_group(int group, const JobContext& job) {
+  const Status relaxed = relax_group(group, job);
+  if (!relaxed && relaxed.error().kind != ErrorKind::kCancelled) {
+    log_warning(relaxed.error().line() + "; the poses stay as the fits left them");
   }
 }
 
@@ -185,7 +176,9 @@ Status ScanModel::finalize(JobContext& job) {
       break;
     }
     measure_pairs(moved);
-    relax_group(group, job);
+    if (const Status relaxed = relax_group(group, job); !relaxed) {
+      return relaxed;
+    }
   }
   for (const int id : ids) {
     judge(id);

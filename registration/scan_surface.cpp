@@ -6,9 +6,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 #include "core/grid_geometry.h"
+#include "core/grid_noise.h"
 #include "core/parallel.h"
 
 namespace dubsar {
@@ -21,7 +23,6 @@ constexpr float kStepFactor = 5.0F;
 constexpr double kLeastBlockShare = 0.7;
 /// A raster cell of this many spacings seldom stays empty on a slope or a warped grid.
 constexpr double kRasterCell = 1.5;
-constexpr std::array<std::array<int, 2>, 4> kFourNeighbours{{{0, 1}, {0, -1}, {1, 0}, {-1, 0}}};
 
 /// Decimates by averaging blocks of stride × stride samples that lie on the sheet of the block's middle
 /// sample. full[i] tells which blocks are complete.
@@ -40,16 +41,20 @@ RangeGrid averaged(const RangeGrid& grid, const std::vector<std::uint8_t>& keep,
       [&](std::size_t r) {
         const int row = static_cast<int>(r);
         for (int col = 0; col < out.cols; ++col) {
+          const int rows_in = std::min(stride, grid.rows - row * stride);
+          const int cols_in = std::min(stride, grid.cols - col * stride);
+          const std::size_t corner = grid.index(row * stride, col * stride);
+          const auto place = [&](int dr, int dc) {
+            return corner + static_cast<std::size_t>(dr) * static_cast<std::size_t>(grid.cols) +
+                   static_cast<std::size_t>(dc);
+          };
           std::int64_t middle = -1;
           int nearest = 1 << 20;
-          for (int dr = 0; dr < stride; ++dr) {
-            for (int dc = 0; dc < stride; ++dc) {
-              if (!grid.inside(row * stride + dr, col * stride + dc)) {
-                continue;
-              }
-              const std::size_t i = grid.index(row * stride + dr, col * stride + dc);
+          for (int dr = 0; dr < rows_in; ++dr) {
+            for (int dc = 0; dc < cols_in; ++dc) {
+              const std::size_t i = place(dr, dc);
               const int away = std::abs(2 * dr - stride + 1) + std::abs(2 * dc - stride + 1);
-              if (keep[i] != 0 && away < nearest) {
+              if (away < nearest && keep[i] != 0) {
                 nearest = away;
                 middle = static_cast<std::int64_t>(i);
               }
@@ -61,14 +66,14 @@ RangeGrid averaged(const RangeGrid& grid, const std::vector<std::uint8_t>& keep,
           const Eigen::Vector3f base = grid.point(static_cast<std::size_t>(middle));
           Eigen::Vector3f sum = Eigen::Vector3f::Zero();
           int count = 0;
-          for (int dr = 0; dr < stride; ++dr) {
-            for (int dc = 0; dc < stride; ++dc) {
-              if (!grid.inside(row * stride + dr, col * stride + dc)) {
+          for (int dr = 0; dr < rows_in; ++dr) {
+            for (int dc = 0; dc < cols_in; ++dc) {
+              const std::size_t i = place(dr, dc);
+              if (keep[i] == 0) {
                 continue;
               }
-              const std::size_t i = grid.index(row * stride + dr, col * stride + dc);
               const Eigen::Vector3f d = grid.point(i) - base;
-              if (keep[i] != 0 && d.squaredNorm() <= reach2) {
+              if (d.squaredNorm() <= reach2) {
                 sum += d;
                 ++count;
               }
@@ -120,6 +125,14 @@ std::vector<Eigen::Vector3f> smoothed_normals(const RangeGrid& grid,
   return out;
 }
 
+/// Runs tasks that write to places of their own.
+template <class... Tasks>
+void side_by_side(const Tasks&... tasks) {
+  const std::array<std::function<void()>, sizeof...(Tasks)> all{tasks...};
+  parallel_for_each_index(
+      all.size(), [&](std::size_t k) { all[k](); }, 1);
+}
+
 /// `count` of the indices in `from`, evenly spread over their order.
 void take_spread(const std::vector<std::uint32_t>& from, std::size_t count,
                  std::vector<std::uint32_t>& into) {
@@ -136,23 +149,31 @@ void choose_samples(SurfaceLevel& level, int count, const ScanSurfaceOptions& op
   const auto turns = static_cast<float>(std::cos(options.crease_angle_rad));
   std::vector<std::uint8_t> crease(grid.size(), 0);
   std::vector<float> closeness(grid.size(), 0.0F);
-  for (std::size_t i = 0; i < grid.size(); ++i) {
-    if (level.usable[i] == 0) {
-      continue;
-    }
-    float sum = 0;
-    for (const auto& [dr, dc] : kFourNeighbours) {
-      const std::size_t j =
-          grid.index(grid.row_of(i) + dr, grid.col_of(i) + dc);  // inside: i is no boundary sample
-      sum += 1.0F /
-             std::max((grid.point(j) - grid.point(i)).norm(), 1e-3F * static_cast<float>(grid.spacing_mm));
-      if (!level.normals[j].isZero() && level.normals[j].dot(level.normals[i]) < turns) {
-        crease[i] = 1;
-      }
-    }
-    closeness[i] = sum / 4.0F;
-  }
+  const auto cols = static_cast<std::ptrdiff_t>(grid.cols);
+  const std::array<std::ptrdiff_t, 4> around{1, -1, cols, -cols};  // inside: i is no boundary sample
+  const auto beside_of = [&](std::size_t i, std::ptrdiff_t step) {
+    return static_cast<std::size_t>(static_cast<std::ptrdiff_t>(i) + step);
+  };
+  parallel_for_each_index(
+      grid.size(),
+      [&](std::size_t i) {
+        if (level.usable[i] == 0) {
+          return;
+        }
+        float sum = 0;
+        for (const std::ptrdiff_t step : around) {
+          const std::size_t j = beside_of(i, step);
+          sum += 1.0F / std::max((grid.point(j) - grid.point(i)).norm(),
+                                 1e-3F * static_cast<float>(grid.spacing_mm));
+          if (!level.normals[j].isZero() && level.normals[j].dot(level.normals[i]) < turns) {
+            crease[i] = 1;
+          }
+        }
+        closeness[i] = sum / 4.0F;
+      },
+      8192);
   std::vector<std::uint32_t> edges;
+  std::vector<std::uint8_t> beside(grid.size(), 0);
   std::vector<std::uint32_t> all;
   double mean = 0;
   for (std::size_t i = 0; i < grid.size(); ++i) {
@@ -162,9 +183,10 @@ void choose_samples(SurfaceLevel& level, int count, const ScanSurfaceOptions& op
     all.push_back(static_cast<std::uint32_t>(i));
     mean += static_cast<double>(closeness[i]);
     bool near_edge = crease[i] != 0;
-    for (const auto& [dr, dc] : kFourNeighbours) {
-      near_edge = near_edge || crease[grid.index(grid.row_of(i) + dr, grid.col_of(i) + dc)] != 0;
+    for (const std::ptrdiff_t step : around) {
+      near_edge = near_edge || crease[beside_of(i, step)] != 0;
     }
+    beside[i] = near_edge ? 1 : 0;
     if (near_edge) {
       edges.push_back(static_cast<std::uint32_t>(i));
     }
@@ -181,7 +203,8 @@ void choose_samples(SurfaceLevel& level, int count, const ScanSurfaceOptions& op
   chosen.erase(std::unique(chosen.begin(), chosen.end()), chosen.end());
   level.samples.reserve(chosen.size());
   for (const std::uint32_t i : chosen) {
-    level.samples.push_back({grid.point(i), level.normals[i], closeness[i] / static_cast<float>(mean)});
+    level.samples.push_back(
+        {grid.point(i), level.normals[i], closeness[i] / static_cast<float>(mean), beside[i] != 0});
   }
 }
 
@@ -201,38 +224,10 @@ std::unique_ptr<SurfaceLevel> make_level(const RangeGrid& grid, const std::vecto
             ? 1
             : 0;
   }
-  level->lookup = std::make_unique<GridLookup>(level->grid, level->usable);
-  level->raster = DepthRaster(level->grid, kRasterCell * level->spacing_mm);
-  choose_samples(*level, points, options);
+  side_by_side([&] { level->lookup = std::make_unique<GridLookup>(level->grid, level->usable); },
+               [&] { level->raster = DepthRaster(level->grid, kRasterCell * level->spacing_mm); },
+               [&] { choose_samples(*level, points, options); });
   return level;
-}
-
-/// Noise of one sample along the view: second differences over neighbours of one sheet, by their median.
-double estimate_noise_mm(const RangeGrid& grid, const std::vector<std::uint8_t>& keep, double spacing_mm) {
-  const Eigen::Vector3f up = (-grid.view.direction).cast<float>();
-  std::vector<float> second;
-  const std::size_t stride = std::max<std::size_t>(1, grid.size() / 200000);
-  const auto step = 3.0F * static_cast<float>(spacing_mm);
-  for (std::size_t i = 0; i < grid.size(); i += stride) {
-    const int row = grid.row_of(i);
-    const int col = grid.col_of(i);
-    if (col < 1 || col + 1 >= grid.cols || row >= grid.rows || keep[i] == 0 || keep[i - 1] == 0 ||
-        keep[i + 1] == 0) {
-      continue;
-    }
-    const Eigen::Vector3f a = grid.point(i - 1) - grid.point(i);
-    const Eigen::Vector3f b = grid.point(i + 1) - grid.point(i);
-    if (a.norm() < step && b.norm() < step) {
-      second.push_back(std::abs(up.dot(a + b)));
-    }
-  }
-  if (second.empty()) {
-    return 0;
-  }
-  const auto middle = second.begin() + static_cast<std::ptrdiff_t>(second.size() / 2);
-  std::nth_element(second.begin(), middle, second.end());
-  // Median to standard deviation, and the variance of a - 2b + c is six times that of one sample.
-  return 1.4826 * static_cast<double>(*middle) / std::sqrt(6.0);
 }
 
 /// Mean intensity of the kept samples of each block of stride × stride; empty when the grid has none.
@@ -269,9 +264,13 @@ std::vector<float> block_intensity(const RangeGrid& grid, const std::vector<std:
 
 std::vector<std::uint8_t> kept_samples(const RangeGrid& grid, const std::vector<std::uint8_t>& ignore) {
   std::vector<std::uint8_t> keep(grid.size(), 0);
-  for (std::size_t i = 0; i < grid.size(); ++i) {
-    keep[i] = grid.valid[i] != 0 && (ignore.empty() || ignore[i] == 0) && grid.point(i).allFinite() ? 1 : 0;
-  }
+  parallel_for_each_index(
+      grid.size(),
+      [&](std::size_t i) {
+        keep[i] =
+            grid.valid[i] != 0 && (ignore.empty() || ignore[i] == 0) && grid.point(i).allFinite() ? 1 : 0;
+      },
+      16384);
   return keep;
 }
 
@@ -280,19 +279,27 @@ std::vector<std::uint8_t> kept_samples(const RangeGrid& grid, const std::vector<
 double surface_scale_mm(const RangeGrid& grid) {
   const double spacing_mm = grid.spacing_mm > 0 ? grid.spacing_mm : estimate_spacing_mm(grid);
   const auto step2 = static_cast<float>(std::pow(static_cast<double>(kStepFactor) * spacing_mm, 2.0));
-  double area_mm2 = 0;
-  for (int row = 0; row + 1 < grid.rows; ++row) {
-    for (int col = 0; col + 1 < grid.cols; ++col) {
-      if (!grid.is_valid(row, col) || !grid.is_valid(row, col + 1) || !grid.is_valid(row + 1, col)) {
-        continue;
-      }
-      const Eigen::Vector3f a = grid.point(grid.index(row, col + 1)) - grid.point(grid.index(row, col));
-      const Eigen::Vector3f b = grid.point(grid.index(row + 1, col)) - grid.point(grid.index(row, col));
-      if (a.squaredNorm() <= step2 && b.squaredNorm() <= step2) {
-        area_mm2 += static_cast<double>(a.cross(b).norm());
-      }
-    }
-  }
+  const double area_mm2 = parallel_reduce_ordered(
+      static_cast<std::size_t>(std::max(0, grid.rows - 1)), 16, 0.0,
+      [&](std::size_t begin, std::size_t end) {
+        double part = 0;
+        for (auto row = static_cast<int>(begin); row < static_cast<int>(end); ++row) {
+          for (int col = 0; col + 1 < grid.cols; ++col) {
+            const std::size_t i = grid.index(row, col);
+            const std::size_t below = grid.index(row + 1, col);
+            if (grid.valid[i] == 0 || grid.valid[i + 1] == 0 || grid.valid[below] == 0) {
+              continue;
+            }
+            const Eigen::Vector3f a = grid.point(i + 1) - grid.point(i);
+            const Eigen::Vector3f b = grid.point(below) - grid.point(i);
+            if (a.squaredNorm() <= step2 && b.squaredNorm() <= step2) {
+              part += static_cast<double>(a.cross(b).norm());
+            }
+          }
+        }
+        return part;
+      },
+      [](double& into, double part) { into += part; });
   return std::sqrt(area_mm2);
 }
 
@@ -310,7 +317,6 @@ std::shared_ptr<const ScanSurface> make_scan_surface(const RangeGrid& grid,
   }
   out->scale_mm = options.scale_mm > 0 ? options.scale_mm : surface_scale_mm(grid);
   out->toward_camera = -grid.view.direction;
-  out->noise_mm = estimate_noise_mm(grid, keep, out->spacing_mm);
   const auto stride_for = [&](double spacing_mm) {
     return std::clamp(static_cast<int>(std::lround(spacing_mm / out->spacing_mm)), 1, 1 << 12);
   };
@@ -321,9 +327,11 @@ std::shared_ptr<const ScanSurface> make_scan_surface(const RangeGrid& grid,
   }
   const int medium = std::max(fine, stride_for(options.medium_spacing * out->scale_mm));
   const int coarse = std::max(medium, stride_for(options.coarse_spacing * out->scale_mm));
-  out->fine = make_level(grid, keep, fine, out->spacing_mm, options.fine_points, options);
-  out->medium = make_level(grid, keep, medium, out->spacing_mm, options.medium_points, options);
-  out->coarse = make_level(grid, keep, coarse, out->spacing_mm, options.coarse_points, options);
+  side_by_side(
+      [&] { out->fine = make_level(grid, keep, fine, out->spacing_mm, options.fine_points, options); },
+      [&] { out->medium = make_level(grid, keep, medium, out->spacing_mm, options.medium_points, options); },
+      [&] { out->coarse = make_level(grid, keep, coarse, out->spacing_mm, options.coarse_points, options); },
+      [&] { out->noise_mm = estimate_noise_mm(grid, keep); });
   out->relief = make_relief(*out->medium, block_intensity(grid, keep, medium),
                             std::max(options.relief_radius * out->scale_mm, 3.0 * out->medium->spacing_mm),
                             static_cast<std::size_t>(options.relief_points));

@@ -18,7 +18,8 @@ namespace dubsar {
 struct SurfaceSample {
   Eigen::Vector3f position_mm;
   Eigen::Vector3f normal;  ///< unit, out of the surface
-  float weight = 1;  ///< mean of 1/d_ik over its neighbours, relative to the scan's mean (seed 001, 3.2)
+  float weight = 1;     ///< mean of 1/d_ik over its neighbours, relative to the scan's mean (seed 001, 3.2)
+  bool crease = false;  ///< on a crease edge or beside one
 };
 
 /// A scan at one resolution. Cells of the decimated grid average the samples of a block that lie on one

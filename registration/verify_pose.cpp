@@ -81,6 +81,11 @@ PoseVerdict judged_by_shape(const ModelFit& fit, const VerifyOptions& o) {
   return {PoseStatus::kRegistered, {}};
 }
 
+bool shape_settles(const ModelFit& fit, const VerifyOptions& o) {
+  return fit.distinctive && fit.overlap >= o.shape_overlap && fit.both().agreement() >= o.shape_agreement &&
+         doubt(fit, o) <= o.shape_doubt;
+}
+
 PoseVerdict two_poses(const ModelFit& a, const ModelFit& b) {
   const RigidTransform turn = b.model_from_scanner * a.model_from_scanner.inverse();
   return {PoseStatus::kUnsure, "two poses fit, " +
@@ -112,7 +117,7 @@ PoseVerdict verify_pose(std::vector<ModelFit>& fits, const VerifyOptions& option
     return judged_by_shape(fit, options).status == PoseStatus::kRegistered;
   };
   const auto acceptable = [&](const ModelFit& fit) {
-    return (fit.told || sure(fit, options)) && fits_shape(fit);
+    return (fit.told || sure(fit, options) || shape_settles(fit, options)) && fits_shape(fit);
   };
   auto best = sure(fits.front(), options) && acceptable(fits.front()) ? fits.begin() : fits.end();
   const bool settled = best != fits.end();

@@ -31,6 +31,10 @@ struct VerifyOptions {
   // correlation of 0.24; the right pose of scans that share written clay shows 5 to 30 and 0.4 to 0.9.
   double sure_relief = 6.0;  ///< ModelFit::significance, and …
   double sure_correlation = 0.3;
+  // Without relief a shape settles a pose when it is distinctive (ModelFit) and fits far better than it must.
+  double shape_overlap = 0.35;
+  double shape_agreement = 0.9;
+  double shape_doubt = 0.5;
   double rival_relief = 0.5;  ///< a pose that shows less than this part of a sure one's is no rival to it
   // Tablets are nearly symmetric: a wrong pose seldom comes alone. How little may speak against the next pose
   // follows from how much speaks against the best: a right pose of a clean scan has next to none, and one of

@@ -14,10 +14,10 @@
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <sstream>
 #include <variant>
 
 #include "bench/accuracy/gauge.h"
+#include "bench/support/conf_poses.h"
 #include "core/mesh_query.h"
 #include "core/parallel.h"
 #include "core/units.h"
@@ -57,25 +57,6 @@ Poses read_json_poses(const fs::path& path, bool registered_only) {
   return poses;
 }
 
-/// Stanford .conf: "bmesh FILE tx ty tz qx qy qz qw"; the quaternion has to be conjugated to take scan points
-/// into the model.
-Poses read_conf(const fs::path& path, double mm_per_file_unit) {
-  std::ifstream in(path);
-  Poses poses;
-  for (std::string line; std::getline(in, line);) {
-    std::istringstream words(line);
-    std::string key;
-    std::string file;
-    Eigen::Vector3d t;
-    Eigen::Quaterniond q;
-    if (words >> key && key == "bmesh" &&
-        words >> file >> t.x() >> t.y() >> t.z() >> q.x() >> q.y() >> q.z() >> q.w()) {
-      poses[file] = {-1, {q.normalized().conjugate().toRotationMatrix(), t * mm_per_file_unit}};
-    }
-  }
-  return poses;
-}
-
 double quantile(std::vector<double> values, double q) {
   if (values.empty()) {
     return 0;
@@ -101,7 +82,14 @@ std::vector<Eigen::Vector3d> sample_points(const ScanData& data) {
 int evaluate_poses(const fs::path& poses_file, const fs::path& scans, const fs::path& truth_file,
                    const fs::path& conf, double mm_per_file_unit, const fs::path& gauge_out) {
   const Poses estimated = read_json_poses(poses_file, true);
-  const Poses truth = conf.empty() ? read_json_poses(truth_file, false) : read_conf(conf, mm_per_file_unit);
+  Poses truth;
+  if (conf.empty()) {
+    truth = read_json_poses(truth_file, false);
+  } else {
+    for (const auto& [file, pose] : bench::read_conf_poses(conf, mm_per_file_unit)) {
+      truth[file] = {-1, pose};
+    }
+  }
   std::vector<PosePair> pairs;
   std::vector<std::string> names;
   for (const auto& [file, pose] : truth) {

@@ -4,6 +4,7 @@
 
 #include "bench/support/ratio.h"
 #include "bench/support/simulated_views.h"
+#include "core/random.h"
 #include "registration/registrar.h"
 
 namespace dubsar::bench {
@@ -49,6 +50,48 @@ BENCHMARK_CAPTURE(register_into_ten, no_hints, false)
     ->Unit(benchmark::kMillisecond)
     ->UseRealTime()
     ->Iterations(2);
+
+/// The part of it that is done before any pose is looked for: normals, levels, lookups, samples.
+void prepare_scan(benchmark::State& state) {
+  const RangeGrid& grid = *million_sample_views(11).grids[10];
+  ScanSurfaceOptions options;
+  for (auto _ : state) {
+    options.scale_mm = surface_scale_mm(grid);
+    benchmark::DoNotOptimize(make_scan_surface(grid, {}, options));
+  }
+  report_rate(state, static_cast<double>(grid.valid_count()), 1e6 / 2.0,
+              "reference: a million samples in 2 s");
+}
+BENCHMARK(prepare_scan)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+/// Fifteen scans around an object, each measured against the next four, relaxed from half a millimetre off.
+void relax_fifteen(benchmark::State& state) {
+  constexpr std::size_t kScans = 15;
+  Random random(1);
+  const auto draw = [&] { return Eigen::Vector3d(random.normal(), random.normal(), random.normal()); };
+  std::vector<RigidTransform> truth;
+  std::vector<RigidTransform> start;
+  for (std::size_t k = 0; k < kScans; ++k) {
+    truth.push_back(RigidTransform::from_twist({0, 0.42 * static_cast<double>(k), 0}, {1, 2, 3}));
+    const Eigen::Vector3d turn = 0.005 * draw();
+    start.push_back((RigidTransform::from_twist(turn, 0.5 * draw()) * truth.back()).orthonormalised());
+  }
+  std::vector<PairConstraint> pairs;
+  for (std::size_t a = 0; a < kScans; ++a) {
+    for (std::size_t step = 1; step <= 4; ++step) {
+      const std::size_t b = (a + step) % kScans;
+      const RigidTransform off = RigidTransform::from_twist({0, 0, 0}, 0.01 * draw());
+      pairs.push_back({a, b, off * truth[a].inverse() * truth[b], {0, 0, 0}, 1e4 * Matrix6d::Identity()});
+    }
+  }
+  JobContext job;
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(relax(start, std::vector<bool>(kScans, false),
+                                   std::vector<Eigen::Vector3d>(kScans, {0, 0, 10}), pairs, {}, job));
+  }
+  report_rate(state, static_cast<double>(kScans), 15.0, "reference: fifteen scans in a second");
+}
+BENCHMARK(relax_fifteen)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 }  // namespace
 }  // namespace dubsar::bench

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "registration/relaxation.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "core/random.h"
+#include "tests/registration/support/height_field.h"
+
+namespace dubsar {
+namespace {
+
+struct Ring {
+  std::vector<RigidTransform> truth, start;
+  std::vector<bool> fixed;
+  std::vector<Eigen::Vector3d> centers_mm;
+  std::vector<PairConstraint> pairs;
+};
+
+RigidTransform jittered(const RigidTransform& pose, double sigma, Random& random) {
+  const auto draw = [&] { return Eigen::Vector3d(random.normal(), random.normal(), random.normal()); };
+  const Eigen::Vector3d omega = 0.01 * sigma * draw();
+  return (RigidTransform::from_twist(omega, sigma * draw()) * pose).orthonormalised();
+}
+
+/// Fifteen scans around an object, each measured against the next three.
+Ring ring(double noise_mm, std::uint64_t seed) {
+  Ring out;
+  Random random(seed);
+  constexpr int kScans = 15;
+  for (int k = 0; k < kScans; ++k) {
+    out.truth.push_back(testing::pose_of(0, 24.0 * k, 3.0 * k, {0.2 * k, 1, -2}));
+    out.start.push_back(k == 0 ? out.truth.back() : jittered(out.truth.back(), 0.5, random));
+    out.fixed.push_back(k == 0);
+    out.centers_mm.emplace_back(0, 0, 10);
+  }
+  for (std::size_t a = 0; a < kScans; ++a) {
+    for (std::size_t step = 1; step <= 3; ++step) {
+      PairConstraint pair;
+      pair.a = a;
+      pair.b = (a + step) % kScans;
+      pair.a_from_b = jittered(out.truth[pair.a].inverse() * out.truth[pair.b], noise_mm, random);
+      pair.information = Matrix6d::Identity() / (noise_mm * noise_mm);
+      pair.information.topLeftCorner<3, 3>() *= 1e4;
+      out.pairs.push_back(pair);
+    }
+  }
+  return out;
+}
+
+TEST(Relaxation, FindsThePosesThatThePairsAgreeOn) {
+  const Ring r = ring(1e-3, 1);
+  JobContext job;
+  const auto relaxed = relax(r.start, r.fixed, r.centers_mm, r.pairs, {}, job);
+  ASSERT_TRUE(relaxed);
+  for (std::size_t k = 0; k < r.truth.size(); ++k) {
+    const RigidTransform& pose = (*relaxed)[k].model_from_scanner;
+    EXPECT_LT((pose * r.centers_mm[k] - r.truth[k] * r.centers_mm[k]).norm(), 0.01) << k;
+  }
+  EXPECT_EQ((*relaxed)[0].model_from_scanner.translation_mm, r.truth[0].translation_mm)
+      << "a fixed scan stays";
+  EXPECT_TRUE((*relaxed)[0].covariance.isZero());
+}
+
+TEST(Relaxation, OneWrongPairDoesNotBendTheRing) {
+  Ring r = ring(1e-3, 2);
+  r.pairs[20].a_from_b.translation_mm += Eigen::Vector3d(2, 0, 0);
+  JobContext job;
+  const auto relaxed = relax(r.start, r.fixed, r.centers_mm, r.pairs, {}, job);
+  ASSERT_TRUE(relaxed);
+  for (std::size_t k = 0; k < r.truth.size(); ++k) {
+    EXPECT_LT(((*relaxed)[k].model_from_scanner * r.centers_mm[k] - r.truth[k] * r.centers_mm[k]).norm(),
+              0.02);
+  }
+}
+
+TEST(Relaxation, SaysWhatIsWrong) {
+  JobContext job;
+  Ring r = ring(1e-3, 3);
+  r.pairs[4].information(2, 2) = std::numeric_limits<double>::quiet_NaN();
+  auto relaxed = relax(r.start, r.fixed, r.centers_mm, r.pairs, {}, job);
+  ASSERT_FALSE(relaxed);
+  EXPECT_NE(relaxed.error().line().find("not finite"), std::string::npos);
+  r = ring(1e-3, 3);
+  r.start[3].rotation.setZero();
+  relaxed = relax(r.start, r.fixed, r.centers_mm, r.pairs, {}, job);
+  ASSERT_FALSE(relaxed);
+  EXPECT_NE(relaxed.error().line().find("scan 3"), std::string::npos);
+  r = ring(1e-3, 3);
+  r.pairs[0].b = 99;
+  EXPECT_FALSE(relax(r.start, r.fixed, r.centers_mm, r.pairs, {}, job));
+}
+
+}  // namespace
+}  // namespace dubsar
