@@ -308,14 +308,17 @@ bool ScanModel::groups_agree(int id, const RigidTransform& group_from_scanner,
   const Scan& scan = scans_.at(id);
   const std::vector<ModelScan> model = model_of(group_ids);
   const RigidTransform group_from_own = group_from_scanner * scan.group_from_scanner.inverse();
-  const std::vector<int> own_ids = members(scan.group);
-  return std::all_of(own_ids.begin(), own_ids.end(), [&](int other) {
-    const Scan& moved = scans_.at(other);
-    return other == id ||
-           consistent_pose(judge_in_model(*moved.features.surface, model,
-                                          group_from_own * moved.group_from_scanner, options_.search.fit),
-                           options_.search.verify);
-  });
+  PoseEvidence brought;
+  for (const int other : members(scan.group)) {
+    if (other != id) {
+      const Scan& moved = scans_.at(other);
+      brought.add(judge_in_model(*moved.features.surface, model, group_from_own * moved.group_from_scanner,
+                                 options_.search.fit)
+                      .both());
+    }
+  }
+  // Free space only: until all are relaxed together, a small turn of the one scan carries the others off.
+  return brought.violation() <= options_.search.verify.most_violation;
 }
 
 void ScanModel::connect(int id, const ModelFit& fit, bool by_stage, const std::vector<int>& group_ids,

@@ -41,7 +41,8 @@ std::vector<RigidTransform> likely_symmetries(const std::vector<Eigen::Vector3d>
   // Not only the mean: what was scanned often lies on one side.
   const Eigen::Vector3d middle = axes * (0.5 * (low + high));
   std::vector<RigidTransform> out;
-  for (const double angle : quarters ? std::vector<double>{kPi, 0.5 * kPi, -0.5 * kPi} : std::vector<double>{kPi}) {
+  for (const double angle :
+       quarters ? std::vector<double>{kPi, 0.5 * kPi, -0.5 * kPi} : std::vector<double>{kPi}) {
     for (int k = 0; k < 3; ++k) {
       for (const Eigen::Vector3d& through : {middle, mean}) {
         const Eigen::Matrix3d r = Eigen::AngleAxisd(angle, axes.col(k)).toRotationMatrix();
