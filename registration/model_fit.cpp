@@ -45,17 +45,14 @@ ReliefAgreement relief_in_model(const ScanSurface& scan, std::span<const ModelSc
 Start coarse_support(const ScanSurface& scan, std::span<const ModelScan> model, const RigidTransform& pose,
                      const EvidenceOptions& options) {
   PoseEvidence sum;
-  int sent = 0;
   for (const ModelScan& m : model) {
     const RigidTransform m_from_scan = m.model_from_scanner.inverse() * pose;
-    const PoseEvidence out = pose_evidence(*scan.coarse, *m.surface->coarse, m_from_scan, options);
-    const PoseEvidence in = pose_evidence(*m.surface->coarse, *scan.coarse, m_from_scan.inverse(), options);
-    sent = std::max(sent, out.sent);
-    sum.add(out);
-    sum.add(in);
+    sum.add(pose_evidence(*scan.coarse, *m.surface->coarse, m_from_scan, options));
+    sum.add(pose_evidence(*m.surface->coarse, *scan.coarse, m_from_scan.inverse(), options));
   }
+  // A share of all that was sent, however many scans there are: what relief says must not drown in it.
   const double shape =
-      sent == 0 ? 0.0 : (sum.close - kFreeSpaceWeight * sum.in_front) / static_cast<double>(sent);
+      sum.sent == 0 ? 0.0 : (sum.close - kFreeSpaceWeight * sum.in_front) / static_cast<double>(sum.sent);
   const double significance =
       relief_in_model(scan, model, pose, options.tolerance_mm).significance(scan.relief.radius_mm);
   return {pose, pose_support(shape, significance), significance};

@@ -9,7 +9,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
+
 #include <string>
+#include "registration/relaxation_covariance.h"
 
 namespace dubsar {
 
@@ -70,20 +73,6 @@ Matrix6d root_of(const Matrix6d& information) {
   const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(information);
   return eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal() *
          eigen.eigenvectors().transpose();
-}
-
-Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v) {
-  Eigen::Matrix3d m;
-  m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
-  return m;
-}
-
-/// Takes a twist about the model's origin to the twist about `center` of the same motion, both in the model
-/// frame.
-Matrix6d about(const Eigen::Vector3d& center) {
-  Matrix6d m = Matrix6d::Identity();
-  m.bottomLeftCorner<3, 3>() = -cross_matrix(center);
-  return m;
 }
 
 PairCost cost_of(const PairConstraint& pair) {
@@ -190,52 +179,13 @@ Result<std::vector<RelaxedPose>> relax(const std::vector<RigidTransform>& start,
   }
   factor = variance_factor(blocks, pairs);
 
-  // Normal equations of left twists about the model's origin: E(a_from_b) moves by the difference of both
-  // scans' twists.
   std::vector<RelaxedPose> out(count);
-  std::vector<int> place(count, -1);
-  int unknowns = 0;
   for (std::size_t k = 0; k < count; ++k) {
     out[k].model_from_scanner = held[k] ? start[k] : from_block(blocks[k]);
-    if (!held[k]) {
-      place[k] = 6 * unknowns++;
-    }
   }
-  if (unknowns == 0) {
-    return out;
-  }
-  Eigen::MatrixXd normal = 1e-9 * Eigen::MatrixXd::Identity(6 * unknowns, 6 * unknowns);
-  for (const PairConstraint& pair : pairs) {
-    const RigidTransform& a = out[pair.a].model_from_scanner;
-    Matrix6d turn = Matrix6d::Zero();
-    turn.topLeftCorner<3, 3>() = a.rotation.transpose();
-    turn.bottomRightCorner<3, 3>() = a.rotation.transpose();
-    const Matrix6d j = turn * about(a * pair.center_mm);
-    const Matrix6d h = j.transpose() * (pair.information / factor) * j;
-    const int pa = place[pair.a];
-    const int pb = place[pair.b];
-    if (pa >= 0) {
-      normal.block<6, 6>(pa, pa) += h;
-    }
-    if (pb >= 0) {
-      normal.block<6, 6>(pb, pb) += h;
-    }
-    if (pa >= 0 && pb >= 0) {
-      normal.block<6, 6>(pa, pb) -= h;
-      normal.block<6, 6>(pb, pa) -= h;
-    }
-  }
-  const Eigen::MatrixXd inverse = normal.ldlt().solve(Eigen::MatrixXd::Identity(6 * unknowns, 6 * unknowns));
-  if (!inverse.allFinite()) {
-    return fail(ErrorKind::kInternal, "relaxation: the pairs give no covariance");
-  }
-  for (std::size_t k = 0; k < count; ++k) {
-    if (place[k] >= 0) {
-      const Matrix6d to_center = about(out[k].model_from_scanner * centers_mm[k]);
-      out[k].covariance = to_center * inverse.block<6, 6>(place[k], place[k]) * to_center.transpose();
-    }
-  }
-  return out;
+  return set_covariances(out, held, centers_mm, pairs, factor, options.shared_noise)
+             ? Result<std::vector<RelaxedPose>>(std::move(out))
+             : fail(ErrorKind::kInternal, "relaxation: the pairs give no covariance");
 }
 
 }  // namespace dubsar

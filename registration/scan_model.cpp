@@ -230,6 +230,9 @@ void ScanModel::retry(JobContext& job) {
 bool ScanModel::join_group(int id, int group, JobContext& job) {
   Scan& scan = scans_.at(id);
   const std::vector<int> ids = members(group);
+  if (ids.empty()) {
+    return false;  // it was joined with another meanwhile
+  }
   if (const std::optional<int> hinted = hint_between(scan.group, group)) {
     scan.tried_on.insert(ids.begin(), ids.end());
     return join_by_hint(*hinted, job);

@@ -97,6 +97,7 @@ Status ScanModel::relax_group(int group, const JobContext& job) {
     }
     const NominalPose& base = *scans_.at(first->second).nominal;
     PairConstraint stage;
+    stage.from_surfaces = false;
     stage.a = place[first->second];
     stage.b = place[id];
     stage.a_from_b =

@@ -41,7 +41,7 @@ PoseVerdict judged_by_shape(const ModelFit& fit, const VerifyOptions& o) {
                 " of it overlaps the registered scans; scan again with at least 30 % overlap"};
   }
   const double total = doubt(fit, o);
-  if (total > 1.0) {
+  if (total > (sure(fit, o) ? o.sure_doubt : 1.0)) {
     const PoseStatus status = total > 3.0 ? PoseStatus::kFailed : PoseStatus::kUnsure;
     const double off = (1.0 - both.agreement()) / o.most_disagreement;
     const double through = both.violation() / o.most_violation;

@@ -31,6 +31,8 @@ struct VerifyOptions {
   // correlation of 0.24; the right pose of scans that share written clay shows 5 to 30 and 0.4 to 0.9.
   double sure_relief = 6.0;  ///< ModelFit::significance, and …
   double sure_correlation = 0.3;
+  /// Doubt that a sure pose may leave: scans that graze densely written clay agree in little more than half.
+  double sure_doubt = 2.0;
   // Without relief a shape settles a pose when it is distinctive (ModelFit) and fits far better than it must.
   double shape_overlap = 0.35;
   double shape_agreement = 0.9;
