@@ -13,6 +13,8 @@ namespace dubsar {
 namespace {
 
 constexpr double kFreeSpaceWeight = 2.0;
+/// A rough pose whose relief agrees like this is seldom chance: closer, it may agree far better.
+constexpr double kHopefulRelief = 2.0;
 
 struct Start {
   RigidTransform pose;
@@ -110,7 +112,9 @@ void keep_distinct(std::vector<Start>& starts, std::size_t most, const Eigen::Ve
                    [](const Start& a, const Start& b) { return a.score > b.score; });
   std::vector<Start> kept;
   for (const Start& s : starts) {
-    if (kept.size() < most && (kept.size() < 2 || s.score > options.hopeless * kept.front().score) &&
+    if (kept.size() < most &&
+        (kept.size() < 2 || s.score > options.hopeless * kept.front().score ||
+         s.significance > kHopefulRelief) &&
         std::none_of(kept.begin(), kept.end(), [&](const Start& k) {
           return same_pose(s.pose, k.pose, center_mm, options.distinct_turn_rad,
                            options.distinct_shift * scale_mm);
