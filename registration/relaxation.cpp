@@ -80,8 +80,8 @@ PairCost cost_of(const PairConstraint& pair) {
           root_of(pair.information)};
 }
 
-/// Median over the pairs of the mean square whitened residual: 1 when the pairs agree as well as they claim.
-double variance_factor(const std::vector<Block>& blocks, const std::vector<PairConstraint>& pairs) {
+/// Mean square whitened residual of each pair: about 1 when the pairs agree as well as they claim.
+std::vector<double> mean_squares(const std::vector<Block>& blocks, const std::vector<PairConstraint>& pairs) {
   std::vector<double> squares;
   for (const PairConstraint& pair : pairs) {
     Vector6d r;
@@ -89,12 +89,31 @@ double variance_factor(const std::vector<Block>& blocks, const std::vector<PairC
                   blocks[pair.b].t.data(), r.data());
     squares.push_back(r.squaredNorm() / 6.0);
   }
+  return squares;
+}
+
+/// For the scale of the loss: the median, that wrong pairs do not move; at least 1.
+double loss_factor(std::vector<double> squares) {
   if (squares.empty()) {
     return 1.0;
   }
   const auto middle = squares.begin() + static_cast<std::ptrdiff_t>(squares.size() / 2);
   std::nth_element(squares.begin(), middle, squares.end());
   return std::max(1.0, *middle);
+}
+
+/// For the covariances: the variance of unit weight, of as many pairs as are more than a tree needs; at least
+/// 1, and no pair counts for more than an outlier's share.
+double variance_factor(const std::vector<double>& squares, std::size_t free_scans) {
+  constexpr double kOutlier = 25.0;
+  if (squares.size() <= free_scans) {
+    return 1.0;
+  }
+  double sum = 0;
+  for (const double s : squares) {
+    sum += std::min(s, kOutlier);
+  }
+  return std::max(1.0, sum / static_cast<double>(squares.size() - free_scans));
 }
 
 /// What would make Ceres fail with a word that nobody understands, or give poses that are none.
@@ -140,13 +159,12 @@ Result<std::vector<RelaxedPose>> relax(const std::vector<RigidTransform>& start,
   for (const RigidTransform& pose : start) {
     blocks.push_back(to_block(pose));
   }
-  double factor = 1.0;
-  const bool free_scans = std::any_of(held.begin(), held.end(), [](bool h) { return !h; });
-  for (int pass = 0; pass < kPasses && !pairs.empty() && free_scans; ++pass) {
+  const auto free_scans = static_cast<std::size_t>(std::count(held.begin(), held.end(), false));
+  for (int pass = 0; pass < kPasses && !pairs.empty() && free_scans > 0; ++pass) {
     if (job.cancelled()) {
       return fail(ErrorKind::kCancelled, "relaxation was stopped");
     }
-    factor = variance_factor(blocks, pairs);
+    const double factor = loss_factor(mean_squares(blocks, pairs));
     ceres::Problem problem;
     for (const PairConstraint& pair : pairs) {
       auto* cost = new ceres::AutoDiffCostFunction<PairCost, 6, 4, 3, 4, 3>(new PairCost(cost_of(pair)));
@@ -177,7 +195,7 @@ Result<std::vector<RelaxedPose>> relax(const std::vector<RigidTransform>& start,
       return fail(ErrorKind::kInternal, "relaxation found no solution: " + summary.message);
     }
   }
-  factor = variance_factor(blocks, pairs);
+  const double factor = variance_factor(mean_squares(blocks, pairs), free_scans);
 
   std::vector<RelaxedPose> out(count);
   for (std::size_t k = 0; k < count; ++k) {

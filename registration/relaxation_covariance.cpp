@@ -35,8 +35,8 @@ Matrix6d in_model(const PairConstraint& pair, const RigidTransform& model_from_a
   return j.transpose() * pair.information * j;
 }
 
-/// K with K Kᵀ = information / 2, whose columns mean the same motions for all pairs of one scan: the symmetric
-/// root about the scan's centre, turns and shifts brought to one scale.
+/// K with K Kᵀ = information / 2, whose columns mean the same motions for all pairs of one scan: the
+/// symmetric root about the scan's centre, turns and shifts brought to one scale.
 Matrix6d half_root(const Matrix6d& information, const Eigen::Vector3d& center_mm) {
   const Matrix6d to_center = about(center_mm);
   const Matrix6d from_center = to_center.inverse();
@@ -74,7 +74,8 @@ bool set_covariances(std::vector<RelaxedPose>& poses, const std::vector<bool>& h
     const int pa = place[pair.a];
     const int pb = place[pair.b];
     const double alone = pair.from_surfaces ? 1.0 - shared_noise : 1.0;
-    for (const auto& [row, col, sign] : {std::tuple{pa, pa, 1.0}, {pb, pb, 1.0}, {pa, pb, -1.0}, {pb, pa, -1.0}}) {
+    for (const auto& [row, col, sign] :
+         {std::tuple{pa, pa, 1.0}, {pb, pb, 1.0}, {pa, pb, -1.0}, {pb, pa, -1.0}}) {
       if (row >= 0 && col >= 0) {
         normal.block<6, 6>(row, col) += sign * h;
         pull.block<6, 6>(row, col) += sign * alone * h;

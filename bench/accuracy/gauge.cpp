@@ -2,6 +2,7 @@
 // Copyright The Dubsar developers
 #include "bench/accuracy/gauge.h"
 
+#include <Eigen/Cholesky>
 #include <Eigen/SVD>
 #include <cmath>
 
@@ -53,6 +54,16 @@ PoseError pose_error(const PosePair& pair, const RigidTransform& gauge) {
   error.centroid_mm = (moved * centroid - pair.truth_from_scanner * centroid).norm();
   error.rms_mm = std::sqrt(sum2 / count);
   return error;
+}
+
+double normalised_error(const ScanPose& pose, const RigidTransform& model_from_scanner_true,
+                        const Eigen::Vector3d& centroid_mm) {
+  const RigidTransform off = pose.model_from_scanner * model_from_scanner_true.inverse();
+  const Eigen::AngleAxisd turn(off.rotation);
+  const Eigen::Vector3d at = model_from_scanner_true * centroid_mm;
+  Eigen::Matrix<double, 6, 1> twist;
+  twist << turn.angle() * turn.axis(), off * at - at;
+  return twist.dot(pose.covariance->ldlt().solve(twist)) / 6.0;
 }
 
 }  // namespace dubsar::accuracy

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/rigid_transform.h"
+#include "core/scan_pose.h"
 
 namespace dubsar::accuracy {
 
@@ -27,5 +28,11 @@ struct PoseError {
   std::vector<double> displacements_mm;
 };
 [[nodiscard]] PoseError pose_error(const PosePair& pair, const RigidTransform& gauge);
+
+/// Squared error of a pose against the truth in parts of its covariance, per degree of freedom: 1 on average
+/// when the covariance is what it claims. The true pose must be in the model frame as registration fixes it
+/// (the first scan is exact).
+[[nodiscard]] double normalised_error(const ScanPose& pose, const RigidTransform& model_from_scanner_true,
+                                      const Eigen::Vector3d& centroid_mm);
 
 }  // namespace dubsar::accuracy

@@ -66,19 +66,6 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-/// Squared error of the pose against the truth in parts of its covariance, per degree of freedom. The twist
-/// is the covariance's: about the scan's centroid in the model frame. `truth_from_first` fixes the gauge as
-/// registration does: the first scan is exact.
-double normalised_error(const ScanPose& pose, const RigidTransform& model_from_scanner_true,
-                        const Eigen::Vector3d& centroid_mm) {
-  const RigidTransform off = pose.model_from_scanner * model_from_scanner_true.inverse();
-  const Eigen::AngleAxisd turn(off.rotation);
-  const Eigen::Vector3d at = model_from_scanner_true * centroid_mm;
-  Eigen::Matrix<double, 6, 1> twist;
-  twist << turn.angle() * turn.axis(), off * at - at;
-  return twist.dot(pose.covariance->ldlt().solve(twist)) / 6.0;
-}
-
 /// All that speaks for and against a fit, as names and numbers in turn.
 void print_evidence(const ModelFit& fit, const RegistrationOptions& options) {
   const PoseEvidence both = fit.both();
@@ -232,7 +219,7 @@ void run(const Arguments& arguments, std::uint64_t seed, Sums& sums) {
       }
       const RigidTransform truth =
           first->model_from_scanner * base.tablet_from_scanner.inverse() * scan.tablet_from_scanner;
-      sums.nees.push_back(normalised_error(pose, truth, centroid));
+      sums.nees.push_back(accuracy::normalised_error(pose, truth, centroid));
       nees += sums.nees.back() / std::max<std::size_t>(1, scans.size() - 1);
     }
   }

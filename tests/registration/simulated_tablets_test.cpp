@@ -5,6 +5,7 @@
 // length.
 #include <gtest/gtest.h>
 
+#include "bench/accuracy/gauge.h"
 #include "bench/support/true_scans.h"
 #include "registration/registrar.h"
 
@@ -13,6 +14,7 @@ namespace {
 
 struct Outcome {
   int registered = 0;
+  double normalised_error = 0;  ///< mean over the scans after the first
   int wrong = 0;
   double worst_mm = 0;  ///< displacement of the tablet's middle
 };
@@ -42,6 +44,18 @@ Outcome register_all(const std::vector<bench::TrueScan>& scans) {
         first->model_from_scanner.inverse() * pose.model_from_scanner);
     outcome.wrong += error.wrong() ? 1 : 0;
     outcome.worst_mm = std::max(outcome.worst_mm, error.shift_mm);
+    const bench::TrueScan& scan = scans[static_cast<std::size_t>(pose.id)];
+    Eigen::Vector3d centroid = Eigen::Vector3d::Zero();
+    for (std::size_t i = 0; i < scan.grid->size(); ++i) {
+      centroid += scan.grid->valid[i] != 0 ? Eigen::Vector3d(scan.grid->point(i).cast<double>())
+                                           : Eigen::Vector3d::Zero();
+    }
+    centroid /= static_cast<double>(scan.grid->valid_count());
+    const RigidTransform truth = first->model_from_scanner *
+                                 scans[static_cast<std::size_t>(first->id)].tablet_from_scanner.inverse() *
+                                 scan.tablet_from_scanner;
+    outcome.normalised_error +=
+        accuracy::normalised_error(pose, truth, centroid) / static_cast<double>(scans.size() - 1);
   }
   return outcome;
 }
@@ -53,6 +67,18 @@ TEST(SimulatedTablets, AWrittenOneIsRegisteredFromAnyHandPose) {
   EXPECT_EQ(outcome.registered, 12);
   EXPECT_EQ(outcome.wrong, 0);
   EXPECT_LT(outcome.worst_mm, 0.03);
+}
+
+TEST(SimulatedTablets, CovariancesAreWhatTheyClaim) {
+  double mean = 0;
+  for (const std::uint64_t seed : {21, 22, 23}) {
+    const auto scans = bench::true_scans(bench::random_tablet(seed, "text", 0.15),
+                                         {0.15, 0.02, 12, {}, seed, bench::Pins::kNone, 0});
+    mean += register_all(scans).normalised_error / 3.0;
+  }
+  // 1 when calibrated; three tablets tell it to a factor of two.
+  EXPECT_GT(mean, 0.5);
+  EXPECT_LT(mean, 2.0);
 }
 
 TEST(SimulatedTablets, OnesThatLookTheSameTurnedAreAskedAbout) {
