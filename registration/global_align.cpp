@@ -218,7 +218,8 @@ std::vector<PoseHypothesis> align_pair(const ScanFeatures& source, const ScanFea
                                           from.centroid_mm, turn, shift_mm, by_shape)) {
     chosen.push_back(h);
   }
-  chosen = distinct(std::move(chosen), chosen.size(), from.centroid_mm, turn, shift_mm, by_support);
+  const std::size_t all = chosen.size();
+  chosen = distinct(std::move(chosen), all, from.centroid_mm, turn, shift_mm, by_support);
   drop_outdone(chosen, by_relief);
 
   EvidenceOptions close = rough;

@@ -13,7 +13,7 @@ struct Registrar::State : ScanModel {
   using ScanModel::ScanModel;
 };
 
-Registrar::Registrar(RegistrationOptions options) : state_(std::make_unique<State>(std::move(options))) {}
+Registrar::Registrar(const RegistrationOptions& options) : state_(std::make_unique<State>(options)) {}
 Registrar::~Registrar() = default;
 Registrar::Registrar(Registrar&&) noexcept = default;
 Registrar& Registrar::operator=(Registrar&&) noexcept = default;

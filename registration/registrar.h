@@ -36,7 +36,7 @@ struct RegistrationOptions {
 /// cores inside. Same scans in the same order, same bytes.
 class Registrar {
  public:
-  explicit Registrar(RegistrationOptions options = {});
+  explicit Registrar(const RegistrationOptions& options = {});
   ~Registrar();
   Registrar(Registrar&&) noexcept;
   Registrar& operator=(Registrar&&) noexcept;

@@ -128,6 +128,7 @@ std::vector<int> ScanModel::groups_by_size() const {
     }
   }
   std::vector<int> out;
+  out.reserve(size_and_first.size());
   for (const auto& [group, entry] : size_and_first) {
     out.push_back(group);
   }
@@ -152,6 +153,7 @@ int ScanModel::main_group() const {
 
 std::vector<ModelScan> ScanModel::model_of(const std::vector<int>& ids) const {
   std::vector<ModelScan> out;
+  out.reserve(ids.size());
   for (const int id : ids) {
     const Scan& scan = scans_.at(id);
     out.push_back({scan.features.surface.get(), scan.group_from_scanner});
@@ -350,6 +352,7 @@ void ScanModel::connect(int id, const ModelFit& fit, bool by_stage, const std::v
     scans_.at(i).group = own_moves ? group : own;
   }
   std::vector<std::pair<int, int>> pairs;
+  pairs.reserve(fit.touching.size());
   for (const std::size_t k : fit.touching) {
     pairs.push_back(std::minmax(id, group_ids[k]));
   }
@@ -384,6 +387,7 @@ bool ScanModel::place(int id, const RigidTransform& model_from_scanner, bool loc
       const ModelFit fit =
           judge_in_model(*scan.features.surface, model, model_from_scanner, options_.search.fit);
       std::vector<std::pair<int, int>> pairs;
+      pairs.reserve(fit.touching.size());
       for (const std::size_t k : fit.touching) {
         pairs.push_back(std::minmax(id, ids[k]));
       }
@@ -467,6 +471,7 @@ ScanPose ScanModel::pose(int id) const {
 
 std::vector<ScanPose> ScanModel::poses() const {
   std::vector<ScanPose> out;
+  out.reserve(scans_.size());
   for (const auto& [id, scan] : scans_) {
     out.push_back(pose(id));
   }

@@ -21,7 +21,7 @@ namespace dubsar {
 /// group of one.
 class ScanModel {
  public:
-  explicit ScanModel(RegistrationOptions options) : options_(std::move(options)) {}
+  explicit ScanModel(const RegistrationOptions& options) : options_(options) {}
 
   /// Takes a scan in, as a group of its own. A null grid is an empty one.
   void enter(int id, const RangeGrid* grid, const PinSet* pins);
