@@ -18,6 +18,9 @@ struct RimPlace {
   std::vector<Eigen::Vector3d> ways;
 };
 
+/// Ways out of a corner, all three ways outwards: seen from most sides, such pins show beside the tablet.
+constexpr double kCornerWays[][3] = {{1, 1, 1}, {2, 1, 1}, {1, 2, 1}, {1, 1, 2}, {2, 2, 1}, {2, 1, 2}, {1, 2, 2}};
+
 /// Stations along a side from its middle to just before the corner, in parts of its half length, both ways.
 std::vector<double> stations(double half_mm) {
   constexpr double kStepMm = 6.0;
@@ -47,13 +50,13 @@ std::vector<RimPlace> rim_places(const Eigen::Vector3d& core) {
   std::vector<RimPlace> places;
   const auto add = [&](const Eigen::Vector3d& at, const Eigen::Vector3d& level, double height) {
     RimPlace place{{at.x(), at.y(), height * core.z()}, {}};
-    if (std::abs(height) == 1.0) {
-      const double up = height;
-      for (const double lean : {0.4, 1.0}) {
-        place.ways.push_back(Eigen::Vector3d(level.x(), level.y(), lean * up).normalized());
+    if (std::abs(height) == 1.0 && level.x() != 0 && level.y() != 0) {
+      for (const auto& way : kCornerWays) {
+        place.ways.push_back(Eigen::Vector3d(way[0] * level.x(), way[1] * level.y(), way[2] * height).normalized());
       }
-      if (level.cwiseAbs().minCoeff() == 0 && level.head<2>().cwiseAbs().minCoeff() > 0) {
-        place.ways.push_back(Eigen::Vector3d(level.x(), level.y(), std::sqrt(2.0) * up).normalized());
+    } else if (std::abs(height) == 1.0) {
+      for (const double lean : {0.5, 1.0, 2.0}) {
+        place.ways.push_back(Eigen::Vector3d(level.x(), level.y(), lean * height).normalized());
       }
     }
     place.ways.push_back(level.normalized());
@@ -89,8 +92,6 @@ std::vector<PlannedPin> rim_candidates(const TabletHull& hull, double rim_radius
     for (const Eigen::Vector3d& way : place.ways) {
       PlannedPin pin;
       pin.rim_mm = at_clearance(hull, place.core_mm, way, 0.0);
-      pin.pose.tip_mm =
-          at_clearance(hull, place.core_mm, way, options.shape.gap_mm + options.shape.tip_radius_mm);
       Eigen::Vector3d level(way.x(), way.y(), 0);
       std::vector<Eigen::Vector3d> arms{way};
       if (std::abs(way.z()) > 1e-9) {
@@ -98,9 +99,15 @@ std::vector<PlannedPin> rim_candidates(const TabletHull& hull, double rim_radius
         arms.push_back(level);
         arms.push_back((level + way).normalized());
       }
-      for (const Eigen::Vector3d& arm : arms) {
-        pin.pose.arm = arm;
-        candidates.push_back(pin);
+      for (const double gap : {options.shape.gap_mm, options.shape.most_gap_mm}) {
+        pin.pose.tip_mm = at_clearance(hull, place.core_mm, way, gap + options.shape.tip_radius_mm);
+        for (const Eigen::Vector3d& arm : arms) {
+          pin.pose.arm = arm;
+          candidates.push_back(pin);
+        }
+        if (!(options.shape.most_gap_mm > options.shape.gap_mm)) {
+          break;
+        }
       }
     }
   }

@@ -32,7 +32,7 @@ Status PinLayoutOptions::check() const {
   if (!(triangulation_rad > 0 && triangulation_rad < 0.5 * kPi)) {
     return bad("the angle between laser and camera must be between 0 and 90 degrees");
   }
-  if (!(tip_spacing_mm >= 0) || directions < 1 || rolls < 1 || search_rounds < 0 || proof_cells < 1) {
+  if (!(tip_spacing_mm >= 0) || directions < 1 || rolls < 1 || search_rounds < 0 || proof_views < 1) {
     return bad("counts and distances must not be negative");
   }
   return {};

@@ -26,7 +26,7 @@ struct PinLayoutOptions {
   int directions = 1600;    ///< of the laser, over the whole sphere, that are enumerated
   int rolls = 24;           ///< of the camera about the laser, for each
   int search_rounds = 24;   ///< of exchange, at most
-  int proof_cells = 20000;  ///< into which each 1/96 of the sphere may be cut to prove the minimum
+  int proof_views = 20000;  ///< cells of views into which each 1/96 of the sphere may be cut for the proof
 
   [[nodiscard]] Status check() const;
 };
@@ -62,7 +62,7 @@ struct PinLayout {
 /// True when at least `least` pins are seen in every view. The sphere of laser directions is cut into cells,
 /// each with all rolls cut into intervals; a pin counts in a cell only when it is seen, with the tests'
 /// margins opened to the cell's radius, from every view of the cell. Cells with too few are cut into four,
-/// down to options.proof_cells; cells that then remain, or a view with fewer, make it false.
+/// down to options.proof_views; cells that then remain, or a view with fewer, make it false.
 [[nodiscard]] bool at_least_seen_everywhere(const TabletHull& hull, const std::vector<PinBody>& pins,
                                             int least, const PinLayoutOptions& options,
                                             const JobContext& job);

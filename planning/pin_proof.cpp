@@ -10,6 +10,7 @@
 // tests are given.
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 
@@ -21,20 +22,29 @@ namespace dubsar {
 
 namespace {
 
+/// Pins that are seen in every view within the margins; stops as soon as there are `enough`, or cannot be.
 int pins_seen(const std::vector<PinBody>& pins, const Sightline& laser, const Sightline& camera, int enough) {
-  int seen = 0;
+  std::array<char, kMostPins> shows{};
+  std::array<char, kMostPins> stands{};  // may stand
+  int most = 0;
   for (std::size_t i = 0; i < pins.size(); ++i) {
-    if (seen + static_cast<int>(pins.size() - i) < enough) {
-      break;
+    shows[i] = stands_and_shows(pins[i], laser, camera) ? 1 : 0;
+    most += shows[i];
+    if (most + static_cast<int>(pins.size() - i) - 1 < enough) {
+      return most;
     }
-    bool shows = stands_and_shows(pins[i], laser, camera);
-    for (std::size_t j = 0; shows && j < pins.size(); ++j) {
-      shows = i == j || !(pins[i].tip_is_behind(pins[j], laser) || pins[i].tip_is_behind(pins[j], camera));
+  }
+  for (std::size_t i = 0; i < pins.size(); ++i) {
+    stands[i] = shows[i] != 0 || !never_stands_and_shows(pins[i], laser, camera) ? 1 : 0;
+  }
+  int seen = 0;
+  for (std::size_t i = 0; i < pins.size() && (enough == 0 || seen < enough); ++i) {
+    bool clear = shows[i] != 0;
+    for (std::size_t j = 0; clear && j < pins.size(); ++j) {
+      clear = i == j || stands[j] == 0 ||
+              !(pins[i].tip_is_behind(pins[j], laser) || pins[i].tip_is_behind(pins[j], camera));
     }
-    seen += shows ? 1 : 0;
-    if (enough > 0 && seen >= enough) {
-      break;
-    }
+    seen += clear ? 1 : 0;
   }
   return seen;
 }
@@ -61,13 +71,14 @@ class Prover {
 
   [[nodiscard]] bool holds(const Cell& root, const std::atomic<bool>& stop) const {
     std::vector<Cell> open{root};
-    for (int cells = 0; !open.empty(); ++cells) {
-      if (cells >= options_.proof_cells || stop.load(std::memory_order_relaxed)) {
+    int views_left = options_.proof_views;
+    while (!open.empty()) {
+      if (views_left <= 0 || stop.load(std::memory_order_relaxed)) {
         return false;
       }
       const Cell cell = open.back();
       open.pop_back();
-      switch (judge(cell)) {
+      switch (judge(cell, views_left)) {
         case Verdict::kHolds: break;
         case Verdict::kBroken: return false;
         case Verdict::kTooCoarse:
@@ -89,7 +100,7 @@ class Prover {
     double middle, half;
   };
 
-  [[nodiscard]] Verdict judge(const Cell& cell) const {
+  [[nodiscard]] Verdict judge(const Cell& cell, int& views_left) const {
     const Eigen::Vector3d center = cell.direction(cell.u, cell.v);
     // The cell's sides are great circles: no direction in it is farther from the centre than a corner.
     double radius = 0;
@@ -105,7 +116,7 @@ class Prover {
     for (int i = 0; i < kIntervals; ++i) {
       open.push_back({2.0 * kPi * i / kIntervals, kPi / kIntervals});
     }
-    while (!open.empty()) {
+    while (!open.empty() && views_left-- > 0) {
       const Rolls rolls = open.back();
       open.pop_back();
       const SightView view = sight_view(center, rolls.middle, options_.triangulation_rad);
@@ -122,7 +133,7 @@ class Prover {
                                     Sightline(hull_, view.to_camera, 0.0), least_) < least_;
       return broken ? Verdict::kBroken : Verdict::kTooCoarse;
     }
-    return Verdict::kHolds;
+    return open.empty() ? Verdict::kHolds : Verdict::kTooCoarse;
   }
 
   const TabletHull& hull_;

@@ -12,6 +12,7 @@
 #include <tuple>
 
 #include "core/parallel.h"
+#include "core/random.h"
 #include "planning/convex_hull.h"
 
 namespace dubsar {
@@ -22,7 +23,10 @@ constexpr std::size_t kSearchDirections = 512;  // about 9 degrees apart
 constexpr std::size_t kSearchRolls = 12;
 constexpr double kSearchMargin = 0.02;  // what holds in a view holds a degree beside it
 /// Candidates that go into the exchange: those that show in most views, alone.
-constexpr std::size_t kMostCandidates = 160;
+constexpr std::size_t kMostCandidates = 320;
+
+constexpr std::size_t kKickedPins = 4;
+constexpr std::uint64_t kSearchSeed = 15;
 
 using Bits = std::vector<std::uint64_t>;
 
@@ -93,8 +97,13 @@ class Exchange {
     parallel_for_each_index(
         all.size(),
         [&](std::size_t i) {
+          std::vector<char> free(views_.lasers.size());
+          for (std::size_t d = 0; d < free.size(); ++d) {
+            free[d] = all[i].tip_is_free(views_.lasers[d]) ? 1 : 0;
+          }
           shows[i] = bits_of(views_, [&](std::size_t v) {
-            return stands_and_shows(all[i], views_.lasers[v / kSearchRolls], views_.cameras[v]);
+            return free[v / kSearchRolls] != 0 &&
+                   stands_and_shows(all[i], views_.lasers[v / kSearchRolls], views_.cameras[v]);
           });
         },
         1);
@@ -127,7 +136,7 @@ class Exchange {
         std::uint64_t seen = shows_[i][w];
         for (const std::size_t j : set) {
           const Bits& behind = behind_[i * size() + j];
-          seen &= behind.empty() ? ~std::uint64_t{0} : ~behind[w];
+          seen &= behind.empty() ? ~std::uint64_t{0} : ~(behind[w] & shows_[j][w]);
         }
         for (std::uint64_t& digit : sum) {
           const std::uint64_t carry = digit & seen;
@@ -196,12 +205,16 @@ class Exchange {
             return;
           }
           apart_[pair] = 1;
+          const PinBody::Shield shield = a.shield_of(b, kSearchMargin);
+          const auto behind = [&](const Sightline& to) {
+            return to.direction().dot(shield.axis) >= shield.least_cosine && a.tip_is_behind(b, to);
+          };
           std::vector<char> laser(views_.lasers.size());
           for (std::size_t d = 0; d < laser.size(); ++d) {
-            laser[d] = a.tip_is_behind(b, views_.lasers[d]) ? 1 : 0;
+            laser[d] = behind(views_.lasers[d]) ? 1 : 0;
           }
           Bits bits = bits_of(views_, [&](std::size_t v) {
-            return laser[v / kSearchRolls] != 0 || a.tip_is_behind(b, views_.cameras[v]);
+            return laser[v / kSearchRolls] != 0 || behind(views_.cameras[v]);
           });
           if (ones(bits) > 0) {
             behind_[pair] = std::move(bits);
@@ -311,20 +324,42 @@ std::vector<std::size_t> search_pins(const TabletHull& hull, const std::vector<P
   }
   std::vector<std::size_t> best;
   Worth best_worth;
-  const std::array<std::vector<Eigen::Vector3d>, 3> starts{std::vector<Eigen::Vector3d>{}, corners, ring};
-  for (std::size_t s = 0; s < starts.size() && !job.cancelled(); ++s) {
-    job.progress("pins: search", 0.1 + 0.2 * static_cast<double>(s));
-    std::vector<std::size_t> set = snapped(exchange, candidates, starts[s], count);
-    exchange.fill(set, count);
-    exchange.improve(set, false, options.search_rounds, job);
-    exchange.improve(set, true, options.search_rounds, job);
+  const auto keep_better = [&](const std::vector<std::size_t>& set) {
     const Worth worth = exchange.worth(set);
     if (best.empty() || set.size() > best.size() ||
         (set.size() == best.size() && worth.better_than(best_worth))) {
       best = set;
       best_worth = worth;
     }
+  };
+  const std::array<std::vector<Eigen::Vector3d>, 3> starts{std::vector<Eigen::Vector3d>{}, corners, ring};
+  for (std::size_t s = 0; s < starts.size() && !job.cancelled(); ++s) {
+    job.progress("pins: search", 0.1);
+    std::vector<std::size_t> set = snapped(exchange, candidates, starts[s], count);
+    exchange.fill(set, count);
+    exchange.improve(set, false, options.search_rounds, job);
+    keep_better(set);
   }
+  // Out of the local optimum: some pins taken away by chance, then put back where they are best.
+  Random random(seed_for(kSearchSeed, candidates.size()));
+  std::vector<std::size_t> around = best;
+  Worth around_worth = exchange.worth(around);
+  for (int kick = 0; kick < options.search_rounds && !job.cancelled(); ++kick) {
+    job.progress("pins: search", 0.2 + 0.4 * kick / options.search_rounds);
+    std::vector<std::size_t> set = around;
+    for (std::size_t k = 0; k < kKickedPins && set.size() > 1; ++k) {
+      set.erase(set.begin() + static_cast<std::ptrdiff_t>(random.below(set.size())));
+    }
+    exchange.fill(set, count);
+    exchange.improve(set, false, options.search_rounds, job);
+    const Worth worth = exchange.worth(set);
+    if (set.size() == count && worth.softer_than(around_worth)) {
+      around = set;
+      around_worth = worth;
+    }
+    keep_better(set);
+  }
+  exchange.improve(best, true, options.search_rounds, job);
   for (std::size_t& i : best) {
     i = exchange.original(i);
   }

@@ -11,6 +11,8 @@
 #include <limits>
 #include <optional>
 
+#include "core/units.h"
+
 namespace dubsar {
 
 namespace {
@@ -105,6 +107,30 @@ bool PinBody::shades(const Sightline& from, const Sightline& other) const {
   return false;
 }
 
+bool PinBody::tip_is_never_free(const Sightline& to) const {
+  return meets({slack_mm_.data(), planes_}, to.facing(), 1.0, -to.margin()).has_value();
+}
+
+bool PinBody::always_shades(const Sightline& from, const Sightline& other) const {
+  for (std::size_t b = 0; b < balls_.size(); ++b) {
+    const std::span<const double> slack{slack_mm_.data() + b * planes_, planes_};
+    const std::optional<Interval> in = meets(slack, from.facing(), -1.0, -from.margin());
+    if (!in) {
+      continue;
+    }
+    // At in->low every ray of the cone is inside, and the height over a plane that it faces only falls on its
+    // way there: what is near the plane there was so where the ray came in.
+    for (std::size_t k = 0; k < planes_; ++k) {
+      const bool faces = from.facing()[k] > from.margin() && other.facing()[k] > other.margin();
+      if (faces &&
+          2.0 * balls_[b].radius_mm - slack[k] - (from.facing()[k] + from.margin()) * in->low >= 0) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
 bool PinBody::tip_is_behind(const PinBody& other, const Sightline& to) const {
   for (const Ball& ball : other.balls_) {
     const Eigen::Vector3d way = ball.center_mm - tip().center_mm;
@@ -116,6 +142,25 @@ bool PinBody::tip_is_behind(const PinBody& other, const Sightline& to) const {
     }
   }
   return false;
+}
+
+PinBody::Shield PinBody::shield_of(const PinBody& other, double margin) const {
+  const Eigen::Vector3d middle = other.balls_[other.balls_.size() / 2].center_mm;
+  Shield shield;
+  shield.axis = (middle - tip().center_mm).normalized();
+  double widest = 0;
+  for (const Ball& ball : other.balls_) {
+    const Eigen::Vector3d way = ball.center_mm - tip().center_mm;
+    const double length = way.norm();
+    const double reach = tip().radius_mm + ball.radius_mm + margin * length;
+    if (length <= 1.5 * reach) {
+      return {shield.axis, -1.0};
+    }
+    widest = std::max(widest, std::acos(std::clamp(way.dot(shield.axis) / length, -1.0, 1.0)) +
+                                  std::asin(reach / length));
+  }
+  shield.least_cosine = widest < kPi ? std::cos(widest) - 1e-9 : -1.0;
+  return shield;
 }
 
 double PinBody::distance_mm(const PinBody& other) const {
@@ -131,6 +176,11 @@ double PinBody::distance_mm(const PinBody& other) const {
 bool stands_and_shows(const PinBody& pin, const Sightline& laser, const Sightline& camera) {
   return pin.tip_is_free(laser) && pin.tip_is_free(camera) && !pin.shades(laser, camera) &&
          !pin.shades(camera, laser);
+}
+
+bool never_stands_and_shows(const PinBody& pin, const Sightline& laser, const Sightline& camera) {
+  return pin.tip_is_never_free(laser) || pin.tip_is_never_free(camera) || pin.always_shades(laser, camera) ||
+         pin.always_shades(camera, laser);
 }
 
 }  // namespace dubsar

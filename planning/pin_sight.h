@@ -14,7 +14,8 @@ namespace dubsar {
 /// articulated holders). Beyond its length the arm is led away by its joints and is not looked at.
 struct PinShape {
   double tip_radius_mm = 0.5;
-  double gap_mm = 1.5;         ///< between tip ball and clay
+  double gap_mm = 1.5;         ///< between tip ball and clay, where the pin stands as near as it may
+  double most_gap_mm = 4.5;    ///< as far as a tip may stand and still point at its place without doubt
   double arm_radius_mm = 1.5;  ///< at the arm's far end; tip_radius_mm at the tip
   double arm_length_mm = 30;
 
@@ -74,8 +75,17 @@ class PinBody {
   /// Some part of the pin stands between the direction and clay that `from` and `other` both see when the pin
   /// is not there.
   [[nodiscard]] bool shades(const Sightline& from, const Sightline& other) const;
+  /// The contrary in every view within the margins.
+  [[nodiscard]] bool tip_is_never_free(const Sightline& to) const;
+  [[nodiscard]] bool always_shades(const Sightline& from, const Sightline& other) const;
   /// Part of the other pin stands before this one's tip.
   [[nodiscard]] bool tip_is_behind(const PinBody& other, const Sightline& to) const;
+  /// Directions farther than this from `axis` see nothing of the other pin before this one's tip.
+  struct Shield {
+    Eigen::Vector3d axis{0, 0, 1};  ///< unit
+    double least_cosine = -1;
+  };
+  [[nodiscard]] Shield shield_of(const PinBody& other, double margin) const;
   /// Least distance between the two pins' surfaces (balls), negative when they meet.
   [[nodiscard]] double distance_mm(const PinBody& other) const;
 
@@ -85,10 +95,15 @@ class PinBody {
   std::size_t planes_;
 };
 
-/// In a view a pin *stands* (is not taken away) when it hides no clay: nothing that laser and camera both see
-/// on the bare tablet is hidden from either of them by the pin's tip or arm. A standing pin is *seen* when
-/// laser and camera both see its whole tip: the tablet does not hide it, and no other pin does, not even one
-/// that would be taken away. This is the first half: all but the other pins.
+/// In a view a pin may *stand* when it hides no clay: nothing that laser and camera both see on the bare tablet
+/// is hidden from either of them by the pin's tip or arm. It *shows* when the tablet hides no part of its tip
+/// from laser or camera. Pins that do not do both are taken away for that scan. A pin is *seen* when it stands
+/// and shows, and no other pin that does stands before its tip, seen from the laser or from the camera. This
+/// is all but the other pins.
 [[nodiscard]] bool stands_and_shows(const PinBody& pin, const Sightline& laser, const Sightline& camera);
+/// In none of the views within the margins does the pin stand and show; with margins of zero the opposite of
+/// stands_and_shows().
+[[nodiscard]] bool never_stands_and_shows(const PinBody& pin, const Sightline& laser,
+                                          const Sightline& camera);
 
 }  // namespace dubsar
