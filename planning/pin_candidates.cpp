@@ -19,7 +19,8 @@ struct RimPlace {
 };
 
 /// Ways out of a corner, all three ways outwards: seen from most sides, such pins show beside the tablet.
-constexpr double kCornerWays[][3] = {{1, 1, 1}, {2, 1, 1}, {1, 2, 1}, {1, 1, 2}, {2, 2, 1}, {2, 1, 2}, {1, 2, 2}};
+constexpr double kCornerWays[][3] = {{1, 1, 1}, {2, 1, 1}, {1, 2, 1}, {1, 1, 2},
+                                     {2, 2, 1}, {2, 1, 2}, {1, 2, 2}};
 
 /// Stations along a side from its middle to just before the corner, in parts of its half length, both ways.
 std::vector<double> stations(double half_mm) {
@@ -52,7 +53,8 @@ std::vector<RimPlace> rim_places(const Eigen::Vector3d& core) {
     RimPlace place{{at.x(), at.y(), height * core.z()}, {}};
     if (std::abs(height) == 1.0 && level.x() != 0 && level.y() != 0) {
       for (const auto& way : kCornerWays) {
-        place.ways.push_back(Eigen::Vector3d(way[0] * level.x(), way[1] * level.y(), way[2] * height).normalized());
+        place.ways.push_back(
+            Eigen::Vector3d(way[0] * level.x(), way[1] * level.y(), way[2] * height).normalized());
       }
     } else if (std::abs(height) == 1.0) {
       for (const double lean : {0.5, 1.0, 2.0}) {

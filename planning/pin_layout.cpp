@@ -74,8 +74,7 @@ Result<PinLayout> plan_pin_layout(const TabletHull& hull, double rim_radius_mm,
   layout.census = count_pins_seen(hull, bodies, options);
   job.progress("pins: proof", 0.8);
   layout.proven = layout.census.least;
-  while (layout.proven > 0 &&
-         !at_least_seen_everywhere(hull, bodies, layout.proven, options, job)) {
+  while (layout.proven > 0 && !at_least_seen_everywhere(hull, bodies, layout.proven, options, job)) {
     --layout.proven;
   }
   if (job.cancelled()) {

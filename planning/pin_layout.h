@@ -22,19 +22,19 @@ struct PinLayoutOptions {
   int count = 15;  ///< 3 to kMostPins
   PinShape shape;
   double triangulation_rad = rad_from_deg(24.0);  ///< between laser and camera
-  double tip_spacing_mm = 4.0;                    ///< least, between two tip centres: nearer pins are mixed up
-  int directions = 1600;    ///< of the laser, over the whole sphere, that are enumerated
-  int rolls = 24;           ///< of the camera about the laser, for each
-  int search_rounds = 24;   ///< of exchange, at most
-  int proof_views = 20000;  ///< cells of views into which each 1/96 of the sphere may be cut for the proof
+  double tip_spacing_mm = 4.0;  ///< least, between two tip centres: nearer pins are mixed up
+  int directions = 1600;        ///< of the laser, over the whole sphere, that are enumerated
+  int rolls = 24;               ///< of the camera about the laser, for each
+  int search_rounds = 30;       ///< of exchange, and of starts anew, at most
+  int proof_views = 3000;  ///< cells of views into which each 1/96 of the sphere may be cut for the proof
 
   [[nodiscard]] Status check() const;
 };
 
 /// One pin of a layout, in the tablet frame.
 struct PlannedPin {
-  int number = 0;                    ///< from 1, anticlockwise round the rim as seen from the obverse
-  Eigen::Vector3d rim_mm{0, 0, 0};   ///< the point of the rim that the tip points at
+  int number = 0;                   ///< from 1, anticlockwise round the rim as seen from the obverse
+  Eigen::Vector3d rim_mm{0, 0, 0};  ///< the point of the rim that the tip points at
   PinPose pose;
 };
 
@@ -67,8 +67,8 @@ struct PinLayout {
                                             int least, const PinLayoutOptions& options,
                                             const JobContext& job);
 
-/// Fifteen points near the rim (the edges of the tablet and the sides between them), such that as many pins as
-/// possible are seen from every view: greedy exchange over candidate points from several starts, the least
+/// Fifteen points near the rim (the edges of the tablet and the sides between them), such that as many pins
+/// as possible are seen from every view: greedy exchange over candidate points from several starts, the least
 /// count over a coarser set of views first, then the mean. rim_radius_mm tells where the edges begin to bend.
 /// Same input, same bytes. Errors: bad options or a hull with no size (kUsage), cancelled.
 [[nodiscard]] Result<PinLayout> plan_pin_layout(const TabletHull& hull, double rim_radius_mm,

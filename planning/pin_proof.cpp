@@ -3,11 +3,11 @@
 // Counting the pins that are seen: over enumerated views, and over all views by subdivision.
 //
 // Why cells prove it. A cell of laser directions has a centre l0 and a chord radius m: each l of the cell
-// differs from l0 by at most m. Turn the view (l, c) by the least rotation that takes l to l0: c comes to a c'
-// beside l0, at a roll that one of the intervals about l0 holds, and |c - c'| <= m, as no unit vector moves by
-// more than the rotation's chord. With c0 at the middle of an interval of half width h, |c' - c0| <=
-// h sin(triangulation). So (l, c) lies within m of l0 and m + h sin(triangulation) of c0, the margins that the
-// tests are given.
+// differs from l0 by at most m. Turn the view (l, c) by the least rotation that takes l to l0: c comes to a
+// c' beside l0, at a roll that one of the intervals about l0 holds, and |c - c'| <= m, as no unit vector
+// moves by more than the rotation's chord. With c0 at the middle of an interval of half width h, |c' - c0| <=
+// h sin(triangulation). So (l, c) lies within m of l0 and m + h sin(triangulation) of c0, the margins that
+// the tests are given.
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
@@ -79,13 +79,14 @@ class Prover {
       const Cell cell = open.back();
       open.pop_back();
       switch (judge(cell, views_left)) {
-        case Verdict::kHolds: break;
-        case Verdict::kBroken: return false;
+        case Verdict::kHolds:
+          break;
+        case Verdict::kBroken:
+          return false;
         case Verdict::kTooCoarse:
           for (const double du : {-0.5, 0.5}) {
             for (const double dv : {-0.5, 0.5}) {
-              open.push_back(
-                  {cell.side, cell.u + du * cell.half, cell.v + dv * cell.half, 0.5 * cell.half});
+              open.push_back({cell.side, cell.u + du * cell.half, cell.v + dv * cell.half, 0.5 * cell.half});
             }
           }
           break;
@@ -159,7 +160,8 @@ PinCensus count_pins_seen(const TabletHull& hull, const std::vector<PinBody>& pi
       seen.size(),
       [&](std::size_t i) {
         const SightView view = view_at(i);
-        seen[i] = pins_seen(pins, Sightline(hull, view.to_laser, 0.0), Sightline(hull, view.to_camera, 0.0), 0);
+        seen[i] =
+            pins_seen(pins, Sightline(hull, view.to_laser, 0.0), Sightline(hull, view.to_camera, 0.0), 0);
       },
       64);
   PinCensus census;

@@ -71,7 +71,7 @@ std::size_t ones(const Bits& bits) {
   return n;
 }
 
-/// How good a set is. `soft` sums 4^-seen over the views: views with few pins weigh, so that the search finds
+/// How good a set is. `soft` sums 8^-seen over the views: views with few pins weigh, so that the search finds
 /// its way before the least count moves.
 struct Worth {
   int least = 0;
@@ -161,7 +161,7 @@ class Exchange {
         worth.at_least = views_with[n];
       }
       worth.total += n * views_with[n];
-      worth.soft += static_cast<std::uint64_t>(views_with[n]) << (2 * (kMostPins - n));
+      worth.soft += static_cast<std::uint64_t>(views_with[n]) << (3 * (kMostPins - n));
     }
     return worth;
   }
@@ -286,7 +286,8 @@ std::vector<std::size_t> snapped(const Exchange& exchange, const std::vector<Pla
     std::size_t nearest = exchange.size();
     double least = 0;
     for (std::size_t c = 0; c < exchange.size(); ++c) {
-      const bool free = std::all_of(set.begin(), set.end(), [&](std::size_t s) { return exchange.apart(c, s); });
+      const bool free =
+          std::all_of(set.begin(), set.end(), [&](std::size_t s) { return exchange.apart(c, s); });
       const double distance = (candidates[exchange.original(c)].pose.tip_mm - wish).norm();
       if (free && (nearest == exchange.size() || distance < least)) {
         nearest = c;
@@ -319,8 +320,7 @@ std::vector<std::size_t> search_pins(const TabletHull& hull, const std::vector<P
   for (std::size_t i = 0; i < count; ++i) {
     const double azimuth = 2.0 * kPi * static_cast<double>(i) / static_cast<double>(count);
     const double up = i % 2 == 0 ? 1.0 : -1.0;
-    ring.emplace_back(
-        hull.half_mm.cwiseProduct(Eigen::Vector3d(std::cos(azimuth), std::sin(azimuth), up)));
+    ring.emplace_back(hull.half_mm.cwiseProduct(Eigen::Vector3d(std::cos(azimuth), std::sin(azimuth), up)));
   }
   std::vector<std::size_t> best;
   Worth best_worth;

@@ -122,8 +122,7 @@ bool PinBody::always_shades(const Sightline& from, const Sightline& other) const
     // way there: what is near the plane there was so where the ray came in.
     for (std::size_t k = 0; k < planes_; ++k) {
       const bool faces = from.facing()[k] > from.margin() && other.facing()[k] > other.margin();
-      if (faces &&
-          2.0 * balls_[b].radius_mm - slack[k] - (from.facing()[k] + from.margin()) * in->low >= 0) {
+      if (faces && 2.0 * balls_[b].radius_mm - slack[k] - (from.facing()[k] + from.margin()) * in->low >= 0) {
         return true;
       }
     }
@@ -156,8 +155,8 @@ PinBody::Shield PinBody::shield_of(const PinBody& other, double margin) const {
     if (length <= 1.5 * reach) {
       return {shield.axis, -1.0};
     }
-    widest = std::max(widest, std::acos(std::clamp(way.dot(shield.axis) / length, -1.0, 1.0)) +
-                                  std::asin(reach / length));
+    widest = std::max(
+        widest, std::acos(std::clamp(way.dot(shield.axis) / length, -1.0, 1.0)) + std::asin(reach / length));
   }
   shield.least_cosine = widest < kPi ? std::cos(widest) - 1e-9 : -1.0;
   return shield;

@@ -15,7 +15,7 @@ namespace dubsar {
 struct PinShape {
   double tip_radius_mm = 0.5;
   double gap_mm = 1.5;         ///< between tip ball and clay, where the pin stands as near as it may
-  double most_gap_mm = 4.5;    ///< as far as a tip may stand and still point at its place without doubt
+  double most_gap_mm = 6.0;    ///< as far as a tip may stand and still point at its place without doubt
   double arm_radius_mm = 1.5;  ///< at the arm's far end; tip_radius_mm at the tip
   double arm_length_mm = 30;
 
@@ -95,11 +95,11 @@ class PinBody {
   std::size_t planes_;
 };
 
-/// In a view a pin may *stand* when it hides no clay: nothing that laser and camera both see on the bare tablet
-/// is hidden from either of them by the pin's tip or arm. It *shows* when the tablet hides no part of its tip
-/// from laser or camera. Pins that do not do both are taken away for that scan. A pin is *seen* when it stands
-/// and shows, and no other pin that does stands before its tip, seen from the laser or from the camera. This
-/// is all but the other pins.
+/// In a view a pin may *stand* when it hides no clay: nothing that laser and camera both see on the bare
+/// tablet is hidden from either of them by the pin's tip or arm. It *shows* when the tablet hides no part of
+/// its tip from laser or camera. Pins that do not do both are taken away for that scan. A pin is *seen* when
+/// it stands and shows, and no other pin that does stands before its tip, seen from the laser or from the
+/// camera. This is all but the other pins.
 [[nodiscard]] bool stands_and_shows(const PinBody& pin, const Sightline& laser, const Sightline& camera);
 /// In none of the views within the margins does the pin stand and show; with margins of zero the opposite of
 /// stands_and_shows().

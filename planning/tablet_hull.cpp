@@ -20,9 +20,8 @@ std::vector<Eigen::Vector3d> plane_directions(const Eigen::Vector3d& half_mm) {
   std::vector<Eigen::Vector3d> directions;
   const auto add = [&](const Eigen::Vector3d& n) {
     const Eigen::Vector3d unit = n.normalized();
-    const bool known = std::any_of(directions.begin(), directions.end(), [&](const Eigen::Vector3d& d) {
-      return d.dot(unit) > kSameDirection;
-    });
+    const bool known = std::any_of(directions.begin(), directions.end(),
+                                   [&](const Eigen::Vector3d& d) { return d.dot(unit) > kSameDirection; });
     if (!known) {
       directions.push_back(unit);
     }
