@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <vector>
 
 #include "archive/glyphs.h"
 #include "archive/six_views.h"
@@ -20,7 +21,7 @@ constexpr Rgb8 kClay{196, 164, 128};
 constexpr Rgb8 kPin{40, 84, 160};
 constexpr Rgb8 kInk{20, 20, 20};
 constexpr int kRoundSteps = 16;
-constexpr int kMarginPx = 30;  // room for numbers
+constexpr int kMarginPx = 48;  // room for numbers
 constexpr int kTextScale = 2;
 
 /// A body of revolution about the pin's axis: (distance along the arm, radius) from the tip's front to the
@@ -114,6 +115,7 @@ Result<Image> pin_layout_picture(const Mesh& tablet, std::span<const PicturedPin
     if (!framing) {
       return std::unexpected(framing.error());
     }
+    std::vector<Eigen::Vector3i> numbers;  // middle and half width, px
     const Eigen::Vector3d to_viewer = camera.view_from_model.row(2).transpose();
     for (const PicturedPin& pin : pins) {
       const Eigen::Vector3d far_mm = pin.tip_mm + 4.0 * size_mm * to_viewer;
@@ -124,7 +126,18 @@ Result<Image> pin_layout_picture(const Mesh& tablet, std::span<const PicturedPin
       const Eigen::Vector3d end =
           camera.view_from_model * (pin.tip_mm + (length_mm + 2.0 * radius_mm) * pin.arm);
       const int x = static_cast<int>(std::lround((end.x() - framing->left_mm) / framing->mm_per_px));
-      const int y = static_cast<int>(std::lround((framing->top_mm - end.y()) / framing->mm_per_px));
+      int y = static_cast<int>(std::lround((framing->top_mm - end.y()) / framing->mm_per_px));
+      const int half = text_width(number, kTextScale) / 2;
+      const auto taken = [&] {
+        return std::any_of(numbers.begin(), numbers.end(), [&](const Eigen::Vector3i& other) {
+          return std::abs(other.x() - x) < other.z() + half &&
+                 std::abs(other.y() - y) < kGlyphHeight * kTextScale;
+        });
+      };
+      while (taken()) {  // pins one behind the other: the numbers stand in a column
+        y += kGlyphHeight * kTextScale;
+      }
+      numbers.emplace_back(x, y, half);
       draw_text(image, x - text_width(number, kTextScale) / 2, y - kGlyphHeight * kTextScale / 2, number,
                 kInk, kTextScale);
     }

@@ -29,8 +29,8 @@ Status PinLayoutOptions::check() const {
       !(shape.arm_length_mm > 0)) {
     return bad("a pin needs a tip, a gap and an arm that does not thin out");
   }
-  if (!(triangulation_rad > 0 && triangulation_rad < 0.5 * kPi)) {
-    return bad("the angle between laser and camera must be between 0 and 90 degrees");
+  if (!(triangulation_rad >= 0 && triangulation_rad < 0.5 * kPi)) {
+    return bad("the angle between laser and camera must be at least 0 and below 90 degrees");
   }
   if (!(tip_spacing_mm >= 0) || directions < 1 || rolls < 1 || search_rounds < 0 || proof_views < 1) {
     return bad("counts and distances must not be negative");

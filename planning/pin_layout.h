@@ -21,7 +21,7 @@ inline constexpr int kFewPinsSeen = 6;
 struct PinLayoutOptions {
   int count = 15;  ///< 3 to kMostPins
   PinShape shape;
-  double triangulation_rad = rad_from_deg(24.0);  ///< between laser and camera
+  double triangulation_rad = rad_from_deg(24.0);  ///< between laser and camera; 0: seen from one point
   double tip_spacing_mm = 4.0;  ///< least, between two tip centres: nearer pins are mixed up
   int directions = 1600;        ///< of the laser, over the whole sphere, that are enumerated
   int rolls = 24;               ///< of the camera about the laser, for each

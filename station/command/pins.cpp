@@ -162,8 +162,9 @@ void add_pins(CLI::App& app, Action& chosen) {
   size->excludes(mesh);
   verb->add_option("-o,--out", arguments->out, "write the picture here (PNG)");
   verb->add_option("--count", arguments->count, "pins, at most 15")->check(CLI::Range(3, 15));
-  verb->add_option("--triangulation", arguments->triangulation_deg, "degrees between laser and camera")
-      ->check(CLI::Range(1.0, 80.0));
+  verb->add_option("--triangulation", arguments->triangulation_deg,
+                   "degrees between laser and camera; 0: one viewpoint")
+      ->check(CLI::Range(0.0, 80.0));
   verb->fallthrough();
   verb->callback(
       [&chosen, arguments] { chosen = [arguments](CommandContext& c) { return pins(*arguments, c); }; });
