@@ -67,10 +67,11 @@ struct PinLayout {
                                             int least, const PinLayoutOptions& options,
                                             const JobContext& job);
 
-/// Fifteen points near the rim (the edges of the tablet and the sides between them), such that as many pins
-/// as possible are seen from every view: greedy exchange over candidate points from several starts, the least
-/// count over a coarser set of views first, then the mean. rim_radius_mm tells where the edges begin to bend.
-/// Same input, same bytes. Errors: bad options or a hull with no size (kUsage), cancelled.
+/// Points near the rim, fifteen or options.count (the edges of the tablet and the sides between them), such
+/// that as many pins as possible are seen from every view: greedy exchange over candidate points from several
+/// starts, the least count over a coarser set of views first, then the mean. rim_radius_mm tells where the
+/// edges begin to bend. Same input, same bytes. Errors: bad options or a hull with no size (kUsage),
+/// cancelled.
 [[nodiscard]] Result<PinLayout> plan_pin_layout(const TabletHull& hull, double rim_radius_mm,
                                                 const PinLayoutOptions& options, const JobContext& job);
 
