@@ -35,6 +35,7 @@ void add_simulate(CLI::App& app, Action& chosen);
 void add_scan(CLI::App& app, Action& chosen);
 void add_register(CLI::App& app, Action& chosen);
 void add_plan(CLI::App& app, Action& chosen);
+void add_pins(CLI::App& app, Action& chosen);
 void add_stitch(CLI::App& app, Action& chosen);
 void add_mesh(CLI::App& app, Action& chosen);
 void add_verify(CLI::App& app, Action& chosen);
