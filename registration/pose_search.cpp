@@ -7,6 +7,7 @@
 
 #include "core/parallel.h"
 #include "core/units.h"
+#include "registration/align_near.h"
 #include "registration/self_similarity.h"
 
 namespace dubsar {
@@ -34,13 +35,6 @@ void merge(std::vector<ModelFit>& into, std::vector<ModelFit> more, const ScanSu
     }
   }
   into = std::move(kept);
-}
-
-/// The pose turned by `angle` about an axis through the scan's centroid.
-RigidTransform turned(const RigidTransform& pose, const Eigen::Vector3d& center, const Eigen::Vector3d& axis,
-                      double angle) {
-  const Eigen::Matrix3d r = Eigen::AngleAxisd(angle, axis).toRotationMatrix();
-  return {r * pose.rotation, r * (pose.translation_mm - center) + center};
 }
 
 /// Half turns under which a nearly symmetric tablet would look the same: about the principal axes of the
@@ -82,19 +76,6 @@ bool near_asked(const RigidTransform& pose, const PoseHints& hints, const ScanSu
              sigmas * std::hypot(hints.hand_sigma_mm, lever);
 }
 
-/// The asked pose and turns about it, within what hands do.
-std::vector<RigidTransform> around_asked(const PoseHints& hints, const ScanSurface& scan) {
-  std::vector<RigidTransform> out{*hints.asked};
-  const Eigen::Vector3d center = *hints.asked * scan.centroid_mm;
-  for (int axis = 0; axis < 3; ++axis) {
-    for (const double side : {-1.0, 1.0}) {
-      out.push_back(
-          turned(*hints.asked, center, Eigen::Vector3d::Unit(axis), 1.2 * side * hints.hand_sigma_rad));
-    }
-  }
-  return out;
-}
-
 bool enough(const FoundPose& found, const PoseSearchOptions& options) {
   return found.verdict.status == PoseStatus::kRegistered &&
          (found.fits.front().significance >= options.enough_significance ||
@@ -108,10 +89,7 @@ FoundPose search_pose(const ScanSurface& scan, std::span<const ModelScan> model,
                       const PairHypotheses& pair_hypotheses, const ShapeTest& shape_is_distinctive,
                       const PoseSearchOptions& options, const JobContext& job) {
   FoundPose found;
-  const auto look = [&](std::span<const RigidTransform> starts, bool told = false) {
-    ModelFitOptions fit_options = options.fit;
-    fit_options.least_significance = told ? 0.0 : options.fit.least_significance;
-    std::vector<ModelFit> fits = fit_to_model(scan, model, starts, fit_options);
+  const auto take = [&](std::vector<ModelFit> fits) {
     std::erase_if(fits,
                   [&](const ModelFit& f) { return !near_asked(f.model_from_scanner, hints, scan, options); });
     for (ModelFit& fit : fits) {
@@ -123,6 +101,11 @@ FoundPose search_pose(const ScanSurface& scan, std::span<const ModelScan> model,
     }
     merge(found.fits, std::move(fits), scan, options.fit);
     found.verdict = verify_pose(found.fits, options.verify);
+  };
+  ModelFitOptions told_fit = options.fit;
+  told_fit.least_significance = 0;  // more than the surface speaks for these starts
+  const auto look = [&](std::span<const RigidTransform> starts, bool told = false) {
+    take(fit_to_model(scan, model, starts, told ? told_fit : options.fit));
   };
 
   // What relief does not settle the shape may, where it is like nothing else: the fits so far were not worth
@@ -188,7 +171,10 @@ FoundPose search_pose(const ScanSurface& scan, std::span<const ModelScan> model,
     settled = enough(found, options);
   }
   if (hints.asked && !settled) {
-    look(around_asked(hints, scan), true);
+    AlignNearOptions near;
+    near.fit = told_fit;
+    near.verify = options.verify;
+    take(align_near(scan, model, *hints.asked, near));
     settled = enough(found, options);
   }
   if (hints.asked && settled) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "registration/align_near.h"
 #include "registration/pin_advice.h"
 #include "registration/pin_detection.h"
 #include "registration/pin_labels.h"
@@ -398,9 +399,11 @@ bool ScanModel::place(int id, const RigidTransform& model_from_scanner, bool loc
     retry(job);
     return true;
   }
-  ModelFitOptions hinted = options_.search.fit;
-  hinted.least_significance = 0;
-  std::vector<ModelFit> fits = fit_to_model(*scan.features.surface, model, {&model_from_scanner, 1}, hinted);
+  AlignNearOptions near;
+  near.fit = options_.search.fit;
+  near.fit.least_significance = 0;  // the operator speaks for it
+  near.verify = options_.search.verify;
+  std::vector<ModelFit> fits = align_near(*scan.features.surface, model, model_from_scanner, near);
   for (ModelFit& fit : fits) {
     fit.told = true;
   }
