@@ -3,14 +3,10 @@
 #include "bench/support/pinned_scans.h"
 
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 #include <optional>
 
+#include "bench/support/true_scans.h"
 #include "core/parallel.h"
-#include "sim/pins.h"
-#include "sim/scan_plan.h"
-#include "sim/scanner.h"
 
 namespace dubsar::bench {
 
@@ -18,11 +14,6 @@ namespace {
 
 /// Farther off its ray's surface than noise puts it, even where the surface is grazed.
 constexpr double kStrayMm = 0.25;
-
-[[noreturn]] void give_up(const Error& error) {
-  std::fprintf(stderr, "%s\n", error.line().c_str());
-  std::exit(2);
-}
 
 /// A sample lies on the laser's ray that made it, wherever noise or a mixture put it: the ray is cast again.
 std::vector<SampleTruth> truth_of(const RangeGrid& grid, const sim::Scene& scene,
@@ -54,39 +45,25 @@ std::vector<SampleTruth> truth_of(const RangeGrid& grid, const sim::Scene& scene
 
 }  // namespace
 
-std::vector<PinnedScan> pinned_scans(const sim::TabletOptions& tablet_options,
-                                     const PinnedScanOptions& options) {
-  JobContext job;
-  const auto tablet = sim::make_tablet(tablet_options, job);
-  if (!tablet) {
-    give_up(tablet.error());
-  }
-  const MeshQuery query(tablet->mesh);
-  const sim::TriangulationScanner scanner(
-      sim::scanner_for(tablet_options.size_mm, options.spacing_mm, options.noise_mm));
-  sim::PinOptions pin_options;
-  pin_options.seed = options.seed;
-  pin_options.tip_diameter_mm = options.tip_diameter_mm;
-  const sim::PinStand stand(*tablet, query, pin_options);
-  const auto plan = sim::plan_views(options.views, options.seed);
+std::vector<PinnedScan> pinned_scans(const sim::TabletOptions& tablet, const PinnedScanOptions& options) {
+  TrueScanOptions scan_options;
+  scan_options.spacing_mm = options.spacing_mm;
+  scan_options.noise_mm = options.noise_mm;
+  scan_options.views = options.views;
+  scan_options.seed = options.seed;
+  scan_options.pins = Pins::kUnlabelled;
+  scan_options.tip_diameter_mm = options.tip_diameter_mm;
   std::vector<PinnedScan> scans;
-  for (std::size_t v = 0; v < plan.size(); ++v) {
-    const RigidTransform& pose = plan[v].tablet_from_scanner;
-    sim::Scene scene{&*tablet, &query, {}, std::nullopt};
-    scene.pins = sim::standing_pins(stand.placed(static_cast<int>(v)), scene, scanner, pose);
-    auto grid = scanner.scan_grid(scene, pose, options.seed * 100 + v, job);
-    if (!grid) {
-      give_up(grid.error());
-    }
-    PinnedScan scan{std::move(*grid), pose, scene.pins, {}};
-    scan.truth = truth_of(scan.grid, scene, pose);
+  (void)true_scans(tablet, scan_options, [&](const sim::Scene& scene, const TrueScan& made) {
+    const RigidTransform& pose = made.tablet_from_scanner;
+    PinnedScan scan{*made.grid, pose, scene.pins, truth_of(*made.grid, scene, pose)};
     const RigidTransform scanner_from_tablet = pose.inverse();
     for (sim::Pin& pin : scan.pins) {
       pin.tip_mm = scanner_from_tablet * pin.tip_mm;
       pin.arm = scanner_from_tablet.rotation * pin.arm;
     }
     scans.push_back(std::move(scan));
-  }
+  });
   return scans;
 }
 

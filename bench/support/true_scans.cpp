@@ -50,7 +50,8 @@ sim::TabletOptions random_tablet(std::uint64_t seed, std::string_view kind, doub
   return t;
 }
 
-std::vector<TrueScan> true_scans(const sim::TabletOptions& tablet_options, const TrueScanOptions& options) {
+std::vector<TrueScan> true_scans(const sim::TabletOptions& tablet_options, const TrueScanOptions& options,
+                                 const ScanVisitor& visitor) {
   JobContext job;
   const auto tablet = sim::make_tablet(tablet_options, job);
   if (!tablet) {
@@ -61,6 +62,7 @@ std::vector<TrueScan> true_scans(const sim::TabletOptions& tablet_options, const
       sim::scanner_for(tablet_options.size_mm, options.spacing_mm, options.noise_mm));
   sim::PinOptions pin_options;
   pin_options.seed = options.seed;
+  pin_options.tip_diameter_mm = options.tip_diameter_mm;
   const sim::PinStand stand(*tablet, query, pin_options);
   const auto plan = sim::plan_views(options.views, options.seed);
   std::vector<std::size_t> views = options.only;
@@ -81,6 +83,9 @@ std::vector<TrueScan> true_scans(const sim::TabletOptions& tablet_options, const
     scans.push_back({std::make_shared<const RangeGrid>(std::move(*grid)), pose,
                      sim::clicked_tips(sim::tips_in_scanner(scene.pins, pose), 1.0, options.seed * 100 + v),
                      options.tablet_number});
+    if (visitor) {
+      visitor(scene, scans.back());
+    }
   }
   return scans;
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string_view>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "core/pin_set.h"
 #include "core/range_grid.h"
 #include "core/rigid_transform.h"
+#include "sim/scene.h"
 #include "sim/tablet.h"
 
 namespace dubsar::bench {
@@ -32,7 +34,11 @@ struct TrueScanOptions {
   std::uint64_t seed = 1;
   Pins pins = Pins::kNone;
   int tablet_number = 0;
+  double tip_diameter_mm = 1.0;
 };
+
+/// Is shown each scan as it is made, with the scene that it was made of (tablet frame).
+using ScanVisitor = std::function<void(const sim::Scene& scene, const TrueScan& scan)>;
 
 /// A tablet of random size and wear: "text" (written, damaged as most are), "blank" (no text), "worn", "tiny"
 /// (20 mm), "symmetric" (blank, square and even).
@@ -41,7 +47,8 @@ struct TrueScanOptions {
 /// Scans it from free views with nothing told of the poses; exits the program when it cannot. Clicked tips
 /// are off by up to 1 mm.
 [[nodiscard]] std::vector<TrueScan> true_scans(const sim::TabletOptions& tablet,
-                                               const TrueScanOptions& options);
+                                               const TrueScanOptions& options,
+                                               const ScanVisitor& visitor = {});
 
 /// The pins of all scans as `--pins FILE` would give them.
 [[nodiscard]] PinSet pin_set(const std::vector<TrueScan>& scans, Pins pins);
