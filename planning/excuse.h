@@ -12,13 +12,13 @@
 namespace dubsar {
 
 struct ExcuseOptions {
-  double interpolation_mm = 0.025;  ///< seed 001: 25 µm
-  double largest_gap_mm = 0.6;      ///< below half the smallest wedge: larger holes may hide a sign
-  double fit_margin_mm = 0.45;      ///< of surface around the hole that the fit uses; at least 4.5 µ
-  double confidence_sigmas = 2.0;   ///< the interpolation error is stated at this many standard errors
-  double stray_mm = 0.2;            ///< farther than this from the surface a return is not of the surface
-  int stray_views = 1;              ///< other scans that look past it
-  double largest_stray_mm2 = 2.0;   ///< a larger group of samples is an object, not strays
+  double interpolation_mm = 0.025;     ///< seed 001: 25 µm
+  double largest_gap_mm = 0.6;         ///< below half the smallest wedge: larger holes may hide a sign
+  double fit_margin_mm = 0.45;         ///< of surface around the hole that the fit uses; at least 4.5 µ
+  double confidence_sigmas = 2.0;      ///< the interpolation error is stated at this many standard errors
+  double stray_mm = 0.2;               ///< farther than this from the surface a return is not of the surface
+  int stray_views = 1;                 ///< other scans that look past it
+  std::size_t most_stray_samples = 3;  ///< a larger group is taken for a stray only when it is looked past
   /// Below this best predicted chance over all poses a place is out of reach.
   double least_chance = 0.05;
   /// Red that covers less than this many µ² is a speck: of the size that noise makes; `speck_tries` settle
@@ -46,8 +46,7 @@ void excuse_specks(std::span<const PlacedScan> scans, const SurfaceCover& cover,
 
 /// Unneeded: strays, returns from nowhere (outliers, mixed pixels at depth edges). The test: no surface of
 /// the model lies within stray_mm (at least 2 µ) of the red samples, and at least stray_views scans sample
-/// the surface behind them well, through the very place; or the place
-/// lies inside the clay, surface around it on all sides. noise_mm: by scan.
+/// the surface behind them well, through the very place. noise_mm: by scan.
 void excuse_strays(std::span<const PlacedScan> scans, std::span<const double> noise_mm,
                    const ModelSurface& surface, const ExcuseOptions& options, RedTargets& red);
 

@@ -34,10 +34,10 @@ Vector6 quadric_terms(double u, double v) {
 
 /// How well a quadric through the surroundings stands in for a hole; mm.
 struct Interpolation {
-  double width_mm = 0;     ///< of the hole
-  double bend_mm = 0;      ///< by which the surroundings deviate from the quadric beyond noise
-  double error_mm = 0;     ///< of the fit at the worst place in the hole, one standard error
-  double deviation_mm = 0; ///< of the worst red sample from it
+  double width_mm = 0;                  ///< of the hole
+  double bend_mm = 0;                   ///< by which the surroundings deviate from the quadric beyond noise
+  double error_mm = 0;                  ///< of the fit at the worst place in the hole, one standard error
+  double deviation_mm = 0;              ///< of the worst red sample from it
   std::vector<Eigen::Vector3d> filled;  ///< the interpolated place of each target
 };
 
@@ -108,9 +108,10 @@ std::optional<Interpolation> interpolate(const SurfaceCover& cover, const RedTar
 
 std::string describe(const Interpolation& fit, double good_to_mm) {
   std::array<char, 160> line{};
-  std::snprintf(line.data(), line.size(),
-                "gap of %.2f mm; its surroundings bend by %.0f µm from a quadric, interpolation good to %.0f µm",
-                fit.width_mm, 1000 * fit.bend_mm, 1000 * good_to_mm);
+  std::snprintf(
+      line.data(), line.size(),
+      "gap of %.2f mm; its surroundings bend by %.0f µm from a quadric, interpolation good to %.0f µm",
+      fit.width_mm, 1000 * fit.bend_mm, 1000 * good_to_mm);
   return line.data();
 }
 
@@ -140,7 +141,8 @@ void excuse_unneeded(std::span<const PlacedScan> scans, const SurfaceCover& cove
       continue;
     }
     const double good_to_mm = fit->bend_mm + options.confidence_sigmas * fit->error_mm;
-    if (good_to_mm > options.interpolation_mm || fit->deviation_mm > good_to_mm + 3 * kNoiseOfSlopes * noise_mm) {
+    if (good_to_mm > options.interpolation_mm ||
+        fit->deviation_mm > good_to_mm + 3 * kNoiseOfSlopes * noise_mm) {
       continue;
     }
     const std::string reason = describe(*fit, good_to_mm);
@@ -199,7 +201,8 @@ void excuse_specks(std::span<const PlacedScan> scans, const SurfaceCover& cover,
     }
     for (std::size_t k = 0; k < group.size(); ++k) {
       red.targets[group[k]].excuse_as(
-          Excuse::kUnneeded, "speck: the gap is no larger than the rule of 3µ lets pass, and closes in a straight line");
+          Excuse::kUnneeded,
+          "speck: the gap is no larger than the rule of 3µ lets pass, and closes in a straight line");
       red.targets[group[k]].interpolated_mm = filled[k];
     }
   }

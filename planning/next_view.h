@@ -17,7 +17,7 @@ struct NextViewOptions {
   CandidateOptions candidates;
   std::size_t max_targets = 1500;  ///< more are thinned, their areas shared out
   double least_overlap = 0.3;      ///< with what has been seen, to register
-  double hand_turn_cost = 0.5;     ///< of lifting the tablet, in scans
+  double hand_turn_cost = 0.25;    ///< of lifting the tablet, in scans
   double least_gain_mm2 = 1e-4;    ///< a view that clears less is not proposed
   std::size_t ranked = 5;          ///< views returned
 };

@@ -18,8 +18,8 @@ double cleared_area_mm2(const RedTargets& before, const PlacedScan& scan, const 
   }
   const GridLookup lookup(*scan.grid, keep);
   const double noise_mm = estimate_noise_mm(*scan.grid);
-  const auto radius_mm = static_cast<float>(matching_radius_mm(*scan.grid, noise_mm, scan.sigma_mm, *scan.grid,
-                                                               noise_mm, scan.sigma_mm, options));
+  const auto radius_mm = static_cast<float>(
+      matching_radius_mm(*scan.grid, noise_mm, scan.sigma_mm, *scan.grid, noise_mm, scan.sigma_mm, options));
   const PlacedScan only[] = {scan};
   const double step_mm = std::max(ModelSurfaceOptions{}.step_mm, spacing_of(*scan.grid));
   const MeshQuery surface(thinned_surface(only, step_mm));
@@ -34,8 +34,10 @@ double cleared_area_mm2(const RedTargets& before, const PlacedScan& scan, const 
             continue;
           }
           const bool cleared =
-              t.unseen && !t.rim ? seen_from_outside(surface, {t.position_mm, t.normal, t.area_mm2}, step_mm)
-                       : lookup.nearest((scanner_from_model * (t.rim ? t.position_mm : t.sample_mm)).cast<float>(), radius_mm) >= 0;
+              t.unseen && !t.rim
+                  ? seen_from_outside(surface, {t.position_mm, t.normal, t.area_mm2}, step_mm)
+                  : lookup.nearest((scanner_from_model * (t.rim ? t.position_mm : t.sample_mm)).cast<float>(),
+                                   radius_mm) >= 0;
           area += cleared ? t.area_mm2 : 0.0;
         }
         return area;

@@ -81,7 +81,7 @@ Result<RedMapResult> make_red_map(std::span<const PlacedScan> scans, const Mesh*
   std::sort(sorted.begin(), sorted.end());
   const double median_noise_mm = sorted[sorted.size() / 2];
   const SurfaceCover cover(scans);
-  settle_closed(scans, cover, options.excuse.largest_stray_mm2, out.targets);
+  settle_closed(scans, cover, median_noise_mm, options.excuse.most_stray_samples, out.targets);
   excuse_strays(scans, noise_mm, surface, options.excuse, out.targets);
   add_rim_targets(cover, options.targets.longest_gap_mm, out.targets);
   excuse_unneeded(scans, cover, median_noise_mm, options.excuse, out.targets);
