@@ -9,6 +9,7 @@
 #include "core/tablet_frame.h"
 #include "planning/model_faces.h"
 #include "planning/red_map.h"
+#include "planning/sample_states.h"
 
 namespace dubsar {
 
@@ -64,7 +65,9 @@ Status PlanningStage::place(const std::vector<ScanPose>& poses, bool exact, JobC
     if (there != placed_.end()) {
       const double moved_mm =
           displacement_mm(*scan.grid, there->second.model_from_scanner, scan.model_from_scanner);
-      if (moved_mm <= (exact ? 0.0 : kStaysWithin * scan.grid->spacing_mm)) {
+      // A pose that stays may have become more certain, which changes how far its samples clear others.
+      const bool as_certain = there->second.sigma_mm == scan.sigma_mm;
+      if (exact ? moved_mm <= 0 && as_certain : moved_mm <= kStaysWithin * scan.grid->spacing_mm) {
         continue;
       }
       cleared_.reposition(id, scan.model_from_scanner, scan.sigma_mm);
@@ -95,14 +98,11 @@ Result<RedMap> PlanningStage::red_map(const Rig* rig, JobContext& job) {
     return std::unexpected(result.error());
   }
   excused_flags_ = std::move(result->flags);
+  targets_ = std::move(result->targets);
   return std::move(result->map);
 }
 
-ColouredPoints PlanningStage::red_points(const Mesh& mesh) const {
-  Eigen::AlignedBox3f box;
-  for (const Eigen::Vector3f& p : mesh.positions) {
-    box.extend(p);
-  }
+ColouredPoints PlanningStage::red_points() const {
   ColouredPoints points;
   const std::vector<PlacedScan> scans = cleared_.scans();
   for (std::size_t k = 0; k < scans.size() && k < excused_flags_.size(); ++k) {
@@ -110,21 +110,30 @@ ColouredPoints PlanningStage::red_points(const Mesh& mesh) const {
     // As wide as the gap that it stands beside: a thin rim would hardly show.
     points.radius_mm = std::max(points.radius_mm, static_cast<float>(1.5 * grid.spacing_mm));
     points.bury_mm = std::max(points.bury_mm, static_cast<float>(2.0 * grid.spacing_mm));
+    const SampleStates states =
+        sample_states(grid, excused_flags_[k], {}, targets_, static_cast<std::uint32_t>(k));
     for (std::size_t i = 0; i < grid.size(); ++i) {
-      const std::uint8_t flags = excused_flags_[k][i];
-      const bool red = is_red(flags);
-      if (!red && (flags & kExcused) == 0) {
-        continue;
+      const SampleState state = states.state[i];
+      const bool red = state == SampleState::kRed;
+      if (red || state == SampleState::kInterpolated || state == SampleState::kUnreachable) {
+        points.positions_mm.push_back(
+            (scans[k].model_from_scanner * grid.point(i).cast<double>()).cast<float>());
+        points.colours.push_back(red ? kRedOfSparse : kAmberOfExcused);
       }
-      const Eigen::Vector3f p = (scans[k].model_from_scanner * grid.point(i).cast<double>()).cast<float>();
-      if (!red && !box.isEmpty() && box.exteriorDistance(p) > 2 * grid.spacing_mm) {
-        continue;
-      }
-      points.positions_mm.push_back(p);
-      points.colours.push_back(red ? kRedOfSparse : kAmberOfExcused);
     }
   }
   return points;
+}
+
+std::optional<SampleStates> PlanningStage::states(int id) const {
+  const std::vector<PlacedScan> scans = cleared_.scans();
+  for (std::size_t k = 0; k < scans.size() && k < excused_flags_.size(); ++k) {
+    if (scans[k].id == id) {
+      return sample_states(*scans[k].grid, excused_flags_[k], cleared_.cleared_by(id), targets_,
+                           static_cast<std::uint32_t>(k));
+    }
+  }
+  return std::nullopt;
 }
 
 RigidTransform PlanningStage::tablet_from_model(const Mesh& mesh) const {

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "archive/region_picture.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "archive/scale_bar.h"
+
+namespace dubsar {
+
+namespace {
+
+constexpr int kSidePx = 232;
+constexpr double kLeastMm = 6;   ///< a wedge and its neighbours: small enough to see, large enough to find
+constexpr double kMostMm = 30;
+constexpr double kRoomRound = 3;  ///< of the picture's side to the region's
+constexpr double kShadowMm = 4;
+constexpr Rgb8 kRing{20, 60, 200};
+constexpr Rgb8 kBarInk{24, 24, 24};
+
+/// The triangles near a place, with their vertices alone.
+Mesh cut_out(const Mesh& mesh, const Eigen::Vector3f& center, float radius_mm) {
+  constexpr std::uint32_t kAbsent = 0xffffffffU;
+  const float limit2 = radius_mm * radius_mm;
+  Mesh out;
+  std::vector<std::uint32_t> taken(mesh.positions.size(), kAbsent);
+  const bool has_normals = mesh.normals.size() == mesh.positions.size();
+  const bool has_flags = mesh.flags.size() == mesh.positions.size();
+  for (const auto& face : mesh.faces) {
+    if (face[0] >= mesh.positions.size() || face[1] >= mesh.positions.size() ||
+        face[2] >= mesh.positions.size() || !((mesh.positions[face[0]] - center).squaredNorm() <= limit2)) {
+      continue;
+    }
+    std::array<std::uint32_t, 3> kept{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      std::uint32_t& v = taken[face[k]];
+      if (v == kAbsent) {
+        v = static_cast<std::uint32_t>(out.positions.size());
+        out.positions.push_back(mesh.positions[face[k]]);
+        if (has_normals) {
+          out.normals.push_back(mesh.normals[face[k]]);
+        }
+        if (has_flags) {
+          out.flags.push_back(mesh.flags[face[k]]);
+        }
+      }
+      kept[k] = v;
+    }
+    out.faces.push_back(kept);
+  }
+  return out;
+}
+
+ColouredPoints marks_near(const ColouredPoints& marks, const Eigen::Vector3f& center, float radius_mm) {
+  ColouredPoints out;
+  out.radius_mm = 0.5F * marks.radius_mm;  // the clay below should still be seen
+  out.bury_mm = marks.bury_mm;
+  const bool has_colours = marks.colours.size() == marks.positions_mm.size();
+  for (std::size_t i = 0; i < marks.positions_mm.size(); ++i) {
+    if ((marks.positions_mm[i] - center).norm() <= radius_mm) {
+      out.positions_mm.push_back(marks.positions_mm[i]);
+      out.colours.push_back(has_colours ? marks.colours[i] : kRedOfSparse);
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+void draw_ring(Image& image, double x, double y, double radius_px, double thickness_px, Rgb8 colour) {
+  const double reach = radius_px + thickness_px;
+  for (int j = static_cast<int>(std::floor(y - reach)); j <= static_cast<int>(std::ceil(y + reach)); ++j) {
+    for (int i = static_cast<int>(std::floor(x - reach)); i <= static_cast<int>(std::ceil(x + reach)); ++i) {
+      const double off = std::abs(std::hypot(i + 0.5 - x, j + 0.5 - y) - radius_px) - 0.5 * thickness_px;
+      const double cover = std::clamp(0.5 - off, 0.0, 1.0);
+      if (cover <= 0 || !image.inside(i, j)) {
+        continue;
+      }
+      const std::size_t at = image.offset(i, j);
+      for (std::size_t k = 0; k < 3; ++k) {
+        const double mixed = image.bytes[at + k] + cover * (colour[k] - image.bytes[at + k]);
+        image.bytes[at + k] = static_cast<std::uint8_t>(std::lround(mixed));
+      }
+    }
+  }
+}
+
+Result<Image> region_picture(const Mesh& mesh, const ColouredPoints& marks, const RedRegion& region,
+                             const RigidTransform& tablet_from_model, const JobContext& job) {
+  const double across_mm =
+      2 * std::sqrt(std::max(0.0, std::isfinite(region.area_mm2) ? region.area_mm2 : 0.0) / std::numbers::pi);
+  const double side_mm = std::clamp(kRoomRound * across_mm, kLeastMm, kMostMm);
+  const Eigen::Vector3f center = region.center_mm.cast<float>();
+  const auto reach_mm = static_cast<float>(0.75 * side_mm + kShadowMm);
+  const Mesh near = cut_out(mesh, center, reach_mm);
+  const ColouredPoints points = marks_near(marks, center, reach_mm);
+  const ViewCamera face = face_camera(region.face, tablet_from_model);
+  const ViewCamera camera = free_camera(region.normal, face.view_from_model.row(1).transpose());
+
+  RenderOptions options;
+  options.style = RenderStyle::kRedMap;
+  options.mm_per_px = side_mm / kSidePx;
+  options.window = RenderWindow{region.center_mm, side_mm, side_mm};
+  const RenderScene scene(near, points.positions_mm.empty() ? nullptr : &points);
+  Image image;
+  if (scene.empty()) {  // nothing was ever meshed near it
+    image = filled_image(kSidePx, kSidePx, options.background);
+    image.mm_per_px = options.mm_per_px;
+  } else {
+    Result<Image> drawn = render(scene, camera, options, job);
+    if (!drawn) {
+      return drawn;
+    }
+    image = std::move(*drawn);
+  }
+  const double radius_px = std::max(9.0, 0.65 * across_mm / options.mm_per_px);
+  draw_ring(image, 0.5 * image.width, 0.5 * image.height, radius_px + 1, 3.5, kPaper);
+  draw_ring(image, 0.5 * image.width, 0.5 * image.height, radius_px + 1, 1.8, kRing);
+  const ScaleBar bar = scale_bar_for(image.mm_per_px, image.width);
+  const int left = 6;
+  const int top = image.height - bar.height_px - 6;
+  fill_rectangle(image, left - 3, top - 3, bar.width_px + 6, bar.height_px + 6, kPaper);
+  draw_scale_bar(image, bar, left, top, kBarInk);
+  return image;
+}
+
+}  // namespace dubsar
