@@ -22,9 +22,11 @@ std::string pose_line(const ScanPose& pose) {
   std::string line = "pose " + std::to_string(pose.id) + " " + to_string(pose.status);
   if (pose.status != PoseStatus::kFailed) {
     for (const double value : pose.model_from_scanner.row_major()) {
-      line += " " + number_text(value);
+      line += ' ';
+      line += number_text(value);
     }
-    line += " sigma_mm " + number_text(pose.sigma_mm);
+    line += " sigma_mm ";
+    line += number_text(pose.sigma_mm);
   }
   return line + "\n";
 }

@@ -21,17 +21,28 @@ constexpr double kShadowMm = 4;
 constexpr Rgb8 kRing{20, 60, 200};
 constexpr Rgb8 kBarInk{24, 24, 24};
 
-/// The triangles near a place, with their vertices alone.
-Mesh cut_out(const Mesh& mesh, const Eigen::Vector3f& center, float radius_mm) {
+double diameter_mm(const RedRegion& region) {
+  const double area_mm2 = std::isfinite(region.area_mm2) ? std::max(0.0, region.area_mm2) : 0.0;
+  return 2 * std::sqrt(area_mm2 / std::numbers::pi);
+}
+
+/// The triangles beside and behind a place as it is looked at, with their vertices alone. What lies far before
+/// it would hide it; what lies behind is seen through cracks.
+Mesh cut_out(const Mesh& mesh, const Eigen::Vector3f& center, const Eigen::Vector3f& towards_viewer,
+             float radius_mm) {
   constexpr std::uint32_t kAbsent = 0xffffffffU;
-  const float limit2 = radius_mm * radius_mm;
+  const auto is_near = [&](const Eigen::Vector3f& p) {
+    const Eigen::Vector3f d = p - center;
+    const float before = d.dot(towards_viewer);
+    return before <= radius_mm && (d - before * towards_viewer).squaredNorm() <= radius_mm * radius_mm;
+  };
   Mesh out;
   std::vector<std::uint32_t> taken(mesh.positions.size(), kAbsent);
   const bool has_normals = mesh.normals.size() == mesh.positions.size();
   const bool has_flags = mesh.flags.size() == mesh.positions.size();
   for (const auto& face : mesh.faces) {
     if (face[0] >= mesh.positions.size() || face[1] >= mesh.positions.size() ||
-        face[2] >= mesh.positions.size() || !((mesh.positions[face[0]] - center).squaredNorm() <= limit2)) {
+        face[2] >= mesh.positions.size() || !is_near(mesh.positions[face[0]])) {
       continue;
     }
     std::array<std::uint32_t, 3> kept{};
@@ -88,17 +99,53 @@ void draw_ring(Image& image, double x, double y, double radius_px, double thickn
   }
 }
 
+Eigen::Vector3d outlook(const Mesh& mesh, const RedRegion& region) {
+  constexpr double kLeastReachMm = 1.5;
+  constexpr double kAgreement = 0.3;  ///< of the normals; below it they point every way, as round a thin rim
+  const auto reach_mm = static_cast<float>(std::max(kLeastReachMm, diameter_mm(region)));
+  const Eigen::Vector3f center = region.center_mm.cast<float>();
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  double area = 0;
+  for (const auto& [a, b, c] : mesh.faces) {
+    if (a >= mesh.positions.size() || b >= mesh.positions.size() || c >= mesh.positions.size() ||
+        !((mesh.positions[a] - center).squaredNorm() <= reach_mm * reach_mm)) {
+      continue;
+    }
+    const Eigen::Vector3d n = (mesh.positions[b] - mesh.positions[a])
+                                  .cross(mesh.positions[c] - mesh.positions[a])
+                                  .cast<double>();
+    if (n.allFinite()) {
+      sum += n;
+      area += n.norm();
+    }
+  }
+  return sum.norm() > kAgreement * area ? Eigen::Vector3d(sum.normalized()) : region.normal;
+}
+
+Face face_towards(const Eigen::Vector3d& direction, const RigidTransform& tablet_from_model) {
+  Face best = Face::kObverse;
+  double most = -2;
+  for (int f = 0; f < kFaceCount; ++f) {
+    const Eigen::Matrix3d view = face_camera(static_cast<Face>(f), tablet_from_model).view_from_model;
+    if (const double towards = view.row(2).dot(direction); towards > most) {
+      most = towards;
+      best = static_cast<Face>(f);
+    }
+  }
+  return best;
+}
+
 Result<Image> region_picture(const Mesh& mesh, const ColouredPoints& marks, const RedRegion& region,
-                             const RigidTransform& tablet_from_model, const JobContext& job) {
-  const double across_mm =
-      2 * std::sqrt(std::max(0.0, std::isfinite(region.area_mm2) ? region.area_mm2 : 0.0) / std::numbers::pi);
+                             const Eigen::Vector3d& towards_viewer, const RigidTransform& tablet_from_model,
+                             const JobContext& job) {
+  const double across_mm = diameter_mm(region);
   const double side_mm = std::clamp(kRoomRound * across_mm, kLeastMm, kMostMm);
   const Eigen::Vector3f center = region.center_mm.cast<float>();
   const auto reach_mm = static_cast<float>(0.75 * side_mm + kShadowMm);
-  const Mesh near = cut_out(mesh, center, reach_mm);
+  const Mesh near = cut_out(mesh, center, towards_viewer.cast<float>(), reach_mm);
   const ColouredPoints points = marks_near(marks, center, reach_mm);
-  const ViewCamera face = face_camera(region.face, tablet_from_model);
-  const ViewCamera camera = free_camera(region.normal, face.view_from_model.row(1).transpose());
+  const ViewCamera face = face_camera(face_towards(towards_viewer, tablet_from_model), tablet_from_model);
+  const ViewCamera camera = free_camera(towards_viewer, face.view_from_model.row(1).transpose());
 
   RenderOptions options;
   options.style = RenderStyle::kRedMap;

@@ -2,6 +2,7 @@
 // Copyright The Dubsar developers
 #include "archive/report_pictures.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
@@ -13,7 +14,7 @@ namespace dubsar {
 namespace {
 
 constexpr Rgb8 kNumberInk{20, 60, 200};
-constexpr int kNumberScale = 2;
+constexpr int kNumberScale = 4;  ///< still legible on the page, where the sheet is half as wide
 
 double size_of(const RedRegion& region) {
   return std::isfinite(region.area_mm2) ? region.area_mm2 : 0.0;
@@ -31,22 +32,31 @@ Status number_places(const ReportInput& input, const std::vector<RegionPicture>&
     if (!framing) {
       return std::unexpected(framing.error());
     }
+    std::vector<Eigen::AlignedBox2i> taken;
     for (const RegionPicture& place : places) {
       const RedRegion& region = input.red_map.regions[place.region];
-      if (region.face != face) {
+      if (place.side != face) {
         continue;
       }
       const Eigen::Vector3d p = camera.view_from_model * region.center_mm;
       const double x = (p.x() - framing->left_mm) / framing->mm_per_px;
       const double y = (framing->top_mm - p.y()) / framing->mm_per_px;
-      const double radius_px = std::max(8.0, 0.7 * std::sqrt(size_of(region)) / framing->mm_per_px);
-      draw_ring(image, x, y, radius_px, 1.8, kNumberInk);
+      const double radius_px = std::max(9.0, 0.7 * std::sqrt(size_of(region)) / framing->mm_per_px);
+      draw_ring(image, x, y, radius_px, 3.0, kNumberInk);
       const std::string number = std::to_string(region_number(place.region));
       const int wide = text_width(number, kNumberScale);
-      const bool fits_right = x + radius_px + 3 + wide < image.width;
-      const int left = static_cast<int>(fits_right ? x + radius_px + 3 : x - radius_px - 3 - wide);
-      draw_text(image, left, static_cast<int>(y) - kGlyphHeight * kNumberScale / 2, number, kNumberInk,
-                kNumberScale);
+      const bool fits_right = x + radius_px + 4 + wide < image.width;
+      const int left = static_cast<int>(fits_right ? x + radius_px + 4 : x - radius_px - 4 - wide);
+      const int high = kGlyphHeight * kNumberScale;
+      Eigen::AlignedBox2i box(Eigen::Vector2i(left, static_cast<int>(y) - high / 2),
+                              Eigen::Vector2i(left + wide, static_cast<int>(y) + high / 2));
+      while (std::ranges::any_of(taken, [&](const Eigen::AlignedBox2i& other) {
+        return other.intersects(box);
+      })) {  // places close together: their numbers stand in a column
+        box.translate(Eigen::Vector2i(0, high / 2));
+      }
+      taken.push_back(box);
+      draw_text(image, box.min().x(), box.min().y(), number, kNumberInk, kNumberScale);
     }
   }
   return {};
@@ -107,12 +117,14 @@ Result<ReportPictures> draw_pictures(const ReportInput& input, const JobContext&
     if (out.regions.size() == kMostRegionPictures) {
       break;
     }
-    Result<Image> image = region_picture(input.model, input.red_points, input.red_map.regions[k],
-                                         input.tablet_from_model, job);
+    const RedRegion& region = input.red_map.regions[k];
+    const Eigen::Vector3d towards = outlook(input.model, region);
+    Result<Image> image =
+        region_picture(input.model, input.red_points, region, towards, input.tablet_from_model, job);
     if (!image) {
       return std::unexpected(image.error());
     }
-    out.regions.push_back({k, std::move(*image)});
+    out.regions.push_back({k, face_towards(towards, input.tablet_from_model), std::move(*image)});
   }
 
   const RenderScene marked(input.model, &input.red_points);

@@ -12,7 +12,8 @@ namespace dubsar {
 
 /// One place of the red map, seen from where it looks to, a ring round it.
 struct RegionPicture {
-  std::size_t region = 0;  ///< position in RedMap::regions
+  std::size_t region = 0;         ///< position in RedMap::regions
+  Face side = Face::kObverse;     ///< whose picture shows it best
   Image image;
 };
 
