@@ -188,8 +188,8 @@ Result<SignOffLog> read_sign_offs(const SessionStore& store, const JobContext& j
     if (event.kind != kSigned) {
       continue;
     }
-    Result<RecordedSignOff> recorded = parse_recorded_sign_off(
-        event.json, "event " + std::to_string(event.number) + " of the session");
+    Result<RecordedSignOff> recorded =
+        parse_recorded_sign_off(event.json, "event " + std::to_string(event.number) + " of the session");
     if (!recorded) {
       log.damage.push_back(recorded.error());
       continue;

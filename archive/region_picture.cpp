@@ -14,7 +14,7 @@ namespace dubsar {
 namespace {
 
 constexpr int kSidePx = 232;
-constexpr double kLeastMm = 6;   ///< a wedge and its neighbours: small enough to see, large enough to find
+constexpr double kLeastMm = 6;  ///< a wedge and its neighbours: small enough to see, large enough to find
 constexpr double kMostMm = 30;
 constexpr double kRoomRound = 3;  ///< of the picture's side to the region's
 constexpr double kShadowMm = 4;
@@ -26,8 +26,8 @@ double diameter_mm(const RedRegion& region) {
   return 2 * std::sqrt(area_mm2 / std::numbers::pi);
 }
 
-/// The triangles beside and behind a place as it is looked at, with their vertices alone. What lies far before
-/// it would hide it; what lies behind is seen through cracks.
+/// The triangles beside and behind a place as it is looked at, with their vertices alone. What lies far
+/// before it would hide it; what lies behind is seen through cracks.
 Mesh cut_out(const Mesh& mesh, const Eigen::Vector3f& center, const Eigen::Vector3f& towards_viewer,
              float radius_mm) {
   constexpr std::uint32_t kAbsent = 0xffffffffU;
@@ -111,9 +111,8 @@ Eigen::Vector3d outlook(const Mesh& mesh, const RedRegion& region) {
         !((mesh.positions[a] - center).squaredNorm() <= reach_mm * reach_mm)) {
       continue;
     }
-    const Eigen::Vector3d n = (mesh.positions[b] - mesh.positions[a])
-                                  .cross(mesh.positions[c] - mesh.positions[a])
-                                  .cast<double>();
+    const Eigen::Vector3d n =
+        (mesh.positions[b] - mesh.positions[a]).cross(mesh.positions[c] - mesh.positions[a]).cast<double>();
     if (n.allFinite()) {
       sum += n;
       area += n.norm();

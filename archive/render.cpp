@@ -100,8 +100,8 @@ Status RenderOptions::check() const {
   if (!towards_lamp.allFinite() || !(towards_lamp.norm() > 0)) {
     return fail(ErrorKind::kUsage, "the lamp needs a direction", "rendering");
   }
-  if (window && !(mm_per_px > 0 && window->center_mm.allFinite() && window->width_mm > 0 &&
-                  window->height_mm > 0)) {
+  if (window &&
+      !(mm_per_px > 0 && window->center_mm.allFinite() && window->width_mm > 0 && window->height_mm > 0)) {
     return fail(ErrorKind::kUsage, "a window needs a scale, a place and a size", "rendering");
   }
   if (!(recess_radius_mm > 0) || !(shadow_reach_mm > 0) || !(relief >= 0 && relief <= 1)) {

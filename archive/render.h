@@ -35,7 +35,7 @@ struct RenderOptions {
   double recess_radius_mm = 2.5;  ///< surroundings that take light from a recess; a wedge is 1 to 5 mm
   double shadow_reach_mm = 4.0;
   std::optional<RenderWindow> window;  ///< needs mm_per_px; there is no margin round it then
-  double relief = 0.3;  ///< how far ridges are lightened and valleys darkened, 0 to 1
+  double relief = 0.3;                 ///< how far ridges are lightened and valleys darkened, 0 to 1
 
   [[nodiscard]] Status check() const;
 };

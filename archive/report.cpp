@@ -24,14 +24,10 @@ double floored(double value) {
   return std::floor(value * 100.0) / 100.0;
 }
 
-Result<std::string> picture(const Image& image, const std::string& title, const std::string& alt) {
-  const Result<std::string> uri = png_data_uri(image, title);
-  if (!uri) {
-    return std::unexpected(uri.error());
-  }
+std::string picture_tag(const Image& image, const std::string& uri, const std::string& alt) {
   return "<img alt=\"" + html_escaped(alt) + "\" width=\"" + std::to_string(image.width) + "\" height=\"" +
          std::to_string(image.height) + "\" style=\"--mm: " + fixed(image.width * image.mm_per_px, 2) +
-         "mm\" src=\"" + *uri + "\">";
+         "mm\" src=\"" + uri + "\">";
 }
 
 Result<std::string> six_sides(const ReportInput& input, const ReportPictures& pictures) {
@@ -52,11 +48,12 @@ Result<std::string> six_sides(const ReportInput& input, const ReportPictures& pi
                      "; --print-scale: " + fixed(std::max(0.01, print_scale), 2) + "\">\n";
   for (const Face face : kSixViewOrder) {
     const std::string name = to_string(face);
-    const Result<std::string> img = picture(views[face], input.title + ", " + name, "The " + name);
-    if (!img) {
-      return img;
+    const Result<std::string> uri = png_data_uri(views[face], input.title + ", " + name);
+    if (!uri) {
+      return uri;
     }
-    html.append("<figure style=\"grid-area: ").append(name).append("\">").append(*img);
+    html.append("<figure style=\"grid-area: ").append(name).append("\">");
+    html += picture_tag(views[face], *uri, "The " + name);
     html.append("<figcaption>").append(name).append("</figcaption></figure>\n");
   }
   html +=
@@ -87,16 +84,14 @@ std::string header(const ReportInput& input, const std::string& kicker) {
 
 }  // namespace
 
-Result<std::string> red_sheet_section(const ReportInput& input, const ReportPictures& pictures) {
+std::string red_sheet_section(const ReportInput& input, const ReportPictures& pictures) {
   if (pictures.empty) {
-    return std::string();
+    return {};
   }
-  const Result<std::string> img = picture(halved(pictures.red_sheet), input.title + ", red map",
-                                          "Red map of the six sides, unrolled round the obverse");
-  if (!img) {
-    return img;
-  }
-  return "<section>\n<h2>Red map</h2>\n<figure class=\"sheet\">" + *img +
+  const std::string img =
+      picture_tag(pictures.red_page, pictures.red_page_uri,
+                  "Red map of the six sides of " + input.title + ", unrolled round the obverse");
+  return "<section>\n<h2>Red map</h2>\n<figure class=\"sheet\">" + img +
          "<figcaption><span class=\"swatch\" style=\"background: #d61e26\"></span>sampled too thinly, still "
          "to scan"
          "<span class=\"swatch\" style=\"background: #e2a02a\"></span>interpolated, or excused"
@@ -122,19 +117,15 @@ Result<std::string> report_html(const ReportInput& input, const ReportPictures& 
   std::string html = page_head(input, "scan report", "Scan report");
   html += verdict_section(input);
   html += next_section(input);
-  for (const auto& section : {six_sides(input, pictures), red_sheet_section(input, pictures)}) {
-    if (!section) {
-      return section;
-    }
-    html += *section;
+  const Result<std::string> sides = six_sides(input, pictures);
+  if (!sides) {
+    return sides;
   }
+  html += *sides;
+  html += red_sheet_section(input, pictures);
   html += checklist_section(input);
   html += sign_off_section(input);
-  const Result<std::string> regions = regions_section(input, pictures);
-  if (!regions) {
-    return regions;
-  }
-  html += *regions;
+  html += regions_section(input, pictures);
   html += scans_section(input);
   html += accuracy_section(input);
   html += not_measured_section(input);

@@ -18,7 +18,8 @@ constexpr const char* kDash = "–";
 /// Rounded towards what is missing: a hair below all is not all.
 std::string percent(double share, int decimals = 1) {
   const double steps = std::pow(10.0, decimals);
-  return fixed(share >= 1 ? 100.0 : std::floor(100 * share * steps + (share < 0.5 ? 0.5 : 0.0)) / steps, decimals);
+  return fixed(share >= 1 ? 100.0 : std::floor(100 * share * steps + (share < 0.5 ? 0.5 : 0.0)) / steps,
+               decimals);
 }
 
 /// "3.25 in 2: 2.00, 1.25"
@@ -45,18 +46,17 @@ std::string faces_table(const Checklist& list) {
     total.excused_mm2 += face.excused_mm2;
     const bool is_red = !face.red_regions_mm2.empty() || face.red_mm2 > 0;
     const std::string state = face.seen_mm2 <= 0 ? "not seen" : is_red ? "red" : "done";
-    rows += table_row({to_string(static_cast<Face>(f)), fixed(face.seen_mm2, 1), percent(face.coverage(), 2),
-                       sizes(face.red_mm2, face.red_regions_mm2),
-                       sizes(face.excused_mm2, face.excused_regions_mm2), fixed(face.interpolated_mm2, 2),
-                       state},
-                      state == "done" ? "" : "open");
+    rows +=
+        table_row({to_string(static_cast<Face>(f)), fixed(face.seen_mm2, 1), percent(face.coverage(), 2),
+                   sizes(face.red_mm2, face.red_regions_mm2),
+                   sizes(face.excused_mm2, face.excused_regions_mm2), fixed(face.interpolated_mm2, 2), state},
+                  state == "done" ? "" : "open");
   }
   rows += table_row({"all", fixed(total.seen_mm2, 1), percent(total.coverage(), 2), fixed(total.red_mm2, 2),
                      fixed(total.excused_mm2, 2), fixed(total.interpolated_mm2, 2), ""},
                     "sum");
-  return html_table("faces",
-                    {"Face", "Seen, mm²", "Seen, %", "Red, mm²", "Excused, mm²", "Filled, mm²", "State"},
-                    rows);
+  return html_table(
+      "faces", {"Face", "Seen, mm²", "Seen, %", "Red, mm²", "Excused, mm²", "Filled, mm²", "State"}, rows);
 }
 
 std::string micrometres_of(double mm) {

@@ -5,9 +5,12 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "archive/glyphs.h"
+#include "archive/png.h"
 #include "archive/region_picture.h"
+#include "core/parallel.h"
 
 namespace dubsar {
 
@@ -57,6 +60,33 @@ Status number_places(const ReportInput& input, const std::vector<RegionPicture>&
       }
       taken.push_back(box);
       draw_text(image, box.min().x(), box.min().y(), number, kNumberInk, kNumberScale);
+    }
+  }
+  return {};
+}
+
+/// The pictures of the pages as data URIs; packing takes longer than drawing, so all at once.
+Status encode(const ReportInput& input, ReportPictures& pictures) {
+  std::vector<std::optional<Error>> failed(pictures.regions.size() + 1);
+  parallel_for_each_index(
+      failed.size(),
+      [&](std::size_t k) {
+        const bool sheet = k == pictures.regions.size();
+        const Image& image = sheet ? pictures.red_page : pictures.regions[k].image;
+        Result<std::string> uri = png_data_uri(
+            image,
+            input.title + (sheet ? ", red map"
+                                 : ", place " + std::to_string(region_number(pictures.regions[k].region))));
+        if (uri) {
+          (sheet ? pictures.red_page_uri : pictures.regions[k].uri) = std::move(*uri);
+        } else {
+          failed[k] = uri.error();
+        }
+      },
+      1);
+  for (const std::optional<Error>& error : failed) {
+    if (error) {
+      return std::unexpected(*error);
     }
   }
   return {};
@@ -124,7 +154,7 @@ Result<ReportPictures> draw_pictures(const ReportInput& input, const JobContext&
     if (!image) {
       return std::unexpected(image.error());
     }
-    out.regions.push_back({k, face_towards(towards, input.tablet_from_model), std::move(*image)});
+    out.regions.push_back({k, face_towards(towards, input.tablet_from_model), std::move(*image), {}});
   }
 
   const RenderScene marked(input.model, &input.red_points);
@@ -137,6 +167,10 @@ Result<ReportPictures> draw_pictures(const ReportInput& input, const JobContext&
     return std::unexpected(numbered.error());
   }
   out.red_sheet = six_view_sheet(*red, options);
+  out.red_page = halved(out.red_sheet);
+  if (const Status encoded = encode(input, out); !encoded) {
+    return std::unexpected(encoded.error());
+  }
   return out;
 }
 

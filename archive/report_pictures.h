@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <string>
 #include <vector>
 
 #include "archive/report.h"
@@ -12,9 +13,10 @@ namespace dubsar {
 
 /// One place of the red map, seen from where it looks to, a ring round it.
 struct RegionPicture {
-  std::size_t region = 0;         ///< position in RedMap::regions
-  Face side = Face::kObverse;     ///< whose picture shows it best
+  std::size_t region = 0;      ///< position in RedMap::regions
+  Face side = Face::kObverse;  ///< whose picture shows it best
   Image image;
+  std::string uri;  ///< the image as a data URI
 };
 
 /// All that report, checklist and picture files show, drawn once.
@@ -23,13 +25,15 @@ struct ReportPictures {
   SixViews sides;
   Image sides_sheet;
   Image red_sheet;  ///< with the numbers of the pictured places
+  Image red_page;   ///< the same, half as large
+  std::string red_page_uri;
   std::vector<RegionPicture> regions;  ///< red ones first, then the largest
 };
 
 /// Places that get a picture of their own; the rest stand in the table.
 inline constexpr std::size_t kMostRegionPictures = 24;
 
-/// Errors: a picture that cannot be drawn, cancelled.
+/// What goes onto both pages is encoded here, once. Errors: a picture that cannot be drawn, cancelled.
 [[nodiscard]] Result<ReportPictures> draw_pictures(const ReportInput& input, const JobContext& job);
 
 /// Positions in map.regions of what a person has to look at: red ones first, then by size; strays are left

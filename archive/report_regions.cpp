@@ -8,7 +8,6 @@
 
 #include "archive/html.h"
 #include "archive/html_table.h"
-#include "archive/png.h"
 #include "archive/report_sections.h"
 
 namespace dubsar {
@@ -31,23 +30,19 @@ std::string place_of(const ReportInput& input, const RedRegion& region) {
   return fixed(p.x(), 1) + ", " + fixed(p.y(), 1) + ", " + fixed(p.z(), 1);
 }
 
-Result<std::string> cards(const ReportInput& input, const ReportPictures& pictures) {
+std::string cards(const ReportInput& input, const ReportPictures& pictures) {
   if (pictures.regions.empty()) {
-    return std::string();
+    return {};
   }
   std::string html = "<div class=\"places\">\n";
   for (const RegionPicture& one : pictures.regions) {
     const RedRegion& region = input.red_map.regions[one.region];
     const std::string number = std::to_string(region_number(one.region));
-    const Result<std::string> uri = png_data_uri(one.image, input.title + ", place " + number);
-    if (!uri) {
-      return uri;
-    }
     html += std::string("<figure") + (region.state == RegionState::kRed ? " class=\"open\"" : "") +
-            "><img alt=\"Place " + number + "\" width=\"" + std::to_string(one.image.width) +
-            "\" height=\"" + std::to_string(one.image.height) + "\" src=\"" + *uri + "\"><figcaption><b>" +
-            number + "</b> " + state_of(region) + ", " + to_string(region.face) + ", " +
-            fixed(region.area_mm2, 2) + " mm²<br>at " + place_of(input, region) + " mm" +
+            "><img alt=\"Place " + number + "\" width=\"" + std::to_string(one.image.width) + "\" height=\"" +
+            std::to_string(one.image.height) + "\" src=\"" + one.uri + "\"><figcaption><b>" + number +
+            "</b> " + state_of(region) + ", " + to_string(region.face) + ", " + fixed(region.area_mm2, 2) +
+            " mm²<br>at " + place_of(input, region) + " mm" +
             (region.reason.empty() ? "" : "<br>" + html_escaped(region.reason)) + "</figcaption></figure>\n";
   }
   return html + "</div>\n";
@@ -89,7 +84,7 @@ std::string strays_line(const RedMap& map) {
 
 }  // namespace
 
-Result<std::string> regions_section(const ReportInput& input, const ReportPictures& pictures) {
+std::string regions_section(const ReportInput& input, const ReportPictures& pictures) {
   std::string html = "<section>\n<h2>Red and excused places</h2>\n";
   std::vector<std::size_t> order = regions_by_weight(input.red_map);
   if (order.empty()) {
@@ -100,14 +95,10 @@ Result<std::string> regions_section(const ReportInput& input, const ReportPictur
   html += "<p>" + counted(red.count, "red place", "red places") + ", " + fixed(red.area_mm2, 2) + " mm²; " +
           counted(excused.count, "excused place", "excused places") + ", " + fixed(excused.area_mm2, 2) +
           " mm².</p>\n";
-  const Result<std::string> drawn = cards(input, pictures);
-  if (!drawn) {
-    return drawn;
-  }
   std::erase_if(order, [&](std::size_t k) {
     return std::ranges::find(pictures.regions, k, &RegionPicture::region) != pictures.regions.end();
   });
-  return html + *drawn + rest_table(input, order) + strays_line(input.red_map) +
+  return html + cards(input, pictures) + rest_table(input, order) + strays_line(input.red_map) +
          "<p class=\"aside\">An area is that of the hole which the red border encloses, by estimate: what "
          "nobody has seen has no samples. Places are in the tablet’s frame: x to the right and y to the top "
          "edge of the obverse, z out of it, from the middle of the tablet. Numbers are those of the red map "

@@ -6,7 +6,6 @@
 
 #include "archive/report.h"
 #include "archive/report_pictures.h"
-#include "core/result.h"
 
 namespace dubsar {
 
@@ -15,8 +14,8 @@ namespace dubsar {
 [[nodiscard]] std::string next_section(const ReportInput& input);
 [[nodiscard]] std::string checklist_section(const ReportInput& input);
 [[nodiscard]] std::string sign_off_section(const ReportInput& input);
-[[nodiscard]] Result<std::string> regions_section(const ReportInput& input, const ReportPictures& pictures);
-[[nodiscard]] Result<std::string> red_sheet_section(const ReportInput& input, const ReportPictures& pictures);
+[[nodiscard]] std::string regions_section(const ReportInput& input, const ReportPictures& pictures);
+[[nodiscard]] std::string red_sheet_section(const ReportInput& input, const ReportPictures& pictures);
 [[nodiscard]] std::string scans_section(const ReportInput& input);
 [[nodiscard]] std::string accuracy_section(const ReportInput& input);
 [[nodiscard]] std::string not_measured_section(const ReportInput& input);

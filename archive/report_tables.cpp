@@ -41,20 +41,20 @@ std::string scans_section(const ReportInput& input) {
     const RedScan* counts = find_counts(input.red_map, scan.id);
     const bool placed = scan.status != PoseStatus::kFailed;
     const std::string dash = "–";
-    rows +=
-        table_row({std::to_string(scan.id), html_escaped(scan.file),
-             std::string(to_string(scan.status)) + (scan.locked ? ", fixed by the operator" : ""),
-             placed ? micrometres(scan.rms_mm) : dash, placed ? micrometres(scan.sigma_mm) : dash,
-             placed ? fixed(100.0 * scan.overlap, 0) : dash, counts ? std::to_string(counts->samples) : dash,
-             counts ? std::to_string(counts->sparse) : dash, counts ? std::to_string(counts->cleared) : dash,
-             counts ? std::to_string(counts->excused) : dash, html_escaped(scan.reason)},
-            scan.status == PoseStatus::kRegistered ? "" : "open");
+    rows += table_row(
+        {std::to_string(scan.id), html_escaped(scan.file),
+         std::string(to_string(scan.status)) + (scan.locked ? ", fixed by the operator" : ""),
+         placed ? micrometres(scan.rms_mm) : dash, placed ? micrometres(scan.sigma_mm) : dash,
+         placed ? fixed(100.0 * scan.overlap, 0) : dash, counts ? std::to_string(counts->samples) : dash,
+         counts ? std::to_string(counts->sparse) : dash, counts ? std::to_string(counts->cleared) : dash,
+         counts ? std::to_string(counts->excused) : dash, html_escaped(scan.reason)},
+        scan.status == PoseStatus::kRegistered ? "" : "open");
   }
   return "<section>\n<h2>Scans</h2>\n" +
          html_table("scans",
-               {"No", "File", "Status", "rms, µm", "σ, µm", "Overlap, %", "Samples", "Red", "Cleared",
-                "Excused", "Reason"},
-               rows) +
+                    {"No", "File", "Status", "rms, µm", "σ, µm", "Overlap, %", "Samples", "Red", "Cleared",
+                     "Excused", "Reason"},
+                    rows) +
          "<p class=\"aside\">rms: residual from points to the surface of the other scans over the overlap. "
          "σ: how far "
          "this scan’s surface may be off because of its pose, as predicted. Overlap: share of the smaller "

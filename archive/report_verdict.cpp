@@ -76,7 +76,8 @@ std::string verdict_section(const ReportInput& input) {
     excuses += "<p>Signed by " + html_escaped(checked->sign_off.name) + " on " +
                html_escaped(checked->sign_off.when) +
                (checked->sign_off.incomplete.empty() ? "" : ", as incomplete") +
-               (checked->holds() ? "." : "; <strong>void: the session has changed since</strong>.") + "</p>\n";
+               (checked->holds() ? "." : "; <strong>void: the session has changed since</strong>.") +
+               "</p>\n";
   }
   if (is_conclusive(input)) {
     return "<section class=\"verdict yes\">\n<h2>Conclusive</h2>\n<p>Every part of the tablet that this "

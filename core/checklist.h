@@ -24,12 +24,12 @@ struct Spread {
 /// How well a stretch of surface was sampled (docs/scholars/measurements.md, "How well the surface was
 /// sampled"). Shares are of the surface, in [0, 1]; all zero without any.
 struct SamplingQuality {
-  std::int64_t places = 0;      ///< that were looked at, spread evenly over the surface
-  Spread spacing_mm;            ///< on the surface, of the samples of all scans together
-  double fine_share = 0;        ///< of the surface with such a spacing of at most kFineSpacingMm
-  Spread single_spacing_mm;     ///< on the surface, along the coarser direction of the best single scan
-  double single_fine_share = 0; ///< likewise
-  Spread incidence_rad;         ///< best angle between the normal and the worse of laser and camera
+  std::int64_t places = 0;       ///< that were looked at, spread evenly over the surface
+  Spread spacing_mm;             ///< on the surface, of the samples of all scans together
+  double fine_share = 0;         ///< of the surface with such a spacing of at most kFineSpacingMm
+  Spread single_spacing_mm;      ///< on the surface, along the coarser direction of the best single scan
+  double single_fine_share = 0;  ///< likewise
+  Spread incidence_rad;          ///< best angle between the normal and the worse of laser and camera
   static constexpr std::size_t kAngleBins = 9;
   std::array<double, kAngleBins> incidence_share{};  ///< by 10 degrees, [0, 10), … [80, 90]
   static constexpr std::size_t kScanBins = 6;
@@ -73,14 +73,14 @@ struct Checklist {
   double worst_sigma_mm = 0;  ///< of the registered scans
   int worst_sigma_scan = -1;  ///< its id; -1 when no scan is registered
 
-  std::string calibration;  ///< empty when the device told none
+  std::string calibration;                     ///< empty when the device told none
   std::optional<double> calibration_age_days;  ///< when the device was opened
   std::optional<CalibrationCheck> calibration_check;
 
   double disk_free_gib = 0;
-  bool store_whole = false;  ///< every stored byte matched its checksum
-  std::string store_checked; ///< when, ISO 8601, UTC; empty when it was not
-  int store_files = 0;       ///< that were read to the end for it
+  bool store_whole = false;   ///< every stored byte matched its checksum
+  std::string store_checked;  ///< when, ISO 8601, UTC; empty when it was not
+  int store_files = 0;        ///< that were read to the end for it
 
   std::optional<CheckedSignOff> sign_off;  ///< the latest
 };

@@ -10,13 +10,13 @@ namespace dubsar {
 
 /// What has become of one sample of the tablet. The numbers are those of docs/formats/sample_states.md.
 enum class SampleState : std::uint8_t {
-  kNone = 0,         ///< no sample of the tablet in this cell
-  kSampled = 1,      ///< its surroundings are well sampled by its own scan
-  kRed = 2,          ///< still to scan
-  kCleared = 3,      ///< sparse in its scan, well sampled by another
-  kInterpolated = 4, ///< excused: beside a small gap over which interpolation is good enough
-  kUnreachable = 5,  ///< excused: nothing sees the place densely
-  kStray = 6,        ///< excused: a return from nowhere
+  kNone = 0,          ///< no sample of the tablet in this cell
+  kSampled = 1,       ///< its surroundings are well sampled by its own scan
+  kRed = 2,           ///< still to scan
+  kCleared = 3,       ///< sparse in its scan, well sampled by another
+  kInterpolated = 4,  ///< excused: beside a small gap over which interpolation is good enough
+  kUnreachable = 5,   ///< excused: nothing sees the place densely
+  kStray = 6,         ///< excused: a return from nowhere
 };
 inline constexpr int kSampleStateCount = 7;
 

@@ -86,7 +86,7 @@ FaceCoverage face_from(const JsonNode& node) {
   face.seen_mm2 = node.at("seen_mm2").number(0);
   face.red_mm2 = node.at("red_mm2").number(0);
   face.excused_mm2 = node.at("excused_mm2").number(0);
-  // Sessions of before 0.2 end here.
+  // Earlier sessions end here.
   if (const auto interpolated = node.find("interpolated_mm2")) {
     face.interpolated_mm2 = interpolated->number(0);
     face.red_regions_mm2 = sizes_from(node.at("red_regions_mm2"));

@@ -9,10 +9,10 @@
 namespace dubsar {
 
 OrderedJson sign_off_json(const SignOff& sign_off) {
-  OrderedJson json{{"number", sign_off.number},     {"name", sign_off.name},
-                   {"role", sign_off.role},         {"note", sign_off.note},
-                   {"when", sign_off.when},         {"conclusive", sign_off.conclusive},
-                   {"program", sign_off.program},   {"sha256", sign_off.digest}};
+  OrderedJson json{{"number", sign_off.number},   {"name", sign_off.name},
+                   {"role", sign_off.role},       {"note", sign_off.note},
+                   {"when", sign_off.when},       {"conclusive", sign_off.conclusive},
+                   {"program", sign_off.program}, {"sha256", sign_off.digest}};
   if (!sign_off.incomplete.empty()) {
     json["incomplete"] = sign_off.incomplete;
   }

@@ -25,8 +25,7 @@ std::string one_line(std::string text) {
 }
 
 std::int16_t small(int value) {
-  return static_cast<std::int16_t>(
-      std::clamp<int>(value, -1, std::numeric_limits<std::int16_t>::max()));
+  return static_cast<std::int16_t>(std::clamp<int>(value, -1, std::numeric_limits<std::int16_t>::max()));
 }
 
 }  // namespace

@@ -5,8 +5,10 @@
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   // What was read once must be written so that it can be read again.
-  if (const auto value = dubsar::parse_recorded_sign_off(dubsar::fuzz::text_of(data, size), "sign_off.json")) {
-    dubsar::fuzz::require(dubsar::parse_recorded_sign_off(dubsar::recorded_sign_off_to_json(*value), "again").has_value());
+  if (const auto value =
+          dubsar::parse_recorded_sign_off(dubsar::fuzz::text_of(data, size), "sign_off.json")) {
+    dubsar::fuzz::require(
+        dubsar::parse_recorded_sign_off(dubsar::recorded_sign_off_to_json(*value), "again").has_value());
   }
   return 0;
 }

@@ -38,13 +38,8 @@ class CoarseNormals {
     sums_.assign(static_cast<std::size_t>(count_.prod()), Eigen::Vector3d::Zero());
   }
   [[nodiscard]] std::uint32_t cube_of(const Eigen::Vector3f& p) const {
-    const Eigen::Vector3i at = ((p - box_.min()) / side_mm_)
-                                   .array()
-                                   .floor()
-                                   .cast<int>()
-                                   .max(0)
-                                   .min((count_.array() - 1))
-                                   .matrix();
+    const Eigen::Vector3i at =
+        ((p - box_.min()) / side_mm_).array().floor().cast<int>().max(0).min((count_.array() - 1)).matrix();
     return static_cast<std::uint32_t>((at.z() * count_.y() + at.y()) * count_.x() + at.x());
   }
   void add(const Triangle& t) { sums_[t.cube] += t.area_normal.cast<double>(); }
@@ -137,8 +132,7 @@ SurfacePlaces surface_places(const Mesh& mesh, const ModelFaces& faces, std::siz
       const Eigen::Vector2f w = barycentric(out.places.size());
       const float wa = 1.0F - w.x() - w.y();
       SurfacePlace place;
-      place.position_mm =
-          wa * mesh.positions[a] + w.x() * mesh.positions[b] + w.y() * mesh.positions[c];
+      place.position_mm = wa * mesh.positions[a] + w.x() * mesh.positions[b] + w.y() * mesh.positions[c];
       const Eigen::Vector3f n = wa * normals[a] + w.x() * normals[b] + w.y() * normals[c];
       place.normal = n.norm() > 1e-6F ? Eigen::Vector3f(n.normalized()) : t.area_normal.normalized();
       place.face = face;

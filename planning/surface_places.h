@@ -21,7 +21,7 @@ struct SurfacePlace {
 };
 
 struct SurfacePlaces {
-  std::vector<SurfacePlace> places;  ///< each stands for the same area of measured surface
+  std::vector<SurfacePlace> places;                   ///< each stands for the same area of measured surface
   std::array<double, kFaceCount> seen_mm2{};          ///< by Face, of faces without interpolated vertices
   std::array<double, kFaceCount> interpolated_mm2{};  ///< of the others
 };

@@ -25,13 +25,14 @@ constexpr std::size_t kTogether = 4;
 
 /// What one scan has of one place; nothing when it did not sample it well.
 struct Sampled {
-  float per_mm2 = 0;       ///< samples on the surface
+  float per_mm2 = 0;         ///< samples on the surface
   float spacing_mm = kNone;  ///< along the coarser of row and column
-  float cosine = 0;        ///< of the angle between the normal and the worse of laser and camera
+  float cosine = 0;          ///< of the angle between the normal and the worse of laser and camera
 };
 
 /// The link from a sample to its neighbours on both sides: per cell, over those that are near.
-std::optional<Eigen::Vector3f> link(const RangeGrid& grid, std::size_t sample, bool along_row, float most_mm) {
+std::optional<Eigen::Vector3f> link(const RangeGrid& grid, std::size_t sample, bool along_row,
+                                    float most_mm) {
   const int row = grid.row_of(sample);
   const int col = grid.col_of(sample);
   const Eigen::Vector3f p = grid.point(sample);

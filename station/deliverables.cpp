@@ -65,14 +65,14 @@ Result<Deliverables> write_deliverables(const fs::path& session, const ReportInp
   }
   if (!pictures->empty) {
     const fs::path six_views = session / "export" / "six_views.png";
-    if (Status s = keep(write_picture(six_views, pictures->sides_sheet, input.title), six_views,
-                        files.six_views);
+    if (Status s =
+            keep(write_picture(six_views, pictures->sides_sheet, input.title), six_views, files.six_views);
         !s) {
       return std::unexpected(s.error());
     }
     const fs::path red_map = session / "export" / "red_map.png";
-    if (Status s =
-            keep(write_picture(red_map, pictures->red_sheet, input.title + ", red map"), red_map, files.red_map);
+    if (Status s = keep(write_picture(red_map, pictures->red_sheet, input.title + ", red map"), red_map,
+                        files.red_map);
         !s) {
       return std::unexpected(s.error());
     }
@@ -81,17 +81,14 @@ Result<Deliverables> write_deliverables(const fs::path& session, const ReportInp
   if (!report) {
     return std::unexpected(report.error());
   }
-  const Result<std::string> checklist = checklist_html(input, *pictures);
-  if (!checklist) {
-    return std::unexpected(checklist.error());
-  }
+  const std::string checklist = checklist_html(input, *pictures);
   const auto text = [&](const fs::path& file, const std::string& content, fs::path& into) {
     return keep(write_file_atomically(file, content), file, into);
   };
   if (Status s = text(session / "export" / "report.html", *report, files.report); !s) {
     return std::unexpected(s.error());
   }
-  if (Status s = text(session / "export" / "checklist.html", *checklist, files.checklist); !s) {
+  if (Status s = text(session / "export" / "checklist.html", checklist, files.checklist); !s) {
     return std::unexpected(s.error());
   }
   if (Status s = text(session / "export" / "poses.json", poses_to_json(input.scans), files.poses); !s) {

@@ -153,7 +153,7 @@ PageFacts page_facts_of(const SessionStore& store) {
   const Result<JsonDocument> document =
       text && *text ? JsonDocument::parse(**text, "run") : fail(ErrorKind::kBadInput, "no run");
   if (!document) {
-    return facts;  // a session of before 0.2: its pages say less
+    return facts;  // an earlier session: its pages say less
   }
   const JsonNode root = document->root();
   const std::string device = root.at("device").text();
@@ -216,8 +216,7 @@ Result<Deliverables> keep_deliverables(SessionStore& store, const ReportInput& i
     }
     const std::string name = std::filesystem::relative(files->mesh, store.folder()).generic_string();
     if (const Status s = store.save_document(
-            kModel,
-            text_of({{"file", name}, {"sha256", *sum}, {"origin", origin_of_mesh(input.scans)}}));
+            kModel, text_of({{"file", name}, {"sha256", *sum}, {"origin", origin_of_mesh(input.scans)}}));
         !s) {
       return std::unexpected(s.error());
     }

@@ -54,8 +54,8 @@ struct PageFacts {
 /// Red map and checklist into the session's documents.
 [[nodiscard]] Status keep_verdict(SessionStore& store, const RedMap& red_map, const Checklist& checklist);
 
-/// The session's stored mesh, when it was stitched of just these registered scans in just these places by this
-/// program, and its file is as it was stored; nothing otherwise.
+/// The session's stored mesh, when it was stitched of just these registered scans in just these places by
+/// this program, and its file is as it was stored; nothing otherwise.
 [[nodiscard]] std::optional<Mesh> stored_mesh(const SessionStore& store, const std::vector<ScanPose>& poses,
                                               JobContext& job);
 

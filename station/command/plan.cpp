@@ -68,8 +68,8 @@ Result<Comparison> compare_and_keep(SessionStore& store, const Results& results)
     return std::unexpected(kept.error());
   }
   const Status noted = store.append_event(
-      "planned", nlohmann::ordered_json{{"conclusive", results.red_map.conclusive}, {"differed", out.differs}}
-                     .dump());
+      "planned",
+      nlohmann::ordered_json{{"conclusive", results.red_map.conclusive}, {"differed", out.differs}}.dump());
   return noted ? Result<Comparison>(std::move(out)) : std::unexpected(noted.error());
 }
 
@@ -77,7 +77,8 @@ Status write_states(const fs::path& folder, const ScanSet& set, const PlannedAga
   std::error_code error;
   fs::create_directories(folder, error);
   if (error) {
-    return fail(ErrorKind::kStorage, error.message(), folder.string(), "choose a folder that can be written to");
+    return fail(ErrorKind::kStorage, error.message(), folder.string(),
+                "choose a folder that can be written to");
   }
   for (const PlacedScan& scan : planned.stage->placed()) {
     const auto states = planned.stage->states(scan.id);
@@ -85,8 +86,7 @@ Status write_states(const fs::path& folder, const ScanSet& set, const PlannedAga
       continue;
     }
     const fs::path file = folder / fmt::format("states_{:03d}.ply", scan.id);
-    if (const Status written =
-            write_states_ply(file, scan.id, *scan.grid, scan.model_from_scanner, *states);
+    if (const Status written = write_states_ply(file, scan.id, *scan.grid, scan.model_from_scanner, *states);
         !written) {
       return written;
     }
@@ -104,8 +104,7 @@ Status write_page(const fs::path& file, const PlannedAgain& planned, const PageF
   if (!pictures) {
     return std::unexpected(pictures.error());
   }
-  const Result<std::string> page = checklist_html(input, *pictures);
-  return page ? write_file_atomically(file, *page) : std::unexpected(page.error());
+  return write_file_atomically(file, checklist_html(input, *pictures));
 }
 
 std::string micrometres(double mm) {
@@ -197,9 +196,8 @@ Result<int> plan(const PlanArguments& arguments, CommandContext& context) {
     auto json = nlohmann::ordered_json::parse(red_map_to_json(results.red_map));
     json["checklist"] = checklist_json(results.checklist);
     if (comparison.compared) {
-      json["stored"] = {{"same", comparison.differs.empty()},
-                        {"differs", comparison.differs},
-                        {"kept", comparison.kept}};
+      json["stored"] = {
+          {"same", comparison.differs.empty()}, {"differs", comparison.differs}, {"kept", comparison.kept}};
     }
     CommandContext::print(json);
   } else {

@@ -157,7 +157,8 @@ void add_session_sign(CLI::App& session, Action& chosen) {
   verb->add_option("--name", arguments->name, "who signs")->required()->check(said);
   verb->add_option("--role", arguments->role, "as what");
   verb->add_option("--note", arguments->note, "anything that a reader should know");
-  verb->add_option("--incomplete", arguments->incomplete, "sign although it falls short, and why")->check(said);
+  verb->add_option("--incomplete", arguments->incomplete, "sign although it falls short, and why")
+      ->check(said);
   verb->fallthrough();
   verb->callback(
       [&chosen, arguments] { chosen = [arguments](CommandContext& c) { return sign(*arguments, c); }; });

@@ -94,8 +94,9 @@ Result<int> verify(const std::string& path, CommandContext& context) {
 }  // namespace
 
 void add_verify(CLI::App& app, Action& chosen) {
-  CLI::App* verb =
-      app.add_subcommand("verify", "Integrity of a session or a grid; status 1 when anything is damaged, or its sign-off no longer holds");
+  CLI::App* verb = app.add_subcommand(
+      "verify",
+      "Integrity of a session or a grid; status 1 when anything is damaged, or its sign-off no longer holds");
   const auto path = std::make_shared<std::string>();
   verb->add_option("path", *path, "a session folder or a .grid file")->required();
   verb->fallthrough();

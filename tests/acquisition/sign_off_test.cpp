@@ -81,8 +81,8 @@ TEST_F(SignedSession, HoldsUntilSomethingChangesAndSaysWhat) {
   EXPECT_THAT(changed(), IsEmpty());
 
   ASSERT_TRUE(store_->drop_scan(1, "hand in view"));
-  EXPECT_THAT(changed(), ElementsAre("the place of scan 1 is no longer part of it",
-                                     "scan 1 is no longer part of it"));
+  EXPECT_THAT(changed(),
+              ElementsAre("the place of scan 1 is no longer part of it", "scan 1 is no longer part of it"));
   ASSERT_TRUE(store_->restore_scan(1));
   EXPECT_THAT(changed(), IsEmpty()) << "all is as it was";
 

@@ -19,7 +19,8 @@ Mesh plates() {
     const auto base = static_cast<std::uint32_t>(mesh.positions.size());
     for (int r = 0; r < kDown; ++r) {
       for (int c = 0; c < kAcross; ++c) {
-        mesh.positions.emplace_back(0.5F * static_cast<float>(c) - 20.0F, 0.5F * static_cast<float>(r) - 15.0F, z);
+        mesh.positions.emplace_back(0.5F * static_cast<float>(c) - 20.0F,
+                                    0.5F * static_cast<float>(r) - 15.0F, z);
       }
     }
     for (std::uint32_t r = 0; r + 1 < kDown; ++r) {

@@ -6,6 +6,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
+#include <limits>
 #include <map>
 
 #include "tests/archive/shapes.h"
@@ -38,22 +40,23 @@ class Report : public ::testing::Test {
 
   ReportInput input() {
     return {.title = title_,
-                            .tool_version = "Dubsar",
-                            .when = "2026-01-02T03:04:05Z",
-                            .device = device_,
-                            .model = mesh_,
-                            .red_map = map_,
-                            .checklist = list_,
-                            .scans = scans_,
-                            .red_points = {},
-                            .tablet_from_model = {},
-                            .accuracy = {"Measured on a ball bar."},
-                            .calibration = {},
-                            .not_measured = {"Colour."},
-                            .timings = {{"stitch", 1.5}},
-                            .longest_px = 80};
+            .tool_version = "Dubsar",
+            .when = "2026-01-02T03:04:05Z",
+            .device = device_,
+            .model = mesh_,
+            .red_map = map_,
+            .checklist = list_,
+            .scans = scans_,
+            .red_points = {},
+            .tablet_from_model = {},
+            .accuracy = {"Measured on a ball bar."},
+            .calibration = {},
+            .not_measured = {"Colour."},
+            .timings = {{"stitch", 1.5}},
+            .longest_px = 80};
   }
-  std::string html(Result<std::string> (*page_of)(const ReportInput&, const ReportPictures&) = report_html) {
+  std::string html(const std::function<Result<std::string>(const ReportInput&, const ReportPictures&)>&
+                       page_of = report_html) {
     const JobContext job;
     const ReportInput all = input();
     const auto pictures = draw_pictures(all, job);
@@ -227,7 +230,7 @@ TEST_F(Report, PlacesAreInTheFrameOfTheTablet) {
   all.tablet_from_model.translation_mm = {10, 20, -10};
   const auto pictures = draw_pictures(all, JobContext());
   ASSERT_TRUE(pictures);
-  EXPECT_THAT(checklist_html(all, *pictures).value_or(""), HasSubstr("at 11.0, 22.0, 0.0 mm"));
+  EXPECT_THAT(checklist_html(all, *pictures), HasSubstr("at 11.0, 22.0, 0.0 mm"));
 }
 
 TEST_F(Report, TheChecklistPageHasWhatIsSigned) {
@@ -264,7 +267,8 @@ TEST_F(Report, ASignatureThatNoLongerHoldsSaysSo) {
   checked.sign_off.when = "2026-01-02T03:04:05Z";
   checked.sign_off.digest = "abc";
   list_.sign_off = checked;
-  EXPECT_THAT(html(checklist_html), HasSubstr("Signed by A &lt;b&gt;Reader&lt;/b&gt; on 2026-01-02T03:04:05Z."));
+  EXPECT_THAT(html(checklist_html),
+              HasSubstr("Signed by A &lt;b&gt;Reader&lt;/b&gt; on 2026-01-02T03:04:05Z."));
   EXPECT_THAT(html(checklist_html), HasSubstr("It holds"));
   list_.sign_off->changed = {"scan 3 has changed"};
   for (const std::string& page : {html(checklist_html), html()}) {

@@ -300,7 +300,7 @@ TEST(ChecklistJson, ReadsTheShortOneOfEarlierSessions) {
 
 TEST(SignOffJson, ReadsBack) {
   RecordedSignOff recorded;
-  recorded.sign_off = {3,     "A. Reader",  "conservator", "a \"note\"", "2026-01-02T03:04:05Z",
+  recorded.sign_off = {3,     "A. Reader",  "conservator",  "a \"note\"", "2026-01-02T03:04:05Z",
                        false, "one corner", "Dubsar 0.1.0", "ab12"};
   recorded.manifest = "dubsar sign-off 1\nverdict not conclusive\n";
   const auto back = parse_recorded_sign_off(recorded_sign_off_to_json(recorded), "s");

@@ -21,7 +21,8 @@ TEST(StatesPly, HasPlaceColourStateScanAndReasonOfEachSample) {
     grid.x[i] = static_cast<float>(i);
   }
   SampleStates states;
-  states.state = {SampleState::kSampled, SampleState::kCleared, SampleState::kUnreachable, SampleState::kNone};
+  states.state = {SampleState::kSampled, SampleState::kCleared, SampleState::kUnreachable,
+                  SampleState::kNone};
   states.cleared_by = {-1, 12, -1, -1};
   states.reason = {-1, -1, 0, -1};
   states.reasons = {"too deep"};

@@ -23,8 +23,8 @@ TEST(SampleStates, EveryStateHasItsFlags) {
   constexpr std::uint8_t kEx = kSparse | kExcused;
   const SampleFlags flags{0, kPotentiallySparse, kSparse, kSparse | kCleared, kEx, kEx, kEx, 0, kNotTablet};
   RedTargets red;
-  red.targets = {RedTarget{}, excused(Excuse::kUnneeded, 0.1, "gap"), excused(Excuse::kUnreachable, 1, "deep"),
-                 excused(Excuse::kUnneeded, 0, "stray")};
+  red.targets = {RedTarget{}, excused(Excuse::kUnneeded, 0.1, "gap"),
+                 excused(Excuse::kUnreachable, 1, "deep"), excused(Excuse::kUnneeded, 0, "stray")};
   red.samples = {{1, 2, 0}, {1, 4, 1}, {0, 5, 1}, {1, 5, 2}, {1, 6, 3}};
   const SampleStates states = sample_states(grid, flags, {-1, -1, -1, 4, -1, -1, -1, -1, -1}, red, 1);
   using S = SampleState;

@@ -22,8 +22,8 @@ Mesh flat_square() {
   Mesh mesh;
   for (int r = 0; r < kSide; ++r) {
     for (int c = 0; c < kSide; ++c) {
-      mesh.positions.emplace_back(static_cast<float>(-kHalfMm + c * 0.5), static_cast<float>(-kHalfMm + r * 0.5),
-                                  0.0F);
+      mesh.positions.emplace_back(static_cast<float>(-kHalfMm + c * 0.5),
+                                  static_cast<float>(-kHalfMm + r * 0.5), 0.0F);
     }
   }
   const auto at = [](int r, int c) { return static_cast<std::uint32_t>(r * kSide + c); };
@@ -70,9 +70,8 @@ class SurfaceQualityOfASquare : public ::testing::Test {
     scan.model_from_scanner.rotation =
         Eigen::AngleAxisd(-tilt_rad, Eigen::Vector3d::UnitX()).toRotationMatrix();
     if (from_below) {
-      scan.model_from_scanner.rotation =
-          Eigen::AngleAxisd(kPi, Eigen::Vector3d::UnitX()).toRotationMatrix() *
-          scan.model_from_scanner.rotation;
+      scan.model_from_scanner.rotation = Eigen::AngleAxisd(kPi, Eigen::Vector3d::UnitX()).toRotationMatrix() *
+                                         scan.model_from_scanner.rotation;
     }
     scans_.push_back(scan);
   }

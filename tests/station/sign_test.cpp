@@ -15,11 +15,11 @@ namespace dubsar {
 namespace {
 
 namespace fs = std::filesystem;
-using ::testing::HasSubstr;
-using ::testing::SizeIs;
 using test::bytes_of;
 using test::Outcome;
 using test::run_command;
+using ::testing::HasSubstr;
+using ::testing::SizeIs;
 
 /// One side of a bumpy field: its other side has never been seen.
 class HalfScanned : public ::testing::Test {
@@ -70,8 +70,8 @@ TEST_F(HalfScanned, IsSignedAsIncompleteOnlyAndWithTheReason) {
 TEST_F(HalfScanned, PlanSaysTheSameAndWritesPageAndStates) {
   const fs::path page = folder_.path() / "page.html";
   const fs::path states = folder_.path() / "states";
-  const Outcome plan = run_command(
-      {"plan", session_, "--json", "--page", page.string(), "--states", states.string()});
+  const Outcome plan =
+      run_command({"plan", session_, "--json", "--page", page.string(), "--states", states.string()});
   EXPECT_EQ(plan.status, 1) << plan.err;
   const nlohmann::json json = plan.json();
   EXPECT_EQ(json["stored"]["same"], true) << json["stored"];
@@ -82,8 +82,7 @@ TEST_F(HalfScanned, PlanSaysTheSameAndWritesPageAndStates) {
   EXPECT_THAT(bytes_of(page), HasSubstr("last verification: not told"));
   // Each state file counts what the red map counts.
   for (const auto& scan : json["scans"]) {
-    const std::string ply =
-        bytes_of(states / ("states_00" + std::to_string(scan["id"].get<int>()) + ".ply"));
+    const std::string ply = bytes_of(states / ("states_00" + std::to_string(scan["id"].get<int>()) + ".ply"));
     const std::string head = ply.substr(0, ply.find("end_header"));
     EXPECT_THAT(head, HasSubstr("element vertex " + std::to_string(scan["samples"].get<long>()) + "\n"));
     EXPECT_THAT(head, HasSubstr(" red " + std::to_string(scan["sparse"].get<long>()) + "\n"));
