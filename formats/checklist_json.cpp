@@ -152,7 +152,9 @@ Result<Checklist> parse_checklist(std::string_view text, const std::string& wher
   if (const auto sampling = root.find("sampling")) {
     list.sampling = sampling_from(*sampling);
     list.strays = count("strays");
-    list.store_checked = root.at("store_checked").text();
+    if (const auto checked = root.find("store_checked")) {
+      list.store_checked = checked->text();
+    }
     list.store_files = count("store_files");
   }
   list.scans_registered = count("scans_registered");

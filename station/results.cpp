@@ -54,6 +54,13 @@ std::vector<std::string> accuracy_sentences(const std::vector<ScanPose>& poses) 
               1000 * worst_sigma_mm)};
 }
 
+/// As people say it: whole ones, tenths where they are few. Nor should every byte that another program writes
+/// change what `plan` prints.
+double rounded_gib(double gib) {
+  constexpr double kFew = 10;
+  return gib >= kFew ? std::floor(gib) : std::floor(10 * gib) / 10;
+}
+
 /// Pictures with four pixels to a sample: more would cost time and show nothing new. Small objects are still
 /// drawn large enough to look at.
 int picture_size_px(const std::vector<PlacedScan>& scans, const Mesh& mesh) {
@@ -95,7 +102,7 @@ Result<Checklist> checklist_of(const RedMap& red_map, const std::vector<ScanPose
   if (store == nullptr) {
     return list;
   }
-  list.disk_free_gib = store->disk_free_gib();
+  list.disk_free_gib = rounded_gib(store->disk_free_gib());
   const Result<VerifyReport> whole = store->verify(job);
   if (!whole && whole.error().kind == ErrorKind::kCancelled) {
     return std::unexpected(whole.error());

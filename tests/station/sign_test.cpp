@@ -80,6 +80,7 @@ TEST_F(HalfScanned, PlanSaysTheSameAndWritesPageAndStates) {
   EXPECT_EQ(json["checklist"]["store_whole"], true);
   EXPECT_THAT(bytes_of(page), HasSubstr("<h2>Not conclusive</h2>"));
   EXPECT_THAT(bytes_of(page), HasSubstr("last verification: not told"));
+  EXPECT_EQ(run_command({"plan", session_, "--json"}).out, plan.out) << "the same session, the same bytes";
   // Each state file counts what the red map counts.
   for (const auto& scan : json["scans"]) {
     const std::string ply = bytes_of(states / ("states_00" + std::to_string(scan["id"].get<int>()) + ".ply"));
