@@ -14,9 +14,10 @@ namespace dubsar {
 namespace {
 
 constexpr int kSidePx = 232;
-constexpr double kLeastMm = 6;  ///< a wedge and its neighbours: small enough to see, large enough to find
-constexpr double kMostMm = 30;
-constexpr double kRoomRound = 3;  ///< of the picture's side to the region's
+constexpr double kLeastMm = 6;      ///< a wedge and its neighbours: small enough to see, large enough to find
+constexpr double kMostMm = 30;      ///< unless the place itself is larger
+constexpr double kRoomRound = 3;    ///< of the picture's side to the region's
+constexpr double kLeastRoom = 1.6;  ///< for the ring
 constexpr double kShadowMm = 4;
 constexpr Rgb8 kRing{20, 60, 200};
 constexpr Rgb8 kBarInk{24, 24, 24};
@@ -138,7 +139,8 @@ Result<Image> region_picture(const Mesh& mesh, const ColouredPoints& marks, cons
                              const Eigen::Vector3d& towards_viewer, const RigidTransform& tablet_from_model,
                              const JobContext& job) {
   const double across_mm = diameter_mm(region);
-  const double side_mm = std::clamp(kRoomRound * across_mm, kLeastMm, kMostMm);
+  const double side_mm =
+      std::clamp(kRoomRound * across_mm, kLeastMm, std::max(kMostMm, kLeastRoom * across_mm));
   const Eigen::Vector3f center = region.center_mm.cast<float>();
   const auto reach_mm = static_cast<float>(0.75 * side_mm + kShadowMm);
   const Mesh near = cut_out(mesh, center, towards_viewer.cast<float>(), reach_mm);

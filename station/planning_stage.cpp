@@ -34,6 +34,51 @@ double displacement_mm(const RangeGrid& grid, const RigidTransform& from, const 
   return most;
 }
 
+/// The rim of a hole lies within so many µ of the mesh; an excused sample farther away hangs in the air.
+constexpr double kRimInSpacings = 4.0;
+
+/// Whether a place lies near a vertex of the mesh, by cubes of space: within one side surely, beyond four
+/// not.
+class NearMesh {
+ public:
+  NearMesh(const Mesh& mesh, float side_mm) : side_mm_(side_mm) {
+    if (!(side_mm_ > 0)) {
+      return;
+    }
+    cubes_.reserve(mesh.positions.size());
+    for (const Eigen::Vector3f& p : mesh.positions) {
+      cubes_.push_back(key(cube_of(p)));
+    }
+    std::ranges::sort(cubes_);
+    cubes_.erase(std::unique(cubes_.begin(), cubes_.end()), cubes_.end());
+  }
+  [[nodiscard]] bool has(const Eigen::Vector3f& p) const {
+    if (!(side_mm_ > 0)) {
+      return true;
+    }
+    const Eigen::Vector3i at = cube_of(p);
+    for (int k = 0; k < 27; ++k) {
+      const Eigen::Vector3i beside = at + Eigen::Vector3i(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1);
+      if (std::ranges::binary_search(cubes_, key(beside))) {
+        return true;
+      }
+    }
+    return false;
+  }
+
+ private:
+  [[nodiscard]] Eigen::Vector3i cube_of(const Eigen::Vector3f& p) const {
+    return (p / side_mm_).array().floor().max(-1e6F).min(1e6F).cast<int>().matrix();
+  }
+  static std::int64_t key(const Eigen::Vector3i& cube) {
+    constexpr std::int64_t kHalf = std::int64_t{1} << 20U;
+    return ((cube.x() + kHalf) << 42U) | ((cube.y() + kHalf) << 21U) | (cube.z() + kHalf);
+  }
+
+  float side_mm_;
+  std::vector<std::int64_t> cubes_;
+};
+
 }  // namespace
 
 void PlanningStage::add(const StationScan& scan) {
@@ -102,9 +147,14 @@ Result<RedMap> PlanningStage::red_map(const Rig* rig, JobContext& job) {
   return std::move(result->map);
 }
 
-ColouredPoints PlanningStage::red_points() const {
+ColouredPoints PlanningStage::red_points(const Mesh& mesh) const {
   ColouredPoints points;
   const std::vector<PlacedScan> scans = cleared_.scans();
+  double spacing_mm = 0;
+  for (const PlacedScan& scan : scans) {
+    spacing_mm = std::max(spacing_mm, scan.grid->spacing_mm);
+  }
+  const NearMesh near(mesh, static_cast<float>(kRimInSpacings * spacing_mm));
   for (std::size_t k = 0; k < scans.size() && k < excused_flags_.size(); ++k) {
     const RangeGrid& grid = *scans[k].grid;
     // As wide as the gap that it stands beside: a thin rim would hardly show.
@@ -115,9 +165,12 @@ ColouredPoints PlanningStage::red_points() const {
     for (std::size_t i = 0; i < grid.size(); ++i) {
       const SampleState state = states.state[i];
       const bool red = state == SampleState::kRed;
-      if (red || state == SampleState::kInterpolated || state == SampleState::kUnreachable) {
-        points.positions_mm.push_back(
-            (scans[k].model_from_scanner * grid.point(i).cast<double>()).cast<float>());
+      if (!red && state != SampleState::kInterpolated && state != SampleState::kUnreachable) {
+        continue;
+      }
+      const Eigen::Vector3f p = (scans[k].model_from_scanner * grid.point(i).cast<double>()).cast<float>();
+      if (red || near.has(p)) {
+        points.positions_mm.push_back(p);
         points.colours.push_back(red ? kRedOfSparse : kAmberOfExcused);
       }
     }

@@ -42,8 +42,9 @@ class PlanningStage {
   [[nodiscard]] Result<Mesh> mesh(const JobContext& job) const { return stitcher_.mesh(job); }
 
   /// Red (and amber, excused) samples of the last red_map() in the model frame, for pictures of the mesh.
-  /// Strays are left out: no clay is missing there, and most hang in the air.
-  [[nodiscard]] ColouredPoints red_points() const;
+  /// Excused samples that hang in the air are left out, strays and others: they would make the picture of
+  /// air; the red map lists them.
+  [[nodiscard]] ColouredPoints red_points(const Mesh& mesh) const;
 
   /// What has become of the samples of a scan in the last red_map(); nothing when it is not placed.
   [[nodiscard]] std::optional<SampleStates> states(int id) const;

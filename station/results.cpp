@@ -129,7 +129,7 @@ ReportInput report_input(const Results& results, const PlanningStage& stage, con
           .red_map = results.red_map,
           .checklist = results.checklist,
           .scans = results.poses,
-          .red_points = stage.red_points(),
+          .red_points = stage.red_points(results.mesh),
           .tablet_from_model = stage.tablet_from_model(results.mesh),
           .accuracy = accuracy_sentences(results.poses),
           .calibration = {},

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "archive/report_pictures.h"
 
 namespace dubsar {
@@ -86,6 +88,15 @@ TEST(RegionPicture, NothingMeshedNearIsAnEmptyPictureWithTheRing) {
   const auto image = region_picture(plates(), {}, region, {0, 0, 1}, {}, JobContext());
   ASSERT_TRUE(image);
   EXPECT_EQ(image->rgb(2, 2), kPaper);
+}
+
+TEST(RegionPicture, TheRingOfALargePlaceFitsIn) {
+  RedRegion region;
+  region.center_mm = {0, 0, 10};
+  region.area_mm2 = 2000;
+  const auto image = region_picture(plates(), {}, region, {0, 0, 1}, {}, JobContext());
+  ASSERT_TRUE(image);
+  EXPECT_GT(image->mm_per_px * image->width, 1.3 * 2 * std::sqrt(2000 / 3.14159265));
 }
 
 TEST(RegionPicture, LooksFromWhereTheClayLooks) {
