@@ -99,6 +99,24 @@ void note_tries(std::span<const PlacedScan> scans, std::span<const double> noise
       16);
 }
 
+std::vector<double> clearing_chances(const ViewCandidate& candidate, const ScannerModel& scanner,
+                                     const ModelSurface& surface, std::span<const RedTarget> targets) {
+  const ViewPredictor view(scanner, candidate.model_from_scanner, surface.query, clearance_of(surface),
+                           candidate.hidden);
+  std::vector<double> chances(targets.size(), 0.0);
+  parallel_for_each_index(
+      targets.size(),
+      [&](std::size_t i) {
+        const RedTarget& t = targets[i];
+        if (t.state == RegionState::kRed) {
+          const double p = view.chance(t.position_mm, t.normal);
+          chances[i] = std::min(1.0, kSpill * p * novelty(t, view.towards_scanner()));
+        }
+      },
+      16);
+  return chances;
+}
+
 Result<NextViews> next_views(std::span<const ViewCandidate> candidates, const ScannerModel& scanner,
                              const ModelSurface& surface, std::span<const RedTarget> targets,
                              const NextViewOptions& options, JobContext& job) {

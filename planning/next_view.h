@@ -33,6 +33,12 @@ struct NextViews {
 void note_tries(std::span<const PlacedScan> scans, std::span<const double> noise_mm,
                 const ModelSurface& surface, std::vector<RedTarget>& targets);
 
+/// For each target the chance that the view clears it, looks in vain considered; 0 for those that are not
+/// red.
+[[nodiscard]] std::vector<double> clearing_chances(const ViewCandidate& candidate,
+                                                   const ScannerModel& scanner, const ModelSurface& surface,
+                                                   std::span<const RedTarget> targets);
+
 /// The next best views: the area of red that each candidate is expected to clear, tested against incidence,
 /// field, support, and occlusion of laser and camera by the model so far, per scan of time. A target that was
 /// looked at in vain counts less, least from the same side. Candidates that overlap too little with what was
