@@ -93,13 +93,9 @@ Result<RedMapResult> make_red_map(std::span<const PlacedScan> scans, const Mesh*
       surface_mm2 += patch.area_mm2;
     }
   }
-  excuse_specks(scans, cover, surface_mm2, options.excuse, out.targets);
   note_tries(scans, noise_mm, surface, out.targets.targets);
-  double spacing_mm = 0;
-  for (const PlacedScan& scan : scans) {
-    spacing_mm = std::max(spacing_mm, spacing_of(*scan.grid));
-  }
-  excuse_tried(spacing_mm, options.excuse, out.targets);
+  excuse_specks(scans, cover, surface_mm2, options.excuse, out.targets);
+  excuse_tried(options.excuse, out.targets);
   job.progress("red map", 0.5);
 
   Result<NextViews> views = plan_views(scans, surface, out.targets, rig, median_noise_mm, options, job);
