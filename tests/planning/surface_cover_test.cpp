@@ -18,7 +18,8 @@ namespace {
 
 constexpr double kSpacingMm = 0.1;
 
-/// A plane of 12 mm, with samples where `there` says so (x, y in mm, from the middle); shifted by a part of µ.
+/// A plane of 12 mm, with samples where `there` says so (x, y in mm, from the middle); shifted by a part of
+/// µ.
 struct Plate {
   Plate(const std::function<bool(double, double)>& there, double shift_mm) {
     grid.allocate(120, 120);
