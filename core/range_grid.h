@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -86,6 +87,9 @@ struct RangeGrid {
 /// Nominal lateral spacing µ: the larger of the median distances between neighbouring valid samples along
 /// rows and along columns, measured across the viewing direction. 0 when the grid has no two neighbours.
 [[nodiscard]] double estimate_spacing_mm(const RangeGrid& grid);
+
+/// Box around the finite valid samples; empty where there is none.
+[[nodiscard]] Eigen::AlignedBox3f bounds_mm(const RangeGrid& grid);
 
 /// Every stride-th row and column; spacing and motion scale with it. stride 1 copies.
 [[nodiscard]] RangeGrid decimated(const RangeGrid& grid, int stride);

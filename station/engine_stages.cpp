@@ -202,6 +202,10 @@ void Engine::Impl::plan_all(JobContext& job) {
       queues->to_device.push(can_go_on ? NextStep(red_map->next.front()) : std::nullopt);
     }
     emit(RedMapChanged{std::move(*red_map)});
+    // Last: the red map waits for no mesh, and the next scan is under way meanwhile.
+    if (const Status stitched = planning.stitch(job); !stitched) {
+      give_up(stitched.error());
+    }
   }
   queues->to_device.close();
 }

@@ -17,14 +17,8 @@ namespace {
 /// Online, a scan that moved by less than this part of µ stays where it is in the mesh until the final pass.
 constexpr double kStaysWithin = 0.25;
 
-/// The largest displacement of the grid's bounding box between two poses.
-double displacement_mm(const RangeGrid& grid, const RigidTransform& from, const RigidTransform& to) {
-  Eigen::AlignedBox3f box;
-  for (std::size_t i = 0; i < grid.size(); ++i) {
-    if (grid.valid[i] != 0) {
-      box.extend(grid.point(i));
-    }
-  }
+/// The largest displacement of a box between two poses.
+double displacement_mm(const Eigen::AlignedBox3f& box, const RigidTransform& from, const RigidTransform& to) {
   double most = 0;
   for (int corner = 0; corner < 8 && !box.isEmpty(); ++corner) {
     const Eigen::Vector3d p = box.corner(static_cast<Eigen::AlignedBox3f::CornerType>(corner)).cast<double>();
@@ -36,7 +30,14 @@ double displacement_mm(const RangeGrid& grid, const RigidTransform& from, const 
 }  // namespace
 
 void PlanningStage::add(const StationScan& scan) {
+  take_out(scan.id);  // nothing may refer to a grid that is replaced
   scans_[scan.id] = scan;
+}
+
+void PlanningStage::take_out(int id) {
+  cleared_.remove(id);
+  stitcher_.remove(id);
+  placed_.erase(id);
 }
 
 Status PlanningStage::place(const std::vector<ScanPose>& poses, bool exact, JobContext& job) {
@@ -48,34 +49,52 @@ Status PlanningStage::place(const std::vector<ScanPose>& poses, bool exact, JobC
                          pose.sigma_mm};
     }
   }
-  for (auto it = placed_.begin(); it != placed_.end();) {
-    if (wanted.contains(it->first)) {
-      ++it;
-      continue;
+  std::vector<int> gone;
+  for (const auto& [id, there] : placed_) {
+    if (!wanted.contains(id)) {
+      gone.push_back(id);
     }
-    cleared_.remove(it->first);
-    stitcher_.remove(it->first);
-    it = placed_.erase(it);
+  }
+  for (const int id : gone) {
+    take_out(id);
   }
   std::size_t done = 0;
   for (const auto& [id, scan] : wanted) {
-    job.progress("stitching", static_cast<double>(done++) / static_cast<double>(wanted.size()));
+    job.progress("clearing", static_cast<double>(done++) / static_cast<double>(wanted.size()));
+    if (job.cancelled()) {
+      return fail(ErrorKind::kCancelled, "planning was stopped");
+    }
     const auto there = placed_.find(id);
-    if (there != placed_.end()) {
-      const double moved_mm =
-          displacement_mm(*scan.grid, there->second.model_from_scanner, scan.model_from_scanner);
-      if (moved_mm <= (exact ? 0.0 : kStaysWithin * scan.grid->spacing_mm)) {
-        continue;
-      }
+    if (there == placed_.end()) {
+      cleared_.add(scan);
+      placed_[id] = {scan, bounds_mm(*scan.grid), false};
+      continue;
+    }
+    Placed& placed = there->second;
+    const double moved_mm =
+        displacement_mm(placed.box_mm, placed.scan.model_from_scanner, scan.model_from_scanner);
+    if (moved_mm > (exact ? 0.0 : kStaysWithin * scan.grid->spacing_mm)) {
       cleared_.reposition(id, scan.model_from_scanner, scan.sigma_mm);
       stitcher_.remove(id);
-    } else {
-      cleared_.add(scan);
+      placed.scan = scan;
+      placed.stitched = false;
     }
-    if (const Status added = stitcher_.add(scan, job); !added) {
+  }
+  job.progress("clearing", 1.0);
+  return {};
+}
+
+Status PlanningStage::stitch(JobContext& job) {
+  std::size_t done = 0;
+  for (auto& [id, placed] : placed_) {
+    job.progress("stitching", static_cast<double>(done++) / static_cast<double>(placed_.size()));
+    if (placed.stitched) {
+      continue;
+    }
+    if (const Status added = stitcher_.add(placed.scan, job); !added) {
       return added;
     }
-    placed_[id] = scan;
+    placed.stitched = true;
   }
   job.progress("stitching", 1.0);
   return {};
