@@ -91,6 +91,11 @@ struct RangeGrid {
 /// Box around the finite valid samples; empty where there is none.
 [[nodiscard]] Eigen::AlignedBox3f bounds_mm(const RangeGrid& grid);
 
+/// The farthest that a point of the box is moved when what is in it goes from one pose to another; 0 for an
+/// empty box.
+[[nodiscard]] double displacement_mm(const Eigen::AlignedBox3f& box_mm, const RigidTransform& from,
+                                     const RigidTransform& to);
+
 /// Every stride-th row and column; spacing and motion scale with it. stride 1 copies.
 [[nodiscard]] RangeGrid decimated(const RangeGrid& grid, int stride);
 

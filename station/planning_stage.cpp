@@ -14,18 +14,9 @@ namespace dubsar {
 
 namespace {
 
-/// Online, a scan that moved by less than this part of µ stays where it is in the mesh until the final pass.
+/// Online, a scan that moved by less than this part of µ stays where it is in the mesh, and what it cleared
+/// stays cleared, until the final pass.
 constexpr double kStaysWithin = 0.25;
-
-/// The largest displacement of a box between two poses.
-double displacement_mm(const Eigen::AlignedBox3f& box, const RigidTransform& from, const RigidTransform& to) {
-  double most = 0;
-  for (int corner = 0; corner < 8 && !box.isEmpty(); ++corner) {
-    const Eigen::Vector3d p = box.corner(static_cast<Eigen::AlignedBox3f::CornerType>(corner)).cast<double>();
-    most = std::max(most, (from * p - to * p).norm());
-  }
-  return most;
-}
 
 }  // namespace
 
@@ -58,26 +49,28 @@ Status PlanningStage::place(const std::vector<ScanPose>& poses, bool exact, JobC
   for (const int id : gone) {
     take_out(id);
   }
+  const double tolerance = exact ? 0.0 : kStaysWithin;
+  std::vector<ClearedMap::NewPose> followed;
+  for (auto& [id, placed] : placed_) {
+    const PlacedScan& scan = wanted.at(id);
+    followed.push_back({id, scan.model_from_scanner, scan.sigma_mm});
+    if (displacement_mm(placed.box_mm, placed.scan.model_from_scanner, scan.model_from_scanner) >
+        tolerance * scan.grid->spacing_mm) {
+      stitcher_.remove(id);
+      placed.scan = scan;
+      placed.stitched = false;
+    }
+  }
+  cleared_.reposition(followed, tolerance);
   std::size_t done = 0;
   for (const auto& [id, scan] : wanted) {
     job.progress("clearing", static_cast<double>(done++) / static_cast<double>(wanted.size()));
     if (job.cancelled()) {
       return fail(ErrorKind::kCancelled, "planning was stopped");
     }
-    const auto there = placed_.find(id);
-    if (there == placed_.end()) {
+    if (!placed_.contains(id)) {
       cleared_.add(scan);
       placed_[id] = {scan, bounds_mm(*scan.grid), false};
-      continue;
-    }
-    Placed& placed = there->second;
-    const double moved_mm =
-        displacement_mm(placed.box_mm, placed.scan.model_from_scanner, scan.model_from_scanner);
-    if (moved_mm > (exact ? 0.0 : kStaysWithin * scan.grid->spacing_mm)) {
-      cleared_.reposition(id, scan.model_from_scanner, scan.sigma_mm);
-      stitcher_.remove(id);
-      placed.scan = scan;
-      placed.stitched = false;
     }
   }
   job.progress("clearing", 1.0);

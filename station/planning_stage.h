@@ -55,7 +55,7 @@ class PlanningStage {
   [[nodiscard]] RigidTransform tablet_from_model(const Mesh& mesh) const;
 
  private:
-  /// What is where, as far as clearing and the mesh know.
+  /// What is where, as far as the mesh knows.
   struct Placed {
     PlacedScan scan;
     Eigen::AlignedBox3f box_mm;  ///< of its samples, scanner frame

@@ -14,7 +14,8 @@ void flags(benchmark::State& state) {
   for (auto _ : state) {
     benchmark::DoNotOptimize(flag_sparse(grid));
   }
-  report_rate(state, static_cast<double>(grid.valid_count()), 100e6, "reference: 100 million samples/s wanted");
+  report_rate(state, static_cast<double>(grid.valid_count()), 100e6,
+              "reference: 100 million samples/s wanted");
 }
 BENCHMARK(flags)->Unit(benchmark::kMillisecond)->UseRealTime();
 
