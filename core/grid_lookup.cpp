@@ -50,13 +50,13 @@ constexpr std::size_t kGrain = 16384;
 struct GridLookup::Bounds {
   Vector2f low = Vector2f::Constant(kFar);
   Vector2f high = Vector2f::Constant(-kFar);
-  float extent_mm = 0;
+  Eigen::AlignedBox3f box_mm;
   std::size_t count = 0;
 
   void add(const Bounds& b) {
     low = low.cwiseMin(b.low);
     high = high.cwiseMax(b.high);
-    extent_mm = std::max(extent_mm, b.extent_mm);
+    box_mm.extend(b.box_mm);
     count += b.count;
   }
 };
@@ -88,17 +88,17 @@ GridLookup::GridLookup(const RangeGrid& grid, const std::vector<std::uint8_t>& k
       [&](std::size_t begin, std::size_t end) {
         Bounds part;
         for_each_entered(keep, begin, end, [&](std::size_t, const Vector3f& p, const Vector2f& uv) {
-          part.add({uv, uv, p.cwiseAbs().maxCoeff(), 1});
+          part.add({uv, uv, {p, p}, 1});
         });
         return part;
       },
       [](Bounds& into, const Bounds& part) { into.add(part); });
-  extent_mm_ = bounds.extent_mm;
+  box_mm_ = bounds.box_mm;
   count_ = bounds.count;
   if (count_ == 0) {
-    start_.assign(1, 0);
     return;
   }
+  extent_mm_ = std::max(box_mm_.min().cwiseAbs().maxCoeff(), box_mm_.max().cwiseAbs().maxCoeff());
   lay_raster(keep, bounds);
   fill_buckets(keep);
 }
@@ -193,7 +193,7 @@ void GridLookup::fill_buckets(const std::vector<std::uint8_t>& keep) {
       blocks_[b].extent = std::max(blocks_[b].extent, all[k].blocks[b].extent);
     }
   }
-  start_.resize(cells + 1);
+  start_ = BigArray<std::uint32_t>(cells + 1);
   std::uint32_t at = 0;
   for (std::size_t c = 0; c < cells; ++c) {
     start_[c] = at;
@@ -202,13 +202,13 @@ void GridLookup::fill_buckets(const std::vector<std::uint8_t>& keep) {
     }
   }
   start_[cells] = at;
-  entries_ = std::make_unique_for_overwrite<Entry[]>(count_);
+  entries_ = BigArray<Entry>(count_);
   parallel_chunks(grid_->size(), length, [&](std::size_t begin, std::size_t end) {
     Part& part = all[begin / length];
     for_each_entered(keep, begin, end, [&](std::size_t i, const Vector3f& p, const Vector2f& uv) {
       int cu = 0;
       int cv = 0;
-      entries_[part.next[cell_of(uv, cu, cv)]++] = {p, static_cast<std::uint32_t>(i)};
+      entries_[part.next[cell_of(uv, cu, cv)]++] = {p.x(), p.y(), p.z(), static_cast<std::uint32_t>(i)};
     });
   });
 }
@@ -233,7 +233,7 @@ struct GridLookup::Search {
     const std::uint32_t end = in.row_end(row, to);
     for (std::uint32_t k = in.row_start(row, from); k < end; ++k) {
       const Entry& entry = in.entries_[k];
-      const float d2 = (entry.position_mm - p).squaredNorm();
+      const float d2 = entry.distance2(p);
       if (d2 < best2 || (d2 == best2 && best >= 0 && entry.sample < best)) {
         best2 = d2;
         best = entry.sample;

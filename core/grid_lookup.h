@@ -3,12 +3,13 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cstdint>
 #include <limits>
-#include <memory>
 #include <vector>
 
+#include "core/big_array.h"
 #include "core/range_grid.h"
 
 namespace dubsar {
@@ -42,19 +43,63 @@ class GridLookup {
     }
   }
 
-  /// True when accept(sample index) holds for an entered sample within radius_mm of p in 3D. Stops at the
-  /// first; which samples it asks about, and in which order, is fixed.
-  template <class Accept>
-  [[nodiscard]] bool any_within(const Eigen::Vector3f& p_mm, float radius_mm, const Accept& accept) const {
-    const Reach reach = reach_of(p_mm, radius_mm);
-    if (!reach_holds_samples(reach)) {
+  /// Cells along one side of the raster; first > last when there is none.
+  struct Range {
+    int first = 0;
+    int last = -1;
+  };
+  /// Where in the lookup the samples within a radius of a point lie, rounding allowed for.
+  struct Reach {
+    Eigen::Vector3f p_mm{0, 0, 0};
+    float radius_mm = 0;
+    Range u, v;
+    int middle_v = 0;
+    float low_w = 0, high_w = 0;
+  };
+  [[nodiscard]] Reach reach_of(const Eigen::Vector3f& p_mm, float radius_mm) const {
+    Reach reach{p_mm, radius_mm, {}, {}, 0, 0, 0};
+    if (count_ == 0 || !p_mm.allFinite()) {
+      return reach;
+    }
+    const Eigen::Vector2f uv = project(p_mm);
+    const float far = radius_mm + kRounding * (extent_mm_ + p_mm.cwiseAbs().maxCoeff());
+    const float w = w_axis_.dot(p_mm);
+    reach.u = cells_between(uv.x() - far, uv.x() + far, width_);
+    reach.v = cells_between(uv.y() - far, uv.y() + far, height_);
+    reach.middle_v = cell_at(uv.y(), height_);
+    reach.low_w = w - far;
+    reach.high_w = w + far;
+    return reach;
+  }
+  /// False when it is certain, at the cost of a few reads, that no entered sample lies within reach.
+  [[nodiscard]] bool may_hold_samples(const Reach& reach) const {
+    if (reach.u.first > reach.u.last || reach.v.first > reach.v.last) {
       return false;
     }
-    const float radius2 = radius_mm * radius_mm;
+    for (int b = reach.v.first / kBlockCells; b <= reach.v.last / kBlockCells; ++b) {
+      const Block* const row =
+          &blocks_[static_cast<std::size_t>(b) * static_cast<std::size_t>(blocks_across_)];
+      for (int a = reach.u.first / kBlockCells; a <= reach.u.last / kBlockCells; ++a) {
+        if (row[a].low <= reach.high_w && row[a].high >= reach.low_w) {
+          return true;
+        }
+      }
+    }
+    return false;
+  }
+  /// Has the memory that any_within() begins with brought near; only where may_hold_samples().
+  void fetch(const Reach& reach) const {
+    __builtin_prefetch(&entries_[row_start(reach.middle_v, reach.u.first)]);
+  }
+  /// True when accept(sample index) holds for an entered sample within reach: within the radius in 3D. Stops
+  /// at the first; which samples it asks about, and in which order, is fixed. Only where may_hold_samples().
+  template <class Accept>
+  [[nodiscard]] bool any_within(const Reach& reach, const Accept& accept) const {
+    const float radius2 = reach.radius_mm * reach.radius_mm;
     const auto in_row = [&](int row) {
       const std::uint32_t end = row_end(row, reach.u.last);
       for (std::uint32_t k = row_start(row, reach.u.first); k < end; ++k) {
-        if ((entries_[k].position_mm - p_mm).squaredNorm() <= radius2 && accept(entries_[k].sample)) {
+        if (entries_[k].distance2(reach.p_mm) <= radius2 && accept(entries_[k].sample)) {
           return true;
         }
       }
@@ -70,12 +115,8 @@ class GridLookup {
     return false;
   }
 
-  /// False when it is certain, at the cost of a few reads, that no entered sample lies within radius_mm of p
-  /// in 3D.
-  [[nodiscard]] bool may_reach(const Eigen::Vector3f& p_mm, float radius_mm) const {
-    return reach_holds_samples(reach_of(p_mm, radius_mm));
-  }
-
+  /// Box around the entered samples; empty when there is none.
+  [[nodiscard]] const Eigen::AlignedBox3f& box_mm() const { return box_mm_; }
   [[nodiscard]] const RangeGrid& grid() const { return *grid_; }
   [[nodiscard]] double cell_mm() const { return cell_mm_; }
 
@@ -83,20 +124,12 @@ class GridLookup {
   [[nodiscard]] Eigen::Vector2f project(const Eigen::Vector3f& p_mm) const {
     return {u_axis_.dot(p_mm) - u_min_, v_axis_.dot(p_mm) - v_min_};
   }
-  /// Cells along one side of the raster; first > last when there is none.
-  struct Range {
-    int first = 0;
-    int last = -1;
-  };
-  /// Where the samples within a radius of a point lie, rounding allowed for.
-  struct Reach {
-    Range u, v;
-    int middle_v = 0;
-    float low_w = 0, high_w = 0;
-  };
   struct Entry {
-    Eigen::Vector3f position_mm;
+    float x, y, z;
     std::uint32_t sample;
+    [[nodiscard]] float distance2(const Eigen::Vector3f& p_mm) const {
+      return (Eigen::Vector3f(x, y, z) - p_mm).squaredNorm();
+    }
   };
   struct Bounds;
   [[nodiscard]] Range cells_between(float low_mm, float high_mm, int cells) const {
@@ -109,32 +142,6 @@ class GridLookup {
   }
   [[nodiscard]] int cell_at(float mm, int cells) const {  ///< clamped to the raster
     return static_cast<int>(std::clamp(mm * per_mm_, 0.0F, static_cast<float>(cells - 1)));
-  }
-  [[nodiscard]] Reach reach_of(const Eigen::Vector3f& p_mm, float radius_mm) const {
-    if (count_ == 0 || !p_mm.allFinite()) {
-      return {};
-    }
-    const Eigen::Vector2f uv = project(p_mm);
-    const float reach = radius_mm + kRounding * (extent_mm_ + p_mm.cwiseAbs().maxCoeff());
-    const float w = w_axis_.dot(p_mm);
-    return {cells_between(uv.x() - reach, uv.x() + reach, width_),
-            cells_between(uv.y() - reach, uv.y() + reach, height_), cell_at(uv.y(), height_), w - reach,
-            w + reach};
-  }
-  [[nodiscard]] bool reach_holds_samples(const Reach& reach) const {
-    if (reach.u.first > reach.u.last || reach.v.first > reach.v.last) {
-      return false;
-    }
-    for (int b = reach.v.first / kBlockCells; b <= reach.v.last / kBlockCells; ++b) {
-      const Block* const row =
-          &blocks_[static_cast<std::size_t>(b) * static_cast<std::size_t>(blocks_across_)];
-      for (int a = reach.u.first / kBlockCells; a <= reach.u.last / kBlockCells; ++a) {
-        if (row[a].low <= reach.high_w && row[a].high >= reach.low_w) {
-          return true;
-        }
-      }
-    }
-    return false;
   }
   [[nodiscard]] std::uint32_t row_start(int row, int from) const {
     return start_[static_cast<std::size_t>(row) * static_cast<std::size_t>(width_) +
@@ -162,18 +169,19 @@ class GridLookup {
 
   const RangeGrid* grid_;
   double cell_mm_ = 0.0;
-  float side_mm_ = 0;     ///< cell_mm_ as it is used
-  float per_mm_ = 0;      ///< cells per mm
+  float side_mm_ = 0;  ///< cell_mm_ as it is used
+  float per_mm_ = 0;   ///< cells per mm
+  Eigen::AlignedBox3f box_mm_;
   float extent_mm_ = 0;   ///< largest coordinate of an entered sample
   bool clipped_ = false;  ///< far outliers were put into the buckets at the rim
   Eigen::Vector3f u_axis_, v_axis_, w_axis_;
   float u_min_ = 0, v_min_ = 0;
   int width_ = 0, height_ = 0, blocks_across_ = 0, blocks_down_ = 0;
-  std::vector<std::uint32_t> start_;  ///< [width*height + 1], first entry of each bucket in entries_
-  std::size_t count_ = 0;             ///< of entries_
+  BigArray<std::uint32_t> start_;  ///< [width*height + 1], first entry of each bucket in entries_
+  std::size_t count_ = 0;          ///< of entries_
   /// Bucket by bucket, sample indices ascending in each; with their coordinates: a bucket is one stretch of
   /// memory.
-  std::unique_ptr<Entry[]> entries_;
+  BigArray<Entry> entries_;
   std::vector<Block> blocks_;  ///< [blocks_across*blocks_down], along w_axis_
 };
 

@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <numeric>
 
-#include "core/parallel.h"
-
 namespace dubsar {
 
 namespace {
@@ -76,21 +74,6 @@ double estimate_spacing_mm(const RangeGrid& grid) {
     }
   }
   return std::max(median(along_rows), median(along_cols));
-}
-
-Eigen::AlignedBox3f bounds_mm(const RangeGrid& grid) {
-  return parallel_reduce_ordered(
-      grid.size(), 65536, Eigen::AlignedBox3f{},
-      [&](std::size_t begin, std::size_t end) {
-        Eigen::AlignedBox3f part;
-        for (std::size_t i = begin; i < end; ++i) {
-          if (grid.valid[i] != 0 && grid.point(i).allFinite()) {
-            part.extend(grid.point(i));
-          }
-        }
-        return part;
-      },
-      [](Eigen::AlignedBox3f& into, const Eigen::AlignedBox3f& part) { into.extend(part); });
 }
 
 double displacement_mm(const Eigen::AlignedBox3f& box_mm, const RigidTransform& from,

@@ -88,9 +88,6 @@ struct RangeGrid {
 /// rows and along columns, measured across the viewing direction. 0 when the grid has no two neighbours.
 [[nodiscard]] double estimate_spacing_mm(const RangeGrid& grid);
 
-/// Box around the finite valid samples; empty where there is none.
-[[nodiscard]] Eigen::AlignedBox3f bounds_mm(const RangeGrid& grid);
-
 /// The farthest that a point of the box is moved when what is in it goes from one pose to another; 0 for an
 /// empty box.
 [[nodiscard]] double displacement_mm(const Eigen::AlignedBox3f& box_mm, const RigidTransform& from,

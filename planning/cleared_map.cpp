@@ -31,7 +31,8 @@ struct ClearedMap::Entry {
         times_cleared(sparse.samples.size(), 0),
         lookup(*placed.grid, unflagged_samples(*placed.grid, flags)),
         normals(normals_of(*placed.grid)),
-        box_mm(bounds_mm(*placed.grid)) {
+        box_mm(lookup.box_mm()) {
+    box_mm.extend(sparse.box_mm);
     scan.flags = &flags;
     scan.noise_mm = noise_of(placed);
   }
@@ -42,7 +43,7 @@ struct ClearedMap::Entry {
   std::vector<std::uint16_t> times_cleared;  ///< by how many scans, per sparse sample
   GridLookup lookup;                         ///< of the non-flagged samples
   SampleNormals normals;
-  Eigen::AlignedBox3f box_mm;  ///< of all samples, scanner frame
+  Eigen::AlignedBox3f box_mm;  ///< of what clears and what may be cleared, scanner frame
 
   /// What one other scan clears of this one, and how they lay to each other when that was found out.
   struct Match {
@@ -174,6 +175,11 @@ bool ClearedMap::contains(int id) const {
 const SampleFlags* ClearedMap::flags(int id) const {
   const Entry* entry = find(id);
   return entry == nullptr ? nullptr : &entry->flags;
+}
+
+Eigen::AlignedBox3f ClearedMap::box_mm(int id) const {
+  const Entry* entry = find(id);
+  return entry == nullptr ? Eigen::AlignedBox3f{} : entry->box_mm;
 }
 
 std::vector<PlacedScan> ClearedMap::scans() const {

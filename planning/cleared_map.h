@@ -2,6 +2,7 @@
 // Copyright The Dubsar developers
 #pragma once
 
+#include <Eigen/Geometry>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -49,6 +50,8 @@ class ClearedMap {
   /// The flags of a scan with kCleared as of now; stays valid until the scan is removed or replaced.
   /// Null for an unknown id.
   [[nodiscard]] const SampleFlags* flags(int id) const;
+  /// Box around the scan's tablet samples, scanner frame; empty for an unknown id.
+  [[nodiscard]] Eigen::AlignedBox3f box_mm(int id) const;
   /// All scans by ascending id, their flags pointing into this map, their noise known.
   [[nodiscard]] std::vector<PlacedScan> scans() const;
   /// For each sample of the scan's grid, the id of the lowest scan that clears it, or -1.

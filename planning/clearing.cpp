@@ -48,6 +48,7 @@ void add_tile(const RangeGrid& grid, const SampleFlags& flags, int first_row, in
     }
   }
   if (out.samples.size() > first) {
+    out.box_mm.extend(box);
     // Grown by what rounding may take, here and where the ball is moved.
     out.tiles.push_back({static_cast<std::uint32_t>(first), box.center(),
                          0.5F * box.diagonal().norm() + 1e-5F * box.max().cwiseAbs().maxCoeff()});
@@ -113,6 +114,7 @@ SparseSamples sparse_samples(const RangeGrid& grid, const SampleFlags& flags) {
       },
       [](SparseSamples& into, const SparseSamples& part) {
         const auto before = static_cast<std::uint32_t>(into.samples.size());
+        into.box_mm.extend(part.box_mm);
         into.samples.insert(into.samples.end(), part.samples.begin(), part.samples.end());
         for (SparseTile tile : part.tiles) {
           tile.first += before;
@@ -128,32 +130,50 @@ std::vector<std::uint32_t> matched_samples(const SparseSamples& sparse, const Ri
   const Eigen::Vector3f translation = other_from_own.translation_mm.cast<float>();
   const auto radius = static_cast<float>(radius_mm);
   const auto least_cosine = static_cast<float>(std::cos(options.max_normal_angle_rad));
-  const auto matches = [&](const SparseSample& s) {
+  const auto matches = [&](const GridLookup::Reach& reach, const SparseSample& s) {
     const Eigen::Vector3f facing = rotation * s.facing;
-    return others.any_within(rotation * s.position_mm + translation, radius, [&](std::uint32_t j) {
+    return others.any_within(reach, [&](std::uint32_t j) {
       const Eigen::Vector3f n = normals[j];
       return n.isZero() || n.dot(facing) >= least_cosine;
     });
+  };
+  struct Asked {
+    std::uint32_t sample = 0;
+    GridLookup::Reach reach;
+  };
+  const auto match_tile = [&](std::size_t first, std::size_t last, std::vector<Asked>& asked,
+                              std::vector<std::uint32_t>& matched) {
+    asked.clear();
+    for (std::size_t k = first; k < last; ++k) {
+      const GridLookup::Reach reach =
+          others.reach_of(rotation * sparse.samples[k].position_mm + translation, radius);
+      if (others.may_hold_samples(reach)) {
+        others.fetch(reach);  // by the time that it is needed, it is here
+        asked.push_back({static_cast<std::uint32_t>(k), reach});
+      }
+    }
+    for (const Asked& a : asked) {
+      if (matches(a.reach, sparse.samples[a.sample])) {
+        matched.push_back(a.sample);
+      }
+    }
   };
   using Matched = std::vector<std::uint32_t>;
   return parallel_reduce_ordered(
       sparse.tiles.size(), kTilesPerTask, Matched{},
       [&](std::size_t begin, std::size_t end) {
         Matched part;
+        std::vector<Asked> asked;
         for (std::size_t t = begin; t < end; ++t) {
           const SparseTile& tile = sparse.tiles[t];
           const bool bounded = tile.center_mm.allFinite() && std::isfinite(tile.radius_mm);
-          if (bounded &&
-              !others.may_reach(rotation * tile.center_mm + translation, tile.radius_mm + radius)) {
+          if (bounded && !others.may_hold_samples(others.reach_of(rotation * tile.center_mm + translation,
+                                                                  tile.radius_mm + radius))) {
             continue;
           }
           const std::size_t last =
               t + 1 < sparse.tiles.size() ? sparse.tiles[t + 1].first : sparse.samples.size();
-          for (std::size_t k = tile.first; k < last; ++k) {
-            if (matches(sparse.samples[k])) {
-              part.push_back(static_cast<std::uint32_t>(k));
-            }
-          }
+          match_tile(tile.first, last, asked, part);
         }
         return part;
       },

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <cstdint>
 #include <vector>
 
@@ -65,6 +66,7 @@ struct SparseTile {
 struct SparseSamples {
   std::vector<SparseSample> samples;
   std::vector<SparseTile> tiles;
+  Eigen::AlignedBox3f box_mm;  ///< around all of them
 };
 [[nodiscard]] SparseSamples sparse_samples(const RangeGrid& grid, const SampleFlags& flags);
 

@@ -4,6 +4,8 @@
 
 #include <array>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "core/parallel.h"
 
@@ -30,8 +32,7 @@ void link(const RangeGrid& grid, std::size_t from, std::size_t beside, std::size
   const std::uint8_t* const valid_a = grid.valid.data() + from;
   const std::uint8_t* const valid_b = grid.valid.data() + beside;
   const std::array<const float*, 3> a{grid.x.data() + from, grid.y.data() + from, grid.z.data() + from};
-  const std::array<const float*, 3> b{grid.x.data() + beside, grid.y.data() + beside,
-                                      grid.z.data() + beside};
+  const std::array<const float*, 3> b{grid.x.data() + beside, grid.y.data() + beside, grid.z.data() + beside};
   float* const lx = lines.axis(0);
   float* const ly = lines.axis(1);
   float* const lz = lines.axis(2);

@@ -4,8 +4,8 @@
 
 #include <Eigen/Core>
 #include <cstdint>
-#include <vector>
 
+#include "core/big_array.h"
 #include "core/range_grid.h"
 
 namespace dubsar {
@@ -21,7 +21,8 @@ class SampleNormals {
   [[nodiscard]] Eigen::Vector3f operator[](std::size_t sample) const {
     const std::uint32_t packed = packed_[sample];
     const auto part = [&](int shift) {
-      return static_cast<float>(static_cast<std::int32_t>((packed >> shift) & 0x3FFU) - kZero) * (1.0F / kOne);
+      return static_cast<float>(static_cast<std::int32_t>((packed >> shift) & 0x3FFU) - kZero) *
+             (1.0F / kOne);
     };
     return {part(0), part(10), part(20)};
   }
@@ -30,7 +31,7 @@ class SampleNormals {
   static constexpr std::int32_t kZero = 512;
   static constexpr float kOne = 511;
 
-  std::vector<std::uint32_t> packed_;  ///< [rows*cols], ten bits each
+  BigArray<std::uint32_t> packed_;  ///< [rows*cols], ten bits each
 };
 
 }  // namespace dubsar

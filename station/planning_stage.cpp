@@ -70,7 +70,7 @@ Status PlanningStage::place(const std::vector<ScanPose>& poses, bool exact, JobC
     }
     if (!placed_.contains(id)) {
       cleared_.add(scan);
-      placed_[id] = {scan, bounds_mm(*scan.grid), false};
+      placed_[id] = {scan, cleared_.box_mm(id), false};
     }
   }
   job.progress("clearing", 1.0);
