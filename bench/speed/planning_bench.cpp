@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <ctime>
 #include <filesystem>
 #include <map>
 #include <mutex>
@@ -87,32 +88,42 @@ class ScratchSession {
   Result<SessionStore> store_;
 };
 
-/// Seconds by stage, and the mean of each as a counter in milliseconds.
+/// Wall clock by stage, and processor time of the whole program meanwhile (which tells what a busy machine
+/// hides); the mean of each as a counter in milliseconds.
 class StageTimes {
  public:
   template <class Work>
   auto time(const char* stage, const Work& work) {
-    const auto start = std::chrono::steady_clock::now();
-    struct Stop {
-      double& seconds;
-      std::chrono::steady_clock::time_point start;
-      ~Stop() { seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); }
-    } stop{seconds_of(stage), start};
+    const Stop stop{spent_in(stage)};
     return work();
   }
   void report(benchmark::State& state) const {
-    for (const auto& [stage, seconds] : seconds_) {
-      state.counters[stage] = 1e3 * seconds / static_cast<double>(state.iterations());
+    const auto count = static_cast<double>(state.iterations());
+    for (const auto& [stage, spent] : spent_) {
+      state.counters[stage + "_ms"] = 1e3 * spent.wall_s / count;
+      state.counters[stage + "_cpu_ms"] = 1e3 * spent.cpu_s / count;
     }
   }
 
  private:
-  double& seconds_of(const char* stage) {
+  struct Spent {
+    double wall_s = 0, cpu_s = 0;
+  };
+  struct Stop {
+    Spent& spent;
+    std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();
+    std::clock_t cpu_start = std::clock();
+    ~Stop() {
+      spent.wall_s += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+      spent.cpu_s += static_cast<double>(std::clock() - cpu_start) / CLOCKS_PER_SEC;
+    }
+  };
+  Spent& spent_in(const char* stage) {
     const std::scoped_lock lock(mutex_);
-    return seconds_[stage];
+    return spent_[stage];
   }
   std::mutex mutex_;
-  std::map<std::string, double> seconds_;  ///< its entries stay where they are
+  std::map<std::string, Spent> spent_;  ///< its entries stay where they are
 };
 
 /// As the engine goes: the flags of the last rows, pins out, registration while the grid is stored, clearing,
@@ -149,22 +160,23 @@ void profile_to_next_view(benchmark::State& state, int millions, Nominal kind) {
     flagger.update(grid, flags);
     state.ResumeTiming();
 
-    times.time("flags_ms", [&] { flagger.finish(grid, flags); });
-    const StationScan scan = times.time(
-        "prepare_ms", [&] { return prepare_scan(kNew, std::move(grid), std::nullopt, std::move(flags)); });
+    const StationScan scan = times.time("prepare", [&] {
+      flagger.finish(grid, flags);
+      return prepare_scan(kNew, std::move(grid), std::nullopt, std::move(flags));
+    });
     bool stored = false;
     ScanPose pose;
-    times.time("store_and_register_ms", [&] {
+    times.time("store_and_register", [&] {
       const std::jthread storing(
-          [&] { stored = times.time("store_ms", [&] { return session.keep(*scan.measured); }); });
-      pose = times.time("register_ms", [&] { return registrar.add(kNew, scan.measured, nullptr, job); });
+          [&] { stored = times.time("store", [&] { return session.keep(*scan.measured); }); });
+      pose = times.time("register", [&] { return registrar.add(kNew, scan.measured, nullptr, job); });
     });
-    const Status placed = times.time("clear_ms", [&] {
+    const Status placed = times.time("clear", [&] {
       planning.add(scan);
       return planning.place(registrar.poses(), false, job);
     });
     const Result<RedMap> map =
-        times.time("red_map_and_next_view_ms", [&] { return planning.red_map(nullptr, job); });
+        times.time("red_map_and_next_view", [&] { return planning.red_map(nullptr, job); });
 
     state.PauseTiming();
     if (!stored || !placed || !map) {
