@@ -25,8 +25,9 @@ class BigArray {
   explicit BigArray(std::size_t count) {
     const std::size_t bytes = (count * sizeof(T) + kPage - 1) / kPage * kPage;
     const bool large = bytes >= 2 * kPage;
-    void* const memory =
-        count == 0 ? nullptr : large ? std::aligned_alloc(kPage, bytes) : std::malloc(count * sizeof(T));
+    void* const memory = count == 0 ? nullptr
+                         : large    ? std::aligned_alloc(kPage, bytes)
+                                    : std::malloc(count * sizeof(T));
     if (memory == nullptr && count > 0) {
       throw std::bad_alloc();
     }
@@ -38,8 +39,12 @@ class BigArray {
     values_.reset(static_cast<T*>(memory));
   }
 
-  [[nodiscard]] T& operator[](std::size_t i) { return values_.get()[i]; }
-  [[nodiscard]] const T& operator[](std::size_t i) const { return values_.get()[i]; }
+  [[nodiscard]] T& operator[](std::size_t i) {
+    return values_.get()[i];
+  }
+  [[nodiscard]] const T& operator[](std::size_t i) const {
+    return values_.get()[i];
+  }
 
  private:
   static constexpr std::size_t kPage = std::size_t{1} << 21;
