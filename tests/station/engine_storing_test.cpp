@@ -45,8 +45,8 @@ TEST(EngineStoring, EveryScanIsStoredBeforeItIsPlaced) {
   const test::TemporaryFolder folder;
   const auto scans = test::write_bumpy_scans(folder.path() / "scans", 3);
   std::optional<Result<EngineResult>> result;
-  const std::vector<std::string> said =
-      run(scans, folder.path() / "session", [](const ScanStored&) {}, result);
+  const std::vector<std::string> said = run(
+      scans, folder.path() / "session", [](const ScanStored&) {}, result);
   ASSERT_TRUE(result->has_value()) << result->error().line();
   for (const char* const number : {"0", "1", "2"}) {
     const std::string id = number;
