@@ -41,6 +41,14 @@ struct ModelSurface {
   std::vector<SurfacePatch> unseen;  ///< of the hull
 };
 
+/// The non-flagged samples of the scans triangulated, thinned to about step_mm, each place once; model frame.
+[[nodiscard]] Mesh thinned_surface(std::span<const PlacedScan> scans, double step_mm);
+
+/// True when rays from the patch into the clay meet the surface from outside. A slit between the triangles of
+/// two scans lets some rays through, a hole as wide as the patch nearly all; what is narrower than a patch is
+/// told by its red border.
+[[nodiscard]] bool seen_from_outside(const MeshQuery& query, const SurfacePatch& patch, double step_mm);
+
 /// model: the stitched mesh where there is one, which then casts the shadows; otherwise the non-flagged
 /// samples of the scans are triangulated, thinned, each place once.
 [[nodiscard]] ModelSurface model_surface(std::span<const PlacedScan> scans, const Mesh* model = nullptr,

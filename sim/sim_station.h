@@ -33,6 +33,11 @@ class SimStation {
   SimStation(SimTablet tablet, const SimStationOptions& options);
 
   [[nodiscard]] Rig rig() const;
+  /// How far hand turns come out wrong from now on.
+  void set_hand_error(double most_deg, double most_mm) {
+    options_.hand_max_deg = most_deg;
+    options_.hand_max_mm = most_mm;
+  }
   /// Drives turntable and tilt; with a hand turn the operator first turns the tablet and puts the pins back.
   /// Errors: kUsage for a tilt out of limits or a turn that is no rotation; nothing has moved then.
   [[nodiscard]] Status move(const Placement& placement);

@@ -26,6 +26,7 @@ const SettingRow kRows[] = {
     {DUBSAR_TYPE_NUMBER, "text", "share of the room for text that is written on", nullptr, nullptr, 0, 1},
     {DUBSAR_TYPE_NUMBER, "damage", "fractures, erosion, dirt and cracks, from none to badly", nullptr,
      nullptr, 0, 1},
+    {DUBSAR_TYPE_NUMBER, "holes", "firing holes, from none to many", nullptr, nullptr, 0, 1},
     {DUBSAR_TYPE_TEXT, "truth", "a folder that gets the truth: poses, pins and the surface"},
 };
 
@@ -108,7 +109,9 @@ Result<SimOptions> parse_options(std::span<const dubsar_option> options) {
     } else if (key == "text") {
       out.tablet.text_density = *number;
     } else if (key == "damage") {
-      out.tablet.damage = {*number, *number, *number, *number};
+      out.tablet.damage = {*number, *number, *number, *number, out.tablet.damage.holes};
+    } else if (key == "holes") {
+      out.tablet.damage.holes = *number;
     }
   }
   out.tablet.seed = seed;
