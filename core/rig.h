@@ -12,6 +12,13 @@
 
 namespace dubsar {
 
+/// A measurement of a certified artefact that showed how true the calibration is.
+struct CalibrationCheck {
+  std::string when;      ///< ISO 8601, as the rig tells it
+  std::string artefact;  ///< what was measured
+  double error_mm = 0;   ///< largest deviation from its certificate
+};
+
 /// What the rig can see and reach. The stage frame: origin at the turntable's centre on the support plane, z
 /// up. The scanner frame: origin at the centre of the measuring volume, x along a profile, y along the
 /// motion, z towards the scanner.
@@ -29,6 +36,7 @@ struct Rig {
   double support_height_mm = 0;  ///< nothing below this stage height can be seen
   std::string calibration;       ///< what it was calibrated with; empty when unknown
   std::optional<double> calibration_age_days;
+  std::optional<CalibrationCheck> calibration_check;  ///< the last one; nothing when the rig tells none
 };
 
 /// Where the tablet lies: which way its model frame is turned on the stage. `name` is for people ("reverse

@@ -20,23 +20,6 @@
 
 namespace dubsar {
 
-namespace {
-
-/// True when rays in nearly all directions meet the surface from within.
-bool inside_clay(const MeshQuery& query, const Eigen::Vector3d& p_mm) {
-  constexpr std::size_t kRays = 40;
-  constexpr std::size_t kNearlyAll = 36;  // some slip through slits and holes
-  std::size_t within = 0;
-  for (const Eigen::Vector3d& direction : sphere_directions(kRays)) {
-    const Eigen::Vector3f ray = direction.cast<float>();
-    const auto hit = query.first_hit(p_mm.cast<float>(), ray, 0.0F, 1.0e4F);
-    within += hit && hit->normal.dot(ray) > 0 ? 1U : 0U;
-  }
-  return within >= kNearlyAll;
-}
-
-}  // namespace
-
 void excuse_strays(std::span<const PlacedScan> scans, std::span<const double> noise_mm,
                    const ModelSurface& surface, const ExcuseOptions& options, RedTargets& red) {
   std::vector<ViewPredictor> views;
@@ -60,11 +43,6 @@ void excuse_strays(std::span<const PlacedScan> scans, std::span<const double> no
         RedTarget& target = red.targets[i];
         if (target.unseen || target.state != RegionState::kRed ||
             surface.query.closest(target.sample_mm.cast<float>(), static_cast<float>(apart_mm))) {
-          return;
-        }
-        if (inside_clay(surface.query, target.sample_mm)) {
-          target.excuse_as(Excuse::kUnneeded, "stray return: it lies inside the clay");
-          target.area_mm2 = 0;
           return;
         }
         int past = 0;
@@ -102,15 +80,12 @@ void excuse_out_of_reach(std::span<const float> best_chance, const ExcuseOptions
   }
 }
 
-void excuse_tried(double spacing_mm, const ExcuseOptions& options, RedTargets& red) {
-  const double speck_mm2 = options.speck_spacings2 * spacing_mm * spacing_mm;
+void excuse_tried(const ExcuseOptions& options, RedTargets& red) {
   for (RedTarget& target : red.targets) {
-    const bool speck = !target.unseen && target.area_mm2 < speck_mm2;
-    const int enough = speck ? options.speck_tries : options.tries;
-    if (target.state == RegionState::kRed && target.tried.size() >= static_cast<std::size_t>(enough)) {
+    if (target.state == RegionState::kRed && target.tried.size() >= static_cast<std::size_t>(options.tries)) {
       target.excuse_as(
           Excuse::kUnreachable,
-          "at least " + std::to_string(enough) +
+          std::to_string(options.tries) +
               " scans looked at it and brought no dense samples: too deep, too dark or no surface");
     }
   }

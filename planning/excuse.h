@@ -12,13 +12,13 @@
 namespace dubsar {
 
 struct ExcuseOptions {
-  double interpolation_mm = 0.025;  ///< seed 001: 25 µm
-  double largest_gap_mm = 0.6;      ///< below half the smallest wedge: larger holes may hide a sign
-  double fit_margin_mm = 0.45;      ///< of surface around the hole that the fit uses; at least 4.5 µ
-  double confidence_sigmas = 2.0;   ///< the interpolation error is stated at this many standard errors
-  double stray_mm = 0.2;            ///< farther than this from the surface a return is not of the surface
-  int stray_views = 1;              ///< other scans that look past it
-  double largest_stray_mm2 = 2.0;   ///< a larger group of samples is an object, not strays
+  double interpolation_mm = 0.025;     ///< seed 001: 25 µm
+  double largest_gap_mm = 0.6;         ///< below half the smallest wedge: larger holes may hide a sign
+  double fit_margin_mm = 0.45;         ///< of surface around the hole that the fit uses; at least 4.5 µ
+  double confidence_sigmas = 2.0;      ///< the interpolation error is stated at this many standard errors
+  double stray_mm = 0.2;               ///< farther than this from the surface a return is not of the surface
+  int stray_views = 1;                 ///< other scans that look past it
+  std::size_t most_stray_samples = 3;  ///< a larger group is taken for a stray only when it is looked past
   /// Below this best predicted chance over all poses a place is out of reach.
   double least_chance = 0.05;
   /// Red that covers less than this many µ² is a speck: of the size that noise makes; `speck_tries` settle
@@ -26,7 +26,7 @@ struct ExcuseOptions {
   double speck_spacings2 = 10.0;
   double speck_budget = 2e-4;  ///< of the surface, for all specks together
   int speck_tries = 2;
-  int tries = 3;  ///< scans that ought to have seen a place before it is given up
+  int tries = 4;  ///< scans that ought to have seen a place before it is given up
 };
 
 /// Unneeded: holes no wider than largest_gap_mm over which the surface is interpolated well enough. The test:
@@ -37,17 +37,17 @@ struct ExcuseOptions {
 void excuse_unneeded(std::span<const PlacedScan> scans, const SurfaceCover& cover, double noise_mm,
                      const ExcuseOptions& options, RedTargets& red);
 
-/// Unneeded: the last specks. When all that is still red is, together, below speck_budget of the tablet's
-/// surface, groups of it that cover no more than speck_spacings2 µ², are no wider than largest_gap_mm and lie
-/// within the reach of well-sampled surface are closed by a straight line from their own samples to it: the
-/// rule of 3µ lets gaps of that size pass anywhere. surface_mm2: of the tablet.
+/// Unneeded: specks, groups of red that cover no more than speck_spacings2 µ² and are no wider than
+/// largest_gap_mm: those that speck_tries scans looked at and found nothing more; and the last ones, when all
+/// that is still red is, together, below speck_budget of the tablet's surface, where a straight line closes
+/// them: the rule of 3µ lets gaps of that size pass anywhere. surface_mm2: of the tablet. The targets' tries
+/// must be known (note_tries()).
 void excuse_specks(std::span<const PlacedScan> scans, const SurfaceCover& cover, double surface_mm2,
                    const ExcuseOptions& options, RedTargets& red);
 
 /// Unneeded: strays, returns from nowhere (outliers, mixed pixels at depth edges). The test: no surface of
 /// the model lies within stray_mm (at least 2 µ) of the red samples, and at least stray_views scans sample
-/// the surface behind them well, through the very place; or the place
-/// lies inside the clay, surface around it on all sides. noise_mm: by scan.
+/// the surface behind them well, through the very place. noise_mm: by scan.
 void excuse_strays(std::span<const PlacedScan> scans, std::span<const double> noise_mm,
                    const ModelSurface& surface, const ExcuseOptions& options, RedTargets& red);
 
@@ -55,8 +55,8 @@ void excuse_strays(std::span<const PlacedScan> scans, std::span<const double> no
 /// NextViews, over all candidates; entries below 0 were not judged and stay red.
 void excuse_out_of_reach(std::span<const float> best_chance, const ExcuseOptions& options, RedTargets& red);
 
-/// Unreachable by trial: at least `tries` scans (`speck_tries` for a speck) ought to have seen the place by
-/// all that is known, and none brought dense samples. Applies to rig and replay alike.
-void excuse_tried(double spacing_mm, const ExcuseOptions& options, RedTargets& red);
+/// Unreachable by trial: at least `tries` scans ought to have seen the place by all that is known, and none
+/// brought dense samples. Applies to rig and replay alike.
+void excuse_tried(const ExcuseOptions& options, RedTargets& red);
 
 }  // namespace dubsar

@@ -34,10 +34,10 @@ Vector6 quadric_terms(double u, double v) {
 
 /// How well a quadric through the surroundings stands in for a hole; mm.
 struct Interpolation {
-  double width_mm = 0;     ///< of the hole
-  double bend_mm = 0;      ///< by which the surroundings deviate from the quadric beyond noise
-  double error_mm = 0;     ///< of the fit at the worst place in the hole, one standard error
-  double deviation_mm = 0; ///< of the worst red sample from it
+  double width_mm = 0;                  ///< of the hole
+  double bend_mm = 0;                   ///< by which the surroundings deviate from the quadric beyond noise
+  double error_mm = 0;                  ///< of the fit at the worst place in the hole, one standard error
+  double deviation_mm = 0;              ///< of the worst red sample from it
   std::vector<Eigen::Vector3d> filled;  ///< the interpolated place of each target
 };
 
@@ -108,9 +108,10 @@ std::optional<Interpolation> interpolate(const SurfaceCover& cover, const RedTar
 
 std::string describe(const Interpolation& fit, double good_to_mm) {
   std::array<char, 160> line{};
-  std::snprintf(line.data(), line.size(),
-                "gap of %.2f mm; its surroundings bend by %.0f µm from a quadric, interpolation good to %.0f µm",
-                fit.width_mm, 1000 * fit.bend_mm, 1000 * good_to_mm);
+  std::snprintf(
+      line.data(), line.size(),
+      "gap of %.2f mm; its surroundings bend by %.0f µm from a quadric, interpolation good to %.0f µm",
+      fit.width_mm, 1000 * fit.bend_mm, 1000 * good_to_mm);
   return line.data();
 }
 
@@ -140,7 +141,8 @@ void excuse_unneeded(std::span<const PlacedScan> scans, const SurfaceCover& cove
       continue;
     }
     const double good_to_mm = fit->bend_mm + options.confidence_sigmas * fit->error_mm;
-    if (good_to_mm > options.interpolation_mm || fit->deviation_mm > good_to_mm + 3 * kNoiseOfSlopes * noise_mm) {
+    if (good_to_mm > options.interpolation_mm ||
+        fit->deviation_mm > good_to_mm + 3 * kNoiseOfSlopes * noise_mm) {
       continue;
     }
     const std::string reason = describe(*fit, good_to_mm);
@@ -151,55 +153,78 @@ void excuse_unneeded(std::span<const PlacedScan> scans, const SurfaceCover& cove
   }
 }
 
+namespace {
+
+/// The places half way between the red samples of a group and the well-sampled surface; empty where that is
+/// out of reach, or does not lead there flat enough (`flat_mm`) for a chord to be the surface.
+std::vector<Eigen::Vector3d> bridged(const SurfaceCover& cover, const RedTargets& red,
+                                     std::span<const std::uint32_t> group, double flat_mm) {
+  std::vector<Eigen::Vector3d> filled;
+  for (const std::uint32_t t : group) {
+    const Eigen::Vector3d& sample = red.targets[t].sample_mm;
+    const auto around = cover.within(sample, cover.reach_mm());
+    const auto nearest = std::min_element(around.begin(), around.end(), [&](const auto& a, const auto& b) {
+      return (a.position_mm.template cast<double>() - sample).squaredNorm() <
+             (b.position_mm.template cast<double>() - sample).squaredNorm();
+    });
+    if (nearest == around.end()) {
+      return {};
+    }
+    const Eigen::Vector3d from = nearest->position_mm.cast<double>();
+    if (std::abs(nearest->normal.cast<double>().dot(sample - from)) > flat_mm) {
+      return {};
+    }
+    filled.emplace_back(0.5 * (sample + from));
+  }
+  return filled;
+}
+
+}  // namespace
+
 void excuse_specks(std::span<const PlacedScan> scans, const SurfaceCover& cover, double surface_mm2,
                    const ExcuseOptions& options, RedTargets& red) {
   double spacing_mm = 0;
   for (const PlacedScan& scan : scans) {
     spacing_mm = std::max(spacing_mm, spacing_of(*scan.grid));
   }
+  const double largest_mm2 = options.speck_spacings2 * spacing_mm * spacing_mm;
+  std::vector<std::vector<std::uint32_t>> untried;
   double all_mm2 = 0;
-  for (const RedTarget& t : red.targets) {
-    all_mm2 += t.state == RegionState::kRed ? t.area_mm2 : 0.0;
-  }
-  if (all_mm2 > options.speck_budget * surface_mm2) {
-    return;
-  }
-  for (const auto& group : cluster_targets(red, scans, red.cell_mm, options.largest_gap_mm, true)) {
+  for (auto& group : cluster_targets(red, scans, red.cell_mm, options.largest_gap_mm, true)) {
     if (red.targets[group.front()].state != RegionState::kRed) {
       continue;
     }
     Eigen::AlignedBox3d box;
     double area_mm2 = 0;
+    std::size_t tried = red.targets[group.front()].tried.size();
     for (const std::uint32_t t : group) {
       box.extend(red.targets[t].position_mm);
       area_mm2 += red.targets[t].area_mm2;
+      tried = std::min(tried, red.targets[t].tried.size());
     }
-    if (area_mm2 > options.speck_spacings2 * spacing_mm * spacing_mm ||
-        box.diagonal().norm() > options.largest_gap_mm) {
-      continue;
-    }
-    std::vector<Eigen::Vector3d> filled;
-    for (const std::uint32_t t : group) {
-      const Eigen::Vector3d& sample = red.targets[t].sample_mm;
-      const std::vector<SurfaceCover::Element> around = cover.within(sample, cover.reach_mm());
-      const auto nearest = std::min_element(around.begin(), around.end(), [&](const auto& a, const auto& b) {
-        return (a.position_mm.template cast<double>() - sample).squaredNorm() <
-               (b.position_mm.template cast<double>() - sample).squaredNorm();
-      });
-      // A chord is off the surface by a quarter of the height to which its far end rises over the near one.
-      if (nearest == around.end() ||
-          std::abs(nearest->normal.cast<double>().dot(sample - nearest->position_mm.cast<double>())) >
-              kChordHeights * options.interpolation_mm) {
-        break;
+    const bool speck = area_mm2 <= largest_mm2 && box.diagonal().norm() <= options.largest_gap_mm;
+    if (speck && tried >= static_cast<std::size_t>(options.speck_tries)) {
+      for (const std::uint32_t t : group) {
+        red.targets[t].excuse_as(Excuse::kUnneeded, "speck: " + std::to_string(options.speck_tries) +
+                                                        " scans looked at it and found nothing more");
       }
-      filled.emplace_back(0.5 * (sample + nearest->position_mm.cast<double>()));
-    }
-    if (filled.size() < group.size()) {
       continue;
     }
-    for (std::size_t k = 0; k < group.size(); ++k) {
+    all_mm2 += area_mm2;
+    if (speck) {
+      untried.push_back(std::move(group));
+    }
+  }
+  if (all_mm2 > options.speck_budget * surface_mm2) {
+    return;
+  }
+  for (const auto& group : untried) {
+    // A chord is off the surface by a quarter of the height to which its far end rises over the near one.
+    const auto filled = bridged(cover, red, group, kChordHeights * options.interpolation_mm);
+    for (std::size_t k = 0; k < filled.size(); ++k) {
       red.targets[group[k]].excuse_as(
-          Excuse::kUnneeded, "speck: the gap is no larger than the rule of 3µ lets pass, and closes in a straight line");
+          Excuse::kUnneeded,
+          "speck: the gap is no larger than the rule of 3µ lets pass, and closes in a straight line");
       red.targets[group[k]].interpolated_mm = filled[k];
     }
   }

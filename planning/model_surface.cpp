@@ -8,6 +8,7 @@
 
 #include "core/parallel.h"
 #include "planning/clearing.h"
+#include "planning/completion.h"
 #include "planning/convex_hull.h"
 
 namespace dubsar {
@@ -180,8 +181,8 @@ void sample_face(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen
 
 bool seen_from_outside(const MeshQuery& query, const SurfacePatch& patch, double step_mm) {
   constexpr double kFarMm = 1.0e4;
-  // The hull of thinned points may lie a little inside the surface.
-  const double lift_mm = 4.0 * step_mm;
+  // The expected hull may lie inside the real surface. Above it there is nothing that could be met.
+  constexpr double kLiftMm = 5.0;
   constexpr int kRays = 9;
   constexpr int kEnough = 3;
   const Eigen::Vector3f n = patch.normal.cast<float>();
@@ -193,7 +194,7 @@ bool seen_from_outside(const MeshQuery& query, const SurfacePatch& patch, double
     // A sunflower spread over the patch, its first ray in the middle.
     const double radius = reach_mm * std::sqrt(static_cast<double>(k) / (kRays - 1));
     const double angle = 2.399963229728653 * k;
-    const Eigen::Vector3f from = patch.position_mm.cast<float>() + static_cast<float>(lift_mm) * n +
+    const Eigen::Vector3f from = patch.position_mm.cast<float>() + static_cast<float>(kLiftMm) * n +
                                  static_cast<float>(radius * std::cos(angle)) * u +
                                  static_cast<float>(radius * std::sin(angle)) * v;
     const auto hit = query.first_hit(from, -n, 0.0F, static_cast<float>(kFarMm));
@@ -223,10 +224,17 @@ ModelSurface model_surface(std::span<const PlacedScan> scans, const Mesh* model,
   for (std::size_t i = 0; i < out.mesh.positions.size(); i += stride) {
     thinned.push_back(out.mesh.positions[i]);
   }
-  const std::vector<Eigen::Vector3d> extremes = hull_points(thinned);
-  const Mesh hull = convex_hull(extremes);
-  out.corners_mm = extremes;
+  std::vector<Eigen::Vector3d> extremes = hull_points(thinned);
+  Mesh hull = convex_hull(extremes);
   out.faces = model_faces(scans, extremes);
+  if (const auto mirrored = mirrored_points(out.mesh, hull, extremes, out.faces); !mirrored.empty()) {
+    for (const Eigen::Vector3d& p : mirrored) {
+      thinned.push_back(p.cast<float>());
+    }
+    extremes = hull_points(thinned);
+    hull = convex_hull(extremes);
+  }
+  out.corners_mm = extremes;
   Eigen::AlignedBox3d along_faces;
   for (const Eigen::Vector3d& p : extremes) {
     along_faces.extend(out.faces.model_from_faces.transpose() * p);

@@ -81,7 +81,7 @@ Result<RedMapResult> make_red_map(std::span<const PlacedScan> scans, const Mesh*
   std::sort(sorted.begin(), sorted.end());
   const double median_noise_mm = sorted[sorted.size() / 2];
   const SurfaceCover cover(scans);
-  settle_closed(scans, cover, options.excuse.largest_stray_mm2, out.targets);
+  settle_closed(scans, cover, median_noise_mm, options.excuse.most_stray_samples, out.targets);
   excuse_strays(scans, noise_mm, surface, options.excuse, out.targets);
   add_rim_targets(cover, options.targets.longest_gap_mm, out.targets);
   excuse_unneeded(scans, cover, median_noise_mm, options.excuse, out.targets);
@@ -93,13 +93,9 @@ Result<RedMapResult> make_red_map(std::span<const PlacedScan> scans, const Mesh*
       surface_mm2 += patch.area_mm2;
     }
   }
-  excuse_specks(scans, cover, surface_mm2, options.excuse, out.targets);
   note_tries(scans, noise_mm, surface, out.targets.targets);
-  double spacing_mm = 0;
-  for (const PlacedScan& scan : scans) {
-    spacing_mm = std::max(spacing_mm, spacing_of(*scan.grid));
-  }
-  excuse_tried(spacing_mm, options.excuse, out.targets);
+  excuse_specks(scans, cover, surface_mm2, options.excuse, out.targets);
+  excuse_tried(options.excuse, out.targets);
   job.progress("red map", 0.5);
 
   Result<NextViews> views = plan_views(scans, surface, out.targets, rig, median_noise_mm, options, job);

@@ -12,27 +12,31 @@
 
 namespace dubsar {
 
-void settle_closed(std::span<const PlacedScan> scans, const SurfaceCover& cover, double largest_stray_mm2,
-                   RedTargets& red) {
+void settle_closed(std::span<const PlacedScan> scans, const SurfaceCover& cover, double noise_mm,
+                   std::size_t most_stray_samples, RedTargets& red) {
+  std::vector<std::size_t> samples(red.targets.size(), 0);
+  for (const RedSampleRef& ref : red.samples) {
+    ++samples[ref.target];
+  }
+  const double beside_mm = cover.cell_mm() + 3.0 * noise_mm;
   std::vector<SurfaceCover::Place> place(red.targets.size(), SurfaceCover::Place::kBare);
   parallel_for_each_index(
       red.targets.size(),
       [&](std::size_t i) {
         const RedTarget& t = red.targets[i];
-        const SurfaceCover::Place at_gap = cover.at(t.position_mm);
-        const SurfaceCover::Place at_sample = cover.at(t.sample_mm);
-        place[i] = at_gap == SurfaceCover::Place::kRim ? at_gap : at_sample;
-        if (place[i] == SurfaceCover::Place::kClosed && at_gap == SurfaceCover::Place::kBare) {
-          place[i] = SurfaceCover::Place::kBare;  // its gap leads away from the surface
+        place[i] = cover.at(t.sample_mm, beside_mm);
+        if (cover.at(t.position_mm, cover.reach_mm()) == SurfaceCover::Place::kRim ||
+            cover.at(t.sample_mm, cover.reach_mm()) == SurfaceCover::Place::kRim) {
+          place[i] = SurfaceCover::Place::kRim;
         }
       },
       64);
-  for (const auto& group : cluster_targets(red, scans, 2.0 * red.cell_mm, 2.0, false)) {
-    double area = 0;
+  for (const auto& group : cluster_targets(red, scans, red.cell_mm, 2.0, false)) {
     bool rim = false;
+    std::size_t count = 0;
     for (const std::uint32_t i : group) {
       rim = rim || place[i] == SurfaceCover::Place::kRim;
-      area += place[i] == SurfaceCover::Place::kBare ? red.targets[i].area_mm2 : 0.0;
+      count += place[i] == SurfaceCover::Place::kBare ? samples[i] : 0;
     }
     for (const std::uint32_t i : group) {
       RedTarget& t = red.targets[i];
@@ -40,9 +44,10 @@ void settle_closed(std::span<const PlacedScan> scans, const SurfaceCover& cover,
         continue;
       }
       const bool closed = place[i] == SurfaceCover::Place::kClosed;
-      if (closed || (!rim && area <= largest_stray_mm2)) {
-        t.excuse_as(Excuse::kUnneeded, closed ? "nothing is missing: other scans sample the surface well on all sides of it"
-                          : "stray return: it hangs apart from the surface, which is closed there");
+      if (closed || (!rim && count <= most_stray_samples)) {
+        t.excuse_as(Excuse::kUnneeded,
+                    closed ? "nothing is missing: other scans sample the surface well on all sides of it"
+                           : "stray return: it hangs apart from the surface, which is closed there");
         t.area_mm2 = 0;
       }
     }
@@ -60,9 +65,10 @@ void add_rim_targets(const SurfaceCover& cover, double widest_hole_mm, RedTarget
   const std::vector<Rim>& rims = cover.rims();
   for (const Hole& hole : cover.holes()) {
     const double strip_mm2 = 0.5 * cover.cell_mm() * cover.reach_mm();
-    const double share_mm2 = hole.width_mm > widest_hole_mm
-                                 ? strip_mm2
-                                 : std::max(0.25 * strip_mm2, hole.area_mm2 / static_cast<double>(hole.rim.size()));
+    const double share_mm2 =
+        hole.width_mm > widest_hole_mm
+            ? strip_mm2
+            : std::max(0.25 * strip_mm2, hole.area_mm2 / static_cast<double>(hole.rim.size()));
     for (const std::uint32_t i : hole.rim) {
       bool known = false;
       marked.for_each_within(rims[i].position_mm, [&](std::uint32_t) { known = true; });

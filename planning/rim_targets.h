@@ -10,11 +10,11 @@
 
 namespace dubsar {
 
-/// Red samples beside which nothing is missing are settled (excused as unneeded, with no area): those around
-/// which the well-sampled surface goes on on all sides, and those that hang apart from it and from every rim,
-/// which are strays. A group of samples too large for a stray (`largest_stray_mm2`) is never settled so.
-void settle_closed(std::span<const PlacedScan> scans, const SurfaceCover& cover, double largest_stray_mm2,
-                   RedTargets& red);
+/// Red samples beside which nothing is missing are settled (excused as unneeded, with no area): those beside
+/// well-sampled surface that goes on on all sides, and those of groups of no more than `most_stray_samples`
+/// that hang apart from it and from every rim, which are strays. noise_mm: of a sample.
+void settle_closed(std::span<const PlacedScan> scans, const SurfaceCover& cover, double noise_mm,
+                   std::size_t most_stray_samples, RedTargets& red);
 
 /// Adds the rims of the well-sampled surface that no red sample marks: two scans that see a hole up to the
 /// same rim clear each other there. A rim shorter than the reach of the cover is none. The area of a hole is

@@ -223,7 +223,8 @@ void SurfaceCover::thin(const std::vector<std::vector<Element>>& by_scan) {
 std::size_t SurfaceCover::cell_index(const Eigen::Vector3f& p) const {
   std::size_t index = 0;
   for (std::size_t k = 3; k-- > 0;) {
-    const auto at = static_cast<std::int64_t>((p[static_cast<int>(k)] - low_[static_cast<int>(k)]) / coarse_mm_);
+    const auto at =
+        static_cast<std::int64_t>((p[static_cast<int>(k)] - low_[static_cast<int>(k)]) / coarse_mm_);
     index = index * static_cast<std::size_t>(size_[k]) +
             static_cast<std::size_t>(std::clamp<std::int64_t>(at, 0, size_[k] - 1));
   }
@@ -390,14 +391,15 @@ void SurfaceCover::keep_holes(const std::vector<Eigen::Vector3f>& outward) {
   }
 }
 
-SurfaceCover::Place SurfaceCover::at(const Eigen::Vector3d& p_mm) const {
+SurfaceCover::Place SurfaceCover::at(const Eigen::Vector3d& p_mm, double radius_mm) const {
   if (elements_.empty()) {
     return Place::kBare;
   }
   Place place = Place::kBare;
-  for_each_near(p_mm.cast<float>(), static_cast<float>(reach_mm()), [&](std::uint32_t i, const Eigen::Vector3f&, float) {
-    place = is_rim_[i] != 0 ? Place::kRim : place == Place::kRim ? Place::kRim : Place::kClosed;
-  });
+  for_each_near(p_mm.cast<float>(), static_cast<float>(radius_mm),
+                [&](std::uint32_t i, const Eigen::Vector3f&, float) {
+                  place = is_rim_[i] != 0 ? Place::kRim : place == Place::kRim ? Place::kRim : Place::kClosed;
+                });
   return place;
 }
 

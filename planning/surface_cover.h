@@ -28,8 +28,8 @@ struct Hole {
 
 /// The well-sampled surface of all scans together, as one thinned set of surface elements, and where it ends.
 /// Flags alone cannot tell: where two scans see a hole up to the same rim, the border of each lies on good
-/// samples of the other, and both are cleared. An element is a rim when the elements around it, within two and a half
-/// cells, leave half a turn or nearly so empty.
+/// samples of the other, and both are cleared. An element is a rim when the elements around it, within two
+/// and a half cells, leave half a turn or nearly so empty.
 class SurfaceCover {
  public:
   /// Elements about 1.5 of the largest µ apart, and no closer than 0.1 mm.
@@ -39,14 +39,15 @@ class SurfaceCover {
   /// Within this distance neighbours are looked for: the diameter below which a hole is none.
   [[nodiscard]] double reach_mm() const { return 2.5 * cell_mm_; }
   [[nodiscard]] const std::vector<Rim>& rims() const { return rims_; }
-  /// Every rim is part of one hole. Rims shorter than reach_mm() are none: the rule of 3µ lets such gaps pass.
+  /// Every rim is part of one hole. Rims shorter than reach_mm() are none: the rule of 3µ lets such gaps
+  /// pass.
   [[nodiscard]] const std::vector<Hole>& holes() const { return holes_; }
   [[nodiscard]] std::size_t size() const { return elements_.size(); }
 
   enum class Place {
-    kBare,    ///< no well-sampled surface within reach
+    kBare,    ///< no well-sampled surface near
     kClosed,  ///< surface that goes on all around
-    kRim      ///< surface that ends within reach
+    kRim      ///< surface that ends
   };
   struct Element {
     Eigen::Vector3f position_mm;
@@ -54,7 +55,8 @@ class SurfaceCover {
   };
   /// Elements within radius_mm, in a fixed order.
   [[nodiscard]] std::vector<Element> within(const Eigen::Vector3d& p_mm, double radius_mm) const;
-  [[nodiscard]] Place at(const Eigen::Vector3d& p_mm) const;
+  /// By the elements within radius_mm.
+  [[nodiscard]] Place at(const Eigen::Vector3d& p_mm, double radius_mm) const;
 
  private:
   static std::vector<Element> elements_of(const PlacedScan& scan, double cell_mm);

@@ -138,7 +138,7 @@ void print_open(const ClosedLoop& loop) {
   for (const auto& [root, group] : groups) {
     const Eigen::Vector3f p = loop.truth().points()[group.front()];
     const Eigen::Vector3f n = loop.truth().normals()[group.front()];
-    const auto place = cover.at(model_from_tablet * p.cast<double>());
+    const auto place = cover.at(model_from_tablet * p.cast<double>(), cover.reach_mm());
     std::printf("      open %.3f mm2 at %6.2f %6.2f %6.2f normal %5.2f %5.2f %5.2f, cover %s\n",
                 static_cast<double>(group.size()) * loop.truth().area_of_point_mm2(), p.x(), p.y(), p.z(),
                 n.x(), n.y(), n.z(),
@@ -269,8 +269,8 @@ int main(int argc, char** argv) {
       const auto again = std::chrono::steady_clock::now();
       const int g = greedy_cover(options, r.share_sampled, 0.3, args.max_scans);
       const int g999 = greedy_cover(options, 0.999 * r.share_sampled, 0.3, args.max_scans);
-      const int t = uniform_turntable(options, 0.999 * r.share_sampled, args.max_scans);
-      const int b = boundary_following(options, 0.999 * r.share_sampled, args.max_scans);
+      const int t = uniform_turntable(options, args.max_scans);
+      const int b = boundary_following(options, args.max_scans);
       greedy += g;
       greedy_999 += g999;
       turntable += t;

@@ -30,7 +30,7 @@ ClosedLoop::ClosedLoop(const LoopOptions& options) : options_(options) {
   }
   station_ = std::make_unique<sim::SimStation>(std::move(*tablet), options.station);
   truth_ = std::make_unique<TabletTruth>(station_->tablet(), station_->query(), options.station.scanner,
-                                         options.truth_points);
+                                         options.station.tilt_max_deg, options.truth_points);
   rig_ = station_->rig();
   sampled_.assign(truth_->size(), 0);
 }

@@ -82,7 +82,8 @@ std::size_t SimulatedViews::samples() const {
 const SimulatedViews& million_sample_views(int count) {
   static std::map<int, SimulatedViews> made;
   const auto found = made.find(count);
-  return found != made.end() ? found->second : made.emplace(count, make_views({.count = count})).first->second;
+  return found != made.end() ? found->second
+                             : made.emplace(count, make_views({.count = count})).first->second;
 }
 
 const SimulatedViews& views_of_millions(int millions) {

@@ -10,6 +10,7 @@
 
 #include "core/grid_lookup.h"
 #include "core/parallel.h"
+#include "core/rig.h"
 #include "core/units.h"
 #include "planning/clusters.h"
 #include "planning/sparse_flags.h"
@@ -19,16 +20,22 @@ namespace dubsar::bench {
 
 namespace {
 
-constexpr std::size_t kDirections = 300;
-constexpr int kRolls = 12;
+/// Poses of the rig, for each of the six sides that the tablet can lie on.
+constexpr std::size_t kTurns = 36;
+constexpr std::size_t kTilts = 9;
+constexpr std::size_t kPoses = 6 * kTurns * kTilts;
 constexpr float kGroupMm = 0.6F;
 constexpr std::size_t kLeastGroup = 4;
 
 }  // namespace
 
 TabletTruth::TabletTruth(const sim::SimTablet& tablet, const MeshQuery& query,
-                         const sim::ScannerOptions& scanner, std::size_t points)
-    : tablet_(&tablet), query_(&query), scanner_(scanner), area_mm2_(surface_area_mm2(tablet.mesh)) {
+                         const sim::ScannerOptions& scanner, double tilt_max_deg, std::size_t points)
+    : tablet_(&tablet),
+      query_(&query),
+      scanner_(scanner),
+      tilt_max_rad_(rad_from_deg(tilt_max_deg)),
+      area_mm2_(surface_area_mm2(tablet.mesh)) {
   sim::spread_over(tablet.mesh, points, 1, &points_, &normals_);
 }
 
@@ -49,8 +56,7 @@ std::vector<std::uint8_t> TabletTruth::sampled_points(const PlacedScan& scan,
   const auto radius_mm = static_cast<float>(1.5 * scanner_.spacing_mm + 3 * scanner_.noise_mm);
   std::vector<std::uint8_t> sampled(which.size());
   parallel_for_each_index(which.size(), [&](std::size_t k) {
-    const Eigen::Vector3f p =
-        (scanner_from_model * points_[which[k]].cast<double>().eval()).cast<float>();
+    const Eigen::Vector3f p = (scanner_from_model * points_[which[k]].cast<double>().eval()).cast<float>();
     sampled[k] = lookup.nearest(p, radius_mm) >= 0 ? 1 : 0;
   });
   return sampled;
@@ -92,14 +98,14 @@ std::vector<std::uint8_t> TabletTruth::unreachable(const std::vector<std::uint8_
   }
   for (const auto& [root, group] : groups) {
     if (group.size() >= kLeastGroup) {
-      scan_from_everywhere(group, out, job);
+      scan_from_everywhere(group, out);
     }
   }
   return out;
 }
 
 void TabletTruth::scan_from_everywhere(const std::vector<std::uint32_t>& group,
-                                       std::vector<std::uint8_t>& unreachable, JobContext& job) const {
+                                       std::vector<std::uint8_t>& unreachable) const {
   Eigen::AlignedBox3f box;
   for (const std::uint32_t i : group) {
     box.extend(points_[i]);
@@ -111,15 +117,22 @@ void TabletTruth::scan_from_everywhere(const std::vector<std::uint32_t>& group,
   window.margin_mm = 0;
   const sim::TriangulationScanner scanner(window);
   const sim::Scene scene{tablet_, query_, {}, std::nullopt};
-  std::vector<std::vector<std::uint8_t>> seen(kDirections);
+  std::vector<std::vector<std::uint8_t>> seen(kPoses);
   parallel_for_each_index(
-      kDirections,
+      kPoses,
       [&](std::size_t d) {
-        // A Fibonacci spiral.
-        const double z = 1.0 - 2.0 * (static_cast<double>(d) + 0.5) / kDirections;
-        const double r = std::sqrt(1.0 - z * z);
-        const double turn = kPi * (3.0 - std::sqrt(5.0)) * static_cast<double>(d);
-        const Eigen::Vector3d from(r * std::cos(turn), r * std::sin(turn), z);
+        // The tablet on one of its sides, turntable and tilt in steps.
+        const auto side = static_cast<int>(d / (kTurns * kTilts));
+        const double turn = 2 * kPi * static_cast<double>(d / kTilts % kTurns) / kTurns;
+        const double tilt = tilt_max_rad_ * static_cast<double>(d % kTilts) / (kTilts - 1);
+        Eigen::Vector3d up = Eigen::Vector3d::Zero();
+        up[side / 2] = side % 2 == 0 ? 1 : -1;
+        RigidTransform pose;
+        pose.rotation =
+            Eigen::Quaterniond::FromTwoVectors(up, Eigen::Vector3d::UnitZ()).toRotationMatrix().transpose() *
+            stage_from_scanner(turn, tilt, Eigen::Vector3d::Zero()).rotation;
+        pose.translation_mm = center;
+        const Eigen::Vector3d from = pose.rotation.col(2);
         const bool any = std::any_of(group.begin(), group.end(), [&](std::uint32_t i) {
           const Eigen::Vector3f p = points_[i] + 0.02F * normals_[i];
           return normals_[i].dot(from.cast<float>()) > 0.2F &&
@@ -128,24 +141,13 @@ void TabletTruth::scan_from_everywhere(const std::vector<std::uint32_t>& group,
         if (!any) {
           return;
         }
-        seen[d].assign(group.size(), 0);
-        for (int roll = 0; roll < kRolls; ++roll) {
-          RigidTransform pose;
-          pose.rotation = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), from).toRotationMatrix() *
-                          Eigen::AngleAxisd(2 * kPi * roll / kRolls, Eigen::Vector3d::UnitZ());
-          pose.translation_mm = center;
-          JobContext quiet;
-          const auto grid =
-              scanner.scan_grid(scene, pose, d * kRolls + static_cast<std::size_t>(roll), quiet);
-          if (!grid || grid->size() == 0) {
-            continue;
-          }
-          const SampleFlags flags = flag_sparse(*grid);
-          const std::vector<std::uint8_t> sampled = sampled_points({0, &*grid, &flags, pose, 0}, group);
-          for (std::size_t k = 0; k < group.size(); ++k) {
-            seen[d][k] |= sampled[k];
-          }
+        JobContext quiet;
+        const auto grid = scanner.scan_grid(scene, pose, d, quiet);
+        if (!grid || grid->size() == 0) {
+          return;
         }
+        const SampleFlags flags = flag_sparse(*grid);
+        seen[d] = sampled_points({0, &*grid, &flags, pose, 0}, group);
       },
       1);
   for (std::size_t k = 0; k < group.size(); ++k) {
@@ -156,7 +158,6 @@ void TabletTruth::scan_from_everywhere(const std::vector<std::uint32_t>& group,
       }
     }
   }
-  static_cast<void>(job);
 }
 
 double TabletTruth::share_of_reachable(const std::vector<std::uint8_t>& sampled, JobContext& job) const {

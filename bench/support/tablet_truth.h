@@ -27,7 +27,7 @@ struct ExcuseScore {
 class TabletTruth {
  public:
   TabletTruth(const sim::SimTablet& tablet, const MeshQuery& query, const sim::ScannerOptions& scanner,
-              std::size_t points);
+              double tilt_max_deg, std::size_t points);
 
   [[nodiscard]] std::size_t size() const { return points_.size(); }
   [[nodiscard]] double area_of_point_mm2() const { return area_mm2_ / static_cast<double>(points_.size()); }
@@ -41,9 +41,9 @@ class TabletTruth {
   /// Share of the reachable surface that is sampled; what is not sampled is tried from 300 directions and 12
   /// turns of the scanner each.
   [[nodiscard]] double share_of_reachable(const std::vector<std::uint8_t>& sampled, JobContext& job) const;
-  /// Of the points that are not sampled, those that no pose reaches. Found by brute force: points that rays of
-  /// laser and camera reach from some of 300 directions, with 12 turns of the scanner each, are looked at by
-  /// the simulated scanner itself from all of these, group by group; what none of its scans samples with
+  /// Of the points that are not sampled, those that no pose reaches. Found by brute force: points that rays
+  /// of laser and camera reach from some of 300 directions, with 12 turns of the scanner each, are looked at
+  /// by the simulated scanner itself from all of these, group by group; what none of its scans samples with
   /// neighbours within 3µ is out of reach. Lone points count as reachable.
   [[nodiscard]] std::vector<std::uint8_t> unreachable(const std::vector<std::uint8_t>& sampled,
                                                       JobContext& job) const;
@@ -57,12 +57,13 @@ class TabletTruth {
  private:
   [[nodiscard]] std::vector<std::uint8_t> sampled_points(const PlacedScan& scan,
                                                          const std::vector<std::uint32_t>& which) const;
-  void scan_from_everywhere(const std::vector<std::uint32_t>& group, std::vector<std::uint8_t>& unreachable,
-                            JobContext& job) const;
+  void scan_from_everywhere(const std::vector<std::uint32_t>& group,
+                            std::vector<std::uint8_t>& unreachable) const;
 
   const sim::SimTablet* tablet_;
   const MeshQuery* query_;
   sim::ScannerOptions scanner_;
+  double tilt_max_rad_;
   double area_mm2_;
   std::vector<Eigen::Vector3f> points_, normals_;
 };

@@ -76,7 +76,8 @@ int greedy_cover(const LoopOptions& options, double share, double least_overlap,
     const ViewPredictor view(scanner, candidates[best].model_from_scanner, loop.station().query(),
                              kShadowMarginMm, candidates[best].hidden);
     for (std::size_t i = 0; i < n; ++i) {
-      if (loop.sampled()[i] == 0 && view.chance(truth.points()[i].cast<double>(), truth.normals()[i].cast<double>()) > 0.5) {
+      if (loop.sampled()[i] == 0 &&
+          view.chance(truth.points()[i].cast<double>(), truth.normals()[i].cast<double>()) > 0.5) {
         tries[i] = static_cast<std::uint8_t>(std::min(tries[i] + 1, 200));
       }
     }
@@ -84,14 +85,17 @@ int greedy_cover(const LoopOptions& options, double share, double least_overlap,
   return loop.scans();
 }
 
-int uniform_turntable(const LoopOptions& options, double share, int max_scans) {
+int uniform_turntable(const LoopOptions& options, int max_scans) {
   constexpr int kSteps = 8;
   ClosedLoop loop(options);
   loop.scan(std::nullopt);
   std::set<Face> done;
-  while (loop.share_sampled() < share && loop.scans() < max_scans) {
-    for (int k = 0; k < kSteps && loop.share_sampled() < share && loop.scans() < max_scans; ++k) {
+  while (loop.scans() < max_scans) {
+    for (int k = 0; k < kSteps && loop.scans() < max_scans; ++k) {
       loop.scan(Placement{2 * kPi * k / kSteps, rad_from_deg(45.0), std::nullopt});
+      if (loop.red_map().map.conclusive) {
+        return loop.scans();
+      }
     }
     const ModelSurface surface = model_surface(loop.placed());
     const PlacedScan last = loop.placed().back();
@@ -106,8 +110,8 @@ int uniform_turntable(const LoopOptions& options, double share, int max_scans) {
       if (!c.by_hand || std::abs(c.placement->tilt_rad) > 1e-6) {
         continue;
       }
-      const Eigen::Vector3d up =
-          stage_from_model.rotation.transpose() * c.placement->hand_turn->rotation.transpose() * Eigen::Vector3d::UnitZ();
+      const Eigen::Vector3d up = stage_from_model.rotation.transpose() *
+                                 c.placement->hand_turn->rotation.transpose() * Eigen::Vector3d::UnitZ();
       const double angle = Eigen::AngleAxisd(c.placement->hand_turn->rotation).angle();
       if (!done.contains(surface.faces.of(up)) && angle > most) {
         most = angle;
@@ -123,12 +127,15 @@ int uniform_turntable(const LoopOptions& options, double share, int max_scans) {
   return loop.scans();
 }
 
-int boundary_following(const LoopOptions& options, double share, int max_scans) {
+int boundary_following(const LoopOptions& options, int max_scans) {
   ClosedLoop loop(options);
   loop.scan(std::nullopt);
   std::vector<std::pair<Eigen::Vector3d, Eigen::Vector3d>> looked;  ///< at a place, from a direction
-  while (loop.share_sampled() < share && loop.scans() < max_scans) {
+  while (loop.scans() < max_scans) {
     const RedMapResult red = loop.red_map();
+    if (red.map.conclusive) {
+      break;
+    }
     const ModelSurface surface = model_surface(loop.placed());
     const std::vector<ViewCandidate> candidates = candidates_now(loop, surface);
     const ScannerModel scanner = ScannerModel::of(loop.rig(), loop.scanner().noise_mm);

@@ -12,10 +12,11 @@ namespace dubsar::bench {
 /// Returns after how many scans the share of truth points is reached, or max_scans.
 int greedy_cover(const LoopOptions& options, double share, double least_overlap, int max_scans);
 
-/// Eight steps round at a tilt of 45°, on each of the six sides in turn.
-int uniform_turntable(const LoopOptions& options, double share, int max_scans);
+/// Eight steps round at a tilt of 45°, on each of the six sides in turn, until the red map is conclusive.
+int uniform_turntable(const LoopOptions& options, int max_scans);
 
-/// The scanner looks straight at the largest red region, never twice from the same candidate.
-int boundary_following(const LoopOptions& options, double share, int max_scans);
+/// The scanner looks straight at the largest red region, never twice from the same candidate, until
+/// the red map is conclusive.
+int boundary_following(const LoopOptions& options, int max_scans);
 
 }  // namespace dubsar::bench

@@ -55,8 +55,7 @@ Answer clears(const Scan& own, std::size_t i, const Scan& other, const ClearingO
   const RigidTransform other_from_own = other.pose.inverse() * own.pose;
   const Eigen::Vector3d p = other_from_own * own.grid.point(i).cast<double>();
   const Eigen::Vector3d facing =
-      other_from_own.rotation *
-      own.grid.view.to_camera(own.grid.point(i).cast<double>(), own.grid.row_of(i));
+      other_from_own.rotation * own.grid.view.to_camera(own.grid.point(i).cast<double>(), own.grid.row_of(i));
   const double radius_mm = matching_radius_mm(own.grid, noise_of(own.placed(0)), 0.01, other.grid,
                                               noise_of(other.placed(0)), 0.01, options);
   Answer answer = Answer::kNo;
@@ -66,8 +65,7 @@ Answer clears(const Scan& own, std::size_t i, const Scan& other, const ClearingO
     }
     const double off_mm = (other.grid.point(j).cast<double>() - p).norm() - radius_mm;
     const Eigen::Vector3d n = sample_normal(other.grid, j, 0.5F).cast<double>();
-    const double turned =
-        n.isZero() ? 1.0 : n.dot(facing) - std::cos(options.max_normal_angle_rad);
+    const double turned = n.isZero() ? 1.0 : n.dot(facing) - std::cos(options.max_normal_angle_rad);
     if (off_mm < -1e-5 && turned > 0.005) {
       return Answer::kYes;
     }
