@@ -83,7 +83,7 @@ struct Placement {
   /// in the stage frame, about the tablet's centre.
   std::optional<RigidTransform> hand_turn;
   /// stage_from_scanner as an arm is asked for it; turntable and tilt are 0 then.
-  std::optional<RigidTransform> free_pose;
+  std::optional<RigidTransform> free_pose = std::nullopt;
 };
 
 /// stage_from_scanner for a placement: the scanner looks at the point focus_mm of the stage, tilted from the
