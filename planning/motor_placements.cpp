@@ -114,7 +114,7 @@ Result<Placement> first_placement(const Rig& rig, const StageScene& scene, const
 
 std::string say_arm(const RigidTransform& stage_from_scanner, const Eigen::Matrix3d& stage_from_model,
                     const ModelFaces& faces) {
-  const auto degrees = [](double rad) { return std::to_string(std::lround(deg_from_rad(rad))) + "°"; };
+  const auto degrees = [](double rad) { return std::to_string(std::lround(deg_from_rad(rad)) % 360) + "°"; };
   const Eigen::Vector3d axis = stage_from_scanner.rotation.col(2);
   const double tilt = std::atan2(axis.head<2>().norm(), axis.z());
   // What is left when the axis is put upright by the shortest way: the turn about it.

@@ -10,12 +10,20 @@
 
 namespace dubsar {
 
+namespace {
+
+/// Pins on their arms reach this far beyond the tablet.
+constexpr double kPinRoomMm = 40;
+
+}  // namespace
+
 TabletOnStage TabletOnStage::of(const StageState& state, const PlacedScan& last) {
   TabletOnStage out;
   const RigidTransform drive = stage_from_scanner(state.drive, Eigen::Vector3d::Zero());
   out.stage_from_model = drive.rotation * last.model_from_scanner.rotation.transpose();
   // Motors turn about the point that the scanner looks at.
   out.focus_mm = last.model_from_scanner.translation_mm;
+  out.room_mm = last.grid->pin_tip_diameter_mm > 0 ? kPinRoomMm : 0.0;
   if (state.drive.free_pose) {
     out.measured = drive * last.model_from_scanner.inverse();
   }
@@ -23,7 +31,7 @@ TabletOnStage TabletOnStage::of(const StageState& state, const PlacedScan& last)
 }
 
 TabletOnStage TabletOnStage::turned(const Eigen::Matrix3d& turn, const Eigen::Vector3d& center_mm) const {
-  return {turn * stage_from_model, center_mm, std::nullopt};
+  return {turn * stage_from_model, center_mm, std::nullopt, room_mm};
 }
 
 RigidTransform TabletOnStage::pose(const Rig& rig, std::span<const Eigen::Vector3d> points) const {
@@ -45,6 +53,10 @@ StageScene TabletOnStage::scene(const Rig& rig, std::span<const Eigen::Vector3d>
   out.focus_mm = stage * focus_mm;
   for (const Eigen::Vector3d& p : points) {
     out.tablet_mm.extend(stage * p);
+  }
+  if (!out.tablet_mm.isEmpty()) {
+    out.tablet_mm.min().array() -= room_mm;
+    out.tablet_mm.max().array() += room_mm;
   }
   return out;
 }

@@ -20,6 +20,7 @@ struct TabletOnStage {
   Eigen::Vector3d focus_mm{0, 0, 0};  ///< of the model: what turntable and tilt turn the scanner about
   /// Known with an arm: it stands in the stage frame, and so then does the model.
   std::optional<RigidTransform> measured;
+  double room_mm = 0;  ///< that pins take around the model
 
   [[nodiscard]] static TabletOnStage of(const StageState& state, const PlacedScan& last);
   /// After a turn by hand, about the model's centre, which then lies over the middle of the stage.

@@ -148,7 +148,7 @@ std::vector<ViewCandidate> rig_candidates(const Rig& rig, const StageState& stat
   std::vector<ViewCandidate> out;
   for (const Rest& rest : rests(rig, lies.stage_from_model, nominal, focus, surface, options)) {
     const HiddenHalf hidden = support_under(rest.stage_from_model, surface);
-    TabletOnStage on_stage{rest.stage_from_model, rest.focus_mm, std::nullopt};
+    TabletOnStage on_stage{rest.stage_from_model, rest.focus_mm, std::nullopt, lies.room_mm};
     if (!rest.turn) {
       on_stage.measured = lies.measured;
     }

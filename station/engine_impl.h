@@ -20,6 +20,7 @@
 #include "acquisition/operator_log.h"
 #include "acquisition/range_source.h"
 #include "acquisition/session_store.h"
+#include "core/keep_out.h"
 #include "core/log.h"
 #include "drivers/loader.h"
 #include "formats/checklist_json.h"
@@ -57,9 +58,16 @@ struct ScanToPlan {
   bool plan_now =
       true;  ///< false for all but the last of the stored scans that a resumed session goes through again
   bool device_waits = false;  ///< the device waits for what to do after it
+  bool resumed = false;       ///< of a run before this one
 };
-/// The planner's answer to an automatic run: where to next, or that there is nothing more to do.
-using NextStep = std::optional<NextView>;
+/// Where to next.
+struct Step {
+  NextView view;
+  StageScene scene;    ///< how the tablet will lie when the motors move
+  bool again = false;  ///< the view that was scanned last once more; nothing else is set
+};
+/// The planner's answer to an automatic run: a step, or that there is nothing more to do.
+using NextStep = std::optional<Step>;
 
 /// What asking the device for a scan led to.
 enum class Taken { kScan, kNothing, kEnd };
@@ -93,7 +101,7 @@ class StageClock {
 
 /// The state of a run. What a stage thread alone touches is marked; the rest stands still while the threads
 /// run, or is under the mutex. engine_open.cpp opens device and session, engine_stages.cpp has the four
-/// threads, engine_commands.cpp what the operator asks for meanwhile, engine_results.cpp what is made at the
+/// threads, engine_motion.cpp what moves, engine_misses.cpp what is done about scans that are not taken up, engine_commands.cpp what the operator asks for meanwhile, engine_results.cpp what is made at the
 /// end, engine.cpp the order of it all.
 struct Engine::Impl {
   EngineOptions options;
@@ -122,6 +130,14 @@ struct Engine::Impl {
   // Of the registering thread while it runs:
   std::map<int, std::string> names;  ///< original names by id
   OperatorWord word;
+
+  // Of the acquiring thread, round after round:
+  std::optional<Placement> present;  ///< where the device was last driven to; an arm is anywhere at first
+  StageScene scene;                  ///< as the last step saw it
+  int empty_scans = 0;               ///< in a row
+  // Of the planning thread, round after round:
+  int misses = 0;  ///< scans in a row that were not taken up
+  std::set<int> taken_up;
 
   std::mutex mutex;  ///< of what follows
   std::optional<Error> first_error;
@@ -157,6 +173,21 @@ struct Engine::Impl {
   Status open(JobContext& job);
   Status load_resumed(JobContext& job);
   void acquire(NextStep step, JobContext& job);
+  // engine_motion.cpp
+  Status limit_rig();  ///< by the file, the pins and what is left then
+  /// To where the first scan of this run is taken from.
+  bool move_to_start(JobContext& job);
+  /// False when it could not be done: nothing moves any more then.
+  bool move_to(const Placement& target, const StageScene& on_stage, JobContext& job);
+  void end_motion(Error error);  ///< notes what ended it
+  void stop_motion_after_trouble(const JobContext& job);
+  [[nodiscard]] StageScene unseen() const;
+  NextStep step_to(const RedMap& red_map) const;
+  // engine_misses.cpp
+  /// Whether the scan just came in vain, and what then; nothing when it was taken up.
+  enum class Miss { kNone, kAgain, kEnd };
+  Miss judge_miss(int id, const std::vector<ScanPose>& poses);
+  Taken refuse_empty();  ///< of a scan without a sample
   Taken take_scan(const std::optional<Placement>& drive, JobContext& job);
   void keep_stored();
   /// Into the model, as the operator's word on it has it.

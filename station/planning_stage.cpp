@@ -81,14 +81,39 @@ Status PlanningStage::place(const std::vector<ScanPose>& poses, bool exact, JobC
   return {};
 }
 
+std::optional<StageState> PlanningStage::stage() const {
+  std::optional<StageState> out;
+  for (const PlacedScan& scan : cleared_.scans()) {
+    if (const auto& drive = scans_.at(scan.id).drive) {
+      out = StageState{scan.id, *drive};  // the last registered one tells how the tablet lies now
+    }
+  }
+  return out;
+}
+
+std::optional<StageScene> PlanningStage::scene_for(const Rig& rig, const Placement& placement) const {
+  const std::optional<StageState> state = stage();
+  if (!state) {
+    return std::nullopt;
+  }
+  const std::vector<PlacedScan> scans = cleared_.scans();
+  const auto last = std::ranges::find(scans, state->scan_id, &PlacedScan::id);
+  const std::vector<Eigen::Vector3d> points = reach_points(scans);
+  const TabletOnStage lies = TabletOnStage::of(*state, *last);
+  if (!placement.hand_turn || points.empty()) {
+    return lies.scene(rig, points);
+  }
+  Eigen::AlignedBox3d box;
+  for (const Eigen::Vector3d& p : points) {
+    box.extend(p);
+  }
+  return lies.turned(placement.hand_turn->rotation, box.center()).scene(rig, points);
+}
+
 Result<RedMap> PlanningStage::red_map(const Rig* rig, JobContext& job) {
   const std::vector<PlacedScan> scans = cleared_.scans();
   RedMapOptions options;
-  for (const PlacedScan& scan : scans) {
-    if (const auto& drive = scans_.at(scan.id).drive) {
-      options.stage = StageState{scan.id, *drive};  // the last registered one tells how the tablet lies now
-    }
-  }
+  options.stage = stage();
   // Without a mesh the scans themselves cast the shadows: as good, and it waits for no stitching.
   Result<RedMapResult> result = make_red_map(scans, nullptr, rig, options, job);
   if (!result) {

@@ -15,6 +15,7 @@
 #include "core/rig.h"
 #include "core/scan_pose.h"
 #include "planning/cleared_map.h"
+#include "planning/tablet_on_stage.h"
 #include "station/station_scan.h"
 #include "triangulation/stitcher.h"
 
@@ -36,6 +37,10 @@ class PlanningStage {
   /// The red map over what is placed.
   [[nodiscard]] Result<RedMap> red_map(const Rig* rig, JobContext& job);
 
+  /// What the motors have to know of the tablet before they go to a placement: how it lies, after the turn
+  /// by hand that the placement asks for. Nothing before a scan is placed that was driven to.
+  [[nodiscard]] std::optional<StageScene> scene_for(const Rig& rig, const Placement& placement) const;
+
   /// The mesh of what is placed.
   [[nodiscard]] Result<Mesh> mesh(const JobContext& job) const { return stitcher_.mesh(job); }
 
@@ -50,6 +55,8 @@ class PlanningStage {
   [[nodiscard]] RigidTransform tablet_from_model(const Mesh& mesh) const;
 
  private:
+  [[nodiscard]] std::optional<StageState> stage() const;
+
   std::map<int, StationScan> scans_;
   std::map<int, PlacedScan> placed_;
   ClearedMap cleared_;
