@@ -135,11 +135,13 @@ std::vector<std::vector<Placement>> ways_of_arm(const Rig& rig, const StageScene
   const RigidTransform out = backed_off(from);
   const RigidTransform in = backed_off(to);
   ways.push_back({at_pose(out), at_pose(in)});
-  RigidTransform top = to;
-  top.rotation = Eigen::Quaterniond::FromTwoVectors(to.rotation.col(2), Eigen::Vector3d::UnitZ())
-                     .toRotationMatrix() *
-                 to.rotation;
-  ways.push_back({at_pose(out), at_pose(backed_off(top)), at_pose(in)});
+  const auto upright = [&](RigidTransform pose) {
+    pose.rotation = Eigen::Quaterniond::FromTwoVectors(pose.rotation.col(2), Eigen::Vector3d::UnitZ())
+                        .toRotationMatrix() *
+                    pose.rotation;
+    return backed_off(pose);
+  };
+  ways.push_back({at_pose(out), at_pose(upright(from)), at_pose(upright(to)), at_pose(in)});
   return ways;
 }
 
@@ -179,7 +181,9 @@ StageScene unseen_tablet(const Rig& rig, const std::optional<Eigen::Vector3d>& s
 Status check_clear(const Rig& rig, const StageScene& scene, const Placement& placement,
                    const std::string& where) {
   const std::optional<HeadBox> head = head_of(rig);
-  return head ? check_head(rig, *head, volume_of(rig, scene), standing_pose(placement, scene.focus_mm), where)
+  // As wide as on the way, so that what may be stood at may also be left.
+  return head ? check_head(rig, grown(*head, 0.5 * kStepMm), volume_of(rig, scene),
+                           standing_pose(placement, scene.focus_mm), where)
               : Status{};
 }
 
@@ -215,17 +219,15 @@ Status check_way(const Rig& rig, const StageScene& scene, const Placement& from,
   }
   const Eigen::AlignedBox3d volume = volume_of(rig, scene);
   const int steps = std::max(1, static_cast<int>(std::ceil(length / kStepMm)));
-  // Between two looks a point is at most half a step from where one of them saw it; at the ends the head is
-  // as it is.
+  // Between two looks a point is at most half a step from where one of them saw it.
   const HeadBox moving = grown(*head, 0.5 * kStepMm);
   for (int k = 0; k <= steps; ++k) {
     const Placement at = on_the_way(from, to, static_cast<double>(k) / steps);
     const RigidTransform pose = standing_pose(at, scene.focus_mm);
-    const bool end = k == 0 || k == steps;
-    if (Status clear = check_head(rig, end ? *head : moving, volume, pose, where); !clear) {
+    if (Status clear = check_head(rig, moving, volume, pose, where); !clear) {
       return clear;
     }
-    if (at.free_pose && !end) {
+    if (at.free_pose && k != 0 && k != steps) {
       if (Status reached = check_reach(rig, pose, where); !reached) {
         return reached;
       }

@@ -138,6 +138,7 @@ struct Engine::Impl {
   // Of the planning thread, round after round:
   int misses = 0;  ///< scans in a row that were not taken up
   std::set<int> taken_up;
+  std::map<int, int> lies_as;  ///< placement by scan, of scans that motors were told of
 
   std::mutex mutex;  ///< of what follows
   std::optional<Error> first_error;
@@ -184,9 +185,12 @@ struct Engine::Impl {
   [[nodiscard]] StageScene unseen() const;
   NextStep step_to(const RedMap& red_map) const;
   // engine_misses.cpp
-  /// Whether the scan just came in vain, and what then; nothing when it was taken up.
-  enum class Miss { kNone, kAgain, kEnd };
-  Miss judge_miss(int id, const std::vector<ScanPose>& poses);
+  /// Where to after a scan: by the red map when the scan was taken up; else the same view again, then one that
+  /// has more in common with the others, then nothing more.
+  NextStep step_after(int id, const std::vector<ScanPose>& poses, const RedMap& red_map);
+  /// Whether the scans that were taken up until now have given way to others that lie in the same way on the
+  /// stage: the two sets cannot both be the tablet.
+  bool another_tablet(int id, const std::set<int>& before, const std::set<int>& now);
   Taken refuse_empty();  ///< of a scan without a sample
   Taken take_scan(const std::optional<Placement>& drive, JobContext& job);
   void keep_stored();

@@ -9,7 +9,8 @@ namespace dubsar {
 namespace {
 
 /// Scans in a row that may come in vain.
-constexpr int kMostInVain = 2;
+constexpr int kMostInVain = 3;
+constexpr int kMostEmpty = 2;
 
 std::string listed(const std::set<int>& ids) {
   std::string text = ids.size() == 1 ? "scan " : "scans ";
@@ -29,7 +30,7 @@ Taken Engine::Impl::refuse_empty() {
                       options.device,
                       "see that the tablet lies in the measuring field, then give the same command again"};
   ++empty_scans;
-  if (drives && empty_scans < kMostInVain) {
+  if (drives && empty_scans < kMostEmpty) {
     emit(Notice{fmt::format("{}: {}; the same view is scanned once more", nothing.where, nothing.what)});
     return Taken::kNothing;
   }
@@ -37,7 +38,17 @@ Taken Engine::Impl::refuse_empty() {
   return source->capabilities().finite ? Taken::kNothing : Taken::kEnd;
 }
 
-Engine::Impl::Miss Engine::Impl::judge_miss(int id, const std::vector<ScanPose>& poses) {
+bool Engine::Impl::another_tablet(int id, const std::set<int>& before, const std::set<int>& now) {
+  const auto lies = lies_as.find(id);
+  return !before.empty() && lies != lies_as.end() && now.contains(id) &&
+         std::ranges::none_of(before, [&](int one) { return now.contains(one); }) &&
+         std::ranges::any_of(before, [&](int one) {
+           const auto other = lies_as.find(one);
+           return other != lies_as.end() && other->second == lies->second;
+         });
+}
+
+NextStep Engine::Impl::step_after(int id, const std::vector<ScanPose>& poses, const RedMap& red_map) {
   std::set<int> now;
   std::string reason;
   for (const ScanPose& pose : poses) {
@@ -47,31 +58,50 @@ Engine::Impl::Miss Engine::Impl::judge_miss(int id, const std::vector<ScanPose>&
       reason = pose.reason;
     }
   }
-  const bool none_left =
-      !taken_up.empty() && std::ranges::none_of(taken_up, [&](int one) { return now.contains(one); });
   const std::set<int> before = std::exchange(taken_up, now);
-  if (now.contains(id) && none_left) {
+  if (another_tablet(id, before, now)) {
     end_motion({ErrorKind::kBadInput,
                 listed(now) + " fit each other and not " + listed(before) +
                     ": something was in the way before, or another tablet lies there now",
                 options.session.string(),
                 "take the wrong ones out (session drop), then give the same command again"});
-    return Miss::kEnd;
+    return std::nullopt;
   }
   if (now.contains(id)) {
     misses = 0;
-    return Miss::kNone;
+    return step_to(red_map);
   }
-  if (++misses < kMostInVain) {
+  ++misses;
+  const auto lies = lies_as.find(id);
+  const bool just_lifted = lies != lies_as.end() && std::ranges::none_of(now, [&](int one) {
+                             const auto other = lies_as.find(one);
+                             return other != lies_as.end() && other->second == lies->second;
+                           });
+  // Just lifted, it mostly shows too little that is known; else something was in the way and is gone again.
+  const bool look_elsewhere = misses == (just_lifted ? 1 : 2);
+  const std::optional<NextView> other =
+      look_elsewhere && rig ? planning.after_miss(*rig, id) : std::nullopt;
+  if (other) {
+    emit(Notice{fmt::format(
+        "scan {} is not taken up: {}; the next view shows more of what is known", id, reason)});
+    // Where it was turned by hand meanwhile, only the motors' word says how it lies: whatever way it does.
+    StageScene wide = unseen();
+    if (const auto on_stage = planning.scene_for(*rig, *other->placement)) {
+      wide.tablet_mm.extend(on_stage->tablet_mm);
+      wide.focus_mm = on_stage->focus_mm;
+    }
+    return Step{.view = *other, .scene = wide, .again = false};
+  }
+  if (misses < kMostInVain) {
     emit(Notice{fmt::format("scan {} is not taken up: {}; the same view is scanned once more", id, reason)});
-    return Miss::kAgain;
+    return Step{.view = {}, .scene = {}, .again = true};
   }
   end_motion({ErrorKind::kBadInput,
-              fmt::format("two scans of this view in a row are not taken up, scan {} because {}", id, reason),
+              fmt::format("{} scans in a row are not taken up, scan {} because {}", misses, id, reason),
               options.session.string(),
               "see that it is the right tablet, that no hand is in view and that nothing moved, then give the "
               "same command again"});
-  return Miss::kEnd;
+  return std::nullopt;
 }
 
 }  // namespace dubsar

@@ -122,6 +122,10 @@ NextStep Engine::Impl::step_to(const RedMap& red_map) const {
     const auto on_stage = rig ? planning.scene_for(*rig, *view.placement) : std::nullopt;
     Step one{.view = view, .scene = on_stage.value_or(StageScene{}), .again = false};
     if (!rig || check_clear(*rig, one.scene, *view.placement, options.device)) {
+      if (const auto side = rig ? planning.before_lifting(*rig, view) : std::nullopt) {
+        one.view = *side;
+        one.scene = planning.scene_for(*rig, *side->placement).value_or(one.scene);
+      }
       return one;
     }
     step = step ? step : NextStep(one);  // refused, with its reason, by whoever is to drive there

@@ -191,6 +191,9 @@ void Engine::Impl::plan_all(JobContext& job) {
   while (std::optional<ScanToPlan> item = queues->to_plan.pop()) {
     if (item->scan) {
       planning.add(*item->scan);
+      if (item->scan->grid->nominal) {
+        lies_as[item->scan->id] = item->scan->grid->nominal->placement;
+      }
     }
     if (job.cancelled()) {
       give_up(stopped());  // the device waits for a next step that will not come
@@ -217,17 +220,7 @@ void Engine::Impl::plan_all(JobContext& job) {
     }
     if (drives && item->device_waits) {
       const bool fresh = item->scan && !item->resumed;
-      switch (fresh ? judge_miss(item->scan->id, item->poses) : Miss::kNone) {
-        case Miss::kNone:
-          queues->to_device.push(step_to(*red_map));
-          break;
-        case Miss::kAgain:
-          queues->to_device.push(Step{.view = {}, .scene = {}, .again = true});
-          break;
-        case Miss::kEnd:
-          queues->to_device.push(std::nullopt);
-          break;
-      }
+      queues->to_device.push(fresh ? step_after(item->scan->id, item->poses, *red_map) : step_to(*red_map));
     }
     emit(RedMapChanged{std::move(*red_map)});
   }

@@ -7,8 +7,10 @@
 #include <utility>
 
 #include "core/tablet_frame.h"
+#include "core/units.h"
 #include "planning/model_faces.h"
 #include "planning/red_map.h"
+#include "planning/side_view.h"
 
 namespace dubsar {
 
@@ -108,6 +110,39 @@ std::optional<StageScene> PlanningStage::scene_for(const Rig& rig, const Placeme
     box.extend(p);
   }
   return lies.turned(placement.hand_turn->rotation, box.center()).scene(rig, points);
+}
+
+std::optional<NextView> PlanningStage::before_lifting(const Rig& rig, const NextView& next) const {
+  const double from_the_side = rad_from_deg(40.0);
+  const std::optional<StageState> state = stage();
+  if (!state || !next.placement || !next.placement->hand_turn) {
+    return std::nullopt;
+  }
+  const std::vector<PlacedScan> scans = cleared_.scans();
+  const auto last = std::ranges::find(scans, state->scan_id, &PlacedScan::id);
+  const auto lies_as = [](const PlacedScan& scan) {
+    return scan.grid->nominal ? scan.grid->nominal->placement : -1;
+  };
+  if (std::ranges::count(scans, lies_as(*last), lies_as) != 1) {
+    return std::nullopt;
+  }
+  return side_view(rig, *state, *last, model_surface(scans), from_the_side);
+}
+
+std::optional<NextView> PlanningStage::after_miss(const Rig& rig, int id) const {
+  const std::vector<PlacedScan> scans = cleared_.scans();
+  const auto found = scans_.find(id);
+  if (found == scans_.end() || !found->second.drive || !found->second.grid->nominal || scans.empty() ||
+      !scans.front().grid->nominal) {
+    return std::nullopt;
+  }
+  const StationScan& missed = found->second;
+  const PlacedScan& first = scans.front();
+  const RigidTransform model_from_tablet =
+      first.model_from_scanner * first.grid->nominal->tablet_from_scanner.inverse();
+  const PlacedScan there{id, missed.grid.get(), missed.flags.get(),
+                         model_from_tablet * missed.grid->nominal->tablet_from_scanner, 0.0};
+  return side_view(rig, {id, *missed.drive}, there, model_surface(scans), 0.0);
 }
 
 Result<RedMap> PlanningStage::red_map(const Rig* rig, JobContext& job) {
