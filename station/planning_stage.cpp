@@ -119,14 +119,10 @@ std::optional<NextView> PlanningStage::before_lifting(const Rig& rig, const Next
     return std::nullopt;
   }
   const std::vector<PlacedScan> scans = cleared_.scans();
-  const auto last = std::ranges::find(scans, state->scan_id, &PlacedScan::id);
-  const auto lies_as = [](const PlacedScan& scan) {
-    return scan.grid->nominal ? scan.grid->nominal->placement : -1;
-  };
-  if (std::ranges::count(scans, lies_as(*last), lies_as) != 1) {
+  if (scans.size() != 1) {
     return std::nullopt;
   }
-  return side_view(rig, *state, *last, model_surface(scans), from_the_side);
+  return side_view(rig, *state, scans.front(), model_surface(scans), from_the_side);
 }
 
 std::optional<NextView> PlanningStage::after_miss(const Rig& rig, int id) const {

@@ -41,8 +41,8 @@ class PlanningStage {
   /// by hand that the placement asks for. Nothing before a scan is placed that was driven to.
   [[nodiscard]] std::optional<StageScene> scene_for(const Rig& rig, const Placement& placement) const;
 
-  /// Before a step that lifts the tablet: a view from its side, while the way in which it lies now was scanned
-  /// only once and the rig can look from there. Else nothing.
+  /// Before a step that lifts the tablet: a view from its side, while it was scanned only once and the rig can
+  /// look from there. Else nothing.
   [[nodiscard]] std::optional<NextView> before_lifting(const Rig& rig, const NextView& next) const;
   /// After a scan that was not taken up: the view of the tablet as it lies now that should have most in common
   /// with what is placed, by where the motors and the asked turns say that the scan is.
