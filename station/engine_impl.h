@@ -32,6 +32,7 @@
 #include "registration/registrar.h"
 #include "station/bounded_queue.h"
 #include "station/drives.h"
+#include "station/intruders.h"
 #include "station/planning_stage.h"
 #include "station/scan_set.h"
 
@@ -130,6 +131,7 @@ struct Engine::Impl {
   // Of the registering thread while it runs:
   std::map<int, std::string> names;  ///< original names by id
   OperatorWord word;
+  IntruderFinder intruders;
 
   // Of the acquiring thread, round after round:
   std::optional<Placement> present;  ///< where the device was last driven to; an arm is anywhere at first
@@ -137,6 +139,7 @@ struct Engine::Impl {
   int empty_scans = 0;               ///< in a row
   // Of the planning thread, round after round:
   int misses = 0;  ///< scans in a row that were not taken up
+  bool again = false;  ///< the scan that comes is of the same view as the one before
   std::set<int> taken_up;
   std::map<int, int> lies_as;  ///< placement by scan, of scans that motors were told of
 
@@ -188,6 +191,7 @@ struct Engine::Impl {
   /// Where to after a scan: by the red map when the scan was taken up; else the same view again, then one that
   /// has more in common with the others, then nothing more.
   NextStep step_after(int id, const std::vector<ScanPose>& poses, const RedMap& red_map);
+  NextStep once_more();
   /// Whether the scans that were taken up until now have given way to others that lie in the same way on the
   /// stage: the two sets cannot both be the tablet.
   bool another_tablet(int id, const std::set<int>& before, const std::set<int>& now);
@@ -197,6 +201,9 @@ struct Engine::Impl {
   /// Into the model, as the operator's word on it has it.
   ScanPose register_scan(const StationScan& scan, JobContext& job);
   void register_all(JobContext& job);
+  /// Takes out scans that show a hand or the like, that one included, and says so; then what they stood in the
+  /// way of is tried again. engine_misses.cpp
+  ScanPose set_intruders_aside(const StationScan& scan, ScanPose pose, JobContext& job);
   void plan_all(JobContext& job);
   std::vector<ScanPose> named_poses() const;
   // engine_commands.cpp

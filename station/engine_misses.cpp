@@ -38,6 +38,36 @@ Taken Engine::Impl::refuse_empty() {
   return source->capabilities().finite ? Taken::kNothing : Taken::kEnd;
 }
 
+ScanPose Engine::Impl::set_intruders_aside(const StationScan& scan, ScanPose pose, JobContext& job) {
+  intruders.add(scan);
+  while (!job.cancelled()) {
+    const std::optional<Intruder> found = intruders.look(scan.id, registrar.poses());
+    if (!found || word.locked.contains(found->id)) {
+      break;
+    }
+    intruders.remove(found->id);
+    const std::string why =
+        fmt::format("something was in the way of scan {}: {:.0f} % of it, where scan {} looked too, stands in the air",
+                    found->id, 100 * found->share, found->witness);
+    if (const Status dropped = store->drop_scan(found->id, why); !dropped) {
+      give_up(dropped.error());
+      break;
+    }
+    registrar.remove(found->id);
+    emit(Notice{why + "; it is set aside (session restore puts it back)"});
+    if (found->id == scan.id) {
+      pose = ScanPose{};
+      pose.id = scan.id;
+      pose.reason = why;
+      break;
+    }
+    if (pose.status != PoseStatus::kRegistered) {
+      pose = register_scan(scan, job);
+    }
+  }
+  return pose;
+}
+
 bool Engine::Impl::another_tablet(int id, const std::set<int>& before, const std::set<int>& now) {
   const auto lies = lies_as.find(id);
   return !before.empty() && lies != lies_as.end() && now.contains(id) &&
@@ -48,9 +78,14 @@ bool Engine::Impl::another_tablet(int id, const std::set<int>& before, const std
          });
 }
 
+NextStep Engine::Impl::once_more() {
+  again = true;
+  return Step{.view = {}, .scene = {}, .again = true};
+}
+
 NextStep Engine::Impl::step_after(int id, const std::vector<ScanPose>& poses, const RedMap& red_map) {
   std::set<int> now;
-  std::string reason;
+  std::string reason = "something was in the way";
   for (const ScanPose& pose : poses) {
     if (pose.status == PoseStatus::kRegistered) {
       now.insert(pose.id);
@@ -67,8 +102,17 @@ NextStep Engine::Impl::step_after(int id, const std::vector<ScanPose>& poses, co
                 "take the wrong ones out (session drop), then give the same command again"});
     return std::nullopt;
   }
+  const bool is_again = std::exchange(again, false);
+  const bool doubtful = !is_again && planning.shows_much_more(id);
   if (now.contains(id)) {
     misses = 0;
+    if (doubtful) {
+      emit(Notice{fmt::format(
+          "scan {} shows much more than what is known; the same view is scanned once more, to see whether "
+          "something was in the way",
+          id)});
+      return once_more();
+    }
     return step_to(red_map);
   }
   ++misses;
@@ -78,7 +122,7 @@ NextStep Engine::Impl::step_after(int id, const std::vector<ScanPose>& poses, co
                              return other != lies_as.end() && other->second == lies->second;
                            });
   // Just lifted, it mostly shows too little that is known; else something was in the way and is gone again.
-  const bool look_elsewhere = misses == (just_lifted ? 1 : 2);
+  const bool look_elsewhere = misses == (just_lifted && !doubtful && !is_again ? 1 : 2);
   const std::optional<NextView> other =
       look_elsewhere && rig ? planning.after_miss(*rig, id) : std::nullopt;
   if (other) {
@@ -94,7 +138,7 @@ NextStep Engine::Impl::step_after(int id, const std::vector<ScanPose>& poses, co
   }
   if (misses < kMostInVain) {
     emit(Notice{fmt::format("scan {} is not taken up: {}; the same view is scanned once more", id, reason)});
-    return Step{.view = {}, .scene = {}, .again = true};
+    return once_more();
   }
   end_motion({ErrorKind::kBadInput,
               fmt::format("{} scans in a row are not taken up, scan {} because {}", misses, id, reason),

@@ -152,7 +152,7 @@ ScanPose Engine::Impl::register_scan(const StationScan& scan, JobContext& job) {
 void Engine::Impl::register_all(JobContext& job) {
   const auto handle = [&](StationScan scan, bool plan_now, bool is_resumed) {
     names[scan.id] = scan.file;
-    ScanPose pose = register_scan(scan, job);
+    ScanPose pose = set_intruders_aside(scan, register_scan(scan, job), job);
     pose.file = scan.file;
     std::vector<ScanPose> poses = named_poses();
     // Whatever ends the run, what it found until now is in the session.

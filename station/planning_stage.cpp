@@ -141,6 +141,25 @@ std::optional<NextView> PlanningStage::after_miss(const Rig& rig, int id) const 
   return side_view(rig, {id, *missed.drive}, there, model_surface(scans), 0.0);
 }
 
+bool PlanningStage::shows_much_more(int id) const {
+  constexpr double kMuchMore = 1.3;
+  const auto diagonal = [](std::span<const PlacedScan> scans) {
+    Eigen::AlignedBox3d box;
+    for (const Eigen::Vector3d& p : reach_points(scans)) {
+      box.extend(p);
+    }
+    return box.isEmpty() ? 0.0 : box.diagonal().norm();
+  };
+  std::vector<PlacedScan> others = cleared_.scans();
+  std::erase_if(others, [&](const PlacedScan& scan) { return scan.id == id; });
+  const auto found = scans_.find(id);
+  if (found == scans_.end() || others.empty()) {
+    return false;
+  }
+  const PlacedScan alone{id, found->second.grid.get(), found->second.flags.get(), {}, 0.0};
+  return diagonal({&alone, 1}) > kMuchMore * diagonal(others);
+}
+
 Result<RedMap> PlanningStage::red_map(const Rig* rig, JobContext& job) {
   const std::vector<PlacedScan> scans = cleared_.scans();
   RedMapOptions options;

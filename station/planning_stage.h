@@ -48,6 +48,10 @@ class PlanningStage {
   /// with what is placed, by where the motors and the asked turns say that the scan is.
   [[nodiscard]] std::optional<NextView> after_miss(const Rig& rig, int id) const;
 
+  /// Whether a scan, placed or not, shows far more than all others that are placed do together: a hand is larger
+  /// than most tablets.
+  [[nodiscard]] bool shows_much_more(int id) const;
+
   /// The mesh of what is placed.
   [[nodiscard]] Result<Mesh> mesh(const JobContext& job) const { return stitcher_.mesh(job); }
 
