@@ -129,8 +129,8 @@ class Collector : public ProfileSink {
   ScanInfo info_;
 };
 
-/// While it lives, a cancelled job stops the device. A stop that comes before the motion has begun is lost, so
-/// it is said until the motion has ended.
+/// While it lives, a cancelled job stops the device. A stop that comes before the motion has begun is lost,
+/// so it is said until the motion has ended.
 class StopsWhenCancelled {
  public:
   StopsWhenCancelled(const Device& device, const JobContext& job) {

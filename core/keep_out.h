@@ -34,16 +34,18 @@ struct StageScene {
                                  const std::string& where);
 
 /// The same for all of the way between two placements, both included, and an arm's reach on it. Turntable and
-/// tilt may move in any order: the tablet is taken for all that it sweeps in a full turn. An arm goes straight:
-/// the centre of the measuring volume along a line, the turn by the shorter way at the same time. The way is
-/// looked at every few millimetres with the head grown by as much, so that nothing is missed in between.
+/// tilt may move in any order: the tablet is taken for all that it sweeps in a full turn. An arm goes
+/// straight: the centre of the measuring volume along a line, the turn by the shorter way at the same time.
+/// The way is looked at every few millimetres with the head grown by as much, so that nothing is missed in
+/// between.
 [[nodiscard]] Status check_way(const Rig& rig, const StageScene& scene, const Placement& from,
                                const Placement& to, const std::string& where);
 
-/// The placements to go through, the last being `to`, so that every part of the way is within limits and clear.
-/// Without a known start only the goal is checked. An arm whose straight way is not clear backs off along its
-/// own axis, goes round and comes in again; when that does not do, over the top. kUsage with what is in the
-/// way when there is no such way. Checks are made before anything is returned, so nothing has moved.
+/// The placements to go through, the last being `to`, so that every part of the way is within limits and
+/// clear. Without a known start only the goal is checked. An arm whose straight way is not clear backs off
+/// along its own axis, goes round and comes in again; when that does not do, over the top. kUsage with what
+/// is in the way when there is no such way. Checks are made before anything is returned, so nothing has
+/// moved.
 [[nodiscard]] Result<std::vector<Placement>> safe_way(const Rig& rig, const StageScene& scene,
                                                       const std::optional<Placement>& from,
                                                       const Placement& to, const std::string& where);

@@ -65,7 +65,9 @@ struct Rig {
   /// How near the head may come to what is known of the tablet.
   double keep_out_margin_mm = 15;
 
-  [[nodiscard]] bool turns_fully() const { return turntable_rad.high - turntable_rad.low > kFullTurnRad - 1e-6; }
+  [[nodiscard]] bool turns_fully() const {
+    return turntable_rad.high - turntable_rad.low > kFullTurnRad - 1e-6;
+  }
 };
 
 /// Where the tablet lies: which way its model frame is turned on the stage. `name` is for people ("reverse

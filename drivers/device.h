@@ -101,7 +101,8 @@ class Device {
   /// Checks type, range and choice against settings() first.
   Status set(const std::string& key, const SettingValue& value);
 
-  /// kUsage when the device cannot be placed or the placement lies outside its limits; nothing has moved then.
+  /// kUsage when the device cannot be placed or the placement lies outside its limits; nothing has moved
+  /// then.
   Status place(const Placement& placement);
   /// Stops all motion, where the device offers that; else nothing. From any thread, also while place() or
   /// scan() runs on another: these then return kCancelled soon.

@@ -120,13 +120,13 @@ typedef struct dubsar_view {
 #define DUBSAR_HAS_HAND_TURNS 4u /* the tablet can be laid on another side, by hand or in simulation */
 #define DUBSAR_IS_FINITE 8u      /* plays what was recorded: scan() ends with DUBSAR_END */
 #define DUBSAR_HAS_RIG 16u       /* the geometry below is that of the device; else it is not known */
-#define DUBSAR_HAS_ARM 32u       /* an arm carries the scanner anywhere: arm_* below, placements have a pose */
-#define DUBSAR_HAS_HEAD 64u      /* head_* is the body of the scanner */
-#define DUBSAR_HAS_TURN_LIMITS 128u /* the turntable goes from turntable_min_rad to turntable_max_rad only */
+#define DUBSAR_HAS_ARM 32u  /* an arm carries the scanner anywhere: arm_* below, placements have a pose */
+#define DUBSAR_HAS_HEAD 64u /* head_* is the body of the scanner */
+#define DUBSAR_HAS_TURN_LIMITS 128u /* turntable_min_rad and turntable_max_rad are its ends */
 
 /* What a device can do, and its geometry. The stage frame has its origin at the turntable's centre on the
- * support, z up. The scanner frame: origin in the centre of the measuring volume, x along a profile, y along
- * the motion, z towards the scanner. */
+ * support, z up. The scanner frame: origin in the centre of the measuring volume, x along a profile, y
+ * along the motion, z towards the scanner. */
 typedef struct dubsar_capabilities {
   uint32_t struct_size;
   uint32_t flags;     /* DUBSAR_HAS_*, DUBSAR_IS_* */
@@ -141,7 +141,7 @@ typedef struct dubsar_capabilities {
   double calibration_age_days; /* negative when not known */
   dubsar_view view;
   char name[128];
-  char calibration[256]; /* what it was calibrated with; empty when not known */
+  char calibration[256];    /* what it was calibrated with; empty when not known */
   double turntable_min_rad; /* with DUBSAR_HAS_TURN_LIMITS */
   double turntable_max_rad;
   /* With DUBSAR_HAS_HEAD: a box in the scanner frame that holds the scanner's body from the first row of a
@@ -150,10 +150,10 @@ typedef struct dubsar_capabilities {
   double head_high_mm[3];
   /* With DUBSAR_HAS_ARM: where the middle of the head's box can be. Its axis tilts from tilt_min_rad to
    * tilt_max_rad, which then need no DUBSAR_HAS_TILT. */
-  double arm_base_mm[3];      /* the arm's foot, stage frame */
-  double arm_reach_mm[2];     /* from there, least and most */
-  double arm_height_mm[2];    /* above the support */
-  double arm_standoff_mm[2];  /* from the origin of the stage */
+  double arm_base_mm[3];     /* the arm's foot, stage frame */
+  double arm_reach_mm[2];    /* from there, least and most */
+  double arm_height_mm[2];   /* above the support */
+  double arm_standoff_mm[2]; /* from the origin of the stage */
 } dubsar_capabilities;
 
 /* Where the next scan is to be taken from. */

@@ -89,8 +89,9 @@ std::string rig_limits_to_json(const RigLimits& limits) {
     json["tilt_deg"] = pair_of(*limits.tilt_rad, deg);
   }
   OrderedJson arm;
-  for (const auto& [key, range] : {std::pair{"reach", &limits.reach_mm}, std::pair{"height", &limits.height_mm},
-                                   std::pair{"standoff", &limits.standoff_mm}}) {
+  for (const auto& [key, range] :
+       {std::pair{"reach", &limits.reach_mm}, std::pair{"height", &limits.height_mm},
+        std::pair{"standoff", &limits.standoff_mm}}) {
     if (*range) {
       arm[key] = pair_of(**range, 1.0);
     }

@@ -15,7 +15,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     rig.robot = dubsar::RobotReach{};
     if (const auto narrow = dubsar::narrowed(rig, *limits, "rig.json")) {
       // Whatever the file says, it never widens.
-      dubsar::fuzz::require(narrow->tilt_min_rad >= rig.tilt_min_rad && narrow->tilt_max_rad <= rig.tilt_max_rad);
+      dubsar::fuzz::require(narrow->tilt_min_rad >= rig.tilt_min_rad &&
+                            narrow->tilt_max_rad <= rig.tilt_max_rad);
       dubsar::fuzz::require(narrow->robot->reach_mm.low >= rig.robot->reach_mm.low &&
                             narrow->robot->reach_mm.high <= rig.robot->reach_mm.high);
       dubsar::fuzz::require(narrow->keep_out_margin_mm >= rig.keep_out_margin_mm);

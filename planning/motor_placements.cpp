@@ -70,8 +70,7 @@ void add_arm_placements(const Rig& rig, double tilt_rad, const Eigen::Vector3d& 
 std::vector<Placement> motor_placements(const Rig& rig, const Placement& now, const Eigen::Vector3d& focus_mm,
                                         const MotorSteps& steps) {
   std::vector<Placement> out;
-  for (const double tilt :
-       steps_of(rig.tilt_min_rad, rig.tilt_max_rad, rad_from_deg(steps.tilt_step_deg))) {
+  for (const double tilt : steps_of(rig.tilt_min_rad, rig.tilt_max_rad, rad_from_deg(steps.tilt_step_deg))) {
     if (rig.robot) {
       add_arm_placements(rig, tilt, focus_mm, steps, out);
       continue;

@@ -19,10 +19,10 @@ struct MotorSteps {
   int arm_rolls = 4;            ///< of the scanner about its axis
 };
 
-/// The placements that motors can be asked for, evenly over what the rig's limits allow: turntable times tilt,
-/// or for an arm directions over the allowed part of the sphere about focus_mm (stage frame) times rolls. A
-/// turntable that the rig lacks stays where `now` has it. What an arm does not reach is left out; whether the
-/// head stands clear is not asked.
+/// The placements that motors can be asked for, evenly over what the rig's limits allow: turntable times
+/// tilt, or for an arm directions over the allowed part of the sphere about focus_mm (stage frame) times
+/// rolls. A turntable that the rig lacks stays where `now` has it. What an arm does not reach is left out;
+/// whether the head stands clear is not asked.
 [[nodiscard]] std::vector<Placement> motor_placements(const Rig& rig, const Placement& now,
                                                       const Eigen::Vector3d& focus_mm,
                                                       const MotorSteps& steps);

@@ -20,8 +20,8 @@ std::optional<NextView> side_view(const Rig& rig, const StageState& state, const
     const Eigen::Vector3d towards = candidate.model_from_scanner.rotation.col(2);
     double area = 0;
     for (const SurfacePatch& patch : surface.seen) {
-      const bool hidden = candidate.hidden &&
-                          candidate.hidden->normal.dot(patch.position_mm) < candidate.hidden->offset_mm;
+      const bool hidden =
+          candidate.hidden && candidate.hidden->normal.dot(patch.position_mm) < candidate.hidden->offset_mm;
       area += !hidden && patch.normal.dot(towards) > kSteepEnough ? patch.area_mm2 : 0.0;
     }
     if (area > most) {

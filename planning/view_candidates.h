@@ -32,15 +32,16 @@ struct ViewCandidate {
 
 struct CandidateOptions {
   MotorSteps motors;
-  int yaw_steps = 6;            ///< hand-made turns about the vertical, of a rig with no turntable
-  int free_directions = 160;    ///< with no rig: directions all around
+  int yaw_steps = 6;          ///< hand-made turns about the vertical, of a rig with no turntable
+  int free_directions = 160;  ///< with no rig: directions all around
 };
 
 /// All poses that the rig allows: the tablet as it lies and on each of its other five sides (where the rig
 /// allows hand turns), times what its motors can do within their limits (motor_placements()), without those
-/// where the head would come into the keep-out volume around the model or touch the support. `last` is the scan that `state` speaks of: it tells how the
-/// tablet really lies. The hand turn that is asked for goes from how the tablet lies by the nominal pose,
-/// when the scan has one, so that errors of many turns do not add up.
+/// where the head would come into the keep-out volume around the model or touch the support. `last` is the
+/// scan that `state` speaks of: it tells how the tablet really lies. The hand turn that is asked for goes
+/// from how the tablet lies by the nominal pose, when the scan has one, so that errors of many turns do not
+/// add up.
 [[nodiscard]] std::vector<ViewCandidate> rig_candidates(const Rig& rig, const StageState& state,
                                                         const PlacedScan& last, const ModelSurface& surface,
                                                         const CandidateOptions& options = {});

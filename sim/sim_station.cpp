@@ -48,8 +48,8 @@ SimStation::SimStation(SimTablet tablet, const SimStationOptions& options)
   true_stage_from_tablet_ = by_hand(nominal_stage_from_tablet_, nominal_stage_from_tablet_);
   Placement start;
   if (options_.robot) {
-    start.free_pose = Drive{0, 0, {0, 0, nominal_stage_from_tablet_.translation_mm.z()}, {}}
-                          .stage_from_scanner();
+    start.free_pose =
+        Drive{0, 0, {0, 0, nominal_stage_from_tablet_.translation_mm.z()}, {}}.stage_from_scanner();
   }
   drive_to(start);
   set_scene();
@@ -82,7 +82,8 @@ Rig SimStation::rig() const {
   if (options_.robot) {
     // An arm beside the stage that takes the head all around the upper half at its working distance.
     const double unit = scanner.standoff_mm;
-    rig.robot = RobotReach{{0, -2.4 * unit, 0}, {0.6 * unit, 4.0 * unit}, {0, 2.4 * unit}, {0.6 * unit, 2 * unit}};
+    rig.robot =
+        RobotReach{{0, -2.4 * unit, 0}, {0.6 * unit, 4.0 * unit}, {0, 2.4 * unit}, {0.6 * unit, 2 * unit}};
   }
   return rig;
 }
@@ -111,7 +112,8 @@ double SimStation::touching_height_mm(const Eigen::Matrix3d& stage_from_tablet) 
 }
 
 RigidTransform SimStation::by_hand(const RigidTransform& asked, const RigidTransform& after_turn) const {
-  Random random(seed_for(seed_for(options_.seed, 51), static_cast<std::uint64_t>(placement_)));
+  Random random(seed_for(seed_for(options_.seed, 51 + 1000 * static_cast<std::uint64_t>(swaps_)),
+                         static_cast<std::uint64_t>(placement_)));
   const double most_rad = rad_from_deg(options_.hand_max_deg);
   const double most_mm = options_.hand_max_mm;
   const double lift = random.uniform(0.0, 0.05);
@@ -234,8 +236,7 @@ Status SimStation::move(const Placement& placement, double share) {
 
 NominalPose SimStation::nominal() const {
   NominalPose pose;
-  pose.tablet_from_scanner =
-      nominal_stage_from_tablet_.inverse() * nominal_drive_.stage_from_scanner();
+  pose.tablet_from_scanner = nominal_stage_from_tablet_.inverse() * nominal_drive_.stage_from_scanner();
   pose.placement = placement_;
   return pose;
 }
@@ -258,7 +259,8 @@ void SimStation::swap(SimTablet tablet) {
   if (pins_) {
     pins_.emplace(*tablet_, *query_, *options_.pins);
   }
-  true_stage_from_tablet_.translation_mm.z() = touching_height_mm(true_stage_from_tablet_.rotation);
+  ++swaps_;
+  true_stage_from_tablet_ = by_hand(nominal_stage_from_tablet_, nominal_stage_from_tablet_);
   set_scene();
 }
 

@@ -29,8 +29,9 @@ struct SimStationOptions {
 };
 
 /// The whole simulated station: a tablet on a matt black support on a turntable and a scanner that tilts, or
-/// a stage that stands still and a scanner on an arm, and an operator who turns the tablet over when asked. Knows the truth and what the motors say; only the latter
-/// may reach the engine. The model frame is the tablet's frame as the first placement's nominal pose has it.
+/// a stage that stands still and a scanner on an arm, and an operator who turns the tablet over when asked.
+/// Knows the truth and what the motors say; only the latter may reach the engine. The model frame is the
+/// tablet's frame as the first placement's nominal pose has it.
 class SimStation {
  public:
   SimStation(SimTablet tablet, const SimStationOptions& options);
@@ -57,8 +58,8 @@ class SimStation {
   [[nodiscard]] const SimTablet& tablet() const { return *tablet_; }
   [[nodiscard]] const MeshQuery& query() const { return *query_; }
 
-  /// Another tablet lies there from now on, put down with care where the old one lay; motors and asked turns
-  /// know nothing of it.
+  /// Another tablet lies there from now on, put down by hand as the old one lay; motors and asked turns know
+  /// nothing of it.
   void swap(SimTablet tablet);
   /// What is in the way of the scans from now on, from where everything stands. kNone: nothing any more.
   void disturb(Disturbance what);
@@ -107,6 +108,7 @@ class SimStation {
   Drive true_drive_;
   Scene scene_;
   int placement_ = 0;
+  int swaps_ = 0;
   int moves_ = 0;
   int scans_made_ = 0;
 };

@@ -102,8 +102,9 @@ class StageClock {
 
 /// The state of a run. What a stage thread alone touches is marked; the rest stands still while the threads
 /// run, or is under the mutex. engine_open.cpp opens device and session, engine_stages.cpp has the four
-/// threads, engine_motion.cpp what moves, engine_misses.cpp what is done about scans that are not taken up, engine_commands.cpp what the operator asks for meanwhile, engine_results.cpp what is made at the
-/// end, engine.cpp the order of it all.
+/// threads, engine_motion.cpp what moves, engine_misses.cpp what is done about scans that are not taken up,
+/// engine_commands.cpp what the operator asks for meanwhile, engine_results.cpp what is made at the end,
+/// engine.cpp the order of it all.
 struct Engine::Impl {
   EngineOptions options;
   EventSink sink;
@@ -138,7 +139,7 @@ struct Engine::Impl {
   StageScene scene;                  ///< as the last step saw it
   int empty_scans = 0;               ///< in a row
   // Of the planning thread, round after round:
-  int misses = 0;  ///< scans in a row that were not taken up
+  int misses = 0;      ///< scans in a row that were not taken up
   bool again = false;  ///< the scan that comes is of the same view as the one before
   std::set<int> taken_up;
   std::map<int, int> lies_as;  ///< placement by scan, of scans that motors were told of
@@ -188,8 +189,8 @@ struct Engine::Impl {
   [[nodiscard]] StageScene unseen() const;
   NextStep step_to(const RedMap& red_map) const;
   // engine_misses.cpp
-  /// Where to after a scan: by the red map when the scan was taken up; else the same view again, then one that
-  /// has more in common with the others, then nothing more.
+  /// Where to after a scan: by the red map when the scan was taken up; else the same view again, then one
+  /// that has more in common with the others, then nothing more.
   NextStep step_after(int id, const std::vector<ScanPose>& poses, const RedMap& red_map);
   NextStep once_more();
   /// Whether the scans that were taken up until now have given way to others that lie in the same way on the
@@ -201,8 +202,8 @@ struct Engine::Impl {
   /// Into the model, as the operator's word on it has it.
   ScanPose register_scan(const StationScan& scan, JobContext& job);
   void register_all(JobContext& job);
-  /// Takes out scans that show a hand or the like, that one included, and says so; then what they stood in the
-  /// way of is tried again. engine_misses.cpp
+  /// Takes out scans that show a hand or the like, that one included, and says so; then what they stood in
+  /// the way of is tried again. engine_misses.cpp
   ScanPose set_intruders_aside(const StationScan& scan, ScanPose pose, JobContext& job);
   void plan_all(JobContext& job);
   std::vector<ScanPose> named_poses() const;

@@ -26,8 +26,8 @@ std::string listed(const std::set<int>& ids) {
 }  // namespace
 
 Taken Engine::Impl::refuse_empty() {
-  const Error nothing{ErrorKind::kBadInput, "the scan has no sample at all: nothing stands before the scanner",
-                      options.device,
+  const Error nothing{ErrorKind::kBadInput,
+                      "the scan has no sample at all: nothing stands before the scanner", options.device,
                       "see that the tablet lies in the measuring field, then give the same command again"};
   ++empty_scans;
   if (drives && empty_scans < kMostEmpty) {
@@ -46,9 +46,9 @@ ScanPose Engine::Impl::set_intruders_aside(const StationScan& scan, ScanPose pos
       break;
     }
     intruders.remove(found->id);
-    const std::string why =
-        fmt::format("something was in the way of scan {}: {:.0f} % of it, where scan {} looked too, stands in the air",
-                    found->id, 100 * found->share, found->witness);
+    const std::string why = fmt::format(
+        "something was in the way of scan {}: {:.0f} % of it, where scan {} looked too, stands in the air",
+        found->id, 100 * found->share, found->witness);
     if (const Status dropped = store->drop_scan(found->id, why); !dropped) {
       give_up(dropped.error());
       break;
@@ -123,11 +123,10 @@ NextStep Engine::Impl::step_after(int id, const std::vector<ScanPose>& poses, co
                            });
   // Just lifted, it mostly shows too little that is known; else something was in the way and is gone again.
   const bool look_elsewhere = misses == (just_lifted && !doubtful && !is_again ? 1 : 2);
-  const std::optional<NextView> other =
-      look_elsewhere && rig ? planning.after_miss(*rig, id) : std::nullopt;
+  const std::optional<NextView> other = look_elsewhere && rig ? planning.after_miss(*rig, id) : std::nullopt;
   if (other) {
-    emit(Notice{fmt::format(
-        "scan {} is not taken up: {}; the next view shows more of what is known", id, reason)});
+    emit(Notice{
+        fmt::format("scan {} is not taken up: {}; the next view shows more of what is known", id, reason)});
     // Where it was turned by hand meanwhile, only the motors' word says how it lies: whatever way it does.
     StageScene wide = unseen();
     if (const auto on_stage = planning.scene_for(*rig, *other->placement)) {
@@ -140,11 +139,12 @@ NextStep Engine::Impl::step_after(int id, const std::vector<ScanPose>& poses, co
     emit(Notice{fmt::format("scan {} is not taken up: {}; the same view is scanned once more", id, reason)});
     return once_more();
   }
-  end_motion({ErrorKind::kBadInput,
-              fmt::format("{} scans in a row are not taken up, scan {} because {}", misses, id, reason),
-              options.session.string(),
-              "see that it is the right tablet, that no hand is in view and that nothing moved, then give the "
-              "same command again"});
+  end_motion(
+      {ErrorKind::kBadInput,
+       fmt::format("{} scans in a row are not taken up, scan {} because {}", misses, id, reason),
+       options.session.string(),
+       "see that it is the right tablet, that no hand is in view and that nothing moved, then give the "
+       "same command again"});
   return std::nullopt;
 }
 

@@ -70,14 +70,15 @@ std::optional<Intruder> IntruderFinder::look(int newest, const std::vector<ScanP
   }
   const auto registered = [&](int id) -> const RigidTransform* {
     const auto pose = std::ranges::find(poses, id, &ScanPose::id);
-    return pose != poses.end() && pose->status == PoseStatus::kRegistered ? &pose->model_from_scanner : nullptr;
+    return pose != poses.end() && pose->status == PoseStatus::kRegistered ? &pose->model_from_scanner
+                                                                          : nullptr;
   };
   const RigidTransform* here = registered(newest);
   std::optional<Intruder> found;
   for (const auto& [id, other] : scans_) {
     const RigidTransform* there = registered(id);
-    const bool lies_as_before = mine->second.nominal && other.nominal &&
-                                mine->second.nominal->placement == other.nominal->placement;
+    const bool lies_as_before =
+        mine->second.nominal && other.nominal && mine->second.nominal->placement == other.nominal->placement;
     if (id == newest || (!(here != nullptr && there != nullptr) && !lies_as_before)) {
       continue;
     }
@@ -89,8 +90,8 @@ std::optional<Intruder> IntruderFinder::look(int newest, const std::vector<ScanP
     const InTheWay other_in_air = in_the_way(other, mine->second, other_from_mine.inverse());
     const double least = mine->second.pins || other.pins ? kLeastShareWithPins : kLeastShare;
     const auto offer = [&](int culprit, int witness, const InTheWay& there_is, const InTheWay& back) {
-      const double share =
-          static_cast<double>(there_is.points) / static_cast<double>(std::max<std::size_t>(1, there_is.looked));
+      const double share = static_cast<double>(there_is.points) /
+                           static_cast<double>(std::max<std::size_t>(1, there_is.looked));
       const bool one_sided =
           static_cast<double>(back.points) < kOneSided * static_cast<double>(there_is.points);
       if (there_is.points >= kLeastPoints && share >= least && one_sided &&

@@ -20,10 +20,10 @@ struct Intruder {
   double share = 0;  ///< of its samples where that one looked
 };
 
-/// Finds scans in which a hand, a sleeve or a tool lay before the tablet. Such a thing stands in the air where
-/// another scan saw through to the clay, and the other scan's samples stand nowhere in the way of the first:
-/// so it is the one with the thing in it, whichever came first. Where both stand in each other's way the tablet
-/// has moved, or a pose is wrong; that is for registration to say.
+/// Finds scans in which a hand, a sleeve or a tool lay before the tablet. Such a thing stands in the air
+/// where another scan saw through to the clay, and the other scan's samples stand nowhere in the way of the
+/// first: so it is the one with the thing in it, whichever came first. Where both stand in each other's way
+/// the tablet has moved, or a pose is wrong; that is for registration to say.
 class IntruderFinder {
  public:
   void add(const StationScan& scan);

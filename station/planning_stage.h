@@ -41,15 +41,15 @@ class PlanningStage {
   /// by hand that the placement asks for. Nothing before a scan is placed that was driven to.
   [[nodiscard]] std::optional<StageScene> scene_for(const Rig& rig, const Placement& placement) const;
 
-  /// Before a step that lifts the tablet: a view from its side, while it was scanned only once and the rig can
-  /// look from there. Else nothing.
+  /// Before a step that lifts the tablet: a view from its side, while it was scanned only once and the rig
+  /// can look from there. Else nothing.
   [[nodiscard]] std::optional<NextView> before_lifting(const Rig& rig, const NextView& next) const;
-  /// After a scan that was not taken up: the view of the tablet as it lies now that should have most in common
-  /// with what is placed, by where the motors and the asked turns say that the scan is.
+  /// After a scan that was not taken up: the view of the tablet as it lies now that should have most in
+  /// common with what is placed, by where the motors and the asked turns say that the scan is.
   [[nodiscard]] std::optional<NextView> after_miss(const Rig& rig, int id) const;
 
-  /// Whether a scan, placed or not, shows far more than all others that are placed do together: a hand is larger
-  /// than most tablets.
+  /// Whether a scan, placed or not, shows far more than all others that are placed do together: a hand is
+  /// larger than most tablets.
   [[nodiscard]] bool shows_much_more(int id) const;
 
   /// The mesh of what is placed.

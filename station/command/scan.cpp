@@ -199,7 +199,8 @@ void add_scan(CLI::App& app, Action& chosen) {
   verb->add_option("--session", arguments->session, "folder of the session; gone on with when it is there")
       ->default_val("session");
   verb->add_option("--pins", arguments->pins, "the operator's pins (pins.json)");
-  verb->add_option("--rig", arguments->rig, "a rig file: narrower limits for the motors (docs/formats/rig.md)");
+  verb->add_option("--rig", arguments->rig,
+                   "a rig file: narrower limits for the motors (docs/formats/rig.md)");
   verb->add_option("--size", arguments->size,
                    "of the tablet, WxHxT in mm: what the motors keep clear of before it is seen");
   verb->add_flag("--auto", arguments->automatic, "drive the rig, or ask for hand turns, until conclusive");

@@ -80,7 +80,8 @@ TEST(KeepOut, AgreesWithPointsOfTheHead) {
   for (int trial = 0; trial < 400; ++trial) {
     const StageScene scene = tablet(random.uniform(5, 80), random.uniform(5, 80), random.uniform(5, 90));
     Placement placement = arm_at(random.uniform(0, 360), random.uniform(0, 80), scene.focus_mm);
-    placement.free_pose->translation_mm += Eigen::Vector3d(random.uniform(-60, 60), random.uniform(-60, 60), 0);
+    placement.free_pose->translation_mm +=
+        Eigen::Vector3d(random.uniform(-60, 60), random.uniform(-60, 60), 0);
     const bool clear = check_clear(rig, scene, placement, "").has_value();
     const double gap = clearance_mm(rig, scene.tablet_mm, *placement.free_pose);
     if (clear) {

@@ -140,9 +140,14 @@ TEST_F(Arm, ADriverOfBeforeArmsStillWorks) {
 }
 
 TEST_F(Arm, BadDaysAreSaidPlainly) {
-  for (const auto& [key, value] :
-       Options{{"motion", "crane"}, {"intrude", "foot@1"}, {"intrude", "hand"}, {"intrude", "hand@3-1"},
-               {"intrude", "hand@x"}, {"swap_at", "-1"}, {"stop_at", "1.5"}, {"move_time", "nan"}}) {
+  for (const auto& [key, value] : Options{{"motion", "crane"},
+                                          {"intrude", "foot@1"},
+                                          {"intrude", "hand"},
+                                          {"intrude", "hand@3-1"},
+                                          {"intrude", "hand@x"},
+                                          {"swap_at", "-1"},
+                                          {"stop_at", "1.5"},
+                                          {"move_time", "nan"}}) {
     const auto opened = (*registry_.find("sim"))->open("", {{key, value}});
     ASSERT_FALSE(opened) << key << value;
     EXPECT_EQ(opened.error().kind, ErrorKind::kUsage) << opened.error().line();

@@ -27,7 +27,8 @@ TEST(RigLimitsJson, ReadsWhatTheDocumentationShows) {
   EXPECT_DOUBLE_EQ(*limits->margin_mm, 25);
   const auto again = parse_rig_limits(rig_limits_to_json(*limits), "again");
   ASSERT_TRUE(again) << again.error().line();
-  EXPECT_EQ(rig_limits_to_json(*again), rig_limits_to_json(*parse_rig_limits(rig_limits_to_json(*again), "")));
+  EXPECT_EQ(rig_limits_to_json(*again),
+            rig_limits_to_json(*parse_rig_limits(rig_limits_to_json(*again), "")));
 }
 
 TEST(RigLimitsJson, WhatIsNotSaidIsNotLimited) {

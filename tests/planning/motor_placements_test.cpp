@@ -55,7 +55,8 @@ TEST(MotorPlacements, AnArmLooksFromAllAround) {
     EXPECT_TRUE(check_limits(rig, placement, ""));
     EXPECT_EQ(placement.free_pose->translation_mm, Eigen::Vector3d(0, 0, 10));
     const Eigen::Vector3d axis = placement.free_pose->rotation.col(2);
-    directions.insert({static_cast<int>(std::lround(100 * axis.x())), static_cast<int>(std::lround(100 * axis.y()))});
+    directions.insert(
+        {static_cast<int>(std::lround(100 * axis.x())), static_cast<int>(std::lround(100 * axis.y()))});
   }
   EXPECT_EQ(directions.size() * 4, all.size());
   Rig near = rig;
@@ -85,7 +86,8 @@ TEST(MotorPlacements, LimitsThatExcludeEveryViewAreNamed) {
   EXPECT_THAT(first.error().line(), HasSubstr("rig.json: the limits exclude every view"));
   rig = arc_rig();
   rig.tilt_min_rad = rig.tilt_max_rad = rad_from_deg(85);
-  EXPECT_THAT(first_placement(rig, unseen_tablet(rig, std::nullopt), "f").error().line(), HasSubstr("support"));
+  EXPECT_THAT(first_placement(rig, unseen_tablet(rig, std::nullopt), "f").error().line(),
+              HasSubstr("support"));
 }
 
 TEST(MotorPlacements, SaidSoThatAPersonCanFollow) {

@@ -28,10 +28,13 @@ class BadDay : public ::testing::Test {
  protected:
   [[nodiscard]] fs::path at(const std::string& name) const { return folder_.path() / name; }
   [[nodiscard]] test::Arguments words(const std::string& options, const std::string& session) const {
-    return {"scan",      "--auto",
-            "--json",    "--device",
+    return {"scan",
+            "--auto",
+            "--json",
+            "--device",
             "sim:?seed=2&size=24x20x10&spacing=0.3" + (options.empty() ? "" : "&" + options),
-            "--session", at(session).string()};
+            "--session",
+            at(session).string()};
   }
   [[nodiscard]] Outcome scan(const std::string& options, const std::string& session = "session",
                              const test::Arguments& more = {}) const {
@@ -144,9 +147,11 @@ TEST_F(BadDay, LimitsOfARigFileHold) {
 TEST_F(BadDay, LimitsThatExcludeEveryViewAreSaidBeforeScanning) {
   for (const auto& [options, text, says] : std::vector<std::tuple<std::string, std::string, std::string>>{
            {"", R"({"tilt_deg": [80, 90]})", "the limits exclude every view: tilt 80.00 to 90.00 deg"},
-           {"motion=robot", R"({"arm": {"reach": [5000, 6000]}})", "the limits exclude every view: the arm's reach"},
+           {"motion=robot", R"({"arm": {"reach": [5000, 6000]}})",
+            "the limits exclude every view: the arm's reach"},
            {"motion=robot", R"({"arm": {"height": [0, 20]}})", "the limits exclude every view"},
-           {"", R"({"keep_out_margin": 900})", "the limits exclude every view: the scanner's head would come"},
+           {"", R"({"keep_out_margin": 900})",
+            "the limits exclude every view: the scanner's head would come"},
            {"", R"({"tilts_deg": [0, 10]})", "has 'tilts_deg'"}}) {
     const Outcome outcome = scan(options, "session", {"--rig", rig_file(text).string()});
     EXPECT_EQ(outcome.status, 2) << text << outcome.err;
