@@ -28,9 +28,9 @@ struct EngineOptions {
   bool automatic = false;         ///< drive the rig (or ask for hand turns) until conclusive
   int max_scans = 0;              ///< of the whole session; 0: no limit (40 when automatic)
   std::optional<PinSet> pins;
-  std::optional<RigLimits> limits;         ///< narrower than the device's own, from a file
-  std::string limits_file;                 ///< for what is said about them
-  std::optional<Eigen::Vector3d> size_mm;  ///< of the tablet, where the operator gave it
+  std::optional<RigLimits> limits = {};         ///< narrower than the device's own, from a file
+  std::string limits_file = {};                 ///< for what is said about them
+  std::optional<Eigen::Vector3d> size_mm = {};  ///< of the tablet, where the operator gave it
 };
 
 /// What a run of the engine leaves behind.
