@@ -100,6 +100,10 @@ Status RenderOptions::check() const {
   if (!towards_lamp.allFinite() || !(towards_lamp.norm() > 0)) {
     return fail(ErrorKind::kUsage, "the lamp needs a direction", "rendering");
   }
+  if (window &&
+      !(mm_per_px > 0 && window->center_mm.allFinite() && window->width_mm > 0 && window->height_mm > 0)) {
+    return fail(ErrorKind::kUsage, "a window needs a scale, a place and a size", "rendering");
+  }
   if (!(recess_radius_mm > 0) || !(shadow_reach_mm > 0) || !(relief >= 0 && relief <= 1)) {
     return fail(ErrorKind::kUsage, "radii must be positive and the relief 0 to 1", "rendering");
   }
@@ -125,8 +129,13 @@ Result<Framing> framing_of(const RenderScene& scene, const ViewCamera& camera, c
   if (!(framing.mm_per_px > 0)) {
     framing.mm_per_px = 1.0;  // A single point has no size; any scale shows it.
   }
-  const double wide = std::ceil(size.x() / framing.mm_per_px - 1e-6) + 2.0 * options.margin_px;
-  const double high = std::ceil(size.y() / framing.mm_per_px - 1e-6) + 2.0 * options.margin_px;
+  const auto pixels = [&](double mm, int margin_px) {
+    return std::ceil(mm / framing.mm_per_px - 1e-6) + 2.0 * margin_px;
+  };
+  const double wide =
+      options.window ? pixels(options.window->width_mm, 0) : pixels(size.x(), options.margin_px);
+  const double high =
+      options.window ? pixels(options.window->height_mm, 0) : pixels(size.y(), options.margin_px);
   if (!(wide <= kMaxSidePx) || !(high <= kMaxSidePx) ||
       !(wide * high * options.supersampling * options.supersampling <= kMaxSubpixels)) {
     return fail(ErrorKind::kUsage,
@@ -135,7 +144,9 @@ Result<Framing> framing_of(const RenderScene& scene, const ViewCamera& camera, c
   }
   framing.width_px = std::max(1, static_cast<int>(wide));
   framing.height_px = std::max(1, static_cast<int>(high));
-  const Eigen::Vector3d middle = 0.5 * (extent.min_mm + extent.max_mm);
+  const Eigen::Vector3d middle = options.window
+                                     ? Eigen::Vector3d(camera.view_from_model * options.window->center_mm)
+                                     : Eigen::Vector3d(0.5 * (extent.min_mm + extent.max_mm));
   framing.left_mm = middle.x() - 0.5 * framing.width_px * framing.mm_per_px;
   framing.top_mm = middle.y() + 0.5 * framing.height_px * framing.mm_per_px;
   framing.middle_mm = middle.z();

@@ -15,6 +15,13 @@ namespace dubsar {
 inline constexpr Rgb8 kPaper{255, 255, 255};
 inline constexpr Rgb8 kBlackGround{0, 0, 0};
 
+/// A part of the picture to draw instead of the whole object.
+struct RenderWindow {
+  Eigen::Vector3d center_mm{0, 0, 0};  ///< model frame
+  double width_mm = 10;
+  double height_mm = 10;
+};
+
 struct RenderOptions {
   double mm_per_px = 0.0;  ///< scale of the picture; 0 makes the longest side of the object longest_px
   int longest_px = 1200;
@@ -27,7 +34,8 @@ struct RenderOptions {
   Eigen::Vector3d towards_lamp{-0.62, 0.52, 0.58};
   double recess_radius_mm = 2.5;  ///< surroundings that take light from a recess; a wedge is 1 to 5 mm
   double shadow_reach_mm = 4.0;
-  double relief = 0.3;  ///< how far ridges are lightened and valleys darkened, 0 to 1
+  std::optional<RenderWindow> window;  ///< needs mm_per_px; there is no margin round it then
+  double relief = 0.3;                 ///< how far ridges are lightened and valleys darkened, 0 to 1
 
   [[nodiscard]] Status check() const;
 };

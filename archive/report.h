@@ -40,11 +40,17 @@ struct ReportInput {
   int longest_px = 1000;  ///< of the longest side in the pictures
 };
 
+struct ReportPictures;  // archive/report_pictures.h
+
 /// One self-contained HTML page: verdict in plain words, pictures of the six sides, red map, next views,
-/// checklist, regions, scans, accuracy, what was not measured, times. No script, no link to anything outside,
-/// pictures inside as data URIs; every outside text escaped; life size on paper where it fits. The same input
-/// gives the same bytes. Without a surface the page says so instead of showing pictures. Errors: a picture
-/// that cannot be drawn, cancelled.
-[[nodiscard]] Result<std::string> report_html(const ReportInput& input, const JobContext& job);
+/// checklist, sign-off, regions, scans, accuracy, what was not measured, times. No script, no link to
+/// anything outside, pictures inside as data URIs; every outside text escaped; life size on paper where it
+/// fits. The same input gives the same bytes. Without a surface the page says so instead of showing pictures.
+/// Errors: a picture that cannot be encoded.
+[[nodiscard]] Result<std::string> report_html(const ReportInput& input, const ReportPictures& pictures);
+
+/// The page that is signed and filed: verdict, sign-off, checklist, red map, and every red or excused place
+/// with its picture; the same sections as the report's, without the rest. Prints on A4.
+[[nodiscard]] std::string checklist_html(const ReportInput& input, const ReportPictures& pictures);
 
 }  // namespace dubsar

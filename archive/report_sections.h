@@ -5,6 +5,7 @@
 #include <string>
 
 #include "archive/report.h"
+#include "archive/report_pictures.h"
 
 namespace dubsar {
 
@@ -12,13 +13,21 @@ namespace dubsar {
 [[nodiscard]] std::string verdict_section(const ReportInput& input);
 [[nodiscard]] std::string next_section(const ReportInput& input);
 [[nodiscard]] std::string checklist_section(const ReportInput& input);
-[[nodiscard]] std::string regions_section(const ReportInput& input);
+[[nodiscard]] std::string sign_off_section(const ReportInput& input);
+[[nodiscard]] std::string regions_section(const ReportInput& input, const ReportPictures& pictures);
+[[nodiscard]] std::string red_sheet_section(const ReportInput& input, const ReportPictures& pictures);
 [[nodiscard]] std::string scans_section(const ReportInput& input);
 [[nodiscard]] std::string accuracy_section(const ReportInput& input);
 [[nodiscard]] std::string not_measured_section(const ReportInput& input);
 [[nodiscard]] std::string timings_section(const ReportInput& input);
 
-/// Sums over the red map's regions of one state.
+/// Everything before the first section, and after the last. `kind` names the page in its title and, as
+/// `kicker`, over its heading.
+[[nodiscard]] std::string page_head(const ReportInput& input, const std::string& kind,
+                                    const std::string& kicker);
+[[nodiscard]] std::string page_foot();
+
+/// Sums over the red map's regions of one state, strays left out.
 struct RegionSum {
   long long count = 0;
   double area_mm2 = 0;

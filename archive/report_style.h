@@ -16,6 +16,7 @@ header { border-bottom: 1px solid var(--rule); padding-bottom: 1.2rem; margin-bo
 .kicker { margin: 0; color: var(--soft); font-variant-caps: all-small-caps; letter-spacing: .09em; }
 h1 { font-size: 2.3rem; line-height: 1.15; font-weight: 500; margin: .2rem 0 1rem; overflow-wrap: anywhere; }
 h2 { font-size: 1.3rem; font-weight: 600; margin: 0 0 .7rem; }
+h3 { font-size: 1.05rem; font-weight: 600; margin: 1.4rem 0 .5rem; }
 section { margin: 0 0 2.8rem; }
 p, ul, ol { margin: 0 0 .8rem; max-width: 44rem; }
 dl { display: grid; grid-template-columns: max-content 1fr; gap: .15rem 1.4rem; margin: .8rem 0 0; }
@@ -36,6 +37,15 @@ figure img { display: block; margin: 0 auto .25rem; max-width: 100%; }
 .cross img { width: calc(var(--mm) * var(--scale)); height: auto; max-width: none; }
 .sheet img { width: auto; max-height: 60rem; }
 .swatch { display: inline-block; width: .8em; height: .8em; margin: 0 .35em 0 1em; border: 1px solid #0003; }
+.swatch.ring { border: 2px solid #143cc8; border-radius: 50%; }
+.places { display: grid; grid-template-columns: repeat(auto-fill, minmax(13rem, 1fr)); gap: 1.2rem; margin: 0 0 1.4rem; }
+.places figure { text-align: left; }
+.places img { width: 100%; height: auto; border: 1px solid var(--rule); }
+.places figcaption { line-height: 1.35; overflow-wrap: anywhere; }
+.places figcaption b { color: #143cc8; font-variant-numeric: lining-nums; }
+.places .open figcaption, .void { color: var(--red); }
+.signed code { font: .8rem/1.3 "DejaVu Sans Mono", Consolas, monospace; overflow-wrap: anywhere; }
+.line { border-bottom: 1px solid var(--ink); padding-top: 2.2rem; max-width: 26rem; color: var(--soft); font-size: .88em; }
 .wide { overflow-x: auto; }
 table { border-collapse: collapse; font-size: .88rem; line-height: 1.35; font-variant-numeric: tabular-nums lining-nums;
   border-top: 2px solid var(--ink); border-bottom: 1px solid var(--ink); }
@@ -44,11 +54,12 @@ th { text-align: left; font-weight: 600; padding: .35rem .9rem .35rem 0; border-
 td { padding: .28rem .9rem .28rem 0; border-bottom: 1px solid var(--rule); vertical-align: top;
   overflow-wrap: break-word; }
 .scans td:nth-child(2), td:last-child { overflow-wrap: anywhere; min-width: 7rem; }
-.regions tr.open td:first-child, .scans tr.open td:nth-child(3), .faces tr.open td:last-child { color: var(--red); }
+.regions tr.open td:nth-child(2), .scans tr.open td:nth-child(3), .faces tr.open td:last-child { color: var(--red); }
 tr.sum td { border-top: 1px solid var(--ink); font-weight: 600; }
-.faces td:nth-child(n+2):nth-child(-n+4), .faces th:nth-child(n+2):nth-child(-n+4),
+.faces td:nth-child(n+2):nth-child(-n+6), .faces th:nth-child(n+2):nth-child(-n+6),
+.sampling td:nth-child(n+2), .sampling th:nth-child(n+2),
 .scans td:nth-child(n+4):nth-child(-n+10), .scans th:nth-child(n+4):nth-child(-n+10),
-.regions td:nth-child(4), .regions th:nth-child(4), .times td:nth-child(2), .times th:nth-child(2)
+.regions td:nth-child(5), .regions th:nth-child(5), .times td:nth-child(2), .times th:nth-child(2)
   { text-align: right; }
 footer { border-top: 1px solid var(--rule); padding-top: 1rem; color: var(--soft); font-size: .88em; }
 @page { margin: 15mm; }
@@ -57,7 +68,12 @@ footer { border-top: 1px solid var(--rule); padding-top: 1rem; color: var(--soft
   body { font-size: 10.5pt; }
   main { max-width: none; padding: 0; }
   section { break-inside: auto; margin-bottom: 8mm; }
-  h2 { break-after: avoid; }
+  h2, h3 { break-after: avoid; }
+  table { font-size: 8.5pt; }
+  th, td { padding-right: .5rem; }
+  .places { grid-template-columns: repeat(4, 1fr); gap: 4mm; }
+  .places figcaption { font-size: 7.5pt; }
+  .verdict { background: none; }
   figure, tr, .cross { break-inside: avoid; }
   .cross { --scale: var(--print-scale) !important; }
   .sheet img { max-height: 230mm; }

@@ -52,7 +52,7 @@ std::string open_points(const ReportInput& input) {
 RegionSum sum_of(const RedMap& map, RegionState state) {
   RegionSum sum;
   for (const RedRegion& region : map.regions) {
-    if (region.state == state) {
+    if (region.state == state && !is_stray(region)) {
       ++sum.count;
       sum.area_mm2 += std::isfinite(region.area_mm2) ? region.area_mm2 : 0.0;
     }
@@ -71,6 +71,13 @@ std::string verdict_section(const ReportInput& input) {
     excuses =
         "<p>" + counted(excused.count, "place is", "places are") + " excused, " + area(excused.area_mm2) +
         " by estimate. Each is listed below with its reason; the clay there is not sampled densely.</p>\n";
+  }
+  if (const auto& checked = input.checklist.sign_off) {
+    excuses += "<p>Signed by " + html_escaped(checked->sign_off.name) + " on " +
+               html_escaped(checked->sign_off.when) +
+               (checked->sign_off.incomplete.empty() ? "" : ", as incomplete") +
+               (checked->holds() ? "." : "; <strong>void: the session has changed since</strong>.") +
+               "</p>\n";
   }
   if (is_conclusive(input)) {
     return "<section class=\"verdict yes\">\n<h2>Conclusive</h2>\n<p>Every part of the tablet that this "

@@ -24,6 +24,11 @@ inline constexpr int kFaceCount = 6;
 enum class RegionState { kRed, kExcused };
 enum class Excuse { kNone, kUnreachable, kUnneeded };
 
+[[nodiscard]] constexpr const char* to_string(Excuse excuse) {
+  constexpr const char* kNames[] = {"none", "unreachable", "unneeded"};
+  return kNames[static_cast<int>(excuse)];
+}
+
 /// Counts of one scan's samples by state.
 struct RedScan {
   int id = 0;

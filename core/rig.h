@@ -39,6 +39,13 @@ struct RobotReach {
 
 inline constexpr double kFullTurnRad = 6.283185307179586;
 
+/// A measurement of a certified artefact that showed how true the calibration is.
+struct CalibrationCheck {
+  std::string when;      ///< ISO 8601, as the rig tells it
+  std::string artefact;  ///< what was measured
+  double error_mm = 0;   ///< largest deviation from its certificate
+};
+
 /// What the rig can see and reach. The stage frame: origin at the turntable's centre on the support plane, z
 /// up. The scanner frame: origin at the centre of the measuring volume, x along a profile, y along the
 /// motion, z towards the scanner.
@@ -68,6 +75,7 @@ struct Rig {
   [[nodiscard]] bool turns_fully() const {
     return turntable_rad.high - turntable_rad.low > kFullTurnRad - 1e-6;
   }
+  std::optional<CalibrationCheck> calibration_check;  ///< the last one; nothing when the rig tells none
 };
 
 /// Where the tablet lies: which way its model frame is turned on the stage. `name` is for people ("reverse

@@ -53,6 +53,8 @@ std::string rig_to_json(const Rig& rig) {
                    {"depth_range", rig.depth_range_mm},
                    {"has_turntable", rig.has_turntable},
                    {"tilt_deg", {deg_from_rad(rig.tilt_min_rad), deg_from_rad(rig.tilt_max_rad)}},
+                   // Exact, where degrees are rounded: planning again on a stored rig gives the same bytes.
+                   {"tilt_rad", {rig.tilt_min_rad, rig.tilt_max_rad}},
                    {"hand_turns", rig.hand_turns},
                    {"support_height", rig.support_height_mm},
                    {"calibration", rig.calibration}};
@@ -72,6 +74,11 @@ std::string rig_to_json(const Rig& rig) {
   json["keep_out_margin"] = rig.keep_out_margin_mm;
   if (rig.calibration_age_days) {
     json["calibration_age_days"] = *rig.calibration_age_days;
+  }
+  if (rig.calibration_check) {
+    json["calibration_check"] = OrderedJson{{"when", rig.calibration_check->when},
+                                            {"artefact", rig.calibration_check->artefact},
+                                            {"error_mm", rig.calibration_check->error_mm}};
   }
   return text_of(json);
 }
@@ -102,6 +109,11 @@ Result<Rig> parse_rig(std::string_view text, const std::string& where) {
   const std::vector<double> tilt_deg = root.at("tilt_deg").numbers(2);
   rig.tilt_min_rad = rad_from_deg(tilt_deg[0]);
   rig.tilt_max_rad = rad_from_deg(tilt_deg[1]);
+  if (const auto exact = root.find("tilt_rad")) {
+    const std::vector<double> tilt_rad = exact->numbers(2);
+    rig.tilt_min_rad = tilt_rad[0];
+    rig.tilt_max_rad = tilt_rad[1];
+  }
   rig.hand_turns = root.at("hand_turns").boolean();
   rig.support_height_mm = root.at("support_height").number(-1e6, 1e6);
   rig.calibration = root.at("calibration").text();
@@ -109,6 +121,10 @@ Result<Rig> parse_rig(std::string_view text, const std::string& where) {
     rig.calibration_age_days = age->number(0, 1e6);
   }
   read_motion(root, rig);
+  if (const auto check = root.find("calibration_check")) {
+    rig.calibration_check = {check->at("when").text(), check->at("artefact").text(),
+                             check->at("error_mm").number(0, 1e6)};
+  }
   if (const Status status = document->status("scan again with the device, which writes it anew"); !status) {
     return std::unexpected(status.error());
   }

@@ -2,7 +2,8 @@
 // Copyright The Dubsar developers
 #include "planning/checklist.h"
 
-#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
 
 #include "planning/convex_hull.h"
 #include "planning/model_faces.h"
@@ -11,16 +12,34 @@ namespace dubsar {
 
 namespace {
 
-bool measured(const Mesh& mesh, const std::array<std::uint32_t, 3>& face) {
-  if (mesh.flags.empty()) {
-    return true;
-  }
-  for (const std::uint32_t v : face) {
-    if ((mesh.flags[v] & kVertexInterpolated) != 0) {
-      return false;
+void count_scans(std::span<const ScanPose> poses, Checklist& list) {
+  for (const ScanPose& pose : poses) {
+    list.scans_registered += pose.status == PoseStatus::kRegistered ? 1 : 0;
+    list.scans_unsure += pose.status == PoseStatus::kUnsure ? 1 : 0;
+    list.scans_failed += pose.status == PoseStatus::kFailed ? 1 : 0;
+    if (pose.status == PoseStatus::kRegistered && std::isfinite(pose.sigma_mm) &&
+        (list.worst_sigma_scan < 0 || pose.sigma_mm > list.worst_sigma_mm)) {
+      list.worst_sigma_mm = pose.sigma_mm;
+      list.worst_sigma_scan = pose.id;
     }
   }
-  return true;
+}
+
+void add_regions(const RedMap& map, Checklist& list) {
+  for (const RedRegion& region : map.regions) {
+    if (is_stray(region)) {
+      ++list.strays;
+      continue;
+    }
+    FaceCoverage& face = list.faces[static_cast<std::size_t>(region.face)];
+    const bool red = region.state == RegionState::kRed;
+    (red ? face.red_mm2 : face.excused_mm2) += region.area_mm2;
+    (red ? face.red_regions_mm2 : face.excused_regions_mm2).push_back(region.area_mm2);
+  }
+  for (FaceCoverage& face : list.faces) {
+    std::ranges::sort(face.red_regions_mm2, std::greater<>());
+    std::ranges::sort(face.excused_regions_mm2, std::greater<>());
+  }
 }
 
 }  // namespace
@@ -29,28 +48,21 @@ Checklist make_checklist(const RedMap& map, std::span<const ScanPose> poses,
                          std::span<const PlacedScan> registered, const Mesh& mesh, const Rig* rig) {
   Checklist list;
   list.conclusive = map.conclusive;
-  for (const ScanPose& pose : poses) {
-    list.scans_registered += pose.status == PoseStatus::kRegistered ? 1 : 0;
-    list.scans_unsure += pose.status == PoseStatus::kUnsure ? 1 : 0;
-    list.scans_failed += pose.status == PoseStatus::kFailed ? 1 : 0;
-  }
+  count_scans(poses, list);
   if (rig != nullptr) {
     list.calibration = rig->calibration;
     list.calibration_age_days = rig->calibration_age_days;
+    list.calibration_check = rig->calibration_check;
   }
-  const ModelFaces faces = model_faces(registered, hull_points(mesh.positions));
-  for (const auto& f : mesh.faces) {
-    if (measured(mesh, f)) {
-      const Eigen::Vector3d a = mesh.positions[f[0]].cast<double>();
-      const Eigen::Vector3d n =
-          (mesh.positions[f[1]].cast<double>() - a).cross(mesh.positions[f[2]].cast<double>() - a);
-      list.faces[static_cast<std::size_t>(faces.of(n))].seen_mm2 += 0.5 * n.norm();
-    }
+  const SurfaceQuality quality =
+      surface_quality(registered, mesh, model_faces(registered, hull_points(mesh.positions)));
+  list.sampling = quality.all;
+  for (std::size_t face = 0; face < kFaceCount; ++face) {
+    list.faces[face].seen_mm2 = quality.seen_mm2[face];
+    list.faces[face].interpolated_mm2 = quality.interpolated_mm2[face];
+    list.faces[face].sampling = quality.faces[face];
   }
-  for (const RedRegion& region : map.regions) {
-    FaceCoverage& face = list.faces[static_cast<std::size_t>(region.face)];
-    (region.state == RegionState::kRed ? face.red_mm2 : face.excused_mm2) += region.area_mm2;
-  }
+  add_regions(map, list);
   return list;
 }
 

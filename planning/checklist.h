@@ -9,12 +9,13 @@
 #include "core/placed_scan.h"
 #include "core/rig.h"
 #include "core/scan_pose.h"
+#include "planning/surface_quality.h"
 
 namespace dubsar {
 
-/// Six faces with what was seen and what is missing, and how the scans registered. `registered` and `mesh`
-/// (the stitched model, model frame; interpolated vertices count as not seen) may be empty. Disk and
-/// integrity are the session's to fill in.
+/// Six faces with what was seen, how well, and what is missing; how the scans registered; what the rig says
+/// of its calibration. `registered` and `mesh` (the stitched model, model frame; interpolated vertices count
+/// as not seen) may be empty. Disk, integrity and sign-off are the session's to fill in.
 [[nodiscard]] Checklist make_checklist(const RedMap& map, std::span<const ScanPose> poses,
                                        std::span<const PlacedScan> registered, const Mesh& mesh,
                                        const Rig* rig);

@@ -14,7 +14,7 @@ namespace dubsar {
 
 /// How near a sample of another scan has to be to show that a place was well sampled (seed 001, 3.3, step 3).
 struct ClearingOptions {
-  double spacing_factor = 2.0;  ///< of the larger µ of the two scans
+  double spacing_factor = 1.5;  ///< of the larger µ of the two scans
   double sigma_factor = 3.0;    ///< of the poses' and the samples' standard deviation together
   /// The radius never grows beyond this many µ: a bad pose must not clear what it cannot place.
   double max_spacing_factor = 6.0;

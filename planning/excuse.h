@@ -7,36 +7,46 @@
 
 #include "core/placed_scan.h"
 #include "planning/red_targets.h"
+#include "planning/surface_cover.h"
 
 namespace dubsar {
 
 struct ExcuseOptions {
-  double interpolation_mm = 0.025;  ///< seed 001: 25 µm
-  double largest_gap_mm = 0.6;      ///< below half the smallest wedge: larger holes may hide a sign
-  int fit_margin = 4;               ///< good samples around the hole that the fit uses, in cells
-  double confidence_sigmas = 2.0;   ///< the interpolation error is stated at this many standard errors
-  double stray_mm = 0.2;            ///< farther than this from the surface a return is not of the surface
-  int stray_views = 1;              ///< other scans that look past it
+  double interpolation_mm = 0.025;     ///< seed 001: 25 µm
+  double largest_gap_mm = 0.6;         ///< below half the smallest wedge: larger holes may hide a sign
+  double fit_margin_mm = 0.45;         ///< of surface around the hole that the fit uses; at least 4.5 µ
+  double confidence_sigmas = 2.0;      ///< the interpolation error is stated at this many standard errors
+  double stray_mm = 0.2;               ///< farther than this from the surface a return is not of the surface
+  int stray_views = 1;                 ///< other scans that look past it
+  std::size_t most_stray_samples = 3;  ///< a larger group is taken for a stray only when it is looked past
   /// Below this best predicted chance over all poses a place is out of reach.
   double least_chance = 0.05;
   /// Red that covers less than this many µ² is a speck: of the size that noise makes; `speck_tries` settle
   /// it.
   double speck_spacings2 = 10.0;
+  double speck_budget = 2e-4;  ///< of the surface, for all specks together
   int speck_tries = 2;
   int tries = 3;  ///< scans that ought to have seen a place before it is given up
 };
 
 /// Unneeded: holes no wider than largest_gap_mm over which the surface is interpolated well enough. The test:
-/// a quadric is fitted to the non-flagged samples of one scan around the hole, on all six sides of it; the
-/// standard deviation of its residuals is below interpolation_mm, its standard error at every red sample
-/// times confidence_sigmas is below interpolation_mm, and no red sample deviates from it by more than that
-/// plus three standard deviations. A clear outcome in one scan is enough.
-void excuse_unneeded(std::span<const PlacedScan> scans, const ExcuseOptions& options, RedTargets& red);
+/// a quadric is fitted to the well-sampled surface of all scans around the hole, on all six sides of it. What
+/// its residuals exceed the scans' noise by is how far the surface bends away from a quadric; together with
+/// confidence_sigmas standard errors of the fit inside the hole it must stay below interpolation_mm, and no
+/// red sample may deviate by more than that and three times the noise. noise_mm: of a sample.
+void excuse_unneeded(std::span<const PlacedScan> scans, const SurfaceCover& cover, double noise_mm,
+                     const ExcuseOptions& options, RedTargets& red);
+
+/// Unneeded: the last specks. When all that is still red is, together, below speck_budget of the tablet's
+/// surface, groups of it that cover no more than speck_spacings2 µ², are no wider than largest_gap_mm and lie
+/// within the reach of well-sampled surface are closed by a straight line from their own samples to it: the
+/// rule of 3µ lets gaps of that size pass anywhere. surface_mm2: of the tablet.
+void excuse_specks(std::span<const PlacedScan> scans, const SurfaceCover& cover, double surface_mm2,
+                   const ExcuseOptions& options, RedTargets& red);
 
 /// Unneeded: strays, returns from nowhere (outliers, mixed pixels at depth edges). The test: no surface of
 /// the model lies within stray_mm (at least 2 µ) of the red samples, and at least stray_views scans sample
-/// the surface behind them well, through the very place; or the place
-/// lies inside the clay, surface around it on all sides. noise_mm: by scan.
+/// the surface behind them well, through the very place. noise_mm: by scan.
 void excuse_strays(std::span<const PlacedScan> scans, std::span<const double> noise_mm,
                    const ModelSurface& surface, const ExcuseOptions& options, RedTargets& red);
 

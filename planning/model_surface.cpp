@@ -8,6 +8,7 @@
 
 #include "core/parallel.h"
 #include "planning/clearing.h"
+#include "planning/completion.h"
 #include "planning/convex_hull.h"
 
 namespace dubsar {
@@ -133,6 +134,8 @@ void add_scan(const PlacedScan& scan, int number, double step_mm, OwnerGrid& own
   }
 }
 
+}  // namespace
+
 Mesh thinned_surface(std::span<const PlacedScan> scans, double step_mm) {
   Mesh mesh;
   const Eigen::AlignedBox3d box = box_of(scans);
@@ -145,6 +148,8 @@ Mesh thinned_surface(std::span<const PlacedScan> scans, double step_mm) {
   }
   return mesh;
 }
+
+namespace {
 
 /// Corners of equal small triangles that a hull face is cut into, about `step_mm` apart.
 void sample_face(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c, double step_mm,
@@ -172,11 +177,12 @@ void sample_face(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen
   }
 }
 
-/// A slit between the triangles of two scans lets some rays through, a hole as wide as the patch nearly all;
-/// what is narrower than a patch is told by its red border.
-bool seen_from_outside(const MeshQuery& query, const SurfacePatch& patch, double step_mm, double depth_mm) {
-  // The hull of thinned points may lie a little inside the surface.
-  const double lift_mm = std::max(step_mm, 0.02 * depth_mm);
+}  // namespace
+
+bool seen_from_outside(const MeshQuery& query, const SurfacePatch& patch, double step_mm) {
+  constexpr double kFarMm = 1.0e4;
+  // The expected hull may lie inside the real surface. Above it there is nothing that could be met.
+  constexpr double kLiftMm = 5.0;
   constexpr int kRays = 9;
   constexpr int kEnough = 3;
   const Eigen::Vector3f n = patch.normal.cast<float>();
@@ -188,16 +194,14 @@ bool seen_from_outside(const MeshQuery& query, const SurfacePatch& patch, double
     // A sunflower spread over the patch, its first ray in the middle.
     const double radius = reach_mm * std::sqrt(static_cast<double>(k) / (kRays - 1));
     const double angle = 2.399963229728653 * k;
-    const Eigen::Vector3f from = patch.position_mm.cast<float>() + static_cast<float>(lift_mm) * n +
+    const Eigen::Vector3f from = patch.position_mm.cast<float>() + static_cast<float>(kLiftMm) * n +
                                  static_cast<float>(radius * std::cos(angle)) * u +
                                  static_cast<float>(radius * std::sin(angle)) * v;
-    const auto hit = query.first_hit(from, -n, 0.0F, static_cast<float>(depth_mm));
+    const auto hit = query.first_hit(from, -n, 0.0F, static_cast<float>(kFarMm));
     hits += hit && hit->normal.dot(n) > 0 ? 1 : 0;
   }
   return hits >= kEnough;
 }
-
-}  // namespace
 
 ModelSurface model_surface(std::span<const PlacedScan> scans, const Mesh* model,
                            const ModelSurfaceOptions& options) {
@@ -220,10 +224,17 @@ ModelSurface model_surface(std::span<const PlacedScan> scans, const Mesh* model,
   for (std::size_t i = 0; i < out.mesh.positions.size(); i += stride) {
     thinned.push_back(out.mesh.positions[i]);
   }
-  const std::vector<Eigen::Vector3d> extremes = hull_points(thinned);
-  const Mesh hull = convex_hull(extremes);
-  out.corners_mm = extremes;
+  std::vector<Eigen::Vector3d> extremes = hull_points(thinned);
+  Mesh hull = convex_hull(extremes);
   out.faces = model_faces(scans, extremes);
+  if (const auto mirrored = mirrored_points(out.mesh, hull, extremes, out.faces); !mirrored.empty()) {
+    for (const Eigen::Vector3d& p : mirrored) {
+      thinned.push_back(p.cast<float>());
+    }
+    extremes = hull_points(thinned);
+    hull = convex_hull(extremes);
+  }
+  out.corners_mm = extremes;
   Eigen::AlignedBox3d along_faces;
   for (const Eigen::Vector3d& p : extremes) {
     along_faces.extend(out.faces.model_from_faces.transpose() * p);
@@ -241,12 +252,10 @@ ModelSurface model_surface(std::span<const PlacedScan> scans, const Mesh* model,
       sample_face(extremes[f[0]], extremes[f[1]], extremes[f[2]], patch_mm, carry, patches);
     }
   }
-  const double depth_mm = 2 * along_faces.diagonal().norm() + 1;
   std::vector<std::uint8_t> seen(patches.size());
   parallel_for_each_index(
       patches.size(),
-      [&](std::size_t i) { seen[i] = seen_from_outside(out.query, patches[i], step_mm, depth_mm) ? 1 : 0; },
-      64);
+      [&](std::size_t i) { seen[i] = seen_from_outside(out.query, patches[i], step_mm) ? 1 : 0; }, 64);
   for (std::size_t i = 0; i < patches.size(); ++i) {
     (seen[i] != 0 ? out.seen : out.unseen).push_back(patches[i]);
   }

@@ -27,9 +27,9 @@ struct ModelSurfaceOptions {
 };
 
 /// The model so far as planning sees it: a thin surface that casts shadows, and the convex hull, which a
-/// tablet nearly is, as the estimate of what nobody has seen. A patch of the hull counts as seen when a ray
-/// from it into the clay meets the surface from outside; what has no samples yet is met from behind, or not
-/// at all.
+/// tablet nearly is (made whole by symmetry, completion.h), as the estimate of what nobody has seen. A patch
+/// of the hull counts as seen when a ray from it into the clay meets the surface from outside; what has no
+/// samples yet is met from behind, or not at all.
 struct ModelSurface {
   MeshQuery query;
   Mesh mesh;
@@ -40,6 +40,14 @@ struct ModelSurface {
   std::vector<SurfacePatch> seen;    ///< of the hull, unit area each about equal
   std::vector<SurfacePatch> unseen;  ///< of the hull
 };
+
+/// The non-flagged samples of the scans triangulated, thinned to about step_mm, each place once; model frame.
+[[nodiscard]] Mesh thinned_surface(std::span<const PlacedScan> scans, double step_mm);
+
+/// True when rays from the patch into the clay meet the surface from outside. A slit between the triangles of
+/// two scans lets some rays through, a hole as wide as the patch nearly all; what is narrower than a patch is
+/// told by its red border.
+[[nodiscard]] bool seen_from_outside(const MeshQuery& query, const SurfacePatch& patch, double step_mm);
 
 /// model: the stitched mesh where there is one, which then casts the shadows; otherwise the non-flagged
 /// samples of the scans are triangulated, thinned, each place once.

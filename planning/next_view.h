@@ -17,7 +17,7 @@ struct NextViewOptions {
   CandidateOptions candidates;
   std::size_t max_targets = 1500;  ///< more are thinned, their areas shared out
   double least_overlap = 0.3;      ///< with what has been seen, to register
-  double hand_turn_cost = 0.5;     ///< of lifting the tablet, in scans
+  double hand_turn_cost = 0.25;    ///< of lifting the tablet, in scans
   double least_gain_mm2 = 1e-4;    ///< a view that clears less is not proposed
   std::size_t ranked = 5;          ///< views returned
 };
@@ -32,6 +32,12 @@ struct NextViews {
 /// noise_mm: by scan.
 void note_tries(std::span<const PlacedScan> scans, std::span<const double> noise_mm,
                 const ModelSurface& surface, std::vector<RedTarget>& targets);
+
+/// For each target the chance that the view clears it, looks in vain considered; 0 for those that are not
+/// red.
+[[nodiscard]] std::vector<double> clearing_chances(const ViewCandidate& candidate,
+                                                   const ScannerModel& scanner, const ModelSurface& surface,
+                                                   std::span<const RedTarget> targets);
 
 /// The next best views: the area of red that each candidate is expected to clear, tested against incidence,
 /// field, support, and occlusion of laser and camera by the model so far, per scan of time. A target that was

@@ -7,6 +7,8 @@
 #include "core/grid_noise.h"
 #include "planning/clearing.h"
 #include "planning/red_regions.h"
+#include "planning/rim_targets.h"
+#include "planning/surface_cover.h"
 
 namespace dubsar {
 
@@ -68,7 +70,6 @@ Result<RedMapResult> make_red_map(std::span<const PlacedScan> scans, const Mesh*
   job.progress("red map", 0.0);
   const ModelSurface surface = model_surface(scans, model, options.surface);
   out.targets = red_targets(scans, surface, options.targets);
-  drop_unbordered_patches(scans, out.targets);
   if (job.cancelled()) {
     return fail(ErrorKind::kCancelled, "planning was stopped");
   }
@@ -76,10 +77,23 @@ Result<RedMapResult> make_red_map(std::span<const PlacedScan> scans, const Mesh*
   for (const PlacedScan& scan : scans) {
     noise_mm.push_back(estimate_noise_mm(*scan.grid));
   }
+  std::vector<double> sorted(noise_mm);
+  std::sort(sorted.begin(), sorted.end());
+  const double median_noise_mm = sorted[sorted.size() / 2];
+  const SurfaceCover cover(scans);
+  settle_closed(scans, cover, median_noise_mm, options.excuse.most_stray_samples, out.targets);
   excuse_strays(scans, noise_mm, surface, options.excuse, out.targets);
-  excuse_unneeded(scans, options.excuse, out.targets);
+  add_rim_targets(cover, options.targets.longest_gap_mm, out.targets);
+  excuse_unneeded(scans, cover, median_noise_mm, options.excuse, out.targets);
   // Strays and interpolated gaps are no border of a hole.
   drop_unbordered_patches(scans, out.targets);
+  double surface_mm2 = 0;
+  for (const auto* patches : {&surface.seen, &surface.unseen}) {
+    for (const SurfacePatch& patch : *patches) {
+      surface_mm2 += patch.area_mm2;
+    }
+  }
+  excuse_specks(scans, cover, surface_mm2, options.excuse, out.targets);
   note_tries(scans, noise_mm, surface, out.targets.targets);
   double spacing_mm = 0;
   for (const PlacedScan& scan : scans) {
@@ -88,10 +102,7 @@ Result<RedMapResult> make_red_map(std::span<const PlacedScan> scans, const Mesh*
   excuse_tried(spacing_mm, options.excuse, out.targets);
   job.progress("red map", 0.5);
 
-  std::vector<double> sorted(noise_mm);
-  std::sort(sorted.begin(), sorted.end());
-  Result<NextViews> views =
-      plan_views(scans, surface, out.targets, rig, sorted[sorted.size() / 2], options, job);
+  Result<NextViews> views = plan_views(scans, surface, out.targets, rig, median_noise_mm, options, job);
   if (!views) {
     return std::unexpected(views.error());
   }

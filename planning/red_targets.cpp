@@ -221,7 +221,7 @@ void drop_unbordered_patches(std::span<const PlacedScan> scans, RedTargets& red)
   constexpr double kLeastShareOfBorder = 0.25;
   double patch_mm = 0;
   for (const RedTarget& t : red.targets) {
-    patch_mm = t.unseen ? std::max(patch_mm, std::sqrt(t.area_mm2)) : patch_mm;
+    patch_mm = t.unseen && !t.rim ? std::max(patch_mm, std::sqrt(t.area_mm2)) : patch_mm;
   }
   double spacing_mm = 0;
   for (const PlacedScan& scan : scans) {
@@ -237,15 +237,15 @@ void drop_unbordered_patches(std::span<const PlacedScan> scans, RedTargets& red)
     double area = 0;
     std::size_t border = 0;
     for (const std::uint32_t i : group) {
-      area += red.targets[i].unseen ? red.targets[i].area_mm2 : 0.0;
-      border += samples[i];
+      area += red.targets[i].unseen && !red.targets[i].rim ? red.targets[i].area_mm2 : 0.0;
+      border += red.targets[i].rim ? 1 : samples[i];
     }
     const double perimeter = 4.0 * std::sqrt(area) / std::max(spacing_mm, 1e-9);
     if (area > kLargestSlitMm2 || static_cast<double>(border) >= kLeastShareOfBorder * perimeter) {
       continue;
     }
     for (const std::uint32_t i : group) {
-      drop[i] = red.targets[i].unseen ? 1 : 0;
+      drop[i] = red.targets[i].unseen && !red.targets[i].rim ? 1 : 0;
     }
   }
   std::vector<RedTarget> kept;

@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -22,12 +23,21 @@ struct RedTarget {
   /// Mean of the red samples themselves; position_mm lies in the gap beside them.
   Eigen::Vector3d sample_mm{0, 0, 0};
   double area_mm2 = 0;
-  bool unseen = false;  ///< a patch of the closing surface, with no samples of its own
+  bool unseen = false;  ///< with no samples of its own: a patch of the closing surface, or a rim
+  bool rim = false;     ///< where the well-sampled surface ends, and no red sample marks it
   /// Directions towards the scanner (unit, model frame) of scans that ought to have seen it and did not.
   std::vector<Eigen::Vector3d> tried;
   RegionState state = RegionState::kRed;
   Excuse excuse = Excuse::kNone;
   std::string reason;
+  /// Where interpolation puts the missing surface, of targets that are unneeded for that.
+  std::optional<Eigen::Vector3d> interpolated_mm;
+
+  void excuse_as(Excuse why, std::string because) {
+    state = RegionState::kExcused;
+    excuse = why;
+    reason = std::move(because);
+  }
 };
 
 /// Where the target of each red sample is.

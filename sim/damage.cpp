@@ -25,7 +25,7 @@ Eigen::Vector3d somewhere(const TabletBody& body, Random& random) {
 }  // namespace
 
 Damage::Damage(const TabletBody& body, const DamageOptions& options, double spacing_mm, std::uint64_t seed)
-    : seed_(seed_for(seed, 31)) {
+    : wall_mm_(1.5 * spacing_mm), seed_(seed_for(seed, 31)) {
   Random random(seed_);
   const double small = body.half_size_mm().head<2>().minCoeff();
   const auto patches = [&](double amount, std::vector<Patch>* out) {
@@ -59,6 +59,16 @@ Damage::Damage(const TabletBody& body, const DamageOptions& options, double spac
     broken.rough_mm = random.uniform(0.35, 0.8);
     broken.seed = random.next();
     breaks_.push_back(broken);
+  }
+  // Drawn last and from numbers of their own: a tablet with holes is else the tablet without.
+  Random boring(seed_for(seed, 32));
+  for (int i = 0, n = options.holes > 0 ? how_many(boring, options.holes, 5) : 0; i < n; ++i) {
+    Hole hole;
+    hole.centre = somewhere(body, boring);
+    hole.axis = body.normal(hole.centre);
+    hole.radius = boring.uniform(0.5, 1.4);
+    hole.depth = std::min(boring.uniform(1.5, 5.0), 0.6 * body.half_size_mm().z());
+    holes_.push_back(hole);
   }
 }
 
@@ -95,6 +105,19 @@ double Damage::crack_mm(const Eigen::Vector3d& p) const {
         std::abs(crack.across.dot(p - crack.centre) + wobble) / (0.5 * crack.width * taper + 1e-9);
     if (off < 1) {
       deepest = std::max(deepest, crack.depth * taper * (1.0 - off));
+    }
+  }
+  return deepest;
+}
+
+double Damage::hole_mm(const Eigen::Vector3d& p) const {
+  double deepest = 0;
+  for (const Hole& hole : holes_) {
+    const Eigen::Vector3d from = p - hole.centre;
+    const double along = hole.axis.dot(from);
+    const double away = (from - along * hole.axis).norm();
+    if (std::abs(along) < 2.0 && away < hole.radius) {
+      deepest = std::max(deepest, hole.depth * std::min(1.0, (hole.radius - away) / wall_mm_));
     }
   }
   return deepest;

@@ -22,6 +22,8 @@ class Damage {
   [[nodiscard]] double dirt_level_mm(const Eigen::Vector3d& p) const;
   /// How deep a crack goes at p; 0 where there is none.
   [[nodiscard]] double crack_mm(const Eigen::Vector3d& p) const;
+  /// How deep a firing hole goes at p; 0 where there is none.
+  [[nodiscard]] double hole_mm(const Eigen::Vector3d& p) const;
   /// How far p lies beyond a fracture face; 0 where nothing broke.
   [[nodiscard]] double broken_off_mm(const Eigen::Vector3d& p) const;
   /// Moves a surface point that has broken off onto the fracture face, towards the tablet's centre; false
@@ -39,6 +41,10 @@ class Damage {
     double length, width, depth;
     std::uint64_t seed;
   };
+  struct Hole {
+    Eigen::Vector3d centre, axis;  ///< axis out of the clay
+    double radius, depth;
+  };
   struct Break {
     Eigen::Vector3d normal;
     double offset;
@@ -52,6 +58,8 @@ class Damage {
 
   std::vector<Patch> worn_, dirty_;
   std::vector<Crack> cracks_;
+  std::vector<Hole> holes_;
+  double wall_mm_;  ///< over which a hole's wall falls
   std::vector<Break> breaks_;
   std::uint64_t seed_;
 };

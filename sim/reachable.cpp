@@ -29,7 +29,10 @@ std::vector<Eigen::Vector3d> spread_directions(int count) {
   return directions;
 }
 
-void sample_surface(const Mesh& mesh, const ReachOptions& options, Reach* reach) {
+}  // namespace
+
+void spread_over(const Mesh& mesh, std::size_t samples, std::uint64_t seed,
+                 std::vector<Eigen::Vector3f>* points, std::vector<Eigen::Vector3f>* all_normals) {
   std::vector<double> areas(mesh.faces.size());
   std::vector<Eigen::Vector3f> normals(mesh.faces.size());
   parallel_for_each_index(mesh.faces.size(), [&](std::size_t f) {
@@ -40,35 +43,29 @@ void sample_surface(const Mesh& mesh, const ReachOptions& options, Reach* reach)
     normals[f] = cross.normalized();
   });
   const double total = std::accumulate(areas.begin(), areas.end(), 0.0);
-  Random random(seed_for(options.seed, 71));
+  Random random(seed_for(seed, 71));
   double passed = 0;
   std::size_t f = 0;
-  for (std::size_t i = 0; i < options.samples; ++i) {
-    const double at =
-        total * (static_cast<double>(i) + random.uniform()) / static_cast<double>(options.samples);
+  for (std::size_t i = 0; i < samples; ++i) {
+    const double at = total * (static_cast<double>(i) + random.uniform()) / static_cast<double>(samples);
     while (f + 1 < areas.size() && passed + areas[f] < at) {
       passed += areas[f++];
     }
     const double root = std::sqrt(random.uniform());
     const double split = random.uniform();
     const auto& face = mesh.faces[f];
-    reach->points.emplace_back(static_cast<float>(1.0 - root) * mesh.positions[face[0]] +
-                               static_cast<float>(root * (1.0 - split)) * mesh.positions[face[1]] +
-                               static_cast<float>(root * split) * mesh.positions[face[2]]);
-    reach->normals.push_back(normals[f]);
+    points->emplace_back(static_cast<float>(1.0 - root) * mesh.positions[face[0]] +
+                         static_cast<float>(root * (1.0 - split)) * mesh.positions[face[1]] +
+                         static_cast<float>(root * split) * mesh.positions[face[2]]);
+    all_normals->push_back(normals[f]);
   }
 }
 
-}  // namespace
-
-Result<Reach> reachable_surface(const SimTablet& tablet, const MeshQuery& query,
-                                const ScannerOptions& scanner, const ReachOptions& options, JobContext& job) {
-  Reach reach;
-  if (tablet.mesh.faces.empty() || options.samples == 0) {
-    return reach;
-  }
-  sample_surface(tablet.mesh, options, &reach);
-  reach.reachable.assign(reach.points.size(), 0);
+Result<std::vector<std::uint8_t>> reachable_points(const std::vector<Eigen::Vector3f>& points,
+                                                   const std::vector<Eigen::Vector3f>& normals,
+                                                   const MeshQuery& query, const ScannerOptions& scanner,
+                                                   const ReachOptions& options, JobContext& job) {
+  std::vector<std::uint8_t> reachable(points.size(), 0);
   const std::vector<Eigen::Vector3d> directions = spread_directions(options.directions);
   const double flattest = std::cos(rad_from_deg(options.max_slope_deg));
   const auto seen = [&](const Eigen::Vector3d& p, const Eigen::Vector3d& n, const Eigen::Vector3d& from) {
@@ -92,13 +89,13 @@ Result<Reach> reachable_surface(const SimTablet& tablet, const MeshQuery& query,
     return false;
   };
   parallel_for_each_index(
-      reach.points.size(),
+      points.size(),
       [&](std::size_t i) {
         if (job.cancelled()) {
           return;
         }
-        const Eigen::Vector3d p = reach.points[i].cast<double>();
-        const Eigen::Vector3d n = reach.normals[i].cast<double>();
+        const Eigen::Vector3d p = points[i].cast<double>();
+        const Eigen::Vector3d n = normals[i].cast<double>();
         std::vector<std::pair<double, int>> order;
         for (int d = 0; d < options.directions; ++d) {
           const double facing = n.dot(directions[static_cast<std::size_t>(d)]);
@@ -108,7 +105,7 @@ Result<Reach> reachable_surface(const SimTablet& tablet, const MeshQuery& query,
         }
         // Straight down the normal first: nearly every point is settled by its first few directions.
         std::ranges::sort(order);
-        reach.reachable[i] = std::ranges::any_of(order, [&](const auto& entry) {
+        reachable[i] = std::ranges::any_of(order, [&](const auto& entry) {
           return seen(p, n, directions[static_cast<std::size_t>(entry.second)]);
         });
       },
@@ -116,6 +113,22 @@ Result<Reach> reachable_surface(const SimTablet& tablet, const MeshQuery& query,
   if (job.cancelled()) {
     return fail(ErrorKind::kCancelled, "stopped while looking for what can be reached");
   }
+  return reachable;
+}
+
+Result<Reach> reachable_surface(const SimTablet& tablet, const MeshQuery& query,
+                                const ScannerOptions& scanner, const ReachOptions& options, JobContext& job) {
+  Reach reach;
+  if (tablet.mesh.faces.empty() || options.samples == 0) {
+    return reach;
+  }
+  spread_over(tablet.mesh, options.samples, options.seed, &reach.points, &reach.normals);
+  Result<std::vector<std::uint8_t>> reachable =
+      reachable_points(reach.points, reach.normals, query, scanner, options, job);
+  if (!reachable) {
+    return std::unexpected(reachable.error());
+  }
+  reach.reachable = std::move(*reachable);
   const auto count = std::ranges::count(reach.reachable, std::uint8_t{1});
   reach.share = static_cast<double>(count) / static_cast<double>(reach.points.size());
   return reach;

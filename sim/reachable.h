@@ -21,6 +21,11 @@ struct ReachOptions {
   std::uint64_t seed = 1;
 };
 
+/// Spreads `samples` points evenly over a surface, with the normals of their faces; each stands for the same
+/// area.
+void spread_over(const Mesh& mesh, std::size_t samples, std::uint64_t seed,
+                 std::vector<Eigen::Vector3f>* points, std::vector<Eigen::Vector3f>* normals);
+
 /// Which parts of the true surface any pose can see well: laser and camera unobstructed, both less flat than
 /// the limit. Since the tablet can be laid on any side and turned, every direction is a pose of the rig.
 struct Reach {
@@ -29,6 +34,10 @@ struct Reach {
   std::vector<std::uint8_t> reachable;   ///< [N]
   double share = 0;                      ///< of the area that is reachable
 };
+/// [N], 1 where the point can be seen well from somewhere. Errors: kCancelled.
+[[nodiscard]] Result<std::vector<std::uint8_t>> reachable_points(
+    const std::vector<Eigen::Vector3f>& points, const std::vector<Eigen::Vector3f>& normals,
+    const MeshQuery& query, const ScannerOptions& scanner, const ReachOptions& options, JobContext& job);
 [[nodiscard]] Result<Reach> reachable_surface(const SimTablet& tablet, const MeshQuery& query,
                                               const ScannerOptions& scanner, const ReachOptions& options,
                                               JobContext& job);

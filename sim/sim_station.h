@@ -43,6 +43,11 @@ class SimStation {
   /// Drives turntable and tilt, or the arm; with a hand turn the operator first turns the tablet and puts the
   /// pins back. share < 1: stopped on the way. Errors: those of check(); nothing has moved then.
   [[nodiscard]] Status move(const Placement& placement, double share = 1.0);
+  /// How far hand turns come out wrong from now on.
+  void set_hand_error(double most_deg, double most_mm) {
+    options_.hand_max_deg = most_deg;
+    options_.hand_max_mm = most_mm;
+  }
 
   /// What motors and asked turns say. Never the truth.
   [[nodiscard]] NominalPose nominal() const;

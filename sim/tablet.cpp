@@ -109,7 +109,7 @@ float albedo_at(const TabletOptions& options, const Eigen::Vector3d& p, SurfaceK
     albedo = 0.25 + 0.5 * albedo;
   } else if (kind == SurfaceKind::kFracture) {
     albedo = 0.08 + albedo;
-  } else if (kind == SurfaceKind::kCrack) {
+  } else if (kind == SurfaceKind::kCrack || kind == SurfaceKind::kHole) {
     albedo *= 0.7;
   }
   return static_cast<float>(std::clamp(albedo, 0.14, 0.95));
@@ -258,6 +258,10 @@ Result<SimTablet> make_tablet(const TabletOptions& options, JobContext& job) {
       if (const double crack = damage.crack_mm(p); crack > 0) {
         height -= crack;
         kind = SurfaceKind::kCrack;
+      }
+      if (const double hole = damage.hole_mm(p); hole > 0) {
+        height -= hole;
+        kind = SurfaceKind::kHole;
       }
       // Relief that broke off fades out beyond the face: drawn back with it, steep walls would fold over.
       height *= std::max(0.0, 1.0 - damage.broken_off_mm(p) / kFadeMm);

@@ -19,8 +19,9 @@ struct DamageOptions {
   double erosion = 0.3;   ///< patches worn smooth
   double dirt = 0.3;      ///< wedges filled
   double cracks = 0.3;
+  double holes = 0;  ///< firing holes: narrow, deep, their walls and floors mostly out of any scanner's sight
 
-  [[nodiscard]] static DamageOptions none() { return {0, 0, 0, 0}; }
+  [[nodiscard]] static DamageOptions none() { return {0, 0, 0, 0, 0}; }
 };
 
 struct TabletOptions {
@@ -37,7 +38,7 @@ struct TabletOptions {
 };
 
 /// What made the surface at a vertex.
-enum class SurfaceKind : std::uint8_t { kBody, kSeal, kWedge, kFracture, kErosion, kDirt, kCrack };
+enum class SurfaceKind : std::uint8_t { kBody, kSeal, kWedge, kFracture, kErosion, kDirt, kCrack, kHole };
 
 /// A tablet with all that is true about it. Its frame: origin at the centre of the body, obverse +z, top edge
 /// +y, right edge +x.

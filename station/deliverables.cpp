@@ -3,7 +3,7 @@
 #include "station/deliverables.h"
 
 #include "archive/png.h"
-#include "archive/six_views.h"
+#include "archive/report_pictures.h"
 #include "formats/atomic_file.h"
 #include "formats/mesh_io.h"
 #include "formats/poses_json.h"
@@ -15,17 +15,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-Status write_sheet(const fs::path& file, const RenderScene& scene, const ReportInput& input,
-                   RenderStyle style, const std::string& title, JobContext& job) {
-  SixViewOptions options;
-  options.tablet_from_model = input.tablet_from_model;
-  options.render.longest_px = input.longest_px;
-  options.render.style = style;
-  const Result<Image> sheet = render_six_view_sheet(scene, options, job);
-  if (!sheet) {
-    return std::unexpected(sheet.error());
-  }
-  const auto png = encode_png(*sheet, title);
+Status write_picture(const fs::path& file, const Image& image, const std::string& title) {
+  const auto png = encode_png(image, title);
   if (!png) {
     return std::unexpected(png.error());
   }
@@ -33,6 +24,16 @@ Status write_sheet(const fs::path& file, const RenderScene& scene, const ReportI
 }
 
 }  // namespace
+
+std::vector<fs::path> Deliverables::all() const {
+  std::vector<fs::path> files;
+  for (const fs::path* file : {&mesh, &six_views, &red_map, &report, &checklist, &poses, &red_map_json}) {
+    if (!file->empty()) {
+      files.push_back(*file);
+    }
+  }
+  return files;
+}
 
 Result<Deliverables> write_deliverables(const fs::path& session, const ReportInput& input, JobContext& job) {
   Deliverables files;
@@ -51,37 +52,43 @@ Result<Deliverables> write_deliverables(const fs::path& session, const ReportInp
   };
 
   job.progress("writing results", 0.0);
+  const Result<ReportPictures> pictures = draw_pictures(input, job);
+  if (!pictures) {
+    return std::unexpected(pictures.error());
+  }
+  job.progress("writing results", 0.5);
   if (!input.model.faces.empty()) {
     const fs::path mesh = session / "mesh" / "model.ply";
     if (Status s = keep(write_mesh(mesh, input.model), mesh, files.mesh); !s) {
       return std::unexpected(s.error());
     }
+  }
+  if (!pictures->empty) {
     const fs::path six_views = session / "export" / "six_views.png";
-    if (Status s = keep(
-            write_sheet(six_views, RenderScene(input.model), input, RenderStyle::kClay, input.title, job),
-            six_views, files.six_views);
+    if (Status s =
+            keep(write_picture(six_views, pictures->sides_sheet, input.title), six_views, files.six_views);
         !s) {
       return std::unexpected(s.error());
     }
-    job.progress("writing results", 0.3);
     const fs::path red_map = session / "export" / "red_map.png";
-    const ColouredPoints* red = input.red_points.positions_mm.empty() ? nullptr : &input.red_points;
-    if (Status s = keep(write_sheet(red_map, RenderScene(input.model, red), input, RenderStyle::kRedMap,
-                                    input.title + ", red map", job),
-                        red_map, files.red_map);
+    if (Status s = keep(write_picture(red_map, pictures->red_sheet, input.title + ", red map"), red_map,
+                        files.red_map);
         !s) {
       return std::unexpected(s.error());
     }
   }
-  job.progress("writing results", 0.5);
-  const Result<std::string> report = report_html(input, job);
+  const Result<std::string> report = report_html(input, *pictures);
   if (!report) {
     return std::unexpected(report.error());
   }
+  const std::string checklist = checklist_html(input, *pictures);
   const auto text = [&](const fs::path& file, const std::string& content, fs::path& into) {
     return keep(write_file_atomically(file, content), file, into);
   };
   if (Status s = text(session / "export" / "report.html", *report, files.report); !s) {
+    return std::unexpected(s.error());
+  }
+  if (Status s = text(session / "export" / "checklist.html", checklist, files.checklist); !s) {
     return std::unexpected(s.error());
   }
   if (Status s = text(session / "export" / "poses.json", poses_to_json(input.scans), files.poses); !s) {

@@ -20,9 +20,14 @@ struct Deliverables {
   std::filesystem::path report;        ///< export/report.html
   std::filesystem::path poses;         ///< export/poses.json
   std::filesystem::path red_map_json;  ///< export/red_map.json
+  std::filesystem::path checklist;     ///< export/checklist.html
+
+  /// Those that were written.
+  [[nodiscard]] std::vector<std::filesystem::path> all() const;
 };
 
-/// Writes mesh, pictures, report, poses and red map, each atomically. An empty mesh gives no pictures.
+/// Writes mesh, pictures, report, checklist page, poses and red map, each atomically. An empty mesh gives no
+/// pictures.
 [[nodiscard]] Result<Deliverables> write_deliverables(const std::filesystem::path& session,
                                                       const ReportInput& input, JobContext& job);
 

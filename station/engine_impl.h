@@ -217,7 +217,6 @@ struct Engine::Impl {
   Result<EngineResult> run(JobContext& job);
   Status settle(EngineResult& result, JobContext& job);
   Status finish(EngineResult& result, JobContext& job);
-  Status keep_results(const EngineResult& result);
 };
 
 }  // namespace dubsar

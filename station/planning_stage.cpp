@@ -11,6 +11,7 @@
 #include "planning/model_faces.h"
 #include "planning/red_map.h"
 #include "planning/side_view.h"
+#include "planning/sample_states.h"
 
 namespace dubsar {
 
@@ -34,6 +35,51 @@ double displacement_mm(const RangeGrid& grid, const RigidTransform& from, const 
   }
   return most;
 }
+
+/// The rim of a hole lies within so many µ of the mesh; an excused sample farther away hangs in the air.
+constexpr double kRimInSpacings = 4.0;
+
+/// Whether a place lies near a vertex of the mesh, by cubes of space: within one side surely, beyond four
+/// not.
+class NearMesh {
+ public:
+  NearMesh(const Mesh& mesh, float side_mm) : side_mm_(side_mm) {
+    if (!(side_mm_ > 0)) {
+      return;
+    }
+    cubes_.reserve(mesh.positions.size());
+    for (const Eigen::Vector3f& p : mesh.positions) {
+      cubes_.push_back(key(cube_of(p)));
+    }
+    std::ranges::sort(cubes_);
+    cubes_.erase(std::unique(cubes_.begin(), cubes_.end()), cubes_.end());
+  }
+  [[nodiscard]] bool has(const Eigen::Vector3f& p) const {
+    if (!(side_mm_ > 0)) {
+      return true;
+    }
+    const Eigen::Vector3i at = cube_of(p);
+    for (int k = 0; k < 27; ++k) {
+      const Eigen::Vector3i beside = at + Eigen::Vector3i(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1);
+      if (std::ranges::binary_search(cubes_, key(beside))) {
+        return true;
+      }
+    }
+    return false;
+  }
+
+ private:
+  [[nodiscard]] Eigen::Vector3i cube_of(const Eigen::Vector3f& p) const {
+    return (p / side_mm_).array().floor().max(-1e6F).min(1e6F).cast<int>().matrix();
+  }
+  static std::int64_t key(const Eigen::Vector3i& cube) {
+    constexpr std::int64_t kHalf = std::int64_t{1} << 20U;
+    return ((cube.x() + kHalf) << 42U) | ((cube.y() + kHalf) << 21U) | (cube.z() + kHalf);
+  }
+
+  float side_mm_;
+  std::vector<std::int64_t> cubes_;
+};
 
 }  // namespace
 
@@ -66,7 +112,9 @@ Status PlanningStage::place(const std::vector<ScanPose>& poses, bool exact, JobC
     if (there != placed_.end()) {
       const double moved_mm =
           displacement_mm(*scan.grid, there->second.model_from_scanner, scan.model_from_scanner);
-      if (moved_mm <= (exact ? 0.0 : kStaysWithin * scan.grid->spacing_mm)) {
+      // A pose that stays may have become more certain, which changes how far its samples clear others.
+      const bool as_certain = there->second.sigma_mm == scan.sigma_mm;
+      if (exact ? moved_mm <= 0 && as_certain : moved_mm <= kStaysWithin * scan.grid->spacing_mm) {
         continue;
       }
       cleared_.reposition(id, scan.model_from_scanner, scan.sigma_mm);
@@ -170,36 +218,50 @@ Result<RedMap> PlanningStage::red_map(const Rig* rig, JobContext& job) {
     return std::unexpected(result.error());
   }
   excused_flags_ = std::move(result->flags);
+  targets_ = std::move(result->targets);
   return std::move(result->map);
 }
 
 ColouredPoints PlanningStage::red_points(const Mesh& mesh) const {
-  Eigen::AlignedBox3f box;
-  for (const Eigen::Vector3f& p : mesh.positions) {
-    box.extend(p);
-  }
   ColouredPoints points;
   const std::vector<PlacedScan> scans = cleared_.scans();
+  double spacing_mm = 0;
+  for (const PlacedScan& scan : scans) {
+    spacing_mm = std::max(spacing_mm, scan.grid->spacing_mm);
+  }
+  const NearMesh near(mesh, static_cast<float>(kRimInSpacings * spacing_mm));
   for (std::size_t k = 0; k < scans.size() && k < excused_flags_.size(); ++k) {
     const RangeGrid& grid = *scans[k].grid;
     // As wide as the gap that it stands beside: a thin rim would hardly show.
     points.radius_mm = std::max(points.radius_mm, static_cast<float>(1.5 * grid.spacing_mm));
     points.bury_mm = std::max(points.bury_mm, static_cast<float>(2.0 * grid.spacing_mm));
+    const SampleStates states =
+        sample_states(grid, excused_flags_[k], {}, targets_, static_cast<std::uint32_t>(k));
     for (std::size_t i = 0; i < grid.size(); ++i) {
-      const std::uint8_t flags = excused_flags_[k][i];
-      const bool red = is_red(flags);
-      if (!red && (flags & kExcused) == 0) {
+      const SampleState state = states.state[i];
+      const bool red = state == SampleState::kRed;
+      if (!red && state != SampleState::kInterpolated && state != SampleState::kUnreachable) {
         continue;
       }
       const Eigen::Vector3f p = (scans[k].model_from_scanner * grid.point(i).cast<double>()).cast<float>();
-      if (!red && !box.isEmpty() && box.exteriorDistance(p) > 2 * grid.spacing_mm) {
-        continue;
+      if (red || near.has(p)) {
+        points.positions_mm.push_back(p);
+        points.colours.push_back(red ? kRedOfSparse : kAmberOfExcused);
       }
-      points.positions_mm.push_back(p);
-      points.colours.push_back(red ? kRedOfSparse : kAmberOfExcused);
     }
   }
   return points;
+}
+
+std::optional<SampleStates> PlanningStage::states(int id) const {
+  const std::vector<PlacedScan> scans = cleared_.scans();
+  for (std::size_t k = 0; k < scans.size() && k < excused_flags_.size(); ++k) {
+    if (scans[k].id == id) {
+      return sample_states(*scans[k].grid, excused_flags_[k], cleared_.cleared_by(id), targets_,
+                           static_cast<std::uint32_t>(k));
+    }
+  }
+  return std::nullopt;
 }
 
 RigidTransform PlanningStage::tablet_from_model(const Mesh& mesh) const {

@@ -13,8 +13,10 @@
 #include "core/red_map.h"
 #include "core/result.h"
 #include "core/rig.h"
+#include "core/sample_states.h"
 #include "core/scan_pose.h"
 #include "planning/cleared_map.h"
+#include "planning/red_targets.h"
 #include "planning/tablet_on_stage.h"
 #include "station/station_scan.h"
 #include "triangulation/stitcher.h"
@@ -56,9 +58,12 @@ class PlanningStage {
   [[nodiscard]] Result<Mesh> mesh(const JobContext& job) const { return stitcher_.mesh(job); }
 
   /// Red (and amber, excused) samples of the last red_map() in the model frame, for pictures of the mesh.
-  /// Excused strays that hang in the air around it are left out: they would make the picture of air; the red
-  /// map lists them.
+  /// Excused samples that hang in the air are left out, strays and others: they would make the picture of
+  /// air; the red map lists them.
   [[nodiscard]] ColouredPoints red_points(const Mesh& mesh) const;
+
+  /// What has become of the samples of a scan in the last red_map(); nothing when it is not placed.
+  [[nodiscard]] std::optional<SampleStates> states(int id) const;
 
   /// The placed scans, by id, with their flags as cleared.
   [[nodiscard]] std::vector<PlacedScan> placed() const { return cleared_.scans(); }
@@ -73,6 +78,7 @@ class PlanningStage {
   ClearedMap cleared_;
   Stitcher stitcher_;
   std::vector<SampleFlags> excused_flags_;  ///< of the last red map, by position in placed()
+  RedTargets targets_;                      ///< of the last red map
 };
 
 }  // namespace dubsar

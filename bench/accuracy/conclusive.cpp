@@ -1,154 +1,309 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright The Dubsar developers
 //
-// Closed loop of planning with true poses: a simulated tablet is scanned, flagged, cleared and planned until
-// the red map is conclusive. Prints one line per scan and the verdict against the truth.
-//   conclusive [width height thickness [spacing [noise [seed [max_scans]]]]]     (mm)
+// Planning in a closed loop over many simulated tablets of different shape and damage: scanned, flagged,
+// cleared and planned until the red map is conclusive. Is the verdict true, are the excuses, how many scans
+// against a greedy set cover that knows the surface and two plain planners, and is the gain as predicted?
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
-#include <memory>
+#include <map>
+#include <optional>
+#include <string>
 #include <vector>
 
-#include "core/grid_lookup.h"
-#include "core/grid_noise.h"
-#include "core/units.h"
-#include "planning/cleared_map.h"
-#include "planning/clearing.h"
-#include "planning/red_map.h"
-#include "planning/sparse_flags.h"
-#include "sim/reachable.h"
-#include "sim/sim_station.h"
-#include "sim/tablet.h"
+#include "bench/support/closed_loop.h"
+#include "bench/support/true_scans.h"
+#include "bench/support/view_baselines.h"
+#include "core/random.h"
+#include "planning/clusters.h"
+#include "planning/red_change.h"
+#include "planning/surface_cover.h"
 
 namespace {
 
 using namespace dubsar;
+using namespace dubsar::bench;
+
+struct Arguments {
+  int tablets = 10;
+  std::uint64_t first = 1;
+  double spacing_mm = 0.1;
+  double noise_mm = 0.02;
+  int max_scans = 60;
+  bool registered = false;
+  bool baselines = false;
+  bool verbose = false;
+};
+
+struct Gain {
+  double predicted = 0;
+  double actual = 0;
+  double share = 0;  ///< of the tablet's surface
+};
+
+struct TabletResult {
+  bool conclusive = false;
+  int scans = 0;
+  int scans_to_999 = 0;      ///< until 99.9 % of what was sampled in the end
+  double share = 0;          ///< of the reachable
+  double share_sampled = 0;  ///< of all
+  double area_mm2 = 0;
+  ExcuseScore excuses;
+  std::vector<Gain> gains;
+};
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-double area_of(const RedMap& map, RegionState state, Excuse excuse) {
+double red_area(const RedTargets& red) {
   double area = 0;
-  for (const RedRegion& r : map.regions) {
-    area += r.state == state && r.excuse == excuse ? r.area_mm2 : 0.0;
+  for (const RedTarget& t : red.targets) {
+    area += t.state == RegionState::kRed ? t.area_mm2 : 0.0;
   }
   return area;
 }
 
-/// Marks the points of the truth that a non-flagged sample of this scan lies beside.
-void mark_sampled(const sim::Reach& truth, const PlacedScan& scan, std::vector<std::uint8_t>& sampled) {
-  std::vector<std::uint8_t> keep(scan.grid->size());
-  for (std::size_t i = 0; i < keep.size(); ++i) {
-    keep[i] = scan.grid->valid[i] != 0 && is_unflagged((*scan.flags)[i]) ? 1 : 0;
-  }
-  const GridLookup lookup(*scan.grid, keep);
-  const RigidTransform scanner_from_model = scan.model_from_scanner.inverse();
-  const double radius_mm = 1.5 * scan.grid->spacing_mm + 3 * estimate_noise_mm(*scan.grid);
-  for (std::size_t i = 0; i < truth.points.size(); ++i) {
-    const Eigen::Vector3f p = (scanner_from_model * truth.points[i].cast<double>().eval()).cast<float>();
-    sampled[i] |= lookup.nearest(p, static_cast<float>(radius_mm)) >= 0 ? 1 : 0;
+/// Tablets of 20 to 50 mm, a third of them badly damaged, a third with firing holes.
+LoopOptions loop_options(std::uint64_t seed, const Arguments& args) {
+  LoopOptions options;
+  options.tablet = random_tablet(seed, "text", std::max(0.05, 0.6 * args.spacing_mm));
+  Random random(seed_for(seed, 400));
+  const double wear = random.uniform();
+  options.tablet.damage = {wear, random.uniform(), random.uniform(), random.uniform(), 0};
+  options.tablet.damage.holes = seed % 3 == 0 ? random.uniform(0.4, 1.0) : 0.0;
+  options.station.scanner = sim::scanner_for(options.tablet.size_mm, args.spacing_mm, args.noise_mm);
+  options.station.scanner.seed = seed;
+  options.station.seed = seed;
+  options.registered = args.registered;
+  return options;
+}
+
+void print_targets(const ClosedLoop& loop, const RedMapResult& red, double least_mm2) {
+  for (const RedTarget& t : red.targets.targets) {
+    if (t.area_mm2 < least_mm2 ||
+        (t.state == RegionState::kExcused && t.excuse == Excuse::kUnneeded && t.area_mm2 <= 0)) {
+      continue;
+    }
+    const RigidTransform tablet_from_model = loop.tablet_from_model();
+    const Eigen::Vector3f p = (tablet_from_model * t.position_mm).cast<float>();
+    const Eigen::Vector3f s = (tablet_from_model * t.sample_mm).cast<float>();
+    const auto to_surface = const_cast<ClosedLoop&>(loop).station().query().closest(p, 5.0F);
+    const auto of_sample = const_cast<ClosedLoop&>(loop).station().query().closest(s, 5.0F);
+    std::size_t near = 0;
+    std::size_t open = 0;
+    Eigen::Vector3f normal = Eigen::Vector3f::Zero();
+    for (std::size_t i = 0; i < loop.truth().size(); ++i) {
+      if ((loop.truth().points()[i] - p).norm() < 0.4F) {
+        ++near;
+        open += loop.sampled()[i] == 0 ? 1 : 0;
+        normal += loop.truth().normals()[i];
+      }
+    }
+    std::printf(
+        "      %s%s %.4f mm2 at %6.2f %6.2f %6.2f, off %.3f (sample %.3f) mm, tried %zu, open %zu of %zu, "
+        "n.n %.2f %s\n",
+        t.state == RegionState::kRed ? "red" : to_string(t.excuse), t.unseen ? " unseen" : "", t.area_mm2,
+        p.x(), p.y(), p.z(), to_surface ? to_surface->distance_mm : -1.0,
+        of_sample ? of_sample->distance_mm : -1.0, t.tried.size(), open, near,
+        t.normal.cast<float>().dot(normal.normalized()), t.reason.c_str());
   }
 }
 
-double share_sampled(const sim::Reach& truth, const std::vector<std::uint8_t>& sampled) {
-  std::size_t reachable = 0;
-  std::size_t both = 0;
-  for (std::size_t i = 0; i < sampled.size(); ++i) {
-    reachable += truth.reachable[i];
-    both += truth.reachable[i] != 0 && sampled[i] != 0 ? 1 : 0;
+/// Groups of true surface that no scan sampled well, and what the program thinks of their places.
+void print_open(const ClosedLoop& loop) {
+  const SurfaceCover cover(loop.placed());
+  std::vector<std::uint32_t> open;
+  for (std::uint32_t i = 0; i < loop.truth().size(); ++i) {
+    if (loop.sampled()[i] == 0) {
+      open.push_back(i);
+    }
   }
-  return reachable > 0 ? static_cast<double>(both) / static_cast<double>(reachable) : 0.0;
+  UnionFind sets(open.size());
+  for (std::uint32_t a = 0; a < open.size(); ++a) {
+    for (std::uint32_t b = a + 1; b < open.size(); ++b) {
+      if ((loop.truth().points()[open[a]] - loop.truth().points()[open[b]]).norm() < 0.5F) {
+        sets.join(a, b);
+      }
+    }
+  }
+  std::map<std::uint32_t, std::vector<std::uint32_t>> groups;
+  for (std::uint32_t a = 0; a < open.size(); ++a) {
+    groups[sets.find(a)].push_back(open[a]);
+  }
+  const RigidTransform model_from_tablet = loop.tablet_from_model().inverse();
+  for (const auto& [root, group] : groups) {
+    const Eigen::Vector3f p = loop.truth().points()[group.front()];
+    const Eigen::Vector3f n = loop.truth().normals()[group.front()];
+    const auto place = cover.at(model_from_tablet * p.cast<double>(), cover.reach_mm());
+    std::printf("      open %.3f mm2 at %6.2f %6.2f %6.2f normal %5.2f %5.2f %5.2f, cover %s\n",
+                static_cast<double>(group.size()) * loop.truth().area_of_point_mm2(), p.x(), p.y(), p.z(),
+                n.x(), n.y(), n.z(),
+                place == SurfaceCover::Place::kRim      ? "rim"
+                : place == SurfaceCover::Place::kClosed ? "closed"
+                                                        : "bare");
+  }
+}
+
+TabletResult run(const LoopOptions& options, const Arguments& args) {
+  ClosedLoop loop(options);
+  JobContext job;
+  TabletResult result;
+  result.area_mm2 = loop.truth().area_mm2();
+  std::vector<double> shares;
+  std::optional<Placement> placement;
+  std::optional<RedMapResult> before;
+  while (loop.scans() < args.max_scans) {
+    const double predicted =
+        before && !before->map.next.empty() ? before->map.next.front().predicted_cleared_mm2 : 0;
+    const bool placed = loop.scan(placement);
+    const auto start = std::chrono::steady_clock::now();
+    RedMapResult red = loop.red_map();
+    const double plan_s = seconds_since(start);
+    shares.push_back(loop.share_sampled());
+    double actual = 0;
+    if (before && placed) {
+      actual = cleared_area_mm2(before->targets, loop.placed().back());
+      result.gains.push_back({predicted, actual, actual / result.area_mm2});
+    }
+    if (args.verbose) {
+      std::printf(
+          "  %2d plan %.3f s | red %8.2f mm2 in %4zu | predicted %7.2f actual %7.2f | truth %.5f%s | %s\n",
+          loop.scans() - 1, plan_s, red_area(red.targets), red.targets.targets.size(), predicted, actual,
+          loop.share_sampled(),
+          red.map.conclusive ? " CONCLUSIVE"
+          : placed           ? ""
+                             : " LOST",
+          red.map.next.empty() ? "" : red.map.next.front().say.c_str());
+      if (red.map.conclusive || loop.scans() >= 12) {
+        print_targets(loop, red, 0.0);
+      }
+    }
+    const bool done = red.map.conclusive || red.map.next.empty();
+    result.conclusive = red.map.conclusive;
+    if (!done) {
+      placement = red.map.next.front().placement;
+    }
+    before = std::move(red);
+    if (done) {
+      break;
+    }
+  }
+  if (args.verbose) {
+    print_open(loop);
+  }
+  result.scans = loop.scans();
+  result.share_sampled = loop.share_sampled();
+  result.share = loop.truth().share_of_reachable(loop.sampled(), job);
+  while (result.scans_to_999 < result.scans &&
+         shares[static_cast<std::size_t>(result.scans_to_999)] < 0.999 * shares.back()) {
+    ++result.scans_to_999;
+  }
+  ++result.scans_to_999;
+  result.excuses = loop.truth().judge(before->targets.targets, loop.tablet_from_model(),
+                                      before->targets.cell_mm, loop.sampled(), job);
+  return result;
+}
+
+double quantile(std::vector<double> values, double q) {
+  if (values.empty()) {
+    return 0;
+  }
+  std::sort(values.begin(), values.end());
+  return values[std::min(values.size() - 1,
+                         static_cast<std::size_t>(q * static_cast<double>(values.size())))];
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  const auto number = [&](int k, double fallback) { return argc > k ? std::atof(argv[k]) : fallback; };
-  JobContext job;
-  sim::TabletOptions tablet_options;
-  tablet_options.size_mm = {number(1, 30), number(2, 25), number(3, 12)};
-  tablet_options.seed = static_cast<std::uint64_t>(number(6, 1));
-  sim::SimStationOptions station_options;
-  station_options.scanner.spacing_mm = number(4, 0.2);
-  station_options.scanner.noise_mm = number(5, 0.02);
-  station_options.seed = tablet_options.seed;
-  const int max_scans = static_cast<int>(number(7, 40));
-  tablet_options.spacing_mm = std::max(0.1, 0.5 * station_options.scanner.spacing_mm);
+  Arguments args;
+  CLI::App app("conclusive scans against the truth");
+  app.add_option("--tablets", args.tablets);
+  app.add_option("--first", args.first);
+  app.add_option("--spacing", args.spacing_mm);
+  app.add_option("--noise", args.noise_mm);
+  app.add_option("--max-scans", args.max_scans);
+  app.add_flag("--registered", args.registered, "poses by registration, not the true ones");
+  app.add_flag("--baselines", args.baselines, "greedy set cover, turntable, boundary following beside it");
+  app.add_flag("-v,--verbose", args.verbose);
+  CLI11_PARSE(app, argc, argv);
 
-  auto tablet = sim::make_tablet(tablet_options, job);
-  if (!tablet) {
-    std::fprintf(stderr, "%s\n", tablet.error().line().c_str());
-    return 2;
-  }
-  sim::SimStation station(std::move(*tablet), station_options);
-  const auto truth =
-      sim::reachable_surface(station.tablet(), station.query(), station_options.scanner, {}, job);
-  if (!truth) {
-    std::fprintf(stderr, "%s\n", truth.error().line().c_str());
-    return 2;
-  }
-  std::printf("tablet %.0f x %.0f x %.0f mm, %.0f mm2, reachable %.4f\n", tablet_options.size_mm.x(),
-              tablet_options.size_mm.y(), tablet_options.size_mm.z(), surface_area_mm2(station.tablet().mesh),
-              truth->share);
-
-  const Rig rig = station.rig();
-  ClearedMap cleared;
-  std::vector<std::unique_ptr<RangeGrid>> grids;
-  std::vector<std::uint8_t> sampled(truth->points.size(), 0);
-  Placement placement;
-  double predicted = 0;
-  double red_before = 0;
-  for (int k = 0; k < max_scans; ++k) {
-    auto grid = station.scan_grid(job);
-    if (!grid) {
-      std::fprintf(stderr, "%s\n", grid.error().line().c_str());
-      return 3;
+  std::vector<double> shares, errors, interpolation;
+  double unreachable = 0, truly = 0, unneeded = 0, area = 0;
+  int conclusive = 0, scans = 0, greedy = 0, greedy_999 = 0, scans_999 = 0, turntable = 0, boundary = 0;
+  int not_below_turntable = 0, not_below_boundary = 0;
+  for (int k = 0; k < args.tablets; ++k) {
+    const LoopOptions options = loop_options(args.first + static_cast<std::uint64_t>(k), args);
+    const auto start = std::chrono::steady_clock::now();
+    const TabletResult r = run(options, args);
+    conclusive += r.conclusive ? 1 : 0;
+    if (r.conclusive) {
+      shares.push_back(r.share);
     }
-    grids.push_back(std::make_unique<RangeGrid>(std::move(*grid)));
-    const SampleFlags flags = flag_sparse(*grids.back());
-    auto start = std::chrono::steady_clock::now();
-    cleared.add({k, grids.back().get(), &flags, station.true_tablet_from_scanner(), 0.01});
-    const double clear_s = seconds_since(start);
-    start = std::chrono::steady_clock::now();
-    RedMapOptions options;
-    options.stage = StageState{k, placement};
-    const auto result = make_red_map(cleared.scans(), nullptr, &rig, options, job);
-    const double plan_s = seconds_since(start);
-    mark_sampled(*truth, cleared.scans().back(), sampled);
-    const RedMap& map = result->map;
-    const double red = area_of(map, RegionState::kRed, Excuse::kNone);
-    std::printf(
-        "%2d %7zu samples, clear %.3f s, plan %.3f s | red %8.2f mm2 in %4zu targets, predicted %7.2f actual "
-        "%7.2f "
-        "| unreachable %6.2f unneeded %5.2f mm2 | truth %.5f%s\n",
-        k, grids.back()->valid_count(), clear_s, plan_s, red, result->targets.targets.size(), predicted,
-        red_before - red, area_of(map, RegionState::kExcused, Excuse::kUnreachable),
-        area_of(map, RegionState::kExcused, Excuse::kUnneeded), share_sampled(*truth, sampled),
-        map.conclusive ? " CONCLUSIVE" : "");
-    red_before = red;
-    if (map.conclusive) {
-      return 0;
-    }
-    if (map.next.empty()) {
-      std::printf("no next view\n");
-      for (const RedRegion& r : map.regions) {
-        if (r.state == RegionState::kRed) {
-          std::printf("  red %s %.3f mm2 at %.2f %.2f %.2f\n", to_string(r.face), r.area_mm2, r.center_mm.x(),
-                      r.center_mm.y(), r.center_mm.z());
-        }
+    unreachable += r.excuses.unreachable_mm2;
+    truly += r.excuses.truly_unreachable_mm2;
+    unneeded += r.excuses.unneeded_mm2;
+    area += r.area_mm2;
+    scans += r.scans;
+    scans_999 += r.scans_to_999;
+    interpolation.insert(interpolation.end(), r.excuses.interpolation_error_mm.begin(),
+                         r.excuses.interpolation_error_mm.end());
+    for (const Gain& g : r.gains) {
+      if (g.share >= 0.01) {
+        errors.push_back(std::abs(g.predicted - g.actual) / g.actual);
       }
-      return 1;
     }
-    std::printf("   -> %s\n", map.next.front().say.c_str());
-    predicted = map.next.front().predicted_cleared_mm2;
-    placement = *map.next.front().placement;
-    if (const Status moved = station.move(placement); !moved) {
-      std::fprintf(stderr, "%s\n", moved.error().line().c_str());
-      return 3;
+    std::printf(
+        "%4llu: %.0fx%.0fx%.0f %s %d scans (%d to 99.9 %%), share %.5f, unreachable %.2f mm2 (%.2f truly), "
+        "unneeded %.3f; %.1f s",
+        static_cast<unsigned long long>(options.tablet.seed), options.tablet.size_mm.x(),
+        options.tablet.size_mm.y(), options.tablet.size_mm.z(),
+        r.conclusive ? "conclusive" : "NOT CONCLUSIVE", r.scans, r.scans_to_999, r.share,
+        r.excuses.unreachable_mm2, r.excuses.truly_unreachable_mm2, r.excuses.unneeded_mm2,
+        seconds_since(start));
+    if (args.baselines) {
+      const auto again = std::chrono::steady_clock::now();
+      const int g = greedy_cover(options, r.share_sampled, 0.3, args.max_scans);
+      const int g999 = greedy_cover(options, 0.999 * r.share_sampled, 0.3, args.max_scans);
+      const int t = uniform_turntable(options, args.max_scans);
+      const int b = boundary_following(options, args.max_scans);
+      greedy += g;
+      greedy_999 += g999;
+      turntable += t;
+      boundary += b;
+      not_below_turntable += r.scans >= t ? 1 : 0;
+      not_below_boundary += r.scans >= b ? 1 : 0;
+      std::printf(" | greedy %d (%d to 99.9 %%), turntable %d, boundary %d; %.1f s", g, g999, t, b,
+                  seconds_since(again));
     }
+    std::printf("\n");
+    std::fflush(stdout);
   }
-  return 1;
+  const auto n = static_cast<double>(args.tablets);
+  std::printf("conclusive %d of %d; sampled of the reachable: least %.5f, median %.5f, below 0.999: %td\n",
+              conclusive, args.tablets, quantile(shares, 0), quantile(shares, 0.5),
+              std::count_if(shares.begin(), shares.end(), [](double s) { return s < 0.999; }));
+  std::printf(
+      "excused as unreachable %.2f mm2, of it truly %.1f %%; unneeded %.4f %% of the surface, interpolation "
+      "good to %.1f um (95 %%, %zu)\n",
+      unreachable, unreachable > 0 ? 100 * truly / unreachable : 100.0, 100 * unneeded / area,
+      1000 * quantile(interpolation, 0.95), interpolation.size());
+  std::printf("scans: mean %.2f, to 99.9 %% of that %.2f", scans / n, scans_999 / n);
+  if (args.baselines) {
+    std::printf(
+        "; greedy %.2f (ratio %.3f), greedy to 99.9 %% %.2f (ratio %.3f); turntable %.2f (not below: %d), "
+        "boundary %.2f (not below: %d)",
+        greedy / n, static_cast<double>(scans) / greedy, greedy_999 / n,
+        static_cast<double>(scans) / greedy_999, turntable / n, not_below_turntable, boundary / n,
+        not_below_boundary);
+  }
+  std::printf(
+      "\npredicted against actual over %zu scans that clear 1 %%: median error %.1f %%, quartiles %.1f and "
+      "%.1f %%\n",
+      errors.size(), 100 * quantile(errors, 0.5), 100 * quantile(errors, 0.25), 100 * quantile(errors, 0.75));
+  return 0;
 }

@@ -41,7 +41,7 @@ sim::TabletOptions random_tablet(std::uint64_t seed, std::string_view kind, doub
     t.damage = sim::DamageOptions::none();
   }
   if (kind == "worn") {
-    t.damage = {0.2, 1.0, 1.0, 0.2};
+    t.damage = {0.2, 1.0, 1.0, 0.2, 0.0};
     t.text_density = 0.5;
   }
   if (kind == "tiny") {

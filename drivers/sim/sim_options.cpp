@@ -38,6 +38,7 @@ const SettingRow kRows[] = {
      "hand@N (over half of the tablet), glove@N (over all of it) or gone@N (the tablet is away): in scan N, "
      "from 0, or in N-M"},
     {DUBSAR_TYPE_INTEGER, "swap_at", "another tablet lies there from this scan on", nullptr, nullptr, 0, 1e6},
+    {DUBSAR_TYPE_NUMBER, "holes", "firing holes, from none to many", nullptr, nullptr, 0, 1},
     {DUBSAR_TYPE_TEXT, "truth", "a folder that gets the truth: poses, pins and the surface"},
 };
 
@@ -174,7 +175,9 @@ Result<SimOptions> parse_options(std::span<const dubsar_option> options) {
     } else if (key == "text") {
       out.tablet.text_density = *number;
     } else if (key == "damage") {
-      out.tablet.damage = {*number, *number, *number, *number};
+      out.tablet.damage = {*number, *number, *number, *number, out.tablet.damage.holes};
+    } else if (key == "holes") {
+      out.tablet.damage.holes = *number;
     }
   }
   out.tablet.seed = seed;

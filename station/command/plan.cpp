@@ -1,71 +1,212 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright The Dubsar developers
-// dubsar plan: the red map and the next view of a session or a folder.
+#include <fmt/format.h>
 
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 
+#include "archive/report_pictures.h"
+#include "core/log.h"
+#include "formats/atomic_file.h"
+#include "formats/checklist_json.h"
 #include "formats/red_map_json.h"
+#include "formats/states_ply.h"
 #include "station/command/command.h"
 #include "station/command/scan_set_options.h"
+#include "station/command/sign_off_words.h"
 #include "station/offline.h"
-#include "station/planning_stage.h"
+#include "station/plan_again.h"
 
 namespace dubsar {
 
 namespace {
 
+namespace fs = std::filesystem;
+
+struct PlanArguments {
+  ScanSetArguments set;
+  std::string page;
+  std::string states;
+};
+
+/// How the red map compares with the one that the session holds.
+struct Comparison {
+  bool compared = false;
+  std::vector<std::string> differs;
+  bool kept = false;  ///< the stored one, since its signature holds
+};
+
+std::string joined(const std::vector<std::string>& parts) {
+  std::string text;
+  for (const std::string& part : parts) {
+    text += (text.empty() ? "" : "; ") + part;
+  }
+  return text;
+}
+
+/// Compares with what is stored, and stores what is new. A red map that was signed is never replaced.
+Result<Comparison> compare_and_keep(SessionStore& store, const Results& results) {
+  const auto differs = differs_from_stored(store, results.red_map);
+  Comparison out;
+  if (differs && *differs) {
+    out.compared = true;
+    out.differs = **differs;
+    if (out.differs.empty()) {
+      return out;
+    }
+    log_warning("the stored red map is not what its scans and poses give: " + joined(out.differs));
+    if (results.checklist.sign_off && results.checklist.sign_off->holds()) {
+      out.kept = true;
+      log_warning("it was signed and is kept; `dubsar register` and `dubsar scan` make new ones");
+      return out;
+    }
+  } else if (!differs) {
+    log_warning(differs.error().line());
+  }
+  if (const Status kept = keep_verdict(store, results.red_map, results.checklist); !kept) {
+    return std::unexpected(kept.error());
+  }
+  const Status noted = store.append_event(
+      "planned",
+      nlohmann::ordered_json{{"conclusive", results.red_map.conclusive}, {"differed", out.differs}}.dump());
+  return noted ? Result<Comparison>(std::move(out)) : std::unexpected(noted.error());
+}
+
+Status write_states(const fs::path& folder, const ScanSet& set, const PlannedAgain& planned) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) {
+    return fail(ErrorKind::kStorage, error.message(), folder.string(),
+                "choose a folder that can be written to");
+  }
+  for (const PlacedScan& scan : planned.stage->placed()) {
+    const auto states = planned.stage->states(scan.id);
+    if (!states) {
+      continue;
+    }
+    const fs::path file = folder / fmt::format("states_{:03d}.ply", scan.id);
+    if (const Status written = write_states_ply(file, scan.id, *scan.grid, scan.model_from_scanner, *states);
+        !written) {
+      return written;
+    }
+  }
+  if (planned.stage->placed().size() < set.scans.size()) {
+    log_warning("scans that are not registered have no states");
+  }
+  return {};
+}
+
+Status write_page(const fs::path& file, const PlannedAgain& planned, const PageFacts& facts,
+                  const JobContext& job) {
+  const ReportInput input = report_input(planned.results, *planned.stage, facts);
+  const Result<ReportPictures> pictures = draw_pictures(input, job);
+  if (!pictures) {
+    return std::unexpected(pictures.error());
+  }
+  return write_file_atomically(file, checklist_html(input, *pictures));
+}
+
+std::string micrometres(double mm) {
+  return std::isfinite(mm) ? fmt::format("{:.0f}", 1000 * mm) : "-";
+}
+
+void print_checklist(const Checklist& list) {
+  for (std::size_t f = 0; f < kFaceCount; ++f) {
+    const FaceCoverage& face = list.faces[f];
+    std::printf("  %-8s %9.1f mm2 seen (%5.1f %%), red %.2f, excused %.2f; spacing %s um\n",
+                to_string(static_cast<Face>(f)), face.seen_mm2, 100 * face.coverage(), face.red_mm2,
+                face.excused_mm2, micrometres(face.sampling.spacing_mm.median).c_str());
+  }
+  std::printf("  spacing %s um median, %s um 95 %%; %.1f %% at 25 um or finer\n",
+              micrometres(list.sampling.spacing_mm.median).c_str(),
+              micrometres(list.sampling.spacing_mm.p95).c_str(), 100 * list.sampling.fine_share);
+  if (list.sign_off) {
+    std::printf("  %s\n", sign_off_line(*list.sign_off).c_str());
+  }
+}
+
 void print_map(const RedMap& map) {
   std::printf("%s\n", map.conclusive ? "conclusive" : "not conclusive");
-  for (const RedRegion& region : map.regions) {
-    std::printf("  %-8s %-8s %8.2f mm2 at %.1f %.1f %.1f%s%s\n",
+  int strays = 0;
+  for (std::size_t k = 0; k < map.regions.size(); ++k) {
+    const RedRegion& region = map.regions[k];
+    if (is_stray(region)) {
+      ++strays;
+      continue;
+    }
+    std::printf("  %3zu %-8s %-8s %8.2f mm2 at %.1f %.1f %.1f%s%s\n", region_number(k),
                 region.state == RegionState::kRed ? "red" : "excused", to_string(region.face),
                 region.area_mm2, region.center_mm.x(), region.center_mm.y(), region.center_mm.z(),
                 region.reason.empty() ? "" : ": ", region.reason.c_str());
+  }
+  if (strays > 0) {
+    std::printf("  %d groups of stray returns, where no clay is missing\n", strays);
   }
   for (const NextView& view : map.next) {
     std::printf("  next: %s (about %.1f mm2)\n", view.say.c_str(), view.predicted_cleared_mm2);
   }
 }
 
-Result<int> plan(const ScanSetArguments& arguments, CommandContext& context) {
-  Result<ScanSet> set = load_scan_set(arguments.path, arguments.options(), context.job);
+Result<int> plan(const PlanArguments& arguments, CommandContext& context) {
+  Result<ScanSet> set = load_scan_set(arguments.set.path, arguments.set.options(), context.job);
   if (!set) {
     return std::unexpected(set.error());
   }
-  const Result<std::vector<ScanPose>> poses = poses_for(*set, arguments.poses, context.job);
+  const Result<std::vector<ScanPose>> poses = poses_for(*set, arguments.set.poses, context.job);
   if (!poses) {
     return std::unexpected(poses.error());
   }
-  PlanningStage stage;
-  for (const StationScan& scan : set->scans) {
-    stage.add(scan);
+  const Result<PlannedAgain> planned = plan_again(*set, *poses, context.job);
+  if (!planned) {
+    return std::unexpected(planned.error());
   }
-  if (const Status placed = stage.place(*poses, true, context.job); !placed) {
-    return std::unexpected(placed.error());
+  const Results& results = planned->results;
+  Comparison comparison;
+  // Poses or pins of a file judge alone: the session keeps its own verdict.
+  if (set->is_session() && arguments.set.poses.empty() && arguments.set.pins.empty()) {
+    Result<Comparison> compared = compare_and_keep(*set->store, results);
+    if (!compared) {
+      return std::unexpected(compared.error());
+    }
+    comparison = std::move(*compared);
   }
-  const Result<RedMap> map = stage.red_map(set->rig ? &*set->rig : nullptr, context.job);
-  if (!map) {
-    return std::unexpected(map.error());
-  }
-  const std::string json = red_map_to_json(*map);
-  if (set->is_session()) {
-    if (const Status saved = set->store->save_document("red_map", json); !saved) {
-      return std::unexpected(saved.error());
+  if (!arguments.set.out.empty()) {
+    if (const Status written = write_red_map(arguments.set.out, results.red_map); !written) {
+      return std::unexpected(written.error());
     }
   }
-  if (!arguments.out.empty()) {
-    if (const Status written = write_red_map(arguments.out, *map); !written) {
+  if (!arguments.states.empty()) {
+    if (const Status written = write_states(arguments.states, *set, *planned); !written) {
+      return std::unexpected(written.error());
+    }
+  }
+  if (!arguments.page.empty()) {
+    PageFacts facts;
+    facts.title = fs::path(arguments.set.path).filename().string();
+    if (set->is_session()) {
+      facts = page_facts_of(*set->store);
+    }
+    if (const Status written = write_page(arguments.page, *planned, facts, context.job); !written) {
       return std::unexpected(written.error());
     }
   }
   finish_progress();
   if (context.json) {
-    CommandContext::print(nlohmann::ordered_json::parse(json));
+    auto json = nlohmann::ordered_json::parse(red_map_to_json(results.red_map));
+    json["checklist"] = checklist_json(results.checklist);
+    // It was checked just now: the same session gives the same bytes.
+    json["checklist"].erase("store_checked");
+    if (comparison.compared) {
+      json["stored"] = {
+          {"same", comparison.differs.empty()}, {"differs", comparison.differs}, {"kept", comparison.kept}};
+    }
+    CommandContext::print(json);
   } else {
-    print_map(*map);
+    print_map(results.red_map);
+    print_checklist(results.checklist);
   }
-  return map->conclusive ? 0 : 1;
+  return results.red_map.conclusive ? 0 : 1;
 }
 
 }  // namespace
@@ -73,9 +214,12 @@ Result<int> plan(const ScanSetArguments& arguments, CommandContext& context) {
 void add_plan(CLI::App& app, Action& chosen) {
   CLI::App* verb =
       app.add_subcommand("plan", "What is still red and where to scan next; status 1 when not conclusive");
-  const auto arguments = std::make_shared<ScanSetArguments>();
-  arguments->add_to(*verb, true);
-  verb->add_option("-o,--out", arguments->out, "write red_map.json here");
+  const auto arguments = std::make_shared<PlanArguments>();
+  arguments->set.add_to(*verb, true);
+  verb->add_option("-o,--out", arguments->set.out, "write red_map.json here");
+  verb->add_option("--page", arguments->page, "write the checklist as a page for people (HTML) here");
+  verb->add_option("--states", arguments->states,
+                   "write what has become of every sample into this folder, a PLY for each scan");
   verb->callback(
       [&chosen, arguments] { chosen = [arguments](CommandContext& c) { return plan(*arguments, c); }; });
 }

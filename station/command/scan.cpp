@@ -105,6 +105,7 @@ nlohmann::ordered_json result_json(const ScanArguments& arguments, const EngineR
                               {"scans", result.poses.size()},
                               {"mesh", result.files.mesh.string()},
                               {"report", result.files.report.string()},
+                              {"checklist", result.files.checklist.string()},
                               {"red_map_picture", result.files.red_map.string()},
                               {"six_views", result.files.six_views.string()},
                               {"poses", nlohmann::ordered_json::parse(poses_to_json(result.poses))},
@@ -120,7 +121,8 @@ void print_result(const EngineResult& result) {
   std::printf("%s\n", verdict(result).c_str());
   for (const auto& [name, path] :
        {std::pair{"mesh", &result.files.mesh}, std::pair{"six views", &result.files.six_views},
-        std::pair{"red map", &result.files.red_map}, std::pair{"report", &result.files.report}}) {
+        std::pair{"red map", &result.files.red_map}, std::pair{"report", &result.files.report},
+        std::pair{"checklist", &result.files.checklist}}) {
     if (!path->empty()) {
       std::printf("  %-10s %s\n", name, path->c_str());
     }

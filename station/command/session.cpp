@@ -8,7 +8,11 @@
 
 #include "acquisition/operator_log.h"
 #include "acquisition/session_store.h"
+#include "acquisition/sign_off_log.h"
+#include "core/log.h"
+#include "formats/sign_off_json.h"
 #include "station/command/session_verbs.h"
+#include "station/command/sign_off_words.h"
 
 namespace dubsar {
 
@@ -61,8 +65,19 @@ Result<int> list(const SessionOptions& options, CommandContext& context) {
       rows.back()["hint_on"] = hint->second.on;
     }
   }
+  const Result<SignOffLog> signed_off = read_sign_offs(*store, context.job);
+  if (!signed_off) {
+    return std::unexpected(signed_off.error());
+  }
+  for (const Error& damage : signed_off->damage) {
+    log_warning(damage.line());
+  }
   if (context.json) {
-    CommandContext::print({{"session", options.path}, {"scans", rows}});
+    nlohmann::ordered_json sign_offs = nlohmann::ordered_json::array();
+    for (const CheckedSignOff& one : signed_off->sign_offs) {
+      sign_offs.push_back(sign_off_json(one));
+    }
+    CommandContext::print({{"session", options.path}, {"scans", rows}, {"sign_offs", sign_offs}});
     return 0;
   }
   for (const auto& row : rows) {
@@ -76,6 +91,9 @@ Result<int> list(const SessionOptions& options, CommandContext& context) {
     std::printf("%3d  %-10s %9ld samples  %s%s%s\n", row["id"].get<int>(),
                 row["status"].get<std::string>().c_str(), row["samples"].get<long>(),
                 row["file"].get<std::string>().c_str(), more.empty() ? "" : ": ", more.c_str());
+  }
+  for (const CheckedSignOff& one : signed_off->sign_offs) {
+    std::printf("%s\n", sign_off_line(one).c_str());
   }
   return 0;
 }
@@ -140,6 +158,7 @@ void add_session(CLI::App& app, Action& chosen) {
     });
   })->add_option("--why", options->why, "the reason");
   add_session_hints(*verb, chosen);
+  add_session_sign(*verb, chosen);
   add("restore", "Put a dropped scan back", true, [](const SessionOptions& o, CommandContext& c) {
     return change(o, c, [&o](SessionStore& store) -> Result<int> {
       const Status done = store.restore_scan(o.id);

@@ -8,5 +8,7 @@ namespace dubsar {
 
 /// Adds hint, lock and unlock to the verb `session`.
 void add_session_hints(CLI::App& session, Action& chosen);
+/// Adds sign.
+void add_session_sign(CLI::App& session, Action& chosen);
 
 }  // namespace dubsar

@@ -31,6 +31,7 @@ struct SimulateOptions {
   double spacing_mm = 0.1;
   double text = 1.0;
   double damage = 0.3;
+  double holes = 0;
   std::string out;
   std::string tablet;
   int views = 12;
@@ -68,7 +69,7 @@ Result<int> simulate_tablet(const SimulateOptions& options, CommandContext& cont
   tablet_options.size_mm = *size;
   tablet_options.spacing_mm = options.spacing_mm;
   tablet_options.text_density = options.text;
-  tablet_options.damage = {options.damage, options.damage, options.damage, options.damage};
+  tablet_options.damage = {options.damage, options.damage, options.damage, options.damage, options.holes};
   const Result<sim::SimTablet> tablet = sim::make_tablet(tablet_options, context.job);
   if (!tablet) {
     return std::unexpected(tablet.error());
@@ -187,6 +188,8 @@ void add_simulate(CLI::App& app, Action& chosen) {
   CLI::App* tablet = verb->add_subcommand("tablet", "A procedural tablet: tablet.ply and truth.json");
   tablet->add_option("--size", options->size, "width x height x thickness, mm")->capture_default_str();
   tablet->add_option("--text", options->text, "share of the room for text that is written on")
+      ->check(CLI::Range(0.0, 1.0));
+  tablet->add_option("--holes", options->holes, "firing holes, 0 none to 1 many")
       ->check(CLI::Range(0.0, 1.0));
   tablet->add_option("--damage", options->damage, "fractures, erosion, dirt and cracks, 0 none to 1 badly")
       ->check(CLI::Range(0.0, 1.0));

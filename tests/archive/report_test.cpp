@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright The Dubsar developers
-#include "archive/report.h"
+#include "archive/report_pictures.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
+#include <limits>
 #include <map>
 
 #include "tests/archive/shapes.h"
@@ -36,24 +38,30 @@ class Report : public ::testing::Test {
     }
   }
 
-  std::string html() {
+  ReportInput input() {
+    return {.title = title_,
+            .tool_version = "Dubsar",
+            .when = "2026-01-02T03:04:05Z",
+            .device = device_,
+            .model = mesh_,
+            .red_map = map_,
+            .checklist = list_,
+            .scans = scans_,
+            .red_points = {},
+            .tablet_from_model = {},
+            .accuracy = {"Measured on a ball bar."},
+            .calibration = {},
+            .not_measured = {"Colour."},
+            .timings = {{"stitch", 1.5}},
+            .longest_px = 80};
+  }
+  std::string html(const std::function<Result<std::string>(const ReportInput&, const ReportPictures&)>&
+                       page_of = report_html) {
     const JobContext job;
-    const ReportInput input{.title = title_,
-                            .tool_version = "Dubsar",
-                            .when = "2026-01-02T03:04:05Z",
-                            .device = device_,
-                            .model = mesh_,
-                            .red_map = map_,
-                            .checklist = list_,
-                            .scans = scans_,
-                            .red_points = {},
-                            .tablet_from_model = {},
-                            .accuracy = {"Measured on a ball bar."},
-                            .calibration = {},
-                            .not_measured = {"Colour."},
-                            .timings = {{"stitch", 1.5}},
-                            .longest_px = 80};
-    const auto page = report_html(input, job);
+    const ReportInput all = input();
+    const auto pictures = draw_pictures(all, job);
+    EXPECT_TRUE(pictures) << pictures.error().line();
+    const auto page = page_of(all, pictures.value_or(ReportPictures{}));
     EXPECT_TRUE(page) << page.error().line();
     return page.value_or("");
   }
@@ -140,9 +148,11 @@ TEST_F(Report, ListsRedPlacesTheirSizesAndWhatToDoNext) {
   const std::string page = html();
   EXPECT_THAT(page, HasSubstr("1 place is still red, 3.25 mm²"));
   EXPECT_THAT(page, HasSubstr("turn the top edge towards the camera, 40°"));
-  EXPECT_THAT(page, HasSubstr("<td>red</td><td>top</td><td>1.5, 19.0, 2.0</td><td>3.25</td>"));
+  EXPECT_THAT(page, HasSubstr("<b>2</b> red, top, 3.25 mm²<br>at 1.5, 19.0, 2.0 mm"));
+  EXPECT_THAT(page, HasSubstr("<b>1</b> unreachable, obverse, 12.00 mm²"));
   EXPECT_THAT(page, HasSubstr("no pose sees the floor of this hole"));
-  EXPECT_LT(page.find("<td>red</td>"), page.find("<td>unreachable</td>")) << "what is to be done comes first";
+  EXPECT_LT(page.find("<b>2</b> red"), page.find("<b>1</b> unreachable")) << "what is to be done comes first";
+  EXPECT_EQ(count(page, "<img "), 9U) << "six sides, the red map, and each place";
 }
 
 TEST_F(Report, EscapesEveryOutsideWord) {
@@ -195,29 +205,85 @@ TEST_F(Report, TableOfManyPlacesStaysReadable) {
   for (std::size_t i = 0; i < map_.regions.size(); ++i) {
     map_.regions[i].area_mm2 = 1.0;
   }
-  EXPECT_THAT(html(), HasSubstr("1500 smaller places, 1500.00 mm² together"));
+  EXPECT_THAT(html(), HasSubstr("1476 smaller places, 1476.00 mm² together"));
+}
+
+TEST_F(Report, StraysAreCountedInOneLine) {
+  RedRegion stray;
+  stray.state = RegionState::kExcused;
+  stray.excuse = Excuse::kUnneeded;
+  stray.reason = "stray return in the air";
+  map_.regions.assign(7, stray);
+  const std::string page = html();
+  EXPECT_THAT(page, HasSubstr("7 groups of stray returns"));
+  EXPECT_THAT(page, Not(HasSubstr("stray return in the air")));
+  EXPECT_THAT(page, Not(HasSubstr("excused, "))) << "nothing that lacks clay is excused";
+  EXPECT_EQ(count(page, "<img "), 7U);
+}
+
+TEST_F(Report, PlacesAreInTheFrameOfTheTablet) {
+  RedRegion region;
+  region.area_mm2 = 1;
+  region.center_mm = {1, 2, 10};
+  map_.regions = {region};
+  ReportInput all = input();
+  all.tablet_from_model.translation_mm = {10, 20, -10};
+  const auto pictures = draw_pictures(all, JobContext());
+  ASSERT_TRUE(pictures);
+  EXPECT_THAT(checklist_html(all, *pictures), HasSubstr("at 11.0, 22.0, 0.0 mm"));
+}
+
+TEST_F(Report, TheChecklistPageHasWhatIsSigned) {
+  map_.conclusive = list_.conclusive = false;
+  RedRegion red;
+  red.area_mm2 = 3.25;
+  red.center_mm = {1.5, 3.0, 10.0};
+  map_.regions = {red};
+  list_.faces[0].red_mm2 = 3.25;
+  list_.faces[0].red_regions_mm2 = {2.0, 1.25};
+  list_.sampling.places = 100;
+  list_.sampling.spacing_mm = {0.061, std::numeric_limits<double>::infinity()};
+  list_.sampling.fine_share = 0.123;
+  list_.sampling.scans_share = {0.01, 0.2, 0.79, 0, 0, 0};
+  list_.worst_sigma_scan = 7;
+  list_.worst_sigma_mm = 0.0123;
+  list_.calibration_check = {"2026-01-02", "ball bar 7", 0.012};
+  const std::string page = html(checklist_html);
+  EXPECT_THAT(page, HasSubstr("3.25 in 2: 2.00, 1.25"));
+  EXPECT_THAT(page, HasSubstr("<td>99.59</td>")) << "803.25 mm², of which 800 were seen";
+  EXPECT_THAT(page, HasSubstr("<td>all</td><td>61</td><td>–</td><td>12.3</td>"));
+  EXPECT_THAT(page, HasSubstr("0: 1.0 %, 1: 20.0 %, 2: 79.0 %"));
+  EXPECT_THAT(page, HasSubstr("scan 7, σ 12.3 µm"));
+  EXPECT_THAT(page, HasSubstr("what: not told; age: not told; last verified 2026-01-02 on ball bar 7, off by "
+                              "at most 12.0 µm"));
+  EXPECT_THAT(page, HasSubstr("Not signed."));
+  EXPECT_EQ(count(page, "<img "), 2U) << "the red map and the place";
+  EXPECT_THAT(page, Not(HasSubstr("<script")));
+}
+
+TEST_F(Report, ASignatureThatNoLongerHoldsSaysSo) {
+  CheckedSignOff checked;
+  checked.sign_off.name = "A <b>Reader</b>";
+  checked.sign_off.when = "2026-01-02T03:04:05Z";
+  checked.sign_off.digest = "abc";
+  list_.sign_off = checked;
+  EXPECT_THAT(html(checklist_html),
+              HasSubstr("Signed by A &lt;b&gt;Reader&lt;/b&gt; on 2026-01-02T03:04:05Z."));
+  EXPECT_THAT(html(checklist_html), HasSubstr("It holds"));
+  list_.sign_off->changed = {"scan 3 has changed"};
+  for (const std::string& page : {html(checklist_html), html()}) {
+    EXPECT_THAT(page, HasSubstr("It is void"));
+    EXPECT_THAT(page, HasSubstr("<li>scan 3 has changed</li>"));
+    EXPECT_THAT(page, Not(HasSubstr("It holds")));
+  }
 }
 
 TEST_F(Report, StopsWhenAsked) {
   JobContext job;
   job.cancel();
-  const ReportInput input{.title = "",
-                          .tool_version = "",
-                          .when = "",
-                          .device = "",
-                          .model = mesh_,
-                          .red_map = map_,
-                          .checklist = list_,
-                          .scans = scans_,
-                          .red_points = {},
-                          .tablet_from_model = {},
-                          .accuracy = {},
-                          .calibration = {},
-                          .not_measured = {},
-                          .timings = {}};
-  const auto page = report_html(input, job);
-  ASSERT_FALSE(page);
-  EXPECT_EQ(page.error().kind, ErrorKind::kCancelled);
+  const auto pictures = draw_pictures(input(), job);
+  ASSERT_FALSE(pictures);
+  EXPECT_EQ(pictures.error().kind, ErrorKind::kCancelled);
 }
 
 }  // namespace

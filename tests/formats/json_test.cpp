@@ -7,6 +7,7 @@
 #include "formats/pins_json.h"
 #include "formats/poses_json.h"
 #include "formats/red_map_json.h"
+#include "formats/sign_off_json.h"
 #include "formats/truth_json.h"
 #include "tests/formats/format_support.h"
 
@@ -252,7 +253,18 @@ TEST(TruthJson, ReadsBackInDegreesAtTheSurface) {
 
 TEST(ChecklistJson, ReadsBack) {
   Checklist checklist;
-  checklist.faces[3] = {1.0 / 3, 2, 3};
+  checklist.faces[3].seen_mm2 = 1.0 / 3;
+  checklist.faces[3].interpolated_mm2 = 0.25;
+  checklist.faces[3].red_regions_mm2 = {2, 1};
+  checklist.faces[3].sampling.places = 12;
+  checklist.faces[3].sampling.spacing_mm.median = 0.061;
+  checklist.faces[3].sampling.scans_share[5] = 0.5;
+  checklist.strays = 3;
+  checklist.worst_sigma_scan = 4;
+  checklist.worst_sigma_mm = 0.0125;
+  checklist.calibration_check = {"2026-01-02", "ball bar 7", 0.012};
+  checklist.store_checked = "2026-01-02T03:04:05Z";
+  checklist.store_files = 31;
   checklist.scans_unsure = 2;
   checklist.calibration = "bar 17";
   checklist.calibration_age_days = 3.5;
@@ -261,10 +273,42 @@ TEST(ChecklistJson, ReadsBack) {
   const auto back = parse_checklist(checklist_to_json(checklist), "c");
   ASSERT_TRUE(back) << line_of(back);
   EXPECT_EQ(back->faces[3].seen_mm2, 1.0 / 3);
+  EXPECT_EQ(back->faces[3].sampling.spacing_mm.median, 0.061);
+  EXPECT_TRUE(std::isinf(back->faces[3].sampling.spacing_mm.p95)) << "null: not sampled so far";
   EXPECT_EQ(back->calibration_age_days, 3.5);
+  EXPECT_EQ(back->calibration_check->artefact, "ball bar 7");
   EXPECT_EQ(checklist_to_json(*back), checklist_to_json(checklist));
   EXPECT_THAT(line_of(parse_checklist(R"({"conclusive":true,"faces":{}})", "c")),
               HasSubstr("c: faces.obverse is missing"));
+}
+
+TEST(ChecklistJson, ReadsTheShortOneOfEarlierSessions) {
+  std::string faces;
+  for (const char* face : {"obverse", "reverse", "left", "right", "top", "bottom"}) {
+    faces += (faces.empty() ? "\"" : ",\"") + std::string(face) +
+             R"(":{"seen_mm2":5.5,"red_mm2":0,"excused_mm2":0.25})";
+  }
+  const auto list = parse_checklist(
+      R"({"conclusive":true,"faces":{)" + faces +
+          R"(},"scans_registered":2,"scans_unsure":0,"scans_failed":0,"calibration":"","disk_free_gib":1,)" +
+          R"("store_whole":true})",
+      "c");
+  ASSERT_TRUE(list) << line_of(list);
+  EXPECT_EQ(list->faces[0].excused_mm2, 0.25);
+  EXPECT_EQ(list->sampling.places, 0);
+}
+
+TEST(SignOffJson, ReadsBack) {
+  RecordedSignOff recorded;
+  recorded.sign_off = {3,     "A. Reader",  "conservator",  "a \"note\"", "2026-01-02T03:04:05Z",
+                       false, "one corner", "Dubsar 0.1.0", "ab12"};
+  recorded.manifest = "dubsar sign-off 1\nverdict not conclusive\n";
+  const auto back = parse_recorded_sign_off(recorded_sign_off_to_json(recorded), "s");
+  ASSERT_TRUE(back) << line_of(back);
+  EXPECT_EQ(back->manifest, recorded.manifest);
+  EXPECT_EQ(back->sign_off.incomplete, "one corner");
+  EXPECT_EQ(recorded_sign_off_to_json(*back), recorded_sign_off_to_json(recorded));
+  EXPECT_THAT(line_of(parse_recorded_sign_off(R"({"number":0})", "s")), HasSubstr("s: number"));
 }
 
 }  // namespace

@@ -17,6 +17,7 @@ TEST(RigJson, RoundTrip) {
   rig.tilt_max_rad = 1.2;
   rig.support_height_mm = 2;
   rig.calibration_age_days = 3.5;
+  rig.calibration_check = {"2026-01-02", "ball bar 7", 0.012};
   const Result<Rig> back = parse_rig(rig_to_json(rig), "rig");
   ASSERT_TRUE(back) << back.error().line();
   EXPECT_EQ(back->name, rig.name);
@@ -24,7 +25,10 @@ TEST(RigJson, RoundTrip) {
   EXPECT_FALSE(back->view.camera_mm);
   EXPECT_EQ(back->spacing_mm, 0.05);
   EXPECT_TRUE(back->has_turntable);
-  EXPECT_NEAR(back->tilt_max_rad, 1.2, 1e-12);
+  EXPECT_EQ(back->tilt_max_rad, 1.2) << "to the last digit";
+  ASSERT_TRUE(back->calibration_check);
+  EXPECT_EQ(back->calibration_check->artefact, "ball bar 7");
+  EXPECT_EQ(back->calibration_check->error_mm, 0.012);
   EXPECT_EQ(back->calibration_age_days, 3.5);
   EXPECT_EQ(rig_to_json(*back), rig_to_json(*parse_rig(rig_to_json(*back), "rig")));
 }

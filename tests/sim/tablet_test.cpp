@@ -43,7 +43,7 @@ TabletOptions battered() {
   options.size_mm = {26, 22, 12};
   options.spacing_mm = 0.25;
   options.line_height_mm = 4;
-  options.damage = {1, 1, 1, 1};
+  options.damage = {1, 1, 1, 1, 1};
   return options;
 }
 
@@ -250,7 +250,7 @@ TEST(Tablet, WritesOnAllSidesThatItShould) {
 TEST(Tablet, DamageLeavesEveryKindOfTraceAndBreaksWedges) {
   const SimTablet tablet = make_or_fail(battered());
   for (const SurfaceKind kind : {SurfaceKind::kWedge, SurfaceKind::kFracture, SurfaceKind::kErosion,
-                                 SurfaceKind::kDirt, SurfaceKind::kCrack}) {
+                                 SurfaceKind::kDirt, SurfaceKind::kCrack, SurfaceKind::kHole}) {
     EXPECT_GT(std::ranges::count(tablet.kinds, kind), 5) << static_cast<int>(kind);
   }
   TabletOptions whole = battered();

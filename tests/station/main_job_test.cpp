@@ -91,6 +91,7 @@ TEST_F(MainJob, TheStagesAgainSayTheSame) {
   const Outcome plan = run_command({"plan", session, "--json"});
   EXPECT_EQ(plan.status, first_.status) << plan.err;
   EXPECT_EQ(plan.json()["conclusive"], first_.json()["conclusive"]);
+  EXPECT_EQ(plan.json()["stored"]["same"], true) << "worked out anew from grids and poses: " << plan.out;
   const Outcome verified = run_command({"verify", session, "--json"});
   EXPECT_EQ(verified.status, 0) << verified.out;
   EXPECT_EQ(verified.json()["ok"], true);
@@ -102,6 +103,53 @@ TEST_F(MainJob, TheStagesAgainSayTheSame) {
   EXPECT_EQ(registered.status, 0) << registered.err;
   EXPECT_EQ(registered.json()["scans"].size(), first_.json()["scans"].get<std::size_t>());
   EXPECT_EQ(run_command({"verify", session}).status, 0);
+}
+
+TEST_F(MainJob, TheVerdictCanBeWorkedOutFromGridsAndPosesAlone) {
+  fs::copy(at("first"), at("bare"), fs::copy_options::recursive);
+  fs::remove_all(at("bare") / "mesh");
+  fs::remove_all(at("bare") / "export");
+  const std::string map = at("again.json").string();
+  const Outcome plan = run_command({"plan", at("bare").string(), "-o", map, "--json"});
+  EXPECT_EQ(plan.status, 0) << plan.err;
+  EXPECT_TRUE(bytes_of(map) == bytes_of(at("first") / "export" / "red_map.json"));
+  // The mesh is stitched anew, and what the checklist says of the surface is the same to the last digit.
+  const Outcome with_mesh = run_command({"plan", at("first").string(), "--json"});
+  EXPECT_EQ(plan.json()["checklist"]["faces"], with_mesh.json()["checklist"]["faces"]);
+  EXPECT_GT(plan.json()["checklist"]["faces"]["obverse"]["seen_mm2"], 300);
+  EXPECT_GT(plan.json()["checklist"]["sampling"]["places"], 50000);
+}
+
+TEST_F(MainJob, ASignatureHoldsUntilTheSessionChanges) {
+  fs::copy(at("first"), at("signed"), fs::copy_options::recursive);
+  const std::string session = at("signed").string();
+  const Outcome signed_off =
+      run_command({"session", "sign", session, "--name", "A. Reader", "--role", "conservator", "--json"});
+  ASSERT_EQ(signed_off.status, 0) << signed_off.err;
+  const nlohmann::json json = signed_off.json();
+  EXPECT_EQ(json["sign_off"]["conclusive"], true);
+  EXPECT_EQ(json["sign_off"]["sha256"].get<std::string>().size(), 64U);
+  EXPECT_THAT(bytes_of(json["checklist"].get<std::string>()), ::testing::HasSubstr("Signed by A. Reader on"));
+  EXPECT_THAT(bytes_of(at("signed") / "export" / "report.html"),
+              ::testing::HasSubstr("Signed by A. Reader on"));
+  EXPECT_TRUE(bytes_of(at("signed") / "mesh" / "model.ply") == bytes_of(at("first") / "mesh" / "model.ply"));
+
+  const Outcome whole = run_command({"verify", session, "--json"});
+  EXPECT_EQ(whole.status, 0) << whole.out;
+  EXPECT_EQ(whole.json()["sign_offs"][0]["holds"], true);
+  EXPECT_EQ(run_command({"plan", session, "--json"}).json()["checklist"]["sign_off"]["holds"], true);
+
+  ASSERT_EQ(run_command({"session", "drop", session, "1"}).status, 0);
+  const Outcome changed = run_command({"verify", session, "--json"});
+  EXPECT_EQ(changed.status, 1);
+  EXPECT_EQ(changed.json()["ok"], true) << "every byte is there; it is the signature that is void";
+  EXPECT_EQ(changed.json()["sign_offs"][0]["holds"], false);
+  EXPECT_THAT(run_command({"session", "list", session}).out, ::testing::HasSubstr("VOID"));
+  const Outcome stale = run_command({"session", "sign", session, "--name", "B", "--json"});
+  EXPECT_EQ(stale.status, 1) << "its red map is that of one scan more";
+  EXPECT_THAT(stale.complaints(), ::testing::SizeIs(1)) << stale.err;
+  ASSERT_EQ(run_command({"session", "restore", session, "1"}).status, 0);
+  EXPECT_EQ(run_command({"verify", session}).status, 0) << "all is as it was signed";
 }
 
 TEST_F(MainJob, AConclusiveSessionAsksForNothingMore) {

@@ -152,6 +152,16 @@ Outcome run_command(const Arguments& arguments, const CommandOptions& options) {
   return RunningCommand(arguments, options).wait();
 }
 
+std::string red_map_of(const Outcome& plan) {
+  auto json = nlohmann::ordered_json::parse(plan.out, nullptr, false);
+  if (!json.is_object()) {
+    return plan.out;
+  }
+  json.erase("checklist");
+  json.erase("stored");
+  return json.dump();
+}
+
 std::string bytes_of(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
   return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};

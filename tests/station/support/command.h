@@ -66,6 +66,9 @@ class RunningCommand {
 
 Outcome run_command(const Arguments& arguments, const CommandOptions& options = {});
 
+/// What `plan --json` says of the scans alone, without the checklist and the comparison with what is stored.
+[[nodiscard]] std::string red_map_of(const Outcome& plan);
+
 [[nodiscard]] std::string bytes_of(const std::filesystem::path& file);
 
 }  // namespace dubsar::test

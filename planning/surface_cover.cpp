@@ -1,0 +1,415 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "planning/surface_cover.h"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <map>
+
+#include "core/parallel.h"
+#include "core/units.h"
+#include "planning/clearing.h"
+#include "planning/clusters.h"
+#include "planning/point_cells.h"
+
+namespace dubsar {
+
+namespace {
+
+constexpr double kCellInSpacings = 1.5;
+/// Flatter surface is sampled every two cells at least by one sample a block.
+constexpr float kSteepCosine = 0.5F;
+constexpr double kLeastCellMm = 0.1;
+constexpr int kSectors = 12;
+constexpr int kEmptySectorsOfRim = 4;
+constexpr std::int64_t kMostCoarseCells = 16'000'000;
+
+/// Across two steps of `step` samples each way, as far as they lie on one surface.
+Eigen::Vector3f normal_at(const RangeGrid& grid, int row, int col, int step, float longest2) {
+  const Eigen::Vector3f here = grid.point(grid.index(row, col));
+  const auto there = [&](int r, int c) {
+    if (!grid.inside(r, c) || !grid.is_valid(r, c)) {
+      return here;
+    }
+    const Eigen::Vector3f p = grid.point(grid.index(r, c));
+    return (p - here).squaredNorm() <= longest2 ? p : here;
+  };
+  const Eigen::Vector3f along = there(row, col + step) - there(row, col - step);
+  const Eigen::Vector3f across = there(row + step, col) - there(row - step, col);
+  const Eigen::Vector3f towards = grid.view.to_camera(here.cast<double>(), row).cast<float>();
+  const Eigen::Vector3f n = along.cross(across);
+  const float length = n.norm();
+  return length > 1e-12F ? Eigen::Vector3f(n * ((n.dot(towards) < 0 ? -1.0F : 1.0F) / length)) : towards;
+}
+
+/// Twelfth of a turn that (a, b) lies in, without trigonometry.
+unsigned sector_of(float a, float b) {
+  constexpr float kTan30 = 0.57735027F;
+  constexpr float kTan60 = 1.7320508F;
+  const float x = std::abs(a);
+  const float y = std::abs(b);
+  const unsigned third = y < kTan30 * x ? 0U : y < kTan60 * x ? 1U : 2U;
+  if (b >= 0) {
+    return a >= 0 ? third : 5U - third;
+  }
+  return a < 0 ? 6U + third : 11U - third;
+}
+
+/// The cells of space that have an element already (open addressing).
+class Occupied {
+ public:
+  explicit Occupied(std::size_t most) : mask_(std::bit_ceil(2 * most + 16) - 1), keys_(mask_ + 1, 0) {}
+  /// False when the key was there.
+  bool insert(std::uint64_t key) {
+    ++key;  // 0 is empty
+    std::uint64_t h = key * 0x9E3779B97F4A7C15ULL;
+    for (std::size_t at = (h >> 20U) & mask_;; at = (at + 1) & mask_) {
+      if (keys_[at] == key) {
+        return false;
+      }
+      if (keys_[at] == 0) {
+        keys_[at] = key;
+        return true;
+      }
+    }
+  }
+
+ private:
+  std::size_t mask_;
+  std::vector<std::uint64_t> keys_;
+};
+
+std::vector<std::vector<std::uint32_t>> connected(const std::vector<Rim>& rims, double reach_mm) {
+  PointCells cells(reach_mm);
+  for (std::uint32_t i = 0; i < rims.size(); ++i) {
+    cells.add(rims[i].position_mm, i);
+  }
+  UnionFind sets(rims.size());
+  for (std::uint32_t i = 0; i < rims.size(); ++i) {
+    cells.for_each_within(rims[i].position_mm, [&](std::uint32_t j) {
+      if (j > i) {
+        sets.join(i, j);
+      }
+    });
+  }
+  std::map<std::uint32_t, std::vector<std::uint32_t>> groups;
+  for (std::uint32_t i = 0; i < rims.size(); ++i) {
+    groups[sets.find(i)].push_back(i);
+  }
+  std::vector<std::vector<std::uint32_t>> out;
+  for (auto& [root, group] : groups) {
+    out.push_back(std::move(group));
+  }
+  return out;
+}
+
+/// The rim seen along the direction in which it is flattest, its points in order of their bearing.
+Hole hole_of(const std::vector<Rim>& rims, std::span<const std::uint32_t> group) {
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  for (const std::uint32_t i : group) {
+    mean += rims[i].position_mm / static_cast<double>(group.size());
+  }
+  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+  for (const std::uint32_t i : group) {
+    const Eigen::Vector3d d = rims[i].position_mm - mean;
+    spread += d * d.transpose();
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(spread);
+  const Eigen::Vector3d u = solver.eigenvectors().col(2);
+  const Eigen::Vector3d v = solver.eigenvectors().col(1);
+  std::vector<std::array<double, 3>> polygon;  // bearing, u, v
+  double low = 0;
+  double high = 0;
+  for (const std::uint32_t i : group) {
+    const Eigen::Vector3d d = rims[i].position_mm - mean;
+    polygon.push_back({std::atan2(v.dot(d), u.dot(d)), u.dot(d), v.dot(d)});
+    low = std::min(low, u.dot(d));
+    high = std::max(high, u.dot(d));
+  }
+  std::sort(polygon.begin(), polygon.end());
+  Hole hole;
+  hole.rim.assign(group.begin(), group.end());
+  hole.width_mm = high - low;
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const auto& a = polygon[i];
+    const auto& b = polygon[(i + 1) % polygon.size()];
+    hole.area_mm2 += 0.5 * (a[1] * b[2] - b[1] * a[2]);
+  }
+  hole.area_mm2 = std::abs(hole.area_mm2);
+  return hole;
+}
+
+}  // namespace
+
+SurfaceCover::SurfaceCover(std::span<const PlacedScan> scans) {
+  double spacing_mm = 0;
+  for (const PlacedScan& scan : scans) {
+    spacing_mm = std::max(spacing_mm, spacing_of(*scan.grid));
+  }
+  cell_mm_ = std::max(kLeastCellMm, kCellInSpacings * spacing_mm);
+  std::vector<std::vector<Element>> by_scan(scans.size());
+  parallel_for_each_index(
+      scans.size(), [&](std::size_t s) { by_scan[s] = elements_of(scans[s], cell_mm_); }, 1);
+  thin(by_scan);
+  sort_into_cells();
+  find_rims(scans);
+}
+
+std::vector<SurfaceCover::Element> SurfaceCover::elements_of(const PlacedScan& scan, double cell_mm) {
+  const RangeGrid& grid = *scan.grid;
+  const double spacing_mm = std::max(spacing_of(grid), 1e-6);
+  const int stride = std::max(1, static_cast<int>(std::lround(cell_mm / spacing_mm)));
+  const auto longest2 = static_cast<float>(std::pow(4.0 * stride * spacing_mm, 2.0));
+  const Eigen::Matrix3f rotation = scan.model_from_scanner.rotation.cast<float>();
+  const Eigen::Vector3f translation = scan.model_from_scanner.translation_mm.cast<float>();
+  const auto good = [&](int r, int c) {
+    const std::size_t i = grid.index(r, c);
+    return grid.valid[i] != 0 && is_unflagged((*scan.flags)[i]) && grid.point(i).allFinite();
+  };
+  std::vector<Element> out;
+  for (int row = 0; row < grid.rows; row += stride) {
+    for (int col = 0; col < grid.cols; col += stride) {
+      // Of a block, the first good sample; where the surface is steep all of them, lest it fall apart.
+      for (int k = 0; k < stride * stride; ++k) {
+        const int r = row + k / stride;
+        const int c = col + k % stride;
+        if (!grid.inside(r, c) || !good(r, c)) {
+          continue;
+        }
+        const Eigen::Vector3f p = grid.point(grid.index(r, c));
+        const Eigen::Vector3f n = normal_at(grid, r, c, stride, longest2);
+        out.push_back({rotation * p + translation, rotation * n});
+        if (-n.dot(grid.view.direction.cast<float>()) > kSteepCosine) {
+          break;
+        }
+      }
+    }
+  }
+  return out;
+}
+
+void SurfaceCover::thin(const std::vector<std::vector<Element>>& by_scan) {
+  std::size_t count = 0;
+  Eigen::AlignedBox3f box;
+  for (const auto& elements : by_scan) {
+    count += elements.size();
+    for (const Element& e : elements) {
+      box.extend(e.position_mm);
+    }
+  }
+  if (box.isEmpty()) {
+    return;
+  }
+  low_ = box.min();
+  Occupied occupied(count);
+  const auto per_mm = static_cast<float>(1.0 / cell_mm_);
+  for (const auto& elements : by_scan) {
+    for (const Element& e : elements) {
+      std::uint64_t key = 0;
+      for (int k = 0; k < 3; ++k) {
+        const float at = std::clamp((e.position_mm[k] - low_[k]) * per_mm, 0.0F, 1048575.0F);
+        key = (key << 20U) | static_cast<std::uint64_t>(at);
+      }
+      if (occupied.insert(key)) {
+        elements_.push_back(e);
+      }
+    }
+  }
+}
+
+std::size_t SurfaceCover::cell_index(const Eigen::Vector3f& p) const {
+  std::size_t index = 0;
+  for (std::size_t k = 3; k-- > 0;) {
+    const auto at =
+        static_cast<std::int64_t>((p[static_cast<int>(k)] - low_[static_cast<int>(k)]) / coarse_mm_);
+    index = index * static_cast<std::size_t>(size_[k]) +
+            static_cast<std::size_t>(std::clamp<std::int64_t>(at, 0, size_[k] - 1));
+  }
+  return index;
+}
+
+void SurfaceCover::sort_into_cells() {
+  Eigen::AlignedBox3f box;
+  for (const Element& e : elements_) {
+    box.extend(e.position_mm);
+  }
+  coarse_mm_ = static_cast<float>(reach_mm());
+  if (!box.isEmpty()) {
+    const auto cells = [&] {
+      for (std::size_t k = 0; k < 3; ++k) {
+        size_[k] = static_cast<std::int64_t>(box.sizes()[static_cast<int>(k)] / coarse_mm_) + 1;
+      }
+      return static_cast<double>(size_[0]) * static_cast<double>(size_[1]) * static_cast<double>(size_[2]);
+    };
+    while (cells() > static_cast<double>(kMostCoarseCells)) {
+      coarse_mm_ *= 1.25F;
+    }
+  }
+  start_.assign(static_cast<std::size_t>(size_[0] * size_[1] * size_[2]) + 1, 0);
+  for (const Element& e : elements_) {
+    ++start_[cell_index(e.position_mm) + 1];
+  }
+  for (std::size_t i = 1; i < start_.size(); ++i) {
+    start_[i] += start_[i - 1];
+  }
+  std::vector<std::uint32_t> next(start_.begin(), start_.end() - 1);
+  std::vector<Element> sorted(elements_.size());
+  for (const Element& e : elements_) {
+    sorted[next[cell_index(e.position_mm)]++] = e;
+  }
+  elements_ = std::move(sorted);
+}
+
+template <class Visit>
+void SurfaceCover::for_each_near(const Eigen::Vector3f& p, float radius, const Visit& visit) const {
+  std::array<std::int64_t, 3> from{};
+  std::array<std::int64_t, 3> to{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const float at = p[static_cast<int>(k)] - low_[static_cast<int>(k)];
+    from[k] = static_cast<std::int64_t>(std::floor(std::clamp((at - radius) / coarse_mm_, -1.0F, 1e9F)));
+    to[k] = static_cast<std::int64_t>(std::floor(std::clamp((at + radius) / coarse_mm_, -1.0F, 1e9F)));
+    from[k] = std::max<std::int64_t>(from[k], 0);
+    to[k] = std::min(to[k], size_[k] - 1);
+  }
+  for (std::int64_t z = from[2]; z <= to[2]; ++z) {
+    for (std::int64_t y = from[1]; y <= to[1]; ++y) {
+      const std::int64_t line = (z * size_[1] + y) * size_[0];
+      if (from[0] > to[0]) {
+        continue;
+      }
+      const std::uint32_t end = start_[static_cast<std::size_t>(line + to[0]) + 1];
+      for (std::uint32_t i = start_[static_cast<std::size_t>(line + from[0])]; i < end; ++i) {
+        const Eigen::Vector3f d = elements_[i].position_mm - p;
+        const float d2 = d.squaredNorm();
+        if (d2 <= radius * radius) {
+          visit(i, d, d2);
+        }
+      }
+    }
+  }
+}
+
+std::vector<std::uint8_t> SurfaceCover::suspect_cells(std::span<const PlacedScan> scans) const {
+  std::vector<std::uint8_t> suspect(start_.size(), 0);
+  const auto far = static_cast<float>(reach_mm());
+  for (const PlacedScan& scan : scans) {
+    const Eigen::Matrix3f rotation = scan.model_from_scanner.rotation.cast<float>();
+    const Eigen::Vector3f translation = scan.model_from_scanner.translation_mm.cast<float>();
+    for (std::size_t i = 0; i < scan.grid->size(); ++i) {
+      if (((*scan.flags)[i] & (kSparse | kNotTablet)) != kSparse || scan.grid->valid[i] == 0) {
+        continue;
+      }
+      const Eigen::Vector3f p = rotation * scan.grid->point(i) + translation;
+      if (suspect[cell_index(p)] == 2) {
+        continue;  // its surroundings are marked
+      }
+      for (int n = 0; n < 27; ++n) {
+        const Eigen::Vector3f step(static_cast<float>(n % 3 - 1), static_cast<float>(n / 3 % 3 - 1),
+                                   static_cast<float>(n / 9 - 1));
+        std::uint8_t& mark = suspect[cell_index(p + far * step)];
+        mark = std::max<std::uint8_t>(mark, n == 13 ? 2 : 1);
+      }
+    }
+  }
+  return suspect;
+}
+
+void SurfaceCover::find_rims(std::span<const PlacedScan> scans) {
+  const std::vector<std::uint8_t> suspect = suspect_cells(scans);
+  is_rim_.assign(elements_.size(), 0);
+  std::vector<Eigen::Vector3f> outward(elements_.size());
+  const auto radius = static_cast<float>(reach_mm());
+  const auto nearest2 = static_cast<float>(std::pow(0.3 * cell_mm_, 2.0));
+  parallel_for_each_index(
+      elements_.size(),
+      [&](std::size_t i) {
+        const Element& here = elements_[i];
+        if (suspect[cell_index(here.position_mm)] == 0) {
+          return;
+        }
+        const Eigen::Vector3f u = here.normal.unitOrthogonal();
+        const Eigen::Vector3f v = here.normal.cross(u);
+        unsigned seen = 0;
+        for_each_near(here.position_mm, radius, [&](std::uint32_t, const Eigen::Vector3f& d, float d2) {
+          if (d2 < nearest2) {
+            return;
+          }
+          const float a = u.dot(d);
+          const float b = v.dot(d);
+          // What lies straight above or below says nothing about the side.
+          if (a * a + b * b < 0.03F * d2) {
+            return;
+          }
+          seen |= 1U << sector_of(a, b);
+        });
+        int longest = 0;
+        int last = 0;
+        int run = 0;
+        for (int k = 0; k < 2 * kSectors && longest < kSectors; ++k) {
+          run = (seen >> static_cast<unsigned>(k % kSectors) & 1U) == 0 ? run + 1 : 0;
+          if (run > longest) {
+            longest = run;
+            last = k;
+          }
+        }
+        if (longest >= kEmptySectorsOfRim) {
+          is_rim_[i] = 1;
+          const double middle = (last + 1 - 0.5 * longest) / kSectors * 2 * kPi;
+          outward[i] = u * static_cast<float>(std::cos(middle)) + v * static_cast<float>(std::sin(middle));
+        }
+      },
+      512);
+  keep_holes(outward);
+}
+
+void SurfaceCover::keep_holes(const std::vector<Eigen::Vector3f>& outward) {
+  std::vector<Rim> rims;
+  std::vector<std::uint32_t> element;
+  for (std::uint32_t i = 0; i < elements_.size(); ++i) {
+    if (is_rim_[i] != 0) {
+      rims.push_back({elements_[i].position_mm.cast<double>(), elements_[i].normal.cast<double>(),
+                      outward[i].cast<double>()});
+      element.push_back(i);
+    }
+  }
+  for (const auto& group : connected(rims, reach_mm())) {
+    Hole hole = hole_of(rims, group);
+    if (hole.width_mm < 0.5 * reach_mm() || group.size() < 3) {
+      for (const std::uint32_t i : group) {
+        is_rim_[element[i]] = 0;
+      }
+      continue;
+    }
+    for (std::uint32_t& i : hole.rim) {
+      rims_.push_back(rims[i]);
+      i = static_cast<std::uint32_t>(rims_.size() - 1);
+    }
+    holes_.push_back(std::move(hole));
+  }
+}
+
+SurfaceCover::Place SurfaceCover::at(const Eigen::Vector3d& p_mm, double radius_mm) const {
+  if (elements_.empty()) {
+    return Place::kBare;
+  }
+  Place place = Place::kBare;
+  for_each_near(p_mm.cast<float>(), static_cast<float>(radius_mm),
+                [&](std::uint32_t i, const Eigen::Vector3f&, float) {
+                  place = is_rim_[i] != 0 ? Place::kRim : place == Place::kRim ? Place::kRim : Place::kClosed;
+                });
+  return place;
+}
+
+std::vector<SurfaceCover::Element> SurfaceCover::within(const Eigen::Vector3d& p_mm, double radius_mm) const {
+  std::vector<Element> out;
+  if (!elements_.empty()) {
+    for_each_near(p_mm.cast<float>(), static_cast<float>(radius_mm),
+                  [&](std::uint32_t i, const Eigen::Vector3f&, float) { out.push_back(elements_[i]); });
+  }
+  return out;
+}
+
+}  // namespace dubsar

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/placed_scan.h"
+
+namespace dubsar {
+
+/// A bit of well-sampled surface at which it ends.
+struct Rim {
+  Eigen::Vector3d position_mm{0, 0, 0};  ///< model frame
+  Eigen::Vector3d normal{0, 0, 1};       ///< of the surface, out of the clay
+  Eigen::Vector3d outward{1, 0, 0};      ///< along the surface, to where nothing is sampled; unit
+};
+
+/// A connected rim.
+struct Hole {
+  std::vector<std::uint32_t> rim;  ///< positions in rims()
+  double width_mm = 0;             ///< greatest extent of the rim
+  double area_mm2 = 0;             ///< of the rim's polygon, seen along the direction in which it is flattest
+};
+
+/// The well-sampled surface of all scans together, as one thinned set of surface elements, and where it ends.
+/// Flags alone cannot tell: where two scans see a hole up to the same rim, the border of each lies on good
+/// samples of the other, and both are cleared. An element is a rim when the elements around it, within two
+/// and a half cells, leave half a turn or nearly so empty.
+class SurfaceCover {
+ public:
+  /// Elements about 1.5 of the largest µ apart, and no closer than 0.1 mm.
+  explicit SurfaceCover(std::span<const PlacedScan> scans);
+
+  [[nodiscard]] double cell_mm() const { return cell_mm_; }
+  /// Within this distance neighbours are looked for: the diameter below which a hole is none.
+  [[nodiscard]] double reach_mm() const { return 2.5 * cell_mm_; }
+  [[nodiscard]] const std::vector<Rim>& rims() const { return rims_; }
+  /// Every rim is part of one hole. Rims shorter than reach_mm() are none: the rule of 3µ lets such gaps
+  /// pass.
+  [[nodiscard]] const std::vector<Hole>& holes() const { return holes_; }
+  [[nodiscard]] std::size_t size() const { return elements_.size(); }
+
+  enum class Place {
+    kBare,    ///< no well-sampled surface near
+    kClosed,  ///< surface that goes on all around
+    kRim      ///< surface that ends
+  };
+  struct Element {
+    Eigen::Vector3f position_mm;
+    Eigen::Vector3f normal;
+  };
+  /// Elements within radius_mm, in a fixed order.
+  [[nodiscard]] std::vector<Element> within(const Eigen::Vector3d& p_mm, double radius_mm) const;
+  /// By the elements within radius_mm.
+  [[nodiscard]] Place at(const Eigen::Vector3d& p_mm, double radius_mm) const;
+
+ private:
+  static std::vector<Element> elements_of(const PlacedScan& scan, double cell_mm);
+  void thin(const std::vector<std::vector<Element>>& by_scan);
+  void sort_into_cells();
+  /// [cells] nonzero near sparse samples, cleared or not: every rim is the border of some scan.
+  [[nodiscard]] std::vector<std::uint8_t> suspect_cells(std::span<const PlacedScan> scans) const;
+  void find_rims(std::span<const PlacedScan> scans);
+  void keep_holes(const std::vector<Eigen::Vector3f>& outward);
+  [[nodiscard]] std::size_t cell_index(const Eigen::Vector3f& p) const;
+  template <class Visit>
+  void for_each_near(const Eigen::Vector3f& p, float radius, const Visit& visit) const;
+
+  double cell_mm_ = 0;
+  float coarse_mm_ = 1;
+  Eigen::Vector3f low_{0, 0, 0};
+  std::array<std::int64_t, 3> size_{1, 1, 1};
+  std::vector<Element> elements_;  ///< by coarse cell
+  std::vector<std::uint32_t> start_;
+  std::vector<std::uint8_t> is_rim_;  ///< by element
+  std::vector<Rim> rims_;
+  std::vector<Hole> holes_;
+};
+
+}  // namespace dubsar

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "station/plan_again.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "formats/red_map_json.h"
+
+namespace dubsar {
+
+Result<PlannedAgain> plan_again(const ScanSet& set, const std::vector<ScanPose>& poses, JobContext& job) {
+  PlannedAgain out;
+  out.stage = std::make_unique<PlanningStage>();
+  for (const StationScan& scan : set.scans) {
+    out.stage->add(scan);
+  }
+  std::ranges::copy_if(poses, std::back_inserter(out.results.poses), [&](const ScanPose& pose) {
+    return std::ranges::find(set.scans, pose.id, &StationScan::id) != set.scans.end();
+  });
+  if (const Status placed = out.stage->place(out.results.poses, true, job); !placed) {
+    return std::unexpected(placed.error());
+  }
+  const Rig* rig = set.rig ? &*set.rig : nullptr;
+  Result<RedMap> map = out.stage->red_map(rig, job);
+  if (!map) {
+    return std::unexpected(map.error());
+  }
+  out.results.red_map = std::move(*map);
+  if (std::optional<Mesh> stored =
+          set.store ? stored_mesh(*set.store, out.results.poses, job) : std::nullopt) {
+    out.results.mesh = std::move(*stored);
+  } else {
+    Result<Mesh> mesh = out.stage->mesh(job);
+    if (!mesh) {
+      return std::unexpected(mesh.error());
+    }
+    out.results.mesh = std::move(*mesh);
+  }
+  Result<Checklist> list = checklist_of(out.results.red_map, out.results.poses, *out.stage, out.results.mesh,
+                                        rig, set.store ? &*set.store : nullptr, job);
+  if (!list) {
+    return std::unexpected(list.error());
+  }
+  out.results.checklist = std::move(*list);
+  return out;
+}
+
+Result<std::optional<std::vector<std::string>>> differs_from_stored(const SessionStore& store,
+                                                                    const RedMap& anew) {
+  const Result<std::optional<std::string>> text = store.load_document("red_map");
+  if (!text) {
+    return std::unexpected(text.error());
+  }
+  if (!*text) {
+    return std::optional<std::vector<std::string>>();
+  }
+  const Result<RedMap> stored = parse_red_map(**text, store.folder().string() + " (red map)");
+  if (!stored) {
+    return std::unexpected(stored.error());
+  }
+  std::vector<std::string> out;
+  if (stored->conclusive != anew.conclusive) {
+    out.push_back(std::string("the verdict: stored ") +
+                  (stored->conclusive ? "conclusive" : "not conclusive") + ", now " +
+                  (anew.conclusive ? "conclusive" : "not conclusive"));
+  }
+  const std::string now = red_map_to_json(anew);
+  if (now == **text) {
+    return std::optional(out);
+  }
+  // The texts hold every digit; they are compared part by part for the words.
+  const auto a = nlohmann::json::parse(**text, nullptr, false);
+  const auto b = nlohmann::json::parse(now, nullptr, false);
+  const auto differs = [&](const char* part) { return a.value(part, nlohmann::json()) != b[part]; };
+  if (differs("scans")) {
+    out.push_back(a["scans"].size() == b["scans"].size()
+                      ? "the counts of samples"
+                      : "the scans: stored " + std::to_string(stored->scans.size()) + ", now " +
+                            std::to_string(anew.scans.size()));
+  }
+  if (differs("regions")) {
+    out.push_back("the regions: stored " + std::to_string(stored->regions.size()) + ", now " +
+                  std::to_string(anew.regions.size()));
+  }
+  if (differs("next")) {
+    out.emplace_back("the next placements");
+  }
+  return std::optional(out);
+}
+
+}  // namespace dubsar

@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "station/results.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+#include <limits>
+
+#include "acquisition/sign_off_log.h"
+#include "formats/checklist_json.h"
+#include "formats/json_node.h"
+#include "formats/mesh_io.h"
+#include "formats/red_map_json.h"
+#include "formats/sha256.h"
+#include "planning/checklist.h"
+
+namespace dubsar {
+
+namespace {
+
+constexpr const char* kRun = "run";
+constexpr const char* kModel = "model";
+
+/// What a mesh depends on: program, and which scans lie where, how certainly.
+std::string origin_of_mesh(std::vector<ScanPose> poses) {
+  std::erase_if(poses, [](const ScanPose& pose) { return pose.status != PoseStatus::kRegistered; });
+  std::ranges::sort(poses, {}, &ScanPose::id);
+  OrderedJson places = OrderedJson::array();
+  for (const ScanPose& pose : poses) {
+    places.push_back({pose.id, json_of(pose.model_from_scanner), pose.sigma_mm});
+  }
+  return sha256_hex(program_name() + "\n" + text_of(places));
+}
+
+std::vector<std::string> accuracy_sentences(const std::vector<ScanPose>& poses) {
+  double worst_sigma_mm = 0;
+  double worst_rms_mm = 0;
+  for (const ScanPose& pose : poses) {
+    if (pose.status == PoseStatus::kRegistered) {
+      worst_sigma_mm = std::max(worst_sigma_mm, pose.sigma_mm);
+      worst_rms_mm = std::max(worst_rms_mm, pose.rms_mm);
+    }
+  }
+  return {fmt::format(
+              "Where scans overlap, their surfaces lie within {:.1f} µm RMS of each other in the worst scan.",
+              1000 * worst_rms_mm),
+          fmt::format(
+              "The predicted error of a scan's place is at most {:.1f} µm (one standard deviation), from the "
+              "overlaps alone; the calibration of the scanner comes on top.",
+              1000 * worst_sigma_mm)};
+}
+
+/// As people say it: whole ones, tenths where they are few. Nor should every byte that another program writes
+/// change what `plan` prints.
+double rounded_gib(double gib) {
+  constexpr double kFew = 10;
+  return gib >= kFew ? std::floor(gib) : std::floor(10 * gib) / 10;
+}
+
+/// Pictures with four pixels to a sample: more would cost time and show nothing new. Small objects are still
+/// drawn large enough to look at.
+int picture_size_px(const std::vector<PlacedScan>& scans, const Mesh& mesh) {
+  constexpr double kPxPerSample = 4;
+  constexpr double kLeastPx = 480;
+  constexpr double kMostPx = 1000;
+  double spacing_mm = std::numeric_limits<double>::infinity();
+  for (const PlacedScan& scan : scans) {
+    spacing_mm = std::min(spacing_mm, scan.grid->spacing_mm);
+  }
+  Eigen::AlignedBox3f box;
+  for (const Eigen::Vector3f& p : mesh.positions) {
+    box.extend(p);
+  }
+  const double longest_mm = box.isEmpty() ? 0.0 : static_cast<double>(box.sizes().maxCoeff());
+  const double wanted_px = spacing_mm > 0 ? kPxPerSample * longest_mm / spacing_mm : kMostPx;
+  return static_cast<int>(std::clamp(wanted_px, kLeastPx, kMostPx));
+}
+
+}  // namespace
+
+std::string utc_now() {
+  const std::time_t now = std::time(nullptr);
+  std::tm utc{};
+  gmtime_r(&now, &utc);
+  char text[32];
+  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc);
+  return text;
+}
+
+std::string program_name() {
+  return "Dubsar " DUBSAR_VERSION;
+}
+
+Result<Checklist> checklist_of(const RedMap& red_map, const std::vector<ScanPose>& poses,
+                               const PlanningStage& stage, const Mesh& mesh, const Rig* rig,
+                               const SessionStore* store, JobContext& job) {
+  Checklist list = make_checklist(red_map, poses, stage.placed(), mesh, rig);
+  if (store == nullptr) {
+    return list;
+  }
+  list.disk_free_gib = rounded_gib(store->disk_free_gib());
+  const Result<VerifyReport> whole = store->verify(job);
+  if (!whole && whole.error().kind == ErrorKind::kCancelled) {
+    return std::unexpected(whole.error());
+  }
+  list.store_whole = whole && whole->ok();
+  list.store_files = whole ? static_cast<int>(whole->whole.size() + whole->damaged.size()) : 0;
+  list.store_checked = utc_now();
+  Result<SignOffLog> signed_off = read_sign_offs(*store, job);
+  if (!signed_off) {
+    return std::unexpected(signed_off.error());
+  }
+  if (!signed_off->sign_offs.empty()) {
+    list.sign_off = std::move(signed_off->sign_offs.back());
+  }
+  return list;
+}
+
+ReportInput report_input(const Results& results, const PlanningStage& stage, const PageFacts& facts) {
+  return {.title = facts.title,
+          .tool_version = program_name(),
+          .when = utc_now(),
+          .device = facts.device,
+          .model = results.mesh,
+          .red_map = results.red_map,
+          .checklist = results.checklist,
+          .scans = results.poses,
+          .red_points = stage.red_points(results.mesh),
+          .tablet_from_model = stage.tablet_from_model(results.mesh),
+          .accuracy = accuracy_sentences(results.poses),
+          .calibration = {},
+          .not_measured = {"Wedges: they are not measured yet."},
+          .timings = facts.timings,
+          .longest_px = picture_size_px(stage.placed(), results.mesh)};
+}
+
+Status keep_page_facts(SessionStore& store, const PageFacts& facts) {
+  OrderedJson timings = OrderedJson::array();
+  for (const StageTiming& timing : facts.timings) {
+    timings.push_back({{"stage", timing.stage}, {"seconds", timing.seconds}});
+  }
+  return store.save_document(kRun, text_of({{"title", facts.title},
+                                            {"device", facts.device},
+                                            {"program", program_name()},
+                                            {"when", utc_now()},
+                                            {"timings", timings}}));
+}
+
+PageFacts page_facts_of(const SessionStore& store) {
+  PageFacts facts;
+  facts.title = store.folder().lexically_normal().filename().string();
+  if (facts.title.empty()) {  // a trailing slash
+    facts.title = store.folder().lexically_normal().parent_path().filename().string();
+  }
+  const auto text = store.load_document(kRun);
+  const Result<JsonDocument> document =
+      text && *text ? JsonDocument::parse(**text, "run") : fail(ErrorKind::kBadInput, "no run");
+  if (!document) {
+    return facts;  // an earlier session: its pages say less
+  }
+  const JsonNode root = document->root();
+  const std::string device = root.at("device").text();
+  std::vector<StageTiming> timings;
+  for (const JsonNode& timing : root.at("timings").items()) {
+    timings.push_back({timing.at("stage").text(), timing.at("seconds").number(0)});
+  }
+  if (document->status("")) {
+    facts.device = device;
+    facts.timings = std::move(timings);
+  }
+  return facts;
+}
+
+Status keep_verdict(SessionStore& store, const RedMap& red_map, const Checklist& checklist) {
+  if (const Status s = store.save_document("red_map", red_map_to_json(red_map)); !s) {
+    return s;
+  }
+  return store.save_document("checklist", checklist_to_json(checklist));
+}
+
+std::optional<Mesh> stored_mesh(const SessionStore& store, const std::vector<ScanPose>& poses,
+                                JobContext& job) {
+  const auto text = store.load_document(kModel);
+  if (!text || !*text) {
+    return std::nullopt;
+  }
+  const Result<JsonDocument> document = JsonDocument::parse(**text, kModel);
+  if (!document) {
+    return std::nullopt;
+  }
+  const std::string file = document->root().at("file").text();
+  const std::string sum = document->root().at("sha256").text();
+  const std::string origin = document->root().at("origin").text();
+  if (!document->status("") || origin != origin_of_mesh(poses)) {
+    return std::nullopt;
+  }
+  const Result<std::string> now = sha256_of_file(store.folder() / file, job);
+  if (!now || *now != sum) {
+    return std::nullopt;
+  }
+  Result<Mesh> mesh = read_mesh(store.folder() / file);
+  return mesh ? std::optional(std::move(*mesh)) : std::nullopt;
+}
+
+Result<Deliverables> keep_deliverables(SessionStore& store, const ReportInput& input, JobContext& job) {
+  Result<Deliverables> files = write_deliverables(store.folder(), input, job);
+  if (!files) {
+    return files;
+  }
+  for (const std::filesystem::path& file : files->all()) {
+    if (const Status s = store.record_file(std::filesystem::relative(file, store.folder())); !s) {
+      return std::unexpected(s.error());
+    }
+  }
+  if (!files->mesh.empty()) {
+    const Result<std::string> sum = sha256_of_file(files->mesh, job);
+    if (!sum) {
+      return std::unexpected(sum.error());
+    }
+    const std::string name = std::filesystem::relative(files->mesh, store.folder()).generic_string();
+    if (const Status s = store.save_document(
+            kModel, text_of({{"file", name}, {"sha256", *sum}, {"origin", origin_of_mesh(input.scans)}}));
+        !s) {
+      return std::unexpected(s.error());
+    }
+  }
+  return files;
+}
+
+}  // namespace dubsar

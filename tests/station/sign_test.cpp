@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+// The checklist of a session that falls short: what may be signed, and what plan and its files say.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "tests/station/support/bumpy_scans.h"
+#include "tests/station/support/command.h"
+#include "tests/support/temporary_folder.h"
+
+namespace dubsar {
+namespace {
+
+namespace fs = std::filesystem;
+using test::bytes_of;
+using test::Outcome;
+using test::run_command;
+using ::testing::HasSubstr;
+using ::testing::SizeIs;
+
+/// One side of a bumpy field: its other side has never been seen.
+class HalfScanned : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    const fs::path scans = test::write_bumpy_scans(folder_.path() / "scans", 3);
+    session_ = (folder_.path() / "session").string();
+    const Outcome scanned =
+        run_command({"scan", "--device", "replay:" + scans.string(), "--session", session_, "--json"});
+    ASSERT_EQ(scanned.status, 1) << scanned.err;
+    ASSERT_EQ(scanned.json()["conclusive"], false);
+  }
+  [[nodiscard]] Outcome sign(const std::vector<std::string>& more) const {
+    std::vector<std::string> words{"session", "sign", session_, "--json"};
+    words.insert(words.end(), more.begin(), more.end());
+    return run_command(words);
+  }
+  test::TemporaryFolder folder_;
+  std::string session_;
+};
+
+TEST_F(HalfScanned, IsSignedAsIncompleteOnlyAndWithTheReason) {
+  const Outcome refused = sign({"--name", "A. Reader"});
+  EXPECT_EQ(refused.status, 1);
+  EXPECT_THAT(refused.complaints(), SizeIs(1)) << refused.err;
+  EXPECT_THAT(refused.json()["error"]["what"].get<std::string>(), HasSubstr("not conclusive"));
+  EXPECT_EQ(run_command({"session", "list", session_, "--json"}).json()["sign_offs"].size(), 0U);
+
+  EXPECT_EQ(sign({}).status, 2) << "nobody signed";
+  EXPECT_EQ(sign({"--name", "  "}).status, 2);
+  EXPECT_EQ(sign({"--name", "A", "--incomplete", ""}).status, 2);
+
+  const Outcome made = sign({"--name", "A. Reader", "--incomplete", "the back is in plaster", "--note", "n"});
+  ASSERT_EQ(made.status, 0) << made.err;
+  EXPECT_EQ(made.json()["sign_off"]["conclusive"], false);
+  EXPECT_EQ(made.json()["sign_off"]["incomplete"], "the back is in plaster");
+  EXPECT_THAT(bytes_of(made.json()["checklist"].get<std::string>()), HasSubstr("the back is in plaster"));
+  EXPECT_EQ(run_command({"verify", session_}).status, 0);
+
+  const Outcome again = sign({"--name", "B. Reader", "--incomplete", "still"});
+  EXPECT_EQ(again.json()["sign_off"]["number"], 2);
+  const auto list = run_command({"session", "list", session_, "--json"}).json()["sign_offs"];
+  ASSERT_EQ(list.size(), 2U);
+  EXPECT_EQ(list[0]["name"], "A. Reader");
+  EXPECT_EQ(list[0]["holds"], true) << "a second signature changes nothing of what the first one stands for";
+}
+
+TEST_F(HalfScanned, PlanSaysTheSameAndWritesPageAndStates) {
+  const fs::path page = folder_.path() / "page.html";
+  const fs::path states = folder_.path() / "states";
+  const Outcome plan =
+      run_command({"plan", session_, "--json", "--page", page.string(), "--states", states.string()});
+  EXPECT_EQ(plan.status, 1) << plan.err;
+  const nlohmann::json json = plan.json();
+  EXPECT_EQ(json["stored"]["same"], true) << json["stored"];
+  EXPECT_EQ(json["checklist"]["scans_registered"], 3);
+  EXPECT_EQ(json["checklist"]["sign_off"], nullptr);
+  EXPECT_EQ(json["checklist"]["store_whole"], true);
+  EXPECT_THAT(bytes_of(page), HasSubstr("<h2>Not conclusive</h2>"));
+  EXPECT_THAT(bytes_of(page), HasSubstr("last verification: not told"));
+  EXPECT_EQ(run_command({"plan", session_, "--json"}).out, plan.out) << "the same session, the same bytes";
+  // Each state file counts what the red map counts.
+  for (const auto& scan : json["scans"]) {
+    const std::string ply = bytes_of(states / ("states_00" + std::to_string(scan["id"].get<int>()) + ".ply"));
+    const std::string head = ply.substr(0, ply.find("end_header"));
+    EXPECT_THAT(head, HasSubstr("element vertex " + std::to_string(scan["samples"].get<long>()) + "\n"));
+    EXPECT_THAT(head, HasSubstr(" red " + std::to_string(scan["sparse"].get<long>()) + "\n"));
+    EXPECT_THAT(head, HasSubstr(" cleared " + std::to_string(scan["cleared"].get<long>()) + "\n"));
+  }
+}
+
+TEST_F(HalfScanned, PosesOfAFileJudgeAloneAndLeaveTheSessionsVerdict) {
+  const std::string poses = (fs::path(session_) / "export" / "poses.json").string();
+  nlohmann::json moved = nlohmann::json::parse(bytes_of(poses));
+  moved["scans"][1]["model_from_scanner"][3] = moved["scans"][1]["model_from_scanner"][3].get<double>() + 3;
+  const fs::path file = folder_.path() / "moved.json";
+  std::ofstream(file) << moved;
+  const Outcome judged = run_command({"plan", session_, "--json", "--poses", file.string()});
+  EXPECT_EQ(judged.status, 1) << judged.err;
+  EXPECT_FALSE(judged.json().contains("stored"));
+  EXPECT_EQ(run_command({"plan", session_, "--json"}).json()["stored"]["same"], true);
+}
+
+TEST_F(HalfScanned, AStaleRedMapIsNamedAndMadeAnew) {
+  ASSERT_EQ(run_command({"session", "drop", session_, "2"}).status, 0);
+  const Outcome refused = sign({"--name", "A", "--incomplete", "why"});
+  EXPECT_EQ(refused.status, 1);
+  EXPECT_THAT(refused.json()["error"]["mend"].get<std::string>(), HasSubstr("dubsar plan"));
+  const Outcome plan = run_command({"plan", session_, "--json"});
+  EXPECT_EQ(plan.json()["stored"]["same"], false);
+  EXPECT_THAT(plan.json()["stored"]["differs"].dump(), HasSubstr("the scans: stored 3, now 2"));
+  EXPECT_EQ(plan.json()["checklist"]["scans_registered"], 2);
+  EXPECT_EQ(run_command({"plan", session_, "--json"}).json()["stored"]["same"], true);
+  EXPECT_EQ(sign({"--name", "A", "--incomplete", "why"}).status, 0);
+}
+
+TEST(Sign, NeedsASession) {
+  const test::TemporaryFolder folder;
+  const Outcome refused = run_command({"session", "sign", folder.path().string(), "--name", "A"});
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_THAT(refused.complaints(), SizeIs(1)) << refused.err;
+}
+
+}  // namespace
+}  // namespace dubsar
