@@ -10,8 +10,8 @@
 #include "core/units.h"
 #include "planning/model_faces.h"
 #include "planning/red_map.h"
-#include "planning/side_view.h"
 #include "planning/sample_states.h"
+#include "planning/side_view.h"
 
 namespace dubsar {
 

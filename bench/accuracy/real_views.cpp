@@ -136,7 +136,9 @@ int main(int argc, char** argv) {
     std::printf("%s\n", conf.c_str());
     judge(read_published(folder, conf, mm_per_unit), each, together);
   }
-  std::printf("rank correlation over %zu remaining scans one by one: %.3f; over %zu steps, all remaining together: %.3f\n",
-              each.actual.size(), rank_correlation(each), together.actual.size(), rank_correlation(together));
+  std::printf(
+      "rank correlation over %zu remaining scans one by one: %.3f; over %zu steps, all remaining together: "
+      "%.3f\n",
+      each.actual.size(), rank_correlation(each), together.actual.size(), rank_correlation(together));
   return 0;
 }
