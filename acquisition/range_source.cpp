@@ -3,6 +3,10 @@
 #include "acquisition/range_source.h"
 
 #include <algorithm>
+#include <chrono>
+#include <condition_variable>
+#include <mutex>
+#include <thread>
 #include <utility>
 
 namespace dubsar {
@@ -125,7 +129,42 @@ class Collector : public ProfileSink {
   ScanInfo info_;
 };
 
+/// While it lives, a cancelled job stops the device. A stop that comes before the motion has begun is lost,
+/// so it is said until the motion has ended.
+class StopsWhenCancelled {
+ public:
+  StopsWhenCancelled(const Device& device, const JobContext& job) {
+    if (device.can_stop()) {
+      watcher_ = std::jthread([this, &device, &job](const std::stop_token& done) {
+        constexpr auto kPause = std::chrono::milliseconds(20);
+        std::unique_lock lock(mutex_);
+        while (!wake_.wait_for(lock, done, kPause, [&] { return done.stop_requested(); })) {
+          if (done.stop_requested()) {
+            return;
+          }
+          if (job.cancelled()) {
+            [[maybe_unused]] const Status said = device.stop();
+          }
+        }
+      });
+    }
+  }
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable_any wake_;
+  std::jthread watcher_;
+};
+
 }  // namespace
+
+Status RangeSource::place(const Placement& placement, JobContext& job) {
+  if (job.cancelled()) {
+    return fail(ErrorKind::kCancelled, "stopped before the move", uri_.text());
+  }
+  const StopsWhenCancelled watch(device_, job);
+  return device_.place(placement);
+}
 
 RangeSource::RangeSource(DeviceUri uri, Device device, DeviceCapabilities capabilities,
                          ResampleOptions resampling)
@@ -158,7 +197,10 @@ Result<std::optional<RangeGrid>> RangeSource::next(const RowObserver& observer, 
   partial_.reset();
   record_ = {};
   Collector collector(observer, job);
-  const Result<ScanOutcome> outcome = device_.scan(collector);
+  const Result<ScanOutcome> outcome = [&] {
+    const StopsWhenCancelled watch(device_, job);
+    return device_.scan(collector);
+  }();
   record_.tally = collector.tally;
   std::optional<Error> fault = outcome ? std::nullopt : std::optional(outcome.error());
   if (outcome && *outcome == ScanOutcome::kExhausted) {

@@ -40,8 +40,11 @@ class RangeSource {
   [[nodiscard]] const DeviceCapabilities& capabilities() const { return capabilities_; }
   [[nodiscard]] Device& device() { return device_; }
 
-  /// Asks for where the next scan is taken from.
-  Status place(const Placement& placement) { return device_.place(placement); }
+  /// Asks for where the next scan is taken from. When the job is cancelled meanwhile the device is stopped,
+  /// where it offers that, and the answer is kCancelled.
+  Status place(const Placement& placement, JobContext& job);
+  /// Stops all motion, where the device offers that.
+  Status stop() const { return device_.stop(); }
 
   /// Runs the next scan. Nothing: the source is exhausted. On an error (kDevice, kBadInput, kCancelled when
   /// `job` was cancelled) the rows that came are in partial(); a finite source goes on with its next scan at

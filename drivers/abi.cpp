@@ -42,6 +42,49 @@ double positive_or_zero(double value) {
   return std::isfinite(value) && value > 0 ? value : 0.0;
 }
 
+Result<Range> range_from(double low, double high, const char* of, const std::string& where) {
+  if (!(std::isfinite(low) && std::isfinite(high) && low <= high)) {
+    return std::unexpected(faulty(where, std::string("told a range of ") + of + " that is none"));
+  }
+  return Range{low, high};
+}
+
+/// Head, turntable and arm.
+Status motion_from(const dubsar_capabilities& from, Rig& rig, const std::string& where) {
+  Status status;
+  const auto take = [&](Range& to, double low, double high, const char* of) {
+    const Result<Range> range = range_from(low, high, of, where);
+    if (range) {
+      to = *range;
+    } else if (status) {
+      status = std::unexpected(range.error());
+    }
+  };
+  if ((from.flags & DUBSAR_HAS_TURN_LIMITS) != 0) {
+    take(rig.turntable_rad, from.turntable_min_rad, from.turntable_max_rad, "its turntable");
+  }
+  if ((from.flags & DUBSAR_HAS_HEAD) != 0) {
+    const HeadBox head{vector_from(from.head_low_mm), vector_from(from.head_high_mm)};
+    if (!head.low_mm.allFinite() || !head.high_mm.allFinite() ||
+        (head.low_mm.array() > head.high_mm.array()).any()) {
+      return std::unexpected(faulty(where, "told a head that is no box"));
+    }
+    rig.head = head;
+  }
+  if ((from.flags & DUBSAR_HAS_ARM) != 0) {
+    RobotReach arm;
+    arm.base_mm = vector_from(from.arm_base_mm);
+    if (!arm.base_mm.allFinite()) {
+      return std::unexpected(faulty(where, "told an arm that stands nowhere"));
+    }
+    take(arm.reach_mm, from.arm_reach_mm[0], from.arm_reach_mm[1], "its arm's reach");
+    take(arm.height_mm, from.arm_height_mm[0], from.arm_height_mm[1], "its head's height");
+    take(arm.standoff_mm, from.arm_standoff_mm[0], from.arm_standoff_mm[1], "its head's stand-off");
+    rig.robot = arm;
+  }
+  return status;
+}
+
 }  // namespace
 
 Error error_from(std::int32_t code, const dubsar_error& error, const std::string& where) {
@@ -114,7 +157,7 @@ Result<DeviceCapabilities> capabilities_from(const dubsar_capabilities& from, co
     return std::unexpected(faulty(where, "told a rig without spacing, field or depth range"));
   }
   rig.has_turntable = (from.flags & DUBSAR_HAS_TURNTABLE) != 0;
-  if ((from.flags & DUBSAR_HAS_TILT) != 0) {
+  if ((from.flags & (DUBSAR_HAS_TILT | DUBSAR_HAS_ARM)) != 0) {
     if (!(std::isfinite(from.tilt_min_rad) && std::isfinite(from.tilt_max_rad) &&
           from.tilt_min_rad <= from.tilt_max_rad)) {
       return std::unexpected(faulty(where, "told a tilt range that is none"));
@@ -127,6 +170,9 @@ Result<DeviceCapabilities> capabilities_from(const dubsar_capabilities& from, co
   rig.calibration = text(from.calibration);
   if (std::isfinite(from.calibration_age_days) && from.calibration_age_days >= 0) {
     rig.calibration_age_days = from.calibration_age_days;
+  }
+  if (const Status moves = motion_from(from, rig, where); !moves) {
+    return std::unexpected(moves.error());
   }
   out.rig = std::move(rig);
   return out;

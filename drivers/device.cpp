@@ -3,17 +3,15 @@
 #include "drivers/device.h"
 
 #include <cmath>
+#include <cstddef>
 
-#include "core/units.h"
+#include "core/motion_limits.h"
 #include "drivers/abi.h"
 #include "drivers/driver.h"
 
 namespace dubsar {
 
 namespace {
-
-/// Half a microradian: what a round trip through degrees may cost a limit.
-constexpr double kTiltSlackRad = 5e-7;
 
 std::string keys_of(const std::vector<SettingInfo>& settings) {
   const std::string keys = abi::listed(settings, &SettingInfo::key);
@@ -225,19 +223,8 @@ Status Device::place(const Placement& placement) {
     return std::unexpected(can.error());
   }
   if (can->rig) {
-    const Rig& rig = *can->rig;
-    if (!(placement.tilt_rad >= rig.tilt_min_rad - kTiltSlackRad &&
-          placement.tilt_rad <= rig.tilt_max_rad + kTiltSlackRad)) {
-      return fail(ErrorKind::kUsage,
-                  "tilt " + std::to_string(deg_from_rad(placement.tilt_rad)) + " deg is out of reach", uri_,
-                  "it goes from " + std::to_string(deg_from_rad(rig.tilt_min_rad)) + " to " +
-                      std::to_string(deg_from_rad(rig.tilt_max_rad)) + " deg");
-    }
-    if (!rig.has_turntable && placement.turntable_rad != 0.0) {
-      return fail(ErrorKind::kUsage, "this device has no turntable", uri_);
-    }
-    if (!rig.hand_turns && placement.hand_turn) {
-      return fail(ErrorKind::kUsage, "the tablet cannot be turned on this device", uri_);
+    if (Status allowed = check_limits(*can->rig, placement, uri_); !allowed) {
+      return allowed;
     }
   }
   auto passed = abi::lent<dubsar_placement>();
@@ -247,8 +234,28 @@ Status Device::place(const Placement& placement) {
     passed.has_hand_turn = 1;
     std::ranges::copy(placement.hand_turn->row_major(), passed.hand_turn);
   }
+  if (placement.free_pose) {
+    passed.has_free_pose = 1;
+    std::ranges::copy(placement.free_pose->row_major(), passed.stage_from_scanner);
+  }
   auto error = abi::lent<dubsar_error>();
   if (const std::int32_t code = driver_->place(device_.get(), &passed, &error); code != DUBSAR_OK) {
+    return std::unexpected(abi::error_from(code, error, uri_));
+  }
+  return {};
+}
+
+bool Device::can_stop() const {
+  constexpr std::size_t kEnd = offsetof(dubsar_driver, stop) + sizeof(dubsar_driver::stop);
+  return driver_->struct_size >= kEnd && driver_->stop != nullptr;
+}
+
+Status Device::stop() const {
+  if (!can_stop()) {
+    return {};
+  }
+  auto error = abi::lent<dubsar_error>();
+  if (const std::int32_t code = driver_->stop(device_.get(), &error); code != DUBSAR_OK) {
     return std::unexpected(abi::error_from(code, error, uri_));
   }
   return {};

@@ -101,8 +101,13 @@ class Device {
   /// Checks type, range and choice against settings() first.
   Status set(const std::string& key, const SettingValue& value);
 
-  /// kUsage when the device cannot be placed or the placement lies outside its tilt range.
+  /// kUsage when the device cannot be placed or the placement lies outside its limits; nothing has moved
+  /// then.
   Status place(const Placement& placement);
+  /// Stops all motion, where the device offers that; else nothing. From any thread, also while place() or
+  /// scan() runs on another: these then return kCancelled soon.
+  Status stop() const;
+  [[nodiscard]] bool can_stop() const;
   /// Runs the next scan into the sink. A sink that returned false gives kCancelled. On an error the sink has
   /// had its end() when it had a begin().
   Result<ScanOutcome> scan(ProfileSink& sink);

@@ -120,10 +120,13 @@ typedef struct dubsar_view {
 #define DUBSAR_HAS_HAND_TURNS 4u /* the tablet can be laid on another side, by hand or in simulation */
 #define DUBSAR_IS_FINITE 8u      /* plays what was recorded: scan() ends with DUBSAR_END */
 #define DUBSAR_HAS_RIG 16u       /* the geometry below is that of the device; else it is not known */
+#define DUBSAR_HAS_ARM 32u  /* an arm carries the scanner anywhere: arm_* below, placements have a pose */
+#define DUBSAR_HAS_HEAD 64u /* head_* is the body of the scanner */
+#define DUBSAR_HAS_TURN_LIMITS 128u /* turntable_min_rad and turntable_max_rad are its ends */
 
 /* What a device can do, and its geometry. The stage frame has its origin at the turntable's centre on the
- * support, z up. The scanner frame: origin in the centre of the measuring volume, x along a profile, y along
- * the motion, z towards the scanner. */
+ * support, z up. The scanner frame: origin in the centre of the measuring volume, x along a profile, y
+ * along the motion, z towards the scanner. */
 typedef struct dubsar_capabilities {
   uint32_t struct_size;
   uint32_t flags;     /* DUBSAR_HAS_*, DUBSAR_IS_* */
@@ -138,7 +141,19 @@ typedef struct dubsar_capabilities {
   double calibration_age_days; /* negative when not known */
   dubsar_view view;
   char name[128];
-  char calibration[256]; /* what it was calibrated with; empty when not known */
+  char calibration[256];    /* what it was calibrated with; empty when not known */
+  double turntable_min_rad; /* with DUBSAR_HAS_TURN_LIMITS */
+  double turntable_max_rad;
+  /* With DUBSAR_HAS_HEAD: a box in the scanner frame that holds the scanner's body from the first row of a
+   * scan to the last. Without it Dubsar takes a box around laser and camera. */
+  double head_low_mm[3];
+  double head_high_mm[3];
+  /* With DUBSAR_HAS_ARM: where the middle of the head's box can be. Its axis tilts from tilt_min_rad to
+   * tilt_max_rad, which then need no DUBSAR_HAS_TILT. */
+  double arm_base_mm[3];     /* the arm's foot, stage frame */
+  double arm_reach_mm[2];    /* from there, least and most */
+  double arm_height_mm[2];   /* above the support */
+  double arm_standoff_mm[2]; /* from the origin of the stage */
 } dubsar_capabilities;
 
 /* Where the next scan is to be taken from. */
@@ -149,6 +164,11 @@ typedef struct dubsar_placement {
   double tilt_rad;
   /* The turn that is asked for, tablet_new_from_tablet_old in the stage frame, about the tablet's centre. */
   double hand_turn[16];
+  /* Of a device with an arm, when nonzero: drive to stage_from_scanner; turntable and tilt are 0. Zero: the
+   * arm stays. The stage stands still under an arm. */
+  uint32_t has_free_pose;
+  uint32_t reserved;
+  double stage_from_scanner[16];
 } dubsar_placement;
 
 /* ---- A scan, profile by profile ---- */
@@ -241,12 +261,23 @@ typedef struct dubsar_driver {
   int32_t (*set_setting)(dubsar_device* device, const char* key, const dubsar_value* value,
                          dubsar_error* error);
 
-  /* Optional: drives to (or simulates) a placement. Returns when the device stands still. */
+  /* Optional: drives to (or simulates) a placement. Returns when the device stands still. After open() a
+   * device with turntable or tilt stands at 0 or as near to 0 as its limits let it. An arm goes straight from
+   * where it stands: the origin of the scanner frame along a line, the turn by the shorter way at the same
+   * time; Dubsar sends the stops in between that keep it clear of the tablet. The first placement may start
+   * anywhere, and is the driver's to make safe. A driver refuses what lies outside its limits, or where its
+   * head would touch the support or the tablet as far as it knows them, with DUBSAR_USAGE before it moves. */
   int32_t (*place)(dubsar_device* device, const dubsar_placement* placement, dubsar_error* error);
   /* Runs the next scan into the sink, from begin to end. DUBSAR_END, with no callback made, when a finite
    * source has played its last. After a bad scan of a finite source, the next call goes on with the one
    * behind. */
   int32_t (*scan)(dubsar_device* device, const dubsar_sink* sink, dubsar_error* error);
+
+  /* Optional: stops all motion at once. The one function that may be called from another thread while place()
+   * or scan() of the same device runs, which then return soon with DUBSAR_CANCELLED. Called when the operator
+   * cancels and after every failed place() or scan(); stopping what stands still is no error. The next
+   * place() moves again. */
+  int32_t (*stop)(dubsar_device* device, dubsar_error* error);
 } dubsar_driver;
 
 #if defined(_WIN32)

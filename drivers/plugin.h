@@ -148,7 +148,9 @@ inline dubsar_capabilities capabilities_of(const Rig& rig) {
   out.struct_size = sizeof out;
   out.flags = DUBSAR_HAS_RIG | (rig.has_turntable ? DUBSAR_HAS_TURNTABLE : 0U) |
               (rig.tilt_max_rad > rig.tilt_min_rad ? DUBSAR_HAS_TILT : 0U) |
-              (rig.hand_turns ? DUBSAR_HAS_HAND_TURNS : 0U);
+              (rig.hand_turns ? DUBSAR_HAS_HAND_TURNS : 0U) | (rig.robot ? DUBSAR_HAS_ARM : 0U) |
+              (rig.head ? DUBSAR_HAS_HEAD : 0U) |
+              (rig.has_turntable && !rig.turns_fully() ? DUBSAR_HAS_TURN_LIMITS : 0U);
   out.scan_count = -1;
   out.tilt_min_rad = rig.tilt_min_rad;
   out.tilt_max_rad = rig.tilt_max_rad;
@@ -161,6 +163,43 @@ inline dubsar_capabilities capabilities_of(const Rig& rig) {
   out.view = view_of(rig.view);
   copy_text(out.name, rig.name);
   copy_text(out.calibration, rig.calibration);
+  out.turntable_min_rad = rig.turntable_rad.low;
+  out.turntable_max_rad = rig.turntable_rad.high;
+  if (rig.head) {
+    std::copy_n(rig.head->low_mm.data(), 3, out.head_low_mm);
+    std::copy_n(rig.head->high_mm.data(), 3, out.head_high_mm);
+  }
+  if (rig.robot) {
+    const auto put = [](const Range& range, double(&to)[2]) {
+      to[0] = range.low;
+      to[1] = range.high;
+    };
+    std::copy_n(rig.robot->base_mm.data(), 3, out.arm_base_mm);
+    put(rig.robot->reach_mm, out.arm_reach_mm);
+    put(rig.robot->height_mm, out.arm_height_mm);
+    put(rig.robot->standoff_mm, out.arm_standoff_mm);
+  }
+  return out;
+}
+
+/// A placement as it came; a program of before arms sends a shorter one, whose end reads as zero.
+inline Placement placement_from(const dubsar_placement* sent) {
+  dubsar_placement from{};
+  std::memcpy(static_cast<void*>(&from), sent, std::min<std::size_t>(sent->struct_size, sizeof from));
+  Placement out;
+  out.turntable_rad = from.turntable_rad;
+  out.tilt_rad = from.tilt_rad;
+  const auto pose = [](const double(&numbers)[16]) {
+    std::array<double, 16> rows{};
+    std::copy_n(numbers, 16, rows.begin());
+    return RigidTransform::from_row_major(rows);
+  };
+  if (from.has_hand_turn != 0) {
+    out.hand_turn = pose(from.hand_turn);
+  }
+  if (from.has_free_pose != 0) {
+    out.free_pose = pose(from.stage_from_scanner);
+  }
   return out;
 }
 

@@ -83,6 +83,21 @@ std::optional<JsonNode> JsonNode::find(const char* key) const {
   return at(key);
 }
 
+void JsonNode::only(const std::vector<std::string>& names) const {
+  if (value_ == nullptr || !value_->is_object()) {
+    return;
+  }
+  for (const auto& [name, value] : value_->items()) {
+    if (std::find(names.begin(), names.end(), name) == names.end()) {
+      std::string known;
+      for (const std::string& one : names) {
+        known += (known.empty() ? "" : ", ") + one;
+      }
+      complain("has " + in_quotes(name) + ", and knows " + known);
+    }
+  }
+}
+
 std::vector<JsonNode> JsonNode::items() const {
   std::vector<JsonNode> nodes;
   if (value_ == nullptr) {

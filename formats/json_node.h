@@ -30,6 +30,9 @@ class JsonNode {
   /// The member of that name unless it is absent or null.
   [[nodiscard]] std::optional<JsonNode> find(const char* key) const;
 
+  /// Complains about a member of any other name: for files where a misspelt word must not pass unseen.
+  void only(const std::vector<std::string>& names) const;
+
   /// Elements of an array; anything else is noted and gives none.
   [[nodiscard]] std::vector<JsonNode> items() const;
   /// The entry of an array; noted when there are not as many.

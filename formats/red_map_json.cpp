@@ -61,6 +61,9 @@ OrderedJson view_json(const NextView& view) {
     if (view.placement->hand_turn) {
       placement["hand_turn"] = json_of(*view.placement->hand_turn);
     }
+    if (view.placement->free_pose) {
+      placement["stage_from_scanner"] = json_of(*view.placement->free_pose);
+    }
     json["placement"] = std::move(placement);
   }
   return json;
@@ -109,6 +112,9 @@ NextView view_from(const JsonNode& node) {
     view.placement->tilt_rad = rad_from_deg(placement->at("tilt_deg").number());
     if (const auto turn = placement->find("hand_turn")) {
       view.placement->hand_turn = turn->transform();
+    }
+    if (const auto pose = placement->find("stage_from_scanner")) {
+      view.placement->free_pose = pose->transform();
     }
   }
   return view;

@@ -8,6 +8,34 @@
 
 namespace dubsar {
 
+namespace {
+
+/// What sessions of before arms and limits do not have.
+void read_motion(const JsonNode& root, Rig& rig) {
+  const auto range = [](const JsonNode& node, double scale) {
+    const std::vector<double> ends = node.numbers(2);
+    if (!(ends[0] <= ends[1])) {
+      node.complain("goes from more to less");
+    }
+    return Range{ends[0] * scale, ends[1] * scale};
+  };
+  if (const auto turntable = root.find("turntable_deg")) {
+    rig.turntable_rad = range(*turntable, rad_from_deg(1.0));
+  }
+  if (const auto arm = root.find("arm")) {
+    rig.robot = RobotReach{arm->at("base").vector3(), range(arm->at("reach"), 1.0),
+                           range(arm->at("height"), 1.0), range(arm->at("standoff"), 1.0)};
+  }
+  if (const auto head = root.find("head")) {
+    rig.head = HeadBox{head->at("low").vector3(), head->at("high").vector3()};
+  }
+  if (const auto margin = root.find("keep_out_margin")) {
+    rig.keep_out_margin_mm = margin->number(0, 1e6);
+  }
+}
+
+}  // namespace
+
 std::string rig_to_json(const Rig& rig) {
   OrderedJson view{{"direction", json_of(rig.view.direction)}};
   if (rig.view.laser_mm) {
@@ -30,6 +58,20 @@ std::string rig_to_json(const Rig& rig) {
                    {"hand_turns", rig.hand_turns},
                    {"support_height", rig.support_height_mm},
                    {"calibration", rig.calibration}};
+  if (rig.has_turntable && !rig.turns_fully()) {
+    json["turntable_deg"] = {deg_from_rad(rig.turntable_rad.low), deg_from_rad(rig.turntable_rad.high)};
+  }
+  if (rig.robot) {
+    const auto pair = [](const Range& range) { return OrderedJson{range.low, range.high}; };
+    json["arm"] = {{"base", json_of(rig.robot->base_mm)},
+                   {"reach", pair(rig.robot->reach_mm)},
+                   {"height", pair(rig.robot->height_mm)},
+                   {"standoff", pair(rig.robot->standoff_mm)}};
+  }
+  if (rig.head) {
+    json["head"] = {{"low", json_of(rig.head->low_mm)}, {"high", json_of(rig.head->high_mm)}};
+  }
+  json["keep_out_margin"] = rig.keep_out_margin_mm;
   if (rig.calibration_age_days) {
     json["calibration_age_days"] = *rig.calibration_age_days;
   }
@@ -78,6 +120,7 @@ Result<Rig> parse_rig(std::string_view text, const std::string& where) {
   if (const auto age = root.find("calibration_age_days")) {
     rig.calibration_age_days = age->number(0, 1e6);
   }
+  read_motion(root, rig);
   if (const auto check = root.find("calibration_check")) {
     rig.calibration_check = {check->at("when").text(), check->at("artefact").text(),
                              check->at("error_mm").number(0, 1e6)};

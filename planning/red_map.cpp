@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "core/grid_noise.h"
+#include "core/parallel.h"
 #include "planning/clearing.h"
 #include "planning/red_regions.h"
 #include "planning/rim_targets.h"
@@ -75,7 +75,7 @@ Result<RedMapResult> make_red_map(std::span<const PlacedScan> scans, const Mesh*
   }
   std::vector<double> noise_mm;
   for (const PlacedScan& scan : scans) {
-    noise_mm.push_back(estimate_noise_mm(*scan.grid));
+    noise_mm.push_back(noise_of(scan));
   }
   std::vector<double> sorted(noise_mm);
   std::sort(sorted.begin(), sorted.end());
@@ -112,9 +112,9 @@ Result<RedMapResult> make_red_map(std::span<const PlacedScan> scans, const Mesh*
       out.flags[ref.scan][ref.sample] |= kExcused;
     }
   }
-  for (std::size_t s = 0; s < scans.size(); ++s) {
-    out.map.scans.push_back(counts_of(scans[s], out.flags[s]));
-  }
+  out.map.scans.resize(scans.size());
+  parallel_for_each_index(
+      scans.size(), [&](std::size_t s) { out.map.scans[s] = counts_of(scans[s], out.flags[s]); }, 1);
   out.map.regions = red_regions(out.targets, scans, surface);
   const bool any_red =
       std::any_of(out.map.regions.begin(), out.map.regions.end(),

@@ -22,7 +22,7 @@ namespace {
 constexpr double kCellInSpacings = 1.5;
 /// Flatter surface is sampled every two cells at least by one sample a block.
 constexpr float kSteepCosine = 0.5F;
-constexpr double kLeastCellMm = 0.1;
+constexpr double kLeastCellMm = 0.15;
 constexpr int kSectors = 12;
 constexpr int kEmptySectorsOfRim = 4;
 constexpr std::int64_t kMostCoarseCells = 16'000'000;
@@ -57,6 +57,26 @@ unsigned sector_of(float a, float b) {
   }
   return a < 0 ? 6U + third : 11U - third;
 }
+
+/// The longest run of sectors, round the turn, that a set of them leaves empty, and the last sector of it.
+struct EmptyRun {
+  std::int8_t longest = 0;
+  std::int8_t last = 0;
+};
+constexpr std::array<EmptyRun, 1U << kSectors> empty_runs() {
+  std::array<EmptyRun, 1U << kSectors> out{};
+  for (unsigned seen = 0; seen < out.size(); ++seen) {
+    int run = 0;
+    for (int k = 0; k < 2 * kSectors && out[seen].longest < kSectors; ++k) {
+      run = (seen >> static_cast<unsigned>(k % kSectors) & 1U) == 0 ? run + 1 : 0;
+      if (run > out[seen].longest) {
+        out[seen] = {static_cast<std::int8_t>(run), static_cast<std::int8_t>(k)};
+      }
+    }
+  }
+  return out;
+}
+constexpr std::array<EmptyRun, 1U << kSectors> kRunOfEmpty = empty_runs();
 
 /// The cells of space that have an element already (open addressing).
 class Occupied {
@@ -285,7 +305,9 @@ void SurfaceCover::for_each_near(const Eigen::Vector3f& p, float radius, const V
         const Eigen::Vector3f d = elements_[i].position_mm - p;
         const float d2 = d.squaredNorm();
         if (d2 <= radius * radius) {
-          visit(i, d, d2);
+          if (visit(i, d, d2)) {
+            return;
+          }
         }
       }
     }
@@ -335,26 +357,18 @@ void SurfaceCover::find_rims(std::span<const PlacedScan> scans) {
         unsigned seen = 0;
         for_each_near(here.position_mm, radius, [&](std::uint32_t, const Eigen::Vector3f& d, float d2) {
           if (d2 < nearest2) {
-            return;
+            return false;
           }
           const float a = u.dot(d);
           const float b = v.dot(d);
           // What lies straight above or below says nothing about the side.
           if (a * a + b * b < 0.03F * d2) {
-            return;
+            return false;
           }
           seen |= 1U << sector_of(a, b);
+          return kRunOfEmpty[seen].longest < kEmptySectorsOfRim;  // whatever else lies around, it is none
         });
-        int longest = 0;
-        int last = 0;
-        int run = 0;
-        for (int k = 0; k < 2 * kSectors && longest < kSectors; ++k) {
-          run = (seen >> static_cast<unsigned>(k % kSectors) & 1U) == 0 ? run + 1 : 0;
-          if (run > longest) {
-            longest = run;
-            last = k;
-          }
-        }
+        const auto [longest, last] = kRunOfEmpty[seen];
         if (longest >= kEmptySectorsOfRim) {
           is_rim_[i] = 1;
           const double middle = (last + 1 - 0.5 * longest) / kSectors * 2 * kPi;
@@ -399,6 +413,7 @@ SurfaceCover::Place SurfaceCover::at(const Eigen::Vector3d& p_mm, double radius_
   for_each_near(p_mm.cast<float>(), static_cast<float>(radius_mm),
                 [&](std::uint32_t i, const Eigen::Vector3f&, float) {
                   place = is_rim_[i] != 0 ? Place::kRim : place == Place::kRim ? Place::kRim : Place::kClosed;
+                  return place == Place::kRim;
                 });
   return place;
 }
@@ -407,7 +422,10 @@ std::vector<SurfaceCover::Element> SurfaceCover::within(const Eigen::Vector3d& p
   std::vector<Element> out;
   if (!elements_.empty()) {
     for_each_near(p_mm.cast<float>(), static_cast<float>(radius_mm),
-                  [&](std::uint32_t i, const Eigen::Vector3f&, float) { out.push_back(elements_[i]); });
+                  [&](std::uint32_t i, const Eigen::Vector3f&, float) {
+                    out.push_back(elements_[i]);
+                    return false;
+                  });
   }
   return out;
 }

@@ -32,7 +32,7 @@ struct Hole {
 /// and a half cells, leave half a turn or nearly so empty.
 class SurfaceCover {
  public:
-  /// Elements about 1.5 of the largest µ apart, and no closer than 0.1 mm.
+  /// Elements about 1.5 of the largest µ apart, and no closer than 0.15 mm.
   explicit SurfaceCover(std::span<const PlacedScan> scans);
 
   [[nodiscard]] double cell_mm() const { return cell_mm_; }
@@ -67,6 +67,7 @@ class SurfaceCover {
   void find_rims(std::span<const PlacedScan> scans);
   void keep_holes(const std::vector<Eigen::Vector3f>& outward);
   [[nodiscard]] std::size_t cell_index(const Eigen::Vector3f& p) const;
+  /// visit(index, offset, squared distance) returns true to stop.
   template <class Visit>
   void for_each_near(const Eigen::Vector3f& p, float radius, const Visit& visit) const;
 

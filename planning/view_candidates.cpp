@@ -9,6 +9,7 @@
 
 #include "core/units.h"
 #include "planning/convex_hull.h"
+#include "planning/tablet_on_stage.h"
 
 namespace dubsar {
 
@@ -32,18 +33,6 @@ Eigen::Matrix3d least_turn(const Eigen::Vector3d& from, const Eigen::Vector3d& t
     return Eigen::Quaterniond::FromTwoVectors(half, to).toRotationMatrix() * over;
   }
   return Eigen::Quaterniond::FromTwoVectors(from, to).toRotationMatrix();
-}
-
-std::vector<double> steps(double low, double high, double step) {
-  const int count = std::max(1, static_cast<int>(std::ceil((high - low) / step - 1e-9)));
-  std::vector<double> out;
-  for (int k = 0; k <= count; ++k) {
-    out.push_back(high > low ? low + (high - low) * k / count : low);
-    if (!(high > low)) {
-      break;
-    }
-  }
-  return out;
 }
 
 /// The tablet on one of its sides.
@@ -101,6 +90,21 @@ std::vector<Rest> rests(const Rig& rig, const Eigen::Matrix3d& stage_from_model,
   return out;
 }
 
+std::string say_drive(const Rig& rig, const Placement& placement, const Eigen::Matrix3d& stage_from_model,
+                      const ModelFaces& faces) {
+  if (placement.free_pose) {
+    return say_arm(*placement.free_pose, stage_from_model, faces);
+  }
+  std::string drive;
+  if (rig.has_turntable) {
+    drive = "turntable to " + degrees(placement.turntable_rad);
+  }
+  if (rig.tilt_max_rad > rig.tilt_min_rad) {
+    drive += (drive.empty() ? "tilt to " : ", tilt to ") + degrees(placement.tilt_rad);
+  }
+  return drive;
+}
+
 }  // namespace
 
 std::string say_turn(const Eigen::Matrix3d& turn, const Eigen::Matrix3d& frame_from_model,
@@ -131,53 +135,48 @@ std::string say_turn(const Eigen::Matrix3d& turn, const Eigen::Matrix3d& frame_f
 
 std::vector<ViewCandidate> rig_candidates(const Rig& rig, const StageState& state, const PlacedScan& last,
                                           const ModelSurface& surface, const CandidateOptions& options) {
-  const Eigen::Matrix3d stage_from_scanner_now =
-      stage_from_scanner(state.drive.turntable_rad, state.drive.tilt_rad, Eigen::Vector3d::Zero()).rotation;
-  const Eigen::Matrix3d stage_from_model =
-      stage_from_scanner_now * last.model_from_scanner.rotation.transpose();
-  Eigen::Matrix3d nominal = stage_from_model;
+  const TabletOnStage lies = TabletOnStage::of(state, last);
+  Eigen::Matrix3d nominal = lies.stage_from_model;
   if (last.grid->nominal) {
     // faces.model_from_faces is model_from_tablet then.
-    nominal = stage_from_scanner_now * last.grid->nominal->tablet_from_scanner.rotation.transpose() *
+    nominal = stage_from_scanner(state.drive, Eigen::Vector3d::Zero()).rotation *
+              last.grid->nominal->tablet_from_scanner.rotation.transpose() *
               surface.faces.model_from_faces.transpose();
   }
-  // Motors turn about the point that the scanner looks at.
-  const Eigen::Vector3d focus = last.model_from_scanner.translation_mm;
+  // An arm looks where it is told to, turntable and tilt at what they turn about.
+  const Eigen::Vector3d focus = rig.robot ? surface.center_mm : lies.focus_mm;
   std::vector<ViewCandidate> out;
-  const std::vector<double> tilts =
-      steps(rig.tilt_min_rad, rig.tilt_max_rad, rad_from_deg(options.tilt_step_deg));
-  for (const Rest& rest : rests(rig, stage_from_model, nominal, focus, surface, options)) {
+  for (const Rest& rest : rests(rig, lies.stage_from_model, nominal, focus, surface, options)) {
     const HiddenHalf hidden = support_under(rest.stage_from_model, surface);
-    for (const double tilt : tilts) {
-      // Straight from above, turning only rolls the view.
-      const int all = rig.has_turntable ? options.turntable_steps : 1;
-      const int turns = std::abs(tilt) < rad_from_deg(1.0) ? std::min(all, 4) : all;
-      for (int k = 0; k < turns; ++k) {
-        ViewCandidate candidate;
-        Placement placement;
-        placement.turntable_rad = rig.has_turntable ? 2 * kPi * k / turns : state.drive.turntable_rad;
-        placement.tilt_rad = tilt;
-        placement.hand_turn = rest.turn;
+    TabletOnStage on_stage{rest.stage_from_model, rest.focus_mm, std::nullopt, lies.room_mm};
+    if (!rest.turn) {
+      on_stage.measured = lies.measured;
+    }
+    const StageScene scene = on_stage.scene(rig, surface.corners_mm);
+    const RigidTransform model_from_stage = on_stage.pose(rig, surface.corners_mm).inverse();
+    for (Placement& placement : motor_placements(rig, state.drive, scene.focus_mm, options.motors)) {
+      if (!check_clear(rig, scene, placement, {})) {
+        continue;
+      }
+      ViewCandidate candidate;
+      if (placement.free_pose) {
+        candidate.model_from_scanner = model_from_stage * *placement.free_pose;
+      } else {
         candidate.model_from_scanner.rotation =
             rest.stage_from_model.transpose() *
-            stage_from_scanner(placement.turntable_rad, tilt, Eigen::Vector3d::Zero()).rotation;
+            stage_from_scanner(placement, Eigen::Vector3d::Zero()).rotation;
         candidate.model_from_scanner.translation_mm = rest.focus_mm;
-        candidate.hidden = hidden;
-        candidate.by_hand = rest.turn.has_value();
-        candidate.say = rest.say;
-        std::string drive;
-        if (rig.has_turntable) {
-          drive = "turntable to " + degrees(placement.turntable_rad);
-        }
-        if (rig.tilt_max_rad > rig.tilt_min_rad) {
-          drive += (drive.empty() ? "tilt to " : ", tilt to ") + degrees(tilt);
-        }
-        if (!drive.empty()) {
-          candidate.say += (candidate.say.empty() ? "" : "; then ") + drive;
-        }
-        candidate.placement = std::move(placement);
-        out.push_back(std::move(candidate));
       }
+      candidate.hidden = hidden;
+      candidate.by_hand = rest.turn.has_value();
+      candidate.say = rest.say;
+      if (const std::string drive = say_drive(rig, placement, rest.stage_from_model, surface.faces);
+          !drive.empty()) {
+        candidate.say += (candidate.say.empty() ? "" : "; then ") + drive;
+      }
+      placement.hand_turn = rest.turn;
+      candidate.placement = std::move(placement);
+      out.push_back(std::move(candidate));
     }
   }
   return out;

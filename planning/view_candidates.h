@@ -10,6 +10,7 @@
 #include "core/rig.h"
 #include "core/rigid_transform.h"
 #include "planning/model_surface.h"
+#include "planning/motor_placements.h"
 #include "planning/view_prediction.h"
 
 namespace dubsar {
@@ -17,7 +18,7 @@ namespace dubsar {
 /// Where the tablet lies now: the drive that a registered scan was taken with.
 struct StageState {
   int scan_id = 0;  ///< a registered scan of the present placement by hand
-  Placement drive;  ///< its turntable and tilt (hand_turn is not read)
+  Placement drive;  ///< its turntable and tilt, or the arm's pose (hand_turn is not read)
 };
 
 /// A pose that can be asked for.
@@ -30,16 +31,17 @@ struct ViewCandidate {
 };
 
 struct CandidateOptions {
-  int turntable_steps = 18;
-  double tilt_step_deg = 17.5;  ///< at most; the range is cut into equal steps
-  int yaw_steps = 6;            ///< hand-made turns about the vertical, of a rig with no turntable
-  int free_directions = 160;    ///< with no rig: directions all around
+  MotorSteps motors;
+  int yaw_steps = 6;          ///< hand-made turns about the vertical, of a rig with no turntable
+  int free_directions = 160;  ///< with no rig: directions all around
 };
 
 /// All poses that the rig allows: the tablet as it lies and on each of its other five sides (where the rig
-/// allows hand turns), times turntable and tilt. `last` is the scan that `state` speaks of: it tells how the
-/// tablet really lies. The hand turn that is asked for goes from how the tablet lies by the nominal pose,
-/// when the scan has one, so that errors of many turns do not add up.
+/// allows hand turns), times what its motors can do within their limits (motor_placements()), without those
+/// where the head would come into the keep-out volume around the model or touch the support. `last` is the
+/// scan that `state` speaks of: it tells how the tablet really lies. The hand turn that is asked for goes
+/// from how the tablet lies by the nominal pose, when the scan has one, so that errors of many turns do not
+/// add up.
 [[nodiscard]] std::vector<ViewCandidate> rig_candidates(const Rig& rig, const StageState& state,
                                                         const PlacedScan& last, const ModelSurface& surface,
                                                         const CandidateOptions& options = {});

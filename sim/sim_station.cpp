@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/motion_limits.h"
 #include "core/random.h"
 #include "core/units.h"
 
@@ -14,6 +15,12 @@ namespace dubsar::sim {
 namespace {
 
 constexpr double kClickErrorMm = 1.0;
+/// Body of the simulated head around laser and camera.
+constexpr double kBodyMm = 25;
+/// The station's own keep-out: where a hand may have put the tablet, and little more.
+constexpr double kMarginMm = 6;
+/// Pins reach this far beyond the tablet.
+constexpr double kPinRoomMm = 40;
 
 Eigen::Vector3d random_direction(Random& random) {
   return Eigen::Vector3d(random.normal(), random.normal(), random.normal()).normalized();
@@ -39,8 +46,17 @@ SimStation::SimStation(SimTablet tablet, const SimStationOptions& options)
   }
   nominal_stage_from_tablet_ = asked_pose({}, {});
   true_stage_from_tablet_ = by_hand(nominal_stage_from_tablet_, nominal_stage_from_tablet_);
-  drive_to(0, 0);
+  Placement start;
+  if (options_.robot) {
+    start.free_pose =
+        Drive{0, 0, {0, 0, nominal_stage_from_tablet_.translation_mm.z()}, {}}.stage_from_scanner();
+  }
+  drive_to(start);
   set_scene();
+}
+
+RigidTransform SimStation::Drive::stage_from_scanner() const {
+  return arm ? *arm : dubsar::stage_from_scanner(turntable_rad, tilt_rad, focus_mm);
 }
 
 Rig SimStation::rig() const {
@@ -51,13 +67,24 @@ Rig SimStation::rig() const {
   rig.field_x_mm = options_.scanner.field_x_mm;
   rig.field_y_mm = options_.scanner.field_y_mm;
   rig.depth_range_mm = options_.scanner.depth_range_mm;
-  rig.has_turntable = true;
+  rig.has_turntable = !options_.robot;
   rig.tilt_min_rad = 0;
   rig.tilt_max_rad = rad_from_deg(options_.tilt_max_deg);
   rig.hand_turns = true;
   rig.support_height_mm = 0;
   rig.calibration = "simulated, exact";
   rig.calibration_age_days = 0.0;
+  rig.keep_out_margin_mm = kMarginMm;
+  const ScannerOptions& scanner = options_.scanner;
+  const double along = 0.5 * scanner.field_y_mm + scanner.margin_mm + kBodyMm;
+  rig.head = HeadBox{{-kBodyMm, -along, scanner.standoff_mm - kBodyMm},
+                     {kBodyMm, along + scanner.baseline_mm, scanner.standoff_mm + kBodyMm}};
+  if (options_.robot) {
+    // An arm beside the stage that takes the head all around the upper half at its working distance.
+    const double unit = scanner.standoff_mm;
+    rig.robot =
+        RobotReach{{0, -2.4 * unit, 0}, {0.6 * unit, 4.0 * unit}, {0, 2.4 * unit}, {0.6 * unit, 2 * unit}};
+  }
   return rig;
 }
 
@@ -85,7 +112,8 @@ double SimStation::touching_height_mm(const Eigen::Matrix3d& stage_from_tablet) 
 }
 
 RigidTransform SimStation::by_hand(const RigidTransform& asked, const RigidTransform& after_turn) const {
-  Random random(seed_for(seed_for(options_.seed, 51), static_cast<std::uint64_t>(placement_)));
+  Random random(seed_for(seed_for(options_.seed, 51 + 1000 * static_cast<std::uint64_t>(swaps_)),
+                         static_cast<std::uint64_t>(placement_)));
   const double most_rad = rad_from_deg(options_.hand_max_deg);
   const double most_mm = options_.hand_max_mm;
   const double lift = random.uniform(0.0, 0.05);
@@ -113,8 +141,11 @@ RigidTransform SimStation::by_hand(const RigidTransform& asked, const RigidTrans
   return pose;
 }
 
-void SimStation::drive_to(double turntable_rad, double tilt_rad) {
-  nominal_drive_ = {turntable_rad, tilt_rad, {0, 0, nominal_stage_from_tablet_.translation_mm.z()}};
+void SimStation::drive_to(const Placement& placement) {
+  nominal_drive_ = {placement.turntable_rad,
+                    placement.tilt_rad,
+                    {0, 0, nominal_stage_from_tablet_.translation_mm.z()},
+                    placement.free_pose};
   Random random(seed_for(seed_for(options_.seed, 52), static_cast<std::uint64_t>(moves_++)));
   const double sigma = rad_from_deg(options_.motor_sigma_deg);
   true_drive_ = nominal_drive_;
@@ -123,6 +154,31 @@ void SimStation::drive_to(double turntable_rad, double tilt_rad) {
   for (int axis = 0; axis < 3; ++axis) {
     true_drive_.focus_mm[axis] += options_.motor_sigma_mm * random.normal();
   }
+  if (true_drive_.arm) {
+    const Eigen::Vector3d turn(random.normal(), random.normal(), random.normal());
+    const Eigen::Vector3d shift = true_drive_.focus_mm - nominal_drive_.focus_mm;
+    true_drive_.arm->rotation =
+        true_drive_.arm->rotation * RigidTransform::from_twist(sigma * turn, {0, 0, 0}).rotation;
+    true_drive_.arm->translation_mm += shift;
+  }
+}
+
+Placement SimStation::present() const {
+  Placement out;
+  out.turntable_rad = nominal_drive_.turntable_rad;
+  out.tilt_rad = nominal_drive_.tilt_rad;
+  out.free_pose = nominal_drive_.arm;
+  return out;
+}
+
+StageScene SimStation::nominal_scene(const RigidTransform& stage_from_tablet) const {
+  StageScene scene;
+  scene.focus_mm = {0, 0, stage_from_tablet.translation_mm.z()};
+  Eigen::Vector3d reach = stage_from_tablet.rotation.cwiseAbs() * half_size_mm_;
+  reach.array() += pins_ ? kPinRoomMm : 0.0;
+  scene.tablet_mm.extend(stage_from_tablet.translation_mm - reach);
+  scene.tablet_mm.extend(stage_from_tablet.translation_mm + reach);
+  return scene;
 }
 
 void SimStation::set_scene() {
@@ -139,16 +195,29 @@ void SimStation::set_scene() {
   }
 }
 
-Status SimStation::move(const Placement& placement) {
-  constexpr double kSlackRad = 1e-6;
-  if (!std::isfinite(placement.turntable_rad) || !(placement.tilt_rad >= -kSlackRad) ||
-      !(placement.tilt_rad <= rad_from_deg(options_.tilt_max_deg) + kSlackRad)) {
-    return fail(ErrorKind::kUsage, "the simulated station cannot be driven there", "sim",
-                "ask for a tilt within the rig's limits");
+Status SimStation::check(const Placement& placement) const {
+  const Rig mine = rig();
+  if (const Status allowed = check_limits(mine, placement, "sim"); !allowed) {
+    return allowed;
   }
-  if (placement.hand_turn && !placement.hand_turn->is_rigid()) {
-    return fail(ErrorKind::kUsage, "the turn that was asked for is no rotation", "sim",
-                "give a rigid transform");
+  const RigidTransform lies = placement.hand_turn
+                                  ? asked_pose(nominal_stage_from_tablet_, *placement.hand_turn)
+                                  : nominal_stage_from_tablet_;
+  Placement goal = placement;
+  if (options_.robot && !goal.free_pose) {
+    goal.free_pose = nominal_drive_.arm;
+  }
+  return check_way(mine, nominal_scene(lies), present(), goal, "sim");
+}
+
+Status SimStation::move(const Placement& placement, double share) {
+  if (const Status allowed = check(placement); !allowed) {
+    return allowed;
+  }
+  const Placement from = present();
+  Placement goal = placement;
+  if (options_.robot && !goal.free_pose) {
+    goal.free_pose = from.free_pose;
   }
   if (placement.hand_turn) {
     ++placement_;
@@ -160,16 +229,14 @@ Status SimStation::move(const Placement& placement) {
     after_turn.translation_mm += true_stage_from_tablet_.translation_mm;
     true_stage_from_tablet_ = by_hand(nominal_stage_from_tablet_, after_turn);
   }
-  drive_to(placement.turntable_rad, placement.tilt_rad);
+  drive_to(share < 1.0 ? on_the_way(from, goal, share) : goal);
   set_scene();
   return {};
 }
 
 NominalPose SimStation::nominal() const {
   NominalPose pose;
-  pose.tablet_from_scanner =
-      nominal_stage_from_tablet_.inverse() *
-      stage_from_scanner(nominal_drive_.turntable_rad, nominal_drive_.tilt_rad, nominal_drive_.focus_mm);
+  pose.tablet_from_scanner = nominal_stage_from_tablet_.inverse() * nominal_drive_.stage_from_scanner();
   pose.placement = placement_;
   return pose;
 }
@@ -179,12 +246,34 @@ RigidTransform SimStation::nominal_after(const Placement& placement) const {
                                   ? asked_pose(nominal_stage_from_tablet_, *placement.hand_turn)
                                   : nominal_stage_from_tablet_;
   return lies.inverse() *
-         stage_from_scanner(placement.turntable_rad, placement.tilt_rad, {0, 0, lies.translation_mm.z()});
+         dubsar::stage_from_scanner(placement, Eigen::Vector3d(0, 0, lies.translation_mm.z()));
 }
 
 RigidTransform SimStation::true_tablet_from_scanner() const {
-  return true_stage_from_tablet_.inverse() *
-         stage_from_scanner(true_drive_.turntable_rad, true_drive_.tilt_rad, true_drive_.focus_mm);
+  return true_stage_from_tablet_.inverse() * true_drive_.stage_from_scanner();
+}
+
+void SimStation::swap(SimTablet tablet) {
+  *tablet_ = std::move(tablet);
+  query_ = std::make_unique<MeshQuery>(tablet_->mesh);
+  if (pins_) {
+    pins_.emplace(*tablet_, *query_, *options_.pins);
+  }
+  ++swaps_;
+  true_stage_from_tablet_ = by_hand(nominal_stage_from_tablet_, nominal_stage_from_tablet_);
+  set_scene();
+}
+
+void SimStation::disturb(Disturbance what) {
+  set_scene();
+  if (what == Disturbance::kNone) {
+    return;
+  }
+  disturbed_ = std::make_unique<SimTablet>(disturbed(*tablet_, true_tablet_from_scanner(), what));
+  disturbed_query_ = std::make_unique<MeshQuery>(disturbed_->mesh);
+  // The field stays where the tablet was.
+  scene_.tablet = what == Disturbance::kGone ? tablet_.get() : disturbed_.get();
+  scene_.query = disturbed_query_.get();
 }
 
 std::vector<PinTip> SimStation::true_tips() const {

@@ -7,8 +7,10 @@
 #include <optional>
 #include <vector>
 
+#include "core/keep_out.h"
 #include "core/range_grid.h"
 #include "core/rig.h"
+#include "sim/disturbance.h"
 #include "sim/pins.h"
 #include "sim/scanner.h"
 
@@ -22,25 +24,30 @@ struct SimStationOptions {
   double hand_max_mm = 5;
   double motor_sigma_deg = 0.005;  ///< of turntable and tilt, each move
   double motor_sigma_mm = 0.01;
+  bool robot = false;  ///< an arm carries the scanner, and the stage stands still
   std::uint64_t seed = 1;
 };
 
-/// The whole simulated station: a tablet on a matt black support on a turntable, a scanner that tilts, an
-/// operator who turns the tablet over when asked. Knows the truth and what the motors say; only the latter
-/// may reach the engine. The model frame is the tablet's frame as the first placement's nominal pose has it.
+/// The whole simulated station: a tablet on a matt black support on a turntable and a scanner that tilts, or
+/// a stage that stands still and a scanner on an arm, and an operator who turns the tablet over when asked.
+/// Knows the truth and what the motors say; only the latter may reach the engine. The model frame is the
+/// tablet's frame as the first placement's nominal pose has it.
 class SimStation {
  public:
   SimStation(SimTablet tablet, const SimStationOptions& options);
 
   [[nodiscard]] Rig rig() const;
+  /// Whether the placement and the way there are within limits and clear of tablet, pins and support, as the
+  /// station knows them: by where the tablet was asked to lie. kUsage.
+  [[nodiscard]] Status check(const Placement& placement) const;
+  /// Drives turntable and tilt, or the arm; with a hand turn the operator first turns the tablet and puts the
+  /// pins back. share < 1: stopped on the way. Errors: those of check(); nothing has moved then.
+  [[nodiscard]] Status move(const Placement& placement, double share = 1.0);
   /// How far hand turns come out wrong from now on.
   void set_hand_error(double most_deg, double most_mm) {
     options_.hand_max_deg = most_deg;
     options_.hand_max_mm = most_mm;
   }
-  /// Drives turntable and tilt; with a hand turn the operator first turns the tablet and puts the pins back.
-  /// Errors: kUsage for a tilt out of limits or a turn that is no rotation; nothing has moved then.
-  [[nodiscard]] Status move(const Placement& placement);
 
   /// What motors and asked turns say. Never the truth.
   [[nodiscard]] NominalPose nominal() const;
@@ -56,6 +63,12 @@ class SimStation {
   [[nodiscard]] const SimTablet& tablet() const { return *tablet_; }
   [[nodiscard]] const MeshQuery& query() const { return *query_; }
 
+  /// Another tablet lies there from now on, put down by hand as the old one lay; motors and asked turns know
+  /// nothing of it.
+  void swap(SimTablet tablet);
+  /// What is in the way of the scans from now on, from where everything stands. kNone: nothing any more.
+  void disturb(Disturbance what);
+
   /// Header of the scan that would be made now: an empty grid with geometry, nominal pose and pins filled in.
   [[nodiscard]] RangeGrid empty_grid() const;
   /// Scans from where everything stands, profile by profile; each call is a scan of its own.
@@ -68,6 +81,8 @@ class SimStation {
     double turntable_rad = 0;
     double tilt_rad = 0;
     Eigen::Vector3d focus_mm{0, 0, 0};
+    std::optional<RigidTransform> arm;  ///< of a robot, stage_from_scanner
+    [[nodiscard]] RigidTransform stage_from_scanner() const;
   };
   /// The height that an operator with a ruler expects.
   [[nodiscard]] double resting_height_mm(const Eigen::Matrix3d& stage_from_tablet) const;
@@ -77,7 +92,11 @@ class SimStation {
   /// How the tablet really comes to lie: within a hand's error both of the pose that was asked for and of
   /// where a perfect turn of what lay there would have taken it.
   [[nodiscard]] RigidTransform by_hand(const RigidTransform& asked, const RigidTransform& after_turn) const;
-  void drive_to(double turntable_rad, double tilt_rad);
+  void drive_to(const Placement& placement);
+  /// The placement that the motors believe to be at.
+  [[nodiscard]] Placement present() const;
+  /// The tablet, and the pins around it, as it was asked to lie.
+  [[nodiscard]] StageScene nominal_scene(const RigidTransform& stage_from_tablet) const;
   void set_scene();
 
   SimStationOptions options_;
@@ -85,6 +104,8 @@ class SimStation {
   std::unique_ptr<SimTablet> tablet_;
   std::unique_ptr<MeshQuery> query_;
   std::optional<PinStand> pins_;
+  std::unique_ptr<SimTablet> disturbed_;  ///< what stands there instead, while something is in the way
+  std::unique_ptr<MeshQuery> disturbed_query_;
   Eigen::Vector3d half_size_mm_{0, 0, 0};
   RigidTransform nominal_stage_from_tablet_;
   RigidTransform true_stage_from_tablet_;
@@ -92,6 +113,7 @@ class SimStation {
   Drive true_drive_;
   Scene scene_;
   int placement_ = 0;
+  int swaps_ = 0;
   int moves_ = 0;
   int scans_made_ = 0;
 };

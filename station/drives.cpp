@@ -11,7 +11,11 @@ namespace dubsar {
 std::string drives_to_json(const std::map<int, Placement>& drives) {
   OrderedJson scans = OrderedJson::array();
   for (const auto& [id, drive] : drives) {
-    scans.push_back({{"id", id}, {"turntable_rad", drive.turntable_rad}, {"tilt_rad", drive.tilt_rad}});
+    OrderedJson scan{{"id", id}, {"turntable_rad", drive.turntable_rad}, {"tilt_rad", drive.tilt_rad}};
+    if (drive.free_pose) {
+      scan["stage_from_scanner"] = drive.free_pose->row_major();
+    }
+    scans.push_back(std::move(scan));
   }
   return text_of({{"scans", scans}});
 }
@@ -26,6 +30,9 @@ Result<std::map<int, Placement>> parse_drives(std::string_view text, const std::
     Placement drive;
     drive.turntable_rad = scan.at("turntable_rad").number(-1e3, 1e3);
     drive.tilt_rad = scan.at("tilt_rad").number(-kPi, kPi);
+    if (const auto pose = scan.find("stage_from_scanner")) {
+      drive.free_pose = pose->transform();
+    }
     drives[static_cast<int>(scan.at("id").integer(0, 1000000))] = drive;
   }
   if (const Status status = document->status("the next scan of the session writes it anew"); !status) {

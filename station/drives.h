@@ -11,8 +11,8 @@
 
 namespace dubsar {
 
-/// Turntable and tilt of each scan, as a session keeps them (document "drives"), so that planning can be gone
-/// on with.
+/// Turntable and tilt, or the arm's pose, of each scan, as a session keeps them (document "drives"), so that
+/// planning can be gone on with.
 [[nodiscard]] std::string drives_to_json(const std::map<int, Placement>& drives);
 [[nodiscard]] Result<std::map<int, Placement>> parse_drives(std::string_view text, const std::string& where);
 

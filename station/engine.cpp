@@ -96,7 +96,7 @@ Result<EngineResult> Engine::Impl::run(JobContext& job) {
     }
     wait_for_plan = false;
     // How the tablet lies is known only once this run has scanned it.
-    step = stored_count > resumed_count ? NextStep(result.red_map.next.front()) : std::nullopt;
+    step = stored_count > resumed_count ? step_to(result.red_map) : std::nullopt;
   }
   while (!close_commands()) {
     {

@@ -11,6 +11,7 @@
 #include "archive/report.h"
 #include "core/checklist.h"
 #include "core/job.h"
+#include "core/motion_limits.h"
 #include "core/pin_set.h"
 #include "core/red_map.h"
 #include "core/result.h"
@@ -27,6 +28,9 @@ struct EngineOptions {
   bool automatic = false;         ///< drive the rig (or ask for hand turns) until conclusive
   int max_scans = 0;              ///< of the whole session; 0: no limit (40 when automatic)
   std::optional<PinSet> pins;
+  std::optional<RigLimits> limits = {};         ///< narrower than the device's own, from a file
+  std::string limits_file = {};                 ///< for what is said about them
+  std::optional<Eigen::Vector3d> size_mm = {};  ///< of the tablet, where the operator gave it
 };
 
 /// What a run of the engine leaves behind.
@@ -36,7 +40,9 @@ struct EngineResult {
   Checklist checklist;
   Deliverables files;
   std::vector<StageTiming> timings;
-  std::optional<Error> device_error;  ///< the device failed on the way; what it gave until then is kept
+  /// What ended the run before it was through: the device failed, or scans that are not of the tablet came
+  /// again and again. What came until then is kept.
+  std::optional<Error> device_error;
   int stored_scans = 0;
 };
 

@@ -20,6 +20,7 @@
 #include "acquisition/operator_log.h"
 #include "acquisition/range_source.h"
 #include "acquisition/session_store.h"
+#include "core/keep_out.h"
 #include "core/log.h"
 #include "drivers/loader.h"
 #include "formats/checklist_json.h"
@@ -31,6 +32,7 @@
 #include "registration/registrar.h"
 #include "station/bounded_queue.h"
 #include "station/drives.h"
+#include "station/intruders.h"
 #include "station/planning_stage.h"
 #include "station/scan_set.h"
 
@@ -57,9 +59,16 @@ struct ScanToPlan {
   bool plan_now =
       true;  ///< false for all but the last of the stored scans that a resumed session goes through again
   bool device_waits = false;  ///< the device waits for what to do after it
+  bool resumed = false;       ///< of a run before this one
 };
-/// The planner's answer to an automatic run: where to next, or that there is nothing more to do.
-using NextStep = std::optional<NextView>;
+/// Where to next.
+struct Step {
+  NextView view;
+  StageScene scene;    ///< how the tablet will lie when the motors move
+  bool again = false;  ///< the view that was scanned last once more; nothing else is set
+};
+/// The planner's answer to an automatic run: a step, or that there is nothing more to do.
+using NextStep = std::optional<Step>;
 
 /// What asking the device for a scan led to.
 enum class Taken { kScan, kNothing, kEnd };
@@ -93,8 +102,9 @@ class StageClock {
 
 /// The state of a run. What a stage thread alone touches is marked; the rest stands still while the threads
 /// run, or is under the mutex. engine_open.cpp opens device and session, engine_stages.cpp has the four
-/// threads, engine_commands.cpp what the operator asks for meanwhile, engine_results.cpp what is made at the
-/// end, engine.cpp the order of it all.
+/// threads, engine_motion.cpp what moves, engine_misses.cpp what is done about scans that are not taken up,
+/// engine_commands.cpp what the operator asks for meanwhile, engine_results.cpp what is made at the end,
+/// engine.cpp the order of it all.
 struct Engine::Impl {
   EngineOptions options;
   EventSink sink;
@@ -122,6 +132,17 @@ struct Engine::Impl {
   // Of the registering thread while it runs:
   std::map<int, std::string> names;  ///< original names by id
   OperatorWord word;
+  IntruderFinder intruders;
+
+  // Of the acquiring thread, round after round:
+  std::optional<Placement> present;  ///< where the device was last driven to; an arm is anywhere at first
+  StageScene scene;                  ///< as the last step saw it
+  int empty_scans = 0;               ///< in a row
+  // Of the planning thread, round after round:
+  int misses = 0;      ///< scans in a row that were not taken up
+  bool again = false;  ///< the scan that comes is of the same view as the one before
+  std::set<int> taken_up;
+  std::map<int, int> lies_as;  ///< placement by scan, of scans that motors were told of
 
   std::mutex mutex;  ///< of what follows
   std::optional<Error> first_error;
@@ -157,6 +178,25 @@ struct Engine::Impl {
   Status open(JobContext& job);
   Status load_resumed(JobContext& job);
   void acquire(NextStep step, JobContext& job);
+  // engine_motion.cpp
+  Status limit_rig();  ///< by the file, the pins and what is left then
+  /// To where the first scan of this run is taken from.
+  bool move_to_start(JobContext& job);
+  /// False when it could not be done: nothing moves any more then.
+  bool move_to(const Placement& target, const StageScene& on_stage, JobContext& job);
+  void end_motion(Error error);  ///< notes what ended it
+  void stop_motion_after_trouble(const JobContext& job);
+  [[nodiscard]] StageScene unseen() const;
+  NextStep step_to(const RedMap& red_map) const;
+  // engine_misses.cpp
+  /// Where to after a scan: by the red map when the scan was taken up; else the same view again, then one
+  /// that has more in common with the others, then nothing more.
+  NextStep step_after(int id, const std::vector<ScanPose>& poses, const RedMap& red_map);
+  NextStep once_more();
+  /// Whether the scans that were taken up until now have given way to others that lie in the same way on the
+  /// stage: the two sets cannot both be the tablet.
+  bool another_tablet(int id, const std::set<int>& before, const std::set<int>& now);
+  Taken refuse_empty();  ///< of a scan without a sample
   Taken take_scan(const std::optional<Placement>& drive, JobContext& job);
   void keep_stored();
   /// Onto the disk, and only then reported; false when it is not there.
@@ -164,6 +204,9 @@ struct Engine::Impl {
   /// Into the model, as the operator's word on it has it.
   ScanPose register_scan(const StationScan& scan, JobContext& job);
   void register_all(JobContext& job);
+  /// Takes out scans that show a hand or the like, that one included, and says so; then what they stood in
+  /// the way of is tried again. engine_misses.cpp
+  ScanPose set_intruders_aside(const StationScan& scan, ScanPose pose, JobContext& job);
   void plan_all(JobContext& job);
   std::vector<ScanPose> named_poses() const;
   // engine_commands.cpp

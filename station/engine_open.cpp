@@ -53,6 +53,9 @@ Status Engine::Impl::open(JobContext& job) {
   if (drives && options.max_scans <= 0) {
     options.max_scans = kAutomaticScans;
   }
+  if (const Status limited = limit_rig(); !limited) {
+    return limited;
+  }
   Result<SessionStore> session = SessionStore::open_or_create(options.session);
   if (!session) {
     return std::unexpected(session.error());

@@ -30,7 +30,10 @@ Taken Engine::Impl::take_scan(const std::optional<Placement>& drive, JobContext&
     emit(Notice{grid.error().line()});
     // A device that stopped in mid-scan leaves profiles that are as good as any.
     if (std::optional<RangeGrid> partial = source->take_partial(); partial && partial->valid_count() > 0) {
-      emit(Notice{"the half scan is kept"});
+      emit(Notice{fmt::format("the half scan is kept: {} rows", partial->rows)});
+      if (partial->nominal) {
+        partial->nominal->placement += placement_offset;
+      }
       queues->to_store.push({std::move(*partial), std::nullopt, drive});
     }
     // A bad file of a folder does not stop the others.
@@ -47,6 +50,10 @@ Taken Engine::Impl::take_scan(const std::optional<Placement>& drive, JobContext&
   if (!(*grid)->source.empty() && known_files.contains((*grid)->source)) {
     return Taken::kNothing;
   }
+  if ((*grid)->valid_count() == 0) {
+    return refuse_empty();
+  }
+  empty_scans = 0;
   if (flagger) {
     flagger->finish(**grid, flags);
   }
@@ -64,7 +71,6 @@ void Engine::Impl::acquire(NextStep step, JobContext& job) {
   // A device without an end, and nobody to ask for the next placement, gives one scan.
   const bool endless = !source->capabilities().finite && !drives;
   const int limit = options.max_scans > 0 ? options.max_scans : endless ? stored_count + 1 : 0;
-  std::optional<Placement> drive = drives ? std::optional(Placement{}) : std::nullopt;
   // A session that goes on begins with a scan of how the tablet lies now, unless it is conclusive already.
   if (wait_for_plan) {
     const std::optional<NextStep> planned = queues->to_device.pop();
@@ -73,24 +79,28 @@ void Engine::Impl::acquire(NextStep step, JobContext& job) {
       return;
     }
   }
+  if (drives && !step && !move_to_start(job)) {
+    queues->to_store.close();
+    return;
+  }
   for (int taken = stored_count; limit == 0 || taken < limit;) {
     if (job.cancelled()) {
       give_up(stopped());
       break;
     }
-    if (step) {
-      emit(NextPlacement{*step});
-      drive = step->placement;
-      if (const Status placed = source->place(*drive); !placed) {
-        emit(Notice{placed.error().line()});
-        const std::scoped_lock lock(mutex);
-        device_error = placed.error();
+    if (step && !step->again) {
+      emit(NextPlacement{step->view});
+      if (!move_to(*step->view.placement, step->scene, job)) {
         break;
       }
     }
-    const Taken got = take_scan(drive, job);
+    const Taken got = take_scan(drives ? present : std::nullopt, job);
     if (got == Taken::kEnd) {
       break;
+    }
+    if (drives && got == Taken::kNothing) {
+      step.reset();  // the same view once more
+      continue;
     }
     taken += got == Taken::kScan ? 1 : 0;
     if (drives) {
@@ -100,6 +110,7 @@ void Engine::Impl::acquire(NextStep step, JobContext& job) {
       }
     }
   }
+  stop_motion_after_trouble(job);
   queues->to_store.close();
 }
 
@@ -165,7 +176,7 @@ ScanPose Engine::Impl::register_scan(const StationScan& scan, JobContext& job) {
 }
 
 void Engine::Impl::register_all(JobContext& job) {
-  const auto handle = [&](StationScan scan, bool plan_now) {
+  const auto handle = [&](StationScan scan, bool plan_now, bool is_resumed) {
     names[scan.id] = scan.file;
     ScanPose pose = register_scan(scan, job);
     if (scan.stored.valid() && !scan.stored.get()) {
@@ -173,6 +184,7 @@ void Engine::Impl::register_all(JobContext& job) {
       names.erase(scan.id);
       return;
     }
+    pose = set_intruders_aside(scan, pose, job);
     pose.file = scan.file;
     std::vector<ScanPose> poses = named_poses();
     // Whatever ends the run, what it found until now is in the session.
@@ -182,10 +194,10 @@ void Engine::Impl::register_all(JobContext& job) {
       }
     }
     emit(ScanPlaced{pose, poses});
-    queues->to_plan.push({std::move(scan), std::move(poses), plan_now, true});
+    queues->to_plan.push({std::move(scan), std::move(poses), plan_now, true, is_resumed});
   };
   for (std::size_t k = 0; k < resumed.size() && !job.cancelled(); ++k) {
-    handle(std::move(resumed[k]), k + 1 == resumed.size());
+    handle(std::move(resumed[k]), k + 1 == resumed.size(), true);
   }
   resumed.clear();
   if (job.cancelled()) {
@@ -198,7 +210,7 @@ void Engine::Impl::register_all(JobContext& job) {
     }
     obey_commands(job);
     if (auto* scan = std::get_if<StationScan>(&*item)) {
-      handle(std::move(*scan), true);
+      handle(std::move(*scan), true, false);
     }
   }
   if (!job.cancelled()) {
@@ -211,9 +223,19 @@ void Engine::Impl::plan_all(JobContext& job) {
   while (std::optional<ScanToPlan> item = queues->to_plan.pop()) {
     if (item->scan) {
       planning.add(*item->scan);
+      if (item->scan->grid->nominal) {
+        lies_as[item->scan->id] = item->scan->grid->nominal->placement;
+      }
     }
     if (job.cancelled()) {
       give_up(stopped());  // the device waits for a next step that will not come
+    }
+    if (item->resumed) {
+      for (const ScanPose& pose : item->poses) {
+        if (pose.status == PoseStatus::kRegistered) {
+          taken_up.insert(pose.id);
+        }
+      }
     }
     if (failed() || !item->plan_now) {
       continue;
@@ -228,9 +250,9 @@ void Engine::Impl::plan_all(JobContext& job) {
       give_up(red_map.error());
       continue;
     }
-    const bool can_go_on = !red_map->conclusive && !red_map->next.empty() && red_map->next.front().placement;
     if (drives && item->device_waits) {
-      queues->to_device.push(can_go_on ? NextStep(red_map->next.front()) : std::nullopt);
+      const bool fresh = item->scan && !item->resumed;
+      queues->to_device.push(fresh ? step_after(item->scan->id, item->poses, *red_map) : step_to(*red_map));
     }
     emit(RedMapChanged{std::move(*red_map)});
     // Last: the red map waits for no mesh, and the next scan is under way meanwhile.

@@ -7,9 +7,11 @@
 #include <utility>
 
 #include "core/tablet_frame.h"
+#include "core/units.h"
 #include "planning/model_faces.h"
 #include "planning/red_map.h"
 #include "planning/sample_states.h"
+#include "planning/side_view.h"
 
 namespace dubsar {
 
@@ -140,14 +142,87 @@ Status PlanningStage::stitch(JobContext& job) {
   return {};
 }
 
+std::optional<StageState> PlanningStage::stage() const {
+  std::optional<StageState> out;
+  for (const PlacedScan& scan : cleared_.scans()) {
+    if (const auto& drive = scans_.at(scan.id).drive) {
+      out = StageState{scan.id, *drive};  // the last registered one tells how the tablet lies now
+    }
+  }
+  return out;
+}
+
+std::optional<StageScene> PlanningStage::scene_for(const Rig& rig, const Placement& placement) const {
+  const std::optional<StageState> state = stage();
+  if (!state) {
+    return std::nullopt;
+  }
+  const std::vector<PlacedScan> scans = cleared_.scans();
+  const auto last = std::ranges::find(scans, state->scan_id, &PlacedScan::id);
+  const std::vector<Eigen::Vector3d> points = reach_points(scans);
+  const TabletOnStage lies = TabletOnStage::of(*state, *last);
+  if (!placement.hand_turn || points.empty()) {
+    return lies.scene(rig, points);
+  }
+  Eigen::AlignedBox3d box;
+  for (const Eigen::Vector3d& p : points) {
+    box.extend(p);
+  }
+  return lies.turned(placement.hand_turn->rotation, box.center()).scene(rig, points);
+}
+
+std::optional<NextView> PlanningStage::before_lifting(const Rig& rig, const NextView& next) const {
+  const double from_the_side = rad_from_deg(40.0);
+  const std::optional<StageState> state = stage();
+  if (!state || !next.placement || !next.placement->hand_turn) {
+    return std::nullopt;
+  }
+  const std::vector<PlacedScan> scans = cleared_.scans();
+  if (scans.size() != 1) {
+    return std::nullopt;
+  }
+  return side_view(rig, *state, scans.front(), model_surface(scans), from_the_side);
+}
+
+std::optional<NextView> PlanningStage::after_miss(const Rig& rig, int id) const {
+  const std::vector<PlacedScan> scans = cleared_.scans();
+  const auto found = scans_.find(id);
+  if (found == scans_.end() || !found->second.drive || !found->second.grid->nominal || scans.empty() ||
+      !scans.front().grid->nominal) {
+    return std::nullopt;
+  }
+  const StationScan& missed = found->second;
+  const PlacedScan& first = scans.front();
+  const RigidTransform model_from_tablet =
+      first.model_from_scanner * first.grid->nominal->tablet_from_scanner.inverse();
+  const PlacedScan there{id, missed.grid.get(), missed.flags.get(),
+                         model_from_tablet * missed.grid->nominal->tablet_from_scanner, 0.0};
+  return side_view(rig, {id, *missed.drive}, there, model_surface(scans), 0.0);
+}
+
+bool PlanningStage::shows_much_more(int id) const {
+  constexpr double kMuchMore = 1.3;
+  const auto diagonal = [](std::span<const PlacedScan> scans) {
+    Eigen::AlignedBox3d box;
+    for (const Eigen::Vector3d& p : reach_points(scans)) {
+      box.extend(p);
+    }
+    return box.isEmpty() ? 0.0 : box.diagonal().norm();
+  };
+  std::vector<PlacedScan> others = cleared_.scans();
+  std::erase_if(others, [&](const PlacedScan& scan) { return scan.id == id; });
+  const auto found = scans_.find(id);
+  if (found == scans_.end() || others.empty()) {
+    return false;
+  }
+  const PlacedScan alone{id, found->second.grid.get(), found->second.flags.get(), {}, 0.0};
+  return diagonal({&alone, 1}) > kMuchMore * diagonal(others);
+}
+
 Result<RedMap> PlanningStage::red_map(const Rig* rig, JobContext& job) {
   const std::vector<PlacedScan> scans = cleared_.scans();
   RedMapOptions options;
-  for (const PlacedScan& scan : scans) {
-    if (const auto& drive = scans_.at(scan.id).drive) {
-      options.stage = StageState{scan.id, *drive};  // the last registered one tells how the tablet lies now
-    }
-  }
+  options.stage = stage();
   // Without a mesh the scans themselves cast the shadows: as good, and it waits for no stitching.
   Result<RedMapResult> result = make_red_map(scans, nullptr, rig, options, job);
   if (!result) {

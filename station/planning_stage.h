@@ -18,6 +18,7 @@
 #include "core/scan_pose.h"
 #include "planning/cleared_map.h"
 #include "planning/red_targets.h"
+#include "planning/tablet_on_stage.h"
 #include "station/station_scan.h"
 #include "triangulation/stitcher.h"
 
@@ -42,6 +43,21 @@ class PlanningStage {
 
   /// Brings the mesh up to what is placed. Errors: kCancelled, and the stitcher's.
   Status stitch(JobContext& job);
+
+  /// What the motors have to know of the tablet before they go to a placement: how it lies, after the turn
+  /// by hand that the placement asks for. Nothing before a scan is placed that was driven to.
+  [[nodiscard]] std::optional<StageScene> scene_for(const Rig& rig, const Placement& placement) const;
+
+  /// Before a step that lifts the tablet: a view from its side, while it was scanned only once and the rig
+  /// can look from there. Else nothing.
+  [[nodiscard]] std::optional<NextView> before_lifting(const Rig& rig, const NextView& next) const;
+  /// After a scan that was not taken up: the view of the tablet as it lies now that should have most in
+  /// common with what is placed, by where the motors and the asked turns say that the scan is.
+  [[nodiscard]] std::optional<NextView> after_miss(const Rig& rig, int id) const;
+
+  /// Whether a scan, placed or not, shows far more than all others that are placed do together: a hand is
+  /// larger than most tablets.
+  [[nodiscard]] bool shows_much_more(int id) const;
 
   /// The mesh of what is placed and stitched.
   [[nodiscard]] Result<Mesh> mesh(const JobContext& job) const { return stitcher_.mesh(job); }
@@ -68,6 +84,7 @@ class PlanningStage {
   };
 
   void take_out(int id);
+  [[nodiscard]] std::optional<StageState> stage() const;
 
   std::map<int, StationScan> scans_;
   std::map<int, Placed> placed_;

@@ -243,6 +243,7 @@ constexpr dubsar_driver kDriver = {
     .set_setting = set_setting,
     .place = nullptr,
     .scan = scan,
+    .stop = nullptr,
 };
 
 }  // namespace

@@ -3,8 +3,11 @@
 //
 // sim: a tablet in front of a simulated triangulation scanner. What goes through the interface is what a
 // device would know: profiles and nominal positions. The truth goes to files, where truth=DIR asks for it.
+#include <atomic>
+#include <chrono>
 #include <cstdio>
 #include <optional>
+#include <thread>
 
 #include "core/mesh.h"
 #include "drivers/driver.h"
@@ -18,8 +21,11 @@ using namespace dubsar;
 struct dubsar_device {
   sim::SimStation station;
   std::optional<sim_driver::TruthFiles> truth;
+  sim_driver::SimOptions options;
   std::string name;
   int scans = 0;
+  int moves = 0;
+  std::atomic<bool> stopped = false;  ///< set by stop(), from any thread
 };
 
 namespace {
@@ -84,7 +90,10 @@ std::int32_t open(const char* locator, const dubsar_option* options, std::uint32
       return plugin::report(error, tablet.error());
     }
     auto made = std::unique_ptr<dubsar_device>(
-        new dubsar_device{sim::SimStation(std::move(*tablet), parsed->station), {}, {}});
+        new dubsar_device{.station = sim::SimStation(std::move(*tablet), parsed->station),
+                          .truth = {},
+                          .options = *parsed,
+                          .name = {}});
     made->name = "sim-" + std::to_string(parsed->station.seed);
     if (!parsed->truth_folder.empty()) {
       made->truth.emplace(parsed->truth_folder, made->station);
@@ -108,23 +117,75 @@ std::int32_t capabilities(dubsar_device* device, dubsar_capabilities* out, dubsa
   });
 }
 
+/// Waits while the motors run. The share of the way that they came.
+double run_motors(dubsar_device& device) {
+  using Clock = std::chrono::steady_clock;
+  const std::chrono::duration<double> all(device.options.move_time_s);
+  const auto start = Clock::now();
+  for (;;) {
+    const std::chrono::duration<double> spent = Clock::now() - start;
+    if (spent >= all) {
+      return 1.0;
+    }
+    if (device.stopped) {
+      return spent / all;
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+}
+
 std::int32_t place(dubsar_device* device, const dubsar_placement* asked, dubsar_error* error) {
   return plugin::fenced(error, [&]() -> std::int32_t {
-    Placement placement;
-    placement.turntable_rad = asked->turntable_rad;
-    placement.tilt_rad = asked->tilt_rad;
-    if (asked->has_hand_turn != 0) {
-      std::array<double, 16> turn{};
-      std::copy_n(asked->hand_turn, 16, turn.begin());
-      placement.hand_turn = RigidTransform::from_row_major(turn);
+    const Placement placement = plugin::placement_from(asked);
+    if (const Status allowed = device->station.check(placement); !allowed) {
+      return plugin::report(error, allowed.error());
     }
-    const Status moved = device->station.move(placement);
-    return moved ? std::int32_t{DUBSAR_OK} : plugin::report(error, moved.error());
+    device->stopped = false;
+    const bool fails = device->moves++ == device->options.fail_move_at;
+    const double share = fails ? 0.5 : run_motors(*device);
+    if (const Status moved = device->station.move(placement, share); !moved) {
+      return plugin::report(error, moved.error());
+    }
+    if (fails) {
+      return plugin::report(error, DUBSAR_DEVICE, "a motor does not answer, half way there", device->name,
+                            "see what holds it up, then give the same command again");
+    }
+    return share < 1.0 ? plugin::report(error, DUBSAR_CANCELLED, "stopped on the way", device->name)
+                       : std::int32_t{DUBSAR_OK};
   });
+}
+
+std::int32_t stop(dubsar_device* device, dubsar_error* /*error*/) {
+  device->stopped = true;
+  return DUBSAR_OK;
+}
+
+/// Another tablet of the same size, as they lie side by side in the box.
+Status swap_tablet(dubsar_device& device) {
+  sim::TabletOptions other = device.options.tablet;
+  other.seed += 1000003;
+  JobContext job;
+  Result<sim::SimTablet> tablet = sim::make_tablet(other, job);
+  if (!tablet) {
+    return std::unexpected(tablet.error());
+  }
+  device.station.swap(std::move(*tablet));
+  return {};
 }
 
 std::int32_t scan(dubsar_device* device, const dubsar_sink* sink, dubsar_error* error) {
   return plugin::fenced(error, [&]() -> std::int32_t {
+    const sim_driver::SimOptions& options = device->options;
+    if (device->scans == options.swap_at) {
+      if (const Status swapped = swap_tablet(*device); !swapped) {
+        return plugin::report(error, swapped.error());
+      }
+    }
+    const bool in_the_way = device->scans >= options.intrude_at && device->scans <= options.intrude_until;
+    if (options.intrude_at >= 0) {
+      device->station.disturb(in_the_way ? options.intrude : sim::Disturbance::kNone);
+    }
+    const bool breaks_off = device->scans == options.stop_at;
     RangeGrid header = device->station.empty_grid();
     if (header.rows == 0 || header.cols == 0) {
       return plugin::report(error, DUBSAR_DEVICE, "nothing of the tablet lies in the measuring volume",
@@ -145,11 +206,16 @@ std::int32_t scan(dubsar_device* device, const dubsar_sink* sink, dubsar_error* 
     const dubsar_scan_info info = plugin::scan_info_of(header);
     dubsar_scan_end end{sizeof end, DUBSAR_OK, 0, 0, 0};
     bool refused = sink->begin(sink->user, &info) != 0;
+    bool broken_off = false;
     Status scanned;
     if (!refused) {
       JobContext job;
       scanned = device->station.scan(
           [&](const sim::ProfileRow& row) {
+            broken_off = breaks_off && row.row >= options.stop_rows;
+            if (broken_off) {
+              return false;
+            }
             dubsar_profile profile{};
             profile.struct_size = sizeof profile;
             profile.count = static_cast<std::uint32_t>(row.x.size());
@@ -164,6 +230,10 @@ std::int32_t scan(dubsar_device* device, const dubsar_sink* sink, dubsar_error* 
             return !refused;
           },
           job);
+    }
+    if (broken_off) {
+      scanned = fail(ErrorKind::kDevice, "the scanner stopped in the middle of the scan", device->name,
+                     "see to its cable and power, then give the same command again");
     }
     end.code = refused ? DUBSAR_CANCELLED : scanned ? DUBSAR_OK : plugin::code_of(scanned.error().kind);
     sink->end(sink->user, &end);
@@ -191,6 +261,7 @@ constexpr dubsar_driver kDriver = {
     .set_setting = nullptr,
     .place = place,
     .scan = scan,
+    .stop = stop,
 };
 
 }  // namespace

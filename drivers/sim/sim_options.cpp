@@ -26,12 +26,27 @@ const SettingRow kRows[] = {
     {DUBSAR_TYPE_NUMBER, "text", "share of the room for text that is written on", nullptr, nullptr, 0, 1},
     {DUBSAR_TYPE_NUMBER, "damage", "fractures, erosion, dirt and cracks, from none to badly", nullptr,
      nullptr, 0, 1},
+    {DUBSAR_TYPE_CHOICE, "motion", "what is driven", nullptr, "turntable|robot"},
+    {DUBSAR_TYPE_NUMBER, "move_time", "that a move takes", "s", nullptr, 0, 600},
+    {DUBSAR_TYPE_INTEGER, "fail_move_at", "this move, from 0, ends half way with a fault", nullptr, nullptr,
+     0, 1e6},
+    {DUBSAR_TYPE_INTEGER, "stop_at", "this scan, from 0, ends in the middle with a fault", nullptr, nullptr,
+     0, 1e6},
+    {DUBSAR_TYPE_INTEGER, "stop_rows", "rows of the scan that stops; without it 30", nullptr, nullptr, 0,
+     1e6},
+    {DUBSAR_TYPE_TEXT, "intrude",
+     "hand@N (over half of the tablet), glove@N (over all of it) or gone@N (the tablet is away): in scan N, "
+     "from 0, or in N-M"},
+    {DUBSAR_TYPE_INTEGER, "swap_at", "another tablet lies there from this scan on", nullptr, nullptr, 0, 1e6},
     {DUBSAR_TYPE_NUMBER, "holes", "firing holes, from none to many", nullptr, nullptr, 0, 1},
     {DUBSAR_TYPE_TEXT, "truth", "a folder that gets the truth: poses, pins and the surface"},
 };
 
 std::unexpected<Error> refuse(const SettingRow& row, std::string_view value) {
   std::string takes = row.help;
+  if (row.choices != nullptr) {
+    takes += std::string(" (") + row.choices + ")";
+  }
   if (row.minimum <= row.maximum) {
     char range[64];
     std::snprintf(range, sizeof range, " (%g to %g)", row.minimum, row.maximum);
@@ -57,6 +72,36 @@ std::optional<Eigen::Vector3d> size_of(std::string_view text) {
   return size;
 }
 
+std::optional<int> count_of(std::string_view text) {
+  const std::optional<double> number = plugin::number(text);
+  return number && *number >= 0 && *number <= 1e6 && *number == std::floor(*number)
+             ? std::optional(static_cast<int>(*number))
+             : std::nullopt;
+}
+
+/// "hand@3", "gone@2-4"
+bool take_intrusion(std::string_view text, SimOptions& out) {
+  const std::size_t at = text.find('@');
+  const std::string_view what = text.substr(0, at);
+  out.intrude = what == "hand"    ? sim::Disturbance::kHand
+                : what == "glove" ? sim::Disturbance::kGlove
+                : what == "gone"  ? sim::Disturbance::kGone
+                                  : sim::Disturbance::kNone;
+  if (out.intrude == sim::Disturbance::kNone || at == std::string_view::npos) {
+    return false;
+  }
+  const std::string_view scans = text.substr(at + 1);
+  const std::size_t dash = scans.find('-');
+  const std::optional<int> first = count_of(scans.substr(0, dash));
+  const std::optional<int> last = dash == std::string_view::npos ? first : count_of(scans.substr(dash + 1));
+  if (!first || !last || *last < *first) {
+    return false;
+  }
+  out.intrude_at = *first;
+  out.intrude_until = *last;
+  return true;
+}
+
 }  // namespace
 
 std::span<const SettingRow> option_rows() {
@@ -76,6 +121,13 @@ Result<SimOptions> parse_options(std::span<const dubsar_option> options) {
       return fail(ErrorKind::kUsage, "no option " + std::string(option.key), "sim:");
     }
     const std::string_view key = row->key;
+    if (key == "motion") {
+      if (value != "turntable" && value != "robot") {
+        return refuse(*row, value);
+      }
+      out.station.robot = value == "robot";
+      continue;
+    }
     if (row->type == DUBSAR_TYPE_TEXT) {
       if (value.empty()) {
         return refuse(*row, value);
@@ -84,6 +136,10 @@ Result<SimOptions> parse_options(std::span<const dubsar_option> options) {
         out.tablet_file = value;
       } else if (key == "truth") {
         out.truth_folder = value;
+      } else if (key == "intrude") {
+        if (!take_intrusion(value, out)) {
+          return refuse(*row, value);
+        }
       } else if (const std::optional<Eigen::Vector3d> size = size_of(value)) {
         out.tablet.size_mm = *size;
       } else {
@@ -106,6 +162,16 @@ Result<SimOptions> parse_options(std::span<const dubsar_option> options) {
       mesh_spacing = *number;
     } else if (key == "pins") {
       pins = *number != 0;
+    } else if (key == "move_time") {
+      out.move_time_s = *number;
+    } else if (key == "fail_move_at") {
+      out.fail_move_at = static_cast<int>(*number);
+    } else if (key == "stop_at") {
+      out.stop_at = static_cast<int>(*number);
+    } else if (key == "stop_rows") {
+      out.stop_rows = static_cast<int>(*number);
+    } else if (key == "swap_at") {
+      out.swap_at = static_cast<int>(*number);
     } else if (key == "text") {
       out.tablet.text_density = *number;
     } else if (key == "damage") {

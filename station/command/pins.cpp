@@ -14,6 +14,7 @@
 #include "formats/mesh_io.h"
 #include "planning/pin_layout.h"
 #include "station/command/command.h"
+#include "station/command/size_option.h"
 
 namespace dubsar {
 
@@ -82,13 +83,11 @@ Result<int> pins(const PinsArguments& arguments, CommandContext& context) {
   TabletHull hull;
   Mesh tablet;
   if (arguments.mesh.empty()) {
-    Eigen::Vector3d size;
-    char rest = 0;
-    if (std::sscanf(arguments.size.c_str(), "%lfx%lfx%lf%c", &size.x(), &size.y(), &size.z(), &rest) != 3 ||
-        !(size.minCoeff() >= 3 && size.maxCoeff() <= 1000)) {
-      return fail(ErrorKind::kUsage, "\"" + arguments.size + "\" is no size of a tablet", "--size",
-                  "give width x height x thickness in mm, 50x40x20");
+    const Result<Eigen::Vector3d> parsed = parse_size_mm(arguments.size);
+    if (!parsed) {
+      return std::unexpected(parsed.error());
     }
+    const Eigen::Vector3d& size = *parsed;
     const double radius_mm = kEdgeRadiusShare * size.minCoeff();
     hull = hull_of_box(size, radius_mm);
     tablet = box_mesh(size, radius_mm);

@@ -15,7 +15,9 @@
 #include "formats/pins_json.h"
 #include "formats/poses_json.h"
 #include "formats/red_map_json.h"
+#include "formats/rig_limits_json.h"
 #include "station/command/command.h"
+#include "station/command/size_option.h"
 #include "station/engine.h"
 
 namespace dubsar {
@@ -26,6 +28,8 @@ struct ScanArguments {
   std::string device;
   std::string session;
   std::string pins;
+  std::string rig;
+  std::string size;
   bool automatic = false;
   int max_scans = 0;
 };
@@ -144,6 +148,21 @@ Result<int> scan(const ScanArguments& arguments, CommandContext& context) {
     }
     options.pins = std::move(*pins);
   }
+  if (!arguments.rig.empty()) {
+    Result<RigLimits> limits = read_rig_limits(arguments.rig);
+    if (!limits) {
+      return std::unexpected(limits.error());
+    }
+    options.limits = *limits;
+    options.limits_file = arguments.rig;
+  }
+  if (!arguments.size.empty()) {
+    const Result<Eigen::Vector3d> size = parse_size_mm(arguments.size);
+    if (!size) {
+      return std::unexpected(size.error());
+    }
+    options.size_mm = *size;
+  }
   show_progress(false);
   Narrator narrator;
   Engine engine(std::move(options), [&narrator](const Event& event) { narrator(event); });
@@ -182,6 +201,10 @@ void add_scan(CLI::App& app, Action& chosen) {
   verb->add_option("--session", arguments->session, "folder of the session; gone on with when it is there")
       ->default_val("session");
   verb->add_option("--pins", arguments->pins, "the operator's pins (pins.json)");
+  verb->add_option("--rig", arguments->rig,
+                   "a rig file: narrower limits for the motors (docs/formats/rig.md)");
+  verb->add_option("--size", arguments->size,
+                   "of the tablet, WxHxT in mm: what the motors keep clear of before it is seen");
   verb->add_flag("--auto", arguments->automatic, "drive the rig, or ask for hand turns, until conclusive");
   verb->add_option("--max-scans", arguments->max_scans, "of the whole session")->check(CLI::Range(1, 100000));
   verb->fallthrough();

@@ -141,10 +141,10 @@ TEST_F(RangeSourceTest, TheSimulatedScannerStreamsAndKeepsTheTruthToFiles) {
   placement.turntable_rad = rad_from_deg(90);
   placement.tilt_rad = rad_from_deg(30);
   placement.hand_turn = RigidTransform::from_twist({0, rad_from_deg(180), 0}, {0, 0, 0});
-  ASSERT_TRUE(source.place(placement));
+  ASSERT_TRUE(source.place(placement, job_));
   const RangeGrid second = source.next({}, job_).value().value();
   EXPECT_GT(second.nominal->placement, first.nominal->placement);
-  EXPECT_FALSE(source.place({.turntable_rad = 0, .tilt_rad = 3, .hand_turn = {}}));
+  EXPECT_FALSE(source.place({.turntable_rad = 0, .tilt_rad = 3, .hand_turn = {}}, job_));
 
   const std::vector<ScanPose> poses = read_poses(truth.path() / "truth_poses.json").value();
   ASSERT_EQ(poses.size(), 2U);

@@ -91,7 +91,7 @@ TEST_F(DeviceTest, PlacesWithinItsReachOnly) {
   const Status tilted = device.place({.turntable_rad = 0, .tilt_rad = 1.5, .hand_turn = {}});
   ASSERT_FALSE(tilted);
   EXPECT_EQ(tilted.error().kind, ErrorKind::kUsage);
-  EXPECT_THAT(tilted.error().line(), HasSubstr("57.29"));
+  EXPECT_THAT(tilted.error().line(), HasSubstr("57.30 deg"));
   EXPECT_FALSE(device.place({.turntable_rad = 0, .tilt_rad = 0, .hand_turn = RigidTransform{}}));
 }
 

@@ -33,6 +33,27 @@ TEST(RigJson, RoundTrip) {
   EXPECT_EQ(rig_to_json(*back), rig_to_json(*parse_rig(rig_to_json(*back), "rig")));
 }
 
+TEST(RigJson, ArmHeadAndLimits) {
+  Rig rig;
+  rig.view.motion_per_row_mm = {0, 0.1, 0};
+  rig.has_turntable = true;
+  rig.turntable_rad = {-1, 2};
+  rig.head = HeadBox{{-1, -2, 3}, {4, 5, 6}};
+  rig.robot = RobotReach{{1, 2, 3}, {10, 20}, {30, 40}, {50, 60}};
+  rig.keep_out_margin_mm = 22;
+  const Result<Rig> back = parse_rig(rig_to_json(rig), "rig");
+  ASSERT_TRUE(back) << back.error().line();
+  EXPECT_NEAR(back->turntable_rad.low, -1, 1e-12);
+  EXPECT_NEAR(back->turntable_rad.high, 2, 1e-12);
+  ASSERT_TRUE(back->head && back->robot);
+  EXPECT_EQ(back->head->high_mm, rig.head->high_mm);
+  EXPECT_EQ(back->robot->base_mm, rig.robot->base_mm);
+  EXPECT_EQ(back->robot->reach_mm.high, 20);
+  EXPECT_EQ(back->robot->height_mm.low, 30);
+  EXPECT_EQ(back->robot->standoff_mm.high, 60);
+  EXPECT_EQ(back->keep_out_margin_mm, 22);
+}
+
 TEST(RigJson, NamesWhatIsMissing) {
   const Result<Rig> rig = parse_rig(R"({"name":"x"})", "session");
   ASSERT_FALSE(rig);

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+// Scans that come in vain while the engine drives by itself: of nothing, of a hand, of another tablet. They
+// are asked for once more, then a person is.
+#include "station/engine_impl.h"
+
+namespace dubsar {
+
+namespace {
+
+/// Scans in a row that may come in vain.
+constexpr int kMostInVain = 3;
+constexpr int kMostEmpty = 2;
+
+std::string listed(const std::set<int>& ids) {
+  std::string text = ids.size() == 1 ? "scan " : "scans ";
+  std::size_t left = ids.size();
+  for (const int id : ids) {
+    text += std::to_string(id);
+    --left;
+    text += left > 1 ? ", " : left == 1 ? " and " : "";
+  }
+  return text;
+}
+
+}  // namespace
+
+Taken Engine::Impl::refuse_empty() {
+  const Error nothing{ErrorKind::kBadInput,
+                      "the scan has no sample at all: nothing stands before the scanner", options.device,
+                      "see that the tablet lies in the measuring field, then give the same command again"};
+  ++empty_scans;
+  if (drives && empty_scans < kMostEmpty) {
+    emit(Notice{fmt::format("{}: {}; the same view is scanned once more", nothing.where, nothing.what)});
+    return Taken::kNothing;
+  }
+  end_motion(nothing);
+  return source->capabilities().finite ? Taken::kNothing : Taken::kEnd;
+}
+
+ScanPose Engine::Impl::set_intruders_aside(const StationScan& scan, ScanPose pose, JobContext& job) {
+  intruders.add(scan);
+  while (!job.cancelled()) {
+    const std::optional<Intruder> found = intruders.look(scan.id, registrar.poses());
+    if (!found || word.locked.contains(found->id)) {
+      break;
+    }
+    intruders.remove(found->id);
+    const std::string why = fmt::format(
+        "something was in the way of scan {}: {:.0f} % of it, where scan {} looked too, stands in the air",
+        found->id, 100 * found->share, found->witness);
+    if (const Status dropped = store->drop_scan(found->id, why); !dropped) {
+      give_up(dropped.error());
+      break;
+    }
+    registrar.remove(found->id);
+    emit(Notice{why + "; it is set aside (session restore puts it back)"});
+    if (found->id == scan.id) {
+      pose = ScanPose{};
+      pose.id = scan.id;
+      pose.reason = why;
+      break;
+    }
+    if (pose.status != PoseStatus::kRegistered) {
+      pose = register_scan(scan, job);
+    }
+  }
+  return pose;
+}
+
+bool Engine::Impl::another_tablet(int id, const std::set<int>& before, const std::set<int>& now) {
+  const auto lies = lies_as.find(id);
+  return !before.empty() && lies != lies_as.end() && now.contains(id) &&
+         std::ranges::none_of(before, [&](int one) { return now.contains(one); }) &&
+         std::ranges::any_of(before, [&](int one) {
+           const auto other = lies_as.find(one);
+           return other != lies_as.end() && other->second == lies->second;
+         });
+}
+
+NextStep Engine::Impl::once_more() {
+  again = true;
+  return Step{.view = {}, .scene = {}, .again = true};
+}
+
+NextStep Engine::Impl::step_after(int id, const std::vector<ScanPose>& poses, const RedMap& red_map) {
+  std::set<int> now;
+  std::string reason = "something was in the way";
+  for (const ScanPose& pose : poses) {
+    if (pose.status == PoseStatus::kRegistered) {
+      now.insert(pose.id);
+    } else if (pose.id == id) {
+      reason = pose.reason;
+    }
+  }
+  const std::set<int> before = std::exchange(taken_up, now);
+  if (another_tablet(id, before, now)) {
+    end_motion({ErrorKind::kBadInput,
+                listed(now) + " fit each other and not " + listed(before) +
+                    ": something was in the way before, or another tablet lies there now",
+                options.session.string(),
+                "take the wrong ones out (session drop), then give the same command again"});
+    return std::nullopt;
+  }
+  const bool is_again = std::exchange(again, false);
+  const bool doubtful = !is_again && planning.shows_much_more(id);
+  if (now.contains(id)) {
+    misses = 0;
+    if (doubtful) {
+      emit(Notice{fmt::format(
+          "scan {} shows much more than what is known; the same view is scanned once more, to see whether "
+          "something was in the way",
+          id)});
+      return once_more();
+    }
+    return step_to(red_map);
+  }
+  ++misses;
+  const auto lies = lies_as.find(id);
+  const bool just_lifted = lies != lies_as.end() && std::ranges::none_of(now, [&](int one) {
+                             const auto other = lies_as.find(one);
+                             return other != lies_as.end() && other->second == lies->second;
+                           });
+  // Just lifted, it mostly shows too little that is known; else something was in the way and is gone again.
+  const bool look_elsewhere = misses == (just_lifted && !doubtful && !is_again ? 1 : 2);
+  const std::optional<NextView> other = look_elsewhere && rig ? planning.after_miss(*rig, id) : std::nullopt;
+  if (other) {
+    emit(Notice{
+        fmt::format("scan {} is not taken up: {}; the next view shows more of what is known", id, reason)});
+    // Where it was turned by hand meanwhile, only the motors' word says how it lies: whatever way it does.
+    StageScene wide = unseen();
+    if (const auto on_stage = planning.scene_for(*rig, *other->placement)) {
+      wide.tablet_mm.extend(on_stage->tablet_mm);
+      wide.focus_mm = on_stage->focus_mm;
+    }
+    return Step{.view = *other, .scene = wide, .again = false};
+  }
+  if (misses < kMostInVain) {
+    emit(Notice{fmt::format("scan {} is not taken up: {}; the same view is scanned once more", id, reason)});
+    return once_more();
+  }
+  end_motion(
+      {ErrorKind::kBadInput,
+       fmt::format("{} scans in a row are not taken up, scan {} because {}", misses, id, reason),
+       options.session.string(),
+       "see that it is the right tablet, that no hand is in view and that nothing moved, then give the "
+       "same command again"});
+  return std::nullopt;
+}
+
+}  // namespace dubsar

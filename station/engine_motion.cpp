@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+// What moves. Every placement is held against limits and keep-out volume, the whole way there, before the
+// first motor is asked; after anything that went wrong none is asked again.
+#include "station/engine_impl.h"
+
+#include "planning/motor_placements.h"
+
+namespace dubsar {
+
+Status Engine::Impl::limit_rig() {
+  const std::string where = options.limits ? options.limits_file : options.device;
+  if (options.limits) {
+    if (!rig) {
+      return fail(ErrorKind::kUsage, "this device tells of no rig whose limits could be narrowed", where,
+                  "leave the rig file out");
+    }
+    Result<Rig> narrow = narrowed(*rig, *options.limits, where);
+    if (!narrow) {
+      return std::unexpected(narrow.error());
+    }
+    rig = std::move(*narrow);
+  }
+  if (drives && rig) {
+    const Result<Placement> first = first_placement(*rig, unseen(), where);
+    if (!first) {
+      return std::unexpected(first.error());
+    }
+  }
+  return {};
+}
+
+void Engine::Impl::end_motion(Error error) {
+  emit(Notice{error.line()});
+  const std::scoped_lock lock(mutex);
+  if (!device_error) {
+    device_error = std::move(error);
+  }
+}
+
+void Engine::Impl::stop_motion_after_trouble(const JobContext& job) {
+  const bool failed_device = [&] {
+    const std::scoped_lock lock(mutex);
+    return device_error.has_value();
+  }();
+  if (failed_device || job.cancelled()) {
+    [[maybe_unused]] const Status said = source->stop();
+  }
+}
+
+StageScene Engine::Impl::unseen() const {
+  constexpr double kPinRoomMm = 40;
+  StageScene out = unseen_tablet(*rig, options.size_mm);
+  if (options.pins) {
+    out.tablet_mm.min().array() -= kPinRoomMm;
+    out.tablet_mm.max().array() += kPinRoomMm;
+  }
+  return out;
+}
+
+bool Engine::Impl::move_to_start(JobContext& job) {
+  scene = rig ? unseen() : StageScene{};
+  if (!rig) {
+    present = present.value_or(Placement{});
+    return true;
+  }
+  const Result<Placement> first = first_placement(*rig, scene, options.device);
+  if (!first) {
+    end_motion(first.error());
+    return false;
+  }
+  // Turntable and tilt stand at 0 when the device was opened; where an arm stands only its driver knows.
+  if (!rig->robot && !present) {
+    present = Placement{};
+  }
+  const bool there = present && !first->free_pose && present->turntable_rad == first->turntable_rad &&
+                     present->tilt_rad == first->tilt_rad;
+  return there || move_to(*first, scene, job);
+}
+
+bool Engine::Impl::move_to(const Placement& target, const StageScene& on_stage, JobContext& job) {
+  const auto refused = [&](Error error) {
+    if (error.kind == ErrorKind::kCancelled) {
+      give_up(stopped());
+      return false;
+    }
+    error.kind = ErrorKind::kDevice;
+    end_motion(std::move(error));
+    return false;
+  };
+  Result<std::vector<Placement>> way = std::vector<Placement>{target};
+  if (rig) {
+    way = safe_way(*rig, on_stage, present, target, options.device);
+  }
+  if (!way) {
+    way.error().what = "not driven to " + say_placement(*rig, target) + ": " + way.error().what;
+    way.error().mend = "lay the tablet elsewhere or allow the rig more, then give the same command again";
+    return refused(way.error());
+  }
+  for (Placement& stop : *way) {
+    const Status placed = source->place(stop, job);
+    if (job.cancelled() || !placed) {
+      [[maybe_unused]] const Status still = source->stop();
+      return refused(placed ? stopped() : placed.error());
+    }
+    stop.hand_turn.reset();
+    present = stop;
+  }
+  scene = on_stage;
+  return true;
+}
+
+NextStep Engine::Impl::step_to(const RedMap& red_map) const {
+  if (red_map.conclusive || red_map.next.empty() || !red_map.next.front().placement) {
+    return std::nullopt;
+  }
+  NextStep step;
+  for (const NextView& view : red_map.next) {
+    if (!view.placement) {
+      continue;
+    }
+    const auto on_stage = rig ? planning.scene_for(*rig, *view.placement) : std::nullopt;
+    Step one{.view = view, .scene = on_stage.value_or(StageScene{}), .again = false};
+    if (!rig || check_clear(*rig, one.scene, *view.placement, options.device)) {
+      if (const auto side = rig ? planning.before_lifting(*rig, view) : std::nullopt) {
+        one.view = *side;
+        one.scene = planning.scene_for(*rig, *side->placement).value_or(one.scene);
+      }
+      return one;
+    }
+    step = step ? step : NextStep(one);  // refused, with its reason, by whoever is to drive there
+  }
+  return step;
+}
+
+}  // namespace dubsar
