@@ -140,6 +140,13 @@ Status PlanningStage::stitch(JobContext& job) {
   return {};
 }
 
+Result<Mesh> PlanningStage::mesh(JobContext& job) {
+  if (const Status stitched = stitch(job); !stitched) {
+    return std::unexpected(stitched.error());
+  }
+  return stitcher_.mesh(job);
+}
+
 Result<RedMap> PlanningStage::red_map(const Rig* rig, JobContext& job) {
   const std::vector<PlacedScan> scans = cleared_.scans();
   RedMapOptions options;
