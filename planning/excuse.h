@@ -45,6 +45,11 @@ void excuse_unneeded(std::span<const PlacedScan> scans, const SurfaceCover& cove
 void excuse_specks(std::span<const PlacedScan> scans, const SurfaceCover& cover, double surface_mm2,
                    const ExcuseOptions& options, RedTargets& red);
 
+/// Unneeded: what is left when all of it together is below speck_budget of the surface and no view is
+/// expected to clear as much as a single speck.
+void excuse_last_specks(std::span<const PlacedScan> scans, const SurfaceCover& cover, double best_gain_mm2,
+                        double surface_mm2, const ExcuseOptions& options, RedTargets& red);
+
 /// Unneeded: strays, returns from nowhere (outliers, mixed pixels at depth edges). The test: no surface of
 /// the model lies within stray_mm (at least 2 µ) of the red samples, and at least stray_views scans sample
 /// the surface behind them well, through the very place. noise_mm: by scan.

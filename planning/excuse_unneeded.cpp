@@ -155,39 +155,57 @@ void excuse_unneeded(std::span<const PlacedScan> scans, const SurfaceCover& cove
 
 namespace {
 
-/// The places half way between the red samples of a group and the well-sampled surface; empty where that is
-/// out of reach, or does not lead there flat enough (`flat_mm`) for a chord to be the surface.
-std::vector<Eigen::Vector3d> bridged(const SurfaceCover& cover, const RedTargets& red,
-                                     std::span<const std::uint32_t> group, double flat_mm) {
-  std::vector<Eigen::Vector3d> filled;
-  for (const std::uint32_t t : group) {
-    const Eigen::Vector3d& sample = red.targets[t].sample_mm;
-    const auto around = cover.within(sample, cover.reach_mm());
-    const auto nearest = std::min_element(around.begin(), around.end(), [&](const auto& a, const auto& b) {
-      return (a.position_mm.template cast<double>() - sample).squaredNorm() <
-             (b.position_mm.template cast<double>() - sample).squaredNorm();
-    });
-    if (nearest == around.end()) {
-      return {};
-    }
-    const Eigen::Vector3d from = nearest->position_mm.cast<double>();
-    if (std::abs(nearest->normal.cast<double>().dot(sample - from)) > flat_mm) {
-      return {};
-    }
-    filled.emplace_back(0.5 * (sample + from));
+/// Where interpolation puts the surface beside a red sample: half way to the well-sampled surface, at the
+/// mean height of that around it (one sample's noise is too much); and how far the sample rises over it.
+/// Nothing where it is out of reach.
+struct Bridge {
+  Eigen::Vector3d filled_mm{0, 0, 0};
+  double rise_mm = 0;
+};
+
+std::optional<Bridge> bridge(const SurfaceCover& cover, const RedTarget& target) {
+  const Eigen::Vector3d& sample = target.sample_mm;
+  const auto around = cover.within(sample, cover.reach_mm());
+  const auto nearest = std::min_element(around.begin(), around.end(), [&](const auto& a, const auto& b) {
+    return (a.position_mm.template cast<double>() - sample).squaredNorm() <
+           (b.position_mm.template cast<double>() - sample).squaredNorm();
+  });
+  if (nearest == around.end()) {
+    return std::nullopt;
   }
-  return filled;
+  const Eigen::Vector3d from = nearest->position_mm.cast<double>();
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  for (const auto& e : around) {
+    normal += e.normal.cast<double>();
+    mean += e.position_mm.cast<double>() / static_cast<double>(around.size());
+  }
+  normal.normalize();
+  const Eigen::Vector3d middle = 0.5 * (sample + from);
+  return Bridge{middle + normal * normal.dot(mean - middle),
+                std::abs(nearest->normal.cast<double>().dot(sample - from))};
+}
+
+void excuse_speck(const SurfaceCover& cover, const char* why, RedTarget& target) {
+  target.excuse_as(Excuse::kUnneeded, why);
+  if (const auto filled = bridge(cover, target)) {
+    target.interpolated_mm = filled->filled_mm;
+  }
+}
+
+double largest_speck_mm2(std::span<const PlacedScan> scans, const ExcuseOptions& options) {
+  double spacing_mm = 0;
+  for (const PlacedScan& scan : scans) {
+    spacing_mm = std::max(spacing_mm, spacing_of(*scan.grid));
+  }
+  return options.speck_spacings2 * spacing_mm * spacing_mm;
 }
 
 }  // namespace
 
 void excuse_specks(std::span<const PlacedScan> scans, const SurfaceCover& cover, double surface_mm2,
                    const ExcuseOptions& options, RedTargets& red) {
-  double spacing_mm = 0;
-  for (const PlacedScan& scan : scans) {
-    spacing_mm = std::max(spacing_mm, spacing_of(*scan.grid));
-  }
-  const double largest_mm2 = options.speck_spacings2 * spacing_mm * spacing_mm;
+  const double largest_mm2 = largest_speck_mm2(scans, options);
   std::vector<std::vector<std::uint32_t>> untried;
   double all_mm2 = 0;
   for (auto& group : cluster_targets(red, scans, red.cell_mm, options.largest_gap_mm, true)) {
@@ -205,8 +223,7 @@ void excuse_specks(std::span<const PlacedScan> scans, const SurfaceCover& cover,
     const bool speck = area_mm2 <= largest_mm2 && box.diagonal().norm() <= options.largest_gap_mm;
     if (speck && tried >= static_cast<std::size_t>(options.speck_tries)) {
       for (const std::uint32_t t : group) {
-        red.targets[t].excuse_as(Excuse::kUnneeded, "speck: " + std::to_string(options.speck_tries) +
-                                                        " scans looked at it and found nothing more");
+        excuse_speck(cover, "speck: scans looked straight at it and found nothing more", red.targets[t]);
       }
       continue;
     }
@@ -220,12 +237,30 @@ void excuse_specks(std::span<const PlacedScan> scans, const SurfaceCover& cover,
   }
   for (const auto& group : untried) {
     // A chord is off the surface by a quarter of the height to which its far end rises over the near one.
-    const auto filled = bridged(cover, red, group, kChordHeights * options.interpolation_mm);
-    for (std::size_t k = 0; k < filled.size(); ++k) {
-      red.targets[group[k]].excuse_as(
-          Excuse::kUnneeded,
-          "speck: the gap is no larger than the rule of 3µ lets pass, and closes in a straight line");
-      red.targets[group[k]].interpolated_mm = filled[k];
+    const bool flat = std::all_of(group.begin(), group.end(), [&](std::uint32_t t) {
+      const auto gap = bridge(cover, red.targets[t]);
+      return gap && gap->rise_mm <= kChordHeights * options.interpolation_mm;
+    });
+    for (std::size_t k = 0; flat && k < group.size(); ++k) {
+      excuse_speck(cover,
+                   "speck: the gap is no larger than the rule of 3µ lets pass, and closes in a straight line",
+                   red.targets[group[k]]);
+    }
+  }
+}
+
+void excuse_last_specks(std::span<const PlacedScan> scans, const SurfaceCover& cover, double best_gain_mm2,
+                        double surface_mm2, const ExcuseOptions& options, RedTargets& red) {
+  double all_mm2 = 0;
+  for (const RedTarget& t : red.targets) {
+    all_mm2 += t.state == RegionState::kRed ? t.area_mm2 : 0.0;
+  }
+  if (all_mm2 > options.speck_budget * surface_mm2 || best_gain_mm2 > largest_speck_mm2(scans, options)) {
+    return;
+  }
+  for (RedTarget& t : red.targets) {
+    if (t.state == RegionState::kRed) {
+      excuse_speck(cover, "speck: no view is expected to clear as much as one such speck", t);
     }
   }
 }
