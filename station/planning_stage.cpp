@@ -219,6 +219,13 @@ bool PlanningStage::shows_much_more(int id) const {
   return diagonal({&alone, 1}) > kMuchMore * diagonal(others);
 }
 
+Result<Mesh> PlanningStage::mesh(JobContext& job) {
+  if (const Status stitched = stitch(job); !stitched) {
+    return std::unexpected(stitched.error());
+  }
+  return stitcher_.mesh(job);
+}
+
 Result<RedMap> PlanningStage::red_map(const Rig* rig, JobContext& job) {
   const std::vector<PlacedScan> scans = cleared_.scans();
   RedMapOptions options;

@@ -41,7 +41,7 @@ class PlanningStage {
   /// The red map over what is placed.
   [[nodiscard]] Result<RedMap> red_map(const Rig* rig, JobContext& job);
 
-  /// Brings the mesh up to what is placed. Errors: kCancelled, and the stitcher's.
+  /// Brings the mesh up to what is placed, while nobody waits. Errors: kCancelled, and the stitcher's.
   Status stitch(JobContext& job);
 
   /// What the motors have to know of the tablet before they go to a placement: how it lies, after the turn
@@ -59,8 +59,8 @@ class PlanningStage {
   /// larger than most tablets.
   [[nodiscard]] bool shows_much_more(int id) const;
 
-  /// The mesh of what is placed and stitched.
-  [[nodiscard]] Result<Mesh> mesh(const JobContext& job) const { return stitcher_.mesh(job); }
+  /// The mesh of what is placed; stitches what is not stitched yet.
+  [[nodiscard]] Result<Mesh> mesh(JobContext& job);
 
   /// Red (and amber, excused) samples of the last red_map() in the model frame, for pictures of the mesh.
   /// Excused samples that hang in the air are left out, strays and others: they would make the picture of
