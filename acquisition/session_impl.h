@@ -26,6 +26,8 @@ struct SessionStore::Impl {
   ~Impl();
   /// kUsage when the session was opened for reading only.
   [[nodiscard]] Status writable() const;
+  /// Under the mutex.
+  [[nodiscard]] Result<int> next_id();
   /// The checks of opening that follow once db stands: rows, grids without a row, rows without their grid.
   [[nodiscard]] Status reconcile();
 };

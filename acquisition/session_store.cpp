@@ -51,6 +51,16 @@ Status SessionStore::Impl::writable() const {
   return fail(ErrorKind::kUsage, "the session was opened for reading only", folder.string());
 }
 
+Result<int> SessionStore::Impl::next_id() {
+  const Result<std::int64_t> last = db->integer_of("SELECT coalesce(max(id), -1) FROM scans");
+  if (!last) {
+    return std::unexpected(last.error());
+  }
+  // A damaged grid whose row is lost keeps its number too.
+  const std::vector<int> there = session::grid_ids(folder);
+  return std::max(static_cast<int>(*last), there.empty() ? -1 : there.back()) + 1;
+}
+
 SessionStore::SessionStore(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 SessionStore::~SessionStore() = default;
 SessionStore::SessionStore(SessionStore&&) noexcept = default;
@@ -122,6 +132,11 @@ double SessionStore::disk_free_gib() const {
   return error ? 0.0 : static_cast<double>(space.available) / static_cast<double>(1U << 30U);
 }
 
+Result<int> SessionStore::next_id() const {
+  const std::scoped_lock hold(impl_->mutex);
+  return impl_->next_id();
+}
+
 Result<int> SessionStore::add_grid(const RangeGrid& grid) {
   if (Status writable = impl_->writable(); !writable) {
     return std::unexpected(writable.error());
@@ -134,13 +149,11 @@ Result<int> SessionStore::add_grid(const RangeGrid& grid) {
   const FileSum sum{static_cast<std::int64_t>(bytes.size()), session::hash_of(view)};
 
   const std::scoped_lock hold(impl_->mutex);
-  const Result<std::int64_t> last = impl_->db->integer_of("SELECT coalesce(max(id), -1) FROM scans");
-  if (!last) {
-    return std::unexpected(last.error());
+  const Result<int> next = impl_->next_id();
+  if (!next) {
+    return next;
   }
-  // A damaged grid whose row is lost keeps its number too.
-  const std::vector<int> there = session::grid_ids(impl_->folder);
-  const int id = std::max(static_cast<int>(*last), there.empty() ? -1 : there.back()) + 1;
+  const int id = *next;
   const fs::path path = impl_->folder / session::grid_name(id);
   if (Status written = write_file_atomically(path, std::span(bytes)); !written) {
     return std::unexpected(written.error());

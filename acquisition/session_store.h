@@ -92,6 +92,8 @@ class SessionStore {
 
   /// Stores a grid and returns its id (0, 1, …, never used twice) once it is durable.
   [[nodiscard]] Result<int> add_grid(const RangeGrid& grid);
+  /// The id that add_grid() will give to the next grid.
+  [[nodiscard]] Result<int> next_id() const;
   /// The grid of a scan, dropped or not; its bytes are checked against their checksum.
   [[nodiscard]] Result<RangeGrid> load_grid(int id) const;
   [[nodiscard]] Result<std::vector<StoredScan>> scans() const;  ///< by id, dropped ones included

@@ -2,9 +2,15 @@
 // Copyright The Dubsar developers
 #include "core/grid_lookup.h"
 
+#include <tbb/task_arena.h>
+
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <utility>
+
+#include "core/parallel.h"
 
 namespace dubsar {
 
@@ -16,9 +22,6 @@ using Eigen::Vector3f;
 /// More buckets than this per sample and the raster is mostly air: outliers are clipped, then the cells grow
 /// until it fits.
 constexpr double kMaxCellsPerSample = 8.0;
-
-/// Rounding of a projected coordinate, per millimetre of the coordinates that it was made of.
-constexpr float kRounding = 16 * std::numeric_limits<float>::epsilon();
 
 constexpr float kFar = std::numeric_limits<float>::infinity();
 
@@ -37,19 +40,40 @@ float gap(float low, float high, float x, float slack) {
   return std::max({low - x - slack, x - high - slack, 0.0F});
 }
 
+/// Samples that are worth a thread of their own while the buckets are filled.
+constexpr std::size_t kSamplesPerPart = 200000;
+constexpr std::size_t kGrain = 16384;
+
 }  // namespace
 
-int GridLookup::cell_at(float mm, int cells) const {
-  return static_cast<int>(std::clamp(mm * per_mm_, 0.0F, static_cast<float>(cells - 1)));
-}
+/// Of the entered samples.
+struct GridLookup::Bounds {
+  Vector2f low = Vector2f::Constant(kFar);
+  Vector2f high = Vector2f::Constant(-kFar);
+  Eigen::AlignedBox3f box_mm;
+  std::size_t count = 0;
 
-std::pair<int, int> GridLookup::cells_between(float low_mm, float high_mm, int cells) const {
-  // What was clipped lies in the rim, however far outside it is.
-  const bool meets = high_mm * per_mm_ >= -1.0F && low_mm * per_mm_ <= static_cast<float>(cells);
-  if (cells == 0 || !(meets || clipped_)) {
-    return {0, -1};
+  void add(const Bounds& b) {
+    low = low.cwiseMin(b.low);
+    high = high.cwiseMax(b.high);
+    box_mm.extend(b.box_mm);
+    count += b.count;
   }
-  return {cell_at(low_mm, cells), cell_at(high_mm, cells)};
+};
+
+template <class Visit>
+void GridLookup::for_each_entered(const std::vector<std::uint8_t>& keep, std::size_t begin, std::size_t end,
+                                  const Visit& visit) const {
+  for (std::size_t i = begin; i < end; ++i) {
+    if (grid_->valid[i] == 0 || (!keep.empty() && keep[i] == 0)) {
+      continue;
+    }
+    const Vector3f p = grid_->point(i);
+    const Vector2f uv(u_axis_.dot(p), v_axis_.dot(p));
+    if (uv.allFinite() && p.allFinite()) {
+      visit(i, p, uv);
+    }
+  }
 }
 
 GridLookup::GridLookup(const RangeGrid& grid, const std::vector<std::uint8_t>& keep, double cell_mm)
@@ -59,50 +83,46 @@ GridLookup::GridLookup(const RangeGrid& grid, const std::vector<std::uint8_t>& k
   u_axis_ = u.cast<float>();
   v_axis_ = w.cross(u).cast<float>();
   w_axis_ = w.cast<float>();
-  std::vector<Vector2f> uv;
-  std::vector<std::uint32_t> entered;
-  uv.reserve(grid.size());
-  entered.reserve(grid.size());
-  for (std::size_t i = 0; i < grid.size(); ++i) {
-    if (grid.valid[i] == 0 || (!keep.empty() && keep[i] == 0)) {
-      continue;
-    }
-    const Vector3f p = grid.point(i);
-    const Vector2f projected = project(p);
-    if (projected.allFinite() && p.allFinite()) {
-      uv.push_back(projected);
-      entered.push_back(static_cast<std::uint32_t>(i));
-      extent_mm_ = std::max(extent_mm_, p.cwiseAbs().maxCoeff());
-    }
-  }
-  if (entered.empty()) {
-    start_.assign(1, 0);
+  const Bounds bounds = parallel_reduce_ordered(
+      grid.size(), kGrain, Bounds{},
+      [&](std::size_t begin, std::size_t end) {
+        Bounds part;
+        for_each_entered(keep, begin, end, [&](std::size_t, const Vector3f& p, const Vector2f& uv) {
+          part.add({uv, uv, {p, p}, 1});
+        });
+        return part;
+      },
+      [](Bounds& into, const Bounds& part) { into.add(part); });
+  box_mm_ = bounds.box_mm;
+  count_ = bounds.count;
+  if (count_ == 0) {
     return;
   }
-  lay_raster(uv, entered);
-  fill_buckets(uv, entered);
+  extent_mm_ = std::max(box_mm_.min().cwiseAbs().maxCoeff(), box_mm_.max().cwiseAbs().maxCoeff());
+  lay_raster(keep, bounds);
+  fill_buckets(keep);
 }
 
-void GridLookup::lay_raster(const std::vector<Vector2f>& uv, const std::vector<std::uint32_t>& entered) {
-  Vector2f low = uv[0];
-  Vector2f high = uv[0];
-  for (const Vector2f& p : uv) {
-    low = low.cwiseMin(p);
-    high = high.cwiseMax(p);
-  }
-  const double most_cells = kMaxCellsPerSample * static_cast<double>(entered.size()) + 1024.0;
+void GridLookup::lay_raster(const std::vector<std::uint8_t>& keep, const Bounds& bounds) {
+  Vector2f low = bounds.low;
+  Vector2f high = bounds.high;
+  const double most_cells = kMaxCellsPerSample * static_cast<double>(count_) + 1024.0;
   const auto cells = [&] {
     const Eigen::Array2d span = (high.cast<double>() - low.cast<double>()).array();
     return (span / cell_mm_ + 1.0).prod();
   };
   if (!(cell_mm_ > 0) || cells() > most_cells) {
-    const std::size_t step = std::max<std::size_t>(1, uv.size() / 4096);
-    for (int axis = 0; axis < 2; ++axis) {
-      std::vector<float> some;
-      for (std::size_t k = 0; k < uv.size(); k += step) {
-        some.push_back(uv[k][axis]);
+    const std::size_t step = std::max<std::size_t>(1, count_ / 4096);
+    std::array<std::vector<float>, 2> some;
+    std::size_t k = 0;
+    for_each_entered(keep, 0, grid_->size(), [&](std::size_t, const Vector3f&, const Vector2f& uv) {
+      if (k++ % step == 0) {
+        some[0].push_back(uv.x());
+        some[1].push_back(uv.y());
       }
-      const auto [from, to] = window_of(some);
+    });
+    for (int axis = 0; axis < 2; ++axis) {
+      const auto [from, to] = window_of(some[static_cast<std::size_t>(axis)]);
       clipped_ = clipped_ || from > low[axis] || to < high[axis];
       low[axis] = std::max(low[axis], from);
       high[axis] = std::min(high[axis], to);
@@ -129,37 +149,68 @@ void GridLookup::lay_raster(const std::vector<Vector2f>& uv, const std::vector<s
   blocks_down_ = (height_ + kBlockCells - 1) / kBlockCells;
 }
 
-void GridLookup::fill_buckets(const std::vector<Vector2f>& uv, const std::vector<std::uint32_t>& entered) {
+/// A counting sort in parts of the grid. What comes out is the same for any number of parts: buckets in
+/// order, samples ascending in each.
+void GridLookup::fill_buckets(const std::vector<std::uint8_t>& keep) {
   const auto across = static_cast<std::size_t>(width_);
-  std::vector<std::uint32_t> cell(entered.size());
-  start_.assign(across * static_cast<std::size_t>(height_) + 1, 0);
-  blocks_.assign(static_cast<std::size_t>(blocks_across_) * static_cast<std::size_t>(blocks_down_), {});
-  for (std::size_t k = 0; k < entered.size(); ++k) {
-    const int cu = cell_at(uv[k].x() - u_min_, width_);
-    const int cv = cell_at(uv[k].y() - v_min_, height_);
-    cell[k] =
-        static_cast<std::uint32_t>(static_cast<std::size_t>(cv) * across + static_cast<std::size_t>(cu));
-    ++start_[cell[k] + 1];
-    const Vector3f p = grid_->point(entered[k]);
-    const float depth = w_axis_.dot(p);
-    Block& block =
-        blocks_[static_cast<std::size_t>(cv / kBlockCells) * static_cast<std::size_t>(blocks_across_) +
-                static_cast<std::size_t>(cu / kBlockCells)];
-    block.low = std::min(block.low, depth);
-    block.high = std::max(block.high, depth);
-    block.extent = std::max(block.extent, p.cwiseAbs().maxCoeff());
+  const std::size_t cells = across * static_cast<std::size_t>(height_);
+  const std::size_t parts = std::clamp<std::size_t>(
+      grid_->size() / kSamplesPerPart, 1, static_cast<std::size_t>(tbb::this_task_arena::max_concurrency()));
+  const std::size_t length = (grid_->size() + parts - 1) / parts;
+  struct Part {
+    std::vector<std::uint32_t> next;  ///< [cells] how many of the part, later where the next one goes
+    std::vector<Block> blocks;
+  };
+  std::vector<Part> all(parts);
+  const auto cell_of = [&](const Vector2f& uv, int& cu, int& cv) {
+    cu = cell_at(uv.x() - u_min_, width_);
+    cv = cell_at(uv.y() - v_min_, height_);
+    return static_cast<std::size_t>(cv) * across + static_cast<std::size_t>(cu);
+  };
+  parallel_chunks(grid_->size(), length, [&](std::size_t begin, std::size_t end) {
+    Part& part = all[begin / length];
+    part.next.assign(cells, 0);
+    part.blocks.assign(static_cast<std::size_t>(blocks_across_) * static_cast<std::size_t>(blocks_down_), {});
+    for_each_entered(keep, begin, end, [&](std::size_t, const Vector3f& p, const Vector2f& uv) {
+      int cu = 0;
+      int cv = 0;
+      ++part.next[cell_of(uv, cu, cv)];
+      const float depth = w_axis_.dot(p);
+      Block& block =
+          part.blocks[static_cast<std::size_t>(cv / kBlockCells) * static_cast<std::size_t>(blocks_across_) +
+                      static_cast<std::size_t>(cu / kBlockCells)];
+      block.low = std::min(block.low, depth);
+      block.high = std::max(block.high, depth);
+      block.extent = std::max(block.extent, p.cwiseAbs().maxCoeff());
+    });
+  });
+  std::erase_if(all, [](const Part& part) { return part.next.empty(); });  // a last one may have no sample
+  blocks_ = std::move(all.front().blocks);
+  for (std::size_t k = 1; k < all.size(); ++k) {
+    for (std::size_t b = 0; b < blocks_.size(); ++b) {
+      blocks_[b].low = std::min(blocks_[b].low, all[k].blocks[b].low);
+      blocks_[b].high = std::max(blocks_[b].high, all[k].blocks[b].high);
+      blocks_[b].extent = std::max(blocks_[b].extent, all[k].blocks[b].extent);
+    }
   }
-  for (std::size_t c = 1; c < start_.size(); ++c) {
-    start_[c] += start_[c - 1];
+  start_ = BigArray<std::uint32_t>(cells + 1);
+  std::uint32_t at = 0;
+  for (std::size_t c = 0; c < cells; ++c) {
+    start_[c] = at;
+    for (Part& part : all) {
+      at += std::exchange(part.next[c], at);
+    }
   }
-  samples_.resize(entered.size());
-  points_.resize(entered.size());
-  std::vector<std::uint32_t> next(start_.begin(), start_.end() - 1);
-  for (std::size_t k = 0; k < entered.size(); ++k) {
-    const std::uint32_t at = next[cell[k]]++;
-    samples_[at] = entered[k];
-    points_[at] = grid_->point(entered[k]);
-  }
+  start_[cells] = at;
+  entries_ = BigArray<Entry>(count_);
+  parallel_chunks(grid_->size(), length, [&](std::size_t begin, std::size_t end) {
+    Part& part = all[begin / length];
+    for_each_entered(keep, begin, end, [&](std::size_t i, const Vector3f& p, const Vector2f& uv) {
+      int cu = 0;
+      int cv = 0;
+      entries_[part.next[cell_of(uv, cu, cv)]++] = {p.x(), p.y(), p.z(), static_cast<std::uint32_t>(i)};
+    });
+  });
 }
 
 /// One nearest() under way. Bounds hold for clipped samples too: bringing both ends of a distance into the
@@ -179,13 +230,13 @@ struct GridLookup::Search {
 
   /// The buckets of a row from one cell to another.
   void visit(int row, int from, int to) {
-    const std::size_t base = static_cast<std::size_t>(row) * static_cast<std::size_t>(in.width_);
-    const std::uint32_t end = in.start_[base + static_cast<std::size_t>(to) + 1];
-    for (std::uint32_t k = in.start_[base + static_cast<std::size_t>(from)]; k < end; ++k) {
-      const float d2 = (in.points_[k] - p).squaredNorm();
-      if (d2 < best2 || (d2 == best2 && best >= 0 && in.samples_[k] < best)) {
+    const std::uint32_t end = in.row_end(row, to);
+    for (std::uint32_t k = in.row_start(row, from); k < end; ++k) {
+      const Entry& entry = in.entries_[k];
+      const float d2 = entry.distance2(p);
+      if (d2 < best2 || (d2 == best2 && best >= 0 && entry.sample < best)) {
         best2 = d2;
-        best = in.samples_[k];
+        best = entry.sample;
       }
     }
   }
@@ -231,7 +282,7 @@ struct GridLookup::Search {
 };
 
 std::int64_t GridLookup::nearest(const Vector3f& p_mm, float radius_mm) const {
-  if (samples_.empty() || !p_mm.allFinite() || !(radius_mm > 0)) {
+  if (count_ == 0 || !p_mm.allFinite() || !(radius_mm > 0)) {
     return -1;
   }
   Search search{*this, p_mm};

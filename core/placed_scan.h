@@ -2,7 +2,7 @@
 // Copyright The Dubsar developers
 #pragma once
 
-#include <vector>
+#include <optional>
 
 #include "core/range_grid.h"
 #include "core/rigid_transform.h"
@@ -18,6 +18,8 @@ struct PlacedScan {
   const SampleFlags* flags = nullptr;  ///< as long as the grid
   RigidTransform model_from_scanner;
   double sigma_mm = 0;  ///< of the pose
+  /// Of one sample along the view (grid_noise.h), where somebody has estimated it already.
+  std::optional<double> noise_mm = std::nullopt;
 };
 
 }  // namespace dubsar

@@ -76,6 +76,17 @@ double estimate_spacing_mm(const RangeGrid& grid) {
   return std::max(median(along_rows), median(along_cols));
 }
 
+double displacement_mm(const Eigen::AlignedBox3f& box_mm, const RigidTransform& from,
+                       const RigidTransform& to) {
+  double most = 0;
+  for (int corner = 0; corner < 8 && !box_mm.isEmpty(); ++corner) {
+    const Eigen::Vector3d p =
+        box_mm.corner(static_cast<Eigen::AlignedBox3f::CornerType>(corner)).cast<double>();
+    most = std::max(most, (from * p - to * p).norm());
+  }
+  return most;
+}
+
 RangeGrid decimated(const RangeGrid& grid, int stride) {
   if (stride <= 1) {
     return grid;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -86,6 +87,11 @@ struct RangeGrid {
 /// Nominal lateral spacing µ: the larger of the median distances between neighbouring valid samples along
 /// rows and along columns, measured across the viewing direction. 0 when the grid has no two neighbours.
 [[nodiscard]] double estimate_spacing_mm(const RangeGrid& grid);
+
+/// The farthest that a point of the box is moved when what is in it goes from one pose to another; 0 for an
+/// empty box.
+[[nodiscard]] double displacement_mm(const Eigen::AlignedBox3f& box_mm, const RigidTransform& from,
+                                     const RigidTransform& to);
 
 /// Every stride-th row and column; spacing and motion scale with it. stride 1 copies.
 [[nodiscard]] RangeGrid decimated(const RangeGrid& grid, int stride);

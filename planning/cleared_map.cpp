@@ -3,33 +3,14 @@
 #include "planning/cleared_map.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
-#include "core/grid_noise.h"
 #include "core/parallel.h"
 
 namespace dubsar {
 
 namespace {
-
-/// A sphere around a scan's samples, scanner frame: scans that are apart need no look-ups.
-struct Ball {
-  Eigen::Vector3d center_mm{0, 0, 0};
-  double radius_mm = 0;
-};
-
-Ball ball_of(const RangeGrid& grid) {
-  Eigen::AlignedBox3f box;
-  for (std::size_t i = 0; i < grid.size(); ++i) {
-    if (grid.valid[i] != 0 && grid.point(i).allFinite()) {
-      box.extend(grid.point(i));
-    }
-  }
-  if (box.isEmpty()) {
-    return {};
-  }
-  return {box.center().cast<double>(), 0.5 * static_cast<double>(box.diagonal().norm())};
-}
 
 SampleFlags own_marks_only(const SampleFlags& flags, std::size_t size) {
   SampleFlags out(flags);
@@ -40,14 +21,6 @@ SampleFlags own_marks_only(const SampleFlags& flags, std::size_t size) {
   return out;
 }
 
-std::vector<std::uint8_t> unflagged(const RangeGrid& grid, const SampleFlags& flags) {
-  std::vector<std::uint8_t> keep(grid.size());
-  for (std::size_t i = 0; i < keep.size(); ++i) {
-    keep[i] = grid.valid[i] != 0 && is_unflagged(flags[i]) ? 1 : 0;
-  }
-  return keep;
-}
-
 }  // namespace
 
 struct ClearedMap::Entry {
@@ -55,40 +28,58 @@ struct ClearedMap::Entry {
       : scan(placed),
         flags(own_marks_only(*placed.flags, placed.grid->size())),
         sparse(sparse_samples(*placed.grid, flags)),
-        times_cleared(sparse.size(), 0),
-        lookup(*placed.grid, unflagged(*placed.grid, flags)),
-        noise_mm(estimate_noise_mm(*placed.grid)),
-        ball(ball_of(*placed.grid)) {
+        times_cleared(sparse.samples.size(), 0),
+        lookup(*placed.grid, unflagged_samples(*placed.grid, flags)),
+        normals(normals_of(*placed.grid)),
+        box_mm(lookup.box_mm()) {
+    box_mm.extend(sparse.box_mm);
     scan.flags = &flags;
+    scan.noise_mm = noise_of(placed);
   }
 
   PlacedScan scan;
   SampleFlags flags;
-  std::vector<SparseSample> sparse;
-  std::vector<std::uint16_t> times_cleared;           ///< by how many scans, per sparse sample
-  std::map<int, std::vector<std::uint32_t>> cleared;  ///< by scan id: positions in `sparse`
-  GridLookup lookup;                                  ///< of the non-flagged samples
-  double noise_mm;
-  Ball ball;
+  SparseSamples sparse;
+  std::vector<std::uint16_t> times_cleared;  ///< by how many scans, per sparse sample
+  GridLookup lookup;                         ///< of the non-flagged samples
+  SampleNormals normals;
+  Eigen::AlignedBox3f box_mm;  ///< of what clears and what may be cleared, scanner frame
 
-  void clear(int by, std::vector<std::uint32_t> which) {
-    for (const std::uint32_t k : which) {
+  /// What one other scan clears of this one, and how they lay to each other when that was found out.
+  struct Match {
+    std::vector<std::uint32_t> which;  ///< positions in `sparse`
+    RigidTransform other_from_own;
+    double radius_mm = 0;
+  };
+  std::map<int, Match> matches;  ///< by the other's id
+
+  void clear(int by, Match match) {
+    restore(by);
+    for (const std::uint32_t k : match.which) {
       ++times_cleared[k];
-      flags[sparse[k].index] |= kCleared;
+      flags[sparse.samples[k].index] |= kCleared;
     }
-    cleared[by] = std::move(which);
+    matches[by] = std::move(match);
   }
   void restore(int by) {
-    const auto it = cleared.find(by);
-    if (it == cleared.end()) {
+    const auto it = matches.find(by);
+    if (it == matches.end()) {
       return;
     }
-    for (const std::uint32_t k : it->second) {
+    for (const std::uint32_t k : it->second.which) {
       if (--times_cleared[k] == 0) {
-        flags[sparse[k].index] &= static_cast<std::uint8_t>(~kCleared);
+        flags[sparse.samples[k].index] &= static_cast<std::uint8_t>(~kCleared);
       }
     }
-    cleared.erase(it);
+    matches.erase(it);
+  }
+  [[nodiscard]] Eigen::Vector3d center_mm() const { return box_mm.center().cast<double>(); }
+  [[nodiscard]] double radius_mm() const { return 0.5 * static_cast<double>(box_mm.diagonal().norm()); }
+  /// Whether a match that was made in this way would come out the same, to within that much.
+  [[nodiscard]] bool still_holds(const Match& match, const RigidTransform& other_from_own, double radius,
+                                 double most_mm) const {
+    return std::abs(match.radius_mm - radius) <= most_mm &&
+           displacement_mm(box_mm, match.other_from_own, other_from_own) <= most_mm;
   }
 };
 
@@ -103,26 +94,31 @@ ClearedMap::Entry* ClearedMap::find(int id) const {
   return it == entries_.end() ? nullptr : it->get();
 }
 
-void ClearedMap::match(Entry& a, Entry& b) {
-  const double radius_mm = matching_radius_mm(*a.scan.grid, a.noise_mm, a.scan.sigma_mm, *b.scan.grid,
-                                              b.noise_mm, b.scan.sigma_mm, options_);
-  const double apart_mm =
-      (a.scan.model_from_scanner * a.ball.center_mm - b.scan.model_from_scanner * b.ball.center_mm).norm();
-  if (!(apart_mm <= a.ball.radius_mm + b.ball.radius_mm + radius_mm)) {
+/// Matches a pair both ways, unless it was and its scans have hardly moved against each other since
+/// (tolerance in µ).
+void ClearedMap::match(Entry& one, Entry& two, double tolerance) {
+  // Whichever came first: the same arithmetic.
+  Entry& a = one.scan.id < two.scan.id ? one : two;
+  Entry& b = one.scan.id < two.scan.id ? two : one;
+  const double radius_mm = matching_radius_mm(*a.scan.grid, *a.scan.noise_mm, a.scan.sigma_mm, *b.scan.grid,
+                                              *b.scan.noise_mm, b.scan.sigma_mm, options_);
+  const RigidTransform b_from_a = b.scan.model_from_scanner.inverse() * a.scan.model_from_scanner;
+  const auto before = a.matches.find(b.scan.id);
+  const double most_mm = tolerance * std::min(spacing_of(*a.scan.grid), spacing_of(*b.scan.grid));
+  if (before != a.matches.end() && a.still_holds(before->second, b_from_a, radius_mm, most_mm)) {
     return;
   }
-  const RigidTransform b_from_a = b.scan.model_from_scanner.inverse() * a.scan.model_from_scanner;
-  a.clear(b.scan.id, matched_samples(a.sparse, b_from_a, b.lookup, radius_mm, options_));
-  b.clear(a.scan.id, matched_samples(b.sparse, b_from_a.inverse(), a.lookup, radius_mm, options_));
-}
-
-void ClearedMap::unmatch(Entry& entry) {
-  for (const std::unique_ptr<Entry>& other : entries_) {
-    if (other.get() != &entry) {
-      other->restore(entry.scan.id);
-      entry.restore(other->scan.id);
-    }
+  const bool empty = a.box_mm.isEmpty() || b.box_mm.isEmpty();
+  const double apart_mm = empty ? 0 : (b_from_a * a.center_mm() - b.center_mm()).norm();
+  Entry::Match of_a{{}, b_from_a, radius_mm};
+  Entry::Match of_b{{}, b_from_a.inverse(), radius_mm};
+  // Scans that are apart need no look-ups.
+  if (!empty && apart_mm <= a.radius_mm() + b.radius_mm() + radius_mm) {
+    of_a.which = matched_samples(a.sparse, b_from_a, b.lookup, b.normals, radius_mm, options_);
+    of_b.which = matched_samples(b.sparse, of_b.other_from_own, a.lookup, a.normals, radius_mm, options_);
   }
+  a.clear(b.scan.id, std::move(of_a));
+  b.clear(a.scan.id, std::move(of_b));
 }
 
 void ClearedMap::add(const PlacedScan& scan) {
@@ -130,7 +126,7 @@ void ClearedMap::add(const PlacedScan& scan) {
   auto entry = std::make_unique<Entry>(scan);
   // Each pair writes to two scans; pairs are done one after the other, their samples on all cores.
   for (const std::unique_ptr<Entry>& other : entries_) {
-    match(*entry, *other);
+    match(*entry, *other, 0);
   }
   const auto at = std::lower_bound(entries_.begin(), entries_.end(), scan.id,
                                    [](const std::unique_ptr<Entry>& e, int id) { return e->scan.id < id; });
@@ -138,25 +134,36 @@ void ClearedMap::add(const PlacedScan& scan) {
 }
 
 void ClearedMap::remove(int id) {
-  Entry* entry = find(id);
-  if (entry == nullptr) {
+  if (find(id) == nullptr) {
     return;
   }
-  unmatch(*entry);
   std::erase_if(entries_, [id](const std::unique_ptr<Entry>& e) { return e->scan.id == id; });
+  for (const std::unique_ptr<Entry>& other : entries_) {
+    other->restore(id);
+  }
 }
 
 void ClearedMap::reposition(int id, const RigidTransform& model_from_scanner, double sigma_mm) {
-  Entry* entry = find(id);
-  if (entry == nullptr) {
-    return;
+  const NewPose pose{id, model_from_scanner, sigma_mm};
+  reposition({&pose, 1}, 0);
+}
+
+void ClearedMap::reposition(std::span<const NewPose> poses, double tolerance) {
+  std::vector<std::uint8_t> moved(entries_.size(), 0);
+  for (const NewPose& pose : poses) {
+    for (std::size_t k = 0; k < entries_.size(); ++k) {
+      if (entries_[k]->scan.id == pose.id) {
+        entries_[k]->scan.model_from_scanner = pose.model_from_scanner;
+        entries_[k]->scan.sigma_mm = pose.sigma_mm;
+        moved[k] = 1;
+      }
+    }
   }
-  unmatch(*entry);
-  entry->scan.model_from_scanner = model_from_scanner;
-  entry->scan.sigma_mm = sigma_mm;
-  for (const std::unique_ptr<Entry>& other : entries_) {
-    if (other.get() != entry) {
-      match(*entry, *other);
+  for (std::size_t a = 0; a < entries_.size(); ++a) {
+    for (std::size_t b = a + 1; b < entries_.size(); ++b) {
+      if (moved[a] != 0 || moved[b] != 0) {
+        match(*entries_[a], *entries_[b], tolerance);
+      }
     }
   }
 }
@@ -168,6 +175,11 @@ bool ClearedMap::contains(int id) const {
 const SampleFlags* ClearedMap::flags(int id) const {
   const Entry* entry = find(id);
   return entry == nullptr ? nullptr : &entry->flags;
+}
+
+Eigen::AlignedBox3f ClearedMap::box_mm(int id) const {
+  const Entry* entry = find(id);
+  return entry == nullptr ? Eigen::AlignedBox3f{} : entry->box_mm;
 }
 
 std::vector<PlacedScan> ClearedMap::scans() const {
@@ -185,9 +197,9 @@ std::vector<int> ClearedMap::cleared_by(int id) const {
     return {};
   }
   std::vector<int> by(entry->flags.size(), -1);
-  for (const auto& [other, which] : entry->cleared) {
-    for (const std::uint32_t k : which) {
-      int& first = by[entry->sparse[k].index];
+  for (const auto& [other, match] : entry->matches) {
+    for (const std::uint32_t k : match.which) {
+      int& first = by[entry->sparse.samples[k].index];
       first = first < 0 ? other : first;
     }
   }

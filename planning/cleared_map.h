@@ -2,8 +2,10 @@
 // Copyright The Dubsar developers
 #pragma once
 
+#include <Eigen/Geometry>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "core/placed_scan.h"
@@ -33,11 +35,24 @@ class ClearedMap {
   /// Registration moved a scan: only its pairs are matched anew. Unknown ids are ignored.
   void reposition(int id, const RigidTransform& model_from_scanner, double sigma_mm);
 
+  /// Where a scan lies now.
+  struct NewPose {
+    int id = 0;
+    RigidTransform model_from_scanner;
+    double sigma_mm = 0;
+  };
+  /// The same for many scans at once: each pair is matched anew at most once, and only when its scans have
+  /// moved against each other (or its radius has changed) by more than `tolerance` µ since it was matched: a
+  /// model that moves as a whole changes nothing.
+  void reposition(std::span<const NewPose> poses, double tolerance);
+
   [[nodiscard]] bool contains(int id) const;
   /// The flags of a scan with kCleared as of now; stays valid until the scan is removed or replaced.
   /// Null for an unknown id.
   [[nodiscard]] const SampleFlags* flags(int id) const;
-  /// All scans by ascending id, their flags pointing into this map.
+  /// Box around the scan's tablet samples, scanner frame; empty for an unknown id.
+  [[nodiscard]] Eigen::AlignedBox3f box_mm(int id) const;
+  /// All scans by ascending id, their flags pointing into this map, their noise known.
   [[nodiscard]] std::vector<PlacedScan> scans() const;
   /// For each sample of the scan's grid, the id of the lowest scan that clears it, or -1.
   [[nodiscard]] std::vector<int> cleared_by(int id) const;
@@ -45,8 +60,7 @@ class ClearedMap {
  private:
   struct Entry;
   [[nodiscard]] Entry* find(int id) const;
-  void match(Entry& a, Entry& b);
-  void unmatch(Entry& entry);
+  void match(Entry& one, Entry& two, double tolerance);
 
   ClearingOptions options_;
   std::vector<std::unique_ptr<Entry>> entries_;  ///< by ascending id

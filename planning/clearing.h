@@ -3,12 +3,13 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "core/grid_lookup.h"
 #include "core/placed_scan.h"
+#include "planning/sample_normals.h"
 
 namespace dubsar {
 
@@ -26,14 +27,23 @@ struct ClearingOptions {
 /// µ of the grid, estimated where it is not known.
 [[nodiscard]] double spacing_of(const RangeGrid& grid);
 
+/// Noise of the scan's samples, estimated where it is not known.
+[[nodiscard]] double noise_of(const PlacedScan& scan);
+
 /// Unit normal of a sample towards the scanner, by differences to its neighbours nearer than step_mm; zero
 /// where that is undefined. Scanner frame.
 [[nodiscard]] Eigen::Vector3f sample_normal(const RangeGrid& grid, std::size_t sample, float step_mm);
+
+/// The normals of the whole grid, sample_normal() with a step of 5µ.
+[[nodiscard]] SampleNormals normals_of(const RangeGrid& grid);
 
 /// 2µ + 3σ, σ² = both poses' variances + both scans' noise variances.
 [[nodiscard]] double matching_radius_mm(const RangeGrid& a, double noise_a_mm, double sigma_a_mm,
                                         const RangeGrid& b, double noise_b_mm, double sigma_b_mm,
                                         const ClearingOptions& options);
+
+/// [size of the grid], 1 where a sample may clear others.
+[[nodiscard]] std::vector<std::uint8_t> unflagged_samples(const RangeGrid& grid, const SampleFlags& flags);
 
 /// A sparse sample that may be cleared; scanner frame of its own scan.
 struct SparseSample {
@@ -44,14 +54,29 @@ struct SparseSample {
   Eigen::Vector3f facing{0, 0, 0};
 };
 
-/// The sparse samples of a scan in index order.
-[[nodiscard]] std::vector<SparseSample> sparse_samples(const RangeGrid& grid, const SampleFlags& flags);
+/// Sparse samples that lie together, and a ball around them: what another scan did not see at all is passed
+/// over at once.
+struct SparseTile {
+  std::uint32_t first = 0;  ///< position of its first sample; it holds those up to the next tile's
+  Eigen::Vector3f center_mm{0, 0, 0};
+  float radius_mm = 0;
+};
 
-/// Which of the sparse samples (positions in the span, ascending) match a sample that `others` holds.
-/// other_from_own takes the samples' scanner frame to the lookup's. Uses both cores.
-[[nodiscard]] std::vector<std::uint32_t> matched_samples(std::span<const SparseSample> sparse,
+/// The sparse samples of a scan, tile of its grid by tile.
+struct SparseSamples {
+  std::vector<SparseSample> samples;
+  std::vector<SparseTile> tiles;
+  Eigen::AlignedBox3f box_mm;  ///< around all of them
+};
+[[nodiscard]] SparseSamples sparse_samples(const RangeGrid& grid, const SampleFlags& flags);
+
+/// Which of the sparse samples (positions in the list, ascending) match a sample that `others` holds: it lies
+/// within the radius, and its normal is compatible. other_from_own takes the samples' scanner frame to the
+/// lookup's; `normals` are those of its grid. Uses both cores.
+[[nodiscard]] std::vector<std::uint32_t> matched_samples(const SparseSamples& sparse,
                                                          const RigidTransform& other_from_own,
-                                                         const GridLookup& others, double radius_mm,
+                                                         const GridLookup& others,
+                                                         const SampleNormals& normals, double radius_mm,
                                                          const ClearingOptions& options);
 
 /// The plain pairwise step: sets kCleared in `flags` (of `own`) where a non-flagged sample of `other` lies.

@@ -80,15 +80,12 @@ void excuse_out_of_reach(std::span<const float> best_chance, const ExcuseOptions
   }
 }
 
-void excuse_tried(double spacing_mm, const ExcuseOptions& options, RedTargets& red) {
-  const double speck_mm2 = options.speck_spacings2 * spacing_mm * spacing_mm;
+void excuse_tried(const ExcuseOptions& options, RedTargets& red) {
   for (RedTarget& target : red.targets) {
-    const bool speck = !target.unseen && target.area_mm2 < speck_mm2;
-    const int enough = speck ? options.speck_tries : options.tries;
-    if (target.state == RegionState::kRed && target.tried.size() >= static_cast<std::size_t>(enough)) {
+    if (target.state == RegionState::kRed && target.tried.size() >= static_cast<std::size_t>(options.tries)) {
       target.excuse_as(
           Excuse::kUnreachable,
-          "at least " + std::to_string(enough) +
+          std::to_string(options.tries) +
               " scans looked at it and brought no dense samples: too deep, too dark or no surface");
     }
   }

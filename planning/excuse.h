@@ -26,7 +26,7 @@ struct ExcuseOptions {
   double speck_spacings2 = 10.0;
   double speck_budget = 2e-4;  ///< of the surface, for all specks together
   int speck_tries = 2;
-  int tries = 3;  ///< scans that ought to have seen a place before it is given up
+  int tries = 4;  ///< scans that ought to have seen a place before it is given up
 };
 
 /// Unneeded: holes no wider than largest_gap_mm over which the surface is interpolated well enough. The test:
@@ -37,12 +37,18 @@ struct ExcuseOptions {
 void excuse_unneeded(std::span<const PlacedScan> scans, const SurfaceCover& cover, double noise_mm,
                      const ExcuseOptions& options, RedTargets& red);
 
-/// Unneeded: the last specks. When all that is still red is, together, below speck_budget of the tablet's
-/// surface, groups of it that cover no more than speck_spacings2 µ², are no wider than largest_gap_mm and lie
-/// within the reach of well-sampled surface are closed by a straight line from their own samples to it: the
-/// rule of 3µ lets gaps of that size pass anywhere. surface_mm2: of the tablet.
+/// Unneeded: specks, groups of red that cover no more than speck_spacings2 µ² and are no wider than
+/// largest_gap_mm: those that speck_tries scans looked at and found nothing more; and the last ones, when all
+/// that is still red is, together, below speck_budget of the tablet's surface, where a straight line closes
+/// them: the rule of 3µ lets gaps of that size pass anywhere. surface_mm2: of the tablet. The targets' tries
+/// must be known (note_tries()).
 void excuse_specks(std::span<const PlacedScan> scans, const SurfaceCover& cover, double surface_mm2,
                    const ExcuseOptions& options, RedTargets& red);
+
+/// Unneeded: what is left when all of it together is below speck_budget of the surface and no view is
+/// expected to clear as much as a single speck.
+void excuse_last_specks(std::span<const PlacedScan> scans, const SurfaceCover& cover, double best_gain_mm2,
+                        double surface_mm2, const ExcuseOptions& options, RedTargets& red);
 
 /// Unneeded: strays, returns from nowhere (outliers, mixed pixels at depth edges). The test: no surface of
 /// the model lies within stray_mm (at least 2 µ) of the red samples, and at least stray_views scans sample
@@ -54,8 +60,8 @@ void excuse_strays(std::span<const PlacedScan> scans, std::span<const double> no
 /// NextViews, over all candidates; entries below 0 were not judged and stay red.
 void excuse_out_of_reach(std::span<const float> best_chance, const ExcuseOptions& options, RedTargets& red);
 
-/// Unreachable by trial: at least `tries` scans (`speck_tries` for a speck) ought to have seen the place by
-/// all that is known, and none brought dense samples. Applies to rig and replay alike.
-void excuse_tried(double spacing_mm, const ExcuseOptions& options, RedTargets& red);
+/// Unreachable by trial: at least `tries` scans ought to have seen the place by all that is known, and none
+/// brought dense samples. Applies to rig and replay alike.
+void excuse_tried(const ExcuseOptions& options, RedTargets& red);
 
 }  // namespace dubsar

@@ -153,57 +153,114 @@ void excuse_unneeded(std::span<const PlacedScan> scans, const SurfaceCover& cove
   }
 }
 
-void excuse_specks(std::span<const PlacedScan> scans, const SurfaceCover& cover, double surface_mm2,
-                   const ExcuseOptions& options, RedTargets& red) {
+namespace {
+
+/// Where interpolation puts the surface beside a red sample: half way to the well-sampled surface, at the
+/// mean height of that around it (one sample's noise is too much); and how far the sample rises over it.
+/// Nothing where it is out of reach.
+struct Bridge {
+  Eigen::Vector3d filled_mm{0, 0, 0};
+  double rise_mm = 0;
+};
+
+std::optional<Bridge> bridge(const SurfaceCover& cover, const RedTarget& target) {
+  const Eigen::Vector3d& sample = target.sample_mm;
+  const auto around = cover.within(sample, cover.reach_mm());
+  const auto nearest = std::min_element(around.begin(), around.end(), [&](const auto& a, const auto& b) {
+    return (a.position_mm.template cast<double>() - sample).squaredNorm() <
+           (b.position_mm.template cast<double>() - sample).squaredNorm();
+  });
+  if (nearest == around.end()) {
+    return std::nullopt;
+  }
+  const Eigen::Vector3d from = nearest->position_mm.cast<double>();
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  for (const auto& e : around) {
+    normal += e.normal.cast<double>();
+    mean += e.position_mm.cast<double>() / static_cast<double>(around.size());
+  }
+  normal.normalize();
+  const Eigen::Vector3d middle = 0.5 * (sample + from);
+  return Bridge{middle + normal * normal.dot(mean - middle),
+                std::abs(nearest->normal.cast<double>().dot(sample - from))};
+}
+
+void excuse_speck(const SurfaceCover& cover, const char* why, RedTarget& target) {
+  target.excuse_as(Excuse::kUnneeded, why);
+  if (const auto filled = bridge(cover, target)) {
+    target.interpolated_mm = filled->filled_mm;
+  }
+}
+
+double largest_speck_mm2(std::span<const PlacedScan> scans, const ExcuseOptions& options) {
   double spacing_mm = 0;
   for (const PlacedScan& scan : scans) {
     spacing_mm = std::max(spacing_mm, spacing_of(*scan.grid));
   }
+  return options.speck_spacings2 * spacing_mm * spacing_mm;
+}
+
+}  // namespace
+
+void excuse_specks(std::span<const PlacedScan> scans, const SurfaceCover& cover, double surface_mm2,
+                   const ExcuseOptions& options, RedTargets& red) {
+  const double largest_mm2 = largest_speck_mm2(scans, options);
+  std::vector<std::vector<std::uint32_t>> untried;
   double all_mm2 = 0;
-  for (const RedTarget& t : red.targets) {
-    all_mm2 += t.state == RegionState::kRed ? t.area_mm2 : 0.0;
-  }
-  if (all_mm2 > options.speck_budget * surface_mm2) {
-    return;
-  }
-  for (const auto& group : cluster_targets(red, scans, red.cell_mm, options.largest_gap_mm, true)) {
+  for (auto& group : cluster_targets(red, scans, red.cell_mm, options.largest_gap_mm, true)) {
     if (red.targets[group.front()].state != RegionState::kRed) {
       continue;
     }
     Eigen::AlignedBox3d box;
     double area_mm2 = 0;
+    std::size_t tried = red.targets[group.front()].tried.size();
     for (const std::uint32_t t : group) {
       box.extend(red.targets[t].position_mm);
       area_mm2 += red.targets[t].area_mm2;
+      tried = std::min(tried, red.targets[t].tried.size());
     }
-    if (area_mm2 > options.speck_spacings2 * spacing_mm * spacing_mm ||
-        box.diagonal().norm() > options.largest_gap_mm) {
-      continue;
-    }
-    std::vector<Eigen::Vector3d> filled;
-    for (const std::uint32_t t : group) {
-      const Eigen::Vector3d& sample = red.targets[t].sample_mm;
-      const std::vector<SurfaceCover::Element> around = cover.within(sample, cover.reach_mm());
-      const auto nearest = std::min_element(around.begin(), around.end(), [&](const auto& a, const auto& b) {
-        return (a.position_mm.template cast<double>() - sample).squaredNorm() <
-               (b.position_mm.template cast<double>() - sample).squaredNorm();
-      });
-      // A chord is off the surface by a quarter of the height to which its far end rises over the near one.
-      if (nearest == around.end() ||
-          std::abs(nearest->normal.cast<double>().dot(sample - nearest->position_mm.cast<double>())) >
-              kChordHeights * options.interpolation_mm) {
-        break;
+    const bool speck = area_mm2 <= largest_mm2 && box.diagonal().norm() <= options.largest_gap_mm;
+    if (speck && tried >= static_cast<std::size_t>(options.speck_tries)) {
+      for (const std::uint32_t t : group) {
+        excuse_speck(cover, "speck: scans looked straight at it and found nothing more", red.targets[t]);
       }
-      filled.emplace_back(0.5 * (sample + nearest->position_mm.cast<double>()));
-    }
-    if (filled.size() < group.size()) {
       continue;
     }
-    for (std::size_t k = 0; k < group.size(); ++k) {
-      red.targets[group[k]].excuse_as(
-          Excuse::kUnneeded,
-          "speck: the gap is no larger than the rule of 3µ lets pass, and closes in a straight line");
-      red.targets[group[k]].interpolated_mm = filled[k];
+    all_mm2 += area_mm2;
+    if (speck) {
+      untried.push_back(std::move(group));
+    }
+  }
+  if (all_mm2 > options.speck_budget * surface_mm2) {
+    return;
+  }
+  for (const auto& group : untried) {
+    // A chord is off the surface by a quarter of the height to which its far end rises over the near one.
+    const bool flat = std::all_of(group.begin(), group.end(), [&](std::uint32_t t) {
+      const auto gap = bridge(cover, red.targets[t]);
+      return gap && gap->rise_mm <= kChordHeights * options.interpolation_mm;
+    });
+    for (std::size_t k = 0; flat && k < group.size(); ++k) {
+      excuse_speck(cover,
+                   "speck: the gap is no larger than the rule of 3µ lets pass, and closes in a straight line",
+                   red.targets[group[k]]);
+    }
+  }
+}
+
+void excuse_last_specks(std::span<const PlacedScan> scans, const SurfaceCover& cover, double best_gain_mm2,
+                        double surface_mm2, const ExcuseOptions& options, RedTargets& red) {
+  double all_mm2 = 0;
+  for (const RedTarget& t : red.targets) {
+    all_mm2 += t.state == RegionState::kRed ? t.area_mm2 : 0.0;
+  }
+  if (all_mm2 > options.speck_budget * surface_mm2 || best_gain_mm2 > largest_speck_mm2(scans, options)) {
+    return;
+  }
+  for (RedTarget& t : red.targets) {
+    if (t.state == RegionState::kRed) {
+      excuse_speck(cover, "speck: no view is expected to clear as much as one such speck", t);
     }
   }
 }

@@ -93,13 +93,9 @@ Result<RedMapResult> make_red_map(std::span<const PlacedScan> scans, const Mesh*
       surface_mm2 += patch.area_mm2;
     }
   }
-  excuse_specks(scans, cover, surface_mm2, options.excuse, out.targets);
   note_tries(scans, noise_mm, surface, out.targets.targets);
-  double spacing_mm = 0;
-  for (const PlacedScan& scan : scans) {
-    spacing_mm = std::max(spacing_mm, spacing_of(*scan.grid));
-  }
-  excuse_tried(spacing_mm, options.excuse, out.targets);
+  excuse_specks(scans, cover, surface_mm2, options.excuse, out.targets);
+  excuse_tried(options.excuse, out.targets);
   job.progress("red map", 0.5);
 
   Result<NextViews> views = plan_views(scans, surface, out.targets, rig, median_noise_mm, options, job);
@@ -109,6 +105,8 @@ Result<RedMapResult> make_red_map(std::span<const PlacedScan> scans, const Mesh*
   if (rig != nullptr) {
     excuse_out_of_reach(views->best_chance, options.excuse, out.targets);
   }
+  excuse_last_specks(scans, cover, views->ranked.empty() ? 0.0 : views->ranked.front().predicted_cleared_mm2,
+                     surface_mm2, options.excuse, out.targets);
   for (const RedSampleRef& ref : out.targets.samples) {
     if (out.targets.targets[ref.target].state == RegionState::kExcused) {
       out.flags[ref.scan][ref.sample] |= kExcused;

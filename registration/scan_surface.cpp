@@ -8,6 +8,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <utility>
 
 #include "core/grid_geometry.h"
 #include "core/grid_noise.h"
@@ -24,6 +25,22 @@ constexpr double kLeastBlockShare = 0.7;
 /// A raster cell of this many spacings seldom stays empty on a slope or a warped grid.
 constexpr double kRasterCell = 1.5;
 
+/// The cells of a block of stride × stride from its middle outwards: (row, column), of equal ones the first.
+std::vector<std::pair<int, int>> from_the_middle(int stride) {
+  std::vector<std::pair<int, int>> cells;
+  for (int dr = 0; dr < stride; ++dr) {
+    for (int dc = 0; dc < stride; ++dc) {
+      cells.emplace_back(dr, dc);
+    }
+  }
+  const auto away = [stride](const std::pair<int, int>& cell) {
+    return std::abs(2 * cell.first - stride + 1) + std::abs(2 * cell.second - stride + 1);
+  };
+  std::stable_sort(cells.begin(), cells.end(),
+                   [&](const auto& a, const auto& b) { return away(a) < away(b); });
+  return cells;
+}
+
 /// Decimates by averaging blocks of stride × stride samples that lie on the sheet of the block's middle
 /// sample. full[i] tells which blocks are complete.
 RangeGrid averaged(const RangeGrid& grid, const std::vector<std::uint8_t>& keep, int stride,
@@ -36,6 +53,7 @@ RangeGrid averaged(const RangeGrid& grid, const std::vector<std::uint8_t>& keep,
   full.assign(out.size(), 0);
   const float reach2 =
       std::pow(kStepFactor * 0.5F * static_cast<float>(spacing_mm) * static_cast<float>(stride), 2.0F);
+  const std::vector<std::pair<int, int>> order = from_the_middle(stride);
   parallel_for_each_index(
       static_cast<std::size_t>(out.rows),
       [&](std::size_t r) {
@@ -48,22 +66,13 @@ RangeGrid averaged(const RangeGrid& grid, const std::vector<std::uint8_t>& keep,
             return corner + static_cast<std::size_t>(dr) * static_cast<std::size_t>(grid.cols) +
                    static_cast<std::size_t>(dc);
           };
-          std::int64_t middle = -1;
-          int nearest = 1 << 20;
-          for (int dr = 0; dr < rows_in; ++dr) {
-            for (int dc = 0; dc < cols_in; ++dc) {
-              const std::size_t i = place(dr, dc);
-              const int away = std::abs(2 * dr - stride + 1) + std::abs(2 * dc - stride + 1);
-              if (away < nearest && keep[i] != 0) {
-                nearest = away;
-                middle = static_cast<std::int64_t>(i);
-              }
-            }
-          }
-          if (middle < 0) {
+          const auto middle = std::find_if(order.begin(), order.end(), [&](const auto& cell) {
+            return cell.first < rows_in && cell.second < cols_in && keep[place(cell.first, cell.second)] != 0;
+          });
+          if (middle == order.end()) {
             continue;
           }
-          const Eigen::Vector3f base = grid.point(static_cast<std::size_t>(middle));
+          const Eigen::Vector3f base = grid.point(place(middle->first, middle->second));
           Eigen::Vector3f sum = Eigen::Vector3f::Zero();
           int count = 0;
           for (int dr = 0; dr < rows_in; ++dr) {

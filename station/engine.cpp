@@ -42,7 +42,7 @@ Status Engine::Impl::settle(EngineResult& result, JobContext& job) {
   }
   result.red_map = std::move(*red_map);
   emit(RedMapChanged{result.red_map});
-  return {};
+  return planning.stitch(job);
 }
 
 /// Runs the pipeline from `step` until the device has no more, or until the online red map says that nothing

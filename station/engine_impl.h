@@ -199,6 +199,8 @@ struct Engine::Impl {
   Taken refuse_empty();  ///< of a scan without a sample
   Taken take_scan(const std::optional<Placement>& drive, JobContext& job);
   void keep_stored();
+  /// Onto the disk, and only then reported; false when it is not there.
+  bool store_scan(int id, const RangeGrid& grid, const std::optional<Placement>& drive);
   /// Into the model, as the operator's word on it has it.
   ScanPose register_scan(const StationScan& scan, JobContext& job);
   void register_all(JobContext& job);

@@ -114,28 +114,54 @@ void Engine::Impl::acquire(NextStep step, JobContext& job) {
   queues->to_store.close();
 }
 
+bool Engine::Impl::store_scan(int id, const RangeGrid& grid, const std::optional<Placement>& drive) {
+  const StageClock timing = clock("storing");
+  const Result<int> stored = store->add_grid(grid);
+  if (!stored) {
+    give_up(stored.error());
+    return false;
+  }
+  if (*stored != id) {
+    give_up({ErrorKind::kInternal, "a scan was stored under another number than it was promised", {}, {}});
+    return false;
+  }
+  {
+    const std::scoped_lock lock(mutex);
+    ++stored_count;
+  }
+  emit(ScanStored{id, grid.source, static_cast<std::int64_t>(grid.valid_count())});
+  if (drive) {
+    drives_of_scans[id] = *drive;
+    if (const Status saved = store->save_document("drives", drives_to_json(drives_of_scans)); !saved) {
+      give_up(saved.error());
+    }
+  }
+  return true;
+}
+
+/// Each scan goes to registration while it is being stored; what registration finds of it waits until it is
+/// on disk.
 void Engine::Impl::keep_stored() {
   while (std::optional<RawScan> raw = queues->to_store.pop()) {
-    const StageClock timing = clock("storing");
-    const Result<int> id = store->add_grid(raw->grid);
+    const Result<int> id = store->next_id();
     if (!id) {
       give_up(id.error());
       continue;
     }
-    {
-      const std::scoped_lock lock(mutex);
-      ++stored_count;
-    }
-    emit(ScanStored{*id, raw->grid.source, static_cast<std::int64_t>(raw->grid.valid_count())});
+    // What is stored is what came: a spacing or a pin size that is filled in is not part of it.
+    const bool filled_in = raw->grid.spacing_mm <= 0 || (options.pins && raw->grid.pin_tip_diameter_mm <= 0);
+    const std::optional<RangeGrid> as_it_came = filled_in ? std::optional(raw->grid) : std::nullopt;
     StationScan scan = prepare_scan(*id, std::move(raw->grid), options.pins, std::move(raw->flags));
     scan.drive = raw->drive;
-    if (scan.drive) {
-      drives_of_scans[*id] = *scan.drive;
-      if (const Status saved = store->save_document("drives", drives_to_json(drives_of_scans)); !saved) {
-        give_up(saved.error());
-      }
+    std::promise<bool> outcome;
+    scan.stored = outcome.get_future().share();
+    // Where registration is behind, the disk does not wait for it.
+    const bool handed_on = queues->to_register.try_push(scan);
+    const bool stored = store_scan(*id, as_it_came ? *as_it_came : *scan.measured, scan.drive);
+    outcome.set_value(stored);
+    if (stored && !handed_on) {
+      queues->to_register.push(std::move(scan));
     }
-    queues->to_register.push(std::move(scan));
   }
   queues->to_register.close();
 }
@@ -152,7 +178,13 @@ ScanPose Engine::Impl::register_scan(const StationScan& scan, JobContext& job) {
 void Engine::Impl::register_all(JobContext& job) {
   const auto handle = [&](StationScan scan, bool plan_now, bool is_resumed) {
     names[scan.id] = scan.file;
-    ScanPose pose = set_intruders_aside(scan, register_scan(scan, job), job);
+    ScanPose pose = register_scan(scan, job);
+    if (scan.stored.valid() && !scan.stored.get()) {
+      registrar.remove(scan.id);  // it is lost; the run ends, and nothing that is saved may speak of it
+      names.erase(scan.id);
+      return;
+    }
+    pose = set_intruders_aside(scan, std::move(pose), job);
     pose.file = scan.file;
     std::vector<ScanPose> poses = named_poses();
     // Whatever ends the run, what it found until now is in the session.
@@ -223,6 +255,10 @@ void Engine::Impl::plan_all(JobContext& job) {
       queues->to_device.push(fresh ? step_after(item->scan->id, item->poses, *red_map) : step_to(*red_map));
     }
     emit(RedMapChanged{std::move(*red_map)});
+    // Last: the red map waits for no mesh, and the next scan is under way meanwhile.
+    if (const Status stitched = planning.stitch(job); !stitched) {
+      give_up(stitched.error());
+    }
   }
   queues->to_device.close();
 }

@@ -17,24 +17,9 @@ namespace dubsar {
 
 namespace {
 
-/// Online, a scan that moved by less than this part of µ stays where it is in the mesh until the final pass.
+/// Online, a scan that moved by less than this part of µ stays where it is in the mesh, and what it cleared
+/// stays cleared, until the final pass.
 constexpr double kStaysWithin = 0.25;
-
-/// The largest displacement of the grid's bounding box between two poses.
-double displacement_mm(const RangeGrid& grid, const RigidTransform& from, const RigidTransform& to) {
-  Eigen::AlignedBox3f box;
-  for (std::size_t i = 0; i < grid.size(); ++i) {
-    if (grid.valid[i] != 0) {
-      box.extend(grid.point(i));
-    }
-  }
-  double most = 0;
-  for (int corner = 0; corner < 8 && !box.isEmpty(); ++corner) {
-    const Eigen::Vector3d p = box.corner(static_cast<Eigen::AlignedBox3f::CornerType>(corner)).cast<double>();
-    most = std::max(most, (from * p - to * p).norm());
-  }
-  return most;
-}
 
 /// The rim of a hole lies within so many µ of the mesh; an excused sample farther away hangs in the air.
 constexpr double kRimInSpacings = 4.0;
@@ -84,7 +69,14 @@ class NearMesh {
 }  // namespace
 
 void PlanningStage::add(const StationScan& scan) {
+  take_out(scan.id);  // nothing may refer to a grid that is replaced
   scans_[scan.id] = scan;
+}
+
+void PlanningStage::take_out(int id) {
+  cleared_.remove(id);
+  stitcher_.remove(id);
+  placed_.erase(id);
 }
 
 Status PlanningStage::place(const std::vector<ScanPose>& poses, bool exact, JobContext& job) {
@@ -96,36 +88,55 @@ Status PlanningStage::place(const std::vector<ScanPose>& poses, bool exact, JobC
                          pose.sigma_mm};
     }
   }
-  for (auto it = placed_.begin(); it != placed_.end();) {
-    if (wanted.contains(it->first)) {
-      ++it;
-      continue;
+  std::vector<int> gone;
+  for (const auto& [id, there] : placed_) {
+    if (!wanted.contains(id)) {
+      gone.push_back(id);
     }
-    cleared_.remove(it->first);
-    stitcher_.remove(it->first);
-    it = placed_.erase(it);
   }
+  for (const int id : gone) {
+    take_out(id);
+  }
+  const double tolerance = exact ? 0.0 : kStaysWithin;
+  std::vector<ClearedMap::NewPose> followed;
+  for (auto& [id, placed] : placed_) {
+    const PlacedScan& scan = wanted.at(id);
+    followed.push_back({id, scan.model_from_scanner, scan.sigma_mm});
+    const double moved_mm =
+        displacement_mm(placed.box_mm, placed.scan.model_from_scanner, scan.model_from_scanner);
+    if (moved_mm > tolerance * scan.grid->spacing_mm || (exact && placed.scan.sigma_mm != scan.sigma_mm)) {
+      stitcher_.remove(id);
+      placed.scan = scan;
+      placed.stitched = false;
+    }
+  }
+  cleared_.reposition(followed, tolerance);
   std::size_t done = 0;
   for (const auto& [id, scan] : wanted) {
-    job.progress("stitching", static_cast<double>(done++) / static_cast<double>(wanted.size()));
-    const auto there = placed_.find(id);
-    if (there != placed_.end()) {
-      const double moved_mm =
-          displacement_mm(*scan.grid, there->second.model_from_scanner, scan.model_from_scanner);
-      // A pose that stays may have become more certain, which changes how far its samples clear others.
-      const bool as_certain = there->second.sigma_mm == scan.sigma_mm;
-      if (exact ? moved_mm <= 0 && as_certain : moved_mm <= kStaysWithin * scan.grid->spacing_mm) {
-        continue;
-      }
-      cleared_.reposition(id, scan.model_from_scanner, scan.sigma_mm);
-      stitcher_.remove(id);
-    } else {
-      cleared_.add(scan);
+    job.progress("clearing", static_cast<double>(done++) / static_cast<double>(wanted.size()));
+    if (job.cancelled()) {
+      return fail(ErrorKind::kCancelled, "planning was stopped");
     }
-    if (const Status added = stitcher_.add(scan, job); !added) {
+    if (!placed_.contains(id)) {
+      cleared_.add(scan);
+      placed_[id] = {scan, cleared_.box_mm(id), false};
+    }
+  }
+  job.progress("clearing", 1.0);
+  return {};
+}
+
+Status PlanningStage::stitch(JobContext& job) {
+  std::size_t done = 0;
+  for (auto& [id, placed] : placed_) {
+    job.progress("stitching", static_cast<double>(done++) / static_cast<double>(placed_.size()));
+    if (placed.stitched) {
+      continue;
+    }
+    if (const Status added = stitcher_.add(placed.scan, job); !added) {
       return added;
     }
-    placed_[id] = scan;
+    placed.stitched = true;
   }
   job.progress("stitching", 1.0);
   return {};

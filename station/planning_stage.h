@@ -2,6 +2,7 @@
 // Copyright The Dubsar developers
 #pragma once
 
+#include <Eigen/Geometry>
 #include <map>
 #include <optional>
 #include <string>
@@ -23,9 +24,10 @@
 
 namespace dubsar {
 
-/// The stage behind registration: keeps the flags of all placed scans cleared against each other and the mesh
-/// stitched, scan by scan, and makes the red map from both. The online engine and the verbs `plan` and
-/// `stitch` work through it, so that both give the same. One thread at a time.
+/// The stage behind registration: keeps the flags of all placed scans cleared against each other, makes the
+/// red map from them, and keeps the mesh stitched. The operator waits for the red map, nobody for the mesh:
+/// stitching has a call of its own. The online engine and the verb `plan` work through it, so that both give
+/// the same. One thread at a time.
 class PlanningStage {
  public:
   /// Makes a scan known. It takes part once place() says that it is registered.
@@ -33,7 +35,7 @@ class PlanningStage {
 
   /// Follows the poses: puts in what is newly registered, takes out what no longer is, moves what has moved.
   /// `exact` moves every scan to its last digit; without it one that moved by less than a small part of µ
-  /// stays, which keeps the online work small. Errors: kCancelled, and the stitcher's.
+  /// stays, which keeps the online work small. Errors: kCancelled.
   Status place(const std::vector<ScanPose>& poses, bool exact, JobContext& job);
 
   /// The red map over what is placed.
@@ -57,7 +59,10 @@ class PlanningStage {
   /// larger than most tablets.
   [[nodiscard]] bool shows_much_more(int id) const;
 
-  /// The mesh of what is placed.
+  /// Brings the mesh up to what is placed. Errors: kCancelled, and the stitcher's.
+  Status stitch(JobContext& job);
+
+  /// The mesh of what is placed and stitched.
   [[nodiscard]] Result<Mesh> mesh(const JobContext& job) const { return stitcher_.mesh(job); }
 
   /// Red (and amber, excused) samples of the last red_map() in the model frame, for pictures of the mesh.
@@ -75,9 +80,17 @@ class PlanningStage {
 
  private:
   [[nodiscard]] std::optional<StageState> stage() const;
+  /// What is where, as far as the mesh knows.
+  struct Placed {
+    PlacedScan scan;
+    Eigen::AlignedBox3f box_mm;  ///< of its samples, scanner frame
+    bool stitched = false;
+  };
+
+  void take_out(int id);
 
   std::map<int, StationScan> scans_;
-  std::map<int, PlacedScan> placed_;
+  std::map<int, Placed> placed_;
   ClearedMap cleared_;
   Stitcher stitcher_;
   std::vector<SampleFlags> excused_flags_;  ///< of the last red map, by position in placed()

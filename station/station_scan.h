@@ -2,6 +2,7 @@
 // Copyright The Dubsar developers
 #pragma once
 
+#include <future>
 #include <memory>
 #include <optional>
 #include <string>
@@ -22,6 +23,9 @@ struct StationScan {
   std::shared_ptr<const RangeGrid> grid;      ///< the tablet alone
   std::shared_ptr<const SampleFlags> flags;
   std::optional<Placement> drive;  ///< turntable and tilt that it was taken with, where the rig has them
+  /// Of a scan that is worked on while it is being stored: true once it is on disk, false when it will not
+  /// be. Invalid for one that came from the disk. Nothing of the scan is told or saved before.
+  std::shared_future<bool> stored;
 };
 
 /// Takes pins and arms out of the grid (they are not clay: neither registered, nor meshed, nor red) and flags

@@ -35,6 +35,7 @@ struct Arguments {
   int max_scans = 60;
   bool registered = false;
   bool baselines = false;
+  bool holes = false;
   bool verbose = false;
 };
 
@@ -67,14 +68,14 @@ double red_area(const RedTargets& red) {
   return area;
 }
 
-/// Tablets of 20 to 50 mm, a third of them badly damaged, a third with firing holes.
+/// Tablets of 20 to 50 mm, from whole to badly damaged.
 LoopOptions loop_options(std::uint64_t seed, const Arguments& args) {
   LoopOptions options;
   options.tablet = random_tablet(seed, "text", std::max(0.05, 0.6 * args.spacing_mm));
   Random random(seed_for(seed, 400));
   const double wear = random.uniform();
   options.tablet.damage = {wear, random.uniform(), random.uniform(), random.uniform(), 0};
-  options.tablet.damage.holes = seed % 3 == 0 ? random.uniform(0.4, 1.0) : 0.0;
+  options.tablet.damage.holes = args.holes ? random.uniform(0.4, 1.0) : 0.0;
   options.station.scanner = sim::scanner_for(options.tablet.size_mm, args.spacing_mm, args.noise_mm);
   options.station.scanner.seed = seed;
   options.station.seed = seed;
@@ -229,6 +230,7 @@ int main(int argc, char** argv) {
   app.add_option("--max-scans", args.max_scans);
   app.add_flag("--registered", args.registered, "poses by registration, not the true ones");
   app.add_flag("--baselines", args.baselines, "greedy set cover, turntable, boundary following beside it");
+  app.add_flag("--holes", args.holes, "tablets with firing holes, mostly out of any scanner's sight");
   app.add_flag("-v,--verbose", args.verbose);
   CLI11_PARSE(app, argc, argv);
 

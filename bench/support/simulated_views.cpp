@@ -2,6 +2,7 @@
 // Copyright The Dubsar developers
 #include "bench/support/simulated_views.h"
 
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <map>
@@ -17,11 +18,18 @@ namespace dubsar::bench {
 
 namespace {
 
-SimulatedViews make_views(int count) {
-  std::fprintf(stderr, "simulating %d scans of a million samples …\n", count);
+struct ViewOptions {
+  int count = 1;
+  Eigen::Vector3d size_mm{60, 50, 22};
+  double spacing_mm = 0.05;
+  double noise_mm = 0.02;
+};
+
+SimulatedViews make_views(const ViewOptions& options) {
+  std::fprintf(stderr, "simulating %d scans at %g mm …\n", options.count, options.spacing_mm);
   JobContext job;
   sim::TabletOptions tablet_options;
-  tablet_options.size_mm = {60, 50, 22};
+  tablet_options.size_mm = options.size_mm;
   tablet_options.spacing_mm = 0.12;
   const auto tablet = sim::make_tablet(tablet_options, job);
   if (!tablet) {
@@ -30,11 +38,10 @@ SimulatedViews make_views(int count) {
   }
   const MeshQuery query(tablet->mesh);
   const sim::Scene scene{&*tablet, &query, {}, std::nullopt};
-  sim::ScannerOptions scanner_options;
-  scanner_options.spacing_mm = 0.05;
-  const sim::TriangulationScanner scanner(scanner_options);
+  const sim::TriangulationScanner scanner(
+      sim::scanner_for(options.size_mm, options.spacing_mm, options.noise_mm));
   SimulatedViews views;
-  const auto plan = sim::plan_views(count, 1);
+  const auto plan = sim::plan_views(options.count, 1);
   for (std::size_t k = 0; k < plan.size(); ++k) {
     auto grid = scanner.scan_grid(scene, plan[k].tablet_from_scanner, k, job);
     if (!grid) {
@@ -75,7 +82,21 @@ std::size_t SimulatedViews::samples() const {
 const SimulatedViews& million_sample_views(int count) {
   static std::map<int, SimulatedViews> made;
   const auto found = made.find(count);
-  return found != made.end() ? found->second : made.emplace(count, make_views(count)).first->second;
+  return found != made.end() ? found->second
+                             : made.emplace(count, make_views({.count = count})).first->second;
+}
+
+const SimulatedViews& views_of_millions(int millions) {
+  static int made = 0;
+  static SimulatedViews views;
+  if (made != millions) {
+    const double spacing_mm = 0.05 / std::sqrt(static_cast<double>(millions));
+    views = {};  // two sets of the larger ones need not fit
+    views = make_views(
+        {.count = 11, .size_mm = {70, 60, 24}, .spacing_mm = spacing_mm, .noise_mm = 0.4 * spacing_mm});
+    made = millions;
+  }
+  return views;
 }
 
 }  // namespace dubsar::bench

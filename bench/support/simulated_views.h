@@ -24,4 +24,8 @@ struct SimulatedViews {
 /// `count` views of a 60 x 50 x 22 mm tablet; about a million samples each at 0.05 mm, with 0.02 mm noise.
 [[nodiscard]] const SimulatedViews& million_sample_views(int count);
 
+/// Eleven views of a 70 x 60 x 24 mm tablet, the last one of `millions` (1 or 4) of samples or a few more,
+/// the noise 0.4 µ. Only the last set asked for is kept.
+[[nodiscard]] const SimulatedViews& views_of_millions(int millions);
+
 }  // namespace dubsar::bench

@@ -151,5 +151,55 @@ TEST(GridLookup, VisitsAllWithinTheRadius) {
   EXPECT_GT(near, 10);
 }
 
+TEST(GridLookup, AnyWithinIsWhatASearchThroughAllFinds) {
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    const RangeGrid grid = warped_grid(seed);
+    const GridLookup lookup(grid);
+    Random random(seed + 200);
+    for (int k = 0; k < 500; ++k) {
+      const Eigen::Vector3f p(static_cast<float>(random.uniform(-7, 7)),
+                              static_cast<float>(random.uniform(-6, 6)),
+                              static_cast<float>(random.uniform(-3, 6)));
+      const auto radius = static_cast<float>(random.uniform(0.05, 1.0));
+      const std::size_t third = random.below(3);
+      bool expected = false;
+      for (std::size_t i = 0; i < grid.size(); ++i) {
+        expected = expected || (grid.valid[i] != 0 && i % 3 == third &&
+                                (grid.point(i) - p).squaredNorm() <= radius * radius);
+      }
+      const GridLookup::Reach reach = lookup.reach_of(p, radius);
+      const bool found = lookup.may_hold_samples(reach) &&
+                         lookup.any_within(reach, [&](std::uint32_t i) { return i % 3 == third; });
+      EXPECT_EQ(found, expected);
+    }
+  }
+}
+
+TEST(GridLookup, ALargeGridBuiltInPartsHoldsEverySampleInOrder) {
+  Random random(4);
+  RangeGrid grid = test::height_field(700, 900, 0.1, [&](double x, double) { return std::sin(x); });
+  for (std::uint8_t& valid : grid.valid) {
+    valid = random.uniform() < 0.9 ? 1 : 0;
+  }
+  const GridLookup lookup(grid);
+  std::size_t seen = 0;
+  std::vector<std::uint8_t> times(grid.size(), 0);
+  lookup.for_each_near({0, 0, 0}, 1e3F, [&](std::size_t i) {
+    ++times[i];
+    ++seen;
+  });
+  EXPECT_EQ(seen, grid.valid_count());
+  EXPECT_EQ(times, grid.valid);
+  for (int k = 0; k < 2000; ++k) {
+    const Eigen::Vector3f p(static_cast<float>(random.uniform(-45, 45)),
+                            static_cast<float>(random.uniform(-35, 35)), 0);
+    std::int64_t before = -1;
+    lookup.for_each_near(p, 0.0F, [&](std::size_t i) {  // one bucket
+      EXPECT_GT(static_cast<std::int64_t>(i), before);
+      before = static_cast<std::int64_t>(i);
+    });
+  }
+}
+
 }  // namespace
 }  // namespace dubsar

@@ -159,12 +159,53 @@ TEST(SparseFlags, SlopesOf69And71DegreesLieOnBothSidesOfTheLimit) {
 }
 
 TEST(SparseFlags, BothSidesOfAnOcclusionStepAreRed) {
-  const RangeGrid grid = height_field(20, 20, 0.1, [](int, int c) { return c < 10 ? 0.0 : 1.5; });
+  for (const bool along_rows : {true, false}) {
+    const RangeGrid grid =
+        height_field(20, 20, 0.1, [&](int r, int c) { return (along_rows ? c : r) < 10 ? 0.0 : 1.5; });
+    const SampleFlags flags = flag_sparse(grid);
+    for (int k = 7; k < 13; ++k) {
+      const std::size_t i = along_rows ? grid.index(10, k) : grid.index(k, 10);
+      EXPECT_EQ(is_red(flags[i]), k == 9 || k == 10) << k;
+    }
+    expect_all_agree(grid);
+  }
+  // A step that runs across the grid, and one that ends in it.
+  expect_all_agree(height_field(20, 20, 0.1, [](int r, int c) { return r + c < 20 ? 0.0 : 1.5; }));
+  expect_all_agree(height_field(20, 20, 0.1, [](int r, int c) { return c < 10 || r < 8 ? 0.0 : 1.5; }));
+}
+
+TEST(SparseFlags, AGapOneSampleWideTurnsBothItsSidesRed) {
+  for (const bool column : {true, false}) {
+    RangeGrid grid = plane(15, 15);
+    for (int k = 0; k < 15; ++k) {
+      grid.valid[column ? grid.index(k, 7) : grid.index(7, k)] = 0;
+    }
+    const SampleFlags flags = flag_sparse(grid);
+    for (int k = 5; k < 10; ++k) {
+      EXPECT_EQ(is_red(flags[column ? grid.index(4, k) : grid.index(k, 4)]), k == 6 || k == 8) << k;
+    }
+    expect_all_agree(grid);
+  }
+}
+
+TEST(SparseFlags, SingleGapsBesideEachOtherAndBesideTheBorder) {
+  using Cells = std::vector<std::pair<int, int>>;
+  for (const Cells& lost : {Cells{{7, 7}, {7, 8}}, Cells{{7, 7}, {8, 7}}, Cells{{7, 7}, {8, 8}},
+                            Cells{{7, 7}, {7, 9}}, Cells{{7, 7}, {9, 9}}, Cells{{0, 7}}, Cells{{7, 0}},
+                            Cells{{14, 14}}, Cells{{1, 1}}, Cells{{1, 7}}, Cells{{7, 13}}, Cells{{2, 2}}}) {
+    RangeGrid grid = plane(15, 15);
+    for (const auto& [row, col] : lost) {
+      grid.valid[grid.index(row, col)] = 0;
+    }
+    expect_all_agree(grid);
+  }
+  // Two that meet at a corner leave a cell with six of eight around it that are not well sampled.
+  RangeGrid grid = plane(15, 15);
+  grid.valid[grid.index(7, 7)] = grid.valid[grid.index(8, 8)] = 0;
   const SampleFlags flags = flag_sparse(grid);
-  EXPECT_FALSE(is_red(flags[grid.index(10, 8)]));
-  EXPECT_TRUE(flags[grid.index(10, 9)] & kPotentiallySparse);
-  EXPECT_TRUE(flags[grid.index(10, 10)] & kPotentiallySparse);
-  expect_all_agree(grid);
+  EXPECT_TRUE(is_red(flags[grid.index(7, 8)]));
+  EXPECT_TRUE(is_red(flags[grid.index(8, 7)]));
+  EXPECT_FALSE(is_red(flags[grid.index(6, 7)]));
 }
 
 TEST(SparseFlags, AgreesWithTheReferenceOnRandomGrids) {

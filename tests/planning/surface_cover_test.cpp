@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "planning/surface_cover.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "planning/cleared_map.h"
+#include "planning/rim_targets.h"
+#include "planning/sparse_flags.h"
+
+namespace dubsar {
+namespace {
+
+constexpr double kSpacingMm = 0.1;
+
+/// A plane of 12 mm, with samples where `there` says so (x, y in mm, from the middle); shifted by a part of
+/// µ.
+struct Plate {
+  Plate(const std::function<bool(double, double)>& there, double shift_mm) {
+    grid.allocate(120, 120);
+    grid.spacing_mm = kSpacingMm;
+    for (int r = 0; r < grid.rows; ++r) {
+      for (int c = 0; c < grid.cols; ++c) {
+        const double x = (c - 59.5) * kSpacingMm + shift_mm;
+        const double y = (r - 59.5) * kSpacingMm + shift_mm;
+        const std::size_t i = grid.index(r, c);
+        grid.x[i] = static_cast<float>(x);
+        grid.y[i] = static_cast<float>(y);
+        grid.z[i] = 0.0F;
+        grid.valid[i] = there(x, y) ? 1 : 0;
+      }
+    }
+    flags = flag_sparse(grid);
+  }
+  [[nodiscard]] PlacedScan placed(int id) const { return {id, &grid, &flags, {}, 0.0}; }
+
+  RangeGrid grid;
+  SampleFlags flags;
+};
+
+bool outside_disc(double x, double y, double radius_mm) {
+  return std::hypot(x, y) > radius_mm;
+}
+
+std::vector<Hole> inner_holes(const SurfaceCover& cover) {
+  std::vector<Hole> inner;
+  for (const Hole& hole : cover.holes()) {
+    if (hole.width_mm < 8.0) {
+      inner.push_back(hole);
+    }
+  }
+  return inner;
+}
+
+TEST(SurfaceCover, AHoleHasARimAndAnArea) {
+  const Plate plate([](double x, double y) { return outside_disc(x, y, 1.0); }, 0);
+  const PlacedScan scans[] = {plate.placed(0)};
+  const SurfaceCover cover(scans);
+  const auto holes = inner_holes(cover);
+  ASSERT_EQ(holes.size(), 1U);
+  // The rim runs through the good samples around the border that is flagged.
+  EXPECT_NEAR(holes[0].width_mm, 2.4, 0.5);
+  EXPECT_NEAR(holes[0].area_mm2, 4.5, 1.8);
+  for (const std::uint32_t i : holes[0].rim) {
+    const Rim& rim = cover.rims()[i];
+    EXPECT_GT(rim.normal.z(), 0.99);
+    EXPECT_LT(rim.outward.dot(rim.position_mm), 0) << "outward leads into the hole";
+  }
+  EXPECT_EQ(cover.at({3, 3, 0}, cover.reach_mm()), SurfaceCover::Place::kClosed);
+  EXPECT_EQ(cover.at({1.15, 0, 0}, cover.reach_mm()), SurfaceCover::Place::kRim);
+  EXPECT_EQ(cover.at({0, 0, 0}, 0.5), SurfaceCover::Place::kBare);
+}
+
+TEST(SurfaceCover, AGapThatTheRuleLetsPassIsNoHole) {
+  const Plate plate([](double x, double y) { return outside_disc(x, y, 0.12); }, 0);
+  const PlacedScan scans[] = {plate.placed(0)};
+  EXPECT_TRUE(inner_holes(SurfaceCover(scans)).empty());
+}
+
+TEST(SurfaceCover, AnotherScanClosesTheHole) {
+  const Plate one([](double x, double y) { return outside_disc(x, y, 1.0); }, 0);
+  const Plate other([](double x, double y) { return outside_disc(x - 3, y, 1.0); }, 0.03);
+  const PlacedScan scans[] = {one.placed(0), other.placed(1)};
+  EXPECT_TRUE(inner_holes(SurfaceCover(scans)).empty());
+}
+
+TEST(SurfaceCover, ARimThatTwoScansClearedForEachOtherIsStillFound) {
+  // Both see the hole up to the same edge, their samples half a step apart: each border lies on good samples
+  // of the other.
+  const auto there = [](double x, double y) { return outside_disc(x, y, 1.0); };
+  const Plate one(there, 0);
+  const Plate other(there, 0.05);
+  ClearingOptions generous;
+  generous.spacing_factor = 2.5;
+  ClearedMap map(generous);
+  map.add(one.placed(0));
+  map.add(other.placed(1));
+  const auto scans = map.scans();
+  int red_at_hole = 0;
+  for (const PlacedScan& scan : scans) {
+    for (std::size_t i = 0; i < scan.grid->size(); ++i) {
+      red_at_hole += is_red((*scan.flags)[i]) && scan.grid->point(i).norm() < 3 ? 1 : 0;
+    }
+  }
+  ASSERT_EQ(red_at_hole, 0) << "the flags alone say that nothing is missing";
+
+  const SurfaceCover cover(scans);
+  ASSERT_FALSE(inner_holes(cover).empty());
+  RedTargets red;
+  add_rim_targets(cover, 5.0, red);
+  double area = 0;
+  for (const RedTarget& t : red.targets) {
+    EXPECT_TRUE(t.rim);
+    EXPECT_EQ(t.state, RegionState::kRed);
+    area += t.position_mm.head<2>().norm() < 3 ? t.area_mm2 : 0.0;
+  }
+  EXPECT_NEAR(area, 3.9, 1.5);
+}
+
+TEST(SettleClosed, SettlesWhatLiesOnClosedSurfaceAndLoneStraysOnly) {
+  const Plate plate([](double x, double y) { return outside_disc(x, y, 1.0); }, 0);
+  const PlacedScan scans[] = {plate.placed(0)};
+  const SurfaceCover cover(scans);
+  RedTargets red;
+  red.cell_mm = 0.3;
+  const Eigen::Vector3d places[] = {{3, 3, 0}, {1.1, 0, 0}, {3, -3, 2}, {-3, -3, 2}};
+  const std::size_t samples[] = {1, 1, 2, 20};
+  for (std::uint32_t t = 0; t < 4; ++t) {
+    RedTarget target;
+    target.position_mm = target.sample_mm = places[t];
+    target.area_mm2 = 0.1;
+    red.targets.push_back(target);
+    for (std::size_t k = 0; k < samples[t]; ++k) {
+      red.samples.push_back({0, static_cast<std::uint32_t>(100 * t + 3 * k), t});
+    }
+  }
+  settle_closed(scans, cover, 0.02, 3, red);
+  EXPECT_EQ(red.targets[0].state, RegionState::kExcused) << "on closed surface";
+  EXPECT_EQ(red.targets[0].area_mm2, 0);
+  EXPECT_EQ(red.targets[1].state, RegionState::kRed) << "at the rim of a hole";
+  EXPECT_EQ(red.targets[2].state, RegionState::kExcused) << "two samples in the air";
+  EXPECT_EQ(red.targets[3].state, RegionState::kRed) << "twenty samples in the air are an object";
+}
+
+}  // namespace
+}  // namespace dubsar
