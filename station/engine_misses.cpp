@@ -93,7 +93,10 @@ NextStep Engine::Impl::step_after(int id, const std::vector<ScanPose>& poses, co
       reason = pose.reason;
     }
   }
-  const std::set<int> before = std::exchange(taken_up, now);
+  std::set<int> before = std::exchange(taken_up, now);
+  std::erase_if(before, [&](int one) {  // what was set aside has given way to nobody
+    return std::ranges::find(poses, one, &ScanPose::id) == poses.end();
+  });
   if (another_tablet(id, before, now)) {
     end_motion({ErrorKind::kBadInput,
                 listed(now) + " fit each other and not " + listed(before) +
@@ -116,11 +119,27 @@ NextStep Engine::Impl::step_after(int id, const std::vector<ScanPose>& poses, co
     return step_to(red_map);
   }
   ++misses;
-  const auto lies = lies_as.find(id);
-  const bool just_lifted = lies != lies_as.end() && std::ranges::none_of(now, [&](int one) {
-                             const auto other = lies_as.find(one);
-                             return other != lies_as.end() && other->second == lies->second;
-                           });
+  std::set<int> lie_as_it;
+  for (const int one : now) {
+    const auto mine = lies_as.find(id);
+    const auto other = lies_as.find(one);
+    if (mine != lies_as.end() && other != lies_as.end() && mine->second == other->second) {
+      lie_as_it.insert(one);
+    }
+  }
+  const bool just_lifted = lie_as_it.empty();
+  // One word against another: the first of the two may be the one with a hand in it.
+  if (const auto first = lie_as_it.size() == 1 ? planning.drive_of(*lie_as_it.begin()) : std::nullopt;
+      first && rig && misses == 1) {
+    emit(
+        Notice{fmt::format("scan {} is not taken up: {}; the view of scan {} is scanned once more, to see "
+                           "which of them is right",
+                           id, reason, *lie_as_it.begin())});
+    NextView view;
+    view.say = say_placement(*rig, *first);
+    view.placement = first;
+    return Step{.view = std::move(view), .scene = unseen(), .again = false};
+  }
   // Just lifted, it mostly shows too little that is known; else something was in the way and is gone again.
   const bool look_elsewhere = misses == (just_lifted && !doubtful && !is_again ? 1 : 2);
   const std::optional<NextView> other = look_elsewhere && rig ? planning.after_miss(*rig, id) : std::nullopt;

@@ -184,7 +184,7 @@ void Engine::Impl::register_all(JobContext& job) {
       names.erase(scan.id);
       return;
     }
-    pose = set_intruders_aside(scan, pose, job);
+    pose = set_intruders_aside(scan, std::move(pose), job);
     pose.file = scan.file;
     std::vector<ScanPose> poses = named_poses();
     // Whatever ends the run, what it found until now is in the session.

@@ -200,6 +200,11 @@ std::optional<NextView> PlanningStage::after_miss(const Rig& rig, int id) const 
   return side_view(rig, {id, *missed.drive}, there, model_surface(scans), 0.0);
 }
 
+std::optional<Placement> PlanningStage::drive_of(int id) const {
+  const auto found = scans_.find(id);
+  return found != scans_.end() ? found->second.drive : std::nullopt;
+}
+
 bool PlanningStage::shows_much_more(int id) const {
   constexpr double kMuchMore = 1.3;
   const auto diagonal = [](std::span<const PlacedScan> scans) {

@@ -55,6 +55,9 @@ class PlanningStage {
   /// common with what is placed, by where the motors and the asked turns say that the scan is.
   [[nodiscard]] std::optional<NextView> after_miss(const Rig& rig, int id) const;
 
+  /// Where a scan was taken from, where that is known.
+  [[nodiscard]] std::optional<Placement> drive_of(int id) const;
+
   /// Whether a scan, placed or not, shows far more than all others that are placed do together: a hand is
   /// larger than most tablets.
   [[nodiscard]] bool shows_much_more(int id) const;
