@@ -41,7 +41,7 @@ Status Engine::Impl::settle(EngineResult& result, JobContext& job) {
     return std::unexpected(red_map.error());
   }
   result.red_map = std::move(*red_map);
-  emit(RedMapChanged{result.red_map});
+  emit(RedMapChanged{result.red_map, std::nullopt});
   return planning.stitch(job);
 }
 

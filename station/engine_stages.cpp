@@ -254,7 +254,7 @@ void Engine::Impl::plan_all(JobContext& job) {
       const bool fresh = item->scan && !item->resumed;
       queues->to_device.push(fresh ? step_after(item->scan->id, item->poses, *red_map) : step_to(*red_map));
     }
-    emit(RedMapChanged{std::move(*red_map)});
+    emit(RedMapChanged{std::move(*red_map), planning.last_gain()});
     // Last: the red map waits for no mesh, and the next scan is under way meanwhile.
     if (const Status stitched = planning.stitch(job); !stitched) {
       give_up(stitched.error());

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -12,6 +13,7 @@
 #include "core/red_map.h"
 #include "core/sample_flags.h"
 #include "core/scan_pose.h"
+#include "station/view_gain.h"
 
 namespace dubsar {
 
@@ -40,6 +42,7 @@ struct OperatorObeyed {
 };
 struct RedMapChanged {
   RedMap red_map;
+  std::optional<ViewGain> gain;  ///< of the scan that changed it
 };
 /// The rig is about to be moved, or the operator is asked for a turn.
 struct NextPlacement {

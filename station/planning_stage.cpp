@@ -9,6 +9,7 @@
 #include "core/tablet_frame.h"
 #include "core/units.h"
 #include "planning/model_faces.h"
+#include "planning/red_change.h"
 #include "planning/red_map.h"
 #include "planning/sample_states.h"
 #include "planning/side_view.h"
@@ -65,6 +66,16 @@ class NearMesh {
   float side_mm_;
   std::vector<std::int64_t> cubes_;
 };
+
+bool same_placement(const Placement& a, const Placement& b) {
+  constexpr double kSameRad = 1e-6;
+  const auto same = [=](const std::optional<RigidTransform>& p, const std::optional<RigidTransform>& q) {
+    return p.has_value() == q.has_value() && (!p || p->rotation.isApprox(q->rotation, kSameRad));
+  };
+  return same(a.hand_turn, b.hand_turn) && same(a.free_pose, b.free_pose) &&
+         std::abs(a.turntable_rad - b.turntable_rad) < kSameRad &&
+         std::abs(a.tilt_rad - b.tilt_rad) < kSameRad;
+}
 
 }  // namespace
 
@@ -231,6 +242,31 @@ Result<Mesh> PlanningStage::mesh(JobContext& job) {
   return stitcher_.mesh(job);
 }
 
+std::optional<ViewGain> PlanningStage::gain_of_new(std::span<const PlacedScan> scans) const {
+  const PlacedScan* fresh = nullptr;
+  for (const PlacedScan& scan : scans) {
+    if (!mapped_.contains(scan.id)) {
+      if (fresh != nullptr) {
+        return std::nullopt;
+      }
+      fresh = &scan;
+    }
+  }
+  if (fresh == nullptr || mapped_.empty()) {
+    return std::nullopt;
+  }
+  ViewGain gain{fresh->id, std::nullopt, cleared_area_mm2(targets_, *fresh)};
+  if (const auto& drive = scans_.at(fresh->id).drive) {
+    const auto asked = std::ranges::find_if(proposed_, [&](const NextView& view) {
+      return view.placement && same_placement(*view.placement, *drive);
+    });
+    if (asked != proposed_.end()) {
+      gain.predicted_mm2 = asked->predicted_cleared_mm2;
+    }
+  }
+  return gain;
+}
+
 Result<RedMap> PlanningStage::red_map(const Rig* rig, JobContext& job) {
   const std::vector<PlacedScan> scans = cleared_.scans();
   RedMapOptions options;
@@ -239,6 +275,12 @@ Result<RedMap> PlanningStage::red_map(const Rig* rig, JobContext& job) {
   Result<RedMapResult> result = make_red_map(scans, nullptr, rig, options, job);
   if (!result) {
     return std::unexpected(result.error());
+  }
+  last_gain_ = gain_of_new(scans);
+  proposed_ = result->map.next;
+  mapped_.clear();
+  for (const PlacedScan& scan : scans) {
+    mapped_.insert(scan.id);
   }
   excused_flags_ = std::move(result->flags);
   targets_ = std::move(result->targets);

@@ -5,6 +5,8 @@
 #include <Eigen/Geometry>
 #include <map>
 #include <optional>
+#include <set>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -20,6 +22,7 @@
 #include "planning/red_targets.h"
 #include "planning/tablet_on_stage.h"
 #include "station/station_scan.h"
+#include "station/view_gain.h"
 #include "triangulation/stitcher.h"
 
 namespace dubsar {
@@ -40,6 +43,9 @@ class PlanningStage {
 
   /// The red map over what is placed.
   [[nodiscard]] Result<RedMap> red_map(const Rig* rig, JobContext& job);
+
+  /// How the one scan that came between the last two red maps did; nothing when none or several came.
+  [[nodiscard]] const std::optional<ViewGain>& last_gain() const { return last_gain_; }
 
   /// Brings the mesh up to what is placed, while nobody waits. Errors: kCancelled, and the stitcher's.
   Status stitch(JobContext& job);
@@ -87,6 +93,7 @@ class PlanningStage {
   };
 
   void take_out(int id);
+  [[nodiscard]] std::optional<ViewGain> gain_of_new(std::span<const PlacedScan> scans) const;
   [[nodiscard]] std::optional<StageState> stage() const;
 
   std::map<int, StationScan> scans_;
@@ -95,6 +102,9 @@ class PlanningStage {
   Stitcher stitcher_;
   std::vector<SampleFlags> excused_flags_;  ///< of the last red map, by position in placed()
   RedTargets targets_;                      ///< of the last red map
+  std::vector<NextView> proposed_;          ///< by the last red map
+  std::set<int> mapped_;                    ///< scans in the last red map
+  std::optional<ViewGain> last_gain_;
 };
 
 }  // namespace dubsar

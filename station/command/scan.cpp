@@ -62,6 +62,10 @@ class Narrator {
     } else if (const auto* obeyed = std::get_if<OperatorObeyed>(&event)) {
       log_info(obeyed->what);
     } else if (const auto* changed = std::get_if<RedMapChanged>(&event)) {
+      if (const auto& gain = changed->gain; gain && gain->predicted_mm2) {
+        log_info(fmt::format("scan {} cleared about {:.1f} mm2, {:.1f} were predicted", gain->scan,
+                             gain->actual_mm2, *gain->predicted_mm2));
+      }
       log_info(fmt::format("red: about {:.1f} mm2 in {} regions", red_area_mm2(changed->red_map),
                            red_regions(changed->red_map)));
     } else if (const auto* next = std::get_if<NextPlacement>(&event)) {
