@@ -12,6 +12,8 @@
 #include "planning/checklist.h"
 #include "planning/cleared_map.h"
 #include "planning/convex_hull.h"
+#include "planning/next_view.h"
+#include "planning/red_change.h"
 #include "planning/sparse_flags.h"
 #include "planning/view_prediction.h"
 
@@ -120,6 +122,36 @@ TEST(RedMap, TheUnseenUndersideIsOneLargeRegionOfTheReverse) {
   ASSERT_FALSE(result->map.next.empty());
   EXPECT_GT(result->map.next.front().predicted_cleared_mm2, 10.0);
   EXPECT_TRUE(result->map.next.front().placement.has_value());
+}
+
+TEST(RedMap, WhatAScanClearsIsMeasuredOnTheRedThatWasThere) {
+  Session session;
+  session.scan(turned(0, 0));
+  JobContext job;
+  const auto before = make_red_map(session.map.scans(), nullptr, nullptr, {}, job);
+  ASSERT_TRUE(before);
+  double red = 0;
+  for (const RedTarget& t : before->targets.targets) {
+    red += t.state == RegionState::kRed ? t.area_mm2 : 0.0;
+  }
+  EXPECT_LT(cleared_area_mm2(before->targets, session.map.scans().back()), 0.05 * red)
+      << "the scan that left the red clears nothing of it";
+  session.scan(turned(180, 0));
+  const double cleared = cleared_area_mm2(before->targets, session.map.scans().back());
+  EXPECT_GT(cleared, 0.5 * red) << "the other side is what was missing";
+  EXPECT_LE(cleared, red);
+
+  // A scan from there was predicted to.
+  ViewCandidate view;
+  view.model_from_scanner = turned(180, 0);
+  double predicted = 0;
+  const PlacedScan only[] = {session.map.scans().front()};
+  const std::vector<double> chances = clearing_chances(view, ScannerModel::of(*session.grids.back(), 0.0),
+                                                       model_surface(only), before->targets.targets);
+  for (std::size_t i = 0; i < chances.size(); ++i) {
+    predicted += chances[i] * before->targets.targets[i].area_mm2;
+  }
+  EXPECT_NEAR(predicted, cleared, 0.3 * cleared);
 }
 
 TEST(RedMap, AnObjectSeenFromAllSidesIsConclusive) {
