@@ -8,6 +8,7 @@
 #include <bit>
 #include <cmath>
 #include <map>
+#include <ranges>
 
 #include "core/parallel.h"
 #include "core/units.h"
@@ -315,25 +316,39 @@ void SurfaceCover::for_each_near(const Eigen::Vector3f& p, float radius, const V
 }
 
 std::vector<std::uint8_t> SurfaceCover::suspect_cells(std::span<const PlacedScan> scans) const {
+  // The cells of each scan's sparse samples, once each; then the cells around them.
+  std::vector<std::vector<Eigen::Vector3f>> places(scans.size());
+  parallel_for_each_index(
+      scans.size(),
+      [&](std::size_t s) {
+        const PlacedScan& scan = scans[s];
+        const Eigen::Matrix3f rotation = scan.model_from_scanner.rotation.cast<float>();
+        const Eigen::Vector3f translation = scan.model_from_scanner.translation_mm.cast<float>();
+        std::size_t last = start_.size();
+        for (std::size_t i = 0; i < scan.grid->size(); ++i) {
+          if (((*scan.flags)[i] & (kSparse | kNotTablet)) != kSparse || scan.grid->valid[i] == 0) {
+            continue;
+          }
+          const Eigen::Vector3f p = rotation * scan.grid->point(i) + translation;
+          const std::size_t cell = cell_index(p);
+          if (cell != last) {
+            places[s].push_back(p);
+            last = cell;
+          }
+        }
+      },
+      1);
   std::vector<std::uint8_t> suspect(start_.size(), 0);
   const auto far = static_cast<float>(reach_mm());
-  for (const PlacedScan& scan : scans) {
-    const Eigen::Matrix3f rotation = scan.model_from_scanner.rotation.cast<float>();
-    const Eigen::Vector3f translation = scan.model_from_scanner.translation_mm.cast<float>();
-    for (std::size_t i = 0; i < scan.grid->size(); ++i) {
-      if (((*scan.flags)[i] & (kSparse | kNotTablet)) != kSparse || scan.grid->valid[i] == 0) {
-        continue;
-      }
-      const Eigen::Vector3f p = rotation * scan.grid->point(i) + translation;
-      if (suspect[cell_index(p)] == 2) {
-        continue;  // its surroundings are marked
-      }
-      for (int n = 0; n < 27; ++n) {
-        const Eigen::Vector3f step(static_cast<float>(n % 3 - 1), static_cast<float>(n / 3 % 3 - 1),
-                                   static_cast<float>(n / 9 - 1));
-        std::uint8_t& mark = suspect[cell_index(p + far * step)];
-        mark = std::max<std::uint8_t>(mark, n == 13 ? 2 : 1);
-      }
+  for (const Eigen::Vector3f& p : places | std::views::join) {
+    if (suspect[cell_index(p)] == 2) {
+      continue;  // its surroundings are marked
+    }
+    for (int n = 0; n < 27; ++n) {
+      const Eigen::Vector3f step(static_cast<float>(n % 3 - 1), static_cast<float>(n / 3 % 3 - 1),
+                                 static_cast<float>(n / 9 - 1));
+      std::uint8_t& mark = suspect[cell_index(p + far * step)];
+      mark = std::max<std::uint8_t>(mark, n == 13 ? 2 : 1);
     }
   }
   return suspect;
