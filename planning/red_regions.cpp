@@ -27,13 +27,17 @@ RedRegion region_of(const RedTargets& red, std::span<const std::uint32_t> group,
     normal += t.area_mm2 * t.normal;
     by_face[static_cast<std::size_t>(faces.of(t.normal))] += t.area_mm2;
   }
-  const RedTarget& lowest = red.targets[group.front()];
-  region.center_mm = region.area_mm2 > 0 ? Eigen::Vector3d(center / region.area_mm2) : lowest.position_mm;
-  region.normal = normal.norm() > 1e-9 ? normal.normalized() : lowest.normal;
+  // What most of it is says why.
+  const std::uint32_t largest = *std::max_element(
+      group.begin(), group.end(),
+      [&](std::uint32_t a, std::uint32_t b) { return red.targets[a].area_mm2 < red.targets[b].area_mm2; });
+  const RedTarget& main = red.targets[largest];
+  region.center_mm = region.area_mm2 > 0 ? Eigen::Vector3d(center / region.area_mm2) : main.position_mm;
+  region.normal = normal.norm() > 1e-9 ? normal.normalized() : main.normal;
   region.face = static_cast<Face>(std::max_element(by_face.begin(), by_face.end()) - by_face.begin());
-  region.state = lowest.state;
-  region.excuse = lowest.excuse;
-  region.reason = lowest.reason;
+  region.state = main.state;
+  region.excuse = main.excuse;
+  region.reason = main.reason;
   return region;
 }
 
