@@ -61,6 +61,14 @@ double spacing_of(const RangeGrid& grid) {
   return grid.spacing_mm > 0 ? grid.spacing_mm : estimate_spacing_mm(grid);
 }
 
+double coarsest_spacing_mm(std::span<const PlacedScan> scans) {
+  double spacing_mm = 0;
+  for (const PlacedScan& scan : scans) {
+    spacing_mm = std::max(spacing_mm, spacing_of(*scan.grid));
+  }
+  return spacing_mm;
+}
+
 double noise_of(const PlacedScan& scan) {
   return scan.noise_mm ? *scan.noise_mm : estimate_noise_mm(*scan.grid);
 }

@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "core/grid_lookup.h"
@@ -26,6 +27,8 @@ struct ClearingOptions {
 
 /// µ of the grid, estimated where it is not known.
 [[nodiscard]] double spacing_of(const RangeGrid& grid);
+/// The largest µ of all scans; 0 for none.
+[[nodiscard]] double coarsest_spacing_mm(std::span<const PlacedScan> scans);
 
 /// Noise of the scan's samples, estimated where it is not known.
 [[nodiscard]] double noise_of(const PlacedScan& scan);

@@ -9,19 +9,11 @@
 #include <numeric>
 #include <tuple>
 
+#include "planning/point_cells.h"
+
 namespace dubsar {
 
 namespace {
-
-using Cell = std::array<std::int32_t, 3>;
-
-Cell cell_of(const Eigen::Vector3d& p, double edge) {
-  Cell cell{};
-  for (std::size_t k = 0; k < 3; ++k) {
-    cell[k] = static_cast<std::int32_t>(std::clamp(std::floor(p[static_cast<int>(k)] / edge), -1e9, 1e9));
-  }
-  return cell;
-}
 
 bool alike(const RedTarget& a, const RedTarget& b) {
   return a.state == b.state && a.excuse == b.excuse;
@@ -29,35 +21,19 @@ bool alike(const RedTarget& a, const RedTarget& b) {
 
 void join_near(const RedTargets& red, std::span<const std::uint32_t> members, double radius_mm,
                UnionFind& sets) {
-  std::map<Cell, std::vector<std::uint32_t>> cells;
+  PointCells cells(radius_mm);
   for (const std::uint32_t i : members) {
-    cells[cell_of(red.targets[i].position_mm, radius_mm)].push_back(i);
+    cells.add(red.targets[i].position_mm, i);
   }
-  for (const auto& [cell, own] : cells) {
-    for (int n = 0; n < 27; ++n) {
-      const Cell other{cell[0] + n % 3 - 1, cell[1] + n / 3 % 3 - 1, cell[2] + n / 9 - 1};
-      if (other < cell) {
-        continue;  // that pair of cells is met from the other one
+  for (const std::uint32_t i : members) {
+    cells.for_each_within(red.targets[i].position_mm, [&](std::uint32_t j) {
+      if (j > i && alike(red.targets[i], red.targets[j])) {
+        sets.join(i, j);
       }
-      const auto it = cells.find(other);
-      if (it == cells.end()) {
-        continue;
-      }
-      for (const std::uint32_t a : own) {
-        for (const std::uint32_t b : it->second) {
-          const RedTarget& ta = red.targets[a];
-          const RedTarget& tb = red.targets[b];
-          if (a != b && alike(ta, tb) &&
-              (ta.position_mm - tb.position_mm).squaredNorm() <= radius_mm * radius_mm) {
-            sets.join(a, b);
-          }
-        }
-      }
-    }
+    });
   }
 }
 
-/// Two samples that are neighbours in a grid belong to the same rim, or to the two rims of one gap.
 void join_along_grids(const RedTargets& red, std::span<const PlacedScan> scans, double reach_mm,
                       UnionFind& sets) {
   std::vector<RedSampleRef> refs = red.samples;
@@ -108,6 +84,18 @@ void UnionFind::join(std::uint32_t a, std::uint32_t b) {
   a = find(a);
   b = find(b);
   parent_[std::max(a, b)] = std::min(a, b);
+}
+
+std::vector<std::vector<std::uint32_t>> UnionFind::groups() {
+  std::map<std::uint32_t, std::vector<std::uint32_t>> by_root;
+  for (std::uint32_t i = 0; i < parent_.size(); ++i) {
+    by_root[find(i)].push_back(i);
+  }
+  std::vector<std::vector<std::uint32_t>> out;
+  for (auto& [root, group] : by_root) {
+    out.push_back(std::move(group));
+  }
+  return out;
 }
 
 std::vector<std::vector<std::uint32_t>> cluster_targets(const RedTargets& red,

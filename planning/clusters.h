@@ -16,6 +16,8 @@ class UnionFind {
   explicit UnionFind(std::size_t count);
   [[nodiscard]] std::uint32_t find(std::uint32_t i);
   void join(std::uint32_t a, std::uint32_t b);
+  /// The sets, by their lowest member, each in ascending order.
+  [[nodiscard]] std::vector<std::vector<std::uint32_t>> groups();
 
  private:
   std::vector<std::uint32_t> parent_;

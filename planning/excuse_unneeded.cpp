@@ -119,10 +119,7 @@ std::string describe(const Interpolation& fit, double good_to_mm) {
 
 void excuse_unneeded(std::span<const PlacedScan> scans, const SurfaceCover& cover, double noise_mm,
                      const ExcuseOptions& options, RedTargets& red) {
-  double spacing_mm = 0;
-  for (const PlacedScan& scan : scans) {
-    spacing_mm = std::max(spacing_mm, spacing_of(*scan.grid));
-  }
+  const double spacing_mm = coarsest_spacing_mm(scans);
   const double margin_mm = std::max(options.fit_margin_mm, 4.5 * spacing_mm);
   for (const auto& group :
        cluster_targets(red, scans, 2.0 * red.cell_mm, 2.0 * options.largest_gap_mm, true)) {
@@ -194,10 +191,7 @@ void excuse_speck(const SurfaceCover& cover, const char* why, RedTarget& target)
 }
 
 double largest_speck_mm2(std::span<const PlacedScan> scans, const ExcuseOptions& options) {
-  double spacing_mm = 0;
-  for (const PlacedScan& scan : scans) {
-    spacing_mm = std::max(spacing_mm, spacing_of(*scan.grid));
-  }
+  const double spacing_mm = coarsest_spacing_mm(scans);
   return options.speck_spacings2 * spacing_mm * spacing_mm;
 }
 

@@ -205,10 +205,7 @@ bool seen_from_outside(const MeshQuery& query, const SurfacePatch& patch, double
 
 ModelSurface model_surface(std::span<const PlacedScan> scans, const Mesh* model,
                            const ModelSurfaceOptions& options) {
-  double spacing_mm = 0;
-  for (const PlacedScan& scan : scans) {
-    spacing_mm = std::max(spacing_mm, spacing_of(*scan.grid));
-  }
+  const double spacing_mm = coarsest_spacing_mm(scans);
   const Eigen::AlignedBox3d box = box_of(scans);
   double step_mm = std::max(options.step_mm, spacing_mm);
   if (!box.isEmpty()) {

@@ -184,10 +184,7 @@ RedTarget merged(std::span<const Red> reds) {
 RedTargets red_targets(std::span<const PlacedScan> scans, const ModelSurface& surface,
                        const RedTargetOptions& options) {
   RedTargets out;
-  double spacing_mm = 0;
-  for (const PlacedScan& scan : scans) {
-    spacing_mm = std::max(spacing_mm, spacing_of(*scan.grid));
-  }
+  const double spacing_mm = coarsest_spacing_mm(scans);
   std::vector<Red> reds = red_samples(scans, options.longest_gap_mm);
   out.cell_mm = std::max(options.cell_mm, 3.0 * spacing_mm);
   while (sort_into_cells(reds, out.cell_mm) > options.max_targets) {
@@ -223,10 +220,7 @@ void drop_unbordered_patches(std::span<const PlacedScan> scans, RedTargets& red)
   for (const RedTarget& t : red.targets) {
     patch_mm = t.unseen && !t.rim ? std::max(patch_mm, std::sqrt(t.area_mm2)) : patch_mm;
   }
-  double spacing_mm = 0;
-  for (const PlacedScan& scan : scans) {
-    spacing_mm = std::max(spacing_mm, spacing_of(*scan.grid));
-  }
+  const double spacing_mm = coarsest_spacing_mm(scans);
   std::vector<std::size_t> samples(red.targets.size(), 0);
   for (const RedSampleRef& ref : red.samples) {
     ++samples[ref.target];

@@ -2,19 +2,15 @@
 // Copyright The Dubsar developers
 #include "planning/surface_cover.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <map>
 #include <ranges>
 
 #include "core/parallel.h"
 #include "core/units.h"
 #include "planning/clearing.h"
-#include "planning/clusters.h"
-#include "planning/point_cells.h"
 
 namespace dubsar {
 
@@ -103,73 +99,10 @@ class Occupied {
   std::vector<std::uint64_t> keys_;
 };
 
-std::vector<std::vector<std::uint32_t>> connected(const std::vector<Rim>& rims, double reach_mm) {
-  PointCells cells(reach_mm);
-  for (std::uint32_t i = 0; i < rims.size(); ++i) {
-    cells.add(rims[i].position_mm, i);
-  }
-  UnionFind sets(rims.size());
-  for (std::uint32_t i = 0; i < rims.size(); ++i) {
-    cells.for_each_within(rims[i].position_mm, [&](std::uint32_t j) {
-      if (j > i) {
-        sets.join(i, j);
-      }
-    });
-  }
-  std::map<std::uint32_t, std::vector<std::uint32_t>> groups;
-  for (std::uint32_t i = 0; i < rims.size(); ++i) {
-    groups[sets.find(i)].push_back(i);
-  }
-  std::vector<std::vector<std::uint32_t>> out;
-  for (auto& [root, group] : groups) {
-    out.push_back(std::move(group));
-  }
-  return out;
-}
-
-/// The rim seen along the direction in which it is flattest, its points in order of their bearing.
-Hole hole_of(const std::vector<Rim>& rims, std::span<const std::uint32_t> group) {
-  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-  for (const std::uint32_t i : group) {
-    mean += rims[i].position_mm / static_cast<double>(group.size());
-  }
-  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
-  for (const std::uint32_t i : group) {
-    const Eigen::Vector3d d = rims[i].position_mm - mean;
-    spread += d * d.transpose();
-  }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(spread);
-  const Eigen::Vector3d u = solver.eigenvectors().col(2);
-  const Eigen::Vector3d v = solver.eigenvectors().col(1);
-  std::vector<std::array<double, 3>> polygon;  // bearing, u, v
-  double low = 0;
-  double high = 0;
-  for (const std::uint32_t i : group) {
-    const Eigen::Vector3d d = rims[i].position_mm - mean;
-    polygon.push_back({std::atan2(v.dot(d), u.dot(d)), u.dot(d), v.dot(d)});
-    low = std::min(low, u.dot(d));
-    high = std::max(high, u.dot(d));
-  }
-  std::sort(polygon.begin(), polygon.end());
-  Hole hole;
-  hole.rim.assign(group.begin(), group.end());
-  hole.width_mm = high - low;
-  for (std::size_t i = 0; i < polygon.size(); ++i) {
-    const auto& a = polygon[i];
-    const auto& b = polygon[(i + 1) % polygon.size()];
-    hole.area_mm2 += 0.5 * (a[1] * b[2] - b[1] * a[2]);
-  }
-  hole.area_mm2 = std::abs(hole.area_mm2);
-  return hole;
-}
-
 }  // namespace
 
 SurfaceCover::SurfaceCover(std::span<const PlacedScan> scans) {
-  double spacing_mm = 0;
-  for (const PlacedScan& scan : scans) {
-    spacing_mm = std::max(spacing_mm, spacing_of(*scan.grid));
-  }
+  const double spacing_mm = coarsest_spacing_mm(scans);
   cell_mm_ = std::max(kLeastCellMm, kCellInSpacings * spacing_mm);
   std::vector<std::vector<Element>> by_scan(scans.size());
   parallel_for_each_index(
@@ -404,10 +337,9 @@ void SurfaceCover::keep_holes(const std::vector<Eigen::Vector3f>& outward) {
       element.push_back(i);
     }
   }
-  for (const auto& group : connected(rims, reach_mm())) {
-    Hole hole = hole_of(rims, group);
-    if (hole.width_mm < 0.5 * reach_mm() || group.size() < 3) {
-      for (const std::uint32_t i : group) {
+  for (Hole& hole : holes_of(rims, reach_mm())) {
+    if (hole.width_mm < 0.5 * reach_mm() || hole.rim.size() < 3) {
+      for (const std::uint32_t i : hole.rim) {
         is_rim_[element[i]] = 0;
       }
       continue;

@@ -9,22 +9,9 @@
 #include <vector>
 
 #include "core/placed_scan.h"
+#include "planning/holes.h"
 
 namespace dubsar {
-
-/// A bit of well-sampled surface at which it ends.
-struct Rim {
-  Eigen::Vector3d position_mm{0, 0, 0};  ///< model frame
-  Eigen::Vector3d normal{0, 0, 1};       ///< of the surface, out of the clay
-  Eigen::Vector3d outward{1, 0, 0};      ///< along the surface, to where nothing is sampled; unit
-};
-
-/// A connected rim.
-struct Hole {
-  std::vector<std::uint32_t> rim;  ///< positions in rims()
-  double width_mm = 0;             ///< greatest extent of the rim
-  double area_mm2 = 0;             ///< of the rim's polygon, seen along the direction in which it is flattest
-};
 
 /// The well-sampled surface of all scans together, as one thinned set of surface elements, and where it ends.
 /// Flags alone cannot tell: where two scans see a hole up to the same rim, the border of each lies on good

@@ -5,7 +5,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <numeric>
 
 #include "core/grid_lookup.h"
@@ -92,13 +91,13 @@ std::vector<std::uint8_t> TabletTruth::unreachable(const std::vector<std::uint8_
       }
     }
   }
-  std::map<std::uint32_t, std::vector<std::uint32_t>> groups;
-  for (std::uint32_t a = 0; a < by_rays.size(); ++a) {
-    groups[sets.find(a)].push_back(by_rays[a]);
-  }
-  for (const auto& [root, group] : groups) {
+  for (const auto& group : sets.groups()) {
     if (group.size() >= kLeastGroup) {
-      scan_from_everywhere(group, out);
+      std::vector<std::uint32_t> of_points;
+      for (const std::uint32_t k : group) {
+        of_points.push_back(by_rays[k]);
+      }
+      scan_from_everywhere(of_points, out);
     }
   }
   return out;
