@@ -57,6 +57,8 @@ struct ModelFit {
   std::vector<std::size_t> touching;  ///< positions in the model of the scans that it overlaps
   std::vector<std::size_t> targets;   ///< those of them that it is fitted to
 
+  /// False for a rough pose that was not worth the fine level: it must not be accepted.
+  [[nodiscard]] bool refined() const { return icp.pairs > 0; }
   [[nodiscard]] PoseEvidence both() const {
     PoseEvidence sum = outward;
     sum.add(inward);

@@ -27,11 +27,15 @@ void merge(std::vector<ModelFit>& into, std::vector<ModelFit> more, const ScanSu
                    [](const ModelFit& a, const ModelFit& b) { return a.score > b.score; });
   std::vector<ModelFit> kept;
   for (ModelFit& fit : into) {
-    if (std::none_of(kept.begin(), kept.end(), [&](const ModelFit& k) {
-          return same_pose(fit.model_from_scanner, k.model_from_scanner, scan.centroid_mm,
-                           options.distinct_turn_rad, options.distinct_shift * scan.scale_mm);
-        })) {
+    const auto copy = std::find_if(kept.begin(), kept.end(), [&](const ModelFit& k) {
+      return same_pose(fit.model_from_scanner, k.model_from_scanner, scan.centroid_mm,
+                       options.distinct_turn_rad, options.distinct_shift * scan.scale_mm);
+    });
+    if (copy == kept.end()) {
       kept.push_back(std::move(fit));
+    } else if (fit.refined() && !copy->refined()) {
+      // A rough pose may look better by chance; only the refined one may be accepted.
+      *copy = std::move(fit);
     }
   }
   into = std::move(kept);
@@ -194,7 +198,7 @@ FoundPose search_pose(const ScanSurface& scan, std::span<const ModelScan> model,
     if (starts.empty()) {
       continue;
     }
-    look(starts);
+    look(starts, hints.asked.has_value());
     settled = enough(found, options);
   }
   if (found.verdict.status != PoseStatus::kRegistered && !found.fits.empty() && !job.cancelled()) {

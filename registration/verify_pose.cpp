@@ -72,8 +72,7 @@ PoseVerdict judged_by_shape(const ModelFit& fit, const VerifyOptions& o) {
             "more overlap, or click three points on both scans"};
   }
   const bool held_by_relief = sure(fit, o) && fit.slid_significance < o.most_slid * fit.significance;
-  const bool refined = fit.icp.pairs > 0;  // else it was not worth it, and its stability is not known
-  if (refined && fit.icp.stability < o.least_stability && !held_by_relief) {
+  if (fit.refined() && fit.icp.stability < o.least_stability && !held_by_relief) {
     return {PoseStatus::kUnsure,
             "the overlap is too even: the scan can " + loose_direction(fit.icp) +
                 " on it; scan again with an edge or more relief in the overlap, or use pins"};
@@ -117,7 +116,8 @@ PoseVerdict verify_pose(std::vector<ModelFit>& fits, const VerifyOptions& option
     return judged_by_shape(fit, options).status == PoseStatus::kRegistered;
   };
   const auto acceptable = [&](const ModelFit& fit) {
-    return (fit.told || sure(fit, options) || shape_settles(fit, options)) && fits_shape(fit);
+    return fit.refined() && (fit.told || sure(fit, options) || shape_settles(fit, options)) &&
+           fits_shape(fit);
   };
   auto best = sure(fits.front(), options) && acceptable(fits.front()) ? fits.begin() : fits.end();
   const bool settled = best != fits.end();

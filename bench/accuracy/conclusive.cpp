@@ -39,6 +39,9 @@ struct Arguments {
   bool verbose = false;
 };
 
+/// A scan farther off is in the wrong place, not roughly in the right one.
+constexpr double kMisplacedMm = 0.1;
+
 struct Gain {
   double predicted = 0;
   double actual = 0;
@@ -52,6 +55,7 @@ struct TabletResult {
   double share = 0;          ///< of the reachable
   double share_sampled = 0;  ///< of all
   double area_mm2 = 0;
+  double worst_pose_mm = 0;
   ExcuseScore excuses;
   std::vector<Gain> gains;
 };
@@ -179,6 +183,10 @@ TabletResult run(const LoopOptions& options, const Arguments& args) {
           : placed           ? ""
                              : " LOST",
           red.map.next.empty() ? "" : red.map.next.front().say.c_str());
+      for (const double mm : loop.pose_errors_mm()) {
+        std::printf(" %.4f", mm);
+      }
+      std::printf(" mm off\n");
       if (red.map.conclusive || loop.scans() >= 12) {
         print_targets(loop, red, 0.0);
       }
@@ -196,6 +204,8 @@ TabletResult run(const LoopOptions& options, const Arguments& args) {
   if (args.verbose) {
     print_open(loop);
   }
+  const std::vector<double> pose_errors_mm = loop.pose_errors_mm();
+  result.worst_pose_mm = *std::max_element(pose_errors_mm.begin(), pose_errors_mm.end());
   result.scans = loop.scans();
   result.share_sampled = loop.share_sampled();
   result.share = loop.truth().share_of_reachable(loop.sampled(), job);
@@ -235,7 +245,8 @@ int main(int argc, char** argv) {
   CLI11_PARSE(app, argc, argv);
 
   std::vector<double> shares, errors, interpolation;
-  double unreachable = 0, truly = 0, unneeded = 0, area = 0;
+  double unreachable = 0, truly = 0, unneeded = 0, area = 0, worst_pose_mm = 0;
+  int misplaced = 0;
   int conclusive = 0, scans = 0, greedy = 0, greedy_999 = 0, scans_999 = 0, turntable = 0, boundary = 0;
   int not_below_turntable = 0, not_below_boundary = 0;
   for (int k = 0; k < args.tablets; ++k) {
@@ -261,12 +272,14 @@ int main(int argc, char** argv) {
     }
     std::printf(
         "%4llu: %.0fx%.0fx%.0f %s %d scans (%d to 99.9 %%), share %.5f, unreachable %.2f mm2 (%.2f truly), "
-        "unneeded %.3f; %.1f s",
+        "unneeded %.3f, poses within %.4f mm; %.1f s",
         static_cast<unsigned long long>(options.tablet.seed), options.tablet.size_mm.x(),
         options.tablet.size_mm.y(), options.tablet.size_mm.z(),
         r.conclusive ? "conclusive" : "NOT CONCLUSIVE", r.scans, r.scans_to_999, r.share,
-        r.excuses.unreachable_mm2, r.excuses.truly_unreachable_mm2, r.excuses.unneeded_mm2,
+        r.excuses.unreachable_mm2, r.excuses.truly_unreachable_mm2, r.excuses.unneeded_mm2, r.worst_pose_mm,
         seconds_since(start));
+    worst_pose_mm = std::max(worst_pose_mm, r.worst_pose_mm);
+    misplaced += r.worst_pose_mm > kMisplacedMm ? 1 : 0;
     if (args.baselines) {
       const auto again = std::chrono::steady_clock::now();
       const int g = greedy_cover(options, r.share_sampled, 0.3, args.max_scans);
@@ -294,6 +307,8 @@ int main(int argc, char** argv) {
       "good to %.1f um (95 %%, %zu)\n",
       unreachable, unreachable > 0 ? 100 * truly / unreachable : 100.0, 100 * unneeded / area,
       1000 * quantile(interpolation, 0.95), interpolation.size());
+  std::printf("poses: worst %.4f mm; tablets with a scan more than %.1f mm off: %d\n", worst_pose_mm,
+              kMisplacedMm, misplaced);
   std::printf("scans: mean %.2f, to 99.9 %% of that %.2f", scans / n, scans_999 / n);
   if (args.baselines) {
     std::printf(

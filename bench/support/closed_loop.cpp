@@ -3,6 +3,7 @@
 #include "bench/support/closed_loop.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 
@@ -43,6 +44,25 @@ RigidTransform ClosedLoop::tablet_from_model() const {
     return true_poses_[static_cast<std::size_t>(scan.id)] * scan.model_from_scanner.inverse();
   }
   return {};
+}
+
+std::vector<double> ClosedLoop::pose_errors_mm() const {
+  const RigidTransform frame = tablet_from_model();
+  std::vector<double> errors;
+  for (const PlacedScan& scan : cleared_.scans()) {
+    const RigidTransform& truth = true_poses_[static_cast<std::size_t>(scan.id)];
+    double squares = 0;
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < scan.grid->size(); i += 97) {
+      if (scan.grid->valid[i] != 0) {
+        const Eigen::Vector3d p = scan.grid->point(i).cast<double>();
+        squares += (frame * (scan.model_from_scanner * p) - truth * p).squaredNorm();
+        ++count;
+      }
+    }
+    errors.push_back(count > 0 ? std::sqrt(squares / static_cast<double>(count)) : 0.0);
+  }
+  return errors;
 }
 
 bool ClosedLoop::scan(const std::optional<Placement>& placement) {

@@ -42,6 +42,9 @@ class ClosedLoop {
   [[nodiscard]] RedMapResult red_map();
   [[nodiscard]] StageState stage() const { return {scans() - 1, last_}; }
   [[nodiscard]] RigidTransform tablet_from_model() const;
+  /// By placed scan: how far its pose carries the middle of its samples from where they were measured, mm;
+  /// the first scan is the frame.
+  [[nodiscard]] std::vector<double> pose_errors_mm() const;
 
   /// [points of truth] sampled well by some scan.
   [[nodiscard]] const std::vector<std::uint8_t>& sampled() const { return sampled_; }
