@@ -69,26 +69,4 @@ void excuse_strays(std::span<const PlacedScan> scans, std::span<const double> no
       16);
 }
 
-void excuse_out_of_reach(std::span<const float> best_chance, const ExcuseOptions& options, RedTargets& red) {
-  for (std::size_t i = 0; i < red.targets.size(); ++i) {
-    RedTarget& target = red.targets[i];
-    if (target.state == RegionState::kRed && best_chance[i] >= 0 &&
-        static_cast<double>(best_chance[i]) < options.least_chance) {
-      target.excuse_as(Excuse::kUnreachable,
-                       "no pose that the rig allows sees it with laser and camera at a slope below 70°");
-    }
-  }
-}
-
-void excuse_tried(const ExcuseOptions& options, RedTargets& red) {
-  for (RedTarget& target : red.targets) {
-    if (target.state == RegionState::kRed && target.tried.size() >= static_cast<std::size_t>(options.tries)) {
-      target.excuse_as(
-          Excuse::kUnreachable,
-          std::to_string(options.tries) +
-              " scans looked at it and brought no dense samples: too deep, too dark or no surface");
-    }
-  }
-}
-
 }  // namespace dubsar

@@ -26,7 +26,8 @@ struct ExcuseOptions {
   double speck_spacings2 = 10.0;
   double speck_budget = 2e-4;  ///< of the surface, for all specks together
   int speck_tries = 2;
-  int tries = 4;  ///< scans that ought to have seen a place before it is given up
+  double largest_slit_mm2 = 0.5;  ///< half the footprint of the smallest wedge, 1 mm across
+  int tries = 4;                  ///< scans that ought to have seen a place before it is given up
 };
 
 /// Unneeded: holes no wider than largest_gap_mm over which the surface is interpolated well enough. The test:
@@ -56,12 +57,19 @@ void excuse_last_specks(std::span<const PlacedScan> scans, const SurfaceCover& c
 void excuse_strays(std::span<const PlacedScan> scans, std::span<const double> noise_mm,
                    const ModelSurface& surface, const ExcuseOptions& options, RedTargets& red);
 
-/// Unreachable by pose limits: no pose that the rig allows is expected to sample the place. best_chance as in
-/// NextViews, over all candidates; entries below 0 were not judged and stay red.
-void excuse_out_of_reach(std::span<const float> best_chance, const ExcuseOptions& options, RedTargets& red);
+/// What nothing will clear is unreachable where it hangs together over more than largest_slit_mm2. Smaller
+/// places are unneeded as long as all of them together stay below speck_budget: most could be seen into from
+/// some pose, but hide no sign.
 
-/// Unreachable by trial: at least `tries` scans ought to have seen the place by all that is known, and none
-/// brought dense samples. Applies to rig and replay alike.
-void excuse_tried(const ExcuseOptions& options, RedTargets& red);
+/// By pose limits: no pose that the rig allows is expected to sample the place. best_chance as in NextViews,
+/// over all candidates; entries below 0 were not judged and stay red.
+void excuse_out_of_reach(std::span<const PlacedScan> scans, const SurfaceCover& cover,
+                         std::span<const float> best_chance, double surface_mm2, const ExcuseOptions& options,
+                         RedTargets& red);
+
+/// By trial: at least `tries` scans ought to have seen the place by all that is known, and none brought dense
+/// samples. Applies to rig and replay alike.
+void excuse_tried(std::span<const PlacedScan> scans, const SurfaceCover& cover, double surface_mm2,
+                  const ExcuseOptions& options, RedTargets& red);
 
 }  // namespace dubsar

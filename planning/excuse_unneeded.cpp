@@ -152,9 +152,9 @@ void excuse_unneeded(std::span<const PlacedScan> scans, const SurfaceCover& cove
 
 namespace {
 
-/// Where interpolation puts the surface beside a red sample: half way to the well-sampled surface, at the
-/// mean height of that around it (one sample's noise is too much); and how far the sample rises over it.
-/// Nothing where it is out of reach.
+/// Where interpolation puts the surface beside a red sample: half way to the well-sampled surface, on the
+/// plane through what lies around, near samples counting more (one sample's noise is too much); and how far
+/// the sample rises over its neighbour. Nothing where the well-sampled surface is out of reach.
 struct Bridge {
   Eigen::Vector3d filled_mm{0, 0, 0};
   double rise_mm = 0;
@@ -162,7 +162,8 @@ struct Bridge {
 
 std::optional<Bridge> bridge(const SurfaceCover& cover, const RedTarget& target) {
   const Eigen::Vector3d& sample = target.sample_mm;
-  const auto around = cover.within(sample, cover.reach_mm());
+  const double radius_mm = cover.reach_mm();
+  const auto around = cover.within(sample, radius_mm);
   const auto nearest = std::min_element(around.begin(), around.end(), [&](const auto& a, const auto& b) {
     return (a.position_mm.template cast<double>() - sample).squaredNorm() <
            (b.position_mm.template cast<double>() - sample).squaredNorm();
@@ -171,23 +172,47 @@ std::optional<Bridge> bridge(const SurfaceCover& cover, const RedTarget& target)
     return std::nullopt;
   }
   const Eigen::Vector3d from = nearest->position_mm.cast<double>();
+  const Eigen::Vector3d middle = 0.5 * (sample + from);
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();
-  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
   for (const auto& e : around) {
     normal += e.normal.cast<double>();
-    mean += e.position_mm.cast<double>() / static_cast<double>(around.size());
   }
   normal.normalize();
-  const Eigen::Vector3d middle = 0.5 * (sample + from);
-  return Bridge{middle + normal * normal.dot(mean - middle),
-                std::abs(nearest->normal.cast<double>().dot(sample - from))};
+  const Eigen::Vector3d u = normal.unitOrthogonal();
+  const Eigen::Vector3d v = normal.cross(u);
+  Eigen::Matrix3d moments = 1e-9 * Eigen::Matrix3d::Identity();
+  Eigen::Vector3d heights = Eigen::Vector3d::Zero();
+  const auto add = [&](const Eigen::Vector3d& p) {
+    const Eigen::Vector3d d = p - middle;
+    const double w = std::pow(std::max(0.0, 1.0 - d.squaredNorm() / (radius_mm * radius_mm)), 2.0);
+    const Eigen::Vector3d t(1.0, u.dot(d), v.dot(d));
+    moments += w * t * t.transpose();
+    heights += w * normal.dot(d) * t;
+  };
+  for (const auto& e : around) {
+    add(e.position_mm.cast<double>());
+  }
+  add(sample);
+  const Eigen::Vector3d plane = moments.ldlt().solve(heights);
+  return Bridge{middle + normal * plane[0], std::abs(nearest->normal.cast<double>().dot(sample - from))};
 }
 
-void excuse_speck(const SurfaceCover& cover, const char* why, RedTarget& target) {
-  target.excuse_as(Excuse::kUnneeded, why);
+void excuse_speck(const SurfaceCover& cover, std::string why, RedTarget& target) {
+  target.excuse_as(Excuse::kUnneeded, std::move(why));
   if (const auto filled = bridge(cover, target)) {
     target.interpolated_mm = filled->filled_mm;
   }
+}
+
+/// Red on both rims of a gap up to this wide is one group.
+constexpr double kAcrossGapsMm = 2.0;
+
+double area_of(std::span<const std::uint32_t> group, const RedTargets& red) {
+  double area_mm2 = 0;
+  for (const std::uint32_t i : group) {
+    area_mm2 += red.targets[i].area_mm2;
+  }
+  return area_mm2;
 }
 
 double largest_speck_mm2(std::span<const PlacedScan> scans, const ExcuseOptions& options) {
@@ -207,13 +232,12 @@ void excuse_specks(std::span<const PlacedScan> scans, const SurfaceCover& cover,
       continue;
     }
     Eigen::AlignedBox3d box;
-    double area_mm2 = 0;
     std::size_t tried = red.targets[group.front()].tried.size();
     for (const std::uint32_t t : group) {
       box.extend(red.targets[t].position_mm);
-      area_mm2 += red.targets[t].area_mm2;
       tried = std::min(tried, red.targets[t].tried.size());
     }
+    const double area_mm2 = area_of(group, red);
     const bool speck = area_mm2 <= largest_mm2 && box.diagonal().norm() <= options.largest_gap_mm;
     if (speck && tried >= static_cast<std::size_t>(options.speck_tries)) {
       for (const std::uint32_t t : group) {
@@ -241,6 +265,59 @@ void excuse_specks(std::span<const PlacedScan> scans, const SurfaceCover& cover,
                    red.targets[group[k]]);
     }
   }
+}
+
+namespace {
+
+/// Settles red targets that nothing will clear: those of large groups are unreachable; those of small ones
+/// are unneeded as long as all of them together stay below speck_budget, and stay red otherwise.
+template <class GivenUp>
+void give_up(std::span<const PlacedScan> scans, const SurfaceCover& cover, double surface_mm2,
+             const ExcuseOptions& options, const std::string& why, const GivenUp& given_up, RedTargets& red) {
+  std::vector<std::uint32_t> slits;
+  for (const auto& group : cluster_targets(red, scans, red.cell_mm, kAcrossGapsMm, true)) {
+    const bool slit = area_of(group, red) <= options.largest_slit_mm2;
+    for (const std::uint32_t i : group) {
+      if (red.targets[i].state != RegionState::kRed || !given_up(i)) {
+        continue;
+      }
+      if (slit) {
+        slits.push_back(i);
+      } else {
+        red.targets[i].excuse_as(Excuse::kUnreachable, why);
+      }
+    }
+  }
+  if (area_of(slits, red) > options.speck_budget * surface_mm2) {
+    return;
+  }
+  for (const std::uint32_t i : slits) {
+    excuse_speck(cover, "slit or pit of less than a wedge's size: " + why, red.targets[i]);
+  }
+}
+
+}  // namespace
+
+void excuse_out_of_reach(std::span<const PlacedScan> scans, const SurfaceCover& cover,
+                         std::span<const float> best_chance, double surface_mm2, const ExcuseOptions& options,
+                         RedTargets& red) {
+  give_up(
+      scans, cover, surface_mm2, options,
+      "no pose that the rig allows sees it with laser and camera at a slope below 70°",
+      [&](std::uint32_t i) {
+        return best_chance[i] >= 0 && static_cast<double>(best_chance[i]) < options.least_chance;
+      },
+      red);
+}
+
+void excuse_tried(std::span<const PlacedScan> scans, const SurfaceCover& cover, double surface_mm2,
+                  const ExcuseOptions& options, RedTargets& red) {
+  give_up(
+      scans, cover, surface_mm2, options,
+      std::to_string(options.tries) +
+          " scans looked at it and brought no dense samples: too deep, too dark or no surface",
+      [&](std::uint32_t i) { return red.targets[i].tried.size() >= static_cast<std::size_t>(options.tries); },
+      red);
 }
 
 void excuse_last_specks(std::span<const PlacedScan> scans, const SurfaceCover& cover, double best_gain_mm2,

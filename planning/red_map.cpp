@@ -95,7 +95,7 @@ Result<RedMapResult> make_red_map(std::span<const PlacedScan> scans, const Mesh*
   }
   note_tries(scans, noise_mm, surface, out.targets.targets);
   excuse_specks(scans, cover, surface_mm2, options.excuse, out.targets);
-  excuse_tried(options.excuse, out.targets);
+  excuse_tried(scans, cover, surface_mm2, options.excuse, out.targets);
   job.progress("red map", 0.5);
 
   Result<NextViews> views = plan_views(scans, surface, out.targets, rig, median_noise_mm, options, job);
@@ -103,7 +103,7 @@ Result<RedMapResult> make_red_map(std::span<const PlacedScan> scans, const Mesh*
     return std::unexpected(views.error());
   }
   if (rig != nullptr) {
-    excuse_out_of_reach(views->best_chance, options.excuse, out.targets);
+    excuse_out_of_reach(scans, cover, views->best_chance, surface_mm2, options.excuse, out.targets);
   }
   excuse_last_specks(scans, cover, views->ranked.empty() ? 0.0 : views->ranked.front().predicted_cleared_mm2,
                      surface_mm2, options.excuse, out.targets);

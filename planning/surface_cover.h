@@ -15,8 +15,8 @@ namespace dubsar {
 
 /// The well-sampled surface of all scans together, as one thinned set of surface elements, and where it ends.
 /// Flags alone cannot tell: where two scans see a hole up to the same rim, the border of each lies on good
-/// samples of the other, and both are cleared. An element is a rim when the elements around it, within two
-/// and a half cells, leave half a turn or nearly so empty.
+/// samples of the other, and both are cleared. An element is a rim when the elements around it, within
+/// reach_mm(), leave half a turn or nearly so empty.
 class SurfaceCover {
  public:
   /// Elements about 1.5 of the largest µ apart, and no closer than 0.15 mm.
@@ -24,7 +24,7 @@ class SurfaceCover {
 
   [[nodiscard]] double cell_mm() const { return cell_mm_; }
   /// Within this distance neighbours are looked for: the diameter below which a hole is none.
-  [[nodiscard]] double reach_mm() const { return 2.5 * cell_mm_; }
+  [[nodiscard]] double reach_mm() const { return 2.3 * cell_mm_; }
   [[nodiscard]] const std::vector<Rim>& rims() const { return rims_; }
   /// Every rim is part of one hole. Rims shorter than reach_mm() are none: the rule of 3µ lets such gaps
   /// pass.
