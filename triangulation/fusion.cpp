@@ -15,58 +15,89 @@ namespace {
 using Eigen::Vector3f;
 
 struct Projection {
-  Vector3f point{0, 0, 0};
-  float distance2 = std::numeric_limits<float>::max();
-  float weight = 0;       ///< interpolated
+  float along_mm = 0;     ///< from p along its normal
+  float weight = 0;       ///< interpolated; 0 where the line misses the other scan's triangles
   float reliability = 0;  ///< interpolated
 };
 
-/// Foot of p on the plane of one triangle, when it lies inside (with a hair's tolerance).
-void project_on(const StitchSurface& s, const std::array<std::size_t, 3>& t, const Vector3f& p,
-                Projection& best) {
-  const Vector3f& a = s.points[t[0]];
-  const Vector3f ab = s.points[t[1]] - a;
-  const Vector3f ac = s.points[t[2]] - a;
-  const Vector3f ap = p - a;
-  const Vector3f n = ab.cross(ac);
-  const float n2 = n.squaredNorm();
-  const float v = ap.cross(ac).dot(n) / n2;
-  const float w = ab.cross(ap).dot(n) / n2;
-  const float u = 1.0F - v - w;
-  // Feet between two triangles of a ridge fall outside both by a little; they belong to either.
-  constexpr float kSlack = -0.15F;
-  if (u < kSlack || v < kSlack || w < kSlack) {
-    return;
+/// Where the line through p along `normal` meets the triangles around a sample. Along a line, not to the
+/// nearest point: of a rough sheet the nearest point is the one that errs the same way as p, and averaging
+/// with it takes away next to nothing of the noise.
+class LineProjector {
+ public:
+  LineProjector(const StitchSurface& s, const Vector3f& p, const Vector3f& normal)
+      : s_(&s), p_(p), n_(normal) {
+    u_ = n_.unitOrthogonal();
+    v_ = s.mirrored ? Vector3f(u_.cross(n_)) : Vector3f(n_.cross(u_));  // triangles run as their grid does
   }
-  const float height = ap.dot(n);
-  const float distance2 = height * height / n2;
-  if (distance2 < best.distance2) {
-    best.point = p - n * (height / n2);
-    best.distance2 = distance2;
-    best.weight = std::max(0.0F, u * s.weight[t[0]] + v * s.weight[t[1]] + w * s.weight[t[2]]);
-    best.reliability =
-        std::clamp(u * s.reliability[t[0]] + v * s.reliability[t[1]] + w * s.reliability[t[2]], 0.0F, 1.0F);
-  }
-}
 
-Projection project_near(const StitchSurface& s, const GridSurface& surface, std::size_t nearest,
-                        const Vector3f& p) {
-  Projection best;
-  const int row = s.scan.grid->row_of(nearest);
-  const int col = s.scan.grid->col_of(nearest);
-  for (int r = std::max(row - 1, 0); r <= std::min(row, surface.rows - 2); ++r) {
-    for (int c = std::max(col - 1, 0); c <= std::min(col, surface.cols - 2); ++c) {
-      const std::uint8_t cell = s.cells[surface.index(r, c)];
-      if ((cell & kCellFirst) != 0) {
-        project_on(s, cell_triangle(surface, r, c, cell, 0), p, best);
+  [[nodiscard]] Projection around(const GridSurface& surface, std::size_t nearest) {
+    const int row = s_->scan.grid->row_of(nearest);
+    const int col = s_->scan.grid->col_of(nearest);
+    // The four cells at the nearest sample hold the foot nearly always; noise may carry it one further.
+    for (const int ring : {0, 1}) {
+      for (int r = std::max(row - 1 - ring, 0); r <= std::min(row + ring, surface.rows - 2); ++r) {
+        for (int c = std::max(col - 1 - ring, 0); c <= std::min(col + ring, surface.cols - 2); ++c) {
+          const bool inner = r >= row - 1 && r <= row && c >= col - 1 && c <= col;
+          if (inner != (ring == 0)) {
+            continue;
+          }
+          const std::uint8_t cell = s_->cells[surface.index(r, c)];
+          if ((cell & kCellFirst) != 0) {
+            meet(cell_triangle(surface, r, c, cell, 0));
+          }
+          if ((cell & kCellSecond) != 0) {
+            meet(cell_triangle(surface, r, c, cell, 1));
+          }
+        }
       }
-      if ((cell & kCellSecond) != 0) {
-        project_on(s, cell_triangle(surface, r, c, cell, 1), p, best);
+      if (best_.weight > 0) {
+        break;
       }
     }
+    return best_;
   }
-  return best;
-}
+
+ private:
+  void meet(const std::array<std::size_t, 3>& t) {
+    const Vector3f a = s_->points[t[0]] - p_;
+    const Vector3f b = s_->points[t[1]] - p_;
+    const Vector3f c = s_->points[t[2]] - p_;
+    const float au = u_.dot(a), av = v_.dot(a);
+    const float bu = u_.dot(b), bv = v_.dot(b);
+    const float cu = u_.dot(c), cv = v_.dot(c);
+    const float wa = bu * cv - bv * cu;
+    const float wb = cu * av - cv * au;
+    const float wc = au * bv - av * bu;
+    const float sum = wa + wb + wc;
+    // Seen from below, or from the side: another fold, or no way to tell where.
+    if (!(sum > 0)) {
+      return;
+    }
+    const float slack = kSlack * sum;
+    if (wa < slack || wb < slack || wc < slack) {
+      return;
+    }
+    const float inverse = 1.0F / sum;
+    const float along = (wa * n_.dot(a) + wb * n_.dot(b) + wc * n_.dot(c)) * inverse;
+    if (best_.weight > 0 && std::abs(along) >= std::abs(best_.along_mm)) {
+      return;
+    }
+    best_.along_mm = along;
+    // Variances of independent samples: Σ λ² / w.
+    const float la = wa * inverse, lb = wb * inverse, lc = wc * inverse;
+    best_.weight =
+        1.0F / (la * la / s_->weight[t[0]] + lb * lb / s_->weight[t[1]] + lc * lc / s_->weight[t[2]]);
+    best_.reliability = std::clamp(
+        (wa * s_->reliability[t[0]] + wb * s_->reliability[t[1]] + wc * s_->reliability[t[2]]) * inverse,
+        0.0F, 1.0F);
+  }
+
+  static constexpr float kSlack = -0.01F;  ///< so that no line slips through between two triangles
+  const StitchSurface* s_;
+  Vector3f p_, n_, u_, v_;
+  Projection best_;
+};
 
 /// Whether a surface element could face the scanner, with some leave for noise and for camera and laser
 /// standing apart.
@@ -256,7 +287,7 @@ FusedSamples fuse(const StitchSurface& from, std::span<const StitchSurface* cons
         continue;
       }
       const Vector3f& p = from.points[i];
-      Vector3f shift_sum = Vector3f::Zero();
+      float shift_sum = 0;
       float weight_sum = from.weight[i];
       float doubt = 1.0F - from.reliability[i];
       int scans = 1;
@@ -265,16 +296,17 @@ FusedSamples fuse(const StitchSurface& from, std::span<const StitchSurface* cons
         if (j < 0) {
           continue;
         }
-        const Projection q = project_near(*others[k], surfaces[k], static_cast<std::size_t>(j), p);
-        if (q.distance2 > pairs[k]->reach_mm * pairs[k]->reach_mm) {
+        const Projection q =
+            LineProjector(*others[k], p, from.normals[i]).around(surfaces[k], static_cast<std::size_t>(j));
+        if (!(q.weight > 0) || std::abs(q.along_mm) > pairs[k]->reach_mm) {
           continue;
         }
-        shift_sum += q.weight * (q.point - p);
+        shift_sum += q.weight * q.along_mm;
         weight_sum += q.weight;
         doubt *= 1.0F - q.reliability;
         ++scans;
       }
-      out.points[i] = p + shift_sum / weight_sum;
+      out.points[i] = p + (shift_sum / weight_sum) * from.normals[i];
       out.reliability[i] = 1.0F - doubt;
       out.scans[i] = static_cast<std::uint8_t>(std::min(scans, 255));
     }

@@ -47,9 +47,10 @@ struct FusedSamples {
   std::vector<std::uint8_t> scans;      ///< supporting scans, itself included
 };
 
-/// Seed 001, section 4: the reliability-weighted average of a sample and its projections on the triangles of
-/// the scans it pairs with. `others` and `pairs` run in parallel, in the order of scan ids. A projection onto
-/// the rim of the other scan (outside its triangles) counts for nothing.
+/// Seed 001, section 4: the reliability-weighted average of a sample and its projections, along its normal,
+/// on the triangles of the scans it pairs with. A projection is as good as the samples that it lies between
+/// (their variances, interpolated). `others` and `pairs` run in parallel, in the order of scan ids. Where the
+/// other scan has no triangle nothing is counted.
 [[nodiscard]] FusedSamples fuse(const StitchSurface& from, std::span<const StitchSurface* const> others,
                                 std::span<const Pairs* const> pairs);
 

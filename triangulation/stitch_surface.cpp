@@ -3,6 +3,7 @@
 #include "triangulation/stitch_surface.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/grid_geometry.h"
 #include "core/parallel.h"
@@ -12,6 +13,12 @@ namespace dubsar {
 namespace {
 
 using Eigen::Vector3f;
+
+/// At the rim a camera sees part of what lies beyond.
+constexpr float kRimWeight = 0.5F;
+/// Sparse samples hold the surface together where there is nothing better, and hardly count where there is.
+constexpr float kSparseWeight = 0.25F;
+constexpr float kSparseScore = 0.1F;
 
 ScannerView view_in_model(const ScannerView& view, const RigidTransform& model_from_scanner) {
   ScannerView out;
@@ -166,7 +173,7 @@ StitchSurface make_scan_surface(const PlacedScan& scan, const StitchSurfaceOptio
       n,
       [&](std::size_t i) {
         if (grid.valid[i] == 0 || !grid.point(i).allFinite() ||
-            (scan.flags != nullptr && i < scan.flags->size() && !is_unflagged((*scan.flags)[i]))) {
+            (scan.flags != nullptr && i < scan.flags->size() && ((*scan.flags)[i] & kNotTablet) != 0)) {
           return;
         }
         out.points[i] = (scan.model_from_scanner * grid.point(i).cast<double>()).cast<float>();
@@ -202,10 +209,12 @@ StitchSurface make_scan_surface(const PlacedScan& scan, const StitchSurfaceOptio
         const float cosine = std::clamp(out.normals[i].dot(to_camera.cast<float>()), 0.05F, 1.0F);
         const float confidence = grid.confidence.empty() ? 1.0F : std::clamp(grid.confidence[i], 0.01F, 1.0F);
         out.reliability[i] = cosine * cosine * confidence;
-        const float fade = static_cast<float>(rim[i] - 1) / static_cast<float>(most - 1);
         // Never quite nothing: a sample that no other scan supports stays where it was measured.
-        out.weight[i] = out.reliability[i] * inverse_spacing2 * std::max(fade * fade, 1e-4F);
-        out.score[i] = cosine;
+        const bool sparse =
+            scan.flags != nullptr && i < scan.flags->size() && !is_unflagged((*scan.flags)[i]);
+        const float doubt = sparse ? kSparseWeight : rim[i] <= 1 ? kRimWeight : 1.0F;
+        out.weight[i] = std::sqrt(cosine) * confidence * inverse_spacing2 * doubt;
+        out.score[i] = sparse ? kSparseScore * cosine : cosine;
       },
       4096);
   box_mean(out.score, out.usable, grid.rows, grid.cols, options.incidence_radius_samples);
