@@ -16,6 +16,7 @@ using Eigen::Vector3f;
 
 struct Projection {
   float along_mm = 0;     ///< from p along its normal
+  std::uint8_t rim = 0;   ///< of the corner that is nearest to it
   float weight = 0;       ///< interpolated; 0 where the line misses the other scan's triangles
   float reliability = 0;  ///< interpolated
 };
@@ -84,6 +85,7 @@ class LineProjector {
       return;
     }
     best_.along_mm = along;
+    best_.rim = std::min({s_->rim[t[0]], s_->rim[t[1]], s_->rim[t[2]]});
     // Variances of independent samples: Σ λ² / w.
     const float la = wa * inverse, lb = wb * inverse, lc = wc * inverse;
     best_.weight =
@@ -98,6 +100,16 @@ class LineProjector {
   Vector3f p_, n_, u_, v_;
   Projection best_;
 };
+
+/// How much of its say a sample keeps that is so far from the rim of its scan.
+float faded(std::uint8_t rim, float feather) {
+  if (feather <= 0) {
+    return 1.0F;
+  }
+  // Never quite nothing: a sample that no other scan supports stays where it was measured.
+  const float part = std::clamp((static_cast<float>(rim) - 1.0F) / feather, 0.0F, 1.0F);
+  return std::max(part * part, 1e-4F);
+}
 
 /// Whether a surface element could face the scanner, with some leave for noise and for camera and laser
 /// standing apart.
@@ -202,6 +214,17 @@ double pair_reach_mm(const StitchSurface& a, const StitchSurface& b, const Pairi
   return std::clamp(4.0 * measured + spacing, plain, most);
 }
 
+double feather_samples(const StitchSurface& a, const StitchSurface& b, double reach_mm) {
+  constexpr double kSamplesPerStep = 3.0;
+  constexpr double kLeast = 2.0;
+  const double median_mm = std::max(mismatch_mm(a, b, reach_mm), mismatch_mm(b, a, reach_mm));
+  const double sigma_mm = median_mm / 0.6745;
+  const double noise2 = a.noise_mm * a.noise_mm + b.noise_mm * b.noise_mm;
+  const double step_mm = std::sqrt(std::max(0.0, sigma_mm * sigma_mm - noise2));
+  const double samples = kSamplesPerStep * step_mm / std::min(a.spacing_mm, b.spacing_mm);
+  return samples < kLeast ? 0.0 : std::min(samples, static_cast<double>(kMostRim - 1));
+}
+
 Pairs find_pairs(const StitchSurface& from, const StitchSurface& to, double reach_mm,
                  const PairingOptions& options) {
   Pairs pairs;
@@ -288,7 +311,11 @@ FusedSamples fuse(const StitchSurface& from, std::span<const StitchSurface* cons
       }
       const Vector3f& p = from.points[i];
       float shift_sum = 0;
-      float weight_sum = from.weight[i];
+      float feather = 0;
+      for (std::size_t k = 0; k < others.size(); ++k) {
+        feather = pairs[k]->match[i] < 0 ? feather : std::max(feather, pairs[k]->feather);
+      }
+      float weight_sum = from.weight[i] * faded(from.rim[i], feather);
       float doubt = 1.0F - from.reliability[i];
       int scans = 1;
       for (std::size_t k = 0; k < others.size(); ++k) {
@@ -301,8 +328,9 @@ FusedSamples fuse(const StitchSurface& from, std::span<const StitchSurface* cons
         if (!(q.weight > 0) || std::abs(q.along_mm) > pairs[k]->reach_mm) {
           continue;
         }
-        shift_sum += q.weight * q.along_mm;
-        weight_sum += q.weight;
+        const float weight = q.weight * faded(q.rim, pairs[k]->feather);
+        shift_sum += weight * q.along_mm;
+        weight_sum += weight;
         doubt *= 1.0F - q.reliability;
         ++scans;
       }

@@ -25,6 +25,9 @@ struct PairingOptions {
 struct Pairs {
   int other_id = 0;
   float reach_mm = 0;
+  /// Samples over which the say of either scan fades out towards its rim: none where the poses agree to
+  /// within the noise, more the farther the surfaces lie apart, so that no step shows where a scan ends.
+  float feather = 0;
   std::size_t count = 0;
   std::vector<std::int32_t> match;
 };
@@ -36,6 +39,9 @@ struct Pairs {
 /// Distance within which samples of the two scans pair. The same whichever way round.
 [[nodiscard]] double pair_reach_mm(const StitchSurface& a, const StitchSurface& b,
                                    const PairingOptions& options);
+
+/// For Pairs::feather. The same whichever way round.
+[[nodiscard]] double feather_samples(const StitchSurface& a, const StitchSurface& b, double reach_mm);
 
 [[nodiscard]] Pairs find_pairs(const StitchSurface& from, const StitchSurface& to, double reach_mm,
                                const PairingOptions& options);

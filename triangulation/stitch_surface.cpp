@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/grid_geometry.h"
+#include "core/grid_noise.h"
 #include "core/parallel.h"
 
 namespace dubsar {
@@ -160,6 +161,7 @@ StitchSurface make_scan_surface(const PlacedScan& scan, const StitchSurfaceOptio
   out.reliability.assign(n, 0);
   out.weight.assign(n, 0);
   out.score.assign(n, 0);
+  out.rim.assign(n, 0);
   if (!(out.spacing_mm > 0) || grid.rows < 2 || grid.cols < 2) {
     out.normals.assign(n, Vector3f::Zero());
     out.lookup = std::make_unique<GridLookup>(grid, out.usable);
@@ -196,8 +198,9 @@ StitchSurface make_scan_surface(const PlacedScan& scan, const StitchSurfaceOptio
       }
     }
   }
-  const int most = std::clamp(std::max(options.feather_samples, 1) + 1, 2, 200);
-  const std::vector<std::uint8_t> rim = rim_distance(out.usable, out.cells, grid.rows, grid.cols, most);
+  const int most = std::clamp(options.feather_samples + 1, 2, kMostRim);
+  out.rim = rim_distance(out.usable, out.cells, grid.rows, grid.cols, kMostRim);
+  out.noise_mm = scan.noise_mm ? *scan.noise_mm : estimate_noise_mm(grid, out.usable);
   const auto inverse_spacing2 = static_cast<float>(1.0 / (out.spacing_mm * out.spacing_mm));
   parallel_for_each_index(
       n,
@@ -212,7 +215,7 @@ StitchSurface make_scan_surface(const PlacedScan& scan, const StitchSurfaceOptio
         // Never quite nothing: a sample that no other scan supports stays where it was measured.
         const bool sparse =
             scan.flags != nullptr && i < scan.flags->size() && !is_unflagged((*scan.flags)[i]);
-        const float doubt = sparse ? kSparseWeight : rim[i] <= 1 ? kRimWeight : 1.0F;
+        const float doubt = sparse ? kSparseWeight : out.rim[i] <= 1 ? kRimWeight : 1.0F;
         out.weight[i] = std::sqrt(cosine) * confidence * inverse_spacing2 * doubt;
         out.score[i] = sparse ? kSparseScore * cosine : cosine;
       },
@@ -222,7 +225,7 @@ StitchSurface make_scan_surface(const PlacedScan& scan, const StitchSurfaceOptio
       n,
       [&](std::size_t i) {
         if (out.usable[i] != 0) {
-          out.score[i] *= static_cast<float>(rim[i]) / static_cast<float>(most);
+          out.score[i] *= static_cast<float>(std::min<int>(out.rim[i], most)) / static_cast<float>(most);
         }
       },
       4096);

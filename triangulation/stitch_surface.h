@@ -24,11 +24,14 @@ struct StitchSurfaceOptions {
   int incidence_radius_samples = 5;
 };
 
+inline constexpr int kMostRim = 32;
+
 /// One placed scan made ready for stitching: its samples in the model frame, the triangles of its grid, and
 /// how far each sample is to be trusted. All arrays are [rows*cols] of the grid.
 struct StitchSurface {
   PlacedScan scan;
   double spacing_mm = 0;
+  double noise_mm = 0;  ///< of a sample along the view
   bool mirrored = false;
   ScannerView view;                      ///< in the model frame
   std::vector<Eigen::Vector3f> points;   ///< model frame, mm
@@ -40,8 +43,9 @@ struct StitchSurface {
   /// noise along the view does, its part along the normal shrinks. Less at the rim, little for sparse
   /// samples; > 0 if usable.
   std::vector<float> weight;
-  std::vector<float> score;  ///< how much this scan wants to be primary here
-  Eigen::AlignedBox3f box;   ///< of the usable samples, model frame
+  std::vector<std::uint8_t> rim;  ///< samples to the rim of the triangulated area: 1 on it, at most kMostRim
+  std::vector<float> score;       ///< how much this scan wants to be primary here
+  Eigen::AlignedBox3f box;        ///< of the usable samples, model frame
   RigidTransform scanner_from_model;
   std::unique_ptr<GridLookup> lookup;  ///< of the usable samples, scanner frame
 

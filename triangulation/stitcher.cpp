@@ -102,6 +102,7 @@ struct Stitcher::Impl {
       if (there.count == 0 && back.count == 0) {
         continue;
       }
+      there.feather = back.feather = static_cast<float>(feather_samples(entry.surface, other.surface, reach));
       // Either side may be asked about any of its samples.
       there.match.resize(entry.surface.points.size(), -1);
       back.match.resize(other.surface.points.size(), -1);
