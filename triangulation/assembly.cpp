@@ -16,10 +16,14 @@ namespace {
 
 using Eigen::Vector3f;
 
+/// Of µ; measured on simulated tablets.
+constexpr float kSigmaOfInterpolated = 0.4F;
+
 /// Sheet and per-vertex attributes grow together.
 struct Draft {
   Sheet sheet;
   std::vector<float> reliability;
+  std::vector<float> sigma_mm;
   std::vector<std::uint8_t> scans;
   std::vector<std::uint8_t> flags;
 
@@ -29,6 +33,7 @@ struct Draft {
     sheet.spacing_mm.reserve(vertices);
     sheet.faces.reserve(2 * vertices);
     reliability.reserve(vertices);
+    sigma_mm.reserve(vertices);
     scans.reserve(vertices);
     flags.reserve(vertices);
   }
@@ -47,6 +52,7 @@ void add_patch(const OwnedScan& scan, Draft& draft) {
     draft.sheet.normals.push_back(s.normals[i]);
     draft.sheet.spacing_mm.push_back(static_cast<float>(s.spacing_mm));
     draft.reliability.push_back(scan.fused->reliability[i]);
+    draft.sigma_mm.push_back(scan.fused->sigma_mm[i]);
     draft.scans.push_back(scan.fused->scans[i]);
     const bool sparse =
         s.scan.flags != nullptr && i < s.scan.flags->size() && ((*s.scan.flags)[i] & kSparse) != 0;
@@ -195,6 +201,9 @@ std::vector<std::uint8_t> close_everything(Draft& draft, const AssemblyOptions& 
     const GapFillResult filled = fill_gaps(front, options.seam, options.gap);
     const std::size_t count = draft.sheet.positions.size();
     draft.reliability.resize(count, 0.0F);
+    for (std::size_t v = draft.sigma_mm.size(); v < count; ++v) {
+      draft.sigma_mm.push_back(kSigmaOfInterpolated * draft.sheet.spacing_mm[v]);
+    }
     draft.scans.resize(count, 0);
     draft.flags.resize(filled.first_interpolated);
     draft.flags.resize(count, kVertexInterpolated);
@@ -260,6 +269,7 @@ Mesh assemble(const std::vector<OwnedScan>& scans, const AssemblyOptions& option
   mesh.faces = std::move(draft.sheet.faces);
   mesh.positions = std::move(draft.sheet.positions);
   mesh.reliability = std::move(draft.reliability);
+  mesh.sigma_mm = std::move(draft.sigma_mm);
   mesh.scans = std::move(draft.scans);
   mesh.flags = std::move(draft.flags);
   const std::vector<Vector3f>& p = mesh.positions;
@@ -273,6 +283,7 @@ Mesh assemble(const std::vector<OwnedScan>& scans, const AssemblyOptions& option
   for (const std::uint32_t copied : make_manifold(mesh.faces, mesh.positions.size(), suspects)) {
     mesh.positions.push_back(Vector3f(mesh.positions[copied]));
     mesh.reliability.push_back(float(mesh.reliability[copied]));
+    mesh.sigma_mm.push_back(float(mesh.sigma_mm[copied]));
     mesh.scans.push_back(std::uint8_t(mesh.scans[copied]));
     mesh.flags.push_back(std::uint8_t(mesh.flags[copied]));
   }

@@ -35,31 +35,52 @@ class LineProjector {
   [[nodiscard]] Projection around(const GridSurface& surface, std::size_t nearest) {
     const int row = s_->scan.grid->row_of(nearest);
     const int col = s_->scan.grid->col_of(nearest);
-    // The four cells at the nearest sample hold the foot nearly always; noise may carry it one further.
+    // The foot is nearly always in the one of the four cells at the nearest sample towards which p lies;
+    // noise may carry it into another, or one further.
+    const int likely_row = towards(nearest, row, surface.rows, surface.cols) ? row : row - 1;
+    const int likely_col = towards(nearest, col, surface.cols, 1) ? col : col - 1;
+    meet_cell(surface, likely_row, likely_col);
     for (const int ring : {0, 1}) {
-      for (int r = std::max(row - 1 - ring, 0); r <= std::min(row + ring, surface.rows - 2); ++r) {
-        for (int c = std::max(col - 1 - ring, 0); c <= std::min(col + ring, surface.cols - 2); ++c) {
-          const bool inner = r >= row - 1 && r <= row && c >= col - 1 && c <= col;
-          if (inner != (ring == 0)) {
-            continue;
-          }
-          const std::uint8_t cell = s_->cells[surface.index(r, c)];
-          if ((cell & kCellFirst) != 0) {
-            meet(cell_triangle(surface, r, c, cell, 0));
-          }
-          if ((cell & kCellSecond) != 0) {
-            meet(cell_triangle(surface, r, c, cell, 1));
-          }
-        }
-      }
       if (best_.weight > 0) {
         break;
+      }
+      for (int r = row - 1 - ring; r <= row + ring; ++r) {
+        for (int c = col - 1 - ring; c <= col + ring; ++c) {
+          const bool inner = r >= row - 1 && r <= row && c >= col - 1 && c <= col;
+          if (inner == (ring == 0) && (r != likely_row || c != likely_col)) {
+            meet_cell(surface, r, c);
+          }
+        }
       }
     }
     return best_;
   }
 
  private:
+  /// Whether p lies beyond the nearest sample in the direction of growing rows (or columns): `at` of `count`,
+  /// `stride` apart in the arrays.
+  [[nodiscard]] bool towards(std::size_t nearest, int at, int count, int stride) const {
+    const auto step = static_cast<std::size_t>(stride);
+    const bool after = at + 1 < count && s_->usable[nearest + step] != 0;
+    const bool before = at > 0 && s_->usable[nearest - step] != 0;
+    const Vector3f along = (after ? s_->points[nearest + step] : s_->points[nearest]) -
+                           (before ? s_->points[nearest - step] : s_->points[nearest]);
+    return along.dot(p_ - s_->points[nearest]) >= 0;
+  }
+
+  void meet_cell(const GridSurface& surface, int row, int col) {
+    if (row < 0 || col < 0 || row > surface.rows - 2 || col > surface.cols - 2) {
+      return;
+    }
+    const std::uint8_t cell = s_->cells[surface.index(row, col)];
+    if ((cell & kCellFirst) != 0) {
+      meet(cell_triangle(surface, row, col, cell, 0));
+    }
+    if ((cell & kCellSecond) != 0) {
+      meet(cell_triangle(surface, row, col, cell, 1));
+    }
+  }
+
   void meet(const std::array<std::size_t, 3>& t) {
     const Vector3f a = s_->points[t[0]] - p_;
     const Vector3f b = s_->points[t[1]] - p_;
@@ -100,6 +121,15 @@ class LineProjector {
   Vector3f p_, n_, u_, v_;
   Projection best_;
 };
+
+float square(float x) {
+  return x * x;
+}
+
+/// The pose's error is one of displacement in space; a third of its square lies along any one direction.
+float pose_sigma_mm(const StitchSurface& s) {
+  return std::isfinite(s.scan.sigma_mm) ? static_cast<float>(s.scan.sigma_mm / std::sqrt(3.0)) : 0.0F;
+}
 
 /// How much of its say a sample keeps that is so far from the rim of its scan.
 float faded(std::uint8_t rim, float feather) {
@@ -214,13 +244,16 @@ double pair_reach_mm(const StitchSurface& a, const StitchSurface& b, const Pairi
   return std::clamp(4.0 * measured + spacing, plain, most);
 }
 
-double feather_samples(const StitchSurface& a, const StitchSurface& b, double reach_mm) {
+double step_mm(const StitchSurface& a, const StitchSurface& b, double reach_mm) {
+  constexpr double kMedianOfSigma = 0.6745;  // of the absolute value
+  const double sigma_mm = std::max(mismatch_mm(a, b, reach_mm), mismatch_mm(b, a, reach_mm)) / kMedianOfSigma;
+  const double noise2 = a.noise_mm * a.noise_mm + b.noise_mm * b.noise_mm;
+  return sigma_mm > 0 ? std::sqrt(std::max(0.0, sigma_mm * sigma_mm - noise2)) : 0.0;
+}
+
+double feather_samples(const StitchSurface& a, const StitchSurface& b, double step_mm) {
   constexpr double kSamplesPerStep = 3.0;
   constexpr double kLeast = 2.0;
-  const double median_mm = std::max(mismatch_mm(a, b, reach_mm), mismatch_mm(b, a, reach_mm));
-  const double sigma_mm = median_mm / 0.6745;
-  const double noise2 = a.noise_mm * a.noise_mm + b.noise_mm * b.noise_mm;
-  const double step_mm = std::sqrt(std::max(0.0, sigma_mm * sigma_mm - noise2));
   const double samples = kSamplesPerStep * step_mm / std::min(a.spacing_mm, b.spacing_mm);
   return samples < kLeast ? 0.0 : std::min(samples, static_cast<double>(kMostRim - 1));
 }
@@ -298,6 +331,7 @@ FusedSamples fuse(const StitchSurface& from, std::span<const StitchSurface* cons
   const std::size_t n = from.points.size();
   out.points = from.points;
   out.reliability = from.reliability;
+  out.sigma_mm.assign(n, 0);
   out.scans.assign(n, 0);
   std::vector<GridSurface> surfaces;
   surfaces.reserve(others.size());
@@ -311,11 +345,13 @@ FusedSamples fuse(const StitchSurface& from, std::span<const StitchSurface* cons
       }
       const Vector3f& p = from.points[i];
       float shift_sum = 0;
+      float shift2_sum = 0;
       float feather = 0;
       for (std::size_t k = 0; k < others.size(); ++k) {
         feather = pairs[k]->match[i] < 0 ? feather : std::max(feather, pairs[k]->feather);
       }
       float weight_sum = from.weight[i] * faded(from.rim[i], feather);
+      float pose_sum = square(weight_sum * pose_sigma_mm(from));
       float doubt = 1.0F - from.reliability[i];
       int scans = 1;
       for (std::size_t k = 0; k < others.size(); ++k) {
@@ -330,12 +366,20 @@ FusedSamples fuse(const StitchSurface& from, std::span<const StitchSurface* cons
         }
         const float weight = q.weight * faded(q.rim, pairs[k]->feather);
         shift_sum += weight * q.along_mm;
+        shift2_sum += weight * square(q.along_mm);
+        pose_sum += square(weight * pose_sigma_mm(*others[k]));
         weight_sum += weight;
         doubt *= 1.0F - q.reliability;
         ++scans;
       }
-      out.points[i] = p + (shift_sum / weight_sum) * from.normals[i];
-      out.reliability[i] = 1.0F - doubt;
+      const float shift_mm = shift_sum / weight_sum;
+      out.points[i] = p + shift_mm * from.normals[i];
+      // Weights are inverse variances: the disagreement is their chi-square.
+      const float chi2 = std::max(0.0F, shift2_sum - weight_sum * shift_mm * shift_mm);
+      const float excess = scans > 1 ? std::max(1.0F, chi2 / static_cast<float>(scans - 1)) : 1.0F;
+      out.sigma_mm[i] = std::sqrt(excess / weight_sum + pose_sum / (weight_sum * weight_sum));
+      out.reliability[i] =
+          (1.0F - doubt) / (1.0F + square(out.sigma_mm[i] / static_cast<float>(from.spacing_mm)));
       out.scans[i] = static_cast<std::uint8_t>(std::min(scans, 255));
     }
   });

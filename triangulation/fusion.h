@@ -40,8 +40,12 @@ struct Pairs {
 [[nodiscard]] double pair_reach_mm(const StitchSurface& a, const StitchSurface& b,
                                    const PairingOptions& options);
 
-/// For Pairs::feather. The same whichever way round.
-[[nodiscard]] double feather_samples(const StitchSurface& a, const StitchSurface& b, double reach_mm);
+/// What of the mismatch their noise does not explain: how far apart their poses hold them. The same whichever
+/// way round.
+[[nodiscard]] double step_mm(const StitchSurface& a, const StitchSurface& b, double reach_mm);
+
+/// For Pairs::feather, from step_mm().
+[[nodiscard]] double feather_samples(const StitchSurface& a, const StitchSurface& b, double step_mm);
 
 [[nodiscard]] Pairs find_pairs(const StitchSurface& from, const StitchSurface& to, double reach_mm,
                                const PairingOptions& options);
@@ -49,8 +53,12 @@ struct Pairs {
 /// Where each sample goes when its pairs have had their say.
 struct FusedSamples {
   std::vector<Eigen::Vector3f> points;  ///< model frame
-  std::vector<float> reliability;       ///< 1 - Π(1 - r) over the supporting scans
-  std::vector<std::uint8_t> scans;      ///< supporting scans, itself included
+  /// (1 - Π(1 - r) over the supporting scans) / (1 + (sigma / µ)²)
+  std::vector<float> reliability;
+  /// Standard deviation along the normal, mm: of the noise that averaging leaves, or what the scans' own
+  /// disagreement says when that is more, and of the poses.
+  std::vector<float> sigma_mm;
+  std::vector<std::uint8_t> scans;  ///< supporting scans, itself included
 };
 
 /// Seed 001, section 4: the reliability-weighted average of a sample and its projections, along its normal,

@@ -3,7 +3,6 @@
 #include "triangulation/stitch_surface.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "core/grid_geometry.h"
 #include "core/grid_noise.h"
@@ -15,6 +14,8 @@ namespace {
 
 using Eigen::Vector3f;
 
+/// What a surface through samples µ apart is off by however little they err: of µ.
+constexpr double kSystematicOfSpacing = 0.1;
 /// At the rim a camera sees part of what lies beyond.
 constexpr float kRimWeight = 0.5F;
 /// Sparse samples hold the surface together where there is nothing better, and hardly count where there is.
@@ -201,7 +202,9 @@ StitchSurface make_scan_surface(const PlacedScan& scan, const StitchSurfaceOptio
   const int most = std::clamp(options.feather_samples + 1, 2, kMostRim);
   out.rim = rim_distance(out.usable, out.cells, grid.rows, grid.cols, kMostRim);
   out.noise_mm = scan.noise_mm ? *scan.noise_mm : estimate_noise_mm(grid, out.usable);
-  const auto inverse_spacing2 = static_cast<float>(1.0 / (out.spacing_mm * out.spacing_mm));
+  const double systematic_mm = kSystematicOfSpacing * out.spacing_mm;
+  const auto inverse_variance =
+      static_cast<float>(1.0 / (out.noise_mm * out.noise_mm + systematic_mm * systematic_mm));
   parallel_for_each_index(
       n,
       [&](std::size_t i) {
@@ -212,11 +215,10 @@ StitchSurface make_scan_surface(const PlacedScan& scan, const StitchSurfaceOptio
         const float cosine = std::clamp(out.normals[i].dot(to_camera.cast<float>()), 0.05F, 1.0F);
         const float confidence = grid.confidence.empty() ? 1.0F : std::clamp(grid.confidence[i], 0.01F, 1.0F);
         out.reliability[i] = cosine * cosine * confidence;
-        // Never quite nothing: a sample that no other scan supports stays where it was measured.
         const bool sparse =
             scan.flags != nullptr && i < scan.flags->size() && !is_unflagged((*scan.flags)[i]);
         const float doubt = sparse ? kSparseWeight : out.rim[i] <= 1 ? kRimWeight : 1.0F;
-        out.weight[i] = std::sqrt(cosine) * confidence * inverse_spacing2 * doubt;
+        out.weight[i] = confidence * inverse_variance * doubt;
         out.score[i] = sparse ? kSparseScore * cosine : cosine;
       },
       4096);

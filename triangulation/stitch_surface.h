@@ -39,8 +39,8 @@ struct StitchSurface {
   std::vector<std::uint8_t> usable;      ///< 1 where the sample is a corner of a triangle of its own grid
   std::vector<std::uint8_t> cells;       ///< CellBit codes
   std::vector<float> reliability;  ///< of the sample alone, in [0,1]: cos² of the incidence × confidence
-  /// For averaging, inverse to the variance across the surface, which hardly grows with the incidence: the
-  /// noise along the view does, its part along the normal shrinks. Less at the rim, little for sparse
+  /// For averaging, 1 / mm²: inverse to the variance along the normal, which hardly grows with the incidence
+  /// (the noise along the view does, its part along the normal shrinks). Less at the rim, little for sparse
   /// samples; > 0 if usable.
   std::vector<float> weight;
   std::vector<std::uint8_t> rim;  ///< samples to the rim of the triangulated area: 1 on it, at most kMostRim

@@ -15,6 +15,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <numeric>
 #include <set>
 #include <string>
 #include <variant>
@@ -297,6 +298,22 @@ int tablet(const Arguments& args, std::uint64_t seed) {
   for (int k = 0; k < 5; ++k) {
     std::printf(" %d: %.1f um (%zu)", k + 1, 1e3 * rms(by_scans[k]), by_scans[k].size());
   }
+  double z2 = 0;
+  std::size_t within1 = 0, within2 = 0, within3 = 0;
+  for (std::size_t i = 0; i < error.size(); ++i) {
+    const double z = error[i] / std::max(1e-9, static_cast<double>(mesh->sigma_mm[i]));
+    z2 += std::min(z * z, 100.0);
+    within1 += z <= 1 ? 1 : 0;
+    within2 += z <= 2 ? 1 : 0;
+    within3 += z <= 3 ? 1 : 0;
+  }
+  const auto count = static_cast<double>(error.size());
+  std::printf(
+      "\n  error against its own sigma: mean square %.2f; within 1, 2, 3 sigma %.1f, %.1f, %.1f %%; "
+      "reliability mean %.3f",
+      z2 / count, 100 * static_cast<double>(within1) / count, 100 * static_cast<double>(within2) / count,
+      100 * static_cast<double>(within3) / count,
+      std::accumulate(mesh->reliability.begin(), mesh->reliability.end(), 0.0) / count);
   const MeshQuery model(*mesh);
   // The vertices of the true mesh are spread evenly over the surface.
   const std::vector<double> to_model = distances_mm(truth->mesh.positions, model, 1.0);
