@@ -9,6 +9,7 @@
 
 #include "triangulation/front.h"
 #include "triangulation/manifold.h"
+#include "triangulation/self_intersections.h"
 
 namespace dubsar {
 
@@ -223,6 +224,44 @@ std::vector<std::uint8_t> close_everything(Draft& draft, const AssemblyOptions& 
   return touched;
 }
 
+/// Takes out faces that cut through each other, with those around them, and closes the place anew; what still
+/// cuts at the end goes for good. Adds to the suspects of close_everything().
+void repair_self_intersections(Draft& draft, const AssemblyOptions& options,
+                               std::vector<std::uint8_t>& suspects) {
+  constexpr int kTries = 3;
+  for (int attempt = 0;; ++attempt) {
+    std::vector<std::uint8_t> bad(draft.sheet.positions.size(), 0);
+    const auto pairs = self_intersections(draft.sheet.positions, draft.sheet.faces);
+    if (pairs.empty()) {
+      return;
+    }
+    std::vector<std::uint8_t> cut(draft.sheet.faces.size(), 0);
+    for (const auto& [a, b] : pairs) {
+      cut[a] = cut[b] = 1;
+      mark(draft.sheet.faces[a], bad);
+      mark(draft.sheet.faces[b], bad);
+    }
+    suspects.resize(bad.size(), 0);
+    const bool last = attempt == kTries;
+    std::size_t at = 0;
+    std::erase_if(draft.sheet.faces, [&](const Triangle& f) {
+      const bool goes = cut[at++] != 0 || (attempt > 0 && !last && (bad[f[0]] | bad[f[1]] | bad[f[2]]) != 0);
+      if (goes) {
+        mark(f, suspects);
+      }
+      return goes;
+    });
+    if (last) {
+      return;
+    }
+    const std::vector<std::uint8_t> touched = close_everything(draft, options);
+    suspects.resize(touched.size(), 0);
+    for (std::size_t v = 0; v < touched.size(); ++v) {
+      suspects[v] |= touched[v];
+    }
+  }
+}
+
 /// Drops pieces of few faces, of a manifold: there faces that share a vertex are of one piece.
 void remove_pieces(Mesh& mesh, std::size_t least_faces) {
   std::vector<std::uint32_t> parent(mesh.positions.size());
@@ -264,6 +303,7 @@ Mesh assemble(const std::vector<OwnedScan>& scans, const AssemblyOptions& option
     add_patch(scan, draft);
   }
   std::vector<std::uint8_t> suspects = close_everything(draft, options);
+  repair_self_intersections(draft, options, suspects);
 
   Mesh mesh;
   mesh.faces = std::move(draft.sheet.faces);

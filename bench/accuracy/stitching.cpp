@@ -144,11 +144,12 @@ void print_topology(const Mesh& mesh) {
   const MeshReport r = check_mesh(mesh);
   std::printf(
       "  %zu vertices, %zu faces; non-manifold edges %zu, vertices %zu; inconsistent faces %zu, degenerate "
-      "%zu, duplicate %zu; components %zu; %zu loops, boundary %.1f mm, longest %.2f mm; below 10 degrees "
+      "%zu, duplicate %zu; self-intersections %zu; components %zu; %zu loops, boundary %.1f mm, longest %.2f "
+      "mm; below 10 degrees "
       "%.3f %%\n",
       r.vertices, r.faces, r.non_manifold_edges, r.non_manifold_vertices, r.inconsistent_faces,
-      r.degenerate_faces, r.duplicate_faces, r.components, r.boundary_loops, r.boundary_length_mm,
-      r.longest_boundary_loop_mm, 100 * r.thin_share);
+      r.degenerate_faces, r.duplicate_faces, r.self_intersections, r.components, r.boundary_loops,
+      r.boundary_length_mm, r.longest_boundary_loop_mm, 100 * r.thin_share);
 }
 
 /// Open edges (head to tail along the faces), as a map from each vertex to the next along the boundary.
