@@ -345,8 +345,16 @@ Mesh assemble(const std::vector<OwnedScan>& scans, const AssemblyOptions& option
   for (const OwnedScan& scan : scans) {
     add_patch(scan, draft);
   }
-  std::vector<std::uint8_t> suspects = close_everything(draft, options);
-  repair_self_intersections(draft, options, suspects);
+  AssemblyOptions closing = options;
+  closing.gap.seen = [&scans](const Vector3f& p_mm, float radius_mm) {
+    return std::any_of(scans.begin(), scans.end(), [&](const OwnedScan& scan) {
+      const StitchSurface& s = *scan.surface;
+      const Vector3f p = (s.scanner_from_model * p_mm.cast<double>()).cast<float>();
+      return s.lookup->nearest(p, radius_mm) >= 0;
+    });
+  };
+  std::vector<std::uint8_t> suspects = close_everything(draft, closing);
+  repair_self_intersections(draft, closing, suspects);
 
   Mesh mesh;
   mesh.faces = std::move(draft.sheet.faces);
