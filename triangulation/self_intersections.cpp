@@ -117,6 +117,10 @@ class FaceCells {
         },
         4096);
     std::sort(entries_.begin(), entries_.end());
+    boxes_.reserve(entries_.size());
+    for (const auto& [key, face] : entries_) {
+      boxes_.push_back(boxes[face]);
+    }
     slots_.assign(std::bit_ceil(2 * entries_.size() + 16), kNone);
     for (std::size_t k = 0; k < entries_.size(); ++k) {
       if (k == 0 || entries_[k].first != entries_[k - 1].first) {
@@ -134,10 +138,16 @@ class FaceCells {
     return level;
   }
 
-  /// visit(face) for those that a box could touch, at the box's own level and coarser ones.
+  [[nodiscard]] std::size_t size() const { return entries_.size(); }
+  /// The faces in the order of their cells.
+  [[nodiscard]] std::uint32_t face(std::size_t at) const { return entries_[at].second; }
+
+  /// visit(face) for those whose boxes touch that of face(at), each pair once.
   template <class Visit>
-  void for_each_near(const Eigen::AlignedBox3f& box, const Visit& visit) const {
-    for (int level = level_of(box); level <= kMostLevel; ++level) {
+  void for_each_touching(std::size_t at, const Visit& visit) const {
+    const Eigen::AlignedBox3f& box = boxes_[at];
+    const int own_level = static_cast<int>(entries_[at].first >> kLevelShift);
+    for (int level = own_level; level <= kMostLevel; ++level) {
       if ((levels_ >> static_cast<unsigned>(level) & 1ULL) == 0) {
         continue;
       }
@@ -151,7 +161,9 @@ class FaceCells {
             const std::uint32_t first = slots_[slot_of(key)];
             for (std::size_t k = first; first != kNone && k < entries_.size() && entries_[k].first == key;
                  ++k) {
-              visit(entries_[k].second);
+              if ((level > own_level || k > at) && box.intersects(boxes_[k])) {
+                visit(entries_[k].second);
+              }
             }
           }
         }
@@ -195,6 +207,7 @@ class FaceCells {
   float smallest_mm_;
   std::array<float, kMostLevel + 1> cell_mm_{};
   std::vector<std::pair<std::uint64_t, std::uint32_t>> entries_;
+  std::vector<Eigen::AlignedBox3f> boxes_;  ///< by entry
   std::vector<std::uint32_t> slots_;
   std::uint64_t levels_ = 0;
 };
@@ -232,16 +245,12 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> self_intersections(std::spa
   const FaceCells cells(boxes, faces, all.min(), smallest_mm);
   using Pairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
   Pairs out = parallel_reduce_ordered(
-      faces.size(), 4096, Pairs{},
+      cells.size(), 4096, Pairs{},
       [&](std::size_t begin, std::size_t end) {
         Pairs found;
         for (std::size_t k = begin; k < end; ++k) {
-          const std::uint32_t a = faces[k];
-          const int level = cells.level_of(boxes[a]);
-          cells.for_each_near(boxes[a], [&](std::uint32_t b) {
-            if (a == b || (b < a && cells.level_of(boxes[b]) == level) || !boxes[a].intersects(boxes[b])) {
-              return;
-            }
+          const std::uint32_t a = cells.face(k);
+          cells.for_each_touching(k, [&](std::uint32_t b) {
             if (cut(positions, all_faces[a], planes[a], all_faces[b], planes[b])) {
               found.push_back(std::minmax(a, b));
             }
