@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "analysis/vertex_graph.h"
+
+namespace dubsar {
+
+/// What is known of every vertex of the mesh, all [V]; see analysis/surface_fields.h.
+struct PatchSource {
+  const VertexGraph* graph = nullptr;
+  std::span<const Eigen::Vector3f> position;
+  std::span<const Eigen::Vector3f> normal;
+  std::span<const float> reliability;
+  std::span<const float> height_mm;
+};
+
+/// Some vertices of a mesh, one basin's or a part of them, in a frame of their own: origin at the lowest
+/// vertex, z along the normal of the free surface above it.
+struct WedgePatch {
+  Eigen::Vector3d origin{0, 0, 0};
+  Eigen::Matrix3d model_from_patch;     ///< rotation
+  std::vector<std::uint32_t> vertex;    ///< [N] of the mesh, in rising height
+  std::vector<Eigen::Vector3f> p;       ///< [N]
+  std::vector<Eigen::Vector3f> n;       ///< [N] unit
+  std::vector<float> weight;            ///< [N] reliability
+  std::vector<float> height;            ///< [N] over the free surface
+  VertexGraph graph;                    ///< within the patch
+  double spacing_mm = 0;                ///< median edge
+  double depth_mm = 0;                  ///< of the lowest vertex
+  [[nodiscard]] std::size_t size() const { return vertex.size(); }
+  [[nodiscard]] Eigen::Vector3d to_model(const Eigen::Vector3d& local) const {
+    return model_from_patch * local + origin;
+  }
+};
+
+/// `vertices` in rising height, at least one; `up`: unit normal of the free surface at the first of them.
+/// `slot`: [V] scratch of the calling thread, all -1 before and after.
+[[nodiscard]] WedgePatch make_patch(const PatchSource& source, std::span<const std::uint32_t> vertices,
+                                    const Eigen::Vector3d& up, std::vector<std::int32_t>* slot);
+
+}  // namespace dubsar
