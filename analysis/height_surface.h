@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "core/mesh.h"
+
+namespace dubsar {
+
+/// The tablet's surface as if nothing had been impressed: signed distances to the low-resolution Poisson
+/// reconstruction (seed 000, 3.3), on a regular grid within a band around it. Immutable and safe to query
+/// from many threads.
+class HeightSurface {
+ public:
+  HeightSurface() = default;
+  HeightSurface(Mesh mesh, const Eigen::Vector3f& origin_mm, float cell_mm, const Eigen::Vector3i& nodes,
+                float band_mm, std::vector<float> distance_mm);
+
+  /// Signed distance of p to the surface, negative below it (in the clay); trilinear between the nodes.
+  /// Clamped to ±band_mm() away from the surface and outside the grid.
+  [[nodiscard]] float height_mm(const Eigen::Vector3f& p_mm) const;
+  /// Unit, out of the clay, of the surface nearest p; zero outside the band.
+  [[nodiscard]] Eigen::Vector3f normal(const Eigen::Vector3f& p_mm) const;
+  /// The point of the surface nearest p (Newton steps along the normal); nothing outside the band.
+  [[nodiscard]] std::optional<Eigen::Vector3f> closest(const Eigen::Vector3f& p_mm) const;
+  /// The first point where the ray from p along the unit direction crosses from below the surface to above
+  /// it, or above to below, within reach_mm.
+  [[nodiscard]] std::optional<Eigen::Vector3f> crossing(const Eigen::Vector3f& p_mm,
+                                                        const Eigen::Vector3f& direction,
+                                                        float reach_mm) const;
+
+  /// The reconstruction itself, as triangles of about one cell, with normals.
+  [[nodiscard]] const Mesh& mesh() const { return mesh_; }
+  [[nodiscard]] float cell_mm() const { return cell_mm_; }
+  [[nodiscard]] float band_mm() const { return band_mm_; }
+
+ private:
+  struct Cell {
+    std::size_t node;
+    Eigen::Vector3f t;  ///< place in the cell, [0,1] each
+  };
+  [[nodiscard]] std::optional<Cell> cell_at(const Eigen::Vector3f& p_mm) const;
+
+  Mesh mesh_;
+  Eigen::Vector3f origin_mm_{0, 0, 0};
+  float cell_mm_ = 1;
+  Eigen::Vector3i nodes_{0, 0, 0};
+  float band_mm_ = 0;
+  std::vector<float> distance_mm_;  ///< [z][y][x]
+};
+
+}  // namespace dubsar
