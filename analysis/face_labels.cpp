@@ -9,6 +9,8 @@ namespace dubsar {
 namespace {
 
 constexpr double kSmallPart = 0.1;
+/// On a face of fewer vertices nothing can be told from a spike.
+constexpr std::uint32_t kFewVertices = 20;
 
 /// How many neighbours have each label; the last entry counts those with none.
 std::array<int, 4> votes_around(const WedgePatch& patch, const std::vector<std::int8_t>& face, std::size_t v) {
@@ -25,6 +27,10 @@ void filter_spikes(const WedgePatch& patch, std::vector<std::int8_t>* face) {
   for (std::size_t v = 0; v < patch.size(); ++v) {
     const std::array<int, 4> votes = votes_around(patch, before, v);
     const int all = votes[0] + votes[1] + votes[2] + votes[3];
+    // A steep face may be a single row of vertices on a coarse mesh; a spike stands alone.
+    if (votes[before[v] < 0 ? 3 : static_cast<std::size_t>(before[v])] > 1) {
+      continue;
+    }
     for (std::size_t k = 0; k < 4; ++k) {
       if (3 * votes[k] > 2 * all) {
         (*face)[v] = k == 3 ? std::int8_t{-1} : static_cast<std::int8_t>(k);
@@ -92,10 +98,20 @@ void drop_small_parts(const WedgePatch& patch, std::vector<std::int8_t>* face) {
 }  // namespace
 
 void clean_labels(const WedgePatch& patch, std::vector<std::int8_t>* face) {
+  const std::vector<std::int8_t> before = *face;
   filter_spikes(patch, face);
   close_gaps(patch, face);
   filter_spikes(patch, face);
   drop_small_parts(patch, face);
+  std::array<std::uint32_t, 3> count{};
+  for (const std::int8_t label : before) {
+    count[label < 0 ? 0 : static_cast<std::size_t>(label)] += label < 0 ? 0 : 1;
+  }
+  for (std::size_t v = 0; v < face->size(); ++v) {
+    if (before[v] >= 0 && (*face)[v] < 0 && count[static_cast<std::size_t>(before[v])] < kFewVertices) {
+      (*face)[v] = before[v];
+    }
+  }
 }
 
 }  // namespace dubsar

@@ -13,6 +13,7 @@ namespace {
 
 constexpr int kStarts = 8;  // turned by a third of a circle over the number of starts each
 constexpr int kRounds = 10;
+constexpr double kSame = 0.985;  // cosine of 10 degrees
 constexpr float kStray = 0.2929F;  // 1 - cos 45 degrees
 
 using Centres = std::array<Eigen::Vector3f, 3>;
@@ -49,10 +50,13 @@ float improve(std::span<const Eigen::Vector3f> normals, std::span<const float> w
 
 }  // namespace
 
-std::optional<std::array<Eigen::Vector3d, 3>> cluster_normals(std::span<const Eigen::Vector3f> normals,
-                                                              std::span<const float> weights) {
-  std::optional<Centres> best;
-  float best_cost = 0;
+std::vector<NormalTriple> cluster_normals(std::span<const Eigen::Vector3f> normals,
+                                          std::span<const float> weights) {
+  struct Found {
+    float cost;
+    NormalTriple triple;
+  };
+  std::vector<Found> found;
   for (int start = 0; start < kStarts; ++start) {
     Centres centres;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -66,19 +70,28 @@ std::optional<std::array<Eigen::Vector3d, 3>> cluster_normals(std::span<const Ei
     for (int round = 0; round < kRounds && cost >= 0; ++round) {
       cost = improve(normals, weights, &centres);
     }
-    if (cost >= 0 && (!best || cost < best_cost)) {
-      best = centres;
-      best_cost = cost;
+    if (cost < 0) {
+      continue;
+    }
+    std::ranges::sort(centres, [](const Eigen::Vector3f& a, const Eigen::Vector3f& b) {
+      return std::atan2(a.y(), a.x()) < std::atan2(b.y(), b.x());
+    });
+    const Found next{cost, {centres[0].cast<double>(), centres[1].cast<double>(), centres[2].cast<double>()}};
+    const bool known = std::ranges::any_of(found, [&](const Found& f) {
+      return f.triple[0].dot(next.triple[0]) > kSame && f.triple[1].dot(next.triple[1]) > kSame &&
+             f.triple[2].dot(next.triple[2]) > kSame;
+    });
+    if (!known) {
+      found.push_back(next);
     }
   }
-  if (!best) {
-    return std::nullopt;
+  std::ranges::stable_sort(found, {}, &Found::cost);
+  std::vector<NormalTriple> triples;
+  triples.reserve(found.size());
+  for (const Found& f : found) {
+    triples.push_back(f.triple);
   }
-  std::ranges::sort(*best, [](const Eigen::Vector3f& a, const Eigen::Vector3f& b) {
-    return std::atan2(a.y(), a.x()) < std::atan2(b.y(), b.x());
-  });
-  return std::array<Eigen::Vector3d, 3>{(*best)[0].cast<double>(), (*best)[1].cast<double>(),
-                                        (*best)[2].cast<double>()};
+  return triples;
 }
 
 }  // namespace dubsar

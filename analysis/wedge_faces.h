@@ -16,9 +16,10 @@ namespace dubsar {
 struct FacePlane {
   Eigen::Vector3d normal{0, 0, 1};
   double offset_mm = 0;
-  double rms_mm = 0;          ///< of its vertices' distances
-  double weight = 0;          ///< reliability summed over its vertices
-  std::uint32_t count = 0;    ///< of its vertices
+  Eigen::Vector3d middle{0, 0, 0};  ///< of its triangles
+  double rms_mm = 0;          ///< of its triangles' corners' distances
+  double weight = 0;          ///< area times reliability summed over its triangles, mm²
+  std::uint32_t count = 0;    ///< of its triangles
   double sigma_rad = 0;       ///< standard deviation of the normal's direction, the worse axis
   [[nodiscard]] double distance(const Eigen::Vector3d& p) const { return normal.dot(p) - offset_mm; }
   /// Height of the plane over the patch's z = 0 at p's x and y; steep planes are cut at 87 degrees.
@@ -39,9 +40,9 @@ struct WedgeFaces {
 
 /// Limits of the search for faces; lengths follow the patch's depth and spacing.
 struct FaceOptions {
-  double normal_gate_deg = 40;   ///< a vertex's normal against its face's
-  double min_face_share = 0.06;  ///< of the wedge's vertices
-  std::uint32_t min_face_vertices = 5;
+  double normal_gate_deg = 45;   ///< a triangle's normal against its face's
+  double min_face_share = 0.04;  ///< of the wedge's area
+  std::uint32_t min_face_triangles = 3;
   double min_opening_deg = 25;
   double max_opening_deg = 165;
 };
