@@ -4,8 +4,11 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
+
+#include "core/red_map.h"
 
 namespace dubsar {
 
@@ -33,7 +36,7 @@ struct WedgeSigma {
 
 /// Where a wedge stands in the text.
 struct WedgePlace {
-  std::string side;       ///< obverse, reverse, left, right, top, bottom; empty when not known
+  std::optional<Face> side;
   int line = 0;           ///< from 1, down the side; 0 when not known
   int order = 0;          ///< from 1, along the line; 0 when not known
   double turn_rad = 0;    ///< of the directional edge away from the depth point: 0 right, pi/2 up the side
