@@ -3,10 +3,12 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <vector>
 
+#include "analysis/node_grid.h"
 #include "core/mesh.h"
 
 namespace dubsar {
@@ -17,8 +19,8 @@ namespace dubsar {
 class HeightSurface {
  public:
   HeightSurface() = default;
-  HeightSurface(Mesh mesh, const Eigen::Vector3f& origin_mm, float cell_mm, const Eigen::Vector3i& nodes,
-                float band_mm, std::vector<float> distance_mm);
+  /// distance_mm: [nodes], clamped to ±band_mm; negative in the clay.
+  HeightSurface(Mesh mesh, const NodeGrid& grid, float band_mm, std::vector<float> distance_mm);
 
   /// Signed distance of p to the surface, negative below it (in the clay); trilinear between the nodes.
   /// Clamped to ±band_mm() away from the surface and outside the grid.
@@ -35,7 +37,7 @@ class HeightSurface {
 
   /// The reconstruction itself, as triangles of about one cell, with normals.
   [[nodiscard]] const Mesh& mesh() const { return mesh_; }
-  [[nodiscard]] float cell_mm() const { return cell_mm_; }
+  [[nodiscard]] float cell_mm() const { return grid_.cell_mm; }
   [[nodiscard]] float band_mm() const { return band_mm_; }
 
  private:
@@ -44,13 +46,12 @@ class HeightSurface {
     Eigen::Vector3f t;  ///< place in the cell, [0,1] each
   };
   [[nodiscard]] std::optional<Cell> cell_at(const Eigen::Vector3f& p_mm) const;
+  [[nodiscard]] std::array<float, 8> corners(const Cell& cell) const;
 
   Mesh mesh_;
-  Eigen::Vector3f origin_mm_{0, 0, 0};
-  float cell_mm_ = 1;
-  Eigen::Vector3i nodes_{0, 0, 0};
+  NodeGrid grid_;
   float band_mm_ = 0;
-  std::vector<float> distance_mm_;  ///< [z][y][x]
+  std::vector<float> distance_mm_;  ///< [nodes]
 };
 
 }  // namespace dubsar

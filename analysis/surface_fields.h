@@ -8,7 +8,10 @@
 #include <utility>
 #include <vector>
 
+#include "analysis/free_surface.h"
 #include "analysis/height_surface.h"
+#include "analysis/openness.h"
+#include "analysis/reconstruction.h"
 #include "analysis/vertex_graph.h"
 #include "core/job.h"
 #include "core/mesh.h"
@@ -30,6 +33,9 @@ struct SurfaceFields {
 
 struct SurfaceFieldOptions {
   int reliability_iterations = 2;  ///< n of seed 000, 3.1
+  OpennessOptions openness;
+  FreeSurfaceOptions free_surface;
+  ReconstructionOptions reconstruction;
 };
 
 /// Seconds by stage, in the order of the work.

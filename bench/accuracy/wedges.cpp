@@ -30,7 +30,7 @@ struct Arguments {
   std::uint64_t first = 1;
   double spacing_mm = 0.1;
   double damage = -1;  ///< below zero: from none to heavy by seed
-  std::string height = "true";
+  bool true_height = false;
   bool verbose = false;
 };
 
@@ -60,7 +60,7 @@ SurfaceFields true_fields(const sim::SimTablet& tablet, const sim::TabletOptions
     }
   }, 1);
   SurfaceFields fields;
-  fields.surface = HeightSurface({}, low, kCell, nodes, kBand, std::move(distance));
+  fields.surface = HeightSurface({}, NodeGrid{low, kCell, nodes.x(), nodes.y(), nodes.z()}, kBand, std::move(distance));
   const std::size_t count = tablet.mesh.positions.size();
   fields.reliability.assign(count, 1.0F);
   fields.normal = tablet.mesh.normals;
@@ -142,6 +142,7 @@ int main(int argc, char** argv) {
   app.add_option("--first", args.first, "first seed");
   app.add_option("--spacing", args.spacing_mm, "of the mesh, mm");
   app.add_option("--damage", args.damage, "0 to 1 for all; otherwise from none to heavy by seed");
+  app.add_flag("--true-height", args.true_height, "over the simulator's own body, not the reconstruction");
   app.add_flag("--verbose", args.verbose);
   CLI11_PARSE(app, argc, argv);
   WedgeScore all;
@@ -156,9 +157,14 @@ int main(int argc, char** argv) {
       return 1;
     }
     const VertexGraph graph = make_vertex_graph(tablet->mesh);
-    const SurfaceFields fields = true_fields(*tablet, options);
     StageTimes times;
-    const auto set = find_wedges(tablet->mesh, graph, fields, {}, job, &times);
+    Result<SurfaceFields> fields = args.true_height ? true_fields(*tablet, options)
+                                              : compute_surface_fields(tablet->mesh, graph, {}, job, &times);
+    if (!fields) {
+      std::fprintf(stderr, "%s\n", fields.error().line().c_str());
+      return 1;
+    }
+    const auto set = find_wedges(tablet->mesh, graph, *fields, {}, job, &times);
     std::vector<int> pair;
     const WedgeScore score = score_wedges(set->wedges, tablet->wedges, {}, &pair);
     char name[64];

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "analysis/vertex_graph.h"
+
+namespace dubsar {
+
+struct FreeSurfaceOptions {
+  float least_openness = 0.9F;
+  float most_concave_per_mm = 0.5F;  ///< mean curvature below minus this is concave
+};
+
+/// 1 where a vertex belongs to the wedge-free surface, mostly convex and little curved (seed 000, 3.2):
+/// openness and curvature within the thresholds. [V]
+[[nodiscard]] std::vector<std::uint8_t> find_free_surface(const std::vector<float>& openness,
+                                                          const std::vector<float>& mean_curvature_per_mm,
+                                                          const FreeSurfaceOptions& options);
+
+}  // namespace dubsar

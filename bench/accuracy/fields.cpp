@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+// The surface fields of the wedge analysis against the truth of simulated tablets: how far the height is from
+// the true depth, how well the free surface is found, and how long each stage takes.
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <string>
+
+#include "analysis/surface_fields.h"
+#include "formats/mesh_io.h"
+#include "formats/truth_json.h"
+#include "sim/tablet.h"
+
+namespace {
+
+using namespace dubsar;
+
+struct Options {
+  std::string mesh;
+  std::string truth;
+  std::string picture;
+  std::uint64_t seed = 1;
+  std::vector<double> size{50, 40, 20};
+  double spacing_mm = 0.1;
+  double damage = 0;
+  SurfaceFieldOptions fields;
+};
+
+void print_quantiles(const char* what, std::vector<float> values) {
+  if (values.empty()) {
+    return;
+  }
+  std::sort(values.begin(), values.end());
+  const auto at = [&](double q) {
+    return 1000.0 * values[static_cast<std::size_t>(q * static_cast<double>(values.size() - 1))];
+  };
+  std::printf("%-34s n %8zu  um: 1%% %7.1f  5%% %7.1f  25%% %7.1f  50%% %7.1f  75%% %7.1f  95%% %7.1f  99%% %7.1f\n",
+              what, values.size(), at(0.01), at(0.05), at(0.25), at(0.5), at(0.75), at(0.95), at(0.99));
+}
+
+void print_kinds(const sim::SimTablet& tablet, const SurfaceFields& fields) {
+  const char* const names[] = {"body", "seal", "wedge", "fracture", "erosion", "dirt", "crack", "hole"};
+  for (int kind = 0; kind < 8; ++kind) {
+    std::vector<float> heights;
+    std::vector<float> free_heights;
+    std::size_t open = 0;
+    for (std::size_t i = 0; i < tablet.kinds.size(); ++i) {
+      if (static_cast<int>(tablet.kinds[i]) == kind) {
+        heights.push_back(fields.height_mm[i]);
+        open += fields.openness[i] >= 0.9F ? 1U : 0U;
+        if (fields.free_surface[i] != 0) {
+          free_heights.push_back(fields.height_mm[i]);
+        }
+      }
+    }
+    if (!heights.empty()) {
+      std::printf("%-9s open %5.1f %%  free %5.1f %%\n", names[kind],
+                  100.0 * static_cast<double>(open) / static_cast<double>(heights.size()),
+                  100.0 * static_cast<double>(free_heights.size()) / static_cast<double>(heights.size()));
+      print_quantiles("   height, all", heights);
+      print_quantiles("   height, free", free_heights);
+    }
+  }
+}
+
+void print_depths(const std::vector<Wedge>& wedges, const SurfaceFields& fields) {
+  std::vector<float> off;
+  for (const Wedge& w : wedges) {
+    if (w.intact >= 0.6) {
+      off.push_back(-fields.surface.height_mm(w.depth_point_mm.cast<float>()) -
+                    static_cast<float>(w.depth_mm));
+    }
+  }
+  print_quantiles("depth found - true, at depth points", off);
+}
+
+int run(const Options& options) {
+  JobContext job;
+  Mesh mesh;
+  sim::SimTablet tablet;
+  std::vector<Wedge> wedges;
+  if (!options.mesh.empty()) {
+    auto read = read_mesh(options.mesh);
+    if (!read) {
+      std::fprintf(stderr, "%s\n", read.error().line().c_str());
+      return 2;
+    }
+    mesh = std::move(*read);
+    if (!options.truth.empty()) {
+      auto truth = read_truth(options.truth);
+      if (!truth) {
+        std::fprintf(stderr, "%s\n", truth.error().line().c_str());
+        return 2;
+      }
+      wedges = std::move(truth->wedges);
+    }
+  } else {
+    sim::TabletOptions making;
+    making.seed = options.seed;
+    making.size_mm = {options.size[0], options.size[1], options.size[2]};
+    making.spacing_mm = options.spacing_mm;
+    making.damage = {options.damage, options.damage, options.damage, options.damage, 0};
+    auto made = sim::make_tablet(making, job);
+    if (!made) {
+      std::fprintf(stderr, "%s\n", made.error().line().c_str());
+      return 2;
+    }
+    tablet = std::move(*made);
+    mesh = tablet.mesh;
+    wedges = tablet.wedges;
+  }
+  StageTimes times;
+  const VertexGraph graph = make_vertex_graph(mesh);
+  const auto fields = compute_surface_fields(mesh, graph, options.fields, job, &times);
+  if (!fields) {
+    std::fprintf(stderr, "%s\n", fields.error().line().c_str());
+    return 2;
+  }
+  std::printf("%zu vertices, %zu faces; surface of %zu vertices, cell %.2f mm\n", mesh.positions.size(),
+              mesh.faces.size(), fields->surface.mesh().positions.size(), fields->surface.cell_mm());
+  for (const auto& [stage, seconds] : times) {
+    std::printf("%s %.2f  ", stage.c_str(), seconds);
+  }
+  std::printf("\n");
+  if (!tablet.kinds.empty()) {
+    print_kinds(tablet, *fields);
+  }
+  print_depths(wedges, *fields);
+  if (!options.picture.empty()) {
+    mesh.colours.resize(mesh.positions.size());
+    for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+      const auto grey = static_cast<std::uint8_t>(
+          std::clamp(200.0F + 300.0F * fields->height_mm[i], 0.0F, 255.0F));
+      mesh.colours[i] = {grey, fields->free_surface[i] != 0 ? std::uint8_t{255} : grey, grey};
+    }
+    (void)write_mesh(options.picture, mesh);
+    (void)write_mesh(options.picture + ".surface.ply", fields->surface.mesh());
+  }
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Options options;
+  CLI::App app{"The surface fields of the wedge analysis against the truth of simulated tablets"};
+  app.add_option("--mesh", options.mesh, "a mesh instead of a simulated tablet");
+  app.add_option("--truth", options.truth, "its truth.json");
+  app.add_option("--seed", options.seed)->capture_default_str();
+  app.add_option("--size", options.size, "mm")->expected(3)->delimiter('x');
+  app.add_option("--spacing", options.spacing_mm, "mm")->capture_default_str();
+  app.add_option("--damage", options.damage)->capture_default_str();
+  app.add_option("--openness", options.fields.free_surface.least_openness)->capture_default_str();
+  app.add_option("--concave", options.fields.free_surface.most_concave_per_mm)->capture_default_str();
+  app.add_option("--cell", options.fields.reconstruction.cell_mm)->capture_default_str();
+  app.add_option("--other-weight", options.fields.reconstruction.other_weight)->capture_default_str();
+  app.add_option("--script", options.fields.reconstruction.script_mm)->capture_default_str();
+  app.add_option("-o", options.picture, "a PLY: height in grey, free surface green");
+  CLI11_PARSE(app, argc, argv);
+  return run(options);
+}
