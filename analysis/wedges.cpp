@@ -66,10 +66,11 @@ class Extractor {
         none.rejected = std::move(reason);
         found.push_back(std::move(none));
       };
-      if (part.size() < kLeastVertices || part.size() > kMostVertices) {
-        if (turn == 0) {
-          reject(part.size() < kLeastVertices ? "too few vertices" : "too large a hollow");
-        }
+      if (part.size() < kLeastVertices) {
+        continue;  // the grain of the clay
+      }
+      if (part.size() > kMostVertices) {
+        reject("too large a hollow");
         continue;
       }
       const Eigen::Vector3d up = up_over(part);

@@ -9,6 +9,7 @@
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 #include <map>
 #include <string>
 
@@ -16,9 +17,12 @@
 #include "bench/support/true_scans.h"
 #include "bench/support/wedge_score.h"
 #include "core/parallel.h"
-#include "core/random.h"
+#include "formats/mesh_io.h"
+#include "formats/truth_json.h"
+#include "planning/sparse_flags.h"
 #include "sim/body.h"
 #include "sim/tablet.h"
+#include "triangulation/stitcher.h"
 
 namespace {
 
@@ -30,9 +34,20 @@ struct Arguments {
   std::uint64_t first = 1;
   double spacing_mm = 0.1;
   double damage = -1;  ///< below zero: from none to heavy by seed
+  bool scanned = false;
+  double scan_spacing_mm = 0.05;
+  double noise_mm = 0.02;
+  int views = 14;
+  std::string keep;
+  std::vector<std::string> folders;
   bool true_height = false;
   bool verbose = false;
 };
+
+[[noreturn]] void give_up(const Error& error) {
+  std::fprintf(stderr, "%s\n", error.line().c_str());
+  std::exit(2);
+}
 
 /// Fields of a simulated tablet from its own body: what a perfect reconstruction would give.
 SurfaceFields true_fields(const sim::SimTablet& tablet, const sim::TabletOptions& options) {
@@ -71,6 +86,30 @@ SurfaceFields true_fields(const sim::SimTablet& tablet, const sim::TabletOptions
     fields.free_surface[v] = fields.height_mm[v] > -0.04F ? 1 : 0;
   });
   return fields;
+}
+
+/// The tablet scanned in simulation and stitched with the poses that were true.
+Mesh scanned_mesh(const sim::TabletOptions& tablet, const Arguments& args) {
+  TrueScanOptions options;
+  options.spacing_mm = args.scan_spacing_mm;
+  options.noise_mm = args.noise_mm;
+  options.views = args.views;
+  options.seed = tablet.seed;
+  const std::vector<TrueScan> scans = true_scans(tablet, options);
+  std::vector<SampleFlags> flags;
+  std::vector<PlacedScan> placed;
+  for (const TrueScan& scan : scans) {
+    flags.push_back(flag_sparse(*scan.grid));
+  }
+  for (std::size_t i = 0; i < scans.size(); ++i) {
+    placed.push_back({static_cast<int>(i), scans[i].grid.get(), &flags[i], scans[i].tablet_from_scanner, 0.005});
+  }
+  JobContext job;
+  Result<Mesh> mesh = stitch(placed, {}, job);
+  if (!mesh) {
+    give_up(mesh.error());
+  }
+  return *std::move(mesh);
 }
 
 void report(const char* name, const WedgeScore& s) {
@@ -133,6 +172,82 @@ void explain(const sim::SimTablet& tablet, const WedgeSet& set, const std::vecto
   }
 }
 
+/// Finds the wedges of a mesh and prints the score.
+WedgeScore judge(const std::string& name, const sim::SimTablet& tablet, const Arguments& args,
+                 const sim::TabletOptions* body) {
+  JobContext job;
+  StageTimes times;
+  const VertexGraph graph = make_vertex_graph(tablet.mesh);
+  Result<SurfaceFields> fields = args.true_height && body != nullptr
+                                     ? true_fields(tablet, *body)
+                                     : compute_surface_fields(tablet.mesh, graph, {}, job, &times);
+  if (!fields) {
+    give_up(fields.error());
+  }
+  const auto set = find_wedges(tablet.mesh, graph, *fields, {}, job, &times);
+  if (!set) {
+    give_up(set.error());
+  }
+  std::vector<int> pair;
+  WedgeScore score = score_wedges(set->wedges, tablet.wedges, {}, &pair);
+  report(name.c_str(), score);
+  if (args.verbose) {
+    for (const auto& [stage, seconds] : times) {
+      std::printf("  %s %.2f s", stage.c_str(), seconds);
+    }
+    std::printf("\n");
+    explain(tablet, *set, pair);
+  }
+  return score;
+}
+
+WedgeScore judge_folder(const std::string& folder, const Arguments& args) {
+  const std::filesystem::path path(folder);
+  const auto truth = read_truth(path / "truth.json");
+  if (!truth) {
+    give_up(truth.error());
+  }
+  Result<Mesh> mesh = read_mesh(path / truth->mesh);
+  if (!mesh) {
+    give_up(mesh.error());
+  }
+  sim::SimTablet tablet = sim::tablet_from_mesh(*std::move(mesh));
+  tablet.wedges = truth->wedges;
+  return judge(folder, tablet, args, nullptr);
+}
+
+WedgeScore judge_seed(std::uint64_t seed, double damage, const Arguments& args) {
+  sim::TabletOptions options = random_tablet(seed, "text", args.spacing_mm);
+  options.damage = {damage, damage, damage, damage, 0};
+  if (args.scanned) {
+    options.spacing_mm = std::max(0.04, 0.8 * args.scan_spacing_mm);
+  }
+  JobContext job;
+  auto tablet = sim::make_tablet(options, job);
+  if (!tablet) {
+    give_up(tablet.error());
+  }
+  if (args.scanned) {
+    std::vector<Wedge> truth = std::move(tablet->wedges);
+    *tablet = sim::tablet_from_mesh(scanned_mesh(options, args));
+    tablet->wedges = std::move(truth);
+  }
+  char name[96];
+  std::snprintf(name, sizeof name, "seed %d damage %.1f %zuk", static_cast<int>(seed), damage,
+                tablet->mesh.positions.size() / 1000);
+  if (!args.keep.empty()) {
+    const std::filesystem::path folder = std::filesystem::path(args.keep) / ("seed" + std::to_string(seed));
+    std::filesystem::create_directories(folder);
+    TabletTruth truth{"mesh.ply", seed, options.size_mm, options.spacing_mm, tablet->wedges};
+    Status kept = write_mesh(folder / "mesh.ply", tablet->mesh);
+    kept = kept ? write_truth(folder / "truth.json", truth) : kept;
+    if (!kept) {
+      give_up(kept.error());
+    }
+  }
+  return judge(name, *tablet, args, &options);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -140,44 +255,24 @@ int main(int argc, char** argv) {
   CLI::App app("Wedges against the truth of simulated tablets");
   app.add_option("--tablets", args.tablets);
   app.add_option("--first", args.first, "first seed");
-  app.add_option("--spacing", args.spacing_mm, "of the mesh, mm");
+  app.add_option("--spacing", args.spacing_mm, "of the clean mesh, mm");
   app.add_option("--damage", args.damage, "0 to 1 for all; otherwise from none to heavy by seed");
+  app.add_flag("--scanned", args.scanned, "scan each tablet in simulation and stitch the scans");
+  app.add_option("--scan-spacing", args.scan_spacing_mm);
+  app.add_option("--noise", args.noise_mm);
+  app.add_option("--views", args.views);
+  app.add_option("--keep", args.keep, "write each mesh and its truth into a folder here");
+  app.add_option("folders", args.folders, "folders with a truth.json and its mesh, in place of seeds");
   app.add_flag("--true-height", args.true_height, "over the simulator's own body, not the reconstruction");
   app.add_flag("--verbose", args.verbose);
   CLI11_PARSE(app, argc, argv);
   WedgeScore all;
-  for (int i = 0; i < args.tablets; ++i) {
-    sim::TabletOptions options = random_tablet(args.first + static_cast<std::uint64_t>(i), "text", args.spacing_mm);
-    const double d = args.damage >= 0 ? args.damage : static_cast<double>(i) / std::max(1, args.tablets - 1);
-    options.damage = {d, d, d, d, 0};
-    JobContext job;
-    const auto tablet = sim::make_tablet(options, job);
-    if (!tablet) {
-      std::fprintf(stderr, "%s\n", tablet.error().line().c_str());
-      return 1;
-    }
-    const VertexGraph graph = make_vertex_graph(tablet->mesh);
-    StageTimes times;
-    Result<SurfaceFields> fields = args.true_height ? true_fields(*tablet, options)
-                                              : compute_surface_fields(tablet->mesh, graph, {}, job, &times);
-    if (!fields) {
-      std::fprintf(stderr, "%s\n", fields.error().line().c_str());
-      return 1;
-    }
-    const auto set = find_wedges(tablet->mesh, graph, *fields, {}, job, &times);
-    std::vector<int> pair;
-    const WedgeScore score = score_wedges(set->wedges, tablet->wedges, {}, &pair);
-    char name[64];
-    std::snprintf(name, sizeof name, "seed %d damage %.1f %zuk", static_cast<int>(options.seed), d, tablet->mesh.positions.size() / 1000);
-    report(name, score);
-    for (const auto& [stage, seconds] : times) {
-      std::printf("  %s %.2f s", stage.c_str(), seconds);
-    }
-    std::printf("\n");
-    if (args.verbose) {
-      explain(*tablet, *set, pair);
-    }
-    all.add(score);
+  for (const std::string& folder : args.folders) {
+    all.add(judge_folder(folder, args));
+  }
+  for (int i = 0; i < args.tablets && args.folders.empty(); ++i) {
+    const double damage = args.damage >= 0 ? args.damage : static_cast<double>(i) / std::max(1, args.tablets - 1);
+    all.add(judge_seed(args.first + static_cast<std::uint64_t>(i), damage, args));
   }
   report("all", all);
   return 0;
