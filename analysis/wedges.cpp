@@ -10,7 +10,9 @@
 #include <cmath>
 #include <numeric>
 
+#include "analysis/height_noise.h"
 #include "analysis/inner_edges.h"
+#include "analysis/wedge_fragments.h"
 #include "analysis/wedge_measure.h"
 #include "core/parallel.h"
 
@@ -155,6 +157,15 @@ void note_time(StageTimes* timings_s, const char* stage, Clock::time_point* from
   *from = now;
 }
 
+/// How often the heights are averaged before the watershed, so that noise alone makes no basins.
+int smoothing_rounds(double noise_mm) {
+  constexpr double kQuietMm = 0.003;
+  constexpr int kMost = 4;
+  // Each round takes part of what the last has left.
+  return noise_mm <= kQuietMm ? 0
+                              : std::clamp(static_cast<int>(std::ceil(std::pow(noise_mm / kQuietMm, 2) / 7.0)), 1, kMost);
+}
+
 BasinOptions basin_options(const WedgeOptions& options, const std::vector<float>& areas) {
   const double area = std::accumulate(areas.begin(), areas.end(), 0.0);
   const double each = area / std::max<double>(1.0, static_cast<double>(areas.size()));
@@ -173,7 +184,12 @@ Result<WedgeSet> find_wedges(const Mesh& mesh, const VertexGraph& graph, const S
   const auto cancelled = [] { return fail(ErrorKind::kCancelled, "stopped while finding wedges"); };
   job.progress("watershed", 0);
   const std::vector<float> areas = vertex_areas(mesh, graph);
-  Basins basins = find_basins(graph, fields.height_mm, fields.free_surface, basin_options(options, areas));
+  const double noise_mm = height_noise_mm(graph, fields.height_mm, fields.free_surface);
+  const int rounds = smoothing_rounds(noise_mm);
+  Basins basins = find_basins(graph,
+                              rounds > 0 ? smooth_heights(graph, fields.height_mm, rounds) : fields.height_mm,
+                              fields.free_surface, basin_options(options, areas));
+  if (getenv("DBG")) fprintf(stderr, "noise %.4f rounds %d basins %zu\n", noise_mm, rounds, basins.count());
   note_time(timings_s, "watershed", &from);
   if (job.cancelled()) {
     return cancelled();
@@ -202,6 +218,7 @@ Result<WedgeSet> find_wedges(const Mesh& mesh, const VertexGraph& graph, const S
   note_time(timings_s, "features", &from);
 
   job.progress("judging", 0);
+  reject_fragments(mesh.positions, &candidates);
   judge_wedges(options.judge, &candidates);
   WedgeSet set;
   set.basin_of = std::move(basins.label);

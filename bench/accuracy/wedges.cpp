@@ -128,6 +128,13 @@ void explain(const sim::SimTablet& tablet, const WedgeSet& set, const std::vecto
       of_truth[static_cast<std::size_t>(pair[f])] = static_cast<int>(f);
       continue;
     }
+    double nearest = 1e9;
+    std::size_t which = 0;
+    for (std::size_t t = 0; t < tablet.wedges.size(); ++t) {
+      const double d = (tablet.wedges[t].depth_point_mm - w.depth_point_mm).norm();
+      which = d < nearest ? t : which;
+      nearest = std::min(nearest, d);
+    }
     std::map<int, int> kinds;
     std::map<int, int> owners;
     for (std::size_t v = 0; v < set.wedge_of.size(); ++v) {
@@ -142,7 +149,8 @@ void explain(const sim::SimTablet& tablet, const WedgeSet& set, const std::vecto
     for (const auto& [kind, count] : kinds) {
       std::printf(" %d:%d", kind, count);
     }
-    std::printf("; of");
+    std::printf("; nearest true %zu %.2f intact %.2f taken %d depth %.2f; of", which, nearest, tablet.wedges[which].intact,
+                static_cast<int>(std::ranges::count(pair, static_cast<int>(which))), tablet.wedges[which].depth_mm);
     for (const auto& [owner, count] : owners) {
       std::printf(" %d:%d", owner, count);
     }
