@@ -21,6 +21,9 @@ constexpr int kRounds = 6;
 constexpr double kFirstReachDepths = 1.7;
 constexpr double kFirstReachSpacings = 5.0;
 constexpr double kReachGrowth = 1.5;
+/// Triangles nearer than this to the free surface are of the rim, which is heaped up or worn round; in depths
+/// of the wedge.
+constexpr float kRimDepths = 0.1F;
 /// Normals nearer than this to the free surface's are of the rim.
 constexpr float kUpright = 0.985F;
 
@@ -29,6 +32,8 @@ struct Search {
   const FaceOptions& options;
   WedgeFaces faces;
   std::vector<std::int8_t> triangle_face;  ///< of each triangle of the patch, or -1
+  std::vector<float> agreement;            ///< of its normal with its face's, 0 to 1
+  float highest = 0;                       ///< triangles above this are of the rim, mm
   double tolerance_mm = 0;
   double reach_mm = 0;
 };
@@ -57,7 +62,7 @@ bool fit_plane(const Search& s, std::size_t k, FacePlane* plane) {
         const double off = plane->distance(p);
         const double u = off / (1.5 * s.tolerance_mm);
         const double tukey = std::abs(u) < 1 ? (1 - u * u) * (1 - u * u) : 0.0;
-        const double w = t.weight * tukey / 3.0;
+        const double w = s.agreement[i] * t.weight * tukey / 3.0;
         total += w;
         squares += w * off * off;
         mean += w * p;
@@ -116,7 +121,10 @@ void assign(Search* s) {
       }
     }
     const FacePlane& plane = s->faces.plane[top];
-    bool near = t.n.dot(normals[top]) > gate;
+    const float cosine = t.n.dot(normals[top]);
+    bool near = cosine > gate && t.height < s->highest;
+    // Those on the bend to the next face count less than those that look the way their face does.
+    s->agreement[i] = (cosine - gate) / (1.0F - gate);
     for (std::size_t c = 0; c < 3 && near; ++c) {
       near = std::abs(plane.distance(s->patch.p[t.vertex[c]].cast<double>())) < s->tolerance_mm;
     }
@@ -164,7 +172,7 @@ Near triangles_near(const Search& s) {
   const auto centre = static_cast<float>(s.patch.spacing_mm);
   for (const PatchTriangle& t : s.patch.triangles) {
     const float away = t.middle.head<2>().norm();
-    if (away < static_cast<float>(s.reach_mm) && t.n.z() < kUpright && t.n.z() > -0.2F) {
+    if (away < static_cast<float>(s.reach_mm) && t.height < s.highest && t.n.z() < kUpright && t.n.z() > -0.2F) {
       near.normals.push_back(t.n);
       near.middles.push_back(t.middle);
       // Dirt gathers at the deepest place.
@@ -303,7 +311,8 @@ std::optional<std::string> best_start(Search* s) {
 }  // namespace
 
 std::expected<WedgeFaces, std::string> find_faces(const WedgePatch& patch, const FaceOptions& options) {
-  Search s{patch, options, {}, {}, 0, 0};
+  Search s{patch, options, {}, {}, {}, -kRimDepths * static_cast<float>(patch.depth_mm), 0, 0};
+  s.agreement.assign(patch.triangles.size(), 0);
   s.faces.face.assign(patch.size(), -1);
   s.triangle_face.assign(patch.triangles.size(), -1);
   s.reach_mm = std::max(kFirstReachDepths * patch.depth_mm, kFirstReachSpacings * patch.spacing_mm);

@@ -17,9 +17,10 @@ struct JudgeOptions {
   double max_edge_mm = 30.0;
 };
 
-/// Tells wedges from hollows that only look like ones (seed 000, 3.4): size and angle bounds, how much of the
-/// model is there, remains of other wedges, similarity to the tablet's other wedges and distance to them. Sets
-/// `rejected` and `confidence`; of candidates that share a place the better one stays. Deterministic.
+/// Tells wedges from hollows that only look like ones (seed 000, 3.4): size bounds, how much of the model is
+/// there, similarity to the tablet's other wedges and distance to them. Sets `confidence`, `evidence` and,
+/// where it is too low, `rejected`. With fewer than ten good candidates the others' likeness counts for
+/// nothing. Deterministic.
 void judge_wedges(const JudgeOptions& options, std::vector<WedgeCandidate>* candidates);
 
 }  // namespace dubsar

@@ -127,6 +127,7 @@ WedgeCandidate measure_wedge(const WedgePatch& patch, const WedgeFaces& faces, c
       out.faces.push_back(faces.face[i]);
     }
   }
+  out.seen_mm2 = seen;
   const double count = std::max<double>(1.0, static_cast<double>(out.vertices.size()));
   for (std::size_t k = 0; k < 3; ++k) {
     const Eigen::Vector3d a = wedge.exit_points_surface_mm[k] - depth_point;

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "analysis/evidence.h"
 #include "analysis/height_surface.h"
 #include "analysis/inner_edges.h"
 #include "analysis/wedge_faces.h"
@@ -21,6 +22,8 @@ struct WedgeCandidate {
   Wedge wedge;
   std::vector<std::uint32_t> vertices;   ///< of the mesh, that lie on its three faces
   std::vector<std::int8_t> faces;        ///< of each of them, 0 to 2
+  EvidenceValues evidence{};             ///< what the judgement rests on
+  std::array<double, 3> seen_mm2{};      ///< of each face
   std::array<double, 3> coverage{};      ///< share of each face that is there, of what the model says
   std::array<std::uint32_t, 3> contacts{};  ///< contact points on each inner edge
   double explained = 0;  ///< share of what lies in its outline that lies on its faces

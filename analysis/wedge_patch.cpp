@@ -58,9 +58,14 @@ void add_triangles(const PatchSource& source, const std::vector<std::int32_t>& s
       }
       // A flipped face is one fault more of the mesh, and no other direction of the clay.
       const Eigen::Vector3f outward = patch->n[i] + patch->n[j] + patch->n[k];
-      t.n *= (t.n.dot(outward) < 0 ? -1.0F : 1.0F) / twice_area;
+      if (source.noisy && outward.norm() > 0.5F) {
+        t.n = outward.normalized();
+      } else {
+        t.n *= (t.n.dot(outward) < 0 ? -1.0F : 1.0F) / twice_area;
+      }
       t.vertex = {static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b), static_cast<std::uint32_t>(c)};
       t.middle = (patch->p[i] + patch->p[j] + patch->p[k]) / 3.0F;
+      t.height = (patch->height[i] + patch->height[j] + patch->height[k]) / 3.0F;
       t.weight = 0.5F * twice_area *
                  (0.02F + std::min({patch->weight[i], patch->weight[j], patch->weight[k]}));
       patch->triangles.push_back(t);

@@ -21,6 +21,9 @@ struct PatchSource {
   std::span<const Eigen::Vector3f> normal;
   std::span<const float> reliability;
   std::span<const float> height_mm;
+  /// Whether triangles take their normals from the 1-rings of their corners: noise turns the normals of small
+  /// triangles far, where it is small against them their own are the sharper ones.
+  bool noisy = false;
 };
 
 /// A triangle of the mesh with all its vertices in a patch.
@@ -29,6 +32,7 @@ struct PatchTriangle {
   Eigen::Vector3f middle{0, 0, 0};
   Eigen::Vector3f n{0, 0, 1};  ///< unit, on the side of its vertices' normals
   float weight = 0;            ///< area times reliability, mm²
+  float height = 0;            ///< of its middle over the free surface, mm
 };
 
 /// Some vertices of a mesh, one basin's or a part of them, in a frame of their own: origin at the lowest

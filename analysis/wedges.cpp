@@ -26,6 +26,8 @@ using Clock = std::chrono::steady_clock;
 constexpr std::size_t kMostVertices = 400000;
 /// What one basin holds besides its first wedge is looked at so many times.
 constexpr int kMostPerBasin = 4;
+/// Noise that is this share of the spacing turns a triangle's normal by some 8 degrees.
+constexpr double kNoisyShare = 0.1;
 constexpr std::size_t kNormalSamples = 64;
 /// A wedge of fewer vertices cannot be told from noise.
 constexpr std::uint32_t kLeastVertices = 15;
@@ -47,11 +49,12 @@ std::vector<float> vertex_areas(const Mesh& mesh, const VertexGraph& graph) {
 class Extractor {
  public:
   Extractor(const Mesh& mesh, const VertexGraph& graph, const SurfaceFields& fields, const WedgeOptions& options,
-            const std::vector<float>& areas)
+            const std::vector<float>& areas, bool noisy)
       : fields_(fields),
         options_(options),
         areas_(areas),
-        source_{&graph, mesh.faces, areas, mesh.positions, fields.normal, fields.reliability, fields.height_mm} {}
+        source_{&graph, mesh.faces, areas, mesh.positions, fields.normal, fields.reliability, fields.height_mm,
+                noisy} {}
 
   [[nodiscard]] std::vector<WedgeCandidate> look_at(std::span<const std::uint32_t> vertices,
                                                     std::vector<std::int32_t>* slot) const {
@@ -166,6 +169,12 @@ int smoothing_rounds(double noise_mm) {
                               : std::clamp(static_cast<int>(std::ceil(std::pow(noise_mm / kQuietMm, 2) / 7.0)), 1, kMost);
 }
 
+/// Edge of the equilateral triangle that the mean vertex stands for.
+double mean_spacing_mm(const std::vector<float>& areas) {
+  const double area = std::accumulate(areas.begin(), areas.end(), 0.0);
+  return std::sqrt(1.155 * area / std::max<double>(1.0, static_cast<double>(areas.size())));
+}
+
 BasinOptions basin_options(const WedgeOptions& options, const std::vector<float>& areas) {
   const double area = std::accumulate(areas.begin(), areas.end(), 0.0);
   const double each = area / std::max<double>(1.0, static_cast<double>(areas.size()));
@@ -189,14 +198,14 @@ Result<WedgeSet> find_wedges(const Mesh& mesh, const VertexGraph& graph, const S
   Basins basins = find_basins(graph,
                               rounds > 0 ? smooth_heights(graph, fields.height_mm, rounds) : fields.height_mm,
                               fields.free_surface, basin_options(options, areas));
-  if (getenv("DBG")) fprintf(stderr, "noise %.4f rounds %d basins %zu\n", noise_mm, rounds, basins.count());
   note_time(timings_s, "watershed", &from);
   if (job.cancelled()) {
     return cancelled();
   }
 
   job.progress("wedges", 0);
-  const Extractor extractor(mesh, graph, fields, options, areas);
+  const Extractor extractor(mesh, graph, fields, options, areas,
+                            noise_mm > kNoisyShare * mean_spacing_mm(areas));
   std::vector<std::vector<WedgeCandidate>> found(basins.count());
   tbb::enumerable_thread_specific<std::vector<std::int32_t>> slots(
       [&] { return std::vector<std::int32_t>(mesh.positions.size(), -1); });
@@ -234,6 +243,7 @@ Result<WedgeSet> find_wedges(const Mesh& mesh, const VertexGraph& graph, const S
       set.wedge_of[c.vertices[i]] = c.wedge.id;
       set.face_of[c.vertices[i]] = c.faces[i];
     }
+    set.evidence.push_back(c.evidence);
     set.wedges.push_back(std::move(c.wedge));
   }
   note_time(timings_s, "judging", &from);

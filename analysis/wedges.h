@@ -29,6 +29,7 @@ struct WedgeOptions {
 /// The wedges of a tablet.
 struct WedgeSet {
   std::vector<Wedge> wedges;             ///< id = index
+  std::vector<EvidenceValues> evidence;  ///< of each wedge
   std::vector<RejectedWedge> rejected;
   std::vector<std::int32_t> basin_of;    ///< [V] see Basins::label
   std::vector<std::int32_t> wedge_of;    ///< [V] wedge on whose faces the vertex lies, or -1

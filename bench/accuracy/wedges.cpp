@@ -40,6 +40,7 @@ struct Arguments {
   int views = 14;
   std::string keep;
   std::vector<std::string> folders;
+  bool evidence = false;
   bool true_height = false;
   bool verbose = false;
 };
@@ -192,13 +193,22 @@ WedgeScore judge(const std::string& name, const sim::SimTablet& tablet, const Ar
   if (!fields) {
     give_up(fields.error());
   }
-  const auto set = find_wedges(tablet.mesh, graph, *fields, {}, job, &times);
+  WedgeOptions options;
+  options.judge.least_confidence = args.evidence ? 0.0 : options.judge.least_confidence;
+  const auto set = find_wedges(tablet.mesh, graph, *fields, options, job, &times);
   if (!set) {
     give_up(set.error());
   }
   std::vector<int> pair;
   WedgeScore score = score_wedges(set->wedges, tablet.wedges, {}, &pair);
   report(name.c_str(), score);
+  for (std::size_t f = 0; f < pair.size() && args.evidence; ++f) {
+    std::printf("evidence %d", pair[f] >= 0 ? 1 : 0);
+    for (const double value : set->evidence[f]) {
+      std::printf(" %.4f", value);
+    }
+    std::printf("\n");
+  }
   if (args.verbose) {
     for (const auto& [stage, seconds] : times) {
       std::printf("  %s %.2f s", stage.c_str(), seconds);
@@ -272,6 +282,7 @@ int main(int argc, char** argv) {
   app.add_option("--keep", args.keep, "write each mesh and its truth into a folder here");
   app.add_option("folders", args.folders, "folders with a truth.json and its mesh, in place of seeds");
   app.add_flag("--true-height", args.true_height, "over the simulator's own body, not the reconstruction");
+  app.add_flag("--evidence", args.evidence, "print what each candidate shows, and whether it is a wedge");
   app.add_flag("--verbose", args.verbose);
   CLI11_PARSE(app, argc, argv);
   WedgeScore all;
