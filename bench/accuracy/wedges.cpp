@@ -14,6 +14,7 @@
 #include <string>
 
 #include "analysis/wedges.h"
+#include "bench/support/other_tablet.h"
 #include "bench/support/true_scans.h"
 #include "bench/support/wedge_score.h"
 #include "core/parallel.h"
@@ -40,6 +41,7 @@ struct Arguments {
   int views = 14;
   std::string keep;
   std::vector<std::string> folders;
+  bool other = false;
   bool evidence = false;
   bool true_height = false;
   bool verbose = false;
@@ -241,7 +243,8 @@ WedgeScore judge_seed(std::uint64_t seed, double damage, const Arguments& args) 
     options.spacing_mm = std::max(0.04, 0.8 * args.scan_spacing_mm);
   }
   JobContext job;
-  auto tablet = sim::make_tablet(options, job);
+  Result<sim::SimTablet> tablet =
+      args.other ? make_other_tablet({seed, args.spacing_mm, damage, args.noise_mm}) : sim::make_tablet(options, job);
   if (!tablet) {
     give_up(tablet.error());
   }
@@ -282,6 +285,7 @@ int main(int argc, char** argv) {
   app.add_option("--keep", args.keep, "write each mesh and its truth into a folder here");
   app.add_option("folders", args.folders, "folders with a truth.json and its mesh, in place of seeds");
   app.add_flag("--true-height", args.true_height, "over the simulator's own body, not the reconstruction");
+  app.add_flag("--other", args.other, "tablets of another make than the simulator's");
   app.add_flag("--evidence", args.evidence, "print what each candidate shows, and whether it is a wedge");
   app.add_flag("--verbose", args.verbose);
   CLI11_PARSE(app, argc, argv);
