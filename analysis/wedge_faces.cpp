@@ -17,8 +17,9 @@ namespace {
 
 constexpr int kFirstRounds = 3;
 constexpr int kRounds = 6;
-/// The first surroundings reach this many depths from the lowest vertex, at least so many spacings.
-constexpr double kFirstReachDepths = 1.7;
+/// The first surroundings reach this many depths from the lowest vertex, at least so many spacings; where they
+/// hold no pit the next. A wedge that dirt has filled is wider than it is deep, its lowest place anywhere.
+constexpr std::array<double, 3> kReachDepths = {1.7, 4.0, 10.0};
 constexpr double kFirstReachSpacings = 5.0;
 constexpr double kReachGrowth = 1.5;
 /// Triangles nearer than this to the free surface are of the rim, which is heaped up or worn round; in depths
@@ -308,24 +309,20 @@ std::optional<std::string> best_start(Search* s) {
   return std::nullopt;
 }
 
-}  // namespace
-
-std::expected<WedgeFaces, std::string> find_faces(const WedgePatch& patch, const FaceOptions& options) {
+/// The faces that start within reach of the lowest vertex and grow over the patch.
+std::expected<WedgeFaces, std::string> faces_from(const WedgePatch& patch, const FaceOptions& options,
+                                                  double reach_mm, double widest_mm) {
   Search s{patch, options, {}, {}, {}, -kRimDepths * static_cast<float>(patch.depth_mm), 0, 0};
-  s.agreement.assign(patch.triangles.size(), 0);
   s.faces.face.assign(patch.size(), -1);
   s.triangle_face.assign(patch.triangles.size(), -1);
-  s.reach_mm = std::max(kFirstReachDepths * patch.depth_mm, kFirstReachSpacings * patch.spacing_mm);
+  s.agreement.assign(patch.triangles.size(), 0);
+  s.reach_mm = reach_mm;
   s.tolerance_mm = 1.5 * loosest_mm(patch);
   if (auto wrong = best_start(&s)) {
     return std::unexpected(*std::move(wrong));
   }
-  double widest = 0;
-  for (const Eigen::Vector3f& p : patch.p) {
-    widest = std::max(widest, static_cast<double>(p.head<2>().norm()));
-  }
   for (int round = 0; round < kRounds; ++round) {
-    s.reach_mm = std::min(s.reach_mm * kReachGrowth, widest + patch.spacing_mm);
+    s.reach_mm = std::min(s.reach_mm * kReachGrowth, widest_mm + patch.spacing_mm);
     if (!improve(&s)) {
       return std::unexpected("one of its faces has no vertices");
     }
@@ -334,14 +331,12 @@ std::expected<WedgeFaces, std::string> find_faces(const WedgePatch& patch, const
   label_vertices(&s);
   clean_labels(patch, &s.faces.face);
   drop_cleaned(&s);
+  double all = 0;
   for (std::size_t k = 0; k < 3; ++k) {
     if (!fit_plane(s, k, &s.faces.plane[k])) {
       return std::unexpected("one of its faces has no vertices");
     }
-  }
-  double all = 0;
-  for (const FacePlane& plane : s.faces.plane) {
-    all += plane.weight;
+    all += s.faces.plane[k].weight;
   }
   for (const FacePlane& plane : s.faces.plane) {
     if (plane.count < options.min_face_triangles || plane.weight < options.min_face_share * all) {
@@ -352,6 +347,31 @@ std::expected<WedgeFaces, std::string> find_faces(const WedgePatch& patch, const
     return std::unexpected(*wrong);
   }
   return std::move(s.faces);
+}
+
+}  // namespace
+
+std::expected<WedgeFaces, std::string> find_faces(const WedgePatch& patch, const FaceOptions& options) {
+  double widest = 0;
+  for (const Eigen::Vector3f& p : patch.p) {
+    widest = std::max(widest, static_cast<double>(p.head<2>().norm()));
+  }
+  std::string wrong;
+  double last = 0;
+  for (const double depths : kReachDepths) {
+    const double reach =
+        std::min(std::max(depths * patch.depth_mm, kFirstReachSpacings * patch.spacing_mm), widest + patch.spacing_mm);
+    if (reach <= 1.01 * last) {
+      break;
+    }
+    last = reach;
+    auto faces = faces_from(patch, options, reach, widest);
+    if (faces) {
+      return faces;
+    }
+    wrong = wrong.empty() ? faces.error() : wrong;
+  }
+  return std::unexpected(wrong);
 }
 
 }  // namespace dubsar

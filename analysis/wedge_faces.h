@@ -41,7 +41,7 @@ struct WedgeFaces {
 /// Limits of the search for faces; lengths follow the patch's depth and spacing.
 struct FaceOptions {
   double normal_gate_deg = 45;   ///< a triangle's normal against its face's
-  double min_face_share = 0.04;  ///< of the wedge's area
+  double min_face_share = 0.015;  ///< of the wedge's area
   std::uint32_t min_face_triangles = 3;
   double min_opening_deg = 25;
   double max_opening_deg = 165;
