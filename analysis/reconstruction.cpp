@@ -151,7 +151,7 @@ HeightSurface reconstruct_surface(const Mesh& mesh, const VertexGeometry& geomet
     samples[i] = {cells[i].position_mm, cells[i].area_normal_mm2 / mean[i],
                   cells[i].weighted_area_mm2 / mean[i]};
   });
-  Indicator indicator = solve_screened_poisson(samples, grid, {}, job);
+  Indicator indicator = solve_screened_poisson(samples, grid, options.poisson, job);
   if (indicator.value.empty()) {
     return {};
   }

@@ -6,6 +6,7 @@
 
 #include "analysis/curvature.h"
 #include "analysis/reliability.h"
+#include "analysis/smooth_curvature.h"
 #include "analysis/vertex_geometry.h"
 #include "core/parallel.h"
 
@@ -63,7 +64,8 @@ Result<SurfaceFields> compute_surface_fields(const Mesh& mesh, const VertexGraph
   }
   job.progress("surface fields", 0.5);
   fields.free_surface =
-      find_free_surface(fields.openness, fields.mean_curvature_per_mm, options.free_surface);
+      find_free_surface(fields.openness, smooth_mean_curvature(mesh, geometry, options.free_surface.scale_mm),
+                        options.free_surface);
   clock.done("free surface");
   fields.surface = reconstruct_surface(mesh, geometry, fields.free_surface, fields.reliability,
                                        options.reconstruction, job);

@@ -9,6 +9,8 @@
 #include <string>
 
 #include "analysis/surface_fields.h"
+#include "core/mesh_query.h"
+#include "core/parallel.h"
 #include "formats/mesh_io.h"
 #include "formats/truth_json.h"
 #include "sim/tablet.h"
@@ -21,11 +23,12 @@ struct Options {
   std::string mesh;
   std::string truth;
   std::string picture;
-  std::uint64_t seed = 1;
+  std::uint64_t seed = 0;
   std::vector<double> size{50, 40, 20};
   double spacing_mm = 0.1;
   double damage = 0;
   SurfaceFieldOptions fields;
+  bool brief = false;
 };
 
 void print_quantiles(const char* what, std::vector<float> values) {
@@ -36,11 +39,12 @@ void print_quantiles(const char* what, std::vector<float> values) {
   const auto at = [&](double q) {
     return 1000.0 * values[static_cast<std::size_t>(q * static_cast<double>(values.size() - 1))];
   };
-  std::printf("%-34s n %8zu  um: 1%% %7.1f  5%% %7.1f  25%% %7.1f  50%% %7.1f  75%% %7.1f  95%% %7.1f  99%% %7.1f\n",
-              what, values.size(), at(0.01), at(0.05), at(0.25), at(0.5), at(0.75), at(0.95), at(0.99));
+  std::printf(
+      "%-34s n %8zu  um: 1%% %7.1f  5%% %7.1f  25%% %7.1f  50%% %7.1f  75%% %7.1f  95%% %7.1f  99%% %7.1f\n",
+      what, values.size(), at(0.01), at(0.05), at(0.25), at(0.5), at(0.75), at(0.95), at(0.99));
 }
 
-void print_kinds(const sim::SimTablet& tablet, const SurfaceFields& fields) {
+void print_kinds(const sim::SimTablet& tablet, const SurfaceFields& fields, bool brief) {
   const char* const names[] = {"body", "seal", "wedge", "fracture", "erosion", "dirt", "crack", "hole"};
   for (int kind = 0; kind < 8; ++kind) {
     std::vector<float> heights;
@@ -59,7 +63,9 @@ void print_kinds(const sim::SimTablet& tablet, const SurfaceFields& fields) {
       std::printf("%-9s open %5.1f %%  free %5.1f %%\n", names[kind],
                   100.0 * static_cast<double>(open) / static_cast<double>(heights.size()),
                   100.0 * static_cast<double>(free_heights.size()) / static_cast<double>(heights.size()));
-      print_quantiles("   height, all", heights);
+      if (!brief) {
+        print_quantiles("   height, all", heights);
+      }
       print_quantiles("   height, free", free_heights);
     }
   }
@@ -74,6 +80,19 @@ void print_depths(const std::vector<Wedge>& wedges, const SurfaceFields& fields)
     }
   }
   print_quantiles("depth found - true, at depth points", off);
+}
+
+/// The kinds of the nearest vertices of the true surface: for a mesh scanned from it.
+sim::SimTablet kinds_for(const Mesh& mesh, const sim::SimTablet& truth) {
+  constexpr float kNearMm = 1.0F;
+  sim::SimTablet result;
+  result.kinds.resize(mesh.positions.size());
+  const MeshQuery query(truth.mesh);
+  parallel_for_each_index(mesh.positions.size(), [&](std::size_t i) {
+    const auto near = query.closest(mesh.positions[i], kNearMm);
+    result.kinds[i] = near ? truth.kinds[truth.mesh.faces[near->face][0]] : sim::SurfaceKind::kHole;
+  });
+  return result;
 }
 
 int run(const Options& options) {
@@ -96,7 +115,8 @@ int run(const Options& options) {
       }
       wedges = std::move(truth->wedges);
     }
-  } else {
+  }
+  if (options.mesh.empty() || options.seed > 0) {
     sim::TabletOptions making;
     making.seed = options.seed;
     making.size_mm = {options.size[0], options.size[1], options.size[2]};
@@ -108,8 +128,12 @@ int run(const Options& options) {
       return 2;
     }
     tablet = std::move(*made);
-    mesh = tablet.mesh;
     wedges = tablet.wedges;
+    if (options.mesh.empty()) {
+      mesh = tablet.mesh;
+    } else {
+      tablet = kinds_for(mesh, tablet);
+    }
   }
   StageTimes times;
   const VertexGraph graph = make_vertex_graph(mesh);
@@ -125,14 +149,14 @@ int run(const Options& options) {
   }
   std::printf("\n");
   if (!tablet.kinds.empty()) {
-    print_kinds(tablet, *fields);
+    print_kinds(tablet, *fields, options.brief);
   }
   print_depths(wedges, *fields);
   if (!options.picture.empty()) {
     mesh.colours.resize(mesh.positions.size());
     for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
-      const auto grey = static_cast<std::uint8_t>(
-          std::clamp(200.0F + 300.0F * fields->height_mm[i], 0.0F, 255.0F));
+      const auto grey =
+          static_cast<std::uint8_t>(std::clamp(200.0F + 300.0F * fields->height_mm[i], 0.0F, 255.0F));
       mesh.colours[i] = {grey, fields->free_surface[i] != 0 ? std::uint8_t{255} : grey, grey};
     }
     (void)write_mesh(options.picture, mesh);
@@ -148,15 +172,20 @@ int main(int argc, char** argv) {
   CLI::App app{"The surface fields of the wedge analysis against the truth of simulated tablets"};
   app.add_option("--mesh", options.mesh, "a mesh instead of a simulated tablet");
   app.add_option("--truth", options.truth, "its truth.json");
-  app.add_option("--seed", options.seed)->capture_default_str();
+  app.add_option("--seed", options.seed, "of the simulated tablet; with --mesh: the one that was scanned")
+      ->capture_default_str();
   app.add_option("--size", options.size, "mm")->expected(3)->delimiter('x');
   app.add_option("--spacing", options.spacing_mm, "mm")->capture_default_str();
   app.add_option("--damage", options.damage)->capture_default_str();
   app.add_option("--openness", options.fields.free_surface.least_openness)->capture_default_str();
   app.add_option("--concave", options.fields.free_surface.most_concave_per_mm)->capture_default_str();
+  app.add_option("--convex", options.fields.free_surface.most_convex_per_mm)->capture_default_str();
+  app.add_option("--scale", options.fields.free_surface.scale_mm)->capture_default_str();
   app.add_option("--cell", options.fields.reconstruction.cell_mm)->capture_default_str();
   app.add_option("--other-weight", options.fields.reconstruction.other_weight)->capture_default_str();
+  app.add_option("--screening", options.fields.reconstruction.poisson.screening)->capture_default_str();
   app.add_option("--script", options.fields.reconstruction.script_mm)->capture_default_str();
+  app.add_flag("--brief", options.brief);
   app.add_option("-o", options.picture, "a PLY: height in grey, free surface green");
   CLI11_PARSE(app, argc, argv);
   return run(options);
