@@ -5,15 +5,18 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <chrono>
 #include <cstdio>
 #include <string>
 
 #include "analysis/surface_fields.h"
 #include "core/mesh_query.h"
 #include "core/parallel.h"
+#include "core/units.h"
 #include "formats/mesh_io.h"
 #include "formats/truth_json.h"
 #include "sim/tablet.h"
+#include "station/field_pictures.h"
 
 namespace {
 
@@ -22,7 +25,8 @@ using namespace dubsar;
 struct Options {
   std::string mesh;
   std::string truth;
-  std::string picture;
+  std::string unit;
+  std::string pictures;
   std::uint64_t seed = 0;
   std::vector<double> size{50, 40, 20};
   double spacing_mm = 0.1;
@@ -101,7 +105,7 @@ int run(const Options& options) {
   sim::SimTablet tablet;
   std::vector<Wedge> wedges;
   if (!options.mesh.empty()) {
-    auto read = read_mesh(options.mesh);
+    auto read = read_mesh(options.mesh, {mm_per_unit(options.unit)});
     if (!read) {
       std::fprintf(stderr, "%s\n", read.error().line().c_str());
       return 2;
@@ -136,7 +140,10 @@ int run(const Options& options) {
     }
   }
   StageTimes times;
+  const auto start = std::chrono::steady_clock::now();
   const VertexGraph graph = make_vertex_graph(mesh);
+  times.emplace_back("graph",
+                     std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
   const auto fields = compute_surface_fields(mesh, graph, options.fields, job, &times);
   if (!fields) {
     std::fprintf(stderr, "%s\n", fields.error().line().c_str());
@@ -152,15 +159,11 @@ int run(const Options& options) {
     print_kinds(tablet, *fields, options.brief);
   }
   print_depths(wedges, *fields);
-  if (!options.picture.empty()) {
-    mesh.colours.resize(mesh.positions.size());
-    for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
-      const auto grey =
-          static_cast<std::uint8_t>(std::clamp(200.0F + 300.0F * fields->height_mm[i], 0.0F, 255.0F));
-      mesh.colours[i] = {grey, fields->free_surface[i] != 0 ? std::uint8_t{255} : grey, grey};
+  if (!options.pictures.empty()) {
+    if (const Status drawn = write_field_pictures(options.pictures, mesh, *fields, job); !drawn) {
+      std::fprintf(stderr, "%s\n", drawn.error().line().c_str());
+      return 2;
     }
-    (void)write_mesh(options.picture, mesh);
-    (void)write_mesh(options.picture + ".surface.ply", fields->surface.mesh());
   }
   return 0;
 }
@@ -171,6 +174,7 @@ int main(int argc, char** argv) {
   Options options;
   CLI::App app{"The surface fields of the wedge analysis against the truth of simulated tablets"};
   app.add_option("--mesh", options.mesh, "a mesh instead of a simulated tablet");
+  app.add_option("--unit", options.unit, "of the mesh: m, mm, um");
   app.add_option("--truth", options.truth, "its truth.json");
   app.add_option("--seed", options.seed, "of the simulated tablet; with --mesh: the one that was scanned")
       ->capture_default_str();
@@ -186,7 +190,7 @@ int main(int argc, char** argv) {
   app.add_option("--screening", options.fields.reconstruction.poisson.screening)->capture_default_str();
   app.add_option("--script", options.fields.reconstruction.script_mm)->capture_default_str();
   app.add_flag("--brief", options.brief);
-  app.add_option("-o", options.picture, "a PLY: height in grey, free surface green");
+  app.add_option("--pictures", options.pictures, "a folder: the fields as PLY and PNG");
   CLI11_PARSE(app, argc, argv);
   return run(options);
 }
