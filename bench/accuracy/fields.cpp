@@ -155,6 +155,13 @@ int run(const Options& options) {
     std::printf("%s %.2f  ", stage.c_str(), seconds);
   }
   std::printf("\n");
+  print_quantiles("openness, thousandths", fields->openness);
+  std::size_t is_free = 0;
+  for (const std::uint8_t f : fields->free_surface) {
+    is_free += f;
+  }
+  std::printf("free surface %.1f %% of the vertices\n",
+              100.0 * static_cast<double>(is_free) / static_cast<double>(mesh.positions.size()));
   if (!tablet.kinds.empty()) {
     print_kinds(tablet, *fields, options.brief);
   }
