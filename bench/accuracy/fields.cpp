@@ -9,10 +9,14 @@
 #include <cstdio>
 #include <string>
 
+#include "analysis/field_colours.h"
+#include "analysis/integral_invariants.h"
 #include "analysis/surface_fields.h"
+#include "analysis/vertex_geometry.h"
 #include "core/mesh_query.h"
 #include "core/parallel.h"
 #include "core/units.h"
+#include "formats/feature_mat.h"
 #include "formats/mesh_io.h"
 #include "formats/truth_json.h"
 #include "sim/tablet.h"
@@ -33,6 +37,8 @@ struct Options {
   double damage = 0;
   SurfaceFieldOptions fields;
   bool brief = false;
+  bool invariants = false;
+  std::string mat;
 };
 
 void print_quantiles(const char* what, std::vector<float> values) {
@@ -166,6 +172,27 @@ int run(const Options& options) {
     print_kinds(tablet, *fields, options.brief);
   }
   print_depths(wedges, *fields);
+  if (options.invariants || !options.mat.empty()) {
+    const auto begun = std::chrono::steady_clock::now();
+    const VertexGeometry geometry = make_vertex_geometry(mesh, graph);
+    std::vector<Eigen::Vector3f> outlook(mesh.positions.size());
+    parallel_for_each_index(outlook.size(), [&](std::size_t i) {
+      const Eigen::Vector3f n = fields->surface.normal(mesh.positions[i]);
+      outlook[i] = n.isZero() ? geometry.normal[i] : n;
+    });
+    const IntegralInvariants invariants = integral_invariants(mesh, outlook, geometry.mean_edge_mm, {}, job);
+    std::printf("integral invariants %.2f s\n",
+                std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count());
+    if (!options.mat.empty()) {
+      (void)write_feature_mat(options.mat, invariants.value, invariants.radii_mm.size(),
+                              "multi-scale integral invariants");
+    }
+    if (!options.pictures.empty()) {
+      Mesh coloured = mesh;
+      coloured.colours = diverging_colours(strongest_response(invariants), 0, 0.5F);
+      (void)write_six_view_picture(options.pictures + "_invariants.png", coloured, job);
+    }
+  }
   if (!options.pictures.empty()) {
     if (const Status drawn = write_field_pictures(options.pictures, mesh, *fields, job); !drawn) {
       std::fprintf(stderr, "%s\n", drawn.error().line().c_str());
@@ -196,6 +223,8 @@ int main(int argc, char** argv) {
   app.add_option("--other-weight", options.fields.reconstruction.other_weight)->capture_default_str();
   app.add_option("--screening", options.fields.reconstruction.poisson.screening)->capture_default_str();
   app.add_option("--script", options.fields.reconstruction.script_mm)->capture_default_str();
+  app.add_flag("--invariants", options.invariants, "the integral invariants too");
+  app.add_option("--mat", options.mat, "where to write them");
   app.add_flag("--brief", options.brief);
   app.add_option("--pictures", options.pictures, "a folder: the fields as PLY and PNG");
   CLI11_PARSE(app, argc, argv);
