@@ -17,6 +17,8 @@ using Eigen::Vector3f;
 constexpr std::size_t kGrain = 1U << 10U;
 /// The coarsest raster of the largest sphere: pixels to its radius.
 constexpr double kPixelsPerRadius = 16;
+/// A sphere with fewer pixels to its radius is a few columns of clay.
+constexpr double kResolvedPixels = 2.5;
 /// Places within a pixel for which the sphere is tabulated, to a side.
 constexpr int kSubPixels = 4;
 constexpr std::size_t kLanes = 8;
@@ -162,6 +164,7 @@ IntegralInvariants integral_invariants(const Mesh& mesh, const std::vector<Vecto
   }
   result.value.assign(mesh.positions.size() * scales, 0.0F);
   const double pixel_mm = std::max(options.radius_mm / kPixelsPerRadius, mean_edge_mm);
+  result.resolved_mm = kResolvedPixels * pixel_mm;
   const Discs discs(result.radii_mm, pixel_mm);
   const int margin = static_cast<int>(std::ceil(options.radius_mm / pixel_mm)) + 2 + static_cast<int>(kLanes);
 
@@ -228,10 +231,15 @@ IntegralInvariants integral_invariants(const Mesh& mesh, const std::vector<Vecto
 std::vector<float> strongest_response(const IntegralInvariants& invariants) {
   const std::size_t scales = invariants.radii_mm.size();
   std::vector<float> strongest(scales == 0 ? 0 : invariants.value.size() / scales);
+  // The largest first.
+  const auto resolved = static_cast<std::size_t>(
+      std::count_if(invariants.radii_mm.begin(), invariants.radii_mm.end(),
+                    [&](float r) { return static_cast<double>(r) >= invariants.resolved_mm; }));
+  const std::size_t taken = std::max<std::size_t>(1, resolved);
   parallel_for_each_index(strongest.size(), [&](std::size_t v) {
     const float* const f = &invariants.value[v * scales];
     strongest[v] =
-        *std::max_element(f, f + scales, [](float a, float b) { return std::abs(a) < std::abs(b); });
+        *std::max_element(f, f + taken, [](float a, float b) { return std::abs(a) < std::abs(b); });
   });
   return strongest;
 }

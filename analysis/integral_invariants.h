@@ -20,6 +20,7 @@ struct IntegralInvariantOptions {
 /// valley, below 0 on a ridge.
 struct IntegralInvariants {
   std::vector<float> radii_mm;  ///< [S], R(1 − i/2ⁿ), i = 0 … 2ⁿ−1
+  double resolved_mm = 0;       ///< spheres smaller than this are as coarse as the map
   std::vector<float> value;     ///< [V × S], by vertex; 0 for a vertex without an outlook
 };
 
@@ -35,7 +36,8 @@ struct IntegralInvariants {
                                                      const IntegralInvariantOptions& options,
                                                      const JobContext& job);
 
-/// One value a vertex for the usual picture: the one of largest magnitude over the scales. [V]
+/// One value a vertex for the usual picture: the one of largest magnitude over the scales that are resolved.
+/// [V]
 [[nodiscard]] std::vector<float> strongest_response(const IntegralInvariants& invariants);
 
 }  // namespace dubsar

@@ -36,6 +36,18 @@ std::unexpected<Error> stopped() {
 
 }  // namespace
 
+std::vector<Eigen::Vector3f> outlook_of(const Mesh& mesh, const SurfaceFields& fields) {
+  std::vector<Eigen::Vector3f> outlook(mesh.positions.size());
+  parallel_for_each_index(
+      outlook.size(),
+      [&](std::size_t i) {
+        const Eigen::Vector3f n = fields.surface.normal(mesh.positions[i]);
+        outlook[i] = n.isZero() ? fields.normal[i] : n;
+      },
+      1U << 14U);
+  return outlook;
+}
+
 Result<SurfaceFields> compute_surface_fields(const Mesh& mesh, const VertexGraph& graph,
                                              const SurfaceFieldOptions& options, const JobContext& job,
                                              StageTimes* timings_s) {
@@ -46,6 +58,7 @@ Result<SurfaceFields> compute_surface_fields(const Mesh& mesh, const VertexGraph
   if (!(geometry.total_area_mm2 > 0)) {
     return bad_input({}, "the mesh has no face with an area", "give a mesh of triangles");
   }
+  fields.mean_edge_mm = geometry.mean_edge_mm;
   clock.done("normals");
   fields.reliability = vertex_reliability(mesh, graph, options.reliability_iterations);
   clock.done("reliability");

@@ -12,7 +12,6 @@
 #include "analysis/field_colours.h"
 #include "analysis/integral_invariants.h"
 #include "analysis/surface_fields.h"
-#include "analysis/vertex_geometry.h"
 #include "core/mesh_query.h"
 #include "core/parallel.h"
 #include "core/units.h"
@@ -174,13 +173,8 @@ int run(const Options& options) {
   print_depths(wedges, *fields);
   if (options.invariants || !options.mat.empty()) {
     const auto begun = std::chrono::steady_clock::now();
-    const VertexGeometry geometry = make_vertex_geometry(mesh, graph);
-    std::vector<Eigen::Vector3f> outlook(mesh.positions.size());
-    parallel_for_each_index(outlook.size(), [&](std::size_t i) {
-      const Eigen::Vector3f n = fields->surface.normal(mesh.positions[i]);
-      outlook[i] = n.isZero() ? geometry.normal[i] : n;
-    });
-    const IntegralInvariants invariants = integral_invariants(mesh, outlook, geometry.mean_edge_mm, {}, job);
+    const IntegralInvariants invariants =
+        integral_invariants(mesh, outlook_of(mesh, *fields), fields->mean_edge_mm, {}, job);
     std::printf("integral invariants %.2f s\n",
                 std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count());
     if (!options.mat.empty()) {

@@ -74,6 +74,7 @@ TEST(IntegralInvariants, TheStrongestResponseKeepsItsSign) {
   IntegralInvariants invariants;
   invariants.radii_mm = {1, 0.5F};
   invariants.value = {0.2F, -0.3F, 0.1F, 0.0F};
+  invariants.resolved_mm = 0.4;
   EXPECT_EQ(strongest_response(invariants), (std::vector<float>{-0.3F, 0.1F}));
 }
 
