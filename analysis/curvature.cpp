@@ -142,8 +142,9 @@ PrincipalCurvature principal_curvature(const Mesh& mesh, const VertexGraph& grap
     normal_matrix += weight * row * row.transpose();
     right += weight * (bend - mean) * row;
   }
-  const float determinant = normal_matrix.determinant();
-  if (!(determinant > 1e-6F * normal_matrix.squaredNorm())) {
+  // Four edges in a cross say nothing of b: the least of what they allow.
+  normal_matrix += 1e-4F * normal_matrix.trace() * Eigen::Matrix2f::Identity();
+  if (!(normal_matrix.determinant() > 0)) {
     return principal;
   }
   const Eigen::Vector2f ab = normal_matrix.inverse() * right;

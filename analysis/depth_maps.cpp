@@ -18,8 +18,14 @@ using Eigen::Vector3f;
 constexpr std::size_t kGrain = 1U << 16U;
 /// With this many mean edges to a pixel the points alone leave no hole in a map.
 constexpr double kEdgesPerPixel = 1.6;
-/// Up to here all faces are drawn, at two pixels an edge.
+/// Up to here most faces are drawn, at two pixels an edge.
 constexpr std::size_t kFewFaces = 300000;
+/// A face with a longer edge is drawn: it may well span a pixel without having a corner in it. A few missed
+/// ones matter where every face counts.
+constexpr float kLargePx = 2.0F;
+constexpr float kLargeOfFewPx = 1.0F;
+/// However coarse a drawn mesh is, its maps are no smaller.
+constexpr double kLeastSidePx = 256;
 constexpr int kMarginPx = 2;
 
 bool usable(const Mesh& mesh, const std::array<std::uint32_t, 3>& f) {
@@ -53,14 +59,16 @@ DepthMapPlan plan_depth_maps(const Mesh& mesh, double mean_edge_mm, int longest_
   const bool few = mesh.faces.size() <= kFewFaces;
   const double wanted = mean_edge_mm * (few ? 0.5 : kEdgesPerPixel);
   const double room = longest_px - 2 * kMarginPx;
-  plan.pixel_mm = static_cast<float>(std::max(wanted, reach / room));
+  const double coarsest = few ? reach / kLeastSidePx : reach;
+  plan.pixel_mm = static_cast<float>(std::max(std::min(wanted, coarsest), reach / room));
   plan.side_px = static_cast<int>(std::ceil(reach / plan.pixel_mm)) + 2 * kMarginPx;
+  const float large_px = few ? kLargeOfFewPx : kLargePx;
   const std::size_t faces = mesh.faces.size();
   const std::size_t chunks = (faces + kGrain - 1) / kGrain;
   std::vector<std::vector<std::uint32_t>> large(chunks);
   parallel_chunks(faces, kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      if (usable(mesh, mesh.faces[i]) && longest_edge(mesh, mesh.faces[i]) > plan.pixel_mm) {
+      if (usable(mesh, mesh.faces[i]) && longest_edge(mesh, mesh.faces[i]) > large_px * plan.pixel_mm) {
         large[begin / kGrain].push_back(static_cast<std::uint32_t>(i));
       }
     }

@@ -16,7 +16,7 @@ struct DepthMapPlan {
   Eigen::Vector3f centre_mm{0, 0, 0};
   float pixel_mm = 1;
   int side_px = 0;                         ///< maps are square
-  std::vector<std::uint32_t> large_faces;  ///< with an edge longer than a pixel: drawn, not only splatted
+  std::vector<std::uint32_t> large_faces;  ///< longer than a pixel or two: drawn, not only splatted
 };
 
 /// Fits maps of at most longest_px around the mesh. The pixel is no finer than the mesh can fill with points

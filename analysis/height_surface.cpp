@@ -7,6 +7,8 @@
 #include <cmath>
 #include <utility>
 
+#include "core/parallel.h"
+
 namespace dubsar {
 namespace {
 
@@ -18,8 +20,33 @@ float mix(float a, float b, float t) {
 
 }  // namespace
 
-HeightSurface::HeightSurface(Mesh mesh, const NodeGrid& grid, float band_mm, std::vector<float> distance_mm)
-    : mesh_(std::move(mesh)), grid_(grid), band_mm_(band_mm), distance_mm_(std::move(distance_mm)) {}
+HeightSurface::HeightSurface(Mesh mesh, const NodeGrid& grid, float below_mm, float above_mm,
+                             std::vector<float> distance_mm)
+    : mesh_(std::move(mesh)),
+      grid_(grid),
+      band_mm_(below_mm),
+      above_mm_(above_mm),
+      distance_mm_(std::move(distance_mm)) {}
+
+void HeightSurface::shift(const std::function<float(const Vector3f& p_mm)>& outward_mm) {
+  parallel_for_each_index(mesh_.positions.size(), [&](std::size_t i) {
+    mesh_.positions[i] += outward_mm(mesh_.positions[i]) * mesh_.normals[i];
+  });
+  parallel_for_each_index(
+      static_cast<std::size_t>(grid_.nz),
+      [&](std::size_t z) {
+        for (int y = 0; y < grid_.ny; ++y) {
+          for (int x = 0; x < grid_.nx; ++x) {
+            float& d = distance_mm_[grid_.index(x, y, static_cast<int>(z))];
+            // Clamped ones stay: there is no slope to be had there anyway.
+            if (d > -band_mm_ && d < above_mm_) {
+              d -= outward_mm(grid_.node_mm(x, y, static_cast<int>(z)));
+            }
+          }
+        }
+      },
+      1);
+}
 
 std::optional<HeightSurface::Cell> HeightSurface::cell_at(const Vector3f& p_mm) const {
   const Vector3f at = grid_.place(p_mm);
@@ -43,7 +70,7 @@ std::array<float, 8> HeightSurface::corners(const Cell& cell) const {
 float HeightSurface::height_mm(const Vector3f& p_mm) const {
   const std::optional<Cell> cell = cell_at(p_mm);
   if (!cell) {
-    return band_mm_;
+    return above_mm_;
   }
   const std::array<float, 8> c = corners(*cell);
   const Vector3f& t = cell->t;

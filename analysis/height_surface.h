@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -14,16 +15,17 @@
 namespace dubsar {
 
 /// The tablet's surface as if nothing had been impressed: signed distances to the low-resolution Poisson
-/// reconstruction (seed 000, 3.3), on a regular grid within a band around it. Immutable and safe to query
-/// from many threads.
+/// reconstruction (seed 000, 3.3), on a regular grid within a band around it. Safe to query from many
+/// threads.
 class HeightSurface {
  public:
   HeightSurface() = default;
-  /// distance_mm: [nodes], clamped to ±band_mm; negative in the clay.
-  HeightSurface(Mesh mesh, const NodeGrid& grid, float band_mm, std::vector<float> distance_mm);
+  /// distance_mm: [nodes], clamped to −below_mm in the clay, where it is negative, and to above_mm outside.
+  HeightSurface(Mesh mesh, const NodeGrid& grid, float below_mm, float above_mm,
+                std::vector<float> distance_mm);
 
   /// Signed distance of p to the surface, negative below it (in the clay); trilinear between the nodes.
-  /// Clamped to ±band_mm() away from the surface and outside the grid.
+  /// Clamped to −band_mm() deep in the clay and to half of it outside.
   [[nodiscard]] float height_mm(const Eigen::Vector3f& p_mm) const;
   /// Unit, out of the clay, of the surface nearest p; zero outside the band.
   [[nodiscard]] Eigen::Vector3f normal(const Eigen::Vector3f& p_mm) const;
@@ -34,6 +36,9 @@ class HeightSurface {
   [[nodiscard]] std::optional<Eigen::Vector3f> crossing(const Eigen::Vector3f& p_mm,
                                                         const Eigen::Vector3f& direction,
                                                         float reach_mm) const;
+
+  /// Moves the surface by outward_mm(p) along its normals: little, and slowly varying.
+  void shift(const std::function<float(const Eigen::Vector3f& p_mm)>& outward_mm);
 
   /// The reconstruction itself, as triangles of about one cell, with normals.
   [[nodiscard]] const Mesh& mesh() const { return mesh_; }
@@ -51,6 +56,7 @@ class HeightSurface {
   Mesh mesh_;
   NodeGrid grid_;
   float band_mm_ = 0;
+  float above_mm_ = 0;
   std::vector<float> distance_mm_;  ///< [nodes]
 };
 

@@ -18,6 +18,10 @@ constexpr std::size_t kGrain = 1U << 12U;
 /// for the roundness within it.
 constexpr float kSlopePx = 0.75F;
 constexpr float kFlatPx = 0.25F;
+/// A map keeps the highest of the points within a pixel: this many times the roughness above the others.
+constexpr float kAboveRoughness = 2.5F;
+/// What is rougher than this in pixels is no noise but a coarse mesh.
+constexpr float kMostRoughPx = 0.6F;
 /// Below this cosine a direction grazes the surface: the map cannot tell what is hidden, and little hangs on
 /// it.
 constexpr float kGrazing = 0.1F;
@@ -46,6 +50,8 @@ std::vector<float> vertex_openness(const Mesh& mesh, const VertexGeometry& geome
   if (job.cancelled()) {
     return {};
   }
+  const float rough =
+      std::min(kAboveRoughness * static_cast<float>(geometry.roughness_mm), kMostRoughPx * plan.pixel_mm);
   std::vector<float> openness(vertices);
   parallel_chunks(vertices, kGrain, [&](std::size_t begin, std::size_t end) {
     std::vector<float> seen(end - begin, 0.0F);
@@ -58,7 +64,7 @@ std::vector<float> vertex_openness(const Mesh& mesh, const VertexGeometry& geome
           continue;
         }
         const float slope = std::sqrt(std::max(0.0F, 1.0F - facing * facing)) / facing;
-        const float offset = plan.pixel_mm * (kFlatPx + kSlopePx * slope);
+        const float offset = plan.pixel_mm * (kFlatPx + kSlopePx * slope) + rough / facing;
         const DepthMapPair::Place at = map->place(mesh.positions[i]);
         const bool visible = cosine > 0 ? at.depth_mm + offset >= map->nearest_mm(at.pixel)
                                         : at.depth_mm - offset <= map->farthest_mm(at.pixel);

@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "analysis/cell_samples.h"
 #include "analysis/distance_band.h"
@@ -23,6 +24,8 @@ constexpr float kLeastReliability = 0.05F;
 /// Below this many vertices a cell edge, cells stay empty and the surface gets holes.
 constexpr float kEdgesPerCell = 2.0F;
 constexpr int kPaddingCells = 3;
+/// Further off than this, a point is not one that the surface should have met.
+constexpr float kMostOffsetCells = 0.75F;
 
 Eigen::AlignedBox3f box_of(const Mesh& mesh, const VertexGeometry& geometry) {
   Eigen::AlignedBox3f box;
@@ -52,47 +55,55 @@ NodeGrid grid_around(const Eigen::AlignedBox3f& box, float room_mm, float cell_m
   return grid;
 }
 
-/// The mean weight around each sample: Σ weight·area / Σ area under a tent of half-width script_mm.
-std::vector<float> mean_weights(const std::vector<CellSample>& samples, const Eigen::AlignedBox3f& box,
-                                float script_mm) {
-  NodeGrid grid;
-  grid.cell_mm = script_mm;
-  grid.origin_mm = box.min().array() - script_mm;
-  grid.nx = static_cast<int>(box.sizes().x() / script_mm) + 4;
-  grid.ny = static_cast<int>(box.sizes().y() / script_mm) + 4;
-  grid.nz = static_cast<int>(box.sizes().z() / script_mm) + 4;
-  std::vector<float> weighted(grid.count(), 0.0F);
-  std::vector<float> area(grid.count(), 0.0F);
-  const auto each_corner = [&](const CellSample& s, const auto& body) {
-    const Vector3f at = grid.place(s.position_mm);
-    const Vector3f low = at.array().floor();
-    const Vector3f t = at - low;
+/// Σ weight·value / Σ weight around any place, under a tent of half-width reach_mm.
+class LocalMean {
+ public:
+  LocalMean(const Eigen::AlignedBox3f& box, float reach_mm) {
+    grid_.cell_mm = reach_mm;
+    grid_.origin_mm = box.min().array() - reach_mm;
+    grid_.nx = static_cast<int>(box.sizes().x() / reach_mm) + 4;
+    grid_.ny = static_cast<int>(box.sizes().y() / reach_mm) + 4;
+    grid_.nz = static_cast<int>(box.sizes().z() / reach_mm) + 4;
+    sum_.assign(grid_.count(), 0.0F);
+    weight_.assign(grid_.count(), 0.0F);
+  }
+  /// Within the box.
+  void add(const Vector3f& p_mm, float weight, float value) {
+    each_corner(p_mm, [&](std::size_t node, float share) {
+      sum_[node] += share * weight * value;
+      weight_[node] += share * weight;
+    });
+  }
+  /// Nothing where nothing is near; within a reach of the box.
+  [[nodiscard]] std::optional<float> at(const Vector3f& p_mm) const {
+    float sum = 0;
+    float weight = 0;
+    each_corner(p_mm, [&](std::size_t node, float share) {
+      sum += share * sum_[node];
+      weight += share * weight_[node];
+    });
+    return weight > 0 ? std::optional(sum / weight) : std::nullopt;
+  }
+
+ private:
+  template <class Body>
+  void each_corner(const Vector3f& p_mm, const Body& body) const {
+    const Vector3f top(static_cast<float>(grid_.nx - 2), static_cast<float>(grid_.ny - 2),
+                       static_cast<float>(grid_.nz - 2));
+    const Vector3f at = grid_.place(p_mm);
+    const Vector3f low = at.array().floor().max(0.0F).min(top.array());
+    const Vector3f t = (at - low).array().max(0.0F).min(1.0F);
     const std::size_t node =
-        grid.index(static_cast<int>(low.x()), static_cast<int>(low.y()), static_cast<int>(low.z()));
+        grid_.index(static_cast<int>(low.x()), static_cast<int>(low.y()), static_cast<int>(low.z()));
     for (std::size_t k = 0; k < 8; ++k) {
-      body(node + (k & 1U) + ((k >> 1U) & 1U) * grid.row() + (k >> 2U) * grid.plane(),
+      body(node + (k & 1U) + ((k >> 1U) & 1U) * grid_.row() + (k >> 2U) * grid_.plane(),
            ((k & 1U) != 0 ? t.x() : 1 - t.x()) * ((k & 2U) != 0 ? t.y() : 1 - t.y()) *
                ((k & 4U) != 0 ? t.z() : 1 - t.z()));
     }
-  };
-  for (const CellSample& s : samples) {
-    each_corner(s, [&](std::size_t node, float share) {
-      weighted[node] += share * s.weighted_area_mm2;
-      area[node] += share * s.area_mm2;
-    });
   }
-  std::vector<float> mean(samples.size());
-  parallel_for_each_index(samples.size(), [&](std::size_t i) {
-    float w = 0;
-    float a = 0;
-    each_corner(samples[i], [&](std::size_t node, float share) {
-      w += share * weighted[node];
-      a += share * area[node];
-    });
-    mean[i] = w / a;
-  });
-  return mean;
-}
+  NodeGrid grid_;
+  std::vector<float> sum_, weight_;
+};
 
 /// Where the indicator is on average at the samples: the level of the surface.
 float level_of(const std::vector<PoissonSample>& samples, const NodeGrid& grid,
@@ -145,13 +156,17 @@ HeightSurface reconstruct_surface(const Mesh& mesh, const VertexGeometry& geomet
   if (cells.empty()) {
     return {};
   }
-  const std::vector<float> mean = mean_weights(cells, box, std::max(options.script_mm, cell_mm));
+  const float script_mm = std::max(options.script_mm, cell_mm);
+  LocalMean mean_weight(box, script_mm);
+  for (const CellSample& cell : cells) {
+    mean_weight.add(cell.position_mm, cell.area_mm2, cell.weighted_area_mm2 / cell.area_mm2);
+  }
   std::vector<PoissonSample> samples(cells.size());
   parallel_for_each_index(samples.size(), [&](std::size_t i) {
-    samples[i] = {cells[i].position_mm, cells[i].area_normal_mm2 / mean[i],
-                  cells[i].weighted_area_mm2 / mean[i]};
+    const float mean = mean_weight.at(cells[i].position_mm).value_or(1.0F);
+    samples[i] = {cells[i].position_mm, cells[i].area_normal_mm2 / mean, cells[i].weighted_area_mm2 / mean};
   });
-  Indicator indicator = solve_screened_poisson(samples, grid, {}, job);
+  Indicator indicator = solve_screened_poisson(samples, grid, options.poisson, job);
   if (indicator.value.empty()) {
     return {};
   }
@@ -163,7 +178,19 @@ HeightSurface reconstruct_surface(const Mesh& mesh, const VertexGeometry& geomet
     return {};
   }
   std::vector<float> distance = distances_near(surface, grid, indicator.value, options.band_mm, above_mm);
-  return {std::move(surface), grid, options.band_mm, std::move(distance)};
+  HeightSurface result(std::move(surface), grid, options.band_mm, above_mm, std::move(distance));
+  // Smoothing draws the surface inwards where it is curved, and what weight the impressions have draws it
+  // down: it is moved so that on average the free points around lie on it.
+  LocalMean offset(box, script_mm);
+  for (const CellSample& cell : cells) {
+    const float height = result.height_mm(cell.position_mm);
+    if (std::abs(height) < kMostOffsetCells * cell_mm) {
+      const float weight = cell.weighted_area_mm2 / cell.area_mm2;
+      offset.add(cell.position_mm, weight * cell.weighted_area_mm2, height);
+    }
+  }
+  result.shift([&](const Vector3f& p) { return offset.at(p).value_or(0.0F); });
+  return result;
 }
 
 }  // namespace dubsar

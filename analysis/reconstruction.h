@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "analysis/height_surface.h"
+#include "analysis/screened_poisson.h"
 #include "analysis/vertex_geometry.h"
 #include "core/job.h"
 #include "core/mesh.h"
@@ -19,6 +20,7 @@ struct ReconstructionOptions {
       3.0F;              ///< the weights are balanced over this reach: larger than what an impression covers
   float band_mm = 4.0F;  ///< heights are known down to this, and up to half of it
   std::size_t most_nodes = 16'000'000;
+  PoissonOptions poisson;
 };
 
 /// The surface without impressions (seed 000, 3.3, Fig. 5): screened Poisson reconstruction of the vertices,

@@ -6,6 +6,7 @@
 
 #include "analysis/curvature.h"
 #include "analysis/reliability.h"
+#include "analysis/smooth_curvature.h"
 #include "analysis/vertex_geometry.h"
 #include "core/parallel.h"
 
@@ -35,6 +36,18 @@ std::unexpected<Error> stopped() {
 
 }  // namespace
 
+std::vector<Eigen::Vector3f> outlook_of(const Mesh& mesh, const SurfaceFields& fields) {
+  std::vector<Eigen::Vector3f> outlook(mesh.positions.size());
+  parallel_for_each_index(
+      outlook.size(),
+      [&](std::size_t i) {
+        const Eigen::Vector3f n = fields.surface.normal(mesh.positions[i]);
+        outlook[i] = n.isZero() ? fields.normal[i] : n;
+      },
+      1U << 14U);
+  return outlook;
+}
+
 Result<SurfaceFields> compute_surface_fields(const Mesh& mesh, const VertexGraph& graph,
                                              const SurfaceFieldOptions& options, const JobContext& job,
                                              StageTimes* timings_s) {
@@ -45,6 +58,7 @@ Result<SurfaceFields> compute_surface_fields(const Mesh& mesh, const VertexGraph
   if (!(geometry.total_area_mm2 > 0)) {
     return bad_input({}, "the mesh has no face with an area", "give a mesh of triangles");
   }
+  fields.mean_edge_mm = geometry.mean_edge_mm;
   clock.done("normals");
   fields.reliability = vertex_reliability(mesh, graph, options.reliability_iterations);
   clock.done("reliability");
@@ -63,7 +77,8 @@ Result<SurfaceFields> compute_surface_fields(const Mesh& mesh, const VertexGraph
   }
   job.progress("surface fields", 0.5);
   fields.free_surface =
-      find_free_surface(fields.openness, fields.mean_curvature_per_mm, options.free_surface);
+      find_free_surface(fields.openness, smooth_mean_curvature(mesh, geometry, options.free_surface.scale_mm),
+                        options.free_surface);
   clock.done("free surface");
   fields.surface = reconstruct_surface(mesh, geometry, fields.free_surface, fields.reliability,
                                        options.reconstruction, job);

@@ -28,7 +28,8 @@ struct SurfaceFields {
   std::vector<float> openness;             ///< ambient occlusion: 1 unoccluded, 0 buried
   std::vector<std::uint8_t> free_surface;  ///< 1: free surface
   std::vector<float> height_mm;            ///< signed distance to `surface`; negative below it
-  HeightSurface surface;                   ///< the reconstructed surface, for exit points and outer edges
+  double mean_edge_mm = 0;
+  HeightSurface surface;  ///< the reconstructed surface, for exit points and outer edges
 };
 
 struct SurfaceFieldOptions {
@@ -37,6 +38,10 @@ struct SurfaceFieldOptions {
   FreeSurfaceOptions free_surface;
   ReconstructionOptions reconstruction;
 };
+
+/// Which way the surface at large looks at each vertex, [V]: the normal of the height surface, or the
+/// vertex's own where that is out of reach.
+[[nodiscard]] std::vector<Eigen::Vector3f> outlook_of(const Mesh& mesh, const SurfaceFields& fields);
 
 /// Seconds by stage, in the order of the work.
 using StageTimes = std::vector<std::pair<std::string, double>>;

@@ -3,6 +3,7 @@
 #include "analysis/vertex_geometry.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 
 #include "core/parallel.h"
@@ -13,8 +14,12 @@ namespace {
 constexpr std::size_t kGrain = 1U << 14U;
 /// A face whose normal stands this much (cosine) against the sum of all at the vertex is taken to be flipped.
 constexpr float kAgainst = -0.3F;
-/// Share of the whole area-times-distance that must point one way before the file's orientation is doubted.
-constexpr double kClearlyInward = -0.2;
+/// Share of the whole area-times-distance that must point inwards before the orientation of an open mesh is
+/// doubted (a bowl scanned from above has some); of a closed one the sign of its volume tells.
+constexpr double kClearlyInward = -0.5;
+constexpr double kInward = -0.01;
+/// A mesh whose normals sum up to less than this share of its area is as good as closed.
+constexpr double kClosed = 0.03;
 
 Eigen::Vector3f twice_area(const Mesh& mesh, std::uint32_t face) {
   const auto& f = mesh.faces[face];
@@ -26,9 +31,10 @@ struct Sums {
   double area = 0;
   double edges = 0;
   double edge_count = 0;
-  Eigen::Vector3d centre{0, 0, 0};  ///< times area
-  double outward = 0;               ///< of normal · (p − centre) times area
-  double spread = 0;                ///< of |p − centre| times area
+  Eigen::Vector3d centre{0, 0, 0};   ///< times area
+  Eigen::Vector3d normals{0, 0, 0};  ///< times area
+  double outward = 0;                ///< of normal · (p − centre) times area
+  double spread = 0;                 ///< of |p − centre| times area
 };
 
 void join(Sums& into, const Sums& s) {
@@ -36,6 +42,7 @@ void join(Sums& into, const Sums& s) {
   into.edges += s.edges;
   into.edge_count += s.edge_count;
   into.centre += s.centre;
+  into.normals += s.normals;
   into.outward += s.outward;
   into.spread += s.spread;
 }
@@ -61,6 +68,30 @@ void at_vertex(const Mesh& mesh, std::span<const std::uint32_t> faces, Eigen::Ve
   }
   *normal = length > 0 && std::isfinite(length) ? Eigen::Vector3f(sum / length) : Eigen::Vector3f::Zero();
   *area = std::isfinite(whole) ? whole / 6.0F : 0.0F;
+}
+
+/// 1.48 times the median, the standard deviation where it is noise, over about kSampled vertices.
+double roughness(const Mesh& mesh, const VertexGraph& graph, const VertexGeometry& geometry) {
+  constexpr std::size_t kSampled = 100000;
+  const std::size_t vertices = graph.vertex_count();
+  const std::size_t stride = std::max<std::size_t>(1, vertices / kSampled);
+  std::vector<float> away(vertices / stride);
+  parallel_for_each_index(away.size(), [&](std::size_t k) {
+    const auto v = static_cast<std::uint32_t>(k * stride);
+    Eigen::Vector3f middle = Eigen::Vector3f::Zero();
+    for (const std::uint32_t w : graph.ring(v)) {
+      middle += mesh.positions[w];
+    }
+    const auto count = static_cast<float>(graph.ring(v).size());
+    const float off = std::abs((mesh.positions[v] - middle / count).dot(geometry.normal[v]));
+    away[k] = count > 0 && std::isfinite(off) ? off : 0.0F;
+  });
+  if (away.empty()) {
+    return 0;
+  }
+  const auto middle = away.begin() + static_cast<std::ptrdiff_t>(away.size() / 2);
+  std::nth_element(away.begin(), middle, away.end());
+  return 1.48 * *middle;
 }
 
 }  // namespace
@@ -99,6 +130,7 @@ VertexGeometry make_vertex_geometry(const Mesh& mesh, const VertexGraph& graph) 
   if (!(first.area > 0)) {
     return geometry;
   }
+  geometry.roughness_mm = roughness(mesh, graph, geometry);
   const Eigen::Vector3f centre = (first.centre / first.area).cast<float>();
   const Sums second = parallel_reduce_ordered(
       vertices, kGrain, Sums{},
@@ -107,6 +139,7 @@ VertexGeometry make_vertex_geometry(const Mesh& mesh, const VertexGraph& graph) 
         for (std::size_t i = begin; i < end; ++i) {
           if (geometry.area_mm2[i] > 0) {
             const Eigen::Vector3f away = mesh.positions[i] - centre;
+            sums.normals += (geometry.area_mm2[i] * geometry.normal[i]).cast<double>();
             sums.outward += geometry.area_mm2[i] * away.dot(geometry.normal[i]);
             sums.spread += geometry.area_mm2[i] * away.norm();
           }
@@ -114,7 +147,8 @@ VertexGeometry make_vertex_geometry(const Mesh& mesh, const VertexGraph& graph) 
         return sums;
       },
       join);
-  geometry.turned = second.outward < kClearlyInward * second.spread;
+  const bool closed = second.normals.norm() < kClosed * first.area;
+  geometry.turned = second.outward < (closed ? kInward : kClearlyInward) * second.spread;
   if (geometry.turned) {
     parallel_for_each_index(
         vertices, [&](std::size_t i) { geometry.normal[i] = -geometry.normal[i]; }, kGrain);

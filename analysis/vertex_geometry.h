@@ -16,6 +16,9 @@ struct VertexGeometry {
   std::vector<float> area_mm2;          ///< [V] a third of its faces'
   double mean_edge_mm = 0;              ///< of the edges of the graph
   double total_area_mm2 = 0;
+  /// Half the vertices lie within 2/3 of this of the middle of their neighbours, along the normal: the noise
+  /// of a scan, or how rough the clay is at the scale of the mesh.
+  double roughness_mm = 0;
   bool turned = false;  ///< the faces run clockwise seen from outside; the normals were turned
 };
 

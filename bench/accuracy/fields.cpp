@@ -5,13 +5,21 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <chrono>
 #include <cstdio>
 #include <string>
 
+#include "analysis/field_colours.h"
+#include "analysis/integral_invariants.h"
 #include "analysis/surface_fields.h"
+#include "core/mesh_query.h"
+#include "core/parallel.h"
+#include "core/units.h"
+#include "formats/feature_mat.h"
 #include "formats/mesh_io.h"
 #include "formats/truth_json.h"
 #include "sim/tablet.h"
+#include "station/field_pictures.h"
 
 namespace {
 
@@ -20,12 +28,16 @@ using namespace dubsar;
 struct Options {
   std::string mesh;
   std::string truth;
-  std::string picture;
-  std::uint64_t seed = 1;
+  std::string unit;
+  std::string pictures;
+  std::uint64_t seed = 0;
   std::vector<double> size{50, 40, 20};
   double spacing_mm = 0.1;
   double damage = 0;
   SurfaceFieldOptions fields;
+  bool brief = false;
+  bool invariants = false;
+  std::string mat;
 };
 
 void print_quantiles(const char* what, std::vector<float> values) {
@@ -36,11 +48,12 @@ void print_quantiles(const char* what, std::vector<float> values) {
   const auto at = [&](double q) {
     return 1000.0 * values[static_cast<std::size_t>(q * static_cast<double>(values.size() - 1))];
   };
-  std::printf("%-34s n %8zu  um: 1%% %7.1f  5%% %7.1f  25%% %7.1f  50%% %7.1f  75%% %7.1f  95%% %7.1f  99%% %7.1f\n",
-              what, values.size(), at(0.01), at(0.05), at(0.25), at(0.5), at(0.75), at(0.95), at(0.99));
+  std::printf(
+      "%-34s n %8zu  um: 1%% %7.1f  5%% %7.1f  25%% %7.1f  50%% %7.1f  75%% %7.1f  95%% %7.1f  99%% %7.1f\n",
+      what, values.size(), at(0.01), at(0.05), at(0.25), at(0.5), at(0.75), at(0.95), at(0.99));
 }
 
-void print_kinds(const sim::SimTablet& tablet, const SurfaceFields& fields) {
+void print_kinds(const sim::SimTablet& tablet, const SurfaceFields& fields, bool brief) {
   const char* const names[] = {"body", "seal", "wedge", "fracture", "erosion", "dirt", "crack", "hole"};
   for (int kind = 0; kind < 8; ++kind) {
     std::vector<float> heights;
@@ -59,7 +72,9 @@ void print_kinds(const sim::SimTablet& tablet, const SurfaceFields& fields) {
       std::printf("%-9s open %5.1f %%  free %5.1f %%\n", names[kind],
                   100.0 * static_cast<double>(open) / static_cast<double>(heights.size()),
                   100.0 * static_cast<double>(free_heights.size()) / static_cast<double>(heights.size()));
-      print_quantiles("   height, all", heights);
+      if (!brief) {
+        print_quantiles("   height, all", heights);
+      }
       print_quantiles("   height, free", free_heights);
     }
   }
@@ -76,13 +91,26 @@ void print_depths(const std::vector<Wedge>& wedges, const SurfaceFields& fields)
   print_quantiles("depth found - true, at depth points", off);
 }
 
+/// The kinds of the nearest vertices of the true surface: for a mesh scanned from it.
+sim::SimTablet kinds_for(const Mesh& mesh, const sim::SimTablet& truth) {
+  constexpr float kNearMm = 1.0F;
+  sim::SimTablet result;
+  result.kinds.resize(mesh.positions.size());
+  const MeshQuery query(truth.mesh);
+  parallel_for_each_index(mesh.positions.size(), [&](std::size_t i) {
+    const auto near = query.closest(mesh.positions[i], kNearMm);
+    result.kinds[i] = near ? truth.kinds[truth.mesh.faces[near->face][0]] : sim::SurfaceKind::kHole;
+  });
+  return result;
+}
+
 int run(const Options& options) {
   JobContext job;
   Mesh mesh;
   sim::SimTablet tablet;
   std::vector<Wedge> wedges;
   if (!options.mesh.empty()) {
-    auto read = read_mesh(options.mesh);
+    auto read = read_mesh(options.mesh, {mm_per_unit(options.unit)});
     if (!read) {
       std::fprintf(stderr, "%s\n", read.error().line().c_str());
       return 2;
@@ -96,7 +124,8 @@ int run(const Options& options) {
       }
       wedges = std::move(truth->wedges);
     }
-  } else {
+  }
+  if (options.mesh.empty() || options.seed > 0) {
     sim::TabletOptions making;
     making.seed = options.seed;
     making.size_mm = {options.size[0], options.size[1], options.size[2]};
@@ -108,11 +137,18 @@ int run(const Options& options) {
       return 2;
     }
     tablet = std::move(*made);
-    mesh = tablet.mesh;
     wedges = tablet.wedges;
+    if (options.mesh.empty()) {
+      mesh = tablet.mesh;
+    } else {
+      tablet = kinds_for(mesh, tablet);
+    }
   }
   StageTimes times;
+  const auto start = std::chrono::steady_clock::now();
   const VertexGraph graph = make_vertex_graph(mesh);
+  times.emplace_back("graph",
+                     std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
   const auto fields = compute_surface_fields(mesh, graph, options.fields, job, &times);
   if (!fields) {
     std::fprintf(stderr, "%s\n", fields.error().line().c_str());
@@ -124,19 +160,38 @@ int run(const Options& options) {
     std::printf("%s %.2f  ", stage.c_str(), seconds);
   }
   std::printf("\n");
+  print_quantiles("openness, thousandths", fields->openness);
+  std::size_t is_free = 0;
+  for (const std::uint8_t f : fields->free_surface) {
+    is_free += f;
+  }
+  std::printf("free surface %.1f %% of the vertices\n",
+              100.0 * static_cast<double>(is_free) / static_cast<double>(mesh.positions.size()));
   if (!tablet.kinds.empty()) {
-    print_kinds(tablet, *fields);
+    print_kinds(tablet, *fields, options.brief);
   }
   print_depths(wedges, *fields);
-  if (!options.picture.empty()) {
-    mesh.colours.resize(mesh.positions.size());
-    for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
-      const auto grey = static_cast<std::uint8_t>(
-          std::clamp(200.0F + 300.0F * fields->height_mm[i], 0.0F, 255.0F));
-      mesh.colours[i] = {grey, fields->free_surface[i] != 0 ? std::uint8_t{255} : grey, grey};
+  if (options.invariants || !options.mat.empty()) {
+    const auto begun = std::chrono::steady_clock::now();
+    const IntegralInvariants invariants =
+        integral_invariants(mesh, outlook_of(mesh, *fields), fields->mean_edge_mm, {}, job);
+    std::printf("integral invariants %.2f s\n",
+                std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count());
+    if (!options.mat.empty()) {
+      (void)write_feature_mat(options.mat, invariants.value, invariants.radii_mm.size(),
+                              "multi-scale integral invariants");
     }
-    (void)write_mesh(options.picture, mesh);
-    (void)write_mesh(options.picture + ".surface.ply", fields->surface.mesh());
+    if (!options.pictures.empty()) {
+      Mesh coloured = mesh;
+      coloured.colours = diverging_colours(strongest_response(invariants), 0, 0.5F);
+      (void)write_six_view_picture(options.pictures + "_invariants.png", coloured, job);
+    }
+  }
+  if (!options.pictures.empty()) {
+    if (const Status drawn = write_field_pictures(options.pictures, mesh, *fields, job); !drawn) {
+      std::fprintf(stderr, "%s\n", drawn.error().line().c_str());
+      return 2;
+    }
   }
   return 0;
 }
@@ -147,17 +202,25 @@ int main(int argc, char** argv) {
   Options options;
   CLI::App app{"The surface fields of the wedge analysis against the truth of simulated tablets"};
   app.add_option("--mesh", options.mesh, "a mesh instead of a simulated tablet");
+  app.add_option("--unit", options.unit, "of the mesh: m, mm, um");
   app.add_option("--truth", options.truth, "its truth.json");
-  app.add_option("--seed", options.seed)->capture_default_str();
+  app.add_option("--seed", options.seed, "of the simulated tablet; with --mesh: the one that was scanned")
+      ->capture_default_str();
   app.add_option("--size", options.size, "mm")->expected(3)->delimiter('x');
   app.add_option("--spacing", options.spacing_mm, "mm")->capture_default_str();
   app.add_option("--damage", options.damage)->capture_default_str();
   app.add_option("--openness", options.fields.free_surface.least_openness)->capture_default_str();
   app.add_option("--concave", options.fields.free_surface.most_concave_per_mm)->capture_default_str();
+  app.add_option("--convex", options.fields.free_surface.most_convex_per_mm)->capture_default_str();
+  app.add_option("--scale", options.fields.free_surface.scale_mm)->capture_default_str();
   app.add_option("--cell", options.fields.reconstruction.cell_mm)->capture_default_str();
   app.add_option("--other-weight", options.fields.reconstruction.other_weight)->capture_default_str();
+  app.add_option("--screening", options.fields.reconstruction.poisson.screening)->capture_default_str();
   app.add_option("--script", options.fields.reconstruction.script_mm)->capture_default_str();
-  app.add_option("-o", options.picture, "a PLY: height in grey, free surface green");
+  app.add_flag("--invariants", options.invariants, "the integral invariants too");
+  app.add_option("--mat", options.mat, "where to write them");
+  app.add_flag("--brief", options.brief);
+  app.add_option("--pictures", options.pictures, "a folder: the fields as PLY and PNG");
   CLI11_PARSE(app, argc, argv);
   return run(options);
 }
