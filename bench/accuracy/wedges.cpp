@@ -17,11 +17,9 @@
 #include "bench/support/other_tablet.h"
 #include "bench/support/true_scans.h"
 #include "bench/support/wedge_score.h"
-#include "core/parallel.h"
 #include "formats/mesh_io.h"
 #include "formats/truth_json.h"
 #include "planning/sparse_flags.h"
-#include "sim/body.h"
 #include "sim/tablet.h"
 #include "triangulation/stitcher.h"
 
@@ -43,52 +41,12 @@ struct Arguments {
   std::vector<std::string> folders;
   bool other = false;
   bool evidence = false;
-  bool true_height = false;
   bool verbose = false;
 };
 
 [[noreturn]] void give_up(const Error& error) {
   std::fprintf(stderr, "%s\n", error.line().c_str());
   std::exit(2);
-}
-
-/// Fields of a simulated tablet from its own body: what a perfect reconstruction would give.
-SurfaceFields true_fields(const sim::SimTablet& tablet, const sim::TabletOptions& options) {
-  const sim::TabletBody body(options.size_mm, options.unevenness_mm, options.seed);
-  constexpr float kCell = 0.4F;
-  constexpr float kBand = 6.0F;
-  const Eigen::Vector3f low = (-0.5 * options.size_mm).cast<float>() - Eigen::Vector3f::Constant(2.0F);
-  const Eigen::Vector3i nodes =
-      ((options.size_mm.cast<float>() + Eigen::Vector3f::Constant(4.0F)) / kCell).cast<int>() + Eigen::Vector3i::Ones();
-  std::vector<float> distance(static_cast<std::size_t>(nodes.prod()));
-  parallel_for_each_index(static_cast<std::size_t>(nodes.z()), [&](std::size_t z) {
-    std::size_t i = z * static_cast<std::size_t>(nodes.x() * nodes.y());
-    for (int y = 0; y < nodes.y(); ++y) {
-      for (int x = 0; x < nodes.x(); ++x) {
-        const Eigen::Vector3d p =
-            (low + kCell * Eigen::Vector3f(static_cast<float>(x), static_cast<float>(y), static_cast<float>(z))).cast<double>();
-        Eigen::Vector3d gradient;
-        const double value = body.value(p, &gradient);
-        double d = value < 0 ? -kBand : kBand;
-        if (std::abs(value) < 0.9 * gradient.norm() * kBand) {
-          d = (value < 0 ? -1.0 : 1.0) * (p - body.project(p)).norm();
-        }
-        distance[i++] = std::clamp(static_cast<float>(d), -kBand, kBand);
-      }
-    }
-  }, 1);
-  SurfaceFields fields;
-  fields.surface = HeightSurface({}, NodeGrid{low, kCell, nodes.x(), nodes.y(), nodes.z()}, kBand, std::move(distance));
-  const std::size_t count = tablet.mesh.positions.size();
-  fields.reliability.assign(count, 1.0F);
-  fields.normal = tablet.mesh.normals;
-  fields.height_mm.resize(count);
-  fields.free_surface.resize(count);
-  parallel_for_each_index(count, [&](std::size_t v) {
-    fields.height_mm[v] = fields.surface.height_mm(tablet.mesh.positions[v]);
-    fields.free_surface[v] = fields.height_mm[v] > -0.04F ? 1 : 0;
-  });
-  return fields;
 }
 
 /// The tablet scanned in simulation and stitched with the poses that were true.
@@ -184,14 +142,11 @@ void explain(const sim::SimTablet& tablet, const WedgeSet& set, const std::vecto
 }
 
 /// Finds the wedges of a mesh and prints the score.
-WedgeScore judge(const std::string& name, const sim::SimTablet& tablet, const Arguments& args,
-                 const sim::TabletOptions* body) {
+WedgeScore judge(const std::string& name, const sim::SimTablet& tablet, const Arguments& args) {
   JobContext job;
   StageTimes times;
   const VertexGraph graph = make_vertex_graph(tablet.mesh);
-  Result<SurfaceFields> fields = args.true_height && body != nullptr
-                                     ? true_fields(tablet, *body)
-                                     : compute_surface_fields(tablet.mesh, graph, {}, job, &times);
+  Result<SurfaceFields> fields = compute_surface_fields(tablet.mesh, graph, {}, job, &times);
   if (!fields) {
     give_up(fields.error());
   }
@@ -233,7 +188,7 @@ WedgeScore judge_folder(const std::string& folder, const Arguments& args) {
   }
   sim::SimTablet tablet = sim::tablet_from_mesh(*std::move(mesh));
   tablet.wedges = truth->wedges;
-  return judge(folder, tablet, args, nullptr);
+  return judge(folder, tablet, args);
 }
 
 WedgeScore judge_seed(std::uint64_t seed, double damage, const Arguments& args) {
@@ -266,7 +221,7 @@ WedgeScore judge_seed(std::uint64_t seed, double damage, const Arguments& args) 
       give_up(kept.error());
     }
   }
-  return judge(name, *tablet, args, &options);
+  return judge(name, *tablet, args);
 }
 
 }  // namespace
@@ -284,7 +239,6 @@ int main(int argc, char** argv) {
   app.add_option("--views", args.views);
   app.add_option("--keep", args.keep, "write each mesh and its truth into a folder here");
   app.add_option("folders", args.folders, "folders with a truth.json and its mesh, in place of seeds");
-  app.add_flag("--true-height", args.true_height, "over the simulator's own body, not the reconstruction");
   app.add_flag("--other", args.other, "tablets of another make than the simulator's");
   app.add_flag("--evidence", args.evidence, "print what each candidate shows, and whether it is a wedge");
   app.add_flag("--verbose", args.verbose);
