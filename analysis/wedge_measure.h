@@ -29,6 +29,8 @@ struct WedgeCandidate {
   double explained = 0;  ///< share of what lies in its outline that lies on its faces
   double rms_mm = 0;     ///< distance of its vertices from its faces
   double area_mm2 = 0;   ///< of its outline
+  double hollow_mm2 = 0; ///< of the whole hollow that it was found in
+  double level_rim = 0;  ///< share of that hollow's rim that lies at the free surface
   std::string rejected;  ///< why it is none; empty while it may be one
 };
 

@@ -68,6 +68,9 @@ class Extractor {
       const auto reject = [&](std::string reason) {
         WedgeCandidate none;
         none.wedge.depth_point_mm = source_.position[lowest].cast<double>();
+        for (const std::uint32_t v : part) {
+          none.hollow_mm2 += areas_[v];
+        }
         none.rejected = std::move(reason);
         found.push_back(std::move(none));
       };
