@@ -78,9 +78,10 @@ struct Odds {
   }
 };
 /// By itself, and with the tablet's other wedges beside it.
-constexpr Odds kAlone = {3.63, {2.92, 4.55, 0, -7.29, 1.22, 0.64, -6.34, 0, -0.92, -2.73, 0, 0, 0, 0, 0, 0, 0}};
+constexpr Odds kAlone = {
+    3.52, {2.55, 2.24, 1.30, -7.15, 1.27, 0, -9.98, 0, 0, -0.69, 2.59, 0, 0, 0, 0, 0, 0}};
 constexpr Odds kAmongOthers = {
-    4.18, {2.87, 4.45, 0, -5.21, 0.19, 0.75, -4.32, 0, -1.40, -2.48, 0, 0, -2.76, 0, -2.35, 0, 0}};
+    1.16, {3.40, 1.56, 0.30, -2.58, 1.30, 0, -5.59, 0, 0, -0.81, 0.65, -1.04, -1.00, 0, -3.41, 0, 4.92}};
 
 /// What the tablet's good candidates say of this one. `good`: by falling log odds.
 void compare(const std::vector<const WedgeCandidate*>& good, double typical_depth, double typical_width,
