@@ -81,6 +81,12 @@ class Extractor {
         reject("too large a hollow");
         continue;
       }
+      if (-source_.height_mm[lowest] < options_.judge.min_depth_mm) {
+        if (turn == 0) {
+          reject("too shallow");
+        }
+        continue;
+      }
       const Eigen::Vector3d up = up_over(part);
       if (!(up.squaredNorm() > 0.5)) {
         reject("no free surface above it");
