@@ -3,14 +3,20 @@
 // dubsar analyze: the wedges of a mesh.
 
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
 
+#include "analysis/tablet_size.h"
+#include "archive/wedge_drawing.h"
+#include "core/log.h"
 #include "core/units.h"
 #include "formats/mesh_io.h"
+#include "formats/number_text.h"
 #include "station/analysis.h"
 #include "station/command/command.h"
+#include "station/field_pictures.h"
 
 namespace dubsar {
 
@@ -22,6 +28,8 @@ struct AnalyzeArguments {
   std::string mesh_out;
   std::string exits = "surface";
   std::string unit;
+  std::string svg;
+  std::string pictures;
   bool classical = false;
 };
 
@@ -40,6 +48,31 @@ nlohmann::ordered_json summary_json(const AnalyzeArguments& arguments, const Wed
   return json;
 }
 
+/// The surface fields, and the wedges in colours, each as PLY and as PNG of six views.
+Status draw_pictures(const std::filesystem::path& folder, const Mesh& mesh, const Analysis& analysis,
+                     const JobContext& job) {
+  if (Status drawn = write_field_pictures(folder, mesh, analysis.fields, job); !drawn) {
+    return drawn;
+  }
+  const Mesh coloured = annotated_mesh(mesh, analysis);
+  if (Status written = write_mesh(folder / "wedges.ply", coloured); !written) {
+    return written;
+  }
+  return write_six_view_picture(folder / "wedges.png", coloured, job);
+}
+
+/// Says so when the numbers would make an inscribed thing in another unit alone.
+void question_unit(const AnalyzeArguments& arguments, const Mesh& mesh) {
+  const double across = size_across_mm(mesh);
+  const std::optional<double> named =
+      arguments.unit.empty() ? std::nullopt : mm_per_unit(arguments.unit);
+  const bool metres = !named && std::filesystem::path(arguments.in).extension() == ".glb";
+  if (const auto unit = likelier_unit(across, named.value_or(metres ? 1000.0 : 1.0))) {
+    log_warning(arguments.in + " is " + number_text(std::round(across)) + " mm across, which no inscribed thing is: " +
+                "its numbers may be " + std::string(*unit) + "; say so with --unit " + std::string(*unit));
+  }
+}
+
 Result<int> analyze(const AnalyzeArguments& arguments, CommandContext& context) {
   using Clock = std::chrono::steady_clock;
   const auto seconds_since = [](Clock::time_point from) {
@@ -53,6 +86,7 @@ Result<int> analyze(const AnalyzeArguments& arguments, CommandContext& context) 
     return std::unexpected(mesh.error());
   }
   const double reading_s = seconds_since(start);
+  question_unit(arguments, *mesh);
   AnalysisOptions options;
   options.wedges.exits = arguments.exits == "extent" ? ExitDefinition::kExtent : ExitDefinition::kSurface;
   options.wedges.classical_watershed = arguments.classical;
@@ -63,7 +97,8 @@ Result<int> analyze(const AnalyzeArguments& arguments, CommandContext& context) 
     return std::unexpected(std::move(error));
   }
   analysis->timings_s.insert(analysis->timings_s.begin(), {"reading", reading_s});
-  analysis->timings_s.emplace_back("all", seconds_since(start));
+  const double took_s = seconds_since(start);
+  analysis->timings_s.emplace_back("all", took_s);
   const WedgeFile file =
       wedge_file(std::filesystem::path(arguments.in).filename().string(), options, *analysis);
   if (const Status written = write_wedges(arguments.out, file); !written) {
@@ -74,6 +109,17 @@ Result<int> analyze(const AnalyzeArguments& arguments, CommandContext& context) 
       return std::unexpected(written.error());
     }
   }
+  if (!arguments.svg.empty()) {
+    const auto drawn = write_wedge_drawings(arguments.svg, file.wedges, *file.text_from_model, file.mesh);
+    if (!drawn) {
+      return std::unexpected(drawn.error());
+    }
+  }
+  if (!arguments.pictures.empty()) {
+    if (const Status drawn = draw_pictures(arguments.pictures, *mesh, *analysis, context.job); !drawn) {
+      return std::unexpected(drawn.error());
+    }
+  }
   if (context.json) {
     CommandContext::print(summary_json(arguments, file));
     return 0;
@@ -81,10 +127,10 @@ Result<int> analyze(const AnalyzeArguments& arguments, CommandContext& context) 
   finish_progress();
   if (file.wedges.empty()) {
     std::printf("%s: no wedges (%zu hollows looked at), %.1f s\n", arguments.out.c_str(), file.rejected.size(),
-                seconds_since(start));
+                took_s);
   } else {
     std::printf("%s: %zu wedges, %zu hollows rejected, %.1f s\n", arguments.out.c_str(), file.wedges.size(),
-                file.rejected.size(), seconds_since(start));
+                file.rejected.size(), took_s);
   }
   return 0;
 }
@@ -101,6 +147,8 @@ void add_analyze(CLI::App& app, Action& chosen) {
       ->check(CLI::IsMember({"surface", "extent"}));
   verb->add_option("--unit", arguments->unit, "what the file's numbers are")
       ->check(CLI::IsMember({"m", "mm", "um"}));
+  verb->add_option("--svg", arguments->svg, "a folder for one drawing to scale of each side that has wedges");
+  verb->add_option("--pictures", arguments->pictures, "a folder for pictures and coloured meshes of every field");
   verb->add_flag("--classical-watershed", arguments->classical, "the textbook watershed, for comparison");
   verb->callback([&chosen, arguments] {
     chosen = [arguments](CommandContext& c) { return analyze(*arguments, c); };
