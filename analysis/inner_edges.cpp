@@ -17,6 +17,8 @@ constexpr int kDraws = 60;
 constexpr std::size_t kLeastContacts = 4;
 /// A curve is taken only when it explains so much more than the line.
 constexpr double kCurveGain = 1.1;
+/// A bow is told from a line by less than what tells contacts from strays.
+constexpr double kCurveTolerance = 0.6;
 /// Scatter below this is not believed: the mesh samples no finer.
 constexpr double kFloorMm = 0.004;
 constexpr double kFloorRad = 0.005;
@@ -274,7 +276,7 @@ InnerEdges find_inner_edges(const WedgePatch& patch, const WedgeFaces& faces) {
       }
       edge.contacts = static_cast<std::uint32_t>(line.inliers.size());
       edge.rms_mm = line.rms_mm;
-      edge.bow_mm = bow_of(contacts[k], line, tolerance_mm, &edge.extent_mm,
+      edge.bow_mm = bow_of(contacts[k], line, kCurveTolerance * tolerance_mm, &edge.extent_mm,
                            Random(seed_for(patch.vertex.front(), 3 + k)));
       const double w_line = 1.0 / (line.sigma_rad * line.sigma_rad);
       const double w_planes = 1.0 / (sigma_planes * sigma_planes);

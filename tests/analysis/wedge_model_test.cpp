@@ -102,7 +102,7 @@ TEST(WedgeModel, FindsTheDepthPointUnderTheDirt) {
 
 TEST(WedgeModel, ABentEdgeIsACurveAndAStraightOneIsNot) {
   const Pit pit;
-  const auto bent = [&](double x, double y) { return pit.floor(x, y - 0.04 * x * x); };
+  const auto bent = [&](double x, double y) { return pit.floor(x, y - 0.08 * x * x); };
   const pits::Scene straight_scene(pits::sheet(6, 0.05, [&](double x, double y) { return pit.floor(x, y); }));
   const pits::Scene bent_scene(pits::sheet(6, 0.05, bent));
   const auto longest_bow = [](const pits::Scene& scene) {
@@ -111,12 +111,12 @@ TEST(WedgeModel, ABentEdgeIsACurveAndAStraightOneIsNot) {
     EXPECT_TRUE(faces);
     double bow = 0;
     for (const InnerEdge& edge : find_inner_edges(patch, *faces).edge) {
-      bow = edge.extent_mm > 1.2 ? edge.bow_mm : bow;
+      bow = edge.extent_mm > 0.9 ? edge.bow_mm : bow;
     }
     return bow;
   };
-  EXPECT_LT(longest_bow(straight_scene), 0.02);
-  EXPECT_GT(longest_bow(bent_scene), 0.02);
+  EXPECT_EQ(longest_bow(straight_scene), 0.0);
+  EXPECT_GT(longest_bow(bent_scene), 0.008);
 }
 
 TEST(WedgeModel, ARoofAndAPlaneAreNoPits) {
