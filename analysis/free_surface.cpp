@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "analysis/free_surface.h"
+
+#include <algorithm>
+
+#include "core/parallel.h"
+
+namespace dubsar {
+namespace {
+
+constexpr double kOpenShare = 0.2;
+constexpr float kBelowOpen = 0.06F;
+constexpr float kLeastThreshold = 0.5F;
+
+}  // namespace
+
+float automatic_openness(const std::vector<float>& openness) {
+  if (openness.empty()) {
+    return kLeastThreshold;
+  }
+  std::vector<float> sorted = openness;
+  const auto at = sorted.begin() +
+                  static_cast<std::ptrdiff_t>((1.0 - kOpenShare) * static_cast<double>(sorted.size() - 1));
+  std::nth_element(sorted.begin(), at, sorted.end());
+  return std::max(kLeastThreshold, *at - kBelowOpen);
+}
+
+std::vector<std::uint8_t> find_free_surface(const std::vector<float>& openness,
+                                            const std::vector<float>& mean_curvature_per_mm,
+                                            const FreeSurfaceOptions& options) {
+  const float least = options.least_openness > 0 ? options.least_openness : automatic_openness(openness);
+  std::vector<std::uint8_t> is_free(openness.size());
+  parallel_for_each_index(
+      openness.size(),
+      [&](std::size_t i) {
+        is_free[i] = openness[i] >= least && mean_curvature_per_mm[i] >= -options.most_concave_per_mm ? 1 : 0;
+      },
+      1U << 15U);
+  return is_free;
+}
+
+}  // namespace dubsar

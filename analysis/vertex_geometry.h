@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "analysis/vertex_graph.h"
+#include "core/mesh.h"
+
+namespace dubsar {
+
+/// What the surface is at each vertex.
+struct VertexGeometry {
+  std::vector<Eigen::Vector3f> normal;  ///< [V] unit, area-weighted, out of the clay; zero without an area
+  std::vector<float> area_mm2;          ///< [V] a third of its faces'
+  double mean_edge_mm = 0;              ///< of the edges of the graph
+  double total_area_mm2 = 0;
+  /// Half the vertices lie within 2/3 of this of the middle of their neighbours, along the normal: the noise
+  /// of a scan, or how rough the clay is at the scale of the mesh.
+  double roughness_mm = 0;
+  bool turned = false;  ///< the faces run clockwise seen from outside; the normals were turned
+};
+
+/// A face that lies against its fellows at a vertex (a flipped one) is turned there. Which side is out: the
+/// side that the mesh bulges to, seen from its centre; where that cannot be told (a flat scan), the file's.
+[[nodiscard]] VertexGeometry make_vertex_geometry(const Mesh& mesh, const VertexGraph& graph);
+
+}  // namespace dubsar

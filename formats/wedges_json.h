@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "core/result.h"
+#include "core/rigid_transform.h"
+#include "core/wedge.h"
+
+namespace dubsar {
+
+/// What an analysis says of one mesh: wedges.json (contract "Wedges" in design.md; docs/formats/wedges.md).
+struct WedgeFile {
+  std::string mesh;  ///< file name of the mesh
+  ExitDefinition exits = ExitDefinition::kSurface;
+  std::vector<Wedge> wedges;
+  std::vector<RejectedWedge> rejected;
+  /// Text's frame: x to the reader's right, y up the obverse, z out of it (analysis/text_frame.h).
+  std::optional<RigidTransform> text_from_model;
+  double text_certainty = 0;
+  std::vector<std::pair<std::string, double>> timings_s;
+};
+
+[[nodiscard]] std::string wedges_to_json(const WedgeFile& file);
+[[nodiscard]] Status write_wedges(const std::filesystem::path& path, const WedgeFile& file);
+/// Reads also what only the contract asks for, as another program or a truth.json has it.
+[[nodiscard]] Result<WedgeFile> parse_wedges(std::string_view text, const std::string& where);
+[[nodiscard]] Result<WedgeFile> read_wedges(const std::filesystem::path& path);
+
+}  // namespace dubsar

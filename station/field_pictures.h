@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <filesystem>
+
+#include "analysis/surface_fields.h"
+#include "core/job.h"
+#include "core/mesh.h"
+#include "core/result.h"
+
+namespace dubsar {
+
+/// Draws six views, to scale on one sheet, of a mesh with its colours as they are, into a PNG. A mesh without
+/// colours is drawn as clay.
+[[nodiscard]] Status write_six_view_picture(const std::filesystem::path& png, const Mesh& mesh,
+                                            const JobContext& job);
+
+/// Writes one coloured PLY and one PNG of six views for each surface field into a folder, which is made:
+/// height.ply, height.png and so on (field_name()).
+[[nodiscard]] Status write_field_pictures(const std::filesystem::path& folder, const Mesh& mesh,
+                                          const SurfaceFields& fields, const JobContext& job);
+
+}  // namespace dubsar
