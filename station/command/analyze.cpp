@@ -64,12 +64,12 @@ Status draw_pictures(const std::filesystem::path& folder, const Mesh& mesh, cons
 /// Says so when the numbers would make an inscribed thing in another unit alone.
 void question_unit(const AnalyzeArguments& arguments, const Mesh& mesh) {
   const double across = size_across_mm(mesh);
-  const std::optional<double> named =
-      arguments.unit.empty() ? std::nullopt : mm_per_unit(arguments.unit);
+  const std::optional<double> named = arguments.unit.empty() ? std::nullopt : mm_per_unit(arguments.unit);
   const bool metres = !named && std::filesystem::path(arguments.in).extension() == ".glb";
   if (const auto unit = likelier_unit(across, named.value_or(metres ? 1000.0 : 1.0))) {
-    log_warning(arguments.in + " is " + number_text(std::round(across)) + " mm across, which no inscribed thing is: " +
-                "its numbers may be " + std::string(*unit) + "; say so with --unit " + std::string(*unit));
+    log_warning(arguments.in + " is " + number_text(std::round(across)) +
+                " mm across, which no inscribed thing is: " + "its numbers may be " + std::string(*unit) +
+                "; say so with --unit " + std::string(*unit));
   }
 }
 
@@ -80,8 +80,7 @@ Result<int> analyze(const AnalyzeArguments& arguments, CommandContext& context) 
   };
   const Clock::time_point start = Clock::now();
   const Result<Mesh> mesh = read_mesh(
-      arguments.in,
-      {.mm_per_unit = arguments.unit.empty() ? std::nullopt : mm_per_unit(arguments.unit)});
+      arguments.in, {.mm_per_unit = arguments.unit.empty() ? std::nullopt : mm_per_unit(arguments.unit)});
   if (!mesh) {
     return std::unexpected(mesh.error());
   }
@@ -126,8 +125,8 @@ Result<int> analyze(const AnalyzeArguments& arguments, CommandContext& context) 
   }
   finish_progress();
   if (file.wedges.empty()) {
-    std::printf("%s: no wedges (%zu hollows looked at), %.1f s\n", arguments.out.c_str(), file.rejected.size(),
-                took_s);
+    std::printf("%s: no wedges (%zu hollows looked at), %.1f s\n", arguments.out.c_str(),
+                file.rejected.size(), took_s);
   } else {
     std::printf("%s: %zu wedges, %zu hollows rejected, %.1f s\n", arguments.out.c_str(), file.wedges.size(),
                 file.rejected.size(), took_s);
@@ -143,16 +142,17 @@ void add_analyze(CLI::App& app, Action& chosen) {
   verb->add_option("mesh", arguments->in, "PLY, OBJ, STL or GLB, faults and all")->required();
   verb->add_option("-o,--out", arguments->out, "wedges.json")->required();
   verb->add_option("--mesh-out", arguments->mesh_out, "the mesh with its wedges in colours");
-  verb->add_option("--exit", arguments->exits, "where an inner edge ends: at the free surface, or as far as seen")
+  verb->add_option("--exit", arguments->exits,
+                   "where an inner edge ends: at the free surface, or as far as seen")
       ->check(CLI::IsMember({"surface", "extent"}));
   verb->add_option("--unit", arguments->unit, "what the file's numbers are")
       ->check(CLI::IsMember({"m", "mm", "um"}));
   verb->add_option("--svg", arguments->svg, "a folder for one drawing to scale of each side that has wedges");
-  verb->add_option("--pictures", arguments->pictures, "a folder for pictures and coloured meshes of every field");
+  verb->add_option("--pictures", arguments->pictures,
+                   "a folder for pictures and coloured meshes of every field");
   verb->add_flag("--classical-watershed", arguments->classical, "the textbook watershed, for comparison");
-  verb->callback([&chosen, arguments] {
-    chosen = [arguments](CommandContext& c) { return analyze(*arguments, c); };
-  });
+  verb->callback(
+      [&chosen, arguments] { chosen = [arguments](CommandContext& c) { return analyze(*arguments, c); }; });
 }
 
 }  // namespace dubsar
