@@ -19,8 +19,9 @@ namespace {
 
 using Eigen::Vector3f;
 constexpr std::size_t kGrain = 1U << 15U;
-/// What an utterly unreliable vertex still counts: where nothing else is known it is better than nothing.
-constexpr float kLeastReliability = 0.05F;
+/// What an utterly unreliable vertex still counts: beside a hole of one face clay is not far from where the
+/// mesh says, and on a mesh full of faults little else is left.
+constexpr float kLeastReliability = 0.25F;
 /// Below this many vertices a cell edge, cells stay empty and the surface gets holes.
 constexpr float kEdgesPerCell = 2.0F;
 constexpr int kPaddingCells = 3;
