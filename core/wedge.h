@@ -4,29 +4,80 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "core/red_map.h"
+
 namespace dubsar {
 
+/// The two definitions of where an inner edge ends (seed 000, 3.4).
+enum class ExitDefinition {
+  kSurface,  ///< where it meets the reconstructed free surface
+  kExtent,   ///< the farthest contact point of its faces, projected on it
+};
+
+/// What decided on the directional edge.
+enum class DirectionalBy {
+  kBoth,      ///< the longest inner edge is also the flattest
+  kLongest,   ///< they differ; the longest one leads by more
+  kFlattest,  ///< they differ; the flattest one leads by more
+};
+
+/// Standard deviations of what was measured, from reliability and the scatter of the vertices.
+struct WedgeSigma {
+  double depth_point_mm = 0;
+  double depth_mm = 0;
+  std::array<double, 3> edge_rad{};
+  std::array<double, 3> opening_rad{};
+  std::array<double, 3> length_mm{};
+};
+
+/// Where a wedge stands in the text.
+struct WedgePlace {
+  std::optional<Face> side;
+  int line = 0;           ///< from 1, down the side; 0 when not known
+  int order = 0;          ///< from 1, along the line; 0 when not known
+  double turn_rad = 0;    ///< of the directional edge away from the depth point: 0 right, pi/2 up the side
+};
+
 /// One wedge as an idealised tetrahedron (seed 000, 3.4; contract "Wedges" in design.md). Millimetres,
-/// radians. Face k lies between inner edges k and k+1; face_angles_rad[k] is the angle between these two
-/// edges at the depth point; opening_angles_rad[k] the dihedral angle between the two faces that meet in
-/// inner edge k.
+/// radians. Inner edges and faces counter-clockwise seen from outside the clay. Face k lies between inner
+/// edges k and k+1; face_angles_rad[k] is the angle between these two edges at the depth point;
+/// opening_angles_rad[k] the dihedral angle between the two faces that meet in inner edge k.
 struct Wedge {
   int id = 0;
   Eigen::Vector3d depth_point_mm{0, 0, 0};
-  std::array<Eigen::Vector3d, 3> exit_points_mm{};  ///< by inner edge
+  std::array<Eigen::Vector3d, 3> exit_points_mm{};          ///< by inner edge, by the chosen definition
+  std::array<Eigen::Vector3d, 3> exit_points_surface_mm{};  ///< ExitDefinition::kSurface
+  std::array<Eigen::Vector3d, 3> exit_points_extent_mm{};   ///< ExitDefinition::kExtent
   int directional_edge = 0;
+  DirectionalBy directional_by = DirectionalBy::kBoth;
+  double directional_margin = 0;  ///< by how much it leads the next, as a share: of length or of slope
   std::array<Eigen::Vector3d, 3> outer_vertices_mm{};
   std::array<Eigen::Vector3d, 3> face_normals{};  ///< out of the clay
+  Eigen::Vector3d surface_normal{0, 0, 0};        ///< of the free surface above the depth point
   double depth_mm = 0;                            ///< of the depth point below the free surface
   std::array<double, 3> face_angles_rad{};
   std::array<double, 3> opening_angles_rad{};
+  std::array<double, 3> edge_lengths_mm{};  ///< depth point to exit point
+  std::array<double, 3> edge_slopes_rad{};  ///< of the inner edges against the free surface
+  std::array<double, 3> face_slopes_rad{};
+  std::array<double, 3> edge_bows_mm{};     ///< of an inner edge that is a curve: its middle off the chord
+  double volume_mm3 = 0;                    ///< of the tetrahedron
+  WedgeSigma sigma;
+  WedgePlace place;
   double reliability = 0;
   double confidence = 0;
   int vertex_count = 0;
-  double intact = 1.0;  ///< share of the impression that later wedges and damage left, truth only
+  double intact = 1.0;  ///< share of the impression that later wedges and damage left
+};
+
+/// A hollow that was taken for a wedge at first, and what spoke against it.
+struct RejectedWedge {
+  std::string reason;
+  Eigen::Vector3d depth_point_mm{0, 0, 0};
 };
 
 }  // namespace dubsar

@@ -37,6 +37,7 @@ void add_register(CLI::App& app, Action& chosen);
 void add_plan(CLI::App& app, Action& chosen);
 void add_pins(CLI::App& app, Action& chosen);
 void add_stitch(CLI::App& app, Action& chosen);
+void add_analyze(CLI::App& app, Action& chosen);
 void add_mesh(CLI::App& app, Action& chosen);
 void add_verify(CLI::App& app, Action& chosen);
 void add_session(CLI::App& app, Action& chosen);

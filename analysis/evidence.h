@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+namespace dubsar {
+
+/// What speaks for and against a candidate, each a plain number of about 0 to 1.
+enum class Evidence : std::size_t {
+  kLeastCoverage,  ///< share of the face of which least is there
+  kCoverage,       ///< of all three
+  kExplained,      ///< share of what lies in its outline that lies on its faces
+  kRoughness,      ///< scatter about its faces, in depths
+  kVertices,       ///< how many, logarithmic
+  kLeastFace,      ///< smallest face's share of what was seen
+  kWidestOpening,  ///< widest opening angle
+  kContacts,       ///< share of inner edges with contact points enough
+  kFlatness,       ///< how far it is from being as deep as it is wide
+  kStretch,        ///< longest inner edge in depths, logarithmic
+  kDepthUnlike,    ///< off the depths of the tablet's wedges
+  kWidthUnlike,    ///< off their widths
+  kShapeUnlike,    ///< off their opening angles
+  kLonely,         ///< few similar ones
+  kFar,            ///< distance to the next one
+  kCount
+};
+using EvidenceValues = std::array<double, static_cast<std::size_t>(Evidence::kCount)>;
+
+}  // namespace dubsar

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "bench/support/wedge_score.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "core/units.h"
+
+namespace dubsar::bench {
+
+namespace {
+
+double angle_deg(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  return deg_from_rad(std::atan2(a.cross(b).norm(), a.dot(b)));
+}
+
+void compare(const Wedge& found, const Wedge& truth, WedgeScore* score) {
+  score->depth_point_um.push_back(1000.0 * (found.depth_point_mm - truth.depth_point_mm).norm());
+  score->depth_um.push_back(1000.0 * std::abs(found.depth_mm - truth.depth_mm));
+  // Both run counter-clockwise; which edge comes first is nobody's business.
+  std::size_t best_shift = 0;
+  double best = 1e9;
+  std::array<double, 3> best_angles{};
+  for (std::size_t shift = 0; shift < 3; ++shift) {
+    std::array<double, 3> angles{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      angles[k] = angle_deg(found.exit_points_mm[(k + shift) % 3] - found.depth_point_mm,
+                            truth.exit_points_mm[k] - truth.depth_point_mm);
+    }
+    if (const double sum = angles[0] + angles[1] + angles[2]; sum < best) {
+      best = sum;
+      best_shift = shift;
+      best_angles = angles;
+    }
+  }
+  for (std::size_t k = 0; k < 3; ++k) {
+    score->edge_deg.push_back(best_angles[k]);
+    score->opening_deg.push_back(deg_from_rad(
+        std::abs(found.opening_angles_rad[(k + best_shift) % 3] - truth.opening_angles_rad[k])));
+  }
+  const auto directional = (static_cast<std::size_t>(found.directional_edge) + 3 - best_shift) % 3;
+  score->directional_right += directional == static_cast<std::size_t>(truth.directional_edge) ? 1 : 0;
+}
+
+template <class T>
+void append(std::vector<T>* into, const std::vector<T>& from) {
+  into->insert(into->end(), from.begin(), from.end());
+}
+
+}  // namespace
+
+double WedgeScore::precision() const {
+  return right + false_ones > 0 ? static_cast<double>(right) / (right + false_ones) : 1.0;
+}
+double WedgeScore::recall() const {
+  return right + missed > 0 ? static_cast<double>(right) / (right + missed) : 1.0;
+}
+double WedgeScore::f1() const {
+  const double both = precision() + recall();
+  return both > 0 ? 2.0 * precision() * recall() / both : 0.0;
+}
+void WedgeScore::add(const WedgeScore& other) {
+  right += other.right;
+  false_ones += other.false_ones;
+  missed += other.missed;
+  ignored += other.ignored;
+  directional_right += other.directional_right;
+  append(&depth_point_um, other.depth_point_um);
+  append(&depth_um, other.depth_um);
+  append(&edge_deg, other.edge_deg);
+  append(&opening_deg, other.opening_deg);
+  append(&false_confidence, other.false_confidence);
+  append(&right_confidence, other.right_confidence);
+}
+
+WedgeScore score_wedges(const std::vector<Wedge>& found, const std::vector<Wedge>& truth,
+                        const ScoreOptions& options, std::vector<int>* pair) {
+  struct Near {
+    double distance;
+    std::size_t found, truth;
+  };
+  std::vector<Near> pairs;
+  for (std::size_t f = 0; f < found.size(); ++f) {
+    for (std::size_t t = 0; t < truth.size(); ++t) {
+      const double d = (found[f].depth_point_mm - truth[t].depth_point_mm).norm();
+      if (d < options.reach_mm) {
+        pairs.push_back({d, f, t});
+      }
+    }
+  }
+  std::ranges::sort(pairs, [](const Near& a, const Near& b) {
+    return a.distance != b.distance ? a.distance < b.distance
+                                    : std::pair(a.found, a.truth) < std::pair(b.found, b.truth);
+  });
+  std::vector<int> of_found(found.size(), -1);
+  std::vector<int> of_truth(truth.size(), -1);
+  for (const Near& near : pairs) {
+    if (of_found[near.found] < 0 && of_truth[near.truth] < 0) {
+      of_found[near.found] = static_cast<int>(near.truth);
+      of_truth[near.truth] = static_cast<int>(near.found);
+    }
+  }
+  WedgeScore score;
+  for (std::size_t f = 0; f < found.size(); ++f) {
+    if (of_found[f] < 0) {
+      ++score.false_ones;
+      score.false_confidence.push_back(found[f].confidence);
+      continue;
+    }
+    score.right_confidence.push_back(found[f].confidence);
+    const Wedge& true_one = truth[static_cast<std::size_t>(of_found[f])];
+    if (true_one.intact < options.least_intact) {
+      ++score.ignored;
+    } else {
+      ++score.right;
+      compare(found[f], true_one, &score);
+    }
+  }
+  for (std::size_t t = 0; t < truth.size(); ++t) {
+    score.missed += of_truth[t] < 0 && truth[t].intact >= options.least_intact ? 1 : 0;
+  }
+  if (pair != nullptr) {
+    *pair = std::move(of_found);
+  }
+  return score;
+}
+
+double median(std::vector<double> values) {
+  if (values.empty()) {
+    return std::nan("");
+  }
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  return *middle;
+}
+
+}  // namespace dubsar::bench

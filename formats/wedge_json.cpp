@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "formats/wedge_json.h"
+
+#include <limits>
+
+#include "core/units.h"
+
+namespace dubsar {
+
+namespace {
+
+using Three = std::array<double, 3>;
+using ThreePoints = std::array<Eigen::Vector3d, 3>;
+
+const std::vector<std::string> kDirectionalBy = {"longest and flattest", "longest", "flattest"};
+
+std::vector<std::string> face_names() {
+  std::vector<std::string> names;
+  names.reserve(kFaceCount);
+  for (int face = 0; face < kFaceCount; ++face) {
+    names.emplace_back(to_string(static_cast<Face>(face)));
+  }
+  return names;
+}
+
+OrderedJson degrees_json(const Three& angles_rad) {
+  OrderedJson json = OrderedJson::array();
+  for (const double angle_rad : angles_rad) {
+    json.push_back(deg_from_rad(angle_rad));
+  }
+  return json;
+}
+
+OrderedJson points_json(const ThreePoints& points) {
+  OrderedJson json = OrderedJson::array();
+  for (const Eigen::Vector3d& point : points) {
+    json.push_back(json_of(point));
+  }
+  return json;
+}
+
+/// The three entries of an array; noted and empty when there are others.
+std::vector<JsonNode> three(const JsonNode& node) {
+  std::vector<JsonNode> nodes = node.items();
+  if (nodes.size() != 3) {
+    node.complain("has " + std::to_string(nodes.size()) + " entries, not 3");
+    nodes.clear();
+  }
+  return nodes;
+}
+
+Three radians_from(const JsonNode& node) {
+  const std::vector<double> deg = node.numbers(3);
+  return {rad_from_deg(deg[0]), rad_from_deg(deg[1]), rad_from_deg(deg[2])};
+}
+
+Three lengths_from(const JsonNode& node, double mm) {
+  const std::vector<double> values = node.numbers(3);
+  return {mm * values[0], mm * values[1], mm * values[2]};
+}
+
+ThreePoints points_from(const JsonNode& node, double mm) {
+  ThreePoints points{};
+  const std::vector<JsonNode> nodes = three(node);
+  for (std::size_t k = 0; k < nodes.size(); ++k) {
+    points[k] = mm * nodes[k].vector3();
+  }
+  return points;
+}
+
+OrderedJson sigma_json(const WedgeSigma& sigma) {
+  OrderedJson json;
+  json["depth_point"] = sigma.depth_point_mm;
+  json["depth"] = sigma.depth_mm;
+  json["edge_lengths"] = sigma.length_mm;
+  json["edges_deg"] = degrees_json(sigma.edge_rad);
+  json["opening_angles_deg"] = degrees_json(sigma.opening_rad);
+  return json;
+}
+
+WedgeSigma sigma_from(const JsonNode& node, double mm) {
+  WedgeSigma sigma;
+  sigma.depth_point_mm = mm * node.at("depth_point").number(0);
+  sigma.depth_mm = mm * node.at("depth").number(0);
+  sigma.length_mm = lengths_from(node.at("edge_lengths"), mm);
+  sigma.edge_rad = radians_from(node.at("edges_deg"));
+  sigma.opening_rad = radians_from(node.at("opening_angles_deg"));
+  return sigma;
+}
+
+OrderedJson place_json(const WedgePlace& place) {
+  OrderedJson json;
+  json["side"] = to_string(*place.side);
+  if (place.line > 0) {
+    json["line"] = place.line;
+    json["order"] = place.order;
+  }
+  json["turn_deg"] = deg_from_rad(place.turn_rad);
+  return json;
+}
+
+WedgePlace place_from(const JsonNode& node) {
+  constexpr std::int64_t kMaxInt = std::numeric_limits<int>::max();
+  WedgePlace place;
+  place.side = static_cast<Face>(node.at("side").one_of(face_names()));
+  if (const auto line = node.find("line")) {
+    place.line = static_cast<int>(line->integer(1, kMaxInt));
+    place.order = static_cast<int>(node.at("order").integer(1, kMaxInt));
+  }
+  place.turn_rad = rad_from_deg(node.at("turn_deg").number());
+  return place;
+}
+
+/// What add_measures() writes, as far as it is there.
+void measures_from(const JsonNode& node, double mm, Wedge* wedge) {
+  if (const auto by = node.find("directional_by")) {
+    wedge->directional_by = static_cast<DirectionalBy>(by->one_of(kDirectionalBy));
+    wedge->directional_margin = node.at("directional_margin").number();
+  }
+  if (const auto normal = node.find("surface_normal")) {
+    wedge->surface_normal = normal->vector3();
+  }
+  if (const auto lengths = node.find("edge_lengths")) {
+    wedge->edge_lengths_mm = lengths_from(*lengths, mm);
+  }
+  if (const auto slopes = node.find("edge_slopes_deg")) {
+    wedge->edge_slopes_rad = radians_from(*slopes);
+  }
+  if (const auto slopes = node.find("face_slopes_deg")) {
+    wedge->face_slopes_rad = radians_from(*slopes);
+  }
+  if (const auto bows = node.find("edge_bows")) {
+    wedge->edge_bows_mm = lengths_from(*bows, mm);
+  }
+  if (const auto volume = node.find("volume_mm3")) {
+    wedge->volume_mm3 = volume->number(0);
+  }
+  if (const auto sigma = node.find("sigma")) {
+    wedge->sigma = sigma_from(*sigma, mm);
+  }
+  if (const auto place = node.find("place")) {
+    wedge->place = place_from(*place);
+  }
+}
+
+}  // namespace
+
+OrderedJson wedge_json(const Wedge& wedge) {
+  OrderedJson json;
+  json["id"] = wedge.id;
+  json["depth_point"] = json_of(wedge.depth_point_mm);
+  json["inner_edges"] = OrderedJson::array();
+  for (const Eigen::Vector3d& exit : wedge.exit_points_mm) {
+    OrderedJson edge;
+    edge["exit_point"] = json_of(exit);
+    json["inner_edges"].push_back(std::move(edge));
+  }
+  json["directional_edge"] = wedge.directional_edge;
+  json["outer_vertices"] = points_json(wedge.outer_vertices_mm);
+  json["face_normals"] = points_json(wedge.face_normals);
+  json["depth"] = wedge.depth_mm;
+  json["face_angles_deg"] = degrees_json(wedge.face_angles_rad);
+  json["opening_angles_deg"] = degrees_json(wedge.opening_angles_rad);
+  json["reliability"] = wedge.reliability;
+  json["confidence"] = wedge.confidence;
+  json["vertex_count"] = wedge.vertex_count;
+  json["intact"] = wedge.intact;
+  return json;
+}
+
+void add_measures(const Wedge& wedge, OrderedJson* json) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    OrderedJson& edge = (*json)["inner_edges"][k];
+    edge["exit_point_surface"] = json_of(wedge.exit_points_surface_mm[k]);
+    edge["exit_point_extent"] = json_of(wedge.exit_points_extent_mm[k]);
+  }
+  (*json)["directional_by"] = kDirectionalBy[static_cast<std::size_t>(wedge.directional_by)];
+  (*json)["directional_margin"] = wedge.directional_margin;
+  (*json)["surface_normal"] = json_of(wedge.surface_normal);
+  (*json)["edge_lengths"] = wedge.edge_lengths_mm;
+  (*json)["edge_slopes_deg"] = degrees_json(wedge.edge_slopes_rad);
+  (*json)["face_slopes_deg"] = degrees_json(wedge.face_slopes_rad);
+  (*json)["edge_bows"] = wedge.edge_bows_mm;
+  (*json)["volume_mm3"] = wedge.volume_mm3;
+  (*json)["sigma"] = sigma_json(wedge.sigma);
+  if (wedge.place.side) {
+    (*json)["place"] = place_json(wedge.place);
+  }
+}
+
+Wedge wedge_from(const JsonNode& node, double mm) {
+  constexpr std::int64_t kMaxInt = std::numeric_limits<int>::max();
+  Wedge wedge;
+  wedge.id = static_cast<int>(node.at("id").integer(0, kMaxInt));
+  wedge.depth_point_mm = mm * node.at("depth_point").vector3();
+  const std::vector<JsonNode> edges = three(node.at("inner_edges"));
+  for (std::size_t k = 0; k < edges.size(); ++k) {
+    wedge.exit_points_mm[k] = mm * edges[k].at("exit_point").vector3();
+    if (const auto exit = edges[k].find("exit_point_surface")) {
+      wedge.exit_points_surface_mm[k] = mm * exit->vector3();
+    }
+    if (const auto exit = edges[k].find("exit_point_extent")) {
+      wedge.exit_points_extent_mm[k] = mm * exit->vector3();
+    }
+  }
+  wedge.directional_edge = static_cast<int>(node.at("directional_edge").integer(0, 2));
+  wedge.outer_vertices_mm = points_from(node.at("outer_vertices"), mm);
+  wedge.face_normals = points_from(node.at("face_normals"), 1.0);
+  wedge.depth_mm = mm * node.at("depth").number();
+  wedge.face_angles_rad = radians_from(node.at("face_angles_deg"));
+  wedge.opening_angles_rad = radians_from(node.at("opening_angles_deg"));
+  wedge.reliability = node.at("reliability").number(0, 1);
+  wedge.confidence = node.at("confidence").number(0, 1);
+  wedge.vertex_count = static_cast<int>(node.at("vertex_count").integer(0, kMaxInt));
+  if (const auto intact = node.find("intact")) {
+    wedge.intact = intact->number(0, 1);
+  }
+  measures_from(node, mm, &wedge);
+  return wedge;
+}
+
+}  // namespace dubsar

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "formats/wedges_json.h"
+
+#include "formats/atomic_file.h"
+#include "formats/json_node.h"
+#include "formats/json_text.h"
+#include "formats/wedge_json.h"
+
+namespace dubsar {
+
+namespace {
+
+const std::vector<std::string> kExits = {"surface", "extent"};
+
+}  // namespace
+
+std::string wedges_to_json(const WedgeFile& file) {
+  OrderedJson root;
+  root["unit"] = "mm";
+  root["mesh"] = file.mesh;
+  root["exit"] = kExits[static_cast<std::size_t>(file.exits)];
+  root["wedges"] = OrderedJson::array();
+  for (const Wedge& wedge : file.wedges) {
+    OrderedJson json = wedge_json(wedge);
+    add_measures(wedge, &json);
+    root["wedges"].push_back(std::move(json));
+  }
+  root["rejected"] = OrderedJson::array();
+  for (const RejectedWedge& rejected : file.rejected) {
+    OrderedJson json;
+    json["reason"] = rejected.reason;
+    json["depth_point"] = json_of(rejected.depth_point_mm);
+    root["rejected"].push_back(std::move(json));
+  }
+  root["timings_s"] = OrderedJson::object();
+  for (const auto& [stage, seconds] : file.timings_s) {
+    root["timings_s"][stage] = seconds;
+  }
+  return text_of(root);
+}
+
+Status write_wedges(const std::filesystem::path& path, const WedgeFile& file) {
+  return write_file_atomically(path, wedges_to_json(file));
+}
+
+Result<WedgeFile> parse_wedges(std::string_view text, const std::string& where) {
+  const Result<JsonDocument> document = JsonDocument::parse(text, where);
+  if (!document) {
+    return std::unexpected(document.error());
+  }
+  const JsonNode root = document->root();
+  const double mm = mm_per_unit_of(root);
+  WedgeFile file;
+  if (const auto mesh = root.find("mesh")) {
+    file.mesh = mesh->text();
+  }
+  if (const auto exits = root.find("exit")) {
+    file.exits = static_cast<ExitDefinition>(exits->one_of(kExits));
+  }
+  for (const JsonNode& node : root.at("wedges").items()) {
+    file.wedges.push_back(wedge_from(node, mm));
+  }
+  if (const auto rejected = root.find("rejected")) {
+    for (const JsonNode& node : rejected->items()) {
+      file.rejected.push_back({node.at("reason").text(), mm * node.at("depth_point").vector3()});
+    }
+  }
+  if (Status status = document->status("write it again with dubsar analyze"); !status) {
+    return std::unexpected(status.error());
+  }
+  return file;
+}
+
+Result<WedgeFile> read_wedges(const std::filesystem::path& path) {
+  const Result<std::string> text = read_whole_file(path, kMaxJsonBytes);
+  return text ? parse_wedges(*text, path.string()) : std::unexpected(text.error());
+}
+
+}  // namespace dubsar

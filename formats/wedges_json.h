@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "core/result.h"
+#include "core/wedge.h"
+
+namespace dubsar {
+
+/// What an analysis says of one mesh: wedges.json (contract "Wedges" in design.md; docs/formats/wedges.md).
+struct WedgeFile {
+  std::string mesh;  ///< file name of the mesh
+  ExitDefinition exits = ExitDefinition::kSurface;
+  std::vector<Wedge> wedges;
+  std::vector<RejectedWedge> rejected;
+  std::vector<std::pair<std::string, double>> timings_s;
+};
+
+[[nodiscard]] std::string wedges_to_json(const WedgeFile& file);
+[[nodiscard]] Status write_wedges(const std::filesystem::path& path, const WedgeFile& file);
+/// Reads also what only the contract asks for, as another program or a truth.json has it.
+[[nodiscard]] Result<WedgeFile> parse_wedges(std::string_view text, const std::string& where);
+[[nodiscard]] Result<WedgeFile> read_wedges(const std::filesystem::path& path);
+
+}  // namespace dubsar

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "station/analysis.h"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+
+#include "core/parallel.h"
+
+namespace dubsar {
+
+namespace {
+
+using Rgb = std::array<std::uint8_t, 3>;
+
+constexpr Rgb kClay = {196, 176, 148};
+constexpr Rgb kHollow = {150, 158, 172};
+constexpr Rgb kBorder = {52, 84, 160};
+
+/// A colour of its own for each number: hues by the golden ratio, so that neighbours differ.
+Rgb colour_of(std::int32_t number, std::int8_t face) {
+  const double hue = std::fmod(0.618033988749895 * (number + 1), 1.0) * 6.0;
+  const double value = face == 0 ? 0.95 : face == 1 ? 0.80 : 0.65;
+  const double x = 1.0 - std::abs(std::fmod(hue, 2.0) - 1.0);
+  constexpr std::array<std::array<int, 3>, 6> kWhich = {
+      {{0, 1, 2}, {1, 0, 2}, {2, 0, 1}, {2, 1, 0}, {1, 2, 0}, {0, 2, 1}}};
+  const std::array<double, 3> parts = {1.0, x, 0.0};
+  Rgb rgb{};
+  for (std::size_t c = 0; c < 3; ++c) {
+    const double part = parts[static_cast<std::size_t>(kWhich[static_cast<std::size_t>(hue)][c])];
+    rgb[c] = static_cast<std::uint8_t>(255.0 * value * (0.2 + 0.8 * part));
+  }
+  return rgb;
+}
+
+}  // namespace
+
+Result<Analysis> analyze_mesh(const Mesh& mesh, const AnalysisOptions& options, const JobContext& job) {
+  const auto from = std::chrono::steady_clock::now();
+  Analysis analysis;
+  const VertexGraph graph = make_vertex_graph(mesh);
+  analysis.timings_s.emplace_back(
+      "graph", std::chrono::duration<double>(std::chrono::steady_clock::now() - from).count());
+  Result<SurfaceFields> fields =
+      compute_surface_fields(mesh, graph, options.fields, job, &analysis.timings_s);
+  if (!fields) {
+    return std::unexpected(fields.error());
+  }
+  analysis.fields = *std::move(fields);
+  Result<WedgeSet> set = find_wedges(mesh, graph, analysis.fields, options.wedges, job, &analysis.timings_s);
+  if (!set) {
+    return std::unexpected(set.error());
+  }
+  analysis.set = *std::move(set);
+  return analysis;
+}
+
+WedgeFile wedge_file(std::string mesh_name, const AnalysisOptions& options, const Analysis& analysis) {
+  WedgeFile file;
+  file.mesh = std::move(mesh_name);
+  file.exits = options.wedges.exits;
+  file.wedges = analysis.set.wedges;
+  file.rejected = analysis.set.rejected;
+  file.timings_s = analysis.timings_s;
+  return file;
+}
+
+Mesh annotated_mesh(const Mesh& mesh, const Analysis& analysis) {
+  Mesh out = mesh;
+  const WedgeSet& set = analysis.set;
+  out.reliability = analysis.fields.reliability;
+  out.normals = analysis.fields.normal;
+  out.colours.resize(mesh.positions.size());
+  parallel_for_each_index(mesh.positions.size(), [&](std::size_t v) {
+    out.colours[v] = set.wedge_of[v] >= 0                ? colour_of(set.wedge_of[v], set.face_of[v])
+                     : set.basin_of[v] >= 0              ? kHollow
+                     : set.basin_of[v] == kBasinBorder   ? kBorder
+                                                         : kClay;
+  });
+  return out;
+}
+
+}  // namespace dubsar

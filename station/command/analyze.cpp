@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+// dubsar analyze: the wedges of a mesh.
+
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+
+#include "core/units.h"
+#include "formats/mesh_io.h"
+#include "station/analysis.h"
+#include "station/command/command.h"
+
+namespace dubsar {
+
+namespace {
+
+struct AnalyzeArguments {
+  std::string in;
+  std::string out;
+  std::string mesh_out;
+  std::string exits = "surface";
+  std::string unit;
+  bool classical = false;
+};
+
+nlohmann::ordered_json summary_json(const AnalyzeArguments& arguments, const WedgeFile& file) {
+  nlohmann::ordered_json json{{"wedges", arguments.out},
+                              {"mesh", file.mesh},
+                              {"count", file.wedges.size()},
+                              {"rejected", file.rejected.size()}};
+  if (!arguments.mesh_out.empty()) {
+    json["mesh_out"] = arguments.mesh_out;
+  }
+  json["timings_s"] = nlohmann::ordered_json::object();
+  for (const auto& [stage, seconds] : file.timings_s) {
+    json["timings_s"][stage] = seconds;
+  }
+  return json;
+}
+
+Result<int> analyze(const AnalyzeArguments& arguments, CommandContext& context) {
+  using Clock = std::chrono::steady_clock;
+  const auto seconds_since = [](Clock::time_point from) {
+    return std::chrono::duration<double>(Clock::now() - from).count();
+  };
+  const Clock::time_point start = Clock::now();
+  const Result<Mesh> mesh = read_mesh(
+      arguments.in,
+      {.mm_per_unit = arguments.unit.empty() ? std::nullopt : mm_per_unit(arguments.unit)});
+  if (!mesh) {
+    return std::unexpected(mesh.error());
+  }
+  const double reading_s = seconds_since(start);
+  AnalysisOptions options;
+  options.wedges.exits = arguments.exits == "extent" ? ExitDefinition::kExtent : ExitDefinition::kSurface;
+  options.wedges.classical_watershed = arguments.classical;
+  Result<Analysis> analysis = analyze_mesh(*mesh, options, context.job);
+  if (!analysis) {
+    Error error = analysis.error();
+    error.where = error.where.empty() ? arguments.in : error.where;
+    return std::unexpected(std::move(error));
+  }
+  analysis->timings_s.insert(analysis->timings_s.begin(), {"reading", reading_s});
+  analysis->timings_s.emplace_back("all", seconds_since(start));
+  const WedgeFile file =
+      wedge_file(std::filesystem::path(arguments.in).filename().string(), options, *analysis);
+  if (const Status written = write_wedges(arguments.out, file); !written) {
+    return std::unexpected(written.error());
+  }
+  if (!arguments.mesh_out.empty()) {
+    if (const Status written = write_mesh(arguments.mesh_out, annotated_mesh(*mesh, *analysis)); !written) {
+      return std::unexpected(written.error());
+    }
+  }
+  if (context.json) {
+    CommandContext::print(summary_json(arguments, file));
+    return 0;
+  }
+  finish_progress();
+  if (file.wedges.empty()) {
+    std::printf("%s: no wedges (%zu hollows looked at), %.1f s\n", arguments.out.c_str(), file.rejected.size(),
+                seconds_since(start));
+  } else {
+    std::printf("%s: %zu wedges, %zu hollows rejected, %.1f s\n", arguments.out.c_str(), file.wedges.size(),
+                file.rejected.size(), seconds_since(start));
+  }
+  return 0;
+}
+
+}  // namespace
+
+void add_analyze(CLI::App& app, Action& chosen) {
+  CLI::App* verb = app.add_subcommand("analyze", "Every wedge of a mesh, measured");
+  const auto arguments = std::make_shared<AnalyzeArguments>();
+  verb->add_option("mesh", arguments->in, "PLY, OBJ, STL or GLB, faults and all")->required();
+  verb->add_option("-o,--out", arguments->out, "wedges.json")->required();
+  verb->add_option("--mesh-out", arguments->mesh_out, "the mesh with its wedges in colours");
+  verb->add_option("--exit", arguments->exits, "where an inner edge ends: at the free surface, or as far as seen")
+      ->check(CLI::IsMember({"surface", "extent"}));
+  verb->add_option("--unit", arguments->unit, "what the file's numbers are")
+      ->check(CLI::IsMember({"m", "mm", "um"}));
+  verb->add_flag("--classical-watershed", arguments->classical, "the textbook watershed, for comparison");
+  verb->callback([&chosen, arguments] {
+    chosen = [arguments](CommandContext& c) { return analyze(*arguments, c); };
+  });
+}
+
+}  // namespace dubsar
