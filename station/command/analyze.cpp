@@ -2,15 +2,19 @@
 // Copyright The Dubsar developers
 // dubsar analyze: the wedges of a mesh.
 
+#include <fmt/format.h>
+
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
 
+#include "analysis/tablet_size.h"
 #include "core/units.h"
 #include "formats/mesh_io.h"
 #include "station/analysis.h"
 #include "station/command/command.h"
+#include "station/field_pictures.h"
 
 namespace dubsar {
 
@@ -22,6 +26,9 @@ struct AnalyzeArguments {
   std::string mesh_out;
   std::string exits = "surface";
   std::string unit;
+  std::string pictures;
+  std::string invariants;
+  double radius_mm = 1.0;
   bool classical = false;
 };
 
@@ -40,6 +47,34 @@ nlohmann::ordered_json summary_json(const AnalyzeArguments& arguments, const Wed
   return json;
 }
 
+/// Nobody presses a stylus into a tablet a tenth of a millimetre across: without --unit its numbers are
+/// something else.
+Status check_size(const AnalyzeArguments& arguments, const Mesh& mesh) {
+  const double across_mm = size_across_mm(mesh);
+  const bool metres = std::filesystem::path(arguments.in).extension() == ".glb";
+  const auto likelier = likelier_unit(across_mm, metres ? *mm_per_unit("m") : 1.0);
+  if (!arguments.unit.empty() || !likelier) {
+    return {};
+  }
+  return bad_input(arguments.in, fmt::format("it would be {:.3g} mm across", across_mm),
+                   fmt::format("its numbers look like {}: say so with --unit {}, or confirm what they are",
+                               *likelier, *likelier));
+}
+
+Status write_extras(const AnalyzeArguments& arguments, const Mesh& mesh, const SurfaceFields& fields,
+                    const JobContext& job) {
+  if (!arguments.pictures.empty()) {
+    if (const Status written = write_field_pictures(arguments.pictures, mesh, fields, job); !written) {
+      return written;
+    }
+  }
+  if (!arguments.invariants.empty()) {
+    return write_invariants(arguments.invariants, arguments.pictures, mesh, fields,
+                            {.radius_mm = arguments.radius_mm}, job);
+  }
+  return {};
+}
+
 Result<int> analyze(const AnalyzeArguments& arguments, CommandContext& context) {
   using Clock = std::chrono::steady_clock;
   const auto seconds_since = [](Clock::time_point from) {
@@ -47,10 +82,12 @@ Result<int> analyze(const AnalyzeArguments& arguments, CommandContext& context) 
   };
   const Clock::time_point start = Clock::now();
   const Result<Mesh> mesh = read_mesh(
-      arguments.in,
-      {.mm_per_unit = arguments.unit.empty() ? std::nullopt : mm_per_unit(arguments.unit)});
+      arguments.in, {.mm_per_unit = arguments.unit.empty() ? std::nullopt : mm_per_unit(arguments.unit)});
   if (!mesh) {
     return std::unexpected(mesh.error());
+  }
+  if (const Status sized = check_size(arguments, *mesh); !sized) {
+    return std::unexpected(sized.error());
   }
   const double reading_s = seconds_since(start);
   AnalysisOptions options;
@@ -74,14 +111,17 @@ Result<int> analyze(const AnalyzeArguments& arguments, CommandContext& context) 
       return std::unexpected(written.error());
     }
   }
+  if (const Status written = write_extras(arguments, *mesh, analysis->fields, context.job); !written) {
+    return std::unexpected(written.error());
+  }
   if (context.json) {
     CommandContext::print(summary_json(arguments, file));
     return 0;
   }
   finish_progress();
   if (file.wedges.empty()) {
-    std::printf("%s: no wedges (%zu hollows looked at), %.1f s\n", arguments.out.c_str(), file.rejected.size(),
-                seconds_since(start));
+    std::printf("%s: no wedges (%zu hollows looked at), %.1f s\n", arguments.out.c_str(),
+                file.rejected.size(), seconds_since(start));
   } else {
     std::printf("%s: %zu wedges, %zu hollows rejected, %.1f s\n", arguments.out.c_str(), file.wedges.size(),
                 file.rejected.size(), seconds_since(start));
@@ -97,14 +137,21 @@ void add_analyze(CLI::App& app, Action& chosen) {
   verb->add_option("mesh", arguments->in, "PLY, OBJ, STL or GLB, faults and all")->required();
   verb->add_option("-o,--out", arguments->out, "wedges.json")->required();
   verb->add_option("--mesh-out", arguments->mesh_out, "the mesh with its wedges in colours");
-  verb->add_option("--exit", arguments->exits, "where an inner edge ends: at the free surface, or as far as seen")
+  verb->add_option("--exit", arguments->exits,
+                   "where an inner edge ends: at the free surface, or as far as seen")
       ->check(CLI::IsMember({"surface", "extent"}));
   verb->add_option("--unit", arguments->unit, "what the file's numbers are")
       ->check(CLI::IsMember({"m", "mm", "um"}));
+  verb->add_option("--pictures", arguments->pictures,
+                   "a folder for the surface fields as coloured PLY and PNG");
+  verb->add_option("--invariants", arguments->invariants,
+                   "multi-scale integral invariants of every vertex, as GigaMesh's .mat");
+  verb->add_option("--invariant-radius", arguments->radius_mm, "mm, of their largest sphere")
+      ->check(CLI::Range(0.05, 50.0))
+      ->capture_default_str();
   verb->add_flag("--classical-watershed", arguments->classical, "the textbook watershed, for comparison");
-  verb->callback([&chosen, arguments] {
-    chosen = [arguments](CommandContext& c) { return analyze(*arguments, c); };
-  });
+  verb->callback(
+      [&chosen, arguments] { chosen = [arguments](CommandContext& c) { return analyze(*arguments, c); }; });
 }
 
 }  // namespace dubsar
