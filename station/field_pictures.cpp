@@ -46,8 +46,9 @@ Status write_six_view_picture(const fs::path& png, const Mesh& mesh, const JobCo
   SixViewOptions options;
   options.render.style = mesh.colours.empty() ? RenderStyle::kClay : RenderStyle::kColours;
   options.render.longest_px = kLongestPx;
+  // The colours are to be read: little shade over them, and it is drawn soon.
   options.render.recess_radius_mm = 0.3;
-  options.render.shadow_reach_mm = 0;
+  options.render.shadow_reach_mm = 0.3;
   options.tablet_from_model = tablet_frame(mesh);
   const auto sheet = render_six_view_sheet(RenderScene(mesh), options, job);
   if (!sheet) {
