@@ -18,7 +18,7 @@ namespace dubsar {
 namespace {
 
 namespace fs = std::filesystem;
-constexpr int kLongestPx = 1000;
+constexpr int kLongestPx = 700;
 
 constexpr float kStrongResponse = 0.5F;
 
@@ -46,9 +46,6 @@ Status write_six_view_picture(const fs::path& png, const Mesh& mesh, const JobCo
   SixViewOptions options;
   options.render.style = mesh.colours.empty() ? RenderStyle::kClay : RenderStyle::kColours;
   options.render.longest_px = kLongestPx;
-  // The colours are to be read: little shade over them, and it is drawn soon.
-  options.render.recess_radius_mm = 0.3;
-  options.render.shadow_reach_mm = 0.3;
   options.tablet_from_model = tablet_frame(mesh);
   const auto sheet = render_six_view_sheet(RenderScene(mesh), options, job);
   if (!sheet) {
