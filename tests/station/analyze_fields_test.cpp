@@ -47,7 +47,7 @@ TEST_F(AnalyzeFields, AMeshInMetresIsToldByItsSizeAndTakenWhenSaid) {
 
 TEST_F(AnalyzeFields, PicturesAndInvariantsAreWritten) {
   const Outcome outcome =
-      run_command({"analyze", sphere_file("ball.ply", 8, 4), "-o", at("w.json").string(), "--pictures",
+      run_command({"analyze", sphere_file("ball.ply", 60, 4), "-o", at("w.json").string(), "--pictures",
                    at("fields").string(), "--invariants", at("ball.mat").string()});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   for (const char* name : {"reliability", "curvature", "openness", "free_surface", "height", "invariants"}) {
