@@ -19,11 +19,13 @@ enum class Evidence : std::size_t {
   kContacts,       ///< share of inner edges with contact points enough
   kFlatness,       ///< how far it is from being as deep as it is wide
   kStretch,        ///< longest inner edge in depths, logarithmic
+  kLevelRim,       ///< share of the hollow's rim that lies at the free surface
   kDepthUnlike,    ///< off the depths of the tablet's wedges
   kWidthUnlike,    ///< off their widths
   kShapeUnlike,    ///< off their opening angles
   kLonely,         ///< few similar ones
   kFar,            ///< distance to the next one
+  kCompany,        ///< share of the hollows around, by area, that are good candidates
   kCount
 };
 using EvidenceValues = std::array<double, static_cast<std::size_t>(Evidence::kCount)>;

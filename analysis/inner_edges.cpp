@@ -68,7 +68,7 @@ std::array<std::vector<Contact>, 3> find_contacts(const WedgePatch& patch, const
                          patch.p[n].cast<double>(), faces.plane[static_cast<std::size_t>(b)].normal);
       const double away = (p - faces.depth_point).norm();
       const double near_centre = away / (away + core_mm);
-      const double reliability = 0.02 + std::min(patch.weight[v], patch.weight[n]);
+      const double reliability = fit_weight(std::min(patch.weight[v], patch.weight[n]));
       contacts[edge].push_back({p, reliability * near_centre});
     }
   }

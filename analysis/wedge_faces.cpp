@@ -15,6 +15,7 @@ namespace dubsar {
 
 namespace {
 
+constexpr std::size_t kMostClustered = 600;
 constexpr int kFirstRounds = 3;
 constexpr int kRounds = 6;
 /// The first surroundings reach this many depths from the lowest vertex, at least so many spacings; where
@@ -258,6 +259,20 @@ std::optional<std::string> meet(const FaceOptions& options, WedgeFaces* faces) {
   return std::nullopt;
 }
 
+/// Clusters of the normals, of every n-th of them where there are very many.
+std::vector<NormalTriple> cluster_some(const Near& near) {
+  const std::size_t step = 1 + near.normals.size() / kMostClustered;
+  if (step == 1) {
+    return cluster_normals(near.normals, near.weights);
+  }
+  Near some;
+  for (std::size_t i = 0; i < near.normals.size(); i += step) {
+    some.normals.push_back(near.normals[i]);
+    some.weights.push_back(near.weights[i]);
+  }
+  return cluster_normals(some.normals, some.weights);
+}
+
 /// One round: vertices to planes, planes to vertices.
 bool improve(Search* s) {
   assign(s);
@@ -280,7 +295,7 @@ std::optional<std::string> best_start(Search* s) {
   std::optional<std::string> wrong = "its normals do not gather in three faces";
   std::optional<Search> best;
   double most = 0;
-  for (const NormalTriple& centres : cluster_normals(near.normals, near.weights)) {
+  for (const NormalTriple& centres : cluster_some(near)) {
     Search trial = *s;
     bool alive = start(near, centres, &trial);
     for (int round = 0; round < kFirstRounds && alive; ++round) {

@@ -15,6 +15,7 @@ namespace {
 
 /// Share of a piece's vertices that lie on the whole.
 constexpr double kPiece = 0.5;
+constexpr double kParallel = 0.966;  // cosine of 15 degrees
 /// Vertices looked at per pair.
 constexpr std::size_t kSamples = 200;
 
@@ -64,6 +65,27 @@ double share_on(const WedgeCandidate& piece, const WedgeCandidate& whole,
   return all > 0 ? static_cast<double>(on) / static_cast<double>(all) : 0.0;
 }
 
+/// Whether the piece is the end of the whole's tail behind something that was pressed across it: its longest
+/// edge goes on in the line of the whole's, no deeper than that line.
+bool continues(const WedgeCandidate& piece, const WedgeCandidate& whole) {
+  const Wedge& w = whole.wedge;
+  const Wedge& p = piece.wedge;
+  const auto edge = static_cast<std::size_t>(w.directional_edge);
+  const Eigen::Vector3d tail = w.exit_points_surface_mm[edge] - w.depth_point_mm;
+  const double length = tail.norm();
+  const Eigen::Vector3d own =
+      (p.exit_points_surface_mm[static_cast<std::size_t>(p.directional_edge)] - p.depth_point_mm).normalized();
+  const Eigen::Vector3d to = p.depth_point_mm - w.depth_point_mm;
+  const double along = to.dot(tail) / length;
+  if (along < 0.2 * length || along > 1.3 * length || own.dot(tail) < kParallel * length) {
+    return false;
+  }
+  const Eigen::Vector3d off = to - along / length * tail;
+  const double up = off.dot(w.surface_normal);
+  const double aside = (off - up * w.surface_normal).norm();
+  return aside < 0.3 * w.depth_mm && up > -0.3 * w.depth_mm;
+}
+
 }  // namespace
 
 void reject_fragments(std::span<const Eigen::Vector3f> position, std::vector<WedgeCandidate>* candidates) {
@@ -93,6 +115,10 @@ void reject_fragments(std::span<const Eigen::Vector3f> position, std::vector<Wed
           const double apart = (other.wedge.depth_point_mm - c.wedge.depth_point_mm).norm();
           if (j == i || apart > reach[j] + reach[i]) {
             continue;
+          }
+          if (continues(c, other)) {
+            piece[i] = 1;
+            return;
           }
           const double mine = share_on(c, other, position);
           if (mine < kPiece) {

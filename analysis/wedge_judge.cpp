@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
+#include "core/parallel.h"
 #include "core/units.h"
 
 namespace dubsar {
@@ -14,6 +16,7 @@ namespace {
 /// With fewer good candidates than this, the others say nothing.
 constexpr std::size_t kFewest = 10;
 constexpr double kGoodOdds = 1.0;
+constexpr double kCompanyWidths = 4.0;
 
 double& value(EvidenceValues& values, Evidence what) {
   return values[static_cast<std::size_t>(what)];
@@ -49,6 +52,7 @@ void look_at(WedgeCandidate* c) {
   value(e, Evidence::kWidestOpening) = sorted(w.opening_angles_rad)[2] / kPi;
   value(e, Evidence::kContacts) =
       static_cast<double>(std::ranges::count_if(c->contacts, [](std::uint32_t n) { return n >= 4; })) / 3.0;
+  value(e, Evidence::kLevelRim) = c->level_rim;
   value(e, Evidence::kFlatness) = std::clamp(1.0 - depth / width_mm(*c), 0.0, 1.0);
   value(e, Evidence::kStretch) = std::clamp(std::log2(longest / depth) / 5.0, 0.0, 1.0);
 }
@@ -74,9 +78,10 @@ struct Odds {
   }
 };
 /// By itself, and with the tablet's other wedges beside it.
-constexpr Odds kAlone = {3.63, {2.92, 4.55, 0, -7.29, 1.22, 0.64, -6.34, 0, -0.92, -2.73, 0, 0, 0, 0, 0}};
+constexpr Odds kAlone = {
+    3.52, {2.55, 2.24, 1.30, -7.15, 1.27, 0, -9.98, 0, 0, -0.69, 2.59, 0, 0, 0, 0, 0, 0}};
 constexpr Odds kAmongOthers = {
-    4.18, {2.87, 4.45, 0, -5.21, 0.19, 0.75, -4.32, 0, -1.40, -2.48, 0, -2.76, 0, -2.35, 0}};
+    1.16, {3.40, 1.56, 0.30, -2.58, 1.30, 0, -5.59, 0, 0, -0.81, 0.65, -1.04, -1.00, 0, -3.41, 0, 4.92}};
 
 /// What the tablet's good candidates say of this one. `good`: by falling log odds.
 void compare(const std::vector<const WedgeCandidate*>& good, double typical_depth, double typical_width,
@@ -107,6 +112,38 @@ void compare(const std::vector<const WedgeCandidate*>& good, double typical_dept
   value(e, Evidence::kLonely) = std::min(1.0, unlike[few]);
   value(e, Evidence::kShapeUnlike) = std::min(1.0, median(unlike));
   value(e, Evidence::kFar) = std::clamp(nearest / typical_width / 6.0, 0.0, 1.0);
+}
+
+/// How much of the hollows around each candidate, by area, belongs to good ones: on a broken face most of what
+/// looks like a pit closes to none.
+void note_company(const std::vector<WedgeCandidate>& candidates, const std::vector<std::uint8_t>& is_good,
+                  double typical_width, std::vector<WedgeCandidate*>* open) {
+  std::vector<std::size_t> order(candidates.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  const auto x_of = [&](std::size_t i) { return candidates[i].wedge.depth_point_mm.x(); };
+  std::ranges::stable_sort(order, {}, x_of);
+  const double reach = kCompanyWidths * typical_width;
+  parallel_for_each_index(
+      open->size(),
+      [&](std::size_t k) {
+        WedgeCandidate& c = *(*open)[k];
+        const Eigen::Vector3d& at = c.wedge.depth_point_mm;
+        double good = 0;
+        double all = 0;
+        for (auto it = std::ranges::lower_bound(order, at.x() - reach, {}, x_of);
+             it != order.end() && x_of(*it) <= at.x() + reach; ++it) {
+          const WedgeCandidate& other = candidates[*it];
+          if (&other == &c || (other.wedge.depth_point_mm - at).squaredNorm() > reach * reach) {
+            continue;
+          }
+          good += is_good[*it] != 0 ? other.hollow_mm2 : 0.0;
+          all += other.hollow_mm2;
+        }
+        // Alone, it is in neither good company nor bad.
+        const double own = typical_width * typical_width;
+        value(c.evidence, Evidence::kCompany) = (good + 0.5 * own) / (all + own);
+      },
+      16);
 }
 
 std::string out_of_bounds(const JudgeOptions& options, const WedgeCandidate& c) {
@@ -145,6 +182,13 @@ void judge_wedges(const JudgeOptions& options, std::vector<WedgeCandidate>* cand
     }
   }
   const bool enough = good.size() >= kFewest;
+  if (enough) {
+    std::vector<std::uint8_t> is_good(candidates->size(), 0);
+    for (const WedgeCandidate* c : good) {
+      is_good[static_cast<std::size_t>(c - candidates->data())] = 1;
+    }
+    note_company(*candidates, is_good, median(widths), &open);
+  }
   for (WedgeCandidate* c : open) {
     if (enough) {
       compare(good, median(depths), median(widths), c);

@@ -15,6 +15,9 @@ namespace {
 /// An inner edge that has not met the surface after so many depths does not meet it.
 constexpr double kReachDepths = 30.0;
 
+/// A rim is at the free surface within so many depths.
+constexpr double kLevelDepths = 0.2;
+
 double angle_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b));
 }
@@ -112,14 +115,22 @@ WedgeCandidate measure_wedge(const WedgePatch& patch, const WedgeFaces& faces, c
 
   std::array<double, 3> seen{};
   double inside = 0;
+  double rim = 0;
+  double level = 0;
   double weight = 0;
   double squares = 0;
   for (std::size_t i = 0; i < patch.size(); ++i) {
     const double area = vertex_area_mm2[patch.vertex[i]];
     const Eigen::Vector3d p = patch.p[i].cast<double>();
+    if (i >= patch.inner) {
+      ++rim;
+      level += std::abs(patch.height[i]) < kLevelDepths * depth ? 1 : 0;
+      continue;
+    }
+    out.hollow_mm2 += area;
     const bool within = in_outline(corner, p.head<2>());
     inside += within ? area : 0.0;
-    if (i < patch.inner && faces.face[i] >= 0 && patch.height[i] < 0) {
+    if (faces.face[i] >= 0 && patch.height[i] < 0) {
       const auto k = static_cast<std::size_t>(faces.face[i]);
       const double off = faces.plane[k].distance(p);
       squares += off * off;
@@ -130,6 +141,7 @@ WedgeCandidate measure_wedge(const WedgePatch& patch, const WedgeFaces& faces, c
     }
   }
   out.seen_mm2 = seen;
+  out.level_rim = rim > 0 ? level / rim : 0.0;
   const double count = std::max<double>(1.0, static_cast<double>(out.vertices.size()));
   for (std::size_t k = 0; k < 3; ++k) {
     const Eigen::Vector3d a = wedge.exit_points_surface_mm[k] - depth_point;

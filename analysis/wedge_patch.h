@@ -26,12 +26,18 @@ struct PatchSource {
   bool noisy = false;
 };
 
+/// What a vertex weighs in a fit. One that is not reliable at all is still most often where it should be; around
+/// a steep face of a few triangles there may be no others.
+[[nodiscard]] constexpr float fit_weight(float reliability) {
+  return 0.2F + 0.8F * reliability;
+}
+
 /// A triangle of the mesh with all its vertices in a patch.
 struct PatchTriangle {
   std::array<std::uint32_t, 3> vertex{};  ///< of the patch
   Eigen::Vector3f middle{0, 0, 0};
   Eigen::Vector3f n{0, 0, 1};  ///< unit, on the side of its vertices' normals
-  float weight = 0;            ///< area times reliability, mm²
+  float weight = 0;            ///< area times fit_weight() of its worst corner, mm²
   float height = 0;            ///< of its middle over the free surface, mm
 };
 

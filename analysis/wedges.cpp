@@ -69,6 +69,9 @@ class Extractor {
       const auto reject = [&](std::string reason) {
         WedgeCandidate none;
         none.wedge.depth_point_mm = source_.position[lowest].cast<double>();
+        for (const std::uint32_t v : part) {
+          none.hollow_mm2 += areas_[v];
+        }
         none.rejected = std::move(reason);
         found.push_back(std::move(none));
       };
@@ -77,6 +80,12 @@ class Extractor {
       }
       if (part.size() > kMostVertices) {
         reject("too large a hollow");
+        continue;
+      }
+      if (-source_.height_mm[lowest] < options_.judge.min_depth_mm) {
+        if (turn == 0) {
+          reject("too shallow");
+        }
         continue;
       }
       const Eigen::Vector3d up = up_over(part);

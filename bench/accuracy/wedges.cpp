@@ -14,6 +14,7 @@
 #include <string>
 
 #include "analysis/wedges.h"
+#include "bench/support/mesh_faults.h"
 #include "bench/support/other_tablet.h"
 #include "bench/support/true_scans.h"
 #include "bench/support/wedge_score.h"
@@ -40,6 +41,7 @@ struct Arguments {
   std::string keep;
   std::vector<std::string> folders;
   bool other = false;
+  bool faults = false;
   bool evidence = false;
   bool verbose = false;
 };
@@ -150,7 +152,12 @@ void explain(const sim::SimTablet& tablet, const WedgeSet& set, const std::vecto
 }
 
 /// Finds the wedges of a mesh and prints the score.
-WedgeScore judge(const std::string& name, const sim::SimTablet& tablet, const Arguments& args) {
+WedgeScore judge(const std::string& name, sim::SimTablet tablet, const Arguments& args) {
+  if (args.faults) {
+    add_faults(1, &tablet.mesh);
+    tablet.kinds.resize(tablet.mesh.positions.size());
+    tablet.wedge_of.resize(tablet.mesh.positions.size(), -1);
+  }
   JobContext job;
   StageTimes times;
   const VertexGraph graph = make_vertex_graph(tablet.mesh);
@@ -196,7 +203,7 @@ WedgeScore judge_folder(const std::string& folder, const Arguments& args) {
   }
   sim::SimTablet tablet = sim::tablet_from_mesh(*std::move(mesh));
   tablet.wedges = truth->wedges;
-  return judge(folder, tablet, args);
+  return judge(folder, std::move(tablet), args);
 }
 
 WedgeScore judge_seed(std::uint64_t seed, double damage, const Arguments& args) {
@@ -230,7 +237,7 @@ WedgeScore judge_seed(std::uint64_t seed, double damage, const Arguments& args) 
       give_up(kept.error());
     }
   }
-  return judge(name, *tablet, args);
+  return judge(name, *std::move(tablet), args);
 }
 
 }  // namespace
@@ -249,6 +256,7 @@ int main(int argc, char** argv) {
   app.add_option("--keep", args.keep, "write each mesh and its truth into a folder here");
   app.add_option("folders", args.folders, "folders with a truth.json and its mesh, in place of seeds");
   app.add_flag("--other", args.other, "tablets of another make than the simulator's");
+  app.add_flag("--faults", args.faults, "1 % of the faces deleted, 1 % doubled or flipped, loose scraps");
   app.add_flag("--evidence", args.evidence, "print what each candidate shows, and whether it is a wedge");
   app.add_flag("--verbose", args.verbose);
   CLI11_PARSE(app, argc, argv);

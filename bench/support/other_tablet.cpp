@@ -150,7 +150,7 @@ class Bun {
       }
     }
     p.rounding = random_.uniform(0.01, 0.03 + 0.08 * options_.wear) * width;
-    p.hollow = random_.uniform(0.0, 0.03);
+    p.hollow = random_.uniform(0.0, 0.008);
     p.heap = random_.uniform(0.0, 0.06) * depth;
     presses_.push_back(p);
   }
