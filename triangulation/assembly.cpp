@@ -9,6 +9,7 @@
 
 #include "triangulation/front.h"
 #include "triangulation/manifold.h"
+#include "triangulation/self_intersections.h"
 
 namespace dubsar {
 
@@ -16,10 +17,14 @@ namespace {
 
 using Eigen::Vector3f;
 
+/// Of µ; measured on simulated tablets.
+constexpr float kSigmaOfInterpolated = 0.4F;
+
 /// Sheet and per-vertex attributes grow together.
 struct Draft {
   Sheet sheet;
   std::vector<float> reliability;
+  std::vector<float> sigma_mm;
   std::vector<std::uint8_t> scans;
   std::vector<std::uint8_t> flags;
 
@@ -29,6 +34,7 @@ struct Draft {
     sheet.spacing_mm.reserve(vertices);
     sheet.faces.reserve(2 * vertices);
     reliability.reserve(vertices);
+    sigma_mm.reserve(vertices);
     scans.reserve(vertices);
     flags.reserve(vertices);
   }
@@ -47,6 +53,7 @@ void add_patch(const OwnedScan& scan, Draft& draft) {
     draft.sheet.normals.push_back(s.normals[i]);
     draft.sheet.spacing_mm.push_back(static_cast<float>(s.spacing_mm));
     draft.reliability.push_back(scan.fused->reliability[i]);
+    draft.sigma_mm.push_back(scan.fused->sigma_mm[i]);
     draft.scans.push_back(scan.fused->scans[i]);
     const bool sparse =
         s.scan.flags != nullptr && i < s.scan.flags->size() && ((*s.scan.flags)[i] & kSparse) != 0;
@@ -195,6 +202,9 @@ std::vector<std::uint8_t> close_everything(Draft& draft, const AssemblyOptions& 
     const GapFillResult filled = fill_gaps(front, options.seam, options.gap);
     const std::size_t count = draft.sheet.positions.size();
     draft.reliability.resize(count, 0.0F);
+    for (std::size_t v = draft.sigma_mm.size(); v < count; ++v) {
+      draft.sigma_mm.push_back(kSigmaOfInterpolated * draft.sheet.spacing_mm[v]);
+    }
     draft.scans.resize(count, 0);
     draft.flags.resize(filled.first_interpolated);
     draft.flags.resize(count, kVertexInterpolated);
@@ -212,6 +222,44 @@ std::vector<std::uint8_t> close_everything(Draft& draft, const AssemblyOptions& 
     }
   }
   return touched;
+}
+
+/// Takes out faces that cut through each other, with those around them, and closes the place anew; what still
+/// cuts at the end goes for good. Adds to the suspects of close_everything().
+void repair_self_intersections(Draft& draft, const AssemblyOptions& options,
+                               std::vector<std::uint8_t>& suspects) {
+  constexpr int kTries = 3;
+  for (int attempt = 0;; ++attempt) {
+    std::vector<std::uint8_t> bad(draft.sheet.positions.size(), 0);
+    const auto pairs = self_intersections(draft.sheet.positions, draft.sheet.faces);
+    if (pairs.empty()) {
+      return;
+    }
+    std::vector<std::uint8_t> cut(draft.sheet.faces.size(), 0);
+    for (const auto& [a, b] : pairs) {
+      cut[a] = cut[b] = 1;
+      mark(draft.sheet.faces[a], bad);
+      mark(draft.sheet.faces[b], bad);
+    }
+    suspects.resize(bad.size(), 0);
+    const bool last = attempt == kTries;
+    std::size_t at = 0;
+    std::erase_if(draft.sheet.faces, [&](const Triangle& f) {
+      const bool goes = cut[at++] != 0 || (attempt > 0 && !last && (bad[f[0]] | bad[f[1]] | bad[f[2]]) != 0);
+      if (goes) {
+        mark(f, suspects);
+      }
+      return goes;
+    });
+    if (last) {
+      return;
+    }
+    const std::vector<std::uint8_t> touched = close_everything(draft, options);
+    suspects.resize(touched.size(), 0);
+    for (std::size_t v = 0; v < touched.size(); ++v) {
+      suspects[v] |= touched[v];
+    }
+  }
 }
 
 /// Drops pieces of few faces, of a manifold: there faces that share a vertex are of one piece.
@@ -255,11 +303,13 @@ Mesh assemble(const std::vector<OwnedScan>& scans, const AssemblyOptions& option
     add_patch(scan, draft);
   }
   std::vector<std::uint8_t> suspects = close_everything(draft, options);
+  repair_self_intersections(draft, options, suspects);
 
   Mesh mesh;
   mesh.faces = std::move(draft.sheet.faces);
   mesh.positions = std::move(draft.sheet.positions);
   mesh.reliability = std::move(draft.reliability);
+  mesh.sigma_mm = std::move(draft.sigma_mm);
   mesh.scans = std::move(draft.scans);
   mesh.flags = std::move(draft.flags);
   const std::vector<Vector3f>& p = mesh.positions;
@@ -273,6 +323,7 @@ Mesh assemble(const std::vector<OwnedScan>& scans, const AssemblyOptions& option
   for (const std::uint32_t copied : make_manifold(mesh.faces, mesh.positions.size(), suspects)) {
     mesh.positions.push_back(Vector3f(mesh.positions[copied]));
     mesh.reliability.push_back(float(mesh.reliability[copied]));
+    mesh.sigma_mm.push_back(float(mesh.sigma_mm[copied]));
     mesh.scans.push_back(std::uint8_t(mesh.scans[copied]));
     mesh.flags.push_back(std::uint8_t(mesh.flags[copied]));
   }
