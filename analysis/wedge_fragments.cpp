@@ -126,8 +126,9 @@ void reject_fragments(std::span<const Eigen::Vector3f> position, std::vector<Wed
           }
           const double theirs = share_on(other, c, position);
           const bool mutual = theirs >= kPiece;
-          const bool smaller =
-              c.vertices.size() != other.vertices.size() ? c.vertices.size() < other.vertices.size() : i > j;
+          const bool smaller = c.vertices.size() != other.vertices.size()
+                                   ? c.vertices.size() < other.vertices.size()
+                                   : i > j;
           if (mutual ? smaller : mine > theirs) {
             piece[i] = 1;
             return;

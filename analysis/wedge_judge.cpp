@@ -63,9 +63,9 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-/// Logistic regression over candidates of simulated tablets of two makes, clean, worn, broken, and scanned
-/// and stitched, from 0.05 to 0.1 mm (dubsar-wedges --evidence); weights that came out against the sense of
-/// what they weigh are zero.
+/// Logistic regression over candidates of simulated tablets of two makes, clean, worn, broken, and scanned and
+/// stitched, from 0.05 to 0.1 mm (dubsar-wedges --evidence); weights that came out against the sense of what
+/// they weigh are zero.
 struct Odds {
   double bias;
   EvidenceValues weight;
@@ -88,8 +88,7 @@ void compare(const std::vector<const WedgeCandidate*>& good, double typical_dept
              WedgeCandidate* c) {
   EvidenceValues& e = c->evidence;
   const Wedge& w = c->wedge;
-  value(e, Evidence::kDepthUnlike) =
-      std::min(1.0, std::abs(std::log2(std::max(w.depth_mm, 1e-3) / typical_depth)) / 2.0);
+  value(e, Evidence::kDepthUnlike) = std::min(1.0, std::abs(std::log2(std::max(w.depth_mm, 1e-3) / typical_depth)) / 2.0);
   value(e, Evidence::kWidthUnlike) = std::min(1.0, std::abs(std::log2(width_mm(*c) / typical_width)) / 2.0);
   const std::array<double, 3> openings = sorted(w.opening_angles_rad);
   std::vector<double> unlike;
