@@ -6,6 +6,7 @@
 
 #include <string>
 
+#include "analysis/curvature.h"
 #include "analysis/field_colours.h"
 #include "archive/png.h"
 #include "archive/six_views.h"
@@ -21,6 +22,7 @@ namespace fs = std::filesystem;
 constexpr int kLongestPx = 700;
 
 constexpr float kStrongResponse = 0.5F;
+constexpr float kSurfaceCurvaturePerMm = 0.3F;
 
 Status make_folder(const fs::path& folder) {
   std::error_code error;
@@ -72,7 +74,11 @@ Status write_field_pictures(const fs::path& folder, const Mesh& mesh, const Surf
       return written;
     }
   }
-  return {};
+  Mesh surface = fields.surface.mesh();
+  const VertexGraph graph = make_vertex_graph(surface);
+  const Curvature curvature = vertex_curvature(surface, graph, make_vertex_geometry(surface, graph));
+  surface.colours = diverging_colours(curvature.mean_per_mm, 0, kSurfaceCurvaturePerMm);
+  return write_coloured(folder, "surface", surface, job);
 }
 
 Status write_invariants(const fs::path& mat, const fs::path& picture_folder, const Mesh& mesh,

@@ -18,7 +18,8 @@ namespace dubsar {
                                             const JobContext& job);
 
 /// Writes one coloured PLY and one PNG of six views for each surface field into a folder, which is made:
-/// height.ply, height.png and so on (field_name()).
+/// height.ply, height.png and so on (field_name()), and the surface that heights are taken from, coloured by
+/// its curvature, as surface.ply and surface.png (seed 000, Fig. 5).
 [[nodiscard]] Status write_field_pictures(const std::filesystem::path& folder, const Mesh& mesh,
                                           const SurfaceFields& fields, const JobContext& job);
 

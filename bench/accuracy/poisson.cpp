@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright The Dubsar developers
-// Screened Poisson reconstruction alone, on the Stanford bunny's ten range grids with their published poses: how
-// far the input samples lie from the surface, beside what PoissonRecon 18.75 reached on the same input (depth 8,
-// cells of 0.67 mm: mean 0.087, RMS 0.128, 95 % 0.256 mm; depth 9: 0.077, 0.118, 0.228; 5.6 and 22.7 s of CPU).
+// Screened Poisson reconstruction alone, on the Stanford bunny's ten range grids with their published poses:
+// how far the input samples lie from the surface, beside what PoissonRecon 18.75 reached on the same input
+// (depth 8, cells of 0.67 mm: mean 0.087, RMS 0.128, 95 % 0.256 mm; depth 9: 0.077, 0.118, 0.228; 5.6
+// and 22.7 s of CPU).
 //   dubsar-poisson FOLDER/bun.conf [cell mm [screening]]
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -98,10 +99,11 @@ int run(const std::filesystem::path& conf, float cell_mm, float screening) {
     squares += d * d;
   }
   const auto count = static_cast<double>(off.size());
-  std::printf("%zu samples, %d x %d x %d nodes of %.2f mm, %d iterations, %zu faces, %.2f s\n", off.size(), grid.nx,
-              grid.ny, grid.nz, static_cast<double>(cell_mm), indicator.iterations, surface.faces.size(), seconds);
-  std::printf("sample to surface, mm: mean %.3f  RMS %.3f  95 %% %.3f\n", sum / count, std::sqrt(squares / count),
-              off[static_cast<std::size_t>(0.95 * count)]);
+  std::printf("%zu samples, %d x %d x %d nodes of %.2f mm, %d iterations, %zu faces, %.2f s\n", off.size(),
+              grid.nx, grid.ny, grid.nz, static_cast<double>(cell_mm), indicator.iterations,
+              surface.faces.size(), seconds);
+  std::printf("sample to surface, mm: mean %.3f  RMS %.3f  95 %% %.3f\n", sum / count,
+              std::sqrt(squares / count), off[static_cast<std::size_t>(0.95 * count)]);
   return 0;
 }
 

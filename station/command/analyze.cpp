@@ -29,6 +29,8 @@ struct AnalyzeArguments {
   std::string pictures;
   std::string invariants;
   double radius_mm = 1.0;
+  SurfaceFieldOptions fields;
+  bool uniform_weights = false;
   bool classical = false;
 };
 
@@ -91,6 +93,10 @@ Result<int> analyze(const AnalyzeArguments& arguments, CommandContext& context) 
   }
   const double reading_s = seconds_since(start);
   AnalysisOptions options;
+  options.fields = arguments.fields;
+  if (arguments.uniform_weights) {
+    options.fields.reconstruction.other_weight = 1;
+  }
   options.wedges.exits = arguments.exits == "extent" ? ExitDefinition::kExtent : ExitDefinition::kSurface;
   options.wedges.classical_watershed = arguments.classical;
   Result<Analysis> analysis = analyze_mesh(*mesh, options, context.job);
@@ -144,6 +150,25 @@ void add_analyze(CLI::App& app, Action& chosen) {
       ->check(CLI::IsMember({"m", "mm", "um"}));
   verb->add_option("--pictures", arguments->pictures,
                    "a folder for the surface fields as coloured PLY and PNG");
+  verb->add_option("--free-openness", arguments->fields.free_surface.least_openness,
+                   "free surface: at least this open, 0 to 1; unset: told by the mesh")
+      ->check(CLI::Range(0.0, 1.0));
+  verb->add_option("--free-concave", arguments->fields.free_surface.most_concave_per_mm,
+                   "free surface: mean curvature no further below zero than this, per mm")
+      ->check(CLI::Range(0.0, 100.0))
+      ->capture_default_str();
+  verb->add_option("--free-convex", arguments->fields.free_surface.most_convex_per_mm,
+                   "free surface: mean curvature at most this, per mm")
+      ->check(CLI::Range(0.0, 100.0))
+      ->capture_default_str();
+  verb->add_flag("--equalize", arguments->fields.equalize_openness,
+                 "openness by rank: --free-openness is then a share of the surface");
+  verb->add_option("--fault-reach", arguments->fields.reliability_iterations,
+                   "how many rings of faces around a fault of the mesh are less reliable")
+      ->check(CLI::Range(0, 100))
+      ->capture_default_str();
+  verb->add_flag("--uniform-weights", arguments->uniform_weights,
+                 "all points weigh the same in the surface that heights are taken from, for comparison");
   verb->add_option("--invariants", arguments->invariants,
                    "multi-scale integral invariants of every vertex, as GigaMesh's .mat");
   verb->add_option("--invariant-radius", arguments->radius_mm, "mm, of their largest sphere")

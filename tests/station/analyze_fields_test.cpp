@@ -50,7 +50,8 @@ TEST_F(AnalyzeFields, PicturesAndInvariantsAreWritten) {
       run_command({"analyze", sphere_file("ball.ply", 60, 4), "-o", at("w.json").string(), "--pictures",
                    at("fields").string(), "--invariants", at("ball.mat").string()});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
-  for (const char* name : {"reliability", "curvature", "openness", "free_surface", "height", "invariants"}) {
+  for (const char* name :
+       {"reliability", "curvature", "openness", "free_surface", "height", "invariants", "surface"}) {
     const auto coloured = read_mesh(at("fields") / (std::string(name) + ".ply"));
     ASSERT_TRUE(coloured) << name;
     EXPECT_EQ(coloured->colours.size(), coloured->positions.size()) << name;
