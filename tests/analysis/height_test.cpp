@@ -53,6 +53,24 @@ TEST(Height, OverASphereIsTheDistanceToIt) {
   EXPECT_NEAR(volume / (4.0 / 3.0 * kPi * kRadius * kRadius * kRadius), 1.0, 0.005);
 }
 
+TEST(Height, OfASpheresOwnVerticesIsAFewMicrometres) {
+  for (const float radius : {8.0F, 15.0F, 30.0F}) {
+    const Mesh mesh = shapes::sphere(radius, 7);
+    const HeightSurface surface = surface_of(mesh);
+    double sum = 0;
+    double squares = 0;
+    for (const Eigen::Vector3f& p : mesh.positions) {
+      const double height = surface.height_mm(p);
+      sum += height;
+      squares += height * height;
+      ASSERT_LT(std::abs(height), 0.035) << p.transpose();
+    }
+    const auto count = static_cast<double>(mesh.positions.size());
+    EXPECT_NEAR(sum / count, 0, 0.001) << radius;
+    EXPECT_LT(std::sqrt(squares / count), 0.008) << radius;
+  }
+}
+
 TEST(Height, OfAnEllipsoidsOwnVerticesIsNone) {
   const Mesh mesh = shapes::scaled(shapes::unit_sphere(7), {25, 18, 8});
   const HeightSurface surface = surface_of(mesh);
@@ -191,6 +209,24 @@ TEST(SurfaceFields, HoldOnAFaultyMesh) {
     }
   }
   EXPECT_LT(apart, sound.positions.size() / 100);
+}
+
+TEST(SurfaceFields, AScrapAMetreAwayChangesNothing) {
+  const Mesh sound = shapes::sphere(12, 6);
+  Mesh strayed = sound;
+  const auto first = static_cast<std::uint32_t>(strayed.positions.size());
+  strayed.positions.insert(strayed.positions.end(), {{1000, 0, 0}, {1000.2F, 0, 0}, {1000, 0.2F, 0}});
+  strayed.faces.push_back({first, first + 1, first + 2});
+  const JobContext job;
+  const auto a = compute_surface_fields(sound, make_vertex_graph(sound), {}, job);
+  const auto b = compute_surface_fields(strayed, make_vertex_graph(strayed), {}, job);
+  ASSERT_TRUE(a && b);
+  EXPECT_NEAR(a->surface.cell_mm(), b->surface.cell_mm(), 0.001);
+  for (std::size_t v = 0; v < sound.positions.size(); ++v) {
+    ASSERT_NEAR(a->height_mm[v], b->height_mm[v], 0.03) << v;  // another place in the grid
+    ASSERT_NEAR(a->openness[v], b->openness[v], 0.1) << v;
+  }
+  EXPECT_TRUE(std::isfinite(b->height_mm[first]));
 }
 
 TEST(SurfaceFields, AMeshOfTenFacesIsNoTrouble) {
