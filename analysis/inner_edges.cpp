@@ -15,8 +15,10 @@ namespace {
 
 constexpr int kDraws = 60;
 constexpr std::size_t kLeastContacts = 4;
-/// A curve is taken only when it leaves less than this share of the line's squared distances.
-constexpr double kCurveGain = 0.6;
+/// A curve is taken only when it explains so much more than the line.
+constexpr double kCurveGain = 1.1;
+/// A bow is told from a line by less than what tells contacts from strays.
+constexpr double kCurveTolerance = 0.6;
 /// Scatter below this is not believed: the mesh samples no finer.
 constexpr double kFloorMm = 0.004;
 constexpr double kFloorRad = 0.005;
@@ -186,34 +188,64 @@ Eigen::Vector3d shared_point(const WedgeFaces& faces, const std::array<std::opti
   return covariance * right;
 }
 
-/// Middle of the quadratic through `at` that fits the contacts, off its chord; 0 where a line does.
-double bow_of(const Line& line, const Eigen::Vector3d& at, double extent_mm) {
-  if (line.inliers.size() < 3 * kLeastContacts) {
+/// A curve through the shared point: off the line by a t + b t², t along it.
+struct Curve {
+  Eigen::Vector3d a{0, 0, 0}, b{0, 0, 0};
+  [[nodiscard]] Eigen::Vector3d off(double t) const { return t * a + t * t * b; }
+};
+
+/// How well a curve explains the contacts; as ransac_line() scores lines.
+double score_of(const std::vector<Contact>& contacts, const Line& line, const Curve& curve, double tolerance_mm) {
+  double score = 0;
+  for (const Contact& c : contacts) {
+    const Eigen::Vector3d to = c.p - line.point;
+    const double t = to.dot(line.direction);
+    const double u = (to - t * line.direction - curve.off(t)).norm() / tolerance_mm;
+    score += u < 1 ? c.weight * (1 - u * u) : 0.0;
+  }
+  return score;
+}
+
+/// Middle of the curve that explains the contacts clearly better than the line does, off its chord; 0 where none
+/// does. `line` goes through the shared point.
+double bow_of(const std::vector<Contact>& contacts, const Line& line, double tolerance_mm, double* extent_mm,
+              Random random) {
+  if (contacts.size() < 3 * kLeastContacts) {
     return 0;
   }
-  // off(t) = a t + b t², both across the line.
-  Eigen::Matrix2d normal = Eigen::Matrix2d::Zero();
-  Eigen::Matrix<double, 2, 3> right = Eigen::Matrix<double, 2, 3>::Zero();
-  for (const Contact& c : line.inliers) {
-    const double t = (c.p - at).dot(line.direction);
-    const Eigen::Vector3d off = c.p - at - t * line.direction;
-    const Eigen::Vector2d basis(t, t * t);
-    normal += c.weight * basis * basis.transpose();
-    right += c.weight * basis * off.transpose();
+  const double straight = score_of(contacts, line, {}, tolerance_mm);
+  Curve best;
+  double best_score = 0;
+  for (int draw = 0; draw < kDraws; ++draw) {
+    const Eigen::Vector3d p = contacts[random.below(contacts.size())].p - line.point;
+    const Eigen::Vector3d q = contacts[random.below(contacts.size())].p - line.point;
+    const double s = p.dot(line.direction);
+    const double t = q.dot(line.direction);
+    if (s < 3 * tolerance_mm || std::abs(t - s) < 3 * tolerance_mm || t < 3 * tolerance_mm) {
+      continue;
+    }
+    const Eigen::Vector3d off_s = (p - s * line.direction) / s;
+    const Eigen::Vector3d off_t = (q - t * line.direction) / t;
+    const Eigen::Vector3d bend = (off_t - off_s) / (t - s);
+    const Curve curve{off_s - s * bend, bend};
+    if (const double score = score_of(contacts, line, curve, tolerance_mm); score > best_score) {
+      best_score = score;
+      best = curve;
+    }
   }
-  if (!(normal.determinant() > 1e-12)) {
+  if (best_score < kCurveGain * straight) {
     return 0;
   }
-  const Eigen::Matrix<double, 2, 3> curve = normal.inverse() * right;
-  double straight = 0;
-  double bent = 0;
-  for (const Contact& c : line.inliers) {
-    const double t = (c.p - at).dot(line.direction);
-    const Eigen::Vector3d off = c.p - at - t * line.direction;
-    straight += c.weight * off.squaredNorm();
-    bent += c.weight * (off - t * curve.row(0).transpose() - t * t * curve.row(1).transpose()).squaredNorm();
+  double extent = 0;
+  for (const Contact& c : contacts) {
+    const Eigen::Vector3d to = c.p - line.point;
+    const double t = to.dot(line.direction);
+    if ((to - t * line.direction - best.off(t)).norm() < tolerance_mm) {
+      extent = std::max(extent, t);
+    }
   }
-  return bent < kCurveGain * straight ? 0.25 * extent_mm * extent_mm * curve.row(1).norm() : 0.0;
+  *extent_mm = std::max(*extent_mm, extent);
+  return 0.25 * extent * extent * best.b.norm();
 }
 
 }  // namespace
@@ -244,7 +276,8 @@ InnerEdges find_inner_edges(const WedgePatch& patch, const WedgeFaces& faces) {
       }
       edge.contacts = static_cast<std::uint32_t>(line.inliers.size());
       edge.rms_mm = line.rms_mm;
-      edge.bow_mm = bow_of(line, out.depth_point, edge.extent_mm);
+      edge.bow_mm = bow_of(contacts[k], line, kCurveTolerance * tolerance_mm, &edge.extent_mm,
+                           Random(seed_for(patch.vertex.front(), 3 + k)));
       const double w_line = 1.0 / (line.sigma_rad * line.sigma_rad);
       const double w_planes = 1.0 / (sigma_planes * sigma_planes);
       edge.direction = (w_line * line.direction + w_planes * faces.edge[k]).normalized();

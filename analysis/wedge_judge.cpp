@@ -150,7 +150,12 @@ std::string out_of_bounds(const JudgeOptions& options, const WedgeCandidate& c) 
   if (w.depth_mm < options.min_depth_mm || w.depth_mm > options.max_depth_mm) {
     return w.depth_mm < options.min_depth_mm ? "too shallow" : "too deep";
   }
-  const auto [shortest, longest] = std::ranges::minmax(w.edge_lengths_mm);
+  // Whatever definition of the exit points the user wants to read: what is a wedge does not hang on it.
+  std::array<double, 3> length{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    length[k] = (w.exit_points_surface_mm[k] - w.depth_point_mm).norm();
+  }
+  const auto [shortest, longest] = std::ranges::minmax(length);
   if (shortest < options.min_edge_mm || longest > options.max_edge_mm) {
     return "an inner edge is too short or too long";
   }

@@ -20,6 +20,10 @@ std::string wedges_to_json(const WedgeFile& file) {
   root["unit"] = "mm";
   root["mesh"] = file.mesh;
   root["exit"] = kExits[static_cast<std::size_t>(file.exits)];
+  if (file.text_from_model) {
+    root["text_from_model"] = json_of(*file.text_from_model);
+    root["text_certainty"] = file.text_certainty;
+  }
   root["wedges"] = OrderedJson::array();
   for (const Wedge& wedge : file.wedges) {
     OrderedJson json = wedge_json(wedge);
@@ -57,6 +61,10 @@ Result<WedgeFile> parse_wedges(std::string_view text, const std::string& where) 
   }
   if (const auto exits = root.find("exit")) {
     file.exits = static_cast<ExitDefinition>(exits->one_of(kExits));
+  }
+  if (const auto frame = root.find("text_from_model")) {
+    file.text_from_model = frame->transform(mm);
+    file.text_certainty = root.at("text_certainty").number(0, 1);
   }
   for (const JsonNode& node : root.at("wedges").items()) {
     file.wedges.push_back(wedge_from(node, mm));

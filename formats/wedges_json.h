@@ -3,12 +3,14 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "core/result.h"
+#include "core/rigid_transform.h"
 #include "core/wedge.h"
 
 namespace dubsar {
@@ -19,6 +21,9 @@ struct WedgeFile {
   ExitDefinition exits = ExitDefinition::kSurface;
   std::vector<Wedge> wedges;
   std::vector<RejectedWedge> rejected;
+  /// Text's frame: x to the reader's right, y up the obverse, z out of it (analysis/text_frame.h).
+  std::optional<RigidTransform> text_from_model;
+  double text_certainty = 0;
   std::vector<std::pair<std::string, double>> timings_s;
 };
 

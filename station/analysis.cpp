@@ -54,6 +54,11 @@ Result<Analysis> analyze_mesh(const Mesh& mesh, const AnalysisOptions& options, 
     return std::unexpected(set.error());
   }
   analysis.set = *std::move(set);
+  const auto placing = std::chrono::steady_clock::now();
+  analysis.text = find_text_frame(mesh, analysis.set.wedges);
+  place_wedges(analysis.text, &analysis.set.wedges);
+  analysis.timings_s.emplace_back(
+      "text frame", std::chrono::duration<double>(std::chrono::steady_clock::now() - placing).count());
   return analysis;
 }
 
@@ -63,6 +68,8 @@ WedgeFile wedge_file(std::string mesh_name, const AnalysisOptions& options, cons
   file.exits = options.wedges.exits;
   file.wedges = analysis.set.wedges;
   file.rejected = analysis.set.rejected;
+  file.text_from_model = analysis.text.text_from_model;
+  file.text_certainty = analysis.text.certainty;
   file.timings_s = analysis.timings_s;
   return file;
 }

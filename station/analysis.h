@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "analysis/surface_fields.h"
+#include "analysis/text_frame.h"
 #include "analysis/wedges.h"
 #include "core/job.h"
 #include "core/mesh.h"
@@ -24,6 +25,7 @@ struct AnalysisOptions {
 struct Analysis {
   SurfaceFields fields;
   WedgeSet set;
+  TextFrame text;
   StageTimes timings_s;  ///< in the order of the work
 };
 

@@ -10,6 +10,7 @@
 #include <memory>
 
 #include "analysis/tablet_size.h"
+#include "archive/wedge_drawing.h"
 #include "core/units.h"
 #include "formats/mesh_io.h"
 #include "station/analysis.h"
@@ -31,6 +32,7 @@ struct AnalyzeArguments {
   double radius_mm = 1.0;
   SurfaceFieldOptions fields;
   bool uniform_weights = false;
+  std::string svg;
   bool classical = false;
 };
 
@@ -49,6 +51,19 @@ nlohmann::ordered_json summary_json(const AnalyzeArguments& arguments, const Wed
   return json;
 }
 
+/// The surface fields, and the wedges in colours, each as PLY and as PNG of six views.
+Status draw_pictures(const std::filesystem::path& folder, const Mesh& mesh, const Analysis& analysis,
+                     const JobContext& job) {
+  if (Status drawn = write_field_pictures(folder, mesh, analysis.fields, job); !drawn) {
+    return drawn;
+  }
+  const Mesh coloured = annotated_mesh(mesh, analysis);
+  if (Status written = write_mesh(folder / "wedges.ply", coloured); !written) {
+    return written;
+  }
+  return write_six_view_picture(folder / "wedges.png", coloured, job);
+}
+
 /// Nobody presses a stylus into a tablet a tenth of a millimetre across: without --unit its numbers are
 /// something else.
 Status check_size(const AnalyzeArguments& arguments, const Mesh& mesh) {
@@ -63,15 +78,15 @@ Status check_size(const AnalyzeArguments& arguments, const Mesh& mesh) {
                                *likelier, *likelier));
 }
 
-Status write_extras(const AnalyzeArguments& arguments, const Mesh& mesh, const SurfaceFields& fields,
+Status write_extras(const AnalyzeArguments& arguments, const Mesh& mesh, const Analysis& analysis,
                     const JobContext& job) {
   if (!arguments.pictures.empty()) {
-    if (const Status written = write_field_pictures(arguments.pictures, mesh, fields, job); !written) {
+    if (const Status written = draw_pictures(arguments.pictures, mesh, analysis, job); !written) {
       return written;
     }
   }
   if (!arguments.invariants.empty()) {
-    return write_invariants(arguments.invariants, arguments.pictures, mesh, fields,
+    return write_invariants(arguments.invariants, arguments.pictures, mesh, analysis.fields,
                             {.radius_mm = arguments.radius_mm}, job);
   }
   return {};
@@ -106,7 +121,8 @@ Result<int> analyze(const AnalyzeArguments& arguments, CommandContext& context) 
     return std::unexpected(std::move(error));
   }
   analysis->timings_s.insert(analysis->timings_s.begin(), {"reading", reading_s});
-  analysis->timings_s.emplace_back("all", seconds_since(start));
+  const double took_s = seconds_since(start);
+  analysis->timings_s.emplace_back("all", took_s);
   const WedgeFile file =
       wedge_file(std::filesystem::path(arguments.in).filename().string(), options, *analysis);
   if (const Status written = write_wedges(arguments.out, file); !written) {
@@ -117,7 +133,13 @@ Result<int> analyze(const AnalyzeArguments& arguments, CommandContext& context) 
       return std::unexpected(written.error());
     }
   }
-  if (const Status written = write_extras(arguments, *mesh, analysis->fields, context.job); !written) {
+  if (!arguments.svg.empty()) {
+    const auto drawn = write_wedge_drawings(arguments.svg, file.wedges, *file.text_from_model, file.mesh);
+    if (!drawn) {
+      return std::unexpected(drawn.error());
+    }
+  }
+  if (const Status written = write_extras(arguments, *mesh, *analysis, context.job); !written) {
     return std::unexpected(written.error());
   }
   if (context.json) {
@@ -127,10 +149,10 @@ Result<int> analyze(const AnalyzeArguments& arguments, CommandContext& context) 
   finish_progress();
   if (file.wedges.empty()) {
     std::printf("%s: no wedges (%zu hollows looked at), %.1f s\n", arguments.out.c_str(),
-                file.rejected.size(), seconds_since(start));
+                file.rejected.size(), took_s);
   } else {
     std::printf("%s: %zu wedges, %zu hollows rejected, %.1f s\n", arguments.out.c_str(), file.wedges.size(),
-                file.rejected.size(), seconds_since(start));
+                file.rejected.size(), took_s);
   }
   return 0;
 }
@@ -149,7 +171,7 @@ void add_analyze(CLI::App& app, Action& chosen) {
   verb->add_option("--unit", arguments->unit, "what the file's numbers are")
       ->check(CLI::IsMember({"m", "mm", "um"}));
   verb->add_option("--pictures", arguments->pictures,
-                   "a folder for the surface fields as coloured PLY and PNG");
+                   "a folder for the surface fields and the wedges as coloured PLY and PNG");
   verb->add_option("--free-openness", arguments->fields.free_surface.least_openness,
                    "free surface: at least this open, 0 to 1; unset: told by the mesh")
       ->check(CLI::Range(0.0, 1.0));
@@ -174,6 +196,7 @@ void add_analyze(CLI::App& app, Action& chosen) {
   verb->add_option("--invariant-radius", arguments->radius_mm, "mm, of their largest sphere")
       ->check(CLI::Range(0.05, 50.0))
       ->capture_default_str();
+  verb->add_option("--svg", arguments->svg, "a folder for one drawing to scale of each side that has wedges");
   verb->add_flag("--classical-watershed", arguments->classical, "the textbook watershed, for comparison");
   verb->callback(
       [&chosen, arguments] { chosen = [arguments](CommandContext& c) { return analyze(*arguments, c); }; });

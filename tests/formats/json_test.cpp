@@ -9,6 +9,7 @@
 #include "formats/red_map_json.h"
 #include "formats/sign_off_json.h"
 #include "formats/truth_json.h"
+#include "formats/wedges_json.h"
 #include "tests/formats/format_support.h"
 
 namespace dubsar {
@@ -249,6 +250,59 @@ TEST(TruthJson, ReadsBackInDegreesAtTheSurface) {
   EXPECT_EQ(w.intact, 0.9);
   EXPECT_THAT(line_of(parse_truth(R"({"wedges":[{"id":0,"depth_point":[0,0,0],"inner_edges":[]}]})", "t")),
               HasSubstr("t: wedges[0].inner_edges has 0 entries, not 3"));
+}
+
+TEST(WedgesJson, ReadsBackAllThatWasMeasured) {
+  WedgeFile file;
+  file.mesh = "tablet.ply";
+  file.exits = ExitDefinition::kExtent;
+  file.text_from_model = RigidTransform::from_twist({0.1, 0.2, 0.3}, {1, 2, 3});
+  file.text_certainty = 0.5;
+  Wedge wedge;
+  wedge.id = 3;
+  wedge.exit_points_surface_mm = {Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(0, 1, 0), Eigen::Vector3d(0, 0, 1)};
+  wedge.exit_points_extent_mm = {Eigen::Vector3d(2, 0, 0), Eigen::Vector3d(0, 2, 0), Eigen::Vector3d(0, 0, 2)};
+  wedge.directional_by = DirectionalBy::kFlattest;
+  wedge.directional_margin = 0.25;
+  wedge.surface_normal = {0, 1, 0};
+  wedge.edge_lengths_mm = {3, 2, 1};
+  wedge.edge_bows_mm = {0.5, 0, 0};
+  wedge.volume_mm3 = 0.125;
+  wedge.sigma.depth_point_mm = 0.01;
+  wedge.sigma.opening_rad = {0.1, 0.2, 0.3};
+  wedge.place = {Face::kReverse, 4, 17, -1.5};
+  file.wedges = {wedge, Wedge{}};
+  file.rejected = {{"too shallow", {7, 8, 9}}};
+  file.timings_s = {{"reading", 0.5}};
+  const std::string text = wedges_to_json(file);
+  EXPECT_THAT(text, HasSubstr("\"exit_point_surface\""));
+  EXPECT_THAT(text, HasSubstr("\"timings_s\""));
+  const auto back = parse_wedges(text, "w");
+  ASSERT_TRUE(back) << line_of(back);
+  EXPECT_EQ(back->mesh, file.mesh);
+  EXPECT_EQ(back->exits, ExitDefinition::kExtent);
+  ASSERT_TRUE(back->text_from_model);
+  EXPECT_EQ(back->text_from_model->translation_mm, Eigen::Vector3d(1, 2, 3));
+  ASSERT_EQ(back->wedges.size(), 2U);
+  const Wedge& w = back->wedges[0];
+  EXPECT_EQ(w.exit_points_surface_mm, wedge.exit_points_surface_mm);
+  EXPECT_EQ(w.exit_points_extent_mm, wedge.exit_points_extent_mm);
+  EXPECT_EQ(w.directional_by, DirectionalBy::kFlattest);
+  EXPECT_EQ(w.directional_margin, 0.25);
+  EXPECT_EQ(w.edge_lengths_mm, wedge.edge_lengths_mm);
+  EXPECT_EQ(w.edge_bows_mm, wedge.edge_bows_mm);
+  EXPECT_EQ(w.volume_mm3, 0.125);
+  EXPECT_NEAR(w.sigma.opening_rad[2], 0.3, 1e-14);
+  EXPECT_EQ(w.place.side, Face::kReverse);
+  EXPECT_EQ(w.place.line, 4);
+  EXPECT_EQ(w.place.order, 17);
+  EXPECT_FALSE(back->wedges[1].place.side);
+  ASSERT_EQ(back->rejected.size(), 1U);
+  EXPECT_EQ(back->rejected[0].reason, "too shallow");
+  // What only the contract asks for is enough.
+  EXPECT_TRUE(parse_wedges(truth_to_json({}), "t"));
+  EXPECT_THAT(line_of(parse_wedges("{}", "w")), HasSubstr("w: wedges is missing"));
+  EXPECT_THAT(line_of(parse_wedges(R"({"exit":"middle","wedges":[]})", "w")), HasSubstr("exit is 'middle'"));
 }
 
 TEST(ChecklistJson, ReadsBack) {

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "archive/wedge_drawing.h"
+
+#include <fmt/printf.h>
+
+#include <algorithm>
+#include <array>
+#include <system_error>
+
+#include "archive/html.h"
+#include "core/tablet_sides.h"
+#include "core/units.h"
+#include "formats/atomic_file.h"
+
+namespace dubsar {
+
+namespace {
+
+constexpr double kMarginMm = 3;
+constexpr double kFooterMm = 8;
+constexpr double kScaleMm = 10;
+
+/// The sheet: x to the right, y down, mm, from the upper left corner of what is drawn.
+struct Sheet {
+  const SideAxes& axes;
+  const RigidTransform& text_from_model;
+  double left = 0, top = 0, width = 0, height = 0;
+  [[nodiscard]] Eigen::Vector2d at(const Eigen::Vector3d& p_model) const {
+    const Eigen::Vector3d p = text_from_model * p_model;
+    return {p.dot(axes.right) - left, top - p.dot(axes.up())};
+  }
+};
+
+std::string attributes(const Wedge& w) {
+  const auto directional = static_cast<std::size_t>(w.directional_edge);
+  return fmt::sprintf(" data-id=\"%d\" data-line=\"%d\" data-order=\"%d\" data-confidence=\"%.3f\" data-depth-mm=\"%.3f\" "
+               "data-length-mm=\"%.3f\" data-turn-deg=\"%.1f\" data-volume-mm3=\"%.4f\"",
+               w.id, w.place.line, w.place.order, w.confidence, w.depth_mm, w.edge_lengths_mm[directional],
+               deg_from_rad(w.place.turn_rad), w.volume_mm3);
+}
+
+std::string numbers(const Wedge& w) {
+  const auto deg = [](double rad) { return deg_from_rad(rad); };
+  return fmt::sprintf("wedge %d, line %d, %d: depth %.2f mm, edges %.2f %.2f %.2f mm, face angles %.0f %.0f %.0f, opening "
+               "angles %.0f %.0f %.0f degrees, confidence %.2f",
+               w.id, w.place.line, w.place.order, w.depth_mm, w.edge_lengths_mm[0], w.edge_lengths_mm[1],
+               w.edge_lengths_mm[2], deg(w.face_angles_rad[0]), deg(w.face_angles_rad[1]), deg(w.face_angles_rad[2]),
+               deg(w.opening_angles_rad[0]), deg(w.opening_angles_rad[1]), deg(w.opening_angles_rad[2]), w.confidence);
+}
+
+std::string group(const Sheet& sheet, const Wedge& w) {
+  const Eigen::Vector2d tip = sheet.at(w.depth_point_mm);
+  std::array<Eigen::Vector2d, 3> corner;
+  for (std::size_t k = 0; k < 3; ++k) {
+    corner[k] = sheet.at(w.outer_vertices_mm[k]);
+  }
+  std::string out = "<g id=\"wedge-" + std::to_string(w.id) + "\" class=\"wedge\"" + attributes(w) + ">\n<title>" +
+                    html_escaped(numbers(w)) + "</title>\n";
+  out += fmt::sprintf("<path class=\"outer\" d=\"M%.3f %.3fL%.3f %.3fL%.3f %.3fZ\"/>\n", corner[0].x(), corner[0].y(),
+               corner[1].x(), corner[1].y(), corner[2].x(), corner[2].y());
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Eigen::Vector2d end = sheet.at(w.exit_points_mm[k]);
+    out += fmt::sprintf("<path class=\"%s\" d=\"M%.3f %.3fL%.3f %.3f\"/>\n",
+                 static_cast<int>(k) == w.directional_edge ? "inner directional" : "inner", tip.x(), tip.y(), end.x(),
+                 end.y());
+  }
+  return out + "</g>\n";
+}
+
+bool is_on(const Wedge& wedge, Face side) {
+  return wedge.place.side && *wedge.place.side == side;
+}
+
+}  // namespace
+
+std::string wedge_drawing(Face side, const std::vector<Wedge>& wedges, const RigidTransform& text_from_model,
+                          const std::string& title) {
+  Sheet sheet{side_axes(side), text_from_model};
+  double left = 1e30;
+  double right = -1e30;
+  double low = 1e30;
+  double high = -1e30;
+  for (const Wedge& wedge : wedges) {
+    if (!is_on(wedge, side)) {
+      continue;
+    }
+    const auto widen = [&](const Eigen::Vector3d& p_model) {
+      const Eigen::Vector2d p = sheet.at(p_model);
+      left = std::min(left, p.x());
+      right = std::max(right, p.x());
+      low = std::min(low, -p.y());
+      high = std::max(high, -p.y());
+    };
+    widen(wedge.depth_point_mm);
+    for (std::size_t k = 0; k < 3; ++k) {
+      widen(wedge.outer_vertices_mm[k]);
+      widen(wedge.exit_points_mm[k]);
+    }
+  }
+  if (left > right) {
+    left = right = low = high = 0;
+  }
+  sheet.left = left - kMarginMm;
+  sheet.top = high + kMarginMm;
+  sheet.width = std::max(right - left, kScaleMm) + 2 * kMarginMm;
+  sheet.height = high - low + 2 * kMarginMm + kFooterMm;
+  std::string out = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n";
+  out += fmt::sprintf("<svg xmlns=\"http://www.w3.org/2000/svg\" version=\"1.1\" width=\"%.3fmm\" height=\"%.3fmm\" "
+               "viewBox=\"0 0 %.3f %.3f\">\n",
+               sheet.width, sheet.height, sheet.width, sheet.height);
+  out += "<title>" + html_escaped(title) + ", " + to_string(side) + "</title>\n";
+  out +=
+      "<style>.outer{fill:#e8e4dc;stroke:#000;stroke-width:.08;stroke-linejoin:round}"
+      ".inner{fill:none;stroke:#000;stroke-width:.06;stroke-linecap:round}.directional{stroke-width:.16}"
+      ".scale{fill:none;stroke:#000;stroke-width:.2}text{font:2.2px sans-serif}</style>\n";
+  for (const Wedge& wedge : wedges) {
+    out += is_on(wedge, side) ? group(sheet, wedge) : std::string();
+  }
+  const double y = sheet.height - kFooterMm + 2;
+  out += fmt::sprintf("<path class=\"scale\" d=\"M%.3f %.3fv1h%.3fv-1\"/>\n", kMarginMm, y, kScaleMm);
+  out += fmt::sprintf("<text x=\"%.3f\" y=\"%.3f\">10 mm</text>\n", kMarginMm, y + 4);
+  return out + "</svg>\n";
+}
+
+Result<std::vector<std::filesystem::path>> write_wedge_drawings(const std::filesystem::path& folder,
+                                                                const std::vector<Wedge>& wedges,
+                                                                const RigidTransform& text_from_model,
+                                                                const std::string& title) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) {
+    return fail(ErrorKind::kStorage, "cannot make the folder: " + error.message(), folder.string(),
+                "choose another place");
+  }
+  std::vector<std::filesystem::path> files;
+  for (int f = 0; f < kFaceCount; ++f) {
+    const auto side = static_cast<Face>(f);
+    if (std::ranges::none_of(wedges, [&](const Wedge& w) { return is_on(w, side); })) {
+      continue;
+    }
+    const std::filesystem::path path = folder / (std::string(to_string(side)) + ".svg");
+    if (const Status written = write_file_atomically(path, wedge_drawing(side, wedges, text_from_model, title));
+        !written) {
+      return std::unexpected(written.error());
+    }
+    files.push_back(path);
+  }
+  return files;
+}
+
+}  // namespace dubsar

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "archive/wedge_drawing.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "formats/atomic_file.h"
+#include "tests/support/temporary_folder.h"
+
+namespace dubsar {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+Wedge wedge_at(int id, Face side, double x, double y, double z) {
+  Wedge wedge;
+  wedge.id = id;
+  wedge.place = {side, 1, id + 1, 0.0};
+  wedge.depth_point_mm = {x, y, z - 0.5};
+  wedge.exit_points_mm = {Eigen::Vector3d(x + 2, y, z), Eigen::Vector3d(x - 0.5, y + 0.5, z),
+                          Eigen::Vector3d(x - 0.5, y - 0.5, z)};
+  wedge.outer_vertices_mm = wedge.exit_points_mm;
+  return wedge;
+}
+
+TEST(WedgeDrawing, IsToScaleWithOneGroupPerWedgeOfTheSide) {
+  const std::vector<Wedge> wedges = {wedge_at(0, Face::kObverse, 0, 0, 5), wedge_at(1, Face::kObverse, 10, 4, 5),
+                                     wedge_at(2, Face::kReverse, 3, 0, -5)};
+  const std::string svg = wedge_drawing(Face::kObverse, wedges, {}, "K. 1 <a & b>");
+  // 12.5 mm from the first wedge's head to the second one's tail, 3 mm of margin on each side.
+  EXPECT_THAT(svg, HasSubstr("width=\"18.500mm\""));
+  EXPECT_THAT(svg, HasSubstr("viewBox=\"0 0 18.500 19.000\""));
+  EXPECT_THAT(svg, HasSubstr("<g id=\"wedge-0\""));
+  EXPECT_THAT(svg, HasSubstr("<g id=\"wedge-1\""));
+  EXPECT_THAT(svg, Not(HasSubstr("<g id=\"wedge-2\"")));
+  EXPECT_THAT(svg, HasSubstr("K. 1 &lt;a &amp; b&gt;, obverse"));
+  // Up is up: the second wedge, higher on the tablet, is nearer to the sheet's top.
+  EXPECT_THAT(svg, HasSubstr("M13.500 3.500L15.500 3.500"));
+  EXPECT_THAT(svg, HasSubstr("M3.500 7.500L5.500 7.500"));
+}
+
+TEST(WedgeDrawing, WritesASheetForEachSideThatHasWedges) {
+  const test::TemporaryFolder folder;
+  const std::vector<Wedge> wedges = {wedge_at(0, Face::kObverse, 0, 0, 5), wedge_at(2, Face::kReverse, 3, 0, -5)};
+  const auto files = write_wedge_drawings(folder.path() / "svg", wedges, {}, "t");
+  ASSERT_TRUE(files);
+  ASSERT_EQ(files->size(), 2U);
+  EXPECT_EQ((*files)[1].filename(), "reverse.svg");
+  EXPECT_TRUE(read_whole_file((*files)[0], 1U << 20U));
+  EXPECT_TRUE(write_wedge_drawings(folder.path() / "none", {}, {}, "t")->empty());
+}
+
+}  // namespace
+}  // namespace dubsar

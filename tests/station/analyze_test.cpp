@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+// dubsar analyze: from the mesh file to wedges.json, and what it says to meshes that hold none.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "formats/mesh_io.h"
+#include "formats/truth_json.h"
+#include "formats/wedges_json.h"
+#include "tests/station/support/command.h"
+#include "tests/support/temporary_folder.h"
+
+namespace dubsar {
+namespace {
+
+using test::Outcome;
+using test::run_command;
+using ::testing::HasSubstr;
+
+TEST(AnalyzeCommand, FindsTheWedgesOfASimulatedTablet) {
+  const test::TemporaryFolder folder;
+  const auto at = [&](const char* name) { return (folder.path() / name).string(); };
+  ASSERT_EQ(run_command({"simulate", "tablet", "--seed", "3", "--size", "24x20x10", "--spacing", "0.1", "-o",
+                         at("t")})
+                .status,
+            0);
+  const Outcome outcome = run_command({"--json", "analyze", at("t/tablet.ply"), "-o", at("wedges.json"), "--mesh-out",
+                                       at("annotated.ply"), "--svg", at("svg")});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  ASSERT_TRUE(outcome.json().is_object()) << outcome.out;
+  const auto file = read_wedges(at("wedges.json"));
+  ASSERT_TRUE(file) << file.error().line();
+  const auto truth = read_truth(at("t/truth.json"));
+  ASSERT_TRUE(truth);
+  EXPECT_EQ(outcome.json()["count"], file->wedges.size());
+  EXPECT_EQ(file->mesh, "tablet.ply");
+  int whole = 0;
+  int found = 0;
+  for (const Wedge& wedge : truth->wedges) {
+    if (wedge.intact < 0.6) {
+      continue;
+    }
+    ++whole;
+    found += std::ranges::any_of(file->wedges, [&](const Wedge& w) {
+      return (w.depth_point_mm - wedge.depth_point_mm).norm() < 0.2;
+    });
+  }
+  ASSERT_GT(whole, 30);
+  EXPECT_GE(found, 0.9 * whole);
+  const auto annotated = read_mesh(at("annotated.ply"));
+  ASSERT_TRUE(annotated);
+  EXPECT_EQ(annotated->colours.size(), annotated->positions.size());
+  EXPECT_TRUE(std::filesystem::exists(folder.path() / "svg" / "obverse.svg"));
+
+  // The other exit definition changes the exits, and nothing else.
+  ASSERT_EQ(run_command({"analyze", at("t/tablet.ply"), "-o", at("extent.json"), "--exit", "extent"}).status, 0);
+  const auto extent = read_wedges(at("extent.json"));
+  ASSERT_TRUE(extent);
+  ASSERT_EQ(extent->wedges.size(), file->wedges.size());
+  EXPECT_EQ(extent->wedges[0].exit_points_mm, extent->wedges[0].exit_points_extent_mm);
+  EXPECT_EQ(file->wedges[0].exit_points_mm, file->wedges[0].exit_points_surface_mm);
+  EXPECT_EQ(extent->wedges[0].depth_point_mm, file->wedges[0].depth_point_mm);
+}
+
+TEST(AnalyzeCommand, SaysPlainlyThatThereAreNone) {
+  const test::TemporaryFolder folder;
+  const auto at = [&](const char* name) { return (folder.path() / name).string(); };
+  std::ofstream(at("ten.obj")) << "v 0 0 0\nv 30 0 0\nv 30 30 0\nv 0 30 0\nv 15 15 9\n"
+                                  "f 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\nf 1 3 2\nf 1 4 3\n";
+  const Outcome outcome = run_command({"analyze", at("ten.obj"), "-o", at("w.json")});
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("no wedges"));
+  const auto file = read_wedges(at("w.json"));
+  ASSERT_TRUE(file);
+  EXPECT_TRUE(file->wedges.empty());
+}
+
+TEST(AnalyzeCommand, AsksForTheUnitAndRefusesWhatIsNoMesh) {
+  const test::TemporaryFolder folder;
+  const auto at = [&](const char* name) { return (folder.path() / name).string(); };
+  std::ofstream(at("metres.obj")) << "v 0 0 0\nv .03 0 0\nv .03 .03 0\nv 0 .03 0\nv .015 .015 .009\n"
+                                     "f 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\nf 1 3 2\nf 1 4 3\n";
+  EXPECT_THAT(run_command({"analyze", at("metres.obj"), "-o", at("w.json")}).err, HasSubstr("--unit m"));
+  EXPECT_EQ(run_command({"analyze", at("metres.obj"), "-o", at("w.json"), "--unit", "cubit"}).status, 2);
+  EXPECT_EQ(run_command({"analyze", at("nowhere.ply"), "-o", at("w.json")}).status, 2);
+  EXPECT_EQ(run_command({"analyze", at("metres.obj")}).status, 2);
+  std::ofstream(at("empty.obj")) << "v 0 0 0\n";
+  const Outcome empty = run_command({"analyze", at("empty.obj"), "-o", at("w.json")});
+  EXPECT_EQ(empty.status, 2) << empty.err;
+}
+
+}  // namespace
+}  // namespace dubsar
