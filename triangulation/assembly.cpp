@@ -3,8 +3,10 @@
 #include "triangulation/assembly.h"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <numeric>
+#include <set>
 #include <span>
 
 #include "triangulation/front.h"
@@ -224,14 +226,55 @@ std::vector<std::uint8_t> close_everything(Draft& draft, const AssemblyOptions& 
   return touched;
 }
 
+/// self_intersections() of the faces around the marked vertices.
+std::vector<std::pair<std::uint32_t, std::uint32_t>> intersections_near(
+    const Sheet& sheet, const std::vector<std::uint8_t>& marked) {
+  constexpr double kAroundSpacings = 8.0;
+  double reach_mm = 0;
+  for (std::size_t v = 0; v < marked.size(); ++v) {
+    reach_mm = marked[v] != 0 ? std::max(reach_mm, kAroundSpacings * static_cast<double>(sheet.spacing_mm[v]))
+                              : reach_mm;
+  }
+  std::set<std::array<int, 3>> cells;
+  const auto cell_of = [&](const Vector3f& p) {
+    return std::array<int, 3>{static_cast<int>(std::floor(p.x() / reach_mm)),
+                              static_cast<int>(std::floor(p.y() / reach_mm)),
+                              static_cast<int>(std::floor(p.z() / reach_mm))};
+  };
+  for (std::size_t v = 0; v < marked.size(); ++v) {
+    if (marked[v] != 0) {
+      const auto [x, y, z] = cell_of(sheet.positions[v]);
+      for (int n = 0; n < 27; ++n) {
+        cells.insert({x + n % 3 - 1, y + n / 3 % 3 - 1, z + n / 9 - 1});
+      }
+    }
+  }
+  std::vector<Triangle> near;
+  std::vector<std::uint32_t> index;
+  for (std::uint32_t f = 0; f < sheet.faces.size(); ++f) {
+    if (cells.contains(cell_of(sheet.positions[sheet.faces[f][0]]))) {
+      near.push_back(sheet.faces[f]);
+      index.push_back(f);
+    }
+  }
+  auto pairs = self_intersections(sheet.positions, near);
+  for (auto& [a, b] : pairs) {
+    a = index[a];
+    b = index[b];
+  }
+  return pairs;
+}
+
 /// Takes out faces that cut through each other, with those around them, and closes the place anew; what still
 /// cuts at the end goes for good. Adds to the suspects of close_everything().
 void repair_self_intersections(Draft& draft, const AssemblyOptions& options,
                                std::vector<std::uint8_t>& suspects) {
   constexpr int kTries = 3;
+  std::vector<std::uint8_t> bad;
   for (int attempt = 0;; ++attempt) {
-    std::vector<std::uint8_t> bad(draft.sheet.positions.size(), 0);
-    const auto pairs = self_intersections(draft.sheet.positions, draft.sheet.faces);
+    const auto pairs = attempt == 0 ? self_intersections(draft.sheet.positions, draft.sheet.faces)
+                                    : intersections_near(draft.sheet, bad);
+    bad.assign(draft.sheet.positions.size(), 0);
     if (pairs.empty()) {
       return;
     }
@@ -302,8 +345,16 @@ Mesh assemble(const std::vector<OwnedScan>& scans, const AssemblyOptions& option
   for (const OwnedScan& scan : scans) {
     add_patch(scan, draft);
   }
-  std::vector<std::uint8_t> suspects = close_everything(draft, options);
-  repair_self_intersections(draft, options, suspects);
+  AssemblyOptions closing = options;
+  closing.gap.seen = [&scans](const Vector3f& p_mm, float radius_mm) {
+    return std::any_of(scans.begin(), scans.end(), [&](const OwnedScan& scan) {
+      const StitchSurface& s = *scan.surface;
+      const Vector3f p = (s.scanner_from_model * p_mm.cast<double>()).cast<float>();
+      return s.lookup->nearest(p, radius_mm) >= 0;
+    });
+  };
+  std::vector<std::uint8_t> suspects = close_everything(draft, closing);
+  repair_self_intersections(draft, closing, suspects);
 
   Mesh mesh;
   mesh.faces = std::move(draft.sheet.faces);
