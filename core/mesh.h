@@ -20,6 +20,7 @@ struct Mesh {
   std::vector<std::array<std::uint32_t, 3>> faces;   ///< [F], indices into positions
   std::vector<Eigen::Vector3f> normals;              ///< [V] unit, or empty
   std::vector<float> reliability;                    ///< [V] in [0,1], or empty
+  std::vector<float> sigma_mm;                       ///< [V] standard deviation along the normal, or empty
   std::vector<std::uint8_t> scans;                   ///< [V] how many scans support it, or empty
   std::vector<std::uint8_t> flags;                   ///< [V] VertexFlag bits, or empty
   std::vector<std::array<std::uint8_t, 3>> colours;  ///< [V] RGB, or empty

@@ -37,9 +37,9 @@ struct WedgeSigma {
 /// Where a wedge stands in the text.
 struct WedgePlace {
   std::optional<Face> side;
-  int line = 0;           ///< from 1, down the side; 0 when not known
-  int order = 0;          ///< from 1, along the line; 0 when not known
-  double turn_rad = 0;    ///< of the directional edge away from the depth point: 0 right, pi/2 up the side
+  int line = 0;         ///< from 1, down the side; 0 when not known
+  int order = 0;        ///< from 1, along the line; 0 when not known
+  double turn_rad = 0;  ///< of the directional edge away from the depth point: 0 right, pi/2 up the side
 };
 
 /// One wedge as an idealised tetrahedron (seed 000, 3.4; contract "Wedges" in design.md). Millimetres,
@@ -64,8 +64,8 @@ struct Wedge {
   std::array<double, 3> edge_lengths_mm{};  ///< depth point to exit point
   std::array<double, 3> edge_slopes_rad{};  ///< of the inner edges against the free surface
   std::array<double, 3> face_slopes_rad{};
-  std::array<double, 3> edge_bows_mm{};     ///< of an inner edge that is a curve: its middle off the chord
-  double volume_mm3 = 0;                    ///< of the tetrahedron
+  std::array<double, 3> edge_bows_mm{};  ///< of an inner edge that is a curve: its middle off the chord
+  double volume_mm3 = 0;                 ///< of the tetrahedron
   WedgeSigma sigma;
   WedgePlace place;
   double reliability = 0;

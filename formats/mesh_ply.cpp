@@ -19,7 +19,7 @@ constexpr const char* kExportAgain = "export the mesh again";
 /// Where the vertex properties stand; -1 for those that are absent.
 struct Columns {
   std::array<int, 3> position, normal, colour;
-  int reliability, scans, flags;
+  int reliability, sigma, scans, flags;
   double colour_scale = 1;
 
   explicit Columns(const PlyElement& vertex)
@@ -27,6 +27,7 @@ struct Columns {
         normal{vertex.scalar("nx"), vertex.scalar("ny"), vertex.scalar("nz")},
         colour{vertex.scalar("red"), vertex.scalar("green"), vertex.scalar("blue")},
         reliability(vertex.scalar("reliability")),
+        sigma(vertex.scalar("sigma")),
         scans(vertex.scalar("scans")),
         flags(vertex.scalar("flags")) {
     if (has(colour) && vertex.properties[static_cast<std::size_t>(colour[0])].type >= PlyType::kFloat32) {
@@ -67,6 +68,10 @@ Status read_vertices(PlyBody& body, const PlyElement& vertex, double mm, const s
     if (columns.reliability >= 0) {
       const double reliability = row.value(columns.reliability);
       mesh.reliability.push_back(reliability > 0 ? static_cast<float>(std::min(reliability, 1.0)) : 0.0F);
+    }
+    if (columns.sigma >= 0) {
+      const double sigma = mm * row.value(columns.sigma);
+      mesh.sigma_mm.push_back(sigma > 0 && std::isfinite(sigma) ? static_cast<float>(sigma) : 0.0F);
     }
     if (columns.scans >= 0) {
       mesh.scans.push_back(byte_of(row.value(columns.scans)));
@@ -159,12 +164,15 @@ std::string encode_mesh_ply(const Mesh& mesh) {
     out += std::string("property float ") + name + "\n";
   }
   out += "property uchar scans\nproperty uchar flags\n";
+  if (!mesh.sigma_mm.empty()) {
+    out += "property float sigma\n";
+  }
   if (!mesh.colours.empty()) {
     out += "property uchar red\nproperty uchar green\nproperty uchar blue\n";
   }
   out += "element face " + std::to_string(mesh.faces.size()) +
          "\nproperty list uchar int vertex_indices\nend_header\n";
-  out.reserve(out.size() + vertices * 33 + mesh.faces.size() * 13);
+  out.reserve(out.size() + vertices * 37 + mesh.faces.size() * 13);
   const std::vector<Eigen::Vector3f> computed =
       mesh.normals.empty() ? vertex_normals(mesh) : std::vector<Eigen::Vector3f>{};
   const std::vector<Eigen::Vector3f>& normals = mesh.normals.empty() ? computed : mesh.normals;
@@ -177,6 +185,9 @@ std::string encode_mesh_ply(const Mesh& mesh) {
     append(out, mesh.reliability.empty() ? 1.0F : mesh.reliability[v]);
     append(out, mesh.scans.empty() ? std::uint8_t{0} : mesh.scans[v]);
     append(out, mesh.flags.empty() ? std::uint8_t{0} : mesh.flags[v]);
+    if (!mesh.sigma_mm.empty()) {
+      append(out, mesh.sigma_mm[v]);
+    }
     for (std::size_t k = 0; k < 3 && !mesh.colours.empty(); ++k) {
       append(out, mesh.colours[v][k]);
     }

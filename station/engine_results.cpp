@@ -36,6 +36,7 @@ Status Engine::Impl::finish(EngineResult& result, JobContext& job) {
   PageFacts facts = page_facts_of(*store);
   facts.device = options.device;
   facts.timings = result.timings;
+  facts.gains.insert(facts.gains.end(), planning.gains().begin(), planning.gains().end());
   if (const Status s = keep_page_facts(*store, facts); !s) {
     return s;
   }

@@ -277,6 +277,9 @@ Result<RedMap> PlanningStage::red_map(const Rig* rig, JobContext& job) {
     return std::unexpected(result.error());
   }
   last_gain_ = gain_of_new(scans);
+  if (last_gain_) {
+    gains_.push_back(*last_gain_);
+  }
   proposed_ = result->map.next;
   mapped_.clear();
   for (const PlacedScan& scan : scans) {

@@ -46,6 +46,8 @@ class PlanningStage {
 
   /// How the one scan that came between the last two red maps did; nothing when none or several came.
   [[nodiscard]] const std::optional<ViewGain>& last_gain() const { return last_gain_; }
+  /// All of them so far.
+  [[nodiscard]] const std::vector<ViewGain>& gains() const { return gains_; }
 
   /// Brings the mesh up to what is placed, while nobody waits. Errors: kCancelled, and the stitcher's.
   Status stitch(JobContext& job);
@@ -105,6 +107,7 @@ class PlanningStage {
   std::vector<NextView> proposed_;          ///< by the last red map
   std::set<int> mapped_;                    ///< scans in the last red map
   std::optional<ViewGain> last_gain_;
+  std::vector<ViewGain> gains_;
 };
 
 }  // namespace dubsar

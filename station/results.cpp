@@ -36,7 +36,27 @@ std::string origin_of_mesh(std::vector<ScanPose> poses) {
   return sha256_hex(program_name() + "\n" + text_of(places));
 }
 
-std::vector<std::string> accuracy_sentences(const std::vector<ScanPose>& poses) {
+/// How well the planner knew what a scan would clear; nothing where none was asked for.
+std::optional<std::string> prediction_sentence(const std::vector<ViewGain>& gains) {
+  std::vector<double> off;
+  for (const ViewGain& gain : gains) {
+    if (gain.predicted_mm2 && gain.actual_mm2 > 0) {
+      off.push_back(std::abs(*gain.predicted_mm2 - gain.actual_mm2) / gain.actual_mm2);
+    }
+  }
+  if (off.empty()) {
+    return std::nullopt;
+  }
+  const auto middle = off.begin() + static_cast<std::ptrdiff_t>(off.size() / 2);
+  std::nth_element(off.begin(), middle, off.end());
+  return fmt::format(
+      "What each scan would clear was predicted to within {:.0f} % of what it did clear (median of {} "
+      "scans).",
+      100 * *middle, off.size());
+}
+
+std::vector<std::string> accuracy_sentences(const std::vector<ScanPose>& poses,
+                                            const std::vector<ViewGain>& gains) {
   double worst_sigma_mm = 0;
   double worst_rms_mm = 0;
   for (const ScanPose& pose : poses) {
@@ -45,13 +65,18 @@ std::vector<std::string> accuracy_sentences(const std::vector<ScanPose>& poses) 
       worst_rms_mm = std::max(worst_rms_mm, pose.rms_mm);
     }
   }
-  return {fmt::format(
-              "Where scans overlap, their surfaces lie within {:.1f} µm RMS of each other in the worst scan.",
-              1000 * worst_rms_mm),
-          fmt::format(
-              "The predicted error of a scan's place is at most {:.1f} µm (one standard deviation), from the "
-              "overlaps alone; the calibration of the scanner comes on top.",
-              1000 * worst_sigma_mm)};
+  std::vector<std::string> out{
+      fmt::format(
+          "Where scans overlap, their surfaces lie within {:.1f} µm RMS of each other in the worst scan.",
+          1000 * worst_rms_mm),
+      fmt::format(
+          "The predicted error of a scan's place is at most {:.1f} µm (one standard deviation), from the "
+          "overlaps alone; the calibration of the scanner comes on top.",
+          1000 * worst_sigma_mm)};
+  if (auto prediction = prediction_sentence(gains)) {
+    out.push_back(std::move(*prediction));
+  }
+  return out;
 }
 
 /// As people say it: whole ones, tenths where they are few. Nor should every byte that another program writes
@@ -131,7 +156,7 @@ ReportInput report_input(const Results& results, const PlanningStage& stage, con
           .scans = results.poses,
           .red_points = stage.red_points(results.mesh),
           .tablet_from_model = stage.tablet_from_model(results.mesh),
-          .accuracy = accuracy_sentences(results.poses),
+          .accuracy = accuracy_sentences(results.poses, facts.gains),
           .calibration = {},
           .not_measured = {"Wedges: they are not measured yet."},
           .timings = facts.timings,
@@ -143,11 +168,20 @@ Status keep_page_facts(SessionStore& store, const PageFacts& facts) {
   for (const StageTiming& timing : facts.timings) {
     timings.push_back({{"stage", timing.stage}, {"seconds", timing.seconds}});
   }
+  OrderedJson gains = OrderedJson::array();
+  for (const ViewGain& gain : facts.gains) {
+    OrderedJson entry = {{"scan", gain.scan}, {"actual_cleared_mm2", gain.actual_mm2}};
+    if (gain.predicted_mm2) {
+      entry["predicted_cleared_mm2"] = *gain.predicted_mm2;
+    }
+    gains.push_back(std::move(entry));
+  }
   return store.save_document(kRun, text_of({{"title", facts.title},
                                             {"device", facts.device},
                                             {"program", program_name()},
                                             {"when", utc_now()},
-                                            {"timings", timings}}));
+                                            {"timings", timings},
+                                            {"gains", gains}}));
 }
 
 PageFacts page_facts_of(const SessionStore& store) {
@@ -168,7 +202,19 @@ PageFacts page_facts_of(const SessionStore& store) {
   for (const JsonNode& timing : root.at("timings").items()) {
     timings.push_back({timing.at("stage").text(), timing.at("seconds").number(0)});
   }
+  std::vector<ViewGain> gains;
+  if (const auto list = root.find("gains")) {
+    for (const JsonNode& gain : list->items()) {
+      ViewGain& g = gains.emplace_back();
+      g.scan = static_cast<int>(gain.at("scan").integer(0, std::numeric_limits<int>::max()));
+      g.actual_mm2 = gain.at("actual_cleared_mm2").number(0);
+      if (const auto predicted = gain.find("predicted_cleared_mm2")) {
+        g.predicted_mm2 = predicted->number(0);
+      }
+    }
+  }
   if (document->status("")) {
+    facts.gains = std::move(gains);
     facts.device = device;
     facts.timings = std::move(timings);
   }

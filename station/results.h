@@ -41,6 +41,7 @@ struct PageFacts {
   std::string title;
   std::string device;
   std::vector<StageTiming> timings;
+  std::vector<ViewGain> gains;  ///< of the scans that were asked for, as they came
 };
 
 /// The input of pages and pictures. Refers to the results.

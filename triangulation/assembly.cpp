@@ -3,12 +3,15 @@
 #include "triangulation/assembly.h"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <numeric>
+#include <set>
 #include <span>
 
 #include "triangulation/front.h"
 #include "triangulation/manifold.h"
+#include "triangulation/self_intersections.h"
 
 namespace dubsar {
 
@@ -16,10 +19,14 @@ namespace {
 
 using Eigen::Vector3f;
 
+/// Of µ; measured on simulated tablets.
+constexpr float kSigmaOfInterpolated = 0.4F;
+
 /// Sheet and per-vertex attributes grow together.
 struct Draft {
   Sheet sheet;
   std::vector<float> reliability;
+  std::vector<float> sigma_mm;
   std::vector<std::uint8_t> scans;
   std::vector<std::uint8_t> flags;
 
@@ -29,6 +36,7 @@ struct Draft {
     sheet.spacing_mm.reserve(vertices);
     sheet.faces.reserve(2 * vertices);
     reliability.reserve(vertices);
+    sigma_mm.reserve(vertices);
     scans.reserve(vertices);
     flags.reserve(vertices);
   }
@@ -47,6 +55,7 @@ void add_patch(const OwnedScan& scan, Draft& draft) {
     draft.sheet.normals.push_back(s.normals[i]);
     draft.sheet.spacing_mm.push_back(static_cast<float>(s.spacing_mm));
     draft.reliability.push_back(scan.fused->reliability[i]);
+    draft.sigma_mm.push_back(scan.fused->sigma_mm[i]);
     draft.scans.push_back(scan.fused->scans[i]);
     const bool sparse =
         s.scan.flags != nullptr && i < s.scan.flags->size() && ((*s.scan.flags)[i] & kSparse) != 0;
@@ -195,6 +204,9 @@ std::vector<std::uint8_t> close_everything(Draft& draft, const AssemblyOptions& 
     const GapFillResult filled = fill_gaps(front, options.seam, options.gap);
     const std::size_t count = draft.sheet.positions.size();
     draft.reliability.resize(count, 0.0F);
+    for (std::size_t v = draft.sigma_mm.size(); v < count; ++v) {
+      draft.sigma_mm.push_back(kSigmaOfInterpolated * draft.sheet.spacing_mm[v]);
+    }
     draft.scans.resize(count, 0);
     draft.flags.resize(filled.first_interpolated);
     draft.flags.resize(count, kVertexInterpolated);
@@ -212,6 +224,85 @@ std::vector<std::uint8_t> close_everything(Draft& draft, const AssemblyOptions& 
     }
   }
   return touched;
+}
+
+/// self_intersections() of the faces around the marked vertices.
+std::vector<std::pair<std::uint32_t, std::uint32_t>> intersections_near(
+    const Sheet& sheet, const std::vector<std::uint8_t>& marked) {
+  constexpr double kAroundSpacings = 8.0;
+  double reach_mm = 0;
+  for (std::size_t v = 0; v < marked.size(); ++v) {
+    reach_mm = marked[v] != 0 ? std::max(reach_mm, kAroundSpacings * static_cast<double>(sheet.spacing_mm[v]))
+                              : reach_mm;
+  }
+  std::set<std::array<int, 3>> cells;
+  const auto cell_of = [&](const Vector3f& p) {
+    return std::array<int, 3>{static_cast<int>(std::floor(p.x() / reach_mm)),
+                              static_cast<int>(std::floor(p.y() / reach_mm)),
+                              static_cast<int>(std::floor(p.z() / reach_mm))};
+  };
+  for (std::size_t v = 0; v < marked.size(); ++v) {
+    if (marked[v] != 0) {
+      const auto [x, y, z] = cell_of(sheet.positions[v]);
+      for (int n = 0; n < 27; ++n) {
+        cells.insert({x + n % 3 - 1, y + n / 3 % 3 - 1, z + n / 9 - 1});
+      }
+    }
+  }
+  std::vector<Triangle> near;
+  std::vector<std::uint32_t> index;
+  for (std::uint32_t f = 0; f < sheet.faces.size(); ++f) {
+    if (cells.contains(cell_of(sheet.positions[sheet.faces[f][0]]))) {
+      near.push_back(sheet.faces[f]);
+      index.push_back(f);
+    }
+  }
+  auto pairs = self_intersections(sheet.positions, near);
+  for (auto& [a, b] : pairs) {
+    a = index[a];
+    b = index[b];
+  }
+  return pairs;
+}
+
+/// Takes out faces that cut through each other, with those around them, and closes the place anew; what still
+/// cuts at the end goes for good. Adds to the suspects of close_everything().
+void repair_self_intersections(Draft& draft, const AssemblyOptions& options,
+                               std::vector<std::uint8_t>& suspects) {
+  constexpr int kTries = 3;
+  std::vector<std::uint8_t> bad;
+  for (int attempt = 0;; ++attempt) {
+    const auto pairs = attempt == 0 ? self_intersections(draft.sheet.positions, draft.sheet.faces)
+                                    : intersections_near(draft.sheet, bad);
+    bad.assign(draft.sheet.positions.size(), 0);
+    if (pairs.empty()) {
+      return;
+    }
+    std::vector<std::uint8_t> cut(draft.sheet.faces.size(), 0);
+    for (const auto& [a, b] : pairs) {
+      cut[a] = cut[b] = 1;
+      mark(draft.sheet.faces[a], bad);
+      mark(draft.sheet.faces[b], bad);
+    }
+    suspects.resize(bad.size(), 0);
+    const bool last = attempt == kTries;
+    std::size_t at = 0;
+    std::erase_if(draft.sheet.faces, [&](const Triangle& f) {
+      const bool goes = cut[at++] != 0 || (attempt > 0 && !last && (bad[f[0]] | bad[f[1]] | bad[f[2]]) != 0);
+      if (goes) {
+        mark(f, suspects);
+      }
+      return goes;
+    });
+    if (last) {
+      return;
+    }
+    const std::vector<std::uint8_t> touched = close_everything(draft, options);
+    suspects.resize(touched.size(), 0);
+    for (std::size_t v = 0; v < touched.size(); ++v) {
+      suspects[v] |= touched[v];
+    }
+  }
 }
 
 /// Drops pieces of few faces, of a manifold: there faces that share a vertex are of one piece.
@@ -254,12 +345,22 @@ Mesh assemble(const std::vector<OwnedScan>& scans, const AssemblyOptions& option
   for (const OwnedScan& scan : scans) {
     add_patch(scan, draft);
   }
-  std::vector<std::uint8_t> suspects = close_everything(draft, options);
+  AssemblyOptions closing = options;
+  closing.gap.seen = [&scans](const Vector3f& p_mm, float radius_mm) {
+    return std::any_of(scans.begin(), scans.end(), [&](const OwnedScan& scan) {
+      const StitchSurface& s = *scan.surface;
+      const Vector3f p = (s.scanner_from_model * p_mm.cast<double>()).cast<float>();
+      return s.lookup->nearest(p, radius_mm) >= 0;
+    });
+  };
+  std::vector<std::uint8_t> suspects = close_everything(draft, closing);
+  repair_self_intersections(draft, closing, suspects);
 
   Mesh mesh;
   mesh.faces = std::move(draft.sheet.faces);
   mesh.positions = std::move(draft.sheet.positions);
   mesh.reliability = std::move(draft.reliability);
+  mesh.sigma_mm = std::move(draft.sigma_mm);
   mesh.scans = std::move(draft.scans);
   mesh.flags = std::move(draft.flags);
   const std::vector<Vector3f>& p = mesh.positions;
@@ -273,6 +374,7 @@ Mesh assemble(const std::vector<OwnedScan>& scans, const AssemblyOptions& option
   for (const std::uint32_t copied : make_manifold(mesh.faces, mesh.positions.size(), suspects)) {
     mesh.positions.push_back(Vector3f(mesh.positions[copied]));
     mesh.reliability.push_back(float(mesh.reliability[copied]));
+    mesh.sigma_mm.push_back(float(mesh.sigma_mm[copied]));
     mesh.scans.push_back(std::uint8_t(mesh.scans[copied]));
     mesh.flags.push_back(std::uint8_t(mesh.flags[copied]));
   }

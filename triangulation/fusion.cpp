@@ -15,57 +15,130 @@ namespace {
 using Eigen::Vector3f;
 
 struct Projection {
-  Vector3f point{0, 0, 0};
-  float distance2 = std::numeric_limits<float>::max();
-  float weight = 0;       ///< interpolated
+  float along_mm = 0;     ///< from p along its normal
+  std::uint8_t rim = 0;   ///< of the corner that is nearest to it
+  float weight = 0;       ///< interpolated; 0 where the line misses the other scan's triangles
   float reliability = 0;  ///< interpolated
 };
 
-/// Foot of p on the plane of one triangle, when it lies inside (with a hair's tolerance).
-void project_on(const StitchSurface& s, const std::array<std::size_t, 3>& t, const Vector3f& p,
-                Projection& best) {
-  const Vector3f& a = s.points[t[0]];
-  const Vector3f ab = s.points[t[1]] - a;
-  const Vector3f ac = s.points[t[2]] - a;
-  const Vector3f ap = p - a;
-  const Vector3f n = ab.cross(ac);
-  const float n2 = n.squaredNorm();
-  const float v = ap.cross(ac).dot(n) / n2;
-  const float w = ab.cross(ap).dot(n) / n2;
-  const float u = 1.0F - v - w;
-  // Feet between two triangles of a ridge fall outside both by a little; they belong to either.
-  constexpr float kSlack = -0.15F;
-  if (u < kSlack || v < kSlack || w < kSlack) {
-    return;
+/// Where the line through p along `normal` meets the triangles around a sample. Along a line, not to the
+/// nearest point: of a rough sheet the nearest point is the one that errs the same way as p, and averaging
+/// with it takes away next to nothing of the noise.
+class LineProjector {
+ public:
+  LineProjector(const StitchSurface& s, const Vector3f& p, const Vector3f& normal)
+      : s_(&s), p_(p), n_(normal) {
+    u_ = n_.unitOrthogonal();
+    v_ = s.mirrored ? Vector3f(u_.cross(n_)) : Vector3f(n_.cross(u_));  // triangles run as their grid does
   }
-  const float height = ap.dot(n);
-  const float distance2 = height * height / n2;
-  if (distance2 < best.distance2) {
-    best.point = p - n * (height / n2);
-    best.distance2 = distance2;
-    best.weight = std::max(0.0F, u * s.weight[t[0]] + v * s.weight[t[1]] + w * s.weight[t[2]]);
-    best.reliability =
-        std::clamp(u * s.reliability[t[0]] + v * s.reliability[t[1]] + w * s.reliability[t[2]], 0.0F, 1.0F);
-  }
-}
 
-Projection project_near(const StitchSurface& s, const GridSurface& surface, std::size_t nearest,
-                        const Vector3f& p) {
-  Projection best;
-  const int row = s.scan.grid->row_of(nearest);
-  const int col = s.scan.grid->col_of(nearest);
-  for (int r = std::max(row - 1, 0); r <= std::min(row, surface.rows - 2); ++r) {
-    for (int c = std::max(col - 1, 0); c <= std::min(col, surface.cols - 2); ++c) {
-      const std::uint8_t cell = s.cells[surface.index(r, c)];
-      if ((cell & kCellFirst) != 0) {
-        project_on(s, cell_triangle(surface, r, c, cell, 0), p, best);
+  [[nodiscard]] Projection around(const GridSurface& surface, std::size_t nearest) {
+    const int row = s_->scan.grid->row_of(nearest);
+    const int col = s_->scan.grid->col_of(nearest);
+    // The foot is nearly always in the one of the four cells at the nearest sample towards which p lies;
+    // noise may carry it into another, or one further.
+    const int likely_row = towards(nearest, row, surface.rows, surface.cols) ? row : row - 1;
+    const int likely_col = towards(nearest, col, surface.cols, 1) ? col : col - 1;
+    meet_cell(surface, likely_row, likely_col);
+    for (const int ring : {0, 1}) {
+      if (best_.weight > 0) {
+        break;
       }
-      if ((cell & kCellSecond) != 0) {
-        project_on(s, cell_triangle(surface, r, c, cell, 1), p, best);
+      for (int r = row - 1 - ring; r <= row + ring; ++r) {
+        for (int c = col - 1 - ring; c <= col + ring; ++c) {
+          const bool inner = r >= row - 1 && r <= row && c >= col - 1 && c <= col;
+          if (inner == (ring == 0) && (r != likely_row || c != likely_col)) {
+            meet_cell(surface, r, c);
+          }
+        }
       }
     }
+    return best_;
   }
-  return best;
+
+ private:
+  /// Whether p lies beyond the nearest sample in the direction of growing rows (or columns): `at` of `count`,
+  /// `stride` apart in the arrays.
+  [[nodiscard]] bool towards(std::size_t nearest, int at, int count, int stride) const {
+    const auto step = static_cast<std::size_t>(stride);
+    const bool after = at + 1 < count && s_->usable[nearest + step] != 0;
+    const bool before = at > 0 && s_->usable[nearest - step] != 0;
+    const Vector3f along = (after ? s_->points[nearest + step] : s_->points[nearest]) -
+                           (before ? s_->points[nearest - step] : s_->points[nearest]);
+    return along.dot(p_ - s_->points[nearest]) >= 0;
+  }
+
+  void meet_cell(const GridSurface& surface, int row, int col) {
+    if (row < 0 || col < 0 || row > surface.rows - 2 || col > surface.cols - 2) {
+      return;
+    }
+    const std::uint8_t cell = s_->cells[surface.index(row, col)];
+    if ((cell & kCellFirst) != 0) {
+      meet(cell_triangle(surface, row, col, cell, 0));
+    }
+    if ((cell & kCellSecond) != 0) {
+      meet(cell_triangle(surface, row, col, cell, 1));
+    }
+  }
+
+  void meet(const std::array<std::size_t, 3>& t) {
+    const Vector3f a = s_->points[t[0]] - p_;
+    const Vector3f b = s_->points[t[1]] - p_;
+    const Vector3f c = s_->points[t[2]] - p_;
+    const float au = u_.dot(a), av = v_.dot(a);
+    const float bu = u_.dot(b), bv = v_.dot(b);
+    const float cu = u_.dot(c), cv = v_.dot(c);
+    const float wa = bu * cv - bv * cu;
+    const float wb = cu * av - cv * au;
+    const float wc = au * bv - av * bu;
+    const float sum = wa + wb + wc;
+    // Seen from below, or from the side: another fold, or no way to tell where.
+    if (!(sum > 0)) {
+      return;
+    }
+    const float slack = kSlack * sum;
+    if (wa < slack || wb < slack || wc < slack) {
+      return;
+    }
+    const float inverse = 1.0F / sum;
+    const float along = (wa * n_.dot(a) + wb * n_.dot(b) + wc * n_.dot(c)) * inverse;
+    if (best_.weight > 0 && std::abs(along) >= std::abs(best_.along_mm)) {
+      return;
+    }
+    best_.along_mm = along;
+    best_.rim = std::min({s_->rim[t[0]], s_->rim[t[1]], s_->rim[t[2]]});
+    // Variances of independent samples: Σ λ² / w.
+    const float la = wa * inverse, lb = wb * inverse, lc = wc * inverse;
+    best_.weight =
+        1.0F / (la * la / s_->weight[t[0]] + lb * lb / s_->weight[t[1]] + lc * lc / s_->weight[t[2]]);
+    best_.reliability = std::clamp(
+        (wa * s_->reliability[t[0]] + wb * s_->reliability[t[1]] + wc * s_->reliability[t[2]]) * inverse,
+        0.0F, 1.0F);
+  }
+
+  static constexpr float kSlack = -0.01F;  ///< so that no line slips through between two triangles
+  const StitchSurface* s_;
+  Vector3f p_, n_, u_, v_;
+  Projection best_;
+};
+
+float square(float x) {
+  return x * x;
+}
+
+/// The pose's error is one of displacement in space; a third of its square lies along any one direction.
+float pose_sigma_mm(const StitchSurface& s) {
+  return std::isfinite(s.scan.sigma_mm) ? static_cast<float>(s.scan.sigma_mm / std::sqrt(3.0)) : 0.0F;
+}
+
+/// How much of its say a sample keeps that is so far from the rim of its scan.
+float faded(std::uint8_t rim, float feather) {
+  if (feather <= 0) {
+    return 1.0F;
+  }
+  // Never quite nothing: a sample that no other scan supports stays where it was measured.
+  const float part = std::clamp((static_cast<float>(rim) - 1.0F) / feather, 0.0F, 1.0F);
+  return std::max(part * part, 1e-4F);
 }
 
 /// Whether a surface element could face the scanner, with some leave for noise and for camera and laser
@@ -171,6 +244,20 @@ double pair_reach_mm(const StitchSurface& a, const StitchSurface& b, const Pairi
   return std::clamp(4.0 * measured + spacing, plain, most);
 }
 
+double step_mm(const StitchSurface& a, const StitchSurface& b, double reach_mm) {
+  constexpr double kMedianOfSigma = 0.6745;  // of the absolute value
+  const double sigma_mm = std::max(mismatch_mm(a, b, reach_mm), mismatch_mm(b, a, reach_mm)) / kMedianOfSigma;
+  const double noise2 = a.noise_mm * a.noise_mm + b.noise_mm * b.noise_mm;
+  return sigma_mm > 0 ? std::sqrt(std::max(0.0, sigma_mm * sigma_mm - noise2)) : 0.0;
+}
+
+double feather_samples(const StitchSurface& a, const StitchSurface& b, double step_mm) {
+  constexpr double kSamplesPerStep = 3.0;
+  constexpr double kLeast = 2.0;
+  const double samples = kSamplesPerStep * step_mm / std::min(a.spacing_mm, b.spacing_mm);
+  return samples < kLeast ? 0.0 : std::min(samples, static_cast<double>(kMostRim - 1));
+}
+
 Pairs find_pairs(const StitchSurface& from, const StitchSurface& to, double reach_mm,
                  const PairingOptions& options) {
   Pairs pairs;
@@ -244,6 +331,7 @@ FusedSamples fuse(const StitchSurface& from, std::span<const StitchSurface* cons
   const std::size_t n = from.points.size();
   out.points = from.points;
   out.reliability = from.reliability;
+  out.sigma_mm.assign(n, 0);
   out.scans.assign(n, 0);
   std::vector<GridSurface> surfaces;
   surfaces.reserve(others.size());
@@ -256,8 +344,14 @@ FusedSamples fuse(const StitchSurface& from, std::span<const StitchSurface* cons
         continue;
       }
       const Vector3f& p = from.points[i];
-      Vector3f shift_sum = Vector3f::Zero();
-      float weight_sum = from.weight[i];
+      float shift_sum = 0;
+      float shift2_sum = 0;
+      float feather = 0;
+      for (std::size_t k = 0; k < others.size(); ++k) {
+        feather = pairs[k]->match[i] < 0 ? feather : std::max(feather, pairs[k]->feather);
+      }
+      float weight_sum = from.weight[i] * faded(from.rim[i], feather);
+      float pose_sum = square(weight_sum * pose_sigma_mm(from));
       float doubt = 1.0F - from.reliability[i];
       int scans = 1;
       for (std::size_t k = 0; k < others.size(); ++k) {
@@ -265,17 +359,27 @@ FusedSamples fuse(const StitchSurface& from, std::span<const StitchSurface* cons
         if (j < 0) {
           continue;
         }
-        const Projection q = project_near(*others[k], surfaces[k], static_cast<std::size_t>(j), p);
-        if (q.distance2 > pairs[k]->reach_mm * pairs[k]->reach_mm) {
+        const Projection q =
+            LineProjector(*others[k], p, from.normals[i]).around(surfaces[k], static_cast<std::size_t>(j));
+        if (!(q.weight > 0) || std::abs(q.along_mm) > pairs[k]->reach_mm) {
           continue;
         }
-        shift_sum += q.weight * (q.point - p);
-        weight_sum += q.weight;
+        const float weight = q.weight * faded(q.rim, pairs[k]->feather);
+        shift_sum += weight * q.along_mm;
+        shift2_sum += weight * square(q.along_mm);
+        pose_sum += square(weight * pose_sigma_mm(*others[k]));
+        weight_sum += weight;
         doubt *= 1.0F - q.reliability;
         ++scans;
       }
-      out.points[i] = p + shift_sum / weight_sum;
-      out.reliability[i] = 1.0F - doubt;
+      const float shift_mm = shift_sum / weight_sum;
+      out.points[i] = p + shift_mm * from.normals[i];
+      // Weights are inverse variances: the disagreement is their chi-square.
+      const float chi2 = std::max(0.0F, shift2_sum - weight_sum * shift_mm * shift_mm);
+      const float excess = scans > 1 ? std::max(1.0F, chi2 / static_cast<float>(scans - 1)) : 1.0F;
+      out.sigma_mm[i] = std::sqrt(excess / weight_sum + pose_sum / (weight_sum * weight_sum));
+      out.reliability[i] =
+          (1.0F - doubt) / (1.0F + square(out.sigma_mm[i] / static_cast<float>(from.spacing_mm)));
       out.scans[i] = static_cast<std::uint8_t>(std::min(scans, 255));
     }
   });

@@ -25,6 +25,9 @@ struct PairingOptions {
 struct Pairs {
   int other_id = 0;
   float reach_mm = 0;
+  /// Samples over which the say of either scan fades out towards its rim: none where the poses agree to
+  /// within the noise, more the farther the surfaces lie apart, so that no step shows where a scan ends.
+  float feather = 0;
   std::size_t count = 0;
   std::vector<std::int32_t> match;
 };
@@ -37,19 +40,31 @@ struct Pairs {
 [[nodiscard]] double pair_reach_mm(const StitchSurface& a, const StitchSurface& b,
                                    const PairingOptions& options);
 
+/// What of the mismatch their noise does not explain: how far apart their poses hold them. The same whichever
+/// way round.
+[[nodiscard]] double step_mm(const StitchSurface& a, const StitchSurface& b, double reach_mm);
+
+/// For Pairs::feather, from step_mm().
+[[nodiscard]] double feather_samples(const StitchSurface& a, const StitchSurface& b, double step_mm);
+
 [[nodiscard]] Pairs find_pairs(const StitchSurface& from, const StitchSurface& to, double reach_mm,
                                const PairingOptions& options);
 
 /// Where each sample goes when its pairs have had their say.
 struct FusedSamples {
   std::vector<Eigen::Vector3f> points;  ///< model frame
-  std::vector<float> reliability;       ///< 1 - Π(1 - r) over the supporting scans
-  std::vector<std::uint8_t> scans;      ///< supporting scans, itself included
+  /// (1 - Π(1 - r) over the supporting scans) / (1 + (sigma / µ)²)
+  std::vector<float> reliability;
+  /// Standard deviation along the normal, mm: of the noise that averaging leaves, or what the scans' own
+  /// disagreement says when that is more, and of the poses.
+  std::vector<float> sigma_mm;
+  std::vector<std::uint8_t> scans;  ///< supporting scans, itself included
 };
 
-/// Seed 001, section 4: the reliability-weighted average of a sample and its projections on the triangles of
-/// the scans it pairs with. `others` and `pairs` run in parallel, in the order of scan ids. A projection onto
-/// the rim of the other scan (outside its triangles) counts for nothing.
+/// Seed 001, section 4: the reliability-weighted average of a sample and its projections, along its normal,
+/// on the triangles of the scans it pairs with. A projection is as good as the samples that it lies between
+/// (their variances, interpolated). `others` and `pairs` run in parallel, in the order of scan ids. Where the
+/// other scan has no triangle nothing is counted.
 [[nodiscard]] FusedSamples fuse(const StitchSurface& from, std::span<const StitchSurface* const> others,
                                 std::span<const Pairs* const> pairs);
 

@@ -14,6 +14,7 @@ namespace {
 using Eigen::Vector2f;
 using Eigen::Vector3f;
 
+constexpr double kSeenWithinSpacings = 2.0;
 /// Openings with more vertices than this are outer boundaries, not gaps.
 constexpr std::size_t kMostVertices = 400;
 
@@ -86,16 +87,40 @@ double opening_diameter_mm(const Sheet& sheet, const std::vector<std::uint32_t>&
   return std::sqrt(widest2);
 }
 
+namespace {
+
+/// Looked at in the middle of the opening and half way from there to each of its vertices.
+bool seen_all_over(const Sheet& sheet, const std::vector<std::uint32_t>& opening, double spacing_mm,
+                   const GapFillOptions& options) {
+  if (!options.seen) {
+    return false;
+  }
+  Vector3f middle = Vector3f::Zero();
+  for (const std::uint32_t v : opening) {
+    middle += sheet.positions[v] / static_cast<float>(opening.size());
+  }
+  const auto radius_mm = static_cast<float>(kSeenWithinSpacings * spacing_mm);
+  return options.seen(middle, radius_mm) && std::all_of(opening.begin(), opening.end(), [&](std::uint32_t v) {
+           return options.seen(0.5F * (middle + sheet.positions[v]), radius_mm);
+         });
+}
+
+}  // namespace
+
 bool is_gap(const Sheet& sheet, const std::vector<std::uint32_t>& opening, const GapFillOptions& options) {
   if (opening.size() < 3) {
     return false;
   }
   const double mu = mean_spacing_mm(sheet, opening);
-  if (opening_diameter_mm(sheet, opening) <= options.most_width_factor * mu) {
+  const double across_mm = opening_diameter_mm(sheet, opening);
+  if (across_mm <= options.most_width_factor * mu) {
     return true;
   }
   if (opening.size() > kMostVertices) {
     return false;
+  }
+  if (across_mm <= options.most_seen_width_factor * mu && seen_all_over(sheet, opening, mu, options)) {
+    return true;
   }
   Vector3f area = Vector3f::Zero();
   double length = 0;

@@ -2,8 +2,10 @@
 // Copyright The Dubsar developers
 #pragma once
 
+#include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "triangulation/front.h"
@@ -15,6 +17,10 @@ struct GapFillOptions {
   /// Openings up to this far across, × µ, are gaps of a few samples and get filled; wider ones are clay that
   /// was not seen and stay open.
   double most_width_factor = 8.0;
+  /// Wider ones, up to this, where clay was seen all over the opening and only its scans do not agree.
+  double most_seen_width_factor = 14.0;
+  /// Whether some scan has a sample within radius_mm of a place (model frame); none: nothing was seen.
+  std::function<bool(const Eigen::Vector3f& p_mm, float radius_mm)> seen;
   /// A crack may be longer than that when it is narrower than this, × µ (twice its area over its length).
   double crack_width_factor = 1.0;
 };

@@ -334,6 +334,7 @@ void compact_vertices(Mesh& mesh) {
   keep_entries(mesh.positions, target);
   keep_entries(mesh.normals, target);
   keep_entries(mesh.reliability, target);
+  keep_entries(mesh.sigma_mm, target);
   keep_entries(mesh.scans, target);
   keep_entries(mesh.flags, target);
   keep_entries(mesh.colours, target);

@@ -9,6 +9,7 @@
 
 #include "core/units.h"
 #include "triangulation/manifold.h"
+#include "triangulation/self_intersections.h"
 
 namespace dubsar {
 
@@ -150,6 +151,7 @@ MeshReport check_mesh(const Mesh& mesh) {
     }
     report.longest_boundary_loop_mm = std::max(report.longest_boundary_loop_mm, length);
   }
+  report.self_intersections = self_intersections(mesh.positions, mesh.faces).size();
   return report;
 }
 

@@ -153,16 +153,6 @@ struct Window {
     col_lo = std::max(col - radius, 0);
     col_hi = std::min(col + radius, g.cols - 1);
   }
-  [[nodiscard]] bool empty() const {
-    for (int r = row_lo; r <= row_hi; ++r) {
-      for (int c = col_lo; c <= col_hi; ++c) {
-        if (scan->kept[g.index(r, c)] != 0) {
-          return false;
-        }
-      }
-    }
-    return true;
-  }
   template <class Visit>
   void for_each_triangle(const Visit& visit) const {
     for (int r = row_lo; r < row_hi; ++r) {
@@ -186,14 +176,13 @@ bool is_taken(const std::vector<OwnedScan>& scans, std::size_t self, std::size_t
   for (std::size_t k = 0; k < scan.pairs.size(); ++k) {
     const OwnedScan& other = scans[scan.other[k]];
     const std::int32_t j = scan.pairs[k]->match[i];
-    if (j < 0 || other.kept.empty()) {
+    if (j < 0 || other.near_kept.empty() || other.near_kept[static_cast<std::size_t>(j)] == 0) {
       continue;
     }
     const Window window(other, j, options.look_around_samples);
     const auto clearance = static_cast<float>(options.clearance_factor *
                                               std::max(scan.surface->spacing_mm, other.surface->spacing_mm));
     bool taken = false;
-    bool any = false;
     const Vector3f& n = other.surface->normals[static_cast<std::size_t>(j)];
     for (int r = window.row_lo; r <= window.row_hi && !taken; ++r) {
       for (int c = window.col_lo; c <= window.col_hi && !taken; ++c) {
@@ -201,13 +190,12 @@ bool is_taken(const std::vector<OwnedScan>& scans, std::size_t self, std::size_t
         if (other.kept[q] == 0) {
           continue;
         }
-        any = true;
         const Vector3f d = other.fused->points[q] - p;
         const float along = d.dot(n);
         taken = d.squaredNorm() - along * along < clearance * clearance;
       }
     }
-    if (!taken && any) {
+    if (!taken) {
       const Plane plane(p, n);
       window.for_each_triangle([&](const std::array<std::size_t, 3>& t) {
         taken = taken || inside(Vector2f::Zero(), plane(other.fused->points[t[0]]),
@@ -228,18 +216,15 @@ bool meets_another(const std::vector<OwnedScan>& scans, std::size_t self, const 
   const std::vector<Vector3f>& points = scan.fused->points;
   for (std::size_t k = 0; k < scan.pairs.size(); ++k) {
     const OwnedScan& other = scans[scan.other[k]];
-    if (other.kept.empty()) {
+    if (other.near_kept.empty()) {
       continue;
     }
     for (std::size_t corner = 0; corner < 3; ++corner) {
       const std::int32_t j = scan.pairs[k]->match[t[corner]];
-      if (j < 0) {
+      if (j < 0 || other.near_kept[static_cast<std::size_t>(j)] == 0) {
         continue;
       }
       const Window window(other, j, options.look_around_samples);
-      if (window.empty()) {
-        continue;
-      }
       const Vector3f n = (points[t[1]] - points[t[0]]).cross(points[t[2]] - points[t[0]]).normalized();
       const Plane plane(points[t[0]], n);
       const Vector2f a = plane(points[t[0]]);
@@ -264,6 +249,39 @@ bool meets_another(const std::vector<OwnedScan>& scans, std::size_t self, const 
     }
   }
   return false;
+}
+
+/// 1 within `radius` samples (a square) of a mark.
+std::vector<std::uint8_t> dilated(const std::vector<std::uint8_t>& marks, const GridSurface& g, int radius) {
+  std::vector<std::uint8_t> along(marks.size(), 0);
+  std::vector<std::uint8_t> out(marks.size(), 0);
+  const auto rows = static_cast<std::size_t>(g.rows);
+  const auto cols = static_cast<std::size_t>(g.cols);
+  const auto reach = static_cast<std::size_t>(std::max(radius, 0));
+  parallel_for_each_index(
+      rows,
+      [&](std::size_t r) {
+        for (std::size_t c = 0; c < cols; ++c) {
+          if (marks[r * cols + c] != 0) {
+            const std::size_t begin = r * cols + (c > reach ? c - reach : 0);
+            const std::size_t end = r * cols + std::min(c + reach + 1, cols);
+            std::fill(along.begin() + static_cast<std::ptrdiff_t>(begin),
+                      along.begin() + static_cast<std::ptrdiff_t>(end), std::uint8_t{1});
+          }
+        }
+      },
+      16);
+  parallel_for_each_index(
+      rows,
+      [&](std::size_t r) {
+        for (std::size_t q = r > reach ? r - reach : 0; q < std::min(r + reach + 1, rows); ++q) {
+          for (std::size_t c = 0; c < cols; ++c) {
+            out[r * cols + c] |= along[q * cols + c];
+          }
+        }
+      },
+      16);
+  return out;
 }
 
 /// Triangles between the kept samples that meet no other patch; then the samples they use.
@@ -311,6 +329,7 @@ void rebuild(std::vector<OwnedScan>& scans, std::size_t self, std::vector<std::u
   scan.kept = std::move(kept);
   scan.cells = std::move(cells);
   drop_unused(scan, g);
+  scan.near_kept = dilated(scan.kept, g, options.look_around_samples);
 }
 
 }  // namespace
@@ -320,6 +339,7 @@ bool assign_owners(std::vector<OwnedScan>& scans, const GridTriangulationOptions
   for (OwnedScan& scan : scans) {
     scan.kept.clear();
     scan.cells.clear();
+    scan.near_kept.clear();
   }
   const double steps = 2.0 * static_cast<double>(scans.size());
   for (std::size_t self = 0; self < scans.size(); ++self) {

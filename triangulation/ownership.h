@@ -32,6 +32,8 @@ struct OwnedScan {
   std::vector<std::size_t> other;
   std::vector<std::uint8_t> kept;   ///< out: 1 where the sample is a vertex of the stitched mesh
   std::vector<std::uint8_t> cells;  ///< out: CellBit codes of the triangles that are kept
+  /// 1 where a kept sample lies within look_around_samples: most of what is asked about others ends here.
+  std::vector<std::uint8_t> near_kept;
 };
 
 /// Gives each place of the surface one primary scan, the view closest to the normal there (seed 001, 4), and

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "core/grid_geometry.h"
+#include "core/grid_noise.h"
 #include "core/parallel.h"
 
 namespace dubsar {
@@ -12,6 +13,14 @@ namespace dubsar {
 namespace {
 
 using Eigen::Vector3f;
+
+/// What a surface through samples µ apart is off by however little they err: of µ.
+constexpr double kSystematicOfSpacing = 0.1;
+/// At the rim a camera sees part of what lies beyond.
+constexpr float kRimWeight = 0.5F;
+/// Sparse samples hold the surface together where there is nothing better, and hardly count where there is.
+constexpr float kSparseWeight = 0.25F;
+constexpr float kSparseScore = 0.1F;
 
 ScannerView view_in_model(const ScannerView& view, const RigidTransform& model_from_scanner) {
   ScannerView out;
@@ -153,6 +162,7 @@ StitchSurface make_scan_surface(const PlacedScan& scan, const StitchSurfaceOptio
   out.reliability.assign(n, 0);
   out.weight.assign(n, 0);
   out.score.assign(n, 0);
+  out.rim.assign(n, 0);
   if (!(out.spacing_mm > 0) || grid.rows < 2 || grid.cols < 2) {
     out.normals.assign(n, Vector3f::Zero());
     out.lookup = std::make_unique<GridLookup>(grid, out.usable);
@@ -166,7 +176,7 @@ StitchSurface make_scan_surface(const PlacedScan& scan, const StitchSurfaceOptio
       n,
       [&](std::size_t i) {
         if (grid.valid[i] == 0 || !grid.point(i).allFinite() ||
-            (scan.flags != nullptr && i < scan.flags->size() && !is_unflagged((*scan.flags)[i]))) {
+            (scan.flags != nullptr && i < scan.flags->size() && ((*scan.flags)[i] & kNotTablet) != 0)) {
           return;
         }
         out.points[i] = (scan.model_from_scanner * grid.point(i).cast<double>()).cast<float>();
@@ -189,9 +199,12 @@ StitchSurface make_scan_surface(const PlacedScan& scan, const StitchSurfaceOptio
       }
     }
   }
-  const int most = std::clamp(std::max(options.feather_samples, 1) + 1, 2, 200);
-  const std::vector<std::uint8_t> rim = rim_distance(out.usable, out.cells, grid.rows, grid.cols, most);
-  const auto inverse_spacing2 = static_cast<float>(1.0 / (out.spacing_mm * out.spacing_mm));
+  const int most = std::clamp(options.feather_samples + 1, 2, kMostRim);
+  out.rim = rim_distance(out.usable, out.cells, grid.rows, grid.cols, kMostRim);
+  out.noise_mm = scan.noise_mm ? *scan.noise_mm : estimate_noise_mm(grid, out.usable);
+  const double systematic_mm = kSystematicOfSpacing * out.spacing_mm;
+  const auto inverse_variance =
+      static_cast<float>(1.0 / (out.noise_mm * out.noise_mm + systematic_mm * systematic_mm));
   parallel_for_each_index(
       n,
       [&](std::size_t i) {
@@ -202,10 +215,11 @@ StitchSurface make_scan_surface(const PlacedScan& scan, const StitchSurfaceOptio
         const float cosine = std::clamp(out.normals[i].dot(to_camera.cast<float>()), 0.05F, 1.0F);
         const float confidence = grid.confidence.empty() ? 1.0F : std::clamp(grid.confidence[i], 0.01F, 1.0F);
         out.reliability[i] = cosine * cosine * confidence;
-        const float fade = static_cast<float>(rim[i] - 1) / static_cast<float>(most - 1);
-        // Never quite nothing: a sample that no other scan supports stays where it was measured.
-        out.weight[i] = out.reliability[i] * inverse_spacing2 * std::max(fade * fade, 1e-4F);
-        out.score[i] = cosine;
+        const bool sparse =
+            scan.flags != nullptr && i < scan.flags->size() && !is_unflagged((*scan.flags)[i]);
+        const float doubt = sparse ? kSparseWeight : out.rim[i] <= 1 ? kRimWeight : 1.0F;
+        out.weight[i] = confidence * inverse_variance * doubt;
+        out.score[i] = sparse ? kSparseScore * cosine : cosine;
       },
       4096);
   box_mean(out.score, out.usable, grid.rows, grid.cols, options.incidence_radius_samples);
@@ -213,7 +227,7 @@ StitchSurface make_scan_surface(const PlacedScan& scan, const StitchSurfaceOptio
       n,
       [&](std::size_t i) {
         if (out.usable[i] != 0) {
-          out.score[i] *= static_cast<float>(rim[i]) / static_cast<float>(most);
+          out.score[i] *= static_cast<float>(std::min<int>(out.rim[i], most)) / static_cast<float>(most);
         }
       },
       4096);

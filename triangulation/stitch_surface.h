@@ -16,19 +16,22 @@ namespace dubsar {
 
 struct StitchSurfaceOptions {
   GridTriangulationOptions grid;
-  /// Samples from the rim of a scan over which its weight rises from nothing to full, so that no step shows
-  /// where a scan ends.
+  /// Samples from the rim of a scan over which its wish to be primary rises to full: a rim is seldom the best
+  /// view.
   int feather_samples = 6;
   /// Radius of the mean over which incidence is compared between scans, samples: the primary scan changes
   /// along a line, not from sample to sample with the noise of the normals.
   int incidence_radius_samples = 5;
 };
 
+inline constexpr int kMostRim = 32;
+
 /// One placed scan made ready for stitching: its samples in the model frame, the triangles of its grid, and
 /// how far each sample is to be trusted. All arrays are [rows*cols] of the grid.
 struct StitchSurface {
   PlacedScan scan;
   double spacing_mm = 0;
+  double noise_mm = 0;  ///< of a sample along the view
   bool mirrored = false;
   ScannerView view;                      ///< in the model frame
   std::vector<Eigen::Vector3f> points;   ///< model frame, mm
@@ -36,9 +39,13 @@ struct StitchSurface {
   std::vector<std::uint8_t> usable;      ///< 1 where the sample is a corner of a triangle of its own grid
   std::vector<std::uint8_t> cells;       ///< CellBit codes
   std::vector<float> reliability;  ///< of the sample alone, in [0,1]: cos² of the incidence × confidence
-  std::vector<float> weight;  ///< for averaging: reliability / µ², faded towards the rim; > 0 if usable
-  std::vector<float> score;   ///< how much this scan wants to be primary here
-  Eigen::AlignedBox3f box;    ///< of the usable samples, model frame
+  /// For averaging, 1 / mm²: inverse to the variance along the normal, which hardly grows with the incidence
+  /// (the noise along the view does, its part along the normal shrinks). Less at the rim, little for sparse
+  /// samples; > 0 if usable.
+  std::vector<float> weight;
+  std::vector<std::uint8_t> rim;  ///< samples to the rim of the triangulated area: 1 on it, at most kMostRim
+  std::vector<float> score;       ///< how much this scan wants to be primary here
+  Eigen::AlignedBox3f box;        ///< of the usable samples, model frame
   RigidTransform scanner_from_model;
   std::unique_ptr<GridLookup> lookup;  ///< of the usable samples, scanner frame
 

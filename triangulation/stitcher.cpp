@@ -102,6 +102,8 @@ struct Stitcher::Impl {
       if (there.count == 0 && back.count == 0) {
         continue;
       }
+      there.feather = back.feather = static_cast<float>(
+          feather_samples(entry.surface, other.surface, step_mm(entry.surface, other.surface, reach)));
       // Either side may be asked about any of its samples.
       there.match.resize(entry.surface.points.size(), -1);
       back.match.resize(other.surface.points.size(), -1);
@@ -167,10 +169,14 @@ Stitcher::Stitcher(Stitcher&&) noexcept = default;
 Stitcher& Stitcher::operator=(Stitcher&&) noexcept = default;
 
 Status Stitcher::add(const PlacedScan& scan, const JobContext& job) {
+  return add({&scan, 1}, job);
+}
+
+Status Stitcher::add(std::span<const PlacedScan> scans, const JobContext& job) {
   if (job.cancelled()) {
     return cancelled();
   }
-  return impl_->insert({&scan, 1});
+  return impl_->insert(scans);
 }
 
 bool Stitcher::remove(int id) {
@@ -184,7 +190,7 @@ std::vector<Stitcher::Overlap> Stitcher::overlaps() const {
     for (const auto& [other_id, pairs] : entry.pairs) {
       if (id < other_id) {
         const StitchSurface& other = impl_->entries.at(other_id).surface;
-        out.push_back({id, other_id, pairs.count, mismatch_mm(entry.surface, other, pairs.reach_mm),
+        out.push_back({id, other_id, pairs.count, step_mm(entry.surface, other, pairs.reach_mm),
                        std::max(entry.surface.spacing_mm, other.spacing_mm)});
       }
     }
@@ -230,11 +236,8 @@ Mesh Stitcher::mesh() const {
 
 Result<Mesh> stitch(std::span<const PlacedScan> scans, const StitchOptions& options, const JobContext& job) {
   Stitcher stitcher(options);
-  if (job.cancelled()) {
-    return cancelled();
-  }
   job.progress("triangulate grids", 0.0);
-  if (const Status ok = stitcher.impl_->insert(scans); !ok) {
+  if (const Status ok = stitcher.add(scans, job); !ok) {
     return std::unexpected(ok.error());
   }
   return stitcher.mesh(job);

@@ -51,15 +51,18 @@ class Stitcher {
   /// Errors: kUsage when the id is there already, kBadInput when the scan has no grid, its flags have another
   /// size or its pose is not rigid; kCancelled, and then the scan is not in.
   Status add(const PlacedScan& scan, const JobContext& job);
+  /// All or, on an error, none of them that came after the bad one.
+  Status add(std::span<const PlacedScan> scans, const JobContext& job);
   /// False when there is no such scan.
   bool remove(int id);
-  /// How far apart the surfaces of two scans lie where they overlap (median along the normal, mm), and what
-  /// their poses promised; for warnings about poses that are off.
+  /// Two scans that overlap, and how far apart their poses hold their surfaces beyond what noise explains.
   struct Overlap {
     int id = 0, other_id = 0;
     std::size_t pairs = 0;
-    double mismatch_mm = 0;
-    double spacing_mm = 0;
+    double step_mm = 0;
+    double spacing_mm = 0;  ///< the coarser
+    /// Far enough apart to show in the mesh.
+    [[nodiscard]] bool is_off() const { return step_mm > 0.75 * spacing_mm; }
   };
   [[nodiscard]] std::vector<Overlap> overlaps() const;
   /// The mesh of all scans, with normals, reliability, scans and flags; kCancelled is its only error.
@@ -67,8 +70,6 @@ class Stitcher {
   [[nodiscard]] Mesh mesh() const;
 
  private:
-  friend Result<Mesh> stitch(std::span<const PlacedScan> scans, const StitchOptions& options,
-                             const JobContext& job);
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };

@@ -51,8 +51,8 @@ struct Gain {
 struct TabletResult {
   bool conclusive = false;
   int scans = 0;
-  int scans_to_999 = 0;      ///< until 99.9 % of what was sampled in the end
-  double share = 0;          ///< of the reachable
+  int scans_to_999 = 0;  ///< until 99.9 % of what was sampled in the end
+  TabletTruth::Share share;
   double share_sampled = 0;  ///< of all
   double area_mm2 = 0;
   double worst_pose_mm = 0;
@@ -244,7 +244,7 @@ int main(int argc, char** argv) {
   app.add_flag("-v,--verbose", args.verbose);
   CLI11_PARSE(app, argc, argv);
 
-  std::vector<double> shares, errors, interpolation;
+  std::vector<double> shares, outside_slits, errors, interpolation;
   double unreachable = 0, truly = 0, unneeded = 0, area = 0, worst_pose_mm = 0;
   int misplaced = 0;
   int conclusive = 0, scans = 0, greedy = 0, greedy_999 = 0, scans_999 = 0, turntable = 0, boundary = 0;
@@ -255,7 +255,8 @@ int main(int argc, char** argv) {
     const TabletResult r = run(options, args);
     conclusive += r.conclusive ? 1 : 0;
     if (r.conclusive) {
-      shares.push_back(r.share);
+      shares.push_back(r.share.of_reachable);
+      outside_slits.push_back(r.share.outside_slits);
     }
     unreachable += r.excuses.unreachable_mm2;
     truly += r.excuses.truly_unreachable_mm2;
@@ -271,13 +272,14 @@ int main(int argc, char** argv) {
       }
     }
     std::printf(
-        "%4llu: %.0fx%.0fx%.0f %s %d scans (%d to 99.9 %%), share %.5f, unreachable %.2f mm2 (%.2f truly), "
+        "%4llu: %.0fx%.0fx%.0f %s %d scans (%d to 99.9 %%), share %.5f (%.5f outside slits), unreachable "
+        "%.2f mm2 (%.2f truly), "
         "unneeded %.3f, poses within %.4f mm; %.1f s",
         static_cast<unsigned long long>(options.tablet.seed), options.tablet.size_mm.x(),
         options.tablet.size_mm.y(), options.tablet.size_mm.z(),
-        r.conclusive ? "conclusive" : "NOT CONCLUSIVE", r.scans, r.scans_to_999, r.share,
-        r.excuses.unreachable_mm2, r.excuses.truly_unreachable_mm2, r.excuses.unneeded_mm2, r.worst_pose_mm,
-        seconds_since(start));
+        r.conclusive ? "conclusive" : "NOT CONCLUSIVE", r.scans, r.scans_to_999, r.share.of_reachable,
+        r.share.outside_slits, r.excuses.unreachable_mm2, r.excuses.truly_unreachable_mm2,
+        r.excuses.unneeded_mm2, r.worst_pose_mm, seconds_since(start));
     worst_pose_mm = std::max(worst_pose_mm, r.worst_pose_mm);
     misplaced += r.worst_pose_mm > kMisplacedMm ? 1 : 0;
     if (args.baselines) {
@@ -302,6 +304,9 @@ int main(int argc, char** argv) {
   std::printf("conclusive %d of %d; sampled of the reachable: least %.5f, median %.5f, below 0.999: %td\n",
               conclusive, args.tablets, quantile(shares, 0), quantile(shares, 0.5),
               std::count_if(shares.begin(), shares.end(), [](double s) { return s < 0.999; }));
+  std::printf("outside slits narrower than 3 spacings: least %.5f, median %.5f, below 0.999: %td\n",
+              quantile(outside_slits, 0), quantile(outside_slits, 0.5),
+              std::count_if(outside_slits.begin(), outside_slits.end(), [](double s) { return s < 0.999; }));
   std::printf(
       "excused as unreachable %.2f mm2, of it truly %.1f %%; unneeded %.4f %% of the surface, interpolation "
       "good to %.1f um (95 %%, %zu)\n",

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright The Dubsar developers
 //
-// Wedges found on simulated tablets of differing seed and damage against the truth: precision, recall and F1 of
-// those at least 60 % intact, and how far the measures are off. On the clean meshes, on the same scanned in
-// simulation and stitched with true poses, and with faults put into the mesh.
+// Wedges found on simulated tablets of differing seed and damage against the truth: precision, recall and F1
+// of those at least 60 % intact, and how far the measures are off. On the clean meshes, on the same scanned
+// in simulation and stitched with true poses, and with faults put into the mesh.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
@@ -65,7 +65,8 @@ Mesh scanned_mesh(const sim::TabletOptions& tablet, const Arguments& args) {
     flags.push_back(flag_sparse(*scan.grid));
   }
   for (std::size_t i = 0; i < scans.size(); ++i) {
-    placed.push_back({static_cast<int>(i), scans[i].grid.get(), &flags[i], scans[i].tablet_from_scanner, 0.005});
+    placed.push_back(
+        {static_cast<int>(i), scans[i].grid.get(), &flags[i], scans[i].tablet_from_scanner, 0.005});
   }
   JobContext job;
   Result<Mesh> mesh = stitch(placed, {}, job);
@@ -76,11 +77,13 @@ Mesh scanned_mesh(const sim::TabletOptions& tablet, const Arguments& args) {
 }
 
 void report(const char* name, const WedgeScore& s) {
-  std::printf("%-24s P %.3f R %.3f F1 %.3f | right %d false %d missed %d remains %d | depth point %.0f um, depth %.0f um, "
-              "edge %.2f deg, opening %.2f deg, directional %.1f %%\n",
-              name, s.precision(), s.recall(), s.f1(), s.right, s.false_ones, s.missed, s.ignored,
-              median(s.depth_point_um), median(s.depth_um), median(s.edge_deg), median(s.opening_deg),
-              s.right > 0 ? 100.0 * s.directional_right / s.right : 0.0);
+  std::printf(
+      "%-24s P %.3f R %.3f F1 %.3f | right %d false %d missed %d remains %d | depth point %.0f um, depth "
+      "%.0f um, "
+      "edge %.2f deg, opening %.2f deg, directional %.1f %%\n",
+      name, s.precision(), s.recall(), s.f1(), s.right, s.false_ones, s.missed, s.ignored,
+      median(s.depth_point_um), median(s.depth_um), median(s.edge_deg), median(s.opening_deg),
+      s.right > 0 ? 100.0 * s.directional_right / s.right : 0.0);
 }
 
 void explain(const sim::SimTablet& tablet, const WedgeSet& set, const std::vector<int>& pair) {
@@ -106,14 +109,17 @@ void explain(const sim::SimTablet& tablet, const WedgeSet& set, const std::vecto
         ++owners[tablet.wedge_of[v]];
       }
     }
-    std::printf("  FALSE at (%.2f %.2f %.2f) depth %.2f intact %.2f lengths %.2f %.2f %.2f conf %.2f n %d; kinds",
-                w.depth_point_mm.x(), w.depth_point_mm.y(), w.depth_point_mm.z(), w.depth_mm, w.intact,
-                w.edge_lengths_mm[0], w.edge_lengths_mm[1], w.edge_lengths_mm[2], w.confidence, w.vertex_count);
+    std::printf(
+        "  FALSE at (%.2f %.2f %.2f) depth %.2f intact %.2f lengths %.2f %.2f %.2f conf %.2f n %d; kinds",
+        w.depth_point_mm.x(), w.depth_point_mm.y(), w.depth_point_mm.z(), w.depth_mm, w.intact,
+        w.edge_lengths_mm[0], w.edge_lengths_mm[1], w.edge_lengths_mm[2], w.confidence, w.vertex_count);
     for (const auto& [kind, count] : kinds) {
       std::printf(" %d:%d", kind, count);
     }
-    std::printf("; nearest true %zu %.2f intact %.2f taken %d depth %.2f; of", which, nearest, tablet.wedges[which].intact,
-                static_cast<int>(std::ranges::count(pair, static_cast<int>(which))), tablet.wedges[which].depth_mm);
+    std::printf("; nearest true %zu %.2f intact %.2f taken %d depth %.2f; of", which, nearest,
+                tablet.wedges[which].intact,
+                static_cast<int>(std::ranges::count(pair, static_cast<int>(which))),
+                tablet.wedges[which].depth_mm);
     for (const auto& [owner, count] : owners) {
       std::printf(" %d:%d", owner, count);
     }
@@ -136,10 +142,12 @@ void explain(const sim::SimTablet& tablet, const WedgeSet& set, const std::vecto
     for (const Wedge& f : set.wedges) {
       near_found = std::min(near_found, (f.depth_point_mm - w.depth_point_mm).norm());
     }
-    std::printf("  MISSED %zu at (%.2f %.2f %.2f) intact %.2f depth %.2f lengths %.2f %.2f %.2f; nearest found %.2f, rejected %.2f: %s\n", t,
-                w.depth_point_mm.x(), w.depth_point_mm.y(), w.depth_point_mm.z(), w.intact, w.depth_mm,
-                (w.exit_points_mm[0] - w.depth_point_mm).norm(), (w.exit_points_mm[1] - w.depth_point_mm).norm(),
-                (w.exit_points_mm[2] - w.depth_point_mm).norm(), near_found, near, why.c_str());
+    std::printf(
+        "  MISSED %zu at (%.2f %.2f %.2f) intact %.2f depth %.2f lengths %.2f %.2f %.2f; nearest found %.2f, "
+        "rejected %.2f: %s\n",
+        t, w.depth_point_mm.x(), w.depth_point_mm.y(), w.depth_point_mm.z(), w.intact, w.depth_mm,
+        (w.exit_points_mm[0] - w.depth_point_mm).norm(), (w.exit_points_mm[1] - w.depth_point_mm).norm(),
+        (w.exit_points_mm[2] - w.depth_point_mm).norm(), near_found, near, why.c_str());
   }
 }
 
@@ -205,8 +213,9 @@ WedgeScore judge_seed(std::uint64_t seed, double damage, const Arguments& args) 
     options.spacing_mm = std::max(0.04, 0.8 * args.scan_spacing_mm);
   }
   JobContext job;
-  Result<sim::SimTablet> tablet =
-      args.other ? make_other_tablet({seed, args.spacing_mm, damage, args.noise_mm}) : sim::make_tablet(options, job);
+  Result<sim::SimTablet> tablet = args.other
+                                      ? make_other_tablet({seed, args.spacing_mm, damage, args.noise_mm})
+                                      : sim::make_tablet(options, job);
   if (!tablet) {
     give_up(tablet.error());
   }
@@ -256,7 +265,8 @@ int main(int argc, char** argv) {
     all.add(judge_folder(folder, args));
   }
   for (int i = 0; i < args.tablets && args.folders.empty(); ++i) {
-    const double damage = args.damage >= 0 ? args.damage : static_cast<double>(i) / std::max(1, args.tablets - 1);
+    const double damage =
+        args.damage >= 0 ? args.damage : static_cast<double>(i) / std::max(1, args.tablets - 1);
     all.add(judge_seed(args.first + static_cast<std::uint64_t>(i), damage, args));
   }
   report("all", all);

@@ -16,12 +16,12 @@ namespace dubsar::bench {
 namespace {
 
 struct Press {
-  Eigen::Vector3d tip;                      ///< depth point
-  std::array<Eigen::Vector3d, 3> exits;     ///< counter-clockwise from above; 0 is the tail
-  std::array<Eigen::Vector3d, 3> normals;   ///< of faces between exits k and k + 1, upwards
+  Eigen::Vector3d tip;                     ///< depth point
+  std::array<Eigen::Vector3d, 3> exits;    ///< counter-clockwise from above; 0 is the tail
+  std::array<Eigen::Vector3d, 3> normals;  ///< of faces between exits k and k + 1, upwards
   double depth = 0;
-  double rounding = 0.03;                   ///< mm over which one face goes over into the next
-  double hollow = 0;                        ///< of the faces, per mm
+  double rounding = 0.03;  ///< mm over which one face goes over into the next
+  double hollow = 0;       ///< of the faces, per mm
   double heap = 0.03;
   double reach = 1;
 };
@@ -37,8 +37,9 @@ class Bun {
     half_ = {random_.uniform(12, 26), random_.uniform(10, 20)};
     thick_ = random_.uniform(6, 10);
     width_ = random_.uniform(0.9, 2.6);
-    broken_ = options.wear > 0 ? Eigen::Vector2d(random_.uniform(0.6, 1.0), random_.uniform(0.6, 1.0)).normalized()
-                               : Eigen::Vector2d::Zero();
+    broken_ = options.wear > 0
+                  ? Eigen::Vector2d(random_.uniform(0.6, 1.0), random_.uniform(0.6, 1.0)).normalized()
+                  : Eigen::Vector2d::Zero();
     write();
   }
 
@@ -95,7 +96,8 @@ class Bun {
     const auto corner = [&](double x, double y) {
       const auto i = static_cast<std::int64_t>(x) + 100000;
       const auto j = static_cast<std::int64_t>(y) + 100000;
-      return Random(seed_for(options_.seed ^ salt, static_cast<std::uint64_t>(i * 300007 + j))).uniform(-1, 1);
+      return Random(seed_for(options_.seed ^ salt, static_cast<std::uint64_t>(i * 300007 + j)))
+          .uniform(-1, 1);
     };
     const Eigen::Vector2d t = at - low;
     const Eigen::Vector2d s = t.cwiseProduct(t).cwiseProduct(Eigen::Vector2d::Constant(3) - 2 * t);
@@ -125,7 +127,8 @@ class Bun {
     const Eigen::Vector2d across(-along.y(), along.x());
     const double skew = random_.uniform(-0.25, 0.25);
     const std::array<Eigen::Vector2d, 3> foot = {
-        head + length * along, head - back * along + (0.5 + 0.2 * skew) * width * across + skew * back * along,
+        head + length * along,
+        head - back * along + (0.5 + 0.2 * skew) * width * across + skew * back * along,
         head - back * along - (0.5 - 0.2 * skew) * width * across - skew * back * along};
     Press p;
     p.depth = depth;
@@ -205,7 +208,8 @@ sim::SimTablet make_other_tablet(const OtherTabletOptions& options) {
     const double z = bun.top({x, y}, &owner[i], &made[i], &broken);
     Random random(seed_for(options.seed ^ 0x5eed, i));
     mesh.positions[i] = Eigen::Vector3d(x, y, z + options.noise_mm * random.normal()).cast<float>();
-    mesh.positions[layer + i] = Eigen::Vector3d(x, y, -bun.body({x, y}) + options.noise_mm * random.normal()).cast<float>();
+    mesh.positions[layer + i] =
+        Eigen::Vector3d(x, y, -bun.body({x, y}) + options.noise_mm * random.normal()).cast<float>();
   });
   const auto quad = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
     mesh.faces.push_back({a, b, c});

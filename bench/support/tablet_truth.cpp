@@ -159,11 +159,23 @@ void TabletTruth::scan_from_everywhere(const std::vector<std::uint32_t>& group,
   }
 }
 
-double TabletTruth::share_of_reachable(const std::vector<std::uint8_t>& sampled, JobContext& job) const {
+TabletTruth::Share TabletTruth::share_of_reachable(const std::vector<std::uint8_t>& sampled,
+                                                   JobContext& job) const {
   const std::vector<std::uint8_t> out_of_reach = unreachable(sampled, job);
-  const auto all = static_cast<double>(sampled.size()) -
-                   static_cast<double>(std::count(out_of_reach.begin(), out_of_reach.end(), 1));
-  return all > 0 ? static_cast<double>(std::count(sampled.begin(), sampled.end(), 1)) / all : 1.0;
+  const auto slit_mm = static_cast<float>(3.0 * scanner_.spacing_mm);
+  std::size_t open = 0;
+  std::size_t in_slits = 0;
+  for (std::size_t i = 0; i < sampled.size(); ++i) {
+    if (sampled[i] == 0 && out_of_reach[i] == 0) {
+      ++open;
+      in_slits += query_->first_hit(points_[i], normals_[i], 0.02F, slit_mm) ? 1 : 0;
+    }
+  }
+  const auto good = static_cast<double>(std::count(sampled.begin(), sampled.end(), 1));
+  const auto of = [&](std::size_t missing) {
+    return good > 0 ? good / (good + static_cast<double>(missing)) : 1.0;
+  };
+  return {of(open), of(open - in_slits)};
 }
 
 ExcuseScore TabletTruth::judge(const std::vector<RedTarget>& targets, const RigidTransform& tablet_from_model,

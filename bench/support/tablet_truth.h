@@ -38,9 +38,14 @@ class TabletTruth {
   /// Which points the scan (its pose tablet_from_scanner) samples well.
   [[nodiscard]] std::vector<std::uint8_t> sampled_by(const PlacedScan& scan) const;
 
+  struct Share {
+    double of_reachable = 1;
+    /// The same without the walls of slits narrower than 3µ, which the seed's rule lets pass as closed.
+    double outside_slits = 1;
+  };
   /// Share of the reachable surface that is sampled; what is not sampled is tried from 300 directions and 12
   /// turns of the scanner each.
-  [[nodiscard]] double share_of_reachable(const std::vector<std::uint8_t>& sampled, JobContext& job) const;
+  [[nodiscard]] Share share_of_reachable(const std::vector<std::uint8_t>& sampled, JobContext& job) const;
   /// Of the points that are not sampled, those that no pose reaches. Found by brute force: points that rays
   /// of laser and camera reach from some of 300 directions, with 12 turns of the scanner each, are looked at
   /// by the simulated scanner itself from all of these, group by group; what none of its scans samples with

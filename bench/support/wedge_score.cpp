@@ -37,8 +37,8 @@ void compare(const Wedge& found, const Wedge& truth, WedgeScore* score) {
   }
   for (std::size_t k = 0; k < 3; ++k) {
     score->edge_deg.push_back(best_angles[k]);
-    score->opening_deg.push_back(deg_from_rad(
-        std::abs(found.opening_angles_rad[(k + best_shift) % 3] - truth.opening_angles_rad[k])));
+    score->opening_deg.push_back(
+        deg_from_rad(std::abs(found.opening_angles_rad[(k + best_shift) % 3] - truth.opening_angles_rad[k])));
   }
   const auto directional = (static_cast<std::size_t>(found.directional_edge) + 3 - best_shift) % 3;
   score->directional_right += directional == static_cast<std::size_t>(truth.directional_edge) ? 1 : 0;

@@ -11,10 +11,10 @@ namespace dubsar::bench {
 
 /// Found wedges against true ones, over any number of tablets.
 struct WedgeScore {
-  int right = 0;     ///< found wedges that are true ones, at least so far intact
+  int right = 0;  ///< found wedges that are true ones, at least so far intact
   int false_ones = 0;
-  int missed = 0;    ///< true wedges, at least so far intact, that were not found
-  int ignored = 0;   ///< found ones that are remains of true ones
+  int missed = 0;   ///< true wedges, at least so far intact, that were not found
+  int ignored = 0;  ///< found ones that are remains of true ones
   int directional_right = 0;
   std::vector<double> depth_point_um, depth_um, edge_deg, opening_deg;
   std::vector<double> false_confidence, right_confidence;

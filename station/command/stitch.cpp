@@ -2,6 +2,8 @@
 // Copyright The Dubsar developers
 // dubsar stitch: one mesh of a session or a folder.
 
+#include <fmt/format.h>
+
 #include <cstdio>
 #include <memory>
 
@@ -37,9 +39,21 @@ Result<int> stitch_all(const ScanSetArguments& arguments, CommandContext& contex
                   (pose.reason.empty() ? "" : ", " + pose.reason));
     }
   }
-  const Result<Mesh> mesh = stitch(placed, {}, context.job);
+  Stitcher stitcher;
+  if (const Status added = stitcher.add(placed, context.job); !added) {
+    return std::unexpected(added.error());
+  }
+  const Result<Mesh> mesh = stitcher.mesh(context.job);
   if (!mesh) {
     return std::unexpected(mesh.error());
+  }
+  for (const Stitcher::Overlap& overlap : stitcher.overlaps()) {
+    if (overlap.is_off()) {
+      log_warning(
+          fmt::format("scans {} and {} lie {:.2f} mm apart where they overlap, more than noise explains; the "
+                      "mesh is less reliable there; register them again",
+                      overlap.id, overlap.other_id, overlap.step_mm));
+    }
   }
   if (const Status written = write_mesh(arguments.out, *mesh); !written) {
     return std::unexpected(written.error());

@@ -28,6 +28,7 @@ Mesh full_mesh() {
   Mesh mesh = tetrahedron();
   mesh.normals = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0.6F, 0, 0.8F}};
   mesh.reliability = {0, 0.25F, 0.5F, 1};
+  mesh.sigma_mm = {0.5F, 0.01F, 0, 1e-6F};
   mesh.scans = {0, 1, 2, 255};
   mesh.flags = {1, 2, 4, 7};
   mesh.colours = {{{1, 2, 3}}, {{4, 5, 6}}, {{7, 8, 9}}, {{255, 0, 128}}};
@@ -61,6 +62,7 @@ TEST(MeshIo, PlyKeepsEverythingToTheBit) {
   EXPECT_EQ(back->faces, mesh.faces);
   EXPECT_EQ(back->normals, mesh.normals);
   EXPECT_EQ(back->reliability, mesh.reliability);
+  EXPECT_EQ(back->sigma_mm, mesh.sigma_mm);
   EXPECT_EQ(back->scans, mesh.scans);
   EXPECT_EQ(back->flags, mesh.flags);
   EXPECT_EQ(back->colours, mesh.colours);

@@ -65,6 +65,7 @@ void expect_same(const Mesh& a, const Mesh& b) {
   EXPECT_EQ(a.faces, b.faces);
   EXPECT_EQ(a.normals, b.normals);
   EXPECT_EQ(a.reliability, b.reliability);
+  EXPECT_EQ(a.sigma_mm, b.sigma_mm);
   EXPECT_EQ(a.scans, b.scans);
   EXPECT_EQ(a.flags, b.flags);
 }
@@ -154,9 +155,27 @@ TEST(Stitcher, PosesThatAreOffStillGiveOneSoundSurface) {
     ASSERT_TRUE(stitcher.add(scan, job).has_value());
   }
   for (const Stitcher::Overlap& overlap : stitcher.overlaps()) {
-    worst = std::max(worst, overlap.mismatch_mm);
+    worst = std::max(worst, overlap.step_mm);
   }
   EXPECT_GT(worst, 0.05);
+}
+
+TEST(Stitcher, KnowsHowFarItsVerticesAreOff) {
+  test::ScanSet set;
+  for (int side = 0; side < 6; ++side) {
+    set.add(ball_grid(0.1, 0.02, static_cast<std::uint64_t>(side) + 1), view_from(side));
+  }
+  const Mesh mesh = stitched(set);
+  ASSERT_EQ(mesh.sigma_mm.size(), mesh.positions.size());
+  double squares = 0;
+  for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+    const double error = (mesh.positions[i].norm() - kRadius) / mesh.sigma_mm[i];
+    squares += std::min(error * error, 25.0);
+  }
+  const double mean_square = squares / static_cast<double>(mesh.positions.size());
+  // The noise is along the view and does not grow with the slope here: along the normal it is less.
+  EXPECT_GT(mean_square, 0.3);
+  EXPECT_LT(mean_square, 1.6);
 }
 
 TEST(Stitcher, ScansOfDifferentSpacing) {
@@ -226,8 +245,35 @@ TEST(Stitcher, NothingToStitch) {
   invalid.allocate(10, 10);
   set.add(invalid, {});
   set.add(ball_grid(0.3, 0, 1), {});
-  std::fill(set.flags[3].begin(), set.flags[3].end(), std::uint8_t{kSparse});
+  std::fill(set.flags[3].begin(), set.flags[3].end(), std::uint8_t{kNotTablet});
   EXPECT_TRUE(stitched(set).faces.empty());
+}
+
+TEST(Stitcher, SparseSamplesAreKeptWhereNothingBetterIs) {
+  // The right half of the first scan is sparse; the second scan sees a part of it well.
+  test::ScanSet set;
+  const auto flat = [](double, double) { return 0.0; };
+  set.add(test::height_grid(41, 41, 0.1, flat), {});
+  set.add(test::height_grid(41, 11, 0.1, flat), {Eigen::Matrix3d::Identity(), {1.0, 0.0, 0.0}});
+  for (auto& flags : set.flags) {
+    std::fill(flags.begin(), flags.end(), std::uint8_t{0});
+  }
+  for (int row = 0; row < 41; ++row) {
+    for (int col = 20; col < 41; ++col) {
+      set.flags[0][set.placed[0].grid->index(row, col)] = kSparse;
+    }
+  }
+  const Mesh mesh = stitched(set);
+  std::size_t sparse = 0;
+  std::size_t sparse_where_seen_well = 0;
+  for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+    if ((mesh.flags[i] & kVertexSparse) != 0) {
+      ++sparse;
+      sparse_where_seen_well += std::abs(mesh.positions[i].x() - 1.0F) < 0.35F ? 1 : 0;
+    }
+  }
+  EXPECT_GT(sparse, 100U);
+  EXPECT_EQ(sparse_where_seen_well, 0U);
 }
 
 TEST(Stitcher, RefusesWhatItCannotPlace) {

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "station/results.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/temporary_folder.h"
+
+namespace dubsar {
+namespace {
+
+TEST(PageFacts, WhatWasPredictedAndWhatCameOfItStayInTheSession) {
+  const test::TemporaryFolder folder;
+  Result<SessionStore> store = SessionStore::open_or_create(folder.path() / "session");
+  ASSERT_TRUE(store) << store.error().line();
+  PageFacts facts;
+  facts.device = "sim:";
+  facts.timings = {{"register", 1.5}};
+  facts.gains = {{.scan = 3, .predicted_mm2 = 12.5, .actual_mm2 = 11.0},
+                 {.scan = 4, .predicted_mm2 = std::nullopt, .actual_mm2 = 2.0}};
+  ASSERT_TRUE(keep_page_facts(*store, facts));
+  const PageFacts read = page_facts_of(*store);
+  EXPECT_EQ(read.device, "sim:");
+  ASSERT_EQ(read.gains.size(), 2U);
+  EXPECT_EQ(read.gains[0].scan, 3);
+  EXPECT_EQ(read.gains[0].predicted_mm2, 12.5);
+  EXPECT_EQ(read.gains[0].actual_mm2, 11.0);
+  EXPECT_FALSE(read.gains[1].predicted_mm2.has_value());
+}
+
+}  // namespace
+}  // namespace dubsar

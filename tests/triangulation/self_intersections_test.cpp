@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "triangulation/self_intersections.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "core/mesh.h"
+#include "core/random.h"
+
+namespace dubsar {
+namespace {
+
+using Pairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
+
+Pairs intersections(const Mesh& mesh) {
+  return self_intersections(mesh.positions, mesh.faces);
+}
+
+void add_face(Mesh& mesh, const Eigen::Vector3f& a, const Eigen::Vector3f& b, const Eigen::Vector3f& c) {
+  const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+  mesh.positions.insert(mesh.positions.end(), {a, b, c});
+  mesh.faces.push_back({first, first + 1, first + 2});
+}
+
+/// An n by n sheet of squares, each of two faces.
+Mesh sheet(int n, float height) {
+  Mesh mesh;
+  for (int r = 0; r <= n; ++r) {
+    for (int c = 0; c <= n; ++c) {
+      mesh.positions.emplace_back(static_cast<float>(c), static_cast<float>(r), height);
+    }
+  }
+  for (int r = 0; r < n; ++r) {
+    for (int c = 0; c < n; ++c) {
+      const auto i = static_cast<std::uint32_t>(r * (n + 1) + c);
+      const auto below = i + static_cast<std::uint32_t>(n) + 1;
+      mesh.faces.push_back({i, i + 1, below});
+      mesh.faces.push_back({i + 1, below + 1, below});
+    }
+  }
+  return mesh;
+}
+
+TEST(SelfIntersections, TwoFacesThatCross) {
+  Mesh mesh;
+  add_face(mesh, {0, 0, 0}, {4, 0, 0}, {0, 4, 0});
+  add_face(mesh, {1, 1, -1}, {1, 1, 1}, {9, 9, 1});
+  EXPECT_EQ(intersections(mesh), (Pairs{{0, 1}}));
+}
+
+TEST(SelfIntersections, TouchingAndParallelFacesDoNot) {
+  Mesh mesh;
+  add_face(mesh, {0, 0, 0}, {4, 0, 0}, {0, 4, 0});
+  add_face(mesh, {0, 0, 0.01F}, {4, 0, 0.01F}, {0, 4, 0.01F});
+  add_face(mesh, {5, 0, -1}, {5, 0, 1}, {5, 5, 0});
+  EXPECT_TRUE(intersections(mesh).empty());
+  EXPECT_TRUE(intersections(sheet(30, 0)).empty());
+}
+
+TEST(SelfIntersections, AFoldAtASharedVertex) {
+  Mesh mesh;
+  mesh.positions = {{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {2, 1, -1}, {1, 2, 1}};
+  mesh.faces = {{0, 1, 2}, {0, 3, 4}};
+  EXPECT_EQ(intersections(mesh), (Pairs{{0, 1}}));
+  mesh.faces = {{0, 1, 2}, {0, 1, 4}};  // an edge in common
+  EXPECT_TRUE(intersections(mesh).empty());
+}
+
+TEST(SelfIntersections, ALongFaceThroughASheetOfSmallOnes) {
+  Mesh mesh = sheet(40, 0);
+  const auto spear = static_cast<std::uint32_t>(mesh.faces.size());
+  add_face(mesh, {20.3F, 20.4F, -500}, {20.3F, 20.4F, 500}, {20.31F, 20.41F, 500});
+  const Pairs found = intersections(mesh);
+  ASSERT_FALSE(found.empty());
+  for (const auto& [a, b] : found) {
+    EXPECT_EQ(b, spear);
+  }
+}
+
+TEST(SelfIntersections, AgreesWithEveryPairLookedAt) {
+  Random random(7);
+  Mesh mesh;
+  for (int k = 0; k < 300; ++k) {
+    const auto draw = [&](double size) {
+      return Eigen::Vector3f(static_cast<float>(random.uniform(-size, size)),
+                             static_cast<float>(random.uniform(-size, size)),
+                             static_cast<float>(random.uniform(-size, size)));
+    };
+    const Eigen::Vector3f middle = draw(5);
+    const double size = k % 20 == 0 ? 4.0 : 0.5;
+    add_face(mesh, middle + draw(size), middle + draw(size), middle + draw(size));
+  }
+  Pairs each;
+  for (std::uint32_t a = 0; a < mesh.faces.size(); ++a) {
+    for (std::uint32_t b = a + 1; b < mesh.faces.size(); ++b) {
+      Mesh two;
+      two.positions = mesh.positions;
+      two.faces = {mesh.faces[a], mesh.faces[b]};
+      if (!intersections(two).empty()) {
+        each.emplace_back(a, b);
+      }
+    }
+  }
+  EXPECT_GT(each.size(), 20U);
+  EXPECT_EQ(intersections(mesh), each);
+}
+
+TEST(SelfIntersections, BrokenMeshes) {
+  EXPECT_TRUE(intersections({}).empty());
+  Mesh mesh;
+  mesh.positions = {{0, 0, 0}, {std::numeric_limits<float>::quiet_NaN(), 0, 0}, {0, 1, 0}};
+  mesh.faces = {{0, 1, 2}, {0, 2, 9}, {0, 0, 0}};
+  EXPECT_TRUE(intersections(mesh).empty());
+}
+
+}  // namespace
+}  // namespace dubsar

@@ -1,0 +1,266 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "triangulation/self_intersections.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+
+#include "core/parallel.h"
+
+namespace dubsar {
+
+namespace {
+
+using Eigen::Vector3d;
+using Eigen::Vector3f;
+using Corners = std::array<Vector3d, 3>;
+
+/// Six times the volume of the tetrahedron abcd.
+double volume(const Vector3d& a, const Vector3d& b, const Vector3d& c, const Vector3d& d) {
+  return (b - a).cross(c - a).dot(d - a);
+}
+
+/// Whether the segment pq passes through the inside of the triangle.
+bool passes_through(const Vector3d& p, const Vector3d& q, const Corners& t) {
+  const double at_p = volume(t[0], t[1], t[2], p);
+  const double at_q = volume(t[0], t[1], t[2], q);
+  if (!(at_p * at_q < 0)) {
+    return false;
+  }
+  const double u = volume(p, q, t[0], t[1]);
+  const double v = volume(p, q, t[1], t[2]);
+  const double w = volume(p, q, t[2], t[0]);
+  return (u > 0 && v > 0 && w > 0) || (u < 0 && v < 0 && w < 0);
+}
+
+using Positions = std::span<const Vector3f>;
+using Face = std::array<std::uint32_t, 3>;
+
+Corners corners_of(Positions positions, const Face& f) {
+  return {positions[f[0]].cast<double>(), positions[f[1]].cast<double>(), positions[f[2]].cast<double>()};
+}
+
+/// A face's plane: nothing of a face that lies on one side of it cuts through.
+struct FacePlane {
+  Vector3d normal{0, 0, 0};  ///< of any length
+  double offset = 0;
+
+  FacePlane() = default;
+  FacePlane(Positions positions, const Face& f) {
+    const Corners c = corners_of(positions, f);
+    normal = (c[1] - c[0]).cross(c[2] - c[0]);
+    offset = normal.dot(c[0]);
+  }
+};
+
+bool has(const Face& f, std::uint32_t v) {
+  return v == f[0] || v == f[1] || v == f[2];
+}
+
+/// Whether the corners of `other` lie on both sides of the plane of f; those that they share lie in it.
+bool straddles(Positions positions, const Face& f, const FacePlane& plane, const Face& other) {
+  bool above = false;
+  bool below = false;
+  for (const std::uint32_t v : other) {
+    if (!has(f, v)) {
+      const double side = plane.normal.dot(positions[v].cast<double>()) - plane.offset;
+      above = above || side > 0;
+      below = below || side < 0;
+    }
+  }
+  return above && below;
+}
+
+bool edges_cut(const Face& f, const Corners& c, const Face& other, const Corners& t) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::size_t next = (k + 1) % 3;
+    if (!has(other, f[k]) && !has(other, f[next]) && passes_through(c[k], c[next], t)) {
+      return true;
+    }
+  }
+  return false;
+}
+
+bool cut(Positions positions, const Face& fa, const FacePlane& pa, const Face& fb, const FacePlane& pb) {
+  const int shared = (has(fb, fa[0]) ? 1 : 0) + (has(fb, fa[1]) ? 1 : 0) + (has(fb, fa[2]) ? 1 : 0);
+  // Of two faces that share a corner either may be the one whose far edge passes through the other.
+  if (shared > 1 || (shared == 0 && !straddles(positions, fa, pa, fb)) ||
+      (shared == 0 && !straddles(positions, fb, pb, fa)) ||
+      (shared == 1 && !straddles(positions, fa, pa, fb) && !straddles(positions, fb, pb, fa))) {
+    return false;
+  }
+  const Corners ca = corners_of(positions, fa);
+  const Corners cb = corners_of(positions, fb);
+  return edges_cut(fa, ca, fb, cb) || edges_cut(fb, cb, fa, ca);
+}
+
+/// Faces by the cell that their middle lies in, at the level whose cells are no smaller than their box: what
+/// a box may touch lies in the cells within half a cell of it.
+class FaceCells {
+ public:
+  FaceCells(const std::vector<Eigen::AlignedBox3f>& boxes, const std::vector<std::uint32_t>& faces,
+            const Vector3f& low, float smallest_mm)
+      : low_(low), smallest_mm_(smallest_mm) {
+    for (int level = 0; level <= kMostLevel; ++level) {
+      cell_mm_[static_cast<std::size_t>(level)] = std::ldexp(smallest_mm, level);
+    }
+    entries_.resize(faces.size());
+    parallel_for_each_index(
+        faces.size(),
+        [&](std::size_t k) {
+          const Eigen::AlignedBox3f& box = boxes[faces[k]];
+          const int level = level_of(box);
+          entries_[k] = {key_of(level, cell_of(box.center(), level)), faces[k]};
+        },
+        4096);
+    std::sort(entries_.begin(), entries_.end());
+    boxes_.reserve(entries_.size());
+    for (const auto& [key, face] : entries_) {
+      boxes_.push_back(boxes[face]);
+    }
+    slots_.assign(std::bit_ceil(2 * entries_.size() + 16), kNone);
+    for (std::size_t k = 0; k < entries_.size(); ++k) {
+      if (k == 0 || entries_[k].first != entries_[k - 1].first) {
+        slots_[slot_of(entries_[k].first)] = static_cast<std::uint32_t>(k);
+        levels_ |= 1ULL << (entries_[k].first >> kLevelShift);
+      }
+    }
+  }
+
+  [[nodiscard]] int level_of(const Eigen::AlignedBox3f& box) const {
+    int level = 0;
+    for (float cell = smallest_mm_; cell < box.sizes().maxCoeff() && level < kMostLevel; cell *= 2) {
+      ++level;
+    }
+    return level;
+  }
+
+  [[nodiscard]] std::size_t size() const { return entries_.size(); }
+  /// The faces in the order of their cells.
+  [[nodiscard]] std::uint32_t face(std::size_t at) const { return entries_[at].second; }
+
+  /// visit(face) for those whose boxes touch that of face(at), each pair once.
+  template <class Visit>
+  void for_each_touching(std::size_t at, const Visit& visit) const {
+    const Eigen::AlignedBox3f& box = boxes_[at];
+    const int own_level = static_cast<int>(entries_[at].first >> kLevelShift);
+    for (int level = own_level; level <= kMostLevel; ++level) {
+      if ((levels_ >> static_cast<unsigned>(level) & 1ULL) == 0) {
+        continue;
+      }
+      const float half = 0.5F * cell_mm_[static_cast<std::size_t>(level)];
+      const auto from = cell_of(box.min() - Vector3f::Constant(half), level);
+      const auto to = cell_of(box.max() + Vector3f::Constant(half), level);
+      for (std::int64_t z = from[2]; z <= to[2]; ++z) {
+        for (std::int64_t y = from[1]; y <= to[1]; ++y) {
+          for (std::int64_t x = from[0]; x <= to[0]; ++x) {
+            const std::uint64_t key = key_of(level, {x, y, z});
+            const std::uint32_t first = slots_[slot_of(key)];
+            for (std::size_t k = first; first != kNone && k < entries_.size() && entries_[k].first == key;
+                 ++k) {
+              if ((level > own_level || k > at) && box.intersects(boxes_[k])) {
+                visit(entries_[k].second);
+              }
+            }
+          }
+        }
+      }
+    }
+  }
+
+ private:
+  static constexpr std::uint32_t kNone = 0xffffffffU;
+  static constexpr unsigned kAxisBits = 19;
+  static constexpr unsigned kLevelShift = 3 * kAxisBits;
+  static constexpr int kMostLevel = 40;
+  static constexpr std::int64_t kMostCell = (std::int64_t{1} << kAxisBits) - 1;
+  using Cell = std::array<std::int64_t, 3>;
+
+  [[nodiscard]] Cell cell_of(const Vector3f& p, int level) const {
+    const float cell = cell_mm_[static_cast<std::size_t>(level)];
+    Cell out{};
+    for (int k = 0; k < 3; ++k) {
+      const float at = std::clamp((p[k] - low_[k]) / cell, 0.0F, static_cast<float>(kMostCell - 1));
+      out[static_cast<std::size_t>(k)] = static_cast<std::int64_t>(at);
+    }
+    return out;
+  }
+  [[nodiscard]] static std::uint64_t key_of(int level, const Cell& cell) {
+    return static_cast<std::uint64_t>(level) << kLevelShift |
+           static_cast<std::uint64_t>(cell[2]) << (2 * kAxisBits) |
+           static_cast<std::uint64_t>(cell[1]) << kAxisBits | static_cast<std::uint64_t>(cell[0]);
+  }
+  [[nodiscard]] std::size_t slot_of(std::uint64_t key) const {
+    std::uint64_t mixed = key * 0x9e3779b97f4a7c15ULL;
+    mixed ^= mixed >> 32U;
+    std::size_t slot = mixed & (slots_.size() - 1);
+    while (slots_[slot] != kNone && entries_[slots_[slot]].first != key) {
+      slot = (slot + 1) & (slots_.size() - 1);
+    }
+    return slot;
+  }
+
+  Vector3f low_;
+  float smallest_mm_;
+  std::array<float, kMostLevel + 1> cell_mm_{};
+  std::vector<std::pair<std::uint64_t, std::uint32_t>> entries_;
+  std::vector<Eigen::AlignedBox3f> boxes_;  ///< by entry
+  std::vector<std::uint32_t> slots_;
+  std::uint64_t levels_ = 0;
+};
+
+}  // namespace
+
+std::vector<std::pair<std::uint32_t, std::uint32_t>> self_intersections(std::span<const Vector3f> positions,
+                                                                        std::span<const Face> all_faces) {
+  std::vector<Eigen::AlignedBox3f> boxes(all_faces.size());
+  std::vector<FacePlane> planes(all_faces.size());
+  std::vector<std::uint32_t> faces;
+  Eigen::AlignedBox3f all;
+  double sizes = 0;
+  for (std::uint32_t i = 0; i < all_faces.size(); ++i) {
+    const Face& f = all_faces[i];
+    if (std::any_of(f.begin(), f.end(),
+                    [&](std::uint32_t v) { return v >= positions.size() || !positions[v].allFinite(); })) {
+      continue;
+    }
+    for (const std::uint32_t v : f) {
+      boxes[i].extend(positions[v]);
+    }
+    planes[i] = FacePlane(positions, f);
+    all.extend(boxes[i]);
+    sizes += boxes[i].sizes().maxCoeff();
+    faces.push_back(i);
+  }
+  if (faces.size() < 2 || !(sizes > 0)) {
+    return {};
+  }
+  // So that no cell number of the finest level is cut off.
+  constexpr float kMostCells = 400000.0F;
+  const float smallest_mm = std::max(static_cast<float>(2.5 * sizes / static_cast<double>(faces.size())),
+                                     all.sizes().maxCoeff() / kMostCells);
+  const FaceCells cells(boxes, faces, all.min(), smallest_mm);
+  using Pairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
+  Pairs out = parallel_reduce_ordered(
+      cells.size(), 4096, Pairs{},
+      [&](std::size_t begin, std::size_t end) {
+        Pairs found;
+        for (std::size_t k = begin; k < end; ++k) {
+          const std::uint32_t a = cells.face(k);
+          cells.for_each_touching(k, [&](std::uint32_t b) {
+            if (cut(positions, all_faces[a], planes[a], all_faces[b], planes[b])) {
+              found.push_back(std::minmax(a, b));
+            }
+          });
+        }
+        return found;
+      },
+      [](Pairs& total, const Pairs& part) { total.insert(total.end(), part.begin(), part.end()); });
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+}  // namespace dubsar
