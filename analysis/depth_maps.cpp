@@ -43,13 +43,8 @@ float longest_edge(const Mesh& mesh, const std::array<std::uint32_t, 3>& f) {
 
 }  // namespace
 
-DepthMapPlan plan_depth_maps(const Mesh& mesh, double mean_edge_mm, int longest_px) {
-  Eigen::AlignedBox3f box;
-  for (const Vector3f& p : mesh.positions) {
-    if (p.allFinite()) {
-      box.extend(p);
-    }
-  }
+DepthMapPlan plan_depth_maps(const Mesh& mesh, const Eigen::AlignedBox3f& box, double mean_edge_mm,
+                             int longest_px) {
   DepthMapPlan plan;
   if (box.isEmpty()) {
     return plan;

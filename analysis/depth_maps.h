@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <cstdint>
 #include <vector>
 
@@ -19,9 +20,11 @@ struct DepthMapPlan {
   std::vector<std::uint32_t> large_faces;  ///< longer than a pixel or two: drawn, not only splatted
 };
 
-/// Fits maps of at most longest_px around the mesh. The pixel is no finer than the mesh can fill with points
-/// (mean_edge_mm), except where all faces get drawn because they are few.
-[[nodiscard]] DepthMapPlan plan_depth_maps(const Mesh& mesh, double mean_edge_mm, int longest_px);
+/// Fits maps of at most longest_px around the box of the mesh; what lies outside is not drawn. The pixel is
+/// no finer than the mesh can fill with points (mean_edge_mm), except where all faces get drawn because they
+/// are few.
+[[nodiscard]] DepthMapPlan plan_depth_maps(const Mesh& mesh, const Eigen::AlignedBox3f& box,
+                                           double mean_edge_mm, int longest_px);
 
 /// The nearest and the farthest surface along one direction, by pixel, as depths from the centre in mm
 /// (larger is nearer to an eye at infinity in that direction).
@@ -33,12 +36,19 @@ class DepthMapPair {
     std::size_t pixel;
     float depth_mm;
   };
+  /// Of a point that the map holds.
   [[nodiscard]] Place place(const Eigen::Vector3f& p_mm) const {
     const float x = p_mm.dot(u_px_) + offset_u_px_;
     const float y = p_mm.dot(v_px_) + offset_v_px_;
     return {static_cast<std::size_t>(static_cast<int>(y)) * static_cast<std::size_t>(side_) +
                 static_cast<std::size_t>(static_cast<int>(x)),
             p_mm.dot(direction_)};
+  }
+  [[nodiscard]] bool holds(const Eigen::Vector3f& p_mm) const {
+    const float x = p_mm.dot(u_px_) + offset_u_px_;
+    const float y = p_mm.dot(v_px_) + offset_v_px_;
+    const auto side = static_cast<float>(side_);
+    return x >= 0 && y >= 0 && x < side && y < side;
   }
   [[nodiscard]] float nearest_mm(std::size_t pixel) const { return nearest_[pixel]; }
   [[nodiscard]] float farthest_mm(std::size_t pixel) const { return farthest_[pixel]; }

@@ -79,18 +79,21 @@ float HeightSurface::height_mm(const Vector3f& p_mm) const {
 }
 
 Vector3f HeightSurface::normal(const Vector3f& p_mm) const {
-  const std::optional<Cell> cell = cell_at(p_mm);
-  if (!cell) {
+  if (!cell_at(p_mm)) {
     return Vector3f::Zero();
   }
-  const std::array<float, 8> c = corners(*cell);
-  const Vector3f& t = cell->t;
-  const Vector3f gradient(
-      mix(mix(c[1] - c[0], c[3] - c[2], t.y()), mix(c[5] - c[4], c[7] - c[6], t.y()), t.z()),
-      mix(mix(c[2] - c[0], c[3] - c[1], t.x()), mix(c[6] - c[4], c[7] - c[5], t.x()), t.z()),
-      mix(mix(c[4] - c[0], c[5] - c[1], t.x()), mix(c[6] - c[2], c[7] - c[3], t.x()), t.y()));
+  // Over a cell: within one the trilinear slope jumps from cell to cell.
+  const float half = 0.5F * grid_.cell_mm;
+  Vector3f gradient;
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    Vector3f on = p_mm;
+    Vector3f back = p_mm;
+    on[axis] += half;
+    back[axis] -= half;
+    gradient[axis] = height_mm(on) - height_mm(back);
+  }
   const float length = gradient.norm();
-  // Where all corners are clamped there is no slope.
+  // Where all around is clamped there is no slope.
   return length > 0.1F * grid_.cell_mm ? Vector3f(gradient / length) : Vector3f::Zero();
 }
 

@@ -42,6 +42,43 @@ std::vector<Vector3f> directions() {
   return all;
 }
 
+/// Which direction each vertex reads, and into which each face is drawn.
+struct Drawn {
+  std::vector<std::uint8_t> nearest;  ///< [V], the count of directions where there is none
+  std::vector<std::uint32_t> faces;   ///< [F], a bit a direction
+};
+
+Drawn make_drawn(const Mesh& mesh, const std::vector<Vector3f>& outlook, const std::vector<Vector3f>& ways) {
+  constexpr std::size_t kWide = 1U << 14U;
+  Drawn drawn;
+  drawn.nearest.assign(mesh.positions.size(), static_cast<std::uint8_t>(ways.size()));
+  drawn.faces.resize(mesh.faces.size());
+  std::vector<std::uint32_t> of_vertex(mesh.positions.size(), 0);
+  parallel_for_each_index(
+      mesh.positions.size(),
+      [&](std::size_t v) {
+        float most = 0;
+        for (std::size_t k = 0; mesh.positions[v].allFinite() && k < ways.size(); ++k) {
+          const float along = outlook[v].dot(ways[k]);
+          of_vertex[v] |= along >= kDrawn ? 1U << k : 0U;
+          if (along > most) {
+            most = along;
+            drawn.nearest[v] = static_cast<std::uint8_t>(k);
+          }
+        }
+      },
+      kWide);
+  parallel_for_each_index(
+      mesh.faces.size(),
+      [&](std::size_t i) {
+        const auto& f = mesh.faces[i];
+        const auto bits = [&](std::uint32_t v) { return v < of_vertex.size() ? of_vertex[v] : 0U; };
+        drawn.faces[i] = bits(f[0]) & bits(f[1]) & bits(f[2]);
+      },
+      kWide);
+  return drawn;
+}
+
 /// Half the height of a sphere over the pixels of its disc: what the clay there is clamped to.
 struct Disc {
   struct Row {
@@ -169,18 +206,9 @@ IntegralInvariants integral_invariants(const Mesh& mesh, const std::vector<Vecto
   const int margin = static_cast<int>(std::ceil(options.radius_mm / pixel_mm)) + 2 + static_cast<int>(kLanes);
 
   const std::vector<Vector3f> ways = directions();
-  const Buckets by_way = make_buckets(mesh.positions.size(), ways.size(), [&](std::size_t v) {
-    std::size_t best = ways.size();
-    float most = 0.0F;
-    for (std::size_t k = 0; k < ways.size(); ++k) {
-      const float along = outlook[v].dot(ways[k]);
-      if (along > most) {
-        most = along;
-        best = k;
-      }
-    }
-    return mesh.positions[v].allFinite() ? best : ways.size();
-  });
+  const Drawn drawn = make_drawn(mesh, outlook, ways);
+  const Buckets by_way =
+      make_buckets(mesh.positions.size(), ways.size(), [&](std::size_t v) { return drawn.nearest[v]; });
   for (std::size_t k = 0; k < ways.size(); ++k) {
     if (job.cancelled()) {
       return {};
@@ -189,17 +217,9 @@ IntegralInvariants integral_invariants(const Mesh& mesh, const std::vector<Vecto
     if (by_way.start[k] == by_way.start[k + 1]) {
       continue;
     }
-    const auto drawn = [&](std::size_t i) -> std::size_t {
-      const auto& f = mesh.faces[i];
-      for (const std::uint32_t v : f) {
-        if (v >= mesh.positions.size() || !mesh.positions[v].allFinite() ||
-            outlook[v].dot(ways[k]) < kDrawn) {
-          return 1;
-        }
-      }
-      return 0;
-    };
-    const Buckets faces = make_buckets(mesh.faces.size(), 1, drawn);
+    const Buckets faces = make_buckets(mesh.faces.size(), 1, [&](std::size_t f) -> std::size_t {
+      return (drawn.faces[f] >> k & 1U) != 0 ? 0 : 1;
+    });
     if (faces.start[1] == 0) {
       continue;
     }

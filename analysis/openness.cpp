@@ -32,8 +32,8 @@ std::vector<float> vertex_openness(const Mesh& mesh, const VertexGeometry& geome
                                    const OpennessOptions& options, const JobContext& job) {
   const std::size_t vertices = mesh.positions.size();
   const int pairs = std::clamp(options.directions, 2, 512) / 2;
-  const DepthMapPlan plan =
-      plan_depth_maps(mesh, geometry.mean_edge_mm, std::clamp(options.longest_map_px, 64, 4096));
+  const DepthMapPlan plan = plan_depth_maps(mesh, geometry.box, geometry.mean_edge_mm,
+                                            std::clamp(options.longest_map_px, 64, 4096));
   if (plan.side_px == 0) {
     return std::vector<float>(vertices, 0.0F);
   }
@@ -60,7 +60,7 @@ std::vector<float> vertex_openness(const Mesh& mesh, const VertexGeometry& geome
       for (std::size_t i = begin; i < end; ++i) {
         const float cosine = geometry.normal[i].dot(map->direction());
         const float facing = std::abs(cosine);
-        if (!(facing > kGrazing) || !mesh.positions[i].allFinite()) {
+        if (!(facing > kGrazing) || !map->holds(mesh.positions[i])) {
           continue;
         }
         const float slope = std::sqrt(std::max(0.0F, 1.0F - facing * facing)) / facing;

@@ -19,23 +19,14 @@ namespace {
 
 using Eigen::Vector3f;
 constexpr std::size_t kGrain = 1U << 15U;
-/// What an utterly unreliable vertex still counts: where nothing else is known it is better than nothing.
-constexpr float kLeastReliability = 0.05F;
+/// What an utterly unreliable vertex still counts: beside a hole of one face clay is not far from where the
+/// mesh says, and on a mesh full of faults little else is left.
+constexpr float kLeastReliability = 0.25F;
 /// Below this many vertices a cell edge, cells stay empty and the surface gets holes.
 constexpr float kEdgesPerCell = 2.0F;
 constexpr int kPaddingCells = 3;
 /// Further off than this, a point is not one that the surface should have met.
 constexpr float kMostOffsetCells = 0.75F;
-
-Eigen::AlignedBox3f box_of(const Mesh& mesh, const VertexGeometry& geometry) {
-  Eigen::AlignedBox3f box;
-  for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
-    if (geometry.area_mm2[i] > 0) {
-      box.extend(mesh.positions[i]);
-    }
-  }
-  return box;
-}
 
 /// A grid around the box, `room_mm` wider on all sides, its sides rounded up for the multigrid.
 NodeGrid grid_around(const Eigen::AlignedBox3f& box, float room_mm, float cell_mm) {
@@ -67,7 +58,7 @@ class LocalMean {
     sum_.assign(grid_.count(), 0.0F);
     weight_.assign(grid_.count(), 0.0F);
   }
-  /// Within the box.
+  /// Beyond the box a place counts as on its border.
   void add(const Vector3f& p_mm, float weight, float value) {
     each_corner(p_mm, [&](std::size_t node, float share) {
       sum_[node] += share * weight * value;
@@ -134,7 +125,7 @@ HeightSurface reconstruct_surface(const Mesh& mesh, const VertexGeometry& geomet
                                   const std::vector<std::uint8_t>& free_surface,
                                   const std::vector<float>& reliability, const ReconstructionOptions& options,
                                   const JobContext& job) {
-  const Eigen::AlignedBox3f box = box_of(mesh, geometry);
+  const Eigen::AlignedBox3f& box = geometry.box;
   if (box.isEmpty()) {
     return {};
   }

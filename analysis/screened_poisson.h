@@ -32,8 +32,9 @@ struct Indicator {
 };
 
 /// Screened Poisson reconstruction (Kazhdan, Hoppe 2013) on one regular grid: min ∫|∇χ − V|² + α Σ pin χ(p)²,
-/// V the inward normals splatted trilinearly onto the edges of the grid. Conjugate gradients preconditioned
-/// by Multigrid. Samples outside the grid are left out. Deterministic for any number of threads.
+/// V the inward normals spread over the edges of the grid by the quadratic B-spline. Conjugate gradients
+/// preconditioned by Multigrid. Samples outside the grid are left out. Deterministic for any number of
+/// threads.
 [[nodiscard]] Indicator solve_screened_poisson(std::span<const PoissonSample> samples, const NodeGrid& grid,
                                                const PoissonOptions& options, const JobContext& job);
 

@@ -21,13 +21,8 @@ constexpr float kMostNodes = 48e6F;
 constexpr float kSameSide = 0.2F;
 constexpr std::int32_t kNone = -1;
 
-NodeGrid grid_for(const Mesh& mesh, const VertexGeometry& geometry, float scale_mm) {
-  Eigen::AlignedBox3f box;
-  for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
-    if (geometry.area_mm2[i] > 0) {
-      box.extend(mesh.positions[i]);
-    }
-  }
+NodeGrid grid_for(const VertexGeometry& geometry, float scale_mm) {
+  const Eigen::AlignedBox3f& box = geometry.box;
   NodeGrid grid;
   if (box.isEmpty()) {
     return grid;
@@ -46,11 +41,15 @@ NodeGrid grid_for(const Mesh& mesh, const VertexGeometry& geometry, float scale_
 
 std::vector<float> smooth_mean_curvature(const Mesh& mesh, const VertexGeometry& geometry, float scale_mm) {
   std::vector<float> curvature(mesh.positions.size(), 0.0F);
-  const NodeGrid grid = grid_for(mesh, geometry, scale_mm);
+  const NodeGrid grid = grid_for(geometry, scale_mm);
   if (grid.nx == 0) {
     return curvature;
   }
-  const std::vector<float> even(mesh.positions.size(), 1.0F);
+  // Strays outside the box would lie in the border cells, whose neighbours are not there.
+  std::vector<float> even(mesh.positions.size());
+  parallel_for_each_index(
+      even.size(), [&](std::size_t i) { even[i] = geometry.box.contains(mesh.positions[i]) ? 1.0F : 0.0F; },
+      kGrain);
   std::vector<CellSample> cells =
       gather_cell_samples(mesh.positions, geometry.normal, geometry.area_mm2, even, grid);
   BigArray<std::int32_t> cell_at(grid.count());
@@ -93,7 +92,7 @@ std::vector<float> smooth_mean_curvature(const Mesh& mesh, const VertexGeometry&
   parallel_for_each_index(
       curvature.size(),
       [&](std::size_t v) {
-        if (geometry.area_mm2[v] > 0) {
+        if (geometry.area_mm2[v] > 0 && geometry.box.contains(mesh.positions[v])) {
           const Vector3f at = grid.place(mesh.positions[v]);
           const std::int32_t i = cell_at[grid.index(static_cast<int>(at.x()), static_cast<int>(at.y()),
                                                     static_cast<int>(at.z()))];

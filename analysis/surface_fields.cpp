@@ -71,6 +71,9 @@ Result<SurfaceFields> compute_surface_fields(const Mesh& mesh, const VertexGraph
   }
   job.progress("surface fields", 0.2);
   fields.openness = vertex_openness(mesh, geometry, options.openness, job);
+  if (options.equalize_openness) {
+    fields.openness = equalized(fields.openness);
+  }
   clock.done("openness");
   if (job.cancelled()) {
     return stopped();

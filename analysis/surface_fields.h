@@ -35,6 +35,9 @@ struct SurfaceFields {
 struct SurfaceFieldOptions {
   int reliability_iterations = 2;  ///< n of seed 000, 3.1
   OpennessOptions openness;
+  /// Histogram equalisation of the openness, before the free surface is told by it. Its thresholds are then
+  /// shares of the vertices, which differ from tablet to tablet: off unless asked for.
+  bool equalize_openness = false;
   FreeSurfaceOptions free_surface;
   ReconstructionOptions reconstruction;
 };

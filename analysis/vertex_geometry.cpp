@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/parallel.h"
@@ -70,6 +71,39 @@ void at_vertex(const Mesh& mesh, std::span<const std::uint32_t> faces, Eigen::Ve
   *area = std::isfinite(whole) ? whole / 6.0F : 0.0F;
 }
 
+Eigen::AlignedBox3f box_without_strays(const Mesh& mesh, const VertexGeometry& geometry) {
+  constexpr std::size_t kSampled = 200000;
+  constexpr double kStray = 0.001;
+  constexpr float kBeyond = 0.05F;
+  Eigen::AlignedBox3f whole;
+  std::array<std::vector<float>, 3> sampled;
+  const std::size_t stride = std::max<std::size_t>(1, mesh.positions.size() / kSampled);
+  for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+    if (geometry.area_mm2[v] > 0) {
+      whole.extend(mesh.positions[v]);
+      for (Eigen::Index axis = 0; v % stride == 0 && axis < 3; ++axis) {
+        sampled[static_cast<std::size_t>(axis)].push_back(mesh.positions[v][axis]);
+      }
+    }
+  }
+  Eigen::AlignedBox3f box = whole;
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    std::vector<float>& at = sampled[static_cast<std::size_t>(axis)];
+    if (at.empty()) {
+      continue;
+    }
+    const auto skip = static_cast<std::ptrdiff_t>(kStray * static_cast<double>(at.size()));
+    std::nth_element(at.begin(), at.begin() + skip, at.end());
+    const float low = at[static_cast<std::size_t>(skip)];
+    std::nth_element(at.begin(), at.end() - 1 - skip, at.end());
+    const float high = *(at.end() - 1 - skip);
+    const float beyond = kBeyond * (high - low) + 2.0F * static_cast<float>(geometry.mean_edge_mm);
+    box.min()[axis] = std::max(whole.min()[axis], low - beyond);
+    box.max()[axis] = std::min(whole.max()[axis], high + beyond);
+  }
+  return box;
+}
+
 /// 1.48 times the median, the standard deviation where it is noise, over about kSampled vertices.
 double roughness(const Mesh& mesh, const VertexGraph& graph, const VertexGeometry& geometry) {
   constexpr std::size_t kSampled = 100000;
@@ -130,6 +164,7 @@ VertexGeometry make_vertex_geometry(const Mesh& mesh, const VertexGraph& graph) 
   if (!(first.area > 0)) {
     return geometry;
   }
+  geometry.box = box_without_strays(mesh, geometry);
   geometry.roughness_mm = roughness(mesh, graph, geometry);
   const Eigen::Vector3f centre = (first.centre / first.area).cast<float>();
   const Sums second = parallel_reduce_ordered(

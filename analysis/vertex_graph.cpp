@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <utility>
 
 #include "core/big_array.h"
 #include "core/parallel.h"
@@ -63,8 +64,35 @@ void collect_faces(const Mesh& mesh, std::vector<std::uint32_t>& start, BigArray
       kGrain);
 }
 
+Face sorted_corners(const Face& f) {
+  Face sorted = f;
+  std::sort(sorted.begin(), sorted.end());
+  return sorted;
+}
+
+/// As sort_distinct(), for the hub of a fan of thousands.
+std::uint32_t sort_distinct_of_many(const Mesh& mesh, std::uint32_t* begin, std::uint32_t* end) {
+  std::vector<std::pair<Face, std::uint32_t>> known;
+  for (const std::uint32_t* i = begin; i != end; ++i) {
+    known.emplace_back(sorted_corners(mesh.faces[*i]), *i);
+  }
+  std::sort(known.begin(), known.end());
+  const auto last = std::unique(known.begin(), known.end(),
+                                [](const auto& a, const auto& b) { return a.first == b.first; });
+  std::uint32_t* out = begin;
+  for (auto k = known.begin(); k != last; ++k) {
+    *out++ = k->second;
+  }
+  std::sort(begin, out);
+  return static_cast<std::uint32_t>(out - begin);
+}
+
 /// Sorts the faces at v and takes out those on the same three vertices as an earlier one. Their number.
 std::uint32_t sort_distinct(const Mesh& mesh, std::uint32_t* begin, std::uint32_t* end) {
+  constexpr std::ptrdiff_t kMany = 32;
+  if (end - begin > kMany) {
+    return sort_distinct_of_many(mesh, begin, end);
+  }
   std::sort(begin, end);
   std::uint32_t* out = begin;
   for (const std::uint32_t* i = begin; i != end; ++i) {

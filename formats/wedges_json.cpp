@@ -13,6 +13,21 @@ namespace {
 
 const std::vector<std::string> kExits = {"surface", "extent"};
 
+OrderedJson profile_json(const WedgeProfile& profile) {
+  OrderedJson json;
+  json["of"] = profile.side ? to_string(*profile.side) : "tablet";
+  json["count"] = profile.count;
+  json["kinds"] = OrderedJson::object();
+  for (std::size_t k = 0; k < kWedgeKinds.size(); ++k) {
+    json["kinds"][std::string(kWedgeKinds[k])] = profile.kinds[k];
+  }
+  json["deciles"] = OrderedJson::object();
+  for (std::size_t f = 0; f < kWedgeFeatures.size(); ++f) {
+    json["deciles"][std::string(kWedgeFeatures[f])] = profile.quantiles[f];
+  }
+  return json;
+}
+
 }  // namespace
 
 std::string wedges_to_json(const WedgeFile& file) {
@@ -29,6 +44,10 @@ std::string wedges_to_json(const WedgeFile& file) {
     OrderedJson json = wedge_json(wedge);
     add_measures(wedge, &json);
     root["wedges"].push_back(std::move(json));
+  }
+  root["profiles"] = OrderedJson::array();
+  for (const WedgeProfile& profile : file.profiles) {
+    root["profiles"].push_back(profile_json(profile));
   }
   root["rejected"] = OrderedJson::array();
   for (const RejectedWedge& rejected : file.rejected) {

@@ -12,6 +12,7 @@
 #include "core/result.h"
 #include "core/rigid_transform.h"
 #include "core/wedge.h"
+#include "core/wedge_profile.h"
 
 namespace dubsar {
 
@@ -24,6 +25,8 @@ struct WedgeFile {
   /// Text's frame: x to the reader's right, y up the obverse, z out of it (analysis/text_frame.h).
   std::optional<RigidTransform> text_from_model;
   double text_certainty = 0;
+  /// Of the tablet and of its sides; follow from the wedges, so they are written and not read.
+  std::vector<WedgeProfile> profiles;
   std::vector<std::pair<std::string, double>> timings_s;
 };
 

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "analysis/wedge_features.h"
 #include "core/parallel.h"
 
 namespace dubsar {
@@ -67,6 +68,7 @@ WedgeFile wedge_file(std::string mesh_name, const AnalysisOptions& options, cons
   file.mesh = std::move(mesh_name);
   file.exits = options.wedges.exits;
   file.wedges = analysis.set.wedges;
+  file.profiles = make_profiles(file.wedges);
   file.rejected = analysis.set.rejected;
   file.text_from_model = analysis.text.text_from_model;
   file.text_certainty = analysis.text.certainty;

@@ -2,20 +2,45 @@
 // Copyright The Dubsar developers
 #include "station/field_pictures.h"
 
+#include <fmt/format.h>
+
 #include <string>
 
+#include "analysis/curvature.h"
 #include "analysis/field_colours.h"
 #include "archive/png.h"
 #include "archive/six_views.h"
 #include "core/tablet_frame.h"
 #include "formats/atomic_file.h"
+#include "formats/feature_mat.h"
 #include "formats/mesh_io.h"
 
 namespace dubsar {
 namespace {
 
 namespace fs = std::filesystem;
-constexpr int kLongestPx = 1000;
+constexpr int kLongestPx = 700;
+
+constexpr float kStrongResponse = 0.5F;
+constexpr float kSurfaceCurvaturePerMm = 0.3F;
+
+Status make_folder(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) {
+    return fail(ErrorKind::kStorage, error.message(), folder.string(), "choose a folder that can be written");
+  }
+  return {};
+}
+
+/// NAME.ply and NAME.png
+Status write_coloured(const fs::path& folder, const std::string& name, const Mesh& coloured,
+                      const JobContext& job) {
+  if (const Status written = write_mesh(folder / (name + ".ply"), coloured); !written) {
+    return written;
+  }
+  return write_six_view_picture(folder / (name + ".png"), coloured, job);
+}
 
 }  // namespace
 
@@ -37,24 +62,49 @@ Status write_six_view_picture(const fs::path& png, const Mesh& mesh, const JobCo
 
 Status write_field_pictures(const fs::path& folder, const Mesh& mesh, const SurfaceFields& fields,
                             const JobContext& job) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error) {
-    return fail(ErrorKind::kStorage, error.message(), folder.string(), "choose a folder that can be written");
+  if (const Status made = make_folder(folder); !made) {
+    return made;
   }
   Mesh coloured = mesh;
   coloured.normals = fields.normal;
   for (const SurfaceField field : kSurfaceFields) {
     coloured.colours = field_colours(fields, field);
-    const std::string name(field_name(field));
-    if (const Status written = write_mesh(folder / (name + ".ply"), coloured); !written) {
+    if (const Status written = write_coloured(folder, std::string(field_name(field)), coloured, job);
+        !written) {
       return written;
     }
-    if (const Status drawn = write_six_view_picture(folder / (name + ".png"), coloured, job); !drawn) {
-      return drawn;
-    }
   }
-  return {};
+  Mesh surface = fields.surface.mesh();
+  const VertexGraph graph = make_vertex_graph(surface);
+  const Curvature curvature = vertex_curvature(surface, graph, make_vertex_geometry(surface, graph));
+  surface.colours = diverging_colours(curvature.mean_per_mm, 0, kSurfaceCurvaturePerMm);
+  return write_coloured(folder, "surface", surface, job);
+}
+
+Status write_invariants(const fs::path& mat, const fs::path& picture_folder, const Mesh& mesh,
+                        const SurfaceFields& fields, const IntegralInvariantOptions& options,
+                        const JobContext& job) {
+  const IntegralInvariants invariants =
+      integral_invariants(mesh, outlook_of(mesh, fields), fields.mean_edge_mm, options, job);
+  if (job.cancelled()) {
+    return fail(ErrorKind::kCancelled, "the analysis was stopped");
+  }
+  std::string comment =
+      "multi-scale integral invariants: vertex, then f = 2 V_below / V_sphere - 1 by radius\nradii mm:";
+  for (const float r : invariants.radii_mm) {
+    comment += fmt::format(" {:g}", r);
+  }
+  if (const Status written = write_feature_mat(mat, invariants.value, invariants.radii_mm.size(), comment);
+      !written || picture_folder.empty()) {
+    return written;
+  }
+  if (const Status made = make_folder(picture_folder); !made) {
+    return made;
+  }
+  Mesh coloured = mesh;
+  coloured.normals = fields.normal;
+  coloured.colours = diverging_colours(strongest_response(invariants), 0, kStrongResponse);
+  return write_coloured(picture_folder, "invariants", coloured, job);
 }
 
 }  // namespace dubsar

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 
+#include "analysis/integral_invariants.h"
 #include "analysis/surface_fields.h"
 #include "core/job.h"
 #include "core/mesh.h"
@@ -17,8 +18,16 @@ namespace dubsar {
                                             const JobContext& job);
 
 /// Writes one coloured PLY and one PNG of six views for each surface field into a folder, which is made:
-/// height.ply, height.png and so on (field_name()).
+/// height.ply, height.png and so on (field_name()), and the surface that heights are taken from, coloured by
+/// its curvature, as surface.ply and surface.png (seed 000, Fig. 5).
 [[nodiscard]] Status write_field_pictures(const std::filesystem::path& folder, const Mesh& mesh,
                                           const SurfaceFields& fields, const JobContext& job);
+
+/// Multi-scale integral invariants of every vertex, into GigaMesh's .mat; with a folder also
+/// invariants.ply and invariants.png there, valleys red and ridges blue by the strongest response.
+[[nodiscard]] Status write_invariants(const std::filesystem::path& mat,
+                                      const std::filesystem::path& picture_folder, const Mesh& mesh,
+                                      const SurfaceFields& fields, const IntegralInvariantOptions& options,
+                                      const JobContext& job);
 
 }  // namespace dubsar

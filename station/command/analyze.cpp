@@ -2,18 +2,17 @@
 // Copyright The Dubsar developers
 // dubsar analyze: the wedges of a mesh.
 
+#include <fmt/format.h>
+
 #include <chrono>
-#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
 
 #include "analysis/tablet_size.h"
 #include "archive/wedge_drawing.h"
-#include "core/log.h"
 #include "core/units.h"
 #include "formats/mesh_io.h"
-#include "formats/number_text.h"
 #include "station/analysis.h"
 #include "station/command/command.h"
 #include "station/field_pictures.h"
@@ -28,8 +27,12 @@ struct AnalyzeArguments {
   std::string mesh_out;
   std::string exits = "surface";
   std::string unit;
-  std::string svg;
   std::string pictures;
+  std::string invariants;
+  double radius_mm = 1.0;
+  SurfaceFieldOptions fields;
+  bool uniform_weights = false;
+  std::string svg;
   bool classical = false;
 };
 
@@ -61,16 +64,32 @@ Status draw_pictures(const std::filesystem::path& folder, const Mesh& mesh, cons
   return write_six_view_picture(folder / "wedges.png", coloured, job);
 }
 
-/// Says so when the numbers would make an inscribed thing in another unit alone.
-void question_unit(const AnalyzeArguments& arguments, const Mesh& mesh) {
-  const double across = size_across_mm(mesh);
-  const std::optional<double> named = arguments.unit.empty() ? std::nullopt : mm_per_unit(arguments.unit);
-  const bool metres = !named && std::filesystem::path(arguments.in).extension() == ".glb";
-  if (const auto unit = likelier_unit(across, named.value_or(metres ? 1000.0 : 1.0))) {
-    log_warning(arguments.in + " is " + number_text(std::round(across)) +
-                " mm across, which no inscribed thing is: " + "its numbers may be " + std::string(*unit) +
-                "; say so with --unit " + std::string(*unit));
+/// Nobody presses a stylus into a tablet a tenth of a millimetre across: without --unit its numbers are
+/// something else.
+Status check_size(const AnalyzeArguments& arguments, const Mesh& mesh) {
+  const double across_mm = size_across_mm(mesh);
+  const bool metres = std::filesystem::path(arguments.in).extension() == ".glb";
+  const auto likelier = likelier_unit(across_mm, metres ? *mm_per_unit("m") : 1.0);
+  if (!arguments.unit.empty() || !likelier) {
+    return {};
   }
+  return bad_input(arguments.in, fmt::format("it would be {:.3g} mm across", across_mm),
+                   fmt::format("its numbers look like {}: say so with --unit {}, or confirm what they are",
+                               *likelier, *likelier));
+}
+
+Status write_extras(const AnalyzeArguments& arguments, const Mesh& mesh, const Analysis& analysis,
+                    const JobContext& job) {
+  if (!arguments.pictures.empty()) {
+    if (const Status written = draw_pictures(arguments.pictures, mesh, analysis, job); !written) {
+      return written;
+    }
+  }
+  if (!arguments.invariants.empty()) {
+    return write_invariants(arguments.invariants, arguments.pictures, mesh, analysis.fields,
+                            {.radius_mm = arguments.radius_mm}, job);
+  }
+  return {};
 }
 
 Result<int> analyze(const AnalyzeArguments& arguments, CommandContext& context) {
@@ -84,9 +103,15 @@ Result<int> analyze(const AnalyzeArguments& arguments, CommandContext& context) 
   if (!mesh) {
     return std::unexpected(mesh.error());
   }
+  if (const Status sized = check_size(arguments, *mesh); !sized) {
+    return std::unexpected(sized.error());
+  }
   const double reading_s = seconds_since(start);
-  question_unit(arguments, *mesh);
   AnalysisOptions options;
+  options.fields = arguments.fields;
+  if (arguments.uniform_weights) {
+    options.fields.reconstruction.other_weight = 1;
+  }
   options.wedges.exits = arguments.exits == "extent" ? ExitDefinition::kExtent : ExitDefinition::kSurface;
   options.wedges.classical_watershed = arguments.classical;
   Result<Analysis> analysis = analyze_mesh(*mesh, options, context.job);
@@ -114,10 +139,8 @@ Result<int> analyze(const AnalyzeArguments& arguments, CommandContext& context) 
       return std::unexpected(drawn.error());
     }
   }
-  if (!arguments.pictures.empty()) {
-    if (const Status drawn = draw_pictures(arguments.pictures, *mesh, *analysis, context.job); !drawn) {
-      return std::unexpected(drawn.error());
-    }
+  if (const Status written = write_extras(arguments, *mesh, *analysis, context.job); !written) {
+    return std::unexpected(written.error());
   }
   if (context.json) {
     CommandContext::print(summary_json(arguments, file));
@@ -147,9 +170,33 @@ void add_analyze(CLI::App& app, Action& chosen) {
       ->check(CLI::IsMember({"surface", "extent"}));
   verb->add_option("--unit", arguments->unit, "what the file's numbers are")
       ->check(CLI::IsMember({"m", "mm", "um"}));
-  verb->add_option("--svg", arguments->svg, "a folder for one drawing to scale of each side that has wedges");
   verb->add_option("--pictures", arguments->pictures,
-                   "a folder for pictures and coloured meshes of every field");
+                   "a folder for the surface fields and the wedges as coloured PLY and PNG");
+  verb->add_option("--free-openness", arguments->fields.free_surface.least_openness,
+                   "free surface: at least this open, 0 to 1; unset: told by the mesh")
+      ->check(CLI::Range(0.0, 1.0));
+  verb->add_option("--free-concave", arguments->fields.free_surface.most_concave_per_mm,
+                   "free surface: mean curvature no further below zero than this, per mm")
+      ->check(CLI::Range(0.0, 100.0))
+      ->capture_default_str();
+  verb->add_option("--free-convex", arguments->fields.free_surface.most_convex_per_mm,
+                   "free surface: mean curvature at most this, per mm")
+      ->check(CLI::Range(0.0, 100.0))
+      ->capture_default_str();
+  verb->add_flag("--equalize", arguments->fields.equalize_openness,
+                 "openness by rank: --free-openness is then a share of the surface");
+  verb->add_option("--fault-reach", arguments->fields.reliability_iterations,
+                   "how many rings of faces around a fault of the mesh are less reliable")
+      ->check(CLI::Range(0, 100))
+      ->capture_default_str();
+  verb->add_flag("--uniform-weights", arguments->uniform_weights,
+                 "all points weigh the same in the surface that heights are taken from, for comparison");
+  verb->add_option("--invariants", arguments->invariants,
+                   "multi-scale integral invariants of every vertex, as GigaMesh's .mat");
+  verb->add_option("--invariant-radius", arguments->radius_mm, "mm, of their largest sphere")
+      ->check(CLI::Range(0.05, 50.0))
+      ->capture_default_str();
+  verb->add_option("--svg", arguments->svg, "a folder for one drawing to scale of each side that has wedges");
   verb->add_flag("--classical-watershed", arguments->classical, "the textbook watershed, for comparison");
   verb->callback(
       [&chosen, arguments] { chosen = [arguments](CommandContext& c) { return analyze(*arguments, c); }; });

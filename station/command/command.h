@@ -39,6 +39,7 @@ void add_pins(CLI::App& app, Action& chosen);
 void add_stitch(CLI::App& app, Action& chosen);
 void add_analyze(CLI::App& app, Action& chosen);
 void add_mesh(CLI::App& app, Action& chosen);
+void add_search(CLI::App& app, Action& chosen);
 void add_verify(CLI::App& app, Action& chosen);
 void add_session(CLI::App& app, Action& chosen);
 void add_bench(CLI::App& app, Action& chosen);

@@ -3,6 +3,7 @@
 #include "analysis/integral_invariants.h"
 
 #include <gtest/gtest.h>
+#include <tbb/global_control.h>
 
 #include "tests/analysis/support/shapes.h"
 
@@ -55,6 +56,18 @@ TEST(IntegralInvariants, OnASphereAreThoseOfTheLens) {
       ASSERT_NEAR(f[s], -3 * sphere.radii_mm[s] / (8 * kRadius), 0.012) << v << ' ' << s;
     }
   }
+}
+
+TEST(IntegralInvariants, AreTheSameForAnyNumberOfThreads) {
+  const Mesh mesh = shapes::sphere(5, 6);
+  std::vector<Eigen::Vector3f> outlook;
+  for (const Eigen::Vector3f& p : mesh.positions) {
+    outlook.push_back(p.normalized());
+  }
+  const JobContext job;
+  const IntegralInvariants many = integral_invariants(mesh, outlook, 0.12, {}, job);
+  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+  EXPECT_TRUE(many.value == integral_invariants(mesh, outlook, 0.12, {}, job).value);
 }
 
 /// At the bottom of a V of half-angle 45° three quarters of the sphere are clay, whatever its size.

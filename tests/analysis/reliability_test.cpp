@@ -54,6 +54,25 @@ TEST(Reliability, AFlippedFaceAndAThirdFaceAtAnEdgeAreFaults) {
   EXPECT_EQ(std::count(r.begin(), r.end(), 1.0F) > 900, true);
 }
 
+TEST(Reliability, AHubOfManyFacesIsJudgedAsQuicklyAndAlike) {
+  // A cone of so many faces that comparing each with each would take minutes.
+  constexpr std::uint32_t kMany = 200000;
+  Mesh cone;
+  cone.positions = {{0, 0, 1}, {0, 0, -1}};
+  for (std::uint32_t i = 0; i < kMany; ++i) {
+    const float angle = 6.2831853F * static_cast<float>(i) / kMany;
+    cone.positions.emplace_back(std::cos(angle), std::sin(angle), 0.0F);
+    cone.faces.push_back({0, 2 + i, 2 + (i + 1) % kMany});
+    cone.faces.push_back({1, 2 + (i + 1) % kMany, 2 + i});
+  }
+  EXPECT_THAT(reliability_of(cone, 1), testing::Each(1.0F));
+  cone.faces.push_back(cone.faces[5000]);  // once more: it takes no part
+  EXPECT_THAT(reliability_of(cone, 1), testing::Each(1.0F));
+  cone.faces.erase(cone.faces.begin() + 5000);
+  cone.faces.pop_back();
+  EXPECT_FLOAT_EQ(reliability_of(cone, 1)[0], 0);
+}
+
 TEST(Reliability, TheMeshsOwnTakesPart) {
   Mesh mesh = shapes::sphere(10, 3);
   mesh.reliability.assign(mesh.positions.size(), 0.5F);

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "core/wedge.h"
+#include "core/wedge_profile.h"
+
+namespace dubsar {
+
+using WedgeFeatures = std::array<double, kWedgeFeatures.size()>;
+
+/// The features by the names and units of kWedgeFeatures.
+[[nodiscard]] WedgeFeatures wedge_features(const Wedge& wedge);
+
+/// The same on scales on which a step of one is about what one hand's wedges scatter by (lengths by their
+/// logarithm): for distances between wedges.
+[[nodiscard]] std::vector<float> comparable(const WedgeFeatures& features);
+
+/// Index into kWedgeKinds.
+[[nodiscard]] std::size_t kind_of(const Wedge& wedge);
+
+/// Of the whole tablet, then of each side that has wedges.
+[[nodiscard]] std::vector<WedgeProfile> make_profiles(const std::vector<Wedge>& wedges);
+
+/// Quantiles of all features on their comparable scales: the L1 distance of two is the mean distance that the
+/// one's wedges would have to be shifted by to be distributed as the other's (Wasserstein), summed over the
+/// features.
+[[nodiscard]] std::vector<float> comparable(const WedgeProfile& profile);
+
+}  // namespace dubsar

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+// dubsar search: similar wedges and similar tablets over a collection of analysed ones.
+
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+
+#include "core/log.h"
+#include "station/collection.h"
+#include "station/command/command.h"
+
+namespace dubsar {
+
+namespace {
+
+struct SearchArguments {
+  std::string folder;
+  std::string like;
+  int wedge = -1;
+  int count = 10;
+};
+
+Result<int> search(const SearchArguments& arguments, CommandContext& context) {
+  const Result<WedgeFile> like = read_wedges(arguments.like);
+  if (!like) {
+    return std::unexpected(like.error());
+  }
+  const Result<Collection> collection = read_collection(arguments.folder);
+  if (!collection) {
+    return std::unexpected(collection.error());
+  }
+  for (const std::string& why : collection->skipped) {
+    log_warning("left out: " + why);
+  }
+  nlohmann::ordered_json json{{"collection", arguments.folder}, {"like", arguments.like}};
+  const auto count = static_cast<std::size_t>(arguments.count);
+  if (arguments.wedge >= 0) {
+    const auto wedge = std::ranges::find(like->wedges, arguments.wedge, &Wedge::id);
+    if (wedge == like->wedges.end()) {
+      return fail(ErrorKind::kUsage, "there is no wedge " + std::to_string(arguments.wedge), arguments.like,
+                  "give one of the ids in it");
+    }
+    json["wedge"] = arguments.wedge;
+    json["wedges"] = nlohmann::ordered_json::array();
+    for (const SimilarWedge& s : similar_wedges(*collection, *wedge, count)) {
+      json["wedges"].push_back({{"tablet", s.tablet}, {"id", s.wedge}, {"distance", s.distance}});
+      if (!context.json) {
+        std::printf("%8.3f  %s  wedge %d\n", s.distance, s.tablet.c_str(), s.wedge);
+      }
+    }
+  } else {
+    if (like->wedges.empty()) {
+      return fail(ErrorKind::kUsage, "it has no wedges to search by", arguments.like,
+                  "choose another tablet");
+    }
+    json["tablets"] = nlohmann::ordered_json::array();
+    for (const SimilarTablet& s : similar_tablets(*collection, like->wedges, count)) {
+      json["tablets"].push_back({{"tablet", s.tablet}, {"wedges", s.wedges}, {"distance", s.distance}});
+      if (!context.json) {
+        std::printf("%8.3f  %s  %d wedges\n", s.distance, s.tablet.c_str(), s.wedges);
+      }
+    }
+  }
+  if (context.json) {
+    CommandContext::print(json);
+  }
+  return 0;
+}
+
+}  // namespace
+
+void add_search(CLI::App& app, Action& chosen) {
+  CLI::App* verb =
+      app.add_subcommand("search", "Similar wedges and tablets over a collection, nearest first");
+  const auto arguments = std::make_shared<SearchArguments>();
+  verb->add_option("folder", arguments->folder, "of analysed tablets: every wedges.json at or below it")
+      ->required();
+  verb->add_option("--like", arguments->like, "the wedges.json to search by")->required();
+  verb->add_option("--wedge", arguments->wedge, "search for this wedge of it; otherwise for tablets like it")
+      ->check(CLI::NonNegativeNumber);
+  verb->add_option("--count", arguments->count, "how many to show")->check(CLI::Range(1, 100000));
+  verb->callback(
+      [&chosen, arguments] { chosen = [arguments](CommandContext& c) { return search(*arguments, c); }; });
+}
+
+}  // namespace dubsar

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "analysis/feature_search.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "analysis/wedge_features.h"
+#include "core/random.h"
+#include "core/units.h"
+
+namespace dubsar {
+namespace {
+
+std::vector<std::vector<float>> random_rows(std::size_t count, std::size_t columns) {
+  Random random(8);
+  std::vector<std::vector<float>> rows(count);
+  for (std::vector<float>& row : rows) {
+    for (std::size_t k = 0; k < columns; ++k) {
+      row.push_back(static_cast<float>(random.normal()));
+    }
+  }
+  return rows;
+}
+
+TEST(FeatureSearch, IsExactInBothDistances) {
+  const auto rows = random_rows(300, 11);
+  const auto query = random_rows(301, 11).back();
+  for (const FeatureDistance kind : {FeatureDistance::kL1, FeatureDistance::kL2}) {
+    const auto distance = [&](const std::vector<float>& row) {
+      double sum = 0;
+      for (std::size_t k = 0; k < row.size(); ++k) {
+        const double d = std::abs(row[k] - query[k]);
+        sum += kind == FeatureDistance::kL1 ? d : d * d;
+      }
+      return kind == FeatureDistance::kL1 ? sum : std::sqrt(sum);
+    };
+    std::vector<double> all;
+    for (const auto& row : rows) {
+      all.push_back(distance(row));
+    }
+    std::ranges::sort(all);
+    const auto found = FeatureSearch(rows, kind).nearest(query, 7);
+    ASSERT_EQ(found.size(), 7U);
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      EXPECT_NEAR(found[i].distance, all[i], 1e-4);
+      EXPECT_NEAR(distance(rows[found[i].index]), found[i].distance, 1e-4);
+    }
+  }
+}
+
+TEST(FeatureSearch, OfLittleAndOfNothing) {
+  EXPECT_TRUE(FeatureSearch({}, FeatureDistance::kL1).nearest({1, 2}, 3).empty());
+  const FeatureSearch two({{1, 2}, {5, 6}}, FeatureDistance::kL2);
+  EXPECT_EQ(two.nearest({1, 2}, 10).size(), 2U);
+  EXPECT_EQ(two.nearest({1, 2}, 10)[0].index, 0U);
+  EXPECT_TRUE(two.nearest({1, 2, 3}, 1).empty());
+}
+
+/// Wedges of one hand, turned at random in the plane.
+std::vector<Wedge> hand(double width, double depth, int count, std::uint64_t seed) {
+  Random random(seed);
+  std::vector<Wedge> wedges;
+  for (int i = 0; i < count; ++i) {
+    Wedge w;
+    w.id = i;
+    const double turn = random.uniform(0, 2 * kPi);
+    const double scale = 1 + 0.05 * random.normal();
+    const std::array<Eigen::Vector2d, 3> exits = {Eigen::Vector2d(2.0, 0), Eigen::Vector2d(-0.3, 0.5 * width),
+                                                  Eigen::Vector2d(-0.3, -0.5 * width)};
+    w.depth_point_mm = {0, 0, -depth * scale};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Eigen::Vector2d at = scale * (Eigen::Rotation2Dd(turn) * exits[k]);
+      w.exit_points_mm[k] = {at.x(), at.y(), 0};
+    }
+    w.directional_edge = 0;
+    w.directional_margin = 0.5;
+    w.place.side = Face::kObverse;
+    w.place.turn_rad = 0;
+    wedges.push_back(w);
+  }
+  return wedges;
+}
+
+TEST(WedgeFeatures, DoNotDependOnWhereAWedgePoints) {
+  const std::vector<Wedge> one = hand(1.2, 0.5, 2, 3);
+  const WedgeFeatures a = wedge_features(one[0]);
+  Wedge renumbered = one[0];
+  renumbered.directional_edge = 1;
+  std::ranges::rotate(renumbered.exit_points_mm, renumbered.exit_points_mm.begin() + 2);
+  EXPECT_EQ(wedge_features(renumbered), a);
+}
+
+TEST(WedgeProfile, OfOneHandIsNearerThanThatOfAnother) {
+  const auto profile = [](const std::vector<Wedge>& wedges) {
+    return comparable(make_profiles(wedges).front());
+  };
+  const FeatureSearch search(
+      {profile(hand(1.8, 0.5, 60, 1)), profile(hand(1.2, 0.5, 60, 2)), profile(hand(1.2, 0.8, 60, 3))},
+      FeatureDistance::kL1);
+  const auto found = search.nearest(profile(hand(1.2, 0.5, 25, 9)), 3);
+  ASSERT_EQ(found.size(), 3U);
+  EXPECT_EQ(found[0].index, 1U);
+  EXPECT_GT(found[1].distance, 3 * found[0].distance);
+}
+
+TEST(WedgeProfile, CountsSidesAndKinds) {
+  std::vector<Wedge> wedges = hand(1.2, 0.5, 10, 1);
+  wedges[0].place = {Face::kReverse, 1, 1, rad_from_deg(-90)};
+  wedges[1].directional_margin = 0.1;
+  const auto profiles = make_profiles(wedges);
+  ASSERT_EQ(profiles.size(), 3U);
+  EXPECT_EQ(profiles[0].count, 10);
+  EXPECT_EQ(profiles[1].count, 9);
+  EXPECT_NEAR(profiles[0].kinds[0], 0.8, 1e-12);
+  EXPECT_NEAR(profiles[0].kinds[1], 0.1, 1e-12);
+  EXPECT_NEAR(profiles[0].kinds[4], 0.1, 1e-12);
+  EXPECT_EQ(profiles[2].side, Face::kReverse);
+  EXPECT_EQ(make_profiles({}).front().count, 0);
+}
+
+}  // namespace
+}  // namespace dubsar

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+// dubsar analyze: what it says of a wrong unit, and the fields that it writes.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "formats/atomic_file.h"
+#include "formats/mesh_io.h"
+#include "tests/analysis/support/shapes.h"
+#include "tests/station/support/command.h"
+#include "tests/support/temporary_folder.h"
+
+namespace dubsar {
+namespace {
+
+namespace fs = std::filesystem;
+using test::Outcome;
+using test::run_command;
+using ::testing::HasSubstr;
+
+class AnalyzeFields : public ::testing::Test {
+ protected:
+  [[nodiscard]] fs::path at(const char* name) const { return folder_.path() / name; }
+  [[nodiscard]] std::string sphere_file(const char* name, float radius_mm, int levels) const {
+    EXPECT_TRUE(write_mesh(at(name), shapes::sphere(radius_mm, levels)));
+    return at(name).string();
+  }
+
+ private:
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(AnalyzeFields, AMeshInMetresIsToldByItsSizeAndTakenWhenSaid) {
+  const std::string mesh = sphere_file("metres.stl", 0.015F, 3);
+  const Outcome doubted = run_command({"analyze", mesh, "-o", at("w.json").string()});
+  EXPECT_EQ(doubted.status, 2);
+  EXPECT_THAT(doubted.err, HasSubstr("--unit m"));
+  EXPECT_FALSE(fs::exists(at("w.json")));
+  EXPECT_EQ(run_command({"analyze", mesh, "-o", at("w.json").string(), "--unit", "m"}).status, 0);
+  EXPECT_EQ(run_command({"analyze", mesh, "-o", at("w.json").string(), "--unit", "mm"}).status, 0);
+  const std::string micrometres = sphere_file("um.stl", 15000, 3);
+  EXPECT_THAT(run_command({"analyze", micrometres, "-o", at("w.json").string()}).err, HasSubstr("--unit um"));
+}
+
+TEST_F(AnalyzeFields, PicturesAndInvariantsAreWritten) {
+  const Outcome outcome =
+      run_command({"analyze", sphere_file("ball.ply", 60, 4), "-o", at("w.json").string(), "--pictures",
+                   at("fields").string(), "--invariants", at("ball.mat").string()});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  for (const char* name :
+       {"reliability", "curvature", "openness", "free_surface", "height", "invariants", "surface"}) {
+    const auto coloured = read_mesh(at("fields") / (std::string(name) + ".ply"));
+    ASSERT_TRUE(coloured) << name;
+    EXPECT_EQ(coloured->colours.size(), coloured->positions.size()) << name;
+    EXPECT_GT(fs::file_size(at("fields") / (std::string(name) + ".png")), 1000U) << name;
+  }
+  const auto mat = read_whole_file(at("ball.mat"));
+  ASSERT_TRUE(mat);
+  EXPECT_EQ(std::count(mat->begin(), mat->end(), '\n'), 2 + 1026);
+}
+
+}  // namespace
+}  // namespace dubsar
