@@ -12,6 +12,11 @@
 
 namespace dubsar {
 
+/// Eigen leaves a vector that nobody sets undefined.
+[[nodiscard]] inline std::array<Eigen::Vector3d, 3> zero_vectors() {
+  return {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
+}
+
 /// The two definitions of where an inner edge ends (seed 000, 3.4).
 enum class ExitDefinition {
   kSurface,  ///< where it meets the reconstructed free surface
@@ -49,16 +54,17 @@ struct WedgePlace {
 struct Wedge {
   int id = 0;
   Eigen::Vector3d depth_point_mm{0, 0, 0};
-  std::array<Eigen::Vector3d, 3> exit_points_mm{};          ///< by inner edge, by the chosen definition
-  std::array<Eigen::Vector3d, 3> exit_points_surface_mm{};  ///< ExitDefinition::kSurface
-  std::array<Eigen::Vector3d, 3> exit_points_extent_mm{};   ///< ExitDefinition::kExtent
+  std::array<Eigen::Vector3d, 3> exit_points_mm =
+      zero_vectors();  ///< by inner edge, by the chosen definition
+  std::array<Eigen::Vector3d, 3> exit_points_surface_mm = zero_vectors();  ///< ExitDefinition::kSurface
+  std::array<Eigen::Vector3d, 3> exit_points_extent_mm = zero_vectors();   ///< ExitDefinition::kExtent
   int directional_edge = 0;
   DirectionalBy directional_by = DirectionalBy::kBoth;
   double directional_margin = 0;  ///< by how much it leads the next, as a share: of length or of slope
-  std::array<Eigen::Vector3d, 3> outer_vertices_mm{};
-  std::array<Eigen::Vector3d, 3> face_normals{};  ///< out of the clay
-  Eigen::Vector3d surface_normal{0, 0, 0};        ///< of the free surface above the depth point
-  double depth_mm = 0;                            ///< of the depth point below the free surface
+  std::array<Eigen::Vector3d, 3> outer_vertices_mm = zero_vectors();
+  std::array<Eigen::Vector3d, 3> face_normals = zero_vectors();  ///< out of the clay
+  Eigen::Vector3d surface_normal{0, 0, 0};  ///< of the free surface above the depth point
+  double depth_mm = 0;                      ///< of the depth point below the free surface
   std::array<double, 3> face_angles_rad{};
   std::array<double, 3> opening_angles_rad{};
   std::array<double, 3> edge_lengths_mm{};  ///< depth point to exit point
