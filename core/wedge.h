@@ -12,6 +12,13 @@
 
 namespace dubsar {
 
+using ThreePoints = std::array<Eigen::Vector3d, 3>;
+
+/// Eigen leaves points that nobody sets as they are in memory.
+[[nodiscard]] inline ThreePoints three_origins() {
+  return {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(0, 0, 0)};
+}
+
 /// The two definitions of where an inner edge ends (seed 000, 3.4).
 enum class ExitDefinition {
   kSurface,  ///< where it meets the reconstructed free surface
@@ -49,14 +56,14 @@ struct WedgePlace {
 struct Wedge {
   int id = 0;
   Eigen::Vector3d depth_point_mm{0, 0, 0};
-  std::array<Eigen::Vector3d, 3> exit_points_mm{};          ///< by inner edge, by the chosen definition
-  std::array<Eigen::Vector3d, 3> exit_points_surface_mm{};  ///< ExitDefinition::kSurface
-  std::array<Eigen::Vector3d, 3> exit_points_extent_mm{};   ///< ExitDefinition::kExtent
+  ThreePoints exit_points_mm = three_origins();          ///< by inner edge, by the chosen definition
+  ThreePoints exit_points_surface_mm = three_origins();  ///< ExitDefinition::kSurface
+  ThreePoints exit_points_extent_mm = three_origins();   ///< ExitDefinition::kExtent
   int directional_edge = 0;
   DirectionalBy directional_by = DirectionalBy::kBoth;
   double directional_margin = 0;  ///< by how much it leads the next, as a share: of length or of slope
-  std::array<Eigen::Vector3d, 3> outer_vertices_mm{};
-  std::array<Eigen::Vector3d, 3> face_normals{};  ///< out of the clay
+  ThreePoints outer_vertices_mm = three_origins();
+  ThreePoints face_normals = three_origins();  ///< out of the clay
   Eigen::Vector3d surface_normal{0, 0, 0};        ///< of the free surface above the depth point
   double depth_mm = 0;                            ///< of the depth point below the free surface
   std::array<double, 3> face_angles_rad{};

@@ -11,7 +11,6 @@ namespace dubsar {
 namespace {
 
 using Three = std::array<double, 3>;
-using ThreePoints = std::array<Eigen::Vector3d, 3>;
 
 const std::vector<std::string> kDirectionalBy = {"longest and flattest", "longest", "flattest"};
 
@@ -61,7 +60,7 @@ Three lengths_from(const JsonNode& node, double mm) {
 }
 
 ThreePoints points_from(const JsonNode& node, double mm) {
-  ThreePoints points{};
+  ThreePoints points = three_origins();
   const std::vector<JsonNode> nodes = three(node);
   for (std::size_t k = 0; k < nodes.size(); ++k) {
     points[k] = mm * nodes[k].vector3();
