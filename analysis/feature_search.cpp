@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wall"
 #pragma GCC diagnostic ignored "-Wextra"

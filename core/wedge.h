@@ -64,8 +64,8 @@ struct Wedge {
   double directional_margin = 0;  ///< by how much it leads the next, as a share: of length or of slope
   ThreePoints outer_vertices_mm = three_origins();
   ThreePoints face_normals = three_origins();  ///< out of the clay
-  Eigen::Vector3d surface_normal{0, 0, 0};        ///< of the free surface above the depth point
-  double depth_mm = 0;                            ///< of the depth point below the free surface
+  Eigen::Vector3d surface_normal{0, 0, 0};     ///< of the free surface above the depth point
+  double depth_mm = 0;                         ///< of the depth point below the free surface
   std::array<double, 3> face_angles_rad{};
   std::array<double, 3> opening_angles_rad{};
   std::array<double, 3> edge_lengths_mm{};  ///< depth point to exit point

@@ -12,8 +12,8 @@
 
 namespace dubsar {
 
-/// What a wedge is compared by. Edges and faces are counted from the directional edge on, counter-clockwise, so
-/// that the same stylus held the same way gives the same numbers whichever way the wedge points.
+/// What a wedge is compared by. Edges and faces are counted from the directional edge on, counter-clockwise,
+/// so that the same stylus held the same way gives the same numbers whichever way the wedge points.
 inline constexpr std::array<std::string_view, 11> kWedgeFeatures = {
     "depth_mm",
     "directional_length_mm",
@@ -30,8 +30,8 @@ inline constexpr std::array<std::string_view, 11> kWedgeFeatures = {
 inline constexpr std::size_t kProfileQuantiles = 9;  ///< 0.1, 0.2 … 0.9
 
 /// Kinds of wedges by the direction of their tail (facts.md, after Gottstein), besides the Winkelhaken.
-inline constexpr std::array<std::string_view, 6> kWedgeKinds = {
-    "horizontal", "vertical", "downwards", "upwards", "winkelhaken", "other"};
+inline constexpr std::array<std::string_view, 6> kWedgeKinds = {"horizontal", "vertical",    "downwards",
+                                                                "upwards",    "winkelhaken", "other"};
 
 /// How the features of some wedges are distributed: of a whole tablet, or of one side of it.
 struct WedgeProfile {

@@ -34,7 +34,8 @@ Result<Collection> read_collection(const fs::path& folder) {
   for (fs::recursive_directory_iterator it(folder, fs::directory_options::skip_permission_denied, error), end;
        !error && it != end; it.increment(error)) {
     std::error_code no_file;
-    if (it->path().extension() == ".json" && it->path().filename() != "truth.json" && it->is_regular_file(no_file)) {
+    if (it->path().extension() == ".json" && it->path().filename() != "truth.json" &&
+        it->is_regular_file(no_file)) {
       paths.push_back(it->path());
     }
   }
@@ -52,12 +53,14 @@ Result<Collection> read_collection(const fs::path& folder) {
     }
   }
   if (collection.tablets.empty()) {
-    return bad_input(folder.string(), "no analysed tablet in it", "write some with dubsar analyze MESH -o wedges.json");
+    return bad_input(folder.string(), "no analysed tablet in it",
+                     "write some with dubsar analyze MESH -o wedges.json");
   }
   return collection;
 }
 
-std::vector<SimilarWedge> similar_wedges(const Collection& collection, const Wedge& wedge, std::size_t count) {
+std::vector<SimilarWedge> similar_wedges(const Collection& collection, const Wedge& wedge,
+                                         std::size_t count) {
   struct Row {
     std::size_t tablet, wedge;
   };

@@ -39,8 +39,8 @@ struct SimilarTablet {
 /// The wedges most like this one; the wedge itself, where it is in the collection, is left out.
 [[nodiscard]] std::vector<SimilarWedge> similar_wedges(const Collection& collection, const Wedge& wedge,
                                                        std::size_t count);
-/// The tablets whose wedges are distributed most alike; one with just the same wedges is left out, tablets with
-/// fewer than five wedges too.
+/// The tablets whose wedges are distributed most alike; one with just the same wedges is left out, tablets
+/// with fewer than five wedges too.
 [[nodiscard]] std::vector<SimilarTablet> similar_tablets(const Collection& collection,
                                                          const std::vector<Wedge>& wedges, std::size_t count);
 

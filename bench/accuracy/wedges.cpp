@@ -93,8 +93,9 @@ void report_confidence(const WedgeScore& s) {
     const auto right = std::ranges::count_if(s.right_confidence, in_bin);
     const auto wrong = std::ranges::count_if(s.false_confidence, in_bin);
     if (right + wrong > 0) {
-      std::printf("confidence 0.%d to %s: %ld of %ld are wedges, %.2f\n", bin, bin == 9 ? "1" : "the next", static_cast<long>(right),
-                  static_cast<long>(right + wrong), static_cast<double>(right) / static_cast<double>(right + wrong));
+      std::printf("confidence 0.%d to %s: %ld of %ld are wedges, %.2f\n", bin, bin == 9 ? "1" : "the next",
+                  static_cast<long>(right), static_cast<long>(right + wrong),
+                  static_cast<double>(right) / static_cast<double>(right + wrong));
     }
   }
 }

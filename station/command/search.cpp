@@ -51,7 +51,8 @@ Result<int> search(const SearchArguments& arguments, CommandContext& context) {
     }
   } else {
     if (like->wedges.empty()) {
-      return fail(ErrorKind::kUsage, "it has no wedges to search by", arguments.like, "choose another tablet");
+      return fail(ErrorKind::kUsage, "it has no wedges to search by", arguments.like,
+                  "choose another tablet");
     }
     json["tablets"] = nlohmann::ordered_json::array();
     for (const SimilarTablet& s : similar_tablets(*collection, like->wedges, count)) {
@@ -70,16 +71,17 @@ Result<int> search(const SearchArguments& arguments, CommandContext& context) {
 }  // namespace
 
 void add_search(CLI::App& app, Action& chosen) {
-  CLI::App* verb = app.add_subcommand("search", "Similar wedges and tablets over a collection, nearest first");
+  CLI::App* verb =
+      app.add_subcommand("search", "Similar wedges and tablets over a collection, nearest first");
   const auto arguments = std::make_shared<SearchArguments>();
-  verb->add_option("folder", arguments->folder, "of analysed tablets: every wedges.json at or below it")->required();
+  verb->add_option("folder", arguments->folder, "of analysed tablets: every wedges.json at or below it")
+      ->required();
   verb->add_option("--like", arguments->like, "the wedges.json to search by")->required();
   verb->add_option("--wedge", arguments->wedge, "search for this wedge of it; otherwise for tablets like it")
       ->check(CLI::NonNegativeNumber);
   verb->add_option("--count", arguments->count, "how many to show")->check(CLI::Range(1, 100000));
-  verb->callback([&chosen, arguments] {
-    chosen = [arguments](CommandContext& c) { return search(*arguments, c); };
-  });
+  verb->callback(
+      [&chosen, arguments] { chosen = [arguments](CommandContext& c) { return search(*arguments, c); }; });
 }
 
 }  // namespace dubsar

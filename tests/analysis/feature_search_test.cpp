@@ -94,9 +94,12 @@ TEST(WedgeFeatures, DoNotDependOnWhereAWedgePoints) {
 }
 
 TEST(WedgeProfile, OfOneHandIsNearerThanThatOfAnother) {
-  const auto profile = [](const std::vector<Wedge>& wedges) { return comparable(make_profiles(wedges).front()); };
-  const FeatureSearch search({profile(hand(1.8, 0.5, 60, 1)), profile(hand(1.2, 0.5, 60, 2)), profile(hand(1.2, 0.8, 60, 3))},
-                             FeatureDistance::kL1);
+  const auto profile = [](const std::vector<Wedge>& wedges) {
+    return comparable(make_profiles(wedges).front());
+  };
+  const FeatureSearch search(
+      {profile(hand(1.8, 0.5, 60, 1)), profile(hand(1.2, 0.5, 60, 2)), profile(hand(1.2, 0.8, 60, 3))},
+      FeatureDistance::kL1);
   const auto found = search.nearest(profile(hand(1.2, 0.5, 25, 9)), 3);
   ASSERT_EQ(found.size(), 3U);
   EXPECT_EQ(found[0].index, 1U);
