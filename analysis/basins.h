@@ -26,10 +26,10 @@ inline constexpr std::int32_t kBasinBorder = -2;
 
 /// Catchment basins of a height field; basins are numbered by rising height of their lowest vertex.
 struct Basins {
-  std::vector<std::int32_t> label;     ///< [V] basin, kFreeSurfaceLabel or kBasinBorder
-  std::vector<std::uint32_t> lowest;   ///< [B] lowest vertex
-  std::vector<std::uint32_t> start;    ///< [B + 1] into `vertex`
-  std::vector<std::uint32_t> vertex;   ///< of all basins, each basin's in rising height
+  std::vector<std::int32_t> label;    ///< [V] basin, kFreeSurfaceLabel or kBasinBorder
+  std::vector<std::uint32_t> lowest;  ///< [B] lowest vertex
+  std::vector<std::uint32_t> start;   ///< [B + 1] into `vertex`
+  std::vector<std::uint32_t> vertex;  ///< of all basins, each basin's in rising height
   [[nodiscard]] std::size_t count() const { return lowest.size(); }
   [[nodiscard]] std::span<const std::uint32_t> vertices_of(std::size_t basin) const {
     return {vertex.data() + start[basin], vertex.data() + start[basin + 1]};

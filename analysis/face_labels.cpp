@@ -13,7 +13,8 @@ constexpr double kSmallPart = 0.1;
 constexpr std::uint32_t kFewVertices = 20;
 
 /// How many neighbours have each label; the last entry counts those with none.
-std::array<int, 4> votes_around(const WedgePatch& patch, const std::vector<std::int8_t>& face, std::size_t v) {
+std::array<int, 4> votes_around(const WedgePatch& patch, const std::vector<std::int8_t>& face,
+                                std::size_t v) {
   std::array<int, 4> votes{};
   for (std::uint32_t k = patch.graph.start[v]; k < patch.graph.start[v + 1]; ++k) {
     const std::int8_t label = face[patch.graph.neighbour[k]];
@@ -88,8 +89,8 @@ void drop_small_parts(const WedgePatch& patch, std::vector<std::int8_t>* face) {
     }
   }
   for (std::size_t v = 0; v < patch.size(); ++v) {
-    if ((*face)[v] >= 0 && size[static_cast<std::size_t>(part[v])] <
-                               kSmallPart * total[static_cast<std::size_t>((*face)[v])]) {
+    if ((*face)[v] >= 0 &&
+        size[static_cast<std::size_t>(part[v])] < kSmallPart * total[static_cast<std::size_t>((*face)[v])]) {
       (*face)[v] = -1;
     }
   }

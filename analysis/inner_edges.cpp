@@ -37,15 +37,14 @@ struct Line {
 };
 
 /// Nearest to the middle of a and b on the tangent planes of both faces: where the crease between passes.
-Eigen::Vector3d crease_between(const Eigen::Vector3d& a, const Eigen::Vector3d& normal_a, const Eigen::Vector3d& b,
-                               const Eigen::Vector3d& normal_b) {
+Eigen::Vector3d crease_between(const Eigen::Vector3d& a, const Eigen::Vector3d& normal_a,
+                               const Eigen::Vector3d& b, const Eigen::Vector3d& normal_b) {
   const Eigen::Vector3d middle = 0.5 * (a + b);
   const double c = normal_a.dot(normal_b);
   const double off_a = normal_a.dot(a - middle);
   const double off_b = normal_b.dot(b - middle);
   const double scale = 1.0 / std::max(1.0 - c * c, 1e-3);
-  const Eigen::Vector3d shift =
-      scale * ((off_a - c * off_b) * normal_a + (off_b - c * off_a) * normal_b);
+  const Eigen::Vector3d shift = scale * ((off_a - c * off_b) * normal_a + (off_b - c * off_a) * normal_b);
   // The crease cannot lie beyond the edge that crosses it.
   const double most = (a - b).norm();
   return middle + (shift.norm() > most ? Eigen::Vector3d(shift * (most / shift.norm())) : shift);
@@ -167,7 +166,9 @@ Eigen::Vector3d shared_point(const WedgeFaces& faces, const std::array<std::opti
   for (const FacePlane& plane : faces.plane) {
     const double away = std::abs((faces.depth_point - plane.middle).norm());
     const double independent = std::max(1.0, plane.count / 4.0);
-    const double sigma = std::hypot(std::max(plane.rms_mm, kFloorMm) / std::sqrt(independent), plane.sigma_rad * away) + 0.5 * kFloorMm;
+    const double sigma =
+        std::hypot(std::max(plane.rms_mm, kFloorMm) / std::sqrt(independent), plane.sigma_rad * away) +
+        0.5 * kFloorMm;
     const double w = 1.0 / (sigma * sigma);
     normal += w * plane.normal * plane.normal.transpose();
     right += w * plane.offset_mm * plane.normal;
@@ -176,7 +177,9 @@ Eigen::Vector3d shared_point(const WedgeFaces& faces, const std::array<std::opti
     if (line) {
       const double away = (faces.depth_point - line->point).norm();
       const double independent = std::max(1.0, static_cast<double>(line->inliers.size()) / 3.0);
-      const double sigma = std::hypot(std::max(line->rms_mm, kFloorMm) / std::sqrt(independent), line->sigma_rad * away) + kFloorMm;
+      const double sigma =
+          std::hypot(std::max(line->rms_mm, kFloorMm) / std::sqrt(independent), line->sigma_rad * away) +
+          kFloorMm;
       const Eigen::Matrix3d across =
           (Eigen::Matrix3d::Identity() - line->direction * line->direction.transpose()) / (sigma * sigma);
       normal += across;
@@ -195,7 +198,8 @@ struct Curve {
 };
 
 /// How well a curve explains the contacts; as ransac_line() scores lines.
-double score_of(const std::vector<Contact>& contacts, const Line& line, const Curve& curve, double tolerance_mm) {
+double score_of(const std::vector<Contact>& contacts, const Line& line, const Curve& curve,
+                double tolerance_mm) {
   double score = 0;
   for (const Contact& c : contacts) {
     const Eigen::Vector3d to = c.p - line.point;
@@ -206,8 +210,8 @@ double score_of(const std::vector<Contact>& contacts, const Line& line, const Cu
   return score;
 }
 
-/// Middle of the curve that explains the contacts clearly better than the line does, off its chord; 0 where none
-/// does. `line` goes through the shared point.
+/// Middle of the curve that explains the contacts clearly better than the line does, off its chord; 0 where
+/// none does. `line` goes through the shared point.
 double bow_of(const std::vector<Contact>& contacts, const Line& line, double tolerance_mm, double* extent_mm,
               Random random) {
   if (contacts.size() < 3 * kLeastContacts) {
@@ -255,8 +259,8 @@ InnerEdges find_inner_edges(const WedgePatch& patch, const WedgeFaces& faces) {
   std::array<std::optional<Line>, 3> lines;
   const double tolerance_mm = std::max({0.03, 0.5 * patch.spacing_mm, 0.06 * patch.depth_mm});
   for (std::size_t k = 0; k < 3; ++k) {
-    lines[k] = ransac_line(contacts[k], faces.edge[k], tolerance_mm,
-                           Random(seed_for(patch.vertex.front(), k)));
+    lines[k] =
+        ransac_line(contacts[k], faces.edge[k], tolerance_mm, Random(seed_for(patch.vertex.front(), k)));
   }
   InnerEdges out;
   out.depth_point = shared_point(faces, lines, &out.depth_point_sigma_mm);

@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kStarts = 8;  // turned by a third of a circle over the number of starts each
 constexpr int kRounds = 10;
-constexpr double kSame = 0.985;  // cosine of 10 degrees
+constexpr double kSame = 0.985;    // cosine of 10 degrees
 constexpr float kStray = 0.2929F;  // 1 - cos 45 degrees
 
 using Centres = std::array<Eigen::Vector3f, 3>;
@@ -60,7 +60,8 @@ std::vector<NormalTriple> cluster_normals(std::span<const Eigen::Vector3f> norma
   for (int start = 0; start < kStarts; ++start) {
     Centres centres;
     for (std::size_t k = 0; k < 3; ++k) {
-      const double azimuth = 2.0 * kPi / 3.0 * (static_cast<double>(k) + static_cast<double>(start) / kStarts);
+      const double azimuth =
+          2.0 * kPi / 3.0 * (static_cast<double>(k) + static_cast<double>(start) / kStarts);
       const double slope = rad_from_deg(45);
       centres[k] = Eigen::Vector3d(std::sin(slope) * std::cos(azimuth), std::sin(slope) * std::sin(azimuth),
                                    std::cos(slope))

@@ -22,7 +22,8 @@ constexpr double kBroadSide = 0.6;
 constexpr double kMoreText = 1.25;
 
 Eigen::Vector3d tail_of(const Wedge& wedge) {
-  return (wedge.exit_points_surface_mm[static_cast<std::size_t>(wedge.directional_edge)] - wedge.depth_point_mm)
+  return (wedge.exit_points_surface_mm[static_cast<std::size_t>(wedge.directional_edge)] -
+          wedge.depth_point_mm)
       .normalized();
 }
 

@@ -35,8 +35,10 @@ Profile profile_at(const std::vector<LineMember>& members, double lean) {
   profile.count.assign(static_cast<std::size_t>(std::clamp((high - low) / kStepMm, 0.0, 1e5)) + 2, 0.0);
   for (const LineMember& m : members) {
     const double drawn_in = 0.15 * (m.high - m.low);
-    const auto first = static_cast<std::size_t>(std::max(0.0, (m.low + drawn_in - lean * m.along - low) / kStepMm));
-    const auto last = static_cast<std::size_t>(std::max(0.0, (m.high - drawn_in - lean * m.along - low) / kStepMm));
+    const auto first =
+        static_cast<std::size_t>(std::max(0.0, (m.low + drawn_in - lean * m.along - low) / kStepMm));
+    const auto last =
+        static_cast<std::size_t>(std::max(0.0, (m.high - drawn_in - lean * m.along - low) / kStepMm));
     for (std::size_t i = first; i <= last && i < profile.count.size(); ++i) {
       profile.count[i] += 1.0;
     }

@@ -18,8 +18,9 @@ namespace {
 constexpr std::size_t kMostClustered = 600;
 constexpr int kFirstRounds = 3;
 constexpr int kRounds = 6;
-/// The first surroundings reach this many depths from the lowest vertex, at least so many spacings; where they
-/// hold no pit the next. A wedge that dirt has filled is wider than it is deep, its lowest place anywhere.
+/// The first surroundings reach this many depths from the lowest vertex, at least so many spacings; where
+/// they hold no pit the next. A wedge that dirt has filled is wider than it is deep, its lowest place
+/// anywhere.
 constexpr std::array<double, 3> kReachDepths = {1.7, 4.0, 10.0};
 constexpr double kFirstReachSpacings = 5.0;
 constexpr double kReachGrowth = 1.5;
@@ -174,7 +175,8 @@ Near triangles_near(const Search& s) {
   const auto centre = static_cast<float>(s.patch.spacing_mm);
   for (const PatchTriangle& t : s.patch.triangles) {
     const float away = t.middle.head<2>().norm();
-    if (away < static_cast<float>(s.reach_mm) && t.height < s.highest && t.n.z() < kUpright && t.n.z() > -0.2F) {
+    if (away < static_cast<float>(s.reach_mm) && t.height < s.highest && t.n.z() < kUpright &&
+        t.n.z() > -0.2F) {
       near.normals.push_back(t.n);
       near.middles.push_back(t.middle);
       // Dirt gathers at the deepest place.
@@ -374,8 +376,8 @@ std::expected<WedgeFaces, std::string> find_faces(const WedgePatch& patch, const
   std::string wrong;
   double last = 0;
   for (const double depths : kReachDepths) {
-    const double reach =
-        std::min(std::max(depths * patch.depth_mm, kFirstReachSpacings * patch.spacing_mm), widest + patch.spacing_mm);
+    const double reach = std::min(std::max(depths * patch.depth_mm, kFirstReachSpacings * patch.spacing_mm),
+                                  widest + patch.spacing_mm);
     if (reach <= 1.01 * last) {
       break;
     }

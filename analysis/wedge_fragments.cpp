@@ -74,7 +74,8 @@ bool continues(const WedgeCandidate& piece, const WedgeCandidate& whole) {
   const Eigen::Vector3d tail = w.exit_points_surface_mm[edge] - w.depth_point_mm;
   const double length = tail.norm();
   const Eigen::Vector3d own =
-      (p.exit_points_surface_mm[static_cast<std::size_t>(p.directional_edge)] - p.depth_point_mm).normalized();
+      (p.exit_points_surface_mm[static_cast<std::size_t>(p.directional_edge)] - p.depth_point_mm)
+          .normalized();
   const Eigen::Vector3d to = p.depth_point_mm - w.depth_point_mm;
   const double along = to.dot(tail) / length;
   if (along < 0.2 * length || along > 1.3 * length || own.dot(tail) < kParallel * length) {
@@ -126,9 +127,8 @@ void reject_fragments(std::span<const Eigen::Vector3f> position, std::vector<Wed
           }
           const double theirs = share_on(other, c, position);
           const bool mutual = theirs >= kPiece;
-          const bool smaller = c.vertices.size() != other.vertices.size()
-                                   ? c.vertices.size() < other.vertices.size()
-                                   : i > j;
+          const bool smaller =
+              c.vertices.size() != other.vertices.size() ? c.vertices.size() < other.vertices.size() : i > j;
           if (mutual ? smaller : mine > theirs) {
             piece[i] = 1;
             return;

@@ -63,9 +63,9 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-/// Logistic regression over candidates of simulated tablets of two makes, clean, worn, broken, and scanned and
-/// stitched, from 0.05 to 0.1 mm (dubsar-wedges --evidence); weights that came out against the sense of what
-/// they weigh are zero.
+/// Logistic regression over candidates of simulated tablets of two makes, clean, worn, broken, and scanned
+/// and stitched, from 0.05 to 0.1 mm (dubsar-wedges --evidence); weights that came out against the sense of
+/// what they weigh are zero.
 struct Odds {
   double bias;
   EvidenceValues weight;
@@ -78,8 +78,8 @@ struct Odds {
   }
 };
 /// By itself, and with the tablet's other wedges beside it.
-constexpr Odds kAlone = {
-    3.52, {2.55, 2.24, 1.30, -7.15, 1.27, 0, -9.98, 0, 0, -0.69, 2.59, 0, 0, 0, 0, 0, 0}};
+constexpr Odds kAlone = {3.52,
+                         {2.55, 2.24, 1.30, -7.15, 1.27, 0, -9.98, 0, 0, -0.69, 2.59, 0, 0, 0, 0, 0, 0}};
 constexpr Odds kAmongOthers = {
     1.16, {3.40, 1.56, 0.30, -2.58, 1.30, 0, -5.59, 0, 0, -0.81, 0.65, -1.04, -1.00, 0, -3.41, 0, 4.92}};
 
@@ -88,7 +88,8 @@ void compare(const std::vector<const WedgeCandidate*>& good, double typical_dept
              WedgeCandidate* c) {
   EvidenceValues& e = c->evidence;
   const Wedge& w = c->wedge;
-  value(e, Evidence::kDepthUnlike) = std::min(1.0, std::abs(std::log2(std::max(w.depth_mm, 1e-3) / typical_depth)) / 2.0);
+  value(e, Evidence::kDepthUnlike) =
+      std::min(1.0, std::abs(std::log2(std::max(w.depth_mm, 1e-3) / typical_depth)) / 2.0);
   value(e, Evidence::kWidthUnlike) = std::min(1.0, std::abs(std::log2(width_mm(*c) / typical_width)) / 2.0);
   const std::array<double, 3> openings = sorted(w.opening_angles_rad);
   std::vector<double> unlike;
@@ -113,8 +114,8 @@ void compare(const std::vector<const WedgeCandidate*>& good, double typical_dept
   value(e, Evidence::kFar) = std::clamp(nearest / typical_width / 6.0, 0.0, 1.0);
 }
 
-/// How much of the hollows around each candidate, by area, belongs to good ones: on a broken face most of what
-/// looks like a pit closes to none.
+/// How much of the hollows around each candidate, by area, belongs to good ones: on a broken face most of
+/// what looks like a pit closes to none.
 void note_company(const std::vector<WedgeCandidate>& candidates, const std::vector<std::uint8_t>& is_good,
                   double typical_width, std::vector<WedgeCandidate*>* open) {
   std::vector<std::size_t> order(candidates.size());

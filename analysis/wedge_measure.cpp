@@ -80,8 +80,8 @@ WedgeCandidate measure_wedge(const WedgePatch& patch, const WedgeFaces& faces, c
     const auto crossing = surface.crossing(depth_point.cast<float>(), direction.cast<float>(),
                                            static_cast<float>(kReachDepths * depth));
     wedge.exit_points_extent_mm[k] = depth_point + edge.extent_mm * direction;
-    wedge.exit_points_surface_mm[k] =
-        crossing ? crossing->cast<double>().eval() : Eigen::Vector3d(depth_point + edge.extent_mm * direction);
+    wedge.exit_points_surface_mm[k] = crossing ? crossing->cast<double>().eval()
+                                               : Eigen::Vector3d(depth_point + edge.extent_mm * direction);
     wedge.exit_points_mm[k] = exits == ExitDefinition::kSurface || edge.extent_mm <= 0
                                   ? wedge.exit_points_surface_mm[k]
                                   : wedge.exit_points_extent_mm[k];
@@ -91,9 +91,11 @@ WedgeCandidate measure_wedge(const WedgePatch& patch, const WedgeFaces& faces, c
     wedge.edge_bows_mm[k] = edge.bow_mm;
     wedge.sigma.edge_rad[k] = edge.sigma_rad;
     wedge.sigma.length_mm[k] =
-        std::hypot(edges.depth_point_sigma_mm, depth * edge.sigma_rad / std::max(edge.direction.z() * edge.direction.z(), 1e-3));
+        std::hypot(edges.depth_point_sigma_mm,
+                   depth * edge.sigma_rad / std::max(edge.direction.z() * edge.direction.z(), 1e-3));
     out.contacts[k] = edge.contacts;
-    corner[k] = (patch.model_from_patch.transpose() * (wedge.exit_points_surface_mm[k] - patch.origin)).head<2>();
+    corner[k] =
+        (patch.model_from_patch.transpose() * (wedge.exit_points_surface_mm[k] - patch.origin)).head<2>();
   }
   for (std::size_t k = 0; k < 3; ++k) {
     const FacePlane& before = faces.plane[(k + 2) % 3];

@@ -63,10 +63,12 @@ void add_triangles(const PatchSource& source, const std::vector<std::int32_t>& s
       } else {
         t.n *= (t.n.dot(outward) < 0 ? -1.0F : 1.0F) / twice_area;
       }
-      t.vertex = {static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b), static_cast<std::uint32_t>(c)};
+      t.vertex = {static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b),
+                  static_cast<std::uint32_t>(c)};
       t.middle = (patch->p[i] + patch->p[j] + patch->p[k]) / 3.0F;
       t.height = (patch->height[i] + patch->height[j] + patch->height[k]) / 3.0F;
-      t.weight = 0.5F * twice_area * fit_weight(std::min({patch->weight[i], patch->weight[j], patch->weight[k]}));
+      t.weight =
+          0.5F * twice_area * fit_weight(std::min({patch->weight[i], patch->weight[j], patch->weight[k]}));
       patch->triangles.push_back(t);
     }
   }

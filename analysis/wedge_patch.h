@@ -26,8 +26,8 @@ struct PatchSource {
   bool noisy = false;
 };
 
-/// What a vertex weighs in a fit. One that is not reliable at all is still most often where it should be; around
-/// a steep face of a few triangles there may be no others.
+/// What a vertex weighs in a fit. One that is not reliable at all is still most often where it should be;
+/// around a steep face of a few triangles there may be no others.
 [[nodiscard]] constexpr float fit_weight(float reliability) {
   return 0.2F + 0.8F * reliability;
 }
@@ -45,26 +45,26 @@ struct PatchTriangle {
 /// vertex, z along the normal of the free surface above it.
 struct WedgePatch {
   Eigen::Vector3d origin{0, 0, 0};
-  Eigen::Matrix3d model_from_patch;     ///< rotation
-  std::vector<std::uint32_t> vertex;    ///< [N] of the mesh, in rising height, then the rim
-  std::size_t inner = 0;                ///< how many are not of the rim, the ring of neighbours around
-  std::vector<Eigen::Vector3f> p;       ///< [N]
-  std::vector<Eigen::Vector3f> n;       ///< [N] unit
-  std::vector<float> weight;            ///< [N] reliability
-  std::vector<float> area;              ///< [N] mm² of the vertex
-  std::vector<float> height;            ///< [N] over the free surface
-  VertexGraph graph;                    ///< within the patch, without faces
+  Eigen::Matrix3d model_from_patch;   ///< rotation
+  std::vector<std::uint32_t> vertex;  ///< [N] of the mesh, in rising height, then the rim
+  std::size_t inner = 0;              ///< how many are not of the rim, the ring of neighbours around
+  std::vector<Eigen::Vector3f> p;     ///< [N]
+  std::vector<Eigen::Vector3f> n;     ///< [N] unit
+  std::vector<float> weight;          ///< [N] reliability
+  std::vector<float> area;            ///< [N] mm² of the vertex
+  std::vector<float> height;          ///< [N] over the free surface
+  VertexGraph graph;                  ///< within the patch, without faces
   std::vector<PatchTriangle> triangles;
-  double spacing_mm = 0;                ///< median edge
-  double depth_mm = 0;                  ///< of the lowest vertex
+  double spacing_mm = 0;  ///< median edge
+  double depth_mm = 0;    ///< of the lowest vertex
   [[nodiscard]] std::size_t size() const { return vertex.size(); }
   [[nodiscard]] Eigen::Vector3d to_model(const Eigen::Vector3d& local) const {
     return model_from_patch * local + origin;
   }
 };
 
-/// `vertices` in rising height, at least one; those next to them are added as the rim. `up`: unit normal of the free surface at the first of them.
-/// `slot`: [V] scratch of the calling thread, all -1 before and after.
+/// `vertices` in rising height, at least one; those next to them are added as the rim. `up`: unit normal of
+/// the free surface at the first of them. `slot`: [V] scratch of the calling thread, all -1 before and after.
 [[nodiscard]] WedgePatch make_patch(const PatchSource& source, std::span<const std::uint32_t> vertices,
                                     const Eigen::Vector3d& up, std::vector<std::int32_t>* slot);
 

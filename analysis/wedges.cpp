@@ -38,7 +38,8 @@ std::vector<float> vertex_areas(const Mesh& mesh, const VertexGraph& graph) {
     float sum = 0;
     for (const std::uint32_t f : graph.faces_at(static_cast<std::uint32_t>(v))) {
       const auto& [a, b, c] = mesh.faces[f];
-      sum += (mesh.positions[b] - mesh.positions[a]).cross(mesh.positions[c] - mesh.positions[a]).norm() / 6.0F;
+      sum +=
+          (mesh.positions[b] - mesh.positions[a]).cross(mesh.positions[c] - mesh.positions[a]).norm() / 6.0F;
     }
     areas[v] = std::isfinite(sum) ? sum : 0.0F;
   });
@@ -48,13 +49,13 @@ std::vector<float> vertex_areas(const Mesh& mesh, const VertexGraph& graph) {
 /// Everything that looking at one basin needs.
 class Extractor {
  public:
-  Extractor(const Mesh& mesh, const VertexGraph& graph, const SurfaceFields& fields, const WedgeOptions& options,
-            const std::vector<float>& areas, bool noisy)
+  Extractor(const Mesh& mesh, const VertexGraph& graph, const SurfaceFields& fields,
+            const WedgeOptions& options, const std::vector<float>& areas, bool noisy)
       : fields_(fields),
         options_(options),
         areas_(areas),
-        source_{&graph, mesh.faces, areas, mesh.positions, fields.normal, fields.reliability, fields.height_mm,
-                noisy} {}
+        source_{&graph,           mesh.faces, areas, mesh.positions, fields.normal, fields.reliability,
+                fields.height_mm, noisy} {}
 
   [[nodiscard]] std::vector<WedgeCandidate> look_at(std::span<const std::uint32_t> vertices,
                                                     std::vector<std::int32_t>* slot) const {
@@ -124,7 +125,10 @@ class Extractor {
                         std::vector<std::vector<std::uint32_t>>* open) {
     std::vector<std::uint8_t> free(patch.size());
     for (std::size_t i = 0; i < patch.size(); ++i) {
-      free[i] = i < patch.inner && faces.face[i] < 0 && patch.height[i] < -0.15F * static_cast<float>(patch.depth_mm) ? 1 : 0;
+      free[i] = i < patch.inner && faces.face[i] < 0 &&
+                        patch.height[i] < -0.15F * static_cast<float>(patch.depth_mm)
+                    ? 1
+                    : 0;
     }
     std::vector<std::uint32_t> stack;
     for (std::uint32_t i = 0; i < patch.size(); ++i) {
@@ -174,8 +178,9 @@ int smoothing_rounds(double noise_mm) {
   constexpr double kQuietMm = 0.003;
   constexpr int kMost = 4;
   // Each round takes part of what the last has left.
-  return noise_mm <= kQuietMm ? 0
-                              : std::clamp(static_cast<int>(std::ceil(std::pow(noise_mm / kQuietMm, 2) / 7.0)), 1, kMost);
+  return noise_mm <= kQuietMm
+             ? 0
+             : std::clamp(static_cast<int>(std::ceil(std::pow(noise_mm / kQuietMm, 2) / 7.0)), 1, kMost);
 }
 
 /// Edge of the equilateral triangle that the mean vertex stands for.
@@ -189,7 +194,8 @@ BasinOptions basin_options(const WedgeOptions& options, const std::vector<float>
   const double each = area / std::max<double>(1.0, static_cast<double>(areas.size()));
   BasinOptions out;
   out.classical = options.classical_watershed;
-  out.min_vertices = static_cast<std::uint32_t>(std::clamp(options.min_basin_mm2 / std::max(each, 1e-9), 6.0, 1e6));
+  out.min_vertices =
+      static_cast<std::uint32_t>(std::clamp(options.min_basin_mm2 / std::max(each, 1e-9), 6.0, 1e6));
   out.min_depth_mm = static_cast<float>(options.min_basin_depth_mm);
   return out;
 }
@@ -204,9 +210,9 @@ Result<WedgeSet> find_wedges(const Mesh& mesh, const VertexGraph& graph, const S
   const std::vector<float> areas = vertex_areas(mesh, graph);
   const double noise_mm = height_noise_mm(graph, fields.height_mm, fields.free_surface);
   const int rounds = smoothing_rounds(noise_mm);
-  Basins basins = find_basins(graph,
-                              rounds > 0 ? smooth_heights(graph, fields.height_mm, rounds) : fields.height_mm,
-                              fields.free_surface, basin_options(options, areas));
+  Basins basins =
+      find_basins(graph, rounds > 0 ? smooth_heights(graph, fields.height_mm, rounds) : fields.height_mm,
+                  fields.free_surface, basin_options(options, areas));
   note_time(timings_s, "watershed", &from);
   if (job.cancelled()) {
     return cancelled();

@@ -31,15 +31,15 @@ struct WedgeSet {
   std::vector<Wedge> wedges;             ///< id = index
   std::vector<EvidenceValues> evidence;  ///< of each wedge
   std::vector<RejectedWedge> rejected;
-  std::vector<std::int32_t> basin_of;    ///< [V] see Basins::label
-  std::vector<std::int32_t> wedge_of;    ///< [V] wedge on whose faces the vertex lies, or -1
-  std::vector<std::int8_t> face_of;      ///< [V] which face of it, 0 to 2, or -1
+  std::vector<std::int32_t> basin_of;  ///< [V] see Basins::label
+  std::vector<std::int32_t> wedge_of;  ///< [V] wedge on whose faces the vertex lies, or -1
+  std::vector<std::int8_t> face_of;    ///< [V] which face of it, 0 to 2, or -1
 };
 
 /// Watershed, faces, edges, measures and judgement (seed 000, 3.3 and 3.4). The same bytes for any number of
 /// threads. A mesh without wedges gives an empty list. Errors: kCancelled.
-[[nodiscard]] Result<WedgeSet> find_wedges(const Mesh& mesh, const VertexGraph& graph, const SurfaceFields& fields,
-                                           const WedgeOptions& options, const JobContext& job,
-                                           StageTimes* timings_s = nullptr);
+[[nodiscard]] Result<WedgeSet> find_wedges(const Mesh& mesh, const VertexGraph& graph,
+                                           const SurfaceFields& fields, const WedgeOptions& options,
+                                           const JobContext& job, StageTimes* timings_s = nullptr);
 
 }  // namespace dubsar

@@ -34,19 +34,21 @@ struct Sheet {
 
 std::string attributes(const Wedge& w) {
   const auto directional = static_cast<std::size_t>(w.directional_edge);
-  return fmt::sprintf(" data-id=\"%d\" data-line=\"%d\" data-order=\"%d\" data-confidence=\"%.3f\" data-depth-mm=\"%.3f\" "
-               "data-length-mm=\"%.3f\" data-turn-deg=\"%.1f\" data-volume-mm3=\"%.4f\"",
-               w.id, w.place.line, w.place.order, w.confidence, w.depth_mm, w.edge_lengths_mm[directional],
-               deg_from_rad(w.place.turn_rad), w.volume_mm3);
+  return fmt::sprintf(
+      " data-id=\"%d\" data-line=\"%d\" data-order=\"%d\" data-confidence=\"%.3f\" data-depth-mm=\"%.3f\" "
+      "data-length-mm=\"%.3f\" data-turn-deg=\"%.1f\" data-volume-mm3=\"%.4f\"",
+      w.id, w.place.line, w.place.order, w.confidence, w.depth_mm, w.edge_lengths_mm[directional],
+      deg_from_rad(w.place.turn_rad), w.volume_mm3);
 }
 
 std::string numbers(const Wedge& w) {
   const auto deg = [](double rad) { return deg_from_rad(rad); };
-  return fmt::sprintf("wedge %d, line %d, %d: depth %.2f mm, edges %.2f %.2f %.2f mm, face angles %.0f %.0f %.0f, opening "
-               "angles %.0f %.0f %.0f degrees, confidence %.2f",
-               w.id, w.place.line, w.place.order, w.depth_mm, w.edge_lengths_mm[0], w.edge_lengths_mm[1],
-               w.edge_lengths_mm[2], deg(w.face_angles_rad[0]), deg(w.face_angles_rad[1]), deg(w.face_angles_rad[2]),
-               deg(w.opening_angles_rad[0]), deg(w.opening_angles_rad[1]), deg(w.opening_angles_rad[2]), w.confidence);
+  return fmt::sprintf(
+      "wedge %d, line %d, %d: depth %.2f mm, edges %.2f %.2f %.2f mm, face angles %.0f %.0f %.0f, opening "
+      "angles %.0f %.0f %.0f degrees, confidence %.2f",
+      w.id, w.place.line, w.place.order, w.depth_mm, w.edge_lengths_mm[0], w.edge_lengths_mm[1],
+      w.edge_lengths_mm[2], deg(w.face_angles_rad[0]), deg(w.face_angles_rad[1]), deg(w.face_angles_rad[2]),
+      deg(w.opening_angles_rad[0]), deg(w.opening_angles_rad[1]), deg(w.opening_angles_rad[2]), w.confidence);
 }
 
 std::string group(const Sheet& sheet, const Wedge& w) {
@@ -55,15 +57,15 @@ std::string group(const Sheet& sheet, const Wedge& w) {
   for (std::size_t k = 0; k < 3; ++k) {
     corner[k] = sheet.at(w.outer_vertices_mm[k]);
   }
-  std::string out = "<g id=\"wedge-" + std::to_string(w.id) + "\" class=\"wedge\"" + attributes(w) + ">\n<title>" +
-                    html_escaped(numbers(w)) + "</title>\n";
-  out += fmt::sprintf("<path class=\"outer\" d=\"M%.3f %.3fL%.3f %.3fL%.3f %.3fZ\"/>\n", corner[0].x(), corner[0].y(),
-               corner[1].x(), corner[1].y(), corner[2].x(), corner[2].y());
+  std::string out = "<g id=\"wedge-" + std::to_string(w.id) + "\" class=\"wedge\"" + attributes(w) +
+                    ">\n<title>" + html_escaped(numbers(w)) + "</title>\n";
+  out += fmt::sprintf("<path class=\"outer\" d=\"M%.3f %.3fL%.3f %.3fL%.3f %.3fZ\"/>\n", corner[0].x(),
+                      corner[0].y(), corner[1].x(), corner[1].y(), corner[2].x(), corner[2].y());
   for (std::size_t k = 0; k < 3; ++k) {
     const Eigen::Vector2d end = sheet.at(w.exit_points_mm[k]);
     out += fmt::sprintf("<path class=\"%s\" d=\"M%.3f %.3fL%.3f %.3f\"/>\n",
-                 static_cast<int>(k) == w.directional_edge ? "inner directional" : "inner", tip.x(), tip.y(), end.x(),
-                 end.y());
+                        static_cast<int>(k) == w.directional_edge ? "inner directional" : "inner", tip.x(),
+                        tip.y(), end.x(), end.y());
   }
   return out + "</g>\n";
 }
@@ -106,9 +108,10 @@ std::string wedge_drawing(Face side, const std::vector<Wedge>& wedges, const Rig
   sheet.width = std::max(right - left, kScaleMm) + 2 * kMarginMm;
   sheet.height = high - low + 2 * kMarginMm + kFooterMm;
   std::string out = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n";
-  out += fmt::sprintf("<svg xmlns=\"http://www.w3.org/2000/svg\" version=\"1.1\" width=\"%.3fmm\" height=\"%.3fmm\" "
-               "viewBox=\"0 0 %.3f %.3f\">\n",
-               sheet.width, sheet.height, sheet.width, sheet.height);
+  out += fmt::sprintf(
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" version=\"1.1\" width=\"%.3fmm\" height=\"%.3fmm\" "
+      "viewBox=\"0 0 %.3f %.3f\">\n",
+      sheet.width, sheet.height, sheet.width, sheet.height);
   out += "<title>" + html_escaped(title) + ", " + to_string(side) + "</title>\n";
   out +=
       "<style>.outer{fill:#e8e4dc;stroke:#000;stroke-width:.08;stroke-linejoin:round}"
@@ -140,7 +143,8 @@ Result<std::vector<std::filesystem::path>> write_wedge_drawings(const std::files
       continue;
     }
     const std::filesystem::path path = folder / (std::string(to_string(side)) + ".svg");
-    if (const Status written = write_file_atomically(path, wedge_drawing(side, wedges, text_from_model, title));
+    if (const Status written =
+            write_file_atomically(path, wedge_drawing(side, wedges, text_from_model, title));
         !written) {
       return std::unexpected(written.error());
     }

@@ -12,16 +12,16 @@
 
 namespace dubsar {
 
-/// The wedges of one side as a drawing to scale: SVG 1.1 in millimetres, seen straight on, up as it is read. One
-/// group per wedge with its outer edges, its inner edges, the directional one heavier, and its numbers in a
-/// title and data attributes. Wedges of other sides are left out.
+/// The wedges of one side as a drawing to scale: SVG 1.1 in millimetres, seen straight on, up as it is read.
+/// One group per wedge with its outer edges, its inner edges, the directional one heavier, and its numbers in
+/// a title and data attributes. Wedges of other sides are left out.
 [[nodiscard]] std::string wedge_drawing(Face side, const std::vector<Wedge>& wedges,
                                         const RigidTransform& text_from_model, const std::string& title);
 
-/// Writes obverse.svg and so on for every side that has wedges into a folder, which is made; returns the files.
-[[nodiscard]] Result<std::vector<std::filesystem::path>> write_wedge_drawings(const std::filesystem::path& folder,
-                                                                              const std::vector<Wedge>& wedges,
-                                                                              const RigidTransform& text_from_model,
-                                                                              const std::string& title);
+/// Writes obverse.svg and so on for every side that has wedges into a folder, which is made; returns the
+/// files.
+[[nodiscard]] Result<std::vector<std::filesystem::path>> write_wedge_drawings(
+    const std::filesystem::path& folder, const std::vector<Wedge>& wedges,
+    const RigidTransform& text_from_model, const std::string& title);
 
 }  // namespace dubsar

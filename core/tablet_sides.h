@@ -18,8 +18,8 @@ struct SideAxes {
   [[nodiscard]] Eigen::Vector3d up() const { return normal.cross(right); }
 };
 
-/// A tablet is turned over its lower edge: x stays the reader's right. Lines that run over the right edge go on
-/// there; the left edge is read from the top down.
+/// A tablet is turned over its lower edge: x stays the reader's right. Lines that run over the right edge go
+/// on there; the left edge is read from the top down.
 [[nodiscard]] inline const SideAxes& side_axes(Face face) {
   using V = Eigen::Vector3d;
   static const std::array<SideAxes, kFaceCount> kSides = {{{Face::kObverse, V(0, 0, 1), V(1, 0, 0)},

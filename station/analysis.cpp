@@ -81,10 +81,10 @@ Mesh annotated_mesh(const Mesh& mesh, const Analysis& analysis) {
   out.normals = analysis.fields.normal;
   out.colours.resize(mesh.positions.size());
   parallel_for_each_index(mesh.positions.size(), [&](std::size_t v) {
-    out.colours[v] = set.wedge_of[v] >= 0                ? colour_of(set.wedge_of[v], set.face_of[v])
-                     : set.basin_of[v] >= 0              ? kHollow
-                     : set.basin_of[v] == kBasinBorder   ? kBorder
-                                                         : kClay;
+    out.colours[v] = set.wedge_of[v] >= 0              ? colour_of(set.wedge_of[v], set.face_of[v])
+                     : set.basin_of[v] >= 0            ? kHollow
+                     : set.basin_of[v] == kBasinBorder ? kBorder
+                                                       : kClay;
   });
   return out;
 }

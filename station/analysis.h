@@ -31,10 +31,12 @@ struct Analysis {
 
 /// All stages on a mesh in millimetres: fields, watershed, wedges, their place in the text. Errors: kBadInput
 /// for a mesh without a surface, kCancelled.
-[[nodiscard]] Result<Analysis> analyze_mesh(const Mesh& mesh, const AnalysisOptions& options, const JobContext& job);
+[[nodiscard]] Result<Analysis> analyze_mesh(const Mesh& mesh, const AnalysisOptions& options,
+                                            const JobContext& job);
 
 /// wedges.json of it; the wedges themselves are taken out of `analysis`.
-[[nodiscard]] WedgeFile wedge_file(std::string mesh_name, const AnalysisOptions& options, const Analysis& analysis);
+[[nodiscard]] WedgeFile wedge_file(std::string mesh_name, const AnalysisOptions& options,
+                                   const Analysis& analysis);
 
 /// The mesh with each wedge in a colour of its own, faces shaded apart, rejected basins grey-blue, and the
 /// reliability that the analysis found.

@@ -36,7 +36,9 @@ struct Field {
   [[nodiscard]] std::int32_t label_at(const Basins& basins, float x, float y) const {
     std::size_t best = 0;
     for (std::size_t v = 0; v < height.size(); ++v) {
-      const auto away = [&](std::size_t i) { return (mesh.positions[i].head<2>() - Eigen::Vector2f(x, y)).norm(); };
+      const auto away = [&](std::size_t i) {
+        return (mesh.positions[i].head<2>() - Eigen::Vector2f(x, y)).norm();
+      };
       best = away(v) < away(best) ? v : best;
     }
     return basins.label[best];

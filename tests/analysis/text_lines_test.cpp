@@ -14,7 +14,8 @@ std::vector<LineMember> page(int lines, int per_line, std::vector<int>* line_of)
   Random random(4);
   std::vector<LineMember> members;
   for (int k = 0; k < lines * per_line; ++k) {
-    const int i = static_cast<int>((static_cast<std::uint64_t>(k) * 37U) % static_cast<std::uint64_t>(lines * per_line));
+    const int i = static_cast<int>((static_cast<std::uint64_t>(k) * 37U) %
+                                   static_cast<std::uint64_t>(lines * per_line));
     const int line = i / per_line;
     LineMember m;
     m.along = 1.5 * (i % per_line);

@@ -20,7 +20,8 @@ double degrees_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return deg_from_rad(std::atan2(a.cross(b).norm(), a.dot(b)));
 }
 
-/// Worst angles of normals and edges against the pit's, by the best cyclic order; and the depth point's error.
+/// Worst angles of normals and edges against the pit's, by the best cyclic order; and the depth point's
+/// error.
 struct Error {
   double normal_deg = 0, edge_deg = 0, tip_mm = 0;
 };
@@ -32,8 +33,10 @@ Error error_of(const Pit& pit, const WedgePatch& patch, const WedgeFaces& faces,
     double edge = 0;
     for (std::size_t k = 0; k < 3; ++k) {
       const std::size_t own = (k + shift) % 3;
-      normal = std::max(normal, degrees_between(patch.model_from_patch * faces.plane[own].normal, pit.normal(k)));
-      edge = std::max(edge, degrees_between(patch.model_from_patch * edges.edge[own].direction, pit.exits[k] - pit.tip));
+      normal =
+          std::max(normal, degrees_between(patch.model_from_patch * faces.plane[own].normal, pit.normal(k)));
+      edge = std::max(
+          edge, degrees_between(patch.model_from_patch * edges.edge[own].direction, pit.exits[k] - pit.tip));
     }
     if (normal < best.normal_deg) {
       best.normal_deg = normal;
@@ -49,7 +52,8 @@ TEST(NormalClusters, FindsThreeDirectionsInNoise) {
   std::vector<Eigen::Vector3f> normals;
   for (int i = 0; i < 600; ++i) {
     const Eigen::Vector3d shake(random.normal(), random.normal(), random.normal());
-    normals.push_back((pit.normal(static_cast<std::size_t>(i % 3)) + 0.15 * shake).normalized().cast<float>());
+    normals.push_back(
+        (pit.normal(static_cast<std::size_t>(i % 3)) + 0.15 * shake).normalized().cast<float>());
   }
   const std::vector<float> weights(normals.size(), 1.0F);
   const auto triples = cluster_normals(normals, weights);
@@ -120,7 +124,8 @@ TEST(WedgeModel, ABentEdgeIsACurveAndAStraightOneIsNot) {
 }
 
 TEST(WedgeModel, ARoofAndAPlaneAreNoPits) {
-  const pits::Scene groove(pits::sheet(6, 0.1, [](double x, double) { return std::min(0.0, std::abs(x) - 0.5); }));
+  const pits::Scene groove(
+      pits::sheet(6, 0.1, [](double x, double) { return std::min(0.0, std::abs(x) - 0.5); }));
   EXPECT_FALSE(find_faces(groove.patch(0.03F), {}));
   const pits::Scene flat(pits::sheet(6, 0.1, [](double, double) { return -0.2; }));
   EXPECT_FALSE(find_faces(flat.patch(0.03F), {}));

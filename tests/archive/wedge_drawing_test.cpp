@@ -26,7 +26,8 @@ Wedge wedge_at(int id, Face side, double x, double y, double z) {
 }
 
 TEST(WedgeDrawing, IsToScaleWithOneGroupPerWedgeOfTheSide) {
-  const std::vector<Wedge> wedges = {wedge_at(0, Face::kObverse, 0, 0, 5), wedge_at(1, Face::kObverse, 10, 4, 5),
+  const std::vector<Wedge> wedges = {wedge_at(0, Face::kObverse, 0, 0, 5),
+                                     wedge_at(1, Face::kObverse, 10, 4, 5),
                                      wedge_at(2, Face::kReverse, 3, 0, -5)};
   const std::string svg = wedge_drawing(Face::kObverse, wedges, {}, "K. 1 <a & b>");
   // 12.5 mm from the first wedge's head to the second one's tail, 3 mm of margin on each side.
@@ -43,7 +44,8 @@ TEST(WedgeDrawing, IsToScaleWithOneGroupPerWedgeOfTheSide) {
 
 TEST(WedgeDrawing, WritesASheetForEachSideThatHasWedges) {
   const test::TemporaryFolder folder;
-  const std::vector<Wedge> wedges = {wedge_at(0, Face::kObverse, 0, 0, 5), wedge_at(2, Face::kReverse, 3, 0, -5)};
+  const std::vector<Wedge> wedges = {wedge_at(0, Face::kObverse, 0, 0, 5),
+                                     wedge_at(2, Face::kReverse, 3, 0, -5)};
   const auto files = write_wedge_drawings(folder.path() / "svg", wedges, {}, "t");
   ASSERT_TRUE(files);
   ASSERT_EQ(files->size(), 2U);

@@ -260,8 +260,10 @@ TEST(WedgesJson, ReadsBackAllThatWasMeasured) {
   file.text_certainty = 0.5;
   Wedge wedge;
   wedge.id = 3;
-  wedge.exit_points_surface_mm = {Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(0, 1, 0), Eigen::Vector3d(0, 0, 1)};
-  wedge.exit_points_extent_mm = {Eigen::Vector3d(2, 0, 0), Eigen::Vector3d(0, 2, 0), Eigen::Vector3d(0, 0, 2)};
+  wedge.exit_points_surface_mm = {Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(0, 1, 0),
+                                  Eigen::Vector3d(0, 0, 1)};
+  wedge.exit_points_extent_mm = {Eigen::Vector3d(2, 0, 0), Eigen::Vector3d(0, 2, 0),
+                                 Eigen::Vector3d(0, 0, 2)};
   wedge.directional_by = DirectionalBy::kFlattest;
   wedge.directional_margin = 0.25;
   wedge.surface_normal = {0, 1, 0};

@@ -27,8 +27,8 @@ TEST(AnalyzeCommand, FindsTheWedgesOfASimulatedTablet) {
                          at("t")})
                 .status,
             0);
-  const Outcome outcome = run_command({"--json", "analyze", at("t/tablet.ply"), "-o", at("wedges.json"), "--mesh-out",
-                                       at("annotated.ply"), "--svg", at("svg")});
+  const Outcome outcome = run_command({"--json", "analyze", at("t/tablet.ply"), "-o", at("wedges.json"),
+                                       "--mesh-out", at("annotated.ply"), "--svg", at("svg")});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   ASSERT_TRUE(outcome.json().is_object()) << outcome.out;
   const auto file = read_wedges(at("wedges.json"));
@@ -44,9 +44,8 @@ TEST(AnalyzeCommand, FindsTheWedgesOfASimulatedTablet) {
       continue;
     }
     ++whole;
-    found += std::ranges::any_of(file->wedges, [&](const Wedge& w) {
-      return (w.depth_point_mm - wedge.depth_point_mm).norm() < 0.2;
-    });
+    found += std::ranges::any_of(
+        file->wedges, [&](const Wedge& w) { return (w.depth_point_mm - wedge.depth_point_mm).norm() < 0.2; });
   }
   ASSERT_GT(whole, 30);
   EXPECT_GE(found, 0.9 * whole);
@@ -56,7 +55,8 @@ TEST(AnalyzeCommand, FindsTheWedgesOfASimulatedTablet) {
   EXPECT_TRUE(std::filesystem::exists(folder.path() / "svg" / "obverse.svg"));
 
   // The other exit definition changes the exits, and nothing else.
-  ASSERT_EQ(run_command({"analyze", at("t/tablet.ply"), "-o", at("extent.json"), "--exit", "extent"}).status, 0);
+  ASSERT_EQ(run_command({"analyze", at("t/tablet.ply"), "-o", at("extent.json"), "--exit", "extent"}).status,
+            0);
   const auto extent = read_wedges(at("extent.json"));
   ASSERT_TRUE(extent);
   ASSERT_EQ(extent->wedges.size(), file->wedges.size());
