@@ -33,6 +33,7 @@ struct ReportInput {
   const std::vector<ScanPose>& scans;
   ColouredPoints red_points;          ///< red and excused samples in the model frame
   RigidTransform tablet_from_model;   ///< which way the faces look; see face_camera()
+  std::string wedges;                 ///< a sentence on them; empty: nobody looked
   std::vector<std::string> accuracy;  ///< sentences on how good the registration is and how it was measured
   std::vector<std::string> calibration;  ///< sentences beyond checklist.calibration
   std::vector<std::string> not_measured;

@@ -18,6 +18,7 @@ namespace dubsar {
 [[nodiscard]] std::string red_sheet_section(const ReportInput& input, const ReportPictures& pictures);
 [[nodiscard]] std::string scans_section(const ReportInput& input);
 [[nodiscard]] std::string accuracy_section(const ReportInput& input);
+[[nodiscard]] std::string wedges_section(const ReportInput& input);
 [[nodiscard]] std::string not_measured_section(const ReportInput& input);
 [[nodiscard]] std::string timings_section(const ReportInput& input);
 

@@ -21,6 +21,7 @@ struct Deliverables {
   std::filesystem::path poses;         ///< export/poses.json
   std::filesystem::path red_map_json;  ///< export/red_map.json
   std::filesystem::path checklist;     ///< export/checklist.html
+  std::filesystem::path wedges;        ///< analysis/wedges.json; not of write_deliverables()
 
   /// Those that were written.
   [[nodiscard]] std::vector<std::filesystem::path> all() const;

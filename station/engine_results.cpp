@@ -2,6 +2,7 @@
 // Copyright The Dubsar developers
 #include "station/engine_impl.h"
 #include "station/results.h"
+#include "station/session_wedges.h"
 
 namespace dubsar {
 
@@ -26,6 +27,15 @@ Status Engine::Impl::finish(EngineResult& result, JobContext& job) {
     }
     results.checklist = result.checklist = std::move(*list);
   }
+  std::optional<SessionWedges> wedges;
+  {
+    const StageClock timing = clock("wedges");
+    auto kept = keep_wedges(*store, results.mesh, job);
+    if (!kept) {
+      return std::unexpected(kept.error());
+    }
+    wedges = std::move(*kept);
+  }
   for (const auto& [stage, spent] : seconds) {
     result.timings.push_back({stage, spent});
   }
@@ -36,6 +46,7 @@ Status Engine::Impl::finish(EngineResult& result, JobContext& job) {
   PageFacts facts = page_facts_of(*store);
   facts.device = options.device;
   facts.timings = result.timings;
+  facts.wedges = wedges ? wedge_sentence(*wedges) : std::string();
   facts.gains.insert(facts.gains.end(), planning.gains().begin(), planning.gains().end());
   if (const Status s = keep_page_facts(*store, facts); !s) {
     return s;
@@ -48,6 +59,9 @@ Status Engine::Impl::finish(EngineResult& result, JobContext& job) {
     return std::unexpected(files.error());
   }
   result.files = std::move(*files);
+  if (wedges) {
+    result.files.wedges = wedges->json;
+  }
   const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - started;
   result.timings.push_back({"pictures and pages", spent.count()});
   return store->append_event(

@@ -156,9 +156,11 @@ ReportInput report_input(const Results& results, const PlanningStage& stage, con
           .scans = results.poses,
           .red_points = stage.red_points(results.mesh),
           .tablet_from_model = stage.tablet_from_model(results.mesh),
+          .wedges = facts.wedges,
           .accuracy = accuracy_sentences(results.poses, facts.gains),
           .calibration = {},
-          .not_measured = {"Wedges: they are not measured yet."},
+          .not_measured = facts.wedges.empty() ? std::vector<std::string>{"Wedges: they were not looked for."}
+                                               : std::vector<std::string>{},
           .timings = facts.timings,
           .longest_px = picture_size_px(stage.placed(), results.mesh)};
 }
@@ -181,7 +183,8 @@ Status keep_page_facts(SessionStore& store, const PageFacts& facts) {
                                             {"program", program_name()},
                                             {"when", utc_now()},
                                             {"timings", timings},
-                                            {"gains", gains}}));
+                                            {"gains", gains},
+                                            {"wedges", facts.wedges}}));
 }
 
 PageFacts page_facts_of(const SessionStore& store) {
@@ -213,7 +216,12 @@ PageFacts page_facts_of(const SessionStore& store) {
       }
     }
   }
+  std::string wedges;
+  if (const auto sentence = root.find("wedges")) {
+    wedges = sentence->text();
+  }
   if (document->status("")) {
+    facts.wedges = std::move(wedges);
     facts.gains = std::move(gains);
     facts.device = device;
     facts.timings = std::move(timings);

@@ -42,6 +42,7 @@ struct PageFacts {
   std::string device;
   std::vector<StageTiming> timings;
   std::vector<ViewGain> gains;  ///< of the scans that were asked for, as they came
+  std::string wedges;           ///< a sentence on them; empty where they were not measured
 };
 
 /// The input of pages and pictures. Refers to the results.

@@ -112,6 +112,7 @@ nlohmann::ordered_json result_json(const ScanArguments& arguments, const EngineR
                               {"checklist", result.files.checklist.string()},
                               {"red_map_picture", result.files.red_map.string()},
                               {"six_views", result.files.six_views.string()},
+                              {"wedges", result.files.wedges.string()},
                               {"poses", nlohmann::ordered_json::parse(poses_to_json(result.poses))},
                               {"red_map", nlohmann::ordered_json::parse(red_map_to_json(result.red_map))},
                               {"timings_s", timings}};
@@ -126,7 +127,7 @@ void print_result(const EngineResult& result) {
   for (const auto& [name, path] :
        {std::pair{"mesh", &result.files.mesh}, std::pair{"six views", &result.files.six_views},
         std::pair{"red map", &result.files.red_map}, std::pair{"report", &result.files.report},
-        std::pair{"checklist", &result.files.checklist}}) {
+        std::pair{"checklist", &result.files.checklist}, std::pair{"wedges", &result.files.wedges}}) {
     if (!path->empty()) {
       std::printf("  %-10s %s\n", name, path->c_str());
     }

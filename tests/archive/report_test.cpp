@@ -49,6 +49,7 @@ class Report : public ::testing::Test {
             .scans = scans_,
             .red_points = {},
             .tablet_from_model = {},
+            .wedges = "3 wedges <were> measured.",
             .accuracy = {"Measured on a ball bar."},
             .calibration = {},
             .not_measured = {"Colour."},

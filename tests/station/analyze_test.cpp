@@ -83,7 +83,10 @@ TEST(AnalyzeCommand, AsksForTheUnitAndRefusesWhatIsNoMesh) {
   const auto at = [&](const char* name) { return (folder.path() / name).string(); };
   std::ofstream(at("metres.obj")) << "v 0 0 0\nv .03 0 0\nv .03 .03 0\nv 0 .03 0\nv .015 .015 .009\n"
                                      "f 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\nf 1 3 2\nf 1 4 3\n";
-  EXPECT_THAT(run_command({"analyze", at("metres.obj"), "-o", at("w.json")}).err, HasSubstr("--unit m"));
+  const Outcome asked = run_command({"analyze", at("metres.obj"), "-o", at("w.json")});
+  EXPECT_EQ(asked.status, 2);
+  EXPECT_THAT(asked.err, HasSubstr("--unit m"));
+  EXPECT_EQ(run_command({"analyze", at("metres.obj"), "-o", at("w.json"), "--unit", "m"}).status, 0);
   EXPECT_EQ(run_command({"analyze", at("metres.obj"), "-o", at("w.json"), "--unit", "cubit"}).status, 2);
   EXPECT_EQ(run_command({"analyze", at("nowhere.ply"), "-o", at("w.json")}).status, 2);
   EXPECT_EQ(run_command({"analyze", at("metres.obj")}).status, 2);

@@ -54,7 +54,7 @@ TEST_F(MainJob, EndsConclusiveWithAllThatIsPromised) {
   ASSERT_TRUE(json.is_object()) << first_.out;
   EXPECT_EQ(json["conclusive"], true);
   EXPECT_LE(json["scans"].get<int>(), 40);
-  for (const char* file : {"mesh", "report", "red_map_picture", "six_views"}) {
+  for (const char* file : {"mesh", "report", "red_map_picture", "six_views", "wedges"}) {
     EXPECT_TRUE(fs::is_regular_file(json[file].get<std::string>())) << file;
   }
   EXPECT_EQ(run_command({"mesh", "check", json["mesh"].get<std::string>()}).status, 0);

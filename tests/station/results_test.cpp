@@ -18,9 +18,11 @@ TEST(PageFacts, WhatWasPredictedAndWhatCameOfItStayInTheSession) {
   facts.timings = {{"register", 1.5}};
   facts.gains = {{.scan = 3, .predicted_mm2 = 12.5, .actual_mm2 = 11.0},
                  {.scan = 4, .predicted_mm2 = std::nullopt, .actual_mm2 = 2.0}};
+  facts.wedges = "two wedges";
   ASSERT_TRUE(keep_page_facts(*store, facts));
   const PageFacts read = page_facts_of(*store);
   EXPECT_EQ(read.device, "sim:");
+  EXPECT_EQ(read.wedges, "two wedges");
   ASSERT_EQ(read.gains.size(), 2U);
   EXPECT_EQ(read.gains[0].scan, 3);
   EXPECT_EQ(read.gains[0].predicted_mm2, 12.5);
