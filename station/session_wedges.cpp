@@ -41,8 +41,8 @@ Result<std::optional<SessionWedges>> keep_wedges(SessionStore& store, const Mesh
   }
   std::vector<fs::path> made{out.json};
   if (file.text_from_model && !file.wedges.empty()) {
-    const auto drawings = write_wedge_drawings(folder, file.wedges, *file.text_from_model,
-                                               store.folder().filename().string());
+    const auto drawings =
+        write_wedge_drawings(folder, file.wedges, *file.text_from_model, store.folder().filename().string());
     if (!drawings) {
       return std::unexpected(drawings.error());
     }
