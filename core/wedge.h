@@ -12,11 +12,6 @@
 
 namespace dubsar {
 
-/// Eigen leaves a vector that nobody sets undefined.
-[[nodiscard]] inline std::array<Eigen::Vector3d, 3> zero_vectors() {
-  return {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
-}
-
 /// The two definitions of where an inner edge ends (seed 000, 3.4).
 enum class ExitDefinition {
   kSurface,  ///< where it meets the reconstructed free surface
@@ -47,6 +42,11 @@ struct WedgePlace {
   double turn_rad = 0;  ///< of the directional edge away from the depth point: 0 right, pi/2 up the side
 };
 
+/// Eigen leaves unset what {} makes.
+[[nodiscard]] inline std::array<Eigen::Vector3d, 3> three_zeros() {
+  return {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
+}
+
 /// One wedge as an idealised tetrahedron (seed 000, 3.4; contract "Wedges" in design.md). Millimetres,
 /// radians. Inner edges and faces counter-clockwise seen from outside the clay. Face k lies between inner
 /// edges k and k+1; face_angles_rad[k] is the angle between these two edges at the depth point;
@@ -54,17 +54,16 @@ struct WedgePlace {
 struct Wedge {
   int id = 0;
   Eigen::Vector3d depth_point_mm{0, 0, 0};
-  std::array<Eigen::Vector3d, 3> exit_points_mm =
-      zero_vectors();  ///< by inner edge, by the chosen definition
-  std::array<Eigen::Vector3d, 3> exit_points_surface_mm = zero_vectors();  ///< ExitDefinition::kSurface
-  std::array<Eigen::Vector3d, 3> exit_points_extent_mm = zero_vectors();   ///< ExitDefinition::kExtent
+  std::array<Eigen::Vector3d, 3> exit_points_mm = three_zeros();  ///< by inner edge, by the chosen definition
+  std::array<Eigen::Vector3d, 3> exit_points_surface_mm = three_zeros();  ///< ExitDefinition::kSurface
+  std::array<Eigen::Vector3d, 3> exit_points_extent_mm = three_zeros();   ///< ExitDefinition::kExtent
   int directional_edge = 0;
   DirectionalBy directional_by = DirectionalBy::kBoth;
   double directional_margin = 0;  ///< by how much it leads the next, as a share: of length or of slope
-  std::array<Eigen::Vector3d, 3> outer_vertices_mm = zero_vectors();
-  std::array<Eigen::Vector3d, 3> face_normals = zero_vectors();  ///< out of the clay
-  Eigen::Vector3d surface_normal{0, 0, 0};  ///< of the free surface above the depth point
-  double depth_mm = 0;                      ///< of the depth point below the free surface
+  std::array<Eigen::Vector3d, 3> outer_vertices_mm = three_zeros();
+  std::array<Eigen::Vector3d, 3> face_normals = three_zeros();  ///< out of the clay
+  Eigen::Vector3d surface_normal{0, 0, 0};                      ///< of the free surface above the depth point
+  double depth_mm = 0;                                          ///< of the depth point below the free surface
   std::array<double, 3> face_angles_rad{};
   std::array<double, 3> opening_angles_rad{};
   std::array<double, 3> edge_lengths_mm{};  ///< depth point to exit point

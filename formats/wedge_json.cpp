@@ -11,7 +11,6 @@ namespace dubsar {
 namespace {
 
 using Three = std::array<double, 3>;
-using ThreePoints = std::array<Eigen::Vector3d, 3>;
 
 const std::vector<std::string> kDirectionalBy = {"longest and flattest", "longest", "flattest"};
 
@@ -32,7 +31,7 @@ OrderedJson degrees_json(const Three& angles_rad) {
   return json;
 }
 
-OrderedJson points_json(const ThreePoints& points) {
+OrderedJson points_json(const std::array<Eigen::Vector3d, 3>& points) {
   OrderedJson json = OrderedJson::array();
   for (const Eigen::Vector3d& point : points) {
     json.push_back(json_of(point));
@@ -60,8 +59,8 @@ Three lengths_from(const JsonNode& node, double mm) {
   return {mm * values[0], mm * values[1], mm * values[2]};
 }
 
-ThreePoints points_from(const JsonNode& node, double mm) {
-  ThreePoints points{};
+std::array<Eigen::Vector3d, 3> points_from(const JsonNode& node, double mm) {
+  std::array<Eigen::Vector3d, 3> points = three_zeros();
   const std::vector<JsonNode> nodes = three(node);
   for (std::size_t k = 0; k < nodes.size(); ++k) {
     points[k] = mm * nodes[k].vector3();

@@ -15,6 +15,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kFewestWedges = 5;
+/// The wedge that is searched by may be in the collection more than once.
+constexpr std::size_t kCopies = 16;
 
 bool same_place(const Wedge& a, const Wedge& b) {
   return a.depth_point_mm == b.depth_point_mm && a.exit_points_mm == b.exit_points_mm;
@@ -73,7 +75,7 @@ std::vector<SimilarWedge> similar_wedges(const Collection& collection, const Wed
   }
   const FeatureSearch search(values, FeatureDistance::kL2);
   std::vector<SimilarWedge> similar;
-  for (const FeatureMatch& match : search.nearest(comparable(wedge_features(wedge)), count + 1)) {
+  for (const FeatureMatch& match : search.nearest(comparable(wedge_features(wedge)), count + kCopies)) {
     const Collection::Tablet& tablet = collection.tablets[rows[match.index].tablet];
     const Wedge& other = tablet.file.wedges[rows[match.index].wedge];
     if (!same_place(other, wedge) && similar.size() < count) {

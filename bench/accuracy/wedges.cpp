@@ -86,6 +86,20 @@ void report(const char* name, const WedgeScore& s) {
       s.right > 0 ? 100.0 * s.directional_right / s.right : 0.0);
 }
 
+/// Of those with such a confidence, how many are wedges (remains of true ones are).
+void report_confidence(const WedgeScore& s) {
+  for (int bin = 5; bin < 10; ++bin) {
+    const auto in_bin = [bin](double c) { return std::clamp(static_cast<int>(10 * c), 5, 9) == bin; };
+    const auto right = std::ranges::count_if(s.right_confidence, in_bin);
+    const auto wrong = std::ranges::count_if(s.false_confidence, in_bin);
+    if (right + wrong > 0) {
+      std::printf("confidence 0.%d to %s: %ld of %ld are wedges, %.2f\n", bin, bin == 9 ? "1" : "the next",
+                  static_cast<long>(right), static_cast<long>(right + wrong),
+                  static_cast<double>(right) / static_cast<double>(right + wrong));
+    }
+  }
+}
+
 void explain(const sim::SimTablet& tablet, const WedgeSet& set, const std::vector<int>& pair) {
   std::vector<int> of_truth(tablet.wedges.size(), -1);
   for (std::size_t f = 0; f < pair.size(); ++f) {
@@ -270,5 +284,6 @@ int main(int argc, char** argv) {
     all.add(judge_seed(args.first + static_cast<std::uint64_t>(i), damage, args));
   }
   report("all", all);
+  report_confidence(all);
   return 0;
 }

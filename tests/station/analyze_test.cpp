@@ -65,6 +65,43 @@ TEST(AnalyzeCommand, FindsTheWedgesOfASimulatedTablet) {
   EXPECT_EQ(extent->wedges[0].depth_point_mm, file->wedges[0].depth_point_mm);
 }
 
+TEST(SearchCommand, FindsTheLikeAndLeavesOutTheSame) {
+  const test::TemporaryFolder folder;
+  const auto at = [&](const char* name) { return (folder.path() / name).string(); };
+  // Three "tablets" of one shape of wedge each; b and c are nearly alike.
+  const auto write = [&](const char* name, double depth, double length) {
+    WedgeFile file;
+    for (int i = 0; i < 12; ++i) {
+      Wedge w;
+      w.id = i;
+      w.depth_point_mm = {3.0 * i, 0, -depth};
+      w.exit_points_mm = {Eigen::Vector3d(3.0 * i + length, 0, 0), Eigen::Vector3d(3.0 * i - 0.3, 0.5, 0),
+                          Eigen::Vector3d(3.0 * i - 0.3, -0.5 - 0.01 * i, 0)};
+      file.wedges.push_back(w);
+    }
+    ASSERT_TRUE(write_wedges(at(name), file));
+  };
+  write("a.json", 1.2, 4.0);
+  write("b.json", 0.5, 2.0);
+  write("c.json", 0.52, 2.05);
+  std::ofstream(at("note.json")) << "{}";
+  const Outcome tablets = run_command({"--json", "search", folder.path().string(), "--like", at("b.json")});
+  ASSERT_EQ(tablets.status, 0) << tablets.err;
+  ASSERT_EQ(tablets.json()["tablets"].size(), 2U) << tablets.out;
+  EXPECT_EQ(tablets.json()["tablets"][0]["tablet"], "c.json");
+  EXPECT_THAT(tablets.err, HasSubstr("note.json"));
+  const Outcome wedges = run_command(
+      {"--json", "search", folder.path().string(), "--like", at("b.json"), "--wedge", "5", "--count", "3"});
+  ASSERT_EQ(wedges.status, 0) << wedges.err;
+  ASSERT_EQ(wedges.json()["wedges"].size(), 3U);
+  EXPECT_EQ(wedges.json()["wedges"][0]["tablet"], "b.json");
+  EXPECT_NE(wedges.json()["wedges"][0]["id"], 5);
+  EXPECT_EQ(run_command({"search", folder.path().string(), "--like", at("b.json"), "--wedge", "99"}).status,
+            2);
+  EXPECT_EQ(run_command({"search", at("nowhere"), "--like", at("b.json")}).status, 2);
+  EXPECT_EQ(run_command({"search", folder.path().string(), "--like", at("note.json")}).status, 2);
+}
+
 TEST(AnalyzeCommand, SaysPlainlyThatThereAreNone) {
   const test::TemporaryFolder folder;
   const auto at = [&](const char* name) { return (folder.path() / name).string(); };
@@ -83,7 +120,10 @@ TEST(AnalyzeCommand, AsksForTheUnitAndRefusesWhatIsNoMesh) {
   const auto at = [&](const char* name) { return (folder.path() / name).string(); };
   std::ofstream(at("metres.obj")) << "v 0 0 0\nv .03 0 0\nv .03 .03 0\nv 0 .03 0\nv .015 .015 .009\n"
                                      "f 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\nf 1 3 2\nf 1 4 3\n";
-  EXPECT_THAT(run_command({"analyze", at("metres.obj"), "-o", at("w.json")}).err, HasSubstr("--unit m"));
+  const Outcome asked = run_command({"analyze", at("metres.obj"), "-o", at("w.json")});
+  EXPECT_EQ(asked.status, 2);
+  EXPECT_THAT(asked.err, HasSubstr("--unit m"));
+  EXPECT_EQ(run_command({"analyze", at("metres.obj"), "-o", at("w.json"), "--unit", "m"}).status, 0);
   EXPECT_EQ(run_command({"analyze", at("metres.obj"), "-o", at("w.json"), "--unit", "cubit"}).status, 2);
   EXPECT_EQ(run_command({"analyze", at("nowhere.ply"), "-o", at("w.json")}).status, 2);
   EXPECT_EQ(run_command({"analyze", at("metres.obj")}).status, 2);
