@@ -199,7 +199,7 @@ StitchSurface make_scan_surface(const PlacedScan& scan, const StitchSurfaceOptio
       }
     }
   }
-  const int most = std::clamp(options.feather_samples + 1, 2, kMostRim);
+  const int most = std::clamp(options.rise_samples + 1, 2, kMostRim);
   out.rim = rim_distance(out.usable, out.cells, grid.rows, grid.cols, kMostRim);
   out.noise_mm = scan.noise_mm ? *scan.noise_mm : estimate_noise_mm(grid, out.usable);
   const double systematic_mm = kSystematicOfSpacing * out.spacing_mm;

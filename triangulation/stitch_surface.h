@@ -18,7 +18,7 @@ struct StitchSurfaceOptions {
   GridTriangulationOptions grid;
   /// Samples from the rim of a scan over which its wish to be primary rises to full: a rim is seldom the best
   /// view.
-  int feather_samples = 6;
+  int rise_samples = 6;
   /// Radius of the mean over which incidence is compared between scans, samples: the primary scan changes
   /// along a line, not from sample to sample with the noise of the normals.
   int incidence_radius_samples = 5;
