@@ -37,9 +37,6 @@ class Paint {
       case RenderStyle::kClay:
         return clay_;
       case RenderStyle::kRedMap:
-        if (has_flags_ && (mesh_.flags[v] & kVertexSparse) != 0) {
-          return red_;
-        }
         return has_flags_ && (mesh_.flags[v] & kVertexInterpolated) != 0 ? amber_ : pale_;
       case RenderStyle::kReliability:
         return to_linear(lightness_ramp(mesh_.reliability[v]));
@@ -57,7 +54,6 @@ class Paint {
   bool has_flags_ = false;
   LinearRgb clay_ = to_linear(kClayTone);
   LinearRgb pale_ = to_linear(kPaleClay);
-  LinearRgb red_ = to_linear(kRedOfSparse);
   LinearRgb amber_ = to_linear(kAmberOfExcused);
 };
 

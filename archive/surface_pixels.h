@@ -11,7 +11,7 @@ namespace dubsar {
 /// What colour the surface has before it is lit.
 enum class RenderStyle {
   kClay,         ///< one clay tone
-  kRedMap,       ///< pale clay; sparse vertices red, interpolated ones amber
+  kRedMap,       ///< pale clay, interpolated vertices amber; what is red is painted as points
   kReliability,  ///< Mesh::reliability on a ramp of lightness, 0 dark to 1 pale
   kScanCount,    ///< Mesh::scans on the same ramp, 1 dark to 6 and more pale
   kColours,      ///< Mesh::colours as they are

@@ -9,7 +9,7 @@
 
 namespace dubsar {
 
-/// Bits of Mesh::flags.
+/// Bits of Mesh::flags. Sparse: of a sparse sample where no other scan sampled the surface well.
 enum VertexFlag : std::uint8_t { kVertexSparse = 1, kVertexInterpolated = 2, kVertexBoundary = 4 };
 
 /// A triangle mesh in the model frame, millimetres. Per-vertex arrays are either empty or as long as

@@ -57,9 +57,7 @@ void add_patch(const OwnedScan& scan, Draft& draft) {
     draft.reliability.push_back(scan.fused->reliability[i]);
     draft.sigma_mm.push_back(scan.fused->sigma_mm[i]);
     draft.scans.push_back(scan.fused->scans[i]);
-    const bool sparse =
-        s.scan.flags != nullptr && i < s.scan.flags->size() && ((*s.scan.flags)[i] & kSparse) != 0;
-    draft.flags.push_back(sparse ? kVertexSparse : 0);
+    draft.flags.push_back(scan.fused->sparse[i] != 0 ? kVertexSparse : 0);
   }
   for (int row = 0; row + 1 < g.rows; ++row) {
     for (int col = 0; col + 1 < g.cols; ++col) {

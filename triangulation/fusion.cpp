@@ -15,10 +15,11 @@ namespace {
 using Eigen::Vector3f;
 
 struct Projection {
-  float along_mm = 0;     ///< from p along its normal
-  std::uint8_t rim = 0;   ///< of the corner that is nearest to it
-  float weight = 0;       ///< interpolated; 0 where the line misses the other scan's triangles
-  float reliability = 0;  ///< interpolated
+  float along_mm = 0;         ///< from p along its normal
+  bool well_sampled = false;  ///< none of the corners is sparse
+  std::uint8_t rim = 0;       ///< of the corner that is nearest to it
+  float weight = 0;           ///< interpolated; 0 where the line misses the other scan's triangles
+  float reliability = 0;      ///< interpolated
 };
 
 /// Where the line through p along `normal` meets the triangles around a sample. Along a line, not to the
@@ -106,6 +107,7 @@ class LineProjector {
       return;
     }
     best_.along_mm = along;
+    best_.well_sampled = !s_->is_sparse(t[0]) && !s_->is_sparse(t[1]) && !s_->is_sparse(t[2]);
     best_.rim = std::min({s_->rim[t[0]], s_->rim[t[1]], s_->rim[t[2]]});
     // Variances of independent samples: Σ λ² / w.
     const float la = wa * inverse, lb = wb * inverse, lc = wc * inverse;
@@ -332,6 +334,7 @@ FusedSamples fuse(const StitchSurface& from, std::span<const StitchSurface* cons
   out.points = from.points;
   out.reliability = from.reliability;
   out.sigma_mm.assign(n, 0);
+  out.sparse.assign(n, 0);
   out.scans.assign(n, 0);
   std::vector<GridSurface> surfaces;
   surfaces.reserve(others.size());
@@ -353,6 +356,7 @@ FusedSamples fuse(const StitchSurface& from, std::span<const StitchSurface* cons
       float weight_sum = from.weight[i] * faded(from.rim[i], feather);
       float pose_sum = square(weight_sum * pose_sigma_mm(from));
       float doubt = 1.0F - from.reliability[i];
+      bool sparse = from.is_sparse(i);
       int scans = 1;
       for (std::size_t k = 0; k < others.size(); ++k) {
         const std::int32_t j = pairs[k]->match[i];
@@ -370,6 +374,7 @@ FusedSamples fuse(const StitchSurface& from, std::span<const StitchSurface* cons
         pose_sum += square(weight * pose_sigma_mm(*others[k]));
         weight_sum += weight;
         doubt *= 1.0F - q.reliability;
+        sparse = sparse && !q.well_sampled;
         ++scans;
       }
       const float shift_mm = shift_sum / weight_sum;
@@ -380,6 +385,7 @@ FusedSamples fuse(const StitchSurface& from, std::span<const StitchSurface* cons
       out.sigma_mm[i] = std::sqrt(excess / weight_sum + pose_sum / (weight_sum * weight_sum));
       out.reliability[i] =
           (1.0F - doubt) / (1.0F + square(out.sigma_mm[i] / static_cast<float>(from.spacing_mm)));
+      out.sparse[i] = sparse ? 1 : 0;
       out.scans[i] = static_cast<std::uint8_t>(std::min(scans, 255));
     }
   });

@@ -58,7 +58,8 @@ struct FusedSamples {
   /// Standard deviation along the normal, mm: of the noise that averaging leaves, or what the scans' own
   /// disagreement says when that is more, and of the poses.
   std::vector<float> sigma_mm;
-  std::vector<std::uint8_t> scans;  ///< supporting scans, itself included
+  std::vector<std::uint8_t> sparse;  ///< 1 for a sparse sample that projects onto no well-sampled triangle
+  std::vector<std::uint8_t> scans;   ///< supporting scans, itself included
 };
 
 /// Seed 001, section 4: the reliability-weighted average of a sample and its projections, along its normal,

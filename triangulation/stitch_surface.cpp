@@ -215,8 +215,7 @@ StitchSurface make_scan_surface(const PlacedScan& scan, const StitchSurfaceOptio
         const float cosine = std::clamp(out.normals[i].dot(to_camera.cast<float>()), 0.05F, 1.0F);
         const float confidence = grid.confidence.empty() ? 1.0F : std::clamp(grid.confidence[i], 0.01F, 1.0F);
         out.reliability[i] = cosine * cosine * confidence;
-        const bool sparse =
-            scan.flags != nullptr && i < scan.flags->size() && !is_unflagged((*scan.flags)[i]);
+        const bool sparse = out.is_sparse(i);
         const float doubt = sparse ? kSparseWeight : out.rim[i] <= 1 ? kRimWeight : 1.0F;
         out.weight[i] = confidence * inverse_variance * doubt;
         out.score[i] = sparse ? kSparseScore * cosine : cosine;

@@ -49,6 +49,9 @@ struct StitchSurface {
   RigidTransform scanner_from_model;
   std::unique_ptr<GridLookup> lookup;  ///< of the usable samples, scanner frame
 
+  [[nodiscard]] bool is_sparse(std::size_t i) const {
+    return scan.flags != nullptr && i < scan.flags->size() && !is_unflagged((*scan.flags)[i]);
+  }
   [[nodiscard]] GridSurface surface() const {
     return {scan.grid->rows, scan.grid->cols, spacing_mm, points, normals, view};
   }

@@ -160,6 +160,30 @@ TEST(Stitcher, PosesThatAreOffStillGiveOneSoundSurface) {
   EXPECT_GT(worst, 0.05);
 }
 
+TEST(Stitcher, ASparseSampleOnAWellSampledSheetIsNoSparseVertex) {
+  // Both scans hold the same sheet, the one near enough to be primary is sparse all over its right half.
+  test::ScanSet set;
+  const auto flat = [](double, double) { return 0.0; };
+  set.add(test::height_grid(31, 31, 0.1, flat), {});
+  set.add(test::height_grid(31, 31, 0.1, flat), {Eigen::Matrix3d::Identity(), {0.03, 0.03, 0.0}});
+  for (auto& flags : set.flags) {
+    std::fill(flags.begin(), flags.end(), std::uint8_t{0});
+  }
+  for (int row = 0; row < 31; ++row) {
+    for (int col = 15; col < 31; ++col) {
+      set.flags[0][set.placed[0].grid->index(row, col)] = kSparse;
+    }
+  }
+  const Mesh mesh = stitched(set);
+  ASSERT_GT(mesh.positions.size(), 500U);
+  for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+    // At the rim one scan is alone.
+    if (mesh.positions[i].cwiseAbs().maxCoeff() < 1.3F) {
+      EXPECT_EQ(mesh.flags[i] & kVertexSparse, 0);
+    }
+  }
+}
+
 TEST(Stitcher, KnowsHowFarItsVerticesAreOff) {
   test::ScanSet set;
   for (int side = 0; side < 6; ++side) {
