@@ -54,6 +54,17 @@ Beside beside(const NodeGrid& grid, int y, int z) {
   return b;
 }
 
+/// The four rows beside one.
+struct RowsBeside {
+  const float* below;
+  const float* above;
+  const float* before;
+  const float* behind;
+
+  RowsBeside(const Beside& at, const std::vector<float>& x)
+      : below(&x[at.rows[0]]), above(&x[at.rows[1]]), before(&x[at.rows[2]]), behind(&x[at.rows[3]]) {}
+};
+
 /// Relaxes the nodes of one colour. Where a neighbour is missing the node itself stands in for it: the
 /// update solves for the neighbours that there are.
 void relax(const NodeGrid& grid, const std::vector<float>& diagonal, const std::vector<float>& b,
@@ -62,10 +73,7 @@ void relax(const NodeGrid& grid, const std::vector<float>& diagonal, const std::
   for_rows(grid, [&](int y, int z) {
     const Beside at = beside(grid, y, z);
     const int nx = grid.nx;
-    const float* const below = &x[at.rows[0]];
-    const float* const above = &x[at.rows[1]];
-    const float* const before = &x[at.rows[2]];
-    const float* const behind = &x[at.rows[3]];
+    const auto [below, above, before, behind] = RowsBeside(at, x);
     const float* const d = &diagonal[at.here];
     const float* const r = &b[at.here];
     float* const row = &x[at.here];
@@ -94,10 +102,7 @@ void laplacian_or_residual(const NodeGrid& grid, const float* diagonal, const fl
   for_rows(grid, [&](int y, int z) {
     const Beside at = beside(grid, y, z);
     const int nx = grid.nx;
-    const float* const below = &x[at.rows[0]];
-    const float* const above = &x[at.rows[1]];
-    const float* const before = &x[at.rows[2]];
-    const float* const behind = &x[at.rows[3]];
+    const auto [below, above, before, behind] = RowsBeside(at, x);
     const float* const row = &x[at.here];
     const float* const right_side = kResidual ? b + at.here : nullptr;
     const float* const d = kResidual ? diagonal + at.here : nullptr;

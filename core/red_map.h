@@ -20,6 +20,15 @@ inline constexpr int kFaceCount = 6;
   constexpr const char* kNames[] = {"obverse", "reverse", "left", "right", "top", "bottom"};
   return kNames[static_cast<int>(face)];
 }
+/// By Face.
+[[nodiscard]] inline std::vector<std::string> face_names() {
+  std::vector<std::string> names;
+  names.reserve(kFaceCount);
+  for (int face = 0; face < kFaceCount; ++face) {
+    names.emplace_back(to_string(static_cast<Face>(face)));
+  }
+  return names;
+}
 
 enum class RegionState { kRed, kExcused };
 enum class Excuse { kNone, kUnreachable, kUnneeded };

@@ -15,15 +15,6 @@ namespace {
 
 constexpr std::array<Excuse, 2> kExcuses{Excuse::kUnreachable, Excuse::kUnneeded};
 
-std::vector<std::string> face_names() {
-  std::vector<std::string> names;
-  names.reserve(kFaceCount);
-  for (int face = 0; face < kFaceCount; ++face) {
-    names.emplace_back(to_string(static_cast<Face>(face)));
-  }
-  return names;
-}
-
 OrderedJson scan_json(const RedScan& scan) {
   OrderedJson json;
   json["id"] = scan.id;

@@ -14,15 +14,6 @@ using Three = std::array<double, 3>;
 
 const std::vector<std::string> kDirectionalBy = {"longest and flattest", "longest", "flattest"};
 
-std::vector<std::string> face_names() {
-  std::vector<std::string> names;
-  names.reserve(kFaceCount);
-  for (int face = 0; face < kFaceCount; ++face) {
-    names.emplace_back(to_string(static_cast<Face>(face)));
-  }
-  return names;
-}
-
 OrderedJson degrees_json(const Three& angles_rad) {
   OrderedJson json = OrderedJson::array();
   for (const double angle_rad : angles_rad) {

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "bench/support/closed_loop.h"
+#include "bench/support/statistics.h"
 #include "bench/support/true_scans.h"
 #include "bench/support/view_baselines.h"
 #include "core/random.h"
@@ -59,10 +60,6 @@ struct TabletResult {
   ExcuseScore excuses;
   std::vector<Gain> gains;
 };
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
 
 double red_area(const RedTargets& red) {
   double area = 0;
@@ -217,15 +214,6 @@ TabletResult run(const LoopOptions& options, const Arguments& args) {
   result.excuses = loop.truth().judge(before->targets.targets, loop.tablet_from_model(),
                                       before->targets.cell_mm, loop.sampled(), job);
   return result;
-}
-
-double quantile(std::vector<double> values, double q) {
-  if (values.empty()) {
-    return 0;
-  }
-  std::sort(values.begin(), values.end());
-  return values[std::min(values.size() - 1,
-                         static_cast<std::size_t>(q * static_cast<double>(values.size())))];
 }
 
 }  // namespace

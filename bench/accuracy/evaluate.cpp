@@ -18,6 +18,7 @@
 
 #include "bench/accuracy/gauge.h"
 #include "bench/support/conf_poses.h"
+#include "bench/support/statistics.h"
 #include "core/mesh_query.h"
 #include "core/parallel.h"
 #include "core/units.h"
@@ -28,6 +29,7 @@ namespace dubsar::accuracy {
 namespace {
 
 namespace fs = std::filesystem;
+using bench::quantile;
 struct NamedPose {
   int id = -1;
   RigidTransform model_from_scanner;
@@ -55,14 +57,6 @@ Poses read_json_poses(const fs::path& path, bool registered_only) {
         RigidTransform::from_row_major(scan.at("model_from_scanner").get<std::array<double, 16>>())};
   }
   return poses;
-}
-
-double quantile(std::vector<double> values, double q) {
-  if (values.empty()) {
-    return 0;
-  }
-  std::sort(values.begin(), values.end());
-  return values[static_cast<std::size_t>(q * static_cast<double>(values.size() - 1))];
 }
 
 std::vector<Eigen::Vector3d> sample_points(const ScanData& data) {

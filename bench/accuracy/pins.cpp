@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "bench/support/pinned_scans.h"
+#include "bench/support/statistics.h"
 #include "bench/support/true_scans.h"
 #include "core/random.h"
 #include "core/units.h"
@@ -27,6 +28,7 @@
 namespace {
 
 using namespace dubsar;
+using namespace dubsar::bench;
 
 struct Arguments {
   std::string kind = "text";
@@ -55,15 +57,6 @@ struct Sums {
   std::vector<double> normalised;  ///< squared error in parts of the tip's covariance, per degree of freedom
   double seconds = 0, samples = 0;
 };
-
-double quantile(std::vector<double> values, double q) {
-  if (values.empty()) {
-    return 0;
-  }
-  const auto k = static_cast<std::ptrdiff_t>(q * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), values.begin() + k, values.end());
-  return values[static_cast<std::size_t>(k)];
-}
 
 double rms(const std::vector<double>& values) {
   double sum = 0;

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "bench/accuracy/gauge.h"
+#include "bench/support/statistics.h"
 #include "bench/support/true_scans.h"
 #include "registration/registrar.h"
 #include "registration/verify_pose.h"
@@ -22,6 +23,7 @@
 namespace {
 
 using namespace dubsar;
+using namespace dubsar::bench;
 
 struct Arguments {
   std::string kind = "text";
@@ -45,25 +47,12 @@ struct Sums {
   std::vector<double> final_s;
 };
 
-double quantile(std::vector<double> values, double q) {
-  if (values.empty()) {
-    return 0;
-  }
-  const auto k = static_cast<std::ptrdiff_t>(q * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), values.begin() + k, values.end());
-  return values[static_cast<std::size_t>(k)];
-}
-
 double mean(const std::vector<double>& values) {
   double sum = 0;
   for (const double v : values) {
     sum += v;
   }
   return values.empty() ? 0.0 : sum / static_cast<double>(values.size());
-}
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
 /// All that speaks for and against a fit, as names and numbers in turn.

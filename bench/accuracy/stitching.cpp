@@ -22,6 +22,7 @@
 #include <vector>
 
 #include "bench/support/conf_poses.h"
+#include "bench/support/statistics.h"
 #include "bench/support/true_scans.h"
 #include "core/mesh_query.h"
 #include "core/parallel.h"
@@ -58,22 +59,9 @@ struct Arguments {
   std::exit(2);
 }
 
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
 /// Of all threads of this program: what counts where others use the machine too.
 double cpu_seconds() {
   return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
-}
-
-double quantile(std::vector<double>& values, double q) {
-  if (values.empty()) {
-    return 0;
-  }
-  const auto at = static_cast<std::size_t>(q * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(at), values.end());
-  return values[at];
 }
 
 double rms(const std::vector<double>& values) {

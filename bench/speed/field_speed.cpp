@@ -18,11 +18,13 @@
 
 #include "analysis/integral_invariants.h"
 #include "analysis/surface_fields.h"
+#include "bench/support/statistics.h"
 #include "sim/tablet.h"
 
 namespace {
 
 using namespace dubsar;
+using namespace dubsar::bench;
 
 struct Case {
   const char* like;
@@ -43,10 +45,6 @@ const Case kCases[] = {{"Bo 2743, 3 193 251 faces",
                         {110, 80, 30},
                         0.05749,
                         {{"curvature", 4.9}, {"openness", 8.8}, {"poisson", 41.9}, {"height", 121.5}}}};
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
 
 double peak_gib() {
   rusage usage{};
