@@ -12,8 +12,7 @@
 #include "analysis/field_colours.h"
 #include "analysis/integral_invariants.h"
 #include "analysis/surface_fields.h"
-#include "core/mesh_query.h"
-#include "core/parallel.h"
+#include "bench/support/true_surface.h"
 #include "core/units.h"
 #include "formats/feature_mat.h"
 #include "formats/mesh_io.h"
@@ -91,19 +90,6 @@ void print_depths(const std::vector<Wedge>& wedges, const SurfaceFields& fields)
   print_quantiles("depth found - true, at depth points", off);
 }
 
-/// The kinds of the nearest vertices of the true surface: for a mesh scanned from it.
-sim::SimTablet kinds_for(const Mesh& mesh, const sim::SimTablet& truth) {
-  constexpr float kNearMm = 1.0F;
-  sim::SimTablet result;
-  result.kinds.resize(mesh.positions.size());
-  const MeshQuery query(truth.mesh);
-  parallel_for_each_index(mesh.positions.size(), [&](std::size_t i) {
-    const auto near = query.closest(mesh.positions[i], kNearMm);
-    result.kinds[i] = near ? truth.kinds[truth.mesh.faces[near->face][0]] : sim::SurfaceKind::kHole;
-  });
-  return result;
-}
-
 int run(const Options& options) {
   JobContext job;
   Mesh mesh;
@@ -141,7 +127,7 @@ int run(const Options& options) {
     if (options.mesh.empty()) {
       mesh = tablet.mesh;
     } else {
-      tablet = kinds_for(mesh, tablet);
+      tablet = bench::with_truth(mesh, tablet);
     }
   }
   StageTimes times;

@@ -73,6 +73,39 @@ void WedgeScore::add(const WedgeScore& other) {
   append(&opening_deg, other.opening_deg);
   append(&false_confidence, other.false_confidence);
   append(&right_confidence, other.right_confidence);
+  fracture.add(other.fracture);
+}
+
+void FractureScore::add(const FractureScore& other) {
+  right_on += other.right_on;
+  false_on += other.false_on;
+  right_touching += other.right_touching;
+  false_touching += other.false_touching;
+}
+
+FractureScore score_fractures(const VertexGraph& graph, const std::vector<std::int32_t>& wedge_of,
+                              const std::vector<sim::SurfaceKind>& kinds, const std::vector<int>& pair) {
+  std::vector<int> all(pair.size());
+  std::vector<int> on(pair.size());
+  std::vector<int> touching(pair.size());
+  const auto broken = [&](std::size_t v) { return kinds[v] == sim::SurfaceKind::kFracture; };
+  for (std::size_t v = 0; v < std::min(wedge_of.size(), kinds.size()); ++v) {
+    if (wedge_of[v] >= 0) {
+      const auto wedge = static_cast<std::size_t>(wedge_of[v]);
+      ++all[wedge];
+      on[wedge] += broken(v) ? 1 : 0;
+      const auto ring = graph.ring(static_cast<std::uint32_t>(v));
+      touching[wedge] += broken(v) || std::ranges::any_of(ring, broken) ? 1 : 0;
+    }
+  }
+  FractureScore score;
+  for (std::size_t f = 0; f < pair.size(); ++f) {
+    const int touches = touching[f] > 0 ? 1 : 0;
+    const int lies = 2 * on[f] > all[f] ? 1 : 0;
+    (pair[f] >= 0 ? score.right_touching : score.false_touching) += touches;
+    (pair[f] >= 0 ? score.right_on : score.false_on) += lies;
+  }
+  return score;
 }
 
 WedgeScore score_wedges(const std::vector<Wedge>& found, const std::vector<Wedge>& truth,
