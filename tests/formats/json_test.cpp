@@ -276,6 +276,12 @@ TEST(WedgesJson, ReadsBackAllThatWasMeasured) {
   file.wedges = {wedge, Wedge{}};
   file.rejected = {{"too shallow", {7, 8, 9}}};
   file.timings_s = {{"reading", 0.5}};
+  WedgeProfile profile;
+  profile.side = Face::kReverse;
+  profile.count = 1;
+  profile.kinds[4] = 1;
+  profile.quantiles[3][8] = 2.5;
+  file.profiles = {profile};
   const std::string text = wedges_to_json(file);
   EXPECT_THAT(text, HasSubstr("\"exit_point_surface\""));
   EXPECT_THAT(text, HasSubstr("\"timings_s\""));
@@ -301,6 +307,18 @@ TEST(WedgesJson, ReadsBackAllThatWasMeasured) {
   EXPECT_FALSE(back->wedges[1].place.side);
   ASSERT_EQ(back->rejected.size(), 1U);
   EXPECT_EQ(back->rejected[0].reason, "too shallow");
+  ASSERT_EQ(back->profiles.size(), 1U);
+  EXPECT_EQ(back->profiles[0].side, Face::kReverse);
+  EXPECT_EQ(back->profiles[0].count, 1);
+  EXPECT_EQ(back->profiles[0].kinds, profile.kinds);
+  EXPECT_EQ(back->profiles[0].quantiles, profile.quantiles);
+  // One of a version with other features is passed over, a broken one is not.
+  std::string other = text;
+  other.replace(other.find("second_opening_deg"), 6, "fourth");
+  ASSERT_TRUE(parse_wedges(other, "w"));
+  EXPECT_TRUE(parse_wedges(other, "w")->profiles.empty());
+  EXPECT_THAT(line_of(parse_wedges(R"({"wedges":[],"profiles":[{"of":"left side"}]})", "w")),
+              HasSubstr("profiles[0].of"));
   // What only the contract asks for is enough.
   EXPECT_TRUE(parse_wedges(truth_to_json({}), "t"));
   EXPECT_THAT(line_of(parse_wedges("{}", "w")), HasSubstr("w: wedges is missing"));
