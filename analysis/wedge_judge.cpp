@@ -53,6 +53,8 @@ void look_at(WedgeCandidate* c) {
   value(e, Evidence::kContacts) =
       static_cast<double>(std::ranges::count_if(c->contacts, [](std::uint32_t n) { return n >= 4; })) / 3.0;
   value(e, Evidence::kLevelRim) = c->level_rim;
+  value(e, Evidence::kWidestFace) = sorted(w.face_angles_rad)[2] / kPi;
+  value(e, Evidence::kSecondSlope) = sorted(w.edge_slopes_rad)[1] / (0.5 * kPi);
   value(e, Evidence::kFlatness) = std::clamp(1.0 - depth / width_mm(*c), 0.0, 1.0);
   value(e, Evidence::kStretch) = std::clamp(std::log2(longest / depth) / 5.0, 0.0, 1.0);
 }
@@ -78,10 +80,11 @@ struct Odds {
   }
 };
 /// By itself, and with the tablet's other wedges beside it.
-constexpr Odds kAlone = {3.52,
-                         {2.55, 2.24, 1.30, -7.15, 1.27, 0, -9.98, 0, 0, -0.69, 2.59, 0, 0, 0, 0, 0, 0}};
+constexpr Odds kAlone = {
+    3.52, {2.55, 2.24, 1.30, -7.15, 1.27, 0, -9.98, 0, 0, -0.69, 2.59, 0, 0, 0, 0, 0, 0, 0, 0}};
 constexpr Odds kAmongOthers = {
-    1.16, {3.40, 1.56, 0.30, -2.58, 1.30, 0, -5.59, 0, 0, -0.81, 0.65, -1.04, -1.00, 0, -3.41, 0, 4.92}};
+    1.16,
+    {3.40, 1.56, 0.30, -2.58, 1.30, 0, -5.59, 0, 0, -0.81, 0.65, 0, 0, -1.04, -1.00, 0, -3.41, 0, 4.92}};
 
 /// What the tablet's good candidates say of this one. `good`: by falling log odds.
 void compare(const std::vector<const WedgeCandidate*>& good, double typical_depth, double typical_width,
@@ -92,6 +95,7 @@ void compare(const std::vector<const WedgeCandidate*>& good, double typical_dept
       std::min(1.0, std::abs(std::log2(std::max(w.depth_mm, 1e-3) / typical_depth)) / 2.0);
   value(e, Evidence::kWidthUnlike) = std::min(1.0, std::abs(std::log2(width_mm(*c) / typical_width)) / 2.0);
   const std::array<double, 3> openings = sorted(w.opening_angles_rad);
+  const std::array<double, 3> slopes = sorted(w.edge_slopes_rad);
   std::vector<double> unlike;
   double nearest = 1e9;
   for (const WedgeCandidate* other : good) {
@@ -99,9 +103,10 @@ void compare(const std::vector<const WedgeCandidate*>& good, double typical_dept
       continue;
     }
     const std::array<double, 3> theirs = sorted(other->wedge.opening_angles_rad);
+    const std::array<double, 3> their_slopes = sorted(other->wedge.edge_slopes_rad);
     double off = 0;
     for (std::size_t k = 0; k < 3; ++k) {
-      off += std::abs(openings[k] - theirs[k]);
+      off += 0.7 * std::abs(openings[k] - theirs[k]) + std::abs(slopes[k] - their_slopes[k]);
     }
     const double size = std::abs(std::log2(width_mm(*c) / width_mm(*other)));
     unlike.push_back(off / 3.0 / rad_from_deg(40) + 0.5 * size);

@@ -27,10 +27,10 @@ struct FileStamp {
 
 /// One JSON file of a collection, as far as a search needs it.
 struct IndexedTablet {
-  std::string name;       ///< path below the folder
-  FileStamp stamp;        ///< all zero: to be read again
-  std::string complaint;  ///< why it is no wedges.json; then all below is empty
-  std::vector<int> ids;   ///< [W] of its wedges
+  std::string name;                    ///< path below the folder
+  FileStamp stamp;                     ///< all zero: to be read again
+  std::string complaint;               ///< why it is no wedges.json; then all below is empty
+  std::vector<int> ids;                ///< [W] of its wedges
   std::vector<std::uint64_t> digests;  ///< [W] wedge_digest()
   std::vector<float> features;         ///< [W × columns], comparable
   std::vector<float> profile;          ///< [profile columns], comparable; empty with too few wedges

@@ -12,6 +12,7 @@
 #include "analysis/field_colours.h"
 #include "analysis/integral_invariants.h"
 #include "analysis/surface_fields.h"
+#include "bench/support/cut_heights.h"
 #include "bench/support/true_surface.h"
 #include "core/units.h"
 #include "formats/feature_mat.h"
@@ -37,6 +38,7 @@ struct Options {
   bool brief = false;
   bool invariants = false;
   std::string mat;
+  std::string cut;
 };
 
 void print_quantiles(const char* what, std::vector<float> values) {
@@ -157,6 +159,9 @@ int run(const Options& options) {
     print_kinds(tablet, *fields, options.brief);
   }
   print_depths(wedges, *fields);
+  if (!options.cut.empty()) {
+    bench::print_cut_heights(mesh, *fields, options.cut, options.fields, job);
+  }
   if (options.invariants || !options.mat.empty()) {
     const auto begun = std::chrono::steady_clock::now();
     const IntegralInvariants invariants =
@@ -205,6 +210,8 @@ int main(int argc, char** argv) {
   app.add_option("--script", options.fields.reconstruction.script_mm)->capture_default_str();
   app.add_flag("--invariants", options.invariants, "the integral invariants too");
   app.add_option("--mat", options.mat, "where to write them");
+  app.add_option("--cut", options.cut, "the heights of a part beside those of the whole")
+      ->check(CLI::IsMember({"half", "obverse"}));
   app.add_flag("--brief", options.brief);
   app.add_option("--pictures", options.pictures, "a folder: the fields as PLY and PNG");
   CLI11_PARSE(app, argc, argv);

@@ -103,12 +103,14 @@ void report_fractures(const FractureScore& s, int tablets) {
 }
 
 /// How a found wedge lies to the true one that most of its vertices belong to.
-void describe(const Wedge& w, const std::vector<Wedge>& truth, const std::map<int, int>& owners) {
+void describe(const Wedge& w, const std::vector<Wedge>& truth, const std::map<int, int>& owners,
+              const std::vector<int>& pair) {
   const auto most = std::ranges::max_element(owners, {}, [](const auto& o) { return o.second; });
   if (most == owners.end() || most->first < 0) {
     return;
   }
   const Wedge& t = truth[static_cast<std::size_t>(most->first)];
+  const bool found = std::ranges::find(pair, most->first) != pair.end();
   const auto tail = [](const Wedge& wedge) -> Eigen::Vector3d {
     return wedge.exit_points_mm[static_cast<std::size_t>(wedge.directional_edge)] - wedge.depth_point_mm;
   };
@@ -117,6 +119,7 @@ void describe(const Wedge& w, const std::vector<Wedge>& truth, const std::map<in
               t.depth_mm, tail(t).norm(), t.intact, to.dot(tail(t).normalized()),
               (to - to.dot(tail(t).normalized()) * tail(t).normalized()).norm(),
               tail(w).normalized().dot(tail(t).normalized()));
+  std::printf(", %s", found ? "found" : "missed");
 }
 
 void explain(const sim::SimTablet& tablet, const WedgeSet& set, const std::vector<int>& pair) {
@@ -156,7 +159,7 @@ void explain(const sim::SimTablet& tablet, const WedgeSet& set, const std::vecto
     for (const auto& [owner, count] : owners) {
       std::printf(" %d:%d", owner, count);
     }
-    describe(w, tablet.wedges, owners);
+    describe(w, tablet.wedges, owners, pair);
     std::printf("\n");
   }
   for (std::size_t t = 0; t < of_truth.size(); ++t) {
