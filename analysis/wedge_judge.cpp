@@ -81,10 +81,10 @@ struct Odds {
 };
 /// By itself, and with the tablet's other wedges beside it.
 constexpr Odds kAlone = {
-    3.52, {2.55, 2.24, 1.30, -7.15, 1.27, 0, -9.98, 0, 0, -0.69, 2.59, 0, 0, 0, 0, 0, 0, 0, 0}};
+    8.46, {3.11, 1.63, 1.52, -5.22, 1.55, 0, -7.28, 0, 0, 0, 1.09, -9.15, 4.49, 0, 0, 0, 0, 0, 0}};
 constexpr Odds kAmongOthers = {
-    1.16,
-    {3.40, 1.56, 0.30, -2.58, 1.30, 0, -5.59, 0, 0, -0.81, 0.65, 0, 0, -1.04, -1.00, 0, -3.41, 0, 4.92}};
+    6.63,
+    {4.04, 1.13, 0.92, -0.78, 0, 0, -1.68, 0, 0, 0, 0, -6.69, 1.79, -1.15, -1.01, 0, -5.64, -0.20, 1.56}};
 
 /// What the tablet's good candidates say of this one. `good`: by falling log odds.
 void compare(const std::vector<const WedgeCandidate*>& good, double typical_depth, double typical_width,
