@@ -122,6 +122,21 @@ void describe(const Wedge& w, const std::vector<Wedge>& truth, const std::map<in
   std::printf(", %s", found ? "found" : "missed");
 }
 
+/// Errors against the standard deviations that go with the measures.
+void report_sigmas(const WedgeScore& s) {
+  const auto line = [](const char* what, const std::vector<double>& sigmas) {
+    const auto within = std::ranges::count_if(sigmas, [](double v) { return v <= 2.0; });
+    std::printf(
+        "%s error in its own sigmas: median %.2f, %.1f %% within two\n", what, median(sigmas),
+        sigmas.empty() ? 0.0 : 100.0 * static_cast<double>(within) / static_cast<double>(sigmas.size()));
+  };
+  line("depth point", s.depth_point_sigmas);
+  line("depth", s.depth_sigmas);
+  line("inner edge", s.edge_sigmas);
+  line("opening angle", s.opening_sigmas);
+  line("edge length", s.length_sigmas);
+}
+
 void explain(const sim::SimTablet& tablet, const WedgeSet& set, const std::vector<int>& pair) {
   std::vector<int> of_truth(tablet.wedges.size(), -1);
   for (std::size_t f = 0; f < pair.size(); ++f) {
@@ -319,6 +334,7 @@ int main(int argc, char** argv) {
     all.add(judge_seed(args.first + static_cast<std::uint64_t>(i), damage, args));
   }
   report("all", all);
+  report_sigmas(all);
   report_fractures(all.fracture, args.tablets);
   print_confidence_diagram(all.right_confidence, all.false_confidence);
   return 0;

@@ -35,10 +35,19 @@ void compare(const Wedge& found, const Wedge& truth, WedgeScore* score) {
       best_angles = angles;
     }
   }
+  score->depth_point_sigmas.push_back((found.depth_point_mm - truth.depth_point_mm).norm() /
+                                      found.sigma.depth_point_mm);
+  score->depth_sigmas.push_back(std::abs(found.depth_mm - truth.depth_mm) / found.sigma.depth_mm);
   for (std::size_t k = 0; k < 3; ++k) {
+    const std::size_t f = (k + best_shift) % 3;
+    const double opening = std::abs(found.opening_angles_rad[f] - truth.opening_angles_rad[k]);
+    const double length = (found.exit_points_surface_mm[f] - found.depth_point_mm).norm();
+    const double true_length = (truth.exit_points_mm[k] - truth.depth_point_mm).norm();
     score->edge_deg.push_back(best_angles[k]);
-    score->opening_deg.push_back(
-        deg_from_rad(std::abs(found.opening_angles_rad[(k + best_shift) % 3] - truth.opening_angles_rad[k])));
+    score->opening_deg.push_back(deg_from_rad(opening));
+    score->edge_sigmas.push_back(rad_from_deg(best_angles[k]) / found.sigma.edge_rad[f]);
+    score->opening_sigmas.push_back(opening / found.sigma.opening_rad[f]);
+    score->length_sigmas.push_back(std::abs(length - true_length) / found.sigma.length_mm[f]);
   }
   const auto directional = (static_cast<std::size_t>(found.directional_edge) + 3 - best_shift) % 3;
   score->directional_right += directional == static_cast<std::size_t>(truth.directional_edge) ? 1 : 0;
@@ -73,6 +82,11 @@ void WedgeScore::add(const WedgeScore& other) {
   append(&opening_deg, other.opening_deg);
   append(&false_confidence, other.false_confidence);
   append(&right_confidence, other.right_confidence);
+  append(&depth_point_sigmas, other.depth_point_sigmas);
+  append(&depth_sigmas, other.depth_sigmas);
+  append(&edge_sigmas, other.edge_sigmas);
+  append(&opening_sigmas, other.opening_sigmas);
+  append(&length_sigmas, other.length_sigmas);
   fracture.add(other.fracture);
 }
 

@@ -28,6 +28,8 @@ struct WedgeScore {
   std::vector<double> depth_point_um, depth_um, edge_deg, opening_deg;
   std::vector<double> false_confidence, right_confidence;
   FractureScore fracture;
+  /// Errors in the standard deviations that the wedge itself states.
+  std::vector<double> depth_point_sigmas, depth_sigmas, edge_sigmas, opening_sigmas, length_sigmas;
   [[nodiscard]] double precision() const;
   [[nodiscard]] double recall() const;
   [[nodiscard]] double f1() const;

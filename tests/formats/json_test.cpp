@@ -272,6 +272,8 @@ TEST(WedgesJson, ReadsBackAllThatWasMeasured) {
   wedge.volume_mm3 = 0.125;
   wedge.sigma.depth_point_mm = 0.01;
   wedge.sigma.opening_rad = {0.1, 0.2, 0.3};
+  wedge.sigma.face_slope_rad = {0.4, 0.5, 0.6};
+  wedge.sigma.volume_mm3 = 0.75;
   wedge.place = {Face::kReverse, 4, 17, -1.5};
   file.wedges = {wedge, Wedge{}};
   file.rejected = {{"too shallow", {7, 8, 9}}};
@@ -301,6 +303,8 @@ TEST(WedgesJson, ReadsBackAllThatWasMeasured) {
   EXPECT_EQ(w.edge_bows_mm, wedge.edge_bows_mm);
   EXPECT_EQ(w.volume_mm3, 0.125);
   EXPECT_NEAR(w.sigma.opening_rad[2], 0.3, 1e-14);
+  EXPECT_NEAR(w.sigma.face_slope_rad[1], 0.5, 1e-14);
+  EXPECT_EQ(w.sigma.volume_mm3, 0.75);
   EXPECT_EQ(w.place.side, Face::kReverse);
   EXPECT_EQ(w.place.line, 4);
   EXPECT_EQ(w.place.order, 17);
