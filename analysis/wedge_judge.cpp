@@ -35,28 +35,16 @@ std::array<double, 3> sorted(std::array<double, 3> values) {
 void look_at(WedgeCandidate* c) {
   const Wedge& w = c->wedge;
   EvidenceValues& e = c->evidence;
-  double seen = 0;
-  for (const double area : c->seen_mm2) {
-    seen += area;
-  }
-  const double longest = std::max({1e-6, (w.exit_points_surface_mm[0] - w.depth_point_mm).norm(),
-                                   (w.exit_points_surface_mm[1] - w.depth_point_mm).norm(),
-                                   (w.exit_points_surface_mm[2] - w.depth_point_mm).norm()});
   const double depth = std::max(w.depth_mm, 1e-3);
   value(e, Evidence::kLeastCoverage) = sorted(c->coverage)[0];
   value(e, Evidence::kCoverage) = w.intact;
   value(e, Evidence::kExplained) = std::min(1.0, c->explained);
   value(e, Evidence::kRoughness) = std::min(1.0, 5.0 * c->rms_mm / depth);
   value(e, Evidence::kVertices) = std::clamp(std::log2(std::max(1.0, w.vertex_count / 16.0)) / 5.0, 0.0, 1.0);
-  value(e, Evidence::kLeastFace) = seen > 0 ? 3.0 * sorted(c->seen_mm2)[0] / seen : 0.0;
   value(e, Evidence::kWidestOpening) = sorted(w.opening_angles_rad)[2] / kPi;
-  value(e, Evidence::kContacts) =
-      static_cast<double>(std::ranges::count_if(c->contacts, [](std::uint32_t n) { return n >= 4; })) / 3.0;
   value(e, Evidence::kLevelRim) = c->level_rim;
   value(e, Evidence::kWidestFace) = sorted(w.face_angles_rad)[2] / kPi;
   value(e, Evidence::kSecondSlope) = sorted(w.edge_slopes_rad)[1] / (0.5 * kPi);
-  value(e, Evidence::kFlatness) = std::clamp(1.0 - depth / width_mm(*c), 0.0, 1.0);
-  value(e, Evidence::kStretch) = std::clamp(std::log2(longest / depth) / 5.0, 0.0, 1.0);
 }
 
 double median(std::vector<double> values) {
@@ -80,11 +68,9 @@ struct Odds {
   }
 };
 /// By itself, and with the tablet's other wedges beside it.
-constexpr Odds kAlone = {
-    8.46, {3.11, 1.63, 1.52, -5.22, 1.55, 0, -7.28, 0, 0, 0, 1.09, -9.15, 4.49, 0, 0, 0, 0, 0, 0}};
+constexpr Odds kAlone = {8.46, {3.11, 1.63, 1.52, -5.22, 1.55, -7.28, 1.09, -9.15, 4.49, 0, 0, 0, 0, 0}};
 constexpr Odds kAmongOthers = {
-    6.63,
-    {4.04, 1.13, 0.92, -0.78, 0, 0, -1.68, 0, 0, 0, 0, -6.69, 1.79, -1.15, -1.01, 0, -5.64, -0.20, 1.56}};
+    6.20, {3.82, 1.13, 0.90, -0.82, 0, -1.77, 0, -6.09, 1.98, -1.27, -0.17, -6.35, -0.46, 1.87}};
 
 /// What the tablet's good candidates say of this one. `good`: by falling log odds.
 void compare(const std::vector<const WedgeCandidate*>& good, double typical_depth, double typical_width,
@@ -115,7 +101,6 @@ void compare(const std::vector<const WedgeCandidate*>& good, double typical_dept
   const std::size_t few = std::min<std::size_t>(5, unlike.size() - 1);
   std::ranges::nth_element(unlike, unlike.begin() + static_cast<std::ptrdiff_t>(few));
   value(e, Evidence::kLonely) = std::min(1.0, unlike[few]);
-  value(e, Evidence::kShapeUnlike) = std::min(1.0, median(unlike));
   value(e, Evidence::kFar) = std::clamp(nearest / typical_width / 6.0, 0.0, 1.0);
 }
 

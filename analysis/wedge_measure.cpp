@@ -121,7 +121,6 @@ WedgeCandidate measure_wedge(const WedgePatch& patch, const WedgeFaces& faces, c
     wedge.edge_lengths_mm[k] = (wedge.exit_points_mm[k] - depth_point).norm();
     wedge.edge_slopes_rad[k] = std::asin(std::clamp(edge.direction.z(), -1.0, 1.0));
     wedge.edge_bows_mm[k] = edge.bow_mm;
-    out.contacts[k] = edge.contacts;
     corner[k] =
         (patch.model_from_patch.transpose() * (wedge.exit_points_surface_mm[k] - patch.origin)).head<2>();
   }
@@ -166,7 +165,6 @@ WedgeCandidate measure_wedge(const WedgePatch& patch, const WedgeFaces& faces, c
       out.faces.push_back(faces.face[i]);
     }
   }
-  out.seen_mm2 = seen;
   out.level_rim = rim > 0 ? level / rim : 0.0;
   const double count = std::max<double>(1.0, static_cast<double>(out.vertices.size()));
   for (std::size_t k = 0; k < 3; ++k) {
