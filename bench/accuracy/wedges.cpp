@@ -96,10 +96,10 @@ void report_fractures(const FractureScore& s, int tablets) {
   };
   std::printf(
       "fractures: of %d found that lie on or touch one %.3f are wedges, of %d that lie on one %.3f; %.2f "
-      "false "
-      "ones a tablet touch one\n",
+      "false ones a tablet touch one; depths of the right ones %.0f um off (median)\n",
       s.right_touching + s.false_touching, share(s.right_touching, s.false_touching), s.right_on + s.false_on,
-      share(s.right_on, s.false_on), tablets > 0 ? static_cast<double>(s.false_touching) / tablets : 0.0);
+      share(s.right_on, s.false_on), tablets > 0 ? static_cast<double>(s.false_touching) / tablets : 0.0,
+      median(s.depth_um));
 }
 
 /// How a found wedge lies to the true one that most of its vertices belong to.
@@ -225,7 +225,7 @@ WedgeScore judge(const std::string& name, sim::SimTablet tablet, const Arguments
   }
   std::vector<int> pair;
   WedgeScore score = score_wedges(set->wedges, tablet.wedges, {}, &pair);
-  score.fracture = score_fractures(graph, set->wedge_of, tablet.kinds, pair);
+  score.fracture = score_fractures(graph, set->wedge_of, tablet.kinds, pair, set->wedges, tablet.wedges, {});
   report(name.c_str(), score);
   for (std::size_t f = 0; f < pair.size() && args.evidence; ++f) {
     std::printf("evidence %d %.4f", pair[f] >= 0 ? 1 : 0, set->wedges[f].confidence);

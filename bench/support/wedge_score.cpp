@@ -95,10 +95,13 @@ void FractureScore::add(const FractureScore& other) {
   false_on += other.false_on;
   right_touching += other.right_touching;
   false_touching += other.false_touching;
+  append(&depth_um, other.depth_um);
 }
 
 FractureScore score_fractures(const VertexGraph& graph, const std::vector<std::int32_t>& wedge_of,
-                              const std::vector<sim::SurfaceKind>& kinds, const std::vector<int>& pair) {
+                              const std::vector<sim::SurfaceKind>& kinds, const std::vector<int>& pair,
+                              const std::vector<Wedge>& found, const std::vector<Wedge>& truth,
+                              const ScoreOptions& options) {
   std::vector<int> all(pair.size());
   std::vector<int> on(pair.size());
   std::vector<int> touching(pair.size());
@@ -118,6 +121,12 @@ FractureScore score_fractures(const VertexGraph& graph, const std::vector<std::i
     const int lies = 2 * on[f] > all[f] ? 1 : 0;
     (pair[f] >= 0 ? score.right_touching : score.false_touching) += touches;
     (pair[f] >= 0 ? score.right_on : score.false_on) += lies;
+    if (touches > 0 && pair[f] >= 0) {
+      const Wedge& true_one = truth[static_cast<std::size_t>(pair[f])];
+      if (true_one.intact >= options.least_intact) {
+        score.depth_um.push_back(1000.0 * std::abs(found[f].depth_mm - true_one.depth_mm));
+      }
+    }
   }
   return score;
 }

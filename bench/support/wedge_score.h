@@ -15,6 +15,7 @@ namespace dubsar::bench {
 struct FractureScore {
   int right_on = 0, false_on = 0;              ///< more than half of their vertices lie on a fracture
   int right_touching = 0, false_touching = 0;  ///< some of their vertices do, or border one
+  std::vector<double> depth_um;  ///< errors of the depths of those that touch one, so far intact as others
   void add(const FractureScore& other);
 };
 
@@ -45,12 +46,13 @@ struct ScoreOptions {
 [[nodiscard]] WedgeScore score_wedges(const std::vector<Wedge>& found, const std::vector<Wedge>& truth,
                                       const ScoreOptions& options, std::vector<int>* pair = nullptr);
 
-/// `wedge_of`: [V] the found wedge that a vertex belongs to, or -1; `kinds`: [V] what truly made the surface
-/// there; `pair`: as score_wedges() fills it.
+/// Of those that score_wedges() has paired. `wedge_of`: [V] the found wedge that a vertex belongs to, or -1;
+/// `kinds`: [V] what truly made the surface there; `pair`: as score_wedges() fills it.
 [[nodiscard]] FractureScore score_fractures(const VertexGraph& graph,
                                             const std::vector<std::int32_t>& wedge_of,
                                             const std::vector<sim::SurfaceKind>& kinds,
-                                            const std::vector<int>& pair);
+                                            const std::vector<int>& pair, const std::vector<Wedge>& found,
+                                            const std::vector<Wedge>& truth, const ScoreOptions& options);
 
 [[nodiscard]] double median(std::vector<double> values);
 
