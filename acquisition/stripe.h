@@ -51,9 +51,9 @@ enum class StripeState : std::uint8_t {
 
 /// One sample per column (or row, see StripeAxis).
 struct StripeProfile {
-  std::vector<float> at_px;         ///< where the stripe is; of no meaning unless good
-  std::vector<float> peak;          ///< over the background, share of the full range
-  std::vector<float> confidence;    ///< [0,1]; 0 unless good
+  std::vector<float> at_px;       ///< where the stripe is; of no meaning unless good
+  std::vector<float> peak;        ///< over the background, share of the full range
+  std::vector<float> confidence;  ///< [0,1]; 0 unless good
   std::vector<StripeState> state;
   void resize(std::size_t count);
   [[nodiscard]] std::size_t count_of(StripeState which) const;
@@ -80,10 +80,10 @@ class StripeExtractor {
   StripeOptions options_;
   RidgeDetector ridge_;
   int blocks_ = 0;
-  std::vector<std::uint8_t> block_peak_;  ///< [blocks × columns]
-  std::vector<std::uint8_t> best_;        ///< [columns] the highest block peak
+  std::vector<std::uint8_t> block_peak_;   ///< [blocks × columns]
+  std::vector<std::uint8_t> best_;         ///< [columns] the highest block peak
   std::vector<std::uint16_t> best_block_;  ///< [columns]
-  std::vector<std::uint8_t> second_;      ///< [columns] the highest that is not beside it
+  std::vector<std::uint8_t> second_;       ///< [columns] the highest that is not beside it
   GrayImage turned_on_, turned_off_;
 };
 

@@ -73,10 +73,8 @@ std::optional<double> gaussian_px(CrossSection signal, double start, double half
     return std::nullopt;
   }
   // Cramer's rule for y = a + b x + c x²; only b/c matters.
-  const double c =
-      t2 * (s0 * s2 - s1 * s1) - t1 * (s0 * s3 - s1 * s2) + t0 * (s1 * s3 - s2 * s2);
-  const double b =
-      t1 * (s0 * s4 - s2 * s2) - t2 * (s0 * s3 - s1 * s2) - t0 * (s1 * s4 - s2 * s3);
+  const double c = t2 * (s0 * s2 - s1 * s1) - t1 * (s0 * s3 - s1 * s2) + t0 * (s1 * s3 - s2 * s2);
+  const double b = t1 * (s0 * s4 - s2 * s2) - t2 * (s0 * s3 - s1 * s2) - t0 * (s1 * s4 - s2 * s3);
   const double d = s0 * (s2 * s4 - s3 * s3) - s1 * (s1 * s4 - s2 * s3) + s2 * (s1 * s3 - s2 * s2);
   if (!(d > 0) || !(c < 0)) {
     return std::nullopt;

@@ -10,8 +10,8 @@ namespace dubsar {
 /// Signal across the stripe, background taken off; sample i lies at i px.
 using CrossSection = std::span<const float>;
 
-/// Centre of mass within `half` px of `start`, moved along until it stays. Pixels that the window cuts count by
-/// the part that is inside. Nothing when there is no light.
+/// Centre of mass within `half` px of `start`, moved along until it stays. Pixels that the window cuts count
+/// by the part that is inside. Nothing when there is no light.
 [[nodiscard]] std::optional<double> centroid_px(CrossSection signal, double start, double half);
 
 /// Middle of a Gaussian: least squares of a parabola to the logarithm with the squared signal as weight
@@ -26,8 +26,9 @@ struct Patch {
 };
 
 /// Where the ridge through the patch crosses its middle column, px below the middle (C. Steger, An unbiased
-/// detector of curvilinear structures, IEEE PAMI 20(2), 1998): derivatives of the image smoothed by a Gaussian,
-/// top of its second-order expansion across the ridge. Nothing when there is no ridge within a pixel.
+/// detector of curvilinear structures, IEEE PAMI 20(2), 1998): derivatives of the image smoothed by a
+/// Gaussian, top of its second-order expansion across the ridge. Nothing when there is no ridge within a
+/// pixel.
 class RidgeDetector {
  public:
   static constexpr int kMostRadius = 12;

@@ -10,8 +10,8 @@ namespace dubsar {
 
 namespace {
 
-// Between nodes a ray is interpolated: with the strongest distortions of lenses used here the error stays below
-// 1e-4 px.
+// Between nodes a ray is interpolated: with the strongest distortions of lenses used here the error stays
+// below 1e-4 px.
 constexpr int kNode_px = 8;
 
 }  // namespace
@@ -25,9 +25,10 @@ Triangulator::Triangulator(const RigCalibration& calibration, StripeAxis axis)
   rays_.resize(static_cast<std::size_t>(samples_) * static_cast<std::size_t>(nodes_));
   for (int sample = 0; sample < samples_; ++sample) {
     for (int node = 0; node < nodes_; ++node) {
-      const Eigen::Vector2d pixel = per_column ? Eigen::Vector2d(sample, node * kNode_px)
-                                               : Eigen::Vector2d(node * kNode_px, sample);
-      // The last node lies beyond the image, where the lens may fold: without distortion it does no harm there.
+      const Eigen::Vector2d pixel =
+          per_column ? Eigen::Vector2d(sample, node * kNode_px) : Eigen::Vector2d(node * kNode_px, sample);
+      // The last node lies beyond the image, where the lens may fold: without distortion it does no harm
+      // there.
       rays_[static_cast<std::size_t>(sample) * static_cast<std::size_t>(nodes_) +
             static_cast<std::size_t>(node)] =
           camera.undistort(pixel).value_or(Eigen::Vector2d((pixel.x() - camera.cx_px) / camera.fx_px,

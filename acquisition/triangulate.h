@@ -17,9 +17,9 @@ struct TriangulatedProfile {
   std::vector<std::uint8_t> valid;
 };
 
-/// Turns stripes into points through a calibration: image point → ray → laser plane → where the stage was. The
-/// rays of the camera are tabulated when it is made; use() of it is then a handful of operations a sample, from
-/// any number of threads at once.
+/// Turns stripes into points through a calibration: image point → ray → laser plane → where the stage was.
+/// The rays of the camera are tabulated when it is made; use() of it is then a handful of operations a
+/// sample, from any number of threads at once.
 class Triangulator {
  public:
   Triangulator(const RigCalibration& calibration, StripeAxis axis);
@@ -27,9 +27,10 @@ class Triangulator {
   [[nodiscard]] const RigCalibration& calibration() const { return calibration_; }
   [[nodiscard]] int samples_per_profile() const { return samples_; }
   /// The point that the camera sees at `along_px` of sample i with the laser plane `plane`; camera frame.
-  [[nodiscard]] std::optional<Eigen::Vector3d> point_mm(int sample, double along_px, const Plane& plane) const;
-  /// `position` of the stage when the frame was taken: mm or radians, as StageMotion has it. Samples outside of
-  /// the measuring volume come out invalid: they are reflections or the support.
+  [[nodiscard]] std::optional<Eigen::Vector3d> point_mm(int sample, double along_px,
+                                                        const Plane& plane) const;
+  /// `position` of the stage when the frame was taken: mm or radians, as StageMotion has it. Samples outside
+  /// of the measuring volume come out invalid: they are reflections or the support.
   void triangulate(const StripeProfile& stripe, double position, TriangulatedProfile& out) const;
 
  private:
@@ -38,7 +39,7 @@ class Triangulator {
   RigCalibration calibration_;
   StripeAxis axis_;
   int samples_ = 0;
-  int nodes_ = 0;  ///< per sample
+  int nodes_ = 0;                      ///< per sample
   std::vector<Eigen::Vector2d> rays_;  ///< [samples × nodes] normalised coordinates every kNode_px along
   RigidTransform scanner_from_camera_;
 };

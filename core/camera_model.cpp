@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright The Dubsar developers
-// D. C. Brown, Close-range camera calibration, Photogrammetric Engineering 37(8), 1971; coefficients in OpenCV's
-// order and sense.
+// D. C. Brown, Close-range camera calibration, Photogrammetric Engineering 37(8), 1971; coefficients in
+// OpenCV's order and sense.
 #include "core/camera_model.h"
 
 #include <Eigen/LU>

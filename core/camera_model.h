@@ -12,8 +12,8 @@ namespace dubsar {
 /// A camera with central projection and the lens distortion of Brown and Conrady, as OpenCV writes it. Camera
 /// frame: origin in the centre of projection, x to the right of the image, y down, z along the view.
 struct CameraModel {
-  int width = 0;    ///< pixels
-  int height = 0;   ///< pixels
+  int width = 0;   ///< pixels
+  int height = 0;  ///< pixels
   double fx_px = 0;
   double fy_px = 0;
   double cx_px = 0;
@@ -24,15 +24,15 @@ struct CameraModel {
   [[nodiscard]] Eigen::Vector2d project(const Eigen::Vector3d& p_mm) const;
   /// The same for normalised coordinates (x/z, y/z).
   [[nodiscard]] Eigen::Vector2d distort(const Eigen::Vector2d& normalised) const;
-  /// Normalised coordinates (x/z, y/z) of the ray through an image point: the distortion is undone by Newton's
-  /// method. Nothing where the model folds over, which is outside of any image it was fitted to.
+  /// Normalised coordinates (x/z, y/z) of the ray through an image point: the distortion is undone by
+  /// Newton's method. Nothing where the model folds over, which is outside of any image it was fitted to.
   [[nodiscard]] std::optional<Eigen::Vector2d> undistort(const Eigen::Vector2d& pixel) const;
   [[nodiscard]] bool sees(const Eigen::Vector2d& pixel, double margin_px = 0) const {
     return pixel.x() >= -0.5 + margin_px && pixel.x() <= width - 0.5 - margin_px &&
            pixel.y() >= -0.5 + margin_px && pixel.y() <= height - 0.5 - margin_px;
   }
-  /// Errors (kBadInput): no size, no focal length, numbers that are not finite, or a distortion that folds over
-  /// inside the image.
+  /// Errors (kBadInput): no size, no focal length, numbers that are not finite, or a distortion that folds
+  /// over inside the image.
   [[nodiscard]] Status check(const std::string& where) const;
 };
 

@@ -74,8 +74,8 @@ ScannerView RigCalibration::view(double step) const {
   const RigidTransform scanner = scanner_from_camera();
   ScannerView out;
   out.camera_mm = scanner.translation_mm;
-  out.laser_mm = laser_source_mm ? scanner * *laser_source_mm
-                                 : Eigen::Vector3d{0, 0, scanner.translation_mm.norm()};
+  out.laser_mm =
+      laser_source_mm ? scanner * *laser_source_mm : Eigen::Vector3d{0, 0, scanner.translation_mm.norm()};
   out.direction = -out.camera_mm->normalized();
   if (motion.kind == MotionKind::kLinear) {
     out.motion_per_row_mm = scanner.rotation * (step * motion.direction);

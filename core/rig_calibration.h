@@ -40,8 +40,8 @@ enum class MotionKind {
 struct StageMotion {
   MotionKind kind = MotionKind::kLinear;
   /// Linear: where the head goes, as seen from the tablet, when the position grows by 1 mm (its length is the
-  /// scale of the stage's own millimetre). Others: the axis, a unit vector, right-handed turn of the mirror or
-  /// of the table.
+  /// scale of the stage's own millimetre). Others: the axis, a unit vector, right-handed turn of the mirror
+  /// or of the table.
   Eigen::Vector3d direction{0, 1, 0};
   Eigen::Vector3d axis_point_mm{0, 0, 0};  ///< on the axis; of no meaning for a linear stage
 
@@ -53,7 +53,7 @@ struct StageMotion {
 
 /// How well a calibration fits what it was made from, and how far it is to be trusted.
 struct CalibrationQuality {
-  int board_views = 0;        ///< used; left out ones are in `left_out`
+  int board_views = 0;  ///< used; left out ones are in `left_out`
   int stripe_views = 0;
   int stage_positions = 0;
   double corner_rms_px = 0;   ///< reprojection, per corner
@@ -62,8 +62,11 @@ struct CalibrationQuality {
   double stripe_rms_um = 0;   ///< the same, distance from the plane
   double stage_rms_um = 0;    ///< board corners from where the stage model puts them
   double focal_sigma_px = 0;  ///< standard deviation from the covariance of the joint refinement
-  double plane_sigma_um = 0;  ///< of the laser plane: the largest over the measuring volume
-  double axis_sigma_rad = 0;  ///< of the stage's direction or axis
+  /// Standard deviation of a point in the measuring volume against the others, the largest: from the
+  /// covariance of camera, laser plane and linear stage together, less the rigid motion of the whole, which
+  /// harms nothing.
+  double volume_sigma_um = 0;
+  double axis_sigma_rad = 0;          ///< of the stage's direction or axis
   std::vector<std::string> left_out;  ///< views that were not used, with the reason
 };
 
@@ -83,14 +86,15 @@ struct RigCalibration {
   std::string note;
   CalibrationQuality quality;
 
-  /// scanner_from_camera at stage position 0. The scanner frame lies in the laser plane: x along the profile, z
-  /// in the plane towards the scanner, y across the plane the way the motion goes; origin where the camera's
-  /// axis meets the laser plane.
+  /// scanner_from_camera at stage position 0. The scanner frame lies in the laser plane: x along the profile,
+  /// z in the plane towards the scanner, y across the plane the way the motion goes; origin where the
+  /// camera's axis meets the laser plane.
   [[nodiscard]] RigidTransform scanner_from_camera() const;
-  /// Laser and camera at position 0 and what a row of `step` moves them by, scanner frame. A laser that nobody
-  /// measured is taken as far away as the camera, straight above the origin.
+  /// Laser and camera at position 0 and what a row of `step` moves them by, scanner frame. A laser that
+  /// nobody measured is taken as far away as the camera, straight above the origin.
   [[nodiscard]] ScannerView view(double step) const;
-  /// Depth that moves the stripe by one pixel, and one pixel across the field, both in the middle of the volume.
+  /// Depth that moves the stripe by one pixel, and one pixel across the field, both in the middle of the
+  /// volume.
   [[nodiscard]] double depth_per_px_mm() const;
   [[nodiscard]] double field_per_px_mm() const;
   /// Errors (kBadInput): a camera, plane or axis that cannot be.

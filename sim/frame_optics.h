@@ -10,7 +10,7 @@ namespace dubsar::sim {
 /// The coherent image of a point through a round aperture, sampled on a square grid: amplitudes h with
 /// sum |h|² = 1, so that |h|² is the incoherent point spread.
 struct PointSpread {
-  int radius = 0;                           ///< samples; the grid is (2·radius + 1) squared
+  int radius = 0;                              ///< samples; the grid is (2·radius + 1) squared
   std::vector<std::complex<float>> amplitude;  ///< row major
   [[nodiscard]] int side() const { return 2 * radius + 1; }
   [[nodiscard]] std::complex<float> at(int dx, int dy) const {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright The Dubsar developers
-// Speckle: J. W. Goodman, Speckle Phenomena in Optics, 2007, chapters 2 and 4. Its effect on a stripe: Dorsch,
-// Haeusler and Herrmann, Laser triangulation: fundamental uncertainty in distance measurement, 1994.
+// Speckle: J. W. Goodman, Speckle Phenomena in Optics, 2007, chapters 2 and 4. Its effect on a stripe:
+// Dorsch, Haeusler and Herrmann, Laser triangulation: fundamental uncertainty in distance measurement, 1994.
 #include "sim/frame_renderer.h"
 
 #include <Eigen/Geometry>
@@ -18,10 +18,10 @@ namespace dubsar::sim {
 
 namespace {
 
-constexpr int kSub = 2;            // samples per pixel side where the laser shines
-constexpr int kFanPerColumn = 3;   // laser rays per image column
+constexpr int kSub = 2;              // samples per pixel side where the laser shines
+constexpr int kFanPerColumn = 3;     // laser rays per image column
 constexpr double kSheetReach = 3.5;  // standard deviations of the sheet that are traced
-constexpr double kAlbedo = 0.5;    // that the signals of the options are said of
+constexpr double kAlbedo = 0.5;      // that the signals of the options are said of
 
 struct Fan {
   Eigen::Vector3d source_mm;
@@ -38,8 +38,8 @@ Fan fan_of(const RigCalibration& truth, const Plane& plane) {
   Fan fan;
   const Eigen::Vector3d source = truth.laser_source_mm.value_or(Eigen::Vector3d::Zero());
   fan.source_mm = source - plane.signed_distance_mm(source) * plane.normal;
-  const double reach = plane.along(Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitZ())
-                           .value_or(truth.working_distance_mm);
+  const double reach =
+      plane.along(Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitZ()).value_or(truth.working_distance_mm);
   fan.middle = (Eigen::Vector3d(0, 0, reach) - fan.source_mm).normalized();
   fan.side = plane.normal.cross(fan.middle).normalized();
   // A quarter more than the camera's field where it is widest in the volume.
@@ -53,8 +53,8 @@ Fan fan_of(const RigCalibration& truth, const Plane& plane) {
 
 /// The samples around the stripe: all of them in one dense array, and which pixels are worth a look.
 struct FrameRenderer::Band {
-  int width = 0;   // pixels
-  int height = 0;  // pixels
+  int width = 0;                  // pixels
+  int height = 0;                 // pixels
   std::vector<std::uint8_t> lit;  // [pixels] 1 where laser light may be seen
   std::vector<float> energy;      // [kSub² per pixel] what the sensor would get without any blur
   [[nodiscard]] std::size_t sample(int su, int sv) const {
@@ -140,8 +140,8 @@ FrameRenderer::Band FrameRenderer::lit_band(const FrameTarget& target, const Pla
       for (int sv = static_cast<int>((spot.second.y() - 3 * sigma) * kSub);
            sv <= static_cast<int>((spot.second.y() + 3 * sigma) * kSub); ++sv) {
         const double d = (sv + 0.5) / kSub - 0.5 - spot.second.y();
-        band.energy[band.sample(su, sv)] += static_cast<float>(
-            spot.second_energy * kSub / kFanPerColumn * std::exp(-d * d / (2 * sigma * sigma)));
+        band.energy[band.sample(su, sv)] += static_cast<float>(spot.second_energy * kSub / kFanPerColumn *
+                                                               std::exp(-d * d / (2 * sigma * sigma)));
       }
     }
   }
@@ -198,8 +198,8 @@ void FrameRenderer::image(const Band& band, std::uint64_t frame, std::vector<flo
           for (int su = 0; su < width; ++su) {
             const std::size_t i = band.sample(su, static_cast<int>(sv));
             if (band.energy[i] > 0) {
-              field[i] = std::polar(std::sqrt(band.energy[i]),
-                                    static_cast<float>(2 * kPi * random.uniform()));
+              field[i] =
+                  std::polar(std::sqrt(band.energy[i]), static_cast<float>(2 * kPi * random.uniform()));
             }
           }
         },
@@ -268,9 +268,9 @@ GrayImage FrameRenderer::render(const FrameTarget& target, bool laser_on, double
         Random random(seed_for(options_.seed * 3 + 1 + (frame << 24U), row));
         for (std::size_t i = row * width; i < (row + 1) * width; ++i) {
           const double electrons = std::max(0.0, static_cast<double>(signal[i])) * well;
-          const double noisy = electrons + random.normal() * std::sqrt(electrons +
-                                                                       options_.read_noise_electrons *
-                                                                           options_.read_noise_electrons);
+          const double noisy =
+              electrons + random.normal() * std::sqrt(electrons + options_.read_noise_electrons *
+                                                                      options_.read_noise_electrons);
           const double grey = std::round(options_.black_level + 255.0 * std::min(noisy, well) / well);
           out.pixels[i] = static_cast<std::uint8_t>(std::clamp(grey, 0.0, 255.0));
         }
@@ -309,8 +309,8 @@ std::vector<double> FrameRenderer::true_rows(const FrameTarget& target, double p
       const double t = (u - a.x()) / (b.x() - a.x());
       auto& times = crossed[static_cast<std::size_t>(u)];
       times = static_cast<std::uint8_t>(std::min(2, times + 1));
-      rows[static_cast<std::size_t>(u)] = times == 1 ? a.y() + t * (b.y() - a.y())
-                                                     : std::numeric_limits<double>::quiet_NaN();
+      rows[static_cast<std::size_t>(u)] =
+          times == 1 ? a.y() + t * (b.y() - a.y()) : std::numeric_limits<double>::quiet_NaN();
     }
   }
   return rows;

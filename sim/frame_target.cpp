@@ -18,8 +18,8 @@ constexpr double kSurroundings = 0.02;
 
 std::optional<SceneHit> SceneTarget::hit(const Eigen::Vector3d& origin_mm,
                                          const Eigen::Vector3d& direction) const {
-  std::optional<SceneHit> hit = first_hit(scene_, tablet_from_camera_ * origin_mm,
-                                          tablet_from_camera_.rotation * direction, kFar_mm);
+  std::optional<SceneHit> hit =
+      first_hit(scene_, tablet_from_camera_ * origin_mm, tablet_from_camera_.rotation * direction, kFar_mm);
   if (hit) {
     hit->normal = tablet_from_camera_.rotation.transpose() * hit->normal;
   }

@@ -54,7 +54,8 @@ class BoardTarget : public FrameTarget {
         camera_from_board_(camera_from_board) {}
   [[nodiscard]] std::optional<SceneHit> hit(const Eigen::Vector3d& origin_mm,
                                             const Eigen::Vector3d& direction) const override;
-  [[nodiscard]] bool blocked(const Eigen::Vector3d& /*a_mm*/, const Eigen::Vector3d& /*b_mm*/) const override {
+  [[nodiscard]] bool blocked(const Eigen::Vector3d& /*a_mm*/,
+                             const Eigen::Vector3d& /*b_mm*/) const override {
     return false;
   }
   [[nodiscard]] int samples_per_px() const override { return 4; }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright The Dubsar developers
-// The stripe detectors against each other on simulated frames, and the whole way from frames to a grid against
-// the true surface: px and µm.
+// The stripe detectors against each other on simulated frames, and the whole way from frames to a grid
+// against the true surface: px and µm.
 //   dubsar-frames [--frames N] [--height PX] [--contrast C …] [--f-number N]
 
 #include <CLI/CLI.hpp>
@@ -85,7 +85,8 @@ void compare(const Setup& setup, const sim::FrameOptions& optics, int frames, bo
   const double depth_per_px = setup.rig.depth_per_px_mm();
   const Triangulator triangulator(setup.rig, StripeAxis::kPerColumn);
   const double u_aperture = 0.5 * setup.rig.camera.fx_px * optics.pixel_um * 1e-3 /
-                            (1 + setup.rig.camera.fx_px * optics.pixel_um * 1e-3 / 250) / optics.f_number / 250;
+                            (1 + setup.rig.camera.fx_px * optics.pixel_um * 1e-3 / 250) / optics.f_number /
+                            250;
   const double bound_um = optics.speckle_contrast * optics.wavelength_um / (2 * M_PI * std::sin(u_aperture)) /
                           std::sin(rad_from_deg(25));
   std::printf("contrast %.2f, f/%.1f, %s: bound %.1f um in depth\n", optics.speckle_contrast, optics.f_number,
@@ -118,8 +119,8 @@ void compare(const Setup& setup, const sim::FrameOptions& optics, int frames, bo
         px.add(static_cast<double>(stripe.at_px[u]) - truth[i][u]);
         if (profile.valid[u] != 0) {
           const Eigen::Vector3d p = tablet_from_scanner * Eigen::Vector3d(static_cast<double>(profile.x[u]),
-                                                                        static_cast<double>(profile.y[u]),
-                                                                        static_cast<double>(profile.z[u]));
+                                                                          static_cast<double>(profile.y[u]),
+                                                                          static_cast<double>(profile.z[u]));
           const auto hit = setup.query->first_hit((p + Eigen::Vector3d(0, 0, 1)).cast<float>(),
                                                   -Eigen::Vector3f::UnitZ(), 0, 3);
           mm.add(hit ? hit->distance_mm - 1.0 : 99.0);

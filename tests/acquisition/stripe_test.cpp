@@ -23,7 +23,8 @@ GrayImage drawn(int width, int height, double sigma, double peak, double ground,
         const double d = v - 0.5 + (k + 0.5) / 8 - middle(u);
         light += peak / 8 * std::exp(-d * d / (2 * sigma * sigma));
       }
-      image.pixels[image.index(u, v)] = static_cast<std::uint8_t>(std::clamp(std::round(light + ground), 0.0, 255.0));
+      image.pixels[image.index(u, v)] =
+          static_cast<std::uint8_t>(std::clamp(std::round(light + ground), 0.0, 255.0));
     }
   }
   return image;
@@ -117,7 +118,8 @@ TEST_P(EveryMethod, NoiseAloneGivesNoSample) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Stripe, EveryMethod,
-                         testing::Values(StripeMethod::kCentroid, StripeMethod::kGaussian, StripeMethod::kSteger));
+                         testing::Values(StripeMethod::kCentroid, StripeMethod::kGaussian,
+                                         StripeMethod::kSteger));
 
 TEST(Stripe, RunsAlongRowsAsWell) {
   const GrayImage across = drawn(120, 160, 1.2, 180, 4, slanted);

@@ -126,7 +126,8 @@ TEST(Triangulate, WhatLiesOutsideOfTheVolumeIsLeftOut) {
   StripeProfile stripe;
   stripe.resize(2048);
   std::fill(stripe.state.begin(), stripe.state.end(), StripeState::kGood);
-  std::fill(stripe.at_px.begin(), stripe.at_px.end(), 2.0F);  // the image's edge: farther than the volume goes
+  std::fill(stripe.at_px.begin(), stripe.at_px.end(),
+            2.0F);  // the image's edge: farther than the volume goes
   TriangulatedProfile profile;
   triangulator.triangulate(stripe, 0, profile);
   EXPECT_EQ(std::count(profile.valid.begin(), profile.valid.end(), 1), 0);

@@ -27,7 +27,8 @@ TEST(RigCalibration, ScannerFrameLiesInTheLaserPlane) {
   ASSERT_TRUE(one.check("rig").has_value());
   const RigidTransform camera_from_scanner = one.scanner_from_camera().inverse();
   EXPECT_TRUE(camera_from_scanner.is_rigid(1e-9));
-  for (const Eigen::Vector3d& p : {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(20, 0, 0), Eigen::Vector3d(0, 0, 20)}) {
+  for (const Eigen::Vector3d& p :
+       {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(20, 0, 0), Eigen::Vector3d(0, 0, 20)}) {
     EXPECT_NEAR(one.laser.signed_distance_mm(camera_from_scanner * p), 0, 1e-9);
   }
   const ScannerView view = one.view(0.1);
