@@ -135,8 +135,6 @@ Result<CalibrationReport> calibrate_rig(const std::vector<CalibrationView>& view
     return std::unexpected(fine.error());
   }
   CalibrationReport report;
-  report.has_laser = state.has_laser;
-  report.has_stage = state.has_stage;
   RigCalibration& rig = report.rig;
   rig.camera = state.camera;
   rig.depth_range_mm = options.depth_range_mm;
@@ -153,6 +151,8 @@ Result<CalibrationReport> calibrate_rig(const std::vector<CalibrationView>& view
         rig.laser.along(Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitZ()).value_or(distance);
   }
   rig.motion = state.motion;
+  rig.has_laser = state.has_laser;
+  rig.has_motion = state.has_stage;
   CalibrationQuality& quality = rig.quality;
   quality.board_views = static_cast<int>(intrinsics->used.size());
   std::set<std::size_t> with_stripe;

@@ -26,8 +26,6 @@ struct CalibrationOptions {
 /// What was found, and what the pictures still lack.
 struct CalibrationReport {
   RigCalibration rig;
-  bool has_laser = false;
-  bool has_stage = false;
   std::vector<std::string> missing;  ///< what to do next, most useful first; empty when nothing is missing
 };
 

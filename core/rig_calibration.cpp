@@ -101,6 +101,9 @@ Status RigCalibration::check(const std::string& where) const {
     return status;
   }
   const auto wrong = [&](const char* what) { return bad_input(where, what, "calibrate the rig again"); };
+  if (!has_laser) {
+    return {};
+  }
   if (!laser.normal.allFinite() || std::abs(laser.normal.norm() - 1) > 1e-6 ||
       !std::isfinite(laser.distance_mm)) {
     return wrong("the laser plane is none");
@@ -111,6 +114,9 @@ Status RigCalibration::check(const std::string& where) const {
   }
   if (std::abs(laser.distance_mm) < 1e-3 * *reach) {
     return wrong("the laser plane runs through the camera, so that no depth can be seen");
+  }
+  if (!has_motion) {
+    return {};
   }
   const double length = motion.direction.norm();
   const bool linear = motion.kind == MotionKind::kLinear;

@@ -77,6 +77,8 @@ struct RigCalibration {
   std::string camera_serial;  ///< empty when not known
   Plane laser;                ///< camera frame, at stage position 0
   StageMotion motion;
+  bool has_laser = true;   ///< else the camera alone is known
+  bool has_motion = true;  ///< else the stage is not known
   /// Where the laser stands, camera frame, if somebody measured it: for shadows only, 10 mm do no harm.
   std::optional<Eigen::Vector3d> laser_source_mm;
   double working_distance_mm = 0;  ///< from the camera to the middle of the measuring volume
@@ -97,7 +99,7 @@ struct RigCalibration {
   /// volume.
   [[nodiscard]] double depth_per_px_mm() const;
   [[nodiscard]] double field_per_px_mm() const;
-  /// Errors (kBadInput): a camera, plane or axis that cannot be.
+  /// Errors (kBadInput): a camera, plane or axis that cannot be; what is not known is not looked at.
   [[nodiscard]] Status check(const std::string& where) const;
 };
 

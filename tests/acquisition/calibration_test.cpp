@@ -115,7 +115,7 @@ CalibrationOptions options_for(std::optional<MotionKind> motion) {
 /// What is found lies by the truth as far as it says itself.
 void expect_found(const RigCalibration& truth, const CalibrationReport& report) {
   const RigCalibration& rig = report.rig;
-  EXPECT_TRUE(report.has_laser && report.has_stage);
+  EXPECT_TRUE(rig.has_laser && rig.has_motion);
   EXPECT_TRUE(rig.check("rig").has_value());
   EXPECT_LT(std::abs(rig.camera.fx_px - truth.camera.fx_px), 4 * rig.quality.focal_sigma_px);
   // A pixel is 69 um here, three times as much as that of the camera that has to reach 20 um.
