@@ -119,7 +119,8 @@ Status Camera::configure() {
     v4l2_streamparm rate{};
     rate.type = kType;
     constexpr std::uint32_t kParts = 1000;
-    rate.parm.capture.timeperframe = {kParts, static_cast<std::uint32_t>(std::lround(mode_.rate_hz * kParts))};
+    rate.parm.capture.timeperframe = {kParts,
+                                      static_cast<std::uint32_t>(std::lround(mode_.rate_hz * kParts))};
     if (node_->control(VIDIOC_S_PARM, &rate) == 0 && rate.parm.capture.timeperframe.numerator > 0) {
       mode_.rate_hz = static_cast<double>(rate.parm.capture.timeperframe.denominator) /
                       rate.parm.capture.timeperframe.numerator;

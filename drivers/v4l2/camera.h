@@ -60,9 +60,9 @@ class Camera {
   std::vector<Control> controls_;
   std::map<std::string, dubsar_value> set_here_;  ///< set again after the camera was gone
 
-  mutable std::mutex mutex_;                          ///< of what give_back() and counters() look at
-  std::uint32_t generation_ = 0;                      ///< of the stream
-  std::shared_ptr<Stream> stream_;                    ///< the one that runs
+  mutable std::mutex mutex_;                                ///< of what give_back() and counters() look at
+  std::uint32_t generation_ = 0;                            ///< of the stream
+  std::shared_ptr<Stream> stream_;                          ///< the one that runs
   std::map<std::uint32_t, std::shared_ptr<Stream>> ended_;  ///< of which frames are still lent
   Counts past_;
   std::uint32_t pool_ = 0;

@@ -275,8 +275,7 @@ void Stream::stop() {
 Stream::~Stream() {
   // Behind stop() the node may be closed already; mappings outlive their file.
   for (const Mapped& mapped : mapped_) {
-    stopped_ ? static_cast<void>(::munmap(mapped.at, mapped.length))
-             : node_->unmap(mapped.at, mapped.length);
+    stopped_ ? static_cast<void>(::munmap(mapped.at, mapped.length)) : node_->unmap(mapped.at, mapped.length);
   }
 }
 

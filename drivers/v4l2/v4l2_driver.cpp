@@ -20,9 +20,11 @@ struct dubsar_device {
 namespace {
 
 constexpr std::array<plugin::SettingRow, 4> kOptions{{
-    {DUBSAR_TYPE_TEXT, "format", "what the camera sends, by its four letters, e.g. GREY; default: the best for stripes"},
+    {DUBSAR_TYPE_TEXT, "format",
+     "what the camera sends, by its four letters, e.g. GREY; default: the best for stripes"},
     {DUBSAR_TYPE_TEXT, "size", "width x height, e.g. 1280x1024; default: the largest of that format", "px"},
-    {DUBSAR_TYPE_NUMBER, "rate", "frames per second, at least; default: the fastest", "Hz", nullptr, 0.01, 100000},
+    {DUBSAR_TYPE_NUMBER, "rate", "frames per second, at least; default: the fastest", "Hz", nullptr, 0.01,
+     100000},
     {DUBSAR_TYPE_INTEGER, "buffers", "frames in the pool", nullptr, nullptr, 2, 32},
 }};
 
@@ -51,7 +53,8 @@ Result<v4l2::CameraOptions> parse_options(std::span<const dubsar_option> options
       }
     } else if (key == "rate") {
       out.wish.rate_hz = plugin::number(value);
-      good = out.wish.rate_hz && *out.wish.rate_hz >= kOptions[2].minimum && *out.wish.rate_hz <= kOptions[2].maximum;
+      good = out.wish.rate_hz && *out.wish.rate_hz >= kOptions[2].minimum &&
+             *out.wish.rate_hz <= kOptions[2].maximum;
     } else if (key == "buffers") {
       const auto buffers = whole_number(value);
       good = buffers && *buffers >= 2 && *buffers <= 32;
@@ -124,7 +127,8 @@ std::int32_t capabilities(dubsar_device* device, dubsar_capabilities* out, dubsa
 
 /// Of the mode, which is chosen when the camera is opened.
 constexpr std::array<plugin::SettingRow, 4> kModeRows{{
-    {DUBSAR_TYPE_TEXT, "pixel_format", "what the camera sends", nullptr, nullptr, 1, 0, DUBSAR_SETTING_READABLE},
+    {DUBSAR_TYPE_TEXT, "pixel_format", "what the camera sends", nullptr, nullptr, 1, 0,
+     DUBSAR_SETTING_READABLE},
     {DUBSAR_TYPE_INTEGER, "width_px", "of a frame", "px", nullptr, 1, 0, DUBSAR_SETTING_READABLE},
     {DUBSAR_TYPE_INTEGER, "height_px", "of a frame", "px", nullptr, 1, 0, DUBSAR_SETTING_READABLE},
     {DUBSAR_TYPE_NUMBER, "frame_rate_hz", "frames per second", "Hz", nullptr, 1, 0, DUBSAR_SETTING_READABLE},

@@ -25,8 +25,7 @@ class V4l2 : public testing::Test {
   using Options = std::vector<std::pair<std::string, std::string>>;
 
   void plug_in(std::vector<std::string> modes) {
-    modes.insert(modes.begin(),
-                 {DUBSAR_BINARY_DIR "/bin/v4l2_peer", folder_.path().string(), "Virtual-1"});
+    modes.insert(modes.begin(), {DUBSAR_BINARY_DIR "/bin/v4l2_peer", folder_.path().string(), "Virtual-1"});
     peer_.emplace(modes);
     if (!peer_->refusal().empty()) {
       GTEST_SKIP() << "no emulated camera: " << peer_->refusal();
@@ -218,7 +217,8 @@ TEST_F(V4l2, ARefusalSaysWhatToDo) {
     return;
   }
   ASSERT_EQ(peer_->tell("deny"), "ok");
-  EXPECT_THAT(open().error().line(), HasSubstr("no right to use the camera; copy drivers/udev/60-dubsar.rules"));
+  EXPECT_THAT(open().error().line(),
+              HasSubstr("no right to use the camera; copy drivers/udev/60-dubsar.rules"));
   EXPECT_EQ(open().error().kind, ErrorKind::kDevice);
   ASSERT_EQ(peer_->tell("occupy"), "ok");
   EXPECT_THAT(open().error().line(), HasSubstr("in use by another program"));
@@ -229,8 +229,13 @@ TEST_F(V4l2, ARefusalSaysWhatToDo) {
   ASSERT_TRUE(peer_->tell("unplug") == "ok");
   EXPECT_THAT(open().error().line(), HasSubstr("the camera is not there"));
   ASSERT_TRUE(peer_->tell("plug") == "ok");
-  for (const auto& [key, value] : Options{{"format", "JUNK!"}, {"size", "10"}, {"size", "ax3"}, {"rate", "-1"},
-                                          {"buffers", "1"},    {"format", "Y16"}, {"size", "64x64"}}) {
+  for (const auto& [key, value] : Options{{"format", "JUNK!"},
+                                          {"size", "10"},
+                                          {"size", "ax3"},
+                                          {"rate", "-1"},
+                                          {"buffers", "1"},
+                                          {"format", "Y16"},
+                                          {"size", "64x64"}}) {
     const auto refused = open({{key, value}});
     ASSERT_FALSE(refused) << key << "=" << value;
     EXPECT_EQ(refused.error().kind, ErrorKind::kUsage) << refused.error().line();

@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdio>
 #include <string>
 #include <vector>
 
@@ -46,6 +47,24 @@ class PeerProcess {
     out_ = from[0];
     first_ = pid_ > 0 ? line() : "cannot: " + words[0] + " does not start";
   }
+  /// A peer that another program had before it became this one; see hand_over().
+  struct HandedOver {
+    const char* text;
+  };
+  explicit PeerProcess(HandedOver from) {
+    if (std::sscanf(from.text, "%d %d %d", &in_, &out_, &pid_) != 3) {
+      pid_ = -1;
+    }
+    ::fcntl(in_, F_SETFD, FD_CLOEXEC);
+    ::fcntl(out_, F_SETFD, FD_CLOEXEC);
+    first_ = pid_ > 0 ? "ready" : "cannot: no peer was handed over";
+  }
+  /// For the program that this one is about to become.
+  [[nodiscard]] std::string hand_over() const {
+    ::fcntl(in_, F_SETFD, 0);
+    ::fcntl(out_, F_SETFD, 0);
+    return std::to_string(in_) + " " + std::to_string(out_) + " " + std::to_string(pid_);
+  }
   ~PeerProcess() {
     ::close(in_);
     if (pid_ > 0) {
@@ -65,7 +84,9 @@ class PeerProcess {
   PeerProcess& operator=(const PeerProcess&) = delete;
 
   /// Empty when the peer is ready; else why it cannot be had here.
-  [[nodiscard]] std::string refusal() const { return first_ == "ready" ? std::string() : first_; }
+  [[nodiscard]] std::string refusal() const { return first_.starts_with("ready") ? std::string() : first_; }
+  /// What it said behind "ready ".
+  [[nodiscard]] std::string greeting() const { return first_.size() > 6 ? first_.substr(6) : std::string(); }
   [[nodiscard]] pid_t pid() const { return pid_; }
 
   /// The peer's answer; "none" when it gave none within ten seconds.

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright The Dubsar developers
 //
-// v4l2_peer FOLDER CARD MODE...: a camera as a file FOLDER/video0 that the kernel serves through FUSE, so that the
-// driver's open, ioctl, poll and mmap are real system calls. MODE is e.g. GREY:640x480@200. Commands come on
-// standard input, see VirtualCamera::command.
+// v4l2_peer FOLDER CARD MODE...: a camera as a file FOLDER/video0 that the kernel serves through FUSE, so
+// that the driver's open, ioctl, poll and mmap are real system calls. MODE is e.g. GREY:640x480@200. Commands
+// come on standard input, see VirtualCamera::command.
 #define FUSE_USE_VERSION 35
 #include <fuse3/fuse_lowlevel.h>
 #include <poll.h>

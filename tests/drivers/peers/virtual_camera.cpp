@@ -113,10 +113,10 @@ int VirtualCamera::settings(std::uint32_t request, void* argument) {
     int type, minimum, maximum, fallback;
     int* value;
   };
-  const Known all[] = {
-      {V4L2_CID_GAIN, "Gain", V4L2_CTRL_TYPE_INTEGER, 0, 100, 10, &gain_},
-      {V4L2_CID_EXPOSURE_AUTO, "Auto Exposure", V4L2_CTRL_TYPE_MENU, 0, 3, 3, &automatic_},
-      {V4L2_CID_EXPOSURE_ABSOLUTE, "Exposure Time, Absolute", V4L2_CTRL_TYPE_INTEGER, 1, 5000, 50, &exposure_}};
+  const Known all[] = {{V4L2_CID_GAIN, "Gain", V4L2_CTRL_TYPE_INTEGER, 0, 100, 10, &gain_},
+                       {V4L2_CID_EXPOSURE_AUTO, "Auto Exposure", V4L2_CTRL_TYPE_MENU, 0, 3, 3, &automatic_},
+                       {V4L2_CID_EXPOSURE_ABSOLUTE, "Exposure Time, Absolute", V4L2_CTRL_TYPE_INTEGER, 1,
+                        5000, 50, &exposure_}};
   const auto find = [&](std::uint32_t id) {
     const bool next = (id & V4L2_CTRL_FLAG_NEXT_CTRL) != 0;
     id &= V4L2_CTRL_ID_MASK;

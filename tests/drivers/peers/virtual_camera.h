@@ -14,8 +14,8 @@
 
 namespace dubsar::test {
 
-/// What a camera driver of the kernel does: answers V4L2 ioctls, fills queued buffers at its rate, and has bad
-/// days on request. Knows nothing of how the calls reach it.
+/// What a camera driver of the kernel does: answers V4L2 ioctls, fills queued buffers at its rate, and has
+/// bad days on request. Knows nothing of how the calls reach it.
 class VirtualCamera {
  public:
   struct Mode {
