@@ -3,6 +3,7 @@
 // The usb_stage: driver against controllers that are emulated at the kernel's USB interface (umockdev), with
 // firmware whose motors take their time. umockdev works by a preloaded library: the program starts the peer,
 // then becomes itself again with that library.
+#include <dlfcn.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -347,9 +348,10 @@ int main(int count, char** words) {
   const bool lists = count > 1 && std::string(words[1]) == "--gtest_list_tests";
   if (!lists && std::getenv("UMOCKDEV_DIR") == nullptr) {
     dubsar::test::PeerProcess one(std::vector<std::string>{DUBSAR_BINARY_DIR "/bin/usb_peer"});
-    if (one.refusal().empty()) {
+    constexpr const char* kLibrary = "libumockdev-preload.so.0";
+    if (one.refusal().empty() && ::dlopen(kLibrary, RTLD_LAZY) != nullptr) {
       // A sanitizer's library must come first of all.
-      const std::string preload = std::string(DUBSAR_SANITIZER_LIBRARY) + "libumockdev-preload.so.0";
+      const std::string preload = std::string(DUBSAR_SANITIZER_LIBRARY) + kLibrary;
       ::setenv("LD_PRELOAD", preload.c_str(), 1);
       ::setenv("UMOCKDEV_DIR", one.greeting().c_str(), 1);
       ::setenv("DUBSAR_TEST_PEER", one.hand_over().c_str(), 1);
