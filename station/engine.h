@@ -35,8 +35,8 @@ struct EngineOptions {
   /// ScanNow (event WaitsForOperator). A device without an end that cannot be placed then gives scan after
   /// scan, one for each ScanNow, until Finish.
   bool paced = false;
-  bool first_scan_waits = false;  ///< of a paced run: so does its first scan
-  bool show_model = false;        ///< send ModelChanged whenever the mesh has grown
+  bool first_scan_waits = false;                     ///< of a paced run: so does its first scan
+  bool show_model = false;                           ///< send ModelChanged whenever the mesh has grown
   std::vector<OperatorCommand> first_commands = {};  ///< as if posted before the first scan
 };
 

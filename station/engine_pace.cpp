@@ -22,6 +22,7 @@ bool Engine::Impl::wait_for_operator(NextStep& step, const JobContext& job) {
   }
   std::unique_lock lock(mutex);
   bool told = false;
+  bool changed = false;
   for (;;) {
     if (finish_asked || job.cancelled()) {
       lock.unlock();
@@ -36,8 +37,9 @@ bool Engine::Impl::wait_for_operator(NextStep& step, const JobContext& job) {
         return false;  // what they said has settled it
       }
       told = false;
+      changed = true;  // motors must not start because a scan was taken out
     }
-    if ((told && scan_asked) || !must_wait(step)) {
+    if ((told && scan_asked) || !(changed || must_wait(step))) {
       scan_asked = false;
       asked_once = true;
       return true;

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "acquisition/sign_off_log.h"
+#include "core/tablet_frame.h"
 #include "formats/checklist_json.h"
 #include "formats/mesh_io.h"
 #include "formats/red_map_json.h"
@@ -21,6 +22,7 @@ LiveSession::~LiveSession() {
   {
     const std::scoped_lock lock(mutex_);
     later_.clear();
+    scan_later_ = false;
   }
   if (worker_.joinable()) {
     worker_.join();
@@ -70,18 +72,20 @@ void LiveSession::launch(std::function<void()> job) {
     first();
     for (;;) {  // what was asked for meanwhile
       std::vector<OperatorCommand> commands;
+      bool waits = true;
       {
         const std::scoped_lock lock(mutex_);
         commands.assign(later_.begin(), later_.end());
         later_.clear();
-        if (commands.empty() || job_->cancelled()) {
+        waits = !std::exchange(scan_later_, false);
+        if ((commands.empty() && waits) || job_->cancelled()) {
           state_.phase = LivePhase::kStill;
           state_.stage.clear();
           busy_ = false;
           break;
         }
       }
-      run_engine(std::move(commands), true);
+      run_engine(std::move(commands), waits);
     }
     changed();
   });
@@ -103,6 +107,10 @@ void LiveSession::scan_now() {
     const std::scoped_lock lock(mutex_);
     if (engine_) {
       engine_->post(ScanNow{});
+      return;
+    }
+    if (busy_) {
+      scan_later_ = true;
       return;
     }
   }
@@ -238,8 +246,7 @@ void LiveSession::read_folder() {
     state_.phase = LivePhase::kReading;
   }
   changed();
-  const Result<SessionStore> store =
-      SessionStore::open(options_.session, SessionStore::Access::kReadOnly);
+  const Result<SessionStore> store = SessionStore::open(options_.session, SessionStore::Access::kReadOnly);
   const auto scans = store ? store->scans() : std::unexpected(store.error());
   const auto poses = store ? store->poses() : std::unexpected(store.error());
   if (!scans || !poses) {
@@ -283,9 +290,8 @@ void LiveSession::read_folder() {
   }
   changed();
   if (auto mesh = read_mesh(store->mesh_folder() / "model.ply"); mesh && !job_->cancelled()) {
-    const std::scoped_lock lock(mutex_);
-    state_.mesh = std::make_shared<const Mesh>(std::move(*mesh));
-    ++state_.model_number;
+    const RigidTransform tablet_from_model = tablet_frame(*mesh);
+    show_model(std::make_shared<const Mesh>(std::move(*mesh)), nullptr, tablet_from_model);
   }
   for (const StoredScan& stored : *scans) {
     if (job_->cancelled() || stored.damaged) {

@@ -61,10 +61,12 @@ class LiveSession {
   void hear(const Event& event);
   void say(const std::string& text);  ///< under the mutex
   void progress(std::string_view stage, double fraction);
-  LiveScan& scan_of(int id);                       ///< under the mutex
+  LiveScan& scan_of(int id);                        ///< under the mutex
   void follow(const std::vector<ScanPose>& poses);  ///< under the mutex
   void show_grid(int id, const RangeGrid& grid, const SampleFlags& flags);
-  void end(const Status& status);                   ///< of a job
+  void show_model(std::shared_ptr<const Mesh> mesh, std::shared_ptr<const ColouredPoints> red,
+                  const RigidTransform& tablet_from_model);
+  void end(const Status& status);  ///< of a job
   void changed() const;
 
   Options options_;
@@ -75,6 +77,7 @@ class LiveSession {
   std::shared_ptr<Engine> engine_;  ///< while it runs
   std::shared_ptr<JobContext> job_;
   std::deque<OperatorCommand> later_;  ///< asked for while a job ran that takes none
+  bool scan_later_ = false;            ///< likewise
   std::atomic<bool> busy_ = false;
   std::thread worker_;
 };

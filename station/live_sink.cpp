@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/tablet_sides.h"
 #include "station/live_session.h"
 
 namespace dubsar {
@@ -79,12 +80,46 @@ void LiveSession::show_grid(int id, const RangeGrid& grid, const SampleFlags& fl
   changed();
 }
 
+void LiveSession::show_model(std::shared_ptr<const Mesh> mesh, std::shared_ptr<const ColouredPoints> red,
+                             const RigidTransform& tablet_from_model) {
+  const auto face_of = [&](const Eigen::Vector3f& normal) {
+    const Eigen::Vector3d n = tablet_from_model.rotation * normal.cast<double>();
+    std::size_t best = 0;
+    for (std::size_t face = 1; face < kFaceCount; ++face) {
+      const auto along = [&](std::size_t f) { return side_axes(static_cast<Face>(f)).normal.dot(n); };
+      best = along(face) > along(best) ? face : best;
+    }
+    return best;
+  };
+  std::array<double, kFaceCount> seen{};
+  for (const auto& [a, b, c] : mesh->faces) {
+    const auto& p = mesh->positions;
+    const Eigen::Vector3f area = 0.5F * (p[b] - p[a]).cross(p[c] - p[a]);
+    seen[face_of(area)] += static_cast<double>(area.norm());
+  }
+  std::array<int, kFaceCount> red_points{};
+  for (std::size_t k = 0; red && k < red->normals.size(); ++k) {
+    if (k >= red->colours.size() || red->colours[k] == kRedOfSparse) {
+      ++red_points[face_of(red->normals[k])];
+    }
+  }
+  const std::scoped_lock lock(mutex_);
+  state_.mesh = std::move(mesh);
+  state_.red = std::move(red);
+  state_.tablet_from_model = tablet_from_model;
+  state_.seen_mm2 = seen;
+  state_.red_points = red_points;
+  ++state_.model_number;
+}
+
 void LiveSession::hear(const Event& event) {
   if (const auto* profile = std::get_if<ProfileArrived>(&event)) {
     const std::scoped_lock lock(mutex_);
     growing_.append(*profile->grid, *profile->flags, profile->row);
     state_.phase = LivePhase::kScanning;
     state_.profiles = profile->row + 1;
+  } else if (const auto* model = std::get_if<ModelChanged>(&event)) {
+    show_model(model->mesh, model->red, model->tablet_from_model);
   } else if (const auto* placed = std::get_if<ScanPlaced>(&event)) {
     if (placed->grid && placed->flags) {
       show_grid(placed->pose.id, *placed->grid, *placed->flags);
@@ -121,11 +156,6 @@ void LiveSession::hear(const Event& event) {
       state_.next = waits->next;
       state_.last_not_taken_up = waits->not_taken_up;
       state_.phase = LivePhase::kWaiting;
-    } else if (const auto* model = std::get_if<ModelChanged>(&event)) {
-      state_.mesh = model->mesh;
-      state_.red = model->red;
-      state_.tablet_from_model = model->tablet_from_model;
-      ++state_.model_number;
     } else if (const auto* notice = std::get_if<Notice>(&event)) {
       say(notice->text);
     }

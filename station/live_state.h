@@ -2,6 +2,7 @@
 // Copyright The Dubsar developers
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -62,9 +63,11 @@ struct LiveState {
   std::shared_ptr<const Mesh> mesh;
   std::shared_ptr<const ColouredPoints> red;  ///< on the mesh
   RigidTransform tablet_from_model;
-  std::uint64_t model_number = 0;   ///< grows whenever mesh and red change
-  std::optional<NextView> next;     ///< where the rig goes, or the operator is asked to turn the tablet
-  bool last_not_taken_up = false;   ///< kWaiting: a hint may settle the last scan
+  std::array<double, kFaceCount> seen_mm2{};  ///< of the mesh, by Face
+  std::array<int, kFaceCount> red_points{};   ///< red samples by Face; a hole's rim may redden several
+  std::uint64_t model_number = 0;             ///< grows whenever mesh and red change
+  std::optional<NextView> next;    ///< where the rig goes, or the operator is asked to turn the tablet
+  bool last_not_taken_up = false;  ///< kWaiting: a hint may settle the last scan
   std::optional<Checklist> checklist;
   bool signed_off = false;  ///< the verdict as it stands
   std::string signed_by;

@@ -11,8 +11,7 @@ std::vector<OfferedDriver> offered_drivers() {
   const DriverRegistry registry;
   std::vector<OfferedDriver> out;
   for (const Driver& driver : registry.drivers()) {
-    OfferedDriver offered{
-        driver.scheme(), driver.description(), driver.locator_help(), {}, {}, {}};
+    OfferedDriver offered{driver.scheme(), driver.description(), driver.locator_help(), {}, {}, {}};
     if (auto options = driver.options()) {
       offered.options = std::move(*options);
     } else {

@@ -17,7 +17,7 @@ struct OfferedDriver {
   std::string locator_help;          ///< what stands between the colon and '?'; empty when nothing does
   std::vector<SettingInfo> options;  ///< of its URI
   std::vector<std::pair<std::string, std::string>> found;  ///< URI and description of what is plugged in
-  std::string trouble;               ///< why nothing could be looked for; empty otherwise
+  std::string trouble;  ///< why nothing could be looked for; empty otherwise
 };
 
 /// All drivers with what they find now. Takes as long as the drivers look.

@@ -42,7 +42,7 @@ struct ScanNow {};
 /// Of a paced run: take no more scans, and bring what there is to its end.
 struct Finish {};
 
-using OperatorCommand =
-    std::variant<DropScan, RestoreScan, HintScan, WithdrawHint, LockScan, UnlockScan, DescribeTablet, ScanNow, Finish>;
+using OperatorCommand = std::variant<DropScan, RestoreScan, HintScan, WithdrawHint, LockScan, UnlockScan,
+                                     DescribeTablet, ScanNow, Finish>;
 
 }  // namespace dubsar

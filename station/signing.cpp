@@ -79,8 +79,7 @@ Result<Signing> sign_verdict(const std::filesystem::path& session, SignOff wante
   if (out.refused = stale(*set, results.red_map, session.string()); out.refused) {
     return out;
   }
-  if (out.refused = falls_short(*set, results, session.string());
-      out.refused && wanted.incomplete.empty()) {
+  if (out.refused = falls_short(*set, results, session.string()); out.refused && wanted.incomplete.empty()) {
     return out;
   }
   out.refused.reset();

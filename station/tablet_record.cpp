@@ -17,8 +17,8 @@ constexpr const char* kDocument = "tablet";
 
 Status check_cdli(std::string_view number) {
   const auto digit = [](char c) { return c >= '0' && c <= '9'; };
-  if (number.empty() || (number.size() == 7 && number.front() == 'P' &&
-                         std::ranges::all_of(number.substr(1), digit))) {
+  if (number.empty() ||
+      (number.size() == 7 && number.front() == 'P' && std::ranges::all_of(number.substr(1), digit))) {
     return {};
   }
   return fail(ErrorKind::kUsage, "this is no CDLI number", std::string(number),

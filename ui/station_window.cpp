@@ -27,6 +27,7 @@ namespace {
 
 constexpr double kIdleS = 0.5;     ///< between two looks when nothing happens
 constexpr double kMotionS = 0.06;  ///< between two frames of something that moves by itself
+constexpr double kScriptWaitS = 0.1;
 /// ImGui needs some frames to settle after an event.
 constexpr int kFramesAfterEvent = 4;
 
@@ -82,8 +83,8 @@ class StationWindow {
     ui_.still = script_.has_value();
     kept_ = ui_.preferences;
     session_ = std::make_unique<LiveSession>(
-        LiveSession::Options{options.device.empty() ? ui_.preferences.device : options.device, options.session,
-                             options.pins},
+        LiveSession::Options{options.device.empty() ? ui_.preferences.device : options.device,
+                             options.session, options.pins},
         wake_window);
     session_->read();
     operator_ = std::make_unique<OperatorScreen>(*session_);
@@ -94,7 +95,7 @@ class StationWindow {
     bool moving = false;
     while (glfwWindowShouldClose(window_.handle()) == GLFW_FALSE && !job.cancelled()) {
       if (script_) {
-        glfwPollEvents();
+        glfwWaitEventsTimeout(script_->waits() ? kScriptWaitS : 0.001);
       } else {
         const double began = now_s();
         const double patience = settle > 0 ? 0.001 : moving ? kMotionS : kIdleS;

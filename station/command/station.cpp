@@ -51,10 +51,14 @@ void add_station(CLI::App& app, Action& chosen) {
   verb->add_option("--device", arguments->window.device, "URI of the scanner; without it the one used last");
   verb->add_option("--pins", arguments->pins, "the operator's pins (pins.json)");
   verb->add_option("--mesh", arguments->mesh, "look at this mesh instead");
-  verb->add_option("--script", arguments->script, "play what a person would do (docs/operators/window_scripts.md)");
-  verb->add_option("--language", arguments->window.language, "of the window")->check(CLI::IsMember({"en", "de"}));
-  verb->add_option("--width", arguments->window.width, "of the window, pixels")->check(CLI::Range(640, 16384));
-  verb->add_option("--height", arguments->window.height, "of the window, pixels")->check(CLI::Range(480, 16384));
+  verb->add_option("--script", arguments->script,
+                   "play what a person would do (docs/operators/window_scripts.md)");
+  verb->add_option("--language", arguments->window.language, "of the window")
+      ->check(CLI::IsMember({"en", "de"}));
+  verb->add_option("--width", arguments->window.width, "of the window, pixels")
+      ->check(CLI::Range(640, 16384));
+  verb->add_option("--height", arguments->window.height, "of the window, pixels")
+      ->check(CLI::Range(480, 16384));
   verb->fallthrough();
   verb->callback([&chosen, arguments] {
     chosen = [arguments](CommandContext& c) { return open_station(*arguments, c); };

@@ -19,7 +19,7 @@ constexpr const char* kMend =
     "use a display with OpenGL 4.1 (on a machine without a graphics card: LIBGL_ALWAYS_SOFTWARE=1), or the "
     "command line, which does everything";
 
-std::string last_complaint;          // of GLFW; main thread only
+std::string last_complaint;        // of GLFW; main thread only
 std::atomic<bool> is_open{false};  // wake_window() comes from threads that may outlive the window
 
 void hear_complaint(int /*code*/, const char* what) {

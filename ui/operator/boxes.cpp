@@ -102,8 +102,8 @@ void OperatorScreen::draw_signing(UiContext& ui) {
     return text.find_first_not_of(" \t") != std::string::npos;
   };
   const bool enough = says(sign_name_) && (conclusive || says(sign_incomplete_));
-  const bool by_key = enough && ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Enter), false) &&
-                      !ImGui::IsWindowAppearing();
+  const bool by_key =
+      enough && ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Enter), false) && !ImGui::IsWindowAppearing();
   if (plain_button(ui, "sign-now", ui.text(Text::kSignNow), enough) || by_key) {
     SignOff wanted;
     wanted.name = sign_name_;

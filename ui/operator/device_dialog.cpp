@@ -92,7 +92,8 @@ std::optional<std::string> DeviceDialog::draw(UiContext& ui) {
   for (std::size_t k = 0; k < drivers_.size(); ++k) {
     const OfferedDriver& driver = drivers_[k];
     ImGui::PushID(static_cast<int>(k));
-    if (ImGui::Selectable(fmt::format("{}:", driver.scheme).c_str(), chosen_ == k, 0, {0, ImGui::GetFrameHeight()})) {
+    if (ImGui::Selectable(fmt::format("{}:", driver.scheme).c_str(), chosen_ == k, 0,
+                          {0, ImGui::GetFrameHeight()})) {
       chosen_ = k;
       values_.clear();
       locator_.clear();
@@ -100,7 +101,8 @@ std::optional<std::string> DeviceDialog::draw(UiContext& ui) {
     }
     ui.target(fmt::format("driver.{}", driver.scheme));
     for (const auto& [uri, description] : driver.found) {
-      if (ImGui::Selectable(fmt::format("   {}", description).c_str(), uri_ == uri, 0, {0, ImGui::GetFrameHeight()})) {
+      if (ImGui::Selectable(fmt::format("   {}", description).c_str(), uri_ == uri, 0,
+                            {0, ImGui::GetFrameHeight()})) {
         chosen_ = k;
         uri_ = uri;
       }

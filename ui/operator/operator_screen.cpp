@@ -81,7 +81,7 @@ void OperatorScreen::take_state(UiContext& ui) {
     stage_ = state_.stage;
     stage_began_s_ = ui.time_s;
   }
-  constexpr const char* kPhases[] = {"still", "reading", "opening", "moving", "scanning",
+  constexpr const char* kPhases[] = {"still",   "reading", "opening",   "moving", "scanning",
                                      "judging", "waiting", "finishing", "signing"};
   ui.facts.insert(kPhases[static_cast<int>(state_.phase)]);
   if (state_.phase == LivePhase::kStill && state_.error) {
@@ -112,12 +112,12 @@ void OperatorScreen::draw(UiContext& ui, ImVec2 size) {
   ImGui::SetNextWindowPos({0, 0});
   ImGui::SetNextWindowSize(size);
   ImGui::Begin("operator", nullptr,
-               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoBringToFrontOnFocus |
-                   ImGuiWindowFlags_NoSavedSettings);
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
+                   ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoSavedSettings);
   const float gap = ImGui::GetStyle().ItemSpacing.y;
   const ImVec2 room = ImGui::GetContentRegionAvail();
   const float top = ui.px(5.6F);
-  const float strip = ui.px(7.4F);
+  const float strip = ui.px(8.2F);
   const float middle = room.y - top - strip - 2 * gap;
   const float left = ui.px(13.5F);
   const float right = std::min(ui.px(19), 0.3F * room.x);
@@ -210,7 +210,8 @@ void OperatorScreen::draw_statement(UiContext& ui, const Statement& statement, I
   ImGui::EndChild();
   ImGui::SameLine();
   ImGui::SetCursorPos({size.x - buttons, ui.px(0.4F)});
-  if (big_button(ui, "scan", ui.text(statement.scan_label), "Space  F9", button, ButtonKind::kMain,
+  if (big_button(ui, "scan", ui.text(statement.scan_label), "Space  F9", button,
+                 statement.tone == Tone::kGood ? ButtonKind::kPlain : ButtonKind::kMain,
                  statement.may_scan)) {
     session_.scan_now();
   }
@@ -247,7 +248,8 @@ void OperatorScreen::draw_statement(UiContext& ui, const Statement& statement, I
 void OperatorScreen::draw_model(UiContext& ui, ImVec2 size) {
   ImGui::BeginChild("model", size, false, ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse);
   const ImVec2 origin = ImGui::GetCursorScreenPos();
-  ImGui::InvisibleButton("##model", size, ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonMiddle);
+  ImGui::InvisibleButton("##model", size,
+                         ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonMiddle);
   ui.target("model");
   ImDrawList* draw = ImGui::GetWindowDrawList();
   const ImVec2 end{origin.x + size.x, origin.y + size.y};

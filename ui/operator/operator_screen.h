@@ -20,8 +20,8 @@
 
 namespace dubsar::ui {
 
-/// The operator's side of the window: one statement, the model, the scan as it grows, the six faces, the scans.
-/// Main thread.
+/// The operator's side of the window: one statement, the model, the scan as it grows, the six faces, the
+/// scans. Main thread.
 class OperatorScreen {
  public:
   explicit OperatorScreen(LiveSession& session);

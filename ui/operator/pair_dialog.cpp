@@ -73,7 +73,8 @@ void PairDialog::draw_side(UiContext& ui, const char* name, const LiveScan& scan
   ImDrawList* draw = ImGui::GetWindowDrawList();
   const ImVec2 end{origin.x + drawn.x, origin.y + drawn.y};
   draw->AddImage(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(side.texture.id())), origin, end);
-  draw->AddRect(origin, end, packed(expects ? ui.colours.ghost : ui.colours.faint), 0, 0, expects ? 3.0F : 1.0F);
+  draw->AddRect(origin, end, packed(expects ? ui.colours.ghost : ui.colours.faint), 0, 0,
+                expects ? 3.0F : 1.0F);
   if (expects && ImGui::IsItemClicked()) {
     const ImVec2 mouse = ImGui::GetIO().MousePos;
     const float u = (mouse.x - origin.x) / drawn.x;

@@ -27,7 +27,8 @@ void arrow_head(ImDrawList* draw, ImVec2 tip, ImVec2 from, float size, ImU32 col
   const float dy = tip.y - from.y;
   const float length = std::max(1e-3F, std::sqrt(dx * dx + dy * dy));
   const ImVec2 along{dx / length * size, dy / length * size};
-  draw->AddTriangleFilled({tip.x + along.x, tip.y + along.y}, {tip.x - along.y * 0.7F, tip.y + along.x * 0.7F},
+  draw->AddTriangleFilled({tip.x + along.x, tip.y + along.y},
+                          {tip.x - along.y * 0.7F, tip.y + along.x * 0.7F},
                           {tip.x + along.y * 0.7F, tip.y - along.x * 0.7F}, colour);
 }
 
@@ -111,14 +112,16 @@ bool PosePanel::draw(UiContext& ui, const NextView& next, ImVec2 size) {
   }
   Look ghost = plain;
   ghost.clay = ui.colours.ghost.head<3>();
-  const Eigen::AngleAxisf whole(Eigen::Matrix3f(turn.stage_from_model_then * turn.stage_from_model_now.transpose()));
+  const Eigen::AngleAxisf whole(
+      Eigen::Matrix3f(turn.stage_from_model_then * turn.stage_from_model_now.transpose()));
   // The ghost turns from how it lies to how it is to lie, and rests there.
   const double phase = ui.still ? 1.0 : std::fmod(ui.time_s, kPeriodS) / kPeriodS;
   const float part = static_cast<float>(std::min(1.0, 1.6 * phase));
   const Eigen::AngleAxisf so_far(part * whole.angle(), whole.axis());
   put(then_, so_far.toRotationMatrix() * turn.stage_from_model_now, ghost, 0.55F);
   // Along the turn, around its axis, where the operator's hand goes.
-  Eigen::Vector3f start = Eigen::Vector3f(0, -0.45F, 0.9F) - whole.axis() * whole.axis().dot(Eigen::Vector3f(0, -0.45F, 0.9F));
+  Eigen::Vector3f start =
+      Eigen::Vector3f(0, -0.45F, 0.9F) - whole.axis() * whole.axis().dot(Eigen::Vector3f(0, -0.45F, 0.9F));
   if (start.norm() < 0.2F) {
     start = whole.axis().unitOrthogonal();
   }

@@ -48,7 +48,7 @@ Eigen::Vector4f state_colour(const UiContext& ui, Text state) {
 
 void OperatorScreen::draw_strip(UiContext& ui, ImVec2 size) {
   ImGui::BeginChild("strip", size, true, ImGuiWindowFlags_HorizontalScrollbar);
-  const float height = size.y - 2 * ImGui::GetStyle().WindowPadding.y - ui.px(0.2F);
+  const float height = size.y - 2 * ImGui::GetStyle().WindowPadding.y - ImGui::GetStyle().ScrollbarSize;
   const float width = 1.35F * height;
   const LiveScan* menu = nullptr;
   for (const LiveScan& scan : state_.scans) {
@@ -69,8 +69,8 @@ void OperatorScreen::draw_strip(UiContext& ui, ImVec2 size) {
     if (scan.picture) {
       Thumbnail& thumbnail = thumbnails_[scan.id];
       if (thumbnail.of != scan.picture || thumbnail.blue != ui.preferences.blue_for_red) {
-        thumbnail.texture.upload(scan.picture->cols, scan.picture->rows, 3, coloured(*scan.picture, ui).data(),
-                                 true);
+        thumbnail.texture.upload(scan.picture->cols, scan.picture->rows, 3,
+                                 coloured(*scan.picture, ui).data(), true);
         thumbnail.of = scan.picture;
         thumbnail.blue = ui.preferences.blue_for_red;
       }
@@ -84,7 +84,8 @@ void OperatorScreen::draw_strip(UiContext& ui, ImVec2 size) {
                      {at.x + drawn.x, at.y + drawn.y}, {0, 0}, {1, 1},
                      ImGui::ColorConvertFloat4ToU32({1, 1, 1, scan.dropped ? 0.3F : 1.0F}));
     }
-    draw->AddRect(origin, end, packed(colour), 5, 0, state == Text::kUnsure || state == Text::kFailed ? 3.0F : 1.5F);
+    draw->AddRect(origin, end, packed(colour), 5, 0,
+                  state == Text::kUnsure || state == Text::kFailed ? 3.0F : 1.5F);
     std::string words = std::to_string(scan.id) + "  " + ui.text(state);
     if (scan.pose && scan.pose->locked) {
       words += std::string(", ") + ui.text(Text::kLocked);
@@ -116,8 +117,7 @@ void OperatorScreen::draw_scan_menu(UiContext& ui, const LiveScan& scan) {
   ImGui::PushFont(ui.fonts.small);
   coloured_text(ui.colours.faint, filled(ui.text(Text::kSamples), scan.samples).c_str());
   if (scan.pose && scan.pose->status == PoseStatus::kRegistered) {
-    coloured_text(ui.colours.faint,
-                  filled(ui.text(Text::kUncertainty), 1000 * scan.pose->sigma_mm).c_str());
+    coloured_text(ui.colours.faint, filled(ui.text(Text::kUncertainty), 1000 * scan.pose->sigma_mm).c_str());
   }
   const std::string why = scan.dropped ? scan.note
                           : scan.pose  ? translated(scan.pose->reason, ui.preferences.language)

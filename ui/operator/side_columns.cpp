@@ -22,7 +22,10 @@ void OperatorScreen::draw_left(UiContext& ui, ImVec2 size) {
     const Face face = static_cast<Face>(k);
     const double red = state_.red_map ? face_mm2(*state_.red_map, face, RegionState::kRed) : 0.0;
     const double excused = state_.red_map ? face_mm2(*state_.red_map, face, RegionState::kExcused) : 0.0;
-    const bool whole = state_.red_map && red <= 0;
+    const auto f = static_cast<std::size_t>(k);
+    // A hole is listed under one face; its rim may run over others.
+    const bool known = state_.red_map && (state_.seen_mm2[f] > 0 || red > 0);
+    const bool whole = known && red <= 0 && (state_.red_map->conclusive || state_.red_points[f] == 0);
     const ImVec2 at = ImGui::GetCursorScreenPos();
     ImDrawList* draw = ImGui::GetWindowDrawList();
     const float box = ImGui::GetTextLineHeight();
@@ -34,21 +37,22 @@ void OperatorScreen::draw_left(UiContext& ui, ImVec2 size) {
                     packed(ui.colours.good), 0.16F * box);
     } else {
       draw->AddRect({at.x + 0.1F * box, at.y + 0.15F * box}, {at.x + 0.9F * box, at.y + 0.9F * box},
-                    packed(state_.red_map ? ui.colours.red : ui.colours.faint), 2, 0, 0.12F * box);
+                    packed(known ? ui.colours.red : ui.colours.faint), 2, 0, 0.12F * box);
     }
     ImGui::Dummy({box, box});
     ImGui::SameLine();
     ImGui::TextUnformatted(ui.text(kFaceTexts[k]));
     ImGui::PushFont(ui.fonts.small);
-    std::string note = !state_.red_map ? ui.text(Text::kNoArea)
-                       : red > 0       ? filled(ui.text(Text::kRedArea), red)
-                                       : std::string();
+    std::string note = !known    ? ui.text(Text::kNoArea)
+                       : red > 0 ? filled(ui.text(Text::kRedArea), red)
+                       : whole   ? std::string()
+                                 : ui.text(Text::kRedRim);
     if (excused > 0.05) {
       note += (note.empty() ? "" : ", ") + filled(ui.text(Text::kExcused), excused);
     }
     if (!note.empty()) {
       ImGui::Indent(box + ImGui::GetStyle().ItemSpacing.x);
-      coloured_text(red > 0 ? ui.colours.red : ui.colours.faint, note.c_str());
+      coloured_text(known && !whole ? ui.colours.red : ui.colours.faint, note.c_str());
       ImGui::Unindent(box + ImGui::GetStyle().ItemSpacing.x);
     }
     ImGui::PopFont();
@@ -130,7 +134,8 @@ void OperatorScreen::draw_right(UiContext& ui, ImVec2 size) {
   draw_growing(ui, {room.x, each});
   if (shows_next) {
     ImGui::TextUnformatted(ui.text(Text::kNextPose));
-    unfinished_ = pose_.draw(ui, *state_.next, {room.x, each - ImGui::GetStyle().ItemSpacing.y}) || unfinished_;
+    unfinished_ =
+        pose_.draw(ui, *state_.next, {room.x, each - ImGui::GetStyle().ItemSpacing.y}) || unfinished_;
   }
   if (session_.busy() && !state_.stage.empty() && state_.phase != LivePhase::kWaiting) {
     ImGui::PushFont(ui.fonts.small);

@@ -35,8 +35,8 @@ void say_waiting(Statement& out, const LiveState& state, Language language) {
   const bool turn = state.next && state.next->placement && state.next->placement->hand_turn;
   if (state.last_not_taken_up && last != nullptr && last->pose) {
     out.headline = filled(text_of(Text::kUnsureScan, language), last->id);
-    out.detail = fmt::format("{}. {}", translated(last->pose->reason, language),
-                             text_of(Text::kUnsureHow, language));
+    out.detail =
+        fmt::format("{}. {}", translated(last->pose->reason, language), text_of(Text::kUnsureHow, language));
     if (state.next) {
       out.detail += fmt::format(" {}.", capitalised(translated(state.next->say, language)));
     }

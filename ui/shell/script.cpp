@@ -18,23 +18,35 @@ constexpr double kPatienceS = 60;
 constexpr int kQuietFrames = 4;
 
 const std::map<std::string, int>& keys() {
-  static const std::map<std::string, int> kKeys{
-      {"space", GLFW_KEY_SPACE}, {"enter", GLFW_KEY_ENTER},   {"backspace", GLFW_KEY_BACKSPACE},
-      {"escape", GLFW_KEY_ESCAPE}, {"tab", GLFW_KEY_TAB},     {"f9", GLFW_KEY_F9},
-      {"f10", GLFW_KEY_F10},     {"f11", GLFW_KEY_F11},       {"p", GLFW_KEY_P},
-      {"pagedown", GLFW_KEY_PAGE_DOWN}, {"pageup", GLFW_KEY_PAGE_UP}, {"end", GLFW_KEY_END},
-      {"1", GLFW_KEY_1}, {"2", GLFW_KEY_2}, {"3", GLFW_KEY_3}, {"4", GLFW_KEY_4}, {"5", GLFW_KEY_5},
-      {"6", GLFW_KEY_6}};
+  static const std::map<std::string, int> kKeys{{"space", GLFW_KEY_SPACE},
+                                                {"enter", GLFW_KEY_ENTER},
+                                                {"backspace", GLFW_KEY_BACKSPACE},
+                                                {"escape", GLFW_KEY_ESCAPE},
+                                                {"tab", GLFW_KEY_TAB},
+                                                {"f9", GLFW_KEY_F9},
+                                                {"f10", GLFW_KEY_F10},
+                                                {"f11", GLFW_KEY_F11},
+                                                {"p", GLFW_KEY_P},
+                                                {"pagedown", GLFW_KEY_PAGE_DOWN},
+                                                {"pageup", GLFW_KEY_PAGE_UP},
+                                                {"end", GLFW_KEY_END},
+                                                {"1", GLFW_KEY_1},
+                                                {"2", GLFW_KEY_2},
+                                                {"3", GLFW_KEY_3},
+                                                {"4", GLFW_KEY_4},
+                                                {"5", GLFW_KEY_5},
+                                                {"6", GLFW_KEY_6}};
   return kKeys;
 }
 
 const std::map<std::string, ScriptStep::Kind>& kinds() {
   using Kind = ScriptStep::Kind;
   static const std::map<std::string, Kind> kKinds{
-      {"key", Kind::kKey},   {"click", Kind::kClick},   {"drag", Kind::kDrag},
-      {"wheel", Kind::kWheel}, {"type", Kind::kType},   {"wait", Kind::kWait},
-      {"expect", Kind::kExpect}, {"screenshot", Kind::kScreenshot}, {"pause", Kind::kPause},
-      {"quit", Kind::kQuit}};
+      {"key", Kind::kKey},       {"click", Kind::kClick},
+      {"drag", Kind::kDrag},     {"wheel", Kind::kWheel},
+      {"type", Kind::kType},     {"wait", Kind::kWait},
+      {"expect", Kind::kExpect}, {"screenshot", Kind::kScreenshot},
+      {"pause", Kind::kPause},   {"quit", Kind::kQuit}};
   return kKinds;
 }
 
@@ -82,6 +94,11 @@ Result<std::vector<ScriptStep>> parse_script(std::string_view text, const std::s
       std::string word;
       while (words >> word) {
         const auto value = number_of(word);
+        const bool fact = step.kind == Kind::kWait || step.kind == Kind::kExpect;
+        if (!value && fact && step.numbers.empty()) {
+          step.name += ' ' + word;  // of several words
+          continue;
+        }
         if (!value && word != "right") {
           return fail(ErrorKind::kUsage, "'" + word + "' is no number", place, "numbers follow the name");
         }

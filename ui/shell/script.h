@@ -37,6 +37,11 @@ class ScriptPlayer {
   /// After the frame was drawn. `quiet`: nothing more is being drawn. True when a screenshot is due.
   [[nodiscard]] std::optional<std::filesystem::path> screenshot_due(bool quiet);
   [[nodiscard]] bool finished() const { return next_ >= steps_.size() || failure_; }
+  /// Nothing is done to the window meanwhile.
+  [[nodiscard]] bool waits() const {
+    return !finished() &&
+           (steps_[next_].kind == ScriptStep::Kind::kWait || steps_[next_].kind == ScriptStep::Kind::kPause);
+  }
   /// What a wait waited for in vain.
   [[nodiscard]] const std::optional<Error>& failure() const { return failure_; }
 

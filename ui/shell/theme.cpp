@@ -80,9 +80,8 @@ void write_preferences(const fs::path& file, const Preferences& preferences) {
   {
     std::ofstream out(next);
     out << "language = " << code_of(preferences.language) << "\ndark = " << preferences.dark
-        << "\nblue_for_red = " << preferences.blue_for_red
-        << "\nfont_px = " << preferences.font_px << "\noperator = " << preferences.operator_name
-        << "\ndevice = " << preferences.device << "\n";
+        << "\nblue_for_red = " << preferences.blue_for_red << "\nfont_px = " << preferences.font_px
+        << "\noperator = " << preferences.operator_name << "\ndevice = " << preferences.device << "\n";
     if (!out.flush()) {
       return;
     }
@@ -126,7 +125,8 @@ Fonts load_fonts(float px) {
   ImGuiIO& io = ImGui::GetIO();
   io.Fonts->Clear();
   // Latin with its accents, general punctuation and arrows.
-  static const ImWchar kRanges[] = {0x0020, 0x017F, 0x2010, 0x203A, 0x2190, 0x21FF, 0x25A0, 0x25FF, 0x2713, 0x2717, 0};
+  static const ImWchar kRanges[] = {0x0020, 0x017F, 0x2010, 0x203A, 0x2190, 0x21FF,
+                                    0x25A0, 0x25FF, 0x2713, 0x2717, 0};
   Fonts fonts;
   for (const char* file : kFontFiles) {
     std::error_code error;

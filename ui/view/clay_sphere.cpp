@@ -34,7 +34,8 @@ Image clay_sphere() {
       const float soft = 0.22F * std::max(0.0F, n.dot(fill));
       const float sky = 0.12F + 0.06F * n.y();
       const float value = std::clamp(0.80F * rough + soft + sky, 0.0F, 1.0F);
-      const std::array<float, 3> tint{value, value * (0.985F + 0.015F * value), value * (0.96F + 0.04F * value)};
+      const std::array<float, 3> tint{value, value * (0.985F + 0.015F * value),
+                                      value * (0.96F + 0.04F * value)};
       const std::size_t at = image.offset(x, y);
       for (std::size_t k = 0; k < 3; ++k) {
         image.bytes[at + k] = static_cast<std::uint8_t>(std::lround(255 * tint[k]));
@@ -46,17 +47,20 @@ Image clay_sphere() {
 
 std::array<std::array<std::uint8_t, 3>, 256> overlay_colours() {
   // Dark blue over teal and green to yellow: brightness grows evenly, so that it reads in grey too.
-  constexpr std::array<std::array<float, 3>, 6> kStops{
-      {{0.15F, 0.10F, 0.35F}, {0.20F, 0.28F, 0.54F}, {0.13F, 0.47F, 0.56F},
-       {0.20F, 0.64F, 0.47F}, {0.55F, 0.80F, 0.28F}, {0.99F, 0.91F, 0.25F}}};
+  constexpr std::array<std::array<float, 3>, 6> kStops{{{0.15F, 0.10F, 0.35F},
+                                                        {0.20F, 0.28F, 0.54F},
+                                                        {0.13F, 0.47F, 0.56F},
+                                                        {0.20F, 0.64F, 0.47F},
+                                                        {0.55F, 0.80F, 0.28F},
+                                                        {0.99F, 0.91F, 0.25F}}};
   std::array<std::array<std::uint8_t, 3>, 256> out{};
   for (std::size_t i = 0; i < out.size(); ++i) {
     const float at = static_cast<float>(i) / 255.0F * (kStops.size() - 1);
     const auto k = std::min(static_cast<std::size_t>(at), kStops.size() - 2);
     const float part = at - static_cast<float>(k);
     for (std::size_t c = 0; c < 3; ++c) {
-      out[i][c] = static_cast<std::uint8_t>(
-          std::lround(255 * (kStops[k][c] * (1 - part) + kStops[k + 1][c] * part)));
+      out[i][c] =
+          static_cast<std::uint8_t>(std::lround(255 * (kStops[k][c] * (1 - part) + kStops[k + 1][c] * part)));
     }
   }
   return out;

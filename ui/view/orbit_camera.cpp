@@ -63,8 +63,7 @@ Eigen::Matrix4f OrbitCamera::clip_from_model(float aspect) const {
   return clip;
 }
 
-Eigen::Vector2f OrbitCamera::pixel_of(const Eigen::Vector3f& point_mm,
-                                      const Eigen::Vector2f& size_px) const {
+Eigen::Vector2f OrbitCamera::pixel_of(const Eigen::Vector3f& point_mm, const Eigen::Vector2f& size_px) const {
   const Eigen::Vector3f eye = eye_from_model * (point_mm - centre_mm);
   const float px_per_mm = size_px.y() / (2 * half_height_mm);
   return {0.5F * size_px.x() + eye.x() * px_per_mm, 0.5F * size_px.y() - eye.y() * px_per_mm};

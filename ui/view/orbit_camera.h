@@ -7,8 +7,8 @@
 
 namespace dubsar::ui {
 
-/// An orthographic look at a model, so that a millimetre is as long everywhere in the picture. Eye space: x to
-/// the right, y up, z towards the viewer; lengths in mm.
+/// An orthographic look at a model, so that a millimetre is as long everywhere in the picture. Eye space: x
+/// to the right, y up, z towards the viewer; lengths in mm.
 struct OrbitCamera {
   Eigen::Quaternionf eye_from_model = Eigen::Quaternionf::Identity();
   Eigen::Vector3f centre_mm = Eigen::Vector3f::Zero();  ///< model point in the middle of the picture
@@ -27,7 +27,8 @@ struct OrbitCamera {
   [[nodiscard]] Eigen::Matrix4f clip_from_model(float aspect) const;
   [[nodiscard]] float mm_per_px(float height_px) const { return 2 * half_height_mm / height_px; }
   /// Where a model point stands in a picture of that size, pixels from the top left.
-  [[nodiscard]] Eigen::Vector2f pixel_of(const Eigen::Vector3f& point_mm, const Eigen::Vector2f& size_px) const;
+  [[nodiscard]] Eigen::Vector2f pixel_of(const Eigen::Vector3f& point_mm,
+                                         const Eigen::Vector2f& size_px) const;
   [[nodiscard]] bool operator==(const OrbitCamera& other) const {
     return eye_from_model.coeffs() == other.eye_from_model.coeffs() && centre_mm == other.centre_mm &&
            half_height_mm == other.half_height_mm && depth_mm == other.depth_mm;

@@ -193,9 +193,9 @@ void main() {
   float kappa = radiance > 0.0 ? curvature() : 0.0;
   if (lamp == 0) {
     vec3 sphere = texture(sphere_map, 0.5 + 0.49 * n.xy).rgb;
-    c = a.rgb * sphere * 1.25;
+    c = a.rgb * sphere * 1.06;
     if (radiance > 0.0) {
-      c *= scaled(clamp(length(sphere) / 1.74, 0.05, 0.95), -kappa) / clamp(length(sphere) / 1.74, 0.05, 0.95);
+      c *= scaled(clamp(length(sphere) / 1.74, 0.05, 0.95), kappa) / clamp(length(sphere) / 1.74, 0.05, 0.95);
     }
   } else {
     float shade = clamp(dot(n, light), 0.0, 1.0);
@@ -203,7 +203,7 @@ void main() {
       shade *= lit();
     }
     float d = clamp(shade, 0.02, 0.98);
-    float with = radiance > 0.0 ? scaled(d, -kappa) : d;
+    float with = radiance > 0.0 ? scaled(d, kappa) : d;
     c = a.rgb * (0.10 + 1.05 * with);
   }
   if (depth_shading > 0.0) {

@@ -71,9 +71,9 @@ void add_coarse(ShownMesh& out) {
   std::size_t looked_at = 0;
   for (std::size_t f = 0; f < out.faces.size(); f += stride, ++looked_at) {
     const auto& [a, b, c] = out.faces[f];
-    area += 0.5 * static_cast<double>((out.positions[b] - out.positions[a])
-                                          .cross(out.positions[c] - out.positions[a])
-                                          .norm());
+    area +=
+        0.5 * static_cast<double>(
+                  (out.positions[b] - out.positions[a]).cross(out.positions[c] - out.positions[a]).norm());
   }
   area *= static_cast<double>(out.faces.size()) / static_cast<double>(std::max<std::size_t>(1, looked_at));
   // A cell that a plane crosses holds about 1.5 cell faces of it, and gives two faces.

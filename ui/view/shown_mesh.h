@@ -23,14 +23,15 @@ struct FaceBlock {
 /// that cannot be drawn (an index out of range, a coordinate that is not a number) are left out, and the
 /// others are put in order of place. Without faces it is drawn as points.
 struct ShownMesh {
-  std::vector<Eigen::Vector3f> positions;           ///< [V] mm
-  std::vector<Eigen::Vector3f> normals;             ///< [V] unit; zero where there is none
-  std::vector<std::array<std::uint8_t, 4>> traits;  ///< [V] openness, reliability (255: 1), scans, flags
+  std::vector<Eigen::Vector3f> positions;            ///< [V] mm
+  std::vector<Eigen::Vector3f> normals;              ///< [V] unit; zero where there is none
+  std::vector<std::array<std::uint8_t, 4>> traits;   ///< [V] openness, reliability (255: 1), scans, flags
   std::vector<std::array<std::uint8_t, 3>> colours;  ///< [V] or empty
   std::vector<std::array<std::uint32_t, 3>> faces;   ///< by block
   std::vector<std::uint32_t> face_of;                ///< [faces] which face of the mesh it is
   std::vector<FaceBlock> blocks;
-  std::vector<std::array<std::uint32_t, 3>> coarse;  ///< the same surface in few faces; empty where few already
+  std::vector<std::array<std::uint32_t, 3>>
+      coarse;  ///< the same surface in few faces; empty where few already
   Eigen::AlignedBox3f box_mm;
   std::size_t left_out = 0;  ///< faces of the mesh that cannot be drawn
 };

@@ -53,8 +53,8 @@ void SurfaceView::show(const ShownMesh& mesh) {
 }
 
 void SurfaceView::show_points(const ColouredPoints* points) {
-  points_ = points != nullptr && !points->positions_mm.empty() ? std::make_unique<PointBuffers>(*points)
-                                                               : nullptr;
+  points_ =
+      points != nullptr && !points->positions_mm.empty() ? std::make_unique<PointBuffers>(*points) : nullptr;
   dirty_ = true;
 }
 
@@ -123,8 +123,8 @@ void SurfaceView::draw_geometry(Layer& layer, const Scene& scene, std::size_t fi
   mesh_->bind();
   if (mesh_->points_only()) {
     surface_.set("marks", 2);
-    surface_.set("point_px", std::clamp(0.2F / scene.camera.mm_per_px(static_cast<float>(scene.height)),
-                                        2.0F, 12.0F));
+    surface_.set("point_px",
+                 std::clamp(0.2F / scene.camera.mm_per_px(static_cast<float>(scene.height)), 2.0F, 12.0F));
     mesh_->draw_points();
     return;
   }
@@ -192,8 +192,8 @@ void SurfaceView::light(const Layer& layer, const Scene& scene) {
   lighting_.set("radiance", look.radiance);
   lighting_.set("depth_shading", look.depth_shading);
   lighting_.set("ground", look.ground);
-  lighting_.set("px", Eigen::Vector2f(1.0F / static_cast<float>(scene.width),
-                                      1.0F / static_cast<float>(scene.height)));
+  lighting_.set(
+      "px", Eigen::Vector2f(1.0F / static_cast<float>(scene.width), 1.0F / static_cast<float>(scene.height)));
   lighting_.set("mm_per_px", scene.camera.mm_per_px(static_cast<float>(scene.height)));
   lighting_.set("depth_mm", scene.camera.depth_mm);
   if (shadows) {

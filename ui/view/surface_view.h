@@ -22,12 +22,12 @@ enum class Overlay { kClay, kColours, kValue, kReliability, kScans, kFlags };
 struct Look {
   Overlay overlay = Overlay::kClay;
   Eigen::Vector2f value_range{0, 1};
-  bool lamp = false;                        ///< a raking lamp; else the lit sphere
+  bool lamp = false;                         ///< a raking lamp; else the lit sphere
   Eigen::Vector3f light{-0.6F, 0.6F, 0.5F};  ///< towards the lamp, eye space
-  bool shadows = true;                      ///< of the lamp
+  bool shadows = true;                       ///< of the lamp
   bool occlusion = true;
-  float radiance = 1.5F;     ///< 0: no radiance scaling
-  float depth_shading = 0;   ///< 0: none; per mm below the surroundings
+  float radiance = 1.0F;    ///< 0: no radiance scaling
+  float depth_shading = 0;  ///< 0: none; per mm below the surroundings
   bool flat = false;
   Eigen::Vector3f clay{0.86F, 0.72F, 0.55F};
   Eigen::Vector3f red{0.84F, 0.12F, 0.15F};
@@ -98,7 +98,8 @@ class SurfaceView {
   std::size_t faces_drawn_ = 0;
 };
 
-/// Colours of the overlay that shows numbers, from low to high (viridis-like, told apart by the colour-blind).
+/// Colours of the overlay that shows numbers, from low to high (viridis-like, told apart by the
+/// colour-blind).
 [[nodiscard]] std::array<std::array<std::uint8_t, 3>, 256> overlay_colours();
 
 }  // namespace dubsar::ui
