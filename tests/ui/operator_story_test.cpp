@@ -31,8 +31,8 @@ class OperatorStory : public ::testing::Test {
   Outcome play(const std::string& script, const std::vector<std::string>& more = {}) {
     const fs::path file = folder_.path() / "story.script";
     std::ofstream(file) << script;
-    std::vector<std::string> words{"station",  "--session", session(), "--device", kSmallTablet,
-                                   "--script", file.string()};
+    std::vector<std::string> words{"station",    "--session", session(),    "--device",
+                                   kSmallTablet, "--script",  file.string()};
     words.insert(words.end(), more.begin(), more.end());
     return run_command(words, {.timeout_s = 150});
   }

@@ -30,7 +30,8 @@ TEST(OrbitCamera, ZoomKeepsThePlaceUnderThePointer) {
   camera.fit(slab(), 1.5F);
   const Eigen::Vector2f size(1500, 1000);
   const Eigen::Vector2f at(0.4F, -0.3F);  // of the picture, from the middle, y up
-  const Eigen::Vector3f point = camera.centre_mm + Eigen::Vector3f(at.x() * 1.5F, at.y(), 0) * camera.half_height_mm;
+  const Eigen::Vector3f point =
+      camera.centre_mm + Eigen::Vector3f(at.x() * 1.5F, at.y(), 0) * camera.half_height_mm;
   const Eigen::Vector2f before = camera.pixel_of(point, size);
   camera.zoom(0.5F, at, 1.5F);
   EXPECT_LT((camera.pixel_of(point, size) - before).norm(), 0.1F);

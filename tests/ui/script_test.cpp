@@ -8,9 +8,10 @@ namespace dubsar::ui {
 namespace {
 
 TEST(Script, ReadsAStepALine) {
-  const auto steps = parse_script("# story\n\nkey space\nclick model 0.25 0.75\ndrag model 0 0 1 1 right\n"
-                                  "type A. Reader\nwait idle 3\nscreenshot a b.png\nquit\n",
-                                  "s");
+  const auto steps = parse_script(
+      "# story\n\nkey space\nclick model 0.25 0.75\ndrag model 0 0 1 1 right\n"
+      "type A. Reader\nwait idle 3\nscreenshot a b.png\nquit\n",
+      "s");
   ASSERT_TRUE(steps) << steps.error().line();
   ASSERT_EQ(steps->size(), 7U);
   EXPECT_EQ((*steps)[0].name, "space");

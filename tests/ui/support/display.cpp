@@ -28,8 +28,9 @@ Display::Display(const std::string& size, bool with_opengl) {
   pid_ = fork();
   if (pid_ == 0) {
     close(pipe_ends[0]);
-    std::vector<std::string> words{"Xvfb",  "-displayfd", std::to_string(pipe_ends[1]), "-screen", "0", size,
-                                   "-nolisten", "tcp", "-noreset"};
+    std::vector<std::string> words{"Xvfb",      "-displayfd", std::to_string(pipe_ends[1]),
+                                   "-screen",   "0",          size,
+                                   "-nolisten", "tcp",        "-noreset"};
     if (!with_opengl) {
       words.insert(words.end(), {"-extension", "GLX"});
     }
