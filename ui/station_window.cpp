@@ -20,6 +20,7 @@
 #include "ui/gl/gl_window.h"
 #include "ui/operator/operator_screen.h"
 #include "ui/shell/script.h"
+#include "ui/viewer/viewer_screen.h"
 
 namespace dubsar::ui {
 
@@ -82,6 +83,15 @@ class StationWindow {
     }
     ui_.still = script_.has_value();
     kept_ = ui_.preferences;
+    looks_ = !options.mesh.empty();
+    viewing_ = std::make_unique<MeshViewing>(wake_window);
+    if (looks_) {
+      viewing_->open(options.mesh);
+      viewer_ = std::make_unique<ViewerScreen>(*viewing_, std::filesystem::path("."), false);
+      return;
+    }
+    viewer_ = std::make_unique<ViewerScreen>(*viewing_, options.session / "export", true);
+    session_folder_ = options.session;
     session_ = std::make_unique<LiveSession>(
         LiveSession::Options{options.device.empty() ? ui_.preferences.device : options.device,
                              options.session, options.pins},
@@ -106,13 +116,18 @@ class StationWindow {
           settle = std::max(0, settle - 1);
         }
       }
+      const double frame_began = now_s();
       moving = draw_frame();
       if (Status taken = take_screenshot(moving); !taken) {
         return std::unexpected(taken.error());
       }
       glfwSwapBuffers(window_.handle());
+      if (script_ && script_->is_dragging()) {
+        longest_drag_s_ = std::max(longest_drag_s_, now_s() - frame_began);
+      }
       keep_preferences();
       if (script_ && script_->finished()) {
+        log_debug(fmt::format("longest frame of a drag: {:.0f} ms", 1000 * longest_drag_s_));
         if (script_->failure()) {
           log_error(script_->failure()->line());
           return 1;
@@ -144,7 +159,21 @@ class StationWindow {
     ui_.targets.clear();
     ui_.facts.clear();
     ImGui::NewFrame();
-    operator_->draw(ui_, ImGui::GetIO().DisplaySize);
+    const ImVec2 size = ImGui::GetIO().DisplaySize;
+    bool unfinished = false;
+    if (looks_) {
+      viewer_->draw(ui_, size);
+      unfinished = viewer_->unfinished();
+      looks_ = !viewer_->wants_scanning();
+    } else {
+      operator_->draw(ui_, size);
+      unfinished = operator_->unfinished();
+      if (operator_->wants_viewer()) {
+        const LiveState state = session_->state();
+        viewing_->show(state.mesh, state.tablet_from_model, session_folder_ / "analysis" / "wedges.json");
+        looks_ = true;
+      }
+    }
     ImGui::Render();
     int width = 0;
     int height = 0;
@@ -155,7 +184,7 @@ class StationWindow {
     glClearColor(ground.x(), ground.y(), ground.z(), 1);
     glClear(GL_COLOR_BUFFER_BIT);
     ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
-    return operator_->unfinished();
+    return unfinished;
   }
 
   Status take_screenshot(bool moving) {
@@ -186,8 +215,14 @@ class StationWindow {
   Preferences kept_;
   std::filesystem::path preferences_file_;
   float loaded_px_ = 0;
+  double longest_drag_s_ = 0;
+  bool looks_ = false;  ///< the viewer; else the operator's screen
+  std::filesystem::path session_folder_;
+  // The screens go before the context does.
   std::unique_ptr<LiveSession> session_;
-  std::unique_ptr<OperatorScreen> operator_;  ///< goes before the context does
+  std::unique_ptr<MeshViewing> viewing_;
+  std::unique_ptr<OperatorScreen> operator_;
+  std::unique_ptr<ViewerScreen> viewer_;
 };
 
 }  // namespace

@@ -129,7 +129,7 @@ constexpr Row kRows[] = {
     {Text::kUncertainty, "place good to {:.0f} um", "Lage auf {:.0f} um genau"},
     {Text::kLookClay, "Light", "Licht"},
     {Text::kOverlay, "Colours", "Farben"},
-    {Text::kLamp, "Raking lamp (drag with the right button)", "Streiflicht (rechts ziehen)"},
+    {Text::kLamp, "Raking lamp (right drag)", "Streiflicht (rechts ziehen)"},
     {Text::kShadows, "Shadows", "Schatten"},
     {Text::kOcclusion, "Ambient occlusion", "Umgebungsverdeckung"},
     {Text::kRadiance, "Radiance scaling", "Radiance Scaling"},

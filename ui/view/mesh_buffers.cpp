@@ -102,6 +102,13 @@ void MeshBuffers::set_values(const std::vector<float>& values) {
   glBindVertexArray(0);
 }
 
+void MeshBuffers::set_traits(const std::vector<std::array<std::uint8_t, 4>>& traits) {
+  if (traits.size() == vertices_) {
+    glBindBuffer(GL_ARRAY_BUFFER, buffers_[kTraits]);
+    glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(vertices_ * 4), traits.data(), GL_STATIC_DRAW);
+  }
+}
+
 void MeshBuffers::bind() const {
   glBindVertexArray(array_);
   glVertexAttrib3f(kColour, 1, 1, 1);

@@ -21,6 +21,8 @@ class MeshBuffers {
 
   /// A number per vertex, [V], for the overlay that shows numbers.
   void set_values(const std::vector<float>& values);
+  /// Other traits for the same vertices.
+  void set_traits(const std::vector<std::array<std::uint8_t, 4>>& traits);
   [[nodiscard]] bool has_values() const { return has_values_; }
   [[nodiscard]] bool has_colours() const { return has_colours_; }
   [[nodiscard]] bool points_only() const { return faces_ == 0; }

@@ -156,7 +156,7 @@ float curvature() {
   return fade * tanh(bend * 2.0);
 }
 
-float scaled(float shade, float kappa) {
+float scaling(float shade, float kappa) {
   float a = 0.1;
   float e = exp(-radiance * kappa);
   return (a * e + shade * (1.0 - a - a * e)) / (a + shade * (e - a - a * e));
@@ -195,7 +195,7 @@ void main() {
     vec3 sphere = texture(sphere_map, 0.5 + 0.49 * n.xy).rgb;
     c = a.rgb * sphere * 1.06;
     if (radiance > 0.0) {
-      c *= scaled(clamp(length(sphere) / 1.74, 0.05, 0.95), kappa) / clamp(length(sphere) / 1.74, 0.05, 0.95);
+      c *= scaling(clamp(length(sphere) / 1.74, 0.05, 0.95), kappa);
     }
   } else {
     float shade = clamp(dot(n, light), 0.0, 1.0);
@@ -203,8 +203,8 @@ void main() {
       shade *= lit();
     }
     float d = clamp(shade, 0.02, 0.98);
-    float with = radiance > 0.0 ? scaled(d, kappa) : d;
-    c = a.rgb * (0.10 + 1.05 * with);
+    float with = radiance > 0.0 ? shade * scaling(d, kappa) : shade;
+    c = a.rgb * (0.07 + 1.10 * with);
   }
   if (depth_shading > 0.0) {
     float z = texture(depth_map, at).r;

@@ -97,6 +97,12 @@ void add_coarse(ShownMesh& out) {
 
 }  // namespace
 
+void set_openness(ShownMesh& mesh, const std::vector<float>& openness) {
+  for (std::size_t v = 0; v < mesh.traits.size() && v < openness.size(); ++v) {
+    mesh.traits[v][0] = byte_of(openness[v]);
+  }
+}
+
 ShownMesh shown_mesh(const Mesh& mesh, const std::vector<float>& openness) {
   ShownMesh out;
   const std::size_t n = mesh.positions.size();

@@ -39,6 +39,9 @@ struct ShownMesh {
 /// Faces that even a processor draws fast enough to be turned by hand (bench: 100 thousand in about 40 ms).
 inline constexpr std::size_t kFacesInMotion = 100000;
 
+/// Puts ambient occlusion, [V] in [0, 1], into the traits.
+void set_openness(ShownMesh& mesh, const std::vector<float>& openness);
+
 /// `openness` is ambient occlusion, [V] in [0, 1], or empty.
 [[nodiscard]] ShownMesh shown_mesh(const Mesh& mesh, const std::vector<float>& openness = {});
 

@@ -65,6 +65,13 @@ void SurfaceView::set_values(const std::vector<float>& values) {
   }
 }
 
+void SurfaceView::set_traits(const std::vector<std::array<std::uint8_t, 4>>& traits) {
+  if (mesh_) {
+    mesh_->set_traits(traits);
+    dirty_ = true;
+  }
+}
+
 Eigen::Matrix4f SurfaceView::light_clip_from_model(const Scene& scene) const {
   OrbitCamera lamp;
   const Eigen::Vector3f towards = scene.look.light.normalized();

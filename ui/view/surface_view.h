@@ -26,7 +26,7 @@ struct Look {
   Eigen::Vector3f light{-0.6F, 0.6F, 0.5F};  ///< towards the lamp, eye space
   bool shadows = true;                       ///< of the lamp
   bool occlusion = true;
-  float radiance = 1.0F;    ///< 0: no radiance scaling
+  float radiance = 0.8F;    ///< 0: no radiance scaling
   float depth_shading = 0;  ///< 0: none; per mm below the surroundings
   bool flat = false;
   Eigen::Vector3f clay{0.86F, 0.72F, 0.55F};
@@ -45,6 +45,7 @@ class SurfaceView {
   void show(const ShownMesh& mesh);
   void show_points(const ColouredPoints* points);  ///< null: none
   void set_values(const std::vector<float>& values);
+  void set_traits(const std::vector<std::array<std::uint8_t, 4>>& traits);
   [[nodiscard]] bool empty() const { return mesh_ == nullptr && points_ == nullptr; }
   [[nodiscard]] const MeshBuffers* buffers() const { return mesh_.get(); }
 
