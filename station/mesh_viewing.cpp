@@ -2,6 +2,7 @@
 // Copyright The Dubsar developers
 #include "station/mesh_viewing.h"
 
+#include <array>
 #include <utility>
 
 #include "analysis/curvature.h"
@@ -32,6 +33,38 @@ fs::path wedges_beside(const fs::path& mesh) {
     }
   }
   return {};
+}
+
+/// The faces, with their vertices and all that the mesh says of these.
+Mesh part_of(const Mesh& mesh, const std::vector<std::uint32_t>& faces) {
+  constexpr std::uint32_t kNew = 0xFFFFFFFFU;
+  const std::size_t n = mesh.positions.size();
+  std::vector<std::uint32_t> number(n, kNew);
+  Mesh part;
+  const auto carry = [n](const auto& from, auto& to, std::uint32_t v) {
+    if (from.size() == n) {
+      to.push_back(from[v]);
+    }
+  };
+  for (const std::uint32_t f : faces) {
+    std::array<std::uint32_t, 3> face{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t v = mesh.faces[f][k];
+      if (number[v] == kNew) {
+        number[v] = static_cast<std::uint32_t>(part.positions.size());
+        part.positions.push_back(mesh.positions[v]);
+        carry(mesh.normals, part.normals, v);
+        carry(mesh.reliability, part.reliability, v);
+        carry(mesh.sigma_mm, part.sigma_mm, v);
+        carry(mesh.scans, part.scans, v);
+        carry(mesh.flags, part.flags, v);
+        carry(mesh.colours, part.colours, v);
+      }
+      face[k] = number[v];
+    }
+    part.faces.push_back(face);
+  }
+  return part;
 }
 
 }  // namespace
@@ -199,6 +232,16 @@ void MeshViewing::want(MeshField field) {
 
 void MeshViewing::analyse() {
   ask([this] { work_out_everything(false); });
+}
+
+void MeshViewing::keep_part(std::vector<std::uint32_t> faces, const fs::path& file) {
+  ask([this, faces = std::move(faces), file] {
+    if (const std::shared_ptr<const Mesh> whole = mesh()) {
+      if (const Status written = write_mesh(file, part_of(*whole, faces)); !written) {
+        complain(written.error());
+      }
+    }
+  });
 }
 
 void MeshViewing::work_out(MeshField field) {

@@ -31,7 +31,7 @@ struct ViewedMesh {
   std::shared_ptr<const Mesh> mesh;
   std::uint64_t number = 0;  ///< grows whenever the mesh is another one
   std::map<MeshField, std::shared_ptr<const std::vector<float>>> fields;  ///< [V]
-  std::shared_ptr<const std::vector<Wedge>> wedges;  ///< null: none are known
+  std::shared_ptr<const std::vector<Wedge>> wedges;                       ///< null: none are known
   RigidTransform tablet_from_model;
   std::string name;
   std::string stage;  ///< of the job that runs; empty: none does
@@ -56,7 +56,9 @@ class MeshViewing {
             const std::filesystem::path& wedges_file);
   void want(MeshField field);  ///< works it out unless it is there
   void analyse();              ///< all fields, and the wedges
-  void stop();                 ///< gives up what runs and what waits
+  /// Writes these faces of the mesh, with what is known of their vertices, as a mesh of their own.
+  void keep_part(std::vector<std::uint32_t> faces, const std::filesystem::path& file);
+  void stop();  ///< gives up what runs and what waits
 
  private:
   using Task = std::function<void()>;

@@ -13,8 +13,10 @@ namespace dubsar::ui {
 /// ends it with what the compiler says. Main thread.
 class ShaderProgram {
  public:
-  /// `feedback`: outputs of the vertex stage that transform feedback records, interleaved.
-  ShaderProgram(const char* vertex, const char* fragment, const std::vector<const char*>& feedback = {});
+  ShaderProgram(const char* vertex, const char* fragment);
+  /// `geometry` and `fragment` may be null. `feedback`: what transform feedback records, interleaved.
+  ShaderProgram(const char* vertex, const char* geometry, const char* fragment,
+                const std::vector<const char*>& feedback);
   ~ShaderProgram();
   ShaderProgram(const ShaderProgram&) = delete;
   ShaderProgram& operator=(const ShaderProgram&) = delete;

@@ -170,7 +170,7 @@ constexpr Row kRows[] = {
     {Text::kSubtract, "Without", "Ohne"},
     {Text::kVisibleOnly, "Only what is seen", "Nur Sichtbares"},
     {Text::kClear, "Clear", "Leeren"},
-    {Text::kPolygon, "Polygon", "Vieleck"},
+    {Text::kKeepSelection, "Keep as mesh", "Als Netz aufheben"},
     {Text::kBackToScan, "Back to scanning", "Zurück zum Scannen"},
     {Text::kOpenMesh, "The mesh is read", "Das Netz wird gelesen"},
     {Text::kMove, "Turn", "Drehen"},

@@ -157,7 +157,7 @@ enum class Text {
   kSubtract,
   kVisibleOnly,
   kClear,
-  kPolygon,
+  kKeepSelection,
   kBackToScan,
   kOpenMesh,
   kMove,

@@ -54,6 +54,10 @@ uniform vec3 clay;
 uniform vec3 red;
 uniform vec3 amber;
 uniform sampler2D colour_map;
+uniform int selection;            // 1: faces that are selected are told apart
+uniform int first_face;           // of this draw
+uniform usamplerBuffer selected;  // by face
+uniform vec3 selected_colour;
 layout(location = 0) out vec4 albedo;
 layout(location = 1) out vec4 surface;
 vec3 mapped(float part) {
@@ -89,6 +93,9 @@ void main() {
     c = mapped(vertex_traits.z * 255.0 / 8.0);
   } else if (overlay == 5) {
     c = vertex_sparse > 0.5 ? red : vertex_interpolated > 0.5 ? amber : clay;
+  }
+  if (selection != 0 && texelFetch(selected, first_face + gl_PrimitiveID).r != 0u) {
+    c = mix(c, selected_colour, 0.65);
   }
   // The inside of the clay, seen through a hole.
   if (n.z < 0.0 && marks == 0) {
@@ -211,7 +218,8 @@ void main() {
     float mean = 0.0;
     for (int i = -2; i <= 2; ++i) {
       for (int j = -2; j <= 2; ++j) {
-        mean += texture(depth_map, at + vec2(i, j) * px * 5.0).r;
+        float there = texture(depth_map, at + vec2(i, j) * px * 5.0).r;
+        mean += there < 1.0 ? there : z;   // beside the tablet there is nothing to stand out from
       }
     }
     float deeper = (z - mean / 25.0) * 2.0 * depth_mm;   // mm below what is around

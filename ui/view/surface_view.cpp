@@ -5,6 +5,7 @@
 #include <epoxy/gl.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 
 #include "ui/view/clay_sphere.h"
@@ -15,6 +16,8 @@ namespace dubsar::ui {
 namespace {
 
 constexpr int kShadowSize = 1024;
+/// A picture that takes longer to draw makes the window feel stuck while it is turned.
+constexpr double kSlowFrameS = 0.05;
 /// Faces added to the whole picture between two looks at what the user does.
 constexpr std::size_t kFacesAtATime = 80000;
 
@@ -47,6 +50,7 @@ SurfaceView::SurfaceView()
 
 void SurfaceView::show(const ShownMesh& mesh) {
   mesh_ = std::make_unique<MeshBuffers>(mesh);
+  selection_.reset();
   blocks_ = mesh.blocks;
   box_mm_ = mesh.box_mm;
   dirty_ = true;
@@ -111,6 +115,9 @@ void SurfaceView::begin_surface(const Scene& scene, const Layer& layer) {
   surface_.set("red", scene.look.red);
   surface_.set("amber", scene.look.amber);
   surface_.set("colour_map", 0);
+  surface_.set("selected_colour", scene.look.selected);
+  surface_.set("selection", 0);
+  surface_.set("selected", 1);
   bind_texture(0, colour_map_.id());
   glEnable(GL_DEPTH_TEST);
   glEnable(GL_PROGRAM_POINT_SIZE);
@@ -139,8 +146,15 @@ void SurfaceView::draw_geometry(Layer& layer, const Scene& scene, std::size_t fi
     mesh_->draw_coarse();
     faces_drawn_ += mesh_->coarse_faces();
   } else {
+    if (selection_ && !selection_->empty()) {
+      surface_.set("selection", 1);
+      glActiveTexture(GL_TEXTURE1);
+      glBindTexture(GL_TEXTURE_BUFFER, selection_->texture());
+      glActiveTexture(GL_TEXTURE0);
+    }
     for (std::size_t b = first_block; b < end_block; ++b) {
       if (!outside(blocks_[b].box_mm, clip_from_model)) {
+        surface_.set("first_face", static_cast<int>(blocks_[b].first));
         mesh_->draw_faces(blocks_[b].first, blocks_[b].count);
         faces_drawn_ += blocks_[b].count;
       }
@@ -219,17 +233,27 @@ bool SurfaceView::draw(const OrbitCamera& camera, const Look& look, int width, i
   const bool changed = dirty_ || !(scene == scene_) || texture() == 0;
   scene_ = scene;
   dirty_ = false;
-  const bool has_coarse = mesh_ && mesh_->coarse_faces() > 0;
   if (changed) {
+    // In motion: few faces, and half the pixels where that is slow still.
+    const bool coarse = mesh_ && mesh_->coarse_faces() > 0;
+    Scene rough = scene;
+    if (slow_) {
+      rough.width = std::max(1, scene.width / 2);
+      rough.height = std::max(1, scene.height / 2);
+    }
+    const auto began = std::chrono::steady_clock::now();
     Layer& layer = layers_[static_cast<std::size_t>(shown_layer_)];
-    clear(layer, scene);
+    clear(layer, rough);
     faces_drawn_ = 0;
-    draw_geometry(layer, scene, 0, blocks_.size(), has_coarse);
-    draw_marks(layer, scene);
-    light(layer, scene);
+    draw_geometry(layer, rough, 0, blocks_.size(), coarse);
+    draw_marks(layer, rough);
+    light(layer, rough);
+    glFinish();
+    const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - began;
     next_block_ = 0;
-    whole_ = !has_coarse;
-    return has_coarse;
+    whole_ = !coarse && !slow_;
+    slow_ = slow_ || spent.count() > kSlowFrameS;
+    return !whole_;
   }
   if (whole_) {
     return false;
@@ -267,6 +291,27 @@ void SurfaceView::draw_whole(const OrbitCamera& camera, const Look& look, int wi
   scene_ = scene;
   dirty_ = false;
   whole_ = true;
+}
+
+bool SurfaceView::select(const std::vector<Eigen::Vector2f>& corners, SelectionStep step, bool through) {
+  if (!mesh_ || mesh_->points_only() || !whole_ || corners.size() < 3) {
+    return false;
+  }
+  if (!selection_) {
+    selection_ = std::make_unique<FaceSelection>(mesh_->faces());
+  }
+  const float aspect = static_cast<float>(scene_.width) / static_cast<float>(scene_.height);
+  const Layer& layer = layers_[static_cast<std::size_t>(shown_layer_)];
+  selection_->apply(*mesh_, scene_.camera.clip_from_model(aspect),
+                    polygon_mask(corners, scene_.width, scene_.height), scene_.width, scene_.height,
+                    through ? 0 : layer.target.depth(), step);
+  dirty_ = true;
+  return true;
+}
+
+void SurfaceView::clear_selection() {
+  selection_.reset();
+  dirty_ = true;
 }
 
 std::optional<Eigen::Vector3f> SurfaceView::point_at(const Eigen::Vector2f& px) const {

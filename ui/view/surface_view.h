@@ -11,6 +11,7 @@
 
 #include "ui/gl/frame_target.h"
 #include "ui/gl/shader_program.h"
+#include "ui/view/face_selection.h"
 #include "ui/view/mesh_buffers.h"
 #include "ui/view/orbit_camera.h"
 
@@ -32,6 +33,7 @@ struct Look {
   Eigen::Vector3f clay{0.86F, 0.72F, 0.55F};
   Eigen::Vector3f red{0.84F, 0.12F, 0.15F};
   Eigen::Vector3f amber{0.89F, 0.63F, 0.16F};
+  Eigen::Vector3f selected{0.25F, 0.55F, 0.95F};
   Eigen::Vector4f ground{0, 0, 0, 0};
   bool operator==(const Look&) const = default;
 };
@@ -56,6 +58,12 @@ class SurfaceView {
   /// The picture; id 0 before the first draw.
   [[nodiscard]] unsigned texture() const { return picture_.width() > 0 ? picture_.colour(0) : 0; }
   [[nodiscard]] Image read() const { return picture_.read(); }
+  /// Selects faces by a polygon in the last picture, corners in its pixels from the top left. `through`: also
+  /// what is hidden there. False before the whole surface stands in the picture.
+  bool select(const std::vector<Eigen::Vector2f>& corners, SelectionStep step, bool through);
+  void clear_selection();
+  /// Null before the first select(). By face of ShownMesh::faces.
+  [[nodiscard]] const FaceSelection* selection() const { return selection_.get(); }
   /// Model point that is seen at a pixel (from the top left) of the last picture.
   [[nodiscard]] std::optional<Eigen::Vector3f> point_at(const Eigen::Vector2f& px) const;
   /// Faces in the last picture, and outside it by their blocks.
@@ -86,6 +94,7 @@ class SurfaceView {
   PixelTexture sphere_, colour_map_;
   std::unique_ptr<MeshBuffers> mesh_;
   std::unique_ptr<PointBuffers> points_;
+  std::unique_ptr<FaceSelection> selection_;
   std::vector<FaceBlock> blocks_;
   Eigen::AlignedBox3f box_mm_;
   std::array<Layer, 2> layers_;
@@ -96,6 +105,7 @@ class SurfaceView {
   bool dirty_ = true;           ///< mesh, points or values have changed
   std::size_t next_block_ = 0;  ///< of the whole picture that comes together
   bool whole_ = false;
+  bool slow_ = false;  ///< this machine draws slowly
   std::size_t faces_drawn_ = 0;
 };
 

@@ -110,6 +110,20 @@ void ViewerScreen::draw_tape(UiContext& ui, ImVec2 origin, ImVec2 size) const {
   }
 }
 
+void ViewerScreen::draw_polygon(UiContext& ui, ImVec2 origin) const {
+  ImDrawList* draw = ImGui::GetWindowDrawList();
+  const ImU32 ink = packed(ui.colours.ghost);
+  const ImVec2 mouse = ImGui::GetIO().MousePos;
+  for (std::size_t k = 0; k < polygon_.size(); ++k) {
+    const ImVec2 a{origin.x + polygon_[k].x(), origin.y + polygon_[k].y()};
+    const ImVec2 b = k + 1 < polygon_.size()
+                         ? ImVec2{origin.x + polygon_[k + 1].x(), origin.y + polygon_[k + 1].y()}
+                         : mouse;
+    draw->AddLine(a, b, ink, 2);
+    draw->AddCircleFilled(a, k == 0 ? 6.0F : 4.0F, ink);
+  }
+}
+
 void ViewerScreen::draw_scale_bar(UiContext& ui, ImVec2 origin, ImVec2 size) const {
   const double mm_per_px = static_cast<double>(camera_.mm_per_px(size.y));
   // 1, 2 or 5 times a power of ten that takes about a fifth of the picture.
@@ -152,7 +166,8 @@ void ViewerScreen::draw_legend(UiContext& ui, ImVec2 origin, ImVec2 size) const 
   for (int k = 0; k < kSteps; ++k) {
     const auto& c = kColours[static_cast<std::size_t>(255 * k / (kSteps - 1))];
     const float low = at.y + height * static_cast<float>(kSteps - 1 - k) / kSteps;
-    draw->AddRectFilled({at.x, low}, {at.x + width, low + height / kSteps + 1}, IM_COL32(c[0], c[1], c[2], 255));
+    draw->AddRectFilled({at.x, low}, {at.x + width, low + height / kSteps + 1},
+                        IM_COL32(c[0], c[1], c[2], 255));
   }
   for (int k = 0; k <= 4; ++k) {
     const float part = static_cast<float>(k) / 4;

@@ -89,13 +89,55 @@ void ViewerScreen::draw_overlay_choice(UiContext& ui) {
   ui.target("overlay");
 }
 
+void ViewerScreen::draw_selecting(UiContext& ui) {
+  coloured_text(ui.colours.faint, ui.text(Text::kSelectHint));
+  const auto step = [&](const char* name, Text text, SelectionStep which) {
+    if (ImGui::RadioButton(ui.text(text), step_ == which)) {
+      step_ = which;
+    }
+    ui.target(name);
+  };
+  step("select-union", Text::kUnion, SelectionStep::kUnion);
+  ImGui::SameLine();
+  step("select-intersect", Text::kIntersect, SelectionStep::kIntersection);
+  ImGui::SameLine();
+  step("select-subtract", Text::kSubtract, SelectionStep::kDifference);
+  tick(ui, "visible-only", ui.text(Text::kVisibleOnly), visible_only_);
+  if (surface_.selection() == nullptr) {
+    return;
+  }
+  ui.facts.insert(selected_faces_.empty() ? "nothing-selected" : "selected");
+  coloured_text(ui.colours.text,
+                filled(ui.text(Text::kSelected), grouped(selected_faces_.size()), selected_mm2_).c_str());
+  if (plain_button(ui, "keep-selection", ui.text(Text::kKeepSelection), !selected_faces_.empty())) {
+    const std::string stem =
+        state_.name.empty() ? "model" : std::filesystem::path(state_.name).stem().string();
+    std::filesystem::path file;
+    std::error_code error;
+    do {
+      ++parts_kept_;
+      file = pictures_ / fmt::format("{}_part_{:02}.ply", stem, parts_kept_);
+    } while (std::filesystem::exists(file, error));
+    viewing_.keep_part(selected_faces_, file);
+    picture_note_ = filled(ui.text(Text::kPictureKept), file.string());
+  }
+  ImGui::SameLine();
+  if (plain_button(ui, "clear-selection", ui.text(Text::kClear))) {
+    surface_.clear_selection();
+    selected_faces_.clear();
+    selected_mm2_ = 0;
+  }
+}
+
 void ViewerScreen::draw_facts(UiContext& ui) {
   ImGui::PushFont(ui.fonts.small);
   if (const MeshBuffers* buffers = surface_.buffers()) {
     coloured_text(ui.colours.faint, filled(ui.text(Text::kFaces), grouped(shown_.faces.size())).c_str());
-    coloured_text(ui.colours.faint, filled(ui.text(Text::kVertices), grouped(shown_.positions.size())).c_str());
     coloured_text(ui.colours.faint,
-                  filled(ui.text(Text::kGraphicsMemory), static_cast<double>(buffers->bytes()) / 1e6).c_str());
+                  filled(ui.text(Text::kVertices), grouped(shown_.positions.size())).c_str());
+    coloured_text(
+        ui.colours.faint,
+        filled(ui.text(Text::kGraphicsMemory), static_cast<double>(buffers->bytes()) / 1e6).c_str());
   }
   if (shown_.left_out > 0) {
     coloured_text(ui.colours.amber, filled(ui.text(Text::kLeftOut), grouped(shown_.left_out)).c_str());
@@ -146,14 +188,19 @@ void ViewerScreen::draw_panel(UiContext& ui, ImVec2 size) {
     if (ImGui::RadioButton(ui.text(text), tool_ == which)) {
       tool_ = which;
       tape_.clear();
+      polygon_.clear();
     }
     ui.target(name);
   };
   tool("tool-turn", Text::kMove, Tool::kTurn);
   ImGui::SameLine();
   tool("tool-measure", Text::kMeasure, Tool::kMeasure);
+  ImGui::SameLine();
+  tool("tool-select", Text::kSelect, Tool::kSelect);
   if (tool_ == Tool::kMeasure) {
     coloured_text(ui.colours.faint, ui.text(Text::kMeasureHint));
+  } else if (tool_ == Tool::kSelect) {
+    draw_selecting(ui);
   }
   ImGui::PopFont();
   ImGui::SetNextItemWidth(ui.px(6));
@@ -197,8 +244,8 @@ void ViewerScreen::draw_wedge_table(UiContext& ui, ImVec2 size) {
   const std::string title = fmt::format("{}, 0 - {:.2f} mm", ui.text(Text::kDepth), deepest);
   ImGui::PlotHistogram("##depths", bins.data(), static_cast<int>(kBins), 0, title.c_str(), 0, FLT_MAX,
                        {ImGui::GetContentRegionAvail().x, ui.px(3.5F)});
-  if (ImGui::BeginTable("table", 4,
-                        ImGuiTableFlags_ScrollY | ImGuiTableFlags_RowBg | ImGuiTableFlags_SizingStretchProp)) {
+  if (ImGui::BeginTable(
+          "table", 4, ImGuiTableFlags_ScrollY | ImGuiTableFlags_RowBg | ImGuiTableFlags_SizingStretchProp)) {
     ImGui::TableSetupScrollFreeze(0, 1);
     ImGui::TableSetupColumn("id");
     ImGui::TableSetupColumn(ui.text(Text::kOrder));

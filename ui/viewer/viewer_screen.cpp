@@ -149,7 +149,8 @@ void ViewerScreen::draw(UiContext& ui, ImVec2 size) {
 }
 
 void ViewerScreen::draw_surface(UiContext& ui, ImVec2 size) {
-  ImGui::BeginChild("surface", size, false, ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse);
+  ImGui::BeginChild("surface", size, false,
+                    ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse);
   const ImVec2 origin = ImGui::GetCursorScreenPos();
   const ImVec2 end{origin.x + size.x, origin.y + size.y};
   ImGui::InvisibleButton("##surface", size,
@@ -189,6 +190,7 @@ void ViewerScreen::draw_surface(UiContext& ui, ImVec2 size) {
     draw_wedges(ui, origin, size);
   }
   draw_tape(ui, origin, size);
+  draw_polygon(ui, origin);
   draw_scale_bar(ui, origin, size);
   draw_legend(ui, origin, size);
   draw->PopClipRect();
@@ -208,11 +210,15 @@ void ViewerScreen::use_pointer(UiContext& /*ui*/, ImVec2 origin, ImVec2 size) {
   if (ImGui::IsItemActive() && moved) {
     dragged_ = dragged_ || ImGui::IsMouseDragging(ImGuiMouseButton_Left, 3) ||
                ImGui::IsMouseDown(ImGuiMouseButton_Right) || ImGui::IsMouseDown(ImGuiMouseButton_Middle);
+    if (dragged_) {
+      polygon_.clear();  // it was drawn over another view
+    }
     if (ImGui::IsMouseDown(ImGuiMouseButton_Right)) {
       // As one moves a lamp over the tablet: in the middle it stands above, at the rim it rakes.
       const Eigen::Vector2f at = part(io.MousePos);
       const float out = std::min(0.985F, at.norm());
-      const Eigen::Vector2f along = at.norm() > 1e-3F ? Eigen::Vector2f(at.normalized()) : Eigen::Vector2f(0, 1);
+      const Eigen::Vector2f along =
+          at.norm() > 1e-3F ? Eigen::Vector2f(at.normalized()) : Eigen::Vector2f(0, 1);
       look_.lamp = true;
       look_.light = {along.x() * out, along.y() * out, std::sqrt(1 - out * out)};
     } else if (ImGui::IsMouseDown(ImGuiMouseButton_Middle) || io.KeyShift) {
@@ -231,7 +237,14 @@ void ViewerScreen::use_pointer(UiContext& /*ui*/, ImVec2 origin, ImVec2 size) {
   }
   if (ImGui::IsItemDeactivated() && !dragged_ && ImGui::IsMouseReleased(ImGuiMouseButton_Left)) {
     const Eigen::Vector2f px(io.MousePos.x - origin.x, io.MousePos.y - origin.y);
-    if (tool_ == Tool::kMeasure) {
+    if (tool_ == Tool::kSelect) {
+      if (ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left) ||
+          (!polygon_.empty() && (polygon_.front() - px).norm() < 8)) {
+        close_polygon();
+      } else {
+        polygon_.push_back(px);
+      }
+    } else if (tool_ == Tool::kMeasure) {
       if (const auto place = surface_.point_at(px)) {
         if (tape_.size() == 2) {
           tape_.clear();
@@ -245,6 +258,23 @@ void ViewerScreen::use_pointer(UiContext& /*ui*/, ImVec2 origin, ImVec2 size) {
   }
 }
 
+void ViewerScreen::close_polygon() {
+  if (surface_.select(polygon_, step_, !visible_only_)) {
+    selected_faces_.clear();
+    selected_mm2_ = 0;
+    const std::vector<std::uint32_t> selected = surface_.selection()->read();
+    for (std::size_t f = 0; f < selected.size(); ++f) {
+      if (selected[f] != 0) {
+        const auto& [a, b, c] = shown_.faces[f];
+        const auto& p = shown_.positions;
+        selected_mm2_ += 0.5 * static_cast<double>((p[b] - p[a]).cross(p[c] - p[a]).norm());
+        selected_faces_.push_back(shown_.face_of[f]);
+      }
+    }
+  }
+  polygon_.clear();
+}
+
 void ViewerScreen::choose(int wedge, bool go_there) {
   wedge_ = wedge;
   untouched_ = untouched_ && !go_there;
@@ -256,7 +286,8 @@ void ViewerScreen::choose(int wedge, bool go_there) {
   if (normal.norm() > 0.5F && (camera_.eye_from_model * normal).z() < 0.5F) {
     const Eigen::Vector3f now = camera_.eye_from_model * normal;
     camera_.eye_from_model =
-        (Eigen::Quaternionf::FromTwoVectors(now, Eigen::Vector3f::UnitZ()) * camera_.eye_from_model).normalized();
+        (Eigen::Quaternionf::FromTwoVectors(now, Eigen::Vector3f::UnitZ()) * camera_.eye_from_model)
+            .normalized();
   }
   camera_.centre_mm = chosen.depth_point_mm.cast<float>();
 }

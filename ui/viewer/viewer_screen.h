@@ -30,7 +30,7 @@ class ViewerScreen {
   [[nodiscard]] bool wants_scanning() { return std::exchange(wants_scanning_, false); }
 
  private:
-  enum class Tool { kTurn, kMeasure };
+  enum class Tool { kTurn, kMeasure, kSelect };
   void take_state(UiContext& ui);
   void draw_panel(UiContext& ui, ImVec2 size);
   void draw_light(UiContext& ui);
@@ -41,6 +41,9 @@ class ViewerScreen {
   void draw_wedges(UiContext& ui, ImVec2 origin, ImVec2 size) const;
   void draw_tape(UiContext& ui, ImVec2 origin, ImVec2 size) const;
   void draw_scale_bar(UiContext& ui, ImVec2 origin, ImVec2 size) const;
+  void draw_polygon(UiContext& ui, ImVec2 origin) const;
+  void close_polygon();
+  void draw_selecting(UiContext& ui);
   void draw_legend(UiContext& ui, ImVec2 origin, ImVec2 size) const;
   void draw_wedge_table(UiContext& ui, ImVec2 size);
   void look_at(Face face);
@@ -62,7 +65,13 @@ class ViewerScreen {
   std::shared_ptr<const std::vector<float>> shown_openness_, shown_values_;
   std::optional<MeshField> field_;  ///< that the overlay shows
   Tool tool_ = Tool::kTurn;
-  std::vector<Eigen::Vector3f> tape_;  ///< up to two places
+  std::vector<Eigen::Vector3f> tape_;     ///< up to two places
+  std::vector<Eigen::Vector2f> polygon_;  ///< corners so far, pixels of the picture
+  SelectionStep step_ = SelectionStep::kUnion;
+  bool visible_only_ = true;
+  std::vector<std::uint32_t> selected_faces_;  ///< of the mesh
+  double selected_mm2_ = 0;
+  int parts_kept_ = 0;
   int wedge_ = -1;
   bool scroll_to_wedge_ = false;
   bool show_wedges_ = true;
