@@ -32,6 +32,7 @@ using Action = std::function<Result<int>(CommandContext&)>;
 /// Each registers its verb with the parser and, when the verb is chosen, sets `chosen`.
 void add_drivers(CLI::App& app, Action& chosen);
 void add_simulate(CLI::App& app, Action& chosen);
+void add_calibrate(CLI::App& app, Action& chosen);
 void add_scan(CLI::App& app, Action& chosen);
 void add_register(CLI::App& app, Action& chosen);
 void add_plan(CLI::App& app, Action& chosen);
