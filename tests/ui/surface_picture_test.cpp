@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright The Dubsar developers
-// The shadings against stored pictures of the same surface. DUBSAR_KEEP_PICTURES=FOLDER keeps what is drawn now:
-// look at it before it becomes the stored one.
+// The shadings against stored pictures of the same surface. DUBSAR_KEEP_PICTURES=FOLDER keeps what is drawn
+// now: look at it before it becomes the stored one.
 
 #include <gtest/gtest.h>
 #include <png.h>
@@ -107,7 +107,8 @@ class Shading : public ::testing::Test {
       sum += apart;
       far += apart > 40 ? 1 : 0;
     }
-    // Another driver rounds otherwise and its edges fall otherwise; light from another side is far beyond this.
+    // Another driver rounds otherwise and its edges fall otherwise; light from another side is far beyond
+    // this.
     EXPECT_LT(sum / static_cast<double>(stored.bytes.size()), 2.0) << name;
     EXPECT_LT(static_cast<double>(far) / static_cast<double>(stored.bytes.size()), 0.01) << name;
   }

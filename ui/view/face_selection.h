@@ -31,10 +31,11 @@ class FaceSelection {
   FaceSelection(const FaceSelection&) = delete;
   FaceSelection& operator=(const FaceSelection&) = delete;
 
-  /// `depth`: the depth texture of a picture of that size under `clip_from_model`, when only faces that are seen
-  /// in it are meant; 0 for all. A face belongs to a polygon when its middle does.
+  /// `depth`: the depth texture of a picture of that size under `clip_from_model`, when only faces that are
+  /// seen in it are meant; 0 for all. A face belongs to a polygon when its middle does.
   void apply(const MeshBuffers& mesh, const Eigen::Matrix4f& clip_from_model,
-             const std::vector<std::uint8_t>& mask, int width, int height, unsigned depth, SelectionStep step);
+             const std::vector<std::uint8_t>& mask, int width, int height, unsigned depth,
+             SelectionStep step);
   void clear();
   [[nodiscard]] bool empty() const { return empty_; }
   /// Buffer texture of one 32-bit number a face, 1 for the selected.
