@@ -119,7 +119,8 @@ Result<CalibrationReport> calibrate_rig(const std::vector<CalibrationView>& view
   if (!intrinsics) {
     return std::unexpected(intrinsics.error());
   }
-  std::vector<StripeSample> stripes = stripe_samples(views, *intrinsics, options.board);
+  std::vector<StripeSample> stripes =
+      stripe_samples(views, *intrinsics, options.board, options.plate_margin_mm);
   JointState state;
   state.camera = intrinsics->camera;
   state.camera_from_board = intrinsics->camera_from_board;
@@ -174,7 +175,8 @@ Result<CalibrationReport> calibrate_rig(const std::vector<CalibrationView>& view
   quality.left_out = intrinsics->left_out;
   intrinsics->camera = state.camera;
   intrinsics->camera_from_board = state.camera_from_board;
-  report.missing = missing_poses(views, *intrinsics, options.board, state.has_laser ? &rig.laser : nullptr);
+  report.missing = missing_poses(views, *intrinsics, options.board, state.has_laser ? &rig.laser : nullptr,
+                                 options.plate_margin_mm);
   return report;
 }
 

@@ -103,7 +103,8 @@ TEST(CalibrationSet, SaysWhatIsWrong) {
   EXPECT_NE(said("board = \"b\"\nbord = 1\n[[pose]]\nboard = \"a\"\n").find("bord"), std::string::npos);
   EXPECT_NE(said("board = \"b\"\n[[pose]]\nboard = \"../a\"\n").find("inside"), std::string::npos);
   EXPECT_NE(said("board = \"b\"\n[[pose]]\nboard = \"/a\"\n").find("inside"), std::string::npos);
-  EXPECT_NE(said("board = \"b\"\nmotion = \"linear\"\n[[pose]]\nboard = \"a\"\n[[stage]]\nboard = \"c\"\nposition_deg = 3\n")
+  EXPECT_NE(said("board = \"b\"\nmotion = \"linear\"\n[[pose]]\nboard = \"a\"\n[[stage]]\nboard = "
+                 "\"c\"\nposition_deg = 3\n")
                 .find("position_mm"),
             std::string::npos);
 }
