@@ -50,7 +50,7 @@ Result<Range> range_from(double low, double high, const char* of, const std::str
 }
 
 /// Head, turntable and arm.
-Status motion_from(const dubsar_capabilities& from, Rig& rig, const std::string& where) {
+Status reach_from(const dubsar_capabilities& from, Rig& rig, const std::string& where) {
   Status status;
   const auto take = [&](Range& to, double low, double high, const char* of) {
     const Result<Range> range = range_from(low, high, of, where);
@@ -140,6 +140,11 @@ ScannerView view_from(const dubsar_view& view) {
 Result<DeviceCapabilities> capabilities_from(const dubsar_capabilities& from, const std::string& where) {
   DeviceCapabilities out;
   out.finite = (from.flags & DUBSAR_IS_FINITE) != 0;
+  out.yields_scans = (from.flags & DUBSAR_YIELDS_NO_SCANS) == 0;
+  out.yields_frames = (from.flags & DUBSAR_YIELDS_FRAMES) != 0;
+  out.is_stage = (from.flags & DUBSAR_IS_STAGE) != 0;
+  out.serial = text(from.serial);
+  out.model = text(from.model);
   if (out.finite && from.scan_count >= 0) {
     out.scan_count = from.scan_count;
   }
@@ -171,7 +176,7 @@ Result<DeviceCapabilities> capabilities_from(const dubsar_capabilities& from, co
   if (std::isfinite(from.calibration_age_days) && from.calibration_age_days >= 0) {
     rig.calibration_age_days = from.calibration_age_days;
   }
-  if (const Status moves = motion_from(from, rig, where); !moves) {
+  if (const Status moves = reach_from(from, rig, where); !moves) {
     return std::unexpected(moves.error());
   }
   out.rig = std::move(rig);
@@ -229,6 +234,9 @@ Result<Profile> profile_from(const dubsar_profile& from, const std::string& wher
   out.rgb = span(from.rgb, 3 * n);
   out.normals = span(from.normals, 3 * n);
   out.timestamp_ns = from.timestamp_ns;
+  if ((from.flags & DUBSAR_PROFILE_ENCODER) != 0) {
+    out.encoder = from.encoder;
+  }
   return out;
 }
 

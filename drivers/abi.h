@@ -33,6 +33,14 @@ template <class T>
   return out;
 }
 
+/// A function that drivers need not have: null when the driver was made before there was one, or has none.
+template <class Function>
+[[nodiscard]] Function* offered(const dubsar_driver* driver, Function* dubsar_driver::*member) {
+  const auto offset = static_cast<std::size_t>(reinterpret_cast<const char*>(&(driver->*member)) -
+                                               reinterpret_cast<const char*>(driver));
+  return offset + sizeof(Function*) <= driver->struct_size ? driver->*member : nullptr;
+}
+
 /// Text of a field of fixed size, whether the driver ended it with NUL or not.
 template <std::size_t N>
 [[nodiscard]] std::string text(const char (&field)[N]) {
@@ -64,5 +72,9 @@ template <class Things, class Name>
                                                            const std::string& where);
 [[nodiscard]] Result<ScanInfo> scan_info_from(const dubsar_scan_info& info, const std::string& where);
 [[nodiscard]] Result<Profile> profile_from(const dubsar_profile& profile, const std::string& where);
+/// Without its lease.
+[[nodiscard]] Result<Frame> frame_from(const dubsar_frame& frame, const std::string& where);
+[[nodiscard]] Result<StageAxis> axis_from(const dubsar_axis& axis, const std::string& where);
+[[nodiscard]] Result<StageMotion> motion_from(const dubsar_motion& motion, const std::string& where);
 
 }  // namespace dubsar::abi

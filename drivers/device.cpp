@@ -117,12 +117,10 @@ Status check_value(const SettingInfo& setting, const SettingValue& value, const 
 
 }  // namespace
 
-void Device::Closer::operator()(dubsar_device* device) const {
-  driver->close(device);
-}
-
 Device::Device(const dubsar_driver* driver, dubsar_device* device, std::string uri)
-    : driver_(driver), device_(device, Closer{driver}), uri_(std::move(uri)) {}
+    : driver_(driver),
+      device_(device, [driver](dubsar_device* open) { driver->close(open); }),
+      uri_(std::move(uri)) {}
 
 Result<DeviceCapabilities> Device::capabilities() const {
   auto lent = abi::lent<dubsar_capabilities>();

@@ -2,6 +2,7 @@
 // Copyright The Dubsar developers
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -14,6 +15,8 @@
 #include "core/range_grid.h"
 #include "core/result.h"
 #include "core/rig.h"
+#include "drivers/frame.h"
+#include "drivers/stage.h"
 
 struct dubsar_device;
 struct dubsar_driver;
@@ -42,6 +45,11 @@ struct DeviceCapabilities {
   bool can_place = false;  ///< place() does something
   bool finite = false;     ///< plays what was recorded; scan() comes to an end
   std::optional<std::int64_t> scan_count;
+  bool yields_scans = true;    ///< scan() makes scans
+  bool yields_frames = false;  ///< a camera: start_frames() and what goes with it
+  bool is_stage = false;       ///< axes and lasers: axes() and what goes with it
+  std::string serial;          ///< of this one device; empty when not known
+  std::string model;
 };
 
 /// What is known of a scan before its first profile.
@@ -67,6 +75,7 @@ struct Profile {
   std::span<const std::uint8_t> rgb;
   std::span<const float> normals;
   std::int64_t timestamp_ns = 0;
+  std::optional<std::int64_t> encoder;  ///< counts of the motion encoder
 };
 
 struct ScanTally {
@@ -86,12 +95,15 @@ class ProfileSink {
 
 enum class ScanOutcome { kScanned, kExhausted };
 
-/// An open device; closes it when it goes. Use from one thread at a time. What a driver answers is checked
-/// here, so that a faulty one gives an error rather than a crash as far as that can be told.
+/// An open device; closes it when it goes, and its last frame with it. Use from one thread at a time. What a
+/// driver answers is checked here, so that a faulty one gives an error rather than a crash as far as that can
+/// be told.
 class Device {
  public:
   /// Takes over an opened device of the driver. For DriverRegistry.
   Device(const dubsar_driver* driver, dubsar_device* device, std::string uri);
+  Device(Device&& other) noexcept = default;
+  Device& operator=(Device&& other) noexcept = default;
 
   [[nodiscard]] const std::string& uri() const { return uri_; }
   [[nodiscard]] Result<DeviceCapabilities> capabilities() const;
@@ -112,13 +124,29 @@ class Device {
   /// had its end() when it had a begin().
   Result<ScanOutcome> scan(ProfileSink& sink);
 
+  /// Starts the stream of a camera with a pool of so many buffers (0: as the driver likes). Of a device that
+  /// was gone: looks for it again.
+  Status start_frames(std::uint32_t pool = 0);
+  /// The next frame; nothing when none came in time. kDevice within 2 s when the device is gone.
+  [[nodiscard]] Result<std::optional<Frame>> next_frame(std::chrono::milliseconds timeout);
+  Status stop_frames();
+  [[nodiscard]] Result<FrameCounters> frame_counters() const;
+  /// One frame of a camera whose setting `trigger` is `software`.
+  Status trigger_frame();
+
+  [[nodiscard]] Result<std::vector<StageAxis>> axes() const;
+  Status home();
+  /// kUsage before anything moves when the position is outside the soft limits.
+  Status move(const StageMove& move);
+  [[nodiscard]] Result<StageMotion> motion() const;
+  /// Power from 0 to 1.
+  Status set_laser(std::uint32_t laser, double power);
+  /// From any thread: motion ends at once, lasers go off, and nothing moves until home().
+  Status emergency_stop() const;
+
  private:
-  struct Closer {
-    const dubsar_driver* driver = nullptr;
-    void operator()(dubsar_device* device) const;
-  };
   const dubsar_driver* driver_;
-  std::unique_ptr<dubsar_device, Closer> device_;
+  std::shared_ptr<dubsar_device> device_;  // shared with the frames that are lent
   std::string uri_;
 };
 

@@ -15,7 +15,13 @@
  * - Dubsar uses a device from one thread at a time; different devices may be used at once. All callbacks come
  * on the thread that made the call. A driver that captures with a thread of its own hands the profiles over
  *   through a queue of fixed size and counts what it had to drop.
- * - Functions return a dubsar_code; whenever it is neither DUBSAR_OK nor DUBSAR_END, the error is filled. */
+ * - Functions return a dubsar_code; whenever it is none of DUBSAR_OK, DUBSAR_END and DUBSAR_TIMEOUT, the
+ * error is filled.
+ * - Nothing blocks for ever: a function that talks to a device gives up after 2 s without an answer (a homing
+ *   or a move: 2 s after the device last gave a sign of life).
+ *
+ * A driver serves any of three kinds of device, told by the flags of its capabilities: range sources
+ * (scan()), cameras (start_frames() and its group) and stages (describe_axes() and its group). */
 
 #include <stdint.h>
 
@@ -23,6 +29,8 @@
 extern "C" {
 #endif
 
+/* Version 1 has grown at its end only: stop() came first, then frames and stages. A program or driver of
+ * before them still fits. */
 #define DUBSAR_DRIVER_ABI_VERSION 1u
 
 typedef enum dubsar_code {
@@ -33,7 +41,8 @@ typedef enum dubsar_code {
   DUBSAR_DEVICE = 4,    /* the device failed or is gone */
   DUBSAR_STORAGE = 5,   /* the disk refused */
   DUBSAR_CANCELLED = 6, /* a callback returned nonzero */
-  DUBSAR_INTERNAL = 7   /* a defect of the driver */
+  DUBSAR_INTERNAL = 7,  /* a defect of the driver */
+  DUBSAR_TIMEOUT = 8    /* of next_frame() alone: nothing came in the time that was given */
 } dubsar_code;
 
 /* What went wrong, where, and what to do about it: one line each, no trailing dot. */
@@ -122,7 +131,10 @@ typedef struct dubsar_view {
 #define DUBSAR_HAS_RIG 16u       /* the geometry below is that of the device; else it is not known */
 #define DUBSAR_HAS_ARM 32u  /* an arm carries the scanner anywhere: arm_* below, placements have a pose */
 #define DUBSAR_HAS_HEAD 64u /* head_* is the body of the scanner */
-#define DUBSAR_HAS_TURN_LIMITS 128u /* turntable_min_rad and turntable_max_rad are its ends */
+#define DUBSAR_HAS_TURN_LIMITS 128u  /* turntable_min_rad and turntable_max_rad are its ends */
+#define DUBSAR_YIELDS_FRAMES 256u    /* a camera: the group of start_frames() works */
+#define DUBSAR_IS_STAGE 512u         /* motion and laser: the group of describe_axes() works */
+#define DUBSAR_YIELDS_NO_SCANS 1024u /* scan() answers DUBSAR_USAGE: it takes a rig to make scans of this */
 
 /* What a device can do, and its geometry. The stage frame has its origin at the turntable's centre on the
  * support, z up. The scanner frame: origin in the centre of the measuring volume, x along a profile, y
@@ -154,6 +166,8 @@ typedef struct dubsar_capabilities {
   double arm_reach_mm[2];    /* from there, least and most */
   double arm_height_mm[2];   /* above the support */
   double arm_standoff_mm[2]; /* from the origin of the stage */
+  char serial[64];           /* of this one device, to tell it from its like; empty when not known */
+  char model[128];           /* maker and model; empty when not known */
 } dubsar_capabilities;
 
 /* Where the next scan is to be taken from. */
@@ -213,7 +227,12 @@ typedef struct dubsar_profile {
   const uint8_t* rgb;      /* or NULL */
   const float* normals;    /* 3 * count, unit, of unordered points; or NULL */
   int64_t timestamp_ns;    /* 0 when not known */
+  uint32_t flags;          /* DUBSAR_PROFILE_* */
+  uint32_t reserved;
+  int64_t encoder; /* with DUBSAR_PROFILE_ENCODER: counts of the motion encoder when it was taken */
 } dubsar_profile;
+
+#define DUBSAR_PROFILE_ENCODER 1u
 
 typedef struct dubsar_scan_end {
   uint32_t struct_size;
@@ -233,6 +252,113 @@ typedef struct dubsar_sink {
   int32_t (*profile)(void* user, const dubsar_profile* profile);
   void (*end)(void* user, const dubsar_scan_end* end);
 } dubsar_sink;
+
+/* ---- Frames of a camera ---- */
+
+/* Pixel formats by their GenICam (PFNC) numbers. A driver delivers these and no others, unpacked, in the byte
+ * order of this machine; what a camera sends otherwise it unpacks or converts on the thread that calls
+ * next_frame(), never on one that captures. Mono10 to Mono16 take two bytes, the value in the low bits. */
+typedef enum dubsar_pixel_format {
+  DUBSAR_PIXEL_MONO8 = 0x01080001,
+  DUBSAR_PIXEL_MONO10 = 0x01100003,
+  DUBSAR_PIXEL_MONO12 = 0x01100005,
+  DUBSAR_PIXEL_MONO14 = 0x01100025,
+  DUBSAR_PIXEL_MONO16 = 0x01100007
+} dubsar_pixel_format;
+
+#define DUBSAR_FRAME_INCOMPLETE 1u /* a part of the pixels never came */
+#define DUBSAR_FRAME_ENCODER 2u    /* encoder is known */
+#define DUBSAR_FRAME_EXPOSED 4u    /* timestamp_ns is of the exposure; else of the arrival */
+#define DUBSAR_FRAME_LATE 8u       /* waited longer than a frame takes before it was fetched */
+
+/* One frame, lent by a driver from its pool. The pixels stay until release_frame(lease), also behind
+ * stop_frames() and when the device is gone; close() ends all leases. */
+typedef struct dubsar_frame {
+  uint32_t struct_size;
+  uint32_t flags; /* DUBSAR_FRAME_* */
+  uint64_t lease;
+  uint64_t id;                 /* ascending from start_frames() on; a gap is frames that were lost */
+  int64_t timestamp_ns;        /* on this machine's CLOCK_MONOTONIC */
+  int64_t device_timestamp_ns; /* on the device's own clock; 0 when it has none */
+  int64_t encoder;
+  const uint8_t* pixels; /* row 0 first */
+  uint64_t size_bytes;
+  uint32_t width;
+  uint32_t height;
+  uint32_t stride_bytes;
+  uint32_t pixel_format; /* dubsar_pixel_format */
+  uint32_t offset_x;     /* of the region on the sensor, pixels */
+  uint32_t offset_y;
+} dubsar_frame;
+
+/* Since open(), so that replugging hides nothing. */
+typedef struct dubsar_frame_counters {
+  uint32_t struct_size;
+  uint32_t pool;          /* buffers that there are */
+  uint64_t delivered;     /* frames handed out */
+  uint64_t lost;          /* gaps in the ids: lost on the way, or for want of a free buffer */
+  uint64_t late;          /* of those delivered: marked DUBSAR_FRAME_LATE */
+  uint64_t incomplete;    /* of those delivered: marked DUBSAR_FRAME_INCOMPLETE */
+  uint64_t resent;        /* packets that were asked for again and came */
+  uint64_t reconnections; /* times that the device was found again after it was gone */
+} dubsar_frame_counters;
+
+/* ---- Axes and lasers of a stage ---- */
+
+#define DUBSAR_AXES_MAX 8
+#define DUBSAR_LASERS_MAX 8
+
+typedef enum dubsar_axis_kind {
+  DUBSAR_AXIS_LINEAR = 0, /* positions in mm, speeds in mm/s */
+  DUBSAR_AXIS_ROTARY = 1  /* positions in rad, speeds in rad/s */
+} dubsar_axis_kind;
+
+#define DUBSAR_AXIS_CAN_HOME 1u /* has a reference switch; positions mean nothing before home() */
+#define DUBSAR_AXIS_ENDLESS 2u  /* goes round and round: minimum and maximum are not its ends */
+
+typedef struct dubsar_axis {
+  uint32_t struct_size;
+  uint32_t flags; /* DUBSAR_AXIS_* */
+  int32_t kind;   /* dubsar_axis_kind */
+  int32_t reserved;
+  const char* name;
+  double minimum; /* soft limits, which move() keeps */
+  double maximum;
+  double speed_maximum;
+  double resolution; /* one step of the motor */
+} dubsar_axis;
+
+typedef int32_t (*dubsar_axis_callback)(void* user, const dubsar_axis* axis);
+
+#define DUBSAR_MOVE_START_ONLY 1u /* return once it moves; else when it stands still at the target */
+
+typedef struct dubsar_move {
+  uint32_t struct_size;
+  uint32_t flags; /* DUBSAR_MOVE_* */
+  uint32_t axis;  /* in the order of describe_axes() */
+  uint32_t reserved;
+  double position; /* absolute; mm or rad */
+  double speed;    /* mm/s or rad/s; 0: as the setting `speed` says */
+} dubsar_move;
+
+#define DUBSAR_MOTION_MOVING 1u
+#define DUBSAR_MOTION_ALARM 2u /* the firmware refuses to move until home() */
+#define DUBSAR_MOTION_HOMED 4u /* positions are those of the machine */
+#define DUBSAR_MOTION_COMMANDED \
+  8u /* positions are what was asked for: the firmware does not report its own */
+
+/* Where a stage is. The positions held at timestamp_ns to within uncertainty_ns, half of the time between
+ * question and answer. */
+typedef struct dubsar_motion {
+  uint32_t struct_size;
+  uint32_t flags;       /* DUBSAR_MOTION_* */
+  int64_t timestamp_ns; /* on this machine's CLOCK_MONOTONIC */
+  int64_t uncertainty_ns;
+  uint32_t axis_count;
+  uint32_t laser_count;
+  double position[DUBSAR_AXES_MAX];
+  double laser[DUBSAR_LASERS_MAX]; /* power as last set, 0 to 1 */
+} dubsar_motion;
 
 /* ---- The driver ---- */
 
@@ -278,6 +404,37 @@ typedef struct dubsar_driver {
    * cancels and after every failed place() or scan(); stopping what stands still is no error. The next
    * place() moves again. */
   int32_t (*stop)(dubsar_device* device, dubsar_error* error);
+
+  /* Optional, all five or none: the frames of a camera. start_frames() takes a pool of so many buffers (0: as
+   * the driver likes) and starts the stream; after the device was gone it looks for it again and goes on
+   * where it is back. next_frame() lends the next frame, DUBSAR_TIMEOUT where none came within timeout_ms; a
+   * device that is gone is DUBSAR_DEVICE within 2 s. release_frame() gives a frame back, in any order and
+   * from any thread. Where the caller holds all buffers the device loses frames, which is counted.
+   * stop_frames() on what stands still is no error. frame_counters() may be called from any thread. */
+  int32_t (*start_frames)(dubsar_device* device, uint32_t pool, dubsar_error* error);
+  int32_t (*next_frame)(dubsar_device* device, uint32_t timeout_ms, dubsar_frame* frame, dubsar_error* error);
+  void (*release_frame)(dubsar_device* device, uint64_t lease);
+  int32_t (*stop_frames)(dubsar_device* device, dubsar_error* error);
+  int32_t (*frame_counters)(dubsar_device* device, dubsar_frame_counters* counters, dubsar_error* error);
+  /* Optional: releases one frame of a camera whose setting `trigger` is `software`. */
+  int32_t (*trigger_frame)(dubsar_device* device, dubsar_error* error);
+
+  /* Optional, all six or none: a stage. move() refuses what lies outside the soft limits with DUBSAR_USAGE
+   * before anything moves; home() drives to the reference switches. set_laser() takes a power from 0 to 1.
+   * read_motion() and set_laser() may be called while a move that was started runs; stop() and
+   * emergency_stop() from another thread at any time, also while home() or move() runs there, which then
+   * return soon with DUBSAR_CANCELLED. stop() ends the motion and leaves the position known.
+   * emergency_stop() ends it as fast as can be and puts the lasers off; afterwards nothing moves until home()
+   * (or, of a stage without switches, until the device is opened anew). The lasers are off after open(),
+   * after stop(), close() and any error of the device, and the driver sees to it that they go off when the
+   * program dies. */
+  int32_t (*describe_axes)(dubsar_device* device, dubsar_axis_callback callback, void* user,
+                           dubsar_error* error);
+  int32_t (*home)(dubsar_device* device, dubsar_error* error);
+  int32_t (*move)(dubsar_device* device, const dubsar_move* move, dubsar_error* error);
+  int32_t (*read_motion)(dubsar_device* device, dubsar_motion* motion, dubsar_error* error);
+  int32_t (*set_laser)(dubsar_device* device, uint32_t laser, double power, dubsar_error* error);
+  int32_t (*emergency_stop)(dubsar_device* device, dubsar_error* error);
 } dubsar_driver;
 
 #if defined(_WIN32)

@@ -37,6 +37,13 @@ bool is_scheme(const std::string& scheme) {
   });
 }
 
+/// Whether a driver has all functions of a group, or none.
+template <class... Members>
+bool whole(const dubsar_driver* driver, Members... members) {
+  const std::size_t there = (std::size_t{0} + ... + (abi::offered(driver, members) != nullptr ? 1 : 0));
+  return there == 0 || there == sizeof...(members);
+}
+
 Result<const dubsar_driver*> entry_of(void* library, const fs::path& path) {
   void* symbol = ::dlsym(library, DUBSAR_DRIVER_ENTRY);
   if (symbol == nullptr) {
@@ -66,6 +73,14 @@ Result<const dubsar_driver*> entry_of(void* library, const fs::path& path) {
                        (driver->get_setting != nullptr ? 1 : 0) + (driver->set_setting != nullptr ? 1 : 0);
   if (settings != 0 && settings != 3) {
     return reject(path, "the driver has some of the settings functions and not all");
+  }
+  if (!whole(driver, &dubsar_driver::start_frames, &dubsar_driver::next_frame, &dubsar_driver::release_frame,
+             &dubsar_driver::stop_frames, &dubsar_driver::frame_counters)) {
+    return reject(path, "the driver has some of the functions of a camera and not all");
+  }
+  if (!whole(driver, &dubsar_driver::describe_axes, &dubsar_driver::home, &dubsar_driver::move,
+             &dubsar_driver::read_motion, &dubsar_driver::set_laser, &dubsar_driver::emergency_stop)) {
+    return reject(path, "the driver has some of the functions of a stage and not all");
   }
   if (!is_scheme(abi::text(driver->scheme))) {
     return reject(path, "the driver's scheme is no scheme");

@@ -21,6 +21,14 @@
 /// them; a driver can do without and include driver.h alone.
 namespace dubsar::plugin {
 
+/// A driver of this version that offers nothing yet; set what yours has.
+constexpr dubsar_driver empty_driver() {
+  dubsar_driver out{};
+  out.abi_version = DUBSAR_DRIVER_ABI_VERSION;
+  out.struct_size = sizeof out;
+  return out;
+}
+
 /// Copies text into a field of fixed size, cut to fit, NUL-terminated.
 template <std::size_t N>
 void copy_text(char (&to)[N], std::string_view from) {

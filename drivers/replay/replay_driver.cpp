@@ -226,25 +226,23 @@ std::int32_t scan(dubsar_device* device, const dubsar_sink* sink, dubsar_error* 
   });
 }
 
-constexpr dubsar_driver kDriver = {
-    .abi_version = DUBSAR_DRIVER_ABI_VERSION,
-    .struct_size = sizeof(dubsar_driver),
-    .scheme = "replay",
-    .description = "recorded range grids, played as if they were scanned now",
-    .version = "1",
-    .locator_help = "a folder or a file of range grids (PLY, PTX, points, Dubsar grids)",
-    .describe_options = describe_options,
-    .discover = discover,
-    .open = open,
-    .close = close,
-    .capabilities = capabilities,
-    .describe_settings = describe_settings,
-    .get_setting = get_setting,
-    .set_setting = set_setting,
-    .place = nullptr,
-    .scan = scan,
-    .stop = nullptr,
-};
+constexpr dubsar_driver kDriver = [] {
+  dubsar_driver out = plugin::empty_driver();
+  out.scheme = "replay";
+  out.description = "recorded range grids, played as if they were scanned now";
+  out.version = "1";
+  out.locator_help = "a folder or a file of range grids (PLY, PTX, points, Dubsar grids)";
+  out.describe_options = describe_options;
+  out.discover = discover;
+  out.open = open;
+  out.close = close;
+  out.capabilities = capabilities;
+  out.describe_settings = describe_settings;
+  out.get_setting = get_setting;
+  out.set_setting = set_setting;
+  out.scan = scan;
+  return out;
+}();
 
 }  // namespace
 

@@ -244,25 +244,22 @@ std::int32_t scan(dubsar_device* device, const dubsar_sink* sink, dubsar_error* 
   });
 }
 
-constexpr dubsar_driver kDriver = {
-    .abi_version = DUBSAR_DRIVER_ABI_VERSION,
-    .struct_size = sizeof(dubsar_driver),
-    .scheme = "sim",
-    .description = "a made-up tablet on a turntable before a simulated triangulation scanner",
-    .version = "1",
-    .locator_help = "",
-    .describe_options = describe_options,
-    .discover = discover,
-    .open = open,
-    .close = close,
-    .capabilities = capabilities,
-    .describe_settings = nullptr,
-    .get_setting = nullptr,
-    .set_setting = nullptr,
-    .place = place,
-    .scan = scan,
-    .stop = stop,
-};
+constexpr dubsar_driver kDriver = [] {
+  dubsar_driver out = plugin::empty_driver();
+  out.scheme = "sim";
+  out.description = "a made-up tablet on a turntable before a simulated triangulation scanner";
+  out.version = "1";
+  out.locator_help = "";
+  out.describe_options = describe_options;
+  out.discover = discover;
+  out.open = open;
+  out.close = close;
+  out.capabilities = capabilities;
+  out.place = place;
+  out.scan = scan;
+  out.stop = stop;
+  return out;
+}();
 
 }  // namespace
 
