@@ -74,7 +74,7 @@ Status first_values(const std::vector<CalibrationView>& views, const Intrinsics&
     stripes = inliers(stripes, fit->inlier);
   }
   if (options.motion) {
-    const Result<StageMotion> motion = stage_from_poses(*options.motion, views, intrinsics);
+    const Result<RigMotion> motion = stage_from_poses(*options.motion, views, intrinsics);
     if (!motion) {
       return std::unexpected(motion.error());
     }

@@ -16,8 +16,8 @@ constexpr int kMostRows = 100'000;
 
 /// Where the scan begins and ends, in mm or in degrees.
 void read_scan(const JsonNode& scan, RigFile& rig) {
-  scan.only({"from_mm", "to_mm", "step_mm", "speed_mm_s", "from_deg", "to_deg", "step_deg", "speed_deg_s", "ambient",
-             "laser_power"});
+  scan.only({"from_mm", "to_mm", "step_mm", "speed_mm_s", "from_deg", "to_deg", "step_deg", "speed_deg_s",
+             "ambient", "laser_power"});
   const bool degrees = scan.find("step_deg").has_value();
   const double unit = degrees ? rad_from_deg(1) : 1;
   const double from = scan.at(degrees ? "from_deg" : "from_mm").number(-kMostTravel, kMostTravel) * unit;

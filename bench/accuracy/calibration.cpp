@@ -38,15 +38,16 @@ int run(int argc, char** argv) {
   for (int seed = 1; seed <= seeds; ++seed) {
     SimulatedBoard camera(truth, *board, optics);
     std::vector<CalibrationView> views;
-    for (const RigidTransform& pose :
-         sim::board_poses(truth, board->low_mm(), board->high_mm(), poses, static_cast<std::uint64_t>(seed))) {
+    for (const RigidTransform& pose : sim::board_poses(truth, board->low_mm(), board->high_mm(), poses,
+                                                       static_cast<std::uint64_t>(seed))) {
       if (auto view = camera.view(pose, true, 0, "pose " + std::to_string(views.size()))) {
         views.push_back(std::move(*view));
       }
     }
     const std::vector<double> positions{-6, -3, 0, 3, 6};
     std::size_t i = 0;
-    for (const RigidTransform& pose : sim::carried_board(truth, board->low_mm(), board->high_mm(), positions)) {
+    for (const RigidTransform& pose :
+         sim::carried_board(truth, board->low_mm(), board->high_mm(), positions)) {
       if (auto view = camera.view(pose, false, 0, "stage " + std::to_string(i))) {
         view->fixed = "board on stage";
         view->stage_position = positions[i];
@@ -64,15 +65,20 @@ int run(int argc, char** argv) {
       continue;
     }
     const RigCalibration& rig = report->rig;
-    const double shear = std::acos(std::min(1.0, std::abs(rig.motion.direction.normalized().dot(rig.laser.normal))));
-    std::printf("seed %d, %d views, %d stripes: corners %.3f px (%.2f um), stripe %.3f px (%.2f um), focal length %+.2f "
-                "px (s %.2f)\n",
-                seed, rig.quality.board_views, rig.quality.stripe_views, rig.quality.corner_rms_px,
-                rig.quality.corner_rms_um, rig.quality.stripe_rms_px, rig.quality.stripe_rms_um,
-                rig.camera.fx_px - truth.camera.fx_px, rig.quality.focal_sigma_px);
-    std::printf("  laser plane over the volume: %.2f um at most after the best rigid placement (its own word: s %.2f um); "
-                "%.1f um in the camera's frame\n",
-                1e3 * shape_error_mm(truth, rig), rig.quality.volume_sigma_um, 1e3 * plane_error_mm(truth, rig));
+    const double shear =
+        std::acos(std::min(1.0, std::abs(rig.motion.direction.normalized().dot(rig.laser.normal))));
+    std::printf(
+        "seed %d, %d views, %d stripes: corners %.3f px (%.2f um), stripe %.3f px (%.2f um), focal length "
+        "%+.2f "
+        "px (s %.2f)\n",
+        seed, rig.quality.board_views, rig.quality.stripe_views, rig.quality.corner_rms_px,
+        rig.quality.corner_rms_um, rig.quality.stripe_rms_px, rig.quality.stripe_rms_um,
+        rig.camera.fx_px - truth.camera.fx_px, rig.quality.focal_sigma_px);
+    std::printf(
+        "  laser plane over the volume: %.2f um at most after the best rigid placement (its own word: s %.2f "
+        "um); "
+        "%.1f um in the camera's frame\n",
+        1e3 * shape_error_mm(truth, rig), rig.quality.volume_sigma_um, 1e3 * plane_error_mm(truth, rig));
     std::printf("  slide: scale %+.1f ppm, %.4f° from square to the plane (truth 0)\n",
                 1e6 * (rig.motion.direction.norm() - 1), shear * 180 / M_PI);
   }

@@ -2,7 +2,8 @@
 // Copyright The Dubsar developers
 // Calibration on real photographs that others have taken and published results for: OpenCV's chessboards, the
 // Ciclop scanner, a desktop turntable. Prints what is found beside what was published.
-//   dubsar-real-rigs DATA [--pictures DIR]   (DATA: the folder with opencv_chessboard, ciclop, desktop_turntable)
+//   dubsar-real-rigs DATA [--pictures DIR]   (DATA: the folder with opencv_chessboard, ciclop,
+//   desktop_turntable)
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -86,13 +87,15 @@ void chessboards(const fs::path& data) {
     const Result<Intrinsics> start = find_intrinsics(views, {.least_views = 4, .outlier_factor = 0});
     const Result<CalibrationReport> report = calibrate_rig(views, options);
     if (!start || !report) {
-      std::printf("opencv_chessboard %s: %s\n", side, (start ? report.error() : start.error()).line().c_str());
+      std::printf("opencv_chessboard %s: %s\n", side,
+                  (start ? report.error() : start.error()).line().c_str());
       continue;
     }
-    std::printf("opencv_chessboard %s, %zu views: rms %.4f px, calibrateCamera on the same corners %.4f", side,
-                views.size(), report->rig.quality.corner_rms_px, start->rms_px);
+    std::printf("opencv_chessboard %s, %zu views: rms %.4f px, calibrateCamera on the same corners %.4f",
+                side, views.size(), report->rig.quality.corner_rms_px, start->rms_px);
     if (published > 0) {
-      std::printf(", published %.4f; focal length %.1f (published 535.9)", published, report->rig.camera.fx_px);
+      std::printf(", published %.4f; focal length %.1f (published 535.9)", published,
+                  report->rig.camera.fx_px);
     }
     std::printf("\n");
   }
@@ -102,11 +105,12 @@ void angle_and_offset(const char* what, const Plane& is, Plane should) {
   if (is.normal.dot(should.normal) < 0) {
     should = {-should.normal, -should.distance_mm};
   }
-  std::printf("  %s: normal %.5f %.5f %.5f, published %.5f %.5f %.5f\n", what, is.normal.x(), is.normal.y(), is.normal.z(),
-              should.normal.x(), should.normal.y(), should.normal.z());
-  std::printf("  %s: %.3f° and %.3f mm off the published plane (distance from the camera %.2f, published %.2f)\n", what,
-              std::acos(std::min(1.0, is.normal.dot(should.normal))) * 180 / M_PI, is.distance_mm - should.distance_mm,
-              is.distance_mm, should.distance_mm);
+  std::printf("  %s: normal %.5f %.5f %.5f, published %.5f %.5f %.5f\n", what, is.normal.x(), is.normal.y(),
+              is.normal.z(), should.normal.x(), should.normal.y(), should.normal.z());
+  std::printf(
+      "  %s: %.3f° and %.3f mm off the published plane (distance from the camera %.2f, published %.2f)\n",
+      what, std::acos(std::min(1.0, is.normal.dot(should.normal))) * 180 / M_PI,
+      is.distance_mm - should.distance_mm, is.distance_mm, should.distance_mm);
 }
 
 void desktop(const fs::path& data, const fs::path& pictures) {
@@ -117,9 +121,11 @@ void desktop(const fs::path& data, const fs::path& pictures) {
     std::printf("desktop_turntable: %s\n", camera.error().line().c_str());
     return;
   }
-  std::printf("desktop_turntable: camera from %zu views, rms %.3f px, fx %.2f (published 620.27), cx %.2f (322.95), cy "
-              "%.2f (239.42)\n",
-              camera->used.size(), camera->rms_px, camera->camera.fx_px, camera->camera.cx_px, camera->camera.cy_px);
+  std::printf(
+      "desktop_turntable: camera from %zu views, rms %.3f px, fx %.2f (published 620.27), cx %.2f (322.95), "
+      "cy "
+      "%.2f (239.42)\n",
+      camera->used.size(), camera->rms_px, camera->camera.fx_px, camera->camera.cx_px, camera->camera.cy_px);
   std::vector<CalibrationView> views;
   std::size_t samples = 0;
   for (const fs::path& file : pictures_in(data / "desktop_turntable/laser_on_board", "Image")) {
@@ -153,8 +159,9 @@ void desktop(const fs::path& data, const fs::path& pictures) {
     return;
   }
   const CalibrationQuality& q = report->rig.quality;
-  std::printf("  laser from %d views (%zu stripe samples in all): stripe %.3f px, %.0f um rms; fx %.2f from these\n",
-              q.stripe_views, samples, q.stripe_rms_px, q.stripe_rms_um, report->rig.camera.fx_px);
+  std::printf(
+      "  laser from %d views (%zu stripe samples in all): stripe %.3f px, %.0f um rms; fx %.2f from these\n",
+      q.stripe_views, samples, q.stripe_rms_px, q.stripe_rms_um, report->rig.camera.fx_px);
   const Eigen::Vector3d normal(-0.84630, -0.29551, 0.38939);
   const Plane published{normal.normalized(), -211.72 / normal.norm()};
   angle_and_offset("laser plane", report->rig.laser, published);
@@ -173,8 +180,9 @@ void ciclop(const fs::path& data, const fs::path& pictures) {
     std::printf("ciclop: %s\n", camera.error().line().c_str());
     return;
   }
-  std::printf("ciclop: camera from %zu of %zu views, rms %.3f px, fx %.1f, cx %.1f, cy %.1f\n", camera->used.size(),
-              views.size(), camera->rms_px, camera->camera.fx_px, camera->camera.cx_px, camera->camera.cy_px);
+  std::printf("ciclop: camera from %zu of %zu views, rms %.3f px, fx %.1f, cx %.1f, cy %.1f\n",
+              camera->used.size(), views.size(), camera->rms_px, camera->camera.fx_px, camera->camera.cx_px,
+              camera->camera.cy_px);
   // The published cloud is of the laser's plane itself: as a check of the plane fit.
   const Result<Mesh> cloud = read_mesh(data / "ciclop/laser-pc.ply");
   if (cloud) {
@@ -183,9 +191,12 @@ void ciclop(const fs::path& data, const fs::path& pictures) {
       points.push_back(p.cast<double>());
     }
     if (const Result<PlaneFit> fit = fit_plane(points)) {
-      std::printf("  plane of laser-pc.ply: rms %.3f mm of %ld inliers of %zu (published 0.054 with RANSAC, 0.088 plain)\n",
-                  fit->rms_mm, std::count(fit->inlier.begin(), fit->inlier.end(), 1), points.size());
-      angle_and_offset("fit", fit->plane, {Eigen::Vector3d(0.85111, -0.00123, 0.52499).normalized(), 159.527});
+      std::printf(
+          "  plane of laser-pc.ply: rms %.3f mm of %ld inliers of %zu (published 0.054 with RANSAC, 0.088 "
+          "plain)\n",
+          fit->rms_mm, std::count(fit->inlier.begin(), fit->inlier.end(), 1), points.size());
+      angle_and_offset("fit", fit->plane,
+                       {Eigen::Vector3d(0.85111, -0.00123, 0.52499).normalized(), 159.527});
     }
   }
   // The bust with the laser on and off: how much of the line is found.
@@ -197,9 +208,12 @@ void ciclop(const fs::path& data, const fs::path& pictures) {
   StripeProfile profile;
   StripeExtractor(options).extract(on.view(), off.view(), profile);
   const std::vector<Eigen::Vector2d> found = stripe_points(profile, options.axis);
-  std::printf("  laser on the bust: %zu of %d rows have a stripe; %zu without, %zu doubtful, %zu wide, %zu saturated\n",
-              found.size(), on.height, profile.count_of(StripeState::kNone), profile.count_of(StripeState::kReflection),
-              profile.count_of(StripeState::kWide), profile.count_of(StripeState::kSaturated));
+  std::printf(
+      "  laser on the bust: %zu of %d rows have a stripe; %zu without, %zu doubtful, %zu wide, %zu "
+      "saturated\n",
+      found.size(), on.height, profile.count_of(StripeState::kNone),
+      profile.count_of(StripeState::kReflection), profile.count_of(StripeState::kWide),
+      profile.count_of(StripeState::kSaturated));
   if (!pictures.empty()) {
     draw(laser / "laser.png", found, pictures / "ciclop_bust.png");
   }
@@ -210,7 +224,8 @@ int run(int argc, char** argv) {
   std::string data = "../shared/data";
   std::string pictures;
   app.add_option("data", data);
-  app.add_option("--pictures", pictures, "Draw the stripes that were found into copies of the photographs, here");
+  app.add_option("--pictures", pictures,
+                 "Draw the stripes that were found into copies of the photographs, here");
   CLI11_PARSE(app, argc, argv);
   if (!pictures.empty()) {
     fs::create_directories(pictures);

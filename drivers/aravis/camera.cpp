@@ -1,0 +1,502 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "drivers/aravis/camera.h"
+
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+#include <limits>
+#include <thread>
+
+#include "drivers/aravis/glib.h"
+
+namespace dubsar::aravis {
+
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr std::uint32_t kMostBuffers = 256;
+/// More than any frame of a range camera; a description that asks for more lies.
+constexpr std::uint32_t kMostPayload = 1U << 30U;
+constexpr int kSocketBytes = 32 << 20;
+constexpr auto kSlice = 50ms;
+
+std::int64_t clock_ns(clockid_t clock) {
+  timespec now{};
+  ::clock_gettime(clock, &now);
+  return std::int64_t{now.tv_sec} * 1000000000 + now.tv_nsec;
+}
+
+std::string text_of(const char* text) {
+  return text == nullptr ? std::string() : std::string(text);
+}
+
+struct MonoFormat {
+  std::uint32_t code;
+  const char* name;
+  std::uint32_t bytes;
+};
+constexpr MonoFormat kMono[] = {{DUBSAR_PIXEL_MONO8, "Mono8", 1},
+                                {DUBSAR_PIXEL_MONO16, "Mono16", 2},
+                                {DUBSAR_PIXEL_MONO12, "Mono12", 2},
+                                {DUBSAR_PIXEL_MONO10, "Mono10", 2},
+                                {DUBSAR_PIXEL_MONO14, "Mono14", 2}};
+
+/// Frees what belonged to a camera that is gone: Aravis waits for its answers for seconds, which nobody else
+/// has to.
+void dispose(ArvStream* stream, ArvChunkParser* chunks, ArvCamera* camera) {
+  std::thread([=] {
+    for (void* object :
+         {static_cast<void*>(stream), static_cast<void*>(chunks), static_cast<void*>(camera)}) {
+      if (object != nullptr) {
+        g_object_unref(object);
+      }
+    }
+  }).detach();
+}
+
+}  // namespace
+
+std::vector<FoundCamera> find_cameras() {
+  std::vector<FoundCamera> out;
+  arv_update_device_list();
+  for (unsigned k = 0; k < arv_get_n_devices(); ++k) {
+    out.push_back({text_of(arv_get_device_id(k)),
+                   text_of(arv_get_device_vendor(k)) + " " + text_of(arv_get_device_model(k)) + ", " +
+                       text_of(arv_get_device_protocol(k)) + " at " + text_of(arv_get_device_address(k))});
+  }
+  return out;
+}
+
+Result<std::unique_ptr<Camera>> Camera::open(const std::string& id, const CameraOptions& options) {
+  std::unique_ptr<Camera> out(new Camera());
+  out->id_ = id;
+  out->options_ = options;
+  if (const Status connected = out->connect(); !connected) {
+    return std::unexpected(connected.error());
+  }
+  return out;
+}
+
+Status Camera::connect() {
+  GErrorHolder error;
+  camera_ = arv_camera_new(id_.c_str(), error.fill());
+  if (camera_ == nullptr || error) {
+    g_clear_object(&camera_);
+    return std::unexpected(error.told("cannot be opened", id_));
+  }
+  device_ = arv_camera_get_device(camera_);
+  const std::string serial = text_of(arv_camera_get_device_serial_number(camera_, nullptr));
+  const std::string model = text_of(arv_camera_get_vendor_name(camera_, nullptr)) + " " +
+                            text_of(arv_camera_get_model_name(camera_, nullptr));
+  if (!model_.empty() && (model != model_ || serial != serial_)) {
+    g_clear_object(&camera_);
+    return fail(ErrorKind::kDevice, "another camera is there now: " + model + " " + serial, id_,
+                "plug " + model_ + " " + serial_ + " in again");
+  }
+  model_ = model;
+  serial_ = serial;
+  control_lost_ = std::make_shared<std::atomic<bool>>(false);
+  g_signal_connect_data(
+      device_, "control-lost", G_CALLBACK(+[](ArvDevice*, gpointer flag) {
+        **static_cast<std::shared_ptr<std::atomic<bool>>*>(flag) = true;
+      }),
+      new std::shared_ptr<std::atomic<bool>>(control_lost_),
+      +[](gpointer flag, GClosure*) { delete static_cast<std::shared_ptr<std::atomic<bool>>*>(flag); },
+      static_cast<GConnectFlags>(0));
+  presence_.reset();
+  if (arv_camera_is_gv_device(camera_)) {
+    GSocketAddress* address = arv_gv_device_get_device_address(ARV_GV_DEVICE(device_));
+    GInetAddress* inet = g_inet_socket_address_get_address(G_INET_SOCKET_ADDRESS(address));
+    if (g_inet_address_get_native_size(inet) == sizeof(std::uint32_t)) {
+      std::uint32_t number = 0;
+      std::copy_n(g_inet_address_to_bytes(inet), sizeof number, reinterpret_cast<std::uint8_t*>(&number));
+      presence_ = std::make_unique<Presence>(number);
+    }
+  }
+  Status configured = configure();
+  for (const auto& [key, kept] : set_here_) {
+    if (configured) {
+      const auto [feature, value] = kept;
+      configured = set(feature, value);
+    }
+  }
+  if (!configured) {
+    lose();
+  }
+  return configured;
+}
+
+Status Camera::choose_format() {
+  GErrorHolder error;
+  const std::string now = text_of(arv_camera_get_pixel_format_as_string(camera_, error.fill()));
+  guint count = 0;
+  const char** names = arv_camera_dup_available_pixel_formats_as_strings(camera_, &count, error.fill());
+  const std::vector<std::string> offered(names, names == nullptr ? names : names + count);
+  g_free(names);
+  const auto has = [&](const std::string& name) { return std::ranges::find(offered, name) != offered.end(); };
+  std::string chosen = options_.format;
+  if (chosen.empty() && range_format(now) != nullptr) {
+    chosen = now;
+  }
+  if (chosen.empty()) {
+    // What scans in three dimensions says so; an ordinary camera offers no such formats.
+    for (const RangeFormat& one : range_formats()) {
+      chosen = chosen.empty() && has(one.name) && now.starts_with("Coord3D") ? one.name : chosen;
+    }
+    for (const MonoFormat& one : kMono) {
+      chosen = chosen.empty() && (has(one.name) || now == one.name) ? one.name : chosen;
+    }
+  }
+  range_ = range_format(chosen);
+  const auto* mono = std::ranges::find_if(kMono, [&](const MonoFormat& one) { return chosen == one.name; });
+  if (range_ == nullptr && mono == std::end(kMono)) {
+    std::string all;
+    for (const std::string& name : offered) {
+      all += (all.empty() ? "" : ", ") + name;
+    }
+    return fail(ErrorKind::kUsage,
+                chosen.empty() ? "the camera sends nothing that can be used"
+                               : "the format " + chosen + " cannot be used",
+                id_, "it offers " + all + "; Mono8 to Mono16 and Coord3D_C, _AC and _ABC can be used");
+  }
+  if (!has(chosen)) {
+    return fail(ErrorKind::kUsage, "the camera does not offer " + chosen, id_, "ask for another ?format=");
+  }
+  arv_camera_set_pixel_format_from_string(camera_, chosen.c_str(), error.fill());
+  if (error) {
+    return std::unexpected(error.told("refuses " + chosen, id_));
+  }
+  pixel_format_ = range_ != nullptr ? range_->code : mono->code;
+  bytes_per_pixel_ = range_ != nullptr ? range_->sample_bytes() : mono->bytes;
+  return {};
+}
+
+Status Camera::configure() {
+  if (const Status chosen = choose_format(); !chosen) {
+    return chosen;
+  }
+  GErrorHolder error;
+  if (arv_camera_is_gv_device(camera_)) {
+    if (options_.packet_bytes != 0) {
+      arv_camera_gv_set_packet_size(camera_, static_cast<gint>(options_.packet_bytes), error.fill());
+    } else {
+      arv_camera_gv_auto_packet_size(camera_, error.fill());
+    }
+    if (error) {
+      return std::unexpected(error.told("refuses the size of packets", id_));
+    }
+    arv_camera_gv_set_stream_options(camera_, options_.packet_socket
+                                                  ? ARV_GV_STREAM_OPTION_NONE
+                                                  : ARV_GV_STREAM_OPTION_PACKET_SOCKET_DISABLED);
+  }
+  arv_camera_set_acquisition_mode(camera_, ARV_ACQUISITION_MODE_CONTINUOUS, error.fill());
+  // Chunks bring the count of an encoder with each frame, where there is one.
+  has_encoder_chunk_ = arv_device_get_feature(device_, "ChunkEncoderValue") != nullptr;
+  if (has_encoder_chunk_ && arv_device_get_feature(device_, "ChunkModeActive") != nullptr) {
+    arv_device_set_boolean_feature_value(device_, "ChunkModeActive", TRUE, error.fill());
+    has_encoder_chunk_ = !error;
+  }
+  return {};
+}
+
+Result<Scan3d> Camera::scan3d() {
+  Scan3d out;
+  GErrorHolder error;
+  out.format = *range_;
+  out.flip_z = options_.flip_z;
+  gint x = 0;
+  gint y = 0;
+  gint width = 0;
+  gint height = 0;
+  arv_camera_get_region(camera_, &x, &y, &width, &height, error.fill());
+  if (error) {
+    return std::unexpected(error.told("does not tell its region", id_));
+  }
+  out.width = static_cast<std::uint32_t>(std::max(width, 0));
+  out.height = static_cast<std::uint32_t>(std::max(height, 0));
+  const auto has = [&](const char* name) { return arv_device_get_feature(device_, name) != nullptr; };
+  if (has("Scan3dOutputMode")) {
+    const std::string mode =
+        text_of(arv_device_get_string_feature_value(device_, "Scan3dOutputMode", error.fill()));
+    const bool raw = mode.starts_with("Uncalibrated") || mode.starts_with("Disparity");
+    // Without A in the data x is the column times a scale, which is true of rectified profiles alone.
+    if (raw || (!range_->has[0] && !mode.starts_with("Rectified"))) {
+      return fail(ErrorKind::kUsage, "its output " + mode + " does not say where a sample is", id_,
+                  "set Scan3dOutputMode to a rectified one, or ask for a Coord3D_AC format");
+    }
+  }
+  if (has("Scan3dDistanceUnit")) {
+    const std::string unit =
+        text_of(arv_device_get_string_feature_value(device_, "Scan3dDistanceUnit", error.fill()));
+    if (unit != "Millimeter" && unit != "Inch") {
+      return fail(ErrorKind::kUsage, "its distances are in " + unit, id_,
+                  "set Scan3dDistanceUnit to Millimeter");
+    }
+    out.unit_mm = unit == "Inch" ? 25.4 : 1.0;
+  }
+  constexpr const char* kCoordinates[] = {"CoordinateA", "CoordinateB", "CoordinateC"};
+  const bool selects = has("Scan3dCoordinateSelector");
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    GErrorHolder refused;
+    if (selects) {
+      arv_device_set_string_feature_value(device_, "Scan3dCoordinateSelector", kCoordinates[axis],
+                                          refused.fill());
+    }
+    if (refused || (!selects && axis != 2)) {
+      continue;  // has no such axis
+    }
+    AxisScale& to = out.axes[axis];
+    const auto read = [&](const char* name, double& value) {
+      if (has(name)) {
+        value = arv_device_get_float_feature_value(device_, name, refused.fill());
+      }
+      return !refused;
+    };
+    double invalid = 0;
+    if (!read("Scan3dCoordinateScale", to.scale) || !read("Scan3dCoordinateOffset", to.offset)) {
+      return std::unexpected(refused.told("does not tell the scale of its coordinates", id_));
+    }
+    if (has("Scan3dInvalidDataFlag") &&
+        arv_device_get_boolean_feature_value(device_, "Scan3dInvalidDataFlag", refused.fill()) && !refused &&
+        has("Scan3dInvalidDataValue")) {
+      if (!read("Scan3dInvalidDataValue", invalid)) {
+        return std::unexpected(refused.told("does not tell what an invalid sample is", id_));
+      }
+      to.invalid = invalid;
+    }
+  }
+  if (const Status sane = check(out, id_); !sane) {
+    return std::unexpected(sane.error());
+  }
+  return out;
+}
+
+Status Camera::start(std::uint32_t pool) {
+  if (stream_ != nullptr) {
+    return fail(ErrorKind::kUsage, "the frames are running already", id_);
+  }
+  const bool was_gone = camera_ == nullptr;
+  if (was_gone) {
+    if (const Status connected = connect(); !connected) {
+      return connected;
+    }
+  }
+  GErrorHolder error;
+  const guint payload = arv_camera_get_payload(camera_, error.fill());
+  gint x = 0;
+  gint y = 0;
+  gint width = 0;
+  gint height = 0;
+  if (!error) {
+    arv_camera_get_region(camera_, &x, &y, &width, &height, error.fill());
+  }
+  if (error) {
+    lose();
+    return std::unexpected(error.told("does not tell its frame's size", id_));
+  }
+  const std::uint64_t needed = std::uint64_t{static_cast<std::uint32_t>(std::max(width, 0))} *
+                               static_cast<std::uint32_t>(std::max(height, 0)) * bytes_per_pixel_;
+  if (needed == 0 || payload < needed || payload > kMostPayload) {
+    return bad_input(id_,
+                     "the camera announces " + std::to_string(payload) + " bytes for frames of " +
+                         std::to_string(width) + " x " + std::to_string(height),
+                     "update its firmware, or ask for a smaller region");
+  }
+  ArvStream* stream = arv_camera_create_stream(camera_, nullptr, nullptr, error.fill());
+  if (stream == nullptr || error) {
+    g_clear_object(&stream);
+    return std::unexpected(error.told("opens no stream", id_));
+  }
+  if (ARV_IS_GV_STREAM(stream)) {
+    g_object_set(stream, "packet-resend",
+                 options_.resend ? ARV_GV_STREAM_PACKET_RESEND_ALWAYS : ARV_GV_STREAM_PACKET_RESEND_NEVER,
+                 "socket-buffer", ARV_GV_STREAM_SOCKET_BUFFER_FIXED, "socket-buffer-size", kSocketBytes,
+                 nullptr);
+  }
+  const std::uint32_t buffers = std::clamp(pool == 0 ? options_.buffers : pool, 2U, kMostBuffers);
+  for (std::uint32_t k = 0; k < buffers; ++k) {
+    arv_stream_push_buffer(stream, arv_buffer_new_allocate(payload));
+  }
+  {
+    const std::lock_guard lock(mutex_);
+    stream_ = stream;
+    chunks_ = has_encoder_chunk_ ? arv_camera_create_chunk_parser(camera_) : nullptr;
+    payload_ = payload;
+    counts_.pool = buffers;
+    counts_.reconnections += was_gone ? 1 : 0;
+    last_raw_id_ = 0;
+    id_now_ = 0;
+    clock_offset_ns_ = std::numeric_limits<std::int64_t>::max();
+  }
+  if (presence_) {
+    presence_->quiet();
+  }
+  arv_camera_start_acquisition(camera_, error.fill());
+  if (error) {
+    lose();
+    return std::unexpected(error.told("the stream does not start", id_));
+  }
+  return {};
+}
+
+std::unexpected<Error> Camera::gone() const {
+  return fail(ErrorKind::kDevice, "the camera was unplugged or has stopped answering", id_,
+              "plug it in again, then go on");
+}
+
+Result<std::optional<Taken>> Camera::next(Clock::time_point until) {
+  if (stream_ == nullptr) {
+    return camera_ == nullptr ? gone()
+                              : fail(ErrorKind::kUsage, "no frames are running", id_, "start them first");
+  }
+  for (;;) {
+    const auto left = std::chrono::duration_cast<std::chrono::microseconds>(
+        std::clamp<Clock::duration>(until - Clock::now(), 0us, kSlice));
+    ArvBuffer* buffer = arv_stream_timeout_pop_buffer(stream_, static_cast<guint64>(left.count()));
+    if (buffer == nullptr) {
+      if (*control_lost_ || (presence_ && presence_->gone())) {
+        lose();
+        return gone();
+      }
+      if (Clock::now() >= until) {
+        return std::nullopt;
+      }
+      continue;
+    }
+    // A frame of which packets are missing is a frame that did not come: Aravis may not even have its head,
+    // and nobody can tell which of its rows are of the frame before.
+    bool ours = arv_buffer_get_status(buffer) == ARV_BUFFER_STATUS_SUCCESS;
+    Taken out;
+    std::size_t size = 0;
+    if (ours) {
+      out.width = static_cast<std::uint32_t>(std::max(arv_buffer_get_image_width(buffer), 0));
+      out.height = static_cast<std::uint32_t>(std::max(arv_buffer_get_image_height(buffer), 0));
+      out.pixels = static_cast<const std::uint8_t*>(arv_buffer_get_image_data(buffer, &size));
+      ours = arv_buffer_get_image_pixel_format(buffer) == pixel_format_ && out.width > 0 && out.height > 0 &&
+             out.pixels != nullptr && std::uint64_t{out.width} * out.height * bytes_per_pixel_ <= payload_;
+    }
+    if (presence_) {
+      presence_->quiet();
+    }
+    if (!ours) {
+      arv_stream_push_buffer(stream_, buffer);
+      continue;
+    }
+    out.buffer = buffer;
+    out.size = std::size_t{out.width} * out.height * bytes_per_pixel_;
+    out.offset_x = static_cast<std::uint32_t>(std::max(arv_buffer_get_image_x(buffer), 0));
+    out.offset_y = static_cast<std::uint32_t>(std::max(arv_buffer_get_image_y(buffer), 0));
+    const std::uint64_t raw = arv_buffer_get_frame_id(buffer);
+    constexpr std::uint64_t kWrap = 65535;  // of GigE Vision 1: 65535 is followed by 1
+    const bool wrapped = raw < last_raw_id_ && last_raw_id_ <= kWrap && last_raw_id_ - raw > kWrap / 2;
+    const std::uint64_t step = last_raw_id_ == 0    ? 1
+                               : wrapped            ? raw + kWrap - last_raw_id_
+                               : raw > last_raw_id_ ? raw - last_raw_id_
+                                                    : 1;
+    last_raw_id_ = raw;
+    id_now_ += step;
+    out.id = id_now_;
+    out.lost = step - 1;
+    const std::int64_t now = clock_ns(CLOCK_MONOTONIC);
+    const std::int64_t arrived =
+        now - (clock_ns(CLOCK_REALTIME) - static_cast<std::int64_t>(arv_buffer_get_system_timestamp(buffer)));
+    out.device_timestamp_ns = static_cast<std::int64_t>(arv_buffer_get_timestamp(buffer));
+    out.timestamp_ns = std::min(arrived, now);
+    if (out.device_timestamp_ns > 0) {
+      // The quickest frame so far tells how the camera's clock stands to ours; slow ones were slow on the
+      // way.
+      clock_offset_ns_ = std::min(clock_offset_ns_, out.timestamp_ns - out.device_timestamp_ns);
+      out.timestamp_ns = out.device_timestamp_ns + clock_offset_ns_;
+    }
+    if (chunks_ != nullptr && arv_buffer_has_chunks(buffer)) {
+      GErrorHolder error;
+      const gint64 count =
+          arv_chunk_parser_get_integer_value(chunks_, buffer, "ChunkEncoderValue", error.fill());
+      if (!error) {
+        out.encoder = count;
+      }
+    }
+    const std::lock_guard lock(mutex_);
+    lent_.insert(buffer);
+    ++counts_.delivered;
+    counts_.lost += out.lost;
+    return out;
+  }
+}
+
+void Camera::give_back(ArvBuffer* buffer) {
+  const std::lock_guard lock(mutex_);
+  if (lent_.erase(buffer) > 0) {
+    arv_stream_push_buffer(stream_, buffer);
+  } else if (stale_.erase(buffer) > 0) {
+    g_object_unref(buffer);
+  }
+}
+
+void Camera::add_statistics(dubsar_frame_counters& to) const {
+  if (stream_ != nullptr && ARV_IS_GV_STREAM(stream_)) {
+    guint64 resent = 0;
+    guint64 missing = 0;
+    arv_gv_stream_get_statistics(ARV_GV_STREAM(stream_), &resent, &missing);
+    to.resent += resent;
+  }
+}
+
+void Camera::stop() {
+  if (stream_ == nullptr) {
+    return;
+  }
+  if (*control_lost_ || (presence_ && presence_->gone())) {
+    lose();
+    return;
+  }
+  GErrorHolder error;
+  arv_camera_stop_acquisition(camera_, error.fill());
+  const std::lock_guard lock(mutex_);
+  add_statistics(counts_);
+  stale_.merge(lent_);
+  lent_.clear();
+  g_clear_object(&chunks_);
+  g_clear_object(&stream_);
+}
+
+void Camera::lose() {
+  const std::lock_guard lock(mutex_);
+  add_statistics(counts_);
+  stale_.merge(lent_);
+  lent_.clear();
+  dispose(stream_, chunks_, camera_);
+  stream_ = nullptr;
+  chunks_ = nullptr;
+  camera_ = nullptr;
+  device_ = nullptr;
+}
+
+Camera::~Camera() {
+  stop();
+  for (ArvBuffer* buffer : stale_) {
+    g_object_unref(buffer);
+  }
+  g_clear_object(&camera_);
+}
+
+Status Camera::trigger() {
+  if (camera_ == nullptr) {
+    return gone();
+  }
+  GErrorHolder error;
+  arv_camera_software_trigger(camera_, error.fill());
+  return error ? std::unexpected(error.told("cannot be triggered", id_)) : Status{};
+}
+
+dubsar_frame_counters Camera::counters() {
+  const std::lock_guard lock(mutex_);
+  dubsar_frame_counters out = counts_;
+  add_statistics(out);
+  out.struct_size = sizeof out;
+  return out;
+}
+
+}  // namespace dubsar::aravis

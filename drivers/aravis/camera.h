@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "core/result.h"
+#include "drivers/aravis/presence.h"
+#include "drivers/aravis/scan3d.h"
+#include "drivers/driver.h"
+
+typedef struct _ArvCamera ArvCamera;
+typedef struct _ArvDevice ArvDevice;
+typedef struct _ArvStream ArvStream;
+typedef struct _ArvBuffer ArvBuffer;
+typedef struct _ArvChunkParser ArvChunkParser;
+
+namespace dubsar::aravis {
+
+using Clock = std::chrono::steady_clock;
+
+struct CameraOptions {
+  std::string format;  ///< a PFNC name; empty: the best that there is
+  std::uint32_t buffers = 16;
+  std::uint32_t packet_bytes = 0;  ///< of GigE Vision; 0: what the way carries
+  bool resend = true;
+  bool packet_socket = true;
+  // Of range cameras:
+  std::int64_t rows = 1000;  ///< profiles in a scan
+  double row_mm = 0;         ///< motion from row to row; 0: the camera's own scale of B
+  double encoder_mm = 0;     ///< per count of the encoder; 0: rows are evenly spaced
+  bool flip_z = false;
+  double wait_s = 1.5;  ///< for the next profiles
+};
+
+/// A frame as it came; give it back.
+struct Taken {
+  ArvBuffer* buffer = nullptr;
+  const std::uint8_t* pixels = nullptr;
+  std::size_t size = 0;
+  std::uint32_t width = 0, height = 0, offset_x = 0, offset_y = 0;
+  std::uint64_t id = 0;    ///< ascending from the start of the stream, wrapping undone
+  std::uint64_t lost = 0;  ///< frames that did not come before this one
+  std::int64_t timestamp_ns = 0;
+  std::int64_t device_timestamp_ns = 0;
+  std::optional<std::int64_t> encoder;
+};
+
+/// A GigE Vision or USB3 Vision camera from open to close, plugged in or not. The stream's own thread puts
+/// packets together and does nothing else.
+class Camera {
+ public:
+  /// kDevice: not there, in use, no right; kBadInput: its description cannot be read or says what cannot be.
+  [[nodiscard]] static Result<std::unique_ptr<Camera>> open(const std::string& id,
+                                                            const CameraOptions& options);
+  ~Camera();
+  Camera(const Camera&) = delete;
+  Camera& operator=(const Camera&) = delete;
+
+  [[nodiscard]] const std::string& id() const { return id_; }
+  [[nodiscard]] const std::string& model() const { return model_; }
+  [[nodiscard]] const std::string& serial() const { return serial_; }
+  [[nodiscard]] const CameraOptions& options() const { return options_; }
+  /// Of a range camera.
+  [[nodiscard]] const RangeFormat* range() const { return range_; }
+  [[nodiscard]] std::uint32_t pixel_format() const { return pixel_format_; }
+  [[nodiscard]] Result<Scan3d> scan3d();
+
+  struct Feature {
+    std::string key, help, unit, name;  ///< name: of the camera's feature
+    dubsar_type type = DUBSAR_TYPE_NUMBER;
+    double minimum = 1, maximum = 0;
+    std::string choices = {};
+    bool writable = true;
+  };
+  [[nodiscard]] std::vector<Feature> features();
+  [[nodiscard]] Result<dubsar_value> get(const Feature& feature);
+  Status set(const Feature& feature, const dubsar_value& value);
+
+  Status start(std::uint32_t pool);
+  /// Nothing when none came in time; kDevice within 2 s when the camera is gone.
+  [[nodiscard]] Result<std::optional<Taken>> next(Clock::time_point until);
+  void give_back(ArvBuffer* buffer);
+  void stop();
+  Status trigger();
+  /// From any thread; as counters of the interface, late and incomplete left out.
+  [[nodiscard]] dubsar_frame_counters counters();
+
+ private:
+  Camera() = default;
+  Status connect();
+  Status configure();
+  Status choose_format();
+  void lose();
+  [[nodiscard]] std::unexpected<Error> gone() const;
+  void add_statistics(dubsar_frame_counters& to) const;
+
+  std::string id_, model_, serial_;
+  CameraOptions options_;
+  ArvCamera* camera_ = nullptr;  ///< none while it is gone
+  ArvDevice* device_ = nullptr;
+  std::unique_ptr<Presence> presence_;
+  const RangeFormat* range_ = nullptr;
+  std::uint32_t pixel_format_ = 0;
+  std::uint32_t bytes_per_pixel_ = 1;
+  std::map<std::string, std::pair<Feature, dubsar_value>> set_here_;
+  std::shared_ptr<std::atomic<bool>> control_lost_;
+
+  mutable std::mutex mutex_;  ///< of what give_back() and counters() look at
+  ArvStream* stream_ = nullptr;
+  ArvChunkParser* chunks_ = nullptr;
+  bool has_encoder_chunk_ = false;
+  std::set<ArvBuffer*> lent_;
+  std::set<ArvBuffer*> stale_;  ///< lent by a stream that is no more
+  std::uint64_t payload_ = 0;   ///< bytes of a buffer
+  std::uint64_t last_raw_id_ = 0;
+  std::uint64_t id_now_ = 0;
+  std::int64_t clock_offset_ns_ = 0;
+  dubsar_frame_counters counts_{};
+};
+
+struct FoundCamera {
+  std::string id, description;
+};
+/// Takes about a second: cameras are asked over all networks.
+[[nodiscard]] std::vector<FoundCamera> find_cameras();
+
+}  // namespace dubsar::aravis

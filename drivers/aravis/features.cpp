@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+// A camera's features as typed settings.
+#include <algorithm>
+#include <cctype>
+
+#include "drivers/aravis/camera.h"
+#include "drivers/aravis/glib.h"
+#include "drivers/plugin.h"
+
+namespace dubsar::aravis {
+
+namespace {
+
+struct Known {
+  const char* key;
+  const char* help;
+  const char* unit;
+  const char* names[2];  ///< of the SFNC, newer before older
+};
+constexpr Known kKnown[] = {
+    {"exposure_us", "exposure of a frame", "us", {"ExposureTime", "ExposureTimeAbs"}},
+    {"gain_db", "gain", "dB", {"Gain", nullptr}},
+    {"frame_rate_hz", "frames per second", "Hz", {"AcquisitionFrameRate", "AcquisitionFrameRateAbs"}},
+    {"line_rate_hz", "profiles per second", "Hz", {"AcquisitionLineRate", nullptr}},
+    {"width_px", "of the region", "px", {"Width", nullptr}},
+    {"height_px", "of the region", "px", {"Height", nullptr}},
+    {"offset_x_px", "of the region on the sensor", "px", {"OffsetX", nullptr}},
+    {"offset_y_px", "of the region on the sensor", "px", {"OffsetY", nullptr}},
+    {"light", "power of the camera's own laser or lamp", "", {"LightBrightness", nullptr}},
+    {"encoder_divider", "counts of the encoder for each profile", "", {"EncoderDivider", nullptr}},
+    {"encoder", "count of the encoder now", "", {"EncoderValue", nullptr}},
+};
+constexpr const char* kTrigger = "trigger";
+
+std::string lower(std::string text) {
+  std::ranges::transform(text, text.begin(), [](char c) {
+    return static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  });
+  return text;
+}
+
+/// The camera's trigger sources, as it spells them.
+std::vector<std::string> trigger_sources(ArvDevice* device) {
+  GErrorHolder error;
+  guint count = 0;
+  const char** names = arv_device_dup_available_enumeration_feature_values_as_strings(device, "TriggerSource",
+                                                                                      &count, error.fill());
+  std::vector<std::string> out(names, names == nullptr ? names : names + count);
+  g_free(names);
+  return out;
+}
+
+}  // namespace
+
+std::vector<Camera::Feature> Camera::features() {
+  std::vector<Feature> out;
+  if (camera_ == nullptr) {
+    return out;
+  }
+  for (const Known& known : kKnown) {
+    for (const char* name : known.names) {
+      ArvGcNode* node = name == nullptr ? nullptr : arv_device_get_feature(device_, name);
+      if (node == nullptr) {
+        continue;
+      }
+      Feature feature{known.key, known.help, known.unit, name};
+      GErrorHolder error;
+      if (ARV_IS_GC_FLOAT(node)) {
+        arv_device_get_float_feature_bounds(device_, name, &feature.minimum, &feature.maximum, error.fill());
+      } else if (ARV_IS_GC_INTEGER(node)) {
+        feature.type = DUBSAR_TYPE_INTEGER;
+        gint64 low = 1;
+        gint64 high = 0;
+        arv_device_get_integer_feature_bounds(device_, name, &low, &high, error.fill());
+        feature.minimum = static_cast<double>(low);
+        feature.maximum = static_cast<double>(high);
+      } else {
+        continue;
+      }
+      if (error) {
+        feature.minimum = 1;
+        feature.maximum = 0;
+      }
+      feature.writable = std::string_view(known.key) != "encoder";
+      out.push_back(feature);
+      break;
+    }
+  }
+  if (arv_device_get_feature(device_, "TriggerMode") != nullptr) {
+    Feature trigger{kTrigger, "what releases a frame", "", "TriggerSource"};
+    trigger.type = DUBSAR_TYPE_CHOICE;
+    trigger.choices = "free";
+    for (const std::string& source : trigger_sources(device_)) {
+      trigger.choices.append("|").append(lower(source));
+    }
+    out.push_back(trigger);
+  }
+  Feature format{"pixel_format", "what the camera sends", "", "PixelFormat"};
+  format.type = DUBSAR_TYPE_TEXT;
+  format.writable = false;
+  out.push_back(format);
+  return out;
+}
+
+Result<dubsar_value> Camera::get(const Feature& feature) {
+  if (camera_ == nullptr) {
+    return gone();
+  }
+  dubsar_value out{};
+  out.struct_size = sizeof out;
+  out.type = feature.type;
+  GErrorHolder error;
+  switch (feature.type) {
+    case DUBSAR_TYPE_NUMBER:
+      out.number = arv_device_get_float_feature_value(device_, feature.name.c_str(), error.fill());
+      break;
+    case DUBSAR_TYPE_INTEGER:
+      out.integer = arv_device_get_integer_feature_value(device_, feature.name.c_str(), error.fill());
+      break;
+    default: {
+      const char* mode = feature.key == kTrigger
+                             ? arv_device_get_string_feature_value(device_, "TriggerMode", error.fill())
+                             : nullptr;
+      if (mode != nullptr && std::string_view(mode) != "On") {
+        plugin::copy_text(out.text, "free");
+        break;
+      }
+      const char* text = arv_device_get_string_feature_value(device_, feature.name.c_str(), error.fill());
+      const std::string told = text == nullptr ? std::string() : std::string(text);
+      plugin::copy_text(out.text, feature.key == kTrigger ? lower(told) : told);
+    }
+  }
+  if (error) {
+    return std::unexpected(error.told(feature.key + " cannot be read", id_));
+  }
+  return out;
+}
+
+Status Camera::set(const Feature& feature, const dubsar_value& value) {
+  if (camera_ == nullptr) {
+    return gone();
+  }
+  if (stream_ != nullptr && (feature.key.ends_with("_px") || feature.key == kTrigger)) {
+    return fail(ErrorKind::kUsage, feature.key + " cannot change while frames run", id_,
+                "stop the frames first");
+  }
+  GErrorHolder error;
+  const char* name = feature.name.c_str();
+  if (feature.key == kTrigger) {
+    if (std::string_view(value.text) == "free") {
+      arv_camera_clear_triggers(camera_, error.fill());
+    } else {
+      const std::vector<std::string> sources = trigger_sources(device_);
+      const auto source = std::ranges::find(sources, std::string(value.text), lower);
+      if (source == sources.end()) {
+        return fail(ErrorKind::kUsage, "no such trigger", id_, feature.choices);
+      }
+      arv_camera_set_trigger(camera_, source->c_str(), error.fill());
+    }
+  } else if (feature.type == DUBSAR_TYPE_NUMBER) {
+    if (feature.key == "frame_rate_hz") {
+      arv_camera_set_frame_rate(camera_, value.number,
+                                error.fill());  // which knows what must be enabled for it
+    } else {
+      arv_device_set_float_feature_value(device_, name, value.number, error.fill());
+    }
+  } else {
+    arv_device_set_integer_feature_value(device_, name, value.integer, error.fill());
+  }
+  if (error) {
+    return std::unexpected(error.told(feature.key + " cannot be set", id_));
+  }
+  set_here_[feature.key] = {feature, value};
+  return {};
+}
+
+}  // namespace dubsar::aravis

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+
+namespace dubsar::aravis {
+
+/// Whether a GigE Vision camera is still there: asks it on a socket of its own with the one command that
+/// every device answers to everybody (DISCOVERY). Aravis finds out as well, but after some four seconds, and
+/// an ordinary register read waits as long.
+class Presence {
+ public:
+  /// address: IPv4, in network byte order.
+  explicit Presence(std::uint32_t address);
+  ~Presence();
+  Presence(const Presence&) = delete;
+  Presence& operator=(const Presence&) = delete;
+
+  /// Asks when the last question is old enough, takes what came, and says whether the camera has kept silent
+  /// for too long. Does not wait. quiet() is for when its frames come and there is nothing to ask.
+  [[nodiscard]] bool gone();
+  void quiet();
+
+  static constexpr std::chrono::milliseconds kAskEvery{200};
+  static constexpr std::chrono::milliseconds kSilence{1300};
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  int socket_ = -1;
+  std::uint16_t number_ = 0;
+  Clock::time_point asked_{};
+  Clock::time_point heard_ = Clock::now();
+};
+
+}  // namespace dubsar::aravis

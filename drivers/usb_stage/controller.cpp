@@ -1,0 +1,324 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "drivers/usb_stage/controller.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <thread>
+
+namespace dubsar::usb_stage {
+
+namespace {
+
+using namespace std::chrono_literals;
+
+/// Between two questions to a stage that moves.
+constexpr auto kAskEvery = 5ms;
+/// A stage that stands still short of its target for so long does not go on.
+constexpr auto kStandstill = 500ms;
+/// Beyond the time that the way takes, for starting and braking.
+constexpr auto kGrace = 2s;
+/// How far beyond its limits or its speed a report may be before it is impossible.
+constexpr double kSlack = 0.05;
+constexpr double kSpeedSlack = 3;
+
+std::string shown(const Axis& axis, double value) {
+  char text[48];
+  std::snprintf(text, sizeof text, axis.rotary ? "%.3f deg" : "%.3f mm",
+                axis.rotary ? value * 57.29577951308232 : value);
+  return text;
+}
+
+/// What counts as arrived: two steps of the motor, or a micrometre where the steps are not known.
+double tolerance(const Axis& axis) {
+  return std::max(2 * axis.resolution, 1e-3);
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Controller>> Controller::open(Ways ways, std::string where) {
+  std::unique_ptr<Controller> out(new Controller(std::move(ways), std::move(where)));
+  const std::lock_guard lock(out->mutex_);
+  if (const Status connected = out->connect(); !connected) {
+    return std::unexpected(connected.error());
+  }
+  out->axes_ = out->firmware_->axes();
+  out->version_ = out->firmware_->version();
+  out->speed_ = out->axes_.front().speed_maximum / 2;
+  return out;
+}
+
+Status Controller::connect() {
+  if (firmware_) {
+    return {};
+  }
+  Result<std::unique_ptr<Link>> link = ways_.link();
+  if (!link) {
+    return std::unexpected(link.error());
+  }
+  link_ = std::move(*link);
+  Result<std::unique_ptr<Firmware>> firmware = ways_.firmware(*link_);
+  if (!firmware) {
+    link_.reset();
+    return std::unexpected(firmware.error());
+  }
+  if (const Status connected = (*firmware)->connect(); !connected) {
+    firmware->reset();
+    link_.reset();
+    return connected;
+  }
+  firmware_ = std::move(*firmware);
+  power_.assign(static_cast<std::size_t>(firmware_->lasers()), 0.0);
+  last_.reset();
+  maybe_lit_ = false;  // connect() puts them off
+  const std::lock_guard lock(panic_mutex_);
+  panic_link_ = link_;
+  panic_bytes_ = firmware_->panic();
+  return {};
+}
+
+void Controller::drop() {
+  const bool lit = std::ranges::any_of(power_, [](double power) { return power > 0; });
+  const bool heard = link_ && firmware_ && link_->write(firmware_->panic());
+  maybe_lit_ = maybe_lit_ || (lit && !heard);
+  {
+    const std::lock_guard lock(panic_mutex_);
+    panic_link_.reset();
+  }
+  firmware_.reset();
+  link_.reset();
+  std::ranges::fill(power_, 0.0);
+  last_.reset();
+}
+
+Status Controller::settle(Status status) {
+  if (!status && status.error().kind == ErrorKind::kDevice) {
+    drop();
+  }
+  return status;
+}
+
+Controller::~Controller() {
+  const std::lock_guard lock(mutex_);
+  if (firmware_) {
+    const Status dark = firmware_->stop();
+    maybe_lit_ = maybe_lit_ || !dark;
+    if (!dark) {
+      drop();
+    }
+  }
+  if (maybe_lit_ && guard_) {
+    guard_->leave_it_to_you();
+  }
+}
+
+std::unexpected<Error> Controller::stopped() const {
+  return fail(ErrorKind::kCancelled, "stopped on the way", where_);
+}
+
+Status Controller::plausible(const Position& now) {
+  for (std::size_t k = 0; k < now.axes.size(); ++k) {
+    const Axis& axis = firmware_->axes()[k];
+    const double slack = std::max(kSlack * (axis.maximum - axis.minimum), 1.0);
+    const bool beyond = firmware_->homed() && !axis.endless &&
+                        (now.axes[k] < axis.minimum - slack || now.axes[k] > axis.maximum + slack);
+    bool too_fast = false;
+    if (last_ && !now.commanded) {
+      const double seconds = static_cast<double>(now.timestamp_ns - last_->timestamp_ns + now.uncertainty_ns +
+                                                 last_->uncertainty_ns) *
+                             1e-9;
+      too_fast = std::abs(now.axes[k] - last_->axes[k]) >
+                 kSpeedSlack * axis.speed_maximum * (seconds + 0.05) + tolerance(axis);
+    }
+    if (!std::isfinite(now.axes[k]) || beyond || too_fast) {
+      return fail(ErrorKind::kDevice, "the stage reports an impossible position: " + shown(axis, now.axes[k]),
+                  where_, "see to its cable and motor, then home it");
+    }
+  }
+  return {};
+}
+
+Result<Position> Controller::read_locked() {
+  Result<Position> now = firmware_->read();
+  if (!now) {
+    [[maybe_unused]] const Status settled = settle(std::unexpected(now.error()));
+    return now;
+  }
+  if (const Status sane = settle(plausible(*now)); !sane) {
+    return std::unexpected(sane.error());
+  }
+  last_ = *now;
+  return now;
+}
+
+Result<Controller::Motion> Controller::read() {
+  const std::lock_guard lock(mutex_);
+  if (const Status connected = connect(); !connected) {
+    return std::unexpected(connected.error());
+  }
+  Result<Position> now = read_locked();
+  if (!now) {
+    return std::unexpected(now.error());
+  }
+  return Motion{std::move(*now), firmware_->homed(), power_};
+}
+
+Status Controller::set_laser(std::size_t laser, double power) {
+  const std::lock_guard lock(mutex_);
+  if (laser >= power_.size()) {
+    return fail(ErrorKind::kUsage, "no laser " + std::to_string(laser), where_,
+                "it has " + std::to_string(power_.size()) + ", from 0");
+  }
+  if (power > 0 && halted_) {
+    return fail(ErrorKind::kUsage, "the emergency stop was pressed", where_, "home the stage first");
+  }
+  if (const Status connected = connect(); !connected) {
+    return connected;
+  }
+  if (power > 0 && ways_.guard && !guard_) {
+    Result<std::unique_ptr<Guard>> guard = ways_.guard(firmware_->panic());
+    if (!guard) {
+      return std::unexpected(guard.error());
+    }
+    guard_ = std::move(*guard);
+  }
+  Status set = settle(firmware_->set_laser(static_cast<int>(laser), power));
+  if (set) {
+    power_[laser] = power;
+  }
+  return set;
+}
+
+Status Controller::move(std::size_t axis, double position, double speed, bool start_only) {
+  const std::uint64_t stops = stops_;
+  {
+    const std::lock_guard lock(mutex_);
+    if (axis >= axes_.size()) {
+      return fail(ErrorKind::kUsage, "no axis " + std::to_string(axis), where_,
+                  "it has " + std::to_string(axes_.size()) + ", from 0");
+    }
+    const Axis& one = axes_[axis];
+    if (!(position >= one.minimum && position <= one.maximum)) {
+      return fail(ErrorKind::kUsage, shown(one, position) + " is beyond the limits of axis " + one.name,
+                  where_, "it goes from " + shown(one, one.minimum) + " to " + shown(one, one.maximum));
+    }
+    speed = speed > 0 ? speed : speed_.load();
+    if (!(speed > 0 && speed <= one.speed_maximum * (1 + 1e-9))) {
+      return fail(ErrorKind::kUsage, shown(one, speed) + "/s is no speed of axis " + one.name, where_,
+                  "at most " + shown(one, one.speed_maximum) + "/s");
+    }
+    if (halted_) {
+      return fail(ErrorKind::kUsage, "the emergency stop was pressed", where_, "home the stage first");
+    }
+    if (const Status connected = connect(); !connected) {
+      return connected;
+    }
+    if (one.can_home && !firmware_->homed()) {
+      return fail(ErrorKind::kUsage, "where the stage is is not known", where_, "home it first");
+    }
+    if (stops_ != stops) {
+      return stopped();
+    }
+    if (Status started = settle(firmware_->start_move(axis, position, speed)); !started) {
+      return started;
+    }
+  }
+  return start_only ? Status{} : wait_for(axis, position, speed, stops);
+}
+
+Status Controller::wait_for(std::size_t axis, double position, double speed, std::uint64_t stops) {
+  Clock::time_point still_since = Clock::now();
+  Clock::time_point until = Clock::time_point::max();
+  for (;;) {
+    {
+      const std::lock_guard lock(mutex_);
+      if (stops_ != stops || !firmware_) {
+        return stopped();
+      }
+      const Result<Position> now = read_locked();
+      if (!now) {
+        return stops_ != stops ? stopped() : std::unexpected(now.error());
+      }
+      const double left = std::abs(now->axes[axis] - position);
+      if (!now->moving && left <= tolerance(axes_[axis])) {
+        return {};
+      }
+      if (now->alarm) {
+        return fail(ErrorKind::kDevice, "the stage went into alarm on the way", where_,
+                    "see what holds it up, then home it");
+      }
+      if (until == Clock::time_point::max()) {
+        until =
+            Clock::now() + kGrace +
+            std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(1.5 * left / speed));
+      }
+      still_since = now->moving ? Clock::now() : still_since;
+      if (Clock::now() - still_since > kStandstill || Clock::now() > until) {
+        [[maybe_unused]] const Status ended = settle(firmware_->stop());
+        std::ranges::fill(power_, 0.0);
+        return fail(ErrorKind::kDevice,
+                    "the stage stands " + shown(axes_[axis], left) + " short of its target", where_,
+                    "see what holds it up");
+      }
+    }
+    std::this_thread::sleep_for(kAskEvery);
+  }
+}
+
+Status Controller::home() {
+  const std::uint64_t stops = stops_;
+  const std::lock_guard lock(mutex_);
+  if (const Status connected = connect(); !connected) {
+    return connected;
+  }
+  Status homed = settle(firmware_->home([&] { return stops_ != stops; }));
+  last_.reset();  // where it is may have been told anew
+  if (homed) {
+    halted_ = false;
+  } else {
+    std::ranges::fill(power_, 0.0);
+  }
+  return homed;
+}
+
+Status Controller::stop() {
+  ++stops_;
+  const std::unique_lock lock(mutex_, 2 * kAnswer);
+  if (!lock) {
+    return fail(ErrorKind::kDevice, "the controller does not let go of its last command", where_,
+                "use the emergency stop");
+  }
+  if (!firmware_) {
+    return {};  // gone, and dark as far as can be told
+  }
+  Status ended = settle(firmware_->stop());
+  std::ranges::fill(power_, 0.0);
+  last_.reset();
+  return ended;
+}
+
+Status Controller::emergency_stop() {
+  ++stops_;
+  {  // first of all, whatever else goes on
+    const std::lock_guard lock(panic_mutex_);
+    if (panic_link_) {
+      [[maybe_unused]] const Status sent = panic_link_->write(panic_bytes_);
+    }
+  }
+  const std::unique_lock lock(mutex_, 2 * kAnswer);
+  if (!lock) {
+    return fail(ErrorKind::kDevice, "the controller did not confirm the emergency stop", where_,
+                "pull its plug");
+  }
+  halted_ = true;
+  if (!firmware_) {
+    return {};
+  }
+  Status halted = settle(firmware_->halt());
+  std::ranges::fill(power_, 0.0);
+  last_.reset();
+  return halted;
+}
+
+}  // namespace dubsar::usb_stage

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "core/result.h"
+#include "drivers/usb_stage/firmware.h"
+#include "drivers/usb_stage/guard.h"
+#include "drivers/usb_stage/link.h"
+
+namespace dubsar::usb_stage {
+
+/// How a controller is reached: made anew after every failure.
+struct Ways {
+  std::function<Result<std::unique_ptr<Link>>()> link;
+  std::function<Result<std::unique_ptr<Firmware>>(Link&)> firmware;
+  /// Absent: no guard, for links that no other process can open.
+  std::function<Result<std::unique_ptr<Guard>>(const std::string& panic)> guard;
+};
+
+/// A stage from open to close, plugged in or not: limits, waiting, lasers, stops. stop() and emergency_stop()
+/// are for any thread, everything else for one at a time.
+class Controller {
+ public:
+  /// kDevice when the controller is not there or is none.
+  [[nodiscard]] static Result<std::unique_ptr<Controller>> open(Ways ways, std::string where);
+  /// Lasers off, motion ended.
+  ~Controller();
+  Controller(const Controller&) = delete;
+  Controller& operator=(const Controller&) = delete;
+
+  /// As found when it was connected first.
+  [[nodiscard]] const std::vector<Axis>& axes() const { return axes_; }
+  [[nodiscard]] const std::string& version() const { return version_; }
+  [[nodiscard]] int lasers() const { return static_cast<int>(power_.size()); }
+  [[nodiscard]] const std::string& where() const { return where_; }
+
+  Status home();
+  /// speed 0: as speed() says.
+  Status move(std::size_t axis, double position, double speed, bool start_only);
+  struct Motion {
+    Position position;
+    bool homed = false;
+    std::vector<double> power;
+  };
+  [[nodiscard]] Result<Motion> read();
+  Status set_laser(std::size_t laser, double power);
+  Status stop();
+  Status emergency_stop();
+
+  [[nodiscard]] double speed() const { return speed_; }
+  void set_speed(double speed) { speed_ = speed; }
+
+ private:
+  Controller(Ways ways, std::string where) : ways_(std::move(ways)), where_(std::move(where)) {}
+  Status connect();
+  /// After an error of the device: what can be sent without an answer is sent, and the link dropped.
+  void drop();
+  Status settle(Status status);
+  Status plausible(const Position& now);
+  Result<Position> read_locked();
+  Status wait_for(std::size_t axis, double position, double speed, std::uint64_t stops);
+  [[nodiscard]] std::unexpected<Error> stopped() const;
+
+  Ways ways_;
+  std::string where_;
+  std::vector<Axis> axes_;
+  std::string version_;
+  std::atomic<double> speed_ = 0;
+
+  std::timed_mutex mutex_;  ///< of all below
+  std::shared_ptr<Link> link_;
+  std::unique_ptr<Firmware> firmware_;
+  std::unique_ptr<Guard> guard_;
+  std::vector<double> power_;
+  std::optional<Position> last_;
+  bool halted_ = false;
+  bool maybe_lit_ = false;  ///< the controller was lost with a laser on
+
+  std::mutex panic_mutex_;  ///< of the two that a halt uses without waiting for mutex_
+  std::shared_ptr<Link> panic_link_;
+  std::string panic_bytes_;
+  std::atomic<std::uint64_t> stops_ = 0;  ///< asked for so far; a move that sees more than it began with ends
+};
+
+}  // namespace dubsar::usb_stage

@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include <cmath>
+#include <numbers>
+
+#include "drivers/usb_stage/firmware.h"
+#include "drivers/usb_stage/horus_protocol.h"
+#include "drivers/usb_stage/line_talk.h"
+
+namespace dubsar::usb_stage {
+
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr double kRadPerDeg = std::numbers::pi / 180;
+constexpr auto kBoot = 3500ms;  // of a board that restarts when its line is opened
+constexpr auto kAskEvery = 500ms;
+constexpr double kSpeedMaximum = 500 * kRadPerDeg;
+constexpr double kStep = 0.1125 * kRadPerDeg;  // 200 steps, 16 microsteps
+/// Far enough for any scan, near enough for four decimals in a float.
+constexpr double kFarthest = 100 * 2 * std::numbers::pi;
+
+class Horus : public Firmware {
+ public:
+  Horus(Link& link, const std::string& where) : talk_(link, where) {
+    axes_ = {{"x", true, false, true, -kFarthest, kFarthest, kSpeedMaximum, kStep}};
+    lasers_ = 2;
+  }
+
+  Status connect() override {
+    if (const Status reset = restart(); !reset) {
+      return reset;
+    }
+    for (int laser = 1; laser <= lasers_; ++laser) {
+      if (const Status off = command(horus::laser(laser, false)); !off) {
+        return off;
+      }
+    }
+    homed_ = true;  // a turntable: where it stands is its zero
+    return command("M17");
+  }
+
+  Status start_move(std::size_t /*axis*/, double position, double speed) override {
+    if (const Status set = command(horus::speed(speed / kRadPerDeg)); !set) {
+      return set;
+    }
+    // Its ok comes when the move is accepted in some versions and when it has ended in others: read() looks.
+    const double way = std::abs(position - target_);
+    move_ends_ = Clock::now() +
+                 std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(way / speed));
+    target_ = position;
+    awaits_ok_ = true;
+    return talk_.send(horus::move(position / kRadPerDeg));
+  }
+
+  Result<Position> read() override {
+    Position out;
+    const std::int64_t asked = now_ns();
+    out.commanded = !reports_;
+    std::optional<horus::Report> report;
+    std::optional<std::string> refused;
+    const auto take = [&](const std::string& line) {
+      const horus::Line said = horus::parse(line);
+      awaits_ok_ = awaits_ok_ && !std::holds_alternative<horus::Ok>(said);
+      if (const auto* fault = std::get_if<horus::Fault>(&said)) {
+        refused = fault->text;
+      } else if (const auto* got = std::get_if<horus::Report>(&said)) {
+        report = *got;
+      }
+      return refused || report || std::holds_alternative<horus::Banner>(said);
+    };
+    if (reports_) {
+      if (const Status answered = talk_.ask(horus::kStatus, take); !answered) {
+        return std::unexpected(answered.error());
+      }
+    } else if (awaits_ok_) {
+      const Result<std::optional<std::string>> line = talk_.line(Clock::now() + 20ms);
+      if (!line) {
+        return std::unexpected(line.error());
+      }
+      take(line->value_or(""));
+    }
+    if (refused) {
+      awaits_ok_ = false;
+      return fail(ErrorKind::kDevice, "the controller refuses to move: " + *refused, talk_.where());
+    }
+    if (reports_ && !report) {
+      return fail(ErrorKind::kDevice, "the controller restarted", talk_.where(), "see to its power");
+    }
+    const std::int64_t answered = now_ns();
+    out.timestamp_ns = asked + (answered - asked) / 2;
+    out.uncertainty_ns = (answered - asked) / 2;
+    out.moving = awaits_ok_ || (report && report->moving);
+    out.alarm = report && report->alarm;
+    out.axes = {report ? report->degrees * kRadPerDeg : target_};
+    return out;
+  }
+
+  Status set_laser(int laser, double power) override { return command(horus::laser(laser + 1, power > 0)); }
+
+  /// This firmware has no way to brake: a reset ends the motion, and its position counts from there.
+  Status stop() override {
+    if (awaits_ok_) {
+      return connect();
+    }
+    for (int laser = 0; laser < lasers_; ++laser) {
+      if (const Status off = set_laser(laser, 0); !off) {
+        return off;
+      }
+    }
+    return moving() ? connect() : Status{};
+  }
+
+  Status home(const Cancelled& /*cancelled*/) override {
+    return fail(ErrorKind::kUsage, "a turntable without a switch cannot be homed", talk_.where(),
+                "where it stands when it is opened is its zero");
+  }
+
+  Status halt() override { return connect(); }
+
+  [[nodiscard]] std::string panic() const override { return "\x18\r\nM70T1\r\nM70T2\r\nM18\r\n"; }
+
+ private:
+  bool moving() {
+    const Result<Position> now = read();
+    return now && now->moving;
+  }
+
+  Status restart() {
+    talk_.forget();
+    awaits_ok_ = false;
+    target_ = 0;
+    const Clock::time_point until = Clock::now() + kBoot;
+    while (Clock::now() < until) {
+      if (const Status sent = talk_.send(std::string(1, horus::kReset) + "\r"); !sent) {
+        return sent;
+      }
+      const Clock::time_point next = std::min(Clock::now() + kAskEvery, until);
+      for (bool listening = true; listening;) {
+        const Result<std::optional<std::string>> line = talk_.line(next);
+        if (!line) {
+          return std::unexpected(line.error());
+        }
+        listening = line->has_value();
+        const horus::Line said = horus::parse(line->value_or(""));
+        if (const auto* banner = std::get_if<horus::Banner>(&said)) {
+          version_ = "Horus " + banner->version;
+          return find_out_whether_it_reports();
+        }
+      }
+    }
+    return talk_.silent();
+  }
+
+  Status find_out_whether_it_reports() {
+    if (const Status sent = talk_.write(std::string(1, horus::kStatus)); !sent) {
+      return sent;
+    }
+    reports_ = false;
+    const Clock::time_point until = Clock::now() + 200ms;
+    for (;;) {
+      const Result<std::optional<std::string>> line = talk_.line(until);
+      if (!line) {
+        return std::unexpected(line.error());
+      }
+      if (!*line) {
+        return {};
+      }
+      if (std::holds_alternative<horus::Report>(horus::parse(**line))) {
+        reports_ = true;
+        return {};
+      }
+    }
+  }
+
+  Status command(const std::string& line) {
+    if (const Status sent = talk_.send(line + "\r"); !sent) {
+      return sent;
+    }
+    std::optional<std::string> refused;
+    // Answers come in order: that to a move which is still on its way stands before ours.
+    const Clock::time_point until =
+        (awaits_ok_ ? std::max(Clock::now(), move_ends_) : Clock::now()) + kAnswer;
+    const Status answered = talk_.until(until, [&](const std::string& text) {
+      const horus::Line said = horus::parse(text);
+      if (std::holds_alternative<horus::Ok>(said) && awaits_ok_) {
+        awaits_ok_ = false;
+        return false;
+      }
+      if (const auto* fault = std::get_if<horus::Fault>(&said)) {
+        refused = fault->text;
+      }
+      return refused || std::holds_alternative<horus::Ok>(said);
+    });
+    if (!answered || !refused) {
+      return answered;
+    }
+    return fail(ErrorKind::kDevice, "the controller refuses " + line + ": " + *refused, talk_.where());
+  }
+
+  LineTalk talk_;
+  bool reports_ = false;
+  bool awaits_ok_ = false;
+  double target_ = 0;
+  Clock::time_point move_ends_{};
+};
+
+}  // namespace
+
+std::unique_ptr<Firmware> make_horus(Link& link, const std::string& where) {
+  return std::make_unique<Horus>(link, where);
+}
+
+}  // namespace dubsar::usb_stage

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <chrono>
+#include <string>
+#include <string_view>
+
+#include "core/result.h"
+
+namespace dubsar::usb_stage {
+
+using Clock = std::chrono::steady_clock;
+
+/// How long a firmware may take to answer before it counts as gone.
+inline constexpr std::chrono::milliseconds kAnswer(1500);
+/// When a question that may be asked twice is: its answer may have been spoilt on the line.
+inline constexpr std::chrono::milliseconds kAskAgain(300);
+
+/// Bytes to and from a controller. An error means that the controller is gone for good.
+class Link {
+ public:
+  virtual ~Link() = default;
+  /// Within half a second; from any thread.
+  virtual Status write(std::string_view bytes) = 0;
+  /// What came, as soon as something did; empty when nothing came in time. One thread at a time.
+  virtual Result<std::string> read(std::chrono::milliseconds timeout) = 0;
+};
+
+}  // namespace dubsar::usb_stage

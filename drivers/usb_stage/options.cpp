@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "drivers/usb_stage/options.h"
+
+#include <algorithm>
+#include <numbers>
+
+namespace dubsar::usb_stage {
+
+namespace {
+
+constexpr double kRadPerDeg = std::numbers::pi / 180;
+
+constexpr std::array<plugin::SettingRow, 7> kRows{{
+    {DUBSAR_TYPE_CHOICE, "firmware", "what the controller speaks; auto tells grbl and horus by their banner",
+     nullptr, "auto|grbl|horus|tmcl"},
+    {DUBSAR_TYPE_TEXT, "axes",
+     "its axes in their order, those that turn with :deg, e.g. x,y:deg; default: x"},
+    {DUBSAR_TYPE_TEXT, "limits",
+     "soft limits of each axis, e.g. 0..120,-90..90; default: the controller's own", "mm or deg"},
+    {DUBSAR_TYPE_NUMBER, "steps", "of tmcl: microsteps per mm, or per degree", nullptr, nullptr, 1e-3, 1e9},
+    {DUBSAR_TYPE_NUMBER, "speed_max", "of tmcl: the greatest speed", "mm/s or deg/s", nullptr, 1e-6, 1e6},
+    {DUBSAR_TYPE_INTEGER, "module", "of tmcl: the module's address", nullptr, nullptr, 1, 255},
+    {DUBSAR_TYPE_INTEGER, "laser_output", "of tmcl: the digital output that the laser hangs on", nullptr,
+     nullptr, 0, 7},
+}};
+
+/// The parts between commas.
+std::vector<std::string_view> parts(std::string_view text) {
+  std::vector<std::string_view> out;
+  while (true) {
+    const std::size_t comma = text.find(',');
+    out.push_back(text.substr(0, comma));
+    if (comma == text.npos) {
+      return out;
+    }
+    text.remove_prefix(comma + 1);
+  }
+}
+
+bool take_axes(std::string_view text, std::vector<AxisWish>& axes) {
+  axes.clear();
+  for (std::string_view part : parts(text)) {
+    AxisWish wish;
+    if (part.ends_with(":deg")) {
+      wish.rotary = true;
+      part.remove_suffix(4);
+    } else if (part.ends_with(":mm")) {
+      part.remove_suffix(3);
+    }
+    wish.name = std::string(part);
+    const bool letter = part.size() == 1 && std::string_view("xyzabc").contains(part[0]);
+    if (!letter || std::ranges::find(axes, wish.name, &AxisWish::name) != axes.end()) {
+      return false;
+    }
+    axes.push_back(wish);
+  }
+  return true;
+}
+
+bool take_limits(std::string_view text, std::vector<std::pair<double, double>>& limits) {
+  for (const std::string_view part : parts(text)) {
+    const std::size_t dots = part.find("..");
+    const auto low = plugin::number(part.substr(0, dots));
+    const auto high = dots == part.npos ? std::nullopt : plugin::number(part.substr(dots + 2));
+    if (!low || !high || !(*low < *high)) {
+      return false;
+    }
+    limits.emplace_back(*low, *high);
+  }
+  return true;
+}
+
+/// A number within the range of its row.
+bool take_number(std::string_view text, const plugin::SettingRow& row, double& to) {
+  const std::optional<double> value = plugin::number(text);
+  if (!value || *value < row.minimum || *value > row.maximum) {
+    return false;
+  }
+  to = *value;
+  return row.type != DUBSAR_TYPE_INTEGER || *value == static_cast<double>(static_cast<int>(*value));
+}
+
+}  // namespace
+
+std::span<const plugin::SettingRow> option_rows() {
+  return kRows;
+}
+
+Result<StageOptions> parse_options(std::span<const dubsar_option> options) {
+  StageOptions out;
+  std::vector<std::pair<double, double>> limits;
+  double steps = 0;
+  double speed_max = 0;
+  double module = 1;
+  double output = 0;
+  for (const dubsar_option& option : options) {
+    const std::string_view key = option.key;
+    const std::string_view value = option.value;
+    const auto row = std::ranges::find(kRows, key, &plugin::SettingRow::key);
+    bool good = row != kRows.end();
+    if (key == "firmware") {
+      good = value == "auto" || value == "grbl" || value == "horus" || value == "tmcl";
+      out.firmware = value;
+    } else if (key == "axes") {
+      good = take_axes(value, out.axes);
+    } else if (key == "limits") {
+      good = take_limits(value, limits);
+    } else if (good) {
+      good = take_number(value, *row,
+                         key == "steps"       ? steps
+                         : key == "speed_max" ? speed_max
+                         : key == "module"    ? module
+                                              : output);
+    }
+    if (!good) {
+      return fail(ErrorKind::kUsage, std::string(key) + "=" + std::string(value) + " is not understood", {},
+                  row == kRows.end() ? "" : std::string(key) + " takes " + row->help);
+    }
+  }
+  if (!limits.empty() && limits.size() != out.axes.size()) {
+    return fail(
+        ErrorKind::kUsage,
+        "limits for " + std::to_string(limits.size()) + " of " + std::to_string(out.axes.size()) + " axes",
+        {}, "give limits= for each axis of axes=, or for none");
+  }
+  for (std::size_t k = 0; k < limits.size(); ++k) {
+    const double unit = out.axes[k].rotary ? kRadPerDeg : 1.0;
+    out.axes[k].limits = {limits[k].first * unit, limits[k].second * unit};
+  }
+  const double unit = out.axes.front().rotary ? kRadPerDeg : 1.0;
+  out.tmcl = {steps / unit, speed_max * unit, static_cast<int>(module), static_cast<int>(output)};
+  return out;
+}
+
+}  // namespace dubsar::usb_stage

@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <string>
+#include <utility>
+
+#include "drivers/usb_stage/firmware.h"
+#include "drivers/usb_stage/tmcl_protocol.h"
+
+namespace dubsar::usb_stage {
+
+namespace {
+
+using namespace std::chrono_literals;
+using tmcl::AxisParameter;
+using tmcl::Command;
+
+constexpr std::uint8_t kAbsolute = 0;  // MVP ABS
+constexpr std::uint8_t kStart = 0;     // RFS START, STOP, STATUS
+constexpr std::uint8_t kStopSearch = 1;
+constexpr std::uint8_t kSearchState = 2;
+constexpr std::uint8_t kOutputBank = 2;  // SIO: digital outputs
+
+class Tmcl : public Firmware {
+ public:
+  Tmcl(Link& link, const std::vector<AxisWish>& wishes, const TmclOptions& options, const std::string& where)
+      : link_(link), wishes_(wishes), options_(options), where_(where) {}
+
+  Status connect() override {
+    if (!(options_.steps_per_unit > 0) || !(options_.speed_maximum > 0)) {
+      return fail(ErrorKind::kUsage, "how far a step goes is not known", where_,
+                  "give steps= (microsteps per mm or degree) and speed_max=");
+    }
+    const Result<std::int32_t> version = ask({Command::kVersion, 1, 0, 0});
+    if (!version) {
+      return std::unexpected(version.error());
+    }
+    char text[32];
+    std::snprintf(text, sizeof text, "TMCM-%u", static_cast<std::uint32_t>(*version) >> 16U);
+    version_ = text;
+    axes_.clear();
+    const double farthest = std::numeric_limits<std::int32_t>::max() / options_.steps_per_unit;
+    for (std::size_t k = 0; k < wishes_.size(); ++k) {
+      const AxisWish& wish = wishes_[k];
+      axes_.push_back({wish.name, wish.rotary, true, !wish.limits && wish.rotary,
+                       wish.limits ? wish.limits->first : -farthest,
+                       wish.limits ? wish.limits->second : farthest, options_.speed_maximum,
+                       1 / options_.steps_per_unit});
+    }
+    homed_ = false;
+    return stop();
+  }
+
+  Status start_move(std::size_t axis, double position, double speed) override {
+    const auto motor = static_cast<std::uint8_t>(axis);
+    const auto steps_per_second = static_cast<std::int32_t>(std::lround(speed * options_.steps_per_unit));
+    if (const auto set = ask({Command::kSetAxis, static_cast<std::uint8_t>(AxisParameter::kMaxSpeed), motor,
+                              std::max(steps_per_second, 1)});
+        !set) {
+      return std::unexpected(set.error());
+    }
+    const double steps = std::round(position * options_.steps_per_unit);
+    if (std::abs(steps) > std::numeric_limits<std::int32_t>::max()) {
+      return fail(ErrorKind::kUsage, "farther than the motor can count", where_);
+    }
+    const auto moved = ask({Command::kMoveTo, kAbsolute, motor, static_cast<std::int32_t>(steps)});
+    return moved ? Status{} : std::unexpected(moved.error());
+  }
+
+  Result<Position> read() override {
+    Position out;
+    const std::int64_t asked = now_ns();
+    for (std::size_t k = 0; k < axes_.size(); ++k) {
+      std::int32_t at = 0;
+      std::int32_t speed = 0;
+      std::int32_t target = 0;
+      for (const auto& [parameter, to] :
+           {std::pair(AxisParameter::kActual, &at), std::pair(AxisParameter::kActualSpeed, &speed),
+            std::pair(AxisParameter::kTarget, &target)}) {
+        const Result<std::int32_t> value = axis(parameter, k);
+        if (!value) {
+          return std::unexpected(value.error());
+        }
+        *to = *value;
+      }
+      out.axes.push_back(at / options_.steps_per_unit);
+      // Right after a move was asked for its speed is still 0; after a stop its target is behind it.
+      out.moving = out.moving || speed != 0 || (target != at && !stopped_);
+    }
+    const std::int64_t answered = now_ns();
+    out.timestamp_ns = asked + (answered - asked) / 2;
+    out.uncertainty_ns = (answered - asked) / 2;
+    return out;
+  }
+
+  Status set_laser(int /*laser*/, double power) override {
+    const auto set = ask({Command::kSetOutput, static_cast<std::uint8_t>(options_.laser_output), kOutputBank,
+                          power > 0 ? 1 : 0});
+    return set ? Status{} : std::unexpected(set.error());
+  }
+
+  Status stop() override {
+    if (const Status dark = set_laser(0, 0); !dark) {
+      return dark;  // and no waiting for more answers: whoever gets this sends panic()
+    }
+    for (std::size_t k = 0; k < axes_.size(); ++k) {
+      if (const auto stopped = ask({Command::kMotorStop, 0, static_cast<std::uint8_t>(k), 0}); !stopped) {
+        return std::unexpected(stopped.error());
+      }
+    }
+    // With the target where it stands nothing can start again by itself.
+    const Clock::time_point until = Clock::now() + kAnswer;
+    for (std::size_t k = 0; k < axes_.size() && Clock::now() < until;) {
+      const Result<std::int32_t> speed = axis(AxisParameter::kActualSpeed, k);
+      if (!speed) {
+        return std::unexpected(speed.error());
+      }
+      k += *speed == 0 ? 1 : 0;
+    }
+    stopped_ = true;
+    return {};
+  }
+
+  Status home(const Cancelled& cancelled) override {
+    for (std::size_t k = 0; k < axes_.size(); ++k) {
+      const auto motor = static_cast<std::uint8_t>(k);
+      if (const auto begun = ask({Command::kReference, kStart, motor, 0}); !begun) {
+        return std::unexpected(begun.error());
+      }
+      for (;;) {
+        if (cancelled()) {
+          if (const auto ended = ask({Command::kReference, kStopSearch, motor, 0}); !ended) {
+            return std::unexpected(ended.error());
+          }
+          const Status still = stop();
+          return still ? fail(ErrorKind::kCancelled, "stopped while it was homed", where_) : still;
+        }
+        const Result<std::int32_t> state = ask({Command::kReference, kSearchState, motor, 0});
+        if (!state) {
+          return std::unexpected(state.error());
+        }
+        if (*state == 0) {
+          break;
+        }
+      }
+    }
+    homed_ = true;
+    stopped_ = true;
+    return {};
+  }
+
+  Status halt() override {
+    homed_ = false;
+    return stop();
+  }
+
+  [[nodiscard]] std::string panic() const override {
+    std::string out =
+        bytes({Command::kSetOutput, static_cast<std::uint8_t>(options_.laser_output), kOutputBank, 0});
+    for (std::size_t k = 0; k < std::max<std::size_t>(axes_.size(), 1); ++k) {
+      out += bytes({Command::kMotorStop, 0, static_cast<std::uint8_t>(k), 0});
+    }
+    return out;
+  }
+
+ private:
+  [[nodiscard]] std::string bytes(const tmcl::Request& request) const {
+    const tmcl::Bytes encoded = tmcl::encode(request, static_cast<std::uint8_t>(options_.module));
+    return {encoded.begin(), encoded.end()};
+  }
+
+  Result<std::int32_t> axis(AxisParameter parameter, std::size_t motor) {
+    return ask(
+        {Command::kGetAxis, static_cast<std::uint8_t>(parameter), static_cast<std::uint8_t>(motor), 0});
+  }
+
+  Result<std::int32_t> ask(const tmcl::Request& request) {
+    stopped_ = stopped_ && request.command != Command::kMoveTo;
+    if (const Status sent = link_.write(bytes(request)); !sent) {
+      return std::unexpected(sent.error());
+    }
+    tmcl::ReplyFinder finder(request.command);
+    const Clock::time_point until = Clock::now() + kAnswer;
+    for (;;) {
+      const auto left = std::chrono::ceil<std::chrono::milliseconds>(until - Clock::now());
+      if (left.count() <= 0) {
+        return fail(ErrorKind::kDevice, "the controller does not answer", where_,
+                    "see to its power and cable, and that its laser is off");
+      }
+      const Result<std::string> got = link_.read(left);
+      if (!got) {
+        return std::unexpected(got.error());
+      }
+      const std::span all(reinterpret_cast<const std::uint8_t*>(got->data()), got->size());
+      if (const std::optional<tmcl::Reply> reply = finder.add(all)) {
+        if (!reply->good()) {
+          return fail(ErrorKind::kDevice,
+                      "the controller refuses command " + std::to_string(static_cast<int>(request.command)) +
+                          ": " + tmcl::meaning(reply->status),
+                      where_, "see that it is a motion module of Trinamic's");
+        }
+        return reply->value;
+      }
+    }
+  }
+
+  Link& link_;
+  std::vector<AxisWish> wishes_;
+  TmclOptions options_;
+  std::string where_;
+  bool stopped_ = true;  ///< the target is not where it goes
+};
+
+}  // namespace
+
+std::unique_ptr<Firmware> make_tmcl(Link& link, const std::vector<AxisWish>& axes, const TmclOptions& options,
+                                    const std::string& where) {
+  return std::make_unique<Tmcl>(link, axes, options, where);
+}
+
+}  // namespace dubsar::usb_stage
