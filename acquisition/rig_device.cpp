@@ -50,7 +50,10 @@ class SinkBridge : public ProfileSink {
     out.timestamp_ns = profile.timestamp_ns;
     return sink_.profile(sink_.user, &out) == 0;
   }
-  void end(const ScanTally& tally) override { tally_ = tally; begun_ = true; }
+  void end(const ScanTally& tally) override {
+    tally_ = tally;
+    begun_ = true;
+  }
 
   void finish(std::int32_t code) {
     if (begun_) {
@@ -101,7 +104,8 @@ std::int32_t discover(dubsar_device_callback, void*, dubsar_error*) {
   return DUBSAR_OK;
 }
 
-std::int32_t open_by_name(const char*, const dubsar_option*, std::uint32_t, dubsar_device**, dubsar_error* error) {
+std::int32_t open_by_name(const char*, const dubsar_option*, std::uint32_t, dubsar_device**,
+                          dubsar_error* error) {
   return plugin::report(error, DUBSAR_USAGE, "a rig is put together, not opened");
 }
 

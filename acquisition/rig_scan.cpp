@@ -19,7 +19,8 @@ constexpr auto kFrameWait = std::chrono::milliseconds(200);
 constexpr int kFrameTries = 15;  // 3 s for a frame that was exposed late enough
 
 std::int64_t monotonic_ns() {
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch())
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(
+             std::chrono::steady_clock::now().time_since_epoch())
       .count();
 }
 
@@ -34,7 +35,8 @@ StripeOptions stripe_options(const RigFile& file) {
 }
 
 /// A word of rig.toml as the type that the setting has.
-Result<SettingValue> value_for(const SettingInfo& setting, const std::string& word, const std::string& where) {
+Result<SettingValue> value_for(const SettingInfo& setting, const std::string& word,
+                               const std::string& where) {
   const auto wrong = [&] {
     return fail(ErrorKind::kUsage, "setting " + setting.key + " cannot be '" + word + "'", where);
   };
@@ -89,7 +91,8 @@ Status put_settings(const RigFile& file, Device& camera, const std::string& wher
 }
 
 GrayView view_of(const Frame& frame) {
-  return {frame.pixels.data(), static_cast<int>(frame.width), static_cast<int>(frame.height), frame.stride_bytes};
+  return {frame.pixels.data(), static_cast<int>(frame.width), static_cast<int>(frame.height),
+          frame.stride_bytes};
 }
 
 /// Puts the laser off when it goes.
@@ -126,13 +129,16 @@ Status fits(const RigFile& file, const RigCalibration& calibration, const Device
     return fail(ErrorKind::kUsage, file.stage + " is no stage", where, "name a stage: see dubsar drivers");
   }
   if (!calibration.has_laser || !calibration.has_motion) {
-    return bad_input(where, "the calibration knows no " + std::string(calibration.has_laser ? "stage" : "laser plane"),
-                     "calibrate with pictures of the laser and of the board on the stage");
+    return bad_input(
+        where, "the calibration knows no " + std::string(calibration.has_laser ? "stage" : "laser plane"),
+        "calibrate with pictures of the laser and of the board on the stage");
   }
-  if (!calibration.camera_serial.empty() && !camera.serial.empty() && calibration.camera_serial != camera.serial) {
-    return bad_input(where,
-                     "the calibration is of camera " + calibration.camera_serial + ", this is camera " + camera.serial,
-                     "name the calibration of this camera, or calibrate it");
+  if (!calibration.camera_serial.empty() && !camera.serial.empty() &&
+      calibration.camera_serial != camera.serial) {
+    return bad_input(
+        where,
+        "the calibration is of camera " + calibration.camera_serial + ", this is camera " + camera.serial,
+        "name the calibration of this camera, or calibrate it");
   }
   if (static_cast<std::size_t>(file.axis) >= axes.size()) {
     return fail(ErrorKind::kUsage, "the stage has no axis " + std::to_string(file.axis), where,
@@ -146,8 +152,9 @@ Status fits(const RigFile& file, const RigCalibration& calibration, const Device
   const double end = file.start + file.step * (file.rows - 1);
   if (!axis.endless && (file.start < axis.minimum || end > axis.maximum)) {
     return fail(ErrorKind::kUsage,
-                "the scan from " + number_text(file.start) + " to " + number_text(end) + " leaves the axis' limits, " +
-                    number_text(axis.minimum) + " to " + number_text(axis.maximum),
+                "the scan from " + number_text(file.start) + " to " + number_text(end) +
+                    " leaves the axis' limits, " + number_text(axis.minimum) + " to " +
+                    number_text(axis.maximum),
                 where, "scan less, or move the limits");
   }
   return {};
@@ -207,15 +214,16 @@ Result<RigScanner> RigScanner::make(const RigFile& file, const RigCalibration& c
   rig.field_x_mm = calibration.field_per_px_mm() * out.triangulator_->samples_per_profile();
   const double travel = file.step * (file.rows - 1);
   const bool linear = calibration.motion.kind == MotionKind::kLinear;
-  rig.field_y_mm = linear ? travel * calibration.motion.direction.norm()
-                          : travel * calibration.working_distance_mm;
+  rig.field_y_mm =
+      linear ? travel * calibration.motion.direction.norm() : travel * calibration.working_distance_mm;
   rig.spacing_mm = std::max(calibration.field_per_px_mm(), rig.field_y_mm / (file.rows - 1));
   rig.depth_range_mm = calibration.depth_range_mm;
   rig.hand_turns = file.hand_turns;
   rig.support_height_mm = file.support_height_mm;
   rig.head = file.head;
-  rig.calibration = file.calibration + ", made " + calibration.made_at +
-                    (calibration.temperature_c ? " at " + number_text(*calibration.temperature_c) + " °C" : std::string());
+  rig.calibration =
+      file.calibration + ", made " + calibration.made_at +
+      (calibration.temperature_c ? " at " + number_text(*calibration.temperature_c) + " °C" : std::string());
   rig.calibration_age_days = days_since(calibration.made_at);
   out.device_id_ = file.name + (of_camera->serial.empty() ? std::string() : ", camera " + of_camera->serial);
   return out;
@@ -235,12 +243,13 @@ Result<Frame> RigScanner::fresh_frame(std::int64_t not_before_ns) {
       continue;
     }
     const CameraModel& camera = triangulator_->calibration().camera;
-    if (static_cast<int>((*frame)->width) != camera.width || static_cast<int>((*frame)->height) != camera.height ||
-        (*frame)->offset_x != 0 || (*frame)->offset_y != 0) {
+    if (static_cast<int>((*frame)->width) != camera.width ||
+        static_cast<int>((*frame)->height) != camera.height || (*frame)->offset_x != 0 ||
+        (*frame)->offset_y != 0) {
       return bad_input(file_.name,
-                       "the camera sends " + std::to_string((*frame)->width) + " x " + std::to_string((*frame)->height) +
-                           " pixels, it was calibrated with " + std::to_string(camera.width) + " x " +
-                           std::to_string(camera.height),
+                       "the camera sends " + std::to_string((*frame)->width) + " x " +
+                           std::to_string((*frame)->height) + " pixels, it was calibrated with " +
+                           std::to_string(camera.width) + " x " + std::to_string(camera.height),
                        "set the region that was calibrated in camera_settings");
     }
     if ((*frame)->format != PixelFormat::kMono8) {
@@ -255,7 +264,8 @@ Result<Frame> RigScanner::fresh_frame(std::int64_t not_before_ns) {
 Status RigScanner::row(int number, ProfileSink& sink, ScanTally& tally) {
   const double position = file_.start + file_.step * number;
   const auto laser = static_cast<std::uint32_t>(file_.laser);
-  if (Status moved = stage_.move({static_cast<std::uint32_t>(file_.axis), position, file_.speed, false}); !moved) {
+  if (Status moved = stage_.move({static_cast<std::uint32_t>(file_.axis), position, file_.speed, false});
+      !moved) {
     return moved;
   }
   // A frame that is stamped on arrival was exposed before: one whole frame is let go by then.
@@ -335,7 +345,8 @@ Status RigScanner::scan(ProfileSink& sink) {
   ScanTally tally;
   Status status = sink.begin(info) ? Status{} : fail(ErrorKind::kCancelled, "scan cancelled", file_.name);
   for (int number = 0; status && number < file_.rows; ++number) {
-    status = stopped_->load() ? fail(ErrorKind::kCancelled, "scan stopped", file_.name) : row(number, sink, tally);
+    status =
+        stopped_->load() ? fail(ErrorKind::kCancelled, "scan stopped", file_.name) : row(number, sink, tally);
   }
   if (!status) {
     [[maybe_unused]] const Status said = stage_.stop();

@@ -14,28 +14,29 @@
 
 namespace dubsar {
 
-/// A camera, a stage with a laser, and the calibration that belongs to them, as one range source. Use from one
-/// thread at a time; stop() from any.
+/// A camera, a stage with a laser, and the calibration that belongs to them, as one range source. Use from
+/// one thread at a time; stop() from any.
 class RigScanner {
  public:
-  /// Checks that the parts fit: a camera that yields frames, a stage with the axis (a rotary one for turntable and
-  /// mirror), a whole calibration of this very camera (by its serial number), a scan within the axis' limits. Puts
-  /// the camera's settings. Errors: kUsage, kBadInput, kDevice.
-  [[nodiscard]] static Result<RigScanner> make(const RigFile& file, const RigCalibration& calibration, Device camera,
-                                               Device stage, const std::string& where);
+  /// Checks that the parts fit: a camera that yields frames, a stage with the axis (a rotary one for
+  /// turntable and mirror), a whole calibration of this very camera (by its serial number), a scan within the
+  /// axis' limits. Puts the camera's settings. Errors: kUsage, kBadInput, kDevice.
+  [[nodiscard]] static Result<RigScanner> make(const RigFile& file, const RigCalibration& calibration,
+                                               Device camera, Device stage, const std::string& where);
 
   /// What it sees and how old its calibration is, counted from `calibration.made_at`.
   [[nodiscard]] const Rig& rig() const { return rig_; }
   [[nodiscard]] const std::string& device_id() const { return device_id_; }
 
-  /// One scan, row by row: drives to the row, takes a frame with the laser off (where the file asks for ambient
-  /// frames) and one with it on. The laser is off afterwards, whatever happened.
+  /// One scan, row by row: drives to the row, takes a frame with the laser off (where the file asks for
+  /// ambient frames) and one with it on. The laser is off afterwards, whatever happened.
   Status scan(ProfileSink& sink);
   /// Ends the motion and puts the laser off; a scan that runs returns kCancelled soon.
   Status stop();
 
  private:
-  RigScanner(const RigFile& file, const RigCalibration& calibration, Device camera, Device stage, StripeAxis axis);
+  RigScanner(const RigFile& file, const RigCalibration& calibration, Device camera, Device stage,
+             StripeAxis axis);
   [[nodiscard]] Result<Frame> fresh_frame(std::int64_t not_before_ns);
   Status row(int number, ProfileSink& sink, ScanTally& tally);
 

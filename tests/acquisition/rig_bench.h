@@ -16,8 +16,8 @@
 
 namespace dubsar::test {
 
-/// A simulated camera and stage behind the driver interface, that share one bench: what the camera sees follows
-/// where the stage stands and whether its laser is on.
+/// A simulated camera and stage behind the driver interface, that share one bench: what the camera sees
+/// follows where the stage stands and whether its laser is on.
 struct RigBench {
   RigCalibration truth;
   const sim::Scene* scene = nullptr;
@@ -26,7 +26,7 @@ struct RigBench {
   double position = 0;
   double laser = 0;
   double limit = 10;
-  int cut = 0;             ///< rows that the camera leaves away at the lower edge
+  int cut = 0;               ///< rows that the camera leaves away at the lower edge
   int gone_after = 1 << 30;  ///< frames until the camera is unplugged
   bool stuck = false;
   std::uint64_t frames = 0;
@@ -38,7 +38,8 @@ inline RigBench& bench_of(dubsar_device* device) {
 }
 
 inline std::int64_t now_ns() {
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch())
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(
+             std::chrono::steady_clock::now().time_since_epoch())
       .count();
 }
 
@@ -57,7 +58,8 @@ inline const dubsar_driver& camera_driver() {
       return DUBSAR_OK;
     };
     out.start_frames = [](dubsar_device*, std::uint32_t, dubsar_error*) -> std::int32_t { return DUBSAR_OK; };
-    out.next_frame = [](dubsar_device* device, std::uint32_t, dubsar_frame* to, dubsar_error* error) -> std::int32_t {
+    out.next_frame = [](dubsar_device* device, std::uint32_t, dubsar_frame* to,
+                        dubsar_error* error) -> std::int32_t {
       RigBench& bench = bench_of(device);
       if (static_cast<int>(bench.frames) >= bench.gone_after) {
         return plugin::report(error, DUBSAR_DEVICE, "the camera is gone", "bench", "plug it in");
