@@ -18,7 +18,7 @@ namespace dubsar {
 
 namespace {
 
-constexpr double kLeftOut = 0.003;               // of the samples, as the guideline allows
+constexpr double kLeftOut = 0.003;  // of the samples, as the guideline allows
 constexpr double kSeenWithin_rad = rad_from_deg(60);
 constexpr int kTries = 6000;
 constexpr std::size_t kLeastOnBall = 100;
@@ -55,10 +55,10 @@ std::vector<Eigen::Vector3d> on_ball(const std::vector<Eigen::Vector3d>& points,
   return out;
 }
 
-/// The ball of this diameter with the most samples on it. `free` says of each cell of the grid whether its sample
-/// is still to be had.
-std::optional<Found> find_ball(const RangeGrid& grid, const std::vector<std::uint8_t>& free, double diameter_mm,
-                               const Eigen::Vector3d& towards, Random& random) {
+/// The ball of this diameter with the most samples on it. `free` says of each cell of the grid whether its
+/// sample is still to be had.
+std::optional<Found> find_ball(const RangeGrid& grid, const std::vector<std::uint8_t>& free,
+                               double diameter_mm, const Eigen::Vector3d& towards, Random& random) {
   std::vector<std::size_t> cells;
   std::vector<Eigen::Vector3d> points;
   for (std::size_t i = 0; i < free.size(); ++i) {
@@ -84,8 +84,10 @@ std::optional<Found> find_ball(const RangeGrid& grid, const std::vector<std::uin
     std::array<Eigen::Vector3d, 3> others;
     bool near = true;
     for (Eigen::Vector3d& other : others) {
-      const int row = grid.row_of(cells[seed]) + static_cast<int>(random.below(2 * reach + 1)) - static_cast<int>(reach);
-      const int col = grid.col_of(cells[seed]) + static_cast<int>(random.below(2 * reach + 1)) - static_cast<int>(reach);
+      const int row =
+          grid.row_of(cells[seed]) + static_cast<int>(random.below(2 * reach + 1)) - static_cast<int>(reach);
+      const int col =
+          grid.col_of(cells[seed]) + static_cast<int>(random.below(2 * reach + 1)) - static_cast<int>(reach);
       near = near && grid.inside(row, col) && free[grid.index(row, col)] != 0;
       if (near) {
         other = grid.point(grid.index(row, col)).cast<double>();
@@ -163,7 +165,8 @@ void judge(const Artefact& artefact, Verification& out) {
     over("probing error (size) of " + name, ball.size_mm, artefact.size_limit_mm);
   }
   for (const MeasuredSpacing& spacing : out.spacings) {
-    over("sphere spacing error of balls " + std::to_string(spacing.a + 1) + " and " + std::to_string(spacing.b + 1),
+    over("sphere spacing error of balls " + std::to_string(spacing.a + 1) + " and " +
+             std::to_string(spacing.b + 1),
          spacing.error_mm, artefact.spacing_limit_mm);
   }
   if (out.flatness_mm) {
@@ -199,15 +202,16 @@ Result<Verification> verify_artefact(const RangeGrid& grid, const Artefact& arte
       break;
     }
     for (std::size_t i = 0; i < free.size(); ++i) {
-      if (free[i] != 0 && (grid.point(i).cast<double>() - ball->sphere.center_mm).norm() < 1.05 * ball->sphere.radius_mm) {
+      if (free[i] != 0 &&
+          (grid.point(i).cast<double>() - ball->sphere.center_mm).norm() < 1.05 * ball->sphere.radius_mm) {
         free[i] = 0;
       }
     }
     found.push_back(std::move(*ball));
   }
   if (found.size() < artefact.balls.size()) {
-    out.failed.push_back("only " + std::to_string(found.size()) + " of " + std::to_string(artefact.balls.size()) +
-                         " balls were found");
+    out.failed.push_back("only " + std::to_string(found.size()) + " of " +
+                         std::to_string(artefact.balls.size()) + " balls were found");
   } else {
     const std::vector<std::size_t> order = assigned(found, artefact);
     for (std::size_t i = 0; i < order.size(); ++i) {

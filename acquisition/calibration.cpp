@@ -74,7 +74,7 @@ Status first_values(const std::vector<CalibrationView>& views, const Intrinsics&
     stripes = inliers(stripes, fit->inlier);
   }
   if (options.motion) {
-    const Result<StageMotion> motion = stage_from_poses(*options.motion, views, intrinsics);
+    const Result<RigMotion> motion = stage_from_poses(*options.motion, views, intrinsics);
     if (!motion) {
       return std::unexpected(motion.error());
     }
@@ -119,7 +119,8 @@ Result<CalibrationReport> calibrate_rig(const std::vector<CalibrationView>& view
   if (!intrinsics) {
     return std::unexpected(intrinsics.error());
   }
-  std::vector<StripeSample> stripes = stripe_samples(views, *intrinsics, options.board);
+  std::vector<StripeSample> stripes =
+      stripe_samples(views, *intrinsics, options.board, options.plate_margin_mm);
   JointState state;
   state.camera = intrinsics->camera;
   state.camera_from_board = intrinsics->camera_from_board;
@@ -174,7 +175,8 @@ Result<CalibrationReport> calibrate_rig(const std::vector<CalibrationView>& view
   quality.left_out = intrinsics->left_out;
   intrinsics->camera = state.camera;
   intrinsics->camera_from_board = state.camera_from_board;
-  report.missing = missing_poses(views, *intrinsics, options.board, state.has_laser ? &rig.laser : nullptr);
+  report.missing = missing_poses(views, *intrinsics, options.board, state.has_laser ? &rig.laser : nullptr,
+                                 options.plate_margin_mm);
   return report;
 }
 

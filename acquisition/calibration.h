@@ -16,6 +16,7 @@ struct CalibrationOptions {
   /// Nothing: the camera alone, or camera and laser, are calibrated.
   std::optional<MotionKind> motion;
   double depth_range_mm = 40;
+  double plate_margin_mm = 0;  ///< of flat plate around the print, on which the stripe counts too
   /// A calibration worse than these is refused.
   double most_corner_px = 1.0;
   double most_stripe_px = 1.0;
@@ -39,6 +40,6 @@ struct CalibrationReport {
 /// tilted to, and (with stripes) depths and sides of the volume where the stripe was never seen on it.
 [[nodiscard]] std::vector<std::string> missing_poses(const std::vector<CalibrationView>& views,
                                                      const Intrinsics& intrinsics, const BoardSpec& board,
-                                                     const Plane* laser);
+                                                     const Plane* laser, double plate_margin_mm = 0);
 
 }  // namespace dubsar

@@ -61,11 +61,12 @@ void ask_for_tilts(const Intrinsics& intrinsics, std::vector<std::string>& out) 
 }
 
 void ask_for_stripes(const std::vector<CalibrationView>& views, const Intrinsics& intrinsics,
-                     const BoardSpec& board, const Plane& laser, std::vector<std::string>& out) {
+                     const BoardSpec& board, double margin_mm, const Plane& laser,
+                     std::vector<std::string>& out) {
   std::vector<double> depths;
   double left = 1;
   double right = 0;
-  for (const StripeSample& sample : stripe_samples(views, intrinsics, board)) {
+  for (const StripeSample& sample : stripe_samples(views, intrinsics, board, margin_mm)) {
     depths.push_back(sample.point_mm.z());
     const double across = sample.pixel.x() / intrinsics.camera.width;
     left = std::min(left, across);
@@ -99,11 +100,11 @@ void ask_for_stripes(const std::vector<CalibrationView>& views, const Intrinsics
 
 std::vector<std::string> missing_poses(const std::vector<CalibrationView>& views,
                                        const Intrinsics& intrinsics, const BoardSpec& board,
-                                       const Plane* laser) {
+                                       const Plane* laser, double plate_margin_mm) {
   std::vector<std::string> out;
   ask_for_tilts(intrinsics, out);
   if (laser != nullptr) {
-    ask_for_stripes(views, intrinsics, board, *laser, out);
+    ask_for_stripes(views, intrinsics, board, plate_margin_mm, *laser, out);
   }
   ask_for_parts(views, intrinsics, out);
   if (intrinsics.used.size() < kEnoughViews) {

@@ -112,7 +112,8 @@ Result<CalibrationSet> set_of_folder(const fs::path& folder, const std::string& 
     return fail(ErrorKind::kUsage, "there are no pictures in it", folder.string(),
                 "give a folder with a calibration.toml, or with pictures of the board and --board");
   }
-  std::sort(set.poses.begin(), set.poses.end(), [](const auto& a, const auto& b) { return a.board < b.board; });
+  std::sort(set.poses.begin(), set.poses.end(),
+            [](const auto& a, const auto& b) { return a.board < b.board; });
   return set;
 }
 

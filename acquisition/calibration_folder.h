@@ -19,13 +19,14 @@ struct CalibrationPictures {
   std::vector<std::string> left_out;  ///< pictures without a board, and why
 };
 
-/// Reads the pictures that `set` names in `folder`, finds the board in each and the stripe where there is one.
-/// A picture without a board is left out and told; a file that is not there or no picture is an error. Errors:
-/// kBadInput, kUsage (the board's name), kCancelled.
+/// Reads the pictures that `set` names in `folder`, finds the board in each and the stripe where there is
+/// one. A picture without a board is left out and told; a file that is not there or no picture is an error.
+/// Errors: kBadInput, kUsage (the board's name), kCancelled.
 [[nodiscard]] Result<CalibrationPictures> look_at_pictures(const std::filesystem::path& folder,
                                                            const CalibrationSet& set, const JobContext& job);
 
 /// The set for a folder without a calibration.toml: every picture in it shows the board, in name order.
-[[nodiscard]] Result<CalibrationSet> set_of_folder(const std::filesystem::path& folder, const std::string& board);
+[[nodiscard]] Result<CalibrationSet> set_of_folder(const std::filesystem::path& folder,
+                                                   const std::string& board);
 
 }  // namespace dubsar

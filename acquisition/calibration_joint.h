@@ -16,7 +16,7 @@ struct JointState {
   std::vector<RigidTransform>
       camera_from_board;  ///< [Intrinsics::used]; of a fixed board: as it was seen there
   Plane laser;            ///< at mirror position 0
-  StageMotion motion;
+  RigMotion motion;
   bool has_laser = false;
   bool has_stage = false;
 };

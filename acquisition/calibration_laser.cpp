@@ -54,10 +54,10 @@ double median_distance(const Plane& plane, const std::vector<Eigen::Vector3d>& p
 
 std::vector<StripeSample> stripe_samples(const std::vector<CalibrationView>& views,
                                          const Intrinsics& intrinsics, const BoardSpec& board,
-                                         std::size_t most_per_view) {
+                                         double margin_mm, std::size_t most_per_view) {
   std::vector<StripeSample> out;
-  const Eigen::Vector2d low = board.low_mm();
-  const Eigen::Vector2d high = board.high_mm();
+  const Eigen::Vector2d low = board.low_mm().array() - margin_mm;
+  const Eigen::Vector2d high = board.high_mm().array() + margin_mm;
   for (std::size_t k = 0; k < intrinsics.used.size(); ++k) {
     const RigidTransform& pose = intrinsics.camera_from_board[k];
     const Plane face{pose.rotation.col(2), pose.rotation.col(2).dot(pose.translation_mm)};

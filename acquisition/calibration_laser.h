@@ -15,10 +15,11 @@ struct StripeSample {
   Eigen::Vector3d point_mm{0, 0, 0};  ///< camera frame
 };
 
-/// The stripe points that lie on the printed board, at most `most_per_view` of each view, evenly spread.
+/// The stripe points that lie on the printed board or on the plate up to margin_mm around it, at most
+/// `most_per_view` of each view, evenly spread.
 [[nodiscard]] std::vector<StripeSample> stripe_samples(const std::vector<CalibrationView>& views,
                                                        const Intrinsics& intrinsics, const BoardSpec& board,
-                                                       std::size_t most_per_view = 120);
+                                                       double margin_mm = 0, std::size_t most_per_view = 120);
 
 struct PlaneFit {
   Plane plane;

@@ -33,7 +33,7 @@ constexpr const char* kMend =
     "way";
 
 /// Where a camera that looks at p would say the object went: least squares over all boards.
-Result<StageMotion> direction_of(const std::map<std::string, std::vector<Seen>>& boards) {
+Result<RigMotion> direction_of(const std::map<std::string, std::vector<Seen>>& boards) {
   Eigen::Vector3d moment = Eigen::Vector3d::Zero();
   double spread = 0;
   for (const auto& [name, seen] : boards) {
@@ -51,7 +51,7 @@ Result<StageMotion> direction_of(const std::map<std::string, std::vector<Seen>>&
   if (!(spread > 1e-9)) {
     return bad_input({}, "all pictures of the board on the stage were taken at one position", kMend);
   }
-  StageMotion motion;
+  RigMotion motion;
   motion.kind = MotionKind::kLinear;
   motion.direction = -moment / spread;  // the head goes the other way than the board
   if (!(motion.direction.norm() > 1e-3)) {
@@ -62,7 +62,7 @@ Result<StageMotion> direction_of(const std::map<std::string, std::vector<Seen>>&
 
 /// Rotations about one axis: its direction from the rotations between positions, a point from where the
 /// circles have their centres.
-Result<StageMotion> axis_of(const std::map<std::string, std::vector<Seen>>& boards) {
+Result<RigMotion> axis_of(const std::map<std::string, std::vector<Seen>>& boards) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (const auto& [name, seen] : boards) {
     for (std::size_t i = 1; i < seen.size(); ++i) {
@@ -79,7 +79,7 @@ Result<StageMotion> axis_of(const std::map<std::string, std::vector<Seen>>& boar
   if (!(sum.norm() > 0.02)) {
     return bad_input({}, "the board did not turn when the stage did", kMend);
   }
-  StageMotion motion;
+  RigMotion motion;
   motion.kind = MotionKind::kTurntable;
   motion.direction = sum.normalized();
   // c with t_i - R t_0 = (1 - R) c for all pairs; along the axis c is free: the least norm is taken.
@@ -101,8 +101,8 @@ Result<StageMotion> axis_of(const std::map<std::string, std::vector<Seen>>& boar
 
 }  // namespace
 
-Result<StageMotion> stage_from_poses(MotionKind kind, const std::vector<CalibrationView>& views,
-                                     const Intrinsics& intrinsics) {
+Result<RigMotion> stage_from_poses(MotionKind kind, const std::vector<CalibrationView>& views,
+                                   const Intrinsics& intrinsics) {
   const std::map<std::string, std::vector<Seen>> boards = boards_on_stage(views, intrinsics);
   std::size_t most = 0;
   for (const auto& [name, seen] : boards) {

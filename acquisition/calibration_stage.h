@@ -10,11 +10,11 @@ namespace dubsar {
 
 /// First values of a stage's direction or axis from the poses of a board that it carried. Errors (kBadInput):
 /// fewer than three positions, or all the same.
-[[nodiscard]] Result<StageMotion> stage_from_poses(MotionKind kind, const std::vector<CalibrationView>& views,
-                                                   const Intrinsics& intrinsics);
+[[nodiscard]] Result<RigMotion> stage_from_poses(MotionKind kind, const std::vector<CalibrationView>& views,
+                                                 const Intrinsics& intrinsics);
 
 struct MirrorFit {
-  StageMotion motion;
+  RigMotion motion;
   Plane laser;  ///< at mirror position 0
 };
 

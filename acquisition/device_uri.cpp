@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cctype>
 
+#include "acquisition/rig_device.h"
+
 namespace dubsar {
 
 namespace {
@@ -122,6 +124,13 @@ Result<DeviceUri> parse_device_uri(std::string_view text) {
 }
 
 Result<Device> open_device(const DeviceUri& uri, const DriverRegistry& registry) {
+  if (uri.scheme == "rig") {
+    if (!uri.options.empty()) {
+      return fail(ErrorKind::kUsage, "a rig has no option " + uri.options.front().first, uri.text(),
+                  "say it in the rig's file");
+    }
+    return open_rig(uri.locator, registry);
+  }
   const Result<const Driver*> driver = registry.find(uri.scheme);
   if (!driver) {
     return std::unexpected(driver.error());

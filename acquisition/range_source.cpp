@@ -9,6 +9,8 @@
 #include <thread>
 #include <utility>
 
+#include "acquisition/rig_device.h"
+
 namespace dubsar {
 
 namespace {
@@ -189,6 +191,9 @@ Result<RangeSource> RangeSource::open(std::string_view text, const DriverRegistr
   Result<DeviceCapabilities> capabilities = device->capabilities();
   if (!capabilities) {
     return std::unexpected(capabilities.error());
+  }
+  if (uri->scheme == "rig" && capabilities->rig) {
+    capabilities->rig->calibration_check = last_verification(uri->locator);
   }
   return RangeSource(std::move(*uri), std::move(*device), std::move(*capabilities), resampling);
 }

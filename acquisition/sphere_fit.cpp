@@ -7,8 +7,8 @@
 
 namespace dubsar {
 
-std::optional<Sphere> sphere_through(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
-                                     const Eigen::Vector3d& d) {
+std::optional<Sphere> sphere_through(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
+                                     const Eigen::Vector3d& c, const Eigen::Vector3d& d) {
   Eigen::Matrix3d left;
   left << (b - a).transpose(), (c - a).transpose(), (d - a).transpose();
   const double size = (b - a).norm() * (c - a).norm() * (d - a).norm();
@@ -16,7 +16,8 @@ std::optional<Sphere> sphere_through(const Eigen::Vector3d& a, const Eigen::Vect
     return std::nullopt;
   }
   // |p - m|² the same for all four, with m counted from a.
-  const Eigen::Vector3d right(0.5 * (b - a).squaredNorm(), 0.5 * (c - a).squaredNorm(), 0.5 * (d - a).squaredNorm());
+  const Eigen::Vector3d right(0.5 * (b - a).squaredNorm(), 0.5 * (c - a).squaredNorm(),
+                              0.5 * (d - a).squaredNorm());
   const Eigen::Vector3d middle = left.inverse() * right;
   return Sphere{a + middle, middle.norm()};
 }

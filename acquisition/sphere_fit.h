@@ -21,6 +21,7 @@ struct Sphere {
                                                    const Eigen::Vector3d& c, const Eigen::Vector3d& d);
 
 /// Least squares of the distances, radius free (Gauss-Newton from `start`). Nothing when it does not settle.
-[[nodiscard]] std::optional<Sphere> fit_sphere(const std::vector<Eigen::Vector3d>& points_mm, const Sphere& start);
+[[nodiscard]] std::optional<Sphere> fit_sphere(const std::vector<Eigen::Vector3d>& points_mm,
+                                               const Sphere& start);
 
 }  // namespace dubsar

@@ -63,7 +63,7 @@ void Triangulator::triangulate(const StripeProfile& stripe, double position, Tri
     channel->assign(static_cast<std::size_t>(samples_), 0.0F);
   }
   out.valid.assign(static_cast<std::size_t>(samples_), 0);
-  const StageMotion& motion = calibration_.motion;
+  const RigMotion& motion = calibration_.motion;
   const Plane plane = motion.laser_at(calibration_.laser, position);
   const RigidTransform scanner_from_camera = scanner_from_camera_ * motion.zero_from_camera(position);
   const double half_depth = 0.5 * calibration_.depth_range_mm;

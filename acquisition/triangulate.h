@@ -29,7 +29,7 @@ class Triangulator {
   /// The point that the camera sees at `along_px` of sample i with the laser plane `plane`; camera frame.
   [[nodiscard]] std::optional<Eigen::Vector3d> point_mm(int sample, double along_px,
                                                         const Plane& plane) const;
-  /// `position` of the stage when the frame was taken: mm or radians, as StageMotion has it. Samples outside
+  /// `position` of the stage when the frame was taken: mm or radians, as RigMotion has it. Samples outside
   /// of the measuring volume come out invalid: they are reflections or the support.
   void triangulate(const StripeProfile& stripe, double position, TriangulatedProfile& out) const;
 

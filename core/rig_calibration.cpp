@@ -29,7 +29,7 @@ Plane transformed(const RigidTransform& to_from, const Plane& plane) {
   return {normal, plane.distance_mm + normal.dot(to_from.translation_mm)};
 }
 
-RigidTransform StageMotion::zero_from_camera(double position) const {
+RigidTransform RigMotion::zero_from_camera(double position) const {
   switch (kind) {
     case MotionKind::kLinear:
       return {Eigen::Matrix3d::Identity(), position * direction};
@@ -41,7 +41,7 @@ RigidTransform StageMotion::zero_from_camera(double position) const {
   return {};
 }
 
-Plane StageMotion::laser_at(const Plane& at_zero, double position) const {
+Plane RigMotion::laser_at(const Plane& at_zero, double position) const {
   if (kind != MotionKind::kGalvanometer) {
     return at_zero;
   }

@@ -37,7 +37,7 @@ enum class MotionKind {
 
 /// How the stage moves. Everything is said in the camera frame; `position` is millimetres of a linear stage,
 /// radians of the others.
-struct StageMotion {
+struct RigMotion {
   MotionKind kind = MotionKind::kLinear;
   /// Linear: where the head goes, as seen from the tablet, when the position grows by 1 mm (its length is the
   /// scale of the stage's own millimetre). Others: the axis, a unit vector, right-handed turn of the mirror
@@ -76,7 +76,7 @@ struct RigCalibration {
   CameraModel camera;
   std::string camera_serial;  ///< empty when not known
   Plane laser;                ///< camera frame, at stage position 0
-  StageMotion motion;
+  RigMotion motion;
   bool has_laser = true;   ///< else the camera alone is known
   bool has_motion = true;  ///< else the stage is not known
   /// Where the laser stands, camera frame, if somebody measured it: for shadows only, 10 mm do no harm.

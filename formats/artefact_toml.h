@@ -22,9 +22,9 @@ struct Artefact {
   std::string certificate;  ///< number and date
   std::vector<Ball> balls;
   bool has_plane = false;
-  double form_limit_mm = 0;      ///< probing error (form)
-  double size_limit_mm = 0;      ///< probing error (size), either way
-  double spacing_limit_mm = 0;   ///< sphere spacing error, either way
+  double form_limit_mm = 0;     ///< probing error (form)
+  double size_limit_mm = 0;     ///< probing error (size), either way
+  double spacing_limit_mm = 0;  ///< sphere spacing error, either way
   double flatness_limit_mm = 0;
 };
 

@@ -10,18 +10,12 @@ namespace dubsar {
 namespace {
 
 OrderedJson quality_json(const CalibrationQuality& q) {
-  return {{"board_views", q.board_views},
-          {"stripe_views", q.stripe_views},
-          {"stage_positions", q.stage_positions},
-          {"corner_rms_px", q.corner_rms_px},
-          {"corner_rms_um", q.corner_rms_um},
-          {"stripe_rms_px", q.stripe_rms_px},
-          {"stripe_rms_um", q.stripe_rms_um},
-          {"stage_rms_um", q.stage_rms_um},
-          {"focal_sigma_px", q.focal_sigma_px},
-          {"volume_sigma_um", q.volume_sigma_um},
-          {"axis_sigma_rad", q.axis_sigma_rad},
-          {"left_out", q.left_out}};
+  return {{"board_views", q.board_views},         {"stripe_views", q.stripe_views},
+          {"stage_positions", q.stage_positions}, {"corner_rms_px", q.corner_rms_px},
+          {"corner_rms_um", q.corner_rms_um},     {"stripe_rms_px", q.stripe_rms_px},
+          {"stripe_rms_um", q.stripe_rms_um},     {"stage_rms_um", q.stage_rms_um},
+          {"focal_sigma_px", q.focal_sigma_px},   {"volume_sigma_um", q.volume_sigma_um},
+          {"axis_sigma_rad", q.axis_sigma_rad},   {"left_out", q.left_out}};
 }
 
 CalibrationQuality read_quality(const JsonNode& node) {
@@ -81,12 +75,13 @@ std::string calibration_to_json(const RigCalibration& c) {
   OrderedJson json;
   json["unit"] = "mm";
   json["made_at"] = c.made_at;
-  json["camera"] = OrderedJson{{"serial", c.camera_serial},
-                               {"width", c.camera.width},
-                               {"height", c.camera.height},
-                               {"focal_px", {c.camera.fx_px, c.camera.fy_px}},
-                               {"center_px", {c.camera.cx_px, c.camera.cy_px}},
-                               {"distortion", {c.camera.k1, c.camera.k2, c.camera.p1, c.camera.p2, c.camera.k3}}};
+  json["camera"] =
+      OrderedJson{{"serial", c.camera_serial},
+                  {"width", c.camera.width},
+                  {"height", c.camera.height},
+                  {"focal_px", {c.camera.fx_px, c.camera.fy_px}},
+                  {"center_px", {c.camera.cx_px, c.camera.cy_px}},
+                  {"distortion", {c.camera.k1, c.camera.k2, c.camera.p1, c.camera.p2, c.camera.k3}}};
   if (c.has_laser) {
     json["laser"] = OrderedJson{{"normal", json_of(c.laser.normal)}, {"distance", c.laser.distance_mm}};
     if (c.laser_source_mm) {
@@ -94,7 +89,8 @@ std::string calibration_to_json(const RigCalibration& c) {
     }
   }
   if (c.has_motion) {
-    json["stage"] = OrderedJson{{"motion", motion_word(c.motion.kind)}, {"direction", json_of(c.motion.direction)}};
+    json["stage"] =
+        OrderedJson{{"motion", motion_word(c.motion.kind)}, {"direction", json_of(c.motion.direction)}};
     if (c.motion.kind != MotionKind::kLinear) {
       json["stage"]["axis_point"] = json_of(c.motion.axis_point_mm);
     }
@@ -115,8 +111,8 @@ Result<RigCalibration> parse_calibration(std::string_view text, const std::strin
     return std::unexpected(document.error());
   }
   const JsonNode root = document->root();
-  root.only({"unit", "made_at", "camera", "laser", "stage", "working_distance", "depth_range", "temperature_c", "note",
-             "quality"});
+  root.only({"unit", "made_at", "camera", "laser", "stage", "working_distance", "depth_range",
+             "temperature_c", "note", "quality"});
   RigCalibration c;
   if (const auto unit = root.find("unit"); unit && unit->text() != "mm") {
     unit->complain("is not mm");

@@ -49,10 +49,13 @@ Result<CalibrationSet> parse_calibration_set(std::string_view toml, const std::s
     return std::unexpected(document.error());
   }
   const JsonNode root = document->root();
-  root.only({"board", "motion", "camera_serial", "depth_range_mm", "temperature_c", "note", "stripe_sigma_px",
-             "stripe_runs", "pose", "stage"});
+  root.only({"board", "plate_margin_mm", "motion", "camera_serial", "depth_range_mm", "temperature_c", "note",
+             "stripe_sigma_px", "stripe_runs", "pose", "stage"});
   CalibrationSet set;
   set.board = root.at("board").text();
+  if (const auto margin = root.find("plate_margin_mm")) {
+    set.plate_margin_mm = margin->number(0, 1000);
+  }
   if (const auto motion = root.find("motion")) {
     set.motion = static_cast<MotionKind>(motion->one_of(motion_words()));
   }
@@ -124,6 +127,7 @@ std::string calibration_set_to_toml(const CalibrationSet& set) {
     out.append(key).append(" = ").append(value).append(1, '\n');
   };
   line("board", quoted(set.board));
+  line("plate_margin_mm", number_text(set.plate_margin_mm));
   if (set.motion) {
     line("motion", quoted(motion_word(*set.motion)));
   }
@@ -153,7 +157,8 @@ std::string calibration_set_to_toml(const CalibrationSet& set) {
     line("board", quoted(stop.board));
     line("fixed", quoted(stop.fixed));
     const bool turns = set.motion == MotionKind::kTurntable;
-    line(turns ? "position_deg" : "position_mm", number_text(turns ? deg_from_rad(stop.position) : stop.position));
+    line(turns ? "position_deg" : "position_mm",
+         number_text(turns ? deg_from_rad(stop.position) : stop.position));
   }
   return out;
 }

@@ -22,10 +22,11 @@ struct CalibrationSet {
   };
   struct Stop {
     std::string board;
-    std::string fixed;     ///< which board: those of one name lie still on the stage
-    double position = 0;   ///< mm or radians
+    std::string fixed;    ///< which board: those of one name lie still on the stage
+    double position = 0;  ///< mm or radians
   };
-  std::string board;  ///< as parse_board() reads it
+  std::string board;           ///< as parse_board() reads it
+  double plate_margin_mm = 0;  ///< of flat plate around the print
   std::optional<MotionKind> motion;
   std::string camera_serial;
   double depth_range_mm = 40;

@@ -4,8 +4,8 @@
 
 #define TOML_HEADER_ONLY 1
 #define TOML_EXCEPTIONS 0
-#include <sstream>
 #include <toml++/toml.h>
+#include <sstream>
 
 namespace dubsar {
 
@@ -18,9 +18,9 @@ Result<JsonDocument> parse_toml(std::string_view text, const std::string& where)
   const toml::parse_result parsed = toml::parse(text);
   if (!parsed) {
     const toml::parse_error& error = parsed.error();
-    return bad_input(where,
-                     "line " + std::to_string(error.source().begin.line) + ": " + std::string(error.description()),
-                     kMend);
+    return bad_input(
+        where, "line " + std::to_string(error.source().begin.line) + ": " + std::string(error.description()),
+        kMend);
   }
   std::ostringstream json;
   json << toml::json_formatter(parsed.table());

@@ -10,8 +10,8 @@
 
 namespace dubsar {
 
-/// A TOML file (1.0) as a document, so that it is read and complained about as a JSON one is. Dates become text.
-/// Errors (kBadInput) name the line.
+/// A TOML file (1.0) as a document, so that it is read and complained about as a JSON one is. Dates become
+/// text. Errors (kBadInput) name the line.
 [[nodiscard]] Result<JsonDocument> parse_toml(std::string_view text, const std::string& where);
 
 }  // namespace dubsar

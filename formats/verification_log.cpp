@@ -34,9 +34,14 @@ std::optional<VerificationEntry> entry_of(std::string_view line) {
 }
 
 std::string line_of(const VerificationEntry& entry) {
-  const OrderedJson json{{"when", entry.when},         {"artefact", entry.artefact}, {"certificate", entry.certificate},
-                         {"calibration", entry.calibration}, {"error_mm", entry.error_mm}, {"passed", entry.passed},
-                         {"failed", entry.failed},     {"measured", entry.measured}};
+  const OrderedJson json{{"when", entry.when},
+                         {"artefact", entry.artefact},
+                         {"certificate", entry.certificate},
+                         {"calibration", entry.calibration},
+                         {"error_mm", entry.error_mm},
+                         {"passed", entry.passed},
+                         {"failed", entry.failed},
+                         {"measured", entry.measured}};
   return json.dump(-1, ' ', false, OrderedJson::error_handler_t::replace) + "\n";
 }
 

@@ -14,7 +14,7 @@ namespace dubsar {
 
 /// One measurement of a certified artefact, as the log keeps it.
 struct VerificationEntry {
-  std::string when;         ///< ISO 8601, UTC
+  std::string when;  ///< ISO 8601, UTC
   std::string artefact;
   std::string certificate;
   std::string calibration;  ///< made_at of the calibration that was verified

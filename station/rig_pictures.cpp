@@ -17,7 +17,7 @@ namespace dubsar {
 
 namespace {
 
-constexpr int kTexels = 80;          // per square
+constexpr int kTexels = 80;           // per square
 constexpr double kBoardSignal = 0.4;  // ambient light when the board is to be seen
 constexpr double kHalfTravel_mm = 6;
 constexpr double kHalfTurn_rad = 0.3;
@@ -32,14 +32,17 @@ std::string numbered(const char* stem, int number, const char* rest) {
 class Photographer {
  public:
   Photographer(const RigPicturesOptions& options, const RigCalibration& truth, const BoardSpec& board)
-      : board_(board), pattern_(board_pattern(board, kTexels)), dim_(truth, options.optics), bright_(truth, [&] {
+      : board_(board),
+        pattern_(board_pattern(board, kTexels)),
+        dim_(truth, options.optics),
+        bright_(truth, [&] {
           sim::FrameOptions lit = options.optics;
           lit.ambient_signal = kBoardSignal;
           return lit;
         }()) {}
 
-  [[nodiscard]] Status take(const std::filesystem::path& file, const RigidTransform& camera_from_board, bool bright,
-                            bool laser, double mirror) {
+  [[nodiscard]] Status take(const std::filesystem::path& file, const RigidTransform& camera_from_board,
+                            bool bright, bool laser, double mirror) {
     const sim::BoardTarget target(pattern_, board_.square_mm / kTexels, -board_.low_mm(), camera_from_board);
     return write_gray_png((bright ? bright_ : dim_).render(target, laser, mirror, ++frame_), file);
   }
@@ -92,7 +95,8 @@ Status write_rig_pictures(const RigPicturesOptions& options, const std::filesyst
        sim::board_poses(truth, board->low_mm(), board->high_mm(), options.poses, options.seed)) {
     const int i = static_cast<int>(set.poses.size());
     const double position = mirror ? kHalfSwing_rad * (i % 3 - 1) : 0;
-    set.poses.push_back({numbered("pose", i, ""), numbered("pose", i, "_laser"), numbered("pose", i, "_dark"), position});
+    set.poses.push_back(
+        {numbered("pose", i, ""), numbered("pose", i, "_laser"), numbered("pose", i, "_dark"), position});
     const CalibrationSet::Pose& names = set.poses.back();
     Status status = going();
     status = status ? photographer.take(folder / names.board, pose, true, false, position) : status;

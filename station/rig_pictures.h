@@ -21,9 +21,9 @@ struct RigPicturesOptions {
   std::string board = "charuco:14x9:4:2.96";
 };
 
-/// The pictures that an operator would take to calibrate a rig, rendered: calibration.toml, the pictures it names,
-/// and truth.json, the calibration that should come out.
-[[nodiscard]] Status write_rig_pictures(const RigPicturesOptions& options, const std::filesystem::path& folder,
-                                        const JobContext& job);
+/// The pictures that an operator would take to calibrate a rig, rendered: calibration.toml, the pictures it
+/// names, and truth.json, the calibration that should come out.
+[[nodiscard]] Status write_rig_pictures(const RigPicturesOptions& options,
+                                        const std::filesystem::path& folder, const JobContext& job);
 
 }  // namespace dubsar

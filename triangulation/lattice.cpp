@@ -65,8 +65,7 @@ void box_mean(std::vector<float>& values, const std::vector<std::uint8_t>& mask,
       }
       for (std::size_t col = begin; col < end; ++col) {
         const int n = count[col - begin];
-        values[row * width + col] =
-            n > 0 ? static_cast<float>(sum[col - begin] / n) : 0.0F;
+        values[row * width + col] = n > 0 ? static_cast<float>(sum[col - begin] / n) : 0.0F;
       }
     }
   });

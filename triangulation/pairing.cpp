@@ -46,7 +46,9 @@ std::size_t jump(const StitchSurface& to, std::size_t at, const Vector3f& p) {
   if (!(std::abs(cols) < kMostSamples && std::abs(rows) < kMostSamples)) {
     return at;
   }
-  constexpr auto nearest = [](float x) { return static_cast<int>(x + kMostSamples + 0.5F) - static_cast<int>(kMostSamples); };
+  constexpr auto nearest = [](float x) {
+    return static_cast<int>(x + kMostSamples + 0.5F) - static_cast<int>(kMostSamples);
+  };
   const int r = std::clamp(row + nearest(rows), 0, to.lattice.rows - 1);
   const int c = std::clamp(col + nearest(cols), 0, to.lattice.cols - 1);
   const std::size_t there = static_cast<std::size_t>(r) * width + static_cast<std::size_t>(c);

@@ -49,8 +49,8 @@ struct Pairs {
 [[nodiscard]] Pairs find_pairs(const StitchSurface& from, const StitchSurface& to, double reach_mm,
                                const PairingOptions& options);
 
-/// Where pair_of() sets out from for the samples of a node: a sample of the other scan, or -1 where the two do
-/// not overlap.
+/// Where pair_of() sets out from for the samples of a node: a sample of the other scan, or -1 where the two
+/// do not overlap.
 [[nodiscard]] std::int32_t pair_start(const StitchSurface& from, std::size_t node, const Pairs& pairs);
 
 /// The pair of one sample: the usable sample of `to` nearest to it within reach whose normal agrees, or -1.

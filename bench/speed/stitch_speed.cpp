@@ -56,7 +56,8 @@ class StageClock {
   void print() const {
     for (const Stage& stage : stages_) {
       if (stage.wall_s > 0) {
-        std::printf("    %-24s %8.3f s %8.3f s of processors\n", stage.name.c_str(), stage.wall_s, stage.cpu_s);
+        std::printf("    %-24s %8.3f s %8.3f s of processors\n", stage.name.c_str(), stage.wall_s,
+                    stage.cpu_s);
       }
     }
   }

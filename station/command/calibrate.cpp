@@ -59,7 +59,8 @@ Result<CalibrationSet> set_for(const Options& options) {
 nlohmann::ordered_json report_json(const CalibrationReport& report, const std::vector<std::string>& unseen,
                                    const std::string& file) {
   // The file's own words, so that there is one form of a calibration and no second.
-  nlohmann::ordered_json json = nlohmann::ordered_json::parse(calibration_to_json(report.rig), nullptr, false);
+  nlohmann::ordered_json json =
+      nlohmann::ordered_json::parse(calibration_to_json(report.rig), nullptr, false);
   json["pictures_left_out"] = unseen;
   json["missing"] = report.missing;
   if (!file.empty()) {
@@ -71,19 +72,22 @@ nlohmann::ordered_json report_json(const CalibrationReport& report, const std::v
 void print_report(const CalibrationReport& report, const std::vector<std::string>& unseen) {
   const RigCalibration& rig = report.rig;
   const CalibrationQuality& q = rig.quality;
-  std::printf("camera: focal length %.1f x %.1f px (± %.1f), centre %.1f %.1f, from %d pictures\n", rig.camera.fx_px,
-              rig.camera.fy_px, q.focal_sigma_px, rig.camera.cx_px, rig.camera.cy_px, q.board_views);
+  std::printf("camera: focal length %.1f x %.1f px (± %.1f), centre %.1f %.1f, from %d pictures\n",
+              rig.camera.fx_px, rig.camera.fy_px, q.focal_sigma_px, rig.camera.cx_px, rig.camera.cy_px,
+              q.board_views);
   std::printf("  corners off by %.3f px rms, %.1f µm on the board\n", q.corner_rms_px, q.corner_rms_um);
   if (rig.has_laser) {
-    std::printf("laser plane: from %d pictures, stripe off by %.3f px rms, %.1f µm\n", q.stripe_views, q.stripe_rms_px,
-                q.stripe_rms_um);
+    std::printf("laser plane: from %d pictures, stripe off by %.3f px rms, %.1f µm\n", q.stripe_views,
+                q.stripe_rms_px, q.stripe_rms_um);
     std::printf("  one pixel is %.1f µm across, %.1f µm in depth\n", 1e3 * rig.field_per_px_mm(),
                 1e3 * rig.depth_per_px_mm());
-    std::printf("  points are known to %.1f µm against each other over the volume (1 σ, from the covariance)\n",
-                q.volume_sigma_um);
+    std::printf(
+        "  points are known to %.1f µm against each other over the volume (1 σ, from the covariance)\n",
+        q.volume_sigma_um);
   }
   if (rig.has_motion) {
-    std::printf("stage: %s, direction known to %.3f°", motion_word(rig.motion.kind), deg_from_rad(q.axis_sigma_rad));
+    std::printf("stage: %s, direction known to %.3f°", motion_word(rig.motion.kind),
+                deg_from_rad(q.axis_sigma_rad));
     if (rig.motion.kind == MotionKind::kLinear) {
       std::printf(", 1 mm of it is %.4f mm", rig.motion.direction.norm());
     }
@@ -112,8 +116,10 @@ Result<int> print_board(const Options& options) {
   if (Status status = write_gray_png(board_pattern(*board, kTexels), options.print); !status) {
     return std::unexpected(status.error());
   }
-  std::printf("%s: print it so that a square is %g mm wide (%g dots per inch), glue it on a flat plate and measure it\n",
-              options.print.c_str(), board->square_mm, 25.4 * kTexels / board->square_mm);
+  std::printf(
+      "%s: print it so that a square is %g mm wide (%g dots per inch), glue it on a flat plate and measure "
+      "it\n",
+      options.print.c_str(), board->square_mm, 25.4 * kTexels / board->square_mm);
   return 0;
 }
 
@@ -136,13 +142,14 @@ Result<int> calibrate(const Options& options, CommandContext& context) {
   how.board = pictures->board;
   how.motion = set->motion;
   how.depth_range_mm = set->depth_range_mm;
+  how.plate_margin_mm = set->plate_margin_mm;
   Result<CalibrationReport> report = calibrate_rig(pictures->views, how);
   if (!report) {
     Error error = report.error();
     error.where = error.where.empty() ? options.source : options.source + ", " + error.where;
     if (!pictures->left_out.empty()) {
-      error.what += " (" + std::to_string(pictures->left_out.size()) + " pictures without a board, the first: " +
-                    pictures->left_out.front() + ")";
+      error.what += " (" + std::to_string(pictures->left_out.size()) +
+                    " pictures without a board, the first: " + pictures->left_out.front() + ")";
     }
     return std::unexpected(std::move(error));
   }
@@ -168,18 +175,21 @@ Result<int> calibrate(const Options& options, CommandContext& context) {
 }  // namespace
 
 void add_calibrate(CLI::App& app, Action& chosen) {
-  CLI::App* verb = app.add_subcommand(
-      "calibrate",
-      "Camera, laser plane and stage from pictures of a board; status 1 when a board pose is missing. With --verify, "
-      "a measured artefact against its certificate; status 1 when it fails");
+  CLI::App* verb = app.add_subcommand("calibrate",
+                                      "Camera, laser plane and stage from pictures of a board; status 1 when "
+                                      "a board pose is missing. With --verify, "
+                                      "a measured artefact against its certificate; status 1 when it fails");
   const auto options = std::make_shared<Options>();
-  CLI::Option* source = verb->add_option("source", options->source,
-                                         "a folder with a calibration.toml, or with pictures of the board (--board); "
-                                         "with --verify a scan of the artefact");
+  CLI::Option* source =
+      verb->add_option("source", options->source,
+                       "a folder with a calibration.toml, or with pictures of the board (--board); "
+                       "with --verify a scan of the artefact");
   verb->add_option("--board", options->board, "chessboard:9x6:25 (inner corners, mm) or charuco:9x7:5:3.7");
-  verb->add_option("--serial", options->serial, "of the camera; a rig refuses the calibration of another one");
+  verb->add_option("--serial", options->serial,
+                   "of the camera; a rig refuses the calibration of another one");
   verb->add_option("-o,--out", options->out, "the calibration, calibration.json");
-  CLI::Option* print = verb->add_option("--print", options->print, "write the board of --board as a PNG for printing");
+  CLI::Option* print =
+      verb->add_option("--print", options->print, "write the board of --board as a PNG for printing");
   print->excludes(source);
   add_verify_options(*verb, options->verify);
   verb->fallthrough();

@@ -17,6 +17,7 @@ struct VerifyOptions {
 };
 void add_verify_options(CLI::App& verb, VerifyOptions& options);
 /// Measures the artefact in a scan, prints and logs the outcome.
-[[nodiscard]] Result<int> verify_rig(const VerifyOptions& options, const std::string& scan, CommandContext& context);
+[[nodiscard]] Result<int> verify_rig(const VerifyOptions& options, const std::string& scan,
+                                     CommandContext& context);
 
 }  // namespace dubsar

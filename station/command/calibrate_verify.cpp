@@ -44,7 +44,8 @@ void print_figures(const Artefact& artefact, const Verification& is) {
                 1e3 * ball.form_mm, 1e3 * ball.size_mm, ball.diameter_mm, ball.samples);
   }
   for (const MeasuredSpacing& one : is.spacings) {
-    std::printf("balls %zu and %zu: sphere spacing error %+.1f µm\n", one.a + 1, one.b + 1, 1e3 * one.error_mm);
+    std::printf("balls %zu and %zu: sphere spacing error %+.1f µm\n", one.a + 1, one.b + 1,
+                1e3 * one.error_mm);
   }
   if (is.flatness_mm) {
     std::printf("plane: flatness error %.1f µm, %zu samples\n", 1e3 * *is.flatness_mm, is.plane_samples);
@@ -74,9 +75,10 @@ Result<RangeGrid> scan_of(const std::string& uri, JobContext& job) {
 }  // namespace
 
 void add_verify_options(CLI::App& verb, VerifyOptions& options) {
-  CLI::Option* verify = verb.add_option("--verify", options.artefact,
-                                        "artefact.toml: measure this artefact in the scan that SOURCE is (a file or a "
-                                        "device) and judge it by its limits");
+  CLI::Option* verify =
+      verb.add_option("--verify", options.artefact,
+                      "artefact.toml: measure this artefact in the scan that SOURCE is (a file or a "
+                      "device) and judge it by its limits");
   verb.add_option("--calibration", options.calibration,
                   "the calibration that is verified; the outcome goes into the log beside it")
       ->needs(verify);
@@ -124,13 +126,10 @@ Result<int> verify_rig(const VerifyOptions& options, const std::string& scan, Co
     }
   }
   if (context.json) {
-    nlohmann::ordered_json json{{"when", entry.when},
-                                {"artefact", entry.artefact},
-                                {"certificate", entry.certificate},
-                                {"passed", entry.passed},
-                                {"error_mm", entry.error_mm},
-                                {"failed", entry.failed},
-                                {"measured", figures(*is)}};
+    nlohmann::ordered_json json{
+        {"when", entry.when},      {"artefact", entry.artefact}, {"certificate", entry.certificate},
+        {"passed", entry.passed},  {"error_mm", entry.error_mm}, {"failed", entry.failed},
+        {"measured", figures(*is)}};
     if (!log.empty()) {
       json["log"] = log;
     }

@@ -34,8 +34,8 @@ Result<int> simulate_rig(const Options& options, CommandContext& context) {
     CommandContext::print({{"folder", options.out}, {"poses", pictures.poses}});
   } else {
     finish_progress();
-    std::printf("pictures in %s; calibrate them with: dubsar calibrate %s -o calibration.json\n", options.out.c_str(),
-                options.out.c_str());
+    std::printf("pictures in %s; calibrate them with: dubsar calibrate %s -o calibration.json\n",
+                options.out.c_str(), options.out.c_str());
   }
   return 0;
 }
@@ -43,8 +43,8 @@ Result<int> simulate_rig(const Options& options, CommandContext& context) {
 }  // namespace
 
 void add_simulate_rig(CLI::App& simulate, Action& chosen) {
-  CLI::App* verb =
-      simulate.add_subcommand("rig", "Pictures of a calibration board before a simulated rig, and truth.json");
+  CLI::App* verb = simulate.add_subcommand(
+      "rig", "Pictures of a calibration board before a simulated rig, and truth.json");
   const auto options = std::make_shared<Options>();
   RigPicturesOptions& pictures = options->pictures;
   verb->add_option("--motion", options->motion, "of the rig")
@@ -71,7 +71,8 @@ void add_simulate_rig(CLI::App& simulate, Action& chosen) {
   verb->add_option("--seed", pictures.seed, "the same seed gives the same bytes")->capture_default_str();
   verb->add_option("-o,--out", options->out, "folder")->required();
   verb->fallthrough();
-  verb->callback([&chosen, options] { chosen = [options](CommandContext& c) { return simulate_rig(*options, c); }; });
+  verb->callback(
+      [&chosen, options] { chosen = [options](CommandContext& c) { return simulate_rig(*options, c); }; });
 }
 
 }  // namespace dubsar

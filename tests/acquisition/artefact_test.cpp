@@ -28,7 +28,8 @@ RangeGrid scanned_bar(double noise_mm, double bent, double scale) {
       const double y = kStep * (row - kSide / 2);
       double z = bent * (x / 32) * (x / 32);
       for (const Eigen::Vector3d& ball : {a, b}) {
-        const double inside = scale * scale * 36 - (x - ball.x()) * (x - ball.x()) - (y - ball.y()) * (y - ball.y());
+        const double inside =
+            scale * scale * 36 - (x - ball.x()) * (x - ball.x()) - (y - ball.y()) * (y - ball.y());
         if (inside > 0) {
           z = std::max(z, ball.z() + std::sqrt(inside));
         }
@@ -66,7 +67,8 @@ TEST(Artefact, AGoodScannerPasses) {
   // The range of thousands of normal samples is some seven standard deviations, less three in a thousand.
   EXPECT_NEAR(is->balls[0].form_mm, 0.024, 0.008);
   EXPECT_NEAR(*is->flatness_mm, 0.024, 0.006);
-  EXPECT_NEAR(is->worst_mm(), std::max({is->balls[0].form_mm, is->balls[1].form_mm, *is->flatness_mm}), 1e-12);
+  EXPECT_NEAR(is->worst_mm(), std::max({is->balls[0].form_mm, is->balls[1].form_mm, *is->flatness_mm}),
+              1e-12);
 }
 
 TEST(Artefact, AWrongScaleFailsOnSpacingAndSize) {

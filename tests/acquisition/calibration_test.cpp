@@ -181,7 +181,7 @@ TEST(Calibration, FindsTheAxisOfATurntable) {
   const Result<CalibrationReport> report = calibrate_rig(views, options_for(MotionKind::kTurntable));
   ASSERT_TRUE(report.has_value()) << report.error().line();
   expect_found(truth, *report);
-  const StageMotion& motion = report->rig.motion;
+  const RigMotion& motion = report->rig.motion;
   EXPECT_GT(motion.direction.dot(truth.motion.direction), std::cos(rad_from_deg(0.3)));
   const Eigen::Vector3d off = motion.axis_point_mm - truth.motion.axis_point_mm;
   EXPECT_LT((off - off.dot(truth.motion.direction) * truth.motion.direction).norm(), 1.0);  // of 250 mm

@@ -44,14 +44,14 @@ TEST(RigCalibration, DepthPerPixelFollowsTheTriangulationAngle) {
 }
 
 TEST(RigCalibration, MotionTakesPointsBackToPositionZero) {
-  StageMotion turn{MotionKind::kTurntable, Eigen::Vector3d::UnitX(), {0, 10, 260}};
+  RigMotion turn{MotionKind::kTurntable, Eigen::Vector3d::UnitX(), {0, 10, 260}};
   const Eigen::Vector3d at_zero(5, 20, 240);
   // The table turns what lies on it by +30° about its axis; the camera then sees it there.
   const Eigen::AngleAxisd table(rad_from_deg(30), turn.direction);
   const Eigen::Vector3d seen = table * (at_zero - turn.axis_point_mm) + turn.axis_point_mm;
   EXPECT_LT((turn.zero_from_camera(rad_from_deg(30)) * seen - at_zero).norm(), 1e-9);
 
-  StageMotion mirror{MotionKind::kGalvanometer, Eigen::Vector3d::UnitX(), {0, -100, 20}};
+  RigMotion mirror{MotionKind::kGalvanometer, Eigen::Vector3d::UnitX(), {0, -100, 20}};
   Plane laser{Eigen::Vector3d(0, 1, 0), -100};
   const Plane turned = mirror.laser_at(laser, 0.1);
   EXPECT_NEAR(turned.signed_distance_mm(mirror.axis_point_mm), 0, 1e-9);

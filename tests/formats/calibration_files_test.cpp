@@ -6,6 +6,7 @@
 #include "formats/calibration_json.h"
 #include "formats/calibration_set.h"
 #include "formats/gray_file.h"
+#include "formats/rig_toml.h"
 #include "formats/verification_log.h"
 #include "tests/support/temporary_folder.h"
 
@@ -103,7 +104,8 @@ TEST(CalibrationSet, SaysWhatIsWrong) {
   EXPECT_NE(said("board = \"b\"\nbord = 1\n[[pose]]\nboard = \"a\"\n").find("bord"), std::string::npos);
   EXPECT_NE(said("board = \"b\"\n[[pose]]\nboard = \"../a\"\n").find("inside"), std::string::npos);
   EXPECT_NE(said("board = \"b\"\n[[pose]]\nboard = \"/a\"\n").find("inside"), std::string::npos);
-  EXPECT_NE(said("board = \"b\"\nmotion = \"linear\"\n[[pose]]\nboard = \"a\"\n[[stage]]\nboard = \"c\"\nposition_deg = 3\n")
+  EXPECT_NE(said("board = \"b\"\nmotion = \"linear\"\n[[pose]]\nboard = \"a\"\n[[stage]]\nboard = "
+                 "\"c\"\nposition_deg = 3\n")
                 .find("position_mm"),
             std::string::npos);
 }
@@ -133,6 +135,37 @@ center_mm = [30.4142, 0, 0]
   std::string near(kBar);
   near.replace(near.find("30.4142"), 7, "3.0");
   EXPECT_FALSE(parse_artefact(near, "a").has_value());
+}
+
+TEST(RigToml, ReadAndRefused) {
+  constexpr const char* kRig = R"(
+name = "rig"
+camera = "v4l2:/dev/video0"
+stage = "usb_stage:1:2"
+calibration = "calibration.json"
+camera_settings = [["exposure_us", "1500"]]
+[scan]
+from_deg = -90
+to_deg = 90
+step_deg = 0.5
+)";
+  const Result<RigFile> rig = parse_rig_file(kRig, "rig.toml");
+  ASSERT_TRUE(rig.has_value()) << rig.error().line();
+  EXPECT_EQ(rig->rows, 361);
+  EXPECT_NEAR(rig->step, 0.5 * 3.14159265358979 / 180, 1e-12);
+  EXPECT_EQ(rig->camera_settings[0].second, "1500");
+  EXPECT_TRUE(rig->ambient);
+  const auto refused = [&](const char* what, const char* by) {
+    std::string text(kRig);
+    text.replace(text.find(what), std::string_view(what).size(), by);
+    return !parse_rig_file(text, "rig.toml").has_value();
+  };
+  EXPECT_TRUE(refused("step_deg = 0.5", "step_deg = 0"));
+  EXPECT_TRUE(refused("to_deg = 90", "to_deg = -91"));
+  EXPECT_TRUE(refused("to_deg", "to_mm"));
+  EXPECT_TRUE(refused("name", "nam"));
+  EXPECT_TRUE(refused("\"1500\"", "1500"));
+  EXPECT_TRUE(refused("[scan]", "[scann]"));
 }
 
 TEST(VerificationLog, KeepsEveryLineAndSurvivesADamagedOne) {

@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "acquisition/rig_device.h"
+
+#include <utility>
+
+#include "acquisition/device_uri.h"
+#include "drivers/driver.h"
+#include "drivers/plugin.h"
+#include "formats/atomic_file.h"
+#include "formats/calibration_json.h"
+#include "formats/verification_log.h"
+
+/// The rig behind the C interface.
+struct dubsar_device {
+  dubsar::RigScanner scanner;
+};
+
+namespace dubsar {
+
+namespace {
+
+/// Hands a scan on through the C sink.
+class SinkBridge : public ProfileSink {
+ public:
+  explicit SinkBridge(const dubsar_sink& sink) : sink_(sink) {}
+
+  bool begin(const ScanInfo& info) override {
+    dubsar_scan_info out{};
+    out.struct_size = sizeof out;
+    out.cols = info.cols;
+    out.expected_rows = info.expected_rows;
+    out.spacing_mm = info.spacing_mm;
+    out.view = plugin::view_of(info.view);
+    out.timestamp_ns = info.timestamp_ns;
+    out.device_id = info.device.c_str();
+    return sink_.begin(sink_.user, &out) == 0;
+  }
+  bool profile(const Profile& profile) override {
+    dubsar_profile out{};
+    out.struct_size = sizeof out;
+    out.count = static_cast<std::uint32_t>(profile.x.size());
+    out.row = profile.row;
+    out.x = profile.x.data();
+    out.y = profile.y.data();
+    out.z = profile.z.data();
+    out.valid = profile.valid.data();
+    out.intensity = profile.intensity.data();
+    out.confidence = profile.confidence.data();
+    out.timestamp_ns = profile.timestamp_ns;
+    return sink_.profile(sink_.user, &out) == 0;
+  }
+  void end(const ScanTally& tally) override {
+    tally_ = tally;
+    begun_ = true;
+  }
+
+  void finish(std::int32_t code) {
+    if (begun_) {
+      dubsar_scan_end out{};
+      out.struct_size = sizeof out;
+      out.code = code;
+      out.profiles_sent = tally_.profiles_sent;
+      out.profiles_dropped = tally_.profiles_dropped;
+      sink_.end(sink_.user, &out);
+    }
+  }
+
+ private:
+  const dubsar_sink& sink_;
+  ScanTally tally_;
+  bool begun_ = false;
+};
+
+std::int32_t capabilities(dubsar_device* device, dubsar_capabilities* out, dubsar_error* error) {
+  return plugin::fenced(error, [&] {
+    plugin::lend(out, plugin::capabilities_of(device->scanner.rig()));
+    return std::int32_t{DUBSAR_OK};
+  });
+}
+
+std::int32_t scan(dubsar_device* device, const dubsar_sink* sink, dubsar_error* error) {
+  return plugin::fenced(error, [&] {
+    SinkBridge bridge(*sink);
+    const Status status = device->scanner.scan(bridge);
+    const std::int32_t code = status ? std::int32_t{DUBSAR_OK} : plugin::report(error, status.error());
+    bridge.finish(code);
+    return code;
+  });
+}
+
+std::int32_t stop(dubsar_device* device, dubsar_error* error) {
+  return plugin::fenced(error, [&] {
+    const Status status = device->scanner.stop();
+    return status ? std::int32_t{DUBSAR_OK} : plugin::report(error, status.error());
+  });
+}
+
+std::int32_t nothing(dubsar_setting_callback, void*, dubsar_error*) {
+  return DUBSAR_OK;
+}
+
+std::int32_t discover(dubsar_device_callback, void*, dubsar_error*) {
+  return DUBSAR_OK;
+}
+
+std::int32_t open_by_name(const char*, const dubsar_option*, std::uint32_t, dubsar_device**,
+                          dubsar_error* error) {
+  return plugin::report(error, DUBSAR_USAGE, "a rig is put together, not opened");
+}
+
+void close(dubsar_device* device) {
+  delete device;
+}
+
+const dubsar_driver& rig_driver() {
+  static const dubsar_driver driver = [] {
+    dubsar_driver out = plugin::empty_driver();
+    out.scheme = "rig";
+    out.description = "camera, stage and calibration put together";
+    out.version = "1";
+    out.locator_help = "rig.toml";
+    out.describe_options = nothing;
+    out.discover = discover;
+    out.open = open_by_name;
+    out.close = close;
+    out.capabilities = capabilities;
+    out.scan = scan;
+    out.stop = stop;
+    return out;
+  }();
+  return driver;
+}
+
+Result<Device> part(const std::string& uri_text, const DriverRegistry& registry) {
+  const Result<DeviceUri> uri = parse_device_uri(uri_text);
+  if (!uri) {
+    return std::unexpected(uri.error());
+  }
+  if (uri->scheme == "rig") {
+    return fail(ErrorKind::kUsage, "a rig cannot be a part of a rig", uri_text);
+  }
+  return open_device(*uri, registry);
+}
+
+}  // namespace
+
+Device device_of(RigScanner scanner, const std::string& uri) {
+  return {&rig_driver(), new dubsar_device{std::move(scanner)}, uri};
+}
+
+Result<Device> open_rig(const std::filesystem::path& file, const DriverRegistry& registry) {
+  const Result<std::string> text = read_whole_file(file);
+  if (!text) {
+    return std::unexpected(text.error());
+  }
+  const Result<RigFile> rig = parse_rig_file(*text, file.string());
+  if (!rig) {
+    return std::unexpected(rig.error());
+  }
+  const std::filesystem::path beside = file.parent_path() / rig->calibration;
+  const Result<std::string> bytes = read_whole_file(beside);
+  const Result<RigCalibration> calibration =
+      bytes ? parse_calibration(*bytes, beside.string()) : std::unexpected(bytes.error());
+  if (!calibration) {
+    return std::unexpected(calibration.error());
+  }
+  Result<Device> camera = part(rig->camera, registry);
+  if (!camera) {
+    return std::unexpected(camera.error());
+  }
+  Result<Device> stage = part(rig->stage, registry);
+  if (!stage) {
+    return std::unexpected(stage.error());
+  }
+  Result<RigScanner> scanner =
+      RigScanner::make(*rig, *calibration, std::move(*camera), std::move(*stage), file.string());
+  if (!scanner) {
+    return std::unexpected(scanner.error());
+  }
+  return device_of(std::move(*scanner), "rig:" + file.string());
+}
+
+std::optional<CalibrationCheck> last_verification(const std::filesystem::path& rig_file) {
+  const Result<std::string> text = read_whole_file(rig_file);
+  const Result<RigFile> rig = text ? parse_rig_file(*text, rig_file.string()) : std::unexpected(text.error());
+  if (!rig) {
+    return std::nullopt;
+  }
+  const std::filesystem::path beside = rig_file.parent_path() / rig->calibration;
+  const Result<std::string> bytes = read_whole_file(beside);
+  const Result<RigCalibration> calibration =
+      bytes ? parse_calibration(*bytes, beside.string()) : std::unexpected(bytes.error());
+  const Result<VerificationLog> log = read_verification_log(verification_log_of(beside));
+  if (!calibration || !log || log->entries.empty()) {
+    return std::nullopt;
+  }
+  const VerificationEntry& last = log->entries.back();
+  if (!last.passed || last.calibration != calibration->made_at) {
+    return std::nullopt;
+  }
+  return CalibrationCheck{last.when, last.artefact, last.error_mm};
+}
+
+}  // namespace dubsar

@@ -1,0 +1,363 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "acquisition/rig_scan.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstring>
+#include <ctime>
+#include <utility>
+
+#include "formats/number_text.h"
+
+namespace dubsar {
+
+namespace {
+
+constexpr auto kFrameWait = std::chrono::milliseconds(200);
+constexpr int kFrameTries = 15;  // 3 s for a frame that was exposed late enough
+
+std::int64_t monotonic_ns() {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(
+             std::chrono::steady_clock::now().time_since_epoch())
+      .count();
+}
+
+StripeOptions stripe_options(const RigFile& file) {
+  StripeOptions options;
+  options.sigma_px = file.stripe_sigma_px;
+  options.method = file.stripe_method == "centroid"   ? StripeMethod::kCentroid
+                   : file.stripe_method == "gaussian" ? StripeMethod::kGaussian
+                                                      : StripeMethod::kSteger;
+  options.axis = file.stripe_per_row ? StripeAxis::kPerRow : StripeAxis::kPerColumn;
+  return options;
+}
+
+/// A word of rig.toml as the type that the setting has.
+Result<SettingValue> value_for(const SettingInfo& setting, const std::string& word,
+                               const std::string& where) {
+  const auto wrong = [&] {
+    return fail(ErrorKind::kUsage, "setting " + setting.key + " cannot be '" + word + "'", where);
+  };
+  try {
+    std::size_t used = 0;
+    switch (setting.type) {
+      case SettingType::kBool:
+        if (word == "true" || word == "false") {
+          return SettingValue(word == "true");
+        }
+        return wrong();
+      case SettingType::kInteger: {
+        const std::int64_t value = std::stoll(word, &used);
+        return used == word.size() ? Result<SettingValue>(SettingValue(value)) : wrong();
+      }
+      case SettingType::kNumber: {
+        const double value = std::stod(word, &used);
+        return used == word.size() ? Result<SettingValue>(SettingValue(value)) : wrong();
+      }
+      case SettingType::kText:
+      case SettingType::kChoice:
+        return SettingValue(word);
+    }
+  } catch (const std::exception&) {  // std::stoll and std::stod say it this way
+    return wrong();
+  }
+  return wrong();
+}
+
+Status put_settings(const RigFile& file, Device& camera, const std::string& where) {
+  if (file.camera_settings.empty()) {
+    return {};
+  }
+  const Result<std::vector<SettingInfo>> settings = camera.settings();
+  if (!settings) {
+    return std::unexpected(settings.error());
+  }
+  for (const auto& [key, word] : file.camera_settings) {
+    const auto found = std::ranges::find(*settings, key, &SettingInfo::key);
+    if (found == settings->end()) {
+      return fail(ErrorKind::kUsage, "the camera has no setting " + key, where, "see dubsar drivers");
+    }
+    const Result<SettingValue> value = value_for(*found, word, where);
+    if (!value) {
+      return std::unexpected(value.error());
+    }
+    if (Status status = camera.set(key, *value); !status) {
+      return status;
+    }
+  }
+  return {};
+}
+
+GrayView view_of(const Frame& frame) {
+  return {frame.pixels.data(), static_cast<int>(frame.width), static_cast<int>(frame.height),
+          frame.stride_bytes};
+}
+
+/// Puts the laser off when it goes.
+class LaserGuard {
+ public:
+  LaserGuard(Device& stage, std::uint32_t laser) : stage_(stage), laser_(laser) {}
+  LaserGuard(const LaserGuard&) = delete;
+  LaserGuard& operator=(const LaserGuard&) = delete;
+  ~LaserGuard() { [[maybe_unused]] const Status said = stage_.set_laser(laser_, 0); }
+
+ private:
+  Device& stage_;
+  std::uint32_t laser_;
+};
+
+/// The same for the stream of frames.
+class StreamGuard {
+ public:
+  explicit StreamGuard(Device& camera) : camera_(camera) {}
+  StreamGuard(const StreamGuard&) = delete;
+  StreamGuard& operator=(const StreamGuard&) = delete;
+  ~StreamGuard() { [[maybe_unused]] const Status said = camera_.stop_frames(); }
+
+ private:
+  Device& camera_;
+};
+
+Status fits(const RigFile& file, const RigCalibration& calibration, const DeviceCapabilities& camera,
+            const DeviceCapabilities& stage, const std::vector<StageAxis>& axes, const std::string& where) {
+  if (!camera.yields_frames) {
+    return fail(ErrorKind::kUsage, file.camera + " is no camera", where, "name a camera: see dubsar drivers");
+  }
+  if (!stage.is_stage) {
+    return fail(ErrorKind::kUsage, file.stage + " is no stage", where, "name a stage: see dubsar drivers");
+  }
+  if (!calibration.has_laser || !calibration.has_motion) {
+    return bad_input(
+        where, "the calibration knows no " + std::string(calibration.has_laser ? "stage" : "laser plane"),
+        "calibrate with pictures of the laser and of the board on the stage");
+  }
+  if (!calibration.camera_serial.empty() && !camera.serial.empty() &&
+      calibration.camera_serial != camera.serial) {
+    return bad_input(
+        where,
+        "the calibration is of camera " + calibration.camera_serial + ", this is camera " + camera.serial,
+        "name the calibration of this camera, or calibrate it");
+  }
+  if (static_cast<std::size_t>(file.axis) >= axes.size()) {
+    return fail(ErrorKind::kUsage, "the stage has no axis " + std::to_string(file.axis), where,
+                "it has " + std::to_string(axes.size()) + ", counted from 0");
+  }
+  const StageAxis& axis = axes[static_cast<std::size_t>(file.axis)];
+  if (axis.rotary != (calibration.motion.kind != MotionKind::kLinear)) {
+    return bad_input(where, "axis " + axis.name + " does not move as the calibration says",
+                     "name the axis that was calibrated");
+  }
+  const double end = file.start + file.step * (file.rows - 1);
+  if (!axis.endless && (file.start < axis.minimum || end > axis.maximum)) {
+    return fail(ErrorKind::kUsage,
+                "the scan from " + number_text(file.start) + " to " + number_text(end) +
+                    " leaves the axis' limits, " + number_text(axis.minimum) + " to " +
+                    number_text(axis.maximum),
+                where, "scan less, or move the limits");
+  }
+  return {};
+}
+
+}  // namespace
+
+std::optional<double> days_since(const std::string& iso_8601) {
+  std::tm parts{};
+  const char* end = strptime(iso_8601.c_str(), "%Y-%m-%dT%H:%M:%SZ", &parts);
+  if (end == nullptr || *end != '\0') {
+    return std::nullopt;
+  }
+  const double seconds = std::difftime(std::time(nullptr), timegm(&parts));
+  return std::max(0.0, seconds / 86400);
+}
+
+RigScanner::RigScanner(const RigFile& file, const RigCalibration& calibration, Device camera, Device stage,
+                       StripeAxis axis)
+    : file_(file),
+      camera_(std::move(camera)),
+      stage_(std::move(stage)),
+      triangulator_(std::make_unique<Triangulator>(calibration, axis)),
+      extractor_(stripe_options(file)),
+      stopped_(std::make_unique<std::atomic<bool>>(false)) {}
+
+Result<RigScanner> RigScanner::make(const RigFile& file, const RigCalibration& calibration, Device camera,
+                                    Device stage, const std::string& where) {
+  const Result<DeviceCapabilities> of_camera = camera.capabilities();
+  if (!of_camera) {
+    return std::unexpected(of_camera.error());
+  }
+  const Result<DeviceCapabilities> of_stage = stage.capabilities();
+  if (!of_stage) {
+    return std::unexpected(of_stage.error());
+  }
+  std::vector<StageAxis> axes;
+  if (of_stage->is_stage) {
+    Result<std::vector<StageAxis>> told = stage.axes();
+    if (!told) {
+      return std::unexpected(told.error());
+    }
+    axes = std::move(*told);
+  }
+  if (Status status = fits(file, calibration, *of_camera, *of_stage, axes, where); !status) {
+    return std::unexpected(status.error());
+  }
+  if (Status status = put_settings(file, camera, where); !status) {
+    return std::unexpected(status.error());
+  }
+  RigScanner out(file, calibration, std::move(camera), std::move(stage),
+                 file.stripe_per_row ? StripeAxis::kPerRow : StripeAxis::kPerColumn);
+  Rig& rig = out.rig_;
+  rig.name = file.name;
+  rig.view = calibration.view(file.step);
+  rig.view.motion_per_row_mm = Eigen::Vector3d::Zero();  // positions are those of the middle row
+  rig.field_x_mm = calibration.field_per_px_mm() * out.triangulator_->samples_per_profile();
+  const double travel = file.step * (file.rows - 1);
+  const bool linear = calibration.motion.kind == MotionKind::kLinear;
+  rig.field_y_mm =
+      linear ? travel * calibration.motion.direction.norm() : travel * calibration.working_distance_mm;
+  rig.spacing_mm = std::max(calibration.field_per_px_mm(), rig.field_y_mm / (file.rows - 1));
+  rig.depth_range_mm = calibration.depth_range_mm;
+  rig.hand_turns = file.hand_turns;
+  rig.support_height_mm = file.support_height_mm;
+  rig.head = file.head;
+  rig.calibration =
+      file.calibration + ", made " + calibration.made_at +
+      (calibration.temperature_c ? " at " + number_text(*calibration.temperature_c) + " °C" : std::string());
+  rig.calibration_age_days = days_since(calibration.made_at);
+  out.device_id_ = file.name + (of_camera->serial.empty() ? std::string() : ", camera " + of_camera->serial);
+  return out;
+}
+
+/// A frame whose light fell behind `not_before_ns`: what the camera sent before is given back.
+Result<Frame> RigScanner::fresh_frame(std::int64_t not_before_ns) {
+  for (int i = 0; i < kFrameTries; ++i) {
+    if (stopped_->load()) {
+      return fail(ErrorKind::kCancelled, "scan stopped", file_.name);
+    }
+    Result<std::optional<Frame>> frame = camera_.next_frame(kFrameWait);
+    if (!frame) {
+      return std::unexpected(frame.error());
+    }
+    if (!*frame || (*frame)->timestamp_ns < not_before_ns || (*frame)->incomplete) {
+      continue;
+    }
+    const CameraModel& camera = triangulator_->calibration().camera;
+    if (static_cast<int>((*frame)->width) != camera.width ||
+        static_cast<int>((*frame)->height) != camera.height || (*frame)->offset_x != 0 ||
+        (*frame)->offset_y != 0) {
+      return bad_input(file_.name,
+                       "the camera sends " + std::to_string((*frame)->width) + " x " +
+                           std::to_string((*frame)->height) + " pixels, it was calibrated with " +
+                           std::to_string(camera.width) + " x " + std::to_string(camera.height),
+                       "set the region that was calibrated in camera_settings");
+    }
+    if ((*frame)->format != PixelFormat::kMono8) {
+      return bad_input(file_.name, "the camera does not send Mono8", "set pixel_format in camera_settings");
+    }
+    return std::move(**frame);
+  }
+  return fail(ErrorKind::kDevice, "no frame came from the camera in 3 s", file_.camera,
+              "see that its trigger is free, and the cable");
+}
+
+Status RigScanner::row(int number, ProfileSink& sink, ScanTally& tally) {
+  const double position = file_.start + file_.step * number;
+  const auto laser = static_cast<std::uint32_t>(file_.laser);
+  if (Status moved = stage_.move({static_cast<std::uint32_t>(file_.axis), position, file_.speed, false});
+      !moved) {
+    return moved;
+  }
+  // A frame that is stamped on arrival was exposed before: one whole frame is let go by then.
+  const auto take = [&](double power) -> Result<Frame> {
+    if (Status lit = stage_.set_laser(laser, power); !lit) {
+      return std::unexpected(lit.error());
+    }
+    Result<Frame> frame = fresh_frame(monotonic_ns());
+    if (frame && !frame->exposed) {
+      const std::int64_t seen = frame->timestamp_ns + 1;
+      *frame = Frame{};
+      frame = fresh_frame(seen);
+    }
+    return frame;
+  };
+  if (file_.ambient) {
+    const Result<Frame> dark = take(0);
+    if (!dark) {
+      return std::unexpected(dark.error());
+    }
+    const GrayView view = view_of(*dark);
+    dark_ = GrayImage(view.width, view.height);
+    for (int v = 0; v < view.height; ++v) {
+      std::memcpy(dark_.pixels.data() + dark_.index(0, v), view.row(v), static_cast<std::size_t>(view.width));
+    }
+  }
+  const Result<Frame> lit = take(file_.laser_power);
+  if (!lit) {
+    return std::unexpected(lit.error());
+  }
+  const Result<StageMotion> motion = stage_.motion();
+  if (!motion) {
+    return std::unexpected(motion.error());
+  }
+  const auto axis = static_cast<std::size_t>(file_.axis);
+  if (axis >= motion->position.size() || std::abs(motion->position[axis] - position) > 0.5 * file_.step) {
+    return fail(ErrorKind::kDevice, "the stage is not where it was sent", file_.stage,
+                "see whether something blocks it, and home it");
+  }
+  extractor_.extract(view_of(*lit), file_.ambient ? dark_.view() : GrayView{}, stripe_);
+  triangulator_->triangulate(stripe_, motion->position[axis], profile_);
+  Profile out;
+  out.row = number;
+  out.x = profile_.x;
+  out.y = profile_.y;
+  out.z = profile_.z;
+  out.valid = profile_.valid;
+  out.intensity = stripe_.peak;
+  out.confidence = stripe_.confidence;
+  out.timestamp_ns = lit->timestamp_ns;
+  ++tally.profiles_sent;
+  return sink.profile(out) ? Status{} : fail(ErrorKind::kCancelled, "scan cancelled", file_.name);
+}
+
+Status RigScanner::scan(ProfileSink& sink) {
+  stopped_->store(false);
+  const LaserGuard dark(stage_, static_cast<std::uint32_t>(file_.laser));
+  if (Status started = camera_.start_frames(); !started) {
+    return started;
+  }
+  const StreamGuard stream(camera_);
+  ScanInfo info;
+  info.cols = triangulator_->samples_per_profile();
+  info.expected_rows = file_.rows;
+  info.spacing_mm = rig_.spacing_mm;
+  info.view = triangulator_->calibration().view(file_.step);
+  // The view is that at row 0, which lies at the scan's start.
+  if (info.view.laser_mm && info.view.camera_mm) {
+    const Eigen::Vector3d there = file_.start / file_.step * info.view.motion_per_row_mm;
+    *info.view.laser_mm += there;
+    *info.view.camera_mm += there;
+  }
+  info.timestamp_ns = std::chrono::duration_cast<std::chrono::nanoseconds>(
+                          std::chrono::system_clock::now().time_since_epoch())
+                          .count();
+  info.device = device_id_;
+  ScanTally tally;
+  Status status = sink.begin(info) ? Status{} : fail(ErrorKind::kCancelled, "scan cancelled", file_.name);
+  for (int number = 0; status && number < file_.rows; ++number) {
+    status =
+        stopped_->load() ? fail(ErrorKind::kCancelled, "scan stopped", file_.name) : row(number, sink, tally);
+  }
+  if (!status) {
+    [[maybe_unused]] const Status said = stage_.stop();
+  }
+  sink.end(tally);
+  return status;
+}
+
+Status RigScanner::stop() {
+  stopped_->store(true);
+  return stage_.stop();
+}
+
+}  // namespace dubsar

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <atomic>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "acquisition/triangulate.h"
+#include "core/rig.h"
+#include "drivers/device.h"
+#include "formats/rig_toml.h"
+
+namespace dubsar {
+
+/// A camera, a stage with a laser, and the calibration that belongs to them, as one range source. Use from
+/// one thread at a time; stop() from any.
+class RigScanner {
+ public:
+  /// Checks that the parts fit: a camera that yields frames, a stage with the axis (a rotary one for
+  /// turntable and mirror), a whole calibration of this very camera (by its serial number), a scan within the
+  /// axis' limits. Puts the camera's settings. Errors: kUsage, kBadInput, kDevice.
+  [[nodiscard]] static Result<RigScanner> make(const RigFile& file, const RigCalibration& calibration,
+                                               Device camera, Device stage, const std::string& where);
+
+  /// What it sees and how old its calibration is, counted from `calibration.made_at`.
+  [[nodiscard]] const Rig& rig() const { return rig_; }
+  [[nodiscard]] const std::string& device_id() const { return device_id_; }
+
+  /// One scan, row by row: drives to the row, takes a frame with the laser off (where the file asks for
+  /// ambient frames) and one with it on. The laser is off afterwards, whatever happened.
+  Status scan(ProfileSink& sink);
+  /// Ends the motion and puts the laser off; a scan that runs returns kCancelled soon.
+  Status stop();
+
+ private:
+  RigScanner(const RigFile& file, const RigCalibration& calibration, Device camera, Device stage,
+             StripeAxis axis);
+  [[nodiscard]] Result<Frame> fresh_frame(std::int64_t not_before_ns);
+  Status row(int number, ProfileSink& sink, ScanTally& tally);
+
+  RigFile file_;
+  Device camera_;
+  Device stage_;
+  std::unique_ptr<Triangulator> triangulator_;
+  StripeExtractor extractor_;
+  Rig rig_;
+  std::string device_id_;
+  std::unique_ptr<std::atomic<bool>> stopped_;
+  GrayImage dark_;
+  StripeProfile stripe_;
+  TriangulatedProfile profile_;
+};
+
+/// Days from an ISO 8601 time in UTC until now; nothing when the text is none.
+[[nodiscard]] std::optional<double> days_since(const std::string& iso_8601);
+
+}  // namespace dubsar

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "formats/rig_toml.h"
+
+#include <cmath>
+
+#include "core/units.h"
+#include "formats/toml_document.h"
+
+namespace dubsar {
+
+namespace {
+
+constexpr double kMostTravel = 1e5;
+constexpr int kMostRows = 100'000;
+
+/// Where the scan begins and ends, in mm or in degrees.
+void read_scan(const JsonNode& scan, RigFile& rig) {
+  scan.only({"from_mm", "to_mm", "step_mm", "speed_mm_s", "from_deg", "to_deg", "step_deg", "speed_deg_s",
+             "ambient", "laser_power"});
+  const bool degrees = scan.find("step_deg").has_value();
+  const double unit = degrees ? rad_from_deg(1) : 1;
+  const double from = scan.at(degrees ? "from_deg" : "from_mm").number(-kMostTravel, kMostTravel) * unit;
+  const double to = scan.at(degrees ? "to_deg" : "to_mm").number(-kMostTravel, kMostTravel) * unit;
+  rig.step = scan.at(degrees ? "step_deg" : "step_mm").number(1e-6, kMostTravel) * unit;
+  rig.start = from;
+  const double rows = std::floor((to - from) / rig.step + 1e-6) + 1;
+  if (!scan.failed() && !(rows >= 2 && rows <= kMostRows)) {
+    scan.complain("has fewer than 2 rows or more than 100000: it goes up from `from` to `to`");
+    return;
+  }
+  rig.rows = scan.failed() ? 0 : static_cast<int>(rows);
+  if (const auto speed = scan.find(degrees ? "speed_deg_s" : "speed_mm_s")) {
+    rig.speed = speed->number(1e-6, kMostTravel) * unit;
+  }
+  if (const auto ambient = scan.find("ambient")) {
+    rig.ambient = ambient->boolean();
+  }
+  if (const auto power = scan.find("laser_power")) {
+    rig.laser_power = power->number(0, 1);
+  }
+}
+
+std::string setting_text(const JsonNode& pair) {
+  if (pair.size() != 2) {
+    pair.complain("is no pair of a name and a value");
+    return {};
+  }
+  return pair.item(1).text();
+}
+
+}  // namespace
+
+Result<RigFile> parse_rig_file(std::string_view toml, const std::string& where) {
+  const Result<JsonDocument> document = parse_toml(toml, where);
+  if (!document) {
+    return std::unexpected(document.error());
+  }
+  const JsonNode root = document->root();
+  root.only({"name", "camera", "stage", "calibration", "camera_settings", "axis", "laser", "scan", "stripe",
+             "hand_turns", "support_height_mm", "head"});
+  RigFile rig;
+  rig.name = root.at("name").text();
+  rig.camera = root.at("camera").text();
+  rig.stage = root.at("stage").text();
+  rig.calibration = root.at("calibration").text();
+  if (const auto settings = root.find("camera_settings")) {
+    for (const JsonNode& pair : settings->items()) {
+      rig.camera_settings.emplace_back(pair.item(0).text(), setting_text(pair));
+    }
+  }
+  if (const auto axis = root.find("axis")) {
+    rig.axis = static_cast<int>(axis->integer(0, 7));
+  }
+  if (const auto laser = root.find("laser")) {
+    rig.laser = static_cast<int>(laser->integer(0, 7));
+  }
+  read_scan(root.at("scan"), rig);
+  if (const auto stripe = root.find("stripe")) {
+    stripe->only({"sigma_px", "method", "runs"});
+    if (const auto sigma = stripe->find("sigma_px")) {
+      rig.stripe_sigma_px = sigma->number(0.3, 6);
+    }
+    if (const auto method = stripe->find("method")) {
+      const std::vector<std::string> words{"centroid", "gaussian", "steger"};
+      rig.stripe_method = words[method->one_of(words)];
+    }
+    if (const auto runs = stripe->find("runs")) {
+      rig.stripe_per_row = runs->one_of({"across", "down"}) == 1;
+    }
+  }
+  if (const auto turns = root.find("hand_turns")) {
+    rig.hand_turns = turns->boolean();
+  }
+  if (const auto support = root.find("support_height_mm")) {
+    rig.support_height_mm = support->number(-kMostTravel, kMostTravel);
+  }
+  if (const auto head = root.find("head")) {
+    head->only({"low_mm", "high_mm"});
+    rig.head = HeadBox{head->at("low_mm").vector3(), head->at("high_mm").vector3()};
+    if ((rig.head->high_mm.array() < rig.head->low_mm.array()).any()) {
+      head->complain("goes from more to less");
+    }
+  }
+  if (const Status status = document->status("see docs/formats/rig_toml.md"); !status) {
+    return std::unexpected(status.error());
+  }
+  return rig;
+}
+
+}  // namespace dubsar

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <cstdio>
+
+#include "core/mesh_query.h"
+#include "drivers/device.h"
+#include "drivers/driver.h"
+#include "drivers/plugin.h"
+#include "sim/frame_renderer.h"
+#include "sim/frame_rig.h"
+#include "sim/scene.h"
+
+namespace dubsar::test {
+
+/// A simulated camera and stage behind the driver interface, that share one bench: what the camera sees
+/// follows where the stage stands and whether its laser is on.
+struct RigBench {
+  RigCalibration truth;
+  const sim::Scene* scene = nullptr;
+  sim::FrameOptions optics;
+  std::string serial = "SIM-CAMERA";
+  double position = 0;
+  double laser = 0;
+  double limit = 10;
+  int cut = 0;               ///< rows that the camera leaves away at the lower edge
+  int gone_after = 1 << 30;  ///< frames until the camera is unplugged
+  bool stuck = false;
+  std::uint64_t frames = 0;
+  GrayImage frame;
+};
+
+inline RigBench& bench_of(dubsar_device* device) {
+  return *reinterpret_cast<RigBench*>(device);
+}
+
+inline std::int64_t now_ns() {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(
+             std::chrono::steady_clock::now().time_since_epoch())
+      .count();
+}
+
+inline const dubsar_driver& camera_driver() {
+  static const dubsar_driver driver = [] {
+    dubsar_driver out = plugin::empty_driver();
+    out.scheme = "bench_camera";
+    out.close = [](dubsar_device*) {};
+    out.capabilities = [](dubsar_device* device, dubsar_capabilities* to, dubsar_error*) -> std::int32_t {
+      dubsar_capabilities c{};
+      c.struct_size = sizeof c;
+      c.flags = DUBSAR_YIELDS_FRAMES | DUBSAR_YIELDS_NO_SCANS;
+      c.calibration_age_days = -1;
+      plugin::copy_text(c.serial, bench_of(device).serial);
+      plugin::lend(to, c);
+      return DUBSAR_OK;
+    };
+    out.start_frames = [](dubsar_device*, std::uint32_t, dubsar_error*) -> std::int32_t { return DUBSAR_OK; };
+    out.next_frame = [](dubsar_device* device, std::uint32_t, dubsar_frame* to,
+                        dubsar_error* error) -> std::int32_t {
+      RigBench& bench = bench_of(device);
+      if (static_cast<int>(bench.frames) >= bench.gone_after) {
+        return plugin::report(error, DUBSAR_DEVICE, "the camera is gone", "bench", "plug it in");
+      }
+      const RigidTransform tablet_from_camera =
+          bench.truth.scanner_from_camera() * bench.truth.motion.zero_from_camera(bench.position);
+      const sim::SceneTarget target(*bench.scene, tablet_from_camera);
+      bench.frame = sim::FrameRenderer(bench.truth, bench.optics)
+                        .render(target, bench.laser > 0, bench.position, ++bench.frames);
+      dubsar_frame frame{};
+      frame.struct_size = sizeof frame;
+      frame.flags = DUBSAR_FRAME_EXPOSED;
+      frame.lease = bench.frames;
+      frame.id = bench.frames;
+      frame.timestamp_ns = now_ns();
+      frame.pixels = bench.frame.pixels.data();
+      frame.width = static_cast<std::uint32_t>(bench.frame.width);
+      frame.height = static_cast<std::uint32_t>(bench.frame.height - bench.cut);
+      frame.stride_bytes = frame.width;
+      frame.size_bytes = static_cast<std::uint64_t>(frame.width) * frame.height;
+      frame.pixel_format = DUBSAR_PIXEL_MONO8;
+      plugin::lend(to, frame);
+      return DUBSAR_OK;
+    };
+    out.release_frame = [](dubsar_device*, std::uint64_t) {};
+    out.stop_frames = [](dubsar_device*, dubsar_error*) -> std::int32_t { return DUBSAR_OK; };
+    out.frame_counters = [](dubsar_device*, dubsar_frame_counters*, dubsar_error*) -> std::int32_t {
+      return DUBSAR_OK;
+    };
+    return out;
+  }();
+  return driver;
+}
+
+inline const dubsar_driver& stage_driver() {
+  static const dubsar_driver driver = [] {
+    dubsar_driver out = plugin::empty_driver();
+    out.scheme = "bench_stage";
+    out.close = [](dubsar_device*) {};
+    out.capabilities = [](dubsar_device*, dubsar_capabilities* to, dubsar_error*) -> std::int32_t {
+      dubsar_capabilities c{};
+      c.struct_size = sizeof c;
+      c.flags = DUBSAR_IS_STAGE | DUBSAR_YIELDS_NO_SCANS;
+      c.calibration_age_days = -1;
+      plugin::lend(to, c);
+      return DUBSAR_OK;
+    };
+    out.describe_axes = [](dubsar_device* device, dubsar_axis_callback callback, void* user,
+                           dubsar_error*) -> std::int32_t {
+      const RigBench& bench = bench_of(device);
+      dubsar_axis axis{};
+      axis.struct_size = sizeof axis;
+      axis.kind = bench.truth.motion.kind == MotionKind::kLinear ? DUBSAR_AXIS_LINEAR : DUBSAR_AXIS_ROTARY;
+      axis.name = "way";
+      axis.minimum = -bench.limit;
+      axis.maximum = bench.limit;
+      axis.speed_maximum = 5;
+      axis.resolution = 0.001;
+      return callback(user, &axis) == 0 ? DUBSAR_OK : DUBSAR_CANCELLED;
+    };
+    out.home = [](dubsar_device*, dubsar_error*) -> std::int32_t { return DUBSAR_OK; };
+    out.move = [](dubsar_device* device, const dubsar_move* move, dubsar_error*) -> std::int32_t {
+      RigBench& bench = bench_of(device);
+      bench.position = bench.stuck ? bench.position : move->position;
+      return DUBSAR_OK;
+    };
+    out.read_motion = [](dubsar_device* device, dubsar_motion* to, dubsar_error*) -> std::int32_t {
+      const RigBench& bench = bench_of(device);
+      dubsar_motion motion{};
+      motion.struct_size = sizeof motion;
+      motion.flags = DUBSAR_MOTION_HOMED;
+      motion.timestamp_ns = now_ns();
+      motion.axis_count = 1;
+      motion.laser_count = 1;
+      motion.position[0] = bench.position;
+      motion.laser[0] = bench.laser;
+      plugin::lend(to, motion);
+      return DUBSAR_OK;
+    };
+    out.set_laser = [](dubsar_device* device, std::uint32_t, double power, dubsar_error*) -> std::int32_t {
+      bench_of(device).laser = power;
+      return DUBSAR_OK;
+    };
+    out.stop = [](dubsar_device* device, dubsar_error*) -> std::int32_t {
+      bench_of(device).laser = 0;
+      return DUBSAR_OK;
+    };
+    out.emergency_stop = out.stop;
+    return out;
+  }();
+  return driver;
+}
+
+inline Device camera_of(RigBench& bench) {
+  return {&camera_driver(), reinterpret_cast<dubsar_device*>(&bench), "bench_camera:"};
+}
+inline Device stage_of(RigBench& bench) {
+  return {&stage_driver(), reinterpret_cast<dubsar_device*>(&bench), "bench_stage:"};
+}
+
+}  // namespace dubsar::test

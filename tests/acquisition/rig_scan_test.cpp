@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+// A rig of a simulated camera and stage behind the driver interface, scanned as any other device.
+#include "acquisition/rig_scan.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "acquisition/grid_builder.h"
+#include "acquisition/rig_device.h"
+#include "tests/acquisition/rig_bench.h"
+#include "tests/sim/scenes.h"
+
+namespace dubsar {
+namespace {
+
+class Collect : public ProfileSink {
+ public:
+  bool begin(const ScanInfo& info) override {
+    builder.emplace(info);
+    return true;
+  }
+  bool profile(const Profile& profile) override {
+    builder->append(profile);
+    return builder->grid().rows < most_rows;
+  }
+  void end(const ScanTally& ended) override { tally = ended; }
+  std::optional<GridBuilder> builder;
+  ScanTally tally;
+  int most_rows = 1 << 30;
+};
+
+class RigScan : public testing::Test {
+ protected:
+  RigScan() {
+    sim::FrameRigOptions size;
+    size.width = 256;
+    size.height = 200;
+    size.field_mm = 6.25;
+    bench.truth = sim::frame_rig(size);
+    bench.truth.made_at = "2026-01-01T00:00:00Z";
+    bench.scene = &scene.scene;
+    bench.optics.ambient_signal = 0.05;
+    file.name = "bench rig";
+    file.camera = "bench_camera:";
+    file.stage = "bench_stage:";
+    file.calibration = "calibration.json";
+    file.start = -0.5;
+    file.step = 0.1;
+    file.rows = 11;
+  }
+  Result<RigScanner> make() {
+    return RigScanner::make(file, bench.truth, test::camera_of(bench), test::stage_of(bench), "rig.toml");
+  }
+  std::string refusal() {
+    const Result<RigScanner> made = make();
+    EXPECT_FALSE(made.has_value());
+    return made ? std::string() : made.error().line();
+  }
+
+  sim::TestScene scene{sim::plane(20, 0.5F, 0.5F)};
+  test::RigBench bench;
+  RigFile file;
+};
+
+TEST_F(RigScan, ScansAPlaneThroughTheDriverInterface) {
+  Result<RigScanner> made = make();
+  ASSERT_TRUE(made.has_value()) << made.error().line();
+  Device device = device_of(std::move(*made), "rig:rig.toml");
+  const Result<DeviceCapabilities> can = device.capabilities();
+  ASSERT_TRUE(can.has_value()) << can.error().line();
+  ASSERT_TRUE(can->rig.has_value());
+  EXPECT_EQ(can->rig->name, "bench rig");
+  EXPECT_NEAR(can->rig->field_x_mm, 6.25, 0.01);
+  EXPECT_NEAR(can->rig->field_y_mm, 1.0, 1e-9);
+  EXPECT_GT(can->rig->calibration_age_days.value_or(0), 100);
+  Collect sink;
+  const Result<ScanOutcome> outcome = device.scan(sink);
+  ASSERT_TRUE(outcome.has_value()) << outcome.error().line();
+  const RangeGrid grid = sink.builder->take();
+  EXPECT_EQ(grid.rows, 11);
+  EXPECT_EQ(grid.cols, 256);
+  EXPECT_GT(grid.valid_count(), 2700U);
+  double squares = 0;
+  for (std::size_t i = 0; i < grid.size(); ++i) {
+    if (grid.valid[i] != 0) {
+      squares += std::pow(static_cast<double>(grid.z[i]) - 0.5, 2);
+    }
+  }
+  EXPECT_LT(std::sqrt(squares / static_cast<double>(grid.valid_count())), 0.003);
+  EXPECT_NEAR(static_cast<double>(grid.y[grid.index(10, 128)]), 0.5, 0.003);
+  EXPECT_EQ(bench.laser, 0) << "off when it is done";
+  EXPECT_EQ(bench.frames, 22U);
+}
+
+TEST_F(RigScan, RefusesPartsThatDoNotFit) {
+  bench.serial = "ANOTHER";
+  EXPECT_NE(refusal().find("camera ANOTHER"), std::string::npos);
+  bench.serial = "SIM-CAMERA";
+  file.axis = 3;
+  EXPECT_NE(refusal().find("no axis 3"), std::string::npos);
+  file.axis = 0;
+  bench.limit = 0.3;
+  EXPECT_NE(refusal().find("limits"), std::string::npos);
+  bench.limit = 10;
+  file.camera_settings = {{"exposure_us", "1500"}};
+  EXPECT_FALSE(make().has_value());
+  file.camera_settings.clear();
+  bench.truth.has_motion = false;
+  EXPECT_NE(refusal().find("stage"), std::string::npos);
+  bench.truth.has_motion = true;
+  Result<RigScanner> swapped =
+      RigScanner::make(file, bench.truth, test::stage_of(bench), test::camera_of(bench), "rig.toml");
+  ASSERT_FALSE(swapped.has_value());
+  EXPECT_NE(swapped.error().what.find("no camera"), std::string::npos);
+}
+
+TEST_F(RigScan, AFailureLeavesTheRowsAndTheLaserOff) {
+  Result<RigScanner> made = make();
+  ASSERT_TRUE(made.has_value());
+  bench.gone_after = 9;
+  Collect sink;
+  const Status unplugged = made->scan(sink);
+  ASSERT_FALSE(unplugged.has_value());
+  EXPECT_EQ(unplugged.error().kind, ErrorKind::kDevice);
+  EXPECT_EQ(sink.builder->grid().rows, 4);
+  EXPECT_EQ(sink.tally.profiles_sent, 4U);
+  EXPECT_EQ(bench.laser, 0);
+  // Plugged in again, it goes on.
+  bench.gone_after = 1 << 30;
+  Collect again;
+  EXPECT_TRUE(made->scan(again).has_value());
+  // A stage that stands still.
+  bench.stuck = true;
+  Collect stuck;
+  const Status blocked = made->scan(stuck);
+  ASSERT_FALSE(blocked.has_value());
+  EXPECT_NE(blocked.error().what.find("not where"), std::string::npos);
+  EXPECT_EQ(bench.laser, 0);
+}
+
+TEST_F(RigScan, CancelledBySinkAndRefusesAnotherRegion) {
+  Result<RigScanner> made = make();
+  ASSERT_TRUE(made.has_value());
+  Collect few;
+  few.most_rows = 3;
+  const Status cancelled = made->scan(few);
+  ASSERT_FALSE(cancelled.has_value());
+  EXPECT_EQ(cancelled.error().kind, ErrorKind::kCancelled);
+  EXPECT_EQ(few.builder->grid().rows, 3);
+  bench.cut = 8;
+  Collect cut;
+  const Status region = made->scan(cut);
+  ASSERT_FALSE(region.has_value());
+  EXPECT_NE(region.error().what.find("calibrated with"), std::string::npos);
+}
+
+TEST(DaysSince, ReadsOnlyTimes) {
+  EXPECT_FALSE(days_since("").has_value());
+  EXPECT_FALSE(days_since("yesterday").has_value());
+  EXPECT_GT(days_since("2020-01-01T00:00:00Z").value_or(0), 365);
+  EXPECT_EQ(days_since("2999-01-01T00:00:00Z").value_or(1), 0);
+}
+
+}  // namespace
+}  // namespace dubsar
