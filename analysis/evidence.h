@@ -14,16 +14,13 @@ enum class Evidence : std::size_t {
   kExplained,      ///< share of what lies in its outline that lies on its faces
   kRoughness,      ///< scatter about its faces, in depths
   kVertices,       ///< how many, logarithmic
-  kLeastFace,      ///< smallest face's share of what was seen
   kWidestOpening,  ///< widest opening angle
-  kContacts,       ///< share of inner edges with contact points enough
-  kFlatness,       ///< how far it is from being as deep as it is wide
-  kStretch,        ///< longest inner edge in depths, logarithmic
   kLevelRim,       ///< share of the hollow's rim that lies at the free surface
+  kWidestFace,     ///< widest face angle: the two ends of a groove lie across from each other
+  kSecondSlope,    ///< slope of the second flattest inner edge, of a right angle
   kDepthUnlike,    ///< off the depths of the tablet's wedges
   kWidthUnlike,    ///< off their widths
-  kShapeUnlike,    ///< off their opening angles
-  kLonely,         ///< few similar ones
+  kLonely,         ///< few like it in opening angles, slopes and width
   kFar,            ///< distance to the next one
   kCompany,        ///< share of the hollows around, by area, that are good candidates
   kCount

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wall"
@@ -26,27 +28,83 @@ struct FeatureSearch::Impl {
   std::vector<float> values;
   std::unique_ptr<L1> l1;
   std::unique_ptr<L2> l2;
+
+  /// Without a tree as yet.
+  Impl(const std::vector<std::vector<float>>& from, FeatureDistance distance)
+      : rows(from.size()), columns(from.empty() ? 0 : from.front().size()) {
+    values.reserve(rows * columns);
+    for (const std::vector<float>& row : from) {
+      values.insert(values.end(), row.begin(), row.end());
+    }
+    if (rows == 0 || columns == 0) {
+      return;
+    }
+    const flann::Matrix<float> matrix(values.data(), rows, columns);
+    const flann::KDTreeSingleIndexParams params(10, false);
+    if (distance == FeatureDistance::kL1) {
+      l1 = std::make_unique<L1>(matrix, params);
+    } else {
+      l2 = std::make_unique<L2>(matrix, params);
+    }
+  }
 };
 
+FeatureSearch::FeatureSearch(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+
 FeatureSearch::FeatureSearch(const std::vector<std::vector<float>>& rows, FeatureDistance distance)
-    : impl_(std::make_unique<Impl>()) {
-  impl_->rows = rows.size();
-  impl_->columns = rows.empty() ? 0 : rows.front().size();
-  for (const std::vector<float>& row : rows) {
-    impl_->values.insert(impl_->values.end(), row.begin(), row.end());
-  }
-  if (rows.empty() || impl_->columns == 0) {
-    return;
-  }
-  const flann::Matrix<float> matrix(impl_->values.data(), impl_->rows, impl_->columns);
-  const flann::KDTreeSingleIndexParams params(10, false);
-  if (distance == FeatureDistance::kL1) {
-    impl_->l1 = std::make_unique<Impl::L1>(matrix, params);
+    : impl_(std::make_unique<Impl>(rows, distance)) {
+  if (impl_->l1) {
     impl_->l1->buildIndex();
-  } else {
-    impl_->l2 = std::make_unique<Impl::L2>(matrix, params);
+  } else if (impl_->l2) {
     impl_->l2->buildIndex();
   }
+}
+
+std::string FeatureSearch::tree() const {
+  char* bytes = nullptr;
+  std::size_t size = 0;
+  std::FILE* stream = impl_->l1 || impl_->l2 ? open_memstream(&bytes, &size) : nullptr;
+  if (stream == nullptr) {
+    return {};
+  }
+  bool whole = true;
+  try {
+    if (impl_->l1) {
+      impl_->l1->saveIndex(stream);
+    } else {
+      impl_->l2->saveIndex(stream);
+    }
+  } catch (const flann::FLANNException&) {
+    whole = false;  // no memory: the tree is built again next time
+  }
+  whole = std::fclose(stream) == 0 && whole;
+  const std::unique_ptr<char, decltype(&std::free)> owned(bytes, &std::free);
+  return whole ? std::string(bytes, size) : std::string();
+}
+
+std::optional<FeatureSearch> FeatureSearch::with_tree(const std::vector<std::vector<float>>& rows,
+                                                      FeatureDistance distance, std::string_view tree) {
+  auto impl = std::make_unique<Impl>(rows, distance);
+  if (!impl->l1 && !impl->l2) {
+    return FeatureSearch(std::move(impl));
+  }
+  std::string bytes(tree);  // fmemopen() wants memory that it could write to
+  std::FILE* stream = bytes.empty() ? nullptr : fmemopen(bytes.data(), bytes.size(), "rb");
+  if (stream == nullptr) {
+    return std::nullopt;
+  }
+  bool fits = false;
+  try {
+    const auto load = [&](auto& index) {
+      index.loadIndex(stream);
+      return index.size() == impl->rows && index.veclen() == impl->columns;
+    };
+    fits = impl->l1 ? load(*impl->l1) : load(*impl->l2);
+  } catch (const flann::FLANNException&) {
+    fits = false;
+  }
+  std::fclose(stream);
+  return fits ? std::optional(FeatureSearch(std::move(impl))) : std::nullopt;
 }
 
 FeatureSearch::~FeatureSearch() = default;

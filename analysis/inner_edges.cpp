@@ -278,7 +278,6 @@ InnerEdges find_inner_edges(const WedgePatch& patch, const WedgeFaces& faces) {
       for (const Contact& c : line.inliers) {
         edge.extent_mm = std::max(edge.extent_mm, (c.p - out.depth_point).dot(line.direction));
       }
-      edge.contacts = static_cast<std::uint32_t>(line.inliers.size());
       edge.rms_mm = line.rms_mm;
       edge.bow_mm = bow_of(contacts[k], line, kCurveTolerance * tolerance_mm, &edge.extent_mm,
                            Random(seed_for(patch.vertex.front(), 3 + k)));

@@ -16,7 +16,6 @@ namespace dubsar {
 struct InnerEdge {
   Eigen::Vector3d direction{0, 0, 1};  ///< unit, out of the depth point
   double sigma_rad = 0;                ///< of the direction
-  std::uint32_t contacts = 0;          ///< that agree
   double rms_mm = 0;                   ///< their distance
   double extent_mm = 0;                ///< farthest contact point along it
   double bow_mm = 0;                   ///< middle of the curve off its chord; 0 where a line is as good

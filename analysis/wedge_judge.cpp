@@ -35,26 +35,16 @@ std::array<double, 3> sorted(std::array<double, 3> values) {
 void look_at(WedgeCandidate* c) {
   const Wedge& w = c->wedge;
   EvidenceValues& e = c->evidence;
-  double seen = 0;
-  for (const double area : c->seen_mm2) {
-    seen += area;
-  }
-  const double longest = std::max({1e-6, (w.exit_points_surface_mm[0] - w.depth_point_mm).norm(),
-                                   (w.exit_points_surface_mm[1] - w.depth_point_mm).norm(),
-                                   (w.exit_points_surface_mm[2] - w.depth_point_mm).norm()});
   const double depth = std::max(w.depth_mm, 1e-3);
   value(e, Evidence::kLeastCoverage) = sorted(c->coverage)[0];
   value(e, Evidence::kCoverage) = w.intact;
   value(e, Evidence::kExplained) = std::min(1.0, c->explained);
   value(e, Evidence::kRoughness) = std::min(1.0, 5.0 * c->rms_mm / depth);
   value(e, Evidence::kVertices) = std::clamp(std::log2(std::max(1.0, w.vertex_count / 16.0)) / 5.0, 0.0, 1.0);
-  value(e, Evidence::kLeastFace) = seen > 0 ? 3.0 * sorted(c->seen_mm2)[0] / seen : 0.0;
   value(e, Evidence::kWidestOpening) = sorted(w.opening_angles_rad)[2] / kPi;
-  value(e, Evidence::kContacts) =
-      static_cast<double>(std::ranges::count_if(c->contacts, [](std::uint32_t n) { return n >= 4; })) / 3.0;
   value(e, Evidence::kLevelRim) = c->level_rim;
-  value(e, Evidence::kFlatness) = std::clamp(1.0 - depth / width_mm(*c), 0.0, 1.0);
-  value(e, Evidence::kStretch) = std::clamp(std::log2(longest / depth) / 5.0, 0.0, 1.0);
+  value(e, Evidence::kWidestFace) = sorted(w.face_angles_rad)[2] / kPi;
+  value(e, Evidence::kSecondSlope) = sorted(w.edge_slopes_rad)[1] / (0.5 * kPi);
 }
 
 double median(std::vector<double> values) {
@@ -78,10 +68,9 @@ struct Odds {
   }
 };
 /// By itself, and with the tablet's other wedges beside it.
-constexpr Odds kAlone = {3.52,
-                         {2.55, 2.24, 1.30, -7.15, 1.27, 0, -9.98, 0, 0, -0.69, 2.59, 0, 0, 0, 0, 0, 0}};
+constexpr Odds kAlone = {8.46, {3.11, 1.63, 1.52, -5.22, 1.55, -7.28, 1.09, -9.15, 4.49, 0, 0, 0, 0, 0}};
 constexpr Odds kAmongOthers = {
-    1.16, {3.40, 1.56, 0.30, -2.58, 1.30, 0, -5.59, 0, 0, -0.81, 0.65, -1.04, -1.00, 0, -3.41, 0, 4.92}};
+    6.20, {3.82, 1.13, 0.90, -0.82, 0, -1.77, 0, -6.09, 1.98, -1.27, -0.17, -6.35, -0.46, 1.87}};
 
 /// What the tablet's good candidates say of this one. `good`: by falling log odds.
 void compare(const std::vector<const WedgeCandidate*>& good, double typical_depth, double typical_width,
@@ -92,6 +81,7 @@ void compare(const std::vector<const WedgeCandidate*>& good, double typical_dept
       std::min(1.0, std::abs(std::log2(std::max(w.depth_mm, 1e-3) / typical_depth)) / 2.0);
   value(e, Evidence::kWidthUnlike) = std::min(1.0, std::abs(std::log2(width_mm(*c) / typical_width)) / 2.0);
   const std::array<double, 3> openings = sorted(w.opening_angles_rad);
+  const std::array<double, 3> slopes = sorted(w.edge_slopes_rad);
   std::vector<double> unlike;
   double nearest = 1e9;
   for (const WedgeCandidate* other : good) {
@@ -99,9 +89,10 @@ void compare(const std::vector<const WedgeCandidate*>& good, double typical_dept
       continue;
     }
     const std::array<double, 3> theirs = sorted(other->wedge.opening_angles_rad);
+    const std::array<double, 3> their_slopes = sorted(other->wedge.edge_slopes_rad);
     double off = 0;
     for (std::size_t k = 0; k < 3; ++k) {
-      off += std::abs(openings[k] - theirs[k]);
+      off += 0.7 * std::abs(openings[k] - theirs[k]) + std::abs(slopes[k] - their_slopes[k]);
     }
     const double size = std::abs(std::log2(width_mm(*c) / width_mm(*other)));
     unlike.push_back(off / 3.0 / rad_from_deg(40) + 0.5 * size);
@@ -110,7 +101,6 @@ void compare(const std::vector<const WedgeCandidate*>& good, double typical_dept
   const std::size_t few = std::min<std::size_t>(5, unlike.size() - 1);
   std::ranges::nth_element(unlike, unlike.begin() + static_cast<std::ptrdiff_t>(few));
   value(e, Evidence::kLonely) = std::min(1.0, unlike[few]);
-  value(e, Evidence::kShapeUnlike) = std::min(1.0, median(unlike));
   value(e, Evidence::kFar) = std::clamp(nearest / typical_width / 6.0, 0.0, 1.0);
 }
 

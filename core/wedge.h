@@ -25,13 +25,17 @@ enum class DirectionalBy {
   kFlattest,  ///< they differ; the flattest one leads by more
 };
 
-/// Standard deviations of what was measured, from reliability and the scatter of the vertices.
+/// Standard deviations of what was measured, from reliability, the scatter of the vertices and how well the
+/// free surface is known.
 struct WedgeSigma {
-  double depth_point_mm = 0;
+  double depth_point_mm = 0;  ///< of the point, all three axes together
   double depth_mm = 0;
-  std::array<double, 3> edge_rad{};
+  std::array<double, 3> edge_rad{};  ///< of the direction, and so of the slope, of each inner edge
   std::array<double, 3> opening_rad{};
+  std::array<double, 3> face_angle_rad{};
+  std::array<double, 3> face_slope_rad{};
   std::array<double, 3> length_mm{};
+  double volume_mm3 = 0;
 };
 
 /// Where a wedge stands in the text.

@@ -66,6 +66,9 @@ OrderedJson sigma_json(const WedgeSigma& sigma) {
   json["edge_lengths"] = sigma.length_mm;
   json["edges_deg"] = degrees_json(sigma.edge_rad);
   json["opening_angles_deg"] = degrees_json(sigma.opening_rad);
+  json["face_angles_deg"] = degrees_json(sigma.face_angle_rad);
+  json["face_slopes_deg"] = degrees_json(sigma.face_slope_rad);
+  json["volume_mm3"] = sigma.volume_mm3;
   return json;
 }
 
@@ -76,6 +79,15 @@ WedgeSigma sigma_from(const JsonNode& node, double mm) {
   sigma.length_mm = lengths_from(node.at("edge_lengths"), mm);
   sigma.edge_rad = radians_from(node.at("edges_deg"));
   sigma.opening_rad = radians_from(node.at("opening_angles_deg"));
+  if (const auto angles = node.find("face_angles_deg")) {
+    sigma.face_angle_rad = radians_from(*angles);
+  }
+  if (const auto slopes = node.find("face_slopes_deg")) {
+    sigma.face_slope_rad = radians_from(*slopes);
+  }
+  if (const auto volume = node.find("volume_mm3")) {
+    sigma.volume_mm3 = mm * mm * mm * volume->number(0);
+  }
   return sigma;
 }
 

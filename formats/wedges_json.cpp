@@ -2,6 +2,10 @@
 // Copyright The Dubsar developers
 #include "formats/wedges_json.h"
 
+#include <algorithm>
+#include <array>
+#include <limits>
+
 #include "formats/atomic_file.h"
 #include "formats/json_node.h"
 #include "formats/json_text.h"
@@ -26,6 +30,36 @@ OrderedJson profile_json(const WedgeProfile& profile) {
     json["deciles"][std::string(kWedgeFeatures[f])] = profile.quantiles[f];
   }
   return json;
+}
+
+/// Nothing of another version, which counted other kinds or features: it follows from the wedges anyway.
+std::optional<WedgeProfile> profile_from(const JsonNode& node) {
+  WedgeProfile profile;
+  std::vector<std::string> words{"tablet"};
+  for (int side = 0; side < kFaceCount; ++side) {
+    words.emplace_back(to_string(static_cast<Face>(side)));
+  }
+  if (const std::size_t of = node.at("of").one_of(words); of > 0) {
+    profile.side = static_cast<Face>(of - 1);
+  }
+  profile.count = static_cast<int>(node.at("count").integer(0, std::numeric_limits<int>::max()));
+  const JsonNode kinds = node.at("kinds");
+  const JsonNode deciles = node.at("deciles");
+  for (std::size_t k = 0; k < kWedgeKinds.size(); ++k) {
+    const auto share = kinds.find(std::string(kWedgeKinds[k]).c_str());
+    if (!share) {
+      return std::nullopt;
+    }
+    profile.kinds[k] = share->number(0, 1 + 1e-9);
+  }
+  for (std::size_t f = 0; f < kWedgeFeatures.size(); ++f) {
+    const auto values = deciles.find(std::string(kWedgeFeatures[f]).c_str());
+    if (!values) {
+      return std::nullopt;
+    }
+    std::ranges::copy(values->numbers(kProfileQuantiles), profile.quantiles[f].begin());
+  }
+  return profile;
 }
 
 }  // namespace
@@ -87,6 +121,13 @@ Result<WedgeFile> parse_wedges(std::string_view text, const std::string& where) 
   }
   for (const JsonNode& node : root.at("wedges").items()) {
     file.wedges.push_back(wedge_from(node, mm));
+  }
+  if (const auto profiles = root.find("profiles")) {
+    for (const JsonNode& node : profiles->items()) {
+      if (const auto profile = profile_from(node)) {
+        file.profiles.push_back(*profile);
+      }
+    }
   }
   if (const auto rejected = root.find("rejected")) {
     for (const JsonNode& node : rejected->items()) {

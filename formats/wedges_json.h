@@ -25,7 +25,7 @@ struct WedgeFile {
   /// Text's frame: x to the reader's right, y up the obverse, z out of it (analysis/text_frame.h).
   std::optional<RigidTransform> text_from_model;
   double text_certainty = 0;
-  /// Of the tablet and of its sides; follow from the wedges, so they are written and not read.
+  /// Of the tablet and of its sides. Lengths are in millimetres whatever the file's unit.
   std::vector<WedgeProfile> profiles;
   std::vector<std::pair<std::string, double>> timings_s;
 };

@@ -2,11 +2,18 @@
 // Copyright The Dubsar developers
 #include "station/collection.h"
 
+#include <fmt/format.h>
+#include <sys/stat.h>
+
 #include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <map>
 #include <system_error>
 
-#include "analysis/feature_search.h"
 #include "analysis/wedge_features.h"
+#include "core/parallel.h"
+#include "formats/atomic_file.h"
 
 namespace dubsar {
 
@@ -15,20 +22,30 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kFewestWedges = 5;
-/// The wedge that is searched by may be in the collection more than once.
+/// The wedge that is searched by may be in the collection more than once, and so may the tablet.
 constexpr std::size_t kCopies = 16;
 
-bool same_place(const Wedge& a, const Wedge& b) {
-  return a.depth_point_mm == b.depth_point_mm && a.exit_points_mm == b.exit_points_mm;
+std::int64_t nanoseconds(const timespec& t) {
+  return std::int64_t{t.tv_sec} * 1'000'000'000 + t.tv_nsec;
 }
 
-bool same_wedges(const std::vector<Wedge>& a, const std::vector<Wedge>& b) {
-  return std::ranges::equal(a, b, same_place);
+/// All zero for one that is gone or may still be changing.
+FileStamp stamp_of(const fs::path& path, std::chrono::milliseconds settled) {
+  struct stat status {};
+  if (::stat(path.c_str(), &status) != 0) {
+    return {};
+  }
+  const std::int64_t changed = nanoseconds(status.st_ctim);
+  const auto latest = std::chrono::system_clock::now() - settled;
+  if (changed > std::chrono::duration_cast<std::chrono::nanoseconds>(latest.time_since_epoch()).count()) {
+    return {};
+  }
+  return {static_cast<std::uint64_t>(status.st_size), status.st_dev, status.st_ino,
+          nanoseconds(status.st_mtim), changed};
 }
 
-}  // namespace
-
-Result<Collection> read_collection(const fs::path& folder) {
+/// Every .json file at or below the folder, in name order.
+Result<std::vector<fs::path>> json_files(const fs::path& folder) {
   std::error_code error;
   std::vector<fs::path> paths;
   for (fs::recursive_directory_iterator it(folder, fs::directory_options::skip_permission_denied, error), end;
@@ -43,65 +60,179 @@ Result<Collection> read_collection(const fs::path& folder) {
     return bad_input(folder.string(), "cannot read the folder: " + error.message(), "check the name");
   }
   std::ranges::sort(paths);
+  return paths;
+}
+
+/// The file's own, unless wedges were put in or taken out since.
+WedgeProfile profile_of(const WedgeFile& file) {
+  const auto own = std::ranges::find_if(file.profiles, [](const WedgeProfile& p) { return !p.side; });
+  return own != file.profiles.end() && own->count == static_cast<int>(file.wedges.size())
+             ? *own
+             : make_profiles(file.wedges).front();
+}
+
+/// `name`: of the file below the folder.
+IndexedTablet read_tablet(const fs::path& path, const std::string& name, std::chrono::milliseconds settled) {
+  IndexedTablet tablet;
+  tablet.name = name;
+  tablet.stamp =
+      stamp_of(path, settled);  // before it is read: what changes meanwhile is read again next time
+  const Result<WedgeFile> file = read_wedges(path);
+  if (!file) {
+    Error error = file.error();
+    error.where = name;
+    tablet.complaint = error.line();
+    return tablet;
+  }
+  for (const Wedge& wedge : file->wedges) {
+    tablet.ids.push_back(wedge.id);
+    tablet.digests.push_back(wedge_digest(wedge));
+    const std::vector<float> row = comparable(wedge_features(wedge));
+    tablet.features.insert(tablet.features.end(), row.begin(), row.end());
+  }
+  if (file->wedges.size() >= kFewestWedges) {
+    tablet.profile = comparable(profile_of(*file));
+  }
+  const auto finite = [](float value) { return std::isfinite(value); };
+  if (!std::ranges::all_of(tablet.features, finite) || !std::ranges::all_of(tablet.profile, finite)) {
+    IndexedTablet beyond;
+    beyond.name = name;
+    beyond.stamp = tablet.stamp;
+    beyond.complaint = name + ": measures of its wedges are beyond all bounds";
+    return beyond;
+  }
+  return tablet;
+}
+
+/// As it was kept, or empty; `remark` when it was there and of no use.
+SearchIndex read_index(const fs::path& path, std::string* remark) {
+  SearchIndex fresh;
+  fresh.columns = static_cast<std::uint32_t>(kWedgeFeatures.size());
+  fresh.profile_columns = static_cast<std::uint32_t>(kWedgeFeatures.size() * kProfileQuantiles);
+  std::error_code error;
+  if (!fs::exists(path, error)) {
+    return fresh;
+  }
+  const Result<std::string> bytes = read_whole_file(path);
+  Result<SearchIndex> kept =
+      bytes ? parse_search_index(*bytes, path.string()) : Result<SearchIndex>(std::unexpected(bytes.error()));
+  if (!kept || kept->columns != fresh.columns || kept->profile_columns != fresh.profile_columns) {
+    *remark = fmt::format("{}: {}; it is made again", path.string(),
+                          kept ? "the search index of another version" : kept.error().what);
+    return fresh;
+  }
+  return *std::move(kept);
+}
+
+}  // namespace
+
+Result<Collection> Collection::open(const fs::path& folder, std::chrono::milliseconds settled) {
+  const Result<std::vector<fs::path>> paths = json_files(folder);
+  if (!paths) {
+    return std::unexpected(paths.error());
+  }
   Collection collection;
-  for (const fs::path& path : paths) {
-    Result<WedgeFile> file = read_wedges(path);
-    if (file) {
-      collection.tablets.push_back({fs::relative(path, folder, error).string(), *std::move(file)});
+  const fs::path index_path = folder / kSearchIndexName;
+  SearchIndex kept = read_index(index_path, &collection.remark_);
+  std::map<std::string, IndexedTablet*> known;
+  for (IndexedTablet& tablet : kept.tablets) {
+    known[tablet.name] = &tablet;
+  }
+  const std::size_t before = kept.tablets.size();
+  std::vector<IndexedTablet> tablets(paths->size());
+  std::vector<std::size_t> to_read;
+  for (std::size_t i = 0; i < paths->size(); ++i) {
+    const fs::path& path = (*paths)[i];
+    const std::string name = path.lexically_relative(folder).string();
+    const FileStamp stamp = stamp_of(path, settled);
+    if (const auto it = known.find(name);
+        it != known.end() && stamp != FileStamp{} && it->second->stamp == stamp) {
+      tablets[i] = std::move(*it->second);
     } else {
-      collection.skipped.push_back(file.error().line());
+      tablets[i].name = name;
+      to_read.push_back(i);
     }
   }
-  if (collection.tablets.empty()) {
+  parallel_for_each_index(
+      to_read.size(),
+      [&](std::size_t k) {
+        IndexedTablet& tablet = tablets[to_read[k]];
+        tablet = read_tablet((*paths)[to_read[k]], std::string(tablet.name), settled);
+      },
+      1);
+  if (std::ranges::all_of(tablets, [](const IndexedTablet& t) { return !t.complaint.empty(); })) {
     return bad_input(folder.string(), "no analysed tablet in it",
                      "write some with dubsar analyze MESH -o wedges.json");
+  }
+  const bool changed = !to_read.empty() || tablets.size() != before;
+  collection.read_anew_ = to_read.size();
+  collection.index_ = std::move(kept);
+  collection.index_.tablets = std::move(tablets);
+  if (collection.plant(changed)) {
+    const Status written = write_file_atomically(index_path, search_index_to_bytes(collection.index_));
+    if (!written) {
+      collection.remark_ = "the search index is not kept: " + written.error().line();
+    }
   }
   return collection;
 }
 
-std::vector<SimilarWedge> similar_wedges(const Collection& collection, const Wedge& wedge,
-                                         std::size_t count) {
-  struct Row {
-    std::size_t tablet, wedge;
-  };
-  std::vector<Row> rows;
-  std::vector<std::vector<float>> values;
-  for (std::size_t t = 0; t < collection.tablets.size(); ++t) {
-    const std::vector<Wedge>& wedges = collection.tablets[t].file.wedges;
-    for (std::size_t w = 0; w < wedges.size(); ++w) {
-      rows.push_back({t, w});
-      values.push_back(comparable(wedge_features(wedges[w])));
+bool Collection::plant(bool anew) {
+  std::vector<std::vector<float>> wedge_values;
+  std::vector<std::vector<float>> tablet_values;
+  for (std::size_t t = 0; t < index_.tablets.size(); ++t) {
+    const IndexedTablet& tablet = index_.tablets[t];
+    for (std::size_t w = 0; w < tablet.ids.size(); ++w) {
+      const auto from = tablet.features.begin() + static_cast<std::ptrdiff_t>(w * index_.columns);
+      wedge_rows_.push_back({t, w});
+      wedge_values.emplace_back(from, from + index_.columns);
+    }
+    if (!tablet.profile.empty()) {
+      tablet_rows_.push_back(t);
+      tablet_values.push_back(tablet.profile);
     }
   }
-  const FeatureSearch search(values, FeatureDistance::kL2);
+  if (!anew) {
+    wedges_ = FeatureSearch::with_tree(wedge_values, FeatureDistance::kL2, index_.wedge_tree);
+    tablets_ = FeatureSearch::with_tree(tablet_values, FeatureDistance::kL1, index_.tablet_tree);
+  }
+  const bool made = !wedges_ || !tablets_;
+  if (!wedges_) {
+    wedges_.emplace(wedge_values, FeatureDistance::kL2);
+    index_.wedge_tree = wedges_->tree();
+  }
+  if (!tablets_) {
+    tablets_.emplace(tablet_values, FeatureDistance::kL1);
+    index_.tablet_tree = tablets_->tree();
+  }
+  return made;
+}
+
+std::vector<SimilarWedge> Collection::similar_wedges(const Wedge& wedge, std::size_t count) const {
+  const std::uint64_t itself = wedge_digest(wedge);
   std::vector<SimilarWedge> similar;
-  for (const FeatureMatch& match : search.nearest(comparable(wedge_features(wedge)), count + kCopies)) {
-    const Collection::Tablet& tablet = collection.tablets[rows[match.index].tablet];
-    const Wedge& other = tablet.file.wedges[rows[match.index].wedge];
-    if (!same_place(other, wedge) && similar.size() < count) {
-      similar.push_back({tablet.name, other.id, match.distance});
+  for (const FeatureMatch& match : wedges_->nearest(comparable(wedge_features(wedge)), count + kCopies)) {
+    const Row& row = wedge_rows_[match.index];
+    const IndexedTablet& tablet = index_.tablets[row.tablet];
+    if (tablet.digests[row.wedge] != itself && similar.size() < count) {
+      similar.push_back({tablet.name, tablet.ids[row.wedge], match.distance});
     }
   }
   return similar;
 }
 
-std::vector<SimilarTablet> similar_tablets(const Collection& collection, const std::vector<Wedge>& wedges,
-                                           std::size_t count) {
-  std::vector<std::size_t> rows;
-  std::vector<std::vector<float>> values;
-  for (std::size_t t = 0; t < collection.tablets.size(); ++t) {
-    const WedgeProfile profile = make_profiles(collection.tablets[t].file.wedges).front();
-    if (profile.count >= kFewestWedges && !same_wedges(collection.tablets[t].file.wedges, wedges)) {
-      rows.push_back(t);
-      values.push_back(comparable(profile));
-    }
+std::vector<SimilarTablet> Collection::similar_tablets(const WedgeFile& tablet, std::size_t count) const {
+  std::vector<std::uint64_t> itself;
+  for (const Wedge& wedge : tablet.wedges) {
+    itself.push_back(wedge_digest(wedge));
   }
-  const FeatureSearch search(values, FeatureDistance::kL1);
   std::vector<SimilarTablet> similar;
-  for (const FeatureMatch& match : search.nearest(comparable(make_profiles(wedges).front()), count)) {
-    const Collection::Tablet& tablet = collection.tablets[rows[match.index]];
-    similar.push_back({tablet.name, static_cast<int>(tablet.file.wedges.size()),
-                       match.distance / static_cast<double>(kWedgeFeatures.size())});
+  for (const FeatureMatch& match : tablets_->nearest(comparable(profile_of(tablet)), count + kCopies)) {
+    const IndexedTablet& other = index_.tablets[tablet_rows_[match.index]];
+    if (other.digests != itself && similar.size() < count) {
+      similar.push_back({other.name, static_cast<int>(other.ids.size()),
+                         match.distance / static_cast<double>(kWedgeFeatures.size())});
+    }
   }
   return similar;
 }

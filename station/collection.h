@@ -2,28 +2,19 @@
 // Copyright The Dubsar developers
 #pragma once
 
+#include <chrono>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "analysis/feature_search.h"
 #include "core/result.h"
+#include "core/wedge.h"
+#include "formats/search_index.h"
 #include "formats/wedges_json.h"
 
 namespace dubsar {
-
-/// The analysed tablets under a folder.
-struct Collection {
-  struct Tablet {
-    std::string name;  ///< path below the folder
-    WedgeFile file;
-  };
-  std::vector<Tablet> tablets;       ///< in name order
-  std::vector<std::string> skipped;  ///< JSON files that are no wedges.json, with the reason
-};
-
-/// Reads every .json file at or below the folder, but truth.json. Errors: kBadInput when there is no such
-/// folder or nothing analysed in it.
-[[nodiscard]] Result<Collection> read_collection(const std::filesystem::path& folder);
 
 struct SimilarWedge {
   std::string tablet;
@@ -36,12 +27,42 @@ struct SimilarTablet {
   double distance = 0;  ///< mean shift between the feature distributions, in scatters of one hand
 };
 
-/// The wedges most like this one; the wedge itself, where it is in the collection, is left out.
-[[nodiscard]] std::vector<SimilarWedge> similar_wedges(const Collection& collection, const Wedge& wedge,
-                                                       std::size_t count);
-/// The tablets whose wedges are distributed most alike; one with just the same wedges is left out, tablets
-/// with fewer than five wedges too.
-[[nodiscard]] std::vector<SimilarTablet> similar_tablets(const Collection& collection,
-                                                         const std::vector<Wedge>& wedges, std::size_t count);
+/// The analysed tablets under a folder, ready to be searched. What is known of them is kept in the folder
+/// (formats/search_index.h): only what has changed since is read again.
+class Collection {
+ public:
+  /// Takes in every .json file at or below the folder, but truth.json, and keeps the index; an index that is
+  /// damaged, foreign or cannot be written costs time alone and is told in `remark`. Errors: kBadInput when
+  /// there is no such folder or nothing analysed in it.
+  /// A file that changed less than `settled` before it is read may change once more without its times
+  /// telling, for some file systems count whole seconds: it is read again next time.
+  [[nodiscard]] static Result<Collection> open(const std::filesystem::path& folder,
+                                               std::chrono::milliseconds settled = std::chrono::seconds(2));
+
+  [[nodiscard]] const std::vector<IndexedTablet>& files() const { return index_.tablets; }
+  [[nodiscard]] std::size_t read_anew() const { return read_anew_; }
+  [[nodiscard]] const std::string& remark() const { return remark_; }  ///< empty when there is none
+
+  /// The wedges most like this one; the wedge itself, where it is in the collection, is left out.
+  [[nodiscard]] std::vector<SimilarWedge> similar_wedges(const Wedge& wedge, std::size_t count) const;
+  /// The tablets whose wedges are distributed most alike; one with just the same wedges is left out, tablets
+  /// with fewer than five wedges too.
+  [[nodiscard]] std::vector<SimilarTablet> similar_tablets(const WedgeFile& tablet, std::size_t count) const;
+
+ private:
+  struct Row {
+    std::size_t tablet, wedge;
+  };
+  Collection() = default;
+  /// Rows and trees, the kept ones where that will do; whether any was made.
+  bool plant(bool anew);
+
+  SearchIndex index_;
+  std::vector<Row> wedge_rows_;
+  std::vector<std::size_t> tablet_rows_;
+  std::optional<FeatureSearch> wedges_, tablets_;
+  std::size_t read_anew_ = 0;
+  std::string remark_;
+};
 
 }  // namespace dubsar

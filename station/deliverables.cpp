@@ -8,20 +8,13 @@
 #include "formats/mesh_io.h"
 #include "formats/poses_json.h"
 #include "formats/red_map_json.h"
+#include "station/picture_file.h"
 
 namespace dubsar {
 
 namespace {
 
 namespace fs = std::filesystem;
-
-Status write_picture(const fs::path& file, const Image& image, const std::string& title) {
-  const auto png = encode_png(image, title);
-  if (!png) {
-    return std::unexpected(png.error());
-  }
-  return write_file_atomically(file, std::as_bytes(std::span(*png)));
-}
 
 }  // namespace
 

@@ -42,7 +42,11 @@ Status Engine::Impl::settle(EngineResult& result, JobContext& job) {
   }
   result.red_map = std::move(*red_map);
   emit(RedMapChanged{result.red_map, std::nullopt});
-  return planning.stitch(job);
+  if (const Status stitched = planning.stitch(job); !stitched) {
+    return stitched;
+  }
+  show_model(job);
+  return {};
 }
 
 /// Runs the pipeline from `step` until the device has no more, or until the online red map says that nothing
@@ -73,7 +77,11 @@ Result<bool> Engine::Impl::run_round(NextStep step, EngineResult& result, JobCon
   if (const Status settled = settle(result, job); !settled) {
     return std::unexpected(settled.error());
   }
-  const bool goes_on = drives && !device_error && stored_count < options.max_scans &&
+  const bool enough = [&] {
+    const std::scoped_lock lock(mutex);
+    return finish_asked;
+  }();
+  const bool goes_on = !enough && drives && !device_error && stored_count < options.max_scans &&
                        !result.red_map.conclusive && !result.red_map.next.empty() &&
                        result.red_map.next.front().placement;
   return goes_on;

@@ -31,6 +31,13 @@ struct EngineOptions {
   std::optional<RigLimits> limits = {};         ///< narrower than the device's own, from a file
   std::string limits_file = {};                 ///< for what is said about them
   std::optional<Eigen::Vector3d> size_mm = {};  ///< of the tablet, where the operator gave it
+  /// Somebody stands beside it: each turn by hand, and what follows a scan that was not taken up, waits for a
+  /// ScanNow (event WaitsForOperator). A device without an end that cannot be placed then gives scan after
+  /// scan, one for each ScanNow, until Finish.
+  bool paced = false;
+  bool first_scan_waits = false;                     ///< of a paced run: so does its first scan
+  bool show_model = false;                           ///< send ModelChanged whenever the mesh has grown
+  std::vector<OperatorCommand> first_commands = {};  ///< as if posted before the first scan
 };
 
 /// What a run of the engine leaves behind.

@@ -11,6 +11,11 @@ bool Engine::post(OperatorCommand command) {
   if (!impl_->takes_commands) {
     return false;
   }
+  if (std::holds_alternative<ScanNow>(command) || std::holds_alternative<Finish>(command)) {
+    (std::holds_alternative<ScanNow>(command) ? impl_->scan_asked : impl_->finish_asked) = true;
+    impl_->pace.notify_all();
+    return true;
+  }
   impl_->commands.push_back(std::move(command));
   if (impl_->queues) {
     // A full queue wakes the registering thread by itself.
@@ -96,7 +101,11 @@ Result<std::optional<StationScan>> Engine::Impl::obey(const OperatorCommand& com
     }
     return done(status, lock->id, "is locked");
   }
-  const int id = std::get<UnlockScan>(command).id;
+  const auto* unlock = std::get_if<UnlockScan>(&command);
+  if (unlock == nullptr) {
+    return fail(ErrorKind::kInternal, "a command of pace came among those to the registrar");
+  }
+  const int id = unlock->id;
   if (word.locked.erase(id) == 0) {
     return fail(ErrorKind::kUsage, "scan " + std::to_string(id) + " is not locked");
   }
@@ -115,6 +124,11 @@ void Engine::Impl::obey_commands(JobContext& job) {
       command = std::move(commands.front());
       commands.pop_front();
     }
+    if (const auto* describe = std::get_if<DescribeTablet>(&command)) {
+      const Status kept = keep_tablet_record(*store, describe->record);
+      emit(Notice{kept ? "what is said of the tablet is kept" : kept.error().line()});
+      continue;
+    }
     std::string what;
     Result<std::optional<StationScan>> obeyed = obey(command, what, job);
     if (!obeyed) {
@@ -125,6 +139,10 @@ void Engine::Impl::obey_commands(JobContext& job) {
     const Status saved = store->save_poses(poses);
     if (!saved && queues) {
       give_up(saved.error());  // after the rounds, settling saves them once more and says so
+    }
+    {
+      const std::scoped_lock lock(mutex);
+      last_scan_taken_up = poses.empty() || poses.back().status == PoseStatus::kRegistered;
     }
     emit(OperatorObeyed{what, poses});
     if (queues) {

@@ -7,6 +7,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <chrono>
+#include <condition_variable>
 #include <ctime>
 #include <deque>
 #include <limits>
@@ -103,6 +104,7 @@ class StageClock {
 /// The state of a run. What a stage thread alone touches is marked; the rest stands still while the threads
 /// run, or is under the mutex. engine_open.cpp opens device and session, engine_stages.cpp has the four
 /// threads, engine_motion.cpp what moves, engine_misses.cpp what is done about scans that are not taken up,
+/// engine_pace.cpp what waits for the operator,
 /// engine_commands.cpp what the operator asks for meanwhile, engine_results.cpp what is made at the end,
 /// engine.cpp the order of it all.
 struct Engine::Impl {
@@ -138,6 +140,8 @@ struct Engine::Impl {
   std::optional<Placement> present;  ///< where the device was last driven to; an arm is anywhere at first
   StageScene scene;                  ///< as the last step saw it
   int empty_scans = 0;               ///< in a row
+  bool asked_once = false;           ///< the first scan of a paced run is asked for by running it
+  bool at_start = false;             ///< a paced run stands where its first scan is taken from
   // Of the planning thread, round after round:
   int misses = 0;      ///< scans in a row that were not taken up
   bool again = false;  ///< the scan that comes is of the same view as the one before
@@ -151,6 +155,11 @@ struct Engine::Impl {
   int stored_count = 0;
   std::deque<OperatorCommand> commands;
   bool takes_commands = false;
+  bool scan_asked = false;               ///< of a paced run: ScanNow since the last scan
+  bool finish_asked = false;             ///< of a paced run: Finish
+  bool last_scan_taken_up = true;        ///< as registration has judged it
+  std::optional<NextStep> changed_step;  ///< what the operator's commands made of the step that waits
+  std::condition_variable pace;
 
   void emit(const Event& event) const {
     if (sink) {
@@ -178,6 +187,11 @@ struct Engine::Impl {
   Status open(JobContext& job);
   Status load_resumed(JobContext& job);
   void acquire(NextStep step, JobContext& job);
+  /// Of a paced run: waits until the operator wants the scan; `step` follows what they ask for meanwhile.
+  /// False when they want no more. engine_pace.cpp
+  bool wait_for_operator(NextStep& step, const JobContext& job);
+  [[nodiscard]] bool must_wait(const NextStep& step) const;  ///< under the mutex
+  void show_model(JobContext& job);
   // engine_motion.cpp
   Status limit_rig();  ///< by the file, the pins and what is left then
   /// To where the first scan of this run is taken from.

@@ -103,6 +103,10 @@ Status Engine::Impl::open(JobContext& job) {
     return loaded;
   }
   wait_for_plan = drives && !resumed.empty();
+  {
+    const std::scoped_lock lock(mutex);
+    commands.insert(commands.end(), options.first_commands.begin(), options.first_commands.end());
+  }
   return {};
 }
 

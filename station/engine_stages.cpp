@@ -70,7 +70,9 @@ Taken Engine::Impl::take_scan(const std::optional<Placement>& drive, JobContext&
 void Engine::Impl::acquire(NextStep step, JobContext& job) {
   // A device without an end, and nobody to ask for the next placement, gives one scan.
   const bool endless = !source->capabilities().finite && !drives;
-  const int limit = options.max_scans > 0 ? options.max_scans : endless ? stored_count + 1 : 0;
+  const int limit = options.max_scans > 0       ? options.max_scans
+                    : endless && !options.paced ? stored_count + 1
+                                                : 0;
   // A session that goes on begins with a scan of how the tablet lies now, unless it is conclusive already.
   if (wait_for_plan) {
     const std::optional<NextStep> planned = queues->to_device.pop();
@@ -79,13 +81,19 @@ void Engine::Impl::acquire(NextStep step, JobContext& job) {
       return;
     }
   }
-  if (drives && !step && !move_to_start(job)) {
+  if (drives && !step && !options.paced && !move_to_start(job)) {
     queues->to_store.close();
     return;
   }
   for (int taken = stored_count; limit == 0 || taken < limit;) {
     if (job.cancelled()) {
       give_up(stopped());
+      break;
+    }
+    if (!wait_for_operator(step, job)) {
+      break;
+    }
+    if (drives && !step && options.paced && !std::exchange(at_start, true) && !move_to_start(job)) {
       break;
     }
     if (step && !step->again) {
@@ -193,7 +201,11 @@ void Engine::Impl::register_all(JobContext& job) {
         give_up(saved.error());
       }
     }
-    emit(ScanPlaced{pose, poses});
+    {
+      const std::scoped_lock lock(mutex);
+      last_scan_taken_up = pose.status == PoseStatus::kRegistered;
+    }
+    emit(ScanPlaced{pose, poses, scan.grid, scan.flags});
     queues->to_plan.push({std::move(scan), std::move(poses), plan_now, true, is_resumed});
   };
   for (std::size_t k = 0; k < resumed.size() && !job.cancelled(); ++k) {
@@ -252,13 +264,23 @@ void Engine::Impl::plan_all(JobContext& job) {
     }
     if (drives && item->device_waits) {
       const bool fresh = item->scan && !item->resumed;
-      queues->to_device.push(fresh ? step_after(item->scan->id, item->poses, *red_map) : step_to(*red_map));
+      NextStep step = fresh ? step_after(item->scan->id, item->poses, *red_map) : step_to(*red_map);
+      {
+        const std::scoped_lock lock(mutex);
+        changed_step.reset();
+      }
+      queues->to_device.push(std::move(step));
+    } else if (drives && options.paced) {
+      const std::scoped_lock lock(mutex);
+      changed_step = step_to(*red_map);
+      pace.notify_all();
     }
     emit(RedMapChanged{std::move(*red_map), planning.last_gain()});
     // Last: the red map waits for no mesh, and the next scan is under way meanwhile.
     if (const Status stitched = planning.stitch(job); !stitched) {
       give_up(stitched.error());
     }
+    show_model(job);
   }
   queues->to_device.close();
 }

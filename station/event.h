@@ -4,11 +4,14 @@
 
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <variant>
 #include <vector>
 
+#include "archive/render_scene.h"
+#include "core/mesh.h"
 #include "core/range_grid.h"
 #include "core/red_map.h"
 #include "core/sample_flags.h"
@@ -34,6 +37,8 @@ struct ScanStored {
 struct ScanPlaced {
   ScanPose pose;
   std::vector<ScanPose> all;
+  std::shared_ptr<const RangeGrid> grid;     ///< the tablet alone
+  std::shared_ptr<const SampleFlags> flags;  ///< of its samples, as the scan alone gives them
 };
 /// What the operator asked for is done and stored; the poses are those that follow from it.
 struct OperatorObeyed {
@@ -48,13 +53,24 @@ struct RedMapChanged {
 struct NextPlacement {
   NextView view;
 };
+/// A paced run goes on with ScanNow; `next` is empty where nothing has been proposed.
+struct WaitsForOperator {
+  std::optional<NextView> next;
+  bool not_taken_up = false;  ///< the last scan is unsure or failed: a hint may settle it
+};
+/// The mesh of what is placed, and what is red on it. Only with EngineOptions::show_model.
+struct ModelChanged {
+  std::shared_ptr<const Mesh> mesh;
+  std::shared_ptr<const ColouredPoints> red;
+  RigidTransform tablet_from_model;
+};
 /// Something that the operator should know and that stops nothing.
 struct Notice {
   std::string text;
 };
 
 using Event = std::variant<ProfileArrived, ScanStored, ScanPlaced, OperatorObeyed, RedMapChanged,
-                           NextPlacement, Notice>;
+                           NextPlacement, WaitsForOperator, ModelChanged, Notice>;
 
 /// Called on the engine's threads, one call at a time per stage: be quick, take snapshots, and never call
 /// back into the engine.

@@ -6,6 +6,7 @@
 #include <variant>
 
 #include "station/operator_hint.h"
+#include "station/tablet_record.h"
 
 namespace dubsar {
 
@@ -32,6 +33,16 @@ struct UnlockScan {
   int id = 0;
 };
 
-using OperatorCommand = std::variant<DropScan, RestoreScan, HintScan, WithdrawHint, LockScan, UnlockScan>;
+/// Says what tablet it is.
+struct DescribeTablet {
+  TabletRecord record;
+};
+/// Of a paced run: the tablet lies as it was asked for; scan it.
+struct ScanNow {};
+/// Of a paced run: take no more scans, and bring what there is to its end.
+struct Finish {};
+
+using OperatorCommand = std::variant<DropScan, RestoreScan, HintScan, WithdrawHint, LockScan, UnlockScan,
+                                     DescribeTablet, ScanNow, Finish>;
 
 }  // namespace dubsar

@@ -17,6 +17,7 @@
 #include "formats/red_map_json.h"
 #include "formats/sha256.h"
 #include "planning/checklist.h"
+#include "station/tablet_record.h"
 
 namespace dubsar {
 
@@ -192,6 +193,9 @@ PageFacts page_facts_of(const SessionStore& store) {
   facts.title = store.folder().lexically_normal().filename().string();
   if (facts.title.empty()) {  // a trailing slash
     facts.title = store.folder().lexically_normal().parent_path().filename().string();
+  }
+  if (const TabletRecord tablet = tablet_record_of(store); !tablet.museum_number.empty()) {
+    facts.title = tablet.museum_number;
   }
   const auto text = store.load_document(kRun);
   const Result<JsonDocument> document =

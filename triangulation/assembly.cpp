@@ -9,6 +9,7 @@
 #include <set>
 #include <span>
 
+#include "core/parallel.h"
 #include "triangulation/front.h"
 #include "triangulation/manifold.h"
 #include "triangulation/self_intersections.h"
@@ -29,6 +30,12 @@ struct Draft {
   std::vector<float> sigma_mm;
   std::vector<std::uint8_t> scans;
   std::vector<std::uint8_t> flags;
+  struct Origin {
+    std::uint32_t scan = 0;  ///< 1 for the first; 0: none, or at the rim of its patch
+    std::int32_t row = 0;
+    std::int32_t col = 0;
+  };
+  std::vector<Origin> origins;  ///< [kept samples]
 
   void reserve(std::size_t vertices) {
     sheet.positions.reserve(vertices);
@@ -39,10 +46,11 @@ struct Draft {
     sigma_mm.reserve(vertices);
     scans.reserve(vertices);
     flags.reserve(vertices);
+    origins.reserve(vertices);
   }
 };
 
-void add_patch(const OwnedScan& scan, Draft& draft) {
+void add_patch(const OwnedScan& scan, std::uint32_t number, Draft& draft) {
   const StitchSurface& s = *scan.surface;
   const GridSurface g = s.surface();
   std::vector<std::uint32_t> vertex_of(scan.kept.size(), 0);
@@ -51,13 +59,16 @@ void add_patch(const OwnedScan& scan, Draft& draft) {
       continue;
     }
     vertex_of[i] = static_cast<std::uint32_t>(draft.sheet.positions.size());
-    draft.sheet.positions.push_back(scan.fused->points[i]);
+    const std::size_t at = scan.fused->slot[i];
+    draft.sheet.positions.push_back(scan.fused->points[at]);
     draft.sheet.normals.push_back(s.normals[i]);
     draft.sheet.spacing_mm.push_back(static_cast<float>(s.spacing_mm));
-    draft.reliability.push_back(scan.fused->reliability[i]);
-    draft.sigma_mm.push_back(scan.fused->sigma_mm[i]);
-    draft.scans.push_back(scan.fused->scans[i]);
-    draft.flags.push_back(scan.fused->sparse[i] != 0 ? kVertexSparse : 0);
+    draft.reliability.push_back(scan.fused->reliability[at]);
+    draft.sigma_mm.push_back(scan.fused->sigma_mm[at]);
+    draft.scans.push_back(scan.fused->scans[at]);
+    draft.flags.push_back(scan.fused->sparse[at] != 0 ? kVertexSparse : 0);
+    const bool within = scan.near_kept[i] == kAllAroundKept;
+    draft.origins.push_back({within ? number : 0, s.scan.grid->row_of(i), s.scan.grid->col_of(i)});
   }
   for (int row = 0; row + 1 < g.rows; ++row) {
     for (int col = 0; col + 1 < g.cols; ++col) {
@@ -191,10 +202,9 @@ std::size_t clear_around(Sheet& sheet, const std::vector<std::vector<std::uint32
 }
 
 /// Returns the vertices of faces that were added: no others can have come to hold two fans.
-std::vector<std::uint8_t> close_everything(Draft& draft, const AssemblyOptions& options) {
-  constexpr int kTries = 3;
+std::vector<std::uint8_t> close_everything(Draft& draft, const AssemblyOptions& options, int tries) {
   std::vector<std::uint8_t> touched(draft.sheet.positions.size(), 0);
-  for (int attempt = 0; attempt < kTries; ++attempt) {
+  for (int attempt = 0; attempt < tries; ++attempt) {
     open_pinches(draft.sheet.faces, draft.sheet.positions.size(), touched);
     const std::size_t first_added = draft.sheet.faces.size();
     Front front(draft.sheet);
@@ -212,7 +222,7 @@ std::vector<std::uint8_t> close_everything(Draft& draft, const AssemblyOptions& 
     for (std::size_t f = first_added; f < draft.sheet.faces.size(); ++f) {
       mark(draft.sheet.faces[f], touched);
     }
-    if (attempt + 1 == kTries) {
+    if (attempt + 1 == tries) {
       break;
     }
     auto openings = front.openings();
@@ -222,6 +232,31 @@ std::vector<std::uint8_t> close_everything(Draft& draft, const AssemblyOptions& 
     }
   }
   return touched;
+}
+
+/// By face, for self_intersections(): the scan whose grid it belongs to, if it lies in one of its cells,
+/// not at the rim of a patch. Such faces all look at the scanner they come from, each at a place of its own:
+/// they cannot cut each other.
+std::vector<std::uint32_t> parts_of_faces(const Draft& draft) {
+  std::vector<std::uint32_t> parts(draft.sheet.faces.size(), 0);
+  parallel_for_each_index(
+      parts.size(),
+      [&](std::size_t i) {
+        const Triangle& f = draft.sheet.faces[i];
+        if (std::max({f[0], f[1], f[2]}) >= draft.origins.size()) {
+          return;
+        }
+        const Draft::Origin& a = draft.origins[f[0]];
+        const Draft::Origin& b = draft.origins[f[1]];
+        const Draft::Origin& c = draft.origins[f[2]];
+        const auto [row_lo, row_hi] = std::minmax({a.row, b.row, c.row});
+        const auto [col_lo, col_hi] = std::minmax({a.col, b.col, c.col});
+        if (a.scan == b.scan && b.scan == c.scan && row_hi - row_lo == 1 && col_hi - col_lo == 1) {
+          parts[i] = a.scan;
+        }
+      },
+      4096);
+  return parts;
 }
 
 /// self_intersections() of the faces around the marked vertices.
@@ -270,8 +305,9 @@ void repair_self_intersections(Draft& draft, const AssemblyOptions& options,
   constexpr int kTries = 3;
   std::vector<std::uint8_t> bad;
   for (int attempt = 0;; ++attempt) {
-    const auto pairs = attempt == 0 ? self_intersections(draft.sheet.positions, draft.sheet.faces)
-                                    : intersections_near(draft.sheet, bad);
+    const auto pairs =
+        attempt == 0 ? self_intersections(draft.sheet.positions, draft.sheet.faces, parts_of_faces(draft))
+                     : intersections_near(draft.sheet, bad);
     bad.assign(draft.sheet.positions.size(), 0);
     if (pairs.empty()) {
       return;
@@ -295,7 +331,7 @@ void repair_self_intersections(Draft& draft, const AssemblyOptions& options,
     if (last) {
       return;
     }
-    const std::vector<std::uint8_t> touched = close_everything(draft, options);
+    const std::vector<std::uint8_t> touched = close_everything(draft, options, 3);
     suspects.resize(touched.size(), 0);
     for (std::size_t v = 0; v < touched.size(); ++v) {
       suspects[v] |= touched[v];
@@ -332,7 +368,8 @@ void remove_pieces(Mesh& mesh, std::size_t least_faces) {
 
 }  // namespace
 
-Mesh assemble(const std::vector<OwnedScan>& scans, const AssemblyOptions& options) {
+Mesh assemble(const std::vector<OwnedScan>& scans, const AssemblyOptions& options, const JobContext& job) {
+  job.progress("join patches", 0.0);
   Draft draft;
   std::size_t vertices = 0;
   for (const OwnedScan& scan : scans) {
@@ -340,8 +377,9 @@ Mesh assemble(const std::vector<OwnedScan>& scans, const AssemblyOptions& option
         std::count_if(scan.kept.begin(), scan.kept.end(), [](std::uint8_t k) { return k != 0; }));
   }
   draft.reserve(vertices);
+  std::uint32_t number = 0;
   for (const OwnedScan& scan : scans) {
-    add_patch(scan, draft);
+    add_patch(scan, ++number, draft);
   }
   AssemblyOptions closing = options;
   closing.gap.seen = [&scans](const Vector3f& p_mm, float radius_mm) {
@@ -351,9 +389,12 @@ Mesh assemble(const std::vector<OwnedScan>& scans, const AssemblyOptions& option
       return s.lookup->nearest(p, radius_mm) >= 0;
     });
   };
-  std::vector<std::uint8_t> suspects = close_everything(draft, closing);
+  job.progress("close seams", 0.0);
+  std::vector<std::uint8_t> suspects = close_everything(draft, closing, 3);
+  job.progress("repair intersections", 0.0);
   repair_self_intersections(draft, closing, suspects);
 
+  job.progress("finish mesh", 0.0);
   Mesh mesh;
   mesh.faces = std::move(draft.sheet.faces);
   mesh.positions = std::move(draft.sheet.positions);

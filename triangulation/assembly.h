@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "core/job.h"
 #include "core/mesh.h"
 #include "triangulation/gap_fill.h"
 #include "triangulation/ownership.h"
@@ -20,6 +21,7 @@ struct AssemblyOptions {
 /// One mesh of the patches that assign_owners() left: vertices are the kept samples at their averaged places,
 /// scan by scan; then seams and gaps are closed, specks removed, and what is left made an oriented
 /// 2-manifold with boundary.
-[[nodiscard]] Mesh assemble(const std::vector<OwnedScan>& scans, const AssemblyOptions& options);
+[[nodiscard]] Mesh assemble(const std::vector<OwnedScan>& scans, const AssemblyOptions& options,
+                            const JobContext& job);
 
 }  // namespace dubsar

@@ -2,6 +2,8 @@
 // Copyright The Dubsar developers
 #include "triangulation/front.h"
 
+#include <tbb/parallel_sort.h>
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -55,8 +57,8 @@ Front::Front(Sheet& sheet) : sheet_(&sheet), link_of_(sheet.positions.size(), kN
   for (const float mu : sheet.spacing_mm) {
     coarsest = std::max(coarsest, mu);
   }
-  // About the radius that seams look around with: a query meets 27 buckets at most.
-  cell_mm_ = coarsest > 0 ? 3.3F * coarsest : 1.0F;
+  // Twice the radius that seams look around with: a query meets 8 buckets, seldom more.
+  cell_mm_ = coarsest > 0 ? 6.6F * coarsest : 1.0F;
   buckets_.resize(1U << 10U);
   const std::vector<std::uint8_t> rim = rim_vertices(sheet.faces, sheet.positions.size());
   const HalfEdges edges(sheet.faces, sheet.positions.size(), rim);
@@ -70,13 +72,25 @@ Front::Front(Sheet& sheet) : sheet_(&sheet), link_of_(sheet.positions.size(), kN
     }
   };
   std::size_t inner = 0;
+  std::vector<Edge> open;
+  std::vector<std::pair<std::uint64_t, std::uint32_t>> places;  // bucket, vertex
   each_rim_edge([&](std::uint32_t a, std::uint32_t b) {
     ++inner;
     if (edges.face(b, a) < 0) {
-      links(a).out.push_back(b);
-      links(b).in.push_back(a);
+      open.push_back({a, b});
+      places.emplace_back(key_of(cell_of(sheet.positions[a])), a);
+      places.emplace_back(key_of(cell_of(sheet.positions[b])), b);
     }
   });
+  // What lies near in space lies near in memory.
+  tbb::parallel_sort(places.begin(), places.end());
+  for (const auto& [key, v] : places) {
+    links(v);
+  }
+  for (const Edge& edge : open) {
+    links(edge.a).out.push_back(edge.b);
+    links(edge.b).in.push_back(edge.a);
+  }
   half_edges_.reserve(2 * inner);
   each_rim_edge([&](std::uint32_t a, std::uint32_t b) { half_edges_.insert(a, b); });
 }
@@ -88,9 +102,13 @@ Front::Cell Front::cell_of(const Eigen::Vector3f& p) const {
   return {cell(p.x()), cell(p.y()), cell(p.z())};
 }
 
-std::size_t Front::slot_of(const Cell& cell, std::uint64_t& key) const {
+std::uint64_t Front::key_of(const Cell& cell) {
   const auto part = [](int c) { return static_cast<std::uint64_t>(c + (1 << 20)) & 0x1fffffU; };
-  key = (part(cell[0]) << 42U) | (part(cell[1]) << 21U) | part(cell[2]);
+  return (part(cell[0]) << 42U) | (part(cell[1]) << 21U) | part(cell[2]);
+}
+
+std::size_t Front::slot_of(const Cell& cell, std::uint64_t& key) const {
+  key = key_of(cell);
   std::uint64_t mixed = key * 0x9e3779b97f4a7c15ULL;
   mixed ^= mixed >> 32U;
   std::size_t slot = mixed & (buckets_.size() - 1);
@@ -124,7 +142,8 @@ Front::Links& Front::links(std::uint32_t v) {
     std::uint64_t key = 0;
     Bucket& bucket = buckets_[slot_of(cell_of(added.position), key)];
     added.next_in_bucket = bucket.first;
-    bucket = {key, link_of_[v]};
+    bucket.key = key;
+    bucket.first = link_of_[v];
   }
   return links_[link_of_[v]];
 }
@@ -135,11 +154,9 @@ const Front::Links* Front::find(std::uint32_t v) const {
 
 std::vector<Front::Edge> Front::open_edges() const {
   std::vector<Edge> out;
-  for (std::uint32_t v = 0; v < link_of_.size(); ++v) {
-    if (const Links* l = find(v)) {
-      for (const std::uint32_t b : l->out) {
-        out.push_back({v, b});
-      }
+  for (const Links& l : links_) {
+    for (const std::uint32_t b : l.out) {
+      out.push_back({l.vertex, b});
     }
   }
   return out;
@@ -172,11 +189,14 @@ bool Front::accepts(const Triangle& f) const {
 
 void Front::add_face(const Triangle& f) {
   sheet_->faces.push_back(f);
+  ++changes_;
   for (std::size_t k = 0; k < 3; ++k) {
     const std::uint32_t a = f[k];
     const std::uint32_t b = f[(k + 1) % 3];
     half_edges_.insert(a, b);
     links(a).free = false;
+    std::uint64_t key = 0;
+    buckets_[slot_of(cell_of(sheet_->positions[a]), key)].changed = changes_;
     if (half_edges_.contains(b, a)) {
       take_out(links(b).out, a);
       take_out(links(a).in, b);
@@ -196,6 +216,22 @@ std::uint32_t Front::add_vertex(const Eigen::Vector3f& position_mm, const Eigen:
   link_of_.push_back(kNone);
   links(v).free = true;
   return v;
+}
+
+std::size_t Front::last_change(const Eigen::AlignedBox3f& box) const {
+  std::size_t last = 0;
+  const Cell low = cell_of(box.min());
+  const Cell high = cell_of(box.max());
+  for (int u = low[0]; u <= high[0]; ++u) {
+    for (int v = low[1]; v <= high[1]; ++v) {
+      for (int w = low[2]; w <= high[2]; ++w) {
+        std::uint64_t key = 0;
+        const Bucket& bucket = buckets_[slot_of({u, v, w}, key)];
+        last = bucket.first != kNone ? std::max(last, bucket.changed) : last;
+      }
+    }
+  }
+  return last;
 }
 
 void Front::near(const Eigen::Vector3f& p_mm, float radius_mm, std::vector<std::uint32_t>& out) const {

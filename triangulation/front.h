@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -79,6 +80,11 @@ class Front {
   /// Vertices of the front in buckets that meet the ball; a superset, in a fixed order.
   void near(const Eigen::Vector3f& p_mm, float radius_mm, std::vector<std::uint32_t>& out) const;
 
+  /// Counts faces that were added.
+  [[nodiscard]] std::size_t changes() const { return changes_; }
+  /// changes() as it was when a face with a vertex in buckets that meet the box was last added; 0: never.
+  [[nodiscard]] std::size_t last_change(const Eigen::AlignedBox3f& box_mm) const;
+
   /// Walks along open edges around each opening, in the direction of the faces beside it. Where several open
   /// edges leave one vertex the walk goes on along the next one across the opening.
   [[nodiscard]] std::vector<std::vector<std::uint32_t>> openings() const;
@@ -97,9 +103,11 @@ class Front {
   struct Bucket {
     std::uint64_t key = ~std::uint64_t{0};
     std::uint32_t first = kNone;  ///< index into links_
+    std::size_t changed = 0;      ///< changes() when a face last took a vertex in here
   };
   using Cell = std::array<int, 3>;
   [[nodiscard]] Cell cell_of(const Eigen::Vector3f& p) const;
+  [[nodiscard]] static std::uint64_t key_of(const Cell& cell);
   [[nodiscard]] std::size_t slot_of(const Cell& cell, std::uint64_t& key) const;
   void grow_buckets();
   Links& links(std::uint32_t v);
@@ -107,6 +115,7 @@ class Front {
 
   Sheet* sheet_;
   float cell_mm_ = 1;
+  std::size_t changes_ = 0;
   std::vector<std::uint32_t> link_of_;  ///< [V] index into links_, or kNone
   std::vector<Links> links_;
   HalfEdgeSet half_edges_;       ///< of faces, between vertices of the front

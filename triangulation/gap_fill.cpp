@@ -119,9 +119,6 @@ bool is_gap(const Sheet& sheet, const std::vector<std::uint32_t>& opening, const
   if (opening.size() > kMostVertices) {
     return false;
   }
-  if (across_mm <= options.most_seen_width_factor * mu && seen_all_over(sheet, opening, mu, options)) {
-    return true;
-  }
   Vector3f area = Vector3f::Zero();
   double length = 0;
   for (std::size_t i = 0; i < opening.size(); ++i) {
@@ -130,7 +127,13 @@ bool is_gap(const Sheet& sheet, const std::vector<std::uint32_t>& opening, const
     area += 0.5F * (a - sheet.positions[opening[0]]).cross(b - sheet.positions[opening[0]]);
     length += (b - a).norm();
   }
-  return 4.0 * area.norm() / length <= options.crack_width_factor * mu;
+  const double width_mm = 4.0 * area.norm() / length;
+  if (width_mm <= options.crack_width_factor * mu) {
+    return true;
+  }
+  return (across_mm <= options.most_seen_width_factor * mu ||
+          width_mm <= options.seen_crack_width_factor * mu) &&
+         seen_all_over(sheet, opening, mu, options);
 }
 
 std::size_t interpolate_vertices(Front& front, const std::vector<std::uint32_t>& opening) {

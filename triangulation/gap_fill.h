@@ -23,6 +23,8 @@ struct GapFillOptions {
   std::function<bool(const Eigen::Vector3f& p_mm, float radius_mm)> seen;
   /// A crack may be longer than that when it is narrower than this, × µ (twice its area over its length).
   double crack_width_factor = 1.0;
+  /// The same for one where clay was seen all over: no scan has enough there for a patch of its own.
+  double seen_crack_width_factor = 8.0;
 };
 
 /// Width of an opening: the largest distance between two of its vertices, mm (for long ones the diagonal of

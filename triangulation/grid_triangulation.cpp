@@ -201,6 +201,24 @@ std::vector<std::uint8_t> triangulate_cells(const GridSurface& surface, std::spa
   return cells;
 }
 
+void triangulate_cells_anew(const GridSurface& surface, std::span<const std::uint8_t> keep, bool mirrored,
+                            const GridTriangulationOptions& options, std::span<const std::uint8_t> only,
+                            std::span<std::uint8_t> cells) {
+  const TriangleTest good = make_test(surface, mirrored, options);
+  parallel_for_each_index(
+      static_cast<std::size_t>(std::max(surface.rows - 1, 0)),
+      [&](std::size_t r) {
+        const int row = static_cast<int>(r);
+        for (int col = 0; col + 1 < surface.cols; ++col) {
+          const std::size_t cell = surface.index(row, col);
+          if (only[cell] != 0) {
+            cells[cell] = cell_code(surface, keep, row, col, good);
+          }
+        }
+      },
+      kRowsPerChunk);
+}
+
 Mesh triangulate_grid(const RangeGrid& grid, const SampleFlags& flags,
                       const GridTriangulationOptions& options) {
   Mesh mesh;

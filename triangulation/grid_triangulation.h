@@ -63,6 +63,11 @@ struct GridSurface {
                                                           std::span<const std::uint8_t> keep, bool mirrored,
                                                           const GridTriangulationOptions& options);
 
+/// The same again for the cells with only[cell] != 0; the others stay as they are.
+void triangulate_cells_anew(const GridSurface& surface, std::span<const std::uint8_t> keep, bool mirrored,
+                            const GridTriangulationOptions& options, std::span<const std::uint8_t> only,
+                            std::span<std::uint8_t> cells);
+
 /// One grid's own mesh in the scanner frame: non-sparse samples (is_unflagged) joined on the grid's plane and
 /// oriented towards the scanner, with the normals of its samples (grid_geometry). `flags` may be empty: then
 /// every valid sample takes part. A grid without a triangle, or without a spacing, gives an empty mesh.

@@ -208,63 +208,110 @@ struct Task {
   }
 };
 
-std::size_t advance(Front& front, const std::vector<Front::Edge>& edges, const Limits& limits) {
-  Chooser chooser(front, limits);
-  std::priority_queue<Task> queue;
-  const auto offer = [&](std::uint32_t a, std::uint32_t b) {
-    const Choice choice = chooser.choose(a, b);
-    if (choice.c != kNone) {
-      queue.push({choice.key, a, b, choice.c});
+/// Serves the queue in batches: what to do about each edge of a batch is found side by side, and done one
+/// after another, but for edges near which the batch itself has changed the front: those wait for the next
+/// one.
+class Advance {
+ public:
+  Advance(Front& front, const Limits& limits) : front_(&front), limits_(limits) {}
+
+  std::size_t run(const std::vector<Front::Edge>& edges) {
+    offered_ = edges;
+    std::size_t added = 0;
+    while (!offered_.empty() || !queue_.empty()) {
+      take_batch();
+      choose();
+      added += apply();
     }
-  };
-  // The first choices depend on nothing but the front as it is.
-  std::vector<Choice> first(edges.size());
-  parallel_chunks(edges.size(), 128, [&](std::size_t begin, std::size_t end) {
-    Chooser mine(front, limits);
-    for (std::size_t i = begin; i < end; ++i) {
-      first[i] = mine.choose(edges[i].a, edges[i].b);
+    return added;
+  }
+
+ private:
+  static constexpr std::size_t kLeastBatch = 16, kMostBatch = 256, kPerBatch = 4096;
+  static constexpr std::size_t kGrain = 32;
+
+  void take_batch() {
+    batch_.clear();
+    // What is new on the front may come before all that waits.
+    for (const Front::Edge& edge : offered_) {
+      batch_.push_back({std::numeric_limits<float>::lowest(), edge.a, edge.b, kNone});
     }
-  });
-  for (std::size_t i = 0; i < edges.size(); ++i) {
-    if (first[i].c != kNone) {
-      queue.push({first[i].key, edges[i].a, edges[i].b, first[i].c});
+    offered_.clear();
+    const std::size_t most = batch_.size() + std::clamp(queue_.size() / kPerBatch, kLeastBatch, kMostBatch);
+    while (!queue_.empty() && batch_.size() < most) {
+      if (front_->is_open(queue_.top().a, queue_.top().b)) {
+        batch_.push_back(queue_.top());
+      }
+      queue_.pop();
     }
   }
-  std::size_t added = 0;
-  while (!queue.empty()) {
-    const Task task = queue.top();
-    queue.pop();
-    if (!front.is_open(task.a, task.b)) {
-      continue;
-    }
-    const Choice now = chooser.choose(task.a, task.b);
-    if (now.c == kNone) {
-      continue;
-    }
-    if (now.c != task.c && now.key > task.key) {
-      queue.push({now.key, task.a, task.b, now.c});
-      continue;
-    }
-    front.add_face({task.b, task.a, now.c});
-    ++added;
-    // The face's other half-edges are a→c and c→b; they are new front where nothing lay beyond.
-    if (front.is_open(task.a, now.c)) {
-      offer(task.a, now.c);
-    }
-    if (front.is_open(now.c, task.b)) {
-      offer(now.c, task.b);
-    }
+
+  void choose() {
+    choices_.resize(batch_.size());
+    parallel_chunks(batch_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+      Chooser chooser(*front_, limits_);
+      for (std::size_t i = begin; i < end; ++i) {
+        choices_[i] = chooser.choose(batch_[i].a, batch_[i].b);
+      }
+    });
   }
-  return added;
-}
+
+  std::size_t apply() {
+    const std::size_t before = front_->changes();
+    for (std::size_t i = 0; i < batch_.size(); ++i) {
+      const Task& task = batch_[i];
+      const Choice& now = choices_[i];
+      if (now.c == kNone) {
+        continue;
+      }
+      if (task.c == kNone || (now.c != task.c && now.key > task.key)) {
+        queue_.push({now.key, task.a, task.b, now.c});
+        continue;
+      }
+      if (front_->last_change(around(task.a, task.b, now.c)) > before) {
+        queue_.push({task.key, task.a, task.b, now.c});
+        continue;
+      }
+      front_->add_face({task.b, task.a, now.c});
+      // The face's other half-edges are a→c and c→b; they are new front where nothing lay beyond.
+      if (front_->is_open(task.a, now.c)) {
+        offered_.push_back({task.a, now.c});
+      }
+      if (front_->is_open(now.c, task.b)) {
+        offered_.push_back({now.c, task.b});
+      }
+    }
+    return front_->changes() - before;
+  }
+
+  /// What a choice depends on lies in here.
+  [[nodiscard]] Eigen::AlignedBox3f around(std::uint32_t a, std::uint32_t b, std::uint32_t c) const {
+    const Sheet& sheet = front_->sheet();
+    Eigen::AlignedBox3f box(sheet.positions[a]);
+    box.extend(sheet.positions[b]);
+    box.extend(sheet.positions[c]);
+    const float margin =
+        1.25F * limits_.most_edge_factor * std::max(sheet.spacing_mm[a], sheet.spacing_mm[b]);
+    box.min().array() -= margin;
+    box.max().array() += margin;
+    return box;
+  }
+
+  Front* front_;
+  Limits limits_;
+  std::priority_queue<Task> queue_;
+  std::vector<Front::Edge> offered_;
+  std::vector<Task> batch_;
+  std::vector<Choice> choices_;
+};
 
 }  // namespace
 
 std::size_t close_seams(Front& front, const SeamOptions& options) {
-  return advance(
-      front, front.open_edges(),
-      {static_cast<float>(options.most_edge_factor), static_cast<float>(std::sin(options.least_angle_rad)),
-       static_cast<float>(options.min_normal_cos)});
+  return Advance(front, {static_cast<float>(options.most_edge_factor),
+                         static_cast<float>(std::sin(options.least_angle_rad)),
+                         static_cast<float>(options.min_normal_cos)})
+      .run(front.open_edges());
 }
 
 std::size_t close_openings(Front& front, const std::vector<std::vector<std::uint32_t>>& openings,
@@ -275,9 +322,10 @@ std::size_t close_openings(Front& front, const std::vector<std::vector<std::uint
       edges.push_back({loop[i], loop[(i + 1) % loop.size()]});
     }
   }
-  return advance(front, edges,
+  return Advance(front,
                  {static_cast<float>(options.most_gap_edge_factor),
-                  static_cast<float>(std::sin(least_angle_rad)), static_cast<float>(options.min_normal_cos)});
+                  static_cast<float>(std::sin(least_angle_rad)), static_cast<float>(options.min_normal_cos)})
+      .run(edges);
 }
 
 }  // namespace dubsar

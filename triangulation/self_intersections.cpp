@@ -2,6 +2,8 @@
 // Copyright The Dubsar developers
 #include "triangulation/self_intersections.h"
 
+#include <tbb/parallel_sort.h>
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
@@ -84,12 +86,18 @@ bool edges_cut(const Face& f, const Corners& c, const Face& other, const Corners
   return false;
 }
 
-bool cut(Positions positions, const Face& fa, const FacePlane& pa, const Face& fb, const FacePlane& pb) {
+bool cut(Positions positions, const Face& fa, const FacePlane& pa, const Face& fb) {
   const int shared = (has(fb, fa[0]) ? 1 : 0) + (has(fb, fa[1]) ? 1 : 0) + (has(fb, fa[2]) ? 1 : 0);
+  if (shared > 1) {
+    return false;
+  }
+  const bool a_cuts = straddles(positions, fa, pa, fb);
+  if (shared == 0 && !a_cuts) {
+    return false;
+  }
   // Of two faces that share a corner either may be the one whose far edge passes through the other.
-  if (shared > 1 || (shared == 0 && !straddles(positions, fa, pa, fb)) ||
-      (shared == 0 && !straddles(positions, fb, pb, fa)) ||
-      (shared == 1 && !straddles(positions, fa, pa, fb) && !straddles(positions, fb, pb, fa))) {
+  const bool b_cuts = straddles(positions, fb, FacePlane(positions, fb), fa);
+  if (shared == 0 ? !b_cuts : !a_cuts && !b_cuts) {
     return false;
   }
   const Corners ca = corners_of(positions, fa);
@@ -98,11 +106,12 @@ bool cut(Positions positions, const Face& fa, const FacePlane& pa, const Face& f
 }
 
 /// Faces by the cell that their middle lies in, at the level whose cells are no smaller than their box: what
-/// a box may touch lies in the cells within half a cell of it.
+/// a box may touch lies in the cells within half a cell of it. Faces of one part are not asked about each
+/// other.
 class FaceCells {
  public:
   FaceCells(const std::vector<Eigen::AlignedBox3f>& boxes, const std::vector<std::uint32_t>& faces,
-            const Vector3f& low, float smallest_mm)
+            std::span<const std::uint32_t> part_of_face, const Vector3f& low, float smallest_mm)
       : low_(low), smallest_mm_(smallest_mm) {
     for (int level = 0; level <= kMostLevel; ++level) {
       cell_mm_[static_cast<std::size_t>(level)] = std::ldexp(smallest_mm, level);
@@ -111,22 +120,32 @@ class FaceCells {
     parallel_for_each_index(
         faces.size(),
         [&](std::size_t k) {
-          const Eigen::AlignedBox3f& box = boxes[faces[k]];
-          const int level = level_of(box);
-          entries_[k] = {key_of(level, cell_of(box.center(), level)), faces[k]};
+          const int level = level_of(boxes[k]);
+          entries_[k] = {key_of(level, cell_of(boxes[k].center(), level)), static_cast<std::uint32_t>(k)};
         },
         4096);
-    std::sort(entries_.begin(), entries_.end());
+    tbb::parallel_sort(entries_.begin(), entries_.end());
     boxes_.reserve(entries_.size());
-    for (const auto& [key, face] : entries_) {
+    for (auto& [key, face] : entries_) {
       boxes_.push_back(boxes[face]);
+      face = faces[face];
+      parts_.push_back(part_of_face.empty() ? 0 : part_of_face[face]);
     }
-    slots_.assign(std::bit_ceil(2 * entries_.size() + 16), kNone);
+    std::size_t cells = 0;
     for (std::size_t k = 0; k < entries_.size(); ++k) {
-      if (k == 0 || entries_[k].first != entries_[k - 1].first) {
-        slots_[slot_of(entries_[k].first)] = static_cast<std::uint32_t>(k);
-        levels_ |= 1ULL << (entries_[k].first >> kLevelShift);
+      cells += k == 0 || entries_[k].first != entries_[k - 1].first ? 1 : 0;
+    }
+    cells_.assign(std::bit_ceil(2 * cells + 16), {});
+    for (std::size_t k = 0; k < entries_.size();) {
+      std::size_t end = k;
+      std::uint32_t part = parts_[k];
+      for (; end < entries_.size() && entries_[end].first == entries_[k].first; ++end) {
+        part = parts_[end] == part ? part : 0;
       }
+      cells_[slot_of(entries_[k].first)] = {entries_[k].first, static_cast<std::uint32_t>(k),
+                                            static_cast<std::uint32_t>(end), part};
+      levels_ |= 1ULL << (entries_[k].first >> kLevelShift);
+      k = end;
     }
   }
 
@@ -142,11 +161,13 @@ class FaceCells {
   /// The faces in the order of their cells.
   [[nodiscard]] std::uint32_t face(std::size_t at) const { return entries_[at].second; }
 
-  /// visit(face) for those whose boxes touch that of face(at), each pair once.
+  /// visit(face) for those of other parts whose boxes touch that of face(at), each pair once.
   template <class Visit>
   void for_each_touching(std::size_t at, const Visit& visit) const {
     const Eigen::AlignedBox3f& box = boxes_[at];
-    const int own_level = static_cast<int>(entries_[at].first >> kLevelShift);
+    const std::uint64_t own_key = entries_[at].first;
+    const std::uint32_t part = parts_[at];
+    const int own_level = static_cast<int>(own_key >> kLevelShift);
     for (int level = own_level; level <= kMostLevel; ++level) {
       if ((levels_ >> static_cast<unsigned>(level) & 1ULL) == 0) {
         continue;
@@ -158,10 +179,16 @@ class FaceCells {
         for (std::int64_t y = from[1]; y <= to[1]; ++y) {
           for (std::int64_t x = from[0]; x <= to[0]; ++x) {
             const std::uint64_t key = key_of(level, {x, y, z});
-            const std::uint32_t first = slots_[slot_of(key)];
-            for (std::size_t k = first; first != kNone && k < entries_.size() && entries_[k].first == key;
+            if (key < own_key) {
+              continue;  // its faces have met this one already
+            }
+            const Cell& cell = cells_[slot_of(key)];
+            if (cell.first == kNone || (part != 0 && cell.part == part)) {
+              continue;
+            }
+            for (std::size_t k = std::max<std::size_t>(cell.first, key == own_key ? at + 1 : 0); k < cell.end;
                  ++k) {
-              if ((level > own_level || k > at) && box.intersects(boxes_[k])) {
+              if ((part == 0 || parts_[k] != part) && box.intersects(boxes_[k])) {
                 visit(entries_[k].second);
               }
             }
@@ -177,18 +204,24 @@ class FaceCells {
   static constexpr unsigned kLevelShift = 3 * kAxisBits;
   static constexpr int kMostLevel = 40;
   static constexpr std::int64_t kMostCell = (std::int64_t{1} << kAxisBits) - 1;
-  using Cell = std::array<std::int64_t, 3>;
+  using Place = std::array<std::int64_t, 3>;
+  struct Cell {
+    std::uint64_t key = 0;
+    std::uint32_t first = kNone;  ///< of its entries
+    std::uint32_t end = 0;
+    std::uint32_t part = 0;  ///< of all of them, or 0
+  };
 
-  [[nodiscard]] Cell cell_of(const Vector3f& p, int level) const {
+  [[nodiscard]] Place cell_of(const Vector3f& p, int level) const {
     const float cell = cell_mm_[static_cast<std::size_t>(level)];
-    Cell out{};
+    Place out{};
     for (int k = 0; k < 3; ++k) {
       const float at = std::clamp((p[k] - low_[k]) / cell, 0.0F, static_cast<float>(kMostCell - 1));
       out[static_cast<std::size_t>(k)] = static_cast<std::int64_t>(at);
     }
     return out;
   }
-  [[nodiscard]] static std::uint64_t key_of(int level, const Cell& cell) {
+  [[nodiscard]] static std::uint64_t key_of(int level, const Place& cell) {
     return static_cast<std::uint64_t>(level) << kLevelShift |
            static_cast<std::uint64_t>(cell[2]) << (2 * kAxisBits) |
            static_cast<std::uint64_t>(cell[1]) << kAxisBits | static_cast<std::uint64_t>(cell[0]);
@@ -196,9 +229,9 @@ class FaceCells {
   [[nodiscard]] std::size_t slot_of(std::uint64_t key) const {
     std::uint64_t mixed = key * 0x9e3779b97f4a7c15ULL;
     mixed ^= mixed >> 32U;
-    std::size_t slot = mixed & (slots_.size() - 1);
-    while (slots_[slot] != kNone && entries_[slots_[slot]].first != key) {
-      slot = (slot + 1) & (slots_.size() - 1);
+    std::size_t slot = mixed & (cells_.size() - 1);
+    while (cells_[slot].first != kNone && cells_[slot].key != key) {
+      slot = (slot + 1) & (cells_.size() - 1);
     }
     return slot;
   }
@@ -208,41 +241,212 @@ class FaceCells {
   std::array<float, kMostLevel + 1> cell_mm_{};
   std::vector<std::pair<std::uint64_t, std::uint32_t>> entries_;
   std::vector<Eigen::AlignedBox3f> boxes_;  ///< by entry
-  std::vector<std::uint32_t> slots_;
+  std::vector<std::uint32_t> parts_;        ///< by entry
+  std::vector<Cell> cells_;                 ///< a power of two
   std::uint64_t levels_ = 0;
 };
 
+/// What part lies in each cell of a coarse raster, by hashing.
+class PartCells {
+ public:
+  static constexpr std::uint32_t kMixed = 0;
+
+  PartCells(const Vector3f& low, float cell_mm) : low_(low), per_mm_(1.0F / cell_mm), slots_(1U << 12U) {}
+
+  [[nodiscard]] std::uint64_t key_of(const Vector3f& p) const {
+    const auto at = [&](int k) {
+      return static_cast<std::uint64_t>(std::clamp((p[k] - low_[k]) * per_mm_ + 1.0F, 1.0F, kMostCell));
+    };
+    return at(2) << (2 * kAxisBits) | at(1) << kAxisBits | at(0);
+  }
+  void add(std::uint64_t key, std::uint32_t part) {
+    if (2 * (count_ + 1) > slots_.size()) {
+      grow();
+    }
+    Slot& slot = slots_[slot_of(key)];
+    if (slot.key == kEmpty) {
+      slot = {key, part};
+      ++count_;
+    } else if (slot.part != part) {
+      slot.part = kMixed;
+    }
+  }
+  /// True when nothing but one part lies in the cell and in those around it.
+  [[nodiscard]] bool is_calm(std::uint64_t key) const {
+    const std::uint32_t part = slots_[slot_of(key)].part;
+    if (part == kMixed) {
+      return false;
+    }
+    for (const std::uint64_t dz : {kMinusOne, kZero, kOne}) {
+      for (const std::uint64_t dy : {kMinusOne, kZero, kOne}) {
+        for (const std::uint64_t dx : {kMinusOne, kZero, kOne}) {
+          const Slot& slot = slots_[slot_of(key + (dz << (2 * kAxisBits)) + (dy << kAxisBits) + dx)];
+          if (slot.key != kEmpty && slot.part != part) {
+            return false;
+          }
+        }
+      }
+    }
+    return true;
+  }
+  /// Cells by slot, for a table of answers.
+  [[nodiscard]] std::size_t slot_count() const { return slots_.size(); }
+  [[nodiscard]] bool is_used(std::size_t slot) const { return slots_[slot].key != kEmpty; }
+  [[nodiscard]] std::uint64_t key_in(std::size_t slot) const { return slots_[slot].key; }
+  [[nodiscard]] std::size_t slot_of(std::uint64_t key) const {
+    std::uint64_t mixed = key * 0x9e3779b97f4a7c15ULL;
+    mixed ^= mixed >> 32U;
+    std::size_t slot = mixed & (slots_.size() - 1);
+    while (slots_[slot].key != kEmpty && slots_[slot].key != key) {
+      slot = (slot + 1) & (slots_.size() - 1);
+    }
+    return slot;
+  }
+
+ private:
+  static constexpr unsigned kAxisBits = 21;
+  static constexpr float kMostCell = 2.0e6F;
+  static constexpr std::uint64_t kEmpty = ~std::uint64_t{0};
+  static constexpr std::uint64_t kMinusOne = ~std::uint64_t{0};
+  static constexpr std::uint64_t kZero = 0;
+  static constexpr std::uint64_t kOne = 1;
+  struct Slot {
+    std::uint64_t key = kEmpty;
+    std::uint32_t part = kMixed;
+  };
+  void grow() {
+    std::vector<Slot> old(2 * slots_.size());
+    old.swap(slots_);
+    for (const Slot& slot : old) {
+      if (slot.key != kEmpty) {
+        slots_[slot_of(slot.key)] = slot;
+      }
+    }
+  }
+
+  Vector3f low_;
+  float per_mm_;
+  std::vector<Slot> slots_;  ///< a power of two
+  std::size_t count_ = 0;
+};
+
+Eigen::AlignedBox3f box_of(Positions positions, const Face& f) {
+  Eigen::AlignedBox3f box(positions[f[0]]);
+  box.extend(positions[f[1]]);
+  box.extend(positions[f[2]]);
+  return box;
+}
+
+bool is_sound(Positions positions, const Face& f) {
+  return std::all_of(f.begin(), f.end(),
+                     [&](std::uint32_t v) { return v < positions.size() && positions[v].allFinite(); });
+}
+
+/// The faces that have another part, or a face of none, near them.
+std::vector<std::uint32_t> faces_at_stake(Positions positions, std::span<const Face> faces,
+                                          std::span<const std::uint32_t> part_of_face,
+                                          const Eigen::AlignedBox3f& all, float cell_mm) {
+  PartCells cells(all.min(), cell_mm);
+  std::vector<std::uint64_t> keys(faces.size());
+  parallel_for_each_index(
+      faces.size(), [&](std::size_t i) { keys[i] = cells.key_of(box_of(positions, faces[i]).center()); },
+      4096);
+  for (std::size_t i = 0; i < faces.size(); ++i) {
+    if (i == 0 || keys[i] != keys[i - 1] || part_of_face[i] != part_of_face[i - 1]) {
+      cells.add(keys[i], part_of_face[i]);
+    }
+    const Eigen::AlignedBox3f box = box_of(positions, faces[i]);
+    if (box.sizes().maxCoeff() > cell_mm) {
+      // It may meet faces of cells that do not touch that of its middle.
+      const Vector3f high = box.max() + Vector3f::Constant(cell_mm);
+      for (float z = box.min().z() - cell_mm; z < high.z() + cell_mm; z += cell_mm) {
+        for (float y = box.min().y() - cell_mm; y < high.y() + cell_mm; y += cell_mm) {
+          for (float x = box.min().x() - cell_mm; x < high.x() + cell_mm; x += cell_mm) {
+            cells.add(cells.key_of({x, y, z}), PartCells::kMixed);
+          }
+        }
+      }
+    }
+  }
+  std::vector<std::uint8_t> calm(cells.slot_count(), 0);
+  parallel_for_each_index(
+      calm.size(),
+      [&](std::size_t slot) {
+        calm[slot] = cells.is_used(slot) && cells.is_calm(cells.key_in(slot)) ? 1 : 0;
+      },
+      4096);
+  std::vector<std::uint32_t> out;
+  std::size_t slot = 0;
+  for (std::size_t i = 0; i < faces.size(); ++i) {
+    if (i == 0 || keys[i] != keys[i - 1]) {
+      slot = cells.slot_of(keys[i]);
+    }
+    if (calm[slot] == 0) {
+      out.push_back(static_cast<std::uint32_t>(i));
+    }
+  }
+  return out;
+}
+
 }  // namespace
 
-std::vector<std::pair<std::uint32_t, std::uint32_t>> self_intersections(std::span<const Vector3f> positions,
-                                                                        std::span<const Face> all_faces) {
-  std::vector<Eigen::AlignedBox3f> boxes(all_faces.size());
-  std::vector<FacePlane> planes(all_faces.size());
-  std::vector<std::uint32_t> faces;
-  Eigen::AlignedBox3f all;
-  double sizes = 0;
-  for (std::uint32_t i = 0; i < all_faces.size(); ++i) {
-    const Face& f = all_faces[i];
-    if (std::any_of(f.begin(), f.end(),
-                    [&](std::uint32_t v) { return v >= positions.size() || !positions[v].allFinite(); })) {
-      continue;
-    }
-    for (const std::uint32_t v : f) {
-      boxes[i].extend(positions[v]);
-    }
-    planes[i] = FacePlane(positions, f);
-    all.extend(boxes[i]);
-    sizes += boxes[i].sizes().maxCoeff();
-    faces.push_back(i);
-  }
-  if (faces.size() < 2 || !(sizes > 0)) {
+std::vector<std::pair<std::uint32_t, std::uint32_t>> self_intersections(
+    std::span<const Vector3f> positions, std::span<const Face> all_faces,
+    std::span<const std::uint32_t> part_of_face) {
+  struct Extent {
+    Eigen::AlignedBox3f box;
+    double sizes = 0;
+    float largest = 0;
+    std::size_t count = 0;
+  };
+  const Extent extent = parallel_reduce_ordered(
+      all_faces.size(), 65536, Extent{},
+      [&](std::size_t begin, std::size_t end) {
+        Extent part;
+        for (std::size_t i = begin; i < end; ++i) {
+          if (is_sound(positions, all_faces[i])) {
+            const Eigen::AlignedBox3f box = box_of(positions, all_faces[i]);
+            const float size = box.sizes().maxCoeff();
+            part.box.extend(box);
+            part.sizes += static_cast<double>(size);
+            part.largest = std::max(part.largest, size);
+            ++part.count;
+          }
+        }
+        return part;
+      },
+      [](Extent& total, const Extent& part) {
+        total.box.extend(part.box);
+        total.sizes += part.sizes;
+        total.largest = std::max(total.largest, part.largest);
+        total.count += part.count;
+      });
+  if (extent.count < 2 || !(extent.sizes > 0)) {
     return {};
   }
+  constexpr double kCellOfMean = 3.0;
+  constexpr double kMostOfMean = 100.0;  // one huge face would fill all cells
+  std::vector<std::uint32_t> faces;
+  const double mean_mm = extent.sizes / static_cast<double>(extent.count);
+  if (!part_of_face.empty() && extent.count == all_faces.size() &&
+      static_cast<double>(extent.largest) < kMostOfMean * mean_mm) {
+    faces = faces_at_stake(positions, all_faces, part_of_face, extent.box,
+                           static_cast<float>(kCellOfMean * mean_mm));
+  } else {
+    for (std::uint32_t i = 0; i < all_faces.size(); ++i) {
+      if (is_sound(positions, all_faces[i])) {
+        faces.push_back(i);
+      }
+    }
+  }
+  std::vector<Eigen::AlignedBox3f> boxes(faces.size());
+  parallel_for_each_index(
+      faces.size(), [&](std::size_t k) { boxes[k] = box_of(positions, all_faces[faces[k]]); }, 4096);
   // So that no cell number of the finest level is cut off.
   constexpr float kMostCells = 400000.0F;
-  const float smallest_mm = std::max(static_cast<float>(2.5 * sizes / static_cast<double>(faces.size())),
-                                     all.sizes().maxCoeff() / kMostCells);
-  const FaceCells cells(boxes, faces, all.min(), smallest_mm);
+  const float smallest_mm =
+      std::max(static_cast<float>(2.5 * mean_mm), extent.box.sizes().maxCoeff() / kMostCells);
+  const FaceCells cells(boxes, faces, part_of_face, extent.box.min(), smallest_mm);
   using Pairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
   Pairs out = parallel_reduce_ordered(
       cells.size(), 4096, Pairs{},
@@ -250,8 +454,9 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> self_intersections(std::spa
         Pairs found;
         for (std::size_t k = begin; k < end; ++k) {
           const std::uint32_t a = cells.face(k);
+          const FacePlane plane(positions, all_faces[a]);
           cells.for_each_touching(k, [&](std::uint32_t b) {
-            if (cut(positions, all_faces[a], planes[a], all_faces[b], planes[b])) {
+            if (cut(positions, all_faces[a], plane, all_faces[b])) {
               found.push_back(std::minmax(a, b));
             }
           });

@@ -3,6 +3,8 @@
 #include "triangulation/stitch_surface.h"
 
 #include <algorithm>
+#include <limits>
+#include <optional>
 
 #include "core/grid_geometry.h"
 #include "core/grid_noise.h"
@@ -35,28 +37,82 @@ ScannerView view_in_model(const ScannerView& view, const RigidTransform& model_f
   return out;
 }
 
-/// Samples to the rim of the triangulated area, eight-connected: 1 on the rim, at most `most`.
-std::vector<std::uint8_t> rim_distance(const std::vector<std::uint8_t>& usable,
-                                       const std::vector<std::uint8_t>& cells, int rows, int cols, int most) {
-  std::vector<std::uint8_t> distance(usable.size(), 0);
+/// 1 for samples all of whose cells are whole.
+std::vector<std::uint8_t> inner_samples(const std::vector<std::uint8_t>& cells, int rows, int cols) {
+  std::vector<std::uint8_t> inner(cells.size(), 0);
   const auto width = static_cast<std::size_t>(cols);
-  const auto full = [&](std::size_t cell) {
-    return (cells[cell] & (kCellFirst | kCellSecond)) == (kCellFirst | kCellSecond);
-  };
+  constexpr std::uint8_t kWhole = kCellFirst | kCellSecond;
   parallel_for_each_index(
-      static_cast<std::size_t>(rows),
-      [&](std::size_t row) {
-        for (std::size_t col = 0; col < width; ++col) {
-          const std::size_t i = row * width + col;
-          if (usable[i] == 0) {
-            continue;
-          }
-          const bool inner =
-              row > 0 && col > 0 && full(i) && full(i - 1) && full(i - width) && full(i - width - 1);
-          distance[i] = inner ? static_cast<std::uint8_t>(most) : 1;
+      static_cast<std::size_t>(std::max(rows - 2, 0)),
+      [&](std::size_t above) {
+        for (std::size_t i = (above + 1) * width + 1; i + 1 < (above + 2) * width; ++i) {
+          const int all = cells[i] & cells[i - 1] & cells[i - width] & cells[i - width - 1];
+          inner[i] = (all & kWhole) == kWhole ? 1 : 0;
         }
       },
       16);
+  return inner;
+}
+
+/// In place: the least of the values in the 3x3 square around each.
+void shrink(std::vector<std::uint8_t>& values, int rows, int cols) {
+  const auto width = static_cast<std::size_t>(cols);
+  const auto height = static_cast<std::size_t>(rows);
+  std::vector<std::uint8_t> along(values.size());
+  parallel_for_each_index(
+      height,
+      [&](std::size_t row) {
+        const std::uint8_t* const in = &values[row * width];
+        std::uint8_t* const out = &along[row * width];
+        out[0] = std::min(in[0], in[1]);
+        for (std::size_t c = 1; c + 1 < width; ++c) {
+          out[c] = std::min({in[c - 1], in[c], in[c + 1]});
+        }
+        out[width - 1] = std::min(in[width - 2], in[width - 1]);
+      },
+      16);
+  parallel_for_each_index(
+      height,
+      [&](std::size_t row) {
+        const std::uint8_t* const here = &along[row * width];
+        const std::uint8_t* const before = row > 0 ? here - width : here;
+        const std::uint8_t* const after = row + 1 < height ? here + width : here;
+        for (std::size_t c = 0; c < width; ++c) {
+          values[row * width + c] = std::min({before[c], here[c], after[c]});
+        }
+      },
+      16);
+}
+
+/// Samples to the rim of the triangulated area, eight-connected: 1 on the rim, at most kMostRim. Gaps of one
+/// sample have no rim: else each drop-out would make the samples around it look bad.
+std::vector<std::uint8_t> rim_distance(const std::vector<std::uint8_t>& usable,
+                                       const std::vector<std::uint8_t>& inner, int rows, int cols) {
+  const auto width = static_cast<std::size_t>(cols);
+  const auto height = static_cast<std::size_t>(rows);
+  std::vector<std::uint8_t> covered = usable;
+  parallel_for_each_index(
+      height,
+      [&](std::size_t row) {
+        for (std::size_t col = 0; col < width; ++col) {
+          const std::size_t i = row * width + col;
+          const bool along = col > 0 && col + 1 < width && (usable[i - 1] & usable[i + 1]) != 0;
+          const bool across = row > 0 && row + 1 < height && (usable[i - width] & usable[i + width]) != 0;
+          covered[i] |= along || across ? 1 : 0;
+        }
+      },
+      16);
+  std::vector<std::uint8_t> within = covered;
+  shrink(within, rows, cols);
+  std::vector<std::uint8_t> distance(usable.size(), 0);
+  for (std::size_t row = 0; row < height; ++row) {
+    for (std::size_t col = 0; col < width; ++col) {
+      const std::size_t i = row * width + col;
+      const bool outermost = row == 0 || col == 0 || row + 1 == height || col + 1 == width;
+      distance[i] =
+          (within[i] | inner[i]) != 0 && !outermost ? static_cast<std::uint8_t>(kMostRim) : covered[i];
+    }
+  }
   // Two passes: from above and the left, then back.
   const auto relax = [&](std::size_t i, std::size_t from) {
     distance[i] = std::min<std::uint8_t>(distance[i], static_cast<std::uint8_t>(distance[from] + 1));
@@ -80,79 +136,94 @@ std::vector<std::uint8_t> rim_distance(const std::vector<std::uint8_t>& usable,
   return distance;
 }
 
-}  // namespace
-
-void box_mean(std::vector<float>& values, const std::vector<std::uint8_t>& mask, int rows, int cols,
-              int radius) {
-  if (radius <= 0 || values.empty()) {
-    return;
+/// The cosine of the incidence of what a camera sees: 0.05 at the least.
+class Incidence {
+ public:
+  explicit Incidence(const ScannerView& view) : against_(-view.direction.cast<float>()) {
+    if (view.camera_mm) {
+      camera_ = view.camera_mm->cast<float>();
+      per_row_ = view.motion_per_row_mm.cast<float>();
+    }
   }
-  const auto width = static_cast<std::size_t>(cols);
-  const auto height = static_cast<std::size_t>(rows);
-  const auto r = static_cast<std::size_t>(radius);
-  std::vector<float> sums(values.size());
-  std::vector<std::uint16_t> counts(values.size());
+  [[nodiscard]] float cosine(const Vector3f& p, const Vector3f& normal, int row) const {
+    const Vector3f to_camera =
+        camera_ ? Vector3f((*camera_ + static_cast<float>(row) * per_row_ - p).normalized()) : against_;
+    return std::clamp(normal.dot(to_camera), 0.05F, 1.0F);
+  }
+
+ private:
+  Vector3f against_;
+  std::optional<Vector3f> camera_;
+  Vector3f per_row_ = Vector3f::Zero();
+};
+
+/// The sample that stands for each node, and how much the scan wants to be primary there.
+void lay_nodes(StitchSurface& out, const Incidence& incidence, const StitchSurfaceOptions& options) {
+  const RangeGrid& grid = *out.scan.grid;
+  const Lattice& lattice = out.lattice;
+  const int most = std::clamp(options.rise_samples + 1, 2, kMostRim);
+  std::vector<std::uint8_t> seen(lattice.size(), 0);
+  std::vector<float> rise(lattice.size(), 0);
   parallel_for_each_index(
-      height,
-      [&](std::size_t row) {
-        const std::size_t base = row * width;
-        double sum = 0;
+      lattice.size(),
+      [&](std::size_t node) {
+        const int middle_row = lattice.row_of(node) * Lattice::kNodeSide + 1;
+        const int middle_col = lattice.col_of(node) * Lattice::kNodeSide + 1;
+        int nearest = std::numeric_limits<int>::max();
+        float sum = 0;
         int count = 0;
-        const auto add = [&](std::size_t col, int sign) {
-          if (mask[base + col] != 0) {
-            sum += sign * static_cast<double>(values[base + col]);
-            count += sign;
+        int rim = 0;
+        lattice.for_each_sample(node, [&](std::size_t i) {
+          if (out.usable[i] == 0) {
+            return;
           }
-        };
-        for (std::size_t col = 0; col < std::min(r, width); ++col) {
-          add(col, 1);
-        }
-        for (std::size_t col = 0; col < width; ++col) {
-          if (col + r < width) {
-            add(col + r, 1);
+          const int dr = grid.row_of(i) - middle_row;
+          const int dc = grid.col_of(i) - middle_col;
+          if (dr * dr + dc * dc < nearest) {
+            nearest = dr * dr + dc * dc;
+            out.node_sample[node] = static_cast<std::int32_t>(i);
           }
-          if (col > r) {
-            add(col - r - 1, -1);
-          }
-          sums[base + col] = static_cast<float>(sum);
-          counts[base + col] = static_cast<std::uint16_t>(count);
+          const float cosine = incidence.cosine(out.points[i], out.normals[i], grid.row_of(i));
+          sum += out.is_sparse(i) ? kSparseScore * cosine : cosine;
+          rim += std::min<int>(out.rim[i], most);
+          ++count;
+        });
+        if (count > 0) {
+          seen[node] = 1;
+          out.score[node] = sum / static_cast<float>(count);
+          rise[node] = static_cast<float>(rim) / static_cast<float>(most * count);
         }
       },
-      16);
-  // Columns in strips that fit a cache line or two.
-  parallel_chunks(width, 64, [&](std::size_t begin, std::size_t end) {
-    std::vector<double> sum(end - begin, 0);
-    std::vector<int> count(end - begin, 0);
-    const auto add = [&](std::size_t row, int sign) {
-      for (std::size_t col = begin; col < end; ++col) {
-        sum[col - begin] += sign * static_cast<double>(sums[row * width + col]);
-        count[col - begin] += sign * counts[row * width + col];
-      }
-    };
-    for (std::size_t row = 0; row < std::min(r, height); ++row) {
-      add(row, 1);
-    }
-    for (std::size_t row = 0; row < height; ++row) {
-      if (row + r < height) {
-        add(row + r, 1);
-      }
-      if (row > r) {
-        add(row - r - 1, -1);
-      }
-      for (std::size_t col = begin; col < end; ++col) {
-        const int n = count[col - begin];
-        values[row * width + col] =
-            mask[row * width + col] != 0 && n > 0 ? static_cast<float>(sum[col - begin] / n) : 0.0F;
-      }
-    }
-  });
+      1024);
+  box_mean(out.score, seen, lattice.node_rows, lattice.node_cols,
+           options.incidence_radius_samples / Lattice::kNodeSide);
+  for (std::size_t node = 0; node < seen.size(); ++node) {
+    out.score[node] *= rise[node];
+  }
 }
+
+/// The black fields of a chessboard: enough to start from for a walk to the nearest sample.
+std::vector<std::uint8_t> every_second(const std::vector<std::uint8_t>& usable, int rows, int cols) {
+  std::vector<std::uint8_t> out(usable.size(), 0);
+  const auto width = static_cast<std::size_t>(cols);
+  for (std::size_t row = 0; row < static_cast<std::size_t>(rows); ++row) {
+    for (std::size_t i = row * width + row % 2; i < (row + 1) * width; i += 2) {
+      out[i] = usable[i];
+    }
+  }
+  return out;
+}
+
+}  // namespace
 
 StitchSurface make_scan_surface(const PlacedScan& scan, const StitchSurfaceOptions& options) {
   const RangeGrid& grid = *scan.grid;
   StitchSurface out;
   out.scan = scan;
   out.spacing_mm = grid.spacing_mm > 0 ? grid.spacing_mm : estimate_spacing_mm(grid);
+  out.lattice = Lattice(grid.rows, grid.cols);
+  out.node_sample.assign(out.lattice.size(), -1);
+  out.score.assign(out.lattice.size(), 0);
   out.view = view_in_model(grid.view, scan.model_from_scanner);
   out.scanner_from_model = scan.model_from_scanner.inverse();
   const std::size_t n = grid.size();
@@ -161,7 +232,6 @@ StitchSurface make_scan_surface(const PlacedScan& scan, const StitchSurfaceOptio
   out.cells.assign(n, 0);
   out.reliability.assign(n, 0);
   out.weight.assign(n, 0);
-  out.score.assign(n, 0);
   out.rim.assign(n, 0);
   if (!(out.spacing_mm > 0) || grid.rows < 2 || grid.cols < 2) {
     out.normals.assign(n, Vector3f::Zero());
@@ -199,43 +269,34 @@ StitchSurface make_scan_surface(const PlacedScan& scan, const StitchSurfaceOptio
       }
     }
   }
-  const int most = std::clamp(options.rise_samples + 1, 2, kMostRim);
-  out.rim = rim_distance(out.usable, out.cells, grid.rows, grid.cols, kMostRim);
+  const std::vector<std::uint8_t> inner = inner_samples(out.cells, grid.rows, grid.cols);
+  out.rim = rim_distance(out.usable, inner, grid.rows, grid.cols);
   out.noise_mm = scan.noise_mm ? *scan.noise_mm : estimate_noise_mm(grid, out.usable);
   const double systematic_mm = kSystematicOfSpacing * out.spacing_mm;
   const auto inverse_variance =
       static_cast<float>(1.0 / (out.noise_mm * out.noise_mm + systematic_mm * systematic_mm));
+  const Incidence incidence(out.view);
   parallel_for_each_index(
       n,
       [&](std::size_t i) {
         if (out.usable[i] == 0) {
           return;
         }
-        const Eigen::Vector3d to_camera = out.view.to_camera(out.points[i].cast<double>(), grid.row_of(i));
-        const float cosine = std::clamp(out.normals[i].dot(to_camera.cast<float>()), 0.05F, 1.0F);
+        const float cosine = incidence.cosine(out.points[i], out.normals[i], grid.row_of(i));
         const float confidence = grid.confidence.empty() ? 1.0F : std::clamp(grid.confidence[i], 0.01F, 1.0F);
         out.reliability[i] = cosine * cosine * confidence;
-        const bool sparse = out.is_sparse(i);
-        const float doubt = sparse ? kSparseWeight : out.rim[i] <= 1 ? kRimWeight : 1.0F;
+        const float doubt = out.is_sparse(i) ? kSparseWeight : inner[i] == 0 ? kRimWeight : 1.0F;
         out.weight[i] = confidence * inverse_variance * doubt;
-        out.score[i] = sparse ? kSparseScore * cosine : cosine;
       },
       4096);
-  box_mean(out.score, out.usable, grid.rows, grid.cols, options.incidence_radius_samples);
-  parallel_for_each_index(
-      n,
-      [&](std::size_t i) {
-        if (out.usable[i] != 0) {
-          out.score[i] *= static_cast<float>(std::min<int>(out.rim[i], most)) / static_cast<float>(most);
-        }
-      },
-      4096);
+  lay_nodes(out, incidence, options);
   for (std::size_t i = 0; i < n; ++i) {
     if (out.usable[i] != 0) {
       out.box.extend(out.points[i]);
     }
   }
-  out.lookup = std::make_unique<GridLookup>(grid, out.usable, 1.5 * out.spacing_mm);
+  out.lookup = std::make_unique<GridLookup>(grid, every_second(out.usable, grid.rows, grid.cols),
+                                            2.0 * out.spacing_mm);
   return out;
 }
 

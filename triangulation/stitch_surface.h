@@ -11,6 +11,7 @@
 #include "core/grid_lookup.h"
 #include "core/placed_scan.h"
 #include "triangulation/grid_triangulation.h"
+#include "triangulation/lattice.h"
 
 namespace dubsar {
 
@@ -21,13 +22,13 @@ struct StitchSurfaceOptions {
   int rise_samples = 6;
   /// Radius of the mean over which incidence is compared between scans, samples: the primary scan changes
   /// along a line, not from sample to sample with the noise of the normals.
-  int incidence_radius_samples = 5;
+  int incidence_radius_samples = 15;
 };
 
 inline constexpr int kMostRim = 32;
 
 /// One placed scan made ready for stitching: its samples in the model frame, the triangles of its grid, and
-/// how far each sample is to be trusted. All arrays are [rows*cols] of the grid.
+/// how far each sample is to be trusted. Arrays are [rows*cols] of the grid where nothing else is said.
 struct StitchSurface {
   PlacedScan scan;
   double spacing_mm = 0;
@@ -44,10 +45,12 @@ struct StitchSurface {
   /// samples; > 0 if usable.
   std::vector<float> weight;
   std::vector<std::uint8_t> rim;  ///< samples to the rim of the triangulated area: 1 on it, at most kMostRim
-  std::vector<float> score;       ///< how much this scan wants to be primary here
   Eigen::AlignedBox3f box;        ///< of the usable samples, model frame
   RigidTransform scanner_from_model;
-  std::unique_ptr<GridLookup> lookup;  ///< of the usable samples, scanner frame
+  std::unique_ptr<GridLookup> lookup;  ///< of every second usable sample, scanner frame
+  Lattice lattice;
+  std::vector<std::int32_t> node_sample;  ///< by node: the usable sample nearest to its middle, or -1
+  std::vector<float> score;               ///< by node: how much this scan wants to be primary there
 
   [[nodiscard]] bool is_sparse(std::size_t i) const {
     return scan.flags != nullptr && i < scan.flags->size() && !is_unflagged((*scan.flags)[i]);
@@ -59,10 +62,5 @@ struct StitchSurface {
 
 /// Never fails: a scan without a triangle has no usable sample.
 [[nodiscard]] StitchSurface make_scan_surface(const PlacedScan& scan, const StitchSurfaceOptions& options);
-
-/// In place: each value becomes the mean over the (2·radius+1)² window around it, of those with mask != 0;
-/// zero where the mask is 0.
-void box_mean(std::vector<float>& values, const std::vector<std::uint8_t>& mask, int rows, int cols,
-              int radius);
 
 }  // namespace dubsar

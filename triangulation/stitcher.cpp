@@ -19,8 +19,9 @@ namespace {
 struct Entry {
   StitchSurface surface;
   std::map<int, Pairs> pairs;  ///< by the id of the other scan; those without a pair hold no matches
+  std::vector<std::uint8_t> wanted;
   FusedSamples fused;
-  bool stale = true;  ///< fused does not know all pairs yet
+  bool stale = true;  ///< wanted and fused do not know all pairs yet
 };
 
 std::string name_of(const PlacedScan& scan) {
@@ -99,14 +100,11 @@ struct Stitcher::Impl {
       const double reach = pair_reach_mm(entry.surface, other.surface, options.pairing);
       Pairs there = find_pairs(entry.surface, other.surface, reach, options.pairing);
       Pairs back = find_pairs(other.surface, entry.surface, reach, options.pairing);
-      if (there.count == 0 && back.count == 0) {
+      if (there.nodes == 0 && back.nodes == 0) {
         continue;
       }
       there.feather = back.feather = static_cast<float>(
           feather_samples(entry.surface, other.surface, step_mm(entry.surface, other.surface, reach)));
-      // Either side may be asked about any of its samples.
-      there.match.resize(entry.surface.points.size(), -1);
-      back.match.resize(other.surface.points.size(), -1);
       entry.pairs.emplace(other_id, std::move(there));
       other.pairs.emplace(id, std::move(back));
       other.stale = true;
@@ -127,24 +125,51 @@ struct Stitcher::Impl {
       unpaired.erase(unpaired.begin());
       pair(id);
     }
-    refresh();
     return true;
   }
 
-  void refresh() {
-    for (auto& [id, entry] : entries) {
-      if (!entry.stale) {
-        continue;
-      }
-      std::vector<const StitchSurface*> others;
-      std::vector<const Pairs*> pairs;
-      for (const auto& [other_id, found] : entry.pairs) {
-        others.push_back(&entries.at(other_id).surface);
-        pairs.push_back(&found);
-      }
-      entry.fused = fuse(entry.surface, others, pairs);
-      entry.stale = false;
+  /// All scans with their pairs; which samples they want and where these go is worked out for those whose
+  /// pairs have changed. Empty when cancelled.
+  [[nodiscard]] std::vector<OwnedScan> owned_scans(const JobContext& job) {
+    std::vector<OwnedScan> scans;
+    std::map<int, std::size_t> position;
+    for (const auto& [id, entry] : entries) {
+      position[id] = position.size();
     }
+    for (auto& [id, entry] : entries) {
+      OwnedScan& scan = scans.emplace_back();
+      scan.surface = &entry.surface;
+      scan.fused = &entry.fused;
+      scan.wanted = &entry.wanted;
+      for (const auto& [other_id, pairs] : entry.pairs) {
+        scan.pairs.push_back(&pairs);
+        scan.other.push_back(position.at(other_id));
+        scan.other_surface.push_back(&entries.at(other_id).surface);
+      }
+    }
+    std::size_t at = 0;
+    for (auto& [id, entry] : entries) {
+      if (job.cancelled()) {
+        return {};
+      }
+      job.progress("average samples", static_cast<double>(at) / static_cast<double>(scans.size()));
+      if (entry.stale) {
+        entry.wanted = wanted_samples(scans, at, options.ownership);
+        entry.fused = FusedSamples(entry.surface);
+        std::vector<std::uint32_t> which;
+        for (std::size_t node = 0; node < entry.surface.lattice.size(); ++node) {
+          entry.surface.lattice.for_each_sample(node, [&](std::size_t i) {
+            if (entry.wanted[i] != 0) {
+              which.push_back(static_cast<std::uint32_t>(i));
+            }
+          });
+        }
+        scans[at].fuse(which);
+        entry.stale = false;
+      }
+      ++at;
+    }
+    return scans;
   }
 
   bool erase(int id) {
@@ -190,7 +215,7 @@ std::vector<Stitcher::Overlap> Stitcher::overlaps() const {
     for (const auto& [other_id, pairs] : entry.pairs) {
       if (id < other_id) {
         const StitchSurface& other = impl_->entries.at(other_id).surface;
-        out.push_back({id, other_id, pairs.count, step_mm(entry.surface, other, pairs.reach_mm),
+        out.push_back({id, other_id, pairs.nodes, step_mm(entry.surface, other, pairs.reach_mm),
                        std::max(entry.surface.spacing_mm, other.spacing_mm)});
       }
     }
@@ -202,27 +227,12 @@ Result<Mesh> Stitcher::mesh(const JobContext& job) const {
   if (!impl_->settle(job)) {
     return cancelled();
   }
-  std::vector<OwnedScan> scans;
-  std::map<int, std::size_t> position;
-  for (const auto& [id, entry] : impl_->entries) {
-    position[id] = position.size();
-  }
-  for (const auto& [id, entry] : impl_->entries) {
-    OwnedScan scan;
-    scan.surface = &entry.surface;
-    scan.fused = &entry.fused;
-    for (const auto& [other_id, pairs] : entry.pairs) {
-      scan.pairs.push_back(&pairs);
-      scan.other.push_back(position.at(other_id));
-    }
-    scans.push_back(std::move(scan));
-  }
-  if (!assign_owners(scans, impl_->options.surface.grid, impl_->options.ownership, job)) {
+  std::vector<OwnedScan> scans = impl_->owned_scans(job);
+  if (job.cancelled() || !assign_owners(scans, impl_->options.surface.grid, impl_->options.ownership, job)) {
     return cancelled();
   }
-  job.progress("close seams", 0.0);
   AssemblyOptions assembly{impl_->options.seam, impl_->options.gap, impl_->options.least_component_faces};
-  Mesh mesh = assemble(scans, assembly);
+  Mesh mesh = assemble(scans, assembly, job);
   if (job.cancelled()) {
     return cancelled();
   }

@@ -58,7 +58,7 @@ class Stitcher {
   /// Two scans that overlap, and how far apart their poses hold their surfaces beyond what noise explains.
   struct Overlap {
     int id = 0, other_id = 0;
-    std::size_t pairs = 0;
+    std::size_t nodes = 0;  ///< of the lattice that hold a pair: for every sixteen samples one
     double step_mm = 0;
     double spacing_mm = 0;  ///< the coarser
     /// Far enough apart to show in the mesh.

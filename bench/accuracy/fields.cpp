@@ -12,8 +12,8 @@
 #include "analysis/field_colours.h"
 #include "analysis/integral_invariants.h"
 #include "analysis/surface_fields.h"
-#include "core/mesh_query.h"
-#include "core/parallel.h"
+#include "bench/support/cut_heights.h"
+#include "bench/support/true_surface.h"
 #include "core/units.h"
 #include "formats/feature_mat.h"
 #include "formats/mesh_io.h"
@@ -38,6 +38,7 @@ struct Options {
   bool brief = false;
   bool invariants = false;
   std::string mat;
+  std::string cut;
 };
 
 void print_quantiles(const char* what, std::vector<float> values) {
@@ -91,19 +92,6 @@ void print_depths(const std::vector<Wedge>& wedges, const SurfaceFields& fields)
   print_quantiles("depth found - true, at depth points", off);
 }
 
-/// The kinds of the nearest vertices of the true surface: for a mesh scanned from it.
-sim::SimTablet kinds_for(const Mesh& mesh, const sim::SimTablet& truth) {
-  constexpr float kNearMm = 1.0F;
-  sim::SimTablet result;
-  result.kinds.resize(mesh.positions.size());
-  const MeshQuery query(truth.mesh);
-  parallel_for_each_index(mesh.positions.size(), [&](std::size_t i) {
-    const auto near = query.closest(mesh.positions[i], kNearMm);
-    result.kinds[i] = near ? truth.kinds[truth.mesh.faces[near->face][0]] : sim::SurfaceKind::kHole;
-  });
-  return result;
-}
-
 int run(const Options& options) {
   JobContext job;
   Mesh mesh;
@@ -141,7 +129,7 @@ int run(const Options& options) {
     if (options.mesh.empty()) {
       mesh = tablet.mesh;
     } else {
-      tablet = kinds_for(mesh, tablet);
+      tablet = bench::with_truth(mesh, tablet);
     }
   }
   StageTimes times;
@@ -171,6 +159,9 @@ int run(const Options& options) {
     print_kinds(tablet, *fields, options.brief);
   }
   print_depths(wedges, *fields);
+  if (!options.cut.empty()) {
+    bench::print_cut_heights(mesh, *fields, options.cut, options.fields, job);
+  }
   if (options.invariants || !options.mat.empty()) {
     const auto begun = std::chrono::steady_clock::now();
     const IntegralInvariants invariants =
@@ -219,6 +210,8 @@ int main(int argc, char** argv) {
   app.add_option("--script", options.fields.reconstruction.script_mm)->capture_default_str();
   app.add_flag("--invariants", options.invariants, "the integral invariants too");
   app.add_option("--mat", options.mat, "where to write them");
+  app.add_option("--cut", options.cut, "the heights of a part beside those of the whole")
+      ->check(CLI::IsMember({"half", "obverse"}));
   app.add_flag("--brief", options.brief);
   app.add_option("--pictures", options.pictures, "a folder: the fields as PLY and PNG");
   CLI11_PARSE(app, argc, argv);

@@ -14,9 +14,11 @@
 #include <string>
 
 #include "analysis/wedges.h"
+#include "bench/support/confidence_diagram.h"
 #include "bench/support/mesh_faults.h"
 #include "bench/support/other_tablet.h"
 #include "bench/support/true_scans.h"
+#include "bench/support/true_surface.h"
 #include "bench/support/wedge_score.h"
 #include "formats/mesh_io.h"
 #include "formats/truth_json.h"
@@ -34,6 +36,7 @@ struct Arguments {
   std::uint64_t first = 1;
   double spacing_mm = 0.1;
   double damage = -1;  ///< below zero: from none to heavy by seed
+  double least_damage = 0;
   bool scanned = false;
   double scan_spacing_mm = 0.05;
   double noise_mm = 0.02;
@@ -86,18 +89,52 @@ void report(const char* name, const WedgeScore& s) {
       s.right > 0 ? 100.0 * s.directional_right / s.right : 0.0);
 }
 
-/// Of those with such a confidence, how many are wedges (remains of true ones are).
-void report_confidence(const WedgeScore& s) {
-  for (int bin = 5; bin < 10; ++bin) {
-    const auto in_bin = [bin](double c) { return std::clamp(static_cast<int>(10 * c), 5, 9) == bin; };
-    const auto right = std::ranges::count_if(s.right_confidence, in_bin);
-    const auto wrong = std::ranges::count_if(s.false_confidence, in_bin);
-    if (right + wrong > 0) {
-      std::printf("confidence 0.%d to %s: %ld of %ld are wedges, %.2f\n", bin, bin == 9 ? "1" : "the next",
-                  static_cast<long>(right), static_cast<long>(right + wrong),
-                  static_cast<double>(right) / static_cast<double>(right + wrong));
-    }
+/// Precision where the clay is broken, with remains of true wedges as wedges.
+void report_fractures(const FractureScore& s, int tablets) {
+  const auto share = [](int right, int wrong) {
+    return right + wrong > 0 ? static_cast<double>(right) / (right + wrong) : 1.0;
+  };
+  std::printf(
+      "fractures: of %d found that lie on or touch one %.3f are wedges, of %d that lie on one %.3f; %.2f "
+      "false ones a tablet touch one; depths of the right ones %.0f um off (median)\n",
+      s.right_touching + s.false_touching, share(s.right_touching, s.false_touching), s.right_on + s.false_on,
+      share(s.right_on, s.false_on), tablets > 0 ? static_cast<double>(s.false_touching) / tablets : 0.0,
+      median(s.depth_um));
+}
+
+/// How a found wedge lies to the true one that most of its vertices belong to.
+void describe(const Wedge& w, const std::vector<Wedge>& truth, const std::map<int, int>& owners,
+              const std::vector<int>& pair) {
+  const auto most = std::ranges::max_element(owners, {}, [](const auto& o) { return o.second; });
+  if (most == owners.end() || most->first < 0) {
+    return;
   }
+  const Wedge& t = truth[static_cast<std::size_t>(most->first)];
+  const bool found = std::ranges::find(pair, most->first) != pair.end();
+  const auto tail = [](const Wedge& wedge) -> Eigen::Vector3d {
+    return wedge.exit_points_mm[static_cast<std::size_t>(wedge.directional_edge)] - wedge.depth_point_mm;
+  };
+  const Eigen::Vector3d to = w.depth_point_mm - t.depth_point_mm;
+  std::printf("; owner %d depth %.2f tail %.2f intact %.2f along %.2f off %.2f cos %.2f", most->first,
+              t.depth_mm, tail(t).norm(), t.intact, to.dot(tail(t).normalized()),
+              (to - to.dot(tail(t).normalized()) * tail(t).normalized()).norm(),
+              tail(w).normalized().dot(tail(t).normalized()));
+  std::printf(", %s", found ? "found" : "missed");
+}
+
+/// Errors against the standard deviations that go with the measures.
+void report_sigmas(const WedgeScore& s) {
+  const auto line = [](const char* what, const std::vector<double>& sigmas) {
+    const auto within = std::ranges::count_if(sigmas, [](double v) { return v <= 2.0; });
+    std::printf(
+        "%s error in its own sigmas: median %.2f, %.1f %% within two\n", what, median(sigmas),
+        sigmas.empty() ? 0.0 : 100.0 * static_cast<double>(within) / static_cast<double>(sigmas.size()));
+  };
+  line("depth point", s.depth_point_sigmas);
+  line("depth", s.depth_sigmas);
+  line("inner edge", s.edge_sigmas);
+  line("opening angle", s.opening_sigmas);
+  line("edge length", s.length_sigmas);
 }
 
 void explain(const sim::SimTablet& tablet, const WedgeSet& set, const std::vector<int>& pair) {
@@ -137,6 +174,7 @@ void explain(const sim::SimTablet& tablet, const WedgeSet& set, const std::vecto
     for (const auto& [owner, count] : owners) {
       std::printf(" %d:%d", owner, count);
     }
+    describe(w, tablet.wedges, owners, pair);
     std::printf("\n");
   }
   for (std::size_t t = 0; t < of_truth.size(); ++t) {
@@ -187,9 +225,10 @@ WedgeScore judge(const std::string& name, sim::SimTablet tablet, const Arguments
   }
   std::vector<int> pair;
   WedgeScore score = score_wedges(set->wedges, tablet.wedges, {}, &pair);
+  score.fracture = score_fractures(graph, set->wedge_of, tablet.kinds, pair, set->wedges, tablet.wedges, {});
   report(name.c_str(), score);
   for (std::size_t f = 0; f < pair.size() && args.evidence; ++f) {
-    std::printf("evidence %d", pair[f] >= 0 ? 1 : 0);
+    std::printf("evidence %d %.4f", pair[f] >= 0 ? 1 : 0, set->wedges[f].confidence);
     for (const double value : set->evidence[f]) {
       std::printf(" %.4f", value);
     }
@@ -220,6 +259,10 @@ WedgeScore judge_folder(const std::string& folder, const Arguments& args) {
   return judge(folder, std::move(tablet), args);
 }
 
+std::filesystem::path kept_folder(const Arguments& args, std::uint64_t seed) {
+  return std::filesystem::path(args.keep) / ("seed" + std::to_string(seed));
+}
+
 WedgeScore judge_seed(std::uint64_t seed, double damage, const Arguments& args) {
   sim::TabletOptions options = random_tablet(seed, "text", args.spacing_mm);
   options.damage = {damage, damage, damage, damage, 0};
@@ -234,15 +277,18 @@ WedgeScore judge_seed(std::uint64_t seed, double damage, const Arguments& args) 
     give_up(tablet.error());
   }
   if (args.scanned) {
-    std::vector<Wedge> truth = std::move(tablet->wedges);
-    *tablet = sim::tablet_from_mesh(scanned_mesh(options, args));
-    tablet->wedges = std::move(truth);
+    const std::filesystem::path kept = kept_folder(args, seed) / "mesh.ply";
+    Result<Mesh> mesh = std::filesystem::exists(kept) ? read_mesh(kept) : scanned_mesh(options, args);
+    if (!mesh) {
+      give_up(mesh.error());
+    }
+    *tablet = with_truth(*std::move(mesh), *tablet);
   }
   char name[96];
   std::snprintf(name, sizeof name, "seed %d damage %.1f %zuk", static_cast<int>(seed), damage,
                 tablet->mesh.positions.size() / 1000);
-  if (!args.keep.empty()) {
-    const std::filesystem::path folder = std::filesystem::path(args.keep) / ("seed" + std::to_string(seed));
+  if (!args.keep.empty() && !std::filesystem::exists(kept_folder(args, seed) / "truth.json")) {
+    const std::filesystem::path folder = kept_folder(args, seed);
     std::filesystem::create_directories(folder);
     TabletTruth truth{"mesh.ply", seed, options.size_mm, options.spacing_mm, tablet->wedges};
     Status kept = write_mesh(folder / "mesh.ply", tablet->mesh);
@@ -263,11 +309,14 @@ int main(int argc, char** argv) {
   app.add_option("--first", args.first, "first seed");
   app.add_option("--spacing", args.spacing_mm, "of the clean mesh, mm");
   app.add_option("--damage", args.damage, "0 to 1 for all; otherwise from none to heavy by seed");
+  app.add_option("--least-damage", args.least_damage, "what the first seed has, where it goes by seed");
   app.add_flag("--scanned", args.scanned, "scan each tablet in simulation and stitch the scans");
   app.add_option("--scan-spacing", args.scan_spacing_mm);
   app.add_option("--noise", args.noise_mm);
   app.add_option("--views", args.views);
-  app.add_option("--keep", args.keep, "write each mesh and its truth into a folder here");
+  app.add_option("--keep", args.keep,
+                 "write each mesh and its truth into a folder here; a scanned mesh that lies there, of the "
+                 "same seed and options, is taken as it is");
   app.add_option("folders", args.folders, "folders with a truth.json and its mesh, in place of seeds");
   app.add_flag("--other", args.other, "tablets of another make than the simulator's");
   app.add_flag("--faults", args.faults, "1 % of the faces deleted, 1 % doubled or flipped, loose scraps");
@@ -279,11 +328,14 @@ int main(int argc, char** argv) {
     all.add(judge_folder(folder, args));
   }
   for (int i = 0; i < args.tablets && args.folders.empty(); ++i) {
+    const double along = static_cast<double>(i) / std::max(1, args.tablets - 1);
     const double damage =
-        args.damage >= 0 ? args.damage : static_cast<double>(i) / std::max(1, args.tablets - 1);
+        args.damage >= 0 ? args.damage : args.least_damage + (1.0 - args.least_damage) * along;
     all.add(judge_seed(args.first + static_cast<std::uint64_t>(i), damage, args));
   }
   report("all", all);
-  report_confidence(all);
+  report_sigmas(all);
+  report_fractures(all.fracture, args.tablets);
+  print_confidence_diagram(all.right_confidence, all.false_confidence);
   return 0;
 }

@@ -201,11 +201,13 @@ sim::SimTablet make_other_tablet(const OtherTabletOptions& options) {
   mesh.positions.resize(2 * layer);
   std::vector<int> owner(layer, -1);
   std::vector<std::vector<std::uint32_t>> made(layer);
+  std::vector<std::uint8_t> fracture(layer, 0);
   parallel_for_each_index(layer, [&](std::size_t i) {
     const double x = -bun.half().x() + 2.0 * bun.half().x() * static_cast<double>(i % nx) / (nx - 1);
     const double y = -bun.half().y() + 2.0 * bun.half().y() * static_cast<double>(i / nx) / (ny - 1);
     bool broken = false;
     const double z = bun.top({x, y}, &owner[i], &made[i], &broken);
+    fracture[i] = broken ? 1 : 0;
     Random random(seed_for(options.seed ^ 0x5eed, i));
     mesh.positions[i] = Eigen::Vector3d(x, y, z + options.noise_mm * random.normal()).cast<float>();
     mesh.positions[layer + i] =
@@ -243,6 +245,9 @@ sim::SimTablet make_other_tablet(const OtherTabletOptions& options) {
   for (std::size_t i = 0; i < layer; ++i) {
     for (const std::uint32_t k : made[i]) {
       ++once[k];
+    }
+    if (fracture[i] != 0) {
+      tablet.kinds[i] = sim::SurfaceKind::kFracture;
     }
     if (owner[i] >= 0) {
       ++kept[static_cast<std::size_t>(owner[i])];

@@ -86,14 +86,18 @@ const SimulatedViews& million_sample_views(int count) {
                              : made.emplace(count, make_views({.count = count})).first->second;
 }
 
+SimulatedViews make_views_of_millions(int count, double millions) {
+  const double spacing_mm = 0.05 / std::sqrt(millions);
+  return make_views(
+      {.count = count, .size_mm = {70, 60, 24}, .spacing_mm = spacing_mm, .noise_mm = 0.4 * spacing_mm});
+}
+
 const SimulatedViews& views_of_millions(int millions) {
   static int made = 0;
   static SimulatedViews views;
   if (made != millions) {
-    const double spacing_mm = 0.05 / std::sqrt(static_cast<double>(millions));
     views = {};  // two sets of the larger ones need not fit
-    views = make_views(
-        {.count = 11, .size_mm = {70, 60, 24}, .spacing_mm = spacing_mm, .noise_mm = 0.4 * spacing_mm});
+    views = make_views_of_millions(11, millions);
     made = millions;
   }
   return views;

@@ -28,4 +28,7 @@ struct SimulatedViews {
 /// the noise 0.4 µ. Only the last set asked for is kept.
 [[nodiscard]] const SimulatedViews& views_of_millions(int millions);
 
+/// The same tablet from `count` views of `millions` of samples each, the noise 0.4 µ. Not kept.
+[[nodiscard]] SimulatedViews make_views_of_millions(int count, double millions);
+
 }  // namespace dubsar::bench

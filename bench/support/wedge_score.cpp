@@ -35,10 +35,19 @@ void compare(const Wedge& found, const Wedge& truth, WedgeScore* score) {
       best_angles = angles;
     }
   }
+  score->depth_point_sigmas.push_back((found.depth_point_mm - truth.depth_point_mm).norm() /
+                                      found.sigma.depth_point_mm);
+  score->depth_sigmas.push_back(std::abs(found.depth_mm - truth.depth_mm) / found.sigma.depth_mm);
   for (std::size_t k = 0; k < 3; ++k) {
+    const std::size_t f = (k + best_shift) % 3;
+    const double opening = std::abs(found.opening_angles_rad[f] - truth.opening_angles_rad[k]);
+    const double length = (found.exit_points_surface_mm[f] - found.depth_point_mm).norm();
+    const double true_length = (truth.exit_points_mm[k] - truth.depth_point_mm).norm();
     score->edge_deg.push_back(best_angles[k]);
-    score->opening_deg.push_back(
-        deg_from_rad(std::abs(found.opening_angles_rad[(k + best_shift) % 3] - truth.opening_angles_rad[k])));
+    score->opening_deg.push_back(deg_from_rad(opening));
+    score->edge_sigmas.push_back(rad_from_deg(best_angles[k]) / found.sigma.edge_rad[f]);
+    score->opening_sigmas.push_back(opening / found.sigma.opening_rad[f]);
+    score->length_sigmas.push_back(std::abs(length - true_length) / found.sigma.length_mm[f]);
   }
   const auto directional = (static_cast<std::size_t>(found.directional_edge) + 3 - best_shift) % 3;
   score->directional_right += directional == static_cast<std::size_t>(truth.directional_edge) ? 1 : 0;
@@ -73,6 +82,53 @@ void WedgeScore::add(const WedgeScore& other) {
   append(&opening_deg, other.opening_deg);
   append(&false_confidence, other.false_confidence);
   append(&right_confidence, other.right_confidence);
+  append(&depth_point_sigmas, other.depth_point_sigmas);
+  append(&depth_sigmas, other.depth_sigmas);
+  append(&edge_sigmas, other.edge_sigmas);
+  append(&opening_sigmas, other.opening_sigmas);
+  append(&length_sigmas, other.length_sigmas);
+  fracture.add(other.fracture);
+}
+
+void FractureScore::add(const FractureScore& other) {
+  right_on += other.right_on;
+  false_on += other.false_on;
+  right_touching += other.right_touching;
+  false_touching += other.false_touching;
+  append(&depth_um, other.depth_um);
+}
+
+FractureScore score_fractures(const VertexGraph& graph, const std::vector<std::int32_t>& wedge_of,
+                              const std::vector<sim::SurfaceKind>& kinds, const std::vector<int>& pair,
+                              const std::vector<Wedge>& found, const std::vector<Wedge>& truth,
+                              const ScoreOptions& options) {
+  std::vector<int> all(pair.size());
+  std::vector<int> on(pair.size());
+  std::vector<int> touching(pair.size());
+  const auto broken = [&](std::size_t v) { return kinds[v] == sim::SurfaceKind::kFracture; };
+  for (std::size_t v = 0; v < std::min(wedge_of.size(), kinds.size()); ++v) {
+    if (wedge_of[v] >= 0) {
+      const auto wedge = static_cast<std::size_t>(wedge_of[v]);
+      ++all[wedge];
+      on[wedge] += broken(v) ? 1 : 0;
+      const auto ring = graph.ring(static_cast<std::uint32_t>(v));
+      touching[wedge] += broken(v) || std::ranges::any_of(ring, broken) ? 1 : 0;
+    }
+  }
+  FractureScore score;
+  for (std::size_t f = 0; f < pair.size(); ++f) {
+    const int touches = touching[f] > 0 ? 1 : 0;
+    const int lies = 2 * on[f] > all[f] ? 1 : 0;
+    (pair[f] >= 0 ? score.right_touching : score.false_touching) += touches;
+    (pair[f] >= 0 ? score.right_on : score.false_on) += lies;
+    if (touches > 0 && pair[f] >= 0) {
+      const Wedge& true_one = truth[static_cast<std::size_t>(pair[f])];
+      if (true_one.intact >= options.least_intact) {
+        score.depth_um.push_back(1000.0 * std::abs(found[f].depth_mm - true_one.depth_mm));
+      }
+    }
+  }
+  return score;
 }
 
 WedgeScore score_wedges(const std::vector<Wedge>& found, const std::vector<Wedge>& truth,

@@ -5,9 +5,19 @@
 #include <cstdint>
 #include <vector>
 
+#include "analysis/vertex_graph.h"
 #include "core/wedge.h"
+#include "sim/tablet.h"
 
 namespace dubsar::bench {
+
+/// Found wedges on fracture faces; remains of true wedges are wedges.
+struct FractureScore {
+  int right_on = 0, false_on = 0;              ///< more than half of their vertices lie on a fracture
+  int right_touching = 0, false_touching = 0;  ///< some of their vertices do, or border one
+  std::vector<double> depth_um;  ///< errors of the depths of those that touch one, so far intact as others
+  void add(const FractureScore& other);
+};
 
 /// Found wedges against true ones, over any number of tablets.
 struct WedgeScore {
@@ -18,6 +28,9 @@ struct WedgeScore {
   int directional_right = 0;
   std::vector<double> depth_point_um, depth_um, edge_deg, opening_deg;
   std::vector<double> false_confidence, right_confidence;
+  FractureScore fracture;
+  /// Errors in the standard deviations that the wedge itself states.
+  std::vector<double> depth_point_sigmas, depth_sigmas, edge_sigmas, opening_sigmas, length_sigmas;
   [[nodiscard]] double precision() const;
   [[nodiscard]] double recall() const;
   [[nodiscard]] double f1() const;
@@ -32,6 +45,14 @@ struct ScoreOptions {
 /// One to one, nearest depth points first. `pair`: [found] index of the true wedge, or -1.
 [[nodiscard]] WedgeScore score_wedges(const std::vector<Wedge>& found, const std::vector<Wedge>& truth,
                                       const ScoreOptions& options, std::vector<int>* pair = nullptr);
+
+/// Of those that score_wedges() has paired. `wedge_of`: [V] the found wedge that a vertex belongs to, or -1;
+/// `kinds`: [V] what truly made the surface there; `pair`: as score_wedges() fills it.
+[[nodiscard]] FractureScore score_fractures(const VertexGraph& graph,
+                                            const std::vector<std::int32_t>& wedge_of,
+                                            const std::vector<sim::SurfaceKind>& kinds,
+                                            const std::vector<int>& pair, const std::vector<Wedge>& found,
+                                            const std::vector<Wedge>& truth, const ScoreOptions& options);
 
 [[nodiscard]] double median(std::vector<double> values);
 

@@ -32,6 +32,7 @@ using Action = std::function<Result<int>(CommandContext&)>;
 /// Each registers its verb with the parser and, when the verb is chosen, sets `chosen`.
 void add_drivers(CLI::App& app, Action& chosen);
 void add_simulate(CLI::App& app, Action& chosen);
+void add_calibrate(CLI::App& app, Action& chosen);
 void add_scan(CLI::App& app, Action& chosen);
 void add_register(CLI::App& app, Action& chosen);
 void add_plan(CLI::App& app, Action& chosen);
@@ -42,6 +43,7 @@ void add_mesh(CLI::App& app, Action& chosen);
 void add_search(CLI::App& app, Action& chosen);
 void add_verify(CLI::App& app, Action& chosen);
 void add_session(CLI::App& app, Action& chosen);
+void add_station(CLI::App& app, Action& chosen);
 void add_bench(CLI::App& app, Action& chosen);
 
 }  // namespace dubsar

@@ -26,14 +26,22 @@ Result<int> search(const SearchArguments& arguments, CommandContext& context) {
   if (!like) {
     return std::unexpected(like.error());
   }
-  const Result<Collection> collection = read_collection(arguments.folder);
+  const Result<Collection> collection = Collection::open(arguments.folder);
   if (!collection) {
     return std::unexpected(collection.error());
   }
-  for (const std::string& why : collection->skipped) {
-    log_warning("left out: " + why);
+  if (!collection->remark().empty()) {
+    log_warning(collection->remark());
   }
-  nlohmann::ordered_json json{{"collection", arguments.folder}, {"like", arguments.like}};
+  for (const IndexedTablet& file : collection->files()) {
+    if (!file.complaint.empty()) {
+      log_warning("left out: " + file.complaint);
+    }
+  }
+  nlohmann::ordered_json json{{"collection", arguments.folder},
+                              {"files", collection->files().size()},
+                              {"read_anew", collection->read_anew()},
+                              {"like", arguments.like}};
   const auto count = static_cast<std::size_t>(arguments.count);
   if (arguments.wedge >= 0) {
     const auto wedge = std::ranges::find(like->wedges, arguments.wedge, &Wedge::id);
@@ -43,7 +51,7 @@ Result<int> search(const SearchArguments& arguments, CommandContext& context) {
     }
     json["wedge"] = arguments.wedge;
     json["wedges"] = nlohmann::ordered_json::array();
-    for (const SimilarWedge& s : similar_wedges(*collection, *wedge, count)) {
+    for (const SimilarWedge& s : collection->similar_wedges(*wedge, count)) {
       json["wedges"].push_back({{"tablet", s.tablet}, {"id", s.wedge}, {"distance", s.distance}});
       if (!context.json) {
         std::printf("%8.3f  %s  wedge %d\n", s.distance, s.tablet.c_str(), s.wedge);
@@ -55,7 +63,7 @@ Result<int> search(const SearchArguments& arguments, CommandContext& context) {
                   "choose another tablet");
     }
     json["tablets"] = nlohmann::ordered_json::array();
-    for (const SimilarTablet& s : similar_tablets(*collection, like->wedges, count)) {
+    for (const SimilarTablet& s : collection->similar_tablets(*like, count)) {
       json["tablets"].push_back({{"tablet", s.tablet}, {"wedges", s.wedges}, {"distance", s.distance}});
       if (!context.json) {
         std::printf("%8.3f  %s  %d wedges\n", s.distance, s.tablet.c_str(), s.wedges);

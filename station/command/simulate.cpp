@@ -17,6 +17,7 @@
 #include "sim/scanner.h"
 #include "sim/tablet.h"
 #include "station/command/command.h"
+#include "station/command/simulate_rig.h"
 #include "station/tablet_file.h"
 
 namespace dubsar {
@@ -209,6 +210,8 @@ void add_simulate(CLI::App& app, Action& chosen) {
                   "fifteen pins around the rim; writes pins.json, as an operator clicks them");
   scans->callback(
       [&chosen, options] { chosen = [options](CommandContext& c) { return simulate_scans(*options, c); }; });
+
+  add_simulate_rig(*verb, chosen);
 
   for (CLI::App* sub : {tablet, scans}) {
     sub->add_option("--seed", options->seed, "the same seed gives the same bytes")->capture_default_str();

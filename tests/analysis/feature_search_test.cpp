@@ -51,6 +51,28 @@ TEST(FeatureSearch, IsExactInBothDistances) {
   }
 }
 
+TEST(FeatureSearch, ATreeThatWasKeptAnswersAlike) {
+  const auto rows = random_rows(500, 11);
+  const auto query = random_rows(501, 11).back();
+  for (const FeatureDistance kind : {FeatureDistance::kL1, FeatureDistance::kL2}) {
+    const FeatureSearch built(rows, kind);
+    const auto kept = FeatureSearch::with_tree(rows, kind, built.tree());
+    ASSERT_TRUE(kept);
+    const auto a = built.nearest(query, 20);
+    const auto b = kept->nearest(query, 20);
+    ASSERT_EQ(a.size(), b.size());
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      EXPECT_EQ(a[i].index, b[i].index);
+      EXPECT_EQ(a[i].distance, b[i].distance);
+    }
+    EXPECT_FALSE(FeatureSearch::with_tree(random_rows(499, 11), kind, built.tree()));
+    EXPECT_FALSE(FeatureSearch::with_tree(rows, kind, ""));
+    EXPECT_FALSE(FeatureSearch::with_tree(rows, kind, "no tree at all"));
+  }
+  EXPECT_TRUE(
+      FeatureSearch::with_tree({}, FeatureDistance::kL1, FeatureSearch({}, FeatureDistance::kL1).tree()));
+}
+
 TEST(FeatureSearch, OfLittleAndOfNothing) {
   EXPECT_TRUE(FeatureSearch({}, FeatureDistance::kL1).nearest({1, 2}, 3).empty());
   const FeatureSearch two({{1, 2}, {5, 6}}, FeatureDistance::kL2);

@@ -272,10 +272,18 @@ TEST(WedgesJson, ReadsBackAllThatWasMeasured) {
   wedge.volume_mm3 = 0.125;
   wedge.sigma.depth_point_mm = 0.01;
   wedge.sigma.opening_rad = {0.1, 0.2, 0.3};
+  wedge.sigma.face_slope_rad = {0.4, 0.5, 0.6};
+  wedge.sigma.volume_mm3 = 0.75;
   wedge.place = {Face::kReverse, 4, 17, -1.5};
   file.wedges = {wedge, Wedge{}};
   file.rejected = {{"too shallow", {7, 8, 9}}};
   file.timings_s = {{"reading", 0.5}};
+  WedgeProfile profile;
+  profile.side = Face::kReverse;
+  profile.count = 1;
+  profile.kinds[4] = 1;
+  profile.quantiles[3][8] = 2.5;
+  file.profiles = {profile};
   const std::string text = wedges_to_json(file);
   EXPECT_THAT(text, HasSubstr("\"exit_point_surface\""));
   EXPECT_THAT(text, HasSubstr("\"timings_s\""));
@@ -295,12 +303,26 @@ TEST(WedgesJson, ReadsBackAllThatWasMeasured) {
   EXPECT_EQ(w.edge_bows_mm, wedge.edge_bows_mm);
   EXPECT_EQ(w.volume_mm3, 0.125);
   EXPECT_NEAR(w.sigma.opening_rad[2], 0.3, 1e-14);
+  EXPECT_NEAR(w.sigma.face_slope_rad[1], 0.5, 1e-14);
+  EXPECT_EQ(w.sigma.volume_mm3, 0.75);
   EXPECT_EQ(w.place.side, Face::kReverse);
   EXPECT_EQ(w.place.line, 4);
   EXPECT_EQ(w.place.order, 17);
   EXPECT_FALSE(back->wedges[1].place.side);
   ASSERT_EQ(back->rejected.size(), 1U);
   EXPECT_EQ(back->rejected[0].reason, "too shallow");
+  ASSERT_EQ(back->profiles.size(), 1U);
+  EXPECT_EQ(back->profiles[0].side, Face::kReverse);
+  EXPECT_EQ(back->profiles[0].count, 1);
+  EXPECT_EQ(back->profiles[0].kinds, profile.kinds);
+  EXPECT_EQ(back->profiles[0].quantiles, profile.quantiles);
+  // One of a version with other features is passed over, a broken one is not.
+  std::string other = text;
+  other.replace(other.find("second_opening_deg"), 6, "fourth");
+  ASSERT_TRUE(parse_wedges(other, "w"));
+  EXPECT_TRUE(parse_wedges(other, "w")->profiles.empty());
+  EXPECT_THAT(line_of(parse_wedges(R"({"wedges":[],"profiles":[{"of":"left side"}]})", "w")),
+              HasSubstr("profiles[0].of"));
   // What only the contract asks for is enough.
   EXPECT_TRUE(parse_wedges(truth_to_json({}), "t"));
   EXPECT_THAT(line_of(parse_wedges("{}", "w")), HasSubstr("w: wedges is missing"));

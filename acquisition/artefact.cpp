@@ -1,0 +1,256 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+// VDI/VDE 2634 part 2, Optical 3D measuring systems: systems with area scanning.
+#include "acquisition/artefact.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+
+#include "acquisition/calibration_laser.h"
+#include "acquisition/sphere_fit.h"
+#include "core/random.h"
+#include "core/units.h"
+#include "formats/number_text.h"
+
+namespace dubsar {
+
+namespace {
+
+constexpr double kLeftOut = 0.003;               // of the samples, as the guideline allows
+constexpr double kSeenWithin_rad = rad_from_deg(60);
+constexpr int kTries = 6000;
+constexpr std::size_t kLeastOnBall = 100;
+
+struct Found {
+  Sphere sphere;
+  std::vector<Eigen::Vector3d> points_mm;
+};
+
+std::string micrometres(double mm) {
+  return number_text(std::round(1e4 * mm) / 10) + " µm";
+}
+
+/// Largest less smallest value when the share of samples that lie farthest from the middle has been left out.
+double range_of(std::vector<double> values) {
+  const auto drop = static_cast<std::size_t>(kLeftOut * static_cast<double>(values.size()));
+  std::sort(values.begin(), values.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
+  values.resize(values.size() - drop);
+  const auto [low, high] = std::minmax_element(values.begin(), values.end());
+  return *high - *low;
+}
+
+/// The part of a ball that counts: near the sphere, facing the scanner.
+std::vector<Eigen::Vector3d> on_ball(const std::vector<Eigen::Vector3d>& points, const Sphere& sphere,
+                                     const Eigen::Vector3d& towards, double tolerance_mm) {
+  std::vector<Eigen::Vector3d> out;
+  for (const Eigen::Vector3d& p : points) {
+    const Eigen::Vector3d arm = p - sphere.center_mm;
+    if (std::abs(arm.norm() - sphere.radius_mm) <= tolerance_mm &&
+        arm.normalized().dot(towards) >= std::cos(kSeenWithin_rad)) {
+      out.push_back(p);
+    }
+  }
+  return out;
+}
+
+/// The ball of this diameter with the most samples on it. `free` says of each cell of the grid whether its sample
+/// is still to be had.
+std::optional<Found> find_ball(const RangeGrid& grid, const std::vector<std::uint8_t>& free, double diameter_mm,
+                               const Eigen::Vector3d& towards, Random& random) {
+  std::vector<std::size_t> cells;
+  std::vector<Eigen::Vector3d> points;
+  for (std::size_t i = 0; i < free.size(); ++i) {
+    if (free[i] != 0) {
+      cells.push_back(i);
+      points.push_back(grid.point(i).cast<double>());
+    }
+  }
+  if (points.size() < kLeastOnBall) {
+    return std::nullopt;
+  }
+  const double radius = 0.5 * diameter_mm;
+  const double tolerance = 0.03 * radius;
+  const double spacing = grid.spacing_mm > 0 ? grid.spacing_mm : estimate_spacing_mm(grid);
+  const auto reach = static_cast<std::uint64_t>(std::max(2.0, 0.7 * radius / std::max(1e-6, spacing)));
+  Sphere best;
+  std::size_t most = 0;
+  // Counting on a part of the samples is enough to choose between candidates.
+  const std::size_t stride = std::max<std::size_t>(1, points.size() / 4000);
+  for (int i = 0; i < kTries; ++i) {
+    const std::size_t seed = random.below(cells.size());
+    const Eigen::Vector3d& a = points[seed];
+    std::array<Eigen::Vector3d, 3> others;
+    bool near = true;
+    for (Eigen::Vector3d& other : others) {
+      const int row = grid.row_of(cells[seed]) + static_cast<int>(random.below(2 * reach + 1)) - static_cast<int>(reach);
+      const int col = grid.col_of(cells[seed]) + static_cast<int>(random.below(2 * reach + 1)) - static_cast<int>(reach);
+      near = near && grid.inside(row, col) && free[grid.index(row, col)] != 0;
+      if (near) {
+        other = grid.point(grid.index(row, col)).cast<double>();
+        near = (other - a).norm() < 1.8 * radius && (other - a).norm() > 0.1 * radius;
+      }
+    }
+    if (!near) {
+      continue;
+    }
+    const auto sphere = sphere_through(a, others[0], others[1], others[2]);
+    if (!sphere || std::abs(sphere->radius_mm - radius) > 0.1 * radius ||
+        (a - sphere->center_mm).dot(towards) < 0) {
+      continue;
+    }
+    std::size_t count = 0;
+    for (std::size_t k = 0; k < points.size(); k += stride) {
+      count += std::abs(sphere->signed_distance_mm(points[k])) <= tolerance ? 1 : 0;
+    }
+    if (count > most) {
+      most = count;
+      best = *sphere;
+    }
+  }
+  if (most * stride < kLeastOnBall) {
+    return std::nullopt;
+  }
+  Found out{best, {}};
+  for (int round = 0; round < 4; ++round) {
+    out.points_mm = on_ball(points, out.sphere, towards, round < 2 ? 2 * tolerance : tolerance);
+    const auto fitted = fit_sphere(out.points_mm, out.sphere);
+    if (!fitted) {
+      return std::nullopt;
+    }
+    out.sphere = *fitted;
+  }
+  if (std::abs(out.sphere.radius_mm - radius) > 0.1 * radius || out.points_mm.size() < kLeastOnBall) {
+    return std::nullopt;
+  }
+  return out;
+}
+
+/// Which found ball is which: the order whose distances agree best with the certificate.
+std::vector<std::size_t> assigned(const std::vector<Found>& found, const Artefact& artefact) {
+  std::vector<std::size_t> order(found.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::vector<std::size_t> best = order;
+  double least = 1e300;
+  do {
+    double sum = 0;
+    for (std::size_t i = 0; i < order.size(); ++i) {
+      const Artefact::Ball& ball = artefact.balls[i];
+      sum += std::pow(2 * found[order[i]].sphere.radius_mm - ball.diameter_mm, 2);
+      for (std::size_t k = 0; k < i; ++k) {
+        const double is = (found[order[i]].sphere.center_mm - found[order[k]].sphere.center_mm).norm();
+        sum += std::pow(is - (ball.center_mm - artefact.balls[k].center_mm).norm(), 2);
+      }
+    }
+    if (sum < least) {
+      least = sum;
+      best = order;
+    }
+  } while (std::next_permutation(order.begin(), order.end()));
+  return best;
+}
+
+void judge(const Artefact& artefact, Verification& out) {
+  const auto over = [&](const std::string& what, double is, double limit) {
+    if (std::abs(is) > limit) {
+      out.failed.push_back(what + " is " + micrometres(is) + ", the limit " + micrometres(limit));
+    }
+  };
+  for (const MeasuredBall& ball : out.balls) {
+    const std::string name = "ball " + std::to_string(ball.certified + 1);
+    over("probing error (form) of " + name, ball.form_mm, artefact.form_limit_mm);
+    over("probing error (size) of " + name, ball.size_mm, artefact.size_limit_mm);
+  }
+  for (const MeasuredSpacing& spacing : out.spacings) {
+    over("sphere spacing error of balls " + std::to_string(spacing.a + 1) + " and " + std::to_string(spacing.b + 1),
+         spacing.error_mm, artefact.spacing_limit_mm);
+  }
+  if (out.flatness_mm) {
+    over("flatness error", *out.flatness_mm, artefact.flatness_limit_mm);
+  }
+}
+
+}  // namespace
+
+double Verification::worst_mm() const {
+  double worst = flatness_mm.value_or(0);
+  for (const MeasuredBall& ball : balls) {
+    worst = std::max({worst, ball.form_mm, std::abs(ball.size_mm)});
+  }
+  for (const MeasuredSpacing& spacing : spacings) {
+    worst = std::max(worst, std::abs(spacing.error_mm));
+  }
+  return worst;
+}
+
+Result<Verification> verify_artefact(const RangeGrid& grid, const Artefact& artefact) {
+  std::vector<std::uint8_t> free = grid.valid;
+  if (grid.valid_count() == 0) {
+    return bad_input(grid.source, "there is not a single sample in the scan", "scan the artefact again");
+  }
+  const Eigen::Vector3d towards = -grid.view.direction.normalized();
+  Random random(1);
+  Verification out;
+  std::vector<Found> found;
+  for (const Artefact::Ball& wanted : artefact.balls) {
+    std::optional<Found> ball = find_ball(grid, free, wanted.diameter_mm, towards, random);
+    if (!ball) {
+      break;
+    }
+    for (std::size_t i = 0; i < free.size(); ++i) {
+      if (free[i] != 0 && (grid.point(i).cast<double>() - ball->sphere.center_mm).norm() < 1.05 * ball->sphere.radius_mm) {
+        free[i] = 0;
+      }
+    }
+    found.push_back(std::move(*ball));
+  }
+  if (found.size() < artefact.balls.size()) {
+    out.failed.push_back("only " + std::to_string(found.size()) + " of " + std::to_string(artefact.balls.size()) +
+                         " balls were found");
+  } else {
+    const std::vector<std::size_t> order = assigned(found, artefact);
+    for (std::size_t i = 0; i < order.size(); ++i) {
+      const Found& ball = found[order[i]];
+      std::vector<double> distances;
+      for (const Eigen::Vector3d& p : ball.points_mm) {
+        distances.push_back(ball.sphere.signed_distance_mm(p));
+      }
+      const double diameter = 2 * ball.sphere.radius_mm;
+      out.balls.push_back({i, ball.sphere.center_mm, diameter, range_of(distances),
+                           diameter - artefact.balls[i].diameter_mm, ball.points_mm.size()});
+      for (std::size_t k = 0; k < i; ++k) {
+        const double is = (ball.sphere.center_mm - found[order[k]].sphere.center_mm).norm();
+        const double should = (artefact.balls[i].center_mm - artefact.balls[k].center_mm).norm();
+        out.spacings.push_back({k, i, is - should});
+      }
+    }
+  }
+  if (artefact.has_plane) {
+    std::vector<Eigen::Vector3d> points;
+    for (std::size_t i = 0; i < free.size(); ++i) {
+      if (free[i] != 0) {
+        points.push_back(grid.point(i).cast<double>());
+      }
+    }
+    const Result<PlaneFit> fit = fit_plane(points);
+    std::vector<double> distances;
+    for (std::size_t i = 0; fit && i < points.size(); ++i) {
+      // What lies far off is another thing; what lies a little off is the error that is asked for.
+      const double d = fit->plane.signed_distance_mm(points[i]);
+      if (std::abs(d) < std::max(0.1, 10 * fit->rms_mm)) {
+        distances.push_back(d);
+      }
+    }
+    if (distances.size() < kLeastOnBall) {
+      out.failed.emplace_back("the plane was not found");
+    } else {
+      out.plane_samples = distances.size();
+      out.flatness_mm = range_of(distances);
+    }
+  }
+  judge(artefact, out);
+  return out;
+}
+
+}  // namespace dubsar

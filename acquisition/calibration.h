@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "acquisition/calibration_views.h"
+#include "core/rig_calibration.h"
+
+namespace dubsar {
+
+struct CalibrationOptions {
+  BoardSpec board;
+  /// Nothing: the camera alone, or camera and laser, are calibrated.
+  std::optional<MotionKind> motion;
+  double depth_range_mm = 40;
+  /// A calibration worse than these is refused.
+  double most_corner_px = 1.0;
+  double most_stripe_px = 1.0;
+  double most_focal_share = 0.005;  ///< standard deviation of the focal length over its value
+  double most_volume_sigma_um = 50;
+};
+
+/// What was found, and what the pictures still lack.
+struct CalibrationReport {
+  RigCalibration rig;
+  std::vector<std::string> missing;  ///< what to do next, most useful first; empty when nothing is missing
+};
+
+/// Camera, laser plane and stage from views of a board, refined together. Views without stripes calibrate the
+/// camera alone. Errors (kBadInput): the pictures do not determine the rig or contradict it, with the reason
+/// and what to do.
+[[nodiscard]] Result<CalibrationReport> calibrate_rig(const std::vector<CalibrationView>& views,
+                                                      const CalibrationOptions& options);
+
+/// Which poses of the board are missing: parts of the picture where no corner was, sides that it was not
+/// tilted to, and (with stripes) depths and sides of the volume where the stripe was never seen on it.
+[[nodiscard]] std::vector<std::string> missing_poses(const std::vector<CalibrationView>& views,
+                                                     const Intrinsics& intrinsics, const BoardSpec& board,
+                                                     const Plane* laser);
+
+}  // namespace dubsar

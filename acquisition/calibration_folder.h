@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "acquisition/calibration.h"
+#include "core/job.h"
+#include "formats/calibration_set.h"
+
+namespace dubsar {
+
+/// The pictures of a calibration, looked at.
+struct CalibrationPictures {
+  BoardSpec board;
+  std::vector<CalibrationView> views;
+  std::vector<std::string> left_out;  ///< pictures without a board, and why
+};
+
+/// Reads the pictures that `set` names in `folder`, finds the board in each and the stripe where there is one.
+/// A picture without a board is left out and told; a file that is not there or no picture is an error. Errors:
+/// kBadInput, kUsage (the board's name), kCancelled.
+[[nodiscard]] Result<CalibrationPictures> look_at_pictures(const std::filesystem::path& folder,
+                                                           const CalibrationSet& set, const JobContext& job);
+
+/// The set for a folder without a calibration.toml: every picture in it shows the board, in name order.
+[[nodiscard]] Result<CalibrationSet> set_of_folder(const std::filesystem::path& folder, const std::string& board);
+
+}  // namespace dubsar

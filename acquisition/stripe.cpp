@@ -1,0 +1,261 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "acquisition/stripe.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include "acquisition/stripe_fit.h"
+
+namespace dubsar {
+
+namespace {
+
+constexpr int kBlock = 16;     // rows whose maximum is kept
+constexpr int kMostHalf = 24;  // rows looked at on either side of a peak
+constexpr int kSide = 2 * kMostHalf + 1;
+
+GrayImage transposed(const GrayView& image) {
+  constexpr int kTile = 32;
+  GrayImage out(image.height, image.width);
+  for (int v0 = 0; v0 < image.height; v0 += kTile) {
+    for (int u0 = 0; u0 < image.width; u0 += kTile) {
+      for (int v = v0; v < std::min(image.height, v0 + kTile); ++v) {
+        const std::uint8_t* line = image.row(v);
+        for (int u = u0; u < std::min(image.width, u0 + kTile); ++u) {
+          out.pixels[out.index(v, u)] = line[u];
+        }
+      }
+    }
+  }
+  return out;
+}
+
+int over_background(const GrayView& on, const GrayView& off, int u, int v) {
+  return on.row(v)[u] - (off.empty() ? 0 : off.row(v)[u]);
+}
+
+}  // namespace
+
+Status StripeOptions::check() const {
+  if (!(sigma_px >= 0.3 && sigma_px <= 6)) {
+    return fail(ErrorKind::kUsage, "the stripe's width is from 0.3 to 6 px (standard deviation)");
+  }
+  if (least_peak < 1 || least_peak > 254 || saturated_from < 2 || most_saturated_px < 0 ||
+      !(second_share > 0 && second_share <= 1) || !(widest > 1)) {
+    return fail(ErrorKind::kUsage, "a limit of the stripe detector makes no sense");
+  }
+  return {};
+}
+
+void StripeProfile::resize(std::size_t count) {
+  at_px.assign(count, 0.0F);
+  peak.assign(count, 0.0F);
+  confidence.assign(count, 0.0F);
+  state.assign(count, StripeState::kNone);
+}
+
+std::size_t StripeProfile::count_of(StripeState which) const {
+  return static_cast<std::size_t>(std::count(state.begin(), state.end(), which));
+}
+
+void StripeExtractor::extract(const GrayView& on_given, const GrayView& off_given, StripeProfile& profile) {
+  GrayView on = on_given;
+  GrayView off = off_given;
+  if (on.empty() || (!off.empty() && !off.same_size(on))) {
+    profile.resize(0);
+    return;
+  }
+  if (options_.axis == StripeAxis::kPerRow) {
+    turned_on_ = transposed(on);
+    on = turned_on_.view();
+    if (!off.empty()) {
+      turned_off_ = transposed(off);
+      off = turned_off_.view();
+    }
+  }
+  profile.resize(static_cast<std::size_t>(on.width));
+  find_peaks(on, off);
+  for (int u = 0; u < on.width; ++u) {
+    refine(on, off, u, profile);
+  }
+}
+
+void StripeExtractor::find_peaks(const GrayView& on, const GrayView& off) {
+  const auto width = static_cast<std::size_t>(on.width);
+  blocks_ = (on.height + kBlock - 1) / kBlock;
+  block_peak_.assign(static_cast<std::size_t>(blocks_) * width, 0);
+  best_.assign(width, 0);
+  second_.assign(width, 0);
+  best_block_.assign(width, 0);
+  for (int block = 0; block < blocks_; ++block) {
+    std::uint8_t* const peak = block_peak_.data() + static_cast<std::size_t>(block) * width;
+    const int end = std::min(on.height, (block + 1) * kBlock);
+    for (int v = block * kBlock; v < end; ++v) {
+      const std::uint8_t* const line = on.row(v);
+      if (off.empty()) {
+        for (std::size_t u = 0; u < width; ++u) {
+          peak[u] = std::max(peak[u], line[u]);
+        }
+      } else {
+        const std::uint8_t* const dark = off.row(v);
+        for (std::size_t u = 0; u < width; ++u) {
+          const auto signal = static_cast<std::uint8_t>(std::max(line[u], dark[u]) - dark[u]);
+          peak[u] = std::max(peak[u], signal);
+        }
+      }
+    }
+  }
+  for (int block = 0; block < blocks_; ++block) {
+    const std::uint8_t* const peak = block_peak_.data() + static_cast<std::size_t>(block) * width;
+    const auto number = static_cast<std::uint16_t>(block);
+    for (std::size_t u = 0; u < width; ++u) {
+      best_block_[u] = peak[u] > best_[u] ? number : best_block_[u];
+      best_[u] = std::max(best_[u], peak[u]);
+    }
+  }
+  for (int block = 0; block < blocks_; ++block) {
+    const std::uint8_t* const peak = block_peak_.data() + static_cast<std::size_t>(block) * width;
+    const auto number = static_cast<std::uint16_t>(block);
+    for (std::size_t u = 0; u < width; ++u) {
+      const int apart = std::max(number, best_block_[u]) - std::min(number, best_block_[u]);
+      const std::uint8_t other = apart > 1 ? peak[u] : std::uint8_t{0};
+      second_[u] = std::max(second_[u], other);
+    }
+  }
+}
+
+std::optional<double> StripeExtractor::ridge_row(const GrayView& on, const GrayView& off, int column,
+                                                 double start) const {
+  const int r = ridge_.radius();
+  std::array<float, RidgeDetector::kMostSide * RidgeDetector::kMostSide> values{};
+  int v = static_cast<int>(std::lround(start));
+  std::optional<double> crossing;
+  for (int round = 0; round < 2; ++round) {
+    for (int dv = -r; dv <= r; ++dv) {
+      const int vv = std::clamp(v + dv, 0, on.height - 1);
+      for (int du = -r; du <= r; ++du) {
+        const int uu = std::clamp(column + du, 0, on.width - 1);
+        values[static_cast<std::size_t>((dv + r) * (2 * r + 1) + du + r)] =
+            static_cast<float>(over_background(on, off, uu, vv));
+      }
+    }
+    crossing = ridge_.ridge_px({values.data(), r});
+    if (!crossing) {
+      return std::nullopt;
+    }
+    if (std::abs(*crossing) <= 0.6 || round == 1) {
+      break;
+    }
+    v = std::clamp(v + static_cast<int>(std::lround(*crossing)), 0, on.height - 1);
+  }
+  return v + *crossing;
+}
+
+void StripeExtractor::refine(const GrayView& on, const GrayView& off, int column,
+                             StripeProfile& profile) const {
+  const auto i = static_cast<std::size_t>(column);
+  if (best_[i] < options_.least_peak) {
+    return;
+  }
+  // The peak's row: the brightest three rows together, which one hot pixel does not win.
+  const int first = std::max(0, (best_block_[i] - 1) * kBlock);
+  const int last = std::min(on.height, (best_block_[i] + 2) * kBlock);
+  std::array<float, 3 * kBlock> strip{};
+  const int length = last - first;
+  for (int k = 0; k < length; ++k) {
+    strip[static_cast<std::size_t>(k)] = static_cast<float>(over_background(on, off, column, first + k));
+  }
+  int top = 0;
+  float most = -1;
+  for (int k = 1; k + 1 < length; ++k) {
+    const auto at = static_cast<std::size_t>(k);
+    const float three = strip[at - 1] + 2 * strip[at] + strip[at + 1];
+    if (three > most) {
+      most = three;
+      top = k;
+    }
+  }
+  const double half = std::min<double>(kMostHalf - 4, 3 * options_.sigma_px);
+  const int window = static_cast<int>(std::ceil(half));
+  const int low = std::max(0, first + top - window - 3);
+  const int high = std::min(on.height - 1, first + top + window + 3);
+  std::array<float, kSide> cut{};
+  int saturated = 0;
+  for (int v = low; v <= high; ++v) {
+    cut[static_cast<std::size_t>(v - low)] = static_cast<float>(over_background(on, off, column, v));
+    saturated += on.row(v)[column] >= options_.saturated_from ? 1 : 0;
+  }
+  const auto size = static_cast<std::size_t>(high - low + 1);
+  // What is left of the background: the two ends, of which a neighbour's light may lift one.
+  const auto mean3 = [&](std::size_t from) { return (cut[from] + cut[from + 1] + cut[from + 2]) / 3; };
+  float ground = 0;
+  if (size >= 8) {
+    ground = off.empty() ? std::min(mean3(0), mean3(size - 3))
+                         : std::clamp(std::min(mean3(0), mean3(size - 3)), -2.0F, 2.0F);
+  }
+  float peak = 0;
+  for (std::size_t k = 0; k < size; ++k) {
+    cut[k] -= ground;
+    peak = std::max(peak, cut[k]);
+  }
+  const CrossSection signal(cut.data(), size);
+  profile.peak[i] = std::clamp(peak / 255.0F, 0.0F, 1.0F);
+  if (peak < static_cast<float>(options_.least_peak)) {
+    return;
+  }
+  if (saturated > options_.most_saturated_px) {
+    profile.state[i] = StripeState::kSaturated;
+    return;
+  }
+  // Another peak: in the strip outside the window, or far away in the column.
+  float other = static_cast<float>(second_[i]) - std::max(0.0F, ground);
+  for (int k = 0; k < length; ++k) {
+    if (std::abs(k - top) > window + 1) {
+      other = std::max(other, strip[static_cast<std::size_t>(k)] - ground);
+    }
+  }
+  if (other > static_cast<float>(options_.second_share) * peak &&
+      other >= static_cast<float>(options_.least_peak)) {
+    profile.state[i] = StripeState::kReflection;
+    return;
+  }
+  const double start = first + top - low;
+  std::optional<double> at = centroid_px(signal, start, half);
+  if (at) {
+    // Smeared? The rows from the first to the last that are half as bright as the peak.
+    std::size_t from = size;
+    std::size_t to = 0;
+    for (std::size_t k = 0; k < size; ++k) {
+      if (cut[k] >= 0.5F * peak) {
+        from = std::min(from, k);
+        to = k;
+      }
+    }
+    constexpr double kHalfHeight = 2.355;  // full width there over the standard deviation of a Gaussian
+    if (static_cast<double>(to - from + 1) > options_.widest * kHalfHeight * options_.sigma_px) {
+      profile.state[i] = StripeState::kWide;
+      return;
+    }
+    if (options_.method == StripeMethod::kGaussian) {
+      at = gaussian_px(signal, *at, half, std::max(2.0, 0.1 * peak));
+    } else if (options_.method == StripeMethod::kSteger) {
+      const std::optional<double> row = ridge_row(on, off, column, low + *at);
+      at = row ? std::optional(*row - low) : std::nullopt;
+    }
+  }
+  if (!at) {
+    profile.state[i] = StripeState::kWide;
+    return;
+  }
+  profile.state[i] = StripeState::kGood;
+  profile.at_px[i] = static_cast<float>(low + *at);
+  const float bright = std::min(1.0F, peak / (4.0F * static_cast<float>(options_.least_peak)));
+  const float clipped = 1.0F - 0.15F * static_cast<float>(saturated);
+  const float alone = 1.0F - std::max(0.0F, other) / peak;
+  profile.confidence[i] = std::clamp(bright * clipped * alone, 0.01F, 1.0F);
+}
+
+}  // namespace dubsar

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "acquisition/stripe_fit.h"
+#include "core/gray_image.h"
+#include "core/result.h"
+
+namespace dubsar {
+
+/// How the middle of the stripe is found. `dubsar-stripe` (bench/accuracy) measures them against each other.
+enum class StripeMethod {
+  kCentroid,  ///< centre of mass over the background
+  kGaussian,  ///< weighted least squares of a parabola to the logarithm
+  kSteger,    ///< ridge of the smoothed image
+};
+
+/// Which way the stripe runs through the image.
+enum class StripeAxis {
+  kPerColumn,  ///< one sample per image column: the stripe runs across
+  kPerRow,     ///< one sample per image row: the stripe runs from top to bottom
+};
+
+struct StripeOptions {
+  StripeMethod method = StripeMethod::kSteger;
+  StripeAxis axis = StripeAxis::kPerColumn;
+  double sigma_px = 1.2;      ///< of the stripe's cross section, about
+  int least_peak = 12;        ///< grey values over the background: less is no stripe
+  int saturated_from = 254;   ///< grey value that may have been more
+  int most_saturated_px = 4;  ///< across the stripe; more and its middle is a guess
+  double widest = 2.5;        ///< times sigma_px: a wider one is no clean stripe
+  double second_share = 0.5;  ///< another peak of this share of the best makes the sample doubtful: left out
+  /// Errors (kUsage): numbers that make no sense.
+  [[nodiscard]] Status check() const;
+};
+
+/// What became of a column.
+enum class StripeState : std::uint8_t {
+  kGood = 0,
+  kNone,        ///< nothing as bright as a stripe
+  kSaturated,   ///< too many saturated pixels
+  kReflection,  ///< two peaks, one of which is a reflection
+  kWide,        ///< smeared: an edge, a blurred or a washed-out stripe
+};
+
+/// One sample per column (or row, see StripeAxis).
+struct StripeProfile {
+  std::vector<float> at_px;       ///< where the stripe is; of no meaning unless good
+  std::vector<float> peak;        ///< over the background, share of the full range
+  std::vector<float> confidence;  ///< [0,1]; 0 unless good
+  std::vector<StripeState> state;
+  void resize(std::size_t count);
+  [[nodiscard]] std::size_t count_of(StripeState which) const;
+};
+
+/// Finds the laser stripe in frames of one size. Keeps its scratch memory between frames: use one per thread.
+/// One pass over the pixels, which runs at memory speed, then a few dozen pixels per column.
+class StripeExtractor {
+ public:
+  explicit StripeExtractor(const StripeOptions& options)
+      : options_(options), ridge_(std::max(0.8, options.sigma_px)) {}
+
+  [[nodiscard]] const StripeOptions& options() const { return options_; }
+  /// `off` is a frame of the same size without the laser and is subtracted first; an empty one is allowed.
+  void extract(const GrayView& on, const GrayView& off, StripeProfile& profile);
+
+ private:
+  void find_peaks(const GrayView& on, const GrayView& off);
+  void refine(const GrayView& on, const GrayView& off, int column, StripeProfile& profile) const;
+
+  [[nodiscard]] std::optional<double> ridge_row(const GrayView& on, const GrayView& off, int column,
+                                                double start) const;
+
+  StripeOptions options_;
+  RidgeDetector ridge_;
+  int blocks_ = 0;
+  std::vector<std::uint8_t> block_peak_;   ///< [blocks × columns]
+  std::vector<std::uint8_t> best_;         ///< [columns] the highest block peak
+  std::vector<std::uint16_t> best_block_;  ///< [columns]
+  std::vector<std::uint8_t> second_;       ///< [columns] the highest that is not beside it
+  GrayImage turned_on_, turned_off_;
+};
+
+}  // namespace dubsar

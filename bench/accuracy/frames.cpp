@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+// The stripe detectors against each other on simulated frames, and the whole way from frames to a grid
+// against the true surface: px and µm.
+//   dubsar-frames [--frames N] [--height PX] [--contrast C …] [--f-number N]
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <vector>
+
+#include "acquisition/triangulate.h"
+#include "core/mesh_query.h"
+#include "sim/frame_renderer.h"
+#include "sim/frame_rig.h"
+#include "sim/tablet.h"
+
+namespace dubsar {
+namespace {
+
+struct Setup {
+  RigCalibration rig;
+  sim::SimTablet tablet;
+  std::optional<MeshQuery> query;
+  sim::Scene scene;
+  double top_mm = 0;
+};
+
+/// The tablet with its obverse in the middle of the volume, camera frame, stage at `position`.
+RigidTransform tablet_from_camera(const Setup& setup, double position) {
+  RigidTransform tablet_from_scanner;
+  tablet_from_scanner.translation_mm.z() = setup.top_mm - 1.0;
+  return tablet_from_scanner * setup.rig.scanner_from_camera() * setup.rig.motion.zero_from_camera(position);
+}
+
+struct Errors {
+  std::vector<double> values;
+  std::size_t outliers = 0;
+  double limit = 0;
+  void add(double error) {
+    if (std::abs(error) > limit) {
+      ++outliers;
+    } else {
+      values.push_back(error);
+    }
+  }
+  [[nodiscard]] double bias() const {
+    double sum = 0;
+    for (const double e : values) {
+      sum += e;
+    }
+    return values.empty() ? 0 : sum / static_cast<double>(values.size());
+  }
+  [[nodiscard]] double rms() const {
+    double sum = 0;
+    for (const double e : values) {
+      sum += e * e;
+    }
+    return values.empty() ? 0 : std::sqrt(sum / static_cast<double>(values.size()));
+  }
+  [[nodiscard]] double outlier_share() const {
+    const std::size_t all = values.size() + outliers;
+    return all == 0 ? 0 : static_cast<double>(outliers) / static_cast<double>(all);
+  }
+};
+
+void compare(const Setup& setup, const sim::FrameOptions& optics, int frames, bool ambient_frames) {
+  const sim::FrameRenderer renderer(setup.rig, optics);
+  std::vector<GrayImage> on;
+  std::vector<GrayImage> off;
+  std::vector<std::vector<double>> truth;
+  std::vector<double> positions;
+  for (int i = 0; i < frames; ++i) {
+    const double position = frames == 1 ? 0 : -6.0 + 12.0 * i / (frames - 1);
+    const sim::SceneTarget target(setup.scene, tablet_from_camera(setup, position));
+    positions.push_back(position);
+    on.push_back(renderer.render(target, true, position, static_cast<std::uint64_t>(2 * i)));
+    if (ambient_frames) {
+      off.push_back(renderer.render(target, false, position, static_cast<std::uint64_t>(2 * i + 1)));
+    }
+    truth.push_back(renderer.true_rows(target, position));
+  }
+  const double depth_per_px = setup.rig.depth_per_px_mm();
+  const Triangulator triangulator(setup.rig, StripeAxis::kPerColumn);
+  const double u_aperture = 0.5 * setup.rig.camera.fx_px * optics.pixel_um * 1e-3 /
+                            (1 + setup.rig.camera.fx_px * optics.pixel_um * 1e-3 / 250) / optics.f_number /
+                            250;
+  const double bound_um = optics.speckle_contrast * optics.wavelength_um / (2 * M_PI * std::sin(u_aperture)) /
+                          std::sin(rad_from_deg(25));
+  std::printf("contrast %.2f, f/%.1f, %s: bound %.1f um in depth\n", optics.speckle_contrast, optics.f_number,
+              ambient_frames ? "ambient frames" : "no ambient frames", bound_um);
+  std::printf("  %-9s %9s %9s %9s %8s %9s %9s %8s %8s\n", "method", "rms px", "bias px", "out >1px", "good",
+              "depth um", "bias um", "out", "us/frame");
+  for (const auto& [method, name] : {std::pair{StripeMethod::kCentroid, "centroid"},
+                                     {StripeMethod::kGaussian, "gaussian"},
+                                     {StripeMethod::kSteger, "steger"}}) {
+    StripeOptions options;
+    options.method = method;
+    StripeExtractor extractor(options);
+    StripeProfile stripe;
+    TriangulatedProfile profile;
+    Errors px{{}, 0, 1.0};
+    Errors mm{{}, 0, depth_per_px};
+    std::size_t good = 0;
+    std::size_t visible = 0;
+    for (std::size_t i = 0; i < on.size(); ++i) {
+      extractor.extract(on[i].view(), ambient_frames ? off[i].view() : GrayView{}, stripe);
+      triangulator.triangulate(stripe, positions[i], profile);
+      RigidTransform tablet_from_scanner;
+      tablet_from_scanner.translation_mm.z() = setup.top_mm - 1.0;
+      for (std::size_t u = 0; u < stripe.at_px.size(); ++u) {
+        visible += std::isfinite(truth[i][u]) ? 1 : 0;
+        if (stripe.state[u] != StripeState::kGood || !std::isfinite(truth[i][u])) {
+          continue;
+        }
+        ++good;
+        px.add(static_cast<double>(stripe.at_px[u]) - truth[i][u]);
+        if (profile.valid[u] != 0) {
+          const Eigen::Vector3d p = tablet_from_scanner * Eigen::Vector3d(static_cast<double>(profile.x[u]),
+                                                                          static_cast<double>(profile.y[u]),
+                                                                          static_cast<double>(profile.z[u]));
+          const auto hit = setup.query->first_hit((p + Eigen::Vector3d(0, 0, 1)).cast<float>(),
+                                                  -Eigen::Vector3f::UnitZ(), 0, 3);
+          mm.add(hit ? hit->distance_mm - 1.0 : 99.0);
+        }
+      }
+    }
+    const auto start = std::chrono::steady_clock::now();
+    constexpr int kRounds = 20;
+    for (int round = 0; round < kRounds; ++round) {
+      for (std::size_t i = 0; i < on.size(); ++i) {
+        extractor.extract(on[i].view(), ambient_frames ? off[i].view() : GrayView{}, stripe);
+        triangulator.triangulate(stripe, positions[i], profile);
+      }
+    }
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    std::printf("  %-9s %9.4f %9.4f %8.2f%% %7.1f%% %9.2f %9.2f %7.2f%% %8.0f\n", name, px.rms(), px.bias(),
+                100 * px.outlier_share(), 100.0 * static_cast<double>(good) / static_cast<double>(visible),
+                1e3 * mm.rms(), -1e3 * mm.bias(), 100 * mm.outlier_share(),
+                1e6 * seconds / (kRounds * static_cast<double>(on.size())));
+  }
+}
+
+int run(int argc, char** argv) {
+  CLI::App app("Stripe detectors and triangulation on simulated frames", "dubsar-frames");
+  int frames = 4;
+  double f_number = 5.6;
+  double sigma_mm = 0.02;
+  std::vector<double> contrasts{0, 0.5, 0.7, 1};
+  sim::FrameRigOptions size;
+  app.add_option("--frames", frames, "Frames per case")->check(CLI::Range(1, 1000));
+  app.add_option("--width", size.width);
+  app.add_option("--height", size.height);
+  app.add_option("--field", size.field_mm);
+  app.add_option("--f-number", f_number);
+  app.add_option("--laser-sigma", sigma_mm, "Of the sheet, mm");
+  app.add_option("--contrast", contrasts);
+  CLI11_PARSE(app, argc, argv);
+  for (const bool written : {false, true}) {
+    sim::TabletOptions wanted;
+    wanted.size_mm = {44, 36, 18};
+    wanted.text_density = written ? 1.0 : 0.0;
+    wanted.grain_um = written ? 12 : 0;
+    wanted.seal_um = written ? 20 : 0;
+    wanted.damage = sim::DamageOptions::none();
+    JobContext job;
+    Result<sim::SimTablet> made = sim::make_tablet(wanted, job);
+    if (!made) {
+      std::fprintf(stderr, "%s\n", made.error().line().c_str());
+      return 4;
+    }
+    Setup setup;
+    setup.rig = sim::frame_rig(size);
+    setup.tablet = std::move(*made);
+    setup.query.emplace(setup.tablet.mesh);
+    setup.scene.tablet = &setup.tablet;
+    setup.scene.query = &*setup.query;
+    for (const Eigen::Vector3f& p : setup.tablet.mesh.positions) {
+      setup.top_mm = std::max(setup.top_mm, static_cast<double>(p.z()));
+    }
+    std::printf("%s tablet, %d x %d, field %.0f mm, %.1f um a pixel, %.1f um of depth a pixel\n",
+                written ? "written" : "blank", size.width, size.height, size.field_mm,
+                1e3 * setup.rig.field_per_px_mm(), 1e3 * setup.rig.depth_per_px_mm());
+    for (const double contrast : contrasts) {
+      sim::FrameOptions optics;
+      optics.f_number = f_number;
+      optics.laser_sigma_mm = sigma_mm;
+      optics.speckle_contrast = contrast;
+      compare(setup, optics, frames, true);
+    }
+    sim::FrameOptions optics;
+    optics.f_number = f_number;
+    optics.laser_sigma_mm = sigma_mm;
+    compare(setup, optics, frames, false);
+  }
+  return 0;
+}
+
+}  // namespace
+}  // namespace dubsar
+
+int main(int argc, char** argv) {
+  return dubsar::run(argc, argv);
+}

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+// Seconds by stage of stitching scans of a simulated tablet, in memory, and the peak of memory; one line a
+// size, so that it shows whether time grows with the samples.
+//   dubsar-stitch-speed [--scans 12] [--repeat 1] MILLIONS …   samples of one scan
+
+#include <sys/resource.h>
+#include <tbb/info.h>
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <cstdio>
+#include <ctime>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "bench/support/simulated_views.h"
+#include "bench/support/statistics.h"
+#include "triangulation/stitcher.h"
+
+namespace {
+
+using namespace dubsar;
+using namespace dubsar::bench;
+using Clock = std::chrono::steady_clock;
+
+double peak_gib() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / (1024.0 * 1024.0);
+}
+
+double cpu_seconds() {
+  return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
+}
+
+/// Learns from a job's progress how long each stage takes.
+class StageClock {
+ public:
+  void enter(std::string_view stage) {
+    const Clock::time_point now = Clock::now();
+    const double cpu_s = cpu_seconds();
+    if (!stages_.empty()) {
+      stages_[at_].wall_s += std::chrono::duration<double>(now - since_).count();
+      stages_[at_].cpu_s += cpu_s - cpu_since_s_;
+    }
+    since_ = now;
+    cpu_since_s_ = cpu_s;
+    for (at_ = 0; at_ < stages_.size() && stages_[at_].name != stage; ++at_) {
+    }
+    if (at_ == stages_.size()) {
+      stages_.push_back({std::string(stage)});
+    }
+  }
+  void print() const {
+    for (const Stage& stage : stages_) {
+      if (stage.wall_s > 0) {
+        std::printf("    %-24s %8.3f s %8.3f s of processors\n", stage.name.c_str(), stage.wall_s, stage.cpu_s);
+      }
+    }
+  }
+
+ private:
+  struct Stage {
+    std::string name;
+    double wall_s = 0;
+    double cpu_s = 0;
+  };
+  std::vector<Stage> stages_;
+  std::size_t at_ = 0;
+  Clock::time_point since_;
+  double cpu_since_s_ = 0;
+};
+
+int measure(double millions, int scans, int repeat) {
+  const SimulatedViews views = make_views_of_millions(scans, millions);
+  const std::vector<PlacedScan> placed = views.placed();
+  const auto samples = static_cast<double>(views.samples());
+  for (int k = 0; k < repeat; ++k) {
+    StageClock stages;
+    const JobContext job([&](std::string_view stage, double) { stages.enter(stage); });
+    const auto start = Clock::now();
+    const double cpu_start_s = cpu_seconds();
+    const Result<Mesh> mesh = stitch(placed, {}, job);
+    const double took_s = seconds_since(start);
+    const double cpu_s = cpu_seconds() - cpu_start_s;
+    stages.enter("end");
+    if (!mesh) {
+      std::fprintf(stderr, "%s\n", mesh.error().line().c_str());
+      return 4;
+    }
+    std::printf(
+        "%d scans, %.2f million samples: %.2f s, %.2f million samples/s; %.2f s of processors, %.2f us a "
+        "sample; %.2f million faces; peak %.2f GiB\n",
+        scans, 1e-6 * samples, took_s, 1e-6 * samples / took_s, cpu_s, 1e6 * cpu_s / samples,
+        1e-6 * static_cast<double>(mesh->faces.size()), peak_gib());
+    stages.print();
+  }
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  std::vector<double> millions{1.0};
+  int scans = 12;
+  int repeat = 1;
+  CLI::App app("seconds by stage of stitching");
+  app.add_option("millions", millions);
+  app.add_option("--scans", scans);
+  app.add_option("--repeat", repeat);
+  CLI11_PARSE(app, argc, argv);
+  std::printf("%d threads\n", tbb::info::default_concurrency());
+  for (const double m : millions) {
+    if (const int status = measure(m, scans, repeat); status != 0) {
+      return status;
+    }
+  }
+  return 0;
+}

@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+// dubsar calibrate: camera, laser plane and stage from pictures of a board.
+
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+
+#include "acquisition/calibration_folder.h"
+#include "core/units.h"
+#include "formats/atomic_file.h"
+#include "formats/calibration_json.h"
+#include "formats/gray_file.h"
+#include "station/command/calibrate.h"
+#include "station/command/command.h"
+#include "station/results.h"
+
+namespace dubsar {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Options {
+  std::string source;
+  std::string board;
+  std::string serial;
+  std::string out;
+  std::string print;
+  VerifyOptions verify;
+};
+
+Result<CalibrationSet> set_for(const Options& options) {
+  std::error_code ignored;
+  const fs::path folder(options.source);
+  if (!fs::is_directory(folder, ignored)) {
+    return fail(ErrorKind::kUsage, "there is no such folder", options.source,
+                "give a folder with a calibration.toml, or with pictures of the board and --board");
+  }
+  const fs::path list = folder / "calibration.toml";
+  if (!fs::exists(list, ignored)) {
+    if (options.board.empty()) {
+      return fail(ErrorKind::kUsage, "there is no calibration.toml in it", options.source,
+                  "write one, or say --board for pictures of the board alone");
+    }
+    return set_of_folder(folder, options.board);
+  }
+  const Result<std::string> text = read_whole_file(list);
+  if (!text) {
+    return std::unexpected(text.error());
+  }
+  Result<CalibrationSet> set = parse_calibration_set(*text, list.string());
+  if (set && !options.board.empty()) {
+    set->board = options.board;
+  }
+  return set;
+}
+
+nlohmann::ordered_json report_json(const CalibrationReport& report, const std::vector<std::string>& unseen,
+                                   const std::string& file) {
+  // The file's own words, so that there is one form of a calibration and no second.
+  nlohmann::ordered_json json = nlohmann::ordered_json::parse(calibration_to_json(report.rig), nullptr, false);
+  json["pictures_left_out"] = unseen;
+  json["missing"] = report.missing;
+  if (!file.empty()) {
+    json["file"] = file;
+  }
+  return json;
+}
+
+void print_report(const CalibrationReport& report, const std::vector<std::string>& unseen) {
+  const RigCalibration& rig = report.rig;
+  const CalibrationQuality& q = rig.quality;
+  std::printf("camera: focal length %.1f x %.1f px (± %.1f), centre %.1f %.1f, from %d pictures\n", rig.camera.fx_px,
+              rig.camera.fy_px, q.focal_sigma_px, rig.camera.cx_px, rig.camera.cy_px, q.board_views);
+  std::printf("  corners off by %.3f px rms, %.1f µm on the board\n", q.corner_rms_px, q.corner_rms_um);
+  if (rig.has_laser) {
+    std::printf("laser plane: from %d pictures, stripe off by %.3f px rms, %.1f µm\n", q.stripe_views, q.stripe_rms_px,
+                q.stripe_rms_um);
+    std::printf("  one pixel is %.1f µm across, %.1f µm in depth\n", 1e3 * rig.field_per_px_mm(),
+                1e3 * rig.depth_per_px_mm());
+    std::printf("  points are known to %.1f µm against each other over the volume (1 σ, from the covariance)\n",
+                q.volume_sigma_um);
+  }
+  if (rig.has_motion) {
+    std::printf("stage: %s, direction known to %.3f°", motion_word(rig.motion.kind), deg_from_rad(q.axis_sigma_rad));
+    if (rig.motion.kind == MotionKind::kLinear) {
+      std::printf(", 1 mm of it is %.4f mm", rig.motion.direction.norm());
+    }
+    if (q.stage_positions > 0) {
+      std::printf(", board off by %.1f µm rms at %d positions", q.stage_rms_um, q.stage_positions);
+    }
+    std::printf("\n");
+  }
+  for (const std::string& line : unseen) {
+    std::printf("no board: %s\n", line.c_str());
+  }
+  for (const std::string& line : q.left_out) {
+    std::printf("left out: %s\n", line.c_str());
+  }
+  for (const std::string& line : report.missing) {
+    std::printf("next: %s\n", line.c_str());
+  }
+}
+
+Result<int> print_board(const Options& options) {
+  const Result<BoardSpec> board = parse_board(options.board);
+  if (!board) {
+    return std::unexpected(board.error());
+  }
+  constexpr int kTexels = 100;
+  if (Status status = write_gray_png(board_pattern(*board, kTexels), options.print); !status) {
+    return std::unexpected(status.error());
+  }
+  std::printf("%s: print it so that a square is %g mm wide (%g dots per inch), glue it on a flat plate and measure it\n",
+              options.print.c_str(), board->square_mm, 25.4 * kTexels / board->square_mm);
+  return 0;
+}
+
+Result<int> calibrate(const Options& options, CommandContext& context) {
+  if (!options.print.empty()) {
+    return print_board(options);
+  }
+  if (options.verify.wanted()) {
+    return verify_rig(options.verify, options.source, context);
+  }
+  Result<CalibrationSet> set = set_for(options);
+  if (!set) {
+    return std::unexpected(set.error());
+  }
+  const Result<CalibrationPictures> pictures = look_at_pictures(options.source, *set, context.job);
+  if (!pictures) {
+    return std::unexpected(pictures.error());
+  }
+  CalibrationOptions how;
+  how.board = pictures->board;
+  how.motion = set->motion;
+  how.depth_range_mm = set->depth_range_mm;
+  Result<CalibrationReport> report = calibrate_rig(pictures->views, how);
+  if (!report) {
+    Error error = report.error();
+    error.where = error.where.empty() ? options.source : options.source + ", " + error.where;
+    if (!pictures->left_out.empty()) {
+      error.what += " (" + std::to_string(pictures->left_out.size()) + " pictures without a board, the first: " +
+                    pictures->left_out.front() + ")";
+    }
+    return std::unexpected(std::move(error));
+  }
+  RigCalibration& rig = report->rig;
+  rig.made_at = utc_now();
+  rig.camera_serial = options.serial.empty() ? set->camera_serial : options.serial;
+  rig.temperature_c = set->temperature_c;
+  rig.note = set->note;
+  if (!options.out.empty()) {
+    if (Status status = write_file_atomically(options.out, calibration_to_json(rig)); !status) {
+      return std::unexpected(status.error());
+    }
+  }
+  if (context.json) {
+    CommandContext::print(report_json(*report, pictures->left_out, options.out));
+  } else {
+    finish_progress();
+    print_report(*report, pictures->left_out);
+  }
+  return report->missing.empty() ? 0 : 1;
+}
+
+}  // namespace
+
+void add_calibrate(CLI::App& app, Action& chosen) {
+  CLI::App* verb = app.add_subcommand(
+      "calibrate",
+      "Camera, laser plane and stage from pictures of a board; status 1 when a board pose is missing. With --verify, "
+      "a measured artefact against its certificate; status 1 when it fails");
+  const auto options = std::make_shared<Options>();
+  CLI::Option* source = verb->add_option("source", options->source,
+                                         "a folder with a calibration.toml, or with pictures of the board (--board); "
+                                         "with --verify a scan of the artefact");
+  verb->add_option("--board", options->board, "chessboard:9x6:25 (inner corners, mm) or charuco:9x7:5:3.7");
+  verb->add_option("--serial", options->serial, "of the camera; a rig refuses the calibration of another one");
+  verb->add_option("-o,--out", options->out, "the calibration, calibration.json");
+  CLI::Option* print = verb->add_option("--print", options->print, "write the board of --board as a PNG for printing");
+  print->excludes(source);
+  add_verify_options(*verb, options->verify);
+  verb->fallthrough();
+  verb->callback([&chosen, options] {
+    if (options->source.empty() && options->print.empty()) {
+      throw CLI::RequiredError("source");
+    }
+    chosen = [options](CommandContext& c) { return calibrate(*options, c); };
+  });
+}
+
+}  // namespace dubsar

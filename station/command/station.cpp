@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+// dubsar station: the window.
+
+#include <memory>
+
+#include "formats/pins_json.h"
+#include "station/command/command.h"
+#include "station/command/size_option.h"
+#include "ui/station_window.h"
+
+namespace dubsar {
+
+namespace {
+
+struct StationArguments {
+  ui::StationWindowOptions window;
+  std::string session;
+  std::string mesh;
+  std::string script;
+  std::string pins;
+};
+
+Result<int> open_station(const StationArguments& arguments, CommandContext& context) {
+  ui::StationWindowOptions options = arguments.window;
+  options.session = arguments.session;
+  options.mesh = arguments.mesh;
+  options.script = arguments.script;
+  if (!arguments.pins.empty()) {
+    Result<PinSet> pins = read_pins(arguments.pins);
+    if (!pins) {
+      return std::unexpected(pins.error());
+    }
+    options.pins = std::move(*pins);
+  }
+  show_progress(false);
+  const Result<int> status = ui::run_station_window(options, context.job);
+  if (status && context.json) {
+    CommandContext::print({{"session", arguments.session}, {"status", *status}});
+  }
+  return status;
+}
+
+}  // namespace
+
+void add_station(CLI::App& app, Action& chosen) {
+  CLI::App* verb = app.add_subcommand("station", "The window: scan a tablet, or look at a mesh");
+  const auto arguments = std::make_shared<StationArguments>();
+  verb->add_option("--session", arguments->session, "folder of the session; gone on with when it is there")
+      ->default_val("session");
+  verb->add_option("--device", arguments->window.device, "URI of the scanner; without it the one used last");
+  verb->add_option("--pins", arguments->pins, "the operator's pins (pins.json)");
+  verb->add_option("--mesh", arguments->mesh, "look at this mesh instead");
+  verb->add_option("--script", arguments->script,
+                   "play what a person would do (docs/operators/window_scripts.md)");
+  verb->add_option("--language", arguments->window.language, "of the window")
+      ->check(CLI::IsMember({"en", "de"}));
+  verb->add_option("--width", arguments->window.width, "of the window, pixels")
+      ->check(CLI::Range(640, 16384));
+  verb->add_option("--height", arguments->window.height, "of the window, pixels")
+      ->check(CLI::Range(480, 16384));
+  verb->fallthrough();
+  verb->callback([&chosen, arguments] {
+    chosen = [arguments](CommandContext& c) { return open_station(*arguments, c); };
+  });
+}
+
+}  // namespace dubsar

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+// A paced run: somebody stands beside the scanner, who turns the tablet and says when it may be scanned.
+#include "station/engine_impl.h"
+
+namespace dubsar {
+
+bool Engine::Impl::must_wait(const NextStep& step) const {
+  if (!asked_once) {
+    return options.first_scan_waits;
+  }
+  if (!drives) {
+    return !source->capabilities().finite;
+  }
+  const bool by_hand = step && step->view.placement && step->view.placement->hand_turn;
+  return by_hand || !last_scan_taken_up;
+}
+
+bool Engine::Impl::wait_for_operator(NextStep& step, const JobContext& job) {
+  if (!options.paced) {
+    return true;
+  }
+  std::unique_lock lock(mutex);
+  bool told = false;
+  bool changed = false;
+  for (;;) {
+    if (finish_asked || job.cancelled()) {
+      lock.unlock();
+      if (job.cancelled()) {
+        give_up(stopped());
+      }
+      return false;
+    }
+    if (changed_step) {
+      step = *std::exchange(changed_step, std::nullopt);
+      if (!step) {
+        return false;  // what they said has settled it
+      }
+      told = false;
+      changed = true;  // motors must not start because a scan was taken out
+    }
+    if ((told && scan_asked) || !(changed || must_wait(step))) {
+      scan_asked = false;
+      asked_once = true;
+      return true;
+    }
+    if (!told) {
+      scan_asked = false;  // of a key that was pressed too early: the tablet may not lie there yet
+      WaitsForOperator event;
+      if (step && !step->again) {
+        event.next = step->view;
+      }
+      event.not_taken_up = asked_once && !last_scan_taken_up;
+      lock.unlock();
+      emit(event);
+      lock.lock();
+      told = true;
+      continue;
+    }
+    // Cancelling a job wakes nobody.
+    pace.wait_for(lock, std::chrono::milliseconds(50));
+  }
+}
+
+void Engine::Impl::show_model(JobContext& job) {
+  if (!options.show_model || job.cancelled()) {
+    return;
+  }
+  Result<Mesh> mesh = planning.mesh(job);
+  if (!mesh || mesh->faces.empty()) {
+    return;
+  }
+  const auto shown = std::make_shared<const Mesh>(std::move(*mesh));
+  emit(ModelChanged{shown, std::make_shared<const ColouredPoints>(planning.red_points(*shown)),
+                    planning.tablet_from_model(*shown)});
+}
+
+}  // namespace dubsar

@@ -1,0 +1,307 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "station/live_session.h"
+
+#include <utility>
+
+#include "acquisition/sign_off_log.h"
+#include "core/tablet_frame.h"
+#include "formats/checklist_json.h"
+#include "formats/mesh_io.h"
+#include "formats/red_map_json.h"
+#include "station/scan_set.h"
+#include "station/signing.h"
+
+namespace dubsar {
+
+LiveSession::LiveSession(Options options, std::function<void()> on_change)
+    : options_(std::move(options)), on_change_(std::move(on_change)) {}
+
+LiveSession::~LiveSession() {
+  stop();
+  {
+    const std::scoped_lock lock(mutex_);
+    later_.clear();
+    scan_later_ = false;
+  }
+  if (worker_.joinable()) {
+    worker_.join();
+  }
+}
+
+LiveState LiveSession::state() const {
+  const std::scoped_lock lock(mutex_);
+  return state_;
+}
+
+GridPicture LiveSession::growing() const {
+  const std::scoped_lock lock(mutex_);
+  return growing_;
+}
+
+std::string LiveSession::device() const {
+  const std::scoped_lock lock(mutex_);
+  return options_.device;
+}
+
+void LiveSession::set_device(std::string uri) {
+  const std::scoped_lock lock(mutex_);
+  options_.device = std::move(uri);
+}
+
+void LiveSession::changed() const {
+  if (on_change_) {
+    on_change_();
+  }
+}
+
+void LiveSession::launch(std::function<void()> job) {
+  if (busy_.exchange(true)) {
+    return;
+  }
+  if (worker_.joinable()) {
+    worker_.join();
+  }
+  {
+    const std::scoped_lock lock(mutex_);
+    job_ = std::make_shared<JobContext>(
+        [this](std::string_view stage, double fraction) { progress(stage, fraction); });
+    state_.error.reset();
+  }
+  worker_ = std::thread([this, first = std::move(job)] {
+    first();
+    for (;;) {  // what was asked for meanwhile
+      std::vector<OperatorCommand> commands;
+      bool waits = true;
+      {
+        const std::scoped_lock lock(mutex_);
+        commands.assign(later_.begin(), later_.end());
+        later_.clear();
+        waits = !std::exchange(scan_later_, false);
+        if ((commands.empty() && waits) || job_->cancelled()) {
+          state_.phase = LivePhase::kStill;
+          state_.stage.clear();
+          busy_ = false;
+          break;
+        }
+      }
+      run_engine(std::move(commands), waits);
+    }
+    changed();
+  });
+}
+
+void LiveSession::end(const Status& status) {
+  const std::scoped_lock lock(mutex_);
+  if (!status && status.error().kind != ErrorKind::kCancelled) {
+    state_.error = status.error();
+  }
+}
+
+void LiveSession::read() {
+  launch([this] { read_folder(); });
+}
+
+void LiveSession::scan_now() {
+  {
+    const std::scoped_lock lock(mutex_);
+    if (engine_) {
+      engine_->post(ScanNow{});
+      return;
+    }
+    if (busy_) {
+      scan_later_ = true;
+      return;
+    }
+  }
+  launch([this] { run_engine({}, false); });
+}
+
+void LiveSession::finish() {
+  const std::scoped_lock lock(mutex_);
+  if (engine_) {
+    engine_->post(Finish{});
+  }
+}
+
+void LiveSession::stop() {
+  const std::scoped_lock lock(mutex_);
+  if (job_) {
+    job_->cancel();
+  }
+}
+
+void LiveSession::ask(OperatorCommand command) {
+  {
+    const std::scoped_lock lock(mutex_);
+    if (engine_ && engine_->post(command)) {
+      return;
+    }
+    if (busy_) {
+      later_.push_back(std::move(command));
+      return;
+    }
+  }
+  launch([this, command = std::move(command)] { run_engine({command}, true); });
+}
+
+void LiveSession::describe(const TabletRecord& record) {
+  {
+    const std::scoped_lock lock(mutex_);
+    state_.record = record;
+    if (engine_ && engine_->post(DescribeTablet{record})) {
+      return;
+    }
+    if (busy_) {
+      later_.push_back(DescribeTablet{record});
+      return;
+    }
+  }
+  launch([this, record] {
+    Result<SessionStore> store = SessionStore::open_or_create(options_.session);
+    end(store ? keep_tablet_record(*store, record) : std::unexpected(store.error()));
+  });
+}
+
+void LiveSession::sign(const SignOff& wanted) {
+  launch([this, wanted] {
+    {
+      const std::scoped_lock lock(mutex_);
+      state_.phase = LivePhase::kSigning;
+    }
+    changed();
+    const Result<Signing> signing = sign_verdict(options_.session, wanted, *job_);
+    if (!signing) {
+      end(std::unexpected(signing.error()));
+      return;
+    }
+    if (signing->refused) {
+      end(std::unexpected(*signing->refused));
+      return;
+    }
+    const std::scoped_lock lock(mutex_);
+    state_.checklist = signing->checklist;
+    state_.signed_off = true;
+    state_.signed_by = signing->made->name;
+    if (signing->no_pages) {
+      say(signing->no_pages->line());
+    }
+  });
+}
+
+void LiveSession::run_engine(std::vector<OperatorCommand> first, bool first_scan_waits) {
+  EngineOptions options;
+  JobContext* job = nullptr;
+  std::shared_ptr<Engine> engine;
+  {
+    const std::scoped_lock lock(mutex_);
+    options.device = options_.device;
+    options.session = options_.session;
+    options.pins = options_.pins;
+    options.automatic = true;
+    options.paced = true;
+    options.first_scan_waits = first_scan_waits;
+    options.show_model = true;
+    options.first_commands = std::move(first);
+    if (!(state_.record == TabletRecord{})) {
+      options.first_commands.insert(options.first_commands.begin(), DescribeTablet{state_.record});
+    }
+    engine = std::make_shared<Engine>(std::move(options), [this](const Event& event) { hear(event); });
+    engine_ = engine;
+    job = job_.get();
+    state_.phase = LivePhase::kOpening;
+    state_.next.reset();
+    state_.signed_off = false;
+    state_.checklist.reset();
+  }
+  changed();
+  const Result<EngineResult> result = engine->run(*job);
+  {
+    const std::scoped_lock lock(mutex_);
+    engine_.reset();
+    state_.next.reset();
+    if (result) {
+      follow(result->poses);
+      state_.red_map = std::make_shared<const RedMap>(result->red_map);
+      state_.checklist = result->checklist;
+      state_.error = result->device_error;
+      const auto& signed_off = result->checklist.sign_off;
+      state_.signed_off = signed_off && signed_off->holds();
+      state_.signed_by = state_.signed_off ? signed_off->sign_off.name : std::string();
+    }
+  }
+  if (!result) {
+    end(std::unexpected(result.error()));
+  }
+  changed();
+}
+
+void LiveSession::read_folder() {
+  if (!SessionStore::is_session(options_.session)) {
+    return;
+  }
+  {
+    const std::scoped_lock lock(mutex_);
+    state_.exists = true;
+    state_.phase = LivePhase::kReading;
+  }
+  changed();
+  const Result<SessionStore> store = SessionStore::open(options_.session, SessionStore::Access::kReadOnly);
+  const auto scans = store ? store->scans() : std::unexpected(store.error());
+  const auto poses = store ? store->poses() : std::unexpected(store.error());
+  if (!scans || !poses) {
+    end(std::unexpected(!scans ? scans.error() : poses.error()));
+    return;
+  }
+  {
+    const std::scoped_lock lock(mutex_);
+    for (const Error& damage : store->opening().damage) {
+      say(damage.line());
+    }
+    for (const StoredScan& stored : *scans) {
+      LiveScan& scan = scan_of(stored.id);
+      scan.file = stored.source;
+      scan.samples = stored.samples;
+      scan.dropped = stored.dropped;
+      scan.damaged = stored.damaged;
+      scan.note = stored.note;
+    }
+    follow(*poses);
+    state_.record = tablet_record_of(*store);
+  }
+  if (const auto text = store->load_document("red_map"); text && *text) {
+    if (auto map = parse_red_map(**text, "red map of the session")) {
+      const std::scoped_lock lock(mutex_);
+      state_.red_map = std::make_shared<const RedMap>(std::move(*map));
+    }
+  }
+  if (const auto text = store->load_document("checklist"); text && *text) {
+    if (auto list = parse_checklist(**text, "checklist of the session")) {
+      const std::scoped_lock lock(mutex_);
+      state_.checklist = std::move(*list);
+    }
+  }
+  if (const auto signed_offs = read_sign_offs(*store, *job_);
+      signed_offs && !signed_offs->sign_offs.empty()) {
+    const CheckedSignOff& latest = signed_offs->sign_offs.back();
+    const std::scoped_lock lock(mutex_);
+    state_.signed_off = latest.holds();
+    state_.signed_by = latest.holds() ? latest.sign_off.name : std::string();
+  }
+  changed();
+  if (auto mesh = read_mesh(store->mesh_folder() / "model.ply"); mesh && !job_->cancelled()) {
+    const RigidTransform tablet_from_model = tablet_frame(*mesh);
+    show_model(std::make_shared<const Mesh>(std::move(*mesh)), nullptr, tablet_from_model);
+  }
+  for (const StoredScan& stored : *scans) {
+    if (job_->cancelled() || stored.damaged) {
+      continue;
+    }
+    if (const auto grid = store->load_grid(stored.id)) {
+      const StationScan scan = prepare_scan(stored.id, *grid, options_.pins);
+      show_grid(stored.id, *scan.grid, *scan.flags);
+    }
+  }
+}
+
+}  // namespace dubsar

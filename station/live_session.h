@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <atomic>
+#include <deque>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+
+#include "core/pin_set.h"
+#include "core/sign_off.h"
+#include "station/engine.h"
+#include "station/live_state.h"
+
+namespace dubsar {
+
+/// One session for a skin that must never wait: the engine and every other long job run on a thread of their
+/// own, one at a time, and what they say is kept as a LiveState. Whatever is asked for while none of them
+/// takes commands starts the engine on the session. There is nothing to save: what was said to be stored is
+/// stored.
+class LiveSession {
+ public:
+  struct Options {
+    std::string device;  ///< URI
+    std::filesystem::path session;
+    std::optional<PinSet> pins;
+  };
+
+  /// `on_change` is called on other threads whenever there is something new to show.
+  LiveSession(Options options, std::function<void()> on_change);
+  /// Stops what is under way in good order; a half-taken scan is given up.
+  ~LiveSession();
+  LiveSession(const LiveSession&) = delete;
+  LiveSession& operator=(const LiveSession&) = delete;
+
+  [[nodiscard]] LiveState state() const;
+  /// The scan under way, as far as it has come.
+  [[nodiscard]] GridPicture growing() const;
+  [[nodiscard]] std::string device() const;
+  /// For the next run.
+  void set_device(std::string uri);
+
+  void read();      ///< what the folder holds
+  void scan_now();  ///< starts a run, or lets the one that waits go on
+  void finish();    ///< takes no more scans
+  void stop();      ///< cancels what is under way
+  /// Asks the engine, which is started for it where it does not run.
+  void ask(OperatorCommand command);
+  void describe(const TabletRecord& record);
+  void sign(const SignOff& wanted);
+  [[nodiscard]] bool busy() const { return busy_; }
+
+ private:
+  void launch(std::function<void()> job);
+  void run_engine(std::vector<OperatorCommand> first, bool first_scan_waits);
+  void read_folder();
+  void hear(const Event& event);
+  void say(const std::string& text);  ///< under the mutex
+  void progress(std::string_view stage, double fraction);
+  LiveScan& scan_of(int id);                        ///< under the mutex
+  void follow(const std::vector<ScanPose>& poses);  ///< under the mutex
+  void show_grid(int id, const RangeGrid& grid, const SampleFlags& flags);
+  void show_model(std::shared_ptr<const Mesh> mesh, std::shared_ptr<const ColouredPoints> red,
+                  const RigidTransform& tablet_from_model);
+  void end(const Status& status);  ///< of a job
+  void changed() const;
+
+  Options options_;
+  std::function<void()> on_change_;
+  mutable std::mutex mutex_;  ///< of what follows
+  LiveState state_;
+  GridPicture growing_;
+  std::shared_ptr<Engine> engine_;  ///< while it runs
+  std::shared_ptr<JobContext> job_;
+  std::deque<OperatorCommand> later_;  ///< asked for while a job ran that takes none
+  bool scan_later_ = false;            ///< likewise
+  std::atomic<bool> busy_ = false;
+  std::thread worker_;
+};
+
+}  // namespace dubsar

@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+// What the engine says, kept for a skin to read.
+#include <algorithm>
+#include <cmath>
+
+#include "core/tablet_sides.h"
+#include "station/live_session.h"
+
+namespace dubsar {
+
+namespace {
+
+constexpr std::size_t kNotices = 200;
+/// Samples of a scan that are kept to be pointed at: a few megabytes.
+constexpr double kShownSamples = 250000;
+
+}  // namespace
+
+void LiveSession::progress(std::string_view stage, double fraction) {
+  {
+    const std::scoped_lock lock(mutex_);
+    state_.stage = stage;
+    state_.fraction = fraction;
+  }
+  changed();
+}
+
+void LiveSession::say(const std::string& text) {
+  const std::int64_t number = state_.notices.empty() ? 1 : state_.notices.back().number + 1;
+  state_.notices.push_back({number, text});
+  if (state_.notices.size() > kNotices) {
+    state_.notices.erase(state_.notices.begin());
+  }
+}
+
+LiveScan& LiveSession::scan_of(int id) {
+  const auto at = std::ranges::lower_bound(state_.scans, id, {}, &LiveScan::id);
+  if (at != state_.scans.end() && at->id == id) {
+    return *at;
+  }
+  LiveScan scan;
+  scan.id = id;
+  return *state_.scans.insert(at, std::move(scan));
+}
+
+void LiveSession::follow(const std::vector<ScanPose>& poses) {
+  for (LiveScan& scan : state_.scans) {
+    const auto pose = std::ranges::find(poses, scan.id, &ScanPose::id);
+    if (pose != poses.end()) {
+      scan.pose = *pose;
+      scan.dropped = false;
+    } else if (scan.pose) {  // it was judged, and is no longer among them
+      scan.pose.reset();
+      scan.dropped = true;
+    }
+  }
+}
+
+void LiveSession::show_grid(int id, const RangeGrid& grid, const SampleFlags& flags) {
+  const int stride =
+      std::max(1, static_cast<int>(std::ceil(std::sqrt(static_cast<double>(grid.size()) / kShownSamples))));
+  auto thin = std::make_shared<RangeGrid>(decimated(grid, stride));
+  SampleFlags thin_flags;
+  if (flags.size() == grid.size()) {
+    thin_flags.reserve(thin->size());
+    for (int r = 0; r < grid.rows; r += stride) {
+      for (int c = 0; c < grid.cols; c += stride) {
+        thin_flags.push_back(flags[grid.index(r, c)]);
+      }
+    }
+  }
+  auto picture = std::make_shared<const GridPicture>(picture_of(*thin, thin_flags));
+  {
+    const std::scoped_lock lock(mutex_);
+    LiveScan& scan = scan_of(id);
+    scan.grid = std::move(thin);
+    scan.picture = std::move(picture);
+  }
+  changed();
+}
+
+void LiveSession::show_model(std::shared_ptr<const Mesh> mesh, std::shared_ptr<const ColouredPoints> red,
+                             const RigidTransform& tablet_from_model) {
+  const auto face_of = [&](const Eigen::Vector3f& normal) {
+    const Eigen::Vector3d n = tablet_from_model.rotation * normal.cast<double>();
+    std::size_t best = 0;
+    for (std::size_t face = 1; face < kFaceCount; ++face) {
+      const auto along = [&](std::size_t f) { return side_axes(static_cast<Face>(f)).normal.dot(n); };
+      best = along(face) > along(best) ? face : best;
+    }
+    return best;
+  };
+  std::array<double, kFaceCount> seen{};
+  for (const auto& [a, b, c] : mesh->faces) {
+    const auto& p = mesh->positions;
+    const Eigen::Vector3f area = 0.5F * (p[b] - p[a]).cross(p[c] - p[a]);
+    seen[face_of(area)] += static_cast<double>(area.norm());
+  }
+  std::array<int, kFaceCount> red_points{};
+  for (std::size_t k = 0; red && k < red->normals.size(); ++k) {
+    if (k >= red->colours.size() || red->colours[k] == kRedOfSparse) {
+      ++red_points[face_of(red->normals[k])];
+    }
+  }
+  const std::scoped_lock lock(mutex_);
+  state_.mesh = std::move(mesh);
+  state_.red = std::move(red);
+  state_.tablet_from_model = tablet_from_model;
+  state_.seen_mm2 = seen;
+  state_.red_points = red_points;
+  ++state_.model_number;
+}
+
+void LiveSession::hear(const Event& event) {
+  if (const auto* profile = std::get_if<ProfileArrived>(&event)) {
+    const std::scoped_lock lock(mutex_);
+    growing_.append(*profile->grid, *profile->flags, profile->row);
+    state_.phase = LivePhase::kScanning;
+    state_.profiles = profile->row + 1;
+  } else if (const auto* model = std::get_if<ModelChanged>(&event)) {
+    show_model(model->mesh, model->red, model->tablet_from_model);
+  } else if (const auto* placed = std::get_if<ScanPlaced>(&event)) {
+    if (placed->grid && placed->flags) {
+      show_grid(placed->pose.id, *placed->grid, *placed->flags);
+    }
+    const std::scoped_lock lock(mutex_);
+    LiveScan& scan = scan_of(placed->pose.id);
+    scan.file = placed->pose.file;
+    follow(placed->all);
+    if (std::ranges::find(placed->all, placed->pose.id, &ScanPose::id) == placed->all.end()) {
+      scan.dropped = true;  // something was in its way
+      scan.note = placed->pose.reason;
+      scan.pose.reset();
+    }
+  } else {
+    const std::scoped_lock lock(mutex_);
+    if (const auto* stored = std::get_if<ScanStored>(&event)) {
+      LiveScan& scan = scan_of(stored->id);
+      scan.file = stored->file;
+      scan.samples = stored->samples;
+      state_.exists = true;
+      state_.phase = LivePhase::kJudging;
+    } else if (const auto* obeyed = std::get_if<OperatorObeyed>(&event)) {
+      follow(obeyed->all);
+      say(obeyed->what);
+    } else if (const auto* red_map = std::get_if<RedMapChanged>(&event)) {
+      state_.red_map = std::make_shared<const RedMap>(red_map->red_map);
+      if (red_map->red_map.conclusive) {
+        state_.phase = LivePhase::kFinishing;
+      }
+    } else if (const auto* next = std::get_if<NextPlacement>(&event)) {
+      state_.next = next->view;
+      state_.phase = LivePhase::kMoving;
+    } else if (const auto* waits = std::get_if<WaitsForOperator>(&event)) {
+      state_.next = waits->next;
+      state_.last_not_taken_up = waits->not_taken_up;
+      state_.phase = LivePhase::kWaiting;
+    } else if (const auto* notice = std::get_if<Notice>(&event)) {
+      say(notice->text);
+    }
+  }
+  changed();
+}
+
+}  // namespace dubsar

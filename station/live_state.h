@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "archive/render_scene.h"
+#include "core/checklist.h"
+#include "core/mesh.h"
+#include "core/range_grid.h"
+#include "core/red_map.h"
+#include "core/sample_flags.h"
+#include "core/scan_pose.h"
+#include "station/grid_picture.h"
+#include "station/tablet_record.h"
+
+namespace dubsar {
+
+/// What the station is doing for a session, as far as a person beside it cares.
+enum class LivePhase {
+  kStill,      ///< nothing; `error` says whether something ended it
+  kReading,    ///< what the folder holds
+  kOpening,    ///< the device
+  kMoving,     ///< the rig is driven
+  kScanning,   ///< profiles come in
+  kJudging,    ///< registration and planning
+  kWaiting,    ///< for the operator: they turn the tablet, or say where an unsure scan lies
+  kFinishing,  ///< final registration, mesh, wedges, pages
+  kSigning,
+};
+
+/// A scan of the session. The grid is thinned to what a person needs to point at places in it.
+struct LiveScan {
+  int id = 0;
+  std::string file;
+  std::int64_t samples = 0;
+  std::optional<ScanPose> pose;  ///< nothing while it is judged
+  bool dropped = false;
+  bool damaged = false;
+  std::string note;  ///< why it was dropped
+  std::shared_ptr<const RangeGrid> grid;
+  std::shared_ptr<const GridPicture> picture;
+};
+
+struct LiveNotice {
+  std::int64_t number = 0;
+  std::string text;
+};
+
+/// A session as it stands: a value that a skin reads between two frames. What is large is shared and never
+/// changed.
+struct LiveState {
+  LivePhase phase = LivePhase::kStill;
+  std::string stage;  ///< of a long job, in words
+  double fraction = 0;
+  std::vector<LiveScan> scans;  ///< by id
+  std::shared_ptr<const RedMap> red_map;
+  std::shared_ptr<const Mesh> mesh;
+  std::shared_ptr<const ColouredPoints> red;  ///< on the mesh
+  RigidTransform tablet_from_model;
+  std::array<double, kFaceCount> seen_mm2{};  ///< of the mesh, by Face
+  std::array<int, kFaceCount> red_points{};   ///< red samples by Face; a hole's rim may redden several
+  std::uint64_t model_number = 0;             ///< grows whenever mesh and red change
+  std::optional<NextView> next;    ///< where the rig goes, or the operator is asked to turn the tablet
+  bool last_not_taken_up = false;  ///< kWaiting: a hint may settle the last scan
+  std::optional<Checklist> checklist;
+  bool signed_off = false;  ///< the verdict as it stands
+  std::string signed_by;
+  std::optional<Error> error;  ///< what ended the last run or job
+  std::vector<LiveNotice> notices;
+  TabletRecord record;
+  bool exists = false;  ///< the folder holds a session
+  int profiles = 0;     ///< of the scan under way
+};
+
+}  // namespace dubsar

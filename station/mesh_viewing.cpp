@@ -1,0 +1,288 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "station/mesh_viewing.h"
+
+#include <array>
+#include <utility>
+
+#include "analysis/curvature.h"
+#include "analysis/integral_invariants.h"
+#include "analysis/openness.h"
+#include "analysis/vertex_geometry.h"
+#include "core/tablet_frame.h"
+#include "formats/mesh_io.h"
+#include "formats/wedges_json.h"
+#include "station/analysis.h"
+
+namespace dubsar {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Of a mesh file, the first that is there; empty when none is.
+fs::path wedges_beside(const fs::path& mesh) {
+  fs::path own = mesh;
+  own.replace_extension(".wedges.json");
+  const fs::path folder = mesh.parent_path();
+  std::error_code error;
+  for (const fs::path& file :
+       {own, folder / "wedges.json", folder.parent_path() / "analysis" / "wedges.json"}) {
+    if (fs::is_regular_file(file, error)) {
+      return file;
+    }
+  }
+  return {};
+}
+
+/// The faces, with their vertices and all that the mesh says of these.
+Mesh part_of(const Mesh& mesh, const std::vector<std::uint32_t>& faces) {
+  constexpr std::uint32_t kNew = 0xFFFFFFFFU;
+  const std::size_t n = mesh.positions.size();
+  std::vector<std::uint32_t> number(n, kNew);
+  Mesh part;
+  const auto carry = [n](const auto& from, auto& to, std::uint32_t v) {
+    if (from.size() == n) {
+      to.push_back(from[v]);
+    }
+  };
+  for (const std::uint32_t f : faces) {
+    std::array<std::uint32_t, 3> face{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t v = mesh.faces[f][k];
+      if (number[v] == kNew) {
+        number[v] = static_cast<std::uint32_t>(part.positions.size());
+        part.positions.push_back(mesh.positions[v]);
+        carry(mesh.normals, part.normals, v);
+        carry(mesh.reliability, part.reliability, v);
+        carry(mesh.sigma_mm, part.sigma_mm, v);
+        carry(mesh.scans, part.scans, v);
+        carry(mesh.flags, part.flags, v);
+        carry(mesh.colours, part.colours, v);
+      }
+      face[k] = number[v];
+    }
+    part.faces.push_back(face);
+  }
+  return part;
+}
+
+}  // namespace
+
+MeshViewing::MeshViewing(std::function<void()> on_change) : on_change_(std::move(on_change)) {}
+
+MeshViewing::~MeshViewing() {
+  {
+    const std::scoped_lock lock(mutex_);
+    ended_ = true;
+  }
+  stop();
+  if (worker_.joinable()) {
+    worker_.join();
+  }
+}
+
+ViewedMesh MeshViewing::state() const {
+  const std::scoped_lock lock(mutex_);
+  return state_;
+}
+
+std::shared_ptr<const Mesh> MeshViewing::mesh() const {
+  const std::scoped_lock lock(mutex_);
+  return state_.mesh;
+}
+
+void MeshViewing::ask(Task task) {
+  const std::scoped_lock lock(mutex_);
+  if (ended_) {
+    return;
+  }
+  tasks_.push_back(std::move(task));
+  if (running_) {
+    return;
+  }
+  if (worker_.joinable()) {
+    worker_.join();
+  }
+  running_ = true;
+  worker_ = std::thread([this] { run(); });
+}
+
+void MeshViewing::run() {
+  for (;;) {
+    Task task;
+    {
+      const std::scoped_lock lock(mutex_);
+      if (tasks_.empty()) {
+        running_ = false;
+        state_.stage.clear();
+        break;
+      }
+      task = std::move(tasks_.front());
+      tasks_.pop_front();
+      job_ = std::make_unique<JobContext>([this](std::string_view stage, double fraction) {
+        {
+          const std::scoped_lock inner(mutex_);
+          state_.stage = stage;
+          state_.fraction = fraction;
+        }
+        on_change_();
+      });
+      state_.stage = "...";
+      state_.fraction = 0;
+    }
+    on_change_();
+    task();
+    on_change_();
+  }
+  on_change_();
+}
+
+void MeshViewing::stop() {
+  const std::scoped_lock lock(mutex_);
+  tasks_.clear();
+  if (job_) {
+    job_->cancel();
+  }
+}
+
+void MeshViewing::complain(const Error& error) {
+  if (error.kind != ErrorKind::kCancelled) {
+    const std::scoped_lock lock(mutex_);
+    state_.error = error;
+  }
+}
+
+void MeshViewing::take_mesh(std::shared_ptr<const Mesh> mesh, const RigidTransform& tablet_from_model,
+                            const std::string& name) {
+  {
+    const std::scoped_lock lock(mutex_);
+    state_.mesh = std::move(mesh);
+    ++state_.number;
+    state_.fields.clear();
+    state_.wedges.reset();
+    state_.tablet_from_model = tablet_from_model;
+    state_.name = name;
+    state_.error.reset();
+    const std::size_t vertices = state_.mesh->positions.size();
+    if (state_.mesh->sigma_mm.size() == vertices && vertices > 0) {
+      state_.fields[MeshField::kSigma] = std::make_shared<const std::vector<float>>(state_.mesh->sigma_mm);
+    }
+  }
+  on_change_();
+}
+
+void MeshViewing::take_field(MeshField field, std::vector<float> values) {
+  const std::scoped_lock lock(mutex_);
+  if (state_.mesh && values.size() == state_.mesh->positions.size()) {
+    state_.fields[field] = std::make_shared<const std::vector<float>>(std::move(values));
+  }
+}
+
+void MeshViewing::take_wedges(std::vector<Wedge> wedges) {
+  const std::scoped_lock lock(mutex_);
+  state_.wedges = std::make_shared<const std::vector<Wedge>>(std::move(wedges));
+}
+
+void MeshViewing::open(const fs::path& file) {
+  ask([this, file] {
+    Result<Mesh> read = read_mesh(file);
+    if (!read) {
+      complain(read.error());
+      return;
+    }
+    const RigidTransform tablet_from_model = tablet_frame(*read);
+    take_mesh(std::make_shared<const Mesh>(std::move(*read)), tablet_from_model, file.filename().string());
+    if (const fs::path wedges = wedges_beside(file); !wedges.empty()) {
+      if (auto known = read_wedges(wedges)) {
+        take_wedges(std::move(known->wedges));
+      } else {
+        complain(known.error());
+      }
+    }
+    work_out(MeshField::kOpenness);
+  });
+}
+
+void MeshViewing::show(std::shared_ptr<const Mesh> mesh, const RigidTransform& tablet_from_model,
+                       const fs::path& wedges_file) {
+  ask([this, mesh = std::move(mesh), tablet_from_model, wedges_file] {
+    take_mesh(mesh, tablet_from_model, {});
+    std::error_code error;
+    if (fs::is_regular_file(wedges_file, error)) {
+      if (auto known = read_wedges(wedges_file)) {
+        take_wedges(std::move(known->wedges));
+      }
+    }
+    work_out(MeshField::kOpenness);
+  });
+}
+
+void MeshViewing::want(MeshField field) {
+  ask([this, field] {
+    {
+      const std::scoped_lock lock(mutex_);
+      if (!state_.mesh || state_.fields.contains(field)) {
+        return;
+      }
+    }
+    work_out(field);
+  });
+}
+
+void MeshViewing::analyse() {
+  ask([this] { work_out_everything(false); });
+}
+
+void MeshViewing::keep_part(std::vector<std::uint32_t> faces, const fs::path& file) {
+  ask([this, faces = std::move(faces), file] {
+    if (const std::shared_ptr<const Mesh> whole = mesh()) {
+      if (const Status written = write_mesh(file, part_of(*whole, faces)); !written) {
+        complain(written.error());
+      }
+    }
+  });
+}
+
+void MeshViewing::work_out(MeshField field) {
+  const std::shared_ptr<const Mesh> shown = mesh();
+  if (!shown || shown->faces.empty()) {
+    return;
+  }
+  if (field == MeshField::kInvariant || field == MeshField::kHeight) {
+    work_out_everything(field == MeshField::kInvariant);
+    return;
+  }
+  const VertexGraph graph = make_vertex_graph(*shown);
+  const VertexGeometry geometry = make_vertex_geometry(*shown, graph);
+  job_->progress(field == MeshField::kOpenness ? "ambient occlusion" : "surface fields", 0.1);
+  if (field == MeshField::kOpenness) {
+    take_field(field, vertex_openness(*shown, geometry, {}, *job_));
+  } else if (field == MeshField::kMeanCurvature) {
+    take_field(field, vertex_curvature(*shown, graph, geometry).mean_per_mm);
+  }
+}
+
+void MeshViewing::work_out_everything(bool with_invariant) {
+  const std::shared_ptr<const Mesh> shown = mesh();
+  if (!shown) {
+    return;
+  }
+  Result<Analysis> analysis = analyze_mesh(*shown, {}, *job_);
+  if (!analysis) {
+    complain(analysis.error());
+    return;
+  }
+  if (with_invariant) {
+    job_->progress("integral invariants", 0.9);
+    take_field(MeshField::kInvariant,
+               strongest_response(integral_invariants(*shown, outlook_of(*shown, analysis->fields),
+                                                      analysis->fields.mean_edge_mm, {}, *job_)));
+  }
+  take_field(MeshField::kOpenness, std::move(analysis->fields.openness));
+  take_field(MeshField::kMeanCurvature, std::move(analysis->fields.mean_curvature_per_mm));
+  take_field(MeshField::kHeight, std::move(analysis->fields.height_mm));
+  take_wedges(std::move(analysis->set.wedges));
+}
+
+}  // namespace dubsar

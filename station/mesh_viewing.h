@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <deque>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "core/job.h"
+#include "core/mesh.h"
+#include "core/result.h"
+#include "core/rigid_transform.h"
+#include "core/wedge.h"
+
+namespace dubsar {
+
+/// Numbers that can be shown over a mesh.
+enum class MeshField { kOpenness, kMeanCurvature, kHeight, kInvariant, kSigma };
+
+/// A mesh that somebody looks at, with what is known of it so far. What is large is shared and never changed.
+struct ViewedMesh {
+  std::shared_ptr<const Mesh> mesh;
+  std::uint64_t number = 0;  ///< grows whenever the mesh is another one
+  std::map<MeshField, std::shared_ptr<const std::vector<float>>> fields;  ///< [V]
+  std::shared_ptr<const std::vector<Wedge>> wedges;                       ///< null: none are known
+  RigidTransform tablet_from_model;
+  std::string name;
+  std::string stage;  ///< of the job that runs; empty: none does
+  double fraction = 0;
+  std::optional<Error> error;
+};
+
+/// Reads a mesh and finds out about it on a thread of its own, a job at a time in the order asked for.
+class MeshViewing {
+ public:
+  explicit MeshViewing(std::function<void()> on_change);
+  ~MeshViewing();
+  MeshViewing(const MeshViewing&) = delete;
+  MeshViewing& operator=(const MeshViewing&) = delete;
+
+  [[nodiscard]] ViewedMesh state() const;
+  /// Reads the mesh, the wedges beside it (NAME.wedges.json, wedges.json, or those of the session that it
+  /// lies in), and its openness.
+  void open(const std::filesystem::path& file);
+  /// Looks at a mesh that is there already.
+  void show(std::shared_ptr<const Mesh> mesh, const RigidTransform& tablet_from_model,
+            const std::filesystem::path& wedges_file);
+  void want(MeshField field);  ///< works it out unless it is there
+  void analyse();              ///< all fields, and the wedges
+  /// Writes these faces of the mesh, with what is known of their vertices, as a mesh of their own.
+  void keep_part(std::vector<std::uint32_t> faces, const std::filesystem::path& file);
+  void stop();  ///< gives up what runs and what waits
+
+ private:
+  using Task = std::function<void()>;
+  void ask(Task task);
+  void run();
+  void take_mesh(std::shared_ptr<const Mesh> mesh, const RigidTransform& tablet_from_model,
+                 const std::string& name);
+  void take_field(MeshField field, std::vector<float> values);
+  void take_wedges(std::vector<Wedge> wedges);
+  void complain(const Error& error);
+  void work_out(MeshField field);
+  void work_out_everything(bool with_invariant);
+  [[nodiscard]] std::shared_ptr<const Mesh> mesh() const;
+
+  std::function<void()> on_change_;
+  mutable std::mutex mutex_;  ///< of what follows
+  ViewedMesh state_;
+  std::deque<Task> tasks_;
+  std::unique_ptr<JobContext> job_;
+  bool running_ = false;
+  bool ended_ = false;
+  std::thread worker_;
+};
+
+}  // namespace dubsar

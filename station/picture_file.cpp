@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "station/picture_file.h"
+
+#include <span>
+
+#include "archive/png.h"
+#include "formats/atomic_file.h"
+
+namespace dubsar {
+
+Status write_picture(const std::filesystem::path& file, const Image& image, const std::string& title) {
+  const auto png = encode_png(image, title);
+  if (!png) {
+    return std::unexpected(png.error());
+  }
+  return write_file_atomically(file, std::as_bytes(std::span(*png)));
+}
+
+}  // namespace dubsar

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "station/tablet_record.h"
+
+#include <algorithm>
+
+#include "formats/json_node.h"
+#include "formats/json_text.h"
+
+namespace dubsar {
+
+namespace {
+
+constexpr const char* kDocument = "tablet";
+
+}  // namespace
+
+Status check_cdli(std::string_view number) {
+  const auto digit = [](char c) { return c >= '0' && c <= '9'; };
+  if (number.empty() ||
+      (number.size() == 7 && number.front() == 'P' && std::ranges::all_of(number.substr(1), digit))) {
+    return {};
+  }
+  return fail(ErrorKind::kUsage, "this is no CDLI number", std::string(number),
+              "it is a P and six digits, such as P123456");
+}
+
+std::string tablet_record_to_json(const TabletRecord& record) {
+  return text_of({{"museum_number", record.museum_number},
+                  {"cdli", record.cdli},
+                  {"collection", record.collection},
+                  {"operator", record.operator_name},
+                  {"notes", record.notes}});
+}
+
+Result<TabletRecord> parse_tablet_record(std::string_view text, const std::string& where) {
+  const Result<JsonDocument> document = JsonDocument::parse(text, where);
+  if (!document) {
+    return std::unexpected(document.error());
+  }
+  TabletRecord record;
+  const auto take = [&](const char* key, std::string& into) {
+    if (const auto node = document->root().find(key)) {
+      into = node->text();
+    }
+  };
+  take("museum_number", record.museum_number);
+  take("cdli", record.cdli);
+  take("collection", record.collection);
+  take("operator", record.operator_name);
+  take("notes", record.notes);
+  if (const Status status = document->status("say anew what tablet it is"); !status) {
+    return std::unexpected(status.error());
+  }
+  return record;
+}
+
+Status keep_tablet_record(SessionStore& store, const TabletRecord& record) {
+  if (const Status checked = check_cdli(record.cdli); !checked) {
+    return checked;
+  }
+  return store.save_document(kDocument, tablet_record_to_json(record));
+}
+
+TabletRecord tablet_record_of(const SessionStore& store) {
+  const auto text = store.load_document(kDocument);
+  if (text && *text) {
+    if (auto record = parse_tablet_record(**text, "tablet of the session")) {
+      return std::move(*record);
+    }
+  }
+  return {};
+}
+
+}  // namespace dubsar

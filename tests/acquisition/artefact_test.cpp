@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "acquisition/artefact.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+
+#include "acquisition/sphere_fit.h"
+#include "core/random.h"
+
+namespace dubsar {
+namespace {
+
+/// Two balls over a plate as a scanner looking down sees them: heights on a grid.
+RangeGrid scanned_bar(double noise_mm, double bent, double scale) {
+  RangeGrid grid;
+  constexpr int kSide = 320;
+  constexpr double kStep = 0.2;
+  grid.allocate(kSide, kSide);
+  Random random(4);
+  const Eigen::Vector3d a = scale * Eigen::Vector3d(-15, 3, 5);
+  const Eigen::Vector3d b = scale * Eigen::Vector3d(15, -2, 5);
+  for (int row = 0; row < kSide; ++row) {
+    for (int col = 0; col < kSide; ++col) {
+      const double x = kStep * (col - kSide / 2);
+      const double y = kStep * (row - kSide / 2);
+      double z = bent * (x / 32) * (x / 32);
+      for (const Eigen::Vector3d& ball : {a, b}) {
+        const double inside = scale * scale * 36 - (x - ball.x()) * (x - ball.x()) - (y - ball.y()) * (y - ball.y());
+        if (inside > 0) {
+          z = std::max(z, ball.z() + std::sqrt(inside));
+        }
+      }
+      const std::size_t i = grid.index(row, col);
+      grid.x[i] = static_cast<float>(x);
+      grid.y[i] = static_cast<float>(y);
+      grid.z[i] = static_cast<float>(z + noise_mm * random.normal());
+      grid.valid[i] = 1;
+    }
+  }
+  return grid;
+}
+
+Artefact bar() {
+  Artefact artefact;
+  artefact.name = "bar";
+  artefact.balls = {{12, {0, 0, 0}}, {12, {std::hypot(30.0, 5.0), 0, 0}}};
+  artefact.has_plane = true;
+  artefact.form_limit_mm = 0.05;
+  artefact.size_limit_mm = 0.02;
+  artefact.spacing_limit_mm = 0.02;
+  artefact.flatness_limit_mm = 0.05;
+  return artefact;
+}
+
+TEST(Artefact, AGoodScannerPasses) {
+  const Result<Verification> is = verify_artefact(scanned_bar(0.004, 0, 1), bar());
+  ASSERT_TRUE(is.has_value()) << is.error().line();
+  EXPECT_TRUE(is->passed()) << is->failed.front();
+  ASSERT_EQ(is->balls.size(), 2U);
+  ASSERT_EQ(is->spacings.size(), 1U);
+  EXPECT_NEAR(is->spacings[0].error_mm, 0, 0.003);
+  EXPECT_NEAR(is->balls[0].diameter_mm, 12, 0.003);
+  // The range of thousands of normal samples is some seven standard deviations, less three in a thousand.
+  EXPECT_NEAR(is->balls[0].form_mm, 0.024, 0.008);
+  EXPECT_NEAR(*is->flatness_mm, 0.024, 0.006);
+  EXPECT_NEAR(is->worst_mm(), std::max({is->balls[0].form_mm, is->balls[1].form_mm, *is->flatness_mm}), 1e-12);
+}
+
+TEST(Artefact, AWrongScaleFailsOnSpacingAndSize) {
+  // Four in a thousand too large: 120 um over the bar, 48 um over a ball.
+  const Result<Verification> is = verify_artefact(scanned_bar(0.004, 0, 1.004), bar());
+  ASSERT_TRUE(is.has_value());
+  ASSERT_EQ(is->spacings.size(), 1U);
+  EXPECT_NEAR(is->spacings[0].error_mm, 0.004 * std::hypot(30.0, 5.0), 0.005);
+  EXPECT_NEAR(is->balls[0].size_mm, 0.048, 0.005);
+  EXPECT_FALSE(is->passed());
+}
+
+TEST(Artefact, ABentPlaneFailsOnFlatness) {
+  const Result<Verification> is = verify_artefact(scanned_bar(0.004, 0.3, 1), bar());
+  ASSERT_TRUE(is.has_value());
+  ASSERT_TRUE(is->flatness_mm.has_value());
+  EXPECT_GT(*is->flatness_mm, 0.05);
+  EXPECT_FALSE(is->passed());
+}
+
+TEST(Artefact, WhatIsNotThereIsSaid) {
+  Artefact three = bar();
+  three.balls.push_back({25, {100, 0, 0}});
+  const Result<Verification> is = verify_artefact(scanned_bar(0.004, 0, 1), three);
+  ASSERT_TRUE(is.has_value());
+  ASSERT_FALSE(is->failed.empty());
+  EXPECT_NE(is->failed[0].find("2 of 3"), std::string::npos);
+  RangeGrid empty;
+  empty.allocate(4, 4);
+  EXPECT_FALSE(verify_artefact(empty, bar()).has_value());
+}
+
+TEST(SphereFit, ThroughFourPointsAndThroughMany) {
+  const Eigen::Vector3d middle(3, -2, 7);
+  std::vector<Eigen::Vector3d> points;
+  Random random(9);
+  for (int i = 0; i < 500; ++i) {
+    const Eigen::Vector3d direction(random.normal(), random.normal(), std::abs(random.normal()) + 0.5);
+    points.push_back(middle + 5 * direction.normalized());
+  }
+  const auto first = sphere_through(points[0], points[1], points[2], points[3]);
+  ASSERT_TRUE(first.has_value());
+  EXPECT_NEAR(first->radius_mm, 5, 1e-6);
+  const auto all = fit_sphere(points, {middle + Eigen::Vector3d(0.3, 0.3, -0.3), 4.5});
+  ASSERT_TRUE(all.has_value());
+  EXPECT_LT((all->center_mm - middle).norm(), 1e-9);
+  EXPECT_FALSE(sphere_through({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}).has_value());
+}
+
+}  // namespace
+}  // namespace dubsar

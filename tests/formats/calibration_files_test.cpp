@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include <gtest/gtest.h>
+
+#include "formats/artefact_toml.h"
+#include "formats/calibration_json.h"
+#include "formats/calibration_set.h"
+#include "formats/gray_file.h"
+#include "formats/verification_log.h"
+#include "tests/support/temporary_folder.h"
+
+namespace dubsar {
+namespace {
+
+RigCalibration some_rig() {
+  RigCalibration rig;
+  rig.camera = {2048, 1088, 10240.5, 10241.25, 1030, 537, -0.15, 0.01, 2e-4, -1e-4, 0};
+  rig.camera_serial = "40123 \"A\"";
+  rig.laser.normal = Eigen::Vector3d(0, 0.8, -0.6);
+  rig.laser.distance_mm = -150;
+  rig.laser_source_mm = Eigen::Vector3d(0, -100, 20);
+  rig.motion.kind = MotionKind::kTurntable;
+  rig.motion.direction = Eigen::Vector3d::UnitX();
+  rig.motion.axis_point_mm = {0, 8, 268};
+  rig.working_distance_mm = 250;
+  rig.depth_range_mm = 40;
+  rig.made_at = "2026-11-22T06:00:00Z";
+  rig.temperature_c = 21.5;
+  rig.note = "storeroom";
+  rig.quality.board_views = 15;
+  rig.quality.volume_sigma_um = 2.5;
+  rig.quality.left_out = {"pose_03.png: blurred"};
+  return rig;
+}
+
+TEST(CalibrationJson, RoundTrip) {
+  const RigCalibration rig = some_rig();
+  const Result<RigCalibration> back = parse_calibration(calibration_to_json(rig), "calibration.json");
+  ASSERT_TRUE(back.has_value()) << back.error().line();
+  EXPECT_EQ(calibration_to_json(*back), calibration_to_json(rig));
+  EXPECT_EQ(back->camera.fy_px, 10241.25);
+  EXPECT_EQ(back->camera_serial, rig.camera_serial);
+  EXPECT_EQ(back->motion.axis_point_mm, rig.motion.axis_point_mm);
+  EXPECT_EQ(*back->temperature_c, 21.5);
+  EXPECT_EQ(back->quality.left_out, rig.quality.left_out);
+}
+
+TEST(CalibrationJson, CameraAlone) {
+  RigCalibration rig = some_rig();
+  rig.has_laser = false;
+  rig.has_motion = false;
+  const Result<RigCalibration> back = parse_calibration(calibration_to_json(rig), "calibration.json");
+  ASSERT_TRUE(back.has_value()) << back.error().line();
+  EXPECT_FALSE(back->has_laser);
+  EXPECT_FALSE(back->has_motion);
+}
+
+TEST(CalibrationJson, RefusesWhatCannotBe) {
+  const auto refused = [](const RigCalibration& rig) {
+    return !parse_calibration(calibration_to_json(rig), "calibration.json").has_value();
+  };
+  RigCalibration rig = some_rig();
+  rig.laser.normal *= 2;
+  EXPECT_TRUE(refused(rig));
+  rig = some_rig();
+  rig.laser.distance_mm = 0;
+  EXPECT_TRUE(refused(rig));
+  rig = some_rig();
+  rig.camera.k1 = -30;
+  EXPECT_TRUE(refused(rig));
+  rig = some_rig();
+  rig.camera.fx_px = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_TRUE(refused(rig));
+  EXPECT_FALSE(parse_calibration("{}", "calibration.json").has_value());
+  EXPECT_FALSE(parse_calibration("", "calibration.json").has_value());
+}
+
+TEST(CalibrationSet, RoundTrip) {
+  CalibrationSet set;
+  set.board = "charuco:9x7:5:3.7";
+  set.motion = MotionKind::kTurntable;
+  set.camera_serial = "7\\\"x";
+  set.temperature_c = 20;
+  set.stripe_per_row = true;
+  set.poses = {{"a.png", "a_laser.png", "a_dark.png", 0}, {"b.png", {}, {}, 0}};
+  set.stops = {{"s0.png", "board", 0.25}};
+  const std::string text = calibration_set_to_toml(set);
+  const Result<CalibrationSet> back = parse_calibration_set(text, "calibration.toml");
+  ASSERT_TRUE(back.has_value()) << back.error().line() << text;
+  EXPECT_EQ(calibration_set_to_toml(*back), text);
+  EXPECT_EQ(back->camera_serial, set.camera_serial);
+  EXPECT_NEAR(back->stops[0].position, 0.25, 1e-12);
+  EXPECT_TRUE(back->stripe_per_row);
+}
+
+TEST(CalibrationSet, SaysWhatIsWrong) {
+  const auto said = [](const std::string& text) {
+    const Result<CalibrationSet> set = parse_calibration_set(text, "calibration.toml");
+    return set ? std::string("accepted") : set.error().line();
+  };
+  EXPECT_NE(said("board = \"b\"\n[[pose]\n").find("line 2"), std::string::npos);
+  EXPECT_NE(said("board = \"b\"\n").find("pose"), std::string::npos);
+  EXPECT_NE(said("board = \"b\"\nbord = 1\n[[pose]]\nboard = \"a\"\n").find("bord"), std::string::npos);
+  EXPECT_NE(said("board = \"b\"\n[[pose]]\nboard = \"../a\"\n").find("inside"), std::string::npos);
+  EXPECT_NE(said("board = \"b\"\n[[pose]]\nboard = \"/a\"\n").find("inside"), std::string::npos);
+  EXPECT_NE(said("board = \"b\"\nmotion = \"linear\"\n[[pose]]\nboard = \"a\"\n[[stage]]\nboard = \"c\"\nposition_deg = 3\n")
+                .find("position_mm"),
+            std::string::npos);
+}
+
+TEST(ArtefactToml, ReadAndRefused) {
+  constexpr const char* kBar = R"(
+name = "ball bar 7"
+certificate = "D-K-1234, 2026-03-01"
+plane = true
+[limit]
+form_um = 20
+size_um = 15
+spacing_um = 15
+flatness_um = 30
+[[ball]]
+diameter_mm = 12.0003
+center_mm = [0, 0, 0]
+[[ball]]
+diameter_mm = 12.0001
+center_mm = [30.4142, 0, 0]
+)";
+  const Result<Artefact> bar = parse_artefact(kBar, "artefact.toml");
+  ASSERT_TRUE(bar.has_value()) << bar.error().line();
+  EXPECT_EQ(bar->balls.size(), 2U);
+  EXPECT_DOUBLE_EQ(bar->form_limit_mm, 0.02);
+  EXPECT_FALSE(parse_artefact("name = \"x\"\ncertificate = \"y\"\n[limit]\n", "a").has_value());
+  std::string near(kBar);
+  near.replace(near.find("30.4142"), 7, "3.0");
+  EXPECT_FALSE(parse_artefact(near, "a").has_value());
+}
+
+TEST(VerificationLog, KeepsEveryLineAndSurvivesADamagedOne) {
+  const test::TemporaryFolder folder;
+  const auto path = verification_log_of(folder.path() / "calibration.json");
+  EXPECT_EQ(path.filename(), "calibration.verified.jsonl");
+  VerificationEntry entry{"2026-11-22T06:00:00Z", "bar", "c", "2026-11-01T00:00:00Z", 0.012, true, {}, "{}"};
+  ASSERT_TRUE(append_verification(path, entry).has_value());
+  entry.passed = false;
+  entry.failed = {"flatness"};
+  ASSERT_TRUE(append_verification(path, entry).has_value());
+  const Result<VerificationLog> log = read_verification_log(path);
+  ASSERT_TRUE(log.has_value());
+  ASSERT_EQ(log->entries.size(), 2U);
+  EXPECT_EQ(log->entries[1].failed, std::vector<std::string>{"flatness"});
+  const VerificationLog torn = parse_verification_log("{\"when\": 3}\nrubbish\n\n");
+  EXPECT_EQ(torn.damaged, 2U);
+  EXPECT_TRUE(torn.entries.empty());
+  EXPECT_TRUE(read_verification_log(folder.path() / "none")->entries.empty());
+}
+
+TEST(GrayFile, PngAndPgm) {
+  const test::TemporaryFolder folder;
+  GrayImage image(37, 21);
+  for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+    image.pixels[i] = static_cast<std::uint8_t>(i * 7);
+  }
+  ASSERT_TRUE(write_gray_png(image, folder.path() / "a.png").has_value());
+  const Result<GrayImage> back = read_gray(folder.path() / "a.png");
+  ASSERT_TRUE(back.has_value()) << back.error().line();
+  EXPECT_EQ(back->pixels, image.pixels);
+  std::string pgm = "P5\n# a comment\n37 21\n255\n";
+  pgm.append(reinterpret_cast<const char*>(image.pixels.data()), image.pixels.size());
+  ASSERT_TRUE(parse_gray(pgm, "a.pgm").has_value());
+  EXPECT_EQ(parse_gray(pgm, "a.pgm")->pixels, image.pixels);
+  EXPECT_FALSE(parse_gray(pgm.substr(0, pgm.size() - 1), "a.pgm").has_value());
+  EXPECT_FALSE(parse_gray("P5 99999 99999 255\n", "a.pgm").has_value());
+  EXPECT_FALSE(parse_gray("GIF89a", "a.gif").has_value());
+  EXPECT_FALSE(parse_gray("\xff\xd8\xff\xe0 rubbish", "a.jpg").has_value());
+  EXPECT_FALSE(parse_gray("\x89PNG\r\n\x1a\n rubbish", "a.png").has_value());
+}
+
+}  // namespace
+}  // namespace dubsar

@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+// The search index of a folder: kept, refreshed where something changed, made again when damaged.
+#include "station/collection.h"
+
+#include <fcntl.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <chrono>
+#include <fstream>
+#include <sstream>
+#include <thread>
+
+#include "tests/support/temporary_folder.h"
+
+namespace dubsar {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+WedgeFile tablet_of(double depth_mm, double length_mm, int count) {
+  WedgeFile file;
+  for (int i = 0; i < count; ++i) {
+    const double x = 3.0 * i;
+    Wedge w;
+    w.id = i;
+    w.depth_mm = depth_mm;
+    w.depth_point_mm = {x, 0, -depth_mm};
+    w.exit_points_mm = {Eigen::Vector3d(x + length_mm, 0, 0), Eigen::Vector3d(x - 0.3, 0.5, 0),
+                        Eigen::Vector3d(x - 0.3, -0.5 - 0.01 * i, 0)};
+    file.wedges.push_back(w);
+  }
+  return file;
+}
+
+class CollectionTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    fs::create_directories(at("x"));
+    put("a.json", tablet_of(1.2, 4.0, 12));
+    put("b.json", tablet_of(0.5, 2.0, 12));
+    put("x/c.json", tablet_of(0.52, 2.05, 12));
+  }
+  [[nodiscard]] fs::path at(const std::string& name) const { return folder_.path() / name; }
+  void put(const char* name, const WedgeFile& file) const { ASSERT_TRUE(write_wedges(at(name), file)); }
+  static constexpr std::chrono::milliseconds kSettled{40};
+  static void settle() { std::this_thread::sleep_for(2 * kSettled); }
+  [[nodiscard]] Result<Collection> open() const { return Collection::open(folder_.path(), kSettled); }
+  [[nodiscard]] std::string nearest_to(const WedgeFile& like) const {
+    const auto collection = open();
+    const auto found = collection ? collection->similar_tablets(like, 10) : std::vector<SimilarTablet>{};
+    return found.empty() ? "" : found.front().tablet;
+  }
+  [[nodiscard]] std::size_t read_anew() const {
+    const auto collection = open();
+    return collection ? collection->read_anew() : 99;
+  }
+  [[nodiscard]] std::string index_bytes() const {
+    std::ostringstream bytes;
+    bytes << std::ifstream(at(std::string(kSearchIndexName)), std::ios::binary).rdbuf();
+    return bytes.str();
+  }
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(CollectionTest, OnlyWhatChangedIsReadAgain) {
+  settle();
+  EXPECT_EQ(read_anew(), 3U);
+  const std::string kept = index_bytes();
+  EXPECT_FALSE(kept.empty());
+  EXPECT_EQ(read_anew(), 0U);
+  EXPECT_EQ(index_bytes(), kept);
+  EXPECT_EQ(nearest_to(tablet_of(0.53, 2.06, 12)), "x/c.json");
+
+  // One rewritten, one taken away, one more: the answers follow.
+  put("a.json", tablet_of(0.53, 2.06, 13));
+  fs::remove(at("x/c.json"));
+  put("d.json", tablet_of(2.2, 7.0, 12));
+  settle();
+  EXPECT_EQ(read_anew(), 2U);
+  EXPECT_EQ(read_anew(), 0U);
+  EXPECT_EQ(nearest_to(tablet_of(0.53, 2.06, 12)), "a.json");
+  EXPECT_EQ(nearest_to(tablet_of(2.1, 7.1, 12)), "d.json");
+
+  // Of the same size, its time of change put back: the time of its status tells.
+  struct stat before {};
+  ASSERT_EQ(::stat(at("b.json").c_str(), &before), 0);
+  put("b.json", tablet_of(0.9, 9.0, 12));
+  const std::array<timespec, 2> times = {before.st_atim, before.st_mtim};
+  ASSERT_EQ(::utimensat(AT_FDCWD, at("b.json").c_str(), times.data(), 0), 0);
+  settle();
+  EXPECT_EQ(nearest_to(tablet_of(0.9, 9.1, 12)), "b.json");
+}
+
+TEST_F(CollectionTest, AnIndexThatIsDamagedOrForeignIsMadeAgain) {
+  settle();
+  EXPECT_EQ(read_anew(), 3U);
+  const std::string kept = index_bytes();
+  for (const std::string& bytes : {std::string(), std::string("nonsense"), kept.substr(0, kept.size() / 2)}) {
+    std::ofstream(at(std::string(kSearchIndexName)), std::ios::binary) << bytes;
+    const auto collection = open();
+    ASSERT_TRUE(collection);
+    EXPECT_EQ(collection->read_anew(), 3U);
+    EXPECT_THAT(collection->remark(), HasSubstr("it is made again"));
+    EXPECT_EQ(index_bytes(), kept);
+  }
+  // In a copy of the folder nothing of it is believed.
+  const test::TemporaryFolder copy;
+  fs::copy(folder_.path(), copy.path(), fs::copy_options::recursive);
+  settle();
+  const auto copied = Collection::open(copy.path(), kSettled);
+  ASSERT_TRUE(copied);
+  EXPECT_EQ(copied->read_anew(), 3U);
+}
+
+TEST_F(CollectionTest, AnIndexThatCannotBeKeptCostsTimeAlone) {
+  fs::create_directory(at(std::string(kSearchIndexName)));
+  for (int turn = 0; turn < 2; ++turn) {
+    const auto collection = open();
+    ASSERT_TRUE(collection);
+    EXPECT_EQ(collection->read_anew(), 3U);
+    EXPECT_THAT(collection->remark(), HasSubstr("the search index is not kept"));
+    EXPECT_EQ(collection->similar_tablets(tablet_of(0.53, 2.06, 12), 1).size(), 1U);
+  }
+}
+
+TEST_F(CollectionTest, WhatIsNoWedgesJsonIsToldEveryTime) {
+  std::ofstream(at("note.json")) << "{}";
+  settle();
+  for (int turn = 0; turn < 2; ++turn) {
+    const auto collection = open();
+    ASSERT_TRUE(collection);
+    EXPECT_EQ(collection->read_anew(), turn == 0 ? 4U : 0U);
+    EXPECT_THAT(collection->files()[2].complaint, HasSubstr("note.json"));
+  }
+}
+
+TEST_F(CollectionTest, TheFilesOwnProfileIsUsedWhileItFits) {
+  WedgeFile file = tablet_of(0.5, 2.0, 12);
+  WedgeProfile profile;
+  profile.count = 12;
+  for (auto& quantiles : profile.quantiles) {
+    quantiles.fill(1.0);
+  }
+  file.profiles = {profile};
+  put("b.json", file);
+  const auto own = open();
+  ASSERT_TRUE(own);
+  WedgeFile like = tablet_of(3, 3, 12);
+  like.profiles = {profile};
+  ASSERT_FALSE(own->similar_tablets(like, 1).empty());
+  EXPECT_EQ(own->similar_tablets(like, 1)[0].tablet, "b.json");
+  EXPECT_EQ(own->similar_tablets(like, 1)[0].distance, 0);
+  // A wedge was taken out by hand: what the profile says is no longer true.
+  file.wedges.pop_back();
+  put("b.json", file);
+  const auto made = open();
+  ASSERT_TRUE(made);
+  EXPECT_GT(made->similar_tablets(like, 1)[0].distance, 0);
+}
+
+TEST_F(CollectionTest, MeasuresBeyondAllBoundsAreToldApart) {
+  WedgeFile file = tablet_of(0.5, 2.0, 12);
+  file.wedges[3].exit_points_mm[0] = Eigen::Vector3d(1e200, 1e200, 0);
+  put("b.json", file);
+  const auto collection = open();
+  ASSERT_TRUE(collection);
+  EXPECT_THAT(collection->files()[1].complaint, HasSubstr("beyond all bounds"));
+  EXPECT_THAT(collection->files()[0].complaint, IsEmpty());
+}
+
+}  // namespace
+}  // namespace dubsar

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+// Selection on the graphics card against the same worked out by hand, far beyond 2^16 faces.
+
+#include "ui/view/face_selection.h"
+
+#include <epoxy/gl.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/ui/support/display.h"
+#include "ui/gl/gl_window.h"
+#include "ui/view/surface_view.h"
+
+namespace dubsar::ui {
+namespace {
+
+constexpr int kWidth = 400;
+constexpr int kHeight = 300;
+
+/// Two sheets, one behind the other, seen from +z: 2 × 2 n² faces.
+Mesh two_sheets(std::uint32_t n) {
+  Mesh mesh;
+  for (std::uint32_t sheet = 0; sheet < 2; ++sheet) {
+    const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+    for (std::uint32_t y = 0; y <= n; ++y) {
+      for (std::uint32_t x = 0; x <= n; ++x) {
+        mesh.positions.emplace_back(static_cast<float>(x) * 40 / static_cast<float>(n),
+                                    static_cast<float>(y) * 30 / static_cast<float>(n),
+                                    sheet == 0 ? 0.0F : -5.0F);
+      }
+    }
+    for (std::uint32_t y = 0; y < n; ++y) {
+      for (std::uint32_t x = 0; x < n; ++x) {
+        const std::uint32_t a = first + y * (n + 1) + x;
+        mesh.faces.push_back({a, a + 1, a + n + 1});
+        mesh.faces.push_back({a + 1, a + n + 2, a + n + 1});
+      }
+    }
+  }
+  return mesh;
+}
+
+class Selecting : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (!display_.works()) {
+      GTEST_SKIP() << "there is no Xvfb here (Debian package xvfb)";
+    }
+    Result<GlWindow> window = GlWindow::open(64, 64, "test");
+    ASSERT_TRUE(window) << window.error().line();
+    window_.emplace(std::move(*window));
+    shown_ = shown_mesh(two_sheets(300));  // 360 thousand faces
+    view_ = std::make_unique<SurfaceView>();
+    view_->show(shown_);
+    camera_.fit(shown_.box_mm, static_cast<float>(kWidth) / kHeight);
+    view_->draw_whole(camera_, {}, kWidth, kHeight);
+  }
+  /// Where the middle of a face stands in the picture.
+  [[nodiscard]] Eigen::Vector2f middle_of(std::size_t f) const {
+    const auto& [a, b, c] = shown_.faces[f];
+    const Eigen::Vector3f middle = (shown_.positions[a] + shown_.positions[b] + shown_.positions[c]) / 3;
+    return camera_.pixel_of(middle, {kWidth, kHeight});
+  }
+  [[nodiscard]] bool in_front(std::size_t f) const { return shown_.positions[shown_.faces[f][0]].z() > -1; }
+
+  test::Display display_;
+  std::optional<GlWindow> window_;
+  ShownMesh shown_;
+  std::unique_ptr<SurfaceView> view_;
+  OrbitCamera camera_;
+};
+
+/// A rectangle between these pixels.
+std::vector<Eigen::Vector2f> box(float x1, float y1, float x2, float y2) {
+  return {{x1, y1}, {x2, y1}, {x2, y2}, {x1, y2}};
+}
+
+TEST_F(Selecting, WhatAPolygonHoldsAndNothingElse) {
+  ASSERT_TRUE(view_->select(box(100, 80, 220, 200), SelectionStep::kUnion, true));
+  const std::vector<std::uint32_t> selected = view_->selection()->read();
+  ASSERT_EQ(selected.size(), shown_.faces.size());
+  std::size_t wrong = 0;
+  std::size_t inside = 0;
+  std::size_t last = 0;
+  for (std::size_t f = 0; f < selected.size(); ++f) {
+    const Eigen::Vector2f at = middle_of(f);
+    const bool near_border = std::min({std::abs(at.x() - 100), std::abs(at.x() - 220), std::abs(at.y() - 80),
+                                       std::abs(at.y() - 200)}) < 1;
+    const bool within = at.x() > 100 && at.x() < 220 && at.y() > 80 && at.y() < 200;
+    inside += within ? 1 : 0;
+    last = selected[f] != 0 ? f : last;
+    wrong += !near_border && within != (selected[f] != 0) ? 1 : 0;
+  }
+  EXPECT_EQ(wrong, 0U);
+  EXPECT_GT(inside, 40000U);
+  EXPECT_GT(last, std::size_t{1} << 17U) << "faces beyond 2^16 take part";
+}
+
+TEST_F(Selecting, OnlyWhatIsSeen) {
+  ASSERT_TRUE(view_->select(box(50, 50, 350, 250), SelectionStep::kUnion, false));
+  const std::vector<std::uint32_t> selected = view_->selection()->read();
+  std::size_t front = 0;
+  std::size_t back = 0;
+  for (std::size_t f = 0; f < selected.size(); ++f) {
+    (in_front(f) ? front : back) += selected[f];
+  }
+  EXPECT_GT(front, std::size_t{60000});
+  EXPECT_EQ(back, 0U);
+}
+
+TEST_F(Selecting, PolygonsGoTogetherAsAsked) {
+  const auto count = [&] {
+    std::size_t sum = 0;
+    for (const std::uint32_t one : view_->selection()->read()) {
+      sum += one;
+    }
+    return static_cast<double>(sum);
+  };
+  ASSERT_TRUE(view_->select(box(100, 100, 200, 200), SelectionStep::kUnion, true));
+  const double one = count();
+  view_->draw_whole(camera_, {}, kWidth, kHeight);
+  ASSERT_TRUE(view_->select(box(150, 100, 250, 200), SelectionStep::kUnion, true));
+  EXPECT_NEAR(count(), 1.5 * one, 0.03 * one);
+  ASSERT_TRUE(view_->select(box(100, 100, 200, 200), SelectionStep::kIntersection, true));
+  EXPECT_NEAR(count(), one, 0.03 * one);
+  ASSERT_TRUE(view_->select(box(100, 100, 150, 200), SelectionStep::kDifference, true));
+  EXPECT_NEAR(count(), 0.5 * one, 0.03 * one);
+  // The picture tells the selected apart.
+  view_->draw_whole(camera_, {}, kWidth, kHeight);
+  const Image picture = view_->read();
+  const Rgb8 in = picture.rgb(175, 150);
+  const Rgb8 out = picture.rgb(125, 150);
+  EXPECT_GT(in[2], in[0]);
+  EXPECT_LT(out[2], out[0]);
+  EXPECT_EQ(glGetError(), static_cast<GLenum>(GL_NO_ERROR));
+}
+
+TEST(PolygonMask, EvenOddAndBottomRowFirst) {
+  const std::vector<std::uint8_t> mask = polygon_mask({{1, 1}, {9, 1}, {9, 9}, {1, 9}}, 10, 12);
+  EXPECT_EQ(mask[static_cast<std::size_t>(12 - 1 - 5) * 10 + 5], 255);
+  EXPECT_EQ(mask[static_cast<std::size_t>(12 - 1 - 10) * 10 + 5], 0);
+  EXPECT_EQ(mask[static_cast<std::size_t>(12 - 1 - 5) * 10 + 0], 0);
+  std::size_t inside = 0;
+  for (const std::uint8_t one : mask) {
+    inside += one / 255U;
+  }
+  EXPECT_EQ(inside, 64U);
+  EXPECT_EQ(polygon_mask({{-50, -50}, {50, -50}, {50, 50}, {-50, 50}}, 3, 3),
+            std::vector<std::uint8_t>(9, 255));
+}
+
+}  // namespace
+}  // namespace dubsar::ui

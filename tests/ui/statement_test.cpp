@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "ui/operator/statement.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace dubsar::ui {
+namespace {
+
+using ::testing::HasSubstr;
+
+LiveState with_scan(PoseStatus status) {
+  LiveState state;
+  LiveScan scan;
+  scan.id = 4;
+  scan.pose = ScanPose{};
+  scan.pose->id = 4;
+  scan.pose->status = status;
+  scan.pose->reason = "the overlap is too small";
+  state.scans.push_back(scan);
+  return state;
+}
+
+std::shared_ptr<const RedMap> map_with(double red) {
+  auto map = std::make_shared<RedMap>();
+  map->conclusive = red <= 0;
+  if (red > 0) {
+    RedRegion region;
+    region.face = Face::kLeft;
+    region.area_mm2 = red;
+    map->regions.push_back(region);
+  }
+  return map;
+}
+
+TEST(Statement, AsksForAScannerFirst) {
+  const Statement s = statement_of({}, false, Language::kEnglish);
+  EXPECT_EQ(s.headline, "Choose a scanner");
+  EXPECT_FALSE(s.may_scan);
+  EXPECT_FALSE(s.may_undo);
+  EXPECT_FALSE(s.may_sign);
+}
+
+TEST(Statement, HandsOffWhileTheScannerWorks) {
+  for (const LivePhase phase :
+       {LivePhase::kOpening, LivePhase::kMoving, LivePhase::kScanning, LivePhase::kJudging}) {
+    LiveState state = with_scan(PoseStatus::kRegistered);
+    state.phase = phase;
+    const Statement s = statement_of(state, true, Language::kEnglish);
+    EXPECT_EQ(s.tone, Tone::kHandsOff);
+    EXPECT_FALSE(s.may_scan);
+    EXPECT_TRUE(s.may_stop);
+  }
+}
+
+TEST(Statement, SaysHowToTurnTheTablet) {
+  LiveState state = with_scan(PoseStatus::kRegistered);
+  state.phase = LivePhase::kWaiting;
+  state.next = NextView{};
+  state.next->say = "turn the reverse towards the camera, 90°";
+  state.next->placement = Placement{};
+  state.next->placement->hand_turn = RigidTransform{};
+  const Statement english = statement_of(state, true, Language::kEnglish);
+  EXPECT_EQ(english.headline, "Turn the reverse towards the camera, 90°");
+  EXPECT_THAT(english.detail, HasSubstr("as shown"));
+  EXPECT_TRUE(english.may_scan);
+  EXPECT_TRUE(english.may_finish);
+  EXPECT_THAT(statement_of(state, true, Language::kGerman).headline, HasSubstr("Rückseite"));
+}
+
+TEST(Statement, AnUnsureScanIsToldWithItsReason) {
+  LiveState state = with_scan(PoseStatus::kUnsure);
+  state.phase = LivePhase::kWaiting;
+  state.last_not_taken_up = true;
+  const Statement s = statement_of(state, true, Language::kEnglish);
+  EXPECT_EQ(s.headline, "Scan 4 is unsure");
+  EXPECT_THAT(s.detail, HasSubstr("the overlap is too small"));
+}
+
+TEST(Statement, OnlyWhatIsThereMayBeSigned) {
+  LiveState state = with_scan(PoseStatus::kRegistered);
+  state.red_map = map_with(12.34);
+  EXPECT_THAT(statement_of(state, true, Language::kEnglish).headline, HasSubstr("12.3 mm2"));
+  state.red_map = map_with(0);
+  EXPECT_EQ(statement_of(state, true, Language::kEnglish).tone, Tone::kGood);
+  EXPECT_TRUE(statement_of(state, true, Language::kEnglish).may_sign);
+  state.signed_off = true;
+  state.signed_by = "A. Reader";
+  const Statement s = statement_of(state, true, Language::kEnglish);
+  EXPECT_EQ(s.headline, "Signed by A. Reader");
+  EXPECT_FALSE(s.may_sign);
+}
+
+TEST(Statement, WhatEndedTheRunIsToldWithItsMend) {
+  LiveState state = with_scan(PoseStatus::kRegistered);
+  state.error = Error{ErrorKind::kDevice, "the camera is gone", "v4l2:/dev/video0", "plug it in"};
+  const Statement s = statement_of(state, true, Language::kEnglish);
+  EXPECT_EQ(s.tone, Tone::kBad);
+  EXPECT_THAT(s.detail, HasSubstr("the camera is gone"));
+  EXPECT_THAT(s.detail, HasSubstr("plug it in"));
+  EXPECT_TRUE(s.may_scan) << "it goes on with what is there";
+}
+
+}  // namespace
+}  // namespace dubsar::ui

@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+// The shadings against stored pictures of the same surface. DUBSAR_KEEP_PICTURES=FOLDER keeps what is drawn now:
+// look at it before it becomes the stored one.
+
+#include <gtest/gtest.h>
+#include <png.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+
+#include "station/picture_file.h"
+#include "tests/ui/support/display.h"
+#include "ui/gl/gl_window.h"
+#include "ui/view/surface_view.h"
+
+namespace dubsar::ui {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kWidth = 240;
+constexpr int kHeight = 180;
+
+/// A slab with two wedge-like dents and a bump.
+Mesh dented_slab() {
+  constexpr std::uint32_t kCells = 220;
+  Mesh mesh;
+  const auto dent = [](float x, float y, float at_x, float at_y, float depth) {
+    const float dx = x - at_x;
+    const float dy = y - at_y;
+    return std::max(0.0F, depth - 0.9F * std::abs(dy) - 0.35F * std::abs(dx - 0.4F * dx * dx / 3));
+  };
+  for (std::uint32_t j = 0; j <= kCells; ++j) {
+    for (std::uint32_t i = 0; i <= kCells; ++i) {
+      const float x = -10 + 20 * static_cast<float>(i) / kCells;
+      const float y = -7.5F + 15 * static_cast<float>(j) / kCells;
+      const float bump = 1.2F * std::exp(-((x - 5) * (x - 5) + (y + 3) * (y + 3)) / 3);
+      const float z = -0.015F * (x * x + y * y) - dent(x, y, -4, 2, 1.5F) - dent(x, y, 2, 3, 1.0F) + bump;
+      mesh.positions.emplace_back(x, y, z);
+      mesh.flags.push_back(i > kCells - 20 ? std::uint8_t{kVertexSparse} : std::uint8_t{0});
+    }
+  }
+  for (std::uint32_t j = 0; j < kCells; ++j) {
+    for (std::uint32_t i = 0; i < kCells; ++i) {
+      const std::uint32_t a = j * (kCells + 1) + i;
+      mesh.faces.push_back({a, a + 1, a + kCells + 1});
+      mesh.faces.push_back({a + 1, a + kCells + 2, a + kCells + 1});
+    }
+  }
+  return mesh;
+}
+
+/// RGBA; empty when it cannot be read.
+Image read_png(const fs::path& file) {
+  png_image png;
+  std::memset(&png, 0, sizeof png);
+  png.version = PNG_IMAGE_VERSION;
+  Image image;
+  if (png_image_begin_read_from_file(&png, file.c_str()) == 0) {
+    return image;
+  }
+  png.format = PNG_FORMAT_RGBA;
+  image.width = static_cast<int>(png.width);
+  image.height = static_cast<int>(png.height);
+  image.channels = 4;
+  image.bytes.resize(PNG_IMAGE_SIZE(png));
+  png_image_finish_read(&png, nullptr, image.bytes.data(), 0, nullptr);
+  return image;
+}
+
+class Shading : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (!display_.works()) {
+      GTEST_SKIP() << "there is no Xvfb here (Debian package xvfb)";
+    }
+    Result<GlWindow> window = GlWindow::open(64, 64, "test");
+    ASSERT_TRUE(window) << window.error().line();
+    window_.emplace(std::move(*window));
+    view_ = std::make_unique<SurfaceView>();
+    const Mesh mesh = dented_slab();
+    const ShownMesh shown = shown_mesh(mesh);
+    view_->show(shown);
+    std::vector<float> heights;
+    for (const auto& p : mesh.positions) {
+      heights.push_back(p.z());
+    }
+    view_->set_values(heights);
+    camera_.eye_from_model = Eigen::AngleAxisf(-0.5F, Eigen::Vector3f::UnitX());
+    camera_.fit(shown.box_mm, static_cast<float>(kWidth) / kHeight);
+    look_.ground = {0.1F, 0.1F, 0.12F, 1};
+  }
+  void expect_as_stored(const std::string& name) {
+    view_->draw_whole(camera_, look_, kWidth, kHeight);
+    const Image drawn = view_->read();
+    if (const char* folder = std::getenv("DUBSAR_KEEP_PICTURES"); folder != nullptr) {
+      ASSERT_TRUE(write_picture(fs::path(folder) / (name + ".png"), drawn, name));
+    }
+    const Image stored = read_png(fs::path(DUBSAR_SOURCE_DIR) / "tests/ui/pictures" / (name + ".png"));
+    ASSERT_EQ(stored.bytes.size(), drawn.bytes.size()) << name;
+    double sum = 0;
+    std::size_t far = 0;
+    for (std::size_t i = 0; i < stored.bytes.size(); ++i) {
+      const int apart = std::abs(static_cast<int>(stored.bytes[i]) - static_cast<int>(drawn.bytes[i]));
+      sum += apart;
+      far += apart > 40 ? 1 : 0;
+    }
+    // Another driver rounds otherwise and its edges fall otherwise; light from another side is far beyond this.
+    EXPECT_LT(sum / static_cast<double>(stored.bytes.size()), 2.0) << name;
+    EXPECT_LT(static_cast<double>(far) / static_cast<double>(stored.bytes.size()), 0.01) << name;
+  }
+
+  test::Display display_;
+  std::optional<GlWindow> window_;
+  std::unique_ptr<SurfaceView> view_;
+  OrbitCamera camera_;
+  Look look_;
+};
+
+TEST_F(Shading, LitSphere) {
+  expect_as_stored("lit_sphere");
+}
+
+TEST_F(Shading, RakingLampWithShadows) {
+  look_.lamp = true;
+  look_.light = {-0.9F, 0.3F, 0.35F};
+  expect_as_stored("raking");
+}
+
+TEST_F(Shading, OverlayOfNumbers) {
+  look_.overlay = Overlay::kValue;
+  look_.value_range = {-2, 1};
+  look_.radiance = 0;
+  expect_as_stored("values");
+}
+
+TEST_F(Shading, SparseVerticesAndDepthShading) {
+  look_.overlay = Overlay::kFlags;
+  look_.depth_shading = 1.5F;
+  expect_as_stored("sparse_depth");
+}
+
+TEST_F(Shading, AShadowTakesLightAndGivesNone) {
+  look_.lamp = true;
+  look_.radiance = 0;
+  look_.light = {-0.95F, 0, 0.3F};
+  const auto drawn = [&](bool shadows) {
+    look_.shadows = shadows;
+    view_->draw_whole(camera_, look_, kWidth, kHeight);
+    return view_->read().bytes;
+  };
+  const auto without = drawn(false);
+  const auto with = drawn(true);
+  std::size_t darker = 0;
+  std::size_t brighter = 0;
+  for (std::size_t i = 0; i < with.size(); ++i) {
+    darker += with[i] + 20 < without[i] ? 1 : 0;
+    brighter += with[i] > without[i] ? 1 : 0;
+  }
+  EXPECT_GT(darker, with.size() / 200);
+  EXPECT_EQ(brighter, 0U);
+}
+
+TEST_F(Shading, ThePlaceUnderAPixelIsOnTheSurface) {
+  view_->draw_whole(camera_, look_, kWidth, kHeight);
+  const auto place = view_->point_at({0.5F * kWidth, 0.5F * kHeight});
+  ASSERT_TRUE(place);
+  const Eigen::Vector2f back = camera_.pixel_of(*place, {kWidth, kHeight});
+  EXPECT_LT((back - Eigen::Vector2f(0.5F * kWidth, 0.5F * kHeight)).norm(), 1.0F);
+  EXPECT_FALSE(view_->point_at({1, 1}));
+}
+
+}  // namespace
+}  // namespace dubsar::ui

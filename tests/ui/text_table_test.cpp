@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "ui/shell/text_table.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+
+namespace dubsar::ui {
+namespace {
+
+/// What stands between braces, in order.
+std::string gaps_of(const std::string& text) {
+  std::string out;
+  bool inside = false;
+  for (const char c : text) {
+    inside = inside || c == '{';
+    out += inside ? std::string(1, c) : std::string();
+    inside = inside && c != '}';
+  }
+  return out;
+}
+
+TEST(TextTable, EveryTextIsThereInBothLanguagesWithTheSameGaps) {
+  for (int k = 0; k < static_cast<int>(Text::kCount); ++k) {
+    const std::string english = text_of(static_cast<Text>(k), Language::kEnglish);
+    const std::string german = text_of(static_cast<Text>(k), Language::kGerman);
+    EXPECT_FALSE(english.empty());
+    EXPECT_FALSE(german.empty());
+    EXPECT_EQ(gaps_of(english), gaps_of(german)) << english << " / " << german;
+    EXPECT_EQ(english.find('%'), std::string::npos) << english;
+  }
+}
+
+TEST(TextTable, TheEnginesWordsAreTranslatedAsFarAsTheyAreKnown) {
+  const std::string said = "turn the reverse towards the camera, 90°; then turntable to 40°, tilt to 52°";
+  EXPECT_EQ(translated(said, Language::kEnglish), said);
+  EXPECT_EQ(translated(said, Language::kGerman),
+            "die Rückseite zur Kamera drehen, 90°; dann Drehteller auf 40°, Neigung auf 52°");
+  EXPECT_EQ(translated("something new", Language::kGerman), "something new");
+}
+
+}  // namespace
+}  // namespace dubsar::ui

@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "triangulation/pairing.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/parallel.h"
+
+namespace dubsar {
+
+namespace {
+
+using Eigen::Vector3f;
+
+/// Whether a surface element could face the scanner, with some leave for noise and for camera and laser
+/// standing apart.
+bool may_see(const ScannerView& view, const Vector3f& p, const Vector3f& normal) {
+  constexpr float kMostSine = -0.2F;
+  const Vector3f to_camera = view.camera_mm ? Vector3f((view.camera_mm->cast<float>() - p).normalized())
+                                            : Vector3f(-view.direction.cast<float>());
+  return normal.dot(to_camera) > kMostSine;
+}
+
+/// Where p would lie if the grid went on as evenly as it does at a sample; that sample where it does not.
+std::size_t jump(const StitchSurface& to, std::size_t at, const Vector3f& p) {
+  constexpr float kMostSamples = 8.0F;
+  const auto width = static_cast<std::size_t>(to.lattice.cols);
+  const int row = static_cast<int>(at / width);
+  const int col = static_cast<int>(at % width);
+  if (row + 1 >= to.lattice.rows || col + 1 >= to.lattice.cols ||
+      (to.usable[at + 1] & to.usable[at + width]) == 0) {
+    return at;
+  }
+  const Vector3f d = p - to.points[at];
+  const Vector3f u = to.points[at + 1] - to.points[at];
+  const Vector3f v = to.points[at + width] - to.points[at];
+  const float uu = u.squaredNorm(), uv = u.dot(v), vv = v.squaredNorm();
+  const float det = uu * vv - uv * uv;
+  if (!(det > 0.05F * uu * vv)) {
+    return at;
+  }
+  const float du = d.dot(u), dv = d.dot(v);
+  const float cols = (du * vv - dv * uv) / det;
+  const float rows = (dv * uu - du * uv) / det;
+  if (!(std::abs(cols) < kMostSamples && std::abs(rows) < kMostSamples)) {
+    return at;
+  }
+  constexpr auto nearest = [](float x) { return static_cast<int>(x + kMostSamples + 0.5F) - static_cast<int>(kMostSamples); };
+  const int r = std::clamp(row + nearest(rows), 0, to.lattice.rows - 1);
+  const int c = std::clamp(col + nearest(cols), 0, to.lattice.cols - 1);
+  const std::size_t there = static_cast<std::size_t>(r) * width + static_cast<std::size_t>(c);
+  return to.usable[there] != 0 && (to.points[there] - p).squaredNorm() < d.squaredNorm() ? there : at;
+}
+
+/// From sample to sample of the grid towards p: the one at which no neighbour is nearer.
+std::size_t walk(const StitchSurface& to, std::size_t at, const Vector3f& p, float& distance2) {
+  constexpr int kMostSteps = 16;
+  const int rows = to.lattice.rows;
+  const int cols = to.lattice.cols;
+  const auto width = static_cast<std::size_t>(cols);
+  distance2 = (to.points[at] - p).squaredNorm();
+  for (int step = 0; step < kMostSteps; ++step) {
+    const int row = static_cast<int>(at / width);
+    const int col = static_cast<int>(at % width);
+    const int last_row = std::min(row + 1, rows - 1);
+    const int first_col = std::max(col - 1, 0);
+    const int last_col = std::min(col + 1, cols - 1);
+    std::size_t next = at;
+    for (int r = std::max(row - 1, 0); r <= last_row; ++r) {
+      const std::size_t base = static_cast<std::size_t>(r) * width;
+      for (std::size_t i = base + static_cast<std::size_t>(first_col);
+           i <= base + static_cast<std::size_t>(last_col); ++i) {
+        const float d2 = (to.points[i] - p).squaredNorm();
+        if (d2 < distance2 && to.usable[i] != 0) {
+          distance2 = d2;
+          next = i;
+        }
+      }
+    }
+    if (next == at) {
+      break;
+    }
+    at = next;
+  }
+  return at;
+}
+
+/// Nearest usable sample within reach, model frame, or -1.
+std::int64_t nearest_sample(const StitchSurface& to, const Vector3f& p, float reach_mm) {
+  // What is looked up is every second sample; the walk goes to the nearest of all.
+  const auto near_mm = static_cast<float>(1.5 * to.spacing_mm);
+  const Vector3f there = (to.scanner_from_model * p.cast<double>()).cast<float>();
+  const std::int64_t start = to.lookup->nearest(there, reach_mm + near_mm);
+  if (start < 0) {
+    return -1;
+  }
+  float distance2 = 0;
+  const std::size_t at = walk(to, static_cast<std::size_t>(start), p, distance2);
+  return distance2 <= reach_mm * reach_mm ? static_cast<std::int64_t>(at) : -1;
+}
+
+}  // namespace
+
+double mismatch_mm(const StitchSurface& from, const StitchSurface& to, double reach_mm) {
+  constexpr std::size_t kProbes = 1500;
+  const std::size_t n = from.points.size();
+  const std::size_t step = std::max<std::size_t>(1, n / kProbes) | 1U;
+  Eigen::AlignedBox3f box = to.box;
+  if (box.isEmpty()) {
+    return -1;
+  }
+  box.min().array() -= static_cast<float>(reach_mm);
+  box.max().array() += static_cast<float>(reach_mm);
+  std::vector<float> distances;
+  for (std::size_t i = 0; i < n; i += step) {
+    if (from.usable[i] == 0 || !box.contains(from.points[i]) ||
+        !may_see(to.view, from.points[i], from.normals[i])) {
+      continue;
+    }
+    const std::int64_t j = nearest_sample(to, from.points[i], static_cast<float>(reach_mm));
+    if (j < 0) {
+      continue;
+    }
+    const auto q = static_cast<std::size_t>(j);
+    if (from.normals[i].dot(to.normals[q]) > 0.9F) {
+      distances.push_back(std::abs((from.points[i] - to.points[q]).dot(to.normals[q])));
+    }
+  }
+  if (distances.size() < 8) {
+    return -1;
+  }
+  const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
+  std::nth_element(distances.begin(), middle, distances.end());
+  return *middle;
+}
+
+double pair_reach_mm(const StitchSurface& a, const StitchSurface& b, const PairingOptions& options) {
+  const double spacing = std::max(a.spacing_mm, b.spacing_mm);
+  const double sigma = std::hypot(a.scan.sigma_mm, b.scan.sigma_mm);
+  const double plain =
+      options.reach_factor * spacing + (std::isfinite(sigma) ? options.sigma_factor * sigma : 0.0);
+  const double most = std::max(plain, options.most_reach_factor * spacing);
+  const double measured = std::max(mismatch_mm(a, b, most), mismatch_mm(b, a, most));
+  // The median of a half-normal is 0.67 sigma: four medians reach 2.7 sigma; tangential offsets come on top.
+  return std::clamp(4.0 * measured + spacing, plain, most);
+}
+
+double step_mm(const StitchSurface& a, const StitchSurface& b, double reach_mm) {
+  constexpr double kMedianOfSigma = 0.6745;  // of the absolute value
+  const double sigma_mm = std::max(mismatch_mm(a, b, reach_mm), mismatch_mm(b, a, reach_mm)) / kMedianOfSigma;
+  const double noise2 = a.noise_mm * a.noise_mm + b.noise_mm * b.noise_mm;
+  return sigma_mm > 0 ? std::sqrt(std::max(0.0, sigma_mm * sigma_mm - noise2)) : 0.0;
+}
+
+double feather_samples(const StitchSurface& a, const StitchSurface& b, double step_mm) {
+  constexpr double kSamplesPerStep = 3.0;
+  constexpr double kLeast = 2.0;
+  const double samples = kSamplesPerStep * step_mm / std::min(a.spacing_mm, b.spacing_mm);
+  return samples < kLeast ? 0.0 : std::min(samples, static_cast<double>(kMostRim - 1));
+}
+
+Pairs find_pairs(const StitchSurface& from, const StitchSurface& to, double reach_mm,
+                 const PairingOptions& options) {
+  Pairs pairs;
+  pairs.other_id = to.scan.id;
+  pairs.reach_mm = static_cast<float>(reach_mm);
+  pairs.min_normal_cos = static_cast<float>(options.min_normal_cos);
+  pairs.match.assign(from.lattice.size(), -1);
+  Eigen::AlignedBox3f box = to.box;
+  if (box.isEmpty()) {
+    return pairs;
+  }
+  box.min().array() -= pairs.reach_mm;
+  box.max().array() += pairs.reach_mm;
+  pairs.nodes = parallel_reduce_ordered(
+      pairs.match.size(), 512, std::size_t{0},
+      [&](std::size_t begin, std::size_t end) {
+        std::size_t count = 0;
+        for (std::size_t node = begin; node < end; ++node) {
+          const std::int32_t sample = from.node_sample[node];
+          if (sample < 0) {
+            continue;
+          }
+          const auto i = static_cast<std::size_t>(sample);
+          // A scan cannot have seen what faces away from it.
+          if (!box.contains(from.points[i]) || !may_see(to.view, from.points[i], from.normals[i])) {
+            continue;
+          }
+          const std::int64_t j = nearest_sample(to, from.points[i], pairs.reach_mm);
+          if (j >= 0 && from.normals[i].dot(to.normals[static_cast<std::size_t>(j)]) > pairs.min_normal_cos) {
+            pairs.match[node] = static_cast<std::int32_t>(j);
+            ++count;
+          }
+        }
+        return count;
+      },
+      [](std::size_t& total, std::size_t part) { total += part; });
+  return pairs;
+}
+
+std::int32_t pair_start(const StitchSurface& from, std::size_t node, const Pairs& pairs) {
+  std::int32_t start = pairs.match[node];
+  const auto is_start = [&](std::size_t beside) {
+    start = pairs.match[beside];
+    return start >= 0;
+  };
+  return start >= 0 || from.lattice.any_within(node, 1, is_start) ? start : -1;
+}
+
+std::int64_t pair_of(const StitchSurface& from, std::size_t sample, std::int32_t start,
+                     const StitchSurface& to, const Pairs& pairs) {
+  const Vector3f& p = from.points[sample];
+  float distance2 = 0;
+  const std::size_t at = walk(to, jump(to, static_cast<std::size_t>(start), p), p, distance2);
+  const bool agrees = distance2 <= pairs.reach_mm * pairs.reach_mm &&
+                      from.normals[sample].dot(to.normals[at]) > pairs.min_normal_cos;
+  return agrees ? static_cast<std::int64_t>(at) : -1;
+}
+
+}  // namespace dubsar

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "ui/gl/frame_target.h"
+
+#include <epoxy/gl.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace dubsar::ui {
+
+namespace {
+
+struct Pixels {
+  GLint internal;
+  GLenum format;
+  GLenum type;
+};
+
+Pixels pixels_of(PixelFormat format) {
+  switch (format) {
+    case PixelFormat::kRgba8:
+      return {GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE};
+    case PixelFormat::kRgba16f:
+      return {GL_RGBA16F, GL_RGBA, GL_HALF_FLOAT};
+    case PixelFormat::kR8:
+      return {GL_R8, GL_RED, GL_UNSIGNED_BYTE};
+    case PixelFormat::kDepth32f:
+      break;
+  }
+  return {GL_DEPTH_COMPONENT32F, GL_DEPTH_COMPONENT, GL_FLOAT};
+}
+
+GLuint new_texture(PixelFormat format, int width, int height) {
+  const Pixels pixels = pixels_of(format);
+  GLuint id = 0;
+  glGenTextures(1, &id);
+  glBindTexture(GL_TEXTURE_2D, id);
+  glTexImage2D(GL_TEXTURE_2D, 0, pixels.internal, width, height, 0, pixels.format, pixels.type, nullptr);
+  const GLint filter = format == PixelFormat::kRgba8 ? GL_LINEAR : GL_NEAREST;
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, filter);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, filter);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+  return id;
+}
+
+/// OpenGL's first row is the lowest.
+void flip_rows(Image& image) {
+  const auto row = static_cast<std::ptrdiff_t>(image.width) * image.channels;
+  for (int y = 0; y < image.height / 2; ++y) {
+    std::swap_ranges(image.bytes.begin() + y * row, image.bytes.begin() + (y + 1) * row,
+                     image.bytes.begin() + (image.height - 1 - y) * row);
+  }
+}
+
+}  // namespace
+
+FrameTarget::FrameTarget(std::vector<PixelFormat> colours) : formats_(std::move(colours)) {}
+
+FrameTarget::~FrameTarget() {
+  release();
+}
+
+void FrameTarget::release() {
+  glDeleteTextures(static_cast<GLsizei>(colour_.size()), colour_.data());
+  glDeleteTextures(1, &depth_);
+  glDeleteFramebuffers(1, &frame_);
+  colour_.clear();
+  depth_ = frame_ = 0;
+}
+
+bool FrameTarget::resize(int width, int height) {
+  width = std::max(1, width);
+  height = std::max(1, height);
+  if (width == width_ && height == height_) {
+    return false;
+  }
+  release();
+  width_ = width;
+  height_ = height;
+  glGenFramebuffers(1, &frame_);
+  glBindFramebuffer(GL_FRAMEBUFFER, frame_);
+  std::vector<GLenum> drawn;
+  for (const PixelFormat format : formats_) {
+    colour_.push_back(new_texture(format, width, height));
+    drawn.push_back(GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(drawn.size()));
+    glFramebufferTexture2D(GL_FRAMEBUFFER, drawn.back(), GL_TEXTURE_2D, colour_.back(), 0);
+  }
+  depth_ = new_texture(PixelFormat::kDepth32f, width, height);
+  glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, depth_, 0);
+  if (drawn.empty()) {
+    glDrawBuffer(GL_NONE);
+    glReadBuffer(GL_NONE);
+  } else {
+    glDrawBuffers(static_cast<GLsizei>(drawn.size()), drawn.data());
+  }
+  return true;
+}
+
+void FrameTarget::bind() const {
+  glBindFramebuffer(GL_FRAMEBUFFER, frame_);
+  glViewport(0, 0, width_, height_);
+}
+
+Image FrameTarget::read() const {
+  Image image;
+  image.width = width_;
+  image.height = height_;
+  image.channels = 4;
+  image.bytes.resize(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_) * 4);
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, frame_);
+  glReadBuffer(GL_COLOR_ATTACHMENT0);
+  glPixelStorei(GL_PACK_ALIGNMENT, 1);
+  glReadPixels(0, 0, width_, height_, GL_RGBA, GL_UNSIGNED_BYTE, image.bytes.data());
+  flip_rows(image);
+  return image;
+}
+
+PixelTexture::~PixelTexture() {
+  glDeleteTextures(1, &id_);
+}
+
+PixelTexture::PixelTexture(PixelTexture&& other) noexcept
+    : id_(std::exchange(other.id_, 0U)), width_(other.width_), height_(other.height_) {}
+
+PixelTexture& PixelTexture::operator=(PixelTexture&& other) noexcept {
+  std::swap(id_, other.id_);
+  std::swap(width_, other.width_);
+  std::swap(height_, other.height_);
+  return *this;
+}
+
+void PixelTexture::upload(int width, int height, int channels, const unsigned char* bytes, bool smooth) {
+  const GLenum format = channels == 1 ? GL_RED : channels == 3 ? GL_RGB : GL_RGBA;
+  const GLint internal = channels == 1 ? GL_R8 : channels == 3 ? GL_RGB8 : GL_RGBA8;
+  if (id_ == 0) {
+    glGenTextures(1, &id_);
+  }
+  glBindTexture(GL_TEXTURE_2D, id_);
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+  glTexImage2D(GL_TEXTURE_2D, 0, internal, width, height, 0, format, GL_UNSIGNED_BYTE, bytes);
+  const GLint filter = smooth ? GL_LINEAR : GL_NEAREST;
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, filter);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, filter);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+  width_ = width;
+  height_ = height;
+}
+
+Image read_window(int width, int height) {
+  Image image = filled_image(width, height, {0, 0, 0});
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, 0);
+  glPixelStorei(GL_PACK_ALIGNMENT, 1);
+  glReadPixels(0, 0, width, height, GL_RGB, GL_UNSIGNED_BYTE, image.bytes.data());
+  flip_rows(image);
+  return image;
+}
+
+}  // namespace dubsar::ui

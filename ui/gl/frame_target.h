@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <vector>
+
+#include "archive/image.h"
+
+namespace dubsar::ui {
+
+/// How the pixels of a texture are stored.
+enum class PixelFormat { kRgba8, kRgba16f, kDepth32f, kR8 };
+
+/// A picture that is drawn into: textures of one size and a depth texture. Grows when asked for another size.
+/// Main thread.
+class FrameTarget {
+ public:
+  explicit FrameTarget(std::vector<PixelFormat> colours);
+  ~FrameTarget();
+  FrameTarget(const FrameTarget&) = delete;
+  FrameTarget& operator=(const FrameTarget&) = delete;
+
+  /// Makes it that large; what was drawn is lost when the size changes. True when it did.
+  bool resize(int width, int height);
+  /// All that is drawn goes here, until another target or the window is bound.
+  void bind() const;
+  [[nodiscard]] unsigned colour(int index) const { return colour_[static_cast<std::size_t>(index)]; }
+  [[nodiscard]] unsigned depth() const { return depth_; }
+  [[nodiscard]] int width() const { return width_; }
+  [[nodiscard]] int height() const { return height_; }
+  /// The first texture, top row first, RGBA.
+  [[nodiscard]] Image read() const;
+
+ private:
+  void release();
+  std::vector<PixelFormat> formats_;
+  std::vector<unsigned> colour_;
+  unsigned depth_ = 0;
+  unsigned frame_ = 0;
+  int width_ = 0;
+  int height_ = 0;
+};
+
+/// A texture of bytes that a program fills; 0 to `channels` = 1, 3 or 4. Main thread.
+class PixelTexture {
+ public:
+  PixelTexture() = default;
+  ~PixelTexture();
+  PixelTexture(PixelTexture&& other) noexcept;
+  PixelTexture& operator=(PixelTexture&& other) noexcept;
+  void upload(int width, int height, int channels, const unsigned char* bytes, bool smooth);
+  [[nodiscard]] unsigned id() const { return id_; }
+  [[nodiscard]] int width() const { return width_; }
+  [[nodiscard]] int height() const { return height_; }
+
+ private:
+  unsigned id_ = 0;
+  int width_ = 0;
+  int height_ = 0;
+};
+
+/// The pixels of the window's own frame, as they stand, RGB.
+[[nodiscard]] Image read_window(int width, int height);
+
+}  // namespace dubsar::ui

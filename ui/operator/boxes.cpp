@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+// What is asked in a box of its own: the window's settings, what tablet it is, and the signature.
+#include <algorithm>
+
+#include "ui/operator/operator_screen.h"
+
+namespace dubsar::ui {
+
+namespace {
+
+/// Begins a modal box of that width in the middle of the window, when it is open.
+bool begin_box(UiContext& ui, const char* title, const char* id, bool& open, float width) {
+  if (open) {
+    ImGui::OpenPopup(id);
+    open = false;
+  }
+  const ImVec2 window = ImGui::GetIO().DisplaySize;
+  ImGui::SetNextWindowSize({std::min(width, 0.92F * window.x), 0});
+  ImGui::SetNextWindowPos({0.5F * window.x, 0.45F * window.y}, ImGuiCond_Always, {0.5F, 0.5F});
+  if (!ImGui::BeginPopupModal((std::string(title) + id).c_str(), nullptr,
+                              ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove)) {
+    return false;
+  }
+  ui.facts.insert("dialog");
+  return true;
+}
+
+}  // namespace
+
+void OperatorScreen::draw_settings(UiContext& ui) {
+  if (!begin_box(ui, ui.text(Text::kSettings), "###settings", open_settings_, ui.px(26))) {
+    return;
+  }
+  Preferences& p = ui.preferences;
+  ImGui::TextUnformatted(ui.text(Text::kLanguage));
+  if (ImGui::RadioButton("English", p.language == Language::kEnglish)) {
+    p.language = Language::kEnglish;
+  }
+  ui.target("english");
+  ImGui::SameLine();
+  if (ImGui::RadioButton("Deutsch", p.language == Language::kGerman)) {
+    p.language = Language::kGerman;
+  }
+  ui.target("german");
+  tick(ui, "dark", ui.text(Text::kDark), p.dark);
+  tick(ui, "colour-blind", ui.text(Text::kColourBlind), p.blue_for_red);
+  ImGui::TextUnformatted(ui.text(Text::kFontSize));
+  if (plain_button(ui, "font-smaller", "A-")) {
+    p.font_px = std::max(kSmallestFontPx, p.font_px - 2);
+  }
+  ImGui::SameLine();
+  if (plain_button(ui, "font-larger", "A+")) {
+    p.font_px = std::min(kLargestFontPx, p.font_px + 2);
+  }
+  ImGui::Separator();
+  if (plain_button(ui, "close-settings", ui.text(Text::kClose))) {
+    ImGui::CloseCurrentPopup();
+  }
+  ImGui::EndPopup();
+}
+
+void OperatorScreen::draw_tablet(UiContext& ui) {
+  if (!begin_box(ui, ui.text(Text::kTablet), "###tablet", open_tablet_, ui.px(32))) {
+    return;
+  }
+  record_open_ = true;
+  text_line(ui, "museum-number", ui.text(Text::kMuseumNumber), record_.museum_number);
+  text_line(ui, "cdli", ui.text(Text::kCdli), record_.cdli);
+  const bool cdli_good = check_cdli(record_.cdli).has_value();
+  if (!cdli_good) {
+    coloured_text(ui.colours.red, ui.text(Text::kCdliWrong));
+  }
+  text_line(ui, "collection", ui.text(Text::kCollection), record_.collection);
+  text_line(ui, "operator", ui.text(Text::kOperator), record_.operator_name);
+  text_line(ui, "notes", ui.text(Text::kNotes), record_.notes);
+  ImGui::PushFont(ui.fonts.small);
+  coloured_text(ui.colours.faint, ui.text(Text::kKept));
+  ImGui::PopFont();
+  if (plain_button(ui, "close-tablet", ui.text(Text::kClose), cdli_good)) {
+    ui.preferences.operator_name = record_.operator_name;
+    if (!(record_ == state_.record)) {
+      session_.describe(record_);
+    }
+    ImGui::CloseCurrentPopup();
+  }
+  ImGui::EndPopup();
+}
+
+void OperatorScreen::draw_signing(UiContext& ui) {
+  if (!begin_box(ui, ui.text(Text::kSign), "###sign", open_sign_, ui.px(32))) {
+    return;
+  }
+  ImGui::TextWrapped("%s", ui.text(Text::kSignHint));
+  text_line(ui, "sign-name", ui.text(Text::kSignName), sign_name_);
+  text_line(ui, "sign-role", ui.text(Text::kSignRole), sign_role_);
+  const bool conclusive = state_.red_map && state_.red_map->conclusive;
+  if (!conclusive) {
+    text_line(ui, "sign-incomplete", ui.text(Text::kSignIncomplete), sign_incomplete_);
+  }
+  const auto says = [](const std::string& text) {
+    return text.find_first_not_of(" \t") != std::string::npos;
+  };
+  const bool enough = says(sign_name_) && (conclusive || says(sign_incomplete_));
+  const bool by_key =
+      enough && ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Enter), false) && !ImGui::IsWindowAppearing();
+  if (plain_button(ui, "sign-now", ui.text(Text::kSignNow), enough) || by_key) {
+    SignOff wanted;
+    wanted.name = sign_name_;
+    wanted.role = sign_role_;
+    wanted.incomplete = conclusive ? std::string() : sign_incomplete_;
+    ui.preferences.operator_name = sign_name_;
+    session_.sign(wanted);
+    ImGui::CloseCurrentPopup();
+  }
+  ImGui::SameLine();
+  if (plain_button(ui, "sign-close", ui.text(Text::kClose))) {
+    ImGui::CloseCurrentPopup();
+  }
+  ImGui::EndPopup();
+}
+
+}  // namespace dubsar::ui

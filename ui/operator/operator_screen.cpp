@@ -1,0 +1,300 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "ui/operator/operator_screen.h"
+
+#include <epoxy/gl.h>
+
+#include <GLFW/glfw3.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace dubsar::ui {
+
+namespace {
+
+Eigen::Vector4f tone_colour(const UiContext& ui, Tone tone) {
+  switch (tone) {
+    case Tone::kHandsOff:
+      return ui.colours.amber;
+    case Tone::kAsk:
+      return ui.colours.ghost;
+    case Tone::kGood:
+      return ui.colours.good;
+    case Tone::kBad:
+      return ui.colours.red;
+    case Tone::kPlain:
+      break;
+  }
+  return ui.colours.faint;
+}
+
+bool pressed(std::initializer_list<int> keys) {
+  return std::ranges::any_of(keys, [](int key) { return ImGui::IsKeyPressed(key, false); });
+}
+
+}  // namespace
+
+std::vector<unsigned char> coloured(const GridPicture& picture, const UiContext& ui) {
+  std::vector<unsigned char> out(picture.shade.size() * 3);
+  const Eigen::Vector3f ground = 255 * (ui.preferences.dark ? Eigen::Vector3f(0.08F, 0.08F, 0.09F)
+                                                            : Eigen::Vector3f(0.85F, 0.84F, 0.82F));
+  for (std::size_t i = 0; i < picture.shade.size(); ++i) {
+    const float shade = picture.shade[i];
+    const Eigen::Vector3f c = picture.state[i] == CellState::kNone ? ground
+                              : picture.state[i] == CellState::kRed
+                                  ? Eigen::Vector3f((95 + 0.63F * shade) * ui.colours.red.head<3>())
+                                  : Eigen::Vector3f(shade * ui.colours.clay.head<3>());
+    for (int k = 0; k < 3; ++k) {
+      out[3 * i + static_cast<std::size_t>(k)] = static_cast<unsigned char>(std::clamp(c[k], 0.0F, 255.0F));
+    }
+  }
+  return out;
+}
+
+OperatorScreen::OperatorScreen(LiveSession& session) : session_(session) {}
+
+void OperatorScreen::take_state(UiContext& ui) {
+  state_ = session_.state();
+  if (state_.model_number != shown_model_ && state_.mesh) {
+    const ShownMesh shown = shown_mesh(*state_.mesh);
+    model_.show(shown);
+    model_.show_points(state_.red.get());
+    pose_.show(*state_.mesh, state_.tablet_from_model);
+    if (!camera_set_) {
+      camera_.eye_from_model = Eigen::Quaternionf(
+          Eigen::AngleAxisf(-0.45F, Eigen::Vector3f::UnitX()) *
+          Eigen::Quaternionf(Eigen::Matrix3f(state_.tablet_from_model.rotation.cast<float>())));
+      camera_set_ = true;
+    }
+    camera_.fit(shown.box_mm, 1.2F);
+    shown_model_ = state_.model_number;
+  }
+  if (!record_taken_ && state_.phase != LivePhase::kReading) {
+    record_ = state_.record;
+    if (record_.operator_name.empty()) {
+      record_.operator_name = ui.preferences.operator_name;
+    }
+    record_taken_ = true;
+  }
+  if (state_.stage != stage_) {
+    stage_ = state_.stage;
+    stage_began_s_ = ui.time_s;
+  }
+  constexpr const char* kPhases[] = {"still",   "reading", "opening",   "moving", "scanning",
+                                     "judging", "waiting", "finishing", "signing"};
+  ui.facts.insert(kPhases[static_cast<int>(state_.phase)]);
+  if (state_.phase == LivePhase::kStill && state_.error) {
+    ui.facts.insert("stopped");
+  }
+  if (state_.red_map && state_.red_map->conclusive) {
+    ui.facts.insert("conclusive");
+  }
+  if (state_.signed_off) {
+    ui.facts.insert("signed");
+  }
+  if (state_.phase == LivePhase::kWaiting) {
+    ui.facts.insert(state_.last_not_taken_up ? "waiting-unsure" : "waiting-turn");
+  }
+  if (session_.busy()) {
+    ui.facts.insert("busy");
+  } else {
+    ui.facts.insert("idle");
+  }
+  ui.facts.insert("scans." + std::to_string(state_.scans.size()));
+}
+
+void OperatorScreen::draw(UiContext& ui, ImVec2 size) {
+  unfinished_ = false;
+  take_state(ui);
+  const bool has_device = !session_.device().empty();
+  const Statement statement = statement_of(state_, has_device, ui.preferences.language);
+  ImGui::SetNextWindowPos({0, 0});
+  ImGui::SetNextWindowSize(size);
+  ImGui::Begin("operator", nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
+                   ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoSavedSettings);
+  const float gap = ImGui::GetStyle().ItemSpacing.y;
+  const ImVec2 room = ImGui::GetContentRegionAvail();
+  const float top = ui.px(5.6F);
+  const float strip = ui.px(8.2F);
+  const float middle = room.y - top - strip - 2 * gap;
+  const float left = ui.px(13.5F);
+  const float right = std::min(ui.px(19), 0.3F * room.x);
+  draw_statement(ui, statement, {room.x, top});
+  draw_left(ui, {left, middle});
+  ImGui::SameLine();
+  draw_model(ui, {room.x - left - right - 2 * ImGui::GetStyle().ItemSpacing.x, middle});
+  ImGui::SameLine();
+  draw_right(ui, {right, middle});
+  draw_strip(ui, {room.x, strip});
+  ImGui::End();
+
+  if (const auto uri = devices_.draw(ui)) {
+    session_.set_device(*uri);
+    ui.preferences.device = *uri;
+  }
+  if (auto hint = pairs_.draw(ui)) {
+    session_.ask(std::move(*hint));
+  }
+  draw_settings(ui);
+  draw_tablet(ui);
+  draw_signing(ui);
+  act(statement, ui);
+}
+
+void OperatorScreen::undo() {
+  session_.ask(DropScan{-1, "undone by the operator"});
+}
+
+void OperatorScreen::open_signing(const UiContext& ui) {
+  if (sign_name_.empty()) {
+    sign_name_ = !record_.operator_name.empty() ? record_.operator_name : ui.preferences.operator_name;
+  }
+  open_sign_ = true;
+}
+
+void OperatorScreen::act(const Statement& statement, const UiContext& ui) {
+  if (ImGui::GetIO().WantTextInput || ui.facts.contains("dialog")) {
+    return;
+  }
+  // Keys, and what foot pedals send: F9 to F11, or page down, page up and end.
+  if (statement.may_scan && pressed({GLFW_KEY_SPACE, GLFW_KEY_F9, GLFW_KEY_PAGE_DOWN})) {
+    session_.scan_now();
+  } else if (statement.may_undo && pressed({GLFW_KEY_BACKSPACE, GLFW_KEY_F10, GLFW_KEY_PAGE_UP})) {
+    undo();
+  } else if (pressed({GLFW_KEY_ENTER, GLFW_KEY_KP_ENTER, GLFW_KEY_F11, GLFW_KEY_END})) {
+    if (statement.may_sign) {
+      open_signing(ui);
+    } else if (statement.may_finish) {
+      session_.finish();
+    }
+  } else if (statement.may_stop && pressed({GLFW_KEY_ESCAPE})) {
+    session_.stop();
+  } else if (statement.may_scan && state_.last_not_taken_up && pressed({GLFW_KEY_P})) {
+    for (const LiveScan& scan : state_.scans) {
+      if (!scan.dropped && scan.pose && scan.pose->status != PoseStatus::kRegistered) {
+        pairs_.open(scan, state_.scans);
+      }
+    }
+  }
+}
+
+void OperatorScreen::draw_statement(UiContext& ui, const Statement& statement, ImVec2 size) {
+  ImGui::BeginChild("statement", size);
+  const ImVec2 origin = ImGui::GetWindowPos();
+  const Eigen::Vector4f tone = tone_colour(ui, statement.tone);
+  ImDrawList* draw = ImGui::GetWindowDrawList();
+  draw->AddRectFilled(origin, {origin.x + size.x, origin.y + size.y}, packed(tone, 0.16F), 6);
+  draw->AddRectFilled(origin, {origin.x + ui.px(0.5F), origin.y + size.y}, packed(tone), 3);
+  const ImVec2 button{ui.px(7.6F), size.y - ui.px(0.8F)};
+  const float buttons = 3 * (button.x + ImGui::GetStyle().ItemSpacing.x) + ui.px(6.4F);
+  const float text_width = size.x - buttons - ui.px(1.6F);
+  ImGui::SetCursorPos({ui.px(1.1F), ui.px(0.5F)});
+  ImGui::BeginChild("words", {text_width, size.y - ui.px(0.6F)}, false, ImGuiWindowFlags_NoBackground);
+  // The headline is as large as fits in two lines.
+  ImFont* font = ui.fonts.large;
+  const ImVec2 large = font->CalcTextSizeA(font->FontSize, 1e6F, 0, statement.headline.c_str());
+  if (large.x > 1.8F * text_width) {
+    font = ui.fonts.normal;
+  }
+  ImGui::PushFont(font);
+  ImGui::PushTextWrapPos(0);
+  ImGui::TextUnformatted(statement.headline.c_str());
+  ImGui::PopTextWrapPos();
+  ImGui::PopFont();
+  const bool two_lines = font == ui.fonts.large && large.x > text_width;
+  ImGui::PushFont(two_lines || statement.detail.size() > 110 ? ui.fonts.small : ui.fonts.normal);
+  coloured_text(ui.colours.text, statement.detail.c_str());
+  ImGui::PopFont();
+  ImGui::EndChild();
+  ImGui::SameLine();
+  ImGui::SetCursorPos({size.x - buttons, ui.px(0.4F)});
+  if (big_button(ui, "scan", ui.text(statement.scan_label), "Space  F9", button,
+                 statement.tone == Tone::kGood ? ButtonKind::kPlain : ButtonKind::kMain,
+                 statement.may_scan)) {
+    session_.scan_now();
+  }
+  ImGui::SameLine();
+  if (big_button(ui, "undo", ui.text(Text::kUndo), "Backspace  F10", button, ButtonKind::kPlain,
+                 statement.may_undo)) {
+    undo();
+  }
+  ImGui::SameLine();
+  const bool finish = statement.may_finish;
+  if (big_button(ui, finish ? "finish" : "sign", ui.text(finish ? Text::kFinish : Text::kSign), "Enter  F11",
+                 button, statement.may_sign ? ButtonKind::kMain : ButtonKind::kPlain,
+                 statement.may_sign || finish)) {
+    if (finish) {
+      session_.finish();
+    } else {
+      open_signing(ui);
+    }
+  }
+  ImGui::SameLine();
+  ImGui::BeginGroup();
+  const ImVec2 half{ui.px(6.0F), 0.5F * (button.y - ImGui::GetStyle().ItemSpacing.y)};
+  if (big_button(ui, "stop", ui.text(Text::kStop), nullptr, half, ButtonKind::kPlain, statement.may_stop)) {
+    session_.stop();
+  }
+  if (big_button(ui, "viewer", ui.text(Text::kView), nullptr, half, ButtonKind::kPlain,
+                 state_.mesh != nullptr)) {
+    wants_viewer_ = true;
+  }
+  ImGui::EndGroup();
+  ImGui::EndChild();
+}
+
+void OperatorScreen::draw_model(UiContext& ui, ImVec2 size) {
+  ImGui::BeginChild("model", size, false, ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse);
+  const ImVec2 origin = ImGui::GetCursorScreenPos();
+  ImGui::InvisibleButton("##model", size,
+                         ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonMiddle);
+  ui.target("model");
+  ImDrawList* draw = ImGui::GetWindowDrawList();
+  const ImVec2 end{origin.x + size.x, origin.y + size.y};
+  draw->AddRectFilled(origin, end, packed(ui.colours.text, 0.06F), 6);
+  if (model_.empty()) {
+    const ImVec2 text = ImGui::CalcTextSize(ui.text(Text::kNoModelYet));
+    draw->AddText({origin.x + 0.5F * (size.x - text.x), origin.y + 0.5F * size.y}, packed(ui.colours.faint),
+                  ui.text(Text::kNoModelYet));
+    ImGui::EndChild();
+    return;
+  }
+  const ImGuiIO& io = ImGui::GetIO();
+  const auto part = [&](ImVec2 at) {
+    return Eigen::Vector2f((at.x - origin.x - 0.5F * size.x) / (0.5F * size.y),
+                           -(at.y - origin.y - 0.5F * size.y) / (0.5F * size.y));
+  };
+  if (ImGui::IsItemActive() && (io.MouseDelta.x != 0 || io.MouseDelta.y != 0)) {
+    if (ImGui::IsMouseDown(ImGuiMouseButton_Middle) || io.KeyShift) {
+      camera_.pan({io.MouseDelta.x, io.MouseDelta.y}, size.y);
+    } else {
+      camera_.drag(part({io.MousePos.x - io.MouseDelta.x, io.MousePos.y - io.MouseDelta.y}),
+                   part(io.MousePos));
+    }
+  }
+  if (ImGui::IsItemHovered() && io.MouseWheel != 0) {
+    const Eigen::Vector2f at = part(io.MousePos);
+    camera_.zoom(std::pow(0.88F, io.MouseWheel), {at.x() * size.y / size.x, at.y()}, size.x / size.y);
+  }
+  Look look;
+  look.occlusion = false;
+  look.red = ui.colours.red.head<3>();
+  look.amber = ui.colours.amber.head<3>();
+  if (!state_.red) {
+    look.overlay = Overlay::kFlags;  // a session that was read: the mesh itself says what is sparse
+  }
+  unfinished_ = model_.draw(camera_, look, static_cast<int>(size.x), static_cast<int>(size.y)) || unfinished_;
+  draw->AddImage(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(model_.texture())), origin, end,
+                 {0, 1}, {1, 0});
+  draw->AddText(ui.fonts.small, ui.fonts.small->FontSize, {origin.x + ui.px(0.5F), origin.y + ui.px(0.3F)},
+                packed(ui.colours.faint), ui.text(Text::kModel));
+  if (state_.red_map && !state_.red_map->conclusive) {
+    const std::string red = filled(ui.text(Text::kRedArea), red_mm2(*state_.red_map));
+    draw->AddText({origin.x + ui.px(0.5F), end.y - ui.px(1.6F)}, packed(ui.colours.red), red.c_str());
+  }
+  ImGui::EndChild();
+}
+
+}  // namespace dubsar::ui

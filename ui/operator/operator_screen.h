@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <Eigen/Core>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "station/live_session.h"
+#include "ui/gl/frame_target.h"
+#include "ui/operator/device_dialog.h"
+#include "ui/operator/pair_dialog.h"
+#include "ui/operator/pose_panel.h"
+#include "ui/operator/statement.h"
+#include "ui/shell/widgets.h"
+#include "ui/view/surface_view.h"
+
+namespace dubsar::ui {
+
+/// The operator's side of the window: one statement, the model, the scan as it grows, the six faces, the
+/// scans. Main thread.
+class OperatorScreen {
+ public:
+  explicit OperatorScreen(LiveSession& session);
+
+  /// Draws itself over the whole of the window.
+  void draw(UiContext& ui, ImVec2 size);
+  /// More is to be drawn though nothing happens.
+  [[nodiscard]] bool unfinished() const { return unfinished_; }
+  /// The operator wants to look at the model; cleared by asking.
+  [[nodiscard]] bool wants_viewer() { return std::exchange(wants_viewer_, false); }
+
+ private:
+  void take_state(UiContext& ui);
+  void draw_statement(UiContext& ui, const Statement& statement, ImVec2 size);
+  void draw_left(UiContext& ui, ImVec2 size);
+  void draw_model(UiContext& ui, ImVec2 size);
+  void draw_right(UiContext& ui, ImVec2 size);
+  void draw_growing(UiContext& ui, ImVec2 size);
+  void draw_strip(UiContext& ui, ImVec2 size);
+  void draw_scan_menu(UiContext& ui, const LiveScan& scan);
+  void draw_settings(UiContext& ui);
+  void draw_tablet(UiContext& ui);
+  void draw_signing(UiContext& ui);
+  void act(const Statement& statement, const UiContext& ui);
+  void undo();
+  void open_signing(const UiContext& ui);
+
+  LiveSession& session_;
+  LiveState state_;
+  SurfaceView model_;
+  OrbitCamera camera_;
+  bool camera_set_ = false;
+  std::uint64_t shown_model_ = 0;
+  std::size_t shown_faces_left_out_ = 0;
+  PosePanel pose_;
+  PairDialog pairs_;
+  DeviceDialog devices_;
+  PixelTexture growing_;
+  int grown_rows_ = -1;
+  bool grown_blue_ = false;
+  struct Thumbnail {
+    PixelTexture texture;
+    std::shared_ptr<const GridPicture> of;
+    bool blue = false;
+  };
+  std::map<int, Thumbnail> thumbnails_;
+  int chosen_ = -1;  ///< scan
+  TabletRecord record_;
+  bool record_taken_ = false;
+  bool record_open_ = false;
+  std::string sign_name_, sign_role_, sign_incomplete_;
+  bool open_sign_ = false, open_tablet_ = false, open_settings_ = false;
+  bool wants_viewer_ = false;
+  bool unfinished_ = false;
+  std::string stage_;
+  double stage_began_s_ = 0;
+  std::size_t strip_scans_ = 0;
+};
+
+/// A grid picture in colour, RGB.
+[[nodiscard]] std::vector<unsigned char> coloured(const GridPicture& picture, const UiContext& ui);
+
+}  // namespace dubsar::ui

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "ui/operator/pair_dialog.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ui/operator/operator_screen.h"
+
+namespace dubsar::ui {
+
+namespace {
+
+constexpr const char* kPopup = "###pairs";
+/// A click beside the clay takes the nearest sample no farther than this many cells.
+constexpr int kNearCells = 4;
+
+std::optional<Eigen::Vector3d> sample_at(const RangeGrid& grid, float u, float v) {
+  const int col = static_cast<int>(u * static_cast<float>(grid.cols));
+  const int row = static_cast<int>(v * static_cast<float>(grid.rows));
+  std::optional<Eigen::Vector3d> out;
+  int nearest = kNearCells * kNearCells + 1;
+  for (int r = row - kNearCells; r <= row + kNearCells; ++r) {
+    for (int c = col - kNearCells; c <= col + kNearCells; ++c) {
+      const int far2 = (r - row) * (r - row) + (c - col) * (c - col);
+      if (far2 < nearest && grid.is_valid(r, c)) {
+        nearest = far2;
+        out = grid.point(grid.index(r, c)).cast<double>();
+      }
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+void PairDialog::open(const LiveScan& unsure, const std::vector<LiveScan>& scans) {
+  others_.clear();
+  for (const LiveScan& scan : scans) {
+    if (scan.id != unsure.id && !scan.dropped && scan.grid && scan.pose &&
+        scan.pose->status == PoseStatus::kRegistered) {
+      others_.push_back(scan);
+    }
+  }
+  if (!unsure.grid || others_.empty()) {
+    return;
+  }
+  unsure_ = unsure;
+  choose(others_.size() - 1);
+  opening_ = true;
+}
+
+void PairDialog::choose(std::size_t other) {
+  other_ = other;
+  left_.points_mm.clear();
+  left_.places.clear();
+  right_.points_mm.clear();
+  right_.places.clear();
+  textures_old_ = true;
+}
+
+void PairDialog::draw_side(UiContext& ui, const char* name, const LiveScan& scan, Side& side, bool expects,
+                           ImVec2 size) {
+  const RangeGrid& grid = *scan.grid;
+  const float scale = std::min(size.x / static_cast<float>(std::max(1, grid.cols)),
+                               size.y / static_cast<float>(std::max(1, grid.rows)));
+  const ImVec2 drawn{scale * static_cast<float>(grid.cols), scale * static_cast<float>(grid.rows)};
+  const ImVec2 origin = ImGui::GetCursorScreenPos();
+  ImGui::PushID(name);
+  ImGui::InvisibleButton("##picture", drawn);
+  ImGui::PopID();
+  ui.target(name);
+  ImDrawList* draw = ImGui::GetWindowDrawList();
+  const ImVec2 end{origin.x + drawn.x, origin.y + drawn.y};
+  draw->AddImage(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(side.texture.id())), origin, end);
+  draw->AddRect(origin, end, packed(expects ? ui.colours.ghost : ui.colours.faint), 0, 0,
+                expects ? 3.0F : 1.0F);
+  if (expects && ImGui::IsItemClicked()) {
+    const ImVec2 mouse = ImGui::GetIO().MousePos;
+    const float u = (mouse.x - origin.x) / drawn.x;
+    const float v = (mouse.y - origin.y) / drawn.y;
+    if (const auto point = sample_at(grid, u, v)) {
+      side.points_mm.push_back(*point);
+      side.places.push_back({u, v});
+    }
+  }
+  for (std::size_t k = 0; k < side.places.size(); ++k) {
+    const ImVec2 at{origin.x + side.places[k].x * drawn.x, origin.y + side.places[k].y * drawn.y};
+    draw->AddCircleFilled(at, ui.px(0.35F), packed(ui.colours.ghost));
+    draw->AddText({at.x + ui.px(0.45F), at.y - ui.px(0.6F)}, packed(ui.colours.ghost),
+                  std::to_string(k + 1).c_str());
+  }
+}
+
+std::optional<HintScan> PairDialog::draw(UiContext& ui) {
+  std::optional<HintScan> out;
+  if (!is_open()) {
+    return out;
+  }
+  if (opening_) {
+    ImGui::OpenPopup(kPopup);
+    opening_ = false;
+  }
+  const ImVec2 window = ImGui::GetIO().DisplaySize;
+  ImGui::SetNextWindowSize({window.x * 0.94F, window.y * 0.92F});
+  ImGui::SetNextWindowPos({0.5F * window.x, 0.5F * window.y}, ImGuiCond_Always, {0.5F, 0.5F});
+  if (!ImGui::BeginPopupModal((std::string(ui.text(Text::kPointPairs)) + kPopup).c_str(), nullptr,
+                              ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove)) {
+    unsure_ = {};
+    return out;
+  }
+  ui.facts.insert("dialog");
+  const LiveScan& other = others_[other_];
+  if (textures_old_) {
+    const auto upload = [&](PixelTexture& texture, const LiveScan& scan) {
+      texture.upload(scan.picture->cols, scan.picture->rows, 3, coloured(*scan.picture, ui).data(), true);
+    };
+    upload(left_.texture, unsure_);
+    upload(right_.texture, other);
+    textures_old_ = false;
+  }
+  ImGui::TextWrapped("%s", ui.text(Text::kClickSamePlace));
+  const float foot = ImGui::GetFrameHeightWithSpacing() + ui.px(0.5F);
+  const ImVec2 room = ImGui::GetContentRegionAvail();
+  const ImVec2 half{0.5F * room.x - ui.px(0.5F), room.y - foot};
+  const ImVec2 picture{half.x - ui.px(1.2F), half.y - 2.4F * ImGui::GetFrameHeightWithSpacing()};
+  const bool expects_left = left_.places.size() <= right_.places.size();
+  ImGui::BeginChild("left", half, true);
+  ImGui::TextUnformatted(filled(ui.text(Text::kInUnsure), unsure_.id).c_str());
+  ImGui::Dummy({1, ImGui::GetFrameHeight()});
+  draw_side(ui, "pair-left", unsure_, left_, expects_left, picture);
+  ImGui::EndChild();
+  ImGui::SameLine();
+  ImGui::BeginChild("right", half, true);
+  ImGui::TextUnformatted(filled(ui.text(Text::kInOther), other.id).c_str());
+  for (std::size_t k = 0; k < others_.size(); ++k) {
+    const std::string label = std::to_string(others_[k].id);
+    if (ImGui::RadioButton(label.c_str(), k == other_) && k != other_) {
+      choose(k);
+    }
+    ui.target("pair-with." + label);
+    ImGui::SameLine();
+  }
+  ImGui::NewLine();
+  draw_side(ui, "pair-right", others_[other_], right_, !expects_left, picture);
+  ImGui::EndChild();
+  const std::size_t pairs = std::min(left_.points_mm.size(), right_.points_mm.size());
+  if (plain_button(ui, "pairs-done", ui.text(Text::kPairsDone), pairs > 0)) {
+    HintScan hint;
+    hint.id = unsure_.id;
+    hint.given.hint.on = others_[other_].id;
+    for (std::size_t k = 0; k < pairs; ++k) {
+      hint.given.hint.points.push_back({left_.points_mm[k], right_.points_mm[k]});
+    }
+    out = std::move(hint);
+    ImGui::CloseCurrentPopup();
+  }
+  ImGui::SameLine();
+  if (plain_button(ui, "pairs-clear", ui.text(Text::kPairsClear))) {
+    choose(other_);
+  }
+  ImGui::SameLine();
+  if (plain_button(ui, "pairs-close", ui.text(Text::kClose))) {
+    ImGui::CloseCurrentPopup();
+  }
+  ImGui::SameLine();
+  ImGui::TextUnformatted(filled(ui.text(Text::kPairCount), pairs).c_str());
+  ImGui::EndPopup();
+  if (out) {
+    unsure_ = {};
+  }
+  return out;
+}
+
+}  // namespace dubsar::ui

@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+// The scans that there are, and what can be done with each.
+#include <algorithm>
+
+#include "ui/operator/operator_screen.h"
+
+namespace dubsar::ui {
+
+namespace {
+
+Text state_text(const LiveScan& scan) {
+  if (scan.damaged) {
+    return Text::kDamaged;
+  }
+  if (scan.dropped) {
+    return Text::kDropped;
+  }
+  if (!scan.pose) {
+    return Text::kJudged;
+  }
+  switch (scan.pose->status) {
+    case PoseStatus::kRegistered:
+      return Text::kRegistered;
+    case PoseStatus::kUnsure:
+      return Text::kUnsure;
+    case PoseStatus::kFailed:
+      break;
+  }
+  return Text::kFailed;
+}
+
+Eigen::Vector4f state_colour(const UiContext& ui, Text state) {
+  switch (state) {
+    case Text::kRegistered:
+      return ui.colours.good;
+    case Text::kUnsure:
+      return ui.colours.amber;
+    case Text::kFailed:
+    case Text::kDamaged:
+      return ui.colours.red;
+    default:
+      return ui.colours.faint;
+  }
+}
+
+}  // namespace
+
+void OperatorScreen::draw_strip(UiContext& ui, ImVec2 size) {
+  ImGui::BeginChild("strip", size, true, ImGuiWindowFlags_HorizontalScrollbar);
+  const float height = size.y - 2 * ImGui::GetStyle().WindowPadding.y - ImGui::GetStyle().ScrollbarSize;
+  const float width = 1.35F * height;
+  const LiveScan* menu = nullptr;
+  for (const LiveScan& scan : state_.scans) {
+    ImGui::PushID(scan.id);
+    const ImVec2 origin = ImGui::GetCursorScreenPos();
+    if (ImGui::InvisibleButton("##scan", {width, height})) {
+      chosen_ = scan.id;
+      ImGui::OpenPopup("menu");
+    }
+    ui.target("scan." + std::to_string(scan.id));
+    ImDrawList* draw = ImGui::GetWindowDrawList();
+    const ImVec2 end{origin.x + width, origin.y + height};
+    const Text state = state_text(scan);
+    ui.facts.insert("scan." + std::to_string(scan.id) + "." + text_of(state, Language::kEnglish));
+    const Eigen::Vector4f colour = state_colour(ui, state);
+    const float line = ui.fonts.small->FontSize;
+    draw->AddRectFilled(origin, end, packed(ui.colours.text, ImGui::IsItemHovered() ? 0.14F : 0.07F), 5);
+    if (scan.picture) {
+      Thumbnail& thumbnail = thumbnails_[scan.id];
+      if (thumbnail.of != scan.picture || thumbnail.blue != ui.preferences.blue_for_red) {
+        thumbnail.texture.upload(scan.picture->cols, scan.picture->rows, 3,
+                                 coloured(*scan.picture, ui).data(), true);
+        thumbnail.of = scan.picture;
+        thumbnail.blue = ui.preferences.blue_for_red;
+      }
+      const ImVec2 box{width - 8, height - line - 10};
+      const float scale = std::min(box.x / static_cast<float>(scan.picture->cols),
+                                   box.y / static_cast<float>(scan.picture->rows));
+      const ImVec2 drawn{scale * static_cast<float>(scan.picture->cols),
+                         scale * static_cast<float>(scan.picture->rows)};
+      const ImVec2 at{origin.x + 0.5F * (width - drawn.x), origin.y + 4 + 0.5F * (box.y - drawn.y)};
+      draw->AddImage(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(thumbnail.texture.id())), at,
+                     {at.x + drawn.x, at.y + drawn.y}, {0, 0}, {1, 1},
+                     ImGui::ColorConvertFloat4ToU32({1, 1, 1, scan.dropped ? 0.3F : 1.0F}));
+    }
+    draw->AddRect(origin, end, packed(colour), 5, 0,
+                  state == Text::kUnsure || state == Text::kFailed ? 3.0F : 1.5F);
+    std::string words = std::to_string(scan.id) + "  " + ui.text(state);
+    if (scan.pose && scan.pose->locked) {
+      words += std::string(", ") + ui.text(Text::kLocked);
+    }
+    draw->AddText(ui.fonts.small, line, {origin.x + 6, end.y - line - 3}, packed(colour), words.c_str());
+    if (scan.dropped) {
+      draw->AddLine({origin.x + 4, end.y - line - 8}, {end.x - 4, origin.y + 4}, packed(ui.colours.faint), 2);
+    }
+    if (ImGui::BeginPopup("menu")) {
+      menu = &scan;
+      draw_scan_menu(ui, *menu);
+      ImGui::EndPopup();
+    }
+    ImGui::PopID();
+    ImGui::SameLine();
+  }
+  if (state_.scans.empty()) {
+    coloured_text(ui.colours.faint, ui.text(Text::kScans));
+  }
+  if (strip_scans_ != state_.scans.size()) {
+    strip_scans_ = state_.scans.size();
+    ImGui::SetScrollHereX(1.0F);
+  }
+  ImGui::EndChild();
+}
+
+void OperatorScreen::draw_scan_menu(UiContext& ui, const LiveScan& scan) {
+  ImGui::TextUnformatted(fmt::format("{}  {}", scan.id, scan.file).c_str());
+  ImGui::PushFont(ui.fonts.small);
+  coloured_text(ui.colours.faint, filled(ui.text(Text::kSamples), scan.samples).c_str());
+  if (scan.pose && scan.pose->status == PoseStatus::kRegistered) {
+    coloured_text(ui.colours.faint, filled(ui.text(Text::kUncertainty), 1000 * scan.pose->sigma_mm).c_str());
+  }
+  const std::string why = scan.dropped ? scan.note
+                          : scan.pose  ? translated(scan.pose->reason, ui.preferences.language)
+                                       : std::string();
+  if (!why.empty()) {
+    ImGui::PushTextWrapPos(ui.px(22));
+    ImGui::TextUnformatted(why.c_str());
+    ImGui::PopTextWrapPos();
+  }
+  ImGui::PopFont();
+  const ImVec2 wide{ui.px(14), ui.px(2.1F)};
+  const auto offer = [&](const char* name, Text text, auto act) {
+    if (big_button(ui, name, ui.text(text), nullptr, wide)) {
+      act();
+      ImGui::CloseCurrentPopup();
+    }
+  };
+  if (session_.device().empty() || scan.damaged) {
+    return;
+  }
+  if (scan.dropped) {
+    offer("restore", Text::kRestore, [&] { session_.ask(RestoreScan{scan.id}); });
+    return;
+  }
+  const bool fits = scan.pose && scan.pose->status == PoseStatus::kRegistered;
+  if (scan.pose && !fits) {
+    offer("pairs", Text::kPointPairs, [&] { pairs_.open(scan, state_.scans); });
+    offer("withdraw", Text::kWithdraw, [&] { session_.ask(WithdrawHint{scan.id}); });
+  }
+  offer("drop", Text::kDrop, [&] { session_.ask(DropScan{scan.id, "taken out by the operator"}); });
+  offer("rescan", Text::kRescan, [&] {
+    session_.ask(DropScan{scan.id, "to be scanned again"});
+    if (state_.phase == LivePhase::kWaiting) {
+      session_.scan_now();
+    }
+  });
+  if (fits && !scan.pose->locked) {
+    offer("lock", Text::kLock, [&] { session_.ask(LockScan{scan.id}); });
+  } else if (fits) {
+    offer("unlock", Text::kUnlock, [&] { session_.ask(UnlockScan{scan.id}); });
+  }
+}
+
+}  // namespace dubsar::ui

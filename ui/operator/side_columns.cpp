@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+// The columns beside the model: faces, tablet and machine on the left, the scan as it grows and the next turn
+// on the right.
+#include <cmath>
+
+#include "ui/operator/operator_screen.h"
+
+namespace dubsar::ui {
+
+namespace {
+
+constexpr Text kFaceTexts[] = {Text::kObverse, Text::kReverse, Text::kLeft,
+                               Text::kRight,   Text::kTop,     Text::kBottom};
+
+}  // namespace
+
+void OperatorScreen::draw_left(UiContext& ui, ImVec2 size) {
+  ImGui::BeginChild("left", size, true);
+  ImGui::TextUnformatted(ui.text(Text::kChecklist));
+  for (int k = 0; k < kFaceCount; ++k) {
+    const Face face = static_cast<Face>(k);
+    const double red = state_.red_map ? face_mm2(*state_.red_map, face, RegionState::kRed) : 0.0;
+    const double excused = state_.red_map ? face_mm2(*state_.red_map, face, RegionState::kExcused) : 0.0;
+    const auto f = static_cast<std::size_t>(k);
+    // A hole is listed under one face; its rim may run over others.
+    const bool known = state_.red_map && (state_.seen_mm2[f] > 0 || red > 0);
+    const bool whole = known && red <= 0 && (state_.red_map->conclusive || state_.red_points[f] == 0);
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    ImDrawList* draw = ImGui::GetWindowDrawList();
+    const float box = ImGui::GetTextLineHeight();
+    // A tick or a bar beside the colour: colour alone tells nothing to some.
+    if (whole) {
+      draw->AddLine({at.x + 0.1F * box, at.y + 0.55F * box}, {at.x + 0.4F * box, at.y + 0.85F * box},
+                    packed(ui.colours.good), 0.16F * box);
+      draw->AddLine({at.x + 0.4F * box, at.y + 0.85F * box}, {at.x + 0.95F * box, at.y + 0.15F * box},
+                    packed(ui.colours.good), 0.16F * box);
+    } else {
+      draw->AddRect({at.x + 0.1F * box, at.y + 0.15F * box}, {at.x + 0.9F * box, at.y + 0.9F * box},
+                    packed(known ? ui.colours.red : ui.colours.faint), 2, 0, 0.12F * box);
+    }
+    ImGui::Dummy({box, box});
+    ImGui::SameLine();
+    ImGui::TextUnformatted(ui.text(kFaceTexts[k]));
+    ImGui::PushFont(ui.fonts.small);
+    std::string note = !known    ? ui.text(Text::kNoArea)
+                       : red > 0 ? filled(ui.text(Text::kRedArea), red)
+                       : whole   ? std::string()
+                                 : ui.text(Text::kRedRim);
+    if (excused > 0.05) {
+      note += (note.empty() ? "" : ", ") + filled(ui.text(Text::kExcused), excused);
+    }
+    if (!note.empty()) {
+      ImGui::Indent(box + ImGui::GetStyle().ItemSpacing.x);
+      coloured_text(known && !whole ? ui.colours.red : ui.colours.faint, note.c_str());
+      ImGui::Unindent(box + ImGui::GetStyle().ItemSpacing.x);
+    }
+    ImGui::PopFont();
+  }
+  if (state_.checklist) {
+    const Checklist& list = *state_.checklist;
+    ImGui::Separator();
+    ImGui::PushFont(ui.fonts.small);
+    ImGui::TextUnformatted(ui.text(Text::kStore));
+    ImGui::SameLine();
+    coloured_text(list.store_whole ? ui.colours.good : ui.colours.red,
+                  ui.text(list.store_whole ? Text::kStoreWhole : Text::kStoreDamaged));
+    ImGui::TextUnformatted(filled(ui.text(Text::kDiskFree), list.disk_free_gib).c_str());
+    ImGui::TextUnformatted(ui.text(Text::kCalibration));
+    coloured_text(ui.colours.faint, list.calibration_age_days
+                                        ? filled(ui.text(Text::kDaysOld), *list.calibration_age_days).c_str()
+                                        : ui.text(Text::kNoCalibration));
+    ImGui::PopFont();
+  }
+  ImGui::Separator();
+  const ImVec2 wide{-1, ui.px(2.1F)};
+  std::string tablet = ui.text(Text::kTablet);
+  if (!state_.record.museum_number.empty()) {
+    tablet += ": " + state_.record.museum_number;
+  }
+  if (big_button(ui, "tablet", tablet.c_str(), nullptr, wide)) {
+    open_tablet_ = true;
+  }
+  if (big_button(ui, "device", ui.text(Text::kDevice), nullptr, wide,
+                 session_.device().empty() ? ButtonKind::kMain : ButtonKind::kPlain, !session_.busy())) {
+    devices_.open(session_.device());
+  }
+  if (big_button(ui, "settings", ui.text(Text::kSettings), nullptr, wide)) {
+    open_settings_ = true;
+  }
+  ImGui::EndChild();
+}
+
+void OperatorScreen::draw_growing(UiContext& ui, ImVec2 size) {
+  const ImVec2 origin = ImGui::GetCursorScreenPos();
+  ImGui::Dummy(size);
+  ui.target("growing");
+  ImDrawList* draw = ImGui::GetWindowDrawList();
+  const ImVec2 end{origin.x + size.x, origin.y + size.y};
+  draw->AddRectFilled(origin, end, packed(ui.colours.text, 0.06F), 6);
+  const GridPicture picture = session_.growing();
+  if (picture.rows == 0) {
+    draw->AddText(ui.fonts.small, ui.fonts.small->FontSize, {origin.x + ui.px(0.6F), origin.y + ui.px(0.5F)},
+                  packed(ui.colours.faint), ui.text(Text::kNoScanYet));
+    return;
+  }
+  ui.facts.insert("growing");
+  if (picture.rows != grown_rows_ || grown_blue_ != ui.preferences.blue_for_red) {
+    growing_.upload(picture.cols, picture.rows, 3, coloured(picture, ui).data(), false);
+    grown_rows_ = picture.rows;
+    grown_blue_ = ui.preferences.blue_for_red;
+  }
+  // Rows come from the top; the grid is as wide as the panel, and what is newest stays in view.
+  const float scale = std::min(size.x / static_cast<float>(picture.cols),
+                               size.y / static_cast<float>(std::max(picture.rows, picture.cols / 2)));
+  const float width = scale * static_cast<float>(picture.cols);
+  const float height = scale * static_cast<float>(picture.rows);
+  const float x = origin.x + 0.5F * (size.x - width);
+  draw->AddImage(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(growing_.id())), {x, origin.y},
+                 {x + width, origin.y + height});
+  if (state_.phase == LivePhase::kScanning) {
+    draw->AddLine({x, origin.y + height}, {x + width, origin.y + height}, packed(ui.colours.ghost), 2);
+  }
+}
+
+void OperatorScreen::draw_right(UiContext& ui, ImVec2 size) {
+  ImGui::BeginChild("right", size, true, ImGuiWindowFlags_NoScrollbar);
+  const ImVec2 room = ImGui::GetContentRegionAvail();
+  const float line = ImGui::GetTextLineHeightWithSpacing();
+  const float foot = 2.6F * line;
+  const bool shows_next = state_.next && state_.next->placement && state_.mesh;
+  const float each = shows_next ? 0.5F * (room.y - foot) - line : room.y - foot - line;
+  ImGui::TextUnformatted(ui.text(Text::kScanGrowing));
+  draw_growing(ui, {room.x, each});
+  if (shows_next) {
+    ImGui::TextUnformatted(ui.text(Text::kNextPose));
+    unfinished_ =
+        pose_.draw(ui, *state_.next, {room.x, each - ImGui::GetStyle().ItemSpacing.y}) || unfinished_;
+  }
+  if (session_.busy() && !state_.stage.empty() && state_.phase != LivePhase::kWaiting) {
+    ImGui::PushFont(ui.fonts.small);
+    ImGui::ProgressBar(static_cast<float>(state_.fraction), {-1, 0}, state_.stage.c_str());
+    const double spent = ui.time_s - stage_began_s_;
+    if (state_.fraction > 0.05 && spent > 2) {
+      ImGui::TextUnformatted(
+          filled(ui.text(Text::kTimeLeft), spent * (1 - state_.fraction) / state_.fraction).c_str());
+    }
+    ImGui::PopFont();
+  } else if (!state_.notices.empty()) {
+    ImGui::PushFont(ui.fonts.small);
+    coloured_text(ui.colours.faint, state_.notices.back().text.c_str());
+    ImGui::PopFont();
+  }
+  ImGui::EndChild();
+}
+
+}  // namespace dubsar::ui

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "ui/operator/statement.h"
+
+#include <algorithm>
+#include <cctype>
+
+#include "ui/shell/widgets.h"
+
+namespace dubsar::ui {
+
+namespace {
+
+std::string capitalised(std::string text) {
+  if (!text.empty()) {
+    text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(text.front())));
+  }
+  return text;
+}
+
+std::string sentence(const std::string& english, Language language) {
+  return fmt::format("{}.", capitalised(translated(english, language)));
+}
+
+const LiveScan* newest(const LiveState& state) {
+  const auto last = std::ranges::find_if(state.scans.rbegin(), state.scans.rend(),
+                                         [](const LiveScan& scan) { return !scan.dropped; });
+  return last == state.scans.rend() ? nullptr : &*last;
+}
+
+void say_waiting(Statement& out, const LiveState& state, Language language) {
+  out.tone = Tone::kAsk;
+  out.may_scan = out.may_finish = true;
+  const LiveScan* last = newest(state);
+  const bool turn = state.next && state.next->placement && state.next->placement->hand_turn;
+  if (state.last_not_taken_up && last != nullptr && last->pose) {
+    out.headline = filled(text_of(Text::kUnsureScan, language), last->id);
+    out.detail =
+        fmt::format("{}. {}", translated(last->pose->reason, language), text_of(Text::kUnsureHow, language));
+    if (state.next) {
+      out.detail += fmt::format(" {}.", capitalised(translated(state.next->say, language)));
+    }
+    return;
+  }
+  if (state.next) {
+    out.headline = capitalised(translated(state.next->say, language));
+    out.detail = text_of(turn ? Text::kTurnThenScan : Text::kScanAsItLies, language);
+  } else {
+    out.headline = text_of(Text::kLayTablet, language);
+  }
+}
+
+void say_still(Statement& out, const LiveState& state, bool has_device, Language language) {
+  const bool any = newest(state) != nullptr;
+  out.may_scan = has_device;
+  const bool conclusive = any && state.red_map && state.red_map->conclusive;
+  if (state.error) {
+    out.tone = Tone::kBad;
+    out.headline = text_of(Text::kStopped, language);
+    out.detail = translated(state.error->line(), language);
+    out.scan_label = Text::kGoOn;
+    out.may_sign = conclusive;
+  } else if (!has_device) {
+    out.headline = text_of(Text::kChooseDevice, language);
+    out.tone = Tone::kAsk;
+  } else if (!any) {
+    out.headline = text_of(Text::kLayTablet, language);
+    out.tone = Tone::kAsk;
+  } else if (conclusive && state.signed_off) {
+    out.headline = filled(text_of(Text::kSigned, language), state.signed_by.c_str());
+    out.detail = text_of(Text::kSignedNext, language);
+    out.tone = Tone::kGood;
+  } else if (conclusive) {
+    out.headline = text_of(Text::kConclusive, language);
+    out.tone = Tone::kGood;
+    out.may_sign = true;
+  } else {
+    out.headline = state.red_map ? filled(text_of(Text::kStillRed, language), red_mm2(*state.red_map))
+                                 : std::string(text_of(Text::kGoOn, language));
+    out.tone = Tone::kAsk;
+    out.scan_label = Text::kGoOn;
+    out.may_sign = state.red_map != nullptr;  // as incomplete, with the reason
+    if (state.signed_off) {
+      out.detail = filled(text_of(Text::kSigned, language), state.signed_by.c_str());
+    } else if (state.red_map && !state.red_map->next.empty()) {
+      out.detail = sentence(state.red_map->next.front().say, language);
+    }
+  }
+}
+
+}  // namespace
+
+double red_mm2(const RedMap& map) {
+  double sum = 0;
+  for (int face = 0; face < kFaceCount; ++face) {
+    sum += face_mm2(map, static_cast<Face>(face), RegionState::kRed);
+  }
+  return sum;
+}
+
+double face_mm2(const RedMap& map, Face face, RegionState state) {
+  double sum = 0;
+  for (const RedRegion& region : map.regions) {
+    sum += region.face == face && region.state == state ? region.area_mm2 : 0.0;
+  }
+  return sum;
+}
+
+Statement statement_of(const LiveState& state, bool has_device, Language language) {
+  Statement out;
+  out.may_undo = newest(state) != nullptr && state.phase != LivePhase::kReading &&
+                 state.phase != LivePhase::kSigning && has_device;
+  out.may_stop = state.phase != LivePhase::kStill;
+  const auto hands_off = [&](Text headline) {
+    out.tone = Tone::kHandsOff;
+    out.headline = text_of(headline, language);
+  };
+  switch (state.phase) {
+    case LivePhase::kStill:
+      say_still(out, state, has_device, language);
+      break;
+    case LivePhase::kReading:
+      out.headline = text_of(Text::kReading, language);
+      break;
+    case LivePhase::kOpening:
+      hands_off(Text::kOpening);
+      break;
+    case LivePhase::kMoving:
+      hands_off(Text::kMoving);
+      out.detail = state.next ? sentence(state.next->say, language) : std::string();
+      break;
+    case LivePhase::kScanning:
+      hands_off(Text::kScanning);
+      out.detail = filled(text_of(Text::kProfiles, language), state.profiles);
+      break;
+    case LivePhase::kJudging:
+      hands_off(Text::kJudging);
+      break;
+    case LivePhase::kWaiting:
+      say_waiting(out, state, language);
+      break;
+    case LivePhase::kFinishing:
+      out.tone = Tone::kPlain;
+      out.headline = text_of(Text::kFinishing, language);
+      break;
+    case LivePhase::kSigning:
+      out.headline = text_of(Text::kSigning, language);
+      break;
+  }
+  return out;
+}
+
+}  // namespace dubsar::ui

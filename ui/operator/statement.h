@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <string>
+
+#include "station/live_state.h"
+#include "ui/shell/text_table.h"
+
+namespace dubsar::ui {
+
+enum class Tone { kPlain, kHandsOff, kAsk, kGood, kBad };
+
+/// The one thing that the operator is told: what to do next. And which of the three main actions would do
+/// something now.
+struct Statement {
+  std::string headline;
+  std::string detail;
+  Tone tone = Tone::kPlain;
+  bool may_scan = false;
+  bool may_undo = false;
+  bool may_sign = false;
+  bool may_finish = false;
+  bool may_stop = false;
+  Text scan_label = Text::kScan;
+};
+
+[[nodiscard]] Statement statement_of(const LiveState& state, bool has_device, Language language);
+
+/// mm² that are red, and of one face of it.
+[[nodiscard]] double red_mm2(const RedMap& map);
+[[nodiscard]] double face_mm2(const RedMap& map, Face face, RegionState state);
+
+}  // namespace dubsar::ui

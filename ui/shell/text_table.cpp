@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "ui/shell/text_table.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+namespace dubsar::ui {
+
+namespace {
+
+struct Row {
+  Text text;
+  const char* english;
+  const char* german;
+};
+
+constexpr Row kRows[] = {
+    {Text::kTitle, "Dubsar", "Dubsar"},
+    {Text::kLayTablet, "Lay the tablet before the scanner, then scan",
+     "Tafel vor den Scanner legen, dann scannen"},
+    {Text::kChooseDevice, "Choose a scanner", "Scanner wählen"},
+    {Text::kReading, "Reading the session", "Sitzung wird gelesen"},
+    {Text::kOpening, "Opening the scanner", "Scanner wird geöffnet"},
+    {Text::kMoving, "Hands off: the scanner moves", "Hände weg: der Scanner fährt"},
+    {Text::kScanning, "Hands off: scanning", "Hände weg: es wird gescannt"},
+    {Text::kJudging, "Working out where this scan belongs", "Es wird ermittelt, wohin dieser Scan gehört"},
+    {Text::kFinishing, "Nearly done: mesh, wedges and pages are made",
+     "Fast fertig: Netz, Keile und Seiten entstehen"},
+    {Text::kSigning, "Checking every byte, then signing", "Jedes Byte wird geprüft, dann unterschrieben"},
+    {Text::kStillRed, "{:.1f} mm2 are still red: scan on", "{:.1f} mm2 sind noch rot: weiter scannen"},
+    {Text::kConclusive, "Conclusive: nothing is missing. Sign it",
+     "Vollständig: nichts fehlt. Unterschreiben"},
+    {Text::kSigned, "Signed by {}", "Unterschrieben von {}"},
+    {Text::kSignedNext, "The tablet can go back into its box.", "Die Tafel kann zurück in ihre Schachtel."},
+    {Text::kStopped, "Stopped", "Angehalten"},
+    {Text::kUnsureScan, "Scan {} is unsure", "Scan {} ist unsicher"},
+    {Text::kUnsureHow, "Show the same places in two scans, or scan on.",
+     "Gleiche Stellen in zwei Scans zeigen, oder weiter scannen."},
+    {Text::kTurnThenScan, "Turn the tablet as shown, then scan.",
+     "Die Tafel wie gezeigt drehen, dann scannen."},
+    {Text::kScanAsItLies, "The tablet stays as it lies.", "Die Tafel bleibt liegen."},
+    {Text::kScan, "Scan", "Scannen"},
+    {Text::kUndo, "Undo", "Zurück"},
+    {Text::kSign, "Sign", "Unterschreiben"},
+    {Text::kFinish, "Finish", "Abschließen"},
+    {Text::kStop, "Stop", "Anhalten"},
+    {Text::kGoOn, "Go on", "Weiter"},
+    {Text::kHandsOff, "Hands off", "Hände weg"},
+    {Text::kChecklist, "Checklist", "Prüfliste"},
+    {Text::kObverse, "Obverse", "Vorderseite"},
+    {Text::kReverse, "Reverse", "Rückseite"},
+    {Text::kLeft, "Left edge", "Linker Rand"},
+    {Text::kRight, "Right edge", "Rechter Rand"},
+    {Text::kTop, "Top edge", "Oberer Rand"},
+    {Text::kBottom, "Bottom edge", "Unterer Rand"},
+    {Text::kRedArea, "{:.1f} mm2 red", "{:.1f} mm2 rot"},
+    {Text::kExcused, "{:.1f} mm2 excused", "{:.1f} mm2 entschuldigt"},
+    {Text::kRedRim, "red at its rim", "rot am Rand"},
+    {Text::kNoArea, "not seen yet", "noch nicht gesehen"},
+    {Text::kModel, "Model so far", "Modell bis jetzt"},
+    {Text::kScanGrowing, "Scan", "Scan"},
+    {Text::kNextPose, "Next", "Als Nächstes"},
+    {Text::kScans, "Scans", "Scans"},
+    {Text::kRegistered, "fits", "passt"},
+    {Text::kUnsure, "unsure", "unsicher"},
+    {Text::kFailed, "no place", "ohne Platz"},
+    {Text::kDropped, "taken out", "entfernt"},
+    {Text::kDamaged, "damaged", "beschädigt"},
+    {Text::kJudged, "...", "..."},
+    {Text::kLocked, "locked", "fest"},
+    {Text::kDrop, "Take out", "Entfernen"},
+    {Text::kRestore, "Put back", "Zurückholen"},
+    {Text::kRescan, "Scan again", "Neu scannen"},
+    {Text::kLock, "Lock", "Festhalten"},
+    {Text::kUnlock, "Unlock", "Lösen"},
+    {Text::kPointPairs, "Show same places", "Gleiche Stellen zeigen"},
+    {Text::kWithdraw, "Withdraw hint", "Hinweis zurückziehen"},
+    {Text::kTablet, "Tablet", "Tafel"},
+    {Text::kMuseumNumber, "Museum number", "Museumsnummer"},
+    {Text::kCdli, "CDLI number", "CDLI-Nummer"},
+    {Text::kCollection, "Collection", "Sammlung"},
+    {Text::kOperator, "Operator", "Bearbeiter"},
+    {Text::kNotes, "Notes", "Notizen"},
+    {Text::kCdliWrong, "a P and six digits, such as P123456", "ein P und sechs Ziffern, etwa P123456"},
+    {Text::kKept, "Everything is kept as soon as it is said: there is no Save.",
+     "Alles wird sofort aufgehoben: Speichern gibt es nicht."},
+    {Text::kDevice, "Scanner", "Scanner"},
+    {Text::kSettings, "Settings", "Einstellungen"},
+    {Text::kView, "Viewer", "Betrachter"},
+    {Text::kClose, "Close", "Schließen"},
+    {Text::kUse, "Use this scanner", "Diesen Scanner nehmen"},
+    {Text::kLookAgain, "Look again", "Neu suchen"},
+    {Text::kFound, "Found", "Gefunden"},
+    {Text::kNothingFound, "nothing is plugged in", "nichts angeschlossen"},
+    {Text::kAddress, "Address", "Adresse"},
+    {Text::kLanguage, "Language", "Sprache"},
+    {Text::kDark, "Dark", "Dunkel"},
+    {Text::kFontSize, "Size of text", "Schriftgröße"},
+    {Text::kColourBlind, "Blue in place of red", "Blau statt Rot"},
+    {Text::kClickSamePlace,
+     "Click the same place in both pictures, three times or more. One or two choose among the fits.",
+     "Dieselbe Stelle in beiden Bildern anklicken, dreimal oder öfter. Eine oder zwei wählen unter den "
+     "Lagen."},
+    {Text::kInUnsure, "Scan {} (unsure)", "Scan {} (unsicher)"},
+    {Text::kInOther, "Scan {} (fits)", "Scan {} (passt)"},
+    {Text::kPairsDone, "Use these places", "Diese Stellen nehmen"},
+    {Text::kPairsClear, "Start again", "Von vorn"},
+    {Text::kPairCount, "{} pairs", "{} Paare"},
+    {Text::kSignName, "Name", "Name"},
+    {Text::kSignRole, "As", "Als"},
+    {Text::kSignIncomplete, "Signed although incomplete, because", "Unvollständig unterschrieben, weil"},
+    {Text::kSignNow, "Sign", "Unterschreiben"},
+    {Text::kSignHint, "The session is read to the last byte and the verdict worked out anew.",
+     "Die Sitzung wird bis zum letzten Byte gelesen und das Urteil neu ermittelt."},
+    {Text::kStore, "Session", "Sitzung"},
+    {Text::kStoreWhole, "whole", "unversehrt"},
+    {Text::kStoreDamaged, "damaged or not checked", "beschädigt oder ungeprüft"},
+    {Text::kDiskFree, "{:.0f} GiB free", "{:.0f} GiB frei"},
+    {Text::kCalibration, "Calibration", "Kalibrierung"},
+    {Text::kDaysOld, "{:.0f} days old", "{:.0f} Tage alt"},
+    {Text::kNoCalibration, "the scanner tells none", "der Scanner nennt keine"},
+    {Text::kNoModelYet, "The model grows here.", "Hier wächst das Modell."},
+    {Text::kNoScanYet, "The scan grows here.", "Hier wächst der Scan."},
+    {Text::kSamples, "{} samples", "{} Messpunkte"},
+    {Text::kProfiles, "{} profiles", "{} Profile"},
+    {Text::kTimeLeft, "about {:.0f} s left", "noch etwa {:.0f} s"},
+    {Text::kUncertainty, "place good to {:.0f} um", "Lage auf {:.0f} um genau"},
+    {Text::kLookClay, "Light", "Licht"},
+    {Text::kOverlay, "Colours", "Farben"},
+    {Text::kLamp, "Raking lamp (right drag)", "Streiflicht (rechts ziehen)"},
+    {Text::kShadows, "Shadows", "Schatten"},
+    {Text::kOcclusion, "Ambient occlusion", "Umgebungsverdeckung"},
+    {Text::kRadiance, "Radiance scaling", "Radiance Scaling"},
+    {Text::kDepthShading, "Depth shading", "Tiefenschattierung"},
+    {Text::kFlat, "Flat faces", "Flache Dreiecke"},
+    {Text::kOverlayClay, "Clay", "Ton"},
+    {Text::kOverlayColours, "Own colours", "Eigene Farben"},
+    {Text::kOverlayReliability, "Reliability", "Zuverlässigkeit"},
+    {Text::kOverlayScans, "Scans that agree", "Übereinstimmende Scans"},
+    {Text::kOverlayFlags, "Sparse and filled", "Dünn und gefüllt"},
+    {Text::kOverlayCurvature, "Mean curvature, 1/mm", "Mittlere Krümmung, 1/mm"},
+    {Text::kOverlayHeight, "Height over the free surface, mm", "Höhe über der freien Fläche, mm"},
+    {Text::kOverlayOpenness, "Openness", "Offenheit"},
+    {Text::kOverlaySigma, "Uncertainty, mm", "Unsicherheit, mm"},
+    {Text::kOverlayMsii, "Integral invariant", "Integralinvariante"},
+    {Text::kWedges, "Wedges", "Keile"},
+    {Text::kNoWedges, "No wedges are known of this mesh.", "Von diesem Netz sind keine Keile bekannt."},
+    {Text::kMeasure, "Measure", "Messen"},
+    {Text::kMeasureHint, "Click two places.", "Zwei Stellen anklicken."},
+    {Text::kPicture, "Keep a picture", "Bild aufheben"},
+    {Text::kDpi, "dpi", "dpi"},
+    {Text::kPictureKept, "kept: {}", "aufgehoben: {}"},
+    {Text::kSixViews, "Views", "Ansichten"},
+    {Text::kAnalyse, "Find wedges", "Keile suchen"},
+    {Text::kAnalysing, "Looking for wedges", "Keile werden gesucht"},
+    {Text::kFaces, "{} faces", "{} Dreiecke"},
+    {Text::kVertices, "{} vertices", "{} Punkte"},
+    {Text::kLeftOut, "{} broken faces are not drawn", "{} kaputte Dreiecke fehlen im Bild"},
+    {Text::kGraphicsMemory, "{:.0f} MB of graphics memory", "{:.0f} MB Grafikspeicher"},
+    {Text::kDepth, "Depth", "Tiefe"},
+    {Text::kLength, "Length", "Länge"},
+    {Text::kSelect, "Select", "Auswählen"},
+    {Text::kSelectHint, "Draw a polygon; double click closes it.",
+     "Vieleck zeichnen; Doppelklick schließt es."},
+    {Text::kSelected, "{} faces, {:.1f} mm2", "{} Dreiecke, {:.1f} mm2"},
+    {Text::kUnion, "Add", "Dazu"},
+    {Text::kIntersect, "Both", "Beide"},
+    {Text::kSubtract, "Without", "Ohne"},
+    {Text::kVisibleOnly, "Only what is seen", "Nur Sichtbares"},
+    {Text::kClear, "Clear", "Leeren"},
+    {Text::kKeepSelection, "Keep as mesh", "Als Netz aufheben"},
+    {Text::kBackToScan, "Back to scanning", "Zurück zum Scannen"},
+    {Text::kOpenMesh, "The mesh is read", "Das Netz wird gelesen"},
+    {Text::kMove, "Turn", "Drehen"},
+    {Text::kOrder, "Line", "Zeile"},
+};
+
+constexpr bool in_order() {
+  for (std::size_t k = 0; k < std::size(kRows); ++k) {
+    if (static_cast<std::size_t>(kRows[k].text) != k) {
+      return false;
+    }
+  }
+  return std::size(kRows) == static_cast<std::size_t>(Text::kCount);
+}
+static_assert(in_order(), "a row for each text, in the order of the enumeration");
+
+/// Longest first, where one holds another.
+constexpr std::pair<const char*, const char*> kPhrases[] = {
+    {"turn the obverse towards the camera", "die Vorderseite zur Kamera drehen"},
+    {"turn the reverse towards the camera", "die Rückseite zur Kamera drehen"},
+    {"turn the left edge towards the camera", "den linken Rand zur Kamera drehen"},
+    {"turn the right edge towards the camera", "den rechten Rand zur Kamera drehen"},
+    {"turn the top edge towards the camera", "den oberen Rand zur Kamera drehen"},
+    {"turn the bottom edge towards the camera", "den unteren Rand zur Kamera drehen"},
+    {"; then turntable to", "; dann Drehteller auf"},
+    {"turntable to", "Drehteller auf"},
+    {"tilt to", "Neigung auf"},
+    {"the overlap is too even: the scan can turn on it",
+     "die Überlappung ist zu eben: der Scan kann sich darauf drehen"},
+    {"scan again with an edge or more relief in the overlap, or use pins",
+     "neu scannen, mit einer Kante oder mehr Relief in der Überlappung, oder mit Nadeln"},
+};
+
+}  // namespace
+
+std::optional<Language> language_of(std::string_view code) {
+  if (code == "en") {
+    return Language::kEnglish;
+  }
+  return code == "de" ? std::optional(Language::kGerman) : std::nullopt;
+}
+
+const char* code_of(Language language) {
+  return language == Language::kGerman ? "de" : "en";
+}
+
+const char* text_of(Text text, Language language) {
+  const Row& row = kRows[static_cast<std::size_t>(text)];
+  return language == Language::kGerman ? row.german : row.english;
+}
+
+std::string translated(const std::string& english, Language language) {
+  if (language == Language::kEnglish) {
+    return english;
+  }
+  std::string out = english;
+  for (const auto& [from, to] : kPhrases) {
+    for (std::size_t at = out.find(from); at != std::string::npos; at = out.find(from, at)) {
+      out.replace(at, std::string_view(from).size(), to);
+      at += std::string_view(to).size();
+    }
+  }
+  return out;
+}
+
+}  // namespace dubsar::ui

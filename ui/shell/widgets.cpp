@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "ui/shell/widgets.h"
+
+namespace dubsar::ui {
+
+namespace {
+
+/// Grows the string as it is typed into.
+int grow(ImGuiInputTextCallbackData* data) {
+  if (data->EventFlag == ImGuiInputTextFlags_CallbackResize) {
+    auto* text = static_cast<std::string*>(data->UserData);
+    text->resize(static_cast<std::size_t>(data->BufTextLen));
+    data->Buf = text->data();
+  }
+  return 0;
+}
+
+}  // namespace
+
+ImU32 packed(const Eigen::Vector4f& c, float alpha) {
+  return ImGui::ColorConvertFloat4ToU32({c.x(), c.y(), c.z(), c.w() * alpha});
+}
+
+std::string grouped(std::size_t number) {
+  const std::string digits = std::to_string(number);
+  std::string text;
+  for (std::size_t k = 0; k < digits.size(); ++k) {
+    if (k > 0 && (digits.size() - k) % 3 == 0) {
+      text += ' ';
+    }
+    text += digits[k];
+  }
+  return text;
+}
+
+bool big_button(UiContext& ui, const char* name, const char* label, const char* key, ImVec2 size,
+                ButtonKind kind, bool enabled) {
+  const bool main = kind == ButtonKind::kMain && enabled;
+  if (main) {
+    const Eigen::Vector4f c = ui.colours.strong;
+    ImGui::PushStyleColor(ImGuiCol_Button, ImVec4(c.x(), c.y(), c.z(), 1));
+    ImGui::PushStyleColor(ImGuiCol_ButtonHovered, ImVec4(c.x() * 1.15F, c.y() * 1.15F, c.z() * 1.15F, 1));
+  }
+  ImGui::BeginDisabled(!enabled);
+  ImGui::PushID(name);
+  const bool pressed = ImGui::Button("##press", size);
+  ImGui::PopID();
+  ImGui::EndDisabled();
+  if (enabled) {
+    ui.target(name);
+  }
+  if (main) {
+    ImGui::PopStyleColor(2);
+  }
+  const ImVec2 low = ImGui::GetItemRectMin();
+  const ImVec2 high = ImGui::GetItemRectMax();
+  ImDrawList* draw = ImGui::GetWindowDrawList();
+  const ImVec2 label_size = ImGui::CalcTextSize(label);
+  const float small = ui.fonts.small->FontSize;
+  const float height = label_size.y + (key != nullptr ? small : 0.0F);
+  const float middle = 0.5F * (low.x + high.x);
+  float y = 0.5F * (low.y + high.y - height);
+  const ImU32 ink = packed(enabled ? ui.colours.text : ui.colours.faint);
+  draw->AddText({middle - 0.5F * label_size.x, y}, ink, label);
+  if (key != nullptr) {
+    y += label_size.y;
+    const ImVec2 key_size = ui.fonts.small->CalcTextSizeA(small, 1e4F, 0, key);
+    draw->AddText(ui.fonts.small, small, {middle - 0.5F * key_size.x, y}, packed(ui.colours.faint), key);
+  }
+  return pressed;
+}
+
+bool plain_button(UiContext& ui, const char* name, const char* label, bool enabled) {
+  ImGui::BeginDisabled(!enabled);
+  ImGui::PushID(name);
+  const bool pressed = ImGui::Button(label);
+  ImGui::PopID();
+  ImGui::EndDisabled();
+  if (enabled) {
+    ui.target(name);
+  }
+  return pressed;
+}
+
+bool text_line(UiContext& ui, const char* name, const char* label, std::string& value) {
+  ImGui::PushID(name);
+  ImGui::TextUnformatted(label);
+  ImGui::SetNextItemWidth(-1);
+  const bool changed = ImGui::InputText("##text", value.data(), value.capacity() + 1,
+                                        ImGuiInputTextFlags_CallbackResize, grow, &value);
+  ui.target(name);
+  ImGui::PopID();
+  return changed;
+}
+
+bool tick(UiContext& ui, const char* name, const char* label, bool& value) {
+  ImGui::PushID(name);
+  const bool changed = ImGui::Checkbox(label, &value);
+  ImGui::PopID();
+  ui.target(name);
+  return changed;
+}
+
+void coloured_text(const Eigen::Vector4f& c, const char* text) {
+  ImGui::PushStyleColor(ImGuiCol_Text, ImVec4(c.x(), c.y(), c.z(), c.w()));
+  ImGui::PushTextWrapPos(0);
+  ImGui::TextUnformatted(text);
+  ImGui::PopTextWrapPos();
+  ImGui::PopStyleColor();
+}
+
+}  // namespace dubsar::ui

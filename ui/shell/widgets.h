@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <map>
+#include <set>
+#include <string>
+
+#include "ui/shell/theme.h"
+
+namespace dubsar::ui {
+
+/// What the panels share during a frame: texts, colours, and the record of what can be pressed where, which a
+/// script goes by.
+struct UiContext {
+  Preferences preferences;
+  Colours colours;
+  Fonts fonts;
+  std::map<std::string, ImVec4> targets;  ///< rectangle by name, of the last frame
+  std::set<std::string> facts;            ///< what is the case, for a script to wait for
+  bool still = false;                     ///< a script runs: nothing moves by itself
+  double time_s = 0;
+
+  [[nodiscard]] const char* text(Text which) const { return text_of(which, preferences.language); }
+  /// Notes where the last item is, under a name for scripts.
+  void target(const std::string& name) {
+    const ImVec2 low = ImGui::GetItemRectMin();
+    const ImVec2 high = ImGui::GetItemRectMax();
+    targets[name] = {low.x, low.y, high.x, high.y};
+  }
+  [[nodiscard]] float px(float fonts_high) const { return fonts_high * preferences.font_px; }
+};
+
+enum class ButtonKind { kPlain, kMain };
+
+/// A button large enough for a glove, known to scripts by its name. The key that does the same is shown on
+/// it.
+bool big_button(UiContext& ui, const char* name, const char* label, const char* key, ImVec2 size,
+                ButtonKind kind = ButtonKind::kPlain, bool enabled = true);
+bool plain_button(UiContext& ui, const char* name, const char* label, bool enabled = true);
+/// A line to type in; true when it was changed.
+bool text_line(UiContext& ui, const char* name, const char* label, std::string& value);
+bool tick(UiContext& ui, const char* name, const char* label, bool& value);
+void coloured_text(const Eigen::Vector4f& colour, const char* text);
+/// A text of the table with its gaps filled in.
+template <class... Arguments>
+[[nodiscard]] std::string filled(const char* format, const Arguments&... arguments) {
+  return fmt::vformat(format, fmt::make_format_args(arguments...));
+}
+[[nodiscard]] ImU32 packed(const Eigen::Vector4f& colour, float alpha = 1.0F);
+/// "1 234 567"
+[[nodiscard]] std::string grouped(std::size_t number);
+
+}  // namespace dubsar::ui

@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "ui/station_window.h"
+
+#include <epoxy/gl.h>
+
+#include <GLFW/glfw3.h>
+#include <backends/imgui_impl_glfw.h>
+#include <backends/imgui_impl_opengl3.h>
+#include <imgui.h>
+
+#include <chrono>
+#include <fstream>
+#include <iterator>
+#include <memory>
+
+#include "core/log.h"
+#include "station/picture_file.h"
+#include "ui/gl/frame_target.h"
+#include "ui/gl/gl_window.h"
+#include "ui/operator/operator_screen.h"
+#include "ui/shell/script.h"
+#include "ui/viewer/viewer_screen.h"
+
+namespace dubsar::ui {
+
+namespace {
+
+constexpr double kIdleS = 0.5;     ///< between two looks when nothing happens
+constexpr double kMotionS = 0.06;  ///< between two frames of something that moves by itself
+constexpr double kScriptWaitS = 0.1;
+/// ImGui needs some frames to settle after an event.
+constexpr int kFramesAfterEvent = 4;
+
+double now_s() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+/// ImGui and its back ends for a window; ends them when it goes.
+class GuiScope {
+ public:
+  explicit GuiScope(GLFWwindow* window) {
+    IMGUI_CHECKVERSION();
+    ImGui::CreateContext();
+    ImGui::GetIO().IniFilename = nullptr;  // nothing of the layout is the user's to lose
+    ImGui_ImplGlfw_InitForOpenGL(window, true);
+    ImGui_ImplOpenGL3_Init("#version 410 core");
+  }
+  ~GuiScope() {
+    ImGui_ImplOpenGL3_Shutdown();
+    ImGui_ImplGlfw_Shutdown();
+    ImGui::DestroyContext();
+  }
+  GuiScope(const GuiScope&) = delete;
+  GuiScope& operator=(const GuiScope&) = delete;
+};
+
+Result<std::optional<ScriptPlayer>> load_script(const std::filesystem::path& file) {
+  if (file.empty()) {
+    return std::nullopt;
+  }
+  std::ifstream in(file);
+  const std::string text{std::istreambuf_iterator<char>(in), {}};
+  if (!in) {
+    return fail(ErrorKind::kBadInput, "the script cannot be read", file.string());
+  }
+  auto steps = parse_script(text, file.string());
+  if (!steps) {
+    return std::unexpected(steps.error());
+  }
+  return ScriptPlayer(std::move(*steps), file.string());
+}
+
+/// One run of the window.
+class StationWindow {
+ public:
+  StationWindow(GlWindow window, const StationWindowOptions& options, std::optional<ScriptPlayer> script)
+      : window_(std::move(window)), gui_(window_.handle()), script_(std::move(script)) {
+    preferences_file_ = script_ ? std::filesystem::path() : preferences_file();
+    ui_.preferences = read_preferences(preferences_file_);
+    if (const auto language = language_of(options.language)) {
+      ui_.preferences.language = *language;
+    }
+    ui_.still = script_.has_value();
+    kept_ = ui_.preferences;
+    looks_ = !options.mesh.empty();
+    viewing_ = std::make_unique<MeshViewing>(wake_window);
+    if (looks_) {
+      viewing_->open(options.mesh);
+      viewer_ = std::make_unique<ViewerScreen>(*viewing_, std::filesystem::path("."), false);
+      return;
+    }
+    viewer_ = std::make_unique<ViewerScreen>(*viewing_, options.session / "export", true);
+    session_folder_ = options.session;
+    session_ = std::make_unique<LiveSession>(
+        LiveSession::Options{options.device.empty() ? ui_.preferences.device : options.device,
+                             options.session, options.pins},
+        wake_window);
+    session_->read();
+    operator_ = std::make_unique<OperatorScreen>(*session_);
+  }
+
+  Result<int> run(const JobContext& job) {
+    int settle = kFramesAfterEvent;
+    bool moving = false;
+    while (glfwWindowShouldClose(window_.handle()) == GLFW_FALSE && !job.cancelled()) {
+      if (script_) {
+        glfwWaitEventsTimeout(script_->waits() ? kScriptWaitS : 0.001);
+      } else {
+        const double began = now_s();
+        const double patience = settle > 0 ? 0.001 : moving ? kMotionS : kIdleS;
+        glfwWaitEventsTimeout(patience);
+        if (now_s() - began < 0.9 * patience) {
+          settle = kFramesAfterEvent;
+        } else {
+          settle = std::max(0, settle - 1);
+        }
+      }
+      const double frame_began = now_s();
+      moving = draw_frame();
+      if (Status taken = take_screenshot(moving); !taken) {
+        return std::unexpected(taken.error());
+      }
+      glfwSwapBuffers(window_.handle());
+      if (script_ && script_->is_dragging()) {
+        longest_drag_s_ = std::max(longest_drag_s_, now_s() - frame_began);
+      }
+      keep_preferences();
+      if (script_ && script_->finished()) {
+        log_debug(fmt::format("longest frame of a drag: {:.0f} ms", 1000 * longest_drag_s_));
+        if (script_->failure()) {
+          log_error(script_->failure()->line());
+          return 1;
+        }
+        return 0;
+      }
+    }
+    return 0;
+  }
+
+ private:
+  bool draw_frame() {
+    if (loaded_px_ != ui_.preferences.font_px) {
+      ui_.fonts = load_fonts(ui_.preferences.font_px);
+      if (loaded_px_ > 0) {
+        ImGui_ImplOpenGL3_DestroyFontsTexture();
+        ImGui_ImplOpenGL3_CreateFontsTexture();
+      }
+      loaded_px_ = ui_.preferences.font_px;
+    }
+    apply_theme(ui_.preferences);
+    ui_.colours = colours_of(ui_.preferences);
+    ui_.time_s = now_s();
+    ImGui_ImplOpenGL3_NewFrame();
+    ImGui_ImplGlfw_NewFrame();
+    if (script_) {
+      script_->inject(ui_, ui_.time_s);
+    }
+    ui_.targets.clear();
+    ui_.facts.clear();
+    ImGui::NewFrame();
+    const ImVec2 size = ImGui::GetIO().DisplaySize;
+    bool unfinished = false;
+    if (looks_) {
+      viewer_->draw(ui_, size);
+      unfinished = viewer_->unfinished();
+      looks_ = !viewer_->wants_scanning();
+    } else {
+      operator_->draw(ui_, size);
+      unfinished = operator_->unfinished();
+      if (operator_->wants_viewer()) {
+        const LiveState state = session_->state();
+        viewing_->show(state.mesh, state.tablet_from_model, session_folder_ / "analysis" / "wedges.json");
+        looks_ = true;
+      }
+    }
+    ImGui::Render();
+    int width = 0;
+    int height = 0;
+    glfwGetFramebufferSize(window_.handle(), &width, &height);
+    glBindFramebuffer(GL_FRAMEBUFFER, 0);
+    glViewport(0, 0, width, height);
+    const Eigen::Vector4f ground = ui_.colours.panel;
+    glClearColor(ground.x(), ground.y(), ground.z(), 1);
+    glClear(GL_COLOR_BUFFER_BIT);
+    ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+    return unfinished;
+  }
+
+  Status take_screenshot(bool moving) {
+    if (!script_) {
+      return {};
+    }
+    const auto file = script_->screenshot_due(!moving);
+    if (!file) {
+      return {};
+    }
+    int width = 0;
+    int height = 0;
+    glfwGetFramebufferSize(window_.handle(), &width, &height);
+    return write_picture(*file, read_window(width, height), "Dubsar");
+  }
+
+  void keep_preferences() {
+    if (!(kept_ == ui_.preferences)) {
+      kept_ = ui_.preferences;
+      write_preferences(preferences_file_, kept_);
+    }
+  }
+
+  GlWindow window_;
+  GuiScope gui_;
+  std::optional<ScriptPlayer> script_;
+  UiContext ui_;
+  Preferences kept_;
+  std::filesystem::path preferences_file_;
+  float loaded_px_ = 0;
+  double longest_drag_s_ = 0;
+  bool looks_ = false;  ///< the viewer; else the operator's screen
+  std::filesystem::path session_folder_;
+  // The screens go before the context does.
+  std::unique_ptr<LiveSession> session_;
+  std::unique_ptr<MeshViewing> viewing_;
+  std::unique_ptr<OperatorScreen> operator_;
+  std::unique_ptr<ViewerScreen> viewer_;
+};
+
+}  // namespace
+
+Result<int> run_station_window(const StationWindowOptions& options, JobContext& job) {
+  auto script = load_script(options.script);
+  if (!script) {
+    return std::unexpected(script.error());
+  }
+  Result<GlWindow> window = GlWindow::open(options.width, options.height, "Dubsar");
+  if (!window) {
+    return std::unexpected(window.error());
+  }
+  log_debug("drawn by " + window->renderer());
+  StationWindow station(std::move(*window), options, std::move(*script));
+  return station.run(job);
+}
+
+}  // namespace dubsar::ui

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "ui/view/mesh_buffers.h"
+
+#include <epoxy/gl.h>
+
+#include <algorithm>
+#include <cstring>
+
+namespace dubsar::ui {
+
+namespace {
+
+// Places of the attributes in the shaders.
+constexpr GLuint kPosition = 0;
+constexpr GLuint kNormal = 1;
+constexpr GLuint kTraits = 2;
+constexpr GLuint kValue = 3;
+constexpr GLuint kColour = 4;
+
+/// A unit vector in 4 bytes, signed, 10 bits a coordinate.
+std::uint32_t packed(const Eigen::Vector3f& n) {
+  const auto part = [](float x) {
+    return static_cast<std::uint32_t>(static_cast<std::int32_t>(std::clamp(x, -1.0F, 1.0F) * 511.0F)) & 1023U;
+  };
+  return part(n.x()) | (part(n.y()) << 10U) | (part(n.z()) << 20U);
+}
+
+GLuint new_buffer(GLenum target, std::size_t bytes, const void* data) {
+  GLuint id = 0;
+  glGenBuffers(1, &id);
+  glBindBuffer(target, id);
+  glBufferData(target, static_cast<GLsizeiptr>(bytes), data, GL_STATIC_DRAW);
+  return id;
+}
+
+}  // namespace
+
+MeshBuffers::MeshBuffers(const ShownMesh& mesh)
+    : vertices_(mesh.positions.size()),
+      faces_(mesh.faces.size()),
+      coarse_faces_(mesh.coarse.size()),
+      has_colours_(!mesh.colours.empty()) {
+  std::vector<std::uint32_t> normals(vertices_);
+  std::ranges::transform(mesh.normals, normals.begin(), packed);
+  const auto add = [&](GLenum target, std::size_t bytes, const void* data) {
+    buffers_.push_back(new_buffer(target, bytes, data));
+    bytes_ += bytes;
+    return buffers_.back();
+  };
+  const GLuint position = add(GL_ARRAY_BUFFER, vertices_ * sizeof(Eigen::Vector3f), mesh.positions.data());
+  const GLuint normal = add(GL_ARRAY_BUFFER, vertices_ * 4, normals.data());
+  const GLuint traits = add(GL_ARRAY_BUFFER, vertices_ * 4, mesh.traits.data());
+  const GLuint value = add(GL_ARRAY_BUFFER, 0, nullptr);
+  const GLuint colour = add(GL_ARRAY_BUFFER, mesh.colours.size() * 3, mesh.colours.data());
+  const GLuint faces = add(GL_ELEMENT_ARRAY_BUFFER, faces_ * 12, mesh.faces.data());
+  const GLuint coarse = add(GL_ELEMENT_ARRAY_BUFFER, coarse_faces_ * 12, mesh.coarse.data());
+  const auto make_array = [&](GLuint indices) {
+    GLuint array = 0;
+    glGenVertexArrays(1, &array);
+    glBindVertexArray(array);
+    const auto attribute = [](GLuint place, GLuint buffer, GLint size, GLenum type, GLboolean normalised) {
+      glBindBuffer(GL_ARRAY_BUFFER, buffer);
+      glEnableVertexAttribArray(place);
+      glVertexAttribPointer(place, size, type, normalised, 0, nullptr);
+    };
+    attribute(kPosition, position, 3, GL_FLOAT, GL_FALSE);
+    attribute(kNormal, normal, 4, GL_INT_2_10_10_10_REV, GL_TRUE);
+    attribute(kTraits, traits, 4, GL_UNSIGNED_BYTE, GL_TRUE);
+    if (has_colours_) {
+      attribute(kColour, colour, 3, GL_UNSIGNED_BYTE, GL_TRUE);
+    }
+    static_cast<void>(value);  // set_values() enables it
+    glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, indices);
+    return array;
+  };
+  array_ = make_array(faces);
+  coarse_array_ = make_array(coarse);
+  glBindVertexArray(0);
+}
+
+MeshBuffers::~MeshBuffers() {
+  glDeleteVertexArrays(1, &array_);
+  glDeleteVertexArrays(1, &coarse_array_);
+  glDeleteBuffers(static_cast<GLsizei>(buffers_.size()), buffers_.data());
+}
+
+void MeshBuffers::set_values(const std::vector<float>& values) {
+  has_values_ = values.size() == vertices_ && vertices_ > 0;
+  for (const GLuint array : {array_, coarse_array_}) {
+    glBindVertexArray(array);
+    glBindBuffer(GL_ARRAY_BUFFER, buffers_[kValue]);
+    if (has_values_) {
+      glEnableVertexAttribArray(kValue);
+      glVertexAttribPointer(kValue, 1, GL_FLOAT, GL_FALSE, 0, nullptr);
+    } else {
+      glDisableVertexAttribArray(kValue);
+    }
+  }
+  glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(has_values_ ? vertices_ * sizeof(float) : 0),
+               has_values_ ? values.data() : nullptr, GL_STATIC_DRAW);
+  glBindVertexArray(0);
+}
+
+void MeshBuffers::set_traits(const std::vector<std::array<std::uint8_t, 4>>& traits) {
+  if (traits.size() == vertices_) {
+    glBindBuffer(GL_ARRAY_BUFFER, buffers_[kTraits]);
+    glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(vertices_ * 4), traits.data(), GL_STATIC_DRAW);
+  }
+}
+
+void MeshBuffers::bind() const {
+  glBindVertexArray(array_);
+  glVertexAttrib3f(kColour, 1, 1, 1);
+  glVertexAttrib1f(kValue, 0);
+}
+
+void MeshBuffers::draw_faces(std::size_t first, std::size_t count) const {
+  const std::uintptr_t offset = first * 12;
+  glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * count), GL_UNSIGNED_INT,
+                 reinterpret_cast<const void*>(offset));
+}
+
+void MeshBuffers::draw_coarse() const {
+  glBindVertexArray(coarse_array_);
+  glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * coarse_faces_), GL_UNSIGNED_INT, nullptr);
+  glBindVertexArray(array_);
+}
+
+void MeshBuffers::draw_points() const {
+  glDrawArrays(GL_POINTS, 0, static_cast<GLsizei>(vertices_));
+}
+
+PointBuffers::PointBuffers(const ColouredPoints& points)
+    : count_(points.positions_mm.size()), radius_mm_(points.radius_mm), bury_mm_(points.bury_mm) {
+  struct Vertex {
+    float position[3];
+    std::uint32_t normal;
+    std::uint8_t excused[4];
+  };
+  std::vector<Vertex> vertices(count_);
+  for (std::size_t k = 0; k < count_; ++k) {
+    Vertex& v = vertices[k];
+    std::memcpy(v.position, points.positions_mm[k].data(), sizeof v.position);
+    v.normal = k < points.normals.size() ? packed(points.normals[k]) : 0U;
+    const bool amber = k < points.colours.size() && points.colours[k] == kAmberOfExcused;
+    v.excused[0] = amber ? 255 : 0;
+  }
+  glGenVertexArrays(1, &array_);
+  glBindVertexArray(array_);
+  buffer_ = new_buffer(GL_ARRAY_BUFFER, count_ * sizeof(Vertex), vertices.data());
+  const auto attribute = [](GLuint place, GLint size, GLenum type, GLboolean normalised,
+                            std::uintptr_t offset) {
+    glEnableVertexAttribArray(place);
+    glVertexAttribPointer(place, size, type, normalised, sizeof(Vertex),
+                          reinterpret_cast<const void*>(offset));
+  };
+  attribute(kPosition, 3, GL_FLOAT, GL_FALSE, offsetof(Vertex, position));
+  attribute(kNormal, 4, GL_INT_2_10_10_10_REV, GL_TRUE, offsetof(Vertex, normal));
+  attribute(kTraits, 4, GL_UNSIGNED_BYTE, GL_TRUE, offsetof(Vertex, excused));
+  glBindVertexArray(0);
+}
+
+PointBuffers::~PointBuffers() {
+  glDeleteVertexArrays(1, &array_);
+  glDeleteBuffers(1, &buffer_);
+}
+
+void PointBuffers::draw() const {
+  glBindVertexArray(array_);
+  glDrawArrays(GL_POINTS, 0, static_cast<GLsizei>(count_));
+  glBindVertexArray(0);
+}
+
+}  // namespace dubsar::ui

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+#include "archive/render_scene.h"
+#include "ui/view/shown_mesh.h"
+
+namespace dubsar::ui {
+
+/// A mesh in the memory of the graphics card: each vertex once, faces by index. Main thread.
+class MeshBuffers {
+ public:
+  explicit MeshBuffers(const ShownMesh& mesh);
+  ~MeshBuffers();
+  MeshBuffers(const MeshBuffers&) = delete;
+  MeshBuffers& operator=(const MeshBuffers&) = delete;
+
+  /// A number per vertex, [V], for the overlay that shows numbers.
+  void set_values(const std::vector<float>& values);
+  /// Other traits for the same vertices.
+  void set_traits(const std::vector<std::array<std::uint8_t, 4>>& traits);
+  [[nodiscard]] bool has_values() const { return has_values_; }
+  [[nodiscard]] bool has_colours() const { return has_colours_; }
+  [[nodiscard]] bool points_only() const { return faces_ == 0; }
+  [[nodiscard]] std::size_t faces() const { return faces_; }
+  [[nodiscard]] std::size_t coarse_faces() const { return coarse_faces_; }
+  [[nodiscard]] std::size_t bytes() const { return bytes_; }
+
+  void bind() const;  ///< then one of:
+  void draw_faces(std::size_t first, std::size_t count) const;
+  void draw_coarse() const;
+  void draw_points() const;
+
+ private:
+  unsigned array_ = 0;
+  unsigned coarse_array_ = 0;
+  std::vector<unsigned> buffers_;
+  std::size_t vertices_, faces_, coarse_faces_;
+  std::size_t bytes_ = 0;
+  bool has_values_ = false;
+  bool has_colours_ = false;
+};
+
+/// Small discs over the surface. Main thread.
+class PointBuffers {
+ public:
+  explicit PointBuffers(const ColouredPoints& points);
+  ~PointBuffers();
+  PointBuffers(const PointBuffers&) = delete;
+  PointBuffers& operator=(const PointBuffers&) = delete;
+  void draw() const;
+  [[nodiscard]] std::size_t size() const { return count_; }
+  [[nodiscard]] float radius_mm() const { return radius_mm_; }
+  [[nodiscard]] float bury_mm() const { return bury_mm_; }
+
+ private:
+  unsigned array_ = 0;
+  unsigned buffer_ = 0;
+  std::size_t count_;
+  float radius_mm_, bury_mm_;
+};
+
+}  // namespace dubsar::ui

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "core/mesh.h"
+
+namespace dubsar::ui {
+
+/// Neighbouring faces that are drawn, or left out, together.
+struct FaceBlock {
+  std::uint32_t first = 0;  ///< in ShownMesh::faces
+  std::uint32_t count = 0;
+  Eigen::AlignedBox3f box_mm;
+};
+
+/// A mesh made ready for drawing; can be made on any thread. Vertices are those of the mesh, once each; faces
+/// that cannot be drawn (an index out of range, a coordinate that is not a number) are left out, and the
+/// others are put in order of place. Without faces it is drawn as points.
+struct ShownMesh {
+  std::vector<Eigen::Vector3f> positions;            ///< [V] mm
+  std::vector<Eigen::Vector3f> normals;              ///< [V] unit; zero where there is none
+  std::vector<std::array<std::uint8_t, 4>> traits;   ///< [V] openness, reliability (255: 1), scans, flags
+  std::vector<std::array<std::uint8_t, 3>> colours;  ///< [V] or empty
+  std::vector<std::array<std::uint32_t, 3>> faces;   ///< by block
+  std::vector<std::uint32_t> face_of;                ///< [faces] which face of the mesh it is
+  std::vector<FaceBlock> blocks;
+  std::vector<std::array<std::uint32_t, 3>>
+      coarse;  ///< the same surface in few faces; empty where few already
+  Eigen::AlignedBox3f box_mm;
+  std::size_t left_out = 0;  ///< faces of the mesh that cannot be drawn
+};
+
+/// Faces that even a processor draws fast enough to be turned by hand (bench: 100 thousand in about 40 ms).
+inline constexpr std::size_t kFacesInMotion = 100000;
+
+/// Puts ambient occlusion, [V] in [0, 1], into the traits.
+void set_openness(ShownMesh& mesh, const std::vector<float>& openness);
+
+/// `openness` is ambient occlusion, [V] in [0, 1], or empty.
+[[nodiscard]] ShownMesh shown_mesh(const Mesh& mesh, const std::vector<float>& openness = {});
+
+}  // namespace dubsar::ui

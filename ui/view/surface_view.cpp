@@ -1,0 +1,337 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "ui/view/surface_view.h"
+
+#include <epoxy/gl.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "ui/view/clay_sphere.h"
+#include "ui/view/shaders.h"
+
+namespace dubsar::ui {
+
+namespace {
+
+constexpr int kShadowSize = 1024;
+/// A picture that takes longer to draw makes the window feel stuck while it is turned.
+constexpr double kSlowFrameS = 0.05;
+/// Faces added to the whole picture between two looks at what the user does.
+constexpr std::size_t kFacesAtATime = 80000;
+
+bool outside(const Eigen::AlignedBox3f& box, const Eigen::Matrix4f& clip_from_model) {
+  Eigen::AlignedBox3f clip;
+  for (int k = 0; k < 8; ++k) {
+    const Eigen::Vector3f corner = box.corner(static_cast<Eigen::AlignedBox3f::CornerType>(k));
+    clip.extend((clip_from_model * corner.homogeneous()).head<3>());
+  }
+  return clip.min().x() > 1 || clip.min().y() > 1 || clip.max().x() < -1 || clip.max().y() < -1;
+}
+
+void bind_texture(int unit, unsigned texture) {
+  glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
+  glBindTexture(GL_TEXTURE_2D, texture);
+}
+
+}  // namespace
+
+SurfaceView::SurfaceView()
+    : surface_(kSurfaceVertex, kSurfaceFragment),
+      shadow_(kSurfaceVertex, kShadowFragment),
+      lighting_(kPictureVertex, kLightFragment) {
+  const Image sphere = clay_sphere();
+  sphere_.upload(sphere.width, sphere.height, 3, sphere.bytes.data(), true);
+  const auto colours = overlay_colours();
+  colour_map_.upload(static_cast<int>(colours.size()), 1, 3, colours.front().data(), true);
+  glGenVertexArrays(1, &no_vertices_);
+}
+
+void SurfaceView::show(const ShownMesh& mesh) {
+  mesh_ = std::make_unique<MeshBuffers>(mesh);
+  selection_.reset();
+  blocks_ = mesh.blocks;
+  box_mm_ = mesh.box_mm;
+  dirty_ = true;
+}
+
+void SurfaceView::show_points(const ColouredPoints* points) {
+  points_ =
+      points != nullptr && !points->positions_mm.empty() ? std::make_unique<PointBuffers>(*points) : nullptr;
+  dirty_ = true;
+}
+
+void SurfaceView::set_values(const std::vector<float>& values) {
+  if (mesh_) {
+    mesh_->set_values(values);
+    dirty_ = true;
+  }
+}
+
+void SurfaceView::set_traits(const std::vector<std::array<std::uint8_t, 4>>& traits) {
+  if (mesh_) {
+    mesh_->set_traits(traits);
+    dirty_ = true;
+  }
+}
+
+Eigen::Matrix4f SurfaceView::light_clip_from_model(const Scene& scene) const {
+  OrbitCamera lamp;
+  const Eigen::Vector3f towards = scene.look.light.normalized();
+  const Eigen::Quaternionf lamp_from_eye =
+      Eigen::Quaternionf::FromTwoVectors(towards, Eigen::Vector3f::UnitZ());
+  lamp.eye_from_model = lamp_from_eye * scene.camera.eye_from_model;
+  lamp.fit(box_mm_, 1.0F);
+  return lamp.clip_from_model(1.0F);
+}
+
+void SurfaceView::clear(Layer& layer, const Scene& scene) const {
+  glDepthMask(GL_TRUE);
+  layer.target.resize(scene.width, scene.height);
+  layer.target.bind();
+  glClearColor(0, 0, 0, 0);
+  glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+  if (scene.look.lamp && scene.look.shadows) {
+    layer.shadow.resize(kShadowSize, kShadowSize);
+    layer.shadow.bind();
+    glClear(GL_DEPTH_BUFFER_BIT);
+  }
+}
+
+void SurfaceView::begin_surface(const Scene& scene, const Layer& layer) {
+  const float aspect = static_cast<float>(scene.width) / static_cast<float>(scene.height);
+  layer.target.bind();
+  surface_.use();
+  surface_.set("clip_from_model", scene.camera.clip_from_model(aspect));
+  surface_.set("eye_from_model", Eigen::Matrix3f(scene.camera.eye_from_model.toRotationMatrix()));
+  surface_.set("towards_viewer", 0.0F);
+  surface_.set("point_px", 2.0F);
+  surface_.set("overlay", static_cast<int>(scene.look.overlay));
+  surface_.set("flat_shading", scene.look.flat ? 1 : 0);
+  surface_.set("marks", 0);
+  surface_.set("value_range", scene.look.value_range);
+  surface_.set("clay", scene.look.clay);
+  surface_.set("red", scene.look.red);
+  surface_.set("amber", scene.look.amber);
+  surface_.set("colour_map", 0);
+  surface_.set("selected_colour", scene.look.selected);
+  surface_.set("selection", 0);
+  surface_.set("selected", 1);
+  bind_texture(0, colour_map_.id());
+  glEnable(GL_DEPTH_TEST);
+  glEnable(GL_PROGRAM_POINT_SIZE);
+  glDisable(GL_BLEND);
+  glDisable(GL_CULL_FACE);
+  glDisable(GL_SCISSOR_TEST);
+}
+
+void SurfaceView::draw_geometry(Layer& layer, const Scene& scene, std::size_t first_block,
+                                std::size_t end_block, bool coarse) {
+  if (!mesh_) {
+    return;
+  }
+  const float aspect = static_cast<float>(scene.width) / static_cast<float>(scene.height);
+  const Eigen::Matrix4f clip_from_model = scene.camera.clip_from_model(aspect);
+  begin_surface(scene, layer);
+  mesh_->bind();
+  if (mesh_->points_only()) {
+    surface_.set("marks", 2);
+    surface_.set("point_px",
+                 std::clamp(0.2F / scene.camera.mm_per_px(static_cast<float>(scene.height)), 2.0F, 12.0F));
+    mesh_->draw_points();
+    return;
+  }
+  if (coarse) {
+    mesh_->draw_coarse();
+    faces_drawn_ += mesh_->coarse_faces();
+  } else {
+    if (selection_ && !selection_->empty()) {
+      surface_.set("selection", 1);
+      glActiveTexture(GL_TEXTURE1);
+      glBindTexture(GL_TEXTURE_BUFFER, selection_->texture());
+      glActiveTexture(GL_TEXTURE0);
+    }
+    for (std::size_t b = first_block; b < end_block; ++b) {
+      if (!outside(blocks_[b].box_mm, clip_from_model)) {
+        surface_.set("first_face", static_cast<int>(blocks_[b].first));
+        mesh_->draw_faces(blocks_[b].first, blocks_[b].count);
+        faces_drawn_ += blocks_[b].count;
+      }
+    }
+  }
+  if (scene.look.lamp && scene.look.shadows) {
+    layer.shadow.bind();
+    shadow_.use();
+    shadow_.set("clip_from_model", light_clip_from_model(scene));
+    shadow_.set("towards_viewer", 0.0F);
+    if (coarse) {
+      mesh_->draw_coarse();
+    } else if (end_block > first_block) {
+      const std::size_t first = blocks_[first_block].first;
+      mesh_->draw_faces(first, blocks_[end_block - 1].first + blocks_[end_block - 1].count - first);
+    }
+  }
+}
+
+void SurfaceView::draw_marks(Layer& layer, const Scene& scene) {
+  if (!points_) {
+    return;
+  }
+  begin_surface(scene, layer);
+  const float mm_per_px = scene.camera.mm_per_px(static_cast<float>(scene.height));
+  surface_.set("marks", 1);
+  surface_.set("point_px", std::clamp(2.0F * points_->radius_mm() / mm_per_px, 3.0F, 40.0F));
+  surface_.set("towards_viewer", points_->bury_mm() / scene.camera.depth_mm);
+  points_->draw();
+}
+
+void SurfaceView::light(const Layer& layer, const Scene& scene) {
+  const float aspect = static_cast<float>(scene.width) / static_cast<float>(scene.height);
+  picture_.resize(scene.width, scene.height);
+  picture_.bind();
+  glDisable(GL_DEPTH_TEST);
+  glDisable(GL_BLEND);
+  glDisable(GL_SCISSOR_TEST);
+  lighting_.use();
+  const Look& look = scene.look;
+  const bool shadows = look.lamp && look.shadows && mesh_ != nullptr;
+  bind_texture(0, layer.target.colour(0));
+  bind_texture(1, layer.target.colour(1));
+  bind_texture(2, layer.target.depth());
+  bind_texture(3, sphere_.id());
+  bind_texture(4, shadows ? layer.shadow.depth() : layer.target.depth());
+  lighting_.set("albedo_map", 0);
+  lighting_.set("surface_map", 1);
+  lighting_.set("depth_map", 2);
+  lighting_.set("sphere_map", 3);
+  lighting_.set("shadow_map", 4);
+  lighting_.set("lamp", look.lamp ? 1 : 0);
+  lighting_.set("light", Eigen::Vector3f(look.light.normalized()));
+  lighting_.set("shadows", shadows ? 1 : 0);
+  lighting_.set("occlusion", look.occlusion ? 1 : 0);
+  lighting_.set("radiance", look.radiance);
+  lighting_.set("depth_shading", look.depth_shading);
+  lighting_.set("ground", look.ground);
+  lighting_.set(
+      "px", Eigen::Vector2f(1.0F / static_cast<float>(scene.width), 1.0F / static_cast<float>(scene.height)));
+  lighting_.set("mm_per_px", scene.camera.mm_per_px(static_cast<float>(scene.height)));
+  lighting_.set("depth_mm", scene.camera.depth_mm);
+  if (shadows) {
+    lighting_.set("light_clip_from_clip", Eigen::Matrix4f(light_clip_from_model(scene) *
+                                                          scene.camera.clip_from_model(aspect).inverse()));
+  }
+  glBindVertexArray(no_vertices_);
+  glDrawArrays(GL_TRIANGLES, 0, 3);
+  glBindVertexArray(0);
+  glActiveTexture(GL_TEXTURE0);
+  glBindFramebuffer(GL_FRAMEBUFFER, 0);
+}
+
+bool SurfaceView::draw(const OrbitCamera& camera, const Look& look, int width, int height) {
+  const Scene scene{camera, look, std::max(1, width), std::max(1, height)};
+  const bool changed = dirty_ || !(scene == scene_) || texture() == 0;
+  scene_ = scene;
+  dirty_ = false;
+  if (changed) {
+    // In motion: few faces, and half the pixels where that is slow still.
+    const bool coarse = mesh_ && mesh_->coarse_faces() > 0;
+    Scene rough = scene;
+    if (slow_) {
+      rough.width = std::max(1, scene.width / 2);
+      rough.height = std::max(1, scene.height / 2);
+    }
+    const auto began = std::chrono::steady_clock::now();
+    Layer& layer = layers_[static_cast<std::size_t>(shown_layer_)];
+    clear(layer, rough);
+    faces_drawn_ = 0;
+    draw_geometry(layer, rough, 0, blocks_.size(), coarse);
+    draw_marks(layer, rough);
+    light(layer, rough);
+    glFinish();
+    const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - began;
+    next_block_ = 0;
+    whole_ = !coarse && !slow_;
+    slow_ = slow_ || spent.count() > kSlowFrameS;
+    return !whole_;
+  }
+  if (whole_) {
+    return false;
+  }
+  Layer& layer = layers_[static_cast<std::size_t>(1 - shown_layer_)];
+  if (next_block_ == 0) {
+    clear(layer, scene);
+    faces_drawn_ = 0;
+  }
+  std::size_t end = next_block_;
+  for (std::size_t faces = 0; end < blocks_.size() && faces < kFacesAtATime; ++end) {
+    faces += blocks_[end].count;
+  }
+  draw_geometry(layer, scene, next_block_, end, false);
+  glFinish();  // else a driver that queues would let the frames pile up, and input wait behind them
+  next_block_ = end;
+  if (next_block_ < blocks_.size()) {
+    return true;
+  }
+  draw_marks(layer, scene);
+  light(layer, scene);
+  shown_layer_ = 1 - shown_layer_;
+  whole_ = true;
+  return false;
+}
+
+void SurfaceView::draw_whole(const OrbitCamera& camera, const Look& look, int width, int height) {
+  const Scene scene{camera, look, std::max(1, width), std::max(1, height)};
+  Layer& layer = layers_[static_cast<std::size_t>(shown_layer_)];
+  clear(layer, scene);
+  faces_drawn_ = 0;
+  draw_geometry(layer, scene, 0, blocks_.size(), false);
+  draw_marks(layer, scene);
+  light(layer, scene);
+  scene_ = scene;
+  dirty_ = false;
+  whole_ = true;
+}
+
+bool SurfaceView::select(const std::vector<Eigen::Vector2f>& corners, SelectionStep step, bool through) {
+  if (!mesh_ || mesh_->points_only() || !whole_ || corners.size() < 3) {
+    return false;
+  }
+  if (!selection_) {
+    selection_ = std::make_unique<FaceSelection>(mesh_->faces());
+  }
+  const float aspect = static_cast<float>(scene_.width) / static_cast<float>(scene_.height);
+  const Layer& layer = layers_[static_cast<std::size_t>(shown_layer_)];
+  selection_->apply(*mesh_, scene_.camera.clip_from_model(aspect),
+                    polygon_mask(corners, scene_.width, scene_.height), scene_.width, scene_.height,
+                    through ? 0 : layer.target.depth(), step);
+  dirty_ = true;
+  return true;
+}
+
+void SurfaceView::clear_selection() {
+  selection_.reset();
+  dirty_ = true;
+}
+
+std::optional<Eigen::Vector3f> SurfaceView::point_at(const Eigen::Vector2f& px) const {
+  const Layer& layer = layers_[static_cast<std::size_t>(shown_layer_)];
+  const int x = static_cast<int>(px.x());
+  const int y = scene_.height - 1 - static_cast<int>(px.y());
+  if (layer.target.width() != scene_.width || x < 0 || y < 0 || x >= scene_.width || y >= scene_.height) {
+    return std::nullopt;
+  }
+  layer.target.bind();
+  float depth = 1;
+  glReadPixels(x, y, 1, 1, GL_DEPTH_COMPONENT, GL_FLOAT, &depth);
+  glBindFramebuffer(GL_FRAMEBUFFER, 0);
+  if (depth >= 1) {
+    return std::nullopt;
+  }
+  const float aspect = static_cast<float>(scene_.width) / static_cast<float>(scene_.height);
+  const Eigen::Vector4f clip(2 * (px.x()) / static_cast<float>(scene_.width) - 1,
+                             1 - 2 * (px.y()) / static_cast<float>(scene_.height), 2 * depth - 1, 1);
+  return Eigen::Vector3f((scene_.camera.clip_from_model(aspect).inverse() * clip).head<3>());
+}
+
+}  // namespace dubsar::ui

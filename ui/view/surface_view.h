@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "ui/gl/frame_target.h"
+#include "ui/gl/shader_program.h"
+#include "ui/view/face_selection.h"
+#include "ui/view/mesh_buffers.h"
+#include "ui/view/orbit_camera.h"
+
+namespace dubsar::ui {
+
+enum class Overlay { kClay, kColours, kValue, kReliability, kScans, kFlags };
+
+/// How a surface is lit and coloured.
+struct Look {
+  Overlay overlay = Overlay::kClay;
+  Eigen::Vector2f value_range{0, 1};
+  bool lamp = false;                         ///< a raking lamp; else the lit sphere
+  Eigen::Vector3f light{-0.6F, 0.6F, 0.5F};  ///< towards the lamp, eye space
+  bool shadows = true;                       ///< of the lamp
+  bool occlusion = true;
+  float radiance = 0.8F;    ///< 0: no radiance scaling
+  float depth_shading = 0;  ///< 0: none; per mm below the surroundings
+  bool flat = false;
+  Eigen::Vector3f clay{0.86F, 0.72F, 0.55F};
+  Eigen::Vector3f red{0.84F, 0.12F, 0.15F};
+  Eigen::Vector3f amber{0.89F, 0.63F, 0.16F};
+  Eigen::Vector3f selected{0.25F, 0.55F, 0.95F};
+  Eigen::Vector4f ground{0, 0, 0, 0};
+  bool operator==(const Look&) const = default;
+};
+
+/// Draws a surface into a picture that the skin shows. While it is turned it is drawn in few faces; at rest
+/// all of them follow, some at each frame, so that no frame takes long. Main thread.
+class SurfaceView {
+ public:
+  SurfaceView();
+
+  void show(const ShownMesh& mesh);
+  void show_points(const ColouredPoints* points);  ///< null: none
+  void set_values(const std::vector<float>& values);
+  void set_traits(const std::vector<std::array<std::uint8_t, 4>>& traits);
+  [[nodiscard]] bool empty() const { return mesh_ == nullptr && points_ == nullptr; }
+  [[nodiscard]] const MeshBuffers* buffers() const { return mesh_.get(); }
+
+  /// Draws what has changed since the last call. True while more is to come at the next.
+  bool draw(const OrbitCamera& camera, const Look& look, int width, int height);
+  /// All of it at once, for pictures that are kept.
+  void draw_whole(const OrbitCamera& camera, const Look& look, int width, int height);
+  /// The picture; id 0 before the first draw.
+  [[nodiscard]] unsigned texture() const { return picture_.width() > 0 ? picture_.colour(0) : 0; }
+  [[nodiscard]] Image read() const { return picture_.read(); }
+  /// Selects faces by a polygon in the last picture, corners in its pixels from the top left. `through`: also
+  /// what is hidden there. False before the whole surface stands in the picture.
+  bool select(const std::vector<Eigen::Vector2f>& corners, SelectionStep step, bool through);
+  void clear_selection();
+  /// Null before the first select(). By face of ShownMesh::faces.
+  [[nodiscard]] const FaceSelection* selection() const { return selection_.get(); }
+  /// Model point that is seen at a pixel (from the top left) of the last picture.
+  [[nodiscard]] std::optional<Eigen::Vector3f> point_at(const Eigen::Vector2f& px) const;
+  /// Faces in the last picture, and outside it by their blocks.
+  [[nodiscard]] std::size_t faces_drawn() const { return faces_drawn_; }
+  [[nodiscard]] bool whole() const { return whole_; }
+
+ private:
+  struct Layer {  // what is seen where
+    FrameTarget target{{PixelFormat::kRgba8, PixelFormat::kRgba16f}};
+    FrameTarget shadow{{}};
+  };
+  struct Scene {
+    OrbitCamera camera;
+    Look look;
+    int width = 0;
+    int height = 0;
+    bool operator==(const Scene&) const = default;
+  };
+  void clear(Layer& layer, const Scene& scene) const;
+  void begin_surface(const Scene& scene, const Layer& layer);
+  void draw_geometry(Layer& layer, const Scene& scene, std::size_t first_block, std::size_t end_block,
+                     bool coarse);
+  void draw_marks(Layer& layer, const Scene& scene);
+  void light(const Layer& layer, const Scene& scene);
+  [[nodiscard]] Eigen::Matrix4f light_clip_from_model(const Scene& scene) const;
+
+  ShaderProgram surface_, shadow_, lighting_;
+  PixelTexture sphere_, colour_map_;
+  std::unique_ptr<MeshBuffers> mesh_;
+  std::unique_ptr<PointBuffers> points_;
+  std::unique_ptr<FaceSelection> selection_;
+  std::vector<FaceBlock> blocks_;
+  Eigen::AlignedBox3f box_mm_;
+  std::array<Layer, 2> layers_;
+  int shown_layer_ = 0;
+  FrameTarget picture_{{PixelFormat::kRgba8}};
+  unsigned no_vertices_ = 0;
+  Scene scene_;
+  bool dirty_ = true;           ///< mesh, points or values have changed
+  std::size_t next_block_ = 0;  ///< of the whole picture that comes together
+  bool whole_ = false;
+  bool slow_ = false;  ///< this machine draws slowly
+  std::size_t faces_drawn_ = 0;
+};
+
+/// Colours of the overlay that shows numbers, from low to high (viridis-like, told apart by the
+/// colour-blind).
+[[nodiscard]] std::array<std::array<std::uint8_t, 3>, 256> overlay_colours();
+
+}  // namespace dubsar::ui

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+// What is drawn over the surface: wedges as lines, the tape, the scale bar, the legend.
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "archive/scale_bar.h"
+#include "ui/viewer/viewer_screen.h"
+
+namespace dubsar::ui {
+
+namespace {
+
+/// Labels of more wedges than this would hide the tablet.
+constexpr int kMostLabels = 90;
+
+struct ToPicture {
+  const OrbitCamera& camera;
+  ImVec2 origin;
+  ImVec2 size;
+  [[nodiscard]] ImVec2 operator()(const Eigen::Vector3d& point_mm) const {
+    const Eigen::Vector2f px = camera.pixel_of(point_mm.cast<float>(), {size.x, size.y});
+    return {origin.x + px.x(), origin.y + px.y()};
+  }
+};
+
+bool faces_viewer(const Wedge& wedge, const OrbitCamera& camera) {
+  return (camera.eye_from_model * wedge.surface_normal.cast<float>()).z() > 0.05F;
+}
+
+}  // namespace
+
+void ViewerScreen::draw_wedges(UiContext& ui, ImVec2 origin, ImVec2 size) const {
+  const ToPicture at{camera_, origin, size};
+  ImDrawList* draw = ImGui::GetWindowDrawList();
+  int in_view = 0;
+  for (const Wedge& wedge : *state_.wedges) {
+    const ImVec2 p = at(wedge.depth_point_mm);
+    in_view += faces_viewer(wedge, camera_) && p.x > origin.x && p.y > origin.y && p.x < origin.x + size.x &&
+                       p.y < origin.y + size.y
+                   ? 1
+                   : 0;
+  }
+  const ImU32 outer = packed({0.10F, 0.24F, 0.50F, 1}, 0.9F);
+  const ImU32 inner = packed({0.05F, 0.05F, 0.07F, 1}, 0.9F);
+  const ImU32 directional = packed(ui.colours.red);
+  const ImU32 strong = packed(ui.colours.ghost);
+  for (std::size_t k = 0; k < state_.wedges->size(); ++k) {
+    const Wedge& wedge = (*state_.wedges)[k];
+    if (!faces_viewer(wedge, camera_)) {
+      continue;
+    }
+    const bool chosen = static_cast<int>(k) == wedge_;
+    const float width = chosen ? 3.0F : 1.4F;
+    const ImVec2 deep = at(wedge.depth_point_mm);
+    for (std::size_t e = 0; e < 3; ++e) {
+      draw->AddLine(at(wedge.outer_vertices_mm[e]), at(wedge.outer_vertices_mm[(e + 1) % 3]),
+                    chosen ? strong : outer, width);
+      const bool leads = static_cast<int>(e) == wedge.directional_edge;
+      draw->AddLine(deep, at(wedge.exit_points_mm[e]), leads ? directional : inner,
+                    leads ? 1.3F * width : width);
+    }
+    if (chosen || in_view <= kMostLabels) {
+      draw->AddText(ui.fonts.small, ui.fonts.small->FontSize, {deep.x + 4, deep.y + 2},
+                    chosen ? strong : outer, std::to_string(wedge.id).c_str());
+    }
+  }
+}
+
+int ViewerScreen::wedge_at(const Eigen::Vector2f& px, ImVec2 size) const {
+  if (!state_.wedges || !show_wedges_) {
+    return -1;
+  }
+  const ToPicture at{camera_, {0, 0}, size};
+  int best = -1;
+  float nearest = 30;  // pixels
+  for (std::size_t k = 0; k < state_.wedges->size(); ++k) {
+    const Wedge& wedge = (*state_.wedges)[k];
+    if (!faces_viewer(wedge, camera_)) {
+      continue;
+    }
+    const ImVec2 deep = at(wedge.depth_point_mm);
+    const float far_px = std::hypot(deep.x - px.x(), deep.y - px.y());
+    if (far_px < nearest) {
+      nearest = far_px;
+      best = static_cast<int>(k);
+    }
+  }
+  return best;
+}
+
+void ViewerScreen::draw_tape(UiContext& ui, ImVec2 origin, ImVec2 size) const {
+  const ToPicture at{camera_, origin, size};
+  ImDrawList* draw = ImGui::GetWindowDrawList();
+  const ImU32 ink = packed(ui.colours.ghost);
+  for (const Eigen::Vector3f& place : tape_) {
+    draw->AddCircleFilled(at(place.cast<double>()), ui.px(0.3F), ink);
+  }
+  if (tape_.size() == 2) {
+    const ImVec2 a = at(tape_[0].cast<double>());
+    const ImVec2 b = at(tape_[1].cast<double>());
+    draw->AddLine(a, b, ink, 2.5F);
+    const std::string words = fmt::format("{:.3f} mm", (tape_[1] - tape_[0]).norm());
+    const ImVec2 box = ImGui::CalcTextSize(words.c_str());
+    const ImVec2 middle{0.5F * (a.x + b.x), 0.5F * (a.y + b.y) + ui.px(0.3F)};
+    draw->AddRectFilled({middle.x - 4, middle.y - 2}, {middle.x + box.x + 4, middle.y + box.y + 2},
+                        packed(ui.colours.panel, 0.85F), 3);
+    draw->AddText(middle, ink, words.c_str());
+  }
+}
+
+void ViewerScreen::draw_polygon(UiContext& ui, ImVec2 origin) const {
+  ImDrawList* draw = ImGui::GetWindowDrawList();
+  const ImU32 ink = packed(ui.colours.ghost);
+  const ImVec2 mouse = ImGui::GetIO().MousePos;
+  for (std::size_t k = 0; k < polygon_.size(); ++k) {
+    const ImVec2 a{origin.x + polygon_[k].x(), origin.y + polygon_[k].y()};
+    const ImVec2 b = k + 1 < polygon_.size()
+                         ? ImVec2{origin.x + polygon_[k + 1].x(), origin.y + polygon_[k + 1].y()}
+                         : mouse;
+    draw->AddLine(a, b, ink, 2);
+    draw->AddCircleFilled(a, k == 0 ? 6.0F : 4.0F, ink);
+  }
+}
+
+void ViewerScreen::draw_scale_bar(UiContext& ui, ImVec2 origin, ImVec2 size) const {
+  const double mm_per_px = static_cast<double>(camera_.mm_per_px(size.y));
+  // 1, 2 or 5 times a power of ten that takes about a fifth of the picture.
+  const double wanted = 0.2 * static_cast<double>(size.x) * mm_per_px;
+  const double power = std::pow(10.0, std::floor(std::log10(wanted)));
+  const double length_mm = wanted / power >= 5 ? 5 * power : wanted / power >= 2 ? 2 * power : power;
+  const float px = static_cast<float>(length_mm / mm_per_px);
+  ImDrawList* draw = ImGui::GetWindowDrawList();
+  const float y = origin.y + size.y - ui.px(1.1F);
+  const float x = origin.x + ui.px(1);
+  const float height = ui.px(0.35F);
+  const ImU32 ink = packed(ui.colours.text);
+  for (int k = 0; k < 5; ++k) {
+    const float from = x + px * static_cast<float>(k) / 5;
+    const float to = x + px * static_cast<float>(k + 1) / 5;
+    if (k % 2 == 0) {
+      draw->AddRectFilled({from, y}, {to, y + height}, ink);
+    } else {
+      draw->AddRect({from, y}, {to, y + height}, ink);
+    }
+  }
+  draw->AddText({x + px + ui.px(0.4F), y - ui.px(0.35F)}, ink, fmt::format("{:g} mm", length_mm).c_str());
+}
+
+void ViewerScreen::draw_legend(UiContext& ui, ImVec2 origin, ImVec2 size) const {
+  const bool ranged = look_.overlay == Overlay::kValue || look_.overlay == Overlay::kReliability ||
+                      look_.overlay == Overlay::kScans;
+  if (!ranged) {
+    return;
+  }
+  static const auto kColours = overlay_colours();
+  const Eigen::Vector2f range = look_.overlay == Overlay::kValue         ? look_.value_range
+                                : look_.overlay == Overlay::kReliability ? Eigen::Vector2f(0, 1)
+                                                                         : Eigen::Vector2f(0, 8);
+  ImDrawList* draw = ImGui::GetWindowDrawList();
+  const float height = std::min(0.5F * size.y, ui.px(14));
+  const float width = ui.px(0.9F);
+  const ImVec2 at{origin.x + size.x - ui.px(1) - width, origin.y + ui.px(1)};
+  constexpr int kSteps = 64;
+  for (int k = 0; k < kSteps; ++k) {
+    const auto& c = kColours[static_cast<std::size_t>(255 * k / (kSteps - 1))];
+    const float low = at.y + height * static_cast<float>(kSteps - 1 - k) / kSteps;
+    draw->AddRectFilled({at.x, low}, {at.x + width, low + height / kSteps + 1},
+                        IM_COL32(c[0], c[1], c[2], 255));
+  }
+  for (int k = 0; k <= 4; ++k) {
+    const float part = static_cast<float>(k) / 4;
+    const std::string words = fmt::format("{:.3g}", range.x() + part * (range.y() - range.x()));
+    const ImVec2 box = ui.fonts.small->CalcTextSizeA(ui.fonts.small->FontSize, 1e4F, 0, words.c_str());
+    draw->AddText(ui.fonts.small, ui.fonts.small->FontSize,
+                  {at.x - box.x - ui.px(0.3F), at.y + (1 - part) * height - 0.5F * box.y},
+                  packed(ui.colours.text), words.c_str());
+  }
+}
+
+}  // namespace dubsar::ui

@@ -1,0 +1,290 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+// What stands beside the surface: views, light, colours, tools, facts, and the table of wedges.
+#include <algorithm>
+#include <array>
+#include <cfloat>
+
+#include "ui/viewer/viewer_screen.h"
+
+namespace dubsar::ui {
+
+namespace {
+
+constexpr Text kFaceTexts[] = {Text::kObverse, Text::kReverse, Text::kLeft,
+                               Text::kRight,   Text::kTop,     Text::kBottom};
+
+struct FieldChoice {
+  Text text;
+  MeshField field;
+};
+constexpr FieldChoice kFields[] = {{Text::kOverlayCurvature, MeshField::kMeanCurvature},
+                                   {Text::kOverlayOpenness, MeshField::kOpenness},
+                                   {Text::kOverlaySigma, MeshField::kSigma},
+                                   {Text::kOverlayHeight, MeshField::kHeight},
+                                   {Text::kOverlayMsii, MeshField::kInvariant}};
+struct PlainChoice {
+  Text text;
+  Overlay overlay;
+};
+constexpr PlainChoice kPlain[] = {{Text::kOverlayClay, Overlay::kClay},
+                                  {Text::kOverlayColours, Overlay::kColours},
+                                  {Text::kOverlayReliability, Overlay::kReliability},
+                                  {Text::kOverlayScans, Overlay::kScans},
+                                  {Text::kOverlayFlags, Overlay::kFlags}};
+
+}  // namespace
+
+void ViewerScreen::draw_light(UiContext& ui) {
+  ImGui::TextUnformatted(ui.text(Text::kLookClay));
+  ImGui::PushFont(ui.fonts.small);
+  tick(ui, "lamp", ui.text(Text::kLamp), look_.lamp);
+  tick(ui, "shadows", ui.text(Text::kShadows), look_.shadows);
+  tick(ui, "occlusion", ui.text(Text::kOcclusion), look_.occlusion);
+  tick(ui, "flat", ui.text(Text::kFlat), look_.flat);
+  ImGui::SetNextItemWidth(ui.px(5));
+  ImGui::SliderFloat(ui.text(Text::kRadiance), &look_.radiance, 0, 3, "%.1f");
+  ui.target("radiance");
+  ImGui::SetNextItemWidth(ui.px(5));
+  ImGui::SliderFloat(ui.text(Text::kDepthShading), &look_.depth_shading, 0, 3, "%.1f");
+  ui.target("depth-shading");
+  ImGui::PopFont();
+}
+
+void ViewerScreen::draw_overlay_choice(UiContext& ui) {
+  ImGui::TextUnformatted(ui.text(Text::kOverlay));
+  ImGui::SetNextItemWidth(-1);
+  Text now = Text::kOverlayClay;
+  for (const PlainChoice& choice : kPlain) {
+    now = !field_ && choice.overlay == look_.overlay ? choice.text : now;
+  }
+  for (const FieldChoice& choice : kFields) {
+    now = field_ == choice.field ? choice.text : now;
+  }
+  if (ImGui::BeginCombo("##overlay", ui.text(now), ImGuiComboFlags_HeightLargest)) {
+    for (const PlainChoice& choice : kPlain) {
+      if (choice.overlay == Overlay::kColours && shown_.colours.empty()) {
+        continue;
+      }
+      if (ImGui::Selectable(ui.text(choice.text), now == choice.text)) {
+        field_.reset();
+        shown_values_.reset();
+        look_.overlay = choice.overlay;
+      }
+      ui.target(fmt::format("overlay.{}", text_of(choice.text, Language::kEnglish)));
+    }
+    for (const FieldChoice& choice : kFields) {
+      if (choice.field == MeshField::kSigma && !state_.fields.contains(MeshField::kSigma)) {
+        continue;
+      }
+      if (ImGui::Selectable(ui.text(choice.text), now == choice.text)) {
+        field_ = choice.field;
+        shown_values_.reset();
+        viewing_.want(choice.field);
+      }
+      ui.target(fmt::format("overlay.{}", text_of(choice.text, Language::kEnglish)));
+    }
+    ImGui::EndCombo();
+  }
+  ui.target("overlay");
+}
+
+void ViewerScreen::draw_selecting(UiContext& ui) {
+  coloured_text(ui.colours.faint, ui.text(Text::kSelectHint));
+  const auto step = [&](const char* name, Text text, SelectionStep which) {
+    if (ImGui::RadioButton(ui.text(text), step_ == which)) {
+      step_ = which;
+    }
+    ui.target(name);
+  };
+  step("select-union", Text::kUnion, SelectionStep::kUnion);
+  ImGui::SameLine();
+  step("select-intersect", Text::kIntersect, SelectionStep::kIntersection);
+  ImGui::SameLine();
+  step("select-subtract", Text::kSubtract, SelectionStep::kDifference);
+  tick(ui, "visible-only", ui.text(Text::kVisibleOnly), visible_only_);
+  if (surface_.selection() == nullptr) {
+    return;
+  }
+  ui.facts.insert(selected_faces_.empty() ? "nothing-selected" : "selected");
+  coloured_text(ui.colours.text,
+                filled(ui.text(Text::kSelected), grouped(selected_faces_.size()), selected_mm2_).c_str());
+  if (plain_button(ui, "keep-selection", ui.text(Text::kKeepSelection), !selected_faces_.empty())) {
+    const std::string stem =
+        state_.name.empty() ? "model" : std::filesystem::path(state_.name).stem().string();
+    std::filesystem::path file;
+    std::error_code error;
+    do {
+      ++parts_kept_;
+      file = pictures_ / fmt::format("{}_part_{:02}.ply", stem, parts_kept_);
+    } while (std::filesystem::exists(file, error));
+    viewing_.keep_part(selected_faces_, file);
+    picture_note_ = filled(ui.text(Text::kPictureKept), file.string());
+  }
+  ImGui::SameLine();
+  if (plain_button(ui, "clear-selection", ui.text(Text::kClear))) {
+    surface_.clear_selection();
+    selected_faces_.clear();
+    selected_mm2_ = 0;
+  }
+}
+
+void ViewerScreen::draw_facts(UiContext& ui) {
+  ImGui::PushFont(ui.fonts.small);
+  if (const MeshBuffers* buffers = surface_.buffers()) {
+    coloured_text(ui.colours.faint, filled(ui.text(Text::kFaces), grouped(shown_.faces.size())).c_str());
+    coloured_text(ui.colours.faint,
+                  filled(ui.text(Text::kVertices), grouped(shown_.positions.size())).c_str());
+    coloured_text(
+        ui.colours.faint,
+        filled(ui.text(Text::kGraphicsMemory), static_cast<double>(buffers->bytes()) / 1e6).c_str());
+  }
+  if (shown_.left_out > 0) {
+    coloured_text(ui.colours.amber, filled(ui.text(Text::kLeftOut), grouped(shown_.left_out)).c_str());
+  }
+  if (!state_.stage.empty()) {
+    ImGui::ProgressBar(static_cast<float>(state_.fraction), {-1, 0}, state_.stage.c_str());
+    if (plain_button(ui, "stop", ui.text(Text::kStop))) {
+      viewing_.stop();
+    }
+  }
+  if (state_.error && !surface_.empty()) {
+    coloured_text(ui.colours.red, state_.error->line().c_str());
+  }
+  ImGui::PopFont();
+}
+
+void ViewerScreen::draw_panel(UiContext& ui, ImVec2 size) {
+  ImGui::BeginChild("panel", size, true);
+  if (has_session_) {
+    if (plain_button(ui, "back", ui.text(Text::kBackToScan))) {
+      wants_scanning_ = true;
+    }
+  } else {
+    ImGui::TextUnformatted(state_.name.c_str());
+  }
+  ImGui::Separator();
+  const float half = 0.5F * (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x);
+  ImGui::PushFont(ui.fonts.small);
+  for (int k = 0; k < kFaceCount; ++k) {
+    const std::string name = fmt::format("view.{}", to_string(static_cast<Face>(k)));
+    const std::string key = fmt::format("{}  {}", k + 1, ui.text(kFaceTexts[k]));
+    if (big_button(ui, name.c_str(), key.c_str(), nullptr, {half, ui.px(1.9F)}, ButtonKind::kPlain,
+                   !surface_.empty())) {
+      look_at(static_cast<Face>(k));
+    }
+    if (k % 2 == 0) {
+      ImGui::SameLine();
+    }
+  }
+  ImGui::PopFont();
+  ImGui::Separator();
+  draw_light(ui);
+  ImGui::Separator();
+  draw_overlay_choice(ui);
+  ImGui::Separator();
+  ImGui::PushFont(ui.fonts.small);
+  const auto tool = [&](const char* name, Text text, Tool which) {
+    if (ImGui::RadioButton(ui.text(text), tool_ == which)) {
+      tool_ = which;
+      tape_.clear();
+      polygon_.clear();
+    }
+    ui.target(name);
+  };
+  tool("tool-turn", Text::kMove, Tool::kTurn);
+  ImGui::SameLine();
+  tool("tool-measure", Text::kMeasure, Tool::kMeasure);
+  ImGui::SameLine();
+  tool("tool-select", Text::kSelect, Tool::kSelect);
+  if (tool_ == Tool::kMeasure) {
+    coloured_text(ui.colours.faint, ui.text(Text::kMeasureHint));
+  } else if (tool_ == Tool::kSelect) {
+    draw_selecting(ui);
+  }
+  ImGui::PopFont();
+  ImGui::SetNextItemWidth(ui.px(6));
+  ImGui::InputInt(ui.text(Text::kDpi), &dpi_, 0);
+  dpi_ = std::clamp(dpi_, 50, 2400);
+  if (plain_button(ui, "keep-picture", ui.text(Text::kPicture), !surface_.empty())) {
+    keep_picture(ui);
+  }
+  if (!picture_note_.empty()) {
+    ImGui::PushFont(ui.fonts.small);
+    coloured_text(ui.colours.faint, picture_note_.c_str());
+    ImGui::PopFont();
+  }
+  if (!state_.wedges) {
+    if (plain_button(ui, "analyse", ui.text(Text::kAnalyse), !shown_.faces.empty() && state_.stage.empty())) {
+      viewing_.analyse();
+    }
+  } else {
+    tick(ui, "show-wedges", ui.text(Text::kWedges), show_wedges_);
+  }
+  ImGui::Separator();
+  draw_facts(ui);
+  ImGui::EndChild();
+}
+
+void ViewerScreen::draw_wedge_table(UiContext& ui, ImVec2 size) {
+  ImGui::BeginChild("wedges", size, true);
+  const std::vector<Wedge>& wedges = *state_.wedges;
+  ImGui::TextUnformatted(fmt::format("{}: {}", ui.text(Text::kWedges), wedges.size()).c_str());
+  ImGui::PushFont(ui.fonts.small);
+  constexpr std::size_t kBins = 24;
+  std::array<float, kBins> bins{};
+  double deepest = 0;
+  for (const Wedge& wedge : wedges) {
+    deepest = std::max(deepest, wedge.depth_mm);
+  }
+  for (const Wedge& wedge : wedges) {
+    const double part = deepest > 0 ? wedge.depth_mm / deepest : 0.0;
+    bins[std::min(kBins - 1, static_cast<std::size_t>(std::max(0.0, part) * kBins))] += 1;
+  }
+  const std::string title = fmt::format("{}, 0 - {:.2f} mm", ui.text(Text::kDepth), deepest);
+  ImGui::PlotHistogram("##depths", bins.data(), static_cast<int>(kBins), 0, title.c_str(), 0, FLT_MAX,
+                       {ImGui::GetContentRegionAvail().x, ui.px(3.5F)});
+  if (ImGui::BeginTable(
+          "table", 4, ImGuiTableFlags_ScrollY | ImGuiTableFlags_RowBg | ImGuiTableFlags_SizingStretchProp)) {
+    ImGui::TableSetupScrollFreeze(0, 1);
+    ImGui::TableSetupColumn("id");
+    ImGui::TableSetupColumn(ui.text(Text::kOrder));
+    ImGui::TableSetupColumn(fmt::format("{} mm", ui.text(Text::kDepth)).c_str());
+    ImGui::TableSetupColumn(fmt::format("{} mm", ui.text(Text::kLength)).c_str());
+    ImGui::TableHeadersRow();
+    ImGuiListClipper rows;
+    rows.Begin(static_cast<int>(wedges.size()));
+    while (rows.Step()) {
+      for (int k = rows.DisplayStart; k < rows.DisplayEnd; ++k) {
+        const Wedge& wedge = wedges[static_cast<std::size_t>(k)];
+        ImGui::TableNextRow();
+        ImGui::TableNextColumn();
+        if (ImGui::Selectable(fmt::format("{}##{}", wedge.id, k).c_str(), wedge_ == k,
+                              ImGuiSelectableFlags_SpanAllColumns)) {
+          choose(k, true);
+        }
+        ui.target(fmt::format("wedge.{}", wedge.id));
+        ImGui::TableNextColumn();
+        ImGui::TextUnformatted(
+            wedge.place.line > 0 ? fmt::format("{}.{}", wedge.place.line, wedge.place.order).c_str() : "-");
+        ImGui::TableNextColumn();
+        ImGui::TextUnformatted(fmt::format("{:.2f}", wedge.depth_mm).c_str());
+        ImGui::TableNextColumn();
+        const auto leading = static_cast<std::size_t>(std::clamp(wedge.directional_edge, 0, 2));
+        ImGui::TextUnformatted(fmt::format("{:.2f}", wedge.edge_lengths_mm[leading]).c_str());
+      }
+    }
+    if (scroll_to_wedge_ && wedge_ >= 0) {
+      ImGui::SetScrollY(static_cast<float>(wedge_) * rows.ItemsHeight - ui.px(6));
+      scroll_to_wedge_ = false;
+    }
+    ImGui::EndTable();
+  }
+  if (wedge_ >= 0) {
+    ui.facts.insert(fmt::format("chosen.{}", wedges[static_cast<std::size_t>(wedge_)].id));
+  }
+  ImGui::PopFont();
+  ImGui::EndChild();
+}
+
+}  // namespace dubsar::ui

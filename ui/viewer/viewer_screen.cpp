@@ -1,0 +1,341 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "ui/viewer/viewer_screen.h"
+
+#include <epoxy/gl.h>
+
+#include <GLFW/glfw3.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "archive/scale_bar.h"
+#include "core/tablet_sides.h"
+#include "station/picture_file.h"
+#include "ui/gl/gl_window.h"
+
+namespace dubsar::ui {
+
+namespace {
+
+constexpr double kMmPerInch = 25.4;
+
+Eigen::Quaternionf eye_towards(Face face, const RigidTransform& tablet_from_model) {
+  const SideAxes& side = side_axes(face);
+  Eigen::Matrix3d eye_from_tablet;
+  eye_from_tablet.row(0) = side.right.transpose();
+  eye_from_tablet.row(1) = side.up().transpose();
+  eye_from_tablet.row(2) = side.normal.transpose();
+  return Eigen::Quaternionf(Eigen::Matrix3f((eye_from_tablet * tablet_from_model.rotation).cast<float>()))
+      .normalized();
+}
+
+}  // namespace
+
+Eigen::Vector2f shown_range(const std::vector<float>& values) {
+  constexpr std::size_t kLooked = 100000;
+  std::vector<float> some;
+  const std::size_t stride = std::max<std::size_t>(1, values.size() / kLooked);
+  for (std::size_t i = 0; i < values.size(); i += stride) {
+    if (std::isfinite(values[i])) {
+      some.push_back(values[i]);
+    }
+  }
+  if (some.empty()) {
+    return {0, 1};
+  }
+  std::ranges::sort(some);
+  float low = some[some.size() / 50];
+  float high = some[some.size() - 1 - some.size() / 50];
+  if (low < 0 && high > 0) {
+    high = std::max(high, -low);
+    low = -high;
+  }
+  return {low, std::max(high, low + 1e-6F)};
+}
+
+ViewerScreen::ViewerScreen(MeshViewing& viewing, std::filesystem::path pictures, bool has_session)
+    : viewing_(viewing), pictures_(std::move(pictures)), has_session_(has_session) {}
+
+void ViewerScreen::take_state(UiContext& ui) {
+  state_ = viewing_.state();
+  if (state_.mesh && state_.number != shown_number_ && !preparing_.valid()) {
+    preparing_mesh_ = state_.mesh;
+    shown_number_ = state_.number;
+    preparing_ = std::async(std::launch::async, [mesh = state_.mesh] {
+      ShownMesh shown = shown_mesh(*mesh);
+      wake_window();
+      return shown;
+    });
+  }
+  if (preparing_.valid() && preparing_.wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
+    shown_ = preparing_.get();
+    surface_.show(shown_);
+    shown_openness_.reset();
+    shown_values_.reset();
+    tape_.clear();
+    wedge_ = -1;
+    look_at(Face::kObverse);
+    if (!shown_.colours.empty() && look_.overlay == Overlay::kClay) {
+      look_.overlay = Overlay::kColours;
+    }
+  }
+  if (surface_.empty() || preparing_.valid()) {
+    return;
+  }
+  const auto field_values = [&](MeshField field) -> std::shared_ptr<const std::vector<float>> {
+    const auto known = state_.fields.find(field);
+    return known == state_.fields.end() ? nullptr : known->second;
+  };
+  if (const auto openness = field_values(MeshField::kOpenness); openness && openness != shown_openness_) {
+    set_openness(shown_, *openness);
+    surface_.set_traits(shown_.traits);
+    shown_openness_ = openness;
+  }
+  if (field_) {
+    if (const auto values = field_values(*field_); values && values != shown_values_) {
+      surface_.set_values(*values);
+      look_.value_range = shown_range(*values);
+      look_.overlay = Overlay::kValue;
+      shown_values_ = values;
+    }
+  }
+  ui.facts.insert("shown");
+  if (state_.wedges) {
+    ui.facts.insert("wedges");
+  }
+  if (state_.stage.empty()) {
+    ui.facts.insert("idle");
+  }
+  if (surface_.whole()) {
+    ui.facts.insert("whole");
+  }
+}
+
+void ViewerScreen::look_at(Face face) {
+  camera_.eye_from_model = eye_towards(face, state_.tablet_from_model);
+  camera_.fit(shown_.box_mm, aspect_);
+  untouched_ = true;
+}
+
+void ViewerScreen::draw(UiContext& ui, ImVec2 size) {
+  unfinished_ = false;
+  take_state(ui);
+  ImGui::SetNextWindowPos({0, 0});
+  ImGui::SetNextWindowSize(size);
+  ImGui::Begin("viewer", nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
+                   ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoSavedSettings);
+  const ImVec2 room = ImGui::GetContentRegionAvail();
+  const float left = ui.px(15.5F);
+  const float right = state_.wedges ? ui.px(16.5F) : 0.0F;
+  const float gaps = ImGui::GetStyle().ItemSpacing.x * (state_.wedges ? 2.0F : 1.0F);
+  draw_panel(ui, {left, room.y});
+  ImGui::SameLine();
+  draw_surface(ui, {room.x - left - right - gaps, room.y});
+  if (state_.wedges) {
+    ImGui::SameLine();
+    draw_wedge_table(ui, {right, room.y});
+  }
+  ImGui::End();
+  if (!ImGui::GetIO().WantTextInput) {
+    for (int k = 0; k < kFaceCount; ++k) {
+      if (ImGui::IsKeyPressed(GLFW_KEY_1 + k, false)) {
+        look_at(static_cast<Face>(k));
+      }
+    }
+  }
+}
+
+void ViewerScreen::draw_surface(UiContext& ui, ImVec2 size) {
+  ImGui::BeginChild("surface", size, false,
+                    ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse);
+  const ImVec2 origin = ImGui::GetCursorScreenPos();
+  const ImVec2 end{origin.x + size.x, origin.y + size.y};
+  ImGui::InvisibleButton("##surface", size,
+                         ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonMiddle |
+                             ImGuiButtonFlags_MouseButtonRight);
+  ui.target("surface");
+  ImDrawList* draw = ImGui::GetWindowDrawList();
+  draw->AddRectFilled(origin, end, packed(ui.colours.text, 0.05F), 6);
+  if (aspect_ != size.x / size.y) {
+    aspect_ = size.x / size.y;
+    if (untouched_ && !surface_.empty()) {
+      camera_.fit(shown_.box_mm, aspect_);
+    }
+  }
+  if (surface_.empty()) {
+    const std::string words =
+        state_.error ? translated(state_.error->line(), ui.preferences.language) : ui.text(Text::kOpenMesh);
+    draw->AddText(nullptr, 0, {origin.x + ui.px(2), origin.y + ui.px(2)},
+                  packed(state_.error ? ui.colours.red : ui.colours.faint), words.c_str(), nullptr,
+                  size.x - ui.px(4));
+    if (state_.error) {
+      ui.facts.insert("error");
+    }
+    ImGui::EndChild();
+    return;
+  }
+  use_pointer(ui, origin, size);
+  look_.red = ui.colours.red.head<3>();
+  look_.amber = ui.colours.amber.head<3>();
+  if (surface_.draw(camera_, look_, static_cast<int>(size.x), static_cast<int>(size.y))) {
+    unfinished_ = true;
+  }
+  draw->AddImage(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(surface_.texture())), origin, end,
+                 {0, 1}, {1, 0});
+  draw->PushClipRect(origin, end, true);
+  if (show_wedges_ && state_.wedges) {
+    draw_wedges(ui, origin, size);
+  }
+  draw_tape(ui, origin, size);
+  draw_polygon(ui, origin);
+  draw_scale_bar(ui, origin, size);
+  draw_legend(ui, origin, size);
+  draw->PopClipRect();
+  ImGui::EndChild();
+}
+
+void ViewerScreen::use_pointer(UiContext& /*ui*/, ImVec2 origin, ImVec2 size) {
+  const ImGuiIO& io = ImGui::GetIO();
+  const auto part = [&](ImVec2 at) {
+    return Eigen::Vector2f((at.x - origin.x - 0.5F * size.x) / (0.5F * size.y),
+                           -(at.y - origin.y - 0.5F * size.y) / (0.5F * size.y));
+  };
+  const bool moved = io.MouseDelta.x != 0 || io.MouseDelta.y != 0;
+  if (ImGui::IsItemActivated()) {
+    dragged_ = false;
+  }
+  if (ImGui::IsItemActive() && moved) {
+    dragged_ = dragged_ || ImGui::IsMouseDragging(ImGuiMouseButton_Left, 3) ||
+               ImGui::IsMouseDown(ImGuiMouseButton_Right) || ImGui::IsMouseDown(ImGuiMouseButton_Middle);
+    if (dragged_) {
+      polygon_.clear();  // it was drawn over another view
+    }
+    if (ImGui::IsMouseDown(ImGuiMouseButton_Right)) {
+      // As one moves a lamp over the tablet: in the middle it stands above, at the rim it rakes.
+      const Eigen::Vector2f at = part(io.MousePos);
+      const float out = std::min(0.985F, at.norm());
+      const Eigen::Vector2f along =
+          at.norm() > 1e-3F ? Eigen::Vector2f(at.normalized()) : Eigen::Vector2f(0, 1);
+      look_.lamp = true;
+      look_.light = {along.x() * out, along.y() * out, std::sqrt(1 - out * out)};
+    } else if (ImGui::IsMouseDown(ImGuiMouseButton_Middle) || io.KeyShift) {
+      untouched_ = false;
+      camera_.pan({io.MouseDelta.x, io.MouseDelta.y}, size.y);
+    } else if (dragged_) {
+      untouched_ = false;
+      camera_.drag(part({io.MousePos.x - io.MouseDelta.x, io.MousePos.y - io.MouseDelta.y}),
+                   part(io.MousePos));
+    }
+  }
+  if (ImGui::IsItemHovered() && io.MouseWheel != 0) {
+    untouched_ = false;
+    const Eigen::Vector2f at = part(io.MousePos);
+    camera_.zoom(std::pow(0.88F, io.MouseWheel), {at.x() * size.y / size.x, at.y()}, size.x / size.y);
+  }
+  if (ImGui::IsItemDeactivated() && !dragged_ && ImGui::IsMouseReleased(ImGuiMouseButton_Left)) {
+    const Eigen::Vector2f px(io.MousePos.x - origin.x, io.MousePos.y - origin.y);
+    if (tool_ == Tool::kSelect) {
+      if (ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left) ||
+          (!polygon_.empty() && (polygon_.front() - px).norm() < 8)) {
+        close_polygon();
+      } else {
+        polygon_.push_back(px);
+      }
+    } else if (tool_ == Tool::kMeasure) {
+      if (const auto place = surface_.point_at(px)) {
+        if (tape_.size() == 2) {
+          tape_.clear();
+        }
+        tape_.push_back(*place);
+      }
+    } else {
+      choose(wedge_at(px, size), false);
+      scroll_to_wedge_ = wedge_ >= 0;
+    }
+  }
+}
+
+void ViewerScreen::close_polygon() {
+  if (surface_.select(polygon_, step_, !visible_only_)) {
+    selected_faces_.clear();
+    selected_mm2_ = 0;
+    const std::vector<std::uint32_t> selected = surface_.selection()->read();
+    for (std::size_t f = 0; f < selected.size(); ++f) {
+      if (selected[f] != 0) {
+        const auto& [a, b, c] = shown_.faces[f];
+        const auto& p = shown_.positions;
+        selected_mm2_ += 0.5 * static_cast<double>((p[b] - p[a]).cross(p[c] - p[a]).norm());
+        selected_faces_.push_back(shown_.face_of[f]);
+      }
+    }
+  }
+  polygon_.clear();
+}
+
+void ViewerScreen::choose(int wedge, bool go_there) {
+  wedge_ = wedge;
+  untouched_ = untouched_ && !go_there;
+  if (!go_there || wedge < 0 || !state_.wedges) {
+    return;
+  }
+  const Wedge& chosen = (*state_.wedges)[static_cast<std::size_t>(wedge)];
+  const Eigen::Vector3f normal = chosen.surface_normal.cast<float>();
+  if (normal.norm() > 0.5F && (camera_.eye_from_model * normal).z() < 0.5F) {
+    const Eigen::Vector3f now = camera_.eye_from_model * normal;
+    camera_.eye_from_model =
+        (Eigen::Quaternionf::FromTwoVectors(now, Eigen::Vector3f::UnitZ()) * camera_.eye_from_model)
+            .normalized();
+  }
+  camera_.centre_mm = chosen.depth_point_mm.cast<float>();
+}
+
+void ViewerScreen::keep_picture(UiContext& ui) {
+  // To scale: the whole surface as it is turned now, a margin and a bar, so many pixels to the inch.
+  constexpr int kLargestPx = 16384;
+  OrbitCamera camera = camera_;
+  camera.fit(shown_.box_mm, 1.0F);
+  Eigen::AlignedBox3f eye;
+  for (int k = 0; k < 8; ++k) {
+    eye.extend(camera.eye_from_model *
+               (shown_.box_mm.corner(static_cast<Eigen::AlignedBox3f::CornerType>(k)) - camera.centre_mm));
+  }
+  const double mm_per_px = kMmPerInch / dpi_;
+  const Eigen::Vector2f mm = 1.06F * eye.sizes().head<2>() + Eigen::Vector2f(2, 8);
+  const int width = static_cast<int>(std::ceil(mm.x() / mm_per_px));
+  const int height = static_cast<int>(std::ceil(mm.y() / mm_per_px));
+  if (width > kLargestPx || height > kLargestPx) {
+    picture_note_ = fmt::format("{} x {} px > {}", width, height, kLargestPx);
+    return;
+  }
+  camera.half_height_mm = static_cast<float>(0.5 * height * mm_per_px);
+  Look look = look_;
+  look.ground = {0, 0, 0, 1};
+  surface_.draw_whole(camera, look, width, height);
+  const Image drawn = surface_.read();
+  Image picture = filled_image(width, height, {0, 0, 0});
+  for (std::size_t i = 0; i < picture.bytes.size() / 3; ++i) {
+    std::copy_n(drawn.bytes.begin() + static_cast<std::ptrdiff_t>(4 * i), 3,
+                picture.bytes.begin() + static_cast<std::ptrdiff_t>(3 * i));
+  }
+  picture.mm_per_px = mm_per_px;
+  const ScaleBar bar = scale_bar_for(mm_per_px, width);
+  dubsar::draw_scale_bar(picture, bar, static_cast<int>(1.0 / mm_per_px),
+                         height - bar.height_px - static_cast<int>(1.0 / mm_per_px), {255, 255, 255});
+  const std::string stem = state_.name.empty() ? "model" : std::filesystem::path(state_.name).stem().string();
+  std::filesystem::path file;
+  std::error_code error;
+  do {
+    ++pictures_kept_;
+    file = pictures_ / fmt::format("{}_{}dpi_{:02}.png", stem, dpi_, pictures_kept_);
+  } while (std::filesystem::exists(file, error));
+  const Status written = write_picture(file, picture, stem);
+  picture_note_ = written ? filled(ui.text(Text::kPictureKept), file.string()) : written.error().line();
+  if (written) {
+    ui.facts.insert("picture-kept");
+  }
+}
+
+}  // namespace dubsar::ui

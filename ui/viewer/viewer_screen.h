@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <future>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/red_map.h"
+#include "station/mesh_viewing.h"
+#include "ui/shell/widgets.h"
+#include "ui/view/surface_view.h"
+
+namespace dubsar::ui {
+
+/// The scholar's side of the window: a mesh as if it lay under a lamp, what is known of each place, its
+/// wedges. Main thread.
+class ViewerScreen {
+ public:
+  /// `pictures` is where pictures are kept.
+  ViewerScreen(MeshViewing& viewing, std::filesystem::path pictures, bool has_session);
+
+  void draw(UiContext& ui, ImVec2 size);
+  [[nodiscard]] bool unfinished() const { return unfinished_; }
+  [[nodiscard]] bool wants_scanning() { return std::exchange(wants_scanning_, false); }
+
+ private:
+  enum class Tool { kTurn, kMeasure, kSelect };
+  void take_state(UiContext& ui);
+  void draw_panel(UiContext& ui, ImVec2 size);
+  void draw_light(UiContext& ui);
+  void draw_overlay_choice(UiContext& ui);
+  void draw_facts(UiContext& ui);
+  void draw_surface(UiContext& ui, ImVec2 size);
+  void use_pointer(UiContext& ui, ImVec2 origin, ImVec2 size);
+  void draw_wedges(UiContext& ui, ImVec2 origin, ImVec2 size) const;
+  void draw_tape(UiContext& ui, ImVec2 origin, ImVec2 size) const;
+  void draw_scale_bar(UiContext& ui, ImVec2 origin, ImVec2 size) const;
+  void draw_polygon(UiContext& ui, ImVec2 origin) const;
+  void close_polygon();
+  void draw_selecting(UiContext& ui);
+  void draw_legend(UiContext& ui, ImVec2 origin, ImVec2 size) const;
+  void draw_wedge_table(UiContext& ui, ImVec2 size);
+  void look_at(Face face);
+  void choose(int wedge, bool go_there);
+  void keep_picture(UiContext& ui);
+  [[nodiscard]] int wedge_at(const Eigen::Vector2f& px, ImVec2 size) const;
+
+  MeshViewing& viewing_;
+  std::filesystem::path pictures_;
+  bool has_session_;
+  ViewedMesh state_;
+  SurfaceView surface_;
+  OrbitCamera camera_;
+  Look look_;
+  std::future<ShownMesh> preparing_;
+  std::shared_ptr<const Mesh> preparing_mesh_;
+  ShownMesh shown_;
+  std::uint64_t shown_number_ = 0;
+  std::shared_ptr<const std::vector<float>> shown_openness_, shown_values_;
+  std::optional<MeshField> field_;  ///< that the overlay shows
+  Tool tool_ = Tool::kTurn;
+  std::vector<Eigen::Vector3f> tape_;     ///< up to two places
+  std::vector<Eigen::Vector2f> polygon_;  ///< corners so far, pixels of the picture
+  SelectionStep step_ = SelectionStep::kUnion;
+  bool visible_only_ = true;
+  std::vector<std::uint32_t> selected_faces_;  ///< of the mesh
+  double selected_mm2_ = 0;
+  int parts_kept_ = 0;
+  int wedge_ = -1;
+  bool scroll_to_wedge_ = false;
+  bool show_wedges_ = true;
+  bool dragged_ = false;
+  bool untouched_ = true;  ///< the view is still as it was set up
+  float aspect_ = 1.5F;
+  int dpi_ = 600;
+  int pictures_kept_ = 0;
+  std::string picture_note_;
+  bool unfinished_ = false;
+  bool wants_scanning_ = false;
+};
+
+/// From the 2nd to the 98th percentile, so that strays do not eat the colours; symmetric about 0 where the
+/// numbers have both signs.
+[[nodiscard]] Eigen::Vector2f shown_range(const std::vector<float>& values);
+
+}  // namespace dubsar::ui
