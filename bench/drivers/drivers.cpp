@@ -93,7 +93,7 @@ std::uint32_t painted_number(const Frame& frame) {
 }
 
 int count_frames(Device& device, const Emulated& emulated, std::uint64_t count) {
-  must(device.start_frames(16));
+  must(device.start_frames(32));
   std::uint64_t wrong = 0;
   std::uint64_t bytes = 0;
   double before_mb = 0;
