@@ -3,60 +3,16 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "core/job.h"
-#include "triangulation/fusion.h"
-#include "triangulation/stitch_surface.h"
+#include "triangulation/owned_scan.h"
 
 namespace dubsar {
 
-struct OwnershipOptions {
-  /// Half the side of the window in which the majority decides who is primary, samples.
-  int majority_radius_samples = 2;
-  /// Patches with fewer samples than this are left to other scans, where others have the place too.
-  int least_wanted_patch_samples = 100;
-  /// Patches with fewer samples than this are left out.
-  int least_patch_samples = 12;
-  /// Samples of another scan stay this far, × the coarser µ, from a patch that is kept: the seam between them
-  /// is closed by triangles of about the size of the grid's own.
-  double clearance_factor = 0.65;
-  /// The same for samples that fill places which no primary scan has covered: narrower ones are left to
-  /// seams.
-  double cover_clearance_factor = 0.9;
-  /// How far around a pair's sample the kept patch of the other scan is looked at, samples.
-  int look_around_samples = 2;
-};
-
-inline constexpr std::uint8_t kAllAroundKept = 2;
-
-/// A scan with what others know of it, as ownership needs it; the pairs are sorted by the id of the other
-/// scan, which stands at position `other[k]` of the same list.
-struct OwnedScan {
-  const StitchSurface* surface = nullptr;
-  FusedSamples* fused = nullptr;  ///< holds all wanted samples; grows by those that come to be kept besides
-  const std::vector<std::uint8_t>* wanted = nullptr;  ///< as wanted_samples() says
-  std::vector<const Pairs*> pairs;
-  std::vector<const StitchSurface*> other_surface;  ///< by pair
-  std::vector<std::size_t> other;
-  std::vector<std::uint8_t> kept;   ///< out: 1 where the sample is a vertex of the stitched mesh
-  std::vector<std::uint8_t> cells;  ///< out: CellBit codes of the triangles that are kept
-  /// 1 where a kept sample lies within look_around_samples: most of what is asked about others ends here.
-  /// kAllAroundKept where triangles lie all around it.
-  std::vector<std::uint8_t> near_kept;
-  std::vector<std::uint8_t> some_kept;  ///< by node: 1 where a sample of its block is kept
-  std::vector<std::uint8_t> all_kept;   ///< by node: 1 where each of them is
-
-  void fuse(std::span<const std::uint32_t> which) const {
-    dubsar::fuse(*surface, other_surface, pairs, which, *fused);
-  }
-};
-
 /// 1 for the samples around which this scan would be primary: no pair has a better score; of equals the lower
 /// position. Looks at surfaces and pairs only.
-[[nodiscard]] std::vector<std::uint8_t> wanted_samples(const std::vector<OwnedScan>& scans, std::size_t self,
-                                                       const OwnershipOptions& options);
+[[nodiscard]] std::vector<std::uint8_t> wanted_samples(const std::vector<OwnedScan>& scans, std::size_t self);
 
 /// Gives each place of the surface one primary scan, the view closest to the normal there (seed 001, 4), and
 /// keeps that scan's samples and triangles: patches of single scans that nowhere overlap, with a seam about

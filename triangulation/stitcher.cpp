@@ -154,7 +154,7 @@ struct Stitcher::Impl {
       }
       job.progress("average samples", static_cast<double>(at) / static_cast<double>(scans.size()));
       if (entry.stale) {
-        entry.wanted = wanted_samples(scans, at, options.ownership);
+        entry.wanted = wanted_samples(scans, at);
         entry.fused = FusedSamples(entry.surface);
         std::vector<std::uint32_t> which;
         for (std::size_t node = 0; node < entry.surface.lattice.size(); ++node) {

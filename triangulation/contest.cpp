@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "triangulation/contest.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/parallel.h"
+#include "triangulation/patch_shape.h"
+
+namespace dubsar {
+
+namespace {
+
+using Eigen::Vector2f;
+using Eigen::Vector3f;
+
+float cross2(const Vector2f& a, const Vector2f& b) {
+  return a.x() * b.y() - a.y() * b.x();
+}
+
+bool inside(const Vector2f& p, const Vector2f& a, const Vector2f& b, const Vector2f& c) {
+  const float u = cross2(b - a, p - a);
+  const float v = cross2(c - b, p - b);
+  const float w = cross2(a - c, p - c);
+  return (u >= 0 && v >= 0 && w >= 0) || (u <= 0 && v <= 0 && w <= 0);
+}
+
+bool cross(const Vector2f& a, const Vector2f& b, const Vector2f& c, const Vector2f& d) {
+  return (cross2(b - a, c - a) > 0) != (cross2(b - a, d - a) > 0) &&
+         (cross2(d - c, a - c) > 0) != (cross2(d - c, b - c) > 0);
+}
+
+/// A plane to compare in: that of the sample or triangle in question.
+struct Plane {
+  Vector3f origin, u, v;
+
+  Plane(const Vector3f& at, const Vector3f& normal)
+      : origin(at), u(normal.unitOrthogonal()), v(normal.cross(u)) {}
+  [[nodiscard]] Vector2f operator()(const Vector3f& p) const {
+    return {u.dot(p - origin), v.dot(p - origin)};
+  }
+};
+
+/// The kept patch of another scan around one of its samples.
+struct Window {
+  const OwnedScan* scan;
+  GridSurface g;
+  int row_lo, row_hi, col_lo, col_hi;
+
+  Window(const OwnedScan& other, std::int64_t centre, int radius)
+      : scan(&other), g(other.surface->surface()) {
+    const int row = other.surface->scan.grid->row_of(static_cast<std::size_t>(centre));
+    const int col = other.surface->scan.grid->col_of(static_cast<std::size_t>(centre));
+    row_lo = std::max(row - radius, 0);
+    row_hi = std::min(row + radius, g.rows - 1);
+    col_lo = std::max(col - radius, 0);
+    col_hi = std::min(col + radius, g.cols - 1);
+  }
+  template <class Visit>
+  void for_each_triangle(const Visit& visit) const {
+    for (int r = row_lo; r < row_hi; ++r) {
+      for (int c = col_lo; c < col_hi; ++c) {
+        const std::uint8_t cell = scan->cells[g.index(r, c)];
+        for (int which = 0; cell != 0 && which < 2; ++which) {
+          if ((cell & (which == 0 ? kCellFirst : kCellSecond)) != 0) {
+            visit(cell_triangle(g, r, c, cell, which));
+          }
+        }
+      }
+    }
+  }
+};
+
+}  // namespace
+
+int reach_nodes(const StitchSurface& s, const StitchSurface& other) {
+  return 1 + static_cast<int>(std::ceil(s.spacing_mm / other.spacing_mm));
+}
+
+Contest contest_of(const std::vector<OwnedScan>& scans, std::size_t self) {
+  const OwnedScan& scan = scans[self];
+  const Lattice& lattice = scan.surface->lattice;
+  Contest contest;
+  contest.any.assign(lattice.size(), 0);
+  for (std::size_t k = 0; k < scan.pairs.size(); ++k) {
+    const OwnedScan& other = scans[scan.other[k]];
+    const Lattice& theirs = other.surface->lattice;
+    const int radius = reach_nodes(*scan.surface, *other.surface);
+    std::vector<std::uint8_t>& mine = contest.by_pair.emplace_back(lattice.size(), std::uint8_t{0});
+    if (other.some_kept.empty()) {
+      continue;
+    }
+    parallel_for_each_index(
+        lattice.size(),
+        [&](std::size_t node) {
+          const std::int32_t j = scan.pairs[k]->match[node];
+          mine[node] = j >= 0 && theirs.any_within(theirs.node_of(static_cast<std::size_t>(j)), radius,
+                                                   [&](std::size_t n) { return other.some_kept[n] != 0; })
+                           ? 1
+                           : 0;
+        },
+        1024);
+    // Samples of nodes without a pair of their own go by those beside them, and so do cells.
+    mine = dilated(mine, lattice.node_rows, lattice.node_cols, 2);
+    for (std::size_t node = 0; node < mine.size(); ++node) {
+      contest.any[node] |= mine[node];
+      const std::int32_t j = scan.pairs[k]->match[node];
+      mine[node] += j >= 0 && other.some_kept[theirs.node_of(static_cast<std::size_t>(j))] != 0 ? 1 : 0;
+    }
+  }
+  return contest;
+}
+
+bool is_taken(const std::vector<OwnedScan>& scans, std::size_t self, std::size_t i, const Contest& contest,
+              double clearance_factor, const OwnershipOptions& options) {
+  const OwnedScan& scan = scans[self];
+  const Vector3f& p =
+      scan.fused->slot[i] == FusedSamples::kNone ? scan.surface->points[i] : scan.fused->point(i);
+  const std::size_t node = scan.surface->lattice.node_of(i);
+  const auto is_taken_by = [&](std::size_t k) {
+    const OwnedScan& other = scans[scan.other[k]];
+    const std::int32_t start = pair_start(*scan.surface, node, *scan.pairs[k]);
+    const std::int64_t j = start < 0 ? -1 : pair_of(*scan.surface, i, start, *other.surface, *scan.pairs[k]);
+    if (j < 0 || other.near_kept[static_cast<std::size_t>(j)] == 0) {
+      return false;
+    }
+    if (other.near_kept[static_cast<std::size_t>(j)] == kAllAroundKept) {
+      return true;
+    }
+    const Window window(other, j, options.look_around_samples);
+    const auto clearance =
+        static_cast<float>(clearance_factor * std::max(scan.surface->spacing_mm, other.surface->spacing_mm));
+    bool taken = false;
+    const Vector3f& n = other.surface->normals[static_cast<std::size_t>(j)];
+    for (int r = window.row_lo; r <= window.row_hi && !taken; ++r) {
+      for (int c = window.col_lo; c <= window.col_hi && !taken; ++c) {
+        const std::size_t q = window.g.index(r, c);
+        if (other.kept[q] == 0) {
+          continue;
+        }
+        const Vector3f d = other.fused->point(q) - p;
+        const float along = d.dot(n);
+        taken = d.squaredNorm() - along * along < clearance * clearance;
+      }
+    }
+    if (!taken) {
+      const Plane plane(p, n);
+      window.for_each_triangle([&](const std::array<std::size_t, 3>& t) {
+        taken = taken || inside(Vector2f::Zero(), plane(other.fused->point(t[0])),
+                                plane(other.fused->point(t[1])), plane(other.fused->point(t[2])));
+      });
+    }
+    return taken;
+  };
+  // First those that are likeliest to say yes.
+  for (const std::uint8_t nearness : {2, 1}) {
+    for (std::size_t k = 0; k < scan.pairs.size(); ++k) {
+      if (contest.by_pair[k][node] == nearness && is_taken_by(k)) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+bool meets_another(const std::vector<OwnedScan>& scans, std::size_t self, std::span<const Vector3f> points,
+                   const std::array<std::size_t, 3>& t, const Contest& contest,
+                   const OwnershipOptions& options) {
+  const OwnedScan& scan = scans[self];
+  const std::size_t node = scan.surface->lattice.node_of(t[0]);
+  for (std::size_t k = 0; k < scan.pairs.size(); ++k) {
+    const OwnedScan& other = scans[scan.other[k]];
+    if (contest.by_pair[k][node] == 0) {
+      continue;
+    }
+    for (std::size_t corner = 0; corner < 3; ++corner) {
+      const std::int32_t start =
+          pair_start(*scan.surface, scan.surface->lattice.node_of(t[corner]), *scan.pairs[k]);
+      const std::int64_t j =
+          start < 0 ? -1 : pair_of(*scan.surface, t[corner], start, *other.surface, *scan.pairs[k]);
+      if (j < 0 || other.near_kept[static_cast<std::size_t>(j)] == 0) {
+        continue;
+      }
+      const Window window(other, j, options.look_around_samples);
+      const Vector3f n = (points[t[1]] - points[t[0]]).cross(points[t[2]] - points[t[0]]).normalized();
+      const Plane plane(points[t[0]], n);
+      const Vector2f a = plane(points[t[0]]);
+      const Vector2f b = plane(points[t[1]]);
+      const Vector2f c = plane(points[t[2]]);
+      const float near_mm = scan.pairs[k]->reach_mm;
+      bool meets = false;
+      window.for_each_triangle([&](const std::array<std::size_t, 3>& o) {
+        if (meets || std::abs(n.dot(other.fused->point(o[0]) - points[t[0]])) > near_mm) {
+          return;
+        }
+        const Vector2f d = plane(other.fused->point(o[0]));
+        const Vector2f e = plane(other.fused->point(o[1]));
+        const Vector2f f = plane(other.fused->point(o[2]));
+        meets = inside(d, a, b, c) || inside(a, d, e, f) || cross(a, b, d, e) || cross(a, b, e, f) ||
+                cross(a, b, f, d) || cross(b, c, d, e) || cross(b, c, e, f) || cross(b, c, f, d) ||
+                cross(c, a, d, e) || cross(c, a, e, f) || cross(c, a, f, d);
+      });
+      if (meets) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+}  // namespace dubsar

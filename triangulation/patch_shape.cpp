@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "triangulation/patch_shape.h"
+
+#include <algorithm>
+
+#include "core/parallel.h"
+
+namespace dubsar {
+
+namespace {
+
+constexpr std::uint8_t kBoth = kCellFirst | kCellSecond;
+
+/// Leaves samples that no kept triangle uses.
+void drop_unused(OwnedScan& scan, const GridSurface& g) {
+  parallel_for_each_index(
+      static_cast<std::size_t>(g.rows),
+      [&](std::size_t r) {
+        const int row = static_cast<int>(r);
+        for (int col = 0; col < g.cols; ++col) {
+          const std::size_t i = g.index(row, col);
+          if (scan.kept[i] == 0) {
+            continue;
+          }
+          bool used = false;
+          for (int cr = std::max(row - 1, 0); cr <= std::min(row, g.rows - 2) && !used; ++cr) {
+            for (int cc = std::max(col - 1, 0); cc <= std::min(col, g.cols - 2) && !used; ++cc) {
+              const std::uint8_t cell = scan.cells[g.index(cr, cc)];
+              for (int which = 0; which < 2 && !used; ++which) {
+                if ((cell & (which == 0 ? kCellFirst : kCellSecond)) != 0) {
+                  const auto t = cell_triangle(g, cr, cc, cell, which);
+                  used = t[0] == i || t[1] == i || t[2] == i;
+                }
+              }
+            }
+          }
+          // Rows of other chunks read `cells`, never `kept`.
+          scan.kept[i] = used ? 1 : 0;
+        }
+      },
+      16);
+}
+
+/// Marks samples all around which triangles are kept: nothing that pairs with one lies outside the patch.
+void mark_within(OwnedScan& scan) {
+  const auto width = static_cast<std::size_t>(scan.surface->lattice.cols);
+  const auto rows = static_cast<std::size_t>(scan.surface->lattice.rows);
+  parallel_for_each_index(
+      rows > 2 ? rows - 2 : 0,
+      [&](std::size_t above) {
+        for (std::size_t i = (above + 1) * width + 1; i + 1 < (above + 2) * width; ++i) {
+          const int all =
+              scan.cells[i] & scan.cells[i - 1] & scan.cells[i - width] & scan.cells[i - width - 1];
+          if ((all & kBoth) == kBoth) {
+            scan.near_kept[i] = kAllAroundKept;
+          }
+        }
+      },
+      16);
+}
+
+/// By node: how much of its block is kept.
+void count_kept(OwnedScan& scan) {
+  const Lattice& lattice = scan.surface->lattice;
+  scan.some_kept.assign(lattice.size(), 0);
+  scan.all_kept.assign(lattice.size(), 0);
+  parallel_for_each_index(
+      lattice.size(),
+      [&](std::size_t node) {
+        bool some = false;
+        bool all = true;
+        lattice.for_each_sample(node, [&](std::size_t i) {
+          some = some || scan.kept[i] != 0;
+          all = all && scan.kept[i] != 0;
+        });
+        scan.some_kept[node] = some ? 1 : 0;
+        scan.all_kept[node] = all ? 1 : 0;
+      },
+      1024);
+}
+
+}  // namespace
+
+/// hold one of the samples with starts != 0.
+void remove_specks(std::vector<std::uint8_t>& kept, const std::vector<std::uint8_t>& cells,
+                   const std::vector<std::uint8_t>& starts, const Lattice& grid, int least) {
+  std::vector<std::uint8_t> seen(kept.size(), 0);
+  std::vector<std::size_t> patch;
+  const auto width = static_cast<std::size_t>(grid.cols);
+  const auto visit_cell = [&](std::size_t cell) {
+    if ((cells[cell] & kBoth) == 0) {
+      return;
+    }
+    for (const std::size_t i : {cell, cell + 1, cell + width, cell + width + 1}) {
+      if (kept[i] != 0 && seen[i] == 0) {
+        seen[i] = 1;
+        patch.push_back(i);
+      }
+    }
+  };
+  for (std::size_t start = 0; start < kept.size(); ++start) {
+    if (kept[start] == 0 || starts[start] == 0 || seen[start] != 0) {
+      continue;
+    }
+    patch.assign(1, start);
+    seen[start] = 1;
+    for (std::size_t at = 0; at < patch.size(); ++at) {
+      const std::size_t i = patch[at];
+      const std::size_t col = i % width;
+      if (i >= width && col > 0) {
+        visit_cell(i - width - 1);
+      }
+      if (i >= width && col + 1 < width) {
+        visit_cell(i - width);
+      }
+      if (i + width < kept.size() && col > 0) {
+        visit_cell(i - 1);
+      }
+      if (i + width < kept.size() && col + 1 < width) {
+        visit_cell(i);
+      }
+    }
+    if (patch.size() < static_cast<std::size_t>(least)) {
+      for (const std::size_t i : patch) {
+        kept[i] = 0;
+      }
+    }
+  }
+}
+
+void settle_patches(OwnedScan& scan, const OwnershipOptions& options) {
+  const GridSurface g = scan.surface->surface();
+  // Cells of removed specks lose their corners, so their triangles go too.
+  parallel_for_each_index(
+      static_cast<std::size_t>(std::max(g.rows - 1, 0)),
+      [&](std::size_t r) {
+        for (int col = 0; col + 1 < g.cols; ++col) {
+          std::uint8_t& cell = scan.cells[g.index(static_cast<int>(r), col)];
+          for (int which = 0; (cell & kBoth) != 0 && which < 2; ++which) {
+            const std::uint8_t bit = which == 0 ? kCellFirst : kCellSecond;
+            if ((cell & bit) != 0) {
+              const auto t = cell_triangle(g, static_cast<int>(r), col, cell, which);
+              if (scan.kept[t[0]] == 0 || scan.kept[t[1]] == 0 || scan.kept[t[2]] == 0) {
+                cell = static_cast<std::uint8_t>(cell & ~bit);
+              }
+            }
+          }
+        }
+      },
+      16);
+  drop_unused(scan, g);
+  scan.near_kept = dilated(scan.kept, g.rows, g.cols, options.look_around_samples);
+  mark_within(scan);
+  count_kept(scan);
+}
+
+std::vector<std::uint8_t> dilated(const std::vector<std::uint8_t>& marks, int height, int width, int radius) {
+  std::vector<std::uint8_t> along(marks.size(), 0);
+  std::vector<std::uint8_t> out(marks.size(), 0);
+  const auto rows = static_cast<std::size_t>(height);
+  const auto cols = static_cast<std::size_t>(width);
+  const auto reach = static_cast<std::size_t>(std::max(radius, 0));
+  parallel_for_each_index(
+      rows,
+      [&](std::size_t r) {
+        for (std::size_t c = 0; c < cols; ++c) {
+          if (marks[r * cols + c] != 0) {
+            const std::size_t begin = r * cols + (c > reach ? c - reach : 0);
+            const std::size_t end = r * cols + std::min(c + reach + 1, cols);
+            std::fill(along.begin() + static_cast<std::ptrdiff_t>(begin),
+                      along.begin() + static_cast<std::ptrdiff_t>(end), std::uint8_t{1});
+          }
+        }
+      },
+      16);
+  parallel_for_each_index(
+      rows,
+      [&](std::size_t r) {
+        for (std::size_t q = r > reach ? r - reach : 0; q < std::min(r + reach + 1, rows); ++q) {
+          for (std::size_t c = 0; c < cols; ++c) {
+            out[r * cols + c] |= along[q * cols + c];
+          }
+        }
+      },
+      16);
+  return out;
+}
+
+}  // namespace dubsar

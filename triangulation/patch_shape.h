@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "triangulation/owned_scan.h"
+
+namespace dubsar {
+
+/// Takes away patches (kept samples around cells with triangles) of fewer than `least` samples, of those that
+/// hold one of the samples with starts != 0.
+void remove_specks(std::vector<std::uint8_t>& kept, const std::vector<std::uint8_t>& cells,
+                   const std::vector<std::uint8_t>& starts, const Lattice& grid, int least);
+
+/// Takes away the triangles that lack a corner, then the samples that no triangle uses; and brings what the scan
+/// tells others of its patches (near_kept, some_kept, all_kept) up to date.
+void settle_patches(OwnedScan& scan, const OwnershipOptions& options);
+
+/// 1 within `radius` (a square) of a mark.
+[[nodiscard]] std::vector<std::uint8_t> dilated(const std::vector<std::uint8_t>& marks, int height, int width,
+                                                int radius);
+
+}  // namespace dubsar
