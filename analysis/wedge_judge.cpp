@@ -68,9 +68,9 @@ struct Odds {
   }
 };
 /// By itself, and with the tablet's other wedges beside it.
-constexpr Odds kAlone = {8.46, {3.11, 1.63, 1.52, -5.22, 1.55, -7.28, 1.09, -9.15, 4.49, 0, 0, 0, 0, 0}};
+constexpr Odds kAlone = {5.61, {1.93, 2.93, 2.36, -7.00, 0.60, -6.54, 2.23, -8.54, 5.61, 0, 0, 0, 0, 0}};
 constexpr Odds kAmongOthers = {
-    6.20, {3.82, 1.13, 0.90, -0.82, 0, -1.77, 0, -6.09, 1.98, -1.27, -0.17, -6.35, -0.46, 1.87}};
+    4.81, {3.75, 2.05, 0.85, -1.44, 0, -1.84, 0, -6.14, 2.57, -1.21, -0.59, -6.12, 0, 3.03}};
 
 /// What the tablet's good candidates say of this one. `good`: by falling log odds.
 void compare(const std::vector<const WedgeCandidate*>& good, double typical_depth, double typical_width,
@@ -140,6 +140,9 @@ std::string out_of_bounds(const JudgeOptions& options, const WedgeCandidate& c) 
   const Wedge& w = c.wedge;
   if (w.depth_mm < options.min_depth_mm || w.depth_mm > options.max_depth_mm) {
     return w.depth_mm < options.min_depth_mm ? "too shallow" : "too deep";
+  }
+  if (w.vertex_count < options.least_vertices) {
+    return "too few vertices lie on its faces";
   }
   // Whatever definition of the exit points the user wants to read: what is a wedge does not hang on it.
   std::array<double, 3> length{};

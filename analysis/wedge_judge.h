@@ -15,6 +15,7 @@ struct JudgeOptions {
   double max_depth_mm = 6.0;
   double min_edge_mm = 0.2;
   double max_edge_mm = 30.0;
+  int least_vertices = 15;  ///< on its three faces; fewer cannot be told from noise
 };
 
 /// Tells wedges from hollows that only look like ones (seed 000, 3.4): size bounds, how much of the model is

@@ -29,8 +29,6 @@ constexpr int kMostPerBasin = 4;
 /// Noise that is this share of the spacing turns a triangle's normal by some 8 degrees.
 constexpr double kNoisyShare = 0.1;
 constexpr std::size_t kNormalSamples = 64;
-/// A wedge of fewer vertices cannot be told from noise.
-constexpr std::uint32_t kLeastVertices = 15;
 
 std::vector<float> vertex_areas(const Mesh& mesh, const VertexGraph& graph) {
   std::vector<float> areas(mesh.positions.size());
@@ -75,7 +73,7 @@ class Extractor {
         none.rejected = std::move(reason);
         found.push_back(std::move(none));
       };
-      if (part.size() < kLeastVertices) {
+      if (part.size() < least_vertices()) {
         continue;  // the grain of the clay
       }
       if (part.size() > kMostVertices) {
@@ -103,12 +101,16 @@ class Extractor {
       }
       const InnerEdges edges = find_inner_edges(patch, *faces);
       found.push_back(measure_wedge(patch, *faces, edges, fields_.surface, areas_, options_.exits));
-      leftovers(patch, *faces, &open);
+      leftovers(patch, *faces, least_vertices(), &open);
     }
     return found;
   }
 
  private:
+  [[nodiscard]] std::size_t least_vertices() const {
+    return static_cast<std::size_t>(std::max(options_.judge.least_vertices, 1));
+  }
+
   /// Mean normal of the free surface over the hollow: where a wedge runs round the tablet's rim, the one over
   /// its depth point says little of where its tail rises. Zero where there is no surface.
   [[nodiscard]] Eigen::Vector3d up_over(std::span<const std::uint32_t> vertices) const {
@@ -121,7 +123,7 @@ class Extractor {
   }
 
   /// Connected parts of the patch that its wedge does not explain and that lie well below the surface.
-  static void leftovers(const WedgePatch& patch, const WedgeFaces& faces,
+  static void leftovers(const WedgePatch& patch, const WedgeFaces& faces, std::size_t least,
                         std::vector<std::vector<std::uint32_t>>* open) {
     std::vector<std::uint8_t> free(patch.size());
     for (std::size_t i = 0; i < patch.size(); ++i) {
@@ -149,7 +151,7 @@ class Extractor {
           }
         }
       }
-      if (part.size() >= 2 * std::size_t{kLeastVertices}) {
+      if (part.size() >= 2 * least) {
         std::ranges::sort(part);  // the patch is in rising height
         for (std::uint32_t& v : part) {
           v = patch.vertex[v];

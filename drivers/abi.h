@@ -75,6 +75,6 @@ template <class Things, class Name>
 /// Without its lease.
 [[nodiscard]] Result<Frame> frame_from(const dubsar_frame& frame, const std::string& where);
 [[nodiscard]] Result<StageAxis> axis_from(const dubsar_axis& axis, const std::string& where);
-[[nodiscard]] Result<StageMotion> motion_from(const dubsar_motion& motion, const std::string& where);
+[[nodiscard]] Result<StageReading> motion_from(const dubsar_motion& motion, const std::string& where);
 
 }  // namespace dubsar::abi

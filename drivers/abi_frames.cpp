@@ -82,11 +82,11 @@ Result<StageAxis> axis_from(const dubsar_axis& from, const std::string& where) {
   return out;
 }
 
-Result<StageMotion> motion_from(const dubsar_motion& from, const std::string& where) {
+Result<StageReading> motion_from(const dubsar_motion& from, const std::string& where) {
   if (from.axis_count > DUBSAR_AXES_MAX || from.laser_count > DUBSAR_LASERS_MAX) {
     return std::unexpected(faulty(where, "told of more axes or lasers than there can be"));
   }
-  StageMotion out;
+  StageReading out;
   out.timestamp_ns = from.timestamp_ns;
   out.uncertainty_ns = from.uncertainty_ns;
   out.moving = (from.flags & DUBSAR_MOTION_MOVING) != 0;

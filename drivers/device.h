@@ -138,7 +138,7 @@ class Device {
   Status home();
   /// kUsage before anything moves when the position is outside the soft limits.
   Status move(const StageMove& move);
-  [[nodiscard]] Result<StageMotion> motion() const;
+  [[nodiscard]] Result<StageReading> motion() const;
   /// Power from 0 to 1.
   Status set_laser(std::uint32_t laser, double power);
   /// From any thread: motion ends at once, lasers go off, and nothing moves until home().

@@ -82,7 +82,7 @@ Status Device::move(const StageMove& asked) {
   return status_of(code, error, uri_);
 }
 
-Result<StageMotion> Device::motion() const {
+Result<StageReading> Device::motion() const {
   const auto read = abi::offered(driver_, &dubsar_driver::read_motion);
   if (read == nullptr) {
     return no_stage(uri_);

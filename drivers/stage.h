@@ -21,7 +21,7 @@ struct StageAxis {
 };
 
 /// Where a stage is: positions that held at timestamp_ns, give or take uncertainty_ns.
-struct StageMotion {
+struct StageReading {
   std::int64_t timestamp_ns = 0;  ///< this machine's CLOCK_MONOTONIC
   std::int64_t uncertainty_ns = 0;
   bool moving = false;

@@ -6,11 +6,14 @@
 namespace dubsar {
 
 bool Engine::Impl::must_wait(const NextStep& step) const {
+  if (!drives && source->capabilities().finite) {
+    return false;  // what was recorded waits for nobody
+  }
   if (!asked_once) {
     return options.first_scan_waits;
   }
   if (!drives) {
-    return !source->capabilities().finite;
+    return true;
   }
   const bool by_hand = step && step->view.placement && step->view.placement->hand_turn;
   return by_hand || !last_scan_taken_up;

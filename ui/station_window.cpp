@@ -126,6 +126,9 @@ class StationWindow {
         longest_drag_s_ = std::max(longest_drag_s_, now_s() - frame_began);
       }
       keep_preferences();
+      if (const auto unreadable = mesh_error()) {
+        return std::unexpected(*unreadable);
+      }
       if (script_ && script_->finished()) {
         log_debug(fmt::format("longest frame of a drag: {:.0f} ms", 1000 * longest_drag_s_));
         if (script_->failure()) {
@@ -199,6 +202,15 @@ class StationWindow {
     int height = 0;
     glfwGetFramebufferSize(window_.handle(), &width, &height);
     return write_picture(*file, read_window(width, height), "Dubsar");
+  }
+
+  /// Why the mesh that the window was opened for cannot be shown at all.
+  [[nodiscard]] std::optional<Error> mesh_error() const {
+    if (session_) {
+      return std::nullopt;
+    }
+    const ViewedMesh state = viewing_->state();
+    return state.mesh ? std::nullopt : state.error;
   }
 
   void keep_preferences() {

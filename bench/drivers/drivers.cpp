@@ -93,7 +93,7 @@ std::uint32_t painted_number(const Frame& frame) {
 }
 
 int count_frames(Device& device, const Emulated& emulated, std::uint64_t count) {
-  must(device.start_frames(16));
+  must(device.start_frames(32));
   std::uint64_t wrong = 0;
   std::uint64_t bytes = 0;
   double before_mb = 0;
@@ -134,7 +134,7 @@ int count_positions(Device& device, std::uint64_t count) {
   double last = 1;
   const Clock::time_point start = Clock::now();
   for (std::uint64_t k = 0; k < count; ++k) {
-    const StageMotion motion = must(device.motion());
+    const StageReading motion = must(device.motion());
     backwards += motion.position[0] > last ? 1 : 0;
     last = motion.position[0];
     if (k == count / 10) {

@@ -74,7 +74,8 @@ class Controller {
   std::string version_;
   std::atomic<double> speed_ = 0;
 
-  std::timed_mutex mutex_;  ///< of all below
+  std::mutex
+      mutex_;  ///< of all below; held for one question and its answer, or a homing that looks at stops_
   std::shared_ptr<Link> link_;
   std::unique_ptr<Firmware> firmware_;
   std::unique_ptr<Guard> guard_;

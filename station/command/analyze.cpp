@@ -64,10 +64,17 @@ Status draw_pictures(const std::filesystem::path& folder, const Mesh& mesh, cons
   return write_six_view_picture(folder / "wedges.png", coloured, job);
 }
 
+/// A kilometre: beyond, areas leave what a float can tell.
+constexpr double kMostAcrossMm = 1e6;
+
 /// Nobody presses a stylus into a tablet a tenth of a millimetre across: without --unit its numbers are
 /// something else.
 Status check_size(const AnalyzeArguments& arguments, const Mesh& mesh) {
   const double across_mm = size_across_mm(mesh);
+  if (!(across_mm < kMostAcrossMm)) {
+    return bad_input(arguments.in, fmt::format("it would be {:.3g} mm across", across_mm),
+                     "nothing inscribed is that large: look what its numbers are and say so with --unit");
+  }
   const bool metres = std::filesystem::path(arguments.in).extension() == ".glb";
   const auto likelier = likelier_unit(across_mm, metres ? *mm_per_unit("m") : 1.0);
   if (!arguments.unit.empty() || !likelier) {

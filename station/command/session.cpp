@@ -13,6 +13,7 @@
 #include "formats/sign_off_json.h"
 #include "station/command/session_verbs.h"
 #include "station/command/sign_off_words.h"
+#include "station/tablet_record.h"
 
 namespace dubsar {
 
@@ -117,6 +118,47 @@ Result<int> change(const SessionOptions& options, CommandContext& context, const
   return 0;
 }
 
+/// Says what tablet it is; what is not given stays as it was.
+Result<int> describe(const std::string& path, const TabletRecord& given, CommandContext& context) {
+  Result<SessionStore> store = SessionStore::open(path);
+  if (!store) {
+    return std::unexpected(store.error());
+  }
+  TabletRecord record = tablet_record_of(*store);
+  const auto take = [](const std::string& from, std::string& into) { into = from.empty() ? into : from; };
+  take(given.museum_number, record.museum_number);
+  take(given.cdli, record.cdli);
+  take(given.collection, record.collection);
+  take(given.operator_name, record.operator_name);
+  take(given.notes, record.notes);
+  if (const Status kept = keep_tablet_record(*store, record); !kept) {
+    return std::unexpected(kept.error());
+  }
+  if (context.json) {
+    CommandContext::print(
+        {{"session", path}, {"tablet", nlohmann::ordered_json::parse(tablet_record_to_json(record))}});
+  } else {
+    std::printf("%s %s %s\n", record.museum_number.c_str(), record.cdli.c_str(), record.collection.c_str());
+  }
+  return 0;
+}
+
+void add_describe(CLI::App& session, Action& chosen) {
+  CLI::App* verb = session.add_subcommand("describe", "Say what tablet it is");
+  const auto path = std::make_shared<std::string>();
+  const auto given = std::make_shared<TabletRecord>();
+  verb->add_option("session", *path)->required();
+  verb->add_option("--museum-number", given->museum_number, "heads the report");
+  verb->add_option("--cdli", given->cdli, "P and six digits");
+  verb->add_option("--collection", given->collection, "that it belongs to");
+  verb->add_option("--operator", given->operator_name, "who scanned it");
+  verb->add_option("--notes", given->notes, "anything else");
+  verb->fallthrough();
+  verb->callback([&chosen, path, given] {
+    chosen = [path, given](CommandContext& c) { return describe(*path, *given, c); };
+  });
+}
+
 Result<int> undo(SessionStore& store) {
   const auto dropped = store.undo_last_scan();
   if (!dropped) {
@@ -157,6 +199,7 @@ void add_session(CLI::App& app, Action& chosen) {
       return done ? Result<int>(o.id) : std::unexpected(done.error());
     });
   })->add_option("--why", options->why, "the reason");
+  add_describe(*verb, chosen);
   add_session_hints(*verb, chosen);
   add_session_sign(*verb, chosen);
   add("restore", "Put a dropped scan back", true, [](const SessionOptions& o, CommandContext& c) {

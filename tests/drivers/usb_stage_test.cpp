@@ -102,7 +102,7 @@ TEST_P(Firmwares, MovesWhereItIsAskedAndSaysWhere) {
       device.move({.axis = 0, .position = target(), .speed = axis.speed_maximum, .start_only = false});
   ASSERT_TRUE(moved) << moved.error().line();
   EXPECT_NEAR(at(), firmware_units(target()), step());
-  const StageMotion motion = device.motion().value();
+  const StageReading motion = device.motion().value();
   EXPECT_NEAR(motion.position.at(0), target(), std::max(2 * axis.resolution, 1e-3));
   EXPECT_FALSE(motion.moving);
   EXPECT_TRUE(motion.homed);
@@ -116,7 +116,7 @@ TEST_P(Firmwares, TellsPositionsWithTimesWhileItMoves) {
                            .position = target(),
                            .speed = std::min(speed, device.axes()->front().speed_maximum),
                            .start_only = true}));
-  std::vector<StageMotion> seen;
+  std::vector<StageReading> seen;
   do {
     seen.push_back(device.motion().value());
   } while (seen.back().moving);

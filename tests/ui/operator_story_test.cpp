@@ -9,6 +9,7 @@
 #include <fstream>
 
 #include "tests/station/support/command.h"
+#include "tests/station/support/two_fold_scans.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/ui/support/display.h"
 
@@ -28,13 +29,12 @@ class OperatorStory : public ::testing::Test {
       GTEST_SKIP() << "there is no Xvfb here (Debian package xvfb)";
     }
   }
-  Outcome play(const std::string& script, const std::vector<std::string>& more = {}) {
+  Outcome play(const std::string& script) { return play_on(kSmallTablet, script); }
+  Outcome play_on(const std::string& device, const std::string& script) {
     const fs::path file = folder_.path() / "story.script";
     std::ofstream(file) << script;
-    std::vector<std::string> words{"station",    "--session", session(),    "--device",
-                                   kSmallTablet, "--script",  file.string()};
-    words.insert(words.end(), more.begin(), more.end());
-    return run_command(words, {.timeout_s = 150});
+    return run_command({"station", "--session", session(), "--device", device, "--script", file.string()},
+                       {.timeout_s = 150});
   }
   [[nodiscard]] std::string session() const { return (folder_.path() / "session").string(); }
 
@@ -123,6 +123,46 @@ wait scans.3
 quit
 )");
   ASSERT_EQ(second.status, 0) << second.err;
+}
+
+/// Where a point of the surface stands in the picture of a grid, "0.42 0.37".
+std::string place_in(const RangeGrid& grid, const Eigen::Vector3d& point) {
+  std::size_t best = 0;
+  double nearest = 1e9;
+  for (std::size_t i = 0; i < grid.size(); ++i) {
+    const double far = grid.valid[i] != 0 ? (grid.point(i).cast<double>() - point).norm() : 1e9;
+    if (far < nearest) {
+      nearest = far;
+      best = i;
+    }
+  }
+  const double u = (grid.col_of(best) + 0.5) / grid.cols;
+  const double v = (grid.row_of(best) + 0.5) / grid.rows;
+  return std::to_string(u) + " " + std::to_string(v);
+}
+
+TEST_F(OperatorStory, ClicksOnTheSamePlaceSettleAnUnsureScan) {
+  // A surface that fits itself turned by half: only somebody who knows it can say which way round.
+  const fs::path scans = folder_.path() / "scans";
+  test::write_two_fold_scans(scans);
+  const Eigen::Vector3d p(14, -9, test::two_fold_surface()(14, -9));
+  const auto grid_of = [](int number) {
+    testing::FieldScan scan;
+    scan.seed = 1 + 8 * static_cast<std::uint64_t>(number);
+    return testing::scan_field(test::two_fold_surface(), test::two_fold_pose(number), scan);
+  };
+  const std::string left = place_in(grid_of(1), test::two_fold_pose(1).inverse() * p);
+  const std::string right = place_in(grid_of(0), p);
+  const Outcome played = play_on("replay:" + scans.string(),
+                                 "wait idle\nkey space\nwait scan.1.unsure\nwait idle 90\n"
+                                 "click scan.1\nclick pairs\nwait pair-left\n"
+                                 "click pair-left " +
+                                     left + "\nclick pair-right " + right +
+                                     "\nclick pairs-done\nwait scan.1.fits\nwait idle 90\nquit\n");
+  ASSERT_EQ(played.status, 0) << played.err;
+  const auto list = run_command({"session", "list", session(), "--json"}).json();
+  EXPECT_EQ(list["scans"][1]["status"], "registered");
+  EXPECT_EQ(list["scans"][1]["hint_on"], 0);
 }
 
 }  // namespace

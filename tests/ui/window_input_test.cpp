@@ -41,6 +41,50 @@ TEST(WindowInput, ADisplayWithoutOpenGlIsOneLineAndStatusThree) {
   EXPECT_THAT(outcome.complaints().front(), HasSubstr("OpenGL 4.1"));
 }
 
+class MeshInput : public ::testing::Test {
+ protected:
+  Outcome look_at(const std::string& name, const std::string& bytes, const std::string& script) {
+    const auto mesh = folder_.path() / name;
+    std::ofstream(mesh) << bytes;
+    const auto file = folder_.path() / "look.script";
+    std::ofstream(file) << script;
+    return run_command({"station", "--mesh", mesh.string(), "--script", file.string(), "--width", "1366",
+                        "--height", "768"});
+  }
+  void SetUp() override {
+    if (!display_.works()) {
+      GTEST_SKIP() << "there is no Xvfb here (Debian package xvfb)";
+    }
+  }
+  test::TemporaryFolder folder_;
+  test::Display display_;
+};
+
+constexpr const char* kLook = "wait whole\ndrag surface 0.3 0.3 0.6 0.6\nwheel surface 3\nwait idle\nquit\n";
+
+TEST_F(MeshInput, PointsWithoutFacesOrNormalsAreShown) {
+  const Outcome outcome = look_at("points.obj", "v 0 0 0\nv 10 0 1\nv 0 10 0\nv 10 10 2\n", kLook);
+  // A reader that wants faces says so in one line; one that does not shows the points.
+  if (outcome.status != 0) {
+    EXPECT_EQ(outcome.status, 2) << outcome.err;
+    EXPECT_THAT(outcome.complaints(), SizeIs(1)) << outcome.err;
+  }
+}
+
+TEST_F(MeshInput, AFaceOfNoAreaIsShownWithTheOthers) {
+  const Outcome outcome = look_at(
+      "slivers.obj", "v 0 0 0\nv 10 0 0\nv 0 10 0\nv 10 10 1\nf 1 2 3\nf 2 4 3\nf 1 1 2\nf 1 2 2\n", kLook);
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+}
+
+TEST_F(MeshInput, WhatIsNoMeshIsOneLineAndStatusTwo) {
+  for (const char* bytes : {"", "ply\nformat ascii 1.0\n", "not a mesh"}) {
+    const Outcome outcome = look_at("broken.ply", bytes, kLook);
+    EXPECT_EQ(outcome.status, 2) << outcome.err;
+    EXPECT_THAT(outcome.complaints(), SizeIs(1)) << outcome.err;
+  }
+}
+
 TEST(WindowInput, ABadScriptIsNamedByItsLine) {
   const test::TemporaryFolder folder;
   const auto file = folder.path() / "bad.script";

@@ -60,8 +60,10 @@ void DeviceDialog::draw_option(UiContext& ui, const SettingInfo& option, std::st
     }
     text_line(ui, name.c_str(), label.c_str(), value);
   }
-  if (ImGui::IsItemHovered() && !option.help.empty()) {
-    ImGui::SetTooltip("%s", option.help.c_str());
+  if (!option.help.empty()) {
+    ImGui::PushFont(ui.fonts.small);
+    coloured_text(ui.colours.faint, option.help.c_str());
+    ImGui::PopFont();
   }
 }
 

@@ -194,8 +194,9 @@ void OperatorScreen::draw_statement(UiContext& ui, const Statement& statement, I
   ImGui::BeginChild("words", {text_width, size.y - ui.px(0.6F)}, false, ImGuiWindowFlags_NoBackground);
   // The headline is as large as fits in two lines.
   ImFont* font = ui.fonts.large;
-  const ImVec2 large = font->CalcTextSizeA(font->FontSize, 1e6F, 0, statement.headline.c_str());
-  if (large.x > 1.8F * text_width) {
+  const float headline_px =
+      font->CalcTextSizeA(font->FontSize, 1e6F, text_width, statement.headline.c_str()).y;
+  if (headline_px > 2.1F * font->FontSize) {
     font = ui.fonts.normal;
   }
   ImGui::PushFont(font);
@@ -203,7 +204,7 @@ void OperatorScreen::draw_statement(UiContext& ui, const Statement& statement, I
   ImGui::TextUnformatted(statement.headline.c_str());
   ImGui::PopTextWrapPos();
   ImGui::PopFont();
-  const bool two_lines = font == ui.fonts.large && large.x > text_width;
+  const bool two_lines = font == ui.fonts.large && headline_px > 1.1F * font->FontSize;
   ImGui::PushFont(two_lines || statement.detail.size() > 110 ? ui.fonts.small : ui.fonts.normal);
   coloured_text(ui.colours.text, statement.detail.c_str());
   ImGui::PopFont();

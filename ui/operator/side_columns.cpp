@@ -3,6 +3,7 @@
 // The columns beside the model: faces, tablet and machine on the left, the scan as it grows and the next turn
 // on the right.
 #include <cmath>
+#include <numeric>
 
 #include "ui/operator/operator_screen.h"
 
@@ -18,6 +19,10 @@ constexpr Text kFaceTexts[] = {Text::kObverse, Text::kReverse, Text::kLeft,
 void OperatorScreen::draw_left(UiContext& ui, ImVec2 size) {
   ImGui::BeginChild("left", size, true);
   ImGui::TextUnformatted(ui.text(Text::kChecklist));
+  // While a hole gapes, a face without red may be one that nobody has looked at yet: no tick then.
+  constexpr double kSmallHoles = 0.05;
+  const double seen_mm2 = std::accumulate(state_.seen_mm2.begin(), state_.seen_mm2.end(), 0.0);
+  const bool small_holes = state_.red_map && red_mm2(*state_.red_map) < kSmallHoles * seen_mm2;
   for (int k = 0; k < kFaceCount; ++k) {
     const Face face = static_cast<Face>(k);
     const double red = state_.red_map ? face_mm2(*state_.red_map, face, RegionState::kRed) : 0.0;
@@ -25,7 +30,9 @@ void OperatorScreen::draw_left(UiContext& ui, ImVec2 size) {
     const auto f = static_cast<std::size_t>(k);
     // A hole is listed under one face; its rim may run over others.
     const bool known = state_.red_map && (state_.seen_mm2[f] > 0 || red > 0);
-    const bool whole = known && red <= 0 && (state_.red_map->conclusive || state_.red_points[f] == 0);
+    const bool whole =
+        known && red <= 0 && (state_.red_map->conclusive || (small_holes && state_.red_points[f] == 0));
+    const bool lacks = known && (red > 0 || state_.red_points[f] > 0) && !whole;
     const ImVec2 at = ImGui::GetCursorScreenPos();
     ImDrawList* draw = ImGui::GetWindowDrawList();
     const float box = ImGui::GetTextLineHeight();
@@ -37,7 +44,7 @@ void OperatorScreen::draw_left(UiContext& ui, ImVec2 size) {
                     packed(ui.colours.good), 0.16F * box);
     } else {
       draw->AddRect({at.x + 0.1F * box, at.y + 0.15F * box}, {at.x + 0.9F * box, at.y + 0.9F * box},
-                    packed(known ? ui.colours.red : ui.colours.faint), 2, 0, 0.12F * box);
+                    packed(lacks ? ui.colours.red : ui.colours.faint), 2, 0, 0.12F * box);
     }
     ImGui::Dummy({box, box});
     ImGui::SameLine();
@@ -45,14 +52,14 @@ void OperatorScreen::draw_left(UiContext& ui, ImVec2 size) {
     ImGui::PushFont(ui.fonts.small);
     std::string note = !known    ? ui.text(Text::kNoArea)
                        : red > 0 ? filled(ui.text(Text::kRedArea), red)
-                       : whole   ? std::string()
-                                 : ui.text(Text::kRedRim);
+                       : lacks   ? ui.text(Text::kRedRim)
+                                 : std::string();
     if (excused > 0.05) {
       note += (note.empty() ? "" : ", ") + filled(ui.text(Text::kExcused), excused);
     }
     if (!note.empty()) {
       ImGui::Indent(box + ImGui::GetStyle().ItemSpacing.x);
-      coloured_text(known && !whole ? ui.colours.red : ui.colours.faint, note.c_str());
+      coloured_text(lacks ? ui.colours.red : ui.colours.faint, note.c_str());
       ImGui::Unindent(box + ImGui::GetStyle().ItemSpacing.x);
     }
     ImGui::PopFont();
@@ -104,7 +111,6 @@ void OperatorScreen::draw_growing(UiContext& ui, ImVec2 size) {
                   packed(ui.colours.faint), ui.text(Text::kNoScanYet));
     return;
   }
-  ui.facts.insert("growing");
   if (picture.rows != grown_rows_ || grown_blue_ != ui.preferences.blue_for_red) {
     growing_.upload(picture.cols, picture.rows, 3, coloured(picture, ui).data(), false);
     grown_rows_ = picture.rows;

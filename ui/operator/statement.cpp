@@ -76,7 +76,7 @@ void say_still(Statement& out, const LiveState& state, bool has_device, Language
     out.may_sign = true;
   } else {
     out.headline = state.red_map ? filled(text_of(Text::kStillRed, language), red_mm2(*state.red_map))
-                                 : std::string(text_of(Text::kGoOn, language));
+                                 : filled(text_of(Text::kStoredScans, language), state.scans.size());
     out.tone = Tone::kAsk;
     out.scan_label = Text::kGoOn;
     out.may_sign = state.red_map != nullptr;  // as incomplete, with the reason

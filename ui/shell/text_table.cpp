@@ -30,6 +30,7 @@ constexpr Row kRows[] = {
      "Fast fertig: Netz, Keile und Seiten entstehen"},
     {Text::kSigning, "Checking every byte, then signing", "Jedes Byte wird geprüft, dann unterschrieben"},
     {Text::kStillRed, "{:.1f} mm2 are still red: scan on", "{:.1f} mm2 sind noch rot: weiter scannen"},
+    {Text::kStoredScans, "{} scans are stored: go on", "{} Scans sind gespeichert: weiter"},
     {Text::kConclusive, "Conclusive: nothing is missing. Sign it",
      "Vollständig: nichts fehlt. Unterschreiben"},
     {Text::kSigned, "Signed by {}", "Unterschrieben von {}"},

@@ -26,6 +26,7 @@ enum class Text {
   kFinishing,
   kSigning,
   kStillRed,
+  kStoredScans,
   kConclusive,
   kSigned,
   kSignedNext,

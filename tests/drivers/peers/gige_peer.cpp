@@ -154,7 +154,7 @@ int main(int count, char** words) {
   arv_fake_camera_write_memory(camera, 0x68, sizeof field, field);
   for (const auto& [address, value] :
        {std::pair(0x11cU, 4096U), std::pair(0x118U, 4096U), std::pair(0x100U, 320U), std::pair(0x104U, 40U),
-        std::pair(0x128U, 0x011000B8U), std::pair(0x138U, 5000U), std::pair(0x12cU, 1U),
+        std::pair(0x128U, 0x011000B8U), std::pair(0x138U, 8000U), std::pair(0x12cU, 1U),
         std::pair(unsigned{kInvalidFlag}, 1U), std::pair(unsigned{kPayloadLie}, lies ? 100000U : 0U)}) {
     arv_fake_camera_write_register(camera, address, value);
   }

@@ -86,7 +86,7 @@ class Device {
     write(0xd04, 1400);
     for (const auto& [address, value] :
          {std::pair(0x11cU, 4096U), std::pair(0x118U, 4096U), std::pair(0x100U, 320U), std::pair(0x104U, 40U),
-          std::pair(0x128U, 0x011000B8U), std::pair(0x138U, 5000U), std::pair(0x12cU, 1U)}) {
+          std::pair(0x128U, 0x011000B8U), std::pair(0x138U, 8000U), std::pair(0x12cU, 1U)}) {
       write(address, value);
     }
     for (std::uint32_t axis = 0; axis < 3; ++axis) {

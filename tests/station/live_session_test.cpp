@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+// A session as a window follows it: paced by somebody, never waiting for anybody.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <condition_variable>
+#include <mutex>
+
+#include "station/live_session.h"
+#include "tests/support/temporary_folder.h"
+
+namespace dubsar {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::SizeIs;
+
+constexpr const char* kSmallTablet = "sim:?seed=1&size=20x16x8&spacing=0.25&noise=0.02";
+
+/// A session whose changes can be waited for.
+class Followed {
+ public:
+  Followed(const std::string& device, const std::filesystem::path& folder)
+      : session({device, folder, std::nullopt}, [this] {
+          const std::scoped_lock lock(mutex_);
+          ++changes_;
+          changed_.notify_all();
+        }) {}
+
+  template <class Is>
+  [[nodiscard]] bool wait_until(const Is& is) {
+    std::unique_lock lock(mutex_);
+    return changed_.wait_for(lock, std::chrono::seconds(60), [&] {
+      lock.unlock();
+      const bool so = is(session.state());
+      lock.lock();
+      return so;
+    });
+  }
+  [[nodiscard]] bool wait_for_phase(LivePhase phase) {
+    return wait_until([&](const LiveState& state) { return state.phase == phase; });
+  }
+  [[nodiscard]] bool wait_for_rest() {
+    return wait_until([this](const LiveState&) { return !session.busy(); });
+  }
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  int changes_ = 0;
+
+ public:
+  LiveSession session;  ///< last: its threads use what stands above
+};
+
+TEST(LiveSession, WaitsForEveryTurnByHandAndGoesOnWhenAsked) {
+  const test::TemporaryFolder folder;
+  Followed followed(kSmallTablet, folder.path() / "s");
+  followed.session.scan_now();
+  ASSERT_TRUE(followed.wait_for_phase(LivePhase::kWaiting));
+  const LiveState waiting = followed.session.state();
+  ASSERT_TRUE(waiting.next && waiting.next->placement);
+  EXPECT_TRUE(waiting.next->placement->hand_turn.has_value());
+  EXPECT_GE(waiting.scans.size(), 1U);
+  EXPECT_TRUE(waiting.scans.front().grid && waiting.scans.front().picture);
+  EXPECT_TRUE(waiting.mesh && waiting.red);
+  EXPECT_GT(waiting.seen_mm2[static_cast<std::size_t>(Face::kObverse)], 100);
+  const std::size_t before = waiting.scans.size();
+  followed.session.scan_now();
+  ASSERT_TRUE(followed.wait_until([&](const LiveState& s) { return s.scans.size() > before; }));
+  followed.session.finish();
+  ASSERT_TRUE(followed.wait_for_rest());
+  const LiveState ended = followed.session.state();
+  EXPECT_FALSE(ended.error) << ended.error->line();
+  ASSERT_TRUE(ended.red_map && ended.checklist);
+  EXPECT_FALSE(ended.red_map->conclusive) << "finished in the middle";
+}
+
+TEST(LiveSession, TakingAScanOutMovesNothingByItself) {
+  const test::TemporaryFolder folder;
+  Followed followed(kSmallTablet, folder.path() / "s");
+  followed.session.scan_now();
+  ASSERT_TRUE(followed.wait_for_phase(LivePhase::kWaiting));
+  const LiveState before = followed.session.state();
+  followed.session.ask(DropScan{-1, "a test"});
+  ASSERT_TRUE(followed.wait_until([](const LiveState& s) { return s.scans.back().dropped; }));
+  ASSERT_TRUE(followed.wait_for_phase(LivePhase::kWaiting));
+  EXPECT_EQ(followed.session.state().scans.size(), before.scans.size());
+  const int id = before.scans.back().id;
+  followed.session.ask(RestoreScan{id});
+  ASSERT_TRUE(followed.wait_until([](const LiveState& s) { return !s.scans.back().dropped; }));
+  followed.session.stop();
+  ASSERT_TRUE(followed.wait_for_rest());
+}
+
+TEST(LiveSession, WhatWasStoppedGoesOnWithEverythingThatWasStored) {
+  const test::TemporaryFolder folder;
+  std::size_t stored = 0;
+  {
+    Followed followed(kSmallTablet, folder.path() / "s");
+    followed.session.scan_now();
+    ASSERT_TRUE(followed.wait_for_phase(LivePhase::kWaiting));
+    TabletRecord record;
+    record.museum_number = "VAT 1";
+    record.cdli = "P123456";
+    followed.session.describe(record);
+    ASSERT_TRUE(followed.wait_until([](const LiveState& s) {
+      return !s.notices.empty() && s.notices.back().text.find("said of the tablet") != std::string::npos;
+    }));
+    stored = followed.session.state().scans.size();
+  }  // closed while it waited
+  Followed again(kSmallTablet, folder.path() / "s");
+  again.session.read();
+  ASSERT_TRUE(again.wait_for_rest());
+  const LiveState state = again.session.state();
+  EXPECT_TRUE(state.exists);
+  ASSERT_THAT(state.scans, SizeIs(stored));
+  EXPECT_TRUE(state.scans.front().picture);
+  EXPECT_EQ(state.record.museum_number, "VAT 1");
+  again.session.scan_now();
+  ASSERT_TRUE(again.wait_until([&](const LiveState& s) { return s.scans.size() > stored; }));
+}
+
+TEST(LiveSession, ADeviceThatIsNotThereIsSaidAndLeavesNoSession) {
+  const test::TemporaryFolder folder;
+  Followed followed("sim:?size=nonsense", folder.path() / "s");
+  followed.session.scan_now();
+  ASSERT_TRUE(followed.wait_until([](const LiveState& s) { return s.error.has_value(); }));
+  EXPECT_THAT(followed.session.state().error->line(), HasSubstr("size"));
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "s"));
+}
+
+TEST(TabletRecord, ACdliNumberIsAPAndSixDigits) {
+  EXPECT_TRUE(check_cdli(""));
+  EXPECT_TRUE(check_cdli("P123456"));
+  for (const char* bad : {"P12345", "P1234567", "p123456", "123456", "P12345x", "P 12345"}) {
+    EXPECT_FALSE(check_cdli(bad)) << bad;
+  }
+  TabletRecord record{"VAT \"1\"", "P000001", "Berlin", "A. Reader", "line\nbreak"};
+  const auto again = parse_tablet_record(tablet_record_to_json(record), "test");
+  ASSERT_TRUE(again) << again.error().line();
+  EXPECT_EQ(*again, record);
+}
+
+}  // namespace
+}  // namespace dubsar
