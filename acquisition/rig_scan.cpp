@@ -296,7 +296,7 @@ Status RigScanner::row(int number, ProfileSink& sink, ScanTally& tally) {
   if (!lit) {
     return std::unexpected(lit.error());
   }
-  const Result<StageMotion> motion = stage_.motion();
+  const Result<StageReading> motion = stage_.motion();
   if (!motion) {
     return std::unexpected(motion.error());
   }
