@@ -41,8 +41,8 @@ Eigen::VectorXd measured(const CameraModel& size, const Eigen::VectorXd& unknown
 
 }  // namespace
 
-double volume_sigma_mm(const CameraModel& camera, const Eigen::VectorXd& unknowns, const Eigen::MatrixXd& joint,
-                       bool linear, double depth_range_mm) {
+double volume_sigma_mm(const CameraModel& camera, const Eigen::VectorXd& unknowns,
+                       const Eigen::MatrixXd& joint, bool linear, double depth_range_mm) {
   const Eigen::Index count = linear ? 15 : 12;
   RigCalibration rig;
   rig.camera = camera;
@@ -69,8 +69,7 @@ double volume_sigma_mm(const CameraModel& camera, const Eigen::VectorXd& unknown
     up[i] += step;
     down[i] -= step;
     slope.col(i) =
-        (measured(camera, up, pixels, linear) - measured(camera, down, pixels, linear)) /
-        (2 * step);
+        (measured(camera, up, pixels, linear) - measured(camera, down, pixels, linear)) / (2 * step);
   }
   // Less the rigid motion of all points that comes nearest: three shifts, three turns about their middle.
   Eigen::MatrixXd rigid = Eigen::MatrixXd::Zero(points.size(), 6);
