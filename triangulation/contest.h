@@ -24,13 +24,13 @@ struct Contest {
 [[nodiscard]] int reach_nodes(const StitchSurface& s, const StitchSurface& other);
 
 /// True when sample i lies within the clearance (× the coarser µ) of, or inside, what another scan keeps.
-[[nodiscard]] bool is_taken(const std::vector<OwnedScan>& scans, std::size_t self, std::size_t i, const Contest& contest,
-              double clearance_factor, const OwnershipOptions& options);
+[[nodiscard]] bool is_taken(const std::vector<OwnedScan>& scans, std::size_t self, std::size_t i,
+                            const Contest& contest, double clearance_factor, const OwnershipOptions& options);
 
 /// True when a triangle of another scan's patch meets the triangle t of this one, seen along its normal;
 /// `points`: this scan's, [rows*cols].
-[[nodiscard]] bool meets_another(const std::vector<OwnedScan>& scans, std::size_t self, std::span<const Eigen::Vector3f> points,
-                   const std::array<std::size_t, 3>& t, const Contest& contest,
-                   const OwnershipOptions& options);
+[[nodiscard]] bool meets_another(const std::vector<OwnedScan>& scans, std::size_t self,
+                                 std::span<const Eigen::Vector3f> points, const std::array<std::size_t, 3>& t,
+                                 const Contest& contest, const OwnershipOptions& options);
 
 }  // namespace dubsar

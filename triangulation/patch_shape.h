@@ -14,8 +14,8 @@ namespace dubsar {
 void remove_specks(std::vector<std::uint8_t>& kept, const std::vector<std::uint8_t>& cells,
                    const std::vector<std::uint8_t>& starts, const Lattice& grid, int least);
 
-/// Takes away the triangles that lack a corner, then the samples that no triangle uses; and brings what the scan
-/// tells others of its patches (near_kept, some_kept, all_kept) up to date.
+/// Takes away the triangles that lack a corner, then the samples that no triangle uses; and brings what the
+/// scan tells others of its patches (near_kept, some_kept, all_kept) up to date.
 void settle_patches(OwnedScan& scan, const OwnershipOptions& options);
 
 /// 1 within `radius` (a square) of a mark.
