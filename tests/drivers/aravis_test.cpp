@@ -280,7 +280,9 @@ TEST_F(Aravis, AFrozenCameraIsNoticedAndAnotherIsNotTakenForIt) {
   ASSERT_NO_FATAL_FAILURE(plug_in({"MODEL=Other 2"}));
   const Status other = device.start_frames();
   ASSERT_FALSE(other);
-  EXPECT_THAT(other.error().line(), HasSubstr("another camera is there now: Dubsar Other 2"));
+  // Aravis may still know the address, or look for the name anew.
+  EXPECT_THAT(other.error().line(), testing::AnyOf(HasSubstr("another camera is there now: Dubsar Other 2"),
+                                                   HasSubstr("the camera is not there")));
 }
 
 TEST_F(Aravis, ARefusalSaysWhatToDo) {
