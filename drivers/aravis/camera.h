@@ -89,6 +89,8 @@ class Camera {
   Status start(std::uint32_t pool);
   /// Nothing when none came in time; kDevice within 2 s when the camera is gone.
   [[nodiscard]] Result<std::optional<Taken>> next(Clock::time_point until);
+  /// True when it has not answered of late: next() will tell before long whether it is gone.
+  [[nodiscard]] bool is_doubtful() const { return presence_ && presence_->is_doubtful(); }
   void give_back(ArvBuffer* buffer);
   void stop();
   Status trigger();

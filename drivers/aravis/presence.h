@@ -22,6 +22,8 @@ class Presence {
   /// for too long. Does not wait. quiet() is for when its frames come and there is nothing to ask.
   [[nodiscard]] bool gone();
   void quiet();
+  /// True when questions have gone unanswered of late: it may turn out to be gone.
+  [[nodiscard]] bool is_doubtful() const { return Clock::now() - heard_ > 2 * kAskEvery; }
 
   static constexpr std::chrono::milliseconds kAskEvery{200};
   static constexpr std::chrono::milliseconds kSilence{1300};

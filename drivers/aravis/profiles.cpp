@@ -105,12 +105,15 @@ Status stream_rows(Camera& camera, Scan& scan, const std::atomic<bool>& stopped)
       return fail(ErrorKind::kCancelled, "stopped in mid-scan", camera.id());
     }
     constexpr std::chrono::milliseconds kLook(100);  // for a stop, in between
-    const Result<std::optional<Taken>> frame = camera.next(std::min(until, Clock::now() + kLook));
+    const Clock::time_point look = Clock::now() + kLook;
+    const Result<std::optional<Taken>> frame =
+        camera.next(Clock::now() < until ? std::min(until, look) : look);
     if (!frame) {
       return std::unexpected(frame.error());
     }
     if (!*frame) {
-      if (Clock::now() >= until) {
+      // One that no longer answers is told apart from one that has nothing to send.
+      if (Clock::now() >= until && !camera.is_doubtful()) {
         return fail(ErrorKind::kDevice, "the camera sends no profiles", camera.id(),
                     "see that its trigger or encoder runs, or give it more time with wait=");
       }
