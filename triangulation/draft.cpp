@@ -32,14 +32,14 @@ std::vector<std::array<std::size_t, 3>> bridge(const OwnedScan& scan, std::size_
     return {};
   }
   const auto at = [&](std::size_t k) { return scan.fused->point(k); };
-  const bool upright = s.normals[north].dot(s.normals[south]) > s.normals[west].dot(s.normals[east]);
+  const bool upright = s.normal(north).dot(s.normal(south)) > s.normal(west).dot(s.normal(east));
   using Pair = std::vector<std::array<std::size_t, 3>>;
   const Pair triangles = upright ? Pair{{north, west, south}, {north, south, east}}
                                  : Pair{{north, west, east}, {west, south, east}};
   for (const auto& t : triangles) {
     Vector3f n = (at(t[1]) - at(t[0])).cross(at(t[2]) - at(t[0]));
     n *= s.mirrored ? -1.0F : 1.0F;
-    const Vector3f measured = s.normals[t[0]] + s.normals[t[1]] + s.normals[t[2]];
+    const Vector3f measured = s.normal(t[0]) + s.normal(t[1]) + s.normal(t[2]);
     if (!(n.dot(measured) > 0.4F * n.norm() * measured.norm())) {
       return {};
     }
@@ -99,7 +99,7 @@ class Patch {
         }
         const std::size_t at = fused.slot[i];
         mesh.positions[v] = fused.points[at];
-        mesh.normals[v] = s.normals[i];
+        mesh.normals[v] = s.normal(i);
         mesh.reliability[v] = fused.reliability[at];
         mesh.sigma_mm[v] = fused.sigma_mm[at];
         mesh.scans[v] = fused.scans[at];
