@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -34,9 +35,18 @@ struct ScanSetOptions {
   std::filesystem::path pins_file;  ///< empty: the session's, or none
 };
 
+/// Is given each scan as it is read, and owns it; what the set knows so far (poses, pins, the operator's
+/// word) comes with it. An error stops the reading.
+using ScanVisitor = std::function<Status(const ScanSet& set, StationScan scan)>;
+
 /// Reads a session or a folder. Damaged scans of a session are named in the log and left out; so are bad
 /// files of a folder, unless none is good.
 [[nodiscard]] Result<ScanSet> load_scan_set(const std::filesystem::path& path, const ScanSetOptions& options,
                                             JobContext& job);
+
+/// The same scan by scan: no more than one grid is in memory, but for what the visitor keeps; the set's own
+/// scans have id and file only.
+[[nodiscard]] Result<ScanSet> visit_scan_set(const std::filesystem::path& path, const ScanSetOptions& options,
+                                             const ScanVisitor& visit, JobContext& job);
 
 }  // namespace dubsar
