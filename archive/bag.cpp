@@ -60,7 +60,8 @@ Result<std::string> manifest_of(const fs::path& root, const std::vector<Listed>&
       [&](std::size_t k) {
         const std::size_t i = order[k];
         sums[i] = sha512_of_file(root / files[i].name, job);
-        job.progress("checksums", static_cast<double>(done.fetch_add(1) + 1) / static_cast<double>(files.size()));
+        job.progress("checksums",
+                     static_cast<double>(done.fetch_add(1) + 1) / static_cast<double>(files.size()));
       },
       1);
   std::string text;
@@ -74,7 +75,8 @@ Result<std::string> manifest_of(const fs::path& root, const std::vector<Listed>&
 }
 
 std::string one_line(std::string text) {
-  std::ranges::replace_if(text, [](char c) { return static_cast<unsigned char>(c) < ' '; }, ' ');
+  std::ranges::replace_if(
+      text, [](char c) { return static_cast<unsigned char>(c) < ' '; }, ' ');
   return text;
 }
 
@@ -139,9 +141,8 @@ Result<BagSize> write_bag_tags(const fs::path& folder, const std::vector<BagFiel
   const auto tag = [&](const char* name, const std::string& text) {
     return write_file_atomically(folder / name, text);
   };
-  for (const Status& written :
-       {tag("bagit.txt", "BagIt-Version: 1.0\nTag-File-Character-Encoding: UTF-8\n"),
-        tag("bag-info.txt", fields), tag("manifest-sha512.txt", *manifest)}) {
+  for (const Status& written : {tag("bagit.txt", "BagIt-Version: 1.0\nTag-File-Character-Encoding: UTF-8\n"),
+                                tag("bag-info.txt", fields), tag("manifest-sha512.txt", *manifest)}) {
     if (!written) {
       return std::unexpected(written.error());
     }

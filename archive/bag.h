@@ -13,8 +13,8 @@
 
 namespace dubsar {
 
-/// One line of bag-info.txt, such as {"External-Identifier", "P123456"}. Line breaks in a value become blanks;
-/// one without a value is left out.
+/// One line of bag-info.txt, such as {"External-Identifier", "P123456"}. Line breaks in a value become
+/// blanks; one without a value is left out.
 struct BagField {
   std::string label;
   std::string value;

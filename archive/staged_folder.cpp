@@ -58,8 +58,7 @@ Result<StagedFolder> StagedFolder::begin(const fs::path& wanted, bool replace) {
   if (error) {
     return storage(target.parent_path(), "cannot make the folder", error.message());
   }
-  const fs::path staged =
-      target.parent_path() / (std::string(kTemporaryPrefix) + target.filename().string());
+  const fs::path staged = target.parent_path() / (std::string(kTemporaryPrefix) + target.filename().string());
   for (int attempt = 0; attempt < 2; ++attempt) {
     const bool made = fs::create_directory(staged, error);
     if (error) {

@@ -20,8 +20,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-Status load_session(const fs::path& path, ScanSet& set, JobContext& job) {
-  Result<SessionStore> store = SessionStore::open(path);
+Status load_session(const fs::path& path, const ScanSetOptions& options, ScanSet& set, JobContext& job) {
+  Result<SessionStore> store = SessionStore::open(path, options.access);
   if (!store) {
     return std::unexpected(store.error());
   }
@@ -149,8 +149,8 @@ Result<ScanSet> load_scan_set(const fs::path& path, const ScanSetOptions& option
     }
     set.pins = std::move(*pins);
   }
-  const Status loaded =
-      SessionStore::is_session(path) ? load_session(path, set, job) : load_folder(path, options, set, job);
+  const Status loaded = SessionStore::is_session(path) ? load_session(path, options, set, job)
+                                                       : load_folder(path, options, set, job);
   if (!loaded) {
     return std::unexpected(loaded.error());
   }
