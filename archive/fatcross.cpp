@@ -66,7 +66,8 @@ Image fatcross(const SixViews& views, FatcrossKind kind, Rgb8 ground) {
   if (below) {
     draw_ruler(sheet, ruler, column_x + (wide - ruler.width_px) / 2, y + air, ink_on(ground));
   } else {
-    draw_ruler(sheet, ruler, column_x + wide + gap, height - ruler.height_px, ink_on(ground));
+    draw_ruler(sheet, ruler, column_x + wide + gap, height - ruler.height_px - ruler.height_px / 4,
+               ink_on(ground));
   }
   return sheet;
 }

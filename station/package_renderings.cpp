@@ -48,6 +48,16 @@ std::vector<float> invariant_tone(const std::vector<float>& invariants) {
   return tone;
 }
 
+/// Ambient occlusion as grey, a little darker than it is, so that shallow signs show.
+std::vector<float> openness_tone(const std::vector<float>& openness) {
+  constexpr float kGamma = 1.5F;
+  std::vector<float> tone(openness.size());
+  parallel_for_each_index(
+      tone.size(), [&](std::size_t v) { tone[v] = std::pow(std::max(0.0F, openness[v]), kGamma); },
+      1U << 14U);
+  return tone;
+}
+
 /// A file that is written beside others: encoding takes longer than drawing.
 struct Task {
   std::string path;
@@ -117,10 +127,11 @@ Status Drawing::views() {
     return had;
   }
   const std::vector<float> invariants = invariant_tone(content_.fields->invariants);
+  const std::vector<float> openness = openness_tone(content_.fields->openness);
   const std::array<NamedLook, 4> looks = {
       {{"clay", "clay", {RenderStyle::kClay, Lighting::kRaking, {}}},
        {"msii", "integral invariants", {RenderStyle::kTone, Lighting::kFlat, invariants}},
-       {"ao", "ambient occlusion", {RenderStyle::kTone, Lighting::kFlat, content_.fields->openness}},
+       {"ao", "ambient occlusion", {RenderStyle::kTone, Lighting::kFlat, openness}},
        {"radiance", "radiance scaling", {RenderStyle::kClay, Lighting::kRadiance, {}}}}};
   std::array<Look, looks.size()> plain{};
   std::ranges::transform(looks, plain.begin(), &NamedLook::look);

@@ -2,7 +2,11 @@
 // Copyright The Dubsar developers
 // What a package tells people.
 
+#include <span>
+
+#include "archive/page_pdf.h"
 #include "archive/report_pictures.h"
+#include "formats/atomic_file.h"
 #include "station/package_content.h"
 #include "station/picture_file.h"
 #include "station/session_wedges.h"
@@ -33,6 +37,17 @@ Status add_reports(PackageContent& content) {
       !written) {
     return written;
   }
+  const auto pdf = page_pdf(*report, {input.title + ": scan report", program_name(), content.when});
+  if (!pdf) {
+    return std::unexpected(pdf.error());
+  }
+  if (const Status written = write_file_atomically(content.root / "report" / "report.pdf",
+                                                   std::as_bytes(std::span(pdf->data(), pdf->size())));
+      !written) {
+    return written;
+  }
+  content.list("report/report.pdf",
+               "the same report for paper, A4; the six sides are life size where they fit");
   if (const Status written = content.text("report/checklist.html", checklist_html(input, *pictures),
                                           "the checklist with the sign-off, as it is filed");
       !written || pictures->empty) {
