@@ -110,7 +110,13 @@ OrderedJson step_node(const ProvenanceInput& input, const ProvenanceStep& step) 
 }  // namespace
 
 std::string provenance_jsonld(const ProvenanceInput& input) {
-  OrderedJson graph = OrderedJson::array({tablet_node(input)});
+  OrderedJson graph =
+      OrderedJson::array({{{"@id", input.base_url + "provenance.jsonld"},
+                           {"@type", "crm:E31_Document"},
+                           {"rdfs:label", "Provenance of the package of " + input.identifier},
+                           {"crm:P70_documents", reference(input.base_url + "tablet")},
+                           {"dcterms:created", {{"@type", "xsd:dateTime"}, {"@value", input.when}}}},
+                          tablet_node(input)});
   graph.push_back({{"@id", input.base_url + "provenance/device"},
                    {"@type", "crmdig:D8_Digital_Device"},
                    {"rdfs:label", input.device.empty() ? "unknown device" : input.device}});
@@ -145,9 +151,6 @@ std::string provenance_jsonld(const ProvenanceInput& input) {
                     {"rdfs", "http://www.w3.org/2000/01/rdf-schema#"},
                     {"dcterms", "http://purl.org/dc/terms/"},
                     {"xsd", "http://www.w3.org/2001/XMLSchema#"}}},
-                  {"@id", input.base_url + "provenance.jsonld"},
-                  {"@type", "crm:E31_Document"},
-                  {"dcterms:created", {{"@type", "xsd:dateTime"}, {"@value", input.when}}},
                   {"@graph", std::move(graph)}});
 }
 

@@ -73,7 +73,7 @@ std::vector<BagField> bag_fields(const PackageContent& content) {
   std::string description =
       "Surface of a cuneiform tablet, measured by laser triangulation: raw range "
       "grids, poses, model, pictures, wedges, report. ";
-  description += content.planned.results.red_map.conclusive
+  description += content.results().red_map.conclusive
                      ? "The verdict is conclusive: what the scanner can reach is sampled densely enough."
                      : "The verdict is not conclusive: see data/report/report.html for what is missing.";
   std::string left_out;
@@ -180,31 +180,26 @@ Result<Package> write_package(const fs::path& session, const fs::path& to, const
     timings.push_back({stage, std::chrono::duration<double>(now - started).count()});
     started = now;
   };
-  const Result<ScanSet> set = load_scan_set(session, {.access = SessionStore::Access::kReadOnly}, job);
-  if (!set) {
-    return std::unexpected(set.error());
+  const Result<PackageSource> source = PackageSource::open(session, job);
+  if (!source) {
+    return std::unexpected(source.error());
   }
+  const SessionStore& store = source->store();
+  const Mesh& mesh = source->results().mesh;
   note("reading");
-  const Result<PlannedAgain> planned = plan_again(*set, set->poses, job);
-  if (!planned) {
-    return std::unexpected(planned.error());
-  }
-  const Mesh& mesh = planned->results.mesh;
-  note("verdict");
-  PageFacts facts = page_facts_of(*set->store);
-  const TabletRecord tablet = tablet_record_of(*set->store);
+  PageFacts facts = page_facts_of(store);
+  const TabletRecord tablet = tablet_record_of(store);
   const std::string identifier = !tablet.cdli.empty() ? tablet.cdli : facts.title;
   PackageContent content{.root = staged->path() / "data",
-                         .store = *set->store,
-                         .set = *set,
-                         .planned = *planned,
+                         .source = *source,
+                         .store = store,
                          .options = options,
                          .facts = std::move(facts),
                          .tablet = tablet,
                          .identifier = identifier,
                          .stem = file_stem(identifier),
                          .when = utc_now(),
-                         .tablet_from_model = planned->stage->tablet_from_model(mesh),
+                         .tablet_from_model = source->tablet_from_model(),
                          .lies_by_text = false,
                          .wedges = {},
                          .fields = {},
@@ -214,7 +209,7 @@ Result<Package> write_package(const fs::path& session, const fs::path& to, const
                          .job = job};
   content.options.base_url = base_url(options.base_url, content.stem);
   if (content.has(PackagePart::kWedges)) {
-    Result<std::optional<WedgeFile>> wedges = wedges_of(*set->store, mesh, job);
+    Result<std::optional<WedgeFile>> wedges = wedges_of(store, mesh, job);
     if (!wedges) {
       return std::unexpected(wedges.error());
     }
@@ -240,7 +235,7 @@ Result<Package> write_package(const fs::path& session, const fs::path& to, const
   Package package{.folder = to,
                   .size = *size,
                   .identifier = identifier,
-                  .conclusive = planned->results.red_map.conclusive,
+                  .conclusive = source->results().red_map.conclusive,
                   .has_mesh = !mesh.faces.empty(),
                   .scans = 0,
                   .wedges = content.wedges ? content.wedges->wedges.size() : 0,

@@ -12,9 +12,8 @@
 #include "formats/wedges_json.h"
 #include "station/package.h"
 #include "station/package_features.h"
-#include "station/plan_again.h"
+#include "station/package_source.h"
 #include "station/results.h"
-#include "station/scan_set.h"
 #include "station/tablet_record.h"
 
 namespace dubsar {
@@ -38,9 +37,8 @@ struct PackagedPicture {
 /// What the writers of a package's parts share. Refers to what write_package() keeps alive.
 struct PackageContent {
   std::filesystem::path root;  ///< the payload's folder
+  const PackageSource& source;
   const SessionStore& store;
-  const ScanSet& set;
-  const PlannedAgain& planned;
   PackageOptions options;
   PageFacts facts;
   TabletRecord tablet;
@@ -58,7 +56,8 @@ struct PackageContent {
   JobContext& job;
 
   [[nodiscard]] bool has(PackagePart part) const { return !options.without.contains(part); }
-  [[nodiscard]] const Mesh& mesh() const { return planned.results.mesh; }
+  [[nodiscard]] const Results& results() const { return source.results(); }
+  [[nodiscard]] const Mesh& mesh() const { return source.results().mesh; }
   /// Makes the folder above `path` and returns the whole path.
   [[nodiscard]] Result<std::filesystem::path> place(const std::string& path) const;
   /// Writes a text and lists it.

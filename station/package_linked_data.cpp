@@ -42,7 +42,7 @@ std::string fate_of(const StoredScan& scan, const ScanPose* pose) {
 }
 
 ProvenanceScan scan_of(const PackageContent& content, const StoredScan& scan) {
-  const auto& poses = content.planned.results.poses;
+  const auto& poses = content.results().poses;
   const auto at = std::ranges::find(poses, scan.id, &ScanPose::id);
   const ScanPose* pose = scan.dropped || at == poses.end() ? nullptr : &*at;
   ProvenanceScan out;
@@ -65,7 +65,7 @@ void add_steps(const PackageContent& content, ProvenanceInput& input) {
   ProvenanceStep registration{"registration", "Registration of the scans", {}, {"scans/poses.json"}, {}, {}};
   double worst_rms_mm = 0;
   double worst_sigma_mm = 0;
-  for (const ScanPose& pose : content.planned.results.poses) {
+  for (const ScanPose& pose : content.results().poses) {
     if (pose.status == PoseStatus::kRegistered) {
       worst_rms_mm = std::max(worst_rms_mm, pose.rms_mm);
       worst_sigma_mm = std::max(worst_sigma_mm, pose.sigma_mm);
@@ -83,7 +83,7 @@ void add_steps(const PackageContent& content, ProvenanceInput& input) {
                          registration.from,
                          {"verdict/red_map.json", "verdict/checklist.json"},
                          {},
-                         {{"conclusive", content.planned.results.red_map.conclusive ? 1.0 : 0.0, ""}}};
+                         {{"conclusive", content.results().red_map.conclusive ? 1.0 : 0.0, ""}}};
   verdict.from.emplace_back("scans/poses.json");
   const std::string model = "model/" + content.stem + ".ply";
   std::vector<ProvenanceStep> steps{std::move(registration), verdict};
@@ -126,7 +126,7 @@ Status add_provenance(PackageContent& content) {
   if (!scans) {
     return std::unexpected(scans.error());
   }
-  const Checklist& list = content.planned.results.checklist;
+  const Checklist& list = content.results().checklist;
   ProvenanceInput input;
   input.base_url = content.options.base_url;
   input.identifier = content.identifier;

@@ -45,7 +45,7 @@ std::string sides_sentence(const PackageContent& content) {
            "has "
            "read it for this.";
   }
-  const RigidTransform by_shape = content.planned.stage->tablet_from_model(content.mesh());
+  const RigidTransform& by_shape = content.source.tablet_from_model();
   const Eigen::Matrix3d shape_from_text = by_shape.rotation * content.tablet_from_model.rotation.transpose();
   constexpr double kSame = 0.7;
   if (shape_from_text(0, 0) > kSame && shape_from_text(1, 1) > kSame && shape_from_text(2, 2) > kSame) {
@@ -87,7 +87,7 @@ std::string left_out_sentence(PackagePart part) {
 }  // namespace
 
 Status add_readme(PackageContent& content) {
-  const bool conclusive = content.planned.results.red_map.conclusive;
+  const bool conclusive = content.results().red_map.conclusive;
   std::string text;
   text.append(content.identifier)
       .append("\n")
@@ -143,7 +143,7 @@ Status add_readme(PackageContent& content) {
   if (content.has(PackagePart::kWedges) && !content.wedges) {
     lacking.emplace_back("Wedges are not here: the model has no surface that they could be looked for on.");
   }
-  if (content.planned.results.checklist.calibration.empty()) {
+  if (content.results().checklist.calibration.empty()) {
     lacking.emplace_back("The device told nothing of its calibration.");
   }
   if (content.options.base_url.starts_with("https://dubsar.invalid/")) {

@@ -70,9 +70,9 @@ OrderedJson scan_json(const PackageContent& content, const StoredScan& scan) {
     json["note"] = scan.note;
   }
   json["damaged"] = scan.damaged;
-  const auto pose = std::ranges::find(content.planned.results.poses, scan.id, &ScanPose::id);
+  const auto pose = std::ranges::find(content.results().poses, scan.id, &ScanPose::id);
   json["status"] =
-      scan.dropped || pose == content.planned.results.poses.end() ? "not placed" : to_string(pose->status);
+      scan.dropped || pose == content.results().poses.end() ? "not placed" : to_string(pose->status);
   return json;
 }
 
@@ -157,7 +157,7 @@ Status add_scans(PackageContent& content) {
 }
 
 Status add_records(PackageContent& content) {
-  const Results& results = content.planned.results;
+  const Results& results = content.results();
   for (const Status& written :
        {content.text("scans/poses.json", poses_to_json(results.poses),
                      "where every scan lies in the model, and how certainly: formats/poses.txt"),

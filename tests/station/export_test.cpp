@@ -190,6 +190,27 @@ TEST_F(Export, TheSessionIsOnlyRead) {
               bytes_of(data("features/msii.mat")));
 }
 
+TEST_F(Export, TakesTheVerdictAsTheSessionKeepsItWhileItHolds) {
+  // Nothing has changed since the session's pages were made: they are the package's pages.
+  EXPECT_THAT(whole_.err, Not(HasSubstr("worked out anew")));
+  const std::string kept = bytes_of(at("session") / "export" / "checklist.html");
+  EXPECT_FALSE(kept.empty());
+  EXPECT_TRUE(bytes_of(data("report/checklist.html")) == kept);
+
+  fs::copy(at("session"), at("less"), fs::copy_options::recursive);
+  ASSERT_EQ(run_command({"session", "drop", at("less").string(), "2"}).status, 0);
+  const Outcome less = run_command({"export", at("less").string(), "--to", at("less bag").string(), "--json",
+                                    "--without", "renderings,features,wedges"});
+  ASSERT_EQ(less.status, 0) << less.err;
+  EXPECT_THAT(less.err, HasSubstr("worked out anew"));
+  EXPECT_EQ(less.json()["scans"], 3) << "what was taken out is kept";
+  const fs::path root = at("less bag") / "data";
+  EXPECT_EQ(read_poses(root / "scans" / "poses.json")->size(), 2U);
+  EXPECT_FALSE(bytes_of(root / "report" / "checklist.html") == kept);
+  const auto list = nlohmann::json::parse(bytes_of(root / "scans" / "scans.json"));
+  EXPECT_EQ(list["scans"][2]["taken_out"], true);
+}
+
 TEST_F(Export, NeverOverwritesUnasked) {
   const Outcome refused = export_to("bag", {});
   EXPECT_EQ(refused.status, 2);
@@ -258,6 +279,18 @@ TEST_F(Export, OthersReadItsForms) {
   EXPECT_EQ(shell("pdftotext " + pdf + " - | grep -q 'Not conclusive'"), 0);
 }
 
+TEST_F(Export, TheAccessMeshIsValidGltf) {
+  // Khronos' own validator, from npm; Debian has none.
+  if (std::system("node -e \"require('gltf-validator')\" 2>/dev/null") != 0) {
+    GTEST_SKIP() << "npm install gltf-validator and name its folder in NODE_PATH to hold the GLB against it";
+  }
+  const std::string check =
+      "node -e \"require('gltf-validator').validateBytes(new Uint8Array(require('fs').readFileSync("
+      "process.argv[1]))).then(r => { console.error(JSON.stringify(r.issues)); "
+      "process.exit(r.issues.numErrors + r.issues.numWarnings > 0 ? 1 : 0); })\" ";
+  EXPECT_EQ(shell(check + quoted(data("model/session.glb"))), 0);
+}
+
 TEST_F(Export, LinkedDataHasTheShapeOfTheStandards) {
   const std::string python = "/usr/bin/python3";
   if (std::system((python + " -c 'import jsonschema' 2>/dev/null").c_str()) != 0) {
@@ -272,6 +305,21 @@ TEST_F(Export, LinkedDataHasTheShapeOfTheStandards) {
     const fs::path shape = fs::path(DUBSAR_SOURCE_DIR) / "tests/station/schemas" / schema;
     EXPECT_EQ(shell(python + check + quoted(data(file)) + " " + quoted(shape)), 0) << file;
   }
+}
+
+TEST_F(Export, ProvenanceIsAGraphToOthers) {
+  if (std::system("/usr/bin/python3 -c 'import rdflib' 2>/dev/null") != 0) {
+    GTEST_SKIP() << "install python3-rdflib to read the provenance as linked data";
+  }
+  // Every file that a scan created is the source of a step.
+  const std::string check =
+      "/usr/bin/python3 -c 'import rdflib, sys; g = rdflib.Graph(); g.parse(sys.argv[1], "
+      "format=\"json-ld\"); "
+      "d = rdflib.Namespace(\"http://www.ics.forth.gr/isl/CRMdig/\"); "
+      "made = set(g.objects(None, d[\"L20_has_created\"])); "
+      "used = set(g.objects(None, d[\"L21_used_as_derivation_source\"])); "
+      "sys.exit(0 if len(made) == 3 and made <= used else 1)' ";
+  EXPECT_EQ(shell(check + quoted(data("provenance.jsonld"))), 0);
 }
 
 }  // namespace
