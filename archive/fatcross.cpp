@@ -21,6 +21,24 @@ Rgb8 ink_on(Rgb8 ground) {
 
 }  // namespace
 
+const char* cdli_suffix(Face face) {
+  switch (face) {
+    case Face::kObverse:
+      return "o";
+    case Face::kReverse:
+      return "r";
+    case Face::kLeft:
+      return "le";
+    case Face::kRight:
+      return "re";
+    case Face::kTop:
+      return "te";
+    case Face::kBottom:
+      break;
+  }
+  return "be";
+}
+
 Image fatcross(const SixViews& views, FatcrossKind kind, Rgb8 ground) {
   const bool cdli = kind == FatcrossKind::kCdli;
   const std::array<Face, 4> column =

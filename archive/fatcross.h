@@ -6,6 +6,10 @@
 
 namespace dubsar {
 
+/// The ending that the Cuneiform Digital Library Initiative gives a picture of a face: "o", "r", "le", "re",
+/// "te", "be".
+[[nodiscard]] const char* cdli_suffix(Face face);
+
 /// How a collection lays out the six views of a tablet on one picture. Both have the left and the right edge
 /// beside the obverse and a ruler.
 enum class FatcrossKind {

@@ -32,6 +32,7 @@ struct PackageOptions {
   /// Where the pictures will be served: the ids of the IIIF manifest and of the annotations begin with it.
   /// Empty: a name under `.invalid`, which nothing answers to.
   std::string base_url;
+  bool white_ground = false;  ///< of the pictures, instead of black
 };
 
 /// What was written.

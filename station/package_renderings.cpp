@@ -29,7 +29,6 @@ constexpr double kMmPerInch = 25.4;
 constexpr std::array<int, 3> kFatcrossDpi = {300, 600, 1000};
 /// Of the six views and the rollout: 42 µm to a pixel.
 constexpr int kViewDpi = 600;
-constexpr Rgb8 kGround = kBlackGround;
 
 /// Looks of the six views, in the order that render_looks() draws them.
 struct NamedLook {
@@ -105,11 +104,12 @@ class Drawing {
   Status rollout();
 
  private:
+  [[nodiscard]] Rgb8 ground() const { return content_.options.white_ground ? kPaper : kBlackGround; }
   [[nodiscard]] RenderOptions options(int dpi) const {
     RenderOptions options;
     options.mm_per_px = kMmPerInch / dpi;
     options.margin_px = 0;
-    options.background = kGround;
+    options.background = ground();
     return options;
   }
   void list(const std::string& path, const std::string& label, const char* media_type, const Image& image) {
@@ -152,6 +152,8 @@ Status Drawing::views() {
       tasks.push_back({path, [&image, name = title(label)] { return encode_png(image, name); }});
       listed[k].push_back({path, label, "image/png", image.width, image.height, image.mm_per_px});
     }
+    tasks.push_back({fmt::format("pictures/cdli/{}_{}.jpg", content_.stem, cdli_suffix(face)),
+                     [&clay = images->front()] { return encode_jpeg(clay); }});
     if (const Status written = write_all(content_, tasks); !written) {
       return written;
     }
@@ -163,6 +165,10 @@ Status Drawing::views() {
         fmt::format("pictures/{}/", looks[k].name),
         fmt::format("the six sides, {}, {} pixels to the inch of the tablet", looks[k].label, kViewDpi));
   }
+  content_.list(
+      "pictures/cdli/",
+      "the six sides in clay once more, as JPEG with the endings of CDLI: o obverse, r reverse, le left "
+      "edge, re right edge, te top edge, be bottom edge");
   return {};
 }
 
@@ -197,7 +203,7 @@ Status Drawing::fatcrosses() {
     std::array<Image, kKinds.size()> sheets;
     std::vector<Task> tasks;
     for (std::size_t k = 0; k < kKinds.size(); ++k) {
-      sheets[k] = fatcross(views, kKinds[k].kind, kGround);
+      sheets[k] = fatcross(views, kKinds[k].kind, ground());
       const std::string stem =
           fmt::format("pictures/fatcross/{}_{}_{}dpi", content_.stem, kKinds[k].name, dpi);
       const Image& sheet = sheets[k];

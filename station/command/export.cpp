@@ -18,6 +18,7 @@ struct ExportArguments {
   std::string to;
   std::vector<std::string> without;
   std::string base_url;
+  std::string ground = "black";
   bool force = false;
 };
 
@@ -25,6 +26,7 @@ Result<int> export_session(const ExportArguments& arguments, CommandContext& con
   PackageOptions options;
   options.replace = arguments.force;
   options.base_url = arguments.base_url;
+  options.white_ground = arguments.ground == "white";
   for (const PackagePart part : all_package_parts()) {
     if (std::ranges::find(arguments.without, to_string(part)) != arguments.without.end()) {
       options.without.insert(part);
@@ -74,6 +76,9 @@ void add_export(CLI::App& app, Action& chosen) {
   verb->add_option(
       "--base-url", arguments->base_url,
       "where the package will be served from: ids in the IIIF manifest, annotations and provenance");
+  verb->add_option("--ground", arguments->ground, "of the pictures")
+      ->check(CLI::IsMember({"black", "white"}))
+      ->capture_default_str();
   verb->add_flag("--force", arguments->force, "replace a package that lies there already");
   verb->callback([&chosen, arguments] {
     chosen = [arguments](CommandContext& c) { return export_session(*arguments, c); };

@@ -112,6 +112,7 @@ TEST_F(Export, PacksEverythingWhateverTheVerdictSays) {
                            "data/pictures/msii/03_front.png",
                            "data/pictures/ao/05_bottom.png",
                            "data/pictures/radiance/06_back.png",
+                           "data/pictures/cdli/session_te.jpg",
                            "data/pictures/fatcross/session_cdli_1000dpi.tif",
                            "data/pictures/fatcross/session_ebl_300dpi.jpg",
                            "data/pictures/session_rollout.png",
