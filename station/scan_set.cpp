@@ -32,8 +32,9 @@ Status keep(StationScan scan, const ScanVisitor& visit, ScanSet& set) {
   return visit(set, std::move(scan));
 }
 
-Status load_session(const fs::path& path, const ScanVisitor& visit, ScanSet& set, JobContext& job) {
-  Result<SessionStore> store = SessionStore::open(path);
+Status load_session(const fs::path& path, const ScanSetOptions& options, const ScanVisitor& visit,
+                    ScanSet& set, JobContext& job) {
+  Result<SessionStore> store = SessionStore::open(path, options.access);
   if (!store) {
     return std::unexpected(store.error());
   }
@@ -174,7 +175,7 @@ Result<ScanSet> visit_scan_set(const fs::path& path, const ScanSetOptions& optio
     }
     set.pins = std::move(*pins);
   }
-  const Status loaded = SessionStore::is_session(path) ? load_session(path, visit, set, job)
+  const Status loaded = SessionStore::is_session(path) ? load_session(path, options, visit, set, job)
                                                        : load_folder(path, options, visit, set, job);
   if (!loaded) {
     return std::unexpected(loaded.error());

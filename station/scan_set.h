@@ -26,13 +26,14 @@ struct ScanSet {
   std::optional<Rig> rig;
   OperatorWord word;                  ///< hints and locks of a session
   std::vector<Error> left_out;        ///< bad files of a folder, one error each
-  std::optional<SessionStore> store;  ///< open for writing when it is a session
+  std::optional<SessionStore> store;  ///< open when it is a session
   [[nodiscard]] bool is_session() const { return store.has_value(); }
 };
 
 struct ScanSetOptions {
-  std::string unit;                 ///< "m", "mm", "um"; empty: the file's own word, else mm
-  std::filesystem::path pins_file;  ///< empty: the session's, or none
+  std::string unit{};                 ///< "m", "mm", "um"; empty: the file's own word, else mm
+  std::filesystem::path pins_file{};  ///< empty: the session's, or none
+  SessionStore::Access access = SessionStore::Access::kReadWrite;  ///< of a session
 };
 
 /// Is given each scan as it is read, and owns it; what the set knows so far (poses, pins, the operator's
