@@ -45,5 +45,6 @@ void add_verify(CLI::App& app, Action& chosen);
 void add_session(CLI::App& app, Action& chosen);
 void add_station(CLI::App& app, Action& chosen);
 void add_bench(CLI::App& app, Action& chosen);
+void add_reference(CLI::App& app, Action& chosen);
 
 }  // namespace dubsar
