@@ -38,6 +38,13 @@ for package in libeigen3 libimgui nlohmann-json3 libceres libflann; do
   [[ $notices == *$'\n'$package-dev$'\n==='* ]] || fail "no notice of $package"
 done
 
+# The Python module, where there is one, from the prefix alone.
+if [ -d "$1/lib/python/dubsar" ]; then
+  run env PYTHONPATH="$prefix/lib/python3/dist-packages" PYTHONDONTWRITEBYTECODE=1 /usr/bin/python3 -c \
+    "import dubsar; assert len(dubsar.read_grids('$2/scans')) == 8; assert '$prefix' in dubsar.__file__" ||
+    fail "the Python module of the prefix"
+fi
+
 # Every program that a desktop entry starts, and every type that it opens and that is ours, is there.
 for entry in "$share"/applications/*.desktop; do
   program=$(sed -n 's/^Exec=\([^ ]*\).*/\1/p' "$entry")

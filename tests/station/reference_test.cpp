@@ -168,11 +168,11 @@ TEST(Reference, BashOffersEveryVerbAndOption) {
 
 TEST(Reference, BashKnowsWhichWordsAreValues) {
   const auto offered = completed({
-      {"analyze", "--exit", ""},            // the only values it takes
-      {"analyze", "--exit", "=", "e"},      // as bash parts --exit=e
-      {"analyze", "--out", "scan", "--ex"}, // a value that looks like a verb
-      {"--json", "session", "un"},          // an option before the verb
-      {"analyze", "-o", ""},                // any file: bash's own words
+      {"analyze", "--exit", ""},             // the only values it takes
+      {"analyze", "--exit", "=", "e"},       // as bash parts --exit=e
+      {"analyze", "--out", "scan", "--ex"},  // a value that looks like a verb
+      {"--json", "session", "un"},           // an option before the verb
+      {"analyze", "-o", ""},                 // any file: bash's own words
   });
   ASSERT_THAT(offered, SizeIs(5));
   EXPECT_EQ(offered[0], (std::vector<std::string>{"surface", "extent"}));

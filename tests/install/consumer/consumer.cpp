@@ -53,7 +53,8 @@ int main(int argc, char** argv) {
   for (const dubsar::ScanPose& pose : registrar.poses()) {
     if (pose.status == dubsar::PoseStatus::kRegistered) {
       const auto id = static_cast<std::size_t>(pose.id);
-      if (!stitcher.add({pose.id, grids[id].get(), &flags[id], pose.model_from_scanner, pose.sigma_mm}, job)) {
+      if (!stitcher.add({pose.id, grids[id].get(), &flags[id], pose.model_from_scanner, pose.sigma_mm},
+                        job)) {
         return 4;
       }
       ++registered;
