@@ -2,9 +2,9 @@
 // Copyright The Dubsar developers
 // The wedges of a mesh.
 
+#include "station/analysis.h"
 #include "formats/wedges_json.h"
 #include "python/jobs.h"
-#include "station/analysis.h"
 
 namespace dubsar::python {
 
@@ -41,7 +41,8 @@ py::list rejected_of(const Wedges& wedges) {
   for (const RejectedWedge& one : wedges.file.rejected) {
     py::dict entry;
     entry["reason"] = one.reason;
-    entry["depth_point_mm"] = py::make_tuple(one.depth_point_mm.x(), one.depth_point_mm.y(), one.depth_point_mm.z());
+    entry["depth_point_mm"] =
+        py::make_tuple(one.depth_point_mm.x(), one.depth_point_mm.y(), one.depth_point_mm.z());
     out.append(entry);
   }
   return out;
@@ -62,8 +63,9 @@ py::dict fields_of(const WedgesPointer& wedges) {
   put("gaussian_curvature_per_mm2", fields.gaussian_curvature_per_mm2);
   put("openness", fields.openness);
   put("height_mm", fields.height_mm);
-  out["free_surface"] = py::array(py::dtype::of<bool>(), {static_cast<py::ssize_t>(fields.free_surface.size())},
-                                  fields.free_surface.data(), owner);
+  out["free_surface"] =
+      py::array(py::dtype::of<bool>(), {static_cast<py::ssize_t>(fields.free_surface.size())},
+                fields.free_surface.data(), owner);
   return out;
 }
 
@@ -80,8 +82,9 @@ std::shared_ptr<Mesh> annotated(const Wedges& wedges) {
 
 void bind_analysis(py::module_& module) {
   py::class_<Wedges, WedgesPointer>(module, "Wedges", "The wedges of one mesh.")
-      .def_property_readonly("table", [](const Wedges& w) { return wedge_rows(w.file.wedges); },
-                             "a structured array, one row a wedge; a copy")
+      .def_property_readonly(
+          "table", [](const Wedges& w) { return wedge_rows(w.file.wedges); },
+          "a structured array, one row a wedge; a copy")
       .def_property_readonly("rejected", &rejected_of, "hollows that are no wedges, each with the reason")
       .def_property_readonly("fields", &fields_of,
                              "[V] arrays of the mesh's vertices by name; empty when read from a file")
@@ -100,9 +103,11 @@ void bind_analysis(py::module_& module) {
                                return out;
                              })
       .def("annotated_mesh", &annotated, "the mesh with each wedge in a colour of its own")
-      .def("to_json", [](const Wedges& w) { return wedges_to_json(w.file); }, "what wedges.json holds")
-      .def("write", [](const Wedges& w, const fs::path& path) { value_of(write_wedges(path, w.file)); },
-           py::arg("path"), "wedges.json; whole or not at all")
+      .def(
+          "to_json", [](const Wedges& w) { return wedges_to_json(w.file); }, "what wedges.json holds")
+      .def(
+          "write", [](const Wedges& w, const fs::path& path) { value_of(write_wedges(path, w.file)); },
+          py::arg("path"), "wedges.json; whole or not at all")
       .def("__len__", [](const Wedges& w) { return w.file.wedges.size(); })
       .def("__repr__", [](const Wedges& w) {
         return "<dubsar.Wedges " + std::to_string(w.file.wedges.size()) + " wedges, " +

@@ -24,8 +24,8 @@ namespace dubsar::python {
 
 namespace py = pybind11;
 
-/// Raises the Python exception of an error: UsageError, BadInputError, DeviceError, StorageError, Cancelled or
-/// InternalError, all of them dubsar.Error.
+/// Raises the Python exception of an error: UsageError, BadInputError, DeviceError, StorageError, Cancelled
+/// or InternalError, all of them dubsar.Error.
 [[noreturn]] void raise(const Error& error);
 
 template <class T>

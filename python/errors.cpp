@@ -22,7 +22,8 @@ struct Kind {
 std::array<Kind, 6>& kinds() {
   static std::array<Kind, 6> all{{
       {ErrorKind::kUsage, "UsageError", PyExc_ValueError, "What was asked for does not exist."},
-      {ErrorKind::kBadInput, "BadInputError", PyExc_ValueError, "Outside bytes are not what they claim to be."},
+      {ErrorKind::kBadInput, "BadInputError", PyExc_ValueError,
+       "Outside bytes are not what they claim to be."},
       {ErrorKind::kDevice, "DeviceError", PyExc_OSError, "A device or its driver failed."},
       {ErrorKind::kStorage, "StorageError", PyExc_OSError, "The disk refused."},
       {ErrorKind::kCancelled, "Cancelled", nullptr, "progress() returned False."},

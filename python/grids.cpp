@@ -23,7 +23,8 @@ using MaybeFloats = std::optional<Input<float>>;
 
 void check_shape(const py::array& array, int rows, int cols, const char* name) {
   if (array.ndim() != 2 || array.shape(0) != rows || array.shape(1) != cols) {
-    raise({ErrorKind::kUsage, std::string(name) + " has another shape than x", {}, "give rows x cols samples"});
+    raise(
+        {ErrorKind::kUsage, std::string(name) + " has another shape than x", {}, "give rows x cols samples"});
   }
 }
 
@@ -127,12 +128,13 @@ Status write_grid(const fs::path& path, const RangeGrid& grid) {
   if (path.extension() == ".ply") {
     return write_grid_ply(path, grid);
   }
-  return fail(ErrorKind::kUsage, "no format of range grids has this ending", path.string(), "use .grid or .ply");
+  return fail(ErrorKind::kUsage, "no format of range grids has this ending", path.string(),
+              "use .grid or .ply");
 }
 
 /// One array of the grid as [rows, cols], without a copy; None when the grid has none.
 template <class T>
-auto plane(std::vector<T> RangeGrid::* member) {
+auto plane(std::vector<T> RangeGrid::*member) {
   return [member](const GridPointer& grid) -> py::object {
     const std::vector<T>& values = (*grid).*member;
     if (values.empty()) {
@@ -171,9 +173,10 @@ py::array_t<float> valid_points(const RangeGrid& grid) {
 }  // namespace
 
 void bind_grids(py::module_& module) {
-  py::class_<RangeGrid, GridPointer>(module, "Grid",
-                                     "One range image: rows x cols samples in the scanner frame, millimetres. "
-                                     "The arrays are views: what is written into them is in the grid.")
+  py::class_<RangeGrid, GridPointer>(
+      module, "Grid",
+      "One range image: rows x cols samples in the scanner frame, millimetres. "
+      "The arrays are views: what is written into them is in the grid.")
       .def(py::init(&make_grid), py::arg("x"), py::arg("y"), py::arg("z"), py::arg("valid") = py::none(),
            py::arg("intensity") = py::none(), py::arg("confidence") = py::none(), py::arg("spacing_mm") = 0.0,
            py::arg("source") = "",

@@ -11,9 +11,10 @@
 
 namespace dubsar::python {
 
-/// Runs `work` on a thread of its own without the interpreter's lock, so that the caller's thread can hear Ctrl-C
-/// and pass progress on to Python meanwhile. `progress` is None or progress(stage, fraction): what it raises, and
-/// KeyboardInterrupt, stop the work and are raised here once the work has ended; False from it raises Cancelled.
+/// Runs `work` on a thread of its own without the interpreter's lock, so that the caller's thread can hear
+/// Ctrl-C and pass progress on to Python meanwhile. `progress` is None or progress(stage, fraction): what it
+/// raises, and KeyboardInterrupt, stop the work and are raised here once the work has ended; False from it
+/// raises Cancelled.
 void run_job(const py::object& progress, const std::function<void(JobContext&)>& work);
 
 /// The same for work that gives a Result; its error is raised.

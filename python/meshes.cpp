@@ -69,7 +69,7 @@ MeshPointer make_mesh(const Input<float>& vertices, const Input<std::int64_t>& f
 }
 
 template <class T>
-auto column(std::vector<T> Mesh::* member) {
+auto column(std::vector<T> Mesh::*member) {
   return [member](const MeshPointer& mesh) -> py::object {
     const std::vector<T>& values = (*mesh).*member;
     if (values.empty()) {
@@ -81,15 +81,16 @@ auto column(std::vector<T> Mesh::* member) {
 
 /// Rows of three; an empty array where `always`, otherwise None.
 template <class Number, class Row>
-auto rows(std::vector<Row> Mesh::* member, bool always) {
+auto rows(std::vector<Row> Mesh::*member, bool always) {
   static_assert(sizeof(Row) == 3 * sizeof(Number));
   return [member, always](const MeshPointer& mesh) -> py::object {
     const std::vector<Row>& values = (*mesh).*member;
     if (values.empty()) {
-      return always ? py::object(py::array_t<Number>(std::vector<py::ssize_t>{0, 3})) : py::object(py::none());
+      return always ? py::object(py::array_t<Number>(std::vector<py::ssize_t>{0, 3}))
+                    : py::object(py::none());
     }
-    return view_of(reinterpret_cast<const Number*>(values.data()), {static_cast<py::ssize_t>(values.size()), 3},
-                   py::cast(mesh));
+    return view_of(reinterpret_cast<const Number*>(values.data()),
+                   {static_cast<py::ssize_t>(values.size()), 3}, py::cast(mesh));
   };
 }
 
@@ -112,7 +113,8 @@ py::dict report_of(const MeshReport& report) {
   out["self_intersections"] = report.self_intersections;
   out["unreferenced_vertices"] = report.unreferenced_vertices;
   out["area_mm2"] = report.area_mm2;
-  const Eigen::Vector3f size = report.box.isEmpty() ? Eigen::Vector3f::Zero().eval() : report.box.sizes().eval();
+  const Eigen::Vector3f size =
+      report.box.isEmpty() ? Eigen::Vector3f::Zero().eval() : report.box.sizes().eval();
   out["size_mm"] = py::make_tuple(size.x(), size.y(), size.z());
   return out;
 }
@@ -120,9 +122,10 @@ py::dict report_of(const MeshReport& report) {
 }  // namespace
 
 void bind_meshes(py::module_& module) {
-  py::class_<Mesh, MeshPointer>(module, "Mesh",
-                                "A triangle mesh, millimetres. The arrays are views: what is written into them "
-                                "is in the mesh.")
+  py::class_<Mesh, MeshPointer>(
+      module, "Mesh",
+      "A triangle mesh, millimetres. The arrays are views: what is written into them "
+      "is in the mesh.")
       .def(py::init(&make_mesh), py::arg("vertices"), py::arg("faces"), py::arg("normals") = py::none(),
            py::arg("reliability") = py::none(), "Copies [V, 3] vertices and [F, 3] indices of vertices.")
       .def_property_readonly("vertices", rows<float>(&Mesh::positions, true), "[V, 3] float32, mm")

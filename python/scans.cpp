@@ -72,8 +72,8 @@ Result<Mesh> stitch_grids(const Grids& grids, const std::vector<ScanPose>& poses
       scan.flags = std::make_shared<const SampleFlags>(flag_sparse(*grid));
       scans.push_back(std::move(scan));
     }
-    placed.push_back({pose.id, scans.back().grid.get(), scans.back().flags.get(), pose.model_from_scanner,
-                      pose.sigma_mm});
+    placed.push_back(
+        {pose.id, scans.back().grid.get(), scans.back().flags.get(), pose.model_from_scanner, pose.sigma_mm});
   }
   if (placed.empty()) {
     return fail(ErrorKind::kUsage, "no scan is registered", {}, "see the poses' reasons");
@@ -85,7 +85,8 @@ std::optional<PinSet> pins_of(const std::optional<fs::path>& file) {
   return file ? std::optional(value_of(read_pins(*file))) : std::nullopt;
 }
 
-ScanPose make_pose(int id, const Input<double>& model_from_scanner, const std::string& file, double sigma_mm) {
+ScanPose make_pose(int id, const Input<double>& model_from_scanner, const std::string& file,
+                   double sigma_mm) {
   ScanPose pose;
   pose.id = id;
   pose.file = file;
@@ -114,13 +115,14 @@ void bind_pose(py::module_& module) {
            py::arg("sigma_mm") = 0.0, "A pose that is known from elsewhere: it counts as registered.")
       .def_readonly("id", &ScanPose::id, "the scan's place in the list of grids")
       .def_readonly("file", &ScanPose::file)
-      .def_property_readonly("status", [](const ScanPose& pose) { return to_string(pose.status); },
-                             "'registered', 'unsure' or 'failed'")
+      .def_property_readonly(
+          "status", [](const ScanPose& pose) { return to_string(pose.status); },
+          "'registered', 'unsure' or 'failed'")
       .def_property_readonly("registered",
                              [](const ScanPose& pose) { return pose.status == PoseStatus::kRegistered; })
-      .def_property_readonly("model_from_scanner",
-                             [](const ScanPose& pose) { return matrix_of(pose.model_from_scanner); },
-                             "[4, 4], mm; means nothing when failed")
+      .def_property_readonly(
+          "model_from_scanner", [](const ScanPose& pose) { return matrix_of(pose.model_from_scanner); },
+          "[4, 4], mm; means nothing when failed")
       .def_readonly("rms_mm", &ScanPose::rms_mm)
       .def_readonly("sigma_mm", &ScanPose::sigma_mm)
       .def_readonly("overlap", &ScanPose::overlap)
@@ -146,7 +148,8 @@ void bind_scans(py::module_& module) {
         std::vector<std::optional<RigidTransform>> from;
         if (starts) {
           if (starts->size() != grids.size()) {
-            raise({ErrorKind::kUsage, "starts has another length than grids", {}, "give one, or None, a grid"});
+            raise(
+                {ErrorKind::kUsage, "starts has another length than grids", {}, "give one, or None, a grid"});
           }
           for (const auto& start : *starts) {
             from.push_back(start ? std::optional(transform_of(*start, "a start")) : std::nullopt);
@@ -167,13 +170,15 @@ void bind_scans(py::module_& module) {
         check_grids(grids);
         for (const ScanPose& pose : poses) {
           if (pose.id < 0 || static_cast<std::size_t>(pose.id) >= grids.size()) {
-            raise({ErrorKind::kUsage, "there is no grid of pose " + std::to_string(pose.id), {},
+            raise({ErrorKind::kUsage,
+                   "there is no grid of pose " + std::to_string(pose.id),
+                   {},
                    "a pose's id is its grid's place in the list"});
           }
         }
         const std::optional<PinSet> pins = pins_of(pins_file);
-        return std::make_shared<Mesh>(run_for_result(
-            progress, [&](JobContext& job) { return stitch_grids(grids, poses, pins, job); }));
+        return std::make_shared<Mesh>(
+            run_for_result(progress, [&](JobContext& job) { return stitch_grids(grids, poses, pins, job); }));
       },
       py::arg("grids"), py::arg("poses"), py::arg("pins") = py::none(), py::arg("progress") = py::none(),
       "One oriented 2-manifold of the registered scans.");

@@ -21,8 +21,8 @@ struct SimulatedScans {
   std::vector<ScanPose> poses;
 };
 
-Result<SimulatedScans> scan_tablet(const sim::SimTablet& tablet, int views, double spacing_mm, double noise_mm,
-                                   std::uint64_t seed, JobContext& job) {
+Result<SimulatedScans> scan_tablet(const sim::SimTablet& tablet, int views, double spacing_mm,
+                                   double noise_mm, std::uint64_t seed, JobContext& job) {
   const MeshQuery query(tablet.mesh);
   sim::ScannerOptions options;
   options.spacing_mm = spacing_mm;
@@ -59,11 +59,14 @@ void need(bool good, const char* what, const char* mend) {
 }  // namespace
 
 void bind_simulation(py::module_& module) {
-  py::class_<sim::SimTablet, TabletPointer>(module, "SimulatedTablet", "A made-up tablet whose truth is known.")
-      .def_property_readonly("mesh", [](const TabletPointer& t) { return std::shared_ptr<Mesh>(t, &t->mesh); },
-                             "the true surface")
-      .def_property_readonly("wedges", [](const sim::SimTablet& t) { return wedge_rows(t.wedges); },
-                             "the true wedges, as Wedges.table has them");
+  py::class_<sim::SimTablet, TabletPointer>(module, "SimulatedTablet",
+                                            "A made-up tablet whose truth is known.")
+      .def_property_readonly(
+          "mesh", [](const TabletPointer& t) { return std::shared_ptr<Mesh>(t, &t->mesh); },
+          "the true surface")
+      .def_property_readonly(
+          "wedges", [](const sim::SimTablet& t) { return wedge_rows(t.wedges); },
+          "the true wedges, as Wedges.table has them");
   module.def(
       "simulate_tablet",
       [](std::uint64_t seed, const std::array<double, 3>& size_mm, double spacing_mm, double damage,

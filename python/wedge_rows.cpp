@@ -103,12 +103,12 @@ py::array wedge_rows(const std::vector<Wedge>& wedges) {
 }
 
 void bind_wedge_rows() {
-  PYBIND11_NUMPY_DTYPE(WedgeRow, id, depth_point_mm, exit_points_mm, exit_points_surface_mm, exit_points_extent_mm,
-                       outer_vertices_mm, face_normals, surface_normal, directional_edge, directional_margin,
-                       depth_mm, face_angles_rad, opening_angles_rad, edge_lengths_mm, edge_slopes_rad,
-                       face_slopes_rad, edge_bows_mm, volume_mm3, sigma_depth_point_mm, sigma_depth_mm,
-                       sigma_opening_rad, side, line, order, turn_rad, reliability, confidence, vertex_count,
-                       intact);
+  PYBIND11_NUMPY_DTYPE(WedgeRow, id, depth_point_mm, exit_points_mm, exit_points_surface_mm,
+                       exit_points_extent_mm, outer_vertices_mm, face_normals, surface_normal,
+                       directional_edge, directional_margin, depth_mm, face_angles_rad, opening_angles_rad,
+                       edge_lengths_mm, edge_slopes_rad, face_slopes_rad, edge_bows_mm, volume_mm3,
+                       sigma_depth_point_mm, sigma_depth_mm, sigma_opening_rad, side, line, order, turn_rad,
+                       reliability, confidence, vertex_count, intact);
 }
 
 }  // namespace dubsar::python
