@@ -26,8 +26,9 @@ namespace {
 
 Error unreadable(const fs::path& path, int number) {
   const bool missing = number == ENOENT || number == ENOTDIR || number == EISDIR;
-  return {missing ? ErrorKind::kBadInput : ErrorKind::kStorage, std::string("cannot read: ") + std::strerror(number),
-          path.string(), missing ? "check the name" : "check the disk and the rights"};
+  return {missing ? ErrorKind::kBadInput : ErrorKind::kStorage,
+          std::string("cannot read: ") + std::strerror(number), path.string(),
+          missing ? "check the name" : "check the disk and the rights"};
 }
 
 /// Reads the file once, in pieces.
@@ -37,7 +38,8 @@ Result<StampedFile> stamped(const fs::path& path, std::string name, const JobCon
   if (!file) {
     return std::unexpected(unreadable(path, errno));
   }
-  const std::unique_ptr<XXH3_state_t, XXH_errorcode (*)(XXH3_state_t*)> state(XXH3_createState(), XXH3_freeState);
+  const std::unique_ptr<XXH3_state_t, XXH_errorcode (*)(XXH3_state_t*)> state(XXH3_createState(),
+                                                                              XXH3_freeState);
   XXH3_128bits_reset(state.get());
   StampedFile out{std::move(name), 0, {}};
   std::vector<unsigned char> piece(std::size_t{1} << 20U);
@@ -79,8 +81,8 @@ std::vector<StampedFile> files_of(const JsonNode& node) {
 
 /// A file that lies below the stamp's folder moves with it; any other keeps its whole name.
 std::string output_name(const fs::path& output, const fs::path& folder) {
-  const fs::path relative = fs::absolute(output).lexically_normal().lexically_relative(
-      fs::absolute(folder).lexically_normal());
+  const fs::path relative =
+      fs::absolute(output).lexically_normal().lexically_relative(fs::absolute(folder).lexically_normal());
   const bool below = !relative.empty() && *relative.begin() != "..";
   return below ? relative.generic_string() : fs::absolute(output).lexically_normal().string();
 }
@@ -133,7 +135,8 @@ Result<bool> StampedWork::done(const JobContext& job) const {
     return false;
   }
   const Result<std::string> text = read_whole_file(stamp_, kMaxJsonBytes);
-  const Result<DoneStamp> known = text ? parse_done_stamp(*text, stamp_.string()) : std::unexpected(text.error());
+  const Result<DoneStamp> known =
+      text ? parse_done_stamp(*text, stamp_.string()) : std::unexpected(text.error());
   if (!known || known->program != made_.program || known->verb != made_.verb ||
       known->parameters != made_.parameters || known->inputs != made_.inputs || known->outputs.empty()) {
     return false;

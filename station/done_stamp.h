@@ -59,7 +59,8 @@ class StampedWork {
   [[nodiscard]] const std::filesystem::path& stamp() const { return stamp_; }
 
  private:
-  StampedWork(std::filesystem::path stamp, DoneStamp made) : stamp_(std::move(stamp)), made_(std::move(made)) {}
+  StampedWork(std::filesystem::path stamp, DoneStamp made)
+      : stamp_(std::move(stamp)), made_(std::move(made)) {}
 
   std::filesystem::path stamp_;
   DoneStamp made_;  ///< without outputs

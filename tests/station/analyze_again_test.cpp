@@ -23,12 +23,14 @@ class AnalyzeAgainTest : public ::testing::Test {
  protected:
   void SetUp() override {
     ASSERT_EQ(
-        run_command({"simulate", "tablet", "--size", "12x10x7", "--spacing", "0.15", "-o", path("T")}).status, 0);
+        run_command({"simulate", "tablet", "--size", "12x10x7", "--spacing", "0.15", "-o", path("T")}).status,
+        0);
   }
   [[nodiscard]] std::string path(const std::string& name) const { return (folder_.path() / name).string(); }
   /// Whether it was found done.
   [[nodiscard]] bool found_done(const Arguments& more = {}) const {
-    Arguments words{"analyze", path("T/tablet.ply"), "-o", path("T/wedges.json"), "--svg", path("T/svg"), "--json"};
+    Arguments words{"analyze", path("T/tablet.ply"), "-o",    path("T/wedges.json"),
+                    "--svg",   path("T/svg"),        "--json"};
     words.insert(words.end(), more.begin(), more.end());
     const Outcome outcome = run_command(words);
     EXPECT_EQ(outcome.status, 0) << outcome.err;
@@ -67,8 +69,8 @@ TEST_F(AnalyzeAgainTest, DamagedOutputsAndOtherOptionsAreDoneAgain) {
 TEST_F(AnalyzeAgainTest, AMovedTabletIsStillDone) {
   EXPECT_FALSE(found_done());
   fs::rename(path("T"), path("U"));
-  const Outcome outcome =
-      run_command({"analyze", path("U/tablet.ply"), "-o", path("U/wedges.json"), "--svg", path("U/svg"), "--json"});
+  const Outcome outcome = run_command(
+      {"analyze", path("U/tablet.ply"), "-o", path("U/wedges.json"), "--svg", path("U/svg"), "--json"});
   EXPECT_TRUE(outcome.json().value("done_before", false)) << outcome.out << outcome.err;
 }
 

@@ -15,8 +15,8 @@ namespace dubsar {
 namespace {
 
 namespace fs = std::filesystem;
-using ::testing::Not;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 class DoneStampTest : public ::testing::Test {
  protected:
@@ -30,7 +30,8 @@ class DoneStampTest : public ::testing::Test {
     fs::create_directories(path(name).parent_path());
     std::ofstream(path(name), std::ios::binary) << text;
   }
-  [[nodiscard]] StampedWork begin(const std::string& parameters = "{}", const std::string& verb = "analyze") const {
+  [[nodiscard]] StampedWork begin(const std::string& parameters = "{}",
+                                  const std::string& verb = "analyze") const {
     Result<StampedWork> work =
         StampedWork::begin(stamp_beside(path("out.json")), verb, parameters, {path("in.ply")}, job_);
     EXPECT_TRUE(work) << work.error().line();
@@ -123,8 +124,8 @@ TEST_F(DoneStampTest, ACollectionCanBeMoved) {
   do_it();
   const test::TemporaryFolder other;
   fs::copy(folder_.path(), other.path() / "moved", fs::copy_options::recursive);
-  const Result<StampedWork> work = StampedWork::begin(stamp_beside(other.path() / "moved/out.json"), "analyze", "{}",
-                                                      {other.path() / "moved/in.ply"}, job_);
+  const Result<StampedWork> work = StampedWork::begin(stamp_beside(other.path() / "moved/out.json"),
+                                                      "analyze", "{}", {other.path() / "moved/in.ply"}, job_);
   ASSERT_TRUE(work);
   EXPECT_TRUE(done(*work));
   fs::remove(other.path() / "moved/out.json");
