@@ -22,6 +22,9 @@ target_compile_options(dubsar_options INTERFACE
   # Contracting a*b+c would make results differ between machines; the same input must give the same bytes.
   -ffp-contract=off)
 
+# A package must depend on what the programs use, not on everything that a library's configuration names.
+target_link_options(dubsar_options INTERFACE -Wl,--as-needed)
+
 set(DUBSAR_SANITIZE "" CACHE STRING "Sanitizers, e.g. address,undefined or thread")
 if(DUBSAR_SANITIZE)
   target_compile_options(dubsar_options INTERFACE -fsanitize=${DUBSAR_SANITIZE} -fno-omit-frame-pointer

@@ -1,10 +1,17 @@
-# dubsar_library(NAME SOURCES a.cpp ... LINKS dubsar_core ... [PRIVATE lib ...])
-# One static library per folder, named dubsar_<folder>. LINKS are public: what the folder's headers need.
+# dubsar_library(NAME SOURCES a.cpp ... LINKS dubsar_core ... [PRIVATE lib ...] [NEEDS line ...] [OWN])
+# One static library per folder, named dubsar_<folder>. LINKS are public: what the folder's headers need. It is installed
+# as component <folder> of find_package(dubsar); NEEDS are the lines that its configuration needs beside the components
+# that it links ("find_dependency(TBB)", "dubsar_pkg(zstd libzstd)"). OWN libraries are not installed.
 function(dubsar_library name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;LINKS;PRIVATE" ${ARGN})
+  cmake_parse_arguments(ARG "OWN" "" "SOURCES;LINKS;PRIVATE;NEEDS" ${ARGN})
   add_library(dubsar_${name} STATIC ${ARG_SOURCES})
-  target_include_directories(dubsar_${name} PUBLIC ${CMAKE_SOURCE_DIR})
-  target_link_libraries(dubsar_${name} PUBLIC ${ARG_LINKS} PRIVATE dubsar_options ${ARG_PRIVATE})
+  target_include_directories(dubsar_${name} PUBLIC
+    $<BUILD_INTERFACE:${CMAKE_SOURCE_DIR}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/dubsar>)
+  target_compile_features(dubsar_${name} PUBLIC cxx_std_23)
+  target_link_libraries(dubsar_${name} PUBLIC ${ARG_LINKS} PRIVATE $<BUILD_INTERFACE:dubsar_options> ${ARG_PRIVATE})
+  if(NOT ARG_OWN)
+    dubsar_install_library(${name} "${ARG_LINKS}" "${ARG_NEEDS}")
+  endif()
 endfunction()
 
 # dubsar_test(NAME SOURCES a_test.cpp ... LINKS dubsar_core ... [LABEL unit])

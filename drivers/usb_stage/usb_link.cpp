@@ -118,7 +118,7 @@ Error usb_error(int number, const std::string& doing, const std::string& where) 
   switch (number) {
     case LIBUSB_ERROR_ACCESS:
       return {ErrorKind::kDevice, "no right to use the controller", where,
-              "copy drivers/udev/60-dubsar.rules to /etc/udev/rules.d and plug it in again"};
+              "join the group plugdev, or copy 60-dubsar.rules to /etc/udev/rules.d; then plug it in again"};
     case LIBUSB_ERROR_BUSY:
       return {ErrorKind::kDevice, "the controller is in use by another program", where,
               "close what talks to it, then try again"};

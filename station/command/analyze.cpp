@@ -4,10 +4,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <optional>
+#include <vector>
 
 #include "analysis/tablet_size.h"
 #include "archive/wedge_drawing.h"
@@ -15,6 +18,7 @@
 #include "formats/mesh_io.h"
 #include "station/analysis.h"
 #include "station/command/command.h"
+#include "station/done_stamp.h"
 #include "station/field_pictures.h"
 
 namespace dubsar {
@@ -34,7 +38,39 @@ struct AnalyzeArguments {
   bool uniform_weights = false;
   std::string svg;
   bool classical = false;
+  bool again = false;
 };
+
+/// How an output lies to the main one: a tablet's folder may move. Empty for none.
+std::string place_of(const std::string& path, const std::string& main) {
+  namespace fs = std::filesystem;
+  return path.empty() ? path
+                      : fs::absolute(path)
+                            .lexically_normal()
+                            .lexically_relative(fs::absolute(main).lexically_normal().parent_path())
+                            .generic_string();
+}
+
+/// Everything beside the mesh that decides what is written, and where.
+std::string parameters_of(const AnalyzeArguments& a) {
+  const FreeSurfaceOptions& free = a.fields.free_surface;
+  const nlohmann::ordered_json json{{"exit", a.exits},
+                                    {"unit", a.unit},
+                                    {"free_openness", free.least_openness},
+                                    {"free_concave_per_mm", free.most_concave_per_mm},
+                                    {"free_convex_per_mm", free.most_convex_per_mm},
+                                    {"equalize", a.fields.equalize_openness},
+                                    {"fault_reach", a.fields.reliability_iterations},
+                                    {"uniform_weights", a.uniform_weights},
+                                    {"classical_watershed", a.classical},
+                                    {"out", std::filesystem::path(a.out).filename().string()},
+                                    {"mesh_out", place_of(a.mesh_out, a.out)},
+                                    {"pictures", place_of(a.pictures, a.out)},
+                                    {"svg", place_of(a.svg, a.out)},
+                                    {"invariants", place_of(a.invariants, a.out)},
+                                    {"invariant_radius_mm", a.invariants.empty() ? 0.0 : a.radius_mm}};
+  return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+}
 
 nlohmann::ordered_json summary_json(const AnalyzeArguments& arguments, const WedgeFile& file) {
   nlohmann::ordered_json json{{"wedges", arguments.out},
@@ -99,7 +135,72 @@ Status write_extras(const AnalyzeArguments& arguments, const Mesh& mesh, const A
   return {};
 }
 
+/// Stamped work needs files that can be read again: nothing is remembered of a pipe.
+bool is_stampable(const AnalyzeArguments& arguments) {
+  std::error_code error;
+  const auto plain = [&](const std::string& path) {
+    return !std::filesystem::exists(path, error) || std::filesystem::is_regular_file(path, error);
+  };
+  return std::filesystem::is_regular_file(arguments.in, error) && plain(arguments.out);
+}
+
+/// What was found when it was done before.
+Result<int> tell_done(const AnalyzeArguments& arguments, CommandContext& context) {
+  const Result<WedgeFile> file = read_wedges(arguments.out);
+  if (!file) {
+    return std::unexpected(file.error());
+  }
+  if (context.json) {
+    nlohmann::ordered_json json = summary_json(arguments, *file);
+    json["done_before"] = true;
+    CommandContext::print(json);
+  } else {
+    finish_progress();
+    std::printf("%s: %zu wedges, done before from this mesh; --again does it anew\n", arguments.out.c_str(),
+                file->wedges.size());
+  }
+  return 0;
+}
+
+/// Everything that was written, for the stamp.
+std::vector<std::filesystem::path> outputs_of(const AnalyzeArguments& arguments,
+                                              const std::vector<std::filesystem::path>& drawings) {
+  std::vector<std::filesystem::path> out{arguments.out};
+  for (const std::string& file : {arguments.mesh_out, arguments.invariants}) {
+    if (!file.empty()) {
+      out.emplace_back(file);
+    }
+  }
+  out.insert(out.end(), drawings.begin(), drawings.end());
+  std::error_code error;
+  if (!arguments.pictures.empty()) {
+    for (const auto& entry : std::filesystem::directory_iterator(arguments.pictures, error)) {
+      if (entry.path().extension() == ".ply" || entry.path().extension() == ".png") {
+        out.push_back(entry.path());
+      }
+    }
+  }
+  std::ranges::sort(out);
+  return out;
+}
+
 Result<int> analyze(const AnalyzeArguments& arguments, CommandContext& context) {
+  std::optional<StampedWork> work;
+  if (is_stampable(arguments)) {
+    Result<StampedWork> begun = StampedWork::begin(stamp_beside(arguments.out), "analyze",
+                                                   parameters_of(arguments), {arguments.in}, context.job);
+    if (!begun) {
+      return std::unexpected(begun.error());
+    }
+    work = std::move(*begun);
+    const Result<bool> done = arguments.again ? false : work->done(context.job);
+    if (!done) {
+      return std::unexpected(done.error());
+    }
+    if (*done) {
+      return tell_done(arguments, context);
+    }
+  }
   using Clock = std::chrono::steady_clock;
   const auto seconds_since = [](Clock::time_point from) {
     return std::chrono::duration<double>(Clock::now() - from).count();
@@ -132,6 +233,9 @@ Result<int> analyze(const AnalyzeArguments& arguments, CommandContext& context) 
   analysis->timings_s.emplace_back("all", took_s);
   const WedgeFile file =
       wedge_file(std::filesystem::path(arguments.in).filename().string(), options, *analysis);
+  if (const Status started = work ? work->start() : Status(); !started) {
+    return std::unexpected(started.error());
+  }
   if (const Status written = write_wedges(arguments.out, file); !written) {
     return std::unexpected(written.error());
   }
@@ -140,15 +244,21 @@ Result<int> analyze(const AnalyzeArguments& arguments, CommandContext& context) 
       return std::unexpected(written.error());
     }
   }
+  std::vector<std::filesystem::path> drawings;
   if (!arguments.svg.empty()) {
-    const auto drawn =
-        write_wedge_drawings(arguments.svg, file.wedges, *file.text_from_model, file.mesh, &*mesh);
+    auto drawn = write_wedge_drawings(arguments.svg, file.wedges, *file.text_from_model, file.mesh, &*mesh);
     if (!drawn) {
       return std::unexpected(drawn.error());
     }
+    drawings = std::move(*drawn);
   }
   if (const Status written = write_extras(arguments, *mesh, *analysis, context.job); !written) {
     return std::unexpected(written.error());
+  }
+  if (work) {
+    if (const Status stamped = work->finish(outputs_of(arguments, drawings), context.job); !stamped) {
+      return std::unexpected(stamped.error());
+    }
   }
   if (context.json) {
     CommandContext::print(summary_json(arguments, file));
@@ -206,6 +316,7 @@ void add_analyze(CLI::App& app, Action& chosen) {
       ->capture_default_str();
   verb->add_option("--svg", arguments->svg, "a folder for one drawing to scale of each side that has wedges");
   verb->add_flag("--classical-watershed", arguments->classical, "the textbook watershed, for comparison");
+  verb->add_flag("--again", arguments->again, "even where the same was done before from the same mesh");
   verb->callback(
       [&chosen, arguments] { chosen = [arguments](CommandContext& c) { return analyze(*arguments, c); }; });
 }

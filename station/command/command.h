@@ -46,5 +46,6 @@ void add_export(CLI::App& app, Action& chosen);
 void add_session(CLI::App& app, Action& chosen);
 void add_station(CLI::App& app, Action& chosen);
 void add_bench(CLI::App& app, Action& chosen);
+void add_reference(CLI::App& app, Action& chosen);
 
 }  // namespace dubsar

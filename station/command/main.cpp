@@ -50,9 +50,9 @@ int run(int argc, char** argv) {
   app.fallthrough();
 
   Action action;
-  for (const auto add :
-       {add_drivers, add_simulate, add_calibrate, add_scan, add_register, add_plan, add_pins, add_stitch,
-        add_analyze, add_search, add_mesh, add_export, add_verify, add_session, add_station, add_bench}) {
+  for (const auto add : {add_drivers, add_simulate, add_calibrate, add_scan, add_register, add_plan, add_pins,
+                         add_stitch, add_analyze, add_search, add_mesh, add_export, add_verify, add_session,
+                         add_station, add_bench, add_reference}) {
     add(app, action);
   }
   try {

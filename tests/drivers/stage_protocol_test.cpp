@@ -135,7 +135,7 @@ TEST(UsbNames, AreMakerProductAndSerial) {
 }
 
 TEST(UsbErrors, NameTheMend) {
-  EXPECT_THAT(usb_error(-3, "x", "1:2").line(), HasSubstr("copy drivers/udev/60-dubsar.rules"));
+  EXPECT_THAT(usb_error(-3, "x", "1:2").line(), HasSubstr("copy 60-dubsar.rules to /etc/udev/rules.d"));
   EXPECT_THAT(usb_error(-6, "x", "1:2").line(), HasSubstr("in use by another program"));
   EXPECT_THAT(usb_error(-4, "x", "1:2").line(), HasSubstr("unplugged"));
 }

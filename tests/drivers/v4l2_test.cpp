@@ -218,7 +218,7 @@ TEST_F(V4l2, ARefusalSaysWhatToDo) {
   }
   ASSERT_EQ(peer_->tell("deny"), "ok");
   EXPECT_THAT(open().error().line(),
-              HasSubstr("no right to use the camera; copy drivers/udev/60-dubsar.rules"));
+              HasSubstr("no right to use the camera; join the group plugdev, or copy 60-dubsar.rules"));
   EXPECT_EQ(open().error().kind, ErrorKind::kDevice);
   ASSERT_EQ(peer_->tell("occupy"), "ok");
   EXPECT_THAT(open().error().line(), HasSubstr("in use by another program"));

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+// Errors as Python exceptions that keep what, where and mend apart.
+
+#include <array>
+
+#include "python/binding.h"
+
+namespace dubsar::python {
+
+namespace {
+
+struct Kind {
+  ErrorKind kind;
+  const char* name;
+  PyObject* base;  ///< Python's own exception that it also is, so that callers need not know ours
+  const char* help;
+  PyObject* type = nullptr;
+};
+
+// The interpreter keeps the types as long as it runs; the module is never unloaded.
+std::array<Kind, 6>& kinds() {
+  static std::array<Kind, 6> all{{
+      {ErrorKind::kUsage, "UsageError", PyExc_ValueError, "What was asked for does not exist."},
+      {ErrorKind::kBadInput, "BadInputError", PyExc_ValueError,
+       "Outside bytes are not what they claim to be."},
+      {ErrorKind::kDevice, "DeviceError", PyExc_OSError, "A device or its driver failed."},
+      {ErrorKind::kStorage, "StorageError", PyExc_OSError, "The disk refused."},
+      {ErrorKind::kCancelled, "Cancelled", nullptr, "progress() returned False."},
+      {ErrorKind::kInternal, "InternalError", PyExc_RuntimeError, "A defect of Dubsar: please report it."},
+  }};
+  return all;
+}
+
+}  // namespace
+
+void raise(const Error& error) {
+  for (const Kind& kind : kinds()) {
+    if (kind.kind == error.kind) {
+      const py::object type = py::reinterpret_borrow<py::object>(kind.type);
+      const py::object exception = type(py::str(error.line()));
+      exception.attr("what") = error.what;
+      exception.attr("where") = error.where;
+      exception.attr("mend") = error.mend;
+      PyErr_SetObject(kind.type, exception.ptr());
+      throw py::error_already_set();
+    }
+  }
+  throw std::logic_error(error.line());
+}
+
+void bind_errors(py::module_& module) {
+  py::object base = py::reinterpret_steal<py::object>(PyErr_NewExceptionWithDoc(
+      "dubsar.Error", "What went wrong, where, and the mend: the attributes `what`, `where` and `mend`.",
+      PyExc_Exception, nullptr));
+  for (const char* name : {"what", "where", "mend"}) {
+    base.attr(name) = "";
+  }
+  module.attr("Error") = base;
+  for (Kind& kind : kinds()) {
+    py::tuple bases = kind.base == nullptr
+                          ? py::make_tuple(base)
+                          : py::make_tuple(base, py::reinterpret_borrow<py::object>(kind.base));
+    const std::string name = std::string("dubsar.") + kind.name;
+    kind.type = PyErr_NewExceptionWithDoc(name.c_str(), kind.help, bases.ptr(), nullptr);
+    if (kind.type == nullptr) {
+      throw py::error_already_set();
+    }
+    module.attr(kind.name) = py::reinterpret_borrow<py::object>(kind.type);
+  }
+}
+
+}  // namespace dubsar::python

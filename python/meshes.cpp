@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+// dubsar.Mesh: a triangle mesh whose arrays numpy sees in place, and the mesh check.
+
+#include <algorithm>
+#include <limits>
+
+#include "core/units.h"
+#include "formats/mesh_io.h"
+#include "python/jobs.h"
+#include "triangulation/mesh_check.h"
+
+namespace dubsar::python {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+using MeshPointer = std::shared_ptr<Mesh>;
+static_assert(sizeof(Eigen::Vector3f) == 3 * sizeof(float));
+
+void check_rows(const py::array& array, py::ssize_t rows, const char* name) {
+  if (array.ndim() != 2 || array.shape(1) != 3 || (rows >= 0 && array.shape(0) != rows)) {
+    raise({ErrorKind::kUsage, std::string(name) + " has the wrong shape", {}, "give three numbers a row"});
+  }
+}
+
+std::vector<Eigen::Vector3f> vectors_of(const Input<float>& array) {
+  std::vector<Eigen::Vector3f> out(static_cast<std::size_t>(array.shape(0)));
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    out[i] = Eigen::Map<const Eigen::Vector3f>(array.data() + 3 * i);
+  }
+  return out;
+}
+
+MeshPointer make_mesh(const Input<float>& vertices, const Input<std::int64_t>& faces,
+                      const std::optional<Input<float>>& normals,
+                      const std::optional<Input<float>>& reliability) {
+  check_rows(vertices, -1, "vertices");
+  check_rows(faces, -1, "faces");
+  auto mesh = std::make_shared<Mesh>();
+  mesh->positions = vectors_of(vertices);
+  const auto count = static_cast<std::int64_t>(mesh->positions.size());
+  mesh->faces.resize(static_cast<std::size_t>(faces.shape(0)));
+  for (std::size_t f = 0; f < mesh->faces.size(); ++f) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::int64_t vertex = faces.data()[3 * f + k];
+      if (vertex < 0 || vertex >= count) {
+        raise({ErrorKind::kUsage,
+               "face " + std::to_string(f) + " names vertex " + std::to_string(vertex) + " of " +
+                   std::to_string(count),
+               {},
+               "give indices from 0"});
+      }
+      mesh->faces[f][k] = static_cast<std::uint32_t>(vertex);
+    }
+  }
+  if (normals) {
+    check_rows(*normals, count, "normals");
+    mesh->normals = vectors_of(*normals);
+  }
+  if (reliability) {
+    if (reliability->size() != count) {
+      raise({ErrorKind::kUsage, "reliability has the wrong length", {}, "give one number a vertex"});
+    }
+    mesh->reliability.assign(reliability->data(), reliability->data() + count);
+  }
+  return mesh;
+}
+
+template <class T>
+auto column(std::vector<T> Mesh::*member) {
+  return [member](const MeshPointer& mesh) -> py::object {
+    const std::vector<T>& values = (*mesh).*member;
+    if (values.empty()) {
+      return py::none();
+    }
+    return view_of(values.data(), {static_cast<py::ssize_t>(values.size())}, py::cast(mesh));
+  };
+}
+
+/// Rows of three; an empty array where `always`, otherwise None.
+template <class Number, class Row>
+auto rows(std::vector<Row> Mesh::*member, bool always) {
+  static_assert(sizeof(Row) == 3 * sizeof(Number));
+  return [member, always](const MeshPointer& mesh) -> py::object {
+    const std::vector<Row>& values = (*mesh).*member;
+    if (values.empty()) {
+      return always ? py::object(py::array_t<Number>(std::vector<py::ssize_t>{0, 3}))
+                    : py::object(py::none());
+    }
+    return view_of(reinterpret_cast<const Number*>(values.data()),
+                   {static_cast<py::ssize_t>(values.size()), 3}, py::cast(mesh));
+  };
+}
+
+py::dict report_of(const MeshReport& report) {
+  py::dict out;
+  out["manifold"] = report.is_manifold();
+  out["closed"] = report.is_closed();
+  out["vertices"] = report.vertices;
+  out["faces"] = report.faces;
+  out["components"] = report.components;
+  out["largest_component_faces"] = report.largest_component;
+  out["boundary_loops"] = report.boundary_loops;
+  out["boundary_edges"] = report.boundary_edges;
+  out["boundary_length_mm"] = report.boundary_length_mm;
+  out["non_manifold_edges"] = report.non_manifold_edges;
+  out["non_manifold_vertices"] = report.non_manifold_vertices;
+  out["inconsistent_faces"] = report.inconsistent_faces;
+  out["degenerate_faces"] = report.degenerate_faces;
+  out["duplicate_faces"] = report.duplicate_faces;
+  out["self_intersections"] = report.self_intersections;
+  out["unreferenced_vertices"] = report.unreferenced_vertices;
+  out["area_mm2"] = report.area_mm2;
+  const Eigen::Vector3f size =
+      report.box.isEmpty() ? Eigen::Vector3f::Zero().eval() : report.box.sizes().eval();
+  out["size_mm"] = py::make_tuple(size.x(), size.y(), size.z());
+  return out;
+}
+
+}  // namespace
+
+void bind_meshes(py::module_& module) {
+  py::class_<Mesh, MeshPointer>(
+      module, "Mesh",
+      "A triangle mesh, millimetres. The arrays are views: what is written into them "
+      "is in the mesh.")
+      .def(py::init(&make_mesh), py::arg("vertices"), py::arg("faces"), py::arg("normals") = py::none(),
+           py::arg("reliability") = py::none(), "Copies [V, 3] vertices and [F, 3] indices of vertices.")
+      .def_property_readonly("vertices", rows<float>(&Mesh::positions, true), "[V, 3] float32, mm")
+      .def_property_readonly("faces", rows<std::uint32_t>(&Mesh::faces, true), "[F, 3] uint32")
+      .def_property_readonly("normals", rows<float>(&Mesh::normals, false), "[V, 3] unit, or None")
+      .def_property_readonly("reliability", column(&Mesh::reliability), "[V] in [0, 1], or None")
+      .def_property_readonly("sigma_mm", column(&Mesh::sigma_mm), "[V] along the normal, or None")
+      .def_property_readonly("scans", column(&Mesh::scans), "[V] how many scans support it, or None")
+      .def_property_readonly("flags", column(&Mesh::flags),
+                             "[V] 1 sparse, 2 interpolated, 4 boundary, or None")
+      .def_property_readonly("colours", rows<std::uint8_t>(&Mesh::colours, false), "[V, 3] uint8, or None")
+      .def("__repr__", [](const Mesh& mesh) {
+        return "<dubsar.Mesh " + std::to_string(mesh.positions.size()) + " vertices, " +
+               std::to_string(mesh.faces.size()) + " faces>";
+      });
+  module.def(
+      "read_mesh",
+      [](const fs::path& path, const std::optional<std::string>& unit) {
+        const MeshReadOptions options{.mm_per_unit = mm_per_unit_named(unit)};
+        return std::make_shared<Mesh>(
+            run_for_result(py::none(), [&](JobContext&) { return read_mesh(path, options); }));
+      },
+      py::arg("path"), py::arg("unit") = py::none(), "PLY, OBJ, STL or GLB, in millimetres.");
+  module.def(
+      "write_mesh",
+      [](const fs::path& path, const MeshPointer& mesh) {
+        run_for_result(py::none(), [&](JobContext&) { return write_mesh(path, *mesh); });
+      },
+      py::arg("path"), py::arg("mesh"), "PLY, OBJ, STL or GLB by the ending; whole or not at all.");
+  module.def(
+      "check_mesh",
+      [](const MeshPointer& mesh) {
+        MeshReport report;
+        run_job(py::none(), [&](JobContext&) { report = check_mesh(*mesh); });
+        return report_of(report);
+      },
+      py::arg("mesh"), "Topology and size, as `dubsar mesh check` tells them.");
+}
+
+py::array_t<double> matrix_of(const RigidTransform& transform) {
+  py::array_t<double> out(std::vector<py::ssize_t>{4, 4});
+  std::ranges::copy(transform.row_major(), out.mutable_data());
+  return out;
+}
+
+RigidTransform transform_of(const Input<double>& matrix, const std::string& what) {
+  std::array<double, 16> numbers{};
+  if (matrix.ndim() == 2 && matrix.shape(0) == 4 && matrix.shape(1) == 4) {
+    std::copy_n(matrix.data(), 16, numbers.begin());
+    const RigidTransform transform = RigidTransform::from_row_major(numbers);
+    if (transform.is_rigid()) {
+      return transform.orthonormalised();
+    }
+  }
+  raise({ErrorKind::kUsage, what + " is no rigid transform", {}, "give a 4 x 4 matrix, millimetres"});
+}
+
+std::optional<double> mm_per_unit_named(const std::optional<std::string>& unit) {
+  if (!unit) {
+    return std::nullopt;
+  }
+  const std::optional<double> scale = mm_per_unit(*unit);
+  if (!scale) {
+    raise({ErrorKind::kUsage, "no unit " + *unit, {}, "there are m, mm and um"});
+  }
+  return scale;
+}
+
+}  // namespace dubsar::python

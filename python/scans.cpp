@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+// From range grids to poses, and from grids in their places to a mesh.
+
+#include "formats/pins_json.h"
+#include "formats/poses_json.h"
+#include "planning/sparse_flags.h"
+#include "python/jobs.h"
+#include "registration/registrar.h"
+#include "station/station_scan.h"
+#include "triangulation/stitcher.h"
+
+namespace dubsar::python {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+using Grids = std::vector<GridPointer>;
+
+void check_grids(const Grids& grids) {
+  for (std::size_t k = 0; k < grids.size(); ++k) {
+    if (!grids[k] || grids[k]->size() == 0) {
+      raise({ErrorKind::kUsage, "grid " + std::to_string(k) + " is empty", {}, "give range grids"});
+    }
+  }
+}
+
+Result<std::vector<ScanPose>> register_grids(const Grids& grids, const PinSet* pins,
+                                             const std::vector<std::optional<RigidTransform>>& starts,
+                                             JobContext& job) {
+  Registrar registrar;
+  for (std::size_t k = 0; k < grids.size(); ++k) {
+    job.progress("registering", static_cast<double>(k) / static_cast<double>(grids.size() + 1));
+    if (job.cancelled()) {
+      return fail(ErrorKind::kCancelled, "stopped");
+    }
+    const int id = static_cast<int>(k);
+    // As long as the caller waits here, nobody takes the grid away.
+    if (k < starts.size() && starts[k]) {
+      registrar.add_at(id, grids[k], pins, *starts[k], false, job);
+    } else {
+      registrar.add(id, grids[k], pins, job);
+    }
+  }
+  if (const Status done = registrar.finalize(job); !done) {
+    return std::unexpected(done.error());
+  }
+  job.progress("registering", 1.0);
+  std::vector<ScanPose> poses = registrar.poses();
+  for (ScanPose& pose : poses) {
+    pose.file = grids[static_cast<std::size_t>(pose.id)]->source;
+  }
+  return poses;
+}
+
+Result<Mesh> stitch_grids(const Grids& grids, const std::vector<ScanPose>& poses,
+                          const std::optional<PinSet>& pins, JobContext& job) {
+  std::vector<StationScan> scans;
+  std::vector<PlacedScan> placed;
+  scans.reserve(poses.size());
+  for (const ScanPose& pose : poses) {
+    if (pose.status != PoseStatus::kRegistered) {
+      continue;
+    }
+    const GridPointer& grid = grids[static_cast<std::size_t>(pose.id)];
+    if (pins || grid->pin_tip_diameter_mm > 0) {
+      scans.push_back(prepare_scan(pose.id, *grid, pins));
+    } else {
+      StationScan scan;
+      scan.grid = grid;
+      scan.flags = std::make_shared<const SampleFlags>(flag_sparse(*grid));
+      scans.push_back(std::move(scan));
+    }
+    placed.push_back(
+        {pose.id, scans.back().grid.get(), scans.back().flags.get(), pose.model_from_scanner, pose.sigma_mm});
+  }
+  if (placed.empty()) {
+    return fail(ErrorKind::kUsage, "no scan is registered", {}, "see the poses' reasons");
+  }
+  return stitch(placed, {}, job);
+}
+
+std::optional<PinSet> pins_of(const std::optional<fs::path>& file) {
+  return file ? std::optional(value_of(read_pins(*file))) : std::nullopt;
+}
+
+ScanPose make_pose(int id, const Input<double>& model_from_scanner, const std::string& file,
+                   double sigma_mm) {
+  ScanPose pose;
+  pose.id = id;
+  pose.file = file;
+  pose.model_from_scanner = transform_of(model_from_scanner, "model_from_scanner");
+  pose.status = PoseStatus::kRegistered;
+  pose.sigma_mm = sigma_mm;
+  return pose;
+}
+
+py::object covariance_of(const ScanPose& pose) {
+  if (!pose.covariance) {
+    return py::none();
+  }
+  py::array_t<double> out({6, 6});
+  for (int row = 0; row < 6; ++row) {
+    for (int col = 0; col < 6; ++col) {
+      out.mutable_at(row, col) = (*pose.covariance)(row, col);
+    }
+  }
+  return out;
+}
+
+void bind_pose(py::module_& module) {
+  py::class_<ScanPose>(module, "Pose", "Where a scan lies, and how sure that is.")
+      .def(py::init(&make_pose), py::arg("id"), py::arg("model_from_scanner"), py::arg("file") = "",
+           py::arg("sigma_mm") = 0.0, "A pose that is known from elsewhere: it counts as registered.")
+      .def_readonly("id", &ScanPose::id, "the scan's place in the list of grids")
+      .def_readonly("file", &ScanPose::file)
+      .def_property_readonly(
+          "status", [](const ScanPose& pose) { return to_string(pose.status); },
+          "'registered', 'unsure' or 'failed'")
+      .def_property_readonly("registered",
+                             [](const ScanPose& pose) { return pose.status == PoseStatus::kRegistered; })
+      .def_property_readonly(
+          "model_from_scanner", [](const ScanPose& pose) { return matrix_of(pose.model_from_scanner); },
+          "[4, 4], mm; means nothing when failed")
+      .def_readonly("rms_mm", &ScanPose::rms_mm)
+      .def_readonly("sigma_mm", &ScanPose::sigma_mm)
+      .def_readonly("overlap", &ScanPose::overlap)
+      .def_readonly("reason", &ScanPose::reason)
+      .def_property_readonly("covariance", &covariance_of,
+                             "[6, 6] of (omega rad, v mm) about the scan's centroid, or None")
+      .def("__repr__", [](const ScanPose& pose) {
+        return "<dubsar.Pose " + std::to_string(pose.id) + " " + to_string(pose.status) +
+               (pose.reason.empty() ? "" : ": " + pose.reason) + ">";
+      });
+}
+
+}  // namespace
+
+void bind_scans(py::module_& module) {
+  bind_pose(module);
+  module.def(
+      "register",
+      [](const Grids& grids, const std::optional<std::vector<std::optional<Input<double>>>>& starts,
+         const std::optional<fs::path>& pins_file, const py::object& progress) {
+        check_grids(grids);
+        const std::optional<PinSet> pins = pins_of(pins_file);
+        std::vector<std::optional<RigidTransform>> from;
+        if (starts) {
+          if (starts->size() != grids.size()) {
+            raise(
+                {ErrorKind::kUsage, "starts has another length than grids", {}, "give one, or None, a grid"});
+          }
+          for (const auto& start : *starts) {
+            from.push_back(start ? std::optional(transform_of(*start, "a start")) : std::nullopt);
+          }
+        }
+        return run_for_result(progress, [&](JobContext& job) {
+          return register_grids(grids, pins ? &*pins : nullptr, from, job);
+        });
+      },
+      py::arg("grids"), py::arg("starts") = py::none(), py::arg("pins") = py::none(),
+      py::arg("progress") = py::none(),
+      "The poses of grids, in their order. A pose that is not certain is 'unsure' or 'failed' and says why. "
+      "starts: for each grid a [4, 4] model_from_scanner to begin with, or None. pins: a pins.json.");
+  module.def(
+      "stitch",
+      [](const Grids& grids, const std::vector<ScanPose>& poses, const std::optional<fs::path>& pins_file,
+         const py::object& progress) {
+        check_grids(grids);
+        for (const ScanPose& pose : poses) {
+          if (pose.id < 0 || static_cast<std::size_t>(pose.id) >= grids.size()) {
+            raise({ErrorKind::kUsage,
+                   "there is no grid of pose " + std::to_string(pose.id),
+                   {},
+                   "a pose's id is its grid's place in the list"});
+          }
+        }
+        const std::optional<PinSet> pins = pins_of(pins_file);
+        return std::make_shared<Mesh>(
+            run_for_result(progress, [&](JobContext& job) { return stitch_grids(grids, poses, pins, job); }));
+      },
+      py::arg("grids"), py::arg("poses"), py::arg("pins") = py::none(), py::arg("progress") = py::none(),
+      "One oriented 2-manifold of the registered scans.");
+  module.def(
+      "read_poses", [](const fs::path& path) { return value_of(read_poses(path)); }, py::arg("path"));
+  module.def(
+      "write_poses",
+      [](const fs::path& path, const std::vector<ScanPose>& poses) { value_of(write_poses(path, poses)); },
+      py::arg("path"), py::arg("poses"));
+}
+
+}  // namespace dubsar::python

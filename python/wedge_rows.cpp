@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+// Wedges as a numpy structured array: one row a wedge, the columns of core/wedge.h.
+
+#include <algorithm>
+#include <cstdint>
+#include <string>
+
+#include "core/tablet_sides.h"
+#include "python/binding.h"
+
+namespace dubsar::python {
+
+namespace {
+
+struct WedgeRow {
+  std::int32_t id;
+  double depth_point_mm[3];
+  double exit_points_mm[3][3];
+  double exit_points_surface_mm[3][3];
+  double exit_points_extent_mm[3][3];
+  double outer_vertices_mm[3][3];
+  double face_normals[3][3];
+  double surface_normal[3];
+  std::int8_t directional_edge;
+  double directional_margin;
+  double depth_mm;
+  double face_angles_rad[3];
+  double opening_angles_rad[3];
+  double edge_lengths_mm[3];
+  double edge_slopes_rad[3];
+  double face_slopes_rad[3];
+  double edge_bows_mm[3];
+  double volume_mm3;
+  double sigma_depth_point_mm;
+  double sigma_depth_mm;
+  double sigma_opening_rad[3];
+  char side[8];
+  std::int32_t line;
+  std::int32_t order;
+  double turn_rad;
+  double reliability;
+  double confidence;
+  std::int32_t vertex_count;
+  double intact;
+};
+
+void put(double (&to)[3], const Eigen::Vector3d& from) {
+  std::copy_n(from.data(), 3, to);
+}
+void put(double (&to)[3], const std::array<double, 3>& from) {
+  std::ranges::copy(from, to);
+}
+void put(double (&to)[3][3], const std::array<Eigen::Vector3d, 3>& from) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    put(to[k], from[k]);
+  }
+}
+
+WedgeRow row_of(const Wedge& wedge) {
+  WedgeRow row{};
+  row.id = wedge.id;
+  put(row.depth_point_mm, wedge.depth_point_mm);
+  put(row.exit_points_mm, wedge.exit_points_mm);
+  put(row.exit_points_surface_mm, wedge.exit_points_surface_mm);
+  put(row.exit_points_extent_mm, wedge.exit_points_extent_mm);
+  put(row.outer_vertices_mm, wedge.outer_vertices_mm);
+  put(row.face_normals, wedge.face_normals);
+  put(row.surface_normal, wedge.surface_normal);
+  row.directional_edge = static_cast<std::int8_t>(wedge.directional_edge);
+  row.directional_margin = wedge.directional_margin;
+  row.depth_mm = wedge.depth_mm;
+  put(row.face_angles_rad, wedge.face_angles_rad);
+  put(row.opening_angles_rad, wedge.opening_angles_rad);
+  put(row.edge_lengths_mm, wedge.edge_lengths_mm);
+  put(row.edge_slopes_rad, wedge.edge_slopes_rad);
+  put(row.face_slopes_rad, wedge.face_slopes_rad);
+  put(row.edge_bows_mm, wedge.edge_bows_mm);
+  row.volume_mm3 = wedge.volume_mm3;
+  row.sigma_depth_point_mm = wedge.sigma.depth_point_mm;
+  row.sigma_depth_mm = wedge.sigma.depth_mm;
+  put(row.sigma_opening_rad, wedge.sigma.opening_rad);
+  if (wedge.place.side) {
+    const std::string side = to_string(*wedge.place.side);
+    std::copy_n(side.begin(), std::min(side.size(), sizeof row.side), row.side);
+  }
+  row.line = wedge.place.line;
+  row.order = wedge.place.order;
+  row.turn_rad = wedge.place.turn_rad;
+  row.reliability = wedge.reliability;
+  row.confidence = wedge.confidence;
+  row.vertex_count = wedge.vertex_count;
+  row.intact = wedge.intact;
+  return row;
+}
+
+}  // namespace
+
+py::array wedge_rows(const std::vector<Wedge>& wedges) {
+  py::array_t<WedgeRow> out(static_cast<py::ssize_t>(wedges.size()));
+  std::ranges::transform(wedges, out.mutable_data(), row_of);
+  return out;
+}
+
+void bind_wedge_rows() {
+  PYBIND11_NUMPY_DTYPE(WedgeRow, id, depth_point_mm, exit_points_mm, exit_points_surface_mm,
+                       exit_points_extent_mm, outer_vertices_mm, face_normals, surface_normal,
+                       directional_edge, directional_margin, depth_mm, face_angles_rad, opening_angles_rad,
+                       edge_lengths_mm, edge_slopes_rad, face_slopes_rad, edge_bows_mm, volume_mm3,
+                       sigma_depth_point_mm, sigma_depth_mm, sigma_opening_rad, side, line, order, turn_rad,
+                       reliability, confidence, vertex_count, intact);
+}
+
+}  // namespace dubsar::python

@@ -1,0 +1,339 @@
+# SPDX-License-Identifier: Apache-2.0
+# Copyright The Dubsar developers
+"""The Python module: arrays without copies, their lifetimes, files, errors, progress and stopping."""
+
+import ast
+import gc
+import json
+import os
+import runpy
+import signal
+import sys
+import tempfile
+import threading
+import unittest
+
+import numpy as np
+
+import dubsar
+
+SOURCE = os.environ["DUBSAR_SOURCE_DIR"]
+
+
+def plane(rows=20, cols=30):
+    """A tilted plane on a grid of 0.1 mm, with one cell that saw nothing."""
+    y, x = np.mgrid[0:rows, 0:cols] * 0.1
+    z = 0.2 * x
+    z[3, 4] = np.nan
+    return dubsar.Grid(x, y, z, source="plane.ply")
+
+
+class Scans(unittest.TestCase):
+    """One small tablet and its scans, for all tests that need any."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.tablet = dubsar.simulate_tablet(seed=1, size_mm=(16, 14, 9), spacing_mm=0.2)
+        cls.grids, cls.truth = dubsar.simulate_scans(cls.tablet, views=8, spacing_mm=0.15, noise_mm=0.01)
+        cls.poses = dubsar.register(cls.grids)
+        cls.mesh = dubsar.stitch(cls.grids, cls.poses)
+
+
+class Grids(unittest.TestCase):
+    def test_arrays_are_views_that_keep_the_grid(self):
+        grid = plane()
+        self.assertEqual((grid.rows, grid.cols, grid.shape), (20, 30, (20, 30)))
+        self.assertEqual(grid.z.dtype, np.float32)
+        self.assertEqual(grid.valid.dtype, np.bool_)
+        self.assertTrue(np.shares_memory(grid.z, grid.z))
+        self.assertFalse(grid.valid[3, 4])
+        self.assertEqual(grid.valid.sum(), len(grid))
+        z = grid.z
+        z[0, 0] = 7
+        self.assertEqual(grid.z[0, 0], 7)
+        kept = z.copy()
+        del grid
+        gc.collect()
+        trash = [np.full(600, 3.0, np.float32) for _ in range(200)]
+        np.testing.assert_array_equal(z, kept)
+        self.assertEqual(len(trash), 200)
+
+    def test_missing_parts_are_none(self):
+        grid = plane()
+        self.assertIsNone(grid.intensity)
+        self.assertIsNone(grid.rgb)
+        x = np.zeros((2, 3))
+        self.assertEqual(dubsar.Grid(x, x, x, intensity=x + 0.5).intensity[1, 2], 0.5)
+
+    def test_points_and_spacing(self):
+        grid = plane()
+        self.assertEqual(grid.points().shape, (599, 3))
+        self.assertAlmostEqual(grid.spacing_mm, 0.1, delta=0.005)
+
+    def test_any_array_is_taken(self):
+        x = np.asfortranarray(np.arange(6, dtype=np.int16).reshape(2, 3))
+        np.testing.assert_array_equal(dubsar.Grid(x, x.tolist(), x[::1]).x, [[0, 1, 2], [3, 4, 5]])
+
+    def test_wrong_shapes_are_told(self):
+        x = np.zeros((4, 5))
+        with self.assertRaises(dubsar.UsageError) as caught:
+            dubsar.Grid(x, x, np.zeros((4, 4)))
+        self.assertIn("z has another shape", caught.exception.what)
+        for bad in (np.zeros(5), np.zeros((0, 0)), np.zeros((2, 2, 2))):
+            with self.assertRaises(ValueError):
+                dubsar.Grid(bad, bad, bad)
+        with self.assertRaises(dubsar.UsageError):
+            dubsar.Grid(x, x, x, valid=np.ones((5, 4), bool))
+
+    def test_files_give_the_same_samples_back(self):
+        grid = plane()
+        with tempfile.TemporaryDirectory() as folder:
+            for name in ("a.grid", "b.ply"):
+                dubsar.write_grid(os.path.join(folder, name), grid)
+            both = dubsar.read_grids(folder)
+            self.assertEqual(len(both), 2)
+            for back in both:
+                for axis in "xyz":
+                    np.testing.assert_array_equal(
+                        getattr(back, axis)[back.valid], getattr(grid, axis)[grid.valid]
+                    )
+            with self.assertRaises(dubsar.UsageError):
+                dubsar.write_grid(os.path.join(folder, "c.txt"), grid)
+            scaled = dubsar.read_grids(os.path.join(folder, "b.ply"), unit="um")[0]
+            self.assertLess(scaled.points().max(), 0.1)
+
+
+class Meshes(unittest.TestCase):
+    corners = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]
+    sides = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]]
+
+    def test_tetrahedron(self):
+        mesh = dubsar.Mesh(self.corners, self.sides)
+        report = dubsar.check_mesh(mesh)
+        self.assertTrue(report["manifold"] and report["closed"])
+        self.assertEqual((report["vertices"], report["faces"], report["components"]), (4, 4, 1))
+        self.assertAlmostEqual(report["area_mm2"], 1.5 + np.sqrt(3) / 2, places=5)
+        mesh.vertices[3, 2] = 2
+        self.assertEqual(dubsar.check_mesh(mesh)["size_mm"], (1, 1, 2))
+        self.assertFalse(dubsar.check_mesh(dubsar.Mesh(self.corners, self.sides[:3]))["closed"])
+
+    def test_faces_of_vertices_that_are_not_there(self):
+        for bad in ([[0, 1, 4]], [[0, 1, -1]], [[0, 1]]):
+            with self.assertRaises(dubsar.UsageError):
+                dubsar.Mesh(self.corners, bad)
+
+    def test_files(self):
+        mesh = dubsar.Mesh(self.corners, self.sides)
+        with tempfile.TemporaryDirectory() as folder:
+            for ending in ("ply", "obj", "stl", "glb"):
+                path = os.path.join(folder, "mesh." + ending)
+                dubsar.write_mesh(path, mesh)
+                self.assertTrue(dubsar.check_mesh(dubsar.read_mesh(path))["closed"], ending)
+
+    def test_empty(self):
+        mesh = dubsar.Mesh(np.zeros((0, 3)), np.zeros((0, 3), int))
+        self.assertEqual(mesh.vertices.shape, (0, 3))
+        self.assertIsNone(mesh.normals)
+        with self.assertRaises(dubsar.BadInputError):
+            dubsar.analyze(mesh)
+
+
+class Errors(unittest.TestCase):
+    def test_what_where_and_mend_are_apart(self):
+        with self.assertRaises(dubsar.BadInputError) as caught:
+            dubsar.read_mesh("/nowhere/mesh.ply")
+        error = caught.exception
+        self.assertIsInstance(error, dubsar.Error)
+        self.assertIsInstance(error, ValueError)
+        self.assertEqual(error.where, "/nowhere/mesh.ply")
+        self.assertTrue(error.what and error.mend)
+        self.assertIn(error.what, str(error))
+
+    def test_storage(self):
+        with self.assertRaises(OSError) as caught:
+            dubsar.write_mesh("/proc/nowhere/mesh.ply", dubsar.Mesh(Meshes.corners, Meshes.sides))
+        self.assertIsInstance(caught.exception, dubsar.StorageError)
+
+    def test_unit_and_options(self):
+        for call in (
+            lambda: dubsar.read_mesh("x.ply", unit="inch"),
+            lambda: dubsar.simulate_tablet(spacing_mm=-1),
+            lambda: dubsar.Pose(0, np.diag([2, 1, 1, 1])),
+            lambda: dubsar.stitch([], [dubsar.Pose(0, np.eye(4))]),
+            lambda: dubsar.stitch([plane()], []),
+            lambda: dubsar.register([plane()], starts=[]),
+            lambda: dubsar.analyze(dubsar.Mesh(Meshes.corners, Meshes.sides), exit="sideways"),
+        ):
+            with self.assertRaises(dubsar.UsageError):
+                call()
+
+
+class Pipeline(Scans):
+    def test_poses(self):
+        self.assertTrue(all(pose.registered for pose in self.poses), self.poses)
+        to_truth = self.truth[0].model_from_scanner @ np.linalg.inv(self.poses[0].model_from_scanner)
+        for pose, truth in zip(self.poses, self.truth):
+            points = np.c_[self.grids[pose.id].points(), np.ones(len(self.grids[pose.id]))]
+            off = points @ (to_truth @ pose.model_from_scanner - truth.model_from_scanner).T
+            self.assertLess(np.sqrt((off[:, :3] ** 2).sum(axis=1).mean()), 0.05)
+        covariance = self.poses[1].covariance
+        self.assertEqual(covariance.shape, (6, 6))
+        np.testing.assert_allclose(covariance, covariance.T, atol=1e-12)
+
+    def test_starts_lead_to_the_same_place(self):
+        starts = [truth.model_from_scanner for truth in self.truth]
+        for pose, truth in zip(dubsar.register(self.grids, starts=starts), self.truth):
+            self.assertTrue(pose.registered)
+            np.testing.assert_allclose(pose.model_from_scanner, truth.model_from_scanner, atol=0.1)
+
+    def test_same_bytes_again(self):
+        again = dubsar.register(self.grids)
+        for one, other in zip(again, self.poses):
+            np.testing.assert_array_equal(one.model_from_scanner, other.model_from_scanner)
+        np.testing.assert_array_equal(dubsar.stitch(self.grids, again).vertices, self.mesh.vertices)
+
+    def test_poses_file(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "poses.json")
+            dubsar.write_poses(path, self.poses)
+            for one, other in zip(dubsar.read_poses(path), self.poses):
+                np.testing.assert_array_equal(one.model_from_scanner, other.model_from_scanner)
+
+    def test_mesh(self):
+        self.assertTrue(dubsar.check_mesh(self.mesh)["manifold"])
+        count = len(self.mesh.vertices)
+        for column in (self.mesh.normals, self.mesh.reliability, self.mesh.sigma_mm, self.mesh.scans, self.mesh.flags):
+            self.assertEqual(len(column), count)
+        self.assertLess(self.mesh.faces.max(), count)
+
+    def test_wedges(self):
+        wedges = dubsar.analyze(self.mesh, name="model.ply")
+        table = wedges.table
+        self.assertGreater(len(wedges), 30)
+        self.assertEqual(len(table), len(wedges))
+        self.assertEqual(table["exit_points_mm"].shape, (len(table), 3, 3))
+        self.assertTrue((table["depth_mm"] > 0).all())
+        self.assertTrue(set(table["side"]) <= {b"obverse", b"reverse", b"left", b"right", b"top", b"bottom", b""})
+        lengths = np.linalg.norm(table["exit_points_mm"] - table["depth_point_mm"][:, None, :], axis=2)
+        np.testing.assert_allclose(lengths, table["edge_lengths_mm"], rtol=1e-6)
+        for name, values in wedges.fields.items():
+            self.assertEqual(len(values), len(self.mesh.vertices), name)
+        self.assertEqual(wedges.fields["free_surface"].dtype, np.bool_)
+        self.assertEqual(len(wedges.annotated_mesh().colours), len(wedges.annotated_mesh().vertices))
+        stored = json.loads(wedges.to_json())
+        self.assertEqual(len(stored["wedges"]), len(wedges))
+        np.testing.assert_allclose(
+            [w["depth_point"] for w in stored["wedges"]], table["depth_point_mm"], atol=1e-5
+        )
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "wedges.json")
+            wedges.write(path)
+            back = dubsar.read_wedges(path)
+            np.testing.assert_allclose(back.table["depth_mm"], table["depth_mm"], atol=1e-5)
+            self.assertEqual(back.fields, {})
+            with self.assertRaises(dubsar.UsageError):
+                back.annotated_mesh()
+
+    def test_fields_outlive_the_wedges(self):
+        openness = dubsar.analyze(self.mesh).fields["openness"]
+        kept = openness.copy()
+        gc.collect()
+        dubsar.analyze(self.mesh)
+        np.testing.assert_array_equal(openness, kept)
+
+    def test_progress_is_told_on_the_calling_thread(self):
+        told = []
+        dubsar.register(self.grids[:4], progress=lambda *words: told.append((threading.get_ident(), *words)))
+        self.assertTrue(told)
+        self.assertEqual({ident for ident, _, _ in told}, {threading.get_ident()})
+        self.assertTrue(all(0 <= fraction <= 1 for _, _, fraction in told))
+
+    def test_false_stops(self):
+        with self.assertRaises(dubsar.Cancelled):
+            dubsar.register(self.grids, progress=lambda stage, fraction: False)
+
+    def test_what_progress_raises_comes_through(self):
+        def broken(stage, fraction):
+            raise KeyError("mine")
+
+        with self.assertRaisesRegex(KeyError, "mine"):
+            dubsar.simulate_scans(self.tablet, views=200, spacing_mm=0.05, progress=broken)
+
+    def test_control_c_stops(self):
+        # The signal comes while the work runs, from within it: progress is told before it is finished.
+        def interrupt(stage, fraction):
+            os.kill(os.getpid(), signal.SIGINT)
+
+        previous = signal.signal(signal.SIGINT, signal.default_int_handler)
+        try:
+            with self.assertRaises(KeyboardInterrupt):
+                dubsar.simulate_scans(self.tablet, views=200, spacing_mm=0.05, progress=interrupt)
+        finally:
+            signal.signal(signal.SIGINT, previous)
+
+    def test_other_threads_run_meanwhile(self):
+        # Each waits for the other inside its own call: with the lock held one would wait for ever.
+        meet = threading.Barrier(2, timeout=60)
+        met = []
+
+        def progress(stage, fraction):
+            if not met:
+                meet.wait()
+                met.append(True)
+
+        def call():
+            dubsar.register(self.grids[:4], progress=lambda *words: first.is_set() or (first.set(), meet.wait()))
+
+        first = threading.Event()
+        other = threading.Thread(target=call)
+        other.start()
+        dubsar.register(self.grids[:4], progress=progress)
+        other.join()
+        self.assertTrue(met)
+
+
+class Stubs(unittest.TestCase):
+    def test_they_name_what_is_there(self):
+        with open(os.path.join(os.path.dirname(dubsar.__file__), "__init__.pyi"), encoding="utf-8") as file:
+            stub = ast.parse(file.read())
+        there = {name for name in dir(dubsar) if not name.startswith("_")}
+        named = {}
+        for node in stub.body:
+            if isinstance(node, ast.FunctionDef):
+                named[node.name] = {a.arg for a in node.args.args}
+            elif isinstance(node, ast.ClassDef):
+                base = {b.id for b in node.bases if isinstance(b, ast.Name)}
+                if "TypedDict" not in base:
+                    named[node.name] = {
+                        n.name for n in node.body if isinstance(n, ast.FunctionDef) and not n.name.startswith("_")
+                    } | {n.target.id for n in node.body if isinstance(n, ast.AnnAssign)}
+        self.assertEqual(set(named), there)
+        for name, members in named.items():
+            thing = getattr(dubsar, name)
+            if isinstance(thing, type):
+                own = {m for m in vars(thing) if not m.startswith("_")}
+                if not issubclass(thing, Exception):
+                    self.assertEqual(members, own, name)
+            else:
+                for argument in members:
+                    self.assertIn(argument + ":", thing.__doc__, name)
+
+
+class Example(unittest.TestCase):
+    def test_it_runs(self):
+        with tempfile.TemporaryDirectory() as folder:
+            previous = sys.argv
+            sys.argv = ["tablet.py", folder]
+            try:
+                ran = runpy.run_path(os.path.join(SOURCE, "python/examples/tablet.py"))
+            finally:
+                sys.argv = previous
+            self.assertTrue(ran["report"]["manifold"])
+            self.assertGreater(ran["found"], 0.8)
+            self.assertLess(np.mean(ran["off_um"]), 50)
+            self.assertEqual(len(dubsar.read_wedges(folder + "/wedges.json")), len(ran["wedges"]))
+            self.assertGreater(len(dubsar.read_mesh(folder + "/model.ply").faces), 1000)
+
+
+if __name__ == "__main__":
+    unittest.main()

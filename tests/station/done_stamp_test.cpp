@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+// Work that is done once: what counts as done, and what does not.
+#include "station/done_stamp.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <functional>
+
+#include "tests/support/temporary_folder.h"
+
+namespace dubsar {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+class DoneStampTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    put("in.ply", "a mesh");
+    put("out.json", "wedges");
+    put("more/drawing.svg", "lines");
+  }
+  [[nodiscard]] fs::path path(const std::string& name) const { return folder_.path() / name; }
+  void put(const std::string& name, const std::string& text) const {
+    fs::create_directories(path(name).parent_path());
+    std::ofstream(path(name), std::ios::binary) << text;
+  }
+  [[nodiscard]] StampedWork begin(const std::string& parameters = "{}",
+                                  const std::string& verb = "analyze") const {
+    Result<StampedWork> work =
+        StampedWork::begin(stamp_beside(path("out.json")), verb, parameters, {path("in.ply")}, job_);
+    EXPECT_TRUE(work) << work.error().line();
+    return *work;
+  }
+  void do_it() const {
+    const StampedWork work = begin();
+    ASSERT_TRUE(work.start());
+    ASSERT_TRUE(work.finish({path("out.json"), path("more/drawing.svg")}, job_));
+  }
+  [[nodiscard]] bool done(const StampedWork& work) const {
+    const Result<bool> answer = work.done(job_);
+    return answer && *answer;
+  }
+
+  JobContext job_;
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(DoneStampTest, NothingIsDoneBeforeItIs) {
+  EXPECT_FALSE(done(begin()));
+  do_it();
+  EXPECT_TRUE(done(begin()));
+}
+
+TEST_F(DoneStampTest, HashesAreThoseOfXxhsum) {
+  do_it();
+  std::ifstream in(stamp_beside(path("out.json")));
+  const std::string text((std::istreambuf_iterator<char>(in)), {});
+  const Result<DoneStamp> stamp = parse_done_stamp(text, "stamp");
+  ASSERT_TRUE(stamp);
+  EXPECT_EQ(stamp->inputs, (std::vector<StampedFile>{{"in.ply", 6, "2a8be4d062ab7fb00bba6055e4967bb0"}}));
+  EXPECT_EQ(stamp->outputs[1].name, "more/drawing.svg");
+  EXPECT_THAT(text, Not(HasSubstr(folder_.path().string())));
+}
+
+TEST_F(DoneStampTest, AnythingElseIsOtherWork) {
+  const std::vector<std::pair<const char*, std::function<void()>>> changes{
+      {"input of another size", [&] { put("in.ply", "another mesh"); }},
+      {"input of the same size", [&] { put("in.ply", "a mush"); }},
+      {"output cut short", [&] { put("out.json", "wed"); }},
+      {"output of the same size", [&] { put("out.json", "wedgeS"); }},
+      {"output gone", [&] { fs::remove(path("more/drawing.svg")); }},
+      {"output a folder",
+       [&] {
+         fs::remove(path("out.json"));
+         fs::create_directory(path("out.json"));
+       }},
+      {"stamp cut short", [&] { fs::resize_file(stamp_beside(path("out.json")), 40); }},
+      {"stamp empty", [&] { fs::resize_file(stamp_beside(path("out.json")), 0); }},
+      {"stamp of nothing",
+       [&] {
+         put("out.json.done", R"({"program":")" DUBSAR_VERSION
+                              R"(","verb":"analyze","parameters":"{}","inputs":[],"outputs":[]})");
+       }},
+  };
+  for (const auto& [name, change] : changes) {
+    fs::remove_all(path("out.json"));
+    SetUp();
+    do_it();
+    ASSERT_TRUE(done(begin())) << name;
+    change();
+    EXPECT_FALSE(done(begin())) << name;
+  }
+}
+
+TEST_F(DoneStampTest, OtherParametersAndVerbsAreOtherWork) {
+  do_it();
+  EXPECT_FALSE(done(begin(R"({"exit":"extent"})")));
+  EXPECT_FALSE(done(begin("{}", "export")));
+  EXPECT_TRUE(done(begin()));
+}
+
+TEST_F(DoneStampTest, StartedWorkIsNotDone) {
+  do_it();
+  ASSERT_TRUE(begin().start());
+  EXPECT_FALSE(fs::exists(stamp_beside(path("out.json"))));
+  EXPECT_FALSE(done(begin()));
+}
+
+TEST_F(DoneStampTest, InputThatChangesMeanwhileIsNotWhatItWasMadeFrom) {
+  const StampedWork work = begin();
+  ASSERT_TRUE(work.start());
+  put("in.ply", "a newer mesh");
+  ASSERT_TRUE(work.finish({path("out.json")}, job_));
+  EXPECT_FALSE(done(begin()));
+}
+
+TEST_F(DoneStampTest, ACollectionCanBeMoved) {
+  do_it();
+  const test::TemporaryFolder other;
+  fs::copy(folder_.path(), other.path() / "moved", fs::copy_options::recursive);
+  const Result<StampedWork> work = StampedWork::begin(stamp_beside(other.path() / "moved/out.json"),
+                                                      "analyze", "{}", {other.path() / "moved/in.ply"}, job_);
+  ASSERT_TRUE(work);
+  EXPECT_TRUE(done(*work));
+  fs::remove(other.path() / "moved/out.json");
+  EXPECT_FALSE(done(*work));
+}
+
+TEST_F(DoneStampTest, WhatCannotBeReadOrWrittenIsTold) {
+  const auto missing = StampedWork::begin(path("x.done"), "analyze", "", {path("nowhere")}, job_);
+  ASSERT_FALSE(missing);
+  EXPECT_EQ(missing.error().kind, ErrorKind::kBadInput);
+  EXPECT_EQ(begin().finish({path("nowhere")}, job_).error().kind, ErrorKind::kBadInput);
+  const auto nowhere = StampedWork::begin(path("no/folder/x.done"), "analyze", "", {path("in.ply")}, job_);
+  ASSERT_TRUE(nowhere);
+  EXPECT_EQ(nowhere->finish({path("out.json")}, job_).error().kind, ErrorKind::kStorage);
+  JobContext stopped;
+  stopped.cancel();
+  EXPECT_EQ(StampedWork::begin(path("x.done"), "analyze", "", {path("in.ply")}, stopped).error().kind,
+            ErrorKind::kCancelled);
+}
+
+}  // namespace
+}  // namespace dubsar

@@ -1,0 +1,46 @@
+#!/usr/bin/env bash
+# collection.sh SOURCE DUBSAR FOLDER: a collection of two tablets gone through by workflows/do-tablet, killed in the middle,
+# started again.
+set -euo pipefail
+workflows=$1/workflows
+export DUBSAR=$2
+folder=$3
+fail() { echo "FAILED: $*" >&2; exit 1; }
+rm -rf "$folder"
+mkdir -p "$folder/museum/a b" "$folder/session/grids"
+"$DUBSAR" simulate tablet --seed 1 --size 12x10x7 --spacing 0.15 -o "$folder/museum/a b" >/dev/null 2>&1
+"$DUBSAR" simulate tablet --seed 2 --size 20x16x9 --spacing 0.1 -o "$folder/museum/c" >/dev/null 2>&1
+touch "$folder/session/session.sqlite" "$folder/session/grids/model.ply" "$folder/museum/readme.txt"
+
+listed=$("$workflows/list-tablets" "$folder")
+[ "$listed" = $'museum/a b\nmuseum/c\nsession' ] || fail "list-tablets: $listed"
+rm -r "$folder/session"
+
+"$workflows/do-tablet" "$folder" "museum/a b"
+[ -f "$folder/museum/a b/wedges.json.done" ] || fail "no stamp"
+"$workflows/do-tablet" "$folder" "museum/a b"
+"$workflows/do-tablet" "$folder" museum/c &
+worker=$!
+for _ in $(seq 300); do grep -qs begin "$folder/log/museum/c.log" && break; sleep 0.02; done
+# The shell and the program that it waits for.
+kill -9 $worker $(cat "/proc/$worker/task/$worker/children" 2>/dev/null) 2>/dev/null || true
+wait $worker 2>/dev/null || true
+killed=$(grep -c ' analyze end$' "$folder/log/museum/c.log" || true)
+"$workflows/do-tablet" "$folder" museum/c
+[ "$(grep -c ' analyze end$' "$folder/log/museum/a b.log")" = 1 ] || fail "the first tablet was done twice"
+[ "$(grep -c ' found-done$' "$folder/log/museum/a b.log")" = 1 ] || fail "the first tablet was not found done"
+# The kill may come too late; then the tablet was done once all the same.
+[ "$(grep -c ' analyze end$' "$folder/log/museum/c.log")" = 1 ] || fail "the second tablet: $killed before, then $(cat "$folder/log/museum/c.log")"
+
+status=0
+"$workflows/do-tablet" "$folder" nowhere 2>/dev/null || status=$?
+[ $status = 2 ] || fail "a tablet that is not there: status $status"
+if command -v xxhsum >/dev/null && command -v python3 >/dev/null; then
+  "$workflows/check-collection" "$folder" 2>/dev/null || fail "check-collection"
+  printf 'x' >>"$folder/museum/c/wedges.json"
+  said=$("$workflows/check-collection" "$folder" 2>/dev/null) && fail "check-collection overlooks damage"
+  [ "$said" = "museum/c: wedges.json has other bytes than were written" ] || fail "check-collection: $said"
+fi
+for script in "$workflows"/*; do
+  case $(head -1 "$script") in *bash) bash -n "$script" || fail "$script" ;; esac
+done
