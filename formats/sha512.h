@@ -25,7 +25,9 @@ class Sha512 {
  private:
   void block(const std::uint8_t* bytes);
 
-  std::array<std::uint64_t, 8> state_{0x6a09e667f3bcc908U, 0xbb67ae8584caa73bU, 0x3c6ef372fe94f82bU, 0xa54ff53a5f1d36f1U, 0x510e527fade682d1U, 0x9b05688c2b3e6c1fU, 0x1f83d9abfb41bd6bU, 0x5be0cd19137e2179U};
+  std::array<std::uint64_t, 8> state_{0x6a09e667f3bcc908U, 0xbb67ae8584caa73bU, 0x3c6ef372fe94f82bU,
+                                      0xa54ff53a5f1d36f1U, 0x510e527fade682d1U, 0x9b05688c2b3e6c1fU,
+                                      0x1f83d9abfb41bd6bU, 0x5be0cd19137e2179U};
   std::array<std::uint8_t, 128> waiting_{};
   std::size_t waiting_count_ = 0;
   std::uint64_t total_bytes_ = 0;

@@ -98,7 +98,7 @@ TEST_F(SessionDamageTest, VerifyNoticesAFlippedByteAnywhere) {
   }
   const VerifyReport report = SessionStore::open(folder_, kReadOnly).value().verify(job_).value();
   EXPECT_TRUE(report.ok());
-  EXPECT_EQ(report.whole.size(), 6U);
+  EXPECT_EQ(report.whole.size(), 7U);
 }
 
 TEST_F(SessionDamageTest, ADatabaseWithFlippedBytesKeepsTheScans) {
