@@ -84,7 +84,8 @@ Result<LogState> read_log(const std::filesystem::path& path) {
   Checksum before = stored(header, 24);
   std::int64_t unproven = 0;  // commits behind the damage that no whole frame follows yet
   std::vector<char> frame(kFrameHeadBytes + page);
-  for (bool first = true; file.read(frame.data(), static_cast<std::streamsize>(frame.size())); first = false) {
+  for (bool first = true; file.read(frame.data(), static_cast<std::streamsize>(frame.size()));
+       first = false) {
     const Bytes bytes(frame);
     const bool of_this_log =
         big_endian(bytes, 8) == big_endian(header, 16) && big_endian(bytes, 12) == big_endian(header, 20);
@@ -111,9 +112,10 @@ Result<LogState> read_log(const std::filesystem::path& path) {
 
 Error lost_commits_error(const LogState& log, const std::string& where) {
   return {ErrorKind::kBadInput,
-          "the log is damaged: " + std::to_string(log.lost_commits) +
-              " of its changes cannot be read (" + std::to_string(log.commits) + " before them can)",
-          where, "bring the folder back from a copy; the scans themselves are taken in again from their grids"};
+          "the log is damaged: " + std::to_string(log.lost_commits) + " of its changes cannot be read (" +
+              std::to_string(log.commits) + " before them can)",
+          where,
+          "bring the folder back from a copy; the scans themselves are taken in again from their grids"};
 }
 
 }  // namespace dubsar::session

@@ -202,7 +202,8 @@ Status SessionStore::forget_files(const std::vector<std::string>& relative) {
   }
   const std::scoped_lock hold(impl_->mutex);
   return session::in_transaction(*impl_->db, [&]() -> Status {
-    Result<SqlStatement> take = impl_->db->prepare("DELETE FROM files WHERE path = ?1");
+    Result<SqlStatement> take = impl_->db->prepare(
+        "DELETE FROM files WHERE path = ?1 OR (?1 LIKE '%/' AND substr(path, 1, length(?1)) = ?1)");
     if (!take) {
       return std::unexpected(take.error());
     }

@@ -18,7 +18,8 @@ namespace {
 /// What the tables say that a file was when it was stored.
 Result<std::optional<FileSum>> recorded_sum(SqlDatabase& db, const std::string& name) {
   Result<SqlStatement> query = db.prepare(
-      "SELECT bytes, hash FROM scans WHERE file = ?1 UNION ALL SELECT bytes, hash FROM files WHERE path = ?1");
+      "SELECT bytes, hash FROM scans WHERE file = ?1 UNION ALL SELECT bytes, hash FROM files WHERE path = "
+      "?1");
   if (!query) {
     return std::unexpected(query.error());
   }
@@ -128,7 +129,7 @@ Result<std::vector<std::string>> SessionStore::keep_damaged_records(const fs::pa
   if (!lock) {
     return std::unexpected(lock.error());
   }
-  for (const char* name : {session::kBackup, session::kSums}) {
+  for (const char* name : {session::kDatabase, session::kBackup, session::kSums}) {
     std::error_code ignored;
     const bool damaged = std::ranges::find(found.damaged, name, &Error::where) != found.damaged.end();
     if (!damaged || !fs::exists(folder / name, ignored)) {

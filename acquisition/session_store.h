@@ -134,7 +134,8 @@ class SessionStore {
   /// covers it. Relative to the folder.
   Status record_file(const std::filesystem::path& relative);
   /// Takes the checksums of files away that are about to be written anew: a program that is killed in the
-  /// middle leaves files without a checksum, and none that looks damaged. Names without one are passed over.
+  /// middle leaves files without a checksum, and none that looks damaged. Names without one are passed over;
+  /// one that ends with '/' stands for all files below that folder.
   Status forget_files(const std::vector<std::string>& relative);
 
   /// Reads every byte of the session: structure and row checksums of the database, every grid, every recorded
@@ -148,7 +149,7 @@ class SessionStore {
   [[nodiscard]] Result<RepairReport> repair(const VerifyReport& found,
                                             const std::optional<std::filesystem::path>& copy,
                                             JobContext& job);
-  /// Keeps damaged copies of the backup and of the list of checksums aside, before opening for writing
+  /// Keeps copies of a damaged database, backup or list of checksums aside, before opening for writing
   /// replaces them. Returns their names aside.
   [[nodiscard]] static Result<std::vector<std::string>> keep_damaged_records(
       const std::filesystem::path& folder, const VerifyReport& found);

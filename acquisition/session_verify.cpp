@@ -37,11 +37,18 @@ Result<std::vector<Recorded>> recorded(SqlDatabase& db, const char* sql) {
 constexpr const char* kScanFiles = "SELECT id, file, bytes, hash FROM scans ORDER BY id";
 constexpr const char* kOtherFiles = "SELECT -1, path, bytes, hash FROM files ORDER BY path";
 
+bool in_a_session_folder(const std::string& name) {
+  return std::ranges::any_of(session::kFolders,
+                             [&](const char* folder) { return name.starts_with(std::string(folder) + "/"); });
+}
+
 /// Nothing when the file is as it was stored.
 std::optional<Error> fault_of_file(const fs::path& folder, const std::string& name, const FileSum& expected,
                                    const JobContext* job) {
   const std::string mend =
-      "bring it back from a copy" + std::string(name.ends_with(".grid") ? " or scan again" : "");
+      name.ends_with(".grid") ? "bring it back from a copy (dubsar verify --repair --from COPY) or scan again"
+                              : std::string("dubsar verify --repair ") +
+                                    (in_a_session_folder(name) ? "makes it anew" : "mends it");
   std::error_code ignored;
   if (!fs::exists(folder / name, ignored)) {
     return Error{ErrorKind::kBadInput, "missing", name, mend};
@@ -72,11 +79,6 @@ std::vector<std::string> everything_in(const fs::path& folder) {
   }
   std::ranges::sort(out);
   return out;
-}
-
-bool in_a_session_folder(const std::string& name) {
-  return std::ranges::any_of(session::kFolders,
-                             [&](const char* folder) { return name.starts_with(std::string(folder) + "/"); });
 }
 
 /// Sorts what is neither whole nor damaged into its list.

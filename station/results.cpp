@@ -265,6 +265,9 @@ std::optional<Mesh> stored_mesh(const SessionStore& store, const std::vector<Sca
 }
 
 Result<Deliverables> keep_deliverables(SessionStore& store, const ReportInput& input, JobContext& job) {
+  if (const Status forgotten = store.forget_files(deliverable_names()); !forgotten) {
+    return std::unexpected(forgotten.error());
+  }
   Result<Deliverables> files = write_deliverables(store.folder(), input, job);
   if (!files) {
     return files;
