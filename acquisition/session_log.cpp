@@ -35,6 +35,7 @@ std::uint32_t little_endian(Bytes bytes, std::size_t at) {
   return out;
 }
 
+/// Two words, as the format has them: a checksum or a salt.
 struct Checksum {
   std::uint32_t a = 0;
   std::uint32_t b = 0;
@@ -82,13 +83,17 @@ Result<LogState> read_log(const std::filesystem::path& path) {
   running.add(Bytes(header).first(24), big);
   bool playing = running == stored(header, 24) && (big_endian(header, 0) & ~1U) == kMagic;
   Checksum before = stored(header, 24);
+  Checksum salts =
+      stored(header, 16);     // the same in every frame of this log, others in what an older one left
   std::int64_t unproven = 0;  // commits behind the damage that no whole frame follows yet
   std::vector<char> frame(kFrameHeadBytes + page);
   for (bool first = true; file.read(frame.data(), static_cast<std::streamsize>(frame.size()));
        first = false) {
     const Bytes bytes(frame);
-    const bool of_this_log =
-        big_endian(bytes, 8) == big_endian(header, 16) && big_endian(bytes, 12) == big_endian(header, 20);
+    if (first && !playing) {
+      salts = stored(bytes, 8);  // those of the head cannot be trusted
+    }
+    const bool of_this_log = salts == stored(bytes, 8);
     Checksum sum = before;
     sum.add(bytes.first(8), big);
     sum.add(bytes.subspan(kFrameHeadBytes), big);

@@ -158,7 +158,8 @@ class Check {
         }
       }
     }
-    const std::size_t wanted = declaration_.at_least(1, 0) ? payload.size() : std::min<std::size_t>(1, payload.size());
+    const std::size_t wanted =
+        declaration_.at_least(1, 0) ? payload.size() : std::min<std::size_t>(1, payload.size());
     for (const std::string& name : files_) {
       const auto found = listed.find(name);
       const std::size_t times = found == listed.end() ? 0 : found->second;

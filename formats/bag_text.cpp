@@ -50,9 +50,8 @@ bool whole_number(std::string_view text, Number& out) {
 
 std::string lower(std::string_view text) {
   std::string out(text);
-  std::ranges::transform(out, out.begin(), [](char c) {
-    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  });
+  std::ranges::transform(out, out.begin(),
+                         [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
   return out;
 }
 
@@ -110,7 +109,8 @@ Result<BagDeclaration> parse_bag_declaration(std::string_view text, const std::s
     return bad_input(where, "the version of the bag is no version", "get the bag again from its source");
   }
   if (out.major > 1 || (out.major == 1 && out.minor > 0)) {
-    return bad_input(where, "a bag of version " + std::string(version) + "; versions up to 1.0 can be checked",
+    return bad_input(where,
+                     "a bag of version " + std::string(version) + "; versions up to 1.0 can be checked",
                      "get a newer Dubsar");
   }
   if (lower(trimmed(lines[1].substr(kEncoding.size()))) != "utf-8") {
@@ -192,7 +192,8 @@ Result<std::optional<BagOxum>> parse_bag_oxum(std::string_view bag_info, const s
     BagOxum oxum;
     if (out || !whole_number(value.substr(0, point), oxum.bytes) ||
         !whole_number(value.substr(std::min(point + 1, value.size())), oxum.files)) {
-      return bad_line(where, i, out ? "gives Payload-Oxum for the second time" : "gives no Payload-Oxum (bytes.files)");
+      return bad_line(where, i,
+                      out ? "gives Payload-Oxum for the second time" : "gives no Payload-Oxum (bytes.files)");
     }
     out = oxum;
   }

@@ -36,14 +36,15 @@ class BagTest : public testing::Test {
     fs::create_directories((bag() / name).parent_path());
     std::ofstream(bag() / name, std::ios::binary) << text;
   }
-  static std::string line(const std::string& name, const std::string& sum) { return sum + "  " + name + "\n"; }
+  static std::string line(const std::string& name, const std::string& sum) {
+    return sum + "  " + name + "\n";
+  }
   std::string sum512(const std::string& name) const { return sha512_of_file(bag() / name, job_).value(); }
   void list_all() const {
     put("manifest-sha512.txt", line("data/master.ply", sum512("data/master.ply")) +
                                    line("data/rückseite 100%25.png", sum512("data/rückseite 100%.png")));
-    put("manifest-sha256.txt",
-        line("data/master.ply", sha256_hex("ply and so on\n")) +
-            line("data/rückseite 100%25.png", sha256_hex("a picture")));
+    put("manifest-sha256.txt", line("data/master.ply", sha256_hex("ply and so on\n")) +
+                                   line("data/rückseite 100%25.png", sha256_hex("a picture")));
     std::string tags;
     for (const char* name : {"bagit.txt", "bag-info.txt", "manifest-sha512.txt", "manifest-sha256.txt"}) {
       tags += line(name, sum512(name));
@@ -80,7 +81,8 @@ TEST_F(BagTest, ACompleteBagIsValidAndEveryFileIsCovered) {
 }
 
 TEST_F(BagTest, EveryFlippedByteIsNoticed) {
-  for (const char* name : {"data/master.ply", "bag-info.txt", "manifest-sha512.txt", "tagmanifest-sha512.txt"}) {
+  for (const char* name :
+       {"data/master.ply", "bag-info.txt", "manifest-sha512.txt", "tagmanifest-sha512.txt"}) {
     std::fstream file(bag() / name, std::ios::in | std::ios::out | std::ios::binary);
     const auto size = fs::file_size(bag() / name);
     for (std::uintmax_t at = 0; at < size; at += 1 + size / 7) {
@@ -127,11 +129,12 @@ TEST_F(BagTest, WhatLeadsOutOfTheBagIsRefused) {
 }
 
 TEST_F(BagTest, DeclarationsThatAreNoneAreTold) {
-  for (const char* text : {"", "BagIt-Version: 1.0\n", "BagIt-Version: x\nTag-File-Character-Encoding: UTF-8\n",
-                           "BagIt-Version: 2.0\nTag-File-Character-Encoding: UTF-8\n",
-                           "BagIt-Version: 1.0\nTag-File-Character-Encoding: UTF-16\n",
-                           "\xef\xbb\xbf"
-                           "BagIt-Version: 1.0\nTag-File-Character-Encoding: UTF-8\n"}) {
+  for (const char* text :
+       {"", "BagIt-Version: 1.0\n", "BagIt-Version: x\nTag-File-Character-Encoding: UTF-8\n",
+        "BagIt-Version: 2.0\nTag-File-Character-Encoding: UTF-8\n",
+        "BagIt-Version: 1.0\nTag-File-Character-Encoding: UTF-16\n",
+        "\xef\xbb\xbf"
+        "BagIt-Version: 1.0\nTag-File-Character-Encoding: UTF-8\n"}) {
     put("bagit.txt", text);
     EXPECT_EQ(check().damaged.size(), 1U) << text;
   }

@@ -101,7 +101,8 @@ TEST_F(Verify, DerivedFilesAreMadeAnewByteForByte) {
   fs::resize_file(session_ / "analysis/wedges.json", 10);
   const auto report = verify(0, {"--repair"});
   EXPECT_EQ(report["repair"]["made_anew"].size(), 3U);
-  EXPECT_THAT(report["set_aside"], nlohmann::json({"analysis/wedges.json.damaged-1", "mesh/model.ply.damaged-1"}));
+  EXPECT_THAT(report["set_aside"],
+              nlohmann::json({"analysis/wedges.json.damaged-1", "mesh/model.ply.damaged-1"}));
   for (const char* file : {"mesh/model.ply", "export/poses.json"}) {
     EXPECT_TRUE(bytes_of(session_ / file) == bytes_of(scanned() / file)) << file;
   }
