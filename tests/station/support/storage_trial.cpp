@@ -133,12 +133,14 @@ TrialOutcome StorageTrials::run(const WritingVerb& verb, const Fault& fault) {
                          std::string("DUBSAR_FAULT_STAYS=") + (fault.stays ? "1" : "0")};
   TrialOutcome out;
   {
+    const auto start = std::chrono::steady_clock::now();
     RunningCommand running(arguments, options);
     if (fault.kill_after_s >= 0) {
       std::this_thread::sleep_for(std::chrono::duration<double>(fault.kill_after_s));
       running.send(SIGKILL);
     }
     out.command = running.wait();
+    out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   }
   out.calls = log.calls();
   out.met = log.met();

@@ -32,6 +32,7 @@ struct TrialOutcome {
   std::int64_t calls = 0;  ///< that would have changed something, until it ended
   std::string met;         ///< the call that met the fault, or nothing
   bool killed = false;
+  double seconds = 0;               ///< that it ran
   double open_s = 0;                ///< of opening the session afterwards
   std::vector<std::string> faults;  ///< what a session must never show; empty when all is well
 };
