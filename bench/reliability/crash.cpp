@@ -39,8 +39,8 @@ struct Tally {
     longest_open_s = std::max(longest_open_s, outcome.open_s);
   }
   void print(const std::string& name) const {
-    std::printf("| %-9s | %6d | %6d | %6d | %6d | %6d | %8.3f |\n", name.c_str(), trials, killed, told, survived,
-                faults, longest_open_s);
+    std::printf("| %-9s | %6d | %6d | %6d | %6d | %6d | %8.3f |\n", name.c_str(), trials, killed, told,
+                survived, faults, longest_open_s);
     std::fflush(stdout);
   }
 };
@@ -81,11 +81,14 @@ int run(int argc, char** argv) {
   StorageTrials all(folder.path(), seed);
   std::vector<WritingVerb> verbs = test::writing_verbs();
   if (!names.empty()) {
-    std::erase_if(verbs, [&](const WritingVerb& verb) { return std::ranges::find(names, verb.name) == names.end(); });
+    std::erase_if(
+        verbs, [&](const WritingVerb& verb) { return std::ranges::find(names, verb.name) == names.end(); });
   }
   Random random(seed);
   Tally sum;
-  std::printf("| verb      | trials | killed |   told | did on | FAULTS | open, s  |\n|---|---|---|---|---|---|---|\n");
+  std::printf(
+      "| verb      | trials | killed |   told | did on | FAULTS | open, s  "
+      "|\n|---|---|---|---|---|---|---|\n");
   for (std::size_t v = 0; v < verbs.size(); ++v) {
     const WritingVerb& verb = verbs[v];
     const TrialOutcome whole = all.undisturbed(verb);

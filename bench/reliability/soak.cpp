@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright The Dubsar developers
-// dubsar-soak: one process scans simulated tablets, one after the other, the whole way: stream, store, register, plan,
-// stitch, wedges, deliverables. Resident memory and open descriptors have to stay as they are.
+// dubsar-soak: one process scans simulated tablets, one after the other, the whole way: stream, store,
+// register, plan, stitch, wedges, deliverables. Resident memory and open descriptors have to stay as they
+// are.
 //   dubsar-soak --tablets 1000
 // Status 1 when the memory of the last tenth is more than 5 % above that after warm-up, or descriptors grow.
 
@@ -59,7 +60,8 @@ int run(int argc, char** argv) {
   for (int i = 0; i < tablets; ++i) {
     const test::TemporaryFolder folder;
     EngineOptions options;
-    options.device = "sim:?seed=" + std::to_string(i + 1) + "&size=" + size + "&spacing=" + std::to_string(spacing_mm);
+    options.device =
+        "sim:?seed=" + std::to_string(i + 1) + "&size=" + size + "&spacing=" + std::to_string(spacing_mm);
     options.session = folder.path() / "session";
     options.automatic = true;
     options.max_scans = scans;
@@ -84,8 +86,9 @@ int run(int argc, char** argv) {
   const double late = mean(std::span(resident).last(tenth));
   const bool flat = late <= 1.05 * early;
   const bool constant = descriptors.back() <= descriptors[tenth];
-  std::printf("%d tablets, %d of them failed; resident %.1f MiB after warm-up, %.1f MiB at the end (%+.1f %%): %s\n", tablets,
-              failed, early, late, 100 * (late / early - 1), flat ? "flat" : "NOT flat");
+  std::printf(
+      "%d tablets, %d of them failed; resident %.1f MiB after warm-up, %.1f MiB at the end (%+.1f %%): %s\n",
+      tablets, failed, early, late, 100 * (late / early - 1), flat ? "flat" : "NOT flat");
   std::printf("descriptors %td after warm-up, %td at the end: %s\n", descriptors[tenth], descriptors.back(),
               constant ? "constant" : "NOT constant");
   return flat && constant ? 0 : 1;
