@@ -70,19 +70,33 @@ std::vector<fs::path> left_over(const fs::path& folder) {
   return out;
 }
 
+bool is_dropped(const SessionStore& store, int id) {
+  const auto scans = store.scans();
+  return scans && std::ranges::any_of(*scans, [&](const StoredScan& scan) { return scan.id == id && scan.dropped; });
+}
+
 }  // namespace
 
 std::vector<WritingVerb> writing_verbs() {
   return {
       {"scan", {"scan", "--auto", "--max-scans", "2", "--device", "DEVICE", "--session", "SESSION"}, false},
       {"scan on", {"scan", "--auto", "--max-scans", "4", "--device", "DEVICE", "--session", "SESSION"}},
-      {"register", {"register", "SESSION"}},
+      {"register", {"register", "SESSION"}, true, [](const SessionStore& store) {
+         const auto poses = store.poses();
+         return poses && poses->size() == 3;
+       }},
       {"hint", {"session", "hint", "SESSION", "2", "--pose", "1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1", "--on", "1"}},
-      {"lock", {"session", "lock", "SESSION", "1"}},
-      {"drop", {"session", "drop", "SESSION", "1", "--why", "blurred"}},
-      {"undo", {"session", "undo", "SESSION"}},
-      {"describe", {"session", "describe", "SESSION", "--museum-number", "BM 1"}},
-      {"sign", {"session", "sign", "SESSION", "--name", "A. Reader", "--incomplete", "a trial"}},
+      {"lock", {"session", "lock", "SESSION", "REGISTERED"}},
+      {"drop", {"session", "drop", "SESSION", "1", "--why", "blurred"}, true, [](const SessionStore& store) { return is_dropped(store, 1); }},
+      {"undo", {"session", "undo", "SESSION"}, true, [](const SessionStore& store) { return is_dropped(store, 2); }},
+      {"describe", {"session", "describe", "SESSION", "--museum-number", "BM 1"}, true, [](const SessionStore& store) {
+         const auto text = store.load_document("tablet");
+         return text && *text && (*text)->find("BM 1") != std::string::npos;
+       }},
+      {"sign", {"session", "sign", "SESSION", "--name", "A. Reader", "--incomplete", "a trial"}, true, [](const SessionStore& store) {
+         const auto events = store.events();
+         return events && std::ranges::find(*events, "signed", &SessionEvent::kind) != events->end();
+       }},
       {"plan", {"plan", "SESSION"}},
       {"stitch", {"stitch", "SESSION", "-o", "FOLDER/model.ply"}},
       {"analyze", {"analyze", "SESSION/mesh/model.ply", "-o", "FOLDER/wedges.json"}},
@@ -103,6 +117,13 @@ StorageTrials::StorageTrials(fs::path folder, std::uint64_t seed)
   for (const StoredScan& scan : scans) {
     scans_.push_back(scan.id);
   }
+  const std::vector<ScanPose> poses = store->poses().value();
+  for (const ScanPose& pose : poses) {
+    registered_ = pose.status == PoseStatus::kRegistered ? std::to_string(pose.id) : registered_;
+  }
+  if (registered_.empty()) {
+    throw std::runtime_error("no scan of the session for the trials is registered: take another seed");
+  }
 }
 
 TrialOutcome StorageTrials::run(const WritingVerb& verb, const Fault& fault) {
@@ -116,7 +137,8 @@ TrialOutcome StorageTrials::run(const WritingVerb& verb, const Fault& fault) {
   for (std::string& word : arguments) {
     for (const auto& [name, value] : {std::pair<std::string, std::string>{"SESSION", session.string()},
                                       {"FOLDER", folder.string()},
-                                      {"DEVICE", device_}}) {
+                                      {"DEVICE", device_},
+                                      {"REGISTERED", registered_}}) {
       if (const std::size_t at = word.find(name); at != std::string::npos) {
         word.replace(at, name.size(), value);
       }
@@ -206,6 +228,9 @@ void StorageTrials::look(const WritingVerb& verb, const Fault& fault, const fs::
       say("scan " + std::to_string(id) + " was stored and is " +
           (listed ? grid.error().line() : "not listed"));
     }
+  }
+  if (!out.killed && command.status == 0 && verb.is_done && !verb.is_done(*store)) {
+    say("it said that it was done, and the session does not show it");
   }
   JobContext job;
   const Result<VerifyReport> report = store->verify(job);

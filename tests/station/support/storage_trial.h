@@ -4,9 +4,11 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
+#include "acquisition/session_store.h"
 #include "tests/station/support/command.h"
 
 namespace dubsar::test {
@@ -14,8 +16,11 @@ namespace dubsar::test {
 /// A verb of the command that writes, to be killed or refused while it does.
 struct WritingVerb {
   std::string name;
-  Arguments arguments;  ///< "SESSION" and "FOLDER" stand for the session and for the folder that it lies in
+  Arguments arguments;  ///< "SESSION", "FOLDER" and "REGISTERED" stand for the session, for the folder
+                           ///< that it lies in and for a scan that has its place
   bool on_a_session = true;  ///< on a copy of one that was scanned before; else there is none yet
+  /// Whether a session shows what the verb does: asked when it has said that it is done.
+  std::function<bool(const SessionStore&)> is_done = {};
 };
 [[nodiscard]] std::vector<WritingVerb> writing_verbs();
 
@@ -58,6 +63,7 @@ class StorageTrials {
   std::filesystem::path scanned_;
   std::vector<int> scans_;  ///< of the scanned session
   std::string device_;
+  std::string registered_;  ///< the number of a scan
   int runs_ = 0;
 };
 
