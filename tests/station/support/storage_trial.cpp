@@ -72,7 +72,8 @@ std::vector<fs::path> left_over(const fs::path& folder) {
 
 bool is_dropped(const SessionStore& store, int id) {
   const auto scans = store.scans();
-  return scans && std::ranges::any_of(*scans, [&](const StoredScan& scan) { return scan.id == id && scan.dropped; });
+  return scans &&
+         std::ranges::any_of(*scans, [&](const StoredScan& scan) { return scan.id == id && scan.dropped; });
 }
 
 }  // namespace
@@ -81,19 +82,34 @@ std::vector<WritingVerb> writing_verbs() {
   return {
       {"scan", {"scan", "--auto", "--max-scans", "2", "--device", "DEVICE", "--session", "SESSION"}, false},
       {"scan on", {"scan", "--auto", "--max-scans", "4", "--device", "DEVICE", "--session", "SESSION"}},
-      {"register", {"register", "SESSION"}, true, [](const SessionStore& store) {
+      {"register",
+       {"register", "SESSION"},
+       true,
+       [](const SessionStore& store) {
          const auto poses = store.poses();
          return poses && poses->size() == 3;
        }},
       {"hint", {"session", "hint", "SESSION", "2", "--pose", "1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1", "--on", "1"}},
       {"lock", {"session", "lock", "SESSION", "REGISTERED"}},
-      {"drop", {"session", "drop", "SESSION", "1", "--why", "blurred"}, true, [](const SessionStore& store) { return is_dropped(store, 1); }},
-      {"undo", {"session", "undo", "SESSION"}, true, [](const SessionStore& store) { return is_dropped(store, 2); }},
-      {"describe", {"session", "describe", "SESSION", "--museum-number", "BM 1"}, true, [](const SessionStore& store) {
+      {"drop",
+       {"session", "drop", "SESSION", "1", "--why", "blurred"},
+       true,
+       [](const SessionStore& store) { return is_dropped(store, 1); }},
+      {"undo",
+       {"session", "undo", "SESSION"},
+       true,
+       [](const SessionStore& store) { return is_dropped(store, 2); }},
+      {"describe",
+       {"session", "describe", "SESSION", "--museum-number", "BM 1"},
+       true,
+       [](const SessionStore& store) {
          const auto text = store.load_document("tablet");
          return text && *text && (*text)->find("BM 1") != std::string::npos;
        }},
-      {"sign", {"session", "sign", "SESSION", "--name", "A. Reader", "--incomplete", "a trial"}, true, [](const SessionStore& store) {
+      {"sign",
+       {"session", "sign", "SESSION", "--name", "A. Reader", "--incomplete", "a trial"},
+       true,
+       [](const SessionStore& store) {
          const auto events = store.events();
          return events && std::ranges::find(*events, "signed", &SessionEvent::kind) != events->end();
        }},

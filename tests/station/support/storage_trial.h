@@ -16,8 +16,8 @@ namespace dubsar::test {
 /// A verb of the command that writes, to be killed or refused while it does.
 struct WritingVerb {
   std::string name;
-  Arguments arguments;  ///< "SESSION", "FOLDER" and "REGISTERED" stand for the session, for the folder
-                           ///< that it lies in and for a scan that has its place
+  Arguments arguments;       ///< "SESSION", "FOLDER" and "REGISTERED" stand for the session, for the folder
+                             ///< that it lies in and for a scan that has its place
   bool on_a_session = true;  ///< on a copy of one that was scanned before; else there is none yet
   /// Whether a session shows what the verb does: asked when it has said that it is done.
   std::function<bool(const SessionStore&)> is_done = {};
