@@ -61,6 +61,9 @@ struct FileSum {
 /// Reads a file once, in pieces.
 [[nodiscard]] Result<FileSum> sum_of_file(const std::filesystem::path& path, const JobContext* job = nullptr);
 
+/// In place of the sum of a file that is about to be written for the first time.
+inline constexpr FileSum kNotThereYet{};
+
 /// By name. A name has two sums while its file is being replaced: either is whole.
 using Sums = std::multimap<std::string, FileSum>;
 /// session.sums: what the database and its backup looked like when they were last closed.

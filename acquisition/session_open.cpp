@@ -294,6 +294,9 @@ void close_cleanly(const fs::path& folder, std::optional<SqlDatabase>& db) {
   Sums sums = read_sums(folder).value_or(Sums());
   sums.erase(kDatabase);
   sums.emplace(kDatabase, sum);
+  if (!sums.contains(kBackup)) {
+    sums.emplace(kBackup, sum_of_file(folder / kBackup).value_or(kNotThereYet));
+  }
   sums.emplace(kBackup, sum);
   if (write_sums(folder, sums) && write_file_atomically(folder / kBackup, std::string_view(*bytes))) {
     // Without these sums verify() still has those of the rows.

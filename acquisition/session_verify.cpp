@@ -227,8 +227,15 @@ Result<VerifyReport> SessionStore::verify(JobContext& job) const {
     if (fault && i >= first_unlisted) {
       // Either of two sums will do.
       const auto [from, to] = sums->equal_range(one.name);
-      for (auto other = std::next(from); fault && other != to; ++other) {
+      bool not_there_yet = false;
+      for (auto other = from; fault && other != to; ++other) {
+        std::error_code error;
+        not_there_yet =
+            not_there_yet || (other->second == session::kNotThereYet && !fs::exists(folder / one.name, error));
         fault = fault_of_file(folder, one.name, other->second, &job);
+      }
+      if (fault && not_there_yet) {
+        continue;
       }
     }
     if (fault && fault->kind == ErrorKind::kCancelled) {
