@@ -170,8 +170,8 @@ Result<int> SessionStore::add_grid(const RangeGrid& grid) {
     return noted;
   });
   if (!listed) {
-    // It was never reported as stored. But a commit whose sync failed may stand in the log all the same, and its row
-    // would then lack its grid: that one stays, and is taken in when the session is opened again.
+    // It was never reported as stored. But a commit whose sync failed may stand in the log all the same, and
+    // its row would then lack its grid: that one stays, and is taken in when the session is opened again.
     if (std::error_code ignored; !in_the_balance) {
       fs::remove(path, ignored);
     }

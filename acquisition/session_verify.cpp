@@ -230,8 +230,8 @@ Result<VerifyReport> SessionStore::verify(JobContext& job) const {
       bool not_there_yet = false;
       for (auto other = from; fault && other != to; ++other) {
         std::error_code error;
-        not_there_yet =
-            not_there_yet || (other->second == session::kNotThereYet && !fs::exists(folder / one.name, error));
+        not_there_yet = not_there_yet ||
+                        (other->second == session::kNotThereYet && !fs::exists(folder / one.name, error));
         fault = fault_of_file(folder, one.name, other->second, &job);
       }
       if (fault && not_there_yet) {
