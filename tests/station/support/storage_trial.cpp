@@ -26,6 +26,7 @@ namespace {
 
 constexpr std::size_t kLogBytes = 512;
 constexpr const char* kScans = "3";
+constexpr double kTimeoutS = 240;  ///< machines that build beside the trials are slow
 
 /// What storage_faults.c shares with us.
 class FaultLog {
@@ -123,11 +124,16 @@ StorageTrials::StorageTrials(fs::path folder, std::uint64_t seed)
     : folder_(std::move(folder)),
       scanned_(folder_ / "scanned"),
       device_("sim:?seed=" + std::to_string(seed) + "&size=14x11x8&spacing=0.55") {
+  CommandOptions patient;
+  patient.timeout_s = kTimeoutS;
   const Outcome scanned = run_command(
-      {"scan", "--auto", "--max-scans", kScans, "--device", device_, "--session", scanned_.string()});
+      {"scan", "--auto", "--max-scans", kScans, "--device", device_, "--session", scanned_.string()},
+      patient);
   const auto store = SessionStore::open(scanned_, SessionStore::Access::kReadOnly);
   if (scanned.status < 0 || scanned.status > 1 || !store) {
-    throw std::runtime_error("the session for the trials was not scanned: " + scanned.err);
+    throw std::runtime_error("the session for the trials was not scanned, status " +
+                             std::to_string(scanned.status) + ", signal " + std::to_string(scanned.signal) +
+                             ": " + scanned.err);
   }
   const std::vector<StoredScan> scans = store->scans().value();
   for (const StoredScan& scan : scans) {
@@ -162,7 +168,7 @@ TrialOutcome StorageTrials::run(const WritingVerb& verb, const Fault& fault) {
   }
   const FaultLog log(folder_ / "fault.log");
   CommandOptions options;
-  options.timeout_s = 240;
+  options.timeout_s = kTimeoutS;
   options.environment = {"LD_PRELOAD=" DUBSAR_STORAGE_FAULTS,
                          "DUBSAR_FAULT_ROOT=" + folder.string(),
                          "DUBSAR_FAULT_LOG=" + (folder_ / "fault.log").string(),
