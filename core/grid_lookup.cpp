@@ -62,13 +62,14 @@ struct GridLookup::Bounds {
 };
 
 template <class Visit>
-void GridLookup::for_each_entered(const std::vector<std::uint8_t>& keep, std::size_t begin, std::size_t end,
+void GridLookup::for_each_entered(const Entering& entering, std::size_t begin, std::size_t end,
                                   const Visit& visit) const {
+  const auto& [grid, keep] = entering;
   for (std::size_t i = begin; i < end; ++i) {
-    if (grid_->valid[i] == 0 || (!keep.empty() && keep[i] == 0)) {
+    if (grid.valid[i] == 0 || (!keep.empty() && keep[i] == 0)) {
       continue;
     }
-    const Vector3f p = grid_->point(i);
+    const Vector3f p = grid.point(i);
     const Vector2f uv(u_axis_.dot(p), v_axis_.dot(p));
     if (uv.allFinite() && p.allFinite()) {
       visit(i, p, uv);
@@ -77,17 +78,18 @@ void GridLookup::for_each_entered(const std::vector<std::uint8_t>& keep, std::si
 }
 
 GridLookup::GridLookup(const RangeGrid& grid, const std::vector<std::uint8_t>& keep, double cell_mm)
-    : grid_(&grid), cell_mm_(cell_mm > 0 ? cell_mm : 1.5 * grid.spacing_mm) {
+    : cell_mm_(cell_mm > 0 ? cell_mm : 1.5 * grid.spacing_mm) {
   const Eigen::Vector3d& w = grid.view.direction;
   const Eigen::Vector3d u = w.unitOrthogonal();
   u_axis_ = u.cast<float>();
   v_axis_ = w.cross(u).cast<float>();
   w_axis_ = w.cast<float>();
+  const Entering entering{grid, keep};
   const Bounds bounds = parallel_reduce_ordered(
       grid.size(), kGrain, Bounds{},
       [&](std::size_t begin, std::size_t end) {
         Bounds part;
-        for_each_entered(keep, begin, end, [&](std::size_t, const Vector3f& p, const Vector2f& uv) {
+        for_each_entered(entering, begin, end, [&](std::size_t, const Vector3f& p, const Vector2f& uv) {
           part.add({uv, uv, {p, p}, 1});
         });
         return part;
@@ -99,11 +101,11 @@ GridLookup::GridLookup(const RangeGrid& grid, const std::vector<std::uint8_t>& k
     return;
   }
   extent_mm_ = std::max(box_mm_.min().cwiseAbs().maxCoeff(), box_mm_.max().cwiseAbs().maxCoeff());
-  lay_raster(keep, bounds);
-  fill_buckets(keep);
+  lay_raster(entering, bounds);
+  fill_buckets(entering);
 }
 
-void GridLookup::lay_raster(const std::vector<std::uint8_t>& keep, const Bounds& bounds) {
+void GridLookup::lay_raster(const Entering& entering, const Bounds& bounds) {
   Vector2f low = bounds.low;
   Vector2f high = bounds.high;
   const double most_cells = kMaxCellsPerSample * static_cast<double>(count_) + 1024.0;
@@ -115,12 +117,13 @@ void GridLookup::lay_raster(const std::vector<std::uint8_t>& keep, const Bounds&
     const std::size_t step = std::max<std::size_t>(1, count_ / 4096);
     std::array<std::vector<float>, 2> some;
     std::size_t k = 0;
-    for_each_entered(keep, 0, grid_->size(), [&](std::size_t, const Vector3f&, const Vector2f& uv) {
-      if (k++ % step == 0) {
-        some[0].push_back(uv.x());
-        some[1].push_back(uv.y());
-      }
-    });
+    for_each_entered(entering, 0, entering.grid.size(),
+                     [&](std::size_t, const Vector3f&, const Vector2f& uv) {
+                       if (k++ % step == 0) {
+                         some[0].push_back(uv.x());
+                         some[1].push_back(uv.y());
+                       }
+                     });
     for (int axis = 0; axis < 2; ++axis) {
       const auto [from, to] = window_of(some[static_cast<std::size_t>(axis)]);
       clipped_ = clipped_ || from > low[axis] || to < high[axis];
@@ -151,12 +154,13 @@ void GridLookup::lay_raster(const std::vector<std::uint8_t>& keep, const Bounds&
 
 /// A counting sort in parts of the grid. What comes out is the same for any number of parts: buckets in
 /// order, samples ascending in each.
-void GridLookup::fill_buckets(const std::vector<std::uint8_t>& keep) {
+void GridLookup::fill_buckets(const Entering& entering) {
   const auto across = static_cast<std::size_t>(width_);
   const std::size_t cells = across * static_cast<std::size_t>(height_);
-  const std::size_t parts = std::clamp<std::size_t>(
-      grid_->size() / kSamplesPerPart, 1, static_cast<std::size_t>(tbb::this_task_arena::max_concurrency()));
-  const std::size_t length = (grid_->size() + parts - 1) / parts;
+  const std::size_t parts =
+      std::clamp<std::size_t>(entering.grid.size() / kSamplesPerPart, 1,
+                              static_cast<std::size_t>(tbb::this_task_arena::max_concurrency()));
+  const std::size_t length = (entering.grid.size() + parts - 1) / parts;
   struct Part {
     std::vector<std::uint32_t> next;  ///< [cells] how many of the part, later where the next one goes
     std::vector<Block> blocks;
@@ -167,11 +171,11 @@ void GridLookup::fill_buckets(const std::vector<std::uint8_t>& keep) {
     cv = cell_at(uv.y() - v_min_, height_);
     return static_cast<std::size_t>(cv) * across + static_cast<std::size_t>(cu);
   };
-  parallel_chunks(grid_->size(), length, [&](std::size_t begin, std::size_t end) {
+  parallel_chunks(entering.grid.size(), length, [&](std::size_t begin, std::size_t end) {
     Part& part = all[begin / length];
     part.next.assign(cells, 0);
     part.blocks.assign(static_cast<std::size_t>(blocks_across_) * static_cast<std::size_t>(blocks_down_), {});
-    for_each_entered(keep, begin, end, [&](std::size_t, const Vector3f& p, const Vector2f& uv) {
+    for_each_entered(entering, begin, end, [&](std::size_t, const Vector3f& p, const Vector2f& uv) {
       int cu = 0;
       int cv = 0;
       ++part.next[cell_of(uv, cu, cv)];
@@ -203,9 +207,9 @@ void GridLookup::fill_buckets(const std::vector<std::uint8_t>& keep) {
   }
   start_[cells] = at;
   entries_ = BigArray<Entry>(count_);
-  parallel_chunks(grid_->size(), length, [&](std::size_t begin, std::size_t end) {
+  parallel_chunks(entering.grid.size(), length, [&](std::size_t begin, std::size_t end) {
     Part& part = all[begin / length];
-    for_each_entered(keep, begin, end, [&](std::size_t i, const Vector3f& p, const Vector2f& uv) {
+    for_each_entered(entering, begin, end, [&](std::size_t i, const Vector3f& p, const Vector2f& uv) {
       int cu = 0;
       int cv = 0;
       entries_[part.next[cell_of(uv, cu, cv)]++] = {p.x(), p.y(), p.z(), static_cast<std::uint32_t>(i)};

@@ -18,7 +18,7 @@ namespace dubsar {
 /// of buckets: the one lookup that registration, planning and triangulation share. Works for warped,
 /// perspective and resampled grids alike, builds in one counting pass, and answers in a few memory reads
 /// where a k-d tree walks. Built on all cores. Immutable after construction; safe to read from many threads.
-/// Refers to the grid: keep the grid alive and unmoved.
+/// Holds copies of what it needs: the grid may go.
 class GridLookup {
  public:
   /// Only samples with keep[i] != 0 are entered when `keep` is not empty. cell_mm 0 takes 1.5 µ.
@@ -117,7 +117,6 @@ class GridLookup {
 
   /// Box around the entered samples; empty when there is none.
   [[nodiscard]] const Eigen::AlignedBox3f& box_mm() const { return box_mm_; }
-  [[nodiscard]] const RangeGrid& grid() const { return *grid_; }
   [[nodiscard]] double cell_mm() const { return cell_mm_; }
 
  private:
@@ -132,6 +131,11 @@ class GridLookup {
     }
   };
   struct Bounds;
+  /// What is entered: samples of a grid with keep[i] != 0, or all.
+  struct Entering {
+    const RangeGrid& grid;
+    const std::vector<std::uint8_t>& keep;
+  };
   [[nodiscard]] Range cells_between(float low_mm, float high_mm, int cells) const {
     // What was clipped lies in the rim, however far outside it is.
     const bool meets = high_mm * per_mm_ >= -1.0F && low_mm * per_mm_ <= static_cast<float>(cells);
@@ -150,10 +154,10 @@ class GridLookup {
   [[nodiscard]] std::uint32_t row_end(int row, int to) const { return row_start(row, to + 1); }
   /// Calls visit(sample, position, u, v) for what is entered among the grid's samples [begin, end).
   template <class Visit>
-  void for_each_entered(const std::vector<std::uint8_t>& keep, std::size_t begin, std::size_t end,
+  void for_each_entered(const Entering& entering, std::size_t begin, std::size_t end,
                         const Visit& visit) const;
-  void lay_raster(const std::vector<std::uint8_t>& keep, const Bounds& bounds);
-  void fill_buckets(const std::vector<std::uint8_t>& keep);
+  void lay_raster(const Entering& entering, const Bounds& bounds);
+  void fill_buckets(const Entering& entering);
 
   /// Side of a block, cells. Blocks know how deep their samples lie, so that a search steps over what is
   /// empty or at another depth.
@@ -167,7 +171,6 @@ class GridLookup {
   };
   struct Search;
 
-  const RangeGrid* grid_;
   double cell_mm_ = 0.0;
   float side_mm_ = 0;  ///< cell_mm_ as it is used
   float per_mm_ = 0;   ///< cells per mm

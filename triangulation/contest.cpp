@@ -50,8 +50,8 @@ struct Window {
 
   Window(const OwnedScan& other, std::int64_t centre, int radius)
       : scan(&other), g(other.surface->surface()) {
-    const int row = other.surface->scan.grid->row_of(static_cast<std::size_t>(centre));
-    const int col = other.surface->scan.grid->col_of(static_cast<std::size_t>(centre));
+    const int row = other.surface->lattice.sample_row(static_cast<std::size_t>(centre));
+    const int col = other.surface->lattice.sample_col(static_cast<std::size_t>(centre));
     row_lo = std::max(row - radius, 0);
     row_hi = std::min(row + radius, g.rows - 1);
     col_lo = std::max(col - radius, 0);
@@ -132,7 +132,7 @@ bool is_taken(const std::vector<OwnedScan>& scans, std::size_t self, std::size_t
     const auto clearance =
         static_cast<float>(clearance_factor * std::max(scan.surface->spacing_mm, other.surface->spacing_mm));
     bool taken = false;
-    const Vector3f& n = other.surface->normals[static_cast<std::size_t>(j)];
+    const Vector3f n = other.surface->normal(static_cast<std::size_t>(j));
     for (int r = window.row_lo; r <= window.row_hi && !taken; ++r) {
       for (int c = window.col_lo; c <= window.col_hi && !taken; ++c) {
         const std::size_t q = window.g.index(r, c);

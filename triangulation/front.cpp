@@ -76,7 +76,8 @@ Front::Front(Sheet& sheet) : sheet_(&sheet), link_of_(sheet.positions.size(), kN
   std::vector<std::pair<std::uint64_t, std::uint32_t>> places;  // bucket, vertex
   each_rim_edge([&](std::uint32_t a, std::uint32_t b) {
     ++inner;
-    if (edges.face(b, a) < 0) {
+    const bool known = sheet.whole.empty() || (sheet.whole[a] | sheet.whole[b]) != 0;
+    if (known && edges.face(b, a) < 0) {
       open.push_back({a, b});
       places.emplace_back(key_of(cell_of(sheet.positions[a])), a);
       places.emplace_back(key_of(cell_of(sheet.positions[b])), b);
@@ -213,6 +214,9 @@ std::uint32_t Front::add_vertex(const Eigen::Vector3f& position_mm, const Eigen:
   sheet_->positions.push_back(position_mm);
   sheet_->normals.push_back(normal);
   sheet_->spacing_mm.push_back(spacing_mm);
+  if (!sheet_->whole.empty()) {
+    sheet_->whole.push_back(1);
+  }
   link_of_.push_back(kNone);
   links(v).free = true;
   return v;
@@ -264,6 +268,7 @@ std::vector<std::vector<std::uint32_t>> Front::openings() const {
       continue;
     }
     std::vector<std::uint32_t> loop;
+    bool leaves = false;
     Edge at = first;
     while (walked.insert(at.a, at.b)) {
       loop.push_back(at.a);
@@ -291,11 +296,14 @@ std::vector<std::vector<std::uint32_t>> Front::openings() const {
         }
       }
       if (next == kNone) {
+        leaves = !sheet_->whole.empty() && sheet_->whole[at.b] == 0;
         break;
       }
       at = {at.b, next};
     }
-    loops.push_back(std::move(loop));
+    if (!leaves) {
+      loops.push_back(std::move(loop));
+    }
   }
   return loops;
 }

@@ -20,6 +20,9 @@ struct Sheet {
   std::vector<Eigen::Vector3f> normals;    ///< unit, as measured, not from the faces
   std::vector<float> spacing_mm;           ///< µ of the scan that a vertex comes from
   std::vector<Triangle> faces;
+  /// 0 for vertices of which some faces are elsewhere: an edge between two of them is not open, whatever it
+  /// looks like. Empty: all faces are here.
+  std::vector<std::uint8_t> whole;
 };
 
 /// Half-edges a→b to look up; open addressing in one array.
@@ -86,7 +89,8 @@ class Front {
   [[nodiscard]] std::size_t last_change(const Eigen::AlignedBox3f& box_mm) const;
 
   /// Walks along open edges around each opening, in the direction of the faces beside it. Where several open
-  /// edges leave one vertex the walk goes on along the next one across the opening.
+  /// edges leave one vertex the walk goes on along the next one across the opening. Walks that leave the
+  /// sheet through a vertex that is not whole are left out.
   [[nodiscard]] std::vector<std::vector<std::uint32_t>> openings() const;
 
   [[nodiscard]] const Sheet& sheet() const { return *sheet_; }

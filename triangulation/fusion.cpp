@@ -34,8 +34,8 @@ class LineProjector {
   }
 
   [[nodiscard]] Projection around(const GridSurface& surface, std::size_t nearest) {
-    const int row = s_->scan.grid->row_of(nearest);
-    const int col = s_->scan.grid->col_of(nearest);
+    const int row = s_->lattice.sample_row(nearest);
+    const int col = s_->lattice.sample_col(nearest);
     // The foot is nearly always in the one of the four cells at the nearest sample towards which p lies;
     // noise may carry it into another, or one further.
     const int likely_row = towards(nearest, row, surface.rows, surface.cols) ? row : row - 1;
@@ -112,9 +112,9 @@ class LineProjector {
     // Variances of independent samples: Σ λ² / w.
     const float la = wa * inverse, lb = wb * inverse, lc = wc * inverse;
     best_.weight =
-        1.0F / (la * la / s_->weight[t[0]] + lb * lb / s_->weight[t[1]] + lc * lc / s_->weight[t[2]]);
+        1.0F / (la * la / s_->weight(t[0]) + lb * lb / s_->weight(t[1]) + lc * lc / s_->weight(t[2]));
     best_.reliability = std::clamp(
-        (wa * s_->reliability[t[0]] + wb * s_->reliability[t[1]] + wc * s_->reliability[t[2]]) * inverse,
+        (wa * s_->reliability(t[0]) + wb * s_->reliability(t[1]) + wc * s_->reliability(t[2])) * inverse,
         0.0F, 1.0F);
   }
 
@@ -130,7 +130,7 @@ float square(float x) {
 
 /// The pose's error is one of displacement in space; a third of its square lies along any one direction.
 float pose_sigma_mm(const StitchSurface& s) {
-  return std::isfinite(s.scan.sigma_mm) ? static_cast<float>(s.scan.sigma_mm / std::sqrt(3.0)) : 0.0F;
+  return std::isfinite(s.pose_sigma_mm) ? static_cast<float>(s.pose_sigma_mm / std::sqrt(3.0)) : 0.0F;
 }
 
 /// How much of its say a sample keeps that is so far from the rim of its scan.
@@ -163,13 +163,14 @@ void fuse(const StitchSurface& from, std::span<const StitchSurface* const> other
     surfaces.push_back(other->surface());
   }
   parallel_chunks(which.size(), 2048, [&](std::size_t begin, std::size_t end) {
-    std::vector<std::pair<std::size_t, std::size_t>> found;    // other, its sample
+    std::vector<std::pair<std::size_t, Projection>> found;
     std::vector<std::pair<std::size_t, std::int32_t>> starts;  // other, where to look, of one node
     std::size_t node = from.lattice.size();
     for (std::size_t at = first + begin; at < first + end; ++at) {
       const std::size_t i = out.samples[at];
       out.slot[i] = static_cast<std::uint32_t>(at);
       const Vector3f& p = from.points[i];
+      const Vector3f normal = from.normal(i);
       if (from.lattice.node_of(i) != node) {
         node = from.lattice.node_of(i);
         starts.clear();
@@ -183,23 +184,24 @@ void fuse(const StitchSurface& from, std::span<const StitchSurface* const> other
       found.clear();
       for (const auto& [k, start] : starts) {
         const std::int64_t j = pair_of(from, i, start, *others[k], *pairs[k]);
-        if (j >= 0) {
-          found.emplace_back(k, static_cast<std::size_t>(j));
-          feather = std::max(feather, pairs[k]->feather);
+        if (j < 0) {
+          continue;
         }
+        const Projection q =
+            LineProjector(*others[k], p, normal).around(surfaces[k], static_cast<std::size_t>(j));
+        if (q.weight > 0 && std::abs(q.along_mm) <= pairs[k]->reach_mm) {
+          found.emplace_back(k, q);
+        }
+        feather = std::max(feather, pairs[k]->feather);
       }
       float shift_sum = 0;
       float shift2_sum = 0;
-      float weight_sum = from.weight[i] * faded(from.rim[i], feather);
+      float weight_sum = from.weight(i) * faded(from.rim[i], feather);
       float pose_sum = square(weight_sum * pose_sigma_mm(from));
-      float doubt = 1.0F - from.reliability[i];
+      float doubt = 1.0F - from.reliability(i);
       bool sparse = from.is_sparse(i);
       int scans = 1;
-      for (const auto& [k, j] : found) {
-        const Projection q = LineProjector(*others[k], p, from.normals[i]).around(surfaces[k], j);
-        if (!(q.weight > 0) || std::abs(q.along_mm) > pairs[k]->reach_mm) {
-          continue;
-        }
+      for (const auto& [k, q] : found) {
         const float weight = q.weight * faded(q.rim, pairs[k]->feather);
         shift_sum += weight * q.along_mm;
         shift2_sum += weight * square(q.along_mm);
@@ -210,7 +212,7 @@ void fuse(const StitchSurface& from, std::span<const StitchSurface* const> other
         ++scans;
       }
       const float shift_mm = shift_sum / weight_sum;
-      out.points[at] = p + shift_mm * from.normals[i];
+      out.points[at] = p + shift_mm * normal;
       // Weights are inverse variances: the disagreement is their chi-square.
       const float chi2 = std::max(0.0F, shift2_sum - weight_sum * shift_mm * shift_mm);
       const float excess = scans > 1 ? std::max(1.0F, chi2 / static_cast<float>(scans - 1)) : 1.0F;

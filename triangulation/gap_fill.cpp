@@ -14,7 +14,7 @@ namespace {
 using Eigen::Vector2f;
 using Eigen::Vector3f;
 
-constexpr double kSeenWithinSpacings = 2.0;
+constexpr double kSeenWithinSpacings = 2.5;
 /// Openings with more vertices than this are outer boundaries, not gaps.
 constexpr std::size_t kMostVertices = 400;
 

@@ -34,14 +34,20 @@ struct Lattice {
            static_cast<std::size_t>(node_col);
   }
   [[nodiscard]] std::size_t node_of(std::size_t sample) const {
-    const auto width = static_cast<std::size_t>(cols);
-    return node(static_cast<int>(sample / width) / kNodeSide, static_cast<int>(sample % width) / kNodeSide);
+    return node(sample_row(sample) / kNodeSide, sample_col(sample) / kNodeSide);
   }
   [[nodiscard]] int row_of(std::size_t node) const {
     return static_cast<int>(node / static_cast<std::size_t>(node_cols));
   }
   [[nodiscard]] int col_of(std::size_t node) const {
     return static_cast<int>(node % static_cast<std::size_t>(node_cols));
+  }
+
+  [[nodiscard]] int sample_row(std::size_t sample) const {
+    return static_cast<int>(static_cast<std::uint32_t>(sample) / static_cast<std::uint32_t>(cols));
+  }
+  [[nodiscard]] int sample_col(std::size_t sample) const {
+    return static_cast<int>(static_cast<std::uint32_t>(sample) % static_cast<std::uint32_t>(cols));
   }
 
   /// Calls visit(sample) for the samples of a node's block, row by row.

@@ -64,6 +64,10 @@ void add_samples(std::vector<OwnedScan>& scans, std::size_t self, std::vector<st
     points[scan.fused->samples[slot]] = scan.fused->points[slot];
   }
   g.points = points;
+  std::vector<Vector3f> normals(points.size());
+  parallel_for_each_index(
+      normals.size(), [&](std::size_t i) { normals[i] = scan.surface->normal(i); }, 4096);
+  g.normals = normals;
   std::vector<std::uint8_t> kept = std::move(scan.kept);
   std::vector<std::uint8_t> cells = std::move(scan.cells);
   kept.resize(fresh.size(), 0);
@@ -88,8 +92,8 @@ void add_samples(std::vector<OwnedScan>& scans, std::size_t self, std::vector<st
             return;
           }
           std::uint8_t& cell = cells[i];
-          const int row = scan.surface->scan.grid->row_of(i);
-          const int col = scan.surface->scan.grid->col_of(i);
+          const int row = lattice.sample_row(i);
+          const int col = lattice.sample_col(i);
           for (int which = 0; (cell & kBoth) != 0 && which < 2; ++which) {
             const std::uint8_t bit = which == 0 ? kCellFirst : kCellSecond;
             if ((cell & bit) != 0 &&

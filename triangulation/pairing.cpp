@@ -26,8 +26,8 @@ bool may_see(const ScannerView& view, const Vector3f& p, const Vector3f& normal)
 std::size_t jump(const StitchSurface& to, std::size_t at, const Vector3f& p) {
   constexpr float kMostSamples = 8.0F;
   const auto width = static_cast<std::size_t>(to.lattice.cols);
-  const int row = static_cast<int>(at / width);
-  const int col = static_cast<int>(at % width);
+  const int row = to.lattice.sample_row(at);
+  const int col = to.lattice.sample_col(at);
   if (row + 1 >= to.lattice.rows || col + 1 >= to.lattice.cols ||
       (to.usable[at + 1] & to.usable[at + width]) == 0) {
     return at;
@@ -63,8 +63,8 @@ std::size_t walk(const StitchSurface& to, std::size_t at, const Vector3f& p, flo
   const auto width = static_cast<std::size_t>(cols);
   distance2 = (to.points[at] - p).squaredNorm();
   for (int step = 0; step < kMostSteps; ++step) {
-    const int row = static_cast<int>(at / width);
-    const int col = static_cast<int>(at % width);
+    const int row = to.lattice.sample_row(at);
+    const int col = to.lattice.sample_col(at);
     const int last_row = std::min(row + 1, rows - 1);
     const int first_col = std::max(col - 1, 0);
     const int last_col = std::min(col + 1, cols - 1);
@@ -90,8 +90,8 @@ std::size_t walk(const StitchSurface& to, std::size_t at, const Vector3f& p, flo
 
 /// Nearest usable sample within reach, model frame, or -1.
 std::int64_t nearest_sample(const StitchSurface& to, const Vector3f& p, float reach_mm) {
-  // What is looked up is every second sample; the walk goes to the nearest of all.
-  const auto near_mm = static_cast<float>(1.5 * to.spacing_mm);
+  // What is looked up is every fourth sample; the walk goes to the nearest of all.
+  const auto near_mm = static_cast<float>(2.0 * to.spacing_mm);
   const Vector3f there = (to.scanner_from_model * p.cast<double>()).cast<float>();
   const std::int64_t start = to.lookup->nearest(there, reach_mm + near_mm);
   if (start < 0) {
@@ -117,7 +117,7 @@ double mismatch_mm(const StitchSurface& from, const StitchSurface& to, double re
   std::vector<float> distances;
   for (std::size_t i = 0; i < n; i += step) {
     if (from.usable[i] == 0 || !box.contains(from.points[i]) ||
-        !may_see(to.view, from.points[i], from.normals[i])) {
+        !may_see(to.view, from.points[i], from.normal(i))) {
       continue;
     }
     const std::int64_t j = nearest_sample(to, from.points[i], static_cast<float>(reach_mm));
@@ -125,8 +125,8 @@ double mismatch_mm(const StitchSurface& from, const StitchSurface& to, double re
       continue;
     }
     const auto q = static_cast<std::size_t>(j);
-    if (from.normals[i].dot(to.normals[q]) > 0.9F) {
-      distances.push_back(std::abs((from.points[i] - to.points[q]).dot(to.normals[q])));
+    if (from.normal(i).dot(to.normal(q)) > 0.9F) {
+      distances.push_back(std::abs((from.points[i] - to.points[q]).dot(to.normal(q))));
     }
   }
   if (distances.size() < 8) {
@@ -139,7 +139,7 @@ double mismatch_mm(const StitchSurface& from, const StitchSurface& to, double re
 
 double pair_reach_mm(const StitchSurface& a, const StitchSurface& b, const PairingOptions& options) {
   const double spacing = std::max(a.spacing_mm, b.spacing_mm);
-  const double sigma = std::hypot(a.scan.sigma_mm, b.scan.sigma_mm);
+  const double sigma = std::hypot(a.pose_sigma_mm, b.pose_sigma_mm);
   const double plain =
       options.reach_factor * spacing + (std::isfinite(sigma) ? options.sigma_factor * sigma : 0.0);
   const double most = std::max(plain, options.most_reach_factor * spacing);
@@ -165,7 +165,7 @@ double feather_samples(const StitchSurface& a, const StitchSurface& b, double st
 Pairs find_pairs(const StitchSurface& from, const StitchSurface& to, double reach_mm,
                  const PairingOptions& options) {
   Pairs pairs;
-  pairs.other_id = to.scan.id;
+  pairs.other_id = to.id;
   pairs.reach_mm = static_cast<float>(reach_mm);
   pairs.min_normal_cos = static_cast<float>(options.min_normal_cos);
   pairs.match.assign(from.lattice.size(), -1);
@@ -186,11 +186,11 @@ Pairs find_pairs(const StitchSurface& from, const StitchSurface& to, double reac
           }
           const auto i = static_cast<std::size_t>(sample);
           // A scan cannot have seen what faces away from it.
-          if (!box.contains(from.points[i]) || !may_see(to.view, from.points[i], from.normals[i])) {
+          if (!box.contains(from.points[i]) || !may_see(to.view, from.points[i], from.normal(i))) {
             continue;
           }
           const std::int64_t j = nearest_sample(to, from.points[i], pairs.reach_mm);
-          if (j >= 0 && from.normals[i].dot(to.normals[static_cast<std::size_t>(j)]) > pairs.min_normal_cos) {
+          if (j >= 0 && from.normal(i).dot(to.normal(static_cast<std::size_t>(j))) > pairs.min_normal_cos) {
             pairs.match[node] = static_cast<std::int32_t>(j);
             ++count;
           }
@@ -216,7 +216,7 @@ std::int64_t pair_of(const StitchSurface& from, std::size_t sample, std::int32_t
   float distance2 = 0;
   const std::size_t at = walk(to, jump(to, static_cast<std::size_t>(start), p), p, distance2);
   const bool agrees = distance2 <= pairs.reach_mm * pairs.reach_mm &&
-                      from.normals[sample].dot(to.normals[at]) > pairs.min_normal_cos;
+                      from.normal(sample).dot(to.normal(at)) > pairs.min_normal_cos;
   return agrees ? static_cast<std::int64_t>(at) : -1;
 }
 

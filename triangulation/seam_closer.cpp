@@ -200,6 +200,7 @@ class Chooser {
 struct Task {
   float key;
   std::uint32_t a, b, c;
+  std::size_t as_of;                     ///< changes of the front when this was chosen
   bool operator<(const Task& o) const {  // the queue serves the greatest: the smallest key
     if (key != o.key) {
       return key > o.key;
@@ -234,7 +235,7 @@ class Advance {
     batch_.clear();
     // What is new on the front may come before all that waits.
     for (const Front::Edge& edge : offered_) {
-      batch_.push_back({std::numeric_limits<float>::lowest(), edge.a, edge.b, kNone});
+      batch_.push_back({std::numeric_limits<float>::lowest(), edge.a, edge.b, kNone, 0});
     }
     offered_.clear();
     const std::size_t most = batch_.size() + std::clamp(queue_.size() / kPerBatch, kLeastBatch, kMostBatch);
@@ -251,7 +252,10 @@ class Advance {
     parallel_chunks(batch_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
       Chooser chooser(*front_, limits_);
       for (std::size_t i = begin; i < end; ++i) {
-        choices_[i] = chooser.choose(batch_[i].a, batch_[i].b);
+        const Task& task = batch_[i];
+        const bool holds =
+            task.c != kNone && front_->last_change(around(task.a, task.b, task.c)) <= task.as_of;
+        choices_[i] = holds ? Choice{task.c, task.key} : chooser.choose(task.a, task.b);
       }
     });
   }
@@ -265,11 +269,11 @@ class Advance {
         continue;
       }
       if (task.c == kNone || (now.c != task.c && now.key > task.key)) {
-        queue_.push({now.key, task.a, task.b, now.c});
+        queue_.push({now.key, task.a, task.b, now.c, before});
         continue;
       }
       if (front_->last_change(around(task.a, task.b, now.c)) > before) {
-        queue_.push({task.key, task.a, task.b, now.c});
+        queue_.push({task.key, task.a, task.b, now.c, 0});
         continue;
       }
       front_->add_face({task.b, task.a, now.c});

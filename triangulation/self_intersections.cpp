@@ -247,6 +247,11 @@ class FaceCells {
   std::uint64_t levels_ = 0;
 };
 
+/// Without area and without an inside: nothing cuts it.
+bool is_point(const Face& f) {
+  return f[0] == f[1] && f[1] == f[2];
+}
+
 bool is_sound(Positions positions, const Face& f) {
   return std::all_of(f.begin(), f.end(),
                      [&](std::uint32_t v) { return v < positions.size() && positions[v].allFinite(); });
@@ -262,13 +267,19 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> self_intersections(
     double sizes = 0;
     float largest = 0;
     std::size_t count = 0;
+    std::size_t unsound = 0;
   };
   const Extent extent = parallel_reduce_ordered(
       all_faces.size(), 65536, Extent{},
       [&](std::size_t begin, std::size_t end) {
         Extent part;
         for (std::size_t i = begin; i < end; ++i) {
-          if (is_sound(positions, all_faces[i])) {
+          if (is_point(all_faces[i])) {
+            continue;
+          }
+          if (!is_sound(positions, all_faces[i])) {
+            ++part.unsound;
+          } else {
             const Eigen::AlignedBox3f box = box_of(positions, all_faces[i]);
             const float size = box.sizes().maxCoeff();
             part.box.extend(box);
@@ -284,6 +295,7 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> self_intersections(
         total.sizes += part.sizes;
         total.largest = std::max(total.largest, part.largest);
         total.count += part.count;
+        total.unsound += part.unsound;
       });
   if (extent.count < 2 || !(extent.sizes > 0)) {
     return {};
@@ -292,13 +304,14 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> self_intersections(
   constexpr double kMostOfMean = 100.0;  // one huge face would fill all cells
   std::vector<std::uint32_t> faces;
   const double mean_mm = extent.sizes / static_cast<double>(extent.count);
-  if (!part_of_face.empty() && extent.count == all_faces.size() &&
+  if (!part_of_face.empty() && extent.unsound == 0 &&
       static_cast<double>(extent.largest) < kMostOfMean * mean_mm) {
     faces = faces_at_stake(positions, all_faces, part_of_face, extent.box,
                            static_cast<float>(kCellOfMean * mean_mm));
+    std::erase_if(faces, [&](std::uint32_t f) { return is_point(all_faces[f]); });
   } else {
     for (std::uint32_t i = 0; i < all_faces.size(); ++i) {
-      if (is_sound(positions, all_faces[i])) {
+      if (!is_point(all_faces[i]) && is_sound(positions, all_faces[i])) {
         faces.push_back(i);
       }
     }

@@ -3,6 +3,7 @@
 #include "triangulation/stitch_surface.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <optional>
 
@@ -158,8 +159,8 @@ class Incidence {
 };
 
 /// The sample that stands for each node, and how much the scan wants to be primary there.
-void lay_nodes(StitchSurface& out, const Incidence& incidence, const StitchSurfaceOptions& options) {
-  const RangeGrid& grid = *out.scan.grid;
+void lay_nodes(StitchSurface& out, const std::vector<Vector3f>& normals, const RangeGrid& grid,
+               const Incidence& incidence, const StitchSurfaceOptions& options) {
   const Lattice& lattice = out.lattice;
   const int most = std::clamp(options.rise_samples + 1, 2, kMostRim);
   std::vector<std::uint8_t> seen(lattice.size(), 0);
@@ -183,7 +184,7 @@ void lay_nodes(StitchSurface& out, const Incidence& incidence, const StitchSurfa
             nearest = dr * dr + dc * dc;
             out.node_sample[node] = static_cast<std::int32_t>(i);
           }
-          const float cosine = incidence.cosine(out.points[i], out.normals[i], grid.row_of(i));
+          const float cosine = incidence.cosine(out.points[i], normals[i], grid.row_of(i));
           sum += out.is_sparse(i) ? kSparseScore * cosine : cosine;
           rim += std::min<int>(out.rim[i], most);
           ++count;
@@ -202,13 +203,18 @@ void lay_nodes(StitchSurface& out, const Incidence& incidence, const StitchSurfa
   }
 }
 
-/// The black fields of a chessboard: enough to start from for a walk to the nearest sample.
-std::vector<std::uint8_t> every_second(const std::vector<std::uint8_t>& usable, int rows, int cols) {
+/// One of each 2x2 block: enough to start from for a walk to the nearest sample.
+std::vector<std::uint8_t> every_fourth(const std::vector<std::uint8_t>& usable, int rows, int cols) {
   std::vector<std::uint8_t> out(usable.size(), 0);
   const auto width = static_cast<std::size_t>(cols);
-  for (std::size_t row = 0; row < static_cast<std::size_t>(rows); ++row) {
-    for (std::size_t i = row * width + row % 2; i < (row + 1) * width; i += 2) {
-      out[i] = usable[i];
+  for (std::size_t row = 0; row + 1 < static_cast<std::size_t>(rows); row += 2) {
+    for (std::size_t i = row * width; i + 1 < (row + 1) * width; i += 2) {
+      for (const std::size_t k : {i, i + 1, i + width, i + width + 1}) {
+        if (usable[k] != 0) {
+          out[k] = 1;
+          break;
+        }
+      }
     }
   }
   return out;
@@ -219,7 +225,8 @@ std::vector<std::uint8_t> every_second(const std::vector<std::uint8_t>& usable, 
 StitchSurface make_scan_surface(const PlacedScan& scan, const StitchSurfaceOptions& options) {
   const RangeGrid& grid = *scan.grid;
   StitchSurface out;
-  out.scan = scan;
+  out.id = scan.id;
+  out.pose_sigma_mm = scan.sigma_mm;
   out.spacing_mm = grid.spacing_mm > 0 ? grid.spacing_mm : estimate_spacing_mm(grid);
   out.lattice = Lattice(grid.rows, grid.cols);
   out.node_sample.assign(out.lattice.size(), -1);
@@ -230,16 +237,16 @@ StitchSurface make_scan_surface(const PlacedScan& scan, const StitchSurfaceOptio
   out.points.assign(n, Vector3f::Zero());
   out.usable.assign(n, 0);
   out.cells.assign(n, 0);
-  out.reliability.assign(n, 0);
-  out.weight.assign(n, 0);
+  out.reliability_code.assign(n, 0);
+  out.weight_code.assign(n, 0);
   out.rim.assign(n, 0);
   if (!(out.spacing_mm > 0) || grid.rows < 2 || grid.cols < 2) {
-    out.normals.assign(n, Vector3f::Zero());
+    out.normals.assign(n, PackedNormal());
     out.lookup = std::make_unique<GridLookup>(grid, out.usable);
     return out;
   }
   GridGeometry geometry = grid_geometry(grid, 5.0 * out.spacing_mm / std::max(grid.spacing_mm, 1e-12));
-  out.normals = std::move(geometry.normals);
+  std::vector<Vector3f> normals = std::move(geometry.normals);
   const Eigen::Matrix3f rotation = scan.model_from_scanner.rotation.cast<float>();
   std::vector<std::uint8_t> joined(n, 0);
   parallel_for_each_index(
@@ -250,11 +257,12 @@ StitchSurface make_scan_surface(const PlacedScan& scan, const StitchSurfaceOptio
           return;
         }
         out.points[i] = (scan.model_from_scanner * grid.point(i).cast<double>()).cast<float>();
-        out.normals[i] = rotation * out.normals[i];
+        normals[i] = rotation * normals[i];
         joined[i] = 1;
       },
       4096);
-  const GridSurface surface = out.surface();
+  GridSurface surface = out.surface();
+  surface.normals = normals;
   out.mirrored = is_mirrored(surface, joined);
   out.cells = triangulate_cells(surface, joined, out.mirrored, options.grid);
   for (int row = 0; row + 1 < grid.rows; ++row) {
@@ -273,30 +281,39 @@ StitchSurface make_scan_surface(const PlacedScan& scan, const StitchSurfaceOptio
   out.rim = rim_distance(out.usable, inner, grid.rows, grid.cols);
   out.noise_mm = scan.noise_mm ? *scan.noise_mm : estimate_noise_mm(grid, out.usable);
   const double systematic_mm = kSystematicOfSpacing * out.spacing_mm;
-  const auto inverse_variance =
+  out.weight_of_best =
       static_cast<float>(1.0 / (out.noise_mm * out.noise_mm + systematic_mm * systematic_mm));
+  const auto code = [](float part) {
+    return static_cast<std::uint16_t>(std::lround(std::clamp(part, 0.0F, 1.0F) * StitchSurface::kCodes));
+  };
+  const auto is_sparse = [&](std::size_t i) {
+    return scan.flags != nullptr && i < scan.flags->size() && !is_unflagged((*scan.flags)[i]);
+  };
+  out.normals.resize(n);
   const Incidence incidence(out.view);
   parallel_for_each_index(
       n,
       [&](std::size_t i) {
+        out.normals[i] = PackedNormal(normals[i]);
         if (out.usable[i] == 0) {
           return;
         }
-        const float cosine = incidence.cosine(out.points[i], out.normals[i], grid.row_of(i));
+        out.usable[i] = is_sparse(i) ? kUsable | kUsableSparse : kUsable;
+        const float cosine = incidence.cosine(out.points[i], normals[i], grid.row_of(i));
         const float confidence = grid.confidence.empty() ? 1.0F : std::clamp(grid.confidence[i], 0.01F, 1.0F);
-        out.reliability[i] = cosine * cosine * confidence;
+        out.reliability_code[i] = code(cosine * cosine * confidence);
         const float doubt = out.is_sparse(i) ? kSparseWeight : inner[i] == 0 ? kRimWeight : 1.0F;
-        out.weight[i] = confidence * inverse_variance * doubt;
+        out.weight_code[i] = std::max<std::uint16_t>(code(confidence * doubt), 1);
       },
       4096);
-  lay_nodes(out, incidence, options);
+  lay_nodes(out, normals, grid, incidence, options);
   for (std::size_t i = 0; i < n; ++i) {
     if (out.usable[i] != 0) {
       out.box.extend(out.points[i]);
     }
   }
-  out.lookup = std::make_unique<GridLookup>(grid, every_second(out.usable, grid.rows, grid.cols),
-                                            2.0 * out.spacing_mm);
+  out.lookup = std::make_unique<GridLookup>(grid, every_fourth(out.usable, grid.rows, grid.cols),
+                                            2.5 * out.spacing_mm);
   return out;
 }
 

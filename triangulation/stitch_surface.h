@@ -12,6 +12,7 @@
 #include "core/placed_scan.h"
 #include "triangulation/grid_triangulation.h"
 #include "triangulation/lattice.h"
+#include "triangulation/packed_normal.h"
 
 namespace dubsar {
 
@@ -27,40 +28,58 @@ struct StitchSurfaceOptions {
 
 inline constexpr int kMostRim = 32;
 
+/// Bits of StitchSurface::usable.
+enum UsableBit : std::uint8_t {
+  kUsable = 1,        ///< the sample is a corner of a triangle of its own grid
+  kUsableSparse = 2,  ///< and sparse
+};
+
 /// One placed scan made ready for stitching: its samples in the model frame, the triangles of its grid, and
-/// how far each sample is to be trusted. Arrays are [rows*cols] of the grid where nothing else is said.
+/// how far each sample is to be trusted. Arrays are [rows*cols] of the grid where nothing else is said. It
+/// holds all that stitching needs of a scan, 27 bytes a sample: the grid itself may go.
 struct StitchSurface {
-  PlacedScan scan;
+  int id = 0;
+  double pose_sigma_mm = 0;
   double spacing_mm = 0;
   double noise_mm = 0;  ///< of a sample along the view
   bool mirrored = false;
-  ScannerView view;                      ///< in the model frame
-  std::vector<Eigen::Vector3f> points;   ///< model frame, mm
-  std::vector<Eigen::Vector3f> normals;  ///< model frame, out of the clay; zero where undefined
-  std::vector<std::uint8_t> usable;      ///< 1 where the sample is a corner of a triangle of its own grid
-  std::vector<std::uint8_t> cells;       ///< CellBit codes
-  std::vector<float> reliability;  ///< of the sample alone, in [0,1]: cos² of the incidence × confidence
-  /// For averaging, 1 / mm²: inverse to the variance along the normal, which hardly grows with the incidence
-  /// (the noise along the view does, its part along the normal shrinks). Less at the rim, little for sparse
-  /// samples; > 0 if usable.
-  std::vector<float> weight;
+  ScannerView view;                             ///< in the model frame
+  std::vector<Eigen::Vector3f> points;          ///< model frame, mm
+  std::vector<PackedNormal> normals;            ///< model frame, out of the clay; zero where undefined
+  std::vector<std::uint8_t> usable;             ///< UsableBit
+  std::vector<std::uint8_t> cells;              ///< CellBit codes
+  std::vector<std::uint16_t> reliability_code;  ///< × kCodes
+  std::vector<std::uint16_t> weight_code;       ///< × kCodes, of weight_of_best
+  float weight_of_best = 0;                     ///< 1 / mm²
   std::vector<std::uint8_t> rim;  ///< samples to the rim of the triangulated area: 1 on it, at most kMostRim
   Eigen::AlignedBox3f box;        ///< of the usable samples, model frame
   RigidTransform scanner_from_model;
-  std::unique_ptr<GridLookup> lookup;  ///< of every second usable sample, scanner frame
+  std::unique_ptr<GridLookup> lookup;  ///< of every fourth usable sample, scanner frame
   Lattice lattice;
   std::vector<std::int32_t> node_sample;  ///< by node: the usable sample nearest to its middle, or -1
   std::vector<float> score;               ///< by node: how much this scan wants to be primary there
 
-  [[nodiscard]] bool is_sparse(std::size_t i) const {
-    return scan.flags != nullptr && i < scan.flags->size() && !is_unflagged((*scan.flags)[i]);
+  static constexpr float kCodes = 65535.0F;
+
+  [[nodiscard]] Eigen::Vector3f normal(std::size_t i) const { return normals[i].unpack(); }
+  [[nodiscard]] bool is_sparse(std::size_t i) const { return (usable[i] & kUsableSparse) != 0; }
+  /// Of the sample alone, in [0,1]: cos² of the incidence × confidence.
+  [[nodiscard]] float reliability(std::size_t i) const {
+    return static_cast<float>(reliability_code[i]) * (1.0F / kCodes);
   }
+  /// For averaging, 1 / mm²: inverse to the variance along the normal, which hardly grows with the incidence
+  /// (the noise along the view does, its part along the normal shrinks). Less at the rim, little for sparse
+  /// samples; > 0 if usable.
+  [[nodiscard]] float weight(std::size_t i) const {
+    return static_cast<float>(weight_code[i]) * (weight_of_best / kCodes);
+  }
+  /// Where its cells are; it holds no normals.
   [[nodiscard]] GridSurface surface() const {
-    return {scan.grid->rows, scan.grid->cols, spacing_mm, points, normals, view};
+    return {lattice.rows, lattice.cols, spacing_mm, points, {}, view};
   }
 };
 
-/// Never fails: a scan without a triangle has no usable sample.
+/// Never fails: a scan without a triangle has no usable sample. Keeps no reference to the grid or its flags.
 [[nodiscard]] StitchSurface make_scan_surface(const PlacedScan& scan, const StitchSurfaceOptions& options);
 
 }  // namespace dubsar

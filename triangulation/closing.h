@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include "triangulation/draft.h"
+#include "triangulation/gap_fill.h"
+#include "triangulation/seam_closer.h"
+
+namespace dubsar {
+
+struct ClosingOptions {
+  SeamOptions seam;
+  GapFillOptions gap;
+};
+
+/// Closes the seams between the patches of a draft, and its gaps. Where patches touch by a corner only, the
+/// largest keeps it; around a gap that cannot be closed faces go and another try is made.
+void close_patches(Draft& draft, const ClosingOptions& options);
+
+/// Takes out faces that cut through each other, later with those around them, and closes the place anew; what
+/// still cuts at the end goes for good.
+void repair_self_intersections(Draft& draft, const ClosingOptions& options);
+
+}  // namespace dubsar

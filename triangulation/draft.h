@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/mesh.h"
+#include "triangulation/manifold.h"
+#include "triangulation/owned_scan.h"
+
+namespace dubsar {
+
+/// The mesh while it is put together: the patches that scans keep, scan by scan, then what closes the seams
+/// between them. A face {v, v, v} has been taken away; it stays so that the numbers of the others do.
+struct Draft {
+  Mesh mesh;                                ///< normals as measured, not from the faces
+  std::vector<std::uint32_t> first_vertex;  ///< [scans + 1] of each patch
+  std::vector<std::uint32_t> first_face;    ///< [scans + 1]
+  std::vector<float> patch_spacing_mm;      ///< [scans]
+  std::vector<float> added_spacing_mm;      ///< of the vertices after the last patch
+  /// [V] kAtRim at the rim of a patch, 1 within a few samples of it, and for what was added: elsewhere faces
+  /// close around the vertex as those of a grid do.
+  std::vector<std::uint8_t> near_rim;
+
+  [[nodiscard]] float spacing_mm(std::uint32_t vertex) const;
+  static constexpr std::uint8_t kAtRim = 2;
+  /// The patch (1 for the first) within which a face lies, away from the rim; 0: none. Faces of one patch all
+  /// look at the scanner that they come from, each at a place of its own: they cannot cut each other.
+  [[nodiscard]] std::uint32_t patch_of_face(std::size_t face) const;
+};
+
+[[nodiscard]] inline bool is_gone(const Triangle& f) {
+  return f[0] == f[1];
+}
+
+/// The patches that assign_owners() left: vertices are the kept samples at their averaged places, faces their
+/// triangles, and two more where a grid lacks one lone sample.
+[[nodiscard]] Draft lay_patches(const std::vector<OwnedScan>& scans);
+
+}  // namespace dubsar
