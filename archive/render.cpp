@@ -5,83 +5,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "archive/colour.h"
-#include "archive/screen_light.h"
-#include "core/parallel.h"
-
 namespace dubsar {
 
 namespace {
 
 constexpr int kMaxSidePx = 16384;
 constexpr double kMaxSubpixels = 400e6;
-constexpr float kShadowLight =
-    0.3F;  // of the lamp's light stays in its shadow, so that wedges keep their faces
-
-/// Light on clay: a warm raking lamp, a cool sky from above, and a little light from the viewer, so that no
-/// side is black. Shadows take the lamp, recesses take the sky and some of the lamp.
-struct Lights {
-  Eigen::Vector3f lamp;
-  LinearRgb lamp_colour{1.18F, 1.12F, 1.03F};
-  LinearRgb sky_colour{0.37F, 0.40F, 0.46F};
-  LinearRgb front_colour{0.21F, 0.21F, 0.21F};
-};
-
-/// Everything up to kKnee is kept; what is lighter is bent to stay below 1, so that lit ridges keep their
-/// shape.
-float shoulder(float light) {
-  constexpr float kKnee = 0.7F;
-  return light <= kKnee ? light
-                        : kKnee + (1.0F - kKnee) * (1.0F - std::exp(-(light - kKnee) / (1.0F - kKnee)));
-}
-
-Image shade(const SurfacePixels& pixels, const RenderOptions& options, double mm_per_px) {
-  const Eigen::Vector3d towards_lamp = options.towards_lamp.normalized();
-  const Lights lights{towards_lamp.cast<float>()};
-  const std::vector<float> sky = sky_visibility(pixels, mm_per_px, options.recess_radius_mm);
-  const std::vector<float> lamp = lamp_visibility(pixels, mm_per_px, options.shadow_reach_mm, towards_lamp);
-  const std::vector<float> bend = bending(pixels, mm_per_px, 0.6);
-  Image image = filled_image(pixels.width, pixels.height, options.background);
-  image.mm_per_px = mm_per_px;
-  const LinearRgb ground = to_linear(options.background);
-  const auto relief = static_cast<float>(options.relief);
-  const auto width = static_cast<std::size_t>(pixels.width);
-
-  const auto shade_pixel = [&](std::size_t i) {
-    const float coverage = pixels.coverage[i];
-    if (coverage == 0) {
-      return;
-    }
-    Eigen::Vector3f n(pixels.nx[i], pixels.ny[i], pixels.nz[i]);
-    n.normalize();
-    const float open = sky[i] * sky[i];
-    const float lambert = std::max(0.0F, n.dot(lights.lamp)) *
-                          (kShadowLight + (1.0F - kShadowLight) * lamp[i]) * (0.4F + 0.6F * open);
-    const float dome = (0.62F + 0.38F * n.y()) * open;
-    const float front = n.z() * (0.5F + 0.5F * open);
-    const float crease = std::exp(relief * bend[i]);
-    const LinearRgb surface{pixels.r[i], pixels.g[i], pixels.b[i]};
-    const float plain = pixels.plain[i];
-    LinearRgb seen{};
-    for (std::size_t k = 0; k < 3; ++k) {
-      const float light =
-          (lambert * lights.lamp_colour[k] + dome * lights.sky_colour[k] + front * lights.front_colour[k]) *
-          crease;
-      const float lit = shoulder(surface[k] * light);
-      const float painted = lit + plain * (surface[k] - lit);
-      seen[k] = ground[k] + coverage * (painted - ground[k]);
-    }
-    const Rgb8 colour = to_srgb(seen);
-    std::copy(colour.begin(), colour.end(), image.bytes.begin() + static_cast<std::ptrdiff_t>(3 * i));
-  };
-  parallel_chunks(static_cast<std::size_t>(pixels.height), 8, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin * width; i < end * width; ++i) {
-      shade_pixel(i);
-    }
-  });
-  return image;
-}
-
 }  // namespace
 
 Status RenderOptions::check() const {
@@ -153,8 +82,9 @@ Result<Framing> framing_of(const RenderScene& scene, const ViewCamera& camera, c
   return framing;
 }
 
-Result<Image> render(const RenderScene& scene, const ViewCamera& camera, const RenderOptions& options,
-                     const JobContext& job) {
+Result<std::vector<Image>> render_looks(const RenderScene& scene, const ViewCamera& camera,
+                                        const RenderOptions& options, std::span<const Look> looks,
+                                        const JobContext& job) {
   const Result<Framing> framing = framing_of(scene, camera, options);
   if (!framing) {
     return std::unexpected(framing.error());
@@ -163,18 +93,31 @@ Result<Image> render(const RenderScene& scene, const ViewCamera& camera, const R
   if (job.cancelled()) {
     return cancelled();
   }
-  SurfacePixels pixels;
-  {
-    const VisibilityBuffer buffer = rasterise(scene, camera, *framing, options.supersampling);
+  const VisibilityBuffer buffer = rasterise(scene, camera, *framing, options.supersampling);
+  std::vector<Image> images;
+  for (const Look& look : looks) {
     if (job.cancelled()) {
       return cancelled();
     }
-    pixels = resolve(buffer, scene, camera, options.style, options.supersampling);
+    const SurfacePixels pixels = resolve(buffer, scene, camera, look.style, options.supersampling, look.tone);
+    if (job.cancelled()) {
+      return cancelled();
+    }
+    RenderOptions lit = options;
+    lit.lighting = look.lighting;
+    images.push_back(shade(pixels, lit, framing->mm_per_px));
   }
-  if (job.cancelled()) {
-    return cancelled();
+  return images;
+}
+
+Result<Image> render(const RenderScene& scene, const ViewCamera& camera, const RenderOptions& options,
+                     const JobContext& job) {
+  const Look look{options.style, options.lighting, {}};
+  Result<std::vector<Image>> images = render_looks(scene, camera, options, {&look, 1}, job);
+  if (!images) {
+    return std::unexpected(images.error());
   }
-  return shade(pixels, options, framing->mm_per_px);
+  return std::move(images->front());
 }
 
 }  // namespace dubsar

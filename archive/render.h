@@ -3,6 +3,8 @@
 #pragma once
 
 #include <optional>
+#include <span>
+#include <vector>
 
 #include "archive/image.h"
 #include "archive/raster.h"
@@ -14,6 +16,20 @@ namespace dubsar {
 
 inline constexpr Rgb8 kPaper{255, 255, 255};
 inline constexpr Rgb8 kBlackGround{0, 0, 0};
+
+/// How the surface is lit.
+enum class Lighting {
+  kRaking,    ///< a raking lamp with shadows, a sky and a little light from the viewer
+  kRadiance,  ///< radiance scaling (Vergne et al. 2010): what bends out is lightened, what bends in darkened
+  kFlat,      ///< not at all: every pixel has the colour of its style
+};
+
+/// What a picture shows of the surface.
+struct Look {
+  RenderStyle style = RenderStyle::kClay;
+  Lighting lighting = Lighting::kRaking;
+  std::span<const float> tone{};  ///< [V], for RenderStyle::kTone
+};
 
 /// A part of the picture to draw instead of the whole object.
 struct RenderWindow {
@@ -29,6 +45,7 @@ struct RenderOptions {
   int margin_px = 6;
   Rgb8 background = kPaper;
   RenderStyle style = RenderStyle::kClay;
+  Lighting lighting = Lighting::kRaking;
   /// Towards the lamp, x right, y up, z to the viewer: raking from the upper left, as epigraphers light a
   /// tablet, about 36 degrees above it. Need not be a unit vector.
   Eigen::Vector3d towards_lamp{-0.62, 0.52, 0.58};
@@ -45,6 +62,15 @@ struct RenderOptions {
 /// to draw (kBadInput), a picture that would be too large (kUsage), cancelled.
 [[nodiscard]] Result<Image> render(const RenderScene& scene, const ViewCamera& camera,
                                    const RenderOptions& options, const JobContext& job);
+
+/// The same view in several looks, which take the place of the options' own: the surface is projected once.
+/// In the order of the looks; otherwise as render().
+[[nodiscard]] Result<std::vector<Image>> render_looks(const RenderScene& scene, const ViewCamera& camera,
+                                                      const RenderOptions& options,
+                                                      std::span<const Look> looks, const JobContext& job);
+
+/// Lights pixels, however they came about; mm_per_px is their scale.
+[[nodiscard]] Image shade(const SurfacePixels& pixels, const RenderOptions& options, double mm_per_px);
 
 /// The scale that makes the longest side of the object, over all six faces, longest_px long. 0 for an empty
 /// scene.

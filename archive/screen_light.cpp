@@ -174,4 +174,49 @@ std::vector<float> bending(const SurfacePixels& pixels, double mm_per_px, double
   return bend;
 }
 
+std::vector<float> bending_within(const SurfacePixels& pixels, double mm_per_px, double scale_mm,
+                                  double radius_mm) {
+  struct Spoke {
+    int dx = 0, dy = 0;     ///< pixels, y downwards
+    float out_x, out_y;     ///< unit, y upwards
+    std::ptrdiff_t offset;  ///< in the arrays
+  };
+  constexpr int kSpokes = 24;
+  constexpr double kTurn = 6.283185307179586;
+  const double radius_px = std::clamp(radius_mm / mm_per_px, 2.0, 64.0);
+  const int reach = static_cast<int>(std::ceil(radius_px)) + 1;
+  const auto width = static_cast<std::size_t>(pixels.width);
+  std::vector<Spoke> spokes;
+  for (int k = 0; k < kSpokes; ++k) {
+    const double angle = kTurn * k / kSpokes;
+    const int dx = static_cast<int>(std::lround(radius_px * std::cos(angle)));
+    const int dy = -static_cast<int>(std::lround(radius_px * std::sin(angle)));
+    spokes.push_back({dx, dy, static_cast<float>(std::cos(angle)), static_cast<float>(std::sin(angle)),
+                      dy * static_cast<std::ptrdiff_t>(pixels.width) + dx});
+  }
+  std::vector<float> bend(pixels.size(), 0.0F);
+  // The flux through the ring is the divergence within it: their mean is 2 / radius times the mean outward
+  // part.
+  const auto factor = static_cast<float>(scale_mm * 2.0 / (radius_px * mm_per_px * kSpokes));
+  parallel_for_each_index(
+      static_cast<std::size_t>(std::max(0, pixels.height - 2 * reach)),
+      [&](std::size_t row) {
+        for (int x = reach; x + reach < pixels.width; ++x) {
+          const std::size_t i = (row + static_cast<std::size_t>(reach)) * width + static_cast<std::size_t>(x);
+          float covered = 1;
+          float flux = 0;
+          for (const Spoke& spoke : spokes) {
+            const auto at = static_cast<std::size_t>(static_cast<std::ptrdiff_t>(i) + spoke.offset);
+            covered = std::min(covered, pixels.coverage[at]);
+            flux += pixels.nx[at] * spoke.out_x + pixels.ny[at] * spoke.out_y;
+          }
+          if (covered == 1.0F) {
+            bend[i] = std::tanh(flux * factor);
+          }
+        }
+      },
+      16);
+  return bend;
+}
+
 }  // namespace dubsar

@@ -27,4 +27,9 @@ namespace dubsar {
 /// tanh(1).
 [[nodiscard]] std::vector<float> bending(const SurfacePixels& pixels, double mm_per_px, double scale_mm);
 
+/// The same at a scale of its own: the mean of the bend within radius_mm, from the normals on a ring of that
+/// radius, so that the noise of single samples averages out.
+[[nodiscard]] std::vector<float> bending_within(const SurfacePixels& pixels, double mm_per_px,
+                                                double scale_mm, double radius_mm);
+
 }  // namespace dubsar

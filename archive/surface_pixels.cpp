@@ -20,12 +20,14 @@ constexpr int kManyScans = 6;
 /// The colour of a vertex in the chosen style.
 class Paint {
  public:
-  Paint(const Mesh& mesh, RenderStyle style) : mesh_(mesh), style_(style) {
+  Paint(const Mesh& mesh, RenderStyle style, std::span<const float> tone)
+      : mesh_(mesh), style_(style), tone_(tone) {
     const std::size_t count = mesh.positions.size();
     const bool has_values = (style == RenderStyle::kRedMap) ||
                             (style == RenderStyle::kReliability && mesh.reliability.size() == count) ||
                             (style == RenderStyle::kScanCount && mesh.scans.size() == count) ||
-                            (style == RenderStyle::kColours && mesh.colours.size() == count);
+                            (style == RenderStyle::kColours && mesh.colours.size() == count) ||
+                            (style == RenderStyle::kTone && tone.size() == count);
     if (!has_values) {
       style_ = RenderStyle::kClay;
     }
@@ -42,6 +44,10 @@ class Paint {
         return to_linear(lightness_ramp(mesh_.reliability[v]));
       case RenderStyle::kScanCount:
         return to_linear(lightness_ramp((mesh_.scans[v] - 1.0) / (kManyScans - 1.0)));
+      case RenderStyle::kTone: {
+        const auto grey = static_cast<std::uint8_t>(std::clamp(tone_[v], 0.0F, 1.0F) * 255.0F + 0.5F);
+        return to_linear({grey, grey, grey});
+      }
       case RenderStyle::kColours:
         break;
     }
@@ -51,6 +57,7 @@ class Paint {
  private:
   const Mesh& mesh_;
   RenderStyle style_;
+  std::span<const float> tone_;
   bool has_flags_ = false;
   LinearRgb clay_ = to_linear(kClayTone);
   LinearRgb pale_ = to_linear(kPaleClay);
@@ -151,9 +158,9 @@ SurfacePixels empty_pixels(int width, int height) {
 }  // namespace
 
 SurfacePixels resolve(const VisibilityBuffer& buffer, const RenderScene& scene, const ViewCamera& camera,
-                      RenderStyle style, int supersampling) {
+                      RenderStyle style, int supersampling, std::span<const float> tone) {
   SurfacePixels out = empty_pixels(buffer.width / supersampling, buffer.height / supersampling);
-  const Paint paint(scene.mesh(), style);
+  const Paint paint(scene.mesh(), style, tone);
   const Eigen::Matrix3f view_from_model = camera.view_from_model.cast<float>();
   const ColouredPoints* points = scene.points();
   const bool has_colours = points != nullptr && points->colours.size() == points->positions_mm.size();

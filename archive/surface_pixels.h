@@ -2,6 +2,7 @@
 // Copyright The Dubsar developers
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "archive/raster.h"
@@ -15,6 +16,7 @@ enum class RenderStyle {
   kReliability,  ///< Mesh::reliability on a ramp of lightness, 0 dark to 1 pale
   kScanCount,    ///< Mesh::scans on the same ramp, 1 dark to 6 and more pale
   kColours,      ///< Mesh::colours as they are
+  kTone,         ///< grey, one value a vertex: 0 black to 1 white
 };
 
 /// The surface as the pixels of a picture see it, subpixels averaged. Structure of arrays, row major.
@@ -32,9 +34,10 @@ struct SurfacePixels {
 
 inline constexpr float kFarAway = -1e9F;
 
-/// Averages the subpixels of each pixel. A style for which the mesh has no values falls back to clay. The
-/// inside of the surface, seen through a hole, is painted dark.
+/// Averages the subpixels of each pixel. A style for which the mesh has no values falls back to clay; `tone`
+/// [V] is that of kTone. The inside of the surface, seen through a hole, is painted dark.
 [[nodiscard]] SurfacePixels resolve(const VisibilityBuffer& buffer, const RenderScene& scene,
-                                    const ViewCamera& camera, RenderStyle style, int supersampling);
+                                    const ViewCamera& camera, RenderStyle style, int supersampling,
+                                    std::span<const float> tone = {});
 
 }  // namespace dubsar

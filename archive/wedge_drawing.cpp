@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <system_error>
 
 #include "archive/html.h"
@@ -76,8 +77,47 @@ bool is_on(const Wedge& wedge, Face side) {
 
 }  // namespace
 
+namespace {
+
+/// The tablet's rim as one path; what is a hole in it stays open by the even-odd rule.
+std::string outline_path(const Sheet& sheet, const std::vector<OutlineRing>& outline) {
+  std::string d;
+  for (const OutlineRing& ring : outline) {
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+      d += fmt::sprintf("%c%.3f %.3f", i == 0 ? 'M' : 'L', ring[i].x() - sheet.left, sheet.top - ring[i].y());
+    }
+    d += ring.empty() ? "" : "Z";
+  }
+  return d.empty() ? d : "<path class=\"outline\" fill-rule=\"evenodd\" d=\"" + d + "\"/>\n";
+}
+
+/// The silhouette of one side in the plane that wedges are drawn in.
+std::vector<OutlineRing> side_outline(const RenderScene& scene, Face side,
+                                      const RigidTransform& text_from_model) {
+  constexpr int kLongestPx = 1500;
+  const SideAxes& axes = side_axes(side);
+  ViewCamera camera;
+  camera.view_from_model.row(0) = axes.right.transpose() * text_from_model.rotation;
+  camera.view_from_model.row(1) = axes.up().transpose() * text_from_model.rotation;
+  camera.view_from_model.row(2) = axes.normal.transpose() * text_from_model.rotation;
+  Result<std::vector<OutlineRing>> rings = outline_of(scene, camera, kLongestPx);
+  if (!rings) {
+    return {};  // nothing to see: the wedges are drawn without
+  }
+  const Eigen::Vector2d shift(text_from_model.translation_mm.dot(axes.right),
+                              text_from_model.translation_mm.dot(axes.up()));
+  for (OutlineRing& ring : *rings) {
+    for (Eigen::Vector2d& p : ring) {
+      p += shift;
+    }
+  }
+  return std::move(*rings);
+}
+
+}  // namespace
+
 std::string wedge_drawing(Face side, const std::vector<Wedge>& wedges, const RigidTransform& text_from_model,
-                          const std::string& title) {
+                          const std::string& title, const std::vector<OutlineRing>& outline) {
   Sheet sheet{side_axes(side), text_from_model};
   double left = 1e30;
   double right = -1e30;
@@ -100,6 +140,14 @@ std::string wedge_drawing(Face side, const std::vector<Wedge>& wedges, const Rig
       widen(wedge.exit_points_mm[k]);
     }
   }
+  for (const OutlineRing& ring : outline) {
+    for (const Eigen::Vector2d& p : ring) {
+      left = std::min(left, p.x());
+      right = std::max(right, p.x());
+      low = std::min(low, p.y());
+      high = std::max(high, p.y());
+    }
+  }
   if (left > right) {
     left = right = low = high = 0;
   }
@@ -116,7 +164,9 @@ std::string wedge_drawing(Face side, const std::vector<Wedge>& wedges, const Rig
   out +=
       "<style>.outer{fill:#e8e4dc;stroke:#000;stroke-width:.08;stroke-linejoin:round}"
       ".inner{fill:none;stroke:#000;stroke-width:.06;stroke-linecap:round}.directional{stroke-width:.16}"
-      ".scale{fill:none;stroke:#000;stroke-width:.2}text{font:2.2px sans-serif}</style>\n";
+      ".outline{fill:none;stroke:#000;stroke-width:.12;stroke-linejoin:round}.scale{fill:none;stroke:#000;"
+      "stroke-width:.2}text{font:2.2px sans-serif}</style>\n";
+  out += outline_path(sheet, outline);
   for (const Wedge& wedge : wedges) {
     out += is_on(wedge, side) ? group(sheet, wedge) : std::string();
   }
@@ -129,12 +179,16 @@ std::string wedge_drawing(Face side, const std::vector<Wedge>& wedges, const Rig
 Result<std::vector<std::filesystem::path>> write_wedge_drawings(const std::filesystem::path& folder,
                                                                 const std::vector<Wedge>& wedges,
                                                                 const RigidTransform& text_from_model,
-                                                                const std::string& title) {
+                                                                const std::string& title, const Mesh* mesh) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) {
     return fail(ErrorKind::kStorage, "cannot make the folder: " + error.message(), folder.string(),
                 "choose another place");
+  }
+  std::optional<RenderScene> scene;
+  if (mesh != nullptr) {
+    scene.emplace(*mesh);
   }
   std::vector<std::filesystem::path> files;
   for (int f = 0; f < kFaceCount; ++f) {
@@ -143,8 +197,10 @@ Result<std::vector<std::filesystem::path>> write_wedge_drawings(const std::files
       continue;
     }
     const std::filesystem::path path = folder / (std::string(to_string(side)) + ".svg");
+    const std::vector<OutlineRing> outline =
+        scene ? side_outline(*scene, side, text_from_model) : std::vector<OutlineRing>();
     if (const Status written =
-            write_file_atomically(path, wedge_drawing(side, wedges, text_from_model, title));
+            write_file_atomically(path, wedge_drawing(side, wedges, text_from_model, title, outline));
         !written) {
       return std::unexpected(written.error());
     }

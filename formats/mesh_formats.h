@@ -9,6 +9,7 @@
 
 #include "core/mesh.h"
 #include "core/result.h"
+#include "formats/atomic_file.h"
 #include "formats/mesh_io.h"
 
 namespace dubsar {
@@ -16,6 +17,8 @@ namespace dubsar {
 // One encoder and one decoder per format, each in a file of its own (mesh_ply.cpp, mesh_obj.cpp, …). Decoders
 // take no more memory than a fixed multiple of the bytes given; `where` stands in errors.
 
+/// In pieces, so that no second copy of a large mesh is in memory. Its errors are the sink's.
+[[nodiscard]] Status produce_mesh_ply(const Mesh& mesh, const ByteSink& sink);
 [[nodiscard]] std::string encode_mesh_ply(const Mesh& mesh);
 [[nodiscard]] Result<Mesh> decode_mesh_ply(std::string_view bytes, const std::string& where,
                                            const MeshReadOptions& options);

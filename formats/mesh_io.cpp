@@ -74,7 +74,7 @@ Result<Mesh> read_mesh(const std::filesystem::path& path, const MeshReadOptions&
 Status write_mesh(const std::filesystem::path& path, const Mesh& mesh) {
   switch (format_of(path)) {
     case MeshFormat::kPly:
-      return write_file_atomically(path, encode_mesh_ply(mesh));
+      return write_file_atomically(path, [&](const ByteSink& sink) { return produce_mesh_ply(mesh, sink); });
     case MeshFormat::kObj:
       return write_file_atomically(path, encode_mesh_obj(mesh));
     case MeshFormat::kStl:

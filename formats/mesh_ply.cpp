@@ -155,7 +155,8 @@ Result<Mesh> decode_mesh_ply(std::string_view bytes, const std::string& where,
   return mesh;
 }
 
-std::string encode_mesh_ply(const Mesh& mesh) {
+Status produce_mesh_ply(const Mesh& mesh, const ByteSink& sink) {
+  constexpr std::size_t kPiece = std::size_t{1} << 20U;
   const std::size_t vertices = mesh.positions.size();
   std::string out =
       "ply\nformat binary_little_endian 1.0\ncomment Mesh of Dubsar\nobj_info unit mm\nelement vertex " +
@@ -172,7 +173,14 @@ std::string encode_mesh_ply(const Mesh& mesh) {
   }
   out += "element face " + std::to_string(mesh.faces.size()) +
          "\nproperty list uchar int vertex_indices\nend_header\n";
-  out.reserve(out.size() + vertices * 37 + mesh.faces.size() * 13);
+  const auto pass_on = [&](std::size_t least) -> Status {
+    if (out.size() < least) {
+      return {};
+    }
+    const Status taken = sink(std::as_bytes(std::span(out)));
+    out.clear();
+    return taken;
+  };
   const std::vector<Eigen::Vector3f> computed =
       mesh.normals.empty() ? vertex_normals(mesh) : std::vector<Eigen::Vector3f>{};
   const std::vector<Eigen::Vector3f>& normals = mesh.normals.empty() ? computed : mesh.normals;
@@ -191,13 +199,28 @@ std::string encode_mesh_ply(const Mesh& mesh) {
     for (std::size_t k = 0; k < 3 && !mesh.colours.empty(); ++k) {
       append(out, mesh.colours[v][k]);
     }
+    if (const Status passed = pass_on(kPiece); !passed) {
+      return passed;
+    }
   }
   for (const auto& face : mesh.faces) {
     append(out, std::uint8_t{3});
     for (const std::uint32_t corner : face) {
       append(out, corner);
     }
+    if (const Status passed = pass_on(kPiece); !passed) {
+      return passed;
+    }
   }
+  return pass_on(1);
+}
+
+std::string encode_mesh_ply(const Mesh& mesh) {
+  std::string out;
+  (void)produce_mesh_ply(mesh, [&](std::span<const std::byte> bytes) -> Status {
+    out.append(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    return {};
+  });
   return out;
 }
 

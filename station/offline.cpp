@@ -139,32 +139,39 @@ Result<std::vector<ScanPose>> register_scans(const ScanSet& set, const RegisterO
   return poses;
 }
 
+const ScanPose* pose_in_file(const std::vector<ScanPose>& file, const StationScan& scan) {
+  const auto name_of = [](const std::string& name) {
+    return std::filesystem::path(name).filename().string();
+  };
+  const auto by_name = std::ranges::find_if(file, [&](const ScanPose& pose) {
+    return !pose.file.empty() && name_of(pose.file) == name_of(scan.file);
+  });
+  const auto by_id = std::ranges::find_if(
+      file, [&](const ScanPose& pose) { return pose.file.empty() && pose.id == scan.id; });
+  const auto found = by_name != file.end() ? by_name : by_id;
+  return found == file.end() ? nullptr : &*found;
+}
+
+std::unexpected<Error> no_pose_of_these(const std::filesystem::path& poses_file) {
+  return bad_input(poses_file.string(), "no pose in it is of one of these scans",
+                   "its `file` or `id` must name the scans");
+}
+
 Result<std::vector<ScanPose>> poses_from_file(const ScanSet& set, const std::filesystem::path& poses_file) {
   const Result<std::vector<ScanPose>> read = read_poses(poses_file);
   if (!read) {
     return std::unexpected(read.error());
   }
-  const auto name_of = [](const std::string& file) {
-    return std::filesystem::path(file).filename().string();
-  };
   std::vector<ScanPose> poses;
   for (const StationScan& scan : set.scans) {
-    const auto by_name = std::find_if(read->begin(), read->end(), [&](const ScanPose& pose) {
-      return !pose.file.empty() && name_of(pose.file) == name_of(scan.file);
-    });
-    const auto by_id = std::find_if(read->begin(), read->end(), [&](const ScanPose& pose) {
-      return pose.file.empty() && pose.id == scan.id;
-    });
-    const auto found = by_name != read->end() ? by_name : by_id;
-    if (found != read->end()) {
+    if (const ScanPose* found = pose_in_file(*read, scan)) {
       poses.push_back(*found);
       poses.back().id = scan.id;
       poses.back().file = scan.file;
     }
   }
   if (poses.empty()) {
-    return bad_input(poses_file.string(), "no pose in it is of one of these scans",
-                     "its `file` or `id` must name the scans");
+    return no_pose_of_these(poses_file);
   }
   return poses;
 }

@@ -29,6 +29,11 @@ struct RegisterOptions {
 [[nodiscard]] Result<std::vector<ScanPose>> register_scans(const ScanSet& set, const RegisterOptions& options,
                                                            JobContext& job);
 
+/// The one of a file's poses that is a scan's (by the scan's file name, else by its id), or none.
+[[nodiscard]] const ScanPose* pose_in_file(const std::vector<ScanPose>& file, const StationScan& scan);
+
+[[nodiscard]] std::unexpected<Error> no_pose_of_these(const std::filesystem::path& poses_file);
+
 /// The poses of a file for scans of the set (matched by the scans' file names, else by id). kBadInput when it
 /// has none.
 [[nodiscard]] Result<std::vector<ScanPose>> poses_from_file(const ScanSet& set,

@@ -264,6 +264,23 @@ std::optional<Mesh> stored_mesh(const SessionStore& store, const std::vector<Sca
   return mesh ? std::optional(std::move(*mesh)) : std::nullopt;
 }
 
+std::optional<RigidTransform> stored_tablet_from_model(const SessionStore& store) {
+  const auto text = store.load_document(kModel);
+  if (!text || !*text) {
+    return std::nullopt;
+  }
+  const Result<JsonDocument> document = JsonDocument::parse(**text, kModel);
+  if (!document) {
+    return std::nullopt;
+  }
+  const auto node = document->root().find("tablet_from_model");
+  if (!node) {
+    return std::nullopt;
+  }
+  const RigidTransform lies = node->transform(1.0);
+  return document->status("") ? std::optional(lies) : std::nullopt;
+}
+
 Result<Deliverables> keep_deliverables(SessionStore& store, const ReportInput& input, JobContext& job) {
   if (const Status forgotten = store.forget_files(deliverable_names()); !forgotten) {
     return std::unexpected(forgotten.error());
@@ -283,8 +300,11 @@ Result<Deliverables> keep_deliverables(SessionStore& store, const ReportInput& i
       return std::unexpected(sum.error());
     }
     const std::string name = std::filesystem::relative(files->mesh, store.folder()).generic_string();
-    if (const Status s = store.save_document(
-            kModel, text_of({{"file", name}, {"sha256", *sum}, {"origin", origin_of_mesh(input.scans)}}));
+    if (const Status s =
+            store.save_document(kModel, text_of({{"file", name},
+                                                 {"sha256", *sum},
+                                                 {"origin", origin_of_mesh(input.scans)},
+                                                 {"tablet_from_model", json_of(input.tablet_from_model)}}));
         !s) {
       return std::unexpected(s.error());
     }

@@ -61,6 +61,10 @@ struct PageFacts {
 [[nodiscard]] std::optional<Mesh> stored_mesh(const SessionStore& store, const std::vector<ScanPose>& poses,
                                               JobContext& job);
 
+/// Which way the tablet lies in the frame of the session's stored mesh, as its pages name the sides; nothing
+/// where none is kept (a session of an earlier version).
+[[nodiscard]] std::optional<RigidTransform> stored_tablet_from_model(const SessionStore& store);
+
 /// Mesh, pictures and pages into the session, each with its checksum.
 [[nodiscard]] Result<Deliverables> keep_deliverables(SessionStore& store, const ReportInput& input,
                                                      JobContext& job);

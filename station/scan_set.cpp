@@ -20,8 +20,21 @@ namespace {
 
 namespace fs = std::filesystem;
 
-Status load_session(const fs::path& path, ScanSet& set, JobContext& job) {
-  Result<SessionStore> store = SessionStore::open(path);
+/// Keeps a scan in the set, or hands it on.
+Status keep(StationScan scan, const ScanVisitor& visit, ScanSet& set) {
+  if (!visit) {
+    set.scans.push_back(std::move(scan));
+    return {};
+  }
+  StationScan& named = set.scans.emplace_back();
+  named.id = scan.id;
+  named.file = scan.file;
+  return visit(set, std::move(scan));
+}
+
+Status load_session(const fs::path& path, const ScanSetOptions& options, const ScanVisitor& visit,
+                    ScanSet& set, JobContext& job) {
+  Result<SessionStore> store = SessionStore::open(path, options.access);
   if (!store) {
     return std::unexpected(store.error());
   }
@@ -66,6 +79,11 @@ Status load_session(const fs::path& path, ScanSet& set, JobContext& job) {
     }
     drives = std::move(*parsed);
   }
+  Result<std::vector<ScanPose>> poses = store->poses();
+  if (!poses) {
+    return std::unexpected(poses.error());
+  }
+  set.poses = std::move(*poses);
   std::size_t done = 0;
   for (const StoredScan& scan : *scans) {
     job.progress("reading scans", static_cast<double>(done++) / static_cast<double>(scans->size()));
@@ -80,22 +98,21 @@ Status load_session(const fs::path& path, ScanSet& set, JobContext& job) {
       log_warning(grid.error().line());
       continue;
     }
-    set.scans.push_back(prepare_scan(scan.id, std::move(*grid), set.pins));
+    StationScan prepared = prepare_scan(scan.id, std::move(*grid), set.pins);
     if (const auto drive = drives.find(scan.id); drive != drives.end()) {
-      set.scans.back().drive = drive->second;
+      prepared.drive = drive->second;
+    }
+    if (const Status kept = keep(std::move(prepared), visit, set); !kept) {
+      return kept;
     }
   }
   job.progress("reading scans", 1.0);
-  const auto poses = store->poses();
-  if (!poses) {
-    return std::unexpected(poses.error());
-  }
-  set.poses = *poses;
   set.store = std::move(*store);
   return {};
 }
 
-Status load_folder(const fs::path& path, const ScanSetOptions& options, ScanSet& set, JobContext& job) {
+Status load_folder(const fs::path& path, const ScanSetOptions& options, const ScanVisitor& visit,
+                   ScanSet& set, JobContext& job) {
   DeviceUri uri;
   uri.scheme = "replay";
   uri.locator = path.string();
@@ -121,7 +138,11 @@ Status load_folder(const fs::path& path, const ScanSetOptions& options, ScanSet&
     if (!*grid) {
       break;
     }
-    set.scans.push_back(prepare_scan(static_cast<int>(set.scans.size()), std::move(**grid), set.pins));
+    StationScan prepared = prepare_scan(static_cast<int>(set.scans.size()), std::move(**grid), set.pins);
+    grid->reset();
+    if (const Status kept = keep(std::move(prepared), visit, set); !kept) {
+      return kept;
+    }
   }
   if (set.scans.empty() && !set.left_out.empty()) {
     return std::unexpected(set.left_out.front());
@@ -136,6 +157,11 @@ Status load_folder(const fs::path& path, const ScanSetOptions& options, ScanSet&
 }  // namespace
 
 Result<ScanSet> load_scan_set(const fs::path& path, const ScanSetOptions& options, JobContext& job) {
+  return visit_scan_set(path, options, {}, job);
+}
+
+Result<ScanSet> visit_scan_set(const fs::path& path, const ScanSetOptions& options, const ScanVisitor& visit,
+                               JobContext& job) {
   ScanSet set;
   std::error_code ignored;
   if (!fs::exists(path, ignored)) {
@@ -149,8 +175,8 @@ Result<ScanSet> load_scan_set(const fs::path& path, const ScanSetOptions& option
     }
     set.pins = std::move(*pins);
   }
-  const Status loaded =
-      SessionStore::is_session(path) ? load_session(path, set, job) : load_folder(path, options, set, job);
+  const Status loaded = SessionStore::is_session(path) ? load_session(path, options, visit, set, job)
+                                                       : load_folder(path, options, visit, set, job);
   if (!loaded) {
     return std::unexpected(loaded.error());
   }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -25,18 +26,28 @@ struct ScanSet {
   std::optional<Rig> rig;
   OperatorWord word;                  ///< hints and locks of a session
   std::vector<Error> left_out;        ///< bad files of a folder, one error each
-  std::optional<SessionStore> store;  ///< open for writing when it is a session
+  std::optional<SessionStore> store;  ///< open when it is a session
   [[nodiscard]] bool is_session() const { return store.has_value(); }
 };
 
 struct ScanSetOptions {
-  std::string unit;                 ///< "m", "mm", "um"; empty: the file's own word, else mm
-  std::filesystem::path pins_file;  ///< empty: the session's, or none
+  std::string unit{};                 ///< "m", "mm", "um"; empty: the file's own word, else mm
+  std::filesystem::path pins_file{};  ///< empty: the session's, or none
+  SessionStore::Access access = SessionStore::Access::kReadWrite;  ///< of a session
 };
+
+/// Is given each scan as it is read, and owns it; what the set knows so far (poses, pins, the operator's
+/// word) comes with it. An error stops the reading.
+using ScanVisitor = std::function<Status(const ScanSet& set, StationScan scan)>;
 
 /// Reads a session or a folder. Damaged scans of a session are named in the log and left out; so are bad
 /// files of a folder, unless none is good.
 [[nodiscard]] Result<ScanSet> load_scan_set(const std::filesystem::path& path, const ScanSetOptions& options,
                                             JobContext& job);
+
+/// The same scan by scan: no more than one grid is in memory, but for what the visitor keeps; the set's own
+/// scans have id and file only.
+[[nodiscard]] Result<ScanSet> visit_scan_set(const std::filesystem::path& path, const ScanSetOptions& options,
+                                             const ScanVisitor& visit, JobContext& job);
 
 }  // namespace dubsar

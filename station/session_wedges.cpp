@@ -6,12 +6,32 @@
 
 #include "archive/wedge_drawing.h"
 #include "core/log.h"
-#include "formats/wedges_json.h"
+#include "formats/json_node.h"
+#include "formats/json_text.h"
+#include "formats/sha256.h"
 #include "station/analysis.h"
 
 namespace dubsar {
 
 namespace fs = std::filesystem;
+
+namespace {
+
+constexpr const char* kDocument = "wedges";
+
+/// Of what wedges are measured on: the vertices and the faces between them.
+std::string digest_of(const Mesh& mesh) {
+  const auto bytes = [](const auto& values) {
+    return std::string_view(reinterpret_cast<const char*>(values.data()),
+                            values.size() * sizeof(values.front()));
+  };
+  Sha256 sum;
+  sum.add(bytes(mesh.positions));
+  sum.add(bytes(mesh.faces));
+  return sum.hex();
+}
+
+}  // namespace
 
 Result<std::optional<SessionWedges>> keep_wedges(SessionStore& store, const Mesh& mesh,
                                                  const JobContext& job) {
@@ -44,8 +64,8 @@ Result<std::optional<SessionWedges>> keep_wedges(SessionStore& store, const Mesh
   }
   std::vector<fs::path> made{out.json};
   if (file.text_from_model && !file.wedges.empty()) {
-    const auto drawings =
-        write_wedge_drawings(folder, file.wedges, *file.text_from_model, store.folder().filename().string());
+    const auto drawings = write_wedge_drawings(folder, file.wedges, *file.text_from_model,
+                                               store.folder().filename().string(), &mesh);
     if (!drawings) {
       return std::unexpected(drawings.error());
     }
@@ -56,17 +76,50 @@ Result<std::optional<SessionWedges>> keep_wedges(SessionStore& store, const Mesh
       return std::unexpected(kept.error());
     }
   }
+  const Result<std::string> sum = sha256_of_file(out.json, job);
+  if (!sum) {
+    return std::unexpected(sum.error());
+  }
+  const std::string name = fs::relative(out.json, store.folder()).generic_string();
+  if (const Status kept = store.save_document(
+          kDocument, text_of({{"file", name}, {"sha256", *sum}, {"surface_sha256", digest_of(mesh)}}));
+      !kept) {
+    return std::unexpected(kept.error());
+  }
   return out;
 }
 
-std::string wedge_sentence(const SessionWedges& wedges) {
+std::optional<WedgeFile> stored_wedges(const SessionStore& store, const Mesh& mesh, const JobContext& job) {
+  const auto text = store.load_document(kDocument);
+  if (!text || !*text) {
+    return std::nullopt;
+  }
+  const Result<JsonDocument> document = JsonDocument::parse(**text, kDocument);
+  if (!document) {
+    return std::nullopt;
+  }
+  const std::string file = document->root().at("file").text();
+  const std::string sum = document->root().at("sha256").text();
+  const std::string surface = document->root().at("surface_sha256").text();
+  if (!document->status("") || surface != digest_of(mesh)) {
+    return std::nullopt;
+  }
+  const Result<std::string> now = sha256_of_file(store.folder() / file, job);
+  if (!now || *now != sum) {
+    return std::nullopt;
+  }
+  Result<WedgeFile> wedges = read_wedges(store.folder() / file);
+  return wedges ? std::optional(std::move(*wedges)) : std::nullopt;
+}
+
+std::string wedge_sentence(const SessionWedges& wedges, const std::string& where) {
   if (wedges.count == 0) {
     return fmt::format("No wedges were found; {} hollows were looked at.", wedges.rejected);
   }
   return fmt::format(
-      "{} wedges were measured, {} hollows were rejected: analysis/wedges.json has every angle, the drawings "
+      "{} wedges were measured, {} hollows were rejected: {} has every angle, the drawings "
       "beside it every wedge. Wedge measurement was tested on simulated tablets only.",
-      wedges.count, wedges.rejected);
+      wedges.count, wedges.rejected, where);
 }
 
 }  // namespace dubsar

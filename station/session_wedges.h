@@ -10,6 +10,7 @@
 #include "core/job.h"
 #include "core/mesh.h"
 #include "core/result.h"
+#include "formats/wedges_json.h"
 
 namespace dubsar {
 
@@ -25,7 +26,13 @@ struct SessionWedges {
 [[nodiscard]] Result<std::optional<SessionWedges>> keep_wedges(SessionStore& store, const Mesh& mesh,
                                                                const JobContext& job);
 
-/// One sentence on them, for pages.
-[[nodiscard]] std::string wedge_sentence(const SessionWedges& wedges);
+/// The session's stored wedges, when they were measured on this very surface and their file is as it was
+/// stored; nothing otherwise.
+[[nodiscard]] std::optional<WedgeFile> stored_wedges(const SessionStore& store, const Mesh& mesh,
+                                                     const JobContext& job);
+
+/// One sentence on them, for pages. where: their file, as the reader of the page finds it.
+[[nodiscard]] std::string wedge_sentence(const SessionWedges& wedges,
+                                         const std::string& where = "analysis/wedges.json");
 
 }  // namespace dubsar

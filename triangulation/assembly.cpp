@@ -46,9 +46,11 @@ void remove_pieces(Mesh& mesh, std::size_t least_faces) {
 
 }  // namespace
 
-Mesh assemble(const std::vector<OwnedScan>& scans, const AssemblyOptions& options, const JobContext& job) {
+Mesh assemble(const std::vector<OwnedScan>& scans, const AssemblyOptions& options,
+              const std::function<void()>& laid, const JobContext& job) {
   job.progress("join patches", 0.0);
   Draft draft = lay_patches(scans);
+  laid();
   ClosingOptions closing{options.seam, options.gap};
   closing.gap.seen = [&scans](const Vector3f& p_mm, float radius_mm) {
     return std::any_of(scans.begin(), scans.end(), [&](const OwnedScan& scan) {

@@ -2,6 +2,7 @@
 // Copyright The Dubsar developers
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "core/job.h"
@@ -21,7 +22,8 @@ struct AssemblyOptions {
 /// One mesh of the patches that assign_owners() left: vertices are the kept samples at their averaged places,
 /// scan by scan; then seams and gaps are closed, specks removed, and what is left made an oriented
 /// 2-manifold with boundary.
+/// `laid` is called when no more is needed of the scans than their surfaces' lookup.
 [[nodiscard]] Mesh assemble(const std::vector<OwnedScan>& scans, const AssemblyOptions& options,
-                            const JobContext& job);
+                            const std::function<void()>& laid, const JobContext& job);
 
 }  // namespace dubsar

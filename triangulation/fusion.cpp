@@ -147,6 +147,30 @@ float faded(std::uint8_t rim, float feather) {
 
 FusedSamples::FusedSamples(const StitchSurface& of) : slot(of.points.size(), kNone) {}
 
+void FusedSamples::forget_if(const std::function<bool(std::uint32_t)>& gone) {
+  std::size_t out = 0;
+  for (std::size_t at = 0; at < samples.size(); ++at) {
+    const std::uint32_t i = samples[at];
+    if (gone(i)) {
+      slot[i] = kNone;
+      continue;
+    }
+    slot[i] = static_cast<std::uint32_t>(out);
+    samples[out] = i;
+    points[out] = points[at];
+    reliability[out] = reliability[at];
+    sigma_mm[out] = sigma_mm[at];
+    sparse[out] = sparse[at];
+    scans[out++] = scans[at];
+  }
+  samples.resize(out);
+  points.resize(out);
+  reliability.resize(out);
+  sigma_mm.resize(out);
+  sparse.resize(out);
+  scans.resize(out);
+}
+
 void fuse(const StitchSurface& from, std::span<const StitchSurface* const> others,
           std::span<const Pairs* const> pairs, std::span<const std::uint32_t> which, FusedSamples& out) {
   const std::size_t first = out.samples.size();

@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -30,6 +31,8 @@ struct FusedSamples {
 
   FusedSamples() = default;
   explicit FusedSamples(const StitchSurface& of);
+  /// Forgets the samples for which gone(sample).
+  void forget_if(const std::function<bool(std::uint32_t)>& gone);
   /// Of a sample that has been fused.
   [[nodiscard]] const Eigen::Vector3f& point(std::size_t sample) const { return points[slot[sample]]; }
 };

@@ -11,6 +11,7 @@
 
 #include "core/parallel.h"
 #include "triangulation/assembly.h"
+#include "triangulation/patch_shape.h"
 
 namespace dubsar {
 
@@ -21,7 +22,15 @@ struct Entry {
   std::map<int, Pairs> pairs;  ///< by the id of the other scan; those without a pair hold no matches
   std::vector<std::uint8_t> wanted;
   FusedSamples fused;
-  bool stale = true;  ///< wanted and fused do not know all pairs yet
+  /// By node: 1 where pairs have come or gone that wanted and fused do not know of yet; empty: nowhere.
+  std::vector<std::uint8_t> changed;
+
+  void mark_changed(const Pairs& at) {
+    changed.resize(at.match.size(), 0);
+    for (std::size_t node = 0; node < changed.size(); ++node) {
+      changed[node] |= at.match[node] >= 0 ? 1 : 0;
+    }
+  }
 };
 
 std::string name_of(const PlacedScan& scan) {
@@ -105,11 +114,12 @@ struct Stitcher::Impl {
       }
       there.feather = back.feather = static_cast<float>(
           feather_samples(entry.surface, other.surface, step_mm(entry.surface, other.surface, reach)));
+      other.mark_changed(back);
       entry.pairs.emplace(other_id, std::move(there));
       other.pairs.emplace(id, std::move(back));
-      other.stale = true;
     }
-    entry.stale = true;
+    entry.fused = FusedSamples(entry.surface);
+    entry.changed.assign(entry.surface.lattice.size(), 1);
   }
 
   /// Brings pairs and averages up to date: a scan that comes and goes again costs nothing but its surface.
@@ -153,23 +163,69 @@ struct Stitcher::Impl {
         return {};
       }
       job.progress("average samples", static_cast<double>(at) / static_cast<double>(scans.size()));
-      if (entry.stale) {
+      if (!entry.changed.empty()) {
+        const Lattice& lattice = entry.surface.lattice;
         entry.wanted = wanted_samples(scans, at);
-        entry.fused = FusedSamples(entry.surface);
+        // Samples of a node may go by the pair of one beside it.
+        const std::vector<std::uint8_t> anew =
+            dilated(entry.changed, lattice.node_rows, lattice.node_cols, 1);
+        entry.fused.forget_if([&](std::uint32_t i) { return anew[lattice.node_of(i)] != 0; });
         std::vector<std::uint32_t> which;
-        for (std::size_t node = 0; node < entry.surface.lattice.size(); ++node) {
-          entry.surface.lattice.for_each_sample(node, [&](std::size_t i) {
-            if (entry.wanted[i] != 0) {
+        for (std::size_t node = 0; node < lattice.size(); ++node) {
+          lattice.for_each_sample(node, [&](std::size_t i) {
+            if (entry.wanted[i] != 0 && entry.fused.slot[i] == FusedSamples::kNone) {
               which.push_back(static_cast<std::uint32_t>(i));
             }
           });
         }
         scans[at].fuse(which);
-        entry.stale = false;
+        entry.changed.clear();
       }
+      // What an earlier mesh needed besides must not show in the next.
+      entry.fused.forget_if([&](std::uint32_t i) { return entry.wanted[i] == 0; });
       ++at;
     }
     return scans;
+  }
+
+  [[nodiscard]] Result<Mesh> mesh(bool lets_go, const JobContext& job) {
+    if (!settle(job)) {
+      return cancelled();
+    }
+    std::vector<OwnedScan> scans = owned_scans(job);
+    if (job.cancelled() || !assign_owners(scans, options.surface.grid, options.ownership, job)) {
+      return cancelled();
+    }
+    if (lets_go) {  // of what patches are not laid from
+      for (auto& [id, entry] : entries) {
+        entry.pairs.clear();
+        entry.wanted = {};
+        entry.surface.points = {};
+        entry.surface.usable = {};
+        entry.surface.reliability_code = {};
+        entry.surface.weight_code = {};
+        entry.surface.rim = {};
+      }
+    }
+    const auto laid = [&] {
+      for (OwnedScan& scan : scans) {
+        scan.kept = {};
+        scan.cells = {};
+        scan.near_kept = {};
+      }
+      if (lets_go) {
+        for (auto& [id, entry] : entries) {
+          entry.fused = {};
+          entry.surface.normals = {};
+          entry.surface.cells = {};
+        }
+      }
+    };
+    Mesh mesh = assemble(scans, {options.seam, options.gap, options.least_component_faces}, laid, job);
+    if (job.cancelled()) {
+      return cancelled();
+    }
+    return mesh;
   }
 
   bool erase(int id) {
@@ -178,8 +234,9 @@ struct Stitcher::Impl {
     }
     unpaired.erase(id);
     for (auto& [other_id, other] : entries) {
-      if (other.pairs.erase(id) > 0) {
-        other.stale = true;
+      if (const auto pairs = other.pairs.find(id); pairs != other.pairs.end()) {
+        other.mark_changed(pairs->second);
+        other.pairs.erase(pairs);
       }
     }
     return true;
@@ -223,19 +280,22 @@ std::vector<Stitcher::Overlap> Stitcher::overlaps() const {
   return out;
 }
 
-Result<Mesh> Stitcher::mesh(const JobContext& job) const {
+Status Stitcher::update(const JobContext& job) {
   if (!impl_->settle(job)) {
     return cancelled();
   }
-  std::vector<OwnedScan> scans = impl_->owned_scans(job);
-  if (job.cancelled() || !assign_owners(scans, impl_->options.surface.grid, impl_->options.ownership, job)) {
-    return cancelled();
-  }
-  AssemblyOptions assembly{impl_->options.seam, impl_->options.gap, impl_->options.least_component_faces};
-  Mesh mesh = assemble(scans, assembly, job);
-  if (job.cancelled()) {
-    return cancelled();
-  }
+  const std::size_t held = impl_->owned_scans(job).size();
+  return held == impl_->entries.size() ? Status{} : cancelled();
+}
+
+Result<Mesh> Stitcher::mesh(const JobContext& job) const {
+  return impl_->mesh(false, job);
+}
+
+Result<Mesh> Stitcher::take_mesh(const JobContext& job) {
+  Result<Mesh> mesh = impl_->mesh(true, job);
+  impl_->entries.clear();
+  impl_->unpaired.clear();
   return mesh;
 }
 
@@ -250,7 +310,7 @@ Result<Mesh> stitch(std::span<const PlacedScan> scans, const StitchOptions& opti
   if (const Status ok = stitcher.add(scans, job); !ok) {
     return std::unexpected(ok.error());
   }
-  return stitcher.mesh(job);
+  return stitcher.take_mesh(job);
 }
 
 }  // namespace dubsar

@@ -35,9 +35,9 @@ struct StitchOptions {
 /// are marked. The mesh is an oriented 2-manifold with boundary, whatever the scans.
 ///
 /// Scans come one by one, in any order, and can be taken out again. add() only triangulates the scan; pairs
-/// and averages are worked out when overlaps() or mesh() asks, and anew only for what has changed: those two
-/// are not for several threads at once, const as they are. The mesh depends on the set of scans alone, not on
-/// the order, nor on the number of threads.
+/// and averages are worked out by update(), or when overlaps() or mesh() asks, and anew only where something
+/// has changed: those two are not for several threads at once, const as they are. The mesh depends on the set
+/// of scans alone, not on the order, nor on the number of threads.
 class Stitcher {
  public:
   explicit Stitcher(StitchOptions options = {});
@@ -47,7 +47,7 @@ class Stitcher {
   Stitcher(const Stitcher&) = delete;
   Stitcher& operator=(const Stitcher&) = delete;
 
-  /// Keeps a reference to the scan's grid and flags: they stay alive and unchanged until remove() or the end.
+  /// Takes what it needs of the scan's grid and flags, 27 bytes a sample: they may go.
   /// Errors: kUsage when the id is there already, kBadInput when the scan has no grid, its flags have another
   /// size or its pose is not rigid; kCancelled, and then the scan is not in.
   Status add(const PlacedScan& scan, const JobContext& job);
@@ -55,6 +55,9 @@ class Stitcher {
   Status add(std::span<const PlacedScan> scans, const JobContext& job);
   /// False when there is no such scan.
   bool remove(int id);
+  /// Brings pairs and averages up to date with the scans that have come and gone, so that mesh() has less to
+  /// do; kCancelled is its only error.
+  Status update(const JobContext& job);
   /// Two scans that overlap, and how far apart their poses hold their surfaces beyond what noise explains.
   struct Overlap {
     int id = 0, other_id = 0;
@@ -68,6 +71,8 @@ class Stitcher {
   /// The mesh of all scans, with normals, reliability, scans and flags; kCancelled is its only error.
   [[nodiscard]] Result<Mesh> mesh(const JobContext& job) const;
   [[nodiscard]] Mesh mesh() const;
+  /// The same mesh with less memory: lets go of all scans on the way, and holds none afterwards.
+  [[nodiscard]] Result<Mesh> take_mesh(const JobContext& job);
 
  private:
   struct Impl;

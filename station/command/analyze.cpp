@@ -141,7 +141,8 @@ Result<int> analyze(const AnalyzeArguments& arguments, CommandContext& context) 
     }
   }
   if (!arguments.svg.empty()) {
-    const auto drawn = write_wedge_drawings(arguments.svg, file.wedges, *file.text_from_model, file.mesh);
+    const auto drawn =
+        write_wedge_drawings(arguments.svg, file.wedges, *file.text_from_model, file.mesh, &*mesh);
     if (!drawn) {
       return std::unexpected(drawn.error());
     }

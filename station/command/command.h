@@ -42,6 +42,7 @@ void add_analyze(CLI::App& app, Action& chosen);
 void add_mesh(CLI::App& app, Action& chosen);
 void add_search(CLI::App& app, Action& chosen);
 void add_verify(CLI::App& app, Action& chosen);
+void add_export(CLI::App& app, Action& chosen);
 void add_session(CLI::App& app, Action& chosen);
 void add_station(CLI::App& app, Action& chosen);
 void add_bench(CLI::App& app, Action& chosen);

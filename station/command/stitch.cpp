@@ -4,11 +4,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <memory>
+#include <optional>
+#include <vector>
 
 #include "core/log.h"
 #include "formats/mesh_io.h"
+#include "formats/poses_json.h"
 #include "station/command/command.h"
 #include "station/command/scan_set_options.h"
 #include "station/mesh_json.h"
@@ -20,34 +24,97 @@ namespace dubsar {
 
 namespace {
 
-Result<int> stitch_all(const ScanSetArguments& arguments, CommandContext& context) {
+/// What a stitcher was given.
+struct Taken {
+  std::size_t scans = 0;
+  bool lacks_poses = false;  ///< of a scan that has not been judged yet: then the rest was not taken
+};
+
+void warn_left_out(const ScanPose& pose) {
+  log_warning(pose.file + " is left out: " + to_string(pose.status) +
+              (pose.reason.empty() ? "" : ", " + pose.reason));
+}
+
+/// Scan by scan, where the poses are known beforehand: no more than one grid is in memory.
+Result<Taken> take_scan_by_scan(const ScanSetArguments& arguments, Stitcher& stitcher,
+                                CommandContext& context) {
+  std::optional<std::vector<ScanPose>> file;
+  if (!arguments.poses.empty()) {
+    Result<std::vector<ScanPose>> read = read_poses(arguments.poses);
+    if (!read) {
+      return std::unexpected(read.error());
+    }
+    file = std::move(*read);
+  }
+  Taken taken;
+  std::size_t with_pose = 0;
+  const auto take = [&](const ScanSet& set, const StationScan& scan) -> Status {
+    const auto stored = std::ranges::find(set.poses, scan.id, &ScanPose::id);
+    const ScanPose* pose = file ? pose_in_file(*file, scan) : stored == set.poses.end() ? nullptr : &*stored;
+    taken.lacks_poses = taken.lacks_poses || (pose == nullptr && !file);
+    if (pose == nullptr || taken.lacks_poses) {
+      return {};
+    }
+    ++with_pose;
+    if (pose->status != PoseStatus::kRegistered) {
+      ScanPose named = *pose;
+      named.file = scan.file;
+      warn_left_out(named);
+      return {};
+    }
+    ++taken.scans;
+    return stitcher.add(
+        {scan.id, scan.grid.get(), scan.flags.get(), pose->model_from_scanner, pose->sigma_mm}, context.job);
+  };
+  if (const Result<ScanSet> set = visit_scan_set(arguments.path, arguments.options(), take, context.job);
+      !set) {
+    return std::unexpected(set.error());
+  }
+  if (file && with_pose == 0) {
+    return no_pose_of_these(arguments.poses);
+  }
+  return taken;
+}
+
+/// With a registration first, which needs all of them.
+Result<Taken> take_registered(const ScanSetArguments& arguments, Stitcher& stitcher,
+                              CommandContext& context) {
   Result<ScanSet> set = load_scan_set(arguments.path, arguments.options(), context.job);
   if (!set) {
     return std::unexpected(set.error());
   }
-  const Result<std::vector<ScanPose>> poses = poses_for(*set, arguments.poses, context.job);
+  const Result<std::vector<ScanPose>> poses = poses_for(*set, {}, context.job);
   if (!poses) {
     return std::unexpected(poses.error());
   }
-  const std::vector<PlacedScan> placed = placed_scans(*set, *poses);
-  if (placed.empty()) {
-    return bad_input(arguments.path, "no scan is registered", "see dubsar register");
-  }
   for (const ScanPose& pose : *poses) {
     if (pose.status != PoseStatus::kRegistered) {
-      log_warning(pose.file + " is left out: " + to_string(pose.status) +
-                  (pose.reason.empty() ? "" : ", " + pose.reason));
+      warn_left_out(pose);
     }
   }
-  Stitcher stitcher;
+  const std::vector<PlacedScan> placed = placed_scans(*set, *poses);
   if (const Status added = stitcher.add(placed, context.job); !added) {
     return std::unexpected(added.error());
   }
-  const Result<Mesh> mesh = stitcher.mesh(context.job);
-  if (!mesh) {
-    return std::unexpected(mesh.error());
+  return Taken{placed.size(), false};
+}
+
+Result<int> stitch_all(const ScanSetArguments& arguments, CommandContext& context) {
+  auto stitcher = std::make_unique<Stitcher>();
+  const bool has_poses = !arguments.poses.empty() || SessionStore::is_session(arguments.path);
+  Result<Taken> taken = has_poses ? take_scan_by_scan(arguments, *stitcher, context)
+                                  : take_registered(arguments, *stitcher, context);
+  if (taken && taken->lacks_poses) {
+    stitcher = std::make_unique<Stitcher>();
+    taken = take_registered(arguments, *stitcher, context);
   }
-  for (const Stitcher::Overlap& overlap : stitcher.overlaps()) {
+  if (!taken) {
+    return std::unexpected(taken.error());
+  }
+  if (taken->scans == 0) {
+    return bad_input(arguments.path, "no scan is registered", "see dubsar register");
+  }
+  for (const Stitcher::Overlap& overlap : stitcher->overlaps()) {
     if (overlap.is_off()) {
       log_warning(
           fmt::format("scans {} and {} lie {:.2f} mm apart where they overlap, more than noise explains; the "
@@ -55,18 +122,22 @@ Result<int> stitch_all(const ScanSetArguments& arguments, CommandContext& contex
                       overlap.id, overlap.other_id, overlap.step_mm));
     }
   }
+  const Result<Mesh> mesh = stitcher->take_mesh(context.job);
+  if (!mesh) {
+    return std::unexpected(mesh.error());
+  }
   if (const Status written = write_mesh(arguments.out, *mesh); !written) {
     return std::unexpected(written.error());
   }
   const MeshReport report = check_mesh(*mesh);
-  nlohmann::ordered_json json{{"mesh", arguments.out}, {"scans", placed.size()}};
+  nlohmann::ordered_json json{{"mesh", arguments.out}, {"scans", taken->scans}};
   json.update(mesh_report_json(report));
   if (context.json) {
     CommandContext::print(json);
   } else {
     finish_progress();
     std::printf("%s: %zu vertices, %zu faces of %zu scans, %s\n", arguments.out.c_str(), report.vertices,
-                report.faces, placed.size(), report.is_manifold() ? "2-manifold" : "NOT 2-manifold");
+                report.faces, taken->scans, report.is_manifold() ? "2-manifold" : "NOT 2-manifold");
   }
   return 0;
 }

@@ -29,5 +29,17 @@ TEST(Base64, TakesEveryByte) {
   EXPECT_EQ(base64(bytes), "++//");
 }
 
+TEST(Base64, ReadsBackWhatItWrote) {
+  std::string bytes;
+  for (int length = 0; length < 40; ++length) {
+    const std::vector<std::uint8_t> in(bytes.begin(), bytes.end());
+    EXPECT_EQ(from_base64(base64(in)), bytes) << length;
+    bytes.push_back(static_cast<char>(37 * length + 200));
+  }
+  EXPECT_FALSE(from_base64("abc"));
+  EXPECT_FALSE(from_base64("ab=c"));
+  EXPECT_FALSE(from_base64("ab c"));
+}
+
 }  // namespace
 }  // namespace dubsar

@@ -3,10 +3,12 @@
 #include "triangulation/stitcher.h"
 
 #include <gtest/gtest.h>
+
 #include <tbb/global_control.h>
 
 #include <cmath>
 #include <limits>
+#include <memory>
 
 #include "core/mesh_query.h"
 #include "core/random.h"
@@ -120,6 +122,35 @@ TEST(Stitcher, ARemovedScanLeavesNoTrace) {
   const Mesh without = stitcher.mesh();
   set.placed.erase(set.placed.begin() + 2);
   expect_same(without, stitched(set));
+}
+
+TEST(Stitcher, MeshesInBetweenLeaveNoTrace) {
+  test::ScanSet set = ball();
+  JobContext job;
+  Stitcher stitcher;
+  for (const std::size_t k : {0U, 1U, 2U, 3U, 4U}) {
+    ASSERT_TRUE(stitcher.add(set.placed[k], job).has_value());
+    ASSERT_TRUE(stitcher.update(job).has_value());
+  }
+  const Mesh five = stitcher.mesh();
+  expect_same(five, stitcher.mesh());
+  ASSERT_TRUE(stitcher.add(set.placed[5], job).has_value());
+  expect_same(stitcher.mesh(), stitched(set));
+  EXPECT_TRUE(stitcher.remove(5));
+  expect_same(stitcher.mesh(), five);
+}
+
+TEST(Stitcher, KeepsNoReferenceToAGrid) {
+  const test::ScanSet set = ball();
+  JobContext job;
+  Stitcher stitcher;
+  for (const PlacedScan& scan : set.placed) {
+    const auto grid = std::make_unique<RangeGrid>(*scan.grid);
+    PlacedScan passing = scan;
+    passing.grid = grid.get();
+    ASSERT_TRUE(stitcher.add(passing, job).has_value());
+  }
+  expect_same(stitcher.mesh(), stitched(set));
 }
 
 TEST(Stitcher, ADuplicatedScanChangesNoTopology) {

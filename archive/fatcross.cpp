@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "archive/fatcross.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "archive/ruler.h"
+
+namespace dubsar {
+
+namespace {
+
+constexpr double kEblGapMm = 100 * 25.4 / 600;
+
+Rgb8 ink_on(Rgb8 ground) {
+  const bool is_light = 2 * ground[0] + 5 * ground[1] + ground[2] > 4 * 255;
+  return is_light ? Rgb8{24, 24, 24} : Rgb8{235, 235, 235};
+}
+
+}  // namespace
+
+const char* cdli_suffix(Face face) {
+  switch (face) {
+    case Face::kObverse:
+      return "o";
+    case Face::kReverse:
+      return "r";
+    case Face::kLeft:
+      return "le";
+    case Face::kRight:
+      return "re";
+    case Face::kTop:
+      return "te";
+    case Face::kBottom:
+      break;
+  }
+  return "be";
+}
+
+Image fatcross(const SixViews& views, FatcrossKind kind, Rgb8 ground) {
+  const bool cdli = kind == FatcrossKind::kCdli;
+  const std::array<Face, 4> column =
+      cdli ? std::array{Face::kTop, Face::kObverse, Face::kBottom, Face::kReverse}
+           : std::array{Face::kObverse, Face::kBottom, Face::kReverse, Face::kTop};
+  const double mm_per_px = views[Face::kObverse].mm_per_px;
+  const int gap = cdli || !(mm_per_px > 0) ? 0 : static_cast<int>(std::lround(kEblGapMm / mm_per_px));
+  const Image& left = views[Face::kLeft];
+  const Image& right = views[Face::kRight];
+  int wide = 0;
+  int high = 0;
+  for (const Face face : column) {
+    wide = std::max(wide, views[face].width);
+    // The edges beside the obverse may stand higher than it does.
+    high += face == Face::kObverse ? std::max({views[face].height, left.height, right.height})
+                                   : views[face].height;
+    high += gap;
+  }
+  // CDLI has no place for a ruler in the column: it lies in the free corner beside the reverse, where that is
+  // wide enough, else below.
+  const Ruler in_corner = cdli ? ruler_for(mm_per_px, right.width) : Ruler{};
+  const Ruler ruler = in_corner.length_cm > 0 ? in_corner : ruler_for(mm_per_px, wide);
+  const bool below = in_corner.length_cm == 0 && ruler.length_cm > 0;
+  const int air = below && gap == 0 ? ruler.height_px / 2 : 0;
+  const int width = left.width + wide + right.width + 4 * gap;
+  const int height = high + gap + (below ? air + ruler.height_px + gap + air : 0);
+  Image sheet = filled_image(width, height, ground);
+  sheet.mm_per_px = mm_per_px;
+
+  const int column_x = 2 * gap + left.width;
+  int y = gap;
+  for (const Face face : column) {
+    const Image& view = views[face];
+    int row = view.height;
+    if (face == Face::kObverse) {
+      row = std::max({view.height, left.height, right.height});
+      blit(sheet, left, gap, y + (row - left.height) / 2);
+      blit(sheet, right, column_x + wide + gap, y + (row - right.height) / 2);
+    }
+    blit(sheet, view, column_x + (wide - view.width) / 2, y + (row - view.height) / 2);
+    y += row + gap;
+  }
+  if (below) {
+    draw_ruler(sheet, ruler, column_x + (wide - ruler.width_px) / 2, y + air, ink_on(ground));
+  } else {
+    draw_ruler(sheet, ruler, column_x + wide + gap, height - ruler.height_px - ruler.height_px / 4,
+               ink_on(ground));
+  }
+  return sheet;
+}
+
+}  // namespace dubsar

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "archive/jpeg.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <csetjmp>
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+
+#include <jpeglib.h>  // wants cstdio before it
+
+namespace dubsar {
+
+namespace {
+
+constexpr double kMmPerInch = 25.4;
+
+/// libjpeg reports by a jump. Nothing with a destructor may live between the jump and where it lands.
+struct Complaint {
+  jpeg_error_mgr manager;
+  std::jmp_buf back;
+  std::array<char, JMSG_LENGTH_MAX> text;
+};
+
+void leave(j_common_ptr info) {
+  auto* complaint = reinterpret_cast<Complaint*>(info->err);
+  (*info->err->format_message)(info, complaint->text.data());
+  std::longjmp(complaint->back, 1);
+}
+
+/// libjpeg's own memory, to be freed by the caller, whatever happened.
+struct Buffer {
+  unsigned char* bytes = nullptr;
+  unsigned long size = 0;
+};
+
+bool encode(const Image& image, int quality, Buffer& into, Complaint& complaint) {
+  jpeg_compress_struct info{};
+  info.err = jpeg_std_error(&complaint.manager);
+  complaint.manager.error_exit = leave;
+  if (setjmp(complaint.back) != 0) {
+    jpeg_destroy_compress(&info);
+    return false;
+  }
+  jpeg_create_compress(&info);
+  jpeg_mem_dest(&info, &into.bytes, &into.size);
+  info.image_width = static_cast<JDIMENSION>(image.width);
+  info.image_height = static_cast<JDIMENSION>(image.height);
+  info.input_components = 3;
+  info.in_color_space = JCS_RGB;
+  jpeg_set_defaults(&info);
+  jpeg_set_quality(&info, quality, TRUE);
+  info.dct_method = JDCT_ISLOW;
+  for (int c = 0; c < 3; ++c) {
+    info.comp_info[c].h_samp_factor = 1;
+    info.comp_info[c].v_samp_factor = 1;
+  }
+  if (image.mm_per_px > 0) {
+    info.density_unit = 1;
+    info.X_density = info.Y_density =
+        static_cast<UINT16>(std::clamp(std::lround(kMmPerInch / image.mm_per_px), 1L, 65535L));
+  }
+  jpeg_start_compress(&info, TRUE);
+  while (info.next_scanline < info.image_height) {
+    // libjpeg only reads the row, though it does not say so.
+    JSAMPROW row = const_cast<JSAMPROW>(image.bytes.data()) +
+                   static_cast<std::size_t>(info.next_scanline) * static_cast<std::size_t>(image.width) * 3;
+    jpeg_write_scanlines(&info, &row, 1);
+  }
+  jpeg_finish_compress(&info);
+  jpeg_destroy_compress(&info);
+  return true;
+}
+
+}  // namespace
+
+Result<std::vector<std::uint8_t>> encode_jpeg(const Image& image, int quality) {
+  if (image.width <= 0 || image.height <= 0 || image.channels != 3 ||
+      image.bytes.size() != image.offset(0, image.height)) {
+    return fail(ErrorKind::kUsage, "the picture is empty or its size and bytes disagree", "JPEG");
+  }
+  Buffer buffer;
+  Complaint complaint{};
+  const bool done = encode(image, quality, buffer, complaint);
+  std::vector<std::uint8_t> bytes;
+  if (done) {
+    bytes.assign(buffer.bytes, buffer.bytes + buffer.size);
+  }
+  std::free(buffer.bytes);
+  if (!done) {
+    return fail(ErrorKind::kInternal, std::string("libjpeg: ") + complaint.text.data(), "JPEG",
+                "take a coarser scale");
+  }
+  return bytes;
+}
+
+}  // namespace dubsar

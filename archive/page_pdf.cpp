@@ -1,0 +1,352 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "archive/page_pdf.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "archive/page_blocks.h"
+
+namespace dubsar {
+
+namespace {
+
+constexpr double kMargin = 15 * kPointsPerMm;
+constexpr double kFoot = 20 * kPointsPerMm;
+constexpr double kColumn = PdfSheet::kWidth - 2 * kMargin;
+constexpr double kBody = 9.0;
+constexpr double kSoftGrey = 0.4;
+constexpr double kLeading = 1.35;
+constexpr std::array<double, 4> kHeading = {kBody, 17, 12.5, 10};
+
+/// A piece of a line that is not broken.
+struct Word {
+  std::string text;
+  bool bold = false;
+  bool soft = false;
+  double width = 0;
+};
+struct Line {
+  std::vector<Word> words;
+  double width = 0;
+};
+
+class Setter {
+ public:
+  Setter(PdfSheet& sheet, std::string foot) : sheet_(sheet), foot_(std::move(foot)) {}
+
+  void finish() {
+    const std::string foot = foot_ + ", page " + std::to_string(sheet_.pages());
+    sheet_.text(foot, kMargin, 0.5 * kFoot, PdfFont::kPlain, 6.5, kSoftGrey);
+  }
+
+  void set(const PageBlock& block) {
+    switch (block.kind) {
+      case PageBlock::Kind::kHeading:
+        heading(block);
+        break;
+      case PageBlock::Kind::kParagraph:
+        if (block.level > 0) {
+          room_for(5 * kBody);
+          y_ -= 3 * kBody;  // to write on
+          sheet_.line(kMargin, y_, kMargin + 0.5 * kColumn, y_, 0.5, 0);
+        }
+        paragraph(block.text, 0);
+        y_ -= 0.45 * kBody;
+        break;
+      case PageBlock::Kind::kItem:
+        marked(block, 14);
+        break;
+      case PageBlock::Kind::kDefinition:
+        marked(block, 135);
+        break;
+      case PageBlock::Kind::kTable:
+        table(block.rows);
+        break;
+      case PageBlock::Kind::kFigures:
+        figures(block.figures);
+        break;
+      case PageBlock::Kind::kCross:
+        cross(block.figures);
+        break;
+    }
+  }
+
+ private:
+  static PdfFont font_of(bool bold) { return bold ? PdfFont::kBold : PdfFont::kPlain; }
+
+  void room_for(double height) {
+    if (y_ - height < kFoot) {
+      finish();
+      sheet_.new_page();
+      y_ = PdfSheet::kHeight - kMargin;
+    }
+  }
+
+  /// Broken at blanks; a word wider than the line is broken within, at a character.
+  std::vector<Line> lines_of(const RichText& text, double size, double width) {
+    std::vector<Line> lines(1);
+    const double blank = sheet_.text_width(" ", PdfFont::kPlain, size);
+    const auto add = [&](Word word) {
+      word.width = sheet_.text_width(word.text, font_of(word.bold), size);
+      const double gap = lines.back().words.empty() ? 0 : blank;
+      if (!lines.back().words.empty() && lines.back().width + gap + word.width > width) {
+        lines.emplace_back();
+      } else {
+        lines.back().width += gap;
+      }
+      lines.back().width += word.width;
+      lines.back().words.push_back(std::move(word));
+    };
+    for (const TextRun& run : text) {
+      if (run.breaks && !lines.back().words.empty()) {
+        lines.emplace_back();
+      }
+      std::size_t at = 0;
+      while (at < run.text.size()) {
+        const std::size_t end = std::min(run.text.find(' ', at), run.text.size());
+        std::string word = run.text.substr(at, end - at);
+        at = end + 1;
+        while (!word.empty()) {
+          std::size_t fits = word.size();
+          while (fits > 1 && sheet_.text_width(word.substr(0, fits), font_of(run.bold), size) > width) {
+            do {
+              --fits;
+            } while (fits > 1 && (static_cast<unsigned char>(word[fits]) & 0xc0U) == 0x80U);
+          }
+          add({word.substr(0, fits), run.bold, run.soft});
+          word.erase(0, fits);
+        }
+      }
+    }
+    return lines;
+  }
+
+  /// The first line's baseline lies a line's height below `top`.
+  void draw(const std::vector<Line>& lines, double left, double top, double size, double grey) {
+    const double blank = sheet_.text_width(" ", PdfFont::kPlain, size);
+    double y = top;
+    for (const Line& line : lines) {
+      y -= kLeading * size;
+      double x = left;
+      for (const Word& word : line.words) {
+        sheet_.text(word.text, x, y, font_of(word.bold), size, word.soft ? kSoftGrey : grey);
+        x += word.width + blank;
+      }
+    }
+  }
+
+  static double height_of(const std::vector<Line>& lines, double size) {
+    return kLeading * size * static_cast<double>(lines.size());
+  }
+
+  void heading(const PageBlock& block) {
+    const double size = kHeading[static_cast<std::size_t>(std::clamp(block.level, 1, 3))];
+    RichText text = block.text;
+    for (TextRun& run : text) {
+      run.bold = true;
+    }
+    const auto lines = lines_of(text, size, kColumn);
+    room_for(height_of(lines, size) + 5 * kLeading * kBody);  // never alone at the foot
+    y_ -= 0.6 * size;
+    draw(lines, kMargin, y_, size, 0);
+    y_ -= height_of(lines, size) + 0.35 * size;
+  }
+
+  /// Line by line, so that it may go on over the page.
+  void paragraph(const RichText& text, double indent) {
+    for (const Line& line : lines_of(text, kBody, kColumn - indent)) {
+      room_for(kLeading * kBody);
+      draw({line}, kMargin + indent, y_, kBody, 0);
+      y_ -= kLeading * kBody;
+    }
+  }
+
+  void marked(const PageBlock& block, double indent) {
+    room_for(kLeading * kBody);
+    sheet_.text(block.mark, kMargin, y_ - kLeading * kBody, PdfFont::kPlain, kBody, kSoftGrey);
+    paragraph(block.text, indent);
+    y_ -= 0.2 * kBody;
+  }
+
+  void table(const std::vector<std::vector<RichText>>& rows) {
+    constexpr double kSize = 7.2;
+    constexpr double kGap = 7;
+    std::size_t columns = 0;
+    for (const auto& row : rows) {
+      columns = std::max(columns, row.size());
+    }
+    if (columns == 0) {
+      return;
+    }
+    const std::vector<double> widths = column_widths(rows, columns, kSize, kGap);
+    const auto height = [&](const std::vector<std::vector<Line>>& cells) {
+      double most = kLeading * kSize;
+      for (const auto& cell : cells) {
+        most = std::max(most, height_of(cell, kSize));
+      }
+      return most + 3;
+    };
+    const auto broken = [&](const std::vector<RichText>& row, bool head) {
+      std::vector<std::vector<Line>> cells;
+      for (std::size_t c = 0; c < row.size(); ++c) {
+        RichText text = row[c];
+        for (TextRun& run : text) {
+          run.bold = run.bold || head;
+        }
+        cells.push_back(lines_of(text, kSize, widths[c]));
+      }
+      return cells;
+    };
+    const auto put = [&](const std::vector<std::vector<Line>>& cells, bool head) {
+      double x = kMargin;
+      for (std::size_t c = 0; c < cells.size(); ++c) {
+        draw(cells[c], x, y_, kSize, 0);
+        x += widths[c] + kGap;
+      }
+      y_ -= height(cells);
+      sheet_.line(kMargin, y_, kMargin + kColumn, y_, head ? 0.6 : 0.2, head ? 0 : 0.6);
+    };
+    const auto head = broken(rows.front(), true);
+    room_for(4 * height(head));
+    put(head, true);
+    for (std::size_t r = 1; r < rows.size(); ++r) {
+      const auto cells = broken(rows[r], false);
+      const int page = sheet_.pages();
+      room_for(height(cells));
+      if (sheet_.pages() != page) {
+        put(head, true);  // again on the new page
+      }
+      put(cells, false);
+    }
+    y_ -= kBody;
+  }
+
+  /// As wide as their text where there is room; else the widest share what the others leave.
+  std::vector<double> column_widths(const std::vector<std::vector<RichText>>& rows, std::size_t columns,
+                                    double size, double gap) {
+    std::vector<double> widths(columns, 0.0);
+    for (const auto& row : rows) {
+      for (std::size_t c = 0; c < row.size(); ++c) {
+        double width = 0;
+        for (const TextRun& run : row[c]) {
+          width += sheet_.text_width(run.text, font_of(run.bold || &row == &rows.front()), size);
+        }
+        widths[c] = std::max(widths[c], width + 1);
+      }
+    }
+    const double room = kColumn - gap * static_cast<double>(columns - 1);
+    // The highest level at which cutting all wider columns down to it makes them fit.
+    double low = 0;
+    double high = room;
+    for (int step = 0; step < 40; ++step) {
+      const double level = 0.5 * (low + high);
+      double sum = 0;
+      for (const double w : widths) {
+        sum += std::min(w, level);
+      }
+      (sum <= room ? low : high) = level;
+    }
+    for (double& w : widths) {
+      w = std::min(w, low);
+    }
+    return widths;
+  }
+
+  void figures(const std::vector<PageFigure>& all) {
+    const bool alone = all.size() == 1 && !(all.front().width_px < 500);
+    const std::size_t across = alone ? 1 : 4;
+    constexpr double kGap = 10;
+    const double width = (kColumn - kGap * static_cast<double>(across - 1)) / static_cast<double>(across);
+    const double size = alone ? kBody : 6.8;
+    for (std::size_t first = 0; first < all.size(); first += across) {
+      const std::size_t end = std::min(first + across, all.size());
+      double high = 0;
+      std::vector<std::vector<Line>> captions;
+      std::vector<std::array<double, 2>> sizes;
+      for (std::size_t k = first; k < end; ++k) {
+        captions.push_back(lines_of(all[k].caption, size, width));
+        const double shape = static_cast<double>(all[k].height_px) / std::max(1, all[k].width_px);
+        constexpr double kHighest = 215 * kPointsPerMm;
+        const double wide = std::min(width, kHighest / std::max(shape, 1e-3));
+        sizes.push_back({wide, wide * shape});
+        high = std::max(high, sizes.back()[1] + height_of(captions.back(), size) + 4);
+      }
+      room_for(high);
+      for (std::size_t k = first; k < end; ++k) {
+        const auto& [wide, tall] = sizes[k - first];
+        const double x = kMargin + static_cast<double>(k - first) * (width + kGap);
+        sheet_.picture(all[k].png, x + 0.5 * (width - wide), y_ - tall, wide, tall);
+        draw(captions[k - first], x, y_ - tall - 2, size, kSoftGrey);
+      }
+      y_ -= high + kGap;
+    }
+  }
+
+  /// In the order top, left, obverse, right, bottom, reverse.
+  void cross(const std::vector<PageFigure>& six) {
+    if (six.size() != 6) {
+      figures(six);
+      return;
+    }
+    constexpr double kGapMm = 3;
+    const auto wide_mm = [&](std::size_t k) { return six[k].width_mm; };
+    const auto high_mm = [&](std::size_t k) {
+      return six[k].width_mm * six[k].height_px / std::max(1, six[k].width_px);
+    };
+    const double column_mm = std::max({wide_mm(0), wide_mm(2), wide_mm(4), wide_mm(5)});
+    const double middle_mm = std::max({high_mm(1), high_mm(2), high_mm(3)});
+    const double all_wide_mm = wide_mm(1) + column_mm + wide_mm(3) + 2 * kGapMm;
+    const double all_high_mm = high_mm(0) + middle_mm + high_mm(4) + high_mm(5) + 3 * kGapMm;
+    constexpr double kHighestMm = 245;
+    const double scale = std::min({1.0, kColumn / kPointsPerMm / std::max(all_wide_mm, 1e-3),
+                                   kHighestMm / std::max(all_high_mm, 1e-3)});
+    const double unit = scale * kPointsPerMm;
+    room_for(all_high_mm * unit);
+    const double left = kMargin + 0.5 * (kColumn - all_wide_mm * unit);
+    const double middle = left + (wide_mm(1) + kGapMm + 0.5 * column_mm) * unit;
+    const auto put = [&](std::size_t k, double x, double top) {
+      sheet_.picture(six[k].png, x, top - high_mm(k) * unit, wide_mm(k) * unit, high_mm(k) * unit);
+    };
+    const auto centred = [&](std::size_t k, double top) { put(k, middle - 0.5 * wide_mm(k) * unit, top); };
+    double top = y_;
+    centred(0, top);
+    top -= (high_mm(0) + kGapMm) * unit;
+    const auto beside = [&](std::size_t k) { return top - 0.5 * (middle_mm - high_mm(k)) * unit; };
+    put(1, left, beside(1));
+    centred(2, beside(2));
+    put(3, left + (wide_mm(1) + column_mm + 2 * kGapMm) * unit, beside(3));
+    top -= (middle_mm + kGapMm) * unit;
+    centred(4, top);
+    top -= (high_mm(4) + kGapMm) * unit;
+    centred(5, top);
+    // Ten millimetres of the tablet, beside the reverse.
+    const double bar = middle + (0.5 * column_mm + kGapMm) * unit;
+    const double bar_y = y_ - all_high_mm * unit + 8;
+    sheet_.line(bar, bar_y, bar + 10 * unit, bar_y, 1.2, 0);
+    sheet_.text("10 mm", bar, bar_y - 8, PdfFont::kPlain, 6.5, kSoftGrey);
+    y_ -= all_high_mm * unit + kBody;
+  }
+
+  PdfSheet& sheet_;
+  std::string foot_;
+  double y_ = PdfSheet::kHeight - kMargin;
+};
+
+}  // namespace
+
+Result<std::vector<std::uint8_t>> page_pdf(std::string_view html, const PdfInfo& info) {
+  Result<PdfSheet> sheet = PdfSheet::make(info);
+  if (!sheet) {
+    return std::unexpected(sheet.error());
+  }
+  Setter setter(*sheet, info.title + ", " + info.when);
+  for (const PageBlock& block : page_blocks(html)) {
+    setter.set(block);
+  }
+  setter.finish();
+  return sheet->bytes();
+}
+
+}  // namespace dubsar

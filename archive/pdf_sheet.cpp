@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+// cairo embeds the letters that are used, with the table that tells what they are, so that the text can be
+// found and copied. (libharu, which is smaller, writes that table so that others cannot read it.)
+#include "archive/pdf_sheet.h"
+
+#include <cairo-ft.h>
+#include <cairo-pdf.h>
+#include <ft2build.h>
+#include FT_FREETYPE_H
+
+#include <array>
+#include <cstring>
+#include <mutex>
+#include <utility>
+
+namespace dubsar {
+
+namespace {
+
+constexpr std::array<const char*, 2> kFontFiles = {"/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf",
+                                                   "/usr/share/fonts/truetype/dejavu/DejaVuSans-Bold.ttf"};
+
+/// One for the program: cairo may keep a font in its cache for longer than anybody here uses it.
+struct FontLibrary {
+  std::mutex mutex;  ///< FreeType opens and closes faces one at a time
+  FT_Library library = nullptr;
+  FontLibrary() { FT_Init_FreeType(&library); }
+};
+FontLibrary& fonts() {
+  static auto* const kFonts = new FontLibrary;  // lives until the end, after cairo's own caches
+  return *kFonts;
+}
+
+/// Null when the file is no font.
+cairo_font_face_t* open_font(const char* file) {
+  static const cairo_user_data_key_t kKey{};
+  FT_Face face = nullptr;
+  {
+    const std::scoped_lock lock(fonts().mutex);
+    if (fonts().library == nullptr || FT_New_Face(fonts().library, file, 0, &face) != 0) {
+      return nullptr;
+    }
+  }
+  cairo_font_face_t* font = cairo_ft_font_face_create_for_ft_face(face, FT_LOAD_NO_HINTING);
+  cairo_font_face_set_user_data(font, &kKey, face, [](void* owned) {
+    const std::scoped_lock lock(fonts().mutex);
+    FT_Done_Face(static_cast<FT_Face>(owned));
+  });
+  return font;
+}
+
+cairo_status_t append(void* into, const unsigned char* bytes, unsigned int count) {
+  auto* all = static_cast<std::vector<std::uint8_t>*>(into);
+  all->insert(all->end(), bytes, bytes + count);
+  return CAIRO_STATUS_SUCCESS;
+}
+
+/// What is left of a PNG that cairo reads.
+struct Rest {
+  const char* at;
+  std::size_t count;
+};
+cairo_status_t take(void* from, unsigned char* into, unsigned int count) {
+  auto* rest = static_cast<Rest*>(from);
+  if (count > rest->count) {
+    return CAIRO_STATUS_READ_ERROR;
+  }
+  std::memcpy(into, rest->at, count);
+  rest->at += count;
+  rest->count -= count;
+  return CAIRO_STATUS_SUCCESS;
+}
+
+std::string terminated(std::string_view text) {
+  return std::string(text.substr(0, text.find('\0')));
+}
+
+}  // namespace
+
+/// Everything of C, taken down in the order that its owners ask for.
+struct PdfSheet::Impl {
+  std::vector<std::uint8_t> bytes;
+  std::array<cairo_font_face_t*, 2> font{};
+  cairo_surface_t* surface = nullptr;
+  cairo_t* page = nullptr;
+  int pages = 1;
+
+  Impl() = default;
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
+  ~Impl() {
+    cairo_destroy(page);
+    cairo_surface_destroy(surface);
+    for (cairo_font_face_t* face : font) {
+      cairo_font_face_destroy(face);
+    }
+  }
+
+  /// False once anything has failed: cairo goes on, doing nothing.
+  [[nodiscard]] bool good() const { return cairo_status(page) == CAIRO_STATUS_SUCCESS; }
+  void use(PdfFont which, double size) const {
+    cairo_set_font_face(page, font[static_cast<std::size_t>(which)]);
+    cairo_set_font_size(page, size);
+  }
+};
+
+PdfSheet::PdfSheet(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+PdfSheet::PdfSheet(PdfSheet&&) noexcept = default;
+PdfSheet::~PdfSheet() = default;
+
+Result<PdfSheet> PdfSheet::make(const PdfInfo& info) {
+  auto impl = std::make_unique<Impl>();
+  for (std::size_t k = 0; k < kFontFiles.size(); ++k) {
+    impl->font[k] = open_font(kFontFiles[k]);
+    if (impl->font[k] == nullptr) {
+      return fail(ErrorKind::kUsage, "the font for PDF files is missing", kFontFiles[k],
+                  "install fonts-dejavu-core");
+    }
+  }
+  impl->surface = cairo_pdf_surface_create_for_stream(append, &impl->bytes, kWidth, kHeight);
+  cairo_pdf_surface_restrict_to_version(impl->surface, CAIRO_PDF_VERSION_1_5);
+  const auto metadata = [&](cairo_pdf_metadata_t key, const std::string& value) {
+    cairo_pdf_surface_set_metadata(impl->surface, key, terminated(value).c_str());
+  };
+  metadata(CAIRO_PDF_METADATA_TITLE, info.title);
+  metadata(CAIRO_PDF_METADATA_CREATOR, info.program);
+  metadata(CAIRO_PDF_METADATA_CREATE_DATE, info.when);
+  metadata(CAIRO_PDF_METADATA_MOD_DATE, info.when);
+  impl->page = cairo_create(impl->surface);
+  if (!impl->good()) {
+    return fail(ErrorKind::kInternal, cairo_status_to_string(cairo_status(impl->page)), "PDF");
+  }
+  return PdfSheet(std::move(impl));
+}
+
+void PdfSheet::new_page() {
+  cairo_show_page(impl_->page);
+  ++impl_->pages;
+}
+
+int PdfSheet::pages() const {
+  return impl_->pages;
+}
+
+double PdfSheet::text_width(std::string_view text, PdfFont font, double size) {
+  impl_->use(font, size);
+  cairo_text_extents_t extents{};
+  cairo_text_extents(impl_->page, terminated(text).c_str(), &extents);
+  return extents.x_advance;
+}
+
+void PdfSheet::text(std::string_view text, double x, double y, PdfFont font, double size, double grey) {
+  impl_->use(font, size);
+  cairo_set_source_rgb(impl_->page, grey, grey, grey);
+  cairo_move_to(impl_->page, x, kHeight - y);
+  cairo_show_text(impl_->page, terminated(text).c_str());
+}
+
+void PdfSheet::line(double x0, double y0, double x1, double y1, double width, double grey) {
+  cairo_set_source_rgb(impl_->page, grey, grey, grey);
+  cairo_set_line_width(impl_->page, width);
+  cairo_move_to(impl_->page, x0, kHeight - y0);
+  cairo_line_to(impl_->page, x1, kHeight - y1);
+  cairo_stroke(impl_->page);
+}
+
+void PdfSheet::picture(const std::string& png, double x, double y, double width, double height) {
+  Rest rest{png.data(), png.size()};
+  cairo_surface_t* image = cairo_image_surface_create_from_png_stream(take, &rest);
+  if (cairo_surface_status(image) == CAIRO_STATUS_SUCCESS) {
+    cairo_save(impl_->page);
+    cairo_translate(impl_->page, x, kHeight - y - height);
+    cairo_scale(impl_->page, width / cairo_image_surface_get_width(image),
+                height / cairo_image_surface_get_height(image));
+    cairo_set_source_surface(impl_->page, image, 0, 0);
+    cairo_paint(impl_->page);
+    cairo_restore(impl_->page);
+  }
+  cairo_surface_destroy(image);
+}
+
+Result<std::vector<std::uint8_t>> PdfSheet::bytes() {
+  if (impl_->good()) {
+    cairo_show_page(impl_->page);
+  }
+  const cairo_status_t drawn = cairo_status(impl_->page);
+  cairo_surface_finish(impl_->surface);
+  const cairo_status_t finished = cairo_surface_status(impl_->surface);
+  if (drawn != CAIRO_STATUS_SUCCESS || finished != CAIRO_STATUS_SUCCESS) {
+    return fail(ErrorKind::kInternal,
+                cairo_status_to_string(drawn != CAIRO_STATUS_SUCCESS ? drawn : finished), "PDF");
+  }
+  return std::move(impl_->bytes);
+}
+
+}  // namespace dubsar

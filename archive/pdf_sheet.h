@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/result.h"
+
+namespace dubsar {
+
+inline constexpr double kPointsPerMm = 72.0 / 25.4;
+
+enum class PdfFont { kPlain, kBold };
+
+struct PdfInfo {
+  std::string title;
+  std::string program;
+  std::string when;  ///< ISO 8601, UTC: the document's date, so that the same input gives the same bytes
+};
+
+/// A PDF in the making: A4 pages, points from the lower left corner, fonts embedded as subsets. It begins
+/// with an empty page. After a failure everything is a no-op and bytes() tells it.
+class PdfSheet {
+ public:
+  static constexpr double kWidth = 210 * kPointsPerMm;
+  static constexpr double kHeight = 297 * kPointsPerMm;
+
+  /// kUsage where the fonts are not installed.
+  [[nodiscard]] static Result<PdfSheet> make(const PdfInfo& info);
+  PdfSheet(PdfSheet&&) noexcept;
+  PdfSheet& operator=(PdfSheet&&) = delete;
+  ~PdfSheet();
+
+  void new_page();
+  [[nodiscard]] int pages() const;
+
+  [[nodiscard]] double text_width(std::string_view text, PdfFont font, double size);
+  /// Baseline at y. UTF-8; what the font lacks shows as a box. grey: 0 black to 1 white.
+  void text(std::string_view text, double x, double y, PdfFont font, double size, double grey);
+  void line(double x0, double y0, double x1, double y1, double width, double grey);
+  /// A PNG file's bytes, into the rectangle.
+  void picture(const std::string& png, double x, double y, double width, double height);
+
+  /// The finished file. Nothing may be added afterwards. Errors: kInternal.
+  [[nodiscard]] Result<std::vector<std::uint8_t>> bytes();
+
+ private:
+  struct Impl;
+  explicit PdfSheet(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace dubsar

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "archive/staged_folder.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <string>
+#include <system_error>
+#include <utility>
+
+#include "formats/atomic_file.h"
+
+namespace dubsar {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+std::unexpected<Error> storage(const fs::path& path, const std::string& doing, const std::string& why) {
+  return fail(ErrorKind::kStorage, doing + ": " + why, path.string(),
+              "free some space or choose another folder");
+}
+
+Status sync_folder(const fs::path& folder) {
+  const int fd = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  const bool synced = fd >= 0 && (::fsync(fd) == 0 || errno == EINVAL);  // some file systems sync no folder
+  const int error = errno;
+  if (fd >= 0) {
+    ::close(fd);
+  }
+  return synced ? Status{} : storage(folder, "cannot sync the folder", std::strerror(error));
+}
+
+bool is_free(const fs::path& target) {
+  std::error_code ignored;
+  const fs::file_status status = fs::symlink_status(target, ignored);
+  return !fs::exists(status) || (fs::is_directory(status) && fs::is_empty(target, ignored));
+}
+
+}  // namespace
+
+Result<StagedFolder> StagedFolder::begin(const fs::path& wanted, bool replace) {
+  std::error_code error;
+  fs::path target = fs::absolute(wanted, error).lexically_normal();
+  if (!target.has_filename()) {
+    target = target.parent_path();  // a trailing slash
+  }
+  if (!replace && !is_free(target)) {
+    return fail(ErrorKind::kUsage, "something lies there already", target.string(),
+                "choose another folder, or replace it with --force");
+  }
+  fs::create_directories(target.parent_path(), error);
+  if (error) {
+    return storage(target.parent_path(), "cannot make the folder", error.message());
+  }
+  const fs::path staged = target.parent_path() / (std::string(kTemporaryPrefix) + target.filename().string());
+  for (int attempt = 0; attempt < 2; ++attempt) {
+    const bool made = fs::create_directory(staged, error);
+    if (error) {
+      return storage(staged, "cannot make the folder", error.message());
+    }
+    const int lock = ::open(staged.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC | O_NOFOLLOW);
+    if (lock < 0) {
+      continue;  // taken away between the two steps
+    }
+    struct stat mine {};
+    struct stat there {};
+    if (::flock(lock, LOCK_EX | LOCK_NB) != 0) {
+      ::close(lock);
+      return fail(ErrorKind::kUsage, "another program is writing this folder now", target.string(),
+                  "wait for it, or choose another folder");
+    }
+    if (::fstat(lock, &mine) == 0 && ::stat(staged.c_str(), &there) == 0 && mine.st_ino == there.st_ino) {
+      for (fs::directory_iterator it(staged, error), end; !made && !error && it != end; it.increment(error)) {
+        fs::remove_all(it->path(), error);
+      }
+      if (error) {
+        ::close(lock);
+        return storage(staged, "cannot clear what was left there", error.message());
+      }
+      return StagedFolder(std::move(target), staged, lock);
+    }
+    ::close(lock);
+  }
+  return storage(staged, "cannot make the folder", "it vanishes again");
+}
+
+StagedFolder::StagedFolder(StagedFolder&& other) noexcept
+    : target_(std::move(other.target_)),
+      path_(std::exchange(other.path_, {})),
+      lock_(std::exchange(other.lock_, -1)) {}
+
+StagedFolder::~StagedFolder() {
+  if (!path_.empty()) {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+  }
+  if (lock_ >= 0) {
+    ::close(lock_);
+  }
+}
+
+Status StagedFolder::publish() {
+  std::error_code error;
+  for (fs::recursive_directory_iterator it(path_, error), end; !error && it != end; it.increment(error)) {
+    if (it->is_directory()) {
+      if (const Status synced = sync_folder(it->path()); !synced) {
+        return synced;
+      }
+    }
+  }
+  if (error) {
+    return storage(path_, "cannot read back what was written", error.message());
+  }
+  if (const Status synced = sync_folder(path_); !synced) {
+    return synced;
+  }
+  // rename() replaces an empty folder by itself.
+  if (is_free(target_)) {
+    if (::rename(path_.c_str(), target_.c_str()) != 0) {
+      return storage(target_, "cannot put the folder in its place", std::strerror(errno));
+    }
+    path_.clear();
+    return sync_folder(target_.parent_path());
+  }
+  if (::renameat2(AT_FDCWD, path_.c_str(), AT_FDCWD, target_.c_str(), RENAME_EXCHANGE) != 0) {
+    // A file system that cannot exchange: the old one steps aside under a name that says what it is.
+    const fs::path aside = target_.parent_path() / (target_.filename().string() + ".replaced");
+    if (::rename(target_.c_str(), aside.c_str()) != 0 || ::rename(path_.c_str(), target_.c_str()) != 0) {
+      return storage(target_, "cannot put the folder in its place", std::strerror(errno));
+    }
+    path_ = aside;
+  }
+  if (const Status synced = sync_folder(target_.parent_path()); !synced) {
+    path_.clear();  // what was there before stays beside it
+    return synced;
+  }
+  fs::remove_all(path_, error);
+  path_.clear();
+  return {};
+}
+
+}  // namespace dubsar

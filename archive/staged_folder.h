@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <filesystem>
+
+#include "core/result.h"
+
+namespace dubsar {
+
+/// A folder that is made under a temporary name beside its place and put there whole, or not at all. Taken
+/// away again unless it was published.
+class StagedFolder {
+ public:
+  /// Makes the temporary folder. What a killed program left there is removed first; kUsage while another
+  /// program is at it, and where something lies at `target` already that `replace` does not let go (an empty
+  /// folder is nothing). kStorage where nothing can be made.
+  [[nodiscard]] static Result<StagedFolder> begin(const std::filesystem::path& target, bool replace);
+
+  StagedFolder(StagedFolder&& other) noexcept;
+  StagedFolder& operator=(StagedFolder&&) = delete;
+  StagedFolder(const StagedFolder&) = delete;
+  StagedFolder& operator=(const StagedFolder&) = delete;
+  ~StagedFolder();
+
+  /// Where to write.
+  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+
+  /// Syncs every folder and takes the place of the target, in one step where something lies there (the old
+  /// one is removed only after that). The files must have been synced by whoever wrote them.
+  [[nodiscard]] Status publish();
+
+ private:
+  StagedFolder(std::filesystem::path target, std::filesystem::path path, int lock)
+      : target_(std::move(target)), path_(std::move(path)), lock_(lock) {}
+
+  std::filesystem::path target_;
+  std::filesystem::path path_;  ///< empty once there is nothing to take away
+  int lock_ = -1;
+};
+
+}  // namespace dubsar

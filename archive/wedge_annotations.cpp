@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "archive/wedge_annotations.h"
+
+#include <fmt/format.h>
+
+#include "core/units.h"
+#include "formats/json_text.h"
+
+namespace dubsar {
+
+namespace {
+
+/// A closed ring: the first corner comes again at the end.
+std::string polygon_z(const Wedge& wedge) {
+  std::string text = "POLYGON Z ((";
+  for (std::size_t k = 0; k < 4; ++k) {
+    const Eigen::Vector3d& p = wedge.outer_vertices_mm[k % 3];
+    text += fmt::format("{}{:.4f} {:.4f} {:.4f}", k == 0 ? "" : ", ", p.x(), p.y(), p.z());
+  }
+  return text + "))";
+}
+
+std::string in_words(const Wedge& w) {
+  const auto directional = static_cast<std::size_t>(w.directional_edge);
+  std::string where = w.place.side ? std::string(" on the ") + to_string(*w.place.side) : "";
+  if (w.place.side && w.place.line > 0) {
+    where += fmt::format(", line {}, number {}", w.place.line, w.place.order);
+  }
+  return fmt::format(
+      "Wedge {}{}: {:.2f} mm deep, directional edge {:.2f} mm long at {:.0f} degrees, confidence {:.2f}",
+      w.id, where, w.depth_mm, w.edge_lengths_mm[directional], deg_from_rad(w.place.turn_rad), w.confidence);
+}
+
+}  // namespace
+
+std::string wedge_annotations(const std::vector<Wedge>& wedges, const AnnotationSource& source) {
+  const OrderedJson generator = {{"type", "Software"}, {"name", source.program}};
+  OrderedJson items = OrderedJson::array();
+  for (const Wedge& wedge : wedges) {
+    const std::string id = fmt::format("{}annotations/wedge-{}", source.base_url, wedge.id);
+    OrderedJson bodies =
+        OrderedJson::array({{{"type", "TextualBody"},
+                             {"purpose", "describing"},
+                             {"format", "text/plain"},
+                             {"language", "en"},
+                             {"value", in_words(wedge)}},
+                            {{"type", "TextualBody"}, {"purpose", "tagging"}, {"value", "wedge"}}});
+    items.push_back({{"id", id},
+                     {"type", "Annotation"},
+                     {"motivation", "describing"},
+                     {"created", source.when},
+                     {"generator", generator},
+                     {"body", std::move(bodies)},
+                     {"target",
+                      {{"type", "SpecificResource"},
+                       {"source", source.base_url + source.model},
+                       {"selector", {{"type", "WktSelector"}, {"value", polygon_z(wedge)}}}}}});
+  }
+  // The selector is not among those of 2017: its terms are told here, so that it stays valid JSON-LD.
+  const OrderedJson terms = {{"WktSelector", "http://www.opengis.net/ont/geosparql#wktLiteral"}};
+  return text_of({{"@context", OrderedJson::array({"http://www.w3.org/ns/anno.jsonld", terms})},
+                  {"id", source.base_url + "annotations"},
+                  {"type", "AnnotationPage"},
+                  {"label", "Wedges of " + source.identifier},
+                  {"items", std::move(items)}});
+}
+
+}  // namespace dubsar

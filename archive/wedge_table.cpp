@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "archive/wedge_table.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <functional>
+#include <string_view>
+
+#include "core/units.h"
+
+namespace dubsar {
+
+namespace {
+
+struct Column {
+  std::string name;
+  std::function<std::string(const Wedge&)> value;
+};
+
+std::string number(double value) {
+  return std::isfinite(value) ? fmt::format("{:.6g}", value) : std::string();
+}
+
+using Three = std::array<double, 3>;
+
+std::vector<Column> columns() {
+  std::vector<Column> all;
+  const auto text = [&](std::string name, std::function<std::string(const Wedge&)> value) {
+    all.push_back({std::move(name), std::move(value)});
+  };
+  const auto plain = [&](std::string name, std::function<double(const Wedge&)> value) {
+    text(std::move(name), [value = std::move(value)](const Wedge& w) { return number(value(w)); });
+  };
+  const auto point = [&](const std::string& name, std::function<Eigen::Vector3d(const Wedge&)> value) {
+    for (int axis = 0; axis < 3; ++axis) {
+      plain(name + "_" + "xyz"[axis] + "_mm", [value, axis](const Wedge& w) { return value(w)[axis]; });
+    }
+  };
+  const auto three = [&](const std::string& name, const std::string& unit, double factor,
+                         std::function<const Three&(const Wedge&)> value) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      plain(fmt::format("{}_{}_{}", name, k, unit),
+            [value, k, factor](const Wedge& w) { return factor * value(w)[k]; });
+    }
+  };
+  const auto placed = [](int value) { return value > 0 ? std::to_string(value) : std::string(); };
+  const double deg = deg_from_rad(1.0);
+
+  text("id", [](const Wedge& w) { return std::to_string(w.id); });
+  text("side", [](const Wedge& w) { return w.place.side ? std::string(to_string(*w.place.side)) : ""; });
+  text("line", [=](const Wedge& w) { return placed(w.place.line); });
+  text("order", [=](const Wedge& w) { return placed(w.place.order); });
+  plain("turn_deg", [](const Wedge& w) { return deg_from_rad(w.place.turn_rad); });
+  point("depth_point", [](const Wedge& w) { return w.depth_point_mm; });
+  plain("depth_mm", [](const Wedge& w) { return w.depth_mm; });
+  plain("volume_mm3", [](const Wedge& w) { return w.volume_mm3; });
+  text("directional_edge", [](const Wedge& w) { return std::to_string(w.directional_edge); });
+  three("edge_length", "mm", 1, [](const Wedge& w) -> const Three& { return w.edge_lengths_mm; });
+  three("edge_slope", "deg", deg, [](const Wedge& w) -> const Three& { return w.edge_slopes_rad; });
+  three("edge_bow", "mm", 1, [](const Wedge& w) -> const Three& { return w.edge_bows_mm; });
+  three("face_angle", "deg", deg, [](const Wedge& w) -> const Three& { return w.face_angles_rad; });
+  three("opening_angle", "deg", deg, [](const Wedge& w) -> const Three& { return w.opening_angles_rad; });
+  three("face_slope", "deg", deg, [](const Wedge& w) -> const Three& { return w.face_slopes_rad; });
+  for (std::size_t k = 0; k < 3; ++k) {
+    point(fmt::format("exit_point_{}", k), [k](const Wedge& w) { return w.exit_points_mm[k]; });
+  }
+  plain("sigma_depth_mm", [](const Wedge& w) { return w.sigma.depth_mm; });
+  plain("sigma_volume_mm3", [](const Wedge& w) { return w.sigma.volume_mm3; });
+  three("sigma_edge_length", "mm", 1, [](const Wedge& w) -> const Three& { return w.sigma.length_mm; });
+  three("sigma_opening_angle", "deg", deg,
+        [](const Wedge& w) -> const Three& { return w.sigma.opening_rad; });
+  plain("reliability", [](const Wedge& w) { return w.reliability; });
+  plain("confidence", [](const Wedge& w) { return w.confidence; });
+  plain("intact", [](const Wedge& w) { return w.intact; });
+  text("vertex_count", [](const Wedge& w) { return std::to_string(w.vertex_count); });
+  return all;
+}
+
+}  // namespace
+
+std::string wedge_table(const std::vector<Wedge>& wedges) {
+  const std::vector<Column> all = columns();
+  std::string csv;
+  const auto line = [&](const auto& cell) {
+    for (std::size_t c = 0; c < all.size(); ++c) {
+      if (c > 0) {
+        csv.push_back(',');
+      }
+      csv.append(cell(all[c]));
+    }
+    csv.append("\r\n");
+  };
+  line([](const Column& column) { return column.name; });
+  for (const Wedge& wedge : wedges) {
+    line([&](const Column& column) { return column.value(wedge); });
+  }
+  return csv;
+}
+
+}  // namespace dubsar

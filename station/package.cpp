@@ -1,0 +1,250 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "station/package.h"
+
+#include <algorithm>
+#include <chrono>
+
+#include "archive/staged_folder.h"
+#include "core/log.h"
+#include "station/analysis.h"
+#include "station/package_content.h"
+#include "station/session_wedges.h"
+
+namespace dubsar {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Text that decides how the tablet lies has to lead the next best reading by this.
+constexpr double kCertainText = 0.1;
+
+/// Letters, digits, dot, dash; anything else in a museum number becomes an underscore.
+std::string file_stem(const std::string& identifier) {
+  std::string stem;
+  for (const char c : identifier) {
+    const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+                       c == '-' || (c == '.' && !stem.empty());
+    if (plain) {
+      stem += c;
+    } else if (!stem.empty() && stem.back() != '_') {
+      stem += '_';
+    }
+  }
+  while (!stem.empty() && stem.back() == '_') {
+    stem.pop_back();
+  }
+  constexpr std::size_t kLongest = 64;
+  return stem.empty() ? "tablet" : stem.substr(0, kLongest);
+}
+
+std::string base_url(const std::string& wanted, const std::string& stem) {
+  std::string url = wanted.empty() ? "https://dubsar.invalid/" + stem : wanted;
+  if (url.back() != '/') {
+    url += '/';
+  }
+  return url;
+}
+
+/// The session's own wedges, or, where it has none of this surface, measured now.
+Result<std::optional<WedgeFile>> wedges_of(const SessionStore& store, const Mesh& mesh,
+                                           const JobContext& job) {
+  if (mesh.faces.empty()) {
+    return std::nullopt;
+  }
+  if (std::optional<WedgeFile> stored = stored_wedges(store, mesh, job)) {
+    return stored;
+  }
+  log_info("the session holds no wedges of this surface: they are measured now");
+  const AnalysisOptions options;
+  const Result<Analysis> analysis = analyze_mesh(mesh, options, job);
+  if (!analysis) {
+    if (analysis.error().kind != ErrorKind::kBadInput) {
+      return std::unexpected(analysis.error());
+    }
+    log_warning("wedges were not looked for: " + analysis.error().line());
+    return std::nullopt;
+  }
+  return wedge_file("model.ply", options, *analysis);
+}
+
+std::vector<BagField> bag_fields(const PackageContent& content) {
+  std::string description =
+      "Surface of a cuneiform tablet, measured by laser triangulation: raw range "
+      "grids, poses, model, pictures, wedges, report. ";
+  description += content.results().red_map.conclusive
+                     ? "The verdict is conclusive: what the scanner can reach is sampled densely enough."
+                     : "The verdict is not conclusive: see data/report/report.html for what is missing.";
+  std::string left_out;
+  for (const PackagePart part : content.options.without) {
+    left_out += (left_out.empty() ? "" : ", ") + std::string(to_string(part));
+  }
+  return {{"Source-Organization", content.tablet.collection},
+          {"External-Identifier", content.tablet.cdli},
+          {"External-Identifier", content.tablet.museum_number},
+          {"Internal-Sender-Identifier", content.store.folder().lexically_normal().filename().string()},
+          {"Contact-Name", content.tablet.operator_name},
+          {"External-Description", description},
+          {"Bagging-Date", content.when.substr(0, 10)},
+          {"Bag-Software-Agent", program_name()},
+          {"Dubsar-Left-Out", left_out}};
+}
+
+/// Runs the writers of all parts.
+Status add_all(PackageContent& content, std::vector<StageTiming>& timings) {
+  struct Step {
+    const char* name;
+    Status (*add)(PackageContent&);
+    bool wanted;
+  };
+  const std::vector<Step> steps = {
+      {"scans", add_scans, true},
+      {"records", add_records, true},
+      {"model", add_model, true},
+      {"wedges", add_wedges, content.has(PackagePart::kWedges)},
+      {"features", add_features, content.has(PackagePart::kFeatures)},
+      {"renderings", add_renderings, content.has(PackagePart::kRenderings)},
+      {"reports", add_reports, true},
+      {"linked data", add_linked_data, true},
+      {"readme", add_readme, true},
+  };
+  for (const Step& step : steps) {
+    if (!step.wanted) {
+      continue;
+    }
+    if (content.job.cancelled()) {
+      return fail(ErrorKind::kCancelled, "stopped");
+    }
+    const auto started = std::chrono::steady_clock::now();
+    if (const Status added = step.add(content); !added) {
+      return added;
+    }
+    const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - started;
+    timings.push_back({step.name, spent.count()});
+  }
+  return {};
+}
+
+/// A folder that `replace` may let go of: an earlier package, and nothing else.
+Status check_target(const fs::path& to, bool replace) {
+  std::error_code ignored;
+  if (replace && fs::exists(to, ignored) && !fs::is_empty(to, ignored) &&
+      !fs::is_regular_file(to / "bagit.txt", ignored)) {
+    return fail(ErrorKind::kUsage, "what lies there is no package, so it is not replaced", to.string(),
+                "choose another folder, or remove it yourself");
+  }
+  return {};
+}
+
+}  // namespace
+
+std::string_view to_string(PackagePart part) {
+  switch (part) {
+    case PackagePart::kGridPly:
+      return "grid-ply";
+    case PackagePart::kWedges:
+      return "wedges";
+    case PackagePart::kFeatures:
+      return "features";
+    case PackagePart::kRenderings:
+      break;
+  }
+  return "renderings";
+}
+
+const std::vector<PackagePart>& all_package_parts() {
+  static const std::vector<PackagePart> kAll = {PackagePart::kGridPly, PackagePart::kWedges,
+                                                PackagePart::kFeatures, PackagePart::kRenderings};
+  return kAll;
+}
+
+Result<Package> write_package(const fs::path& session, const fs::path& to, const PackageOptions& options,
+                              JobContext& job) {
+  std::error_code ignored;
+  if (!SessionStore::is_session(session)) {
+    return fail(ErrorKind::kUsage, "no session there", session.string(),
+                "name the folder that a scan was stored in");
+  }
+  if (const Status checked = check_target(to, options.replace); !checked) {
+    return std::unexpected(checked.error());
+  }
+  Result<StagedFolder> staged = StagedFolder::begin(to, options.replace);
+  if (!staged) {
+    return std::unexpected(staged.error());
+  }
+  std::vector<StageTiming> timings;
+  auto started = std::chrono::steady_clock::now();
+  const auto note = [&](const char* stage) {
+    const auto now = std::chrono::steady_clock::now();
+    timings.push_back({stage, std::chrono::duration<double>(now - started).count()});
+    started = now;
+  };
+  const Result<PackageSource> source = PackageSource::open(session, job);
+  if (!source) {
+    return std::unexpected(source.error());
+  }
+  const SessionStore& store = source->store();
+  const Mesh& mesh = source->results().mesh;
+  note("reading");
+  PageFacts facts = page_facts_of(store);
+  const TabletRecord tablet = tablet_record_of(store);
+  const std::string identifier = !tablet.cdli.empty() ? tablet.cdli : facts.title;
+  PackageContent content{.root = staged->path() / "data",
+                         .source = *source,
+                         .store = store,
+                         .options = options,
+                         .facts = std::move(facts),
+                         .tablet = tablet,
+                         .identifier = identifier,
+                         .stem = file_stem(identifier),
+                         .when = utc_now(),
+                         .tablet_from_model = source->tablet_from_model(),
+                         .lies_by_text = false,
+                         .wedges = {},
+                         .fields = {},
+                         .files = {},
+                         .pictures = {},
+                         .lacking = {},
+                         .job = job};
+  content.options.base_url = base_url(options.base_url, content.stem);
+  if (content.has(PackagePart::kWedges)) {
+    Result<std::optional<WedgeFile>> wedges = wedges_of(store, mesh, job);
+    if (!wedges) {
+      return std::unexpected(wedges.error());
+    }
+    content.wedges = std::move(*wedges);
+    note("wedges");
+  }
+  if (content.wedges && content.wedges->text_from_model && content.wedges->text_certainty >= kCertainText) {
+    content.tablet_from_model = *content.wedges->text_from_model;
+    content.lies_by_text = true;
+  }
+  if (const Status added = add_all(content, timings); !added) {
+    return std::unexpected(added.error());
+  }
+  started = std::chrono::steady_clock::now();
+  const Result<BagSize> size = write_bag_tags(staged->path(), bag_fields(content), job);
+  if (!size) {
+    return std::unexpected(size.error());
+  }
+  if (const Status published = staged->publish(); !published) {
+    return std::unexpected(published.error());
+  }
+  note("checksums");
+  Package package{.folder = to,
+                  .size = *size,
+                  .identifier = identifier,
+                  .conclusive = source->results().red_map.conclusive,
+                  .has_mesh = !mesh.faces.empty(),
+                  .scans = 0,
+                  .wedges = content.wedges ? content.wedges->wedges.size() : 0,
+                  .timings = std::move(timings)};
+  for (fs::directory_iterator it(to / "data" / "scans" / "grids", ignored), end; !ignored && it != end;
+       it.increment(ignored)) {
+    ++package.scans;
+  }
+  return package;
+}
+
+}  // namespace dubsar

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "acquisition/session_store.h"
+#include "formats/wedges_json.h"
+#include "station/package.h"
+#include "station/package_features.h"
+#include "station/package_source.h"
+#include "station/results.h"
+#include "station/tablet_record.h"
+
+namespace dubsar {
+
+/// A file of a package, or a row of files of one kind.
+struct PackagedFile {
+  std::string path;  ///< below the payload's folder
+  std::string what;  ///< one line for people
+};
+
+/// A picture of a package that the manifest lists.
+struct PackagedPicture {
+  std::string path;   ///< below the payload's folder
+  std::string label;  ///< "Obverse, clay"
+  std::string media_type;
+  int width = 0;
+  int height = 0;
+  double mm_per_px = 0;
+};
+
+/// What the writers of a package's parts share. Refers to what write_package() keeps alive.
+struct PackageContent {
+  std::filesystem::path root;  ///< the payload's folder
+  const PackageSource& source;
+  const SessionStore& store;
+  PackageOptions options;
+  PageFacts facts;
+  TabletRecord tablet;
+  std::string identifier;  ///< for people: "BM 12345"
+  std::string stem;        ///< for file names: "BM_12345"
+  std::string when;        ///< ISO 8601, one for the whole package
+  RigidTransform
+      tablet_from_model;  ///< how the pictures lie: by the text where that is certain, else by the shape
+  bool lies_by_text = false;
+  std::optional<WedgeFile> wedges;
+  std::optional<PackageFields> fields;  ///< see need_fields()
+  std::vector<PackagedFile> files;
+  std::vector<PackagedPicture> pictures;
+  std::vector<std::string> lacking;  ///< what is not in it and why, one sentence each
+  JobContext& job;
+
+  [[nodiscard]] bool has(PackagePart part) const { return !options.without.contains(part); }
+  [[nodiscard]] const Results& results() const { return source.results(); }
+  [[nodiscard]] const Mesh& mesh() const { return source.results().mesh; }
+  /// Makes the folder above `path` and returns the whole path.
+  [[nodiscard]] Result<std::filesystem::path> place(const std::string& path) const;
+  /// Writes a text and lists it.
+  [[nodiscard]] Status text(const std::string& path, std::string_view content, std::string what);
+  /// Works out `fields` unless they are there. Errors: kCancelled.
+  [[nodiscard]] Status need_fields();
+  void list(std::string path, std::string what) { files.push_back({std::move(path), std::move(what)}); }
+};
+
+// The parts, in the order of the work. Each lists what it wrote. Errors: kStorage, kCancelled, and those of
+// the stages.
+[[nodiscard]] Status add_scans(PackageContent& content);
+[[nodiscard]] Status add_records(PackageContent& content);
+[[nodiscard]] Status add_model(PackageContent& content);
+[[nodiscard]] Status add_wedges(PackageContent& content);
+[[nodiscard]] Status add_features(PackageContent& content);
+[[nodiscard]] Status add_renderings(PackageContent& content);
+[[nodiscard]] Status add_reports(PackageContent& content);
+[[nodiscard]] Status add_linked_data(PackageContent& content);
+/// Last: it lists the others.
+[[nodiscard]] Status add_readme(PackageContent& content);
+
+/// The documents on the formats that a package carries along: file name and text.
+struct FormatText {
+  const char* name;
+  const char* text;
+};
+[[nodiscard]] const std::vector<FormatText>& format_texts();
+
+}  // namespace dubsar

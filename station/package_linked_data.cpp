@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+// What a package tells other programs: how it came about, and what there is to show.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <ctime>
+
+#include "archive/iiif_manifest.h"
+#include "archive/provenance.h"
+#include "station/package_content.h"
+
+namespace dubsar {
+
+namespace {
+
+std::string utc(std::int64_t time_ns) {
+  if (time_ns <= 0) {
+    return {};
+  }
+  const auto seconds = static_cast<std::time_t>(time_ns / 1'000'000'000);
+  std::tm parts{};
+  gmtime_r(&seconds, &parts);
+  char text[32];
+  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &parts);
+  return text;
+}
+
+std::string fate_of(const StoredScan& scan, const ScanPose* pose) {
+  if (scan.damaged) {
+    return "damaged in the session: its samples are lost";
+  }
+  if (scan.dropped) {
+    return scan.note.empty() ? "taken out by the operator" : "taken out: " + scan.note;
+  }
+  if (pose == nullptr) {
+    return "not placed";
+  }
+  return pose->reason.empty() ? to_string(pose->status)
+                              : std::string(to_string(pose->status)) + ": " + pose->reason;
+}
+
+ProvenanceScan scan_of(const PackageContent& content, const StoredScan& scan) {
+  const auto& poses = content.results().poses;
+  const auto at = std::ranges::find(poses, scan.id, &ScanPose::id);
+  const ScanPose* pose = scan.dropped || at == poses.end() ? nullptr : &*at;
+  ProvenanceScan out;
+  out.id = scan.id;
+  out.when = utc(scan.timestamp_ns);
+  out.file = scan.damaged ? std::string() : fmt::format("scans/grids/{:03}.grid", scan.id);
+  out.note = fate_of(scan, pose);
+  out.in_model = pose != nullptr && pose->status == PoseStatus::kRegistered && !scan.damaged;
+  out.values = {{"samples", static_cast<double>(scan.samples), ""},
+                {"lateral spacing", scan.spacing_mm, "mm"}};
+  if (out.in_model) {
+    out.values.push_back({"RMS to the overlapping scans", pose->rms_mm, "mm"});
+    out.values.push_back({"predicted error of its place", pose->sigma_mm, "mm"});
+    out.values.push_back({"overlap with the other scans", pose->overlap, ""});
+  }
+  return out;
+}
+
+void add_steps(const PackageContent& content, ProvenanceInput& input) {
+  ProvenanceStep registration{"registration", "Registration of the scans", {}, {"scans/poses.json"}, {}, {}};
+  double worst_rms_mm = 0;
+  double worst_sigma_mm = 0;
+  for (const ScanPose& pose : content.results().poses) {
+    if (pose.status == PoseStatus::kRegistered) {
+      worst_rms_mm = std::max(worst_rms_mm, pose.rms_mm);
+      worst_sigma_mm = std::max(worst_sigma_mm, pose.sigma_mm);
+    }
+  }
+  for (const ProvenanceScan& scan : input.scans) {
+    if (scan.in_model) {
+      registration.from.push_back(scan.file);
+    }
+  }
+  registration.results = {{"worst RMS between overlapping scans", worst_rms_mm, "mm"},
+                          {"worst predicted error of a place", worst_sigma_mm, "mm"}};
+  ProvenanceStep verdict{"verdict",
+                         "What is sampled densely enough",
+                         registration.from,
+                         {"verdict/red_map.json", "verdict/checklist.json"},
+                         {},
+                         {{"conclusive", content.results().red_map.conclusive ? 1.0 : 0.0, ""}}};
+  verdict.from.emplace_back("scans/poses.json");
+  const std::string model = "model/" + content.stem + ".ply";
+  std::vector<ProvenanceStep> steps{std::move(registration), verdict};
+  if (!content.mesh().faces.empty()) {
+    steps.push_back({"stitching",
+                     "Stitching into one surface",
+                     verdict.from,
+                     {model},
+                     {},
+                     {{"vertices", static_cast<double>(content.mesh().positions.size()), ""},
+                      {"triangles", static_cast<double>(content.mesh().faces.size()), ""}}});
+    steps.push_back({"conversion",
+                     "Other forms of the same surface",
+                     {model},
+                     {"model/" + content.stem + ".glb", "model/" + content.stem + ".stl"},
+                     {},
+                     {}});
+  }
+  if (content.wedges) {
+    steps.push_back({"analysis",
+                     "Measurement of the wedges",
+                     {model},
+                     {"wedges/wedges.json", "wedges/wedges.csv", "wedges/annotations.json"},
+                     {},
+                     {{"wedges", static_cast<double>(content.wedges->wedges.size()), ""},
+                      {"hollows rejected", static_cast<double>(content.wedges->rejected.size()), ""}}});
+  }
+  if (!content.pictures.empty()) {
+    ProvenanceStep drawing{"drawing", "Pictures drawn from the surface", {model}, {}, {}, {}};
+    for (const PackagedPicture& picture : content.pictures) {
+      drawing.made.push_back(picture.path);
+    }
+    steps.push_back(std::move(drawing));
+  }
+  input.steps = std::move(steps);
+}
+
+Status add_provenance(PackageContent& content) {
+  const Result<std::vector<StoredScan>> scans = content.store.scans();
+  if (!scans) {
+    return std::unexpected(scans.error());
+  }
+  const Checklist& list = content.results().checklist;
+  ProvenanceInput input;
+  input.base_url = content.options.base_url;
+  input.identifier = content.identifier;
+  input.museum_number = content.tablet.museum_number;
+  input.cdli = content.tablet.cdli;
+  input.collection = content.tablet.collection;
+  input.operator_name = content.tablet.operator_name;
+  input.device = content.facts.device;
+  input.program = program_name();
+  input.when = content.when;
+  input.calibration = list.calibration;
+  if (list.calibration_age_days) {
+    input.calibration_values.push_back({"age when scanning began", *list.calibration_age_days, "day"});
+  }
+  if (list.calibration_check) {
+    input.calibration +=
+        " Checked on " + list.calibration_check->artefact + ", " + list.calibration_check->when + ".";
+    input.calibration_values.push_back(
+        {"largest deviation from the certificate", list.calibration_check->error_mm, "mm"});
+  }
+  for (const StoredScan& scan : *scans) {
+    input.scans.push_back(scan_of(content, scan));
+  }
+  add_steps(content, input);
+  return content.text(
+      "provenance.jsonld", provenance_jsonld(input),
+      "how every file came about: device, calibration, every scan, every step with its errors "
+      "(JSON-LD, terms of CIDOC CRM and CRMdig)");
+}
+
+Status add_manifest(PackageContent& content) {
+  ManifestInput input;
+  input.base_url = content.options.base_url;
+  input.label = content.identifier;
+  input.summary = "Pictures of the tablet, drawn to scale from its measured surface";
+  input.metadata = {{"Museum number", content.tablet.museum_number},
+                    {"CDLI number", content.tablet.cdli},
+                    {"Collection", content.tablet.collection},
+                    {"Scanned with", content.facts.device},
+                    {"Drawn by", program_name()}};
+  for (const PackagedPicture& p : content.pictures) {
+    input.pictures.push_back({p.path, p.label, p.media_type, p.width, p.height, p.mm_per_px});
+  }
+  const std::string model = "model/" + content.stem;
+  input.rendering = {{model + ".glb", "The surface", "Model", "model/gltf-binary"},
+                     {"report/report.html", "The report", "Text", "text/html"}};
+  input.see_also = {{model + ".ply", "The surface, with all values by vertex", "Model", "model/ply"},
+                    {"provenance.jsonld", "How it came about", "Dataset", "application/ld+json"}};
+  if (content.wedges) {
+    input.see_also.push_back(
+        {"wedges/annotations.json", "The wedges as annotations", "Dataset", "application/ld+json"});
+  }
+  return content.text("iiif/manifest.json", iiif_manifest(input),
+                      "what there is to show, for viewers (IIIF Presentation 3.0)");
+}
+
+}  // namespace
+
+Status add_linked_data(PackageContent& content) {
+  if (const Status added = add_provenance(content); !added) {
+    return added;
+  }
+  return content.pictures.empty() ? Status{} : add_manifest(content);
+}
+
+}  // namespace dubsar

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+// The mesh of a package, once for keeping, once for looking at and once for printing.
+
+#include <array>
+#include <atomic>
+#include <optional>
+
+#include "core/parallel.h"
+#include "formats/mesh_io.h"
+#include "station/package_content.h"
+
+namespace dubsar {
+
+Status add_model(PackageContent& content) {
+  if (content.mesh().faces.empty()) {
+    content.lacking.emplace_back("There is no model: no scan is registered, or they have no surface.");
+    return {};
+  }
+  struct Form {
+    const char* extension;
+    const char* what;
+  };
+  // The slowest to write first: two of the three are then written side by side.
+  constexpr std::array<Form, 3> kForms = {
+      {{".ply",
+        "the model, for keeping: millimetres, with normals, reliability, number of scans, standard "
+        "deviation and flags of every vertex: formats/mesh.txt"},
+       {".stl", "the same surface for printing in 1:1 (binary STL, millimetres)"},
+       {".glb", "the same surface for looking at (glTF 2.0, metres)"}}};
+  if (const auto made = content.place("model/x"); !made) {
+    return std::unexpected(made.error());
+  }
+  std::array<std::optional<Error>, kForms.size()> failed;
+  std::atomic<int> done{0};
+  parallel_for_each_index(
+      kForms.size(),
+      [&](std::size_t k) {
+        if (content.job.cancelled()) {
+          return;
+        }
+        if (const Status written =
+                write_mesh(content.root / "model" / (content.stem + kForms[k].extension), content.mesh());
+            !written) {
+          failed[k] = written.error();
+        }
+        content.job.progress("packing the model", (done.fetch_add(1) + 1.0) / kForms.size());
+      },
+      1);
+  if (content.job.cancelled()) {
+    return fail(ErrorKind::kCancelled, "stopped");
+  }
+  for (std::size_t k = 0; k < kForms.size(); ++k) {
+    if (failed[k] && failed[k]->kind == ErrorKind::kUsage) {
+      content.lacking.push_back("model/" + content.stem + kForms[k].extension + ": " + failed[k]->what + ".");
+      continue;  // larger than that format can hold: the PLY has everything
+    }
+    if (failed[k]) {
+      return std::unexpected(*failed[k]);
+    }
+    content.list("model/" + content.stem + kForms[k].extension, kForms[k].what);
+  }
+  return {};
+}
+
+}  // namespace dubsar

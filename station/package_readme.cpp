@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+// The first page of a package: what it is, what every file of it is, and what is not in it.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "station/package_content.h"
+
+namespace dubsar {
+
+namespace {
+
+/// Lines of at most 100 characters, indented.
+std::string folded(const std::string& text, std::size_t indent) {
+  constexpr std::size_t kWide = 100;
+  std::string out;
+  out.append(indent, ' ');
+  std::size_t column = indent;
+  std::size_t at = 0;
+  while (at < text.size()) {
+    const std::size_t end = std::min(text.find(' ', at), text.size());
+    if (column > indent && column + 1 + (end - at) > kWide) {
+      out.push_back('\n');
+      out.append(indent, ' ');
+      column = indent;
+    } else if (column > indent) {
+      out += ' ';
+      ++column;
+    }
+    out.append(text, at, end - at);
+    column += end - at;
+    at = end + 1;
+  }
+  out.push_back('\n');
+  return out;
+}
+
+/// The side that an axis of the pictures' frame belongs to in the frame that red map and report name sides
+/// by.
+std::string sides_sentence(const PackageContent& content) {
+  if (!content.lies_by_text) {
+    return "Which side is called what follows from the tablet's shape and from how it was laid down: nobody "
+           "has "
+           "read it for this.";
+  }
+  const RigidTransform& by_shape = content.source.tablet_from_model();
+  const Eigen::Matrix3d shape_from_text = by_shape.rotation * content.tablet_from_model.rotation.transpose();
+  constexpr double kSame = 0.7;
+  if (shape_from_text(0, 0) > kSame && shape_from_text(1, 1) > kSame && shape_from_text(2, 2) > kSame) {
+    return "Which side is called what follows from the direction of the wedges, and the same everywhere in "
+           "this "
+           "package: nobody has read the text for it.";
+  }
+  const auto name = [&](const Eigen::Vector3d& of_text) {
+    const Eigen::Vector3d v = shape_from_text * of_text;
+    Eigen::Index axis = 0;
+    v.cwiseAbs().maxCoeff(&axis);
+    constexpr Face kPlus[] = {Face::kRight, Face::kTop, Face::kObverse};
+    constexpr Face kMinus[] = {Face::kLeft, Face::kBottom, Face::kReverse};
+    return to_string(v[axis] > 0 ? kPlus[axis] : kMinus[axis]);
+  };
+  return fmt::format(
+      "Take care: pictures and wedges name the sides by the direction of the wedges, verdict and report by "
+      "the "
+      "tablet's shape and how it was laid down, and here they differ. What pictures and wedges call the "
+      "obverse, "
+      "the report calls the {}; their top edge is the report's {}, their right edge its {}.",
+      name(Eigen::Vector3d::UnitZ()), name(Eigen::Vector3d::UnitY()), name(Eigen::Vector3d::UnitX()));
+}
+
+std::string left_out_sentence(PackagePart part) {
+  switch (part) {
+    case PackagePart::kGridPly:
+      return "The scans are not here as PLY: it was asked to leave them out. The grids hold the same.";
+    case PackagePart::kWedges:
+      return "Wedges are not here: it was asked to leave them out.";
+    case PackagePart::kFeatures:
+      return "Values by vertex are not here as text: it was asked to leave them out.";
+    case PackagePart::kRenderings:
+      break;
+  }
+  return "Pictures are not here: it was asked to leave them out.";
+}
+
+}  // namespace
+
+Status add_readme(PackageContent& content) {
+  const bool conclusive = content.results().red_map.conclusive;
+  std::string text;
+  text.append(content.identifier)
+      .append("\n")
+      .append(std::string(content.identifier.size(), '='))
+      .append("\n\n");
+  text +=
+      folded(fmt::format("A cuneiform tablet, measured by laser triangulation and packed by {} on {}. "
+                         "This folder is the payload of a bag (BagIt 1.0, RFC 8493): manifest-sha512.txt "
+                         "beside it holds the checksum of every file here, so that anybody can tell whether "
+                         "they are still what they were: sha512sum -c manifest-sha512.txt.",
+                         program_name(), content.when),
+             0);
+  text += "\n";
+  text +=
+      folded(conclusive ? "The verdict is CONCLUSIVE: every part of the tablet that the scanner can reach "
+                          "is sampled densely enough."
+                        : "The verdict is NOT CONCLUSIVE: report/report.html says what is missing.",
+             0);
+  text += "\nTHE TABLET\n\n";
+  for (const auto& [label, value] :
+       {std::pair{"museum number", content.tablet.museum_number},
+        std::pair{"CDLI number", content.tablet.cdli}, std::pair{"collection", content.tablet.collection},
+        std::pair{"scanned by", content.tablet.operator_name},
+        std::pair{"scanned with", content.facts.device}, std::pair{"notes", content.tablet.notes}}) {
+    if (!value.empty()) {
+      text += folded(fmt::format("{}: {}", label, value), 2);
+    }
+  }
+  text += "\nTHE FILES\n\n";
+  for (const PackagedFile& file : content.files) {
+    text.append("  ").append(file.path).append("\n").append(folded(file.what, 6));
+  }
+  text += "\nFRAMES AND UNITS\n\n";
+  text += folded(
+      "Lengths are millimetres wherever a file does not say otherwise (GLB: metres). Scans are in the "
+      "frame of the scanner as it stood for each; scans/poses.json takes each into the frame of the "
+      "model. Model, wedges, annotations, red map share that frame.",
+      2);
+  const auto rows = content.tablet_from_model.row_major();
+  text +=
+      "\n  The pictures lie so: tablet_from_model, row by row (x to the reader's right, y to the top edge,\n"
+      "  z out of the obverse)\n";
+  for (std::size_t r = 0; r < 4; ++r) {
+    text += fmt::format("    {:.9g} {:.9g} {:.9g} {:.9g}\n", rows[4 * r], rows[4 * r + 1], rows[4 * r + 2],
+                        rows[4 * r + 3]);
+  }
+  text += "\n";
+  text += folded(sides_sentence(content), 2);
+  std::vector<std::string> lacking = content.lacking;
+  for (const PackagePart part : content.options.without) {
+    lacking.push_back(left_out_sentence(part));
+  }
+  if (content.has(PackagePart::kWedges) && !content.wedges) {
+    lacking.emplace_back("Wedges are not here: the model has no surface that they could be looked for on.");
+  }
+  if (content.results().checklist.calibration.empty()) {
+    lacking.emplace_back("The device told nothing of its calibration.");
+  }
+  if (content.options.base_url.starts_with("https://dubsar.invalid/")) {
+    lacking.emplace_back(
+        "The addresses in iiif/, wedges/annotations.json and provenance.jsonld begin with " +
+        content.options.base_url +
+        ", which nothing answers to: replace it by where this folder is served from, or export "
+        "with --base-url.");
+  }
+  text += "\nWHAT IS NOT HERE\n\n";
+  for (const std::string& sentence : lacking) {
+    text += folded(sentence, 2);
+  }
+  if (lacking.empty()) {
+    text += "  Nothing that was measured is left out.\n";
+  }
+  return content.text("README.txt", text, "this page");
+}
+
+}  // namespace dubsar

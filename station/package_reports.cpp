@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+// What a package tells people.
+
+#include <span>
+
+#include "archive/page_pdf.h"
+#include "archive/png.h"
+#include "archive/report_pictures.h"
+#include "formats/atomic_file.h"
+#include "station/package_content.h"
+#include "station/session_wedges.h"
+
+namespace dubsar {
+
+namespace {
+
+/// A page of the session with what it says of its own files put right for the package.
+std::string moved(std::string page) {
+  const std::string from = "analysis/wedges.json";
+  const std::string to = "wedges/wedges.json";
+  for (std::size_t at = page.find(from); at != std::string::npos; at = page.find(from, at + to.size())) {
+    page.replace(at, from.size(), to);
+  }
+  return page;
+}
+
+struct Pages {
+  std::string report;
+  std::string checklist;
+  std::string red_sheet;  ///< PNG; empty when there is no surface
+};
+
+Result<Pages> pages_of(const PackageContent& content) {
+  if (const auto& kept = content.source.pages()) {
+    Result<std::string> sheet = read_whole_file(kept->red_sheet);
+    return Pages{moved(kept->report), moved(kept->checklist), sheet ? std::move(*sheet) : std::string()};
+  }
+  PageFacts facts = content.facts;
+  facts.title = content.identifier;
+  if (content.wedges) {
+    facts.wedges =
+        wedge_sentence({"wedges/wedges.json", content.wedges->wedges.size(), content.wedges->rejected.size()},
+                       "wedges/wedges.json");
+  }
+  ReportInput input = content.source.input(facts);
+  input.when = content.when;
+  const Result<ReportPictures> pictures = draw_pictures(input, content.job);
+  if (!pictures) {
+    return std::unexpected(pictures.error());
+  }
+  Result<std::string> report = report_html(input, *pictures);
+  if (!report) {
+    return std::unexpected(report.error());
+  }
+  Pages pages{std::move(*report), checklist_html(input, *pictures), {}};
+  if (!pictures->empty) {
+    const auto png = encode_png(pictures->red_sheet, input.title + ", red map");
+    if (!png) {
+      return std::unexpected(png.error());
+    }
+    pages.red_sheet.assign(png->begin(), png->end());
+  }
+  return pages;
+}
+
+}  // namespace
+
+Status add_reports(PackageContent& content) {
+  const Result<Pages> pages = pages_of(content);
+  if (!pages) {
+    return std::unexpected(pages.error());
+  }
+  const auto pdf =
+      page_pdf(pages->report, {content.identifier + ": scan report", program_name(), content.when});
+  if (!pdf) {
+    return std::unexpected(pdf.error());
+  }
+  for (const Status& written :
+       {content.text("report/report.html", pages->report,
+                     "the report: verdict, what is excused and why, accuracy, pictures; one page that needs "
+                     "nothing else"),
+        content.text("report/report.pdf",
+                     std::string_view(reinterpret_cast<const char*>(pdf->data()), pdf->size()),
+                     "the same report for paper, A4; the six sides are life size where they fit"),
+        content.text("report/checklist.html", pages->checklist,
+                     "the checklist with the sign-off, as it is filed")}) {
+    if (!written) {
+      return written;
+    }
+  }
+  return pages->red_sheet.empty() ? Status{}
+                                  : content.text("report/red_map.png", pages->red_sheet,
+                                                 "the six sides with what is red or excused");
+}
+
+}  // namespace dubsar

@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+// The raw measurements of a package, and what the session has written down about them.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <optional>
+
+#include "core/parallel.h"
+#include "formats/atomic_file.h"
+#include "formats/checklist_json.h"
+#include "formats/grid_file.h"
+#include "formats/grid_ply.h"
+#include "formats/json_text.h"
+#include "formats/poses_json.h"
+#include "formats/red_map_json.h"
+#include "station/package_content.h"
+
+namespace dubsar {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string own_name(const StoredScan& scan) {
+  return fmt::format("scans/grids/{:03}.grid", scan.id);
+}
+std::string ply_name(const StoredScan& scan) {
+  return fmt::format("scans/ply/{:03}.ply", scan.id);
+}
+
+/// Copies one grid to the bit, once its bytes are known to be what was stored, and unfolds it beside.
+Status add_scan(const PackageContent& content, const StoredScan& scan) {
+  const fs::path from = content.store.folder() / scan.file;
+  const Result<std::string> bytes = read_whole_file(from);
+  if (!bytes) {
+    return std::unexpected(bytes.error());
+  }
+  const auto span = std::as_bytes(std::span(bytes->data(), bytes->size()));
+  if (const Status whole = verify_grid_bytes(span, from.string()); !whole) {
+    return whole;
+  }
+  if (const Status written = write_file_atomically(content.root / own_name(scan), span);
+      !written || !content.has(PackagePart::kGridPly)) {
+    return written;
+  }
+  const Result<RangeGrid> grid = decode_grid(span, from.string());
+  return grid ? write_grid_ply(content.root / ply_name(scan), *grid) : std::unexpected(grid.error());
+}
+
+OrderedJson scan_json(const PackageContent& content, const StoredScan& scan) {
+  OrderedJson json{{"id", scan.id}};
+  if (!scan.damaged) {
+    json["grid"] = own_name(scan);
+    if (content.has(PackagePart::kGridPly)) {
+      json["ply"] = ply_name(scan);
+    }
+  }
+  json["source"] = scan.source;
+  json["device"] = scan.device;
+  json["timestamp_ns"] = scan.timestamp_ns;
+  json["rows"] = scan.rows;
+  json["cols"] = scan.cols;
+  json["samples"] = scan.samples;
+  json["spacing_mm"] = scan.spacing_mm;
+  json["taken_out"] = scan.dropped;
+  if (!scan.note.empty()) {
+    json["note"] = scan.note;
+  }
+  json["damaged"] = scan.damaged;
+  const auto pose = std::ranges::find(content.results().poses, scan.id, &ScanPose::id);
+  json["status"] =
+      scan.dropped || pose == content.results().poses.end() ? "not placed" : to_string(pose->status);
+  return json;
+}
+
+/// A document's name as a file name.
+std::string file_name(std::string name) {
+  std::ranges::replace_if(
+      name,
+      [](char c) {
+        return !((c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-');
+      },
+      '_');
+  return name;
+}
+
+Result<std::string> events_text(const SessionStore& store) {
+  const Result<std::vector<SessionEvent>> events = store.events();
+  if (!events) {
+    return std::unexpected(events.error());
+  }
+  OrderedJson list = OrderedJson::array();
+  for (const SessionEvent& event : *events) {
+    OrderedJson json{{"number", event.number}, {"time_ns", event.time_ns}, {"kind", event.kind}};
+    const OrderedJson said = OrderedJson::parse(event.json, nullptr, false);
+    json["what"] = said.is_discarded() ? OrderedJson(event.json) : said;
+    list.push_back(std::move(json));
+  }
+  return text_of(list);
+}
+
+}  // namespace
+
+Status add_scans(PackageContent& content) {
+  const Result<std::vector<StoredScan>> scans = content.store.scans();
+  if (!scans) {
+    return std::unexpected(scans.error());
+  }
+  for (const char* folder : {"scans/grids/x", "scans/ply/x"}) {
+    if (folder == std::string_view("scans/ply/x") && !content.has(PackagePart::kGridPly)) {
+      continue;
+    }
+    if (const auto made = content.place(folder); !made) {
+      return std::unexpected(made.error());
+    }
+  }
+  std::vector<std::optional<Error>> failed(scans->size());
+  std::atomic<std::size_t> done{0};
+  parallel_for_each_index(
+      scans->size(),
+      [&](std::size_t i) {
+        const StoredScan& scan = (*scans)[i];
+        if (!scan.damaged && !content.job.cancelled()) {
+          if (const Status added = add_scan(content, scan); !added) {
+            failed[i] = added.error();
+          }
+        }
+        content.job.progress("packing scans",
+                             static_cast<double>(done.fetch_add(1) + 1) / static_cast<double>(scans->size()));
+      },
+      1);
+  if (content.job.cancelled()) {
+    return fail(ErrorKind::kCancelled, "stopped");
+  }
+  OrderedJson list = OrderedJson::array();
+  for (std::size_t i = 0; i < scans->size(); ++i) {
+    if (failed[i]) {
+      return std::unexpected(*failed[i]);
+    }
+    const StoredScan& scan = (*scans)[i];
+    if (scan.damaged) {
+      content.lacking.push_back(
+          fmt::format("Scan {} is damaged in the session: its samples are not here.", scan.id));
+    }
+    list.push_back(scan_json(content, scan));
+  }
+  content.list("scans/grids/", "every scan as it was measured, lossless: formats/grid.txt");
+  if (content.has(PackagePart::kGridPly)) {
+    content.list("scans/ply/",
+                 "the same scans as ordered PLY, which other programs read: formats/range_grid_ply.txt");
+  }
+  return content.text("scans/scans.json", text_of({{"scans", list}}),
+                      "the list of the scans: files, device, time, size, and which were taken out and why");
+}
+
+Status add_records(PackageContent& content) {
+  const Results& results = content.results();
+  for (const Status& written :
+       {content.text("scans/poses.json", poses_to_json(results.poses),
+                     "where every scan lies in the model, and how certainly: formats/poses.txt"),
+        content.text("verdict/red_map.json", red_map_to_json(results.red_map),
+                     "what is sampled too thinly or excused, and why: formats/red_map.txt"),
+        content.text("verdict/checklist.json", checklist_to_json(results.checklist),
+                     "coverage of the six sides and what the verdict rests on: formats/checklist.txt")}) {
+    if (!written) {
+      return written;
+    }
+  }
+  const Result<std::vector<std::string>> names = content.store.document_names();
+  if (!names) {
+    return std::unexpected(names.error());
+  }
+  for (const std::string& name : *names) {
+    const auto document = content.store.load_document(name);
+    if (!document) {
+      return std::unexpected(document.error());
+    }
+    if (*document) {
+      if (const Status written = content.text("session/" + file_name(name) + ".json", **document,
+                                              "the session's document \"" + name + "\", as it was kept");
+          !written) {
+        return written;
+      }
+    }
+  }
+  const Result<std::string> events = events_text(content.store);
+  if (!events) {
+    return std::unexpected(events.error());
+  }
+  if (const Status written = content.text("session/events.json", *events,
+                                          "everything that happened in the session, in order; sign-offs with "
+                                          "what was signed: formats/sign_off.txt");
+      !written) {
+    return written;
+  }
+  for (const FormatText& format : format_texts()) {
+    if (const auto made = content.place(std::string("formats/") + format.name); !made) {
+      return std::unexpected(made.error());
+    } else if (const Status written = write_file_atomically(*made, std::string_view(format.text)); !written) {
+      return written;
+    }
+  }
+  content.list("formats/", "every file format of this package that is Dubsar's own, described");
+  return {};
+}
+
+}  // namespace dubsar

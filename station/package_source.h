@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "core/job.h"
+#include "core/result.h"
+#include "core/rigid_transform.h"
+#include "station/plan_again.h"
+#include "station/results.h"
+#include "station/scan_set.h"
+
+namespace dubsar {
+
+/// Pages as the session keeps them.
+struct KeptPages {
+  std::string report;               ///< HTML
+  std::string checklist;            ///< HTML
+  std::filesystem::path red_sheet;  ///< PNG
+};
+
+/// What a package is made of: the verdict with its mesh and pages, as the session keeps them or worked out
+/// anew.
+class PackageSource {
+ public:
+  /// Takes what the session keeps where mesh, red map, poses, pages and sign-off all belong together and are
+  /// whole; else goes through grids and poses again, as `plan` does, which takes far longer. Opens the
+  /// session for reading only. Errors: those of the store and of the stages, kCancelled.
+  [[nodiscard]] static Result<PackageSource> open(const std::filesystem::path& session, JobContext& job);
+
+  [[nodiscard]] const SessionStore& store() const { return set_ ? *set_->store : *store_; }
+  [[nodiscard]] const Results& results() const { return planned_ ? planned_->results : results_; }
+  /// Which way the tablet lies, as verdict and report name its sides.
+  [[nodiscard]] const RigidTransform& tablet_from_model() const { return tablet_from_model_; }
+  /// Nothing when the verdict was worked out anew: report_input() then has what they are made of.
+  [[nodiscard]] const std::optional<KeptPages>& pages() const { return pages_; }
+  /// Only where pages() is nothing.
+  [[nodiscard]] ReportInput input(const PageFacts& facts) const {
+    return report_input(planned_->results, *planned_->stage, facts);
+  }
+
+ private:
+  Status take_kept(JobContext& job);
+
+  std::optional<SessionStore> store_;
+  Results results_;
+  std::optional<KeptPages> pages_;
+  std::optional<ScanSet> set_;
+  std::optional<PlannedAgain> planned_;
+  RigidTransform tablet_from_model_;
+};
+
+}  // namespace dubsar

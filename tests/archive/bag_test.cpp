@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "archive/bag.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "archive/staged_folder.h"
+#include "formats/atomic_file.h"
+#include "formats/sha512.h"
+#include "tests/support/temporary_folder.h"
+
+namespace dubsar {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+void put(const fs::path& path, const std::string& text) {
+  fs::create_directories(path.parent_path());
+  std::ofstream(path, std::ios::binary) << text;
+}
+
+std::string text_of_file(const fs::path& path) {
+  return read_whole_file(path).value_or("cannot be read");
+}
+
+TEST(Bag, HasTheTagFilesOfTheStandard) {
+  const test::TemporaryFolder folder;
+  put(folder.path() / "data" / "b.txt", "bb");
+  put(folder.path() / "data" / "a" / "one.bin", std::string(3, '\0'));
+  const auto size =
+      write_bag_tags(folder.path(), {{"Source-Organization", "A\r\nB"}, {"Contact-Name", ""}}, JobContext());
+  ASSERT_TRUE(size) << size.error().line();
+  EXPECT_EQ(size->files, 2U);
+  EXPECT_EQ(size->bytes, 5U);
+  EXPECT_EQ(text_of_file(folder.path() / "bagit.txt"),
+            "BagIt-Version: 1.0\nTag-File-Character-Encoding: UTF-8\n");
+  EXPECT_EQ(text_of_file(folder.path() / "bag-info.txt"),
+            "Source-Organization: A  B\nBag-Size: 5 bytes\nPayload-Oxum: 5.2\n");
+  EXPECT_EQ(text_of_file(folder.path() / "manifest-sha512.txt"),
+            sha512_hex(std::string(3, '\0')) + "  data/a/one.bin\n" + sha512_hex("bb") + "  data/b.txt\n");
+  const std::string tags = text_of_file(folder.path() / "tagmanifest-sha512.txt");
+  for (const char* tag : {"bagit.txt", "bag-info.txt", "manifest-sha512.txt"}) {
+    EXPECT_THAT(tags, HasSubstr(sha512_hex(text_of_file(folder.path() / tag)) + "  " + tag + "\n"));
+  }
+  EXPECT_THAT(tags, Not(HasSubstr("data/")));
+}
+
+TEST(Bag, EncodesWhatALineCannotHold) {
+  EXPECT_EQ(bag_path("data/100 %\n\r.txt"), "data/100 %25%0A%0D.txt");
+  EXPECT_EQ(bag_path("data/Ḫattuša.ply"), "data/Ḫattuša.ply");
+}
+
+TEST(Bag, RefusesWhatIsNoPayload) {
+  const test::TemporaryFolder folder;
+  fs::create_directories(folder.path() / "data");
+  EXPECT_EQ(write_bag_tags(folder.path(), {}, JobContext()).error().kind, ErrorKind::kBadInput);
+  fs::create_symlink("/etc/hostname", folder.path() / "data" / "link");
+  EXPECT_EQ(write_bag_tags(folder.path(), {}, JobContext()).error().kind, ErrorKind::kBadInput);
+}
+
+TEST(Bag, StopsWhenAsked) {
+  const test::TemporaryFolder folder;
+  put(folder.path() / "data" / "a", "a");
+  JobContext stopped;
+  stopped.cancel();
+  EXPECT_EQ(write_bag_tags(folder.path(), {}, stopped).error().kind, ErrorKind::kCancelled);
+  EXPECT_FALSE(fs::exists(folder.path() / "bagit.txt"));
+}
+
+TEST(StagedFolder, IsThereWholeOrNotAtAll) {
+  const test::TemporaryFolder folder;
+  const fs::path target = folder.path() / "new" / "bag";
+  {
+    auto staged = StagedFolder::begin(target, false);
+    ASSERT_TRUE(staged) << staged.error().line();
+    put(staged->path() / "file", "x");
+    EXPECT_FALSE(fs::exists(target));
+    EXPECT_EQ(StagedFolder::begin(target, false).error().kind, ErrorKind::kUsage) << "two at once";
+  }
+  EXPECT_TRUE(fs::is_empty(target.parent_path())) << "given up: nothing is left";
+  auto staged = StagedFolder::begin(target, false);
+  ASSERT_TRUE(staged);
+  put(staged->path() / "file", "y");
+  ASSERT_TRUE(staged->publish());
+  EXPECT_EQ(text_of_file(target / "file"), "y");
+  EXPECT_EQ(std::distance(fs::directory_iterator(target.parent_path()), fs::directory_iterator()), 1);
+}
+
+TEST(StagedFolder, ReplacesOnlyWhenTold) {
+  const test::TemporaryFolder folder;
+  const fs::path target = folder.path() / "bag";
+  put(target / "old", "old");
+  EXPECT_EQ(StagedFolder::begin(target, false).error().kind, ErrorKind::kUsage);
+  auto staged = StagedFolder::begin(target.string() + "/", true);
+  ASSERT_TRUE(staged) << staged.error().line();
+  put(staged->path() / "new", "new");
+  ASSERT_TRUE(staged->publish());
+  EXPECT_EQ(text_of_file(target / "new"), "new");
+  EXPECT_FALSE(fs::exists(target / "old"));
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), fs::directory_iterator()), 1);
+}
+
+TEST(StagedFolder, ClearsWhatAKilledProgramLeft) {
+  const test::TemporaryFolder folder;
+  put(folder.path() / (std::string(kTemporaryPrefix) + "bag") / "half", "written");
+  auto staged = StagedFolder::begin(folder.path() / "bag", false);
+  ASSERT_TRUE(staged) << staged.error().line();
+  EXPECT_TRUE(fs::is_empty(staged->path()));
+}
+
+}  // namespace
+}  // namespace dubsar

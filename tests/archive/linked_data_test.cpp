@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+// What is written for other programs: the table of wedges, annotations, manifest, provenance.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "archive/iiif_manifest.h"
+#include "archive/provenance.h"
+#include "archive/wedge_annotations.h"
+#include "archive/wedge_table.h"
+
+namespace dubsar {
+namespace {
+
+using ::testing::StartsWith;
+
+Wedge some_wedge() {
+  Wedge wedge;
+  wedge.id = 7;
+  wedge.depth_point_mm = {1.5, -2, 3};
+  wedge.outer_vertices_mm = {Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(0, 2, 0), Eigen::Vector3d(0, 0, 3)};
+  wedge.depth_mm = 0.75;
+  wedge.place = {Face::kReverse, 2, 3, 0};
+  wedge.sigma.volume_mm3 = std::numeric_limits<double>::infinity();
+  return wedge;
+}
+
+std::vector<std::string> cells(const std::string& line) {
+  std::vector<std::string> out;
+  std::stringstream in(line);
+  for (std::string cell; std::getline(in, cell, ',');) {
+    out.push_back(cell);
+  }
+  return out;
+}
+
+TEST(WedgeTable, HasANameForEveryCell) {
+  const std::string csv = wedge_table({some_wedge()});
+  const std::size_t end = csv.find("\r\n");
+  ASSERT_NE(end, std::string::npos);
+  const auto names = cells(csv.substr(0, end));
+  const auto values = cells(csv.substr(end + 2, csv.size() - end - 4));
+  ASSERT_EQ(names.size(), values.size());
+  const auto value = [&](const std::string& name) {
+    const auto at = std::ranges::find(names, name);
+    return at == names.end() ? "no such name" : values[static_cast<std::size_t>(at - names.begin())];
+  };
+  EXPECT_EQ(value("id"), "7");
+  EXPECT_EQ(value("side"), "reverse");
+  EXPECT_EQ(value("line"), "2");
+  EXPECT_EQ(value("depth_point_x_mm"), "1.5");
+  EXPECT_EQ(value("depth_mm"), "0.75");
+  EXPECT_EQ(value("sigma_volume_mm3"), "") << "what is not known is empty";
+}
+
+TEST(WedgeAnnotations, PointAtAClosedRingOnTheModel) {
+  const auto page = nlohmann::json::parse(wedge_annotations(
+      {some_wedge()}, {"https://example.org/t/", "model/t.ply", "BM 1", "Dubsar", "2026-01-02T03:04:05Z"}));
+  EXPECT_EQ(page["type"], "AnnotationPage");
+  const auto& target = page["items"][0]["target"];
+  EXPECT_EQ(target["source"], "https://example.org/t/model/t.ply");
+  EXPECT_EQ(target["selector"]["value"],
+            "POLYGON Z ((1.0000 0.0000 0.0000, 0.0000 2.0000 0.0000, 0.0000 0.0000 3.0000, 1.0000 0.0000 "
+            "0.0000))");
+}
+
+TEST(IiifManifest, HasACanvasAPictureWithItsScale) {
+  ManifestInput input;
+  input.base_url = "https://example.org/t/";
+  input.label = "BM 1";
+  input.metadata = {{"Museum number", "BM 1"}, {"CDLI number", ""}};
+  input.pictures = {{"a.png", "Obverse", "image/png", 300, 200, 0.05},
+                    {"b.jpg", "All", "image/jpeg", 9, 8, 0}};
+  const auto manifest = nlohmann::json::parse(iiif_manifest(input));
+  ASSERT_EQ(manifest["items"].size(), 2U);
+  const auto& canvas = manifest["items"][0];
+  EXPECT_EQ(canvas["width"], 300);
+  EXPECT_EQ(canvas["items"][0]["items"][0]["body"]["id"], "https://example.org/t/a.png");
+  EXPECT_EQ(canvas["items"][0]["items"][0]["target"], canvas["id"]);
+  EXPECT_DOUBLE_EQ(canvas["service"][0]["physicalScale"].get<double>(), 0.005);
+  EXPECT_FALSE(manifest["items"][1].contains("service")) << "not to scale";
+  EXPECT_EQ(manifest["metadata"].size(), 1U);
+}
+
+TEST(Provenance, EveryFileOfAStepHasItsSource) {
+  ProvenanceInput input;
+  input.base_url = "https://example.org/t/";
+  input.identifier = "BM 1";
+  input.cdli = "P123456";
+  input.program = "Dubsar";
+  input.when = "2026-01-02T03:04:05Z";
+  input.scans = {
+      {0, "2026-01-01T00:00:00Z", "scans/grids/000.grid", "registered", true, {{"RMS", 0.01, "mm"}}}};
+  input.steps = {{"stitching", "Stitching", {"scans/grids/000.grid"}, {"model/t.ply"}, {}, {}}};
+  const auto json = nlohmann::json::parse(provenance_jsonld(input));
+  const auto& graph = json["@graph"];
+  const auto find = [&](const std::string& id) {
+    for (const auto& node : graph) {
+      if (node["@id"] == input.base_url + id) {
+        return node;
+      }
+    }
+    return nlohmann::json();
+  };
+  EXPECT_EQ(find("provenance/scan-0")["crmdig:L20_has_created"]["@id"],
+            "https://example.org/t/scans/grids/000.grid");
+  EXPECT_EQ(find("provenance/stitching")["crmdig:L21_used_as_derivation_source"][0]["@id"],
+            "https://example.org/t/scans/grids/000.grid");
+  EXPECT_EQ(find("tablet")["crm:P1_is_identified_by"][0]["rdfs:label"], "P123456");
+}
+
+}  // namespace
+}  // namespace dubsar

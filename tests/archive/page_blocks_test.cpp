@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "archive/page_blocks.h"
+
+#include <gtest/gtest.h>
+
+#include "archive/base64.h"
+#include "archive/page_pdf.h"
+
+namespace dubsar {
+namespace {
+
+using Kind = PageBlock::Kind;
+
+std::string words(const RichText& text) {
+  std::string all;
+  for (const TextRun& run : text) {
+    all += (run.breaks ? "|" : "") + run.text;
+  }
+  return all;
+}
+
+TEST(PageBlocks, KeepEveryWordInItsOrder) {
+  const auto blocks = page_blocks(
+      "<html><head><title>no</title><style>p { no: no }</style></head><body><h1>K. 1 &lt;a &amp; b&gt;</h1>\n"
+      "<p>One\n  two <strong>three</strong>.</p><ol><li>first <span class=\"aside\">so</span></li><li>second"
+      "</li></ol><dl><dt>Term</dt><dd>what it is</dd></dl><table><thead><tr><th>A</th><th>B</th></tr></thead>"
+      "<tbody><tr><td>1<br>one</td><td></td></tr></tbody></table></body></html>");
+  ASSERT_EQ(blocks.size(), 6U);
+  EXPECT_EQ(blocks[0].kind, Kind::kHeading);
+  EXPECT_EQ(blocks[0].level, 1);
+  EXPECT_EQ(words(blocks[0].text), "K. 1 <a & b>");
+  EXPECT_EQ(words(blocks[1].text), "One two three.");
+  EXPECT_TRUE(blocks[1].text[1].bold);
+  EXPECT_EQ(blocks[2].mark, "1.");
+  EXPECT_TRUE(blocks[2].text[1].soft);
+  EXPECT_EQ(blocks[3].mark, "2.");
+  EXPECT_EQ(blocks[4].kind, Kind::kDefinition);
+  EXPECT_EQ(blocks[4].mark, "Term");
+  EXPECT_EQ(words(blocks[4].text), "what it is");
+  ASSERT_EQ(blocks[5].rows.size(), 2U);
+  EXPECT_EQ(words(blocks[5].rows[0][1]), "B");
+  EXPECT_EQ(words(blocks[5].rows[1][0]), "1|one");
+  EXPECT_EQ(words(blocks[5].rows[1][1]), "");
+}
+
+TEST(PageBlocks, TakePicturesOutOfThePage) {
+  const std::string bytes = "not a picture, but bytes";
+  const std::string uri =
+      "data:image/png;base64," + base64({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()});
+  const auto blocks = page_blocks(
+      "<div class=\"cross\"><figure><img width=\"30\" height=\"20\" style=\"--mm: "
+      "12.50mm\" src=\"" +
+      uri + "\"><figcaption>top</figcaption></figure></div><p>after</p>");
+  ASSERT_EQ(blocks.size(), 2U);
+  EXPECT_EQ(blocks[0].kind, Kind::kCross);
+  ASSERT_EQ(blocks[0].figures.size(), 1U);
+  const PageFigure& figure = blocks[0].figures[0];
+  EXPECT_EQ(figure.png, bytes);
+  EXPECT_EQ(figure.width_px, 30);
+  EXPECT_EQ(figure.height_px, 20);
+  EXPECT_DOUBLE_EQ(figure.width_mm, 12.5);
+  EXPECT_EQ(words(figure.caption), "top");
+}
+
+TEST(PageBlocks, TakeAnythingForAPage) {
+  for (const char* broken : {"", "<", "<p", "<td>x", "<tr><td>", "<img src=\"data:image/png;base64,?\">",
+                             "<figcaption>x", "</dt>", "<dd>x</dd>", "<h9>", "<style>", "<p>&amp"}) {
+    EXPECT_LE(page_blocks(broken).size(), 1U) << broken;
+  }
+}
+
+TEST(PagePdf, IsTheSameForTheSamePage) {
+  std::string html = "<h1>Tablet</h1>";
+  for (int i = 0; i < 200; ++i) {
+    html += "<p>Line " + std::to_string(i) + " with ḫ and ŠÀ.</p>";
+  }
+  const PdfInfo info{"Tablet", "Dubsar", "2026-01-02T03:04:05Z"};
+  const auto pdf = page_pdf(html, info);
+  ASSERT_TRUE(pdf) << pdf.error().line();
+  EXPECT_EQ(std::string(pdf->begin(), pdf->begin() + 5), "%PDF-");
+  EXPECT_EQ(page_pdf(html, info).value(), *pdf);
+}
+
+}  // namespace
+}  // namespace dubsar

@@ -1,0 +1,327 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+// dubsar export: the package is whole, in forms that others read, and never half there.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <csignal>
+#include <cstdlib>
+#include <fstream>
+#include <map>
+
+#include "formats/atomic_file.h"
+#include "formats/grid_file.h"
+#include "formats/mesh_io.h"
+#include "formats/poses_json.h"
+#include "tests/station/support/bumpy_scans.h"
+#include "tests/station/support/command.h"
+#include "tests/support/temporary_folder.h"
+
+namespace dubsar {
+namespace {
+
+namespace fs = std::filesystem;
+using test::bytes_of;
+using test::Outcome;
+using test::run_command;
+using ::testing::Contains;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using ::testing::SizeIs;
+
+/// Runs a program of others; its exit status. What it says comes with a failed expectation.
+int shell(const std::string& command) {
+  const int status = std::system((command + " >&2").c_str());
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+bool has_program(const std::string& name) {
+  return std::system(("command -v " + name + " >/dev/null").c_str()) == 0;
+}
+
+std::string quoted(const fs::path& path) {
+  std::string out = path.string();
+  out.insert(out.begin(), '\'');
+  out.push_back('\'');
+  return out;
+}
+
+std::vector<std::string> files_below(const fs::path& folder) {
+  std::vector<std::string> names;
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    if (entry.is_regular_file()) {
+      names.push_back(entry.path().lexically_relative(folder).generic_string());
+    }
+  }
+  std::ranges::sort(names);
+  return names;
+}
+
+class Export : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder_ = new test::TemporaryFolder;
+    const fs::path scans = test::write_bumpy_scans(at("scans"), 3);
+    const Outcome scanned = run_command(
+        {"scan", "--device", "replay:" + scans.string(), "--session", at("session").string(), "--json"});
+    ASSERT_EQ(scanned.status, 1) << scanned.err;  // one side only: not conclusive
+    whole_ = run_command({"export", at("session").string(), "--to", at("bag").string(), "--json",
+                          "--base-url", "https://example.org/t"});
+  }
+  static void TearDownTestSuite() { delete folder_; }
+  [[nodiscard]] static fs::path at(const std::string& name) { return folder_->path() / name; }
+  [[nodiscard]] static fs::path data(const std::string& name) { return at("bag") / "data" / name; }
+  [[nodiscard]] static Outcome export_to(const std::string& name, const std::vector<std::string>& more) {
+    std::vector<std::string> words{"export", at("session").string(), "--to", at(name).string(), "--json"};
+    words.insert(words.end(), more.begin(), more.end());
+    return run_command(words);
+  }
+
+  static test::TemporaryFolder* folder_;
+  static Outcome whole_;
+};
+test::TemporaryFolder* Export::folder_ = nullptr;
+Outcome Export::whole_;
+
+TEST_F(Export, PacksEverythingWhateverTheVerdictSays) {
+  ASSERT_EQ(whole_.status, 0) << whole_.err;
+  const nlohmann::json json = whole_.json();
+  EXPECT_EQ(json["conclusive"], false);
+  EXPECT_EQ(json["scans"], 3);
+  EXPECT_EQ(json["mesh"], true);
+  const auto files = files_below(at("bag"));
+  EXPECT_EQ(json["files"].get<std::size_t>(), files.size() - 4);
+  for (const char* file : {"bagit.txt",
+                           "bag-info.txt",
+                           "manifest-sha512.txt",
+                           "tagmanifest-sha512.txt",
+                           "data/README.txt",
+                           "data/scans/grids/002.grid",
+                           "data/scans/ply/002.ply",
+                           "data/scans/poses.json",
+                           "data/scans/scans.json",
+                           "data/verdict/red_map.json",
+                           "data/verdict/checklist.json",
+                           "data/session/events.json",
+                           "data/formats/grid.txt",
+                           "data/model/session.ply",
+                           "data/model/session.glb",
+                           "data/model/session.stl",
+                           "data/pictures/clay/01_top.png",
+                           "data/pictures/msii/03_front.png",
+                           "data/pictures/ao/05_bottom.png",
+                           "data/pictures/radiance/06_back.png",
+                           "data/pictures/cdli/session_te.jpg",
+                           "data/pictures/fatcross/session_cdli_1000dpi.tif",
+                           "data/pictures/fatcross/session_ebl_300dpi.jpg",
+                           "data/pictures/session_rollout.png",
+                           "data/features/openness.mat",
+                           "data/features/msii.mat",
+                           "data/wedges/wedges.json",
+                           "data/wedges/wedges.csv",
+                           "data/wedges/annotations.json",
+                           "data/report/report.html",
+                           "data/report/report.pdf",
+                           "data/iiif/manifest.json",
+                           "data/provenance.jsonld"}) {
+    EXPECT_THAT(files, Contains(file));
+  }
+  const std::string readme = bytes_of(data("README.txt"));
+  EXPECT_THAT(readme, HasSubstr("NOT CONCLUSIVE"));
+  for (const std::string& file : files) {
+    const std::string name = file.substr(file.find('/') + 1);
+    if (file.starts_with("data/") && name != "README.txt") {
+      EXPECT_TRUE(readme.find("  " + name + "\n") != std::string::npos ||
+                  readme.find("  " + name.substr(0, name.rfind('/') + 1) + "\n") != std::string::npos)
+          << file << " is not explained";
+    }
+  }
+}
+
+TEST_F(Export, EveryByteIsCoveredByAChecksum) {
+  const std::string bag = quoted(at("bag"));
+  EXPECT_EQ(
+      shell("cd " + bag + " && sha512sum --quiet --strict -c manifest-sha512.txt tagmanifest-sha512.txt"), 0);
+  const std::string manifest = bytes_of(at("bag") / "manifest-sha512.txt");
+  std::uint64_t bytes = 0;
+  std::size_t count = 0;
+  for (const std::string& file : files_below(at("bag") / "data")) {
+    EXPECT_THAT(manifest, HasSubstr("  data/" + file + "\n"));
+    bytes += fs::file_size(at("bag") / "data" / file);
+    ++count;
+  }
+  EXPECT_THAT(bytes_of(at("bag") / "bag-info.txt"),
+              HasSubstr("Payload-Oxum: " + std::to_string(bytes) + "." + std::to_string(count) + "\n"));
+}
+
+TEST_F(Export, ScansModelAndPosesAreThoseOfTheSession) {
+  for (const char* id : {"000", "001", "002"}) {
+    EXPECT_TRUE(bytes_of(data(std::string("scans/grids/") + id + ".grid")) ==
+                bytes_of(at("session") / "grids" / (std::string(id) + ".grid")));
+  }
+  EXPECT_TRUE(bytes_of(data("model/session.ply")) == bytes_of(at("session") / "mesh" / "model.ply"));
+  EXPECT_EQ(bytes_of(data("verdict/red_map.json")), bytes_of(at("session") / "export" / "red_map.json"));
+  EXPECT_EQ(read_poses(data("scans/poses.json"))->size(), 3U);
+  // Another reader than the grid's own gives the same samples.
+  const Outcome again = run_command({"register", data("scans/ply").string(), "--json"});
+  EXPECT_EQ(again.json()["scans"].size(), 3U) << again.err;
+  const auto master = read_mesh(data("model/session.ply"));
+  const auto access = read_mesh(data("model/session.glb"));
+  ASSERT_TRUE(master);
+  ASSERT_TRUE(access);
+  ASSERT_EQ(access->faces.size(), master->faces.size());
+  EXPECT_EQ(access->positions.front(), master->positions.front()) << "metres and back";
+}
+
+TEST_F(Export, TheSessionIsOnlyRead) {
+  std::map<std::string, std::string> before;
+  for (const std::string& file : files_below(at("session"))) {
+    before[file] = bytes_of(at("session") / file);
+  }
+  const Outcome again = export_to("again", {"--without", "renderings"});
+  ASSERT_EQ(again.status, 0) << again.err;
+  for (const std::string& file : files_below(at("session"))) {
+    EXPECT_TRUE(before[file] == bytes_of(at("session") / file)) << file;
+  }
+  EXPECT_FALSE(fs::exists(at("again") / "data" / "pictures"));
+  EXPECT_FALSE(fs::exists(at("again") / "data" / "iiif"));
+  EXPECT_THAT(bytes_of(at("again") / "data" / "README.txt"), HasSubstr("asked to leave them out"));
+  EXPECT_TRUE(bytes_of(at("again") / "data" / "features" / "msii.mat") ==
+              bytes_of(data("features/msii.mat")));
+}
+
+TEST_F(Export, TakesTheVerdictAsTheSessionKeepsItWhileItHolds) {
+  // Nothing has changed since the session's pages were made: they are the package's pages.
+  EXPECT_THAT(whole_.err, Not(HasSubstr("worked out anew")));
+  const std::string kept = bytes_of(at("session") / "export" / "checklist.html");
+  EXPECT_FALSE(kept.empty());
+  EXPECT_TRUE(bytes_of(data("report/checklist.html")) == kept);
+
+  fs::copy(at("session"), at("less"), fs::copy_options::recursive);
+  ASSERT_EQ(run_command({"session", "drop", at("less").string(), "2"}).status, 0);
+  const Outcome less = run_command({"export", at("less").string(), "--to", at("less bag").string(), "--json",
+                                    "--without", "renderings,features,wedges"});
+  ASSERT_EQ(less.status, 0) << less.err;
+  EXPECT_THAT(less.err, HasSubstr("worked out anew"));
+  EXPECT_EQ(less.json()["scans"], 3) << "what was taken out is kept";
+  const fs::path root = at("less bag") / "data";
+  EXPECT_EQ(read_poses(root / "scans" / "poses.json")->size(), 2U);
+  EXPECT_FALSE(bytes_of(root / "report" / "checklist.html") == kept);
+  const auto list = nlohmann::json::parse(bytes_of(root / "scans" / "scans.json"));
+  EXPECT_EQ(list["scans"][2]["taken_out"], true);
+}
+
+TEST_F(Export, NeverOverwritesUnasked) {
+  const Outcome refused = export_to("bag", {});
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_THAT(refused.complaints(), SizeIs(1));
+  EXPECT_THAT(refused.err, HasSubstr("--force"));
+
+  fs::create_directories(at("precious"));
+  std::ofstream(at("precious") / "thesis.txt") << "all of it";
+  EXPECT_EQ(export_to("precious", {}).status, 2);
+  EXPECT_EQ(export_to("precious", {"--force"}).status, 2) << "that is no package";
+  EXPECT_EQ(bytes_of(at("precious") / "thesis.txt"), "all of it");
+
+  const std::vector<std::string> small{"--without", "renderings,features,wedges,grid-ply"};
+  ASSERT_EQ(export_to("twice", small).status, 0);
+  std::ofstream(at("twice") / "data" / "left.txt") << "of the first";
+  std::vector<std::string> forced = small;
+  forced.emplace_back("--force");
+  ASSERT_EQ(export_to("twice", forced).status, 0);
+  EXPECT_FALSE(fs::exists(at("twice") / "data" / "left.txt"));
+}
+
+TEST_F(Export, IsNotThereUntilItIsWhole) {
+  const fs::path to = at("stopped");
+  test::RunningCommand running({"export", at("session").string(), "--to", to.string()});
+  ASSERT_TRUE(running.says("packing scans")) << running.log_until_now();
+  running.send(SIGKILL);
+  EXPECT_EQ(running.wait().signal, SIGKILL);
+  EXPECT_FALSE(fs::exists(to));
+  test::RunningCommand stopped({"export", at("session").string(), "--to", to.string()});
+  ASSERT_TRUE(stopped.says("packing scans")) << stopped.log_until_now();
+  stopped.send(SIGINT);
+  EXPECT_EQ(stopped.wait().status, 1);
+  EXPECT_FALSE(fs::exists(to));
+  for (const auto& entry : fs::directory_iterator(folder_->path())) {
+    EXPECT_THAT(entry.path().filename().string(), Not(HasSubstr("dubsar-tmp"))) << "nothing is left behind";
+  }
+  EXPECT_EQ(run_command({"export", at("session").string(), "--to", to.string(), "--without",
+                         "renderings,features,wedges,grid-ply"})
+                .status,
+            0);
+}
+
+TEST_F(Export, BadUsageIsToldInOneLine) {
+  EXPECT_EQ(run_command({"export", at("session").string()}).status, 2);
+  EXPECT_EQ(run_command({"export", at("nowhere").string(), "--to", at("x").string()}).status, 2);
+  EXPECT_EQ(export_to("x", {"--without", "everything"}).status, 2);
+  EXPECT_FALSE(fs::exists(at("x")));
+}
+
+TEST_F(Export, OthersReadItsForms) {
+  if (!has_program("xmllint") || !has_program("qpdf") || !has_program("pdfinfo") ||
+      !has_program("pdffonts")) {
+    GTEST_SKIP() << "install libxml2-utils, qpdf and poppler-utils to hold the files against them";
+  }
+  for (const char* side : {"obverse", "reverse"}) {
+    if (fs::exists(data(std::string("wedges/drawings/") + side + ".svg"))) {
+      EXPECT_EQ(shell("xmllint --noout " + quoted(data(std::string("wedges/drawings/") + side + ".svg"))), 0);
+    }
+  }
+  const std::string pdf = quoted(data("report/report.pdf"));
+  EXPECT_EQ(shell("qpdf --check " + pdf), 0);
+  EXPECT_EQ(shell("pdfinfo " + pdf + " | grep -q 'Page size: *595.* x 841.*A4'"), 0);
+  // From the third line on: name, type, encoding, embedded.
+  EXPECT_EQ(shell("pdffonts " + pdf + " | tail -n +3 | grep -vq ' yes yes yes '"), 1)
+      << "every font is embedded, as a subset, with its letters";
+  EXPECT_EQ(shell("pdftotext " + pdf + " - | grep -q 'Not conclusive'"), 0);
+}
+
+TEST_F(Export, TheAccessMeshIsValidGltf) {
+  // Khronos' own validator, from npm; Debian has none.
+  if (std::system("node -e \"require('gltf-validator')\" 2>/dev/null") != 0) {
+    GTEST_SKIP() << "npm install gltf-validator and name its folder in NODE_PATH to hold the GLB against it";
+  }
+  const std::string check =
+      "node -e \"require('gltf-validator').validateBytes(new Uint8Array(require('fs').readFileSync("
+      "process.argv[1]))).then(r => { console.error(JSON.stringify(r.issues)); "
+      "process.exit(r.issues.numErrors + r.issues.numWarnings > 0 ? 1 : 0); })\" ";
+  EXPECT_EQ(shell(check + quoted(data("model/session.glb"))), 0);
+}
+
+TEST_F(Export, LinkedDataHasTheShapeOfTheStandards) {
+  const std::string python = "/usr/bin/python3";
+  if (std::system((python + " -c 'import jsonschema' 2>/dev/null").c_str()) != 0) {
+    GTEST_SKIP() << "install python3-jsonschema to hold the files against schemas";
+  }
+  for (const auto& [file, schema] : {std::pair{"iiif/manifest.json", "iiif_manifest.json"},
+                                     std::pair{"wedges/annotations.json", "annotation_page.json"},
+                                     std::pair{"provenance.jsonld", "provenance.json"}}) {
+    const std::string check =
+        " -c 'import json, jsonschema, sys; "
+        "jsonschema.validate(json.load(open(sys.argv[1])), json.load(open(sys.argv[2])))' ";
+    const fs::path shape = fs::path(DUBSAR_SOURCE_DIR) / "tests/station/schemas" / schema;
+    EXPECT_EQ(shell(python + check + quoted(data(file)) + " " + quoted(shape)), 0) << file;
+  }
+}
+
+TEST_F(Export, ProvenanceIsAGraphToOthers) {
+  if (std::system("/usr/bin/python3 -c 'import rdflib' 2>/dev/null") != 0) {
+    GTEST_SKIP() << "install python3-rdflib to read the provenance as linked data";
+  }
+  // Every file that a scan created is the source of a step.
+  const std::string check =
+      "/usr/bin/python3 -c 'import rdflib, sys; g = rdflib.Graph(); g.parse(sys.argv[1], "
+      "format=\"json-ld\"); "
+      "d = rdflib.Namespace(\"http://www.ics.forth.gr/isl/CRMdig/\"); "
+      "made = set(g.objects(None, d[\"L20_has_created\"])); "
+      "used = set(g.objects(None, d[\"L21_used_as_derivation_source\"])); "
+      "sys.exit(0 if len(made) == 3 and made <= used else 1)' ";
+  EXPECT_EQ(shell(check + quoted(data("provenance.jsonld"))), 0);
+}
+
+}  // namespace
+}  // namespace dubsar
