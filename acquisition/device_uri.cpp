@@ -84,6 +84,10 @@ Result<DeviceUri> parse_device_uri(std::string_view text) {
   if (text.empty()) {
     return fail(ErrorKind::kUsage, "no device named", {}, "name one, such as sim: or replay:FOLDER");
   }
+  if (text.find('\0') != std::string_view::npos) {
+    return fail(ErrorKind::kUsage, "a zero byte in the name of a device",
+                std::string(text.substr(0, text.find('\0'))), "take it out");
+  }
   const std::size_t colon = scheme_end(text);
   if (colon == std::string_view::npos) {
     return DeviceUri{"replay", std::string(text), {}};

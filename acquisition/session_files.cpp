@@ -204,8 +204,8 @@ Result<FileSum> sum_of_file(const fs::path& path, const JobContext* job) {
   return sum;
 }
 
-Result<std::map<std::string, FileSum>> read_sums(const fs::path& folder) {
-  std::map<std::string, FileSum> out;
+Result<Sums> read_sums(const fs::path& folder) {
+  Sums out;
   std::error_code error;
   if (!fs::exists(folder / kSums, error)) {
     return out;
@@ -223,17 +223,43 @@ Result<std::map<std::string, FileSum>> read_sums(const fs::path& folder) {
   std::istringstream lines(body);
   FileSum sum;
   for (std::string name; lines >> sum.hash >> sum.bytes >> name;) {
-    out[name] = sum;
+    out.emplace(name, sum);
   }
   return out;
 }
 
-Status write_sums(const fs::path& folder, const std::map<std::string, FileSum>& sums) {
+Status write_sums(const fs::path& folder, const Sums& sums) {
   std::ostringstream body;
   for (const auto& [name, sum] : sums) {
     body << sum.hash << ' ' << sum.bytes << ' ' << name << '\n';
   }
   return write_file_atomically(folder / kSums, std::to_string(hash_of(body.view())) + "\n" + body.str());
+}
+
+bool is_set_aside(const fs::path& path) {
+  return path.filename().string().find(kAsideMark) != std::string::npos;
+}
+
+fs::path name_aside(const fs::path& path) {
+  std::error_code ignored;
+  for (int i = 1;; ++i) {
+    fs::path name = path.string() + kAsideMark + std::to_string(i);
+    if (!fs::exists(fs::symlink_status(name, ignored))) {
+      return name;
+    }
+  }
+}
+
+Result<fs::path> copy_aside(const fs::path& path) {
+  const Result<std::string> bytes = read_whole_file(path);
+  if (!bytes) {
+    return std::unexpected(bytes.error());
+  }
+  fs::path aside = name_aside(path);
+  if (Status kept = write_file_atomically(aside, std::string_view(*bytes)); !kept) {
+    return std::unexpected(kept.error());
+  }
+  return aside;
 }
 
 }  // namespace dubsar::session

@@ -61,10 +61,22 @@ struct FileSum {
 /// Reads a file once, in pieces.
 [[nodiscard]] Result<FileSum> sum_of_file(const std::filesystem::path& path, const JobContext* job = nullptr);
 
+/// In place of the sum of a file that is about to be written for the first time.
+inline constexpr FileSum kNotThereYet{};
+
+/// By name. A name has two sums while its file is being replaced: either is whole.
+using Sums = std::multimap<std::string, FileSum>;
 /// session.sums: what the database and its backup looked like when they were last closed.
 /// Empty without that file; an error when it does not match the checksum that it begins with.
-[[nodiscard]] Result<std::map<std::string, FileSum>> read_sums(const std::filesystem::path& folder);
-[[nodiscard]] Status write_sums(const std::filesystem::path& folder,
-                                const std::map<std::string, FileSum>& sums);
+[[nodiscard]] Result<Sums> read_sums(const std::filesystem::path& folder);
+[[nodiscard]] Status write_sums(const std::filesystem::path& folder, const Sums& sums);
+
+/// Damaged originals are kept beside what takes their place, as NAME.damaged-1, -2, …
+inline constexpr const char* kAsideMark = ".damaged-";
+[[nodiscard]] bool is_set_aside(const std::filesystem::path& path);
+/// The first such name that is free.
+[[nodiscard]] std::filesystem::path name_aside(const std::filesystem::path& path);
+/// Copies a damaged file to its name aside, durably, and returns that name; the file itself stays.
+[[nodiscard]] Result<std::filesystem::path> copy_aside(const std::filesystem::path& path);
 
 }  // namespace dubsar::session

@@ -6,6 +6,7 @@
 #include <cstdlib>
 
 #include "acquisition/session_impl.h"
+#include "acquisition/session_log.h"
 #include "formats/atomic_file.h"
 
 namespace dubsar::session {
@@ -89,10 +90,7 @@ Result<std::int64_t> fill_from_remains(const fs::path& folder, SqlDatabase& to) 
 
 /// Keeps the damaged files under a free name. Copies, so that there is a database at every moment.
 Result<std::string> keep_aside(const fs::path& folder) {
-  std::string name;
-  for (int i = 1; name.empty() || fs::exists(folder / name); ++i) {
-    name = std::string(kDatabase) + ".damaged-" + std::to_string(i);
-  }
+  const std::string name = name_aside(folder / kDatabase).filename().string();
   for (const std::string suffix : {"", "-wal"}) {
     const fs::path from = beside(folder / kDatabase, suffix);
     if (!has_content(from)) {
@@ -149,6 +147,26 @@ Result<SqlDatabase> rebuild(const fs::path& folder, const Error& fault, SessionO
   return SqlDatabase::open(folder / kDatabase, SqlDatabase::Mode::kCreate);
 }
 
+/// A log with a damaged middle is played up to there and no further. Says so, and for writing keeps database
+/// and log as they were.
+Status tell_lost_commits(const fs::path& folder, SessionOpening& opening, bool keep) {
+  const fs::path path = beside(folder / kDatabase, "-wal");
+  const Result<LogState> log = read_log(path);
+  if (!log || log->lost_commits == 0) {
+    return {};
+  }
+  opening.damage.push_back(lost_commits_error(*log, path.string()));
+  if (!keep) {
+    return {};
+  }
+  const Result<std::string> aside = keep_aside(folder);
+  if (!aside) {
+    return std::unexpected(aside.error());
+  }
+  opening.notes.push_back("kept the damaged log as " + *aside + "-wal");
+  return {};
+}
+
 /// Copies database and log to where the log can be played, for a session on a disk that cannot be written.
 Status copy_elsewhere(const fs::path& folder, SqlDatabase& memory) {
   std::string place = (fs::temp_directory_path() / "dubsar-session-XXXXXX").string();
@@ -189,14 +207,18 @@ Status snapshot(const fs::path& folder, SqlDatabase& memory) {
 
 Result<SqlDatabase> open_for_writing(const fs::path& folder, SessionOpening& opening, bool& rebuilt) {
   const fs::path path = folder / kDatabase;
-  opening.created = !fs::exists(path) && !fs::exists(folder / kBackup) && grid_ids(folder).empty();
+  // An empty file with nothing beside it is what a program leaves that was stopped before its first change.
+  opening.created = !has_content(path) && !fs::exists(folder / kBackup) && grid_ids(folder).empty();
   const bool missing = !opening.created && !has_content(path);
   // Once something is written the old checksum is wrong; the backup's stays good.
-  std::map<std::string, FileSum> sums = read_sums(folder).value_or(std::map<std::string, FileSum>());
+  Sums sums = read_sums(folder).value_or(Sums());
   if (sums.erase(kDatabase) > 0) {
     if (Status written = write_sums(folder, sums); !written) {
       return std::unexpected(written.error());
     }
+  }
+  if (Status told = tell_lost_commits(folder, opening, true); !told) {
+    return std::unexpected(told.error());
   }
   Result<SqlDatabase> db = SqlDatabase::open(path, SqlDatabase::Mode::kCreate);
   std::optional<Error> fault;
@@ -232,6 +254,9 @@ Result<SqlDatabase> open_for_reading(const fs::path& folder, SessionOpening& ope
     return memory;
   }
   const std::string where = (folder / kDatabase).string();
+  if (Status told = tell_lost_commits(folder, opening, false); !told) {
+    return std::unexpected(told.error());
+  }
   const Status copied = snapshot(folder, *memory);
   std::optional<Error> fault = copied ? fault_of(*memory, where) : std::optional(copied.error());
   if (!fault) {
@@ -265,7 +290,15 @@ void close_cleanly(const fs::path& folder, std::optional<SqlDatabase>& db) {
     return;
   }
   const FileSum sum{static_cast<std::int64_t>(bytes->size()), hash_of(*bytes)};
-  if (write_file_atomically(folder / kBackup, std::string_view(*bytes))) {
+  // Until the new backup stands the old one does: a program that is killed here leaves no doubt about either.
+  Sums sums = read_sums(folder).value_or(Sums());
+  sums.erase(kDatabase);
+  sums.emplace(kDatabase, sum);
+  if (!sums.contains(kBackup)) {
+    sums.emplace(kBackup, sum_of_file(folder / kBackup).value_or(kNotThereYet));
+  }
+  sums.emplace(kBackup, sum);
+  if (write_sums(folder, sums) && write_file_atomically(folder / kBackup, std::string_view(*bytes))) {
     // Without these sums verify() still has those of the rows.
     (void)write_sums(folder, {{kDatabase, sum}, {kBackup, sum}});
   }

@@ -196,4 +196,24 @@ Status SessionStore::record_file(const fs::path& relative) {
   return put->bind(1, normal.generic_string()).bind(2, sum->bytes).bind(3, sum->hash).run();
 }
 
+Status SessionStore::forget_files(const std::vector<std::string>& relative) {
+  if (Status writable = impl_->writable(); !writable) {
+    return writable;
+  }
+  const std::scoped_lock hold(impl_->mutex);
+  return session::in_transaction(*impl_->db, [&]() -> Status {
+    Result<SqlStatement> take = impl_->db->prepare(
+        "DELETE FROM files WHERE path = ?1 OR (?1 LIKE '%/' AND substr(path, 1, length(?1)) = ?1)");
+    if (!take) {
+      return std::unexpected(take.error());
+    }
+    for (const std::string& name : relative) {
+      if (Status done = take->bind(1, fs::path(name).lexically_normal().generic_string()).run(); !done) {
+        return done;
+      }
+    }
+    return {};
+  });
+}
+
 }  // namespace dubsar

@@ -158,17 +158,23 @@ Result<int> SessionStore::add_grid(const RangeGrid& grid) {
   if (Status written = write_file_atomically(path, std::span(bytes)); !written) {
     return std::unexpected(written.error());
   }
+  bool in_the_balance = false;
   const Status listed = in_transaction(*impl_->db, [&]() -> Status {
     if (Status put = session::insert_scan(*impl_->db, id, sum, grid); !put) {
       return put;
     }
-    return session::insert_event(*impl_->db, "scan stored",
-                                 nlohmann::json{{"id", id}, {"source", grid.source}}.dump(
-                                     -1, ' ', false, nlohmann::json::error_handler_t::replace));
+    Status noted = session::insert_event(*impl_->db, "scan stored",
+                                         nlohmann::json{{"id", id}, {"source", grid.source}}.dump(
+                                             -1, ' ', false, nlohmann::json::error_handler_t::replace));
+    in_the_balance = noted.has_value();
+    return noted;
   });
   if (!listed) {
-    std::error_code ignored;
-    fs::remove(path, ignored);  // It was never reported as stored.
+    // It was never reported as stored. But a commit whose sync failed may stand in the log all the same, and
+    // its row would then lack its grid: that one stays, and is taken in when the session is opened again.
+    if (std::error_code ignored; !in_the_balance) {
+      fs::remove(path, ignored);
+    }
     return std::unexpected(listed.error());
   }
   return id;

@@ -48,12 +48,22 @@ struct SessionOpening {
   std::vector<std::string> notes;  ///< what was recovered, one line each
 };
 
-/// The answer of verify(). Names are relative to the session folder.
+/// The answer of verify(). Names are relative to the session folder; every file of it is in one of the lists,
+/// except for the lock, which holds nothing.
 struct VerifyReport {
-  std::vector<Error> damaged;
+  std::vector<Error> damaged;  ///< missing ones too
   std::vector<std::string> whole;
-  std::vector<std::string> unrecorded;  ///< files that the session keeps no checksum of
+  std::vector<std::string> unrecorded;  ///< files of the session that it keeps no checksum of
+  std::vector<std::string> extra;       ///< what is no part of the session
+  std::vector<std::string> set_aside;   ///< damaged originals that were kept when something was rebuilt
   [[nodiscard]] bool ok() const { return damaged.empty(); }
+};
+
+/// The answer of repair(). Names are relative to the session folder.
+struct RepairReport {
+  std::vector<std::string> restored;  ///< brought back from the copy, byte for byte
+  std::vector<std::string> derived;   ///< set aside: their makers have to make them anew
+  std::vector<Error> beyond;          ///< nothing here or in the copy could mend these
 };
 
 /// The durable folder of one tablet's scanning (contract "Session folder"): session.sqlite (WAL, every commit
@@ -123,10 +133,26 @@ class SessionStore {
   /// Notes size and checksum of a finished file of the session (such as mesh/model.ply), so that verify()
   /// covers it. Relative to the folder.
   Status record_file(const std::filesystem::path& relative);
+  /// Takes the checksums of files away that are about to be written anew: a program that is killed in the
+  /// middle leaves files without a checksum, and none that looks damaged. Names without one are passed over;
+  /// one that ends with '/' stands for all files below that folder.
+  Status forget_files(const std::vector<std::string>& relative);
 
   /// Reads every byte of the session: structure and row checksums of the database, every grid, every recorded
   /// file.
   [[nodiscard]] Result<VerifyReport> verify(JobContext& job) const;
+
+  /// Mends what verify() found damaged among the files: from a copy of the session where one is given and its
+  /// file has the checksum that was stored. What stands in mesh/, analysis/ and export/ can be made anew and
+  /// is set aside for that. Damaged originals are never overwritten. The tables are mended by opening for
+  /// writing.
+  [[nodiscard]] Result<RepairReport> repair(const VerifyReport& found,
+                                            const std::optional<std::filesystem::path>& copy,
+                                            JobContext& job);
+  /// Keeps copies of a damaged database, backup or list of checksums aside, before opening for writing
+  /// replaces them. Returns their names aside.
+  [[nodiscard]] static Result<std::vector<std::string>> keep_damaged_records(
+      const std::filesystem::path& folder, const VerifyReport& found);
 
  private:
   struct Impl;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "acquisition/session_impl.h"
+#include "acquisition/session_log.h"
 #include "acquisition/session_query.h"
 #include "formats/atomic_file.h"
 #include "formats/grid_file.h"
@@ -36,11 +37,22 @@ Result<std::vector<Recorded>> recorded(SqlDatabase& db, const char* sql) {
 constexpr const char* kScanFiles = "SELECT id, file, bytes, hash FROM scans ORDER BY id";
 constexpr const char* kOtherFiles = "SELECT -1, path, bytes, hash FROM files ORDER BY path";
 
+bool in_a_session_folder(const std::string& name) {
+  return std::ranges::any_of(session::kFolders,
+                             [&](const char* folder) { return name.starts_with(std::string(folder) + "/"); });
+}
+
 /// Nothing when the file is as it was stored.
 std::optional<Error> fault_of_file(const fs::path& folder, const std::string& name, const FileSum& expected,
                                    const JobContext* job) {
   const std::string mend =
-      "bring it back from a copy" + std::string(name.ends_with(".grid") ? " or scan again" : "");
+      name.ends_with(".grid") ? "bring it back from a copy (dubsar verify --repair --from COPY) or scan again"
+                              : std::string("dubsar verify --repair ") +
+                                    (in_a_session_folder(name) ? "makes it anew" : "mends it");
+  std::error_code ignored;
+  if (!fs::exists(folder / name, ignored)) {
+    return Error{ErrorKind::kBadInput, "missing", name, mend};
+  }
   const Result<FileSum> sum = session::sum_of_file(folder / name, job);
   if (!sum) {
     return Error{sum.error().kind, sum.error().what, name, sum.error().mend.empty() ? std::string() : mend};
@@ -55,21 +67,64 @@ std::optional<Error> fault_of_file(const fs::path& folder, const std::string& na
   return std::nullopt;
 }
 
-/// Files of the derived folders, relative, in name order.
-std::vector<std::string> derived_files(const fs::path& folder) {
+/// All that lies in the folder and is no folder, relative, in name order. Links are named and not followed.
+std::vector<std::string> everything_in(const fs::path& folder) {
   std::vector<std::string> out;
-  for (const char* name : session::kFolders) {
-    std::error_code ignored;
-    fs::recursive_directory_iterator it(folder / name, fs::directory_options::skip_permission_denied,
-                                        ignored);
-    for (const fs::recursive_directory_iterator end; !ignored && it != end; it.increment(ignored)) {
-      if (it->is_regular_file(ignored)) {
-        out.push_back(it->path().lexically_relative(folder).generic_string());
-      }
+  std::error_code ignored;
+  fs::recursive_directory_iterator it(folder, fs::directory_options::skip_permission_denied, ignored);
+  for (const fs::recursive_directory_iterator end; !ignored && it != end; it.increment(ignored)) {
+    if (it->is_symlink(ignored) || !it->is_directory(ignored)) {
+      out.push_back(it->path().lexically_relative(folder).generic_string());
     }
   }
   std::ranges::sort(out);
   return out;
+}
+
+/// Sorts what is neither whole nor damaged into its list.
+void place_the_rest(const fs::path& folder, const std::vector<Recorded>& checked, VerifyReport& report) {
+  const std::string log = std::string(session::kDatabase) + "-wal";
+  const std::string own[] = {session::kDatabase, session::kSums, session::kLock, log,
+                             std::string(session::kDatabase) + "-shm"};
+  for (const std::string& name : everything_in(folder)) {
+    if (std::ranges::find(checked, name, &Recorded::name) != checked.end() ||
+        std::ranges::find(own, name) != std::end(own)) {
+      continue;
+    }
+    std::error_code ignored;
+    const bool plain = fs::symlink_status(folder / name, ignored).type() == fs::file_type::regular;
+    const bool left_over = fs::path(name).filename().string().starts_with(kTemporaryPrefix);
+    if (session::is_set_aside(name)) {
+      report.set_aside.push_back(name);
+    } else if (plain && !left_over && (in_a_session_folder(name) || name == session::kBackup)) {
+      report.unrecorded.push_back(name);
+    } else {
+      report.extra.push_back(name);
+    }
+  }
+}
+
+/// What is wrong with the tables, with the log beside them, and with the list of checksums.
+void check_records(SqlDatabase& db, const fs::path& folder, VerifyReport& report) {
+  const char* mend =
+      "see `dubsar verify --repair`, which rebuilds it from its rows, its backup and the grids";
+  const std::string fault = db.structure_fault();
+  const Result<std::vector<std::string>> rows = session::damaged_rows(db);
+  if (!fault.empty() || !rows) {
+    report.damaged.push_back(
+        {ErrorKind::kBadInput, fault.empty() ? rows.error().what : fault, session::kDatabase, mend});
+  } else {
+    for (const std::string& row : *rows) {
+      report.damaged.push_back({ErrorKind::kBadInput, row + " is damaged", session::kDatabase, mend});
+    }
+  }
+  const std::string log = std::string(session::kDatabase) + "-wal";
+  const Result<session::LogState> state = session::read_log(folder / log);
+  if (!state) {
+    report.damaged.push_back(state.error());
+  } else if (state->lost_commits > 0) {
+    report.damaged.push_back(session::lost_commits_error(*state, log));
+  }
 }
 
 }  // namespace
@@ -122,17 +177,7 @@ Result<VerifyReport> SessionStore::verify(JobContext& job) const {
     if (impl_->rebuilt && impl_->access == Access::kReadOnly) {
       report.damaged.push_back(impl_->opening.damage.front());
     }
-    const std::string fault = impl_->db->structure_fault();
-    const Result<std::vector<std::string>> rows = session::damaged_rows(*impl_->db);
-    if (!fault.empty() || !rows) {
-      report.damaged.push_back({ErrorKind::kBadInput, fault.empty() ? rows.error().what : fault,
-                                session::kDatabase, "open the session for writing to have it rebuilt"});
-    } else {
-      for (const std::string& row : *rows) {
-        report.damaged.push_back({ErrorKind::kBadInput, row + " is damaged", session::kDatabase,
-                                  "open the session for writing to have it rebuilt"});
-      }
-    }
+    check_records(*impl_->db, folder, report);
     for (const char* sql : {kScanFiles, kOtherFiles}) {
       Result<std::vector<Recorded>> more = recorded(*impl_->db, sql);
       if (!more) {
@@ -141,28 +186,58 @@ Result<VerifyReport> SessionStore::verify(JobContext& job) const {
       files.insert(files.end(), more->begin(), more->end());
     }
   }
-  const Result<std::map<std::string, FileSum>> sums = session::read_sums(folder);
-  if (!sums) {
-    report.damaged.push_back(sums.error());
-  } else {
-    for (const auto& [name, sum] : *sums) {
-      std::error_code error;
-      // With a log beside it another program has written on; the file is then checked by its rows alone.
-      if (name != session::kDatabase || fs::file_size(folder / "session.sqlite-wal", error) == 0 || error) {
-        files.push_back({-1, name, sum});
-      }
+  const bool database_whole = report.damaged.empty();
+  // Grids that cannot be read and were never listed: seen while opening, in no table.
+  for (const Error& seen : impl_->opening.damage) {
+    const std::string name = fs::path(seen.where).lexically_relative(folder).generic_string();
+    const std::string& where = name.empty() || name.starts_with("..") ? seen.where : name;
+    if (where.ends_with(".grid") && std::ranges::find(files, where, &Recorded::name) == files.end()) {
+      report.damaged.push_back({seen.kind, seen.what, where, seen.mend});
+      files.push_back({-1, where, {}});
     }
   }
-  const bool database_whole = report.damaged.empty();
+  const std::size_t first_unlisted = files.size();
+  const Result<session::Sums> sums = session::read_sums(folder);
+  if (!sums) {
+    report.damaged.push_back({sums.error().kind, sums.error().what, session::kSums, sums.error().mend});
+  } else if (!sums->empty()) {
+    report.whole.emplace_back(session::kSums);
+  }
   bool database_summed = false;
+  for (const char* name : {session::kDatabase, session::kBackup}) {
+    std::error_code error;
+    // With a log beside it another program has written on; the file is then checked by its rows alone.
+    if (sums && sums->contains(name) &&
+        (name != std::string(session::kDatabase) ||
+         fs::file_size(folder / "session.sqlite-wal", error) == 0 || error)) {
+      database_summed = database_summed || name == std::string(session::kDatabase);
+      files.push_back({-1, name, sums->find(name)->second});
+    }
+  }
   for (std::size_t i = 0; i < files.size(); ++i) {
     const Recorded& one = files[i];
     job.progress("verify", static_cast<double>(i) / static_cast<double>(files.size()));
     if (job.cancelled()) {
       return fail(ErrorKind::kCancelled, "verification cancelled", folder.string());
     }
-    database_summed = database_summed || one.name == session::kDatabase;
+    if (i < first_unlisted && one.id < 0 && one.sum == FileSum{}) {
+      continue;  // told above
+    }
     std::optional<Error> fault = fault_of_file(folder, one.name, one.sum, &job);
+    if (fault && i >= first_unlisted) {
+      // Either of two sums will do.
+      const auto [from, to] = sums->equal_range(one.name);
+      bool not_there_yet = false;
+      for (auto other = from; fault && other != to; ++other) {
+        std::error_code error;
+        not_there_yet = not_there_yet ||
+                        (other->second == session::kNotThereYet && !fs::exists(folder / one.name, error));
+        fault = fault_of_file(folder, one.name, other->second, &job);
+      }
+      if (fault && not_there_yet) {
+        continue;
+      }
+    }
     if (fault && fault->kind == ErrorKind::kCancelled) {
       return std::unexpected(std::move(*fault));
     }
@@ -175,12 +250,7 @@ Result<VerifyReport> SessionStore::verify(JobContext& job) const {
   if (database_whole && !database_summed) {
     report.whole.insert(report.whole.begin(), session::kDatabase);
   }
-  for (const std::string& name : derived_files(folder)) {
-    if (std::ranges::find(files, name, &Recorded::name) == files.end() &&
-        !fs::path(name).filename().string().starts_with(kTemporaryPrefix)) {
-      report.unrecorded.push_back(name);
-    }
-  }
+  place_the_rest(folder, files, report);
   job.progress("verify", 1.0);
   return report;
 }

@@ -3,7 +3,7 @@
 #include "drivers/loader.h"
 
 #include <dlfcn.h>
-#include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cstddef>
@@ -12,6 +12,7 @@
 
 #include "drivers/abi.h"
 #include "drivers/driver.h"
+#include "drivers/trust.h"
 
 namespace dubsar {
 
@@ -24,11 +25,6 @@ constexpr std::size_t kLeastDriverSize = offsetof(dubsar_driver, scan) + sizeof(
 
 std::unexpected<Error> reject(const fs::path& path, std::string what, std::string mend = "skipped") {
   return fail(ErrorKind::kDevice, std::move(what), path.string(), std::move(mend));
-}
-
-bool writable_by_everybody(const fs::path& path) {
-  struct stat info {};
-  return ::stat(path.c_str(), &info) == 0 && (info.st_mode & S_IWOTH) != 0;
 }
 
 bool is_scheme(const std::string& scheme) {
@@ -89,12 +85,12 @@ Result<const dubsar_driver*> entry_of(void* library, const fs::path& path) {
 }
 
 Result<const dubsar_driver*> load(const fs::path& path) {
-  if (writable_by_everybody(path) || writable_by_everybody(path.parent_path())) {
-    return reject(path, "everybody may write to it",
-                  "skipped; take the right away (chmod o-w) and see who wrote it");
+  const Result<fs::path> trusted = trusted_file(path, ::geteuid());
+  if (!trusted) {
+    return std::unexpected(trusted.error());
   }
   // Symbols stay to themselves, and a missing one shows now rather than in the middle of a scan.
-  void* library = ::dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
+  void* library = ::dlopen(trusted->c_str(), RTLD_NOW | RTLD_LOCAL);
   if (library == nullptr) {
     std::string why = abi::text(::dlerror());
     if (why.starts_with(path.string() + ": ")) {
@@ -213,7 +209,8 @@ DriverRegistry::DriverRegistry(const std::vector<fs::path>& search_path) : searc
 
 std::vector<fs::path> DriverRegistry::default_search_path() {
   std::vector<fs::path> out;
-  if (const char* listed = std::getenv("DUBSAR_DRIVER_PATH")) {
+  // Not where the program runs with more rights than who started it.
+  if (const char* listed = ::secure_getenv("DUBSAR_DRIVER_PATH")) {
     std::istringstream folders(listed);
     for (std::string folder; std::getline(folders, folder, ':');) {
       if (!folder.empty()) {

@@ -43,8 +43,9 @@ class Driver {
 };
 
 /// The drivers that were found on a search path. A library that is broken, too old or too new, no driver at
-/// all, or writable by everybody is left out with one line in rejected(). A driver stays loaded until the
-/// process ends: drivers may leave threads behind, and code under a thread must not be unmapped.
+/// all, or that others can have put there or can change (drivers/trust.h) is left out with one line in
+/// rejected(). A driver stays loaded until the process ends: drivers may leave threads behind, and code under
+/// a thread must not be unmapped.
 class DriverRegistry {
  public:
   /// Loads every *.so of the folders, in name order; folders that do not exist are skipped. Of two drivers

@@ -28,6 +28,11 @@ std::vector<fs::path> Deliverables::all() const {
   return files;
 }
 
+std::vector<std::string> deliverable_names() {
+  return {"mesh/model.ply",        "export/six_views.png", "export/red_map.png", "export/report.html",
+          "export/checklist.html", "export/poses.json",    "export/red_map.json"};
+}
+
 Result<Deliverables> write_deliverables(const fs::path& session, const ReportInput& input, JobContext& job) {
   Deliverables files;
   std::error_code error;

@@ -27,6 +27,9 @@ struct Deliverables {
   [[nodiscard]] std::vector<std::filesystem::path> all() const;
 };
 
+/// What write_deliverables() may write, relative to the session.
+[[nodiscard]] std::vector<std::string> deliverable_names();
+
 /// Writes mesh, pictures, report, checklist page, poses and red map, each atomically. An empty mesh gives no
 /// pictures.
 [[nodiscard]] Result<Deliverables> write_deliverables(const std::filesystem::path& session,

@@ -282,6 +282,9 @@ std::optional<RigidTransform> stored_tablet_from_model(const SessionStore& store
 }
 
 Result<Deliverables> keep_deliverables(SessionStore& store, const ReportInput& input, JobContext& job) {
+  if (const Status forgotten = store.forget_files(deliverable_names()); !forgotten) {
+    return std::unexpected(forgotten.error());
+  }
   Result<Deliverables> files = write_deliverables(store.folder(), input, job);
   if (!files) {
     return files;

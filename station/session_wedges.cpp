@@ -56,6 +56,9 @@ Result<std::optional<SessionWedges>> keep_wedges(SessionStore& store, const Mesh
   }
   const WedgeFile file = wedge_file("model.ply", options, *analysis);
   SessionWedges out{folder / "wedges.json", file.wedges.size(), file.rejected.size()};
+  if (const Status forgotten = store.forget_files({"analysis/"}); !forgotten) {
+    return std::unexpected(forgotten.error());
+  }
   if (const Status written = write_wedges(out.json, file); !written) {
     return std::unexpected(written.error());
   }

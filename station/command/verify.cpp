@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright The Dubsar developers
-// dubsar verify: is every stored byte what was stored?
+// dubsar verify: is every stored byte what was stored? and, asked to, the mend.
 
 #include <cstdio>
 #include <filesystem>
@@ -8,48 +8,138 @@
 
 #include "acquisition/session_store.h"
 #include "acquisition/sign_off_log.h"
+#include "formats/bag_check.h"
 #include "formats/grid_file.h"
 #include "formats/sign_off_json.h"
 #include "station/command/command.h"
 #include "station/command/sign_off_words.h"
+#include "station/mending.h"
 
 namespace dubsar {
 
 namespace {
 
-int print_report(const std::string& path, const VerifyReport& report, const SignOffLog& signed_off,
-                 bool as_json) {
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+using Names = std::vector<std::string>;
+
+struct Arguments {
+  std::string path;
+  bool repair = false;
+  std::string copy;
+};
+
+constexpr const char* kWhatToGive = "give a session folder, a bag or a .grid file";
+
+Json errors_json(const std::vector<Error>& errors) {
+  Json out = Json::array();
+  for (const Error& error : errors) {
+    out.push_back({{"where", error.where}, {"what", error.what}, {"mend", error.mend}});
+  }
+  return out;
+}
+
+void print_names(const char* what, const Names& names) {
+  for (const std::string& name : names) {
+    std::printf("%s: %s\n", what, Error{ErrorKind::kBadInput, name, {}, {}}.line().c_str());
+  }
+}
+
+void print_damage(const char* what, const std::vector<Error>& errors) {
+  for (const Error& error : errors) {
+    std::printf("%s: %s\n", what, error.line().c_str());
+  }
+}
+
+int print_grid(const std::string& path, const CommandContext& context) {
+  const Status status = verify_grid_file(path);
+  const std::vector<Error> damaged = status ? std::vector<Error>() : std::vector{status.error()};
+  const Names whole = status ? Names{path} : Names();
+  if (context.json) {
+    CommandContext::print({{"path", path},
+                           {"kind", "grid"},
+                           {"ok", damaged.empty()},
+                           {"whole", whole},
+                           {"damaged", errors_json(damaged)}});
+  } else {
+    print_damage("damaged", damaged);
+    std::printf("%zu whole, %zu damaged\n", whole.size(), damaged.size());
+  }
+  return damaged.empty() ? 0 : 1;
+}
+
+Result<int> verify_bag(const Arguments& arguments, CommandContext& context) {
+  if (arguments.repair) {
+    return fail(ErrorKind::kUsage, "a bag holds nothing to be mended with", arguments.path,
+                "get it again from its source, or export the session anew");
+  }
+  const Result<BagReport> report = check_bag(arguments.path, context.job);
+  if (!report) {
+    return std::unexpected(report.error());
+  }
+  if (context.json) {
+    CommandContext::print({{"path", arguments.path},
+                           {"kind", "bag"},
+                           {"ok", report->ok()},
+                           {"bagit_version", report->version},
+                           {"algorithms", report->algorithms},
+                           {"whole", report->whole},
+                           {"damaged", errors_json(report->damaged)},
+                           {"unrecorded", report->unrecorded},
+                           {"unchecked", report->unchecked}});
+    return report->ok() ? 0 : 1;
+  }
+  finish_progress();
+  print_damage("damaged", report->damaged);
+  print_names("no checksum kept", report->unrecorded);
+  print_names("cannot be checked here", report->unchecked);
+  std::printf("%zu whole, %zu faults: the bag is %s\n", report->whole.size(), report->damaged.size(),
+              report->ok() ? "complete and valid" : "NOT valid");
+  return report->ok() ? 0 : 1;
+}
+
+int print_session(const std::string& path, const VerifyReport& report, const SignOffLog& signed_off,
+                  const std::optional<Mended>& mended, bool as_json) {
   // An older sign-off that a later one stands beside is history; the latest one has to hold.
   const bool signature_good =
       signed_off.damage.empty() && (signed_off.sign_offs.empty() || signed_off.sign_offs.back().holds());
   const int status = report.ok() && signature_good ? 0 : 1;
   if (as_json) {
-    nlohmann::ordered_json damaged = nlohmann::ordered_json::array();
-    for (const Error& error : report.damaged) {
-      damaged.push_back({{"where", error.where}, {"what", error.what}, {"mend", error.mend}});
-    }
-    nlohmann::ordered_json sign_offs = nlohmann::ordered_json::array();
+    Json sign_offs = Json::array();
     for (const CheckedSignOff& one : signed_off.sign_offs) {
       sign_offs.push_back(sign_off_json(one));
     }
-    CommandContext::print({{"path", path},
-                           {"ok", report.ok()},
-                           {"whole", report.whole},
-                           {"damaged", damaged},
-                           {"unrecorded", report.unrecorded},
-                           {"sign_offs", sign_offs}});
+    Json out{{"path", path},
+             {"kind", "session"},
+             {"ok", report.ok()},
+             {"whole", report.whole},
+             {"damaged", errors_json(report.damaged)},
+             {"unrecorded", report.unrecorded},
+             {"extra", report.extra},
+             {"set_aside", report.set_aside},
+             {"sign_offs", sign_offs}};
+    if (mended) {
+      out["repair"] = {{"notes", mended->notes},
+                       {"restored", mended->restored},
+                       {"made_anew", mended->made_anew},
+                       {"set_aside", mended->set_aside},
+                       {"beyond", errors_json(mended->beyond)}};
+    }
+    CommandContext::print(out);
     return status;
   }
   finish_progress();
-  for (const Error& error : report.damaged) {
-    std::printf("damaged: %s\n", error.line().c_str());
+  if (mended) {
+    print_names("mended", mended->notes);
+    print_names("brought back from the copy", mended->restored);
+    print_names("made anew", mended->made_anew);
+    print_damage("cannot be mended", mended->beyond);
   }
-  for (const std::string& file : report.unrecorded) {
-    std::printf("no checksum kept: %s\n", file.c_str());
-  }
-  for (const Error& error : signed_off.damage) {
-    std::printf("damaged sign-off: %s\n", error.line().c_str());
-  }
+  print_damage("damaged", report.damaged);
+  print_names("no checksum kept", report.unrecorded);
+  print_names("not of this session", report.extra);
+  print_names("damaged original, kept", report.set_aside);
+  print_damage("damaged sign-off", signed_off.damage);
   for (const CheckedSignOff& one : signed_off.sign_offs) {
     std::printf("%s\n", sign_off_line(one).c_str());
   }
@@ -57,50 +147,83 @@ int print_report(const std::string& path, const VerifyReport& report, const Sign
   return status;
 }
 
-Result<int> verify(const std::string& path, CommandContext& context) {
-  namespace fs = std::filesystem;
-  std::error_code ignored;
-  if (!fs::exists(path, ignored)) {
-    return fail(ErrorKind::kUsage, "there is nothing here", path, "give a session folder or a .grid file");
-  }
-  if (fs::is_regular_file(path, ignored)) {
-    VerifyReport report;
-    if (const Status status = verify_grid_file(path); !status) {
-      report.damaged.push_back(status.error());
-    } else {
-      report.whole.push_back(path);
+Result<int> verify_session(const Arguments& arguments, CommandContext& context) {
+  const auto look = [&]() -> Result<std::pair<VerifyReport, SignOffLog>> {
+    const Result<SessionStore> store = SessionStore::open(arguments.path, SessionStore::Access::kReadOnly);
+    if (!store) {
+      return std::unexpected(store.error());
     }
-    return print_report(path, report, {}, context.json);
+    Result<VerifyReport> report = store->verify(context.job);
+    if (!report) {
+      return std::unexpected(report.error());
+    }
+    Result<SignOffLog> signed_off = read_sign_offs(*store, context.job);
+    if (!signed_off) {
+      return std::unexpected(signed_off.error());
+    }
+    return std::pair(std::move(*report), std::move(*signed_off));
+  };
+  auto found = look();
+  if (!found) {
+    return std::unexpected(found.error());
   }
-  if (!SessionStore::is_session(path)) {
-    return fail(ErrorKind::kUsage, "this folder is no session", path,
-                "give a session folder or a .grid file");
+  std::optional<Mended> mended;
+  if (arguments.repair && !found->first.ok()) {
+    const std::optional<fs::path> copy =
+        arguments.copy.empty() ? std::nullopt : std::optional<fs::path>(arguments.copy);
+    Result<Mended> done = mend_session(arguments.path, found->first, copy, context.job);
+    if (!done) {
+      return std::unexpected(done.error());
+    }
+    mended = std::move(*done);
+    found = look();
+    if (!found) {
+      return std::unexpected(found.error());
+    }
   }
-  const Result<SessionStore> store = SessionStore::open(path, SessionStore::Access::kReadOnly);
-  if (!store) {
-    return std::unexpected(store.error());
+  return print_session(arguments.path, found->first, found->second, mended, context.json);
+}
+
+Result<int> verify(const Arguments& arguments, CommandContext& context) {
+  std::error_code error;
+  if (!fs::exists(arguments.path, error)) {
+    return fail(ErrorKind::kUsage, "there is nothing here", arguments.path, kWhatToGive);
   }
-  Result<VerifyReport> report = store->verify(context.job);
-  if (!report) {
-    return std::unexpected(report.error());
+  if (!arguments.copy.empty() && !SessionStore::is_session(arguments.copy)) {
+    return fail(ErrorKind::kUsage, "the copy is no session", arguments.copy,
+                "name the folder that the session was copied to");
   }
-  const Result<SignOffLog> signed_off = read_sign_offs(*store, context.job);
-  if (!signed_off) {
-    return std::unexpected(signed_off.error());
+  if (!arguments.copy.empty() && fs::equivalent(arguments.copy, arguments.path, error)) {
+    return fail(ErrorKind::kUsage, "the copy is the session itself", arguments.copy,
+                "name the folder that the session was copied to");
   }
-  return print_report(path, *report, *signed_off, context.json);
+  if (fs::is_regular_file(arguments.path, error)) {
+    return print_grid(arguments.path, context);
+  }
+  if (SessionStore::is_session(arguments.path)) {
+    return verify_session(arguments, context);
+  }
+  if (is_bag(arguments.path)) {
+    return verify_bag(arguments, context);
+  }
+  return fail(ErrorKind::kUsage, "this folder is neither a session nor a bag", arguments.path, kWhatToGive);
 }
 
 }  // namespace
 
 void add_verify(CLI::App& app, Action& chosen) {
-  CLI::App* verb = app.add_subcommand(
-      "verify",
-      "Integrity of a session or a grid; status 1 when anything is damaged, or its sign-off no longer holds");
-  const auto path = std::make_shared<std::string>();
-  verb->add_option("path", *path, "a session folder or a .grid file")->required();
+  CLI::App* verb = app.add_subcommand("verify",
+                                      "Integrity of a session, a bag or a grid; status 1 when anything is "
+                                      "damaged, or its sign-off no longer holds");
+  const auto arguments = std::make_shared<Arguments>();
+  verb->add_option("path", arguments->path, "a session folder, a bag or a .grid file")->required();
+  CLI::Option* repair = verb->add_flag("--repair", arguments->repair,
+                                       "mend a session with what it has; damaged originals are kept aside");
+  verb->add_option("--from", arguments->copy, "a copy of the session to bring damaged files back from")
+      ->needs(repair);
   verb->fallthrough();
-  verb->callback([&chosen, path] { chosen = [path](CommandContext& c) { return verify(*path, c); }; });
+  verb->callback(
+      [&chosen, arguments] { chosen = [arguments](CommandContext& c) { return verify(*arguments, c); }; });
 }
 
 }  // namespace dubsar

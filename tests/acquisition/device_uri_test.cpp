@@ -15,6 +15,12 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Pair;
 
+TEST(DeviceUri, AZeroByteIsRefused) {
+  using namespace std::string_view_literals;
+  EXPECT_EQ(parse_device_uri("sim\0:"sv).error().kind, ErrorKind::kUsage);
+  EXPECT_EQ(parse_device_uri("a\0b"sv).error().kind, ErrorKind::kUsage);
+}
+
 TEST(DeviceUri, TakesSchemeLocatorAndOptionsApart) {
   const DeviceUri uri = parse_device_uri("replay:/data/my%20scans?unit=m&rate=20").value();
   EXPECT_EQ(uri.scheme, "replay");

@@ -11,6 +11,7 @@
 #include <csignal>
 #include <thread>
 
+#include "acquisition/session_files.h"
 #include "acquisition/session_store.h"
 #include "tests/acquisition/session_support.h"
 #include "tests/support/temporary_folder.h"
@@ -98,7 +99,7 @@ TEST_F(SessionDamageTest, VerifyNoticesAFlippedByteAnywhere) {
   }
   const VerifyReport report = SessionStore::open(folder_, kReadOnly).value().verify(job_).value();
   EXPECT_TRUE(report.ok());
-  EXPECT_EQ(report.whole.size(), 6U);
+  EXPECT_EQ(report.whole.size(), 7U);
 }
 
 TEST_F(SessionDamageTest, ADatabaseWithFlippedBytesKeepsTheScans) {
@@ -216,6 +217,66 @@ TEST_F(SessionDamageTest, AWriteProtectedFolderIsToldAndCanBeRead) {
     fs::permissions(path, fs::perms(0755));
   }
   EXPECT_EQ(status, 0);
+}
+
+TEST_F(SessionDamageTest, ALogDamagedInItsMiddleIsToldAndATornEndIsNot) {
+  const fs::path folder = temporary_.path() / "logged";
+  const pid_t child = ::fork();
+  if (child == 0) {
+    Result<SessionStore> store = SessionStore::open_or_create(folder);
+    bool good = store && store->add_grid(small_grid(1));
+    for (int i = 0; i < 12; ++i) {
+      good = good && store->save_document("document " + std::to_string(i), "{}");
+    }
+    ::_exit(good ? 0 : 1);  // as a kill would: the log stays
+  }
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  ASSERT_EQ(status, 0);
+  const fs::path log = folder / "session.sqlite-wal";
+  const auto size = fs::file_size(log);
+  const std::size_t documents = SessionStore::open(folder, kReadOnly).value().document_names().value().size();
+  ASSERT_EQ(documents, 12U);
+  constexpr std::uintmax_t kFrame = 24 + 4096;
+  // The middle, and the head: both cost changes that had been stored, and both are told.
+  for (const std::uintmax_t at : {size - 6 * kFrame + 200, std::uintmax_t{20}, std::uintmax_t{8}}) {
+    flip_byte(log, at);
+    const VerifyReport report = SessionStore::open(folder, kReadOnly).value().verify(job_).value();
+    EXPECT_FALSE(report.ok()) << at;
+    EXPECT_THAT(report.damaged.front().line(), HasSubstr("session.sqlite-wal")) << at;
+    flip_byte(log, at);
+  }
+  // A torn end is what a power cut leaves of a change that was not reported as stored.
+  fs::resize_file(log, size - 100);
+  EXPECT_TRUE(SessionStore::open(folder, kReadOnly).value().verify(job_).value().ok());
+  flip_byte(log, size - 6 * kFrame + 200);
+  const SessionStore opened = SessionStore::open(folder).value();
+  EXPECT_FALSE(opened.opening().damage.empty());
+  EXPECT_TRUE(fs::exists(folder / "session.sqlite.damaged-1-wal"));
+  EXPECT_LT(opened.document_names().value().size(), documents);
+  EXPECT_EQ(opened.scans().value().size(), 1U);
+}
+
+TEST_F(SessionDamageTest, AKillWhileTheBackupIsReplacedLeavesNothingThatLooksDamaged) {
+  // The list of checksums holds the old and the new backup's until the new one stands.
+  { ASSERT_TRUE(SessionStore::open(folder_).value().append_event("later")); }
+  const fs::path copy = temporary_.path() / "between";
+  fs::copy(folder_, copy, fs::copy_options::recursive);
+  { ASSERT_TRUE(SessionStore::open(folder_).value().append_event("last")); }
+  // Both backups in turn beside the sums of both.
+  session::Sums both = session::read_sums(copy).value();
+  const session::Sums later = session::read_sums(folder_).value();
+  for (const auto& [name, sum] : later) {
+    both.emplace(name, sum);
+  }
+  both.erase("session.sqlite");
+  ASSERT_TRUE(session::write_sums(copy, both));
+  EXPECT_TRUE(SessionStore::open(copy, kReadOnly).value().verify(job_).value().ok());
+  fs::copy_file(folder_ / "session.backup.sqlite", copy / "session.backup.sqlite",
+                fs::copy_options::overwrite_existing);
+  EXPECT_TRUE(SessionStore::open(copy, kReadOnly).value().verify(job_).value().ok());
+  flip_byte(copy / "session.backup.sqlite", 5000);
+  EXPECT_FALSE(SessionStore::open(copy, kReadOnly).value().verify(job_).value().ok());
 }
 
 TEST_F(SessionDamageTest, WhatWasReportedStoredSurvivesAKill) {

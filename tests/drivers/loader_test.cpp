@@ -5,9 +5,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <unistd.h>
+
 #include <fstream>
 
 #include "drivers/driver.h"
+#include "drivers/trust.h"
 #include "tests/support/temporary_folder.h"
 
 namespace dubsar {
@@ -84,6 +87,43 @@ TEST(Loader, LeavesOutWhatEverybodyMayWriteTo) {
   EXPECT_EQ(DriverRegistry({folder.path()}).drivers().size(), 1U);
   fs::permissions(folder.path(), fs::perms::others_write, fs::perm_options::add);
   EXPECT_TRUE(DriverRegistry({folder.path()}).drivers().empty());
+}
+
+TEST(Loader, TrustsWhatOnlyTheUserAndRootCanChange) {
+  test::TemporaryFolder folder;
+  const fs::path real = folder.path() / "real";
+  const fs::path linked = folder.path() / "linked";
+  fs::create_directories(real);
+  fs::create_directories(linked);
+  fs::copy_file(kPlugins / "good/odd.so", real / "odd.so");
+  fs::create_symlink(real / "odd.so", linked / "odd.so");
+  const uid_t me = ::geteuid();
+  EXPECT_EQ(trusted_file(linked / "odd.so", me).value(), fs::canonical(real / "odd.so"));
+
+  // What a link leads to counts, not what the link lies in.
+  fs::permissions(real, fs::perms::others_write, fs::perm_options::add);
+  EXPECT_THAT(trusted_file(linked / "odd.so", me).error().line(), HasSubstr("everybody may write to"));
+  EXPECT_TRUE(DriverRegistry({linked}).drivers().empty());
+  fs::permissions(real, fs::perms::others_write, fs::perm_options::remove);
+
+  // A folder further up: its sticky bit is as good, as in /tmp.
+  fs::permissions(folder.path(), fs::perms(0777));
+  EXPECT_FALSE(trusted_file(real / "odd.so", me));
+  fs::permissions(folder.path(), fs::perms(01777));
+  EXPECT_TRUE(trusted_file(real / "odd.so", me));
+
+  if (me == 0) {
+    ASSERT_EQ(::chown((real / "odd.so").c_str(), 4242, 0), 0);
+    EXPECT_THAT(trusted_file(real / "odd.so", me).error().line(), HasSubstr("another user (4242) owns it"));
+    EXPECT_TRUE(trusted_file(real / "odd.so", 4242)) << "the user's own";
+    ASSERT_EQ(::chown((real / "odd.so").c_str(), 0, 4242), 0);
+    fs::permissions(real / "odd.so", fs::perms::group_write, fs::perm_options::add);
+    EXPECT_THAT(trusted_file(real / "odd.so", me).error().line(),
+                HasSubstr("a group (4242) may write to it"));
+    EXPECT_THAT(line_about(DriverRegistry({real}), "odd.so"), HasSubstr("chmod g-w"));
+  } else {
+    EXPECT_THAT(trusted_file(real / "odd.so", me + 1).error().line(), HasSubstr("another user"));
+  }
 }
 
 TEST(Loader, TheFirstOfTwoDriversForOneSchemeWins) {

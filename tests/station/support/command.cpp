@@ -60,6 +60,14 @@ RunningCommand::RunningCommand(const Arguments& arguments, const CommandOptions&
     argv.push_back(word.data());
   }
   argv.push_back(nullptr);
+  std::vector<char*> environment;
+  for (const std::string& one : options.environment) {
+    environment.push_back(const_cast<char*>(one.c_str()));
+  }
+  for (char** one = environ; *one != nullptr; ++one) {
+    environment.push_back(*one);
+  }
+  environment.push_back(nullptr);
   std::array<int, 2> out{};
   std::array<int, 2> err{};
   if (pipe2(out.data(), O_CLOEXEC) != 0 || pipe2(err.data(), O_CLOEXEC) != 0) {
@@ -70,7 +78,7 @@ RunningCommand::RunningCommand(const Arguments& arguments, const CommandOptions&
     dup2(out[1], STDOUT_FILENO);
     dup2(err[1], STDERR_FILENO);
     limit_child(options);
-    execv(argv[0], argv.data());
+    execve(argv[0], argv.data(), environment.data());
     _exit(127);
   }
   close(out[1]);

@@ -21,6 +21,7 @@ struct CommandOptions {
   double timeout_s = 60;           ///< then it is killed and the outcome says so
   std::uint64_t largest_file = 0;  ///< bytes, RLIMIT_FSIZE; 0: no limit
   bool one_core = false;
+  std::vector<std::string> environment{};  ///< NAME=VALUE, besides ours
 };
 
 struct Outcome {

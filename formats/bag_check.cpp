@@ -1,0 +1,299 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "formats/bag_check.h"
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <set>
+
+#include "formats/atomic_file.h"
+#include "formats/bag_text.h"
+#include "formats/sha256.h"
+#include "formats/sha512.h"
+
+namespace dubsar {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr const char* kDeclaration = "bagit.txt";
+constexpr const char* kMend = "get the bag again from its source";
+
+struct Manifest {
+  std::string name;
+  std::string algorithm;
+  std::vector<BagManifestLine> lines;
+};
+
+bool is_known(const std::string& algorithm) {
+  return algorithm == "sha256" || algorithm == "sha512";
+}
+
+bool is_payload(const std::string& name) {
+  return name.starts_with("data/");
+}
+
+/// "sha512" of "manifest-sha512.txt"; empty for other names.
+std::string algorithm_of(const std::string& name, const std::string& prefix) {
+  constexpr std::string_view kEnd = ".txt";
+  return name.starts_with(prefix) && name.ends_with(kEnd) && name.size() > prefix.size() + kEnd.size()
+             ? name.substr(prefix.size(), name.size() - prefix.size() - kEnd.size())
+             : std::string();
+}
+
+class Check {
+ public:
+  Check(const fs::path& folder, JobContext& job) : folder_(folder), job_(job) {}
+
+  Result<BagReport> run() {
+    list_files();
+    const std::optional<std::string> text = text_of(kDeclaration);
+    if (!text) {
+      return std::move(report_);
+    }
+    const Result<BagDeclaration> declared = parse_bag_declaration(*text, kDeclaration);
+    if (!declared) {
+      report_.damaged.push_back(declared.error());
+      return std::move(report_);
+    }
+    declaration_ = *declared;
+    report_.version = std::to_string(declaration_.major) + "." + std::to_string(declaration_.minor);
+    std::error_code ignored;
+    if (!fs::is_directory(folder_ / "data", ignored)) {
+      say("data", "missing: a bag has its payload there");
+    }
+    const std::vector<Manifest> payload = manifests("manifest-");
+    const std::vector<Manifest> tags = manifests("tagmanifest-");
+    if (payload.empty()) {
+      say("manifest-sha512.txt", "missing: without a manifest of SHA-256 or SHA-512 nothing can be checked");
+    }
+    for (const Manifest& manifest : payload) {
+      report_.algorithms.push_back(manifest.algorithm);
+    }
+    check_listing(payload, tags);
+    check_oxum();
+    if (const Status summed = check_sums(payload, tags); !summed) {
+      return std::unexpected(summed.error());
+    }
+    return std::move(report_);
+  }
+
+ private:
+  void say(const std::string& where, const std::string& what) {
+    report_.damaged.push_back({ErrorKind::kBadInput, what, where, kMend});
+  }
+
+  void list_files() {
+    std::error_code ignored;
+    fs::recursive_directory_iterator it(folder_, fs::directory_options::skip_permission_denied, ignored);
+    for (const fs::recursive_directory_iterator end; !ignored && it != end; it.increment(ignored)) {
+      const std::string name = it->path().lexically_relative(folder_).generic_string();
+      if (it->is_symlink(ignored)) {
+        say(name, "a link: a bag holds its files itself");
+      } else if (it->is_regular_file(ignored)) {
+        files_.insert(name);
+      } else if (!it->is_directory(ignored)) {
+        say(name, "neither a file nor a folder");
+      }
+    }
+  }
+
+  std::optional<std::string> text_of(const std::string& name) {
+    if (!files_.contains(name)) {
+      say(name, "missing");
+      return std::nullopt;
+    }
+    Result<std::string> text = read_whole_file(folder_ / name, kMaxBagTextBytes);
+    if (!text) {
+      say(name, text.error().what);
+      return std::nullopt;
+    }
+    return std::move(*text);
+  }
+
+  std::vector<Manifest> manifests(const std::string& prefix) {
+    std::vector<Manifest> out;
+    for (const std::string& name : files_) {
+      const std::string algorithm = algorithm_of(name, prefix);
+      if (algorithm.empty()) {
+        continue;
+      }
+      if (!is_known(algorithm)) {
+        report_.unchecked.push_back(name);
+        continue;
+      }
+      const std::optional<std::string> text = text_of(name);
+      if (!text) {
+        continue;
+      }
+      Result<std::vector<BagManifestLine>> lines = parse_bag_manifest(*text, declaration_, name);
+      if (!lines) {
+        report_.damaged.push_back(lines.error());
+        continue;
+      }
+      out.push_back({name, algorithm, std::move(*lines)});
+    }
+    return out;
+  }
+
+  /// Every payload file in every manifest (before 1.0: in one), and what is listed in its place.
+  void check_listing(const std::vector<Manifest>& payload, const std::vector<Manifest>& tags) {
+    std::map<std::string, std::size_t> listed;
+    for (const Manifest& manifest : payload) {
+      for (const BagManifestLine& line : manifest.lines) {
+        ++listed[line.path];
+        if (!is_payload(line.path)) {
+          say(line.path, manifest.name + " lists it, and it is no payload");
+        }
+      }
+    }
+    std::set<std::string> tagged;
+    for (const Manifest& manifest : tags) {
+      for (const BagManifestLine& line : manifest.lines) {
+        tagged.insert(line.path);
+        if (is_payload(line.path) || !algorithm_of(line.path, "tagmanifest-").empty()) {
+          say(line.path, manifest.name + " lists it, and it is no tag file");
+        }
+      }
+    }
+    const std::size_t wanted =
+        declaration_.at_least(1, 0) ? payload.size() : std::min<std::size_t>(1, payload.size());
+    for (const std::string& name : files_) {
+      const auto found = listed.find(name);
+      const std::size_t times = found == listed.end() ? 0 : found->second;
+      if (is_payload(name) && times < wanted) {
+        say(name, times == 0 ? "no manifest lists it" : "not every manifest lists it");
+      }
+      if (!is_payload(name) && !tagged.contains(name) && algorithm_of(name, "tagmanifest-").empty()) {
+        report_.unrecorded.push_back(name);
+      }
+    }
+    if (files_.contains("fetch.txt")) {
+      check_fetch(listed);
+    }
+  }
+
+  void check_fetch(const std::map<std::string, std::size_t>& listed) {
+    const std::optional<std::string> text = text_of("fetch.txt");
+    const Result<std::vector<std::string>> fetched =
+        text ? parse_bag_fetch(*text, "fetch.txt") : std::vector<std::string>();
+    if (!fetched) {
+      report_.damaged.push_back(fetched.error());
+      return;
+    }
+    for (const std::string& name : *fetched) {
+      if (!listed.contains(name)) {
+        say(name, "fetch.txt has it and no manifest lists it");
+      }
+      to_fetch_.insert(name);
+    }
+  }
+
+  void check_oxum() {
+    if (!files_.contains("bag-info.txt")) {
+      return;
+    }
+    const std::optional<std::string> text = text_of("bag-info.txt");
+    if (!text) {
+      return;
+    }
+    const Result<std::optional<BagOxum>> told = parse_bag_oxum(*text, "bag-info.txt");
+    if (!told) {
+      report_.damaged.push_back(told.error());
+      return;
+    }
+    BagOxum there;
+    for (const std::string& name : files_) {
+      std::error_code ignored;
+      if (is_payload(name)) {
+        there.bytes += fs::file_size(folder_ / name, ignored);
+        ++there.files;
+      }
+    }
+    if (*told && **told != there) {
+      say("bag-info.txt", "Payload-Oxum says " + std::to_string((*told)->bytes) + " bytes in " +
+                              std::to_string((*told)->files) + " files; there are " +
+                              std::to_string(there.bytes) + " in " + std::to_string(there.files));
+    }
+  }
+
+  Result<std::string> sum_of(const std::string& algorithm, const fs::path& path) {
+    return algorithm == "sha512" ? sha512_of_file(path, job_) : sha256_of_file(path, job_);
+  }
+
+  Status check_sums(const std::vector<Manifest>& payload, const std::vector<Manifest>& tags) {
+    std::size_t total = 0;
+    for (const auto* group : {&payload, &tags}) {
+      for (const Manifest& manifest : *group) {
+        total += manifest.lines.size();
+      }
+    }
+    std::map<std::string, bool> good;
+    std::size_t done = 0;
+    for (const auto* group : {&payload, &tags}) {
+      for (const Manifest& manifest : *group) {
+        for (const BagManifestLine& line : manifest.lines) {
+          job_.progress("verify", static_cast<double>(done++) / static_cast<double>(total));
+          if (job_.cancelled()) {
+            return fail(ErrorKind::kCancelled, "verification cancelled", folder_.string());
+          }
+          const bool fits = fits_sum(manifest, line);
+          const auto [entry, first] = good.emplace(line.path, fits);
+          entry->second = entry->second && fits;
+        }
+      }
+    }
+    for (const auto& [name, whole] : good) {
+      if (whole) {
+        report_.whole.push_back(name);
+      }
+    }
+    return {};
+  }
+
+  bool fits_sum(const Manifest& manifest, const BagManifestLine& line) {
+    if (!files_.contains(line.path)) {
+      if (missing_.insert(line.path).second) {
+        say(line.path, to_fetch_.contains(line.path) ? "not here: fetch.txt says where it is" : "missing");
+      }
+      return false;
+    }
+    const Result<std::string> sum = sum_of(manifest.algorithm, folder_ / line.path);
+    if (!sum) {
+      say(line.path, sum.error().what);
+      return false;
+    }
+    if (*sum != line.sum) {
+      say(line.path, "not the bytes that " + manifest.name + " says");
+      return false;
+    }
+    return true;
+  }
+
+  const fs::path& folder_;
+  JobContext& job_;
+  BagDeclaration declaration_;
+  BagReport report_;
+  std::set<std::string> files_;     ///< regular files, relative
+  std::set<std::string> to_fetch_;  ///< of fetch.txt
+  std::set<std::string> missing_;   ///< told already
+};
+
+}  // namespace
+
+bool is_bag(const fs::path& folder) {
+  std::error_code ignored;
+  return fs::is_regular_file(folder / kDeclaration, ignored);
+}
+
+Result<BagReport> check_bag(const fs::path& folder, JobContext& job) {
+  Result<BagReport> report = Check(folder, job).run();
+  if (report) {
+    job.progress("verify", 1.0);
+  }
+  return report;
+}
+
+}  // namespace dubsar

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/job.h"
+#include "core/result.h"
+
+namespace dubsar {
+
+/// What a check of a bag found. Names are relative to the bag.
+struct BagReport {
+  std::string version;                  ///< "1.0"
+  std::vector<std::string> algorithms;  ///< of the payload manifests that were checked
+  std::vector<Error> damaged;           ///< everything that keeps the bag from being complete and valid
+  std::vector<std::string> whole;       ///< files whose checksums fit, tag files included
+  std::vector<std::string> unrecorded;  ///< tag files that no tag manifest lists: allowed
+  std::vector<std::string> unchecked;   ///< manifests with checksums that this program does not know
+  [[nodiscard]] bool ok() const { return damaged.empty(); }
+};
+
+/// True when the folder declares itself a bag (bagit.txt).
+[[nodiscard]] bool is_bag(const std::filesystem::path& folder);
+
+/// Whether a bag is complete and valid (RFC 8493, section 3): every payload file in every manifest and the
+/// other way round, every checksum (SHA-256 and SHA-512), the tag manifests, Payload-Oxum, and nothing that
+/// leads out of the bag. Reads every byte; changes nothing. Errors: kCancelled; all else is in the report.
+[[nodiscard]] Result<BagReport> check_bag(const std::filesystem::path& folder, JobContext& job);
+
+}  // namespace dubsar

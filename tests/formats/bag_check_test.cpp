@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "formats/bag_check.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "formats/bag_text.h"
+#include "formats/sha256.h"
+#include "formats/sha512.h"
+#include "tests/support/temporary_folder.h"
+
+namespace dubsar {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::UnorderedElementsAre;
+
+/// A small bag, written out by hand as RFC 8493 has it.
+class BagTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    put("data/master.ply", "ply and so on\n");
+    put("data/rückseite 100%.png", "a picture");  // its % is encoded in the manifests
+    put("bagit.txt", "BagIt-Version: 1.0\nTag-File-Character-Encoding: UTF-8\n");
+    put("bag-info.txt", "Source-Organization: A museum\n  with a long\n  name\nPayload-Oxum: 23.2\n");
+    list_all();
+  }
+  void put(const std::string& name, const std::string& text) const {
+    fs::create_directories((bag() / name).parent_path());
+    std::ofstream(bag() / name, std::ios::binary) << text;
+  }
+  static std::string line(const std::string& name, const std::string& sum) {
+    return sum + "  " + name + "\n";
+  }
+  std::string sum512(const std::string& name) const { return sha512_of_file(bag() / name, job_).value(); }
+  void list_all() const {
+    put("manifest-sha512.txt", line("data/master.ply", sum512("data/master.ply")) +
+                                   line("data/rückseite 100%25.png", sum512("data/rückseite 100%.png")));
+    put("manifest-sha256.txt", line("data/master.ply", sha256_hex("ply and so on\n")) +
+                                   line("data/rückseite 100%25.png", sha256_hex("a picture")));
+    std::string tags;
+    for (const char* name : {"bagit.txt", "bag-info.txt", "manifest-sha512.txt", "manifest-sha256.txt"}) {
+      tags += line(name, sum512(name));
+    }
+    put("tagmanifest-sha512.txt", tags);
+  }
+  BagReport check() {
+    const Result<BagReport> report = check_bag(bag(), job_);
+    EXPECT_TRUE(report) << report.error().line();
+    return report.value_or(BagReport{});
+  }
+  /// "where: what" of the damage.
+  std::vector<std::string> faults() {
+    std::vector<std::string> out;
+    for (const Error& error : check().damaged) {
+      out.push_back(error.where + ": " + error.what);
+    }
+    return out;
+  }
+  fs::path bag() const { return temporary_.path() / "bag"; }
+
+  test::TemporaryFolder temporary_;
+  JobContext job_;
+};
+
+TEST_F(BagTest, ACompleteBagIsValidAndEveryFileIsCovered) {
+  ASSERT_TRUE(is_bag(bag()));
+  const BagReport report = check();
+  EXPECT_TRUE(report.ok()) << report.damaged.front().line();
+  EXPECT_EQ(report.version, "1.0");
+  EXPECT_THAT(report.algorithms, UnorderedElementsAre("sha256", "sha512"));
+  EXPECT_EQ(report.whole.size(), 6U);
+  EXPECT_THAT(report.unrecorded, IsEmpty());
+}
+
+TEST_F(BagTest, EveryFlippedByteIsNoticed) {
+  for (const char* name :
+       {"data/master.ply", "bag-info.txt", "manifest-sha512.txt", "tagmanifest-sha512.txt"}) {
+    std::fstream file(bag() / name, std::ios::in | std::ios::out | std::ios::binary);
+    const auto size = fs::file_size(bag() / name);
+    for (std::uintmax_t at = 0; at < size; at += 1 + size / 7) {
+      file.seekg(static_cast<std::streamoff>(at));
+      const char was = static_cast<char>(file.get());
+      file.seekp(static_cast<std::streamoff>(at));
+      file.put(static_cast<char>(was ^ 1)).flush();
+      EXPECT_FALSE(check().ok()) << name << " at " << at;
+      file.seekp(static_cast<std::streamoff>(at));
+      file.put(was).flush();
+    }
+  }
+  EXPECT_TRUE(check().ok());
+}
+
+TEST_F(BagTest, MissingAndExtraFilesAreNamed) {
+  fs::remove(bag() / "data/master.ply");
+  put("data/stowaway.txt", "23 bytes, no: 26 of them.\n");
+  put("notes.txt", "a tag file that nobody listed: allowed");
+  const auto found = faults();
+  EXPECT_THAT(found, Contains("data/master.ply: missing"));
+  EXPECT_THAT(found, Contains("data/stowaway.txt: no manifest lists it"));
+  EXPECT_THAT(found, Contains(HasSubstr("Payload-Oxum says 23 bytes in 2 files; there are 35 in 2")));
+  EXPECT_EQ(found.size(), 3U);
+  EXPECT_THAT(check().unrecorded, ElementsAre("notes.txt"));
+}
+
+TEST_F(BagTest, EveryPayloadFileStandsInEveryManifest) {
+  put("manifest-sha256.txt", line("data/master.ply", sha256_hex("ply and so on\n")));
+  fs::remove(bag() / "tagmanifest-sha512.txt");
+  EXPECT_THAT(faults(), ElementsAre("data/rückseite 100%.png: not every manifest lists it"));
+}
+
+TEST_F(BagTest, WhatLeadsOutOfTheBagIsRefused) {
+  fs::remove(bag() / "tagmanifest-sha512.txt");
+  for (const char* path : {"../secret", "data/../../secret", "/etc/passwd", "~/x", "data/%0a/../../../x"}) {
+    put("manifest-sha256.txt", line(path, std::string(64, 'a')));
+    EXPECT_THAT(faults(), Contains(HasSubstr("outside the bag"))) << path;
+  }
+  list_all();
+  fs::remove(bag() / "data/master.ply");
+  fs::create_symlink("/etc/passwd", bag() / "data/master.ply");
+  EXPECT_THAT(faults(), Contains(HasSubstr("data/master.ply: a link")));
+}
+
+TEST_F(BagTest, DeclarationsThatAreNoneAreTold) {
+  for (const char* text :
+       {"", "BagIt-Version: 1.0\n", "BagIt-Version: x\nTag-File-Character-Encoding: UTF-8\n",
+        "BagIt-Version: 2.0\nTag-File-Character-Encoding: UTF-8\n",
+        "BagIt-Version: 1.0\nTag-File-Character-Encoding: UTF-16\n",
+        "\xef\xbb\xbf"
+        "BagIt-Version: 1.0\nTag-File-Character-Encoding: UTF-8\n"}) {
+    put("bagit.txt", text);
+    EXPECT_EQ(check().damaged.size(), 1U) << text;
+  }
+}
+
+TEST_F(BagTest, OldBagsAndUnknownSumsAreUnderstood) {
+  fs::remove(bag() / "tagmanifest-sha512.txt");
+  fs::remove(bag() / "manifest-sha256.txt");
+  put("bagit.txt", "BagIt-Version: 0.97\r\nTag-File-Character-Encoding: UTF-8\r\n");
+  put("manifest-sha512.txt", sum512("data/master.ply") + " *data/master.ply\r\n" +
+                                 sum512("data/rückseite 100%.png") + " *./data/rückseite 100%.png\r\n");
+  put("manifest-md5.txt", line("data/master.ply", std::string(32, '0')));
+  const BagReport report = check();
+  EXPECT_TRUE(report.ok()) << report.damaged.front().line();
+  EXPECT_THAT(report.unchecked, ElementsAre("manifest-md5.txt"));
+  fs::remove(bag() / "manifest-sha512.txt");
+  EXPECT_THAT(faults(), Contains(HasSubstr("without a manifest of SHA-256 or SHA-512")));
+}
+
+TEST_F(BagTest, WhatIsStillToBeFetchedIsMissing) {
+  fs::remove(bag() / "data/master.ply");
+  put("fetch.txt", "https://example.org/master.ply 14 data/master.ply\n");
+  EXPECT_THAT(faults(), Contains("data/master.ply: not here: fetch.txt says where it is"));
+}
+
+TEST(BagText, PathsAreDecodedOnce) {
+  EXPECT_EQ(decode_bag_path("a%0Ab%0dc%2525%20"), "a\nb\rc%25%20");
+  EXPECT_EQ(decode_bag_path("%2"), "%2");
+}
+
+}  // namespace
+}  // namespace dubsar

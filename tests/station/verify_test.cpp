@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+// dubsar verify: every file of a session is accounted for, and what can be mended is.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <iterator>
+
+#include "tests/acquisition/session_support.h"
+#include "tests/station/support/command.h"
+#include "tests/support/temporary_folder.h"
+
+namespace dubsar {
+namespace {
+
+namespace fs = std::filesystem;
+using test::Arguments;
+using test::Outcome;
+using test::run_command;
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+
+std::string bytes_of(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+class Verify : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder_ = new test::TemporaryFolder;
+    scanned_ = run_command({"scan", "--auto", "--max-scans", "3", "--json", "--device",
+                            "sim:?seed=4&size=18x14x9&spacing=0.4", "--session",
+                            (folder_->path() / "scanned").string()});
+  }
+  static void TearDownTestSuite() { delete folder_; }
+  void SetUp() override {
+    ASSERT_EQ(scanned_.status, 1) << scanned_.err;  // three scans do not make it conclusive
+    fs::copy(scanned(), session_, fs::copy_options::recursive);
+  }
+  void TearDown() override { fs::remove_all(session_); }
+
+  static fs::path scanned() { return folder_->path() / "scanned"; }
+  [[nodiscard]] nlohmann::json verify(int status, const Arguments& more = {}) const {
+    Arguments arguments{"verify", session_.string(), "--json"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const Outcome outcome = run_command(arguments);
+    EXPECT_EQ(outcome.status, status) << outcome.err << outcome.out;
+    return outcome.json();
+  }
+  static std::vector<std::string> places(const nlohmann::json& errors) {
+    std::vector<std::string> out;
+    for (const auto& error : errors) {
+      out.push_back(error["where"]);
+    }
+    return out;
+  }
+
+  fs::path session_ = folder_->path() / "session";
+  static test::TemporaryFolder* folder_;
+  static Outcome scanned_;
+};
+test::TemporaryFolder* Verify::folder_ = nullptr;
+Outcome Verify::scanned_;
+
+TEST_F(Verify, EveryFileOfAnUnharmedSessionIsWhole) {
+  const auto report = verify(0);
+  EXPECT_EQ(report["kind"], "session");
+  std::vector<std::string> there;
+  for (const auto& entry : fs::recursive_directory_iterator(session_)) {
+    if (entry.is_regular_file() && entry.path().filename() != "session.lock") {
+      there.push_back(entry.path().lexically_relative(session_).generic_string());
+    }
+  }
+  EXPECT_THAT(report["whole"].get<std::vector<std::string>>(), testing::UnorderedElementsAreArray(there));
+  EXPECT_TRUE(report["unrecorded"].empty() && report["extra"].empty());
+}
+
+TEST_F(Verify, DamagedMissingAndForeignFilesAreNamed) {
+  test::flip_byte(session_ / "grids/001.grid", 3000);
+  fs::remove(session_ / "export/red_map.png");
+  fs::create_directories(session_ / "holiday");
+  std::ofstream(session_ / "holiday/photo.jpg") << "not ours";
+  std::ofstream(session_ / "export/note.txt") << "nobody recorded this";
+  fs::create_symlink("/etc/passwd", session_ / "mesh/link.ply");
+  const auto report = verify(1);
+  EXPECT_THAT(places(report["damaged"]), ElementsAre("grids/001.grid", "export/red_map.png"));
+  EXPECT_EQ(report["damaged"][1]["what"], "missing");
+  EXPECT_EQ(report["extra"], nlohmann::json({"holiday/photo.jpg", "mesh/link.ply"}));
+  EXPECT_EQ(report["unrecorded"], nlohmann::json({"export/note.txt"}));
+}
+
+TEST_F(Verify, DerivedFilesAreMadeAnewByteForByte) {
+  test::flip_byte(session_ / "mesh/model.ply", 5000);
+  fs::remove(session_ / "export/poses.json");
+  fs::resize_file(session_ / "analysis/wedges.json", 10);
+  const auto report = verify(0, {"--repair"});
+  EXPECT_EQ(report["repair"]["made_anew"].size(), 3U);
+  EXPECT_THAT(report["set_aside"],
+              nlohmann::json({"analysis/wedges.json.damaged-1", "mesh/model.ply.damaged-1"}));
+  for (const char* file : {"mesh/model.ply", "export/poses.json"}) {
+    EXPECT_TRUE(bytes_of(session_ / file) == bytes_of(scanned() / file)) << file;
+  }
+}
+
+TEST_F(Verify, AGridComesBackFromACopyAndFromNowhereElse) {
+  test::flip_byte(session_ / "grids/001.grid", 3000);
+  test::flip_byte(session_ / "mesh/model.ply", 5000);
+  const std::string damaged = bytes_of(session_ / "grids/001.grid");
+  const auto alone = verify(1, {"--repair"});
+  EXPECT_THAT(places(alone["repair"]["beyond"]), ElementsAre("grids/001.grid", "mesh/model.ply"));
+  EXPECT_THAT(alone["repair"]["beyond"][1]["what"].get<std::string>(), HasSubstr("without grids/001.grid"));
+  EXPECT_TRUE(bytes_of(session_ / "grids/001.grid") == damaged) << "left as it is";
+  const auto with_copy = verify(0, {"--repair", "--from", scanned().string()});
+  EXPECT_EQ(with_copy["repair"]["restored"], nlohmann::json({"grids/001.grid", "mesh/model.ply"}));
+  EXPECT_TRUE(bytes_of(session_ / "grids/001.grid.damaged-1") == damaged);
+  EXPECT_TRUE(bytes_of(session_ / "grids/001.grid") == bytes_of(scanned() / "grids/001.grid"));
+}
+
+TEST_F(Verify, TablesAreRebuiltAndTheDamagedOnesKept) {
+  const auto events = run_command({"session", "list", session_.string(), "--json"}).json();
+  for (std::uintmax_t at = 100; at < 4096; at += 64) {
+    test::flip_byte(session_ / "session.sqlite", at);
+  }
+  const auto before = verify(1);
+  EXPECT_THAT(places(before["damaged"]), Not(IsEmpty()));
+  const auto after = verify(0, {"--repair"});
+  EXPECT_THAT(after["repair"]["notes"].dump(), HasSubstr("rebuilt the database"));
+  EXPECT_THAT(after["set_aside"].dump(), HasSubstr("session.sqlite.damaged-1"));
+  EXPECT_EQ(run_command({"session", "list", session_.string(), "--json"}).json()["scans"], events["scans"]);
+}
+
+TEST_F(Verify, WhatCannotBeVerifiedIsToldInOneLine) {
+  const fs::path other = folder_->path() / "other";
+  fs::create_directories(other);
+  const std::string good = session_.string();
+  for (const Arguments& arguments :
+       {Arguments{"verify", other.string()}, Arguments{"verify", (other / "nothing").string()},
+        Arguments{"verify", good, "--from", scanned().string()},
+        Arguments{"verify", good, "--repair", "--from", good},
+        Arguments{"verify", good, "--repair", "--from", other.string()}}) {
+    const Outcome outcome = run_command(arguments);
+    EXPECT_EQ(outcome.status, 2) << outcome.err;
+    EXPECT_EQ(outcome.complaints().size(), 1U) << outcome.err;
+  }
+}
+
+}  // namespace
+}  // namespace dubsar
