@@ -184,7 +184,7 @@ void LiveSession::sign(const SignOff& wanted) {
     state_.signed_off = true;
     state_.signed_by = signing->made->name;
     if (signing->no_pages) {
-      say(signing->no_pages->line());
+      state_.notice = signing->no_pages->line();
     }
   });
 }
@@ -256,7 +256,7 @@ void LiveSession::read_folder() {
   {
     const std::scoped_lock lock(mutex_);
     for (const Error& damage : store->opening().damage) {
-      say(damage.line());
+      state_.notice = damage.line();
     }
     for (const StoredScan& stored : *scans) {
       LiveScan& scan = scan_of(stored.id);

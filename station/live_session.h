@@ -59,7 +59,6 @@ class LiveSession {
   void run_engine(std::vector<OperatorCommand> first, bool first_scan_waits);
   void read_folder();
   void hear(const Event& event);
-  void say(const std::string& text);  ///< under the mutex
   void progress(std::string_view stage, double fraction);
   LiveScan& scan_of(int id);                        ///< under the mutex
   void follow(const std::vector<ScanPose>& poses);  ///< under the mutex

@@ -11,7 +11,6 @@ namespace dubsar {
 
 namespace {
 
-constexpr std::size_t kNotices = 200;
 /// Samples of a scan that are kept to be pointed at: a few megabytes.
 constexpr double kShownSamples = 250000;
 
@@ -24,14 +23,6 @@ void LiveSession::progress(std::string_view stage, double fraction) {
     state_.fraction = fraction;
   }
   changed();
-}
-
-void LiveSession::say(const std::string& text) {
-  const std::int64_t number = state_.notices.empty() ? 1 : state_.notices.back().number + 1;
-  state_.notices.push_back({number, text});
-  if (state_.notices.size() > kNotices) {
-    state_.notices.erase(state_.notices.begin());
-  }
 }
 
 LiveScan& LiveSession::scan_of(int id) {
@@ -128,6 +119,9 @@ void LiveSession::hear(const Event& event) {
     LiveScan& scan = scan_of(placed->pose.id);
     scan.file = placed->pose.file;
     follow(placed->all);
+    if (placed->pose.status == PoseStatus::kRegistered) {
+      state_.notice.clear();
+    }
     if (std::ranges::find(placed->all, placed->pose.id, &ScanPose::id) == placed->all.end()) {
       scan.dropped = true;  // something was in its way
       scan.note = placed->pose.reason;
@@ -143,7 +137,7 @@ void LiveSession::hear(const Event& event) {
       state_.phase = LivePhase::kJudging;
     } else if (const auto* obeyed = std::get_if<OperatorObeyed>(&event)) {
       follow(obeyed->all);
-      say(obeyed->what);
+      state_.notice = obeyed->what;
     } else if (const auto* red_map = std::get_if<RedMapChanged>(&event)) {
       state_.red_map = std::make_shared<const RedMap>(red_map->red_map);
       if (red_map->red_map.conclusive) {
@@ -157,7 +151,7 @@ void LiveSession::hear(const Event& event) {
       state_.last_not_taken_up = waits->not_taken_up;
       state_.phase = LivePhase::kWaiting;
     } else if (const auto* notice = std::get_if<Notice>(&event)) {
-      say(notice->text);
+      state_.notice = notice->text;
     }
   }
   changed();

@@ -47,11 +47,6 @@ struct LiveScan {
   std::shared_ptr<const GridPicture> picture;
 };
 
-struct LiveNotice {
-  std::int64_t number = 0;
-  std::string text;
-};
-
 /// A session as it stands: a value that a skin reads between two frames. What is large is shared and never
 /// changed.
 struct LiveState {
@@ -72,7 +67,7 @@ struct LiveState {
   bool signed_off = false;  ///< the verdict as it stands
   std::string signed_by;
   std::optional<Error> error;  ///< what ended the last run or job
-  std::vector<LiveNotice> notices;
+  std::string notice;          ///< what the operator should know; empty when a later scan has made it old
   TabletRecord record;
   bool exists = false;  ///< the folder holds a session
   int profiles = 0;     ///< of the scan under way

@@ -106,9 +106,8 @@ TEST(LiveSession, WhatWasStoppedGoesOnWithEverythingThatWasStored) {
     record.museum_number = "VAT 1";
     record.cdli = "P123456";
     followed.session.describe(record);
-    ASSERT_TRUE(followed.wait_until([](const LiveState& s) {
-      return !s.notices.empty() && s.notices.back().text.find("said of the tablet") != std::string::npos;
-    }));
+    ASSERT_TRUE(followed.wait_until(
+        [](const LiveState& s) { return s.notice.find("said of the tablet") != std::string::npos; }));
     stored = followed.session.state().scans.size();
   }  // closed while it waited
   Followed again(kSmallTablet, folder.path() / "s");

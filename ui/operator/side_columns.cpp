@@ -152,9 +152,9 @@ void OperatorScreen::draw_right(UiContext& ui, ImVec2 size) {
           filled(ui.text(Text::kTimeLeft), spent * (1 - state_.fraction) / state_.fraction).c_str());
     }
     ImGui::PopFont();
-  } else if (!state_.notices.empty()) {
+  } else if (!state_.notice.empty()) {
     ImGui::PushFont(ui.fonts.small);
-    coloured_text(ui.colours.faint, state_.notices.back().text.c_str());
+    coloured_text(ui.colours.faint, state_.notice.c_str());
     ImGui::PopFont();
   }
   ImGui::EndChild();
