@@ -4,14 +4,23 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <filesystem>
+#include <functional>
 #include <memory>
+#include <optional>
 
+#include "acquisition/session_store.h"
+#include "formats/atomic_file.h"
 #include "station/command/command.h"
+#include "station/command/terminal.h"
+#include "station/done_stamp.h"
 #include "station/package.h"
 
 namespace dubsar {
 
 namespace {
+
+namespace fs = std::filesystem;
 
 struct ExportArguments {
   std::string session;
@@ -22,7 +31,82 @@ struct ExportArguments {
   bool force = false;
 };
 
+/// Every file below a folder but those to be passed over, in order.
+Result<std::vector<fs::path>> files_below(const fs::path& folder,
+                                          const std::function<bool(const fs::path&)>& passes_over) {
+  std::vector<fs::path> files;
+  std::error_code error;
+  for (fs::recursive_directory_iterator at(folder, error), end; !error && at != end; at.increment(error)) {
+    if (passes_over(at->path())) {
+      at.disable_recursion_pending();
+    } else if (at->is_regular_file(error)) {
+      files.push_back(at->path());
+    }
+  }
+  if (error) {
+    return fail(ErrorKind::kStorage, error.message(), folder.string(), "look at its rights");
+  }
+  std::ranges::sort(files);
+  return files;
+}
+
+/// What decides what is in the package, beside the session.
+std::string parameters_of(const ExportArguments& arguments) {
+  nlohmann::ordered_json json{{"base_url", arguments.base_url}, {"ground", arguments.ground}};
+  std::vector<std::string> without = arguments.without;
+  std::ranges::sort(without);
+  json["without"] = without;
+  return json.dump();
+}
+
+/// A package that is made again from the same session is found done (docs/collections.md).
+Result<StampedWork> begin_work(const ExportArguments& arguments, const JobContext& job) {
+  const fs::path target = fs::absolute(arguments.to).lexically_normal();
+  const auto passes_over = [&](const fs::path& file) {
+    const std::string name = file.filename().string();
+    const fs::path normal = fs::absolute(file).lexically_normal();
+    return normal == target || normal == stamp_beside(target) || name == "session.lock" ||
+           name.ends_with("-shm") || name.starts_with(kTemporaryPrefix);
+  };
+  const Result<std::vector<fs::path>> inputs = files_below(arguments.session, passes_over);
+  if (!inputs) {
+    return std::unexpected(inputs.error());
+  }
+  return StampedWork::begin(stamp_beside(target), "export", parameters_of(arguments), *inputs, job);
+}
+
+int tell_done(const ExportArguments& arguments, const CommandContext& context) {
+  if (context.json) {
+    CommandContext::print({{"package", arguments.to}, {"done_before", true}});
+  } else {
+    finish_progress();
+    std::printf("%s: done before, from the same session\n", arguments.to.c_str());
+  }
+  return 0;
+}
+
 Result<int> export_session(const ExportArguments& arguments, CommandContext& context) {
+  std::error_code ignored;
+  std::optional<StampedWork> work;
+  if (SessionStore::is_session(arguments.session)) {
+    Result<StampedWork> begun = begin_work(arguments, context.job);
+    if (!begun) {
+      return std::unexpected(begun.error());
+    }
+    work = std::move(*begun);
+    const Result<bool> done = arguments.force ? false : work->done(context.job);
+    if (!done) {
+      return std::unexpected(done.error());
+    }
+    if (*done) {
+      return tell_done(arguments, context);
+    }
+    if (arguments.force || !fs::exists(arguments.to, ignored)) {
+      if (const Status started = work->start(); !started) {
+        return std::unexpected(started.error());
+      }
+    }
+  }
   PackageOptions options;
   options.replace = arguments.force;
   options.base_url = arguments.base_url;
@@ -35,6 +119,15 @@ Result<int> export_session(const ExportArguments& arguments, CommandContext& con
   const Result<Package> package = write_package(arguments.session, arguments.to, options, context.job);
   if (!package) {
     return std::unexpected(package.error());
+  }
+  if (work) {
+    const auto outputs = files_below(arguments.to, [](const fs::path&) { return false; });
+    if (!outputs) {
+      return std::unexpected(outputs.error());
+    }
+    if (const Status finished = work->finish(*outputs, context.job); !finished) {
+      return std::unexpected(finished.error());
+    }
   }
   if (context.json) {
     nlohmann::ordered_json json{
@@ -79,7 +172,8 @@ void add_export(CLI::App& app, Action& chosen) {
   verb->add_option("--ground", arguments->ground, "of the pictures")
       ->check(CLI::IsMember({"black", "white"}))
       ->capture_default_str();
-  verb->add_flag("--force", arguments->force, "replace a package that lies there already");
+  verb->add_flag("--force", arguments->force,
+                 "replace a package that lies there already, done before or not");
   verb->callback([&chosen, arguments] {
     chosen = [arguments](CommandContext& c) { return export_session(*arguments, c); };
   });

@@ -233,6 +233,18 @@ TEST_F(Export, NeverOverwritesUnasked) {
   EXPECT_FALSE(fs::exists(at("twice") / "data" / "left.txt"));
 }
 
+TEST_F(Export, FindsItsWorkDoneUntilTheSessionOrThePackageChanges) {
+  const std::vector<std::string> small{"--without", "renderings,features,wedges,grid-ply"};
+  ASSERT_EQ(export_to("again", small).status, 0);
+  const auto written = fs::last_write_time(at("again") / "manifest-sha512.txt");
+  const Outcome found = export_to("again", small);
+  EXPECT_EQ(found.status, 0) << found.err;
+  EXPECT_EQ(found.json()["done_before"], true);
+  EXPECT_EQ(fs::last_write_time(at("again") / "manifest-sha512.txt"), written);
+  std::ofstream(at("again") / "data" / "README.txt", std::ios::app) << "something else";
+  EXPECT_EQ(export_to("again", small).status, 2) << "not what was written: it is not made anew unasked";
+}
+
 TEST_F(Export, IsNotThereUntilItIsWhole) {
   const fs::path to = at("stopped");
   test::RunningCommand running({"export", at("session").string(), "--to", to.string()});
