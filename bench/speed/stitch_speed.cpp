@@ -3,6 +3,7 @@
 // Seconds by stage of stitching scans of a simulated tablet, in memory, and the peak of memory; one line a
 // size, so that it shows whether time grows with the samples.
 //   dubsar-stitch-speed [--scans 12] [--repeat 1] MILLIONS …   samples of one scan
+//   dubsar-stitch-speed --adding MILLIONS                      seconds to take up each scan (no mesh yet)
 
 #include <sys/resource.h>
 #include <tbb/info.h>
@@ -74,6 +75,28 @@ class StageClock {
   double cpu_since_s_ = 0;
 };
 
+/// The last scan comes to the others while the station runs.
+int measure_adding(double millions, int scans) {
+  const SimulatedViews views = make_views_of_millions(scans, millions);
+  const std::vector<PlacedScan> placed = views.placed();
+  const JobContext job;
+  Stitcher stitcher;
+  for (const PlacedScan& scan : placed) {
+    const auto start = Clock::now();
+    const double cpu_start_s = cpu_seconds();
+    Status added = stitcher.add(scan, job);
+    added = added ? stitcher.update(job) : added;
+    if (!added) {
+      std::fprintf(stderr, "%s\n", added.error().line().c_str());
+      return 4;
+    }
+    std::printf("scan %d of %.2f million samples added: %.3f s, %.3f s of processors\n", scan.id + 1,
+                1e-6 * static_cast<double>(scan.grid->valid_count()), seconds_since(start),
+                cpu_seconds() - cpu_start_s);
+  }
+  return 0;
+}
+
 int measure(double millions, int scans, int repeat) {
   const SimulatedViews views = make_views_of_millions(scans, millions);
   const std::vector<PlacedScan> placed = views.placed();
@@ -111,10 +134,12 @@ int main(int argc, char** argv) {
   app.add_option("millions", millions);
   app.add_option("--scans", scans);
   app.add_option("--repeat", repeat);
+  bool adding = false;
+  app.add_flag("--adding", adding, "scan by scan instead, as while scanning");
   CLI11_PARSE(app, argc, argv);
   std::printf("%d threads\n", tbb::info::default_concurrency());
   for (const double m : millions) {
-    if (const int status = measure(m, scans, repeat); status != 0) {
+    if (const int status = adding ? measure_adding(m, scans) : measure(m, scans, repeat); status != 0) {
       return status;
     }
   }
