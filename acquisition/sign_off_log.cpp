@@ -8,7 +8,7 @@
 
 #include "formats/number_text.h"
 #include "formats/red_map_json.h"
-#include "formats/sha256.h"
+#include "formats/sha2.h"
 #include "formats/sign_off_json.h"
 
 namespace dubsar {

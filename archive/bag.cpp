@@ -11,7 +11,7 @@
 
 #include "core/parallel.h"
 #include "formats/atomic_file.h"
-#include "formats/sha512.h"
+#include "formats/sha2.h"
 
 namespace dubsar {
 

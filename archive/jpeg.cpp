@@ -5,12 +5,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <csetjmp>
 #include <cstdio>
 #include <cstdlib>
 #include <string>
 
-#include <jpeglib.h>  // wants cstdio before it
+#include "formats/jpeg_complaint.h"
 
 namespace dubsar {
 
@@ -18,29 +17,16 @@ namespace {
 
 constexpr double kMmPerInch = 25.4;
 
-/// libjpeg reports by a jump. Nothing with a destructor may live between the jump and where it lands.
-struct Complaint {
-  jpeg_error_mgr manager;
-  std::jmp_buf back;
-  std::array<char, JMSG_LENGTH_MAX> text;
-};
-
-void leave(j_common_ptr info) {
-  auto* complaint = reinterpret_cast<Complaint*>(info->err);
-  (*info->err->format_message)(info, complaint->text.data());
-  std::longjmp(complaint->back, 1);
-}
-
 /// libjpeg's own memory, to be freed by the caller, whatever happened.
 struct Buffer {
   unsigned char* bytes = nullptr;
   unsigned long size = 0;
 };
 
-bool encode(const Image& image, int quality, Buffer& into, Complaint& complaint) {
+bool encode(const Image& image, int quality, Buffer& into, JpegComplaint& complaint) {
   jpeg_compress_struct info{};
   info.err = jpeg_std_error(&complaint.manager);
-  complaint.manager.error_exit = leave;
+  complaint.manager.error_exit = JpegComplaint::leave;
   if (setjmp(complaint.back) != 0) {
     jpeg_destroy_compress(&info);
     return false;
@@ -83,7 +69,7 @@ Result<std::vector<std::uint8_t>> encode_jpeg(const Image& image, int quality) {
     return fail(ErrorKind::kUsage, "the picture is empty or its size and bytes disagree", "JPEG");
   }
   Buffer buffer;
-  Complaint complaint{};
+  JpegComplaint complaint{};
   const bool done = encode(image, quality, buffer, complaint);
   std::vector<std::uint8_t> bytes;
   if (done) {

@@ -9,8 +9,7 @@
 
 #include "formats/atomic_file.h"
 #include "formats/bag_text.h"
-#include "formats/sha256.h"
-#include "formats/sha512.h"
+#include "formats/sha2.h"
 
 namespace dubsar {
 

@@ -3,43 +3,27 @@
 #include "formats/gray_jpeg.h"
 
 #include <array>
-#include <csetjmp>
 #include <cstdint>
 #include <cstdio>
 
-#include <jpeglib.h>  // wants cstdio before it
-
 #include "formats/gray_file.h"
+#include "formats/jpeg_complaint.h"
 
 namespace dubsar {
 
 namespace {
 
-/// libjpeg reports by a jump. Nothing with a destructor may live between the jump and where it lands: all of
-/// that is the caller's.
-struct Complaint {
-  jpeg_error_mgr manager;
-  std::jmp_buf back;
-  std::array<char, JMSG_LENGTH_MAX> text;
-};
-
-void leave(j_common_ptr info) {
-  auto* complaint = reinterpret_cast<Complaint*>(info->err);
-  (*info->err->format_message)(info, complaint->text.data());
-  std::longjmp(complaint->back, 1);
-}
-
 /// A warning means bytes that are missing or wrong: as much an error here.
 void warn(j_common_ptr info, int level) {
   if (level < 0) {
-    leave(info);
+    JpegComplaint::leave(info);
   }
 }
 
-bool decode(std::string_view bytes, GrayImage& image, Complaint& complaint) {
+bool decode(std::string_view bytes, GrayImage& image, JpegComplaint& complaint) {
   jpeg_decompress_struct info{};
   info.err = jpeg_std_error(&complaint.manager);
-  complaint.manager.error_exit = leave;
+  complaint.manager.error_exit = JpegComplaint::leave;
   complaint.manager.emit_message = warn;
   if (setjmp(complaint.back) != 0) {
     jpeg_destroy_decompress(&info);
@@ -74,7 +58,7 @@ bool decode(std::string_view bytes, GrayImage& image, Complaint& complaint) {
 
 Result<GrayImage> parse_gray_jpeg(std::string_view bytes, const std::string& where) {
   GrayImage image;
-  Complaint complaint{};
+  JpegComplaint complaint{};
   if (!decode(bytes, image, complaint)) {
     return bad_input(where, std::string("the picture cannot be read: ") + complaint.text.data(),
                      "give a whole picture");

@@ -15,7 +15,7 @@
 #include "formats/json_node.h"
 #include "formats/mesh_io.h"
 #include "formats/red_map_json.h"
-#include "formats/sha256.h"
+#include "formats/sha2.h"
 #include "planning/checklist.h"
 #include "station/tablet_record.h"
 

@@ -8,7 +8,7 @@
 #include "core/log.h"
 #include "formats/json_node.h"
 #include "formats/json_text.h"
-#include "formats/sha256.h"
+#include "formats/sha2.h"
 #include "station/analysis.h"
 
 namespace dubsar {
@@ -25,7 +25,7 @@ std::string digest_of(const Mesh& mesh) {
     return std::string_view(reinterpret_cast<const char*>(values.data()),
                             values.size() * sizeof(values.front()));
   };
-  Sha256 sum;
+  Sha2Sum sum(Sha2::k256);
   sum.add(bytes(mesh.positions));
   sum.add(bytes(mesh.faces));
   return sum.hex();

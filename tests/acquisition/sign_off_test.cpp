@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "formats/red_map_json.h"
-#include "formats/sha256.h"
+#include "formats/sha2.h"
 #include "tests/acquisition/session_support.h"
 #include "tests/support/temporary_folder.h"
 

@@ -9,7 +9,7 @@
 
 #include "archive/staged_folder.h"
 #include "formats/atomic_file.h"
-#include "formats/sha512.h"
+#include "formats/sha2.h"
 #include "tests/support/temporary_folder.h"
 
 namespace dubsar {

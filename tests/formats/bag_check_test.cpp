@@ -8,8 +8,7 @@
 #include <fstream>
 
 #include "formats/bag_text.h"
-#include "formats/sha256.h"
-#include "formats/sha512.h"
+#include "formats/sha2.h"
 #include "tests/support/temporary_folder.h"
 
 namespace dubsar {

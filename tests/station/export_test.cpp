@@ -276,7 +276,7 @@ TEST_F(Export, BadUsageIsToldInOneLine) {
 TEST_F(Export, OthersReadItsForms) {
   if (!has_program("xmllint") || !has_program("qpdf") || !has_program("pdfinfo") ||
       !has_program("pdffonts")) {
-    GTEST_SKIP() << "install libxml2-utils, qpdf and poppler-utils to hold the files against them";
+    FAIL() << "install libxml2-utils, qpdf and poppler-utils (packages.txt) to hold the files against them";
   }
   for (const char* side : {"obverse", "reverse"}) {
     if (fs::exists(data(std::string("wedges/drawings/") + side + ".svg"))) {
@@ -307,7 +307,7 @@ TEST_F(Export, TheAccessMeshIsValidGltf) {
 TEST_F(Export, LinkedDataHasTheShapeOfTheStandards) {
   const std::string python = "/usr/bin/python3";
   if (std::system((python + " -c 'import jsonschema' 2>/dev/null").c_str()) != 0) {
-    GTEST_SKIP() << "install python3-jsonschema to hold the files against schemas";
+    FAIL() << "install python3-jsonschema (packages.txt) to hold the files against schemas";
   }
   for (const auto& [file, schema] : {std::pair{"iiif/manifest.json", "iiif_manifest.json"},
                                      std::pair{"wedges/annotations.json", "annotation_page.json"},
@@ -322,7 +322,7 @@ TEST_F(Export, LinkedDataHasTheShapeOfTheStandards) {
 
 TEST_F(Export, ProvenanceIsAGraphToOthers) {
   if (std::system("/usr/bin/python3 -c 'import rdflib' 2>/dev/null") != 0) {
-    GTEST_SKIP() << "install python3-rdflib to read the provenance as linked data";
+    FAIL() << "install python3-rdflib (packages.txt) to read the provenance as linked data";
   }
   // Every file that a scan created is the source of a step.
   const std::string check =

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright The Dubsar developers
-#include "formats/sha512.h"
+#include "formats/sha2.h"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,16 @@
 namespace dubsar {
 namespace {
 
-// FIPS 180-4's own examples (NIST, "SHA512.pdf" of the example values).
+// FIPS 180-4's own examples (NIST, "SHA256.pdf" of the example values).
+TEST(Sha256, ExamplesOfTheStandard) {
+  EXPECT_EQ(sha256_hex(""), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
+  EXPECT_EQ(sha256_hex("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+  EXPECT_EQ(sha256_hex("abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq"),
+            "248d6a61d20638b8e5c026930c3e6039a33ce45964ff2167f6ecedd419db06c1");
+  EXPECT_EQ(sha256_hex(std::string(1000000, 'a')),
+            "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
+}
+
 TEST(Sha512, ExamplesOfTheStandard) {
   EXPECT_EQ(sha512_hex(""),
             "cf83e1357eefb8bdf1542850d66d8007d620e4050b5715dc83f4a921d36ce9ce47d0d13c5d85f2b0ff8318d2877eec2f"
@@ -28,25 +37,26 @@ TEST(Sha512, ExamplesOfTheStandard) {
             "eb009c5c2c49aa2e4eadb217ad8cc09b");
 }
 
-TEST(Sha512, PiecesOfAnyLengthGiveTheSame) {
+TEST(Sha2, PiecesOfAnyLengthGiveTheSame) {
   std::string text;
   for (int i = 0; i < 400; ++i) {
     text.push_back(static_cast<char>(i * 37));
   }
   const std::string whole = sha512_hex(text);
   for (std::size_t cut = 0; cut <= text.size(); ++cut) {
-    Sha512 sum;
+    Sha2Sum sum(Sha2::k512);
     sum.add(std::string_view(text).substr(0, cut));
     sum.add(std::string_view(text).substr(cut));
     EXPECT_EQ(sum.hex(), whole) << cut;
   }
 }
 
-TEST(Sha512, OfAFile) {
+TEST(Sha2, OfAFile) {
   const test::TemporaryFolder folder;
   const auto path = folder.path() / "file";
   std::ofstream(path, std::ios::binary) << "abc";
   EXPECT_EQ(sha512_of_file(path, JobContext()).value_or(""), sha512_hex("abc"));
+  EXPECT_EQ(sha256_of_file(path, JobContext()).value_or(""), sha256_hex("abc"));
   EXPECT_EQ(sha512_of_file(folder.path() / "none", JobContext()).error().kind, ErrorKind::kBadInput);
   JobContext stopped;
   stopped.cancel();
