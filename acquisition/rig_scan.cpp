@@ -16,6 +16,7 @@ namespace dubsar {
 namespace {
 
 constexpr auto kFrameWait = std::chrono::milliseconds(200);
+constexpr std::uint32_t kSweepPool = 32;
 constexpr int kFrameTries = 15;  // 3 s for a frame that was exposed late enough
 
 std::int64_t monotonic_ns() {
@@ -229,6 +230,22 @@ Result<RigScanner> RigScanner::make(const RigFile& file, const RigCalibration& c
   return out;
 }
 
+Status RigScanner::check_frame(const Frame& frame) const {
+  const CameraModel& camera = triangulator_->calibration().camera;
+  if (static_cast<int>(frame.width) != camera.width || static_cast<int>(frame.height) != camera.height ||
+      frame.offset_x != 0 || frame.offset_y != 0) {
+    return bad_input(file_.name,
+                     "the camera sends " + std::to_string(frame.width) + " x " +
+                         std::to_string(frame.height) + " pixels, it was calibrated with " +
+                         std::to_string(camera.width) + " x " + std::to_string(camera.height),
+                     "set the region that was calibrated in camera_settings");
+  }
+  if (frame.format != PixelFormat::kMono8) {
+    return bad_input(file_.name, "the camera does not send Mono8", "set pixel_format in camera_settings");
+  }
+  return {};
+}
+
 /// A frame whose light fell behind `not_before_ns`: what the camera sent before is given back.
 Result<Frame> RigScanner::fresh_frame(std::int64_t not_before_ns) {
   for (int i = 0; i < kFrameTries; ++i) {
@@ -242,18 +259,8 @@ Result<Frame> RigScanner::fresh_frame(std::int64_t not_before_ns) {
     if (!*frame || (*frame)->timestamp_ns < not_before_ns || (*frame)->incomplete) {
       continue;
     }
-    const CameraModel& camera = triangulator_->calibration().camera;
-    if (static_cast<int>((*frame)->width) != camera.width ||
-        static_cast<int>((*frame)->height) != camera.height || (*frame)->offset_x != 0 ||
-        (*frame)->offset_y != 0) {
-      return bad_input(file_.name,
-                       "the camera sends " + std::to_string((*frame)->width) + " x " +
-                           std::to_string((*frame)->height) + " pixels, it was calibrated with " +
-                           std::to_string(camera.width) + " x " + std::to_string(camera.height),
-                       "set the region that was calibrated in camera_settings");
-    }
-    if ((*frame)->format != PixelFormat::kMono8) {
-      return bad_input(file_.name, "the camera does not send Mono8", "set pixel_format in camera_settings");
+    if (const Status fits = check_frame(**frame); !fits) {
+      return std::unexpected(fits.error());
     }
     return std::move(**frame);
   }
@@ -306,24 +313,53 @@ Status RigScanner::row(int number, ProfileSink& sink, ScanTally& tally) {
                 "see whether something blocks it, and home it");
   }
   extractor_.extract(view_of(*lit), file_.ambient ? dark_.view() : GrayView{}, stripe_);
-  triangulator_->triangulate(stripe_, motion->position[axis], profile_);
+  return hand_on(number, stripe_, motion->position[axis], lit->timestamp_ns, sink, tally);
+}
+
+Status RigScanner::hand_on(std::int64_t row, const StripeProfile& stripe, double position,
+                           std::int64_t timestamp_ns, ProfileSink& sink, ScanTally& tally) {
+  triangulator_->triangulate(stripe, position, profile_);
   Profile out;
-  out.row = number;
+  out.row = row;
   out.x = profile_.x;
   out.y = profile_.y;
   out.z = profile_.z;
   out.valid = profile_.valid;
-  out.intensity = stripe_.peak;
-  out.confidence = stripe_.confidence;
-  out.timestamp_ns = lit->timestamp_ns;
+  out.intensity = stripe.peak;
+  out.confidence = stripe.confidence;
+  out.timestamp_ns = timestamp_ns;
   ++tally.profiles_sent;
   return sink.profile(out) ? Status{} : fail(ErrorKind::kCancelled, "scan cancelled", file_.name);
 }
 
+/// Positions mean nothing before a stage has found its switch.
+Status RigScanner::home_once() {
+  const Result<StageReading> now = stage_.motion();
+  if (!now) {
+    return std::unexpected(now.error());
+  }
+  const Result<std::vector<StageAxis>> axes = stage_.axes();
+  if (!axes) {
+    return std::unexpected(axes.error());
+  }
+  const bool can_home = (*axes)[static_cast<std::size_t>(file_.axis)].can_home;
+  return can_home && !now->homed ? stage_.home() : Status{};
+}
+
 Status RigScanner::scan(ProfileSink& sink) {
   stopped_->store(false);
+  if (Status homed = home_once(); !homed) {
+    return homed;
+  }
   const LaserGuard dark(stage_, static_cast<std::uint32_t>(file_.laser));
-  if (Status started = camera_.start_frames(); !started) {
+  Result<SweepPlan> plan = SweepPlan{};
+  if (file_.continuous) {
+    plan = plan_sweep();
+    if (!plan) {
+      return std::unexpected(plan.error());
+    }
+  }
+  if (Status started = camera_.start_frames(file_.continuous ? kSweepPool : 0); !started) {
     return started;
   }
   const StreamGuard stream(camera_);
@@ -344,7 +380,10 @@ Status RigScanner::scan(ProfileSink& sink) {
   info.device = device_id_;
   ScanTally tally;
   Status status = sink.begin(info) ? Status{} : fail(ErrorKind::kCancelled, "scan cancelled", file_.name);
-  for (int number = 0; status && number < file_.rows; ++number) {
+  if (status && file_.continuous) {
+    status = sweep(*plan, sink, tally);
+  }
+  for (int number = 0; status && !file_.continuous && number < file_.rows; ++number) {
     status =
         stopped_->load() ? fail(ErrorKind::kCancelled, "scan stopped", file_.name) : row(number, sink, tally);
   }

@@ -14,6 +14,12 @@
 
 namespace dubsar {
 
+/// A continuous scan: from where to where the stage goes, and how fast.
+struct SweepPlan {
+  double from = 0, to = 0;  ///< with room to gather speed, where the axis has it
+  double speed = 0;         ///< mm/s or rad/s
+};
+
 /// A camera, a stage with a laser, and the calibration that belongs to them, as one range source. Use from
 /// one thread at a time; stop() from any.
 class RigScanner {
@@ -28,8 +34,10 @@ class RigScanner {
   [[nodiscard]] const Rig& rig() const { return rig_; }
   [[nodiscard]] const std::string& device_id() const { return device_id_; }
 
-  /// One scan, row by row: drives to the row, takes a frame with the laser off (where the file asks for
-  /// ambient frames) and one with it on. The laser is off afterwards, whatever happened.
+  /// One scan; the stage is homed before the first, where it has to be. Row by row: drives to the row, takes
+  /// a frame with the laser off (where the file asks for ambient frames) and one with it on. Continuous: the
+  /// stage moves through, every frame of the camera is a row, and its time says where the stage was. The
+  /// laser is off afterwards, whatever happened.
   Status scan(ProfileSink& sink);
   /// Ends the motion and puts the laser off; a scan that runs returns kCancelled soon.
   Status stop();
@@ -37,8 +45,14 @@ class RigScanner {
  private:
   RigScanner(const RigFile& file, const RigCalibration& calibration, Device camera, Device stage,
              StripeAxis axis);
+  Status home_once();
   [[nodiscard]] Result<Frame> fresh_frame(std::int64_t not_before_ns);
+  [[nodiscard]] Status check_frame(const Frame& frame) const;
   Status row(int number, ProfileSink& sink, ScanTally& tally);
+  [[nodiscard]] Result<SweepPlan> plan_sweep();
+  Status sweep(const SweepPlan& plan, ProfileSink& sink, ScanTally& tally);
+  Status hand_on(std::int64_t row, const StripeProfile& stripe, double position, std::int64_t timestamp_ns,
+                 ProfileSink& sink, ScanTally& tally);
 
   RigFile file_;
   Device camera_;

@@ -17,7 +17,7 @@ constexpr int kMostRows = 100'000;
 /// Where the scan begins and ends, in mm or in degrees.
 void read_scan(const JsonNode& scan, RigFile& rig) {
   scan.only({"from_mm", "to_mm", "step_mm", "speed_mm_s", "from_deg", "to_deg", "step_deg", "speed_deg_s",
-             "ambient", "laser_power"});
+             "continuous", "ambient", "laser_power"});
   const bool degrees = scan.find("step_deg").has_value();
   const double unit = degrees ? rad_from_deg(1) : 1;
   const double from = scan.at(degrees ? "from_deg" : "from_mm").number(-kMostTravel, kMostTravel) * unit;
@@ -33,8 +33,15 @@ void read_scan(const JsonNode& scan, RigFile& rig) {
   if (const auto speed = scan.find(degrees ? "speed_deg_s" : "speed_mm_s")) {
     rig.speed = speed->number(1e-6, kMostTravel) * unit;
   }
+  if (const auto continuous = scan.find("continuous")) {
+    rig.continuous = continuous->boolean();
+    rig.ambient = !rig.continuous;
+  }
   if (const auto ambient = scan.find("ambient")) {
     rig.ambient = ambient->boolean();
+    if (rig.ambient && rig.continuous) {
+      ambient->complain("cannot be had of a continuous scan: nothing stands still for a second frame");
+    }
   }
   if (const auto power = scan.find("laser_power")) {
     rig.laser_power = power->number(0, 1);

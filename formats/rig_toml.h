@@ -27,8 +27,9 @@ struct RigFile {
   double start = 0;  ///< of the stage at row 0; mm or radians
   double step = 0;   ///< from row to row, > 0
   int rows = 0;
-  double speed = 0;     ///< mm/s or rad/s; 0: as the stage likes
-  bool ambient = true;  ///< take a frame with the laser off at each row
+  double speed = 0;         ///< mm/s or rad/s; 0: as the stage likes
+  bool continuous = false;  ///< the stage moves through, and rows come at the camera's rate
+  bool ambient = true;      ///< take a frame with the laser off at each row
   double stripe_sigma_px = 1.2;
   std::string stripe_method = "steger";
   bool stripe_per_row = false;

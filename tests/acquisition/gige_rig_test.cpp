@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+// The whole way, from GigE Vision packets and a USB stage that moves through, by `rig:` to a grid.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <iostream>
+
+#include "acquisition/device_uri.h"
+#include "acquisition/range_source.h"
+#include "drivers/loader.h"
+#include "sim/frame_rig.h"
+#include "tests/sim/scenes.h"
+#include "tests/support/gige_scanner.h"
+#include "tests/support/grid_truth.h"
+
+namespace dubsar {
+namespace {
+
+test::PeerProcess* stage = nullptr;
+std::string why_not;
+
+sim::TestScene& tablet_scene() {
+  static sim::TestScene one(sim::make_or_fail(sim::small_clean_tablet()));
+  return one;
+}
+
+class GigeRig : public testing::Test {
+ protected:
+  GigeRig() {
+    sim::FrameRigOptions size;
+    size.width = 256;
+    size.height = 200;
+    size.field_mm = 6.25;
+    plan_.truth = sim::frame_rig(size);
+    plan_.scene = &scene_.scene;
+    plan_.tablet_from_scanner.translation_mm.z() = test::top_mm(scene_.tablet.mesh) - 0.5;
+  }
+  void SetUp() override {
+    if (stage == nullptr) {
+      GTEST_SKIP() << "no emulated camera and stage: " << why_not;
+    }
+    ASSERT_EQ(stage->tell("plug"), "ok");
+  }
+  Result<RangeGrid> scan(test::GigeScanner& scanner) {
+    Result<Device> device = open(scanner);
+    if (!device) {
+      return std::unexpected(device.error());
+    }
+    test::CollectGrid sink;
+    const Result<ScanOutcome> done = device->scan(sink);
+    lost_ = sink.tally.profiles_dropped;
+    return done ? Result<RangeGrid>(sink.grid()) : std::unexpected(done.error());
+  }
+  Result<Device> open(test::GigeScanner& scanner) {
+    const auto uri = parse_device_uri("rig:" + scanner.rig_file().string());
+    return open_device(uri.value(), registry_);
+  }
+  sim::TestScene& scene_ = tablet_scene();
+  test::GigeScannerPlan plan_;
+  DriverRegistry registry_{{std::filesystem::path(DUBSAR_BINARY_DIR) / "lib/dubsar/drivers"}};
+  std::uint64_t lost_ = 0;
+};
+
+TEST_F(GigeRig, ScansATabletWhileTheStageMovesThrough) {
+  test::GigeScanner scanner(plan_, *stage);
+  ASSERT_EQ(scanner.refusal(), "");
+  const Result<RangeGrid> grid = scan(scanner);
+  ASSERT_TRUE(grid.has_value()) << grid.error().line();
+  EXPECT_EQ(lost_, 0U);
+  EXPECT_NEAR(grid->rows, plan_.rows, 1);
+  EXPECT_GT(grid->valid_count(), 7000U);
+  const test::DepthErrors errors = test::depth_errors(*grid, scanner.tablet_from_grid(), scene_.query);
+  EXPECT_LT(errors.rms_um, 3);
+  // The frames are not evenly spaced: what is matched by counting is 7 um off.
+  const Eigen::Vector3d per_mm =
+      plan_.truth.scanner_from_camera().rotation * plan_.truth.motion.direction;
+  EXPECT_LT(test::row_rms_um(*grid, scanner.positions(), per_mm), 4);
+  std::cout << "depth " << errors.rms_um << " um, rows " << test::row_rms_um(*grid, scanner.positions(), per_mm)
+            << " um\n";
+  EXPECT_LT(errors.missed, 0.01);
+  EXPECT_EQ(stage->tell("laser"), "0");
+}
+
+TEST_F(GigeRig, SurvivesLostPackets) {
+  plan_.loss = 0.02;
+  plan_.rows = 12;
+  test::GigeScanner scanner(plan_, *stage);
+  ASSERT_EQ(scanner.refusal(), "");
+  const Result<RangeGrid> grid = scan(scanner);
+  ASSERT_TRUE(grid.has_value()) << grid.error().line();
+  EXPECT_NEAR(grid->rows, plan_.rows, 1);
+  EXPECT_LT(test::depth_errors(*grid, scanner.tablet_from_grid(), scene_.query).rms_um, 3);
+  EXPECT_NE(scanner.camera().tell("resent"), "0");
+}
+
+TEST_F(GigeRig, AStageThatIsUnpluggedLeavesTheRowsAndGoesOnLater) {
+  test::GigeScanner scanner(plan_, *stage);
+  ASSERT_EQ(scanner.refusal(), "");
+  Result<Device> device = open(scanner);
+  ASSERT_TRUE(device.has_value()) << device.error().line();
+  struct Unplugs : test::CollectGrid {
+    bool profile(const Profile& profile) override {
+      if (profile.row == 8) {
+        EXPECT_EQ(stage->tell("unplug"), "ok");
+      }
+      return CollectGrid::profile(profile);
+    }
+  } sink;
+  const Result<ScanOutcome> broken = device->scan(sink);
+  ASSERT_FALSE(broken.has_value());
+  EXPECT_EQ(broken.error().kind, ErrorKind::kDevice) << broken.error().line();
+  EXPECT_GE(sink.builder->grid().rows, 9);
+  ASSERT_EQ(stage->tell("plug"), "ok");
+  EXPECT_EQ(stage->tell("laser"), "0");
+  test::CollectGrid again;
+  const Result<ScanOutcome> whole = device->scan(again);
+  ASSERT_TRUE(whole.has_value()) << whole.error().line();
+  EXPECT_NEAR(again.builder->grid().rows, plan_.rows, 1);
+  // One that is cancelled goes dark too.
+  test::CollectGrid few;
+  few.stop_after = 3;
+  const Result<ScanOutcome> enough = device->scan(few);
+  ASSERT_FALSE(enough.has_value());
+  EXPECT_EQ(enough.error().kind, ErrorKind::kCancelled);
+  EXPECT_EQ(stage->tell("laser"), "0");
+}
+
+}  // namespace
+}  // namespace dubsar
+
+int main(int count, char** words) {
+  const bool lists = count > 1 && std::string(words[1]) == "--gtest_list_tests";
+  if (!lists) {
+    dubsar::stage = dubsar::test::enter_emulated_machine(words, dubsar::why_not);
+  }
+  testing::InitGoogleTest(&count, words);
+  return RUN_ALL_TESTS();
+}
