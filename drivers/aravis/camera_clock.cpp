@@ -18,8 +18,9 @@ constexpr std::uint64_t kValueHigh = 0x948;
 constexpr std::uint64_t kValueLow = 0x94c;
 constexpr std::uint32_t kLatch = 2;
 constexpr int kTries = 8;
-/// On a line that is slower than this the quickest frame tells as much.
-constexpr std::int64_t kSlow_ns = 5000000;
+/// On a machine that is busy the answers come late: then it asks on until one came within this time.
+constexpr int kMostTries = 40;
+constexpr std::int64_t kSoon_ns = 1000000;
 /// Longer than a frame can be on its way.
 constexpr std::int64_t kLongest_ns = 1000000000;
 
@@ -48,8 +49,8 @@ std::optional<std::int64_t> latched_offset_ns(ArvGvDevice* device) {
     return std::nullopt;
   }
   std::optional<std::int64_t> out;
-  std::int64_t soonest = kSlow_ns;
-  for (int k = 0; k < kTries; ++k) {
+  std::int64_t soonest = kLongest_ns;
+  for (int k = 0; k < kTries || (k < kMostTries && soonest > kSoon_ns); ++k) {
     const std::int64_t asked = now_ns();
     arv_device_write_register(ARV_DEVICE(device), kControl, kLatch, error.fill());
     const std::int64_t answered = now_ns();

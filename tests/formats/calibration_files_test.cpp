@@ -166,6 +166,13 @@ step_deg = 0.5
   EXPECT_TRUE(refused("name", "nam"));
   EXPECT_TRUE(refused("\"1500\"", "1500"));
   EXPECT_TRUE(refused("[scan]", "[scann]"));
+  // A stage that moves through: nothing stands still for an ambient frame.
+  const std::string through = std::string(kRig) + "continuous = true\n";
+  const Result<RigFile> moving = parse_rig_file(through, "rig.toml");
+  ASSERT_TRUE(moving.has_value()) << moving.error().line();
+  EXPECT_TRUE(moving->continuous);
+  EXPECT_FALSE(moving->ambient);
+  EXPECT_FALSE(parse_rig_file(through + "ambient = true\n", "rig.toml").has_value());
 }
 
 TEST(VerificationLog, KeepsEveryLineAndSurvivesADamagedOne) {
