@@ -9,6 +9,7 @@
 #include <ctime>
 #include <utility>
 
+#include "acquisition/rig_parts.h"
 #include "formats/number_text.h"
 
 namespace dubsar {
@@ -35,81 +36,12 @@ StripeOptions stripe_options(const RigFile& file) {
   return options;
 }
 
-/// A word of rig.toml as the type that the setting has.
-Result<SettingValue> value_for(const SettingInfo& setting, const std::string& word,
-                               const std::string& where) {
-  const auto wrong = [&] {
-    return fail(ErrorKind::kUsage, "setting " + setting.key + " cannot be '" + word + "'", where);
-  };
-  try {
-    std::size_t used = 0;
-    switch (setting.type) {
-      case SettingType::kBool:
-        if (word == "true" || word == "false") {
-          return SettingValue(word == "true");
-        }
-        return wrong();
-      case SettingType::kInteger: {
-        const std::int64_t value = std::stoll(word, &used);
-        return used == word.size() ? Result<SettingValue>(SettingValue(value)) : wrong();
-      }
-      case SettingType::kNumber: {
-        const double value = std::stod(word, &used);
-        return used == word.size() ? Result<SettingValue>(SettingValue(value)) : wrong();
-      }
-      case SettingType::kText:
-      case SettingType::kChoice:
-        return SettingValue(word);
-    }
-  } catch (const std::exception&) {  // std::stoll and std::stod say it this way
-    return wrong();
-  }
-  return wrong();
-}
-
-Status put_settings(const RigFile& file, Device& camera, const std::string& where) {
-  if (file.camera_settings.empty()) {
-    return {};
-  }
-  const Result<std::vector<SettingInfo>> settings = camera.settings();
-  if (!settings) {
-    return std::unexpected(settings.error());
-  }
-  for (const auto& [key, word] : file.camera_settings) {
-    const auto found = std::ranges::find(*settings, key, &SettingInfo::key);
-    if (found == settings->end()) {
-      return fail(ErrorKind::kUsage, "the camera has no setting " + key, where, "see dubsar drivers");
-    }
-    const Result<SettingValue> value = value_for(*found, word, where);
-    if (!value) {
-      return std::unexpected(value.error());
-    }
-    if (Status status = camera.set(key, *value); !status) {
-      return status;
-    }
-  }
-  return {};
-}
-
 GrayView view_of(const Frame& frame) {
   return {frame.pixels.data(), static_cast<int>(frame.width), static_cast<int>(frame.height),
           frame.stride_bytes};
 }
 
-/// Puts the laser off when it goes.
-class LaserGuard {
- public:
-  LaserGuard(Device& stage, std::uint32_t laser) : stage_(stage), laser_(laser) {}
-  LaserGuard(const LaserGuard&) = delete;
-  LaserGuard& operator=(const LaserGuard&) = delete;
-  ~LaserGuard() { [[maybe_unused]] const Status said = stage_.set_laser(laser_, 0); }
-
- private:
-  Device& stage_;
-  std::uint32_t laser_;
-};
-
-/// The same for the stream of frames.
+/// Ends the stream of frames when it goes.
 class StreamGuard {
  public:
   explicit StreamGuard(Device& camera) : camera_(camera) {}
@@ -122,12 +54,9 @@ class StreamGuard {
 };
 
 Status fits(const RigFile& file, const RigCalibration& calibration, const DeviceCapabilities& camera,
-            const DeviceCapabilities& stage, const std::vector<StageAxis>& axes, const std::string& where) {
+            const std::string& where) {
   if (!camera.yields_frames) {
     return fail(ErrorKind::kUsage, file.camera + " is no camera", where, "name a camera: see dubsar drivers");
-  }
-  if (!stage.is_stage) {
-    return fail(ErrorKind::kUsage, file.stage + " is no stage", where, "name a stage: see dubsar drivers");
   }
   if (!calibration.has_laser || !calibration.has_motion) {
     return bad_input(
@@ -140,23 +69,6 @@ Status fits(const RigFile& file, const RigCalibration& calibration, const Device
         where,
         "the calibration is of camera " + calibration.camera_serial + ", this is camera " + camera.serial,
         "name the calibration of this camera, or calibrate it");
-  }
-  if (static_cast<std::size_t>(file.axis) >= axes.size()) {
-    return fail(ErrorKind::kUsage, "the stage has no axis " + std::to_string(file.axis), where,
-                "it has " + std::to_string(axes.size()) + ", counted from 0");
-  }
-  const StageAxis& axis = axes[static_cast<std::size_t>(file.axis)];
-  if (axis.rotary != (calibration.motion.kind != MotionKind::kLinear)) {
-    return bad_input(where, "axis " + axis.name + " does not move as the calibration says",
-                     "name the axis that was calibrated");
-  }
-  const double end = file.start + file.step * (file.rows - 1);
-  if (!axis.endless && (file.start < axis.minimum || end > axis.maximum)) {
-    return fail(ErrorKind::kUsage,
-                "the scan from " + number_text(file.start) + " to " + number_text(end) +
-                    " leaves the axis' limits, " + number_text(axis.minimum) + " to " +
-                    number_text(axis.maximum),
-                where, "scan less, or move the limits");
   }
   return {};
 }
@@ -188,22 +100,13 @@ Result<RigScanner> RigScanner::make(const RigFile& file, const RigCalibration& c
   if (!of_camera) {
     return std::unexpected(of_camera.error());
   }
-  const Result<DeviceCapabilities> of_stage = stage.capabilities();
-  if (!of_stage) {
-    return std::unexpected(of_stage.error());
-  }
-  std::vector<StageAxis> axes;
-  if (of_stage->is_stage) {
-    Result<std::vector<StageAxis>> told = stage.axes();
-    if (!told) {
-      return std::unexpected(told.error());
-    }
-    axes = std::move(*told);
-  }
-  if (Status status = fits(file, calibration, *of_camera, *of_stage, axes, where); !status) {
+  if (Status status = fits(file, calibration, *of_camera, where); !status) {
     return std::unexpected(status.error());
   }
-  if (Status status = put_settings(file, camera, where); !status) {
+  if (const Result<StageAxis> axis = axis_for_scan(file, stage, calibration.motion.kind, where); !axis) {
+    return std::unexpected(axis.error());
+  }
+  if (Status status = put_camera_settings(file, camera, where); !status) {
     return std::unexpected(status.error());
   }
   RigScanner out(file, calibration, std::move(camera), std::move(stage),
@@ -332,27 +235,13 @@ Status RigScanner::hand_on(std::int64_t row, const StripeProfile& stripe, double
   return sink.profile(out) ? Status{} : fail(ErrorKind::kCancelled, "scan cancelled", file_.name);
 }
 
-/// Positions mean nothing before a stage has found its switch.
-Status RigScanner::home_once() {
-  const Result<StageReading> now = stage_.motion();
-  if (!now) {
-    return std::unexpected(now.error());
-  }
-  const Result<std::vector<StageAxis>> axes = stage_.axes();
-  if (!axes) {
-    return std::unexpected(axes.error());
-  }
-  const bool can_home = (*axes)[static_cast<std::size_t>(file_.axis)].can_home;
-  return can_home && !now->homed ? stage_.home() : Status{};
-}
-
 Status RigScanner::scan(ProfileSink& sink) {
   stopped_->store(false);
-  if (Status homed = home_once(); !homed) {
+  if (Status homed = home_once(stage_, file_.axis); !homed) {
     return homed;
   }
   const LaserGuard dark(stage_, static_cast<std::uint32_t>(file_.laser));
-  Result<SweepPlan> plan = SweepPlan{};
+  Result<Travel> plan = Travel{};
   if (file_.continuous) {
     plan = plan_sweep();
     if (!plan) {

@@ -2,9 +2,9 @@
 // Copyright The Dubsar developers
 // The continuous scan of a rig: nothing waits for anything, and the clock says what belongs together.
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
+#include "acquisition/rig_parts.h"
 #include "acquisition/rig_scan.h"
 #include "acquisition/stage_watch.h"
 #include "acquisition/stripe_stream.h"
@@ -13,10 +13,6 @@
 namespace dubsar {
 
 namespace {
-
-constexpr double kRunUp_s = 0.3;  // to gather speed and for the readings around the first row
-constexpr auto kRest = std::chrono::milliseconds(1000);
-constexpr double kRunUpSteps = 10;  // and at least so many rows
 
 /// The camera's rate where it tells one.
 std::optional<double> frame_rate_hz(const Device& camera) {
@@ -27,7 +23,7 @@ std::optional<double> frame_rate_hz(const Device& camera) {
 
 }  // namespace
 
-Result<SweepPlan> RigScanner::plan_sweep() {
+Result<Travel> RigScanner::plan_sweep() {
   if (triangulator_->calibration().motion.kind == MotionKind::kGalvanometer) {
     return fail(ErrorKind::kUsage, "a mirror is scanned row by row", file_.name,
                 "leave continuous away: an error of its time would be one of depth");
@@ -41,23 +37,20 @@ Result<SweepPlan> RigScanner::plan_sweep() {
   if (!now) {
     return std::unexpected(now.error());
   }
-  if (now->commanded) {
-    return fail(ErrorKind::kUsage, "the stage does not report where it is while it moves", file_.stage,
-                "leave continuous away: it then stops at each row");
+  if (const Status reports = check_reports(*now, file_); !reports) {
+    return std::unexpected(reports.error());
   }
-  SweepPlan plan;
-  const double end = file_.start + file_.step * (file_.rows - 1);
   const std::optional<double> rate = frame_rate_hz(camera_);
   if (file_.speed <= 0 && !rate) {
     return fail(ErrorKind::kUsage, "nobody says how fast the stage is to go", file_.name,
                 "the camera does not tell its rate: give speed_mm_s or speed_deg_s");
   }
-  plan.speed = file_.speed > 0 ? file_.speed : file_.step * *rate;
+  double speed = file_.speed > 0 ? file_.speed : file_.step * *rate;
   if (axis.speed_maximum > 0) {
-    plan.speed = std::min(plan.speed, axis.speed_maximum);
+    speed = std::min(speed, axis.speed_maximum);
   }
   // A step from frame to frame: the camera goes with the stage.
-  if (const double wanted = plan.speed / file_.step; rate && std::abs(wanted / *rate - 1) > 1e-3) {
+  if (const double wanted = speed / file_.step; rate && std::abs(wanted / *rate - 1) > 1e-3) {
     if (const Status set = camera_.set("frame_rate_hz", wanted); !set) {
       return fail(
           ErrorKind::kUsage,
@@ -65,17 +58,10 @@ Result<SweepPlan> RigScanner::plan_sweep() {
           file_.name, "scan more slowly, or leave the speed away");
     }
   }
-  const double run_up = std::max(kRunUp_s * plan.speed, kRunUpSteps * file_.step);
-  plan.from = file_.start - run_up;
-  plan.to = end + run_up;
-  if (!axis.endless) {
-    plan.from = std::max(plan.from, axis.minimum);
-    plan.to = std::min(plan.to, axis.maximum);
-  }
-  return plan;
+  return travel_of(file_, axis, speed);
 }
 
-Status RigScanner::sweep(const SweepPlan& plan, ProfileSink& sink, ScanTally& tally) {
+Status RigScanner::sweep(const Travel& plan, ProfileSink& sink, ScanTally& tally) {
   const auto axis = static_cast<std::uint32_t>(file_.axis);
   if (Status there = stage_.move({axis, plan.from, file_.speed, false}); !there) {
     return there;
@@ -112,11 +98,7 @@ Status RigScanner::sweep(const SweepPlan& plan, ProfileSink& sink, ScanTally& ta
         break;  // the axis ends where the scan does
       }
       const Status told = watch.finish();
-      return !told ? told
-                   : fail(ErrorKind::kDevice,
-                          "the stage stopped at " + number_text(watch.track().last().value_or(position)) +
-                              " before the end of the scan",
-                          file_.stage, "see whether something blocks it, and home it");
+      return !told ? told : stopped_short(file_, watch.track().last().value_or(position));
     }
     position = *there;
     if (position < file_.start - 0.5 * file_.step || position >= end + 0.5 * file_.step) {
@@ -131,8 +113,7 @@ Status RigScanner::sweep(const SweepPlan& plan, ProfileSink& sink, ScanTally& ta
     }
   }
   // What it needs to come to rest behind the last row.
-  watch.track().wait_closed(
-      kRest + std::chrono::milliseconds(static_cast<int>(1000 * std::abs(plan.to - end) / plan.speed)));
+  watch.track().wait_closed(plan.time_to_rest(end));
   return watch.finish();
 }
 

@@ -48,6 +48,23 @@ void read_scan(const JsonNode& scan, RigFile& rig) {
   }
 }
 
+/// How a stage moves a range camera.
+void read_motion(const JsonNode& node, RigFile& rig) {
+  node.only({"kind", "direction", "point_mm"});
+  RigMotion motion;
+  motion.kind =
+      node.at("kind").one_of({"linear", "turntable"}) == 0 ? MotionKind::kLinear : MotionKind::kTurntable;
+  motion.direction = node.at("direction").vector3();
+  if (!node.failed() && !(motion.direction.norm() > 1e-3 && motion.direction.norm() < 1e3)) {
+    node.complain("has a direction of no length");
+  }
+  if (motion.kind == MotionKind::kTurntable) {
+    motion.direction.normalize();
+    motion.axis_point_mm = node.at("point_mm").vector3();
+  }
+  rig.motion = motion;
+}
+
 std::string setting_text(const JsonNode& pair) {
   if (pair.size() != 2) {
     pair.complain("is no pair of a name and a value");
@@ -64,13 +81,20 @@ Result<RigFile> parse_rig_file(std::string_view toml, const std::string& where) 
     return std::unexpected(document.error());
   }
   const JsonNode root = document->root();
-  root.only({"name", "camera", "stage", "calibration", "camera_settings", "axis", "laser", "scan", "stripe",
-             "hand_turns", "support_height_mm", "head"});
+  root.only({"name", "camera", "stage", "calibration", "motion", "camera_settings", "axis", "laser", "scan",
+             "stripe", "hand_turns", "support_height_mm", "head"});
   RigFile rig;
   rig.name = root.at("name").text();
   rig.camera = root.at("camera").text();
   rig.stage = root.at("stage").text();
-  rig.calibration = root.at("calibration").text();
+  if (const auto motion = root.find("motion")) {
+    if (root.find("calibration")) {
+      motion->complain("is known from the calibration already: one of the two is enough");
+    }
+    read_motion(*motion, rig);
+  } else {
+    rig.calibration = root.at("calibration").text();
+  }
   if (const auto settings = root.find("camera_settings")) {
     for (const JsonNode& pair : settings->items()) {
       rig.camera_settings.emplace_back(pair.item(0).text(), setting_text(pair));

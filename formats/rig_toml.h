@@ -10,15 +10,17 @@
 
 #include "core/result.h"
 #include "core/rig.h"
+#include "core/rig_calibration.h"
 
 namespace dubsar {
 
 /// A rig put together from parts, as rig.toml names them (docs/formats/rig_toml.md).
 struct RigFile {
   std::string name;
-  std::string camera;       ///< device URI
-  std::string stage;        ///< device URI
-  std::string calibration;  ///< file, relative to rig.toml
+  std::string camera;               ///< device URI
+  std::string stage;                ///< device URI
+  std::string calibration;          ///< file, relative to rig.toml; empty: a range camera, which needs none
+  std::optional<RigMotion> motion;  ///< of a range camera: how the stage moves it, in its own frame
   /// Settings of the camera, put in this order before the first scan; the words as they stand.
   std::vector<std::pair<std::string, std::string>> camera_settings;
   int axis = 0;   ///< of the stage, that moves while a scan runs

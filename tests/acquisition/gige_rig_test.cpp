@@ -4,11 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
 
 #include "acquisition/device_uri.h"
 #include "acquisition/range_source.h"
 #include "drivers/loader.h"
 #include "sim/frame_rig.h"
+#include "tests/drivers/peers/range_surface.h"
 #include "tests/sim/scenes.h"
 #include "tests/support/gige_scanner.h"
 #include "tests/support/grid_truth.h"
@@ -120,6 +122,60 @@ TEST_F(GigeRig, AStageThatIsUnpluggedLeavesTheRowsAndGoesOnLater) {
   ASSERT_FALSE(enough.has_value());
   EXPECT_EQ(enough.error().kind, ErrorKind::kCancelled);
   EXPECT_EQ(stage->tell("laser"), "0");
+}
+
+/// A range camera that yields profiles by itself, carried by the stage.
+TEST_F(GigeRig, PutsTheProfilesOfARangeCameraWhereTheStageWas) {
+  const test::TemporaryFolder folder;
+  const std::string law = (folder.path() / "law").string();
+  ASSERT_EQ(stage->tell("firmware grbl"), "ok");
+  ASSERT_EQ(stage->tell("publish " + law), "ok");
+  test::PeerProcess camera({DUBSAR_BINARY_DIR "/bin/range_peer", "SN9", law});
+  ASSERT_EQ(camera.refusal(), "");
+  const auto write = [&](const std::string& scan) {
+    std::ofstream(folder.path() / "rig.toml")
+        << "name = 'carried'\ncamera = 'aravis:Dubsar-Range 2-SN9'\nstage = 'usb_stage:2341:0043'\n"
+        << "[motion]\nkind = 'linear'\ndirection = [0, 1, 0]\n"
+        << "[scan]\nfrom_mm = -60\nto_mm = -57\nstep_mm = 0.025\n"
+        << scan;
+    return open_device(parse_device_uri("rig:" + (folder.path() / "rig.toml").string()).value(), registry_);
+  };
+  const auto slow = write("");
+  ASSERT_FALSE(slow.has_value());
+  EXPECT_NE(slow.error().what.find("how fast"), std::string::npos);
+  Result<Device> device = write("speed_mm_s = 5\n");
+  ASSERT_TRUE(device.has_value()) << device.error().line();
+  EXPECT_FALSE(device->capabilities()->rig.has_value());
+  test::CollectGrid sink;
+  const Result<ScanOutcome> done = device->scan(sink);
+  ASSERT_TRUE(done.has_value()) << done.error().line();
+  EXPECT_EQ(stage->tell("laser"), "0");
+  const RangeGrid grid = sink.grid();
+  EXPECT_EQ(grid.cols, 160);
+  EXPECT_NEAR(grid.rows, 121, 2);
+  EXPECT_EQ(grid.valid_count(), grid.size());
+  double squares = 0;
+  for (std::size_t i = 0; i < grid.size(); ++i) {
+    const double there = test::surface_mm(static_cast<double>(grid.x[i]), static_cast<double>(grid.y[i]));
+    squares += std::pow(1e3 * (static_cast<double>(grid.z[i]) - there), 2);
+  }
+  // By counting, a row would be off by what the camera's and the stage's start lie apart: tens of
+  // micrometres.
+  EXPECT_LT(std::sqrt(squares / static_cast<double>(grid.size())), 6);
+  EXPECT_NEAR(static_cast<double>(grid.y.front()), -60, 0.03);
+  // A stage that is unplugged ends it, and what came is kept.
+  struct Unplugs : test::CollectGrid {
+    bool profile(const Profile& profile) override {
+      if (profile.row == 40) {
+        EXPECT_EQ(stage->tell("unplug"), "ok");
+      }
+      return CollectGrid::profile(profile);
+    }
+  } broken;
+  const Result<ScanOutcome> ended = device->scan(broken);
+  ASSERT_FALSE(ended.has_value());
+  EXPECT_EQ(ended.error().kind, ErrorKind::kDevice) << ended.error().line();
+  EXPECT_GE(broken.builder->grid().rows, 41);
 }
 
 }  // namespace
