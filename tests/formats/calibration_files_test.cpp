@@ -184,7 +184,8 @@ step_deg = 0.5
   EXPECT_EQ(carried->motion->kind, MotionKind::kTurntable);
   EXPECT_NEAR(carried->motion->direction.y(), 1, 1e-12);
   EXPECT_FALSE(parse_rig_file(kRig + motion, "rig.toml").has_value());
-  EXPECT_FALSE(parse_rig_file(range + "[motion]\nkind = \"linear\"\ndirection = [0, 0, 0]\n", "rig.toml").has_value());
+  EXPECT_FALSE(
+      parse_rig_file(range + "[motion]\nkind = \"linear\"\ndirection = [0, 0, 0]\n", "rig.toml").has_value());
 }
 
 TEST(VerificationLog, KeepsEveryLineAndSurvivesADamagedOne) {
