@@ -9,6 +9,7 @@
 #include <ctime>
 #include <utility>
 
+#include "acquisition/fresh_frame.h"
 #include "acquisition/rig_parts.h"
 #include "formats/number_text.h"
 
@@ -40,18 +41,6 @@ GrayView view_of(const Frame& frame) {
   return {frame.pixels.data(), static_cast<int>(frame.width), static_cast<int>(frame.height),
           frame.stride_bytes};
 }
-
-/// Ends the stream of frames when it goes.
-class StreamGuard {
- public:
-  explicit StreamGuard(Device& camera) : camera_(camera) {}
-  StreamGuard(const StreamGuard&) = delete;
-  StreamGuard& operator=(const StreamGuard&) = delete;
-  ~StreamGuard() { [[maybe_unused]] const Status said = camera_.stop_frames(); }
-
- private:
-  Device& camera_;
-};
 
 Status fits(const RigFile& file, const RigCalibration& calibration, const DeviceCapabilities& camera,
             const std::string& where) {
