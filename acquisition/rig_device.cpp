@@ -169,6 +169,26 @@ Device device_of(RigScanner scanner, const std::string& uri) {
   return {&rig_driver(), new dubsar_device{std::make_unique<RigScanner>(std::move(scanner))}, uri};
 }
 
+Result<RigParts> open_rig_parts(const std::filesystem::path& file, const DriverRegistry& registry) {
+  const Result<std::string> text = read_whole_file(file);
+  const Result<RigFile> rig = text ? parse_rig_file(*text, file.string()) : std::unexpected(text.error());
+  if (!rig) {
+    return std::unexpected(rig.error());
+  }
+  Result<Device> camera = part(rig->camera, registry, false);
+  if (!camera) {
+    return std::unexpected(camera.error());
+  }
+  Result<Device> stage = part(rig->stage, registry, false);
+  if (!stage) {
+    return std::unexpected(stage.error());
+  }
+  if (Status put = put_camera_settings(*rig, *camera, file.string()); !put) {
+    return std::unexpected(put.error());
+  }
+  return RigParts{*rig, std::move(*camera), std::move(*stage)};
+}
+
 Result<Device> open_rig(const std::filesystem::path& file, const DriverRegistry& registry) {
   const Result<std::string> text = read_whole_file(file);
   if (!text) {
