@@ -3,6 +3,7 @@
 #include "acquisition/rig_device.h"
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <utility>
 
@@ -12,6 +13,7 @@
 #include "drivers/plugin.h"
 #include "formats/atomic_file.h"
 #include "formats/calibration_json.h"
+#include "formats/number_text.h"
 #include "formats/verification_log.h"
 
 /// The rig behind the C interface.
@@ -250,6 +252,24 @@ std::optional<CalibrationCheck> last_verification(const std::filesystem::path& r
     return std::nullopt;
   }
   return CalibrationCheck{last.when, last.artefact, last.error_mm};
+}
+
+std::optional<std::string> verification_reminder(const std::string& device_uri, const Rig& rig) {
+  const Result<DeviceUri> uri = parse_device_uri(device_uri);
+  if (!uri || uri->scheme != "rig") {
+    return std::nullopt;
+  }
+  const std::string mend = "; measure the artefact first: dubsar calibrate --verify";
+  if (!rig.calibration_check) {
+    return "this calibration has not been verified yet" + mend;
+  }
+  const std::optional<double> age = days_since(rig.calibration_check->when);
+  if (age && *age <= 1) {
+    return std::nullopt;
+  }
+  const std::string days = age ? number_text(std::floor(*age)) : std::string();
+  return "the rig was last verified " +
+         (days.empty() ? "nobody knows when" : days + (days == "1" ? " day ago" : " days ago")) + mend;
 }
 
 }  // namespace dubsar

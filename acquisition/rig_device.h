@@ -31,4 +31,8 @@ struct RigParts {
 /// and was passed: what the checklist shows. Nothing where there is none, or the files cannot be read.
 [[nodiscard]] std::optional<CalibrationCheck> last_verification(const std::filesystem::path& rig_file);
 
+/// A rig is verified before each day's work: what to tell the operator when the last verification that was
+/// passed is older than a day, or there is none with this calibration. Nothing for other devices.
+[[nodiscard]] std::optional<std::string> verification_reminder(const std::string& device_uri, const Rig& rig);
+
 }  // namespace dubsar

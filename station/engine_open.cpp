@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright The Dubsar developers
+#include "acquisition/rig_device.h"
 #include "station/engine_impl.h"
 
 namespace dubsar {
@@ -49,6 +50,9 @@ Status Engine::Impl::open(JobContext& job) {
   }
   source = std::move(*opened);
   rig = source->capabilities().rig;
+  if (const auto reminder = rig ? verification_reminder(options.device, *rig) : std::nullopt) {
+    emit(Notice{*reminder});
+  }
   drives = options.automatic && source->capabilities().can_place;
   if (drives && options.max_scans <= 0) {
     options.max_scans = kAutomaticScans;

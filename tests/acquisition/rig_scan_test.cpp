@@ -5,7 +5,9 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
+#include <ctime>
 
 #include "acquisition/grid_builder.h"
 #include "acquisition/rig_device.h"
@@ -154,6 +156,30 @@ TEST_F(RigScan, CancelledBySinkAndRefusesAnotherRegion) {
   const Status region = made->scan(cut);
   ASSERT_FALSE(region.has_value());
   EXPECT_NE(region.error().what.find("calibrated with"), std::string::npos);
+}
+
+TEST(VerificationReminder, IsOfRigsThatWereNotVerifiedToday) {
+  Rig rig;
+  EXPECT_FALSE(verification_reminder("sim:", rig).has_value());
+  EXPECT_NE(verification_reminder("rig:a.toml", rig).value().find("not been verified"), std::string::npos);
+  const auto days_ago = [](double days) {
+    const auto then =
+        std::chrono::system_clock::now() - std::chrono::seconds(static_cast<long>(86400 * days));
+    const std::time_t time = std::chrono::system_clock::to_time_t(then);
+    std::tm parts{};
+    gmtime_r(&time, &parts);
+    char text[32];
+    std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &parts);
+    return CalibrationCheck{text, "bar", 0.01};
+  };
+  rig.calibration_check = days_ago(0.4);
+  EXPECT_FALSE(verification_reminder("rig:a.toml", rig).has_value());
+  rig.calibration_check = days_ago(3.7);
+  EXPECT_NE(verification_reminder("rig:a.toml", rig).value().find("3 days ago"), std::string::npos);
+  rig.calibration_check = days_ago(1.2);
+  EXPECT_NE(verification_reminder("rig:a.toml", rig).value().find("1 day ago"), std::string::npos);
+  rig.calibration_check->when = "some day";
+  EXPECT_NE(verification_reminder("rig:a.toml", rig).value().find("nobody knows"), std::string::npos);
 }
 
 TEST(DaysSince, ReadsOnlyTimes) {
