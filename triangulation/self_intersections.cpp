@@ -2,15 +2,15 @@
 // Copyright The Dubsar developers
 #include "triangulation/self_intersections.h"
 
-#include <tbb/parallel_sort.h>
-
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
+#include <functional>
 
 #include "core/parallel.h"
+#include "core/parallel_sort.h"
 #include "triangulation/part_cells.h"
 
 namespace dubsar {
@@ -125,7 +125,7 @@ class FaceCells {
           entries_[k] = {key_of(level, cell_of(boxes[k].center(), level)), static_cast<std::uint32_t>(k)};
         },
         4096);
-    tbb::parallel_sort(entries_.begin(), entries_.end());
+    parallel_sort(entries_.begin(), entries_.end(), std::less<>{});
     boxes_.reserve(entries_.size());
     for (auto& [key, face] : entries_) {
       boxes_.push_back(boxes[face]);
