@@ -2,15 +2,15 @@
 // Copyright The Dubsar developers
 #include "triangulation/self_intersections.h"
 
-#include <tbb/parallel_sort.h>
-
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
+#include <functional>
 
 #include "core/parallel.h"
+#include "core/parallel_sort.h"
 #include "triangulation/part_cells.h"
 
 namespace dubsar {
@@ -126,7 +126,7 @@ class FaceCells {
           entries_[k] = {key_of(level, cell_of(box.center(), level)), faces[k]};
         },
         4096);
-    tbb::parallel_sort(entries_.begin(), entries_.end());
+    parallel_sort(entries_.begin(), entries_.end(), std::less<>{});
     boxes_.resize(entries_.size());
     parts_.resize(part_of_face.empty() ? 0 : entries_.size());
     parallel_for_each_index(
