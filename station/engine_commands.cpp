@@ -30,29 +30,73 @@ bool Engine::Impl::close_commands() {
   return commands.empty();
 }
 
-Result<std::optional<StationScan>> Engine::Impl::bring_back(int id, JobContext& job) {
-  if (const Status restored = store->restore_scan(id); !restored) {
-    return std::unexpected(restored.error());
-  }
+std::optional<PinSet> Engine::Impl::known_pins() const {
+  const std::scoped_lock lock(mutex);
+  return pins;
+}
+
+Result<StationScan> Engine::Impl::enter_again(int id, JobContext& job) {
   Result<RangeGrid> grid = store->load_grid(id);
   if (!grid) {
     return std::unexpected(grid.error());
   }
-  StationScan scan = prepare_scan(id, std::move(*grid), options.pins);
+  StationScan scan = prepare_scan(id, std::move(*grid), known_pins());
   names[id] = scan.file;
   register_scan(scan, job);
-  return std::optional(std::move(scan));
+  return scan;
 }
 
-Result<std::optional<StationScan>> Engine::Impl::obey(const OperatorCommand& command, std::string& what,
-                                                      JobContext& job) {
-  const auto done = [&](const Status& status, int id,
-                        const char* said) -> Result<std::optional<StationScan>> {
+Result<StationScan> Engine::Impl::bring_back(int id, JobContext& job) {
+  if (const Status restored = store->restore_scan(id); !restored) {
+    return std::unexpected(restored.error());
+  }
+  return enter_again(id, job);
+}
+
+Result<std::vector<StationScan>> Engine::Impl::label_pins(const LabelPins& command, std::string& what,
+                                                          JobContext& job) {
+  if (const Status kept = keep_pin_labels(*store, command.id, command.tips, command.tip_diameter_mm); !kept) {
+    return std::unexpected(kept.error());
+  }
+  Result<std::optional<PinSet>> now = session_pins(*store);
+  if (!now || !*now) {
+    return now ? std::vector<StationScan>{} : Result<std::vector<StationScan>>(std::unexpected(now.error()));
+  }
+  emit(PinsKnown{std::make_shared<const PinSet>(**now)});
+  bool all_change = false;
+  {
+    const std::scoped_lock lock(mutex);
+    all_change = !pins || pins->tip_diameter_mm != command.tip_diameter_mm;
+    pins = std::move(*now);
+  }
+  const auto stored = store->scans();
+  if (!stored) {
+    return std::unexpected(stored.error());
+  }
+  std::vector<StationScan> out;
+  for (const StoredScan& scan : *stored) {
+    // A scan that is still on its way is taken in with what is known when it comes.
+    if (scan.dropped || scan.damaged || !names.contains(scan.id) || (!all_change && scan.id != command.id)) {
+      continue;
+    }
+    Result<StationScan> entered = enter_again(scan.id, job);
+    if (!entered) {
+      return std::unexpected(entered.error());
+    }
+    out.push_back(std::move(*entered));
+  }
+  what = "the pins of scan " + std::to_string(command.id) + " are labelled";
+  return out;
+}
+
+Result<std::vector<StationScan>> Engine::Impl::obey(const OperatorCommand& command, std::string& what,
+                                                    JobContext& job) {
+  const auto done = [&](const Status& status, int id, const char* said) -> Result<std::vector<StationScan>> {
     if (!status) {
       return std::unexpected(status.error());
     }
     what = "scan " + std::to_string(id) + " " + said;
-    return std::optional<StationScan>();
+    return std::vector<StationScan>();
   };
   if (const auto* drop = std::get_if<DropScan>(&command)) {
     int id = drop->id;
@@ -74,7 +118,12 @@ Result<std::optional<StationScan>> Engine::Impl::obey(const OperatorCommand& com
   }
   if (const auto* restore = std::get_if<RestoreScan>(&command)) {
     what = "scan " + std::to_string(restore->id) + " is put back";
-    return bring_back(restore->id, job);
+    Result<StationScan> back = bring_back(restore->id, job);
+    return back ? Result<std::vector<StationScan>>(std::vector{std::move(*back)})
+                : std::unexpected(back.error());
+  }
+  if (const auto* label = std::get_if<LabelPins>(&command)) {
+    return label_pins(*label, what, job);
   }
   if (const auto* hint = std::get_if<HintScan>(&command)) {
     const Result<PoseHint> settled = settled_hint(*store, hint->id, hint->given);
@@ -130,7 +179,7 @@ void Engine::Impl::obey_commands(JobContext& job) {
       continue;
     }
     std::string what;
-    Result<std::optional<StationScan>> obeyed = obey(command, what, job);
+    Result<std::vector<StationScan>> obeyed = obey(command, what, job);
     if (!obeyed) {
       emit(Notice{obeyed.error().line()});
       continue;
@@ -145,11 +194,17 @@ void Engine::Impl::obey_commands(JobContext& job) {
       last_scan_taken_up = poses.empty() || poses.back().status == PoseStatus::kRegistered;
     }
     emit(OperatorObeyed{what, poses});
-    if (queues) {
-      queues->to_plan.push({std::move(*obeyed), std::move(poses), true});
-    } else if (*obeyed) {
-      planning.add(**obeyed);
+    if (!queues) {
+      for (const StationScan& scan : *obeyed) {
+        planning.add(scan);
+      }
+      continue;
     }
+    for (std::size_t k = 0; k + 1 < obeyed->size(); ++k) {
+      queues->to_plan.push({std::move((*obeyed)[k]), poses, false});
+    }
+    queues->to_plan.push(
+        {obeyed->empty() ? std::nullopt : std::optional(std::move(obeyed->back())), std::move(poses), true});
   }
 }
 

@@ -36,6 +36,7 @@
 #include "station/intruders.h"
 #include "station/planning_stage.h"
 #include "station/scan_set.h"
+#include "station/session_pins.h"
 
 #include "station/engine.h"
 
@@ -148,11 +149,12 @@ struct Engine::Impl {
   std::set<int> taken_up;
   std::map<int, int> lies_as;  ///< placement by scan, of scans that motors were told of
 
-  std::mutex mutex;  ///< of what follows
+  mutable std::mutex mutex;  ///< of what follows
   std::optional<Error> first_error;
   std::optional<Error> device_error;
   std::map<std::string, double> seconds;
   int stored_count = 0;
+  std::optional<PinSet> pins;  ///< options.pins, and what the operator has labelled since
   std::deque<OperatorCommand> commands;
   bool takes_commands = false;
   bool scan_asked = false;               ///< of a paced run: ScanNow since the last scan
@@ -225,9 +227,13 @@ struct Engine::Impl {
   std::vector<ScanPose> named_poses() const;
   // engine_commands.cpp
   void obey_commands(JobContext& job);  ///< those that wait, on the thread that owns the registrar
-  /// Whether it moved, removed or added anything; the scan, when one came back.
-  Result<std::optional<StationScan>> obey(const OperatorCommand& command, std::string& what, JobContext& job);
-  Result<std::optional<StationScan>> bring_back(int id, JobContext& job);
+  /// The scans that came in by it, in place of what was there of them.
+  Result<std::vector<StationScan>> obey(const OperatorCommand& command, std::string& what, JobContext& job);
+  Result<StationScan> bring_back(int id, JobContext& job);
+  /// Takes a stored scan in once more, as the pins are known now.
+  Result<StationScan> enter_again(int id, JobContext& job);
+  Result<std::vector<StationScan>> label_pins(const LabelPins& command, std::string& what, JobContext& job);
+  [[nodiscard]] std::optional<PinSet> known_pins() const;
   bool close_commands();  ///< false when some came at the last moment: they are still to be obeyed
   Result<bool> run_round(NextStep step, EngineResult& result, JobContext& job);
   Result<EngineResult> run(JobContext& job);

@@ -51,7 +51,7 @@ void Engine::Impl::stop_motion_after_trouble(const JobContext& job) {
 StageScene Engine::Impl::unseen() const {
   constexpr double kPinRoomMm = 40;
   StageScene out = unseen_tablet(*rig, options.size_mm);
-  if (options.pins) {
+  if (known_pins()) {
     out.tablet_mm.min().array() -= kPinRoomMm;
     out.tablet_mm.max().array() += kPinRoomMm;
   }

@@ -26,7 +26,7 @@ Status Engine::Impl::load_resumed(JobContext& job) {
     if (grid->nominal) {
       placement_offset = std::max(placement_offset, grid->nominal->placement + 1);
     }
-    resumed.push_back(prepare_scan(scan.id, std::move(*grid), options.pins));
+    resumed.push_back(prepare_scan(scan.id, std::move(*grid), pins));
     if (const auto drive = drives_of_scans.find(scan.id); drive != drives_of_scans.end()) {
       resumed.back().drive = drive->second;
     }
@@ -80,10 +80,15 @@ Status Engine::Impl::open(JobContext& job) {
     if (const Status saved = store->save_document("pins", pins_to_json(*options.pins)); !saved) {
       return saved;
     }
-  } else if (const auto text = store->load_document("pins"); text && *text) {
-    if (auto pins = parse_pins(**text, "pins of the session")) {
-      options.pins = std::move(*pins);
-    }
+  }
+  if (Result<std::optional<PinSet>> known = session_pins(*store)) {
+    pins = std::move(*known);
+  } else {
+    emit(Notice{known.error().line()});
+    pins = options.pins;
+  }
+  if (pins) {
+    emit(PinsKnown{std::make_shared<const PinSet>(*pins)});
   }
   if (const auto text = store->load_document("drives"); text && *text) {
     if (auto known = parse_drives(**text, "drives of the session")) {

@@ -157,9 +157,10 @@ void Engine::Impl::keep_stored() {
       continue;
     }
     // What is stored is what came: a spacing or a pin size that is filled in is not part of it.
-    const bool filled_in = raw->grid.spacing_mm <= 0 || (options.pins && raw->grid.pin_tip_diameter_mm <= 0);
+    const std::optional<PinSet> pins_now = known_pins();
+    const bool filled_in = raw->grid.spacing_mm <= 0 || (pins_now && raw->grid.pin_tip_diameter_mm <= 0);
     const std::optional<RangeGrid> as_it_came = filled_in ? std::optional(raw->grid) : std::nullopt;
-    StationScan scan = prepare_scan(*id, std::move(raw->grid), options.pins, std::move(raw->flags));
+    StationScan scan = prepare_scan(*id, std::move(raw->grid), pins_now, std::move(raw->flags));
     scan.drive = raw->drive;
     std::promise<bool> outcome;
     scan.stored = outcome.get_future().share();
@@ -176,11 +177,12 @@ void Engine::Impl::keep_stored() {
 
 ScanPose Engine::Impl::register_scan(const StationScan& scan, JobContext& job) {
   const StageClock timing = clock("registration");
-  const PinSet* pins = options.pins ? &*options.pins : nullptr;
+  const std::optional<PinSet> pins_now = known_pins();
+  const PinSet* said = pins_now ? &*pins_now : nullptr;
   const auto locked = word.locked.find(scan.id);
   return locked != word.locked.end()
-             ? registrar.add_at(scan.id, scan.measured, pins, locked->second, true, job)
-             : registrar.add(scan.id, scan.measured, pins, job);
+             ? registrar.add_at(scan.id, scan.measured, said, locked->second, true, job)
+             : registrar.add(scan.id, scan.measured, said, job);
 }
 
 void Engine::Impl::register_all(JobContext& job) {
@@ -205,7 +207,7 @@ void Engine::Impl::register_all(JobContext& job) {
       const std::scoped_lock lock(mutex);
       last_scan_taken_up = pose.status == PoseStatus::kRegistered;
     }
-    emit(ScanPlaced{pose, poses, scan.grid, scan.flags});
+    emit(ScanPlaced{pose, poses, scan.measured, scan.grid, scan.flags});
     queues->to_plan.push({std::move(scan), std::move(poses), plan_now, true, is_resumed});
   };
   for (std::size_t k = 0; k < resumed.size() && !job.cancelled(); ++k) {

@@ -12,6 +12,7 @@
 
 #include "archive/render_scene.h"
 #include "core/mesh.h"
+#include "core/pin_set.h"
 #include "core/range_grid.h"
 #include "core/red_map.h"
 #include "core/sample_flags.h"
@@ -37,8 +38,9 @@ struct ScanStored {
 struct ScanPlaced {
   ScanPose pose;
   std::vector<ScanPose> all;
-  std::shared_ptr<const RangeGrid> grid;     ///< the tablet alone
-  std::shared_ptr<const SampleFlags> flags;  ///< of its samples, as the scan alone gives them
+  std::shared_ptr<const RangeGrid> measured;  ///< as it came, pins and all
+  std::shared_ptr<const RangeGrid> grid;      ///< the tablet alone
+  std::shared_ptr<const SampleFlags> flags;   ///< of its samples, as the scan alone gives them
 };
 /// What the operator asked for is done and stored; the poses are those that follow from it.
 struct OperatorObeyed {
@@ -64,13 +66,17 @@ struct ModelChanged {
   std::shared_ptr<const ColouredPoints> red;
   RigidTransform tablet_from_model;
 };
+/// What is known of the pins, when the run begins and whenever the operator has labelled some.
+struct PinsKnown {
+  std::shared_ptr<const PinSet> pins;
+};
 /// Something that the operator should know and that stops nothing.
 struct Notice {
   std::string text;
 };
 
 using Event = std::variant<ProfileArrived, ScanStored, ScanPlaced, OperatorObeyed, RedMapChanged,
-                           NextPlacement, WaitsForOperator, ModelChanged, Notice>;
+                           NextPlacement, WaitsForOperator, ModelChanged, PinsKnown, Notice>;
 
 /// Called on the engine's threads, one call at a time per stage: be quick, take snapshots, and never call
 /// back into the engine.

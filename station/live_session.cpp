@@ -10,6 +10,7 @@
 #include "formats/mesh_io.h"
 #include "formats/red_map_json.h"
 #include "station/scan_set.h"
+#include "station/session_pins.h"
 #include "station/signing.h"
 
 namespace dubsar {
@@ -253,8 +254,16 @@ void LiveSession::read_folder() {
     end(std::unexpected(!scans ? scans.error() : poses.error()));
     return;
   }
+  const Result<std::optional<PinSet>> stored_pins = session_pins(*store);
+  const std::optional<PinSet> pins = stored_pins && *stored_pins ? *stored_pins : options_.pins;
   {
     const std::scoped_lock lock(mutex_);
+    if (pins) {
+      state_.pins = std::make_shared<const PinSet>(*pins);
+    }
+    if (!stored_pins) {
+      state_.notice = stored_pins.error().line();
+    }
     for (const Error& damage : store->opening().damage) {
       state_.notice = damage.line();
     }
@@ -298,8 +307,8 @@ void LiveSession::read_folder() {
       continue;
     }
     if (const auto grid = store->load_grid(stored.id)) {
-      const StationScan scan = prepare_scan(stored.id, *grid, options_.pins);
-      show_grid(stored.id, *scan.grid, *scan.flags);
+      const StationScan scan = prepare_scan(stored.id, *grid, pins);
+      show_grid(stored.id, *scan.measured, *scan.grid, *scan.flags);
     }
   }
 }

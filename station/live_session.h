@@ -62,7 +62,7 @@ class LiveSession {
   void progress(std::string_view stage, double fraction);
   LiveScan& scan_of(int id);                        ///< under the mutex
   void follow(const std::vector<ScanPose>& poses);  ///< under the mutex
-  void show_grid(int id, const RangeGrid& grid, const SampleFlags& flags);
+  void show_grid(int id, const RangeGrid& measured, const RangeGrid& grid, const SampleFlags& flags);
   void show_model(std::shared_ptr<const Mesh> mesh, std::shared_ptr<const ColouredPoints> red,
                   const RigidTransform& tablet_from_model);
   void end(const Status& status);  ///< of a job

@@ -48,7 +48,8 @@ void LiveSession::follow(const std::vector<ScanPose>& poses) {
   }
 }
 
-void LiveSession::show_grid(int id, const RangeGrid& grid, const SampleFlags& flags) {
+void LiveSession::show_grid(int id, const RangeGrid& measured, const RangeGrid& grid,
+                            const SampleFlags& flags) {
   const int stride =
       std::max(1, static_cast<int>(std::ceil(std::sqrt(static_cast<double>(grid.size()) / kShownSamples))));
   auto thin = std::make_shared<RangeGrid>(decimated(grid, stride));
@@ -62,9 +63,14 @@ void LiveSession::show_grid(int id, const RangeGrid& grid, const SampleFlags& fl
     }
   }
   auto picture = std::make_shared<const GridPicture>(picture_of(*thin, thin_flags));
+  std::shared_ptr<const RangeGrid> with_pins = thin;
+  if (&measured != &grid && measured.size() == grid.size()) {
+    with_pins = std::make_shared<const RangeGrid>(decimated(measured, stride));
+  }
   {
     const std::scoped_lock lock(mutex_);
     LiveScan& scan = scan_of(id);
+    scan.measured = std::move(with_pins);
     scan.grid = std::move(thin);
     scan.picture = std::move(picture);
   }
@@ -112,8 +118,8 @@ void LiveSession::hear(const Event& event) {
   } else if (const auto* model = std::get_if<ModelChanged>(&event)) {
     show_model(model->mesh, model->red, model->tablet_from_model);
   } else if (const auto* placed = std::get_if<ScanPlaced>(&event)) {
-    if (placed->grid && placed->flags) {
-      show_grid(placed->pose.id, *placed->grid, *placed->flags);
+    if (placed->measured && placed->grid && placed->flags) {
+      show_grid(placed->pose.id, *placed->measured, *placed->grid, *placed->flags);
     }
     const std::scoped_lock lock(mutex_);
     LiveScan& scan = scan_of(placed->pose.id);
@@ -129,7 +135,9 @@ void LiveSession::hear(const Event& event) {
     }
   } else {
     const std::scoped_lock lock(mutex_);
-    if (const auto* stored = std::get_if<ScanStored>(&event)) {
+    if (const auto* pins = std::get_if<PinsKnown>(&event)) {
+      state_.pins = pins->pins;
+    } else if (const auto* stored = std::get_if<ScanStored>(&event)) {
       LiveScan& scan = scan_of(stored->id);
       scan.file = stored->file;
       scan.samples = stored->samples;

@@ -12,6 +12,7 @@
 #include "archive/render_scene.h"
 #include "core/checklist.h"
 #include "core/mesh.h"
+#include "core/pin_set.h"
 #include "core/range_grid.h"
 #include "core/red_map.h"
 #include "core/sample_flags.h"
@@ -45,6 +46,8 @@ struct LiveScan {
   std::string note;  ///< why it was dropped
   std::shared_ptr<const RangeGrid> grid;
   std::shared_ptr<const GridPicture> picture;
+  /// Likewise, with the pins that stand in it; the same as `grid` where there are none.
+  std::shared_ptr<const RangeGrid> measured;
 };
 
 /// A session as it stands: a value that a skin reads between two frames. What is large is shared and never
@@ -69,8 +72,9 @@ struct LiveState {
   std::optional<Error> error;  ///< what ended the last run or job
   std::string notice;          ///< what the operator should know; empty when a later scan has made it old
   TabletRecord record;
-  bool exists = false;  ///< the folder holds a session
-  int profiles = 0;     ///< of the scan under way
+  std::shared_ptr<const PinSet> pins;  ///< with the operator's labels; nothing while none are known
+  bool exists = false;                 ///< the folder holds a session
+  int profiles = 0;                    ///< of the scan under way
 };
 
 }  // namespace dubsar

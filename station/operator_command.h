@@ -4,7 +4,9 @@
 
 #include <string>
 #include <variant>
+#include <vector>
 
+#include "core/pin_set.h"
 #include "station/operator_hint.h"
 #include "station/tablet_record.h"
 
@@ -33,6 +35,14 @@ struct UnlockScan {
   int id = 0;
 };
 
+/// Says which pin is which in a scan, in place of what was said before (seed 001, 3.2); no tips takes it
+/// back. Another diameter than before changes what is clay in every scan, and all are registered anew.
+struct LabelPins {
+  int id = 0;
+  std::vector<PinTip> tips;
+  double tip_diameter_mm = 1.0;
+};
+
 /// Says what tablet it is.
 struct DescribeTablet {
   TabletRecord record;
@@ -43,6 +53,6 @@ struct ScanNow {};
 struct Finish {};
 
 using OperatorCommand = std::variant<DropScan, RestoreScan, HintScan, WithdrawHint, LockScan, UnlockScan,
-                                     DescribeTablet, ScanNow, Finish>;
+                                     LabelPins, DescribeTablet, ScanNow, Finish>;
 
 }  // namespace dubsar

@@ -13,6 +13,7 @@
 #include "formats/pins_json.h"
 #include "formats/rig_json.h"
 #include "station/drives.h"
+#include "station/session_pins.h"
 
 namespace dubsar {
 
@@ -46,14 +47,11 @@ Status load_session(const fs::path& path, const ScanSetOptions& options, const S
     return std::unexpected(scans.error());
   }
   if (!set.pins) {
-    const auto text = store->load_document("pins");
-    if (text && *text) {
-      const auto pins = parse_pins(**text, (path / "session.sqlite").string() + " (pins)");
-      if (!pins) {
-        return std::unexpected(pins.error());
-      }
-      set.pins = *pins;
+    Result<std::optional<PinSet>> pins = session_pins(*store);
+    if (!pins) {
+      return std::unexpected(pins.error());
     }
+    set.pins = std::move(*pins);
   }
   if (const auto text = store->load_document("rig"); text && *text) {
     Result<Rig> rig = parse_rig(**text, (path / "session.sqlite").string() + " (rig)");

@@ -7,7 +7,12 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <map>
+#include <tuple>
 
+#include "acquisition/session_store.h"
+#include "formats/pins_json.h"
+#include "station/session_pins.h"
 #include "tests/station/support/command.h"
 #include "tests/station/support/two_fold_scans.h"
 #include "tests/support/temporary_folder.h"
@@ -163,6 +168,79 @@ TEST_F(OperatorStory, ClicksOnTheSamePlaceSettleAnUnsureScan) {
   const auto list = run_command({"session", "list", session(), "--json"}).json();
   EXPECT_EQ(list["scans"][1]["status"], "registered");
   EXPECT_EQ(list["scans"][1]["hint_on"], 0);
+}
+
+TEST_F(OperatorStory, LabelledPlacesOnTheRimSettleAnUnsureScan) {
+  // As above, and no pin stands anywhere: three places that have names in both scans tell how they lie.
+  const fs::path scans = folder_.path() / "scans";
+  test::write_two_fold_scans(scans);
+  std::string clicks;
+  std::map<std::string, Eigen::Vector3d> places;
+  for (const auto& [label, x, y] :
+       {std::tuple("A", 14, -9), std::tuple("B", -12, -4), std::tuple("C", 3, 11)}) {
+    places[label] = {double(x), double(y), test::two_fold_surface()(x, y)};
+    const auto grid_of = [](int number) {
+      testing::FieldScan scan;
+      scan.seed = 1 + 8 * static_cast<std::uint64_t>(number);
+      return testing::scan_field(test::two_fold_surface(), test::two_fold_pose(number), scan);
+    };
+    clicks += std::string("click label.") + label + "\nclick pins-left " +
+              place_in(grid_of(1), test::two_fold_pose(1).inverse() * places[label]) + "\nclick pins-right " +
+              place_in(grid_of(0), places[label]) + "\n";
+  }
+  const Outcome played = play_on("replay:" + scans.string(),
+                                 "wait idle\nkey space\nwait scan.1.unsure\nwait idle 90\n"
+                                 "click scan.1\nclick label-pins\nwait pins-right\n" +
+                                     clicks +
+                                     "click pins-done\nwait scan.1.fits 120\nwait scan.0.pins.3\n"
+                                     "expect scan.1.pins.3\nwait idle 90\nquit\n");
+  ASSERT_EQ(played.status, 0) << played.err;
+  const Result<SessionStore> store = SessionStore::open(session(), SessionStore::Access::kReadOnly);
+  ASSERT_TRUE(store.has_value());
+  const auto pins = session_pins(*store);
+  ASSERT_TRUE(pins && *pins);
+  ASSERT_EQ((*pins)->tips.at(0).size(), 3U);
+  for (const PinTip& tip : (*pins)->tips.at(0)) {
+    const std::string label(1, static_cast<char>('A' + tip.label - 101));
+    EXPECT_LT((tip.position_mm - places.at(label)).norm(), 1.0) << label;
+  }
+  // The same labels, and the same poses, for the command line.
+  const auto registered = run_command({"register", session(), "--json"}).json();
+  EXPECT_EQ(registered["scans"][1]["status"], "registered");
+}
+
+TEST_F(OperatorStory, AClickOnATipIsTheCentreOfItsBall) {
+  const fs::path truth = folder_.path() / "truth";
+  const std::string device = std::string(kSmallTablet) + "&pins=1&truth=" + truth.string();
+  const Outcome scanned = play_on(device, "wait idle\nkey space\nwait waiting-turn\nquit\n");
+  ASSERT_EQ(scanned.status, 0) << scanned.err;
+  const Result<PinSet> tips = read_pins(truth / "truth_pins.json");
+  ASSERT_TRUE(tips && !tips->tips.at(0).empty());
+  const PinTip tip = tips->tips.at(0).front();
+  std::string click;
+  {
+    const Result<SessionStore> store = SessionStore::open(session(), SessionStore::Access::kReadOnly);
+    ASSERT_TRUE(store.has_value());
+    const Result<RangeGrid> grid = store->load_grid(0);
+    ASSERT_TRUE(grid.has_value());
+    const Eigen::Vector3d seen =
+        tip.position_mm +
+        0.5 * tips->tip_diameter_mm * grid->view.to_camera(tip.position_mm, 0.5 * grid->rows);
+    click = place_in(*grid, seen);
+  }
+  const Outcome labelled = play_on(device,
+                                   "wait scan.0.fits\nwait idle\nclick scan.0\nclick label-pins\n"
+                                   "wait pins-left\nclick label.7\nclick pins-left " +
+                                       click + "\nclick pins-done\nwait scan.0.pins.1\nwait waiting\nquit\n");
+  ASSERT_EQ(labelled.status, 0) << labelled.err;
+  const Result<SessionStore> store = SessionStore::open(session(), SessionStore::Access::kReadOnly);
+  ASSERT_TRUE(store.has_value());
+  const auto pins = session_pins(*store);
+  ASSERT_TRUE(pins && *pins);
+  EXPECT_EQ((*pins)->tip_diameter_mm, tips->tip_diameter_mm);
+  ASSERT_EQ((*pins)->tips.at(0).size(), 1U);
+  EXPECT_EQ((*pins)->tips.at(0)[0].label, 7);
+  EXPECT_LT(((*pins)->tips.at(0)[0].position_mm - tip.position_mm).norm(), 0.5);
 }
 
 }  // namespace

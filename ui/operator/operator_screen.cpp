@@ -137,6 +137,9 @@ void OperatorScreen::draw(UiContext& ui, ImVec2 size) {
   if (auto hint = pairs_.draw(ui)) {
     session_.ask(std::move(*hint));
   }
+  for (LabelPins& labels : pins_.draw(ui)) {
+    session_.ask(std::move(labels));
+  }
   draw_settings(ui);
   draw_tablet(ui);
   draw_signing(ui);

@@ -13,6 +13,7 @@
 #include "ui/gl/frame_target.h"
 #include "ui/operator/device_dialog.h"
 #include "ui/operator/pair_dialog.h"
+#include "ui/operator/pin_dialog.h"
 #include "ui/operator/pose_panel.h"
 #include "ui/operator/statement.h"
 #include "ui/shell/widgets.h"
@@ -58,6 +59,7 @@ class OperatorScreen {
   std::size_t shown_faces_left_out_ = 0;
   PosePanel pose_;
   PairDialog pairs_;
+  PinDialog pins_;
   DeviceDialog devices_;
   PixelTexture growing_;
   int grown_rows_ = -1;

@@ -3,8 +3,8 @@
 #include "ui/operator/pair_dialog.h"
 
 #include <algorithm>
-#include <cmath>
 
+#include "ui/operator/grid_places.h"
 #include "ui/operator/operator_screen.h"
 
 namespace dubsar::ui {
@@ -12,25 +12,6 @@ namespace dubsar::ui {
 namespace {
 
 constexpr const char* kPopup = "###pairs";
-/// A click beside the clay takes the nearest sample no farther than this many cells.
-constexpr int kNearCells = 4;
-
-std::optional<Eigen::Vector3d> sample_at(const RangeGrid& grid, float u, float v) {
-  const int col = static_cast<int>(u * static_cast<float>(grid.cols));
-  const int row = static_cast<int>(v * static_cast<float>(grid.rows));
-  std::optional<Eigen::Vector3d> out;
-  int nearest = kNearCells * kNearCells + 1;
-  for (int r = row - kNearCells; r <= row + kNearCells; ++r) {
-    for (int c = col - kNearCells; c <= col + kNearCells; ++c) {
-      const int far2 = (r - row) * (r - row) + (c - col) * (c - col);
-      if (far2 < nearest && grid.is_valid(r, c)) {
-        nearest = far2;
-        out = grid.point(grid.index(r, c)).cast<double>();
-      }
-    }
-  }
-  return out;
-}
 
 }  // namespace
 

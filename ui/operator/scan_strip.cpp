@@ -63,6 +63,9 @@ void OperatorScreen::draw_strip(UiContext& ui, ImVec2 size) {
     const ImVec2 end{origin.x + width, origin.y + height};
     const Text state = state_text(scan);
     ui.facts.insert("scan." + std::to_string(scan.id) + "." + text_of(state, Language::kEnglish));
+    if (state_.pins && state_.pins->tips.contains(scan.id)) {
+      ui.facts.insert(fmt::format("scan.{}.pins.{}", scan.id, state_.pins->tips.at(scan.id).size()));
+    }
     const Eigen::Vector4f colour = state_colour(ui, state);
     const float line = ui.fonts.small->FontSize;
     draw->AddRectFilled(origin, end, packed(ui.colours.text, ImGui::IsItemHovered() ? 0.14F : 0.07F), 5);
@@ -119,6 +122,10 @@ void OperatorScreen::draw_scan_menu(UiContext& ui, const LiveScan& scan) {
   if (scan.pose && scan.pose->status == PoseStatus::kRegistered) {
     coloured_text(ui.colours.faint, filled(ui.text(Text::kUncertainty), 1000 * scan.pose->sigma_mm).c_str());
   }
+  if (state_.pins && state_.pins->tips.contains(scan.id)) {
+    const std::size_t labelled = state_.pins->tips.at(scan.id).size();
+    coloured_text(ui.colours.faint, filled(ui.text(Text::kPinsLabelled), labelled).c_str());
+  }
   const std::string why = scan.dropped ? scan.note
                           : scan.pose  ? translated(scan.pose->reason, ui.preferences.language)
                                        : std::string();
@@ -146,6 +153,9 @@ void OperatorScreen::draw_scan_menu(UiContext& ui, const LiveScan& scan) {
   if (scan.pose && !fits) {
     offer("pairs", Text::kPointPairs, [&] { pairs_.open(scan, state_.scans); });
     offer("withdraw", Text::kWithdraw, [&] { session_.ask(WithdrawHint{scan.id}); });
+  }
+  if (scan.measured) {
+    offer("label-pins", Text::kLabelPins, [&] { pins_.open(scan, state_); });
   }
   offer("drop", Text::kDrop, [&] { session_.ask(DropScan{scan.id, "taken out by the operator"}); });
   offer("rescan", Text::kRescan, [&] {

@@ -109,6 +109,17 @@ constexpr Row kRows[] = {
     {Text::kPairsDone, "Use these places", "Diese Stellen nehmen"},
     {Text::kPairsClear, "Start again", "Von vorn"},
     {Text::kPairCount, "{} pairs", "{} Paare"},
+    {Text::kLabelPins, "Label pins", "Nadeln benennen"},
+    {Text::kLabelPinsHow,
+     "Choose a number, then click the tip of that pin in each picture. Letters are for places on the rim "
+     "that "
+     "you know again. Three that two scans share tell how they lie.",
+     "Eine Nummer wählen, dann die Spitze dieser Nadel in jedem Bild anklicken. Buchstaben stehen für "
+     "Stellen "
+     "am Rand, die man wiedererkennt. Drei gemeinsame sagen, wie zwei Scans liegen."},
+    {Text::kUseLabels, "Use these labels", "Diese Namen nehmen"},
+    {Text::kTipDiameter, "Tip, mm", "Spitze, mm"},
+    {Text::kPinsLabelled, "{} pins labelled", "{} Nadeln benannt"},
     {Text::kSignName, "Name", "Name"},
     {Text::kSignRole, "As", "Als"},
     {Text::kSignIncomplete, "Signed although incomplete, because", "Unvollständig unterschrieben, weil"},

@@ -84,9 +84,13 @@ bool plain_button(UiContext& ui, const char* name, const char* label, bool enabl
 }
 
 bool text_line(UiContext& ui, const char* name, const char* label, std::string& value) {
-  ImGui::PushID(name);
   ImGui::TextUnformatted(label);
-  ImGui::SetNextItemWidth(-1);
+  return short_text(ui, name, value, -1);
+}
+
+bool short_text(UiContext& ui, const char* name, std::string& value, float width) {
+  ImGui::PushID(name);
+  ImGui::SetNextItemWidth(width);
   const bool changed = ImGui::InputText("##text", value.data(), value.capacity() + 1,
                                         ImGuiInputTextFlags_CallbackResize, grow, &value);
   ui.target(name);

@@ -43,6 +43,8 @@ bool big_button(UiContext& ui, const char* name, const char* label, const char* 
 bool plain_button(UiContext& ui, const char* name, const char* label, bool enabled = true);
 /// A line to type in; true when it was changed.
 bool text_line(UiContext& ui, const char* name, const char* label, std::string& value);
+/// The same without a label, so wide.
+bool short_text(UiContext& ui, const char* name, std::string& value, float width);
 bool tick(UiContext& ui, const char* name, const char* label, bool& value);
 void coloured_text(const Eigen::Vector4f& colour, const char* text);
 /// A text of the table with its gaps filled in.

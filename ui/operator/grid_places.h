@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <imgui.h>
+
+#include <Eigen/Core>
+#include <optional>
+
+#include "core/range_grid.h"
+
+namespace dubsar::ui {
+
+/// The valid sample of a grid nearest to a place in its picture (parts of its width and height), no farther
+/// than some cells: a click beside the clay takes what it was meant for. Scanner frame, mm.
+[[nodiscard]] std::optional<Eigen::Vector3d> sample_at(const RangeGrid& grid, float u, float v);
+
+/// Where the sample nearest to a point stands in the picture of the grid, in parts.
+[[nodiscard]] std::optional<ImVec2> place_of(const RangeGrid& grid, const Eigen::Vector3d& point_mm);
+
+}  // namespace dubsar::ui
