@@ -21,6 +21,18 @@ RangeRig::RangeRig(const RigFile& file, Device camera, Device stage, StageAxis a
       device_id_(std::move(device_id)),
       stopped_(std::make_unique<std::atomic<bool>>(false)) {}
 
+Status RangeRig::check(const RigFile& file, const std::string& where) {
+  if (!file.motion) {
+    return bad_input(where, "nobody says how the stage moves the range camera",
+                     "see [motion] in docs/formats/rig_toml.md");
+  }
+  if (file.speed <= 0) {
+    return fail(ErrorKind::kUsage, "nobody says how fast the stage is to go", where,
+                "give speed_mm_s or speed_deg_s: the camera's rate of profiles times the step");
+  }
+  return {};
+}
+
 Result<RangeRig> RangeRig::make(const RigFile& file, Device camera, Device stage, const std::string& where) {
   const Result<DeviceCapabilities> of_camera = camera.capabilities();
   if (!of_camera) {
@@ -30,13 +42,8 @@ Result<RangeRig> RangeRig::make(const RigFile& file, Device camera, Device stage
     return fail(ErrorKind::kUsage, file.camera + " yields no profiles", where,
                 "a camera that yields pictures needs a calibration");
   }
-  if (!file.motion) {
-    return bad_input(where, "nobody says how the stage moves the range camera",
-                     "see [motion] in docs/formats/rig_toml.md");
-  }
-  if (file.speed <= 0) {
-    return fail(ErrorKind::kUsage, "nobody says how fast the stage is to go", where,
-                "give speed_mm_s or speed_deg_s: the camera's rate of profiles times the step");
+  if (Status said = check(file, where); !said) {
+    return std::unexpected(said.error());
   }
   Result<StageAxis> axis = axis_for_scan(file, stage, file.motion->kind, where);
   if (!axis) {

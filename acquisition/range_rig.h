@@ -16,6 +16,8 @@ namespace dubsar {
 /// profile goes where the stage was at its time. Use from one thread at a time; stop() from any.
 class RangeRig : public RigSource {
  public:
+  /// What the file has to say of a range camera, before anything is opened. Errors: kUsage, kBadInput.
+  static Status check(const RigFile& file, const std::string& where);
   /// Checks that the parts fit: a camera that yields profiles, a stage with the axis that tells where it is
   /// while it moves, a motion and a speed in the file, a scan within the axis' limits. Errors: kUsage,
   /// kBadInput, kDevice.

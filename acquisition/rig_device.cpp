@@ -201,6 +201,9 @@ Result<Device> open_rig(const std::filesystem::path& file, const DriverRegistry&
     return std::unexpected(rig.error());
   }
   const bool of_range = rig->calibration.empty();
+  if (Status said = of_range ? RangeRig::check(*rig, file.string()) : Status{}; !said) {
+    return std::unexpected(said.error());
+  }
   Result<RigCalibration> calibration = RigCalibration{};
   if (!of_range) {
     const std::filesystem::path beside = file.parent_path() / rig->calibration;

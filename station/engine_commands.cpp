@@ -50,6 +50,7 @@ Result<StationScan> Engine::Impl::bring_back(int id, JobContext& job) {
   if (const Status restored = store->restore_scan(id); !restored) {
     return std::unexpected(restored.error());
   }
+  taken_out.erase(id);
   return enter_again(id, job);
 }
 
@@ -113,6 +114,7 @@ Result<std::vector<StationScan>> Engine::Impl::obey(const OperatorCommand& comma
     }
     if (dropped) {
       registrar.remove(id);
+      taken_out.insert(id);
     }
     return done(dropped, id, "is taken out");
   }

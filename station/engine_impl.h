@@ -134,6 +134,7 @@ struct Engine::Impl {
   PlanningStage planning;
   // Of the registering thread while it runs:
   std::map<int, std::string> names;  ///< original names by id
+  std::set<int> taken_out;           ///< by the operator, perhaps before they were placed
   OperatorWord word;
   IntruderFinder intruders;
 

@@ -187,6 +187,11 @@ ScanPose Engine::Impl::register_scan(const StationScan& scan, JobContext& job) {
 
 void Engine::Impl::register_all(JobContext& job) {
   const auto handle = [&](StationScan scan, bool plan_now, bool is_resumed) {
+    // The operator may have taken it out, and put it back, while it waited here: it is on disk before.
+    if (!is_resumed && (taken_out.contains(scan.id) || names.contains(scan.id))) {
+      queues->to_plan.push({std::nullopt, named_poses(), plan_now, true, false});
+      return;
+    }
     names[scan.id] = scan.file;
     ScanPose pose = register_scan(scan, job);
     if (scan.stored.valid() && !scan.stored.get()) {

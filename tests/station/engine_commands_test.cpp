@@ -57,6 +57,8 @@ class RunningEngine {
     const std::scoped_lock lock(mutex_);
     if (const auto* placed = std::get_if<ScanPlaced>(&event)) {
       said_ += "placed " + std::to_string(placed->pose.id) + " " + to_string(placed->pose.status) + "\n";
+    } else if (const auto* stored = std::get_if<ScanStored>(&event)) {
+      said_ += "stored " + std::to_string(stored->id) + "\n";
     } else if (const auto* obeyed = std::get_if<OperatorObeyed>(&event)) {
       said_ += obeyed->what + "\n";
     } else if (const auto* notice = std::get_if<Notice>(&event)) {
@@ -122,6 +124,34 @@ TEST(EngineCommands, DropRestoreAndLock) {
   const auto log = read_operator_log(*store);
   ASSERT_TRUE(log.has_value());
   EXPECT_TRUE(log->word.locked.contains(1));
+}
+
+TEST(EngineCommands, AScanIsTakenOutBeforeItIsPlaced) {
+  const test::TemporaryFolder folder;
+  const auto scans = test::write_bumpy_scans(folder.path() / "scans", 4);
+  for (const bool put_back : {false, true}) {
+    // As fast as they can be read: the last is on disk long before it is placed.
+    const auto session = folder.path() / (put_back ? "back" : "out");
+    RunningEngine engine(scans, session, 1e6);
+    ASSERT_TRUE(engine.says("stored 3"));
+    const bool taken = engine.post(DropScan{3, "the wrong side"});
+    if (taken && put_back) {
+      engine.post(RestoreScan{3});
+    }
+    const Result<EngineResult>& result = engine.join();
+    ASSERT_TRUE(result.has_value()) << result.error().line();
+    const Result<SessionStore> store = SessionStore::open(session, SessionStore::Access::kReadOnly);
+    ASSERT_TRUE(store.has_value());
+    std::vector<int> standing;
+    const auto stored = store->scans();
+    for (const StoredScan& scan : *stored) {
+      if (!scan.dropped) {
+        standing.push_back(scan.id);
+      }
+    }
+    EXPECT_EQ(ids_of(result->poses), standing) << (put_back ? "put back" : "out");
+    EXPECT_EQ(result->red_map.scans.size(), standing.size());
+  }
 }
 
 TEST(EngineCommands, AHintSettlesAScanAtOnce) {
