@@ -54,7 +54,7 @@ GigeScanner::GigeScanner(const GigeScannerPlan& plan, PeerProcess& stage) {
                             << number_text(plan.rate_hz)
                             << "']]\n[scan]\nfrom_mm = " << number_text(plan.start)
                             << "\nto_mm = " << number_text(end) << "\nstep_mm = " << number_text(plan.step)
-                            << "\ncontinuous = true\n";
+                            << "\ncontinuous = true\n[stripe]\nmethod = '" << plan.method << "'\n";
   if (!ScannerFrames::write(path + "/frames", static_cast<std::uint32_t>(truth.camera.width),
                             static_cast<std::uint32_t>(truth.camera.height), positions_, frames,
                             render(middle, false, 0))) {

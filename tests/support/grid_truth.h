@@ -72,15 +72,20 @@ struct CollectGrid : ProfileSink {
 struct DepthErrors {
   double rms_um = 0;
   double bias_um = 0;
-  double missed = 0;  ///< share of the samples with no surface within 0.2 mm above or below
+  double missed = 0;    ///< share of the samples with no surface within 0.2 mm above or below
+  double clean_um = 0;  ///< RMS without the samples that are off by more than the limit
+  double off = 0;       ///< share of those
 };
 
 /// How far the samples lie above the true surface, along z of its frame.
 [[nodiscard]] inline DepthErrors depth_errors(const RangeGrid& grid, const RigidTransform& tablet_from_grid,
-                                              const MeshQuery& truth) {
+                                              const MeshQuery& truth, double limit_um = 200) {
   DepthErrors out;
   double sum = 0;
   double squares = 0;
+  double clean = 0;
+  std::size_t off = 0;
+  std::size_t clean_count = 0;
   std::size_t count = 0;
   std::size_t missed = 0;
   for (std::size_t i = 0; i < grid.size(); ++i) {
@@ -100,10 +105,14 @@ struct DepthErrors {
     ++count;
     sum += error;
     squares += error * error;
+    (std::abs(error) > limit_um ? off : clean_count) += 1;
+    clean += std::abs(error) > limit_um ? 0 : error * error;
   }
   const auto n = static_cast<double>(std::max<std::size_t>(count, 1));
   out.bias_um = sum / n;
   out.rms_um = std::sqrt(squares / n);
+  out.clean_um = std::sqrt(clean / static_cast<double>(std::max<std::size_t>(clean_count, 1)));
+  out.off = static_cast<double>(off) / n;
   out.missed = static_cast<double>(missed) / static_cast<double>(std::max<std::size_t>(count + missed, 1));
   return out;
 }
