@@ -5,7 +5,8 @@
 //     simulated scans, true poses: how far the mesh's vertices lie from the true surface, everywhere and at
 //     wedge edges; how much of the surface it holds; whether its uncertainties are true; its topology
 //   dubsar-stitching bunny FOLDER
-//     the published scans with the published poses: input sample to mesh, topology, boundary, shape, time
+//     published scans with their published poses (the .conf of the folder), the bunny or any other: input
+//     sample to mesh, topology, shape, time; boundary beside that of reconstruction/bun_zipper.ply
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
@@ -246,7 +247,11 @@ int bunny(const Arguments& args) {
   std::vector<std::shared_ptr<const RangeGrid>> grids;
   std::vector<RigidTransform> poses;
   std::vector<Vector3f> samples;
-  for (const auto& [file, pose] : read_conf_poses(folder / "bun.conf", 1000.0)) {
+  fs::path conf;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    conf = entry.path().extension() == ".conf" ? entry.path() : conf;
+  }
+  for (const auto& [file, pose] : read_conf_poses(conf, 1000.0)) {
     if (!fs::exists(folder / file)) {
       continue;
     }
@@ -286,8 +291,8 @@ int bunny(const Arguments& args) {
       die(written.error().line());
     }
   }
-  std::printf("bunny: %zu scans, %zu samples, %.3f s, %.3f of processors (best of 3)\n", grids.size(),
-              samples.size(), best_s, best_cpu_s);
+  std::printf("%s: %zu scans, %zu samples, %.3f s, %.3f of processors (best of 3)\n", conf.stem().c_str(),
+              grids.size(), samples.size(), best_s, best_cpu_s);
   print_topology(mesh);
   const MeshQuery model(mesh);
   std::vector<double> d = distances_mm(samples, model, 10.0);
