@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kMoved_px = 0.5;  // corners of a board that was held still stay within this
+constexpr double kMovedPx = 0.5;  // corners of a board that was held still stay within this
 constexpr int kLeastStops = 3;
 constexpr std::size_t kFirstPoses = 4;  // before a camera can be told at all
 
@@ -173,7 +173,7 @@ Result<LiveCalibration::Taken> LiveCalibration::pose_while_streaming() {
   }
   const Result<BoardView> later = find_board(again->view(), board_, names.board);
   const std::optional<double> moved = later ? moved_px(*seen, *later) : std::nullopt;
-  if (!moved || *moved > kMoved_px) {
+  if (!moved || *moved > kMovedPx) {
     char text[96];
     std::snprintf(text, sizeof text, "the board moved by %.1f px while the pictures were taken",
                   moved.value_or(99));

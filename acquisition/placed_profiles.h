@@ -57,7 +57,6 @@ class PlacedProfiles : public ProfileSink {
   std::int64_t block_ns_ = 0;
   std::optional<double> period_ns_;
   std::optional<std::int64_t> first_row_;
-  std::int64_t next_row_ = 0;
   std::optional<double> position_;
   bool begun_ = false, complete_ = false, cancelled_ = false;
   ScanTally tally_;

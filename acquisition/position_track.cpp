@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t kSide = 6;   // readings on either side that a position is fitted to
 constexpr std::size_t kAhead = 4;  // of them that must be there before one is told
-constexpr double kClock_s = 1e-4;  // what no reading is better than
+constexpr double kClockS = 1e-4;   // what no reading is better than
 
 }  // namespace
 
@@ -21,7 +21,7 @@ void PositionTrack::add(std::int64_t timestamp_ns, double position, std::int64_t
     if (!readings_.empty() && timestamp_ns <= readings_.back().timestamp_ns) {
       return;
     }
-    readings_.push_back({timestamp_ns, position, 1e-9 * static_cast<double>(uncertainty_ns) + kClock_s});
+    readings_.push_back({timestamp_ns, position, 1e-9 * static_cast<double>(uncertainty_ns) + kClockS});
   }
   more_.notify_all();
 }

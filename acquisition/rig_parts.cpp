@@ -12,9 +12,9 @@ namespace dubsar {
 
 namespace {
 
-constexpr double kRunUp_s = 0.3;    // to gather speed and for the readings around the first row
+constexpr double kRunUpS = 0.3;     // to gather speed and for the readings around the first row
 constexpr double kRunUpSteps = 10;  // and at least so many rows
-constexpr int kRest_ms = 1000;
+constexpr int kRestMs = 1000;
 
 /// A word of rig.toml as the type that the setting has.
 Result<SettingValue> value_for(const SettingInfo& setting, const std::string& word,
@@ -134,11 +134,11 @@ std::unexpected<Error> stopped_short(const RigFile& file, double position) {
 }
 
 std::chrono::milliseconds Travel::time_to_rest(double last_row) const {
-  return std::chrono::milliseconds(kRest_ms + static_cast<int>(1000 * std::abs(to - last_row) / speed));
+  return std::chrono::milliseconds(kRestMs + static_cast<int>(1000 * std::abs(to - last_row) / speed));
 }
 
 Travel travel_of(const RigFile& file, const StageAxis& axis, double speed) {
-  const double run_up = std::max(kRunUp_s * speed, kRunUpSteps * file.step);
+  const double run_up = std::max(kRunUpS * speed, kRunUpSteps * file.step);
   Travel out{file.start - run_up, file.start + file.step * (file.rows - 1) + run_up, speed};
   if (!axis.endless) {
     out.from = std::max(out.from, axis.minimum);

@@ -20,9 +20,9 @@ constexpr std::uint32_t kLatch = 2;
 constexpr int kTries = 8;
 /// On a machine that is busy the answers come late: then it asks on until one came within this time.
 constexpr int kMostTries = 40;
-constexpr std::int64_t kSoon_ns = 1000000;
+constexpr std::int64_t kSoonNs = 1000000;
 /// Longer than a frame can be on its way.
-constexpr std::int64_t kLongest_ns = 1000000000;
+constexpr std::int64_t kLongestNs = 1000000000;
 
 std::int64_t now_ns() {
   timespec now{};
@@ -35,7 +35,7 @@ std::int64_t now_ns() {
 std::int64_t CameraClock::ours(std::int64_t camera_ns, std::int64_t arrived_ns) {
   const std::int64_t quickest = arrived_ns - camera_ns;
   if (!offset_) {
-    const bool possible = asked_ && *asked_ <= quickest && quickest - *asked_ < kLongest_ns;
+    const bool possible = asked_ && *asked_ <= quickest && quickest - *asked_ < kLongestNs;
     offset_ = possible ? *asked_ : quickest;
   }
   offset_ = std::min(*offset_, quickest);
@@ -49,8 +49,8 @@ std::optional<std::int64_t> latched_offset_ns(ArvGvDevice* device) {
     return std::nullopt;
   }
   std::optional<std::int64_t> out;
-  std::int64_t soonest = kLongest_ns;
-  for (int k = 0; k < kTries || (k < kMostTries && soonest > kSoon_ns); ++k) {
+  std::int64_t soonest = kLongestNs;
+  for (int k = 0; k < kTries || (k < kMostTries && soonest > kSoonNs); ++k) {
     const std::int64_t asked = now_ns();
     arv_device_write_register(ARV_DEVICE(device), kControl, kLatch, error.fill());
     const std::int64_t answered = now_ns();
