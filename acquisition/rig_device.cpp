@@ -5,16 +5,12 @@
 #include <utility>
 
 #include "acquisition/device_uri.h"
+#include "acquisition/rig_view.h"
 #include "drivers/driver.h"
 #include "drivers/plugin.h"
 #include "formats/atomic_file.h"
 #include "formats/calibration_json.h"
 #include "formats/verification_log.h"
-
-/// The rig behind the C interface.
-struct dubsar_device {
-  dubsar::RigScanner scanner;
-};
 
 namespace dubsar {
 
@@ -74,7 +70,9 @@ class SinkBridge : public ProfileSink {
 
 std::int32_t capabilities(dubsar_device* device, dubsar_capabilities* out, dubsar_error* error) {
   return plugin::fenced(error, [&] {
-    plugin::lend(out, plugin::capabilities_of(device->scanner.rig()));
+    dubsar_capabilities filled = plugin::capabilities_of(device->scanner.rig());
+    filled.flags |= DUBSAR_YIELDS_FRAMES;
+    plugin::lend(out, filled);
     return std::int32_t{DUBSAR_OK};
   });
 }
@@ -127,6 +125,7 @@ const dubsar_driver& rig_driver() {
     out.capabilities = capabilities;
     out.scan = scan;
     out.stop = stop;
+    offer_view(out);
     return out;
   }();
   return driver;
@@ -146,7 +145,7 @@ Result<Device> part(const std::string& uri_text, const DriverRegistry& registry)
 }  // namespace
 
 Device device_of(RigScanner scanner, const std::string& uri) {
-  return {&rig_driver(), new dubsar_device{std::move(scanner)}, uri};
+  return {&rig_driver(), new dubsar_device{std::move(scanner), {}, {}, 0}, uri};
 }
 
 Result<Device> open_rig(const std::filesystem::path& file, const DriverRegistry& registry) {

@@ -9,6 +9,7 @@
 #include <ctime>
 #include <utility>
 
+#include "acquisition/setting_words.h"
 #include "formats/number_text.h"
 
 namespace dubsar {
@@ -32,62 +33,6 @@ StripeOptions stripe_options(const RigFile& file) {
                                                       : StripeMethod::kSteger;
   options.axis = file.stripe_per_row ? StripeAxis::kPerRow : StripeAxis::kPerColumn;
   return options;
-}
-
-/// A word of rig.toml as the type that the setting has.
-Result<SettingValue> value_for(const SettingInfo& setting, const std::string& word,
-                               const std::string& where) {
-  const auto wrong = [&] {
-    return fail(ErrorKind::kUsage, "setting " + setting.key + " cannot be '" + word + "'", where);
-  };
-  try {
-    std::size_t used = 0;
-    switch (setting.type) {
-      case SettingType::kBool:
-        if (word == "true" || word == "false") {
-          return SettingValue(word == "true");
-        }
-        return wrong();
-      case SettingType::kInteger: {
-        const std::int64_t value = std::stoll(word, &used);
-        return used == word.size() ? Result<SettingValue>(SettingValue(value)) : wrong();
-      }
-      case SettingType::kNumber: {
-        const double value = std::stod(word, &used);
-        return used == word.size() ? Result<SettingValue>(SettingValue(value)) : wrong();
-      }
-      case SettingType::kText:
-      case SettingType::kChoice:
-        return SettingValue(word);
-    }
-  } catch (const std::exception&) {  // std::stoll and std::stod say it this way
-    return wrong();
-  }
-  return wrong();
-}
-
-Status put_settings(const RigFile& file, Device& camera, const std::string& where) {
-  if (file.camera_settings.empty()) {
-    return {};
-  }
-  const Result<std::vector<SettingInfo>> settings = camera.settings();
-  if (!settings) {
-    return std::unexpected(settings.error());
-  }
-  for (const auto& [key, word] : file.camera_settings) {
-    const auto found = std::ranges::find(*settings, key, &SettingInfo::key);
-    if (found == settings->end()) {
-      return fail(ErrorKind::kUsage, "the camera has no setting " + key, where, "see dubsar drivers");
-    }
-    const Result<SettingValue> value = value_for(*found, word, where);
-    if (!value) {
-      return std::unexpected(value.error());
-    }
-    if (Status status = camera.set(key, *value); !status) {
-      return status;
-    }
-  }
-  return {};
 }
 
 GrayView view_of(const Frame& frame) {
@@ -202,7 +147,7 @@ Result<RigScanner> RigScanner::make(const RigFile& file, const RigCalibration& c
   if (Status status = fits(file, calibration, *of_camera, *of_stage, axes, where); !status) {
     return std::unexpected(status.error());
   }
-  if (Status status = put_settings(file, camera, where); !status) {
+  if (Status status = put_settings(camera, file.camera_settings, where); !status) {
     return std::unexpected(status.error());
   }
   RigScanner out(file, calibration, std::move(camera), std::move(stage),
@@ -353,6 +298,24 @@ Status RigScanner::scan(ProfileSink& sink) {
   }
   sink.end(tally);
   return status;
+}
+
+Status RigScanner::start_view() {
+  const auto laser = static_cast<std::uint32_t>(file_.laser);
+  if (Status started = camera_.start_frames(); !started) {
+    return started;
+  }
+  Status lit = stage_.set_laser(laser, file_.laser_power);
+  if (!lit) {
+    [[maybe_unused]] const Status said = camera_.stop_frames();
+  }
+  return lit;
+}
+
+Status RigScanner::stop_view() {
+  Status dark = stage_.set_laser(static_cast<std::uint32_t>(file_.laser), 0);
+  const Status stopped = camera_.stop_frames();
+  return dark ? stopped : dark;
 }
 
 Status RigScanner::stop() {

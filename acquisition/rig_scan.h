@@ -31,6 +31,10 @@ class RigScanner {
   /// One scan, row by row: drives to the row, takes a frame with the laser off (where the file asks for
   /// ambient frames) and one with it on. The laser is off afterwards, whatever happened.
   Status scan(ProfileSink& sink);
+  /// Between scans: the camera's frames as a scan would see them, the laser lit and nothing moving.
+  Status start_view();
+  Status stop_view();
+  [[nodiscard]] Device& camera() { return camera_; }
   /// Ends the motion and puts the laser off; a scan that runs returns kCancelled soon.
   Status stop();
 

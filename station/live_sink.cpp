@@ -114,6 +114,7 @@ void LiveSession::hear(const Event& event) {
     const std::scoped_lock lock(mutex_);
     growing_.append(*profile->grid, *profile->flags, profile->row);
     state_.phase = LivePhase::kScanning;
+    camera_.reset();
     state_.profiles = profile->row + 1;
   } else if (const auto* model = std::get_if<ModelChanged>(&event)) {
     show_model(model->mesh, model->red, model->tablet_from_model);
@@ -137,6 +138,10 @@ void LiveSession::hear(const Event& event) {
     const std::scoped_lock lock(mutex_);
     if (const auto* pins = std::get_if<PinsKnown>(&event)) {
       state_.pins = pins->pins;
+    } else if (const auto* device = std::get_if<DeviceTells>(&event)) {
+      state_.panel = device->panel;
+    } else if (const auto* frame = std::get_if<CameraFrame>(&event)) {
+      camera_ = frame->view;
     } else if (const auto* stored = std::get_if<ScanStored>(&event)) {
       LiveScan& scan = scan_of(stored->id);
       scan.file = stored->file;
