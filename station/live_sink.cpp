@@ -129,6 +129,9 @@ void LiveSession::hear(const Event& event) {
     if (placed->pose.status == PoseStatus::kRegistered) {
       state_.notice.clear();
     }
+    if (state_.phase == LivePhase::kWaiting) {
+      state_.last_not_taken_up = placed->pose.status != PoseStatus::kRegistered;
+    }
     if (std::ranges::find(placed->all, placed->pose.id, &ScanPose::id) == placed->all.end()) {
       scan.dropped = true;  // something was in its way
       scan.note = placed->pose.reason;
@@ -147,7 +150,10 @@ void LiveSession::hear(const Event& event) {
       scan.file = stored->file;
       scan.samples = stored->samples;
       state_.exists = true;
-      state_.phase = LivePhase::kJudging;
+      // A device that nothing drives waits for the operator while its scan is still being judged.
+      if (state_.phase != LivePhase::kWaiting) {
+        state_.phase = LivePhase::kJudging;
+      }
     } else if (const auto* obeyed = std::get_if<OperatorObeyed>(&event)) {
       follow(obeyed->all);
       state_.notice = obeyed->what;

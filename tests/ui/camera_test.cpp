@@ -103,7 +103,7 @@ quit
 )");
   ASSERT_EQ(played.status, 0) << played.err;
   EXPECT_THAT(kept(), Contains(Pair("exposure_us", "400")));
-  EXPECT_THAT(kept(), Contains(Pair("flip", "true")));
+  EXPECT_THAT(kept(), Contains(Pair("flip", "1")));
   // And again, when the session goes on.
   const Outcome again = play(
       "wait idle\nclick camera\nwait setting.exposure_us=400\nwait exposure-too-short\n"
