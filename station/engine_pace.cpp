@@ -71,7 +71,8 @@ bool Engine::Impl::wait_for_operator(NextStep& step, const JobContext& job) {
     lock.lock();
     if (!showed) {
       // Cancelling a job wakes nobody.
-      pace.wait_for(lock, std::chrono::milliseconds(50));
+      pace.wait_for(lock, std::chrono::milliseconds(50),
+                    [this] { return scan_asked || finish_asked || changed_step.has_value(); });
     }
   }
 }

@@ -124,7 +124,9 @@ void LiveSession::scan_now() {
   {
     const std::scoped_lock lock(mutex_);
     if (engine_) {
-      engine_->post(ScanNow{});
+      if (engine_->post(ScanNow{}) && state_.phase == LivePhase::kWaiting) {
+        state_.phase = LivePhase::kMoving;  // hands off from the key on, and no second key by mistake
+      }
       return;
     }
     if (busy_) {
