@@ -33,16 +33,21 @@ Result<std::vector<Eigen::Vector2d>> stripe_in(const fs::path& folder, const Cal
     return bad_input((folder / pose.laser).string(), "this picture is not as large as that of the board",
                      "take all pictures with the same region of the same camera");
   }
+  return stripe_on_board(set, on->view(), off.view());
+}
+
+}  // namespace
+
+std::vector<Eigen::Vector2d> stripe_on_board(const CalibrationSet& set, const GrayView& on,
+                                             const GrayView& off) {
   StripeOptions options;
   options.sigma_px = set.stripe_sigma_px;
   options.axis = set.stripe_per_row ? StripeAxis::kPerRow : StripeAxis::kPerColumn;
   options.least_peak = 8;  // black print gives little light back
   StripeProfile profile;
-  StripeExtractor(options).extract(on->view(), off.view(), profile);
+  StripeExtractor(options).extract(on, off, profile);
   return stripe_points(profile, options.axis);
 }
-
-}  // namespace
 
 Result<CalibrationPictures> look_at_pictures(const fs::path& folder, const CalibrationSet& set,
                                              const JobContext& job) {

@@ -29,4 +29,9 @@ struct CalibrationPictures {
 [[nodiscard]] Result<CalibrationSet> set_of_folder(const std::filesystem::path& folder,
                                                    const std::string& board);
 
+/// The stripe in a picture with the laser on, the same light without it (or nothing) subtracted: image
+/// points.
+[[nodiscard]] std::vector<Eigen::Vector2d> stripe_on_board(const CalibrationSet& set, const GrayView& on,
+                                                           const GrayView& off);
+
 }  // namespace dubsar

@@ -2,9 +2,12 @@
 // Copyright The Dubsar developers
 #include "acquisition/rig_device.h"
 
+#include <algorithm>
+#include <memory>
 #include <utility>
 
 #include "acquisition/device_uri.h"
+#include "acquisition/range_rig.h"
 #include "acquisition/rig_view.h"
 #include "drivers/driver.h"
 #include "drivers/plugin.h"
@@ -70,8 +73,13 @@ class SinkBridge : public ProfileSink {
 
 std::int32_t capabilities(dubsar_device* device, dubsar_capabilities* out, dubsar_error* error) {
   return plugin::fenced(error, [&] {
-    dubsar_capabilities filled = plugin::capabilities_of(device->scanner.rig());
-    filled.flags |= DUBSAR_YIELDS_FRAMES;
+    const Rig* const rig = device->source->geometry();
+    dubsar_capabilities unknown{};
+    unknown.struct_size = sizeof unknown;
+    unknown.scan_count = -1;
+    unknown.calibration_age_days = -1;
+    dubsar_capabilities filled = rig != nullptr ? plugin::capabilities_of(*rig) : unknown;
+    filled.flags |= device->source->camera() != nullptr ? DUBSAR_YIELDS_FRAMES : 0U;
     plugin::lend(out, filled);
     return std::int32_t{DUBSAR_OK};
   });
@@ -80,7 +88,7 @@ std::int32_t capabilities(dubsar_device* device, dubsar_capabilities* out, dubsa
 std::int32_t scan(dubsar_device* device, const dubsar_sink* sink, dubsar_error* error) {
   return plugin::fenced(error, [&] {
     SinkBridge bridge(*sink);
-    const Status status = device->scanner.scan(bridge);
+    const Status status = device->source->scan(bridge);
     const std::int32_t code = status ? std::int32_t{DUBSAR_OK} : plugin::report(error, status.error());
     bridge.finish(code);
     return code;
@@ -89,7 +97,7 @@ std::int32_t scan(dubsar_device* device, const dubsar_sink* sink, dubsar_error* 
 
 std::int32_t stop(dubsar_device* device, dubsar_error* error) {
   return plugin::fenced(error, [&] {
-    const Status status = device->scanner.stop();
+    const Status status = device->source->stop();
     return status ? std::int32_t{DUBSAR_OK} : plugin::report(error, status.error());
   });
 }
@@ -131,13 +139,25 @@ const dubsar_driver& rig_driver() {
   return driver;
 }
 
-Result<Device> part(const std::string& uri_text, const DriverRegistry& registry) {
-  const Result<DeviceUri> uri = parse_device_uri(uri_text);
+/// `endless`: a range camera goes on until it is told to stop, where its driver counts profiles and the URI
+/// says nothing of them.
+Result<Device> part(const std::string& uri_text, const DriverRegistry& registry, bool endless) {
+  Result<DeviceUri> uri = parse_device_uri(uri_text);
   if (!uri) {
     return std::unexpected(uri.error());
   }
   if (uri->scheme == "rig") {
     return fail(ErrorKind::kUsage, "a rig cannot be a part of a rig", uri_text);
+  }
+  const Result<const Driver*> driver = registry.find(uri->scheme);
+  const Result<std::vector<SettingInfo>> options =
+      driver ? (*driver)->options() : std::unexpected(driver.error());
+  if (endless && options) {
+    const auto rows = std::ranges::find(*options, "rows", &SettingInfo::key);
+    const bool said = std::ranges::any_of(uri->options, [](const auto& one) { return one.first == "rows"; });
+    if (rows != options->end() && rows->range && !said) {
+      uri->options.emplace_back("rows", std::to_string(static_cast<std::int64_t>(rows->range->second)));
+    }
   }
   return open_device(*uri, registry);
 }
@@ -145,7 +165,27 @@ Result<Device> part(const std::string& uri_text, const DriverRegistry& registry)
 }  // namespace
 
 Device device_of(RigScanner scanner, const std::string& uri) {
-  return {&rig_driver(), new dubsar_device{std::move(scanner), {}, {}, 0}, uri};
+  return {&rig_driver(), new dubsar_device{std::make_unique<RigScanner>(std::move(scanner))}, uri};
+}
+
+Result<RigParts> open_rig_parts(const std::filesystem::path& file, const DriverRegistry& registry) {
+  const Result<std::string> text = read_whole_file(file);
+  const Result<RigFile> rig = text ? parse_rig_file(*text, file.string()) : std::unexpected(text.error());
+  if (!rig) {
+    return std::unexpected(rig.error());
+  }
+  Result<Device> camera = part(rig->camera, registry, false);
+  if (!camera) {
+    return std::unexpected(camera.error());
+  }
+  Result<Device> stage = part(rig->stage, registry, false);
+  if (!stage) {
+    return std::unexpected(stage.error());
+  }
+  if (Status put = put_camera_settings(*rig, *camera, file.string()); !put) {
+    return std::unexpected(put.error());
+  }
+  return RigParts{*rig, std::move(*camera), std::move(*stage)};
 }
 
 Result<Device> open_rig(const std::filesystem::path& file, const DriverRegistry& registry) {
@@ -157,20 +197,30 @@ Result<Device> open_rig(const std::filesystem::path& file, const DriverRegistry&
   if (!rig) {
     return std::unexpected(rig.error());
   }
-  const std::filesystem::path beside = file.parent_path() / rig->calibration;
-  const Result<std::string> bytes = read_whole_file(beside);
-  const Result<RigCalibration> calibration =
-      bytes ? parse_calibration(*bytes, beside.string()) : std::unexpected(bytes.error());
-  if (!calibration) {
-    return std::unexpected(calibration.error());
+  const bool of_range = rig->calibration.empty();
+  Result<RigCalibration> calibration = RigCalibration{};
+  if (!of_range) {
+    const std::filesystem::path beside = file.parent_path() / rig->calibration;
+    const Result<std::string> bytes = read_whole_file(beside);
+    calibration = bytes ? parse_calibration(*bytes, beside.string()) : std::unexpected(bytes.error());
+    if (!calibration) {
+      return std::unexpected(calibration.error());
+    }
   }
-  Result<Device> camera = part(rig->camera, registry);
+  Result<Device> camera = part(rig->camera, registry, of_range);
   if (!camera) {
     return std::unexpected(camera.error());
   }
-  Result<Device> stage = part(rig->stage, registry);
+  Result<Device> stage = part(rig->stage, registry, false);
   if (!stage) {
     return std::unexpected(stage.error());
+  }
+  if (of_range) {
+    Result<RangeRig> moved = RangeRig::make(*rig, std::move(*camera), std::move(*stage), file.string());
+    return moved ? Result<Device>(Device(&rig_driver(),
+                                         new dubsar_device{std::make_unique<RangeRig>(std::move(*moved))},
+                                         "rig:" + file.string()))
+                 : std::unexpected(moved.error());
   }
   Result<RigScanner> scanner =
       RigScanner::make(*rig, *calibration, std::move(*camera), std::move(*stage), file.string());

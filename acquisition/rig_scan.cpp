@@ -9,7 +9,8 @@
 #include <ctime>
 #include <utility>
 
-#include "acquisition/setting_words.h"
+#include "acquisition/fresh_frame.h"
+#include "acquisition/rig_parts.h"
 #include "formats/number_text.h"
 
 namespace dubsar {
@@ -17,6 +18,7 @@ namespace dubsar {
 namespace {
 
 constexpr auto kFrameWait = std::chrono::milliseconds(200);
+constexpr std::uint32_t kSweepPool = 32;
 constexpr int kFrameTries = 15;  // 3 s for a frame that was exposed late enough
 
 std::int64_t monotonic_ns() {
@@ -40,38 +42,10 @@ GrayView view_of(const Frame& frame) {
           frame.stride_bytes};
 }
 
-/// Puts the laser off when it goes.
-class LaserGuard {
- public:
-  LaserGuard(Device& stage, std::uint32_t laser) : stage_(stage), laser_(laser) {}
-  LaserGuard(const LaserGuard&) = delete;
-  LaserGuard& operator=(const LaserGuard&) = delete;
-  ~LaserGuard() { [[maybe_unused]] const Status said = stage_.set_laser(laser_, 0); }
-
- private:
-  Device& stage_;
-  std::uint32_t laser_;
-};
-
-/// The same for the stream of frames.
-class StreamGuard {
- public:
-  explicit StreamGuard(Device& camera) : camera_(camera) {}
-  StreamGuard(const StreamGuard&) = delete;
-  StreamGuard& operator=(const StreamGuard&) = delete;
-  ~StreamGuard() { [[maybe_unused]] const Status said = camera_.stop_frames(); }
-
- private:
-  Device& camera_;
-};
-
 Status fits(const RigFile& file, const RigCalibration& calibration, const DeviceCapabilities& camera,
-            const DeviceCapabilities& stage, const std::vector<StageAxis>& axes, const std::string& where) {
+            const std::string& where) {
   if (!camera.yields_frames) {
     return fail(ErrorKind::kUsage, file.camera + " is no camera", where, "name a camera: see dubsar drivers");
-  }
-  if (!stage.is_stage) {
-    return fail(ErrorKind::kUsage, file.stage + " is no stage", where, "name a stage: see dubsar drivers");
   }
   if (!calibration.has_laser || !calibration.has_motion) {
     return bad_input(
@@ -84,23 +58,6 @@ Status fits(const RigFile& file, const RigCalibration& calibration, const Device
         where,
         "the calibration is of camera " + calibration.camera_serial + ", this is camera " + camera.serial,
         "name the calibration of this camera, or calibrate it");
-  }
-  if (static_cast<std::size_t>(file.axis) >= axes.size()) {
-    return fail(ErrorKind::kUsage, "the stage has no axis " + std::to_string(file.axis), where,
-                "it has " + std::to_string(axes.size()) + ", counted from 0");
-  }
-  const StageAxis& axis = axes[static_cast<std::size_t>(file.axis)];
-  if (axis.rotary != (calibration.motion.kind != MotionKind::kLinear)) {
-    return bad_input(where, "axis " + axis.name + " does not move as the calibration says",
-                     "name the axis that was calibrated");
-  }
-  const double end = file.start + file.step * (file.rows - 1);
-  if (!axis.endless && (file.start < axis.minimum || end > axis.maximum)) {
-    return fail(ErrorKind::kUsage,
-                "the scan from " + number_text(file.start) + " to " + number_text(end) +
-                    " leaves the axis' limits, " + number_text(axis.minimum) + " to " +
-                    number_text(axis.maximum),
-                where, "scan less, or move the limits");
   }
   return {};
 }
@@ -132,22 +89,13 @@ Result<RigScanner> RigScanner::make(const RigFile& file, const RigCalibration& c
   if (!of_camera) {
     return std::unexpected(of_camera.error());
   }
-  const Result<DeviceCapabilities> of_stage = stage.capabilities();
-  if (!of_stage) {
-    return std::unexpected(of_stage.error());
-  }
-  std::vector<StageAxis> axes;
-  if (of_stage->is_stage) {
-    Result<std::vector<StageAxis>> told = stage.axes();
-    if (!told) {
-      return std::unexpected(told.error());
-    }
-    axes = std::move(*told);
-  }
-  if (Status status = fits(file, calibration, *of_camera, *of_stage, axes, where); !status) {
+  if (Status status = fits(file, calibration, *of_camera, where); !status) {
     return std::unexpected(status.error());
   }
-  if (Status status = put_settings(camera, file.camera_settings, where); !status) {
+  if (const Result<StageAxis> axis = axis_for_scan(file, stage, calibration.motion.kind, where); !axis) {
+    return std::unexpected(axis.error());
+  }
+  if (Status status = put_camera_settings(file, camera, where); !status) {
     return std::unexpected(status.error());
   }
   RigScanner out(file, calibration, std::move(camera), std::move(stage),
@@ -174,6 +122,22 @@ Result<RigScanner> RigScanner::make(const RigFile& file, const RigCalibration& c
   return out;
 }
 
+Status RigScanner::check_frame(const Frame& frame) const {
+  const CameraModel& camera = triangulator_->calibration().camera;
+  if (static_cast<int>(frame.width) != camera.width || static_cast<int>(frame.height) != camera.height ||
+      frame.offset_x != 0 || frame.offset_y != 0) {
+    return bad_input(file_.name,
+                     "the camera sends " + std::to_string(frame.width) + " x " +
+                         std::to_string(frame.height) + " pixels, it was calibrated with " +
+                         std::to_string(camera.width) + " x " + std::to_string(camera.height),
+                     "set the region that was calibrated in camera_settings");
+  }
+  if (frame.format != PixelFormat::kMono8) {
+    return bad_input(file_.name, "the camera does not send Mono8", "set pixel_format in camera_settings");
+  }
+  return {};
+}
+
 /// A frame whose light fell behind `not_before_ns`: what the camera sent before is given back.
 Result<Frame> RigScanner::fresh_frame(std::int64_t not_before_ns) {
   for (int i = 0; i < kFrameTries; ++i) {
@@ -187,18 +151,8 @@ Result<Frame> RigScanner::fresh_frame(std::int64_t not_before_ns) {
     if (!*frame || (*frame)->timestamp_ns < not_before_ns || (*frame)->incomplete) {
       continue;
     }
-    const CameraModel& camera = triangulator_->calibration().camera;
-    if (static_cast<int>((*frame)->width) != camera.width ||
-        static_cast<int>((*frame)->height) != camera.height || (*frame)->offset_x != 0 ||
-        (*frame)->offset_y != 0) {
-      return bad_input(file_.name,
-                       "the camera sends " + std::to_string((*frame)->width) + " x " +
-                           std::to_string((*frame)->height) + " pixels, it was calibrated with " +
-                           std::to_string(camera.width) + " x " + std::to_string(camera.height),
-                       "set the region that was calibrated in camera_settings");
-    }
-    if ((*frame)->format != PixelFormat::kMono8) {
-      return bad_input(file_.name, "the camera does not send Mono8", "set pixel_format in camera_settings");
+    if (const Status fits = check_frame(**frame); !fits) {
+      return std::unexpected(fits.error());
     }
     return std::move(**frame);
   }
@@ -251,24 +205,39 @@ Status RigScanner::row(int number, ProfileSink& sink, ScanTally& tally) {
                 "see whether something blocks it, and home it");
   }
   extractor_.extract(view_of(*lit), file_.ambient ? dark_.view() : GrayView{}, stripe_);
-  triangulator_->triangulate(stripe_, motion->position[axis], profile_);
+  return hand_on(number, stripe_, motion->position[axis], lit->timestamp_ns, sink, tally);
+}
+
+Status RigScanner::hand_on(std::int64_t row, const StripeProfile& stripe, double position,
+                           std::int64_t timestamp_ns, ProfileSink& sink, ScanTally& tally) {
+  triangulator_->triangulate(stripe, position, profile_);
   Profile out;
-  out.row = number;
+  out.row = row;
   out.x = profile_.x;
   out.y = profile_.y;
   out.z = profile_.z;
   out.valid = profile_.valid;
-  out.intensity = stripe_.peak;
-  out.confidence = stripe_.confidence;
-  out.timestamp_ns = lit->timestamp_ns;
+  out.intensity = stripe.peak;
+  out.confidence = stripe.confidence;
+  out.timestamp_ns = timestamp_ns;
   ++tally.profiles_sent;
   return sink.profile(out) ? Status{} : fail(ErrorKind::kCancelled, "scan cancelled", file_.name);
 }
 
 Status RigScanner::scan(ProfileSink& sink) {
   stopped_->store(false);
+  if (Status homed = home_once(stage_, file_.axis); !homed) {
+    return homed;
+  }
   const LaserGuard dark(stage_, static_cast<std::uint32_t>(file_.laser));
-  if (Status started = camera_.start_frames(); !started) {
+  Result<Travel> plan = Travel{};
+  if (file_.continuous) {
+    plan = plan_sweep();
+    if (!plan) {
+      return std::unexpected(plan.error());
+    }
+  }
+  if (Status started = camera_.start_frames(file_.continuous ? kSweepPool : 0); !started) {
     return started;
   }
   const StreamGuard stream(camera_);
@@ -289,7 +258,10 @@ Status RigScanner::scan(ProfileSink& sink) {
   info.device = device_id_;
   ScanTally tally;
   Status status = sink.begin(info) ? Status{} : fail(ErrorKind::kCancelled, "scan cancelled", file_.name);
-  for (int number = 0; status && number < file_.rows; ++number) {
+  if (status && file_.continuous) {
+    status = sweep(*plan, sink, tally);
+  }
+  for (int number = 0; status && !file_.continuous && number < file_.rows; ++number) {
     status =
         stopped_->load() ? fail(ErrorKind::kCancelled, "scan stopped", file_.name) : row(number, sink, tally);
   }

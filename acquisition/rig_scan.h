@@ -7,6 +7,8 @@
 #include <optional>
 #include <string>
 
+#include "acquisition/rig_parts.h"
+#include "acquisition/rig_source.h"
 #include "acquisition/triangulate.h"
 #include "core/rig.h"
 #include "drivers/device.h"
@@ -16,7 +18,7 @@ namespace dubsar {
 
 /// A camera, a stage with a laser, and the calibration that belongs to them, as one range source. Use from
 /// one thread at a time; stop() from any.
-class RigScanner {
+class RigScanner : public RigSource {
  public:
   /// Checks that the parts fit: a camera that yields frames, a stage with the axis (a rotary one for
   /// turntable and mirror), a whole calibration of this very camera (by its serial number), a scan within the
@@ -28,21 +30,29 @@ class RigScanner {
   [[nodiscard]] const Rig& rig() const { return rig_; }
   [[nodiscard]] const std::string& device_id() const { return device_id_; }
 
-  /// One scan, row by row: drives to the row, takes a frame with the laser off (where the file asks for
-  /// ambient frames) and one with it on. The laser is off afterwards, whatever happened.
-  Status scan(ProfileSink& sink);
+  /// One scan; the stage is homed before the first, where it has to be. Row by row: drives to the row, takes
+  /// a frame with the laser off (where the file asks for ambient frames) and one with it on. Continuous: the
+  /// stage moves through, every frame of the camera is a row, and its time says where the stage was. The
+  /// laser is off afterwards, whatever happened.
+  Status scan(ProfileSink& sink) override;
   /// Between scans: the camera's frames as a scan would see them, the laser lit and nothing moving.
-  Status start_view();
-  Status stop_view();
-  [[nodiscard]] Device& camera() { return camera_; }
+  Status start_view() override;
+  Status stop_view() override;
+  [[nodiscard]] Device* camera() override { return &camera_; }
   /// Ends the motion and puts the laser off; a scan that runs returns kCancelled soon.
-  Status stop();
+  Status stop() override;
+  [[nodiscard]] const Rig* geometry() const override { return &rig_; }
 
  private:
   RigScanner(const RigFile& file, const RigCalibration& calibration, Device camera, Device stage,
              StripeAxis axis);
   [[nodiscard]] Result<Frame> fresh_frame(std::int64_t not_before_ns);
+  [[nodiscard]] Status check_frame(const Frame& frame) const;
   Status row(int number, ProfileSink& sink, ScanTally& tally);
+  [[nodiscard]] Result<Travel> plan_sweep();
+  Status sweep(const Travel& plan, ProfileSink& sink, ScanTally& tally);
+  Status hand_on(std::int64_t row, const StripeProfile& stripe, double position, std::int64_t timestamp_ns,
+                 ProfileSink& sink, ScanTally& tally);
 
   RigFile file_;
   Device camera_;

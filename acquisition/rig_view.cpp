@@ -15,10 +15,18 @@ std::int32_t code_of(dubsar_error* error, const Status& status) {
   return status ? std::int32_t{DUBSAR_OK} : plugin::report(error, status.error());
 }
 
+std::int32_t no_camera(dubsar_error* error) {
+  return plugin::report(error, DUBSAR_USAGE, "this rig has no camera to look through");
+}
+
 std::int32_t describe_settings(dubsar_device* device, dubsar_setting_callback callback, void* user,
                                dubsar_error* error) {
   return plugin::fenced(error, [&]() -> std::int32_t {
-    const Result<std::vector<SettingInfo>> settings = device->scanner.camera().settings();
+    Device* const camera = device->source->camera();
+    if (camera == nullptr) {
+      return DUBSAR_OK;  // nothing to set
+    }
+    const Result<std::vector<SettingInfo>> settings = camera->settings();
     if (!settings) {
       return plugin::report(error, settings.error());
     }
@@ -49,7 +57,11 @@ std::int32_t describe_settings(dubsar_device* device, dubsar_setting_callback ca
 
 std::int32_t get_setting(dubsar_device* device, const char* key, dubsar_value* value, dubsar_error* error) {
   return plugin::fenced(error, [&]() -> std::int32_t {
-    const Result<SettingValue> is = device->scanner.camera().get(key);
+    Device* const camera = device->source->camera();
+    if (camera == nullptr) {
+      return no_camera(error);
+    }
+    const Result<SettingValue> is = camera->get(key);
     if (!is) {
       return plugin::report(error, is.error());
     }
@@ -75,6 +87,10 @@ std::int32_t get_setting(dubsar_device* device, const char* key, dubsar_value* v
 std::int32_t set_setting(dubsar_device* device, const char* key, const dubsar_value* value,
                          dubsar_error* error) {
   return plugin::fenced(error, [&]() -> std::int32_t {
+    Device* const camera = device->source->camera();
+    if (camera == nullptr) {
+      return no_camera(error);
+    }
     SettingValue to;
     switch (value->type) {
       case DUBSAR_TYPE_BOOL:
@@ -90,19 +106,22 @@ std::int32_t set_setting(dubsar_device* device, const char* key, const dubsar_va
         to = std::string(value->text);
         break;
     }
-    return code_of(error, device->scanner.camera().set(key, to));
+    return code_of(error, camera->set(key, to));
   });
 }
 
 std::int32_t start_frames(dubsar_device* device, std::uint32_t /*pool*/, dubsar_error* error) {
-  return plugin::fenced(error, [&] { return code_of(error, device->scanner.start_view()); });
+  return plugin::fenced(error, [&] { return code_of(error, device->source->start_view()); });
 }
 
 std::int32_t next_frame(dubsar_device* device, std::uint32_t timeout_ms, dubsar_frame* frame,
                         dubsar_error* error) {
   return plugin::fenced(error, [&]() -> std::int32_t {
-    Result<std::optional<Frame>> next =
-        device->scanner.camera().next_frame(std::chrono::milliseconds(timeout_ms));
+    Device* const camera = device->source->camera();
+    if (camera == nullptr) {
+      return no_camera(error);
+    }
+    Result<std::optional<Frame>> next = camera->next_frame(std::chrono::milliseconds(timeout_ms));
     if (!next) {
       return plugin::report(error, next.error());
     }
@@ -141,12 +160,16 @@ void release_frame(dubsar_device* device, std::uint64_t lease) {
 }
 
 std::int32_t stop_frames(dubsar_device* device, dubsar_error* error) {
-  return plugin::fenced(error, [&] { return code_of(error, device->scanner.stop_view()); });
+  return plugin::fenced(error, [&] { return code_of(error, device->source->stop_view()); });
 }
 
 std::int32_t frame_counters(dubsar_device* device, dubsar_frame_counters* counters, dubsar_error* error) {
   return plugin::fenced(error, [&]() -> std::int32_t {
-    const Result<FrameCounters> count = device->scanner.camera().frame_counters();
+    Device* const camera = device->source->camera();
+    if (camera == nullptr) {
+      return no_camera(error);
+    }
+    const Result<FrameCounters> count = camera->frame_counters();
     if (!count) {
       return plugin::report(error, count.error());
     }

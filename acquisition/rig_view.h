@@ -4,16 +4,17 @@
 
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <mutex>
 
-#include "acquisition/rig_scan.h"
+#include "acquisition/rig_source.h"
 #include "drivers/driver.h"
 
 /// The rig behind the C interface.
 struct dubsar_device {
-  dubsar::RigScanner scanner;
-  std::mutex mutex;                             ///< of what follows
-  std::map<std::uint64_t, dubsar::Frame> lent;  ///< by lease
+  std::unique_ptr<dubsar::RigSource> source;
+  std::mutex mutex{};                             ///< of what follows
+  std::map<std::uint64_t, dubsar::Frame> lent{};  ///< by lease
   std::uint64_t leases = 0;
 };
 

@@ -2,12 +2,12 @@
 // Copyright The Dubsar developers
 #include "analysis/basins.h"
 
-#include <tbb/parallel_sort.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numeric>
+
+#include "core/parallel_sort.h"
 
 namespace dubsar {
 
@@ -142,7 +142,7 @@ Basins find_basins(const VertexGraph& graph, std::span<const float> height_mm,
       basins.label[v] = kUnvisited;
     }
   }
-  tbb::parallel_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+  parallel_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
     return height_mm[a] != height_mm[b] ? height_mm[a] < height_mm[b] : a < b;
   });
   Flood flood(graph, height_mm, options, &basins.label);

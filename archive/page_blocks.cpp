@@ -2,8 +2,10 @@
 // Copyright The Dubsar developers
 #include "archive/page_blocks.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <optional>
 #include <utility>
 
@@ -218,9 +220,9 @@ class Reader {
            (blocks_.back().kind == PageBlock::Kind::kFigures && tag.attribute("class") != "sheet"));
       if (!among) {
         begin(PageBlock::Kind::kFigures);
-        into_ = nullptr;
       }
       blocks_.back().figures.emplace_back();
+      into_ = nullptr;  // a caption that was never closed may have moved
     } else if (name == "img" && in_figure()) {
       image(tag, blocks_.back().figures.back());
     } else if (name == "figcaption") {
@@ -235,12 +237,13 @@ class Reader {
     if (source.starts_with(kData)) {
       figure.png = from_base64(source.substr(kData.size())).value_or("");
     }
-    figure.width_px = number_of<int>(tag.attribute("width"));
-    figure.height_px = number_of<int>(tag.attribute("height"));
+    figure.width_px = std::max(0, number_of<int>(tag.attribute("width")));
+    figure.height_px = std::max(0, number_of<int>(tag.attribute("height")));
     const std::string_view style = tag.attribute("style");
     constexpr std::string_view kMm = "--mm: ";
     if (const std::size_t at = style.find(kMm); at != std::string_view::npos) {
-      figure.width_mm = number_of<double>(style.substr(at + kMm.size()));
+      const double width_mm = number_of<double>(style.substr(at + kMm.size()));
+      figure.width_mm = std::isfinite(width_mm) && width_mm > 0 ? width_mm : 0;
     }
   }
 

@@ -68,9 +68,14 @@ Result<std::vector<std::uint8_t>> encode_tiff(const Image& image, const std::str
   }
   MemoryFile memory;
   memory.bytes.reserve(image.bytes.size() / 2);
-  // "l": little endian on every machine. libtiff's own words about errors would go to standard error.
-  TIFFSetErrorHandler(nullptr);
-  TIFFSetWarningHandler(nullptr);
+  // libtiff's own words about errors would go to standard error. Its handlers are the program's, and pictures
+  // are encoded side by side: they are set once.
+  [[maybe_unused]] static const bool kQuiet = [] {
+    TIFFSetErrorHandler(nullptr);
+    TIFFSetWarningHandler(nullptr);
+    return true;
+  }();
+  // "l": little endian on every machine.
   const std::unique_ptr<TIFF, void (*)(TIFF*)> tiff(
       TIFFClientOpen("picture.tif", "wl", &memory, read_some, write_some, seek, close_nothing, size_of,
                      nullptr, nullptr),

@@ -27,7 +27,11 @@ target_link_options(dubsar_options INTERFACE -Wl,--as-needed)
 
 set(DUBSAR_SANITIZE "" CACHE STRING "Sanitizers, e.g. address,undefined or thread")
 if(DUBSAR_SANITIZE)
-  target_compile_options(dubsar_options INTERFACE -fsanitize=${DUBSAR_SANITIZE} -fno-omit-frame-pointer
+  # The library's own checks of indices see what stays inside a block of memory; undefined behaviour ends the program,
+  # as else no test would fail of it; lines are enough for a report.
+  target_compile_definitions(dubsar_options INTERFACE _GLIBCXX_ASSERTIONS)
+  target_compile_options(dubsar_options INTERFACE -fsanitize=${DUBSAR_SANITIZE} -fno-omit-frame-pointer -g1
+    -fno-sanitize-recover=all
     # GCC 12 reports spurious maybe-uninitialized reads in instrumented Eigen code.
     -Wno-maybe-uninitialized)
   target_link_options(dubsar_options INTERFACE -fsanitize=${DUBSAR_SANITIZE})

@@ -2,11 +2,10 @@
 // Copyright The Dubsar developers
 #pragma once
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <cstddef>
 #include <vector>
+
+#include "core/chunk_loop.h"
 
 namespace dubsar {
 
@@ -16,7 +15,7 @@ namespace dubsar {
 template <class Body>
 void parallel_chunks(std::size_t count, std::size_t grain, const Body& body) {
   const std::size_t chunks = (count + grain - 1) / grain;
-  tbb::parallel_for(std::size_t{0}, chunks, [&](std::size_t chunk) {
+  for_each_chunk(chunks, [&](std::size_t chunk) {
     const std::size_t begin = chunk * grain;
     body(begin, begin + grain < count ? begin + grain : count);
   });
@@ -39,7 +38,7 @@ T parallel_reduce_ordered(std::size_t count, std::size_t grain, T identity, cons
                           const Join& join) {
   const std::size_t chunks = (count + grain - 1) / grain;
   std::vector<T> partial(chunks, identity);
-  tbb::parallel_for(std::size_t{0}, chunks, [&](std::size_t chunk) {
+  for_each_chunk(chunks, [&](std::size_t chunk) {
     const std::size_t begin = chunk * grain;
     partial[chunk] = map(begin, begin + grain < count ? begin + grain : count);
   });

@@ -17,7 +17,7 @@ constexpr int kMostRows = 100'000;
 /// Where the scan begins and ends, in mm or in degrees.
 void read_scan(const JsonNode& scan, RigFile& rig) {
   scan.only({"from_mm", "to_mm", "step_mm", "speed_mm_s", "from_deg", "to_deg", "step_deg", "speed_deg_s",
-             "ambient", "laser_power"});
+             "continuous", "ambient", "laser_power"});
   const bool degrees = scan.find("step_deg").has_value();
   const double unit = degrees ? rad_from_deg(1) : 1;
   const double from = scan.at(degrees ? "from_deg" : "from_mm").number(-kMostTravel, kMostTravel) * unit;
@@ -33,12 +33,36 @@ void read_scan(const JsonNode& scan, RigFile& rig) {
   if (const auto speed = scan.find(degrees ? "speed_deg_s" : "speed_mm_s")) {
     rig.speed = speed->number(1e-6, kMostTravel) * unit;
   }
+  if (const auto continuous = scan.find("continuous")) {
+    rig.continuous = continuous->boolean();
+    rig.ambient = !rig.continuous;
+  }
   if (const auto ambient = scan.find("ambient")) {
     rig.ambient = ambient->boolean();
+    if (rig.ambient && rig.continuous) {
+      ambient->complain("cannot be had of a continuous scan: nothing stands still for a second frame");
+    }
   }
   if (const auto power = scan.find("laser_power")) {
     rig.laser_power = power->number(0, 1);
   }
+}
+
+/// How a stage moves a range camera.
+void read_motion(const JsonNode& node, RigFile& rig) {
+  node.only({"kind", "direction", "point_mm"});
+  RigMotion motion;
+  motion.kind =
+      node.at("kind").one_of({"linear", "turntable"}) == 0 ? MotionKind::kLinear : MotionKind::kTurntable;
+  motion.direction = node.at("direction").vector3();
+  if (!node.failed() && !(motion.direction.norm() > 1e-3 && motion.direction.norm() < 1e3)) {
+    node.complain("has a direction of no length");
+  }
+  if (motion.kind == MotionKind::kTurntable) {
+    motion.direction.normalize();
+    motion.axis_point_mm = node.at("point_mm").vector3();
+  }
+  rig.motion = motion;
 }
 
 std::string setting_text(const JsonNode& pair) {
@@ -57,13 +81,20 @@ Result<RigFile> parse_rig_file(std::string_view toml, const std::string& where) 
     return std::unexpected(document.error());
   }
   const JsonNode root = document->root();
-  root.only({"name", "camera", "stage", "calibration", "camera_settings", "axis", "laser", "scan", "stripe",
-             "hand_turns", "support_height_mm", "head"});
+  root.only({"name", "camera", "stage", "calibration", "motion", "camera_settings", "axis", "laser", "scan",
+             "stripe", "hand_turns", "support_height_mm", "head"});
   RigFile rig;
   rig.name = root.at("name").text();
   rig.camera = root.at("camera").text();
   rig.stage = root.at("stage").text();
-  rig.calibration = root.at("calibration").text();
+  if (const auto motion = root.find("motion")) {
+    if (root.find("calibration")) {
+      motion->complain("is known from the calibration already: one of the two is enough");
+    }
+    read_motion(*motion, rig);
+  } else {
+    rig.calibration = root.at("calibration").text();
+  }
   if (const auto settings = root.find("camera_settings")) {
     for (const JsonNode& pair : settings->items()) {
       rig.camera_settings.emplace_back(pair.item(0).text(), setting_text(pair));

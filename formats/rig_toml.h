@@ -10,15 +10,17 @@
 
 #include "core/result.h"
 #include "core/rig.h"
+#include "core/rig_calibration.h"
 
 namespace dubsar {
 
 /// A rig put together from parts, as rig.toml names them (docs/formats/rig_toml.md).
 struct RigFile {
   std::string name;
-  std::string camera;       ///< device URI
-  std::string stage;        ///< device URI
-  std::string calibration;  ///< file, relative to rig.toml
+  std::string camera;               ///< device URI
+  std::string stage;                ///< device URI
+  std::string calibration;          ///< file, relative to rig.toml; empty: a range camera, which needs none
+  std::optional<RigMotion> motion;  ///< of a range camera: how the stage moves it, in its own frame
   /// Settings of the camera, put in this order before the first scan; the words as they stand.
   std::vector<std::pair<std::string, std::string>> camera_settings;
   int axis = 0;   ///< of the stage, that moves while a scan runs
@@ -27,8 +29,9 @@ struct RigFile {
   double start = 0;  ///< of the stage at row 0; mm or radians
   double step = 0;   ///< from row to row, > 0
   int rows = 0;
-  double speed = 0;     ///< mm/s or rad/s; 0: as the stage likes
-  bool ambient = true;  ///< take a frame with the laser off at each row
+  double speed = 0;         ///< mm/s or rad/s; 0: as the stage likes
+  bool continuous = false;  ///< the stage moves through, and rows come at the camera's rate
+  bool ambient = true;      ///< take a frame with the laser off at each row
   double stripe_sigma_px = 1.2;
   std::string stripe_method = "steger";
   bool stripe_per_row = false;

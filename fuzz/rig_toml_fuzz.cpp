@@ -16,6 +16,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   }
   if (const auto rig = dubsar::parse_rig_file(text, "rig.toml")) {
     dubsar::fuzz::require(rig->rows > 0 && rig->step > 0);
+    dubsar::fuzz::require(!rig->motion || rig->motion->direction.norm() > 0);
+    dubsar::fuzz::require(!rig->continuous || !rig->ambient);
   }
   return 0;
 }

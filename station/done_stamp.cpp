@@ -181,11 +181,13 @@ Status StampedWork::start() const {
   return {};
 }
 
-Status StampedWork::finish(const std::vector<fs::path>& outputs, const JobContext& job) const {
+Status StampedWork::finish_staged(const std::vector<fs::path>& outputs, const fs::path& staged,
+                                  const fs::path& target, const JobContext& job) const {
   DoneStamp done = made_;
   const fs::path folder = stamp_.has_parent_path() ? stamp_.parent_path() : fs::path(".");
   for (const fs::path& output : outputs) {
-    Result<StampedFile> written = stamped(output, output_name(output, folder), job);
+    const fs::path place = staged.empty() ? output : target / output.lexically_relative(staged);
+    Result<StampedFile> written = stamped(output, output_name(place, folder), job);
     if (!written) {
       return std::unexpected(written.error());
     }

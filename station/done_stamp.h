@@ -54,7 +54,15 @@ class StampedWork {
   /// Takes the old stamp away, durably: call before the first output is written.
   [[nodiscard]] Status start() const;
   /// Reads the outputs and writes the stamp. An output of the folder above or elsewhere is fine.
-  [[nodiscard]] Status finish(const std::vector<std::filesystem::path>& outputs, const JobContext& job) const;
+  [[nodiscard]] Status finish(const std::vector<std::filesystem::path>& outputs,
+                              const JobContext& job) const {
+    return finish_staged(outputs, {}, {}, job);
+  }
+  /// The same for outputs below `staged`, which is going to be renamed to `target`: the stamp is there before
+  /// they are, and says what is true from that very step on.
+  [[nodiscard]] Status finish_staged(const std::vector<std::filesystem::path>& outputs,
+                                     const std::filesystem::path& staged, const std::filesystem::path& target,
+                                     const JobContext& job) const;
 
   [[nodiscard]] const std::filesystem::path& stamp() const { return stamp_; }
 

@@ -228,6 +228,11 @@ Result<Package> write_package(const fs::path& session, const fs::path& to, const
   if (!size) {
     return std::unexpected(size.error());
   }
+  if (options.before_publishing) {
+    if (const Status allowed = options.before_publishing(staged->path()); !allowed) {
+      return std::unexpected(allowed.error());
+    }
+  }
   if (const Status published = staged->publish(); !published) {
     return std::unexpected(published.error());
   }

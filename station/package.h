@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <set>
 #include <string>
 #include <string_view>
@@ -33,6 +34,8 @@ struct PackageOptions {
   /// Empty: a name under `.invalid`, which nothing answers to.
   std::string base_url;
   bool white_ground = false;  ///< of the pictures, instead of black
+  /// Called with the whole, synced folder just before it takes its place; what it refuses is not published.
+  std::function<Status(const std::filesystem::path& staged)> before_publishing;
 };
 
 /// What was written.

@@ -185,7 +185,7 @@ void repair_self_intersections(Draft& draft, const ClosingOptions& options) {
   FacePairs pairs = all_intersections(draft);
   for (int attempt = 0; !pairs.empty(); ++attempt) {
     const bool last = attempt == kRepairs;
-    const std::vector<std::uint32_t> corners = corners_of(draft, pairs);
+    std::vector<std::uint32_t> corners = corners_of(draft, pairs);
     Region region(draft, vertices_near(draft, corners));
     std::vector<std::uint8_t> cut(region.sheet.positions.size(), 0);
     for (const std::uint32_t v : corners) {
@@ -207,7 +207,11 @@ void repair_self_intersections(Draft& draft, const ClosingOptions& options) {
     if (last) {
       return;
     }
+    const std::size_t faces_before = draft.mesh.faces.size();
     close_with_tries(draft, std::move(region), options);
+    for (std::size_t f = faces_before; f < draft.mesh.faces.size(); ++f) {
+      corners.insert(corners.end(), draft.mesh.faces[f].begin(), draft.mesh.faces[f].end());
+    }
     pairs = intersections_in(Region(draft, vertices_near(draft, corners)));
   }
 }

@@ -145,11 +145,7 @@ class Patch {
   /// 1 for the kept samples around which the patch is not whole.
   [[nodiscard]] std::vector<std::uint8_t> rim_samples() const {
     std::vector<std::uint8_t> rim(scan_->kept.size(), 0);
-    const auto whole = [&](std::size_t cell) {
-      return (scan_->cells[cell] & kBoth) == kBoth ||
-             (bridged_[cell] | bridged_[cell + 1] | bridged_[cell + width()] |
-              bridged_[cell + width() + 1]) != 0;
-    };
+    const auto whole = [&](std::size_t cell) { return (scan_->cells[cell] & kBoth) == kBoth; };
     each_row([&](std::size_t row) {
       for (std::size_t i = row * width(); i < (row + 1) * width(); ++i) {
         if (scan_->kept[i] != 0) {

@@ -26,7 +26,8 @@ struct Draft {
   [[nodiscard]] float spacing_mm(std::uint32_t vertex) const;
   static constexpr std::uint8_t kAtRim = 2;
   /// The patch (1 for the first) within which a face lies, away from the rim; 0: none. Faces of one patch all
-  /// look at the scanner that they come from, each at a place of its own: they cannot cut each other.
+  /// look at the scanner that they come from, each at a place of its own: they cannot cut each other. That
+  /// holds where whole fans of grid triangles were checked; at rims and beside bridged drop-outs it may not.
   [[nodiscard]] std::uint32_t patch_of_face(std::size_t face) const;
 };
 

@@ -2,13 +2,13 @@
 // Copyright The Dubsar developers
 #include "triangulation/front.h"
 
-#include <tbb/parallel_sort.h>
-
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 
+#include "core/parallel_sort.h"
 #include "core/units.h"
 
 namespace dubsar {
@@ -84,7 +84,7 @@ Front::Front(Sheet& sheet) : sheet_(&sheet), link_of_(sheet.positions.size(), kN
     }
   });
   // What lies near in space lies near in memory.
-  tbb::parallel_sort(places.begin(), places.end());
+  parallel_sort(places.begin(), places.end(), std::less<>{});
   for (const auto& [key, v] : places) {
     links(v);
   }

@@ -138,18 +138,6 @@ TriangleTest make_test(const GridSurface& surface, bool mirrored, const GridTria
 
 }  // namespace
 
-std::array<std::size_t, 3> cell_triangle(const GridSurface& surface, int row, int col, std::uint8_t cell,
-                                         int which) {
-  const std::size_t i00 = surface.index(row, col);
-  const std::size_t i01 = i00 + 1;
-  const std::size_t i10 = i00 + static_cast<std::size_t>(surface.cols);
-  const std::size_t i11 = i10 + 1;
-  if ((cell & kCellAntidiagonal) != 0) {
-    return which == 0 ? std::array{i00, i10, i01} : std::array{i10, i11, i01};
-  }
-  return which == 0 ? std::array{i00, i10, i11} : std::array{i00, i11, i01};
-}
-
 bool is_mirrored(const GridSurface& surface, std::span<const std::uint8_t> keep) {
   // A few thousand cells settle a vote; rows are skipped evenly on large grids.
   const int step = std::max(1, surface.rows / 128);

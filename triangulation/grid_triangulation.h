@@ -47,8 +47,17 @@ struct GridSurface {
 
 /// The three samples of a cell's first (0) or second (1) triangle, in the order that suits a grid whose rows
 /// and columns are not mirrored.
-[[nodiscard]] std::array<std::size_t, 3> cell_triangle(const GridSurface& surface, int row, int col,
-                                                       std::uint8_t cell, int which);
+[[nodiscard]] inline std::array<std::size_t, 3> cell_triangle(const GridSurface& surface, int row, int col,
+                                                              std::uint8_t cell, int which) {
+  const std::size_t i00 = surface.index(row, col);
+  const std::size_t i01 = i00 + 1;
+  const std::size_t i10 = i00 + static_cast<std::size_t>(surface.cols);
+  const std::size_t i11 = i10 + 1;
+  if ((cell & kCellAntidiagonal) != 0) {
+    return which == 0 ? std::array{i00, i10, i01} : std::array{i10, i11, i01};
+  }
+  return which == 0 ? std::array{i00, i10, i11} : std::array{i00, i11, i01};
+}
 
 /// True when rows × columns run so that the triangles of cell_triangle() have to be turned over to face the
 /// scanner: one answer for the grid, so that its faces agree with each other. Decided by the majority of

@@ -310,14 +310,6 @@ std::vector<std::uint32_t> make_manifold(std::vector<Triangle>& faces, std::size
   return copies;
 }
 
-void remove_small_components(Mesh& mesh, std::size_t least_faces) {
-  const HalfEdges edges(mesh.faces, mesh.positions.size());
-  const FaceComponents parts = face_components(mesh.faces, edges);
-  std::size_t at = 0;
-  std::erase_if(mesh.faces, [&](const Triangle&) { return parts.sizes[parts.of_face[at++]] < least_faces; });
-  compact_vertices(mesh);
-}
-
 void compact_vertices(Mesh& mesh) {
   std::vector<std::uint32_t> target(mesh.positions.size(), kNone);
   for (const Triangle& f : mesh.faces) {

@@ -68,10 +68,6 @@ struct FaceComponents {
 [[nodiscard]] std::vector<std::uint32_t> make_manifold(std::vector<Triangle>& faces, std::size_t vertex_count,
                                                        std::span<const std::uint8_t> only = {});
 
-/// Drops the faces of components with fewer than `faces` faces, then vertices without a face; per-vertex
-/// arrays follow.
-void remove_small_components(Mesh& mesh, std::size_t least_faces);
-
 /// Drops vertices without a face; per-vertex arrays follow, the order stays.
 void compact_vertices(Mesh& mesh);
 

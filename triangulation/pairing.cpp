@@ -58,34 +58,41 @@ std::size_t jump(const StitchSurface& to, std::size_t at, const Vector3f& p) {
 /// From sample to sample of the grid towards p: the one at which no neighbour is nearer.
 std::size_t walk(const StitchSurface& to, std::size_t at, const Vector3f& p, float& distance2) {
   constexpr int kMostSteps = 16;
-  const int rows = to.lattice.rows;
-  const int cols = to.lattice.cols;
-  const auto width = static_cast<std::size_t>(cols);
+  const auto width = static_cast<std::size_t>(to.lattice.cols);
+  int row = to.lattice.sample_row(at);
+  int col = to.lattice.sample_col(at);
+  int from_row = row - 3;  // of the step before: what lies beside both is known to be farther
+  int from_col = col - 3;
   distance2 = (to.points[at] - p).squaredNorm();
   for (int step = 0; step < kMostSteps; ++step) {
-    const int row = to.lattice.sample_row(at);
-    const int col = to.lattice.sample_col(at);
-    const int last_row = std::min(row + 1, rows - 1);
-    const int first_col = std::max(col - 1, 0);
-    const int last_col = std::min(col + 1, cols - 1);
-    std::size_t next = at;
+    int next_row = row;
+    int next_col = col;
+    const int last_row = std::min(row + 1, to.lattice.rows - 1);
+    const int last_col = std::min(col + 1, to.lattice.cols - 1);
     for (int r = std::max(row - 1, 0); r <= last_row; ++r) {
-      const std::size_t base = static_cast<std::size_t>(r) * width;
-      for (std::size_t i = base + static_cast<std::size_t>(first_col);
-           i <= base + static_cast<std::size_t>(last_col); ++i) {
+      const bool row_is_known = std::abs(r - from_row) <= 1;
+      for (int c = std::max(col - 1, 0); c <= last_col; ++c) {
+        if (row_is_known && std::abs(c - from_col) <= 1) {
+          continue;
+        }
+        const std::size_t i = static_cast<std::size_t>(r) * width + static_cast<std::size_t>(c);
         const float d2 = (to.points[i] - p).squaredNorm();
         if (d2 < distance2 && to.usable[i] != 0) {
           distance2 = d2;
-          next = i;
+          next_row = r;
+          next_col = c;
         }
       }
     }
-    if (next == at) {
+    if (next_row == row && next_col == col) {
       break;
     }
-    at = next;
+    from_row = row;
+    from_col = col;
+    row = next_row;
+    col = next_col;
   }
-  return at;
+  return static_cast<std::size_t>(row) * width + static_cast<std::size_t>(col);
 }
 
 /// Nearest usable sample within reach, model frame, or -1.

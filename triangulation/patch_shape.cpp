@@ -82,7 +82,6 @@ void count_kept(OwnedScan& scan) {
 
 }  // namespace
 
-/// hold one of the samples with starts != 0.
 void remove_specks(std::vector<std::uint8_t>& kept, const std::vector<std::uint8_t>& cells,
                    const std::vector<std::uint8_t>& starts, const Lattice& grid, int least) {
   std::vector<std::uint8_t> seen(kept.size(), 0);

@@ -228,7 +228,7 @@ class Advance {
   }
 
  private:
-  static constexpr std::size_t kLeastBatch = 16, kMostBatch = 256, kPerBatch = 4096;
+  static constexpr std::size_t kLeastBatch = 16, kMostBatch = 4096, kPerBatch = 512;
   static constexpr std::size_t kGrain = 32;
 
   void take_batch() {

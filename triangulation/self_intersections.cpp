@@ -2,15 +2,15 @@
 // Copyright The Dubsar developers
 #include "triangulation/self_intersections.h"
 
-#include <tbb/parallel_sort.h>
-
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
+#include <functional>
 
 #include "core/parallel.h"
+#include "core/parallel_sort.h"
 #include "triangulation/part_cells.h"
 
 namespace dubsar {
@@ -111,7 +111,7 @@ bool cut(Positions positions, const Face& fa, const FacePlane& pa, const Face& f
 /// other.
 class FaceCells {
  public:
-  FaceCells(const std::vector<Eigen::AlignedBox3f>& boxes, const std::vector<std::uint32_t>& faces,
+  FaceCells(Positions positions, std::span<const Face> all_faces, const std::vector<std::uint32_t>& faces,
             std::span<const std::uint32_t> part_of_face, const Vector3f& low, float smallest_mm)
       : low_(low), smallest_mm_(smallest_mm) {
     for (int level = 0; level <= kMostLevel; ++level) {
@@ -121,17 +121,24 @@ class FaceCells {
     parallel_for_each_index(
         faces.size(),
         [&](std::size_t k) {
-          const int level = level_of(boxes[k]);
-          entries_[k] = {key_of(level, cell_of(boxes[k].center(), level)), static_cast<std::uint32_t>(k)};
+          const Eigen::AlignedBox3f box = box_of(positions, all_faces[faces[k]]);
+          const int level = level_of(box);
+          entries_[k] = {key_of(level, cell_of(box.center(), level)), faces[k]};
         },
         4096);
-    tbb::parallel_sort(entries_.begin(), entries_.end());
-    boxes_.reserve(entries_.size());
-    for (auto& [key, face] : entries_) {
-      boxes_.push_back(boxes[face]);
-      face = faces[face];
-      parts_.push_back(part_of_face.empty() ? 0 : part_of_face[face]);
-    }
+    parallel_sort(entries_.begin(), entries_.end(), std::less<>{});
+    boxes_.resize(entries_.size());
+    parts_.resize(part_of_face.empty() ? 0 : entries_.size());
+    parallel_for_each_index(
+        entries_.size(),
+        [&](std::size_t k) {
+          const std::uint32_t face = entries_[k].second;
+          boxes_[k] = box_of(positions, all_faces[face]);
+          if (!parts_.empty()) {
+            parts_[k] = part_of_face[face];
+          }
+        },
+        4096);
     std::size_t cells = 0;
     for (std::size_t k = 0; k < entries_.size(); ++k) {
       cells += k == 0 || entries_[k].first != entries_[k - 1].first ? 1 : 0;
@@ -139,9 +146,9 @@ class FaceCells {
     cells_.assign(std::bit_ceil(2 * cells + 16), {});
     for (std::size_t k = 0; k < entries_.size();) {
       std::size_t end = k;
-      std::uint32_t part = parts_[k];
+      std::uint32_t part = this->part(k);
       for (; end < entries_.size() && entries_[end].first == entries_[k].first; ++end) {
-        part = parts_[end] == part ? part : 0;
+        part = this->part(end) == part ? part : 0;
       }
       cells_[slot_of(entries_[k].first)] = {entries_[k].first, static_cast<std::uint32_t>(k),
                                             static_cast<std::uint32_t>(end), part};
@@ -167,7 +174,7 @@ class FaceCells {
   void for_each_touching(std::size_t at, const Visit& visit) const {
     const Eigen::AlignedBox3f& box = boxes_[at];
     const std::uint64_t own_key = entries_[at].first;
-    const std::uint32_t part = parts_[at];
+    const std::uint32_t part = this->part(at);
     const int own_level = static_cast<int>(own_key >> kLevelShift);
     for (int level = own_level; level <= kMostLevel; ++level) {
       if ((levels_ >> static_cast<unsigned>(level) & 1ULL) == 0) {
@@ -237,12 +244,14 @@ class FaceCells {
     return slot;
   }
 
+  [[nodiscard]] std::uint32_t part(std::size_t at) const { return parts_.empty() ? 0 : parts_[at]; }
+
   Vector3f low_;
   float smallest_mm_;
   std::array<float, kMostLevel + 1> cell_mm_{};
   std::vector<std::pair<std::uint64_t, std::uint32_t>> entries_;
   std::vector<Eigen::AlignedBox3f> boxes_;  ///< by entry
-  std::vector<std::uint32_t> parts_;        ///< by entry
+  std::vector<std::uint32_t> parts_;        ///< by entry; empty: none are known
   std::vector<Cell> cells_;                 ///< a power of two
   std::uint64_t levels_ = 0;
 };
@@ -316,14 +325,11 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> self_intersections(
       }
     }
   }
-  std::vector<Eigen::AlignedBox3f> boxes(faces.size());
-  parallel_for_each_index(
-      faces.size(), [&](std::size_t k) { boxes[k] = box_of(positions, all_faces[faces[k]]); }, 4096);
   // So that no cell number of the finest level is cut off.
   constexpr float kMostCells = 400000.0F;
   const float smallest_mm =
       std::max(static_cast<float>(2.5 * mean_mm), extent.box.sizes().maxCoeff() / kMostCells);
-  const FaceCells cells(boxes, faces, part_of_face, extent.box.min(), smallest_mm);
+  const FaceCells cells(positions, all_faces, faces, part_of_face, extent.box.min(), smallest_mm);
   using Pairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
   Pairs out = parallel_reduce_ordered(
       cells.size(), 4096, Pairs{},

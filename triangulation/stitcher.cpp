@@ -55,6 +55,12 @@ Status check(const PlacedScan& scan) {
   return {};
 }
 
+/// Gives memory back, as clear() and `= {}` do not.
+template <class... T>
+void release(std::vector<T>&... arrays) {
+  ((arrays = std::vector<T>()), ...);
+}
+
 std::unexpected<Error> cancelled() {
   return fail(ErrorKind::kCancelled, "stitching was stopped");
 }
@@ -199,25 +205,19 @@ struct Stitcher::Impl {
     if (lets_go) {  // of what patches are not laid from
       for (auto& [id, entry] : entries) {
         entry.pairs.clear();
-        entry.wanted = {};
-        entry.surface.points = {};
-        entry.surface.usable = {};
-        entry.surface.reliability_code = {};
-        entry.surface.weight_code = {};
-        entry.surface.rim = {};
+        StitchSurface& surface = entry.surface;
+        release(entry.wanted, surface.points, surface.usable, surface.reliability_code, surface.weight_code,
+                surface.rim, surface.score, surface.node_sample);
       }
     }
     const auto laid = [&] {
       for (OwnedScan& scan : scans) {
-        scan.kept = {};
-        scan.cells = {};
-        scan.near_kept = {};
+        release(scan.kept, scan.cells, scan.near_kept, scan.some_kept, scan.all_kept);
       }
       if (lets_go) {
         for (auto& [id, entry] : entries) {
-          entry.fused = {};
-          entry.surface.normals = {};
-          entry.surface.cells = {};
+          entry.fused = FusedSamples();
+          release(entry.surface.normals, entry.surface.cells);
         }
       }
     };
@@ -244,7 +244,7 @@ struct Stitcher::Impl {
 };
 
 Stitcher::Stitcher(StitchOptions options) : impl_(std::make_unique<Impl>()) {
-  impl_->options = options;
+  impl_->options = std::move(options);
 }
 Stitcher::~Stitcher() = default;
 Stitcher::Stitcher(Stitcher&&) noexcept = default;

@@ -9,6 +9,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <cstring>
 #include <ctime>
 #include <thread>
 #include <vector>
@@ -17,6 +18,7 @@
 #include "core/mesh_query.h"
 #include "sim/frame_renderer.h"
 #include "sim/frame_rig.h"
+#include "sim/speckle_bound.h"
 #include "sim/tablet.h"
 
 namespace dubsar {
@@ -86,11 +88,7 @@ void compare(const Setup& setup, const sim::FrameOptions& optics, int frames, bo
   }
   const double depth_per_px = setup.rig.depth_per_px_mm();
   const Triangulator triangulator(setup.rig, StripeAxis::kPerColumn);
-  const double u_aperture = 0.5 * setup.rig.camera.fx_px * optics.pixel_um * 1e-3 /
-                            (1 + setup.rig.camera.fx_px * optics.pixel_um * 1e-3 / 250) / optics.f_number /
-                            250;
-  const double bound_um = optics.speckle_contrast * optics.wavelength_um / (2 * M_PI * std::sin(u_aperture)) /
-                          std::sin(rad_from_deg(25));
+  const double bound_um = sim::speckle_bound_um(setup.rig, optics, {});
   std::printf("contrast %.2f, f/%.1f, %s: bound %.1f um in depth\n", optics.speckle_contrast, optics.f_number,
               ambient_frames ? "ambient frames" : "no ambient frames", bound_um);
   std::printf("  %-9s %9s %9s %9s %8s %9s %9s %8s %8s\n", "method", "rms px", "bias px", "out >1px", "good",
@@ -145,6 +143,22 @@ void compare(const Setup& setup, const sim::FrameOptions& optics, int frames, bo
   }
 }
 
+/// Processor time of copying a frame to another place in memory.
+double copy_seconds(const std::vector<GrayImage>& frames) {
+  std::vector<GrayImage> to = frames;
+  constexpr int kRounds = 50;
+  const std::clock_t busy = std::clock();
+  for (int round = 0; round < kRounds; ++round) {
+    for (std::size_t k = 0; k < frames.size(); ++k) {
+      std::memcpy(to[k].pixels.data(),
+                  frames[(k + static_cast<std::size_t>(round)) % frames.size()].pixels.data(),
+                  to[k].pixels.size());
+    }
+  }
+  const double seconds = static_cast<double>(std::clock() - busy) / CLOCKS_PER_SEC;
+  return seconds / (kRounds * static_cast<double>(frames.size()));
+}
+
 /// Stripe and triangulation of frames in memory, each with its ambient frame, on two threads.
 void throughput(const Setup& setup, const sim::FrameOptions& optics) {
   const sim::FrameRenderer renderer(setup.rig, optics);
@@ -183,6 +197,8 @@ void throughput(const Setup& setup, const sim::FrameOptions& optics) {
         "(400 asked for)\n",
         ambient ? "ambient frame subtracted" : "no ambient frames", kFrames / seconds,
         2 * kFrames / cpu_seconds);
+    std::printf("  a frame takes %.1f times as long as copying it\n",
+                cpu_seconds / kFrames / copy_seconds(frames));
   }
 }
 

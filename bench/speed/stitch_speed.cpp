@@ -4,20 +4,26 @@
 // size, so that it shows whether time grows with the samples.
 //   dubsar-stitch-speed [--scans 12] [--repeat 1] MILLIONS …   samples of one scan
 //   dubsar-stitch-speed --adding MILLIONS                      seconds to take up each scan (no mesh yet)
+//   dubsar-stitch-speed --write FOLDER MILLIONS                the scans and poses.json, for `dubsar stitch`
 
 #include <sys/resource.h>
 #include <tbb/info.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <ctime>
+#include <filesystem>
+#include <fstream>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "bench/support/simulated_views.h"
 #include "bench/support/statistics.h"
+#include "formats/grid_ply.h"
+#include "formats/poses_json.h"
 #include "triangulation/stitcher.h"
 
 namespace {
@@ -32,6 +38,20 @@ double peak_gib() {
   return static_cast<double>(usage.ru_maxrss) / (1024.0 * 1024.0);
 }
 
+/// The most that was resident since this was last asked; 0 where the kernel does not tell.
+double peak_since_asked_gib() {
+  double kib = 0;
+  std::ifstream status("/proc/self/status");
+  for (std::string word; status >> word;) {
+    if (word == "VmHWM:") {
+      status >> kib;
+      break;
+    }
+  }
+  std::ofstream("/proc/self/clear_refs") << "5";
+  return kib / (1024.0 * 1024.0);
+}
+
 double cpu_seconds() {
   return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
 }
@@ -42,7 +62,9 @@ class StageClock {
   void enter(std::string_view stage) {
     const Clock::time_point now = Clock::now();
     const double cpu_s = cpu_seconds();
+    const double peak_gib = peak_since_asked_gib();
     if (!stages_.empty()) {
+      stages_[at_].peak_gib = std::max(stages_[at_].peak_gib, peak_gib);
       stages_[at_].wall_s += std::chrono::duration<double>(now - since_).count();
       stages_[at_].cpu_s += cpu_s - cpu_since_s_;
     }
@@ -56,9 +78,9 @@ class StageClock {
   }
   void print() const {
     for (const Stage& stage : stages_) {
-      if (stage.wall_s > 0) {
-        std::printf("    %-24s %8.3f s %8.3f s of processors\n", stage.name.c_str(), stage.wall_s,
-                    stage.cpu_s);
+      if (stage.peak_gib > 0) {
+        std::printf("    %-24s %8.3f s %8.3f s of processors %6.2f GiB\n", stage.name.c_str(), stage.wall_s,
+                    stage.cpu_s, stage.peak_gib);
       }
     }
   }
@@ -68,6 +90,7 @@ class StageClock {
     std::string name;
     double wall_s = 0;
     double cpu_s = 0;
+    double peak_gib = 0;
   };
   std::vector<Stage> stages_;
   std::size_t at_ = 0;
@@ -97,12 +120,34 @@ int measure_adding(double millions, int scans) {
   return 0;
 }
 
+int write_files(double millions, int scans, const std::filesystem::path& folder) {
+  const SimulatedViews views = make_views_of_millions(scans, millions);
+  std::error_code failed;
+  std::filesystem::create_directories(folder, failed);
+  std::vector<ScanPose> poses;
+  Status written;
+  for (std::size_t k = 0; k < views.grids.size() && written; ++k) {
+    ScanPose& pose = poses.emplace_back();
+    pose.file = "scan" + std::to_string(k) + ".ply";
+    pose.model_from_scanner = views.poses[k];
+    pose.status = PoseStatus::kRegistered;
+    written = write_grid_ply(folder / pose.file, *views.grids[k]);
+  }
+  written = written ? write_poses(folder / "poses.json", poses) : written;
+  if (!written) {
+    std::fprintf(stderr, "%s\n", written.error().line().c_str());
+    return 4;
+  }
+  return 0;
+}
+
 int measure(double millions, int scans, int repeat) {
   const SimulatedViews views = make_views_of_millions(scans, millions);
   const std::vector<PlacedScan> placed = views.placed();
   const auto samples = static_cast<double>(views.samples());
   for (int k = 0; k < repeat; ++k) {
     StageClock stages;
+    stages.enter("scans in memory");
     const JobContext job([&](std::string_view stage, double) { stages.enter(stage); });
     const auto start = Clock::now();
     const double cpu_start_s = cpu_seconds();
@@ -135,11 +180,16 @@ int main(int argc, char** argv) {
   app.add_option("--scans", scans);
   app.add_option("--repeat", repeat);
   bool adding = false;
+  std::string folder;
+  app.add_option("--write", folder, "no stitching: the scans into this folder, with their poses");
   app.add_flag("--adding", adding, "scan by scan instead, as while scanning");
   CLI11_PARSE(app, argc, argv);
   std::printf("%d threads\n", tbb::info::default_concurrency());
   for (const double m : millions) {
-    if (const int status = adding ? measure_adding(m, scans) : measure(m, scans, repeat); status != 0) {
+    const int status = !folder.empty() ? write_files(m, scans, folder)
+                       : adding        ? measure_adding(m, scans)
+                                       : measure(m, scans, repeat);
+    if (status != 0) {
       return status;
     }
   }

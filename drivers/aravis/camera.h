@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "core/result.h"
+#include "drivers/aravis/camera_clock.h"
 #include "drivers/aravis/presence.h"
 #include "drivers/aravis/scan3d.h"
 #include "drivers/driver.h"
@@ -126,7 +127,7 @@ class Camera {
   std::uint64_t payload_ = 0;   ///< bytes of a buffer
   std::uint64_t last_raw_id_ = 0;
   std::uint64_t id_now_ = 0;
-  std::int64_t clock_offset_ns_ = 0;
+  CameraClock clock_{std::nullopt};
   dubsar_frame_counters counts_{};
 };
 

@@ -24,6 +24,7 @@ struct Options {
   std::string out;
   std::string print;
   VerifyOptions verify;
+  LiveOptions live;
 };
 
 nlohmann::ordered_json report_json(const CalibrationReport& report, const std::vector<std::string>& unseen,
@@ -93,12 +94,19 @@ Result<int> print_board(const Options& options) {
   return 0;
 }
 
-Result<int> calibrate(const Options& options, CommandContext& context) {
+Result<int> calibrate(Options options, CommandContext& context) {
   if (!options.print.empty()) {
     return print_board(options);
   }
   if (options.verify.wanted()) {
     return verify_rig(options.verify, options.source, context);
+  }
+  if (options.live.wanted()) {
+    const Result<std::string> belongs = take_pictures(options.live, options.board, options.source, context);
+    if (!belongs) {
+      return std::unexpected(belongs.error());
+    }
+    options.out = options.out.empty() ? *belongs : options.out;
   }
   const Result<CalibrateOutcome> outcome =
       calibrate_folder({options.source, options.board, options.serial, options.out}, context.job);
@@ -117,15 +125,17 @@ Result<int> calibrate(const Options& options, CommandContext& context) {
 }  // namespace
 
 void add_calibrate(CLI::App& app, Action& chosen) {
-  CLI::App* verb = app.add_subcommand("calibrate",
-                                      "Camera, laser plane and stage from pictures of a board; status 1 when "
-                                      "a board pose is missing. With --verify, "
-                                      "a measured artefact against its certificate; status 1 when it fails");
+  CLI::App* verb =
+      app.add_subcommand("calibrate",
+                         "Camera, laser plane and stage from pictures of a board; status 1 when "
+                         "a board pose is missing. With --verify, "
+                         "a measured artefact against its certificate; status 1 when it fails. With "
+                         "--rig, takes the pictures first");
   const auto options = std::make_shared<Options>();
   CLI::Option* source =
       verb->add_option("source", options->source,
                        "a folder with a calibration.toml, or with pictures of the board (--board); "
-                       "with --verify a scan of the artefact");
+                       "with --verify a scan of the artefact; with --rig the folder to take them to");
   verb->add_option("--board", options->board, "chessboard:9x6:25 (inner corners, mm) or charuco:9x7:5:3.7");
   verb->add_option("--serial", options->serial,
                    "of the camera; a rig refuses the calibration of another one");
@@ -134,6 +144,7 @@ void add_calibrate(CLI::App& app, Action& chosen) {
       verb->add_option("--print", options->print, "write the board of --board as a PNG for printing");
   print->excludes(source);
   add_verify_options(*verb, options->verify);
+  add_live_options(*verb, options->live);
   verb->fallthrough();
   verb->callback([&chosen, options] {
     if (options->source.empty() && options->print.empty()) {

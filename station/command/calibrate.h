@@ -20,4 +20,21 @@ void add_verify_options(CLI::App& verb, VerifyOptions& options);
 [[nodiscard]] Result<int> verify_rig(const VerifyOptions& options, const std::string& scan,
                                      CommandContext& context);
 
+/// Options of `dubsar calibrate --rig`.
+struct LiveOptions {
+  std::string rig;     ///< rig.toml
+  std::string motion;  ///< linear, turntable, galvanometer or none
+  int stops = 5;
+  double depth_range_mm = 40;
+  double plate_margin_mm = 0;
+  double board_exposure_us = 0;  ///< 0: as the camera stands
+  double laser_exposure_us = 0;
+  [[nodiscard]] bool wanted() const { return !rig.empty(); }
+};
+void add_live_options(CLI::App& verb, LiveOptions& options);
+/// Takes the pictures into the folder, led by what is missing; each line of standard input is a word of the
+/// operator. Where the calibration belongs, as the rig's file says.
+[[nodiscard]] Result<std::string> take_pictures(const LiveOptions& options, const std::string& board,
+                                                const std::string& folder, CommandContext& context);
+
 }  // namespace dubsar

@@ -59,9 +59,15 @@ std::string parameters_of(const ExportArguments& arguments) {
   return json.dump();
 }
 
+/// The folder to make, whole and without a slash at its end: its stamp lies beside it.
+fs::path target_of(const ExportArguments& arguments) {
+  const fs::path target = fs::absolute(arguments.to).lexically_normal();
+  return target.has_filename() ? target : target.parent_path();
+}
+
 /// A package that is made again from the same session is found done (docs/collections.md).
 Result<StampedWork> begin_work(const ExportArguments& arguments, const JobContext& job) {
-  const fs::path target = fs::absolute(arguments.to).lexically_normal();
+  const fs::path target = target_of(arguments);
   const auto passes_over = [&](const fs::path& file) {
     const std::string name = file.filename().string();
     const fs::path normal = fs::absolute(file).lexically_normal();
@@ -116,18 +122,23 @@ Result<int> export_session(const ExportArguments& arguments, CommandContext& con
       options.without.insert(part);
     }
   }
+  bool stamped = false;
+  if (work) {
+    options.before_publishing = [&](const fs::path& staged) -> Status {
+      const auto outputs = files_below(staged, [](const fs::path&) { return false; });
+      if (!outputs) {
+        return std::unexpected(outputs.error());
+      }
+      stamped = true;
+      return work->finish_staged(*outputs, staged, target_of(arguments), context.job);
+    };
+  }
   const Result<Package> package = write_package(arguments.session, arguments.to, options, context.job);
   if (!package) {
+    if (stamped) {
+      (void)work->start();  // nothing was done; a stamp that stays all the same fits nothing that is there
+    }
     return std::unexpected(package.error());
-  }
-  if (work) {
-    const auto outputs = files_below(arguments.to, [](const fs::path&) { return false; });
-    if (!outputs) {
-      return std::unexpected(outputs.error());
-    }
-    if (const Status finished = work->finish(*outputs, context.job); !finished) {
-      return std::unexpected(finished.error());
-    }
   }
   if (context.json) {
     nlohmann::ordered_json json{

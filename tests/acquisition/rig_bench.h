@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstdint>
 #include <cstdio>
+#include <functional>
 
 #include "core/mesh_query.h"
 #include "drivers/device.h"
@@ -21,6 +22,7 @@ namespace dubsar::test {
 struct RigBench {
   RigCalibration truth;
   const sim::Scene* scene = nullptr;
+  std::function<GrayImage(const RigBench&)> look;  ///< in place of the scene
   sim::FrameOptions optics;
   std::string serial = "SIM-CAMERA";
   double position = 0;
@@ -64,11 +66,16 @@ inline const dubsar_driver& camera_driver() {
       if (static_cast<int>(bench.frames) >= bench.gone_after) {
         return plugin::report(error, DUBSAR_DEVICE, "the camera is gone", "bench", "plug it in");
       }
-      const RigidTransform tablet_from_camera =
-          bench.truth.scanner_from_camera() * bench.truth.motion.zero_from_camera(bench.position);
-      const sim::SceneTarget target(*bench.scene, tablet_from_camera);
-      bench.frame = sim::FrameRenderer(bench.truth, bench.optics)
-                        .render(target, bench.laser > 0, bench.position, ++bench.frames);
+      ++bench.frames;
+      if (bench.look) {
+        bench.frame = bench.look(bench);
+      } else {
+        const RigidTransform tablet_from_camera =
+            bench.truth.scanner_from_camera() * bench.truth.motion.zero_from_camera(bench.position);
+        const sim::SceneTarget target(*bench.scene, tablet_from_camera);
+        bench.frame = sim::FrameRenderer(bench.truth, bench.optics)
+                          .render(target, bench.laser > 0, bench.position, bench.frames);
+      }
       dubsar_frame frame{};
       frame.struct_size = sizeof frame;
       frame.flags = DUBSAR_FRAME_EXPOSED;

@@ -4,6 +4,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sqlite3.h>
 #include <unistd.h>
 
 #include <cmath>
@@ -221,10 +222,10 @@ TEST_F(SessionStoreTest, VerifyCoversGridsDatabaseAndRecordedFiles) {
 
 TEST_F(SessionStoreTest, ASessionOfANewerVersionIsLeftAlone) {
   { SessionStore store = open(); }
-  ASSERT_EQ(
-      std::system(
-          ("sqlite3 '" + (folder_ / "session.sqlite").string() + "' 'PRAGMA user_version = 99'").c_str()),
-      0);
+  sqlite3* database = nullptr;
+  ASSERT_EQ(sqlite3_open((folder_ / "session.sqlite").c_str(), &database), SQLITE_OK);
+  ASSERT_EQ(sqlite3_exec(database, "PRAGMA user_version = 99", nullptr, nullptr, nullptr), SQLITE_OK);
+  ASSERT_EQ(sqlite3_close(database), SQLITE_OK);
   const auto store = SessionStore::open_or_create(folder_);
   ASSERT_FALSE(store);
   EXPECT_THAT(store.error().line(), HasSubstr("newer Dubsar"));

@@ -70,6 +70,29 @@ TEST(PageBlocks, TakeAnythingForAPage) {
   }
 }
 
+/// Under the address sanitizer this was a write to what had been freed.
+TEST(PageBlocks, FollowNoCaptionThatHasMoved) {
+  std::string open = "<div class=\"cross\">";
+  for (int i = 0; i < 20; ++i) {
+    open += "<figure><figcaption>open <figure>lost ";
+  }
+  const auto blocks = page_blocks(open);
+  ASSERT_EQ(blocks.size(), 1U);
+  ASSERT_EQ(blocks[0].figures.size(), 40U);
+  EXPECT_EQ(words(blocks[0].figures[0].caption), "open ");
+  EXPECT_EQ(words(blocks[0].figures[1].caption), "");
+}
+
+TEST(PageBlocks, TakeNoSizeThatIsNone) {
+  for (const char* size : {"-3", "nan", "inf", "x"}) {
+    const auto blocks = page_blocks("<figure><img width=\"" + std::string(size) + "\" style=\"--mm: " + size +
+                                    "mm\"></figure>");
+    ASSERT_EQ(blocks.size(), 1U);
+    EXPECT_EQ(blocks[0].figures.at(0).width_px, 0) << size;
+    EXPECT_EQ(blocks[0].figures.at(0).width_mm, 0) << size;
+  }
+}
+
 TEST(PagePdf, IsTheSameForTheSamePage) {
   std::string html = "<h1>Tablet</h1>";
   for (int i = 0; i < 200; ++i) {

@@ -166,6 +166,26 @@ step_deg = 0.5
   EXPECT_TRUE(refused("name", "nam"));
   EXPECT_TRUE(refused("\"1500\"", "1500"));
   EXPECT_TRUE(refused("[scan]", "[scann]"));
+  // A stage that moves through: nothing stands still for an ambient frame.
+  const std::string through = std::string(kRig) + "continuous = true\n";
+  const Result<RigFile> moving = parse_rig_file(through, "rig.toml");
+  ASSERT_TRUE(moving.has_value()) << moving.error().line();
+  EXPECT_TRUE(moving->continuous);
+  EXPECT_FALSE(moving->ambient);
+  EXPECT_FALSE(parse_rig_file(through + "ambient = true\n", "rig.toml").has_value());
+  // A range camera has a motion and no calibration; never both, never neither.
+  std::string range(kRig);
+  range.replace(range.find("calibration = \"calibration.json\"\n"), 33, "");
+  EXPECT_FALSE(parse_rig_file(range, "rig.toml").has_value());
+  const std::string motion = "[motion]\nkind = \"turntable\"\ndirection = [0, 2, 0]\npoint_mm = [0, 0, 9]\n";
+  const Result<RigFile> carried = parse_rig_file(range + motion, "rig.toml");
+  ASSERT_TRUE(carried.has_value()) << carried.error().line();
+  EXPECT_TRUE(carried->calibration.empty());
+  EXPECT_EQ(carried->motion->kind, MotionKind::kTurntable);
+  EXPECT_NEAR(carried->motion->direction.y(), 1, 1e-12);
+  EXPECT_FALSE(parse_rig_file(kRig + motion, "rig.toml").has_value());
+  EXPECT_FALSE(
+      parse_rig_file(range + "[motion]\nkind = \"linear\"\ndirection = [0, 0, 0]\n", "rig.toml").has_value());
 }
 
 TEST(VerificationLog, KeepsEveryLineAndSurvivesADamagedOne) {

@@ -6,10 +6,12 @@
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
+#include <chrono>
 #include <csignal>
 #include <cstdlib>
 #include <fstream>
 #include <map>
+#include <thread>
 
 #include "formats/atomic_file.h"
 #include "formats/grid_file.h"
@@ -235,14 +237,34 @@ TEST_F(Export, NeverOverwritesUnasked) {
 
 TEST_F(Export, FindsItsWorkDoneUntilTheSessionOrThePackageChanges) {
   const std::vector<std::string> small{"--without", "renderings,features,wedges,grid-ply"};
-  ASSERT_EQ(export_to("again", small).status, 0);
-  const auto written = fs::last_write_time(at("again") / "manifest-sha512.txt");
-  const Outcome found = export_to("again", small);
+  const Outcome first = export_to("found", small);
+  ASSERT_EQ(first.status, 0) << first.err;
+  const auto written = fs::last_write_time(at("found") / "manifest-sha512.txt");
+  const Outcome found = export_to("found", small);
   EXPECT_EQ(found.status, 0) << found.err;
   EXPECT_EQ(found.json()["done_before"], true);
-  EXPECT_EQ(fs::last_write_time(at("again") / "manifest-sha512.txt"), written);
-  std::ofstream(at("again") / "data" / "README.txt", std::ios::app) << "something else";
-  EXPECT_EQ(export_to("again", small).status, 2) << "not what was written: it is not made anew unasked";
+  EXPECT_EQ(fs::last_write_time(at("found") / "manifest-sha512.txt"), written);
+  std::ofstream(at("found") / "data" / "README.txt", std::ios::app) << "something else";
+  EXPECT_EQ(export_to("found", small).status, 2) << "not what was written: it is not made anew unasked";
+}
+
+/// Killed in the very step between taking its place and whatever else it would do, it has to be found done.
+TEST_F(Export, TheStampIsThereBeforeThePackageIs) {
+  const fs::path to = at("stamped");
+  const fs::path stamp = at("stamped.done");
+  test::RunningCommand running({"export", at("session").string(), "--to", to.string() + "/", "--without",
+                                "renderings,features,wedges,grid-ply"});
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::minutes(2);
+  while (!fs::exists(to) && std::chrono::steady_clock::now() < deadline) {
+    std::this_thread::sleep_for(std::chrono::microseconds(200));
+  }
+  running.send(SIGKILL);
+  EXPECT_TRUE(fs::exists(stamp)) << "the package must not be there without its stamp";
+  (void)running.wait();
+  EXPECT_FALSE(fs::exists(to / ".done"));
+  const Outcome found = export_to("stamped", {"--without", "renderings,features,wedges,grid-ply"});
+  EXPECT_EQ(found.status, 0) << found.err;
+  EXPECT_EQ(found.json()["done_before"], true);
 }
 
 TEST_F(Export, IsNotThereUntilItIsWhole) {

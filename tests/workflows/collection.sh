@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # collection.sh SOURCE DUBSAR FOLDER: a collection of two tablets gone through by workflows/do-tablet, killed in the middle,
-# started again.
+# started again; then a session with its package.
 set -euo pipefail
 workflows=$1/workflows
 export DUBSAR=$2
@@ -40,6 +40,33 @@ if command -v xxhsum >/dev/null && command -v python3 >/dev/null; then
   printf 'x' >>"$folder/museum/c/wedges.json"
   said=$("$workflows/check-collection" "$folder" 2>/dev/null) && fail "check-collection overlooks damage"
   [ "$said" = "museum/c: wedges.json has other bytes than were written" ] || fail "check-collection: $said"
+fi
+# A session is only read: what comes of it lies beside it, and it verifies as before.
+export DUBSAR_EXPORT=yes
+rm -r "$folder/museum/c"
+"$DUBSAR" -q scan --auto --device 'sim:?seed=1&size=12x10x7&spacing=0.15&noise=0.01' --session "$folder/museum/s" \
+  --max-scans 2 >/dev/null 2>&1 || [ $? = 1 ] || fail "no session"
+"$DUBSAR" -q verify "$folder/museum/s" >/dev/null 2>&1 || fail "the session before"
+log=$folder/log/museum/s.log
+"$workflows/do-tablet" "$folder" museum/s 2>/dev/null &
+worker=$!
+for _ in $(seq 3000); do grep -qs 'export begin' "$log" && break; sleep 0.02; done
+kill -9 $worker $(cat "/proc/$worker/task/$worker/children" 2>/dev/null) 2>/dev/null || true
+wait $worker 2>/dev/null || true
+"$workflows/do-tablet" "$folder" museum/s 2>/dev/null || fail "a session begun anew"
+"$workflows/do-tablet" "$folder" museum/s 2>/dev/null || fail "a session that is done"
+[ "$(grep -c ' export end$' "$log")" = 1 ] || fail "the package was made twice: $(cat "$log")"
+[ "$(tail -n 1 "$log" | grep -c ' export found-done$')" = 1 ] || fail "the package was not found done: $(cat "$log")"
+"$DUBSAR" -q verify "$folder/museum/s" >/dev/null 2>&1 || fail "the session was changed"
+"$DUBSAR" -q verify "$folder/museum/s.results/package" >/dev/null 2>&1 || fail "the package is not whole"
+[ -z "$(find "$folder/museum/s.results" -name '.dubsar-tmp-*')" ] || fail "something was left behind"
+listed=$("$workflows/list-tablets" "$folder")
+[ "$listed" = $'museum/a b\nmuseum/s' ] || fail "list-tablets: $listed"
+if command -v xxhsum >/dev/null && command -v python3 >/dev/null; then
+  "$workflows/check-collection" "$folder" 2>/dev/null || fail "check-collection"
+  printf 'x' >>"$folder/museum/s.results/package/data/README.txt"
+  said=$("$workflows/check-collection" "$folder" 2>/dev/null) && fail "check-collection overlooks damage to a package"
+  [ "$said" = "museum/s: package/data/README.txt has other bytes than were written" ] || fail "check-collection: $said"
 fi
 for script in "$workflows"/*; do
   case $(head -1 "$script") in *bash) bash -n "$script" || fail "$script" ;; esac

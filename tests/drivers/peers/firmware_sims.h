@@ -7,6 +7,8 @@
 #include <string>
 #include <string_view>
 
+#include "tests/drivers/peers/stage_law.h"
+
 namespace dubsar::test {
 
 /// What runs on the board of an emulated controller. Its motors take the time that they take.
@@ -20,11 +22,8 @@ class FirmwareSim {
   double laser = 0;         ///< of the brightest one, 0 to 1
   bool impossible = false;  ///< reports positions that cannot be
   bool stuck = false;       ///< the motor does not turn
-  [[nodiscard]] double at(double now) const {
-    const double way = target_ - from_;
-    const double gone = stuck ? 0 : (now - started_) * speed_;
-    return gone >= (way < 0 ? -way : way) && !stuck ? target_ : from_ + (way < 0 ? -gone : gone);
-  }
+  [[nodiscard]] StageLaw law() const { return {from_, target_, speed_, started_, laser, stuck ? 1.0 : 0.0}; }
+  [[nodiscard]] double at(double now) const { return law().at(now); }
   [[nodiscard]] bool moving(double now) const { return at(now) != target_; }
 
  protected:

@@ -1,89 +1,44 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright The Dubsar developers
 //
-// resending_peer SERIAL LOSS: a GigE Vision device of our own, without Aravis, on 127.0.0.1: it loses packets
-// at the ratio LOSS, sends them again when it is asked to, and puts the count of an encoder behind each frame
-// (chunk data). Says "ready"; commands: resent (packets sent again), quiet (takes no more packets, sends
-// none).
-#include <arpa/inet.h>
-#include <netinet/in.h>
-#include <poll.h>
-#include <sys/socket.h>
-#include <unistd.h>
-
-#include <algorithm>
-#include <atomic>
+// resending_peer SERIAL LOSS: a range camera of our own on 127.0.0.1: it loses packets at the ratio LOSS,
+// sends them again when it is asked to, and puts the count of an encoder behind each frame (chunk data). Says
+// "ready"; commands: resent (packets sent again), quiet (takes no more packets, sends none).
 #include <chrono>
-#include <cstdint>
 #include <cstdio>
-#include <cstring>
-#include <deque>
-#include <iostream>
-#include <mutex>
-#include <random>
 #include <string>
 #include <thread>
-#include <vector>
 
+#include "tests/drivers/peers/gige_device.h"
 #include "tests/drivers/peers/gige_xml.h"
 
 namespace {
 
-using Bytes = std::vector<std::uint8_t>;
-using namespace std::chrono_literals;
-
-constexpr std::uint32_t kXmlAt = 0x10000;
 constexpr std::uint32_t kChunkMode = 0x2600;
-constexpr std::uint32_t kEncoderChunk = 0x1001;
 
-void put16(Bytes& to, std::uint32_t value) {
-  to.push_back(static_cast<std::uint8_t>(value >> 8U));
-  to.push_back(static_cast<std::uint8_t>(value));
+std::string description() {
+  std::string xml = dubsar::test::range_camera_xml();
+  const std::string end = "<Port Name='Device'";
+  xml.insert(
+      xml.find(end),
+      "<Boolean Name='ChunkModeActive' "
+      "NameSpace='Standard'><pValue>ChunkModeReg</pValue><OnValue>1</OnValue>"
+      "<OffValue>0</OffValue></Boolean>\n<IntReg "
+      "Name='ChunkModeReg'><Address>0x2600</Address><Length>4</Length>"
+      "<AccessMode>RW</AccessMode><pPort>Device</pPort><Sign>Unsigned</Sign><Endianess>BigEndian</"
+      "Endianess>"
+      "</IntReg>\n<Integer Name='ChunkEncoderValue' NameSpace='Standard'><pValue>ChunkEncoderReg</pValue>"
+      "</Integer>\n<IntReg Name='ChunkEncoderReg'><Address>0</Address><Length>4</Length><AccessMode>RO"
+      "</AccessMode><pPort>EncoderChunk</pPort><Cachable>NoCache</Cachable><Sign>Signed</Sign><Endianess>"
+      "BigEndian</Endianess></IntReg>\n<Port Name='EncoderChunk'><ChunkID>1001</ChunkID></Port>\n");
+  // The announced payload covers the chunks: 4 bytes of encoder, and 8 bytes behind each of the two chunks.
+  xml.replace(xml.find("- L</Formula>"), 3, "+ 20");
+  return xml;
 }
-void put32(Bytes& to, std::uint32_t value) {
-  put16(to, value >> 16U);
-  put16(to, value);
-}
 
-struct Block {
-  std::uint16_t id = 0;
-  std::vector<Bytes> packets;  ///< leader, payload, trailer; ready to be sent
-};
-
-class Device {
+class Resender : public dubsar::test::GigeDevice {
  public:
-  Device(const std::string& serial, double loss) : memory_(kXmlAt), loss_(loss) {
-    std::string xml = dubsar::test::range_camera_xml();
-    const std::string end = "<Port Name='Device'";
-    xml.insert(
-        xml.find(end),
-        "<Boolean Name='ChunkModeActive' "
-        "NameSpace='Standard'><pValue>ChunkModeReg</pValue><OnValue>1</OnValue>"
-        "<OffValue>0</OffValue></Boolean>\n<IntReg "
-        "Name='ChunkModeReg'><Address>0x2600</Address><Length>4</Length>"
-        "<AccessMode>RW</AccessMode><pPort>Device</pPort><Sign>Unsigned</Sign><Endianess>BigEndian</"
-        "Endianess>"
-        "</IntReg>\n<Integer Name='ChunkEncoderValue' NameSpace='Standard'><pValue>ChunkEncoderReg</pValue>"
-        "</Integer>\n<IntReg Name='ChunkEncoderReg'><Address>0</Address><Length>4</Length><AccessMode>RO"
-        "</AccessMode><pPort>EncoderChunk</pPort><Cachable>NoCache</Cachable><Sign>Signed</Sign><Endianess>"
-        "BigEndian</Endianess></IntReg>\n<Port Name='EncoderChunk'><ChunkID>1001</ChunkID></Port>\n");
-    // The announced payload covers the chunks: 4 bytes of encoder, and 8 bytes behind each of the two chunks.
-    xml.replace(xml.find("- L</Formula>"), 3, "+ 20");
-    write(0x0, 0x00010002);  // GigE Vision 1.2
-    write(0x4, 0x80000001);  // big-endian, UTF-8
-    write(0x24, INADDR_LOOPBACK);
-    text(0x48, "Dubsar");
-    text(0x68, "Resender");
-    text(0xd8, serial);
-    char url[64];
-    std::snprintf(url, sizeof url, "Local:camera.xml;%x;%zx", kXmlAt, xml.size());
-    text(0x200, url);
-    write(0x904, 1);    // stream channels
-    write(0x934, 0x4);  // it can resend
-    write(0x938, 3000);
-    write(0x93c, 0);
-    write(0x940, 1000000000);
-    write(0xd04, 1400);
+  Resender(const std::string& serial, double loss) : GigeDevice("Resender", serial, description(), loss) {
     for (const auto& [address, value] :
          {std::pair(0x11cU, 4096U), std::pair(0x118U, 4096U), std::pair(0x100U, 320U), std::pair(0x104U, 40U),
           std::pair(0x128U, 0x011000B8U), std::pair(0x138U, 8000U), std::pair(0x12cU, 1U)}) {
@@ -92,235 +47,34 @@ class Device {
     for (std::uint32_t axis = 0; axis < 3; ++axis) {
       real(dubsar::test::kScales + 8 * axis, 0.1);
     }
-    memory_.insert(memory_.end(), xml.begin(), xml.end());
-    memory_.resize(memory_.size() + 1024);
-    control_ = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-    stream_ = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-    sockaddr_in here{};
-    here.sin_family = AF_INET;
-    here.sin_port = htons(3956);
-    here.sin_addr.s_addr = htonl(INADDR_ANY);
-    works_ = ::bind(control_, reinterpret_cast<sockaddr*>(&here), sizeof here) == 0;
-  }
-  [[nodiscard]] bool works() const { return works_; }
-
-  void serve_control() {
-    while (!quit) {
-      pollfd waiting{control_, POLLIN, 0};
-      std::uint8_t bytes[2048];
-      sockaddr_in from{};
-      socklen_t length = sizeof from;
-      if (::poll(&waiting, 1, 50) <= 0) {
-        continue;
-      }
-      const ssize_t got =
-          ::recvfrom(control_, bytes, sizeof bytes, 0, reinterpret_cast<sockaddr*>(&from), &length);
-      if (got >= 8 && bytes[0] == 0x42 && !quiet) {
-        answer(Bytes(bytes, bytes + got), from);
-      }
-    }
   }
 
-  void serve_stream() {
-    std::uint16_t id = 0;
-    auto due = std::chrono::steady_clock::now();
-    while (!quit) {
-      bool on = false;
-      Block block;
-      {
-        const std::lock_guard lock(mutex_);
-        on = read(0x124) == 1 && read(0xd00) != 0 && !quiet;
-        if (on) {
-          id = static_cast<std::uint16_t>(id == 65535 ? 1 : id + 1);
-          block = make(id);
-          history_.push_back(block);
-          if (history_.size() > 32) {
-            history_.pop_front();
-          }
-        }
-      }
-      if (!on) {
-        id = 0;
-        std::this_thread::sleep_for(1ms);
-        due = std::chrono::steady_clock::now();
-        continue;
-      }
-      for (const Bytes& packet : block.packets) {
-        if (std::uniform_real_distribution<>(0, 1)(random_) >= loss_) {
-          send(packet);
-        }
-      }
-      due += std::chrono::microseconds(read(0x138));
-      std::this_thread::sleep_until(due);
-    }
-  }
-
-  std::atomic<bool> quit = false, quiet = false;
-  std::atomic<int> resent = 0;
-
- private:
-  [[nodiscard]] std::uint32_t read(std::uint32_t at) const {
-    return std::uint32_t{memory_[at]} << 24U | std::uint32_t{memory_[at + 1]} << 16U |
-           std::uint32_t{memory_[at + 2]} << 8U | memory_[at + 3];
-  }
-  void write(std::uint32_t at, std::uint32_t value) {
-    for (std::uint32_t k = 0; k < 4; ++k) {
-      memory_[at + k] = static_cast<std::uint8_t>(value >> (24 - 8 * k));
-    }
-  }
-  void real(std::uint32_t at, double value) {
-    std::uint64_t bits = 0;
-    std::memcpy(&bits, &value, sizeof bits);
-    write(at, static_cast<std::uint32_t>(bits >> 32U));
-    write(at + 4, static_cast<std::uint32_t>(bits));
-  }
-  void text(std::uint32_t at, const std::string& value) { std::ranges::copy(value, memory_.begin() + at); }
-
-  void send(const Bytes& packet) {
-    sockaddr_in to{};
-    to.sin_family = AF_INET;
-    to.sin_port = htons(static_cast<std::uint16_t>(read(0xd00)));
-    to.sin_addr.s_addr = htonl(read(0xd18));
-    ::sendto(stream_, packet.data(), packet.size(), 0, reinterpret_cast<sockaddr*>(&to), sizeof to);
-  }
-
+ protected:
   /// Depth 1000 + 3 col, as the other peer paints it; the encoder counts ten for each frame.
-  Block make(std::uint16_t id) {
-    const std::uint32_t width = read(0x100);
-    const std::uint32_t height = read(0x104);
-    const bool chunks = read(kChunkMode) != 0;
-    Bytes data;
+  std::optional<Picture> next(std::uint32_t id) override {
+    const auto now = std::chrono::steady_clock::now();
+    due_ = due_ < now - std::chrono::milliseconds(100) ? now : due_;
+    std::this_thread::sleep_until(due_);
+    due_ += std::chrono::microseconds(reg(0x138));
+    Picture out;
+    out.timestamp_ns = static_cast<std::uint64_t>(std::chrono::duration_cast<std::chrono::nanoseconds>(
+                                                      std::chrono::steady_clock::now().time_since_epoch())
+                                                      .count());
+    const std::uint32_t width = reg(0x100);
+    const std::uint32_t height = reg(0x104);
     for (std::uint32_t k = 0; k < width * height; ++k) {
       const std::uint32_t depth = 1000 + 3 * (k % width);
-      data.push_back(static_cast<std::uint8_t>(depth));
-      data.push_back(static_cast<std::uint8_t>(depth >> 8U));
+      out.data.push_back(static_cast<std::uint8_t>(depth));
+      out.data.push_back(static_cast<std::uint8_t>(depth >> 8U));
     }
-    if (chunks) {
-      const auto size = static_cast<std::uint32_t>(data.size());
-      put32(data, 1);
-      put32(data, size);
-      put32(data, 10U * id);
-      put32(data, kEncoderChunk);
-      put32(data, 4);
+    if (reg(kChunkMode) != 0) {
+      out.chunk = 10U * id;
     }
-    const std::uint32_t room = (read(0xd04) & 0xffffU) - 36;
-    const std::uint32_t type = chunks ? 0x4001 : 0x0001;
-    const auto now = static_cast<std::uint64_t>(std::chrono::duration_cast<std::chrono::nanoseconds>(
-                                                    std::chrono::steady_clock::now().time_since_epoch())
-                                                    .count());
-    Block out{id, {}};
-    const auto begin = [&](std::uint32_t kind) {
-      Bytes packet;
-      put16(packet, 0);
-      put16(packet, id);
-      put32(packet, kind << 24U | static_cast<std::uint32_t>(out.packets.size()));
-      return packet;
-    };
-    Bytes leader = begin(1);
-    put16(leader, 0);
-    put16(leader, type);
-    put32(leader, static_cast<std::uint32_t>(now >> 32U));
-    put32(leader, static_cast<std::uint32_t>(now));
-    for (const std::uint32_t word : {read(0x128), width, height, 0U, 0U, 0U}) {
-      put32(leader, word);
-    }
-    out.packets.push_back(leader);
-    for (std::size_t at = 0; at < data.size(); at += room) {
-      Bytes packet = begin(3);
-      packet.insert(
-          packet.end(), data.begin() + static_cast<std::ptrdiff_t>(at),
-          data.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(at + room, data.size())));
-      out.packets.push_back(packet);
-    }
-    Bytes trailer = begin(2);
-    put16(trailer, 0);
-    put16(trailer, type);
-    put32(trailer, height);
-    out.packets.push_back(trailer);
     return out;
   }
 
-  void resend(const std::uint8_t* ask) {
-    const auto id = static_cast<std::uint16_t>(ask[2] << 8U | ask[3]);
-    const std::uint32_t first = (std::uint32_t{ask[5]} << 16U | std::uint32_t{ask[6]} << 8U | ask[7]);
-    const std::uint32_t last = (std::uint32_t{ask[9]} << 16U | std::uint32_t{ask[10]} << 8U | ask[11]);
-    for (const Block& block : history_) {
-      for (std::uint32_t k = first; block.id == id && k <= last && k < block.packets.size(); ++k) {
-        send(block.packets[k]);
-        ++resent;
-      }
-    }
-  }
-
-  void answer(const Bytes& ask, const sockaddr_in& to) {
-    const std::uint32_t command = std::uint32_t{ask[2]} << 8U | ask[3];
-    const std::uint8_t* body = ask.data() + 8;
-    const std::size_t size = ask.size() - 8;
-    const std::lock_guard lock(mutex_);
-    Bytes data;
-    const auto word = [&](std::size_t at) {
-      return std::uint32_t{body[at]} << 24U | std::uint32_t{body[at + 1]} << 16U |
-             std::uint32_t{body[at + 2]} << 8U | body[at + 3];
-    };
-    std::uint32_t status = 0;
-    switch (command) {
-      case 0x0002:  // discovery: what stands at the start of the registers
-        data.assign(memory_.begin(), memory_.begin() + 0xf8);
-        break;
-      case 0x0080:
-        for (std::size_t k = 0; k + 4 <= size; k += 4) {
-          put32(data, word(k) + 4 <= memory_.size() ? read(word(k)) : 0);
-        }
-        break;
-      case 0x0082:
-        for (std::size_t k = 0; k + 8 <= size; k += 8) {
-          if (word(k) + 4 <= kXmlAt) {
-            write(word(k), word(k + 4));
-          }
-        }
-        put32(data, 1);
-        break;
-      case 0x0084: {
-        const std::uint32_t at = word(0);
-        const std::uint32_t count = word(4) & 0xffffU;
-        put32(data, at);
-        if (at + count <= memory_.size()) {
-          data.insert(data.end(), memory_.begin() + at, memory_.begin() + at + count);
-        } else {
-          status = 0x8003;
-        }
-        break;
-      }
-      case 0x0086:
-        for (std::size_t k = 4; k < size && word(0) + k - 4 < kXmlAt; ++k) {
-          memory_[word(0) + k - 4] = body[k];
-        }
-        put32(data, word(0));
-        break;
-      case 0x0040:
-        resend(body);
-        return;
-      default:
-        status = 0x8001;
-    }
-    Bytes out;
-    put16(out, status);
-    put16(out, command + 1);
-    put16(out, static_cast<std::uint32_t>(data.size()));
-    out.push_back(ask[6]);
-    out.push_back(ask[7]);
-    out.insert(out.end(), data.begin(), data.end());
-    ::sendto(control_, out.data(), out.size(), 0, reinterpret_cast<const sockaddr*>(&to), sizeof to);
-  }
-
-  Bytes memory_;
-  double loss_;
-  int control_ = -1;
-  int stream_ = -1;
-  bool works_ = false;
-  std::mutex mutex_;
-  std::deque<Block> history_;
-  std::mt19937 random_{1};
+ private:
+  std::chrono::steady_clock::time_point due_{};
 };
 
 }  // namespace
@@ -330,21 +84,6 @@ int main(int count, char** words) {
     std::puts("cannot: resending_peer SERIAL LOSS");
     return 2;
   }
-  Device device(words[1], std::stod(words[2]));
-  if (!device.works()) {
-    std::puts("cannot: the port of GigE Vision is taken");
-    return 2;
-  }
-  std::puts("ready");
-  std::fflush(stdout);
-  std::jthread control([&] { device.serve_control(); });
-  std::jthread stream([&] { device.serve_stream(); });
-  for (std::string line; std::getline(std::cin, line);) {
-    if (line == "quiet") {
-      device.quiet = true;
-    }
-    std::cout << (line == "resent" ? std::to_string(device.resent.load()) : "ok") << std::endl;
-  }
-  device.quit = true;
-  return 0;
+  Resender device(words[1], std::stod(words[2]));
+  return dubsar::test::serve_gige(device);
 }

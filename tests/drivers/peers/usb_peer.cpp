@@ -4,7 +4,7 @@
 // usb_peer: a USB controller (CDC-ACM, 2341:0043) at the kernel's interface: umockdev's /sys and /dev for
 // whoever has its library preloaded and $UMOCKDEV_DIR as told, with the ioctls of usbfs answered here by a
 // firmware simulation. Says "ready DIR"; commands on standard input: firmware NAME, laser, at, unplug, plug,
-// mute, talk, babble, impossible, possible, stick, slip, power_up.
+// mute, talk, babble, impossible, possible, stick, slip, power_up, publish FILE (tells others where it is).
 #include <linux/usbdevice_fs.h>
 #include <sys/ioctl.h>
 #include <umockdev.h>
@@ -17,6 +17,7 @@
 #include <deque>
 #include <map>
 #include <memory>
+#include <optional>
 #include <sstream>
 #include <string>
 #include <thread>
@@ -57,6 +58,7 @@ struct Peer {
   UMockdevIoctlClient* dying = nullptr;  ///< an owner that need not be asked
   bool kernel_driver = true, plugged = true, mute = false;
   std::string babble;
+  std::optional<dubsar::test::SharedLaw> law;
 };
 Peer peer;
 
@@ -159,7 +161,13 @@ int submit(Peer::File& file, UMockdevIoctlData* argument) {
   return 0;
 }
 
-gboolean handle(UMockdevIoctlBase* /*base*/, UMockdevIoctlClient* client, gpointer /*user*/) {
+void publish() {
+  if (peer.law) {
+    peer.law->write(peer.firmware->law());
+  }
+}
+
+gboolean handle_request(UMockdevIoctlClient* client) {
   const gulong request = umockdev_ioctl_client_get_request(client);
   UMockdevIoctlData* argument = umockdev_ioctl_client_get_arg(client);
   GError* error = nullptr;
@@ -253,6 +261,12 @@ gboolean handle(UMockdevIoctlBase* /*base*/, UMockdevIoctlClient* client, gpoint
   }
 }
 
+gboolean handle(UMockdevIoctlBase* /*base*/, UMockdevIoctlClient* client, gpointer /*user*/) {
+  const gboolean handled = handle_request(client);
+  publish();
+  return handled;
+}
+
 bool add_device() {
   std::string hex;
   for (const std::uint8_t byte : kDescriptors) {
@@ -293,6 +307,14 @@ std::string command(const std::string& line) {
     peer.firmware = dubsar::test::make_firmware_sim(what);
     peer.firmware->out.clear();
     peer.mute = false;
+  } else if (what == "publish") {
+    words >> what;
+    peer.law.emplace(what);
+    if (!peer.law->works()) {
+      peer.law.reset();
+      return "cannot";
+    }
+    publish();
   } else if (what == "laser") {
     std::snprintf(text, sizeof text, "%g", peer.firmware->laser);
     return text;

@@ -1,0 +1,339 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "acquisition/live_calibration.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <utility>
+
+#include "acquisition/calibration_folder.h"
+#include "acquisition/calibration_laser.h"
+#include "acquisition/fresh_frame.h"
+#include "acquisition/rig_parts.h"
+#include "formats/atomic_file.h"
+#include "formats/gray_file.h"
+
+namespace dubsar {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kMoved_px = 0.5;  // corners of a board that was held still stay within this
+constexpr int kLeastStops = 3;
+constexpr std::size_t kFirstPoses = 4;  // before a camera can be told at all
+
+std::string numbered(const char* stem, std::size_t number, const char* rest) {
+  char text[64];
+  std::snprintf(text, sizeof text, "%s_%02zu%s.png", stem, number, rest);
+  return text;
+}
+
+/// How far the corners that both have lie apart, the median; nothing without such corners.
+std::optional<double> moved_px(const BoardView& a, const BoardView& b) {
+  std::vector<double> ways;
+  for (std::size_t i = 0; i < a.corners_mm.size(); ++i) {
+    for (std::size_t k = 0; k < b.corners_mm.size(); ++k) {
+      if ((a.corners_mm[i] - b.corners_mm[k]).norm() < 1e-6) {
+        ways.push_back((a.corners_px[i] - b.corners_px[k]).norm());
+      }
+    }
+  }
+  if (ways.empty()) {
+    return std::nullopt;
+  }
+  const auto middle = ways.begin() + static_cast<std::ptrdiff_t>(ways.size() / 2);
+  std::ranges::nth_element(ways, middle);
+  return *middle;
+}
+
+}  // namespace
+
+LiveCalibration::LiveCalibration(LiveCalibrationPlan plan, BoardSpec board, Device camera, Device stage)
+    : plan_(std::move(plan)), board_(board), camera_(std::move(camera)), stage_(std::move(stage)) {}
+
+Result<LiveCalibration> LiveCalibration::start(const LiveCalibrationPlan& given, Device camera, Device stage,
+                                               const JobContext& job) {
+  LiveCalibrationPlan plan = given;
+  const Result<BoardSpec> board = parse_board(plan.set.board);
+  if (!board) {
+    return std::unexpected(board.error());
+  }
+  const Result<DeviceCapabilities> capable = camera.capabilities();
+  if (!capable) {
+    return std::unexpected(capable.error());
+  }
+  if (!capable->yields_frames) {
+    return fail(ErrorKind::kUsage, "it is no camera that yields pictures", camera.uri(),
+                "name a camera: see dubsar drivers");
+  }
+  RigFile way;
+  way.camera = camera.uri();
+  way.stage = stage.uri();
+  way.axis = plan.axis;
+  way.start = plan.from;
+  way.step = plan.to - plan.from;
+  way.rows = 2;
+  if (plan.set.motion) {
+    const Result<StageAxis> axis = axis_for_scan(way, stage, *plan.set.motion, stage.uri());
+    if (!axis) {
+      return std::unexpected(axis.error());
+    }
+    if (Status homed = home_once(stage, plan.axis); !homed) {
+      return std::unexpected(homed.error());
+    }
+  }
+  plan.set.camera_serial = capable->serial;
+  std::error_code error;
+  fs::create_directories(plan.folder, error);
+  if (error) {
+    return fail(ErrorKind::kStorage, "the folder cannot be made: " + error.message(), plan.folder.string());
+  }
+  LiveCalibration out(std::move(plan), *board, std::move(camera), std::move(stage));
+  const fs::path list = out.plan_.folder / "calibration.toml";
+  if (!fs::exists(list, error)) {
+    return out;
+  }
+  const Result<std::string> text = read_whole_file(list);
+  const Result<CalibrationSet> had =
+      text ? parse_calibration_set(*text, list.string()) : std::unexpected(text.error());
+  if (!had) {
+    return std::unexpected(had.error());
+  }
+  if (had->board != out.plan_.set.board || had->motion != out.plan_.set.motion ||
+      had->camera_serial != out.plan_.set.camera_serial) {
+    return bad_input(list.string(), "these pictures are of another board, stage or camera",
+                     "take the new ones to an empty folder");
+  }
+  const Result<CalibrationPictures> pictures = look_at_pictures(out.plan_.folder, *had, job);
+  if (!pictures) {
+    return std::unexpected(pictures.error());
+  }
+  out.plan_.set = *had;
+  out.views_ = pictures->views;
+  return out;
+}
+
+Status LiveCalibration::expose(const std::optional<double>& exposure_us) {
+  return exposure_us ? camera_.set("exposure_us", *exposure_us) : Status{};
+}
+
+Result<GrayImage> LiveCalibration::picture(bool laser, const std::optional<double>& exposure_us) {
+  if (Status exposed = expose(exposure_us); !exposed) {
+    return std::unexpected(exposed.error());
+  }
+  const auto number = static_cast<std::uint32_t>(plan_.laser);
+  if (Status lit = stage_.set_laser(number, laser ? plan_.laser_power : 0); !lit) {
+    return std::unexpected(lit.error());
+  }
+  const Result<Frame> frame = fresh_frame(camera_);
+  if (!frame) {
+    return std::unexpected(frame.error());
+  }
+  return gray_of(*frame);
+}
+
+Result<LiveCalibration::Taken> LiveCalibration::take_pose() {
+  if (Status started = camera_.start_frames(); !started) {
+    return std::unexpected(started.error());
+  }
+  const StreamGuard stream(camera_);
+  const LaserGuard dark(stage_, static_cast<std::uint32_t>(plan_.laser));
+  return pose_while_streaming();
+}
+
+Result<LiveCalibration::Taken> LiveCalibration::pose_while_streaming() {
+  const std::size_t number = plan_.set.poses.size();
+  CalibrationView view;
+  if (plan_.set.motion == MotionKind::kGalvanometer) {
+    // A third of the poses each, so that the axis shows.
+    const double mirror = plan_.from + 0.5 * (plan_.to - plan_.from) * static_cast<double>(number % 3);
+    if (Status moved = stage_.move({static_cast<std::uint32_t>(plan_.axis), mirror, 0, false}); !moved) {
+      return std::unexpected(moved.error());
+    }
+    view.mirror_position = mirror;
+  }
+  const Result<GrayImage> board = picture(false, plan_.board_exposure_us);
+  if (!board) {
+    return std::unexpected(board.error());
+  }
+  CalibrationSet::Pose names{numbered("pose", number, ""), numbered("pose", number, "_laser"),
+                             numbered("pose", number, "_dark"), view.mirror_position};
+  Result<BoardView> seen = find_board(board->view(), board_, names.board);
+  if (!seen) {
+    return Taken{false, seen.error().what};
+  }
+  const Result<GrayImage> lit = picture(true, plan_.laser_exposure_us);
+  const Result<GrayImage> dim = lit ? picture(false, plan_.laser_exposure_us) : lit;
+  const Result<GrayImage> again = dim ? picture(false, plan_.board_exposure_us) : dim;
+  if (!again) {
+    return std::unexpected(again.error());
+  }
+  const Result<BoardView> later = find_board(again->view(), board_, names.board);
+  const std::optional<double> moved = later ? moved_px(*seen, *later) : std::nullopt;
+  if (!moved || *moved > kMoved_px) {
+    char text[96];
+    std::snprintf(text, sizeof text, "the board moved by %.1f px while the pictures were taken",
+                  moved.value_or(99));
+    return Taken{false, text};
+  }
+  for (const auto& [file, image] :
+       {std::pair(&names.board, &*board), std::pair(&names.laser, &*lit), std::pair(&names.dark, &*dim)}) {
+    if (Status written = write_gray_png(*image, plan_.folder / *file); !written) {
+      return std::unexpected(written.error());
+    }
+  }
+  view.board = std::move(*seen);
+  view.stripe_px = stripe_on_board(plan_.set, lit->view(), dim->view());
+  plan_.set.poses.push_back(names);
+  if (Status kept = keep(); !kept) {
+    return std::unexpected(kept.error());
+  }
+  Taken out{true, std::to_string(view.board.corners_px.size()) + " of " +
+                      std::to_string(board_.corner_count()) + " corners, " +
+                      std::to_string(view.stripe_px.size()) + " points of the stripe"};
+  views_.push_back(std::move(view));
+  return out;
+}
+
+Result<LiveCalibration::Taken> LiveCalibration::take_stops(const JobContext& job) {
+  if (!plan_.set.motion || *plan_.set.motion == MotionKind::kGalvanometer) {
+    return fail(ErrorKind::kUsage, "nothing is carried by this stage", stage_.uri(),
+                "say --motion linear or turntable, for a stage that moves camera or tablet");
+  }
+  if (Status started = camera_.start_frames(); !started) {
+    return std::unexpected(started.error());
+  }
+  const StreamGuard stream(camera_);
+  return stops_while_streaming(job);
+}
+
+Result<LiveCalibration::Taken> LiveCalibration::stops_while_streaming(const JobContext& job) {
+  const auto axis = static_cast<std::uint32_t>(plan_.axis);
+  std::size_t laid = 0;
+  for (const CalibrationSet::Stop& had : plan_.set.stops) {
+    laid = std::max<std::size_t>(laid, static_cast<std::size_t>(std::atoi(had.fixed.c_str() + 4)));
+  }
+  const std::string name = "laid" + std::to_string(laid + 1);
+  std::vector<CalibrationView> views;
+  std::vector<CalibrationSet::Stop> stops;
+  std::vector<GrayImage> pictures;
+  for (int i = 0; i < plan_.stops; ++i) {
+    if (job.cancelled()) {
+      return fail(ErrorKind::kCancelled, "calibration cancelled", plan_.folder.string());
+    }
+    job.progress("stage", static_cast<double>(i) / plan_.stops);
+    const double there = plan_.from + (plan_.to - plan_.from) * i / std::max(1, plan_.stops - 1);
+    if (Status moved = stage_.move({axis, there, 0, false}); !moved) {
+      return std::unexpected(moved.error());
+    }
+    const Result<StageReading> reading = stage_.motion();
+    if (!reading) {
+      return std::unexpected(reading.error());
+    }
+    Result<GrayImage> picture_now = picture(false, plan_.board_exposure_us);
+    if (!picture_now) {
+      return std::unexpected(picture_now.error());
+    }
+    CalibrationSet::Stop stop{numbered("stage", plan_.set.stops.size() + stops.size(), ""), name,
+                              reading->position.at(axis)};
+    Result<BoardView> seen = find_board(picture_now->view(), board_, stop.board);
+    if (!seen) {
+      continue;
+    }
+    CalibrationView view;
+    view.board = std::move(*seen);
+    view.fixed = name;
+    view.stage_position = stop.position;
+    views.push_back(std::move(view));
+    stops.push_back(std::move(stop));
+    pictures.push_back(std::move(*picture_now));
+  }
+  const std::string said =
+      "seen at " + std::to_string(stops.size()) + " of " + std::to_string(plan_.stops) + " positions";
+  if (static_cast<int>(stops.size()) < std::min(kLeastStops, plan_.stops)) {
+    return Taken{false, said + ": lay the board so that it stays in the picture"};
+  }
+  for (std::size_t i = 0; i < stops.size(); ++i) {
+    if (Status written = write_gray_png(pictures[i], plan_.folder / stops[i].board); !written) {
+      return std::unexpected(written.error());
+    }
+    plan_.set.stops.push_back(stops[i]);
+    views_.push_back(std::move(views[i]));
+  }
+  if (Status kept = keep(); !kept) {
+    return std::unexpected(kept.error());
+  }
+  return Taken{true, said};
+}
+
+Status LiveCalibration::keep() const {
+  return write_file_atomically(plan_.folder / "calibration.toml", calibration_set_to_toml(plan_.set));
+}
+
+CalibrationOptions LiveCalibration::options() const {
+  CalibrationOptions out;
+  out.board = board_;
+  out.motion = plan_.set.motion;
+  out.depth_range_mm = plan_.set.depth_range_mm;
+  out.plate_margin_mm = plan_.set.plate_margin_mm;
+  return out;
+}
+
+Result<CalibrationReport> LiveCalibration::calibrate() const {
+  Result<CalibrationReport> report = calibrate_rig(views_, options());
+  if (report) {
+    report->rig.camera_serial = plan_.set.camera_serial;
+    report->rig.temperature_c = plan_.set.temperature_c;
+    report->rig.note = plan_.set.note;
+  }
+  return report;
+}
+
+std::vector<std::string> LiveCalibration::next() const {
+  std::vector<std::string> out;
+  if (plan_.set.poses.size() < kFirstPoses) {
+    constexpr const char* kFirst[] = {
+        "hold the board in the middle of the picture, the laser across it, its right side nearer by 30°",
+        "the same with its left side nearer", "the same with its lower side nearer",
+        "the same with its upper side nearer"};
+    out.emplace_back(kFirst[plan_.set.poses.size()]);
+    return out;
+  }
+  const Result<Intrinsics> intrinsics = find_intrinsics(views_);
+  if (!intrinsics) {
+    out.push_back(intrinsics.error().mend.empty() ? intrinsics.error().what : intrinsics.error().mend);
+    return out;
+  }
+  std::vector<Eigen::Vector3d> points;
+  for (const StripeSample& sample : stripe_samples(views_, *intrinsics, board_, plan_.set.plate_margin_mm)) {
+    points.push_back(sample.point_mm);
+  }
+  const Result<PlaneFit> laser = fit_plane(points);
+  if (!laser) {
+    out.emplace_back("show the laser on the board");
+  }
+  for (std::string& one : missing_poses(views_, *intrinsics, board_, laser ? &laser->plane : nullptr,
+                                        plan_.set.plate_margin_mm)) {
+    out.push_back(std::move(one));
+  }
+  const bool carries = plan_.set.motion && *plan_.set.motion != MotionKind::kGalvanometer;
+  if (carries && plan_.set.stops.empty()) {
+    out.emplace_back("lay the board on the stage and let it go to its stops");
+  }
+  if (out.empty()) {
+    // Nothing is missing by rule; whether it is enough, only the whole can tell.
+    const Result<CalibrationReport> report = calibrate();
+    if (!report) {
+      out.push_back(report.error().mend.empty() ? report.error().what
+                                                : report.error().what + "; " + report.error().mend);
+    } else {
+      out = report->missing;
+    }
+  }
+  return out;
+}
+
+}  // namespace dubsar

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "acquisition/placed_profiles.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace dubsar {
+
+PlacedProfiles::PlacedProfiles(ProfileSink& sink, PositionTrack& track, Scan scan)
+    : sink_(sink), track_(track), scan_(std::move(scan)) {}
+
+bool PlacedProfiles::begin(const ScanInfo& info) {
+  ScanInfo out = info;
+  flat_ = !info.view.motion_per_row_mm.isZero();
+  const bool linear = scan_.motion.kind == MotionKind::kLinear;
+  out.view.motion_per_row_mm = linear ? Eigen::Vector3d(scan_.step * scan_.motion.direction)
+                                      : Eigen::Vector3d(Eigen::Vector3d::Zero());
+  const RigidTransform there = scan_.motion.zero_from_camera(scan_.start);
+  for (std::optional<Eigen::Vector3d>* at : {&out.view.laser_mm, &out.view.camera_mm}) {
+    if (*at) {
+      *at = there * **at;
+    }
+  }
+  out.view.direction = there.rotation * out.view.direction;
+  out.expected_rows = scan_.rows;
+  if (linear) {
+    out.spacing_mm = std::max(out.spacing_mm, scan_.step * scan_.motion.direction.norm());
+  }
+  out.device = scan_.device;
+  begun_ = sink_.begin(out);
+  cancelled_ = !begun_;
+  return begun_;
+}
+
+bool PlacedProfiles::profile(const Profile& profile) {
+  if (!block_.empty() && profile.timestamp_ns != block_ns_) {
+    const auto rows = static_cast<double>(profile.row - block_.front().number);
+    if (rows > 0) {
+      period_ns_ = static_cast<double>(profile.timestamp_ns - block_ns_) / rows;
+    }
+    if (!hand_on()) {
+      return false;
+    }
+  }
+  block_ns_ = profile.timestamp_ns;
+  Row row;
+  row.number = profile.row;
+  const auto keep = [](auto& to, const auto& from) { to.assign(from.begin(), from.end()); };
+  keep(row.x, profile.x);
+  keep(row.y, profile.y);
+  keep(row.z, profile.z);
+  keep(row.intensity, profile.intensity);
+  keep(row.confidence, profile.confidence);
+  keep(row.valid, profile.valid);
+  keep(row.rgb, profile.rgb);
+  row.encoder = profile.encoder;
+  if (row.valid.empty()) {
+    row.valid.assign(row.x.size(), 1);
+  }
+  block_.push_back(std::move(row));
+  return true;
+}
+
+void PlacedProfiles::end(const ScanTally& tally) {
+  tally_.profiles_dropped += tally.profiles_dropped;
+  tally_.frames_repeated += tally.frames_repeated;
+}
+
+void PlacedProfiles::flush() {
+  [[maybe_unused]] const bool more = hand_on();
+}
+
+bool PlacedProfiles::hand_on() {
+  std::vector<Row> block = std::exchange(block_, {});
+  if (complete_ || cancelled_ || (block.size() > 1 && !period_ns_)) {
+    return false;
+  }
+  for (std::size_t k = 0; k < block.size(); ++k) {
+    const double later_ns =
+        static_cast<double>(block[k].number - block.front().number) * period_ns_.value_or(0);
+    if (!place(block[k], block_ns_ + static_cast<std::int64_t>(later_ns))) {
+      return false;
+    }
+  }
+  return true;
+}
+
+bool PlacedProfiles::place(Row& row, std::int64_t timestamp_ns) {
+  const std::optional<double> position = track_.at(timestamp_ns);
+  if (!position) {
+    // Before it moved, or behind where it came to rest.
+    return !track_.closed_before(timestamp_ns);
+  }
+  position_ = position;
+  if (*position < scan_.start - 0.5 * scan_.step) {
+    return true;
+  }
+  if (*position >= scan_.end() + 0.5 * scan_.step) {
+    complete_ = true;
+    return false;
+  }
+  complete_ = *position >= scan_.end() - 0.5 * scan_.step;
+  const RigidTransform zero_from_camera = scan_.motion.zero_from_camera(*position);
+  for (std::size_t i = 0; i < row.x.size(); ++i) {
+    if (row.valid[i] == 0) {
+      continue;
+    }
+    const Eigen::Vector3d p = zero_from_camera * Eigen::Vector3d(static_cast<double>(row.x[i]),
+                                                                 flat_ ? 0.0 : static_cast<double>(row.y[i]),
+                                                                 static_cast<double>(row.z[i]));
+    row.x[i] = static_cast<float>(p.x());
+    row.y[i] = static_cast<float>(p.y());
+    row.z[i] = static_cast<float>(p.z());
+  }
+  first_row_ = first_row_ ? first_row_ : std::optional(row.number);
+  Profile out;
+  out.row = row.number - *first_row_;
+  out.x = row.x;
+  out.y = row.y;
+  out.z = row.z;
+  out.valid = row.valid;
+  out.intensity = row.intensity;
+  out.confidence = row.confidence;
+  out.rgb = row.rgb;
+  out.encoder = row.encoder;
+  out.timestamp_ns = timestamp_ns;
+  ++tally_.profiles_sent;
+  cancelled_ = !sink_.profile(out);
+  return !cancelled_ && !complete_;
+}
+
+}  // namespace dubsar

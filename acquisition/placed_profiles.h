@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "acquisition/position_track.h"
+#include "core/rig_calibration.h"
+#include "drivers/device.h"
+
+namespace dubsar {
+
+/// What becomes of the profiles of a moved range camera on their way to `sink`: each is put where the stage
+/// was at its time, in the frame of position 0, and those outside of the scan are left out. Profiles that
+/// came in one block have one time, that of the first; the time from block to block tells the others'.
+class PlacedProfiles : public ProfileSink {
+ public:
+  struct Scan {
+    RigMotion motion;
+    double start = 0, step = 0;  ///< mm or radians
+    int rows = 0;
+    std::string device;
+    [[nodiscard]] double end() const { return start + step * (rows - 1); }
+  };
+  PlacedProfiles(ProfileSink& sink, PositionTrack& track, Scan scan);
+
+  bool begin(const ScanInfo& info) override;
+  bool profile(const Profile& profile) override;
+  void end(const ScanTally& tally) override;
+  /// Hands on what still waits; call it when no more profiles come.
+  void flush();
+
+  [[nodiscard]] bool complete() const { return complete_; }    ///< the stage has passed the scan's end
+  [[nodiscard]] bool cancelled() const { return cancelled_; }  ///< the sink had enough
+  [[nodiscard]] bool begun() const { return begun_; }
+  [[nodiscard]] bool single_block() const { return !period_ns_; }  ///< nothing tells when its rows were taken
+  [[nodiscard]] std::optional<double> position() const { return position_; }
+  [[nodiscard]] const ScanTally& tally() const { return tally_; }
+
+ private:
+  struct Row {
+    std::int64_t number = 0;
+    std::vector<float> x, y, z, intensity, confidence;
+    std::vector<std::uint8_t> valid, rgb;
+    std::optional<std::int64_t> encoder;
+  };
+  bool hand_on();
+  bool place(Row& row, std::int64_t timestamp_ns);
+
+  ProfileSink& sink_;
+  PositionTrack& track_;
+  Scan scan_;
+  bool flat_ = false;  ///< y of the camera is made up of the rows' numbers
+  std::vector<Row> block_;
+  std::int64_t block_ns_ = 0;
+  std::optional<double> period_ns_;
+  std::optional<std::int64_t> first_row_;
+  std::int64_t next_row_ = 0;
+  std::optional<double> position_;
+  bool begun_ = false, complete_ = false, cancelled_ = false;
+  ScanTally tally_;
+};
+
+}  // namespace dubsar

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "acquisition/range_rig.h"
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+#include "acquisition/placed_profiles.h"
+#include "acquisition/rig_parts.h"
+#include "acquisition/stage_watch.h"
+#include "formats/number_text.h"
+
+namespace dubsar {
+
+RangeRig::RangeRig(const RigFile& file, Device camera, Device stage, StageAxis axis, std::string device_id)
+    : file_(file),
+      camera_(std::move(camera)),
+      stage_(std::move(stage)),
+      axis_(std::move(axis)),
+      device_id_(std::move(device_id)),
+      stopped_(std::make_unique<std::atomic<bool>>(false)) {}
+
+Result<RangeRig> RangeRig::make(const RigFile& file, Device camera, Device stage, const std::string& where) {
+  const Result<DeviceCapabilities> of_camera = camera.capabilities();
+  if (!of_camera) {
+    return std::unexpected(of_camera.error());
+  }
+  if (!of_camera->yields_scans) {
+    return fail(ErrorKind::kUsage, file.camera + " yields no profiles", where,
+                "a camera that yields pictures needs a calibration");
+  }
+  if (!file.motion) {
+    return bad_input(where, "nobody says how the stage moves the range camera",
+                     "see [motion] in docs/formats/rig_toml.md");
+  }
+  if (file.speed <= 0) {
+    return fail(ErrorKind::kUsage, "nobody says how fast the stage is to go", where,
+                "give speed_mm_s or speed_deg_s: the camera's rate of profiles times the step");
+  }
+  Result<StageAxis> axis = axis_for_scan(file, stage, file.motion->kind, where);
+  if (!axis) {
+    return std::unexpected(axis.error());
+  }
+  if (Status put = put_camera_settings(file, camera, where); !put) {
+    return std::unexpected(put.error());
+  }
+  std::string id = file.name + (of_camera->serial.empty() ? std::string() : ", camera " + of_camera->serial);
+  return RangeRig(file, std::move(camera), std::move(stage), std::move(*axis), std::move(id));
+}
+
+Status RangeRig::scan(ProfileSink& sink) {
+  stopped_->store(false);
+  if (Status homed = home_once(stage_, file_.axis); !homed) {
+    return homed;
+  }
+  const Status status = run(sink);
+  if (!status) {
+    [[maybe_unused]] const Status said = stage_.stop();
+  }
+  return status;
+}
+
+Status RangeRig::run(ProfileSink& sink) {
+  const auto number = static_cast<std::uint32_t>(file_.axis);
+  const PlacedProfiles::Scan scan{*file_.motion, file_.start, file_.step, file_.rows, device_id_};
+  const Travel travel = travel_of(file_, axis_, file_.speed);
+  if (Status there = stage_.move({number, travel.from, file_.speed, false}); !there) {
+    return there;
+  }
+  const Result<StageReading> now = stage_.motion();
+  if (!now) {
+    return std::unexpected(now.error());
+  }
+  if (Status reports = check_reports(*now, file_); !reports) {
+    return reports;
+  }
+  const auto laser = static_cast<std::size_t>(file_.laser);
+  std::optional<LaserGuard> dark;
+  if (laser < now->laser.size()) {
+    dark.emplace(stage_, static_cast<std::uint32_t>(laser));
+    if (Status lit = stage_.set_laser(static_cast<std::uint32_t>(laser), file_.laser_power); !lit) {
+      return lit;
+    }
+  }
+  if (Status off = stage_.move({number, travel.to, travel.speed, true}); !off) {
+    return off;
+  }
+  StageWatch watch(stage_, number);
+  PlacedProfiles placed(sink, watch.track(), scan);
+  const Result<ScanOutcome> done = camera_.scan(placed);
+  placed.flush();
+  Status status;
+  if (stopped_->load() || placed.cancelled()) {
+    status = fail(ErrorKind::kCancelled, "scan cancelled", file_.name);
+  } else if (placed.complete()) {
+    watch.track().wait_closed(travel.time_to_rest(scan.end()));
+    status = watch.finish();
+  } else if (const Status told = watch.finish(); !told) {
+    status = told;
+  } else if (!done && done.error().kind != ErrorKind::kCancelled) {
+    status = std::unexpected(done.error());
+  } else if (placed.single_block()) {
+    status = fail(ErrorKind::kUsage,
+                  "the camera sends the whole scan in one block, and nothing tells its rows' times",
+                  file_.camera, "set a smaller height_px in camera_settings");
+  } else if (done) {
+    status = fail(ErrorKind::kDevice,
+                  "the camera stopped at " + number_text(placed.position().value_or(travel.from)) +
+                      " before the end of the scan",
+                  file_.camera, "ask it for more profiles with ?rows=, or move faster");
+  } else {
+    status = stopped_short(file_, watch.track().last().value_or(travel.from));
+  }
+  if (placed.begun()) {
+    sink.end(placed.tally());
+  }
+  return status;
+}
+
+Status RangeRig::stop() {
+  stopped_->store(true);
+  const Status of_camera = camera_.stop();
+  const Status of_stage = stage_.stop();
+  return of_stage ? of_camera : of_stage;
+}
+
+}  // namespace dubsar

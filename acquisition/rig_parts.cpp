@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "acquisition/rig_parts.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "acquisition/setting_words.h"
+#include "formats/number_text.h"
+
+namespace dubsar {
+
+namespace {
+
+constexpr double kRunUp_s = 0.3;    // to gather speed and for the readings around the first row
+constexpr double kRunUpSteps = 10;  // and at least so many rows
+constexpr int kRest_ms = 1000;
+
+}  // namespace
+
+Status put_camera_settings(const RigFile& file, Device& camera, const std::string& where) {
+  return put_settings(camera, file.camera_settings, where);
+}
+
+Result<StageAxis> axis_for_scan(const RigFile& file, Device& stage, MotionKind kind,
+                                const std::string& where) {
+  const Result<DeviceCapabilities> capable = stage.capabilities();
+  if (!capable) {
+    return std::unexpected(capable.error());
+  }
+  if (!capable->is_stage) {
+    return fail(ErrorKind::kUsage, file.stage + " is no stage", where, "name a stage: see dubsar drivers");
+  }
+  const Result<std::vector<StageAxis>> axes = stage.axes();
+  if (!axes) {
+    return std::unexpected(axes.error());
+  }
+  if (static_cast<std::size_t>(file.axis) >= axes->size()) {
+    return fail(ErrorKind::kUsage, "the stage has no axis " + std::to_string(file.axis), where,
+                "it has " + std::to_string(axes->size()) + ", counted from 0");
+  }
+  const StageAxis& axis = (*axes)[static_cast<std::size_t>(file.axis)];
+  if (axis.rotary != (kind != MotionKind::kLinear)) {
+    return bad_input(where, "axis " + axis.name + " does not move as is said of it",
+                     "name the axis that carries the camera or the tablet");
+  }
+  const double end = file.start + file.step * (file.rows - 1);
+  if (!axis.endless && (file.start < axis.minimum || end > axis.maximum)) {
+    return fail(ErrorKind::kUsage,
+                "the scan from " + number_text(file.start) + " to " + number_text(end) +
+                    " leaves the axis' limits, " + number_text(axis.minimum) + " to " +
+                    number_text(axis.maximum),
+                where, "scan less, or move the limits");
+  }
+  return axis;
+}
+
+Status home_once(Device& stage, int axis) {
+  const Result<StageReading> now = stage.motion();
+  if (!now) {
+    return std::unexpected(now.error());
+  }
+  const Result<std::vector<StageAxis>> axes = stage.axes();
+  if (!axes) {
+    return std::unexpected(axes.error());
+  }
+  const bool can_home = (*axes)[static_cast<std::size_t>(axis)].can_home;
+  return can_home && !now->homed ? stage.home() : Status{};
+}
+
+Status check_reports(const StageReading& reading, const RigFile& file) {
+  return reading.commanded
+             ? fail(ErrorKind::kUsage, "the stage does not report where it is while it moves", file.stage,
+                    "a stage that stops at each row, and a camera that yields pictures, can do with it")
+             : Status{};
+}
+
+std::unexpected<Error> stopped_short(const RigFile& file, double position) {
+  return fail(ErrorKind::kDevice,
+              "the stage stopped at " + number_text(position) + " before the end of the scan", file.stage,
+              "see whether something blocks it, and home it");
+}
+
+std::chrono::milliseconds Travel::time_to_rest(double last_row) const {
+  return std::chrono::milliseconds(kRest_ms + static_cast<int>(1000 * std::abs(to - last_row) / speed));
+}
+
+Travel travel_of(const RigFile& file, const StageAxis& axis, double speed) {
+  const double run_up = std::max(kRunUp_s * speed, kRunUpSteps * file.step);
+  Travel out{file.start - run_up, file.start + file.step * (file.rows - 1) + run_up, speed};
+  if (!axis.endless) {
+    out.from = std::max(out.from, axis.minimum);
+    out.to = std::min(out.to, axis.maximum);
+  }
+  return out;
+}
+
+}  // namespace dubsar

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <string>
+
+#include "core/rig_calibration.h"
+#include "drivers/device.h"
+#include "formats/rig_toml.h"
+
+namespace dubsar {
+
+/// What all rigs do with their camera and their stage.
+
+/// Puts a laser off when it goes.
+class LaserGuard {
+ public:
+  LaserGuard(Device& stage, std::uint32_t laser) : stage_(stage), laser_(laser) {}
+  LaserGuard(const LaserGuard&) = delete;
+  LaserGuard& operator=(const LaserGuard&) = delete;
+  ~LaserGuard() { [[maybe_unused]] const Status said = stage_.set_laser(laser_, 0); }
+
+ private:
+  Device& stage_;
+  std::uint32_t laser_;
+};
+
+/// Puts the settings of the file, in its order. kUsage: one that the camera does not have or take.
+Status put_camera_settings(const RigFile& file, Device& camera, const std::string& where);
+
+/// The axis that the file names. kUsage: no stage, no such axis, a scan beyond its limits; kBadInput: one
+/// that moves otherwise.
+[[nodiscard]] Result<StageAxis> axis_for_scan(const RigFile& file, Device& stage, MotionKind kind,
+                                              const std::string& where);
+
+/// Positions mean nothing before a stage has found its switch: homes it, if it can and has not.
+Status home_once(Device& stage, int axis);
+
+/// kUsage: a stage that does not tell where it is while it moves.
+Status check_reports(const StageReading& reading, const RigFile& file);
+[[nodiscard]] std::unexpected<Error> stopped_short(const RigFile& file, double position);
+
+/// The way of a continuous scan.
+struct Travel {
+  double from = 0, to = 0;  ///< with room to gather speed, where the axis has it
+  double speed = 0;         ///< mm/s or rad/s
+  /// At most, from the last row until it stands.
+  [[nodiscard]] std::chrono::milliseconds time_to_rest(double last_row) const;
+};
+[[nodiscard]] Travel travel_of(const RigFile& file, const StageAxis& axis, double speed);
+
+}  // namespace dubsar

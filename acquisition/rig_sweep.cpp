@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+// The continuous scan of a rig: nothing waits for anything, and the clock says what belongs together.
+#include <algorithm>
+#include <cmath>
+
+#include "acquisition/rig_parts.h"
+#include "acquisition/rig_scan.h"
+#include "acquisition/stage_watch.h"
+#include "acquisition/stripe_stream.h"
+#include "formats/number_text.h"
+
+namespace dubsar {
+
+namespace {
+
+/// The camera's rate where it tells one.
+std::optional<double> frame_rate_hz(const Device& camera) {
+  const Result<SettingValue> told = camera.get("frame_rate_hz");
+  const double* const rate = told ? std::get_if<double>(&*told) : nullptr;
+  return rate != nullptr && *rate > 0 ? std::optional(*rate) : std::nullopt;
+}
+
+}  // namespace
+
+Result<Travel> RigScanner::plan_sweep() {
+  if (triangulator_->calibration().motion.kind == MotionKind::kGalvanometer) {
+    return fail(ErrorKind::kUsage, "a mirror is scanned row by row", file_.name,
+                "leave continuous away: an error of its time would be one of depth");
+  }
+  const Result<std::vector<StageAxis>> axes = stage_.axes();
+  if (!axes) {
+    return std::unexpected(axes.error());
+  }
+  const StageAxis& axis = (*axes)[static_cast<std::size_t>(file_.axis)];
+  const Result<StageReading> now = stage_.motion();
+  if (!now) {
+    return std::unexpected(now.error());
+  }
+  if (const Status reports = check_reports(*now, file_); !reports) {
+    return std::unexpected(reports.error());
+  }
+  const std::optional<double> rate = frame_rate_hz(camera_);
+  if (file_.speed <= 0 && !rate) {
+    return fail(ErrorKind::kUsage, "nobody says how fast the stage is to go", file_.name,
+                "the camera does not tell its rate: give speed_mm_s or speed_deg_s");
+  }
+  double speed = file_.speed > 0 ? file_.speed : file_.step * *rate;
+  if (axis.speed_maximum > 0) {
+    speed = std::min(speed, axis.speed_maximum);
+  }
+  // A step from frame to frame: the camera goes with the stage.
+  if (const double wanted = speed / file_.step; rate && std::abs(wanted / *rate - 1) > 1e-3) {
+    if (const Status set = camera_.set("frame_rate_hz", wanted); !set) {
+      return fail(
+          ErrorKind::kUsage,
+          "the camera cannot take " + number_text(wanted) + " frames a second, which this speed asks for",
+          file_.name, "scan more slowly, or leave the speed away");
+    }
+  }
+  return travel_of(file_, axis, speed);
+}
+
+Status RigScanner::sweep(const Travel& plan, ProfileSink& sink, ScanTally& tally) {
+  const auto axis = static_cast<std::uint32_t>(file_.axis);
+  if (Status there = stage_.move({axis, plan.from, file_.speed, false}); !there) {
+    return there;
+  }
+  if (Status lit = stage_.set_laser(static_cast<std::uint32_t>(file_.laser), file_.laser_power); !lit) {
+    return lit;
+  }
+  if (Status off = stage_.move({axis, plan.to, plan.speed, true}); !off) {
+    return off;
+  }
+  StageWatch watch(stage_, axis);
+  StripeStream stripes(camera_, extractor_.options(),
+                       [this](const Frame& frame) { return check_frame(frame); });
+  const double end = file_.start + file_.step * (file_.rows - 1);
+  std::optional<std::int64_t> first;
+  double position = plan.from;
+  for (std::int64_t next_row = 0; position < end - 0.5 * file_.step;) {
+    if (stopped_->load()) {
+      return fail(ErrorKind::kCancelled, "scan stopped", file_.name);
+    }
+    Result<StreamedStripe> seen = stripes.next();
+    if (!seen) {
+      return std::unexpected(seen.error());
+    }
+    const std::optional<double> there = watch.track().at(seen->timestamp_ns);
+    if (!there && !watch.track().closed_before(seen->timestamp_ns)) {
+      continue;  // taken before it moved
+    }
+    if (!there) {
+      if (stopped_->load()) {
+        continue;
+      }
+      if (first && position > end - 1.5 * file_.step) {
+        break;  // the axis ends where the scan does
+      }
+      const Status told = watch.finish();
+      return !told ? told : stopped_short(file_, watch.track().last().value_or(position));
+    }
+    position = *there;
+    if (position < file_.start - 0.5 * file_.step || position >= end + 0.5 * file_.step) {
+      continue;
+    }
+    first = first ? first : std::optional(seen->id);
+    const std::int64_t row = seen->id - *first;
+    tally.profiles_dropped += static_cast<std::uint64_t>(std::max<std::int64_t>(0, row - next_row));
+    next_row = row + 1;
+    if (Status handed = hand_on(row, seen->stripe, position, seen->timestamp_ns, sink, tally); !handed) {
+      return handed;
+    }
+  }
+  // What it needs to come to rest behind the last row.
+  watch.track().wait_closed(plan.time_to_rest(end));
+  return watch.finish();
+}
+
+}  // namespace dubsar

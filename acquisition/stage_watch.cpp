@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "acquisition/stage_watch.h"
+
+#include <chrono>
+
+namespace dubsar {
+
+namespace {
+
+constexpr auto kAskEvery = std::chrono::milliseconds(4);
+constexpr int kStill = 6;  // readings of a stage that stands, before it is believed to have arrived
+
+}  // namespace
+
+StageWatch::StageWatch(const Device& stage, std::size_t axis)
+    : stage_(stage), axis_(axis), thread_([this](const std::stop_token& enough) { ask(enough); }) {}
+
+StageWatch::~StageWatch() {
+  [[maybe_unused]] const Status said = finish();
+}
+
+void StageWatch::ask(const std::stop_token& enough) {
+  for (int still = 0; still < kStill && !enough.stop_requested();) {
+    const Result<StageReading> reading = stage_.motion();
+    if (!reading || axis_ >= reading->position.size()) {
+      const std::lock_guard lock(mutex_);
+      status_ = reading ? fail(ErrorKind::kDevice, "the stage does not tell where its axis is", stage_.uri())
+                        : Status(std::unexpected(reading.error()));
+      break;
+    }
+    track_.add(reading->timestamp_ns, reading->position[axis_], reading->uncertainty_ns);
+    still = reading->moving ? 0 : still + 1;
+    std::this_thread::sleep_for(kAskEvery);
+  }
+  track_.close();
+}
+
+Status StageWatch::finish() {
+  thread_.request_stop();
+  if (thread_.joinable()) {
+    thread_.join();
+  }
+  const std::lock_guard lock(mutex_);
+  return status_;
+}
+
+}  // namespace dubsar

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+// The whole way at full size: frames of a simulated rig as GigE Vision packets on a loopback to the aravis
+// driver, a stage behind an emulated USB port that moves through, by `rig:` to a grid, against the true
+// surface.
+//   dubsar-gige-rig [--rows N] [--rate HZ] [--contrast C …] [--f-number N] [--loss SHARE]
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <vector>
+
+#include "acquisition/device_uri.h"
+#include "core/mesh_query.h"
+#include "drivers/loader.h"
+#include "sim/frame_rig.h"
+#include "sim/speckle_bound.h"
+#include "sim/tablet.h"
+#include "tests/support/gige_scanner.h"
+#include "tests/support/grid_truth.h"
+
+namespace dubsar {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// Scan times beside the grid: how fast the rows came.
+struct TimedGrid : test::CollectGrid {
+  bool profile(const Profile& profile) override {
+    last = Clock::now();
+    first = first == Clock::time_point{} ? last : first;
+    return CollectGrid::profile(profile);
+  }
+  Clock::time_point first{}, last{};
+};
+
+int scan(const test::GigeScannerPlan& plan, const MeshQuery& truth, test::PeerProcess& stage,
+         double bound_um) {
+  test::GigeScanner scanner(plan, stage);
+  if (!scanner.refusal().empty()) {
+    std::fprintf(stderr, "dubsar-gige-rig: %s\n", scanner.refusal().c_str());
+    return 3;
+  }
+  const DriverRegistry registry{{std::filesystem::path(DUBSAR_BINARY_DIR) / "lib/dubsar/drivers"}};
+  const auto uri = parse_device_uri("rig:" + scanner.rig_file().string());
+  Result<Device> device = open_device(uri.value(), registry);
+  TimedGrid sink;
+  const Result<ScanOutcome> done = device ? device->scan(sink) : std::unexpected(device.error());
+  if (!done) {
+    std::fprintf(stderr, "%s\n", done.error().line().c_str());
+    return 3;
+  }
+  const auto lost = static_cast<unsigned long long>(sink.tally.profiles_dropped);
+  const RangeGrid grid = sink.grid();
+  const test::DepthErrors errors = test::depth_errors(grid, scanner.tablet_from_grid(), truth);
+  const Eigen::Vector3d per_mm = plan.truth.scanner_from_camera().rotation * plan.truth.motion.direction;
+  const double seconds = std::chrono::duration<double>(sink.last - sink.first).count();
+  std::printf(
+      "  contrast %.2f: %d rows at %.1f/s, %llu lost, %s packets resent, %.1f%% of the samples; depth %.2f "
+      "um "
+      "rms, bias %.2f, off the surface %.3f%%",
+      plan.optics.speckle_contrast, grid.rows, (grid.rows - 1) / seconds, lost,
+      scanner.camera().tell("resent").c_str(),
+      100.0 * static_cast<double>(grid.valid_count()) / static_cast<double>(grid.size()), errors.rms_um,
+      errors.bias_um, 100 * errors.missed);
+  if (bound_um > 0) {
+    std::printf(" (bound of the speckle %.1f um: %.2f times)", bound_um, errors.rms_um / bound_um);
+  }
+  std::printf("; rows %.2f um from where their frames were taken\n",
+              test::row_rms_um(grid, scanner.positions(), per_mm));
+  std::fflush(stdout);
+  const double allowed_um = bound_um > 0 ? std::min(1.2 * bound_um, 20.0) : 3.0;
+  return lost == 0 && errors.rms_um <= allowed_um ? 0 : 1;
+}
+
+int run(int argc, char** argv) {
+  CLI::App app("From GigE packets to a grid, against the truth", "dubsar-gige-rig");
+  std::vector<double> contrasts{0, 0.7, 1};
+  sim::FrameRigOptions size;
+  test::GigeScannerPlan plan;
+  plan.rows = 40;
+  plan.rate_hz = 40;
+  plan.optics.f_number = 5.6;
+  app.add_option("--rows", plan.rows)->check(CLI::Range(4, 2000));
+  app.add_option("--rate", plan.rate_hz, "Of the camera, Hz")->check(CLI::Range(1.0, 1000.0));
+  app.add_option("--contrast", contrasts, "Of the speckle");
+  app.add_option("--f-number", plan.optics.f_number);
+  app.add_option("--loss", plan.loss, "Share of the packets that are lost")->check(CLI::Range(0.0, 0.2));
+  CLI11_PARSE(app, argc, argv);
+  std::string why;
+  test::PeerProcess* const stage = test::enter_emulated_machine(argv, why);
+  if (stage == nullptr) {
+    std::fprintf(stderr, "dubsar-gige-rig: %s\n", why.c_str());
+    return 3;
+  }
+  int worst = 0;
+  for (const bool written : {false, true}) {
+    sim::TabletOptions wanted;
+    wanted.size_mm = {44, 36, 18};
+    wanted.text_density = written ? 1.0 : 0.0;
+    wanted.grain_um = written ? 12 : 0;
+    wanted.seal_um = written ? 20 : 0;
+    wanted.damage = sim::DamageOptions::none();
+    JobContext job;
+    const Result<sim::SimTablet> tablet = sim::make_tablet(wanted, job);
+    if (!tablet) {
+      std::fprintf(stderr, "%s\n", tablet.error().line().c_str());
+      return 4;
+    }
+    const MeshQuery query(tablet->mesh);
+    sim::Scene scene;
+    scene.tablet = &*tablet;
+    scene.query = &query;
+    plan.truth = sim::frame_rig(size);
+    plan.scene = &scene;
+    plan.tablet_from_scanner.translation_mm.z() = test::top_mm(tablet->mesh) - 1.0;
+    std::printf("%s tablet, %d x %d, field %.0f mm, f/%.1f, camera at %.0f/s, stage at %.2f mm/s\n",
+                written ? "written" : "blank", size.width, size.height, size.field_mm, plan.optics.f_number,
+                plan.rate_hz, plan.rate_hz * plan.step);
+    for (const double contrast : contrasts) {
+      plan.optics.speckle_contrast = contrast;
+      worst =
+          std::max(worst, scan(plan, query, *stage, sim::speckle_bound_um(plan.truth, plan.optics, size)));
+    }
+  }
+  return worst;
+}
+
+}  // namespace
+}  // namespace dubsar
+
+int main(int argc, char** argv) {
+  return dubsar::run(argc, argv);
+}

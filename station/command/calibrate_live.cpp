@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+// dubsar calibrate --rig: the pictures are taken with the rig itself.
+
+#include <poll.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "acquisition/live_calibration.h"
+#include "acquisition/rig_device.h"
+#include "formats/calibration_json.h"
+#include "station/command/calibrate.h"
+#include "station/command/command.h"
+#include "station/command/terminal.h"
+
+namespace dubsar {
+
+namespace {
+
+/// A line of the operator; nothing at the end of the input, or when the job was cancelled.
+class OperatorLines {
+ public:
+  explicit OperatorLines(const JobContext& job) : job_(job) {}
+  std::optional<std::string> next() {
+    for (;;) {
+      if (const std::size_t end = pending_.find('\n'); end != std::string::npos) {
+        std::string out = pending_.substr(0, end);
+        pending_.erase(0, end + 1);
+        return out;
+      }
+      pollfd waiting{STDIN_FILENO, POLLIN, 0};
+      if (job_.cancelled()) {
+        return std::nullopt;
+      }
+      if (::poll(&waiting, 1, 200) <= 0) {
+        continue;
+      }
+      char bytes[256];
+      const ssize_t got = ::read(STDIN_FILENO, bytes, sizeof bytes);
+      if (got <= 0) {
+        return std::nullopt;
+      }
+      pending_.append(bytes, static_cast<std::size_t>(got));
+    }
+  }
+
+ private:
+  const JobContext& job_;
+  std::string pending_;
+};
+
+LiveCalibrationPlan plan_for(const LiveOptions& options, const RigFile& rig, const std::string& board,
+                             const std::string& folder) {
+  LiveCalibrationPlan plan;
+  plan.set.board = board;
+  if (options.motion != "none") {
+    const auto& words = motion_words();
+    const auto found = std::find(words.begin(), words.end(), options.motion);
+    plan.set.motion = static_cast<MotionKind>(found - words.begin());
+  }
+  plan.set.depth_range_mm = options.depth_range_mm;
+  plan.set.plate_margin_mm = options.plate_margin_mm;
+  plan.set.stripe_sigma_px = rig.stripe_sigma_px;
+  plan.set.stripe_per_row = rig.stripe_per_row;
+  plan.folder = folder;
+  plan.axis = rig.axis;
+  plan.laser = rig.laser;
+  plan.laser_power = rig.laser_power;
+  plan.from = rig.start;
+  plan.to = rig.start + rig.step * (rig.rows - 1);
+  plan.stops = options.stops;
+  if (options.board_exposure_us > 0) {
+    plan.board_exposure_us = options.board_exposure_us;
+  }
+  if (options.laser_exposure_us > 0) {
+    plan.laser_exposure_us = options.laser_exposure_us;
+  }
+  return plan;
+}
+
+void tell(const std::string& line) {
+  finish_progress();
+  std::fprintf(stderr, "%s\n", line.c_str());
+}
+
+void tell_next(const LiveCalibration& live) {
+  const std::vector<std::string> next = live.next();
+  tell(std::to_string(live.poses()) + " poses, " + std::to_string(live.stops()) + " positions of the stage");
+  for (std::size_t i = 0; i < std::min<std::size_t>(next.size(), 3); ++i) {
+    tell("next: " + next[i]);
+  }
+  if (next.empty()) {
+    tell("nothing is missing: q");
+  }
+  tell("Enter: take this pose; s: the board lies on the stage; q: that is all");
+}
+
+}  // namespace
+
+void add_live_options(CLI::App& verb, LiveOptions& options) {
+  verb.add_option("--rig", options.rig,
+                  "rig.toml, whose camera and stage take the pictures; the calibration goes where it says");
+  verb.add_option("--motion", options.motion, "with --rig: what the stage does")
+      ->check(CLI::IsMember({"linear", "turntable", "galvanometer", "none"}))
+      ->default_val("linear");
+  verb.add_option("--stops", options.stops, "with --rig: positions of the stage")->check(CLI::Range(3, 50));
+  verb.add_option("--depth-range", options.depth_range_mm, "with --rig: of the measuring volume, mm")
+      ->check(CLI::Range(1.0, 2000.0));
+  verb.add_option("--plate-margin", options.plate_margin_mm, "with --rig: of flat plate around the print, mm")
+      ->check(CLI::Range(0.0, 500.0));
+  verb.add_option("--board-exposure", options.board_exposure_us, "with --rig: for pictures of the board, us")
+      ->check(CLI::Range(1.0, 1e7));
+  verb.add_option("--laser-exposure", options.laser_exposure_us, "with --rig: for pictures of the stripe, us")
+      ->check(CLI::Range(1.0, 1e7));
+}
+
+Result<std::string> take_pictures(const LiveOptions& options, const std::string& board,
+                                  const std::string& folder, CommandContext& context) {
+  if (board.empty()) {
+    return fail(ErrorKind::kUsage, "nobody says what board it is", options.rig, "say --board");
+  }
+  const DriverRegistry registry;
+  Result<RigParts> parts = open_rig_parts(options.rig, registry);
+  if (!parts) {
+    return std::unexpected(parts.error());
+  }
+  const std::string belongs =
+      (std::filesystem::path(options.rig).parent_path() / parts->file.calibration).string();
+  if (parts->file.calibration.empty()) {
+    return fail(ErrorKind::kUsage, "a range camera is calibrated by its maker", options.rig);
+  }
+  Result<LiveCalibration> live =
+      LiveCalibration::start(plan_for(options, parts->file, board, folder), std::move(parts->camera),
+                             std::move(parts->stage), context.job);
+  if (!live) {
+    return std::unexpected(live.error());
+  }
+  OperatorLines lines(context.job);
+  tell_next(*live);
+  for (std::optional<std::string> line = lines.next(); line && *line != "q"; line = lines.next()) {
+    if (!line->empty() && *line != "s") {
+      tell("Enter, s or q");
+      continue;
+    }
+    const Result<LiveCalibration::Taken> taken =
+        line->empty() ? live->take_pose() : live->take_stops(context.job);
+    // A camera or a stage that is gone can be plugged in again: what was taken is kept either way.
+    if (!taken && taken.error().kind != ErrorKind::kDevice) {
+      return std::unexpected(taken.error());
+    }
+    tell(taken ? (taken->used ? "taken: " : "of no use: ") + taken->said : taken.error().line());
+    tell_next(*live);
+  }
+  if (context.job.cancelled()) {
+    return fail(ErrorKind::kCancelled, "calibration cancelled; the pictures are kept", folder,
+                "the same command goes on with them");
+  }
+  if (live->poses() == 0) {
+    return fail(ErrorKind::kUsage, "no picture was taken", folder);
+  }
+  return belongs;
+}
+
+}  // namespace dubsar

@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+// A calibration taken with the rig itself: a simulated camera and stage behind the driver interface, and an
+// operator who holds a board before them.
+#include "acquisition/live_calibration.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "acquisition/calibration_folder.h"
+#include "bench/support/simulated_calibration.h"
+#include "formats/atomic_file.h"
+#include "sim/board_poses.h"
+#include "tests/acquisition/rig_bench.h"
+#include "tests/support/temporary_folder.h"
+
+namespace dubsar {
+namespace {
+
+constexpr const char* kBoard = "charuco:9x6:5:3.7";
+constexpr int kTexels = 40;
+
+class Live : public testing::Test {
+ protected:
+  Live() {
+    sim::FrameRigOptions size;
+    size.width = 720;
+    size.height = 400;
+    bench_.truth = sim::frame_rig(size);
+    bench_.limit = 10;
+    bench_.optics.laser_sigma_mm = 0.06;
+    bench_.optics.laser_signal = 0.25;
+    bench_.optics.ambient_signal = 0.25;
+    bench_.look = [this](const test::RigBench& bench) {
+      const RigidTransform pose = shaking_ ? shaken(held_, bench.frames) : held_;
+      const RigidTransform there =
+          carried_ ? sim::carried_board(bench.truth, spec_.low_mm(), spec_.high_mm(), {bench.position})[0]
+                   : pose;
+      const sim::BoardTarget target(pattern_, spec_.square_mm / kTexels, -spec_.low_mm(), there);
+      // A board that is held still looks the same twice.
+      const bool same = seen_from_ && seen_from_->translation_mm == there.translation_mm &&
+                        seen_from_->rotation == there.rotation;
+      std::optional<GrayImage>& kept = bench.laser > 0 ? lit_ : dark_;
+      if (!same) {
+        lit_.reset();
+        dark_.reset();
+        seen_from_ = there;
+      }
+      if (!kept) {
+        kept = sim::FrameRenderer(bench.truth, bench.optics)
+                   .render(target, bench.laser > 0, bench.position, bench.frames);
+      }
+      return *kept;
+    };
+    plan_.set.board = kBoard;
+    plan_.set.motion = MotionKind::kLinear;
+    plan_.set.depth_range_mm = 30;  // more than this camera of few pixels is refused for
+    plan_.set.stripe_sigma_px = 1.2;
+    plan_.folder = folder_.path() / "pictures";
+    plan_.from = -6;
+    plan_.to = 6;
+    plan_.stops = 4;
+  }
+  static RigidTransform shaken(RigidTransform pose, std::uint64_t frame) {
+    pose.translation_mm.x() += 0.4 * static_cast<double>(frame % 7);
+    return pose;
+  }
+  Result<LiveCalibration> start() {
+    return LiveCalibration::start(plan_, test::camera_of(bench_), test::stage_of(bench_), JobContext{});
+  }
+  std::vector<RigidTransform> poses(int count) const {
+    return sim::board_poses(bench_.truth, spec_.low_mm(), spec_.high_mm(), count, 3);
+  }
+
+  test::TemporaryFolder folder_;
+  test::RigBench bench_;
+  BoardSpec spec_ = *parse_board(kBoard);
+  GrayImage pattern_ = board_pattern(spec_, kTexels);
+  RigidTransform held_;
+  std::optional<RigidTransform> seen_from_;
+  std::optional<GrayImage> lit_, dark_;
+  bool carried_ = false;
+  bool shaking_ = false;
+  LiveCalibrationPlan plan_;
+};
+
+TEST_F(Live, LeadsAnOperatorToACalibration) {
+  Result<LiveCalibration> live = start();
+  ASSERT_TRUE(live.has_value()) << live.error().line();
+  ASSERT_EQ(live->next().size(), 1U);
+  EXPECT_NE(live->next()[0].find("right side nearer"), std::string::npos);
+  const std::vector<RigidTransform> all = poses(12);
+  // Nothing to see, then a board that is not held still: of no use, and nothing is kept.
+  held_.translation_mm = {500, 0, 250};
+  EXPECT_FALSE(live->take_pose()->used);
+  held_ = all[0];
+  shaking_ = true;
+  const auto moved = live->take_pose();
+  ASSERT_TRUE(moved.has_value());
+  EXPECT_FALSE(moved->used);
+  EXPECT_NE(moved->said.find("moved"), std::string::npos);
+  EXPECT_EQ(live->poses(), 0);
+  EXPECT_FALSE(std::filesystem::exists(plan_.folder / "pose_00.png"));
+  shaking_ = false;
+  for (const RigidTransform& pose : all) {
+    held_ = pose;
+    const auto taken = live->take_pose();
+    ASSERT_TRUE(taken.has_value()) << taken.error().line();
+    EXPECT_TRUE(taken->used) << taken->said;
+    EXPECT_EQ(bench_.laser, 0) << "off when it is done";
+    if (live->poses() == 6) {
+      // Half way it knows what it has not seen.
+      EXPECT_FALSE(live->next().empty());
+      EXPECT_NE(live->next().back().find("stage"), std::string::npos);
+    }
+  }
+  carried_ = true;
+  const auto stops = live->take_stops(JobContext{});
+  ASSERT_TRUE(stops.has_value()) << stops.error().line();
+  EXPECT_TRUE(stops->used) << stops->said;
+  EXPECT_EQ(live->stops(), 4);
+  const Result<CalibrationReport> report = live->calibrate();
+  ASSERT_TRUE(report.has_value()) << report.error().line();
+  EXPECT_EQ(live->next(), report->missing);
+  EXPECT_LT(shape_error_mm(bench_.truth, report->rig), 0.1);
+  EXPECT_LT((report->rig.motion.direction - bench_.truth.motion.direction).norm(), 0.01);
+  EXPECT_EQ(report->rig.camera_serial, "SIM-CAMERA");
+  // What lies in the folder says the same.
+  const std::string list = (plan_.folder / "calibration.toml").string();
+  const auto set = parse_calibration_set(read_whole_file(list).value(), list);
+  ASSERT_TRUE(set.has_value()) << set.error().line();
+  const auto pictures = look_at_pictures(plan_.folder, *set, JobContext{});
+  ASSERT_TRUE(pictures.has_value());
+  EXPECT_EQ(pictures->views.size(), all.size() + 4);
+  EXPECT_TRUE(pictures->left_out.empty());
+  EXPECT_GT(pictures->views[3].stripe_px.size(), 50U);
+}
+
+TEST_F(Live, GoesOnWithWhatWasTakenAndRefusesAnothersPictures) {
+  {
+    Result<LiveCalibration> live = start();
+    ASSERT_TRUE(live.has_value());
+    held_ = poses(2)[0];
+    ASSERT_TRUE(live->take_pose()->used);
+  }
+  {
+    Result<LiveCalibration> again = start();
+    ASSERT_TRUE(again.has_value()) << again.error().line();
+    EXPECT_EQ(again->poses(), 1);
+    held_ = poses(2)[1];
+    ASSERT_TRUE(again->take_pose()->used);
+    EXPECT_TRUE(std::filesystem::exists(plan_.folder / "pose_01_dark.png"));
+  }
+  bench_.serial = "ANOTHER";
+  const Result<LiveCalibration> another = start();
+  ASSERT_FALSE(another.has_value());
+  EXPECT_EQ(another.error().kind, ErrorKind::kBadInput);
+}
+
+TEST_F(Live, FailuresLeaveTheLaserOff) {
+  Result<LiveCalibration> live = start();
+  ASSERT_TRUE(live.has_value());
+  held_ = poses(1)[0];
+  bench_.gone_after = 2;
+  const auto gone = live->take_pose();
+  ASSERT_FALSE(gone.has_value());
+  EXPECT_EQ(gone.error().kind, ErrorKind::kDevice);
+  EXPECT_EQ(bench_.laser, 0);
+  plan_.folder = folder_.path() / "other";
+  plan_.to = 100;
+  const Result<LiveCalibration> far = start();
+  ASSERT_FALSE(far.has_value());
+  EXPECT_NE(far.error().what.find("limits"), std::string::npos);
+  plan_.set.board = "charuco:1x1:0:0";
+  EXPECT_FALSE(start().has_value());
+}
+
+}  // namespace
+}  // namespace dubsar

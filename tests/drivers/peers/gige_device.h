@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <netinet/in.h>
+
+#include <atomic>
+#include <cstdint>
+#include <deque>
+#include <mutex>
+#include <optional>
+#include <random>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace dubsar::test {
+
+/// A GigE Vision device of our own, without Aravis, on 127.0.0.1: answers GVCP, sends what next() exposes as
+/// GVSP packets, loses some of them on request and sends them again when it is asked to.
+class GigeDevice {
+ public:
+  using Bytes = std::vector<std::uint8_t>;
+
+  /// `xml` is its GenICam description; `loss` the share of packets that are not sent at first.
+  GigeDevice(const std::string& model, const std::string& serial, const std::string& xml, double loss);
+  virtual ~GigeDevice() = default;
+  GigeDevice(const GigeDevice&) = delete;
+  GigeDevice& operator=(const GigeDevice&) = delete;
+
+  [[nodiscard]] bool works() const { return works_; }
+  void serve_control();
+  void serve_stream();
+
+  std::atomic<bool> quit = false, quiet = false;
+  std::atomic<int> resent = 0;
+
+ protected:
+  struct Picture {
+    Bytes data;
+    std::uint64_t timestamp_ns = 0;      ///< of the exposure, CLOCK_MONOTONIC
+    std::optional<std::uint32_t> chunk;  ///< an encoder's count, when chunks are on
+  };
+  /// Waits for the next exposure; `width`, `height` are those of the region. Nothing when none came of it.
+  virtual std::optional<Picture> next(std::uint32_t id) = 0;
+
+  [[nodiscard]] std::uint32_t reg(std::uint32_t at) {
+    const std::lock_guard lock(mutex_);
+    return read(at);
+  }
+  void write(std::uint32_t at, std::uint32_t value);
+  void real(std::uint32_t at, double value);
+
+ private:
+  struct Block {
+    std::uint16_t id = 0;
+    std::vector<Bytes> packets;  ///< leader, payload, trailer; ready to be sent
+  };
+  [[nodiscard]] std::uint32_t read(std::uint32_t at) const;
+  void text(std::uint32_t at, const std::string& value);
+  void send(const Bytes& packet);
+  [[nodiscard]] Block packed(std::uint16_t id, Picture& picture) const;
+  void resend(const std::uint8_t* ask);
+  void answer(const Bytes& ask, const sockaddr_in& to);
+
+  Bytes memory_;
+  double loss_;
+  int control_ = -1;
+  int stream_ = -1;
+  bool works_ = false;
+  std::mutex mutex_;
+  std::deque<Block> history_;
+  std::mt19937 random_{1};
+};
+
+/// "ready" or "cannot", then both services until standard input ends; each line of it is answered.
+int serve_gige(GigeDevice& device);
+
+}  // namespace dubsar::test
