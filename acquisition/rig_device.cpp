@@ -9,17 +9,13 @@
 
 #include "acquisition/device_uri.h"
 #include "acquisition/range_rig.h"
+#include "acquisition/rig_view.h"
 #include "drivers/driver.h"
 #include "drivers/plugin.h"
 #include "formats/atomic_file.h"
 #include "formats/calibration_json.h"
 #include "formats/number_text.h"
 #include "formats/verification_log.h"
-
-/// The rig behind the C interface.
-struct dubsar_device {
-  std::unique_ptr<dubsar::RigSource> source;
-};
 
 namespace dubsar {
 
@@ -84,7 +80,9 @@ std::int32_t capabilities(dubsar_device* device, dubsar_capabilities* out, dubsa
     unknown.struct_size = sizeof unknown;
     unknown.scan_count = -1;
     unknown.calibration_age_days = -1;
-    plugin::lend(out, rig != nullptr ? plugin::capabilities_of(*rig) : unknown);
+    dubsar_capabilities filled = rig != nullptr ? plugin::capabilities_of(*rig) : unknown;
+    filled.flags |= device->source->camera() != nullptr ? DUBSAR_YIELDS_FRAMES : 0U;
+    plugin::lend(out, filled);
     return std::int32_t{DUBSAR_OK};
   });
 }
@@ -137,6 +135,7 @@ const dubsar_driver& rig_driver() {
     out.capabilities = capabilities;
     out.scan = scan;
     out.stop = stop;
+    offer_view(out);
     return out;
   }();
   return driver;

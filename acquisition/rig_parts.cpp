@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <exception>
 
+#include "acquisition/setting_words.h"
 #include "formats/number_text.h"
 
 namespace dubsar {
@@ -16,62 +16,10 @@ constexpr double kRunUpS = 0.3;     // to gather speed and for the readings arou
 constexpr double kRunUpSteps = 10;  // and at least so many rows
 constexpr int kRestMs = 1000;
 
-/// A word of rig.toml as the type that the setting has.
-Result<SettingValue> value_for(const SettingInfo& setting, const std::string& word,
-                               const std::string& where) {
-  const auto wrong = [&] {
-    return fail(ErrorKind::kUsage, "setting " + setting.key + " cannot be '" + word + "'", where);
-  };
-  try {
-    std::size_t used = 0;
-    switch (setting.type) {
-      case SettingType::kBool:
-        if (word == "true" || word == "false") {
-          return SettingValue(word == "true");
-        }
-        return wrong();
-      case SettingType::kInteger: {
-        const std::int64_t value = std::stoll(word, &used);
-        return used == word.size() ? Result<SettingValue>(SettingValue(value)) : wrong();
-      }
-      case SettingType::kNumber: {
-        const double value = std::stod(word, &used);
-        return used == word.size() ? Result<SettingValue>(SettingValue(value)) : wrong();
-      }
-      case SettingType::kText:
-      case SettingType::kChoice:
-        return SettingValue(word);
-    }
-  } catch (const std::exception&) {  // std::stoll and std::stod say it this way
-    return wrong();
-  }
-  return wrong();
-}
-
 }  // namespace
 
 Status put_camera_settings(const RigFile& file, Device& camera, const std::string& where) {
-  if (file.camera_settings.empty()) {
-    return {};
-  }
-  const Result<std::vector<SettingInfo>> settings = camera.settings();
-  if (!settings) {
-    return std::unexpected(settings.error());
-  }
-  for (const auto& [key, word] : file.camera_settings) {
-    const auto found = std::ranges::find(*settings, key, &SettingInfo::key);
-    if (found == settings->end()) {
-      return fail(ErrorKind::kUsage, "the camera has no setting " + key, where, "see dubsar drivers");
-    }
-    const Result<SettingValue> value = value_for(*found, word, where);
-    if (!value) {
-      return std::unexpected(value.error());
-    }
-    if (Status status = camera.set(key, *value); !status) {
-      return status;
-    }
-  }
-  return {};
+  return put_settings(camera, file.camera_settings, where);
 }
 
 Result<StageAxis> axis_for_scan(const RigFile& file, Device& stage, MotionKind kind,

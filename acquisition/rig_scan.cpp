@@ -272,6 +272,24 @@ Status RigScanner::scan(ProfileSink& sink) {
   return status;
 }
 
+Status RigScanner::start_view() {
+  const auto laser = static_cast<std::uint32_t>(file_.laser);
+  if (Status started = camera_.start_frames(); !started) {
+    return started;
+  }
+  Status lit = stage_.set_laser(laser, file_.laser_power);
+  if (!lit) {
+    [[maybe_unused]] const Status said = camera_.stop_frames();
+  }
+  return lit;
+}
+
+Status RigScanner::stop_view() {
+  Status dark = stage_.set_laser(static_cast<std::uint32_t>(file_.laser), 0);
+  const Status stopped = camera_.stop_frames();
+  return dark ? stopped : dark;
+}
+
 Status RigScanner::stop() {
   stopped_->store(true);
   return stage_.stop();

@@ -35,6 +35,10 @@ class RigScanner : public RigSource {
   /// stage moves through, every frame of the camera is a row, and its time says where the stage was. The
   /// laser is off afterwards, whatever happened.
   Status scan(ProfileSink& sink) override;
+  /// Between scans: the camera's frames as a scan would see them, the laser lit and nothing moving.
+  Status start_view() override;
+  Status stop_view() override;
+  [[nodiscard]] Device* camera() override { return &camera_; }
   /// Ends the motion and puts the laser off; a scan that runs returns kCancelled soon.
   Status stop() override;
   [[nodiscard]] const Rig* geometry() const override { return &rig_; }

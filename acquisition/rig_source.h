@@ -20,6 +20,10 @@ class RigSource {
   virtual Status stop() = 0;
   /// What is known of its geometry; nullptr when nothing is.
   [[nodiscard]] virtual const Rig* geometry() const = 0;
+  /// Of a rig that can be looked through between scans; nullptr where none can.
+  [[nodiscard]] virtual Device* camera() { return nullptr; }
+  virtual Status start_view() { return fail(ErrorKind::kUsage, "this rig has no camera to look through"); }
+  virtual Status stop_view() { return {}; }
 };
 
 }  // namespace dubsar

@@ -16,6 +16,14 @@ bool Engine::post(OperatorCommand command) {
     impl_->pace.notify_all();
     return true;
   }
+  if (auto* change = std::get_if<ChangeSetting>(&command)) {
+    impl_->settings_asked.push_back(std::move(*change));
+    return true;
+  }
+  if (const auto* watch = std::get_if<WatchCamera>(&command)) {
+    impl_->watch_asked = watch->on;
+    return true;
+  }
   impl_->commands.push_back(std::move(command));
   if (impl_->queues) {
     // A full queue wakes the registering thread by itself.

@@ -32,6 +32,7 @@
 #include "planning/sparse_flags.h"
 #include "registration/registrar.h"
 #include "station/bounded_queue.h"
+#include "station/camera_watch.h"
 #include "station/drives.h"
 #include "station/intruders.h"
 #include "station/planning_stage.h"
@@ -105,7 +106,7 @@ class StageClock {
 /// The state of a run. What a stage thread alone touches is marked; the rest stands still while the threads
 /// run, or is under the mutex. engine_open.cpp opens device and session, engine_stages.cpp has the four
 /// threads, engine_motion.cpp what moves, engine_misses.cpp what is done about scans that are not taken up,
-/// engine_pace.cpp what waits for the operator,
+/// engine_pace.cpp what waits for the operator, engine_device.cpp what is set and seen of the device,
 /// engine_commands.cpp what the operator asks for meanwhile, engine_results.cpp what is made at the end,
 /// engine.cpp the order of it all.
 struct Engine::Impl {
@@ -142,8 +143,10 @@ struct Engine::Impl {
   std::optional<Placement> present;  ///< where the device was last driven to; an arm is anywhere at first
   StageScene scene;                  ///< as the last step saw it
   int empty_scans = 0;               ///< in a row
-  bool asked_once = false;           ///< the first scan of a paced run is asked for by running it
-  bool at_start = false;             ///< a paced run stands where its first scan is taken from
+  SettingWords settings;             ///< of the device, that were changed
+  std::unique_ptr<CameraStream> stream;
+  bool asked_once = false;  ///< the first scan of a paced run is asked for by running it
+  bool at_start = false;    ///< a paced run stands where its first scan is taken from
   // Of the planning thread, round after round:
   int misses = 0;      ///< scans in a row that were not taken up
   bool again = false;  ///< the scan that comes is of the same view as the one before
@@ -158,8 +161,10 @@ struct Engine::Impl {
   std::optional<PinSet> pins;  ///< options.pins, and what the operator has labelled since
   std::deque<OperatorCommand> commands;
   bool takes_commands = false;
-  bool scan_asked = false;               ///< of a paced run: ScanNow since the last scan
-  bool finish_asked = false;             ///< of a paced run: Finish
+  bool scan_asked = false;    ///< of a paced run: ScanNow since the last scan
+  bool finish_asked = false;  ///< of a paced run: Finish
+  std::vector<ChangeSetting> settings_asked;
+  bool watch_asked = false;              ///< WatchCamera
   bool last_scan_taken_up = true;        ///< as registration has judged it
   std::optional<NextStep> changed_step;  ///< what the operator's commands made of the step that waits
   std::condition_variable pace;
@@ -195,6 +200,11 @@ struct Engine::Impl {
   bool wait_for_operator(NextStep& step, const JobContext& job);
   [[nodiscard]] bool must_wait(const NextStep& step) const;  ///< under the mutex
   void show_model(JobContext& job);
+  // engine_device.cpp
+  Status open_settings();  ///< puts what the session keeps and what the options say, and tells the panel
+  void change_settings();  ///< those that were asked for; of the acquiring thread
+  bool show_camera();      ///< a frame, where one is asked for; false when none is
+  void tell_panel();
   // engine_motion.cpp
   Status limit_rig();  ///< by the file, the pins and what is left then
   /// To where the first scan of this run is taken from.

@@ -76,6 +76,9 @@ Status Engine::Impl::open(JobContext& job) {
       return saved;
     }
   }
+  if (const Status set = open_settings(); !set) {
+    return set;
+  }
   if (options.pins) {
     if (const Status saved = store->save_document("pins", pins_to_json(*options.pins)); !saved) {
       return saved;

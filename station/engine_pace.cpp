@@ -23,6 +23,11 @@ bool Engine::Impl::wait_for_operator(NextStep& step, const JobContext& job) {
   if (!options.paced) {
     return true;
   }
+  // Whatever ends the waiting, the camera is the scan's then.
+  struct EndOfView {
+    std::unique_ptr<CameraStream>& stream;
+    ~EndOfView() { stream.reset(); }
+  } const end_of_view{stream};
   std::unique_lock lock(mutex);
   bool told = false;
   bool changed = false;
@@ -60,8 +65,15 @@ bool Engine::Impl::wait_for_operator(NextStep& step, const JobContext& job) {
       told = true;
       continue;
     }
-    // Cancelling a job wakes nobody.
-    pace.wait_for(lock, std::chrono::milliseconds(50));
+    lock.unlock();
+    change_settings();
+    const bool showed = show_camera();
+    lock.lock();
+    if (!showed) {
+      // Cancelling a job wakes nobody.
+      pace.wait_for(lock, std::chrono::milliseconds(50),
+                    [this] { return scan_asked || finish_asked || changed_step.has_value(); });
+    }
   }
 }
 

@@ -93,6 +93,7 @@ void Engine::Impl::acquire(NextStep step, JobContext& job) {
     if (!wait_for_operator(step, job)) {
       break;
     }
+    change_settings();
     if (drives && !step && options.paced && !std::exchange(at_start, true) && !move_to_start(job)) {
       break;
     }

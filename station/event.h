@@ -17,6 +17,8 @@
 #include "core/red_map.h"
 #include "core/sample_flags.h"
 #include "core/scan_pose.h"
+#include "station/camera_view.h"
+#include "station/device_panel.h"
 #include "station/view_gain.h"
 
 namespace dubsar {
@@ -70,13 +72,22 @@ struct ModelChanged {
 struct PinsKnown {
   std::shared_ptr<const PinSet> pins;
 };
+/// The settings of the open device, when it is opened and whenever one was changed.
+struct DeviceTells {
+  std::shared_ptr<const DevicePanel> panel;
+};
+/// What the camera sees now; nothing when it is looked through no more.
+struct CameraFrame {
+  std::shared_ptr<const CameraView> view;
+};
 /// Something that the operator should know and that stops nothing.
 struct Notice {
   std::string text;
 };
 
-using Event = std::variant<ProfileArrived, ScanStored, ScanPlaced, OperatorObeyed, RedMapChanged,
-                           NextPlacement, WaitsForOperator, ModelChanged, PinsKnown, Notice>;
+using Event =
+    std::variant<ProfileArrived, ScanStored, ScanPlaced, OperatorObeyed, RedMapChanged, NextPlacement,
+                 WaitsForOperator, ModelChanged, PinsKnown, DeviceTells, CameraFrame, Notice>;
 
 /// Called on the engine's threads, one call at a time per stage: be quick, take snapshots, and never call
 /// back into the engine.

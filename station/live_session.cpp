@@ -28,6 +28,7 @@ LiveSession::~LiveSession() {
   if (worker_.joinable()) {
     worker_.join();
   }
+  watch_.reset();
 }
 
 LiveState LiveSession::state() const {
@@ -46,8 +47,15 @@ std::string LiveSession::device() const {
 }
 
 void LiveSession::set_device(std::string uri) {
-  const std::scoped_lock lock(mutex_);
-  options_.device = std::move(uri);
+  {
+    const std::scoped_lock lock(mutex_);
+    if (options_.device != uri) {
+      settings_.clear();
+      state_.panel.reset();
+    }
+    options_.device = std::move(uri);
+  }
+  look_after_rig();
 }
 
 void LiveSession::changed() const {
@@ -70,6 +78,12 @@ void LiveSession::launch(std::function<void()> job) {
     state_.error.reset();
   }
   worker_ = std::thread([this, first = std::move(job)] {
+    std::shared_ptr<CameraWatch> watch;
+    {
+      const std::scoped_lock lock(mutex_);
+      watch = std::exchange(watch_, nullptr);
+    }
+    watch.reset();  // the device is the job's
     first();
     for (;;) {  // what was asked for meanwhile
       std::vector<OperatorCommand> commands;
@@ -100,14 +114,19 @@ void LiveSession::end(const Status& status) {
 }
 
 void LiveSession::read() {
-  launch([this] { read_folder(); });
+  launch([this] {
+    look_after_rig();
+    read_folder();
+  });
 }
 
 void LiveSession::scan_now() {
   {
     const std::scoped_lock lock(mutex_);
     if (engine_) {
-      engine_->post(ScanNow{});
+      if (engine_->post(ScanNow{}) && state_.phase == LivePhase::kWaiting) {
+        state_.phase = LivePhase::kMoving;  // hands off from the key on, and no second key by mistake
+      }
       return;
     }
     if (busy_) {
@@ -194,11 +213,13 @@ void LiveSession::run_engine(std::vector<OperatorCommand> first, bool first_scan
   EngineOptions options;
   JobContext* job = nullptr;
   std::shared_ptr<Engine> engine;
+  std::string uri;
   {
     const std::scoped_lock lock(mutex_);
-    options.device = options_.device;
+    options.device = uri = options_.device;
     options.session = options_.session;
     options.pins = options_.pins;
+    options.settings = settings_;
     options.automatic = true;
     options.paced = true;
     options.first_scan_waits = first_scan_waits;
@@ -217,8 +238,14 @@ void LiveSession::run_engine(std::vector<OperatorCommand> first, bool first_scan
   }
   changed();
   const Result<EngineResult> result = engine->run(*job);
+  // What was set while it ran is in the session.
+  const Result<SessionStore> store = SessionStore::open(options_.session, SessionStore::Access::kReadOnly);
+  Result<SettingWords> kept = store ? kept_settings(*store, uri) : std::unexpected(store.error());
   {
     const std::scoped_lock lock(mutex_);
+    if (kept) {
+      settings_ = std::move(*kept);
+    }
     engine_.reset();
     state_.next.reset();
     if (result) {
@@ -277,6 +304,9 @@ void LiveSession::read_folder() {
     }
     follow(*poses);
     state_.record = tablet_record_of(*store);
+    if (Result<SettingWords> kept = kept_settings(*store, options_.device)) {
+      settings_ = std::move(*kept);
+    }
   }
   if (const auto text = store->load_document("red_map"); text && *text) {
     if (auto map = parse_red_map(**text, "red map of the session")) {

@@ -13,6 +13,7 @@
 
 #include "core/pin_set.h"
 #include "core/sign_off.h"
+#include "station/camera_watch.h"
 #include "station/engine.h"
 #include "station/live_state.h"
 
@@ -40,6 +41,8 @@ class LiveSession {
   [[nodiscard]] LiveState state() const;
   /// The scan under way, as far as it has come.
   [[nodiscard]] GridPicture growing() const;
+  /// What the camera sees; nothing while nobody looks.
+  [[nodiscard]] std::shared_ptr<const CameraView> camera() const;
   [[nodiscard]] std::string device() const;
   /// For the next run.
   void set_device(std::string uri);
@@ -50,8 +53,17 @@ class LiveSession {
   void stop();      ///< cancels what is under way
   /// Asks the engine, which is started for it where it does not run.
   void ask(OperatorCommand command);
+  /// Looks through the camera, and opens the device for it where no run has it; to be said again and again
+  /// while somebody looks, for a run may begin or end meanwhile. A run's scans go before it.
+  void watch_camera(bool on);
+  /// Of the open device; kept in the session, and put again whenever it goes on.
+  void change_setting(const std::string& key, const std::string& word);
   void describe(const TabletRecord& record);
   void sign(const SignOff& wanted);
+  /// `dubsar calibrate --verify`, and `dubsar calibrate`: each a job of its own, with its outcome in the
+  /// state.
+  void verify(const VerifyRequest& request);
+  void calibrate(const CalibrateRequest& request);
   [[nodiscard]] bool busy() const { return busy_; }
 
  private:
@@ -65,6 +77,8 @@ class LiveSession {
   void show_grid(int id, const RangeGrid& measured, const RangeGrid& grid, const SampleFlags& flags);
   void show_model(std::shared_ptr<const Mesh> mesh, std::shared_ptr<const ColouredPoints> red,
                   const RigidTransform& tablet_from_model);
+  void look_after_rig();
+  void keep_setting(const std::string& key, const std::string& word);
   void end(const Status& status);  ///< of a job
   void changed() const;
 
@@ -77,6 +91,9 @@ class LiveSession {
   std::shared_ptr<JobContext> job_;
   std::deque<OperatorCommand> later_;  ///< asked for while a job ran that takes none
   bool scan_later_ = false;            ///< likewise
+  SettingWords settings_;              ///< of the device, that were changed while no run had it
+  std::shared_ptr<const CameraView> camera_;
+  std::shared_ptr<CameraWatch> watch_;
   std::atomic<bool> busy_ = false;
   std::thread worker_;
 };

@@ -114,6 +114,7 @@ void LiveSession::hear(const Event& event) {
     const std::scoped_lock lock(mutex_);
     growing_.append(*profile->grid, *profile->flags, profile->row);
     state_.phase = LivePhase::kScanning;
+    camera_.reset();
     state_.profiles = profile->row + 1;
   } else if (const auto* model = std::get_if<ModelChanged>(&event)) {
     show_model(model->mesh, model->red, model->tablet_from_model);
@@ -128,6 +129,9 @@ void LiveSession::hear(const Event& event) {
     if (placed->pose.status == PoseStatus::kRegistered) {
       state_.notice.clear();
     }
+    if (state_.phase == LivePhase::kWaiting) {
+      state_.last_not_taken_up = placed->pose.status != PoseStatus::kRegistered;
+    }
     if (std::ranges::find(placed->all, placed->pose.id, &ScanPose::id) == placed->all.end()) {
       scan.dropped = true;  // something was in its way
       scan.note = placed->pose.reason;
@@ -137,12 +141,19 @@ void LiveSession::hear(const Event& event) {
     const std::scoped_lock lock(mutex_);
     if (const auto* pins = std::get_if<PinsKnown>(&event)) {
       state_.pins = pins->pins;
+    } else if (const auto* device = std::get_if<DeviceTells>(&event)) {
+      state_.panel = device->panel;
+    } else if (const auto* frame = std::get_if<CameraFrame>(&event)) {
+      camera_ = frame->view;
     } else if (const auto* stored = std::get_if<ScanStored>(&event)) {
       LiveScan& scan = scan_of(stored->id);
       scan.file = stored->file;
       scan.samples = stored->samples;
       state_.exists = true;
-      state_.phase = LivePhase::kJudging;
+      // A device that nothing drives waits for the operator while its scan is still being judged.
+      if (state_.phase != LivePhase::kWaiting) {
+        state_.phase = LivePhase::kJudging;
+      }
     } else if (const auto* obeyed = std::get_if<OperatorObeyed>(&event)) {
       follow(obeyed->all);
       state_.notice = obeyed->what;

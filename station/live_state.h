@@ -17,8 +17,11 @@
 #include "core/red_map.h"
 #include "core/sample_flags.h"
 #include "core/scan_pose.h"
+#include "station/calibration_run.h"
+#include "station/device_panel.h"
 #include "station/grid_picture.h"
 #include "station/tablet_record.h"
+#include "station/verification.h"
 
 namespace dubsar {
 
@@ -33,6 +36,7 @@ enum class LivePhase {
   kWaiting,    ///< for the operator: they turn the tablet, or say where an unsure scan lies
   kFinishing,  ///< final registration, mesh, wedges, pages
   kSigning,
+  kMeasuring,  ///< an artefact, or the pictures of a calibration
 };
 
 /// A scan of the session. The grid is thinned to what a person needs to point at places in it.
@@ -72,9 +76,13 @@ struct LiveState {
   std::optional<Error> error;  ///< what ended the last run or job
   std::string notice;          ///< what the operator should know; empty when a later scan has made it old
   TabletRecord record;
-  std::shared_ptr<const PinSet> pins;  ///< with the operator's labels; nothing while none are known
-  bool exists = false;                 ///< the folder holds a session
-  int profiles = 0;                    ///< of the scan under way
+  std::shared_ptr<const PinSet> pins;        ///< with the operator's labels; nothing while none are known
+  std::shared_ptr<const DevicePanel> panel;  ///< of the device that was opened last
+  std::optional<RigCare> care;               ///< of the chosen device, where it is a rig
+  std::shared_ptr<const VerifyOutcome> verification;    ///< the last of this window
+  std::shared_ptr<const CalibrateOutcome> calibration;  ///< likewise
+  bool exists = false;                                  ///< the folder holds a session
+  int profiles = 0;                                     ///< of the scan under way
 };
 
 }  // namespace dubsar

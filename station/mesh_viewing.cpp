@@ -13,6 +13,7 @@
 #include "formats/mesh_io.h"
 #include "formats/wedges_json.h"
 #include "station/analysis.h"
+#include "station/section_file.h"
 
 namespace dubsar {
 
@@ -161,6 +162,7 @@ void MeshViewing::take_mesh(std::shared_ptr<const Mesh> mesh, const RigidTransfo
     ++state_.number;
     state_.fields.clear();
     state_.wedges.reset();
+    state_.section.reset();
     state_.tablet_from_model = tablet_from_model;
     state_.name = name;
     state_.error.reset();
@@ -239,6 +241,41 @@ void MeshViewing::keep_part(std::vector<std::uint32_t> faces, const fs::path& fi
     if (const std::shared_ptr<const Mesh> whole = mesh()) {
       if (const Status written = write_mesh(file, part_of(*whole, faces)); !written) {
         complain(written.error());
+      }
+    }
+  });
+}
+
+void MeshViewing::cut(const Eigen::Vector3d& from_mm, const Eigen::Vector3d& to_mm,
+                      const Eigen::Vector3d& towards) {
+  ask([this, from_mm, to_mm, towards] {
+    const std::shared_ptr<const Mesh> whole = mesh();
+    if (!whole) {
+      return;
+    }
+    Result<CrossSection> section = cross_section(*whole, from_mm, to_mm, towards);
+    if (!section) {
+      complain(section.error());
+      return;
+    }
+    const std::scoped_lock lock(mutex_);
+    state_.section = std::make_shared<const CrossSection>(std::move(*section));
+  });
+}
+
+void MeshViewing::keep_section(const fs::path& stem) {
+  ask([this, stem] {
+    std::shared_ptr<const CrossSection> section;
+    {
+      const std::scoped_lock lock(mutex_);
+      section = state_.section;
+    }
+    for (const char* ending : {".csv", ".svg"}) {
+      fs::path file = stem;
+      file += ending;
+      if (const Status written = section ? write_section(*section, file) : Status{}; !written) {
+        complain(written.error());
+        return;
       }
     }
   });

@@ -15,6 +15,7 @@
 #include <thread>
 #include <vector>
 
+#include "analysis/cross_section.h"
 #include "core/job.h"
 #include "core/mesh.h"
 #include "core/result.h"
@@ -32,6 +33,7 @@ struct ViewedMesh {
   std::uint64_t number = 0;  ///< grows whenever the mesh is another one
   std::map<MeshField, std::shared_ptr<const std::vector<float>>> fields;  ///< [V]
   std::shared_ptr<const std::vector<Wedge>> wedges;                       ///< null: none are known
+  std::shared_ptr<const CrossSection> section;                            ///< the last that was asked for
   RigidTransform tablet_from_model;
   std::string name;
   std::string stage;  ///< of the job that runs; empty: none does
@@ -58,6 +60,10 @@ class MeshViewing {
   void analyse();              ///< all fields, and the wedges
   /// Writes these faces of the mesh, with what is known of their vertices, as a mesh of their own.
   void keep_part(std::vector<std::uint32_t> faces, const std::filesystem::path& file);
+  /// Cuts the mesh between two places of it, as it is seen from `towards` (model frame).
+  void cut(const Eigen::Vector3d& from_mm, const Eigen::Vector3d& to_mm, const Eigen::Vector3d& towards);
+  /// Writes the cut as STEM.csv and STEM.svg.
+  void keep_section(const std::filesystem::path& stem);
   void stop();  ///< gives up what runs and what waits
 
  private:

@@ -47,12 +47,21 @@ struct LabelPins {
 struct DescribeTablet {
   TabletRecord record;
 };
+/// Changes a setting of the open device, between two scans; kept in the session.
+struct ChangeSetting {
+  std::string key;
+  std::string word;
+};
+/// Of a paced run: shows what the camera sees while the operator is waited for.
+struct WatchCamera {
+  bool on = false;
+};
 /// Of a paced run: the tablet lies as it was asked for; scan it.
 struct ScanNow {};
 /// Of a paced run: take no more scans, and bring what there is to its end.
 struct Finish {};
 
 using OperatorCommand = std::variant<DropScan, RestoreScan, HintScan, WithdrawHint, LockScan, UnlockScan,
-                                     LabelPins, DescribeTablet, ScanNow, Finish>;
+                                     LabelPins, DescribeTablet, ChangeSetting, WatchCamera, ScanNow, Finish>;
 
 }  // namespace dubsar

@@ -3,23 +3,19 @@
 // dubsar calibrate: camera, laser plane and stage from pictures of a board.
 
 #include <cstdio>
-#include <filesystem>
 #include <memory>
 
-#include "acquisition/calibration_folder.h"
+#include "acquisition/board.h"
 #include "core/units.h"
-#include "formats/atomic_file.h"
 #include "formats/calibration_json.h"
 #include "formats/gray_file.h"
+#include "station/calibration_run.h"
 #include "station/command/calibrate.h"
 #include "station/command/command.h"
-#include "station/results.h"
 
 namespace dubsar {
 
 namespace {
-
-namespace fs = std::filesystem;
 
 struct Options {
   std::string source;
@@ -30,32 +26,6 @@ struct Options {
   VerifyOptions verify;
   LiveOptions live;
 };
-
-Result<CalibrationSet> set_for(const Options& options) {
-  std::error_code ignored;
-  const fs::path folder(options.source);
-  if (!fs::is_directory(folder, ignored)) {
-    return fail(ErrorKind::kUsage, "there is no such folder", options.source,
-                "give a folder with a calibration.toml, or with pictures of the board and --board");
-  }
-  const fs::path list = folder / "calibration.toml";
-  if (!fs::exists(list, ignored)) {
-    if (options.board.empty()) {
-      return fail(ErrorKind::kUsage, "there is no calibration.toml in it", options.source,
-                  "write one, or say --board for pictures of the board alone");
-    }
-    return set_of_folder(folder, options.board);
-  }
-  const Result<std::string> text = read_whole_file(list);
-  if (!text) {
-    return std::unexpected(text.error());
-  }
-  Result<CalibrationSet> set = parse_calibration_set(*text, list.string());
-  if (set && !options.board.empty()) {
-    set->board = options.board;
-  }
-  return set;
-}
 
 nlohmann::ordered_json report_json(const CalibrationReport& report, const std::vector<std::string>& unseen,
                                    const std::string& file) {
@@ -138,46 +108,18 @@ Result<int> calibrate(Options options, CommandContext& context) {
     }
     options.out = options.out.empty() ? *belongs : options.out;
   }
-  Result<CalibrationSet> set = set_for(options);
-  if (!set) {
-    return std::unexpected(set.error());
-  }
-  const Result<CalibrationPictures> pictures = look_at_pictures(options.source, *set, context.job);
-  if (!pictures) {
-    return std::unexpected(pictures.error());
-  }
-  CalibrationOptions how;
-  how.board = pictures->board;
-  how.motion = set->motion;
-  how.depth_range_mm = set->depth_range_mm;
-  how.plate_margin_mm = set->plate_margin_mm;
-  Result<CalibrationReport> report = calibrate_rig(pictures->views, how);
-  if (!report) {
-    Error error = report.error();
-    error.where = error.where.empty() ? options.source : options.source + ", " + error.where;
-    if (!pictures->left_out.empty()) {
-      error.what += " (" + std::to_string(pictures->left_out.size()) +
-                    " pictures without a board, the first: " + pictures->left_out.front() + ")";
-    }
-    return std::unexpected(std::move(error));
-  }
-  RigCalibration& rig = report->rig;
-  rig.made_at = utc_now();
-  rig.camera_serial = options.serial.empty() ? set->camera_serial : options.serial;
-  rig.temperature_c = set->temperature_c;
-  rig.note = set->note;
-  if (!options.out.empty()) {
-    if (Status status = write_file_atomically(options.out, calibration_to_json(rig)); !status) {
-      return std::unexpected(status.error());
-    }
+  const Result<CalibrateOutcome> outcome =
+      calibrate_folder({options.source, options.board, options.serial, options.out}, context.job);
+  if (!outcome) {
+    return std::unexpected(outcome.error());
   }
   if (context.json) {
-    CommandContext::print(report_json(*report, pictures->left_out, options.out));
+    CommandContext::print(report_json(outcome->report, outcome->left_out, options.out));
   } else {
     finish_progress();
-    print_report(*report, pictures->left_out);
+    print_report(outcome->report, outcome->left_out);
   }
-  return report->missing.empty() ? 0 : 1;
+  return outcome->report.missing.empty() ? 0 : 1;
 }
 
 }  // namespace

@@ -4,39 +4,12 @@
 
 #include <cstdio>
 
-#include "acquisition/artefact.h"
-#include "acquisition/range_source.h"
-#include "drivers/loader.h"
-#include "formats/atomic_file.h"
-#include "formats/calibration_json.h"
-#include "formats/verification_log.h"
 #include "station/command/calibrate.h"
-#include "station/results.h"
+#include "station/verification.h"
 
 namespace dubsar {
 
 namespace {
-
-nlohmann::ordered_json figures(const Verification& is) {
-  nlohmann::ordered_json balls = nlohmann::ordered_json::array();
-  for (const MeasuredBall& ball : is.balls) {
-    balls.push_back({{"ball", ball.certified + 1},
-                     {"diameter_mm", ball.diameter_mm},
-                     {"form_um", 1e3 * ball.form_mm},
-                     {"size_um", 1e3 * ball.size_mm},
-                     {"samples", ball.samples}});
-  }
-  nlohmann::ordered_json spacings = nlohmann::ordered_json::array();
-  for (const MeasuredSpacing& one : is.spacings) {
-    spacings.push_back({{"balls", {one.a + 1, one.b + 1}}, {"error_um", 1e3 * one.error_mm}});
-  }
-  nlohmann::ordered_json out{{"balls", balls}, {"spacings", spacings}};
-  if (is.flatness_mm) {
-    out["flatness_um"] = 1e3 * *is.flatness_mm;
-    out["plane_samples"] = is.plane_samples;
-  }
-  return out;
-}
 
 void print_figures(const Artefact& artefact, const Verification& is) {
   for (const MeasuredBall& ball : is.balls) {
@@ -56,22 +29,6 @@ void print_figures(const Artefact& artefact, const Verification& is) {
   std::printf("%s: %s\n", artefact.name.c_str(), is.passed() ? "passed" : "FAILED");
 }
 
-Result<RangeGrid> scan_of(const std::string& uri, JobContext& job) {
-  const DriverRegistry registry;
-  Result<RangeSource> source = RangeSource::open(uri, registry);
-  if (!source) {
-    return std::unexpected(source.error());
-  }
-  Result<std::optional<RangeGrid>> grid = source->next({}, job);
-  if (!grid) {
-    return std::unexpected(grid.error());
-  }
-  if (!*grid) {
-    return fail(ErrorKind::kBadInput, "there is no scan in it", uri, "scan the artefact first");
-  }
-  return std::move(**grid);
-}
-
 }  // namespace
 
 void add_verify_options(CLI::App& verb, VerifyOptions& options) {
@@ -85,60 +42,29 @@ void add_verify_options(CLI::App& verb, VerifyOptions& options) {
 }
 
 Result<int> verify_rig(const VerifyOptions& options, const std::string& scan, CommandContext& context) {
-  const Result<std::string> text = read_whole_file(options.artefact);
-  if (!text) {
-    return std::unexpected(text.error());
+  const Result<VerifyOutcome> outcome =
+      verify_rig(VerifyRequest{options.artefact, scan, options.calibration}, context.job);
+  if (!outcome) {
+    return std::unexpected(outcome.error());
   }
-  const Result<Artefact> artefact = parse_artefact(*text, options.artefact);
-  if (!artefact) {
-    return std::unexpected(artefact.error());
-  }
-  VerificationEntry entry;
-  if (!options.calibration.empty()) {
-    const Result<std::string> bytes = read_whole_file(options.calibration);
-    const Result<RigCalibration> calibration =
-        bytes ? parse_calibration(*bytes, options.calibration) : std::unexpected(bytes.error());
-    if (!calibration) {
-      return std::unexpected(calibration.error());
-    }
-    entry.calibration = calibration->made_at;
-  }
-  const Result<RangeGrid> grid = scan_of(scan, context.job);
-  if (!grid) {
-    return std::unexpected(grid.error());
-  }
-  const Result<Verification> is = verify_artefact(*grid, *artefact);
-  if (!is) {
-    return std::unexpected(is.error());
-  }
-  entry.when = utc_now();
-  entry.artefact = artefact->name;
-  entry.certificate = artefact->certificate;
-  entry.error_mm = is->worst_mm();
-  entry.passed = is->passed();
-  entry.failed = is->failed;
-  entry.measured = figures(*is).dump();
-  std::string log;
-  if (!options.calibration.empty()) {
-    log = verification_log_of(options.calibration).string();
-    if (Status status = append_verification(log, entry); !status) {
-      return std::unexpected(status.error());
-    }
-  }
+  const VerificationEntry& entry = outcome->entry;
   if (context.json) {
-    nlohmann::ordered_json json{
-        {"when", entry.when},      {"artefact", entry.artefact}, {"certificate", entry.certificate},
-        {"passed", entry.passed},  {"error_mm", entry.error_mm}, {"failed", entry.failed},
-        {"measured", figures(*is)}};
-    if (!log.empty()) {
-      json["log"] = log;
+    nlohmann::ordered_json json{{"when", entry.when},
+                                {"artefact", entry.artefact},
+                                {"certificate", entry.certificate},
+                                {"passed", entry.passed},
+                                {"error_mm", entry.error_mm},
+                                {"failed", entry.failed},
+                                {"measured", verification_figures(outcome->is)}};
+    if (!outcome->log.empty()) {
+      json["log"] = outcome->log;
     }
     CommandContext::print(json);
   } else {
     finish_progress();
-    print_figures(*artefact, *is);
+    print_figures(outcome->artefact, outcome->is);
   }
-  return is->passed() ? 0 : 1;
+  return outcome->is.passed() ? 0 : 1;
 }
 
 }  // namespace dubsar

@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright The Dubsar developers
-// dubsar mesh check | convert.
+// dubsar mesh check | convert | section.
 
+#include <charconv>
 #include <cstdio>
 #include <memory>
 
+#include "analysis/cross_section.h"
 #include "core/units.h"
 #include "formats/mesh_io.h"
 #include "station/command/command.h"
 #include "station/mesh_json.h"
+#include "station/section_file.h"
 #include "triangulation/mesh_check.h"
 
 namespace dubsar {
@@ -19,6 +22,7 @@ struct MeshOptions {
   std::string in;
   std::string out;
   std::string unit;
+  std::string from, to, towards;  ///< of a section
 };
 
 Result<Mesh> read(const MeshOptions& options) {
@@ -61,6 +65,55 @@ Result<int> convert(const MeshOptions& options, CommandContext& context) {
   return 0;
 }
 
+Result<Eigen::Vector3d> place_of(const std::string& text, const char* option) {
+  Eigen::Vector3d out;
+  const char* at = text.data();
+  const char* end = text.data() + text.size();
+  for (int k = 0; k < 3; ++k) {
+    const auto [next, error] = std::from_chars(at, end, out[k]);
+    const bool parted = k == 2 ? next == end : next != end && *next == ',';
+    if (error != std::errc() || !parted) {
+      return fail(ErrorKind::kUsage, "'" + text + "' is no place", option, "write x,y,z in mm");
+    }
+    at = next + (k < 2 ? 1 : 0);
+  }
+  return out;
+}
+
+Result<int> section(const MeshOptions& options, CommandContext& context) {
+  const Result<Eigen::Vector3d> from = place_of(options.from, "--from");
+  const Result<Eigen::Vector3d> to = place_of(options.to, "--to");
+  const Result<Eigen::Vector3d> towards = place_of(options.towards, "--towards");
+  for (const auto* place : {&from, &to, &towards}) {
+    if (!*place) {
+      return std::unexpected(place->error());
+    }
+  }
+  const Result<Mesh> mesh = read(options);
+  if (!mesh) {
+    return std::unexpected(mesh.error());
+  }
+  const Result<CrossSection> cut = cross_section(*mesh, *from, *to, *towards);
+  if (!cut) {
+    return std::unexpected(cut.error());
+  }
+  if (const Status written = write_section(*cut, options.out); !written) {
+    return std::unexpected(written.error());
+  }
+  if (context.json) {
+    CommandContext::print({{"file", options.out},
+                           {"pieces", cut->lines.size()},
+                           {"length_mm", cut->length_mm},
+                           {"lowest_mm", cut->lowest_mm},
+                           {"lowest_along_mm", cut->lowest_along_mm},
+                           {"highest_mm", cut->highest_mm}});
+  } else {
+    std::printf("%s: %.3f mm long, %.3f mm below the line at %.3f mm\n", options.out.c_str(), cut->length_mm,
+                -cut->lowest_mm, cut->lowest_along_mm);
+  }
+  return cut->lines.empty() ? 1 : 0;
+}
+
 }  // namespace
 
 void add_mesh(CLI::App& app, Action& chosen) {
@@ -81,7 +134,18 @@ void add_mesh(CLI::App& app, Action& chosen) {
   convert_verb->fallthrough();
   convert_verb->callback(
       [&chosen, options] { chosen = [options](CommandContext& c) { return convert(*options, c); }; });
-  for (CLI::App* sub : {check_verb, convert_verb}) {
+  CLI::App* section_verb = verb->add_subcommand(
+      "section", "The profile of a cut between two places of the surface; status 1 when nothing is cut");
+  section_verb->add_option("mesh", options->in, "PLY, OBJ, STL or GLB")->required();
+  section_verb->add_option("--from", options->from, "x,y,z in mm")->required();
+  section_verb->add_option("--to", options->to, "x,y,z in mm")->required();
+  section_verb->add_option("--towards", options->towards, "out of the surface, against the cut")
+      ->default_val("0,0,1");
+  section_verb->add_option("-o,--out", options->out, "profile.csv or profile.svg, in mm, 1:1")->required();
+  section_verb->fallthrough();
+  section_verb->callback(
+      [&chosen, options] { chosen = [options](CommandContext& c) { return section(*options, c); }; });
+  for (CLI::App* sub : {check_verb, convert_verb, section_verb}) {
     sub->add_option("--unit", options->unit, "what the file's numbers are")
         ->check(CLI::IsMember({"m", "mm", "um"}));
   }

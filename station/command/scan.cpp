@@ -30,6 +30,7 @@ struct ScanArguments {
   std::string pins;
   std::string rig;
   std::string size;
+  std::vector<std::string> settings;  ///< key=value
   bool automatic = false;
   int max_scans = 0;
 };
@@ -153,6 +154,14 @@ Result<int> scan(const ScanArguments& arguments, CommandContext& context) {
     }
     options.pins = std::move(*pins);
   }
+  for (const std::string& pair : arguments.settings) {
+    const std::size_t equals = pair.find('=');
+    if (equals == 0 || equals == std::string::npos) {
+      return fail(ErrorKind::kUsage, "'" + pair + "' sets nothing", "--set",
+                  "write key=value, such as exposure_us=800");
+    }
+    put_word(options.settings, pair.substr(0, equals), pair.substr(equals + 1));
+  }
   if (!arguments.rig.empty()) {
     Result<RigLimits> limits = read_rig_limits(arguments.rig);
     if (!limits) {
@@ -210,6 +219,8 @@ void add_scan(CLI::App& app, Action& chosen) {
                    "a rig file: narrower limits for the motors (docs/formats/rig.md)");
   verb->add_option("--size", arguments->size,
                    "of the tablet, WxHxT in mm: what the motors keep clear of before it is seen");
+  verb->add_option("--set", arguments->settings,
+                   "key=value of the open device, such as exposure_us=800; kept with the session");
   verb->add_flag("--auto", arguments->automatic, "drive the rig, or ask for hand turns, until conclusive");
   verb->add_option("--max-scans", arguments->max_scans, "of the whole session")->check(CLI::Range(1, 100000));
   verb->fallthrough();

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <ctime>
 
+#include "acquisition/exposure.h"
 #include "acquisition/grid_builder.h"
 #include "acquisition/rig_device.h"
 #include "tests/acquisition/rig_bench.h"
@@ -94,6 +95,28 @@ TEST_F(RigScan, ScansAPlaneThroughTheDriverInterface) {
   EXPECT_NEAR(static_cast<double>(grid.y[grid.index(10, 128)]), 0.5, 0.003);
   EXPECT_EQ(bench.laser, 0) << "off when it is done";
   EXPECT_EQ(bench.frames, 22U);
+}
+
+TEST_F(RigScan, IsLookedThroughWithTheLaserLitBetweenScans) {
+  Result<RigScanner> made = make();
+  ASSERT_TRUE(made.has_value());
+  Device device = device_of(std::move(*made), "rig:rig.toml");
+  ASSERT_TRUE(device.capabilities()->yields_frames);
+  EXPECT_TRUE(device.settings()->empty());
+  ASSERT_TRUE(device.start_frames().has_value());
+  EXPECT_GT(bench.laser, 0);
+  {
+    const Result<std::optional<Frame>> frame = device.next_frame(std::chrono::milliseconds(100));
+    ASSERT_TRUE(frame && *frame) << frame.error().line();
+    EXPECT_EQ((*frame)->width, static_cast<std::uint32_t>(bench.truth.camera.width));
+    const GrayView view{(*frame)->pixels.data(), static_cast<int>((*frame)->width),
+                        static_cast<int>((*frame)->height), (*frame)->stride_bytes};
+    EXPECT_TRUE(judge_exposure(view).has_stripe);
+  }
+  ASSERT_TRUE(device.stop_frames().has_value());
+  EXPECT_EQ(bench.laser, 0);
+  Collect sink;
+  EXPECT_TRUE(device.scan(sink).has_value());
 }
 
 TEST_F(RigScan, RefusesPartsThatDoNotFit) {

@@ -8,6 +8,7 @@
 
 #include <fstream>
 #include <map>
+#include <sstream>
 #include <tuple>
 
 #include "acquisition/session_store.h"
@@ -47,8 +48,7 @@ class OperatorStory : public ::testing::Test {
   test::Display display_;
 };
 
-TEST_F(OperatorStory, FromTheFirstKeyToASignedConclusiveTablet) {
-  const Outcome played = play(R"(
+constexpr const char* kStory = R"(
 wait idle
 expect scan
 key space
@@ -88,7 +88,24 @@ type A. Reader
 key enter
 wait signed
 quit
-)");
+)";
+
+/// Keys, clicks and typed lines of a script, without the key that follows each turn by hand.
+int presses_beyond_turns(const std::string& script) {
+  int presses = 0;
+  bool turned = false;
+  std::istringstream lines(script);
+  for (std::string line; std::getline(lines, line);) {
+    const bool press = line.starts_with("key ") || line.starts_with("click ") || line.starts_with("type ");
+    presses += press && !(turned && line == "key space") ? 1 : 0;
+    turned = line == "wait waiting-turn" || (turned && !press);
+  }
+  return presses;
+}
+
+TEST_F(OperatorStory, FromTheFirstKeyToASignedConclusiveTablet) {
+  EXPECT_LE(presses_beyond_turns(kStory), 12);
+  const Outcome played = play(kStory);
   ASSERT_EQ(played.status, 0) << played.err;
   const auto list = run_command({"session", "list", session(), "--json"}).json();
   ASSERT_EQ(list["sign_offs"].size(), 1U);
@@ -241,6 +258,34 @@ TEST_F(OperatorStory, AClickOnATipIsTheCentreOfItsBall) {
   ASSERT_EQ((*pins)->tips.at(0).size(), 1U);
   EXPECT_EQ((*pins)->tips.at(0)[0].label, 7);
   EXPECT_LT(((*pins)->tips.at(0)[0].position_mm - tip.position_mm).norm(), 0.5);
+}
+
+TEST_F(OperatorStory, TonesAreOffUntilTheyAreTicked) {
+  // A player that writes down that it was called.
+  const fs::path players = folder_.path() / "players";
+  const fs::path heard = folder_.path() / "heard";
+  fs::create_directories(players);
+  for (const char* name : {"pw-play", "paplay", "aplay"}) {
+    std::ofstream(players / name) << "#!/bin/sh\nhead -c 4 \"$1\" >> " << heard.string() << "\n";
+    fs::permissions(players / name, fs::perms::owner_all);
+  }
+  const char* path = std::getenv("PATH");
+  ASSERT_NE(path, nullptr);
+  const std::string before = path;
+  setenv("PATH", (players.string() + ":" + before).c_str(), 1);
+  const Outcome silent = play("wait idle\nkey space\nwait waiting-turn\nquit\n");
+  const bool heard_silence = !fs::exists(heard);
+  const Outcome loud = play(
+      "wait scan.0.fits\nwait idle\nclick settings\nclick sound\nclick close-settings\n"
+      "pause 0.5\nkey space\nwait waiting\npause 0.5\nquit\n");
+  setenv("PATH", before.c_str(), 1);
+  EXPECT_EQ(silent.status, 0) << silent.err;
+  EXPECT_TRUE(heard_silence);
+  ASSERT_EQ(loud.status, 0) << loud.err;
+  std::ifstream in(heard);
+  const std::string tones{std::istreambuf_iterator<char>(in), {}};
+  EXPECT_THAT(tones, ::testing::StartsWith("RIFFRIFF"))
+      << "when it was ticked, and when the turn was asked for";
 }
 
 }  // namespace

@@ -5,7 +5,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <fstream>
+#include <sstream>
 
 #include "tests/station/support/command.h"
 #include "tests/support/temporary_folder.h"
@@ -79,6 +81,68 @@ TEST_F(MeshInput, WhatIsNoMeshIsOneLineAndStatusTwo) {
     EXPECT_EQ(outcome.status, 2) << outcome.err;
     EXPECT_THAT(outcome.complaints(), SizeIs(1)) << outcome.err;
   }
+}
+
+/// A plate of 10 x 6 mm with a groove, 1 mm deep, across its middle.
+std::string grooved_plate() {
+  std::string out;
+  constexpr int kCols = 40;
+  for (int r = 0; r <= 6; ++r) {
+    for (int c = 0; c <= kCols; ++c) {
+      const double x = -5 + 0.25 * c;
+      out += "v " + std::to_string(x) + " " + std::to_string(r - 3) + " " +
+             std::to_string(-std::max(0.0, 1 - std::abs(x))) + "\n";
+    }
+  }
+  for (int r = 0; r < 6; ++r) {
+    for (int c = 0; c < kCols; ++c) {
+      const auto at = [&](int row, int col) { return std::to_string(1 + row * (kCols + 1) + col); };
+      out += "f " + at(r, c) + " " + at(r, c + 1) + " " + at(r + 1, c + 1) + "\nf " + at(r, c) + " " +
+             at(r + 1, c + 1) + " " + at(r + 1, c) + "\n";
+    }
+  }
+  return out;
+}
+
+TEST_F(MeshInput, ACutBetweenTwoClicksIsMeasuredAndKept) {
+  const auto before = std::filesystem::current_path();
+  std::filesystem::current_path(folder_.path());  // where pictures and profiles of a mesh go
+  const Outcome outcome =
+      look_at("plate.obj", grooved_plate(),
+              "wait whole\nclick tool-section\nclick surface 0.3 0.5\nclick surface 0.7 0.5\nwait section\n"
+              "click keep-section\nwait idle\npause 0.3\nquit\n");
+  std::filesystem::current_path(before);
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  std::ifstream csv(folder_.path() / "plate_section_01.csv");
+  std::string line;
+  ASSERT_TRUE(std::getline(csv, line));
+  double lowest = 0;
+  double longest = 0;
+  while (std::getline(csv, line)) {
+    std::istringstream fields(line);
+    std::string piece, along, height;
+    std::getline(fields, piece, ',');
+    std::getline(fields, along, ',');
+    std::getline(fields, height, ',');
+    lowest = std::min(lowest, std::stod(height));
+    longest = std::max(longest, std::stod(along));
+  }
+  EXPECT_NEAR(lowest, -1, 0.02);
+  EXPECT_GT(longest, 2.2);
+  EXPECT_LT(longest, 10);
+  EXPECT_TRUE(std::filesystem::exists(folder_.path() / "plate_section_01.svg"));
+  // The command line cuts the same.
+  const auto svg = (folder_.path() / "cut.svg").string();
+  const auto cut = run_command({"mesh", "section", (folder_.path() / "plate.obj").string(), "--from",
+                                "-3,0.1,0", "--to", "3,0.1,0", "-o", svg, "--json"})
+                       .json();
+  EXPECT_NEAR(cut["length_mm"].get<double>(), 6, 1e-6);
+  EXPECT_NEAR(cut["lowest_mm"].get<double>(), -1, 1e-5);
+  EXPECT_NEAR(cut["lowest_along_mm"].get<double>(), 3, 1e-5);
+  EXPECT_EQ(run_command({"mesh", "section", (folder_.path() / "plate.obj").string(), "--from", "1,2", "--to",
+                         "3,0,0", "-o", svg})
+                .status,
+            2);
 }
 
 TEST(WindowInput, ABadScriptIsNamedByItsLine) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "ui/operator/operator_screen.h"
+#include "ui/shell/sound.h"
 
 namespace dubsar::ui {
 
@@ -45,6 +46,9 @@ void OperatorScreen::draw_settings(UiContext& ui) {
   ui.target("german");
   tick(ui, "dark", ui.text(Text::kDark), p.dark);
   tick(ui, "colour-blind", ui.text(Text::kColourBlind), p.blue_for_red);
+  if (tick(ui, "sound", ui.text(Text::kSound), p.sound) && p.sound) {
+    play(Sound::kDone);  // so that one hears whether it works
+  }
   ImGui::TextUnformatted(ui.text(Text::kFontSize));
   if (plain_button(ui, "font-smaller", "A-")) {
     p.font_px = std::max(kSmallestFontPx, p.font_px - 2);

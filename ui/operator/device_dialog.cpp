@@ -6,6 +6,7 @@
 #include <chrono>
 
 #include "ui/gl/gl_window.h"
+#include "ui/operator/setting_widget.h"
 
 namespace dubsar::ui {
 
@@ -28,42 +29,6 @@ void DeviceDialog::open(const std::string& current_uri) {
   uri_ = current_uri;
   if (!known_ && !looking_.valid()) {
     look();
-  }
-}
-
-void DeviceDialog::draw_option(UiContext& ui, const SettingInfo& option, std::string& value) {
-  const std::string name = fmt::format("option.{}", option.key);
-  std::string label = option.unit.empty() ? option.key : fmt::format("{} ({})", option.key, option.unit);
-  if (option.type == SettingType::kBool) {
-    bool on = value == "1";
-    if (tick(ui, name.c_str(), label.c_str(), on)) {
-      value.assign(on ? 1 : 0, '1');
-    }
-  } else if (option.type == SettingType::kChoice) {
-    ImGui::TextUnformatted(label.c_str());
-    ImGui::SetNextItemWidth(-1);
-    if (ImGui::BeginCombo(fmt::format("##{}", name).c_str(), value.c_str())) {
-      if (ImGui::Selectable("-", value.empty())) {
-        value.clear();
-      }
-      for (const std::string& choice : option.choices) {
-        if (ImGui::Selectable(choice.c_str(), value == choice)) {
-          value = choice;
-        }
-      }
-      ImGui::EndCombo();
-    }
-    ui.target(name);
-  } else {
-    if (option.range && option.range->second < 1e9) {
-      label += fmt::format("  {:g} - {:g}", option.range->first, option.range->second);
-    }
-    text_line(ui, name.c_str(), label.c_str(), value);
-  }
-  if (!option.help.empty()) {
-    ImGui::PushFont(ui.fonts.small);
-    coloured_text(ui.colours.faint, option.help.c_str());
-    ImGui::PopFont();
   }
 }
 
@@ -128,7 +93,7 @@ std::optional<std::string> DeviceDialog::draw(UiContext& ui) {
       text_line(ui, "locator", driver.locator_help.c_str(), locator_);
     }
     for (const SettingInfo& option : driver.options) {
-      draw_option(ui, option, values_[option.key]);
+      setting_widget(ui, fmt::format("option.{}", option.key), option, values_[option.key]);
     }
     if (before != std::pair(locator_, values_)) {
       uri_ = compose_uri(driver.scheme, locator_, {values_.begin(), values_.end()});

@@ -22,7 +22,6 @@ class DeviceDialog {
 
  private:
   void look();
-  void draw_option(UiContext& ui, const SettingInfo& option, std::string& value);
   std::future<std::vector<OfferedDriver>> looking_;
   std::vector<OfferedDriver> drivers_;
   bool known_ = false;

@@ -9,6 +9,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ui/shell/sound.h"
+
 namespace dubsar::ui {
 
 namespace {
@@ -52,7 +54,8 @@ std::vector<unsigned char> coloured(const GridPicture& picture, const UiContext&
   return out;
 }
 
-OperatorScreen::OperatorScreen(LiveSession& session) : session_(session) {}
+OperatorScreen::OperatorScreen(LiveSession& session)
+    : session_(session), camera_box_(session), calibration_(session) {}
 
 void OperatorScreen::take_state(UiContext& ui) {
   state_ = session_.state();
@@ -81,8 +84,8 @@ void OperatorScreen::take_state(UiContext& ui) {
     stage_ = state_.stage;
     stage_began_s_ = ui.time_s;
   }
-  constexpr const char* kPhases[] = {"still",   "reading", "opening",   "moving", "scanning",
-                                     "judging", "waiting", "finishing", "signing"};
+  constexpr const char* kPhases[] = {"still",   "reading", "opening",   "moving",  "scanning",
+                                     "judging", "waiting", "finishing", "signing", "measuring"};
   ui.facts.insert(kPhases[static_cast<int>(state_.phase)]);
   if (state_.phase == LivePhase::kStill && state_.error) {
     ui.facts.insert("stopped");
@@ -101,12 +104,29 @@ void OperatorScreen::take_state(UiContext& ui) {
   } else {
     ui.facts.insert("idle");
   }
+  if (state_.care) {
+    ui.facts.insert(state_.care->is_due() ? "verify-due" : "verified-today");
+  }
   ui.facts.insert("scans." + std::to_string(state_.scans.size()));
+}
+
+void OperatorScreen::sound_out(const UiContext& ui) {
+  const LivePhase before = std::exchange(heard_phase_, state_.phase);
+  if (!ui.preferences.sound || before == state_.phase) {
+    return;
+  }
+  // The operator is wanted, or it is over; a session that was only read makes no noise.
+  if (state_.phase == LivePhase::kWaiting) {
+    play(state_.last_not_taken_up ? Sound::kFailed : Sound::kDone);
+  } else if (state_.phase == LivePhase::kStill && before != LivePhase::kReading) {
+    play(state_.error ? Sound::kFailed : Sound::kDone);
+  }
 }
 
 void OperatorScreen::draw(UiContext& ui, ImVec2 size) {
   unfinished_ = false;
   take_state(ui);
+  sound_out(ui);
   const bool has_device = !session_.device().empty();
   const Statement statement = statement_of(state_, has_device, ui.preferences.language);
   ImGui::SetNextWindowPos({0, 0});
@@ -140,6 +160,8 @@ void OperatorScreen::draw(UiContext& ui, ImVec2 size) {
   for (LabelPins& labels : pins_.draw(ui)) {
     session_.ask(std::move(labels));
   }
+  camera_box_.draw(ui, state_);
+  calibration_.draw(ui, state_);
   draw_settings(ui);
   draw_tablet(ui);
   draw_signing(ui);

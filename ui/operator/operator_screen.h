@@ -11,6 +11,8 @@
 
 #include "station/live_session.h"
 #include "ui/gl/frame_target.h"
+#include "ui/operator/calibration_dialog.h"
+#include "ui/operator/camera_dialog.h"
 #include "ui/operator/device_dialog.h"
 #include "ui/operator/pair_dialog.h"
 #include "ui/operator/pin_dialog.h"
@@ -36,6 +38,7 @@ class OperatorScreen {
 
  private:
   void take_state(UiContext& ui);
+  void sound_out(const UiContext& ui);
   void draw_statement(UiContext& ui, const Statement& statement, ImVec2 size);
   void draw_left(UiContext& ui, ImVec2 size);
   void draw_model(UiContext& ui, ImVec2 size);
@@ -61,6 +64,8 @@ class OperatorScreen {
   PairDialog pairs_;
   PinDialog pins_;
   DeviceDialog devices_;
+  CameraDialog camera_box_;
+  CalibrationDialog calibration_;
   PixelTexture growing_;
   int grown_rows_ = -1;
   bool grown_blue_ = false;
@@ -78,6 +83,7 @@ class OperatorScreen {
   bool open_sign_ = false, open_tablet_ = false, open_settings_ = false;
   bool wants_viewer_ = false;
   bool unfinished_ = false;
+  LivePhase heard_phase_ = LivePhase::kStill;  ///< as of the last frame
   std::string stage_;
   double stage_began_s_ = 0;
   std::size_t strip_scans_ = 0;

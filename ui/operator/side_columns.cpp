@@ -58,9 +58,21 @@ void OperatorScreen::draw_left(UiContext& ui, ImVec2 size) {
       note += (note.empty() ? "" : ", ") + filled(ui.text(Text::kExcused), excused);
     }
     if (!note.empty()) {
-      ImGui::Indent(box + ImGui::GetStyle().ItemSpacing.x);
+      // Beside the name where it fits: the buttons below are wanted without scrolling.
+      const float indent = box + ImGui::GetStyle().ItemSpacing.x;
+      const float room = at.x + ImGui::GetContentRegionAvail().x;
+      ImGui::SameLine();
+      const bool beside = ImGui::GetCursorScreenPos().x + ImGui::CalcTextSize(note.c_str()).x < room;
+      if (beside) {
+        ImGui::SetCursorPosY(ImGui::GetCursorPosY() + 0.2F * ui.fonts.small->FontSize);
+      } else {
+        ImGui::NewLine();
+        ImGui::Indent(indent);
+      }
       coloured_text(lacks ? ui.colours.red : ui.colours.faint, note.c_str());
-      ImGui::Unindent(box + ImGui::GetStyle().ItemSpacing.x);
+      if (!beside) {
+        ImGui::Unindent(indent);
+      }
     }
     ImGui::PopFont();
   }
@@ -79,6 +91,12 @@ void OperatorScreen::draw_left(UiContext& ui, ImVec2 size) {
                                         : ui.text(Text::kNoCalibration));
     ImGui::PopFont();
   }
+  if (state_.care) {
+    ImGui::PushFont(ui.fonts.small);
+    coloured_text(state_.care->is_due() ? ui.colours.amber : ui.colours.good,
+                  care_line(*state_.care, ui.preferences.language).c_str());
+    ImGui::PopFont();
+  }
   ImGui::Separator();
   const ImVec2 wide{-1, ui.px(2.1F)};
   std::string tablet = ui.text(Text::kTablet);
@@ -88,11 +106,32 @@ void OperatorScreen::draw_left(UiContext& ui, ImVec2 size) {
   if (big_button(ui, "tablet", tablet.c_str(), nullptr, wide)) {
     open_tablet_ = true;
   }
-  if (big_button(ui, "device", ui.text(Text::kDevice), nullptr, wide,
-                 session_.device().empty() ? ButtonKind::kMain : ButtonKind::kPlain, !session_.busy())) {
+  const ImVec2 half{0.5F * (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x), wide.y};
+  const auto narrow = [&](const char* name, Text text, ButtonKind kind, bool enabled) {
+    const bool small = ImGui::CalcTextSize(ui.text(text)).x > half.x - ui.px(0.4F);
+    if (small) {
+      ImGui::PushFont(ui.fonts.small);
+    }
+    const bool is_pressed = big_button(ui, name, ui.text(text), nullptr, half, kind, enabled);
+    if (small) {
+      ImGui::PopFont();
+    }
+    return is_pressed;
+  };
+  const bool has_device = !session_.device().empty();
+  if (narrow("device", Text::kDevice, has_device ? ButtonKind::kPlain : ButtonKind::kMain,
+             !session_.busy())) {
     devices_.open(session_.device());
   }
-  if (big_button(ui, "settings", ui.text(Text::kSettings), nullptr, wide)) {
+  ImGui::SameLine();
+  if (narrow("camera", Text::kCamera, ButtonKind::kPlain, has_device)) {
+    camera_box_.open();
+  }
+  if (narrow("calibration", Text::kCalibration, ButtonKind::kPlain, !session_.busy())) {
+    calibration_.open(state_);
+  }
+  ImGui::SameLine();
+  if (narrow("settings", Text::kSettings, ButtonKind::kPlain, true)) {
     open_settings_ = true;
   }
   ImGui::EndChild();
@@ -145,7 +184,8 @@ void OperatorScreen::draw_right(UiContext& ui, ImVec2 size) {
   }
   if (session_.busy() && !state_.stage.empty() && state_.phase != LivePhase::kWaiting) {
     ImGui::PushFont(ui.fonts.small);
-    ImGui::ProgressBar(static_cast<float>(state_.fraction), {-1, 0}, state_.stage.c_str());
+    ImGui::ProgressBar(static_cast<float>(state_.fraction), {-1, 0},
+                       translated(state_.stage, ui.preferences.language).c_str());
     const double spent = ui.time_s - stage_began_s_;
     if (state_.fraction > 0.05 && spent > 2) {
       ImGui::TextUnformatted(
@@ -154,7 +194,7 @@ void OperatorScreen::draw_right(UiContext& ui, ImVec2 size) {
     ImGui::PopFont();
   } else if (!state_.notice.empty()) {
     ImGui::PushFont(ui.fonts.small);
-    coloured_text(ui.colours.faint, state_.notice.c_str());
+    coloured_text(ui.colours.faint, translated(state_.notice, ui.preferences.language).c_str());
     ImGui::PopFont();
   }
   ImGui::EndChild();

@@ -66,6 +66,9 @@ void say_still(Statement& out, const LiveState& state, bool has_device, Language
   } else if (!any) {
     out.headline = text_of(Text::kLayTablet, language);
     out.tone = Tone::kAsk;
+    if (state.care && state.care->is_due()) {
+      out.detail = text_of(Text::kVerifyFirst, language);
+    }
   } else if (conclusive && state.signed_off) {
     out.headline = filled(text_of(Text::kSigned, language), state.signed_by.c_str());
     out.detail = text_of(Text::kSignedNext, language);
@@ -145,6 +148,9 @@ Statement statement_of(const LiveState& state, bool has_device, Language languag
       break;
     case LivePhase::kSigning:
       out.headline = text_of(Text::kSigning, language);
+      break;
+    case LivePhase::kMeasuring:
+      hands_off(Text::kMeasuring);
       break;
   }
   return out;

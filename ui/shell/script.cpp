@@ -35,7 +35,8 @@ const std::map<std::string, int>& keys() {
                                                 {"3", GLFW_KEY_3},
                                                 {"4", GLFW_KEY_4},
                                                 {"5", GLFW_KEY_5},
-                                                {"6", GLFW_KEY_6}};
+                                                {"6", GLFW_KEY_6},
+                                                {"selectall", GLFW_KEY_A}};
   return kKeys;
 }
 
@@ -174,6 +175,7 @@ void ScriptPlayer::inject(const UiContext& ui, double now_s) {
     case Kind::kKey: {
       const auto key = static_cast<std::size_t>(keys().at(step.name));
       io.KeysDown[key] = frame_ < 2;
+      io.KeyCtrl = step.name == "selectall" && frame_ < 2;
       if (++frame_ > 4) {
         go_on();
       }

@@ -2,9 +2,7 @@
 // Copyright The Dubsar developers
 #include "ui/shell/text_table.h"
 
-#include <algorithm>
-#include <array>
-#include <utility>
+#include <iterator>
 
 namespace dubsar::ui {
 
@@ -100,6 +98,7 @@ constexpr Row kRows[] = {
     {Text::kDark, "Dark", "Dunkel"},
     {Text::kFontSize, "Size of text", "Schriftgröße"},
     {Text::kColourBlind, "Blue in place of red", "Blau statt Rot"},
+    {Text::kSound, "Tones when done or failed", "Töne, wenn fertig oder misslungen"},
     {Text::kClickSamePlace,
      "Click the same place in both pictures, three times or more. One or two choose among the fits.",
      "Dieselbe Stelle in beiden Bildern anklicken, dreimal oder öfter. Eine oder zwei wählen unter den "
@@ -120,6 +119,77 @@ constexpr Row kRows[] = {
     {Text::kUseLabels, "Use these labels", "Diese Namen nehmen"},
     {Text::kTipDiameter, "Tip, mm", "Spitze, mm"},
     {Text::kPinsLabelled, "{} pins labelled", "{} Nadeln benannt"},
+    {Text::kCamera, "Camera", "Kamera"},
+    {Text::kNoPicture, "No picture comes now. While a scan runs the camera is the scan's.",
+     "Gerade kommt kein Bild. Während ein Scan läuft, gehört ihm die Kamera."},
+    {Text::kHatchLegend, "Orange hatch, rising: saturated. Blue hatch, falling: too dark.",
+     "Orange schraffiert, steigend: übersteuert. Blau, fallend: zu dunkel."},
+    {Text::kStripeGood, "exposure good: {:.1f} percent of the stripe saturated, {:.1f} percent weak",
+     "Belichtung gut: {:.1f} Prozent des Streifens übersteuert, {:.1f} Prozent schwach"},
+    {Text::kStripeTooLong, "exposure too long: {:.1f} percent of the stripe saturated",
+     "zu lange belichtet: {:.1f} Prozent des Streifens übersteuert"},
+    {Text::kStripeTooShort, "exposure too short: {:.1f} percent of the stripe too weak",
+     "zu kurz belichtet: {:.1f} Prozent des Streifens zu schwach"},
+    {Text::kPhotographGood, "exposure good, no stripe in view: {:.1f} percent of the picture saturated",
+     "Belichtung gut, kein Streifen im Bild: {:.1f} Prozent des Bildes übersteuert"},
+    {Text::kPhotographTooLong, "exposure too long: {:.1f} percent of the picture saturated",
+     "zu lange belichtet: {:.1f} Prozent des Bildes übersteuert"},
+    {Text::kPhotographTooShort, "exposure too short, or no light: the picture is dark",
+     "zu kurz belichtet, oder kein Licht: das Bild ist dunkel"},
+    {Text::kPutSetting, "Set", "Setzen"},
+    {Text::kNoSettings, "The device has nothing to set.", "An dem Gerät ist nichts einzustellen."},
+    {Text::kSettingsKept, "What is set is kept with the session, and put again when it goes on.",
+     "Was gesetzt ist, bleibt bei der Sitzung und gilt wieder, wenn sie weitergeht."},
+    {Text::kMeasuring, "Hands off: it is being measured", "Hände weg: es wird gemessen"},
+    {Text::kVerifyFirst, "The rig was not measured today: first measure the artefact (Calibration).",
+     "Das Gerät wurde heute nicht geprüft: zuerst den Prüfkörper messen (Kalibrierung)."},
+    {Text::kNeverVerified, "never measured with this calibration", "mit dieser Kalibrierung nie geprüft"},
+    {Text::kVerifiedBadly, "failed when last measured", "bei der letzten Prüfung durchgefallen"},
+    {Text::kVerifiedLongAgo, "last measured {:.0f} days ago: due",
+     "zuletzt vor {:.0f} Tagen geprüft: fällig"},
+    {Text::kVerifiedToday, "measured {:.0f} hours ago", "vor {:.0f} Stunden geprüft"},
+    {Text::kVerifyPage, "Measure the artefact", "Prüfkörper messen"},
+    {Text::kCalibratePage, "Calibrate", "Kalibrieren"},
+    {Text::kVerifyHow,
+     "Every day before the first tablet: lay the artefact where tablets lie and measure it. One scan is "
+     "judged by its certificate, and the outcome goes into the log of the calibration.",
+     "Jeden Tag vor der ersten Tafel: den Prüfkörper an die Stelle der Tafeln legen und messen. Ein Scan "
+     "wird "
+     "an seinem Zertifikat gemessen, das Ergebnis kommt ins Protokoll der Kalibrierung."},
+    {Text::kArtefactFile, "Artefact (artefact.toml)", "Prüfkörper (artefact.toml)"},
+    {Text::kVerifyScan, "Scanner, or a scan of it", "Scanner, oder ein Scan davon"},
+    {Text::kCalibrationFile, "Calibration (calibration.json)", "Kalibrierung (calibration.json)"},
+    {Text::kVerifyNow, "Measure", "Messen"},
+    {Text::kBallLine, "ball {}: form {:.1f} um, size {:+.1f} um, {} samples",
+     "Kugel {}: Form {:.1f} um, Größe {:+.1f} um, {} Messpunkte"},
+    {Text::kSpacingLine, "balls {} and {}: spacing {:+.1f} um", "Kugeln {} und {}: Abstand {:+.1f} um"},
+    {Text::kFlatnessLine, "plane: flatness {:.1f} um", "Ebene: Ebenheit {:.1f} um"},
+    {Text::kVerifyPassed, "passed", "bestanden"},
+    {Text::kVerifyFailed, "FAILED", "DURCHGEFALLEN"},
+    {Text::kCalibrateHow,
+     "For each pose of the board, which stays where it is: one picture of it lit, one with the laser on, one "
+     "with the laser off. Then the board on the stage, at several positions. Then work it out: what is next "
+     "stands below.",
+     "Für jede Lage der Tafel mit dem Muster, die liegen bleibt: ein Bild beleuchtet, eines mit Laser, eines "
+     "ohne. Dann das Muster auf dem Tisch, an mehreren Stellungen. Dann auswerten: was als Nächstes kommt, "
+     "steht unten."},
+    {Text::kPictureFolder, "Folder of the pictures", "Ordner der Bilder"},
+    {Text::kBoard, "Board (chessboard:9x6:25, charuco:9x7:5:3.7)",
+     "Muster (chessboard:9x6:25, charuco:9x7:5:3.7)"},
+    {Text::kShotBoard, "Board", "Muster"},
+    {Text::kShotLaser, "Laser on", "Laser an"},
+    {Text::kShotDark, "Laser off", "Laser aus"},
+    {Text::kShotStop, "On the stage, at", "Auf dem Tisch, bei"},
+    {Text::kCalibrateNow, "Work it out", "Auswerten"},
+    {Text::kCalibrateKeep, "Keep", "Aufheben"},
+    {Text::kCameraLine, "camera: corners off by {:.3f} px, {:.1f} um on the board, from {} pictures",
+     "Kamera: Ecken auf {:.3f} px, {:.1f} um auf dem Muster, aus {} Bildern"},
+    {Text::kLaserLine, "laser: stripe off by {:.3f} px, {:.1f} um, from {} pictures",
+     "Laser: Streifen auf {:.3f} px, {:.1f} um, aus {} Bildern"},
+    {Text::kVolumeLine, "points known to {:.1f} um against each other",
+     "Punkte zueinander auf {:.1f} um bekannt"},
+    {Text::kStageLine, "stage: board off by {:.1f} um at {} positions",
+     "Tisch: Muster auf {:.1f} um an {} Stellungen"},
     {Text::kSignName, "Name", "Name"},
     {Text::kSignRole, "As", "Als"},
     {Text::kSignIncomplete, "Signed although incomplete, because", "Unvollständig unterschrieben, weil"},
@@ -185,6 +255,12 @@ constexpr Row kRows[] = {
     {Text::kKeepSelection, "Keep as mesh", "Als Netz aufheben"},
     {Text::kBackToScan, "Back to scanning", "Zurück zum Scannen"},
     {Text::kOpenMesh, "The mesh is read", "Das Netz wird gelesen"},
+    {Text::kSection, "Profile", "Profil"},
+    {Text::kSectionHint, "Click two places: the surface is cut between them, straight down.",
+     "Zwei Stellen anklicken: dazwischen wird senkrecht geschnitten."},
+    {Text::kSectionLine, "{:.3f} mm long, {:.3f} mm deep", "{:.3f} mm lang, {:.3f} mm tief"},
+    {Text::kSectionTimes, "heights drawn {:g} times", "Höhen {:g}-fach gezeichnet"},
+    {Text::kKeepSection, "Keep CSV and SVG", "CSV und SVG aufheben"},
     {Text::kMove, "Turn", "Drehen"},
     {Text::kOrder, "Line", "Zeile"},
 };
@@ -198,23 +274,6 @@ constexpr bool in_order() {
   return std::size(kRows) == static_cast<std::size_t>(Text::kCount);
 }
 static_assert(in_order(), "a row for each text, in the order of the enumeration");
-
-/// Longest first, where one holds another.
-constexpr std::pair<const char*, const char*> kPhrases[] = {
-    {"turn the obverse towards the camera", "die Vorderseite zur Kamera drehen"},
-    {"turn the reverse towards the camera", "die Rückseite zur Kamera drehen"},
-    {"turn the left edge towards the camera", "den linken Rand zur Kamera drehen"},
-    {"turn the right edge towards the camera", "den rechten Rand zur Kamera drehen"},
-    {"turn the top edge towards the camera", "den oberen Rand zur Kamera drehen"},
-    {"turn the bottom edge towards the camera", "den unteren Rand zur Kamera drehen"},
-    {"; then turntable to", "; dann Drehteller auf"},
-    {"turntable to", "Drehteller auf"},
-    {"tilt to", "Neigung auf"},
-    {"the overlap is too even: the scan can turn on it",
-     "die Überlappung ist zu eben: der Scan kann sich darauf drehen"},
-    {"scan again with an edge or more relief in the overlap, or use pins",
-     "neu scannen, mit einer Kante oder mehr Relief in der Überlappung, oder mit Nadeln"},
-};
 
 }  // namespace
 
@@ -232,20 +291,6 @@ const char* code_of(Language language) {
 const char* text_of(Text text, Language language) {
   const Row& row = kRows[static_cast<std::size_t>(text)];
   return language == Language::kGerman ? row.german : row.english;
-}
-
-std::string translated(const std::string& english, Language language) {
-  if (language == Language::kEnglish) {
-    return english;
-  }
-  std::string out = english;
-  for (const auto& [from, to] : kPhrases) {
-    for (std::size_t at = out.find(from); at != std::string::npos; at = out.find(from, at)) {
-      out.replace(at, std::string_view(from).size(), to);
-      at += std::string_view(to).size();
-    }
-  }
-  return out;
 }
 
 }  // namespace dubsar::ui

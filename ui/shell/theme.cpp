@@ -59,6 +59,8 @@ Preferences read_preferences(const fs::path& file) {
       out.dark = value != "0";
     } else if (key == "blue_for_red") {
       out.blue_for_red = value == "1";
+    } else if (key == "sound") {
+      out.sound = value == "1";
     } else if (key == "font_px") {
       out.font_px = std::clamp(std::strtof(value.c_str(), nullptr), kSmallestFontPx, kLargestFontPx);
     } else if (key == "operator") {
@@ -80,8 +82,9 @@ void write_preferences(const fs::path& file, const Preferences& preferences) {
   {
     std::ofstream out(next);
     out << "language = " << code_of(preferences.language) << "\ndark = " << preferences.dark
-        << "\nblue_for_red = " << preferences.blue_for_red << "\nfont_px = " << preferences.font_px
-        << "\noperator = " << preferences.operator_name << "\ndevice = " << preferences.device << "\n";
+        << "\nblue_for_red = " << preferences.blue_for_red << "\nsound = " << preferences.sound
+        << "\nfont_px = " << preferences.font_px << "\noperator = " << preferences.operator_name
+        << "\ndevice = " << preferences.device << "\n";
     if (!out.flush()) {
       return;
     }

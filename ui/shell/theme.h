@@ -17,6 +17,7 @@ struct Preferences {
   Language language = Language::kEnglish;
   bool dark = true;
   bool blue_for_red = false;  ///< red and amber as blue and orange: told apart by the colour-blind
+  bool sound = false;         ///< a tone when something is done or failed
   float font_px = 18;
   std::string operator_name;
   std::string device;  ///< URI that was used last

@@ -195,10 +195,13 @@ void ViewerScreen::draw_panel(UiContext& ui, ImVec2 size) {
   tool("tool-turn", Text::kMove, Tool::kTurn);
   ImGui::SameLine();
   tool("tool-measure", Text::kMeasure, Tool::kMeasure);
+  tool("tool-section", Text::kSection, Tool::kSection);
   ImGui::SameLine();
   tool("tool-select", Text::kSelect, Tool::kSelect);
   if (tool_ == Tool::kMeasure) {
     coloured_text(ui.colours.faint, ui.text(Text::kMeasureHint));
+  } else if (tool_ == Tool::kSection) {
+    draw_section_panel(ui);
   } else if (tool_ == Tool::kSelect) {
     draw_selecting(ui);
   }

@@ -189,6 +189,7 @@ void ViewerScreen::draw_surface(UiContext& ui, ImVec2 size) {
   if (show_wedges_ && state_.wedges) {
     draw_wedges(ui, origin, size);
   }
+  draw_section(ui, origin, size);
   draw_tape(ui, origin, size);
   draw_polygon(ui, origin);
   draw_scale_bar(ui, origin, size);
@@ -244,12 +245,15 @@ void ViewerScreen::use_pointer(UiContext& /*ui*/, ImVec2 origin, ImVec2 size) {
       } else {
         polygon_.push_back(px);
       }
-    } else if (tool_ == Tool::kMeasure) {
+    } else if (tool_ == Tool::kMeasure || tool_ == Tool::kSection) {
       if (const auto place = surface_.point_at(px)) {
         if (tape_.size() == 2) {
           tape_.clear();
         }
         tape_.push_back(*place);
+        if (tool_ == Tool::kSection && tape_.size() == 2) {
+          cut_between_places();
+        }
       }
     } else {
       choose(wedge_at(px, size), false);

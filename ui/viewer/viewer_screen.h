@@ -30,7 +30,7 @@ class ViewerScreen {
   [[nodiscard]] bool wants_scanning() { return std::exchange(wants_scanning_, false); }
 
  private:
-  enum class Tool { kTurn, kMeasure, kSelect };
+  enum class Tool { kTurn, kMeasure, kSection, kSelect };
   void take_state(UiContext& ui);
   void draw_panel(UiContext& ui, ImVec2 size);
   void draw_light(UiContext& ui);
@@ -41,6 +41,10 @@ class ViewerScreen {
   void draw_wedges(UiContext& ui, ImVec2 origin, ImVec2 size) const;
   void draw_tape(UiContext& ui, ImVec2 origin, ImVec2 size) const;
   void draw_scale_bar(UiContext& ui, ImVec2 origin, ImVec2 size) const;
+  // viewer_section.cpp
+  void cut_between_places();
+  void draw_section_panel(UiContext& ui);
+  void draw_section(UiContext& ui, ImVec2 origin, ImVec2 size) const;
   void draw_polygon(UiContext& ui, ImVec2 origin) const;
   void close_polygon();
   void draw_selecting(UiContext& ui);
@@ -72,6 +76,7 @@ class ViewerScreen {
   std::vector<std::uint32_t> selected_faces_;  ///< of the mesh
   double selected_mm2_ = 0;
   int parts_kept_ = 0;
+  int sections_kept_ = 0;
   int wedge_ = -1;
   bool scroll_to_wedge_ = false;
   bool show_wedges_ = true;

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "station/calibration_run.h"
+
+#include <fmt/format.h>
+
+#include "acquisition/calibration_folder.h"
+#include "formats/atomic_file.h"
+#include "formats/calibration_json.h"
+#include "formats/gray_file.h"
+#include "station/results.h"
+
+namespace dubsar {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+Result<CalibrationSet> set_in(const fs::path& list) {
+  const Result<std::string> text = read_whole_file(list);
+  return text ? parse_calibration_set(*text, list.string()) : std::unexpected(text.error());
+}
+
+Result<CalibrationSet> set_for(const CalibrateRequest& request) {
+  std::error_code ignored;
+  const fs::path folder(request.folder);
+  if (!fs::is_directory(folder, ignored)) {
+    return fail(ErrorKind::kUsage, "there is no such folder", request.folder,
+                "give a folder with a calibration.toml, or with pictures of the board and --board");
+  }
+  const fs::path list = folder / "calibration.toml";
+  if (!fs::exists(list, ignored)) {
+    if (request.board.empty()) {
+      return fail(ErrorKind::kUsage, "there is no calibration.toml in it", request.folder,
+                  "write one, or say --board for pictures of the board alone");
+    }
+    return set_of_folder(folder, request.board);
+  }
+  Result<CalibrationSet> set = set_in(list);
+  if (set && !request.board.empty()) {
+    set->board = request.board;
+  }
+  return set;
+}
+
+}  // namespace
+
+Result<CalibrateOutcome> calibrate_folder(const CalibrateRequest& request, const JobContext& job) {
+  Result<CalibrationSet> set = set_for(request);
+  if (!set) {
+    return std::unexpected(set.error());
+  }
+  Result<CalibrationPictures> pictures = look_at_pictures(request.folder, *set, job);
+  if (!pictures) {
+    return std::unexpected(pictures.error());
+  }
+  CalibrationOptions how;
+  how.board = pictures->board;
+  how.motion = set->motion;
+  how.depth_range_mm = set->depth_range_mm;
+  how.plate_margin_mm = set->plate_margin_mm;
+  Result<CalibrationReport> report = calibrate_rig(pictures->views, how);
+  if (!report) {
+    Error error = report.error();
+    error.where = error.where.empty() ? request.folder : request.folder + ", " + error.where;
+    if (!pictures->left_out.empty()) {
+      error.what += " (" + std::to_string(pictures->left_out.size()) +
+                    " pictures without a board, the first: " + pictures->left_out.front() + ")";
+    }
+    return std::unexpected(std::move(error));
+  }
+  RigCalibration& rig = report->rig;
+  rig.made_at = utc_now();
+  rig.camera_serial = request.serial.empty() ? set->camera_serial : request.serial;
+  rig.temperature_c = set->temperature_c;
+  rig.note = set->note;
+  if (!request.out.empty()) {
+    if (Status status = write_file_atomically(request.out, calibration_to_json(rig)); !status) {
+      return std::unexpected(status.error());
+    }
+  }
+  return CalibrateOutcome{std::move(*report), std::move(pictures->left_out)};
+}
+
+Result<std::string> add_calibration_shot(const fs::path& folder, const std::string& board,
+                                         CalibrationShot shot, const GrayImage& image, double position) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) {
+    return fail(ErrorKind::kStorage, "the folder cannot be made: " + error.message(), folder.string());
+  }
+  const fs::path list = folder / "calibration.toml";
+  CalibrationSet set;
+  if (fs::exists(list, error)) {
+    Result<CalibrationSet> known = set_in(list);
+    if (!known) {
+      return std::unexpected(known.error());
+    }
+    set = std::move(*known);
+  }
+  if (!board.empty()) {
+    set.board = board;
+  }
+  const bool of_pose = shot == CalibrationShot::kLaser || shot == CalibrationShot::kDark;
+  if (of_pose && set.poses.empty()) {
+    return fail(ErrorKind::kUsage, "there is no pose of the board yet", folder.string(),
+                "take a picture of the board first, and leave it where it is");
+  }
+  std::string name;
+  switch (shot) {
+    case CalibrationShot::kBoard:
+      name = fmt::format("pose_{:02d}.png", set.poses.size());
+      set.poses.push_back({name, {}, {}, 0});
+      break;
+    case CalibrationShot::kLaser:
+      name = set.poses.back().laser = fmt::format("pose_{:02d}_laser.png", set.poses.size() - 1);
+      break;
+    case CalibrationShot::kDark:
+      name = set.poses.back().dark = fmt::format("pose_{:02d}_dark.png", set.poses.size() - 1);
+      break;
+    case CalibrationShot::kStop:
+      name = fmt::format("stage_{:02d}.png", set.stops.size());
+      set.stops.push_back({name, "board", position});
+      set.motion = set.motion.value_or(MotionKind::kLinear);
+      break;
+  }
+  // The picture first: a list must not name what is not there.
+  if (Status written = write_gray_png(image, folder / name); !written) {
+    return std::unexpected(written.error());
+  }
+  if (Status written = write_file_atomically(list, calibration_set_to_toml(set)); !written) {
+    return std::unexpected(written.error());
+  }
+  return name;
+}
+
+}  // namespace dubsar

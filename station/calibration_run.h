@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "acquisition/calibration.h"
+#include "core/gray_image.h"
+#include "core/job.h"
+#include "core/result.h"
+
+namespace dubsar {
+
+struct CalibrateRequest {
+  std::string folder;  ///< with a calibration.toml, or with pictures of the board alone
+  std::string board;   ///< as parse_board() reads it; may be empty where calibration.toml says it
+  std::string serial;  ///< of the camera; empty: as calibration.toml says
+  std::string out;     ///< calibration.json; empty: it is not written
+};
+
+struct CalibrateOutcome {
+  CalibrationReport report;
+  std::vector<std::string> left_out;  ///< pictures without a board, and why
+};
+
+/// Calibrates from the pictures of a folder. A calibration that lacks something is an outcome (`missing`);
+/// one that is worse than it may be is refused. Errors: kUsage, kBadInput, kStorage, kCancelled.
+[[nodiscard]] Result<CalibrateOutcome> calibrate_folder(const CalibrateRequest& request,
+                                                        const JobContext& job);
+
+/// What a picture of a calibration shows. Board, laser and dark are of one pose of the board.
+enum class CalibrationShot {
+  kBoard,  ///< lit, laser off: begins a new pose
+  kLaser,  ///< the same pose, laser on
+  kDark,   ///< as kLaser was taken, laser off
+  kStop,   ///< the board that lies still on the stage, at `position`
+};
+
+/// Adds a picture to a calibration's folder, which is made, and to its calibration.toml. `position` (mm or
+/// radians) is of the stage, for kStop. Returns the name of its file. Errors: kUsage for laser and dark
+/// before any board, kBadInput for a calibration.toml that cannot be read, kStorage.
+[[nodiscard]] Result<std::string> add_calibration_shot(const std::filesystem::path& folder,
+                                                       const std::string& board, CalibrationShot shot,
+                                                       const GrayImage& image, double position = 0);
+
+}  // namespace dubsar

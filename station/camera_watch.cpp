@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "station/camera_watch.h"
+
+#include <utility>
+
+#include "acquisition/device_uri.h"
+#include "acquisition/setting_words.h"
+#include "drivers/loader.h"
+
+namespace dubsar {
+
+namespace {
+
+constexpr auto kFrameWait = std::chrono::milliseconds(100);
+/// Between two looks at what is wanted of a device without a camera.
+constexpr auto kRest = std::chrono::milliseconds(50);
+
+/// Who looks asks again at once; a device that failed is left in peace for this long.
+constexpr int kRestsAfterFailure = 40;
+
+}  // namespace
+
+Status CameraStream::show() {
+  if (!runs_) {
+    if (const Status started = device_.start_frames(); !started) {
+      return started;
+    }
+    runs_ = true;
+  }
+  const Result<std::optional<Frame>> frame = device_.next_frame(kFrameWait);
+  if (!frame) {
+    return std::unexpected(frame.error());
+  }
+  if (*frame && sink_) {
+    sink_(CameraFrame{std::make_shared<const CameraView>(camera_view_of(**frame))});
+  }
+  return {};
+}
+
+void CameraStream::end() {
+  if (std::exchange(runs_, false)) {
+    [[maybe_unused]] const Status said = device_.stop_frames();
+  }
+}
+
+CameraWatch::CameraWatch(std::string uri, SettingWords words, EventSink sink,
+                         std::function<void(const std::string&, const std::string&)> changed)
+    : uri_(std::move(uri)),
+      sink_(std::move(sink)),
+      changed_(std::move(changed)),
+      thread_([this, first = std::move(words)] {
+        run(first);
+        for (int k = 0; k < kRestsAfterFailure && !stopped_; ++k) {
+          std::this_thread::sleep_for(kRest);
+        }
+        ended_ = true;
+        sink_(CameraFrame{});
+      }) {}
+
+CameraWatch::~CameraWatch() {
+  stop();
+  thread_.join();
+}
+
+void CameraWatch::change(ChangeSetting wanted) {
+  const std::scoped_lock lock(mutex_);
+  wanted_.push_back(std::move(wanted));
+}
+
+void CameraWatch::run(const SettingWords& words) {
+  const DriverRegistry registry;
+  const Result<DeviceUri> uri = parse_device_uri(uri_);
+  Result<Device> device = uri ? open_device(*uri, registry) : std::unexpected(uri.error());
+  if (!device) {
+    sink_(Notice{device.error().line()});
+    return;
+  }
+  if (const Status put = put_settings(*device, words, uri_); !put) {
+    sink_(Notice{put.error().line()});
+  }
+  watch(*device);
+}
+
+void CameraWatch::watch(Device& device) {
+  Result<DevicePanel> panel = panel_of(device);
+  if (!panel) {
+    sink_(Notice{panel.error().line()});
+    return;
+  }
+  sink_(DeviceTells{std::make_shared<const DevicePanel>(*panel)});
+  CameraStream stream(device, sink_);
+  while (!stopped_) {
+    std::deque<ChangeSetting> wanted;
+    {
+      const std::scoped_lock lock(mutex_);
+      wanted.swap(wanted_);
+    }
+    for (const ChangeSetting& one : wanted) {
+      const Status put = put_settings(device, {{one.key, one.word}}, uri_);
+      if (put) {
+        changed_(one.key, one.word);
+      } else {
+        sink_(Notice{put.error().line()});
+      }
+    }
+    if (!wanted.empty()) {
+      panel = panel_of(device);
+      if (panel) {
+        sink_(DeviceTells{std::make_shared<const DevicePanel>(*panel)});
+      }
+    }
+    if (!panel || !panel->has_camera) {
+      std::this_thread::sleep_for(kRest);
+    } else if (const Status shown = stream.show(); !shown) {
+      sink_(Notice{shown.error().line()});
+      return;
+    }
+  }
+}
+
+}  // namespace dubsar

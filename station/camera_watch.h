@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <atomic>
+#include <deque>
+#include <functional>
+#include <mutex>
+#include <string>
+#include <thread>
+
+#include "station/device_panel.h"
+#include "station/event.h"
+#include "station/operator_command.h"
+
+namespace dubsar {
+
+/// Looks through a device on a thread of its own while nothing else uses it: its settings and its camera's
+/// frames, as DeviceTells, CameraFrame and Notice. Ends by itself where the device cannot be opened or is
+/// gone.
+class CameraWatch {
+ public:
+  /// `words` are put first. `changed` is called on the thread of the watch after a setting was changed.
+  CameraWatch(std::string uri, SettingWords words, EventSink sink,
+              std::function<void(const std::string& key, const std::string& word)> changed);
+  /// Waits until the device is closed.
+  ~CameraWatch();
+  CameraWatch(const CameraWatch&) = delete;
+  CameraWatch& operator=(const CameraWatch&) = delete;
+
+  void change(ChangeSetting wanted);
+  void stop() { stopped_ = true; }  ///< returns at once; `ended` follows
+  [[nodiscard]] bool ended() const { return ended_; }
+
+ private:
+  void run(const SettingWords& words);
+  void watch(Device& device);
+  std::string uri_;
+  EventSink sink_;
+  std::function<void(const std::string&, const std::string&)> changed_;
+  std::mutex mutex_;
+  std::deque<ChangeSetting> wanted_;
+  std::atomic<bool> stopped_ = false;
+  std::atomic<bool> ended_ = false;
+  std::thread thread_;
+};
+
+/// A camera's stream while a person looks at it; ends it when it goes.
+class CameraStream {
+ public:
+  CameraStream(Device& device, const EventSink& sink) : device_(device), sink_(sink) {}
+  ~CameraStream() { end(); }
+  CameraStream(const CameraStream&) = delete;
+  CameraStream& operator=(const CameraStream&) = delete;
+
+  /// The next frame, if one comes within a tenth of a second, as CameraFrame. Starts the stream where needed.
+  Status show();
+  void end();
+
+ private:
+  Device& device_;
+  const EventSink& sink_;
+  bool runs_ = false;
+};
+
+}  // namespace dubsar

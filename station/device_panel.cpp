@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "station/device_panel.h"
+
+#include <algorithm>
+
+#include "acquisition/setting_words.h"
+#include "formats/json_node.h"
+#include "formats/json_text.h"
+
+namespace dubsar {
+
+namespace {
+
+constexpr const char* kDocument = "device_settings";
+
+using ByDevice = std::vector<std::pair<std::string, SettingWords>>;
+
+Result<ByDevice> load(const SessionStore& store) {
+  const auto text = store.load_document(kDocument);
+  if (!text) {
+    return std::unexpected(text.error());
+  }
+  ByDevice out;
+  if (!*text) {
+    return out;
+  }
+  const std::string where = (store.folder() / "session.sqlite").string() + " (" + kDocument + ")";
+  const Result<JsonDocument> document = JsonDocument::parse(**text, where);
+  if (!document) {
+    return std::unexpected(document.error());
+  }
+  const JsonNode root = document->root();
+  for (const JsonNode& device : root.at("devices").items()) {
+    auto& [uri, words] = out.emplace_back(device.at("uri").text(), SettingWords{});
+    for (const JsonNode& setting : device.at("settings").items()) {
+      words.emplace_back(setting.at("key").text(), setting.at("value").text());
+    }
+  }
+  if (Status status = document->status("change the settings again"); !status) {
+    return std::unexpected(status.error());
+  }
+  return out;
+}
+
+}  // namespace
+
+Result<DevicePanel> panel_of(Device& device) {
+  DevicePanel out;
+  out.uri = device.uri();
+  const Result<DeviceCapabilities> can = device.capabilities();
+  Result<std::vector<SettingInfo>> settings = device.settings();
+  if (!can || !settings) {
+    return std::unexpected(can ? settings.error() : can.error());
+  }
+  out.has_camera = can->yields_frames;
+  for (SettingInfo& info : *settings) {
+    std::string word;
+    if (info.readable) {
+      const Result<SettingValue> value = device.get(info.key);
+      if (!value) {
+        return std::unexpected(value.error());
+      }
+      word = setting_word(*value);
+    }
+    out.settings.push_back({std::move(info), std::move(word)});
+  }
+  return out;
+}
+
+void put_word(SettingWords& words, const std::string& key, const std::string& word) {
+  const auto known = std::ranges::find(words, key, &SettingWords::value_type::first);
+  if (known != words.end()) {
+    words.erase(known);  // later ones may depend on it: it takes its place at the end
+  }
+  words.emplace_back(key, word);
+}
+
+Result<SettingWords> kept_settings(const SessionStore& store, const std::string& uri) {
+  Result<ByDevice> all = load(store);
+  if (!all) {
+    return std::unexpected(all.error());
+  }
+  const auto known = std::ranges::find(*all, uri, &ByDevice::value_type::first);
+  return known == all->end() ? SettingWords{} : std::move(known->second);
+}
+
+Status keep_settings(SessionStore& store, const std::string& uri, const SettingWords& words) {
+  Result<ByDevice> all = load(store);
+  if (!all) {
+    return std::unexpected(all.error());
+  }
+  const auto known = std::ranges::find(*all, uri, &ByDevice::value_type::first);
+  if (known != all->end()) {
+    known->second = words;
+  } else {
+    all->emplace_back(uri, words);
+  }
+  OrderedJson devices = OrderedJson::array();
+  for (const auto& [device, settings] : *all) {
+    OrderedJson list = OrderedJson::array();
+    for (const auto& [key, word] : settings) {
+      list.push_back({{"key", key}, {"value", word}});
+    }
+    devices.push_back({{"uri", device}, {"settings", std::move(list)}});
+  }
+  OrderedJson root;
+  root["devices"] = std::move(devices);
+  return store.save_document(kDocument, text_of(root));
+}
+
+}  // namespace dubsar

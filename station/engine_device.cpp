@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+// What the operator sets of the open device, and sees through its camera, between two scans.
+#include "acquisition/setting_words.h"
+#include "station/engine_impl.h"
+
+namespace dubsar {
+
+void Engine::Impl::tell_panel() {
+  Result<DevicePanel> panel = panel_of(source->device());
+  if (!panel) {
+    emit(Notice{panel.error().line()});
+    return;
+  }
+  panel->uri = options.device;
+  emit(DeviceTells{std::make_shared<const DevicePanel>(std::move(*panel))});
+}
+
+Status Engine::Impl::open_settings() {
+  Result<SettingWords> kept = kept_settings(*store, options.device);
+  if (!kept) {
+    emit(Notice{kept.error().line()});
+    kept = SettingWords{};
+  }
+  // What was kept may be of a driver before this one: it is said and left.
+  if (const Status put = put_settings(source->device(), *kept, options.device); !put) {
+    emit(Notice{put.error().line()});
+  }
+  settings = std::move(*kept);
+  if (!options.settings.empty()) {
+    if (const Status put = put_settings(source->device(), options.settings, options.device); !put) {
+      return put;
+    }
+    for (const auto& [key, value] : options.settings) {
+      put_word(settings, key, value);
+    }
+    if (const Status saved = keep_settings(*store, options.device, settings); !saved) {
+      return saved;
+    }
+  }
+  tell_panel();
+  return {};
+}
+
+void Engine::Impl::change_settings() {
+  std::vector<ChangeSetting> asked;
+  {
+    const std::scoped_lock lock(mutex);
+    asked.swap(settings_asked);
+  }
+  for (const ChangeSetting& one : asked) {
+    Status put = put_settings(source->device(), {{one.key, one.word}}, options.device);
+    if (put) {
+      put_word(settings, one.key, one.word);
+      put = keep_settings(*store, options.device, settings);
+    }
+    if (!put) {
+      emit(Notice{put.error().line()});
+    }
+  }
+  if (!asked.empty()) {
+    tell_panel();
+  }
+}
+
+bool Engine::Impl::show_camera() {
+  bool wanted = false;
+  {
+    const std::scoped_lock lock(mutex);
+    wanted = watch_asked;
+  }
+  if (!wanted) {
+    if (stream) {
+      stream.reset();
+      emit(CameraFrame{});
+    }
+    return false;
+  }
+  if (!stream) {
+    stream = std::make_unique<CameraStream>(source->device(), sink);
+  }
+  if (const Status shown = stream->show(); !shown) {
+    emit(Notice{shown.error().line()});
+    stream.reset();
+    emit(CameraFrame{});
+    const std::scoped_lock lock(mutex);
+    watch_asked = false;
+    return false;
+  }
+  return true;
+}
+
+}  // namespace dubsar

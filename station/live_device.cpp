@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+// The device beside the scans: what its camera sees, what is set, whether it still measures right.
+#include <utility>
+
+#include "station/live_session.h"
+
+namespace dubsar {
+
+std::shared_ptr<const CameraView> LiveSession::camera() const {
+  const std::scoped_lock lock(mutex_);
+  return camera_;
+}
+
+void LiveSession::watch_camera(bool on) {
+  std::shared_ptr<CameraWatch> over;  // goes outside of the lock: its thread may want it
+  {
+    const std::scoped_lock lock(mutex_);
+    if (watch_ && watch_->ended()) {
+      over = std::exchange(watch_, nullptr);
+      on = on && over == nullptr;  // one that ended by itself has said why; the next call tries again
+    }
+    if (engine_) {
+      engine_->post(WatchCamera{on});
+    } else if (!on && watch_) {
+      watch_->stop();
+    } else if (on && !watch_ && !busy_ && !options_.device.empty()) {
+      watch_ = std::make_shared<CameraWatch>(
+          options_.device, settings_, [this](const Event& event) { hear(event); },
+          [this](const std::string& key, const std::string& word) { keep_setting(key, word); });
+    }
+  }
+}
+
+void LiveSession::change_setting(const std::string& key, const std::string& word) {
+  const std::scoped_lock lock(mutex_);
+  if (engine_) {
+    engine_->post(ChangeSetting{key, word});
+  } else if (watch_) {
+    watch_->change({key, word});
+  }
+}
+
+void LiveSession::keep_setting(const std::string& key, const std::string& word) {
+  SettingWords all;
+  std::string device;
+  {
+    const std::scoped_lock lock(mutex_);
+    put_word(settings_, key, word);
+    all = settings_;
+    device = options_.device;
+  }
+  // Without a session it is put, and kept, by the first run.
+  if (SessionStore::is_session(options_.session)) {
+    Result<SessionStore> store = SessionStore::open(options_.session);
+    end(store ? keep_settings(*store, device, all) : std::unexpected(store.error()));
+  }
+}
+
+void LiveSession::look_after_rig() {
+  std::optional<RigCare> care = care_of(device());
+  const std::scoped_lock lock(mutex_);
+  state_.care = std::move(care);
+}
+
+void LiveSession::verify(const VerifyRequest& request) {
+  launch([this, request] {
+    {
+      const std::scoped_lock lock(mutex_);
+      state_.verification.reset();
+      state_.phase = LivePhase::kMeasuring;
+    }
+    changed();
+    Result<VerifyOutcome> outcome = verify_rig(request, *job_);
+    if (!outcome) {
+      end(std::unexpected(outcome.error()));
+      return;
+    }
+    look_after_rig();
+    const std::scoped_lock lock(mutex_);
+    state_.verification = std::make_shared<const VerifyOutcome>(std::move(*outcome));
+  });
+}
+
+void LiveSession::calibrate(const CalibrateRequest& request) {
+  launch([this, request] {
+    {
+      const std::scoped_lock lock(mutex_);
+      state_.phase = LivePhase::kMeasuring;
+    }
+    changed();
+    Result<CalibrateOutcome> outcome = calibrate_folder(request, *job_);
+    if (!outcome) {
+      end(std::unexpected(outcome.error()));
+      return;
+    }
+    look_after_rig();
+    const std::scoped_lock lock(mutex_);
+    state_.calibration = std::make_shared<const CalibrateOutcome>(std::move(*outcome));
+    state_.notice = request.out.empty() ? std::string() : "kept: " + request.out;
+  });
+}
+
+}  // namespace dubsar

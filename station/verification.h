@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+#include "acquisition/artefact.h"
+#include "core/job.h"
+#include "core/result.h"
+#include "formats/verification_log.h"
+
+namespace dubsar {
+
+struct VerifyRequest {
+  std::string artefact;     ///< artefact.toml
+  std::string scan;         ///< of the artefact: a file, or a device that takes it
+  std::string calibration;  ///< that is verified; the outcome goes into the log beside it. Empty: into none
+};
+
+struct VerifyOutcome {
+  Artefact artefact;
+  Verification is;
+  VerificationEntry entry;
+  std::string log;  ///< that it was written into; empty: none
+};
+
+/// Measures a certified artefact in one scan and judges it by its certificate. One that fails is an outcome,
+/// and is logged like one that passes. Errors: kUsage, kBadInput, kDevice, kStorage, kCancelled.
+[[nodiscard]] Result<VerifyOutcome> verify_rig(const VerifyRequest& request, JobContext& job);
+
+/// The figures as the log and `--json` have them.
+[[nodiscard]] nlohmann::ordered_json verification_figures(const Verification& is);
+
+/// A rig is measured every day that it is used.
+inline constexpr double kVerifyEveryDays = 1.0;
+
+/// What a station says of its rig before it is used.
+struct RigCare {
+  std::string calibration;                ///< file
+  std::optional<VerificationEntry> last;  ///< of this calibration
+  std::optional<double> age_days;         ///< of it
+  /// Nothing was measured with this calibration, or too long ago, or it failed.
+  [[nodiscard]] bool is_due() const {
+    return !last || !last->passed || !age_days || *age_days > kVerifyEveryDays;
+  }
+};
+
+/// Of a device "rig:FILE"; nothing for another device, or a file that cannot be read (opening it says why).
+[[nodiscard]] std::optional<RigCare> care_of(const std::string& device_uri);
+
+}  // namespace dubsar

@@ -1,0 +1,263 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "ui/operator/calibration_dialog.h"
+
+#include <algorithm>
+#include <charconv>
+#include <filesystem>
+
+#include "ui/gl/gl_window.h"
+#include "ui/operator/camera_dialog.h"
+
+namespace dubsar::ui {
+
+namespace {
+
+constexpr const char* kPopup = "###calibration";
+constexpr const char* kUsualBoard = "chessboard:9x6:25";
+
+void say(const Eigen::Vector4f& colour, const std::string& line) {
+  coloured_text(colour, line.c_str());
+}
+
+std::optional<double> number_in(const std::string& text) {
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return error == std::errc() && end == text.data() + text.size() ? std::optional(value) : std::nullopt;
+}
+
+void draw_outcome(UiContext& ui, const VerifyOutcome& outcome) {
+  for (const MeasuredBall& ball : outcome.is.balls) {
+    say(ui.colours.text, filled(ui.text(Text::kBallLine), ball.certified + 1, 1e3 * ball.form_mm,
+                                1e3 * ball.size_mm, ball.samples));
+  }
+  for (const MeasuredSpacing& one : outcome.is.spacings) {
+    say(ui.colours.text, filled(ui.text(Text::kSpacingLine), one.a + 1, one.b + 1, 1e3 * one.error_mm));
+  }
+  if (outcome.is.flatness_mm) {
+    say(ui.colours.text, filled(ui.text(Text::kFlatnessLine), 1e3 * *outcome.is.flatness_mm));
+  }
+  for (const std::string& line : outcome.is.failed) {
+    say(ui.colours.red, translated(line, ui.preferences.language));
+  }
+  const bool passed = outcome.is.passed();
+  ui.facts.insert(passed ? "verify-passed" : "verify-failed");
+  say(passed ? ui.colours.good : ui.colours.red,
+      fmt::format("{}: {}", outcome.artefact.name,
+                  ui.text(passed ? Text::kVerifyPassed : Text::kVerifyFailed)));
+  if (!outcome.log.empty()) {
+    say(ui.colours.faint, outcome.log);
+  }
+}
+
+void draw_report(UiContext& ui, const CalibrateOutcome& outcome) {
+  const RigCalibration& rig = outcome.report.rig;
+  const CalibrationQuality& q = rig.quality;
+  say(ui.colours.text, filled(ui.text(Text::kCameraLine), q.corner_rms_px, q.corner_rms_um, q.board_views));
+  if (rig.has_laser) {
+    say(ui.colours.text, filled(ui.text(Text::kLaserLine), q.stripe_rms_px, q.stripe_rms_um, q.stripe_views));
+    say(ui.colours.text, filled(ui.text(Text::kVolumeLine), q.volume_sigma_um));
+  }
+  if (rig.has_motion && q.stage_positions > 0) {
+    say(ui.colours.text, filled(ui.text(Text::kStageLine), q.stage_rms_um, q.stage_positions));
+  }
+  for (const std::string& line : outcome.left_out) {
+    say(ui.colours.faint, line);
+  }
+  for (const std::string& line : outcome.report.missing) {
+    say(ui.colours.amber, fmt::format("{}: {}", ui.text(Text::kNextPose), line));
+  }
+  ui.facts.insert(outcome.report.missing.empty() ? "calibration-whole" : "calibration-lacks");
+}
+
+}  // namespace
+
+std::string care_line(const RigCare& care, Language language) {
+  if (!care.last) {
+    return text_of(Text::kNeverVerified, language);
+  }
+  if (!care.last->passed) {
+    return text_of(Text::kVerifiedBadly, language);
+  }
+  const double days = care.age_days.value_or(0);
+  return filled(text_of(care.is_due() ? Text::kVerifiedLongAgo : Text::kVerifiedToday, language),
+                care.is_due() ? days : 24 * days);
+}
+
+void CalibrationDialog::open(const LiveState& state) {
+  opening_ = true;
+  verify_.scan = session_.device();
+  if (state.care) {
+    verify_.calibration = state.care->calibration;
+    const std::filesystem::path beside = std::filesystem::path(state.care->calibration).parent_path();
+    verify_.artefact = verify_.artefact.empty() ? (beside / "artefact.toml").string() : verify_.artefact;
+    out_ = state.care->calibration;
+  }
+  if (calibrate_.board.empty()) {
+    calibrate_.board = kUsualBoard;
+    calibrate_.folder = "calibration";
+    out_ = out_.empty() ? "calibration/calibration.json" : out_;
+  }
+}
+
+void CalibrationDialog::draw_verify(UiContext& ui, const LiveState& state) {
+  ImGui::TextWrapped("%s", ui.text(Text::kVerifyHow));
+  if (state.care) {
+    say(state.care->is_due() ? ui.colours.amber : ui.colours.good,
+        care_line(*state.care, ui.preferences.language));
+  }
+  text_line(ui, "verify-artefact", ui.text(Text::kArtefactFile), verify_.artefact);
+  text_line(ui, "verify-scan", ui.text(Text::kVerifyScan), verify_.scan);
+  text_line(ui, "verify-calibration", ui.text(Text::kCalibrationFile), verify_.calibration);
+  if (plain_button(ui, "verify-now", ui.text(Text::kVerifyNow),
+                   !session_.busy() && !verify_.artefact.empty() && !verify_.scan.empty())) {
+    session_.verify(verify_);
+  }
+  ImGui::Separator();
+  if (state.verification) {
+    draw_outcome(ui, *state.verification);
+  }
+}
+
+void CalibrationDialog::draw_shots(UiContext& ui) {
+  const auto view = session_.camera();
+  const bool may = view && view->image && !shooting_.valid() && !calibrate_.folder.empty();
+  const std::optional<double> position = number_in(position_);
+  const auto offer = [&](const char* name, Text text, CalibrationShot shot, bool enabled) {
+    if (plain_button(ui, name, ui.text(text), may && enabled)) {
+      shooting_ = std::async(std::launch::async, [image = view->image, shot, folder = calibrate_.folder,
+                                                  board = calibrate_.board, at = position.value_or(0)] {
+        auto said = add_calibration_shot(folder, board, shot, *image, at);
+        wake_window();
+        return said;
+      });
+    }
+  };
+  offer("shot-board", Text::kShotBoard, CalibrationShot::kBoard, true);
+  ImGui::SameLine();
+  offer("shot-laser", Text::kShotLaser, CalibrationShot::kLaser, true);
+  ImGui::SameLine();
+  offer("shot-dark", Text::kShotDark, CalibrationShot::kDark, true);
+  offer("shot-stop", Text::kShotStop, CalibrationShot::kStop, position.has_value());
+  ImGui::SameLine();
+  short_text(ui, "shot-position", position_, ui.px(5));
+  if (shooting_.valid() && shooting_.wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
+    const Result<std::string> said = shooting_.get();
+    shot_failed_ = !said;
+    shot_said_ = said ? *said : said.error().line();
+  }
+  if (!shot_said_.empty()) {
+    ui.facts.insert("shot " + shot_said_);
+    say(shot_failed_ ? ui.colours.red : ui.colours.good, shot_said_);
+  }
+}
+
+void CalibrationDialog::draw_calibrate(UiContext& ui, const LiveState& state) {
+  ImGui::TextWrapped("%s", ui.text(Text::kCalibrateHow));
+  text_line(ui, "calibrate-folder", ui.text(Text::kPictureFolder), calibrate_.folder);
+  text_line(ui, "calibrate-board", ui.text(Text::kBoard), calibrate_.board);
+  draw_shots(ui);
+  text_line(ui, "calibrate-out", ui.text(Text::kCalibrationFile), out_);
+  const bool may = !session_.busy() && !calibrate_.folder.empty();
+  if (plain_button(ui, "calibrate-now", ui.text(Text::kCalibrateNow), may)) {
+    calibrate_.out.clear();
+    session_.calibrate(calibrate_);
+  }
+  ImGui::SameLine();
+  if (plain_button(ui, "calibrate-keep", ui.text(Text::kCalibrateKeep),
+                   may && state.calibration && !out_.empty())) {
+    calibrate_.out = out_;
+    session_.calibrate(calibrate_);
+  }
+  ImGui::Separator();
+  if (state.calibration) {
+    draw_report(ui, *state.calibration);
+  }
+}
+
+void CalibrationDialog::draw_camera(UiContext& ui, ImVec2 size) {
+  const auto view = session_.camera();
+  if (!view || view->width == 0) {
+    coloured_text(ui.colours.faint, ui.text(Text::kNoPicture));
+    return;
+  }
+  ui.facts.insert("camera-picture");
+  if (view != shown_) {
+    texture_.upload(view->width, view->height, 3, hatched(*view).data(), false);
+    shown_ = view;
+  }
+  const float scale =
+      std::min(size.x / static_cast<float>(view->width),
+               (size.y - 2 * ImGui::GetTextLineHeightWithSpacing()) / static_cast<float>(view->height));
+  ImGui::Image(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(texture_.id())),
+               {scale * static_cast<float>(view->width), scale * static_cast<float>(view->height)});
+  const bool good = view->exposure.advice == ExposureAdvice::kGood;
+  coloured_text(good ? ui.colours.good : ui.colours.amber,
+                exposure_line(view->exposure, ui.preferences.language).c_str());
+}
+
+void CalibrationDialog::draw(UiContext& ui, const LiveState& state) {
+  if (opening_) {
+    ImGui::OpenPopup(kPopup);
+    opening_ = false;
+    open_ = true;
+  }
+  const ImVec2 window = ImGui::GetIO().DisplaySize;
+  ImGui::SetNextWindowSize({window.x * 0.94F, window.y * 0.92F});
+  ImGui::SetNextWindowPos({0.5F * window.x, 0.5F * window.y}, ImGuiCond_Always, {0.5F, 0.5F});
+  if (!ImGui::BeginPopupModal((std::string(ui.text(Text::kCalibration)) + kPopup).c_str(), nullptr,
+                              ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove)) {
+    if (std::exchange(open_, false)) {
+      session_.watch_camera(false);
+      shown_.reset();
+    }
+    return;
+  }
+  ui.facts.insert("dialog");
+  if (ImGui::RadioButton(ui.text(Text::kVerifyPage), verifying_)) {
+    verifying_ = true;
+    session_.watch_camera(false);
+  }
+  ui.target("page-verify");
+  ImGui::SameLine();
+  if (ImGui::RadioButton(ui.text(Text::kCalibratePage), !verifying_)) {
+    verifying_ = false;
+  }
+  ui.target("page-calibrate");
+  const float foot = ImGui::GetFrameHeightWithSpacing() + 2 * ImGui::GetTextLineHeightWithSpacing();
+  const ImVec2 room{ImGui::GetContentRegionAvail().x, ImGui::GetContentRegionAvail().y - foot};
+  const float right = verifying_ ? 0 : 0.42F * room.x;
+  ImGui::BeginChild("page", {room.x - right, room.y}, true);
+  if (verifying_) {
+    draw_verify(ui, state);
+  } else {
+    draw_calibrate(ui, state);
+  }
+  ImGui::EndChild();
+  if (!verifying_) {
+    session_.watch_camera(true);
+    ImGui::SameLine();
+    ImGui::BeginChild("camera", {0, room.y}, true);
+    draw_camera(ui, ImGui::GetContentRegionAvail());
+    ImGui::EndChild();
+  }
+  ImGui::PushFont(ui.fonts.small);
+  if (session_.busy()) {
+    coloured_text(ui.colours.faint, state.stage.c_str());
+  } else if (state.error) {
+    ui.facts.insert("calibration-refused");
+    coloured_text(ui.colours.red, state.error->line().c_str());
+  } else {
+    if (state.notice.starts_with("kept: ")) {
+      ui.facts.insert("calibration-kept");
+    }
+    coloured_text(ui.colours.faint, translated(state.notice, ui.preferences.language).c_str());
+  }
+  ImGui::PopFont();
+  if (plain_button(ui, "close-calibration", ui.text(Text::kClose))) {
+    ImGui::CloseCurrentPopup();
+  }
+  ImGui::EndPopup();
+}
+
+}  // namespace dubsar::ui

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <future>
+#include <memory>
+#include <string>
+
+#include "core/result.h"
+#include "station/calibration_run.h"
+#include "station/live_session.h"
+#include "ui/gl/frame_target.h"
+#include "ui/shell/widgets.h"
+
+namespace dubsar::ui {
+
+/// The daily measurement of the artefact, and the calibration of a camera, its laser and its stage, step by
+/// step: `dubsar calibrate` in a box.
+class CalibrationDialog {
+ public:
+  explicit CalibrationDialog(LiveSession& session) : session_(session) {}
+  void open(const LiveState& state);
+  void draw(UiContext& ui, const LiveState& state);
+
+ private:
+  void draw_verify(UiContext& ui, const LiveState& state);
+  void draw_calibrate(UiContext& ui, const LiveState& state);
+  void draw_shots(UiContext& ui);
+  void draw_camera(UiContext& ui, ImVec2 size);
+  LiveSession& session_;
+  VerifyRequest verify_;
+  CalibrateRequest calibrate_;
+  std::string out_;
+  std::string position_ = "0";
+  std::future<Result<std::string>> shooting_;
+  std::string shot_said_;
+  bool shot_failed_ = false;
+  bool verifying_ = true;  ///< the first of the two pages
+  PixelTexture texture_;
+  std::shared_ptr<const CameraView> shown_;
+  bool opening_ = false;
+  bool open_ = false;
+};
+
+/// When the rig was last measured, and whether that is good enough for today: one line.
+[[nodiscard]] std::string care_line(const RigCare& care, Language language);
+
+}  // namespace dubsar::ui

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <string>
+
+#include "station/offered_devices.h"
+#include "ui/shell/widgets.h"
+
+namespace dubsar::ui {
+
+/// What a driver says of an option or a setting, as something to press or to type into: label with unit and
+/// range, the value, the driver's help below. True when the value was changed; a line that is typed into
+/// changes with every letter.
+bool setting_widget(UiContext& ui, const std::string& name, const SettingInfo& setting, std::string& value);
+
+}  // namespace dubsar::ui

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+// What the engine says, in other languages: phrase by phrase, for its sentences are put together of them. The
+// test engine_words holds every phrase against the source that says it.
+#include "ui/shell/engine_words.h"
+
+#include <array>
+
+#include "ui/shell/text_table.h"
+
+namespace dubsar::ui {
+
+namespace {
+
+/// Where one phrase holds another it stands first.
+constexpr EnginePhrase kPhrases[] = {
+    // where to turn the tablet
+    {"turn the obverse towards the camera", "die Vorderseite zur Kamera drehen"},
+    {"turn the reverse towards the camera", "die Rückseite zur Kamera drehen"},
+    {"turn the left edge towards the camera", "den linken Rand zur Kamera drehen"},
+    {"turn the right edge towards the camera", "den rechten Rand zur Kamera drehen"},
+    {"turn the top edge towards the camera", "den oberen Rand zur Kamera drehen"},
+    {"turn the bottom edge towards the camera", "den unteren Rand zur Kamera drehen"},
+    {"; then ", "; dann "},
+    {"turntable to", "Drehteller auf"},
+    {"tilt to", "Neigung auf"},
+    // why a scan is unsure
+    {"no overlap with the registered scans was found; scan again with at least 30 % overlap",
+     "keine Überlappung mit den eingepassten Scans gefunden; mit mindestens 30 % Überlappung neu scannen"},
+    {" of it overlaps the registered scans; scan again with at least 30 % overlap",
+     " davon überlappen die eingepassten Scans; mit mindestens 30 % Überlappung neu scannen"},
+    {"the surfaces lie farther apart than noise explains; scan again with more overlap, or check that "
+     "nothing "
+     "moved during the scan",
+     "die Flächen liegen weiter auseinander, als Rauschen erklärt; mit mehr Überlappung neu scannen, oder "
+     "nachsehen, ob sich beim Scannen etwas bewegt hat"},
+    {"the surfaces agree in only ", "die Flächen stimmen überein in nur "},
+    {" of the overlap; scan again with more overlap, or click three points on both scans",
+     " der Überlappung; mit mehr Überlappung neu scannen, oder drei Stellen in beiden Scans anklicken"},
+    {" of it would stand where another scan saw through; click three points on both scans, or take away what "
+     "moved",
+     " davon stünden, wo ein anderer Scan hindurchsah; drei Stellen in beiden Scans anklicken, oder "
+     "wegnehmen, "
+     "was sich bewegt hat"},
+    {" of the surface that one scan shows is missing from another that looked there; scan again with more "
+     "overlap, or click three points on both scans",
+     " der Fläche, die ein Scan zeigt, fehlen einem anderen, der dort hinsah; mit mehr Überlappung neu "
+     "scannen, "
+     "oder drei Stellen in beiden Scans anklicken"},
+    {"the overlap is too even: the scan can turn on it",
+     "die Überlappung ist zu eben: der Scan kann sich darauf drehen"},
+    {"the overlap is too even: the scan can slide on it",
+     "die Überlappung ist zu eben: der Scan kann darauf gleiten"},
+    {"; scan again with an edge or more relief in the overlap, or use pins",
+     "; neu scannen, mit einer Kante oder mehr Relief in der Überlappung, oder mit Nadeln"},
+    {"two poses fit, ", "zwei Lagen passen, um "},
+    {" degrees apart; click one point on both scans",
+     " Grad verschieden; eine Stelle in beiden Scans anklicken"},
+    {"nothing in it resembles the registered scans; scan again with at least 30 % overlap, or click three "
+     "points "
+     "on both scans",
+     "nichts darin gleicht den eingepassten Scans; mit mindestens 30 % Überlappung neu scannen, oder drei "
+     "Stellen in beiden Scans anklicken"},
+    {"too little is written or broken in the overlap to tell this pose from others; scan again with more "
+     "overlap, use pins, or click one point on both scans",
+     "in der Überlappung ist zu wenig geschrieben oder gebrochen, um diese Lage von anderen zu "
+     "unterscheiden; "
+     "mit mehr Überlappung neu scannen, Nadeln nehmen, oder eine Stelle in beiden Scans anklicken"},
+    {"it fits other scans, but not the largest group; scan what connects them, with at least 30 % overlap",
+     "er passt zu anderen Scans, aber nicht zur größten Gruppe; scannen, was sie verbindet, mit mindestens "
+     "30 % "
+     "Überlappung"},
+    {"it connects scans that contradict each other; one of them moved while it was scanned, or lies wrong: "
+     "take "
+     "that one out, or scan again what connects them",
+     "er verbindet Scans, die sich widersprechen; einer davon hat sich beim Scannen bewegt oder liegt "
+     "falsch: "
+     "diesen entfernen, oder neu scannen, was sie verbindet"},
+    {"the scan has no surface in it; scan it again", "im Scan ist keine Fläche; neu scannen"},
+    {"too few of its samples can be matched; scan it again, nearer or with more of the surface in view",
+     "zu wenige seiner Messpunkte lassen sich zuordnen; neu scannen, näher oder mit mehr Fläche im Blick"},
+    {"the hint led to no certain pose: ", "der Hinweis führte zu keiner sicheren Lage: "},
+    {"it was not tried; run registration again", "er wurde nicht versucht; die Einpassung neu starten"},
+    {"no pin's tip is seen: check the tips' diameter, and that pins stand clear of the tablet",
+     "keine Nadelspitze ist zu sehen: den Durchmesser prüfen, und ob die Nadeln frei von der Tafel stehen"},
+    {"the pins stand nearly in one line", "die Nadeln stehen fast in einer Linie"},
+    {" of its pins can be told to be those of an earlier scan: leave at least ",
+     " seiner Nadeln sind als die eines früheren Scans zu erkennen: mindestens "},
+    {" pins standing from scan to scan, put back where they were",
+     " Nadeln von Scan zu Scan stehen lassen, wieder an ihren Platz gestellt"},
+    // what happened
+    {"what is said of the tablet is kept", "was zur Tafel gesagt ist, ist aufgehoben"},
+    {" is taken out", " ist entfernt"},
+    {" is put back", " ist zurückgeholt"},
+    {" has no hint any more", " hat keinen Hinweis mehr"},
+    {" has a hint", " hat einen Hinweis"},
+    {" is unlocked", " ist gelöst"},
+    {" is locked", " ist festgehalten"},
+    {"the pins of scan ", "die Nadeln von Scan "},
+    {" are labelled", " sind benannt"},
+    {"there is no scan to undo", "es gibt keinen Scan zurückzunehmen"},
+    {"the half scan is kept: ", "der halbe Scan ist aufgehoben: "},
+    {" is not taken up: ", " wird nicht aufgenommen: "},
+    {"; the same view is scanned once more", "; dieselbe Ansicht wird noch einmal gescannt"},
+    {"; the next view shows more of what is known",
+     "; die nächste Ansicht zeigt mehr von dem, was bekannt ist"},
+    {"; it is set aside (session restore puts it back)",
+     "; er ist beiseitegelegt (ein Klick holt ihn zurück)"},
+    {"something was in the way of scan ", "etwas war im Weg von Scan "},
+    {"something was in the way", "etwas war im Weg"},
+    {"the scan has no sample at all: nothing stands before the scanner",
+     "der Scan hat keinen Messpunkt: nichts steht vor dem Scanner"},
+    {"see that the tablet lies in the measuring field, then give the same command again",
+     "nachsehen, ob die Tafel im Messfeld liegt, dann weiter"},
+    {"see that it is the right tablet, that no hand is in view and that nothing moved, then give the same "
+     "command again",
+     "nachsehen, ob es die richtige Tafel ist, keine Hand im Bild ist und sich nichts bewegt hat, dann "
+     "weiter"},
+    {"take the wrong ones out (session drop), then give the same command again",
+     "die falschen entfernen, dann weiter"},
+    {" scans in a row are not taken up, scan ", " Scans nacheinander werden nicht aufgenommen, Scan "},
+    {" because ", ", denn "},
+    // what is under way
+    {"reading scans", "Scans werden gelesen"},
+    {"reading the session", "Sitzung wird gelesen"},
+    {"registering", "Scans werden eingepasst"},
+    {"stitching", "Netz wird genäht"},
+    {"red map", "Rote Stellen werden gesucht"},
+    {"surface fields", "Flächenmaße entstehen"},
+    {"writing results", "Ergebnisse werden geschrieben"},
+    {"checksums", "Prüfsummen"},
+    {"watershed", "Keile werden gesucht"},
+    {"drawing views", "Ansichten werden gezeichnet"},
+    {"kept: ", "aufgehoben: "},
+};
+
+}  // namespace
+
+std::span<const EnginePhrase> engine_phrases() {
+  return kPhrases;
+}
+
+std::string translated(const std::string& english, Language language) {
+  if (language == Language::kEnglish) {
+    return english;
+  }
+  std::string out = english;
+  for (const auto& [from, to] : kPhrases) {
+    for (std::size_t at = out.find(from); at != std::string::npos; at = out.find(from, at)) {
+      out.replace(at, std::string_view(from).size(), to);
+      at += std::string_view(to).size();
+    }
+  }
+  return out;
+}
+
+}  // namespace dubsar::ui

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <span>
+
+namespace dubsar::ui {
+
+/// A part of a sentence of the engine.
+struct EnginePhrase {
+  const char* english;
+  const char* german;
+};
+
+/// All that are known, in the order in which they are replaced (text_table.h: translated()).
+[[nodiscard]] std::span<const EnginePhrase> engine_phrases();
+
+}  // namespace dubsar::ui

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+// The profile of a cut through the surface, drawn over it and as a plot with its measures.
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "ui/viewer/viewer_screen.h"
+
+namespace dubsar::ui {
+
+namespace {
+
+/// How much higher than long the plot draws: a round number, so that it can be said.
+double exaggeration(double fits) {
+  constexpr std::array kRound{1.0, 2.0, 3.0, 5.0, 10.0, 20.0, 50.0};
+  double out = 1;
+  for (const double round : kRound) {
+    out = round <= fits ? round : out;
+  }
+  return out;
+}
+
+}  // namespace
+
+void ViewerScreen::cut_between_places() {
+  const Eigen::Vector3f towards = camera_.eye_from_model.conjugate() * Eigen::Vector3f::UnitZ();
+  viewing_.cut(tape_[0].cast<double>(), tape_[1].cast<double>(), towards.cast<double>());
+}
+
+void ViewerScreen::draw_section_panel(UiContext& ui) {
+  coloured_text(ui.colours.faint, ui.text(Text::kSectionHint));
+  if (!state_.section || tape_.size() != 2) {
+    return;
+  }
+  const CrossSection& section = *state_.section;
+  ui.facts.insert("section");
+  coloured_text(ui.colours.text,
+                filled(ui.text(Text::kSectionLine), section.length_mm, -section.lowest_mm).c_str());
+  if (plain_button(ui, "keep-section", ui.text(Text::kKeepSection), !section.lines.empty())) {
+    const std::string name =
+        state_.name.empty() ? "model" : std::filesystem::path(state_.name).stem().string();
+    std::filesystem::path stem;
+    std::error_code error;
+    do {
+      ++sections_kept_;
+      stem = pictures_ / fmt::format("{}_section_{:02}", name, sections_kept_);
+    } while (std::filesystem::exists(std::filesystem::path(stem) += ".csv", error));
+    viewing_.keep_section(stem);
+    picture_note_ = filled(ui.text(Text::kPictureKept), (std::filesystem::path(stem) += ".svg").string());
+  }
+}
+
+void ViewerScreen::draw_section(UiContext& ui, ImVec2 origin, ImVec2 size) const {
+  if (tool_ != Tool::kSection || tape_.size() != 2 || !state_.section || state_.section->lines.empty()) {
+    return;
+  }
+  const CrossSection& section = *state_.section;
+  ImDrawList* draw = ImGui::GetWindowDrawList();
+  const ImU32 ink = packed(ui.colours.ghost);
+  for (const auto& line : section.lines) {
+    std::vector<ImVec2> over;
+    over.reserve(line.size());
+    for (const CrossSection::Point& p : line) {
+      const Eigen::Vector2f px = camera_.pixel_of(p.place_mm.cast<float>(), {size.x, size.y});
+      over.emplace_back(origin.x + px.x(), origin.y + px.y());
+    }
+    draw->AddPolyline(over.data(), static_cast<int>(over.size()), ink, 0, 2.5F);
+  }
+  // The plot stands above the scale bar.
+  const ImVec2 low{origin.x + ui.px(1), origin.y + size.y - ui.px(11)};
+  const ImVec2 high{origin.x + size.x - ui.px(1), origin.y + size.y - ui.px(2)};
+  draw->AddRectFilled(low, high, packed(ui.colours.panel, 0.9F), 5);
+  draw->AddRect(low, high, packed(ui.colours.faint, 0.6F), 5);
+  const double room_x = static_cast<double>(high.x - low.x) - 2.0 * static_cast<double>(ui.px(1.5F));
+  const double room_y = static_cast<double>(high.y - low.y) - static_cast<double>(ui.px(3.4F));
+  const double top_mm = std::max(0.0, section.highest_mm);
+  const double bottom_mm = std::min(0.0, section.lowest_mm);
+  const double relief_mm = std::max(top_mm - bottom_mm, 1e-3);
+  double px_per_mm = room_x / section.length_mm;
+  const double times = exaggeration(room_y / (relief_mm * px_per_mm));
+  px_per_mm = std::min(px_per_mm, room_y / (relief_mm * times));
+  const auto at = [&](double along, double height) {
+    return ImVec2(low.x + ui.px(1.5F) + static_cast<float>(along * px_per_mm),
+                  low.y + ui.px(1.8F) + static_cast<float>((top_mm - height) * times * px_per_mm));
+  };
+  const ImU32 faint = packed(ui.colours.faint);
+  draw->AddLine(at(0, 0), at(section.length_mm, 0), faint, 1);
+  for (const auto& line : section.lines) {
+    std::vector<ImVec2> plot;
+    plot.reserve(line.size());
+    for (const CrossSection::Point& p : line) {
+      plot.push_back(at(p.along_mm, p.height_mm));
+    }
+    draw->AddPolyline(plot.data(), static_cast<int>(plot.size()), packed(ui.colours.text), 0, 1.8F);
+  }
+  const float small = ui.fonts.small->FontSize;
+  const auto words = [&](ImVec2 where, const Eigen::Vector4f& colour, const std::string& text) {
+    draw->AddText(ui.fonts.small, small, where, packed(colour), text.c_str());
+  };
+  words({low.x + ui.px(0.6F), low.y + ui.px(0.2F)}, ui.colours.text,
+        fmt::format("{:.3f} mm{}", section.length_mm,
+                    times > 1 ? "   " + filled(ui.text(Text::kSectionTimes), times) : std::string()));
+  if (section.lowest_mm < 0) {
+    const ImVec2 deep = at(section.lowest_along_mm, section.lowest_mm);
+    draw->AddLine(at(section.lowest_along_mm, 0), deep, packed(ui.colours.red), 1.5F);
+    words({deep.x + 4, deep.y - 2}, ui.colours.red, fmt::format("{:.3f} mm", -section.lowest_mm));
+  }
+}
+
+}  // namespace dubsar::ui
