@@ -92,6 +92,12 @@ int run(int argc, char** argv) {
   for (std::size_t v = 0; v < verbs.size(); ++v) {
     const WritingVerb& verb = verbs[v];
     const TrialOutcome whole = all.undisturbed(verb);
+    if (whole.calls == 0) {
+      std::fprintf(stderr,
+                   "dubsar-crash: %s: no call that writes was counted; is LD_PRELOAD set by another?\n",
+                   verb.name.c_str());
+      return 2;
+    }
     Tally tally;
     const auto trial = [&](const Fault& fault) {
       const TrialOutcome outcome = all.run(verb, fault);
