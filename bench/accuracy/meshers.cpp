@@ -111,6 +111,25 @@ void print_mesh(const std::string& name, const Mesh& mesh, double took_s) {
               r.self_intersections, 100 * r.thin_share);
 }
 
+/// Runs each of them and prints its row; score(mesh) ends it.
+template <class Score>
+void compare(const Scans& scans, const std::vector<int>& poisson_depths, const char* score_columns,
+             const Score& score) {
+  print_head(score_columns);
+  for (const Mesher& mesher : meshers(scans, poisson_depths)) {
+    const auto start = std::chrono::steady_clock::now();
+    const std::optional<Mesh> mesh = mesher.run(scans.input);
+    const double took_s = seconds_since(start);
+    if (!mesh || mesh->faces.empty()) {
+      std::printf("  %-36s could not be run\n", mesher.name.c_str());
+      continue;
+    }
+    print_mesh(mesher.name, *mesh, took_s);
+    score(*mesh);
+    std::fflush(stdout);
+  }
+}
+
 /// Of values where `of` is not 0.
 std::vector<double> chosen(const std::vector<double>& values, const std::vector<std::uint8_t>& of) {
   std::vector<double> out;
@@ -172,32 +191,24 @@ void tablet(const TabletArguments& args, std::uint64_t seed) {
       "tablet %llu, %.0f x %.0f x %.0f mm, %zu scans, %.2f million samples, noise %.0f um, mu %.0f um\n",
       static_cast<unsigned long long>(seed), options.size_mm.x(), options.size_mm.y(), options.size_mm.z(),
       scans->grids.size(), 1e-6 * static_cast<double>(samples), 1e3 * args.noise_mm, 1e3 * args.spacing_mm);
-  print_head("um RMS: vertices, at wedge edges; surface to mesh, at wedge edges; 99 %; within 50 um");
   // Its cells are 1.1 times the longest side over 2^depth.
   const int depth = static_cast<int>(std::lround(std::log2(1.1 * args.width_mm / args.spacing_mm)));
-  for (const Mesher& mesher : meshers(*scans, {depth})) {
-    const auto start = std::chrono::steady_clock::now();
-    const std::optional<Mesh> mesh = mesher.run(scans->input);
-    const double took_s = seconds_since(start);
-    if (!mesh || mesh->faces.empty()) {
-      std::printf("  %-36s could not be run\n", mesher.name.c_str());
-      continue;
-    }
-    print_mesh(mesher.name, *mesh, took_s);
-    const std::vector<std::uint8_t> counts = within(mesh->positions, sampled, reach_mm);
-    std::vector<std::uint8_t> at_edge = near_wedge_edge(*truth, mesh->positions);
+  const char* columns =
+      "um RMS: vertices, at wedge edges; surface to mesh, at wedge edges; 99 %; within 50 um";
+  compare(*scans, {depth}, columns, [&](const Mesh& mesh) {
+    const std::vector<std::uint8_t> counts = within(mesh.positions, sampled, reach_mm);
+    std::vector<std::uint8_t> at_edge = near_wedge_edge(*truth, mesh.positions);
     for (std::size_t i = 0; i < at_edge.size(); ++i) {
       at_edge[i] &= counts[i];
     }
-    const std::vector<double> error = distances_mm(mesh->positions, surface, 1.0);
-    const MeshQuery model(*mesh);
+    const std::vector<double> error = distances_mm(mesh.positions, surface, 1.0);
+    const MeshQuery model(mesh);
     const std::vector<double> to_model = distances_mm(truth->mesh.positions, model, 1.0);
     const std::vector<double> held = chosen(to_model, truth_sampled);
     std::printf("   %6.2f %6.2f; %6.2f %6.2f; %6.1f; %7.3f %%\n", 1e3 * rms(chosen(error, counts)),
                 1e3 * rms(chosen(error, at_edge)), 1e3 * rms(held), 1e3 * rms(chosen(to_model, truth_edge)),
                 1e3 * quantile(held, 0.99), 100 * share_within(held, 0.05));
-    std::fflush(stdout);
-  }
+  });
 }
 
 void bunny(const std::string& folder) {
@@ -217,21 +228,11 @@ void bunny(const std::string& folder) {
   // Rows of these grids lie 0.5 mm apart, as the peers' published figures take it.
   const auto scans = prepare(std::move(grids), std::move(poses), 0.5);
   std::printf("bunny: %zu scans, %zu samples\n", scans->grids.size(), samples.size());
-  print_head("mm from the samples to the mesh: mean, RMS, 95 %");
-  for (const Mesher& mesher : meshers(*scans, {8, 9})) {
-    const auto start = std::chrono::steady_clock::now();
-    const std::optional<Mesh> mesh = mesher.run(scans->input);
-    const double took_s = seconds_since(start);
-    if (!mesh || mesh->faces.empty()) {
-      std::printf("  %-36s could not be run\n", mesher.name.c_str());
-      continue;
-    }
-    print_mesh(mesher.name, *mesh, took_s);
-    const MeshQuery model(*mesh);
+  compare(*scans, {8, 9}, "mm from the samples to the mesh: mean, RMS, 95 %", [&](const Mesh& mesh) {
+    const MeshQuery model(mesh);
     const std::vector<double> d = distances_mm(samples, model, 10.0);
     std::printf("   %.4f %.4f %.4f\n", mean(d), rms(d), quantile(d, 0.95));
-    std::fflush(stdout);
-  }
+  });
 }
 
 }  // namespace
