@@ -189,7 +189,7 @@ void CalibrationDialog::draw_camera(UiContext& ui, ImVec2 size) {
   const float scale =
       std::min(size.x / static_cast<float>(view->width),
                (size.y - 2 * ImGui::GetTextLineHeightWithSpacing()) / static_cast<float>(view->height));
-  ImGui::Image(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(texture_.id())),
+  ImGui::Image(picture_of(texture_.id()),
                {scale * static_cast<float>(view->width), scale * static_cast<float>(view->height)});
   const bool good = view->exposure.advice == ExposureAdvice::kGood;
   coloured_text(good ? ui.colours.good : ui.colours.amber,
@@ -197,23 +197,14 @@ void CalibrationDialog::draw_camera(UiContext& ui, ImVec2 size) {
 }
 
 void CalibrationDialog::draw(UiContext& ui, const LiveState& state) {
-  if (opening_) {
-    ImGui::OpenPopup(kPopup);
-    opening_ = false;
-    open_ = true;
-  }
-  const ImVec2 window = ImGui::GetIO().DisplaySize;
-  ImGui::SetNextWindowSize({window.x * 0.94F, window.y * 0.92F});
-  ImGui::SetNextWindowPos({0.5F * window.x, 0.5F * window.y}, ImGuiCond_Always, {0.5F, 0.5F});
-  if (!ImGui::BeginPopupModal((std::string(ui.text(Text::kCalibration)) + kPopup).c_str(), nullptr,
-                              ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove)) {
+  open_ = open_ || opening_;
+  if (!begin_wide_box(ui, ui.text(Text::kCalibration), kPopup, opening_)) {
     if (std::exchange(open_, false)) {
       session_.watch_camera(false);
       shown_.reset();
     }
     return;
   }
-  ui.facts.insert("dialog");
   if (ImGui::RadioButton(ui.text(Text::kVerifyPage), verifying_)) {
     verifying_ = true;
     session_.watch_camera(false);

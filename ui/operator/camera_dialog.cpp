@@ -72,9 +72,8 @@ void CameraDialog::draw_view(UiContext& ui, ImVec2 size) {
   const ImVec2 drawn{scale * static_cast<float>(view->width), scale * static_cast<float>(view->height)};
   ImGui::Dummy(drawn);
   ui.target("camera-view");
-  ImGui::GetWindowDrawList()->AddImage(
-      reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(texture_.id())), origin,
-      {origin.x + drawn.x, origin.y + drawn.y});
+  ImGui::GetWindowDrawList()->AddImage(picture_of(texture_.id()), origin,
+                                       {origin.x + drawn.x, origin.y + drawn.y});
   constexpr const char* kAdvice[] = {"exposure-good", "exposure-too-long", "exposure-too-short"};
   ui.facts.insert(kAdvice[static_cast<int>(view->exposure.advice)]);
   const bool good = view->exposure.advice == ExposureAdvice::kGood;
@@ -113,23 +112,14 @@ void CameraDialog::draw_settings(UiContext& ui, const DevicePanel& panel) {
 }
 
 void CameraDialog::draw(UiContext& ui, const LiveState& state) {
-  if (opening_) {
-    ImGui::OpenPopup(kPopup);
-    opening_ = false;
-    open_ = true;
-  }
-  const ImVec2 window = ImGui::GetIO().DisplaySize;
-  ImGui::SetNextWindowSize({window.x * 0.94F, window.y * 0.92F});
-  ImGui::SetNextWindowPos({0.5F * window.x, 0.5F * window.y}, ImGuiCond_Always, {0.5F, 0.5F});
-  if (!ImGui::BeginPopupModal((std::string(ui.text(Text::kCamera)) + kPopup).c_str(), nullptr,
-                              ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove)) {
+  open_ = open_ || opening_;
+  if (!begin_wide_box(ui, ui.text(Text::kCamera), kPopup, opening_)) {
     if (std::exchange(open_, false)) {
       session_.watch_camera(false);
       shown_.reset();
     }
     return;
   }
-  ui.facts.insert("dialog");
   session_.watch_camera(true);
   if (state.panel != panel_) {
     panel_ = state.panel;
@@ -141,7 +131,7 @@ void CameraDialog::draw(UiContext& ui, const LiveState& state) {
     }
   }
   const float foot = ImGui::GetFrameHeightWithSpacing() + 2 * ImGui::GetTextLineHeightWithSpacing();
-  const float right = std::min(ui.px(20), 0.36F * window.x);
+  const float right = std::min(ui.px(20), 0.36F * ImGui::GetIO().DisplaySize.x);
   const ImVec2 room = ImGui::GetContentRegionAvail();
   const ImVec2 left{room.x - right - ImGui::GetStyle().ItemSpacing.x, room.y - foot};
   ImGui::BeginChild("view", left, true, ImGuiWindowFlags_NoScrollbar);

@@ -2,6 +2,7 @@
 // Copyright The Dubsar developers
 #include "ui/operator/grid_places.h"
 
+#include <algorithm>
 #include <limits>
 
 namespace dubsar::ui {
@@ -45,6 +46,29 @@ std::optional<ImVec2> place_of(const RangeGrid& grid, const Eigen::Vector3d& poi
                      (static_cast<float>(row) + 0.5F) / static_cast<float>(grid.rows));
       }
     }
+  }
+  return out;
+}
+
+ClickablePicture draw_clickable(UiContext& ui, const char* name, const RangeGrid& grid,
+                                const PixelTexture& texture, const Eigen::Vector4f& frame, float frame_px,
+                                ImVec2 size) {
+  const float scale = std::min(size.x / static_cast<float>(std::max(1, grid.cols)),
+                               size.y / static_cast<float>(std::max(1, grid.rows)));
+  ClickablePicture out;
+  out.drawn = {scale * static_cast<float>(grid.cols), scale * static_cast<float>(grid.rows)};
+  out.origin = ImGui::GetCursorScreenPos();
+  ImGui::PushID(name);
+  ImGui::InvisibleButton("##picture", out.drawn);
+  ImGui::PopID();
+  ui.target(name);
+  ImDrawList* draw = ImGui::GetWindowDrawList();
+  const ImVec2 end = out.at({1, 1});
+  draw->AddImage(picture_of(texture.id()), out.origin, end);
+  draw->AddRect(out.origin, end, packed(frame), 0, 0, frame_px);
+  if (ImGui::IsItemClicked()) {
+    const ImVec2 mouse = ImGui::GetIO().MousePos;
+    out.clicked = {(mouse.x - out.origin.x) / out.drawn.x, (mouse.y - out.origin.y) / out.drawn.y};
   }
   return out;
 }

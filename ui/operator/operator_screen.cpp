@@ -312,8 +312,7 @@ void OperatorScreen::draw_model(UiContext& ui, ImVec2 size) {
     look.overlay = Overlay::kFlags;  // a session that was read: the mesh itself says what is sparse
   }
   unfinished_ = model_.draw(camera_, look, static_cast<int>(size.x), static_cast<int>(size.y)) || unfinished_;
-  draw->AddImage(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(model_.texture())), origin, end,
-                 {0, 1}, {1, 0});
+  draw->AddImage(picture_of(model_.texture()), origin, end, {0, 1}, {1, 0});
   draw->AddText(ui.fonts.small, ui.fonts.small->FontSize, {origin.x + ui.px(0.5F), origin.y + ui.px(0.3F)},
                 packed(ui.colours.faint), ui.text(Text::kModel));
   if (state_.red_map && !state_.red_map->conclusive) {

@@ -43,30 +43,19 @@ void PairDialog::choose(std::size_t other) {
 void PairDialog::draw_side(UiContext& ui, const char* name, const LiveScan& scan, Side& side, bool expects,
                            ImVec2 size) {
   const RangeGrid& grid = *scan.grid;
-  const float scale = std::min(size.x / static_cast<float>(std::max(1, grid.cols)),
-                               size.y / static_cast<float>(std::max(1, grid.rows)));
-  const ImVec2 drawn{scale * static_cast<float>(grid.cols), scale * static_cast<float>(grid.rows)};
-  const ImVec2 origin = ImGui::GetCursorScreenPos();
-  ImGui::PushID(name);
-  ImGui::InvisibleButton("##picture", drawn);
-  ImGui::PopID();
-  ui.target(name);
-  ImDrawList* draw = ImGui::GetWindowDrawList();
-  const ImVec2 end{origin.x + drawn.x, origin.y + drawn.y};
-  draw->AddImage(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(side.texture.id())), origin, end);
-  draw->AddRect(origin, end, packed(expects ? ui.colours.ghost : ui.colours.faint), 0, 0,
-                expects ? 3.0F : 1.0F);
-  if (expects && ImGui::IsItemClicked()) {
-    const ImVec2 mouse = ImGui::GetIO().MousePos;
-    const float u = (mouse.x - origin.x) / drawn.x;
-    const float v = (mouse.y - origin.y) / drawn.y;
-    if (const auto point = sample_at(grid, u, v)) {
+  const ClickablePicture picture =
+      draw_clickable(ui, name, grid, side.texture, expects ? ui.colours.ghost : ui.colours.faint,
+                     expects ? 3.0F : 1.0F, size);
+  if (expects && picture.clicked) {
+    const ImVec2 place = *picture.clicked;
+    if (const auto point = sample_at(grid, place.x, place.y)) {
       side.points_mm.push_back(*point);
-      side.places.push_back({u, v});
+      side.places.push_back(place);
     }
   }
+  ImDrawList* draw = ImGui::GetWindowDrawList();
   for (std::size_t k = 0; k < side.places.size(); ++k) {
-    const ImVec2 at{origin.x + side.places[k].x * drawn.x, origin.y + side.places[k].y * drawn.y};
+    const ImVec2 at = picture.at(side.places[k]);
     draw->AddCircleFilled(at, ui.px(0.35F), packed(ui.colours.ghost));
     draw->AddText({at.x + ui.px(0.45F), at.y - ui.px(0.6F)}, packed(ui.colours.ghost),
                   std::to_string(k + 1).c_str());
@@ -78,19 +67,10 @@ std::optional<HintScan> PairDialog::draw(UiContext& ui) {
   if (!is_open()) {
     return out;
   }
-  if (opening_) {
-    ImGui::OpenPopup(kPopup);
-    opening_ = false;
-  }
-  const ImVec2 window = ImGui::GetIO().DisplaySize;
-  ImGui::SetNextWindowSize({window.x * 0.94F, window.y * 0.92F});
-  ImGui::SetNextWindowPos({0.5F * window.x, 0.5F * window.y}, ImGuiCond_Always, {0.5F, 0.5F});
-  if (!ImGui::BeginPopupModal((std::string(ui.text(Text::kPointPairs)) + kPopup).c_str(), nullptr,
-                              ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove)) {
+  if (!begin_wide_box(ui, ui.text(Text::kPointPairs), kPopup, opening_)) {
     unsure_ = {};
     return out;
   }
-  ui.facts.insert("dialog");
   const LiveScan& other = others_[other_];
   if (textures_old_) {
     const auto upload = [&](PixelTexture& texture, const LiveScan& scan) {

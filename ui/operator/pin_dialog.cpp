@@ -122,22 +122,11 @@ void PinDialog::draw_side(UiContext& ui, const char* name, Side& side, ImVec2 si
     side.texture.upload(side.picture.cols, side.picture.rows, 3, coloured(side.picture, ui).data(), true);
     side.drawn = true;
   }
-  const float scale = std::min(size.x / static_cast<float>(std::max(1, grid.cols)),
-                               size.y / static_cast<float>(std::max(1, grid.rows)));
-  const ImVec2 drawn{scale * static_cast<float>(grid.cols), scale * static_cast<float>(grid.rows)};
-  const ImVec2 origin = ImGui::GetCursorScreenPos();
-  ImGui::PushID(name);
-  ImGui::InvisibleButton("##picture", drawn);
-  ImGui::PopID();
-  ui.target(name);
-  ImDrawList* draw = ImGui::GetWindowDrawList();
-  const ImVec2 end{origin.x + drawn.x, origin.y + drawn.y};
-  draw->AddImage(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(side.texture.id())), origin, end);
-  draw->AddRect(origin, end, packed(side.marks.contains(label_) ? ui.colours.faint : ui.colours.ghost), 0, 0,
-                2);
-  if (ImGui::IsItemClicked()) {
-    const ImVec2 mouse = ImGui::GetIO().MousePos;
-    const ImVec2 place{(mouse.x - origin.x) / drawn.x, (mouse.y - origin.y) / drawn.y};
+  const ClickablePicture picture =
+      draw_clickable(ui, name, grid, side.texture,
+                     side.marks.contains(label_) ? ui.colours.faint : ui.colours.ghost, 2, size);
+  if (picture.clicked) {
+    const ImVec2 place = *picture.clicked;
     if (const auto point = sample_at(grid, place.x, place.y)) {
       side.marks[label_] = {place, *point};
       side.changed = true;
@@ -148,8 +137,9 @@ void PinDialog::draw_side(UiContext& ui, const char* name, Side& side, ImVec2 si
       label_ += both && !last ? 1 : 0;
     }
   }
+  ImDrawList* draw = ImGui::GetWindowDrawList();
   for (const auto& [label, mark] : side.marks) {
-    const ImVec2 at{origin.x + mark.place.x * drawn.x, origin.y + mark.place.y * drawn.y};
+    const ImVec2 at = picture.at(mark.place);
     const ImU32 ink = packed(label == label_ ? ui.colours.amber : ui.colours.ghost);
     draw->AddCircle(at, ui.px(0.45F), packed({0, 0, 0, 1}), 0, 4);
     draw->AddCircle(at, ui.px(0.45F), ink, 0, 2);
@@ -215,19 +205,10 @@ std::vector<LabelPins> PinDialog::draw(UiContext& ui) {
   if (!left_.scan.measured) {
     return {};
   }
-  if (opening_) {
-    ImGui::OpenPopup(kPopup);
-    opening_ = false;
-  }
-  const ImVec2 window = ImGui::GetIO().DisplaySize;
-  ImGui::SetNextWindowSize({window.x * 0.96F, window.y * 0.94F});
-  ImGui::SetNextWindowPos({0.5F * window.x, 0.5F * window.y}, ImGuiCond_Always, {0.5F, 0.5F});
-  if (!ImGui::BeginPopupModal((std::string(ui.text(Text::kLabelPins)) + kPopup).c_str(), nullptr,
-                              ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove)) {
+  if (!begin_wide_box(ui, ui.text(Text::kLabelPins), kPopup, opening_, {0.96F, 0.94F})) {
     left_.scan = right_.scan = {};
     return {};
   }
-  ui.facts.insert("dialog");
   ImGui::PushFont(ui.fonts.small);
   ImGui::TextWrapped("%s", ui.text(Text::kLabelPinsHow));
   ImGui::PopFont();

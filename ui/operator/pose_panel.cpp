@@ -88,8 +88,8 @@ bool PosePanel::draw(UiContext& ui, const NextView& next, ImVec2 size) {
                        float alpha) {
     camera.eye_from_model = Eigen::Quaternionf(Eigen::Matrix3f(look * stage_from_model)).normalized();
     view.draw(camera, how, width, height);
-    draw->AddImage(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(view.texture())), origin, end,
-                   {0, 1}, {1, 0}, ImGui::ColorConvertFloat4ToU32({1, 1, 1, alpha}));
+    draw->AddImage(picture_of(view.texture()), origin, end, {0, 1}, {1, 0},
+                   ImGui::ColorConvertFloat4ToU32({1, 1, 1, alpha}));
   };
   // A point of the stage about the tablet's middle, in the picture.
   const auto pixel = [&](const Eigen::Vector3f& at_mm) {

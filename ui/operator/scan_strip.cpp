@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "ui/operator/operator_screen.h"
+#include "ui/shell/widgets.h"
 
 namespace dubsar::ui {
 
@@ -83,8 +84,7 @@ void OperatorScreen::draw_strip(UiContext& ui, ImVec2 size) {
       const ImVec2 drawn{scale * static_cast<float>(scan.picture->cols),
                          scale * static_cast<float>(scan.picture->rows)};
       const ImVec2 at{origin.x + 0.5F * (width - drawn.x), origin.y + 4 + 0.5F * (box.y - drawn.y)};
-      draw->AddImage(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(thumbnail.texture.id())), at,
-                     {at.x + drawn.x, at.y + drawn.y}, {0, 0}, {1, 1},
+      draw->AddImage(picture_of(thumbnail.texture.id()), at, {at.x + drawn.x, at.y + drawn.y}, {0, 0}, {1, 1},
                      ImGui::ColorConvertFloat4ToU32({1, 1, 1, scan.dropped ? 0.3F : 1.0F}));
     }
     draw->AddRect(origin, end, packed(colour), 5, 0,

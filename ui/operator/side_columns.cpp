@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "ui/operator/operator_screen.h"
+#include "ui/shell/widgets.h"
 
 namespace dubsar::ui {
 
@@ -161,8 +162,7 @@ void OperatorScreen::draw_growing(UiContext& ui, ImVec2 size) {
   const float width = scale * static_cast<float>(picture.cols);
   const float height = scale * static_cast<float>(picture.rows);
   const float x = origin.x + 0.5F * (size.x - width);
-  draw->AddImage(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(growing_.id())), {x, origin.y},
-                 {x + width, origin.y + height});
+  draw->AddImage(picture_of(growing_.id()), {x, origin.y}, {x + width, origin.y + height});
   if (state_.phase == LivePhase::kScanning) {
     draw->AddLine({x, origin.y + height}, {x + width, origin.y + height}, packed(ui.colours.ghost), 2);
   }

@@ -16,8 +16,6 @@
 #include <string>
 #include <thread>
 
-extern char** environ;
-
 namespace dubsar::ui {
 
 namespace {

@@ -106,6 +106,22 @@ bool tick(UiContext& ui, const char* name, const char* label, bool& value) {
   return changed;
 }
 
+bool begin_wide_box(UiContext& ui, const char* title, const char* id, bool& opening, ImVec2 of_window) {
+  if (opening) {
+    ImGui::OpenPopup(id);
+    opening = false;
+  }
+  const ImVec2 window = ImGui::GetIO().DisplaySize;
+  ImGui::SetNextWindowSize({window.x * of_window.x, window.y * of_window.y});
+  ImGui::SetNextWindowPos({0.5F * window.x, 0.5F * window.y}, ImGuiCond_Always, {0.5F, 0.5F});
+  if (!ImGui::BeginPopupModal((std::string(title) + id).c_str(), nullptr,
+                              ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove)) {
+    return false;
+  }
+  ui.facts.insert("dialog");
+  return true;
+}
+
 void coloured_text(const Eigen::Vector4f& c, const char* text) {
   ImGui::PushStyleColor(ImGuiCol_Text, ImVec4(c.x(), c.y(), c.z(), c.w()));
   ImGui::PushTextWrapPos(0);

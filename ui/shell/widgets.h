@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include <cstdint>
 #include <map>
 #include <set>
 #include <string>
@@ -46,6 +47,15 @@ bool text_line(UiContext& ui, const char* name, const char* label, std::string& 
 /// The same without a label, so wide.
 bool short_text(UiContext& ui, const char* name, std::string& value, float width);
 bool tick(UiContext& ui, const char* name, const char* label, bool& value);
+/// The texture of this name in OpenGL, as ImGui wants it.
+[[nodiscard]] inline ImTextureID picture_of(unsigned texture) {
+  // NOLINTNEXTLINE(performance-no-int-to-ptr): a name in a pointer's clothes; it is never followed
+  return reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(texture));
+}
+/// A box over nearly the whole window that keeps all else waiting; `opening` is taken up. False when it is
+/// shut; ImGui::EndPopup() ends it.
+[[nodiscard]] bool begin_wide_box(UiContext& ui, const char* title, const char* id, bool& opening,
+                                  ImVec2 of_window = {0.94F, 0.92F});
 void coloured_text(const Eigen::Vector4f& colour, const char* text);
 /// A text of the table with its gaps filled in.
 template <class... Arguments>

@@ -183,8 +183,7 @@ void ViewerScreen::draw_surface(UiContext& ui, ImVec2 size) {
   if (surface_.draw(camera_, look_, static_cast<int>(size.x), static_cast<int>(size.y))) {
     unfinished_ = true;
   }
-  draw->AddImage(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(surface_.texture())), origin, end,
-                 {0, 1}, {1, 0});
+  draw->AddImage(picture_of(surface_.texture()), origin, end, {0, 1}, {1, 0});
   draw->PushClipRect(origin, end, true);
   if (show_wedges_ && state_.wedges) {
     draw_wedges(ui, origin, size);
