@@ -18,6 +18,7 @@
 #include "formats/mesh_io.h"
 #include "station/analysis.h"
 #include "station/command/command.h"
+#include "station/command/outputs.h"
 #include "station/done_stamp.h"
 #include "station/field_pictures.h"
 
@@ -317,8 +318,11 @@ void add_analyze(CLI::App& app, Action& chosen) {
   verb->add_option("--svg", arguments->svg, "a folder for one drawing to scale of each side that has wedges");
   verb->add_flag("--classical-watershed", arguments->classical, "the textbook watershed, for comparison");
   verb->add_flag("--again", arguments->again, "even where the same was done before from the same mesh");
-  verb->callback(
-      [&chosen, arguments] { chosen = [arguments](CommandContext& c) { return analyze(*arguments, c); }; });
+  verb->callback([&chosen, arguments] {
+    chosen = outside_sessions(
+        {arguments->out, arguments->mesh_out, arguments->pictures, arguments->svg, arguments->invariants},
+        [arguments](CommandContext& c) { return analyze(*arguments, c); });
+  });
 }
 
 }  // namespace dubsar

@@ -10,6 +10,7 @@
 #include "core/units.h"
 #include "formats/mesh_io.h"
 #include "station/command/command.h"
+#include "station/command/outputs.h"
 #include "station/mesh_json.h"
 #include "station/section_file.h"
 #include "triangulation/mesh_check.h"
@@ -132,8 +133,9 @@ void add_mesh(CLI::App& app, Action& chosen) {
   convert_verb->add_option("in", options->in)->required();
   convert_verb->add_option("out", options->out)->required();
   convert_verb->fallthrough();
-  convert_verb->callback(
-      [&chosen, options] { chosen = [options](CommandContext& c) { return convert(*options, c); }; });
+  convert_verb->callback([&chosen, options] {
+    chosen = outside_sessions({options->out}, [options](CommandContext& c) { return convert(*options, c); });
+  });
   CLI::App* section_verb = verb->add_subcommand(
       "section", "The profile of a cut between two places of the surface; status 1 when nothing is cut");
   section_verb->add_option("mesh", options->in, "PLY, OBJ, STL or GLB")->required();
@@ -143,8 +145,9 @@ void add_mesh(CLI::App& app, Action& chosen) {
       ->default_val("0,0,1");
   section_verb->add_option("-o,--out", options->out, "profile.csv or profile.svg, in mm, 1:1")->required();
   section_verb->fallthrough();
-  section_verb->callback(
-      [&chosen, options] { chosen = [options](CommandContext& c) { return section(*options, c); }; });
+  section_verb->callback([&chosen, options] {
+    chosen = outside_sessions({options->out}, [options](CommandContext& c) { return section(*options, c); });
+  });
   for (CLI::App* sub : {check_verb, convert_verb, section_verb}) {
     sub->add_option("--unit", options->unit, "what the file's numbers are")
         ->check(CLI::IsMember({"m", "mm", "um"}));
