@@ -118,7 +118,7 @@ TEST_P(EveryMethod, NoiseAloneGivesNoSample) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Stripe, EveryMethod,
-                         testing::Values(StripeMethod::kCentroid, StripeMethod::kGaussian,
+                         testing::Values(StripeMethod::kAdaptive, StripeMethod::kCentroid, StripeMethod::kGaussian,
                                          StripeMethod::kSteger));
 
 TEST(Stripe, RunsAlongRowsAsWell) {

@@ -31,7 +31,7 @@ struct GigeScannerPlan {
   /// How far the frames lie from even spacing, in steps: only the clock tells where each was taken.
   double jitter = 0.2;
   double loss = 0;                ///< share of the packets
-  std::string method = "steger";  ///< of finding the stripe
+  std::string method = "adaptive";  ///< of finding the stripe
 };
 
 class GigeScanner {
