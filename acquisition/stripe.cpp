@@ -99,8 +99,7 @@ void StripeExtractor::extract(const GrayView& on_given, const GrayView& off_give
 
 void StripeExtractor::settle(StripeProfile& profile) {
   const double noise = line_noise_px(line_);
-  const double unsteady =
-      std::clamp((noise / options_.sigma_px - kSteady) / (kUnsteady - kSteady), 0.0, 1.0);
+  const double unsteady = std::clamp((noise / options_.sigma_px - kSteady) / (kUnsteady - kSteady), 0.0, 1.0);
   const CentreWindow window(options_.sigma_px * std::lerp(kNarrow, kWide, unsteady));
   for (std::size_t u = 0; u < cuts_.size(); ++u) {
     if (profile.state[u] != StripeState::kGood) {
@@ -188,8 +187,7 @@ std::optional<double> StripeExtractor::ridge_row(const GrayView& on, const GrayV
   return v + *crossing;
 }
 
-void StripeExtractor::refine(const GrayView& on, const GrayView& off, int column,
-                             StripeProfile& profile) {
+void StripeExtractor::refine(const GrayView& on, const GrayView& off, int column, StripeProfile& profile) {
   const auto i = static_cast<std::size_t>(column);
   if (best_[i] < options_.least_peak) {
     return;

@@ -18,7 +18,8 @@ namespace dubsar {
 
 /// How the middle of the stripe is found. `dubsar-frames` (bench/accuracy) measures them against each other.
 enum class StripeMethod {
-  /// Centre of mass under a Gaussian window, then an average along the stripe; how wide both are, the noise of
+  /// Centre of mass under a Gaussian window, then an average along the stripe; how wide both are, the noise
+  /// of
   /// this frame's stripe decides: narrow where the laser speckles little, wide where it speckles.
   kAdaptive,
   kCentroid,  ///< centre of mass over the background

@@ -14,10 +14,10 @@ namespace dubsar {
 
 namespace {
 
-constexpr std::size_t kFewest = 32;   // columns that tell the noise
-constexpr double kWidest_px = 2.5;    // of the average
+constexpr std::size_t kFewest = 32;  // columns that tell the noise
+constexpr double kWidest_px = 2.5;   // of the average
 constexpr double kNarrowest_px = 0.3;
-constexpr double kReach = 2.5;        // widths that are looked at
+constexpr double kReach = 2.5;  // widths that are looked at
 constexpr std::size_t kMostReach = 7;
 // How strongly the stripe bends on written clay at 25 µm a pixel, px per column squared: between the values
 // that do best on blank and on written tablets, with 0.05 and 0.1 within 4 % of it (dubsar-frames).

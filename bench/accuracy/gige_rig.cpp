@@ -3,8 +3,8 @@
 // The whole way at full size: frames of a simulated rig as GigE Vision packets on a loopback to the aravis
 // driver, a stage behind an emulated USB port that moves through, by `rig:` to a grid, against the true
 // surface.
-//   dubsar-gige-rig [--method adaptive|steger|gaussian|centroid] [--rows N] [--rate HZ] [--contrast C …] [--f-number
-//   N] [--loss SHARE]
+//   dubsar-gige-rig [--method adaptive|steger|gaussian|centroid] [--rows N] [--rate HZ] [--contrast C …]
+//   [--f-number N] [--loss SHARE]
 
 #include <CLI/CLI.hpp>
 #include <chrono>

@@ -30,7 +30,7 @@ struct GigeScannerPlan {
   double rate_hz = 50;  ///< of the camera
   /// How far the frames lie from even spacing, in steps: only the clock tells where each was taken.
   double jitter = 0.2;
-  double loss = 0;                ///< share of the packets
+  double loss = 0;                  ///< share of the packets
   std::string method = "adaptive";  ///< of finding the stripe
 };
 
