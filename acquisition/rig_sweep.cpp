@@ -40,7 +40,17 @@ Result<Travel> RigScanner::plan_sweep() {
   if (const Status reports = check_reports(*now, file_); !reports) {
     return std::unexpected(reports.error());
   }
-  const std::optional<double> rate = frame_rate_hz(camera_);
+  std::optional<double> rate = frame_rate_hz(camera_);
+  if (!rate) {
+    // A camera that was unplugged since tells nothing: its next stream brings it back.
+    if (const Status back = camera_.start_frames(); !back) {
+      return std::unexpected(back.error());
+    }
+    if (const Status idle = camera_.stop_frames(); !idle) {
+      return std::unexpected(idle.error());
+    }
+    rate = frame_rate_hz(camera_);
+  }
   if (file_.speed <= 0 && !rate) {
     return fail(ErrorKind::kUsage, "nobody says how fast the stage is to go", file_.name,
                 "the camera does not tell its rate: give speed_mm_s or speed_deg_s");
