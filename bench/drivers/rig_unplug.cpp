@@ -37,7 +37,7 @@ struct Pulled : test::CollectGrid {
       : row(wanted), wait(later), pull(std::move(what)) {}
   bool profile(const Profile& profile) override {
     const bool more = CollectGrid::profile(profile);
-    if (!when && builder->grid().rows > row) {
+    if (!when && profile.row >= row) {
       std::this_thread::sleep_for(wait);
       pull();
       when = Clock::now();
@@ -51,7 +51,7 @@ struct Pulled : test::CollectGrid {
 };
 
 struct Tally {
-  int trials = 0, not_told = 0, rows_lost = 0, lit = 0;
+  int trials = 0, again = 0, not_told = 0, rows_lost = 0, lit = 0;
   std::vector<double> seconds;
   [[nodiscard]] int faults() const { return not_told + rows_lost + lit; }
 };
@@ -64,12 +64,13 @@ bool trial(Device& rig, test::GigeScanner& scanner, test::PeerProcess& stage, Pu
               [&] { what == Pull::kCamera ? scanner.unplug_camera() : void(stage.tell("unplug")); });
   const Result<ScanOutcome> scanned = rig.scan(sink);
   const Clock::time_point told = Clock::now();
-  ++tally.trials;
   if (!sink.when) {
-    std::fprintf(stderr, "dubsar-rig-unplug: %s\n",
-                 scanned ? "it ended before the cable was pulled" : scanned.error().line().c_str());
-    return false;
+    // On a machine that has other things to do rows may be lost, and with them the moment.
+    std::fprintf(stderr, "again: %s\n",
+                 scanned ? "the scan ended before its cable was pulled" : scanned.error().line().c_str());
+    return ++tally.again <= 20;
   }
+  ++tally.trials;
   tally.seconds.push_back(std::chrono::duration<double>(told - *sink.when).count());
   tally.not_told += !scanned && scanned.error().kind == ErrorKind::kDevice ? 0 : 1;
   tally.rows_lost += sink.builder->grid().rows > row ? 0 : 1;
@@ -121,6 +122,7 @@ int run(int argc, char** argv) {
   test::GigeScannerPlan plan;
   plan.truth = sim::frame_rig(size);
   plan.scene = &scene;
+  plan.rate_hz = 20;
   plan.tablet_from_scanner.translation_mm.z() = test::top_mm(tablet->mesh) - 0.5;
   test::GigeScanner scanner(plan, *stage);
   if (!scanner.refusal().empty()) {
@@ -137,8 +139,11 @@ int run(int argc, char** argv) {
   std::array<Tally, kNames.size()> tallies;
   for (int k = 0; k < trials; ++k) {
     const auto kind = static_cast<std::size_t>(k) % kNames.size();
-    if (!trial(*rig, scanner, *stage, static_cast<Pull>(kind), random, plan.rows, tallies[kind])) {
-      return 1;
+    for (const int done = tallies[kind].trials; tallies[kind].trials == done;) {
+      if (!trial(*rig, scanner, *stage, static_cast<Pull>(kind), random, plan.rows, tallies[kind])) {
+        std::fputs("dubsar-rig-unplug: the rig does not go on\n", stderr);
+        return 1;
+      }
     }
   }
   test::CollectGrid last;

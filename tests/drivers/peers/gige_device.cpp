@@ -230,8 +230,8 @@ void GigeDevice::answer(const Bytes& ask, const sockaddr_in& to) {
   // One application has the control, by address and port; what is left of another one may not take it away.
   const std::uint64_t who = std::uint64_t{to.sin_addr.s_addr} << 16U | to.sin_port;
   const std::uint64_t now = now_ns();
-  if (controller_ != 0 && (read(kControlPrivilege) == 0 ||
-                           now - heard_ns_ > std::uint64_t{read(kHeartbeat_ms)} * 1'000'000)) {
+  if (controller_ != 0 &&
+      (read(kControlPrivilege) == 0 || now - heard_ns_ > std::uint64_t{read(kHeartbeat_ms)} * 1'000'000)) {
     controller_ = 0;
     write(kControlPrivilege, 0);
   }
