@@ -89,8 +89,8 @@ void drop_small_parts(const WedgePatch& patch, std::vector<std::int8_t>* face) {
     }
   }
   for (std::size_t v = 0; v < patch.size(); ++v) {
-    if ((*face)[v] >= 0 &&
-        size[static_cast<std::size_t>(part[v])] < kSmallPart * total[static_cast<std::size_t>(int{(*face)[v]})]) {
+    if ((*face)[v] >= 0 && size[static_cast<std::size_t>(part[v])] <
+                               kSmallPart * total[static_cast<std::size_t>(int{(*face)[v]})]) {
       (*face)[v] = -1;
     }
   }
