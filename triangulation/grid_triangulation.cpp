@@ -8,6 +8,7 @@
 
 #include "core/grid_geometry.h"
 #include "core/parallel.h"
+#include "core/row_camera.h"
 
 namespace dubsar {
 
@@ -16,14 +17,6 @@ namespace {
 using Eigen::Vector3f;
 
 constexpr std::size_t kRowsPerChunk = 16;
-
-/// Not normalised: from p to the camera, or against the viewing direction.
-Vector3f towards_camera(const ScannerView& view, const Vector3f& p, int row) {
-  if (!view.camera_mm) {
-    return -view.direction.cast<float>();
-  }
-  return (*view.camera_mm + row * view.motion_per_row_mm).cast<float>() - p;
-}
 
 /// The tests a triangle has to pass, with all constants of the grid at hand.
 struct TriangleTest {
@@ -58,7 +51,7 @@ bool prefers_antidiagonal(const GridSurface& s, std::size_t i00, std::size_t i01
 }
 
 std::uint8_t cell_code(const GridSurface& s, std::span<const std::uint8_t> keep, int row, int col,
-                       const TriangleTest& good) {
+                       const RowCamera& camera, const TriangleTest& good) {
   const std::size_t i00 = s.index(row, col);
   const std::size_t i01 = i00 + 1;
   const std::size_t i10 = i00 + static_cast<std::size_t>(s.cols);
@@ -74,7 +67,7 @@ std::uint8_t cell_code(const GridSurface& s, std::span<const std::uint8_t> keep,
   const Vector3f& p01 = s.points[i01];
   const Vector3f& p10 = s.points[i10];
   const Vector3f& p11 = s.points[i11];
-  const Vector3f to_camera = towards_camera(s.view, k00 ? p00 : p11, row);
+  const Vector3f to_camera = camera.from(k00 ? p00 : p11);
   const Vector3f top = p01 - p00;
   const Vector3f left = p10 - p00;
   const Vector3f bottom = p11 - p10;
@@ -143,6 +136,7 @@ bool is_mirrored(const GridSurface& surface, std::span<const std::uint8_t> keep)
   const int step = std::max(1, surface.rows / 128);
   long votes = 0;
   for (int row = 0; row + 1 < surface.rows; row += step) {
+    const RowCamera camera(surface.view, row);
     for (int col = 0; col + 1 < surface.cols; ++col) {
       const std::size_t i00 = surface.index(row, col);
       const std::size_t i01 = i00 + 1;
@@ -163,7 +157,7 @@ bool is_mirrored(const GridSurface& surface, std::span<const std::uint8_t> keep)
       if (std::max(down.squaredNorm(), along.squaredNorm()) > longest * longest) {
         continue;
       }
-      votes += down.cross(along).dot(towards_camera(surface.view, p, row)) < 0 ? 1 : -1;
+      votes += down.cross(along).dot(camera.from(p)) < 0 ? 1 : -1;
     }
   }
   return votes > 0;
@@ -180,9 +174,10 @@ std::vector<std::uint8_t> triangulate_cells(const GridSurface& surface, std::spa
       static_cast<std::size_t>(surface.rows - 1),
       [&](std::size_t r) {
         const int row = static_cast<int>(r);
+        const RowCamera camera(surface.view, row);
         std::uint8_t* out = cells.data() + surface.index(row, 0);
         for (int col = 0; col + 1 < surface.cols; ++col) {
-          out[col] = cell_code(surface, keep, row, col, good);
+          out[col] = cell_code(surface, keep, row, col, camera, good);
         }
       },
       kRowsPerChunk);
@@ -197,10 +192,11 @@ void triangulate_cells_anew(const GridSurface& surface, std::span<const std::uin
       static_cast<std::size_t>(std::max(surface.rows - 1, 0)),
       [&](std::size_t r) {
         const int row = static_cast<int>(r);
+        const RowCamera camera(surface.view, row);
         for (int col = 0; col + 1 < surface.cols; ++col) {
           const std::size_t cell = surface.index(row, col);
           if (only[cell] != 0) {
-            cells[cell] = cell_code(surface, keep, row, col, good);
+            cells[cell] = cell_code(surface, keep, row, col, camera, good);
           }
         }
       },
