@@ -39,7 +39,7 @@ class Triangulator {
   RigCalibration calibration_;
   int samples_ = 0;
   int nodes_ = 0;                      ///< per sample
-  std::vector<Eigen::Vector2d> rays_;  ///< [samples × nodes] normalised coordinates every kNode_px along
+  std::vector<Eigen::Vector2d> rays_;  ///< [samples × nodes] normalised coordinates every kNodePx along
   RigidTransform scanner_from_camera_;
 };
 

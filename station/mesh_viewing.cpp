@@ -2,7 +2,6 @@
 // Copyright The Dubsar developers
 #include "station/mesh_viewing.h"
 
-#include <array>
 #include <utility>
 
 #include "analysis/curvature.h"
@@ -14,6 +13,7 @@
 #include "formats/wedges_json.h"
 #include "station/analysis.h"
 #include "station/section_file.h"
+#include "station/selection_store.h"
 
 namespace dubsar {
 
@@ -36,41 +36,11 @@ fs::path wedges_beside(const fs::path& mesh) {
   return {};
 }
 
-/// The faces, with their vertices and all that the mesh says of these.
-Mesh part_of(const Mesh& mesh, const std::vector<std::uint32_t>& faces) {
-  constexpr std::uint32_t kNew = 0xFFFFFFFFU;
-  const std::size_t n = mesh.positions.size();
-  std::vector<std::uint32_t> number(n, kNew);
-  Mesh part;
-  const auto carry = [n](const auto& from, auto& to, std::uint32_t v) {
-    if (from.size() == n) {
-      to.push_back(from[v]);
-    }
-  };
-  for (const std::uint32_t f : faces) {
-    std::array<std::uint32_t, 3> face{};
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::uint32_t v = mesh.faces[f][k];
-      if (number[v] == kNew) {
-        number[v] = static_cast<std::uint32_t>(part.positions.size());
-        part.positions.push_back(mesh.positions[v]);
-        carry(mesh.normals, part.normals, v);
-        carry(mesh.reliability, part.reliability, v);
-        carry(mesh.sigma_mm, part.sigma_mm, v);
-        carry(mesh.scans, part.scans, v);
-        carry(mesh.flags, part.flags, v);
-        carry(mesh.colours, part.colours, v);
-      }
-      face[k] = number[v];
-    }
-    part.faces.push_back(face);
-  }
-  return part;
-}
-
 }  // namespace
 
-MeshViewing::MeshViewing(std::function<void()> on_change) : on_change_(std::move(on_change)) {}
+MeshViewing::MeshViewing(std::function<void()> on_change) : on_change_(std::move(on_change)) {
+  state_.selections = std::make_shared<const std::vector<MeshSelection>>();
+}
 
 MeshViewing::~MeshViewing() {
   {
@@ -163,6 +133,11 @@ void MeshViewing::take_mesh(std::shared_ptr<const Mesh> mesh, const RigidTransfo
     state_.fields.clear();
     state_.wedges.reset();
     state_.section.reset();
+    state_.selections = std::make_shared<const std::vector<MeshSelection>>();
+    state_.written.clear();
+    state_.is_part = false;
+    whole_.reset();
+    selections_file_.clear();
     state_.tablet_from_model = tablet_from_model;
     state_.name = name;
     state_.error.reset();
@@ -202,6 +177,7 @@ void MeshViewing::open(const fs::path& file) {
         complain(known.error());
       }
     }
+    take_selections(selections_file_of(file));
     work_out(MeshField::kOpenness);
   });
 }
@@ -216,6 +192,7 @@ void MeshViewing::show(std::shared_ptr<const Mesh> mesh, const RigidTransform& t
         take_wedges(std::move(known->wedges));
       }
     }
+    take_selections(wedges_file.parent_path() / "selections.json");
     work_out(MeshField::kOpenness);
   });
 }
@@ -234,16 +211,6 @@ void MeshViewing::want(MeshField field) {
 
 void MeshViewing::analyse() {
   ask([this] { work_out_everything(false); });
-}
-
-void MeshViewing::keep_part(std::vector<std::uint32_t> faces, const fs::path& file) {
-  ask([this, faces = std::move(faces), file] {
-    if (const std::shared_ptr<const Mesh> whole = mesh()) {
-      if (const Status written = write_mesh(file, part_of(*whole, faces)); !written) {
-        complain(written.error());
-      }
-    }
-  });
 }
 
 void MeshViewing::cut(const Eigen::Vector3d& from_mm, const Eigen::Vector3d& to_mm,

@@ -18,6 +18,7 @@
 #include "analysis/cross_section.h"
 #include "core/job.h"
 #include "core/mesh.h"
+#include "core/mesh_part.h"
 #include "core/result.h"
 #include "core/rigid_transform.h"
 #include "core/wedge.h"
@@ -34,6 +35,9 @@ struct ViewedMesh {
   std::map<MeshField, std::shared_ptr<const std::vector<float>>> fields;  ///< [V]
   std::shared_ptr<const std::vector<Wedge>> wedges;                       ///< null: none are known
   std::shared_ptr<const CrossSection> section;                            ///< the last that was asked for
+  std::shared_ptr<const std::vector<MeshSelection>> selections;           ///< that are kept; never null
+  std::vector<std::filesystem::path> written;  ///< what was asked for last, once it is written
+  bool is_part = false;                        ///< a part of a mesh that one can go back to
   RigidTransform tablet_from_model;
   std::string name;
   std::string stage;  ///< of the job that runs; empty: none does
@@ -58,8 +62,16 @@ class MeshViewing {
             const std::filesystem::path& wedges_file);
   void want(MeshField field);  ///< works it out unless it is there
   void analyse();              ///< all fields, and the wedges
-  /// Writes these faces of the mesh, with what is known of their vertices, as a mesh of their own.
-  void keep_part(std::vector<std::uint32_t> faces, const std::filesystem::path& file);
+  /// Keeps a selection under its name, in the place of one that has it; forgets one.
+  void keep_selection(MeshSelection selection);
+  void forget_selection(const std::string& name);
+  /// Writes the selected part, with what is known of its vertices, as a mesh of its own.
+  void write_part(MeshSelection selection, const std::filesystem::path& file);
+  /// Writes the selected wedges as a table (CSV).
+  void write_wedges_of(MeshSelection selection, const std::filesystem::path& file);
+  /// Finds the wedges of the selected part alone: STEM.ply and STEM.wedges.json, then looks at that mesh.
+  void analyse_part(MeshSelection selection, const std::filesystem::path& stem);
+  void leave_part();  ///< looks at the mesh again that the part is of
   /// Cuts the mesh between two places of it, as it is seen from `towards` (model frame).
   void cut(const Eigen::Vector3d& from_mm, const Eigen::Vector3d& to_mm, const Eigen::Vector3d& towards);
   /// Writes the cut as STEM.csv and STEM.svg.
@@ -72,6 +84,9 @@ class MeshViewing {
   void run();
   void take_mesh(std::shared_ptr<const Mesh> mesh, const RigidTransform& tablet_from_model,
                  const std::string& name);
+  void take_selections(const std::filesystem::path& file);
+  void take_written(std::vector<std::filesystem::path> files);
+  void change_selections(const std::function<void(std::vector<MeshSelection>&)>& change);
   void take_field(MeshField field, std::vector<float> values);
   void take_wedges(std::vector<Wedge> wedges);
   void complain(const Error& error);
@@ -82,6 +97,9 @@ class MeshViewing {
   std::function<void()> on_change_;
   mutable std::mutex mutex_;  ///< of what follows
   ViewedMesh state_;
+  std::filesystem::path selections_file_;
+  std::optional<ViewedMesh> whole_;  ///< that a part is of, and where its selections are
+  std::filesystem::path whole_selections_file_;
   std::deque<Task> tasks_;
   std::unique_ptr<JobContext> job_;
   bool running_ = false;

@@ -1,18 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright The Dubsar developers
-// dubsar mesh check | convert | section.
+// dubsar mesh check | convert | section | part.
 
 #include <charconv>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 
 #include "analysis/cross_section.h"
+#include "archive/wedge_table.h"
 #include "core/units.h"
+#include "formats/atomic_file.h"
 #include "formats/mesh_io.h"
+#include "formats/wedges_json.h"
 #include "station/command/command.h"
 #include "station/command/outputs.h"
 #include "station/mesh_json.h"
 #include "station/section_file.h"
+#include "station/selection_store.h"
 #include "triangulation/mesh_check.h"
 
 namespace dubsar {
@@ -23,7 +28,8 @@ struct MeshOptions {
   std::string in;
   std::string out;
   std::string unit;
-  std::string from, to, towards;  ///< of a section
+  std::string from, to, towards;              ///< of a section
+  std::string selection, selections, wedges;  ///< of a part
 };
 
 Result<Mesh> read(const MeshOptions& options) {
@@ -115,6 +121,47 @@ Result<int> section(const MeshOptions& options, CommandContext& context) {
   return cut->lines.empty() ? 1 : 0;
 }
 
+/// What a selection of the viewer holds: a mesh, or a table of its wedges.
+Result<int> part(const MeshOptions& options, CommandContext& context) {
+  const Result<Mesh> mesh = read(options);
+  if (!mesh) {
+    return std::unexpected(mesh.error());
+  }
+  const std::filesystem::path kept =
+      options.selections.empty() ? selections_file_of(options.in) : std::filesystem::path(options.selections);
+  const Result<MeshSelection> selection = kept_selection(kept, *mesh, options.selection);
+  if (!selection) {
+    return std::unexpected(selection.error());
+  }
+  if (!options.wedges.empty()) {
+    const Result<WedgeFile> all = read_wedges(options.wedges);
+    if (!all) {
+      return std::unexpected(all.error());
+    }
+    const std::vector<Wedge> wedges = selected_wedges(all->wedges, *mesh, *selection);
+    if (const Status written = write_file_atomically(options.out, wedge_table(wedges)); !written) {
+      return std::unexpected(written.error());
+    }
+    if (context.json) {
+      CommandContext::print({{"file", options.out}, {"wedges", wedges.size()}});
+    } else {
+      std::printf("%s: %zu of %zu wedges\n", options.out.c_str(), wedges.size(), all->wedges.size());
+    }
+    return wedges.empty() ? 1 : 0;
+  }
+  const Mesh out = part_of(*mesh, *selection);
+  if (const Status written = write_mesh(options.out, out); !written) {
+    return std::unexpected(written.error());
+  }
+  if (context.json) {
+    CommandContext::print(
+        {{"file", options.out}, {"vertices", out.positions.size()}, {"faces", out.faces.size()}});
+  } else {
+    std::printf("%s: %zu vertices, %zu faces\n", options.out.c_str(), out.positions.size(), out.faces.size());
+  }
+  return 0;
+}
+
 }  // namespace
 
 void add_mesh(CLI::App& app, Action& chosen) {
@@ -148,7 +195,19 @@ void add_mesh(CLI::App& app, Action& chosen) {
   section_verb->callback([&chosen, options] {
     chosen = outside_sessions({options->out}, [options](CommandContext& c) { return section(*options, c); });
   });
-  for (CLI::App* sub : {check_verb, convert_verb, section_verb}) {
+  CLI::App* part_verb = verb->add_subcommand(
+      "part", "What a selection kept in the viewer holds: a mesh, or with --wedges a table");
+  part_verb->add_option("mesh", options->in, "PLY, OBJ, STL or GLB")->required();
+  part_verb->add_option("--selection", options->selection, "its name")->required();
+  part_verb->add_option("--selections", options->selections,
+                        "the file it is in; without it the one beside the mesh, or the session's");
+  part_verb->add_option("--wedges", options->wedges, "wedges.json: write the selected ones as CSV");
+  part_verb->add_option("-o,--out", options->out, "part.ply, or wedges.csv")->required();
+  part_verb->fallthrough();
+  part_verb->callback([&chosen, options] {
+    chosen = outside_sessions({options->out}, [options](CommandContext& c) { return part(*options, c); });
+  });
+  for (CLI::App* sub : {check_verb, convert_verb, section_verb, part_verb}) {
     sub->add_option("--unit", options->unit, "what the file's numbers are")
         ->check(CLI::IsMember({"m", "mm", "um"}));
   }

@@ -263,6 +263,15 @@ constexpr Row kRows[] = {
     {Text::kKeepSection, "Keep CSV and SVG", "CSV und SVG aufheben"},
     {Text::kMove, "Turn", "Drehen"},
     {Text::kOrder, "Line", "Zeile"},
+    {Text::kSelectFaces, "Faces", "Dreiecke"},
+    {Text::kSelectPoints, "Points", "Punkte"},
+    {Text::kSelectedPoints, "{} points", "{} Punkte"},
+    {Text::kSelectionName, "Name", "Name"},
+    {Text::kKeep, "Keep", "Aufheben"},
+    {Text::kForget, "Forget", "Vergessen"},
+    {Text::kWedgesAsTable, "Its wedges as CSV", "Ihre Keile als CSV"},
+    {Text::kAnalysePart, "Find its wedges alone", "Nur hier Keile suchen"},
+    {Text::kWholeMesh, "Back to the whole", "Zurück zum Ganzen"},
 };
 
 constexpr bool in_order() {

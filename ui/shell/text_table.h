@@ -217,6 +217,15 @@ enum class Text {
   kKeepSection,
   kMove,
   kOrder,
+  kSelectFaces,
+  kSelectPoints,
+  kSelectedPoints,
+  kSelectionName,
+  kKeep,
+  kForget,
+  kWedgesAsTable,
+  kAnalysePart,
+  kWholeMesh,
   kCount
 };
 

@@ -27,6 +27,7 @@ class MeshBuffers {
   [[nodiscard]] bool has_colours() const { return has_colours_; }
   [[nodiscard]] bool points_only() const { return faces_ == 0; }
   [[nodiscard]] std::size_t faces() const { return faces_; }
+  [[nodiscard]] std::size_t vertices() const { return vertices_; }
   [[nodiscard]] std::size_t coarse_faces() const { return coarse_faces_; }
   [[nodiscard]] std::size_t bytes() const { return bytes_; }
 

@@ -15,6 +15,9 @@ uniform mat4 clip_from_model;
 uniform mat3 eye_from_model;
 uniform float point_px;
 uniform float towards_viewer;   // in clip depth
+uniform int selection;            // 2: vertices that are selected are told apart
+uniform usamplerBuffer selected;  // by vertex
+out float vertex_selected;
 out vec3 eye_normal;
 out vec3 eye_position;
 out vec4 vertex_traits;
@@ -34,6 +37,7 @@ void main() {
   int flags = int(traits.w * 255.0 + 0.5);
   vertex_sparse = float(flags & 1);
   vertex_interpolated = float((flags >> 1) & 1);
+  vertex_selected = selection == 2 ? float(texelFetch(selected, gl_VertexID).r) : 0.0;
 }
 )glsl";
 
@@ -54,6 +58,7 @@ uniform vec3 clay;
 uniform vec3 red;
 uniform vec3 amber;
 uniform sampler2D colour_map;
+in float vertex_selected;
 uniform int selection;            // 1: faces that are selected are told apart
 uniform int first_face;           // of this draw
 uniform usamplerBuffer selected;  // by face
@@ -94,7 +99,8 @@ void main() {
   } else if (overlay == 5) {
     c = vertex_sparse > 0.5 ? red : vertex_interpolated > 0.5 ? amber : clay;
   }
-  if (selection != 0 && texelFetch(selected, first_face + gl_PrimitiveID).r != 0u) {
+  if (vertex_selected > 0.5 ||
+      (selection == 1 && texelFetch(selected, first_face + gl_PrimitiveID).r != 0u)) {
     c = mix(c, selected_colour, 0.65);
   }
   // The inside of the clay, seen through a hole.

@@ -136,6 +136,7 @@ void SurfaceView::draw_geometry(Layer& layer, const Scene& scene, std::size_t fi
   begin_surface(scene, layer);
   mesh_->bind();
   if (mesh_->points_only()) {
+    show_selection();
     surface_.set("marks", 2);
     surface_.set("point_px",
                  std::clamp(0.2F / scene.camera.mm_per_px(static_cast<float>(scene.height)), 2.0F, 12.0F));
@@ -143,15 +144,13 @@ void SurfaceView::draw_geometry(Layer& layer, const Scene& scene, std::size_t fi
     return;
   }
   if (coarse) {
+    if (selection_ && selection_->of() == MeshElement::kVertex) {
+      show_selection();  // the vertices are the same ones; the faces are not
+    }
     mesh_->draw_coarse();
     faces_drawn_ += mesh_->coarse_faces();
   } else {
-    if (selection_ && !selection_->empty()) {
-      surface_.set("selection", 1);
-      glActiveTexture(GL_TEXTURE1);
-      glBindTexture(GL_TEXTURE_BUFFER, selection_->texture());
-      glActiveTexture(GL_TEXTURE0);
-    }
+    show_selection();
     for (std::size_t b = first_block; b < end_block; ++b) {
       if (!outside(blocks_[b].box_mm, clip_from_model)) {
         surface_.set("first_face", static_cast<int>(blocks_[b].first));
@@ -293,13 +292,20 @@ void SurfaceView::draw_whole(const OrbitCamera& camera, const Look& look, int wi
   whole_ = true;
 }
 
-bool SurfaceView::select(const std::vector<Eigen::Vector2f>& corners, SelectionStep step, bool through) {
-  if (!mesh_ || mesh_->points_only() || !whole_ || corners.size() < 3) {
+void SurfaceView::begin_selection(MeshElement of) {
+  if (!selection_ || selection_->of() != of) {
+    selection_.reset();  // two at once would be too much for a small card
+    selection_ =
+        std::make_unique<MeshSelecting>(of, of == MeshElement::kFace ? mesh_->faces() : mesh_->vertices());
+  }
+}
+
+bool SurfaceView::select(MeshElement of, const std::vector<Eigen::Vector2f>& corners, SelectionStep step,
+                         bool through) {
+  if (!mesh_ || !whole_ || corners.size() < 3 || (of == MeshElement::kFace && mesh_->points_only())) {
     return false;
   }
-  if (!selection_) {
-    selection_ = std::make_unique<FaceSelection>(mesh_->faces());
-  }
+  begin_selection(of);
   const float aspect = static_cast<float>(scene_.width) / static_cast<float>(scene_.height);
   const Layer& layer = layers_[static_cast<std::size_t>(shown_layer_)];
   selection_->apply(*mesh_, scene_.camera.clip_from_model(aspect),
@@ -307,6 +313,24 @@ bool SurfaceView::select(const std::vector<Eigen::Vector2f>& corners, SelectionS
                     through ? 0 : layer.target.depth(), step);
   dirty_ = true;
   return true;
+}
+
+void SurfaceView::set_selection(MeshElement of, const std::vector<std::uint32_t>& selected) {
+  if (mesh_) {
+    begin_selection(of);
+    selection_->set(selected);
+    dirty_ = true;
+  }
+}
+
+/// Of the program in use.
+void SurfaceView::show_selection() {
+  if (selection_) {
+    surface_.set("selection", selection_->of() == MeshElement::kFace ? 1 : 2);
+    glActiveTexture(GL_TEXTURE1);
+    glBindTexture(GL_TEXTURE_BUFFER, selection_->texture());
+    glActiveTexture(GL_TEXTURE0);
+  }
 }
 
 void SurfaceView::clear_selection() {

@@ -11,8 +11,8 @@
 
 #include "ui/gl/frame_target.h"
 #include "ui/gl/shader_program.h"
-#include "ui/view/face_selection.h"
 #include "ui/view/mesh_buffers.h"
+#include "ui/view/mesh_selecting.h"
 #include "ui/view/orbit_camera.h"
 
 namespace dubsar::ui {
@@ -58,12 +58,15 @@ class SurfaceView {
   /// The picture; id 0 before the first draw.
   [[nodiscard]] unsigned texture() const { return picture_.width() > 0 ? picture_.colour(0) : 0; }
   [[nodiscard]] Image read() const { return picture_.read(); }
-  /// Selects faces by a polygon in the last picture, corners in its pixels from the top left. `through`: also
-  /// what is hidden there. False before the whole surface stands in the picture.
-  bool select(const std::vector<Eigen::Vector2f>& corners, SelectionStep step, bool through);
+  /// Selects faces, or vertices, by a polygon in the last picture, corners in its pixels from the top left.
+  /// `through`: also what is hidden there. A selection of the other kind is given up. False before the whole
+  /// surface stands in the picture.
+  bool select(MeshElement of, const std::vector<Eigen::Vector2f>& corners, SelectionStep step, bool through);
+  /// 1 for the selected, by face of ShownMesh::faces or by vertex.
+  void set_selection(MeshElement of, const std::vector<std::uint32_t>& selected);
   void clear_selection();
-  /// Null before the first select(). By face of ShownMesh::faces.
-  [[nodiscard]] const FaceSelection* selection() const { return selection_.get(); }
+  /// Null where nothing was selected.
+  [[nodiscard]] const MeshSelecting* selection() const { return selection_.get(); }
   /// Model point that is seen at a pixel (from the top left) of the last picture.
   [[nodiscard]] std::optional<Eigen::Vector3f> point_at(const Eigen::Vector2f& px) const;
   /// Faces in the last picture, and outside it by their blocks.
@@ -87,6 +90,8 @@ class SurfaceView {
   void draw_geometry(Layer& layer, const Scene& scene, std::size_t first_block, std::size_t end_block,
                      bool coarse);
   void draw_marks(Layer& layer, const Scene& scene);
+  void begin_selection(MeshElement of);
+  void show_selection();
   void light(const Layer& layer, const Scene& scene);
   [[nodiscard]] Eigen::Matrix4f light_clip_from_model(const Scene& scene) const;
 
@@ -94,7 +99,7 @@ class SurfaceView {
   PixelTexture sphere_, colour_map_;
   std::unique_ptr<MeshBuffers> mesh_;
   std::unique_ptr<PointBuffers> points_;
-  std::unique_ptr<FaceSelection> selection_;
+  std::unique_ptr<MeshSelecting> selection_;
   std::vector<FaceBlock> blocks_;
   Eigen::AlignedBox3f box_mm_;
   std::array<Layer, 2> layers_;

@@ -89,46 +89,6 @@ void ViewerScreen::draw_overlay_choice(UiContext& ui) {
   ui.target("overlay");
 }
 
-void ViewerScreen::draw_selecting(UiContext& ui) {
-  coloured_text(ui.colours.faint, ui.text(Text::kSelectHint));
-  const auto step = [&](const char* name, Text text, SelectionStep which) {
-    if (ImGui::RadioButton(ui.text(text), step_ == which)) {
-      step_ = which;
-    }
-    ui.target(name);
-  };
-  step("select-union", Text::kUnion, SelectionStep::kUnion);
-  ImGui::SameLine();
-  step("select-intersect", Text::kIntersect, SelectionStep::kIntersection);
-  ImGui::SameLine();
-  step("select-subtract", Text::kSubtract, SelectionStep::kDifference);
-  tick(ui, "visible-only", ui.text(Text::kVisibleOnly), visible_only_);
-  if (surface_.selection() == nullptr) {
-    return;
-  }
-  ui.facts.insert(selected_faces_.empty() ? "nothing-selected" : "selected");
-  coloured_text(ui.colours.text,
-                filled(ui.text(Text::kSelected), grouped(selected_faces_.size()), selected_mm2_).c_str());
-  if (plain_button(ui, "keep-selection", ui.text(Text::kKeepSelection), !selected_faces_.empty())) {
-    const std::string stem =
-        state_.name.empty() ? "model" : std::filesystem::path(state_.name).stem().string();
-    std::filesystem::path file;
-    std::error_code error;
-    do {
-      ++parts_kept_;
-      file = pictures_ / fmt::format("{}_part_{:02}.ply", stem, parts_kept_);
-    } while (std::filesystem::exists(file, error));
-    viewing_.keep_part(selected_faces_, file);
-    picture_note_ = filled(ui.text(Text::kPictureKept), file.string());
-  }
-  ImGui::SameLine();
-  if (plain_button(ui, "clear-selection", ui.text(Text::kClear))) {
-    surface_.clear_selection();
-    selected_faces_.clear();
-    selected_mm2_ = 0;
-  }
-}
-
 void ViewerScreen::draw_facts(UiContext& ui) {
   ImGui::PushFont(ui.fonts.small);
   if (const MeshBuffers* buffers = surface_.buffers()) {
@@ -154,35 +114,7 @@ void ViewerScreen::draw_facts(UiContext& ui) {
   ImGui::PopFont();
 }
 
-void ViewerScreen::draw_panel(UiContext& ui, ImVec2 size) {
-  ImGui::BeginChild("panel", size, true);
-  if (has_session_) {
-    if (plain_button(ui, "back", ui.text(Text::kBackToScan))) {
-      wants_scanning_ = true;
-    }
-  } else {
-    ImGui::TextUnformatted(state_.name.c_str());
-  }
-  ImGui::Separator();
-  const float half = 0.5F * (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x);
-  ImGui::PushFont(ui.fonts.small);
-  for (int k = 0; k < kFaceCount; ++k) {
-    const std::string name = fmt::format("view.{}", to_string(static_cast<Face>(k)));
-    const std::string key = fmt::format("{}  {}", k + 1, ui.text(kFaceTexts[k]));
-    if (big_button(ui, name.c_str(), key.c_str(), nullptr, {half, ui.px(1.9F)}, ButtonKind::kPlain,
-                   !surface_.empty())) {
-      look_at(static_cast<Face>(k));
-    }
-    if (k % 2 == 0) {
-      ImGui::SameLine();
-    }
-  }
-  ImGui::PopFont();
-  ImGui::Separator();
-  draw_light(ui);
-  ImGui::Separator();
-  draw_overlay_choice(ui);
-  ImGui::Separator();
+void ViewerScreen::draw_tools(UiContext& ui) {
   ImGui::PushFont(ui.fonts.small);
   const auto tool = [&](const char* name, Text text, Tool which) {
     if (ImGui::RadioButton(ui.text(text), tool_ == which)) {
@@ -206,6 +138,42 @@ void ViewerScreen::draw_panel(UiContext& ui, ImVec2 size) {
     draw_selecting(ui);
   }
   ImGui::PopFont();
+}
+
+void ViewerScreen::draw_panel(UiContext& ui, ImVec2 size) {
+  ImGui::BeginChild("panel", size, true);
+  if (has_session_) {
+    if (plain_button(ui, "back", ui.text(Text::kBackToScan))) {
+      wants_scanning_ = true;
+    }
+  } else {
+    ImGui::TextUnformatted(state_.name.c_str());
+  }
+  if (state_.is_part && plain_button(ui, "whole-mesh", ui.text(Text::kWholeMesh))) {
+    viewing_.leave_part();
+  }
+  ImGui::Separator();
+  const float half = 0.5F * (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x);
+  ImGui::PushFont(ui.fonts.small);
+  for (int k = 0; k < kFaceCount; ++k) {
+    const std::string name = fmt::format("view.{}", to_string(static_cast<Face>(k)));
+    const std::string key = fmt::format("{}  {}", k + 1, ui.text(kFaceTexts[k]));
+    if (big_button(ui, name.c_str(), key.c_str(), nullptr, {half, ui.px(1.9F)}, ButtonKind::kPlain,
+                   !surface_.empty())) {
+      look_at(static_cast<Face>(k));
+    }
+    if (k % 2 == 0) {
+      ImGui::SameLine();
+    }
+  }
+  ImGui::PopFont();
+  ImGui::Separator();
+  draw_tools(ui);
+  ImGui::Separator();
+  draw_light(ui);
+  ImGui::Separator();
+  draw_overlay_choice(ui);
+  ImGui::Separator();
   ImGui::SetNextItemWidth(ui.px(6));
   ImGui::InputInt(ui.text(Text::kDpi), &dpi_, 0);
   dpi_ = std::clamp(dpi_, 50, 2400);

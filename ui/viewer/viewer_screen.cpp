@@ -75,6 +75,8 @@ void ViewerScreen::take_state(UiContext& ui) {
     shown_openness_.reset();
     shown_values_.reset();
     tape_.clear();
+    polygon_.clear();
+    clear_selected();
     wedge_ = -1;
     look_at(Face::kObverse);
     if (!shown_.colours.empty() && look_.overlay == Overlay::kClay) {
@@ -104,6 +106,15 @@ void ViewerScreen::take_state(UiContext& ui) {
   ui.facts.insert("shown");
   if (state_.wedges) {
     ui.facts.insert("wedges");
+  }
+  if (state_.is_part) {
+    ui.facts.insert("part");
+  }
+  if (state_.written != seen_written_) {
+    seen_written_ = state_.written;
+    if (!seen_written_.empty()) {
+      picture_note_ = filled(ui.text(Text::kPictureKept), seen_written_.front().string());
+    }
   }
   if (state_.stage.empty()) {
     ui.facts.insert("idle");
@@ -261,23 +272,6 @@ void ViewerScreen::use_pointer(UiContext& /*ui*/, ImVec2 origin, ImVec2 size) {
   }
 }
 
-void ViewerScreen::close_polygon() {
-  if (surface_.select(polygon_, step_, !visible_only_)) {
-    selected_faces_.clear();
-    selected_mm2_ = 0;
-    const std::vector<std::uint32_t> selected = surface_.selection()->read();
-    for (std::size_t f = 0; f < selected.size(); ++f) {
-      if (selected[f] != 0) {
-        const auto& [a, b, c] = shown_.faces[f];
-        const auto& p = shown_.positions;
-        selected_mm2_ += 0.5 * static_cast<double>((p[b] - p[a]).cross(p[c] - p[a]).norm());
-        selected_faces_.push_back(shown_.face_of[f]);
-      }
-    }
-  }
-  polygon_.clear();
-}
-
 void ViewerScreen::choose(int wedge, bool go_there) {
   wedge_ = wedge;
   untouched_ = untouched_ && !go_there;
@@ -293,6 +287,19 @@ void ViewerScreen::choose(int wedge, bool go_there) {
             .normalized();
   }
   camera_.centre_mm = chosen.depth_point_mm.cast<float>();
+}
+
+std::filesystem::path ViewerScreen::unused_file(const std::string& what, const std::string& ending) {
+  const std::string stem = state_.name.empty() ? "model" : std::filesystem::path(state_.name).stem().string();
+  std::filesystem::path file;
+  std::error_code error;
+  int k = 0;
+  do {
+    ++k;
+    file = pictures_ / fmt::format("{}_{}_{:02}{}", stem, what, k, ending);
+  } while (handed_out_.contains(file) || std::filesystem::exists(file, error));
+  handed_out_.insert(file);
+  return file;
 }
 
 void ViewerScreen::keep_picture(UiContext& ui) {
@@ -327,14 +334,8 @@ void ViewerScreen::keep_picture(UiContext& ui) {
   const ScaleBar bar = scale_bar_for(mm_per_px, width);
   dubsar::draw_scale_bar(picture, bar, static_cast<int>(1.0 / mm_per_px),
                          height - bar.height_px - static_cast<int>(1.0 / mm_per_px), {255, 255, 255});
-  const std::string stem = state_.name.empty() ? "model" : std::filesystem::path(state_.name).stem().string();
-  std::filesystem::path file;
-  std::error_code error;
-  do {
-    ++pictures_kept_;
-    file = pictures_ / fmt::format("{}_{}dpi_{:02}.png", stem, dpi_, pictures_kept_);
-  } while (std::filesystem::exists(file, error));
-  const Status written = write_picture(file, picture, stem);
+  const std::filesystem::path file = unused_file(fmt::format("{}dpi", dpi_), ".png");
+  const Status written = write_picture(file, picture, file.stem().string());
   picture_note_ = written ? filled(ui.text(Text::kPictureKept), file.string()) : written.error().line();
   if (written) {
     ui.facts.insert("picture-kept");

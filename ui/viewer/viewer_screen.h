@@ -7,6 +7,7 @@
 #include <future>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -46,13 +47,27 @@ class ViewerScreen {
   void draw_section_panel(UiContext& ui);
   void draw_section(UiContext& ui, ImVec2 origin, ImVec2 size) const;
   void draw_polygon(UiContext& ui, ImVec2 origin) const;
+  // viewer_selecting.cpp
   void close_polygon();
+  void take_selected(std::vector<std::uint32_t> selected);
+  void show_selection(const MeshSelection& selection);
+  void clear_selected();
   void draw_selecting(UiContext& ui);
+  void draw_selected(UiContext& ui);
+  void draw_kept_selections(UiContext& ui);
+  [[nodiscard]] MeshSelection selection_now() const;
   void draw_legend(UiContext& ui, ImVec2 origin, ImVec2 size) const;
   void draw_wedge_table(UiContext& ui, ImVec2 size);
   void look_at(Face face);
   void choose(int wedge, bool go_there);
   void keep_picture(UiContext& ui);
+  void draw_tools(UiContext& ui);
+  /// What is drawn is the mesh of state_.
+  [[nodiscard]] bool is_current() const {
+    return !surface_.empty() && !preparing_.valid() && state_.number == shown_number_;
+  }
+  /// NAME_WHAT_01.ENDING of the pictures' folder, the first that is free.
+  [[nodiscard]] std::filesystem::path unused_file(const std::string& what, const std::string& ending);
   [[nodiscard]] int wedge_at(const Eigen::Vector2f& px, ImVec2 size) const;
 
   MeshViewing& viewing_;
@@ -73,10 +88,12 @@ class ViewerScreen {
   std::vector<Eigen::Vector2f> polygon_;  ///< corners so far, pixels of the picture
   SelectionStep step_ = SelectionStep::kUnion;
   bool visible_only_ = true;
-  std::vector<std::uint32_t> selected_faces_;  ///< of the mesh
-  double selected_mm2_ = 0;
-  int parts_kept_ = 0;
-  int sections_kept_ = 0;
+  MeshElement select_of_ = MeshElement::kFace;
+  std::vector<std::uint32_t> selected_;  ///< faces or vertices of the mesh, rising
+  double selected_mm2_ = 0;              ///< of faces
+  std::string selection_name_;
+  std::set<std::filesystem::path> handed_out_;  ///< names of files that are perhaps not written yet
+  std::vector<std::filesystem::path> seen_written_;
   int wedge_ = -1;
   bool scroll_to_wedge_ = false;
   bool show_wedges_ = true;
@@ -84,7 +101,6 @@ class ViewerScreen {
   bool untouched_ = true;  ///< the view is still as it was set up
   float aspect_ = 1.5F;
   int dpi_ = 600;
-  int pictures_kept_ = 0;
   std::string picture_note_;
   bool unfinished_ = false;
   bool wants_scanning_ = false;

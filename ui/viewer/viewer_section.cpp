@@ -38,14 +38,7 @@ void ViewerScreen::draw_section_panel(UiContext& ui) {
   coloured_text(ui.colours.text,
                 filled(ui.text(Text::kSectionLine), section.length_mm, -section.lowest_mm).c_str());
   if (plain_button(ui, "keep-section", ui.text(Text::kKeepSection), !section.lines.empty())) {
-    const std::string name =
-        state_.name.empty() ? "model" : std::filesystem::path(state_.name).stem().string();
-    std::filesystem::path stem;
-    std::error_code error;
-    do {
-      ++sections_kept_;
-      stem = pictures_ / fmt::format("{}_section_{:02}", name, sections_kept_);
-    } while (std::filesystem::exists(std::filesystem::path(stem) += ".csv", error));
+    const std::filesystem::path stem = unused_file("section", ".csv").replace_extension();
     viewing_.keep_section(stem);
     picture_note_ = filled(ui.text(Text::kPictureKept), (std::filesystem::path(stem) += ".svg").string());
   }

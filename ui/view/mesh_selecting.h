@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/mesh_part.h"
 #include "ui/gl/frame_target.h"
 #include "ui/gl/shader_program.h"
 #include "ui/view/mesh_buffers.h"
@@ -20,36 +21,37 @@ enum class SelectionStep { kUnion, kIntersection, kDifference };
 [[nodiscard]] std::vector<std::uint8_t> polygon_mask(const std::vector<Eigen::Vector2f>& corners, int width,
                                                      int height);
 
-/// The faces of a mesh that are selected (seed 000, section 2): a constructive combination of polygons on the
-/// screen, each in a view of its own, worked out on the graphics card where the faces lie and recorded by
-/// transform feedback into a buffer that the next picture reads by gl_PrimitiveID. A number per face in the
-/// order of ShownMesh::faces. Main thread.
-class FaceSelection {
+/// The faces of a mesh that are selected, or its vertices (seed 000, section 2): a constructive combination
+/// of polygons on the screen, each in a view of its own, worked out on the graphics card where the mesh lies
+/// and recorded by transform feedback into a buffer that the next picture reads by gl_PrimitiveID, or by
+/// gl_VertexID. A number per face in the order of ShownMesh::faces, or per vertex. Main thread.
+class MeshSelecting {
  public:
-  explicit FaceSelection(std::size_t faces);
-  ~FaceSelection();
-  FaceSelection(const FaceSelection&) = delete;
-  FaceSelection& operator=(const FaceSelection&) = delete;
+  MeshSelecting(MeshElement of, std::size_t count);
+  ~MeshSelecting();
+  MeshSelecting(const MeshSelecting&) = delete;
+  MeshSelecting& operator=(const MeshSelecting&) = delete;
 
-  /// `depth`: the depth texture of a picture of that size under `clip_from_model`, when only faces that are
-  /// seen in it are meant; 0 for all. A face belongs to a polygon when its middle does.
+  /// `depth`: the depth texture of a picture of that size under `clip_from_model`, when only what is seen in
+  /// it is meant; 0 for all. A face belongs to a polygon when its middle does.
   void apply(const MeshBuffers& mesh, const Eigen::Matrix4f& clip_from_model,
              const std::vector<std::uint8_t>& mask, int width, int height, unsigned depth,
              SelectionStep step);
-  void clear();
-  [[nodiscard]] bool empty() const { return empty_; }
-  /// Buffer texture of one 32-bit number a face, 1 for the selected.
+  /// [count] 1 for the selected.
+  void set(const std::vector<std::uint32_t>& selected);
+  [[nodiscard]] MeshElement of() const { return of_; }
+  /// Buffer texture of one 32-bit number each, 1 for the selected.
   [[nodiscard]] unsigned texture() const { return textures_[current_]; }
-  /// [faces] 1 for the selected; waits for the card.
+  /// [count] 1 for the selected; waits for the card.
   [[nodiscard]] std::vector<std::uint32_t> read() const;
 
  private:
   ShaderProgram program_;
-  std::size_t faces_;
+  MeshElement of_;
+  std::size_t count_;
   unsigned buffers_[2] = {0, 0};
   unsigned textures_[2] = {0, 0};
   std::size_t current_ = 0;
-  bool empty_ = true;
   PixelTexture mask_;
   FrameTarget no_picture_{{PixelFormat::kRgba8}};
 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright The Dubsar developers
-#include "ui/view/face_selection.h"
+#include "ui/view/mesh_selecting.h"
 
 #include <epoxy/gl.h>
 
@@ -17,7 +17,35 @@ uniform mat4 clip_from_model;
 void main() { gl_Position = clip_from_model * vec4(position, 1.0); }
 )glsl";
 
-/// A triangle in, the number of its face out.
+/// A vertex in, whether it is selected out.
+constexpr const char* kPoint = R"glsl(#version 410 core
+layout(location = 0) in vec3 position;
+layout(location = 1) in vec3 normal;
+uniform mat4 clip_from_model;
+uniform sampler2D mask;
+uniform sampler2D depth_map;
+uniform int visible_only;
+uniform int step;             // 0 union, 1 intersection, 2 difference
+uniform float slack;          // of clip depth
+uniform usamplerBuffer before;
+out uint selected;
+void main() {
+  gl_Position = clip_from_model * vec4(position, 1.0);
+  vec2 at = 0.5 * gl_Position.xy + 0.5;
+  bool inside = all(greaterThanEqual(at, vec2(0.0))) && all(lessThan(at, vec2(1.0))) &&
+                texture(mask, at).r > 0.5;
+  if (inside && visible_only != 0) {
+    vec3 towards = vec3(clip_from_model[0].z, clip_from_model[1].z, clip_from_model[2].z);
+    bool away = dot(normal, normal) > 0.01 && dot(towards, normal) > 0.0;   // clip z grows away from the eye
+    inside = !away && 0.5 * (gl_Position.z - slack) + 0.5 <= texture(depth_map, at).r;
+  }
+  uint was = texelFetch(before, gl_VertexID).r;
+  uint now = inside ? 1u : 0u;
+  selected = step == 0 ? (was | now) : step == 1 ? (was & now) : (was & (1u - now));
+}
+)glsl";
+
+/// A triangle in, whether it is selected out.
 constexpr const char* kGeometry = R"glsl(#version 410 core
 layout(triangles) in;
 layout(points, max_vertices = 1) out;
@@ -76,33 +104,35 @@ std::vector<std::uint8_t> polygon_mask(const std::vector<Eigen::Vector2f>& corne
   return mask;
 }
 
-FaceSelection::FaceSelection(std::size_t faces)
-    : program_(kVertex, kGeometry, nullptr, {"selected"}), faces_(faces) {
+MeshSelecting::MeshSelecting(MeshElement of, std::size_t count)
+    : program_(of == MeshElement::kFace ? kVertex : kPoint, of == MeshElement::kFace ? kGeometry : nullptr,
+               nullptr, {"selected"}),
+      of_(of),
+      count_(count) {
   glGenBuffers(2, buffers_);
   glGenTextures(2, textures_);
   for (int k = 0; k < 2; ++k) {
     glBindBuffer(GL_TEXTURE_BUFFER, buffers_[k]);
-    glBufferData(GL_TEXTURE_BUFFER, static_cast<GLsizeiptr>(std::max<std::size_t>(1, faces) * 4), nullptr,
+    glBufferData(GL_TEXTURE_BUFFER, static_cast<GLsizeiptr>(std::max<std::size_t>(1, count) * 4), nullptr,
                  GL_DYNAMIC_COPY);
     glBindTexture(GL_TEXTURE_BUFFER, textures_[k]);
     glTexBuffer(GL_TEXTURE_BUFFER, GL_R32UI, buffers_[k]);
   }
-  clear();
+  set(std::vector<std::uint32_t>(count, 0));
 }
 
-FaceSelection::~FaceSelection() {
+MeshSelecting::~MeshSelecting() {
   glDeleteTextures(2, textures_);
   glDeleteBuffers(2, buffers_);
 }
 
-void FaceSelection::clear() {
-  const std::vector<std::uint32_t> none(std::max<std::size_t>(1, faces_), 0);
+void MeshSelecting::set(const std::vector<std::uint32_t>& selected) {
   glBindBuffer(GL_TEXTURE_BUFFER, buffers_[current_]);
-  glBufferSubData(GL_TEXTURE_BUFFER, 0, static_cast<GLsizeiptr>(none.size() * 4), none.data());
-  empty_ = true;
+  glBufferSubData(GL_TEXTURE_BUFFER, 0, static_cast<GLsizeiptr>(std::min(count_, selected.size()) * 4),
+                  selected.data());
 }
 
-void FaceSelection::apply(const MeshBuffers& mesh, const Eigen::Matrix4f& clip_from_model,
+void MeshSelecting::apply(const MeshBuffers& mesh, const Eigen::Matrix4f& clip_from_model,
                           const std::vector<std::uint8_t>& mask, int width, int height, unsigned depth,
                           SelectionStep step) {
   mask_.upload(width, height, 1, mask.data(), false);
@@ -130,21 +160,24 @@ void FaceSelection::apply(const MeshBuffers& mesh, const Eigen::Matrix4f& clip_f
   glBindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, buffers_[next]);
   mesh.bind();
   glBeginTransformFeedback(GL_POINTS);
-  mesh.draw_faces(0, faces_);
+  if (of_ == MeshElement::kFace) {
+    mesh.draw_faces(0, count_);
+  } else {
+    mesh.draw_points();
+  }
   glEndTransformFeedback();
   glBindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, 0);
   glDisable(GL_RASTERIZER_DISCARD);
   glBindVertexArray(0);
   glBindFramebuffer(GL_FRAMEBUFFER, 0);
   current_ = next;
-  empty_ = false;
 }
 
-std::vector<std::uint32_t> FaceSelection::read() const {
-  std::vector<std::uint32_t> out(faces_);
-  if (!empty_ && faces_ > 0) {
+std::vector<std::uint32_t> MeshSelecting::read() const {
+  std::vector<std::uint32_t> out(count_);
+  if (count_ > 0) {
     glBindBuffer(GL_TEXTURE_BUFFER, buffers_[current_]);
-    glGetBufferSubData(GL_TEXTURE_BUFFER, 0, static_cast<GLsizeiptr>(faces_ * 4), out.data());
+    glGetBufferSubData(GL_TEXTURE_BUFFER, 0, static_cast<GLsizeiptr>(count_ * 4), out.data());
   }
   return out;
 }

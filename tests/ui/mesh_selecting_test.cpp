@@ -2,7 +2,7 @@
 // Copyright The Dubsar developers
 // Selection on the graphics card against the same worked out by hand, far beyond 2^16 faces.
 
-#include "ui/view/face_selection.h"
+#include "ui/view/mesh_selecting.h"
 
 #include <epoxy/gl.h>
 #include <gtest/gtest.h>
@@ -78,7 +78,7 @@ std::vector<Eigen::Vector2f> box(float x1, float y1, float x2, float y2) {
 }
 
 TEST_F(Selecting, WhatAPolygonHoldsAndNothingElse) {
-  ASSERT_TRUE(view_->select(box(100, 80, 220, 200), SelectionStep::kUnion, true));
+  ASSERT_TRUE(view_->select(MeshElement::kFace, box(100, 80, 220, 200), SelectionStep::kUnion, true));
   const std::vector<std::uint32_t> selected = view_->selection()->read();
   ASSERT_EQ(selected.size(), shown_.faces.size());
   std::size_t wrong = 0;
@@ -99,7 +99,7 @@ TEST_F(Selecting, WhatAPolygonHoldsAndNothingElse) {
 }
 
 TEST_F(Selecting, OnlyWhatIsSeen) {
-  ASSERT_TRUE(view_->select(box(50, 50, 350, 250), SelectionStep::kUnion, false));
+  ASSERT_TRUE(view_->select(MeshElement::kFace, box(50, 50, 350, 250), SelectionStep::kUnion, false));
   const std::vector<std::uint32_t> selected = view_->selection()->read();
   std::size_t front = 0;
   std::size_t back = 0;
@@ -118,14 +118,14 @@ TEST_F(Selecting, PolygonsGoTogetherAsAsked) {
     }
     return static_cast<double>(sum);
   };
-  ASSERT_TRUE(view_->select(box(100, 100, 200, 200), SelectionStep::kUnion, true));
+  ASSERT_TRUE(view_->select(MeshElement::kFace, box(100, 100, 200, 200), SelectionStep::kUnion, true));
   const double one = count();
   view_->draw_whole(camera_, {}, kWidth, kHeight);
-  ASSERT_TRUE(view_->select(box(150, 100, 250, 200), SelectionStep::kUnion, true));
+  ASSERT_TRUE(view_->select(MeshElement::kFace, box(150, 100, 250, 200), SelectionStep::kUnion, true));
   EXPECT_NEAR(count(), 1.5 * one, 0.03 * one);
-  ASSERT_TRUE(view_->select(box(100, 100, 200, 200), SelectionStep::kIntersection, true));
+  ASSERT_TRUE(view_->select(MeshElement::kFace, box(100, 100, 200, 200), SelectionStep::kIntersection, true));
   EXPECT_NEAR(count(), one, 0.03 * one);
-  ASSERT_TRUE(view_->select(box(100, 100, 150, 200), SelectionStep::kDifference, true));
+  ASSERT_TRUE(view_->select(MeshElement::kFace, box(100, 100, 150, 200), SelectionStep::kDifference, true));
   EXPECT_NEAR(count(), 0.5 * one, 0.03 * one);
   // The picture tells the selected apart.
   view_->draw_whole(camera_, {}, kWidth, kHeight);
@@ -135,6 +135,62 @@ TEST_F(Selecting, PolygonsGoTogetherAsAsked) {
   EXPECT_GT(in[2], in[0]);
   EXPECT_LT(out[2], out[0]);
   EXPECT_EQ(glGetError(), static_cast<GLenum>(GL_NO_ERROR));
+}
+
+TEST_F(Selecting, PointsOfTheSurfaceAndOfACloud) {
+  const auto inside_box = [&](std::size_t v) {
+    const Eigen::Vector2f at = camera_.pixel_of(shown_.positions[v], {kWidth, kHeight});
+    return at.x() > 100.5F && at.x() < 219.5F && at.y() > 80.5F && at.y() < 199.5F;
+  };
+  const auto count_missing = [&](bool through) {
+    const std::vector<std::uint32_t> selected = view_->selection()->read();
+    EXPECT_EQ(selected.size(), shown_.positions.size());
+    std::size_t missing = 0;
+    std::size_t outside = 0;
+    for (std::size_t v = 0; v < selected.size(); ++v) {
+      const bool wanted = inside_box(v) && (through || shown_.positions[v].z() > -1);
+      missing += wanted && selected[v] == 0 ? 1 : 0;
+      const Eigen::Vector2f at = camera_.pixel_of(shown_.positions[v], {kWidth, kHeight});
+      const bool far = at.x() < 99 || at.x() > 221 || at.y() < 79 || at.y() > 201;
+      outside += selected[v] != 0 && (far || (!through && shown_.positions[v].z() < -1)) ? 1 : 0;
+    }
+    EXPECT_EQ(outside, 0U);
+    return missing;
+  };
+  ASSERT_TRUE(view_->select(MeshElement::kVertex, box(100, 80, 220, 200), SelectionStep::kUnion, false));
+  EXPECT_EQ(count_missing(false), 0U);
+  view_->draw_whole(camera_, {}, kWidth, kHeight);
+  const Image picture = view_->read();
+  EXPECT_GT(picture.rgb(160, 140)[2], picture.rgb(160, 140)[0]) << "told apart in the picture";
+  EXPECT_LT(picture.rgb(300, 140)[2], picture.rgb(300, 140)[0]);
+  ASSERT_TRUE(view_->select(MeshElement::kVertex, box(100, 80, 220, 200), SelectionStep::kUnion, true));
+  EXPECT_EQ(count_missing(true), 0U);
+  // The other kind begins anew.
+  ASSERT_TRUE(view_->select(MeshElement::kFace, box(0, 0, 10, 10), SelectionStep::kUnion, true));
+  EXPECT_EQ(view_->selection()->of(), MeshElement::kFace);
+
+  Mesh cloud = two_sheets(60);
+  cloud.faces.clear();
+  shown_ = shown_mesh(cloud);
+  view_->show(shown_);
+  view_->draw_whole(camera_, {}, kWidth, kHeight);
+  EXPECT_FALSE(view_->select(MeshElement::kFace, box(100, 80, 220, 200), SelectionStep::kUnion, true));
+  ASSERT_TRUE(view_->select(MeshElement::kVertex, box(100, 80, 220, 200), SelectionStep::kUnion, true));
+  EXPECT_EQ(count_missing(true), 0U);
+  EXPECT_EQ(glGetError(), static_cast<GLenum>(GL_NO_ERROR));
+}
+
+TEST_F(Selecting, ASelectionThatWasKeptIsShownAgain) {
+  std::vector<std::uint32_t> marks(shown_.faces.size(), 0);
+  for (std::size_t f = 0; f < marks.size(); f += 3) {
+    marks[f] = 1;
+  }
+  view_->set_selection(MeshElement::kFace, marks);
+  EXPECT_EQ(view_->selection()->read(), marks);
+  // And goes on from there.
+  view_->draw_whole(camera_, {}, kWidth, kHeight);
+  ASSERT_TRUE(view_->select(MeshElement::kFace, box(0, 0, kWidth, kHeight), SelectionStep::kUnion, true));
+  EXPECT_EQ(view_->selection()->read(), std::vector<std::uint32_t>(marks.size(), 1));
 }
 
 TEST(PolygonMask, EvenOddAndBottomRowFirst) {

@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+// What is done with a part of the mesh that is looked at: kept, written, analysed alone.
+#include <algorithm>
+#include <utility>
+
+#include "archive/wedge_table.h"
+#include "formats/atomic_file.h"
+#include "formats/mesh_io.h"
+#include "formats/wedges_json.h"
+#include "station/analysis.h"
+#include "station/mesh_viewing.h"
+#include "station/selection_store.h"
+
+namespace dubsar {
+
+namespace fs = std::filesystem;
+
+void MeshViewing::take_selections(const fs::path& file) {
+  const std::shared_ptr<const Mesh> whole = mesh();
+  Result<std::vector<MeshSelection>> kept = kept_selections(file, *whole);
+  if (!kept) {
+    complain(kept.error());
+  }
+  const std::scoped_lock lock(mutex_);
+  selections_file_ = file;
+  if (kept) {
+    state_.selections = std::make_shared<const std::vector<MeshSelection>>(*std::move(kept));
+  }
+}
+
+void MeshViewing::take_written(std::vector<fs::path> files) {
+  const std::scoped_lock lock(mutex_);
+  state_.written = std::move(files);
+  state_.error.reset();
+}
+
+void MeshViewing::change_selections(const std::function<void(std::vector<MeshSelection>&)>& change) {
+  std::shared_ptr<const Mesh> whole;
+  std::vector<MeshSelection> selections;
+  fs::path file;
+  std::string name;
+  {
+    const std::scoped_lock lock(mutex_);
+    whole = state_.mesh;
+    selections = *state_.selections;
+    file = selections_file_;
+    name = state_.name.empty() ? "model.ply" : state_.name;
+  }
+  if (!whole || file.empty()) {
+    return;
+  }
+  change(selections);
+  if (const Status kept = keep_selections(file, name, *whole, selections); !kept) {
+    complain(kept.error());
+    return;
+  }
+  take_written({file});
+  const std::scoped_lock lock(mutex_);
+  state_.selections = std::make_shared<const std::vector<MeshSelection>>(std::move(selections));
+}
+
+void MeshViewing::keep_selection(MeshSelection selection) {
+  ask([this, selection = std::move(selection)] {
+    change_selections([&](std::vector<MeshSelection>& all) {
+      const auto same = std::ranges::find(all, selection.name, &MeshSelection::name);
+      if (same != all.end()) {
+        *same = selection;
+      } else {
+        all.push_back(selection);
+      }
+    });
+  });
+}
+
+void MeshViewing::forget_selection(const std::string& name) {
+  ask([this, name] {
+    change_selections([&](std::vector<MeshSelection>& all) {
+      std::erase_if(all, [&](const MeshSelection& one) { return one.name == name; });
+    });
+  });
+}
+
+void MeshViewing::write_part(MeshSelection selection, const fs::path& file) {
+  ask([this, selection = std::move(selection), file] {
+    if (const std::shared_ptr<const Mesh> whole = mesh(); whole && fits(selection, *whole)) {
+      if (const Status written = write_mesh(file, part_of(*whole, selection)); !written) {
+        complain(written.error());
+        return;
+      }
+      take_written({file});
+    }
+  });
+}
+
+void MeshViewing::write_wedges_of(MeshSelection selection, const fs::path& file) {
+  ask([this, selection = std::move(selection), file] {
+    const ViewedMesh now = state();
+    if (!now.mesh || !now.wedges || !fits(selection, *now.mesh)) {
+      return;
+    }
+    const std::vector<Wedge> wedges = selected_wedges(*now.wedges, *now.mesh, selection);
+    if (const Status written = write_file_atomically(file, wedge_table(wedges)); !written) {
+      complain(written.error());
+      return;
+    }
+    take_written({file});
+  });
+}
+
+void MeshViewing::analyse_part(MeshSelection selection, const fs::path& stem) {
+  ask([this, selection = std::move(selection), stem] {
+    ViewedMesh before = state();
+    if (!before.mesh || !fits(selection, *before.mesh)) {
+      return;
+    }
+    const auto part = std::make_shared<const Mesh>(part_of(*before.mesh, selection));
+    fs::path mesh_file = stem;
+    mesh_file += ".ply";
+    const AnalysisOptions options;
+    const Result<Analysis> analysis = analyze_mesh(*part, options, *job_);
+    if (!analysis) {
+      complain(analysis.error());
+      return;
+    }
+    const WedgeFile wedges = wedge_file(mesh_file.filename().string(), options, *analysis);
+    fs::path wedges_file = stem;
+    wedges_file += ".wedges.json";
+    Status written = write_mesh(mesh_file, *part);
+    written = written ? write_wedges(wedges_file, wedges) : written;
+    if (!written) {
+      complain(written.error());
+      return;
+    }
+    std::optional<ViewedMesh> whole;
+    {
+      const std::scoped_lock lock(mutex_);
+      whole = before.is_part ? std::move(whole_) : std::optional(before);
+      whole_selections_file_ = before.is_part ? whole_selections_file_ : selections_file_;
+    }
+    // A part keeps the frame of the whole: its obverse is where the tablet's is.
+    take_mesh(part, before.tablet_from_model, mesh_file.filename().string());
+    take_wedges(wedges.wedges);
+    take_field(MeshField::kOpenness, analysis->fields.openness);
+    take_field(MeshField::kMeanCurvature, analysis->fields.mean_curvature_per_mm);
+    take_field(MeshField::kHeight, analysis->fields.height_mm);
+    take_selections(selections_file_of(mesh_file));
+    take_written({mesh_file, wedges_file});
+    const std::scoped_lock lock(mutex_);
+    state_.is_part = true;
+    whole_ = std::move(whole);
+  });
+}
+
+void MeshViewing::leave_part() {
+  ask([this] {
+    const std::scoped_lock lock(mutex_);
+    if (whole_) {
+      const std::uint64_t number = state_.number;
+      state_ = *std::exchange(whole_, std::nullopt);
+      state_.number = number + 1;
+      state_.written.clear();
+      selections_file_ = whole_selections_file_;
+    }
+  });
+}
+
+}  // namespace dubsar

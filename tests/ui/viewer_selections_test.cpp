@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+// Selections of the viewer, from the polygon to the files, through the real window.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "formats/mesh_io.h"
+#include "formats/wedges_json.h"
+#include "station/selection_store.h"
+#include "tests/station/support/command.h"
+#include "tests/support/temporary_folder.h"
+#include "tests/ui/support/display.h"
+
+namespace dubsar {
+namespace {
+
+namespace fs = std::filesystem;
+using test::run_command;
+
+constexpr const char* kSelect = R"(wait wedges 60
+wait whole
+wait idle
+click tool-select
+click surface 0.35 0.35
+click surface 0.65 0.35
+click surface 0.65 0.6
+click surface 0.35 0.6
+click surface 0.35 0.35
+wait selected
+click selection-name
+type line 3
+click name-selection
+wait kept.1
+wait idle
+click keep-selection
+pause 0.2
+wait idle
+click selected-wedges
+pause 0.2
+wait idle
+click clear-selection
+click kept.1
+wait selected
+click select-points
+click surface 0.4 0.4
+click surface 0.5 0.4
+click surface 0.45 0.5
+click surface 0.4 0.4
+wait selected
+click selection-name
+key selectall
+type corner
+click name-selection
+wait kept.2
+wait idle
+click kept.1
+wait whole
+click analyse-part
+wait part 60
+wait idle 60
+click whole-mesh
+wait kept.2
+quit
+)";
+
+TEST(ViewerSelections, AreNamedKeptWrittenAndAnalysedAlone) {
+  const test::Display display;
+  if (!display.works()) {
+    GTEST_SKIP() << "there is no Xvfb here (Debian package xvfb)";
+  }
+  const test::TemporaryFolder folder;
+  const auto in = [&](const char* name) { return (folder.path() / name).string(); };
+  ASSERT_EQ(run_command({"simulate", "tablet", "--seed", "3", "--size", "16x14x8", "--spacing", "0.1", "-o",
+                         folder.path().string()})
+                .status,
+            0);
+  ASSERT_EQ(run_command({"analyze", in("tablet.ply"), "-o", in("tablet.wedges.json")}).status, 0);
+  std::ofstream(folder.path() / "select.script") << kSelect;
+  const fs::path before = fs::current_path();
+  fs::current_path(folder.path());  // where what is kept of a mesh goes
+  const auto outcome = run_command({"station", "--mesh", "tablet.ply", "--script", "select.script"});
+  fs::current_path(before);
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+
+  const auto mesh = read_mesh(in("tablet.ply"));
+  ASSERT_TRUE(mesh);
+  const auto kept = kept_selections(in("tablet.selections.json"), *mesh);
+  ASSERT_TRUE(kept) << kept.error().line();
+  ASSERT_EQ(kept->size(), 2U);
+  EXPECT_EQ((*kept)[0].name, "line 3");
+  EXPECT_EQ((*kept)[0].of, MeshElement::kFace);
+  EXPECT_EQ((*kept)[1].name, "corner");
+  EXPECT_EQ((*kept)[1].of, MeshElement::kVertex);
+
+  // The part that was written is the part that was selected, by the window and by the command.
+  const Mesh wanted = part_of(*mesh, kept->front());
+  const auto part = read_mesh(in("tablet_part_01.ply"));
+  ASSERT_TRUE(part);
+  EXPECT_EQ(part->positions, wanted.positions);
+  EXPECT_EQ(part->faces, wanted.faces);
+  EXPECT_GT(part->faces.size(), 500U);
+  EXPECT_LT(part->faces.size(), mesh->faces.size() / 4);
+  ASSERT_EQ(
+      run_command({"mesh", "part", in("tablet.ply"), "--selection", "line 3", "-o", in("again.ply")}).status,
+      0);
+  const auto bytes = [](const std::string& file) {
+    std::ifstream stream(file, std::ios::binary);
+    return std::string(std::istreambuf_iterator<char>(stream), {});
+  };
+  EXPECT_EQ(bytes(in("again.ply")), bytes(in("tablet_part_01.ply")));
+  ASSERT_EQ(run_command({"mesh", "part", in("tablet.ply"), "--selection", "line 3", "--wedges",
+                         in("tablet.wedges.json"), "-o", in("again.csv")})
+                .status,
+            0);
+  EXPECT_EQ(bytes(in("again.csv")), bytes(in("tablet_wedges_01.csv")));
+  EXPECT_EQ(run_command({"mesh", "part", in("tablet.ply"), "--selection", "x", "-o", in("no.ply")}).status,
+            2);
+
+  // Analysed alone it is what the command makes of the part.
+  const auto alone = read_wedges(in("tablet_part_02.wedges.json"));
+  ASSERT_TRUE(alone);
+  ASSERT_EQ(run_command({"analyze", in("tablet_part_02.ply"), "-o", in("part.json")}).status, 0);
+  const auto by_command = read_wedges(in("part.json"));
+  ASSERT_TRUE(by_command);
+  EXPECT_GT(alone->wedges.size(), 2U);
+  ASSERT_EQ(alone->wedges.size(), by_command->wedges.size());
+  for (std::size_t k = 0; k < alone->wedges.size(); ++k) {
+    EXPECT_EQ(alone->wedges[k].depth_point_mm, by_command->wedges[k].depth_point_mm);
+  }
+}
+
+}  // namespace
+}  // namespace dubsar
