@@ -17,8 +17,9 @@ std::complex<double> amplitude_at(double r_um, double resolution_um, double wave
   std::complex<double> sum = 0;
   for (int i = 0; i < kSteps; ++i) {
     const double rho = (i + 0.5) / kSteps;
-    sum += std::polar(rho * std::cyl_bessel_j(0.0, kPi * r_um * rho / resolution_um),
-                      2 * kPi * waves * rho * rho);
+    // J0 falls below zero, where std::polar() would have no meaning.
+    sum += rho * std::cyl_bessel_j(0.0, kPi * r_um * rho / resolution_um) *
+           std::polar(1.0, 2 * kPi * waves * rho * rho);
   }
   return sum / static_cast<double>(kSteps);
 }
