@@ -70,7 +70,9 @@ class Aravis : public testing::Test {
     ::kill(peer_->pid(), SIGKILL);
     peer_.reset();
   }
-  Result<Device> open(const Options& options = {}) { return (*registry_.find("aravis"))->open("Dubsar-Range 1-SN7", options); }
+  Result<Device> open(const Options& options = {}) {
+    return (*registry_.find("aravis"))->open("Dubsar-Range 1-SN7", options);
+  }
   static Frame next(Device& device) {
     auto frame = device.next_frame(std::chrono::seconds(20));
     EXPECT_TRUE(frame) << (frame ? "" : frame.error().line());
