@@ -22,12 +22,13 @@ constexpr int kTiledRounds = 4;
 constexpr int kTries = 9;  ///< at closing what is open in one place, after those
 constexpr int kRepairs = 3;
 
-/// 1 for the faces that a sheet has to lose so that at each whole vertex they form one fan, the largest, and
-/// no half-edge is there twice; what they lose is closed again as part of the seam. Empty when all is well.
-std::vector<std::uint8_t> pinching_faces(const Sheet& sheet) {
+/// 1 for the faces that a sheet has to lose so that at each of the vertices `where` they form one fan, the
+/// largest, and no half-edge is there twice; what they lose is closed again as part of the seam. Empty when
+/// all is well.
+std::vector<std::uint8_t> pinching_faces(const Sheet& sheet, std::span<const std::uint8_t> where) {
   const auto vertex_count = static_cast<std::uint32_t>(sheet.positions.size());
   std::vector<Triangle> split = sheet.faces;
-  const std::vector<std::uint32_t> copies = make_manifold(split, vertex_count, sheet.whole);
+  const std::vector<std::uint32_t> copies = make_manifold(split, vertex_count, where);
   if (copies.empty() && split.size() == sheet.faces.size()) {
     return {};
   }
@@ -69,8 +70,13 @@ std::vector<std::uint8_t> pinching_faces(const Sheet& sheet) {
 
 void open_pinches(Region& region, Draft& draft) {
   constexpr int kMostRounds = 8;
+  const Sheet& sheet = region.sheet;
   for (int round = 0; round < kMostRounds; ++round) {
-    const std::vector<std::uint8_t> gone = pinching_faces(region.sheet);
+    std::vector<std::uint8_t> on_rim = rim_vertices(sheet.faces, sheet.positions.size());
+    for (std::size_t v = 0; v < on_rim.size(); ++v) {
+      on_rim[v] &= sheet.whole[v];
+    }
+    const std::vector<std::uint8_t> gone = pinching_faces(sheet, on_rim);
     if (gone.empty() || region.erase(gone, draft) == 0) {
       return;
     }
@@ -116,7 +122,11 @@ Leftover left_open(const Front& front, const ClosingOptions& options) {
       left.others.insert(left.others.end(), walk.vertices.begin(), walk.vertices.end());
     }
   }
-  const std::vector<std::uint8_t> pinching = pinching_faces(sheet);
+  std::vector<std::uint8_t> worked_at(sheet.positions.size());
+  for (std::uint32_t v = 0; v < worked_at.size(); ++v) {
+    worked_at[v] = sheet.whole[v] != 0 && front.was_on_front(v) ? 1 : 0;
+  }
+  const std::vector<std::uint8_t> pinching = pinching_faces(sheet, worked_at);
   for (std::size_t k = 0; k < pinching.size(); ++k) {
     if (pinching[k] != 0) {
       left.others.insert(left.others.end(), sheet.faces[k].begin(), sheet.faces[k].end());

@@ -78,6 +78,8 @@ class Front {
   [[nodiscard]] bool is_open(std::uint32_t a, std::uint32_t b) const;
   /// On an open edge, or a vertex without any face that add_vertex() brought.
   [[nodiscard]] bool on_front(std::uint32_t v) const;
+  /// Then or earlier.
+  [[nodiscard]] bool was_on_front(std::uint32_t v) const { return find(v) != nullptr; }
   [[nodiscard]] std::span<const std::uint32_t> out_of(std::uint32_t v) const;  ///< heads of open edges from v
   [[nodiscard]] std::span<const std::uint32_t> into(std::uint32_t v) const;    ///< tails of open edges to v
 

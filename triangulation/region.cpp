@@ -16,6 +16,7 @@ using Eigen::Vector3f;
 /// Of µ; measured on simulated tablets.
 constexpr float kSigmaOfInterpolated = 0.4F;
 constexpr std::size_t kGrain = 16384;
+constexpr std::uint32_t kNowhere = 0xffffffffU;
 
 /// Cells of a raster over a box, as bits.
 class CellSet {
@@ -127,16 +128,16 @@ std::vector<Region> take_regions(const Draft& draft, std::span<const std::uint8_
   const auto join = [](Entries& total, const Entries& part) {
     total.insert(total.end(), part.begin(), part.end());
   };
-  const auto tile_of = [&](std::uint32_t v) {
-    return static_cast<std::uint32_t>(tiling.tile_of(mesh.positions[v]));
-  };
+  std::vector<std::uint32_t> tile_of(mesh.positions.size());  // kNowhere: not near
   const Entries vertices = parallel_reduce_ordered(
       mesh.positions.size(), kGrain, Entries{},
       [&](std::size_t begin, std::size_t end) {
         Entries found;
         for (std::size_t v = begin; v < end; ++v) {
+          tile_of[v] = kNowhere;
           if (near[v] != 0) {
-            found.push_back({tile_of(static_cast<std::uint32_t>(v)), static_cast<std::uint32_t>(v)});
+            tile_of[v] = static_cast<std::uint32_t>(tiling.tile_of(mesh.positions[v]));
+            found.push_back({tile_of[v], static_cast<std::uint32_t>(v)});
           }
         }
         return found;
@@ -151,13 +152,15 @@ std::vector<Region> take_regions(const Draft& draft, std::span<const std::uint8_
           if ((near[f[0]] | near[f[1]] | near[f[2]]) == 0 || is_gone(f)) {
             continue;
           }
-          const std::size_t first = found.size();
-          for (const std::uint32_t v : f) {
-            const std::uint32_t tile = near[v] != 0 ? tile_of(v) : 0;
-            if (near[v] != 0 && std::none_of(found.begin() + static_cast<std::ptrdiff_t>(first), found.end(),
-                                             [&](const Entry& e) { return e.tile == tile; })) {
-              found.push_back({tile, static_cast<std::uint32_t>(i)});
-            }
+          const std::uint32_t a = tile_of[f[0]], b = tile_of[f[1]], c = tile_of[f[2]];
+          if (a != kNowhere) {
+            found.push_back({a, static_cast<std::uint32_t>(i)});
+          }
+          if (b != kNowhere && b != a) {
+            found.push_back({b, static_cast<std::uint32_t>(i)});
+          }
+          if (c != kNowhere && c != a && c != b) {
+            found.push_back({c, static_cast<std::uint32_t>(i)});
           }
         }
         return found;
@@ -173,19 +176,18 @@ std::vector<Region> take_regions(const Draft& draft, std::span<const std::uint8_
     by_tile[tile].faces_.push_back(face);
   }
   parallel_for_each_index(
-      by_tile.size(), [&](std::size_t tile) { by_tile[tile].fill(draft, local_of, near, tiling, tile); }, 1);
+      by_tile.size(),
+      [&](std::size_t tile) { by_tile[tile].fill(draft, local_of, tile_of, tiling.box(tile), tile); }, 1);
   std::erase_if(by_tile, [](const Region& region) { return region.faces_.empty(); });
   return by_tile;
 }
 
 void Region::fill(const Draft& draft, std::span<const std::uint32_t> local_of,
-                  std::span<const std::uint8_t> near, const Tiling& tiling, std::size_t tile) {
+                  std::span<const std::uint32_t> tile_of, const Eigen::AlignedBox3f& room, std::size_t tile) {
   const Mesh& mesh = draft.mesh;
   tile_ = tile;
   whole_ = vertices_.size();
-  const auto is_whole = [&](std::uint32_t v) {
-    return near[v] != 0 && tiling.tile_of(mesh.positions[v]) == tile;
-  };
+  const auto is_whole = [&](std::uint32_t v) { return tile_of[v] == tile; };
   std::vector<std::uint32_t> rest;
   for (const std::uint32_t i : faces_) {
     for (const std::uint32_t v : mesh.faces[i]) {
@@ -198,7 +200,7 @@ void Region::fill(const Draft& draft, std::span<const std::uint32_t> local_of,
   rest.erase(std::unique(rest.begin(), rest.end()), rest.end());
   vertices_.insert(vertices_.end(), rest.begin(), rest.end());
   const std::size_t count = vertices_.size();
-  sheet.room = tiling.box(tile);
+  sheet.room = room;
   sheet.positions.resize(count);
   sheet.normals.resize(count);
   sheet.spacing_mm.resize(count);
