@@ -11,31 +11,28 @@
 #include <cstdio>
 #include <cstring>
 #include <ctime>
+#include <memory>
 #include <thread>
 #include <vector>
 
 #include "acquisition/triangulate.h"
-#include "core/mesh_query.h"
+#include "bench/support/rig_tablet.h"
 #include "sim/frame_renderer.h"
 #include "sim/frame_rig.h"
 #include "sim/speckle_bound.h"
-#include "sim/tablet.h"
 
 namespace dubsar {
 namespace {
 
 struct Setup {
   RigCalibration rig;
-  sim::SimTablet tablet;
-  std::optional<MeshQuery> query;
-  sim::Scene scene;
-  double top_mm = 0;
+  std::unique_ptr<RigTablet> clay;
 };
 
 /// The tablet with its obverse in the middle of the volume, camera frame, stage at `position`.
 RigidTransform tablet_from_camera(const Setup& setup, double position) {
   RigidTransform tablet_from_scanner;
-  tablet_from_scanner.translation_mm.z() = setup.top_mm - 1.0;
+  tablet_from_scanner.translation_mm.z() = setup.clay->top_mm - 1.0;
   return tablet_from_scanner * setup.rig.scanner_from_camera() * setup.rig.motion.zero_from_camera(position);
 }
 
@@ -78,7 +75,7 @@ void compare(const Setup& setup, const sim::FrameOptions& optics, int frames, bo
   std::vector<double> positions;
   for (int i = 0; i < frames; ++i) {
     const double position = frames == 1 ? 0 : -6.0 + 12.0 * i / (frames - 1);
-    const sim::SceneTarget target(setup.scene, tablet_from_camera(setup, position));
+    const sim::SceneTarget target(setup.clay->scene, tablet_from_camera(setup, position));
     positions.push_back(position);
     on.push_back(renderer.render(target, true, position, static_cast<std::uint64_t>(2 * i)));
     if (ambient_frames) {
@@ -110,7 +107,7 @@ void compare(const Setup& setup, const sim::FrameOptions& optics, int frames, bo
       extractor.extract(on[i].view(), ambient_frames ? off[i].view() : GrayView{}, stripe);
       triangulator.triangulate(stripe, positions[i], profile);
       RigidTransform tablet_from_scanner;
-      tablet_from_scanner.translation_mm.z() = setup.top_mm - 1.0;
+      tablet_from_scanner.translation_mm.z() = setup.clay->top_mm - 1.0;
       for (std::size_t u = 0; u < stripe.at_px.size(); ++u) {
         visible += std::isfinite(truth[i][u]) ? 1 : 0;
         if (stripe.state[u] != StripeState::kGood || !std::isfinite(truth[i][u])) {
@@ -122,8 +119,8 @@ void compare(const Setup& setup, const sim::FrameOptions& optics, int frames, bo
           const Eigen::Vector3d p = tablet_from_scanner * Eigen::Vector3d(static_cast<double>(profile.x[u]),
                                                                           static_cast<double>(profile.y[u]),
                                                                           static_cast<double>(profile.z[u]));
-          const auto hit = setup.query->first_hit((p + Eigen::Vector3d(0, 0, 1)).cast<float>(),
-                                                  -Eigen::Vector3f::UnitZ(), 0, 3);
+          const auto hit = setup.clay->query.first_hit((p + Eigen::Vector3d(0, 0, 1)).cast<float>(),
+                                                       -Eigen::Vector3f::UnitZ(), 0, 3);
           mm.add(hit ? hit->distance_mm - 1.0 : 99.0);
         }
       }
@@ -166,7 +163,7 @@ void throughput(const Setup& setup, const sim::FrameOptions& optics) {
   std::vector<GrayImage> frames;
   for (int i = 0; i < 4; ++i) {
     const double position = i - 1.5;
-    const sim::SceneTarget target(setup.scene, tablet_from_camera(setup, position));
+    const sim::SceneTarget target(setup.clay->scene, tablet_from_camera(setup, position));
     frames.push_back(renderer.render(target, true, position, static_cast<std::uint64_t>(100 + 2 * i)));
     frames.push_back(renderer.render(target, false, position, static_cast<std::uint64_t>(101 + 2 * i)));
   }
@@ -219,27 +216,12 @@ int run(int argc, char** argv) {
   app.add_option("--contrast", contrasts);
   CLI11_PARSE(app, argc, argv);
   for (const bool written : {false, true}) {
-    sim::TabletOptions wanted;
-    wanted.size_mm = {44, 36, 18};
-    wanted.text_density = written ? 1.0 : 0.0;
-    wanted.grain_um = written ? 12 : 0;
-    wanted.seal_um = written ? 20 : 0;
-    wanted.damage = sim::DamageOptions::none();
-    JobContext job;
-    Result<sim::SimTablet> made = sim::make_tablet(wanted, job);
-    if (!made) {
-      std::fprintf(stderr, "%s\n", made.error().line().c_str());
+    Result<std::unique_ptr<RigTablet>> clay = rig_tablet(written);
+    if (!clay) {
+      std::fprintf(stderr, "%s\n", clay.error().line().c_str());
       return 4;
     }
-    Setup setup;
-    setup.rig = sim::frame_rig(size);
-    setup.tablet = std::move(*made);
-    setup.query.emplace(setup.tablet.mesh);
-    setup.scene.tablet = &setup.tablet;
-    setup.scene.query = &*setup.query;
-    for (const Eigen::Vector3f& p : setup.tablet.mesh.positions) {
-      setup.top_mm = std::max(setup.top_mm, static_cast<double>(p.z()));
-    }
+    const Setup setup{sim::frame_rig(size), std::move(*clay)};
     std::printf("%s tablet, %d x %d, field %.0f mm, %.1f um a pixel, %.1f um of depth a pixel\n",
                 written ? "written" : "blank", size.width, size.height, size.field_mm,
                 1e3 * setup.rig.field_per_px_mm(), 1e3 * setup.rig.depth_per_px_mm());

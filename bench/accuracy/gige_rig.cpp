@@ -13,11 +13,10 @@
 #include <vector>
 
 #include "acquisition/device_uri.h"
-#include "core/mesh_query.h"
+#include "bench/support/rig_tablet.h"
 #include "drivers/loader.h"
 #include "sim/frame_rig.h"
 #include "sim/speckle_bound.h"
-#include "sim/tablet.h"
 #include "tests/support/gige_scanner.h"
 #include "tests/support/grid_truth.h"
 
@@ -101,32 +100,22 @@ int run(int argc, char** argv) {
   }
   int worst = 0;
   for (const bool written : {false, true}) {
-    sim::TabletOptions wanted;
-    wanted.size_mm = {44, 36, 18};
-    wanted.text_density = written ? 1.0 : 0.0;
-    wanted.grain_um = written ? 12 : 0;
-    wanted.seal_um = written ? 20 : 0;
-    wanted.damage = sim::DamageOptions::none();
-    JobContext job;
-    const Result<sim::SimTablet> tablet = sim::make_tablet(wanted, job);
-    if (!tablet) {
-      std::fprintf(stderr, "%s\n", tablet.error().line().c_str());
+    const Result<std::unique_ptr<RigTablet>> made = rig_tablet(written);
+    if (!made) {
+      std::fprintf(stderr, "%s\n", made.error().line().c_str());
       return 4;
     }
-    const MeshQuery query(tablet->mesh);
-    sim::Scene scene;
-    scene.tablet = &*tablet;
-    scene.query = &query;
+    const RigTablet& clay = **made;
     plan.truth = sim::frame_rig(size);
-    plan.scene = &scene;
-    plan.tablet_from_scanner.translation_mm.z() = test::top_mm(tablet->mesh) - 1.0;
+    plan.scene = &clay.scene;
+    plan.tablet_from_scanner.translation_mm.z() = clay.top_mm - 1.0;
     std::printf("%s tablet, %d x %d, field %.0f mm, f/%.1f, camera at %.0f/s, stage at %.2f mm/s\n",
                 written ? "written" : "blank", size.width, size.height, size.field_mm, plan.optics.f_number,
                 plan.rate_hz, plan.rate_hz * plan.step);
     for (const double contrast : contrasts) {
       plan.optics.speckle_contrast = contrast;
-      worst =
-          std::max(worst, scan(plan, query, *stage, sim::speckle_bound_um(plan.truth, plan.optics, size)));
+      worst = std::max(worst,
+                       scan(plan, clay.query, *stage, sim::speckle_bound_um(plan.truth, plan.optics, size)));
     }
   }
   return worst;

@@ -20,6 +20,8 @@ constexpr std::uint32_t kMostBuffers = 256;
 constexpr std::uint32_t kMostPayload = 1U << 30U;
 constexpr int kSocketBytes = 32 << 20;
 constexpr auto kSlice = 50ms;
+constexpr auto kControlPatience = 1500ms;
+constexpr auto kControlRetry = 50ms;
 
 std::int64_t clock_ns(clockid_t clock) {
   timespec now{};
@@ -94,6 +96,11 @@ Status Camera::connect() {
       +[](gpointer flag, GClosure*) { delete static_cast<std::shared_ptr<std::atomic<bool>>*>(flag); },
       static_cast<GConnectFlags>(0));
   presence_.reset();
+  if (!take_control()) {
+    lose();
+    return fail(ErrorKind::kDevice, "the camera is in use by another program", id_,
+                "close what shows its picture, then try again");
+  }
   if (arv_camera_is_gv_device(camera_)) {
     GSocketAddress* address = arv_gv_device_get_device_address(ARV_GV_DEVICE(device_));
     GInetAddress* inet = g_inet_socket_address_get_address(G_INET_SOCKET_ADDRESS(address));
@@ -116,10 +123,38 @@ Status Camera::connect() {
   return configured;
 }
 
+bool Camera::has_control() const {
+  return !arv_camera_is_gv_device(camera_) || arv_gv_device_is_controller(ARV_GV_DEVICE(device_)) != 0;
+}
+
+bool Camera::take_control() {
+  // Aravis takes it when it opens a camera, and does not say when that fails: as it does while the connection
+  // before this one still lets go.
+  const Clock::time_point enough = Clock::now() + kControlPatience;
+  while (!has_control() && Clock::now() < enough) {
+    std::this_thread::sleep_for(kControlRetry);
+    arv_gv_device_take_control(ARV_GV_DEVICE(device_), nullptr);
+  }
+  return has_control();
+}
+
 Status Camera::start(std::uint32_t pool) {
   if (stream_ != nullptr) {
     return fail(ErrorKind::kUsage, "the frames are running already", id_);
   }
+  // Between two streams a camera may have gone and come back, or this machine slept: it then obeys nobody.
+  if (camera_ != nullptr && (*control_lost_ || !has_control())) {
+    lose();
+  }
+  const bool stood = camera_ != nullptr;
+  Status begun = begin(pool);
+  if (!begun && stood && camera_ == nullptr) {
+    begun = begin(pool);  // the connection had died unnoticed
+  }
+  return begun;
+}
+
+Status Camera::begin(std::uint32_t pool) {
   const bool was_gone = camera_ == nullptr;
   if (was_gone) {
     if (const Status connected = connect(); !connected) {
@@ -150,6 +185,7 @@ Status Camera::start(std::uint32_t pool) {
   ArvStream* stream = arv_camera_create_stream(camera_, nullptr, nullptr, error.fill());
   if (stream == nullptr || error) {
     g_clear_object(&stream);
+    lose();
     return std::unexpected(error.told("opens no stream", id_));
   }
   if (ARV_IS_GV_STREAM(stream)) {

@@ -101,6 +101,11 @@ class Camera {
  private:
   Camera() = default;
   Status connect();
+  /// The stream; connects first where it has to. What breaks a connection leaves none.
+  Status begin(std::uint32_t pool);
+  [[nodiscard]] bool has_control() const;
+  /// Whether the camera obeys this program, after a second's patience.
+  [[nodiscard]] bool take_control();
   Status configure();
   Status choose_format();
   void lose();

@@ -8,80 +8,19 @@
 #include <cmath>
 #include <csignal>
 #include <cstdlib>
-#include <filesystem>
 #include <random>
 #include <thread>
 
 #include "drivers/loader.h"
+#include "tests/drivers/aravis_fixture.h"
 #include "tests/support/own_network.h"
-#include "tests/support/peer_process.h"
-#include "tests/support/temporary_folder.h"
 
 namespace dubsar {
 namespace {
 
 using namespace std::chrono_literals;
 using testing::HasSubstr;
-using Options = std::vector<std::pair<std::string, std::string>>;
-
-bool own_network = false;
 constexpr const char* kId = "Dubsar-Range 1-SN7";
-
-struct Rows : ProfileSink {
-  bool begin(const ScanInfo& at) override {
-    info = at;
-    return true;
-  }
-  bool profile(const Profile& row) override {
-    rows.push_back(row.row);
-    x.assign(row.x.begin(), row.x.end());
-    y.assign(row.y.begin(), row.y.end());
-    z.assign(row.z.begin(), row.z.end());
-    valid.assign(row.valid.begin(), row.valid.end());
-    times.push_back(row.timestamp_ns);
-    if (each) {
-      each();
-    }
-    return rows.size() < most;
-  }
-  void end(const ScanTally& at) override { tally = at; }
-  std::function<void()> each;
-  std::size_t most = 1U << 30U;
-  ScanInfo info;
-  std::vector<std::int64_t> rows, times;
-  std::vector<float> x, y, z;  ///< of the last row
-  std::vector<std::uint8_t> valid;
-  std::optional<ScanTally> tally;
-};
-
-class Aravis : public testing::Test {
- protected:
-  void SetUp() override {
-    if (!own_network) {
-      GTEST_SKIP() << "no emulated camera: this kernel gives nobody a network of his own";
-    }
-    plug_in({});
-  }
-  void plug_in(std::vector<std::string> words) {
-    words.insert(words.begin(), {DUBSAR_BINARY_DIR "/bin/gige_peer", "SN7", folder_.path().string()});
-    peer_.emplace(words);
-    ASSERT_EQ(peer_->refusal(), "");
-  }
-  void unplug() {
-    ::kill(peer_->pid(), SIGKILL);
-    peer_.reset();
-  }
-  Result<Device> open(const Options& options = {}) { return (*registry_.find("aravis"))->open(kId, options); }
-  static Frame next(Device& device) {
-    auto frame = device.next_frame(20s);
-    EXPECT_TRUE(frame) << (frame ? "" : frame.error().line());
-    EXPECT_TRUE(frame && *frame);
-    return frame && *frame ? std::move(**frame) : Frame{};
-  }
-  test::TemporaryFolder folder_;
-  std::optional<test::PeerProcess> peer_;
-  DriverRegistry registry_{{std::filesystem::path(DUBSAR_BINARY_DIR) / "lib/dubsar/drivers"}};
-};
 
 TEST_F(Aravis, FindsTheCameraAndStreamsItsFrames) {
   const auto found = (*registry_.find("aravis"))->discover().value();
@@ -331,70 +270,6 @@ TEST_F(Aravis, ADescriptionThatLiesOrBreaksOffIsBadInput) {
   const auto opened = open();
   ASSERT_FALSE(opened);
   EXPECT_NE(opened.error().kind, ErrorKind::kInternal) << opened.error().line();
-}
-
-/// A device of our own that loses packets, and sends them again.
-class Resending : public Aravis {
- protected:
-  void SetUp() override {
-    if (!own_network) {
-      GTEST_SKIP() << "no emulated camera: this kernel gives nobody a network of his own";
-    }
-    peer_.emplace(std::vector<std::string>{DUBSAR_BINARY_DIR "/bin/resending_peer", "SN7", "0.02"});
-    ASSERT_EQ(peer_->refusal(), "");
-  }
-  Result<Device> open_with(Options options) {
-    options.insert(options.end(), {{"rows", "2000"}, {"packet", "1400"}, {"raw_socket", "0"}});
-    return (*registry_.find("aravis"))->open("Dubsar-Resender-SN7", options);
-  }
-};
-
-TEST_F(Resending, LostPacketsAreAskedForAgainAndEachRowKnowsItsEncoder) {
-  Device device = open_with({{"count", "0.5"}, {"row", "0.125"}}).value();
-  struct : Rows {
-    bool profile(const Profile& row) override {
-      encoders.push_back(row.encoder.value_or(-1));
-      ys.push_back(row.y.front());
-      return Rows::profile(row);
-    }
-    std::vector<std::int64_t> encoders;
-    std::vector<float> ys;
-  } rows;
-  const auto outcome = device.scan(rows);
-  ASSERT_TRUE(outcome) << outcome.error().line();
-  EXPECT_EQ(rows.rows.size(), 2000U);
-  EXPECT_EQ(rows.tally->profiles_dropped, 0U);
-  EXPECT_GT(std::stoi(peer_->tell("resent")), 0);
-  EXPECT_GT(device.frame_counters()->resent, 0U);
-  EXPECT_FLOAT_EQ(rows.z[100], 130);
-  for (std::size_t k = 0; k < 2000; k += 37) {
-    const auto block = static_cast<std::int64_t>(k / 40);
-    EXPECT_EQ(rows.encoders[k], rows.encoders[0] + 10 * block);
-    EXPECT_FLOAT_EQ(rows.ys[k], static_cast<float>(5 * block) + 0.125F * static_cast<float>(k % 40));
-  }
-}
-
-TEST_F(Resending, WithoutResendTheSameLossLeavesGaps) {
-  Device device = open_with({{"resend", "0"}}).value();
-  Rows rows;
-  const auto outcome = device.scan(rows);
-  ASSERT_TRUE(outcome) << outcome.error().line();
-  EXPECT_GT(rows.tally->profiles_dropped, 0U);
-  EXPECT_EQ(peer_->tell("resent"), "0");
-}
-
-TEST_F(Resending, ACameraThatFallsSilentIsTold) {
-  Device device = open_with({}).value();
-  Rows rows;
-  rows.each = [&] {
-    if (rows.rows.size() == 80) {
-      EXPECT_EQ(peer_->tell("quiet"), "ok");
-    }
-  };
-  const auto outcome = device.scan(rows);
-  ASSERT_FALSE(outcome);
-  EXPECT_EQ(outcome.error().kind, ErrorKind::kDevice);
-  EXPECT_GE(rows.rows.size(), 80U);
 }
 
 }  // namespace

@@ -236,7 +236,8 @@ void GigeDevice::answer(const Bytes& ask, const sockaddr_in& to) {
     write(kControlPrivilege, 0);
   }
   heard_ns_ = who == controller_ ? now : heard_ns_;
-  const bool may_write = controller_ == 0 || who == controller_;
+  const bool may_write = who == controller_ ||
+                         (controller_ == 0 && command == 0x0082 && size >= 8 && word(0) == kControlPrivilege);
   switch (command) {
     case 0x0002:  // discovery: what stands at the start of the registers
       data.assign(memory_.begin(), memory_.begin() + 0xf8);
@@ -303,6 +304,12 @@ void GigeDevice::answer(const Bytes& ask, const sockaddr_in& to) {
   ::sendto(control_, out.data(), out.size(), 0, reinterpret_cast<const sockaddr*>(&to), sizeof to);
 }
 
+void GigeDevice::forget() {
+  const std::lock_guard lock(mutex_);
+  controller_ = 0;
+  write(kControlPrivilege, 0);
+}
+
 int serve_gige(GigeDevice& device) {
   if (!device.works()) {
     std::puts("cannot: the port of GigE Vision is taken");
@@ -313,6 +320,9 @@ int serve_gige(GigeDevice& device) {
   std::jthread control([&] { device.serve_control(); });
   std::jthread stream([&] { device.serve_stream(); });
   for (std::string line; std::getline(std::cin, line);) {
+    if (line == "forget") {
+      device.forget();
+    }
     if (line == "quiet") {
       device.quiet = true;
     }

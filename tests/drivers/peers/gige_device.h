@@ -31,6 +31,8 @@ class GigeDevice {
   [[nodiscard]] bool works() const { return works_; }
   void serve_control();
   void serve_stream();
+  /// Lets go of whoever has the control, as a camera does that has heard nothing for too long.
+  void forget();
 
   std::atomic<bool> quit = false, quiet = false;
   std::atomic<int> resent = 0;
