@@ -125,7 +125,8 @@ class OnATablet : public ::testing::Test {
     std::ofstream(folder_.path() / "a.script") << script;
     const fs::path before = fs::current_path();
     fs::current_path(folder_.path());
-    auto outcome = run_command({"station", "--mesh", "tablet.ply", "--script", "a.script"});
+    auto outcome =
+        run_command({"station", "--mesh", "tablet.ply", "--script", "a.script"}, {.timeout_s = 240});
     fs::current_path(before);
     return outcome;
   }
