@@ -19,7 +19,7 @@ namespace dubsar {
 namespace {
 
 constexpr double kLeftOut = 0.003;  // of the samples, as the guideline allows
-constexpr double kSeenWithin_rad = rad_from_deg(60);
+constexpr double kSeenWithinRad = rad_from_deg(60);
 constexpr int kTries = 6000;
 constexpr std::size_t kLeastOnBall = 100;
 
@@ -48,7 +48,7 @@ std::vector<Eigen::Vector3d> on_ball(const std::vector<Eigen::Vector3d>& points,
   for (const Eigen::Vector3d& p : points) {
     const Eigen::Vector3d arm = p - sphere.center_mm;
     if (std::abs(arm.norm() - sphere.radius_mm) <= tolerance_mm &&
-        arm.normalized().dot(towards) >= std::cos(kSeenWithin_rad)) {
+        arm.normalized().dot(towards) >= std::cos(kSeenWithinRad)) {
       out.push_back(p);
     }
   }
@@ -217,6 +217,7 @@ Result<Verification> verify_artefact(const RangeGrid& grid, const Artefact& arte
     for (std::size_t i = 0; i < order.size(); ++i) {
       const Found& ball = found[order[i]];
       std::vector<double> distances;
+      distances.reserve(ball.points_mm.size());
       for (const Eigen::Vector3d& p : ball.points_mm) {
         distances.push_back(ball.sphere.signed_distance_mm(p));
       }

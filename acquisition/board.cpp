@@ -165,8 +165,9 @@ Result<BoardView> find_board(const GrayView& view, const BoardSpec& spec, const 
       refine(image, corners, spec.cols, 0.4);
       for (int i = 0; i < spec.corner_count(); ++i) {
         const cv::Point2f& c = corners[static_cast<std::size_t>(i)];
+        const int row = i / spec.cols;
         out.corners_px.emplace_back(static_cast<double>(c.x), static_cast<double>(c.y));
-        out.corners_mm.emplace_back(spec.square_mm * (i % spec.cols), spec.square_mm * (i / spec.cols), 0);
+        out.corners_mm.emplace_back(spec.square_mm * (i % spec.cols), spec.square_mm * row, 0);
       }
       return out;
     }

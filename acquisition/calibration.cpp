@@ -53,6 +53,7 @@ Status first_values(const std::vector<CalibrationView>& views, const Intrinsics&
   }
   if (!stripes.empty()) {
     std::vector<Eigen::Vector3d> points;
+    points.reserve(stripes.size());
     for (const StripeSample& sample : stripes) {
       points.push_back(sample.point_mm);
     }

@@ -14,7 +14,7 @@ namespace dubsar {
 
 namespace {
 
-constexpr double kTilted_rad = rad_from_deg(15);
+constexpr double kTiltedRad = rad_from_deg(15);
 constexpr std::size_t kEnoughViews = 10;
 
 constexpr std::array<const char*, 9> kParts{"upper left corner", "upper edge", "upper right corner",
@@ -46,10 +46,10 @@ void ask_for_tilts(const Intrinsics& intrinsics, std::vector<std::string>& out) 
     const Eigen::Vector3d n = pose.rotation.col(2);
     const double about_y = std::atan2(n.x(), n.z());
     const double about_x = std::atan2(n.y(), n.z());
-    tilted[0] += about_y > kTilted_rad ? 1 : 0;
-    tilted[1] += about_y < -kTilted_rad ? 1 : 0;
-    tilted[2] += about_x > kTilted_rad ? 1 : 0;
-    tilted[3] += about_x < -kTilted_rad ? 1 : 0;
+    tilted[0] += about_y > kTiltedRad ? 1 : 0;
+    tilted[1] += about_y < -kTiltedRad ? 1 : 0;
+    tilted[2] += about_x > kTiltedRad ? 1 : 0;
+    tilted[3] += about_x < -kTiltedRad ? 1 : 0;
   }
   constexpr std::array<const char*, 4> kSides{"right", "left", "lower", "upper"};
   for (std::size_t side = 0; side < tilted.size(); ++side) {

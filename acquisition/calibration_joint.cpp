@@ -115,7 +115,7 @@ class Refinement {
   void build(const Scatter& scatter);
   void store();
   [[nodiscard]] RigidTransform pose_seen(std::size_t k) const {
-    const RigidTransform pose = transform_of(x_.poses[x_.pose_of[k]]);
+    RigidTransform pose = transform_of(x_.poses[x_.pose_of[k]]);
     if (x_.carried[k] == 0) {
       return pose;
     }

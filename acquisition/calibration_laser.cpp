@@ -42,6 +42,7 @@ PlaneFit through(const std::vector<Eigen::Vector3d>& points_mm, const std::vecto
 
 double median_distance(const Plane& plane, const std::vector<Eigen::Vector3d>& points_mm) {
   std::vector<double> distances;
+  distances.reserve(points_mm.size());
   for (const Eigen::Vector3d& p : points_mm) {
     distances.push_back(std::abs(plane.signed_distance_mm(p)));
   }
@@ -121,6 +122,7 @@ Result<PlaneFit> fit_plane(const std::vector<Eigen::Vector3d>& points_mm) {
   for (int round = 0; round < 5; ++round) {
     const double limit = std::max(1e-6, 3 * 1.4826 * median_distance(best, points_mm));
     std::vector<std::uint8_t> marked;
+    marked.reserve(points_mm.size());
     for (const Eigen::Vector3d& p : points_mm) {
       marked.push_back(std::abs(best.signed_distance_mm(p)) <= limit ? 1 : 0);
     }

@@ -20,7 +20,7 @@ Eigen::VectorXd measured(const CameraModel& size, const Eigen::VectorXd& unknown
   const Eigen::VectorXd& x = unknowns;
   const CameraModel model{size.width, size.height, x[0], x[1], x[2], x[3], x[4], x[5], x[6], x[7], x[8]};
   const Eigen::Vector3d laser = unknowns.segment<3>(9);
-  constexpr double kHalfTravel_mm = 20;
+  constexpr double kHalfTravelMm = 20;
   const int stops = linear ? 2 : 1;
   Eigen::VectorXd out(3 * stops * static_cast<Eigen::Index>(pixels.size()));
   Eigen::Index at = 0;
@@ -30,7 +30,7 @@ Eigen::VectorXd measured(const CameraModel& size, const Eigen::VectorXd& unknown
       const Eigen::Vector3d direction(ray.x(), ray.y(), 1);
       Eigen::Vector3d p = direction / laser.dot(direction);
       if (linear) {
-        p += (2 * stop - 1) * kHalfTravel_mm * unknowns.segment<3>(12);
+        p += (2 * stop - 1) * kHalfTravelMm * unknowns.segment<3>(12);
       }
       out.segment<3>(at) = p;
       at += 3;

@@ -32,7 +32,8 @@ StripeOptions stripe_options(const RigFile& file) {
   options.sigma_px = file.stripe_sigma_px;
   options.method = file.stripe_method == "centroid"   ? StripeMethod::kCentroid
                    : file.stripe_method == "gaussian" ? StripeMethod::kGaussian
-                                                      : StripeMethod::kSteger;
+                   : file.stripe_method == "steger"   ? StripeMethod::kSteger
+                                                      : StripeMethod::kAdaptive;
   options.axis = file.stripe_per_row ? StripeAxis::kPerRow : StripeAxis::kPerColumn;
   return options;
 }

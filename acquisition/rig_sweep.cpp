@@ -40,7 +40,17 @@ Result<Travel> RigScanner::plan_sweep() {
   if (const Status reports = check_reports(*now, file_); !reports) {
     return std::unexpected(reports.error());
   }
-  const std::optional<double> rate = frame_rate_hz(camera_);
+  std::optional<double> rate = frame_rate_hz(camera_);
+  if (!rate) {
+    // A camera that was unplugged since tells nothing: its next stream brings it back.
+    if (const Status back = camera_.start_frames(); !back) {
+      return std::unexpected(back.error());
+    }
+    if (const Status idle = camera_.stop_frames(); !idle) {
+      return std::unexpected(idle.error());
+    }
+    rate = frame_rate_hz(camera_);
+  }
   if (file_.speed <= 0 && !rate) {
     return fail(ErrorKind::kUsage, "nobody says how fast the stage is to go", file_.name,
                 "the camera does not tell its rate: give speed_mm_s or speed_deg_s");
@@ -104,13 +114,21 @@ Status RigScanner::sweep(const Travel& plan, ProfileSink& sink, ScanTally& tally
     if (position < file_.start - 0.5 * file_.step || position >= end + 0.5 * file_.step) {
       continue;
     }
-    first = first ? first : std::optional(seen->id);
+    if (!first) {
+      // Nobody knew where the stage was when the frames before this one were taken: rows that are lost.
+      const double missed = std::max(0.0, std::floor((position - file_.start) / file_.step + 0.5));
+      first = seen->id - static_cast<std::int64_t>(missed);
+    }
     const std::int64_t row = seen->id - *first;
     tally.profiles_dropped += static_cast<std::uint64_t>(std::max<std::int64_t>(0, row - next_row));
     next_row = row + 1;
     if (Status handed = hand_on(row, seen->stripe, position, seen->timestamp_ns, sink, tally); !handed) {
       return handed;
     }
+  }
+  if (!first) {
+    return fail(ErrorKind::kDevice, "no frame came while the stage passed the scan", file_.camera,
+                "scan more slowly, or relieve this machine of other work");
   }
   // What it needs to come to rest behind the last row.
   watch.track().wait_closed(plan.time_to_rest(end));

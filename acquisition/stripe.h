@@ -3,19 +3,25 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <vector>
 
 #include "acquisition/stripe_fit.h"
+#include "acquisition/stripe_line.h"
 #include "core/gray_image.h"
 #include "core/result.h"
 
 namespace dubsar {
 
-/// How the middle of the stripe is found. `dubsar-stripe` (bench/accuracy) measures them against each other.
+/// How the middle of the stripe is found. `dubsar-frames` (bench/accuracy) measures them against each other.
 enum class StripeMethod {
+  /// Centre of mass under a Gaussian window, then an average along the stripe; how wide both are, the noise
+  /// of
+  /// this frame's stripe decides: narrow where the laser speckles little, wide where it speckles.
+  kAdaptive,
   kCentroid,  ///< centre of mass over the background
   kGaussian,  ///< weighted least squares of a parabola to the logarithm
   kSteger,    ///< ridge of the smoothed image
@@ -28,7 +34,7 @@ enum class StripeAxis {
 };
 
 struct StripeOptions {
-  StripeMethod method = StripeMethod::kSteger;
+  StripeMethod method = StripeMethod::kAdaptive;
   StripeAxis axis = StripeAxis::kPerColumn;
   double sigma_px = 1.2;      ///< of the stripe's cross section, about
   int least_peak = 12;        ///< grey values over the background: less is no stripe
@@ -64,7 +70,7 @@ struct StripeProfile {
 class StripeExtractor {
  public:
   explicit StripeExtractor(const StripeOptions& options)
-      : options_(options), ridge_(std::max(0.8, options.sigma_px)) {}
+      : options_(options), ridge_(std::max(0.8, options.sigma_px)), window_(options.sigma_px) {}
 
   [[nodiscard]] const StripeOptions& options() const { return options_; }
   /// `off` is a frame of the same size without the laser and is subtracted first; an empty one is allowed.
@@ -72,13 +78,25 @@ class StripeExtractor {
 
  private:
   void find_peaks(const GrayView& on, const GrayView& off);
-  void refine(const GrayView& on, const GrayView& off, int column, StripeProfile& profile) const;
-
+  void refine(const GrayView& on, const GrayView& off, int column, StripeProfile& profile);
   [[nodiscard]] std::optional<double> ridge_row(const GrayView& on, const GrayView& off, int column,
                                                 double start) const;
+  void settle(StripeProfile& profile);
+
+  static constexpr int kMostHalf = 24;  ///< rows looked at on either side of a peak
+  static constexpr int kSide = 2 * kMostHalf + 1;
+  /// The rows around a column's stripe, background taken off.
+  struct Cut {
+    std::array<float, kSide> light;
+    int low = 0;  ///< row of the first
+    int size = 0;
+  };
 
   StripeOptions options_;
   RidgeDetector ridge_;
+  CentreWindow window_;
+  std::vector<Cut> cuts_;  ///< [columns]
+  StripeLine line_;
   int blocks_ = 0;
   std::vector<std::uint8_t> block_peak_;   ///< [blocks × columns]
   std::vector<std::uint8_t> best_;         ///< [columns] the highest block peak

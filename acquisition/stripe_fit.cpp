@@ -44,6 +44,65 @@ std::optional<double> centroid_px(CrossSection signal, double start, double half
   return middle;
 }
 
+CentreWindow::CentreWindow(double sigma_px)
+    : sigma_(sigma_px), radius_(std::clamp(static_cast<int>(std::ceil(3.5 * sigma_px)), 1, kMostRadius)) {
+  for (int k = 0; k <= radius_; ++k) {
+    weight_[static_cast<std::size_t>(k)] = std::exp(-k * k / (2 * sigma_px * sigma_px));
+  }
+}
+
+std::optional<StripeCentre> CentreWindow::centre(CrossSection signal, double start) const {
+  constexpr int kRounds = 12;
+  constexpr double kStays_px = 1e-3;
+  const int count = static_cast<int>(signal.size());
+  const double variance = sigma_ * sigma_;
+  StripeCentre out{start, 0};
+  for (int round = 0; round < kRounds; ++round) {
+    const int nearest = static_cast<int>(std::lround(out.at_px));
+    const double delta = out.at_px - nearest;
+    // exp(-(k - delta)² / 2s²) is weight[k] · exp(delta / s²)^k, and a factor that all share.
+    const double up = std::exp(delta / variance);
+    const double down = 1 / up;
+    double mass = 0, moment = 0, second = 0;
+    const auto add = [&](int k, double factor) {
+      const int i = nearest + k;
+      if (i < 0 || i >= count) {
+        return;
+      }
+      const double light = static_cast<double>(signal[static_cast<std::size_t>(i)]) *
+                           weight_[static_cast<std::size_t>(std::abs(k))] * factor;
+      const double x = k - delta;
+      mass += light;
+      moment += light * x;
+      second += light * x * x;
+    };
+    add(0, 1);
+    double above = 1, below = 1;
+    for (int k = 1; k <= radius_; ++k) {
+      above *= up;
+      below *= down;
+      add(k, above);
+      add(-k, below);
+    }
+    if (!(mass > 0)) {
+      return std::nullopt;
+    }
+    // Newton's step to where the moment vanishes; where that leads uphill, the mean's.
+    const double slope = mass - second / variance;
+    double step = slope > 0 ? moment / slope : moment / mass;
+    step = std::clamp(step, -0.7 * sigma_, 0.7 * sigma_);
+    out.at_px += step;
+    out.mass = mass * std::exp(-delta * delta / (2 * variance));
+    if (std::abs(out.at_px - start) > 3 * sigma_ || !(out.at_px >= 0 && out.at_px <= count - 1)) {
+      return std::nullopt;
+    }
+    if (std::abs(step) < kStays_px) {
+      break;
+    }
+  }
+  return out;
+}
+
 std::optional<double> gaussian_px(CrossSection signal, double start, double half, double floor) {
   const int count = static_cast<int>(signal.size());
   const int first = std::max(0, static_cast<int>(std::ceil(start - half)));

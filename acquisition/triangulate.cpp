@@ -12,21 +12,21 @@ namespace {
 
 // Between nodes a ray is interpolated: with the strongest distortions of lenses used here the error stays
 // below 1e-4 px.
-constexpr int kNode_px = 8;
+constexpr int kNodePx = 8;
 
 }  // namespace
 
 Triangulator::Triangulator(const RigCalibration& calibration, StripeAxis axis)
-    : calibration_(calibration), axis_(axis), scanner_from_camera_(calibration.scanner_from_camera()) {
+    : calibration_(calibration), scanner_from_camera_(calibration.scanner_from_camera()) {
   const CameraModel& camera = calibration_.camera;
   const bool per_column = axis == StripeAxis::kPerColumn;
   samples_ = per_column ? camera.width : camera.height;
-  nodes_ = ((per_column ? camera.height : camera.width) + kNode_px - 1) / kNode_px + 1;
+  nodes_ = ((per_column ? camera.height : camera.width) + kNodePx - 1) / kNodePx + 1;
   rays_.resize(static_cast<std::size_t>(samples_) * static_cast<std::size_t>(nodes_));
   for (int sample = 0; sample < samples_; ++sample) {
     for (int node = 0; node < nodes_; ++node) {
       const Eigen::Vector2d pixel =
-          per_column ? Eigen::Vector2d(sample, node * kNode_px) : Eigen::Vector2d(node * kNode_px, sample);
+          per_column ? Eigen::Vector2d(sample, node * kNodePx) : Eigen::Vector2d(node * kNodePx, sample);
       // The last node lies beyond the image, where the lens may fold: without distortion it does no harm
       // there.
       rays_[static_cast<std::size_t>(sample) * static_cast<std::size_t>(nodes_) +
@@ -38,7 +38,7 @@ Triangulator::Triangulator(const RigCalibration& calibration, StripeAxis axis)
 }
 
 Eigen::Vector2d Triangulator::ray(int sample, double along_px) const {
-  const double at = std::clamp(along_px / kNode_px, 0.0, nodes_ - 1.001);
+  const double at = std::clamp(along_px / kNodePx, 0.0, nodes_ - 1.001);
   const auto node = static_cast<std::size_t>(at);
   const double t = at - static_cast<double>(node);
   const Eigen::Vector2d* const rays =

@@ -37,10 +37,9 @@ class Triangulator {
   [[nodiscard]] Eigen::Vector2d ray(int sample, double along_px) const;
 
   RigCalibration calibration_;
-  StripeAxis axis_;
   int samples_ = 0;
   int nodes_ = 0;                      ///< per sample
-  std::vector<Eigen::Vector2d> rays_;  ///< [samples × nodes] normalised coordinates every kNode_px along
+  std::vector<Eigen::Vector2d> rays_;  ///< [samples × nodes] normalised coordinates every kNodePx along
   RigidTransform scanner_from_camera_;
 };
 

@@ -67,7 +67,7 @@ void drop_small_parts(const WedgePatch& patch, std::vector<std::int8_t>* face) {
     if ((*face)[v] < 0) {
       continue;
     }
-    ++total[static_cast<std::size_t>((*face)[v])];
+    ++total[static_cast<std::size_t>(int{(*face)[v]})];
     if (part[v] >= 0) {
       continue;
     }
@@ -89,8 +89,8 @@ void drop_small_parts(const WedgePatch& patch, std::vector<std::int8_t>* face) {
     }
   }
   for (std::size_t v = 0; v < patch.size(); ++v) {
-    if ((*face)[v] >= 0 &&
-        size[static_cast<std::size_t>(part[v])] < kSmallPart * total[static_cast<std::size_t>((*face)[v])]) {
+    if ((*face)[v] >= 0 && size[static_cast<std::size_t>(part[v])] <
+                               kSmallPart * total[static_cast<std::size_t>(int{(*face)[v]})]) {
       (*face)[v] = -1;
     }
   }
@@ -109,7 +109,7 @@ void clean_labels(const WedgePatch& patch, std::vector<std::int8_t>* face) {
     count[label < 0 ? 0 : static_cast<std::size_t>(label)] += label < 0 ? 0 : 1;
   }
   for (std::size_t v = 0; v < face->size(); ++v) {
-    if (before[v] >= 0 && (*face)[v] < 0 && count[static_cast<std::size_t>(before[v])] < kFewVertices) {
+    if (before[v] >= 0 && (*face)[v] < 0 && count[static_cast<std::size_t>(int{before[v]})] < kFewVertices) {
       (*face)[v] = before[v];
     }
   }

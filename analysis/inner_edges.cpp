@@ -54,13 +54,13 @@ std::array<std::vector<Contact>, 3> find_contacts(const WedgePatch& patch, const
   std::array<std::vector<Contact>, 3> contacts;
   const double core_mm = std::max(2.0 * patch.spacing_mm, 0.2 * patch.depth_mm);
   for (std::uint32_t v = 0; v < patch.size(); ++v) {
-    const std::int8_t a = faces.face[v];
+    const int a{faces.face[v]};
     if (a < 0) {
       continue;
     }
     for (std::uint32_t k = patch.graph.start[v]; k < patch.graph.start[v + 1]; ++k) {
       const std::uint32_t n = patch.graph.neighbour[k];
-      const std::int8_t b = faces.face[n];
+      const int b{faces.face[n]};
       if (b < 0 || b != (a + 1) % 3) {
         continue;
       }

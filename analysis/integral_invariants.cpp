@@ -162,9 +162,10 @@ class Discs {
         discs_.size(),
         [&](std::size_t i) {
           const auto place = static_cast<int>(i / scales_);
+          const int row = place / kSubPixels;
           discs_[i] =
               make_disc(radii_mm[i % scales_], pixel_mm, (place % kSubPixels + 0.5) / kSubPixels - 0.5,
-                        (static_cast<double>(place / kSubPixels) + 0.5) / kSubPixels - 0.5);
+                        (row + 0.5) / kSubPixels - 0.5);
         },
         1);
   }

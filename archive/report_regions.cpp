@@ -2,6 +2,8 @@
 // Copyright The Dubsar developers
 // Every place that is red or excused: number, face, place, size, reason, and a picture of the largest.
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -37,13 +39,13 @@ std::string cards(const ReportInput& input, const ReportPictures& pictures) {
   std::string html = "<div class=\"places\">\n";
   for (const RegionPicture& one : pictures.regions) {
     const RedRegion& region = input.red_map.regions[one.region];
-    const std::string number = std::to_string(region_number(one.region));
-    html += std::string("<figure") + (region.state == RegionState::kRed ? " class=\"open\"" : "") +
-            "><img alt=\"Place " + number + "\" width=\"" + std::to_string(one.image.width) + "\" height=\"" +
-            std::to_string(one.image.height) + "\" src=\"" + one.uri + "\"><figcaption><b>" + number +
-            "</b> " + state_of(region) + ", " + to_string(region.face) + ", " + fixed(region.area_mm2, 2) +
-            " mm²<br>at " + place_of(input, region) + " mm" +
-            (region.reason.empty() ? "" : "<br>" + html_escaped(region.reason)) + "</figcaption></figure>\n";
+    html += fmt::format(
+        "<figure{}><img alt=\"Place {}\" width=\"{}\" height=\"{}\" src=\"{}\"><figcaption><b>{}</b> {}, {}, "
+        "{} mm²<br>at {} mm{}{}</figcaption></figure>\n",
+        region.state == RegionState::kRed ? " class=\"open\"" : "", region_number(one.region),
+        one.image.width, one.image.height, one.uri, region_number(one.region), state_of(region),
+        to_string(region.face), fixed(region.area_mm2, 2), place_of(input, region),
+        region.reason.empty() ? "" : "<br>", html_escaped(region.reason));
   }
   return html + "</div>\n";
 }

@@ -59,8 +59,8 @@ std::vector<Vector2d> resampled(const std::vector<Vector2d>& ring, double* step_
   out.reserve(count);
   double passed = 0;
   for (std::size_t i = 0; i < ring.size() && out.size() < count; ++i) {
-    const Vector2d a = ring[i];
-    const Vector2d b = ring[(i + 1) % ring.size()];
+    const Vector2d& a = ring[i];
+    const Vector2d& b = ring[(i + 1) % ring.size()];
     const double part = (b - a).norm();
     while (out.size() < count && static_cast<double>(out.size()) * *step_mm <= passed + part) {
       const double t = part > 0 ? (static_cast<double>(out.size()) * *step_mm - passed) / part : 0.0;

@@ -33,11 +33,11 @@ struct Sheet {
   }
 };
 
-std::string attributes(const Wedge& w) {
+/// For programs, as JSON: SVG 1.1 knows no data- attributes.
+std::string metadata(const Wedge& w) {
   const auto directional = static_cast<std::size_t>(w.directional_edge);
   return fmt::sprintf(
-      " data-id=\"%d\" data-line=\"%d\" data-order=\"%d\" data-confidence=\"%.3f\" data-depth-mm=\"%.3f\" "
-      "data-length-mm=\"%.3f\" data-turn-deg=\"%.1f\" data-volume-mm3=\"%.4f\"",
+      R"({"id":%d,"line":%d,"order":%d,"confidence":%.3f,"depth_mm":%.3f,"length_mm":%.3f,"turn_deg":%.1f,"volume_mm3":%.4f})",
       w.id, w.place.line, w.place.order, w.confidence, w.depth_mm, w.edge_lengths_mm[directional],
       deg_from_rad(w.place.turn_rad), w.volume_mm3);
 }
@@ -58,8 +58,8 @@ std::string group(const Sheet& sheet, const Wedge& w) {
   for (std::size_t k = 0; k < 3; ++k) {
     corner[k] = sheet.at(w.outer_vertices_mm[k]);
   }
-  std::string out = "<g id=\"wedge-" + std::to_string(w.id) + "\" class=\"wedge\"" + attributes(w) +
-                    ">\n<title>" + html_escaped(numbers(w)) + "</title>\n";
+  std::string out = "<g id=\"wedge-" + std::to_string(w.id) + "\" class=\"wedge\">\n<title>" +
+                    html_escaped(numbers(w)) + "</title>\n<metadata>" + metadata(w) + "</metadata>\n";
   out += fmt::sprintf("<path class=\"outer\" d=\"M%.3f %.3fL%.3f %.3fL%.3f %.3fZ\"/>\n", corner[0].x(),
                       corner[0].y(), corner[1].x(), corner[1].y(), corner[2].x(), corner[2].y());
   for (std::size_t k = 0; k < 3; ++k) {
@@ -162,7 +162,7 @@ std::string wedge_drawing(Face side, const std::vector<Wedge>& wedges, const Rig
       sheet.width, sheet.height, sheet.width, sheet.height);
   out += "<title>" + html_escaped(title) + ", " + to_string(side) + "</title>\n";
   out +=
-      "<style>.outer{fill:#e8e4dc;stroke:#000;stroke-width:.08;stroke-linejoin:round}"
+      "<style type=\"text/css\">.outer{fill:#e8e4dc;stroke:#000;stroke-width:.08;stroke-linejoin:round}"
       ".inner{fill:none;stroke:#000;stroke-width:.06;stroke-linecap:round}.directional{stroke-width:.16}"
       ".outline{fill:none;stroke:#000;stroke-width:.12;stroke-linejoin:round}.scale{fill:none;stroke:#000;"
       "stroke-width:.2}text{font:2.2px sans-serif}</style>\n";

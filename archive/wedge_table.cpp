@@ -33,13 +33,13 @@ std::vector<Column> columns() {
   const auto plain = [&](std::string name, std::function<double(const Wedge&)> value) {
     text(std::move(name), [value = std::move(value)](const Wedge& w) { return number(value(w)); });
   };
-  const auto point = [&](const std::string& name, std::function<Eigen::Vector3d(const Wedge&)> value) {
+  const auto point = [&](const std::string& name, const std::function<Eigen::Vector3d(const Wedge&)>& value) {
     for (int axis = 0; axis < 3; ++axis) {
       plain(name + "_" + "xyz"[axis] + "_mm", [value, axis](const Wedge& w) { return value(w)[axis]; });
     }
   };
   const auto three = [&](const std::string& name, const std::string& unit, double factor,
-                         std::function<const Three&(const Wedge&)> value) {
+                         const std::function<const Three&(const Wedge&)>& value) {
     for (std::size_t k = 0; k < 3; ++k) {
       plain(fmt::format("{}_{}_{}", name, k, unit),
             [value, k, factor](const Wedge& w) { return factor * value(w)[k]; });

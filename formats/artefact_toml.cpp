@@ -11,8 +11,8 @@ Result<Artefact> parse_artefact(std::string_view toml, const std::string& where)
   if (!document) {
     return std::unexpected(document.error());
   }
-  constexpr double kMost_mm = 1000;
-  constexpr double kMost_um = 1e6;
+  constexpr double kMostMm = 1000;
+  constexpr double kMostUm = 1e6;
   constexpr std::size_t kMostBalls = 6;
   const JsonNode root = document->root();
   root.only({"name", "certificate", "ball", "plane", "limit"});
@@ -22,7 +22,7 @@ Result<Artefact> parse_artefact(std::string_view toml, const std::string& where)
   if (const auto balls = root.find("ball")) {
     for (const JsonNode& node : balls->items()) {
       node.only({"diameter_mm", "center_mm"});
-      out.balls.push_back({node.at("diameter_mm").number(0.1, kMost_mm), node.at("center_mm").vector3()});
+      out.balls.push_back({node.at("diameter_mm").number(0.1, kMostMm), node.at("center_mm").vector3()});
     }
     if (out.balls.size() > kMostBalls) {
       balls->complain("holds more than six balls");
@@ -34,7 +34,7 @@ Result<Artefact> parse_artefact(std::string_view toml, const std::string& where)
   const JsonNode limit = root.at("limit");
   limit.only({"form_um", "size_um", "spacing_um", "flatness_um"});
   const auto micrometres = [&](const char* key, bool needed) {
-    return needed ? 1e-3 * limit.at(key).number(0.001, kMost_um) : 0.0;
+    return needed ? 1e-3 * limit.at(key).number(0.001, kMostUm) : 0.0;
   };
   out.form_limit_mm = micrometres("form_um", !out.balls.empty());
   out.size_limit_mm = micrometres("size_um", !out.balls.empty());

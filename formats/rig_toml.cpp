@@ -113,7 +113,7 @@ Result<RigFile> parse_rig_file(std::string_view toml, const std::string& where) 
       rig.stripe_sigma_px = sigma->number(0.3, 6);
     }
     if (const auto method = stripe->find("method")) {
-      const std::vector<std::string> words{"centroid", "gaussian", "steger"};
+      const std::vector<std::string> words{"adaptive", "centroid", "gaussian", "steger"};
       rig.stripe_method = words[method->one_of(words)];
     }
     if (const auto runs = stripe->find("runs")) {

@@ -33,7 +33,7 @@ struct RigFile {
   bool continuous = false;  ///< the stage moves through, and rows come at the camera's rate
   bool ambient = true;      ///< take a frame with the laser off at each row
   double stripe_sigma_px = 1.2;
-  std::string stripe_method = "steger";
+  std::string stripe_method = "adaptive";
   bool stripe_per_row = false;
   bool hand_turns = true;
   double support_height_mm = -1e6;  ///< scanner frame counts: nothing is known of a support

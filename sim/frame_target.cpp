@@ -8,8 +8,8 @@ namespace dubsar::sim {
 
 namespace {
 
-constexpr double kFar_mm = 2000;
-constexpr double kOwnSurface_mm = 0.01;  // nearer than this a shadow is the surface's own rounding
+constexpr double kFarMm = 2000;
+constexpr double kOwnSurfaceMm = 0.01;  // nearer than this a shadow is the surface's own rounding
 constexpr double kBlack = 0.06;
 constexpr double kWhite = 0.8;
 constexpr double kSurroundings = 0.02;
@@ -19,7 +19,7 @@ constexpr double kSurroundings = 0.02;
 std::optional<SceneHit> SceneTarget::hit(const Eigen::Vector3d& origin_mm,
                                          const Eigen::Vector3d& direction) const {
   std::optional<SceneHit> hit =
-      first_hit(scene_, tablet_from_camera_ * origin_mm, tablet_from_camera_.rotation * direction, kFar_mm);
+      first_hit(scene_, tablet_from_camera_ * origin_mm, tablet_from_camera_.rotation * direction, kFarMm);
   if (hit) {
     hit->normal = tablet_from_camera_.rotation.transpose() * hit->normal;
   }
@@ -27,7 +27,7 @@ std::optional<SceneHit> SceneTarget::hit(const Eigen::Vector3d& origin_mm,
 }
 
 bool SceneTarget::blocked(const Eigen::Vector3d& a_mm, const Eigen::Vector3d& b_mm) const {
-  return sim::blocked(scene_, tablet_from_camera_ * a_mm, tablet_from_camera_ * b_mm, kOwnSurface_mm);
+  return sim::blocked(scene_, tablet_from_camera_ * a_mm, tablet_from_camera_ * b_mm, kOwnSurfaceMm);
 }
 
 std::optional<SceneHit> BoardTarget::hit(const Eigen::Vector3d& origin_mm,

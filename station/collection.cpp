@@ -11,6 +11,7 @@
 #include <map>
 #include <system_error>
 
+#include "acquisition/session_store.h"
 #include "analysis/wedge_features.h"
 #include "core/parallel.h"
 #include "formats/atomic_file.h"
@@ -168,7 +169,8 @@ Result<Collection> Collection::open(const fs::path& folder, std::chrono::millise
   collection.read_anew_ = to_read.size();
   collection.index_ = std::move(kept);
   collection.index_.tablets = std::move(tablets);
-  if (collection.plant(changed)) {
+  // A session keeps a checksum of every file in it: the index would be a foreign one.
+  if (collection.plant(changed) && !SessionStore::is_session(folder)) {
     const Status written = write_file_atomically(index_path, search_index_to_bytes(collection.index_));
     if (!written) {
       collection.remark_ = "the search index is not kept: " + written.error().line();

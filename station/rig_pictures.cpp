@@ -19,9 +19,9 @@ namespace {
 
 constexpr int kTexels = 80;           // per square
 constexpr double kBoardSignal = 0.4;  // ambient light when the board is to be seen
-constexpr double kHalfTravel_mm = 6;
-constexpr double kHalfTurn_rad = 0.3;
-constexpr double kHalfSwing_rad = 0.02;
+constexpr double kHalfTravelMm = 6;
+constexpr double kHalfTurnRad = 0.3;
+constexpr double kHalfSwingRad = 0.02;
 
 std::string numbered(const char* stem, int number, const char* rest) {
   char text[64];
@@ -94,7 +94,7 @@ Status write_rig_pictures(const RigPicturesOptions& options, const std::filesyst
   for (const RigidTransform& pose :
        sim::board_poses(truth, board->low_mm(), board->high_mm(), options.poses, options.seed)) {
     const int i = static_cast<int>(set.poses.size());
-    const double position = mirror ? kHalfSwing_rad * (i % 3 - 1) : 0;
+    const double position = mirror ? kHalfSwingRad * (i % 3 - 1) : 0;
     set.poses.push_back(
         {numbered("pose", i, ""), numbered("pose", i, "_laser"), numbered("pose", i, "_dark"), position});
     const CalibrationSet::Pose& names = set.poses.back();
@@ -107,7 +107,7 @@ Status write_rig_pictures(const RigPicturesOptions& options, const std::filesyst
     }
   }
   std::vector<double> positions;
-  const double half = options.rig.motion == MotionKind::kTurntable ? kHalfTurn_rad : kHalfTravel_mm;
+  const double half = options.rig.motion == MotionKind::kTurntable ? kHalfTurnRad : kHalfTravelMm;
   for (int i = 0; i < (mirror ? 0 : options.stops); ++i) {
     positions.push_back(half * (2.0 * i / std::max(1, options.stops - 1) - 1));
   }

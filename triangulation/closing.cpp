@@ -3,6 +3,7 @@
 #include "triangulation/closing.h"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 #include <vector>
 
@@ -11,20 +12,23 @@
 #include "triangulation/manifold.h"
 #include "triangulation/region.h"
 #include "triangulation/self_intersections.h"
+#include "triangulation/tiling.h"
 
 namespace dubsar {
 
 namespace {
 
-constexpr int kTries = 9;  ///< at closing what is open in one place
+constexpr int kTiledRounds = 4;
+constexpr int kTries = 9;  ///< at closing what is open in one place, after those
 constexpr int kRepairs = 3;
 
-/// 1 for the faces that a sheet has to lose so that at each whole vertex they form one fan, the largest, and
-/// no half-edge is there twice; what they lose is closed again as part of the seam. Empty when all is well.
-std::vector<std::uint8_t> pinching_faces(const Sheet& sheet) {
+/// 1 for the faces that a sheet has to lose so that at each of the vertices `where` they form one fan, the
+/// largest, and no half-edge is there twice; what they lose is closed again as part of the seam. Empty when
+/// all is well.
+std::vector<std::uint8_t> pinching_faces(const Sheet& sheet, std::span<const std::uint8_t> where) {
   const auto vertex_count = static_cast<std::uint32_t>(sheet.positions.size());
   std::vector<Triangle> split = sheet.faces;
-  const std::vector<std::uint32_t> copies = make_manifold(split, vertex_count, sheet.whole);
+  const std::vector<std::uint32_t> copies = make_manifold(split, vertex_count, where);
   if (copies.empty() && split.size() == sheet.faces.size()) {
     return {};
   }
@@ -66,59 +70,76 @@ std::vector<std::uint8_t> pinching_faces(const Sheet& sheet) {
 
 void open_pinches(Region& region, Draft& draft) {
   constexpr int kMostRounds = 8;
+  const Sheet& sheet = region.sheet;
   for (int round = 0; round < kMostRounds; ++round) {
-    const std::vector<std::uint8_t> gone = pinching_faces(region.sheet);
-    if (gone.empty()) {
+    std::vector<std::uint8_t> on_rim = rim_vertices(sheet.faces, sheet.positions.size());
+    for (std::size_t v = 0; v < on_rim.size(); ++v) {
+      on_rim[v] &= sheet.whole[v];
+    }
+    const std::vector<std::uint8_t> gone = pinching_faces(sheet, on_rim);
+    if (gone.empty() || region.erase(gone, draft) == 0) {
       return;
     }
-    region.erase(gone, draft);
   }
 }
 
-/// What closing a region has left to do, as vertices of the draft.
-struct Leftover {
-  std::vector<std::vector<std::uint32_t>> gaps;  ///< walks around openings that should be closed
-  std::vector<std::uint32_t> pinched;            ///< corners of faces that pinching_faces() names
+using Walks = std::vector<std::vector<std::uint32_t>>;
 
+/// What a round of closing has left to do.
+struct Leftover {
+  Walks gaps;                         ///< around openings that should be closed and could not be
+  std::vector<std::uint32_t> others;  ///< vertices of what is pinched, or had no room
+
+  void append(Leftover more) {
+    std::move(more.gaps.begin(), more.gaps.end(), std::back_inserter(gaps));
+    others.insert(others.end(), more.others.begin(), more.others.end());
+  }
   [[nodiscard]] std::vector<std::uint32_t> vertices() const {
-    std::vector<std::uint32_t> all = pinched;
+    std::vector<std::uint32_t> all = others;
     for (const auto& gap : gaps) {
       all.insert(all.end(), gap.begin(), gap.end());
     }
+    std::sort(all.begin(), all.end());
+    all.erase(std::unique(all.begin(), all.end()), all.end());
     return all;
   }
 };
 
-Leftover close_region(Region& region, Draft& draft, const ClosingOptions& options) {
-  open_pinches(region, draft);
-  Front front(region.sheet);
-  close_seams(front, options.seam);
-  const GapFillResult filled = fill_gaps(front, options.seam, options.gap);
-  const std::size_t base = draft.mesh.positions.size();
-  region.put_back(draft, filled.first_interpolated);
-  const std::size_t from_draft = region.sheet.positions.size() - (draft.mesh.positions.size() - base);
-  const auto in_draft = [&](std::uint32_t v) {
-    return v < from_draft ? region.vertex(v) : static_cast<std::uint32_t>(base + v - from_draft);
-  };
+/// Of a region that was worked on, as vertices of its sheet.
+Leftover left_open(const Front& front, const ClosingOptions& options) {
+  const Sheet& sheet = front.sheet();
   Leftover left;
-  left.gaps = front.openings();
-  std::erase_if(left.gaps, [&](const auto& o) { return !is_gap(region.sheet, o, options.gap); });
-  for (auto& gap : left.gaps) {
-    std::transform(gap.begin(), gap.end(), gap.begin(), in_draft);
+  for (const Front::Edge& edge : edges_without_room(front, options.seam)) {
+    left.others.insert(left.others.end(), {edge.a, edge.b});
   }
-  const std::vector<std::uint8_t> pinching = pinching_faces(region.sheet);
+  for (Front::Walk& walk : front.walks()) {
+    const bool gap = !walk.leaves && is_gap(sheet, walk.vertices, options.gap);
+    if (has_room(sheet, walk.vertices, options.seam)) {
+      if (gap) {
+        left.gaps.push_back(std::move(walk.vertices));
+      }
+    } else if (gap || walk.leaves) {
+      left.others.insert(left.others.end(), walk.vertices.begin(), walk.vertices.end());
+    }
+  }
+  std::vector<std::uint8_t> worked_at(sheet.positions.size());
+  for (std::uint32_t v = 0; v < worked_at.size(); ++v) {
+    worked_at[v] = sheet.whole[v] != 0 && front.was_on_front(v) ? 1 : 0;
+  }
+  const std::vector<std::uint8_t> pinching = pinching_faces(sheet, worked_at);
   for (std::size_t k = 0; k < pinching.size(); ++k) {
     if (pinching[k] != 0) {
-      for (const std::uint32_t v : region.sheet.faces[k]) {
-        left.pinched.push_back(in_draft(v));
-      }
+      left.others.insert(left.others.end(), sheet.faces[k].begin(), sheet.faces[k].end());
     }
   }
   return left;
 }
 
 /// Faces around openings that could not be closed go, so that the next try has room.
-void clear_around(Region& region, const std::vector<std::vector<std::uint32_t>>& gaps, Draft& draft) {
+void clear_around(Region& region, const Walks& gaps, Draft& draft) {
+  if (gaps.empty()) {
+    return;
+  }
   std::vector<std::uint8_t> marked(region.sheet.positions.size(), 0);
   for (const auto& gap : gaps) {
     for (const std::uint32_t v : gap) {
@@ -133,16 +154,105 @@ void clear_around(Region& region, const std::vector<std::vector<std::uint32_t>>&
   region.erase(gone, draft);
 }
 
-void close_with_tries(Draft& draft, Region region, const ClosingOptions& options) {
-  Leftover left = close_region(region, draft, options);
-  for (int more = 1; more < kTries; ++more) {
-    const std::vector<std::uint32_t> seeds = left.vertices();
-    if (seeds.empty()) {
+struct Closed {
+  std::size_t first_interpolated = 0;
+  Leftover left;
+};
+
+Closed close_region(Region& region, const Walks& gaps, Draft& draft, const ClosingOptions& options) {
+  clear_around(region, gaps, draft);
+  open_pinches(region, draft);
+  Front front(region.sheet);
+  close_seams(front, options.seam);
+  const GapFillResult filled = fill_gaps(front, options.seam, options.gap);
+  return {filled.first_interpolated, left_open(front, options)};
+}
+
+/// In the first rounds tile by tile, side by side; what lies across two of them waits for a round in which
+/// they lie elsewhere, or for those without tiles.
+Tiling tiling_of(const Draft& draft, std::span<const std::uint8_t> near, int round,
+                 const ClosingOptions& options) {
+  struct Extent {
+    Eigen::AlignedBox3f box;
+    float coarsest_mm = 0;
+    std::size_t count = 0;
+  };
+  const Extent extent = parallel_reduce_ordered(
+      near.size(), 65536, Extent{},
+      [&](std::size_t begin, std::size_t end) {
+        Extent part;
+        for (std::size_t v = begin; v < end; ++v) {
+          if (near[v] != 0) {
+            part.box.extend(draft.mesh.positions[v]);
+            part.coarsest_mm = std::max(part.coarsest_mm, draft.spacing_mm(static_cast<std::uint32_t>(v)));
+            ++part.count;
+          }
+        }
+        return part;
+      },
+      [](Extent& total, const Extent& part) {
+        total.box.extend(part.box);
+        total.coarsest_mm = std::max(total.coarsest_mm, part.coarsest_mm);
+        total.count += part.count;
+      });
+  if (round >= kTiledRounds || extent.count < options.least_tiled_vertices) {
+    return {};
+  }
+  return {extent.box, static_cast<float>(options.tile_spacings) * extent.coarsest_mm,
+          0.5F * static_cast<float>(round % 2)};
+}
+
+/// One round: closes what is open around near vertices. `gaps` are those that an earlier one left.
+Leftover close_round(Draft& draft, std::span<const std::uint8_t> near, Walks gaps, int round,
+                     const ClosingOptions& options) {
+  const Tiling tiling = tiling_of(draft, near, round, options);
+  std::vector<Region> regions = take_regions(draft, near, tiling);
+  std::vector<Walks> gaps_in(tiling.size());
+  Leftover left;
+  for (auto& gap : gaps) {
+    const std::size_t tile = tiling.tile_of(draft.mesh.positions[gap.front()]);
+    const Eigen::AlignedBox3f room = tiling.box(tile);
+    const bool fits = std::all_of(gap.begin(), gap.end(), [&](std::uint32_t v) {
+      return lies_within(room, draft.mesh.positions[v], gap_reach_mm(draft.spacing_mm(v), options.seam));
+    });
+    (fits ? gaps_in[tile] : left.gaps).push_back(std::move(gap));
+  }
+  std::vector<Closed> closed(regions.size());
+  parallel_for_each_index(
+      regions.size(),
+      [&](std::size_t k) {
+        closed[k] = close_region(regions[k], gaps_in[regions[k].tile()], draft, options);
+      },
+      1);
+  for (std::size_t k = 0; k < regions.size(); ++k) {
+    const Region& region = regions[k];
+    const std::size_t base = draft.mesh.positions.size();
+    region.put_back(draft, closed[k].first_interpolated);
+    const auto to_draft = [&](std::uint32_t& v) {
+      v = v < region.taken() ? region.vertex(v) : static_cast<std::uint32_t>(base + v - region.taken());
+    };
+    for (auto& gap : closed[k].left.gaps) {
+      std::for_each(gap.begin(), gap.end(), to_draft);
+    }
+    std::for_each(closed[k].left.others.begin(), closed[k].left.others.end(), to_draft);
+    left.append(std::move(closed[k].left));
+  }
+  return left;
+}
+
+/// Closes what is open around near vertices, round by round.
+void close_around(Draft& draft, std::vector<std::uint8_t> near, const ClosingOptions& options) {
+  Walks gaps;
+  std::vector<std::uint32_t> before;
+  for (int round = 0; round < kTiledRounds + kTries; ++round) {
+    Leftover left = close_round(draft, near, std::move(gaps), round, options);
+    std::vector<std::uint32_t> seeds = left.vertices();
+    if (seeds.empty() || seeds == before) {
       return;
     }
-    Region again(draft, vertices_near(draft, seeds));
-    clear_around(again, left.gaps, draft);
-    left = close_region(again, draft, options);
+    near = vertices_near(draft, seeds);
+    gaps = std::move(left.gaps);
+    before = std::move(seeds);
   }
 }
 
@@ -155,11 +265,12 @@ FacePairs all_intersections(const Draft& draft) {
   return self_intersections(draft.mesh.positions, draft.mesh.faces, patch);
 }
 
-FacePairs intersections_in(const Region& region) {
-  FacePairs pairs = self_intersections(region.sheet.positions, region.sheet.faces);
-  for (auto& [a, b] : pairs) {
-    a = region.face(a);
-    b = region.face(b);
+FacePairs intersections_near(const Draft& draft, std::span<const std::uint32_t> seeds) {
+  FacePairs pairs;
+  for (const Region& region : take_regions(draft, vertices_near(draft, seeds), Tiling())) {
+    for (const auto& [a, b] : self_intersections(region.sheet.positions, region.sheet.faces)) {
+      pairs.emplace_back(region.face(a), region.face(b));
+    }
   }
   return pairs;
 }
@@ -178,7 +289,7 @@ std::vector<std::uint32_t> corners_of(const Draft& draft, const FacePairs& pairs
 }  // namespace
 
 void close_patches(Draft& draft, const ClosingOptions& options) {
-  close_with_tries(draft, Region(draft, draft.near_rim), options);
+  close_around(draft, draft.near_rim, options);
 }
 
 void repair_self_intersections(Draft& draft, const ClosingOptions& options) {
@@ -186,33 +297,35 @@ void repair_self_intersections(Draft& draft, const ClosingOptions& options) {
   for (int attempt = 0; !pairs.empty(); ++attempt) {
     const bool last = attempt == kRepairs;
     std::vector<std::uint32_t> corners = corners_of(draft, pairs);
-    Region region(draft, vertices_near(draft, corners));
-    std::vector<std::uint8_t> cut(region.sheet.positions.size(), 0);
-    for (const std::uint32_t v : corners) {
-      cut[region.local(v)] = 1;
-    }
+    const std::vector<std::uint8_t> near = vertices_near(draft, corners);
     std::vector<std::uint32_t> cutting;
     for (const auto& [a, b] : pairs) {
       cutting.push_back(a);
       cutting.push_back(b);
     }
     std::sort(cutting.begin(), cutting.end());
-    std::vector<std::uint8_t> gone(region.sheet.faces.size(), 0);
-    for (std::size_t k = 0; k < gone.size(); ++k) {
-      const Triangle& f = region.sheet.faces[k];
-      const bool beside = attempt > 0 && !last && (cut[f[0]] | cut[f[1]] | cut[f[2]]) != 0;
-      gone[k] = beside || std::binary_search(cutting.begin(), cutting.end(), region.face(k)) ? 1 : 0;
+    for (Region& region : take_regions(draft, near, Tiling())) {
+      std::vector<std::uint8_t> cut(region.sheet.positions.size(), 0);
+      for (const std::uint32_t v : corners) {
+        cut[region.local(v)] = 1;
+      }
+      std::vector<std::uint8_t> gone(region.sheet.faces.size(), 0);
+      for (std::size_t k = 0; k < gone.size(); ++k) {
+        const Triangle& f = region.sheet.faces[k];
+        const bool beside = attempt > 0 && !last && (cut[f[0]] | cut[f[1]] | cut[f[2]]) != 0;
+        gone[k] = beside || std::binary_search(cutting.begin(), cutting.end(), region.face(k)) ? 1 : 0;
+      }
+      region.erase(gone, draft);
     }
-    region.erase(gone, draft);
     if (last) {
       return;
     }
     const std::size_t faces_before = draft.mesh.faces.size();
-    close_with_tries(draft, std::move(region), options);
+    close_around(draft, near, options);
     for (std::size_t f = faces_before; f < draft.mesh.faces.size(); ++f) {
       corners.insert(corners.end(), draft.mesh.faces[f].begin(), draft.mesh.faces[f].end());
     }
-    pairs = intersections_in(Region(draft, vertices_near(draft, corners)));
+    pairs = intersections_near(draft, corners);
   }
 }
 

@@ -2,6 +2,8 @@
 // Copyright The Dubsar developers
 #pragma once
 
+#include <cstddef>
+
 #include "triangulation/draft.h"
 #include "triangulation/gap_fill.h"
 #include "triangulation/seam_closer.h"
@@ -11,6 +13,8 @@ namespace dubsar {
 struct ClosingOptions {
   SeamOptions seam;
   GapFillOptions gap;
+  double tile_spacings = 300.0;  ///< × the coarsest µ: edge of the tiles that are closed side by side
+  std::size_t least_tiled_vertices = 50000;  ///< near what is open; fewer are one piece of work
 };
 
 /// Closes the seams between the patches of a draft, and its gaps. Where patches touch by a corner only, the

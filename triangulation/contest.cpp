@@ -103,11 +103,14 @@ Contest contest_of(const std::vector<OwnedScan>& scans, std::size_t self) {
         1024);
     // Samples of nodes without a pair of their own go by those beside them, and so do cells.
     mine = dilated(mine, lattice.node_rows, lattice.node_cols, 2);
-    for (std::size_t node = 0; node < mine.size(); ++node) {
-      contest.any[node] |= mine[node];
-      const std::int32_t j = scan.pairs[k]->match[node];
-      mine[node] += j >= 0 && other.some_kept[theirs.node_of(static_cast<std::size_t>(j))] != 0 ? 1 : 0;
-    }
+    parallel_for_each_index(
+        mine.size(),
+        [&](std::size_t node) {
+          contest.any[node] |= mine[node];
+          const std::int32_t j = scan.pairs[k]->match[node];
+          mine[node] += j >= 0 && other.some_kept[theirs.node_of(static_cast<std::size_t>(j))] != 0 ? 1 : 0;
+        },
+        1024);
   }
   return contest;
 }
@@ -120,8 +123,16 @@ bool is_taken(const std::vector<OwnedScan>& scans, std::size_t self, std::size_t
   const std::size_t node = scan.surface->lattice.node_of(i);
   const auto is_taken_by = [&](std::size_t k) {
     const OwnedScan& other = scans[scan.other[k]];
-    const std::int32_t start = pair_start(*scan.surface, node, *scan.pairs[k]);
-    const std::int64_t j = start < 0 ? -1 : pair_of(*scan.surface, i, start, *other.surface, *scan.pairs[k]);
+    const PairStart start = pair_start(*scan.surface, node, *other.surface, *scan.pairs[k]);
+    if (start.sample < 0) {
+      return false;
+    }
+    const std::int64_t likely = likely_sample(start, *other.surface, scan.surface->points[i]);
+    if (likely >= 0 && other.near_kept[static_cast<std::size_t>(likely)] == kAllAroundKept &&
+        may_pair(*scan.surface, i, *other.surface, static_cast<std::size_t>(likely), *scan.pairs[k])) {
+      return true;
+    }
+    const std::int64_t j = pair_of(*scan.surface, i, start, *other.surface, *scan.pairs[k]);
     if (j < 0 || other.near_kept[static_cast<std::size_t>(j)] == 0) {
       return false;
     }
@@ -175,10 +186,10 @@ bool meets_another(const std::vector<OwnedScan>& scans, std::size_t self, std::s
       continue;
     }
     for (std::size_t corner = 0; corner < 3; ++corner) {
-      const std::int32_t start =
-          pair_start(*scan.surface, scan.surface->lattice.node_of(t[corner]), *scan.pairs[k]);
+      const PairStart start =
+          pair_start(*scan.surface, scan.surface->lattice.node_of(t[corner]), *other.surface, *scan.pairs[k]);
       const std::int64_t j =
-          start < 0 ? -1 : pair_of(*scan.surface, t[corner], start, *other.surface, *scan.pairs[k]);
+          start.sample < 0 ? -1 : pair_of(*scan.surface, t[corner], start, *other.surface, *scan.pairs[k]);
       if (j < 0 || other.near_kept[static_cast<std::size_t>(j)] == 0) {
         continue;
       }

@@ -260,18 +260,17 @@ void Front::near(const Eigen::Vector3f& p_mm, float radius_mm, std::vector<std::
   }
 }
 
-std::vector<std::vector<std::uint32_t>> Front::openings() const {
-  std::vector<std::vector<std::uint32_t>> loops;
+std::vector<Front::Walk> Front::walks() const {
+  std::vector<Walk> all;
   HalfEdgeSet walked;
   for (const Edge& first : open_edges()) {
     if (walked.contains(first.a, first.b)) {
       continue;
     }
-    std::vector<std::uint32_t> loop;
-    bool leaves = false;
+    Walk walk;
     Edge at = first;
     while (walked.insert(at.a, at.b)) {
-      loop.push_back(at.a);
+      walk.vertices.push_back(at.a);
       const auto outs = out_of(at.b);
       std::uint32_t next = kNone;
       if (outs.size() == 1) {
@@ -296,13 +295,21 @@ std::vector<std::vector<std::uint32_t>> Front::openings() const {
         }
       }
       if (next == kNone) {
-        leaves = !sheet_->whole.empty() && sheet_->whole[at.b] == 0;
+        walk.leaves = !sheet_->whole.empty() && sheet_->whole[at.b] == 0;
         break;
       }
       at = {at.b, next};
     }
-    if (!leaves) {
-      loops.push_back(std::move(loop));
+    all.push_back(std::move(walk));
+  }
+  return all;
+}
+
+std::vector<std::vector<std::uint32_t>> Front::openings() const {
+  std::vector<std::vector<std::uint32_t>> loops;
+  for (Walk& walk : walks()) {
+    if (!walk.leaves) {
+      loops.push_back(std::move(walk.vertices));
     }
   }
   return loops;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "triangulation/manifold.h"
+#include "triangulation/tiling.h"
 
 namespace dubsar {
 
@@ -23,6 +24,13 @@ struct Sheet {
   /// 0 for vertices of which some faces are elsewhere: an edge between two of them is not open, whatever it
   /// looks like. Empty: all faces are here.
   std::vector<std::uint8_t> whole;
+  /// Nothing outside of it may be changed, nor looked at to decide what to change: others do so there.
+  Eigen::AlignedBox3f room = everywhere();
+
+  /// Whether all that lies within radius_mm of a place lies in the room.
+  [[nodiscard]] bool has_room(const Eigen::Vector3f& p_mm, float radius_mm) const {
+    return lies_within(room, p_mm, radius_mm);
+  }
 };
 
 /// Half-edges a→b to look up; open addressing in one array.
@@ -70,6 +78,8 @@ class Front {
   [[nodiscard]] bool is_open(std::uint32_t a, std::uint32_t b) const;
   /// On an open edge, or a vertex without any face that add_vertex() brought.
   [[nodiscard]] bool on_front(std::uint32_t v) const;
+  /// Then or earlier.
+  [[nodiscard]] bool was_on_front(std::uint32_t v) const { return find(v) != nullptr; }
   [[nodiscard]] std::span<const std::uint32_t> out_of(std::uint32_t v) const;  ///< heads of open edges from v
   [[nodiscard]] std::span<const std::uint32_t> into(std::uint32_t v) const;    ///< tails of open edges to v
 
@@ -89,8 +99,13 @@ class Front {
   [[nodiscard]] std::size_t last_change(const Eigen::AlignedBox3f& box_mm) const;
 
   /// Walks along open edges around each opening, in the direction of the faces beside it. Where several open
-  /// edges leave one vertex the walk goes on along the next one across the opening. Walks that leave the
-  /// sheet through a vertex that is not whole are left out.
+  /// edges leave one vertex the walk goes on along the next one across the opening.
+  struct Walk {
+    std::vector<std::uint32_t> vertices;
+    bool leaves = false;  ///< the sheet, through a vertex that is not whole
+  };
+  [[nodiscard]] std::vector<Walk> walks() const;
+  /// Those that do not leave.
   [[nodiscard]] std::vector<std::vector<std::uint32_t>> openings() const;
 
   [[nodiscard]] const Sheet& sheet() const { return *sheet_; }

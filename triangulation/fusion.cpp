@@ -33,6 +33,12 @@ class LineProjector {
     v_ = s.mirrored ? Vector3f(u_.cross(n_)) : Vector3f(n_.cross(u_));  // triangles run as their grid does
   }
 
+  /// In one cell alone: the one that `first_sample` begins.
+  [[nodiscard]] Projection in_cell(const GridSurface& surface, std::size_t first_sample) {
+    meet_cell(surface, s_->lattice.sample_row(first_sample), s_->lattice.sample_col(first_sample));
+    return best_;
+  }
+
   [[nodiscard]] Projection around(const GridSurface& surface, std::size_t nearest) {
     const int row = s_->lattice.sample_row(nearest);
     const int col = s_->lattice.sample_col(nearest);
@@ -188,7 +194,7 @@ void fuse(const StitchSurface& from, std::span<const StitchSurface* const> other
   }
   parallel_chunks(which.size(), 2048, [&](std::size_t begin, std::size_t end) {
     std::vector<std::pair<std::size_t, Projection>> found;
-    std::vector<std::pair<std::size_t, std::int32_t>> starts;  // other, where to look, of one node
+    std::vector<std::pair<std::size_t, PairStart>> starts;  // other, where to look, of one node
     std::size_t node = from.lattice.size();
     for (std::size_t at = first + begin; at < first + end; ++at) {
       const std::size_t i = out.samples[at];
@@ -199,7 +205,7 @@ void fuse(const StitchSurface& from, std::span<const StitchSurface* const> other
         node = from.lattice.node_of(i);
         starts.clear();
         for (std::size_t k = 0; k < others.size(); ++k) {
-          if (const std::int32_t start = pair_start(from, node, *pairs[k]); start >= 0) {
+          if (const PairStart start = pair_start(from, node, *others[k], *pairs[k]); start.sample >= 0) {
             starts.emplace_back(k, start);
           }
         }
@@ -207,12 +213,21 @@ void fuse(const StitchSurface& from, std::span<const StitchSurface* const> other
       float feather = 0;
       found.clear();
       for (const auto& [k, start] : starts) {
-        const std::int64_t j = pair_of(from, i, start, *others[k], *pairs[k]);
-        if (j < 0) {
-          continue;
+        const StitchSurface& other = *others[k];
+        LineProjector line(other, p, normal);
+        Projection q;
+        const std::int64_t cell = likely_cell(start, other, p);
+        if (cell >= 0 &&
+            normal.dot(other.normal(static_cast<std::size_t>(cell))) > pairs[k]->min_normal_cos) {
+          q = line.in_cell(surfaces[k], static_cast<std::size_t>(cell));
         }
-        const Projection q =
-            LineProjector(*others[k], p, normal).around(surfaces[k], static_cast<std::size_t>(j));
+        if (!(q.weight > 0)) {
+          const std::int64_t j = pair_of(from, i, start, other, *pairs[k]);
+          if (j < 0) {
+            continue;
+          }
+          q = line.around(surfaces[k], static_cast<std::size_t>(j));
+        }
         if (q.weight > 0 && std::abs(q.along_mm) <= pairs[k]->reach_mm) {
           found.emplace_back(k, q);
         }

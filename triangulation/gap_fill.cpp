@@ -136,6 +136,17 @@ bool is_gap(const Sheet& sheet, const std::vector<std::uint32_t>& opening, const
          seen_all_over(sheet, opening, mu, options);
 }
 
+float gap_reach_mm(float spacing_mm, const SeamOptions& seam) {
+  // The ball that a choice looks at goes 1.25 times the longest edge beyond the middle of one of up to that.
+  return static_cast<float>(1.75 * seam.most_gap_edge_factor) * spacing_mm;
+}
+
+bool has_room(const Sheet& sheet, const std::vector<std::uint32_t>& opening, const SeamOptions& seam) {
+  return std::all_of(opening.begin(), opening.end(), [&](std::uint32_t v) {
+    return sheet.has_room(sheet.positions[v], gap_reach_mm(sheet.spacing_mm[v], seam));
+  });
+}
+
 std::size_t interpolate_vertices(Front& front, const std::vector<std::uint32_t>& opening) {
   const Sheet& sheet = front.sheet();
   const float mu = mean_spacing_mm(sheet, opening);
@@ -246,7 +257,9 @@ GapFillResult fill_gaps(Front& front, const SeamOptions& seam, const GapFillOpti
   result.first_interpolated = front.sheet().positions.size();
   const auto gaps = [&] {
     auto openings = front.openings();
-    std::erase_if(openings, [&](const auto& o) { return !is_gap(front.sheet(), o, options); });
+    std::erase_if(openings, [&](const auto& o) {
+      return !is_gap(front.sheet(), o, options) || !has_room(front.sheet(), o, seam);
+    });
     return openings;
   };
   std::vector<std::vector<std::uint32_t>> open = gaps();

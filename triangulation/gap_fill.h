@@ -35,6 +35,13 @@ struct GapFillOptions {
 [[nodiscard]] bool is_gap(const Sheet& sheet, const std::vector<std::uint32_t>& opening,
                           const GapFillOptions& options);
 
+/// How far from a vertex of a gap lies what is cleared there, or looked at to close it.
+[[nodiscard]] float gap_reach_mm(float spacing_mm, const SeamOptions& seam);
+
+/// Whether a gap can be closed, and what lies around it cleared, within the room of its sheet.
+[[nodiscard]] bool has_room(const Sheet& sheet, const std::vector<std::uint32_t>& opening,
+                            const SeamOptions& seam);
+
 /// Puts interpolated vertices into an opening that is wider than its edges can bridge: points of a hexagonal
 /// raster of spacing µ in the opening's mean plane, at heights interpolated from the opening's vertices by
 /// mean value coordinates (Floater 2003). Returns how many were added; they are the last of the sheet.
@@ -44,7 +51,8 @@ std::size_t interpolate_vertices(Front& front, const std::vector<std::uint32_t>&
 /// turn over or use a half-edge twice. Returns the faces added.
 std::size_t cut_ears(Front& front, const std::vector<std::uint32_t>& opening);
 
-/// Closes every gap and crack of the front. Vertices from `first_interpolated` on are interpolated.
+/// Closes every gap and crack of the front that has room. Vertices from `first_interpolated` on are
+/// interpolated.
 struct GapFillResult {
   std::size_t first_interpolated = 0;
   std::size_t faces = 0;

@@ -19,14 +19,16 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Smallest angle of the triangle; 0 when it has no area.
+/// Smallest angle of the triangle, the one across from its shortest side; 0 when it has no area.
 double smallest_angle_rad(const Vector3d& a, const Vector3d& b, const Vector3d& c) {
-  const double area2 = (b - a).cross(c - a).norm();
+  const Vector3d ab = b - a, bc = c - b, ca = a - c;
+  const double area2 = ab.cross(ca).norm();
   if (!(area2 > 0)) {
     return 0;
   }
-  return std::min({std::atan2(area2, (b - a).dot(c - a)), std::atan2(area2, (c - b).dot(a - b)),
-                   std::atan2(area2, (a - c).dot(b - c))});
+  const double ab2 = ab.squaredNorm(), bc2 = bc.squaredNorm(), ca2 = ca.squaredNorm();
+  const double beside = ab2 <= bc2 && ab2 <= ca2 ? bc.dot(ca) : bc2 <= ca2 ? ca.dot(ab) : ab.dot(bc);
+  return std::atan2(area2, -beside);
 }
 
 /// How many fans the faces around a vertex form, joined across edges of exactly two opposite half-edges.

@@ -59,14 +59,17 @@ void add_samples(std::vector<OwnedScan>& scans, std::size_t self, std::vector<st
   OwnedScan& scan = scans[self];
   const Lattice& lattice = scan.surface->lattice;
   GridSurface g = scan.surface->surface();
-  std::vector<Vector3f> points = scan.surface->points;
-  for (std::size_t slot = 0; slot < scan.fused->samples.size(); ++slot) {
-    points[scan.fused->samples[slot]] = scan.fused->points[slot];
-  }
-  g.points = points;
-  std::vector<Vector3f> normals(points.size());
+  std::vector<Vector3f> points(fresh.size());
+  std::vector<Vector3f> normals(fresh.size());
   parallel_for_each_index(
-      normals.size(), [&](std::size_t i) { normals[i] = scan.surface->normal(i); }, 4096);
+      fresh.size(),
+      [&](std::size_t i) {
+        points[i] =
+            scan.fused->slot[i] == FusedSamples::kNone ? scan.surface->points[i] : scan.fused->point(i);
+        normals[i] = scan.surface->normal(i);
+      },
+      4096);
+  g.points = points;
   g.normals = normals;
   std::vector<std::uint8_t> kept = std::move(scan.kept);
   std::vector<std::uint8_t> cells = std::move(scan.cells);
@@ -75,11 +78,15 @@ void add_samples(std::vector<OwnedScan>& scans, std::size_t self, std::vector<st
   // A cell is at stake when one of its corners is new.
   std::vector<std::uint8_t> anew(fresh.size(), 0);
   const auto width = static_cast<std::size_t>(g.cols);
-  for (std::size_t i = 0; i < fresh.size(); ++i) {
-    kept[i] |= fresh[i];
-    anew[i] =
-        i + width + 1 < fresh.size() ? fresh[i] | fresh[i + 1] | fresh[i + width] | fresh[i + width + 1] : 0;
-  }
+  parallel_for_each_index(
+      fresh.size(),
+      [&](std::size_t i) {
+        kept[i] |= fresh[i];
+        anew[i] = i + width + 1 < fresh.size()
+                      ? fresh[i] | fresh[i + 1] | fresh[i + width] | fresh[i + width + 1]
+                      : 0;
+      },
+      16384);
   triangulate_cells_anew(g, kept, scan.surface->mirrored, grid, anew, cells);
   parallel_for_each_index(
       contest.any.size(),

@@ -22,37 +22,28 @@ bool may_see(const ScannerView& view, const Vector3f& p, const Vector3f& normal)
   return normal.dot(to_camera) > kMostSine;
 }
 
-/// Where p would lie if the grid went on as evenly as it does at a sample; that sample where it does not.
-std::size_t jump(const StitchSurface& to, std::size_t at, const Vector3f& p) {
-  constexpr float kMostSamples = 8.0F;
-  const auto width = static_cast<std::size_t>(to.lattice.cols);
-  const int row = to.lattice.sample_row(at);
-  const int col = to.lattice.sample_col(at);
-  if (row + 1 >= to.lattice.rows || col + 1 >= to.lattice.cols ||
-      (to.usable[at + 1] & to.usable[at + width]) == 0) {
-    return at;
+/// The step from one column (or row) to the next around a sample, over as many as noise leaves little of:
+/// `stride` apart in the arrays, the sample at `place` of `count`. Zero where it stands alone.
+Vector3f mean_step(const StitchSurface& to, std::size_t at, int place, int count, std::size_t stride) {
+  for (const int reach : {3, 1}) {
+    const auto jump = static_cast<std::size_t>(reach) * stride;
+    const bool after = place + reach < count && to.usable[at + jump] != 0;
+    const bool before = place >= reach && to.usable[at - jump] != 0;
+    if (after || before) {
+      const Vector3f along = to.points[after ? at + jump : at] - to.points[before ? at - jump : at];
+      return along / static_cast<float>((after ? reach : 0) + (before ? reach : 0));
+    }
   }
-  const Vector3f d = p - to.points[at];
-  const Vector3f u = to.points[at + 1] - to.points[at];
-  const Vector3f v = to.points[at + width] - to.points[at];
-  const float uu = u.squaredNorm(), uv = u.dot(v), vv = v.squaredNorm();
-  const float det = uu * vv - uv * uv;
-  if (!(det > 0.05F * uu * vv)) {
-    return at;
-  }
-  const float du = d.dot(u), dv = d.dot(v);
-  const float cols = (du * vv - dv * uv) / det;
-  const float rows = (dv * uu - du * uv) / det;
-  if (!(std::abs(cols) < kMostSamples && std::abs(rows) < kMostSamples)) {
-    return at;
-  }
-  constexpr auto nearest = [](float x) {
-    return static_cast<int>(x + kMostSamples + 0.5F) - static_cast<int>(kMostSamples);
-  };
-  const int r = std::clamp(row + nearest(rows), 0, to.lattice.rows - 1);
-  const int c = std::clamp(col + nearest(cols), 0, to.lattice.cols - 1);
-  const std::size_t there = static_cast<std::size_t>(r) * width + static_cast<std::size_t>(c);
-  return to.usable[there] != 0 && (to.points[there] - p).squaredNorm() < d.squaredNorm() ? there : at;
+  return Vector3f::Zero();
+}
+
+/// From where to walk: likely_sample(), if that is nearer to p than the start; else the start.
+std::size_t jump(const StitchSurface& to, const PairStart& start, const Vector3f& p) {
+  const std::int64_t there = likely_sample(start, to, p);
+  return there >= 0 && (to.points[static_cast<std::size_t>(there)] - p).squaredNorm() <
+                           (start.origin - p).squaredNorm()
+             ? static_cast<std::size_t>(there)
+             : static_cast<std::size_t>(start.sample);
 }
 
 /// From sample to sample of the grid towards p: the one at which no neighbour is nearer.
@@ -208,23 +199,65 @@ Pairs find_pairs(const StitchSurface& from, const StitchSurface& to, double reac
   return pairs;
 }
 
-std::int32_t pair_start(const StitchSurface& from, std::size_t node, const Pairs& pairs) {
-  std::int32_t start = pairs.match[node];
+PairStart pair_start(const StitchSurface& from, std::size_t node, const StitchSurface& to,
+                     const Pairs& pairs) {
+  PairStart start;
+  start.sample = pairs.match[node];
   const auto is_start = [&](std::size_t beside) {
-    start = pairs.match[beside];
-    return start >= 0;
+    start.sample = pairs.match[beside];
+    return start.sample >= 0;
   };
-  return start >= 0 || from.lattice.any_within(node, 1, is_start) ? start : -1;
+  if (start.sample < 0 && !from.lattice.any_within(node, 1, is_start)) {
+    start.sample = -1;
+    return start;
+  }
+  const auto at = static_cast<std::size_t>(start.sample);
+  const int row = to.lattice.sample_row(at);
+  const int col = to.lattice.sample_col(at);
+  start.origin = to.points[at];
+  start.row = static_cast<float>(row);
+  start.col = static_cast<float>(col);
+  const Vector3f u = mean_step(to, at, col, to.lattice.cols, 1);
+  const Vector3f v = mean_step(to, at, row, to.lattice.rows, static_cast<std::size_t>(to.lattice.cols));
+  const float uu = u.squaredNorm(), uv = u.dot(v), vv = v.squaredNorm();
+  const float det = uu * vv - uv * uv;
+  if (det > 0.05F * uu * vv) {
+    start.cols_per_mm = (u * vv - v * uv) / det;
+    start.rows_per_mm = (v * uu - u * uv) / det;
+  }
+  return start;
 }
 
-std::int64_t pair_of(const StitchSurface& from, std::size_t sample, std::int32_t start,
+bool may_pair(const StitchSurface& from, std::size_t sample, const StitchSurface& to, std::size_t other,
+              const Pairs& pairs) {
+  return (from.points[sample] - to.points[other]).squaredNorm() <= pairs.reach_mm * pairs.reach_mm &&
+         from.normal(sample).dot(to.normal(other)) > pairs.min_normal_cos;
+}
+
+std::int64_t likely_cell(const PairStart& start, const StitchSurface& to, const Vector3f& p) {
+  const auto [row, col] = start.place_of(p);
+  if (!(row >= 0 && col >= 0 && row < static_cast<float>(to.lattice.rows - 1) &&
+        col < static_cast<float>(to.lattice.cols - 1))) {
+    return -1;
+  }
+  return static_cast<std::int64_t>(row) * to.lattice.cols + static_cast<std::int64_t>(col);
+}
+
+std::int64_t likely_sample(const PairStart& start, const StitchSurface& to, const Vector3f& p) {
+  const auto [row, col] = start.place_of(p);
+  const auto r = static_cast<int>(std::clamp(row + 0.5F, 0.0F, static_cast<float>(to.lattice.rows - 1)));
+  const auto c = static_cast<int>(std::clamp(col + 0.5F, 0.0F, static_cast<float>(to.lattice.cols - 1)));
+  const std::size_t there =
+      static_cast<std::size_t>(r) * static_cast<std::size_t>(to.lattice.cols) + static_cast<std::size_t>(c);
+  return to.usable[there] != 0 ? static_cast<std::int64_t>(there) : -1;
+}
+
+std::int64_t pair_of(const StitchSurface& from, std::size_t sample, const PairStart& start,
                      const StitchSurface& to, const Pairs& pairs) {
   const Vector3f& p = from.points[sample];
   float distance2 = 0;
-  const std::size_t at = walk(to, jump(to, static_cast<std::size_t>(start), p), p, distance2);
-  const bool agrees = distance2 <= pairs.reach_mm * pairs.reach_mm &&
-                      from.normal(sample).dot(to.normal(at)) > pairs.min_normal_cos;
-  return agrees ? static_cast<std::int64_t>(at) : -1;
+  const std::size_t at = walk(to, jump(to, start, p), p, distance2);
+  return may_pair(from, sample, to, at, pairs) ? static_cast<std::int64_t>(at) : -1;
 }
 
 }  // namespace dubsar

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "triangulation/stitch_surface.h"
@@ -49,13 +50,38 @@ struct Pairs {
 [[nodiscard]] Pairs find_pairs(const StitchSurface& from, const StitchSurface& to, double reach_mm,
                                const PairingOptions& options);
 
-/// Where pair_of() sets out from for the samples of a node: a sample of the other scan, or -1 where the two
-/// do not overlap.
-[[nodiscard]] std::int32_t pair_start(const StitchSurface& from, std::size_t node, const Pairs& pairs);
+/// Where pair_of() sets out from for the samples of a node, and how the other grid goes on around there.
+struct PairStart {
+  std::int32_t sample = -1;  ///< of the other scan; -1 where the two do not overlap
+  Eigen::Vector3f origin{0, 0, 0};
+  float row = 0, col = 0;
+  Eigen::Vector3f rows_per_mm{0, 0, 0}, cols_per_mm{0, 0, 0};
+
+  /// Row and column that p would have if the grid went on evenly.
+  [[nodiscard]] std::pair<float, float> place_of(const Eigen::Vector3f& p) const {
+    const Eigen::Vector3f d = p - origin;
+    return {row + rows_per_mm.dot(d), col + cols_per_mm.dot(d)};
+  }
+};
+[[nodiscard]] PairStart pair_start(const StitchSurface& from, std::size_t node, const StitchSurface& to,
+                                   const Pairs& pairs);
+
+/// The cell of `to` in which p is likely to lie, by its first sample; -1 where there is none to name. Cheaper
+/// than pair_of(), and mostly right.
+[[nodiscard]] std::int64_t likely_cell(const PairStart& start, const StitchSurface& to,
+                                       const Eigen::Vector3f& p);
+
+/// The sample of `to` that is likely to be nearest to p, or -1.
+[[nodiscard]] std::int64_t likely_sample(const PairStart& start, const StitchSurface& to,
+                                         const Eigen::Vector3f& p);
+
+/// Whether two samples are near enough to each other, and look the same way.
+[[nodiscard]] bool may_pair(const StitchSurface& from, std::size_t sample, const StitchSurface& to,
+                            std::size_t other, const Pairs& pairs);
 
 /// The pair of one sample: the usable sample of `to` nearest to it within reach whose normal agrees, or -1.
-/// `start` >= 0 is its node's pair_start(). Depends on nothing but its arguments.
-[[nodiscard]] std::int64_t pair_of(const StitchSurface& from, std::size_t sample, std::int32_t start,
+/// `start` is its node's, with a sample. Depends on nothing but its arguments.
+[[nodiscard]] std::int64_t pair_of(const StitchSurface& from, std::size_t sample, const PairStart& start,
                                    const StitchSurface& to, const Pairs& pairs);
 
 }  // namespace dubsar

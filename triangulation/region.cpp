@@ -4,8 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <unordered_set>
 
 #include "core/parallel.h"
 
@@ -18,50 +16,71 @@ using Eigen::Vector3f;
 /// Of µ; measured on simulated tablets.
 constexpr float kSigmaOfInterpolated = 0.4F;
 constexpr std::size_t kGrain = 16384;
+constexpr std::uint32_t kNowhere = 0xffffffffU;
 
-/// Cells of a raster, to be asked about often and seldom with success.
+/// Cells of a raster over a box, as bits.
 class CellSet {
  public:
-  explicit CellSet(float cell_mm) : per_mm_(1.0F / cell_mm), maybe_(kBits / 64, 0) {}
-  void insert_around(const Vector3f& p) {
-    const auto [x, y, z] = cell_of(p);
-    for (int n = 0; n < 27; ++n) {
-      const std::uint64_t key = key_of(x + n % 3 - 1, y + n / 3 % 3 - 1, z + n / 9 - 1);
-      keys_.insert(key);
-      maybe_[bit_of(key) / 64] |= 1ULL << (bit_of(key) % 64);
+  CellSet(const Eigen::AlignedBox3f& box, float cell_mm) : low_(box.min()) {
+    constexpr float kMostPerAxis = 1000.0F;  // so that a million bits a layer are the most
+    cell_mm = std::max(cell_mm, box.sizes().maxCoeff() / kMostPerAxis);
+    per_mm_ = 1.0F / cell_mm;
+    for (int k = 0; k < 3; ++k) {
+      count_[k] = static_cast<int>(box.sizes()[k] * per_mm_) + 1;
+    }
+    bits_.assign((static_cast<std::size_t>(count_[0]) * count_[1] * count_[2] + 63) / 64, 0);
+  }
+  [[nodiscard]] float cell_mm() const { return 1.0F / per_mm_; }
+  [[nodiscard]] Eigen::Array3i cell_of(const Vector3f& p) const {
+    return ((p - low_) * per_mm_).array().max(0.0F).cast<int>().min(count_ - 1);
+  }
+  void insert(const Eigen::Array3i& cell) {
+    if ((cell >= 0).all() && (cell < count_).all()) {
+      const std::size_t bit = bit_of(cell);
+      bits_[bit / 64] |= std::uint64_t{1} << (bit % 64);
     }
   }
-  [[nodiscard]] bool contains(const Vector3f& p) const {
-    const auto [x, y, z] = cell_of(p);
-    const std::uint64_t key = key_of(x, y, z);
-    return (maybe_[bit_of(key) / 64] >> (bit_of(key) % 64) & 1ULL) != 0 && keys_.contains(key);
+  [[nodiscard]] bool contains(const Eigen::Array3i& cell) const {
+    const std::size_t bit = bit_of(cell);
+    return (bits_[bit / 64] >> (bit % 64) & 1U) != 0;
   }
 
  private:
-  static constexpr std::size_t kBits = std::size_t{1} << 20U;
-  [[nodiscard]] std::array<int, 3> cell_of(const Vector3f& p) const {
-    const auto cell = [&](float x) {
-      return static_cast<int>(std::clamp(std::floor(x * per_mm_), -1.0e6F, 1.0e6F));
-    };
-    return {cell(p.x()), cell(p.y()), cell(p.z())};
+  [[nodiscard]] std::size_t bit_of(const Eigen::Array3i& cell) const {
+    return (static_cast<std::size_t>(cell[2]) * static_cast<std::size_t>(count_[1]) +
+            static_cast<std::size_t>(cell[1])) *
+               static_cast<std::size_t>(count_[0]) +
+           static_cast<std::size_t>(cell[0]);
   }
-  [[nodiscard]] static std::uint64_t key_of(int x, int y, int z) {
-    const auto part = [](int c) { return static_cast<std::uint64_t>(c + (1 << 20)) & 0x1fffffU; };
-    return part(x) << 42U | part(y) << 21U | part(z);
-  }
-  [[nodiscard]] static std::size_t bit_of(std::uint64_t key) {
-    const std::uint64_t mixed = key * 0x9e3779b97f4a7c15ULL;
-    return mixed >> 44U;
-  }
-  float per_mm_;
-  std::vector<std::uint64_t> maybe_;
-  std::unordered_set<std::uint64_t> keys_;
+  Vector3f low_;
+  float per_mm_ = 1;
+  Eigen::Array3i count_{1, 1, 1};
+  std::vector<std::uint64_t> bits_;
 };
+
+/// Steps from a cell to all that hold a point within `reach` cells' edges of one in it.
+std::vector<Eigen::Array3i> steps_within(float reach) {
+  std::vector<Eigen::Array3i> steps;
+  const int most = static_cast<int>(reach) + 1;
+  for (int z = -most; z <= most; ++z) {
+    for (int y = -most; y <= most; ++y) {
+      for (int x = -most; x <= most; ++x) {
+        const Eigen::Array3i step(x, y, z);
+        const Eigen::Array3f apart = (step.abs() - 1).max(0).cast<float>();
+        if (apart.matrix().squaredNorm() <= reach * reach) {
+          steps.push_back(step);
+        }
+      }
+    }
+  }
+  return steps;
+}
 
 }  // namespace
 
 std::vector<std::uint8_t> vertices_near(const Draft& draft, std::span<const std::uint32_t> seeds) {
   constexpr float kAroundSpacings = 6.0F;
+  constexpr float kCellOfReach = 0.4F;
   float reach_mm = 0;
   for (const std::uint32_t v : seeds) {
     reach_mm = std::max(reach_mm, kAroundSpacings * draft.spacing_mm(v));
@@ -70,44 +89,118 @@ std::vector<std::uint8_t> vertices_near(const Draft& draft, std::span<const std:
   if (!(reach_mm > 0)) {
     return near;
   }
-  CellSet cells(reach_mm);
+  Eigen::AlignedBox3f box;
   for (const std::uint32_t v : seeds) {
-    cells.insert_around(draft.mesh.positions[v]);
+    box.extend(draft.mesh.positions[v]);
+  }
+  const Vector3f margin = Vector3f::Constant(reach_mm);
+  box = {box.min() - margin, box.max() + margin};
+  CellSet seeded(box, kCellOfReach * reach_mm);
+  CellSet cells = seeded;
+  const std::vector<Eigen::Array3i> steps = steps_within(reach_mm / cells.cell_mm());
+  for (const std::uint32_t v : seeds) {
+    const Eigen::Array3i cell = cells.cell_of(draft.mesh.positions[v]);
+    if (seeded.contains(cell)) {
+      continue;
+    }
+    seeded.insert(cell);
+    for (const Eigen::Array3i& step : steps) {
+      cells.insert(cell + step);
+    }
   }
   parallel_for_each_index(
-      near.size(), [&](std::size_t v) { near[v] = cells.contains(draft.mesh.positions[v]) ? 1 : 0; }, kGrain);
+      near.size(),
+      [&](std::size_t v) {
+        const Vector3f& p = draft.mesh.positions[v];
+        near[v] = box.contains(p) && cells.contains(cells.cell_of(p)) ? 1 : 0;
+      },
+      kGrain);
   return near;
 }
 
-Region::Region(const Draft& draft, std::span<const std::uint8_t> near) {
+std::vector<Region> take_regions(const Draft& draft, std::span<const std::uint8_t> near,
+                                 const Tiling& tiling) {
   const Mesh& mesh = draft.mesh;
-  using Faces = std::vector<std::uint32_t>;
-  faces_ = parallel_reduce_ordered(
-      mesh.faces.size(), kGrain, Faces{},
+  struct Entry {
+    std::uint32_t tile, item;
+  };
+  using Entries = std::vector<Entry>;
+  const auto join = [](Entries& total, const Entries& part) {
+    total.insert(total.end(), part.begin(), part.end());
+  };
+  std::vector<std::uint32_t> tile_of(mesh.positions.size());  // kNowhere: not near
+  const Entries vertices = parallel_reduce_ordered(
+      mesh.positions.size(), kGrain, Entries{},
       [&](std::size_t begin, std::size_t end) {
-        Faces found;
-        for (std::size_t i = begin; i < end; ++i) {
-          const Triangle& f = mesh.faces[i];
-          if ((near[f[0]] | near[f[1]] | near[f[2]]) != 0 && !is_gone(f)) {
-            found.push_back(static_cast<std::uint32_t>(i));
+        Entries found;
+        for (std::size_t v = begin; v < end; ++v) {
+          tile_of[v] = kNowhere;
+          if (near[v] != 0) {
+            tile_of[v] = static_cast<std::uint32_t>(tiling.tile_of(mesh.positions[v]));
+            found.push_back({tile_of[v], static_cast<std::uint32_t>(v)});
           }
         }
         return found;
       },
-      [](Faces& total, const Faces& part) { total.insert(total.end(), part.begin(), part.end()); });
-  std::vector<std::uint32_t> local_of(mesh.positions.size(), 0);
+      join);
+  const Entries faces = parallel_reduce_ordered(
+      mesh.faces.size(), kGrain, Entries{},
+      [&](std::size_t begin, std::size_t end) {
+        Entries found;
+        for (std::size_t i = begin; i < end; ++i) {
+          const Triangle& f = mesh.faces[i];
+          if ((near[f[0]] | near[f[1]] | near[f[2]]) == 0 || is_gone(f)) {
+            continue;
+          }
+          const std::uint32_t a = tile_of[f[0]], b = tile_of[f[1]], c = tile_of[f[2]];
+          if (a != kNowhere) {
+            found.push_back({a, static_cast<std::uint32_t>(i)});
+          }
+          if (b != kNowhere && b != a) {
+            found.push_back({b, static_cast<std::uint32_t>(i)});
+          }
+          if (c != kNowhere && c != a && c != b) {
+            found.push_back({c, static_cast<std::uint32_t>(i)});
+          }
+        }
+        return found;
+      },
+      join);
+  std::vector<Region> by_tile(tiling.size());
+  std::vector<std::uint32_t> local_of(mesh.positions.size());
+  for (const auto& [tile, v] : vertices) {
+    local_of[v] = static_cast<std::uint32_t>(by_tile[tile].vertices_.size());
+    by_tile[tile].vertices_.push_back(v);
+  }
+  for (const auto& [tile, face] : faces) {
+    by_tile[tile].faces_.push_back(face);
+  }
+  parallel_for_each_index(
+      by_tile.size(),
+      [&](std::size_t tile) { by_tile[tile].fill(draft, local_of, tile_of, tiling.box(tile), tile); }, 1);
+  std::erase_if(by_tile, [](const Region& region) { return region.faces_.empty(); });
+  return by_tile;
+}
+
+void Region::fill(const Draft& draft, std::span<const std::uint32_t> local_of,
+                  std::span<const std::uint32_t> tile_of, const Eigen::AlignedBox3f& room, std::size_t tile) {
+  const Mesh& mesh = draft.mesh;
+  tile_ = tile;
+  whole_ = vertices_.size();
+  const auto is_whole = [&](std::uint32_t v) { return tile_of[v] == tile; };
+  std::vector<std::uint32_t> rest;
   for (const std::uint32_t i : faces_) {
     for (const std::uint32_t v : mesh.faces[i]) {
-      local_of[v] = 1;
+      if (!is_whole(v)) {
+        rest.push_back(v);
+      }
     }
   }
-  for (std::uint32_t v = 0; v < local_of.size(); ++v) {
-    if (local_of[v] != 0) {
-      local_of[v] = static_cast<std::uint32_t>(vertices_.size());
-      vertices_.push_back(v);
-    }
-  }
+  std::sort(rest.begin(), rest.end());
+  rest.erase(std::unique(rest.begin(), rest.end()), rest.end());
+  vertices_.insert(vertices_.end(), rest.begin(), rest.end());
   const std::size_t count = vertices_.size();
+  sheet.room = room;
   sheet.positions.resize(count);
   sheet.normals.resize(count);
   sheet.spacing_mm.resize(count);
@@ -119,25 +212,38 @@ Region::Region(const Draft& draft, std::span<const std::uint8_t> near) {
         sheet.positions[k] = mesh.positions[v];
         sheet.normals[k] = mesh.normals[v];
         sheet.spacing_mm[k] = draft.spacing_mm(v);
-        sheet.whole[k] = near[v];
+        sheet.whole[k] = k < whole_ ? 1 : 0;
       },
       kGrain);
   sheet.faces.resize(faces_.size());
-  for (std::size_t k = 0; k < faces_.size(); ++k) {
-    const Triangle& f = mesh.faces[faces_[k]];
-    sheet.faces[k] = {local_of[f[0]], local_of[f[1]], local_of[f[2]]};
-  }
+  parallel_for_each_index(
+      faces_.size(),
+      [&](std::size_t k) {
+        for (std::size_t corner = 0; corner < 3; ++corner) {
+          const std::uint32_t v = mesh.faces[faces_[k]][corner];
+          const auto among_rest = [&] {
+            return std::lower_bound(rest.begin(), rest.end(), v) - rest.begin();
+          };
+          sheet.faces[k][corner] =
+              is_whole(v) ? local_of[v]
+                          : static_cast<std::uint32_t>(whole_) + static_cast<std::uint32_t>(among_rest());
+        }
+      },
+      kGrain);
 }
 
 std::uint32_t Region::local(std::uint32_t vertex) const {
-  return static_cast<std::uint32_t>(std::lower_bound(vertices_.begin(), vertices_.end(), vertex) -
-                                    vertices_.begin());
+  const auto end = vertices_.begin() + static_cast<std::ptrdiff_t>(whole_);
+  return static_cast<std::uint32_t>(std::lower_bound(vertices_.begin(), end, vertex) - vertices_.begin());
 }
 
-void Region::erase(std::span<const std::uint8_t> gone, Draft& draft) {
+std::size_t Region::erase(std::span<const std::uint8_t> gone, Draft& draft) {
   std::size_t out = 0;
-  for (std::size_t k = 0; k < faces_.size(); ++k) {
-    if (gone[k] != 0) {
+  const std::size_t before = faces_.size();
+  for (std::size_t k = 0; k < before; ++k) {
+    const bool inside = std::all_of(sheet.faces[k].begin(), sheet.faces[k].end(),
+                                    [&](std::uint32_t v) { return sheet.has_room(sheet.positions[v], 0); });
+    if (gone[k] != 0 && inside) {
       Triangle& f = draft.mesh.faces[faces_[k]];
       for (const std::uint32_t v : f) {
         draft.near_rim[v] = Draft::kAtRim;
@@ -150,6 +256,7 @@ void Region::erase(std::span<const std::uint8_t> gone, Draft& draft) {
   }
   sheet.faces.resize(out);
   faces_.resize(out);
+  return before - out;
 }
 
 void Region::put_back(Draft& draft, std::size_t interpolated) const {

@@ -18,6 +18,8 @@ using Eigen::Vector2f;
 using Eigen::Vector3f;
 
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+/// How far around the middle of an edge a choice looks, × the longest edge.
+constexpr float kReachOfMost = 1.25F;
 
 struct Limits {
   float most_edge_factor;
@@ -52,6 +54,19 @@ float least_sine(const Vector3f& a, const Vector3f& b, const Vector3f& c) {
   return bc * ca > 0 ? area2 / (bc * ca) : 0.0F;
 }
 
+/// How far around the middle of an edge a choice looks. The third corner lies within the longest edge of both
+/// ends; an open edge of up to 1.5 times that which crosses the triangle has an end in here.
+float reach_mm(float mu, float length, float most_edge_factor) {
+  return std::max(kReachOfMost * most_edge_factor * mu, 0.51F * length);
+}
+
+bool has_room(const Sheet& sheet, std::uint32_t a, std::uint32_t b, float most_edge_factor) {
+  const Vector3f& pa = sheet.positions[a];
+  const Vector3f& pb = sheet.positions[b];
+  return sheet.has_room(0.5F * (pa + pb), reach_mm(std::max(sheet.spacing_mm[a], sheet.spacing_mm[b]),
+                                                   (pb - pa).norm(), most_edge_factor));
+}
+
 struct Choice {
   std::uint32_t c = kNone;
   float key = std::numeric_limits<float>::max();  ///< smaller goes first
@@ -81,9 +96,10 @@ class Chooser {
     const Vector3f free_side = along.cross(n);
     const float mu = std::max(sheet.spacing_mm[a], sheet.spacing_mm[b]);
     const float most = limits_.most_edge_factor * mu;
-    // The third corner lies within `most` of both ends; an open edge of up to 1.5 times that which crosses
-    // the triangle has an end in here.
-    const float radius = std::max(1.25F * most, 0.51F * length);
+    const float radius = reach_mm(mu, length, limits_.most_edge_factor);
+    if (!sheet.has_room(middle, radius)) {
+      return {};
+    }
     front_->near(middle, radius, near_);
 
     flat_.resize(near_.size());
@@ -295,7 +311,7 @@ class Advance {
     box.extend(sheet.positions[b]);
     box.extend(sheet.positions[c]);
     const float margin =
-        1.25F * limits_.most_edge_factor * std::max(sheet.spacing_mm[a], sheet.spacing_mm[b]);
+        kReachOfMost * limits_.most_edge_factor * std::max(sheet.spacing_mm[a], sheet.spacing_mm[b]);
     box.min().array() -= margin;
     box.max().array() += margin;
     return box;
@@ -316,6 +332,14 @@ std::size_t close_seams(Front& front, const SeamOptions& options) {
                          static_cast<float>(std::sin(options.least_angle_rad)),
                          static_cast<float>(options.min_normal_cos)})
       .run(front.open_edges());
+}
+
+std::vector<Front::Edge> edges_without_room(const Front& front, const SeamOptions& options) {
+  std::vector<Front::Edge> edges = front.open_edges();
+  std::erase_if(edges, [&](const Front::Edge& edge) {
+    return has_room(front.sheet(), edge.a, edge.b, static_cast<float>(options.most_edge_factor));
+  });
+  return edges;
 }
 
 std::size_t close_openings(Front& front, const std::vector<std::vector<std::uint32_t>>& openings,

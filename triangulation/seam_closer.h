@@ -22,6 +22,9 @@ struct SeamOptions {
 /// the measured normals, or use a half-edge twice. Returns the faces added.
 std::size_t close_seams(Front& front, const SeamOptions& options);
 
+/// Open edges at which close_seams() had no room to choose.
+[[nodiscard]] std::vector<Front::Edge> edges_without_room(const Front& front, const SeamOptions& options);
+
 /// The same for the given openings only (walks from Front::openings()), with angles down to least_angle_rad
 /// and longer edges.
 std::size_t close_openings(Front& front, const std::vector<std::vector<std::uint32_t>>& openings,

@@ -40,6 +40,7 @@ bool passes_through(const Vector3d& p, const Vector3d& q, const Corners& t) {
 }
 
 using Positions = std::span<const Vector3f>;
+constexpr std::uint32_t kNoFace = 0xffffffffU;
 using Face = std::array<std::uint32_t, 3>;
 
 Corners corners_of(Positions positions, const Face& f) {
@@ -139,22 +140,7 @@ class FaceCells {
           }
         },
         4096);
-    std::size_t cells = 0;
-    for (std::size_t k = 0; k < entries_.size(); ++k) {
-      cells += k == 0 || entries_[k].first != entries_[k - 1].first ? 1 : 0;
-    }
-    cells_.assign(std::bit_ceil(2 * cells + 16), {});
-    for (std::size_t k = 0; k < entries_.size();) {
-      std::size_t end = k;
-      std::uint32_t part = this->part(k);
-      for (; end < entries_.size() && entries_[end].first == entries_[k].first; ++end) {
-        part = this->part(end) == part ? part : 0;
-      }
-      cells_[slot_of(entries_[k].first)] = {entries_[k].first, static_cast<std::uint32_t>(k),
-                                            static_cast<std::uint32_t>(end), part};
-      levels_ |= 1ULL << (entries_[k].first >> kLevelShift);
-      k = end;
-    }
+    lay_cells();
   }
 
   [[nodiscard]] int level_of(const Eigen::AlignedBox3f& box) const {
@@ -165,41 +151,26 @@ class FaceCells {
     return level;
   }
 
-  [[nodiscard]] std::size_t size() const { return entries_.size(); }
-  /// The faces in the order of their cells.
-  [[nodiscard]] std::uint32_t face(std::size_t at) const { return entries_[at].second; }
+  /// Cells that hold a face.
+  [[nodiscard]] std::size_t size() const { return cells_.size(); }
 
-  /// visit(face) for those of other parts whose boxes touch that of face(at), each pair once.
+  /// visit(face, other face) for the faces of a cell and those of other parts whose boxes touch theirs; over
+  /// all cells each pair once, those of one face one after the other. `beside` is room to work in.
   template <class Visit>
-  void for_each_touching(std::size_t at, const Visit& visit) const {
-    const Eigen::AlignedBox3f& box = boxes_[at];
-    const std::uint64_t own_key = entries_[at].first;
-    const std::uint32_t part = this->part(at);
-    const int own_level = static_cast<int>(own_key >> kLevelShift);
-    for (int level = own_level; level <= kMostLevel; ++level) {
-      if ((levels_ >> static_cast<unsigned>(level) & 1ULL) == 0) {
-        continue;
-      }
-      const float half = 0.5F * cell_mm_[static_cast<std::size_t>(level)];
-      const auto from = cell_of(box.min() - Vector3f::Constant(half), level);
-      const auto to = cell_of(box.max() + Vector3f::Constant(half), level);
-      for (std::int64_t z = from[2]; z <= to[2]; ++z) {
-        for (std::int64_t y = from[1]; y <= to[1]; ++y) {
-          for (std::int64_t x = from[0]; x <= to[0]; ++x) {
-            const std::uint64_t key = key_of(level, {x, y, z});
-            if (key < own_key) {
-              continue;  // its faces have met this one already
-            }
-            const Cell& cell = cells_[slot_of(key)];
-            if (cell.first == kNone || (part != 0 && cell.part == part)) {
-              continue;
-            }
-            for (std::size_t k = std::max<std::size_t>(cell.first, key == own_key ? at + 1 : 0); k < cell.end;
-                 ++k) {
-              if ((part == 0 || parts_[k] != part) && box.intersects(boxes_[k])) {
-                visit(entries_[k].second);
-              }
-            }
+  void for_each_touching(std::size_t at, std::vector<std::uint32_t>& beside, const Visit& visit) const {
+    const Cell& own = cells_[at];
+    find_cells_beside(own, beside);
+    for (std::uint32_t k = own.first; k < own.end; ++k) {
+      const Eigen::AlignedBox3f& box = boxes_[k];
+      const std::uint32_t part = this->part(k);
+      for (const std::uint32_t other : beside) {
+        const Cell& cell = cells_[other];
+        if ((part != 0 && cell.part == part) || !box.intersects(cell.box)) {
+          continue;
+        }
+        for (std::uint32_t m = other == at ? k + 1 : cell.first; m < cell.end; ++m) {
+          if (box.intersects(boxes_[m]) && (part == 0 || parts_[m] != part)) {
+            visit(entries_[k].second, entries_[m].second);
           }
         }
       }
@@ -215,10 +186,65 @@ class FaceCells {
   using Place = std::array<std::int64_t, 3>;
   struct Cell {
     std::uint64_t key = 0;
-    std::uint32_t first = kNone;  ///< of its entries
+    std::uint32_t first = 0;  ///< of its entries
     std::uint32_t end = 0;
-    std::uint32_t part = 0;  ///< of all of them, or 0
+    std::uint32_t part = 0;   ///< of all of them, or 0
+    Eigen::AlignedBox3f box;  ///< of them all
   };
+
+  void lay_cells() {
+    for (std::size_t k = 0; k < entries_.size(); ++k) {
+      if (k == 0 || entries_[k].first != entries_[k - 1].first) {
+        cells_.push_back({entries_[k].first, static_cast<std::uint32_t>(k), 0, 0, {}});
+        levels_ |= 1ULL << (entries_[k].first >> kLevelShift);
+      }
+    }
+    parallel_for_each_index(
+        cells_.size(),
+        [&](std::size_t c) {
+          Cell& cell = cells_[c];
+          cell.end =
+              c + 1 < cells_.size() ? cells_[c + 1].first : static_cast<std::uint32_t>(entries_.size());
+          cell.part = part(cell.first);
+          for (std::uint32_t k = cell.first; k < cell.end; ++k) {
+            cell.part = part(k) == cell.part ? cell.part : 0;
+            cell.box.extend(boxes_[k]);
+          }
+        },
+        4096);
+    slots_.assign(std::bit_ceil(2 * cells_.size() + 16), kNone);
+    for (std::size_t c = 0; c < cells_.size(); ++c) {
+      slots_[slot_of(cells_[c].key)] = static_cast<std::uint32_t>(c);
+    }
+  }
+
+  /// The cells, this one and those behind it, in which something may touch what it holds.
+  void find_cells_beside(const Cell& own, std::vector<std::uint32_t>& beside) const {
+    beside.clear();
+    for (auto level = static_cast<int>(own.key >> kLevelShift); level <= kMostLevel; ++level) {
+      if ((levels_ >> static_cast<unsigned>(level) & 1ULL) == 0) {
+        continue;
+      }
+      const float half = 0.5F * cell_mm_[static_cast<std::size_t>(level)];
+      const auto from = cell_of(own.box.min() - Vector3f::Constant(half), level);
+      const auto to = cell_of(own.box.max() + Vector3f::Constant(half), level);
+      for (std::int64_t z = from[2]; z <= to[2]; ++z) {
+        for (std::int64_t y = from[1]; y <= to[1]; ++y) {
+          for (std::int64_t x = from[0]; x <= to[0]; ++x) {
+            const std::uint64_t key = key_of(level, {x, y, z});
+            if (key < own.key) {
+              continue;  // its faces have met these already
+            }
+            const std::uint32_t cell = slots_[slot_of(key)];
+            if (cell != kNone && own.box.intersects(cells_[cell].box) &&
+                (own.part == 0 || cells_[cell].part != own.part)) {
+              beside.push_back(cell);
+            }
+          }
+        }
+      }
+    }
+  }
 
   [[nodiscard]] Place cell_of(const Vector3f& p, int level) const {
     const float cell = cell_mm_[static_cast<std::size_t>(level)];
@@ -237,9 +263,9 @@ class FaceCells {
   [[nodiscard]] std::size_t slot_of(std::uint64_t key) const {
     std::uint64_t mixed = key * 0x9e3779b97f4a7c15ULL;
     mixed ^= mixed >> 32U;
-    std::size_t slot = mixed & (cells_.size() - 1);
-    while (cells_[slot].first != kNone && cells_[slot].key != key) {
-      slot = (slot + 1) & (cells_.size() - 1);
+    std::size_t slot = mixed & (slots_.size() - 1);
+    while (slots_[slot] != kNone && cells_[slots_[slot]].key != key) {
+      slot = (slot + 1) & (slots_.size() - 1);
     }
     return slot;
   }
@@ -252,7 +278,8 @@ class FaceCells {
   std::vector<std::pair<std::uint64_t, std::uint32_t>> entries_;
   std::vector<Eigen::AlignedBox3f> boxes_;  ///< by entry
   std::vector<std::uint32_t> parts_;        ///< by entry; empty: none are known
-  std::vector<Cell> cells_;                 ///< a power of two
+  std::vector<Cell> cells_;                 ///< by key
+  std::vector<std::uint32_t> slots_;        ///< of cells_, by hash; a power of two
   std::uint64_t levels_ = 0;
 };
 
@@ -332,13 +359,18 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> self_intersections(
   const FaceCells cells(positions, all_faces, faces, part_of_face, extent.box.min(), smallest_mm);
   using Pairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
   Pairs out = parallel_reduce_ordered(
-      cells.size(), 4096, Pairs{},
+      cells.size(), 256, Pairs{},
       [&](std::size_t begin, std::size_t end) {
         Pairs found;
-        for (std::size_t k = begin; k < end; ++k) {
-          const std::uint32_t a = cells.face(k);
-          const FacePlane plane(positions, all_faces[a]);
-          cells.for_each_touching(k, [&](std::uint32_t b) {
+        std::vector<std::uint32_t> beside;
+        std::uint32_t of_plane = kNoFace;
+        FacePlane plane;
+        for (std::size_t cell = begin; cell < end; ++cell) {
+          cells.for_each_touching(cell, beside, [&](std::uint32_t a, std::uint32_t b) {
+            if (a != of_plane) {
+              plane = FacePlane(positions, all_faces[a]);
+              of_plane = a;
+            }
             if (cut(positions, all_faces[a], plane, all_faces[b])) {
               found.push_back(std::minmax(a, b));
             }

@@ -93,7 +93,8 @@ void compare(const Setup& setup, const sim::FrameOptions& optics, int frames, bo
               ambient_frames ? "ambient frames" : "no ambient frames", bound_um);
   std::printf("  %-9s %9s %9s %9s %8s %9s %9s %8s %8s\n", "method", "rms px", "bias px", "out >1px", "good",
               "depth um", "bias um", "out", "us/frame");
-  for (const auto& [method, name] : {std::pair{StripeMethod::kCentroid, "centroid"},
+  for (const auto& [method, name] : {std::pair{StripeMethod::kAdaptive, "adaptive"},
+                                     {StripeMethod::kCentroid, "centroid"},
                                      {StripeMethod::kGaussian, "gaussian"},
                                      {StripeMethod::kSteger, "steger"}}) {
     StripeOptions options;

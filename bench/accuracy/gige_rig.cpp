@@ -3,8 +3,8 @@
 // The whole way at full size: frames of a simulated rig as GigE Vision packets on a loopback to the aravis
 // driver, a stage behind an emulated USB port that moves through, by `rig:` to a grid, against the true
 // surface.
-//   dubsar-gige-rig [--method steger|gaussian|centroid] [--rows N] [--rate HZ] [--contrast C …] [--f-number
-//   N] [--loss SHARE]
+//   dubsar-gige-rig [--method adaptive|steger|gaussian|centroid] [--rows N] [--rate HZ] [--contrast C …]
+//   [--f-number N] [--loss SHARE]
 
 #include <CLI/CLI.hpp>
 #include <chrono>
@@ -91,7 +91,7 @@ int run(int argc, char** argv) {
   app.add_option("--f-number", plan.optics.f_number);
   app.add_option("--loss", plan.loss, "Share of the packets that are lost")->check(CLI::Range(0.0, 0.2));
   app.add_option("--method", plan.method, "Of finding the stripe")
-      ->check(CLI::IsMember({"steger", "gaussian", "centroid"}));
+      ->check(CLI::IsMember({"adaptive", "steger", "gaussian", "centroid"}));
   CLI11_PARSE(app, argc, argv);
   std::string why;
   test::PeerProcess* const stage = test::enter_emulated_machine(argv, why);

@@ -19,6 +19,7 @@
 #include "formats/mesh_io.h"
 #include "station/analysis.h"
 #include "station/command/analyze.h"
+#include "station/command/outputs.h"
 #include "station/done_stamp.h"
 #include "station/field_pictures.h"
 
@@ -300,6 +301,10 @@ std::filesystem::path corrections_of(const AnalyzeArguments& arguments) {
                                        : std::filesystem::path(arguments.corrections);
 }
 
+std::vector<std::string> written_by(const AnalyzeArguments& arguments) {
+  return {arguments.out, arguments.mesh_out, arguments.pictures, arguments.svg, arguments.invariants};
+}
+
 void add_analyze_options(CLI::App& verb, AnalyzeArguments& arguments) {
   verb.add_option("mesh", arguments.in, "PLY, OBJ, STL or GLB, faults and all")->required();
   verb.add_option("-o,--out", arguments.out, "wedges.json")->required();
@@ -346,8 +351,10 @@ void add_analyze(CLI::App& app, Action& chosen) {
   CLI::App* verb = app.add_subcommand("analyze", "Every wedge of a mesh, measured");
   const auto arguments = std::make_shared<AnalyzeArguments>();
   add_analyze_options(*verb, *arguments);
-  verb->callback(
-      [&chosen, arguments] { chosen = [arguments](CommandContext& c) { return analyze(*arguments, c); }; });
+  verb->callback([&chosen, arguments] {
+    chosen = outside_sessions(written_by(*arguments),
+                              [arguments](CommandContext& c) { return analyze(*arguments, c); });
+  });
 }
 
 }  // namespace dubsar

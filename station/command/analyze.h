@@ -34,6 +34,9 @@ struct AnalyzeArguments {
       false;  ///< the last of `corrected` is new: where it cannot be made, nothing is changed
 };
 
+/// Every file and folder that the analysis writes.
+[[nodiscard]] std::vector<std::string> written_by(const AnalyzeArguments& arguments);
+
 void add_analyze_options(CLI::App& verb, AnalyzeArguments& arguments);
 
 /// Where the corrections lie that the analysis goes by.

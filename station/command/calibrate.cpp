@@ -12,6 +12,7 @@
 #include "station/calibration_run.h"
 #include "station/command/calibrate.h"
 #include "station/command/command.h"
+#include "station/command/outputs.h"
 
 namespace dubsar {
 
@@ -150,7 +151,8 @@ void add_calibrate(CLI::App& app, Action& chosen) {
     if (options->source.empty() && options->print.empty()) {
       throw CLI::RequiredError("source");
     }
-    chosen = [options](CommandContext& c) { return calibrate(*options, c); };
+    chosen = outside_sessions({options->out, options->print},
+                              [options](CommandContext& c) { return calibrate(*options, c); });
   });
 }
 

@@ -12,6 +12,7 @@
 #include "acquisition/session_store.h"
 #include "formats/atomic_file.h"
 #include "station/command/command.h"
+#include "station/command/outputs.h"
 #include "station/command/terminal.h"
 #include "station/done_stamp.h"
 #include "station/package.h"
@@ -186,7 +187,8 @@ void add_export(CLI::App& app, Action& chosen) {
   verb->add_flag("--force", arguments->force,
                  "replace a package that lies there already, done before or not");
   verb->callback([&chosen, arguments] {
-    chosen = [arguments](CommandContext& c) { return export_session(*arguments, c); };
+    chosen = outside_sessions({arguments->to},
+                              [arguments](CommandContext& c) { return export_session(*arguments, c); });
   });
 }
 

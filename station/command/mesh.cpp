@@ -13,6 +13,7 @@
 #include "formats/mesh_io.h"
 #include "formats/wedges_json.h"
 #include "station/command/command.h"
+#include "station/command/outputs.h"
 #include "station/command/place_option.h"
 #include "station/mesh_json.h"
 #include "station/section_file.h"
@@ -164,8 +165,9 @@ void add_mesh(CLI::App& app, Action& chosen) {
   convert_verb->add_option("in", options->in)->required();
   convert_verb->add_option("out", options->out)->required();
   convert_verb->fallthrough();
-  convert_verb->callback(
-      [&chosen, options] { chosen = [options](CommandContext& c) { return convert(*options, c); }; });
+  convert_verb->callback([&chosen, options] {
+    chosen = outside_sessions({options->out}, [options](CommandContext& c) { return convert(*options, c); });
+  });
   CLI::App* section_verb = verb->add_subcommand(
       "section", "The profile of a cut between two places of the surface; status 1 when nothing is cut");
   section_verb->add_option("mesh", options->in, "PLY, OBJ, STL or GLB")->required();
@@ -175,8 +177,9 @@ void add_mesh(CLI::App& app, Action& chosen) {
       ->default_val("0,0,1");
   section_verb->add_option("-o,--out", options->out, "profile.csv or profile.svg, in mm, 1:1")->required();
   section_verb->fallthrough();
-  section_verb->callback(
-      [&chosen, options] { chosen = [options](CommandContext& c) { return section(*options, c); }; });
+  section_verb->callback([&chosen, options] {
+    chosen = outside_sessions({options->out}, [options](CommandContext& c) { return section(*options, c); });
+  });
   CLI::App* part_verb = verb->add_subcommand(
       "part", "What a selection kept in the viewer holds: a mesh, or with --wedges a table");
   part_verb->add_option("mesh", options->in, "PLY, OBJ, STL or GLB")->required();
@@ -186,8 +189,9 @@ void add_mesh(CLI::App& app, Action& chosen) {
   part_verb->add_option("--wedges", options->wedges, "wedges.json: write the selected ones as CSV");
   part_verb->add_option("-o,--out", options->out, "part.ply, or wedges.csv")->required();
   part_verb->fallthrough();
-  part_verb->callback(
-      [&chosen, options] { chosen = [options](CommandContext& c) { return part(*options, c); }; });
+  part_verb->callback([&chosen, options] {
+    chosen = outside_sessions({options->out}, [options](CommandContext& c) { return part(*options, c); });
+  });
   for (CLI::App* sub : {check_verb, convert_verb, section_verb, part_verb}) {
     sub->add_option("--unit", options->unit, "what the file's numbers are")
         ->check(CLI::IsMember({"m", "mm", "um"}));

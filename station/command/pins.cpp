@@ -14,6 +14,7 @@
 #include "formats/mesh_io.h"
 #include "planning/pin_layout.h"
 #include "station/command/command.h"
+#include "station/command/outputs.h"
 #include "station/command/size_option.h"
 
 namespace dubsar {
@@ -165,8 +166,10 @@ void add_pins(CLI::App& app, Action& chosen) {
                    "degrees between laser and camera; 0: one viewpoint")
       ->check(CLI::Range(0.0, 80.0));
   verb->fallthrough();
-  verb->callback(
-      [&chosen, arguments] { chosen = [arguments](CommandContext& c) { return pins(*arguments, c); }; });
+  verb->callback([&chosen, arguments] {
+    chosen =
+        outside_sessions({arguments->out}, [arguments](CommandContext& c) { return pins(*arguments, c); });
+  });
 }
 
 }  // namespace dubsar

@@ -13,6 +13,7 @@
 #include "formats/red_map_json.h"
 #include "formats/states_ply.h"
 #include "station/command/command.h"
+#include "station/command/outputs.h"
 #include "station/command/scan_set_options.h"
 #include "station/command/sign_off_words.h"
 #include "station/offline.h"
@@ -220,8 +221,10 @@ void add_plan(CLI::App& app, Action& chosen) {
   verb->add_option("--page", arguments->page, "write the checklist as a page for people (HTML) here");
   verb->add_option("--states", arguments->states,
                    "write what has become of every sample into this folder, a PLY for each scan");
-  verb->callback(
-      [&chosen, arguments] { chosen = [arguments](CommandContext& c) { return plan(*arguments, c); }; });
+  verb->callback([&chosen, arguments] {
+    chosen = outside_sessions({arguments->set.out, arguments->page, arguments->states},
+                              [arguments](CommandContext& c) { return plan(*arguments, c); });
+  });
 }
 
 }  // namespace dubsar

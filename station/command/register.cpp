@@ -12,6 +12,7 @@
 #include "formats/atomic_file.h"
 #include "formats/poses_json.h"
 #include "station/command/command.h"
+#include "station/command/outputs.h"
 #include "station/command/scan_set_options.h"
 #include "station/offline.h"
 
@@ -101,7 +102,8 @@ void add_register(CLI::App& app, Action& chosen) {
   verb->add_option("--threads", arguments->threads, "at most; the result does not depend on it")
       ->check(CLI::Range(1, 1024));
   verb->callback([&chosen, arguments] {
-    chosen = [arguments](CommandContext& c) { return register_all(*arguments, c); };
+    chosen = outside_sessions({arguments->out},
+                              [arguments](CommandContext& c) { return register_all(*arguments, c); });
   });
 }
 

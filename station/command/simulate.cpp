@@ -17,6 +17,7 @@
 #include "sim/scanner.h"
 #include "sim/tablet.h"
 #include "station/command/command.h"
+#include "station/command/outputs.h"
 #include "station/command/simulate_rig.h"
 #include "station/tablet_file.h"
 
@@ -194,8 +195,10 @@ void add_simulate(CLI::App& app, Action& chosen) {
       ->check(CLI::Range(0.0, 1.0));
   tablet->add_option("--damage", options->damage, "fractures, erosion, dirt and cracks, 0 none to 1 badly")
       ->check(CLI::Range(0.0, 1.0));
-  tablet->callback(
-      [&chosen, options] { chosen = [options](CommandContext& c) { return simulate_tablet(*options, c); }; });
+  tablet->callback([&chosen, options] {
+    chosen = outside_sessions({options->out},
+                              [options](CommandContext& c) { return simulate_tablet(*options, c); });
+  });
 
   CLI::App* scans =
       verb->add_subcommand("scans", "Range grids of a tablet: scan_000.ply … and truth_poses.json");
@@ -208,8 +211,10 @@ void add_simulate(CLI::App& app, Action& chosen) {
       ->capture_default_str();
   scans->add_flag("--pins", options->pins,
                   "fifteen pins around the rim; writes pins.json, as an operator clicks them");
-  scans->callback(
-      [&chosen, options] { chosen = [options](CommandContext& c) { return simulate_scans(*options, c); }; });
+  scans->callback([&chosen, options] {
+    chosen = outside_sessions({options->out},
+                              [options](CommandContext& c) { return simulate_scans(*options, c); });
+  });
 
   add_simulate_rig(*verb, chosen);
 

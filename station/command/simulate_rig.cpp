@@ -7,6 +7,7 @@
 
 #include "formats/calibration_json.h"
 #include "station/command/command.h"
+#include "station/command/outputs.h"
 #include "station/command/simulate_rig.h"
 #include "station/rig_pictures.h"
 
@@ -71,8 +72,10 @@ void add_simulate_rig(CLI::App& simulate, Action& chosen) {
   verb->add_option("--seed", pictures.seed, "the same seed gives the same bytes")->capture_default_str();
   verb->add_option("-o,--out", options->out, "folder")->required();
   verb->fallthrough();
-  verb->callback(
-      [&chosen, options] { chosen = [options](CommandContext& c) { return simulate_rig(*options, c); }; });
+  verb->callback([&chosen, options] {
+    chosen =
+        outside_sessions({options->out}, [options](CommandContext& c) { return simulate_rig(*options, c); });
+  });
 }
 
 }  // namespace dubsar

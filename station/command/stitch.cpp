@@ -14,6 +14,7 @@
 #include "formats/mesh_io.h"
 #include "formats/poses_json.h"
 #include "station/command/command.h"
+#include "station/command/outputs.h"
 #include "station/command/scan_set_options.h"
 #include "station/mesh_json.h"
 #include "station/offline.h"
@@ -150,7 +151,8 @@ void add_stitch(CLI::App& app, Action& chosen) {
   arguments->add_to(*verb, true);
   verb->add_option("-o,--out", arguments->out, "the mesh: PLY, OBJ, STL or GLB")->required();
   verb->callback([&chosen, arguments] {
-    chosen = [arguments](CommandContext& c) { return stitch_all(*arguments, c); };
+    chosen = outside_sessions({arguments->out},
+                              [arguments](CommandContext& c) { return stitch_all(*arguments, c); });
   });
 }
 

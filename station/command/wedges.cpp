@@ -7,12 +7,14 @@
 #include <algorithm>
 #include <cstdio>
 #include <memory>
+#include <utility>
 
 #include "core/units.h"
 #include "formats/corrections_json.h"
 #include "formats/mesh_io.h"
 #include "formats/wedges_json.h"
 #include "station/command/analyze.h"
+#include "station/command/outputs.h"
 #include "station/command/place_option.h"
 #include "station/correction_region.h"
 #include "station/selection_store.h"
@@ -187,8 +189,12 @@ void add_wedges(CLI::App& app, Action& chosen) {
   correct_verb->add_flag("--undo", arguments->undo, "takes the last correction back");
   correct_verb->add_flag("--list", arguments->list, "says what was corrected so far");
   correct_verb->fallthrough();
-  correct_verb->callback(
-      [&chosen, arguments] { chosen = [arguments](CommandContext& c) { return correct(*arguments, c); }; });
+  correct_verb->callback([&chosen, arguments] {
+    std::vector<std::string> written = written_by(arguments->analyze);
+    written.push_back(arguments->analyze.corrections);
+    chosen = outside_sessions(std::move(written),
+                              [arguments](CommandContext& c) { return correct(*arguments, c); });
+  });
 }
 
 }  // namespace dubsar

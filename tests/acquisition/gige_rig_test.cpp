@@ -124,6 +124,39 @@ TEST_F(GigeRig, AStageThatIsUnpluggedLeavesTheRowsAndGoesOnLater) {
   EXPECT_EQ(stage->tell("laser"), "0");
 }
 
+TEST_F(GigeRig, ACameraThatIsUnpluggedLeavesTheRowsTheLaserOffAndGoesOnLater) {
+  plan_.rate_hz = 20;  // a busy machine may lose a few rows, not all of them
+  test::GigeScanner scanner(plan_, *stage);
+  ASSERT_EQ(scanner.refusal(), "");
+  Result<Device> device = open(scanner);
+  ASSERT_TRUE(device.has_value()) << device.error().line();
+  struct Unplugs : test::CollectGrid {
+    explicit Unplugs(test::GigeScanner& one) : scanner(one) {}
+    bool profile(const Profile& profile) override {
+      if (profile.row >= 8 && !pulled) {
+        scanner.unplug_camera();
+        pulled = true;
+      }
+      return CollectGrid::profile(profile);
+    }
+    test::GigeScanner& scanner;
+    bool pulled = false;
+  } sink(scanner);
+  const Result<ScanOutcome> broken = device->scan(sink);
+  ASSERT_FALSE(broken.has_value());
+  EXPECT_EQ(broken.error().kind, ErrorKind::kDevice) << broken.error().line();
+  EXPECT_GE(sink.builder->grid().rows, 9);
+  EXPECT_EQ(stage->tell("laser"), "0");
+  test::CollectGrid none;
+  EXPECT_EQ(device->scan(none).error().kind, ErrorKind::kDevice);  // it is still away
+  scanner.plug_camera();
+  ASSERT_EQ(scanner.refusal(), "");
+  test::CollectGrid again;
+  const Result<ScanOutcome> whole = device->scan(again);
+  ASSERT_TRUE(whole.has_value()) << whole.error().line();
+  EXPECT_GT(again.builder->grid().rows, plan_.rows / 2);
+}
+
 /// A range camera that yields profiles by itself, carried by the stage.
 TEST_F(GigeRig, PutsTheProfilesOfARangeCameraWhereTheStageWas) {
   const test::TemporaryFolder folder;

@@ -118,8 +118,40 @@ TEST_P(EveryMethod, NoiseAloneGivesNoSample) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Stripe, EveryMethod,
-                         testing::Values(StripeMethod::kCentroid, StripeMethod::kGaussian,
-                                         StripeMethod::kSteger));
+                         testing::Values(StripeMethod::kAdaptive, StripeMethod::kCentroid,
+                                         StripeMethod::kGaussian, StripeMethod::kSteger));
+
+TEST(Stripe, TheAdaptiveOneKeepsAnEdgeAndAveragesSpeckles) {
+  const auto ledge = [](int u) { return u < 150 ? 60.3 : 66.8; };
+  StripeProfile profile;
+  StripeExtractor extractor{StripeOptions{}};
+  extractor.extract(drawn(300, 160, 1.2, 180, 4, ledge).view(), {}, profile);
+  for (const int u : {148, 149, 150, 151}) {
+    ASSERT_EQ(profile.state[static_cast<std::size_t>(u)], StripeState::kGood);
+    EXPECT_NEAR(static_cast<double>(profile.at_px[static_cast<std::size_t>(u)]), ledge(u), 0.03) << u;
+  }
+  // Every column off by its own 0.3 px, as speckles do it.
+  std::vector<double> off(300);
+  Random random(4);
+  for (double& each : off) {
+    each = 0.3 * random.normal();
+  }
+  const auto speckled = [&](int u) { return slanted(u) + off[static_cast<std::size_t>(u)]; };
+  const GrayImage image = drawn(300, 160, 1.2, 180, 4, speckled);
+  const auto rms = [&](StripeMethod method) {
+    StripeOptions options;
+    options.method = method;
+    StripeExtractor(options).extract(image.view(), {}, profile);
+    double squares = 0;
+    for (int u = 5; u < 295; ++u) {
+      const double error = static_cast<double>(profile.at_px[static_cast<std::size_t>(u)]) - slanted(u);
+      squares += error * error;
+    }
+    return std::sqrt(squares / 290);
+  };
+  EXPECT_GT(rms(StripeMethod::kCentroid), 0.25);
+  EXPECT_LT(rms(StripeMethod::kAdaptive), 0.18);
+}
 
 TEST(Stripe, RunsAlongRowsAsWell) {
   const GrayImage across = drawn(120, 160, 1.2, 180, 4, slanted);

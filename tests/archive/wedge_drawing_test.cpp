@@ -5,6 +5,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
+
 #include "formats/atomic_file.h"
 #include "tests/support/temporary_folder.h"
 
@@ -36,10 +38,27 @@ TEST(WedgeDrawing, IsToScaleWithOneGroupPerWedgeOfTheSide) {
   EXPECT_THAT(svg, HasSubstr("<g id=\"wedge-0\""));
   EXPECT_THAT(svg, HasSubstr("<g id=\"wedge-1\""));
   EXPECT_THAT(svg, Not(HasSubstr("<g id=\"wedge-2\"")));
+  EXPECT_THAT(svg, Not(HasSubstr("data-"))) << "SVG 1.1 has no such attributes";
   EXPECT_THAT(svg, HasSubstr("K. 1 &lt;a &amp; b&gt;, obverse"));
   // Up is up: the second wedge, higher on the tablet, is nearer to the sheet's top.
   EXPECT_THAT(svg, HasSubstr("M13.500 3.500L15.500 3.500"));
   EXPECT_THAT(svg, HasSubstr("M3.500 7.500L5.500 7.500"));
+}
+
+TEST(WedgeDrawing, CarriesTheNumbersOfEachWedgeForPrograms) {
+  Wedge wedge = wedge_at(7, Face::kObverse, 0, 0, 5);
+  wedge.place.line = 3;
+  wedge.depth_mm = 0.5;
+  wedge.volume_mm3 = 0.125;
+  const std::string svg = wedge_drawing(Face::kObverse, {wedge}, {}, "t");
+  const std::size_t from = svg.find("<metadata>") + 10;
+  const auto json = nlohmann::json::parse(svg.substr(from, svg.find("</metadata>") - from), nullptr, false);
+  ASSERT_TRUE(json.is_object()) << svg;
+  EXPECT_EQ(json["id"], 7);
+  EXPECT_EQ(json["line"], 3);
+  EXPECT_EQ(json["order"], 8);
+  EXPECT_EQ(json["depth_mm"], 0.5);
+  EXPECT_EQ(json["volume_mm3"], 0.125);
 }
 
 TEST(WedgeDrawing, WritesASheetForEachSideThatHasWedges) {

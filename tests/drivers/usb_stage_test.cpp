@@ -254,6 +254,21 @@ TEST_P(Firmwares, ACableThatIsPulledLeavesNoLaserOnWhenTheDeviceCloses) {
   wait_for_dark();
 }
 
+/// A controller with power of its own goes on burning the laser while the cable is out.
+TEST_P(Firmwares, ACableThatComesBackFindsTheLaserOnAndPutsItOff) {
+  Device device = open_homed();
+  for (int round = 0; round < 2; ++round) {
+    ASSERT_TRUE(device.set_laser(0, 1));
+    ASSERT_EQ(peer()->tell("unplug"), "ok");
+    ASSERT_FALSE(device.motion());
+    ASSERT_EQ(laser(), "1");
+    ASSERT_EQ(peer()->tell("rejoin"), "ok");
+    const auto back = device.motion();
+    ASSERT_TRUE(back) << back.error().line();
+    EXPECT_EQ(laser(), "0");
+  }
+}
+
 TEST_P(Firmwares, GarbageAndImpossiblePositionsAreToldAsWhatTheyAre) {
   Device device = open_homed();
   ASSERT_EQ(peer()->tell("babble"), "ok");

@@ -128,6 +128,17 @@ TEST_F(CollectionTest, AnIndexThatCannotBeKeptCostsTimeAlone) {
   }
 }
 
+TEST_F(CollectionTest, ASessionIsLeftWithoutAnIndex) {
+  std::ofstream(at("session.sqlite")) << "what makes a folder a session";
+  for (int turn = 0; turn < 2; ++turn) {
+    const auto collection = open();
+    ASSERT_TRUE(collection);
+    EXPECT_EQ(collection->remark(), "");
+    EXPECT_EQ(collection->similar_tablets(tablet_of(0.53, 2.06, 12), 1).size(), 1U);
+    EXPECT_FALSE(fs::exists(at(std::string(kSearchIndexName))));
+  }
+}
+
 TEST_F(CollectionTest, WhatIsNoWedgesJsonIsToldEveryTime) {
   std::ofstream(at("note.json")) << "{}";
   settle();

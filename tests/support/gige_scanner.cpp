@@ -5,6 +5,7 @@
 #include <dlfcn.h>
 
 #include <cmath>
+#include <csignal>
 #include <cstdlib>
 #include <fstream>
 
@@ -65,8 +66,18 @@ GigeScanner::GigeScanner(const GigeScannerPlan& plan, PeerProcess& stage) {
     refusal_ = "the stage does not tell where it is";
     return;
   }
-  camera_.emplace(std::vector<std::string>{DUBSAR_BINARY_DIR "/bin/scanner_peer", kSerial, path + "/frames",
-                                           path + "/law", number_text(plan.loss)});
+  camera_words_ = {DUBSAR_BINARY_DIR "/bin/scanner_peer", kSerial, path + "/frames", path + "/law",
+                   number_text(plan.loss)};
+  plug_camera();
+}
+
+void GigeScanner::unplug_camera() {
+  ::kill(camera_->pid(), SIGKILL);
+  camera_.reset();
+}
+
+void GigeScanner::plug_camera() {
+  camera_.emplace(camera_words_);
   refusal_ = camera_->refusal();
 }
 

@@ -30,8 +30,8 @@ struct GigeScannerPlan {
   double rate_hz = 50;  ///< of the camera
   /// How far the frames lie from even spacing, in steps: only the clock tells where each was taken.
   double jitter = 0.2;
-  double loss = 0;                ///< share of the packets
-  std::string method = "steger";  ///< of finding the stripe
+  double loss = 0;                  ///< share of the packets
+  std::string method = "adaptive";  ///< of finding the stripe
 };
 
 class GigeScanner {
@@ -42,6 +42,9 @@ class GigeScanner {
   [[nodiscard]] const std::string& refusal() const { return refusal_; }
   [[nodiscard]] std::filesystem::path rig_file() const { return folder_.path() / "rig.toml"; }
   [[nodiscard]] PeerProcess& camera() { return *camera_; }
+  /// Pulls the camera's cable, and plugs it in again. A camera that does not come back says so in refusal().
+  void unplug_camera();
+  void plug_camera();
   /// Of the stage, for which a frame was rendered.
   [[nodiscard]] const std::vector<double>& positions() const { return positions_; }
   /// Scanner frame of the grid, positions of the stage as they are, to the tablet's.
@@ -51,6 +54,7 @@ class GigeScanner {
   TemporaryFolder folder_;
   RigidTransform tablet_from_grid_;
   std::vector<double> positions_;
+  std::vector<std::string> camera_words_;
   std::optional<PeerProcess> camera_;
   std::string refusal_;
 };

@@ -23,6 +23,9 @@ using namespace std::chrono_literals;
 
 constexpr std::uint32_t kXmlAt = 0x10000;
 constexpr std::uint32_t kEncoderChunk = 0x1001;
+constexpr std::uint32_t kHeartbeat_ms = 0x938;
+constexpr std::uint32_t kControlPrivilege = 0xa00;
+constexpr std::uint32_t kAccessDenied = 0x8006;
 constexpr std::uint32_t kTimestampControl = 0x944;
 constexpr std::uint32_t kTimestampLatched = 0x948;
 
@@ -57,7 +60,7 @@ GigeDevice::GigeDevice(const std::string& model, const std::string& serial, cons
   text(0x200, url);
   write(0x904, 1);    // stream channels
   write(0x934, 0x4);  // it can resend
-  write(0x938, 3000);
+  write(kHeartbeat_ms, 3000);
   write(0x93c, 0);
   write(0x940, 1000000000);
   write(0xd04, 1400);
@@ -224,6 +227,16 @@ void GigeDevice::answer(const Bytes& ask, const sockaddr_in& to) {
            std::uint32_t{body[at + 2]} << 8U | body[at + 3];
   };
   std::uint32_t status = 0;
+  // One application has the control, by address and port; what is left of another one may not take it away.
+  const std::uint64_t who = std::uint64_t{to.sin_addr.s_addr} << 16U | to.sin_port;
+  const std::uint64_t now = now_ns();
+  if (controller_ != 0 &&
+      (read(kControlPrivilege) == 0 || now - heard_ns_ > std::uint64_t{read(kHeartbeat_ms)} * 1'000'000)) {
+    controller_ = 0;
+    write(kControlPrivilege, 0);
+  }
+  heard_ns_ = who == controller_ ? now : heard_ns_;
+  const bool may_write = controller_ == 0 || who == controller_;
   switch (command) {
     case 0x0002:  // discovery: what stands at the start of the registers
       data.assign(memory_.begin(), memory_.begin() + 0xf8);
@@ -234,12 +247,19 @@ void GigeDevice::answer(const Bytes& ask, const sockaddr_in& to) {
       }
       break;
     case 0x0082:
+      if (!may_write) {
+        status = kAccessDenied;
+        break;
+      }
       for (std::size_t k = 0; k + 8 <= size; k += 8) {
         if (word(k) + 4 <= kXmlAt) {
           write(word(k), word(k + 4));
         }
+        if (word(k) == kControlPrivilege && word(k + 4) != 0) {
+          controller_ = who;
+          heard_ns_ = now;
+        }
         if (word(k) == kTimestampControl && (word(k + 4) & 2U) != 0) {
-          const std::uint64_t now = now_ns();
           write(kTimestampLatched, static_cast<std::uint32_t>(now >> 32U));
           write(kTimestampLatched + 4, static_cast<std::uint32_t>(now));
         }
@@ -258,6 +278,10 @@ void GigeDevice::answer(const Bytes& ask, const sockaddr_in& to) {
       break;
     }
     case 0x0086:
+      if (!may_write) {
+        status = kAccessDenied;
+        break;
+      }
       for (std::size_t k = 4; k < size && word(0) + k - 4 < kXmlAt; ++k) {
         memory_[word(0) + k - 4] = body[k];
       }

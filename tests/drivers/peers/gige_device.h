@@ -69,6 +69,9 @@ class GigeDevice {
   int stream_ = -1;
   bool works_ = false;
   std::mutex mutex_;
+  /// Who has the control channel: writes of anybody else are refused until it is let go or falls silent.
+  std::uint64_t controller_ = 0;
+  std::uint64_t heard_ns_ = 0;
   std::deque<Block> history_;
   std::mt19937 random_{1};
 };

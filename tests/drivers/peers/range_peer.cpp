@@ -21,7 +21,7 @@ using namespace dubsar::test;
 
 constexpr std::uint32_t kWidth = 160;
 constexpr std::uint32_t kRows = 16;
-constexpr double kRow_s = 0.005;
+constexpr double kRowS = 0.005;
 
 double now_s() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -37,9 +37,9 @@ class RangeCamera : public GigeDevice {
           std::pair(0x12cU, 1U)}) {
       write(address, value);
     }
-    real(kScales, kSurfacePerColumn_mm);
+    real(kScales, kSurfacePerColumnMm);
     real(kScales + 8, 0.025);
-    real(kScales + 16, kSurfaceDepth_mm);
+    real(kScales + 16, kSurfaceDepthMm);
   }
 
  protected:
@@ -48,12 +48,12 @@ class RangeCamera : public GigeDevice {
     due_ = due_ < now - 1 ? now : due_;
     Picture out;
     out.timestamp_ns = static_cast<std::uint64_t>(1e9 * due_);
-    for (std::uint32_t row = 0; row < kRows; ++row, due_ += kRow_s) {
+    for (std::uint32_t row = 0; row < kRows; ++row, due_ += kRowS) {
       std::this_thread::sleep_for(std::chrono::duration<double>(due_ - now_s()));
       const double y = law_.read().at(due_);
       for (std::uint32_t col = 0; col < kWidth; ++col) {
         const auto depth = static_cast<std::uint32_t>(
-            std::lround(surface_mm(col * kSurfacePerColumn_mm, y) / kSurfaceDepth_mm));
+            std::lround(surface_mm(col * kSurfacePerColumnMm, y) / kSurfaceDepthMm));
         out.data.push_back(static_cast<std::uint8_t>(depth));
         out.data.push_back(static_cast<std::uint8_t>(depth >> 8U));
       }

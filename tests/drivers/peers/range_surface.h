@@ -6,8 +6,8 @@
 
 namespace dubsar::test {
 
-constexpr double kSurfacePerColumn_mm = 0.05;
-constexpr double kSurfaceDepth_mm = 0.0005;
+constexpr double kSurfacePerColumnMm = 0.05;
+constexpr double kSurfaceDepthMm = 0.0005;
 
 /// What an emulated range camera sees where the stage stands at y: waves whose flanks rise by up to 0.75 mm a
 /// millimetre, so that a profile that is put in the wrong place shows.

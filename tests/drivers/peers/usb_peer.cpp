@@ -3,8 +3,9 @@
 //
 // usb_peer: a USB controller (CDC-ACM, 2341:0043) at the kernel's interface: umockdev's /sys and /dev for
 // whoever has its library preloaded and $UMOCKDEV_DIR as told, with the ioctls of usbfs answered here by a
-// firmware simulation. Says "ready DIR"; commands on standard input: firmware NAME, laser, at, unplug, plug,
-// mute, talk, babble, impossible, possible, stick, slip, power_up, publish FILE (tells others where it is).
+// firmware simulation. Says "ready DIR"; commands on standard input: firmware NAME, laser, at, unplug, plug
+// (a board that lives on the cable starts anew), rejoin (one with power of its own goes on), mute, talk,
+// babble, impossible, possible, stick, slip, power_up, publish FILE (tells others where it is).
 #include <linux/usbdevice_fs.h>
 #include <sys/ioctl.h>
 #include <umockdev.h>
@@ -323,11 +324,13 @@ std::string command(const std::string& line) {
     return text;
   } else if (what == "unplug") {
     peer.plugged = false;  // without an event: what uses the device notices by itself
-  } else if (what == "plug" || what == "power_up") {
+  } else if (what == "plug" || what == "power_up" || what == "rejoin") {
     peer.owner = peer.plugged ? peer.owner : nullptr;
     peer.kernel_driver = true;
     peer.plugged = true;
-    peer.firmware->power_up();
+    if (what != "rejoin") {
+      peer.firmware->power_up();
+    }
     peer.firmware->out.clear();
   } else if (what == "dying") {
     peer.dying =

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "station/command/command.h"
+
+namespace dubsar {
+
+/// The action of a verb that writes these files or folders: kUsage, before it begins, where one of them lies
+/// in a session or is one. Every byte of a session has its checksum: a result written over one of its files
+/// would look like damage, one laid beside them like something foreign. Empty paths are passed over; links
+/// are followed.
+[[nodiscard]] Action outside_sessions(std::vector<std::string> outputs, Action action);
+
+}  // namespace dubsar

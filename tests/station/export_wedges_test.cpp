@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+// dubsar export of an inscribed tablet: what it says of the wedges, held against the definitions of others.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fstream>
+
+#include "tests/station/support/command.h"
+#include "tests/station/support/shell.h"
+#include "tests/support/temporary_folder.h"
+
+namespace dubsar {
+namespace {
+
+namespace fs = std::filesystem;
+using test::bytes_of;
+using test::Outcome;
+using test::quoted;
+using test::run_command;
+using test::shell;
+using ::testing::HasSubstr;
+
+class ExportOfWedges : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder_ = new test::TemporaryFolder;
+    ASSERT_EQ(run_command({"simulate", "tablet", "--seed", "3", "--size", "16x14x9", "--spacing", "0.12",
+                           "-o", at("t")})
+                  .status,
+              0);
+    ASSERT_EQ(run_command({"simulate", "scans", "--tablet", at("t/tablet.ply"), "--views", "2", "--spacing",
+                           "0.15", "-o", at("scans")})
+                  .status,
+              0);
+    ASSERT_EQ(run_command({"scan", "--device", "replay:" + at("scans").string(), "--session", at("session")})
+                  .status,
+              1);
+    exported_ = run_command(
+        {"export", at("session"), "--to", at("bag"), "--without", "renderings,features,grid-ply", "--json"});
+    ASSERT_EQ(exported_.status, 0) << exported_.err;
+  }
+  static void TearDownTestSuite() { delete folder_; }
+  [[nodiscard]] static fs::path at(const std::string& name) { return folder_->path() / name; }
+  [[nodiscard]] static fs::path data(const char* name) { return at("bag") / "data" / name; }
+  [[nodiscard]] static nlohmann::json json_of(const char* name) {
+    return nlohmann::json::parse(bytes_of(data(name)), nullptr, false);
+  }
+
+  static test::TemporaryFolder* folder_;
+  static Outcome exported_;
+};
+test::TemporaryFolder* ExportOfWedges::folder_ = nullptr;
+Outcome ExportOfWedges::exported_;
+
+TEST_F(ExportOfWedges, EveryFormHasAsMany) {
+  const auto wedges = json_of("wedges/wedges.json")["wedges"];
+  ASSERT_GT(wedges.size(), 10U);
+  EXPECT_EQ(exported_.json()["wedges"], wedges.size());
+  EXPECT_EQ(json_of("wedges/annotations.json")["items"].size(), wedges.size());
+  const std::string csv = bytes_of(data("wedges/wedges.csv"));
+  EXPECT_EQ(static_cast<std::size_t>(std::ranges::count(csv, '\n')), wedges.size() + 1);
+}
+
+TEST_F(ExportOfWedges, DrawingsAreWhatW3CCallsSvg11) {
+  if (!fs::is_directory("/usr/share/xml/w3c-sgml-lib/schema/dtd/REC-SVG11-20110816")) {
+    FAIL() << "install libxml2-utils and w3c-sgml-lib (packages.txt) to hold the drawings against them";
+  }
+  ASSERT_EQ(run_command({"mesh", "section", data("model/session.ply"), "--from=-4,0,5", "--to=4,0,5", "-o",
+                         at("cut.svg")})
+                .status,
+            0);
+  std::vector<fs::path> drawings{at("cut.svg")};
+  for (const auto& file : fs::directory_iterator(data("wedges/drawings"))) {
+    drawings.push_back(file.path());
+  }
+  ASSERT_GE(drawings.size(), 2U);
+  const std::string check = "xmllint --nonet --noout --dtdvalidfpi '-//W3C//DTD SVG 1.1//EN' ";
+  for (const fs::path& drawing : drawings) {
+    EXPECT_EQ(shell(check + quoted(drawing)), 0) << drawing;
+  }
+  // What no version of SVG knows is found by this.
+  std::string other = bytes_of(drawings.back());
+  other.replace(other.find("<title>"), 7, "<titel/><title>");
+  std::ofstream(at("other.svg")) << other;
+  EXPECT_NE(shell(check + quoted(at("other.svg"))), 0);
+}
+
+TEST_F(ExportOfWedges, AnnotationsHaveTheShapeOfTheStandard) {
+  const fs::path schema = fs::path(DUBSAR_SOURCE_DIR) / "tests/station/schemas/annotation_page.json";
+  const std::string check =
+      "/usr/bin/python3 -c 'import json, jsonschema, sys; "
+      "jsonschema.validate(json.load(open(sys.argv[1])), json.load(open(sys.argv[2])))' ";
+  EXPECT_EQ(shell(check + quoted(data("wedges/annotations.json")) + " " + quoted(schema)), 0);
+  const nlohmann::json page = json_of("wedges/annotations.json");
+  EXPECT_THAT(page["items"][0]["target"]["selector"]["value"].get<std::string>(), HasSubstr("POLYGON Z"));
+}
+
+}  // namespace
+}  // namespace dubsar

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+// No verb writes its result into a session, where every file has its checksum.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "tests/station/support/command.h"
+#include "tests/support/temporary_folder.h"
+
+namespace dubsar {
+namespace {
+
+namespace fs = std::filesystem;
+using test::Arguments;
+using test::bytes_of;
+using test::Outcome;
+using test::run_command;
+using ::testing::HasSubstr;
+using ::testing::SizeIs;
+
+class Outputs : public ::testing::Test {
+ protected:
+  Outputs() {
+    fs::copy(fs::path(DUBSAR_SOURCE_DIR) / "tests/data/sessions/schema1_first", session(),
+             fs::copy_options::recursive);
+    for (const auto& file : fs::recursive_directory_iterator(session())) {
+      fs::permissions(file, fs::perms::owner_write, fs::perm_options::add);
+    }
+  }
+  [[nodiscard]] fs::path session() const { return folder_.path() / "tablet"; }
+  [[nodiscard]] std::string in_session(const char* name) const { return (session() / name).string(); }
+  [[nodiscard]] std::string mesh() const { return in_session("mesh/model.ply"); }
+  [[nodiscard]] fs::path beside(const char* name) const { return folder_.path() / name; }
+
+  [[nodiscard]] std::map<std::string, std::string> files() const {
+    std::map<std::string, std::string> all;
+    for (const auto& file : fs::recursive_directory_iterator(session())) {
+      if (file.is_regular_file()) {
+        all[file.path().string()] = bytes_of(file.path());
+      }
+    }
+    return all;
+  }
+
+  void expect_refused(const Arguments& arguments) const {
+    const std::map<std::string, std::string> before = files();
+    const Outcome outcome = run_command(arguments);
+    EXPECT_EQ(outcome.status, 2) << arguments.front() << ": " << outcome.err;
+    EXPECT_THAT(outcome.complaints(), SizeIs(1)) << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr("beside the session: " + beside("tablet-").string()));
+    EXPECT_TRUE(files() == before) << arguments.front();
+  }
+
+ private:
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(Outputs, OfNoVerbGoIntoASession) {
+  expect_refused({"stitch", session(), "-o", mesh()});
+  expect_refused({"analyze", mesh(), "-o", in_session("analysis/wedges.json")});
+  expect_refused({"analyze", mesh(), "-o", beside("wedges.json"), "--pictures", in_session("pictures")});
+  expect_refused({"analyze", mesh(), "-o", beside("wedges.json"), "--svg", in_session("export")});
+  expect_refused({"analyze", mesh(), "-o", beside("wedges.json"), "--mesh-out", mesh()});
+  expect_refused({"mesh", "convert", mesh(), in_session("mesh/model.stl")});
+  expect_refused(
+      {"mesh", "section", mesh(), "--from", "0,0,0", "--to", "1,0,0", "-o", in_session("cut.csv")});
+  expect_refused({"register", session(), "-o", in_session("session.sqlite")});
+  expect_refused({"plan", session(), "-o", in_session("red_map.json")});
+  expect_refused({"plan", session(), "--page", in_session("export/checklist.html")});
+  expect_refused({"simulate", "tablet", "--size", "8x8x4", "--spacing", "1", "-o", session()});
+}
+
+TEST_F(Outputs, NoPackageGoesIntoASessionUnderAnyName) {
+  expect_refused({"export", session(), "--to", in_session("package")});
+  expect_refused({"export", session(), "--to", in_session("export/package/")});
+  expect_refused({"export", session(), "--to", session().string() + "/", "--force"});
+  expect_refused({"export", session(), "--to", in_session("grids/../package")});
+  fs::create_directory_symlink(session() / "mesh", beside("shortcut"));
+  expect_refused({"export", session(), "--to", beside("shortcut") / "package"});
+}
+
+TEST_F(Outputs, GoBesideASessionAsBefore) {
+  const Outcome converted = run_command({"mesh", "convert", mesh(), beside("tablet-model.stl")});
+  EXPECT_EQ(converted.status, 0) << converted.err;
+  EXPECT_TRUE(fs::is_regular_file(beside("tablet-model.stl")));
+}
+
+}  // namespace
+}  // namespace dubsar

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "triangulation/closing.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/random.h"
+#include "tests/triangulation/support/scans.h"
+#include "triangulation/grid_triangulation.h"
+#include "triangulation/mesh_check.h"
+#include "triangulation/tiling.h"
+
+namespace dubsar {
+namespace {
+
+using Eigen::Vector3f;
+
+TEST(Tiling, APlaceLiesInTheBoxOfItsTileAndInNoOther) {
+  const Eigen::AlignedBox3f box(Vector3f(-3, 2, 0), Vector3f(7, 5, 1));
+  Random random(3);
+  for (const float shift : {0.0F, 0.5F}) {
+    const Tiling tiling(box, 1.7F, shift);
+    ASSERT_GT(tiling.size(), 10U);
+    for (int k = 0; k < 2000; ++k) {
+      const Vector3f p =
+          box.min() + Vector3f(static_cast<float>(random.uniform()), static_cast<float>(random.uniform()),
+                               static_cast<float>(random.uniform()))
+                          .cwiseProduct(box.sizes());
+      for (std::size_t tile = 0; tile < tiling.size(); ++tile) {
+        if (lies_within(tiling.box(tile), p, 1e-5F)) {
+          EXPECT_EQ(tile, tiling.tile_of(p));
+        }
+      }
+      EXPECT_TRUE(lies_within(tiling.box(tiling.tile_of(p)), p, -1e-5F));
+    }
+  }
+}
+
+TEST(Tiling, WithoutTilesEverythingIsOne) {
+  const Tiling tiling;
+  EXPECT_EQ(tiling.size(), 1U);
+  EXPECT_EQ(tiling.tile_of({1e9F, -5, 0}), 0U);
+  EXPECT_TRUE(lies_within(tiling.box(0), {1e9F, -5, 0}, 1e9F));
+}
+
+/// One wavy sheet cut into pieces by jagged lanes of about two samples, with small holes: as patches are
+/// before their seams are closed.
+Draft cut_sheet(int side, int piece) {
+  constexpr double kMu = 0.1;
+  Random random(11);
+  RangeGrid grid = test::height_grid(side, side, kMu,
+                                     [](double x, double y) { return 0.15 * std::sin(2 * x) * std::cos(y); });
+  for (int row = 0; row < side; ++row) {
+    for (int col = 0; col < side; ++col) {
+      const int r = row + static_cast<int>(1.5 * std::sin(0.7 * col));
+      const int c = col + static_cast<int>(1.5 * std::sin(0.9 * row));
+      if (r % piece == 0 || c % piece == 0 || random.uniform() < 0.01) {
+        grid.valid[static_cast<std::size_t>(row) * static_cast<std::size_t>(side) +
+                   static_cast<std::size_t>(col)] = 0;
+      }
+    }
+  }
+  Draft draft;
+  draft.mesh = triangulate_grid(grid, {});
+  const std::size_t count = draft.mesh.positions.size();
+  draft.mesh.reliability.assign(count, 1);
+  draft.mesh.sigma_mm.assign(count, 0.01F);
+  draft.mesh.scans.assign(count, 1);
+  draft.mesh.flags.assign(count, 0);
+  draft.near_rim.assign(count, 1);
+  draft.first_vertex = {0, static_cast<std::uint32_t>(count)};
+  draft.first_face = {0, static_cast<std::uint32_t>(draft.mesh.faces.size())};
+  draft.patch_spacing_mm = {static_cast<float>(kMu)};
+  return draft;
+}
+
+MeshReport report_of(Draft draft) {
+  std::erase_if(draft.mesh.faces, is_gone);
+  return check_mesh(draft.mesh);
+}
+
+TEST(Closing, TilesLeaveNoTraceOfTheirSides) {
+  const Draft cut = cut_sheet(160, 12);
+  ASSERT_GT(report_of(cut).components, 100U);
+  for (const double tile_spacings : {25.0, 60.0, 0.0}) {
+    SCOPED_TRACE(tile_spacings);
+    Draft draft = cut;
+    ClosingOptions options;
+    options.tile_spacings = tile_spacings;
+    options.least_tiled_vertices = tile_spacings > 0 ? 0 : cut.mesh.positions.size() + 1;
+    close_patches(draft, options);
+    repair_self_intersections(draft, options);
+    const MeshReport report = report_of(draft);
+    EXPECT_EQ(report.components, 1U);
+    EXPECT_EQ(report.boundary_loops, 1U);
+    EXPECT_EQ(report.non_manifold_edges + report.non_manifold_vertices, 0U);
+    EXPECT_EQ(report.inconsistent_faces, 0U);
+    EXPECT_EQ(report.self_intersections, 0U);
+    EXPECT_LT(report.thin_share, 0.01);
+  }
+}
+
+}  // namespace
+}  // namespace dubsar
