@@ -9,10 +9,12 @@
 #include "analysis/surface_fields.h"
 #include "analysis/wedge_faces.h"
 #include "analysis/wedge_judge.h"
+#include "analysis/wedge_measure.h"
 #include "core/job.h"
 #include "core/mesh.h"
 #include "core/result.h"
 #include "core/wedge.h"
+#include "core/wedge_correction.h"
 
 namespace dubsar {
 
@@ -24,22 +26,41 @@ struct WedgeOptions {
   double min_basin_depth_mm = 0.02;
   FaceOptions faces;
   JudgeOptions judge;
+  /// What a person has said of them; made in this order once they are found.
+  std::vector<WedgeCorrection> corrections;
+};
+
+/// What the mesh itself says, before anybody corrects it.
+struct WedgeFindings {
+  std::vector<WedgeCandidate> candidates;  ///< judged
+  std::vector<std::int32_t> basin_of;      ///< [V] see Basins::label
+  std::vector<float> area_mm2;             ///< [V] of the surface that the vertex stands for
+  double noise_mm = 0;                     ///< of the heights
 };
 
 /// The wedges of a tablet.
 struct WedgeSet {
-  std::vector<Wedge> wedges;             ///< id = index
+  std::vector<Wedge> wedges;             ///< ids rise; those that were corrected away are missing
   std::vector<EvidenceValues> evidence;  ///< of each wedge
   std::vector<RejectedWedge> rejected;
   std::vector<std::int32_t> basin_of;  ///< [V] see Basins::label
   std::vector<std::int32_t> wedge_of;  ///< [V] wedge on whose faces the vertex lies, or -1
   std::vector<std::int8_t> face_of;    ///< [V] which face of it, 0 to 2, or -1
+  std::vector<LostCorrection> lost;    ///< corrections that could not be made
 };
 
 /// Watershed, faces, edges, measures and judgement (seed 000, 3.3 and 3.4). The same bytes for any number of
-/// threads. A mesh without wedges gives an empty list. Errors: kCancelled.
+/// threads. A mesh without wedges gives an empty list. Errors: kCancelled. The same as find_candidates() and
+/// settle_wedges() with options.corrections.
 [[nodiscard]] Result<WedgeSet> find_wedges(const Mesh& mesh, const VertexGraph& graph,
                                            const SurfaceFields& fields, const WedgeOptions& options,
                                            const JobContext& job, StageTimes* timings_s = nullptr);
+
+[[nodiscard]] Result<WedgeFindings> find_candidates(const Mesh& mesh, const VertexGraph& graph,
+                                                    const SurfaceFields& fields, const WedgeOptions& options,
+                                                    const JobContext& job, StageTimes* timings_s = nullptr);
+/// The wedges among the findings, corrected as `options` say. Arguments as for find_candidates().
+[[nodiscard]] WedgeSet settle_wedges(const Mesh& mesh, const VertexGraph& graph, const SurfaceFields& fields,
+                                     const WedgeOptions& options, const WedgeFindings& findings);
 
 }  // namespace dubsar

@@ -28,8 +28,11 @@ std::string in_words(const Wedge& w) {
     where += fmt::format(", line {}, number {}", w.place.line, w.place.order);
   }
   return fmt::format(
-      "Wedge {}{}: {:.2f} mm deep, directional edge {:.2f} mm long at {:.0f} degrees, confidence {:.2f}",
-      w.id, where, w.depth_mm, w.edge_lengths_mm[directional], deg_from_rad(w.place.turn_rad), w.confidence);
+      "Wedge {}{}: {:.2f} mm deep, directional edge {:.2f} mm long at {:.0f} degrees, confidence {:.2f}{}",
+      w.id, where, w.depth_mm, w.edge_lengths_mm[directional], deg_from_rad(w.place.turn_rad), w.confidence,
+      w.by_hand == ByHand::kNo
+          ? std::string()
+          : fmt::format("; corrected by hand: {}", kByHandNames[static_cast<std::size_t>(w.by_hand)]));
 }
 
 }  // namespace

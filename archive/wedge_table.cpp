@@ -75,6 +75,8 @@ std::vector<Column> columns() {
   plain("confidence", [](const Wedge& w) { return w.confidence; });
   plain("intact", [](const Wedge& w) { return w.intact; });
   text("vertex_count", [](const Wedge& w) { return std::to_string(w.vertex_count); });
+  text("by_hand",
+       [](const Wedge& w) { return std::string(kByHandNames[static_cast<std::size_t>(w.by_hand)]); });
   return all;
 }
 

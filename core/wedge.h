@@ -6,6 +6,7 @@
 #include <array>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/red_map.h"
@@ -46,6 +47,10 @@ struct WedgePlace {
   double turn_rad = 0;  ///< of the directional edge away from the depth point: 0 right, pi/2 up the side
 };
 
+/// Whether a person had a say in where the wedge is: its measures are made by the same code all the same.
+enum class ByHand { kNo, kMerged, kSplit, kAdded };
+inline constexpr std::array<std::string_view, 4> kByHandNames = {"no", "merged", "split", "added"};
+
 /// Eigen leaves unset what {} makes.
 [[nodiscard]] inline std::array<Eigen::Vector3d, 3> three_zeros() {
   return {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
@@ -81,6 +86,7 @@ struct Wedge {
   double confidence = 0;
   int vertex_count = 0;
   double intact = 1.0;  ///< share of the impression that later wedges and damage left
+  ByHand by_hand = ByHand::kNo;
 };
 
 /// A hollow that was taken for a wedge at first, and what spoke against it.

@@ -168,6 +168,9 @@ OrderedJson wedge_json(const Wedge& wedge) {
   json["confidence"] = wedge.confidence;
   json["vertex_count"] = wedge.vertex_count;
   json["intact"] = wedge.intact;
+  if (wedge.by_hand != ByHand::kNo) {
+    json["by_hand"] = kByHandNames[static_cast<std::size_t>(wedge.by_hand)];
+  }
   return json;
 }
 
@@ -217,6 +220,10 @@ Wedge wedge_from(const JsonNode& node, double mm) {
   wedge.vertex_count = static_cast<int>(node.at("vertex_count").integer(0, kMaxInt));
   if (const auto intact = node.find("intact")) {
     wedge.intact = intact->number(0, 1);
+  }
+  if (const auto by_hand = node.find("by_hand")) {
+    static const std::vector<std::string> kNames(kByHandNames.begin(), kByHandNames.end());
+    wedge.by_hand = static_cast<ByHand>(by_hand->one_of(kNames));
   }
   measures_from(node, mm, &wedge);
   return wedge;

@@ -90,6 +90,13 @@ std::string wedges_to_json(const WedgeFile& file) {
     json["depth_point"] = json_of(rejected.depth_point_mm);
     root["rejected"].push_back(std::move(json));
   }
+  if (file.corrections > 0) {
+    OrderedJson lost = OrderedJson::array();
+    for (const LostCorrection& one : file.lost) {
+      lost.push_back({{"number", one.index + 1}, {"reason", one.reason}});
+    }
+    root["corrections"] = {{"asked_for", file.corrections}, {"lost", std::move(lost)}};
+  }
   root["timings_s"] = OrderedJson::object();
   for (const auto& [stage, seconds] : file.timings_s) {
     root["timings_s"][stage] = seconds;
@@ -132,6 +139,14 @@ Result<WedgeFile> parse_wedges(std::string_view text, const std::string& where) 
   if (const auto rejected = root.find("rejected")) {
     for (const JsonNode& node : rejected->items()) {
       file.rejected.push_back({node.at("reason").text(), mm * node.at("depth_point").vector3()});
+    }
+  }
+  if (const auto corrections = root.find("corrections")) {
+    constexpr std::int64_t kMost = std::numeric_limits<std::int32_t>::max();
+    file.corrections = static_cast<std::size_t>(corrections->at("asked_for").integer(0, kMost));
+    for (const JsonNode& node : corrections->at("lost").items()) {
+      file.lost.push_back(
+          {static_cast<std::size_t>(node.at("number").integer(1, kMost) - 1), node.at("reason").text()});
     }
   }
   if (Status status = document->status("write it again with dubsar analyze"); !status) {

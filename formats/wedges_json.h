@@ -12,6 +12,7 @@
 #include "core/result.h"
 #include "core/rigid_transform.h"
 #include "core/wedge.h"
+#include "core/wedge_correction.h"
 #include "core/wedge_profile.h"
 
 namespace dubsar {
@@ -22,6 +23,8 @@ struct WedgeFile {
   ExitDefinition exits = ExitDefinition::kSurface;
   std::vector<Wedge> wedges;
   std::vector<RejectedWedge> rejected;
+  std::size_t corrections = 0;       ///< how many a person has asked for
+  std::vector<LostCorrection> lost;  ///< those of them that could not be made
   /// Text's frame: x to the reader's right, y up the obverse, z out of it (analysis/text_frame.h).
   std::optional<RigidTransform> text_from_model;
   double text_certainty = 0;

@@ -2,12 +2,15 @@
 // Copyright The Dubsar developers
 #include "station/analysis.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <chrono>
 #include <cmath>
 
 #include "analysis/wedge_features.h"
+#include "core/log.h"
 #include "core/parallel.h"
 
 namespace dubsar {
@@ -41,26 +44,38 @@ Rgb colour_of(std::int32_t number, std::int8_t face) {
 Result<Analysis> analyze_mesh(const Mesh& mesh, const AnalysisOptions& options, const JobContext& job) {
   const auto from = std::chrono::steady_clock::now();
   Analysis analysis;
-  const VertexGraph graph = make_vertex_graph(mesh);
+  analysis.graph = make_vertex_graph(mesh);
   analysis.timings_s.emplace_back(
       "graph", std::chrono::duration<double>(std::chrono::steady_clock::now() - from).count());
   Result<SurfaceFields> fields =
-      compute_surface_fields(mesh, graph, options.fields, job, &analysis.timings_s);
+      compute_surface_fields(mesh, analysis.graph, options.fields, job, &analysis.timings_s);
   if (!fields) {
     return std::unexpected(fields.error());
   }
   analysis.fields = *std::move(fields);
-  Result<WedgeSet> set = find_wedges(mesh, graph, analysis.fields, options.wedges, job, &analysis.timings_s);
-  if (!set) {
-    return std::unexpected(set.error());
+  Result<WedgeFindings> findings =
+      find_candidates(mesh, analysis.graph, analysis.fields, options.wedges, job, &analysis.timings_s);
+  if (!findings) {
+    return std::unexpected(findings.error());
   }
-  analysis.set = *std::move(set);
+  analysis.findings = *std::move(findings);
   const auto placing = std::chrono::steady_clock::now();
-  analysis.text = find_text_frame(mesh, analysis.set.wedges);
-  place_wedges(analysis.text, &analysis.set.wedges);
+  correct_analysis(mesh, options, &analysis);
   analysis.timings_s.emplace_back(
       "text frame", std::chrono::duration<double>(std::chrono::steady_clock::now() - placing).count());
   return analysis;
+}
+
+void correct_analysis(const Mesh& mesh, const AnalysisOptions& options, Analysis* analysis) {
+  analysis->set = settle_wedges(mesh, analysis->graph, analysis->fields, options.wedges, analysis->findings);
+  analysis->text = find_text_frame(mesh, analysis->set.wedges);
+  place_wedges(analysis->text, &analysis->set.wedges);
+}
+
+void warn_of_lost(const Analysis& analysis, const std::string& where) {
+  for (const LostCorrection& lost : analysis.set.lost) {
+    log_warning(fmt::format("{}: correction {} is not made: {}", where, lost.index + 1, lost.reason));
+  }
 }
 
 WedgeFile wedge_file(std::string mesh_name, const AnalysisOptions& options, const Analysis& analysis) {
@@ -70,6 +85,8 @@ WedgeFile wedge_file(std::string mesh_name, const AnalysisOptions& options, cons
   file.wedges = analysis.set.wedges;
   file.profiles = make_profiles(file.wedges);
   file.rejected = analysis.set.rejected;
+  file.corrections = options.wedges.corrections.size();
+  file.lost = analysis.set.lost;
   file.text_from_model = analysis.text.text_from_model;
   file.text_certainty = analysis.text.certainty;
   file.timings_s = analysis.timings_s;

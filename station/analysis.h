@@ -23,7 +23,9 @@ struct AnalysisOptions {
 
 /// What the analysis of one mesh gives.
 struct Analysis {
+  VertexGraph graph;
   SurfaceFields fields;
+  WedgeFindings findings;
   WedgeSet set;
   TextFrame text;
   StageTimes timings_s;  ///< in the order of the work
@@ -33,6 +35,13 @@ struct Analysis {
 /// for a mesh without a surface, kCancelled.
 [[nodiscard]] Result<Analysis> analyze_mesh(const Mesh& mesh, const AnalysisOptions& options,
                                             const JobContext& job);
+
+/// Makes the set and its places in the text anew with these corrections, from what the analysis has found;
+/// corrections that cannot be made are in set.lost.
+void correct_analysis(const Mesh& mesh, const AnalysisOptions& options, Analysis* analysis);
+
+/// A line of the log for each correction that could not be made.
+void warn_of_lost(const Analysis& analysis, const std::string& where);
 
 /// wedges.json of it; the wedges themselves are taken out of `analysis`.
 [[nodiscard]] WedgeFile wedge_file(std::string mesh_name, const AnalysisOptions& options,

@@ -21,19 +21,23 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Of a mesh file, the first that is there; empty when none is.
-fs::path wedges_beside(const fs::path& mesh) {
+struct WedgesPlace {
+  fs::path file;  ///< that is there, or would be
+  bool in_session = false;
+};
+
+WedgesPlace wedges_beside(const fs::path& mesh) {
   fs::path own = mesh;
   own.replace_extension(".wedges.json");
   const fs::path folder = mesh.parent_path();
+  const fs::path of_session = folder.parent_path() / "analysis" / "wedges.json";
   std::error_code error;
-  for (const fs::path& file :
-       {own, folder / "wedges.json", folder.parent_path() / "analysis" / "wedges.json"}) {
+  for (const fs::path& file : {own, folder / "wedges.json", of_session}) {
     if (fs::is_regular_file(file, error)) {
-      return file;
+      return {file, file == of_session};
     }
   }
-  return {};
+  return {own, false};
 }
 
 }  // namespace
@@ -126,6 +130,9 @@ void MeshViewing::complain(const Error& error) {
 
 void MeshViewing::take_mesh(std::shared_ptr<const Mesh> mesh, const RigidTransform& tablet_from_model,
                             const std::string& name) {
+  analysis_.reset();
+  analysis_options_ = {};
+  wedges_file_.clear();
   {
     const std::scoped_lock lock(mutex_);
     state_.mesh = std::move(mesh);
@@ -136,6 +143,8 @@ void MeshViewing::take_mesh(std::shared_ptr<const Mesh> mesh, const RigidTransfo
     state_.selections = std::make_shared<const std::vector<MeshSelection>>();
     state_.written.clear();
     state_.is_part = false;
+    state_.corrections = 0;
+    state_.not_made.clear();
     whole_.reset();
     selections_file_.clear();
     state_.tablet_from_model = tablet_from_model;
@@ -170,14 +179,9 @@ void MeshViewing::open(const fs::path& file) {
     }
     const RigidTransform tablet_from_model = tablet_frame(*read);
     take_mesh(std::make_shared<const Mesh>(std::move(*read)), tablet_from_model, file.filename().string());
-    if (const fs::path wedges = wedges_beside(file); !wedges.empty()) {
-      if (auto known = read_wedges(wedges)) {
-        take_wedges(std::move(known->wedges));
-      } else {
-        complain(known.error());
-      }
-    }
+    const WedgesPlace wedges = wedges_beside(file);
     take_selections(selections_file_of(file));
+    take_corrections(wedges.file, wedges.in_session);
     work_out(MeshField::kOpenness);
   });
 }
@@ -186,12 +190,7 @@ void MeshViewing::show(std::shared_ptr<const Mesh> mesh, const RigidTransform& t
                        const fs::path& wedges_file) {
   ask([this, mesh = std::move(mesh), tablet_from_model, wedges_file] {
     take_mesh(mesh, tablet_from_model, {});
-    std::error_code error;
-    if (fs::is_regular_file(wedges_file, error)) {
-      if (auto known = read_wedges(wedges_file)) {
-        take_wedges(std::move(known->wedges));
-      }
-    }
+    take_corrections(wedges_file, true);
     take_selections(wedges_file.parent_path() / "selections.json");
     work_out(MeshField::kOpenness);
   });
@@ -272,21 +271,16 @@ void MeshViewing::work_out_everything(bool with_invariant) {
   if (!shown) {
     return;
   }
-  Result<Analysis> analysis = analyze_mesh(*shown, {}, *job_);
-  if (!analysis) {
-    complain(analysis.error());
+  if (!measure_all()) {
     return;
   }
   if (with_invariant) {
     job_->progress("integral invariants", 0.9);
     take_field(MeshField::kInvariant,
-               strongest_response(integral_invariants(*shown, outlook_of(*shown, analysis->fields),
-                                                      analysis->fields.mean_edge_mm, {}, *job_)));
+               strongest_response(integral_invariants(*shown, outlook_of(*shown, analysis_->fields),
+                                                      analysis_->fields.mean_edge_mm, {}, *job_)));
   }
-  take_field(MeshField::kOpenness, std::move(analysis->fields.openness));
-  take_field(MeshField::kMeanCurvature, std::move(analysis->fields.mean_curvature_per_mm));
-  take_field(MeshField::kHeight, std::move(analysis->fields.height_mm));
-  take_wedges(std::move(analysis->set.wedges));
+  take_wedges(analysis_->set.wedges);
 }
 
 }  // namespace dubsar

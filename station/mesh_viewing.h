@@ -22,6 +22,8 @@
 #include "core/result.h"
 #include "core/rigid_transform.h"
 #include "core/wedge.h"
+#include "core/wedge_correction.h"
+#include "station/analysis.h"
 
 namespace dubsar {
 
@@ -38,6 +40,8 @@ struct ViewedMesh {
   std::shared_ptr<const std::vector<MeshSelection>> selections;           ///< that are kept; never null
   std::vector<std::filesystem::path> written;  ///< what was asked for last, once it is written
   bool is_part = false;                        ///< a part of a mesh that one can go back to
+  std::size_t corrections = 0;                 ///< how many a person has made
+  std::vector<std::string> not_made;           ///< why corrections could not be made
   RigidTransform tablet_from_model;
   std::string name;
   std::string stage;  ///< of the job that runs; empty: none does
@@ -71,7 +75,13 @@ class MeshViewing {
   void write_wedges_of(MeshSelection selection, const std::filesystem::path& file);
   /// Finds the wedges of the selected part alone: STEM.ply and STEM.wedges.json, then looks at that mesh.
   void analyse_part(MeshSelection selection, const std::filesystem::path& stem);
-  void leave_part();  ///< looks at the mesh again that the part is of
+  /// Makes a correction of the wedges and keeps it; where it cannot be made, nothing is changed and not_made
+  /// says why. The wedges are measured first unless they were. Their file is written anew, that of a session
+  /// when the session is stitched or exported next.
+  void correct(WedgeCorrection correction);
+  void correct_by_adding(MeshSelection selection);  ///< a wedge is there
+  void undo_correction();                           ///< the last one
+  void leave_part();                                ///< looks at the mesh again that the part is of
   /// Cuts the mesh between two places of it, as it is seen from `towards` (model frame).
   void cut(const Eigen::Vector3d& from_mm, const Eigen::Vector3d& to_mm, const Eigen::Vector3d& towards);
   /// Writes the cut as STEM.csv and STEM.svg.
@@ -85,6 +95,9 @@ class MeshViewing {
   void take_mesh(std::shared_ptr<const Mesh> mesh, const RigidTransform& tablet_from_model,
                  const std::string& name);
   void take_selections(const std::filesystem::path& file);
+  void take_corrections(const std::filesystem::path& wedges_file, bool in_session);
+  void make_corrections(std::vector<WedgeCorrection> corrections, bool must_make_last);
+  [[nodiscard]] bool measure_all();
   void take_written(std::vector<std::filesystem::path> files);
   void change_selections(const std::function<void(std::vector<MeshSelection>&)>& change);
   void take_field(MeshField field, std::vector<float> values);
@@ -97,6 +110,15 @@ class MeshViewing {
   std::function<void()> on_change_;
   mutable std::mutex mutex_;  ///< of what follows
   ViewedMesh state_;
+  // Of the worker alone.
+  std::unique_ptr<Analysis> analysis_;  ///< of the mesh, once it was asked for
+  AnalysisOptions analysis_options_;
+  std::filesystem::path wedges_file_;
+  bool in_session_ = false;
+  AnalysisOptions whole_options_;  ///< of the mesh that a part is of, like the next two
+  std::filesystem::path whole_wedges_file_;
+  bool whole_in_session_ = false;
+  // Of whoever holds the mutex.
   std::filesystem::path selections_file_;
   std::optional<ViewedMesh> whole_;  ///< that a part is of, and where its selections are
   std::filesystem::path whole_selections_file_;

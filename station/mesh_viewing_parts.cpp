@@ -132,6 +132,11 @@ void MeshViewing::analyse_part(MeshSelection selection, const fs::path& stem) {
       complain(written.error());
       return;
     }
+    if (!before.is_part) {
+      whole_options_ = analysis_options_;
+      whole_wedges_file_ = wedges_file_;
+      whole_in_session_ = in_session_;
+    }
     std::optional<ViewedMesh> whole;
     {
       const std::scoped_lock lock(mutex_);
@@ -144,6 +149,8 @@ void MeshViewing::analyse_part(MeshSelection selection, const fs::path& stem) {
     take_field(MeshField::kOpenness, analysis->fields.openness);
     take_field(MeshField::kMeanCurvature, analysis->fields.mean_curvature_per_mm);
     take_field(MeshField::kHeight, analysis->fields.height_mm);
+    wedges_file_ = wedges_file;
+    in_session_ = false;
     take_selections(selections_file_of(mesh_file));
     take_written({mesh_file, wedges_file});
     const std::scoped_lock lock(mutex_);
@@ -156,6 +163,10 @@ void MeshViewing::leave_part() {
   ask([this] {
     const std::scoped_lock lock(mutex_);
     if (whole_) {
+      analysis_.reset();
+      analysis_options_ = whole_options_;
+      wedges_file_ = whole_wedges_file_;
+      in_session_ = whole_in_session_;
       const std::uint64_t number = state_.number;
       state_ = *std::exchange(whole_, std::nullopt);
       state_.number = number + 1;

@@ -56,8 +56,9 @@ Result<std::optional<WedgeFile>> wedges_of(const SessionStore& store, const Mesh
   if (std::optional<WedgeFile> stored = stored_wedges(store, mesh, job)) {
     return stored;
   }
-  log_info("the session holds no wedges of this surface: they are measured now");
-  const AnalysisOptions options;
+  log_info("the session holds no wedges of this surface, corrected as it says: they are measured now");
+  AnalysisOptions options;
+  options.wedges.corrections = session_corrections(store);
   const Result<Analysis> analysis = analyze_mesh(mesh, options, job);
   if (!analysis) {
     if (analysis.error().kind != ErrorKind::kBadInput) {
@@ -66,6 +67,7 @@ Result<std::optional<WedgeFile>> wedges_of(const SessionStore& store, const Mesh
     log_warning("wedges were not looked for: " + analysis.error().line());
     return std::nullopt;
   }
+  warn_of_lost(*analysis, store.folder().filename().string());
   return wedge_file("model.ply", options, *analysis);
 }
 

@@ -6,6 +6,7 @@
 
 #include "archive/wedge_drawing.h"
 #include "core/log.h"
+#include "formats/corrections_json.h"
 #include "formats/json_node.h"
 #include "formats/json_text.h"
 #include "formats/sha2.h"
@@ -18,6 +19,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* kDocument = "wedges";
+constexpr const char* kCorrections = "analysis/wedges.corrections.json";
 
 /// Of what wedges are measured on: the vertices and the faces between them.
 std::string digest_of(const Mesh& mesh) {
@@ -33,12 +35,22 @@ std::string digest_of(const Mesh& mesh) {
 
 }  // namespace
 
+std::vector<WedgeCorrection> session_corrections(const SessionStore& store) {
+  Result<CorrectionFile> file = read_corrections(store.folder() / kCorrections);
+  if (!file) {
+    log_warning("the corrections of the wedges are passed over: " + file.error().line());
+    return {};
+  }
+  return std::move(file->corrections);
+}
+
 Result<std::optional<SessionWedges>> keep_wedges(SessionStore& store, const Mesh& mesh,
                                                  const JobContext& job) {
   if (mesh.faces.empty()) {
     return std::nullopt;
   }
-  const AnalysisOptions options;
+  AnalysisOptions options;
+  options.wedges.corrections = session_corrections(store);
   const Result<Analysis> analysis = analyze_mesh(mesh, options, job);
   if (!analysis) {
     if (analysis.error().kind != ErrorKind::kBadInput) {
@@ -47,6 +59,7 @@ Result<std::optional<SessionWedges>> keep_wedges(SessionStore& store, const Mesh
     log_warning("wedges were not looked for: " + analysis.error().line());
     return std::nullopt;
   }
+  warn_of_lost(*analysis, kCorrections);
   const fs::path folder = store.folder() / "analysis";
   std::error_code error;
   fs::create_directories(folder, error);
@@ -82,7 +95,10 @@ Result<std::optional<SessionWedges>> keep_wedges(SessionStore& store, const Mesh
   }
   const std::string name = fs::relative(out.json, store.folder()).generic_string();
   if (const Status kept = store.save_document(
-          kDocument, text_of({{"file", name}, {"sha256", *sum}, {"surface_sha256", digest_of(mesh)}}));
+          kDocument, text_of({{"file", name},
+                              {"sha256", *sum},
+                              {"surface_sha256", digest_of(mesh)},
+                              {"corrections", corrections_to_json({{}, options.wedges.corrections})}}));
       !kept) {
     return std::unexpected(kept.error());
   }
@@ -101,7 +117,10 @@ std::optional<WedgeFile> stored_wedges(const SessionStore& store, const Mesh& me
   const std::string file = document->root().at("file").text();
   const std::string sum = document->root().at("sha256").text();
   const std::string surface = document->root().at("surface_sha256").text();
-  if (!document->status("") || surface != digest_of(mesh)) {
+  const auto corrections = document->root().find("corrections");
+  const std::string corrected = corrections ? corrections->text() : corrections_to_json({});
+  if (!document->status("") || surface != digest_of(mesh) ||
+      corrected != corrections_to_json({{}, session_corrections(store)})) {
     return std::nullopt;
   }
   const Result<std::string> now = sha256_of_file(store.folder() / file, job);

@@ -5,11 +5,13 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "acquisition/session_store.h"
 #include "core/job.h"
 #include "core/mesh.h"
 #include "core/result.h"
+#include "core/wedge_correction.h"
 #include "formats/wedges_json.h"
 
 namespace dubsar {
@@ -21,13 +23,17 @@ struct SessionWedges {
   std::size_t rejected = 0;
 };
 
-/// Measures the wedges of the mesh and keeps them in the session. Nothing when the mesh has no surface to
-/// look at. Errors: kCancelled, kStorage.
+/// What the scholar has said of the session's wedges in the viewer; a file that cannot be read is passed over
+/// with a warning.
+[[nodiscard]] std::vector<WedgeCorrection> session_corrections(const SessionStore& store);
+
+/// Measures the wedges of the mesh, corrected as the session says, and keeps them in the session. Nothing
+/// when the mesh has no surface to look at. Errors: kCancelled, kStorage.
 [[nodiscard]] Result<std::optional<SessionWedges>> keep_wedges(SessionStore& store, const Mesh& mesh,
                                                                const JobContext& job);
 
-/// The session's stored wedges, when they were measured on this very surface and their file is as it was
-/// stored; nothing otherwise.
+/// The session's stored wedges, when they were measured on this very surface and corrected as the session
+/// says now, and their file is as it was stored; nothing otherwise.
 [[nodiscard]] std::optional<WedgeFile> stored_wedges(const SessionStore& store, const Mesh& mesh,
                                                      const JobContext& job);
 

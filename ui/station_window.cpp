@@ -20,6 +20,7 @@
 #include "ui/gl/gl_window.h"
 #include "ui/operator/operator_screen.h"
 #include "ui/shell/script.h"
+#include "ui/viewer/pair_screen.h"
 #include "ui/viewer/viewer_screen.h"
 
 namespace dubsar::ui {
@@ -87,6 +88,12 @@ class StationWindow {
     viewing_ = std::make_unique<MeshViewing>(wake_window);
     if (looks_) {
       viewing_->open(options.mesh);
+      if (!options.other_mesh.empty()) {
+        other_viewing_ = std::make_unique<MeshViewing>(wake_window);
+        other_viewing_->open(options.other_mesh);
+        pair_ = std::make_unique<PairScreen>(*viewing_, *other_viewing_);
+        return;
+      }
       viewer_ = std::make_unique<ViewerScreen>(*viewing_, std::filesystem::path("."), false);
       return;
     }
@@ -164,7 +171,10 @@ class StationWindow {
     ImGui::NewFrame();
     const ImVec2 size = ImGui::GetIO().DisplaySize;
     bool unfinished = false;
-    if (looks_) {
+    if (pair_) {
+      pair_->draw(ui_, size);
+      unfinished = pair_->unfinished();
+    } else if (looks_) {
       viewer_->draw(ui_, size);
       unfinished = viewer_->unfinished();
       looks_ = !viewer_->wants_scanning();
@@ -209,8 +219,13 @@ class StationWindow {
     if (session_) {
       return std::nullopt;
     }
-    const ViewedMesh state = viewing_->state();
-    return state.mesh ? std::nullopt : state.error;
+    for (const MeshViewing* viewing : {viewing_.get(), other_viewing_.get()}) {
+      if (const ViewedMesh state = viewing != nullptr ? viewing->state() : ViewedMesh();
+          state.error && !state.mesh) {
+        return state.error;
+      }
+    }
+    return std::nullopt;
   }
 
   void keep_preferences() {
@@ -233,6 +248,8 @@ class StationWindow {
   // The screens go before the context does.
   std::unique_ptr<LiveSession> session_;
   std::unique_ptr<MeshViewing> viewing_;
+  std::unique_ptr<MeshViewing> other_viewing_;
+  std::unique_ptr<PairScreen> pair_;
   std::unique_ptr<OperatorScreen> operator_;
   std::unique_ptr<ViewerScreen> viewer_;
 };

@@ -15,9 +15,10 @@
 #include "analysis/tablet_size.h"
 #include "archive/wedge_drawing.h"
 #include "core/units.h"
+#include "formats/corrections_json.h"
 #include "formats/mesh_io.h"
 #include "station/analysis.h"
-#include "station/command/command.h"
+#include "station/command/analyze.h"
 #include "station/command/outputs.h"
 #include "station/done_stamp.h"
 #include "station/field_pictures.h"
@@ -25,22 +26,6 @@
 namespace dubsar {
 
 namespace {
-
-struct AnalyzeArguments {
-  std::string in;
-  std::string out;
-  std::string mesh_out;
-  std::string exits = "surface";
-  std::string unit;
-  std::string pictures;
-  std::string invariants;
-  double radius_mm = 1.0;
-  SurfaceFieldOptions fields;
-  bool uniform_weights = false;
-  std::string svg;
-  bool classical = false;
-  bool again = false;
-};
 
 /// How an output lies to the main one: a tablet's folder may move. Empty for none.
 std::string place_of(const std::string& path, const std::string& main) {
@@ -53,23 +38,26 @@ std::string place_of(const std::string& path, const std::string& main) {
 }
 
 /// Everything beside the mesh that decides what is written, and where.
-std::string parameters_of(const AnalyzeArguments& a) {
+std::string parameters_of(const AnalyzeArguments& a, const CorrectionFile& said) {
   const FreeSurfaceOptions& free = a.fields.free_surface;
-  const nlohmann::ordered_json json{{"exit", a.exits},
-                                    {"unit", a.unit},
-                                    {"free_openness", free.least_openness},
-                                    {"free_concave_per_mm", free.most_concave_per_mm},
-                                    {"free_convex_per_mm", free.most_convex_per_mm},
-                                    {"equalize", a.fields.equalize_openness},
-                                    {"fault_reach", a.fields.reliability_iterations},
-                                    {"uniform_weights", a.uniform_weights},
-                                    {"classical_watershed", a.classical},
-                                    {"out", std::filesystem::path(a.out).filename().string()},
-                                    {"mesh_out", place_of(a.mesh_out, a.out)},
-                                    {"pictures", place_of(a.pictures, a.out)},
-                                    {"svg", place_of(a.svg, a.out)},
-                                    {"invariants", place_of(a.invariants, a.out)},
-                                    {"invariant_radius_mm", a.invariants.empty() ? 0.0 : a.radius_mm}};
+  nlohmann::ordered_json json{{"exit", a.exits},
+                              {"unit", a.unit},
+                              {"free_openness", free.least_openness},
+                              {"free_concave_per_mm", free.most_concave_per_mm},
+                              {"free_convex_per_mm", free.most_convex_per_mm},
+                              {"equalize", a.fields.equalize_openness},
+                              {"fault_reach", a.fields.reliability_iterations},
+                              {"uniform_weights", a.uniform_weights},
+                              {"classical_watershed", a.classical},
+                              {"out", std::filesystem::path(a.out).filename().string()},
+                              {"mesh_out", place_of(a.mesh_out, a.out)},
+                              {"pictures", place_of(a.pictures, a.out)},
+                              {"svg", place_of(a.svg, a.out)},
+                              {"invariants", place_of(a.invariants, a.out)},
+                              {"invariant_radius_mm", a.invariants.empty() ? 0.0 : a.radius_mm}};
+  if (!said.corrections.empty()) {
+    json["corrections"] = corrections_to_json({{}, said.corrections});
+  }
   return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
 
@@ -185,11 +173,33 @@ std::vector<std::filesystem::path> outputs_of(const AnalyzeArguments& arguments,
   return out;
 }
 
+/// Whether the correction that was asked for last could be made.
+Status check_corrected(const AnalyzeArguments& arguments, const std::filesystem::path& file,
+                       const Analysis& analysis) {
+  const std::vector<LostCorrection>& lost = analysis.set.lost;
+  if (!arguments.must_make_last || lost.empty() || lost.back().index + 1 != arguments.corrected->size()) {
+    return {};
+  }
+  return fail(ErrorKind::kBadInput, lost.back().reason, file.string(),
+              "nothing was changed; look at the place in the viewer");
+}
+
+}  // namespace
+
 Result<int> analyze(const AnalyzeArguments& arguments, CommandContext& context) {
+  const std::filesystem::path corrections_file = corrections_of(arguments);
+  Result<CorrectionFile> said = read_corrections(corrections_file);
+  if (!said) {
+    return std::unexpected(said.error());
+  }
+  if (arguments.corrected) {
+    said->corrections = *arguments.corrected;
+    said->mesh = std::filesystem::path(arguments.in).filename().string();
+  }
   std::optional<StampedWork> work;
   if (is_stampable(arguments)) {
-    Result<StampedWork> begun = StampedWork::begin(stamp_beside(arguments.out), "analyze",
-                                                   parameters_of(arguments), {arguments.in}, context.job);
+    Result<StampedWork> begun = StampedWork::begin(
+        stamp_beside(arguments.out), "analyze", parameters_of(arguments, *said), {arguments.in}, context.job);
     if (!begun) {
       return std::unexpected(begun.error());
     }
@@ -223,12 +233,17 @@ Result<int> analyze(const AnalyzeArguments& arguments, CommandContext& context) 
   }
   options.wedges.exits = arguments.exits == "extent" ? ExitDefinition::kExtent : ExitDefinition::kSurface;
   options.wedges.classical_watershed = arguments.classical;
+  options.wedges.corrections = said->corrections;
   Result<Analysis> analysis = analyze_mesh(*mesh, options, context.job);
   if (!analysis) {
     Error error = analysis.error();
     error.where = error.where.empty() ? arguments.in : error.where;
     return std::unexpected(std::move(error));
   }
+  if (const Status made = check_corrected(arguments, corrections_file, *analysis); !made) {
+    return std::unexpected(made.error());
+  }
+  warn_of_lost(*analysis, corrections_file.string());
   analysis->timings_s.insert(analysis->timings_s.begin(), {"reading", reading_s});
   const double took_s = seconds_since(start);
   analysis->timings_s.emplace_back("all", took_s);
@@ -236,6 +251,11 @@ Result<int> analyze(const AnalyzeArguments& arguments, CommandContext& context) 
       wedge_file(std::filesystem::path(arguments.in).filename().string(), options, *analysis);
   if (const Status started = work ? work->start() : Status(); !started) {
     return std::unexpected(started.error());
+  }
+  if (arguments.corrected) {
+    if (const Status written = write_corrections(corrections_file, *said); !written) {
+      return std::unexpected(written.error());
+    }
   }
   if (const Status written = write_wedges(arguments.out, file); !written) {
     return std::unexpected(written.error());
@@ -276,52 +296,64 @@ Result<int> analyze(const AnalyzeArguments& arguments, CommandContext& context) 
   return 0;
 }
 
-}  // namespace
+std::filesystem::path corrections_of(const AnalyzeArguments& arguments) {
+  return arguments.corrections.empty() ? corrections_file_of(arguments.out)
+                                       : std::filesystem::path(arguments.corrections);
+}
+
+std::vector<std::string> written_by(const AnalyzeArguments& arguments) {
+  return {arguments.out, arguments.mesh_out, arguments.pictures, arguments.svg, arguments.invariants};
+}
+
+void add_analyze_options(CLI::App& verb, AnalyzeArguments& arguments) {
+  verb.add_option("mesh", arguments.in, "PLY, OBJ, STL or GLB, faults and all")->required();
+  verb.add_option("-o,--out", arguments.out, "wedges.json")->required();
+  verb.add_option("--mesh-out", arguments.mesh_out, "the mesh with its wedges in colours");
+  verb.add_option("--exit", arguments.exits,
+                  "where an inner edge ends: at the free surface, or as far as seen")
+      ->check(CLI::IsMember({"surface", "extent"}));
+  verb.add_option("--unit", arguments.unit, "what the file's numbers are")
+      ->check(CLI::IsMember({"m", "mm", "um"}));
+  verb.add_option("--pictures", arguments.pictures,
+                  "a folder for the surface fields and the wedges as coloured PLY and PNG");
+  verb.add_option("--free-openness", arguments.fields.free_surface.least_openness,
+                  "free surface: at least this open, 0 to 1; unset: told by the mesh")
+      ->check(CLI::Range(0.0, 1.0));
+  verb.add_option("--free-concave", arguments.fields.free_surface.most_concave_per_mm,
+                  "free surface: mean curvature no further below zero than this, per mm")
+      ->check(CLI::Range(0.0, 100.0))
+      ->capture_default_str();
+  verb.add_option("--free-convex", arguments.fields.free_surface.most_convex_per_mm,
+                  "free surface: mean curvature at most this, per mm")
+      ->check(CLI::Range(0.0, 100.0))
+      ->capture_default_str();
+  verb.add_flag("--equalize", arguments.fields.equalize_openness,
+                "openness by rank: --free-openness is then a share of the surface");
+  verb.add_option("--fault-reach", arguments.fields.reliability_iterations,
+                  "how many rings of faces around a fault of the mesh are less reliable")
+      ->check(CLI::Range(0, 100))
+      ->capture_default_str();
+  verb.add_flag("--uniform-weights", arguments.uniform_weights,
+                "all points weigh the same in the surface that heights are taken from, for comparison");
+  verb.add_option("--invariants", arguments.invariants,
+                  "multi-scale integral invariants of every vertex, as GigaMesh's .mat");
+  verb.add_option("--invariant-radius", arguments.radius_mm, "mm, of their largest sphere")
+      ->check(CLI::Range(0.05, 50.0))
+      ->capture_default_str();
+  verb.add_option("--svg", arguments.svg, "a folder for one drawing to scale of each side that has wedges");
+  verb.add_flag("--classical-watershed", arguments.classical, "the textbook watershed, for comparison");
+  verb.add_flag("--again", arguments.again, "even where the same was done before from the same mesh");
+  verb.add_option("--corrections", arguments.corrections,
+                  "what a person has said of the wedges; without it NAME.corrections.json beside the output");
+}
 
 void add_analyze(CLI::App& app, Action& chosen) {
   CLI::App* verb = app.add_subcommand("analyze", "Every wedge of a mesh, measured");
   const auto arguments = std::make_shared<AnalyzeArguments>();
-  verb->add_option("mesh", arguments->in, "PLY, OBJ, STL or GLB, faults and all")->required();
-  verb->add_option("-o,--out", arguments->out, "wedges.json")->required();
-  verb->add_option("--mesh-out", arguments->mesh_out, "the mesh with its wedges in colours");
-  verb->add_option("--exit", arguments->exits,
-                   "where an inner edge ends: at the free surface, or as far as seen")
-      ->check(CLI::IsMember({"surface", "extent"}));
-  verb->add_option("--unit", arguments->unit, "what the file's numbers are")
-      ->check(CLI::IsMember({"m", "mm", "um"}));
-  verb->add_option("--pictures", arguments->pictures,
-                   "a folder for the surface fields and the wedges as coloured PLY and PNG");
-  verb->add_option("--free-openness", arguments->fields.free_surface.least_openness,
-                   "free surface: at least this open, 0 to 1; unset: told by the mesh")
-      ->check(CLI::Range(0.0, 1.0));
-  verb->add_option("--free-concave", arguments->fields.free_surface.most_concave_per_mm,
-                   "free surface: mean curvature no further below zero than this, per mm")
-      ->check(CLI::Range(0.0, 100.0))
-      ->capture_default_str();
-  verb->add_option("--free-convex", arguments->fields.free_surface.most_convex_per_mm,
-                   "free surface: mean curvature at most this, per mm")
-      ->check(CLI::Range(0.0, 100.0))
-      ->capture_default_str();
-  verb->add_flag("--equalize", arguments->fields.equalize_openness,
-                 "openness by rank: --free-openness is then a share of the surface");
-  verb->add_option("--fault-reach", arguments->fields.reliability_iterations,
-                   "how many rings of faces around a fault of the mesh are less reliable")
-      ->check(CLI::Range(0, 100))
-      ->capture_default_str();
-  verb->add_flag("--uniform-weights", arguments->uniform_weights,
-                 "all points weigh the same in the surface that heights are taken from, for comparison");
-  verb->add_option("--invariants", arguments->invariants,
-                   "multi-scale integral invariants of every vertex, as GigaMesh's .mat");
-  verb->add_option("--invariant-radius", arguments->radius_mm, "mm, of their largest sphere")
-      ->check(CLI::Range(0.05, 50.0))
-      ->capture_default_str();
-  verb->add_option("--svg", arguments->svg, "a folder for one drawing to scale of each side that has wedges");
-  verb->add_flag("--classical-watershed", arguments->classical, "the textbook watershed, for comparison");
-  verb->add_flag("--again", arguments->again, "even where the same was done before from the same mesh");
+  add_analyze_options(*verb, *arguments);
   verb->callback([&chosen, arguments] {
-    chosen = outside_sessions(
-        {arguments->out, arguments->mesh_out, arguments->pictures, arguments->svg, arguments->invariants},
-        [arguments](CommandContext& c) { return analyze(*arguments, c); });
+    chosen = outside_sessions(written_by(*arguments),
+                              [arguments](CommandContext& c) { return analyze(*arguments, c); });
   });
 }
 

@@ -39,6 +39,8 @@ void add_plan(CLI::App& app, Action& chosen);
 void add_pins(CLI::App& app, Action& chosen);
 void add_stitch(CLI::App& app, Action& chosen);
 void add_analyze(CLI::App& app, Action& chosen);
+void add_view(CLI::App& app, Action& chosen);
+void add_wedges(CLI::App& app, Action& chosen);
 void add_mesh(CLI::App& app, Action& chosen);
 void add_search(CLI::App& app, Action& chosen);
 void add_verify(CLI::App& app, Action& chosen);

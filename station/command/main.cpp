@@ -51,8 +51,8 @@ int run(int argc, char** argv) {
 
   Action action;
   for (const auto add : {add_drivers, add_simulate, add_calibrate, add_scan, add_register, add_plan, add_pins,
-                         add_stitch, add_analyze, add_search, add_mesh, add_export, add_verify, add_session,
-                         add_station, add_bench, add_reference}) {
+                         add_stitch, add_analyze, add_wedges, add_search, add_mesh, add_export, add_verify,
+                         add_session, add_view, add_station, add_bench, add_reference}) {
     add(app, action);
   }
   try {

@@ -2,7 +2,6 @@
 // Copyright The Dubsar developers
 // dubsar mesh check | convert | section | part.
 
-#include <charconv>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -15,6 +14,7 @@
 #include "formats/wedges_json.h"
 #include "station/command/command.h"
 #include "station/command/outputs.h"
+#include "station/command/place_option.h"
 #include "station/mesh_json.h"
 #include "station/section_file.h"
 #include "station/selection_store.h"
@@ -70,21 +70,6 @@ Result<int> convert(const MeshOptions& options, CommandContext& context) {
                 mesh->faces.size());
   }
   return 0;
-}
-
-Result<Eigen::Vector3d> place_of(const std::string& text, const char* option) {
-  Eigen::Vector3d out;
-  const char* at = text.data();
-  const char* end = text.data() + text.size();
-  for (int k = 0; k < 3; ++k) {
-    const auto [next, error] = std::from_chars(at, end, out[k]);
-    const bool parted = k == 2 ? next == end : next != end && *next == ',';
-    if (error != std::errc() || !parted) {
-      return fail(ErrorKind::kUsage, "'" + text + "' is no place", option, "write x,y,z in mm");
-    }
-    at = next + (k < 2 ? 1 : 0);
-  }
-  return out;
 }
 
 Result<int> section(const MeshOptions& options, CommandContext& context) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright The Dubsar developers
-// dubsar station: the window.
+// dubsar station: the window. dubsar view: the same, to look at one mesh or two.
 
 #include <memory>
 
@@ -17,6 +17,7 @@ struct StationArguments {
   ui::StationWindowOptions window;
   std::string session;
   std::string mesh;
+  std::string other_mesh;
   std::string script;
   std::string pins;
 };
@@ -25,6 +26,7 @@ Result<int> open_station(const StationArguments& arguments, CommandContext& cont
   ui::StationWindowOptions options = arguments.window;
   options.session = arguments.session;
   options.mesh = arguments.mesh;
+  options.other_mesh = arguments.other_mesh;
   options.script = arguments.script;
   if (!arguments.pins.empty()) {
     Result<PinSet> pins = read_pins(arguments.pins);
@@ -41,7 +43,30 @@ Result<int> open_station(const StationArguments& arguments, CommandContext& cont
   return status;
 }
 
+/// What a window has, whatever it is opened for.
+void add_window_options(CLI::App& verb, StationArguments& arguments) {
+  verb.add_option("--script", arguments.script,
+                  "play what a person would do (docs/operators/window_scripts.md)");
+  verb.add_option("--language", arguments.window.language, "of the window")
+      ->check(CLI::IsMember({"en", "de"}));
+  verb.add_option("--width", arguments.window.width, "of the window, pixels")->check(CLI::Range(640, 16384));
+  verb.add_option("--height", arguments.window.height, "of the window, pixels")
+      ->check(CLI::Range(480, 16384));
+  verb.fallthrough();
+}
+
 }  // namespace
+
+void add_view(CLI::App& app, Action& chosen) {
+  CLI::App* verb = app.add_subcommand("view", "Look at a mesh, or at two side by side");
+  const auto arguments = std::make_shared<StationArguments>();
+  verb->add_option("mesh", arguments->mesh, "PLY, OBJ, STL or GLB")->required();
+  verb->add_option("other", arguments->other_mesh, "the one beside it, to the same scale");
+  add_window_options(*verb, *arguments);
+  verb->callback([&chosen, arguments] {
+    chosen = [arguments](CommandContext& c) { return open_station(*arguments, c); };
+  });
+}
 
 void add_station(CLI::App& app, Action& chosen) {
   CLI::App* verb = app.add_subcommand("station", "The window: scan a tablet, or look at a mesh");
@@ -51,15 +76,7 @@ void add_station(CLI::App& app, Action& chosen) {
   verb->add_option("--device", arguments->window.device, "URI of the scanner; without it the one used last");
   verb->add_option("--pins", arguments->pins, "the operator's pins (pins.json)");
   verb->add_option("--mesh", arguments->mesh, "look at this mesh instead");
-  verb->add_option("--script", arguments->script,
-                   "play what a person would do (docs/operators/window_scripts.md)");
-  verb->add_option("--language", arguments->window.language, "of the window")
-      ->check(CLI::IsMember({"en", "de"}));
-  verb->add_option("--width", arguments->window.width, "of the window, pixels")
-      ->check(CLI::Range(640, 16384));
-  verb->add_option("--height", arguments->window.height, "of the window, pixels")
-      ->check(CLI::Range(480, 16384));
-  verb->fallthrough();
+  add_window_options(*verb, *arguments);
   verb->callback([&chosen, arguments] {
     chosen = [arguments](CommandContext& c) { return open_station(*arguments, c); };
   });

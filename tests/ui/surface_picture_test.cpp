@@ -4,7 +4,6 @@
 // now: look at it before it becomes the stored one.
 
 #include <gtest/gtest.h>
-#include <png.h>
 
 #include <cmath>
 #include <cstdlib>
@@ -12,6 +11,7 @@
 
 #include "station/picture_file.h"
 #include "tests/ui/support/display.h"
+#include "tests/ui/support/read_png.h"
 #include "ui/gl/gl_window.h"
 #include "ui/view/surface_view.h"
 
@@ -52,24 +52,6 @@ Mesh dented_slab() {
   return mesh;
 }
 
-/// RGBA; empty when it cannot be read.
-Image read_png(const fs::path& file) {
-  png_image png;
-  std::memset(&png, 0, sizeof png);
-  png.version = PNG_IMAGE_VERSION;
-  Image image;
-  if (png_image_begin_read_from_file(&png, file.c_str()) == 0) {
-    return image;
-  }
-  png.format = PNG_FORMAT_RGBA;
-  image.width = static_cast<int>(png.width);
-  image.height = static_cast<int>(png.height);
-  image.channels = 4;
-  image.bytes.resize(PNG_IMAGE_SIZE(png));
-  png_image_finish_read(&png, nullptr, image.bytes.data(), 0, nullptr);
-  return image;
-}
-
 class Shading : public ::testing::Test {
  protected:
   void SetUp() override {
@@ -98,7 +80,7 @@ class Shading : public ::testing::Test {
     if (const char* folder = std::getenv("DUBSAR_KEEP_PICTURES"); folder != nullptr) {
       ASSERT_TRUE(write_picture(fs::path(folder) / (name + ".png"), drawn, name));
     }
-    const Image stored = read_png(fs::path(DUBSAR_SOURCE_DIR) / "tests/ui/pictures" / (name + ".png"));
+    const Image stored = test::read_png(fs::path(DUBSAR_SOURCE_DIR) / "tests/ui/pictures" / (name + ".png"));
     ASSERT_EQ(stored.bytes.size(), drawn.bytes.size()) << name;
     double sum = 0;
     std::size_t far = 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright The Dubsar developers
-// Selections of the viewer, from the polygon to the files, through the real window.
+// Selections and corrections of the viewer, from the click to the files, through the real window.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -66,23 +66,107 @@ wait kept.2
 quit
 )";
 
-TEST(ViewerSelections, AreNamedKeptWrittenAndAnalysedAlone) {
-  const test::Display display;
-  if (!display.works()) {
-    GTEST_SKIP() << "there is no Xvfb here (Debian package xvfb)";
+constexpr const char* kCorrect = R"(wait wedges 60
+wait whole
+wait idle
+click tool-correct
+click wedge.3
+wait marked.1
+click wedge-delete
+wait corrections.1 60
+wait idle
+wheel surface 8
+click tool-select
+click surface 0.36 0.3
+click surface 0.64 0.3
+click surface 0.64 0.7
+click surface 0.36 0.7
+click surface 0.36 0.3
+wait selected
+click tool-correct
+click wedge-add
+wait corrections.2 60
+wait idle
+wait whole
+screenshot corrected.png
+click wedge.4
+click wedge.5
+wait marked.2
+click wedge-merge
+wait not-made
+expect corrections.2
+quit
+)";
+
+constexpr const char* kTakeBack = R"(wait wedges 60
+wait idle
+click tool-correct
+wait corrections.2
+click wedge-undo
+wait corrections.1 60
+quit
+)";
+
+class OnATablet : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (!display_.works()) {
+      GTEST_SKIP() << "there is no Xvfb here (Debian package xvfb)";
+    }
+    ASSERT_EQ(run_command({"simulate", "tablet", "--seed", "3", "--size", "16x14x8", "--spacing", "0.1", "-o",
+                           folder_.path().string()})
+                  .status,
+              0);
+    ASSERT_EQ(run_command({"analyze", in("tablet.ply"), "-o", in("tablet.wedges.json")}).status, 0);
   }
-  const test::TemporaryFolder folder;
-  const auto in = [&](const char* name) { return (folder.path() / name).string(); };
-  ASSERT_EQ(run_command({"simulate", "tablet", "--seed", "3", "--size", "16x14x8", "--spacing", "0.1", "-o",
-                         folder.path().string()})
+  [[nodiscard]] std::string in(const std::string& name) const { return (folder_.path() / name).string(); }
+  /// In the folder, where what is kept of a mesh goes.
+  [[nodiscard]] test::Outcome play(const char* script) const {
+    std::ofstream(folder_.path() / "a.script") << script;
+    const fs::path before = fs::current_path();
+    fs::current_path(folder_.path());
+    auto outcome =
+        run_command({"station", "--mesh", "tablet.ply", "--script", "a.script"}, {.timeout_s = 240});
+    fs::current_path(before);
+    return outcome;
+  }
+
+  test::Display display_;
+  test::TemporaryFolder folder_;
+};
+
+using ViewerCorrections = OnATablet;
+
+TEST_F(ViewerCorrections, AreMadeKeptAndTakenBack) {
+  const auto before = read_wedges(in("tablet.wedges.json"));
+  ASSERT_TRUE(before);
+  auto outcome = play(kCorrect);
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const auto after = read_wedges(in("tablet.wedges.json"));
+  ASSERT_TRUE(after);
+  EXPECT_EQ(after->corrections, 2U);
+  ASSERT_EQ(after->wedges.size(), before->wedges.size());
+  const Wedge& added = after->wedges.back();
+  EXPECT_EQ(added.by_hand, ByHand::kAdded);
+  EXPECT_EQ(added.id, static_cast<int>(before->wedges.size()));
+  EXPECT_LT((added.depth_point_mm - before->wedges[3].depth_point_mm).norm(), 0.1);
+  EXPECT_EQ(after->wedges[3].id, 4);
+  // The command makes the same of it.
+  ASSERT_EQ(run_command({"analyze", in("tablet.ply"), "-o", in("again.json"), "--corrections",
+                         in("tablet.wedges.corrections.json")})
                 .status,
             0);
-  ASSERT_EQ(run_command({"analyze", in("tablet.ply"), "-o", in("tablet.wedges.json")}).status, 0);
-  std::ofstream(folder.path() / "select.script") << kSelect;
-  const fs::path before = fs::current_path();
-  fs::current_path(folder.path());  // where what is kept of a mesh goes
-  const auto outcome = run_command({"station", "--mesh", "tablet.ply", "--script", "select.script"});
-  fs::current_path(before);
+  EXPECT_EQ(read_wedges(in("again.json"))->wedges.back().depth_point_mm, added.depth_point_mm);
+  // In another window they are known, and can be taken back.
+  outcome = play(kTakeBack);
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(read_wedges(in("tablet.wedges.json"))->wedges.size(), before->wedges.size() - 1);
+}
+
+using ViewerSelections = OnATablet;
+
+TEST_F(ViewerSelections, AreNamedKeptWrittenAndAnalysedAlone) {
+  const auto outcome = play(kSelect);
   ASSERT_EQ(outcome.status, 0) << outcome.err;
 
   const auto mesh = read_mesh(in("tablet.ply"));

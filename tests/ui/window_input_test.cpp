@@ -12,6 +12,7 @@
 #include "tests/station/support/command.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/ui/support/display.h"
+#include "tests/ui/support/read_png.h"
 
 namespace dubsar {
 namespace {
@@ -143,6 +144,51 @@ TEST_F(MeshInput, ACutBetweenTwoClicksIsMeasuredAndKept) {
                          "3,0,0", "-o", svg})
                 .status,
             2);
+}
+
+TEST_F(MeshInput, TwoSideBySideTurnTogetherOrAlone) {
+  std::ofstream(folder_.path() / "left.obj") << grooved_plate();
+  std::ofstream(folder_.path() / "right.obj") << grooved_plate();
+  const auto in = [&](const char* name) { return (folder_.path() / name).string(); };
+  std::ofstream(in("pair.script")) << "wait whole\nwait idle\nscreenshot " << in("both.png")
+                                   << "\ndrag left-tablet 0.5 0.5 0.7 0.6\nwait whole\nscreenshot "
+                                   << in("together.png") << "\nkey l\nwait turned-alone\nkey 1\n"
+                                   << "drag right-tablet 0.5 0.5 0.3 0.4\nwait whole\nscreenshot "
+                                   << in("alone.png") << "\nquit\n";
+  const Outcome outcome = run_command({"view", in("left.obj"), in("right.obj"), "--script", in("pair.script"),
+                                       "--width", "1300", "--height", "700"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  // Mean difference of two pictures, the names and the bars of scale aside; `dx` apart.
+  const auto unlike = [&](const Image& a, const Image& b, int dx) {
+    double sum = 0;
+    int count = 0;
+    for (int y = 150; y < 590; ++y) {
+      for (int x = 60; x < a.width / 2 - 60; ++x, ++count) {
+        sum += std::abs(int{a.rgb(x, y)[0]} - int{b.rgb(x + dx, y)[0]});
+      }
+    }
+    return sum / count;
+  };
+  const Image both = test::read_png(in("both.png"));
+  const Image together = test::read_png(in("together.png"));
+  const Image alone = test::read_png(in("alone.png"));
+  ASSERT_EQ(alone.width, 1300);
+  // The panes begin where the window's margin ends, and lie half the rest apart.
+  const auto apart = [&](const Image& picture) {
+    double least = 1e9;
+    for (int dx = picture.width / 2 - 12; dx <= picture.width / 2 + 12; ++dx) {
+      least = std::min(least, unlike(picture, picture, dx));
+    }
+    return least;
+  };
+  EXPECT_LT(apart(both), 1);
+  EXPECT_LT(apart(together), 1);
+  EXPECT_GT(apart(alone), 3);
+  EXPECT_GT(unlike(both, together, 0), 3);
+  EXPECT_GT(unlike(both, together, both.width / 2), 3) << "both turned";
+  // One that cannot be read is named, and nothing opens.
+  const Outcome broken = run_command({"view", in("left.obj"), in("pair.script")});
+  EXPECT_EQ(broken.status, 2);
 }
 
 TEST(WindowInput, ABadScriptIsNamedByItsLine) {

@@ -26,6 +26,7 @@ const std::map<std::string, int>& keys() {
                                                 {"f9", GLFW_KEY_F9},
                                                 {"f10", GLFW_KEY_F10},
                                                 {"f11", GLFW_KEY_F11},
+                                                {"l", GLFW_KEY_L},
                                                 {"p", GLFW_KEY_P},
                                                 {"pagedown", GLFW_KEY_PAGE_DOWN},
                                                 {"pageup", GLFW_KEY_PAGE_UP},

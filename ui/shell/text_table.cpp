@@ -272,6 +272,20 @@ constexpr Row kRows[] = {
     {Text::kWedgesAsTable, "Its wedges as CSV", "Ihre Keile als CSV"},
     {Text::kAnalysePart, "Find its wedges alone", "Nur hier Keile suchen"},
     {Text::kWholeMesh, "Back to the whole", "Zurück zum Ganzen"},
+    {Text::kCorrect, "Correct", "Berichtigen"},
+    {Text::kCorrectHint, "Click wedges, then say what they are.",
+     "Keile anklicken, dann sagen, was sie sind."},
+    {Text::kMarkedWedges, "{} clicked: {}", "{} angeklickt: {}"},
+    {Text::kNoWedge, "No wedge", "Kein Keil"},
+    {Text::kOneWedge, "One wedge", "Ein Keil"},
+    {Text::kSeveralWedges, "Several wedges", "Mehrere Keile"},
+    {Text::kSplitHint, "Click the deepest place of each.", "Die tiefste Stelle eines jeden anklicken."},
+    {Text::kSplitHere, "Split", "Teilen"},
+    {Text::kWedgeIsSelected, "What is selected is a wedge", "Das Ausgewählte ist ein Keil"},
+    {Text::kTakeBack, "Take back", "Zurücknehmen"},
+    {Text::kCorrections, "{} corrections", "{} Berichtigungen"},
+    {Text::kNotMade, "Not made: {}", "Nicht gemacht: {}"},
+    {Text::kTogether, "L  Turn together", "L  Gemeinsam drehen"},
 };
 
 constexpr bool in_order() {

@@ -226,6 +226,19 @@ enum class Text {
   kWedgesAsTable,
   kAnalysePart,
   kWholeMesh,
+  kCorrect,
+  kCorrectHint,
+  kMarkedWedges,
+  kNoWedge,
+  kOneWedge,
+  kSeveralWedges,
+  kSplitHint,
+  kSplitHere,
+  kWedgeIsSelected,
+  kTakeBack,
+  kCorrections,
+  kNotMade,
+  kTogether,
   kCount
 };
 

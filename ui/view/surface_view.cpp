@@ -18,8 +18,10 @@ namespace {
 constexpr int kShadowSize = 1024;
 /// A picture that takes longer to draw makes the window feel stuck while it is turned.
 constexpr double kSlowFrameS = 0.05;
-/// Faces added to the whole picture between two looks at what the user does.
-constexpr std::size_t kFacesAtATime = 80000;
+/// So long the whole picture may be added to between two looks at what the user does, and so few faces are
+/// added however slow the machine is.
+constexpr double kSoonS = 0.04;
+constexpr std::size_t kFewestAtATime = 20000;
 
 bool outside(const Eigen::AlignedBox3f& box, const Eigen::Matrix4f& clip_from_model) {
   Eigen::AlignedBox3f clip;
@@ -263,11 +265,19 @@ bool SurfaceView::draw(const OrbitCamera& camera, const Look& look, int width, i
     faces_drawn_ = 0;
   }
   std::size_t end = next_block_;
-  for (std::size_t faces = 0; end < blocks_.size() && faces < kFacesAtATime; ++end) {
+  for (std::size_t faces = 0; end < blocks_.size() && faces < faces_at_a_time_; ++end) {
     faces += blocks_[end].count;
   }
+  const auto began = std::chrono::steady_clock::now();
   draw_geometry(layer, scene, next_block_, end, false);
   glFinish();  // else a driver that queues would let the frames pile up, and input wait behind them
+  const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - began;
+  if (spent.count() < 0.4 * kSoonS) {
+    faces_at_a_time_ =
+        std::min(2 * faces_at_a_time_, mesh_ ? mesh_->faces() + kFewestAtATime : kFewestAtATime);
+  } else if (spent.count() > kSoonS) {
+    faces_at_a_time_ = std::max(kFewestAtATime, faces_at_a_time_ / 2);
+  }
   next_block_ = end;
   if (next_block_ < blocks_.size()) {
     return true;

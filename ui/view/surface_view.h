@@ -110,7 +110,8 @@ class SurfaceView {
   bool dirty_ = true;           ///< mesh, points or values have changed
   std::size_t next_block_ = 0;  ///< of the whole picture that comes together
   bool whole_ = false;
-  bool slow_ = false;  ///< this machine draws slowly
+  bool slow_ = false;                    ///< this machine draws slowly
+  std::size_t faces_at_a_time_ = 80000;  ///< as many as this machine draws soon enough
   std::size_t faces_drawn_ = 0;
 };
 

@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 
-#include "archive/scale_bar.h"
 #include "ui/viewer/viewer_screen.h"
 
 namespace dubsar::ui {
@@ -51,7 +50,8 @@ void ViewerScreen::draw_wedges(UiContext& ui, ImVec2 origin, ImVec2 size) const 
     if (!faces_viewer(wedge, camera_)) {
       continue;
     }
-    const bool chosen = static_cast<int>(k) == wedge_;
+    const bool chosen =
+        static_cast<int>(k) == wedge_ || std::ranges::find(marked_, static_cast<int>(k)) != marked_.end();
     const float width = chosen ? 3.0F : 1.4F;
     const ImVec2 deep = at(wedge.depth_point_mm);
     for (std::size_t e = 0; e < 3; ++e) {
@@ -122,30 +122,6 @@ void ViewerScreen::draw_polygon(UiContext& ui, ImVec2 origin) const {
     draw->AddLine(a, b, ink, 2);
     draw->AddCircleFilled(a, k == 0 ? 6.0F : 4.0F, ink);
   }
-}
-
-void ViewerScreen::draw_scale_bar(UiContext& ui, ImVec2 origin, ImVec2 size) const {
-  const double mm_per_px = static_cast<double>(camera_.mm_per_px(size.y));
-  // 1, 2 or 5 times a power of ten that takes about a fifth of the picture.
-  const double wanted = 0.2 * static_cast<double>(size.x) * mm_per_px;
-  const double power = std::pow(10.0, std::floor(std::log10(wanted)));
-  const double length_mm = wanted / power >= 5 ? 5 * power : wanted / power >= 2 ? 2 * power : power;
-  const float px = static_cast<float>(length_mm / mm_per_px);
-  ImDrawList* draw = ImGui::GetWindowDrawList();
-  const float y = origin.y + size.y - ui.px(1.1F);
-  const float x = origin.x + ui.px(1);
-  const float height = ui.px(0.35F);
-  const ImU32 ink = packed(ui.colours.text);
-  for (int k = 0; k < 5; ++k) {
-    const float from = x + px * static_cast<float>(k) / 5;
-    const float to = x + px * static_cast<float>(k + 1) / 5;
-    if (k % 2 == 0) {
-      draw->AddRectFilled({from, y}, {to, y + height}, ink);
-    } else {
-      draw->AddRect({from, y}, {to, y + height}, ink);
-    }
-  }
-  draw->AddText({x + px + ui.px(0.4F), y - ui.px(0.35F)}, ink, fmt::format("{:g} mm", length_mm).c_str());
 }
 
 void ViewerScreen::draw_legend(UiContext& ui, ImVec2 origin, ImVec2 size) const {

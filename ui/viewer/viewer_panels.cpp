@@ -63,7 +63,7 @@ void ViewerScreen::draw_overlay_choice(UiContext& ui) {
   }
   if (ImGui::BeginCombo("##overlay", ui.text(now), ImGuiComboFlags_HeightLargest)) {
     for (const PlainChoice& choice : kPlain) {
-      if (choice.overlay == Overlay::kColours && shown_.colours.empty()) {
+      if (choice.overlay == Overlay::kColours && prepared_.shown().colours.empty()) {
         continue;
       }
       if (ImGui::Selectable(ui.text(choice.text), now == choice.text)) {
@@ -92,15 +92,17 @@ void ViewerScreen::draw_overlay_choice(UiContext& ui) {
 void ViewerScreen::draw_facts(UiContext& ui) {
   ImGui::PushFont(ui.fonts.small);
   if (const MeshBuffers* buffers = surface_.buffers()) {
-    coloured_text(ui.colours.faint, filled(ui.text(Text::kFaces), grouped(shown_.faces.size())).c_str());
     coloured_text(ui.colours.faint,
-                  filled(ui.text(Text::kVertices), grouped(shown_.positions.size())).c_str());
+                  filled(ui.text(Text::kFaces), grouped(prepared_.shown().faces.size())).c_str());
+    coloured_text(ui.colours.faint,
+                  filled(ui.text(Text::kVertices), grouped(prepared_.shown().positions.size())).c_str());
     coloured_text(
         ui.colours.faint,
         filled(ui.text(Text::kGraphicsMemory), static_cast<double>(buffers->bytes()) / 1e6).c_str());
   }
-  if (shown_.left_out > 0) {
-    coloured_text(ui.colours.amber, filled(ui.text(Text::kLeftOut), grouped(shown_.left_out)).c_str());
+  if (prepared_.shown().left_out > 0) {
+    coloured_text(ui.colours.amber,
+                  filled(ui.text(Text::kLeftOut), grouped(prepared_.shown().left_out)).c_str());
   }
   if (!state_.stage.empty()) {
     ImGui::ProgressBar(static_cast<float>(state_.fraction), {-1, 0}, state_.stage.c_str());
@@ -130,12 +132,17 @@ void ViewerScreen::draw_tools(UiContext& ui) {
   tool("tool-section", Text::kSection, Tool::kSection);
   ImGui::SameLine();
   tool("tool-select", Text::kSelect, Tool::kSelect);
+  if (state_.wedges) {
+    tool("tool-correct", Text::kCorrect, Tool::kCorrect);
+  }
   if (tool_ == Tool::kMeasure) {
     coloured_text(ui.colours.faint, ui.text(Text::kMeasureHint));
   } else if (tool_ == Tool::kSection) {
     draw_section_panel(ui);
   } else if (tool_ == Tool::kSelect) {
     draw_selecting(ui);
+  } else if (tool_ == Tool::kCorrect && state_.wedges) {
+    draw_correcting(ui);
   }
   ImGui::PopFont();
 }
@@ -186,7 +193,8 @@ void ViewerScreen::draw_panel(UiContext& ui, ImVec2 size) {
     ImGui::PopFont();
   }
   if (!state_.wedges) {
-    if (plain_button(ui, "analyse", ui.text(Text::kAnalyse), !shown_.faces.empty() && state_.stage.empty())) {
+    if (plain_button(ui, "analyse", ui.text(Text::kAnalyse),
+                     !prepared_.shown().faces.empty() && state_.stage.empty())) {
       viewing_.analyse();
     }
   } else {
@@ -230,9 +238,13 @@ void ViewerScreen::draw_wedge_table(UiContext& ui, ImVec2 size) {
         const Wedge& wedge = wedges[static_cast<std::size_t>(k)];
         ImGui::TableNextRow();
         ImGui::TableNextColumn();
-        if (ImGui::Selectable(fmt::format("{}##{}", wedge.id, k).c_str(), wedge_ == k,
-                              ImGuiSelectableFlags_SpanAllColumns)) {
+        if (ImGui::Selectable(
+                fmt::format("{}{}##{}", wedge.id, wedge.by_hand == ByHand::kNo ? "" : " *", k).c_str(),
+                wedge_ == k, ImGuiSelectableFlags_SpanAllColumns)) {
           choose(k, true);
+          if (tool_ == Tool::kCorrect && !splitting_) {
+            mark(k);
+          }
         }
         ui.target(fmt::format("wedge.{}", wedge.id));
         ImGui::TableNextColumn();

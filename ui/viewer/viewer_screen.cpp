@@ -7,29 +7,17 @@
 #include <GLFW/glfw3.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 #include "archive/scale_bar.h"
-#include "core/tablet_sides.h"
 #include "station/picture_file.h"
-#include "ui/gl/gl_window.h"
+#include "ui/viewer/hand.h"
 
 namespace dubsar::ui {
 
 namespace {
 
 constexpr double kMmPerInch = 25.4;
-
-Eigen::Quaternionf eye_towards(Face face, const RigidTransform& tablet_from_model) {
-  const SideAxes& side = side_axes(face);
-  Eigen::Matrix3d eye_from_tablet;
-  eye_from_tablet.row(0) = side.right.transpose();
-  eye_from_tablet.row(1) = side.up().transpose();
-  eye_from_tablet.row(2) = side.normal.transpose();
-  return Eigen::Quaternionf(Eigen::Matrix3f((eye_from_tablet * tablet_from_model.rotation).cast<float>()))
-      .normalized();
-}
 
 }  // namespace
 
@@ -60,18 +48,8 @@ ViewerScreen::ViewerScreen(MeshViewing& viewing, std::filesystem::path pictures,
 
 void ViewerScreen::take_state(UiContext& ui) {
   state_ = viewing_.state();
-  if (state_.mesh && state_.number != shown_number_ && !preparing_.valid()) {
-    preparing_mesh_ = state_.mesh;
-    shown_number_ = state_.number;
-    preparing_ = std::async(std::launch::async, [mesh = state_.mesh] {
-      ShownMesh shown = shown_mesh(*mesh);
-      wake_window();
-      return shown;
-    });
-  }
-  if (preparing_.valid() && preparing_.wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
-    shown_ = preparing_.get();
-    surface_.show(shown_);
+  if (prepared_.update(state_)) {
+    surface_.show(prepared_.shown());
     shown_openness_.reset();
     shown_values_.reset();
     tape_.clear();
@@ -79,11 +57,11 @@ void ViewerScreen::take_state(UiContext& ui) {
     clear_selected();
     wedge_ = -1;
     look_at(Face::kObverse);
-    if (!shown_.colours.empty() && look_.overlay == Overlay::kClay) {
+    if (!prepared_.shown().colours.empty() && look_.overlay == Overlay::kClay) {
       look_.overlay = Overlay::kColours;
     }
   }
-  if (surface_.empty() || preparing_.valid()) {
+  if (surface_.empty() || prepared_.busy()) {
     return;
   }
   const auto field_values = [&](MeshField field) -> std::shared_ptr<const std::vector<float>> {
@@ -91,8 +69,8 @@ void ViewerScreen::take_state(UiContext& ui) {
     return known == state_.fields.end() ? nullptr : known->second;
   };
   if (const auto openness = field_values(MeshField::kOpenness); openness && openness != shown_openness_) {
-    set_openness(shown_, *openness);
-    surface_.set_traits(shown_.traits);
+    set_openness(prepared_.shown(), *openness);
+    surface_.set_traits(prepared_.shown().traits);
     shown_openness_ = openness;
   }
   if (field_) {
@@ -110,6 +88,13 @@ void ViewerScreen::take_state(UiContext& ui) {
   if (state_.is_part) {
     ui.facts.insert("part");
   }
+  if (state_.wedges != seen_wedges_) {  // they may be others, and at other places in the table
+    seen_wedges_ = state_.wedges;
+    wedge_ = -1;
+    marked_.clear();
+    splitting_ = false;
+    split_places_.clear();
+  }
   if (state_.written != seen_written_) {
     seen_written_ = state_.written;
     if (!seen_written_.empty()) {
@@ -126,7 +111,7 @@ void ViewerScreen::take_state(UiContext& ui) {
 
 void ViewerScreen::look_at(Face face) {
   camera_.eye_from_model = eye_towards(face, state_.tablet_from_model);
-  camera_.fit(shown_.box_mm, aspect_);
+  camera_.fit(prepared_.shown().box_mm, aspect_);
   untouched_ = true;
 }
 
@@ -173,7 +158,7 @@ void ViewerScreen::draw_surface(UiContext& ui, ImVec2 size) {
   if (aspect_ != size.x / size.y) {
     aspect_ = size.x / size.y;
     if (untouched_ && !surface_.empty()) {
-      camera_.fit(shown_.box_mm, aspect_);
+      camera_.fit(prepared_.shown().box_mm, aspect_);
     }
   }
   if (surface_.empty()) {
@@ -201,8 +186,9 @@ void ViewerScreen::draw_surface(UiContext& ui, ImVec2 size) {
   }
   draw_section(ui, origin, size);
   draw_tape(ui, origin, size);
+  draw_split_places(ui, origin, size);
   draw_polygon(ui, origin);
-  draw_scale_bar(ui, origin, size);
+  ui::draw_scale_bar(ui, camera_, origin, size);
   draw_legend(ui, origin, size);
   draw->PopClipRect();
   ImGui::EndChild();
@@ -210,41 +196,11 @@ void ViewerScreen::draw_surface(UiContext& ui, ImVec2 size) {
 
 void ViewerScreen::use_pointer(UiContext& /*ui*/, ImVec2 origin, ImVec2 size) {
   const ImGuiIO& io = ImGui::GetIO();
-  const auto part = [&](ImVec2 at) {
-    return Eigen::Vector2f((at.x - origin.x - 0.5F * size.x) / (0.5F * size.y),
-                           -(at.y - origin.y - 0.5F * size.y) / (0.5F * size.y));
-  };
-  const bool moved = io.MouseDelta.x != 0 || io.MouseDelta.y != 0;
-  if (ImGui::IsItemActivated()) {
-    dragged_ = false;
-  }
-  if (ImGui::IsItemActive() && moved) {
-    dragged_ = dragged_ || ImGui::IsMouseDragging(ImGuiMouseButton_Left, 3) ||
-               ImGui::IsMouseDown(ImGuiMouseButton_Right) || ImGui::IsMouseDown(ImGuiMouseButton_Middle);
-    if (dragged_) {
-      polygon_.clear();  // it was drawn over another view
-    }
-    if (ImGui::IsMouseDown(ImGuiMouseButton_Right)) {
-      // As one moves a lamp over the tablet: in the middle it stands above, at the rim it rakes.
-      const Eigen::Vector2f at = part(io.MousePos);
-      const float out = std::min(0.985F, at.norm());
-      const Eigen::Vector2f along =
-          at.norm() > 1e-3F ? Eigen::Vector2f(at.normalized()) : Eigen::Vector2f(0, 1);
-      look_.lamp = true;
-      look_.light = {along.x() * out, along.y() * out, std::sqrt(1 - out * out)};
-    } else if (ImGui::IsMouseDown(ImGuiMouseButton_Middle) || io.KeyShift) {
-      untouched_ = false;
-      camera_.pan({io.MouseDelta.x, io.MouseDelta.y}, size.y);
-    } else if (dragged_) {
-      untouched_ = false;
-      camera_.drag(part({io.MousePos.x - io.MouseDelta.x, io.MousePos.y - io.MouseDelta.y}),
-                   part(io.MousePos));
-    }
-  }
-  if (ImGui::IsItemHovered() && io.MouseWheel != 0) {
+  if (use_hand(origin, size, camera_, look_, dragged_)) {
     untouched_ = false;
-    const Eigen::Vector2f at = part(io.MousePos);
-    camera_.zoom(std::pow(0.88F, io.MouseWheel), {at.x() * size.y / size.x, at.y()}, size.x / size.y);
+  }
+  if (dragged_ && ImGui::IsItemActive()) {
+    polygon_.clear();  // it was drawn over another view
   }
   if (ImGui::IsItemDeactivated() && !dragged_ && ImGui::IsMouseReleased(ImGuiMouseButton_Left)) {
     const Eigen::Vector2f px(io.MousePos.x - origin.x, io.MousePos.y - origin.y);
@@ -265,7 +221,14 @@ void ViewerScreen::use_pointer(UiContext& /*ui*/, ImVec2 origin, ImVec2 size) {
           cut_between_places();
         }
       }
+    } else if (tool_ == Tool::kCorrect && splitting_) {
+      if (const auto place = surface_.point_at(px)) {
+        split_places_.push_back(*place);
+      }
     } else {
+      if (tool_ == Tool::kCorrect) {
+        mark(wedge_at(px, size));
+      }
       choose(wedge_at(px, size), false);
       scroll_to_wedge_ = wedge_ >= 0;
     }
@@ -306,11 +269,12 @@ void ViewerScreen::keep_picture(UiContext& ui) {
   // To scale: the whole surface as it is turned now, a margin and a bar, so many pixels to the inch.
   constexpr int kLargestPx = 16384;
   OrbitCamera camera = camera_;
-  camera.fit(shown_.box_mm, 1.0F);
+  camera.fit(prepared_.shown().box_mm, 1.0F);
   Eigen::AlignedBox3f eye;
   for (int k = 0; k < 8; ++k) {
     eye.extend(camera.eye_from_model *
-               (shown_.box_mm.corner(static_cast<Eigen::AlignedBox3f::CornerType>(k)) - camera.centre_mm));
+               (prepared_.shown().box_mm.corner(static_cast<Eigen::AlignedBox3f::CornerType>(k)) -
+                camera.centre_mm));
   }
   const double mm_per_px = kMmPerInch / dpi_;
   const Eigen::Vector2f mm = 1.06F * eye.sizes().head<2>() + Eigen::Vector2f(2, 8);

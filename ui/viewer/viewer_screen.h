@@ -4,7 +4,6 @@
 
 #include <array>
 #include <filesystem>
-#include <future>
 #include <memory>
 #include <optional>
 #include <set>
@@ -16,6 +15,7 @@
 #include "station/mesh_viewing.h"
 #include "ui/shell/widgets.h"
 #include "ui/view/surface_view.h"
+#include "ui/viewer/prepared_mesh.h"
 
 namespace dubsar::ui {
 
@@ -31,7 +31,7 @@ class ViewerScreen {
   [[nodiscard]] bool wants_scanning() { return std::exchange(wants_scanning_, false); }
 
  private:
-  enum class Tool { kTurn, kMeasure, kSection, kSelect };
+  enum class Tool { kTurn, kMeasure, kSection, kSelect, kCorrect };
   void take_state(UiContext& ui);
   void draw_panel(UiContext& ui, ImVec2 size);
   void draw_light(UiContext& ui);
@@ -41,7 +41,6 @@ class ViewerScreen {
   void use_pointer(UiContext& ui, ImVec2 origin, ImVec2 size);
   void draw_wedges(UiContext& ui, ImVec2 origin, ImVec2 size) const;
   void draw_tape(UiContext& ui, ImVec2 origin, ImVec2 size) const;
-  void draw_scale_bar(UiContext& ui, ImVec2 origin, ImVec2 size) const;
   // viewer_section.cpp
   void cut_between_places();
   void draw_section_panel(UiContext& ui);
@@ -61,11 +60,14 @@ class ViewerScreen {
   void look_at(Face face);
   void choose(int wedge, bool go_there);
   void keep_picture(UiContext& ui);
+  // viewer_correcting.cpp
+  void draw_correcting(UiContext& ui);
+  void draw_split_places(UiContext& ui, ImVec2 origin, ImVec2 size) const;
+  void mark(int wedge);
+  [[nodiscard]] std::vector<Eigen::Vector3d> marked_places() const;
   void draw_tools(UiContext& ui);
   /// What is drawn is the mesh of state_.
-  [[nodiscard]] bool is_current() const {
-    return !surface_.empty() && !preparing_.valid() && state_.number == shown_number_;
-  }
+  [[nodiscard]] bool is_current() const { return !surface_.empty() && prepared_.is_of(state_); }
   /// NAME_WHAT_01.ENDING of the pictures' folder, the first that is free.
   [[nodiscard]] std::filesystem::path unused_file(const std::string& what, const std::string& ending);
   [[nodiscard]] int wedge_at(const Eigen::Vector2f& px, ImVec2 size) const;
@@ -77,10 +79,7 @@ class ViewerScreen {
   SurfaceView surface_;
   OrbitCamera camera_;
   Look look_;
-  std::future<ShownMesh> preparing_;
-  std::shared_ptr<const Mesh> preparing_mesh_;
-  ShownMesh shown_;
-  std::uint64_t shown_number_ = 0;
+  PreparedMesh prepared_;
   std::shared_ptr<const std::vector<float>> shown_openness_, shown_values_;
   std::optional<MeshField> field_;  ///< that the overlay shows
   Tool tool_ = Tool::kTurn;
@@ -94,6 +93,10 @@ class ViewerScreen {
   std::string selection_name_;
   std::set<std::filesystem::path> handed_out_;  ///< names of files that are perhaps not written yet
   std::vector<std::filesystem::path> seen_written_;
+  std::shared_ptr<const std::vector<Wedge>> seen_wedges_;
+  std::vector<int> marked_;  ///< wedges that a correction is about, as in the table
+  bool splitting_ = false;   ///< clicks are places of new wedges
+  std::vector<Eigen::Vector3f> split_places_;
   int wedge_ = -1;
   bool scroll_to_wedge_ = false;
   bool show_wedges_ = true;

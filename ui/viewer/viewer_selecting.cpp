@@ -30,7 +30,7 @@ void ViewerScreen::close_polygon() {
     const std::vector<std::uint32_t> selected = surface_.selection()->read();
     for (std::size_t k = 0; k < selected.size(); ++k) {
       if (selected[k] != 0) {
-        chosen.push_back(select_of_ == MeshElement::kFace ? shown_.face_of[k]
+        chosen.push_back(select_of_ == MeshElement::kFace ? prepared_.shown().face_of[k]
                                                           : static_cast<std::uint32_t>(k));
       }
     }
@@ -57,7 +57,7 @@ void ViewerScreen::show_selection(const MeshSelection& selection) {
   selection_name_ = selection.name;
   std::vector<std::uint32_t> chosen = indices_of(selection.ranges);
   if (selection.of == MeshElement::kVertex) {
-    std::vector<std::uint32_t> marks(shown_.positions.size(), 0);
+    std::vector<std::uint32_t> marks(prepared_.shown().positions.size(), 0);
     for (const std::uint32_t v : chosen) {
       marks[v] = 1;
     }
@@ -67,8 +67,9 @@ void ViewerScreen::show_selection(const MeshSelection& selection) {
     for (const std::uint32_t f : chosen) {
       is_chosen[f] = 1;
     }
-    std::vector<std::uint32_t> marks(shown_.faces.size());
-    std::ranges::transform(shown_.face_of, marks.begin(), [&](std::uint32_t f) { return is_chosen[f]; });
+    std::vector<std::uint32_t> marks(prepared_.shown().faces.size());
+    std::ranges::transform(prepared_.shown().face_of, marks.begin(),
+                           [&](std::uint32_t f) { return is_chosen[f]; });
     surface_.set_selection(selection.of, marks);
     std::erase_if(chosen, [&](std::uint32_t f) {  // what cannot be drawn has no area either
       return std::ranges::any_of(state_.mesh->faces[f],
@@ -87,7 +88,7 @@ void ViewerScreen::draw_selecting(UiContext& ui) {
     }
     ui.target(name);
   };
-  if (shown_.faces.empty()) {
+  if (prepared_.shown().faces.empty()) {
     select_of_ = MeshElement::kVertex;
   } else {
     of("select-faces", Text::kSelectFaces, MeshElement::kFace);

@@ -1,0 +1,333 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "analysis/wedge_corrections.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <expected>
+#include <set>
+#include <string>
+#include <unordered_map>
+#include <unordered_set>
+
+#include "analysis/hollow_measure.h"
+
+namespace dubsar {
+
+namespace {
+
+/// Of each wedge that is merged the new one must hold this share: else it would only take its place.
+constexpr double kLeastShareMerged = 0.1;
+/// How far from the place that was shown a depth point is looked for.
+constexpr double kAroundSeedMm = 0.15;
+constexpr double kAroundSeedSpacings = 3.0;
+
+using Vertices = std::vector<std::uint32_t>;
+using Made = std::expected<void, std::string>;
+
+class Corrector {
+ public:
+  Corrector(const Mesh& mesh, const VertexGraph& graph, const SurfaceFields& fields,
+            const WedgeOptions& options, const WedgeFindings& findings, WedgeSet* set)
+      : mesh_(mesh),
+        graph_(graph),
+        fields_(fields),
+        options_(options),
+        measure_(mesh, graph, fields, options, findings.area_mm2, findings.noise_mm),
+        around_seed_mm_(std::max(kAroundSeedMm, kAroundSeedSpacings * mean_spacing_mm(findings.area_mm2))),
+        slot_(mesh.positions.size(), -1),
+        set_(*set) {
+    int id = 0;
+    for (const WedgeCandidate& c : findings.candidates) {
+      WedgeCandidate light = c;
+      light.vertices.clear();
+      light.faces.clear();
+      light.wedge.id = c.rejected.empty() ? id++ : -1;
+      company_.push_back(std::move(light));
+    }
+    next_id_ = id;
+  }
+
+  Made make(const WedgeCorrection& correction) {
+    switch (correction.kind) {
+      case CorrectionKind::kDelete:
+        return remove(correction);
+      case CorrectionKind::kMerge:
+        return merge(correction);
+      case CorrectionKind::kSplit:
+        return split(correction);
+      case CorrectionKind::kAdd:
+        return add(correction);
+    }
+    return {};
+  }
+
+ private:
+  /// Ids of the wedges whose depth points lie at these places, each once.
+  [[nodiscard]] std::expected<std::set<int>, std::string> wedges_at(
+      const std::vector<Eigen::Vector3d>& places) const {
+    std::set<int> ids;
+    for (const Eigen::Vector3d& place : places) {
+      const Wedge* nearest = nullptr;
+      double off = kSamePlaceMm;
+      for (const Wedge& wedge : set_.wedges) {
+        if (const double away = (wedge.depth_point_mm - place).norm(); away <= off) {
+          off = away;
+          nearest = &wedge;
+        }
+      }
+      if (nearest == nullptr) {
+        return std::unexpected(
+            fmt::format("no wedge lies at {:.3f}, {:.3f}, {:.3f} any more", place.x(), place.y(), place.z()));
+      }
+      ids.insert(nearest->id);
+    }
+    return ids;
+  }
+
+  [[nodiscard]] bool is_of(std::uint32_t v, const std::set<int>& ids) const {
+    return set_.wedge_of[v] >= 0 && ids.contains(set_.wedge_of[v]);
+  }
+
+  void sort_by_height(Vertices* vertices) const {
+    std::ranges::sort(*vertices, [&](std::uint32_t a, std::uint32_t b) {
+      const float ha = fields_.height_mm[a];
+      const float hb = fields_.height_mm[b];
+      return ha != hb ? ha < hb : a < b;
+    });
+  }
+
+  /// Whether a border between basins runs here between two of these.
+  [[nodiscard]] bool is_between(std::uint32_t v, const std::set<std::int32_t>& basins) const {
+    std::set<std::int32_t> met;
+    const auto meet = [&](std::uint32_t n) {
+      if (basins.contains(set_.basin_of[n])) {
+        met.insert(set_.basin_of[n]);
+      }
+    };
+    for (const std::uint32_t n : graph_.ring(v)) {
+      meet(n);
+      std::ranges::for_each(graph_.ring(n), meet);
+    }
+    return met.size() > 1;
+  }
+
+  /// The vertices of these wedges, with what is left of their basins and of the borders between these, in
+  /// rising height.
+  [[nodiscard]] Vertices hollow_of(const std::set<int>& ids) const {
+    std::set<std::int32_t> basins;
+    for (std::uint32_t v = 0; v < set_.wedge_of.size(); ++v) {
+      if (is_of(v, ids) && set_.basin_of[v] >= 0) {
+        basins.insert(set_.basin_of[v]);
+      }
+    }
+    Vertices out;
+    for (std::uint32_t v = 0; v < set_.wedge_of.size(); ++v) {
+      const bool free = set_.wedge_of[v] < 0 && fields_.height_mm[v] < 0;
+      const bool border = free && basins.size() > 1 && set_.basin_of[v] == kBasinBorder;
+      if (is_of(v, ids) || (free && basins.contains(set_.basin_of[v])) || (border && is_between(v, basins))) {
+        out.push_back(v);
+      }
+    }
+    sort_by_height(&out);
+    return out;
+  }
+
+  std::expected<WedgeCandidate, std::string> measure(const Vertices& vertices, ByHand by_hand) {
+    if (vertices.size() < measure_.least_vertices()) {
+      return std::unexpected("too few vertices of the mesh");
+    }
+    auto found = measure_.measure(vertices, &slot_);
+    if (found && found->vertices.empty()) {
+      return std::unexpected("nothing of the clay lies on its faces");
+    }
+    if (found) {
+      found->wedge.by_hand = by_hand;
+    }
+    return found;
+  }
+
+  void take_out(const std::set<int>& ids, const char* why) {
+    for (std::uint32_t v = 0; v < set_.wedge_of.size(); ++v) {
+      if (is_of(v, ids)) {
+        set_.wedge_of[v] = -1;
+        set_.face_of[v] = -1;
+      }
+    }
+    for (std::size_t k = set_.wedges.size(); k-- > 0;) {
+      const auto at = static_cast<std::ptrdiff_t>(k);
+      if (ids.contains(set_.wedges[k].id)) {
+        set_.rejected.push_back({why, set_.wedges[k].depth_point_mm});
+        set_.wedges.erase(set_.wedges.begin() + at);
+        set_.evidence.erase(set_.evidence.begin() + at);
+      }
+    }
+    std::erase_if(company_, [&](const WedgeCandidate& c) { return ids.contains(c.wedge.id); });
+  }
+
+  void put_in(WedgeCandidate candidate) {
+    candidate.wedge.id = next_id_++;
+    for (std::size_t i = 0; i < candidate.vertices.size(); ++i) {
+      set_.wedge_of[candidate.vertices[i]] = candidate.wedge.id;
+      set_.face_of[candidate.vertices[i]] = candidate.faces[i];
+    }
+    candidate.vertices.clear();
+    candidate.faces.clear();
+    company_.push_back(std::move(candidate));
+    std::vector<WedgeCandidate> judged = company_;
+    judge_wedges(options_.judge, &judged);
+    WedgeCandidate& c = company_.back();
+    c.wedge.confidence = judged.back().wedge.confidence;  // whatever it is: a person says that it is one
+    c.evidence = judged.back().evidence;
+    set_.evidence.push_back(c.evidence);
+    set_.wedges.push_back(c.wedge);
+  }
+
+  Made remove(const WedgeCorrection& correction) {
+    const auto ids = wedges_at(correction.at_mm);
+    if (!ids) {
+      return std::unexpected(ids.error());
+    }
+    take_out(*ids, "deleted by hand");
+    return {};
+  }
+
+  Made merge(const WedgeCorrection& correction) {
+    const auto ids = wedges_at(correction.at_mm);
+    if (!ids) {
+      return std::unexpected(ids.error());
+    }
+    if (ids->size() < 2) {
+      return std::unexpected("these are one wedge already");
+    }
+    auto made = measure(hollow_of(*ids), ByHand::kMerged);
+    if (!made) {
+      return std::unexpected("they are not measured as one wedge: " + made.error());
+    }
+    std::unordered_map<int, int> held;
+    std::unordered_map<int, int> had;
+    for (const std::uint32_t v : made->vertices) {
+      ++held[set_.wedge_of[v]];
+    }
+    for (const std::int32_t id : set_.wedge_of) {
+      ++had[id];
+    }
+    for (const int id : *ids) {
+      if (held[id] < kLeastShareMerged * had[id]) {
+        return std::unexpected(fmt::format("no one wedge holds them all: wedge {} stays outside", id));
+      }
+    }
+    take_out(*ids, "merged by hand");
+    put_in(*std::move(made));
+    return {};
+  }
+
+  Made split(const WedgeCorrection& correction) {
+    const auto ids = wedges_at(correction.at_mm);
+    if (!ids) {
+      return std::unexpected(ids.error());
+    }
+    // As in a basin of several wedges: each is looked for in what those before it have left.
+    Vertices left = hollow_of(*ids);
+    std::vector<WedgeCandidate> made;
+    for (std::size_t k = 0; k < correction.into_mm.size(); ++k) {
+      const auto deepest = std::ranges::find_if(left, [&](std::uint32_t v) {
+        return (mesh_.positions[v].cast<double>() - correction.into_mm[k]).norm() <= around_seed_mm_;
+      });
+      if (deepest == left.end()) {
+        return std::unexpected(fmt::format("place {} does not lie in the wedge", k + 1));
+      }
+      Vertices part = left;
+      std::rotate(part.begin(), part.begin() + (deepest - left.begin()),
+                  part.begin() + (deepest - left.begin()) + 1);
+      auto one = measure(part, ByHand::kSplit);
+      if (!one) {
+        return std::unexpected(fmt::format("part {} is not measured as a wedge: {}", k + 1, one.error()));
+      }
+      const std::unordered_set<std::uint32_t> taken(one->vertices.begin(), one->vertices.end());
+      std::erase_if(left, [&](std::uint32_t v) { return taken.contains(v); });
+      made.push_back(*std::move(one));
+    }
+    take_out(*ids, "split by hand");
+    for (WedgeCandidate& part : made) {
+      put_in(std::move(part));
+    }
+    return {};
+  }
+
+  Made add(const WedgeCorrection& correction) {
+    const double cell = std::max(correction.reach_mm, 1e-3);
+    const auto key_of = [&](const Eigen::Vector3d& p, int k) {
+      std::uint64_t key = 0;
+      for (int axis = 0; axis < 3; ++axis) {
+        const int step = (axis == 0 ? k : axis == 1 ? k / 3 : k / 9) % 3 - 1;
+        const double at = std::clamp(std::floor(p[axis] / cell), -1e6, 1e6) + step;
+        key = (key << 21U) | static_cast<std::uint64_t>(static_cast<std::int64_t>(at) + (1 << 20));
+      }
+      return key;
+    };
+    constexpr int kSame = 13;  // of the 27 cells around
+    std::unordered_map<std::uint64_t, std::vector<std::size_t>> places;
+    for (std::size_t r = 0; r < correction.region_mm.size(); ++r) {
+      for (int k = 0; k < 27; ++k) {
+        places[key_of(correction.region_mm[r], k)].push_back(r);
+      }
+    }
+    Vertices region;
+    std::size_t of_others = 0;
+    for (std::uint32_t v = 0; v < mesh_.positions.size(); ++v) {
+      if (!(fields_.height_mm[v] < 0)) {
+        continue;
+      }
+      const Eigen::Vector3d p = mesh_.positions[v].cast<double>();
+      const auto near = places.find(key_of(p, kSame));
+      if (near == places.end() || std::ranges::none_of(near->second, [&](std::size_t r) {
+            return (correction.region_mm[r] - p).norm() <= correction.reach_mm;
+          })) {
+        continue;
+      }
+      if (set_.wedge_of[v] >= 0) {
+        ++of_others;
+      } else {
+        region.push_back(v);
+      }
+    }
+    if (region.size() < measure_.least_vertices() && of_others > region.size()) {
+      return std::unexpected("other wedges lie there: delete or split them first");
+    }
+    sort_by_height(&region);
+    auto made = measure(region, ByHand::kAdded);
+    if (!made) {
+      return std::unexpected("no wedge is measured there: " + made.error());
+    }
+    put_in(*std::move(made));
+    return {};
+  }
+
+  const Mesh& mesh_;
+  const VertexGraph& graph_;
+  const SurfaceFields& fields_;
+  const WedgeOptions& options_;
+  HollowMeasure measure_;
+  double around_seed_mm_;
+  std::vector<std::int32_t> slot_;
+  std::vector<WedgeCandidate> company_;  ///< all that are judged together, without their vertices
+  int next_id_ = 0;
+  WedgeSet& set_;
+};
+
+}  // namespace
+
+void correct_wedges(const Mesh& mesh, const VertexGraph& graph, const SurfaceFields& fields,
+                    const WedgeOptions& options, const WedgeFindings& findings, WedgeSet* set) {
+  Corrector corrector(mesh, graph, fields, options, findings, set);
+  for (std::size_t k = 0; k < options.corrections.size(); ++k) {
+    if (const Made made = corrector.make(options.corrections[k]); !made) {
+      set->lost.push_back({k, made.error()});
+    }
+  }
+}
+
+}  // namespace dubsar

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "analysis/surface_fields.h"
+#include "core/wedge_correction.h"
+#include "station/command/command.h"
+
+namespace dubsar {
+
+/// What `dubsar analyze` is asked for.
+struct AnalyzeArguments {
+  std::string in;
+  std::string out;
+  std::string mesh_out;
+  std::string exits = "surface";
+  std::string unit;
+  std::string pictures;
+  std::string invariants;
+  double radius_mm = 1.0;
+  SurfaceFieldOptions fields;
+  bool uniform_weights = false;
+  std::string svg;
+  bool classical = false;
+  bool again = false;
+  std::string corrections;                                ///< file; empty: the one beside the output
+  std::optional<std::vector<WedgeCorrection>> corrected;  ///< in the place of what that file says
+  bool must_make_last =
+      false;  ///< the last of `corrected` is new: where it cannot be made, nothing is changed
+};
+
+/// Every file and folder that the analysis writes.
+[[nodiscard]] std::vector<std::string> written_by(const AnalyzeArguments& arguments);
+
+void add_analyze_options(CLI::App& verb, AnalyzeArguments& arguments);
+
+/// Where the corrections lie that the analysis goes by.
+[[nodiscard]] std::filesystem::path corrections_of(const AnalyzeArguments& arguments);
+
+/// Writes `arguments.corrected`, where it is set, as the corrections file. Errors: kBadInput where the last
+/// correction must be made and cannot be; nothing is written then.
+[[nodiscard]] Result<int> analyze(const AnalyzeArguments& arguments, CommandContext& context);
+
+}  // namespace dubsar

@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+// dubsar wedges correct: what a person says about the wedges that were found.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+#include <utility>
+
+#include "core/units.h"
+#include "formats/corrections_json.h"
+#include "formats/mesh_io.h"
+#include "formats/wedges_json.h"
+#include "station/command/analyze.h"
+#include "station/command/outputs.h"
+#include "station/command/place_option.h"
+#include "station/correction_region.h"
+#include "station/selection_store.h"
+
+namespace dubsar {
+
+namespace {
+
+struct CorrectArguments {
+  AnalyzeArguments analyze;
+  std::vector<int> remove;
+  std::vector<int> merge;
+  int split = -1;
+  std::vector<std::string> into;
+  std::string add;
+  std::string add_at;
+  double reach_mm = 0;
+  bool undo = false;
+  bool list = false;
+};
+
+constexpr const char* kKinds[] = {"delete", "merge", "split", "add"};
+
+Result<std::vector<Eigen::Vector3d>> depth_points(const std::string& wedges_json,
+                                                  const std::vector<int>& ids) {
+  const Result<WedgeFile> file = read_wedges(wedges_json);
+  if (!file) {
+    return std::unexpected(file.error());
+  }
+  std::vector<Eigen::Vector3d> places;
+  for (const int id : ids) {
+    const auto wedge = std::ranges::find(file->wedges, id, &Wedge::id);
+    if (wedge == file->wedges.end()) {
+      return fail(ErrorKind::kUsage, fmt::format("there is no wedge {}", id), wedges_json,
+                  "the ids are those in this file");
+    }
+    places.push_back(wedge->depth_point_mm);
+  }
+  return places;
+}
+
+/// The correction that is asked for; its kind follows from the options.
+Result<WedgeCorrection> asked_for(const CorrectArguments& a) {
+  const int asked = (a.remove.empty() ? 0 : 1) + (a.merge.empty() ? 0 : 1) + (a.split >= 0 ? 1 : 0) +
+                    (a.add.empty() ? 0 : 1) + (a.add_at.empty() ? 0 : 1);
+  if (asked != 1) {
+    return fail(ErrorKind::kUsage, "say one thing at a time", "wedges correct",
+                "one of --delete, --merge, --split, --add, --add-at, --undo, --list");
+  }
+  WedgeCorrection out;
+  if (!a.add_at.empty()) {
+    const Result<Eigen::Vector3d> place = place_of(a.add_at, "--add-at");
+    if (!place) {
+      return std::unexpected(place.error());
+    }
+    if (!(a.reach_mm > 0)) {
+      return fail(ErrorKind::kUsage, "--add-at does not say how far the wedge reaches", "--reach",
+                  "say it in mm, about its longest edge");
+    }
+    out.kind = CorrectionKind::kAdd;
+    out.region_mm = {*place};
+    out.reach_mm = a.reach_mm;
+    return out;
+  }
+  if (!a.add.empty()) {
+    const Result<Mesh> mesh = read_mesh(
+        a.analyze.in, {.mm_per_unit = a.analyze.unit.empty() ? std::nullopt : mm_per_unit(a.analyze.unit)});
+    if (!mesh) {
+      return std::unexpected(mesh.error());
+    }
+    const Result<MeshSelection> selection = kept_selection(selections_file_of(a.analyze.in), *mesh, a.add);
+    if (!selection) {
+      return std::unexpected(selection.error());
+    }
+    return addition_of(*mesh, *selection);
+  }
+  const std::vector<int> ids = a.split >= 0 ? std::vector{a.split} : a.merge.empty() ? a.remove : a.merge;
+  Result<std::vector<Eigen::Vector3d>> at = depth_points(a.analyze.out, ids);
+  if (!at) {
+    return std::unexpected(at.error());
+  }
+  out.at_mm = *std::move(at);
+  out.kind = a.split >= 0      ? CorrectionKind::kSplit
+             : a.merge.empty() ? CorrectionKind::kDelete
+                               : CorrectionKind::kMerge;
+  if (out.kind == CorrectionKind::kMerge && ids.size() < 2) {
+    return fail(ErrorKind::kUsage, "one wedge is nothing to merge", "--merge",
+                "name two or more: --merge 3,4");
+  }
+  for (const std::string& text : a.into) {
+    const Result<Eigen::Vector3d> place = place_of(text, "--into");
+    if (!place) {
+      return std::unexpected(place.error());
+    }
+    out.into_mm.push_back(*place);
+  }
+  if ((out.kind == CorrectionKind::kSplit) != (out.into_mm.size() > 1)) {
+    return fail(ErrorKind::kUsage, "a split goes into two wedges or more", "--into",
+                "say a place in each: --split 7 --into x,y,z --into x,y,z");
+  }
+  return out;
+}
+
+int list(const CorrectionFile& file, const CommandContext& context) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  for (std::size_t k = 0; k < file.corrections.size(); ++k) {
+    const WedgeCorrection& one = file.corrections[k];
+    const Eigen::Vector3d& at = one.at_mm.empty() ? one.region_mm.front() : one.at_mm.front();
+    const char* kind = kKinds[static_cast<std::size_t>(one.kind)];
+    if (context.json) {
+      json.push_back({{"number", k + 1}, {"do", kind}, {"at", {at.x(), at.y(), at.z()}}});
+    } else {
+      std::printf("%zu  %-6s  at %.3f, %.3f, %.3f mm\n", k + 1, kind, at.x(), at.y(), at.z());
+    }
+  }
+  if (context.json) {
+    CommandContext::print({{"corrections", std::move(json)}});
+  }
+  return 0;
+}
+
+Result<int> correct(const CorrectArguments& arguments, CommandContext& context) {
+  const std::filesystem::path where = corrections_of(arguments.analyze);
+  Result<CorrectionFile> said = read_corrections(where);
+  if (!said) {
+    return std::unexpected(said.error());
+  }
+  if (arguments.list) {
+    return list(*said, context);
+  }
+  AnalyzeArguments analysis = arguments.analyze;
+  if (arguments.undo) {
+    if (said->corrections.empty()) {
+      return fail(ErrorKind::kUsage, "there is no correction to undo", where.string());
+    }
+    said->corrections.pop_back();
+  } else {
+    Result<WedgeCorrection> next = asked_for(arguments);
+    if (!next) {
+      return std::unexpected(next.error());
+    }
+    said->corrections.push_back(*std::move(next));
+    analysis.must_make_last = true;
+  }
+  analysis.corrected = std::move(said->corrections);
+  analysis.again = true;
+  return analyze(analysis, context);
+}
+
+}  // namespace
+
+void add_wedges(CLI::App& app, Action& chosen) {
+  CLI::App* verb = app.add_subcommand("wedges", "What a person says about the wedges that were found");
+  verb->require_subcommand(1);
+  verb->fallthrough();
+  CLI::App* correct_verb = verb->add_subcommand(
+      "correct", "Delete, merge, split or add a wedge: noted beside the output, and all measured again");
+  const auto arguments = std::make_shared<CorrectArguments>();
+  add_analyze_options(*correct_verb, arguments->analyze);
+  correct_verb->add_option("--delete", arguments->remove, "ids of what is no wedge")->delimiter(',');
+  correct_verb->add_option("--merge", arguments->merge, "ids of what is one wedge")->delimiter(',');
+  correct_verb->add_option("--split", arguments->split, "id of what is several wedges; with --into")
+      ->check(CLI::NonNegativeNumber);
+  correct_verb->add_option("--into", arguments->into, "x,y,z in mm: the deepest place of one of them")
+      ->expected(1)
+      ->take_all();
+  correct_verb->add_option("--add", arguments->add,
+                           "name of a selection kept in the viewer: a wedge is there");
+  correct_verb->add_option("--add-at", arguments->add_at, "x,y,z in mm: a wedge is there; with --reach");
+  correct_verb->add_option("--reach", arguments->reach_mm, "mm, how far around that place")
+      ->check(CLI::Range(0.05, 50.0));
+  correct_verb->add_flag("--undo", arguments->undo, "takes the last correction back");
+  correct_verb->add_flag("--list", arguments->list, "says what was corrected so far");
+  correct_verb->fallthrough();
+  correct_verb->callback([&chosen, arguments] {
+    std::vector<std::string> written = written_by(arguments->analyze);
+    written.push_back(arguments->analyze.corrections);
+    chosen = outside_sessions(std::move(written),
+                              [arguments](CommandContext& c) { return correct(*arguments, c); });
+  });
+}
+
+}  // namespace dubsar

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+// dubsar wedges correct: noted beside the wedges, made by every analysis after, and taken back.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "formats/corrections_json.h"
+#include "formats/wedges_json.h"
+#include "tests/station/support/command.h"
+#include "tests/support/temporary_folder.h"
+
+namespace dubsar {
+namespace {
+
+using test::Outcome;
+using test::run_command;
+using ::testing::HasSubstr;
+using ::testing::SizeIs;
+
+class Correct : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder_ = new test::TemporaryFolder;
+    run_command({"simulate", "tablet", "--seed", "3", "--size", "24x20x10", "--spacing", "0.1", "-o",
+                 folder_->path().string()});
+    run_command({"analyze", in("tablet.ply"), "-o", in("w.json")});
+  }
+  static void TearDownTestSuite() { delete folder_; }
+  static std::string in(const std::string& name) { return (folder_->path() / name).string(); }
+  static Outcome correct(std::vector<std::string> what) {
+    std::vector<std::string> all{"wedges", "correct", in("tablet.ply"), "-o", in("w.json")};
+    all.insert(all.end(), what.begin(), what.end());
+    return run_command(all);
+  }
+  static WedgeFile wedges() { return *read_wedges(in("w.json")); }
+  /// Without the times.
+  static std::string bytes() {
+    WedgeFile file = wedges();
+    file.timings_s.clear();
+    return wedges_to_json(file);
+  }
+
+  static test::TemporaryFolder* folder_;
+};
+test::TemporaryFolder* Correct::folder_ = nullptr;
+
+TEST_F(Correct, ADeletedWedgeStaysDeletedUntilItIsTakenBack) {
+  const std::string before = bytes();
+  const std::size_t count = wedges().wedges.size();
+  ASSERT_GT(count, 8U);
+  const Outcome deleted = correct({"--delete", "3,6"});
+  ASSERT_EQ(deleted.status, 0) << deleted.err;
+  EXPECT_THAT(wedges().wedges, SizeIs(count - 2));
+  EXPECT_EQ(wedges().wedges[3].id, 4);
+  EXPECT_EQ(wedges().corrections, 1U);
+  // The analysis goes by it, and knows what it has done.
+  EXPECT_THAT(run_command({"analyze", in("tablet.ply"), "-o", in("w.json")}).out, HasSubstr("done before"));
+  ASSERT_EQ(run_command({"analyze", in("tablet.ply"), "-o", in("w.json"), "--again"}).status, 0);
+  EXPECT_THAT(wedges().wedges, SizeIs(count - 2));
+  const Outcome listed = correct({"--list", "--json"});
+  EXPECT_EQ(listed.json()["corrections"][0]["do"], "delete");
+  ASSERT_EQ(correct({"--undo"}).status, 0);
+  EXPECT_EQ(bytes(), before);
+  EXPECT_EQ(correct({"--undo"}).status, 2) << "nothing is left to take back";
+}
+
+TEST_F(Correct, WhatCannotBeMadeIsOneLineAndChangesNothing) {
+  const std::string before = bytes();
+  const auto refused = [&](const std::vector<std::string>& what, const std::string& why) {
+    const Outcome outcome = correct(what);
+    EXPECT_EQ(outcome.status, 2) << outcome.err;
+    ASSERT_THAT(outcome.complaints(), SizeIs(1)) << outcome.err;
+    EXPECT_THAT(outcome.complaints().front(), HasSubstr(why));
+  };
+  refused({"--delete", "99999"}, "no wedge 99999");
+  refused({"--merge", "2"}, "nothing to merge");
+  refused({"--split", "2"}, "two wedges or more");
+  refused({"--delete", "1", "--merge", "2,3"}, "one thing at a time");
+  refused({}, "one thing at a time");
+  refused({"--add-at", "1,2,3"}, "how far");
+  refused({"--add-at", "nan,2,3", "--reach", "1"}, "no place");
+  refused({"--add", "nothing"}, "no selection");
+  refused({"--add-at", "500,0,0", "--reach", "1"}, "too few vertices");
+  EXPECT_EQ(bytes(), before);
+  EXPECT_FALSE(std::filesystem::exists(corrections_file_of(in("w.json"))) &&
+               !read_corrections(corrections_file_of(in("w.json")))->corrections.empty());
+}
+
+TEST_F(Correct, WhatIsAddedIsMarkedInEveryList) {
+  const Wedge first = wedges().wedges[3];
+  ASSERT_EQ(correct({"--delete", "3"}).status, 0);
+  const Eigen::Vector3d& at = first.depth_point_mm;
+  const Outcome added = correct(
+      {"--add-at", std::to_string(at.x()) + "," + std::to_string(at.y()) + "," + std::to_string(at.z()),
+       "--reach", "1.2"});
+  ASSERT_EQ(added.status, 0) << added.err;
+  const Wedge last = wedges().wedges.back();
+  EXPECT_EQ(last.by_hand, ByHand::kAdded);
+  EXPECT_LT((last.depth_point_mm - at).norm(), 0.1);
+  ASSERT_EQ(correct({"--undo"}).status, 0);
+  ASSERT_EQ(correct({"--undo"}).status, 0);
+}
+
+TEST_F(Correct, ACorrectionThatLostItsPlaceIsAWarning) {
+  CorrectionFile said;
+  said.corrections.push_back({CorrectionKind::kDelete, {{500, 0, 0}}, {}, {}, 0});
+  ASSERT_TRUE(write_corrections(corrections_file_of(in("lost.json")), said));
+  const Outcome outcome = run_command({"analyze", in("tablet.ply"), "-o", in("lost.json")});
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_THAT(outcome.err, HasSubstr("correction 1 is not made"));
+  EXPECT_THAT(read_wedges(in("lost.json"))->lost, SizeIs(1));
+  std::ofstream(in("bad.corrections.json")) << R"({"corrections":[{"do":"split","at":[[0,0,0]]}]})";
+  EXPECT_EQ(run_command({"analyze", in("tablet.ply"), "-o", in("bad.json")}).status, 2);
+}
+
+}  // namespace
+}  // namespace dubsar

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "ui/viewer/pair_screen.h"
+
+#include <GLFW/glfw3.h>
+
+#include <algorithm>
+
+#include "ui/viewer/hand.h"
+
+namespace dubsar::ui {
+
+PairScreen::PairScreen(MeshViewing& left, MeshViewing& right) {
+  panes_[0].viewing = &left;
+  panes_[1].viewing = &right;
+}
+
+void PairScreen::take_state(UiContext& ui, Pane& pane) {
+  pane.state = pane.viewing->state();
+  if (pane.prepared.update(pane.state)) {
+    pane.surface.show(pane.prepared.shown());
+    pane.openness.reset();
+    if (!pane.prepared.shown().colours.empty()) {
+      look_.overlay = Overlay::kColours;
+    }
+    look_at(Face::kObverse);
+  }
+  const auto openness = pane.state.fields.find(MeshField::kOpenness);
+  if (!pane.surface.empty() && pane.prepared.is_of(pane.state) && openness != pane.state.fields.end() &&
+      openness->second != pane.openness) {
+    pane.openness = openness->second;
+    set_openness(pane.prepared.shown(), *pane.openness);
+    pane.surface.set_traits(pane.prepared.shown().traits);
+  }
+  if (pane.state.error) {
+    ui.facts.insert("error");
+  }
+}
+
+/// Both, as large as the larger one allows.
+void PairScreen::look_at(Face face) {
+  float half_height_mm = 0;
+  for (Pane& pane : panes_) {
+    if (!pane.surface.empty()) {
+      pane.camera.eye_from_model = eye_towards(face, pane.state.tablet_from_model);
+      pane.camera.fit(pane.prepared.shown().box_mm, aspect_);
+      half_height_mm = std::max(half_height_mm, pane.camera.half_height_mm);
+    }
+  }
+  for (Pane& pane : panes_) {
+    pane.camera.half_height_mm = half_height_mm;
+  }
+  untouched_ = true;
+}
+
+/// Turned, moved and brought nearer by as much as the one under the hand was.
+void PairScreen::follow(const OrbitCamera& before, const Pane& moved, Pane& other) const {
+  const OrbitCamera& now = moved.camera;
+  const Eigen::Vector3f shift = now.eye_from_model * (now.centre_mm - before.centre_mm);
+  other.camera.half_height_mm *= now.half_height_mm / before.half_height_mm;
+  other.camera.eye_from_model =
+      (now.eye_from_model * before.eye_from_model.conjugate() * other.camera.eye_from_model).normalized();
+  other.camera.centre_mm += other.camera.eye_from_model.conjugate() * shift;
+}
+
+void PairScreen::draw(UiContext& ui, ImVec2 size) {
+  unfinished_ = false;
+  for (Pane& pane : panes_) {
+    take_state(ui, pane);
+  }
+  ImGui::SetNextWindowPos({0, 0});
+  ImGui::SetNextWindowSize(size);
+  ImGui::Begin("pair", nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
+                   ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoSavedSettings);
+  draw_bar(ui);
+  const ImVec2 room = ImGui::GetContentRegionAvail();
+  const ImVec2 half{0.5F * (room.x - ImGui::GetStyle().ItemSpacing.x), room.y};
+  if (aspect_ != half.x / half.y) {
+    aspect_ = half.x / half.y;
+    if (untouched_) {
+      look_at(Face::kObverse);
+    }
+  }
+  draw_pane(ui, panes_[0], "left-tablet", half);
+  ImGui::SameLine();
+  draw_pane(ui, panes_[1], "right-tablet", half);
+  ImGui::End();
+  if (std::ranges::all_of(panes_, [](const Pane& pane) { return pane.surface.whole(); })) {
+    ui.facts.insert("whole");
+  }
+  if (std::ranges::all_of(panes_, [](const Pane& pane) { return pane.state.stage.empty(); })) {
+    ui.facts.insert("idle");
+  }
+}
+
+void PairScreen::draw_bar(UiContext& ui) {
+  static constexpr Text kFaceTexts[] = {Text::kObverse, Text::kReverse, Text::kLeft,
+                                        Text::kRight,   Text::kTop,     Text::kBottom};
+  ImGui::PushFont(ui.fonts.small);
+  for (int k = 0; k < kFaceCount; ++k) {
+    const std::string name = fmt::format("view.{}", to_string(static_cast<Face>(k)));
+    const std::string label = fmt::format("{}  {}", k + 1, ui.text(kFaceTexts[k]));
+    if (plain_button(ui, name.c_str(), label.c_str()) || ImGui::IsKeyPressed(GLFW_KEY_1 + k, false)) {
+      look_at(static_cast<Face>(k));
+    }
+    ImGui::SameLine();
+  }
+  tick(ui, "together", ui.text(Text::kTogether), together_);
+  if (ImGui::IsKeyPressed(GLFW_KEY_L, false)) {
+    together_ = !together_;
+  }
+  ui.facts.insert(together_ ? "turned-together" : "turned-alone");
+  ImGui::SameLine();
+  tick(ui, "lamp", ui.text(Text::kLamp), look_.lamp);
+  ImGui::PopFont();
+}
+
+void PairScreen::draw_pane(UiContext& ui, Pane& pane, const char* name, ImVec2 size) {
+  ImGui::BeginChild(name, size, false, ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse);
+  const ImVec2 origin = ImGui::GetCursorScreenPos();
+  const ImVec2 end{origin.x + size.x, origin.y + size.y};
+  ImGui::InvisibleButton("##surface", size,
+                         ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonMiddle |
+                             ImGuiButtonFlags_MouseButtonRight);
+  ui.target(name);
+  ImDrawList* draw = ImGui::GetWindowDrawList();
+  draw->AddRectFilled(origin, end, packed(ui.colours.text, 0.05F), 6);
+  std::string words = pane.state.name;
+  if (pane.surface.empty()) {
+    words = pane.state.error ? translated(pane.state.error->line(), ui.preferences.language)
+                             : std::string(ui.text(Text::kOpenMesh));
+  } else {
+    const OrbitCamera before = pane.camera;
+    if (use_hand(origin, size, pane.camera, look_, pane.dragged)) {
+      untouched_ = false;
+      if (together_) {
+        follow(before, pane, &pane == &panes_[0] ? panes_[1] : panes_[0]);
+      }
+    }
+    look_.red = ui.colours.red.head<3>();
+    look_.amber = ui.colours.amber.head<3>();
+    Look look = look_;
+    if (look.overlay == Overlay::kColours && pane.prepared.shown().colours.empty()) {
+      look.overlay = Overlay::kClay;
+    }
+    if (pane.surface.draw(pane.camera, look, static_cast<int>(size.x), static_cast<int>(size.y))) {
+      unfinished_ = true;
+    }
+    draw->AddImage(picture_of(pane.surface.texture()), origin, end, {0, 1}, {1, 0});
+    draw_scale_bar(ui, pane.camera, origin, size);
+  }
+  draw->AddText(nullptr, 0, {origin.x + ui.px(1), origin.y + ui.px(0.6F)},
+                packed(pane.surface.empty() && pane.state.error ? ui.colours.red : ui.colours.text),
+                words.c_str(), nullptr, size.x - ui.px(2));
+  ImGui::EndChild();
+}
+
+}  // namespace dubsar::ui
