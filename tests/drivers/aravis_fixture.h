@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "drivers/loader.h"
+#include "tests/drivers/next_frame.h"
 #include "tests/support/peer_process.h"
 #include "tests/support/temporary_folder.h"
 
@@ -73,12 +74,7 @@ class Aravis : public testing::Test {
   Result<Device> open(const Options& options = {}) {
     return (*registry_.find("aravis"))->open("Dubsar-Range 1-SN7", options);
   }
-  static Frame next(Device& device) {
-    auto frame = device.next_frame(std::chrono::seconds(20));
-    EXPECT_TRUE(frame) << (frame ? "" : frame.error().line());
-    EXPECT_TRUE(frame && *frame);
-    return frame && *frame ? std::move(**frame) : Frame{};
-  }
+  static Frame next(Device& device) { return test::next_frame(device); }
   test::TemporaryFolder folder_;
   std::optional<test::PeerProcess> peer_;
   DriverRegistry registry_{{std::filesystem::path(DUBSAR_BINARY_DIR) / "lib/dubsar/drivers"}};

@@ -11,6 +11,7 @@
 
 #include "drivers/loader.h"
 #include "drivers/v4l2/camera.h"
+#include "tests/drivers/next_frame.h"
 #include "tests/support/peer_process.h"
 #include "tests/support/temporary_folder.h"
 
@@ -47,12 +48,7 @@ class V4l2 : public testing::Test {
     }
     return out;
   }
-  static Frame next(Device& device) {
-    auto frame = device.next_frame(20s);
-    EXPECT_TRUE(frame) << (frame ? "" : frame.error().line());
-    EXPECT_TRUE(frame && *frame);
-    return frame && *frame ? std::move(**frame) : Frame{};
-  }
+  static Frame next(Device& device) { return test::next_frame(device); }
 
   test::TemporaryFolder folder_;
   std::optional<test::PeerProcess> peer_;

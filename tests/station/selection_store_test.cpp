@@ -10,6 +10,7 @@
 #include <fstream>
 
 #include "formats/selections_json.h"
+#include "tests/support/raster_mesh.h"
 #include "tests/support/temporary_folder.h"
 
 namespace dubsar {
@@ -28,13 +29,7 @@ Mesh sheet(std::uint32_t n) {
       mesh.reliability.push_back(static_cast<float>(x) / 100);
     }
   }
-  for (std::uint32_t y = 0; y < n; ++y) {
-    for (std::uint32_t x = 0; x < n; ++x) {
-      const std::uint32_t a = y * (n + 1) + x;
-      mesh.faces.push_back({a, a + 1, a + n + 1});
-      mesh.faces.push_back({a + 1, a + n + 2, a + n + 1});
-    }
-  }
+  test::add_raster_faces(mesh, 0, n);
   return mesh;
 }
 

@@ -9,6 +9,7 @@
 
 #include <cmath>
 
+#include "tests/support/raster_mesh.h"
 #include "tests/ui/support/display.h"
 #include "ui/gl/gl_window.h"
 #include "ui/view/surface_view.h"
@@ -31,13 +32,7 @@ Mesh two_sheets(std::uint32_t n) {
                                     sheet == 0 ? 0.0F : -5.0F);
       }
     }
-    for (std::uint32_t y = 0; y < n; ++y) {
-      for (std::uint32_t x = 0; x < n; ++x) {
-        const std::uint32_t a = first + y * (n + 1) + x;
-        mesh.faces.push_back({a, a + 1, a + n + 1});
-        mesh.faces.push_back({a + 1, a + n + 2, a + n + 1});
-      }
-    }
+    test::add_raster_faces(mesh, first, n);
   }
   return mesh;
 }

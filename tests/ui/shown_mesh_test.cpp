@@ -9,6 +9,8 @@
 #include <limits>
 #include <set>
 
+#include "tests/support/raster_mesh.h"
+
 namespace dubsar::ui {
 namespace {
 
@@ -21,13 +23,7 @@ Mesh sheet(std::uint32_t n) {
                                   std::sin(0.02F * static_cast<float>(x)));
     }
   }
-  for (std::uint32_t y = 0; y < n; ++y) {
-    for (std::uint32_t x = 0; x < n; ++x) {
-      const std::uint32_t a = y * (n + 1) + x;
-      mesh.faces.push_back({a, a + 1, a + n + 1});
-      mesh.faces.push_back({a + 1, a + n + 2, a + n + 1});
-    }
-  }
+  test::add_raster_faces(mesh, 0, n);
   return mesh;
 }
 

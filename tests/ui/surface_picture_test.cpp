@@ -10,6 +10,7 @@
 #include <cstring>
 
 #include "station/picture_file.h"
+#include "tests/support/raster_mesh.h"
 #include "tests/ui/support/display.h"
 #include "tests/ui/support/read_png.h"
 #include "ui/gl/gl_window.h"
@@ -42,13 +43,7 @@ Mesh dented_slab() {
       mesh.flags.push_back(i > kCells - 20 ? std::uint8_t{kVertexSparse} : std::uint8_t{0});
     }
   }
-  for (std::uint32_t j = 0; j < kCells; ++j) {
-    for (std::uint32_t i = 0; i < kCells; ++i) {
-      const std::uint32_t a = j * (kCells + 1) + i;
-      mesh.faces.push_back({a, a + 1, a + kCells + 1});
-      mesh.faces.push_back({a + 1, a + kCells + 2, a + kCells + 1});
-    }
-  }
+  test::add_raster_faces(mesh, 0, kCells);
   return mesh;
 }
 
