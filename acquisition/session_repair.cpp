@@ -7,6 +7,7 @@
 #include "acquisition/session_query.h"
 #include "formats/atomic_file.h"
 #include "formats/grid_file.h"
+#include "formats/self_checked.h"
 
 namespace dubsar {
 
@@ -41,9 +42,10 @@ std::optional<std::string> good_bytes(const fs::path& file, const std::optional<
     const FileSum sum{static_cast<std::int64_t>(bytes->size()), session::hash_of(*bytes)};
     return sum == *expected ? std::optional(*bytes) : std::nullopt;
   }
-  // A grid that no table lists vouches for itself.
-  const bool whole = file.extension() == ".grid" &&
-                     verify_grid_bytes(std::as_bytes(std::span(*bytes)), file.string()).has_value();
+  // What no table lists vouches for itself.
+  const bool whole = file.extension() == ".grid"
+                         ? verify_grid_bytes(std::as_bytes(std::span(*bytes)), file.string()).has_value()
+                         : own_checksum_of(*bytes) == OwnChecksum::kFits;
   return whole ? std::optional(*bytes) : std::nullopt;
 }
 
@@ -99,7 +101,7 @@ Result<RepairReport> SessionStore::repair(const VerifyReport& found, const std::
       }
       std::erase_if(impl_->damaged_grids, [&](int id) { return session::grid_name(id) == name; });
       out.restored.push_back(name);
-    } else if (!name.starts_with(std::string(session::kGrids) + "/")) {
+    } else if (*expected && !name.starts_with(std::string(session::kGrids) + "/")) {
       if (Status aside = move_aside(path); !aside) {
         return std::unexpected(aside.error());
       }

@@ -7,6 +7,8 @@
 #include "acquisition/session_query.h"
 #include "formats/atomic_file.h"
 #include "formats/grid_file.h"
+#include "formats/json_node.h"
+#include "formats/self_checked.h"
 
 namespace dubsar {
 
@@ -81,7 +83,16 @@ std::vector<std::string> everything_in(const fs::path& folder) {
   return out;
 }
 
-/// Sorts what is neither whole nor damaged into its list.
+/// Of a file that no table names: what a person wrote in the viewer carries its own.
+OwnChecksum own_checksum_in(const fs::path& file) {
+  if (file.extension() != ".json") {
+    return OwnChecksum::kNone;
+  }
+  const Result<std::string> text = read_whole_file(file, kMaxJsonBytes);
+  return text ? own_checksum_of(*text) : OwnChecksum::kNone;
+}
+
+/// Sorts what no table names into its list.
 void place_the_rest(const fs::path& folder, const std::vector<Recorded>& checked, VerifyReport& report) {
   const std::string log = std::string(session::kDatabase) + "-wal";
   const std::string own[] = {session::kDatabase, session::kSums, session::kLock, log,
@@ -97,7 +108,18 @@ void place_the_rest(const fs::path& folder, const std::vector<Recorded>& checked
     if (session::is_set_aside(name)) {
       report.set_aside.push_back(name);
     } else if (plain && !left_over && (in_a_session_folder(name) || name == session::kBackup)) {
-      report.unrecorded.push_back(name);
+      switch (own_checksum_in(folder / name)) {
+        case OwnChecksum::kFits:
+          report.whole.push_back(name);
+          break;
+        case OwnChecksum::kFails:
+          report.damaged.push_back({ErrorKind::kBadInput, "its own checksum does not fit", name,
+                                    "bring it back from a copy (dubsar verify --repair --from COPY)"});
+          break;
+        case OwnChecksum::kNone:
+          report.unrecorded.push_back(name);
+          break;
+      }
     } else {
       report.extra.push_back(name);
     }

@@ -5,6 +5,7 @@
 #include "formats/atomic_file.h"
 #include "formats/json_node.h"
 #include "formats/json_text.h"
+#include "formats/self_checked.h"
 
 namespace dubsar {
 
@@ -82,16 +83,19 @@ std::string corrections_to_json(const CorrectionFile& file) {
 }
 
 Status write_corrections(const std::filesystem::path& path, const CorrectionFile& file) {
-  return write_file_atomically(path, corrections_to_json(file));
+  return write_file_atomically(path, with_own_checksum(corrections_to_json(file)));
 }
 
 Result<CorrectionFile> parse_corrections(std::string_view text, const std::string& where) {
+  if (const Status whole = check_own_checksum(text, where); !whole) {
+    return std::unexpected(whole.error());
+  }
   const Result<JsonDocument> document = JsonDocument::parse(text, where);
   if (!document) {
     return std::unexpected(document.error());
   }
   const JsonNode root = document->root();
-  root.only({"unit", "mesh", "corrections"});
+  root.only({"unit", "mesh", "corrections", kOwnChecksum});
   const double mm = mm_per_unit_of(root);
   CorrectionFile file;
   if (const auto mesh = root.find("mesh")) {

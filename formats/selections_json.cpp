@@ -2,16 +2,14 @@
 // Copyright The Dubsar developers
 #include "formats/selections_json.h"
 
-#include <xxhash.h>
-
 #include <algorithm>
-#include <array>
 #include <limits>
-#include <memory>
 
 #include "formats/atomic_file.h"
 #include "formats/json_node.h"
 #include "formats/json_text.h"
+#include "formats/self_checked.h"
+#include "formats/xxh128.h"
 
 namespace dubsar {
 
@@ -46,26 +44,15 @@ std::vector<IndexRange> ranges_from(const JsonNode& node) {
 }  // namespace
 
 std::string surface_digest(const Mesh& mesh) {
-  const std::unique_ptr<XXH3_state_t, decltype(&XXH3_freeState)> state(XXH3_createState(), &XXH3_freeState);
-  XXH3_128bits_reset(state.get());
+  Xxh128 sum;
   const auto add = [&](const auto& values) {
     const std::uint64_t count = values.size();
-    XXH3_128bits_update(state.get(), &count, sizeof count);
-    if (count > 0) {
-      XXH3_128bits_update(state.get(), values.data(), count * sizeof(values.front()));
-    }
+    sum.add(&count, sizeof count);
+    sum.add(values.data(), count * sizeof(values.front()));
   };
   add(mesh.positions);
   add(mesh.faces);
-  XXH128_canonical_t bytes;
-  XXH128_canonicalFromHash(&bytes, XXH3_128bits_digest(state.get()));
-  constexpr std::string_view kDigits = "0123456789abcdef";
-  std::string out;
-  for (const unsigned char byte : bytes.digest) {
-    out += kDigits[byte >> 4U];
-    out += kDigits[byte & 15U];
-  }
-  return out;
+  return sum.hex();
 }
 
 std::string selections_to_json(const SelectionFile& file) {
@@ -87,7 +74,7 @@ std::string selections_to_json(const SelectionFile& file) {
 }
 
 Status write_selections(const std::filesystem::path& path, const SelectionFile& file) {
-  const std::string text = selections_to_json(file);
+  const std::string text = with_own_checksum(selections_to_json(file));
   if (text.size() > kMaxJsonBytes) {
     return fail(ErrorKind::kBadInput, "the selections are in too many pieces to be kept", path.string(),
                 "forget some of them, or keep the part as a mesh of its own");
@@ -96,12 +83,15 @@ Status write_selections(const std::filesystem::path& path, const SelectionFile& 
 }
 
 Result<SelectionFile> parse_selections(std::string_view text, const std::string& where) {
+  if (const Status whole = check_own_checksum(text, where); !whole) {
+    return std::unexpected(whole.error());
+  }
   const Result<JsonDocument> document = JsonDocument::parse(text, where);
   if (!document) {
     return std::unexpected(document.error());
   }
   const JsonNode root = document->root();
-  root.only({"mesh", "surface_xxh128", "selections"});
+  root.only({"mesh", "surface_xxh128", "selections", kOwnChecksum});
   SelectionFile file;
   file.mesh = root.at("mesh").text();
   file.surface_xxh128 = root.at("surface_xxh128").text();

@@ -5,18 +5,16 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-#include <array>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
 #include <limits>
 #include <memory>
 
-#include <xxhash.h>
-
 #include "formats/atomic_file.h"
 #include "formats/json_node.h"
 #include "formats/json_text.h"
+#include "formats/xxh128.h"
 
 namespace dubsar {
 
@@ -38,28 +36,20 @@ Result<StampedFile> stamped(const fs::path& path, std::string name, const JobCon
   if (!file) {
     return std::unexpected(unreadable(path, errno));
   }
-  const std::unique_ptr<XXH3_state_t, XXH_errorcode (*)(XXH3_state_t*)> state(XXH3_createState(),
-                                                                              XXH3_freeState);
-  XXH3_128bits_reset(state.get());
+  Xxh128 sum;
   StampedFile out{std::move(name), 0, {}};
   std::vector<unsigned char> piece(std::size_t{1} << 20U);
   while (const std::size_t count = std::fread(piece.data(), 1, piece.size(), file.get())) {
     if (job.cancelled()) {
       return fail(ErrorKind::kCancelled, "stopped", path.string());
     }
-    XXH3_128bits_update(state.get(), piece.data(), count);
+    sum.add(piece.data(), count);
     out.bytes += count;
   }
   if (std::ferror(file.get()) != 0) {
     return std::unexpected(unreadable(path, errno));
   }
-  XXH128_canonical_t digest;
-  XXH128_canonicalFromHash(&digest, XXH3_128bits_digest(state.get()));
-  for (const unsigned char byte : digest.digest) {
-    std::array<char, 3> hex{};
-    std::snprintf(hex.data(), hex.size(), "%02x", byte);
-    out.xxh128 += hex.data();
-  }
+  out.xxh128 = sum.hex();
   return out;
 }
 

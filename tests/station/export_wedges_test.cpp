@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <fstream>
 
+#include "formats/corrections_json.h"
+#include "formats/wedges_json.h"
 #include "tests/station/support/command.h"
 #include "tests/station/support/shell.h"
 #include "tests/support/temporary_folder.h"
@@ -96,6 +98,25 @@ TEST_F(ExportOfWedges, AnnotationsHaveTheShapeOfTheStandard) {
   EXPECT_EQ(shell(check + quoted(data("wedges/annotations.json")) + " " + quoted(schema)), 0);
   const nlohmann::json page = json_of("wedges/annotations.json");
   EXPECT_THAT(page["items"][0]["target"]["selector"]["value"].get<std::string>(), HasSubstr("POLYGON Z"));
+}
+
+TEST_F(ExportOfWedges, CorrectionsOfTheSessionAreMadeAndCounted) {
+  const fs::path session = at("corrected");
+  fs::copy(at("session"), session, fs::copy_options::recursive);
+  const std::vector<Wedge> found = read_wedges(data("wedges/wedges.json"))->wedges;
+  WedgeCorrection gone;
+  gone.at_mm = {found[3].depth_point_mm};
+  ASSERT_TRUE(write_corrections(session / "analysis/wedges.corrections.json", {"session.ply", {gone}}));
+  const Outcome exported = run_command({"export", session, "--to", at("corrected_bag"), "--without",
+                                        "renderings,features,grid-ply", "--json"});
+  ASSERT_EQ(exported.status, 0) << exported.err;
+  const Result<WedgeFile> left = read_wedges(at("corrected_bag") / "data/wedges/wedges.json");
+  ASSERT_TRUE(left);
+  EXPECT_EQ(left->corrections, 1U);
+  ASSERT_EQ(left->wedges.size(), found.size() - 1);
+  EXPECT_EQ(left->wedges[3].id, found[4].id) << "the others keep their numbers";
+  EXPECT_EQ(left->wedges[3].depth_point_mm, found[4].depth_point_mm);
+  EXPECT_EQ(run_command({"verify", at("corrected_bag")}).status, 0);
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <fstream>
 #include <iterator>
 
+#include "formats/self_checked.h"
 #include "tests/acquisition/session_support.h"
 #include "tests/station/support/command.h"
 #include "tests/support/temporary_folder.h"
@@ -120,6 +121,20 @@ TEST_F(Verify, AGridComesBackFromACopyAndFromNowhereElse) {
   EXPECT_EQ(with_copy["repair"]["restored"], nlohmann::json({"grids/001.grid", "mesh/model.ply"}));
   EXPECT_TRUE(bytes_of(session_ / "grids/001.grid.damaged-1") == damaged);
   EXPECT_TRUE(bytes_of(session_ / "grids/001.grid") == bytes_of(scanned() / "grids/001.grid"));
+}
+
+TEST_F(Verify, WhatAPersonWroteIsCheckedByItsOwnSumAndNeverMadeAnew) {
+  const std::string name = "analysis/wedges.corrections.json";
+  const std::string text = with_own_checksum("{\"unit\":\"mm\",\"mesh\":\"model.ply\",\"corrections\":[]}");
+  std::ofstream(session_ / name) << text;
+  EXPECT_THAT(verify(0)["whole"], Contains(name));
+  const fs::path copy = folder_->path() / "copy";
+  fs::copy(session_, copy, fs::copy_options::recursive);
+  test::flip_byte(session_ / name, 20);
+  EXPECT_THAT(places(verify(1)["damaged"]), ElementsAre(name));
+  EXPECT_THAT(places(verify(1, {"--repair"})["repair"]["beyond"]), ElementsAre(name));
+  EXPECT_EQ(verify(0, {"--repair", "--from", copy.string()})["repair"]["restored"], nlohmann::json({name}));
+  EXPECT_EQ(bytes_of(session_ / name), text);
 }
 
 TEST_F(Verify, TablesAreRebuiltAndTheDamagedOnesKept) {

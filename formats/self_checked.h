@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "core/result.h"
+
+namespace dubsar {
+
+/// JSON objects that a person's work is kept in outside of any list of checksums carry their own: the last
+/// member, "xxh128", is XXH3 (128 bits, canonical, 32 hexadecimal digits) of all bytes before its comma.
+inline constexpr const char* kOwnChecksum = "xxh128";
+
+/// `json` is one object with at least one member, with or without a line's end.
+[[nodiscard]] std::string with_own_checksum(std::string json);
+
+enum class OwnChecksum {
+  kNone,  ///< the text does not end with one
+  kFits,
+  kFails,
+};
+[[nodiscard]] OwnChecksum own_checksum_of(std::string_view text);
+
+/// kBadInput where there is one that fails.
+[[nodiscard]] Status check_own_checksum(std::string_view text, const std::string& where);
+
+}  // namespace dubsar

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+// Files that carry their own checksum, and the two that do.
+
+#include "formats/self_checked.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "formats/atomic_file.h"
+#include "formats/corrections_json.h"
+#include "formats/selections_json.h"
+#include "formats/xxh128.h"
+#include "tests/support/temporary_folder.h"
+
+namespace dubsar {
+namespace {
+
+using ::testing::EndsWith;
+using ::testing::HasSubstr;
+
+TEST(SelfChecked, TheSumIsThatOfXxhsumOverAllBeforeTheComma) {
+  EXPECT_EQ(xxh128_hex(""), "99aa06d3014798d86001c324468d497f");  // printf '' | xxh128sum
+  const std::string text = with_own_checksum("{\"a\":1}\n");
+  EXPECT_EQ(text, R"({"a":1,"xxh128":"61a0fe76ffe4dee06812ff298dd1912b"})"
+                  "\n");
+  EXPECT_EQ(own_checksum_of(text), OwnChecksum::kFits);
+  EXPECT_EQ(own_checksum_of(text.substr(0, text.size() - 1)), OwnChecksum::kFits) << "without a line's end";
+  EXPECT_EQ(own_checksum_of("{\"a\":1}\n"), OwnChecksum::kNone);
+  EXPECT_EQ(own_checksum_of(""), OwnChecksum::kNone);
+}
+
+TEST(SelfChecked, EveryFlippedBitIsSeen) {
+  const std::string text = with_own_checksum("{\"name\":\"line 3\",\"ranges\":[[3,2]]}");
+  for (std::size_t bit = 0; bit + 8 < text.size() * 8; ++bit) {  // but for those of the line's end
+    std::string damaged = text;
+    damaged[bit / 8] = static_cast<char>(damaged[bit / 8] ^ (1 << (bit % 8)));
+    EXPECT_NE(own_checksum_of(damaged), OwnChecksum::kFits) << bit;
+  }
+}
+
+class SelfCheckedFiles : public ::testing::Test {
+ protected:
+  test::TemporaryFolder folder_;
+  std::filesystem::path path_ = folder_.path() / "kept.json";
+};
+
+TEST_F(SelfCheckedFiles, ADamagedSelectionIsRefusedAndOneEditedOnPurposeIsNot) {
+  ASSERT_TRUE(write_selections(path_, {"t.ply", "0", {{"line 3", MeshElement::kFace, {{7, 2}}}}}));
+  EXPECT_TRUE(read_selections(path_));
+  std::string text = *read_whole_file(path_);
+  EXPECT_THAT(text, EndsWith("\"}\n"));
+  text.replace(text.find("line 3"), 6, "line 4");
+  const Result<SelectionFile> refused = parse_selections(text, "s.json");
+  ASSERT_FALSE(refused);
+  EXPECT_THAT(refused.error().line(), HasSubstr("checksum"));
+  text.resize(text.find(",\"xxh128\""));
+  text += '}';
+  EXPECT_EQ(parse_selections(text, "s.json")->selections[0].name, "line 4");
+}
+
+TEST_F(SelfCheckedFiles, ADamagedCorrectionIsRefused) {
+  WedgeCorrection gone;
+  gone.kind = CorrectionKind::kDelete;
+  gone.at_mm = {{1, 2, 3}};
+  ASSERT_TRUE(write_corrections(path_, {"t.ply", {gone}}));
+  std::string text = *read_whole_file(path_);
+  EXPECT_TRUE(parse_corrections(text, "c.json"));
+  text.replace(text.find("t.ply"), 5, "u.ply");
+  EXPECT_FALSE(parse_corrections(text, "c.json"));
+}
+
+}  // namespace
+}  // namespace dubsar
