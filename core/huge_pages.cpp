@@ -14,11 +14,10 @@ void wish_for_huge_pages(void* memory, std::size_t bytes) {
   if (bytes < kWorthIt) {
     return;
   }
-  const auto page = static_cast<std::uintptr_t>(sysconf(_SC_PAGESIZE));
-  const auto begin = reinterpret_cast<std::uintptr_t>(memory);
-  const std::uintptr_t first = (begin + page - 1) / page * page;
-  const std::uintptr_t last = (begin + bytes) / page * page;
-  madvise(reinterpret_cast<void*>(first), last - first, MADV_HUGEPAGE);
+  const auto page = static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+  const std::size_t to_next = page - reinterpret_cast<std::uintptr_t>(memory) % page;
+  // Whole pages of it alone.
+  madvise(static_cast<char*>(memory) + to_next, (bytes - to_next) / page * page, MADV_HUGEPAGE);
 }
 
 }  // namespace dubsar
