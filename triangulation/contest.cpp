@@ -115,59 +115,114 @@ Contest contest_of(const std::vector<OwnedScan>& scans, std::size_t self) {
   return contest;
 }
 
-bool is_taken(const std::vector<OwnedScan>& scans, std::size_t self, std::size_t i, const Contest& contest,
-              double clearance_factor, const OwnershipOptions& options) {
-  const OwnedScan& scan = scans[self];
+namespace {
+
+constexpr int kNotAsked = -2;
+constexpr int kAskedSide = Lattice::kNodeSide + 1;  ///< samples of a node, and those just after them
+constexpr std::size_t kAsked = kAskedSide * kAskedSide;
+constexpr std::size_t kStarts = 4;
+
+}  // namespace
+
+NodeContest::NodeContest(const std::vector<OwnedScan>& scans, std::size_t self, const Contest& contest,
+                         const OwnershipOptions& options)
+    : scans_(&scans),
+      scan_(&scans[self]),
+      contest_(&contest),
+      options_(&options),
+      starts_(scan_->pairs.size() * kStarts),
+      start_known_(scan_->pairs.size() * kStarts),
+      pair_(scan_->pairs.size() * kAsked) {}
+
+void NodeContest::enter(std::size_t node) {
+  const Lattice& lattice = scan_->surface->lattice;
+  node_ = node;
+  row_ = lattice.row_of(node) * Lattice::kNodeSide;
+  col_ = lattice.col_of(node) * Lattice::kNodeSide;
+  std::ranges::fill(start_known_, 0);
+  std::ranges::fill(pair_, kNotAsked);
+}
+
+const StitchSurface& NodeContest::other_surface(std::size_t k) const {
+  return *(*scans_)[scan_->other[k]].surface;
+}
+
+const PairStart& NodeContest::start(std::size_t k, std::size_t sample) {
+  const Lattice& lattice = scan_->surface->lattice;
+  const bool below = lattice.sample_row(sample) >= row_ + Lattice::kNodeSide;
+  const bool beside = lattice.sample_col(sample) >= col_ + Lattice::kNodeSide;
+  const std::size_t at = k * kStarts + (below ? 2U : 0U) + (beside ? 1U : 0U);
+  if (start_known_[at] == 0) {
+    starts_[at] = pair_start(*scan_->surface, lattice.node_of(sample), other_surface(k), *scan_->pairs[k]);
+    start_known_[at] = 1;
+  }
+  return starts_[at];
+}
+
+std::int64_t NodeContest::pair(std::size_t k, std::size_t sample) {
+  const Lattice& lattice = scan_->surface->lattice;
+  const int at = (lattice.sample_row(sample) - row_) * kAskedSide + lattice.sample_col(sample) - col_;
+  std::int32_t& known = pair_[k * kAsked + static_cast<std::size_t>(at)];
+  if (known == kNotAsked) {
+    const PairStart& from = start(k, sample);
+    known = from.sample < 0 ? -1
+                            : static_cast<std::int32_t>(
+                                  pair_of(*scan_->surface, sample, from, other_surface(k), *scan_->pairs[k]));
+  }
+  return known;
+}
+
+bool NodeContest::is_taken_by(std::size_t k, std::size_t i) {
+  const OwnedScan& other = (*scans_)[scan_->other[k]];
+  const PairStart& from = start(k, i);
+  if (from.sample < 0) {
+    return false;
+  }
+  const std::int64_t likely = likely_sample(from, *other.surface, scan_->surface->points[i]);
+  if (likely >= 0 && other.near_kept[static_cast<std::size_t>(likely)] == kAllAroundKept &&
+      may_pair(*scan_->surface, i, *other.surface, static_cast<std::size_t>(likely), *scan_->pairs[k])) {
+    return true;
+  }
+  const std::int64_t j = pair(k, i);
+  if (j < 0 || other.near_kept[static_cast<std::size_t>(j)] == 0) {
+    return false;
+  }
+  if (other.near_kept[static_cast<std::size_t>(j)] == kAllAroundKept) {
+    return true;
+  }
+  const Window window(other, j, options_->look_around_samples);
+  const auto clearance = static_cast<float>(options_->clearance_factor *
+                                            std::max(scan_->surface->spacing_mm, other.surface->spacing_mm));
   const Vector3f& p =
-      scan.fused->slot[i] == FusedSamples::kNone ? scan.surface->points[i] : scan.fused->point(i);
-  const std::size_t node = scan.surface->lattice.node_of(i);
-  const auto is_taken_by = [&](std::size_t k) {
-    const OwnedScan& other = scans[scan.other[k]];
-    const PairStart start = pair_start(*scan.surface, node, *other.surface, *scan.pairs[k]);
-    if (start.sample < 0) {
-      return false;
-    }
-    const std::int64_t likely = likely_sample(start, *other.surface, scan.surface->points[i]);
-    if (likely >= 0 && other.near_kept[static_cast<std::size_t>(likely)] == kAllAroundKept &&
-        may_pair(*scan.surface, i, *other.surface, static_cast<std::size_t>(likely), *scan.pairs[k])) {
-      return true;
-    }
-    const std::int64_t j = pair_of(*scan.surface, i, start, *other.surface, *scan.pairs[k]);
-    if (j < 0 || other.near_kept[static_cast<std::size_t>(j)] == 0) {
-      return false;
-    }
-    if (other.near_kept[static_cast<std::size_t>(j)] == kAllAroundKept) {
-      return true;
-    }
-    const Window window(other, j, options.look_around_samples);
-    const auto clearance =
-        static_cast<float>(clearance_factor * std::max(scan.surface->spacing_mm, other.surface->spacing_mm));
-    bool taken = false;
-    const Vector3f n = other.surface->normal(static_cast<std::size_t>(j));
-    for (int r = window.row_lo; r <= window.row_hi && !taken; ++r) {
-      for (int c = window.col_lo; c <= window.col_hi && !taken; ++c) {
-        const std::size_t q = window.g.index(r, c);
-        if (other.kept[q] == 0) {
-          continue;
-        }
-        const Vector3f d = other.fused->point(q) - p;
-        const float along = d.dot(n);
-        taken = d.squaredNorm() - along * along < clearance * clearance;
+      scan_->fused->slot[i] == FusedSamples::kNone ? scan_->surface->points[i] : scan_->fused->point(i);
+  bool taken = false;
+  const Vector3f n = other.surface->normal(static_cast<std::size_t>(j));
+  for (int r = window.row_lo; r <= window.row_hi && !taken; ++r) {
+    for (int c = window.col_lo; c <= window.col_hi && !taken; ++c) {
+      const std::size_t q = window.g.index(r, c);
+      if (other.kept[q] == 0) {
+        continue;
       }
+      const Vector3f d = other.fused->point(q) - p;
+      const float along = d.dot(n);
+      taken = d.squaredNorm() - along * along < clearance * clearance;
     }
-    if (!taken) {
-      const Plane plane(p, n);
-      window.for_each_triangle([&](const std::array<std::size_t, 3>& t) {
-        taken = taken || inside(Vector2f::Zero(), plane(other.fused->point(t[0])),
-                                plane(other.fused->point(t[1])), plane(other.fused->point(t[2])));
-      });
-    }
-    return taken;
-  };
+  }
+  if (!taken) {
+    const Plane plane(p, n);
+    window.for_each_triangle([&](const std::array<std::size_t, 3>& t) {
+      taken = taken || inside(Vector2f::Zero(), plane(other.fused->point(t[0])),
+                              plane(other.fused->point(t[1])), plane(other.fused->point(t[2])));
+    });
+  }
+  return taken;
+}
+
+bool NodeContest::is_taken(std::size_t i) {
   // First those that are likeliest to say yes.
   for (const std::uint8_t nearness : {2, 1}) {
-    for (std::size_t k = 0; k < scan.pairs.size(); ++k) {
-      if (contest.by_pair[k][node] == nearness && is_taken_by(k)) {
+    for (std::size_t k = 0; k < scan_->pairs.size(); ++k) {
+      if (contest_->by_pair[k][node_] == nearness && is_taken_by(k, i)) {
         return true;
       }
     }
@@ -175,31 +230,24 @@ bool is_taken(const std::vector<OwnedScan>& scans, std::size_t self, std::size_t
   return false;
 }
 
-bool meets_another(const std::vector<OwnedScan>& scans, std::size_t self, std::span<const Vector3f> points,
-                   const std::array<std::size_t, 3>& t, const Contest& contest,
-                   const OwnershipOptions& options) {
-  const OwnedScan& scan = scans[self];
-  const std::size_t node = scan.surface->lattice.node_of(t[0]);
-  for (std::size_t k = 0; k < scan.pairs.size(); ++k) {
-    const OwnedScan& other = scans[scan.other[k]];
-    if (contest.by_pair[k][node] == 0) {
+bool NodeContest::meets_another(std::span<const Vector3f> points, const std::array<std::size_t, 3>& t) {
+  for (std::size_t k = 0; k < scan_->pairs.size(); ++k) {
+    const OwnedScan& other = (*scans_)[scan_->other[k]];
+    if (contest_->by_pair[k][node_] == 0) {
       continue;
     }
     for (std::size_t corner = 0; corner < 3; ++corner) {
-      const PairStart start =
-          pair_start(*scan.surface, scan.surface->lattice.node_of(t[corner]), *other.surface, *scan.pairs[k]);
-      const std::int64_t j =
-          start.sample < 0 ? -1 : pair_of(*scan.surface, t[corner], start, *other.surface, *scan.pairs[k]);
+      const std::int64_t j = pair(k, t[corner]);
       if (j < 0 || other.near_kept[static_cast<std::size_t>(j)] == 0) {
         continue;
       }
-      const Window window(other, j, options.look_around_samples);
+      const Window window(other, j, options_->look_around_samples);
       const Vector3f n = (points[t[1]] - points[t[0]]).cross(points[t[2]] - points[t[0]]).normalized();
       const Plane plane(points[t[0]], n);
       const Vector2f a = plane(points[t[0]]);
       const Vector2f b = plane(points[t[1]]);
       const Vector2f c = plane(points[t[2]]);
-      const float near_mm = scan.pairs[k]->reach_mm;
+      const float near_mm = scan_->pairs[k]->reach_mm;
       bool meets = false;
       window.for_each_triangle([&](const std::array<std::size_t, 3>& o) {
         if (meets || std::abs(n.dot(other.fused->point(o[0]) - points[t[0]])) > near_mm) {
