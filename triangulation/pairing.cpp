@@ -234,13 +234,13 @@ bool may_pair(const StitchSurface& from, std::size_t sample, const StitchSurface
          from.normal(sample).dot(to.normal(other)) > pairs.min_normal_cos;
 }
 
-std::int64_t likely_cell(const PairStart& start, const StitchSurface& to, const Vector3f& p) {
-  const auto [row, col] = start.place_of(p);
-  if (!(row >= 0 && col >= 0 && row < static_cast<float>(to.lattice.rows - 1) &&
-        col < static_cast<float>(to.lattice.cols - 1))) {
-    return -1;
+std::pair<int, int> likely_cell(const PairStart& start, const StitchSurface& to, const Vector3f& p) {
+  if (const std::int64_t there = likely_sample(start, to, p); there < 0) {
+    const auto at = static_cast<std::size_t>(start.sample);
+    return {to.lattice.sample_row(at), to.lattice.sample_col(at)};
   }
-  return static_cast<std::int64_t>(row) * to.lattice.cols + static_cast<std::int64_t>(col);
+  const auto [row, col] = start.place_of(p);
+  return {static_cast<int>(std::floor(row)), static_cast<int>(std::floor(col))};
 }
 
 std::int64_t likely_sample(const PairStart& start, const StitchSurface& to, const Vector3f& p) {
