@@ -115,7 +115,7 @@ void add_samples(std::vector<OwnedScan>& scans, std::size_t self, std::vector<st
   remove_specks(kept, cells, fresh, lattice, least_patch);
   scan.kept = std::move(kept);
   scan.cells = std::move(cells);
-  settle_patches(scan, options);
+  settle_patches(scan);
 }
 
 /// Samples that nobody keeps, nor lies over.
