@@ -40,11 +40,11 @@ class LineProjector {
       : s_(&s), line_(&line), turn_(s.mirrored ? -1.0F : 1.0F) {}  // triangles run as their grid does
 
   /// Steps from a cell towards the line, then looks there and all around.
-  [[nodiscard]] Projection from_cell(int row, int col) {
+  [[nodiscard]] Projection from_cell(float at_row, float at_col) {
     const int last_row = s_->lattice.rows - 2;
     const int last_col = s_->lattice.cols - 2;
-    row = std::clamp(row, 0, last_row);
-    col = std::clamp(col, 0, last_col);
+    int row = static_cast<int>(std::clamp(at_row, 0.0F, static_cast<float>(last_row)));
+    int col = static_cast<int>(std::clamp(at_col, 0.0F, static_cast<float>(last_col)));
     for (int step = 0; step < kMostSteps; ++step) {
       const auto [rows, cols] = towards_line(row, col);
       const int next_row = std::clamp(row + rows, 0, last_row);
@@ -244,17 +244,18 @@ void fuse(const StitchSurface& from, std::span<const StitchSurface* const> other
       found.clear();
       for (const auto& [k, start] : starts) {
         const StitchSurface& other = *others[k];
-        const auto [row, col] = likely_cell(start, other, p);
+        const auto [row, col] = start.place_of(p);
         Projection q = LineProjector(other, line).from_cell(row, col);
         if (q.weight > 0 && !(std::abs(q.along_mm) <= pairs[k]->reach_mm &&
                               normal.dot(other.normal(q.sample)) > pairs[k]->min_normal_cos)) {
           // Another fold of the surface: from the nearest sample that looks the same way there is a way to
           // the right one.
           const std::int64_t j = pair_of(from, i, start, other, *pairs[k]);
-          q = j < 0 ? Projection()
-                    : LineProjector(other, line)
-                          .from_cell(other.lattice.sample_row(static_cast<std::size_t>(j)),
-                                     other.lattice.sample_col(static_cast<std::size_t>(j)));
+          q = j < 0
+                  ? Projection()
+                  : LineProjector(other, line)
+                        .from_cell(static_cast<float>(other.lattice.sample_row(static_cast<std::size_t>(j))),
+                                   static_cast<float>(other.lattice.sample_col(static_cast<std::size_t>(j))));
         }
         if (q.weight > 0 && std::abs(q.along_mm) <= pairs[k]->reach_mm) {
           found.emplace_back(k, q);

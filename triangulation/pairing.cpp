@@ -234,15 +234,6 @@ bool may_pair(const StitchSurface& from, std::size_t sample, const StitchSurface
          from.normal(sample).dot(to.normal(other)) > pairs.min_normal_cos;
 }
 
-std::pair<int, int> likely_cell(const PairStart& start, const StitchSurface& to, const Vector3f& p) {
-  if (const std::int64_t there = likely_sample(start, to, p); there < 0) {
-    const auto at = static_cast<std::size_t>(start.sample);
-    return {to.lattice.sample_row(at), to.lattice.sample_col(at)};
-  }
-  const auto [row, col] = start.place_of(p);
-  return {static_cast<int>(std::floor(row)), static_cast<int>(std::floor(col))};
-}
-
 std::int64_t likely_sample(const PairStart& start, const StitchSurface& to, const Vector3f& p) {
   const auto [row, col] = start.place_of(p);
   const auto r = static_cast<int>(std::clamp(row + 0.5F, 0.0F, static_cast<float>(to.lattice.rows - 1)));

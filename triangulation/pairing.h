@@ -66,10 +66,6 @@ struct PairStart {
 [[nodiscard]] PairStart pair_start(const StitchSurface& from, std::size_t node, const StitchSurface& to,
                                    const Pairs& pairs);
 
-/// Row and column of the cell of `to` in which p is likely to lie; they may lie beyond its rim.
-[[nodiscard]] std::pair<int, int> likely_cell(const PairStart& start, const StitchSurface& to,
-                                              const Eigen::Vector3f& p);
-
 /// The sample of `to` that is likely to be nearest to p, or -1.
 [[nodiscard]] std::int64_t likely_sample(const PairStart& start, const StitchSurface& to,
                                          const Eigen::Vector3f& p);
