@@ -129,6 +129,10 @@ class StationWindow {
         return std::unexpected(taken.error());
       }
       glfwSwapBuffers(window_.handle());
+      if (!seen_ && ui_.facts.contains("shown")) {
+        seen_ = true;
+        log_debug(fmt::format("first picture of the mesh: {:.2f} s", now_s() - opened_s_));
+      }
       if (script_ && script_->is_dragging()) {
         longest_drag_s_ = std::max(longest_drag_s_, now_s() - frame_began);
       }
@@ -243,6 +247,8 @@ class StationWindow {
   std::filesystem::path preferences_file_;
   float loaded_px_ = 0;
   double longest_drag_s_ = 0;
+  double opened_s_ = now_s();
+  bool seen_ = false;   ///< a mesh in the viewer
   bool looks_ = false;  ///< the viewer; else the operator's screen
   std::filesystem::path session_folder_;
   // The screens go before the context does.
