@@ -27,7 +27,7 @@ std::uint32_t spread(std::uint32_t v) {
 std::vector<std::uint32_t> order_by_place(std::span<const Eigen::Vector3f> positions_mm,
                                           std::span<const std::array<std::uint32_t, 3>> faces,
                                           const Eigen::AlignedBox3f& box_mm) {
-  const Eigen::Vector3f low = box_mm.min();
+  const Eigen::Vector3f& low = box_mm.min();
   const float cells_per_mm =
       static_cast<float>(1U << kBits) * 0.999F / std::max(box_mm.sizes().maxCoeff(), 1e-6F);
   const auto cell_of = [&](std::size_t f) {

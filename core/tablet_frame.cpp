@@ -51,6 +51,9 @@ struct Surface {
   }
 };
 
+template <class Element>
+Surface(std::size_t, Element) -> Surface<Element>;
+
 /// The axis across the slab, or nothing.
 template <class Element>
 Eigen::Vector3d slab_axis(const Surface<Element>& surface) {

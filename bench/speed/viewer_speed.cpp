@@ -10,13 +10,16 @@
 #include <sys/resource.h>
 
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <limits>
 #include <optional>
 
 #include "bench/support/statistics.h"
 #include "core/tablet_frame.h"
 #include "formats/mesh_io.h"
+#include "tests/support/raster_mesh.h"
 #include "tests/ui/support/display.h"
 #include "ui/gl/gl_window.h"
 #include "ui/view/surface_view.h"
@@ -130,6 +133,96 @@ int time_turning(const std::string& file) {
   return 0;
 }
 
+/// A flat sheet of 2 cells² faces, 40 mm wide, seen from +z.
+Mesh sheet(std::uint32_t cells) {
+  Mesh mesh;
+  const float mm = 40.0F / static_cast<float>(cells);
+  for (std::uint32_t y = 0; y <= cells; ++y) {
+    for (std::uint32_t x = 0; x <= cells; ++x) {
+      mesh.positions.emplace_back(mm * static_cast<float>(x), mm * static_cast<float>(y), 0.0F);
+    }
+  }
+  test::add_raster_faces(mesh, 0, cells);
+  return mesh;
+}
+
+/// A triangle on the screen, and every face by hand against what the card says. Faces whose middle lies
+/// within `near_px` of the rim may go either way. Returns how many are wrong.
+std::size_t wrongly_selected(SurfaceView& view, const ShownMesh& shown, const OrbitCamera& camera) {
+  constexpr float kNearPx = 1.0F;
+  const std::vector<Eigen::Vector2f> corners{{300.3F, 150.2F}, {1500.7F, 400.4F}, {700.1F, 1100.6F}};
+  const auto began = Clock::now();
+  view.select(MeshElement::kFace, corners, SelectionStep::kUnion, true);
+  const std::vector<std::uint32_t> selected = view.selection()->read();
+  told("select by a polygon, and read back", began);
+  std::size_t wrong = 0;
+  std::size_t inside = 0;
+  for (std::size_t f = 0; f < shown.faces.size(); ++f) {
+    const auto& [a, b, c] = shown.faces[f];
+    const Eigen::Vector2f at = camera.pixel_of(
+        (shown.positions[a] + shown.positions[b] + shown.positions[c]) / 3.0F, {kWidth, kHeight});
+    float least = std::numeric_limits<float>::max();
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Eigen::Vector2f edge = corners[(k + 1) % 3] - corners[k];
+      const Eigen::Vector2f to = at - corners[k];
+      least = std::min(least, (edge.x() * to.y() - edge.y() * to.x()) / edge.norm());
+    }
+    inside += selected[f];
+    wrong += std::abs(least) > kNearPx && (least > 0) != (selected[f] != 0) ? 1 : 0;
+  }
+  std::printf("  %zu of %zu faces selected, %zu of them wrong\n", inside, shown.faces.size(), wrong);
+  return wrong;
+}
+
+/// Single faces are marked by their number and looked at closely. Returns how many are drawn wrong.
+std::size_t wrongly_drawn(SurfaceView& view, const ShownMesh& shown, OrbitCamera camera) {
+  std::size_t wrong = 0;
+  for (const std::size_t face :
+       {std::size_t{5}, (std::size_t{1} << 16U) + 1, (std::size_t{1} << 20U) + 3, (std::size_t{1} << 24U) - 1,
+        (std::size_t{1} << 24U) + 1, (std::size_t{1} << 24U) + 2, shown.faces.size() - 1}) {
+    if (face >= shown.faces.size()) {
+      continue;
+    }
+    std::vector<std::uint32_t> marks(shown.faces.size(), 0);
+    marks[face] = 1;
+    view.set_selection(MeshElement::kFace, marks);
+    const auto& [a, b, c] = shown.faces[face];
+    camera.centre_mm = (shown.positions[a] + shown.positions[b] + shown.positions[c]) / 3.0F;
+    camera.half_height_mm = 8 * (shown.positions[b] - shown.positions[a]).norm();
+    view.draw_whole(camera, {}, kWidth, kHeight);
+    const Image picture = view.read();
+    std::size_t blue = 0;
+    for (std::size_t i = 0; i + 3 < picture.bytes.size(); i += 4) {
+      blue += picture.bytes[i + 2] > picture.bytes[i] + 20 ? 1 : 0;
+    }
+    const std::size_t middle =
+        4 * (static_cast<std::size_t>(kHeight) / 2 * kWidth + static_cast<std::size_t>(kWidth) / 2);
+    const double px = static_cast<double>(camera.mm_per_px(kHeight));
+    const double area_px =
+        0.5 *
+        static_cast<double>(
+            (shown.positions[b] - shown.positions[a]).cross(shown.positions[c] - shown.positions[a]).norm()) /
+        (px * px);
+    const bool right = picture.bytes[middle + 2] > picture.bytes[middle] + 20 &&
+                       std::abs(static_cast<double>(blue) - area_px) < 0.1 * area_px;
+    std::printf("  face %9zu: %zu px blue, %.0f expected%s\n", face, blue, area_px, right ? "" : ": WRONG");
+    wrong += right ? 0 : 1;
+  }
+  return wrong;
+}
+
+int check_picking(double millions) {
+  const Mesh mesh = sheet(static_cast<std::uint32_t>(std::sqrt(millions * 5e5)));
+  const ShownMesh shown = shown_mesh(mesh);
+  SurfaceView view;
+  view.show(shown);
+  OrbitCamera camera;
+  camera.fit(shown.box_mm, static_cast<float>(kWidth) / kHeight);
+  view.draw_whole(camera, {}, kWidth, kHeight);
+  const std::size_t wrong = wrongly_selected(view, shown, camera) + wrongly_drawn(view, shown, camera);
+  return wrong == 0 ? 0 : 1;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -141,6 +234,9 @@ int main(int argc, char** argv) {
   for (CLI::App* verb : {opening, turning}) {
     verb->add_option("mesh", mesh, "PLY, OBJ, STL or GLB")->required();
   }
+  CLI::App* picking = app.add_subcommand("pick", "faces by number, status 1 when one is wrong");
+  double millions = 20;
+  picking->add_option("--faces", millions, "millions of faces")->check(CLI::Range(0.1, 200.0));
   CLI11_PARSE(app, argc, argv);
   std::optional<dubsar::test::Display> display;
   if (std::getenv("DISPLAY") == nullptr) {
@@ -152,5 +248,8 @@ int main(int argc, char** argv) {
     return 3;
   }
   std::printf("drawn by %s\n", window->renderer().c_str());
+  if (picking->parsed()) {
+    return check_picking(millions);
+  }
   return opening->parsed() ? time_opening(mesh) : time_turning(mesh);
 }
