@@ -188,8 +188,18 @@ float faded(std::uint8_t rim, float feather) {
 FusedSamples::FusedSamples(const StitchSurface& of) : slot(of.points.size(), kNone) {}
 
 void FusedSamples::forget_if(const std::function<bool(std::uint32_t)>& gone) {
-  std::size_t out = 0;
-  for (std::size_t at = 0; at < samples.size(); ++at) {
+  // Mostly all stay.
+  const std::size_t first = parallel_reduce_ordered(
+      samples.size(), 16384, samples.size(),
+      [&](std::size_t begin, std::size_t end) {
+        while (begin < end && !gone(samples[begin])) {
+          ++begin;
+        }
+        return begin < end ? begin : samples.size();
+      },
+      [](std::size_t& total, std::size_t part) { total = std::min(total, part); });
+  std::size_t out = first;
+  for (std::size_t at = first; at < samples.size(); ++at) {
     const std::uint32_t i = samples[at];
     if (gone(i)) {
       slot[i] = kNone;
