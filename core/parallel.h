@@ -54,14 +54,17 @@ template <class T, class Map, class Join>
 T parallel_reduce_ordered(std::size_t count, std::size_t grain, T identity, const Map& map,
                           const Join& join) {
   const std::size_t chunks = (count + grain - 1) / grain;
-  std::vector<T> partial(chunks, identity);
+  struct Part {  // of its own, also where T is bool: bits of one word must not be written by two threads
+    T value;
+  };
+  std::vector<Part> partial(chunks, Part{identity});
   for_each_chunk(chunks, [&](std::size_t chunk) {
     const std::size_t begin = chunk * grain;
-    partial[chunk] = map(begin, begin + grain < count ? begin + grain : count);
+    partial[chunk].value = map(begin, begin + grain < count ? begin + grain : count);
   });
   T total = identity;
-  for (const T& part : partial) {
-    join(total, part);
+  for (const Part& part : partial) {
+    join(total, part.value);
   }
   return total;
 }

@@ -100,12 +100,14 @@ struct Window {
   }
 };
 
-/// A window as it looks along the normal of a plane; places of samples that are not kept hold nothing.
+/// A window as it looks along the normal of a plane; places of samples that are not kept hold zeros.
 struct FlatWindow {
   std::array<Vector2f, Window::kMostSide * Window::kMostSide> at;
   std::array<float, Window::kMostSide * Window::kMostSide> height_mm;
 
   FlatWindow(const Window& window, const Plane& plane) {
+    at.fill(Vector2f::Zero());
+    height_mm.fill(0);
     for (int r = window.row_lo; r <= window.row_hi; ++r) {
       for (int c = window.col_lo; c <= window.col_hi; ++c) {
         const std::size_t q = window.g.index(r, c);
