@@ -2,6 +2,7 @@
 // Copyright The Dubsar developers
 #include "station/live_session.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "acquisition/sign_off_log.h"
@@ -36,9 +37,24 @@ LiveState LiveSession::state() const {
   return state_;
 }
 
-GridPicture LiveSession::growing() const {
+GrowingRows LiveSession::look_at_growing(std::uint64_t scan, int known) {
   const std::scoped_lock lock(mutex_);
-  return growing_;
+  GrowingRows out;
+  out.scan = growing_number_;
+  out.total = growing_.rows;
+  out.since = std::exchange(unseen_since_, std::nullopt);
+  out.rows.cols = growing_.cols;
+  const bool from_the_start = scan != growing_number_ || known > growing_.rows;
+  if (!from_the_start && known == growing_.rows && !out.since) {
+    out.first = known;
+    return out;
+  }
+  out.first = from_the_start ? 0 : std::max(0, known - GridPicture::kUnsettledRows);
+  out.rows.rows = growing_.rows - out.first;
+  const auto cells = static_cast<std::ptrdiff_t>(out.first) * growing_.cols;
+  out.rows.shade.assign(growing_.shade.begin() + cells, growing_.shade.end());
+  out.rows.state.assign(growing_.state.begin() + cells, growing_.state.end());
+  return out;
 }
 
 std::string LiveSession::device() const {

@@ -39,8 +39,9 @@ class LiveSession {
   LiveSession& operator=(const LiveSession&) = delete;
 
   [[nodiscard]] LiveState state() const;
-  /// The scan under way, as far as it has come.
-  [[nodiscard]] GridPicture growing() const;
+  /// The scan under way from where a skin that has `known` rows of scan number `scan` must go on: some of
+  /// those may have changed. Looking tells that what is there has been seen.
+  [[nodiscard]] GrowingRows look_at_growing(std::uint64_t scan, int known);
   /// What the camera sees; nothing while nobody looks.
   [[nodiscard]] std::shared_ptr<const CameraView> camera() const;
   [[nodiscard]] std::string device() const;
@@ -87,7 +88,9 @@ class LiveSession {
   mutable std::mutex mutex_;  ///< of what follows
   LiveState state_;
   GridPicture growing_;
-  std::shared_ptr<Engine> engine_;  ///< while it runs
+  std::uint64_t growing_number_ = 0;
+  std::optional<std::chrono::steady_clock::time_point> unseen_since_;  ///< of profiles
+  std::shared_ptr<Engine> engine_;                                     ///< while it runs
   std::shared_ptr<JobContext> job_;
   std::deque<OperatorCommand> later_;  ///< asked for while a job ran that takes none
   bool scan_later_ = false;            ///< likewise

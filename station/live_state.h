@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <chrono>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -52,6 +53,16 @@ struct LiveScan {
   std::shared_ptr<const GridPicture> picture;
   /// Likewise, with the pins that stand in it; the same as `grid` where there are none.
   std::shared_ptr<const RangeGrid> measured;
+};
+
+/// What has come of the scan under way since somebody looked last.
+struct GrowingRows {
+  std::uint64_t scan = 0;  ///< another number: another scan, from its first row on
+  int first = 0;           ///< row of the scan that rows.shade and rows.state begin with
+  int total = 0;           ///< rows of the scan so far
+  GridPicture rows;
+  /// When the first profile came that nobody has looked at yet; nothing when there is none.
+  std::optional<std::chrono::steady_clock::time_point> since;
 };
 
 /// A session as it stands: a value that a skin reads between two frames. What is large is shared and never
