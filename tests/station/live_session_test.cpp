@@ -153,6 +153,8 @@ TEST(LiveSession, WhatWasStoppedGoesOnWithEverythingThatWasStored) {
   }  // closed while it waited
   Followed again(kSmallTablet, folder.path() / "s");
   again.session.read();
+  // Nothing was finished, so no mesh was kept: it is made again.
+  ASSERT_TRUE(again.wait_until([](const LiveState& s) { return s.mesh && s.red; }));
   ASSERT_TRUE(again.wait_for_rest());
   const LiveState state = again.session.state();
   EXPECT_TRUE(state.exists);
@@ -161,6 +163,22 @@ TEST(LiveSession, WhatWasStoppedGoesOnWithEverythingThatWasStored) {
   EXPECT_EQ(state.record.museum_number, "VAT 1");
   again.session.scan_now();
   ASSERT_TRUE(again.wait_until([&](const LiveState& s) { return s.scans.size() > stored; }));
+}
+
+TEST(LiveSession, WhatIsAskedForGoesBeforeTheModelOfAnInterruptedSession) {
+  const test::TemporaryFolder folder;
+  {
+    Followed followed(kSmallTablet, folder.path() / "s");
+    followed.session.scan_now();
+    ASSERT_TRUE(followed.wait_for_phase(LivePhase::kWaiting));
+  }
+  Followed again(kSmallTablet, folder.path() / "s");
+  again.session.read();
+  again.session.scan_now();  // while it reads, or makes the model
+  ASSERT_TRUE(again.wait_until([](const LiveState& s) { return s.scans.size() > 1 && s.mesh; }));
+  again.session.finish();
+  ASSERT_TRUE(again.wait_for_rest());
+  EXPECT_FALSE(again.session.state().error);
 }
 
 TEST(LiveSession, ADeviceThatIsNotThereIsSaidAndLeavesNoSession) {

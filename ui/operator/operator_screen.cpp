@@ -99,6 +99,9 @@ void OperatorScreen::take_state(UiContext& ui) {
   if (state_.phase == LivePhase::kWaiting) {
     ui.facts.insert(state_.last_not_taken_up ? "waiting-unsure" : "waiting-turn");
   }
+  if (!model_.empty()) {
+    ui.facts.insert("model-shown");
+  }
   if (session_.busy()) {
     ui.facts.insert("busy");
   } else {
