@@ -132,6 +132,7 @@ void LiveSession::rebuild_model(ScanSet set, const std::vector<ScanPose>& poses)
   const std::scoped_lock lock(mutex_);
   if (planned && !state_.red_map) {
     state_.red_map = std::make_shared<const RedMap>(planned->results.red_map);
+    state_.verdict_kept = false;
   }
   unasked_.reset();
 }

@@ -287,6 +287,7 @@ void LiveSession::run_engine(std::vector<OperatorCommand> first, bool first_scan
     if (result) {
       follow(result->poses);
       state_.red_map = std::make_shared<const RedMap>(result->red_map);
+      state_.verdict_kept = true;
       state_.checklist = result->checklist;
       state_.error = result->device_error;
       const auto& signed_off = result->checklist.sign_off;

@@ -169,6 +169,7 @@ void LiveSession::hear(const Event& event) {
       state_.notice = obeyed->what;
     } else if (const auto* red_map = std::get_if<RedMapChanged>(&event)) {
       state_.red_map = std::make_shared<const RedMap>(red_map->red_map);
+      state_.verdict_kept = true;
       if (red_map->red_map.conclusive) {
         state_.phase = LivePhase::kFinishing;
       }

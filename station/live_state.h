@@ -73,6 +73,7 @@ struct LiveState {
   double fraction = 0;
   std::vector<LiveScan> scans;  ///< by id
   std::shared_ptr<const RedMap> red_map;
+  bool verdict_kept = true;  ///< the red map is in the session too; else it was worked out to be seen
   std::shared_ptr<const Mesh> mesh;
   std::shared_ptr<const ColouredPoints> red;  ///< on the mesh
   RigidTransform tablet_from_model;
