@@ -10,8 +10,8 @@ namespace dubsar {
 
 namespace {
 
-/// Rows before the newest whose flags are not final yet (planning/sparse_flags.h: two).
-constexpr int kUnsettledRows = 3;
+// Rows before the newest whose flags are not final yet (planning/sparse_flags.h).
+static_assert(GridPicture::kUnsettledRows > 2);
 
 std::uint8_t shade_of(const RangeGrid& grid, int row, int col) {
   const std::size_t i = grid.index(row, col);

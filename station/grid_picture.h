@@ -16,6 +16,9 @@ enum class CellState : std::uint8_t { kNone, kSampled, kRed };
 /// A range grid as a picture, cell by cell, for people to watch it grow and to point at places in it: relief
 /// lit from the upper left, and what is under-sampled. A skin gives it its colours.
 struct GridPicture {
+  /// So many rows before the newest may still change.
+  static constexpr int kUnsettledRows = 3;
+
   int rows = 0;
   int cols = 0;
   std::vector<std::uint8_t> shade;  ///< [rows*cols] 0 dark … 255 bright

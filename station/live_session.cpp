@@ -2,15 +2,9 @@
 // Copyright The Dubsar developers
 #include "station/live_session.h"
 
+#include <algorithm>
 #include <utility>
 
-#include "acquisition/sign_off_log.h"
-#include "core/tablet_frame.h"
-#include "formats/checklist_json.h"
-#include "formats/mesh_io.h"
-#include "formats/red_map_json.h"
-#include "station/scan_set.h"
-#include "station/session_pins.h"
 #include "station/signing.h"
 
 namespace dubsar {
@@ -36,9 +30,24 @@ LiveState LiveSession::state() const {
   return state_;
 }
 
-GridPicture LiveSession::growing() const {
+GrowingRows LiveSession::look_at_growing(std::uint64_t scan, int known) {
   const std::scoped_lock lock(mutex_);
-  return growing_;
+  GrowingRows out;
+  out.scan = growing_number_;
+  out.total = growing_.rows;
+  out.since = std::exchange(unseen_since_, std::nullopt);
+  out.rows.cols = growing_.cols;
+  const bool from_the_start = scan != growing_number_ || known > growing_.rows;
+  if (!from_the_start && known == growing_.rows && !out.since) {
+    out.first = known;
+    return out;
+  }
+  out.first = from_the_start ? 0 : std::max(0, known - GridPicture::kUnsettledRows);
+  out.rows.rows = growing_.rows - out.first;
+  const auto cells = static_cast<std::ptrdiff_t>(out.first) * growing_.cols;
+  out.rows.shade.assign(growing_.shade.begin() + cells, growing_.shade.end());
+  out.rows.state.assign(growing_.state.begin() + cells, growing_.state.end());
+  return out;
 }
 
 std::string LiveSession::device() const {
@@ -64,7 +73,21 @@ void LiveSession::changed() const {
   }
 }
 
+void LiveSession::hurry() {
+  if (unasked_) {
+    unasked_->cancel();
+  }
+}
+
 void LiveSession::launch(std::function<void()> job) {
+  {
+    const std::scoped_lock lock(mutex_);
+    if (unasked_ && !next_) {
+      next_ = std::move(job);
+      hurry();
+      return;
+    }
+  }
   if (busy_.exchange(true)) {
     return;
   }
@@ -88,6 +111,15 @@ void LiveSession::launch(std::function<void()> job) {
     for (;;) {  // what was asked for meanwhile
       std::vector<OperatorCommand> commands;
       bool waits = true;
+      std::function<void()> next;
+      {
+        const std::scoped_lock lock(mutex_);
+        next = std::exchange(next_, nullptr);
+      }
+      if (next && !job_->cancelled()) {
+        next();
+        continue;
+      }
       {
         const std::scoped_lock lock(mutex_);
         commands.assign(later_.begin(), later_.end());
@@ -131,6 +163,7 @@ void LiveSession::scan_now() {
     }
     if (busy_) {
       scan_later_ = true;
+      hurry();
       return;
     }
   }
@@ -149,6 +182,7 @@ void LiveSession::stop() {
   if (job_) {
     job_->cancel();
   }
+  hurry();
 }
 
 void LiveSession::ask(OperatorCommand command) {
@@ -159,6 +193,7 @@ void LiveSession::ask(OperatorCommand command) {
     }
     if (busy_) {
       later_.push_back(std::move(command));
+      hurry();
       return;
     }
   }
@@ -174,6 +209,7 @@ void LiveSession::describe(const TabletRecord& record) {
     }
     if (busy_) {
       later_.push_back(DescribeTablet{record});
+      hurry();
       return;
     }
   }
@@ -251,6 +287,7 @@ void LiveSession::run_engine(std::vector<OperatorCommand> first, bool first_scan
     if (result) {
       follow(result->poses);
       state_.red_map = std::make_shared<const RedMap>(result->red_map);
+      state_.verdict_kept = true;
       state_.checklist = result->checklist;
       state_.error = result->device_error;
       const auto& signed_off = result->checklist.sign_off;
@@ -262,85 +299,6 @@ void LiveSession::run_engine(std::vector<OperatorCommand> first, bool first_scan
     end(std::unexpected(result.error()));
   }
   changed();
-}
-
-void LiveSession::read_folder() {
-  if (!SessionStore::is_session(options_.session)) {
-    return;
-  }
-  {
-    const std::scoped_lock lock(mutex_);
-    state_.exists = true;
-    state_.phase = LivePhase::kReading;
-  }
-  changed();
-  const Result<SessionStore> store = SessionStore::open(options_.session, SessionStore::Access::kReadOnly);
-  const auto scans = store ? store->scans() : std::unexpected(store.error());
-  const auto poses = store ? store->poses() : std::unexpected(store.error());
-  if (!scans || !poses) {
-    end(std::unexpected(!scans ? scans.error() : poses.error()));
-    return;
-  }
-  const Result<std::optional<PinSet>> stored_pins = session_pins(*store);
-  const std::optional<PinSet> pins = stored_pins && *stored_pins ? *stored_pins : options_.pins;
-  {
-    const std::scoped_lock lock(mutex_);
-    if (pins) {
-      state_.pins = std::make_shared<const PinSet>(*pins);
-    }
-    if (!stored_pins) {
-      state_.notice = stored_pins.error().line();
-    }
-    for (const Error& damage : store->opening().damage) {
-      state_.notice = damage.line();
-    }
-    for (const StoredScan& stored : *scans) {
-      LiveScan& scan = scan_of(stored.id);
-      scan.file = stored.source;
-      scan.samples = stored.samples;
-      scan.dropped = stored.dropped;
-      scan.damaged = stored.damaged;
-      scan.note = stored.note;
-    }
-    follow(*poses);
-    state_.record = tablet_record_of(*store);
-    if (Result<SettingWords> kept = kept_settings(*store, options_.device)) {
-      settings_ = std::move(*kept);
-    }
-  }
-  if (const auto text = store->load_document("red_map"); text && *text) {
-    if (auto map = parse_red_map(**text, "red map of the session")) {
-      const std::scoped_lock lock(mutex_);
-      state_.red_map = std::make_shared<const RedMap>(std::move(*map));
-    }
-  }
-  if (const auto text = store->load_document("checklist"); text && *text) {
-    if (auto list = parse_checklist(**text, "checklist of the session")) {
-      const std::scoped_lock lock(mutex_);
-      state_.checklist = std::move(*list);
-    }
-  }
-  if (const auto signed_offs = read_sign_offs(*store, *job_);
-      signed_offs && !signed_offs->sign_offs.empty()) {
-    const CheckedSignOff& latest = signed_offs->sign_offs.back();
-    const std::scoped_lock lock(mutex_);
-    state_.signed_off = latest.holds();
-    state_.signed_by = latest.holds() ? latest.sign_off.name : std::string();
-  }
-  changed();
-  if (auto mesh = read_mesh(store->mesh_folder() / "model.ply"); mesh && !job_->cancelled()) {
-    const RigidTransform tablet_from_model = tablet_frame(*mesh);
-    show_model(std::make_shared<const Mesh>(std::move(*mesh)), nullptr, tablet_from_model);
-  }
-  for (const StoredScan& stored : *scans) {
-    if (job_->cancelled() || stored.damaged) {
-      continue;
-    }
-    if (const auto grid = store->load_grid(stored.id)) {
-      const StationScan scan = prepare_scan(stored.id, *grid, pins);
-      show_grid(stored.id, *scan.measured, *scan.grid, *scan.flags);
-    }
-  }
 }
 
 }  // namespace dubsar

@@ -16,6 +16,7 @@
 #include "station/camera_watch.h"
 #include "station/engine.h"
 #include "station/live_state.h"
+#include "station/scan_set.h"
 
 namespace dubsar {
 
@@ -39,15 +40,18 @@ class LiveSession {
   LiveSession& operator=(const LiveSession&) = delete;
 
   [[nodiscard]] LiveState state() const;
-  /// The scan under way, as far as it has come.
-  [[nodiscard]] GridPicture growing() const;
+  /// The scan under way from where a skin that has `known` rows of scan number `scan` must go on: some of
+  /// those may have changed. Looking tells that what is there has been seen.
+  [[nodiscard]] GrowingRows look_at_growing(std::uint64_t scan, int known);
   /// What the camera sees; nothing while nobody looks.
   [[nodiscard]] std::shared_ptr<const CameraView> camera() const;
   [[nodiscard]] std::string device() const;
   /// For the next run.
   void set_device(std::string uri);
 
-  void read();      ///< what the folder holds
+  /// What the folder holds. Where it holds no mesh of its scans, since it was left in the middle, the model
+  /// is made again; whatever is asked for goes before that.
+  void read();
   void scan_now();  ///< starts a run, or lets the one that waits go on
   void finish();    ///< takes no more scans
   void stop();      ///< cancels what is under way
@@ -68,6 +72,8 @@ class LiveSession {
 
  private:
   void launch(std::function<void()> job);
+  void hurry();  ///< under the mutex: something was asked for, what nobody waits for ends
+  void rebuild_model(ScanSet set, const std::vector<ScanPose>& poses);
   void run_engine(std::vector<OperatorCommand> first, bool first_scan_waits);
   void read_folder();
   void hear(const Event& event);
@@ -87,11 +93,15 @@ class LiveSession {
   mutable std::mutex mutex_;  ///< of what follows
   LiveState state_;
   GridPicture growing_;
-  std::shared_ptr<Engine> engine_;  ///< while it runs
+  std::uint64_t growing_number_ = 0;
+  std::optional<std::chrono::steady_clock::time_point> unseen_since_;  ///< of profiles
+  std::shared_ptr<Engine> engine_;                                     ///< while it runs
   std::shared_ptr<JobContext> job_;
-  std::deque<OperatorCommand> later_;  ///< asked for while a job ran that takes none
-  bool scan_later_ = false;            ///< likewise
-  SettingWords settings_;              ///< of the device, that were changed while no run had it
+  std::shared_ptr<JobContext> unasked_;  ///< work that nobody waits for, while there is some
+  std::function<void()> next_;           ///< a job that was asked for meanwhile
+  std::deque<OperatorCommand> later_;    ///< asked for while a job ran that takes none
+  bool scan_later_ = false;              ///< likewise
+  SettingWords settings_;                ///< of the device, that were changed while no run had it
   std::shared_ptr<const CameraView> camera_;
   std::shared_ptr<CameraWatch> watch_;
   std::atomic<bool> busy_ = false;

@@ -111,11 +111,21 @@ void LiveSession::show_model(std::shared_ptr<const Mesh> mesh, std::shared_ptr<c
 
 void LiveSession::hear(const Event& event) {
   if (const auto* profile = std::get_if<ProfileArrived>(&event)) {
-    const std::scoped_lock lock(mutex_);
-    growing_.append(*profile->grid, *profile->flags, profile->row);
-    state_.phase = LivePhase::kScanning;
-    camera_.reset();
-    state_.profiles = profile->row + 1;
+    const auto came = std::chrono::steady_clock::now();
+    bool is_news = false;
+    {
+      const std::scoped_lock lock(mutex_);
+      growing_number_ += profile->row < growing_.rows || growing_.cols != profile->grid->cols ? 1 : 0;
+      growing_.append(*profile->grid, *profile->flags, profile->row);
+      state_.phase = LivePhase::kScanning;
+      camera_.reset();
+      state_.profiles = profile->row + 1;
+      is_news = !unseen_since_;
+      unseen_since_ = is_news ? came : unseen_since_;
+    }
+    if (is_news) {  // the skin looks at all that came meanwhile: it is woken once
+      changed();
+    }
   } else if (const auto* model = std::get_if<ModelChanged>(&event)) {
     show_model(model->mesh, model->red, model->tablet_from_model);
   } else if (const auto* placed = std::get_if<ScanPlaced>(&event)) {
@@ -159,6 +169,7 @@ void LiveSession::hear(const Event& event) {
       state_.notice = obeyed->what;
     } else if (const auto* red_map = std::get_if<RedMapChanged>(&event)) {
       state_.red_map = std::make_shared<const RedMap>(red_map->red_map);
+      state_.verdict_kept = true;
       if (red_map->red_map.conclusive) {
         state_.phase = LivePhase::kFinishing;
       }

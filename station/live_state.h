@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <chrono>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -54,6 +55,16 @@ struct LiveScan {
   std::shared_ptr<const RangeGrid> measured;
 };
 
+/// What has come of the scan under way since somebody looked last.
+struct GrowingRows {
+  std::uint64_t scan = 0;  ///< another number: another scan, from its first row on
+  int first = 0;           ///< row of the scan that rows.shade and rows.state begin with
+  int total = 0;           ///< rows of the scan so far
+  GridPicture rows;
+  /// When the first profile came that nobody has looked at yet; nothing when there is none.
+  std::optional<std::chrono::steady_clock::time_point> since;
+};
+
 /// A session as it stands: a value that a skin reads between two frames. What is large is shared and never
 /// changed.
 struct LiveState {
@@ -62,6 +73,7 @@ struct LiveState {
   double fraction = 0;
   std::vector<LiveScan> scans;  ///< by id
   std::shared_ptr<const RedMap> red_map;
+  bool verdict_kept = true;  ///< the red map is in the session too; else it was worked out to be seen
   std::shared_ptr<const Mesh> mesh;
   std::shared_ptr<const ColouredPoints> red;  ///< on the mesh
   RigidTransform tablet_from_model;

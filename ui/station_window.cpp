@@ -9,10 +9,12 @@
 #include <backends/imgui_impl_opengl3.h>
 #include <imgui.h>
 
+#include <algorithm>
 #include <chrono>
 #include <fstream>
 #include <iterator>
 #include <memory>
+#include <vector>
 
 #include "core/log.h"
 #include "station/picture_file.h"
@@ -130,6 +132,11 @@ class StationWindow {
         return std::unexpected(taken.error());
       }
       glfwSwapBuffers(window_.handle());
+      if (const auto since = operator_ && !looks_ ? operator_->profiles_since() : std::nullopt) {
+        glFinish();
+        const std::chrono::duration<double> waited = std::chrono::steady_clock::now() - *since;
+        profile_waits_s_.push_back(waited.count());
+      }
       if (!seen_ && ui_.facts.contains("shown")) {
         seen_ = true;
         log_debug(fmt::format("first picture of the mesh: {:.2f} s", now_s() - opened_s_));
@@ -142,6 +149,7 @@ class StationWindow {
         return std::unexpected(*unreadable);
       }
       if (script_ && script_->finished()) {
+        tell_profile_waits();
         log_debug(fmt::format("longest frame of a drag: {:.0f} ms", 1000 * longest_drag_s_));
         if (script_->failure()) {
           log_error(script_->failure()->line());
@@ -233,6 +241,17 @@ class StationWindow {
     return std::nullopt;
   }
 
+  /// From a profile's arrival to the end of the first frame that shows it.
+  void tell_profile_waits() {
+    if (!profile_waits_s_.empty()) {
+      std::ranges::sort(profile_waits_s_);
+      const std::size_t n = profile_waits_s_.size();
+      log_debug(fmt::format("profile to picture: {:.0f} ms median, {:.0f} ms 95 %, {:.0f} ms at most, of {}",
+                            1000 * profile_waits_s_[n / 2], 1000 * profile_waits_s_[(n - 1) * 19 / 20],
+                            1000 * profile_waits_s_.back(), n));
+    }
+  }
+
   void keep_preferences() {
     if (!(kept_ == ui_.preferences)) {
       kept_ = ui_.preferences;
@@ -249,8 +268,9 @@ class StationWindow {
   float loaded_px_ = 0;
   double longest_drag_s_ = 0;
   double opened_s_;
-  bool seen_ = false;   ///< a mesh in the viewer
-  bool looks_ = false;  ///< the viewer; else the operator's screen
+  std::vector<double> profile_waits_s_;  ///< a frame each, of the profile that waited longest
+  bool seen_ = false;                    ///< a mesh in the viewer
+  bool looks_ = false;                   ///< the viewer; else the operator's screen
   std::filesystem::path session_folder_;
   // The screens go before the context does.
   std::unique_ptr<LiveSession> session_;

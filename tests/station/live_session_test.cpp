@@ -78,6 +78,47 @@ TEST(LiveSession, WaitsForEveryTurnByHandAndGoesOnWhenAsked) {
   EXPECT_FALSE(ended.red_map->conclusive) << "finished in the middle";
 }
 
+TEST(LiveSession, TheRowsThatAreHandedOverMakeUpTheScan) {
+  const test::TemporaryFolder folder;
+  Followed followed(kSmallTablet, folder.path() / "s");
+  GridPicture built;
+  std::uint64_t scan = 0;
+  int looks = 0;
+  const auto look = [&] {
+    const GrowingRows news = followed.session.look_at_growing(scan, built.rows);
+    if (news.scan != scan) {
+      built = {};
+      scan = news.scan;
+      EXPECT_EQ(news.first, 0);
+    }
+    EXPECT_EQ(news.since.has_value(), news.rows.rows > 0) << "woken for rows, and for nothing else";
+    if (news.rows.rows > 0) {
+      const auto cells = static_cast<std::size_t>(news.first) * static_cast<std::size_t>(news.rows.cols);
+      ASSERT_LE(cells, built.shade.size());
+      built.cols = news.rows.cols;
+      built.rows = news.total;
+      built.shade.resize(cells);
+      built.state.resize(cells);
+      built.shade.insert(built.shade.end(), news.rows.shade.begin(), news.rows.shade.end());
+      built.state.insert(built.state.end(), news.rows.state.begin(), news.rows.state.end());
+      ++looks;
+    }
+  };
+  followed.session.scan_now();
+  ASSERT_TRUE(followed.wait_until([&](const LiveState& s) {
+    look();
+    return s.phase == LivePhase::kWaiting;
+  }));
+  look();
+  EXPECT_GT(looks, 0);
+  const GrowingRows whole = followed.session.look_at_growing(0, 0);
+  EXPECT_FALSE(whole.since) << "all of it has been seen";
+  EXPECT_GT(whole.total, 20);
+  EXPECT_EQ(built.rows, whole.total);
+  EXPECT_EQ(built.shade, whole.rows.shade);
+  EXPECT_EQ(built.state, whole.rows.state);
+}
+
 TEST(LiveSession, TakingAScanOutMovesNothingByItself) {
   const test::TemporaryFolder folder;
   Followed followed(kSmallTablet, folder.path() / "s");
@@ -112,6 +153,8 @@ TEST(LiveSession, WhatWasStoppedGoesOnWithEverythingThatWasStored) {
   }  // closed while it waited
   Followed again(kSmallTablet, folder.path() / "s");
   again.session.read();
+  // Nothing was finished, so no mesh was kept: it is made again.
+  ASSERT_TRUE(again.wait_until([](const LiveState& s) { return s.mesh && s.red; }));
   ASSERT_TRUE(again.wait_for_rest());
   const LiveState state = again.session.state();
   EXPECT_TRUE(state.exists);
@@ -120,6 +163,22 @@ TEST(LiveSession, WhatWasStoppedGoesOnWithEverythingThatWasStored) {
   EXPECT_EQ(state.record.museum_number, "VAT 1");
   again.session.scan_now();
   ASSERT_TRUE(again.wait_until([&](const LiveState& s) { return s.scans.size() > stored; }));
+}
+
+TEST(LiveSession, WhatIsAskedForGoesBeforeTheModelOfAnInterruptedSession) {
+  const test::TemporaryFolder folder;
+  {
+    Followed followed(kSmallTablet, folder.path() / "s");
+    followed.session.scan_now();
+    ASSERT_TRUE(followed.wait_for_phase(LivePhase::kWaiting));
+  }
+  Followed again(kSmallTablet, folder.path() / "s");
+  again.session.read();
+  again.session.scan_now();  // while it reads, or makes the model
+  ASSERT_TRUE(again.wait_until([](const LiveState& s) { return s.scans.size() > 1 && s.mesh; }));
+  again.session.finish();
+  ASSERT_TRUE(again.wait_for_rest());
+  EXPECT_FALSE(again.session.state().error);
 }
 
 TEST(LiveSession, ADeviceThatIsNotThereIsSaidAndLeavesNoSession) {

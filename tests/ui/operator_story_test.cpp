@@ -137,6 +137,7 @@ quit
   ASSERT_GE(list["scans"].size(), 2U);
   const Outcome second = play(R"(
 wait scan.1.fits
+wait model-shown
 wait idle
 expect scan.0.fits
 key space

@@ -92,6 +92,19 @@ TEST(Statement, OnlyWhatIsThereMayBeSigned) {
   EXPECT_FALSE(s.may_sign);
 }
 
+/// An interrupted session: its red is worked out to be seen, no verdict is in it.
+TEST(Statement, WhatIsNotInTheSessionCannotBeSigned) {
+  for (const double red : {2.5, 0.0}) {
+    LiveState state = with_scan(PoseStatus::kRegistered);
+    state.red_map = map_with(red);
+    state.verdict_kept = false;
+    const Statement s = statement_of(state, true, Language::kEnglish);
+    EXPECT_FALSE(s.may_sign);
+    EXPECT_TRUE(s.may_scan);
+    EXPECT_EQ(s.headline, red > 0 ? "2.5 mm2 are still red: scan on" : "1 scans are stored: go on");
+  }
+}
+
 TEST(Statement, WhatEndedTheRunIsToldWithItsMend) {
   LiveState state = with_scan(PoseStatus::kRegistered);
   state.error = Error{ErrorKind::kDevice, "the camera is gone", "v4l2:/dev/video0", "plug it in"};

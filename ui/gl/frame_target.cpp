@@ -149,6 +149,12 @@ void PixelTexture::upload(int width, int height, int channels, const unsigned ch
   height_ = height;
 }
 
+void PixelTexture::put_rows(int first, int count, const unsigned char* bytes) const {
+  glBindTexture(GL_TEXTURE_2D, id_);
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+  glTexSubImage2D(GL_TEXTURE_2D, 0, 0, first, width_, count, GL_RGB, GL_UNSIGNED_BYTE, bytes);
+}
+
 Image read_window(int width, int height) {
   Image image = filled_image(width, height, {0, 0, 0});
   glBindFramebuffer(GL_READ_FRAMEBUFFER, 0);

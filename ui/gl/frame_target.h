@@ -49,6 +49,8 @@ class PixelTexture {
   PixelTexture(PixelTexture&& other) noexcept;
   PixelTexture& operator=(PixelTexture&& other) noexcept;
   void upload(int width, int height, int channels, const unsigned char* bytes, bool smooth);
+  /// Of what was uploaded before, RGB.
+  void put_rows(int first, int count, const unsigned char* bytes) const;
   [[nodiscard]] unsigned id() const { return id_; }
   [[nodiscard]] int width() const { return width_; }
   [[nodiscard]] int height() const { return height_; }

@@ -60,17 +60,18 @@ OperatorScreen::OperatorScreen(LiveSession& session)
 void OperatorScreen::take_state(UiContext& ui) {
   state_ = session_.state();
   if (state_.model_number != shown_model_ && state_.mesh) {
-    const ShownMesh shown = shown_mesh(*state_.mesh);
+    ShownMesh shown = shown_mesh(*state_.mesh);
+    const Eigen::AlignedBox3f box_mm = shown.box_mm;
     model_.show(shown);
     model_.show_points(state_.red.get());
-    pose_.show(*state_.mesh, state_.tablet_from_model);
+    pose_.show(std::move(shown));
     if (!camera_set_) {
       camera_.eye_from_model = Eigen::Quaternionf(
           Eigen::AngleAxisf(-0.45F, Eigen::Vector3f::UnitX()) *
           Eigen::Quaternionf(Eigen::Matrix3f(state_.tablet_from_model.rotation.cast<float>())));
       camera_set_ = true;
     }
-    camera_.fit(shown.box_mm, 1.2F);
+    camera_.fit(box_mm, 1.2F);
     shown_model_ = state_.model_number;
   }
   if (!record_taken_ && state_.phase != LivePhase::kReading) {
@@ -98,6 +99,9 @@ void OperatorScreen::take_state(UiContext& ui) {
   }
   if (state_.phase == LivePhase::kWaiting) {
     ui.facts.insert(state_.last_not_taken_up ? "waiting-unsure" : "waiting-turn");
+  }
+  if (!model_.empty()) {
+    ui.facts.insert("model-shown");
   }
   if (session_.busy()) {
     ui.facts.insert("busy");

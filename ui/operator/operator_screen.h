@@ -14,6 +14,7 @@
 #include "ui/operator/calibration_dialog.h"
 #include "ui/operator/camera_dialog.h"
 #include "ui/operator/device_dialog.h"
+#include "ui/operator/growing_picture.h"
 #include "ui/operator/pair_dialog.h"
 #include "ui/operator/pin_dialog.h"
 #include "ui/operator/pose_panel.h"
@@ -33,6 +34,10 @@ class OperatorScreen {
   void draw(UiContext& ui, ImVec2 size);
   /// More is to be drawn though nothing happens.
   [[nodiscard]] bool unfinished() const { return unfinished_; }
+  /// When the first profile came that the last frame was the first to show.
+  [[nodiscard]] std::optional<std::chrono::steady_clock::time_point> profiles_since() const {
+    return growing_.news_since();
+  }
   /// The operator wants to look at the model; cleared by asking.
   [[nodiscard]] bool wants_viewer() { return std::exchange(wants_viewer_, false); }
 
@@ -66,9 +71,7 @@ class OperatorScreen {
   DeviceDialog devices_;
   CameraDialog camera_box_;
   CalibrationDialog calibration_;
-  PixelTexture growing_;
-  int grown_rows_ = -1;
-  bool grown_blue_ = false;
+  GrowingPicture growing_;
   struct Thumbnail {
     PixelTexture texture;
     std::shared_ptr<const GridPicture> of;

@@ -50,8 +50,7 @@ TurnToMake turn_to_make(const NextView& next) {
   return out;
 }
 
-void PosePanel::show(const Mesh& mesh, const RigidTransform& /*tablet_from_model*/) {
-  ShownMesh shown = shown_mesh(mesh);
+void PosePanel::show(ShownMesh shown) {
   if (!shown.coarser.empty()) {  // few faces will do
     shown.faces = std::move(shown.coarser.front().detail.faces);
     shown.blocks = std::move(shown.coarser.front().blocks);

@@ -15,7 +15,7 @@ namespace dubsar::ui {
 /// seen from where the operator stands. Or, where it stays, from where the scanner looks.
 class PosePanel {
  public:
-  void show(const Mesh& mesh, const RigidTransform& tablet_from_model);
+  void show(ShownMesh shown);
   /// True while something moves in it.
   bool draw(UiContext& ui, const NextView& next, ImVec2 size);
 

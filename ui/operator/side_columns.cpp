@@ -145,24 +145,20 @@ void OperatorScreen::draw_growing(UiContext& ui, ImVec2 size) {
   ImDrawList* draw = ImGui::GetWindowDrawList();
   const ImVec2 end{origin.x + size.x, origin.y + size.y};
   draw->AddRectFilled(origin, end, packed(ui.colours.text, 0.06F), 6);
-  const GridPicture picture = session_.growing();
-  if (picture.rows == 0) {
+  growing_.update(session_, ui);
+  if (growing_.rows() == 0) {
     draw->AddText(ui.fonts.small, ui.fonts.small->FontSize, {origin.x + ui.px(0.6F), origin.y + ui.px(0.5F)},
                   packed(ui.colours.faint), ui.text(Text::kNoScanYet));
     return;
   }
-  if (picture.rows != grown_rows_ || grown_blue_ != ui.preferences.blue_for_red) {
-    growing_.upload(picture.cols, picture.rows, 3, coloured(picture, ui).data(), false);
-    grown_rows_ = picture.rows;
-    grown_blue_ = ui.preferences.blue_for_red;
-  }
   // Rows come from the top; the grid is as wide as the panel, and what is newest stays in view.
-  const float scale = std::min(size.x / static_cast<float>(picture.cols),
-                               size.y / static_cast<float>(std::max(picture.rows, picture.cols / 2)));
-  const float width = scale * static_cast<float>(picture.cols);
-  const float height = scale * static_cast<float>(picture.rows);
+  const float scale = std::min(size.x / static_cast<float>(growing_.cols()),
+                               size.y / static_cast<float>(std::max(growing_.rows(), growing_.cols() / 2)));
+  const float width = scale * static_cast<float>(growing_.cols());
+  const float height = scale * static_cast<float>(growing_.rows());
   const float x = origin.x + 0.5F * (size.x - width);
-  draw->AddImage(picture_of(growing_.id()), {x, origin.y}, {x + width, origin.y + height});
+  draw->AddImage(picture_of(growing_.texture()), {x, origin.y}, {x + width, origin.y + height}, {0, 0},
+                 {1, growing_.filled()});
   if (state_.phase == LivePhase::kScanning) {
     draw->AddLine({x, origin.y + height}, {x + width, origin.y + height}, packed(ui.colours.ghost), 2);
   }

@@ -53,7 +53,7 @@ void say_waiting(Statement& out, const LiveState& state, Language language) {
 void say_still(Statement& out, const LiveState& state, bool has_device, Language language) {
   const bool any = newest(state) != nullptr;
   out.may_scan = has_device;
-  const bool conclusive = any && state.red_map && state.red_map->conclusive;
+  const bool conclusive = any && state.red_map && state.red_map->conclusive && state.verdict_kept;
   if (state.error) {
     out.tone = Tone::kBad;
     out.headline = text_of(Text::kStopped, language);
@@ -78,11 +78,12 @@ void say_still(Statement& out, const LiveState& state, bool has_device, Language
     out.tone = Tone::kGood;
     out.may_sign = true;
   } else {
-    out.headline = state.red_map ? filled(text_of(Text::kStillRed, language), red_mm2(*state.red_map))
-                                 : filled(text_of(Text::kStoredScans, language), state.scans.size());
+    out.headline = state.red_map && !state.red_map->conclusive
+                       ? filled(text_of(Text::kStillRed, language), red_mm2(*state.red_map))
+                       : filled(text_of(Text::kStoredScans, language), state.scans.size());
     out.tone = Tone::kAsk;
     out.scan_label = Text::kGoOn;
-    out.may_sign = state.red_map != nullptr;  // as incomplete, with the reason
+    out.may_sign = state.red_map != nullptr && state.verdict_kept;  // as incomplete, with the reason
     if (state.signed_off) {
       out.detail = filled(text_of(Text::kSigned, language), state.signed_by.c_str());
     } else if (state.red_map && !state.red_map->next.empty()) {

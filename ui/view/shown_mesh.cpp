@@ -6,8 +6,8 @@
 #include <atomic>
 #include <cmath>
 
-#include "analysis/place_order.h"
 #include "core/parallel.h"
+#include "core/place_order.h"
 
 namespace dubsar::ui {
 

@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "analysis/detail_levels.h"
+#include "core/detail_levels.h"
 #include "core/mesh.h"
 
 namespace dubsar::ui {

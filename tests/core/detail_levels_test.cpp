@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright The Dubsar developers
-#include "analysis/detail_levels.h"
+#include "core/detail_levels.h"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
@@ -11,8 +11,8 @@
 #include <numbers>
 #include <set>
 
-#include "analysis/place_order.h"
 #include "core/mesh.h"
+#include "core/place_order.h"
 
 namespace dubsar {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright The Dubsar developers
-#include "analysis/place_order.h"
+#include "core/place_order.h"
 
 #include <algorithm>
 #include <cstddef>

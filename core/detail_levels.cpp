@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright The Dubsar developers
-#include "analysis/detail_levels.h"
+#include "core/detail_levels.h"
 
 #include <algorithm>
 #include <atomic>

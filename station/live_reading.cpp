@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+// What a session's folder holds, for a skin to show before any device is there.
+#include <optional>
+#include <utility>
+
+#include "acquisition/session_store.h"
+#include "acquisition/sign_off_log.h"
+#include "core/tablet_frame.h"
+#include "formats/checklist_json.h"
+#include "formats/mesh_io.h"
+#include "formats/red_map_json.h"
+#include "station/live_session.h"
+#include "station/plan_again.h"
+#include "station/results.h"
+#include "station/session_pins.h"
+
+namespace dubsar {
+
+void LiveSession::read_folder() {
+  if (!SessionStore::is_session(options_.session)) {
+    return;
+  }
+  {
+    const std::scoped_lock lock(mutex_);
+    state_.exists = true;
+    state_.phase = LivePhase::kReading;
+  }
+  changed();
+  const Result<SessionStore> store = SessionStore::open(options_.session, SessionStore::Access::kReadOnly);
+  const auto scans = store ? store->scans() : std::unexpected(store.error());
+  const auto poses = store ? store->poses() : std::unexpected(store.error());
+  if (!scans || !poses) {
+    end(std::unexpected(!scans ? scans.error() : poses.error()));
+    return;
+  }
+  const Result<std::optional<PinSet>> stored_pins = session_pins(*store);
+  const std::optional<PinSet> pins = stored_pins && *stored_pins ? *stored_pins : options_.pins;
+  {
+    const std::scoped_lock lock(mutex_);
+    if (pins) {
+      state_.pins = std::make_shared<const PinSet>(*pins);
+    }
+    if (!stored_pins) {
+      state_.notice = stored_pins.error().line();
+    }
+    for (const Error& damage : store->opening().damage) {
+      state_.notice = damage.line();
+    }
+    for (const StoredScan& stored : *scans) {
+      LiveScan& scan = scan_of(stored.id);
+      scan.file = stored.source;
+      scan.samples = stored.samples;
+      scan.dropped = stored.dropped;
+      scan.damaged = stored.damaged;
+      scan.note = stored.note;
+    }
+    follow(*poses);
+    state_.record = tablet_record_of(*store);
+    if (Result<SettingWords> kept = kept_settings(*store, options_.device)) {
+      settings_ = std::move(*kept);
+    }
+  }
+  if (const auto text = store->load_document("red_map"); text && *text) {
+    if (auto map = parse_red_map(**text, "red map of the session")) {
+      const std::scoped_lock lock(mutex_);
+      state_.red_map = std::make_shared<const RedMap>(std::move(*map));
+    }
+  }
+  if (const auto text = store->load_document("checklist"); text && *text) {
+    if (auto list = parse_checklist(**text, "checklist of the session")) {
+      const std::scoped_lock lock(mutex_);
+      state_.checklist = std::move(*list);
+    }
+  }
+  if (const auto signed_offs = read_sign_offs(*store, *job_);
+      signed_offs && !signed_offs->sign_offs.empty()) {
+    const CheckedSignOff& latest = signed_offs->sign_offs.back();
+    const std::scoped_lock lock(mutex_);
+    state_.signed_off = latest.holds();
+    state_.signed_by = latest.holds() ? latest.sign_off.name : std::string();
+  }
+  changed();
+  std::optional<Mesh> mesh = stored_mesh(*store, *poses, *job_);
+  const bool has_model = mesh.has_value();
+  if (!mesh) {  // one of other poses is better than none until there is a better one
+    if (Result<Mesh> older = read_mesh(store->mesh_folder() / "model.ply")) {
+      mesh = std::move(*older);
+    }
+  }
+  if (mesh && !job_->cancelled()) {
+    const RigidTransform tablet_from_model = tablet_frame(*mesh);
+    show_model(std::make_shared<const Mesh>(std::move(*mesh)), nullptr, tablet_from_model);
+    changed();
+  }
+  ScanSet set;
+  for (const StoredScan& stored : *scans) {
+    if (job_->cancelled() || stored.damaged) {
+      continue;
+    }
+    if (const auto grid = store->load_grid(stored.id)) {
+      StationScan scan = prepare_scan(stored.id, *grid, pins);
+      show_grid(stored.id, *scan.measured, *scan.grid, *scan.flags);
+      if (!has_model && !stored.dropped) {
+        set.scans.push_back(std::move(scan));
+      }
+    }
+  }
+  if (!set.scans.empty() && !job_->cancelled()) {
+    rebuild_model(std::move(set), *poses);
+  }
+}
+
+void LiveSession::rebuild_model(ScanSet set, const std::vector<ScanPose>& poses) {
+  const auto job = std::make_shared<JobContext>(
+      [this](std::string_view stage, double fraction) { progress(stage, fraction); });
+  {
+    const std::scoped_lock lock(mutex_);
+    if (!later_.empty() || scan_later_ || next_) {
+      return;
+    }
+    unasked_ = job;
+    state_.phase = LivePhase::kStill;  // what is asked for begins at once
+  }
+  changed();
+  const Result<PlannedAgain> planned = plan_again(set, poses, *job);
+  if (planned && !planned->results.mesh.faces.empty()) {
+    auto mesh = std::make_shared<const Mesh>(planned->results.mesh);
+    auto red = std::make_shared<const ColouredPoints>(planned->stage->red_points(*mesh));
+    show_model(mesh, std::move(red), planned->stage->tablet_from_model(*mesh));
+  }
+  const std::scoped_lock lock(mutex_);
+  if (planned && !state_.red_map) {
+    state_.red_map = std::make_shared<const RedMap>(planned->results.red_map);
+    state_.verdict_kept = false;
+  }
+  unasked_.reset();
+}
+
+}  // namespace dubsar
