@@ -293,6 +293,8 @@ TEST_F(Export, OthersReadItsForms) {
   EXPECT_EQ(shell("pdffonts " + pdf + " | tail -n +3 | grep -vq ' yes yes yes '"), 1)
       << "every font is embedded, as a subset, with its letters";
   EXPECT_EQ(shell("pdftotext " + pdf + " - | grep -q 'Not conclusive'"), 0);
+  EXPECT_EQ(shell("qpdf --json --json-key=outlines " + pdf + " | grep -q '\"title\": \"Checklist\"'"), 0)
+      << "its headings are its outline";
 }
 
 TEST_F(Export, TheBagHoldsToTheStandardByAnotherReading) {
