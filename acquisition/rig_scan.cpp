@@ -19,7 +19,8 @@ namespace {
 
 constexpr auto kFrameWait = std::chrono::milliseconds(200);
 constexpr std::uint32_t kSweepPool = 32;
-constexpr int kFrameTries = 15;  // 3 s for a frame that was exposed late enough
+constexpr const char* kRefused = "scan cancelled";  // by who takes the rows
+constexpr int kFrameTries = 15;                     // 3 s for a frame that was exposed late enough
 
 std::int64_t monotonic_ns() {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(
@@ -34,6 +35,7 @@ StripeOptions stripe_options(const RigFile& file) {
                    : file.stripe_method == "gaussian" ? StripeMethod::kGaussian
                    : file.stripe_method == "steger"   ? StripeMethod::kSteger
                                                       : StripeMethod::kAdaptive;
+  options.keep_light = options.method == StripeMethod::kAdaptive;
   options.axis = file.stripe_per_row ? StripeAxis::kPerRow : StripeAxis::kPerColumn;
   return options;
 }
@@ -205,24 +207,20 @@ Status RigScanner::row(int number, ProfileSink& sink, ScanTally& tally) {
     return fail(ErrorKind::kDevice, "the stage is not where it was sent", file_.stage,
                 "see whether something blocks it, and home it");
   }
-  extractor_.extract(view_of(*lit), file_.ambient ? dark_.view() : GrayView{}, stripe_);
-  return hand_on(number, stripe_, motion->position[axis], lit->timestamp_ns, sink, tally);
+  SweptRow seen{number, lit->timestamp_ns, motion->position[axis], {}};
+  extractor_.extract(view_of(*lit), file_.ambient ? dark_.view() : GrayView{}, seen.stripe);
+  return hand_on(std::move(seen), sink, tally);
 }
 
-Status RigScanner::hand_on(std::int64_t row, const StripeProfile& stripe, double position,
-                           std::int64_t timestamp_ns, ProfileSink& sink, ScanTally& tally) {
-  triangulator_->triangulate(stripe, position, profile_);
-  Profile out;
-  out.row = row;
-  out.x = profile_.x;
-  out.y = profile_.y;
-  out.z = profile_.z;
-  out.valid = profile_.valid;
-  out.intensity = stripe.peak;
-  out.confidence = stripe.confidence;
-  out.timestamp_ns = timestamp_ns;
-  ++tally.profiles_sent;
-  return sink.profile(out) ? Status{} : fail(ErrorKind::kCancelled, "scan cancelled", file_.name);
+RowWindow::Give RigScanner::giving(ProfileSink& sink, ScanTally& tally) const {
+  return [this, &sink, &tally](const Profile& profile) -> Status {
+    ++tally.profiles_sent;
+    return sink.profile(profile) ? Status{} : fail(ErrorKind::kCancelled, kRefused, file_.name);
+  };
+}
+
+Status RigScanner::hand_on(SweptRow row, ProfileSink& sink, ScanTally& tally) {
+  return window_->take(std::move(row), giving(sink, tally));
 }
 
 Status RigScanner::scan(ProfileSink& sink) {
@@ -258,7 +256,8 @@ Status RigScanner::scan(ProfileSink& sink) {
                           .count();
   info.device = device_id_;
   ScanTally tally;
-  Status status = sink.begin(info) ? Status{} : fail(ErrorKind::kCancelled, "scan cancelled", file_.name);
+  window_ = std::make_unique<RowWindow>(*triangulator_, extractor_.options(), file_.step);
+  Status status = sink.begin(info) ? Status{} : fail(ErrorKind::kCancelled, kRefused, file_.name);
   if (status && file_.continuous) {
     status = sweep(*plan, sink, tally);
   }
@@ -268,6 +267,11 @@ Status RigScanner::scan(ProfileSink& sink) {
   }
   if (!status) {
     [[maybe_unused]] const Status said = stage_.stop();
+  }
+  // Whatever ended the scan, rows that wait for neighbours are kept, unless nobody wants them.
+  if (status || status.error().what != kRefused) {
+    const Status rest = window_->finish(giving(sink, tally));
+    status = status ? rest : status;
   }
   sink.end(tally);
   return status;

@@ -9,6 +9,7 @@
 
 #include "acquisition/rig_parts.h"
 #include "acquisition/rig_source.h"
+#include "acquisition/row_window.h"
 #include "acquisition/triangulate.h"
 #include "core/rig.h"
 #include "drivers/device.h"
@@ -32,8 +33,9 @@ class RigScanner : public RigSource {
 
   /// One scan; the stage is homed before the first, where it has to be. Row by row: drives to the row, takes
   /// a frame with the laser off (where the file asks for ambient frames) and one with it on. Continuous: the
-  /// stage moves through, every frame of the camera is a row, and its time says where the stage was. The
-  /// laser is off afterwards, whatever happened.
+  /// stage moves through, every frame of the camera is a row, and its time says where the stage was. Rows
+  /// close enough together correct each other (SweptLight) and come a few rows late. The laser is off
+  /// afterwards, whatever happened.
   Status scan(ProfileSink& sink) override;
   /// Between scans: the camera's frames as a scan would see them, the laser lit and nothing moving.
   Status start_view() override;
@@ -51,8 +53,8 @@ class RigScanner : public RigSource {
   Status row(int number, ProfileSink& sink, ScanTally& tally);
   [[nodiscard]] Result<Travel> plan_sweep();
   Status sweep(const Travel& plan, ProfileSink& sink, ScanTally& tally);
-  Status hand_on(std::int64_t row, const StripeProfile& stripe, double position, std::int64_t timestamp_ns,
-                 ProfileSink& sink, ScanTally& tally);
+  Status hand_on(SweptRow row, ProfileSink& sink, ScanTally& tally);
+  [[nodiscard]] RowWindow::Give giving(ProfileSink& sink, ScanTally& tally) const;
 
   RigFile file_;
   Device camera_;
@@ -63,8 +65,7 @@ class RigScanner : public RigSource {
   std::string device_id_;
   std::unique_ptr<std::atomic<bool>> stopped_;
   GrayImage dark_;
-  StripeProfile stripe_;
-  TriangulatedProfile profile_;
+  std::unique_ptr<RowWindow> window_;  ///< of the scan that runs
 };
 
 /// Days from an ISO 8601 time in UTC until now; nothing when the text is none.

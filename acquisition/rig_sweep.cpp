@@ -3,6 +3,7 @@
 // The continuous scan of a rig: nothing waits for anything, and the clock says what belongs together.
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "acquisition/rig_parts.h"
 #include "acquisition/rig_scan.h"
@@ -122,7 +123,8 @@ Status RigScanner::sweep(const Travel& plan, ProfileSink& sink, ScanTally& tally
     const std::int64_t row = seen->id - *first;
     tally.profiles_dropped += static_cast<std::uint64_t>(std::max<std::int64_t>(0, row - next_row));
     next_row = row + 1;
-    if (Status handed = hand_on(row, seen->stripe, position, seen->timestamp_ns, sink, tally); !handed) {
+    SweptRow swept{row, seen->timestamp_ns, position, std::move(seen->stripe)};
+    if (Status handed = hand_on(std::move(swept), sink, tally); !handed) {
       return handed;
     }
   }

@@ -62,6 +62,8 @@ void StripeProfile::resize(std::size_t count) {
   peak.assign(count, 0.0F);
   confidence.assign(count, 0.0F);
   state.assign(count, StripeState::kNone);
+  noise_px = 0;
+  light = {};
 }
 
 std::size_t StripeProfile::count_of(StripeState which) const {
@@ -86,19 +88,42 @@ void StripeExtractor::extract(const GrayView& on_given, const GrayView& off_give
   const auto width = static_cast<std::size_t>(on.width);
   profile.resize(width);
   cuts_.resize(width);
+  for (Cut& cut : cuts_) {
+    cut.size = 0;
+  }
   line_.at_px.assign(width, StripeLine::kNone);
   line_.mass.assign(width, 0.0F);
   find_peaks(on, off);
   for (int u = 0; u < on.width; ++u) {
     refine(on, off, u, profile);
   }
+  if (options_.keep_light) {
+    keep_light(profile);
+  }
   if (options_.method == StripeMethod::kAdaptive) {
     settle(profile);
   }
 }
 
+void StripeExtractor::keep_light(StripeProfile& profile) const {
+  StripeLight& light = profile.light;
+  light.rows = 0;
+  for (const Cut& cut : cuts_) {
+    light.rows = std::max(light.rows, cut.size);
+  }
+  const auto rows = static_cast<std::size_t>(light.rows);
+  light.from.resize(cuts_.size());
+  light.grey.assign(cuts_.size() * rows, 0.0F);
+  for (std::size_t u = 0; u < cuts_.size(); ++u) {
+    light.from[u] = cuts_[u].low;
+    std::copy_n(cuts_[u].light.begin(), cuts_[u].size,
+                light.grey.begin() + static_cast<std::ptrdiff_t>(u * rows));
+  }
+}
+
 void StripeExtractor::settle(StripeProfile& profile) {
   const double noise = line_noise_px(line_);
+  profile.noise_px = noise;
   const double unsteady = std::clamp((noise / options_.sigma_px - kSteady) / (kUnsteady - kSteady), 0.0, 1.0);
   const CentreWindow window(options_.sigma_px * std::lerp(kNarrow, kWide, unsteady));
   for (std::size_t u = 0; u < cuts_.size(); ++u) {

@@ -42,6 +42,7 @@ struct StripeOptions {
   int most_saturated_px = 4;  ///< across the stripe; more and its middle is a guess
   double widest = 2.5;        ///< times sigma_px: a wider one is no clean stripe
   double second_share = 0.5;  ///< another peak of this share of the best makes the sample doubtful: left out
+  bool keep_light = false;    ///< the profile keeps the light around the stripe
   /// Errors (kUsage): numbers that make no sense.
   [[nodiscard]] Status check() const;
 };
@@ -55,12 +56,22 @@ enum class StripeState : std::uint8_t {
   kWide,        ///< smeared: an edge, a blurred or a washed-out stripe
 };
 
+/// The light around the stripe, background taken off, column by column: what a later look at several
+/// pictures together needs of one (swept_light.h).
+struct StripeLight {
+  int rows = 0;             ///< of a column
+  std::vector<int> from;    ///< [columns] row of the first
+  std::vector<float> grey;  ///< [columns × rows]; dark where there is no stripe
+};
+
 /// One sample per column (or row, see StripeAxis).
 struct StripeProfile {
   std::vector<float> at_px;       ///< where the stripe is; of no meaning unless good
   std::vector<float> peak;        ///< over the background, share of the full range
   std::vector<float> confidence;  ///< [0,1]; 0 unless good
   std::vector<StripeState> state;
+  double noise_px = 0;  ///< of one column's middle, before any average; kAdaptive only
+  StripeLight light;    ///< empty unless asked for
   void resize(std::size_t count);
   [[nodiscard]] std::size_t count_of(StripeState which) const;
 };
@@ -82,6 +93,7 @@ class StripeExtractor {
   [[nodiscard]] std::optional<double> ridge_row(const GrayView& on, const GrayView& off, int column,
                                                 double start) const;
   void settle(StripeProfile& profile);
+  void keep_light(StripeProfile& profile) const;
 
   static constexpr int kMostHalf = 24;  ///< rows looked at on either side of a peak
   static constexpr int kSide = 2 * kMostHalf + 1;

@@ -17,7 +17,7 @@ constexpr int kNodePx = 8;
 }  // namespace
 
 Triangulator::Triangulator(const RigCalibration& calibration, StripeAxis axis)
-    : calibration_(calibration), scanner_from_camera_(calibration.scanner_from_camera()) {
+    : calibration_(calibration), axis_(axis), scanner_from_camera_(calibration.scanner_from_camera()) {
   const CameraModel& camera = calibration_.camera;
   const bool per_column = axis == StripeAxis::kPerColumn;
   samples_ = per_column ? camera.width : camera.height;

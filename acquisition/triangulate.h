@@ -25,6 +25,7 @@ class Triangulator {
   Triangulator(const RigCalibration& calibration, StripeAxis axis);
 
   [[nodiscard]] const RigCalibration& calibration() const { return calibration_; }
+  [[nodiscard]] StripeAxis axis() const { return axis_; }
   [[nodiscard]] int samples_per_profile() const { return samples_; }
   /// The point that the camera sees at `along_px` of sample i with the laser plane `plane`; camera frame.
   [[nodiscard]] std::optional<Eigen::Vector3d> point_mm(int sample, double along_px,
@@ -37,6 +38,7 @@ class Triangulator {
   [[nodiscard]] Eigen::Vector2d ray(int sample, double along_px) const;
 
   RigCalibration calibration_;
+  StripeAxis axis_;
   int samples_ = 0;
   int nodes_ = 0;                      ///< per sample
   std::vector<Eigen::Vector2d> rays_;  ///< [samples × nodes] normalised coordinates every kNodePx along

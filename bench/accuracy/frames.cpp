@@ -2,7 +2,7 @@
 // Copyright The Dubsar developers
 // The stripe detectors against each other on simulated frames, and the whole way from frames to a grid
 // against the true surface: px and µm.
-//   dubsar-frames [--frames N] [--height PX] [--contrast C …] [--f-number N]
+//   dubsar-frames [--frames N] [--step MM] [--height PX] [--contrast C …] [--f-number N]
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -15,6 +15,7 @@
 #include <thread>
 #include <vector>
 
+#include "acquisition/swept_light.h"
 #include "acquisition/triangulate.h"
 #include "bench/support/rig_tablet.h"
 #include "sim/frame_renderer.h"
@@ -67,7 +68,70 @@ struct Errors {
   }
 };
 
-void compare(const Setup& setup, const sim::FrameOptions& optics, int frames, bool ambient_frames) {
+/// Error of each point of a row that lies where the stripe is truly seen, mm.
+void add_depths(const Setup& setup, const std::vector<double>& truth, const TriangulatedProfile& profile,
+                Errors& mm) {
+  RigidTransform tablet_from_scanner;
+  tablet_from_scanner.translation_mm.z() = setup.clay->top_mm - 1.0;
+  for (std::size_t u = 0; u < profile.valid.size(); ++u) {
+    if (profile.valid[u] == 0 || !std::isfinite(truth[u])) {
+      continue;
+    }
+    const Eigen::Vector3d p = tablet_from_scanner * Eigen::Vector3d(static_cast<double>(profile.x[u]),
+                                                                    static_cast<double>(profile.y[u]),
+                                                                    static_cast<double>(profile.z[u]));
+    const auto hit = setup.clay->query.first_hit((p + Eigen::Vector3d(0, 0, 1)).cast<float>(),
+                                                 -Eigen::Vector3f::UnitZ(), 0, 3);
+    mm.add(hit ? hit->distance_mm - 1.0 : 99.0);
+  }
+}
+
+/// Each row together with those on either side, as a scan of rows `step_mm` apart has them.
+void compare_swept(const Setup& setup, const sim::FrameOptions& optics, const std::vector<double>& positions,
+                   const std::vector<GrayImage>& off, double step_mm) {
+  const Triangulator triangulator(setup.rig, StripeAxis::kPerColumn);
+  StripeOptions options;
+  options.keep_light = true;
+  const SweptLight light(triangulator, options.sigma_px);
+  const int reach = light.reach(step_mm);
+  const sim::FrameRenderer renderer(setup.rig, optics);
+  StripeExtractor extractor(options);
+  Errors mm{{}, 0, setup.rig.depth_per_px_mm()};
+  double cpu_seconds = 0;
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    std::vector<SweptRow> rows;
+    std::vector<const SweptRow*> around;
+    std::vector<double> truth;
+    for (int k = -reach; k <= reach; ++k) {
+      SweptRow row;
+      row.position = positions[i] + k * step_mm;
+      const sim::SceneTarget target(setup.clay->scene, tablet_from_camera(setup, row.position));
+      const auto number = 1000 * (i + 1) + static_cast<std::uint64_t>(k + reach);
+      const GrayImage on = renderer.render(target, true, row.position, number);
+      extractor.extract(on.view(), off.empty() ? GrayView{} : off[i].view(), row.stripe);
+      rows.push_back(std::move(row));
+      if (k == 0) {
+        truth = renderer.true_rows(target, positions[i]);
+      }
+    }
+    for (const SweptRow& row : rows) {
+      around.push_back(&row);
+    }
+    const auto middle = static_cast<std::size_t>(reach);
+    TriangulatedProfile profile;
+    triangulator.triangulate(rows[middle].stripe, positions[i], profile);
+    const std::clock_t busy = std::clock();
+    light.correct(around, middle, profile);
+    cpu_seconds += static_cast<double>(std::clock() - busy) / CLOCKS_PER_SEC;
+    add_depths(setup, truth, profile, mm);
+  }
+  std::printf("  adaptive, %d rows on either side, %.0f um apart: %17.2f %9.2f %7.2f%% %8.0f more\n", reach,
+              1e3 * step_mm, 1e3 * mm.rms(), -1e3 * mm.bias(), 100 * mm.outlier_share(),
+              1e6 * cpu_seconds / static_cast<double>(positions.size()));
+}
+
+void compare(const Setup& setup, const sim::FrameOptions& optics, int frames, bool ambient_frames,
+             double step_mm) {
   const sim::FrameRenderer renderer(setup.rig, optics);
   std::vector<GrayImage> on;
   std::vector<GrayImage> off;
@@ -106,22 +170,12 @@ void compare(const Setup& setup, const sim::FrameOptions& optics, int frames, bo
     for (std::size_t i = 0; i < on.size(); ++i) {
       extractor.extract(on[i].view(), ambient_frames ? off[i].view() : GrayView{}, stripe);
       triangulator.triangulate(stripe, positions[i], profile);
-      RigidTransform tablet_from_scanner;
-      tablet_from_scanner.translation_mm.z() = setup.clay->top_mm - 1.0;
+      add_depths(setup, truth[i], profile, mm);
       for (std::size_t u = 0; u < stripe.at_px.size(); ++u) {
         visible += std::isfinite(truth[i][u]) ? 1 : 0;
-        if (stripe.state[u] != StripeState::kGood || !std::isfinite(truth[i][u])) {
-          continue;
-        }
-        ++good;
-        px.add(static_cast<double>(stripe.at_px[u]) - truth[i][u]);
-        if (profile.valid[u] != 0) {
-          const Eigen::Vector3d p = tablet_from_scanner * Eigen::Vector3d(static_cast<double>(profile.x[u]),
-                                                                          static_cast<double>(profile.y[u]),
-                                                                          static_cast<double>(profile.z[u]));
-          const auto hit = setup.clay->query.first_hit((p + Eigen::Vector3d(0, 0, 1)).cast<float>(),
-                                                       -Eigen::Vector3f::UnitZ(), 0, 3);
-          mm.add(hit ? hit->distance_mm - 1.0 : 99.0);
+        if (stripe.state[u] == StripeState::kGood && std::isfinite(truth[i][u])) {
+          ++good;
+          px.add(static_cast<double>(stripe.at_px[u]) - truth[i][u]);
         }
       }
     }
@@ -139,6 +193,7 @@ void compare(const Setup& setup, const sim::FrameOptions& optics, int frames, bo
                 1e3 * mm.rms(), -1e3 * mm.bias(), 100 * mm.outlier_share(),
                 1e6 * seconds / (kRounds * static_cast<double>(on.size())));
   }
+  compare_swept(setup, optics, positions, off, step_mm);
 }
 
 /// Processor time of copying a frame to another place in memory.
@@ -205,9 +260,12 @@ int run(int argc, char** argv) {
   int frames = 4;
   double f_number = 5.6;
   double sigma_mm = 0.02;
+  double step_mm = 0.025;
   std::vector<double> contrasts{0, 0.5, 0.7, 1};
   sim::FrameRigOptions size;
   app.add_option("--frames", frames, "Frames per case")->check(CLI::Range(1, 1000));
+  app.add_option("--step", step_mm, "Between rows that correct each other, mm")
+      ->check(CLI::Range(0.005, 1.0));
   app.add_option("--width", size.width);
   app.add_option("--height", size.height);
   app.add_option("--field", size.field_mm);
@@ -230,12 +288,12 @@ int run(int argc, char** argv) {
       optics.f_number = f_number;
       optics.laser_sigma_mm = sigma_mm;
       optics.speckle_contrast = contrast;
-      compare(setup, optics, frames, true);
+      compare(setup, optics, frames, true, step_mm);
     }
     sim::FrameOptions optics;
     optics.f_number = f_number;
     optics.laser_sigma_mm = sigma_mm;
-    compare(setup, optics, frames, false);
+    compare(setup, optics, frames, false, step_mm);
     throughput(setup, optics);
   }
   return 0;

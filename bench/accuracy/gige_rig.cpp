@@ -3,8 +3,8 @@
 // The whole way at full size: frames of a simulated rig as GigE Vision packets on a loopback to the aravis
 // driver, a stage behind an emulated USB port that moves through, by `rig:` to a grid, against the true
 // surface.
-//   dubsar-gige-rig [--method adaptive|steger|gaussian|centroid] [--rows N] [--rate HZ] [--contrast C …]
-//   [--f-number N] [--loss SHARE]
+//   dubsar-gige-rig [--method adaptive|steger|gaussian|centroid] [--rows N] [--step MM] [--rate HZ]
+//   [--contrast C …] [--f-number N] [--loss SHARE]
 
 #include <CLI/CLI.hpp>
 #include <chrono>
@@ -86,6 +86,7 @@ int run(int argc, char** argv) {
   plan.optics.f_number = 5.6;
   app.add_option("--rows", plan.rows)->check(CLI::Range(4, 2000));
   app.add_option("--rate", plan.rate_hz, "Of the camera, Hz")->check(CLI::Range(1.0, 1000.0));
+  app.add_option("--step", plan.step, "From row to row, mm")->check(CLI::Range(0.005, 0.5));
   app.add_option("--contrast", contrasts, "Of the speckle");
   app.add_option("--f-number", plan.optics.f_number);
   app.add_option("--loss", plan.loss, "Share of the packets that are lost")->check(CLI::Range(0.0, 0.2));

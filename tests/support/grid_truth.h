@@ -43,28 +43,34 @@ struct CollectGrid : ProfileSink {
   return out;
 }
 
-/// How far the rows lie from the nearest of the positions that there are frames of, RMS; `per_mm` is where a
-/// millimetre of the stage leads, scanner frame.
+/// How far the rows lie from the nearest of the positions that there are frames of, RMS: the middle one of
+/// each row's samples, for those at edges are moved to where the sheet's middle passed them. `per_mm` is
+/// where a millimetre of the stage leads, scanner frame.
 [[nodiscard]] inline double row_rms_um(const RangeGrid& grid, const std::vector<double>& positions,
                                        const Eigen::Vector3d& per_mm) {
   double squares = 0;
   int rows = 0;
+  std::vector<double> along;
   for (int row = 0; row < grid.rows; ++row) {
+    along.clear();
     for (int col = 0; col < grid.cols; ++col) {
       const std::size_t i = grid.index(row, col);
-      if (grid.valid[i] == 0) {
-        continue;
+      if (grid.valid[i] != 0) {
+        // The profile's plane stands across the motion: x and z of a sample do not matter.
+        along.push_back(static_cast<double>(grid.y[i]) / per_mm.y());
       }
-      // The profile's plane stands across the motion: x and z of a sample do not matter.
-      const double at = static_cast<double>(grid.y[i]) / per_mm.y();
-      double nearest = 1e9;
-      for (const double position : positions) {
-        nearest = std::min(nearest, std::abs(position - at));
-      }
-      squares += 1e6 * nearest * nearest;
-      ++rows;
-      break;
     }
+    if (along.empty()) {
+      continue;
+    }
+    const auto middle = along.begin() + static_cast<std::ptrdiff_t>(along.size() / 2);
+    std::nth_element(along.begin(), middle, along.end());
+    double nearest = 1e9;
+    for (const double position : positions) {
+      nearest = std::min(nearest, std::abs(position - *middle));
+    }
+    squares += 1e6 * nearest * nearest;
+    ++rows;
   }
   return std::sqrt(squares / std::max(rows, 1));
 }
