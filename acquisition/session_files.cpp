@@ -204,22 +204,14 @@ Result<FileSum> sum_of_file(const fs::path& path, const JobContext* job) {
   return sum;
 }
 
-Result<Sums> read_sums(const fs::path& folder) {
-  Sums out;
-  std::error_code error;
-  if (!fs::exists(folder / kSums, error)) {
-    return out;
-  }
-  const Result<std::string> text = read_whole_file(folder / kSums, 4096);
-  if (!text) {
-    return std::unexpected(text.error());
-  }
-  const std::size_t end = std::min(text->find('\n'), text->size());
-  const std::string body = text->substr(std::min(end + 1, text->size()));
-  if (text->substr(0, end) != std::to_string(hash_of(body))) {
-    return bad_input((folder / kSums).string(), "the list of checksums is damaged",
+Result<Sums> parse_sums(std::string_view text, const std::string& where) {
+  const std::size_t end = std::min(text.find('\n'), text.size());
+  const std::string body(text.substr(std::min(end + 1, text.size())));
+  if (text.substr(0, end) != std::to_string(hash_of(body))) {
+    return bad_input(where, "the list of checksums is damaged",
                      "open the session for writing to have it made anew");
   }
+  Sums out;
   std::istringstream lines(body);
   FileSum sum;
   for (std::string name; lines >> sum.hash >> sum.bytes >> name;) {
@@ -228,12 +220,25 @@ Result<Sums> read_sums(const fs::path& folder) {
   return out;
 }
 
-Status write_sums(const fs::path& folder, const Sums& sums) {
+std::string text_of_sums(const Sums& sums) {
   std::ostringstream body;
   for (const auto& [name, sum] : sums) {
     body << sum.hash << ' ' << sum.bytes << ' ' << name << '\n';
   }
-  return write_file_atomically(folder / kSums, std::to_string(hash_of(body.view())) + "\n" + body.str());
+  return std::to_string(hash_of(body.view())) + "\n" + body.str();
+}
+
+Result<Sums> read_sums(const fs::path& folder) {
+  std::error_code error;
+  if (!fs::exists(folder / kSums, error)) {
+    return Sums();
+  }
+  const Result<std::string> text = read_whole_file(folder / kSums, 4096);
+  return text ? parse_sums(*text, (folder / kSums).string()) : std::unexpected(text.error());
+}
+
+Status write_sums(const fs::path& folder, const Sums& sums) {
+  return write_file_atomically(folder / kSums, text_of_sums(sums));
 }
 
 bool is_set_aside(const fs::path& path) {

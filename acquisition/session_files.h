@@ -69,6 +69,8 @@ using Sums = std::multimap<std::string, FileSum>;
 /// session.sums: what the database and its backup looked like when they were last closed.
 /// Empty without that file; an error when it does not match the checksum that it begins with.
 [[nodiscard]] Result<Sums> read_sums(const std::filesystem::path& folder);
+[[nodiscard]] Result<Sums> parse_sums(std::string_view text, const std::string& where);
+[[nodiscard]] std::string text_of_sums(const Sums& sums);
 [[nodiscard]] Status write_sums(const std::filesystem::path& folder, const Sums& sums);
 
 /// Damaged originals are kept beside what takes their place, as NAME.damaged-1, -2, …

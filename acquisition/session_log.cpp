@@ -83,17 +83,21 @@ bool ends_commit(const std::vector<char>& frame, const Checksum& before, bool bi
 }  // namespace
 
 Result<LogState> read_log(const std::filesystem::path& path) {
-  LogState out;
   std::error_code error;
   const auto size = std::filesystem::file_size(path, error);
   if (error || size == 0) {
-    return out;
+    return LogState();
   }
-  out.bytes = static_cast<std::int64_t>(size);
   std::ifstream file(path, std::ios::binary);
   if (!file) {
     return bad_input(path.string(), "unreadable", "make it readable");
   }
+  return read_log(file, size);
+}
+
+LogState read_log(std::istream& file, std::uintmax_t size) {
+  LogState out;
+  out.bytes = static_cast<std::int64_t>(size);
   std::vector<char> header(kHeaderBytes);
   if (!file.read(header.data(), kHeaderBytes)) {
     return out;  // torn before its first commit

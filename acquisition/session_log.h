@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <istream>
 
 #include "core/result.h"
 
@@ -25,6 +26,8 @@ struct LogState {
 /// Reads the log once. A log that is missing or empty holds nothing. Errors: kStorage, kBadInput when it
 /// cannot be read.
 [[nodiscard]] Result<LogState> read_log(const std::filesystem::path& path);
+/// Of a log of that many bytes.
+[[nodiscard]] LogState read_log(std::istream& file, std::uintmax_t size);
 
 /// The error that a log with lost commits is told as; `where` names the file.
 [[nodiscard]] Error lost_commits_error(const LogState& log, const std::string& where);

@@ -150,6 +150,11 @@ class Setter {
     const auto lines = lines_of(text, size, kColumn);
     room_for(height_of(lines, size) + 5 * kLeading * kBody);  // never alone at the foot
     y_ -= 0.6 * size;
+    std::string words;
+    for (const TextRun& run : block.text) {
+      words += run.text;
+    }
+    sheet_.bookmark(words, y_ + size, block.level);
     draw(lines, kMargin, y_, size, 0);
     y_ -= height_of(lines, size) + 0.35 * size;
   }

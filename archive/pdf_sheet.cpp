@@ -9,10 +9,13 @@
 #include <ft2build.h>
 #include FT_FREETYPE_H
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstring>
 #include <mutex>
 #include <utility>
+#include <vector>
 
 namespace dubsar {
 
@@ -85,6 +88,8 @@ struct PdfSheet::Impl {
   cairo_surface_t* surface = nullptr;
   cairo_t* page = nullptr;
   int pages = 1;
+  std::vector<std::pair<int, int>>
+      open_entries;  ///< level and cairo's number of those that others may belong to
 
   Impl() = default;
   Impl(const Impl&) = delete;
@@ -163,6 +168,20 @@ void PdfSheet::line(double x0, double y0, double x1, double y1, double width, do
   cairo_move_to(impl_->page, x0, kHeight - y0);
   cairo_line_to(impl_->page, x1, kHeight - y1);
   cairo_stroke(impl_->page);
+}
+
+void PdfSheet::bookmark(std::string_view text, double y, int level) {
+  auto& open = impl_->open_entries;
+  while (!open.empty() && open.back().first >= level) {
+    open.pop_back();
+  }
+  // Of the entry's place cairo wants a point from the upper left corner.
+  const std::string place = "page=" + std::to_string(impl_->pages) + " pos=[0 " +
+                            std::to_string(std::lround(std::max(0.0, kHeight - y))) + "]";
+  const int entry = cairo_pdf_surface_add_outline(
+      impl_->surface, open.empty() ? CAIRO_PDF_OUTLINE_ROOT : open.back().second, terminated(text).c_str(),
+      place.c_str(), CAIRO_PDF_OUTLINE_FLAG_OPEN);
+  open.emplace_back(level, entry);
 }
 
 void PdfSheet::picture(const std::string& png, double x, double y, double width, double height) {

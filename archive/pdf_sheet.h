@@ -42,6 +42,9 @@ class PdfSheet {
   /// Baseline at y. UTF-8; what the font lacks shows as a box. grey: 0 black to 1 white.
   void text(std::string_view text, double x, double y, PdfFont font, double size, double grey);
   void line(double x0, double y0, double x1, double y1, double width, double grey);
+  /// An entry of the document's outline that leads to a height of this page. It belongs to the last entry of
+  /// a smaller level before it; levels count from 1.
+  void bookmark(std::string_view text, double y, int level);
   /// A PNG file's bytes, into the rectangle.
   void picture(const std::string& png, double x, double y, double width, double height);
 

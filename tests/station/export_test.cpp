@@ -293,6 +293,30 @@ TEST_F(Export, OthersReadItsForms) {
   EXPECT_EQ(shell("pdffonts " + pdf + " | tail -n +3 | grep -vq ' yes yes yes '"), 1)
       << "every font is embedded, as a subset, with its letters";
   EXPECT_EQ(shell("pdftotext " + pdf + " - | grep -q 'Not conclusive'"), 0);
+  EXPECT_EQ(shell("qpdf --json --json-key=outlines " + pdf + " | grep -q '\"title\": \"Checklist\"'"), 0)
+      << "its headings are its outline";
+}
+
+TEST_F(Export, TheBagHoldsToTheStandardByAnotherReading) {
+  const std::string check =
+      "/usr/bin/python3 " + quoted(fs::path(DUBSAR_SOURCE_DIR) / "tests/station/support/check_bag.py") + " ";
+  EXPECT_EQ(shell(check + quoted(at("bag"))), 0);
+  // It does find faults.
+  const fs::path bag = at("faulty");
+  ASSERT_EQ(export_to("faulty", {"--without", "renderings,features,wedges,grid-ply"}).status, 0);
+  EXPECT_EQ(shell(check + quoted(bag)), 0);
+  for (const char* name :
+       {"data/README.txt", "bag-info.txt", "data/new.txt", "bagit.txt", "manifest-sha512.txt"}) {
+    const bool is_new = !fs::exists(bag / name);
+    const std::string before = is_new ? std::string() : bytes_of(bag / name);
+    std::ofstream(bag / name, std::ios::app) << "a line more\n";
+    EXPECT_EQ(shell(check + quoted(bag)), 1) << name;
+    std::ofstream(bag / name, std::ios::binary) << before;
+    if (is_new) {
+      fs::remove(bag / name);
+    }
+  }
+  EXPECT_EQ(shell(check + quoted(bag)), 0);
 }
 
 TEST_F(Export, TheAccessMeshIsValidGltf) {

@@ -124,7 +124,8 @@ void ioctl_node(fuse_req_t request, fuse_ino_t /*node*/, unsigned command, void*
                 fuse_file_info* file, unsigned /*flags*/, const void* in, std::size_t in_size,
                 std::size_t out_size) {
   std::vector<std::uint8_t> argument(std::max<std::size_t>(_IOC_SIZE(command), 8));
-  std::memcpy(argument.data(), in, std::min(in_size, argument.size()));
+  const auto* from = static_cast<const std::uint8_t*>(in);  // null where the request carries nothing
+  std::copy_n(from, std::min(in_size, argument.size()), argument.begin());
   const int answer = peer->camera.control(who(file), command, argument.data());
   if (answer < 0) {
     fuse_reply_err(request, answer == VirtualCamera::kNotYet ? EAGAIN : -answer);
