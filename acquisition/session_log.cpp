@@ -5,6 +5,7 @@
 #include <fstream>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace dubsar::session {
@@ -54,6 +55,31 @@ Checksum stored(Bytes bytes, std::size_t at) {
   return {big_endian(bytes, at), big_endian(bytes, at + 4)};
 }
 
+/// The checksum of a frame that follows one whose checksum is `before`.
+Checksum sum_of_frame(Bytes frame, Checksum before, bool big) {
+  before.add(frame.first(8), big);
+  before.add(frame.subspan(kFrameHeadBytes), big);
+  return before;
+}
+
+/// Whether a commit ends with this frame. Its mark is the number of pages of the database, which a single bit
+/// may be all of: then the checksum tells whether that bit was there.
+bool ends_commit(const std::vector<char>& frame, const Checksum& before, bool big) {
+  if (big_endian(Bytes(frame), 4) != 0) {
+    return true;
+  }
+  std::vector<char> mended = frame;
+  for (int bit = 0; bit < 32; ++bit) {
+    char& byte = mended[4 + static_cast<std::size_t>(bit) / 8];
+    byte = static_cast<char>(1 << (bit % 8));
+    if (sum_of_frame(mended, before, big) == stored(Bytes(mended), 16)) {
+      return true;
+    }
+    byte = 0;
+  }
+  return false;
+}
+
 }  // namespace
 
 Result<LogState> read_log(const std::filesystem::path& path) {
@@ -93,24 +119,20 @@ Result<LogState> read_log(const std::filesystem::path& path) {
     if (first && !playing) {
       salts = stored(bytes, 8);  // those of the head cannot be trusted
     }
-    const bool of_this_log = salts == stored(bytes, 8);
-    Checksum sum = before;
-    sum.add(bytes.first(8), big);
-    sum.add(bytes.subspan(kFrameHeadBytes), big);
-    const bool whole = of_this_log && sum == stored(bytes, 16);
-    const bool commit = big_endian(bytes, 4) != 0;
-    before = stored(bytes, 16);
+    const bool whole = salts == stored(bytes, 8) && sum_of_frame(bytes, before, big) == stored(bytes, 16);
+    const Checksum previous = std::exchange(before, stored(bytes, 16));
     playing = playing && whole;
     if (playing) {
       ++out.frames;
-      out.commits += commit ? 1 : 0;
+      out.commits += big_endian(bytes, 4) != 0 ? 1 : 0;
       continue;
     }
     if (whole && !first) {
       out.lost_commits += unproven;
       unproven = 0;
     }
-    unproven += of_this_log && commit ? 1 : 0;
+    // What an older log left counts here too, and is never proven: nothing of this log follows it.
+    unproven += ends_commit(frame, previous, big) ? 1 : 0;
   }
   return out;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright The Dubsar developers
 #include <algorithm>
+#include <nlohmann/json.hpp>
 
 #include "acquisition/session_impl.h"
 #include "acquisition/session_log.h"
@@ -83,13 +84,19 @@ std::vector<std::string> everything_in(const fs::path& folder) {
   return out;
 }
 
-/// Of a file that no table names: what a person wrote in the viewer carries its own.
+/// Of a file that no table names: what a person wrote in the viewer carries its own. Of such a file that is
+/// cut off it may be gone; it is then no JSON any more.
 OwnChecksum own_checksum_in(const fs::path& file) {
   if (file.extension() != ".json") {
     return OwnChecksum::kNone;
   }
   const Result<std::string> text = read_whole_file(file, kMaxJsonBytes);
-  return text ? own_checksum_of(*text) : OwnChecksum::kNone;
+  const OwnChecksum is = text ? own_checksum_of(*text) : OwnChecksum::kNone;
+  const std::string name = file.filename().string();
+  const bool by_a_person = name.ends_with("selections.json") || name.ends_with("corrections.json");
+  return is == OwnChecksum::kNone && by_a_person && text && !nlohmann::json::accept(*text)
+             ? OwnChecksum::kFails
+             : is;
 }
 
 /// Sorts what no table names into its list.

@@ -14,6 +14,7 @@
 #else
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 #endif
 
 #include <cstddef>
@@ -22,11 +23,16 @@ namespace dubsar {
 
 #ifdef DUBSAR_THREAD_SANITIZER
 
+/// How many chunks may be worked on at once.
+inline std::size_t chunks_at_once() {
+  return 4;
+}
+
 /// body(chunk) for each of [0, chunks), on up to four threads however few the cores are: races need company.
 /// The first exception of a body is thrown again here.
 template <class Body>
 void for_each_chunk(std::size_t chunks, const Body& body) {
-  constexpr std::size_t kThreads = 4;
+  const std::size_t threads = chunks_at_once();
   std::atomic<std::size_t> next{0};
   std::mutex mutex;
   std::exception_ptr thrown;
@@ -42,7 +48,7 @@ void for_each_chunk(std::size_t chunks, const Body& body) {
   };
   {
     std::vector<std::jthread> others;
-    for (std::size_t k = 1; k < std::min(kThreads, chunks); ++k) {
+    for (std::size_t k = 1; k < std::min(threads, chunks); ++k) {
       others.emplace_back(work);
     }
     work();
@@ -53,6 +59,10 @@ void for_each_chunk(std::size_t chunks, const Body& body) {
 }
 
 #else
+
+inline std::size_t chunks_at_once() {
+  return static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
+}
 
 /// body(chunk) for each of [0, chunks), in any order, several at once.
 template <class Body>

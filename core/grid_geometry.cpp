@@ -2,71 +2,116 @@
 // Copyright The Dubsar developers
 #include "core/grid_geometry.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 
+#include "core/huge_pages.h"
 #include "core/parallel.h"
 #include "core/row_camera.h"
+#include "core/wide_clones.h"
 
 namespace dubsar {
 
 namespace {
 
-/// The valid cells of one row; none above the first row and below the last.
-struct Row {
-  const RangeGrid* grid;
-  std::size_t first;
-  bool inside;
+/// Samples that are worked on at a time: what they need lies in the first cache.
+constexpr int kBlock = 64;
 
-  Row(const RangeGrid& of, int row)
-      : grid(&of), first(of.index(std::clamp(row, 0, of.rows - 1), 0)), inside(row >= 0 && row < of.rows) {}
+/// Part of a row with one sample more at either end, each quantity by itself, so that the compiler can work
+/// on several at once.
+struct Samples {
+  float x[kBlock + 2] = {}, y[kBlock + 2] = {}, z[kBlock + 2] = {};
+  std::int32_t valid[kBlock + 2] = {};
 
-  /// From p to the sample at a column; zero where it is not valid or across a step.
-  bool step_to(int col, const Eigen::Vector3f& p, float step2_mm2, Eigen::Vector3f& step) const {
-    const std::size_t i = first + static_cast<std::size_t>(col);
-    const float x = grid->x[i] - p.x();
-    const float y = grid->y[i] - p.y();
-    const float z = grid->z[i] - p.z();
-    const bool holds = inside && grid->valid[i] != 0 && x * x + y * y + z * z <= step2_mm2;
-    step = holds ? Eigen::Vector3f(x, y, z) : Eigen::Vector3f(0, 0, 0);
-    return holds;
+  /// From column `col` on; those outside of the grid are not valid.
+  [[gnu::always_inline]] void fill(const RangeGrid& grid, int row, int col, int count) {
+    if (row < 0 || row >= grid.rows) {
+      std::fill_n(valid, count, 0);
+    } else if (col >= 0 && count == kBlock + 2 && col + count <= grid.cols) {
+      take(grid, grid.index(row, col), 0, kBlock + 2);
+    } else {
+      std::fill_n(valid, count, 0);
+      const int begin = std::max(col, 0);
+      take(grid, grid.index(row, begin), begin - col, std::min(col + count, grid.cols) - col);
+    }
+  }
+
+ private:
+  /// [begin, end) of this part, from the grid's sample `first` on. Inlined with constants it is a few moves.
+  [[gnu::always_inline]] void take(const RangeGrid& grid, std::size_t first, int begin, int end) {
+    for (int c = begin; c < end; ++c) {
+      const std::size_t i = first + static_cast<std::size_t>(c - begin);
+      x[c] = grid.x[i];
+      y[c] = grid.y[i];
+      z[c] = grid.z[i];
+      valid[c] = grid.valid[i] != 0 ? 1 : 0;
+    }
   }
 };
+
+struct Step {
+  float x, y, z;
+  std::int32_t holds;
+};
+
+/// Zero to where the sample is not valid, or across a step.
+[[gnu::always_inline]] inline Step step(const Samples& from, int i, const Samples& to, int k,
+                                        float most2_mm2) {
+  const float x = to.x[k] - from.x[i];
+  const float y = to.y[k] - from.y[i];
+  const float z = to.z[k] - from.z[i];
+  const std::int32_t holds = to.valid[k] & static_cast<std::int32_t>(x * x + y * y + z * z <= most2_mm2);
+  return {holds != 0 ? x : 0.0F, holds != 0 ? y : 0.0F, holds != 0 ? z : 0.0F, holds};
+}
+
+DUBSAR_WIDE_CLONES void row_geometry(const RangeGrid& grid, int row, float step2_mm2, GridGeometry& out) {
+  const RowCamera camera(grid.view, row);
+  const float at_x = camera.at().x(), at_y = camera.at().y(), at_z = camera.at().z();
+  const float known = camera.is_known() ? 1.0F : 0.0F;
+  Samples above, here, below;
+  float nx[kBlock], ny[kBlock], nz[kBlock];
+  std::int32_t boundary[kBlock];
+  for (int begin = 0; begin < grid.cols; begin += kBlock) {
+    const int count = std::min(grid.cols - begin, kBlock);
+    above.fill(grid, row - 1, begin - 1, count + 2);
+    here.fill(grid, row, begin - 1, count + 2);
+    below.fill(grid, row + 1, begin - 1, count + 2);
+    for (int c = 0; c < count; ++c) {
+      const int i = c + 1;
+      const Step after = step(here, i, here, i + 1, step2_mm2),
+                 before = step(here, i, here, i - 1, step2_mm2);
+      const Step down = step(here, i, below, i, step2_mm2), up = step(here, i, above, i, step2_mm2);
+      boundary[c] = here.valid[i] & (1 - (after.holds & before.holds & down.holds & up.holds));
+      const float ax = after.x - before.x, ay = after.y - before.y, az = after.z - before.z;
+      const float dx = down.x - up.x, dy = down.y - up.y, dz = down.z - up.z;
+      const float x = ay * dz - az * dy, y = az * dx - ax * dz, z = ax * dy - ay * dx;
+      const float length = std::sqrt(x * x + (y * y + z * z));
+      const float towards =
+          x * (at_x - known * here.x[i]) + (y * (at_y - known * here.y[i]) + z * (at_z - known * here.z[i]));
+      const std::int32_t has = here.valid[i] & static_cast<std::int32_t>(length > 1e-12F);
+      const float scale = (towards < 0 ? -1.0F : 1.0F) / length;
+      nx[c] = has != 0 ? x * scale : 0.0F;
+      ny[c] = has != 0 ? y * scale : 0.0F;
+      nz[c] = has != 0 ? z * scale : 0.0F;
+    }
+    const std::size_t first = grid.index(row, begin);
+    for (int c = 0; c < count; ++c) {
+      out.normals[first + static_cast<std::size_t>(c)] = {nx[c], ny[c], nz[c]};
+      out.boundary[first + static_cast<std::size_t>(c)] = static_cast<std::uint8_t>(boundary[c]);
+    }
+  }
+}
 
 }  // namespace
 
 GridGeometry grid_geometry(const RangeGrid& grid, double step_factor) {
   GridGeometry out;
-  out.normals.assign(grid.size(), Eigen::Vector3f::Zero());
-  out.boundary.assign(grid.size(), 0);
+  resize_in_huge_pages(out.normals, grid.size());
+  out.boundary.resize(grid.size());
   const auto step_mm = static_cast<float>(step_factor * grid.spacing_mm);
-  const float step2_mm2 = step_mm * step_mm;
   parallel_for_each_index(
       static_cast<std::size_t>(grid.rows),
-      [&](std::size_t r) {
-        const int row = static_cast<int>(r);
-        const Row here(grid, row), above(grid, row - 1), below(grid, row + 1);
-        const RowCamera camera(grid.view, row);
-        for (int col = 0; col < grid.cols; ++col) {
-          const std::size_t i = here.first + static_cast<std::size_t>(col);
-          if (grid.valid[i] == 0) {
-            continue;
-          }
-          const Eigen::Vector3f p = grid.point(i);
-          Eigen::Vector3f after(0, 0, 0), before(0, 0, 0), down, up;
-          const bool has_after = col + 1 < grid.cols && here.step_to(col + 1, p, step2_mm2, after);
-          const bool has_before = col > 0 && here.step_to(col - 1, p, step2_mm2, before);
-          const bool has_below = below.step_to(col, p, step2_mm2, down);
-          const bool has_above = above.step_to(col, p, step2_mm2, up);
-          out.boundary[i] = has_after && has_before && has_below && has_above ? 0 : 1;
-          const Eigen::Vector3f n = (after - before).cross(down - up);
-          const float length = n.norm();
-          if (length > 1e-12F) {
-            out.normals[i] = n * ((n.dot(camera.from(p)) < 0 ? -1.0F : 1.0F) / length);
-          }
-        }
-      },
-      8);
+      [&](std::size_t row) { row_geometry(grid, static_cast<int>(row), step_mm * step_mm, out); }, 8);
   return out;
 }
 

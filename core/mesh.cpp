@@ -2,25 +2,35 @@
 // Copyright The Dubsar developers
 #include "core/mesh.h"
 
+#include "core/parallel.h"
+
 #include <Eigen/Geometry>
 
 namespace dubsar {
 
 std::vector<Eigen::Vector3f> vertex_normals(const Mesh& mesh) {
   std::vector<Eigen::Vector3f> normals(mesh.positions.size(), Eigen::Vector3f::Zero());
-  for (const auto& f : mesh.faces) {
-    const Eigen::Vector3f n =
-        (mesh.positions[f[1]] - mesh.positions[f[0]]).cross(mesh.positions[f[2]] - mesh.positions[f[0]]);
-    for (const std::uint32_t v : f) {
-      normals[v] += n;
+  parallel_ranges(normals.size(), [&](std::size_t begin, std::size_t end) {
+    const auto is_here = [&](std::uint32_t v) { return v >= begin && v < end; };
+    for (const auto& f : mesh.faces) {
+      if (!is_here(f[0]) && !is_here(f[1]) && !is_here(f[2])) {
+        continue;
+      }
+      const Eigen::Vector3f n =
+          (mesh.positions[f[1]] - mesh.positions[f[0]]).cross(mesh.positions[f[2]] - mesh.positions[f[0]]);
+      for (const std::uint32_t v : f) {
+        if (is_here(v)) {
+          normals[v] += n;
+        }
+      }
     }
-  }
-  for (Eigen::Vector3f& n : normals) {
-    const float length = n.norm();
-    if (length > 0) {
-      n /= length;
+    for (std::size_t v = begin; v < end; ++v) {
+      const float length = normals[v].norm();
+      if (length > 0) {
+        normals[v] /= length;
+      }
     }
-  }
+  });
   return normals;
 }
 

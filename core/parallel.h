@@ -2,6 +2,7 @@
 // Copyright The Dubsar developers
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <vector>
 
@@ -29,6 +30,22 @@ void parallel_for_each_index(std::size_t count, const Body& body, std::size_t gr
       body(i);
     }
   });
+}
+
+/// Calls body(begin, end) for ranges of [0, count), about one for each thread: for work that has to go
+/// through all of something for every range (what scatters into it). Where the ranges end must not show in
+/// what comes out.
+template <class Body>
+void parallel_ranges(std::size_t count, const Body& body) {
+  constexpr std::size_t kLeast = std::size_t{1}
+                                 << 18U;  // below, going through all twice costs more than it saves
+  constexpr std::size_t kMost = 8;
+  const std::size_t ranges = std::clamp(count / kLeast, std::size_t{1}, std::min(kMost, chunks_at_once()));
+  if (ranges == 1) {
+    body(std::size_t{0}, count);
+  } else {
+    for_each_chunk(ranges, [&](std::size_t k) { body(count * k / ranges, count * (k + 1) / ranges); });
+  }
 }
 
 /// Reduces chunk results in chunk order, so that floating-point sums do not depend on the number of threads.

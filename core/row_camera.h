@@ -21,6 +21,10 @@ class RowCamera {
     return known_ ? Eigen::Vector3f(at_ - p_mm) : at_;
   }
 
+  /// Its place; the direction towards it where that is not known.
+  [[nodiscard]] const Eigen::Vector3f& at() const { return at_; }
+  [[nodiscard]] bool is_known() const { return known_; }
+
  private:
   Eigen::Vector3f at_;
   bool known_;

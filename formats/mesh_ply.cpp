@@ -2,8 +2,10 @@
 // Copyright The Dubsar developers
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 
+#include "core/parallel.h"
 #include "formats/byte_order.h"
 #include "formats/mesh_formats.h"
 #include "formats/number_text.h"
@@ -15,6 +17,7 @@ namespace dubsar {
 namespace {
 
 constexpr const char* kExportAgain = "export the mesh again";
+constexpr std::size_t kRowsAtOnce = std::size_t{1} << 16U;
 
 /// Where the vertex properties stand; -1 for those that are absent.
 struct Columns {
@@ -44,6 +47,129 @@ std::uint8_t byte_of(double value) {
   return value > 0 ? static_cast<std::uint8_t>(std::min(value, 255.0)) : std::uint8_t{0};
 }
 
+/// As long as the element claims, which check_claim() has compared with the bytes that are there.
+void resize_vertices(const Columns& columns, std::size_t count, Mesh& mesh) {
+  mesh.positions.resize(count);
+  mesh.normals.resize(Columns::has(columns.normal) ? count : 0);
+  mesh.reliability.resize(columns.reliability >= 0 ? count : 0);
+  mesh.sigma_mm.resize(columns.sigma >= 0 ? count : 0);
+  mesh.scans.resize(columns.scans >= 0 ? count : 0);
+  mesh.flags.resize(columns.flags >= 0 ? count : 0);
+  mesh.colours.resize(Columns::has(columns.colour) ? count : 0);
+}
+
+/// value(property) -> double. False where the position is not finite.
+template <class Value>
+bool put_vertex(const Columns& columns, double mm, const Value& value, std::size_t v, Mesh& mesh) {
+  const auto three = [&](const std::array<int, 3>& of, double scale) {
+    return Eigen::Vector3f(static_cast<float>(scale * value(of[0])), static_cast<float>(scale * value(of[1])),
+                           static_cast<float>(scale * value(of[2])));
+  };
+  mesh.positions[v] = three(columns.position, mm);
+  if (!mesh.positions[v].allFinite()) {
+    return false;
+  }
+  if (Columns::has(columns.normal)) {
+    const Eigen::Vector3f n = three(columns.normal, 1);
+    mesh.normals[v] = n.allFinite() ? n : Eigen::Vector3f::Zero();
+  }
+  if (columns.reliability >= 0) {
+    const double reliability = value(columns.reliability);
+    mesh.reliability[v] = reliability > 0 ? static_cast<float>(std::min(reliability, 1.0)) : 0.0F;
+  }
+  if (columns.sigma >= 0) {
+    const double sigma = mm * value(columns.sigma);
+    mesh.sigma_mm[v] = sigma > 0 && std::isfinite(sigma) ? static_cast<float>(sigma) : 0.0F;
+  }
+  if (columns.scans >= 0) {
+    mesh.scans[v] = byte_of(value(columns.scans));
+  }
+  if (columns.flags >= 0) {
+    mesh.flags[v] = byte_of(value(columns.flags));
+  }
+  if (Columns::has(columns.colour)) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      mesh.colours[v][k] = byte_of(columns.colour_scale * value(columns.colour[k]));
+    }
+  }
+  return true;
+}
+
+/// Vertices of one size each in a binary file, many at a time. False, and nothing is passed over, where they
+/// are not so, or one is not sound: then they are to be read one by one, for the error's sake.
+bool read_vertices_at_once(PlyBody& body, const PlyElement& vertex, const Columns& columns, double mm,
+                           Mesh& mesh) {
+  std::vector<std::size_t> offsets;
+  std::size_t stride = 0;
+  for (const PlyProperty& property : vertex.properties) {
+    if (property.count_type) {
+      return false;
+    }
+    offsets.push_back(stride);
+    stride += size_of(property.type);
+  }
+  const std::string_view rows = body.ahead(vertex.count * stride);
+  if (rows.empty()) {
+    return false;
+  }
+  std::atomic<bool> sound = true;
+  parallel_chunks(static_cast<std::size_t>(vertex.count), kRowsAtOnce,
+                  [&](std::size_t begin, std::size_t end) {
+                    for (std::size_t v = begin; v < end; ++v) {
+                      const char* row = rows.data() + v * stride;
+                      const auto value = [&](int property) {
+                        const auto p = static_cast<std::size_t>(property);
+                        return load_as_double(row + offsets[p], vertex.properties[p].type, body.byte_order());
+                      };
+                      if (!put_vertex(columns, mm, value, v, mesh)) {
+                        sound = false;
+                        return;
+                      }
+                    }
+                  });
+  if (sound) {
+    body.pass(rows);
+  }
+  return sound;
+}
+
+/// Faces that are all triangles and nothing else, as scanners and Dubsar write them. False like above.
+bool read_triangles_at_once(PlyBody& body, const PlyElement& face, std::uint64_t vertices, Mesh& mesh) {
+  const PlyProperty& list = face.properties.front();
+  if (face.properties.size() != 1 || !list.count_type || size_of(*list.count_type) != 1 ||
+      (list.type != PlyType::kInt32 && list.type != PlyType::kUint32)) {
+    return false;
+  }
+  constexpr std::size_t kStride = 1 + 3 * sizeof(std::uint32_t);
+  const std::string_view rows = body.ahead(face.count * kStride);
+  if (rows.empty()) {
+    return false;
+  }
+  mesh.faces.resize(static_cast<std::size_t>(face.count));
+  std::atomic<bool> sound = true;
+  parallel_chunks(mesh.faces.size(), kRowsAtOnce, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t f = begin; f < end; ++f) {
+      const char* row = rows.data() + f * kStride;
+      bool good = *row == 3;
+      for (std::size_t k = 0; k < 3; ++k) {
+        // An index below 0 is far above all others here.
+        mesh.faces[f][k] = load<std::uint32_t>(row + 1 + 4 * k, body.byte_order());
+        good = good && mesh.faces[f][k] < vertices;
+      }
+      if (!good) {
+        sound = false;
+        return;
+      }
+    }
+  });
+  if (sound) {
+    body.pass(rows);
+  } else {
+    mesh.faces.clear();
+  }
+  return sound;
+}
+
 Status read_vertices(PlyBody& body, const PlyElement& vertex, double mm, const std::string& where,
                      Mesh& mesh) {
   const Columns columns(vertex);
@@ -53,38 +179,15 @@ Status read_vertices(PlyBody& body, const PlyElement& vertex, double mm, const s
   if (Status claim = body.check_claim(vertex); !claim) {
     return claim;
   }
-  mesh.positions.reserve(static_cast<std::size_t>(vertex.count));
+  const auto count = static_cast<std::size_t>(vertex.count);
+  resize_vertices(columns, count, mesh);
+  if (read_vertices_at_once(body, vertex, columns, mm, mesh)) {
+    return {};
+  }
   return body.read(vertex, [&](std::uint64_t index, const PlyRow& row) -> Status {
-    if (!append_position(mesh, mm * row.value(columns.position[0]), mm * row.value(columns.position[1]),
-                         mm * row.value(columns.position[2]))) {
+    const auto value = [&](int property) { return row.value(property); };
+    if (!put_vertex(columns, mm, value, static_cast<std::size_t>(index), mesh)) {
       return body.error_at(vertex, index, "its position is not finite", kExportAgain);
-    }
-    if (Columns::has(columns.normal)) {
-      const Eigen::Vector3f n(static_cast<float>(row.value(columns.normal[0])),
-                              static_cast<float>(row.value(columns.normal[1])),
-                              static_cast<float>(row.value(columns.normal[2])));
-      mesh.normals.push_back(n.allFinite() ? n : Eigen::Vector3f::Zero());
-    }
-    if (columns.reliability >= 0) {
-      const double reliability = row.value(columns.reliability);
-      mesh.reliability.push_back(reliability > 0 ? static_cast<float>(std::min(reliability, 1.0)) : 0.0F);
-    }
-    if (columns.sigma >= 0) {
-      const double sigma = mm * row.value(columns.sigma);
-      mesh.sigma_mm.push_back(sigma > 0 && std::isfinite(sigma) ? static_cast<float>(sigma) : 0.0F);
-    }
-    if (columns.scans >= 0) {
-      mesh.scans.push_back(byte_of(row.value(columns.scans)));
-    }
-    if (columns.flags >= 0) {
-      mesh.flags.push_back(byte_of(row.value(columns.flags)));
-    }
-    if (Columns::has(columns.colour)) {
-      std::array<std::uint8_t, 3> rgb{};
-      for (std::size_t k = 0; k < 3; ++k) {
-        rgb[k] = byte_of(columns.colour_scale * row.value(columns.colour[k]));
-      }
-      mesh.colours.push_back(rgb);
     }
     return {};
   });
@@ -101,6 +204,9 @@ Status read_faces(PlyBody& body, const PlyElement& face, std::uint64_t vertices,
   }
   if (list < 0 && face.count > 0) {
     return bad_input(where, "its faces have no list vertex_indices", kExportAgain);
+  }
+  if (mesh.faces.empty() && face.count > 0 && read_triangles_at_once(body, face, vertices, mesh)) {
+    return {};
   }
   std::vector<std::uint32_t> corners;
   return body.read(face, [&](std::uint64_t index, const PlyRow& row) -> Status {

@@ -2,38 +2,13 @@
 // Copyright The Dubsar developers
 #include "formats/ply_body.h"
 
-#include <bit>
 #include <utility>
-
-#include "formats/byte_order.h"
 
 namespace dubsar {
 
 namespace {
 
 constexpr const char* kCutShort = "the file is cut short or mislabelled: copy or export it again";
-
-double load_as_double(const char* from, PlyType type, std::endian order) {
-  switch (type) {
-    case PlyType::kInt8:
-      return load<std::int8_t>(from, order);
-    case PlyType::kUint8:
-      return load<std::uint8_t>(from, order);
-    case PlyType::kInt16:
-      return load<std::int16_t>(from, order);
-    case PlyType::kUint16:
-      return load<std::uint16_t>(from, order);
-    case PlyType::kInt32:
-      return load<std::int32_t>(from, order);
-    case PlyType::kUint32:
-      return load<std::uint32_t>(from, order);
-    case PlyType::kFloat32:
-      return static_cast<double>(load<float>(from, order));
-    case PlyType::kFloat64:
-      break;
-  }
-  return load<double>(from, order);
-}
 
 /// The fewest bytes that one instance can take.
 std::size_t least_bytes(const PlyElement& element, PlyFormat format) {

@@ -2,6 +2,7 @@
 // Copyright The Dubsar developers
 #pragma once
 
+#include <bit>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -9,10 +10,34 @@
 #include <vector>
 
 #include "core/result.h"
+#include "formats/byte_order.h"
 #include "formats/ply_header.h"
 #include "formats/text_scanner.h"
 
 namespace dubsar {
+
+/// The number at `from`, which need not be aligned.
+[[nodiscard]] inline double load_as_double(const char* from, PlyType type, std::endian order) {
+  switch (type) {
+    case PlyType::kInt8:
+      return load<std::int8_t>(from, order);
+    case PlyType::kUint8:
+      return load<std::uint8_t>(from, order);
+    case PlyType::kInt16:
+      return load<std::int16_t>(from, order);
+    case PlyType::kUint16:
+      return load<std::uint16_t>(from, order);
+    case PlyType::kInt32:
+      return load<std::int32_t>(from, order);
+    case PlyType::kUint32:
+      return load<std::uint32_t>(from, order);
+    case PlyType::kFloat32:
+      return static_cast<double>(load<float>(from, order));
+    case PlyType::kFloat64:
+      break;
+  }
+  return load<double>(from, order);
+}
 
 /// One instance of an element while it is read.
 struct PlyRow {
@@ -53,6 +78,18 @@ class PlyBody {
     return {};
   }
   [[nodiscard]] Status skip(const PlyElement& element);
+
+  /// The next `bytes` bytes of a binary file, for a reader that takes many instances at once; empty where the
+  /// file is none or holds fewer.
+  [[nodiscard]] std::string_view ahead(std::uint64_t bytes) const {
+    return format_ == PlyFormat::kAscii || bytes > file_.size() - at_
+               ? std::string_view()
+               : file_.substr(at_, static_cast<std::size_t>(bytes));
+  }
+  [[nodiscard]] std::endian byte_order() const {
+    return format_ == PlyFormat::kBigEndian ? std::endian::big : std::endian::little;
+  }
+  void pass(std::string_view read) { at_ += read.size(); }
 
   /// An error at an instance of the element that was just read: "vertex 12 (line 34): what".
   [[nodiscard]] std::unexpected<Error> error_at(const PlyElement& element, std::uint64_t index,

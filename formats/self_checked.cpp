@@ -2,6 +2,9 @@
 // Copyright The Dubsar developers
 #include "formats/self_checked.h"
 
+#include <algorithm>
+#include <ranges>
+
 #include "formats/xxh128.h"
 
 namespace dubsar {
@@ -12,11 +15,41 @@ constexpr std::string_view kBefore = ",\"xxh128\":\"";
 constexpr std::string_view kAfter = "\"}";
 constexpr std::size_t kDigits = 32;
 
+constexpr std::size_t kSize = kBefore.size() + kDigits + kAfter.size();
+/// A text with no checksum differs from the form of one in a dozen places.
+constexpr std::ptrdiff_t kDamaged = 6;
+
 std::string_view without_line_end(std::string_view text) {
   while (text.ends_with('\n') || text.ends_with('\r')) {
     text.remove_suffix(1);
   }
   return text;
+}
+
+/// In how many of its last bytes a text differs from the form of a checksum, whatever its digits are.
+std::ptrdiff_t differences(std::string_view text) {
+  if (text.size() < kSize) {
+    return static_cast<std::ptrdiff_t>(kSize);
+  }
+  const std::string_view tail = text.substr(text.size() - kSize);
+  const auto unlike = [&](std::string_view part, std::size_t at) {
+    return std::ranges::count_if(std::views::iota(std::size_t{0}, part.size()),
+                                 [&](std::size_t i) { return tail[at + i] != part[i]; });
+  };
+  const auto is_no_digit = [](char c) { return !((c >= '0' && c <= '9') || (c >= 'a' && c <= 'f')); };
+  return unlike(kBefore, 0) + std::ranges::count_if(tail.substr(kBefore.size(), kDigits), is_no_digit) +
+         unlike(kAfter, kSize - kAfter.size());
+}
+
+/// Whether there was one once: damage to the checksum itself must not pass for a file that never had one.
+bool had_one(std::string_view text) {
+  for (const std::size_t line_end : {0, 1, 2}) {
+    if (text.size() > line_end && differences(text.substr(0, text.size() - line_end)) <= kDamaged) {
+      return true;
+    }
+  }
+  // The end was cut off, or something came between.
+  return text.substr(text.size() - std::min(text.size(), 2 * kSize)).find(kBefore) != std::string_view::npos;
 }
 
 }  // namespace
@@ -32,14 +65,13 @@ std::string with_own_checksum(std::string json) {
 }
 
 OwnChecksum own_checksum_of(std::string_view text) {
-  constexpr std::size_t kSize = kBefore.size() + kDigits + kAfter.size();
-  text = without_line_end(text);
-  if (text.size() < kSize || !text.ends_with(kAfter) ||
-      text.substr(text.size() - kSize, kBefore.size()) != kBefore) {
-    return OwnChecksum::kNone;
+  const std::string_view object = without_line_end(text);
+  if (differences(object) > 0) {
+    return had_one(text) ? OwnChecksum::kFails : OwnChecksum::kNone;
   }
-  const std::string_view sum = text.substr(text.size() - kAfter.size() - kDigits, kDigits);
-  return sum == xxh128_hex(text.substr(0, text.size() - kSize)) ? OwnChecksum::kFits : OwnChecksum::kFails;
+  const std::string_view sum = object.substr(object.size() - kAfter.size() - kDigits, kDigits);
+  return sum == xxh128_hex(object.substr(0, object.size() - kSize)) ? OwnChecksum::kFits
+                                                                    : OwnChecksum::kFails;
 }
 
 Status check_own_checksum(std::string_view text, const std::string& where) {

@@ -17,9 +17,9 @@ inline constexpr const char* kOwnChecksum = "xxh128";
 [[nodiscard]] std::string with_own_checksum(std::string json);
 
 enum class OwnChecksum {
-  kNone,  ///< the text does not end with one
+  kNone,  ///< the text does not end with one, nor with what is left of one
   kFits,
-  kFails,
+  kFails,  ///< also when it is the checksum that was damaged
 };
 [[nodiscard]] OwnChecksum own_checksum_of(std::string_view text);
 

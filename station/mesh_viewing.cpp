@@ -76,6 +76,8 @@ void MeshViewing::ask(Task task) {
   if (running_) {
     return;
   }
+  state_.stage = "...";
+  state_.fraction = 0;
   if (worker_.joinable()) {
     worker_.join();
   }
@@ -182,7 +184,6 @@ void MeshViewing::open(const fs::path& file) {
     const WedgesPlace wedges = wedges_beside(file);
     take_selections(selections_file_of(file));
     take_corrections(wedges.file, wedges.in_session);
-    work_out(MeshField::kOpenness);
   });
 }
 
@@ -192,7 +193,6 @@ void MeshViewing::show(std::shared_ptr<const Mesh> mesh, const RigidTransform& t
     take_mesh(mesh, tablet_from_model, {});
     take_corrections(wedges_file, true);
     take_selections(wedges_file.parent_path() / "selections.json");
-    work_out(MeshField::kOpenness);
   });
 }
 

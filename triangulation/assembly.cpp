@@ -3,10 +3,12 @@
 #include "triangulation/assembly.h"
 
 #include <algorithm>
-#include <numeric>
+#include <map>
 #include <utility>
 #include <vector>
 
+#include "core/disjoint_sets.h"
+#include "core/parallel_erase.h"
 #include "triangulation/closing.h"
 #include "triangulation/draft.h"
 #include "triangulation/manifold.h"
@@ -19,28 +21,39 @@ using Eigen::Vector3f;
 
 /// Drops pieces of few faces, of a manifold: there faces that share a vertex are of one piece.
 void remove_pieces(Mesh& mesh, std::size_t least_faces) {
-  std::vector<std::uint32_t> parent(mesh.positions.size());
-  std::iota(parent.begin(), parent.end(), 0U);
-  const auto root = [&](std::uint32_t v) {
-    while (parent[v] != v) {
-      parent[v] = parent[parent[v]];
-      v = parent[v];
-    }
-    return v;
-  };
-  for (const Triangle& f : mesh.faces) {
-    const std::uint32_t a = root(f[0]);
-    for (const std::uint32_t v : {f[1], f[2]}) {
-      const std::uint32_t b = root(v);
-      const std::uint32_t top = root(a);
-      parent[std::max(top, b)] = std::min(top, b);
-    }
+  constexpr std::size_t kGrain = 16384;
+  DisjointSets pieces(mesh.positions.size());
+  parallel_for_each_index(
+      mesh.faces.size(),
+      [&](std::size_t i) {
+        pieces.unite(mesh.faces[i][0], mesh.faces[i][1]);
+        pieces.unite(mesh.faces[i][0], mesh.faces[i][2]);
+      },
+      kGrain);
+  // Faces beside each other are mostly of one piece: counted run by run.
+  using Runs = std::vector<std::pair<std::uint32_t, std::size_t>>;  // piece, faces
+  const Runs runs = parallel_reduce_ordered(
+      mesh.faces.size(), kGrain, Runs{},
+      [&](std::size_t begin, std::size_t end) {
+        Runs found;
+        for (std::size_t i = begin; i < end; ++i) {
+          const std::uint32_t piece = pieces.root(mesh.faces[i][0]);
+          if (found.empty() || found.back().first != piece) {
+            found.emplace_back(piece, 0);
+          }
+          ++found.back().second;
+        }
+        return found;
+      },
+      [](Runs& total, const Runs& part) { total.insert(total.end(), part.begin(), part.end()); });
+  std::map<std::uint32_t, std::size_t> faces_of;
+  for (const auto& [piece, faces] : runs) {
+    faces_of[piece] += faces;
   }
-  std::vector<std::uint32_t> size(mesh.positions.size(), 0);
-  for (const Triangle& f : mesh.faces) {
-    ++size[root(f[0])];
+  std::erase_if(faces_of, [&](const auto& piece) { return piece.second >= least_faces; });
+  if (!faces_of.empty()) {
+    erase_where(mesh.faces, [&](const Triangle& f) { return faces_of.contains(pieces.root(f[0])); });
   }
-  std::erase_if(mesh.faces, [&](const Triangle& f) { return size[root(f[0])] < least_faces; });
   compact_vertices(mesh);
 }
 
@@ -67,7 +80,7 @@ Mesh assemble(const std::vector<OwnedScan>& scans, const AssemblyOptions& option
   job.progress("finish mesh", 0.0);
   Mesh mesh = std::move(draft.mesh);
   const std::vector<Vector3f>& p = mesh.positions;
-  std::erase_if(mesh.faces, [&](const Triangle& f) {
+  erase_where(mesh.faces, [&](const Triangle& f) {
     return is_gone(f) ||
            !((p[f[1]] - p[f[0]]).cast<double>().cross((p[f[2]] - p[f[0]]).cast<double>()).norm() > 0);
   });

@@ -3,7 +3,10 @@
 #include "triangulation/closing.h"
 
 #include <algorithm>
+#include <atomic>
+#include <functional>
 #include <iterator>
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -218,9 +221,16 @@ Leftover close_round(Draft& draft, std::span<const std::uint8_t> near, Walks gap
     (fits ? gaps_in[tile] : left.gaps).push_back(std::move(gap));
   }
   std::vector<Closed> closed(regions.size());
+  // The largest first, whoever is free: none of them is left for the end, when others have nothing to do.
+  std::vector<std::size_t> order(regions.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, std::greater<>(),
+                           [&](std::size_t k) { return regions[k].sheet.faces.size(); });
+  std::atomic<std::size_t> next{0};
   parallel_for_each_index(
       regions.size(),
-      [&](std::size_t k) {
+      [&](std::size_t) {
+        const std::size_t k = order[next++];
         closed[k] = close_region(regions[k], gaps_in[regions[k].tile()], draft, options);
       },
       1);

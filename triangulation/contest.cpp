@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "core/parallel.h"
 #include "triangulation/patch_shape.h"
@@ -33,44 +34,110 @@ bool cross(const Vector2f& a, const Vector2f& b, const Vector2f& c, const Vector
 
 /// A plane to compare in: that of the sample or triangle in question.
 struct Plane {
-  Vector3f origin, u, v;
+  Vector3f origin, n, u, v;
 
   Plane(const Vector3f& at, const Vector3f& normal)
-      : origin(at), u(normal.unitOrthogonal()), v(normal.cross(u)) {}
+      : origin(at), n(normal), u(normal.unitOrthogonal()), v(normal.cross(u)) {}
   [[nodiscard]] Vector2f operator()(const Vector3f& p) const {
     return {u.dot(p - origin), v.dot(p - origin)};
   }
+  [[nodiscard]] float height(const Vector3f& p) const { return n.dot(p - origin); }
 };
 
 /// The kept patch of another scan around one of its samples.
 struct Window {
+  static constexpr int kMostSide = 2 * kLookAroundSamples + 1 + 3;  ///< samples, of several in one
+
   const OwnedScan* scan;
   GridSurface g;
   int row_lo, row_hi, col_lo, col_hi;
 
-  Window(const OwnedScan& other, std::int64_t centre, int radius)
-      : scan(&other), g(other.surface->surface()) {
+  Window(const OwnedScan& other, std::int64_t centre) : scan(&other), g(other.surface->surface()) {
     const int row = other.surface->lattice.sample_row(static_cast<std::size_t>(centre));
     const int col = other.surface->lattice.sample_col(static_cast<std::size_t>(centre));
-    row_lo = std::max(row - radius, 0);
-    row_hi = std::min(row + radius, g.rows - 1);
-    col_lo = std::max(col - radius, 0);
-    col_hi = std::min(col + radius, g.cols - 1);
+    row_lo = std::max(row - kLookAroundSamples, 0);
+    row_hi = std::min(row + kLookAroundSamples, g.rows - 1);
+    col_lo = std::max(col - kLookAroundSamples, 0);
+    col_hi = std::min(col + kLookAroundSamples, g.cols - 1);
   }
-  template <class Visit>
-  void for_each_triangle(const Visit& visit) const {
+  /// True when the other lies within or hardly beside it: then it is taken in.
+  [[nodiscard]] bool take_in(const Window& near) {
+    const int rows[] = {std::min(row_lo, near.row_lo), std::max(row_hi, near.row_hi)};
+    const int cols[] = {std::min(col_lo, near.col_lo), std::max(col_hi, near.col_hi)};
+    if (rows[1] - rows[0] >= kMostSide || cols[1] - cols[0] >= kMostSide) {
+      return false;
+    }
+    row_lo = rows[0];
+    row_hi = rows[1];
+    col_lo = cols[0];
+    col_hi = cols[1];
+    return true;
+  }
+  [[nodiscard]] std::size_t width() const { return static_cast<std::size_t>(col_hi - col_lo + 1); }
+  /// A sample's place among those of the window, row by row.
+  [[nodiscard]] std::size_t place_of(int row, int col) const {
+    return static_cast<std::size_t>(row - row_lo) * width() + static_cast<std::size_t>(col - col_lo);
+  }
+  /// Whether holds(triangle) for one of those within; its corners are places.
+  template <class Holds>
+  [[nodiscard]] bool any_triangle(const Holds& holds) const {
     for (int r = row_lo; r < row_hi; ++r) {
       for (int c = col_lo; c < col_hi; ++c) {
         const std::uint8_t cell = scan->cells[g.index(r, c)];
-        for (int which = 0; cell != 0 && which < 2; ++which) {
-          if ((cell & (which == 0 ? kCellFirst : kCellSecond)) != 0) {
-            visit(cell_triangle(g, r, c, cell, which));
-          }
+        if ((cell & (kCellFirst | kCellSecond)) == 0) {
+          continue;
+        }
+        const std::size_t p00 = place_of(r, c), p10 = place_of(r + 1, c);
+        const bool anti = (cell & kCellAntidiagonal) != 0;
+        using Three = std::array<std::size_t, 3>;
+        if (((cell & kCellFirst) != 0 && holds(Three{p00, p10, anti ? p00 + 1 : p10 + 1})) ||
+            ((cell & kCellSecond) != 0 && holds(Three{anti ? p10 : p00, p10 + 1, p00 + 1}))) {
+          return true;
+        }
+      }
+    }
+    return false;
+  }
+};
+
+/// A window as it looks along the normal of a plane; places of samples that are not kept hold nothing.
+struct FlatWindow {
+  std::array<Vector2f, Window::kMostSide * Window::kMostSide> at;
+  std::array<float, Window::kMostSide * Window::kMostSide> height_mm;
+
+  FlatWindow(const Window& window, const Plane& plane) {
+    for (int r = window.row_lo; r <= window.row_hi; ++r) {
+      for (int c = window.col_lo; c <= window.col_hi; ++c) {
+        const std::size_t q = window.g.index(r, c);
+        if (window.scan->kept[q] != 0) {
+          const Vector3f p = window.scan->fused->point(q);
+          at[window.place_of(r, c)] = plane(p);
+          height_mm[window.place_of(r, c)] = std::abs(plane.height(p));
         }
       }
     }
   }
 };
+
+using FlatTriangle = std::array<Vector2f, 3>;
+
+/// Whether a triangle of the window, not farther than `near_mm` above or below, meets t in the plane.
+bool meets(const Window& window, const FlatTriangle& t, const Plane& plane, float near_mm) {
+  const FlatWindow flat(window, plane);
+  const Vector2f low = t[0].cwiseMin(t[1]).cwiseMin(t[2]);
+  const Vector2f high = t[0].cwiseMax(t[1]).cwiseMax(t[2]);
+  const auto& [a, b, c] = t;
+  return window.any_triangle([&](const std::array<std::size_t, 3>& o) {
+    const Vector2f &d = flat.at[o[0]], &e = flat.at[o[1]], &f = flat.at[o[2]];
+    if (flat.height_mm[o[0]] > near_mm || (d.cwiseMin(e).cwiseMin(f).array() > high.array()).any() ||
+        (d.cwiseMax(e).cwiseMax(f).array() < low.array()).any()) {
+      return false;
+    }
+    return inside(d, a, b, c) || inside(a, d, e, f) || cross(a, b, d, e) || cross(a, b, e, f) ||
+           cross(a, b, f, d) || cross(b, c, d, e) || cross(b, c, e, f) || cross(b, c, f, d) ||
+           cross(c, a, d, e) || cross(c, a, e, f) || cross(c, a, f, d);
+  });
+}
 
 }  // namespace
 
@@ -115,59 +182,113 @@ Contest contest_of(const std::vector<OwnedScan>& scans, std::size_t self) {
   return contest;
 }
 
-bool is_taken(const std::vector<OwnedScan>& scans, std::size_t self, std::size_t i, const Contest& contest,
-              double clearance_factor, const OwnershipOptions& options) {
-  const OwnedScan& scan = scans[self];
+namespace {
+
+constexpr int kNotAsked = -2;
+constexpr int kAskedSide = Lattice::kNodeSide + 1;  ///< samples of a node, and those just after them
+constexpr std::size_t kAsked = kAskedSide * kAskedSide;
+constexpr std::size_t kStarts = 4;
+
+}  // namespace
+
+NodeContest::NodeContest(const std::vector<OwnedScan>& scans, std::size_t self, const Contest& contest,
+                         const OwnershipOptions& options)
+    : scans_(&scans),
+      scan_(&scans[self]),
+      contest_(&contest),
+      options_(&options),
+      starts_(scan_->pairs.size() * kStarts),
+      start_known_(scan_->pairs.size() * kStarts),
+      pair_(scan_->pairs.size() * kAsked) {}
+
+void NodeContest::enter(std::size_t node) {
+  const Lattice& lattice = scan_->surface->lattice;
+  node_ = node;
+  row_ = lattice.row_of(node) * Lattice::kNodeSide;
+  col_ = lattice.col_of(node) * Lattice::kNodeSide;
+  std::ranges::fill(start_known_, 0);
+  std::ranges::fill(pair_, kNotAsked);
+}
+
+const StitchSurface& NodeContest::other_surface(std::size_t k) const {
+  return *(*scans_)[scan_->other[k]].surface;
+}
+
+const PairStart& NodeContest::start(std::size_t k, std::size_t sample) {
+  const Lattice& lattice = scan_->surface->lattice;
+  const bool below = lattice.sample_row(sample) >= row_ + Lattice::kNodeSide;
+  const bool beside = lattice.sample_col(sample) >= col_ + Lattice::kNodeSide;
+  const std::size_t at = k * kStarts + (below ? 2U : 0U) + (beside ? 1U : 0U);
+  if (start_known_[at] == 0) {
+    starts_[at] = pair_start(*scan_->surface, lattice.node_of(sample), other_surface(k), *scan_->pairs[k]);
+    start_known_[at] = 1;
+  }
+  return starts_[at];
+}
+
+std::int64_t NodeContest::pair(std::size_t k, std::size_t sample) {
+  const Lattice& lattice = scan_->surface->lattice;
+  const int at = (lattice.sample_row(sample) - row_) * kAskedSide + lattice.sample_col(sample) - col_;
+  std::int32_t& known = pair_[k * kAsked + static_cast<std::size_t>(at)];
+  if (known == kNotAsked) {
+    const PairStart& from = start(k, sample);
+    known = from.sample < 0 ? -1
+                            : static_cast<std::int32_t>(
+                                  pair_of(*scan_->surface, sample, from, other_surface(k), *scan_->pairs[k]));
+  }
+  return known;
+}
+
+bool NodeContest::is_taken_by(std::size_t k, std::size_t i) {
+  const OwnedScan& other = (*scans_)[scan_->other[k]];
+  const PairStart& from = start(k, i);
+  if (from.sample < 0) {
+    return false;
+  }
+  const std::int64_t likely = likely_sample(from, *other.surface, scan_->surface->points[i]);
+  if (likely >= 0 && other.near_kept[static_cast<std::size_t>(likely)] == kAllAroundKept &&
+      may_pair(*scan_->surface, i, *other.surface, static_cast<std::size_t>(likely), *scan_->pairs[k])) {
+    return true;
+  }
+  const std::int64_t j = pair(k, i);
+  if (j < 0 || other.near_kept[static_cast<std::size_t>(j)] == 0) {
+    return false;
+  }
+  if (other.near_kept[static_cast<std::size_t>(j)] == kAllAroundKept) {
+    return true;
+  }
+  const Window window(other, j);
+  const auto clearance = static_cast<float>(options_->clearance_factor *
+                                            std::max(scan_->surface->spacing_mm, other.surface->spacing_mm));
   const Vector3f& p =
-      scan.fused->slot[i] == FusedSamples::kNone ? scan.surface->points[i] : scan.fused->point(i);
-  const std::size_t node = scan.surface->lattice.node_of(i);
-  const auto is_taken_by = [&](std::size_t k) {
-    const OwnedScan& other = scans[scan.other[k]];
-    const PairStart start = pair_start(*scan.surface, node, *other.surface, *scan.pairs[k]);
-    if (start.sample < 0) {
-      return false;
-    }
-    const std::int64_t likely = likely_sample(start, *other.surface, scan.surface->points[i]);
-    if (likely >= 0 && other.near_kept[static_cast<std::size_t>(likely)] == kAllAroundKept &&
-        may_pair(*scan.surface, i, *other.surface, static_cast<std::size_t>(likely), *scan.pairs[k])) {
-      return true;
-    }
-    const std::int64_t j = pair_of(*scan.surface, i, start, *other.surface, *scan.pairs[k]);
-    if (j < 0 || other.near_kept[static_cast<std::size_t>(j)] == 0) {
-      return false;
-    }
-    if (other.near_kept[static_cast<std::size_t>(j)] == kAllAroundKept) {
-      return true;
-    }
-    const Window window(other, j, options.look_around_samples);
-    const auto clearance =
-        static_cast<float>(clearance_factor * std::max(scan.surface->spacing_mm, other.surface->spacing_mm));
-    bool taken = false;
-    const Vector3f n = other.surface->normal(static_cast<std::size_t>(j));
-    for (int r = window.row_lo; r <= window.row_hi && !taken; ++r) {
-      for (int c = window.col_lo; c <= window.col_hi && !taken; ++c) {
-        const std::size_t q = window.g.index(r, c);
-        if (other.kept[q] == 0) {
-          continue;
-        }
-        const Vector3f d = other.fused->point(q) - p;
-        const float along = d.dot(n);
-        taken = d.squaredNorm() - along * along < clearance * clearance;
+      scan_->fused->slot[i] == FusedSamples::kNone ? scan_->surface->points[i] : scan_->fused->point(i);
+  bool taken = false;
+  const Vector3f n = other.surface->normal(static_cast<std::size_t>(j));
+  for (int r = window.row_lo; r <= window.row_hi && !taken; ++r) {
+    for (int c = window.col_lo; c <= window.col_hi && !taken; ++c) {
+      const std::size_t q = window.g.index(r, c);
+      if (other.kept[q] == 0) {
+        continue;
       }
+      const Vector3f d = other.fused->point(q) - p;
+      const float along = d.dot(n);
+      taken = d.squaredNorm() - along * along < clearance * clearance;
     }
-    if (!taken) {
-      const Plane plane(p, n);
-      window.for_each_triangle([&](const std::array<std::size_t, 3>& t) {
-        taken = taken || inside(Vector2f::Zero(), plane(other.fused->point(t[0])),
-                                plane(other.fused->point(t[1])), plane(other.fused->point(t[2])));
-      });
-    }
-    return taken;
-  };
+  }
+  if (taken) {
+    return true;
+  }
+  const FlatWindow flat(window, Plane(p, n));
+  return window.any_triangle([&](const std::array<std::size_t, 3>& t) {
+    return inside(Vector2f::Zero(), flat.at[t[0]], flat.at[t[1]], flat.at[t[2]]);
+  });
+}
+
+bool NodeContest::is_taken(std::size_t i) {
   // First those that are likeliest to say yes.
   for (const std::uint8_t nearness : {2, 1}) {
-    for (std::size_t k = 0; k < scan.pairs.size(); ++k) {
-      if (contest.by_pair[k][node] == nearness && is_taken_by(k)) {
+    for (std::size_t k = 0; k < scan_->pairs.size(); ++k) {
+      if (contest_->by_pair[k][node_] == nearness && is_taken_by(k, i)) {
         return true;
       }
     }
@@ -175,46 +296,31 @@ bool is_taken(const std::vector<OwnedScan>& scans, std::size_t self, std::size_t
   return false;
 }
 
-bool meets_another(const std::vector<OwnedScan>& scans, std::size_t self, std::span<const Vector3f> points,
-                   const std::array<std::size_t, 3>& t, const Contest& contest,
-                   const OwnershipOptions& options) {
-  const OwnedScan& scan = scans[self];
-  const std::size_t node = scan.surface->lattice.node_of(t[0]);
-  for (std::size_t k = 0; k < scan.pairs.size(); ++k) {
-    const OwnedScan& other = scans[scan.other[k]];
-    if (contest.by_pair[k][node] == 0) {
+bool NodeContest::meets_another(std::span<const Vector3f> points, const std::array<std::size_t, 3>& t) {
+  const Vector3f &p0 = points[t[0]], &p1 = points[t[1]], &p2 = points[t[2]];
+  const Plane plane(p0, (p1 - p0).cross(p2 - p0).normalized());
+  const FlatTriangle flat = {plane(p0), plane(p1), plane(p2)};
+  for (std::size_t k = 0; k < scan_->pairs.size(); ++k) {
+    if (contest_->by_pair[k][node_] == 0) {
       continue;
     }
-    for (std::size_t corner = 0; corner < 3; ++corner) {
-      const PairStart start =
-          pair_start(*scan.surface, scan.surface->lattice.node_of(t[corner]), *other.surface, *scan.pairs[k]);
-      const std::int64_t j =
-          start.sample < 0 ? -1 : pair_of(*scan.surface, t[corner], start, *other.surface, *scan.pairs[k]);
+    const OwnedScan& other = (*scans_)[scan_->other[k]];
+    // The pairs of the three corners mostly lie side by side: one window for all of them.
+    std::optional<Window> window;
+    for (const std::size_t corner : t) {
+      const std::int64_t j = pair(k, corner);
       if (j < 0 || other.near_kept[static_cast<std::size_t>(j)] == 0) {
         continue;
       }
-      const Window window(other, j, options.look_around_samples);
-      const Vector3f n = (points[t[1]] - points[t[0]]).cross(points[t[2]] - points[t[0]]).normalized();
-      const Plane plane(points[t[0]], n);
-      const Vector2f a = plane(points[t[0]]);
-      const Vector2f b = plane(points[t[1]]);
-      const Vector2f c = plane(points[t[2]]);
-      const float near_mm = scan.pairs[k]->reach_mm;
-      bool meets = false;
-      window.for_each_triangle([&](const std::array<std::size_t, 3>& o) {
-        if (meets || std::abs(n.dot(other.fused->point(o[0]) - points[t[0]])) > near_mm) {
-          return;
-        }
-        const Vector2f d = plane(other.fused->point(o[0]));
-        const Vector2f e = plane(other.fused->point(o[1]));
-        const Vector2f f = plane(other.fused->point(o[2]));
-        meets = inside(d, a, b, c) || inside(a, d, e, f) || cross(a, b, d, e) || cross(a, b, e, f) ||
-                cross(a, b, f, d) || cross(b, c, d, e) || cross(b, c, e, f) || cross(b, c, f, d) ||
-                cross(c, a, d, e) || cross(c, a, e, f) || cross(c, a, f, d);
-      });
-      if (meets) {
+      const Window around(other, j);
+      if (!window) {
+        window = around;
+      } else if (!window->take_in(around) && meets(around, flat, plane, scan_->pairs[k]->reach_mm)) {
         return true;
       }
+    }
+    if (window && meets(*window, flat, plane, scan_->pairs[k]->reach_mm)) {
+      return true;
     }
   }
   return false;

@@ -23,14 +23,40 @@ struct Contest {
 /// Nodes of another scan within which the pairs of one node's samples lie.
 [[nodiscard]] int reach_nodes(const StitchSurface& s, const StitchSurface& other);
 
-/// True when sample i lies within the clearance (× the coarser µ) of, or inside, what another scan keeps.
-[[nodiscard]] bool is_taken(const std::vector<OwnedScan>& scans, std::size_t self, std::size_t i,
-                            const Contest& contest, double clearance_factor, const OwnershipOptions& options);
+/// What the other scans keep around the samples of one node after another. The pairs that one question needs
+/// are there for the next: samples of a node ask for the same, and six triangles share a corner. One for each
+/// thread.
+class NodeContest {
+ public:
+  NodeContest(const std::vector<OwnedScan>& scans, std::size_t self, const Contest& contest,
+              const OwnershipOptions& options);
 
-/// True when a triangle of another scan's patch meets the triangle t of this one, seen along its normal;
-/// `points`: this scan's, [rows*cols].
-[[nodiscard]] bool meets_another(const std::vector<OwnedScan>& scans, std::size_t self,
-                                 std::span<const Eigen::Vector3f> points, const std::array<std::size_t, 3>& t,
-                                 const Contest& contest, const OwnershipOptions& options);
+  /// What is asked from now on is of this node.
+  void enter(std::size_t node);
+
+  /// True when sample i of the node lies within the clearance of, or inside, what another scan keeps.
+  [[nodiscard]] bool is_taken(std::size_t i);
+
+  /// True when a triangle of another scan's patch meets the triangle t of this one, seen along its normal.
+  /// Its first corner is of the node, the others within a sample of it. `points`: this scan's, [rows*cols].
+  [[nodiscard]] bool meets_another(std::span<const Eigen::Vector3f> points,
+                                   const std::array<std::size_t, 3>& t);
+
+ private:
+  [[nodiscard]] const StitchSurface& other_surface(std::size_t k) const;
+  [[nodiscard]] const PairStart& start(std::size_t k, std::size_t sample);
+  [[nodiscard]] std::int64_t pair(std::size_t k, std::size_t sample);
+  [[nodiscard]] bool is_taken_by(std::size_t k, std::size_t i);
+
+  const std::vector<OwnedScan>* scans_;
+  const OwnedScan* scan_;
+  const Contest* contest_;
+  const OwnershipOptions* options_;
+  std::size_t node_ = 0;
+  int row_ = 0, col_ = 0;          ///< the node's first sample
+  std::vector<PairStart> starts_;  ///< by pair, of the node and the three after it
+  std::vector<std::uint8_t> start_known_;
+  std::vector<std::int32_t> pair_;  ///< by pair and sample, of the node's and those just after them
+};
 
 }  // namespace dubsar

@@ -15,6 +15,7 @@ namespace {
 using Eigen::Vector3f;
 
 struct Projection {
+  std::size_t sample = 0;     ///< a corner of the triangle
   float along_mm = 0;         ///< from p along its normal
   bool well_sampled = false;  ///< none of the corners is sparse
   std::uint8_t rim = 0;       ///< of the corner that is nearest to it
@@ -22,41 +23,43 @@ struct Projection {
   float reliability = 0;      ///< interpolated
 };
 
-/// Where the line through p along `normal` meets the triangles around a sample. Along a line, not to the
-/// nearest point: of a rough sheet the nearest point is the one that errs the same way as p, and averaging
-/// with it takes away next to nothing of the noise.
+/// The line through a sample along its normal. Along a line, not to the nearest point: of a rough sheet the
+/// nearest point is the one that errs the same way as p, and averaging with it takes away next to nothing of
+/// the noise.
+struct Line {
+  Vector3f p, n, u, v;
+
+  Line(const Vector3f& at, const Vector3f& normal)
+      : p(at), n(normal), u(normal.unitOrthogonal()), v(normal.cross(u)) {}
+};
+
+/// Where a line meets the triangles of a scan.
 class LineProjector {
  public:
-  LineProjector(const StitchSurface& s, const Vector3f& p, const Vector3f& normal)
-      : s_(&s), p_(p), n_(normal) {
-    u_ = n_.unitOrthogonal();
-    v_ = s.mirrored ? Vector3f(u_.cross(n_)) : Vector3f(n_.cross(u_));  // triangles run as their grid does
-  }
+  LineProjector(const StitchSurface& s, const Line& line)
+      : s_(&s), line_(&line), turn_(s.mirrored ? -1.0F : 1.0F) {}  // triangles run as their grid does
 
-  /// In one cell alone: the one that `first_sample` begins.
-  [[nodiscard]] Projection in_cell(const GridSurface& surface, std::size_t first_sample) {
-    meet_cell(surface, s_->lattice.sample_row(first_sample), s_->lattice.sample_col(first_sample));
-    return best_;
-  }
-
-  [[nodiscard]] Projection around(const GridSurface& surface, std::size_t nearest) {
-    const int row = s_->lattice.sample_row(nearest);
-    const int col = s_->lattice.sample_col(nearest);
-    // The foot is nearly always in the one of the four cells at the nearest sample towards which p lies;
-    // noise may carry it into another, or one further.
-    const int likely_row = towards(nearest, row, surface.rows, surface.cols) ? row : row - 1;
-    const int likely_col = towards(nearest, col, surface.cols, 1) ? col : col - 1;
-    meet_cell(surface, likely_row, likely_col);
-    for (const int ring : {0, 1}) {
-      if (best_.weight > 0) {
+  /// Steps from a cell towards the line, then looks there and all around.
+  [[nodiscard]] Projection from_cell(float at_row, float at_col) {
+    const int last_row = s_->lattice.rows - 2;
+    const int last_col = s_->lattice.cols - 2;
+    int row = static_cast<int>(std::clamp(at_row, 0.0F, static_cast<float>(last_row)));
+    int col = static_cast<int>(std::clamp(at_col, 0.0F, static_cast<float>(last_col)));
+    for (int step = 0; step < kMostSteps; ++step) {
+      const auto [rows, cols] = towards_line(row, col);
+      const int next_row = std::clamp(row + rows, 0, last_row);
+      const int next_col = std::clamp(col + cols, 0, last_col);
+      if (next_row == row && next_col == col) {
         break;
       }
-      for (int r = row - 1 - ring; r <= row + ring; ++r) {
-        for (int c = col - 1 - ring; c <= col + ring; ++c) {
-          const bool inner = r >= row - 1 && r <= row && c >= col - 1 && c <= col;
-          if (inner == (ring == 0) && (r != likely_row || c != likely_col)) {
-            meet_cell(surface, r, c);
-          }
+      row = next_row;
+      col = next_col;
+    }
+    meet_cell(row, col);
+    for (int r = std::max(row - 1, 0); r <= std::min(row + 1, last_row) && !(best_.weight > 0); ++r) {
+      for (int c = std::max(col - 1, 0); c <= std::min(col + 1, last_col); ++c) {
+        if (r != row || c != col) {
+          meet_cell(r, c);
         }
       }
     }
@@ -64,40 +67,64 @@ class LineProjector {
   }
 
  private:
-  /// Whether p lies beyond the nearest sample in the direction of growing rows (or columns): `at` of `count`,
-  /// `stride` apart in the arrays.
-  [[nodiscard]] bool towards(std::size_t nearest, int at, int count, int stride) const {
-    const auto step = static_cast<std::size_t>(stride);
-    const bool after = at + 1 < count && s_->usable[nearest + step] != 0;
-    const bool before = at > 0 && s_->usable[nearest - step] != 0;
-    const Vector3f along = (after ? s_->points[nearest + step] : s_->points[nearest]) -
-                           (before ? s_->points[nearest - step] : s_->points[nearest]);
-    return along.dot(p_ - s_->points[nearest]) >= 0;
+  struct Corner {
+    float u, v;
+  };
+  static float wedge(const Corner& a, const Corner& b) { return a.u * b.v - a.v * b.u; }
+
+  [[nodiscard]] std::size_t first_sample(int row, int col) const {
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(s_->lattice.cols) +
+           static_cast<std::size_t>(col);
   }
 
-  void meet_cell(const GridSurface& surface, int row, int col) {
-    if (row < 0 || col < 0 || row > surface.rows - 2 || col > surface.cols - 2) {
+  [[nodiscard]] Corner seen_along(std::size_t i) const {
+    const Vector3f d = s_->points[i] - line_->p;
+    return {line_->u.dot(d), turn_ * line_->v.dot(d)};
+  }
+
+  /// To which of the cells beside this one the line passes, as rows and columns: none where it passes through
+  /// this one, or a corner is missing.
+  [[nodiscard]] std::pair<int, int> towards_line(int row, int col) const {
+    const std::size_t i00 = first_sample(row, col);
+    const std::size_t i10 = i00 + static_cast<std::size_t>(s_->lattice.cols);
+    if ((s_->usable[i00] & s_->usable[i00 + 1] & s_->usable[i10] & s_->usable[i10 + 1] & kUsable) == 0) {
+      return {0, 0};
+    }
+    const Corner c00 = seen_along(i00), c01 = seen_along(i00 + 1);
+    const Corner c10 = seen_along(i10), c11 = seen_along(i10 + 1);
+    const int left = wedge(c00, c10) < 0 ? 1 : 0;
+    const int right = wedge(c11, c01) < 0 ? 1 : 0;
+    const int above = wedge(c01, c00) < 0 ? 1 : 0;
+    const int below = wedge(c10, c11) < 0 ? 1 : 0;
+    return {below - above, right - left};
+  }
+
+  void meet_cell(int row, int col) {
+    const std::size_t i00 = first_sample(row, col);
+    const std::uint8_t cell = s_->cells[i00];
+    if (cell == 0) {
       return;
     }
-    const std::uint8_t cell = s_->cells[surface.index(row, col)];
+    const std::size_t i10 = i00 + static_cast<std::size_t>(s_->lattice.cols);
+    const std::array<std::size_t, 4> i = {i00, i00 + 1, i10, i10 + 1};
+    const std::array<Corner, 4> corners = {seen_along(i[0]), seen_along(i[1]), seen_along(i[2]),
+                                           seen_along(i[3])};
+    using Three = std::array<std::size_t, 3>;
+    const bool anti = (cell & kCellAntidiagonal) != 0;
     if ((cell & kCellFirst) != 0) {
-      meet(cell_triangle(surface, row, col, cell, 0));
+      meet(i, corners, anti ? Three{0, 2, 1} : Three{0, 2, 3});
     }
     if ((cell & kCellSecond) != 0) {
-      meet(cell_triangle(surface, row, col, cell, 1));
+      meet(i, corners, anti ? Three{2, 3, 1} : Three{0, 3, 1});
     }
   }
 
-  void meet(const std::array<std::size_t, 3>& t) {
-    const Vector3f a = s_->points[t[0]] - p_;
-    const Vector3f b = s_->points[t[1]] - p_;
-    const Vector3f c = s_->points[t[2]] - p_;
-    const float au = u_.dot(a), av = v_.dot(a);
-    const float bu = u_.dot(b), bv = v_.dot(b);
-    const float cu = u_.dot(c), cv = v_.dot(c);
-    const float wa = bu * cv - bv * cu;
-    const float wb = cu * av - cv * au;
-    const float wc = au * bv - av * bu;
+  void meet(const std::array<std::size_t, 4>& samples, const std::array<Corner, 4>& corners,
+            const std::array<std::size_t, 3>& which) {
+    const Corner &a = corners[which[0]], &b = corners[which[1]], &c = corners[which[2]];
+    const float wa = wedge(b, c);
+    const float wb = wedge(c, a);
+    const float wc = wedge(a, b);
     const float sum = wa + wb + wc;
     // Seen from below, or from the side: another fold, or no way to tell where.
     if (!(sum > 0)) {
@@ -107,11 +134,16 @@ class LineProjector {
     if (wa < slack || wb < slack || wc < slack) {
       return;
     }
+    const std::array<std::size_t, 3> t = {samples[which[0]], samples[which[1]], samples[which[2]]};
     const float inverse = 1.0F / sum;
-    const float along = (wa * n_.dot(a) + wb * n_.dot(b) + wc * n_.dot(c)) * inverse;
+    const Vector3f &n = line_->n, &p = line_->p;
+    const float along = (wa * n.dot(s_->points[t[0]] - p) + wb * n.dot(s_->points[t[1]] - p) +
+                         wc * n.dot(s_->points[t[2]] - p)) *
+                        inverse;
     if (best_.weight > 0 && std::abs(along) >= std::abs(best_.along_mm)) {
       return;
     }
+    best_.sample = t[0];
     best_.along_mm = along;
     best_.well_sampled = !s_->is_sparse(t[0]) && !s_->is_sparse(t[1]) && !s_->is_sparse(t[2]);
     best_.rim = std::min({s_->rim[t[0]], s_->rim[t[1]], s_->rim[t[2]]});
@@ -125,8 +157,10 @@ class LineProjector {
   }
 
   static constexpr float kSlack = -0.01F;  ///< so that no line slips through between two triangles
+  static constexpr int kMostSteps = 6;
   const StitchSurface* s_;
-  Vector3f p_, n_, u_, v_;
+  const Line* line_;
+  float turn_;
   Projection best_;
 };
 
@@ -154,8 +188,18 @@ float faded(std::uint8_t rim, float feather) {
 FusedSamples::FusedSamples(const StitchSurface& of) : slot(of.points.size(), kNone) {}
 
 void FusedSamples::forget_if(const std::function<bool(std::uint32_t)>& gone) {
-  std::size_t out = 0;
-  for (std::size_t at = 0; at < samples.size(); ++at) {
+  // Mostly all stay.
+  const std::size_t first = parallel_reduce_ordered(
+      samples.size(), 16384, samples.size(),
+      [&](std::size_t begin, std::size_t end) {
+        while (begin < end && !gone(samples[begin])) {
+          ++begin;
+        }
+        return begin < end ? begin : samples.size();
+      },
+      [](std::size_t& total, std::size_t part) { total = std::min(total, part); });
+  std::size_t out = first;
+  for (std::size_t at = first; at < samples.size(); ++at) {
     const std::uint32_t i = samples[at];
     if (gone(i)) {
       slot[i] = kNone;
@@ -187,11 +231,6 @@ void fuse(const StitchSurface& from, std::span<const StitchSurface* const> other
   out.sigma_mm.resize(n);
   out.sparse.resize(n);
   out.scans.resize(n);
-  std::vector<GridSurface> surfaces;
-  surfaces.reserve(others.size());
-  for (const StitchSurface* other : others) {
-    surfaces.push_back(other->surface());
-  }
   parallel_chunks(which.size(), 2048, [&](std::size_t begin, std::size_t end) {
     std::vector<std::pair<std::size_t, Projection>> found;
     std::vector<std::pair<std::size_t, PairStart>> starts;  // other, where to look, of one node
@@ -210,23 +249,23 @@ void fuse(const StitchSurface& from, std::span<const StitchSurface* const> other
           }
         }
       }
+      const Line line(p, normal);
       float feather = 0;
       found.clear();
       for (const auto& [k, start] : starts) {
         const StitchSurface& other = *others[k];
-        LineProjector line(other, p, normal);
-        Projection q;
-        const std::int64_t cell = likely_cell(start, other, p);
-        if (cell >= 0 &&
-            normal.dot(other.normal(static_cast<std::size_t>(cell))) > pairs[k]->min_normal_cos) {
-          q = line.in_cell(surfaces[k], static_cast<std::size_t>(cell));
-        }
-        if (!(q.weight > 0)) {
+        const auto [row, col] = start.place_of(p);
+        Projection q = LineProjector(other, line).from_cell(row, col);
+        if (q.weight > 0 && !(std::abs(q.along_mm) <= pairs[k]->reach_mm &&
+                              normal.dot(other.normal(q.sample)) > pairs[k]->min_normal_cos)) {
+          // Another fold of the surface: from the nearest sample that looks the same way there is a way to
+          // the right one.
           const std::int64_t j = pair_of(from, i, start, other, *pairs[k]);
-          if (j < 0) {
-            continue;
-          }
-          q = line.around(surfaces[k], static_cast<std::size_t>(j));
+          q = j < 0
+                  ? Projection()
+                  : LineProjector(other, line)
+                        .from_cell(static_cast<float>(other.lattice.sample_row(static_cast<std::size_t>(j))),
+                                   static_cast<float>(other.lattice.sample_col(static_cast<std::size_t>(j))));
         }
         if (q.weight > 0 && std::abs(q.along_mm) <= pairs[k]->reach_mm) {
           found.emplace_back(k, q);

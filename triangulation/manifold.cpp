@@ -3,24 +3,20 @@
 #include "triangulation/manifold.h"
 
 #include <algorithm>
+#include <array>
+#include <functional>
 #include <limits>
-#include <numeric>
 
+#include "core/disjoint_sets.h"
 #include "core/parallel.h"
+#include "core/parallel_erase.h"
 
 namespace dubsar {
 
 namespace {
 
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
-
-std::uint32_t find_root(std::vector<std::uint32_t>& parent, std::uint32_t i) {
-  while (parent[i] != i) {
-    parent[i] = parent[parent[i]];
-    i = parent[i];
-  }
-  return i;
-}
+constexpr std::size_t kGrain = 16384;
 
 /// The corner of the face at which it touches the vertex.
 int corner_of(const Triangle& f, std::uint32_t vertex) {
@@ -84,24 +80,30 @@ HalfEdges::HalfEdges(std::span<const Triangle> faces, std::size_t vertex_count,
                      std::span<const std::uint8_t> only)
     : start_(vertex_count + 1, 0) {
   const auto takes = [&](std::uint32_t v) { return only.empty() || only[v] != 0; };
-  for (const Triangle& f : faces) {
-    for (const std::uint32_t v : f) {
-      start_[v + 1] += takes(v) ? 1 : 0;
+  parallel_ranges(vertex_count, [&](std::size_t begin, std::size_t end) {
+    for (const Triangle& f : faces) {
+      for (const std::uint32_t v : f) {
+        if (v >= begin && v < end && takes(v)) {
+          ++start_[v + 1];
+        }
+      }
     }
-  }
+  });
   for (std::size_t v = 0; v < vertex_count; ++v) {
     start_[v + 1] += start_[v];
   }
   out_.resize(start_.back());
   std::vector<std::uint32_t> next(start_.begin(), start_.end() - 1);
-  for (std::size_t i = 0; i < faces.size(); ++i) {
-    const Triangle& f = faces[i];
-    for (std::size_t k = 0; k < 3; ++k) {
-      if (takes(f[k])) {
-        out_[next[f[k]]++] = {f[(k + 1) % 3], static_cast<std::uint32_t>(i)};
+  parallel_ranges(vertex_count, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = 0; i < faces.size(); ++i) {
+      const Triangle& f = faces[i];
+      for (std::size_t k = 0; k < 3; ++k) {
+        if (f[k] >= begin && f[k] < end && takes(f[k])) {
+          out_[next[f[k]]++] = {f[(k + 1) % 3], static_cast<std::uint32_t>(i)};
+        }
       }
     }
-  }
+  });
 }
 
 std::vector<std::uint8_t> rim_vertices(std::span<const Triangle> faces, std::size_t vertex_count) {
@@ -112,18 +114,24 @@ std::vector<std::uint8_t> rim_vertices(std::span<const Triangle> faces, std::siz
     return x ^ (x >> 31U);
   };
   std::vector<std::uint64_t> heads_less_tails(vertex_count, 0);
-  for (const Triangle& f : faces) {
-    const std::uint64_t h0 = hash(f[0]);
-    const std::uint64_t h1 = hash(f[1]);
-    const std::uint64_t h2 = hash(f[2]);
-    heads_less_tails[f[0]] += h1 - h2;
-    heads_less_tails[f[1]] += h2 - h0;
-    heads_less_tails[f[2]] += h0 - h1;
-  }
   std::vector<std::uint8_t> rim(vertex_count);
-  for (std::size_t v = 0; v < vertex_count; ++v) {
-    rim[v] = heads_less_tails[v] != 0 ? 1 : 0;
-  }
+  parallel_ranges(vertex_count, [&](std::size_t begin, std::size_t end) {
+    const auto is_here = [&](std::uint32_t v) { return v >= begin && v < end; };
+    for (const Triangle& f : faces) {
+      if (!is_here(f[0]) && !is_here(f[1]) && !is_here(f[2])) {
+        continue;
+      }
+      const std::array<std::uint64_t, 3> h = {hash(f[0]), hash(f[1]), hash(f[2])};
+      for (std::size_t k = 0; k < 3; ++k) {
+        if (is_here(f[k])) {
+          heads_less_tails[f[k]] += h[(k + 1) % 3] - h[(k + 2) % 3];
+        }
+      }
+    }
+    for (std::size_t v = begin; v < end; ++v) {
+      rim[v] = heads_less_tails[v] != 0 ? 1 : 0;
+    }
+  });
   return rim;
 }
 
@@ -145,29 +153,44 @@ std::int64_t HalfEdges::face(std::uint32_t a, std::uint32_t b) const {
 }
 
 FaceComponents face_components(std::span<const Triangle> faces, const HalfEdges& edges) {
-  std::vector<std::uint32_t> parent(faces.size());
-  std::iota(parent.begin(), parent.end(), 0U);
-  for (std::size_t i = 0; i < faces.size(); ++i) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::int64_t other = edges.face(faces[i][(k + 1) % 3], faces[i][k]);
-      if (other >= 0) {
-        const std::uint32_t a = find_root(parent, static_cast<std::uint32_t>(i));
-        const std::uint32_t b = find_root(parent, static_cast<std::uint32_t>(other));
-        parent[std::max(a, b)] = std::min(a, b);
-      }
-    }
-  }
+  DisjointSets sets(faces.size());
+  parallel_for_each_index(
+      faces.size(),
+      [&](std::size_t i) {
+        for (std::size_t k = 0; k < 3; ++k) {
+          const std::int64_t other = edges.face(faces[i][(k + 1) % 3], faces[i][k]);
+          if (other >= 0) {
+            sets.unite(static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(other));
+          }
+        }
+      },
+      kGrain);
+  using Roots = std::vector<std::uint32_t>;
   FaceComponents out;
   out.of_face.resize(faces.size());
-  for (std::size_t i = 0; i < faces.size(); ++i) {
-    const std::uint32_t root = find_root(parent, static_cast<std::uint32_t>(i));
-    if (root == i) {
-      out.of_face[i] = static_cast<std::uint32_t>(out.sizes.size());
-      out.sizes.push_back(0);
-    } else {
-      out.of_face[i] = out.of_face[root];
+  const Roots roots = parallel_reduce_ordered(
+      faces.size(), kGrain, Roots{},
+      [&](std::size_t begin, std::size_t end) {
+        Roots found;
+        for (auto i = static_cast<std::uint32_t>(begin); i < end; ++i) {
+          out.of_face[i] = sets.root(i);
+          if (out.of_face[i] == i) {
+            found.push_back(i);
+          }
+        }
+        return found;
+      },
+      [](Roots& total, const Roots& part) { total.insert(total.end(), part.begin(), part.end()); });
+  out.sizes.assign(roots.size(), 0);
+  std::uint32_t root = kNone;
+  std::uint32_t component = 0;
+  for (std::uint32_t& of_face : out.of_face) {
+    if (of_face != root) {
+      root = of_face;
+      component = static_cast<std::uint32_t>(std::ranges::lower_bound(roots, root) - roots.begin());
     }
-    ++out.sizes[out.of_face[i]];
+    of_face = component;
+    ++out.sizes[component];
   }
   return out;
 }
@@ -176,14 +199,26 @@ std::vector<std::vector<std::uint32_t>> boundary_loops(std::span<const Triangle>
                                                        const HalfEdges& edges) {
   std::vector<std::vector<std::uint32_t>> loops;
   std::vector<std::uint8_t> walked(3 * faces.size(), 0);
-  for (std::size_t i = 0; i < faces.size(); ++i) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      if (walked[3 * i + k] != 0 || edges.face(faces[i][(k + 1) % 3], faces[i][k]) >= 0) {
-        continue;
-      }
+  using Starts = std::vector<std::size_t>;  // 3 face + corner
+  const Starts open = parallel_reduce_ordered(
+      faces.size(), kGrain, Starts{},
+      [&](std::size_t begin, std::size_t end) {
+        Starts found;
+        for (std::size_t i = begin; i < end; ++i) {
+          for (std::size_t k = 0; k < 3; ++k) {
+            if (edges.face(faces[i][(k + 1) % 3], faces[i][k]) < 0) {
+              found.push_back(3 * i + k);
+            }
+          }
+        }
+        return found;
+      },
+      [](Starts& total, const Starts& part) { total.insert(total.end(), part.begin(), part.end()); });
+  for (const std::size_t start : open) {
+    if (walked[start] == 0) {
       std::vector<std::uint32_t> loop;
-      std::size_t face = i;
-      std::size_t corner = k;
+      std::size_t face = start / 3;
+      std::size_t corner = start % 3;
       while (walked[3 * face + corner] == 0) {
         walked[3 * face + corner] = 1;
         loop.push_back(faces[face][corner]);
@@ -208,7 +243,7 @@ std::vector<std::vector<std::uint32_t>> boundary_loops(std::span<const Triangle>
 
 std::vector<std::uint32_t> make_manifold(std::vector<Triangle>& faces, std::size_t vertex_count,
                                          std::span<const std::uint8_t> only) {
-  std::erase_if(faces, [](const Triangle& f) { return f[0] == f[1] || f[1] == f[2] || f[2] == f[0]; });
+  erase_where(faces, [](const Triangle& f) { return f[0] == f[1] || f[1] == f[2] || f[2] == f[0]; });
   HalfEdges edges(faces, vertex_count, only);
   // Which vertices have a half-edge twice is found in parallel; which face yields, in order.
   const bool repeated = parallel_reduce_ordered(
@@ -312,29 +347,39 @@ std::vector<std::uint32_t> make_manifold(std::vector<Triangle>& faces, std::size
 
 void compact_vertices(Mesh& mesh) {
   std::vector<std::uint32_t> target(mesh.positions.size(), kNone);
-  for (const Triangle& f : mesh.faces) {
-    for (const std::uint32_t v : f) {
-      target[v] = 0;
+  parallel_ranges(target.size(), [&](std::size_t begin, std::size_t end) {
+    for (const Triangle& f : mesh.faces) {
+      for (const std::uint32_t v : f) {
+        if (v >= begin && v < end) {
+          target[v] = 0;
+        }
+      }
     }
-  }
+  });
   std::uint32_t count = 0;
   for (std::uint32_t& t : target) {
     if (t != kNone) {
       t = count++;
     }
   }
-  keep_entries(mesh.positions, target);
-  keep_entries(mesh.normals, target);
-  keep_entries(mesh.reliability, target);
-  keep_entries(mesh.sigma_mm, target);
-  keep_entries(mesh.scans, target);
-  keep_entries(mesh.flags, target);
-  keep_entries(mesh.colours, target);
-  for (Triangle& f : mesh.faces) {
-    for (std::uint32_t& v : f) {
-      v = target[v];
-    }
+  if (count == target.size()) {
+    return;
   }
+  const std::array<std::function<void()>, 7> arrays = {
+      [&] { keep_entries(mesh.positions, target); },   [&] { keep_entries(mesh.normals, target); },
+      [&] { keep_entries(mesh.reliability, target); }, [&] { keep_entries(mesh.sigma_mm, target); },
+      [&] { keep_entries(mesh.scans, target); },       [&] { keep_entries(mesh.flags, target); },
+      [&] { keep_entries(mesh.colours, target); }};
+  parallel_for_each_index(
+      arrays.size(), [&](std::size_t k) { arrays[k](); }, 1);
+  parallel_for_each_index(
+      mesh.faces.size(),
+      [&](std::size_t i) {
+        for (std::uint32_t& v : mesh.faces[i]) {
+          v = target[v];
+        }
+      },
+      kGrain);
 }
 
 }  // namespace dubsar

@@ -19,12 +19,10 @@ struct OwnershipOptions {
   /// Samples of another scan stay this far, × the coarser µ, from a patch that is kept: the seam between them
   /// is closed by triangles of about the size of the grid's own.
   double clearance_factor = 0.65;
-  /// The same for samples that fill places which no primary scan has covered: narrower ones are left to
-  /// seams.
-  double cover_clearance_factor = 0.9;
-  /// How far around a pair's sample the kept patch of the other scan is looked at, samples.
-  int look_around_samples = 2;
 };
+
+/// How far around a pair's sample the kept patch of the other scan is looked at.
+inline constexpr int kLookAroundSamples = 2;
 
 inline constexpr std::uint8_t kAllAroundKept = 2;
 
@@ -39,7 +37,7 @@ struct OwnedScan {
   std::vector<std::size_t> other;
   std::vector<std::uint8_t> kept;   ///< out: 1 where the sample is a vertex of the stitched mesh
   std::vector<std::uint8_t> cells;  ///< out: CellBit codes of the triangles that are kept
-  /// 1 where a kept sample lies within look_around_samples: most of what is asked about others ends here.
+  /// 1 where a kept sample lies within kLookAroundSamples: most of what is asked about others ends here.
   /// kAllAroundKept where triangles lie all around it.
   std::vector<std::uint8_t> near_kept;
   std::vector<std::uint8_t> some_kept;  ///< by node: 1 where a sample of its block is kept

@@ -16,6 +16,7 @@ using Eigen::Vector3f;
 
 constexpr std::uint8_t kBoth = kCellFirst | kCellSecond;
 constexpr std::size_t kGrain = 2048;
+constexpr std::size_t kContestGrain = 64;  ///< nodes: where there is a contest, each is much work
 
 /// Mean of the four nodes around a sample, those that hold samples.
 class NodeInterpolation {
@@ -88,34 +89,33 @@ void add_samples(std::vector<OwnedScan>& scans, std::size_t self, std::vector<st
       },
       16384);
   triangulate_cells_anew(g, kept, scan.surface->mirrored, grid, anew, cells);
-  parallel_for_each_index(
-      contest.any.size(),
-      [&](std::size_t node) {
-        if (contest.any[node] == 0) {
+  parallel_chunks(contest.any.size(), kContestGrain, [&](std::size_t begin, std::size_t end) {
+    NodeContest here(scans, self, contest, options);
+    for (std::size_t node = begin; node < end; ++node) {
+      if (contest.any[node] == 0) {
+        continue;
+      }
+      here.enter(node);
+      lattice.for_each_sample(node, [&](std::size_t i) {
+        if (anew[i] == 0) {
           return;
         }
-        lattice.for_each_sample(node, [&](std::size_t i) {
-          if (anew[i] == 0) {
-            return;
+        std::uint8_t& cell = cells[i];
+        const int row = lattice.sample_row(i);
+        const int col = lattice.sample_col(i);
+        for (int which = 0; (cell & kBoth) != 0 && which < 2; ++which) {
+          const std::uint8_t bit = which == 0 ? kCellFirst : kCellSecond;
+          if ((cell & bit) != 0 && here.meets_another(points, cell_triangle(g, row, col, cell, which))) {
+            cell = static_cast<std::uint8_t>(cell & ~bit);
           }
-          std::uint8_t& cell = cells[i];
-          const int row = lattice.sample_row(i);
-          const int col = lattice.sample_col(i);
-          for (int which = 0; (cell & kBoth) != 0 && which < 2; ++which) {
-            const std::uint8_t bit = which == 0 ? kCellFirst : kCellSecond;
-            if ((cell & bit) != 0 &&
-                meets_another(scans, self, points, cell_triangle(g, row, col, cell, which), contest,
-                              options)) {
-              cell = static_cast<std::uint8_t>(cell & ~bit);
-            }
-          }
-        });
-      },
-      64);
+        }
+      });
+    }
+  });
   remove_specks(kept, cells, fresh, lattice, least_patch);
   scan.kept = std::move(kept);
   scan.cells = std::move(cells);
-  settle_patches(scan, options);
+  settle_patches(scan);
 }
 
 /// Samples that nobody keeps, nor lies over.
@@ -128,6 +128,7 @@ std::vector<std::uint32_t> uncovered_samples(const std::vector<OwnedScan>& scans
       lattice.size(), 256, Samples{},
       [&](std::size_t begin, std::size_t end) {
         Samples found;
+        NodeContest here(scans, self, contest, options);
         for (std::size_t node = begin; node < end; ++node) {
           if (scan.surface->node_sample[node] < 0 || scan.all_kept[node] != 0) {
             continue;
@@ -144,9 +145,9 @@ std::vector<std::uint32_t> uncovered_samples(const std::vector<OwnedScan>& scans
           if (covered) {
             continue;
           }
+          here.enter(node);
           lattice.for_each_sample(node, [&](std::size_t i) {
-            if (scan.surface->usable[i] != 0 && scan.kept[i] == 0 &&
-                !is_taken(scans, self, i, contest, options.clearance_factor, options)) {
+            if (scan.surface->usable[i] != 0 && scan.kept[i] == 0 && !here.is_taken(i)) {
               found.push_back(static_cast<std::uint32_t>(i));
             }
           });
@@ -212,18 +213,16 @@ bool assign_owners(std::vector<OwnedScan>& scans, const GridTriangulationOptions
     job.progress("assign primary scans", static_cast<double>(self) / steps);
     const Contest contest = contest_of(scans, self);
     std::vector<std::uint8_t> fresh = *scans[self].wanted;
-    parallel_for_each_index(
-        contest.any.size(),
-        [&](std::size_t node) {
-          if (contest.any[node] != 0) {
-            scans[self].surface->lattice.for_each_sample(node, [&](std::size_t i) {
-              fresh[i] =
-                  fresh[i] != 0 && !is_taken(scans, self, i, contest, options.clearance_factor, options) ? 1
-                                                                                                         : 0;
-            });
-          }
-        },
-        64);
+    parallel_chunks(contest.any.size(), kContestGrain, [&](std::size_t begin, std::size_t end) {
+      NodeContest here(scans, self, contest, options);
+      for (std::size_t node = begin; node < end; ++node) {
+        if (contest.any[node] != 0) {
+          here.enter(node);
+          scans[self].surface->lattice.for_each_sample(
+              node, [&](std::size_t i) { fresh[i] = fresh[i] != 0 && !here.is_taken(i) ? 1 : 0; });
+        }
+      }
+    });
     add_samples(scans, self, std::move(fresh), contest, grid, options, options.least_wanted_patch_samples);
   }
   // What nobody keeps goes to the first scan that has it.

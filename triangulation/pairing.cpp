@@ -234,15 +234,6 @@ bool may_pair(const StitchSurface& from, std::size_t sample, const StitchSurface
          from.normal(sample).dot(to.normal(other)) > pairs.min_normal_cos;
 }
 
-std::int64_t likely_cell(const PairStart& start, const StitchSurface& to, const Vector3f& p) {
-  const auto [row, col] = start.place_of(p);
-  if (!(row >= 0 && col >= 0 && row < static_cast<float>(to.lattice.rows - 1) &&
-        col < static_cast<float>(to.lattice.cols - 1))) {
-    return -1;
-  }
-  return static_cast<std::int64_t>(row) * to.lattice.cols + static_cast<std::int64_t>(col);
-}
-
 std::int64_t likely_sample(const PairStart& start, const StitchSurface& to, const Vector3f& p) {
   const auto [row, col] = start.place_of(p);
   const auto r = static_cast<int>(std::clamp(row + 0.5F, 0.0F, static_cast<float>(to.lattice.rows - 1)));

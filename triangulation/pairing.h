@@ -66,11 +66,6 @@ struct PairStart {
 [[nodiscard]] PairStart pair_start(const StitchSurface& from, std::size_t node, const StitchSurface& to,
                                    const Pairs& pairs);
 
-/// The cell of `to` in which p is likely to lie, by its first sample; -1 where there is none to name. Cheaper
-/// than pair_of(), and mostly right.
-[[nodiscard]] std::int64_t likely_cell(const PairStart& start, const StitchSurface& to,
-                                       const Eigen::Vector3f& p);
-
 /// The sample of `to` that is likely to be nearest to p, or -1.
 [[nodiscard]] std::int64_t likely_sample(const PairStart& start, const StitchSurface& to,
                                          const Eigen::Vector3f& p);

@@ -3,6 +3,7 @@
 #include "triangulation/part_cells.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "core/parallel.h"
 
@@ -13,6 +14,7 @@ namespace {
 using Eigen::Vector3f;
 using Positions = std::span<const Vector3f>;
 using Face = std::array<std::uint32_t, 3>;
+constexpr std::size_t kGrain = 16384;
 
 /// What part lies in each cell of a coarse raster, by hashing.
 class PartCells {
@@ -22,10 +24,18 @@ class PartCells {
   PartCells(const Vector3f& low, float cell_mm) : low_(low), per_mm_(1.0F / cell_mm), slots_(1U << 12U) {}
 
   [[nodiscard]] std::uint64_t key_of(const Vector3f& p) const {
-    const auto at = [&](int k) {
-      return static_cast<std::uint64_t>(std::clamp((p[k] - low_[k]) * per_mm_ + 1.0F, 1.0F, kMostCell));
-    };
-    return at(2) << (2 * kAxisBits) | at(1) << kAxisBits | at(0);
+    return key_of(cell(p, 0), cell(p, 1), cell(p, 2));
+  }
+  /// visit(key) for all cells that a box touches.
+  template <class Visit>
+  void for_each_key(const Eigen::AlignedBox3f& box, const Visit& visit) const {
+    for (std::uint64_t z = cell(box.min(), 2); z <= cell(box.max(), 2); ++z) {
+      for (std::uint64_t y = cell(box.min(), 1); y <= cell(box.max(), 1); ++y) {
+        for (std::uint64_t x = cell(box.min(), 0); x <= cell(box.max(), 0); ++x) {
+          visit(key_of(x, y, z));
+        }
+      }
+    }
   }
   void add(std::uint64_t key, std::uint32_t part) {
     if (2 * (count_ + 1) > slots_.size()) {
@@ -72,6 +82,13 @@ class PartCells {
   }
 
  private:
+  [[nodiscard]] std::uint64_t cell(const Vector3f& p, int axis) const {
+    return static_cast<std::uint64_t>(std::clamp((p[axis] - low_[axis]) * per_mm_ + 1.0F, 1.0F, kMostCell));
+  }
+  [[nodiscard]] static std::uint64_t key_of(std::uint64_t x, std::uint64_t y, std::uint64_t z) {
+    return z << (2 * kAxisBits) | y << kAxisBits | x;
+  }
+
   static constexpr unsigned kAxisBits = 21;
   static constexpr float kMostCell = 2.0e6F;
   static constexpr std::uint64_t kEmpty = ~std::uint64_t{0};
@@ -100,30 +117,44 @@ class PartCells {
 
 }  // namespace
 
+namespace {
+
+/// Calls visit(key) for the cells that a face may lie in: that of its middle, or all that its box touches
+/// where it is larger than a cell.
+template <class Visit>
+void for_each_cell(const PartCells& cells, const Eigen::AlignedBox3f& box, float cell_mm,
+                   const Visit& visit) {
+  if (box.sizes().maxCoeff() <= cell_mm) {
+    visit(cells.key_of(box.center()));
+  } else {
+    cells.for_each_key(box, visit);
+  }
+}
+
+}  // namespace
+
 std::vector<std::uint32_t> faces_at_stake(Positions positions, std::span<const Face> faces,
                                           std::span<const std::uint32_t> part_of_face,
                                           const Eigen::AlignedBox3f& all, float cell_mm) {
   PartCells cells(all.min(), cell_mm);
-  std::vector<std::uint64_t> keys(faces.size());
-  parallel_for_each_index(
-      faces.size(), [&](std::size_t i) { keys[i] = cells.key_of(box_of(positions, faces[i]).center()); },
-      4096);
-  for (std::size_t i = 0; i < faces.size(); ++i) {
-    if (i == 0 || keys[i] != keys[i - 1] || part_of_face[i] != part_of_face[i - 1]) {
-      cells.add(keys[i], part_of_face[i]);
-    }
-    const Eigen::AlignedBox3f box = box_of(positions, faces[i]);
-    if (box.sizes().maxCoeff() > cell_mm) {
-      // It may meet faces of cells that do not touch that of its middle.
-      const Vector3f high = box.max() + Vector3f::Constant(cell_mm);
-      for (float z = box.min().z() - cell_mm; z < high.z() + cell_mm; z += cell_mm) {
-        for (float y = box.min().y() - cell_mm; y < high.y() + cell_mm; y += cell_mm) {
-          for (float x = box.min().x() - cell_mm; x < high.x() + cell_mm; x += cell_mm) {
-            cells.add(cells.key_of({x, y, z}), PartCells::kMixed);
-          }
+  using Entries = std::vector<std::pair<std::uint64_t, std::uint32_t>>;
+  const Entries entries = parallel_reduce_ordered(
+      faces.size(), kGrain, Entries{},
+      [&](std::size_t begin, std::size_t end) {
+        Entries found;
+        for (std::size_t i = begin; i < end; ++i) {
+          for_each_cell(cells, box_of(positions, faces[i]), cell_mm, [&](std::uint64_t key) {
+            const std::pair entry(key, part_of_face[i]);
+            if (found.empty() || found.back() != entry) {  // faces beside each other mostly share theirs
+              found.push_back(entry);
+            }
+          });
         }
-      }
-    }
+        return found;
+      },
+      [](Entries& total, const Entries& part) { total.insert(total.end(), part.begin(), part.end()); });
+  for (const auto& [key, part] : entries) {
+    cells.add(key, part);
   }
   std::vector<std::uint8_t> calm(cells.slot_count(), 0);
   parallel_for_each_index(
@@ -132,17 +163,27 @@ std::vector<std::uint32_t> faces_at_stake(Positions positions, std::span<const F
         calm[slot] = cells.is_used(slot) && cells.is_calm(cells.key_in(slot)) ? 1 : 0;
       },
       4096);
-  std::vector<std::uint32_t> out;
-  std::size_t slot = 0;
-  for (std::size_t i = 0; i < faces.size(); ++i) {
-    if (i == 0 || keys[i] != keys[i - 1]) {
-      slot = cells.slot_of(keys[i]);
-    }
-    if (calm[slot] == 0) {
-      out.push_back(static_cast<std::uint32_t>(i));
-    }
-  }
-  return out;
+  using Faces = std::vector<std::uint32_t>;
+  return parallel_reduce_ordered(
+      faces.size(), kGrain, Faces{},
+      [&](std::size_t begin, std::size_t end) {
+        Faces found;
+        std::uint64_t last_key = 0;  // of no cell
+        bool last_calm = false;
+        for (std::size_t i = begin; i < end; ++i) {
+          bool at_stake = false;
+          for_each_cell(cells, box_of(positions, faces[i]), cell_mm, [&](std::uint64_t key) {
+            last_calm = key == last_key ? last_calm : calm[cells.slot_of(key)] != 0;
+            last_key = key;
+            at_stake = at_stake || !last_calm;
+          });
+          if (at_stake) {
+            found.push_back(static_cast<std::uint32_t>(i));
+          }
+        }
+        return found;
+      },
+      [](Faces& total, const Faces& part) { total.insert(total.end(), part.begin(), part.end()); });
 }
 
 }  // namespace dubsar

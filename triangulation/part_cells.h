@@ -20,8 +20,8 @@ namespace dubsar {
 }
 
 /// The faces that have a face of another part, or one of part 0, near them, in order; all others can only
-/// touch faces of their own part. `all`: a box around everything; cell_mm: about the size of most faces,
-/// larger ones count as being near whatever they may touch.
+/// touch faces of their own part. `all`: a box around everything; cell_mm: not below the size of most faces;
+/// larger ones take time.
 [[nodiscard]] std::vector<std::uint32_t> faces_at_stake(std::span<const Eigen::Vector3f> positions,
                                                         std::span<const std::array<std::uint32_t, 3>> faces,
                                                         std::span<const std::uint32_t> part_of_face,

@@ -128,7 +128,7 @@ void remove_specks(std::vector<std::uint8_t>& kept, const std::vector<std::uint8
   }
 }
 
-void settle_patches(OwnedScan& scan, const OwnershipOptions& options) {
+void settle_patches(OwnedScan& scan) {
   const GridSurface g = scan.surface->surface();
   // Cells of removed specks lose their corners, so their triangles go too.
   parallel_for_each_index(
@@ -149,7 +149,7 @@ void settle_patches(OwnedScan& scan, const OwnershipOptions& options) {
       },
       16);
   drop_unused(scan, g);
-  scan.near_kept = dilated(scan.kept, g.rows, g.cols, options.look_around_samples);
+  scan.near_kept = dilated(scan.kept, g.rows, g.cols, kLookAroundSamples);
   mark_within(scan);
   count_kept(scan);
 }

@@ -16,7 +16,7 @@ void remove_specks(std::vector<std::uint8_t>& kept, const std::vector<std::uint8
 
 /// Takes away the triangles that lack a corner, then the samples that no triangle uses; and brings what the
 /// scan tells others of its patches (near_kept, some_kept, all_kept) up to date.
-void settle_patches(OwnedScan& scan, const OwnershipOptions& options);
+void settle_patches(OwnedScan& scan);
 
 /// 1 within `radius` (a square) of a mark.
 [[nodiscard]] std::vector<std::uint8_t> dilated(const std::vector<std::uint8_t>& marks, int height, int width,

@@ -33,6 +33,26 @@ struct Entry {
   }
 };
 
+/// The samples that it wants and that have not been averaged yet, node by node.
+std::vector<std::uint32_t> unfused(const Entry& entry) {
+  using Samples = std::vector<std::uint32_t>;
+  const Lattice& lattice = entry.surface.lattice;
+  return parallel_reduce_ordered(
+      lattice.size(), 1024, Samples{},
+      [&](std::size_t begin, std::size_t end) {
+        Samples found;
+        for (std::size_t node = begin; node < end; ++node) {
+          lattice.for_each_sample(node, [&](std::size_t i) {
+            if (entry.wanted[i] != 0 && entry.fused.slot[i] == FusedSamples::kNone) {
+              found.push_back(static_cast<std::uint32_t>(i));
+            }
+          });
+        }
+        return found;
+      },
+      [](Samples& total, const Samples& part) { total.insert(total.end(), part.begin(), part.end()); });
+}
+
 std::string name_of(const PlacedScan& scan) {
   return "scan " + std::to_string(scan.id);
 }
@@ -176,15 +196,7 @@ struct Stitcher::Impl {
         const std::vector<std::uint8_t> anew =
             dilated(entry.changed, lattice.node_rows, lattice.node_cols, 1);
         entry.fused.forget_if([&](std::uint32_t i) { return anew[lattice.node_of(i)] != 0; });
-        std::vector<std::uint32_t> which;
-        for (std::size_t node = 0; node < lattice.size(); ++node) {
-          lattice.for_each_sample(node, [&](std::size_t i) {
-            if (entry.wanted[i] != 0 && entry.fused.slot[i] == FusedSamples::kNone) {
-              which.push_back(static_cast<std::uint32_t>(i));
-            }
-          });
-        }
-        scans[at].fuse(which);
+        scans[at].fuse(unfused(entry));
         entry.changed.clear();
       }
       // What an earlier mesh needed besides must not show in the next.

@@ -75,8 +75,9 @@ Result<std::optional<ScriptPlayer>> load_script(const std::filesystem::path& fil
 /// One run of the window.
 class StationWindow {
  public:
-  StationWindow(GlWindow window, const StationWindowOptions& options, std::optional<ScriptPlayer> script)
-      : window_(std::move(window)), gui_(window_.handle()), script_(std::move(script)) {
+  StationWindow(GlWindow window, const StationWindowOptions& options, std::optional<ScriptPlayer> script,
+                double opened_s)
+      : window_(std::move(window)), gui_(window_.handle()), script_(std::move(script)), opened_s_(opened_s) {
     preferences_file_ = script_ ? std::filesystem::path() : preferences_file();
     ui_.preferences = read_preferences(preferences_file_);
     if (const auto language = language_of(options.language)) {
@@ -129,6 +130,10 @@ class StationWindow {
         return std::unexpected(taken.error());
       }
       glfwSwapBuffers(window_.handle());
+      if (!seen_ && ui_.facts.contains("shown")) {
+        seen_ = true;
+        log_debug(fmt::format("first picture of the mesh: {:.2f} s", now_s() - opened_s_));
+      }
       if (script_ && script_->is_dragging()) {
         longest_drag_s_ = std::max(longest_drag_s_, now_s() - frame_began);
       }
@@ -243,6 +248,8 @@ class StationWindow {
   std::filesystem::path preferences_file_;
   float loaded_px_ = 0;
   double longest_drag_s_ = 0;
+  double opened_s_;
+  bool seen_ = false;   ///< a mesh in the viewer
   bool looks_ = false;  ///< the viewer; else the operator's screen
   std::filesystem::path session_folder_;
   // The screens go before the context does.
@@ -257,6 +264,7 @@ class StationWindow {
 }  // namespace
 
 Result<int> run_station_window(const StationWindowOptions& options, JobContext& job) {
+  const double opened_s = now_s();
   auto script = load_script(options.script);
   if (!script) {
     return std::unexpected(script.error());
@@ -266,7 +274,7 @@ Result<int> run_station_window(const StationWindowOptions& options, JobContext& 
     return std::unexpected(window.error());
   }
   log_debug("drawn by " + window->renderer());
-  StationWindow station(std::move(*window), options, std::move(*script));
+  StationWindow station(std::move(*window), options, std::move(*script), opened_s);
   return station.run(job);
 }
 

@@ -40,6 +40,11 @@ constexpr const char* kKinds[] = {"delete", "merge", "split", "add"};
 
 Result<std::vector<Eigen::Vector3d>> depth_points(const std::string& wedges_json,
                                                   const std::vector<int>& ids) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(wedges_json, ignored)) {
+    return fail(ErrorKind::kUsage, "the wedges whose ids are named have not been found yet", wedges_json,
+                "run `dubsar analyze MESH -o " + wedges_json + "` first");
+  }
   const Result<WedgeFile> file = read_wedges(wedges_json);
   if (!file) {
     return std::unexpected(file.error());

@@ -12,6 +12,7 @@
 #include <thread>
 
 #include "acquisition/session_files.h"
+#include "acquisition/session_log.h"
 #include "acquisition/session_store.h"
 #include "tests/acquisition/session_support.h"
 #include "tests/support/temporary_folder.h"
@@ -245,6 +246,15 @@ TEST_F(SessionDamageTest, ALogDamagedInItsMiddleIsToldAndATornEndIsNot) {
     EXPECT_FALSE(report.ok()) << at;
     EXPECT_THAT(report.damaged.front().line(), HasSubstr("session.sqlite-wal")) << at;
     flip_byte(log, at);
+  }
+  // Every bit of the heads of frames: a mark of a commit that is a single bit and a salt are among them.
+  for (std::uintmax_t frame = 2; frame < 8; ++frame) {
+    for (std::uintmax_t bit = 0; bit < 24 * 8; ++bit) {
+      const std::uintmax_t at = 32 + frame * kFrame + bit / 8;
+      flip_byte(log, at, 1 << (bit % 8));
+      EXPECT_GT(session::read_log(log).value().lost_commits, 0) << "bit " << bit << " of frame " << frame;
+      flip_byte(log, at, 1 << (bit % 8));
+    }
   }
   // A torn end is what a power cut leaves of a change that was not reported as stored.
   fs::resize_file(log, size - 100);

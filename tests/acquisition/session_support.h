@@ -29,11 +29,11 @@ inline RangeGrid small_grid(int number) {
   return grid;
 }
 
-/// Inverts one byte of a file.
-inline void flip_byte(const std::filesystem::path& path, std::uintmax_t at) {
+/// Inverts bits of one byte of a file.
+inline void flip_byte(const std::filesystem::path& path, std::uintmax_t at, int mask = 0xff) {
   std::fstream file(path, std::ios::in | std::ios::out | std::ios::binary);
   file.seekg(static_cast<std::streamoff>(at));
-  const char byte = static_cast<char>(~file.get());
+  const char byte = static_cast<char>(file.get() ^ mask);
   file.seekp(static_cast<std::streamoff>(at));
   file.put(byte);
 }

@@ -134,6 +134,65 @@ TEST(MeshPly, ReadsBigEndian) {
   EXPECT_EQ(mesh->positions[2], Eigen::Vector3f(1, 1, 0));
 }
 
+/// A band of triangles that many rows are read of at a time.
+Mesh long_band() {
+  Mesh mesh;
+  for (std::uint32_t v = 0; v < 150000; ++v) {
+    mesh.positions.emplace_back(0.01F * static_cast<float>(v), static_cast<float>(v % 2), 0.3F);
+    mesh.reliability.push_back(static_cast<float>(v % 7) / 7);
+    mesh.flags.push_back(static_cast<std::uint8_t>(v % 5));
+    if (v > 1) {
+      mesh.faces.push_back({v - 2, v - 1, v});
+    }
+  }
+  mesh.scans.resize(mesh.positions.size(), 3);
+  mesh.normals = vertex_normals(mesh);
+  return mesh;
+}
+
+TEST(MeshPly, ManyAtOnceAreReadAsOneByOne) {
+  const Mesh mesh = long_band();
+  const std::string bytes = encode_mesh_ply(mesh);
+  const std::string more_faces = "element face " + std::to_string(mesh.faces.size() + 1) + "\n";
+  std::string with_quad = bytes;
+  const std::string counted = "element face " + std::to_string(mesh.faces.size()) + "\n";
+  with_quad.replace(with_quad.find(counted), counted.size(), more_faces);
+  append(with_quad, std::uint8_t{4});
+  for (const std::uint32_t v : {0U, 1U, 2U, 3U}) {
+    append(with_quad, v);
+  }
+  const auto at_once = read_mesh_bytes(bytes, "a.ply");
+  const auto one_by_one = read_mesh_bytes(with_quad, "a.ply");
+  ASSERT_TRUE(at_once) << line_of(at_once);
+  ASSERT_TRUE(one_by_one) << line_of(one_by_one);
+  EXPECT_EQ(at_once->positions, mesh.positions);
+  EXPECT_EQ(at_once->normals, mesh.normals);
+  EXPECT_EQ(at_once->reliability, mesh.reliability);
+  EXPECT_EQ(at_once->flags, mesh.flags);
+  EXPECT_EQ(at_once->faces, mesh.faces);
+  ASSERT_EQ(one_by_one->faces.size(), mesh.faces.size() + 2);
+  EXPECT_TRUE(std::equal(mesh.faces.begin(), mesh.faces.end(), one_by_one->faces.begin()));
+}
+
+TEST(MeshHostile, WhatIsWrongAmongManyPlyRowsIsNamed) {
+  const Mesh mesh = long_band();
+  const std::string bytes = encode_mesh_ply(mesh);
+  constexpr std::size_t kVertexBytes = 7 * 4 + 2;
+  constexpr std::size_t kFaceBytes = 13;
+  const std::size_t faces_at = bytes.size() - mesh.faces.size() * kFaceBytes;
+  const std::size_t vertices_at = faces_at - mesh.positions.size() * kVertexBytes;
+  const auto with = [&](std::size_t at, std::string_view put) {
+    std::string broken = bytes;
+    broken.replace(at, put.size(), put);
+    return line_of(read_mesh_bytes(broken, "a.ply"));
+  };
+  EXPECT_THAT(with(vertices_at + 140001 * kVertexBytes, std::string_view("\0\0\xc0\x7f", 4)),
+              HasSubstr("vertex 140001: its position is not finite"));
+  EXPECT_THAT(with(faces_at + 130002 * kFaceBytes + 5, "\xff\xff\xff\xff"),
+              HasSubstr("face 130002: vertex index -1 is not one of the 150000 vertices"));
+  EXPECT_THAT(with(faces_at + 149997 * kFaceBytes, "\x04"), HasSubstr("ends within face 149997 of 149998"));
+}
+
 TEST(MeshHostile, Ply) {
   const auto ascii = [](const std::string& body) {
     return line_of(read_mesh_bytes("ply\nformat ascii 1.0\n" + kSquare + body, "a.ply"));

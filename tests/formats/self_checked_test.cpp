@@ -32,10 +32,23 @@ TEST(SelfChecked, TheSumIsThatOfXxhsumOverAllBeforeTheComma) {
 
 TEST(SelfChecked, EveryFlippedBitIsSeen) {
   const std::string text = with_own_checksum("{\"name\":\"line 3\",\"ranges\":[[3,2]]}");
-  for (std::size_t bit = 0; bit + 8 < text.size() * 8; ++bit) {  // but for those of the line's end
+  for (std::size_t bit = 0; bit < text.size() * 8; ++bit) {
     std::string damaged = text;
     damaged[bit / 8] = static_cast<char>(damaged[bit / 8] ^ (1 << (bit % 8)));
-    EXPECT_NE(own_checksum_of(damaged), OwnChecksum::kFits) << bit;
+    EXPECT_EQ(own_checksum_of(damaged), OwnChecksum::kFails) << bit;
+  }
+}
+
+TEST(SelfChecked, ADamagedChecksumIsNotTakenForNone) {
+  const std::string text = with_own_checksum("{\"name\":\"line 3\"}");
+  for (std::size_t size = text.find("\":\"", 16) + 3; size + 1 < text.size(); ++size) {
+    EXPECT_EQ(own_checksum_of(text.substr(0, size)), OwnChecksum::kFails) << "cut off after " << size;
+  }
+  EXPECT_EQ(own_checksum_of(text + "}"), OwnChecksum::kFails);
+  for (const char* never_had_one :
+       {R"({"mesh":"tablet.ply","surface_xxh128":"782af462703cbb1f695bbd6be2ca1ae7","selections":[]})",
+        R"({"unit":"mm","corrections":[[1,2,3]]})"}) {
+    EXPECT_EQ(own_checksum_of(never_had_one), OwnChecksum::kNone) << never_had_one;
   }
 }
 

@@ -84,6 +84,10 @@ TEST_F(Correct, WhatCannotBeMadeIsOneLineAndChangesNothing) {
   refused({"--add-at", "nan,2,3", "--reach", "1"}, "no place");
   refused({"--add", "nothing"}, "no selection");
   refused({"--add-at", "500,0,0", "--reach", "1"}, "too few vertices");
+  const Outcome too_soon =
+      run_command({"wedges", "correct", in("tablet.ply"), "-o", in("not_yet.json"), "--delete", "1"});
+  EXPECT_EQ(too_soon.status, 2);
+  EXPECT_THAT(too_soon.err, HasSubstr("dubsar analyze"));
   EXPECT_EQ(bytes(), before);
   EXPECT_FALSE(std::filesystem::exists(corrections_file_of(in("w.json"))) &&
                !read_corrections(corrections_file_of(in("w.json")))->corrections.empty());

@@ -7,9 +7,11 @@
 
 #include <fstream>
 #include <iterator>
+#include <random>
 
 #include "formats/self_checked.h"
 #include "tests/acquisition/session_support.h"
+#include "tests/station/support/byte_flips.h"
 #include "tests/station/support/command.h"
 #include "tests/support/temporary_folder.h"
 
@@ -133,8 +135,22 @@ TEST_F(Verify, WhatAPersonWroteIsCheckedByItsOwnSumAndNeverMadeAnew) {
   test::flip_byte(session_ / name, 20);
   EXPECT_THAT(places(verify(1)["damaged"]), ElementsAre(name));
   EXPECT_THAT(places(verify(1, {"--repair"})["repair"]["beyond"]), ElementsAre(name));
+  fs::resize_file(session_ / name, 0);
+  EXPECT_THAT(places(verify(1)["damaged"]), ElementsAre(name)) << "with nothing left of its checksum";
   EXPECT_EQ(verify(0, {"--repair", "--from", copy.string()})["repair"]["restored"], nlohmann::json({name}));
   EXPECT_EQ(bytes_of(session_ / name), text);
+}
+
+TEST_F(Verify, NoFlippedBitOfAnyFilePasses) {
+  std::ofstream(session_ / "analysis/selections.json") << with_own_checksum("{\"selections\":[]}");
+  const std::uint64_t seed = std::random_device()();
+  Random random(seed);
+  for (const auto& [name, tally] : test::flip_bytes(session_, 12, random)) {
+    EXPECT_THAT(tally.missed, IsEmpty()) << name << ", seed " << seed;
+    EXPECT_EQ(tally.idle, 0U) << name << ", seed " << seed;
+    EXPECT_EQ(tally.tried, std::min<std::uintmax_t>(12, tally.bytes)) << name;
+  }
+  EXPECT_TRUE(test::passes_verification(session_)) << "each was put back";
 }
 
 TEST_F(Verify, TablesAreRebuiltAndTheDamagedOnesKept) {

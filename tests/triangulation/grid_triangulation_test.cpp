@@ -6,7 +6,9 @@
 
 #include <cmath>
 #include <limits>
+#include <set>
 
+#include "core/grid_geometry.h"
 #include "tests/triangulation/support/scans.h"
 #include "triangulation/mesh_check.h"
 
@@ -130,6 +132,56 @@ TEST(GridTriangulation, SurvivesEmptyGridsAndBadNumbers) {
   const MeshReport report = check_mesh(triangulate_grid(bad, {}));
   EXPECT_TRUE(report.is_manifold());
   EXPECT_EQ(report.vertices, 23U);
+}
+
+TEST(GridTriangulation, CellsAreTheSameInEveryPartOfTheGrid) {
+  const RangeGrid grid = test::height_grid(12, 200, 0.1, [](double x, double y) {
+    return 0.15 * std::sin(9 * x + 4 * y) + 0.1 * std::cos(31 * x * y);
+  });
+  const GridGeometry geometry = grid_geometry(grid);
+  std::vector<Eigen::Vector3f> points;
+  std::vector<std::uint8_t> keep;
+  for (std::size_t i = 0; i < grid.size(); ++i) {
+    points.push_back(grid.point(i));
+    keep.push_back(i % 7 != 3 && i % 13 != 5 ? 1 : 0);
+  }
+  const GridSurface whole{grid.rows, grid.cols, grid.spacing_mm, points, geometry.normals, grid.view};
+  const bool mirrored = is_mirrored(whole, keep);
+  const std::vector<std::uint8_t> cells = triangulate_cells(whole, keep, mirrored, {});
+  EXPECT_GT(std::set(cells.begin(), cells.end()).size(), 6U) << "all kinds of cells";
+  // Row by row and from every column on: what is worked on at a time begins elsewhere.
+  for (const int from : {1, 2, 3, 37, 63, 64, 65, 129, 190}) {
+    const int cols = grid.cols - from;
+    std::vector<Eigen::Vector3f> p, n;
+    std::vector<std::uint8_t> k;
+    for (int row = 0; row < grid.rows; ++row) {
+      for (int col = from; col < grid.cols; ++col) {
+        p.push_back(points[grid.index(row, col)]);
+        n.push_back(geometry.normals[grid.index(row, col)]);
+        k.push_back(keep[grid.index(row, col)]);
+      }
+    }
+    const GridSurface part{grid.rows, cols, grid.spacing_mm, p, n, grid.view};
+    const std::vector<std::uint8_t> there = triangulate_cells(part, k, mirrored, {});
+    for (int row = 0; row < grid.rows; ++row) {
+      for (int col = 0; col < cols; ++col) {
+        ASSERT_EQ(there[part.index(row, col)], cells[grid.index(row, from + col)]) << from << ": " << col;
+      }
+    }
+  }
+  // Some cells again, into wrong ones: those alone are mended.
+  std::vector<std::uint8_t> again(cells.size(), 9);
+  std::vector<std::uint8_t> only(cells.size(), 0);
+  for (std::size_t i = 0; i < only.size(); i += 5) {
+    only[i] = 1;
+  }
+  triangulate_cells_anew(whole, keep, mirrored, {}, only, again);
+  for (int row = 0; row + 1 < grid.rows; ++row) {
+    for (int col = 0; col + 1 < grid.cols; ++col) {
+      const std::size_t i = grid.index(row, col);
+      ASSERT_EQ(again[i], only[i] != 0 ? cells[i] : 9) << i;
+    }
+  }
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <epoxy/gl.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "tests/support/raster_mesh.h"
@@ -173,6 +174,32 @@ TEST_F(Selecting, PointsOfTheSurfaceAndOfACloud) {
   ASSERT_TRUE(view_->select(MeshElement::kVertex, box(100, 80, 220, 200), SelectionStep::kUnion, true));
   EXPECT_EQ(count_missing(true), 0U);
   EXPECT_EQ(glGetError(), static_cast<GLenum>(GL_NO_ERROR));
+}
+
+TEST_F(Selecting, EveryLevelOfDetailShowsWhatIsSelected) {
+  ASSERT_EQ(view_->levels(), 2U);
+  const std::vector<Eigen::Vector2f> left = box(60, 50, 190, 250);
+  ASSERT_TRUE(view_->select(MeshElement::kFace, left, SelectionStep::kUnion, true));
+  const std::vector<std::uint32_t> selected = view_->selection()->read();
+  const auto blue_of = [&](std::size_t level) {
+    view_->draw_level(level, camera_, {}, kWidth, kHeight);
+    const Image picture = view_->read();
+    std::vector<bool> blue;
+    for (std::size_t i = 0; i + 2 < picture.bytes.size(); i += 4) {
+      blue.push_back(picture.bytes[i + 2] > picture.bytes[i] + 20);
+    }
+    return blue;
+  };
+  const std::vector<bool> fine = blue_of(1);
+  const std::vector<bool> coarse = blue_of(0);
+  const auto inside = static_cast<double>(std::ranges::count(fine, true));
+  EXPECT_NEAR(inside, 130 * 200, 130 * 200 * 0.02);
+  std::size_t other = 0;
+  for (std::size_t i = 0; i < fine.size(); ++i) {
+    other += fine[i] != coarse[i] ? 1 : 0;
+  }
+  EXPECT_LT(static_cast<double>(other), 0.03 * inside) << "but for the rim";
+  EXPECT_EQ(view_->selection()->read(), selected) << "what is selected is of the whole surface";
 }
 
 TEST_F(Selecting, ASelectionThatWasKeptIsShownAgain) {

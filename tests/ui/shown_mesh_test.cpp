@@ -10,6 +10,8 @@
 #include <set>
 
 #include "tests/support/raster_mesh.h"
+#include "ui/view/face_runs.h"
+#include "ui/view/orbit_camera.h"
 
 namespace dubsar::ui {
 namespace {
@@ -48,17 +50,81 @@ TEST(ShownMesh, KeepsEveryFaceOnceInBlocksThatHoldThem) {
   EXPECT_EQ(shown.normals.size(), mesh.positions.size()) << "made where the mesh has none";
 }
 
-TEST(ShownMesh, TheCoarseSurfaceHasFewFacesNearTheFine) {
-  const Mesh mesh = sheet(700);  // 980 thousand faces
+TEST(ShownMesh, LevelsOfDetailAreInBlocksThatHoldThem) {
+  const Mesh mesh = sheet(900);  // 1.6 million faces
   const ShownMesh shown = shown_mesh(mesh);
-  EXPECT_GT(shown.coarse.size(), kFacesInMotion / 4);
-  EXPECT_LT(shown.coarse.size(), 2 * kFacesInMotion);
-  double area = 0;
-  for (const auto& [a, b, c] : shown.coarse) {
-    const auto& p = shown.positions;
-    area += 0.5 * static_cast<double>((p[b] - p[a]).cross(p[c] - p[a]).norm());
+  ASSERT_EQ(shown.coarser.size(), 2U);
+  for (const ShownLevel& level : shown.coarser) {
+    std::size_t in_blocks = 0;
+    for (const FaceBlock& block : level.blocks) {
+      EXPECT_EQ(block.first, in_blocks);
+      in_blocks += block.count;
+      for (std::uint32_t f = block.first; f < block.first + block.count; ++f) {
+        for (const std::uint32_t v : level.detail.faces[f]) {
+          ASSERT_TRUE(block.box_mm.contains(shown.positions[v]));
+        }
+      }
+    }
+    EXPECT_EQ(in_blocks, level.detail.faces.size());
+    EXPECT_LT(level.detail.from.back(), shown.faces.size());
   }
-  EXPECT_NEAR(area, surface_area_mm2(mesh), 0.03 * surface_area_mm2(mesh));
+}
+
+/// Turning must not cost more for being nearer, and not show less than it could.
+TEST(ShownMesh, SoManyFacesAreInThePictureHoweverNear) {
+  const ShownMesh shown = shown_mesh(sheet(900));
+  std::vector<std::vector<FaceBlock>> levels;
+  for (const ShownLevel& level : shown.coarser) {
+    levels.push_back(level.blocks);
+  }
+  levels.push_back(shown.blocks);
+  OrbitCamera camera;
+  camera.eye_from_model = Eigen::AngleAxisf(0.4F, Eigen::Vector3f::UnitX());
+  camera.fit(shown.box_mm, 1.6F);
+  const std::size_t most = 3 * kFacesInMotion / 2;
+  std::size_t last_level = 0;
+  for (int k = 0; k < 6; ++k, camera.half_height_mm /= 2) {
+    const Eigen::Matrix4f clip_from_model = camera.clip_from_model(1.6F);
+    const std::size_t level = level_within(levels, clip_from_model, most);
+    const std::size_t seen = faces_in(seen_runs(levels[level], clip_from_model));
+    EXPECT_LE(seen, most) << "zoom " << k;
+    if (level + 1 < levels.size()) {
+      EXPECT_GT(faces_in(seen_runs(levels[level + 1], clip_from_model)), most)
+          << "a finer one would have done";
+    }
+    EXPECT_GE(level, last_level) << "zoom " << k;
+    last_level = level;
+  }
+  EXPECT_EQ(last_level, 2U) << "near enough, every face is there";
+}
+
+TEST(ShownMesh, RunsLeaveOutOnlyWhatIsOutside) {
+  const ShownMesh shown = shown_mesh(sheet(250));
+  OrbitCamera camera;
+  camera.eye_from_model = Eigen::AngleAxisf(0.7F, Eigen::Vector3f(1, 2, 0.5F).normalized());
+  camera.fit(shown.box_mm, 1.0F);
+  camera.half_height_mm /= 3;
+  const Eigen::Matrix4f clip_from_model = camera.clip_from_model(1.0F);
+  std::vector<bool> in_runs(shown.faces.size(), false);
+  std::size_t end = 0;
+  for (const FaceRun& run : seen_runs(shown.blocks, clip_from_model)) {
+    EXPECT_TRUE(end == 0 || run.first > end) << "runs that touch are one";
+    end = run.first + run.count;
+    std::fill_n(in_runs.begin() + static_cast<std::ptrdiff_t>(run.first), run.count, true);
+  }
+  std::size_t left_out = 0;
+  for (std::size_t f = 0; f < shown.faces.size(); ++f) {
+    if (!in_runs[f]) {
+      ++left_out;
+      Eigen::AlignedBox2f clip;
+      for (const std::uint32_t v : shown.faces[f]) {
+        clip.extend((clip_from_model * shown.positions[v].homogeneous()).head<2>());
+      }
+      EXPECT_FALSE(clip.intersects(Eigen::AlignedBox2f(Eigen::Vector2f(-1, -1), Eigen::Vector2f(1, 1))) &&
+                   clip.min().cwiseAbs().maxCoeff() < 1);
+    }
+  }
+  EXPECT_GT(left_out, shown.faces.size() / 5);
 }
 
 TEST(ShownMesh, BrokenFacesAreLeftOutAndCounted) {

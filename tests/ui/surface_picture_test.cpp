@@ -25,25 +25,25 @@ constexpr int kWidth = 240;
 constexpr int kHeight = 180;
 
 /// A slab with two wedge-like dents and a bump.
-Mesh dented_slab() {
-  constexpr std::uint32_t kCells = 220;
+Mesh dented_slab(std::uint32_t cells = 220) {
+  const auto side = static_cast<float>(cells);
   Mesh mesh;
   const auto dent = [](float x, float y, float at_x, float at_y, float depth) {
     const float dx = x - at_x;
     const float dy = y - at_y;
     return std::max(0.0F, depth - 0.9F * std::abs(dy) - 0.35F * std::abs(dx - 0.4F * dx * dx / 3));
   };
-  for (std::uint32_t j = 0; j <= kCells; ++j) {
-    for (std::uint32_t i = 0; i <= kCells; ++i) {
-      const float x = -10 + 20 * static_cast<float>(i) / kCells;
-      const float y = -7.5F + 15 * static_cast<float>(j) / kCells;
+  for (std::uint32_t j = 0; j <= cells; ++j) {
+    for (std::uint32_t i = 0; i <= cells; ++i) {
+      const float x = -10 + 20 * static_cast<float>(i) / side;
+      const float y = -7.5F + 15 * static_cast<float>(j) / side;
       const float bump = 1.2F * std::exp(-((x - 5) * (x - 5) + (y + 3) * (y + 3)) / 3);
       const float z = -0.015F * (x * x + y * y) - dent(x, y, -4, 2, 1.5F) - dent(x, y, 2, 3, 1.0F) + bump;
       mesh.positions.emplace_back(x, y, z);
-      mesh.flags.push_back(i > kCells - 20 ? std::uint8_t{kVertexSparse} : std::uint8_t{0});
+      mesh.flags.push_back(i > cells - 20 ? std::uint8_t{kVertexSparse} : std::uint8_t{0});
     }
   }
-  test::add_raster_faces(mesh, 0, kCells);
+  test::add_raster_faces(mesh, 0, cells);
   return mesh;
 }
 
@@ -118,6 +118,44 @@ TEST_F(Shading, SparseVerticesAndDepthShading) {
   look_.overlay = Overlay::kFlags;
   look_.depth_shading = 1.5F;
   expect_as_stored("sparse_depth");
+}
+
+/// Each level of detail against the whole surface, at the zoom that it is there for.
+TEST_F(Shading, LevelsOfDetailLookLikeTheWholeSurfaceWithoutCracks) {
+  const ShownMesh shown = shown_mesh(dented_slab(900));  // 1.6 million faces
+  view_->show(shown);
+  ASSERT_EQ(view_->levels(), 3U);
+  camera_.centre_mm = {0, 1, 0};
+  for (const auto& [zoom, level] : {std::pair{1, 0U}, {2, 1U}, {4, 1U}}) {
+    OrbitCamera camera = camera_;
+    camera.half_height_mm /= static_cast<float>(zoom);
+    const std::size_t most = view_->faces_in_motion();
+    view_->draw(camera, look_, kWidth, kHeight);
+    EXPECT_LE(view_->faces_drawn(), most) << "zoom " << zoom;
+    EXPECT_GE(view_->level_drawn(), level) << "zoom " << zoom;
+    view_->draw_level(level, camera, look_, kWidth, kHeight);
+    const Image rough = view_->read();
+    view_->draw_whole(camera, look_, kWidth, kHeight);
+    const Image whole = view_->read();
+    if (const char* folder = std::getenv("DUBSAR_KEEP_PICTURES"); folder != nullptr) {
+      const std::string name = "level_" + std::to_string(level) + "_zoom_" + std::to_string(zoom) + ".png";
+      ASSERT_TRUE(write_picture(fs::path(folder) / name, rough, name));
+    }
+    double sum = 0;
+    std::size_t cracks = 0;
+    for (std::size_t i = 0; i < whole.bytes.size(); i += 4) {
+      const auto is_ground = [&](const Image& picture) {
+        return picture.bytes[i] < 30 && picture.bytes[i + 1] < 30 && picture.bytes[i + 2] > 28 &&
+               picture.bytes[i + 2] < 34;
+      };
+      cracks += is_ground(rough) && !is_ground(whole) ? 1 : 0;
+      for (std::size_t k = 0; k < 3; ++k) {
+        sum += std::abs(static_cast<int>(whole.bytes[i + k]) - static_cast<int>(rough.bytes[i + k]));
+      }
+    }
+    EXPECT_LT(sum / static_cast<double>(3 * whole.bytes.size() / 4), 6.0) << "zoom " << zoom;
+    EXPECT_LT(cracks, static_cast<std::size_t>(zoom == 1 ? 2 * (kWidth + kHeight) : 1)) << "zoom " << zoom;
+  }
 }
 
 TEST_F(Shading, AShadowTakesLightAndGivesNone) {

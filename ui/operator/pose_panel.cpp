@@ -52,10 +52,10 @@ TurnToMake turn_to_make(const NextView& next) {
 
 void PosePanel::show(const Mesh& mesh, const RigidTransform& /*tablet_from_model*/) {
   ShownMesh shown = shown_mesh(mesh);
-  if (!shown.coarse.empty()) {  // few faces will do
-    shown.faces = std::move(shown.coarse);
-    shown.coarse.clear();
-    shown.blocks = {FaceBlock{0, static_cast<std::uint32_t>(shown.faces.size()), shown.box_mm}};
+  if (!shown.coarser.empty()) {  // few faces will do
+    shown.faces = std::move(shown.coarser.front().detail.faces);
+    shown.blocks = std::move(shown.coarser.front().blocks);
+    shown.coarser.clear();
   }
   box_mm_ = shown.box_mm;
   now_.show(shown);

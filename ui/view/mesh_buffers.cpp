@@ -4,7 +4,6 @@
 
 #include <epoxy/gl.h>
 
-#include <algorithm>
 #include <cstring>
 
 namespace dubsar::ui {
@@ -17,14 +16,6 @@ constexpr GLuint kNormal = 1;
 constexpr GLuint kTraits = 2;
 constexpr GLuint kValue = 3;
 constexpr GLuint kColour = 4;
-
-/// A unit vector in 4 bytes, signed, 10 bits a coordinate.
-std::uint32_t packed(const Eigen::Vector3f& n) {
-  const auto part = [](float x) {
-    return static_cast<std::uint32_t>(static_cast<std::int32_t>(std::clamp(x, -1.0F, 1.0F) * 511.0F)) & 1023U;
-  };
-  return part(n.x()) | (part(n.y()) << 10U) | (part(n.z()) << 20U);
-}
 
 GLuint new_buffer(GLenum target, std::size_t bytes, const void* data) {
   GLuint id = 0;
@@ -43,65 +34,66 @@ const void* at_offset(std::uintptr_t bytes) {
 }  // namespace
 
 MeshBuffers::MeshBuffers(const ShownMesh& mesh)
-    : vertices_(mesh.positions.size()),
-      faces_(mesh.faces.size()),
-      coarse_faces_(mesh.coarse.size()),
-      has_colours_(!mesh.colours.empty()) {
-  std::vector<std::uint32_t> normals(vertices_);
-  std::ranges::transform(mesh.normals, normals.begin(), packed);
+    : vertices_(mesh.positions.size()), faces_(mesh.faces.size()), has_colours_(!mesh.colours.empty()) {
   const auto add = [&](GLenum target, std::size_t bytes, const void* data) {
     buffers_.push_back(new_buffer(target, bytes, data));
     bytes_ += bytes;
     return buffers_.back();
   };
-  const GLuint position = add(GL_ARRAY_BUFFER, vertices_ * sizeof(Eigen::Vector3f), mesh.positions.data());
-  const GLuint normal = add(GL_ARRAY_BUFFER, vertices_ * 4, normals.data());
-  const GLuint traits = add(GL_ARRAY_BUFFER, vertices_ * 4, mesh.traits.data());
-  const GLuint value = add(GL_ARRAY_BUFFER, 0, nullptr);
-  const GLuint colour = add(GL_ARRAY_BUFFER, mesh.colours.size() * 3, mesh.colours.data());
-  const GLuint faces = add(GL_ELEMENT_ARRAY_BUFFER, faces_ * 12, mesh.faces.data());
-  const GLuint coarse = add(GL_ELEMENT_ARRAY_BUFFER, coarse_faces_ * 12, mesh.coarse.data());
-  const auto make_array = [&](GLuint indices) {
-    GLuint array = 0;
-    glGenVertexArrays(1, &array);
-    glBindVertexArray(array);
-    const auto attribute = [](GLuint place, GLuint buffer, GLint size, GLenum type, GLboolean normalised) {
-      glBindBuffer(GL_ARRAY_BUFFER, buffer);
+  glGenVertexArrays(1, &array_);
+  glBindVertexArray(array_);
+  const auto attribute = [&](GLuint place, GLint size, GLenum type, GLboolean normalised, std::size_t bytes,
+                             const void* data) {
+    add(GL_ARRAY_BUFFER, bytes, data);
+    if (bytes > 0) {
       glEnableVertexAttribArray(place);
       glVertexAttribPointer(place, size, type, normalised, 0, nullptr);
-    };
-    attribute(kPosition, position, 3, GL_FLOAT, GL_FALSE);
-    attribute(kNormal, normal, 4, GL_INT_2_10_10_10_REV, GL_TRUE);
-    attribute(kTraits, traits, 4, GL_UNSIGNED_BYTE, GL_TRUE);
-    if (has_colours_) {
-      attribute(kColour, colour, 3, GL_UNSIGNED_BYTE, GL_TRUE);
     }
-    static_cast<void>(value);  // set_values() enables it
-    glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, indices);
-    return array;
   };
-  array_ = make_array(faces);
-  coarse_array_ = make_array(coarse);
+  attribute(kPosition, 3, GL_FLOAT, GL_FALSE, vertices_ * sizeof(Eigen::Vector3f), mesh.positions.data());
+  attribute(kNormal, 4, GL_INT_2_10_10_10_REV, GL_TRUE, vertices_ * 4, mesh.normals.data());
+  attribute(kTraits, 4, GL_UNSIGNED_BYTE, GL_TRUE, vertices_ * 4, mesh.traits.data());
+  attribute(kValue, 1, GL_FLOAT, GL_FALSE, 0, nullptr);  // set_values() fills it
+  attribute(kColour, 3, GL_UNSIGNED_BYTE, GL_TRUE, mesh.colours.size() * 3, mesh.colours.data());
+  std::size_t coarser = 0;
+  for (const ShownLevel& level : mesh.coarser) {
+    level_first_.push_back(coarser);
+    coarser += level.detail.faces.size();
+  }
+  // One buffer for the faces of all levels, the whole surface first.
+  add(GL_ELEMENT_ARRAY_BUFFER, (faces_ + coarser) * 12, nullptr);
+  const auto put = [](GLenum target, std::size_t at, std::size_t bytes, const void* data) {
+    glBufferSubData(target, static_cast<GLintptr>(at), static_cast<GLsizeiptr>(bytes), data);
+  };
+  put(GL_ELEMENT_ARRAY_BUFFER, 0, faces_ * 12, mesh.faces.data());
+  add(GL_TEXTURE_BUFFER, coarser * 4, nullptr);
+  for (std::size_t k = 0; k < mesh.coarser.size(); ++k) {
+    const DetailLevel& level = mesh.coarser[k].detail;
+    put(GL_ELEMENT_ARRAY_BUFFER, (faces_ + level_first_[k]) * 12, level.faces.size() * 12,
+        level.faces.data());
+    put(GL_TEXTURE_BUFFER, level_first_[k] * 4, level.from.size() * 4, level.from.data());
+  }
+  glGenTextures(1, &made_of_);
+  glBindTexture(GL_TEXTURE_BUFFER, made_of_);
+  glTexBuffer(GL_TEXTURE_BUFFER, GL_R32UI, buffers_.back());
   glBindVertexArray(0);
 }
 
 MeshBuffers::~MeshBuffers() {
   glDeleteVertexArrays(1, &array_);
-  glDeleteVertexArrays(1, &coarse_array_);
+  glDeleteTextures(1, &made_of_);
   glDeleteBuffers(static_cast<GLsizei>(buffers_.size()), buffers_.data());
 }
 
 void MeshBuffers::set_values(const std::vector<float>& values) {
   has_values_ = values.size() == vertices_ && vertices_ > 0;
-  for (const GLuint array : {array_, coarse_array_}) {
-    glBindVertexArray(array);
-    glBindBuffer(GL_ARRAY_BUFFER, buffers_[kValue]);
-    if (has_values_) {
-      glEnableVertexAttribArray(kValue);
-      glVertexAttribPointer(kValue, 1, GL_FLOAT, GL_FALSE, 0, nullptr);
-    } else {
-      glDisableVertexAttribArray(kValue);
-    }
+  glBindVertexArray(array_);
+  glBindBuffer(GL_ARRAY_BUFFER, buffers_[kValue]);
+  if (has_values_) {
+    glEnableVertexAttribArray(kValue);
+    glVertexAttribPointer(kValue, 1, GL_FLOAT, GL_FALSE, 0, nullptr);
+  } else {
+    glDisableVertexAttribArray(kValue);
   }
   glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(has_values_ ? vertices_ * sizeof(float) : 0),
                has_values_ ? values.data() : nullptr, GL_STATIC_DRAW);
@@ -126,10 +118,8 @@ void MeshBuffers::draw_faces(std::size_t first, std::size_t count) const {
   glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * count), GL_UNSIGNED_INT, at_offset(offset));
 }
 
-void MeshBuffers::draw_coarse() const {
-  glBindVertexArray(coarse_array_);
-  glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * coarse_faces_), GL_UNSIGNED_INT, nullptr);
-  glBindVertexArray(array_);
+void MeshBuffers::draw_level(std::size_t level, std::size_t first, std::size_t count) const {
+  draw_faces(faces_ + level_first_[level] + first, count);
 }
 
 void MeshBuffers::draw_points() const {
@@ -147,7 +137,7 @@ PointBuffers::PointBuffers(const ColouredPoints& points)
   for (std::size_t k = 0; k < count_; ++k) {
     Vertex& v = vertices[k];
     std::memcpy(v.position, points.positions_mm[k].data(), sizeof v.position);
-    v.normal = k < points.normals.size() ? packed(points.normals[k]) : 0U;
+    v.normal = k < points.normals.size() ? packed_normal(points.normals[k]) : 0U;
     const bool amber = k < points.colours.size() && points.colours[k] == kAmberOfExcused;
     v.excused[0] = amber ? 255 : 0;
   }

@@ -28,19 +28,24 @@ class MeshBuffers {
   [[nodiscard]] bool points_only() const { return faces_ == 0; }
   [[nodiscard]] std::size_t faces() const { return faces_; }
   [[nodiscard]] std::size_t vertices() const { return vertices_; }
-  [[nodiscard]] std::size_t coarse_faces() const { return coarse_faces_; }
+  /// Of the graphics card, for all of this.
   [[nodiscard]] std::size_t bytes() const { return bytes_; }
+  /// Buffer texture of the face of the whole surface that each face of a coarser level was made of; those of
+  /// `level` begin at first_of().
+  [[nodiscard]] unsigned made_of() const { return made_of_; }
+  [[nodiscard]] std::size_t first_of(std::size_t level) const { return level_first_[level]; }
 
   void bind() const;  ///< then one of:
   void draw_faces(std::size_t first, std::size_t count) const;
-  void draw_coarse() const;
+  void draw_level(std::size_t level, std::size_t first, std::size_t count) const;  ///< of ShownMesh::coarser
   void draw_points() const;
 
  private:
   unsigned array_ = 0;
-  unsigned coarse_array_ = 0;
+  unsigned made_of_ = 0;
   std::vector<unsigned> buffers_;
-  std::size_t vertices_, faces_, coarse_faces_;
+  std::vector<std::size_t> level_first_;  ///< faces of coarser levels before each
+  std::size_t vertices_, faces_;
   std::size_t bytes_ = 0;
   bool has_values_ = false;
   bool has_colours_ = false;

@@ -59,9 +59,10 @@ uniform vec3 red;
 uniform vec3 amber;
 uniform sampler2D colour_map;
 in float vertex_selected;
-uniform int selection;            // 1: faces that are selected are told apart
-uniform int first_face;           // of this draw
+uniform int selection;            // faces that are selected are told apart: 1, of the whole surface; 3, by
+uniform int first_face;           // the one that each was made of. Counted from the first of this draw
 uniform usamplerBuffer selected;  // by face
+uniform usamplerBuffer made_of;
 uniform vec3 selected_colour;
 layout(location = 0) out vec4 albedo;
 layout(location = 1) out vec4 surface;
@@ -99,8 +100,11 @@ void main() {
   } else if (overlay == 5) {
     c = vertex_sparse > 0.5 ? red : vertex_interpolated > 0.5 ? amber : clay;
   }
-  if (vertex_selected > 0.5 ||
-      (selection == 1 && texelFetch(selected, first_face + gl_PrimitiveID).r != 0u)) {
+  int face = first_face + gl_PrimitiveID;
+  if (selection == 3) {
+    face = int(texelFetch(made_of, face).r);
+  }
+  if (vertex_selected > 0.5 || ((selection & 1) != 0 && texelFetch(selected, face).r != 0u)) {
     c = mix(c, selected_colour, 0.65);
   }
   // The inside of the clay, seen through a hole.

@@ -3,99 +3,143 @@
 #include "ui/view/shown_mesh.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
-#include <numeric>
-#include <unordered_map>
+
+#include "analysis/place_order.h"
+#include "core/parallel.h"
 
 namespace dubsar::ui {
 
 namespace {
 
-constexpr std::size_t kFacesInBlock = 16384;
-constexpr int kCellBits = 7;
+using Face = std::array<std::uint32_t, 3>;
 
-/// Bits of a cell number spread to every third place, for Z order.
-std::uint32_t spread(std::uint32_t v) {
-  v = (v | (v << 8U)) & 0x0300F00FU;
-  v = (v | (v << 4U)) & 0x030C30C3U;
-  return (v | (v << 2U)) & 0x09249249U;
-}
+constexpr std::size_t kFacesInBlock = 2048;
+constexpr std::size_t kAtOnce = std::size_t{1} << 16U;
 
 std::uint8_t byte_of(float part) {
   return static_cast<std::uint8_t>(std::lround(255.0F * std::clamp(part, 0.0F, 1.0F)));
 }
 
-void sort_into_blocks(ShownMesh& out) {
-  const std::size_t n = out.faces.size();
-  const Eigen::Vector3f low = out.box_mm.min();
-  const float cells = static_cast<float>(1U << static_cast<unsigned>(kCellBits));
-  const float longest = std::max(out.box_mm.sizes().maxCoeff(), 1e-6F);
-  std::vector<std::uint32_t> key(n);
-  for (std::size_t f = 0; f < n; ++f) {
-    const Eigen::Vector3f at = (out.positions[out.faces[f][0]] - low) * (cells * 0.999F / longest);
-    key[f] = spread(static_cast<std::uint32_t>(at.x())) | (spread(static_cast<std::uint32_t>(at.y())) << 1U) |
-             (spread(static_cast<std::uint32_t>(at.z())) << 2U);
-  }
-  std::vector<std::uint32_t> order(n);
-  std::iota(order.begin(), order.end(), 0U);
-  std::ranges::stable_sort(order, {}, [&](std::uint32_t f) { return key[f]; });
-  std::vector<std::array<std::uint32_t, 3>> faces(n);
-  std::vector<std::uint32_t> face_of(n);
-  for (std::size_t k = 0; k < n; ++k) {
-    faces[k] = out.faces[order[k]];
-    face_of[k] = out.face_of[order[k]];
-  }
-  out.faces = std::move(faces);
-  out.face_of = std::move(face_of);
-  for (std::size_t first = 0; first < n; first += kFacesInBlock) {
-    FaceBlock block;
-    block.first = static_cast<std::uint32_t>(first);
-    block.count = static_cast<std::uint32_t>(std::min(kFacesInBlock, n - first));
-    for (std::size_t k = first; k < first + block.count; ++k) {
-      for (const std::uint32_t v : out.faces[k]) {
-        block.box_mm.extend(out.positions[v]);
+std::vector<FaceBlock> blocks_of(const std::vector<Face>& faces,
+                                 const std::vector<Eigen::Vector3f>& positions) {
+  std::vector<FaceBlock> blocks((faces.size() + kFacesInBlock - 1) / kFacesInBlock);
+  parallel_chunks(faces.size(), kFacesInBlock, [&](std::size_t begin, std::size_t end) {
+    FaceBlock& block = blocks[begin / kFacesInBlock];
+    block.first = static_cast<std::uint32_t>(begin);
+    block.count = static_cast<std::uint32_t>(end - begin);
+    for (std::size_t k = begin; k < end; ++k) {
+      for (const std::uint32_t v : faces[k]) {
+        block.box_mm.extend(positions[v]);
       }
     }
-    out.blocks.push_back(block);
+  });
+  return blocks;
+}
+
+/// Positions that are finite, the others zero, and the box of the former.
+void take_positions(const Mesh& mesh, std::vector<std::uint8_t>& finite, ShownMesh& out) {
+  const std::size_t n = mesh.positions.size();
+  out.positions.resize(n);
+  finite.resize(n);
+  out.box_mm = parallel_reduce_ordered(
+      n, kAtOnce, Eigen::AlignedBox3f(),
+      [&](std::size_t begin, std::size_t end) {
+        Eigen::AlignedBox3f box;
+        for (std::size_t v = begin; v < end; ++v) {
+          finite[v] = mesh.positions[v].allFinite() ? 1 : 0;
+          out.positions[v] = finite[v] != 0 ? mesh.positions[v] : Eigen::Vector3f::Zero();
+          if (finite[v] != 0) {
+            box.extend(out.positions[v]);
+          }
+        }
+        return box;
+      },
+      [](Eigen::AlignedBox3f& into, const Eigen::AlignedBox3f& part) { into.extend(part); });
+  if (out.box_mm.isEmpty()) {
+    out.box_mm.extend(Eigen::Vector3f::Zero());
   }
 }
 
-/// Vertex clustering (Rossignac and Borrel 1993), with a vertex of the mesh itself for each cluster, so that
-/// the few faces need no vertices of their own.
-void add_coarse(ShownMesh& out) {
-  if (out.faces.size() <= kFacesInMotion * 3 / 2) {
-    return;
-  }
-  double area = 0;
-  const std::size_t stride = std::max<std::size_t>(1, out.faces.size() / 100000);
-  std::size_t looked_at = 0;
-  for (std::size_t f = 0; f < out.faces.size(); f += stride, ++looked_at) {
-    const auto& [a, b, c] = out.faces[f];
-    area +=
-        0.5 * static_cast<double>(
-                  (out.positions[b] - out.positions[a]).cross(out.positions[c] - out.positions[a]).norm());
-  }
-  area *= static_cast<double>(out.faces.size()) / static_cast<double>(std::max<std::size_t>(1, looked_at));
-  // A cell that a plane crosses holds about 1.5 cell faces of it, and gives two faces.
-  const float cell = static_cast<float>(std::sqrt(3.0 * area / static_cast<double>(kFacesInMotion)));
-  std::unordered_map<std::uint64_t, std::uint32_t> first_in;
-  std::vector<std::uint32_t> stands_for(out.positions.size());
-  const Eigen::Vector3f low = out.box_mm.min();
-  for (std::size_t v = 0; v < out.positions.size(); ++v) {
-    const Eigen::Vector3f at = (out.positions[v] - low) / cell;
-    const auto part = [](float x) { return static_cast<std::uint64_t>(std::clamp(x, 0.0F, 2000000.0F)); };
-    const std::uint64_t key = part(at.x()) | (part(at.y()) << 21U) | (part(at.z()) << 42U);
-    stands_for[v] = first_in.try_emplace(key, static_cast<std::uint32_t>(v)).first->second;
-  }
-  for (const auto& face : out.faces) {
-    const std::array<std::uint32_t, 3> f{stands_for[face[0]], stands_for[face[1]], stands_for[face[2]]};
-    if (f[0] != f[1] && f[1] != f[2] && f[2] != f[0]) {
-      out.coarse.push_back(f);
+/// The faces that can be drawn, and which they are; nothing in `whose` when they are all.
+std::vector<Face> sound_faces(const Mesh& mesh, const std::vector<std::uint8_t>& finite,
+                              std::vector<std::uint32_t>& whose) {
+  const auto is_sound = [&](const Face& face) {
+    return std::ranges::all_of(face, [&](std::uint32_t v) { return v < finite.size() && finite[v] != 0; });
+  };
+  std::vector<Face> faces;
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+    if (is_sound(mesh.faces[f])) {
+      faces.push_back(mesh.faces[f]);
+      whose.push_back(static_cast<std::uint32_t>(f));
     }
   }
+  return faces;
+}
+
+bool all_sound(const Mesh& mesh, const std::vector<std::uint8_t>& finite) {
+  std::atomic<bool> sound = true;
+  parallel_chunks(mesh.faces.size(), kAtOnce, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t f = begin; f < end; ++f) {
+      for (const std::uint32_t v : mesh.faces[f]) {
+        if (v >= finite.size() || finite[v] == 0) {
+          sound = false;
+          return;
+        }
+      }
+    }
+  });
+  return sound;
+}
+
+void take_faces(const Mesh& mesh, const std::vector<std::uint8_t>& finite, ShownMesh& out) {
+  std::vector<Face> some;
+  std::vector<std::uint32_t> whose;
+  const bool all = all_sound(mesh, finite);
+  if (!all) {
+    some = sound_faces(mesh, finite, whose);
+  }
+  const std::vector<Face>& faces = all ? mesh.faces : some;
+  out.left_out = mesh.faces.size() - faces.size();
+  out.face_of = order_by_place(out.positions, faces, out.box_mm);
+  out.faces.resize(faces.size());
+  parallel_for_each_index(
+      faces.size(),
+      [&](std::size_t k) {
+        out.faces[k] = faces[out.face_of[k]];
+        if (!all) {
+          out.face_of[k] = whose[out.face_of[k]];
+        }
+      },
+      kAtOnce);
+}
+
+void take_normals(const Mesh& mesh, ShownMesh& out) {
+  std::vector<Eigen::Vector3f> made;
+  if (mesh.normals.size() != out.positions.size()) {
+    Mesh sound;
+    sound.positions = out.positions;
+    sound.faces = out.faces;
+    made = vertex_normals(sound);
+  }
+  const std::vector<Eigen::Vector3f>& normals = made.empty() ? mesh.normals : made;
+  out.normals.resize(normals.size());
+  parallel_for_each_index(
+      normals.size(), [&](std::size_t v) { out.normals[v] = packed_normal(normals[v]); }, kAtOnce);
 }
 
 }  // namespace
+
+std::uint32_t packed_normal(const Eigen::Vector3f& n) {
+  if (!n.allFinite()) {
+    return 0;
+  }
+  const auto part = [](float x) {
+    return static_cast<std::uint32_t>(static_cast<std::int32_t>(std::clamp(x, -1.0F, 1.0F) * 511.0F)) & 1023U;
+  };
+  return part(n.x()) | (part(n.y()) << 10U) | (part(n.z()) << 20U);
+}
 
 void set_openness(ShownMesh& mesh, const std::vector<float>& openness) {
   for (std::size_t v = 0; v < mesh.traits.size() && v < openness.size(); ++v) {
@@ -106,52 +150,28 @@ void set_openness(ShownMesh& mesh, const std::vector<float>& openness) {
 ShownMesh shown_mesh(const Mesh& mesh, const std::vector<float>& openness) {
   ShownMesh out;
   const std::size_t n = mesh.positions.size();
-  out.positions = mesh.positions;
-  std::vector<std::uint8_t> finite(n);
-  for (std::size_t v = 0; v < n; ++v) {
-    finite[v] = out.positions[v].allFinite() ? 1 : 0;
-    if (finite[v] != 0) {
-      out.box_mm.extend(out.positions[v]);
-    } else {
-      out.positions[v].setZero();
-    }
-  }
-  if (out.box_mm.isEmpty()) {
-    out.box_mm.extend(Eigen::Vector3f::Zero());
-  }
-  out.faces.reserve(mesh.faces.size());
-  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
-    if (std::ranges::all_of(mesh.faces[f], [&](std::uint32_t v) { return v < n && finite[v] != 0; })) {
-      out.faces.push_back(mesh.faces[f]);
-      out.face_of.push_back(static_cast<std::uint32_t>(f));
-    }
-  }
-  out.left_out = mesh.faces.size() - out.faces.size();
-  if (mesh.normals.size() == n) {
-    out.normals = mesh.normals;
-  } else {
-    Mesh sound;
-    sound.positions = out.positions;
-    sound.faces = out.faces;
-    out.normals = vertex_normals(sound);
-  }
-  for (Eigen::Vector3f& normal : out.normals) {
-    if (!normal.allFinite()) {
-      normal.setZero();
-    }
-  }
+  std::vector<std::uint8_t> finite;
+  take_positions(mesh, finite, out);
+  take_faces(mesh, finite, out);
+  take_normals(mesh, out);
   out.traits.resize(n);
-  for (std::size_t v = 0; v < n; ++v) {
-    out.traits[v] = {openness.size() == n ? byte_of(openness[v]) : std::uint8_t{255},
-                     mesh.reliability.size() == n ? byte_of(mesh.reliability[v]) : std::uint8_t{255},
-                     mesh.scans.size() == n ? mesh.scans[v] : std::uint8_t{0},
-                     mesh.flags.size() == n ? mesh.flags[v] : std::uint8_t{0}};
-  }
+  parallel_for_each_index(
+      n,
+      [&](std::size_t v) {
+        out.traits[v] = {openness.size() == n ? byte_of(openness[v]) : std::uint8_t{255},
+                         mesh.reliability.size() == n ? byte_of(mesh.reliability[v]) : std::uint8_t{255},
+                         mesh.scans.size() == n ? mesh.scans[v] : std::uint8_t{0},
+                         mesh.flags.size() == n ? mesh.flags[v] : std::uint8_t{0}};
+      },
+      kAtOnce);
   if (mesh.colours.size() == n) {
     out.colours = mesh.colours;
   }
-  sort_into_blocks(out);
-  add_coarse(out);
+  out.blocks = blocks_of(out.faces, out.positions);
+  for (DetailLevel& level : detail_levels(out.positions, out.faces, out.box_mm, kFacesInMotion)) {
+    std::vector<FaceBlock> blocks = blocks_of(level.faces, out.positions);
+    out.coarser.push_back({std::move(level), std::move(blocks)});
+  }
   return out;
 }
 

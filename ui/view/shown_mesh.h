@@ -8,15 +8,22 @@
 #include <cstdint>
 #include <vector>
 
+#include "analysis/detail_levels.h"
 #include "core/mesh.h"
 
 namespace dubsar::ui {
 
 /// Neighbouring faces that are drawn, or left out, together.
 struct FaceBlock {
-  std::uint32_t first = 0;  ///< in ShownMesh::faces
+  std::uint32_t first = 0;  ///< in the faces of its level
   std::uint32_t count = 0;
   Eigen::AlignedBox3f box_mm;
+};
+
+/// The surface in fewer faces.
+struct ShownLevel {
+  DetailLevel detail;  ///< its faces are made of those of ShownMesh::faces
+  std::vector<FaceBlock> blocks;
 };
 
 /// A mesh made ready for drawing; can be made on any thread. Vertices are those of the mesh, once each; faces
@@ -24,17 +31,19 @@ struct FaceBlock {
 /// others are put in order of place. Without faces it is drawn as points.
 struct ShownMesh {
   std::vector<Eigen::Vector3f> positions;            ///< [V] mm
-  std::vector<Eigen::Vector3f> normals;              ///< [V] unit; zero where there is none
+  std::vector<std::uint32_t> normals;                ///< [V] packed_normal(); zero where there is none
   std::vector<std::array<std::uint8_t, 4>> traits;   ///< [V] openness, reliability (255: 1), scans, flags
   std::vector<std::array<std::uint8_t, 3>> colours;  ///< [V] or empty
   std::vector<std::array<std::uint32_t, 3>> faces;   ///< by block
   std::vector<std::uint32_t> face_of;                ///< [faces] which face of the mesh it is
   std::vector<FaceBlock> blocks;
-  std::vector<std::array<std::uint32_t, 3>>
-      coarse;  ///< the same surface in few faces; empty where few already
+  std::vector<ShownLevel> coarser;  ///< the same surface in fewer faces, fewest first
   Eigen::AlignedBox3f box_mm;
   std::size_t left_out = 0;  ///< faces of the mesh that cannot be drawn
 };
+
+/// A unit vector in 4 bytes, signed, 10 bits a coordinate, as the graphics card takes it.
+[[nodiscard]] std::uint32_t packed_normal(const Eigen::Vector3f& n);
 
 /// Faces that even a processor draws fast enough to be turned by hand (bench: 100 thousand in about 40 ms).
 inline constexpr std::size_t kFacesInMotion = 100000;

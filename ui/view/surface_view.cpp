@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "ui/view/clay_sphere.h"
+#include "ui/view/face_runs.h"
 #include "ui/view/shaders.h"
 
 namespace dubsar::ui {
@@ -18,23 +19,23 @@ namespace {
 constexpr int kShadowSize = 1024;
 /// A picture that takes longer to draw makes the window feel stuck while it is turned.
 constexpr double kSlowFrameS = 0.05;
+/// A machine that draws one so fast is given more.
+constexpr double kFastFrameS = 0.008;
 /// So long the whole picture may be added to between two looks at what the user does, and so few faces are
 /// added however slow the machine is.
 constexpr double kSoonS = 0.04;
 constexpr std::size_t kFewestAtATime = 20000;
-
-bool outside(const Eigen::AlignedBox3f& box, const Eigen::Matrix4f& clip_from_model) {
-  Eigen::AlignedBox3f clip;
-  for (int k = 0; k < 8; ++k) {
-    const Eigen::Vector3f corner = box.corner(static_cast<Eigen::AlignedBox3f::CornerType>(k));
-    clip.extend((clip_from_model * corner.homogeneous()).head<3>());
-  }
-  return clip.min().x() > 1 || clip.min().y() > 1 || clip.max().x() < -1 || clip.max().y() < -1;
-}
+constexpr std::size_t kMostFacesInMotion = std::size_t{1} << 30U;
 
 void bind_texture(int unit, unsigned texture) {
   glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
   glBindTexture(GL_TEXTURE_2D, texture);
+}
+
+void bind_buffer_texture(int unit, unsigned texture) {
+  glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
+  glBindTexture(GL_TEXTURE_BUFFER, texture);
+  glActiveTexture(GL_TEXTURE0);
 }
 
 }  // namespace
@@ -53,7 +54,11 @@ SurfaceView::SurfaceView()
 void SurfaceView::show(const ShownMesh& mesh) {
   mesh_ = std::make_unique<MeshBuffers>(mesh);
   selection_.reset();
-  blocks_ = mesh.blocks;
+  levels_.clear();
+  for (const ShownLevel& level : mesh.coarser) {
+    levels_.push_back(level.blocks);
+  }
+  levels_.push_back(mesh.blocks);
   box_mm_ = mesh.box_mm;
   dirty_ = true;
 }
@@ -120,6 +125,7 @@ void SurfaceView::begin_surface(const Scene& scene, const Layer& layer) {
   surface_.set("selected_colour", scene.look.selected);
   surface_.set("selection", 0);
   surface_.set("selected", 1);
+  surface_.set("made_of", 2);
   bind_texture(0, colour_map_.id());
   glEnable(GL_DEPTH_TEST);
   glEnable(GL_PROGRAM_POINT_SIZE);
@@ -128,50 +134,41 @@ void SurfaceView::begin_surface(const Scene& scene, const Layer& layer) {
   glDisable(GL_SCISSOR_TEST);
 }
 
-void SurfaceView::draw_geometry(Layer& layer, const Scene& scene, std::size_t first_block,
-                                std::size_t end_block, bool coarse) {
+void SurfaceView::draw_geometry(Layer& layer, const Scene& scene, std::size_t level,
+                                std::span<const FaceBlock> blocks) {
   if (!mesh_) {
     return;
   }
   const float aspect = static_cast<float>(scene.width) / static_cast<float>(scene.height);
-  const Eigen::Matrix4f clip_from_model = scene.camera.clip_from_model(aspect);
   begin_surface(scene, layer);
   mesh_->bind();
   if (mesh_->points_only()) {
-    show_selection();
+    show_selection(0, 0);
     surface_.set("marks", 2);
     surface_.set("point_px",
                  std::clamp(0.2F / scene.camera.mm_per_px(static_cast<float>(scene.height)), 2.0F, 12.0F));
     mesh_->draw_points();
     return;
   }
-  if (coarse) {
-    if (selection_ && selection_->of() == MeshElement::kVertex) {
-      show_selection();  // the vertices are the same ones; the faces are not
+  const bool whole = level + 1 == levels_.size();
+  const auto draw = [&](const FaceRun& run) {
+    if (whole) {
+      mesh_->draw_faces(run.first, run.count);
+    } else {
+      mesh_->draw_level(level, run.first, run.count);
     }
-    mesh_->draw_coarse();
-    faces_drawn_ += mesh_->coarse_faces();
-  } else {
-    show_selection();
-    for (std::size_t b = first_block; b < end_block; ++b) {
-      if (!outside(blocks_[b].box_mm, clip_from_model)) {
-        surface_.set("first_face", static_cast<int>(blocks_[b].first));
-        mesh_->draw_faces(blocks_[b].first, blocks_[b].count);
-        faces_drawn_ += blocks_[b].count;
-      }
-    }
+  };
+  for (const FaceRun& run : seen_runs(blocks, scene.camera.clip_from_model(aspect))) {
+    show_selection(level, run.first);
+    draw(run);
+    faces_drawn_ += run.count;
   }
-  if (scene.look.lamp && scene.look.shadows) {
+  if (scene.look.lamp && scene.look.shadows && !blocks.empty()) {
     layer.shadow.bind();
     shadow_.use();
     shadow_.set("clip_from_model", light_clip_from_model(scene));
     shadow_.set("towards_viewer", 0.0F);
-    if (coarse) {
-      mesh_->draw_coarse();
-    } else if (end_block > first_block) {
-      const std::size_t first = blocks_[first_block].first;
-      mesh_->draw_faces(first, blocks_[end_block - 1].first + blocks_[end_block - 1].count - first);
-    }
+    draw({blocks.front().first, blocks.back().first + blocks.back().count - blocks.front().first});
   }
 }
 
@@ -234,42 +231,60 @@ bool SurfaceView::draw(const OrbitCamera& camera, const Look& look, int width, i
   const bool changed = dirty_ || !(scene == scene_) || texture() == 0;
   scene_ = scene;
   dirty_ = false;
-  if (changed) {
-    // In motion: few faces, and half the pixels where that is slow still.
-    const bool coarse = mesh_ && mesh_->coarse_faces() > 0;
-    Scene rough = scene;
-    if (slow_) {
-      rough.width = std::max(1, scene.width / 2);
-      rough.height = std::max(1, scene.height / 2);
+  return changed ? draw_in_motion(scene) : !whole_ && draw_more(scene);
+}
+
+/// The level of detail that is soon drawn, and half the pixels where that is slow still.
+bool SurfaceView::draw_in_motion(const Scene& scene) {
+  Scene rough = scene;
+  if (slow_) {
+    rough.width = std::max(1, scene.width / 2);
+    rough.height = std::max(1, scene.height / 2);
+  }
+  const float aspect = static_cast<float>(scene.width) / static_cast<float>(scene.height);
+  level_drawn_ = level_within(levels_, scene.camera.clip_from_model(aspect), faces_in_motion_);
+  const bool all = level_drawn_ + 1 == levels_.size();
+  glFinish();  // what is under way from before, such as a new mesh, is no fault of this picture
+  const auto began = std::chrono::steady_clock::now();
+  Layer& layer = layers_[static_cast<std::size_t>(shown_layer_)];
+  clear(layer, rough);
+  faces_drawn_ = 0;
+  draw_geometry(layer, rough, level_drawn_, levels_[level_drawn_]);
+  draw_marks(layer, rough);
+  light(layer, rough);
+  glFinish();
+  const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - began;
+  next_block_ = 0;
+  whole_ = all && !slow_;
+  if (spent.count() > kSlowFrameS) {
+    faces_in_motion_ = slow_ ? std::max(kFacesInMotion, faces_in_motion_ / 2) : faces_in_motion_;
+    slow_ = true;
+  } else if (spent.count() < kFastFrameS) {
+    slow_ = false;  // four times the pixels are drawn soon enough too
+    if (!all) {
+      faces_in_motion_ = std::min(2 * faces_in_motion_, kMostFacesInMotion);
     }
-    const auto began = std::chrono::steady_clock::now();
-    Layer& layer = layers_[static_cast<std::size_t>(shown_layer_)];
-    clear(layer, rough);
-    faces_drawn_ = 0;
-    draw_geometry(layer, rough, 0, blocks_.size(), coarse);
-    draw_marks(layer, rough);
-    light(layer, rough);
-    glFinish();
-    const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - began;
-    next_block_ = 0;
-    whole_ = !coarse && !slow_;
-    slow_ = slow_ || spent.count() > kSlowFrameS;
-    return !whole_;
   }
-  if (whole_) {
-    return false;
-  }
+  return !whole_;
+}
+
+/// Some more faces of the whole surface, into the picture that is not shown yet.
+bool SurfaceView::draw_more(const Scene& scene) {
+  const float aspect = static_cast<float>(scene.width) / static_cast<float>(scene.height);
+  const Eigen::Matrix4f clip_from_model = scene.camera.clip_from_model(aspect);
   Layer& layer = layers_[static_cast<std::size_t>(1 - shown_layer_)];
   if (next_block_ == 0) {
     clear(layer, scene);
     faces_drawn_ = 0;
   }
+  const std::span<const FaceBlock> blocks = levels_.back();
+  const bool every_face = scene.look.lamp && scene.look.shadows;  // what is not seen casts shadows
   std::size_t end = next_block_;
-  for (std::size_t faces = 0; end < blocks_.size() && faces < faces_at_a_time_; ++end) {
-    faces += blocks_[end].count;
+  for (std::size_t faces = 0; end < blocks.size() && faces < faces_at_a_time_; ++end) {
+    faces += every_face ? blocks[end].count : faces_in(seen_runs(blocks.subspan(end, 1), clip_from_model));
   }
   const auto began = std::chrono::steady_clock::now();
-  draw_geometry(layer, scene, next_block_, end, false);
+  draw_geometry(layer, scene, levels_.size() - 1, blocks.subspan(next_block_, end - next_block_));
   glFinish();  // else a driver that queues would let the frames pile up, and input wait behind them
   const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - began;
   if (spent.count() < 0.4 * kSoonS) {
@@ -279,27 +294,35 @@ bool SurfaceView::draw(const OrbitCamera& camera, const Look& look, int width, i
     faces_at_a_time_ = std::max(kFewestAtATime, faces_at_a_time_ / 2);
   }
   next_block_ = end;
-  if (next_block_ < blocks_.size()) {
+  if (next_block_ < blocks.size()) {
     return true;
   }
   draw_marks(layer, scene);
   light(layer, scene);
   shown_layer_ = 1 - shown_layer_;
+  level_drawn_ = levels_.size() - 1;
   whole_ = true;
   return false;
 }
 
 void SurfaceView::draw_whole(const OrbitCamera& camera, const Look& look, int width, int height) {
+  draw_level(levels_.size() - 1, camera, look, width, height);
+}
+
+void SurfaceView::draw_level(std::size_t level, const OrbitCamera& camera, const Look& look, int width,
+                             int height) {
   const Scene scene{camera, look, std::max(1, width), std::max(1, height)};
   Layer& layer = layers_[static_cast<std::size_t>(shown_layer_)];
   clear(layer, scene);
   faces_drawn_ = 0;
-  draw_geometry(layer, scene, 0, blocks_.size(), false);
+  level_drawn_ = level;
+  draw_geometry(layer, scene, level, levels_[level]);
   draw_marks(layer, scene);
   light(layer, scene);
   scene_ = scene;
   dirty_ = false;
-  whole_ = true;
+  next_block_ = 0;
+  whole_ = level + 1 == levels_.size();
 }
 
 void SurfaceView::begin_selection(MeshElement of) {
@@ -333,14 +356,22 @@ void SurfaceView::set_selection(MeshElement of, const std::vector<std::uint32_t>
   }
 }
 
-/// Of the program in use.
-void SurfaceView::show_selection() {
-  if (selection_) {
-    surface_.set("selection", selection_->of() == MeshElement::kFace ? 1 : 2);
-    glActiveTexture(GL_TEXTURE1);
-    glBindTexture(GL_TEXTURE_BUFFER, selection_->texture());
-    glActiveTexture(GL_TEXTURE0);
+/// Of the program in use, for faces of a level that begin at `first_face`.
+void SurfaceView::show_selection(std::size_t level, std::size_t first_face) {
+  if (!selection_) {
+    return;
   }
+  if (selection_->of() == MeshElement::kVertex) {
+    surface_.set("selection", 2);  // all levels have the same vertices
+  } else if (level + 1 == levels_.size()) {
+    surface_.set("selection", 1);
+  } else {
+    surface_.set("selection", 3);
+    first_face += mesh_->first_of(level);
+    bind_buffer_texture(2, mesh_->made_of());
+  }
+  surface_.set("first_face", static_cast<int>(first_face));
+  bind_buffer_texture(1, selection_->texture());
 }
 
 void SurfaceView::clear_selection() {

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "ui/gl/frame_target.h"
@@ -38,8 +39,9 @@ struct Look {
   bool operator==(const Look&) const = default;
 };
 
-/// Draws a surface into a picture that the skin shows. While it is turned it is drawn in few faces; at rest
-/// all of them follow, some at each frame, so that no frame takes long. Main thread.
+/// Draws a surface into a picture that the skin shows. While it is turned it is drawn in the level of detail
+/// of which the machine draws soon enough what is in the picture; at rest all faces follow, some at each
+/// frame, so that no frame takes long. Main thread.
 class SurfaceView {
  public:
   SurfaceView();
@@ -55,6 +57,8 @@ class SurfaceView {
   bool draw(const OrbitCamera& camera, const Look& look, int width, int height);
   /// All of it at once, for pictures that are kept.
   void draw_whole(const OrbitCamera& camera, const Look& look, int width, int height);
+  /// The same in a level of detail, which draw() chooses itself.
+  void draw_level(std::size_t level, const OrbitCamera& camera, const Look& look, int width, int height);
   /// The picture; id 0 before the first draw.
   [[nodiscard]] unsigned texture() const { return picture_.width() > 0 ? picture_.colour(0) : 0; }
   [[nodiscard]] Image read() const { return picture_.read(); }
@@ -72,6 +76,11 @@ class SurfaceView {
   /// Faces in the last picture, and outside it by their blocks.
   [[nodiscard]] std::size_t faces_drawn() const { return faces_drawn_; }
   [[nodiscard]] bool whole() const { return whole_; }
+  /// Level of detail in the last picture, and how many there are; the last is the whole surface.
+  [[nodiscard]] std::size_t level_drawn() const { return level_drawn_; }
+  [[nodiscard]] std::size_t levels() const { return levels_.size(); }
+  /// As many faces as are drawn in motion at most, once this machine's speed is known.
+  [[nodiscard]] std::size_t faces_in_motion() const { return faces_in_motion_; }
 
  private:
   struct Layer {  // what is seen where
@@ -87,11 +96,12 @@ class SurfaceView {
   };
   void clear(Layer& layer, const Scene& scene) const;
   void begin_surface(const Scene& scene, const Layer& layer);
-  void draw_geometry(Layer& layer, const Scene& scene, std::size_t first_block, std::size_t end_block,
-                     bool coarse);
+  void draw_geometry(Layer& layer, const Scene& scene, std::size_t level, std::span<const FaceBlock> blocks);
+  bool draw_in_motion(const Scene& scene);
+  bool draw_more(const Scene& scene);
   void draw_marks(Layer& layer, const Scene& scene);
   void begin_selection(MeshElement of);
-  void show_selection();
+  void show_selection(std::size_t level, std::size_t first_face);
   void light(const Layer& layer, const Scene& scene);
   [[nodiscard]] Eigen::Matrix4f light_clip_from_model(const Scene& scene) const;
 
@@ -100,7 +110,7 @@ class SurfaceView {
   std::unique_ptr<MeshBuffers> mesh_;
   std::unique_ptr<PointBuffers> points_;
   std::unique_ptr<MeshSelecting> selection_;
-  std::vector<FaceBlock> blocks_;
+  std::vector<std::vector<FaceBlock>> levels_{{}};  ///< fewest faces first, the whole surface last
   Eigen::AlignedBox3f box_mm_;
   std::array<Layer, 2> layers_;
   int shown_layer_ = 0;
@@ -112,6 +122,8 @@ class SurfaceView {
   bool whole_ = false;
   bool slow_ = false;                    ///< this machine draws slowly
   std::size_t faces_at_a_time_ = 80000;  ///< as many as this machine draws soon enough
+  std::size_t faces_in_motion_ = kFacesInMotion * 2;
+  std::size_t level_drawn_ = 0;
   std::size_t faces_drawn_ = 0;
 };
 

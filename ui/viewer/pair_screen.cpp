@@ -16,9 +16,14 @@ PairScreen::PairScreen(MeshViewing& left, MeshViewing& right) {
 }
 
 void PairScreen::take_state(UiContext& ui, Pane& pane) {
+  if (std::exchange(pane.openness_due, false)) {
+    pane.viewing->want(MeshField::kOpenness);
+  }
   pane.state = pane.viewing->state();
   if (pane.prepared.update(pane.state)) {
     pane.surface.show(pane.prepared.shown());
+    pane.openness_due = true;
+    unfinished_ = true;
     pane.openness.reset();
     if (!pane.prepared.shown().colours.empty()) {
       look_.overlay = Overlay::kColours;

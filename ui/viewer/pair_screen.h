@@ -22,6 +22,7 @@ class PairScreen {
  private:
   struct Pane {
     MeshViewing* viewing = nullptr;
+    bool openness_due = false;  ///< to be asked for once the mesh has been seen
     ViewedMesh state;
     PreparedMesh prepared;
     SurfaceView surface;

@@ -47,9 +47,14 @@ ViewerScreen::ViewerScreen(MeshViewing& viewing, std::filesystem::path pictures,
     : viewing_(viewing), pictures_(std::move(pictures)), has_session_(has_session) {}
 
 void ViewerScreen::take_state(UiContext& ui) {
+  if (std::exchange(openness_due_, false)) {
+    viewing_.want(MeshField::kOpenness);
+  }
   state_ = viewing_.state();
   if (prepared_.update(state_)) {
     surface_.show(prepared_.shown());
+    openness_due_ = true;
+    unfinished_ = true;
     shown_openness_.reset();
     shown_values_.reset();
     tape_.clear();
@@ -101,7 +106,7 @@ void ViewerScreen::take_state(UiContext& ui) {
       picture_note_ = filled(ui.text(Text::kPictureKept), seen_written_.front().string());
     }
   }
-  if (state_.stage.empty()) {
+  if (state_.stage.empty() && !openness_due_) {
     ui.facts.insert("idle");
   }
   if (surface_.whole()) {

@@ -80,6 +80,7 @@ class ViewerScreen {
   OrbitCamera camera_;
   Look look_;
   PreparedMesh prepared_;
+  bool openness_due_ = false;  ///< to be asked for once the mesh has been seen
   std::shared_ptr<const std::vector<float>> shown_openness_, shown_values_;
   std::optional<MeshField> field_;  ///< that the overlay shows
   Tool tool_ = Tool::kTurn;

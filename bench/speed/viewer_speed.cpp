@@ -1,0 +1,255 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+// dubsar-viewer-speed: what it takes to look at a mesh, in the viewer's own view, off screen.
+//   dubsar-viewer-speed open MESH    seconds from the file to the first picture, by step, and to all faces
+//   dubsar-viewer-speed turn MESH    milliseconds a picture while it is turned, at several zooms
+//   dubsar-viewer-speed pick MESH    faces selected and drawn by number beyond 2^16 and 2^24, checked one by
+//   one
+// Without a display it starts one of its own (Xvfb, drawn by the processor).
+
+#include <sys/resource.h>
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <limits>
+#include <optional>
+
+#include "bench/support/statistics.h"
+#include "core/tablet_frame.h"
+#include "formats/mesh_io.h"
+#include "tests/support/raster_mesh.h"
+#include "tests/ui/support/display.h"
+#include "ui/gl/gl_window.h"
+#include "ui/view/surface_view.h"
+
+namespace {
+
+using namespace dubsar;
+using namespace dubsar::bench;
+using namespace dubsar::ui;
+using Clock = std::chrono::steady_clock;
+
+constexpr int kWidth = 1920;
+constexpr int kHeight = 1200;
+
+/// A step that just ended.
+double told(const char* what, Clock::time_point began) {
+  const double s = seconds_since(began);
+  std::printf("  %-34s %7.2f s\n", what, s);
+  return s;
+}
+
+struct Opened {
+  Mesh mesh;
+  ShownMesh shown;
+  std::unique_ptr<SurfaceView> view;
+  OrbitCamera camera;
+};
+
+std::optional<Opened> open_mesh(const std::string& file) {
+  Opened out;
+  double sum = 0;
+  auto began = Clock::now();
+  Result<Mesh> mesh = read_mesh(file);
+  if (!mesh) {
+    std::fprintf(stderr, "%s\n", mesh.error().line().c_str());
+    return std::nullopt;
+  }
+  out.mesh = std::move(*mesh);
+  std::printf("%s: %zu faces, %zu vertices\n", file.c_str(), out.mesh.faces.size(),
+              out.mesh.positions.size());
+  sum += told("read", began);
+  began = Clock::now();
+  const RigidTransform tablet_from_model = tablet_frame(out.mesh);
+  sum += told("which way it lies", began);
+  began = Clock::now();
+  out.shown = shown_mesh(out.mesh);
+  sum += told("blocks and levels of detail", began);
+  for (const ShownLevel& level : out.shown.coarser) {
+    std::printf("    %zu faces, cells of %.3f mm\n", level.detail.faces.size(),
+                static_cast<double>(level.detail.cell_mm));
+  }
+  began = Clock::now();
+  out.view = std::make_unique<SurfaceView>();
+  out.view->show(out.shown);
+  sum += told("to the graphics card", began);
+  out.camera.eye_from_model = Eigen::Quaternionf(Eigen::Matrix3f(tablet_from_model.rotation.cast<float>()));
+  out.camera.fit(out.shown.box_mm, static_cast<float>(kWidth) / kHeight);
+  began = Clock::now();
+  bool more = out.view->draw(out.camera, {}, kWidth, kHeight);
+  sum += told("first picture", began);
+  std::printf("  %-34s %7.2f s, %zu faces drawn, %.0f MB on the card\n", "all of it", sum,
+              out.view->faces_drawn(), static_cast<double>(out.view->buffers()->bytes()) / 1e6);
+  began = Clock::now();
+  double longest = 0;
+  while (more) {
+    const auto one = Clock::now();
+    more = out.view->draw(out.camera, {}, kWidth, kHeight);
+    longest = std::max(longest, seconds_since(one));
+  }
+  told("then, until every face is there", began);
+  std::printf("  %-34s %7.0f ms\n", "longest frame of that", 1000 * longest);
+  return out;
+}
+
+int time_opening(const std::string& file) {
+  if (!open_mesh(file)) {
+    return 2;
+  }
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  std::printf("  %-34s %7.2f GiB\n", "peak of memory", static_cast<double>(usage.ru_maxrss) / 1048576.0);
+  return 0;
+}
+
+int time_turning(const std::string& file) {
+  constexpr int kPictures = 40;
+  std::optional<Opened> opened = open_mesh(file);
+  if (!opened) {
+    return 2;
+  }
+  std::printf("  %8s %12s %7s %10s %10s   at %d x %d\n", "zoom", "faces drawn", "level", "median ms",
+              "95 % ms", kWidth, kHeight);
+  const float whole_mm = opened->camera.half_height_mm;
+  for (const float zoom : {1.0F, 2.0F, 4.0F, 8.0F, 16.0F, 32.0F}) {
+    OrbitCamera camera = opened->camera;
+    camera.half_height_mm = whole_mm / zoom;
+    std::vector<double> ms;
+    std::size_t faces = 0;
+    std::size_t level = 0;
+    for (int k = 0; k < kPictures; ++k) {
+      camera.drag({0, 0}, {0.004F, 0.002F});
+      const auto began = Clock::now();
+      opened->view->draw(camera, {}, kWidth, kHeight);
+      ms.push_back(1000 * seconds_since(began));
+      faces = opened->view->faces_drawn();
+      level = opened->view->level_drawn();
+    }
+    std::printf("  %8.0f %12zu %3zu/%-3zu %10.1f %10.1f\n", static_cast<double>(zoom), faces, level + 1,
+                opened->view->levels(), quantile(ms, 0.5), quantile(ms, 0.95));
+  }
+  return 0;
+}
+
+/// A flat sheet of 2 cells² faces, 40 mm wide, seen from +z.
+Mesh sheet(std::uint32_t cells) {
+  Mesh mesh;
+  const float mm = 40.0F / static_cast<float>(cells);
+  for (std::uint32_t y = 0; y <= cells; ++y) {
+    for (std::uint32_t x = 0; x <= cells; ++x) {
+      mesh.positions.emplace_back(mm * static_cast<float>(x), mm * static_cast<float>(y), 0.0F);
+    }
+  }
+  test::add_raster_faces(mesh, 0, cells);
+  return mesh;
+}
+
+/// A triangle on the screen, and every face by hand against what the card says. Faces whose middle lies
+/// within `near_px` of the rim may go either way. Returns how many are wrong.
+std::size_t wrongly_selected(SurfaceView& view, const ShownMesh& shown, const OrbitCamera& camera) {
+  constexpr float kNearPx = 1.0F;
+  const std::vector<Eigen::Vector2f> corners{{300.3F, 150.2F}, {1500.7F, 400.4F}, {700.1F, 1100.6F}};
+  const auto began = Clock::now();
+  view.select(MeshElement::kFace, corners, SelectionStep::kUnion, true);
+  const std::vector<std::uint32_t> selected = view.selection()->read();
+  told("select by a polygon, and read back", began);
+  std::size_t wrong = 0;
+  std::size_t inside = 0;
+  for (std::size_t f = 0; f < shown.faces.size(); ++f) {
+    const auto& [a, b, c] = shown.faces[f];
+    const Eigen::Vector2f at = camera.pixel_of(
+        (shown.positions[a] + shown.positions[b] + shown.positions[c]) / 3.0F, {kWidth, kHeight});
+    float least = std::numeric_limits<float>::max();
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Eigen::Vector2f edge = corners[(k + 1) % 3] - corners[k];
+      const Eigen::Vector2f to = at - corners[k];
+      least = std::min(least, (edge.x() * to.y() - edge.y() * to.x()) / edge.norm());
+    }
+    inside += selected[f];
+    wrong += std::abs(least) > kNearPx && (least > 0) != (selected[f] != 0) ? 1 : 0;
+  }
+  std::printf("  %zu of %zu faces selected, %zu of them wrong\n", inside, shown.faces.size(), wrong);
+  return wrong;
+}
+
+/// Single faces are marked by their number and looked at closely. Returns how many are drawn wrong.
+std::size_t wrongly_drawn(SurfaceView& view, const ShownMesh& shown, OrbitCamera camera) {
+  std::size_t wrong = 0;
+  for (const std::size_t face :
+       {std::size_t{5}, (std::size_t{1} << 16U) + 1, (std::size_t{1} << 20U) + 3, (std::size_t{1} << 24U) - 1,
+        (std::size_t{1} << 24U) + 1, (std::size_t{1} << 24U) + 2, shown.faces.size() - 1}) {
+    if (face >= shown.faces.size()) {
+      continue;
+    }
+    std::vector<std::uint32_t> marks(shown.faces.size(), 0);
+    marks[face] = 1;
+    view.set_selection(MeshElement::kFace, marks);
+    const auto& [a, b, c] = shown.faces[face];
+    camera.centre_mm = (shown.positions[a] + shown.positions[b] + shown.positions[c]) / 3.0F;
+    camera.half_height_mm = 8 * (shown.positions[b] - shown.positions[a]).norm();
+    view.draw_whole(camera, {}, kWidth, kHeight);
+    const Image picture = view.read();
+    std::size_t blue = 0;
+    for (std::size_t i = 0; i + 3 < picture.bytes.size(); i += 4) {
+      blue += picture.bytes[i + 2] > picture.bytes[i] + 20 ? 1 : 0;
+    }
+    const std::size_t middle =
+        4 * (static_cast<std::size_t>(kHeight) / 2 * kWidth + static_cast<std::size_t>(kWidth) / 2);
+    const double px = static_cast<double>(camera.mm_per_px(kHeight));
+    const double area_px =
+        0.5 *
+        static_cast<double>(
+            (shown.positions[b] - shown.positions[a]).cross(shown.positions[c] - shown.positions[a]).norm()) /
+        (px * px);
+    const bool right = picture.bytes[middle + 2] > picture.bytes[middle] + 20 &&
+                       std::abs(static_cast<double>(blue) - area_px) < 0.1 * area_px;
+    std::printf("  face %9zu: %zu px blue, %.0f expected%s\n", face, blue, area_px, right ? "" : ": WRONG");
+    wrong += right ? 0 : 1;
+  }
+  return wrong;
+}
+
+int check_picking(double millions) {
+  const Mesh mesh = sheet(static_cast<std::uint32_t>(std::sqrt(millions * 5e5)));
+  const ShownMesh shown = shown_mesh(mesh);
+  SurfaceView view;
+  view.show(shown);
+  OrbitCamera camera;
+  camera.fit(shown.box_mm, static_cast<float>(kWidth) / kHeight);
+  view.draw_whole(camera, {}, kWidth, kHeight);
+  const std::size_t wrong = wrongly_selected(view, shown, camera) + wrongly_drawn(view, shown, camera);
+  return wrong == 0 ? 0 : 1;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("What it takes to look at a mesh");
+  app.require_subcommand(1);
+  std::string mesh;
+  CLI::App* opening = app.add_subcommand("open", "from the file to the picture");
+  CLI::App* turning = app.add_subcommand("turn", "pictures of a mesh that is turned");
+  for (CLI::App* verb : {opening, turning}) {
+    verb->add_option("mesh", mesh, "PLY, OBJ, STL or GLB")->required();
+  }
+  CLI::App* picking = app.add_subcommand("pick", "faces by number, status 1 when one is wrong");
+  double millions = 20;
+  picking->add_option("--faces", millions, "millions of faces")->check(CLI::Range(0.1, 200.0));
+  CLI11_PARSE(app, argc, argv);
+  std::optional<dubsar::test::Display> display;
+  if (std::getenv("DISPLAY") == nullptr) {
+    display.emplace("1920x1200x24");
+  }
+  Result<GlWindow> window = GlWindow::open(64, 64, "bench");
+  if (!window) {
+    std::fprintf(stderr, "%s\n", window.error().line().c_str());
+    return 3;
+  }
+  std::printf("drawn by %s\n", window->renderer().c_str());
+  if (picking->parsed()) {
+    return check_picking(millions);
+  }
+  return opening->parsed() ? time_opening(mesh) : time_turning(mesh);
+}
