@@ -7,6 +7,7 @@
 
 #include "acquisition/rig_parts.h"
 #include "acquisition/rig_scan.h"
+#include "acquisition/row_count.h"
 #include "acquisition/stage_watch.h"
 #include "acquisition/stripe_stream.h"
 #include "formats/number_text.h"
@@ -86,10 +87,8 @@ Status RigScanner::sweep(const Travel& plan, ProfileSink& sink, ScanTally& tally
   StageWatch watch(stage_, axis);
   StripeStream stripes(camera_, extractor_.options(),
                        [this](const Frame& frame) { return check_frame(frame); });
-  const double end = file_.start + file_.step * (file_.rows - 1);
-  std::optional<std::int64_t> first;
-  double position = plan.from;
-  for (std::int64_t next_row = 0; position < end - 0.5 * file_.step;) {
+  RowCount rows(file_.start, file_.step, file_.rows);
+  for (double position = plan.from; !rows.ends_within(0.5, position);) {
     if (stopped_->load()) {
       return fail(ErrorKind::kCancelled, "scan stopped", file_.name);
     }
@@ -105,35 +104,29 @@ Status RigScanner::sweep(const Travel& plan, ProfileSink& sink, ScanTally& tally
       if (stopped_->load()) {
         continue;
       }
-      if (first && position > end - 1.5 * file_.step) {
+      if (rows.any() && rows.ends_within(1.5, position)) {
         break;  // the axis ends where the scan does
       }
       const Status told = watch.finish();
       return !told ? told : stopped_short(file_, watch.track().last().value_or(position));
     }
     position = *there;
-    if (position < file_.start - 0.5 * file_.step || position >= end + 0.5 * file_.step) {
+    const std::optional<RowCount::Placed> placed = rows.place(seen->id, position);
+    if (!placed) {
       continue;
     }
-    if (!first) {
-      // Nobody knew where the stage was when the frames before this one were taken: rows that are lost.
-      const double missed = std::max(0.0, std::floor((position - file_.start) / file_.step + 0.5));
-      first = seen->id - static_cast<std::int64_t>(missed);
-    }
-    const std::int64_t row = seen->id - *first;
-    tally.profiles_dropped += static_cast<std::uint64_t>(std::max<std::int64_t>(0, row - next_row));
-    next_row = row + 1;
-    SweptRow swept{row, seen->timestamp_ns, position, std::move(seen->stripe)};
+    tally.profiles_dropped += placed->missed;
+    SweptRow swept{placed->row, seen->timestamp_ns, position, std::move(seen->stripe)};
     if (Status handed = hand_on(std::move(swept), sink, tally); !handed) {
       return handed;
     }
   }
-  if (!first) {
+  if (!rows.any()) {
     return fail(ErrorKind::kDevice, "no frame came while the stage passed the scan", file_.camera,
                 "scan more slowly, or relieve this machine of other work");
   }
   // What it needs to come to rest behind the last row.
-  watch.track().wait_closed(plan.time_to_rest(end));
+  watch.track().wait_closed(plan.time_to_rest(rows.end()));
   return watch.finish();
 }
 

@@ -6,6 +6,8 @@
 #include <chrono>
 #include <utility>
 
+#include "core/thread_priority.h"
+
 namespace dubsar {
 
 namespace {
@@ -36,6 +38,7 @@ StripeStream::~StripeStream() {
 }
 
 void StripeStream::take(const std::stop_token& enough) {
+  prefer_this_thread();
   auto last = std::chrono::steady_clock::now();
   while (!enough.stop_requested()) {
     Result<std::optional<Frame>> frame = camera_.next_frame(kFrameWait);

@@ -25,7 +25,7 @@ constexpr double kLogFrom = 3;
 constexpr double kLeastShare = 0.05;  // of the brightest row's light
 constexpr double kOneColumn = 0.1;    // of a column's width: so near to one, that one is enough
 // Between two columns the correction changes by less, unless an edge lies there.
-constexpr double kEdge_px = 0.3;
+constexpr double kEdgePx = 0.3;
 // Noise of a single picture's middle, in widths of the stripe: up to the first the sweep is believed wholly,
 // from the second on not at all. Half and twice the second do worse on written clay under speckle.
 constexpr double kSteady = 0.025;
@@ -259,7 +259,7 @@ void SweptLight::correct(std::span<const SweptRow* const> rows, std::size_t midd
   }
   std::vector<float> settled(tops.at_px.size());
   const double unsteady_px = line_noise_px(tops);
-  average_along(tops, averaging_width_px(unsteady_px), kEdge_px, settled);
+  average_along(tops, averaging_width_px(unsteady_px), kEdgePx, settled);
   for (const Sweep& sweep : sweeps) {
     const auto top_px = static_cast<double>(settled[sweep.sample]);
     if (std::isnan(top_px)) {

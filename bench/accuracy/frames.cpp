@@ -15,6 +15,7 @@
 #include <thread>
 #include <vector>
 
+#include "acquisition/row_window.h"
 #include "acquisition/swept_light.h"
 #include "acquisition/triangulate.h"
 #include "bench/support/rig_tablet.h"
@@ -212,32 +213,46 @@ double copy_seconds(const std::vector<GrayImage>& frames) {
   return seconds / (kRounds * static_cast<double>(frames.size()));
 }
 
-/// Stripe and triangulation of frames in memory, each with its ambient frame, on two threads.
-void throughput(const Setup& setup, const sim::FrameOptions& optics) {
+/// From frames in memory to profiles on two threads: each row alone, with and without an ambient frame, and
+/// rows that correct each other, which go to and fro over a few places.
+void throughput(const Setup& setup, const sim::FrameOptions& optics, double step_mm) {
+  constexpr int kPlaces = 4;
+  constexpr int kFrames = 400;
+  struct Way {
+    const char* name;
+    bool ambient, together;
+  };
   const sim::FrameRenderer renderer(setup.rig, optics);
   std::vector<GrayImage> frames;
-  for (int i = 0; i < 4; ++i) {
-    const double position = i - 1.5;
+  for (int i = 0; i < kPlaces; ++i) {
+    const double position = i * step_mm;
     const sim::SceneTarget target(setup.clay->scene, tablet_from_camera(setup, position));
     frames.push_back(renderer.render(target, true, position, static_cast<std::uint64_t>(100 + 2 * i)));
     frames.push_back(renderer.render(target, false, position, static_cast<std::uint64_t>(101 + 2 * i)));
   }
   const Triangulator triangulator(setup.rig, StripeAxis::kPerColumn);
-  for (const bool ambient : {false, true}) {
-    constexpr int kFrames = 400;
+  const RowWindow::Give give = [](const Profile& /*profile*/) -> Status { return {}; };
+  for (const Way& way : {Way{"no ambient frames", false, false}, Way{"ambient frame subtracted", true, false},
+                         Way{"no ambient frames, rows together", false, true}}) {
     const auto start = std::chrono::steady_clock::now();
     const std::clock_t busy = std::clock();
     {
       std::vector<std::jthread> workers;
       for (int worker = 0; worker < 2; ++worker) {
         workers.emplace_back([&] {
-          StripeExtractor extractor{StripeOptions{}};
-          StripeProfile stripe;
-          TriangulatedProfile profile;
+          StripeOptions options;
+          options.keep_light = way.together;
+          StripeExtractor extractor(options);
+          RowWindow window(triangulator, options, way.together ? step_mm : 1e3);
           for (int i = 0; i < kFrames / 2; ++i) {
-            const auto k = static_cast<std::size_t>(2 * (i % 4));
-            extractor.extract(frames[k].view(), ambient ? frames[k + 1].view() : GrayView{}, stripe);
-            triangulator.triangulate(stripe, 0, profile);
+            const int at = i % (2 * kPlaces - 2);
+            const int place = at < kPlaces ? at : 2 * kPlaces - 2 - at;
+            const auto k = static_cast<std::size_t>(2 * place);
+            SweptRow row{i, 0, place * step_mm, {}};
+            extractor.extract(frames[k].view(), way.ambient ? frames[k + 1].view() : GrayView{}, row.stripe);
+            if (!window.take(std::move(row), give)) {
+              return;
+            }
           }
         });
       }
@@ -248,8 +263,7 @@ void throughput(const Setup& setup, const sim::FrameOptions& optics) {
     std::printf(
         "two threads, default detector, %s: %.0f frames/s as it ran, %.0f per two seconds of processor time "
         "(400 asked for)\n",
-        ambient ? "ambient frame subtracted" : "no ambient frames", kFrames / seconds,
-        2 * kFrames / cpu_seconds);
+        way.name, kFrames / seconds, 2 * kFrames / cpu_seconds);
     std::printf("  a frame takes %.1f times as long as copying it\n",
                 cpu_seconds / kFrames / copy_seconds(frames));
   }
@@ -294,7 +308,7 @@ int run(int argc, char** argv) {
     optics.f_number = f_number;
     optics.laser_sigma_mm = sigma_mm;
     compare(setup, optics, frames, false, step_mm);
-    throughput(setup, optics);
+    throughput(setup, optics, step_mm);
   }
   return 0;
 }

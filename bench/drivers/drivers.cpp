@@ -23,6 +23,7 @@
 #include <string>
 #include <vector>
 
+#include "core/thread_priority.h"
 #include "drivers/loader.h"
 #include "tests/support/own_network.h"
 #include "tests/support/peer_process.h"
@@ -97,6 +98,7 @@ std::uint32_t painted_number(const Frame& frame) {
 }
 
 int count_frames(Device& device, const Emulated& emulated, std::uint64_t count) {
+  prefer_this_thread();  // as the thread of a scan that takes frames
   must(device.start_frames(32));
   std::uint64_t wrong = 0;
   std::uint64_t bytes = 0;

@@ -7,6 +7,7 @@
 #include <ctime>
 #include <thread>
 
+#include "core/thread_priority.h"
 #include "drivers/aravis/glib.h"
 
 namespace dubsar::aravis {
@@ -44,6 +45,13 @@ void dispose(ArvStream* stream, ArvChunkParser* chunks, ArvCamera* camera) {
       }
     }
   }).detach();
+}
+
+/// From Aravis's own thread, which takes packets and puts frames together.
+void stream_thread_says(void* /*data*/, ArvStreamCallbackType what, ArvBuffer* /*buffer*/) {
+  if (what == ARV_STREAM_CALLBACK_TYPE_INIT) {
+    prefer_this_thread();
+  }
 }
 
 }  // namespace
@@ -182,7 +190,7 @@ Status Camera::begin(std::uint32_t pool) {
                          std::to_string(width) + " x " + std::to_string(height),
                      "update its firmware, or ask for a smaller region");
   }
-  ArvStream* stream = arv_camera_create_stream(camera_, nullptr, nullptr, error.fill());
+  ArvStream* stream = arv_camera_create_stream(camera_, stream_thread_says, nullptr, error.fill());
   if (stream == nullptr || error) {
     g_clear_object(&stream);
     lose();

@@ -71,6 +71,9 @@ FormatUse use_of(std::uint32_t fourcc) {
     case V4L2_PIX_FMT_UYVY:
     case V4L2_PIX_FMT_VYUY:
       return {Handling::kPackedLuma, DUBSAR_PIXEL_MONO8, 2, 1};
+    case V4L2_PIX_FMT_MJPEG:
+    case V4L2_PIX_FMT_JPEG:
+      return {Handling::kCompressed, DUBSAR_PIXEL_MONO8, 1, 0};
     default:
       return {Handling::kConverted, DUBSAR_PIXEL_MONO8, 1, 0};
   }

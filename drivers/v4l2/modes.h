@@ -28,7 +28,8 @@ enum class Handling {
   kMono,        ///< as it is: one or two bytes a pixel
   kLumaPlane,   ///< planar YUV: its first plane, as it is
   kPackedLuma,  ///< YUYV or UYVY: every second byte
-  kConverted,   ///< compressed, Bayer or RGB: through libv4l2 to planar YUV
+  kConverted,   ///< Bayer, RGB or rarer: through libv4l2 to planar YUV
+  kCompressed,  ///< motion JPEG: the luma of each picture is unpacked
 };
 
 struct FormatUse {
@@ -51,9 +52,10 @@ struct Wish {
   std::optional<double> rate_hz = {};
 };
 
-/// The best mode that fulfils the wish: uncompressed mono before planes of luma before packed luma before all
-/// that must be converted, then the most pixels, the highest rate, and eight bits before more. kUsage with
-/// what there is when none fulfils it, kBadInput when the camera offers nothing at all.
+/// The best mode that fulfils the wish: uncompressed mono before planes of luma before packed luma before
+/// what must be converted before what is compressed, then the most pixels, the highest rate, and eight bits
+/// before more. kUsage with what there is when none fulfils it, kBadInput when the camera offers nothing at
+/// all.
 [[nodiscard]] Result<Mode> choose(std::span<const Mode> modes, const Wish& wish, const std::string& where);
 
 }  // namespace dubsar::v4l2

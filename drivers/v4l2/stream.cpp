@@ -10,7 +10,10 @@
 #include <cerrno>
 #include <cstring>
 #include <ctime>
+#include <string>
 #include <thread>
+
+#include "drivers/v4l2/mjpeg.h"
 
 namespace dubsar::v4l2 {
 
@@ -83,10 +86,13 @@ Status Stream::take_buffers(std::uint32_t pool) {
     }
     mapped_.push_back({at, buffer.length});
   }
-  const bool copied = use_.handling == Handling::kPackedLuma || use_.handling == Handling::kConverted;
+  const bool compressed = use_.handling == Handling::kCompressed;
+  const bool copied =
+      compressed || use_.handling == Handling::kPackedLuma || use_.handling == Handling::kConverted;
   const std::size_t pixels = std::size_t{mode_.width} * mode_.height;
-  const std::size_t needed =
-      copied && use_.handling == Handling::kPackedLuma ? std::size_t{stride_} * mode_.height : pixels;
+  const std::size_t needed = compressed                               ? 1
+                             : use_.handling == Handling::kPackedLuma ? std::size_t{stride_} * mode_.height
+                                                                      : pixels;
   if (mapped_.front().length < needed) {
     return fail(ErrorKind::kDevice, "its buffers are smaller than its frames", node_->path(),
                 "choose another format");
@@ -119,8 +125,8 @@ std::optional<std::uint32_t> Stream::reserve(Clock::time_point until) {
   return static_cast<std::uint32_t>(place);
 }
 
-/// Where the pixels of a filled buffer are: in it, or in a copy at `place`.
-dubsar_frame Stream::describe(const void* buffer, std::uint32_t used, std::uint32_t place) {
+/// Where the pixels of a filled buffer are: in it, or in a copy at `place`. Nothing when they are no picture.
+std::optional<dubsar_frame> Stream::describe(const void* buffer, std::uint32_t used, std::uint32_t place) {
   dubsar_frame frame{};
   frame.struct_size = sizeof frame;
   frame.lease = place;
@@ -138,7 +144,12 @@ dubsar_frame Stream::describe(const void* buffer, std::uint32_t used, std::uint3
     std::uint8_t* to = copies_[place].data();
     frame.pixels = to;
     frame.stride_bytes = mode_.width;
-    if (use_.handling == Handling::kPackedLuma) {
+    if (use_.handling == Handling::kCompressed) {
+      std::string why;
+      if (!decode_luma({from, used}, mode_.width, mode_.height, copies_[place], why)) {
+        return std::nullopt;
+      }
+    } else if (use_.handling == Handling::kPackedLuma) {
       for (std::uint32_t row = 0; row < mode_.height; ++row) {
         const std::uint8_t* in = from + std::size_t{row} * stride_ + use_.luma_at;
         for (std::uint32_t col = 0; col < mode_.width; ++col) {
@@ -148,8 +159,11 @@ dubsar_frame Stream::describe(const void* buffer, std::uint32_t used, std::uint3
     } else {
       std::memcpy(to, from, std::size_t{mode_.width} * mode_.height);
     }
-    const std::uint64_t whole = std::uint64_t{mode_.height} *
-                                (use_.handling == Handling::kPackedLuma ? 2 * mode_.width : mode_.width);
+    const std::uint64_t whole =
+        use_.handling == Handling::kCompressed
+            ? used
+            : std::uint64_t{mode_.height} *
+                  (use_.handling == Handling::kPackedLuma ? 2 * mode_.width : mode_.width);
     if (used < whole) {
       frame.flags |= DUBSAR_FRAME_INCOMPLETE;
     }
@@ -204,10 +218,20 @@ Result<std::optional<dubsar_frame>> Stream::next(Clock::time_point until) {
     if (copies_.empty()) {
       place = buffer.index;
     }
-    dubsar_frame frame = describe(mapped_[buffer.index].at, buffer.bytesused, place);
+    const Mapped& filled = mapped_[buffer.index];
+    const auto used = static_cast<std::uint32_t>(std::min<std::size_t>(buffer.bytesused, filled.length));
+    const std::optional<dubsar_frame> described = describe(filled.at, used, place);
     if (!copies_.empty()) {
       queue(buffer.index);
     }
+    if (!described) {
+      // A gap in the numbers: it counts as lost when the next whole one comes.
+      if (Clock::now() >= until) {
+        return std::nullopt;
+      }
+      continue;
+    }
+    dubsar_frame frame = *described;
     if ((buffer.flags & V4L2_BUF_FLAG_ERROR) != 0) {
       frame.flags |= DUBSAR_FRAME_INCOMPLETE;
     }

@@ -26,9 +26,9 @@ struct Counts {
 };
 
 /// A running stream of a camera: its mapped buffers are the pool, and the kernel fills them; there is no
-/// thread here. Frames that need no work are lent where they lie; packed or converted ones are first copied
-/// to a pool of our own, on the thread that asks for them. One thread calls next() and stop(); give_back() is
-/// for any.
+/// thread here. Frames that need no work are lent where they lie; packed, converted or compressed ones are
+/// first brought into a pool of our own, on the thread that asks for them. One thread calls next() and
+/// stop(); give_back() is for any.
 class Stream {
  public:
   /// The node has the mode set already. kDevice when buffers or stream are refused.
@@ -59,7 +59,8 @@ class Stream {
   Status take_buffers(std::uint32_t pool);
   bool queue(std::uint32_t buffer) const;
   std::optional<std::uint32_t> reserve(Clock::time_point until);
-  [[nodiscard]] dubsar_frame describe(const void* buffer, std::uint32_t used, std::uint32_t place);
+  [[nodiscard]] std::optional<dubsar_frame> describe(const void* buffer, std::uint32_t used,
+                                                     std::uint32_t place);
 
   const Node* node_;
   Mode mode_;

@@ -165,6 +165,38 @@ TEST_F(RigScan, AFailureLeavesTheRowsAndTheLaserOff) {
   EXPECT_EQ(bench.laser, 0);
 }
 
+TEST_F(RigScan, RowsCloseTogetherWaitForEachOtherAndNoneIsKeptBack) {
+  file.step = 0.025;
+  file.rows = 9;
+  Result<RigScanner> made = make();
+  ASSERT_TRUE(made.has_value()) << made.error().line();
+  Collect sink;
+  ASSERT_TRUE(made->scan(sink).has_value());
+  const RangeGrid grid = sink.builder->take();
+  ASSERT_EQ(grid.rows, 9);
+  EXPECT_EQ(sink.tally.profiles_sent, 9U);
+  double squares = 0;
+  for (std::size_t i = 0; i < grid.size(); ++i) {
+    squares += grid.valid[i] != 0 ? std::pow(static_cast<double>(grid.z[i]) - 0.5, 2) : 0;
+  }
+  EXPECT_LT(std::sqrt(squares / static_cast<double>(grid.valid_count())), 0.003);
+  // The camera is unplugged behind the sixth row: six rows came.
+  bench.frames = 0;
+  bench.gone_after = 12;
+  Collect broken;
+  EXPECT_FALSE(made->scan(broken).has_value());
+  EXPECT_EQ(broken.builder->grid().rows, 6);
+  // Who wants no more gets no more.
+  bench.frames = 0;
+  bench.gone_after = 1 << 30;
+  Collect few;
+  few.most_rows = 2;
+  const Status enough = made->scan(few);
+  ASSERT_FALSE(enough.has_value());
+  EXPECT_EQ(enough.error().kind, ErrorKind::kCancelled);
+  EXPECT_EQ(few.builder->grid().rows, 2);
+}
+
 TEST_F(RigScan, CancelledBySinkAndRefusesAnotherRegion) {
   Result<RigScanner> made = make();
   ASSERT_TRUE(made.has_value());

@@ -67,6 +67,8 @@ TEST(V4l2Modes, PreferUncompressedMonoThenPixelsThenRate) {
   EXPECT_EQ(v4l2::choose(all, {}, "").value(), mode("GREY", 640, 480, 90));
   EXPECT_EQ(v4l2::choose(std::span(all).first(5), {}, "").value(), mode("GREY", 640, 480, 60));
   EXPECT_EQ(v4l2::choose(std::span(all).first(3), {}, "").value(), mode("NV12", 1280, 720, 30));
+  const std::vector<v4l2::Mode> colours{mode("MJPG", 1920, 1080, 60), mode("BGR3", 640, 480, 10)};
+  EXPECT_EQ(v4l2::choose(colours, {}, "").value(), colours[1]);
   EXPECT_EQ(v4l2::choose(std::span(all).first(2), {}, "").value(), mode("YUYV", 1920, 1080, 5));
   EXPECT_EQ(v4l2::choose(all, {.rate_hz = 120}, "").value(), mode("GREY", 320, 240, 120));
   EXPECT_EQ(v4l2::choose(all, {.size = std::pair(1920U, 1080U)}, "").value(), mode("YUYV", 1920, 1080, 5));
@@ -148,6 +150,34 @@ TEST_F(V4l2, TakesTheLumaOfWhatIsNotMono) {
   }
 }
 
+TEST_F(V4l2, UnpacksMotionJpegAndDropsWhatIsNone) {
+  ASSERT_NO_FATAL_FAILURE(plug_in({"MJPG:320x240@100"}));
+  if (IsSkipped()) {
+    return;
+  }
+  Device device = open({{"buffers", "4"}}).value();
+  ASSERT_TRUE(device.start_frames());
+  const Frame luma = next(device);
+  ASSERT_EQ(luma.format, PixelFormat::kMono8);
+  ASSERT_EQ(luma.width, 320U);
+  for (const auto& [x, y] : {std::pair(10U, 20U), std::pair(100U, 119U), std::pair(310U, 230U)}) {
+    EXPECT_NEAR(luma.pixels[y * luma.stride_bytes + x], painted(x, y), 4);
+  }
+  // Bytes that are no picture, or half of one, are frames that were lost; the next one is whole.
+  std::int64_t before = luma.id;
+  for (const auto& [trouble, count] : {std::pair("spoil 2", 2U), std::pair("shorten 1", 1U)}) {
+    const std::uint64_t lost = device.frame_counters()->lost;
+    ASSERT_EQ(peer_->tell(trouble), "ok");
+    while (device.frame_counters()->lost < lost + count) {
+      const Frame frame = next(device);
+      ASSERT_FALSE(frame.incomplete);
+      ASSERT_GT(frame.id, before);
+      ASSERT_NEAR(frame.pixels[119 * frame.stride_bytes + 100], painted(100, 119), 4);
+      before = frame.id;
+    }
+  }
+}
+
 TEST_F(V4l2, CountsWhatIsLostSpoiltOrHeldTooLong) {
   ASSERT_NO_FATAL_FAILURE(plug_in({"GREY:160x120@200"}));
   if (IsSkipped()) {
@@ -169,18 +199,21 @@ TEST_F(V4l2, CountsWhatIsLostSpoiltOrHeldTooLong) {
   }
   EXPECT_EQ(device.frame_counters()->incomplete, 2U);
 
-  // All of the pool held: nothing comes, and nothing hangs.
-  std::vector<Frame> held;
-  for (int k = 0; k < 4; ++k) {
-    held.push_back(next(device));
+  // All of the pool held: nothing comes, and nothing hangs. A busy machine may take a while to send anything.
+  Frame after;
+  for (int tries = 0; tries < 100 && device.frame_counters()->lost == lost; ++tries) {
+    std::vector<Frame> held;
+    for (int k = 0; k < 4; ++k) {
+      held.push_back(next(device));
+    }
+    const auto none = device.next_frame(30ms);
+    ASSERT_TRUE(none);
+    EXPECT_FALSE(*none);
+    const std::uint8_t kept = held[0].pixels[1000];
+    EXPECT_EQ(kept, painted(1000 % 160, 1000 / 160));
+    held.clear();
+    after = next(device);
   }
-  const auto none = device.next_frame(30ms);
-  ASSERT_TRUE(none);
-  EXPECT_FALSE(*none);
-  const std::uint8_t kept = held[0].pixels[1000];
-  EXPECT_EQ(kept, painted(1000 % 160, 1000 / 160));
-  held.clear();
-  const Frame after = next(device);
   EXPECT_GT(device.frame_counters()->lost, lost);
   EXPECT_EQ(painted_number(after) + 1, after.id);
 }

@@ -11,20 +11,11 @@
 #include <sstream>
 #include <thread>
 
+#include "tests/drivers/peers/virtual_picture.h"
+
 namespace dubsar::test {
 
 namespace {
-
-std::uint32_t line_bytes(const VirtualCamera::Mode& mode) {
-  switch (mode.fourcc) {
-    case V4L2_PIX_FMT_GREY:
-      return mode.width;
-    case V4L2_PIX_FMT_RGB24:
-      return 3 * mode.width;
-    default:  // Y10 ... Y16, YUYV
-      return 2 * mode.width;
-  }
-}
 
 std::int64_t now_ns() {
   timespec now{};
@@ -42,7 +33,7 @@ void put(unsigned char (&to)[N], const std::string& text) {
 VirtualCamera::VirtualCamera(std::string card, std::vector<Mode> modes)
     : card_(std::move(card)), modes_(std::move(modes)), now_(modes_.front()), stride_(0) {
   for (const Mode& mode : modes_) {
-    const std::uint64_t size = std::uint64_t{line_bytes(mode)} * mode.height;
+    const std::uint64_t size = std::uint64_t{picture_line_bytes(mode.fourcc, mode.width)} * mode.height;
     stride_ = std::max(stride_, (size + 4095) / 4096 * 4096);
   }
 }
@@ -100,7 +91,7 @@ int VirtualCamera::set_format(v4l2_format& format, bool keep) {
   pix.height = got.height;
   pix.pixelformat = got.fourcc;
   pix.field = V4L2_FIELD_NONE;
-  pix.bytesperline = line_bytes(got);
+  pix.bytesperline = picture_line_bytes(got.fourcc, got.width);
   pix.sizeimage = pix.bytesperline * got.height;
   pix.colorspace = V4L2_COLORSPACE_SRGB;
   return 0;
@@ -318,26 +309,6 @@ int VirtualCamera::control(const void* who, std::uint32_t request, void* argumen
   }
 }
 
-/// Grey 7x + 3y, in the format of the day; the first four pixels' brightness is the frame's number.
-void VirtualCamera::paint(std::vector<std::uint8_t>& frame, std::uint32_t sequence) const {
-  const std::size_t size = std::size_t{line_bytes(now_)} * now_.height;
-  const std::size_t wide = line_bytes(now_) / now_.width;
-  const std::size_t bright = now_.fourcc == V4L2_PIX_FMT_YUYV ? 1 : wide;
-  if (frame.size() != size) {
-    frame.assign(size, 0x80);
-    for (std::size_t y = 0; y < now_.height; ++y) {
-      for (std::size_t x = 0; x < now_.width; ++x) {
-        std::fill_n(frame.begin() + static_cast<std::ptrdiff_t>((y * now_.width + x) * wide), bright,
-                    static_cast<std::uint8_t>(7 * x + 3 * y));
-      }
-    }
-  }
-  for (std::size_t k = 0; k < 4; ++k) {
-    std::fill_n(frame.begin() + static_cast<std::ptrdiff_t>(k * wide), bright,
-                static_cast<std::uint8_t>(sequence >> (8 * k)));
-  }
-}
-
 bool VirtualCamera::tick(const std::function<void(std::uint64_t, const std::vector<std::uint8_t>&)>& store) {
   std::unique_lock lock(mutex_);
   const std::int64_t now = now_ns();
@@ -366,7 +337,9 @@ bool VirtualCamera::tick(const std::function<void(std::uint64_t, const std::vect
   }
   const std::uint32_t index = queued_.front();
   queued_.pop_front();
-  paint(frame_, sequence);
+  paint_picture(picture_, now_.fourcc, now_.width, now_.height, sequence);
+  const bool compressed = now_.fourcc == V4L2_PIX_FMT_MJPEG;
+  frame_ = compressed ? packed_picture(picture_, now_.width, now_.height) : picture_;
   v4l2_buffer buffer{};
   buffer.index = index;
   buffer.type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
@@ -378,7 +351,11 @@ bool VirtualCamera::tick(const std::function<void(std::uint64_t, const std::vect
   buffer.m.offset = static_cast<std::uint32_t>(index * stride_);
   if (spoil_ > 0) {
     --spoil_;
-    buffer.flags |= V4L2_BUF_FLAG_ERROR;
+    if (compressed) {  // as a bad cable does it: nobody notices but the reader
+      std::fill(frame_.begin() + static_cast<std::ptrdiff_t>(frame_.size() / 3), frame_.end(), 0xff);
+    } else {
+      buffer.flags |= V4L2_BUF_FLAG_ERROR;
+    }
   }
   if (shorten_ > 0) {
     --shorten_;

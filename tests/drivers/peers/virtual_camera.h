@@ -48,7 +48,6 @@ class VirtualCamera {
   int set_format(v4l2_format& format, bool keep);
   int buffers(const void* who, std::uint32_t request, void* argument);
   int settings(std::uint32_t request, void* argument);
-  void paint(std::vector<std::uint8_t>& frame, std::uint32_t sequence) const;
 
   std::mutex mutex_;
   std::string card_;
@@ -67,7 +66,7 @@ class VirtualCamera {
   int automatic_ = V4L2_EXPOSURE_APERTURE_PRIORITY;
   bool gone_ = false, paused_ = false, denied_ = false, occupied_ = false;
   int lose_ = 0, spoil_ = 0, shorten_ = 0;
-  std::vector<std::uint8_t> frame_;
+  std::vector<std::uint8_t> picture_, frame_;  ///< as painted, as sent
 };
 
 }  // namespace dubsar::test

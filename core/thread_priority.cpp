@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "core/thread_priority.h"
+
+#include <sched.h>
+#include <sys/resource.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+namespace dubsar {
+
+ThreadPriority prefer_this_thread() {
+  const sched_param lowest{.sched_priority = ::sched_get_priority_min(SCHED_RR)};
+  // 0 is the calling thread, not the process.
+  if (::sched_setscheduler(0, SCHED_RR | SCHED_RESET_ON_FORK, &lowest) == 0) {
+    return ThreadPriority::kRealTime;
+  }
+  constexpr int kNice = -10;
+  const auto thread = static_cast<id_t>(::syscall(SYS_gettid));
+  return ::setpriority(PRIO_PROCESS, thread, kNice) == 0 ? ThreadPriority::kHigh : ThreadPriority::kUsual;
+}
+
+}  // namespace dubsar

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+namespace dubsar {
+
+enum class ThreadPriority {
+  kUsual,     ///< as all others: no right to more
+  kHigh,      ///< a larger share of the processors
+  kRealTime,  ///< before everything that is not
+};
+
+/// Puts the calling thread before those that compute, as far as this user may (limits.conf(5): `rtprio`, else
+/// `nice`): for a thread that takes what a device sends and does nothing else. Threads that it starts are
+/// usual ones. Says what came of it; not to have the right is no error.
+ThreadPriority prefer_this_thread();
+
+}  // namespace dubsar
