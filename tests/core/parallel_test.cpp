@@ -24,9 +24,10 @@ namespace {
 TEST(Parallel, SetsUnitedByAllThreadsAtOnceHaveTheirLeastMemberAsRoot) {
   constexpr std::uint32_t kCount = 200000;
   std::mt19937 random(7);
+  std::uniform_int_distribution<std::uint32_t> any(0, kCount - 1);
   std::vector<std::array<std::uint32_t, 2>> links(kCount);
   for (auto& link : links) {
-    link = {random() % kCount, random() % kCount};
+    link = {any(random), any(random)};
   }
   DisjointSets sets(kCount);
   parallel_for_each_index(
