@@ -167,6 +167,10 @@ void LiveSession::hear(const Event& event) {
     } else if (const auto* obeyed = std::get_if<OperatorObeyed>(&event)) {
       follow(obeyed->all);
       state_.notice = obeyed->what;
+      // A key for the step that is being thought over would be one for another than the operator saw.
+      if (obeyed->asks_again && state_.phase == LivePhase::kWaiting) {
+        state_.phase = LivePhase::kJudging;
+      }
     } else if (const auto* red_map = std::get_if<RedMapChanged>(&event)) {
       state_.red_map = std::make_shared<const RedMap>(red_map->red_map);
       state_.verdict_kept = true;
