@@ -48,7 +48,8 @@ struct ScanPlaced {
 struct OperatorObeyed {
   std::string what;
   std::vector<ScanPose> all;
-  bool asks_again = false;  ///< a run that waits thinks the next step over, and then says anew what it waits for
+  bool asks_again =
+      false;  ///< a run that waits thinks the next step over, and then says anew what it waits for
 };
 struct RedMapChanged {
   RedMap red_map;
