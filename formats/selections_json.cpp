@@ -83,10 +83,7 @@ Status write_selections(const std::filesystem::path& path, const SelectionFile& 
 }
 
 Result<SelectionFile> parse_selections(std::string_view text, const std::string& where) {
-  if (const Status whole = check_own_checksum(text, where); !whole) {
-    return std::unexpected(whole.error());
-  }
-  const Result<JsonDocument> document = JsonDocument::parse(text, where);
+  const Result<JsonDocument> document = parse_self_checked(text, where);
   if (!document) {
     return std::unexpected(document.error());
   }

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "core/result.h"
+#include "formats/json_node.h"
 
 namespace dubsar {
 
@@ -23,7 +24,8 @@ enum class OwnChecksum {
 };
 [[nodiscard]] OwnChecksum own_checksum_of(std::string_view text);
 
-/// kBadInput where there is one that fails.
-[[nodiscard]] Status check_own_checksum(std::string_view text, const std::string& where);
+/// The document of such a text; kBadInput where its checksum fails, or it is no JSON. Its members are to be
+/// read with kOwnChecksum among those that may be there.
+[[nodiscard]] Result<JsonDocument> parse_self_checked(std::string_view text, const std::string& where);
 
 }  // namespace dubsar
