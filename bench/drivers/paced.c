@@ -9,7 +9,7 @@
 #include <string.h>
 #include <time.h>
 
-#include "drivers/driver.h"
+#include "tests/support/plain_driver.h"
 
 enum { COLS = 2048, ROWS = 600, PROFILES_PER_S = 100 };
 
@@ -17,23 +17,9 @@ struct dubsar_device {
   float x[COLS], y[COLS], z[COLS];
 };
 
-static int32_t problem(dubsar_error* error, int32_t code, const char* what) {
-  error->code = code;
-  strncpy(error->what, what, sizeof error->what - 1);
-  return code;
-}
-
-static int32_t none(dubsar_setting_callback callback, void* user, dubsar_error* error) {
-  (void)callback;
-  (void)user;
-  (void)error;
-  return DUBSAR_OK;
-}
-
 static int32_t discover(dubsar_device_callback callback, void* user, dubsar_error* error) {
-  const dubsar_device_info info = {sizeof info, "paced:", "a scanner at a steady pace"};
   (void)error;
-  return callback(user, &info) != 0 ? DUBSAR_CANCELLED : DUBSAR_OK;
+  return plain_one_device(callback, user, "paced:", "a scanner at a steady pace");
 }
 
 static int32_t open_device(const char* locator, const dubsar_option* options, uint32_t count,
@@ -42,7 +28,7 @@ static int32_t open_device(const char* locator, const dubsar_option* options, ui
   (void)options;
   (void)count;
   *device = calloc(1, sizeof **device);
-  return *device != NULL ? DUBSAR_OK : problem(error, DUBSAR_INTERNAL, "no memory");
+  return *device != NULL ? DUBSAR_OK : plain_problem(error, DUBSAR_INTERNAL, "no memory");
 }
 
 static void close_device(dubsar_device* device) {
@@ -58,8 +44,7 @@ static int32_t capabilities(dubsar_device* device, dubsar_capabilities* out, dub
   filled.scan_count = -1;
   filled.calibration_age_days = -1;
   strcpy(filled.serial, "PACED-1");
-  memcpy(out, &filled, out->struct_size < sizeof filled ? out->struct_size : sizeof filled);
-  return DUBSAR_OK;
+  return plain_give_capabilities(&filled, out);
 }
 
 static void wait_until(const struct timespec* start, int64_t profile) {
@@ -84,8 +69,7 @@ static int32_t scan(dubsar_device* device, const dubsar_sink* sink, dubsar_error
   info.view.direction[2] = -1;
   info.device_id = "paced PACED-1";
   if (sink->begin(sink->user, &info) != 0) {
-    sink->end(sink->user, &end);
-    return problem(error, DUBSAR_CANCELLED, "cancelled");
+    return plain_cancelled(sink, &end, error);
   }
   clock_gettime(CLOCK_MONOTONIC, &start);
   for (int64_t row = 0; row < ROWS; ++row) {
@@ -103,8 +87,7 @@ static int32_t scan(dubsar_device* device, const dubsar_sink* sink, dubsar_error
     }
     wait_until(&start, row);
     if (sink->profile(sink->user, &profile) != 0) {
-      sink->end(sink->user, &end);
-      return problem(error, DUBSAR_CANCELLED, "cancelled");
+      return plain_cancelled(sink, &end, error);
     }
     ++end.profiles_sent;
   }
@@ -120,7 +103,7 @@ const dubsar_driver* dubsar_driver_entry(void) {
       .description = "a scanner for benches that hands its profiles over at a steady pace",
       .version = "1",
       .locator_help = "",
-      .describe_options = none,
+      .describe_options = plain_no_options,
       .discover = discover,
       .open = open_device,
       .close = close_device,

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "drivers/driver.h"
+#include "tests/support/plain_driver.h"
 
 enum { COLS = 8, ROWS = 6 };
 
@@ -19,12 +19,6 @@ struct dubsar_device {
   char light[8];
   double turntable_rad;
 };
-
-static int32_t problem(dubsar_error* error, int32_t code, const char* what) {
-  error->code = code;
-  strncpy(error->what, what, sizeof error->what - 1);
-  return code;
-}
 
 static int32_t describe_options(dubsar_setting_callback callback, void* user, dubsar_error* error) {
   const dubsar_setting mode = {.struct_size = sizeof mode,
@@ -40,20 +34,19 @@ static int32_t describe_options(dubsar_setting_callback callback, void* user, du
 }
 
 static int32_t discover(dubsar_device_callback callback, void* user, dubsar_error* error) {
-  const dubsar_device_info info = {sizeof info, "odd:1", "an odd device"};
   (void)error;
-  return callback(user, &info) != 0 ? DUBSAR_CANCELLED : DUBSAR_OK;
+  return plain_one_device(callback, user, "odd:1", "an odd device");
 }
 
 static int32_t open_device(const char* locator, const dubsar_option* options, uint32_t count,
                            dubsar_device** device, dubsar_error* error) {
   if (strcmp(locator, "gone") == 0) {
     strncpy(error->mend, "plug it in", sizeof error->mend - 1);
-    return problem(error, DUBSAR_DEVICE, "no such device");
+    return plain_problem(error, DUBSAR_DEVICE, "no such device");
   }
   *device = calloc(1, sizeof **device);
   if (*device == NULL) {
-    return problem(error, DUBSAR_INTERNAL, "no memory");
+    return plain_problem(error, DUBSAR_INTERNAL, "no memory");
   }
   strcpy((*device)->mode, "good");
   strcpy((*device)->light, "on");
@@ -85,8 +78,7 @@ static int32_t capabilities(dubsar_device* device, dubsar_capabilities* out, dub
   filled.view.flags = DUBSAR_VIEW_LASER;
   filled.view.laser_mm[2] = 200;
   strcpy(filled.name, "odd rig");
-  memcpy(out, &filled, out->struct_size < sizeof filled ? out->struct_size : sizeof filled);
-  return DUBSAR_OK;
+  return plain_give_capabilities(&filled, out);
 }
 
 static int32_t describe_settings(dubsar_device* device, dubsar_setting_callback callback, void* user,
@@ -179,8 +171,7 @@ static int32_t scan(dubsar_device* device, const dubsar_sink* sink, dubsar_error
     return DUBSAR_OK;
   }
   if (sink->begin(sink->user, &info) != 0) {
-    sink->end(sink->user, &end);
-    return problem(error, DUBSAR_CANCELLED, "cancelled");
+    return plain_cancelled(sink, &end, error);
   }
   const int64_t rows = strcmp(device->mode, "forever") == 0 ? INT64_MAX
                        : strcmp(device->mode, "empty") == 0 ? 0
@@ -191,7 +182,7 @@ static int32_t scan(dubsar_device* device, const dubsar_sink* sink, dubsar_error
     fill_row(x, y, z, row);
     if (strcmp(device->mode, "fail") == 0 && device->scans == 1 && row == 3) {
       sink->end(sink->user, &end);
-      return problem(error, DUBSAR_DEVICE, "the cable was pulled");
+      return plain_problem(error, DUBSAR_DEVICE, "the cable was pulled");
     }
     if (ragged) {
       memset(valid, 1, sizeof valid);
@@ -210,8 +201,7 @@ static int32_t scan(dubsar_device* device, const dubsar_sink* sink, dubsar_error
       }
     }
     if (sink->profile(sink->user, &profile) != 0) {
-      sink->end(sink->user, &end);
-      return problem(error, DUBSAR_CANCELLED, "cancelled");
+      return plain_cancelled(sink, &end, error);
     }
     ++end.profiles_sent;
   }

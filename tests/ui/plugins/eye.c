@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "drivers/driver.h"
+#include "tests/support/plain_driver.h"
 
 enum { WIDTH = 320, HEIGHT = 200, COLS = 120, ROWS = 100 };
 
@@ -20,23 +20,9 @@ struct dubsar_device {
   uint8_t pixels[WIDTH * HEIGHT];
 };
 
-static int32_t problem(dubsar_error* error, int32_t code, const char* what) {
-  error->code = code;
-  strncpy(error->what, what, sizeof error->what - 1);
-  return code;
-}
-
-static int32_t none(dubsar_setting_callback callback, void* user, dubsar_error* error) {
-  (void)callback;
-  (void)user;
-  (void)error;
-  return DUBSAR_OK;
-}
-
 static int32_t discover(dubsar_device_callback callback, void* user, dubsar_error* error) {
-  const dubsar_device_info info = {sizeof info, "eye:", "an eye"};
   (void)error;
-  return callback(user, &info) != 0 ? DUBSAR_CANCELLED : DUBSAR_OK;
+  return plain_one_device(callback, user, "eye:", "an eye");
 }
 
 static int32_t open_device(const char* locator, const dubsar_option* options, uint32_t count,
@@ -46,7 +32,7 @@ static int32_t open_device(const char* locator, const dubsar_option* options, ui
   (void)count;
   *device = calloc(1, sizeof **device);
   if (*device == NULL) {
-    return problem(error, DUBSAR_INTERNAL, "no memory");
+    return plain_problem(error, DUBSAR_INTERNAL, "no memory");
   }
   (*device)->exposure_us = 5000;
   strcpy((*device)->trigger, "free");
@@ -67,8 +53,7 @@ static int32_t capabilities(dubsar_device* device, dubsar_capabilities* out, dub
   filled.scan_count = -1;
   filled.calibration_age_days = -1;
   strcpy(filled.serial, "EYE-1");
-  memcpy(out, &filled, out->struct_size < sizeof filled ? out->struct_size : sizeof filled);
-  return DUBSAR_OK;
+  return plain_give_capabilities(&filled, out);
 }
 
 static int32_t describe_settings(dubsar_device* device, dubsar_setting_callback callback, void* user,
@@ -130,7 +115,7 @@ static int32_t next_frame(dubsar_device* device, uint32_t timeout_ms, dubsar_fra
   dubsar_frame filled;
   (void)timeout_ms;
   if (!device->runs) {
-    return problem(error, DUBSAR_USAGE, "the stream was not started");
+    return plain_problem(error, DUBSAR_USAGE, "the stream was not started");
   }
   for (int u = 0; u < WIDTH; ++u) {
     const double middle = 90 + 0.05 * u;
@@ -177,7 +162,7 @@ static int32_t scan(dubsar_device* device, const dubsar_sink* sink, dubsar_error
   dubsar_scan_info info;
   dubsar_scan_end end = {sizeof end, DUBSAR_OK, 0, 0, 0};
   if (device->runs) {
-    return problem(error, DUBSAR_DEVICE, "the camera is being looked through");
+    return plain_problem(error, DUBSAR_DEVICE, "the camera is being looked through");
   }
   memset(&info, 0, sizeof info);
   info.struct_size = sizeof info;
@@ -187,8 +172,7 @@ static int32_t scan(dubsar_device* device, const dubsar_sink* sink, dubsar_error
   info.view.direction[2] = -1;
   info.device_id = "eye EYE-1";
   if (sink->begin(sink->user, &info) != 0) {
-    sink->end(sink->user, &end);
-    return problem(error, DUBSAR_CANCELLED, "cancelled");
+    return plain_cancelled(sink, &end, error);
   }
   for (int64_t row = 0; row < ROWS; ++row) {
     const dubsar_profile profile = {
@@ -199,8 +183,7 @@ static int32_t scan(dubsar_device* device, const dubsar_sink* sink, dubsar_error
       z[col] = 0.4f * sinf(0.9f * x[col]) * cosf(1.3f * y[col]) + 0.3f * sinf(0.31f * x[col] * y[col]);
     }
     if (sink->profile(sink->user, &profile) != 0) {
-      sink->end(sink->user, &end);
-      return problem(error, DUBSAR_CANCELLED, "cancelled");
+      return plain_cancelled(sink, &end, error);
     }
     ++end.profiles_sent;
   }
@@ -216,7 +199,7 @@ const dubsar_driver* dubsar_driver_entry(void) {
       .description = "a scanner for tests whose camera can be looked through",
       .version = "1",
       .locator_help = "",
-      .describe_options = none,
+      .describe_options = plain_no_options,
       .discover = discover,
       .open = open_device,
       .close = close_device,
