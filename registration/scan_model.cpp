@@ -11,24 +11,14 @@
 #include "registration/pin_labels.h"
 #include "registration/pin_matching.h"
 #include "registration/pin_merge.h"
-#include "registration/self_similarity.h"
 #include "registration/unit_check.h"
 
 namespace dubsar {
 
 namespace {
 
-constexpr const char* kStopped = "registration was stopped; run it again";
 constexpr const char* kOtherGroup =
     "it fits other scans, but not the largest group; scan what connects them, with at least 30 % overlap";
-
-constexpr const char* kContradiction =
-    "it connects scans that contradict each other; one of them moved while it was scanned, or lies wrong: "
-    "take "
-    "that one out, or scan again what connects them";
-
-/// Poses of an unsettled search that are kept for the next.
-constexpr std::size_t kMostLeads = 5;
 
 bool size_is_possible(double a_mm, double b_mm, double most_ratio) {
   return a_mm <= most_ratio * b_mm && b_mm <= most_ratio * a_mm;
@@ -192,173 +182,6 @@ PoseHints ScanModel::hints_for(const Scan& scan, const std::vector<int>& group_i
     hints.hand_sigma_rad = scan.nominal->hand_sigma_rad;
   }
   return hints;
-}
-
-bool ScanModel::join(int id, JobContext& job) {
-  if (!scans_.at(id).usable) {
-    return false;
-  }
-  bool joined = false;
-  for (const int group : groups_by_size()) {
-    if (job.cancelled()) {
-      if (!joined && scans_.at(id).reason.empty()) {
-        scans_.at(id).reason = kStopped;
-      }
-      break;
-    }
-    if (group != scans_.at(id).group) {
-      joined = join_group(id, group, job) || joined;
-    }
-  }
-  return joined;
-}
-
-void ScanModel::retry(JobContext& job) {
-  bool grown = true;
-  while (grown && !job.cancelled()) {
-    grown = false;
-    const int main = main_group();
-    for (auto& [id, scan] : scans_) {
-      if (!scan.usable || job.cancelled() || scan.group == main || scan.group == main_group()) {
-        continue;
-      }
-      const std::vector<int> ids = members(main_group());
-      if (std::any_of(ids.begin(), ids.end(), [&](int i) { return !scan.tried_on.contains(i); })) {
-        grown = join_group(id, main_group(), job) || grown;
-      }
-    }
-  }
-}
-
-bool ScanModel::join_group(int id, int group, JobContext& job) {
-  Scan& scan = scans_.at(id);
-  const std::vector<int> ids = members(group);
-  if (ids.empty()) {
-    return false;  // it was joined with another meanwhile
-  }
-  if (const std::optional<int> hinted = hint_between(scan.group, group)) {
-    scan.tried_on.insert(ids.begin(), ids.end());
-    return join_by_hint(*hinted, job);
-  }
-  if (scan.given) {
-    return join_as_given(id, group, job);
-  }
-  const std::vector<ModelScan> model = model_of(ids);
-  std::vector<std::uint8_t> searched(ids.size(), 0);
-  const PairHypotheses from_pairs = [&](std::size_t k) {
-    if (scan.tried_on.contains(ids[k])) {
-      return std::vector<PoseHypothesis>{};
-    }
-    searched[k] = 1;
-    return align_pair(scan.features, scans_.at(ids[k]).features, options_.search.align);
-  };
-  PoseHints hints = hints_for(scan, ids);
-  for (const Lead& lead : scan.leads) {
-    if (scans_.at(lead.on).group == group) {
-      hints.starts.push_back(scans_.at(lead.on).group_from_scanner * lead.on_from_scanner);
-    }
-  }
-  const FoundPose found = search_pose(
-      *scan.features.surface, model, hints, from_pairs,
-      [&](const ModelFit& fit) { return shape_is_distinctive(id, fit, ids); }, options_.search, job);
-  if (!job.cancelled()) {
-    for (std::size_t k = 0; k < ids.size(); ++k) {
-      if (searched[k] != 0) {
-        scan.tried_on.insert(ids[k]);
-      }
-    }
-    std::erase_if(scan.leads, [&](const Lead& lead) { return scans_.at(lead.on).group == group; });
-    for (std::size_t f = 0; f < std::min(found.fits.size(), kMostLeads); ++f) {
-      scan.leads.push_back({ids.front(), scans_.at(ids.front()).group_from_scanner.inverse() *
-                                             found.fits[f].model_from_scanner});
-    }
-  }
-  if (found.verdict.status != PoseStatus::kRegistered || job.cancelled()) {
-    // What the largest group says counts; groups are tried by size.
-    if (members(scan.group).size() == 1 && (group == main_group() || scan.reason.empty())) {
-      scan.reason = job.cancelled() ? kStopped : found.verdict.reason;
-      scan.outcome =
-          found.verdict.status == PoseStatus::kRegistered ? PoseStatus::kUnsure : found.verdict.status;
-      if (!found.fits.empty()) {
-        scan.rms_mm = found.fits.front().icp.rms_mm;
-        scan.overlap = std::max(found.fits.front().overlap, found.fits.front().best_pair_overlap);
-      }
-    }
-    return false;
-  }
-  if (!groups_agree(id, found.fits.front().model_from_scanner, ids)) {
-    scan.reason = kContradiction;
-    scan.outcome = PoseStatus::kUnsure;
-    return false;
-  }
-  connect(id, found.fits.front(), found.by_stage, ids, group);
-  settle_group(scans_.at(id).group, job);
-  judge(id);
-  return true;
-}
-
-bool ScanModel::shape_is_distinctive(int id, const ModelFit& fit, const std::vector<int>& group_ids) {
-  const auto similar = [&](int i) {
-    Scan& scan = scans_.at(i);
-    if (!scan.self_similar) {
-      scan.self_similar = self_similar(*scan.features.surface, options_.search.fit, options_.search.verify);
-    }
-    return *scan.self_similar;
-  };
-  return !similar(id) && std::none_of(fit.targets.begin(), fit.targets.end(),
-                                      [&](std::size_t k) { return similar(group_ids[k]); });
-}
-
-bool ScanModel::groups_agree(int id, const RigidTransform& group_from_scanner,
-                             const std::vector<int>& group_ids) const {
-  const Scan& scan = scans_.at(id);
-  const std::vector<ModelScan> model = model_of(group_ids);
-  const RigidTransform group_from_own = group_from_scanner * scan.group_from_scanner.inverse();
-  PoseEvidence brought;
-  for (const int other : members(scan.group)) {
-    if (other != id) {
-      const Scan& moved = scans_.at(other);
-      brought.add(judge_in_model(*moved.features.surface, model, group_from_own * moved.group_from_scanner,
-                                 options_.search.fit)
-                      .both());
-    }
-  }
-  // Free space only: until all are relaxed together, a small turn of the one scan carries the others off.
-  return brought.violation() <= options_.search.verify.most_violation;
-}
-
-void ScanModel::connect(int id, const ModelFit& fit, bool by_stage, const std::vector<int>& group_ids,
-                        int group) {
-  Scan& scan = scans_.at(id);
-  scan.stage_sigma_mm = by_stage && scan.nominal ? scan.nominal->sigma_mm : 0.0;
-  const int own = scan.group;
-  const std::vector<int> own_ids = members(own);
-  const RigidTransform group_from_own = fit.model_from_scanner * scan.group_from_scanner.inverse();
-  // The larger group keeps its frame, so that what was stitched stays in place; so does one with a locked
-  // scan.
-  const auto locked = [&](const std::vector<int>& ids) {
-    return std::any_of(ids.begin(), ids.end(), [&](int i) { return scans_.at(i).locked; });
-  };
-  const bool own_moves = locked(own_ids) == locked(group_ids)
-                             ? own_ids.size() < group_ids.size() ||
-                                   (own_ids.size() == group_ids.size() && group_ids.front() < own_ids.front())
-                             : locked(group_ids);
-  const RigidTransform move = own_moves ? group_from_own : group_from_own.inverse();
-  for (const int i : own_moves ? own_ids : group_ids) {
-    Scan& moved = scans_.at(i);
-    moved.group_from_scanner = (move * moved.group_from_scanner).orthonormalised();
-    moved.group = own_moves ? group : own;
-  }
-  for (const int i : own_moves ? group_ids : own_ids) {
-    scans_.at(i).group = own_moves ? group : own;
-  }
-  std::vector<std::pair<int, int>> pairs;
-  pairs.reserve(fit.touching.size());
-  for (const std::size_t k : fit.touching) {
-    pairs.push_back(std::minmax(id, group_ids[k]));
-  }
-  measure_pairs(pairs);
-  scan.reason.clear();
 }
 
 bool ScanModel::place(int id, const RigidTransform& model_from_scanner, bool locked) {
