@@ -6,7 +6,8 @@
 //     wedge edges; how much of the surface it holds; whether its uncertainties are true; its topology
 //   dubsar-stitching bunny FOLDER
 //     published scans with their published poses (the .conf of the folder), the bunny or any other: input
-//     sample to mesh, topology, shape, time; boundary beside that of reconstruction/bun_zipper.ply
+//     sample to mesh and what perfect averaging would leave, topology, shape, time; boundary beside that of
+//     reconstruction/bun_zipper.ply
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
@@ -22,6 +23,7 @@
 #include <variant>
 #include <vector>
 
+#include "bench/support/averaging_floor.h"
 #include "bench/support/conf_poses.h"
 #include "bench/support/mesh_score.h"
 #include "bench/support/statistics.h"
@@ -302,7 +304,10 @@ int bunny(const Arguments& args) {
     for (std::size_t i = 0; i < grids[k]->size(); ++i) {
       if (grids[k]->valid[i] != 0) {
         const std::uint8_t flag = flags[k][i];
-        ((flag & kSparse) != 0 ? sparse : is_unflagged(flag) ? good : bordering).push_back(d[at++]);
+        ((flag & kSparse) != 0              ? sparse
+         : (flag & kPotentiallySparse) != 0 ? bordering
+                                            : good)
+            .push_back(d[at++]);
       }
     }
   }
@@ -313,6 +318,11 @@ int bunny(const Arguments& args) {
                 rms(*part), quantile(*part, 0.95));
   }
   std::printf("  sample to mesh: mean %.4f, RMS %.4f, 95 %% %.4f mm\n", mean(d), rms(d), quantile(d, 0.95));
+  for (const double reach_mm : {0.4, 1.5}) {
+    const AveragingFloor floor = averaging_floor(grids, poses, flags, reach_mm);
+    std::printf("    perfect averaging of what lies within %.1f mm would leave: mean %.4f, RMS %.4f mm\n",
+                reach_mm, mean(floor.residual_mm), rms(floor.residual_mm));
+  }
   if (const auto zipper = read_mesh(folder / "reconstruction" / "bun_zipper.ply", {.mm_per_unit = 1000.0})) {
     print_topology(*zipper);
     print_boundary(mesh, *zipper, 3.0);
