@@ -72,6 +72,7 @@ std::vector<std::size_t> strongest(std::vector<Shared> shared, std::size_t most)
                    [](const Shared& a, const Shared& b) { return a.close > b.close; });
   shared.resize(std::min(shared.size(), most));
   std::vector<std::size_t> out;
+  out.reserve(shared.size());
   for (const Shared& s : shared) {
     out.push_back(s.place);
   }
@@ -100,6 +101,7 @@ IcpResult icp_in_model(const ScanSurface& scan, std::span<const ModelScan> model
                        const std::vector<std::size_t>& members, LevelOf level, const RigidTransform& start,
                        const IcpOptions& options) {
   std::vector<IcpTarget> targets;
+  targets.reserve(members.size());
   for (const std::size_t k : members) {
     targets.push_back({(model[k].surface->*level).get(), model[k].model_from_scanner});
   }
@@ -154,6 +156,7 @@ ModelFit judge_in_model(const ScanSurface& scan, std::span<const ModelScan> mode
   const std::size_t samples = scan.fine->samples.size();
   std::vector<std::uint8_t> on_model(samples, 0);
   std::vector<Shared> shared;
+  int most_shared = 0;
   double sigma_sum = 0;
   double sigma_weight = 0;
   for (std::size_t k = 0; k < model.size(); ++k) {
@@ -170,6 +173,12 @@ ModelFit judge_in_model(const ScanSurface& scan, std::span<const ModelScan> mode
     if (pair > 0.02) {
       out.touching.push_back(k);
       shared.push_back({k, outward[k].close + inward[k].close});
+      if (shared.back().close > most_shared) {
+        most_shared = shared.back().close;
+        PoseEvidence with_partner = outward[k];
+        with_partner.add(inward[k]);
+        out.partner_agreement = with_partner.agreement();
+      }
     }
     sigma_sum += (outward[k].close + 1e-9) * residual_sigma_mm(scan, *model[k].surface, options);
     sigma_weight += outward[k].close + 1e-9;

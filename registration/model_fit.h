@@ -46,6 +46,7 @@ struct ModelFit {
   PoseEvidence inward;           ///< the model's samples in what the scan's camera saw
   double overlap = 0;            ///< share of the scan's samples that lie on a surface of the model
   double best_pair_overlap = 0;  ///< largest overlap with one scan of the model, over the smaller of the two
+  double partner_agreement = 0;  ///< PoseEvidence::agreement() with the one scan that it shares most with
   double residual_sigma_mm = 0;  ///< expected standard deviation of a residual
   ReliefAgreement relief;        ///< with all scans of the model
   double significance = 0;       ///< of the relief's agreement, in standard deviations

@@ -49,7 +49,8 @@ void ScanModel::retry(JobContext& job) {
         continue;
       }
       const std::vector<int> ids = members(main_group());
-      if (std::any_of(ids.begin(), ids.end(), [&](int i) { return !scan.tried_on.contains(i); })) {
+      if (std::any_of(ids.begin(), ids.end(),
+                      [&known = scan.tried_on](int i) { return !known.contains(i); })) {
         grown = join_group(id, main_group(), job) || grown;
       }
     }

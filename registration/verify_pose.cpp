@@ -20,6 +20,15 @@ std::string loose_direction(const IcpResult& icp) {
   return icp.weakest.head<3>().norm() > icp.weakest.tail<3>().norm() ? "turn" : "slide";
 }
 
+/// The significance of the relief where shape or relief hold the scan in place. 0 where it can slide along
+/// and the relief agrees as well: a moulding, a ruled line or a wheel mark agrees with itself all along, and
+/// with others of its kind, and tells no pose from the next.
+double telling_significance(const ModelFit& fit, const VerifyOptions& o) {
+  const bool slides = fit.refined() && fit.icp.stability < o.least_stability &&
+                      fit.slid_significance >= o.most_slid * fit.significance;
+  return slides ? 0.0 : fit.significance;
+}
+
 double residual_doubt(const ModelFit& fit, const VerifyOptions& o) {
   if (!(fit.residual_sigma_mm > 0)) {
     return 0;
@@ -40,8 +49,13 @@ PoseVerdict judged_by_shape(const ModelFit& fit, const VerifyOptions& o) {
             "only " + percent(fit.overlap) +
                 " of it overlaps the registered scans; scan again with at least 30 % overlap"};
   }
-  const double total = doubt(fit, o);
-  if (total > (sure(fit, o) ? o.sure_doubt : 1.0)) {
+  const bool relief_is_sure = sure(fit, o);
+  // Real scanners see the same clay a little elsewhere from views far apart: the more scans the model has,
+  // the fewer of a right one's samples agree with all of them. Where the relief has settled which pose it is,
+  // the scan that it shares most with tells how well it lies; free space is asked of all.
+  const double beside_partner = std::max(0.0, fit.partner_agreement - both.agreement());
+  const double total = doubt(fit, o) - (relief_is_sure ? beside_partner / o.most_disagreement : 0.0);
+  if (total > (relief_is_sure ? o.sure_doubt : 1.0)) {
     const PoseStatus status = total > 3.0 ? PoseStatus::kFailed : PoseStatus::kUnsure;
     const double off = (1.0 - both.agreement()) / o.most_disagreement;
     const double through = both.violation() / o.most_violation;
@@ -71,8 +85,7 @@ PoseVerdict judged_by_shape(const ModelFit& fit, const VerifyOptions& o) {
             " of the surface that one scan shows is missing from another that looked there; scan again with "
             "more overlap, or click three points on both scans"};
   }
-  const bool held_by_relief = sure(fit, o) && fit.slid_significance < o.most_slid * fit.significance;
-  if (fit.refined() && fit.icp.stability < o.least_stability && !held_by_relief) {
+  if (fit.refined() && fit.icp.stability < o.least_stability && !relief_is_sure) {
     return {PoseStatus::kUnsure,
             "the overlap is too even: the scan can " + loose_direction(fit.icp) +
                 " on it; scan again with an edge or more relief in the overlap, or use pins"};
@@ -95,7 +108,8 @@ PoseVerdict two_poses(const ModelFit& a, const ModelFit& b) {
 }  // namespace
 
 bool sure(const ModelFit& fit, const VerifyOptions& options) {
-  return fit.significance >= options.sure_relief && fit.relief.correlation() >= options.sure_correlation;
+  return telling_significance(fit, options) >= options.sure_relief &&
+         fit.relief.correlation() >= options.sure_correlation;
 }
 
 double doubt(const ModelFit& fit, const VerifyOptions& options) {
@@ -147,7 +161,8 @@ PoseVerdict verify_pose(std::vector<ModelFit>& fits, const VerifyOptions& option
     if (chosen.told && !rival->told) {
       continue;
     }
-    if (sure(chosen, options) && rival->significance < options.rival_relief * chosen.significance) {
+    if (sure(chosen, options) &&
+        telling_significance(*rival, options) < options.rival_relief * chosen.significance) {
       continue;
     }
     if (rival->score > options.rival_score * chosen.score && doubt(*rival, options) < least) {

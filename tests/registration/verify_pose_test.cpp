@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "registration/verify_pose.h"
+
+#include <gtest/gtest.h>
+
+#include "core/units.h"
+
+namespace dubsar {
+namespace {
+
+/// A pose as the relief of two scans of the same clay shows it: nothing speaks against it.
+ModelFit right_pose() {
+  ModelFit fit;
+  fit.icp.pairs = 4000;
+  fit.icp.stability = 0.03;
+  fit.icp.rms_mm = 0.08;
+  fit.residual_sigma_mm = 0.08;
+  fit.outward.sent = fit.inward.sent = 8000;
+  fit.outward.close = fit.inward.close = 4500;
+  fit.outward.apart = fit.inward.apart = 500;
+  fit.overlap = fit.best_pair_overlap = 0.6;
+  fit.partner_agreement = fit.both().agreement();
+  for (int i = 0; i < 100; ++i) {  // a correlation of 0.9 or so
+    const double a = i % 10 - 4.5;
+    fit.relief.height.add(a, a + (i % 7 - 3) * 0.5);
+  }
+  fit.significance = 25;
+  fit.slid_significance = 10;
+  fit.score = 3;
+  return fit;
+}
+
+/// Half a turn away: two stretches of one moulding, along which the scan slides as it likes.
+ModelFit on_a_moulding() {
+  ModelFit fit = right_pose();
+  fit.model_from_scanner = RigidTransform::from_twist({0, 0, kPi}, {0, 0, 0});
+  fit.icp.stability = 1e-4;
+  fit.overlap = fit.best_pair_overlap = 0.12;
+  fit.significance = 21;
+  fit.slid_significance = 21;
+  fit.score = 2.8;
+  return fit;
+}
+
+PoseVerdict verdict(std::vector<ModelFit> fits) {
+  return verify_pose(fits, VerifyOptions{});
+}
+
+TEST(VerifyPose, TakesThePoseThatReliefAndShapeShow) {
+  ASSERT_GT(right_pose().relief.correlation(), 0.8);
+  EXPECT_EQ(verdict({right_pose()}).status, PoseStatus::kRegistered);
+}
+
+TEST(VerifyPose, AMouldingThatAgreesAllAlongIsNoRival) {
+  std::vector<ModelFit> fits{right_pose(), on_a_moulding()};
+  EXPECT_EQ(verify_pose(fits, VerifyOptions{}).status, PoseStatus::kRegistered);
+  EXPECT_LT(fits.front().model_from_scanner.angle_rad(), 0.1);
+  std::swap(fits[0], fits[1]);
+  fits[0].score = 3.5;  // not either where it scores higher
+  EXPECT_EQ(verify_pose(fits, VerifyOptions{}).status, PoseStatus::kRegistered);
+  EXPECT_LT(fits.front().model_from_scanner.angle_rad(), 0.1);
+}
+
+TEST(VerifyPose, AReliefThatHoldsAnotherPoseIsARival) {
+  ModelFit held = on_a_moulding();
+  held.slid_significance = 8;
+  EXPECT_EQ(verdict({right_pose(), held}).status, PoseStatus::kUnsure);
+  held.slid_significance = held.significance;
+  held.icp.stability = 0.03;  // or its shape holds it
+  EXPECT_EQ(verdict({right_pose(), held}).status, PoseStatus::kUnsure);
+}
+
+TEST(VerifyPose, AMouldingAloneTellsNoPose) {
+  EXPECT_EQ(verdict({on_a_moulding()}).status, PoseStatus::kUnsure);
+}
+
+/// As on a model of many scans of a real scanner: well beside the one that it shares most with, off others.
+ModelFit among_many(double partner_agreement) {
+  ModelFit fit = right_pose();
+  fit.icp.rms_mm = 1.4 * fit.residual_sigma_mm;
+  fit.outward.apart = fit.inward.apart = 4500;
+  fit.outward.missing = fit.inward.missing = 500;
+  fit.partner_agreement = partner_agreement;
+  return fit;
+}
+
+TEST(VerifyPose, AgreementWithItsPartnerCountsWhereTheReliefIsSure) {
+  EXPECT_EQ(verdict({among_many(0.5)}).status, PoseStatus::kUnsure);
+  EXPECT_EQ(verdict({among_many(0.85)}).status, PoseStatus::kRegistered);
+  ModelFit little_relief = among_many(0.85);
+  little_relief.significance = 4;
+  EXPECT_EQ(verdict({little_relief}).status, PoseStatus::kUnsure);
+  ModelFit through = among_many(0.85);
+  through.outward.in_front = 400;  // another camera saw through it
+  EXPECT_EQ(verdict({through}).status, PoseStatus::kUnsure);
+}
+
+}  // namespace
+}  // namespace dubsar
