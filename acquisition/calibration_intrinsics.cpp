@@ -174,7 +174,8 @@ Result<Intrinsics> find_intrinsics(const std::vector<CalibrationView>& views,
                        "tilt the board by 25 to 40° to each side");
     }
     if (Status fine = solved.camera.check("camera"); !fine) {
-      return bad_input({}, "the pictures do not determine the camera: " + fine.error().what, kMend);
+      return bad_input({}, "the pictures do not determine the camera: " + fine.error().what,
+                       "take more pictures, with the board in every corner of them");
     }
     out.camera = solved.camera;
     out.camera_from_board = std::move(solved.poses);

@@ -7,6 +7,7 @@
 #include <Eigen/LU>
 #include <cmath>
 #include <initializer_list>
+#include <string>
 
 namespace dubsar {
 
@@ -86,8 +87,13 @@ Status CameraModel::check(const std::string& where) const {
   constexpr int kSteps = 8;
   for (int i = 0; i <= kSteps; ++i) {
     for (int k = 0; k <= kSteps; ++k) {
-      if (!undistort({(width - 1.0) * i / kSteps, (height - 1.0) * k / kSteps})) {
-        return bad_input(where, "the lens distortion folds the image over", "calibrate the camera again");
+      const Eigen::Vector2d pixel((width - 1.0) * i / kSteps, (height - 1.0) * k / kSteps);
+      if (!undistort(pixel)) {
+        return bad_input(where,
+                         "the lens distortion folds the image over at pixel " +
+                             std::to_string(std::lround(pixel.x())) + ", " +
+                             std::to_string(std::lround(pixel.y())),
+                         "calibrate the camera again, with the board in every corner of its picture");
       }
     }
   }
