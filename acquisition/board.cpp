@@ -47,22 +47,41 @@ double number(std::string_view text) {
   return error == std::errc() && end == text.data() + text.size() && std::isfinite(value) ? value : 0;
 }
 
-/// Half the side of the window in which a corner is refined: it must reach neither the next corner's edges
-/// nor a marker. `per_row` 0: corners of which some are missing.
-int corner_window(const std::vector<cv::Point2f>& corners, int per_row, double share) {
-  float least = 1e9F;
-  for (std::size_t i = 1; i < corners.size(); ++i) {
-    if (per_row == 0 || i % static_cast<std::size_t>(per_row) != 0) {
-      least = std::min(least, static_cast<float>(cv::norm(corners[i] - corners[i - 1])));
+/// Half the side of the window in which each corner is refined: as large as it can be, for what it averages,
+/// and small enough to reach neither the next corner's edges nor a marker. `per_row` 0: corners of which some
+/// are missing, all with the window of the closest two.
+std::vector<int> corner_windows(const std::vector<cv::Point2f>& corners, int per_row, double share) {
+  const auto half = [&](double least_px) { return std::clamp(static_cast<int>(share * least_px), 2, 11); };
+  const auto apart = [&](std::size_t i, std::size_t k) { return cv::norm(corners[i] - corners[k]); };
+  if (per_row == 0) {
+    double least = 1e9;
+    for (std::size_t i = 1; i < corners.size(); ++i) {
+      least = std::min(least, apart(i, i - 1));
     }
+    return std::vector<int>(corners.size(), half(least));
   }
-  return std::clamp(static_cast<int>(share * static_cast<double>(least)), 2, 11);
+  const auto width = static_cast<std::size_t>(per_row);
+  std::vector<int> out;
+  out.reserve(corners.size());
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    double least = 1e9;
+    least = i % width > 0 ? std::min(least, apart(i, i - 1)) : least;
+    least = i % width + 1 < width ? std::min(least, apart(i, i + 1)) : least;
+    least = i >= width ? std::min(least, apart(i, i - width)) : least;
+    least = i + width < corners.size() ? std::min(least, apart(i, i + width)) : least;
+    out.push_back(half(least));
+  }
+  return out;
 }
 
 void refine(const cv::Mat& image, std::vector<cv::Point2f>& corners, int per_row, double share) {
-  const int half = corner_window(corners, per_row, share);
-  cv::cornerSubPix(image, corners, {half, half}, {-1, -1},
-                   {cv::TermCriteria::EPS + cv::TermCriteria::COUNT, 40, 1e-3});
+  const std::vector<int> windows = corner_windows(corners, per_row, share);
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    std::vector<cv::Point2f> one{corners[i]};
+    cv::cornerSubPix(image, one, {windows[i], windows[i]}, {-1, -1},
+                     {cv::TermCriteria::EPS + cv::TermCriteria::COUNT, 40, 1e-3});
+    corners[i] = one.front();
+  }
 }
 
 std::string what_it_looks_like(const cv::Mat& image) {
@@ -162,7 +181,7 @@ Result<BoardView> find_board(const GrayView& view, const BoardSpec& spec, const 
         return not_found("no chessboard with " + std::to_string(spec.cols) + " x " +
                          std::to_string(spec.rows) + " inner corners: " + what_it_looks_like(image));
       }
-      refine(image, corners, spec.cols, 0.4);
+      refine(image, corners, spec.cols, 0.3);
       for (int i = 0; i < spec.corner_count(); ++i) {
         const cv::Point2f& c = corners[static_cast<std::size_t>(i)];
         const int row = i / spec.cols;

@@ -170,6 +170,12 @@ double Refinement::off_plane_mm(const StripeSample& sample) const {
 void Refinement::build(const Scatter& scatter) {
   problem_ = std::make_unique<ceres::Problem>();
   const MotionKind kind = state_.motion.kind;
+  // With nothing else to weigh them against, corners are taken as everybody takes them, so that figures
+  // compare: whole pictures that stand out have been left out before.
+  const bool corners_alone = !state_.has_laser && !state_.has_stage;
+  const auto corner_loss = [&] {
+    return corners_alone ? nullptr : std::make_unique<ceres::HuberLoss>(kHuber);
+  };
   for (std::size_t k = 0; k < used_.size(); ++k) {
     const CalibrationView& view = views_[used_[k]];
     double* const pose = x_.poses[x_.pose_of[k]].data();
@@ -178,11 +184,11 @@ void Refinement::build(const Scatter& scatter) {
       if (x_.carried[k] == 0) {
         problem_->AddResidualBlock(
             new ceres::AutoDiffCostFunction<terms::Corner, 2, 9, 6>(new terms::Corner(corner)),
-            new ceres::HuberLoss(kHuber), x_.camera.data(), pose);
+            corner_loss().release(), x_.camera.data(), pose);
       } else {
         problem_->AddResidualBlock(new ceres::AutoDiffCostFunction<terms::CarriedCorner, 2, 9, 6, 3, 3>(
                                        new terms::CarriedCorner{corner, kind, view.stage_position}),
-                                   new ceres::HuberLoss(kHuber), x_.camera.data(), pose, x_.direction.data(),
+                                   corner_loss().release(), x_.camera.data(), pose, x_.direction.data(),
                                    x_.point.data());
       }
     }
