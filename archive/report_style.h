@@ -32,7 +32,7 @@ dd { margin: 0; overflow-wrap: anywhere; }
   grid-template-columns: minmax(0, var(--left)) minmax(0, var(--column)) minmax(0, var(--right));
   grid-template-areas: ". top ." "left obverse right" ". bottom ." ". reverse bar"; }
 .cross figure { width: 100%; }
-.bar { align-self: end; justify-self: stretch; color: var(--soft); font-size: .88em; text-align: left; }
+.bar { align-self: end; justify-self: stretch; white-space: nowrap; color: var(--soft); font-size: .88em; text-align: left; }
 .bar::before { content: ""; display: block; width: var(--share); height: 7px; margin-bottom: .2rem;
   border: solid var(--ink); border-width: 0 1px 2px; }
 figure { margin: 0; text-align: center; }
