@@ -10,7 +10,7 @@ std::string checklist_html(const ReportInput& input, const ReportPictures& pictu
   html += sign_off_section(input);
   html += checklist_section(input);
   html += next_section(input);
-  html += red_sheet_section(input, pictures);
+  html += red_sheet_section(pictures);
   html += regions_section(input, pictures);
   return html + page_foot();
 }

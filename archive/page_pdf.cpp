@@ -6,6 +6,7 @@
 #include <array>
 #include <utility>
 
+#include "archive/cross_plan.h"
 #include "archive/page_blocks.h"
 
 namespace dubsar {
@@ -41,10 +42,11 @@ class Setter {
     sheet_.text(foot, kMargin, 0.5 * kFoot, PdfFont::kPlain, 6.5, kSoftGrey);
   }
 
-  void set(const PageBlock& block) {
+  /// next: what follows, or null.
+  void set(const PageBlock& block, const PageBlock* next) {
     switch (block.kind) {
       case PageBlock::Kind::kHeading:
-        heading(block);
+        heading(block, next);
         break;
       case PageBlock::Kind::kParagraph:
         if (block.level > 0) {
@@ -141,14 +143,26 @@ class Setter {
     return kLeading * size * static_cast<double>(lines.size());
   }
 
-  void heading(const PageBlock& block) {
+  /// What has to stand on the heading's page of that which follows it.
+  double least_height(const PageBlock* next) {
+    if (next != nullptr && next->kind == PageBlock::Kind::kFigures && !next->figures.empty()) {
+      return measured(next->figures, 0).high;
+    }
+    if (next != nullptr && next->kind == PageBlock::Kind::kCross && next->figures.size() == 6) {
+      const CrossPlan plan = cross_plan(next->figures, kColumn / kPointsPerMm);
+      return plan.all_high_mm * plan.unit;
+    }
+    return 5 * kLeading * kBody;
+  }
+
+  void heading(const PageBlock& block, const PageBlock* next) {
     const double size = kHeading[static_cast<std::size_t>(std::clamp(block.level, 1, 3))];
     RichText text = block.text;
     for (TextRun& run : text) {
       run.bold = true;
     }
     const auto lines = lines_of(text, size, kColumn);
-    room_for(height_of(lines, size) + 5 * kLeading * kBody);  // never alone at the foot
+    room_for(height_of(lines, size) + size + least_height(next));  // never alone at the foot
     y_ -= 0.6 * size;
     std::string words;
     for (const TextRun& run : block.text) {
@@ -259,33 +273,48 @@ class Setter {
     return widths;
   }
 
-  void figures(const std::vector<PageFigure>& all) {
+  static constexpr double kFigureGap = 10;
+
+  /// Figures beside each other, from `first` on.
+  struct FigureRow {
+    std::size_t across = 1;  ///< that have room beside each other
+    double width = 0;        ///< of each, with what is free beside it
+    double size = 0;         ///< of the captions
+    double high = 0;
+    std::vector<std::vector<Line>> captions;
+    std::vector<std::array<double, 2>> sizes;
+  };
+
+  FigureRow measured(const std::vector<PageFigure>& all, std::size_t first) {
+    FigureRow row;
     const bool alone = all.size() == 1 && !(all.front().width_px < 500);
-    const std::size_t across = alone ? 1 : 4;
-    constexpr double kGap = 10;
-    const double width = (kColumn - kGap * static_cast<double>(across - 1)) / static_cast<double>(across);
-    const double size = alone ? kBody : 6.8;
-    for (std::size_t first = 0; first < all.size(); first += across) {
-      const std::size_t end = std::min(first + across, all.size());
-      double high = 0;
-      std::vector<std::vector<Line>> captions;
-      std::vector<std::array<double, 2>> sizes;
-      for (std::size_t k = first; k < end; ++k) {
-        captions.push_back(lines_of(all[k].caption, size, width));
-        const double shape = static_cast<double>(all[k].height_px) / std::max(1, all[k].width_px);
-        constexpr double kHighest = 215 * kPointsPerMm;
-        const double wide = std::min(width, kHighest / std::max(shape, 1e-3));
-        sizes.push_back({wide, wide * shape});
-        high = std::max(high, sizes.back()[1] + height_of(captions.back(), size) + 4);
+    row.across = alone ? 1 : 4;
+    const auto across = static_cast<double>(row.across);
+    row.width = (kColumn - kFigureGap * (across - 1)) / across;
+    row.size = alone ? kBody : 6.8;
+    for (std::size_t k = first; k < std::min(first + row.across, all.size()); ++k) {
+      row.captions.push_back(lines_of(all[k].caption, row.size, row.width));
+      const double shape = static_cast<double>(all[k].height_px) / std::max(1, all[k].width_px);
+      constexpr double kHighest = 215 * kPointsPerMm;
+      const double wide = std::min(row.width, kHighest / std::max(shape, 1e-3));
+      row.sizes.push_back({wide, wide * shape});
+      row.high = std::max(row.high, row.sizes.back()[1] + height_of(row.captions.back(), row.size) + 4);
+    }
+    return row;
+  }
+
+  void figures(const std::vector<PageFigure>& all) {
+    for (std::size_t first = 0; first < all.size();) {
+      const FigureRow row = measured(all, first);
+      room_for(row.high);
+      for (std::size_t k = 0; k < row.sizes.size(); ++k) {
+        const auto& [wide, tall] = row.sizes[k];
+        const double x = kMargin + static_cast<double>(k) * (row.width + kFigureGap);
+        sheet_.picture(all[first + k].png, x + 0.5 * (row.width - wide), y_ - tall, wide, tall);
+        draw(row.captions[k], x, y_ - tall - 2, row.size, kSoftGrey);
       }
-      room_for(high);
-      for (std::size_t k = first; k < end; ++k) {
-        const auto& [wide, tall] = sizes[k - first];
-        const double x = kMargin + static_cast<double>(k - first) * (width + kGap);
-        sheet_.picture(all[k].png, x + 0.5 * (width - wide), y_ - tall, wide, tall);
-        draw(captions[k - first], x, y_ - tall - 2, size, kSoftGrey);
-      }
-      y_ -= high + kGap;
+      y_ -= row.high + kFigureGap;
+      first += row.across;
     }
   }
 
@@ -295,19 +324,11 @@ class Setter {
       figures(six);
       return;
     }
-    constexpr double kGapMm = 3;
+    const auto [column_mm, middle_mm, all_wide_mm, all_high_mm, unit] =
+        cross_plan(six, kColumn / kPointsPerMm);
+    constexpr double kGapMm = CrossPlan::kGapMm;
     const auto wide_mm = [&](std::size_t k) { return six[k].width_mm; };
-    const auto high_mm = [&](std::size_t k) {
-      return six[k].width_mm * six[k].height_px / std::max(1, six[k].width_px);
-    };
-    const double column_mm = std::max({wide_mm(0), wide_mm(2), wide_mm(4), wide_mm(5)});
-    const double middle_mm = std::max({high_mm(1), high_mm(2), high_mm(3)});
-    const double all_wide_mm = wide_mm(1) + column_mm + wide_mm(3) + 2 * kGapMm;
-    const double all_high_mm = high_mm(0) + middle_mm + high_mm(4) + high_mm(5) + 3 * kGapMm;
-    constexpr double kHighestMm = 245;
-    const double scale = std::min({1.0, kColumn / kPointsPerMm / std::max(all_wide_mm, 1e-3),
-                                   kHighestMm / std::max(all_high_mm, 1e-3)});
-    const double unit = scale * kPointsPerMm;
+    const auto high_mm = [&](std::size_t k) { return height_mm(six[k]); };
     room_for(all_high_mm * unit);
     const double left = kMargin + 0.5 * (kColumn - all_wide_mm * unit);
     const double middle = left + (wide_mm(1) + kGapMm + 0.5 * column_mm) * unit;
@@ -347,8 +368,9 @@ Result<std::vector<std::uint8_t>> page_pdf(std::string_view html, const PdfInfo&
     return std::unexpected(sheet.error());
   }
   Setter setter(*sheet, info.title + ", " + info.when);
-  for (const PageBlock& block : page_blocks(html)) {
-    setter.set(block);
+  const std::vector<PageBlock> blocks = page_blocks(html);
+  for (std::size_t k = 0; k < blocks.size(); ++k) {
+    setter.set(blocks[k], k + 1 < blocks.size() ? &blocks[k + 1] : nullptr);
   }
   setter.finish();
   return sheet->bytes();

@@ -119,7 +119,9 @@ Eigen::Vector3d outlook(const Mesh& mesh, const RedRegion& region) {
       area += n.norm();
     }
   }
-  return sum.norm() > kAgreement * area ? Eigen::Vector3d(sum.normalized()) : region.normal;
+  // Where nobody has seen the side that is missing, the nearest clay is that of the side opposite.
+  const bool agrees = sum.norm() > kAgreement * area && sum.dot(region.normal) >= -kAgreement * sum.norm();
+  return agrees ? Eigen::Vector3d(sum.normalized()) : region.normal;
 }
 
 Face face_towards(const Eigen::Vector3d& direction, const RigidTransform& tablet_from_model) {

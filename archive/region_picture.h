@@ -8,8 +8,8 @@
 namespace dubsar {
 
 /// Which way the clay about a place looks: the mean normal of the mesh within a few millimetres, or the
-/// region's own where there is no such surface. A region's normal closes a gap, which may be as narrow as a
-/// crack: people want to see it from where they would stand.
+/// region's own where there is no such surface, or only that of the side opposite. A region's normal closes a
+/// gap, which may be as narrow as a crack: people want to see it from where they would stand.
 [[nodiscard]] Eigen::Vector3d outlook(const Mesh& mesh, const RedRegion& region);
 
 /// A square picture of a place of the red map: the mesh within a few millimetres of it and what lies behind,

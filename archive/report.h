@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "archive/render_scene.h"
@@ -21,9 +22,13 @@ struct StageTiming {
   double seconds = 0;
 };
 
+/// What people say of a tablet: name of the fact, fact.
+using TabletWords = std::vector<std::pair<std::string, std::string>>;
+
 /// Everything that the report tells. The references must outlive the call.
 struct ReportInput {
   std::string title;         ///< what was scanned, such as a museum number
+  TabletWords tablet{};      ///< what is known of it, in the order of the page
   std::string tool_version;  ///< "Dubsar 0.1.0"
   std::string when;          ///< ISO 8601, as the caller says it: nothing here looks at a clock
   std::string device;
@@ -53,5 +58,10 @@ struct ReportPictures;  // archive/report_pictures.h
 /// The page that is signed and filed: verdict, sign-off, checklist, red map, and every red or excused place
 /// with its picture; the same sections as the report's, without the rest. Prints on A4.
 [[nodiscard]] std::string checklist_html(const ReportInput& input, const ReportPictures& pictures);
+
+/// The page with another title, and other words on the tablet: a record may be corrected after the pages were
+/// made, and neither verdict nor pictures follow from it. A page that report_html() or checklist_html() made;
+/// any other comes back as it is.
+[[nodiscard]] std::string page_renamed(std::string page, const std::string& title, const TabletWords& tablet);
 
 }  // namespace dubsar

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "archive/glyphs.h"
 #include "archive/png.h"
@@ -21,6 +22,22 @@ constexpr int kNumberScale = 4;  ///< still legible on the page, where the sheet
 
 double size_of(const RedRegion& region) {
   return std::isfinite(region.area_mm2) ? region.area_mm2 : 0.0;
+}
+
+/// On clay that is as dark as the ink, digits need an edge of light.
+void draw_on_paper(Image& image, int x, int y, const std::string& number) {
+  constexpr int kEdge = 3;
+  for (const auto& [dx, dy] : {std::pair{-kEdge, 0},
+                               {kEdge, 0},
+                               {0, -kEdge},
+                               {0, kEdge},
+                               {-kEdge, -kEdge},
+                               {kEdge, -kEdge},
+                               {-kEdge, kEdge},
+                               {kEdge, kEdge}}) {
+    draw_text(image, x + dx, y + dy, number, kPaper, kNumberScale);
+  }
+  draw_text(image, x, y, number, kNumberInk, kNumberScale);
 }
 
 /// Rings and numbers on the side that each place belongs to.
@@ -45,6 +62,7 @@ Status number_places(const ReportInput& input, const std::vector<RegionPicture>&
       const double x = (p.x() - framing->left_mm) / framing->mm_per_px;
       const double y = (framing->top_mm - p.y()) / framing->mm_per_px;
       const double radius_px = std::max(9.0, 0.7 * std::sqrt(size_of(region)) / framing->mm_per_px);
+      draw_ring(image, x, y, radius_px, 7.0, kPaper);
       draw_ring(image, x, y, radius_px, 3.0, kNumberInk);
       const std::string number = std::to_string(region_number(place.region));
       const int wide = text_width(number, kNumberScale);
@@ -59,14 +77,15 @@ Status number_places(const ReportInput& input, const std::vector<RegionPicture>&
         box.translate(Eigen::Vector2i(0, high / 2));
       }
       taken.push_back(box);
-      draw_text(image, box.min().x(), box.min().y(), number, kNumberInk, kNumberScale);
+      draw_on_paper(image, box.min().x(), box.min().y(), number);
     }
   }
   return {};
 }
 
-/// The pictures of the pages as data URIs; packing takes longer than drawing, so all at once.
-Status encode(const ReportInput& input, ReportPictures& pictures) {
+/// The pictures of the pages as data URIs; packing takes longer than drawing, so all at once. Their titles
+/// leave to the page which tablet it is: that may be put right later.
+Status encode(ReportPictures& pictures) {
   std::vector<std::optional<Error>> failed(pictures.regions.size() + 1);
   parallel_for_each_index(
       failed.size(),
@@ -74,9 +93,7 @@ Status encode(const ReportInput& input, ReportPictures& pictures) {
         const bool sheet = k == pictures.regions.size();
         const Image& image = sheet ? pictures.red_page : pictures.regions[k].image;
         Result<std::string> uri = png_data_uri(
-            image,
-            input.title + (sheet ? ", red map"
-                                 : ", place " + std::to_string(region_number(pictures.regions[k].region))));
+            image, sheet ? "red map" : "place " + std::to_string(region_number(pictures.regions[k].region)));
         if (uri) {
           (sheet ? pictures.red_page_uri : pictures.regions[k].uri) = std::move(*uri);
         } else {
@@ -129,6 +146,7 @@ Image halved(const Image& image) {
 Result<ReportPictures> draw_pictures(const ReportInput& input, const JobContext& job) {
   ReportPictures out;
   const RenderScene bare(input.model);
+  constexpr int kBarTextScale = 4;  // the page shows the sheet half as large
   if (bare.empty()) {
     return out;
   }
@@ -136,6 +154,7 @@ Result<ReportPictures> draw_pictures(const ReportInput& input, const JobContext&
   SixViewOptions options;
   options.tablet_from_model = input.tablet_from_model;
   options.render.longest_px = input.longest_px;
+  options.bar_text_scale = kBarTextScale;
   Result<SixViews> sides = render_six_views(bare, options, job);
   if (!sides) {
     return std::unexpected(sides.error());
@@ -154,7 +173,7 @@ Result<ReportPictures> draw_pictures(const ReportInput& input, const JobContext&
     if (!image) {
       return std::unexpected(image.error());
     }
-    out.regions.push_back({k, face_towards(towards, input.tablet_from_model), std::move(*image), {}});
+    out.regions.push_back({k, region.face, std::move(*image), {}});
   }
 
   const RenderScene marked(input.model, &input.red_points);
@@ -168,7 +187,7 @@ Result<ReportPictures> draw_pictures(const ReportInput& input, const JobContext&
   }
   out.red_sheet = six_view_sheet(*red, options);
   out.red_page = halved(out.red_sheet);
-  if (const Status encoded = encode(input, out); !encoded) {
+  if (const Status encoded = encode(out); !encoded) {
     return std::unexpected(encoded.error());
   }
   return out;

@@ -14,7 +14,7 @@ namespace dubsar {
 /// One place of the red map, seen from where it looks to, a ring round it.
 struct RegionPicture {
   std::size_t region = 0;      ///< position in RedMap::regions
-  Face side = Face::kObverse;  ///< whose picture shows it best
+  Face side = Face::kObverse;  ///< whose picture shows it: that of the region's face
   Image image;
   std::string uri;  ///< the image as a data URI
 };

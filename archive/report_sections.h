@@ -15,7 +15,7 @@ namespace dubsar {
 [[nodiscard]] std::string checklist_section(const ReportInput& input);
 [[nodiscard]] std::string sign_off_section(const ReportInput& input);
 [[nodiscard]] std::string regions_section(const ReportInput& input, const ReportPictures& pictures);
-[[nodiscard]] std::string red_sheet_section(const ReportInput& input, const ReportPictures& pictures);
+[[nodiscard]] std::string red_sheet_section(const ReportPictures& pictures);
 [[nodiscard]] std::string scans_section(const ReportInput& input);
 [[nodiscard]] std::string accuracy_section(const ReportInput& input);
 [[nodiscard]] std::string wedges_section(const ReportInput& input);

@@ -27,15 +27,18 @@ dd { margin: 0; overflow-wrap: anywhere; }
 .verdict.yes { border-color: var(--green); background: #eef4ee; }
 .verdict h2 { font-size: 1.7rem; color: var(--red); margin-bottom: .3rem; }
 .verdict.yes h2 { color: var(--green); }
-.cross { display: grid; justify-content: center; justify-items: center; align-items: center; gap: 1rem 1.2rem;
+.cross { display: grid; justify-items: center; align-items: center; gap: 1rem 3mm; margin: 0 auto .8rem;
+  max-width: calc(var(--wide) * var(--scale) + 6mm);
+  grid-template-columns: minmax(0, var(--left)) minmax(0, var(--column)) minmax(0, var(--right));
   grid-template-areas: ". top ." "left obverse right" ". bottom ." ". reverse bar"; }
-.bar { align-self: end; justify-self: start; color: var(--soft); font-size: .88em; text-align: left; }
-.bar::before { content: ""; display: block; width: calc(10mm * var(--scale)); height: 7px; margin-bottom: .2rem;
+.cross figure { width: 100%; }
+.bar { align-self: end; justify-self: stretch; white-space: nowrap; color: var(--soft); font-size: .88em; text-align: left; }
+.bar::before { content: ""; display: block; width: var(--share); height: 7px; margin-bottom: .2rem;
   border: solid var(--ink); border-width: 0 1px 2px; }
 figure { margin: 0; text-align: center; }
 figure img { display: block; margin: 0 auto .25rem; max-width: 100%; }
-.cross img { width: calc(var(--mm) * var(--scale)); height: auto; max-width: none; }
-.sheet img { width: auto; max-height: 60rem; }
+.cross img { width: var(--share); height: auto; max-width: none; }
+.sheet img { width: auto; height: auto; max-height: 60rem; }
 .swatch { display: inline-block; width: .8em; height: .8em; margin: 0 .35em 0 1em; border: 1px solid #0003; }
 .swatch.ring { border: 2px solid #143cc8; border-radius: 50%; }
 .places { display: grid; grid-template-columns: repeat(auto-fill, minmax(13rem, 1fr)); gap: 1.2rem; margin: 0 0 1.4rem; }
@@ -47,6 +50,14 @@ figure img { display: block; margin: 0 auto .25rem; max-width: 100%; }
 .signed code { font: .8rem/1.3 "DejaVu Sans Mono", Consolas, monospace; overflow-wrap: anywhere; }
 .line { border-bottom: 1px solid var(--ink); padding-top: 2.2rem; max-width: 26rem; color: var(--soft); font-size: .88em; }
 .wide { overflow-x: auto; }
+@media screen and (max-width: 48rem) {
+  main { padding: 1.5rem 1rem 3rem; }
+  dl { grid-template-columns: 1fr; gap: 0; }
+  dd { margin-bottom: .4rem; }
+  .wide { border-right: 1px dotted var(--soft); }
+  .faces, .sampling, .regions { min-width: 40rem; }
+  .scans { min-width: 48rem; }
+}
 table { border-collapse: collapse; font-size: .88rem; line-height: 1.35; font-variant-numeric: tabular-nums lining-nums;
   border-top: 2px solid var(--ink); border-bottom: 1px solid var(--ink); }
 th { text-align: left; font-weight: 600; padding: .35rem .9rem .35rem 0; border-bottom: 1px solid var(--ink);
@@ -76,7 +87,7 @@ footer { border-top: 1px solid var(--rule); padding-top: 1rem; color: var(--soft
   .verdict { background: none; }
   figure, tr, .cross { break-inside: avoid; }
   .cross { --scale: var(--print-scale) !important; }
-  .sheet img { max-height: 230mm; }
+  .sheet img { max-height: 215mm; }
   .wide { overflow: visible; }
 }
 )css";

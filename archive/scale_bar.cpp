@@ -28,7 +28,7 @@ int bar_px(double length_mm, double mm_per_px) {
 
 }  // namespace
 
-ScaleBar scale_bar_for(double mm_per_px, int picture_width_px) {
+ScaleBar scale_bar_for(double mm_per_px, int picture_width_px, int least_text_scale) {
   ScaleBar bar;
   const double width_mm = mm_per_px * picture_width_px;
   if (!(width_mm > 0) || !std::isfinite(width_mm)) {
@@ -36,14 +36,12 @@ ScaleBar scale_bar_for(double mm_per_px, int picture_width_px) {
   }
   const auto fits = [&](double mm) { return mm <= 0.5 * width_mm && mm >= 0.06 * width_mm; };
   if (!fits(bar.length_mm)) {
-    bar.length_mm = std::pow(10.0, std::floor(std::log10(0.5 * width_mm)));
-    for (const double step : {2.0, 2.5}) {  // 1, 2, 5
-      if (fits(bar.length_mm * step) && !fits(bar.length_mm)) {
-        bar.length_mm *= step;
-      }
+    const double decade_mm = std::pow(10.0, std::floor(std::log10(0.5 * width_mm)));
+    for (const double step : {1.0, 2.0, 5.0}) {  // the longest that fits
+      bar.length_mm = step == 1.0 || fits(decade_mm * step) ? decade_mm * step : bar.length_mm;
     }
   }
-  bar.text_scale = std::clamp(picture_width_px / 280, 1, 6);
+  bar.text_scale = std::max(least_text_scale, std::clamp(picture_width_px / 280, 1, 6));
   const int text_px = text_width(words(bar.length_mm), bar.text_scale);
   bar.width_px = bar_px(bar.length_mm, mm_per_px) + 3 * kGlyphAdvance / 2 * bar.text_scale + text_px;
   bar.height_px = kGlyphHeight * bar.text_scale;

@@ -14,9 +14,10 @@ struct ScaleBar {
   int text_scale = 2;
 };
 
-/// 10 mm where that suits the picture's width; 1, 2, 5, 20, 50 … mm where it would be too long or too short
-/// to read.
-[[nodiscard]] ScaleBar scale_bar_for(double mm_per_px, int picture_width_px);
+/// 10 mm where that suits the picture's width; where it would be too long or too short to read, the longest
+/// of 1, 2, 5, 20, 50 … mm that is at most half as wide as the picture. Words as large as suits the width,
+/// but at least least_text_scale.
+[[nodiscard]] ScaleBar scale_bar_for(double mm_per_px, int picture_width_px, int least_text_scale = 1);
 
 /// Draws the bar with its top left corner at (x, y): alternating fifths, and "10 mm" beside them. The bar is
 /// as long on the picture as its length at image.mm_per_px, to the nearest pixel.

@@ -54,7 +54,7 @@ Image six_view_sheet(const SixViews& views, const SixViewOptions& options) {
   const int width = 4 * gap + left.width + column + right.width;
   // Only the column reaches below the obverse: the bar goes into the free corner beside the reverse, or on a
   // line of its own where the edges are too narrow for it.
-  const ScaleBar bar = scale_bar_for(obverse.mm_per_px, column);
+  const ScaleBar bar = scale_bar_for(obverse.mm_per_px, column, options.bar_text_scale);
   const bool bar_has_corner = bar.width_px <= right.width;
   const int bar_line = options.scale_bar && !bar_has_corner ? bar.height_px + std::max(gap, 4) : 0;
   const int height = 5 * gap + top.height + middle_row + bottom.height + reverse.height + bar_line;

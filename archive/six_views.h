@@ -14,6 +14,7 @@ struct SixViewOptions {
       tablet_from_model;  ///< x along the lines of writing, y to the top edge, z out of the obverse
   int gap_px = 16;        ///< between views and round them; 0 joins the views edge to edge (CDLI)
   bool scale_bar = true;
+  int bar_text_scale = 1;  ///< of the words beside the scale bar, at least
 };
 
 /// The six faces at one scale, by Face.

@@ -9,7 +9,20 @@
 #include <stdexcept>
 #include <vector>
 
+#include "core/lasting_thread.h"
+
 namespace dubsar {
+
+namespace {
+
+/// Embree keeps an allocator (192 bytes) for every thread that has ever built a tree, until the program ends.
+/// The threads of a scan end with it: those few bytes would hold on to a page of memory each.
+LastingThread& tree_builder() {
+  static LastingThread thread;
+  return thread;
+}
+
+}  // namespace
 
 struct MeshQuery::Impl {
   RTCDevice device = nullptr;
@@ -50,7 +63,7 @@ MeshQuery::MeshQuery(const Mesh& mesh) : impl_(std::make_unique<Impl>()) {
   rtcCommitGeometry(geometry);
   rtcAttachGeometry(impl_->scene, geometry);
   rtcReleaseGeometry(geometry);
-  rtcCommitScene(impl_->scene);
+  tree_builder().run([scene = impl_->scene] { rtcCommitScene(scene); });
 }
 
 MeshQuery::~MeshQuery() = default;

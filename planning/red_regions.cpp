@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "planning/clusters.h"
 
@@ -15,17 +16,39 @@ namespace {
 /// Grid neighbours farther apart than this are rims of two holes, or of the object itself.
 constexpr double kGridReachMm = 5.0;
 
-RedRegion region_of(const RedTargets& red, std::span<const std::uint32_t> group, const ModelFaces& faces) {
+/// The side of the tablet that a place lies on: that of the hull over it. Its own normal would not do: the
+/// wall of a wedge on the obverse looks to the right or to the top edge.
+Face side_at(const Eigen::Vector3d& position_mm, const Eigen::Vector3d& normal, const ModelSurface& surface) {
+  const SurfacePatch* nearest = nullptr;
+  double least_mm2 = std::numeric_limits<double>::infinity();
+  for (const auto* patches : {&surface.seen, &surface.unseen}) {
+    for (const SurfacePatch& patch : *patches) {
+      if (const double d = (patch.position_mm - position_mm).squaredNorm(); d < least_mm2) {
+        least_mm2 = d;
+        nearest = &patch;
+      }
+    }
+  }
+  return surface.faces.of(nearest != nullptr ? nearest->normal : normal);
+}
+
+RedRegion region_of(const RedTargets& red, std::span<const std::uint32_t> group,
+                    const ModelSurface& surface) {
   RedRegion region;
   Eigen::Vector3d center = Eigen::Vector3d::Zero();
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();
   std::array<double, kFaceCount> by_face{};
-  for (const std::uint32_t i : group) {
+  constexpr std::size_t kAsked = 16;  // of a large place these say as much
+  const std::size_t stride = (group.size() + kAsked - 1) / kAsked;
+  for (std::size_t k = 0; k < group.size(); ++k) {
+    const std::uint32_t i = group[k];
     const RedTarget& t = red.targets[i];
     region.area_mm2 += t.area_mm2;
     center += t.area_mm2 * t.position_mm;
     normal += t.area_mm2 * t.normal;
-    by_face[static_cast<std::size_t>(faces.of(t.normal))] += t.area_mm2;
+    if (k % stride == 0) {
+      by_face[static_cast<std::size_t>(side_at(t.position_mm, t.normal, surface))] += t.area_mm2;
+    }
   }
   // What most of it is says why.
   const std::uint32_t largest = *std::max_element(
@@ -52,7 +75,7 @@ std::vector<RedRegion> red_regions(const RedTargets& red, std::span<const Placed
   std::vector<RedRegion> regions;
   for (const auto& group :
        cluster_targets(red, scans, std::max(2.0 * red.cell_mm, 1.8 * patch_mm), kGridReachMm, true)) {
-    regions.push_back(region_of(red, group, surface.faces));
+    regions.push_back(region_of(red, group, surface));
   }
   std::stable_sort(regions.begin(), regions.end(),
                    [](const RedRegion& a, const RedRegion& b) { return a.area_mm2 > b.area_mm2; });

@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <ctime>
+#include <filesystem>
+#include <string_view>
 
 #include "archive/iiif_manifest.h"
 #include "archive/provenance.h"
@@ -61,6 +63,31 @@ ProvenanceScan scan_of(const PackageContent& content, const StoredScan& scan) {
   return out;
 }
 
+/// The files that lie there by now and whose path begins so, in order.
+std::vector<std::string> files_of(const PackageContent& content, std::string_view begins) {
+  namespace fs = std::filesystem;
+  std::vector<std::string> files;
+  std::error_code ignored;
+  for (fs::recursive_directory_iterator it(content.root, ignored), end; !ignored && it != end;
+       it.increment(ignored)) {
+    if (std::string path = it->path().lexically_relative(content.root).generic_string();
+        it->is_regular_file(ignored) && path.starts_with(begins)) {
+      files.push_back(std::move(path));
+    }
+  }
+  std::ranges::sort(files);
+  return files;
+}
+
+/// What a step made is what lies in its folder: so no file is forgotten that another part came to write.
+void add_step(const PackageContent& content, std::string_view folder, ProvenanceStep step,
+              ProvenanceInput& input) {
+  step.made = files_of(content, folder);
+  if (!step.made.empty()) {
+    input.steps.push_back(std::move(step));
+  }
+}
+
 void add_steps(const PackageContent& content, ProvenanceInput& input) {
   ProvenanceStep registration{"registration", "Registration of the scans", {}, {"scans/poses.json"}, {}, {}};
   double worst_rms_mm = 0;
@@ -95,30 +122,41 @@ void add_steps(const PackageContent& content, ProvenanceInput& input) {
                      {},
                      {{"vertices", static_cast<double>(content.mesh().positions.size()), ""},
                       {"triangles", static_cast<double>(content.mesh().faces.size()), ""}}});
-    steps.push_back({"conversion",
-                     "Other forms of the same surface",
-                     {model},
-                     {"model/" + content.stem + ".glb", "model/" + content.stem + ".stl"},
-                     {},
-                     {}});
-  }
-  if (content.wedges) {
-    steps.push_back({"analysis",
-                     "Measurement of the wedges",
-                     {model},
-                     {"wedges/wedges.json", "wedges/wedges.csv", "wedges/annotations.json"},
-                     {},
-                     {{"wedges", static_cast<double>(content.wedges->wedges.size()), ""},
-                      {"hollows rejected", static_cast<double>(content.wedges->rejected.size()), ""}}});
-  }
-  if (!content.pictures.empty()) {
-    ProvenanceStep drawing{"drawing", "Pictures drawn from the surface", {model}, {}, {}, {}};
-    for (const PackagedPicture& picture : content.pictures) {
-      drawing.made.push_back(picture.path);
-    }
-    steps.push_back(std::move(drawing));
+    std::vector<std::string> forms = files_of(content, "model/");
+    std::erase(forms, model);
+    steps.push_back({"conversion", "Other forms of the same surface", {model}, forms, {}, {}});
   }
   input.steps = std::move(steps);
+  std::vector<std::string> grids = files_of(content, "scans/grids/");
+  add_step(content, "scans/ply/", {"unfolding", "The scans as ordered PLY", grids, {}, {}, {}}, input);
+  if (content.wedges) {
+    add_step(content, "wedges/",
+             {"analysis",
+              "Measurement of the wedges",
+              {model},
+              {},
+              {},
+              {{"wedges", static_cast<double>(content.wedges->wedges.size()), ""},
+               {"hollows rejected", static_cast<double>(content.wedges->rejected.size()), ""}}},
+             input);
+  }
+  add_step(content, "features/", {"features", "Values by vertex", {model}, {}, {}, {}}, input);
+  add_step(content, "pictures/", {"drawing", "Pictures drawn from the surface", {model}, {}, {}, {}}, input);
+  std::vector<std::string> told = verdict.made;
+  told.emplace_back("scans/poses.json");
+  if (!content.mesh().faces.empty()) {
+    told.push_back(model);
+  }
+  add_step(content, "report/", {"report", "Pages for people", std::move(told), {}, {}, {}}, input);
+  // What the session wrote down while it was scanned, and what says what lies here.
+  ProvenanceStep packing{"packing", "Records of the session, and lists", std::move(grids), {}, {}, {}};
+  packing.made = files_of(content, "session/");
+  packing.made.emplace_back("scans/scans.json");
+  packing.made.emplace_back("README.txt");
+  if (!content.pictures.empty()) {
+    packing.made.emplace_back("iiif/manifest.json");
+  }
+  input.steps.push_back(std::move(packing));
 }
 
 Status add_provenance(PackageContent& content) {
@@ -153,7 +191,8 @@ Status add_provenance(PackageContent& content) {
   add_steps(content, input);
   return content.text(
       "provenance.jsonld", provenance_jsonld(input),
-      "how every file came about: device, calibration, every scan, every step with its errors "
+      "how every file came about (but for formats/): device, calibration, every scan, every step with its "
+      "errors "
       "(JSON-LD, terms of CIDOC CRM and CRMdig)");
 }
 

@@ -107,14 +107,12 @@ Status add_readme(PackageContent& content) {
                         : "The verdict is NOT CONCLUSIVE: report/report.html says what is missing.",
              0);
   text += "\nTHE TABLET\n\n";
-  for (const auto& [label, value] :
-       {std::pair{"museum number", content.tablet.museum_number},
-        std::pair{"CDLI number", content.tablet.cdli}, std::pair{"collection", content.tablet.collection},
-        std::pair{"scanned by", content.tablet.operator_name},
-        std::pair{"scanned with", content.facts.device}, std::pair{"notes", content.tablet.notes}}) {
-    if (!value.empty()) {
-      text += folded(fmt::format("{}: {}", label, value), 2);
-    }
+  TabletWords words = words_of(content.tablet);
+  if (!content.facts.device.empty()) {
+    words.emplace_back("Scanned with", content.facts.device);
+  }
+  for (const auto& [label, value] : words) {
+    text += folded(fmt::format("{}: {}", label, value), 2);
   }
   text += "\nTHE FILES\n\n";
   for (const PackagedFile& file : content.files) {

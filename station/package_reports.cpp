@@ -15,8 +15,9 @@ namespace dubsar {
 
 namespace {
 
-/// A page of the session with what it says of its own files put right for the package.
-std::string moved(std::string page) {
+/// A page of the session with what it says of the tablet and of its own files put right for the package.
+std::string moved(std::string page, const PackageContent& content) {
+  page = page_renamed(std::move(page), content.identifier, content.facts.tablet);
   const std::string from = "analysis/wedges.json";
   const std::string to = "wedges/wedges.json";
   for (std::size_t at = page.find(from); at != std::string::npos; at = page.find(from, at + to.size())) {
@@ -34,7 +35,8 @@ struct Pages {
 Result<Pages> pages_of(const PackageContent& content) {
   if (const auto& kept = content.source.pages()) {
     Result<std::string> sheet = read_whole_file(kept->red_sheet);
-    return Pages{moved(kept->report), moved(kept->checklist), sheet ? std::move(*sheet) : std::string()};
+    return Pages{moved(kept->report, content), moved(kept->checklist, content),
+                 sheet ? std::move(*sheet) : std::string()};
   }
   PageFacts facts = content.facts;
   facts.title = content.identifier;

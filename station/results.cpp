@@ -148,6 +148,7 @@ Result<Checklist> checklist_of(const RedMap& red_map, const std::vector<ScanPose
 
 ReportInput report_input(const Results& results, const PlanningStage& stage, const PageFacts& facts) {
   return {.title = facts.title,
+          .tablet = facts.tablet,
           .tool_version = program_name(),
           .when = utc_now(),
           .device = facts.device,
@@ -194,9 +195,11 @@ PageFacts page_facts_of(const SessionStore& store) {
   if (facts.title.empty()) {  // a trailing slash
     facts.title = store.folder().lexically_normal().parent_path().filename().string();
   }
-  if (const TabletRecord tablet = tablet_record_of(store); !tablet.museum_number.empty()) {
+  const TabletRecord tablet = tablet_record_of(store);
+  if (!tablet.museum_number.empty()) {
     facts.title = tablet.museum_number;
   }
+  facts.tablet = words_of(tablet);
   const auto text = store.load_document(kRun);
   const Result<JsonDocument> document =
       text && *text ? JsonDocument::parse(**text, "run") : fail(ErrorKind::kBadInput, "no run");

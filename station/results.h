@@ -39,6 +39,7 @@ struct Results {
 /// What a page says beside the results.
 struct PageFacts {
   std::string title;
+  TabletWords tablet{};
   std::string device;
   std::vector<StageTiming> timings;
   std::vector<ViewGain> gains;  ///< of the scans that were asked for, as they came

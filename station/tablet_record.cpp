@@ -25,6 +25,19 @@ Status check_cdli(std::string_view number) {
               "it is a P and six digits, such as P123456");
 }
 
+std::vector<std::pair<std::string, std::string>> words_of(const TabletRecord& record) {
+  std::vector<std::pair<std::string, std::string>> words;
+  for (const auto& [name, value] :
+       {std::pair{"Museum number", record.museum_number}, std::pair{"CDLI number", record.cdli},
+        std::pair{"Collection", record.collection}, std::pair{"Scanned by", record.operator_name},
+        std::pair{"Notes", record.notes}}) {
+    if (!value.empty()) {
+      words.emplace_back(name, value);
+    }
+  }
+  return words;
+}
+
 std::string tablet_record_to_json(const TabletRecord& record) {
   return text_of({{"museum_number", record.museum_number},
                   {"cdli", record.cdli},

@@ -4,6 +4,8 @@
 
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "acquisition/session_store.h"
 #include "core/result.h"
@@ -25,6 +27,9 @@ struct TabletRecord {
 
 [[nodiscard]] std::string tablet_record_to_json(const TabletRecord& record);
 [[nodiscard]] Result<TabletRecord> parse_tablet_record(std::string_view text, const std::string& where);
+
+/// For people: name of the field and what it says, empty ones left out.
+[[nodiscard]] std::vector<std::pair<std::string, std::string>> words_of(const TabletRecord& record);
 
 /// Checks it and keeps it in the session.
 Status keep_tablet_record(SessionStore& store, const TabletRecord& record);

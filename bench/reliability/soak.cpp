@@ -17,6 +17,7 @@
 #include <fstream>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "station/engine.h"
@@ -29,11 +30,13 @@ namespace fs = std::filesystem;
 
 volatile std::sig_atomic_t interrupted = 0;  ///< Ctrl-C ends it early, with the verdict on what there is
 
-double resident_mib() {
+/// A line of /proc/self/status. "VmRSS:" is all that is resident; "RssAnon:" the part that the program wrote,
+/// "RssFile:" the part that is pages of programs and libraries, which the system can drop and read again.
+double status_mib(std::string_view name) {
   std::ifstream status("/proc/self/status");
   for (std::string line; std::getline(status, line);) {
-    if (line.starts_with("VmRSS:")) {
-      return std::stod(line.substr(6)) / 1024;
+    if (line.starts_with(name)) {
+      return std::stod(line.substr(name.size())) / 1024;
     }
   }
   return 0;
@@ -85,12 +88,13 @@ int run(int argc, char** argv) {
   CLI11_PARSE(app, argc, argv);
 
   std::vector<double> resident;
+  std::vector<double> own;
   std::vector<double> in_use;
   std::signal(SIGINT, [](int) { interrupted = 1; });
   std::vector<std::ptrdiff_t> descriptors;
   int failed = 0;
   int several = 0;  // tablets with two registered scans or more
-  std::printf("tablet resident_MiB in_use_MiB descriptors\n");
+  std::printf("tablet resident_MiB own_MiB in_use_MiB descriptors\n");
   for (int i = 0; i < tablets && (interrupted == 0 || i < 20); ++i) {
     const test::TemporaryFolder folder;
     EngineOptions options;
@@ -116,11 +120,13 @@ int run(int argc, char** argv) {
       several +=
           done && std::ranges::count(done->poses, PoseStatus::kRegistered, &ScanPose::status) > 1 ? 1 : 0;
     }
-    resident.push_back(resident_mib());
+    resident.push_back(status_mib("VmRSS:"));
+    own.push_back(status_mib("RssAnon:"));
     in_use.push_back(in_use_mib());
     descriptors.push_back(open_descriptors());
     if (i % std::max(1, tablets / 20) == 0 || i + 1 == tablets) {
-      std::printf("%6d %12.1f %10.1f %6td\n", i + 1, resident.back(), in_use.back(), descriptors.back());
+      std::printf("%6d %12.1f %7.1f %10.2f %6td\n", i + 1, resident.back(), own.back(), in_use.back(),
+                  descriptors.back());
       std::fflush(stdout);
     }
   }
@@ -134,8 +140,8 @@ int run(int argc, char** argv) {
   std::printf("%zu tablets, %d failed, %d with several scans registered\n", resident.size(), failed, several);
   for (std::size_t from = 0; from + tenth <= resident.size(); from += tenth) {
     const auto window = [&](std::span<const double> values) { return median(values.subspan(from, tenth)); };
-    std::printf("tablets %5zu to %5zu: median resident %.1f MiB, in use %.2f MiB\n", from + 1, from + tenth,
-                window(resident), window(in_use));
+    std::printf("tablets %5zu to %5zu: median resident %.1f MiB, of which written %.1f, in use %.2f MiB\n",
+                from + 1, from + tenth, window(resident), window(own), window(in_use));
   }
   std::printf(
       "resident %.1f MiB after warm-up, %.1f MiB at the end (%+.1f %%): %s; in use %.2f and %.2f MiB\n",

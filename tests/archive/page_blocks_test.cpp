@@ -4,8 +4,14 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdio>
+#include <fstream>
+
 #include "archive/base64.h"
 #include "archive/page_pdf.h"
+#include "archive/png.h"
+#include "archive/render.h"
+#include "tests/support/temporary_folder.h"
 
 namespace dubsar {
 namespace {
@@ -103,6 +109,42 @@ TEST(PagePdf, IsTheSameForTheSamePage) {
   ASSERT_TRUE(pdf) << pdf.error().line();
   EXPECT_EQ(std::string(pdf->begin(), pdf->begin() + 5), "%PDF-");
   EXPECT_EQ(page_pdf(html, info).value(), *pdf);
+}
+
+/// What pdftotext reads on one page.
+std::string read_page(const std::vector<std::uint8_t>& pdf, int page) {
+  const test::TemporaryFolder folder;
+  const auto file = folder.path() / "page.pdf";
+  std::ofstream(file, std::ios::binary)
+      .write(reinterpret_cast<const char*>(pdf.data()), static_cast<std::streamsize>(pdf.size()));
+  const std::string number = std::to_string(page);
+  const std::string command = "pdftotext -f " + number + " -l " + number + " '" + file.string() + "' -";
+  std::FILE* from = ::popen(command.c_str(), "r");
+  std::string text;
+  for (int c = std::fgetc(from); c != EOF; c = std::fgetc(from)) {
+    text.push_back(static_cast<char>(c));
+  }
+  EXPECT_EQ(::pclose(from), 0) << "install poppler-utils (packages.txt)";
+  return text;
+}
+
+TEST(PagePdf, AHeadingStandsOnThePageOfItsPicture) {
+  Image image = filled_image(600, 700, {200, 200, 200});
+  image.mm_per_px = 0.1;
+  const auto uri = png_data_uri(image, "sheet");
+  ASSERT_TRUE(uri);
+  std::string html = "<h1>Tablet</h1>";
+  for (int i = 0; i < 30; ++i) {  // half a page
+    html += "<p>Line.</p>";
+  }
+  html += "<h2>Red map</h2><figure class=\"sheet\"><img width=\"600\" height=\"700\" src=\"" + *uri +
+          "\"><figcaption>what it shows</figcaption></figure>";
+  const auto pdf = page_pdf(html, {"Tablet", "Dubsar", "2026-01-02T03:04:05Z"});
+  ASSERT_TRUE(pdf) << pdf.error().line();
+  EXPECT_EQ(read_page(*pdf, 1).find("Red map"), std::string::npos);
+  const std::string second = read_page(*pdf, 2);
+  EXPECT_NE(second.find("Red map"), std::string::npos);
+  EXPECT_NE(second.find("what it shows"), std::string::npos);
 }
 
 }  // namespace

@@ -107,6 +107,9 @@ TEST(RegionPicture, LooksFromWhereTheClayLooks) {
   EXPECT_LT((outlook(mesh, region) - Eigen::Vector3d(0, 0, -1)).norm(), 1e-6);
   region.center_mm = {0, 0, 300};
   EXPECT_EQ(outlook(mesh, region), region.normal) << "no clay there";
+  region.center_mm = {0, 0, 9};
+  region.normal = {0, 0, -1};  // a side that nobody has seen, before the one opposite
+  EXPECT_EQ(outlook(mesh, region), region.normal);
   EXPECT_EQ(face_towards({0, 0, -1}, {}), Face::kReverse);
   EXPECT_EQ(face_towards({-1, 0, 0.2}, {}), Face::kLeft);
 }

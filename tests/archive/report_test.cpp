@@ -40,6 +40,7 @@ class Report : public ::testing::Test {
 
   ReportInput input() {
     return {.title = title_,
+            .tablet = tablet_,
             .tool_version = "Dubsar",
             .when = "2026-01-02T03:04:05Z",
             .device = device_,
@@ -76,6 +77,7 @@ class Report : public ::testing::Test {
   }
 
   std::string title_ = "BM 15285";
+  TabletWords tablet_;
   std::string device_ = "sim:";
   Mesh mesh_;
   RedMap map_;
@@ -119,6 +121,48 @@ TEST_F(Report, ElementsAreClosedInOrder) {
     }
   }
   EXPECT_TRUE(open.empty());
+}
+
+TEST_F(Report, TheSixSidesShrinkTogetherWhereTheScreenIsNarrow) {
+  // Columns share the width as the sides do, and a side takes its share of its column: all to one scale at
+  // any width. The box is 50 x 40 x 20 mm.
+  const std::string page = html();
+  const auto number_after = [&](const std::string& mark, std::size_t from = 0) {
+    const std::size_t at = page.find(mark, from);
+    EXPECT_NE(at, std::string::npos) << mark;
+    return at == std::string::npos ? 0.0 : std::stod(page.substr(at + mark.size()));
+  };
+  const std::size_t cross = page.find("<div class=\"cross\"");
+  const double left = number_after("--left: ", cross);
+  const double column = number_after("--column: ", cross);
+  const double right = number_after("--right: ", cross);
+  EXPECT_NEAR(number_after("--wide: ", cross), left + column + right, 0.02);
+  EXPECT_NEAR(column / left, 2.5, 0.6);  // margins of pixels that are 0.6 mm wide here
+  for (const auto& [name, room] : {std::pair{"top", column}, std::pair{"left", left},
+                                   std::pair{"obverse", column}, std::pair{"reverse", column}}) {
+    const std::size_t at = page.find("alt=\"The " + std::string(name) + "\"");
+    const double share = number_after("--share: ", at);
+    EXPECT_LE(share, 100.001) << name;
+    EXPECT_NEAR(share * room / 100, number_after("--mm: ", at), 0.02) << name;
+  }
+  EXPECT_THAT(page, HasSubstr(".cross img { width: var(--share)"));
+  EXPECT_THAT(page, HasSubstr(".sheet img { width: auto; height: auto;")) << "else it is drawn out of shape";
+}
+
+TEST_F(Report, IsRenamedWithoutBeingMadeAnew) {
+  const std::string before = html();
+  tablet_ = {{"Museum number", "K. <1>"}, {"Notes", "in two pieces"}};
+  title_ = "P000001";
+  EXPECT_EQ(page_renamed(before, title_, tablet_), html()) << "as if it had been so from the start";
+  EXPECT_EQ(page_renamed(html(), "BM 15285", {}), before);
+  EXPECT_EQ(page_renamed("<p>no page of ours</p>", "X", tablet_), "<p>no page of ours</p>");
+  const JobContext job;
+  const std::string checklist = html([](const ReportInput& i, const ReportPictures& p) {
+    return Result<std::string>(checklist_html(i, p));
+  });
+  EXPECT_THAT(checklist, HasSubstr("<title>P000001: checklist</title>"));
+  EXPECT_THAT(page_renamed(checklist, "M 2", {}), HasSubstr("<title>M 2: checklist</title>"));
+  EXPECT_THAT(page_renamed(checklist, "M 2", {}), HasSubstr("<h1>M 2</h1>\n<dl>\n<dt>Made</dt>"));
 }
 
 TEST_F(Report, SaysConclusiveOnlyWhenBothJudgesDo) {

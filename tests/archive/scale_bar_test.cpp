@@ -23,6 +23,14 @@ TEST(ScaleBar, ChangesItsLengthForTinyAndHugeThings) {
   EXPECT_LE(huge.length_mm, 500.0);
 }
 
+TEST(ScaleBar, IsTheLongestRoundLengthThatSuitsATinyTablet) {
+  EXPECT_EQ(scale_bar_for(0.025, 600).length_mm, 5.0);  // 15 mm wide
+  EXPECT_EQ(scale_bar_for(0.02, 232).length_mm, 2.0);   // a place of the red map
+  EXPECT_EQ(scale_bar_for(0.2, 1200).length_mm, 100.0);
+  EXPECT_EQ(scale_bar_for(0.025, 600).text_scale, 2);
+  EXPECT_EQ(scale_bar_for(0.025, 600, 4).text_scale, 4) << "of a picture that is shown half as large";
+}
+
 TEST(ScaleBar, IsAsLongAsItSays) {
   Image image = filled_image(600, 60, {255, 255, 255});
   image.mm_per_px = 0.05;

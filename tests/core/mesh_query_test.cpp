@@ -3,6 +3,9 @@
 #include "core/mesh_query.h"
 
 #include <gtest/gtest.h>
+#include <malloc.h>
+
+#include <thread>
 
 namespace dubsar {
 namespace {
@@ -48,6 +51,23 @@ TEST(MeshQuery, EmptyMeshAnswersNothing) {
   const MeshQuery query{Mesh{}};
   EXPECT_FALSE(query.first_hit({0, 0, 5}, {0, 0, -1}, 0, 100));
   EXPECT_FALSE(query.closest({0, 0, 0}, 100));
+}
+
+/// Every tablet is scanned by threads of its own: what a tree needs may not stay when they end.
+TEST(MeshQuery, NothingStaysOfTheThreadsThatBuiltTrees) {
+  const auto build = [] { std::thread([] { const MeshQuery query(square()); }).join(); };
+  for (int k = 0; k < 20; ++k) {  // pools of threads, caches of the allocator
+    build();
+  }
+  if (::mallinfo2().uordblks == 0) {
+    GTEST_SKIP() << "this build's allocator does not tell what is in use";
+  }
+  constexpr std::size_t kThreads = 200;
+  const std::size_t before = ::mallinfo2().uordblks;
+  for (std::size_t k = 0; k < kThreads; ++k) {
+    build();
+  }
+  EXPECT_LT(::mallinfo2().uordblks, before + 50 * kThreads);
 }
 
 }  // namespace

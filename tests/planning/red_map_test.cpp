@@ -14,6 +14,7 @@
 #include "planning/convex_hull.h"
 #include "planning/next_view.h"
 #include "planning/red_change.h"
+#include "planning/red_regions.h"
 #include "planning/sparse_flags.h"
 #include "planning/view_prediction.h"
 
@@ -103,6 +104,25 @@ TEST(RedMap, NothingScannedIsNotConclusive) {
   const auto result = make_red_map({}, nullptr, nullptr, {}, job);
   ASSERT_TRUE(result);
   EXPECT_FALSE(result->map.conclusive);
+}
+
+TEST(RedMap, TheWallOfAWedgeIsOnTheSideThatTheWedgeIsOn) {
+  ModelSurface surface{MeshQuery(Mesh()), {}, 0.0, {0, 0, 0}, {}, {}, {}, {}};
+  for (double x = -5; x <= 5; x += 1) {
+    surface.seen.push_back({{x, 0, 10}, {0, 0, 1}, 1.0});
+    surface.unseen.push_back({{x, 0, -10}, {0, 0, -1}, 1.0});
+  }
+  RedTargets red;
+  RedTarget wall;
+  wall.position_mm = {0.3, 0, 9.4};
+  wall.normal = {0.9, 0, 0.43};  // looks to the right
+  wall.area_mm2 = 0.1;
+  red.targets.push_back(wall);
+  red.cell_mm = 0.3;
+  const std::vector<RedRegion> regions = red_regions(red, {}, surface);
+  ASSERT_EQ(regions.size(), 1U);
+  EXPECT_EQ(regions[0].face, Face::kObverse);
+  EXPECT_LT((regions[0].normal - wall.normal.normalized()).norm(), 1e-9);
 }
 
 TEST(RedMap, TheUnseenUndersideIsOneLargeRegionOfTheReverse) {

@@ -350,6 +350,34 @@ TEST_F(Export, LinkedDataHasTheShapeOfTheStandards) {
   }
 }
 
+TEST_F(Export, EveryFileOfThePackageHasItsProvenance) {
+  const std::string told = bytes_of(data("provenance.jsonld"));
+  for (const std::string& name : files_below(at("bag") / "data")) {
+    if (!name.starts_with("formats/")) {  // the same in every package
+      EXPECT_THAT(told, HasSubstr("\"https://example.org/t/" + name + "\""));
+    }
+  }
+}
+
+TEST_F(Export, PagesSayWhichTabletItIsEvenWhenThatWasSaidAfterTheScan) {
+  fs::copy(at("session"), at("described"), fs::copy_options::recursive);
+  ASSERT_EQ(run_command({"session", "describe", at("described").string(), "--museum-number", "BM 12345",
+                         "--cdli", "P123456", "--collection", "A <house>"})
+                .status,
+            0);
+  const Outcome done = run_command(
+      {"export", at("described").string(), "--to", at("described_bag").string(), "--without", "renderings"});
+  ASSERT_EQ(done.status, 0) << done.err;
+  for (const auto& [page, kind] :
+       {std::pair{"report.html", "scan report"}, std::pair{"checklist.html", "checklist"}}) {
+    const std::string text = bytes_of(at("described_bag") / "data/report" / page);
+    EXPECT_THAT(text, HasSubstr("<title>P123456: " + std::string(kind) + "</title>"));
+    EXPECT_THAT(text, HasSubstr("<h1>P123456</h1>"));
+    EXPECT_THAT(text, HasSubstr("<dt>Museum number</dt><dd>BM 12345</dd>"));
+    EXPECT_THAT(text, HasSubstr("<dd>A &lt;house&gt;</dd>"));
+  }
+}
+
 TEST_F(Export, ProvenanceIsAGraphToOthers) {
   if (std::system("/usr/bin/python3 -c 'import rdflib' 2>/dev/null") != 0) {
     FAIL() << "install python3-rdflib (packages.txt) to read the provenance as linked data";
