@@ -324,15 +324,19 @@ bool VirtualCamera::tick(const std::function<void(std::uint64_t, const std::vect
     std::this_thread::sleep_for(std::chrono::nanoseconds(std::min<std::int64_t>(due_ns_ - now, 1000000)));
     return false;
   }
-  due_ns_ += 1000000000 / now_.rate_hz;
-  if (now - due_ns_ > 200000000) {
+  const std::int64_t period = 1000000000 / now_.rate_hz;
+  due_ns_ += period;
+  if (now > due_ns_ + period) {
     due_ns_ = now;  // this machine was away; a camera would not catch up either
+    ++held_up_;
   }
+  ++made_;
   for (; lose_ > 0; --lose_) {
     ++sequence_;
   }
   const std::uint32_t sequence = sequence_++;
   if (queued_.empty()) {
+    ++starved_;
     return false;  // lost for want of a buffer
   }
   const std::uint32_t index = queued_.front();
@@ -396,6 +400,8 @@ std::string VirtualCamera::command(const std::string& line) {
   } else if (what == "deny" || what == "occupy" || what == "allow") {
     denied_ = what == "deny";
     occupied_ = what == "occupy";
+  } else if (what == "counts") {
+    return std::to_string(made_) + " " + std::to_string(starved_) + " " + std::to_string(held_up_);
   } else if (what == "rename") {
     words >> card_;
   } else if (words >> count && what == "lose") {
