@@ -110,7 +110,11 @@ int count_frames(Device& device, const Emulated& emulated, std::uint64_t count) 
     const Clock::time_point back = Clock::now();
     auto frame = must(device.next_frame(2s));
     if (!frame) {
-      give_up("no frame in 2 s");
+      const FrameCounters now = must(device.frame_counters());
+      give_up("no frame in 2 s after " + std::to_string(k) + ": " + std::to_string(now.lost) +
+              " lost before, " + std::to_string(now.starved) + " of all for want of a buffer, pool " +
+              std::to_string(now.pool) + "; the device made, lost, was held up: " + emulated.counts() +
+              ", then " + emulated.counts());
     }
     const Clock::time_point taken = Clock::now();
     wrong += emulated.genuine(*frame) ? 0 : 1;
