@@ -7,9 +7,9 @@
 #include <ctime>
 #include <thread>
 
+#include "core/pool_depth.h"
 #include "core/thread_priority.h"
 #include "drivers/aravis/glib.h"
-#include "drivers/pool_depth.h"
 
 namespace dubsar::aravis {
 

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <fstream>
 
-#include "drivers/pool_depth.h"
+#include "core/pool_depth.h"
 
 namespace dubsar::v4l2 {
 
