@@ -178,6 +178,14 @@ Result<CalibrationReport> calibrate_rig(const std::vector<CalibrationView>& view
   intrinsics->camera_from_board = state.camera_from_board;
   report.missing = missing_poses(views, *intrinsics, options.board, state.has_laser ? &rig.laser : nullptr,
                                  options.plate_margin_mm);
+  if (options.motion == MotionKind::kGalvanometer) {
+    quality.axis_sigma_rad = mirror_axis_doubt_rad(rig, errors->axis_sigma_rad);
+    report.mirror =
+        missing_mirror_poses(views, *intrinsics, rig, quality.axis_sigma_rad, options.wanted_mirror_axis_rad);
+    if (report.mirror) {
+      report.missing.insert(report.missing.begin(), report.mirror->say);
+    }
+  }
   return report;
 }
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "acquisition/calibration_mirror.h"
 #include "acquisition/calibration_views.h"
 #include "core/rig_calibration.h"
 
@@ -22,11 +23,15 @@ struct CalibrationOptions {
   double most_stripe_px = 1.0;
   double most_focal_share = 0.005;  ///< standard deviation of the focal length over its value
   double most_volume_sigma_um = 50;
+  double wanted_mirror_axis_rad =
+      0.035;  ///< of a galvanometer: 2°; known less well, it asks for more pictures
 };
 
 /// What was found, and what the pictures still lack.
 struct CalibrationReport {
   RigCalibration rig;
+  std::optional<MirrorAdvice>
+      mirror;  ///< of a galvanometer whose axis is not known well enough; in `missing` too
   std::vector<std::string> missing;  ///< what to do next, most useful first; empty when nothing is missing
 };
 

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <utility>
 
+#include "acquisition/rig_parts.h"
+
 namespace dubsar {
 
 PlacedProfiles::PlacedProfiles(ProfileSink& sink, PositionTrack& track, Scan scan)
@@ -87,22 +89,42 @@ bool PlacedProfiles::hand_on() {
   return true;
 }
 
+/// Rows whose place was not known lie evenly between those around them: the ones inside the scan are lost.
+void PlacedProfiles::count_unsure(std::int64_t row, double position) {
+  for (const std::int64_t one : std::exchange(unsure_, {})) {
+    const double pitch =
+        sure_ ? (position - sure_->second) / static_cast<double>(row - sure_->first) : scan_.step;
+    const double there = position - pitch * static_cast<double>(row - one);
+    if (there >= scan_.start - 0.5 * scan_.step && there < scan_.end() + 0.5 * scan_.step) {
+      ++tally_.profiles_dropped;
+      first_row_ = first_row_ ? first_row_ : std::optional(one);
+    }
+  }
+  sure_ = {row, position};
+}
+
 bool PlacedProfiles::place(Row& row, std::int64_t timestamp_ns) {
-  const std::optional<double> position = track_.at(timestamp_ns);
-  if (!position) {
+  const std::optional<PositionTrack::Place> there = track_.at(timestamp_ns);
+  if (!there) {
     // Before it moved, or behind where it came to rest.
     return !track_.closed_before(timestamp_ns);
   }
-  position_ = position;
-  if (*position < scan_.start - 0.5 * scan_.step) {
+  if (there->sigma > kSureSteps * scan_.step) {
+    unsure_.push_back(row.number);
     return true;
   }
-  if (*position >= scan_.end() + 0.5 * scan_.step) {
+  const double position = there->position;
+  position_ = position;
+  count_unsure(row.number, position);
+  if (position < scan_.start - 0.5 * scan_.step) {
+    return true;
+  }
+  if (position >= scan_.end() + 0.5 * scan_.step) {
     complete_ = true;
     return false;
   }
-  complete_ = *position >= scan_.end() - 0.5 * scan_.step;
-  const RigidTransform zero_from_camera = scan_.motion.zero_from_camera(*position);
+  complete_ = position >= scan_.end() - 0.5 * scan_.step;
+  const RigidTransform zero_from_camera = scan_.motion.zero_from_camera(position);
   for (std::size_t i = 0; i < row.x.size(); ++i) {
     if (row.valid[i] == 0) {
       continue;

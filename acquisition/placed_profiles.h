@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "acquisition/position_track.h"
@@ -14,7 +15,8 @@ namespace dubsar {
 
 /// What becomes of the profiles of a moved range camera on their way to `sink`: each is put where the stage
 /// was at its time, in the frame of position 0, and those outside of the scan are left out. Profiles that
-/// came in one block have one time, that of the first; the time from block to block tells the others'.
+/// came in one block have one time, that of the first; the time from block to block tells the others'. A row
+/// whose place is not known well enough (kSureSteps) is left out and counted as lost.
 class PlacedProfiles : public ProfileSink {
  public:
   struct Scan {
@@ -48,6 +50,7 @@ class PlacedProfiles : public ProfileSink {
   };
   bool hand_on();
   bool place(Row& row, std::int64_t timestamp_ns);
+  void count_unsure(std::int64_t row, double position);
 
   ProfileSink& sink_;
   PositionTrack& track_;
@@ -58,6 +61,9 @@ class PlacedProfiles : public ProfileSink {
   std::optional<double> period_ns_;
   std::optional<std::int64_t> first_row_;
   std::optional<double> position_;
+  std::optional<std::pair<std::int64_t, double>>
+      sure_;                          ///< the last row whose place was known, and its place
+  std::vector<std::int64_t> unsure_;  ///< rows since then
   bool begun_ = false, complete_ = false, cancelled_ = false;
   ScanTally tally_;
 };

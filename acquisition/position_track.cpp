@@ -4,6 +4,8 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 namespace dubsar {
 
@@ -49,7 +51,7 @@ bool PositionTrack::closed_before(std::int64_t timestamp_ns) const {
   return closed_ && (readings_.empty() || readings_.back().timestamp_ns < timestamp_ns);
 }
 
-std::optional<double> PositionTrack::at(std::int64_t timestamp_ns) {
+std::optional<PositionTrack::Place> PositionTrack::at(std::int64_t timestamp_ns) {
   std::unique_lock lock(mutex_);
   std::size_t after = 0;
   more_.wait(lock, [&] {
@@ -63,7 +65,7 @@ std::optional<double> PositionTrack::at(std::int64_t timestamp_ns) {
   return fitted(after, timestamp_ns);
 }
 
-double PositionTrack::fitted(std::size_t after, std::int64_t timestamp_ns) const {
+PositionTrack::Place PositionTrack::fitted(std::size_t after, std::int64_t timestamp_ns) const {
   const std::size_t from = after > kSide ? after - kSide : 0;
   const std::size_t to = std::min(readings_.size(), after + kSide);
   const int terms = to - from >= 6 ? 3 : to - from >= 2 ? 2 : 1;
@@ -74,13 +76,17 @@ double PositionTrack::fitted(std::size_t after, std::int64_t timestamp_ns) const
   for (std::size_t k = from; k < to; ++k) {
     const Reading& one = readings_[k];
     const double t = 1e-9 * static_cast<double>(one.timestamp_ns - timestamp_ns);
-    const double weight = 1 / (one.uncertainty_s * one.uncertainty_s);
+    const double sigma_s = one.uncertainty_s / std::numbers::sqrt3;  // anywhere between question and answer
+    const double weight = 1 / (sigma_s * sigma_s);
     const Eigen::Vector3d row(1, t, t * t);
     normal += weight * row * row.transpose();
     right += weight * (one.position - origin) * row;
   }
-  const Eigen::VectorXd solved = normal.topLeftCorner(terms, terms).ldlt().solve(right.head(terms));
-  return origin + solved(0);
+  const Eigen::LDLT<Eigen::MatrixXd> solver(normal.topLeftCorner(terms, terms));
+  const Eigen::VectorXd solved = solver.solve(right.head(terms));
+  const double variance_s2 = solver.solve(Eigen::VectorXd::Unit(terms, 0))(0);
+  const double speed = terms > 1 ? std::abs(solved(1)) : 0;
+  return {origin + solved(0), speed * std::sqrt(std::max(0.0, variance_s2))};
 }
 
 }  // namespace dubsar

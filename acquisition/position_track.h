@@ -20,10 +20,14 @@ class PositionTrack {
   /// No more come.
   void close();
 
+  struct Place {
+    double position = 0;
+    double sigma = 0;  ///< standard deviation, from how long the answers around it took
+  };
   /// The position at a time: least squares of a parabola through the readings around it, those that are
   /// known less well counting less. Waits until readings behind that time are there. Nothing outside of what
   /// was told, once it is closed.
-  [[nodiscard]] std::optional<double> at(std::int64_t timestamp_ns);
+  [[nodiscard]] std::optional<Place> at(std::int64_t timestamp_ns);
   /// Waits until it is closed; false when it was not in time.
   bool wait_closed(std::chrono::milliseconds at_most);
   [[nodiscard]] std::optional<double> last() const;
@@ -36,7 +40,7 @@ class PositionTrack {
     double position;
     double uncertainty_s;
   };
-  [[nodiscard]] double fitted(std::size_t after, std::int64_t timestamp_ns) const;
+  [[nodiscard]] Place fitted(std::size_t after, std::int64_t timestamp_ns) const;
 
   mutable std::mutex mutex_;
   std::condition_variable more_;

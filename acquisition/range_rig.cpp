@@ -103,6 +103,10 @@ Status RangeRig::run(ProfileSink& sink) {
   } else if (placed.complete()) {
     watch.track().wait_closed(travel.time_to_rest(scan.end()));
     status = watch.finish();
+    if (status && placed.tally().profiles_sent == 0) {
+      status = fail(ErrorKind::kDevice, "nobody knows where the stage was: its answers come too late",
+                    file_.stage, "relieve this machine of other work, or move more slowly");
+    }
   } else if (const Status told = watch.finish(); !told) {
     status = told;
   } else if (!done && done.error().kind != ErrorKind::kCancelled) {

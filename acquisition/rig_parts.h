@@ -14,6 +14,11 @@ namespace dubsar {
 
 /// What all rigs do with their camera and their stage.
 
+/// Of a scan that moves through: a row whose place is known less well than this share of a step (standard
+/// deviation) is a lost row. Answers of a stage that come late, on a machine with too much work, do not say
+/// where it was.
+inline constexpr double kSureSteps = 0.25;
+
 /// Puts a laser off when it goes.
 class LaserGuard {
  public:

@@ -18,7 +18,6 @@ namespace dubsar {
 namespace {
 
 constexpr auto kFrameWait = std::chrono::milliseconds(200);
-constexpr std::uint32_t kSweepPool = 32;
 constexpr const char* kRefused = "scan cancelled";  // by who takes the rows
 constexpr int kFrameTries = 15;                     // 3 s for a frame that was exposed late enough
 
@@ -236,7 +235,7 @@ Status RigScanner::scan(ProfileSink& sink) {
       return std::unexpected(plan.error());
     }
   }
-  if (Status started = camera_.start_frames(file_.continuous ? kSweepPool : 0); !started) {
+  if (Status started = camera_.start_frames(); !started) {
     return started;
   }
   const StreamGuard stream(camera_);

@@ -88,6 +88,7 @@ Status RigScanner::sweep(const Travel& plan, ProfileSink& sink, ScanTally& tally
   StripeStream stripes(camera_, extractor_.options(),
                        [this](const Frame& frame) { return check_frame(frame); });
   RowCount rows(file_.start, file_.step, file_.rows);
+  std::uint64_t unsure = 0;  // since the last row whose place was known
   for (double position = plan.from; !rows.ends_within(0.5, position);) {
     if (stopped_->load()) {
       return fail(ErrorKind::kCancelled, "scan stopped", file_.name);
@@ -96,7 +97,7 @@ Status RigScanner::sweep(const Travel& plan, ProfileSink& sink, ScanTally& tally
     if (!seen) {
       return std::unexpected(seen.error());
     }
-    const std::optional<double> there = watch.track().at(seen->timestamp_ns);
+    const std::optional<PositionTrack::Place> there = watch.track().at(seen->timestamp_ns);
     if (!there && !watch.track().closed_before(seen->timestamp_ns)) {
       continue;  // taken before it moved
     }
@@ -104,26 +105,35 @@ Status RigScanner::sweep(const Travel& plan, ProfileSink& sink, ScanTally& tally
       if (stopped_->load()) {
         continue;
       }
-      if (rows.any() && rows.ends_within(1.5, position)) {
+      const double rest = watch.track().last().value_or(position);
+      if (rows.any() && rows.ends_within(1.5, rest)) {
         break;  // the axis ends where the scan does
       }
       const Status told = watch.finish();
-      return !told ? told : stopped_short(file_, watch.track().last().value_or(position));
+      return !told ? told : stopped_short(file_, rest);
     }
-    position = *there;
+    if (there->sigma > kSureSteps * file_.step) {
+      unsure += there->position < rows.end() + 0.5 * file_.step ? 1 : 0;
+      continue;
+    }
+    position = there->position;
     const std::optional<RowCount::Placed> placed = rows.place(seen->id, position);
     if (!placed) {
       continue;
     }
     tally.profiles_dropped += placed->missed;
+    unsure = 0;  // a gap in the numbers: counted
     SweptRow swept{placed->row, seen->timestamp_ns, position, std::move(seen->stripe)};
     if (Status handed = hand_on(std::move(swept), sink, tally); !handed) {
       return handed;
     }
   }
+  tally.profiles_dropped += rows.any() ? unsure : 0;
   if (!rows.any()) {
-    return fail(ErrorKind::kDevice, "no frame came while the stage passed the scan", file_.camera,
-                "scan more slowly, or relieve this machine of other work");
+    return fail(ErrorKind::kDevice,
+                unsure > 0 ? "nobody knows where the stage was: its answers come too late"
+                           : "no frame came while the stage passed the scan",
+                file_.camera, "scan more slowly, or relieve this machine of other work");
   }
   // What it needs to come to rest behind the last row.
   watch.track().wait_closed(plan.time_to_rest(rows.end()));

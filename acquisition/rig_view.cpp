@@ -181,6 +181,7 @@ std::int32_t frame_counters(dubsar_device* device, dubsar_frame_counters* counte
     out.incomplete = count->incomplete;
     out.resent = count->resent;
     out.reconnections = count->reconnections;
+    out.starved = count->starved;
     plugin::lend(counters, out);
     return DUBSAR_OK;
   });

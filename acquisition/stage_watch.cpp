@@ -4,6 +4,8 @@
 
 #include <chrono>
 
+#include "core/thread_priority.h"
+
 namespace dubsar {
 
 namespace {
@@ -21,6 +23,7 @@ StageWatch::~StageWatch() {
 }
 
 void StageWatch::ask(const std::stop_token& enough) {
+  prefer_this_thread();  // an answer that waits for a processor is one whose time is not known
   for (int still = 0; still < kStill && !enough.stop_requested();) {
     const Result<StageReading> reading = stage_.motion();
     if (!reading || axis_ >= reading->position.size()) {

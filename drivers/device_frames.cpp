@@ -93,8 +93,8 @@ Result<FrameCounters> Device::frame_counters() const {
   if (const std::int32_t code = count(device_.get(), &lent, &error); code != DUBSAR_OK) {
     return std::unexpected(abi::error_from(code, error, uri_));
   }
-  return FrameCounters{lent.pool,       lent.delivered, lent.lost,         lent.late,
-                       lent.incomplete, lent.resent,    lent.reconnections};
+  return FrameCounters{lent.pool,       lent.delivered, lent.lost,          lent.late,
+                       lent.incomplete, lent.resent,    lent.reconnections, lent.starved};
 }
 
 Status Device::trigger_frame() {

@@ -301,6 +301,7 @@ typedef struct dubsar_frame_counters {
   uint64_t incomplete;    /* of those delivered: marked DUBSAR_FRAME_INCOMPLETE */
   uint64_t resent;        /* packets that were asked for again and came */
   uint64_t reconnections; /* times that the device was found again after it was gone */
+  uint64_t starved;       /* of those lost: for want of a free buffer, as far as the driver can tell */
 } dubsar_frame_counters;
 
 /* ---- Axes and lasers of a stage ---- */

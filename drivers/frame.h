@@ -70,6 +70,7 @@ struct FrameCounters {
   std::uint64_t incomplete = 0;
   std::uint64_t resent = 0;
   std::uint64_t reconnections = 0;
+  std::uint64_t starved = 0;  ///< of those lost: for want of a free buffer, as far as the driver can tell
 };
 
 }  // namespace dubsar

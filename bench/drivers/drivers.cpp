@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright The Dubsar developers
 //
-// dubsar-drivers frames|unplug v4l2|aravis|usb_stage [N] [RATE]: the drivers of devices against the emulated
-// ones of the tests, each in a process of its own behind the kernel's interface (FUSE, GigE packets on a
-// loopback, umockdev).
-//   frames: N frames (usb_stage: N positions) as fast as the device delivers; lost ones, and memory at the
-//   start
-//           and at the end.
+// dubsar-drivers frames|unplug v4l2|aravis|usb_stage [N] [RATE] [WIDTHxHEIGHT] [OPTION=VALUE...]: the drivers
+// of devices against the emulated ones of the tests, each in a process of its own behind the kernel's
+// interface (FUSE, GigE packets on a loopback, umockdev).
+//   frames: N frames (usb_stage: N positions) at RATE; lost ones, and what each side has counted of them, and
+//           memory at the start and at the end. OPTION is one of the driver's;
+//           v4l2 with format=MJPG sends motion JPEG.
 //   unplug: the cable is pulled at N random moments; how long until the driver says so, and that it goes on.
 #include <dlfcn.h>
 
@@ -83,6 +83,8 @@ struct Emulated {
   /// power of its own all the while.
   std::function<bool()> lit = [] { return false; };
   std::function<void()> rejoin = [this] { plug(); };
+  /// Frames that the device itself made, those it lost for want of a buffer, and how often it was held up.
+  std::function<std::string()> counts = [] { return std::string(); };
   /// Of one frame, whether its pixels are those of its number.
   std::function<bool(const Frame&)> genuine = [](const Frame&) { return true; };
 };
@@ -99,16 +101,23 @@ std::uint32_t painted_number(const Frame& frame) {
 
 int count_frames(Device& device, const Emulated& emulated, std::uint64_t count) {
   prefer_this_thread();  // as the thread of a scan that takes frames
-  must(device.start_frames(32));
+  must(device.start_frames(0));
   std::uint64_t wrong = 0;
   std::uint64_t bytes = 0;
   double before_mb = 0;
   Clock::time_point start{};
+  double longest_s = 0;  // that this thread was away
   for (std::uint64_t k = 0; k < count; ++k) {
-    auto frame = must(device.next_frame(2s));
+    const Clock::time_point back = Clock::now();
+    auto frame = must(device.next_frame(20s));  // the whole machine may stand still for a while
     if (!frame) {
-      give_up("no frame in 2 s");
+      const FrameCounters now = must(device.frame_counters());
+      give_up("no frame in 20 s after " + std::to_string(k) + ": " + std::to_string(now.lost) +
+              " lost before, " + std::to_string(now.starved) + " of all for want of a buffer, pool " +
+              std::to_string(now.pool) + "; the device made, lost, was held up: " + emulated.counts() +
+              ", then " + emulated.counts());
     }
+    const Clock::time_point taken = Clock::now();
     wrong += emulated.genuine(*frame) ? 0 : 1;
     bytes += frame->pixels.size();
     if (k == count / 10) {
@@ -117,6 +126,9 @@ int count_frames(Device& device, const Emulated& emulated, std::uint64_t count) 
     if (k == 0) {
       start = Clock::now();
     }
+    frame.reset();
+    longest_s = std::max({longest_s, k == 0 ? 0 : since(taken),
+                          k == 0 ? 0 : std::chrono::duration<double>(taken - back).count()});
   }
   const double seconds = since(start);
   const double after_mb = resident_mb();
@@ -124,11 +136,17 @@ int count_frames(Device& device, const Emulated& emulated, std::uint64_t count) 
   const FrameCounters counts = must(device.frame_counters());
   std::printf(
       "%s: %llu frames, %.1f/s, %.0f MB/s, %llu lost, %llu late, %llu with wrong pixels, memory %.1f to %.1f "
-      "MB\n",
+      "MB\n"
+      "  driver: pool %u, %llu lost for want of a buffer, %llu packets sent again; longest wait or hold of "
+      "the "
+      "taking thread %.3f s\n"
+      "  device: made, lost for want of a buffer, held up: %s\n",
       emulated.scheme.c_str(), static_cast<unsigned long long>(counts.delivered),
       static_cast<double>(count - 1) / seconds, static_cast<double>(bytes) / seconds / 1e6,
       static_cast<unsigned long long>(counts.lost), static_cast<unsigned long long>(counts.late),
-      static_cast<unsigned long long>(wrong), before_mb, after_mb);
+      static_cast<unsigned long long>(wrong), before_mb, after_mb, counts.pool,
+      static_cast<unsigned long long>(counts.starved), static_cast<unsigned long long>(counts.resent),
+      longest_s, emulated.counts().c_str());
   return counts.lost == 0 && wrong == 0 && after_mb < before_mb * 1.05 + 2 ? 0 : 1;
 }
 
@@ -268,20 +286,24 @@ int count_pulls(Device& device, const Emulated& emulated, std::uint64_t count) {
 /// The emulated device of a scheme. What it needs lives as long as this.
 class Stand {
  public:
-  Stand(const std::string& scheme, bool frames, const std::string& rate) {
+  Stand(const std::string& scheme, bool frames, const std::string& rate, const std::string& size,
+        const Options& options) {
     device.scheme = scheme;
     if (scheme == "v4l2") {
-      start({kBin + "v4l2_peer", folder_.path().string(), "Bench", "GREY:640x480@" + rate});
+      const auto asked = std::ranges::find(options, "format", &Options::value_type::first);
+      const std::string format = asked == options.end() ? "GREY" : asked->second;
+      start({kBin + "v4l2_peer", folder_.path().string(), "Bench", format + ":" + size + "@" + rate});
       device.locator = (folder_.path() / "video0").string();
       device.unplug = [this] { peer_->tell("unplug"); };
       device.plug = [this] { peer_->tell("plug"); };
-      device.genuine = [](const Frame& frame) { return painted_number(frame) + 1 == frame.id; };
+      if (format == "GREY") {  // the others do not keep every bit
+        device.genuine = [](const Frame& frame) { return painted_number(frame) + 1 == frame.id; };
+      }
     } else if (scheme == "aravis") {
       const Words words{kBin + "gige_peer", "SN7", folder_.path().string()};
       start(words);
       device.locator = "Dubsar-Range 1-SN7";
-      device.options =
-          frames ? Options{{"format", "Mono8"}, {"buffers", "64"}} : Options{{"rows", "1000000"}};
+      device.options = frames ? Options{{"format", "Mono8"}} : Options{{"rows", "1000000"}};
       device.unplug = [this] {
         ::kill(peer_->pid(), SIGKILL);
         peer_.reset();
@@ -289,8 +311,9 @@ class Stand {
       device.plug = [this, words] { start(words); };
       if (frames) {
         peer_->tell("write 138 " + std::to_string(1000000 / std::stoi(rate)));
-        peer_->tell("write 100 640");
-        peer_->tell("write 104 480");
+        const std::size_t cross = size.find('x');
+        peer_->tell("write 100 " + size.substr(0, cross));
+        peer_->tell("write 104 " + size.substr(cross + 1));
         // It counts from where it likes; numbers of GigE Vision 1 go round at 65535.
         device.genuine = [first = std::optional<std::int64_t>()](const Frame& frame) mutable {
           const std::int64_t ahead = (std::int64_t{painted_number(frame)} - frame.id % 65535 + 65535) % 65535;
@@ -306,6 +329,10 @@ class Stand {
       device.rejoin = [this] { peer_->tell("rejoin"); };
       device.lit = [this] { return peer_->tell("laser") != "0"; };
     }
+    if (scheme != "usb_stage") {
+      device.counts = [this] { return peer_->tell("counts"); };
+    }
+    device.options.insert(device.options.end(), options.begin(), options.end());
   }
   Emulated device;
 
@@ -341,11 +368,20 @@ int main(int count, char** words) {
   const std::string scheme = count > 2 ? words[2] : "";
   if ((what != "frames" && what != "unplug") ||
       (scheme != "v4l2" && scheme != "aravis" && scheme != "usb_stage")) {
-    std::fputs("dubsar-drivers frames|unplug v4l2|aravis|usb_stage [N] [RATE]\n", stderr);
+    std::fputs(
+        "dubsar-drivers frames|unplug v4l2|aravis|usb_stage [N] [RATE] [WIDTHxHEIGHT] [OPTION=VALUE...]\n",
+        stderr);
     return 2;
   }
   const std::uint64_t n = count > 3 ? std::strtoull(words[3], nullptr, 10) : what == "frames" ? 100000 : 100;
   const std::string rate = count > 4 ? words[4] : "400";
+  const std::string size = count > 5 ? words[5] : "640x480";
+  Options options;
+  for (int k = 6; k < count; ++k) {
+    const std::string word = words[k];
+    const std::size_t sign = word.find('=');
+    options.emplace_back(word.substr(0, sign), sign == word.npos ? "1" : word.substr(sign + 1));
+  }
   if (scheme == "usb_stage" && std::getenv("DUBSAR_BENCH_PEER") == nullptr) {
     become_preloaded(words);
   }
@@ -353,7 +389,7 @@ int main(int count, char** words) {
     give_up("this kernel gives nobody a network of his own");
   }
   const DriverRegistry registry({std::filesystem::path(DUBSAR_BINARY_DIR) / "lib/dubsar/drivers"});
-  Stand stand(scheme, what == "frames", rate);
+  Stand stand(scheme, what == "frames", rate, size, options);
   Device device = open(registry, stand.device);
   if (what == "unplug") {
     return count_pulls(device, stand.device, n);

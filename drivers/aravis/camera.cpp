@@ -7,6 +7,7 @@
 #include <ctime>
 #include <thread>
 
+#include "core/pool_depth.h"
 #include "core/thread_priority.h"
 #include "drivers/aravis/glib.h"
 
@@ -202,7 +203,11 @@ Status Camera::begin(std::uint32_t pool) {
                  "socket-buffer", ARV_GV_STREAM_SOCKET_BUFFER_FIXED, "socket-buffer-size", kSocketBytes,
                  nullptr);
   }
-  const std::uint32_t buffers = std::clamp(pool == 0 ? options_.buffers : pool, 2U, kMostBuffers);
+  const std::uint32_t asked = pool == 0 ? options_.buffers : pool;
+  GErrorHolder unknown;  // a camera need not tell its rate
+  const double rate_hz = asked == 0 ? arv_camera_get_frame_rate(camera_, unknown.fill()) : 0;
+  const std::uint32_t buffers = asked == 0 ? pool_depth(unknown ? 0 : rate_hz, payload, kMostBuffers)
+                                           : std::clamp(asked, 2U, kMostBuffers);
   for (std::uint32_t k = 0; k < buffers; ++k) {
     arv_stream_push_buffer(stream, arv_buffer_new_allocate(payload));
   }
@@ -326,6 +331,11 @@ void Camera::add_statistics(dubsar_frame_counters& to) const {
     guint64 missing = 0;
     arv_gv_stream_get_statistics(ARV_GV_STREAM(stream_), &resent, &missing);
     to.resent += resent;
+    guint64 completed = 0;
+    guint64 failures = 0;
+    guint64 underruns = 0;
+    arv_stream_get_statistics(stream_, &completed, &failures, &underruns);
+    to.starved += underruns;
   }
 }
 

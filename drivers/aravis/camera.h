@@ -30,8 +30,8 @@ namespace dubsar::aravis {
 using Clock = std::chrono::steady_clock;
 
 struct CameraOptions {
-  std::string format;  ///< a PFNC name; empty: the best that there is
-  std::uint32_t buffers = 16;
+  std::string format;              ///< a PFNC name; empty: the best that there is
+  std::uint32_t buffers = 0;       ///< 0: as many as half a second takes, see pool_depth()
   std::uint32_t packet_bytes = 0;  ///< of GigE Vision; 0: what the way carries
   bool resend = true;
   bool packet_socket = true;

@@ -12,7 +12,8 @@ namespace {
 constexpr std::array<plugin::SettingRow, 10> kRows{{
     {DUBSAR_TYPE_TEXT, "format",
      "pixel format by its GenICam name, e.g. Mono8 or Coord3D_AC16; default: the best"},
-    {DUBSAR_TYPE_INTEGER, "buffers", "frames in the pool", nullptr, nullptr, 2, 256},
+    {DUBSAR_TYPE_INTEGER, "buffers", "frames in the pool; default: half a second of them, 256 MiB at most",
+     nullptr, nullptr, 2, 256},
     {DUBSAR_TYPE_INTEGER, "packet", "size of GigE packets; default: what the network carries", "bytes",
      nullptr, 576, 16000},
     {DUBSAR_TYPE_BOOL, "resend", "ask for lost packets again (1)", nullptr, nullptr, 0, 1},

@@ -7,6 +7,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 
 namespace dubsar::aravis {
@@ -39,7 +40,8 @@ Presence::~Presence() {
 }
 
 void Presence::quiet() {
-  heard_ = Clock::now();
+  looked_ = Clock::now();
+  silent_ = {};
 }
 
 bool Presence::gone() {
@@ -47,14 +49,13 @@ bool Presence::gone() {
     return false;  // cannot tell: control-lost will
   }
   const Clock::time_point now = Clock::now();
+  silent_ += std::min<Clock::duration>(now - looked_, kAskEvery);
+  looked_ = now;
   std::array<char, 1024> answer{};
   while (::recv(socket_, answer.data(), answer.size(), 0) > 0) {
-    heard_ = now;
+    silent_ = {};
   }
-  if (asked_ < heard_ || now - asked_ > kAskEvery) {
-    if (now - heard_ > 10 * kSilence) {
-      heard_ = now;  // nobody looked for long; the camera is not to blame
-    }
+  if (now - asked_ > kAskEvery) {
     ++number_;
     number_ += number_ == 0 ? 1 : 0;
     const std::array<std::uint8_t, 8> question{kKey,
@@ -68,7 +69,7 @@ bool Presence::gone() {
     [[maybe_unused]] const ssize_t sent = ::send(socket_, question.data(), question.size(), MSG_NOSIGNAL);
     asked_ = now;
   }
-  return now - heard_ > kSilence;
+  return silent_ > kSilence;
 }
 
 }  // namespace dubsar::aravis

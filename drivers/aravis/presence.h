@@ -19,11 +19,12 @@ class Presence {
   Presence& operator=(const Presence&) = delete;
 
   /// Asks when the last question is old enough, takes what came, and says whether the camera has kept silent
-  /// for too long. Does not wait. quiet() is for when its frames come and there is nothing to ask.
+  /// for too long, of the time in which somebody looked: where this machine stood still the camera is not to
+  /// blame. Does not wait. quiet() is for when its frames come and there is nothing to ask.
   [[nodiscard]] bool gone();
   void quiet();
   /// True when questions have gone unanswered of late: it may turn out to be gone.
-  [[nodiscard]] bool is_doubtful() const { return Clock::now() - heard_ > 2 * kAskEvery; }
+  [[nodiscard]] bool is_doubtful() const { return silent_ > 2 * kAskEvery; }
 
   static constexpr std::chrono::milliseconds kAskEvery{200};
   static constexpr std::chrono::milliseconds kSilence{1300};
@@ -33,7 +34,8 @@ class Presence {
   int socket_ = -1;
   std::uint16_t number_ = 0;
   Clock::time_point asked_{};
-  Clock::time_point heard_ = Clock::now();
+  Clock::time_point looked_ = Clock::now();
+  Clock::duration silent_{};
 };
 
 }  // namespace dubsar::aravis

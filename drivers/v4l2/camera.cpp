@@ -9,6 +9,8 @@
 #include <cmath>
 #include <fstream>
 
+#include "core/pool_depth.h"
+
 namespace dubsar::v4l2 {
 
 namespace fs = std::filesystem;
@@ -197,7 +199,10 @@ Status Camera::start(std::uint32_t pool) {
       return found;
     }
   }
-  const std::uint32_t buffers = std::clamp(pool == 0 ? options_.buffers : pool, 2U, kMostBuffers);
+  const std::uint32_t asked = pool == 0 ? options_.buffers : pool;
+  const std::uint32_t buffers =
+      asked == 0 ? pool_depth(mode_.rate_hz, std::uint64_t{stride_} * mode_.height, kMostBuffers)
+                 : std::clamp(asked, 2U, kMostBuffers);
   Result<std::shared_ptr<Stream>> stream = Stream::start(*node_, mode_, stride_, buffers);
   if (!stream) {
     if (!node_->alive()) {

@@ -22,7 +22,7 @@ namespace dubsar::v4l2 {
 
 struct CameraOptions {
   Wish wish;
-  std::uint32_t buffers = 8;
+  std::uint32_t buffers = 0;  ///< 0: as many as half a second takes, see pool_depth()
 };
 
 /// A camera that is used from open to close, plugged in or not: settings and counts outlive a lost cable.

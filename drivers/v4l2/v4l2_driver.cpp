@@ -25,7 +25,8 @@ constexpr std::array<plugin::SettingRow, 4> kOptions{{
     {DUBSAR_TYPE_TEXT, "size", "width x height, e.g. 1280x1024; default: the largest of that format", "px"},
     {DUBSAR_TYPE_NUMBER, "rate", "frames per second, at least; default: the fastest", "Hz", nullptr, 0.01,
      100000},
-    {DUBSAR_TYPE_INTEGER, "buffers", "frames in the pool", nullptr, nullptr, 2, 32},
+    {DUBSAR_TYPE_INTEGER, "buffers", "frames in the pool; default: half a second of them", nullptr, nullptr,
+     2, 32},
 }};
 
 std::optional<std::uint32_t> whole_number(std::string_view text) {

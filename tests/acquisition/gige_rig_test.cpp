@@ -3,6 +3,7 @@
 // The whole way, from GigE Vision packets and a USB stage that moves through, by `rig:` to a grid.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 
@@ -99,11 +100,13 @@ TEST_F(GigeRig, AStageThatIsUnpluggedLeavesTheRowsAndGoesOnLater) {
   ASSERT_TRUE(device.has_value()) << device.error().line();
   struct Unplugs : test::CollectGrid {
     bool profile(const Profile& profile) override {
-      if (profile.row == 8) {
+      if (profile.row >= 8 && !pulled) {  // a row may be lost, that one too
         EXPECT_EQ(stage->tell("unplug"), "ok");
+        pulled = true;
       }
       return CollectGrid::profile(profile);
     }
+    bool pulled = false;
   } sink;
   const Result<ScanOutcome> broken = device->scan(sink);
   ASSERT_FALSE(broken.has_value());
@@ -186,24 +189,33 @@ TEST_F(GigeRig, PutsTheProfilesOfARangeCameraWhereTheStageWas) {
   const RangeGrid grid = sink.grid();
   EXPECT_EQ(grid.cols, 160);
   EXPECT_NEAR(grid.rows, 121, 2);
-  EXPECT_EQ(grid.valid_count(), grid.size());
+  // Where a machine with too much work lost a row it is empty, and counted.
+  EXPECT_GE(grid.valid_count() + sink.tally.profiles_dropped * 160, grid.size());
+  EXPECT_LT(sink.tally.profiles_dropped, 12U);
   double squares = 0;
   for (std::size_t i = 0; i < grid.size(); ++i) {
+    if (grid.valid[i] == 0) {
+      continue;
+    }
     const double there = test::surface_mm(static_cast<double>(grid.x[i]), static_cast<double>(grid.y[i]));
     squares += std::pow(1e3 * (static_cast<double>(grid.z[i]) - there), 2);
   }
   // By counting, a row would be off by what the camera's and the stage's start lie apart: tens of
   // micrometres.
-  EXPECT_LT(std::sqrt(squares / static_cast<double>(grid.size())), 6);
-  EXPECT_NEAR(static_cast<double>(grid.y.front()), -60, 0.03);
+  EXPECT_LT(std::sqrt(squares / static_cast<double>(grid.valid_count())), 6);
+  const auto first = static_cast<std::size_t>(std::ranges::find(grid.valid, 1) - grid.valid.begin());
+  ASSERT_LT(first, grid.size());
+  EXPECT_NEAR(static_cast<double>(grid.y[first]), -60 + 0.025 * static_cast<double>(first / 160), 0.03);
   // A stage that is unplugged ends it, and what came is kept.
   struct Unplugs : test::CollectGrid {
     bool profile(const Profile& profile) override {
-      if (profile.row == 40) {
+      if (profile.row >= 40 && !pulled) {
         EXPECT_EQ(stage->tell("unplug"), "ok");
+        pulled = true;
       }
       return CollectGrid::profile(profile);
     }
+    bool pulled = false;
   } broken;
   const Result<ScanOutcome> ended = device->scan(broken);
   ASSERT_FALSE(ended.has_value());

@@ -19,7 +19,7 @@ TEST(PositionTrack, FollowsSpeedAndAcceleration) {
   }
   track.close();
   for (int k = 30; k < 400; k += 7) {
-    EXPECT_NEAR(track.at(k * kMs).value(), position(1e-3 * k), 1e-6);
+    EXPECT_NEAR(track.at(k * kMs).value().position, position(1e-3 * k), 1e-6);
   }
   EXPECT_NEAR(track.last().value(), position(0.495), 1e-12);
 }
@@ -33,7 +33,32 @@ TEST(PositionTrack, ReadingsThatTookLongCountLittle) {
   }
   track.close();
   for (int k = 40; k < 250; k += 3) {
-    EXPECT_NEAR(track.at(k * kMs).value(), 0.01 * k, 0.001);
+    EXPECT_NEAR(track.at(k * kMs).value().position, 0.01 * k, 0.001);
+  }
+}
+
+TEST(PositionTrack, SaysHowWellItKnows) {
+  // 5 mm/s; answers that took 1 ms, then some that took 100 ms and more, on a machine with too much work.
+  const auto track_of = [](double late_share, PositionTrack& track) {
+    for (int k = 0; k < 60; ++k) {
+      const std::int64_t half = k > 20 && k < 40 ? static_cast<std::int64_t>(late_share * 60 * kMs) : kMs / 2;
+      // The answer was true when it was given, at either end of the wait.
+      const std::int64_t true_ns = k * 10 * kMs + (k % 3 == 0 ? -half : half);
+      track.add(k * 10 * kMs, 5e-9 * static_cast<double>(true_ns), half);
+    }
+    track.close();
+  };
+  PositionTrack quick;
+  track_of(1.0 / 120, quick);
+  PositionTrack slow;
+  track_of(1, slow);
+  for (int k = 250; k < 350; k += 7) {
+    const auto sure = quick.at(k * kMs).value();
+    EXPECT_LT(sure.sigma, 0.002);
+    EXPECT_NEAR(sure.position, 5e-3 * k, 4 * sure.sigma);
+    const auto doubtful = slow.at(k * kMs).value();
+    EXPECT_GT(doubtful.sigma, 0.02);
+    EXPECT_NEAR(doubtful.position, 5e-3 * k, 4 * doubtful.sigma);
   }
 }
 
@@ -49,8 +74,8 @@ TEST(PositionTrack, TellsNothingOutside) {
   track.close();
   EXPECT_FALSE(track.at(9 * kMs).has_value());
   EXPECT_FALSE(track.at(21 * kMs).has_value());
-  EXPECT_NEAR(track.at(15 * kMs).value(), 1.5, 1e-9);
-  EXPECT_NEAR(track.at(10 * kMs).value(), 1, 1e-9);
+  EXPECT_NEAR(track.at(15 * kMs).value().position, 1.5, 1e-9);
+  EXPECT_NEAR(track.at(10 * kMs).value().position, 1, 1e-9);
   EXPECT_FALSE(track.closed_before(20 * kMs));
   EXPECT_TRUE(track.closed_before(21 * kMs));
 }
@@ -60,13 +85,13 @@ TEST(PositionTrack, WaitsForWhatIsBehind) {
   for (int k = 0; k < 3; ++k) {
     track.add(k * 10 * kMs, k, 0);
   }
-  std::optional<double> told;
+  std::optional<PositionTrack::Place> told;
   std::jthread asks([&] { told = track.at(15 * kMs); });
   for (int k = 3; k < 8; ++k) {
     track.add(k * 10 * kMs, k, 0);
   }
   asks.join();
-  EXPECT_NEAR(told.value(), 1.5, 1e-9);
+  EXPECT_NEAR(told.value().position, 1.5, 1e-9);
 }
 
 }  // namespace

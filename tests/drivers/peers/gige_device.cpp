@@ -14,6 +14,8 @@
 #include <iostream>
 #include <thread>
 
+#include "core/thread_priority.h"
+
 namespace dubsar::test {
 
 namespace {
@@ -98,6 +100,7 @@ void GigeDevice::text(std::uint32_t at, const std::string& value) {
 }
 
 void GigeDevice::serve_control() {
+  prefer_this_thread();
   while (!quit) {
     pollfd waiting{control_, POLLIN, 0};
     std::uint8_t bytes[2048];
@@ -115,6 +118,7 @@ void GigeDevice::serve_control() {
 }
 
 void GigeDevice::serve_stream() {
+  prefer_this_thread();
   std::uint16_t id = 0;
   while (!quit) {
     bool on = false;

@@ -5,9 +5,10 @@
 // real GigE Vision packets with our GenICam description. To be run in a network namespace of its own, as the
 // tests do. WORDS: truncated (its description breaks off), lies (it announces less than it sends),
 // MODEL=name. Commands on standard input: write ADDRESS VALUE, double ADDRESS VALUE, read ADDRESS, lose
-// RATIO.
+// RATIO, counts.
 #include <arv.h>
 
+#include <atomic>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
@@ -19,11 +20,14 @@
 #include <string>
 #include <vector>
 
+#include "core/thread_priority.h"
 #include "tests/drivers/peers/gige_xml.h"
 
 namespace {
 
 using namespace dubsar::test;
+
+std::atomic<std::uint64_t> painted = 0;
 
 void put_double(ArvFakeCamera* camera, guint32 address, double value) {
   guint64 bits = 0;
@@ -34,6 +38,8 @@ void put_double(ArvFakeCamera* camera, guint32 address, double value) {
 
 /// What the tests expect of each format; column 5 has no return.
 void paint(ArvBuffer* buffer, void* /*user*/, guint32 /*exposure*/, guint32 /*gain*/, ArvPixelFormat format) {
+  [[maybe_unused]] static const auto first = dubsar::prefer_this_thread();  // the camera's only thread
+  ++painted;
   std::size_t ignored = 0;
   auto* to = static_cast<std::uint8_t*>(const_cast<void*>(arv_buffer_get_data(buffer, &ignored)));
   const auto width = static_cast<std::uint32_t>(arv_buffer_get_image_width(buffer));
@@ -97,6 +103,9 @@ std::string command(ArvGvFakeCamera* server, ArvFakeCamera* camera, const std::s
     words >> ratio;
     g_object_set(server, "gvsp-lost-ratio", ratio, nullptr);
     return "ok";
+  }
+  if (what == "counts") {
+    return std::to_string(painted) + " 0 0";
   }
   guint32 address = 0;
   words >> std::hex >> address >> std::dec;

@@ -23,6 +23,7 @@
 #include <string>
 #include <thread>
 
+#include "core/thread_priority.h"
 #include "tests/drivers/peers/firmware_sims.h"
 
 namespace {
@@ -352,6 +353,7 @@ std::string command(const std::string& line) {
 }  // namespace
 
 int main() {
+  dubsar::prefer_this_thread();
   std::signal(SIGPIPE, SIG_IGN);  // clients are killed on purpose
   peer.testbed = umockdev_testbed_new();
   if (!add_device()) {

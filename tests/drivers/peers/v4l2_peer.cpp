@@ -19,6 +19,7 @@
 #include <set>
 #include <thread>
 
+#include "core/thread_priority.h"
 #include "tests/drivers/peers/virtual_camera.h"
 
 using dubsar::test::VirtualCamera;
@@ -157,6 +158,7 @@ VirtualCamera::Mode mode_from(const char* text) {
 
 /// Each frame goes straight to the pages that the driver has mapped.
 void run_camera() {
+  dubsar::prefer_this_thread();
   const auto store = [](std::uint64_t offset, const std::vector<std::uint8_t>& frame) {
     std::ranges::copy(frame, peer->memory.begin() + static_cast<std::ptrdiff_t>(offset));
     fuse_bufvec bytes = FUSE_BUFVEC_INIT(frame.size());
@@ -219,6 +221,7 @@ int main(int count, char** words) {
     take_commands();
     fuse_session_unmount(here.session);  // which ends the loop
   });
+  dubsar::prefer_this_thread();  // it answers the system calls
   fuse_session_loop(here.session);
   here.quit = true;
   camera.join();

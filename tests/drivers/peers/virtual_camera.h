@@ -40,7 +40,7 @@ class VirtualCamera {
   bool tick(const std::function<void(std::uint64_t, const std::vector<std::uint8_t>&)>& store);
 
   /// A line from the test: unplug, plug, pause, resume, lose N, spoil N, shorten N, deny, occupy, allow,
-  /// rename NAME.
+  /// rename NAME, counts ("frames made, of them lost for want of a buffer, times it was held up itself").
   std::string command(const std::string& line);
   [[nodiscard]] bool gone();
 
@@ -61,6 +61,7 @@ class VirtualCamera {
   std::deque<v4l2_buffer> done_;
   std::uint32_t sequence_ = 0;
   std::int64_t due_ns_ = 0;
+  std::uint64_t made_ = 0, starved_ = 0, held_up_ = 0;
   int gain_ = 10;
   int exposure_ = 50;
   int automatic_ = V4L2_EXPOSURE_APERTURE_PRIORITY;

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "acquisition/placed_profiles.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "acquisition/rig_parts.h"
+#include "tests/support/grid_truth.h"
+
+namespace dubsar {
+namespace {
+
+constexpr std::int64_t kMs = 1000000;
+constexpr double kSpeed = 5;     // mm/s
+constexpr double kFrom = -65;    // mm
+constexpr double kStep = 0.025;  // mm: a profile every 5 ms
+
+/// A stage that goes from -65 mm on, asked again 4 ms after each answer. Its answers take 1 ms, but `late_ms`
+/// where it stands between two positions, and were true when they were asked for.
+void ask(PositionTrack& track, double late_from, double late_to, double late_ms) {
+  for (std::int64_t asked = 0; asked < 3000 * kMs;) {
+    const double there = kFrom + kSpeed * 1e-9 * static_cast<double>(asked);
+    const bool late = there > late_from && there < late_to;
+    const auto half = late ? static_cast<std::int64_t>(0.5 * late_ms * kMs) : kMs / 2;
+    track.add(asked + half, late ? there : there + kSpeed * 1e-9 * static_cast<double>(half), half);
+    asked += 2 * half + 4 * kMs;
+  }
+  track.close();
+}
+
+/// All profiles of the stage's way through a scan of 121 rows from -60 mm on; z is the time, in seconds.
+ScanTally scan(PositionTrack& track, test::CollectGrid& sink) {
+  RigMotion motion;
+  motion.direction = {0, 1, 0};
+  PlacedProfiles placed(sink, track, {motion, -60, kStep, 121, "test"});
+  ScanInfo info;
+  info.cols = 1;
+  info.view.motion_per_row_mm = {0, 1, 0};  // made up of the rows' numbers
+  EXPECT_TRUE(placed.begin(info));
+  bool more = true;
+  for (int row = 0; row < 590 && more; ++row) {
+    const std::vector<float> x{0};
+    const std::vector<float> z{0.005F * static_cast<float>(row)};
+    Profile profile;
+    profile.row = row;
+    profile.timestamp_ns = row * 5 * kMs + kMs;
+    profile.x = x;
+    profile.y = x;
+    profile.z = z;
+    more = placed.profile(profile);
+  }
+  placed.flush();
+  EXPECT_TRUE(placed.complete());
+  return placed.tally();
+}
+
+double worst_place_um(const RangeGrid& grid) {
+  double worst = 0;
+  for (std::size_t i = 0; i < grid.size(); ++i) {
+    const double there = kFrom + kSpeed * (static_cast<double>(grid.z[i]) + 0.001);
+    worst =
+        grid.valid[i] == 0 ? worst : std::max(worst, 1e3 * std::abs(static_cast<double>(grid.y[i]) - there));
+  }
+  return worst;
+}
+
+TEST(PlacedProfiles, PutsEachWhereTheStageWas) {
+  PositionTrack track;
+  ask(track, 0, 0, 0);
+  test::CollectGrid sink;
+  const ScanTally tally = scan(track, sink);
+  const RangeGrid grid = sink.grid();
+  EXPECT_EQ(tally.profiles_dropped, 0U);
+  EXPECT_NEAR(grid.rows, 121, 1);
+  EXPECT_EQ(grid.valid_count(), grid.size());
+  EXPECT_LT(worst_place_um(grid), 2);
+}
+
+TEST(PlacedProfiles, RowsWhosePlaceIsNotKnownAreLostAndCounted) {
+  // At the start of the scan, in its middle and at its end; by itself each answer is four rows off.
+  for (const double middle : {-60.0, -58.5, -57.0}) {
+    PositionTrack track;
+    ask(track, middle - 1.4, middle + 1.4, 40);
+    test::CollectGrid sink;
+    const ScanTally tally = scan(track, sink);
+    const RangeGrid grid = sink.grid();
+    EXPECT_LT(worst_place_um(grid), 3 * 1e3 * kSureSteps * kStep) << middle;  // three deviations
+    EXPECT_GT(tally.profiles_dropped, 8U) << middle;
+    // Every row of the scan came or is counted.
+    EXPECT_NEAR(static_cast<double>(grid.valid_count() + tally.profiles_dropped), 121, 2) << middle;
+    EXPECT_EQ(tally.profiles_sent, grid.valid_count()) << middle;
+    // What came keeps its place among the lost.
+    EXPECT_LE(grid.rows, 123) << middle;
+  }
+}
+
+}  // namespace
+}  // namespace dubsar
