@@ -10,6 +10,9 @@ namespace dubsar {
 std::vector<OfferedDriver> offered_drivers() {
   const DriverRegistry registry;
   std::vector<OfferedDriver> out;
+  // No plugin: put together of several devices (acquisition/device_uri.h).
+  out.push_back(
+      {"rig", "camera, stage and calibration together, as a file describes them", "FILE.toml", {}, {}, {}});
   for (const Driver& driver : registry.drivers()) {
     OfferedDriver offered{driver.scheme(), driver.description(), driver.locator_help(), {}, {}, {}};
     if (auto options = driver.options()) {
