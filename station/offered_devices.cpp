@@ -32,6 +32,11 @@ std::vector<OfferedDriver> offered_drivers() {
   return out;
 }
 
+std::optional<UriParts> uri_parts(const std::string& uri) {
+  const Result<DeviceUri> parts = parse_device_uri(uri);
+  return parts ? std::optional(UriParts{parts->scheme, parts->locator, parts->options}) : std::nullopt;
+}
+
 std::string compose_uri(const std::string& scheme, const std::string& locator,
                         const std::vector<std::pair<std::string, std::string>>& options) {
   DeviceUri uri{scheme, locator, {}};

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <chrono>
 
-#include "acquisition/device_uri.h"
 #include "ui/gl/gl_window.h"
 #include "ui/operator/setting_widget.h"
 
@@ -39,7 +38,7 @@ void DeviceDialog::take(const std::string& uri) {
   locator_.clear();
   values_.clear();
   chosen_ = drivers_.size();
-  const Result<DeviceUri> parts = parse_device_uri(uri);
+  const std::optional<UriParts> parts = uri_parts(uri);
   if (!parts) {
     return;
   }
