@@ -33,23 +33,29 @@ struct Sheet {
   }
 };
 
+std::string name_of(ByHand by_hand) {
+  return std::string(kByHandNames[static_cast<std::size_t>(by_hand)]);
+}
+
 /// For programs, as JSON: SVG 1.1 knows no data- attributes.
 std::string metadata(const Wedge& w) {
   const auto directional = static_cast<std::size_t>(w.directional_edge);
   return fmt::sprintf(
-      R"({"id":%d,"line":%d,"order":%d,"confidence":%.3f,"depth_mm":%.3f,"length_mm":%.3f,"turn_deg":%.1f,"volume_mm3":%.4f})",
+      R"({"id":%d,"line":%d,"order":%d,"confidence":%.3f,"depth_mm":%.3f,"length_mm":%.3f,"turn_deg":%.1f,"volume_mm3":%.4f%s})",
       w.id, w.place.line, w.place.order, w.confidence, w.depth_mm, w.edge_lengths_mm[directional],
-      deg_from_rad(w.place.turn_rad), w.volume_mm3);
+      deg_from_rad(w.place.turn_rad), w.volume_mm3,
+      w.by_hand == ByHand::kNo ? std::string() : fmt::sprintf(R"(,"by_hand":"%s")", name_of(w.by_hand)));
 }
 
 std::string numbers(const Wedge& w) {
   const auto deg = [](double rad) { return deg_from_rad(rad); };
   return fmt::sprintf(
       "wedge %d, line %d, %d: depth %.2f mm, edges %.2f %.2f %.2f mm, face angles %.0f %.0f %.0f, opening "
-      "angles %.0f %.0f %.0f degrees, confidence %.2f",
+      "angles %.0f %.0f %.0f degrees, confidence %.2f%s",
       w.id, w.place.line, w.place.order, w.depth_mm, w.edge_lengths_mm[0], w.edge_lengths_mm[1],
       w.edge_lengths_mm[2], deg(w.face_angles_rad[0]), deg(w.face_angles_rad[1]), deg(w.face_angles_rad[2]),
-      deg(w.opening_angles_rad[0]), deg(w.opening_angles_rad[1]), deg(w.opening_angles_rad[2]), w.confidence);
+      deg(w.opening_angles_rad[0]), deg(w.opening_angles_rad[1]), deg(w.opening_angles_rad[2]), w.confidence,
+      w.by_hand == ByHand::kNo ? std::string() : "; corrected by hand: " + name_of(w.by_hand));
 }
 
 std::string group(const Sheet& sheet, const Wedge& w) {
@@ -58,7 +64,8 @@ std::string group(const Sheet& sheet, const Wedge& w) {
   for (std::size_t k = 0; k < 3; ++k) {
     corner[k] = sheet.at(w.outer_vertices_mm[k]);
   }
-  std::string out = "<g id=\"wedge-" + std::to_string(w.id) + "\" class=\"wedge\">\n<title>" +
+  std::string out = "<g id=\"wedge-" + std::to_string(w.id) + "\" class=\"" +
+                    (w.by_hand == ByHand::kNo ? "wedge" : "wedge by-hand") + "\">\n<title>" +
                     html_escaped(numbers(w)) + "</title>\n<metadata>" + metadata(w) + "</metadata>\n";
   out += fmt::sprintf("<path class=\"outer\" d=\"M%.3f %.3fL%.3f %.3fL%.3f %.3fZ\"/>\n", corner[0].x(),
                       corner[0].y(), corner[1].x(), corner[1].y(), corner[2].x(), corner[2].y());
@@ -165,7 +172,8 @@ std::string wedge_drawing(Face side, const std::vector<Wedge>& wedges, const Rig
       "<style type=\"text/css\">.outer{fill:#e8e4dc;stroke:#000;stroke-width:.08;stroke-linejoin:round}"
       ".inner{fill:none;stroke:#000;stroke-width:.06;stroke-linecap:round}.directional{stroke-width:.16}"
       ".outline{fill:none;stroke:#000;stroke-width:.12;stroke-linejoin:round}.scale{fill:none;stroke:#000;"
-      "stroke-width:.2}text{font:2.2px sans-serif}</style>\n";
+      "stroke-width:.2}.by-hand .outer{fill:#d5e3f2;stroke-dasharray:.3 .15}text{font:2.2px "
+      "sans-serif}</style>\n";
   out += outline_path(sheet, outline);
   for (const Wedge& wedge : wedges) {
     out += is_on(wedge, side) ? group(sheet, wedge) : std::string();

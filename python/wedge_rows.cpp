@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <string>
+#include <string_view>
 
 #include "core/tablet_sides.h"
 #include "python/binding.h"
@@ -43,6 +44,7 @@ struct WedgeRow {
   double confidence;
   std::int32_t vertex_count;
   double intact;
+  char by_hand[8];
 };
 
 void put(double (&to)[3], const Eigen::Vector3d& from) {
@@ -91,6 +93,8 @@ WedgeRow row_of(const Wedge& wedge) {
   row.confidence = wedge.confidence;
   row.vertex_count = wedge.vertex_count;
   row.intact = wedge.intact;
+  const std::string_view by_hand = kByHandNames[static_cast<std::size_t>(wedge.by_hand)];
+  std::copy_n(by_hand.begin(), std::min(by_hand.size(), sizeof row.by_hand), row.by_hand);
   return row;
 }
 
@@ -108,7 +112,7 @@ void bind_wedge_rows() {
                        directional_edge, directional_margin, depth_mm, face_angles_rad, opening_angles_rad,
                        edge_lengths_mm, edge_slopes_rad, face_slopes_rad, edge_bows_mm, volume_mm3,
                        sigma_depth_point_mm, sigma_depth_mm, sigma_opening_rad, side, line, order, turn_rad,
-                       reliability, confidence, vertex_count, intact);
+                       reliability, confidence, vertex_count, intact, by_hand);
 }
 
 }  // namespace dubsar::python

@@ -4,6 +4,7 @@
 #include <optional>
 #include <utility>
 
+#include "acquisition/operator_log.h"
 #include "acquisition/session_store.h"
 #include "acquisition/sign_off_log.h"
 #include "core/tablet_frame.h"
@@ -54,6 +55,11 @@ void LiveSession::read_folder() {
       scan.dropped = stored.dropped;
       scan.damaged = stored.damaged;
       scan.note = stored.note;
+    }
+    if (const Result<OperatorLog> log = read_operator_log(*store)) {
+      for (LiveScan& scan : state_.scans) {
+        scan.hinted = log->word.hints.contains(scan.id);
+      }
     }
     follow(*poses);
     state_.record = tablet_record_of(*store);

@@ -112,9 +112,14 @@ void LiveSession::launch(std::function<void()> job) {
       std::vector<OperatorCommand> commands;
       bool waits = true;
       std::function<void()> next;
+      std::optional<TabletRecord> record;
       {
         const std::scoped_lock lock(mutex_);
         next = std::exchange(next_, nullptr);
+        record = std::exchange(record_later_, std::nullopt);
+      }
+      if (record) {  // also when nothing else is wanted any more
+        keep_record(*record);
       }
       if (next && !job_->cancelled()) {
         next();
@@ -125,6 +130,11 @@ void LiveSession::launch(std::function<void()> job) {
         commands.assign(later_.begin(), later_.end());
         later_.clear();
         waits = !std::exchange(scan_later_, false);
+        if (record_later_) {
+          scan_later_ = !waits;
+          later_.assign(commands.begin(), commands.end());
+          continue;
+        }
         if ((commands.empty() && waits) || job_->cancelled()) {
           state_.phase = LivePhase::kStill;
           state_.stage.clear();
@@ -188,6 +198,11 @@ void LiveSession::stop() {
 void LiveSession::ask(OperatorCommand command) {
   {
     const std::scoped_lock lock(mutex_);
+    if (const auto* hint = std::get_if<HintScan>(&command)) {
+      scan_of(hint->id).hinted = true;
+    } else if (const auto* withdraw = std::get_if<WithdrawHint>(&command)) {
+      scan_of(withdraw->id).hinted = false;
+    }
     if (engine_ && engine_->post(command)) {
       return;
     }
@@ -207,16 +222,17 @@ void LiveSession::describe(const TabletRecord& record) {
     if (engine_ && engine_->post(DescribeTablet{record})) {
       return;
     }
-    if (busy_) {
-      later_.push_back(DescribeTablet{record});
-      hurry();
+    if (busy_) {  // no engine is wanted for it: that would open the device
+      record_later_ = record;
       return;
     }
   }
-  launch([this, record] {
-    Result<SessionStore> store = SessionStore::open_or_create(options_.session);
-    end(store ? keep_tablet_record(*store, record) : std::unexpected(store.error()));
-  });
+  launch([this, record] { keep_record(record); });
+}
+
+void LiveSession::keep_record(const TabletRecord& record) {
+  Result<SessionStore> store = SessionStore::open_or_create(options_.session);
+  end(store ? keep_tablet_record(*store, record) : std::unexpected(store.error()));
 }
 
 void LiveSession::sign(const SignOff& wanted) {

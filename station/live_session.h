@@ -76,6 +76,7 @@ class LiveSession {
   void rebuild_model(ScanSet set, const std::vector<ScanPose>& poses);
   void run_engine(std::vector<OperatorCommand> first, bool first_scan_waits);
   void read_folder();
+  void keep_record(const TabletRecord& record);
   void hear(const Event& event);
   void progress(std::string_view stage, double fraction);
   LiveScan& scan_of(int id);                        ///< under the mutex
@@ -97,11 +98,12 @@ class LiveSession {
   std::optional<std::chrono::steady_clock::time_point> unseen_since_;  ///< of profiles
   std::shared_ptr<Engine> engine_;                                     ///< while it runs
   std::shared_ptr<JobContext> job_;
-  std::shared_ptr<JobContext> unasked_;  ///< work that nobody waits for, while there is some
-  std::function<void()> next_;           ///< a job that was asked for meanwhile
-  std::deque<OperatorCommand> later_;    ///< asked for while a job ran that takes none
-  bool scan_later_ = false;              ///< likewise
-  SettingWords settings_;                ///< of the device, that were changed while no run had it
+  std::shared_ptr<JobContext> unasked_;       ///< work that nobody waits for, while there is some
+  std::function<void()> next_;                ///< a job that was asked for meanwhile
+  std::deque<OperatorCommand> later_;         ///< asked for while a job ran that takes none
+  bool scan_later_ = false;                   ///< likewise
+  std::optional<TabletRecord> record_later_;  ///< likewise
+  SettingWords settings_;                     ///< of the device, that were changed while no run had it
   std::shared_ptr<const CameraView> camera_;
   std::shared_ptr<CameraWatch> watch_;
   std::atomic<bool> busy_ = false;

@@ -48,7 +48,8 @@ struct LiveScan {
   std::optional<ScanPose> pose;  ///< nothing while it is judged
   bool dropped = false;
   bool damaged = false;
-  std::string note;  ///< why it was dropped
+  bool hinted = false;  ///< the operator has said where it lies
+  std::string note;     ///< why it was dropped
   std::shared_ptr<const RangeGrid> grid;
   std::shared_ptr<const GridPicture> picture;
   /// Likewise, with the pins that stand in it; the same as `grid` where there are none.

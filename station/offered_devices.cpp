@@ -10,6 +10,9 @@ namespace dubsar {
 std::vector<OfferedDriver> offered_drivers() {
   const DriverRegistry registry;
   std::vector<OfferedDriver> out;
+  // No plugin: put together of several devices (acquisition/device_uri.h).
+  out.push_back(
+      {"rig", "camera, stage and calibration together, as a file describes them", "FILE.toml", {}, {}, {}});
   for (const Driver& driver : registry.drivers()) {
     OfferedDriver offered{driver.scheme(), driver.description(), driver.locator_help(), {}, {}, {}};
     if (auto options = driver.options()) {
@@ -27,6 +30,11 @@ std::vector<OfferedDriver> offered_drivers() {
     out.push_back(std::move(offered));
   }
   return out;
+}
+
+std::optional<UriParts> uri_parts(const std::string& uri) {
+  const Result<DeviceUri> parts = parse_device_uri(uri);
+  return parts ? std::optional(UriParts{parts->scheme, parts->locator, parts->options}) : std::nullopt;
 }
 
 std::string compose_uri(const std::string& scheme, const std::string& locator,

@@ -2,6 +2,7 @@
 // Copyright The Dubsar developers
 #pragma once
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -22,6 +23,13 @@ struct OfferedDriver {
 
 /// All drivers with what they find now. Takes as long as the drivers look.
 [[nodiscard]] std::vector<OfferedDriver> offered_drivers();
+
+struct UriParts {
+  std::string scheme, locator;
+  std::vector<std::pair<std::string, std::string>> options;
+};
+/// Nothing where it is none.
+[[nodiscard]] std::optional<UriParts> uri_parts(const std::string& uri);
 
 /// "scheme:locator?key=value&…", with what is empty left out.
 [[nodiscard]] std::string compose_uri(const std::string& scheme, const std::string& locator,

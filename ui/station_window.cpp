@@ -196,6 +196,7 @@ class StationWindow {
       unfinished = operator_->unfinished();
       if (operator_->wants_viewer()) {
         const LiveState state = session_->state();
+        viewer_->show_pins(operator_->pins_on_model());
         viewing_->show(state.mesh, state.tablet_from_model, session_folder_ / "analysis" / "wedges.json");
         looks_ = true;
       }

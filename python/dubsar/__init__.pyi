@@ -145,7 +145,8 @@ class Wedges:
         directional_edge, directional_margin, depth_mm, face_angles_rad[3], opening_angles_rad[3],
         edge_lengths_mm[3], edge_slopes_rad[3], face_slopes_rad[3], edge_bows_mm[3], volume_mm3,
         sigma_depth_point_mm, sigma_depth_mm, sigma_opening_rad[3], side (bytes, b"obverse"), line, order,
-        turn_rad, reliability, confidence, vertex_count, intact."""
+        turn_rad, reliability, confidence, vertex_count, intact, by_hand
+        (b"no", or what a person said: b"merged", b"split", b"added")."""
     @property
     def rejected(self) -> list[Rejected]: ...
     @property

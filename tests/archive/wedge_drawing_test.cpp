@@ -61,6 +61,22 @@ TEST(WedgeDrawing, CarriesTheNumbersOfEachWedgeForPrograms) {
   EXPECT_EQ(json["volume_mm3"], 0.125);
 }
 
+TEST(WedgeDrawing, MarksWhatAPersonHasCorrected) {
+  Wedge added = wedge_at(1, Face::kObverse, 10, 4, 5);
+  added.by_hand = ByHand::kAdded;
+  const std::string svg =
+      wedge_drawing(Face::kObverse, {wedge_at(0, Face::kObverse, 0, 0, 5), added}, {}, "t");
+  EXPECT_THAT(svg, HasSubstr("<g id=\"wedge-0\" class=\"wedge\">"));
+  EXPECT_THAT(svg, HasSubstr("<g id=\"wedge-1\" class=\"wedge by-hand\">"));
+  EXPECT_THAT(svg, HasSubstr("corrected by hand: added"));
+  const std::size_t from = svg.rfind("<metadata>") + 10;
+  const auto json =
+      nlohmann::json::parse(svg.substr(from, svg.find("</metadata>", from) - from), nullptr, false);
+  ASSERT_TRUE(json.is_object()) << svg;
+  EXPECT_EQ(json["by_hand"], "added");
+  EXPECT_EQ(svg.find("\"by_hand\""), svg.rfind("\"by_hand\"")) << "only of what was corrected";
+}
+
 TEST(WedgeDrawing, WritesASheetForEachSideThatHasWedges) {
   const test::TemporaryFolder folder;
   const std::vector<Wedge> wedges = {wedge_at(0, Face::kObverse, 0, 0, 5),

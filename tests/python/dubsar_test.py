@@ -229,6 +229,11 @@ class Pipeline(Scans):
             path = os.path.join(folder, "wedges.json")
             wedges.write(path)
             back = dubsar.read_wedges(path)
+            self.assertTrue(np.all(back.table["by_hand"] == b"no"))
+            stored["wedges"][3]["by_hand"] = "merged"
+            with open(path, "w") as corrected:
+                json.dump(stored, corrected)
+            self.assertEqual(dubsar.read_wedges(path).table["by_hand"][3], b"merged")
             np.testing.assert_allclose(back.table["depth_mm"], table["depth_mm"], atol=1e-5)
             self.assertEqual(back.fields, {})
             with self.assertRaises(dubsar.UsageError):

@@ -14,6 +14,7 @@
 #include "acquisition/session_store.h"
 #include "formats/pins_json.h"
 #include "station/session_pins.h"
+#include "station/tablet_record.h"
 #include "tests/station/support/command.h"
 #include "tests/station/support/two_fold_scans.h"
 #include "tests/support/temporary_folder.h"
@@ -246,10 +247,13 @@ TEST_F(OperatorStory, AClickOnATipIsTheCentreOfItsBall) {
         0.5 * tips->tip_diameter_mm * grid->view.to_camera(tip.position_mm, 0.5 * grid->rows);
     click = place_in(*grid, seen);
   }
-  const Outcome labelled = play_on(device,
-                                   "wait scan.0.fits\nwait idle\nclick scan.0\nclick label-pins\n"
-                                   "wait pins-left\nclick label.7\nclick pins-left " +
-                                       click + "\nclick pins-done\nwait scan.0.pins.1\nwait waiting\nquit\n");
+  const Outcome labelled =
+      play_on(device,
+              "wait scan.0.fits\nwait idle\nclick scan.0\nclick label-pins\n"
+              "wait pins-left\nclick label.7\nclick pins-left " +
+                  click +
+                  "\nclick pins-done\nwait scan.0.pins.1\nwait waiting\nwait pin.7\nclick viewer\n"
+                  "wait whole\nexpect pin.7\nclick show-pins\nexpect show-pins\nquit\n");
   ASSERT_EQ(labelled.status, 0) << labelled.err;
   const Result<SessionStore> store = SessionStore::open(session(), SessionStore::Access::kReadOnly);
   ASSERT_TRUE(store.has_value());
@@ -259,6 +263,55 @@ TEST_F(OperatorStory, AClickOnATipIsTheCentreOfItsBall) {
   ASSERT_EQ((*pins)->tips.at(0).size(), 1U);
   EXPECT_EQ((*pins)->tips.at(0)[0].label, 7);
   EXPECT_LT(((*pins)->tips.at(0)[0].position_mm - tip.position_mm).norm(), 0.5);
+}
+
+TEST_F(OperatorStory, EscapeShutsWhatIsOpenAndStopsNothing) {
+  const Outcome played = play(R"(
+wait idle
+click settings
+wait close-settings
+key escape
+pause 0.2
+expect scan
+key space
+wait waiting-turn
+click scan.0
+wait drop
+# neither of these is for the engine while the menu asks
+key space
+pause 0.3
+expect waiting-turn
+key escape
+pause 0.5
+expect waiting-turn
+quit
+)");
+  EXPECT_EQ(played.status, 0) << played.err;
+}
+
+TEST_F(OperatorStory, TheListOfScannersBeginsWithTheOneInUse) {
+  // It was another, without its options, as soon as the list was looked at.
+  const Outcome played =
+      play("wait idle\nclick device\nwait driver.sim\npause 0.3\nwait address." + std::string(kSmallTablet) +
+           "\nclick use-device\nkey space\nwait waiting-turn\nquit\n");
+  ASSERT_EQ(played.status, 0) << played.err;
+  const auto list = run_command({"session", "list", session(), "--json"}).json();
+  EXPECT_GE(list["scans"].size(), 1U);
+}
+
+TEST_F(OperatorStory, SayingWhatTabletItIsOpensNoScanner) {
+  const Outcome scanned = play("wait idle\nkey space\nwait waiting-turn\nquit\n");
+  ASSERT_EQ(scanned.status, 0) << scanned.err;
+  const auto before = run_command({"session", "list", session(), "--json"}).json()["scans"].size();
+  // While the model of the session that was left is being made again.
+  const Outcome played = play(
+      "wait scan.0.fits\nclick tablet\nclick museum-number\ntype VAT 7\nclick close-tablet\nwait idle 60\n"
+      "pause 0.5\nexpect still\nquit\n");
+  ASSERT_EQ(played.status, 0) << played.err;
+  EXPECT_EQ(run_command({"session", "list", session(), "--json"}).json()["scans"].size(), before);
+  const Result<SessionStore> store = SessionStore::open(session(), SessionStore::Access::kReadOnly);
+  ASSERT_TRUE(store.has_value());
+  EXPECT_EQ(tablet_record_of(*store).museum_number, "VAT 7");
 }
 
 TEST_F(OperatorStory, TonesAreOffUntilTheyAreTicked) {

@@ -70,6 +70,24 @@ TEST(ShownMesh, LevelsOfDetailAreInBlocksThatHoldThem) {
   }
 }
 
+TEST(ShownMesh, ItsFewestFacesAreAMeshOfTheirOwn) {
+  const ShownMesh whole = shown_mesh(sheet(900));
+  const ShownMesh few = fewest_faces(whole);
+  const ShownLevel& level = whole.coarser.front();
+  ASSERT_EQ(few.faces.size(), level.detail.faces.size());
+  EXPECT_LT(few.positions.size(), whole.positions.size() / 4);
+  EXPECT_EQ(few.normals.size(), few.positions.size());
+  EXPECT_EQ(few.traits.size(), few.positions.size());
+  EXPECT_TRUE(few.coarser.empty());
+  for (std::size_t f = 0; f < few.faces.size(); ++f) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      ASSERT_EQ(few.positions[few.faces[f][k]], whole.positions[level.detail.faces[f][k]]);
+    }
+  }
+  const ShownMesh small = shown_mesh(sheet(20));  // which has no coarser one
+  EXPECT_EQ(fewest_faces(small).faces, small.faces);
+}
+
 /// Turning must not cost more for being nearer, and not show less than it could.
 TEST(ShownMesh, SoManyFacesAreInThePictureHoweverNear) {
   const ShownMesh shown = shown_mesh(sheet(900));

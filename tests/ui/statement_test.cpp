@@ -75,13 +75,13 @@ TEST(Statement, AnUnsureScanIsToldWithItsReason) {
   state.last_not_taken_up = true;
   const Statement s = statement_of(state, true, Language::kEnglish);
   EXPECT_EQ(s.headline, "Scan 4 is unsure");
-  EXPECT_THAT(s.detail, HasSubstr("the overlap is too small"));
+  EXPECT_THAT(s.detail, HasSubstr("The overlap is too small."));
 }
 
 TEST(Statement, OnlyWhatIsThereMayBeSigned) {
   LiveState state = with_scan(PoseStatus::kRegistered);
   state.red_map = map_with(12.34);
-  EXPECT_THAT(statement_of(state, true, Language::kEnglish).headline, HasSubstr("12.3 mm2"));
+  EXPECT_THAT(statement_of(state, true, Language::kEnglish).headline, HasSubstr("12.3 mm²"));
   state.red_map = map_with(0);
   EXPECT_EQ(statement_of(state, true, Language::kEnglish).tone, Tone::kGood);
   EXPECT_TRUE(statement_of(state, true, Language::kEnglish).may_sign);
@@ -101,7 +101,7 @@ TEST(Statement, WhatIsNotInTheSessionCannotBeSigned) {
     const Statement s = statement_of(state, true, Language::kEnglish);
     EXPECT_FALSE(s.may_sign);
     EXPECT_TRUE(s.may_scan);
-    EXPECT_EQ(s.headline, red > 0 ? "2.5 mm2 are still red: scan on" : "1 scans are stored: go on");
+    EXPECT_EQ(s.headline, red > 0 ? "2.5 mm² are still red: scan on" : "1 scans are stored: go on");
   }
 }
 

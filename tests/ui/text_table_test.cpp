@@ -30,6 +30,10 @@ TEST(TextTable, EveryTextIsThereInBothLanguagesWithTheSameGaps) {
     EXPECT_FALSE(german.empty());
     EXPECT_EQ(gaps_of(english), gaps_of(german)) << english << " / " << german;
     EXPECT_EQ(english.find('%'), std::string::npos) << english;
+    for (const std::string& text : {english, german}) {
+      EXPECT_EQ(text.find("mm2"), std::string::npos) << text;
+      EXPECT_EQ(text.find("} um"), std::string::npos) << text;
+    }
   }
 }
 

@@ -23,7 +23,7 @@ bool begin_box(UiContext& ui, const char* title, const char* id, bool& open, flo
                               ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove)) {
     return false;
   }
-  ui.facts.insert("dialog");
+  begin_asking(ui);
   return true;
 }
 
@@ -68,24 +68,35 @@ void OperatorScreen::draw_tablet(UiContext& ui) {
   if (!begin_box(ui, ui.text(Text::kTablet), "###tablet", open_tablet_, ui.px(32))) {
     return;
   }
-  record_open_ = true;
-  text_line(ui, "museum-number", ui.text(Text::kMuseumNumber), record_.museum_number);
-  text_line(ui, "cdli", ui.text(Text::kCdli), record_.cdli);
+  // What is typed is kept when its line is left: a window that is killed meanwhile takes nothing with it.
+  bool left_line = false;
+  const auto line = [&](const char* name, Text label, std::string& value) {
+    text_line(ui, name, ui.text(label), value);
+    left_line = left_line || ImGui::IsItemDeactivatedAfterEdit();
+  };
+  line("museum-number", Text::kMuseumNumber, record_.museum_number);
+  line("cdli", Text::kCdli, record_.cdli);
   const bool cdli_good = check_cdli(record_.cdli).has_value();
   if (!cdli_good) {
     coloured_text(ui.colours.red, ui.text(Text::kCdliWrong));
   }
-  text_line(ui, "collection", ui.text(Text::kCollection), record_.collection);
-  text_line(ui, "operator", ui.text(Text::kOperator), record_.operator_name);
-  text_line(ui, "notes", ui.text(Text::kNotes), record_.notes);
+  line("collection", Text::kCollection, record_.collection);
+  line("operator", Text::kOperator, record_.operator_name);
+  line("notes", Text::kNotes, record_.notes);
   ImGui::PushFont(ui.fonts.small);
   coloured_text(ui.colours.faint, ui.text(Text::kKept));
   ImGui::PopFont();
-  if (plain_button(ui, "close-tablet", ui.text(Text::kClose), cdli_good)) {
-    ui.preferences.operator_name = record_.operator_name;
-    if (!(record_ == state_.record)) {
-      session_.describe(record_);
+  const bool close = plain_button(ui, "close-tablet", ui.text(Text::kClose), cdli_good);
+  if (close || left_line) {
+    TabletRecord said = record_;
+    said.cdli = cdli_good ? record_.cdli : said_record_.cdli;
+    ui.preferences.operator_name = said.operator_name;
+    if (!(said == said_record_)) {
+      session_.describe(said);
+      said_record_ = said;
     }
+  }
+  if (close) {
     ImGui::CloseCurrentPopup();
   }
   ImGui::EndPopup();

@@ -234,10 +234,10 @@ void CalibrationDialog::draw(UiContext& ui, const LiveState& state) {
   }
   ImGui::PushFont(ui.fonts.small);
   if (session_.busy()) {
-    coloured_text(ui.colours.faint, state.stage.c_str());
+    coloured_text(ui.colours.faint, translated(state.stage, ui.preferences.language).c_str());
   } else if (state.error) {
     ui.facts.insert("calibration-refused");
-    coloured_text(ui.colours.red, state.error->line().c_str());
+    coloured_text(ui.colours.red, translated(state.error->line(), ui.preferences.language).c_str());
   } else {
     if (state.notice.starts_with("kept: ")) {
       ui.facts.insert("calibration-kept");

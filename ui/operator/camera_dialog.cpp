@@ -144,7 +144,9 @@ void CameraDialog::draw(UiContext& ui, const LiveState& state) {
   }
   ImGui::EndChild();
   ImGui::PushFont(ui.fonts.small);
-  coloured_text(ui.colours.faint, state.notice.empty() ? ui.text(Text::kSettingsKept) : state.notice.c_str());
+  coloured_text(ui.colours.faint, state.notice.empty()
+                                      ? ui.text(Text::kSettingsKept)
+                                      : translated(state.notice, ui.preferences.language).c_str());
   ImGui::PopFont();
   if (plain_button(ui, "close-camera", ui.text(Text::kClose))) {
     ImGui::CloseCurrentPopup();

@@ -26,9 +26,102 @@ void DeviceDialog::look() {
 
 void DeviceDialog::open(const std::string& current_uri) {
   open_ = true;
-  uri_ = current_uri;
+  take(current_uri);
   if (!known_ && !looking_.valid()) {
     look();
+  }
+}
+
+/// Goes on from the address that is in use.
+void DeviceDialog::take(const std::string& uri) {
+  uri_ = uri;
+  locator_.clear();
+  values_.clear();
+  chosen_ = drivers_.size();
+  const std::optional<UriParts> parts = uri_parts(uri);
+  if (!parts) {
+    return;
+  }
+  locator_ = parts->locator;
+  for (const auto& [key, value] : parts->options) {
+    values_[key] = value;
+  }
+  chosen_ = static_cast<std::size_t>(std::ranges::find(drivers_, parts->scheme, &OfferedDriver::scheme) -
+                                     drivers_.begin());
+}
+
+void DeviceDialog::draw_choices(UiContext& ui) {
+  if (!known_) {
+    ImGui::TextUnformatted("...");
+  }
+  // What is plugged in comes first: that is what most come for.
+  const auto line = [&](const std::string& title, const std::string& words, bool is_chosen) {
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const float room = ImGui::GetContentRegionAvail().x;
+    const float pad = ui.px(0.3F);
+    ImFont* small = ui.fonts.small;
+    const float below =
+        words.empty() ? 0
+                      : small->CalcTextSizeA(small->FontSize, 1e6F, room - 2 * pad, words.c_str(), nullptr).y;
+    const float above = ImGui::CalcTextSize(title.c_str(), nullptr, false, room - 2 * pad).y;
+    const bool hit = ImGui::Selectable("##choice", is_chosen, 0, {0, above + below + 2 * pad});
+    ImDrawList* draw = ImGui::GetWindowDrawList();
+    draw->AddText(nullptr, 0, {at.x + pad, at.y + pad}, packed(ui.colours.text), title.c_str(), nullptr,
+                  room - 2 * pad);
+    draw->AddText(small, small->FontSize, {at.x + pad, at.y + pad + above}, packed(ui.colours.faint),
+                  words.c_str(), nullptr, room - 2 * pad);
+    return hit;
+  };
+  const bool any = std::ranges::any_of(drivers_, [](const OfferedDriver& d) { return !d.found.empty(); });
+  if (any) {
+    coloured_text(ui.colours.faint, ui.text(Text::kFound));
+  }
+  for (const OfferedDriver& driver : drivers_) {
+    for (const auto& [uri, description] : driver.found) {
+      ImGui::PushID(uri.c_str());
+      if (line(description, uri, uri_ == uri)) {
+        take(uri);
+      }
+      ImGui::PopID();
+      ui.target(fmt::format("device.{}", uri));
+    }
+  }
+  if (any) {
+    ImGui::Separator();
+  }
+  for (std::size_t k = 0; k < drivers_.size(); ++k) {
+    const OfferedDriver& driver = drivers_[k];
+    ImGui::PushID(static_cast<int>(k));
+    if (line(fmt::format("{}:", driver.scheme), driver.description, chosen_ == k) && chosen_ != k) {
+      take(fmt::format("{}:", driver.scheme));
+    }
+    ImGui::PopID();
+    ui.target(fmt::format("driver.{}", driver.scheme));
+  }
+}
+
+void DeviceDialog::draw_options(UiContext& ui) {
+  if (chosen_ >= drivers_.size()) {
+    return;
+  }
+  const OfferedDriver& driver = drivers_[chosen_];
+  ImGui::PushTextWrapPos(0);
+  ImGui::TextUnformatted(driver.description.c_str());
+  if (!driver.trouble.empty()) {
+    coloured_text(ui.colours.red, driver.trouble.c_str());
+  }
+  ImGui::PopTextWrapPos();
+  bool changed = false;
+  if (!driver.locator_help.empty()) {
+    changed = text_line(ui, "locator", driver.locator_help.c_str(), locator_);
+  }
+  for (const SettingInfo& option : driver.options) {
+    changed = setting_widget(ui, fmt::format("option.{}", option.key), option, values_[option.key],
+                             MaySay::kNothing) ||
+              changed;
+  }
+  if (changed) {
+    uri_ = compose_uri(driver.scheme, locator_, {values_.begin(), values_.end()});
   }
 }
 
@@ -40,7 +133,7 @@ std::optional<std::string> DeviceDialog::draw(UiContext& ui) {
   if (looking_.valid() && looking_.wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
     drivers_ = looking_.get();
     known_ = true;
-    chosen_ = std::min(chosen_, drivers_.empty() ? 0 : drivers_.size() - 1);
+    take(uri_);
   }
   std::optional<std::string> out;
   const ImVec2 window = ImGui::GetIO().DisplaySize;
@@ -50,57 +143,20 @@ std::optional<std::string> DeviceDialog::draw(UiContext& ui) {
                               ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove)) {
     return out;
   }
-  ui.facts.insert("dialog");
+  begin_asking(ui);
   const float foot = ImGui::GetFrameHeightWithSpacing() * 3 + ui.px(0.6F);
   ImGui::BeginChild("drivers", {ui.px(17), -foot}, true);
-  if (!known_) {
-    ImGui::TextUnformatted("...");
-  }
-  for (std::size_t k = 0; k < drivers_.size(); ++k) {
-    const OfferedDriver& driver = drivers_[k];
-    ImGui::PushID(static_cast<int>(k));
-    if (ImGui::Selectable(fmt::format("{}:", driver.scheme).c_str(), chosen_ == k, 0,
-                          {0, ImGui::GetFrameHeight()})) {
-      chosen_ = k;
-      values_.clear();
-      locator_.clear();
-      uri_ = fmt::format("{}:", driver.scheme);
-    }
-    ui.target(fmt::format("driver.{}", driver.scheme));
-    for (const auto& [uri, description] : driver.found) {
-      if (ImGui::Selectable(fmt::format("   {}", description).c_str(), uri_ == uri, 0,
-                            {0, ImGui::GetFrameHeight()})) {
-        chosen_ = k;
-        uri_ = uri;
-      }
-      ui.target(fmt::format("device.{}", uri));
-    }
-    ImGui::PopID();
-  }
+  draw_choices(ui);
   ImGui::EndChild();
   ImGui::SameLine();
   ImGui::BeginChild("options", {0, -foot}, true);
-  if (chosen_ < drivers_.size()) {
-    const OfferedDriver& driver = drivers_[chosen_];
-    ImGui::PushTextWrapPos(0);
-    ImGui::TextUnformatted(driver.description.c_str());
-    if (!driver.trouble.empty()) {
-      coloured_text(ui.colours.red, driver.trouble.c_str());
-    }
-    ImGui::PopTextWrapPos();
-    const auto before = std::pair(locator_, values_);
-    if (!driver.locator_help.empty()) {
-      text_line(ui, "locator", driver.locator_help.c_str(), locator_);
-    }
-    for (const SettingInfo& option : driver.options) {
-      setting_widget(ui, fmt::format("option.{}", option.key), option, values_[option.key]);
-    }
-    if (before != std::pair(locator_, values_)) {
-      uri_ = compose_uri(driver.scheme, locator_, {values_.begin(), values_.end()});
-    }
-  }
+  draw_options(ui);
   ImGui::EndChild();
-  text_line(ui, "uri", ui.text(Text::kAddress), uri_);
+  if (text_line(ui, "uri", ui.text(Text::kAddress), uri_)) {
+    const std::string typed = uri_;
+    take(typed);
+  }
+  ui.facts.insert(fmt::format("address.{}", uri_));
   if (plain_button(ui, "use-device", ui.text(Text::kUse), !uri_.empty())) {
     out = uri_;
     ImGui::CloseCurrentPopup();

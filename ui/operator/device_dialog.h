@@ -22,11 +22,14 @@ class DeviceDialog {
 
  private:
   void look();
+  void take(const std::string& uri);
+  void draw_choices(UiContext& ui);
+  void draw_options(UiContext& ui);
   std::future<std::vector<OfferedDriver>> looking_;
   std::vector<OfferedDriver> drivers_;
   bool known_ = false;
   bool open_ = false;
-  std::size_t chosen_ = 0;
+  std::size_t chosen_ = 0;  ///< of drivers_; past its end: none
   std::string locator_;
   std::map<std::string, std::string> values_;  ///< by option
   std::string uri_;

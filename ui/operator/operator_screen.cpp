@@ -10,6 +10,7 @@
 #include <cmath>
 
 #include "ui/shell/sound.h"
+#include "ui/view/pin_marks.h"
 
 namespace dubsar::ui {
 
@@ -59,23 +60,24 @@ OperatorScreen::OperatorScreen(LiveSession& session)
 
 void OperatorScreen::take_state(UiContext& ui) {
   state_ = session_.state();
-  if (state_.model_number != shown_model_ && state_.mesh) {
-    ShownMesh shown = shown_mesh(*state_.mesh);
-    const Eigen::AlignedBox3f box_mm = shown.box_mm;
-    model_.show(shown);
-    model_.show_points(state_.red.get());
-    pose_.show(std::move(shown));
+  if (const std::optional<ReadyModel> ready = prepared_.update(state_)) {
+    const Eigen::AlignedBox3f box_mm = ready->whole.box_mm;
+    model_.show(ready->whole);
+    model_.show_points(ready->red.get());
+    model_has_red_ = ready->red != nullptr;
+    pose_.show(ready->few);
+    unfinished_ = true;  // the next model may wait already
     if (!camera_set_) {
       camera_.eye_from_model = Eigen::Quaternionf(
           Eigen::AngleAxisf(-0.45F, Eigen::Vector3f::UnitX()) *
-          Eigen::Quaternionf(Eigen::Matrix3f(state_.tablet_from_model.rotation.cast<float>())));
+          Eigen::Quaternionf(Eigen::Matrix3f(ready->tablet_from_model.rotation.cast<float>())));
       camera_set_ = true;
     }
     camera_.fit(box_mm, 1.2F);
-    shown_model_ = state_.model_number;
   }
+  unfinished_ = unfinished_ || prepared_.busy();
   if (!record_taken_ && state_.phase != LivePhase::kReading) {
-    record_ = state_.record;
+    record_ = said_record_ = state_.record;
     if (record_.operator_name.empty()) {
       record_.operator_name = ui.preferences.operator_name;
     }
@@ -148,7 +150,8 @@ void OperatorScreen::draw(UiContext& ui, ImVec2 size) {
   draw_statement(ui, statement, {room.x, top});
   draw_left(ui, {left, middle});
   ImGui::SameLine();
-  draw_model(ui, {room.x - left - right - 2 * ImGui::GetStyle().ItemSpacing.x, middle});
+  draw_model(ui, {room.x - left - right - 2 * ImGui::GetStyle().ItemSpacing.x, middle},
+             asks_for_places(statement));
   ImGui::SameLine();
   draw_right(ui, {right, middle});
   draw_strip(ui, {room.x, strip});
@@ -170,6 +173,17 @@ void OperatorScreen::draw(UiContext& ui, ImVec2 size) {
   draw_tablet(ui);
   draw_signing(ui);
   act(statement, ui);
+}
+
+std::vector<ShownPin> OperatorScreen::pins_on_model() const {
+  std::vector<ScanPose> poses;
+  for (const LiveScan& scan : state_.scans) {
+    if (!scan.dropped && scan.pose) {
+      poses.push_back(*scan.pose);
+      poses.back().id = scan.id;
+    }
+  }
+  return state_.pins ? shown_pins(*state_.pins, poses) : std::vector<ShownPin>();
 }
 
 void OperatorScreen::undo() {
@@ -200,11 +214,20 @@ void OperatorScreen::act(const Statement& statement, const UiContext& ui) {
     }
   } else if (statement.may_stop && pressed({GLFW_KEY_ESCAPE})) {
     session_.stop();
-  } else if (statement.may_scan && state_.last_not_taken_up && pressed({GLFW_KEY_P})) {
-    for (const LiveScan& scan : state_.scans) {
-      if (!scan.dropped && scan.pose && scan.pose->status != PoseStatus::kRegistered) {
-        pairs_.open(scan, state_.scans);
-      }
+  } else if (asks_for_places(statement) && pressed({GLFW_KEY_P})) {
+    open_pairs();
+  }
+}
+
+bool OperatorScreen::asks_for_places(const Statement& statement) const {
+  return statement.may_scan && state_.phase == LivePhase::kWaiting && state_.last_not_taken_up;
+}
+
+/// For the newest scan that is not sure.
+void OperatorScreen::open_pairs() {
+  for (const LiveScan& scan : state_.scans) {
+    if (!scan.dropped && scan.pose && scan.pose->status != PoseStatus::kRegistered) {
+      pairs_.open(scan, state_.scans);
     }
   }
 }
@@ -223,37 +246,43 @@ void OperatorScreen::draw_statement(UiContext& ui, const Statement& statement, I
   ImGui::BeginChild("words", {text_width, size.y - ui.px(0.6F)}, false, ImGuiWindowFlags_NoBackground);
   // The headline is as large as fits in two lines.
   ImFont* font = ui.fonts.large;
-  const float headline_px =
-      font->CalcTextSizeA(font->FontSize, 1e6F, text_width, statement.headline.c_str()).y;
-  if (headline_px > 2.1F * font->FontSize) {
-    font = ui.fonts.normal;
+  const auto high_px = [&](float scale) {
+    return font->CalcTextSizeA(scale * font->FontSize, 1e6F, text_width, statement.headline.c_str()).y;
+  };
+  float scale = 1;
+  while (scale > 0.65F && high_px(scale) > 2.1F * scale * font->FontSize) {
+    scale -= 0.05F;
   }
-  ImGui::PushFont(font);
-  ImGui::PushTextWrapPos(0);
-  ImGui::TextUnformatted(statement.headline.c_str());
-  ImGui::PopTextWrapPos();
-  ImGui::PopFont();
-  const bool two_lines = font == ui.fonts.large && headline_px > 1.1F * font->FontSize;
-  ImGui::PushFont(two_lines || statement.detail.size() > 110 ? ui.fonts.small : ui.fonts.normal);
+  const float headline_px = high_px(scale);
+  ImDrawList* words = ImGui::GetWindowDrawList();
+  words->AddText(font, scale * font->FontSize, ImGui::GetCursorScreenPos(), packed(ui.colours.text),
+                 statement.headline.c_str(), nullptr, text_width);
+  ImGui::Dummy({text_width, headline_px});
+  // The detail in the larger letters as long as they fit.
+  const float room_px = ImGui::GetContentRegionAvail().y;
+  const ImFont* normal = ui.fonts.normal;
+  const bool fits =
+      normal->CalcTextSizeA(normal->FontSize, 1e6F, text_width, statement.detail.c_str()).y <= room_px;
+  ImGui::PushFont(fits ? ui.fonts.normal : ui.fonts.small);
   coloured_text(ui.colours.text, statement.detail.c_str());
   ImGui::PopFont();
   ImGui::EndChild();
   ImGui::SameLine();
   ImGui::SetCursorPos({size.x - buttons, ui.px(0.4F)});
-  if (big_button(ui, "scan", ui.text(statement.scan_label), "Space  F9", button,
+  if (big_button(ui, "scan", ui.text(statement.scan_label), ui.text(Text::kKeyScan), button,
                  statement.tone == Tone::kGood ? ButtonKind::kPlain : ButtonKind::kMain,
                  statement.may_scan)) {
     session_.scan_now();
   }
   ImGui::SameLine();
-  if (big_button(ui, "undo", ui.text(Text::kUndo), "Backspace  F10", button, ButtonKind::kPlain,
+  if (big_button(ui, "undo", ui.text(Text::kUndo), ui.text(Text::kKeyUndo), button, ButtonKind::kPlain,
                  statement.may_undo)) {
     undo();
   }
   ImGui::SameLine();
   const bool finish = statement.may_finish;
-  if (big_button(ui, finish ? "finish" : "sign", ui.text(finish ? Text::kFinish : Text::kSign), "Enter  F11",
-                 button, statement.may_sign ? ButtonKind::kMain : ButtonKind::kPlain,
+  if (big_button(ui, finish ? "finish" : "sign", ui.text(finish ? Text::kFinish : Text::kSign),
+                 ui.text(Text::kKeySign), button, statement.may_sign ? ButtonKind::kMain : ButtonKind::kPlain,
                  statement.may_sign || finish)) {
     if (finish) {
       session_.finish();
@@ -275,11 +304,12 @@ void OperatorScreen::draw_statement(UiContext& ui, const Statement& statement, I
   ImGui::EndChild();
 }
 
-void OperatorScreen::draw_model(UiContext& ui, ImVec2 size) {
+void OperatorScreen::draw_model(UiContext& ui, ImVec2 size, bool asks_for_places) {
   ImGui::BeginChild("model", size, false, ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse);
   const ImVec2 origin = ImGui::GetCursorScreenPos();
   ImGui::InvisibleButton("##model", size,
                          ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonMiddle);
+  ImGui::SetItemAllowOverlap();
   ui.target("model");
   ImDrawList* draw = ImGui::GetWindowDrawList();
   const ImVec2 end{origin.x + size.x, origin.y + size.y};
@@ -312,16 +342,24 @@ void OperatorScreen::draw_model(UiContext& ui, ImVec2 size) {
   look.occlusion = false;
   look.red = ui.colours.red.head<3>();
   look.amber = ui.colours.amber.head<3>();
-  if (!state_.red) {
+  if (!model_has_red_) {
     look.overlay = Overlay::kFlags;  // a session that was read: the mesh itself says what is sparse
   }
   unfinished_ = model_.draw(camera_, look, static_cast<int>(size.x), static_cast<int>(size.y)) || unfinished_;
   draw->AddImage(picture_of(model_.texture()), origin, end, {0, 1}, {1, 0});
+  draw_pin_marks(ui, camera_, origin, size, pins_on_model());
   draw->AddText(ui.fonts.small, ui.fonts.small->FontSize, {origin.x + ui.px(0.5F), origin.y + ui.px(0.3F)},
                 packed(ui.colours.faint), ui.text(Text::kModel));
   if (state_.red_map && !state_.red_map->conclusive) {
     const std::string red = filled(ui.text(Text::kRedArea), red_mm2(*state_.red_map));
     draw->AddText({origin.x + ui.px(0.5F), end.y - ui.px(1.6F)}, packed(ui.colours.red), red.c_str());
+  }
+  if (asks_for_places) {
+    const ImVec2 button{ui.px(13), ui.px(2.9F)};
+    ImGui::SetCursorScreenPos({end.x - button.x - ui.px(0.6F), end.y - button.y - ui.px(0.6F)});
+    if (big_button(ui, "show-places", ui.text(Text::kPointPairs), "P", button, ButtonKind::kMain)) {
+      open_pairs();
+    }
   }
   ImGui::EndChild();
 }

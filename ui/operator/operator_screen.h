@@ -10,6 +10,7 @@
 #include <string>
 
 #include "station/live_session.h"
+#include "station/shown_pins.h"
 #include "ui/gl/frame_target.h"
 #include "ui/operator/calibration_dialog.h"
 #include "ui/operator/camera_dialog.h"
@@ -18,6 +19,7 @@
 #include "ui/operator/pair_dialog.h"
 #include "ui/operator/pin_dialog.h"
 #include "ui/operator/pose_panel.h"
+#include "ui/operator/prepared_model.h"
 #include "ui/operator/statement.h"
 #include "ui/shell/widgets.h"
 #include "ui/view/surface_view.h"
@@ -38,6 +40,8 @@ class OperatorScreen {
   [[nodiscard]] std::optional<std::chrono::steady_clock::time_point> profiles_since() const {
     return growing_.news_since();
   }
+  /// Labelled pins and places on the rim, where the registered scans show them.
+  [[nodiscard]] std::vector<ShownPin> pins_on_model() const;
   /// The operator wants to look at the model; cleared by asking.
   [[nodiscard]] bool wants_viewer() { return std::exchange(wants_viewer_, false); }
 
@@ -46,7 +50,7 @@ class OperatorScreen {
   void sound_out(const UiContext& ui);
   void draw_statement(UiContext& ui, const Statement& statement, ImVec2 size);
   void draw_left(UiContext& ui, ImVec2 size);
-  void draw_model(UiContext& ui, ImVec2 size);
+  void draw_model(UiContext& ui, ImVec2 size, bool asks_for_places);
   void draw_right(UiContext& ui, ImVec2 size);
   void draw_growing(UiContext& ui, ImVec2 size);
   void draw_strip(UiContext& ui, ImVec2 size);
@@ -55,6 +59,8 @@ class OperatorScreen {
   void draw_tablet(UiContext& ui);
   void draw_signing(UiContext& ui);
   void act(const Statement& statement, const UiContext& ui);
+  [[nodiscard]] bool asks_for_places(const Statement& statement) const;
+  void open_pairs();
   void undo();
   void open_signing(const UiContext& ui);
 
@@ -63,8 +69,8 @@ class OperatorScreen {
   SurfaceView model_;
   OrbitCamera camera_;
   bool camera_set_ = false;
-  std::uint64_t shown_model_ = 0;
-  std::size_t shown_faces_left_out_ = 0;
+  PreparedModel prepared_;
+  bool model_has_red_ = false;  ///< points; else the mesh itself says what is sparse
   PosePanel pose_;
   PairDialog pairs_;
   PinDialog pins_;
@@ -80,8 +86,8 @@ class OperatorScreen {
   std::map<int, Thumbnail> thumbnails_;
   int chosen_ = -1;  ///< scan
   TabletRecord record_;
+  TabletRecord said_record_;  ///< to the session
   bool record_taken_ = false;
-  bool record_open_ = false;
   std::string sign_name_, sign_role_, sign_incomplete_;
   bool open_sign_ = false, open_tablet_ = false, open_settings_ = false;
   bool wants_viewer_ = false;

@@ -56,9 +56,14 @@ void PairDialog::draw_side(UiContext& ui, const char* name, const LiveScan& scan
   ImDrawList* draw = ImGui::GetWindowDrawList();
   for (std::size_t k = 0; k < side.places.size(); ++k) {
     const ImVec2 at = picture.at(side.places[k]);
+    const std::string number = std::to_string(k + 1);
+    const ImVec2 text{at.x + ui.px(0.5F), at.y - ui.px(0.6F)};
+    draw->AddCircleFilled(at, ui.px(0.45F), packed({0, 0, 0, 1}));
     draw->AddCircleFilled(at, ui.px(0.35F), packed(ui.colours.ghost));
-    draw->AddText({at.x + ui.px(0.45F), at.y - ui.px(0.6F)}, packed(ui.colours.ghost),
-                  std::to_string(k + 1).c_str());
+    draw->AddRectFilled({text.x - 2, text.y},
+                        {text.x + ImGui::CalcTextSize(number.c_str()).x + 2, text.y + ui.px(1)},
+                        packed(ui.colours.panel, 0.85F), 3);
+    draw->AddText(text, packed(ui.colours.ghost), number.c_str());
   }
 }
 
@@ -84,25 +89,25 @@ std::optional<HintScan> PairDialog::draw(UiContext& ui) {
   const float foot = ImGui::GetFrameHeightWithSpacing() + ui.px(0.5F);
   const ImVec2 room = ImGui::GetContentRegionAvail();
   const ImVec2 half{0.5F * room.x - ui.px(0.5F), room.y - foot};
-  const ImVec2 picture{half.x - ui.px(1.2F), half.y - 2.4F * ImGui::GetFrameHeightWithSpacing()};
+  std::vector<int> ids;
+  for (const LiveScan& one : others_) {
+    ids.push_back(one.id);
+  }
+  const float choices = rows_of(ids, half.x - ui.px(1.2F)) * ImGui::GetFrameHeightWithSpacing();
+  const ImVec2 picture{half.x - ui.px(1.2F), half.y - choices - 1.4F * ImGui::GetFrameHeightWithSpacing()};
   const bool expects_left = left_.places.size() <= right_.places.size();
   ImGui::BeginChild("left", half, true);
   ImGui::TextUnformatted(filled(ui.text(Text::kInUnsure), unsure_.id).c_str());
-  ImGui::Dummy({1, ImGui::GetFrameHeight()});
+  ImGui::Dummy({1, choices - ImGui::GetStyle().ItemSpacing.y});
   draw_side(ui, "pair-left", unsure_, left_, expects_left, picture);
   ImGui::EndChild();
   ImGui::SameLine();
   ImGui::BeginChild("right", half, true);
   ImGui::TextUnformatted(filled(ui.text(Text::kInOther), other.id).c_str());
-  for (std::size_t k = 0; k < others_.size(); ++k) {
-    const std::string label = std::to_string(others_[k].id);
-    if (ImGui::RadioButton(label.c_str(), k == other_) && k != other_) {
-      choose(k);
-    }
-    ui.target("pair-with." + label);
-    ImGui::SameLine();
+  int chosen = other.id;
+  if (one_of(ui, "pair-with", ids, chosen)) {
+    choose(static_cast<std::size_t>(std::ranges::find(ids, chosen) - ids.begin()));
   }
-  ImGui::NewLine();
   draw_side(ui, "pair-right", others_[other_], right_, !expects_left, picture);
   ImGui::EndChild();
   const std::size_t pairs = std::min(left_.points_mm.size(), right_.points_mm.size());
@@ -115,6 +120,13 @@ std::optional<HintScan> PairDialog::draw(UiContext& ui) {
     }
     out = std::move(hint);
     ImGui::CloseCurrentPopup();
+  }
+  ImGui::SameLine();
+  // One click that went astray does not cost the others.
+  if (plain_button(ui, "pairs-back", ui.text(Text::kTakeBack), !left_.places.empty())) {
+    Side& last = left_.places.size() > right_.places.size() ? left_ : right_;
+    last.places.pop_back();
+    last.points_mm.pop_back();
   }
   ImGui::SameLine();
   if (plain_button(ui, "pairs-clear", ui.text(Text::kPairsClear))) {

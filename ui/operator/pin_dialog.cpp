@@ -15,15 +15,6 @@ namespace {
 constexpr const char* kPopup = "###pins";
 constexpr double kUsualTipMm = 1.0;
 
-bool is_rim(int label) {
-  return label >= kFirstRimLabel;
-}
-
-std::string name_of(int label) {
-  return is_rim(label) ? std::string(1, static_cast<char>('A' + label - kFirstRimLabel))
-                       : std::to_string(label);
-}
-
 /// 0 when the text is no length.
 double diameter_of(const std::string& text) {
   double value = 0;
@@ -48,7 +39,7 @@ void PinDialog::take(Side& side, const LiveScan& scan) {
     return;
   }
   for (const PinTip& tip : known->second) {
-    const Eigen::Vector3d seen = is_rim(tip.label)
+    const Eigen::Vector3d seen = is_rim_label(tip.label)
                                      ? tip.position_mm
                                      : behind(*scan.measured, tip.position_mm, -0.5 * pins_->tip_diameter_mm);
     const auto place = place_of(*scan.measured, seen);
@@ -97,7 +88,7 @@ void PinDialog::draw_labels(UiContext& ui) {
     if (k > 0) {
       ImGui::SameLine(0, k == kPinNumbers ? ui.px(0.8F) : ui.px(0.15F));
     }
-    const std::string name = name_of(label);
+    const std::string name = pin_name(label);
     if (big_button(ui, ("label." + name).c_str(), name.c_str(), nullptr, {side, side},
                    label == label_ ? ButtonKind::kMain : ButtonKind::kPlain)) {
       label_ = label;
@@ -144,8 +135,8 @@ void PinDialog::draw_side(UiContext& ui, const char* name, Side& side, ImVec2 si
     draw->AddCircle(at, ui.px(0.45F), packed({0, 0, 0, 1}), 0, 4);
     draw->AddCircle(at, ui.px(0.45F), ink, 0, 2);
     const ImVec2 text{at.x + ui.px(0.6F), at.y - ui.px(0.6F)};
-    draw->AddText({text.x + 1, text.y + 1}, packed({0, 0, 0, 1}), name_of(label).c_str());
-    draw->AddText(text, ink, name_of(label).c_str());
+    draw->AddText({text.x + 1, text.y + 1}, packed({0, 0, 0, 1}), pin_name(label).c_str());
+    draw->AddText(text, ink, pin_name(label).c_str());
   }
 }
 
@@ -153,10 +144,15 @@ void PinDialog::draw_panes(UiContext& ui, float foot_px) {
   const ImVec2 room = ImGui::GetContentRegionAvail();
   const bool two = right_.scan.measured != nullptr;
   const ImVec2 half{two ? 0.5F * room.x - ui.px(0.3F) : room.x, room.y - foot_px};
-  const ImVec2 picture{half.x - ui.px(1.2F), half.y - 2.4F * ImGui::GetFrameHeightWithSpacing()};
+  std::vector<int> ids;
+  for (const LiveScan& other : others_) {
+    ids.push_back(other.id);
+  }
+  const float choices = rows_of(ids, half.x - ui.px(1.2F)) * ImGui::GetFrameHeightWithSpacing();
+  const ImVec2 picture{half.x - ui.px(1.2F), half.y - choices - 1.4F * ImGui::GetFrameHeightWithSpacing()};
   ImGui::BeginChild("left", half, true);
   ImGui::TextUnformatted(fmt::format("{} {}", ui.text(Text::kScanGrowing), left_.scan.id).c_str());
-  ImGui::Dummy({1, ImGui::GetFrameHeight()});
+  ImGui::Dummy({1, choices - ImGui::GetStyle().ItemSpacing.y});
   draw_side(ui, "pins-left", left_, picture);
   ImGui::EndChild();
   if (!two) {
@@ -165,22 +161,13 @@ void PinDialog::draw_panes(UiContext& ui, float foot_px) {
   ImGui::SameLine();
   ImGui::BeginChild("right", half, true);
   ImGui::TextUnformatted(fmt::format("{} {}", ui.text(Text::kScanGrowing), right_.scan.id).c_str());
-  const LiveScan* chosen = nullptr;
-  for (const LiveScan& other : others_) {
-    const std::string label = std::to_string(other.id);
-    // What was clicked in it would be lost with it: first it is used or cleared.
-    ImGui::BeginDisabled(right_.changed);
-    if (ImGui::RadioButton(label.c_str(), other.id == right_.scan.id) && other.id != right_.scan.id) {
-      chosen = &other;
-    }
-    ImGui::EndDisabled();
-    ui.target("pins-with." + label);
-    ImGui::SameLine();
+  // What was clicked in it would be lost with it: first it is used or cleared.
+  int chosen = right_.scan.id;
+  ImGui::BeginDisabled(right_.changed);
+  if (one_of(ui, "pins-with", ids, chosen)) {
+    take(right_, *std::ranges::find(others_, chosen, &LiveScan::id));
   }
-  ImGui::NewLine();
-  if (chosen != nullptr) {
-    take(right_, *chosen);
-  }
+  ImGui::EndDisabled();
   draw_side(ui, "pins-right", right_, picture);
   ImGui::EndChild();
 }
@@ -193,7 +180,7 @@ std::vector<LabelPins> PinDialog::said(double diameter_mm) const {
     }
     LabelPins command{side->scan.id, {}, diameter_mm};
     for (const auto& [label, mark] : side->marks) {
-      const double to_centre_mm = is_rim(label) ? 0 : 0.5 * diameter_mm;
+      const double to_centre_mm = is_rim_label(label) ? 0 : 0.5 * diameter_mm;
       command.tips.push_back({label, behind(*side->scan.measured, mark.surface_mm, to_centre_mm)});
     }
     out.push_back(std::move(command));

@@ -9,6 +9,7 @@
 
 #include "station/live_state.h"
 #include "station/operator_command.h"
+#include "station/shown_pins.h"
 #include "ui/gl/frame_target.h"
 #include "ui/shell/widgets.h"
 
@@ -16,8 +17,6 @@ namespace dubsar::ui {
 
 inline constexpr int kPinNumbers = 15;
 inline constexpr int kRimPlaces = 6;
-/// Labels of places on the rim, which a person calls A, B, …; pins have their numbers.
-inline constexpr int kFirstRimLabel = 101;
 
 /// Says which pin is which: the operator clicks the tips of the pins, and places on the rim that they know
 /// again, in two scans beside each other (seed 001, 3.2).

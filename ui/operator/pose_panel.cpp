@@ -50,12 +50,7 @@ TurnToMake turn_to_make(const NextView& next) {
   return out;
 }
 
-void PosePanel::show(ShownMesh shown) {
-  if (!shown.coarser.empty()) {  // few faces will do
-    shown.faces = std::move(shown.coarser.front().detail.faces);
-    shown.blocks = std::move(shown.coarser.front().blocks);
-    shown.coarser.clear();
-  }
+void PosePanel::show(const ShownMesh& shown) {
   box_mm_ = shown.box_mm;
   now_.show(shown);
   then_.show(shown);

@@ -15,7 +15,7 @@ namespace dubsar::ui {
 /// seen from where the operator stands. Or, where it stays, from where the scanner looks.
 class PosePanel {
  public:
-  void show(ShownMesh shown);
+  void show(const ShownMesh& shown);
   /// True while something moves in it.
   bool draw(UiContext& ui, const NextView& next, ImVec2 size);
 

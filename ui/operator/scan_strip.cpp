@@ -97,7 +97,10 @@ void OperatorScreen::draw_strip(UiContext& ui, ImVec2 size) {
     if (scan.dropped) {
       draw->AddLine({origin.x + 4, end.y - line - 8}, {end.x - 4, origin.y + 4}, packed(ui.colours.faint), 2);
     }
+    // Over its scan, in its own size: where a thumb rests beside the buttons.
+    ImGui::SetNextWindowPos({origin.x, origin.y - 2}, ImGuiCond_Always, {0, 1});
     if (ImGui::BeginPopup("menu")) {
+      begin_asking(ui);
       menu = &scan;
       draw_scan_menu(ui, *menu);
       ImGui::EndPopup();
@@ -135,7 +138,7 @@ void OperatorScreen::draw_scan_menu(UiContext& ui, const LiveScan& scan) {
     ImGui::PopTextWrapPos();
   }
   ImGui::PopFont();
-  const ImVec2 wide{ui.px(14), ui.px(2.1F)};
+  const ImVec2 wide{std::max(ui.px(14), ImGui::GetContentRegionAvail().x), ui.px(2.1F)};
   const auto offer = [&](const char* name, Text text, auto act) {
     if (big_button(ui, name, ui.text(text), nullptr, wide)) {
       act();
@@ -152,6 +155,8 @@ void OperatorScreen::draw_scan_menu(UiContext& ui, const LiveScan& scan) {
   const bool fits = scan.pose && scan.pose->status == PoseStatus::kRegistered;
   if (scan.pose && !fits) {
     offer("pairs", Text::kPointPairs, [&] { pairs_.open(scan, state_.scans); });
+  }
+  if (scan.hinted) {
     offer("withdraw", Text::kWithdraw, [&] { session_.ask(WithdrawHint{scan.id}); });
   }
   if (scan.measured) {

@@ -12,6 +12,10 @@ namespace dubsar::ui {
 /// What a driver says of an option or a setting, as something to press or to type into: label with unit and
 /// range, the value, the driver's help below. True when the value was changed; a line that is typed into
 /// changes with every letter.
-bool setting_widget(UiContext& ui, const std::string& name, const SettingInfo& setting, std::string& value);
+/// Whether a setting may be left to the driver: an empty value then says nothing, else "no".
+enum class MaySay { kValue, kNothing };
+
+bool setting_widget(UiContext& ui, const std::string& name, const SettingInfo& setting, std::string& value,
+                    MaySay may = MaySay::kValue);
 
 }  // namespace dubsar::ui

@@ -18,7 +18,11 @@ constexpr Text kFaceTexts[] = {Text::kObverse, Text::kReverse, Text::kLeft,
 }  // namespace
 
 void OperatorScreen::draw_left(UiContext& ui, ImVec2 size) {
-  ImGui::BeginChild("left", size, true);
+  ImGui::BeginChild("left", size, true, ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse);
+  // The buttons below are wanted without scrolling, whatever the size of the letters.
+  const float row = ui.px(2.1F);
+  const float buttons = 3 * row + 4 * ImGui::GetStyle().ItemSpacing.y;
+  ImGui::BeginChild("list", {0, ImGui::GetContentRegionAvail().y - buttons});
   ImGui::TextUnformatted(ui.text(Text::kChecklist));
   // While a hole gapes, a face without red may be one that nobody has looked at yet: no tick then.
   constexpr double kSmallHoles = 0.05;
@@ -54,12 +58,13 @@ void OperatorScreen::draw_left(UiContext& ui, ImVec2 size) {
     std::string note = !known    ? ui.text(Text::kNoArea)
                        : red > 0 ? filled(ui.text(Text::kRedArea), red)
                        : lacks   ? ui.text(Text::kRedRim)
+                       : !whole  ? ui.text(Text::kNoRedSoFar)
                                  : std::string();
     if (excused > 0.05) {
       note += (note.empty() ? "" : ", ") + filled(ui.text(Text::kExcused), excused);
     }
     if (!note.empty()) {
-      // Beside the name where it fits: the buttons below are wanted without scrolling.
+      // Beside the name where it fits.
       const float indent = box + ImGui::GetStyle().ItemSpacing.x;
       const float room = at.x + ImGui::GetContentRegionAvail().x;
       ImGui::SameLine();
@@ -98,8 +103,9 @@ void OperatorScreen::draw_left(UiContext& ui, ImVec2 size) {
                   care_line(*state_.care, ui.preferences.language).c_str());
     ImGui::PopFont();
   }
+  ImGui::EndChild();
   ImGui::Separator();
-  const ImVec2 wide{-1, ui.px(2.1F)};
+  const ImVec2 wide{-1, row};
   std::string tablet = ui.text(Text::kTablet);
   if (!state_.record.museum_number.empty()) {
     tablet += ": " + state_.record.museum_number;
@@ -188,7 +194,8 @@ void OperatorScreen::draw_right(UiContext& ui, ImVec2 size) {
           filled(ui.text(Text::kTimeLeft), spent * (1 - state_.fraction) / state_.fraction).c_str());
     }
     ImGui::PopFont();
-  } else if (!state_.notice.empty()) {
+  } else if (!state_.notice.empty() && !(state_.phase == LivePhase::kWaiting && state_.last_not_taken_up)) {
+    // Of a scan that is unsure the statement says it all.
     ImGui::PushFont(ui.fonts.small);
     coloured_text(ui.colours.faint, translated(state_.notice, ui.preferences.language).c_str());
     ImGui::PopFont();

@@ -36,7 +36,7 @@ void say_waiting(Statement& out, const LiveState& state, Language language) {
   if (state.last_not_taken_up && last != nullptr && last->pose) {
     out.headline = filled(text_of(Text::kUnsureScan, language), last->id);
     out.detail =
-        fmt::format("{}. {}", translated(last->pose->reason, language), text_of(Text::kUnsureHow, language));
+        fmt::format("{} {}", sentence(last->pose->reason, language), text_of(Text::kUnsureHow, language));
     if (state.next) {
       out.detail += fmt::format(" {}.", capitalised(translated(state.next->say, language)));
     }

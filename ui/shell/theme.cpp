@@ -116,6 +116,9 @@ Colours colours_of(const Preferences& preferences) {
     } else {
       c.good = {0.10F, 0.50F, 0.20F, 1};
     }
+    // Letters and arrows on a light ground need more ink.
+    c.amber = {0.68F, 0.42F, 0.00F, 1};
+    c.ghost = {0.05F, 0.40F, 0.80F, 1};
     c.text = {0.10F, 0.10F, 0.12F, 1};
     c.faint = {0.38F, 0.38F, 0.40F, 1};
     c.panel = {0.95F, 0.94F, 0.92F, 1};
@@ -171,6 +174,11 @@ void apply_theme(const Preferences& preferences) {
   style.ItemSpacing = {0.45F * px, 0.4F * px};
   style.ScrollbarSize = px;
   const Colours c = colours_of(preferences);
+  if (!preferences.dark) {  // white boxes to tick cannot be seen on a light ground
+    style.Colors[ImGuiCol_FrameBg] = {0.82F, 0.82F, 0.80F, 1};
+    style.Colors[ImGuiCol_FrameBgHovered] = {0.76F, 0.80F, 0.86F, 1};
+    style.Colors[ImGuiCol_CheckMark] = {0.10F, 0.35F, 0.70F, 1};
+  }
   style.Colors[ImGuiCol_WindowBg] = im(c.panel);
   style.Colors[ImGuiCol_PopupBg] = im(c.panel);
   style.Colors[ImGuiCol_Text] = im(c.text);

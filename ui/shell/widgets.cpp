@@ -66,7 +66,9 @@ bool big_button(UiContext& ui, const char* name, const char* label, const char* 
   if (key != nullptr) {
     y += label_size.y;
     const ImVec2 key_size = ui.fonts.small->CalcTextSizeA(small, 1e4F, 0, key);
-    draw->AddText(ui.fonts.small, small, {middle - 0.5F * key_size.x, y}, packed(ui.colours.faint), key);
+    // Faint letters cannot be read on a button's blue.
+    const ImU32 key_ink = enabled ? packed(ui.colours.text, 0.85F) : packed(ui.colours.faint);
+    draw->AddText(ui.fonts.small, small, {middle - 0.5F * key_size.x, y}, key_ink, key);
   }
   return pressed;
 }
@@ -118,8 +120,52 @@ bool begin_wide_box(UiContext& ui, const char* title, const char* id, bool& open
                               ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove)) {
     return false;
   }
-  ui.facts.insert("dialog");
+  begin_asking(ui);
   return true;
+}
+
+void begin_asking(UiContext& ui) {
+  ui.facts.insert("dialog");
+  // An escape that leaves a line that is typed into leaves only that.
+  const bool typing = ImGui::IsAnyItemActive() || ImGui::GetIO().WantTextInput;
+  if (!typing && ImGui::IsWindowFocused(ImGuiFocusedFlags_RootAndChildWindows) &&
+      ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape), false)) {
+    ImGui::CloseCurrentPopup();
+  }
+}
+
+bool one_of(UiContext& ui, const std::string& name, const std::vector<int>& ids, int& chosen) {
+  bool changed = false;
+  const float end = ImGui::GetCursorScreenPos().x + ImGui::GetContentRegionAvail().x;
+  for (std::size_t k = 0; k < ids.size(); ++k) {
+    const std::string label = std::to_string(ids[k]);
+    const float wide =
+        ImGui::GetFrameHeight() + ImGui::GetStyle().ItemInnerSpacing.x + ImGui::CalcTextSize(label.c_str()).x;
+    if (k > 0 && ImGui::GetItemRectMax().x + ImGui::GetStyle().ItemSpacing.x + wide <= end) {
+      ImGui::SameLine();
+    }
+    if (ImGui::RadioButton(label.c_str(), ids[k] == chosen) && ids[k] != chosen) {
+      chosen = ids[k];
+      changed = true;
+    }
+    ui.target(name + "." + label);
+  }
+  return changed;
+}
+
+float rows_of(const std::vector<int>& ids, float width) {
+  float rows = ids.empty() ? 0 : 1;
+  float x = 0;
+  for (const int id : ids) {
+    const float wide = ImGui::GetFrameHeight() + ImGui::GetStyle().ItemInnerSpacing.x +
+                       ImGui::CalcTextSize(std::to_string(id).c_str()).x;
+    if (x > 0 && x + ImGui::GetStyle().ItemSpacing.x + wide > width) {
+      rows += 1;
+      x = 0;
+    }
+    x += (x > 0 ? ImGui::GetStyle().ItemSpacing.x : 0) + wide;
+  }
+  return rows;
 }
 
 void coloured_text(const Eigen::Vector4f& c, const char* text) {

@@ -9,6 +9,7 @@
 #include <map>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "ui/shell/theme.h"
 
@@ -56,6 +57,12 @@ bool tick(UiContext& ui, const char* name, const char* label, bool& value);
 /// shut; ImGui::EndPopup() ends it.
 [[nodiscard]] bool begin_wide_box(UiContext& ui, const char* title, const char* id, bool& opening,
                                   ImVec2 of_window = {0.94F, 0.92F});
+/// To be said at the beginning of every box that is open: keys go to it alone, and escape shuts it.
+void begin_asking(UiContext& ui);
+/// One of several numbers, in as many rows as they take; true when another was chosen.
+bool one_of(UiContext& ui, const std::string& name, const std::vector<int>& ids, int& chosen);
+/// Rows that one_of() takes in such a width.
+[[nodiscard]] float rows_of(const std::vector<int>& ids, float width);
 void coloured_text(const Eigen::Vector4f& colour, const char* text);
 /// A text of the table with its gaps filled in.
 template <class... Arguments>

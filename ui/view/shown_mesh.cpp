@@ -147,6 +147,38 @@ void set_openness(ShownMesh& mesh, const std::vector<float>& openness) {
   }
 }
 
+ShownMesh fewest_faces(const ShownMesh& mesh) {
+  if (mesh.coarser.empty()) {
+    return mesh;
+  }
+  const ShownLevel& level = mesh.coarser.front();
+  ShownMesh out;
+  out.box_mm = mesh.box_mm;
+  out.blocks = level.blocks;
+  out.faces = level.detail.faces;
+  constexpr std::uint32_t kNone = 0xFFFFFFFFU;
+  std::vector<std::uint32_t> now(mesh.positions.size(), kNone);
+  for (Face& face : out.faces) {
+    for (std::uint32_t& v : face) {
+      if (now[v] == kNone) {
+        now[v] = static_cast<std::uint32_t>(out.positions.size());
+        out.positions.push_back(mesh.positions[v]);
+        out.normals.push_back(mesh.normals[v]);
+        out.traits.push_back(mesh.traits[v]);
+        if (!mesh.colours.empty()) {
+          out.colours.push_back(mesh.colours[v]);
+        }
+      }
+      v = now[v];
+    }
+  }
+  out.face_of.resize(out.faces.size());
+  for (std::size_t k = 0; k < out.face_of.size(); ++k) {
+    out.face_of[k] = static_cast<std::uint32_t>(k);
+  }
+  return out;
+}
+
 ShownMesh shown_mesh(const Mesh& mesh, const std::vector<float>& openness) {
   ShownMesh out;
   const std::size_t n = mesh.positions.size();

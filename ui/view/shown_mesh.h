@@ -51,6 +51,10 @@ inline constexpr std::size_t kFacesInMotion = 100000;
 /// Puts ambient occlusion, [V] in [0, 1], into the traits.
 void set_openness(ShownMesh& mesh, const std::vector<float>& openness);
 
+/// The coarsest level of it as a mesh of its own, with the vertices that this has; itself where there is
+/// none.
+[[nodiscard]] ShownMesh fewest_faces(const ShownMesh& mesh);
+
 /// `openness` is ambient occlusion, [V] in [0, 1], or empty.
 [[nodiscard]] ShownMesh shown_mesh(const Mesh& mesh, const std::vector<float>& openness = {});
 

@@ -32,12 +32,6 @@ void bind_texture(int unit, unsigned texture) {
   glBindTexture(GL_TEXTURE_2D, texture);
 }
 
-void bind_buffer_texture(int unit, unsigned texture) {
-  glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
-  glBindTexture(GL_TEXTURE_BUFFER, texture);
-  glActiveTexture(GL_TEXTURE0);
-}
-
 }  // namespace
 
 SurfaceView::SurfaceView()
@@ -323,80 +317,6 @@ void SurfaceView::draw_level(std::size_t level, const OrbitCamera& camera, const
   dirty_ = false;
   next_block_ = 0;
   whole_ = level + 1 == levels_.size();
-}
-
-void SurfaceView::begin_selection(MeshElement of) {
-  if (!selection_ || selection_->of() != of) {
-    selection_.reset();  // two at once would be too much for a small card
-    selection_ =
-        std::make_unique<MeshSelecting>(of, of == MeshElement::kFace ? mesh_->faces() : mesh_->vertices());
-  }
-}
-
-bool SurfaceView::select(MeshElement of, const std::vector<Eigen::Vector2f>& corners, SelectionStep step,
-                         bool through) {
-  if (!mesh_ || !whole_ || corners.size() < 3 || (of == MeshElement::kFace && mesh_->points_only())) {
-    return false;
-  }
-  begin_selection(of);
-  const float aspect = static_cast<float>(scene_.width) / static_cast<float>(scene_.height);
-  const Layer& layer = layers_[static_cast<std::size_t>(shown_layer_)];
-  selection_->apply(*mesh_, scene_.camera.clip_from_model(aspect),
-                    polygon_mask(corners, scene_.width, scene_.height), scene_.width, scene_.height,
-                    through ? 0 : layer.target.depth(), step);
-  dirty_ = true;
-  return true;
-}
-
-void SurfaceView::set_selection(MeshElement of, const std::vector<std::uint32_t>& selected) {
-  if (mesh_) {
-    begin_selection(of);
-    selection_->set(selected);
-    dirty_ = true;
-  }
-}
-
-/// Of the program in use, for faces of a level that begin at `first_face`.
-void SurfaceView::show_selection(std::size_t level, std::size_t first_face) {
-  if (!selection_) {
-    return;
-  }
-  if (selection_->of() == MeshElement::kVertex) {
-    surface_.set("selection", 2);  // all levels have the same vertices
-  } else if (level + 1 == levels_.size()) {
-    surface_.set("selection", 1);
-  } else {
-    surface_.set("selection", 3);
-    first_face += mesh_->first_of(level);
-    bind_buffer_texture(2, mesh_->made_of());
-  }
-  surface_.set("first_face", static_cast<int>(first_face));
-  bind_buffer_texture(1, selection_->texture());
-}
-
-void SurfaceView::clear_selection() {
-  selection_.reset();
-  dirty_ = true;
-}
-
-std::optional<Eigen::Vector3f> SurfaceView::point_at(const Eigen::Vector2f& px) const {
-  const Layer& layer = layers_[static_cast<std::size_t>(shown_layer_)];
-  const int x = static_cast<int>(px.x());
-  const int y = scene_.height - 1 - static_cast<int>(px.y());
-  if (layer.target.width() != scene_.width || x < 0 || y < 0 || x >= scene_.width || y >= scene_.height) {
-    return std::nullopt;
-  }
-  layer.target.bind();
-  float depth = 1;
-  glReadPixels(x, y, 1, 1, GL_DEPTH_COMPONENT, GL_FLOAT, &depth);
-  glBindFramebuffer(GL_FRAMEBUFFER, 0);
-  if (depth >= 1) {
-    return std::nullopt;
-  }
-  const float aspect = static_cast<float>(scene_.width) / static_cast<float>(scene_.height);
-  const Eigen::Vector4f clip(2 * (px.x()) / static_cast<float>(scene_.width) - 1,
-                             1 - 2 * (px.y()) / static_cast<float>(scene_.height), 2 * depth - 1, 1);
-  return Eigen::Vector3f((scene_.camera.clip_from_model(aspect).inverse() * clip).head<3>());
 }
 
 }  // namespace dubsar::ui

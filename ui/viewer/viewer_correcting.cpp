@@ -72,7 +72,8 @@ void ViewerScreen::draw_correcting(UiContext& ui) {
   for (const std::string& why : state_.not_made) {
     ui.facts.insert("not-made");
     ImGui::PushTextWrapPos();
-    coloured_text(ui.colours.red, filled(ui.text(Text::kNotMade), why).c_str());
+    coloured_text(ui.colours.red,
+                  filled(ui.text(Text::kNotMade), translated(why, ui.preferences.language)).c_str());
     ImGui::PopTextWrapPos();
   }
 }

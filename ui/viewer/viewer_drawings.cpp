@@ -138,6 +138,10 @@ void ViewerScreen::draw_legend(UiContext& ui, ImVec2 origin, ImVec2 size) const 
   const float height = std::min(0.5F * size.y, ui.px(14));
   const float width = ui.px(0.9F);
   const ImVec2 at{origin.x + size.x - ui.px(1) - width, origin.y + ui.px(1)};
+  // On a ground of its own: the surface may lie behind it.
+  draw->AddRectFilled({at.x - ui.px(3.6F), at.y - ui.px(0.7F)},
+                      {origin.x + size.x - ui.px(0.4F), at.y + height + ui.px(0.7F)},
+                      packed(ui.colours.panel, 0.85F), 4);
   constexpr int kSteps = 64;
   for (int k = 0; k < kSteps; ++k) {
     const auto& c = kColours[static_cast<std::size_t>(255 * k / (kSteps - 1))];

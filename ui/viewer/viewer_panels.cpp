@@ -104,15 +104,6 @@ void ViewerScreen::draw_facts(UiContext& ui) {
     coloured_text(ui.colours.amber,
                   filled(ui.text(Text::kLeftOut), grouped(prepared_.shown().left_out)).c_str());
   }
-  if (!state_.stage.empty()) {
-    ImGui::ProgressBar(static_cast<float>(state_.fraction), {-1, 0}, state_.stage.c_str());
-    if (plain_button(ui, "stop", ui.text(Text::kStop))) {
-      viewing_.stop();
-    }
-  }
-  if (state_.error && !surface_.empty()) {
-    coloured_text(ui.colours.red, state_.error->line().c_str());
-  }
   ImGui::PopFont();
 }
 
@@ -147,8 +138,39 @@ void ViewerScreen::draw_tools(UiContext& ui) {
   ImGui::PopFont();
 }
 
+/// What is wanted whatever else is open stays in view below: how far a job is, its end, and pictures.
+void ViewerScreen::draw_foot(UiContext& ui) {
+  ImGui::Separator();
+  if (!state_.stage.empty()) {
+    ImGui::PushFont(ui.fonts.small);
+    if (plain_button(ui, "stop", ui.text(Text::kStop))) {
+      viewing_.stop();
+    }
+    ImGui::SameLine();
+    ImGui::ProgressBar(static_cast<float>(state_.fraction), {-1, ImGui::GetFrameHeight()},
+                       translated(state_.stage, ui.preferences.language).c_str());
+    ImGui::PopFont();
+  }
+  if (plain_button(ui, "keep-picture", ui.text(Text::kPicture), !surface_.empty())) {
+    keep_picture(ui);
+  }
+  ImGui::SameLine();
+  ImGui::SetNextItemWidth(ui.px(3));
+  ImGui::InputInt(ui.text(Text::kDpi), &dpi_, 0);
+  dpi_ = std::clamp(dpi_, 50, 2400);
+  ImGui::PushFont(ui.fonts.small);
+  if (state_.error && !surface_.empty()) {
+    coloured_text(ui.colours.red, translated(state_.error->line(), ui.preferences.language).c_str());
+  } else if (!picture_note_.empty()) {
+    coloured_text(ui.colours.faint, picture_note_.c_str());
+  }
+  ImGui::PopFont();
+}
+
 void ViewerScreen::draw_panel(UiContext& ui, ImVec2 size) {
-  ImGui::BeginChild("panel", size, true);
+  ImGui::BeginChild("panel", size, true, ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse);
+  // As high as the foot was in the last frame: what it holds changes seldom.
+  ImGui::BeginChild("list", {0, -std::max(1.0F, foot_px_)});
   if (has_session_) {
     if (plain_button(ui, "back", ui.text(Text::kBackToScan))) {
       wants_scanning_ = true;
@@ -181,17 +203,6 @@ void ViewerScreen::draw_panel(UiContext& ui, ImVec2 size) {
   ImGui::Separator();
   draw_overlay_choice(ui);
   ImGui::Separator();
-  ImGui::SetNextItemWidth(ui.px(6));
-  ImGui::InputInt(ui.text(Text::kDpi), &dpi_, 0);
-  dpi_ = std::clamp(dpi_, 50, 2400);
-  if (plain_button(ui, "keep-picture", ui.text(Text::kPicture), !surface_.empty())) {
-    keep_picture(ui);
-  }
-  if (!picture_note_.empty()) {
-    ImGui::PushFont(ui.fonts.small);
-    coloured_text(ui.colours.faint, picture_note_.c_str());
-    ImGui::PopFont();
-  }
   if (!state_.wedges) {
     if (plain_button(ui, "analyse", ui.text(Text::kAnalyse),
                      !prepared_.shown().faces.empty() && state_.stage.empty())) {
@@ -200,8 +211,18 @@ void ViewerScreen::draw_panel(UiContext& ui, ImVec2 size) {
   } else {
     tick(ui, "show-wedges", ui.text(Text::kWedges), show_wedges_);
   }
+  if (!pins_.empty()) {
+    tick(ui, "show-pins", ui.text(Text::kPins), show_pins_);
+  }
   ImGui::Separator();
   draw_facts(ui);
+  ImGui::EndChild();
+  const float from = ImGui::GetCursorPosY();
+  draw_foot(ui);
+  if (const float foot_px = ImGui::GetCursorPosY() - from; foot_px != foot_px_) {
+    foot_px_ = foot_px;
+    unfinished_ = true;
+  }
   ImGui::EndChild();
 }
 
@@ -221,12 +242,13 @@ void ViewerScreen::draw_wedge_table(UiContext& ui, ImVec2 size) {
     bins[std::min(kBins - 1, static_cast<std::size_t>(std::max(0.0, part) * kBins))] += 1;
   }
   const std::string title = fmt::format("{}, 0 - {:.2f} mm", ui.text(Text::kDepth), deepest);
-  ImGui::PlotHistogram("##depths", bins.data(), static_cast<int>(kBins), 0, title.c_str(), 0, FLT_MAX,
+  ImGui::TextUnformatted(title.c_str());  // over the bars it could not be read
+  ImGui::PlotHistogram("##depths", bins.data(), static_cast<int>(kBins), 0, nullptr, 0, FLT_MAX,
                        {ImGui::GetContentRegionAvail().x, ui.px(3.5F)});
   if (ImGui::BeginTable(
           "table", 4, ImGuiTableFlags_ScrollY | ImGuiTableFlags_RowBg | ImGuiTableFlags_SizingStretchProp)) {
     ImGui::TableSetupScrollFreeze(0, 1);
-    ImGui::TableSetupColumn("id");
+    ImGui::TableSetupColumn(ui.text(Text::kWedgeNumber));
     ImGui::TableSetupColumn(ui.text(Text::kOrder));
     ImGui::TableSetupColumn(fmt::format("{} mm", ui.text(Text::kDepth)).c_str());
     ImGui::TableSetupColumn(fmt::format("{} mm", ui.text(Text::kLength)).c_str());

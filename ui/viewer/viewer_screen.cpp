@@ -11,6 +11,7 @@
 
 #include "archive/scale_bar.h"
 #include "station/picture_file.h"
+#include "ui/view/pin_marks.h"
 #include "ui/viewer/hand.h"
 
 namespace dubsar::ui {
@@ -188,6 +189,9 @@ void ViewerScreen::draw_surface(UiContext& ui, ImVec2 size) {
   draw->PushClipRect(origin, end, true);
   if (show_wedges_ && state_.wedges) {
     draw_wedges(ui, origin, size);
+  }
+  if (show_pins_ && !state_.is_part) {
+    draw_pin_marks(ui, camera_, origin, size, pins_);
   }
   draw_section(ui, origin, size);
   draw_tape(ui, origin, size);

@@ -13,6 +13,7 @@
 
 #include "core/red_map.h"
 #include "station/mesh_viewing.h"
+#include "station/shown_pins.h"
 #include "ui/shell/widgets.h"
 #include "ui/view/surface_view.h"
 #include "ui/viewer/prepared_mesh.h"
@@ -28,6 +29,8 @@ class ViewerScreen {
 
   void draw(UiContext& ui, ImVec2 size);
   [[nodiscard]] bool unfinished() const { return unfinished_; }
+  /// Of the mesh that is shown next.
+  void show_pins(std::vector<ShownPin> pins) { pins_ = std::move(pins); }
   [[nodiscard]] bool wants_scanning() { return std::exchange(wants_scanning_, false); }
 
  private:
@@ -37,6 +40,7 @@ class ViewerScreen {
   void draw_light(UiContext& ui);
   void draw_overlay_choice(UiContext& ui);
   void draw_facts(UiContext& ui);
+  void draw_foot(UiContext& ui);
   void draw_surface(UiContext& ui, ImVec2 size);
   void use_pointer(UiContext& ui, ImVec2 origin, ImVec2 size);
   void draw_wedges(UiContext& ui, ImVec2 origin, ImVec2 size) const;
@@ -101,11 +105,14 @@ class ViewerScreen {
   int wedge_ = -1;
   bool scroll_to_wedge_ = false;
   bool show_wedges_ = true;
+  std::vector<ShownPin> pins_;  ///< of the session's model
+  bool show_pins_ = true;
   bool dragged_ = false;
   bool untouched_ = true;  ///< the view is still as it was set up
   float aspect_ = 1.5F;
   int dpi_ = 600;
   std::string picture_note_;
+  float foot_px_ = 0;  ///< of the panel, as it was drawn last
   bool unfinished_ = false;
   bool wants_scanning_ = false;
 };

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "ui/operator/prepared_model.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+
+#include "core/log.h"
+#include "ui/gl/gl_window.h"
+
+namespace dubsar::ui {
+
+std::optional<ReadyModel> PreparedModel::update(const LiveState& state) {
+  if (state.mesh && state.model_number != number_ && !preparing_.valid()) {
+    number_ = state.model_number;
+    preparing_ = std::async(std::launch::async, [mesh = state.mesh, red = state.red,
+                                                 tablet_from_model = state.tablet_from_model] {
+      const auto began = std::chrono::steady_clock::now();
+      ReadyModel out{shown_mesh(*mesh), {}, red, tablet_from_model};
+      out.few = fewest_faces(out.whole);
+      const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - began;
+      log_debug(fmt::format("model of {} faces made ready in {:.0f} ms, beside the window",
+                            out.whole.faces.size(), 1000 * spent.count()));
+      wake_window();
+      return out;
+    });
+  }
+  if (!preparing_.valid() || preparing_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) {
+    return std::nullopt;
+  }
+  return preparing_.get();
+}
+
+}  // namespace dubsar::ui
