@@ -19,11 +19,13 @@
 #include "drivers/aravis/scan3d.h"
 #include "drivers/driver.h"
 
+// NOLINTBEGIN(bugprone-reserved-identifier): the names that Aravis gave its structures
 typedef struct _ArvCamera ArvCamera;
 typedef struct _ArvDevice ArvDevice;
 typedef struct _ArvStream ArvStream;
 typedef struct _ArvBuffer ArvBuffer;
 typedef struct _ArvChunkParser ArvChunkParser;
+// NOLINTEND(bugprone-reserved-identifier)
 
 namespace dubsar::aravis {
 

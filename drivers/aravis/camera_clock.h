@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 
+// NOLINTNEXTLINE(bugprone-reserved-identifier): the name that Aravis gave it
 typedef struct _ArvGvDevice ArvGvDevice;
 
 namespace dubsar::aravis {

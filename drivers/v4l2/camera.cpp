@@ -47,6 +47,7 @@ std::vector<fs::path> camera_files(const fs::path& folder) {
   }
   std::ranges::sort(numbered);
   std::vector<fs::path> out;
+  out.reserve(numbered.size());
   for (auto& [number, path] : numbered) {
     out.push_back(std::move(path));
   }
