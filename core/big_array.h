@@ -7,7 +7,6 @@
 #endif
 
 #include <cstddef>
-#include <cstdlib>
 #include <memory>
 #include <new>
 #include <type_traits>
@@ -23,20 +22,16 @@ class BigArray {
 
   BigArray() = default;
   explicit BigArray(std::size_t count) {
-    const std::size_t bytes = (count * sizeof(T) + kPage - 1) / kPage * kPage;
-    const bool large = bytes >= 2 * kPage;
-    void* const memory = count == 0 ? nullptr
-                         : large    ? std::aligned_alloc(kPage, bytes)
-                                    : std::malloc(count * sizeof(T));
-    if (memory == nullptr && count > 0) {
-      throw std::bad_alloc();
-    }
+    const std::size_t bytes = count * sizeof(T);
+    const bool large = bytes > kPage;
+    const std::align_val_t alignment{large ? kPage : alignof(std::max_align_t)};
+    void* const memory = ::operator new(bytes, alignment);
 #if defined(__linux__) && defined(MADV_HUGEPAGE)
     if (large) {
       ::madvise(memory, bytes, MADV_HUGEPAGE);  // a wish; refused is as good
     }
 #endif
-    values_.reset(static_cast<T*>(memory));
+    values_ = std::unique_ptr<T, Free>(static_cast<T*>(memory), {alignment});
   }
 
   [[nodiscard]] T& operator[](std::size_t i) {
@@ -49,7 +44,8 @@ class BigArray {
  private:
   static constexpr std::size_t kPage = std::size_t{1} << 21;
   struct Free {
-    void operator()(T* values) const { std::free(values); }
+    std::align_val_t alignment{};
+    void operator()(T* values) const { ::operator delete(values, alignment); }
   };
   std::unique_ptr<T, Free> values_;
 };

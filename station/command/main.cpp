@@ -2,6 +2,8 @@
 // Copyright The Dubsar developers
 // The dubsar command: a skin over the engine and the stages. Contract: design.md, "Command".
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <csignal>
@@ -16,6 +18,7 @@
 #include <malloc.h>
 #endif
 
+#include "core/file_blocks.h"
 #include "core/log.h"
 #include "station/command/command.h"
 
@@ -80,6 +83,10 @@ int run(int argc, char** argv) {
   try {
     const Result<int> status = action(context);
     finish_progress();
+    if (const std::size_t bytes = most_file_block_bytes(); bytes > 0) {
+      log_info(fmt::format("memory was short: up to {:.1f} GiB lay in files meanwhile, which takes longer",
+                           static_cast<double>(bytes) / (1U << 30U)));
+    }
     return status ? *status : report(status.error(), json);
   } catch (const std::bad_alloc&) {
     return report(

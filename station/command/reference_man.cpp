@@ -114,6 +114,17 @@ An error is one line on standard error: where, what, and the mend.
 .B DUBSAR_DRIVER_PATH
 folders with driver plugins, parted by colons, looked into before the program's own
 .TP
+.B DUBSAR_ARRAYS
+.B files
+or
+.BR memory :
+where large arrays lie; without it they go into files when memory is short
+.TP
+.B TMPDIR
+the folder of those files, otherwise
+.IR /var/tmp ;
+they have no names and never outlive the program
+.TP
 .B XDG_DATA_HOME
 .I dubsar/drivers
 in it (otherwise in

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+// The program's own operator new: arrays of megabytes go into files when memory is short
+// (core/file_blocks.h), whatever container holds them and whichever stage asks. Everything else is malloc's,
+// as without it.
+//
+// Only of the program `dubsar`: a library leaves the operators to whoever links it, and the sanitizers bring
+// their own.
+
+#include <cstdlib>
+#include <new>
+
+#include "core/file_blocks.h"
+
+namespace {
+
+void* take(std::size_t size, std::size_t alignment) noexcept {
+  if (size >= dubsar::kLeastFileBlock && dubsar::belongs_in_file(size)) {
+    if (void* const block = dubsar::allocate_file_block(size, alignment)) {
+      return block;
+    }
+  }
+  const std::size_t least = size == 0 ? 1 : size;
+  return alignment <= alignof(std::max_align_t)
+             ? std::malloc(least)
+             : std::aligned_alloc(alignment, (least + alignment - 1) / alignment * alignment);
+}
+
+void* take_or_throw(std::size_t size, std::size_t alignment) {
+  for (;;) {
+    if (void* const memory = take(size, alignment)) {
+      return memory;
+    }
+    const std::new_handler handler = std::get_new_handler();
+    if (handler == nullptr) {
+      throw std::bad_alloc();
+    }
+    handler();
+  }
+}
+
+void give_back(void* memory) noexcept {
+  if (!dubsar::free_file_block(memory)) {
+    std::free(memory);
+  }
+}
+
+constexpr std::size_t kPlain = alignof(std::max_align_t);
+
+}  // namespace
+
+// The array and nothrow forms of the standard library call these.
+void* operator new(std::size_t size) {
+  return take_or_throw(size, kPlain);
+}
+void* operator new(std::size_t size, std::align_val_t alignment) {
+  return take_or_throw(size, static_cast<std::size_t>(alignment));
+}
+void operator delete(void* memory) noexcept {
+  give_back(memory);
+}
+void operator delete(void* memory, std::size_t /*size*/) noexcept {
+  give_back(memory);
+}
+void operator delete(void* memory, std::align_val_t /*alignment*/) noexcept {
+  give_back(memory);
+}
+void operator delete(void* memory, std::size_t /*size*/, std::align_val_t /*alignment*/) noexcept {
+  give_back(memory);
+}
