@@ -64,10 +64,13 @@ class BlockTable {
     std::size_t i = place_of(at);
     for (std::size_t looked = 0; looked < places_.size() && places_[i].at != 0; ++looked) {
       if (places_[i].at == at) {
+        const std::size_t bytes = places_[i].bytes;
         places_[i].at = kGone;
-        --count_;
-        bytes_ -= places_[i].bytes;
-        return places_[i].bytes;
+        bytes_ -= bytes;
+        if (--count_ == 0) {
+          places_.fill({});  // else places that were taken once would make every look longer
+        }
+        return bytes;
       }
       i = (i + 1) % places_.size();
     }
