@@ -106,6 +106,9 @@ int evaluate_poses(const fs::path& poses_file, const fs::path& scans, const fs::
         {sample_points(data->front()), pose.model_from_scanner, found->second.model_from_scanner});
     names.push_back(file);
   }
+  if (pairs.empty()) {
+    die(scans.string() + ": none of the scans that the truth names; give their folder, or the session");
+  }
   const RigidTransform gauge = truth_from_model(pairs);
   std::vector<double> all;
   double worst_deg = 0;
@@ -187,7 +190,7 @@ int main(int argc, char** argv) {
   CLI::App* poses =
       app.add_subcommand("poses", "Poses against true or published ones, after one rigid gauge");
   poses->add_option("poses", first)->required();
-  poses->add_option("scans", second, "folder of the scans")->required();
+  poses->add_option("scans", second, "their folder, or the session")->required();
   poses->add_option("--truth", truth);
   poses->add_option("--conf", conf);
   poses->add_option("--unit", unit, "of the scans and the .conf: m, mm or um");
