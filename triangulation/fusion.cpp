@@ -16,21 +16,21 @@ using Eigen::Vector3f;
 
 struct Projection {
   std::size_t sample = 0;     ///< a corner of the triangle
-  float along_mm = 0;         ///< from p along its normal
+  float along_mm = 0;         ///< from p along the line
   bool well_sampled = false;  ///< none of the corners is sparse
   std::uint8_t rim = 0;       ///< of the corner that is nearest to it
   float weight = 0;           ///< interpolated; 0 where the line misses the other scan's triangles
   float reliability = 0;      ///< interpolated
 };
 
-/// The line through a sample along its normal. Along a line, not to the nearest point: of a rough sheet the
-/// nearest point is the one that errs the same way as p, and averaging with it takes away next to nothing of
-/// the noise.
+/// The line through a sample on which it moves. To where it meets other scans, not to their nearest points:
+/// of a rough sheet the nearest point is the one that errs the same way as p, and averaging with it takes
+/// away next to nothing of the noise.
 struct Line {
   Vector3f p, n, u, v;
 
-  Line(const Vector3f& at, const Vector3f& normal)
-      : p(at), n(normal), u(normal.unitOrthogonal()), v(normal.cross(u)) {}
+  Line(const Vector3f& at, const Vector3f& direction)
+      : p(at), n(direction), u(direction.unitOrthogonal()), v(direction.cross(u)) {}
 };
 
 /// Where a line meets the triangles of a scan.
@@ -183,6 +183,21 @@ float faded(std::uint8_t rim, float feather) {
   return std::max(part * part, 1e-4F);
 }
 
+/// Along which a sample moves: towards the laser. It is known to lie on the laser's ray, and errs along it,
+/// so samples keep the order that they have in the grid, and no cell is folded over however noisy they are;
+/// the normal of one sample is noisy, too. On a surface that the laser only grazes, along the normal all the
+/// same: there a ray hardly comes nearer to where the others have the surface. So, too, where the laser's
+/// place is not known.
+Vector3f averaging_direction(const StitchSurface& from, int row, const Vector3f& p, const Vector3f& normal) {
+  constexpr float kLeastCos = 0.3F;
+  if (!from.view.laser_mm) {
+    return normal;
+  }
+  const Vector3f laser = (*from.view.laser_mm + row * from.view.motion_per_row_mm).cast<float>();
+  const Vector3f ray = (laser - p).normalized();
+  return ray.dot(normal) > kLeastCos ? ray : normal;
+}
+
 }  // namespace
 
 FusedSamples::FusedSamples(const StitchSurface& of) : slot(of.points.size(), kNone) {}
@@ -249,14 +264,16 @@ void fuse(const StitchSurface& from, std::span<const StitchSurface* const> other
           }
         }
       }
-      const Line line(p, normal);
+      const Vector3f along = averaging_direction(from, from.lattice.sample_row(i), p, normal);
+      const Line line(p, along);
+      const float tilt = along.dot(normal);  // × a distance along the line: the distance along the normal
       float feather = 0;
       found.clear();
       for (const auto& [k, start] : starts) {
         const StitchSurface& other = *others[k];
         const auto [row, col] = start.place_of(p);
         Projection q = LineProjector(other, line).from_cell(row, col);
-        if (q.weight > 0 && !(std::abs(q.along_mm) <= pairs[k]->reach_mm &&
+        if (q.weight > 0 && !(tilt * std::abs(q.along_mm) <= pairs[k]->reach_mm &&
                               normal.dot(other.normal(q.sample)) > pairs[k]->min_normal_cos)) {
           // Another fold of the surface: from the nearest sample that looks the same way there is a way to
           // the right one.
@@ -267,7 +284,7 @@ void fuse(const StitchSurface& from, std::span<const StitchSurface* const> other
                         .from_cell(static_cast<float>(other.lattice.sample_row(static_cast<std::size_t>(j))),
                                    static_cast<float>(other.lattice.sample_col(static_cast<std::size_t>(j))));
         }
-        if (q.weight > 0 && std::abs(q.along_mm) <= pairs[k]->reach_mm) {
+        if (q.weight > 0 && tilt * std::abs(q.along_mm) <= pairs[k]->reach_mm) {
           found.emplace_back(k, q);
         }
         feather = std::max(feather, pairs[k]->feather);
@@ -282,7 +299,7 @@ void fuse(const StitchSurface& from, std::span<const StitchSurface* const> other
       for (const auto& [k, q] : found) {
         const float weight = q.weight * faded(q.rim, pairs[k]->feather);
         shift_sum += weight * q.along_mm;
-        shift2_sum += weight * square(q.along_mm);
+        shift2_sum += weight * square(tilt * q.along_mm);
         pose_sum += square(weight * pose_sigma_mm(*others[k]));
         weight_sum += weight;
         doubt *= 1.0F - q.reliability;
@@ -290,9 +307,9 @@ void fuse(const StitchSurface& from, std::span<const StitchSurface* const> other
         ++scans;
       }
       const float shift_mm = shift_sum / weight_sum;
-      out.points[at] = p + shift_mm * normal;
+      out.points[at] = p + shift_mm * along;
       // Weights are inverse variances: the disagreement is their chi-square.
-      const float chi2 = std::max(0.0F, shift2_sum - weight_sum * shift_mm * shift_mm);
+      const float chi2 = std::max(0.0F, shift2_sum - weight_sum * square(tilt * shift_mm));
       const float excess = scans > 1 ? std::max(1.0F, chi2 / static_cast<float>(scans - 1)) : 1.0F;
       out.sigma_mm[at] = std::sqrt(excess / weight_sum + pose_sum / (weight_sum * weight_sum));
       out.reliability[at] =

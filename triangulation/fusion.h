@@ -37,11 +37,12 @@ struct FusedSamples {
   [[nodiscard]] const Eigen::Vector3f& point(std::size_t sample) const { return points[slot[sample]]; }
 };
 
-/// Seed 001, section 4: the reliability-weighted average of a sample and its projections, along its normal,
-/// on the triangles of the scans it pairs with. A projection is as good as the samples that it lies between
-/// (their variances, interpolated). `others` and `pairs` run in parallel, in the order of scan ids. Where the
-/// other scan has no triangle nothing is counted. Appends the samples `which`, usable ones not yet in `out`;
-/// it is quickest when those of one node follow each other.
+/// Seed 001, section 4: the reliability-weighted average of a sample and its projections, along the laser's
+/// ray, on the triangles of the scans it pairs with (along its normal where the laser grazes the surface, or
+/// its place is not known). A projection is as good as the samples that it lies between (their variances,
+/// interpolated). `others` and `pairs` run in parallel, in the order of scan ids. Where the other scan has no
+/// triangle nothing is counted. Appends the samples `which`, usable ones not yet in `out`; it is quickest
+/// when those of one node follow each other.
 void fuse(const StitchSurface& from, std::span<const StitchSurface* const> others,
           std::span<const Pairs* const> pairs, std::span<const std::uint32_t> which, FusedSamples& out);
 

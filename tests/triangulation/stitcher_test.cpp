@@ -245,6 +245,31 @@ TEST(Stitcher, ScansOfDifferentSpacing) {
   EXPECT_LT(rms_off_ball(mesh), 0.01);
 }
 
+TEST(Stitcher, NoiseAlongTheLaserFoldsNoCellOver) {
+  // Three views of a plate whose noise is four fifths of the spacing.
+  const auto plate = [](bool laser_known) {
+    test::ScanSet set;
+    for (int k = 0; k < 3; ++k) {
+      Random random(static_cast<std::uint64_t>(k) + 1);
+      RangeGrid grid =
+          test::height_grid(150, 150, 0.025, [&](double, double) { return 0.02 * random.normal(); });
+      if (laser_known) {
+        grid.view.laser_mm = Eigen::Vector3d(0, 0, 500);
+      }
+      set.add(std::move(grid), RigidTransform::from_twist({0.1 * k, -0.1 * k, 0.4 * k}, {0, 0, 0}));
+    }
+    return stitched(set);
+  };
+  const auto invented = [](const Mesh& mesh) {
+    return std::ranges::count_if(mesh.flags, [](std::uint8_t f) { return (f & kVertexInterpolated) != 0; });
+  };
+  const Mesh along_normals = plate(false);
+  const Mesh along_rays = plate(true);
+  EXPECT_LT(check_mesh(along_rays).thin_share, 0.003);
+  EXPECT_LT(check_mesh(along_rays).thin_share, 0.5 * check_mesh(along_normals).thin_share);
+  EXPECT_LT(invented(along_rays), invented(along_normals));
+}
+
 TEST(Stitcher, OpenWhereNothingWasSeen) {
   test::ScanSet set = ball();
   set.placed.erase(set.placed.begin() + 1);  // nobody looked from below; the sides see part of it
