@@ -51,9 +51,12 @@ ScannerModel ScannerModel::that_took(const RangeGrid& grid, const Rig* rig, doub
       }
     }
   }
-  const Eigen::Vector2d border_mm = Eigen::Vector2d::Constant(kGapInSpacings * model.spacing_mm);
-  model.field_mm.min().head<2>() = across.min() + border_mm;
-  model.field_mm.max().head<2>() = across.max() - border_mm;
+  const double border_mm = kGapInSpacings * model.spacing_mm;
+  model.field_mm.min().head<2>() = across.min().array() + border_mm;
+  model.field_mm.max().head<2>() = across.max().array() - border_mm;
+  // A slope that leaves the field in depth falls by up to three spacings a sample.
+  model.field_mm.min().z() += kGapInSpacings * border_mm;
+  model.field_mm.max().z() -= kGapInSpacings * border_mm;
   return model;
 }
 
