@@ -13,6 +13,12 @@ namespace {
 constexpr std::uint64_t kMostBytes = std::uint64_t{64} << 20U;
 
 std::optional<VerificationEntry> entry_of(std::string_view line) {
+  // Only an object can be an entry. Of any other text there may be a great many lines, and the parser throws
+  // at each. (\xEF: of the mark that some editors put at the beginning.)
+  const std::size_t first = line.find_first_not_of(" \t\r");
+  if (first == std::string_view::npos || (line[first] != '{' && line[first] != '\xEF')) {
+    return std::nullopt;
+  }
   const Result<JsonDocument> document = JsonDocument::parse(line, "log");
   if (!document) {
     return std::nullopt;

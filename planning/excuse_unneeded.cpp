@@ -303,7 +303,8 @@ void excuse_out_of_reach(std::span<const PlacedScan> scans, const SurfaceCover& 
                          RedTargets& red) {
   give_up(
       scans, cover, surface_mm2, options,
-      "no pose that the rig allows sees it with laser and camera at a slope below 70°",
+      "no pose that the rig allows has it within its field, unshaded for laser and camera, at a slope below "
+      "70°",
       [&](std::uint32_t i) {
         return best_chance[i] >= 0 && static_cast<double>(best_chance[i]) < options.least_chance;
       },

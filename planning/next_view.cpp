@@ -77,12 +77,12 @@ double overlap_of(const ViewPredictor& view, const ModelSurface& surface) {
 
 }  // namespace
 
-void note_tries(std::span<const PlacedScan> scans, std::span<const double> noise_mm,
+void note_tries(std::span<const PlacedScan> scans, const Rig* rig, std::span<const double> noise_mm,
                 const ModelSurface& surface, std::vector<RedTarget>& targets) {
   std::vector<ViewPredictor> views;
   views.reserve(scans.size());
   for (std::size_t s = 0; s < scans.size(); ++s) {
-    views.emplace_back(ScannerModel::of(*scans[s].grid, noise_mm[s]), scans[s].model_from_scanner,
+    views.emplace_back(ScannerModel::that_took(*scans[s].grid, rig, noise_mm[s]), scans[s].model_from_scanner,
                        surface.query, clearance_of(surface));
   }
   parallel_for_each_index(

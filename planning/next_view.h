@@ -29,8 +29,9 @@ struct NextViews {
 };
 
 /// Notes for each red target which of the scans ought to have seen it (red_targets() leaves that empty).
-/// noise_mm: by scan.
-void note_tries(std::span<const PlacedScan> scans, std::span<const double> noise_mm,
+/// What lay outside the field of a scan was not looked at by it. noise_mm: by scan; rig: that took them, or
+/// null.
+void note_tries(std::span<const PlacedScan> scans, const Rig* rig, std::span<const double> noise_mm,
                 const ModelSurface& surface, std::vector<RedTarget>& targets);
 
 /// For each target the chance that the view clears it, looks in vain considered; 0 for those that are not

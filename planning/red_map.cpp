@@ -93,7 +93,7 @@ Result<RedMapResult> make_red_map(std::span<const PlacedScan> scans, const Mesh*
       surface_mm2 += patch.area_mm2;
     }
   }
-  note_tries(scans, noise_mm, surface, out.targets.targets);
+  note_tries(scans, rig, noise_mm, surface, out.targets.targets);
   excuse_specks(scans, cover, surface_mm2, options.excuse, out.targets);
   excuse_tried(scans, cover, surface_mm2, options.excuse, out.targets);
   job.progress("red map", 0.5);

@@ -25,10 +25,8 @@ double upper_tail(double z) {
 }  // namespace
 
 ScannerModel ScannerModel::of(const Rig& rig, double noise_mm) {
-  return {rig.view,
-          rig.spacing_mm,
-          noise_mm,
-          {0.5 * rig.field_x_mm, 0.5 * rig.field_y_mm, 0.5 * rig.depth_range_mm}};
+  const Eigen::Vector3d half = 0.5 * Eigen::Vector3d(rig.field_x_mm, rig.field_y_mm, rig.depth_range_mm);
+  return {rig.view, rig.spacing_mm, noise_mm, {-half, half}};
 }
 
 ScannerModel ScannerModel::of(const RangeGrid& grid, double noise_mm) {
@@ -36,6 +34,29 @@ ScannerModel ScannerModel::of(const RangeGrid& grid, double noise_mm) {
   model.view = grid.view;
   model.spacing_mm = spacing_of(grid);
   model.noise_mm = noise_mm;
+  return model;
+}
+
+ScannerModel ScannerModel::that_took(const RangeGrid& grid, const Rig* rig, double noise_mm) {
+  ScannerModel model = of(grid, noise_mm);
+  Eigen::AlignedBox2d across;
+  if (rig != nullptr) {
+    const Eigen::AlignedBox3d field = of(*rig, noise_mm).field_mm;
+    model.field_mm = field;
+    across = {field.min().head<2>(), field.max().head<2>()};
+  } else {
+    for (std::size_t i = 0; i < grid.size(); ++i) {
+      if (grid.valid[i] != 0) {
+        across.extend(Eigen::Vector2d(grid.x[i], grid.y[i]));
+      }
+    }
+  }
+  const double border_mm = kGapInSpacings * model.spacing_mm;
+  model.field_mm.min().head<2>() = across.min().array() + border_mm;
+  model.field_mm.max().head<2>() = across.max().array() - border_mm;
+  // A slope that leaves the field in depth falls by up to three spacings a sample.
+  model.field_mm.min().z() += kGapInSpacings * border_mm;
+  model.field_mm.max().z() -= kGapInSpacings * border_mm;
   return model;
 }
 
@@ -82,7 +103,7 @@ double ViewPredictor::facing_chance(const Eigen::Vector3d& p_mm, const Eigen::Ve
     return 0.0;
   }
   const Eigen::Vector3d p = scanner_from_model_ * p_mm;
-  if ((p.cwiseAbs().array() > scanner_.half_field_mm.array()).any()) {
+  if (!scanner_.field_mm.contains(p)) {
     return 0.0;
   }
   const Eigen::Vector3d n = scanner_from_model_.rotation * normal;

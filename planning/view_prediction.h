@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <optional>
 #include <vector>
 
@@ -18,11 +19,15 @@ struct ScannerModel {
   ScannerView view;  ///< laser and camera at the middle row
   double spacing_mm = 0.1;
   double noise_mm = 0.02;  ///< of a sample along the ray at normal incidence
-  /// Half extents of the measuring volume in the scanner frame; infinite where unknown.
-  Eigen::Vector3d half_field_mm{1e30, 1e30, 1e30};
+  /// The measuring volume in the scanner frame; without bounds where unknown.
+  Eigen::AlignedBox3d field_mm{Eigen::Vector3d::Constant(-1e30), Eigen::Vector3d::Constant(1e30)};
 
   [[nodiscard]] static ScannerModel of(const Rig& rig, double noise_mm);
   [[nodiscard]] static ScannerModel of(const RangeGrid& grid, double noise_mm);
+  /// As of(grid, noise_mm), within what that scan certainly looked over: the rig's field; where no rig is
+  /// known, what the grid's own returns span across (how deep it saw is not known); either less the outermost
+  /// three spacings, where samples may lack neighbours for no other reason than that the field ends.
+  [[nodiscard]] static ScannerModel that_took(const RangeGrid& grid, const Rig* rig, double noise_mm);
 };
 
 /// Chance that a sample whose surface is inclined by the angle of this cosine against the ray is not

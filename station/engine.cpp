@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright The Dubsar developers
-#include <malloc.h>
-
+#include "core/heap.h"
 #include "station/engine_impl.h"
 
 namespace dubsar {
@@ -14,7 +13,7 @@ Engine::~Engine() {
   impl_.reset();
   // The window stands for days and sees many tablets: what the threads of a run have let go of goes back to
   // the system, instead of lying in their heaps in pieces.
-  ::malloc_trim(0);
+  return_unused_memory();
 }
 
 std::vector<ScanPose> Engine::Impl::named_poses() const {

@@ -14,11 +14,8 @@
 #include <string_view>
 #include <vector>
 
-#if defined(__GLIBC__)
-#include <malloc.h>
-#endif
-
 #include "core/file_blocks.h"
+#include "core/heap.h"
 #include "core/log.h"
 #include "station/command/command.h"
 
@@ -103,10 +100,6 @@ int run(int argc, char** argv) {
 // What is thrown before a verb runs comes of how the verbs are declared: to end there is right.
 // NOLINTNEXTLINE(bugprone-exception-escape)
 int main(int argc, char** argv) {
-#if defined(__GLIBC__)
-  // Arrays of megabytes go back to the system when they are let go of, instead of lying about in the heap
-  // between smaller ones: it halves the memory of a large stitch.
-  mallopt(M_MMAP_THRESHOLD, 1 << 20);
-#endif
+  dubsar::map_large_blocks();
   return dubsar::run(argc, argv);
 }

@@ -203,6 +203,14 @@ TEST(VerificationLog, KeepsEveryLineAndSurvivesADamagedOne) {
   EXPECT_EQ(log->entries[1].failed, std::vector<std::string>{"flatness"});
   const VerificationLog torn = parse_verification_log("{\"when\": 3}\nrubbish\n\n");
   EXPECT_EQ(torn.damaged, 2U);
+  const VerificationLog others = parse_verification_log("[]\n \t7\n\"when\"\n]\n");
+  EXPECT_EQ(others.damaged, 4U);
+  // As an editor may leave it: a byte order mark, blanks before the line.
+  const std::string line =
+      R"({"when":"w","artefact":"a","certificate":"c","calibration":"m","error_mm":0.1,"passed":true,"failed":[]})";
+  const VerificationLog edited = parse_verification_log("\xEF\xBB\xBF" + line + "\n  \t" + line + "\r\n");
+  EXPECT_EQ(edited.entries.size(), 2U);
+  EXPECT_EQ(edited.damaged, 0U);
   EXPECT_TRUE(torn.entries.empty());
   EXPECT_TRUE(read_verification_log(folder.path() / "none")->entries.empty());
 }

@@ -81,11 +81,20 @@ RigidTransform turned(double about_x_deg, double about_y_deg) {
   return t;
 }
 
+/// Nothing beyond this is in the field of the scanner.
+void crop_to_field(double half_mm, RangeGrid& grid) {
+  for (std::size_t i = 0; i < grid.size(); ++i) {
+    grid.valid[i] = grid.valid[i] != 0 && std::abs(grid.x[i]) <= half_mm && std::abs(grid.y[i]) <= half_mm;
+  }
+}
+
 struct Session {
   ClearedMap map;
   std::vector<std::unique_ptr<RangeGrid>> grids;
+  double half_field_mm = 1000;
   void scan(const RigidTransform& pose) {
     grids.push_back(std::make_unique<RangeGrid>(scan_pebble(pose)));
+    crop_to_field(half_field_mm, *grids.back());
     const SampleFlags flags = flag_sparse(*grids.back());
     map.add({static_cast<int>(grids.size()) - 1, grids.back().get(), &flags, pose, 0.0});
   }
@@ -242,6 +251,28 @@ TEST(RedMap, ARigWithoutHandTurnsCannotReachTheUnderside) {
     }
   }
   EXPECT_GT(unreachable, 150.0);
+}
+
+TEST(RedMap, WhatLiesOutsideTheFieldOfAllScansWasNotLookedAt) {
+  Session session;
+  session.half_field_mm = 4;  // of a pebble of 24 x 18 mm: its middle alone
+  for (const double deg : {-9.0, -6.0, -3.0, 0.0, 3.0, 6.0, 9.0}) {
+    session.scan(turned(deg, 0.5 * deg));
+  }
+  Rig rig = turntable_rig();
+  rig.field_x_mm = rig.field_y_mm = 2 * session.half_field_mm;
+  JobContext job;
+  for (const Rig* known : {static_cast<const Rig*>(&rig), static_cast<const Rig*>(nullptr)}) {
+    const auto result = make_red_map(session.map.scans(), nullptr, known, {}, job);
+    ASSERT_TRUE(result);
+    EXPECT_FALSE(result->map.conclusive);
+    double red = 0;
+    for (const RedRegion& region : result->map.regions) {
+      EXPECT_NE(region.excuse, Excuse::kUnreachable) << region.area_mm2 << " mm2: " << region.reason;
+      red += region.state == RegionState::kRed ? region.area_mm2 : 0.0;
+    }
+    EXPECT_GT(red, 20.0);
+  }
 }
 
 TEST(RedMap, CancelledWorkSaysSo) {
