@@ -3,6 +3,7 @@
 // The stripe detectors against each other on simulated frames, and the whole way from frames to a grid
 // against the true surface: px and µm.
 //   dubsar-frames [--frames N] [--step MM] [--height PX] [--contrast C …] [--f-number N]
+//     [--laser-sigma MM] [--seed N]
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -87,6 +88,53 @@ void add_depths(const Setup& setup, const std::vector<double>& truth, const Tria
   }
 }
 
+/// What the default detector leaves in the picture, by what the clay is like within the width of the sheet.
+/// Plane: where the sheet's middle, and its light two standard deviations to either side of that, see the
+/// clay in rows of the picture that lie on a line, to kPlane_px. Bent: they do not, or one of them sees none.
+class ByShape {
+ public:
+  ByShape(const Setup& setup, const sim::FrameRenderer& renderer, double sheet_sigma_mm)
+      : setup_(setup), renderer_(renderer), aside_mm_(2 * sheet_sigma_mm) {}
+
+  void add(double position, const std::vector<double>& truth, const StripeProfile& stripe) {
+    const auto rows_at = [&](double there) {
+      return renderer_.true_rows(sim::SceneTarget(setup_.clay->scene, tablet_from_camera(setup_, there)),
+                                 there);
+    };
+    const std::vector<double> before = rows_at(position - aside_mm_);
+    const std::vector<double> behind = rows_at(position + aside_mm_);
+    for (std::size_t u = 0; u < truth.size(); ++u) {
+      if (stripe.state[u] != StripeState::kGood || !std::isfinite(truth[u])) {
+        continue;
+      }
+      const double bend = 0.5 * std::abs(before[u] + behind[u] - 2 * truth[u]);
+      (bend < kPlane_px ? plane_ : bent_).add(static_cast<double>(stripe.at_px[u]) - truth[u]);
+    }
+  }
+  void print() const {
+    const std::size_t all = plane_.values.size() + plane_.outliers + bent_.values.size() + bent_.outliers;
+    if (all == 0) {
+      return;
+    }
+    for (const auto& [errors, name] :
+         {std::pair{&plane_, "plane within the sheet"}, std::pair{&bent_, "bent within the sheet"}}) {
+      std::printf(
+          "  adaptive, clay %s: %5.1f%% of the samples, %.4f px rms, bias %.4f px, %.2f%% off by more than 1 "
+          "px\n",
+          name,
+          100.0 * static_cast<double>(errors->values.size() + errors->outliers) / static_cast<double>(all),
+          errors->rms(), errors->bias(), 100 * errors->outlier_share());
+    }
+  }
+
+ private:
+  static constexpr double kPlane_px = 0.1;
+  const Setup& setup_;
+  const sim::FrameRenderer& renderer_;
+  double aside_mm_;
+  Errors plane_{{}, 0, 1.0}, bent_{{}, 0, 1.0};
+};
+
 /// Each row together with those on either side, as a scan of rows `step_mm` apart has them.
 void compare_swept(const Setup& setup, const sim::FrameOptions& optics, const std::vector<double>& positions,
                    const std::vector<GrayImage>& off, double step_mm) {
@@ -168,10 +216,14 @@ void compare(const Setup& setup, const sim::FrameOptions& optics, int frames, bo
     Errors mm{{}, 0, depth_per_px};
     std::size_t good = 0;
     std::size_t visible = 0;
+    ByShape by_shape(setup, renderer, optics.laser_sigma_mm);
     for (std::size_t i = 0; i < on.size(); ++i) {
       extractor.extract(on[i].view(), ambient_frames ? off[i].view() : GrayView{}, stripe);
       triangulator.triangulate(stripe, positions[i], profile);
       add_depths(setup, truth[i], profile, mm);
+      if (method == StripeMethod::kAdaptive) {
+        by_shape.add(positions[i], truth[i], stripe);
+      }
       for (std::size_t u = 0; u < stripe.at_px.size(); ++u) {
         visible += std::isfinite(truth[i][u]) ? 1 : 0;
         if (stripe.state[u] == StripeState::kGood && std::isfinite(truth[i][u])) {
@@ -193,6 +245,7 @@ void compare(const Setup& setup, const sim::FrameOptions& optics, int frames, bo
                 100 * px.outlier_share(), 100.0 * static_cast<double>(good) / static_cast<double>(visible),
                 1e3 * mm.rms(), -1e3 * mm.bias(), 100 * mm.outlier_share(),
                 1e6 * seconds / (kRounds * static_cast<double>(on.size())));
+    by_shape.print();
   }
   compare_swept(setup, optics, positions, off, step_mm);
 }
@@ -276,7 +329,9 @@ int run(int argc, char** argv) {
   double sigma_mm = 0.02;
   double step_mm = 0.025;
   std::vector<double> contrasts{0, 0.5, 0.7, 1};
+  std::uint64_t seed = 1;
   sim::FrameRigOptions size;
+  app.add_option("--seed", seed, "Of the tablet");
   app.add_option("--frames", frames, "Frames per case")->check(CLI::Range(1, 1000));
   app.add_option("--step", step_mm, "Between rows that correct each other, mm")
       ->check(CLI::Range(0.005, 1.0));
@@ -288,7 +343,7 @@ int run(int argc, char** argv) {
   app.add_option("--contrast", contrasts);
   CLI11_PARSE(app, argc, argv);
   for (const bool written : {false, true}) {
-    Result<std::unique_ptr<RigTablet>> clay = rig_tablet(written);
+    Result<std::unique_ptr<RigTablet>> clay = rig_tablet(written, seed);
     if (!clay) {
       std::fprintf(stderr, "%s\n", clay.error().line().c_str());
       return 4;

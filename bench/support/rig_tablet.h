@@ -3,7 +3,9 @@
 #pragma once
 
 #include <algorithm>
+#include <cstdint>
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include "core/mesh_query.h"
@@ -31,8 +33,10 @@ struct RigTablet {
   double top_mm = 0;  ///< the highest point of the obverse
 };
 
-[[nodiscard]] inline Result<std::unique_ptr<RigTablet>> rig_tablet(bool written) {
+[[nodiscard]] inline Result<std::unique_ptr<RigTablet>> rig_tablet(
+    bool written, std::optional<std::uint64_t> seed = std::nullopt) {
   sim::TabletOptions wanted;
+  wanted.seed = seed.value_or(wanted.seed);
   wanted.size_mm = {44, 36, 18};
   wanted.text_density = written ? 1.0 : 0.0;
   wanted.grain_um = written ? 12 : 0;

@@ -3,13 +3,15 @@
 #include "drivers/aravis/camera.h"
 
 #include <algorithm>
-#include <cmath>
 #include <ctime>
 #include <thread>
+#include <utility>
 
+#include "core/log.h"
 #include "core/pool_depth.h"
 #include "core/thread_priority.h"
 #include "drivers/aravis/glib.h"
+#include "drivers/aravis/packet_room.h"
 
 namespace dubsar::aravis {
 
@@ -20,7 +22,6 @@ using namespace std::chrono_literals;
 constexpr std::uint32_t kMostBuffers = 256;
 /// More than any frame of a range camera; a description that asks for more lies.
 constexpr std::uint32_t kMostPayload = 1U << 30U;
-constexpr int kSocketBytes = 32 << 20;
 constexpr auto kSlice = 50ms;
 constexpr auto kControlPatience = 1500ms;
 constexpr auto kControlRetry = 50ms;
@@ -29,10 +30,6 @@ std::int64_t clock_ns(clockid_t clock) {
   timespec now{};
   ::clock_gettime(clock, &now);
   return std::int64_t{now.tv_sec} * 1000000000 + now.tv_nsec;
-}
-
-std::string text_of(const char* text) {
-  return text == nullptr ? std::string() : std::string(text);
 }
 
 /// Frees what belonged to a camera that is gone: Aravis waits for its answers for seconds, which nobody else
@@ -56,17 +53,6 @@ void stream_thread_says(void* /*data*/, ArvStreamCallbackType what, ArvBuffer* /
 }
 
 }  // namespace
-
-std::vector<FoundCamera> find_cameras() {
-  std::vector<FoundCamera> out;
-  arv_update_device_list();
-  for (unsigned k = 0; k < arv_get_n_devices(); ++k) {
-    out.push_back({text_of(arv_get_device_id(k)),
-                   text_of(arv_get_device_vendor(k)) + " " + text_of(arv_get_device_model(k)) + ", " +
-                       text_of(arv_get_device_protocol(k)) + " at " + text_of(arv_get_device_address(k))});
-  }
-  return out;
-}
 
 Result<std::unique_ptr<Camera>> Camera::open(const std::string& id, const CameraOptions& options) {
   std::unique_ptr<Camera> out(new Camera());
@@ -156,14 +142,14 @@ Status Camera::start(std::uint32_t pool) {
     lose();
   }
   const bool stood = camera_ != nullptr;
-  Status begun = begin(pool);
+  Status begun = begin(pool, false);
   if (!begun && stood && camera_ == nullptr) {
-    begun = begin(pool);  // the connection had died unnoticed
+    begun = begin(pool, false);  // the connection had died unnoticed
   }
   return begun;
 }
 
-Status Camera::begin(std::uint32_t pool) {
+Status Camera::begin(std::uint32_t pool, bool same_stream) {
   const bool was_gone = camera_ == nullptr;
   if (was_gone) {
     if (const Status connected = connect(); !connected) {
@@ -200,8 +186,9 @@ Status Camera::begin(std::uint32_t pool) {
   if (ARV_IS_GV_STREAM(stream)) {
     g_object_set(stream, "packet-resend",
                  options_.resend ? ARV_GV_STREAM_PACKET_RESEND_ALWAYS : ARV_GV_STREAM_PACKET_RESEND_NEVER,
-                 "socket-buffer", ARV_GV_STREAM_SOCKET_BUFFER_FIXED, "socket-buffer-size", kSocketBytes,
-                 nullptr);
+                 "socket-buffer", ARV_GV_STREAM_SOCKET_BUFFER_FIXED, "socket-buffer-size",
+                 static_cast<gint>(kSocketBytes), nullptr);
+    say_room(payload);
   }
   const std::uint32_t asked = pool == 0 ? options_.buffers : pool;
   GErrorHolder unknown;  // a camera need not tell its rate
@@ -218,8 +205,7 @@ Status Camera::begin(std::uint32_t pool) {
     payload_ = payload;
     counts_.pool = buffers;
     counts_.reconnections += was_gone ? 1 : 0;
-    last_raw_id_ = 0;
-    id_now_ = 0;
+    count_.begin(same_stream);
     clock_ =
         CameraClock(ARV_IS_GV_DEVICE(device_) ? latched_offset_ns(ARV_GV_DEVICE(device_)) : std::nullopt);
   }
@@ -232,6 +218,22 @@ Status Camera::begin(std::uint32_t pool) {
     return std::unexpected(error.told("the stream does not start", id_));
   }
   return {};
+}
+
+void Camera::say_room(std::uint64_t payload) {
+  if (std::exchange(said_room_, true) || (options_.packet_socket && may_take_raw_packets())) {
+    return;
+  }
+  const auto granted = granted_bytes(kSocketBytes);
+  if (const auto scarce = granted ? scarce_room(*granted, payload) : std::nullopt) {
+    log_warning(id_ + ": " + *scarce);
+  }
+}
+
+Status Camera::retake() {
+  const std::uint32_t pool = counts_.pool;
+  lose();
+  return begin(pool, true);
 }
 
 std::unexpected<Error> Camera::gone() const {
@@ -249,9 +251,16 @@ Result<std::optional<Taken>> Camera::next(Clock::time_point until) {
         std::clamp<Clock::duration>(until - Clock::now(), 0us, kSlice));
     ArvBuffer* buffer = arv_stream_timeout_pop_buffer(stream_, static_cast<guint64>(left.count()));
     if (buffer == nullptr) {
-      if (*control_lost_ || (presence_ && presence_->gone())) {
+      const bool silent = presence_ && presence_->gone();
+      if (silent || (*control_lost_ && !presence_)) {
         lose();
         return gone();
+      }
+      if (*control_lost_ && presence_->has_answered()) {
+        if (const Status again = retake(); !again) {
+          return std::unexpected(again.error());
+        }
+        continue;
       }
       if (Clock::now() >= until) {
         return std::nullopt;
@@ -281,17 +290,6 @@ Result<std::optional<Taken>> Camera::next(Clock::time_point until) {
     out.size = std::size_t{out.width} * out.height * bytes_per_pixel_;
     out.offset_x = static_cast<std::uint32_t>(std::max(arv_buffer_get_image_x(buffer), 0));
     out.offset_y = static_cast<std::uint32_t>(std::max(arv_buffer_get_image_y(buffer), 0));
-    const std::uint64_t raw = arv_buffer_get_frame_id(buffer);
-    constexpr std::uint64_t kWrap = 65535;  // of GigE Vision 1: 65535 is followed by 1
-    const bool wrapped = raw < last_raw_id_ && last_raw_id_ <= kWrap && last_raw_id_ - raw > kWrap / 2;
-    const std::uint64_t step = last_raw_id_ == 0    ? 1
-                               : wrapped            ? raw + kWrap - last_raw_id_
-                               : raw > last_raw_id_ ? raw - last_raw_id_
-                                                    : 1;
-    last_raw_id_ = raw;
-    id_now_ += step;
-    out.id = id_now_;
-    out.lost = step - 1;
     const std::int64_t now = clock_ns(CLOCK_MONOTONIC);
     const std::int64_t arrived =
         now - (clock_ns(CLOCK_REALTIME) - static_cast<std::int64_t>(arv_buffer_get_system_timestamp(buffer)));
@@ -300,6 +298,11 @@ Result<std::optional<Taken>> Camera::next(Clock::time_point until) {
     if (out.device_timestamp_ns > 0) {
       out.timestamp_ns = clock_.ours(out.device_timestamp_ns, out.timestamp_ns);
     }
+    const FrameCount::Step step =
+        count_.take(arv_buffer_get_frame_id(buffer), out.timestamp_ns, out.device_timestamp_ns);
+    out.id = step.id;
+    out.lost = step.lost;
+    out.camera_restarted = step.camera_restarted;
     if (chunks_ != nullptr && arv_buffer_has_chunks(buffer)) {
       GErrorHolder error;
       const gint64 count =

@@ -15,6 +15,7 @@
 
 #include "core/result.h"
 #include "drivers/aravis/camera_clock.h"
+#include "drivers/aravis/frame_count.h"
 #include "drivers/aravis/presence.h"
 #include "drivers/aravis/scan3d.h"
 #include "drivers/driver.h"
@@ -56,6 +57,7 @@ struct Taken {
   std::int64_t timestamp_ns = 0;
   std::int64_t device_timestamp_ns = 0;
   std::optional<std::int64_t> encoder;
+  bool camera_restarted = false;  ///< the first since: its counts begin elsewhere
 };
 
 /// A GigE Vision or USB3 Vision camera from open to close, plugged in or not. The stream's own thread puts
@@ -90,7 +92,9 @@ class Camera {
   Status set(const Feature& feature, const dubsar_value& value);
 
   Status start(std::uint32_t pool);
-  /// Nothing when none came in time; kDevice within 2 s when the camera is gone.
+  /// Nothing when none came in time; kDevice within 2 s when the camera is gone. One that is there and has
+  /// let go of this program (its heartbeat was missed, it started anew) is taken anew on the way, and goes on
+  /// with its settings; what it would have sent meanwhile is lost, counted at the rate of the frames before.
   [[nodiscard]] Result<std::optional<Taken>> next(Clock::time_point until);
   /// True when it has not answered of late: next() will tell before long whether it is gone.
   [[nodiscard]] bool is_doubtful() const { return presence_ && presence_->is_doubtful(); }
@@ -104,13 +108,17 @@ class Camera {
   Camera() = default;
   Status connect();
   /// The stream; connects first where it has to. What breaks a connection leaves none.
-  Status begin(std::uint32_t pool);
+  Status begin(std::uint32_t pool, bool same_stream);
   [[nodiscard]] bool has_control() const;
   /// Whether the camera obeys this program, after a second's patience.
   [[nodiscard]] bool take_control();
   Status configure();
   Status choose_format();
   void lose();
+  /// Ends in a stream that runs, or without a camera.
+  Status retake();
+  /// Once, when the kernel keeps too few of its packets.
+  void say_room(std::uint64_t payload);
   [[nodiscard]] std::unexpected<Error> gone() const;
   void add_statistics(dubsar_frame_counters& to) const;
 
@@ -132,10 +140,10 @@ class Camera {
   std::set<ArvBuffer*> lent_;
   std::set<ArvBuffer*> stale_;  ///< lent by a stream that is no more
   std::uint64_t payload_ = 0;   ///< bytes of a buffer
-  std::uint64_t last_raw_id_ = 0;
-  std::uint64_t id_now_ = 0;
+  FrameCount count_;
   CameraClock clock_{std::nullopt};
   dubsar_frame_counters counts_{};
+  bool said_room_ = false;
 };
 
 struct FoundCamera {

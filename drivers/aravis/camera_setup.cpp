@@ -10,10 +10,6 @@ namespace dubsar::aravis {
 
 namespace {
 
-std::string text_of(const char* text) {
-  return text == nullptr ? std::string() : std::string(text);
-}
-
 struct MonoFormat {
   std::uint32_t code;
   const char* name;

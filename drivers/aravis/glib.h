@@ -10,6 +10,11 @@
 
 namespace dubsar::aravis {
 
+/// Of what Aravis gives, which may be none.
+[[nodiscard]] inline std::string text_of(const char* text) {
+  return text == nullptr ? std::string() : std::string(text);
+}
+
 /// The error that an Aravis call fills, freed when it goes.
 class GErrorHolder {
  public:

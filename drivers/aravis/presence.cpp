@@ -42,6 +42,7 @@ Presence::~Presence() {
 void Presence::quiet() {
   looked_ = Clock::now();
   silent_ = {};
+  answered_ = false;
 }
 
 bool Presence::gone() {
@@ -54,6 +55,7 @@ bool Presence::gone() {
   std::array<char, 1024> answer{};
   while (::recv(socket_, answer.data(), answer.size(), 0) > 0) {
     silent_ = {};
+    answered_ = true;
   }
   if (now - asked_ > kAskEvery) {
     ++number_;

@@ -23,6 +23,8 @@ class Presence {
   /// blame. Does not wait. quiet() is for when its frames come and there is nothing to ask.
   [[nodiscard]] bool gone();
   void quiet();
+  /// True when it has answered since gone() began to ask.
+  [[nodiscard]] bool has_answered() const { return answered_; }
   /// True when questions have gone unanswered of late: it may turn out to be gone.
   [[nodiscard]] bool is_doubtful() const { return silent_ > 2 * kAskEvery; }
 
@@ -36,6 +38,7 @@ class Presence {
   Clock::time_point asked_{};
   Clock::time_point looked_ = Clock::now();
   Clock::duration silent_{};
+  bool answered_ = false;
 };
 
 }  // namespace dubsar::aravis

@@ -34,6 +34,11 @@ class Scan {
     return sink_.begin(sink_.user, &info) == 0;
   }
 
+  /// True where the rows are placed by a count that has begun elsewhere since the scan did.
+  [[nodiscard]] bool has_lost_count(const Taken& frame) const {
+    return frame.camera_restarted && frame.encoder && camera_.options().encoder_mm != 0;
+  }
+
   /// The rows of a block, as far as the scan goes. False when the sink has had enough.
   bool block(const Taken& frame) {
     const std::int64_t height = meaning_.height;
@@ -118,6 +123,12 @@ Status stream_rows(Camera& camera, Scan& scan, const std::atomic<bool>& stopped)
                     "see that its trigger or encoder runs, or give it more time with wait=");
       }
       continue;
+    }
+    if (scan.has_lost_count(**frame)) {
+      camera.give_back((*frame)->buffer);
+      return fail(ErrorKind::kDevice,
+                  "the camera started anew in mid-scan, and its encoder counts from elsewhere", camera.id(),
+                  "see to its power supply, then scan again");
     }
     const bool goes_on = scan.block(**frame);
     camera.give_back((*frame)->buffer);

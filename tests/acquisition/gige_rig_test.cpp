@@ -160,6 +160,37 @@ TEST_F(GigeRig, ACameraThatIsUnpluggedLeavesTheRowsTheLaserOffAndGoesOnLater) {
   EXPECT_GT(again.builder->grid().rows, plan_.rows / 2);
 }
 
+TEST_F(GigeRig, ACameraThatLetsGoOfThisProgramIsTakenAgainWhileTheStageMoves) {
+  plan_.rate_hz = 8;
+  plan_.rows = 40;   // 5 s, of which the camera is gone for one or two
+  plan_.jitter = 0;  // what is missing is counted by the rate
+  test::GigeScanner scanner(plan_, *stage);
+  ASSERT_EQ(scanner.refusal(), "");
+  Result<Device> device = open(scanner);
+  ASSERT_TRUE(device.has_value()) << device.error().line();
+  struct LetsGo : test::CollectGrid {
+    explicit LetsGo(test::PeerProcess& one) : camera(one) {}
+    bool profile(const Profile& profile) override {
+      if (profile.row >= 6 && !let_go) {
+        EXPECT_EQ(camera.tell("forget"), "ok");
+        let_go = true;
+      }
+      return CollectGrid::profile(profile);
+    }
+    test::PeerProcess& camera;
+    bool let_go = false;
+  } sink(scanner.camera());
+  const Result<ScanOutcome> done = device->scan(sink);
+  ASSERT_TRUE(done.has_value()) << done.error().line();
+  const RangeGrid grid = sink.grid();
+  EXPECT_NEAR(grid.rows, plan_.rows, 1);
+  EXPECT_GT(sink.tally.profiles_dropped, 0U);
+  EXPECT_NEAR(static_cast<double>(sink.tally.profiles_sent + sink.tally.profiles_dropped), plan_.rows, 1);
+  const test::DepthErrors errors = test::depth_errors(grid, scanner.tablet_from_grid(), scene_.query);
+  EXPECT_LT(errors.rms_um, 3);
+  EXPECT_EQ(stage->tell("laser"), "0");
+}
+
 /// A range camera that yields profiles by itself, carried by the stage.
 TEST_F(GigeRig, PutsTheProfilesOfARangeCameraWhereTheStageWas) {
   const test::TemporaryFolder folder;

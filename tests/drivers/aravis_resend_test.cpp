@@ -5,6 +5,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <string>
+#include <utility>
+#include <vector>
+
 #include "tests/drivers/aravis_fixture.h"
 
 namespace dubsar {
@@ -21,7 +26,10 @@ class Resending : public Aravis {
     ASSERT_EQ(peer_->refusal(), "");
   }
   Result<Device> open_with(Options options) {
-    options.insert(options.end(), {{"rows", "2000"}, {"packet", "1400"}, {"raw_socket", "0"}});
+    options.insert(options.end(), {{"packet", "1400"}, {"raw_socket", "0"}});
+    if (std::ranges::find(options, "rows", &Options::value_type::first) == options.end()) {
+      options.emplace_back("rows", "2000");
+    }
     return (*registry_.find("aravis"))->open("Dubsar-Resender-SN7", options);
   }
 };
@@ -72,6 +80,77 @@ TEST_F(Resending, ACameraThatForgotWhoHasControlIsTakenAnew) {
     EXPECT_EQ(rows.rows.size(), 80U);
     ASSERT_EQ(peer_->tell("forget"), "ok");
   }
+}
+
+/// Rows among which the camera is told something once.
+struct Interrupted : Rows {
+  Interrupted(test::PeerProcess& camera, std::string word) {
+    each = [this, &camera, word = std::move(word)] {
+      if (rows.size() == 400) {
+        EXPECT_EQ(camera.tell(word), "ok");
+      }
+    };
+  }
+  bool profile(const Profile& row) override {
+    encoders.push_back(row.encoder.value_or(-1));
+    return Rows::profile(row);
+  }
+  /// The widest gap between the rows, from the row before it.
+  [[nodiscard]] std::pair<std::size_t, std::int64_t> gap() const {
+    std::pair<std::size_t, std::int64_t> out{};
+    for (std::size_t k = 1; k < rows.size(); ++k) {
+      out = rows[k] - rows[k - 1] > out.second ? std::pair(k - 1, rows[k] - rows[k - 1]) : out;
+    }
+    return out;
+  }
+  std::vector<std::int64_t> encoders;
+};
+
+/// A heartbeat was missed, by the network or by this machine: the camera is there, and obeys nobody.
+TEST_F(Resending, ControlThatIsLostInMidScanIsTakenAgainAndTheRowsInBetweenAreCounted) {
+  Device device = open_with({{"rows", "24000"}}).value();
+  ASSERT_TRUE(device.set("light", std::int64_t{55}));
+  Interrupted rows(*peer_, "forget");
+  const auto outcome = device.scan(rows);
+  ASSERT_TRUE(outcome) << outcome.error().line();
+  ASSERT_TRUE(rows.tally);
+  EXPECT_EQ(rows.rows.back(), 23999);
+  EXPECT_EQ(rows.rows.size() + rows.tally->profiles_dropped, 24000U);
+  const auto [before, missed] = rows.gap();
+  EXPECT_GE(before, 399U);
+  // 5000 rows a second, in blocks of 40: as many as fell into the time are missing.
+  const double seconds = 1e-9 * static_cast<double>(rows.times[before + 1] - rows.times[before]);
+  EXPECT_NEAR(static_cast<double>(missed), 5000 * seconds, 80);
+  EXPECT_EQ(std::get<std::int64_t>(device.get("light").value()), 55);
+  EXPECT_EQ(device.frame_counters()->reconnections, 1U);
+}
+
+TEST_F(Resending, ACameraThatStartsAnewInMidScanGoesOn) {
+  Device device = open_with({{"rows", "24000"}}).value();
+  Interrupted rows(*peer_, "restart");
+  const auto outcome = device.scan(rows);
+  ASSERT_TRUE(outcome) << outcome.error().line();
+  EXPECT_EQ(rows.rows.back(), 23999);
+  EXPECT_EQ(rows.rows.size() + rows.tally->profiles_dropped, 24000U);
+  EXPECT_GT(rows.tally->profiles_dropped, 0U);
+  EXPECT_TRUE(std::ranges::is_sorted(rows.times));  // its clock began at nought
+}
+
+/// Rows that an encoder places go nowhere without its count.
+TEST_F(Resending, ACameraThatStartsAnewWithItsEncoderEndsTheScan) {
+  Device device = open_with({{"rows", "24000"}, {"count", "0.5"}, {"row", "0.125"}}).value();
+  Interrupted rows(*peer_, "restart");
+  const auto outcome = device.scan(rows);
+  ASSERT_FALSE(outcome);
+  EXPECT_EQ(outcome.error().kind, ErrorKind::kDevice);
+  EXPECT_THAT(outcome.error().line(), testing::HasSubstr("its encoder counts from elsewhere"));
+  EXPECT_GE(rows.rows.size(), 400U);
+  EXPECT_TRUE(std::ranges::is_sorted(rows.encoders));
+  ASSERT_TRUE(rows.tally);
+  Rows again;
+  again.most = 80;
+  EXPECT_EQ(device.scan(again).error().kind, ErrorKind::kCancelled);
+  EXPECT_EQ(again.rows.size(), 80U);
 }
 
 TEST_F(Resending, OneProgramAtATimeHasTheCamera) {

@@ -28,6 +28,8 @@ constexpr std::uint32_t kEncoderChunk = 0x1001;
 constexpr std::uint32_t kHeartbeat_ms = 0x938;
 constexpr std::uint32_t kControlPrivilege = 0xa00;
 constexpr std::uint32_t kAccessDenied = 0x8006;
+constexpr std::uint32_t kStreamPort = 0xd00;
+constexpr std::uint32_t kAcquisition = 0x124;
 constexpr std::uint32_t kTimestampControl = 0x944;
 constexpr std::uint32_t kTimestampLatched = 0x948;
 
@@ -124,7 +126,7 @@ void GigeDevice::serve_stream() {
     bool on = false;
     {
       const std::lock_guard lock(mutex_);
-      on = read(0x124) == 1 && read(0xd00) != 0 && !quiet;
+      on = read(kAcquisition) == 1 && read(kStreamPort) != 0 && !quiet;
     }
     if (!on) {
       id = 0;
@@ -157,7 +159,7 @@ void GigeDevice::serve_stream() {
 void GigeDevice::send(const Bytes& packet) {
   sockaddr_in to{};
   to.sin_family = AF_INET;
-  to.sin_port = htons(static_cast<std::uint16_t>(read(0xd00)));
+  to.sin_port = htons(static_cast<std::uint16_t>(read(kStreamPort)));
   to.sin_addr.s_addr = htonl(read(0xd18));
   ::sendto(stream_, packet.data(), packet.size(), 0, reinterpret_cast<sockaddr*>(&to), sizeof to);
 }
@@ -188,8 +190,9 @@ GigeDevice::Block GigeDevice::packed(std::uint16_t id, Picture& picture) const {
   Bytes leader = begin(1);
   put16(leader, 0);
   put16(leader, type);
-  put32(leader, static_cast<std::uint32_t>(picture.timestamp_ns >> 32U));
-  put32(leader, static_cast<std::uint32_t>(picture.timestamp_ns));
+  const std::uint64_t stamp_ns = picture.timestamp_ns - switched_on_ns_;
+  put32(leader, static_cast<std::uint32_t>(stamp_ns >> 32U));
+  put32(leader, static_cast<std::uint32_t>(stamp_ns));
   for (const std::uint32_t word : {read(0x128), width, height, 0U, 0U, 0U}) {
     put32(leader, word);
   }
@@ -265,8 +268,8 @@ void GigeDevice::answer(const Bytes& ask, const sockaddr_in& to) {
           heard_ns_ = now;
         }
         if (word(k) == kTimestampControl && (word(k + 4) & 2U) != 0) {
-          write(kTimestampLatched, static_cast<std::uint32_t>(now >> 32U));
-          write(kTimestampLatched + 4, static_cast<std::uint32_t>(now));
+          write(kTimestampLatched, static_cast<std::uint32_t>((now - switched_on_ns_) >> 32U));
+          write(kTimestampLatched + 4, static_cast<std::uint32_t>(now - switched_on_ns_));
         }
       }
       put32(data, 1);
@@ -312,6 +315,15 @@ void GigeDevice::forget() {
   const std::lock_guard lock(mutex_);
   controller_ = 0;
   write(kControlPrivilege, 0);
+  write(kStreamPort, 0);  // as the standard has it: the stream ends with the control
+}
+
+void GigeDevice::restart() {
+  forget();
+  const std::lock_guard lock(mutex_);
+  write(kAcquisition, 0);
+  switched_on_ns_ = now_ns();
+  restarted();
 }
 
 int serve_gige(GigeDevice& device) {
@@ -326,6 +338,9 @@ int serve_gige(GigeDevice& device) {
   for (std::string line; std::getline(std::cin, line);) {
     if (line == "forget") {
       device.forget();
+    }
+    if (line == "restart") {
+      device.restart();
     }
     if (line == "quiet") {
       device.quiet = true;

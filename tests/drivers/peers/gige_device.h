@@ -33,6 +33,9 @@ class GigeDevice {
   void serve_stream();
   /// Lets go of whoever has the control, as a camera does that has heard nothing for too long.
   void forget();
+  /// As at switching on, but for the registers that stay: nobody has the control, nothing streams, and what
+  /// it counts begins anew, its clock too.
+  void restart();
 
   std::atomic<bool> quit = false, quiet = false;
   std::atomic<int> resent = 0;
@@ -45,6 +48,7 @@ class GigeDevice {
   };
   /// Waits for the next exposure; `width`, `height` are those of the region. Nothing when none came of it.
   virtual std::optional<Picture> next(std::uint32_t id) = 0;
+  virtual void restarted() {}
 
   [[nodiscard]] std::uint32_t reg(std::uint32_t at) {
     const std::lock_guard lock(mutex_);
@@ -74,6 +78,7 @@ class GigeDevice {
   /// Who has the control channel: writes of anybody else are refused until it is let go or falls silent.
   std::uint64_t controller_ = 0;
   std::uint64_t heard_ns_ = 0;
+  std::atomic<std::uint64_t> switched_on_ns_ = 0;  ///< where its clock begins
   std::deque<Block> history_;
   std::mt19937 random_{1};
 };

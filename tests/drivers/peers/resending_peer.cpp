@@ -3,7 +3,9 @@
 //
 // resending_peer SERIAL LOSS: a range camera of our own on 127.0.0.1: it loses packets at the ratio LOSS,
 // sends them again when it is asked to, and puts the count of an encoder behind each frame (chunk data). Says
-// "ready"; commands: resent (packets sent again), quiet (takes no more packets, sends none).
+// "ready"; commands: resent (packets sent again), quiet (takes no more packets, sends none), forget (who has
+// the control), restart (as at switching on).
+#include <atomic>
 #include <chrono>
 #include <cstdio>
 #include <string>
@@ -50,8 +52,9 @@ class Resender : public dubsar::test::GigeDevice {
   }
 
  protected:
+  void restarted() override { encoder_ = 0; }
   /// Depth 1000 + 3 col, as the other peer paints it; the encoder counts ten for each frame.
-  std::optional<Picture> next(std::uint32_t id) override {
+  std::optional<Picture> next(std::uint32_t /*id*/) override {
     const auto now = std::chrono::steady_clock::now();
     due_ = due_ < now - std::chrono::milliseconds(100) ? now : due_;
     std::this_thread::sleep_until(due_);
@@ -67,14 +70,16 @@ class Resender : public dubsar::test::GigeDevice {
       out.data.push_back(static_cast<std::uint8_t>(depth));
       out.data.push_back(static_cast<std::uint8_t>(depth >> 8U));
     }
+    encoder_ += 10;
     if (reg(kChunkMode) != 0) {
-      out.chunk = 10U * id;
+      out.chunk = encoder_;
     }
     return out;
   }
 
  private:
   std::chrono::steady_clock::time_point due_{};
+  std::atomic<std::uint32_t> encoder_ = 0;
 };
 
 }  // namespace

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <optional>
+
+namespace dubsar::aravis {
+
+/// Numbers the frames of a stream from 1 on and tells how many are missing: from the camera's own numbers
+/// while one connection lasts, and from the time that passed, at the rate of the frames before, where the
+/// camera had to be taken anew in between.
+class FrameCount {
+ public:
+  struct Step {
+    std::uint64_t id = 0;
+    std::uint64_t lost = 0;  ///< frames that did not come before this one
+    /// The camera itself began anew before this one: its clock does not go on, nor does what it counts.
+    bool camera_restarted = false;
+  };
+
+  /// The stream begins. Numbers go on from the last frame's where it is the same one over a new connection.
+  void begin(bool same_stream);
+  /// `raw`: the camera's number, which goes round from 65535 to 1 in GigE Vision 1. `device_ns`: the camera's
+  /// time, 0 where it has none.
+  Step take(std::uint64_t raw, std::int64_t timestamp_ns, std::int64_t device_ns);
+
+ private:
+  struct Seen {
+    std::uint64_t id;
+    std::int64_t timestamp_ns, device_ns;
+  };
+  [[nodiscard]] std::uint64_t missed_until(std::int64_t timestamp_ns) const;
+
+  std::uint64_t last_raw_ = 0;  ///< 0: none yet over this connection
+  std::optional<Seen> last_;
+  std::deque<double> periods_ns_;  ///< from frame to frame, of late
+};
+
+}  // namespace dubsar::aravis
