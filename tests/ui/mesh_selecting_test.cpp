@@ -229,5 +229,31 @@ TEST(PolygonMask, EvenOddAndBottomRowFirst) {
             std::vector<std::uint8_t>(9, 255));
 }
 
+decltype(epoxy_glGetIntegerv) real_get_integer = nullptr;
+
+/// A driver that lets shaders look up as few as OpenGL allows.
+void least_allowed(GLenum what, GLint* value) {
+  if (what == GL_MAX_TEXTURE_BUFFER_SIZE) {
+    *value = 65536;
+  } else {
+    real_get_integer(what, value);
+  }
+}
+
+TEST_F(Selecting, MoreFacesThanTheDriverCanNumberAreNotSelectedWrongly) {
+  EXPECT_TRUE(view_->can_select(MeshElement::kFace));
+  real_get_integer = epoxy_glGetIntegerv;
+  epoxy_glGetIntegerv = least_allowed;
+  const bool can = view_->can_select(MeshElement::kFace);
+  const bool did = view_->select(MeshElement::kFace, {{0, 0}, {kWidth, 0}, {kWidth, kHeight}},
+                                 SelectionStep::kUnion, true);
+  view_->set_selection(MeshElement::kFace, std::vector<std::uint32_t>(shown_.faces.size(), 1));
+  const bool marked = view_->selection() != nullptr;
+  epoxy_glGetIntegerv = real_get_integer;
+  EXPECT_FALSE(can);
+  EXPECT_FALSE(did);
+  EXPECT_FALSE(marked);
+}
+
 }  // namespace
 }  // namespace dubsar::ui

@@ -20,6 +20,8 @@ class FrameTarget {
   FrameTarget(const FrameTarget&) = delete;
   FrameTarget& operator=(const FrameTarget&) = delete;
 
+  /// The most pixels of a side that the graphics driver draws, and that a picture is given.
+  [[nodiscard]] static int largest_side();
   /// Makes it that large; what was drawn is lost when the size changes. True when it did.
   bool resize(int width, int height);
   /// All that is drawn goes here, until another target or the window is bound.

@@ -104,6 +104,12 @@ std::vector<std::uint8_t> polygon_mask(const std::vector<Eigen::Vector2f>& corne
   return mask;
 }
 
+std::size_t MeshSelecting::most() {
+  GLint texels = 0;
+  glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &texels);
+  return static_cast<std::size_t>(std::max(texels, 0));
+}
+
 MeshSelecting::MeshSelecting(MeshElement of, std::size_t count)
     : program_(of == MeshElement::kFace ? kVertex : kPoint, of == MeshElement::kFace ? kGeometry : nullptr,
                nullptr, {"selected"}),

@@ -27,6 +27,10 @@ enum class SelectionStep { kUnion, kIntersection, kDifference };
 /// gl_VertexID. A number per face in the order of ShownMesh::faces, or per vertex. Main thread.
 class MeshSelecting {
  public:
+  /// The most elements that the graphics driver lets a shader look up by number: beyond it reads would be
+  /// wrong without a word. At least 65 536; a hundred million and more on cards of today.
+  [[nodiscard]] static std::size_t most();
+  /// `count` of at most most().
   MeshSelecting(MeshElement of, std::size_t count);
   ~MeshSelecting();
   MeshSelecting(const MeshSelecting&) = delete;

@@ -17,6 +17,10 @@ void bind_buffer_texture(int unit, unsigned texture) {
 
 }  // namespace
 
+bool SurfaceView::can_select(MeshElement of) const {
+  return mesh_ && (of == MeshElement::kFace ? mesh_->faces() : mesh_->vertices()) <= MeshSelecting::most();
+}
+
 void SurfaceView::begin_selection(MeshElement of) {
   if (!selection_ || selection_->of() != of) {
     selection_.reset();  // two at once would be too much for a small card
@@ -27,7 +31,8 @@ void SurfaceView::begin_selection(MeshElement of) {
 
 bool SurfaceView::select(MeshElement of, const std::vector<Eigen::Vector2f>& corners, SelectionStep step,
                          bool through) {
-  if (!mesh_ || !whole_ || corners.size() < 3 || (of == MeshElement::kFace && mesh_->points_only())) {
+  if (!can_select(of) || !whole_ || corners.size() < 3 ||
+      (of == MeshElement::kFace && mesh_->points_only())) {
     return false;
   }
   begin_selection(of);
@@ -41,7 +46,7 @@ bool SurfaceView::select(MeshElement of, const std::vector<Eigen::Vector2f>& cor
 }
 
 void SurfaceView::set_selection(MeshElement of, const std::vector<std::uint32_t>& selected) {
-  if (mesh_) {
+  if (can_select(of)) {
     begin_selection(of);
     selection_->set(selected);
     dirty_ = true;

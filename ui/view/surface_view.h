@@ -62,6 +62,8 @@ class SurfaceView {
   /// The picture; id 0 before the first draw.
   [[nodiscard]] unsigned texture() const { return picture_.width() > 0 ? picture_.colour(0) : 0; }
   [[nodiscard]] Image read() const { return picture_.read(); }
+  /// False when the mesh has more of them than the graphics driver can number: then none can be selected.
+  [[nodiscard]] bool can_select(MeshElement of) const;
   /// Selects faces, or vertices, by a polygon in the last picture, corners in its pixels from the top left.
   /// `through`: also what is hidden there. A selection of the other kind is given up. False before the whole
   /// surface stands in the picture.

@@ -276,7 +276,6 @@ std::filesystem::path ViewerScreen::unused_file(const std::string& what, const s
 
 void ViewerScreen::keep_picture(UiContext& ui) {
   // To scale: the whole surface as it is turned now, a margin and a bar, so many pixels to the inch.
-  constexpr int kLargestPx = 16384;
   OrbitCamera camera = camera_;
   camera.fit(prepared_.shown().box_mm, 1.0F);
   Eigen::AlignedBox3f eye;
@@ -289,8 +288,8 @@ void ViewerScreen::keep_picture(UiContext& ui) {
   const Eigen::Vector2f mm = 1.06F * eye.sizes().head<2>() + Eigen::Vector2f(2, 8);
   const int width = static_cast<int>(std::ceil(mm.x() / mm_per_px));
   const int height = static_cast<int>(std::ceil(mm.y() / mm_per_px));
-  if (width > kLargestPx || height > kLargestPx) {
-    picture_note_ = fmt::format("{} x {} px > {}", width, height, kLargestPx);
+  if (const int most = FrameTarget::largest_side(); width > most || height > most) {
+    picture_note_ = filled(ui.text(Text::kPictureTooLarge), width, height, most);
     return;
   }
   camera.half_height_mm = static_cast<float>(0.5 * height * mm_per_px);

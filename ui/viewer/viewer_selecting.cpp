@@ -110,6 +110,11 @@ void ViewerScreen::draw_selecting(UiContext& ui) {
   if (!is_current()) {
     return;
   }
+  if (!surface_.can_select(select_of_)) {
+    const std::string most = filled(ui.text(Text::kTooManyToSelect), grouped(MeshSelecting::most()));
+    coloured_text(ui.colours.amber, most.c_str());
+    return;
+  }
   if (surface_.selection() != nullptr) {
     draw_selected(ui);
   }
