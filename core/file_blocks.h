@@ -4,6 +4,8 @@
 
 #include <cstddef>
 
+#include "core/heap.h"
+
 namespace dubsar {
 
 /// Blocks of memory that lie in files. They are read and written as any other, but the system may write them
@@ -12,7 +14,7 @@ namespace dubsar {
 /// They lie in $TMPDIR, else in /var/tmp; never on a disk that is memory itself (tmpfs).
 
 /// From this size on a block is worth a file of its own, bytes.
-inline constexpr std::size_t kLeastFileBlock = std::size_t{1} << 20U;
+inline constexpr std::size_t kLeastFileBlock = kOwnMappingBytes;
 
 /// True when a block of this size had better lie in a file: less than a quarter of the machine's memory (or
 /// of what its control group grants the program) would be left. Always with DUBSAR_ARRAYS=files in the

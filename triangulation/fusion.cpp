@@ -193,8 +193,7 @@ Vector3f averaging_direction(const StitchSurface& from, int row, const Vector3f&
   if (!from.view.laser_mm) {
     return normal;
   }
-  const Vector3f laser = (*from.view.laser_mm + row * from.view.motion_per_row_mm).cast<float>();
-  const Vector3f ray = (laser - p).normalized();
+  const Vector3f ray = from.view.to_laser(p.cast<double>(), row).cast<float>();
   return ray.dot(normal) > kLeastCos ? ray : normal;
 }
 
