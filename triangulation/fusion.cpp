@@ -7,162 +7,13 @@
 #include <limits>
 
 #include "core/parallel.h"
+#include "triangulation/line_projection.h"
 
 namespace dubsar {
 
 namespace {
 
 using Eigen::Vector3f;
-
-struct Projection {
-  std::size_t sample = 0;     ///< a corner of the triangle
-  float along_mm = 0;         ///< from p along the line
-  bool well_sampled = false;  ///< none of the corners is sparse
-  std::uint8_t rim = 0;       ///< of the corner that is nearest to it
-  float weight = 0;           ///< interpolated; 0 where the line misses the other scan's triangles
-  float reliability = 0;      ///< interpolated
-};
-
-/// The line through a sample on which it moves. To where it meets other scans, not to their nearest points:
-/// of a rough sheet the nearest point is the one that errs the same way as p, and averaging with it takes
-/// away next to nothing of the noise.
-struct Line {
-  Vector3f p, n, u, v;
-
-  Line(const Vector3f& at, const Vector3f& direction)
-      : p(at), n(direction), u(direction.unitOrthogonal()), v(direction.cross(u)) {}
-};
-
-/// Where a line meets the triangles of a scan.
-class LineProjector {
- public:
-  LineProjector(const StitchSurface& s, const Line& line)
-      : s_(&s), line_(&line), turn_(s.mirrored ? -1.0F : 1.0F) {}  // triangles run as their grid does
-
-  /// Steps from a cell towards the line, then looks there and all around.
-  [[nodiscard]] Projection from_cell(float at_row, float at_col) {
-    const int last_row = s_->lattice.rows - 2;
-    const int last_col = s_->lattice.cols - 2;
-    int row = static_cast<int>(std::clamp(at_row, 0.0F, static_cast<float>(last_row)));
-    int col = static_cast<int>(std::clamp(at_col, 0.0F, static_cast<float>(last_col)));
-    for (int step = 0; step < kMostSteps; ++step) {
-      const auto [rows, cols] = towards_line(row, col);
-      const int next_row = std::clamp(row + rows, 0, last_row);
-      const int next_col = std::clamp(col + cols, 0, last_col);
-      if (next_row == row && next_col == col) {
-        break;
-      }
-      row = next_row;
-      col = next_col;
-    }
-    meet_cell(row, col);
-    for (int r = std::max(row - 1, 0); r <= std::min(row + 1, last_row) && !(best_.weight > 0); ++r) {
-      for (int c = std::max(col - 1, 0); c <= std::min(col + 1, last_col); ++c) {
-        if (r != row || c != col) {
-          meet_cell(r, c);
-        }
-      }
-    }
-    return best_;
-  }
-
- private:
-  struct Corner {
-    float u, v;
-  };
-  static float wedge(const Corner& a, const Corner& b) { return a.u * b.v - a.v * b.u; }
-
-  [[nodiscard]] std::size_t first_sample(int row, int col) const {
-    return static_cast<std::size_t>(row) * static_cast<std::size_t>(s_->lattice.cols) +
-           static_cast<std::size_t>(col);
-  }
-
-  [[nodiscard]] Corner seen_along(std::size_t i) const {
-    const Vector3f d = s_->points[i] - line_->p;
-    return {line_->u.dot(d), turn_ * line_->v.dot(d)};
-  }
-
-  /// To which of the cells beside this one the line passes, as rows and columns: none where it passes through
-  /// this one, or a corner is missing.
-  [[nodiscard]] std::pair<int, int> towards_line(int row, int col) const {
-    const std::size_t i00 = first_sample(row, col);
-    const std::size_t i10 = i00 + static_cast<std::size_t>(s_->lattice.cols);
-    if ((s_->usable[i00] & s_->usable[i00 + 1] & s_->usable[i10] & s_->usable[i10 + 1] & kUsable) == 0) {
-      return {0, 0};
-    }
-    const Corner c00 = seen_along(i00), c01 = seen_along(i00 + 1);
-    const Corner c10 = seen_along(i10), c11 = seen_along(i10 + 1);
-    const int left = wedge(c00, c10) < 0 ? 1 : 0;
-    const int right = wedge(c11, c01) < 0 ? 1 : 0;
-    const int above = wedge(c01, c00) < 0 ? 1 : 0;
-    const int below = wedge(c10, c11) < 0 ? 1 : 0;
-    return {below - above, right - left};
-  }
-
-  void meet_cell(int row, int col) {
-    const std::size_t i00 = first_sample(row, col);
-    const std::uint8_t cell = s_->cells[i00];
-    if (cell == 0) {
-      return;
-    }
-    const std::size_t i10 = i00 + static_cast<std::size_t>(s_->lattice.cols);
-    const std::array<std::size_t, 4> i = {i00, i00 + 1, i10, i10 + 1};
-    const std::array<Corner, 4> corners = {seen_along(i[0]), seen_along(i[1]), seen_along(i[2]),
-                                           seen_along(i[3])};
-    using Three = std::array<std::size_t, 3>;
-    const bool anti = (cell & kCellAntidiagonal) != 0;
-    if ((cell & kCellFirst) != 0) {
-      meet(i, corners, anti ? Three{0, 2, 1} : Three{0, 2, 3});
-    }
-    if ((cell & kCellSecond) != 0) {
-      meet(i, corners, anti ? Three{2, 3, 1} : Three{0, 3, 1});
-    }
-  }
-
-  void meet(const std::array<std::size_t, 4>& samples, const std::array<Corner, 4>& corners,
-            const std::array<std::size_t, 3>& which) {
-    const Corner &a = corners[which[0]], &b = corners[which[1]], &c = corners[which[2]];
-    const float wa = wedge(b, c);
-    const float wb = wedge(c, a);
-    const float wc = wedge(a, b);
-    const float sum = wa + wb + wc;
-    // Seen from below, or from the side: another fold, or no way to tell where.
-    if (!(sum > 0)) {
-      return;
-    }
-    const float slack = kSlack * sum;
-    if (wa < slack || wb < slack || wc < slack) {
-      return;
-    }
-    const std::array<std::size_t, 3> t = {samples[which[0]], samples[which[1]], samples[which[2]]};
-    const float inverse = 1.0F / sum;
-    const Vector3f &n = line_->n, &p = line_->p;
-    const float along = (wa * n.dot(s_->points[t[0]] - p) + wb * n.dot(s_->points[t[1]] - p) +
-                         wc * n.dot(s_->points[t[2]] - p)) *
-                        inverse;
-    if (best_.weight > 0 && std::abs(along) >= std::abs(best_.along_mm)) {
-      return;
-    }
-    best_.sample = t[0];
-    best_.along_mm = along;
-    best_.well_sampled = !s_->is_sparse(t[0]) && !s_->is_sparse(t[1]) && !s_->is_sparse(t[2]);
-    best_.rim = std::min({s_->rim[t[0]], s_->rim[t[1]], s_->rim[t[2]]});
-    // Variances of independent samples: Σ λ² / w.
-    const float la = wa * inverse, lb = wb * inverse, lc = wc * inverse;
-    best_.weight =
-        1.0F / (la * la / s_->weight(t[0]) + lb * lb / s_->weight(t[1]) + lc * lc / s_->weight(t[2]));
-    best_.reliability = std::clamp(
-        (wa * s_->reliability(t[0]) + wb * s_->reliability(t[1]) + wc * s_->reliability(t[2])) * inverse,
-        0.0F, 1.0F);
-  }
-
-  static constexpr float kSlack = -0.01F;  ///< so that no line slips through between two triangles
-  static constexpr int kMostSteps = 6;
-  const StitchSurface* s_;
-  const Line* line_;
-  float turn_;
-  Projection best_;
-};
 
 float square(float x) {
   return x * x;
@@ -271,17 +122,16 @@ void fuse(const StitchSurface& from, std::span<const StitchSurface* const> other
       for (const auto& [k, start] : starts) {
         const StitchSurface& other = *others[k];
         const auto [row, col] = start.place_of(p);
-        Projection q = LineProjector(other, line).from_cell(row, col);
+        Projection q = project(line, other, row, col);
         if (q.weight > 0 && !(tilt * std::abs(q.along_mm) <= pairs[k]->reach_mm &&
                               normal.dot(other.normal(q.sample)) > pairs[k]->min_normal_cos)) {
           // Another fold of the surface: from the nearest sample that looks the same way there is a way to
           // the right one.
           const std::int64_t j = pair_of(from, i, start, other, *pairs[k]);
-          q = j < 0
-                  ? Projection()
-                  : LineProjector(other, line)
-                        .from_cell(static_cast<float>(other.lattice.sample_row(static_cast<std::size_t>(j))),
-                                   static_cast<float>(other.lattice.sample_col(static_cast<std::size_t>(j))));
+          q = j < 0 ? Projection()
+                    : project(line, other,
+                              static_cast<float>(other.lattice.sample_row(static_cast<std::size_t>(j))),
+                              static_cast<float>(other.lattice.sample_col(static_cast<std::size_t>(j))));
         }
         if (q.weight > 0 && tilt * std::abs(q.along_mm) <= pairs[k]->reach_mm) {
           found.emplace_back(k, q);
