@@ -288,9 +288,14 @@ bool NodeContest::is_taken_by(std::size_t k, std::size_t i) {
 
 bool NodeContest::is_taken(std::size_t i) {
   // First those that are likeliest to say yes.
+  if (last_taker_ < scan_->pairs.size() && contest_->by_pair[last_taker_][node_] != 0 &&
+      is_taken_by(last_taker_, i)) {
+    return true;
+  }
   for (const std::uint8_t nearness : {2, 1}) {
     for (std::size_t k = 0; k < scan_->pairs.size(); ++k) {
-      if (contest_->by_pair[k][node_] == nearness && is_taken_by(k, i)) {
+      if (contest_->by_pair[k][node_] == nearness && k != last_taker_ && is_taken_by(k, i)) {
+        last_taker_ = k;
         return true;
       }
     }

@@ -43,6 +43,7 @@ class NodeContest {
                                    const std::array<std::size_t, 3>& t);
 
  private:
+  static constexpr std::size_t kNoPair = ~std::size_t{0};
   [[nodiscard]] const StitchSurface& other_surface(std::size_t k) const;
   [[nodiscard]] const PairStart& start(std::size_t k, std::size_t sample);
   [[nodiscard]] std::int64_t pair(std::size_t k, std::size_t sample);
@@ -53,8 +54,9 @@ class NodeContest {
   const Contest* contest_;
   const OwnershipOptions* options_;
   std::size_t node_ = 0;
-  int row_ = 0, col_ = 0;          ///< the node's first sample
-  std::vector<PairStart> starts_;  ///< by pair, of the node and the three after it
+  int row_ = 0, col_ = 0;             ///< the node's first sample
+  std::size_t last_taker_ = kNoPair;  ///< the pair that took the sample that was taken last
+  std::vector<PairStart> starts_;     ///< by pair, of the node and the three after it
   std::vector<std::uint8_t> start_known_;
   std::vector<std::int32_t> pair_;  ///< by pair and sample, of the node's and those just after them
 };

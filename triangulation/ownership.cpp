@@ -241,7 +241,10 @@ bool assign_owners(std::vector<OwnedScan>& scans, const GridTriangulationOptions
     std::vector<std::uint8_t> fresh(scan.kept.size(), 0);
     for (const std::uint32_t i : uncovered) {
       fresh[i] = 1;
-      if (scan.fused->slot[i] == FusedSamples::kNone) {
+    }
+    drop_scattered(fresh, scan.kept, scan.surface->lattice, options.least_patch_samples);
+    for (const std::uint32_t i : uncovered) {
+      if (fresh[i] != 0 && scan.fused->slot[i] == FusedSamples::kNone) {
         unfused.push_back(i);
       }
     }

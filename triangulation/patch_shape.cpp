@@ -11,6 +11,8 @@ namespace dubsar {
 namespace {
 
 constexpr std::uint8_t kBoth = kCellFirst | kCellSecond;
+/// In what group a sample was found.
+constexpr std::uint8_t kInSmall = 1, kInLarge = 2;
 
 /// Leaves samples that no kept triangle uses.
 void drop_unused(OwnedScan& scan, const GridSurface& g) {
@@ -128,6 +130,48 @@ void remove_specks(std::vector<std::uint8_t>& kept, const std::vector<std::uint8
   }
 }
 
+void drop_scattered(std::vector<std::uint8_t>& fresh, const std::vector<std::uint8_t>& kept,
+                    const Lattice& grid, int least) {
+  const auto width = static_cast<std::size_t>(grid.cols);
+  const auto enough = static_cast<std::size_t>(std::max(least, 1));
+  std::vector<std::uint8_t> seen(fresh.size(), 0);
+  std::vector<std::size_t> group;
+  bool is_large = false;
+  const auto visit = [&](std::size_t i) {
+    if ((fresh[i] | kept[i]) == 0) {
+      return;
+    }
+    if (seen[i] == 0) {
+      seen[i] = kInSmall;
+      group.push_back(i);
+    }
+    is_large = is_large || seen[i] == kInLarge;
+  };
+  for (std::size_t start = 0; start < fresh.size(); ++start) {
+    if (fresh[start] == 0 || seen[start] != 0) {
+      continue;
+    }
+    group.clear();
+    is_large = false;
+    visit(start);
+    for (std::size_t at = 0; at < group.size() && !is_large; ++at) {
+      const std::size_t i = group[at];
+      const std::size_t col = i % width;
+      for (std::size_t row_of = i >= width ? i - width : i; row_of < fresh.size() && row_of <= i + width;
+           row_of += width) {
+        for (std::size_t k = row_of - (col > 0 ? 1 : 0); k <= row_of + (col + 1 < width ? 1 : 0); ++k) {
+          visit(k);
+        }
+      }
+      is_large = is_large || group.size() >= enough;
+    }
+    for (const std::size_t i : group) {
+      seen[i] = is_large ? kInLarge : kInSmall;
+      fresh[i] = is_large ? fresh[i] : 0;
+    }
+  }
+}
+
 void settle_patches(OwnedScan& scan) {
   const GridSurface g = scan.surface->surface();
   // Cells of removed specks lose their corners, so their triangles go too.
@@ -176,9 +220,11 @@ std::vector<std::uint8_t> dilated(const std::vector<std::uint8_t>& marks, int he
   parallel_for_each_index(
       rows,
       [&](std::size_t r) {
+        std::uint8_t* const to = &out[r * cols];
         for (std::size_t q = r > reach ? r - reach : 0; q < std::min(r + reach + 1, rows); ++q) {
+          const std::uint8_t* const from = &along[q * cols];
           for (std::size_t c = 0; c < cols; ++c) {
-            out[r * cols + c] |= along[q * cols + c];
+            to[c] |= from[c];
           }
         }
       },
