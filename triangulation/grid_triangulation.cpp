@@ -77,6 +77,42 @@ bool most_are_mirrored(const GridSurface& surface, std::span<const std::uint8_t>
 bool is_mirrored(const GridSurface& surface, std::span<const std::uint8_t> keep) {
   return most_are_mirrored(surface, keep, [&](std::size_t i) { return surface.points[i]; });
 }
+
+std::vector<std::uint8_t> corners_of_cells(std::span<const std::uint8_t> cells, int rows, int cols) {
+  static_assert(kCellAntidiagonal == 1 && kCellFirst == 2 && kCellSecond == 4);
+  std::vector<std::uint8_t> used(cells.size(), 0);
+  const auto width = static_cast<std::size_t>(cols);
+  parallel_for_each_index(
+      static_cast<std::size_t>(rows),
+      [&](std::size_t row) {
+        // The last cell of each row and the last row of cells are none: what lies before a row's first is
+        // none.
+        const std::uint8_t* const below = cells.data() + row * width;
+        const std::uint8_t* const above = row > 0 ? below - width : below;
+        const int has_above = row > 0 ? 1 : 0;
+        std::uint8_t* const out = used.data() + row * width;
+        const auto use = [&](std::size_t c, std::size_t before) {
+          const int here = below[c];                     // its corner 00 is the sample
+          const int left = below[before];                // 01
+          const int over = has_above * above[c];         // 10
+          const int aslant = has_above * above[before];  // 11
+          const int by_here = (here >> 1) | ((here >> 2) & ~here);
+          const int by_left = (left >> 2) | ((left >> 1) & left);
+          const int by_over = (over >> 1) | ((over >> 2) & over);
+          const int by_aslant = (aslant >> 2) | ((aslant >> 1) & ~aslant);
+          out[c] = static_cast<std::uint8_t>((by_here | by_left | by_over | by_aslant) & 1);
+        };
+        if (width > 0) {
+          use(0, width - 1);
+        }
+        for (std::size_t c = 1; c < width; ++c) {
+          use(c, c - 1);
+        }
+      },
+      kRowsPerChunk);
+  return used;
+}
+
 std::vector<std::uint8_t> triangulate_cells(const GridSurface& surface, std::span<const std::uint8_t> keep,
                                             bool mirrored, const GridTriangulationOptions& options) {
   std::vector<std::uint8_t> cells(keep.size(), 0);

@@ -59,6 +59,10 @@ struct GridSurface {
   return which == 0 ? std::array{i00, i10, i11} : std::array{i00, i11, i01};
 }
 
+/// 1 for the samples that a triangle of CellBit codes [rows*cols] has as a corner.
+[[nodiscard]] std::vector<std::uint8_t> corners_of_cells(std::span<const std::uint8_t> cells, int rows,
+                                                         int cols);
+
 /// True when rows × columns run so that the triangles of cell_triangle() have to be turned over to face the
 /// scanner: one answer for the grid, so that its faces agree with each other. Decided by the majority of
 /// triangles among the kept samples.

@@ -2,8 +2,6 @@
 // Copyright The Dubsar developers
 #include "triangulation/ownership.h"
 
-#include <cmath>
-
 #include "core/parallel.h"
 #include "triangulation/contest.h"
 #include "triangulation/patch_shape.h"
@@ -18,40 +16,6 @@ constexpr std::uint8_t kBoth = kCellFirst | kCellSecond;
 constexpr std::size_t kGrain = 2048;
 constexpr std::size_t kContestGrain = 64;  ///< nodes: where there is a contest, each is much work
 
-/// Mean of the four nodes around a sample, those that hold samples.
-class NodeInterpolation {
- public:
-  explicit NodeInterpolation(const StitchSurface& s) : s_(&s) {}
-  [[nodiscard]] float operator()(const std::vector<float>& values, int row, int col) const {
-    const Lattice& lattice = s_->lattice;
-    constexpr float kSide = Lattice::kNodeSide;
-    const float y = (static_cast<float>(row) + 0.5F) / kSide - 0.5F;
-    const float x = (static_cast<float>(col) + 0.5F) / kSide - 0.5F;
-    const int row_lo = static_cast<int>(std::floor(y));
-    const int col_lo = static_cast<int>(std::floor(x));
-    float sum = 0;
-    float weights = 0;
-    for (int r = row_lo; r <= row_lo + 1; ++r) {
-      for (int c = col_lo; c <= col_lo + 1; ++c) {
-        if (r < 0 || c < 0 || r >= lattice.node_rows || c >= lattice.node_cols) {
-          continue;
-        }
-        const std::size_t node = lattice.node(r, c);
-        if (s_->node_sample[node] >= 0) {
-          const float w =
-              (1.0F - std::abs(y - static_cast<float>(r))) * (1.0F - std::abs(x - static_cast<float>(c)));
-          sum += w * values[node];
-          weights += w;
-        }
-      }
-    }
-    return weights > 0 ? sum / weights : 0.0F;
-  }
-
- private:
-  const StitchSurface* s_;
-};
-
 /// Gives a scan the samples `fresh` besides those that it keeps: triangles between them that meet no other
 /// patch; then the samples they use.
 void add_samples(std::vector<OwnedScan>& scans, std::size_t self, std::vector<std::uint8_t> fresh,
@@ -60,22 +24,12 @@ void add_samples(std::vector<OwnedScan>& scans, std::size_t self, std::vector<st
   OwnedScan& scan = scans[self];
   const Lattice& lattice = scan.surface->lattice;
   GridSurface g = scan.surface->surface();
-  std::vector<Vector3f> points(fresh.size());
-  std::vector<Vector3f> normals(fresh.size());
-  parallel_for_each_index(
-      fresh.size(),
-      [&](std::size_t i) {
-        points[i] =
-            scan.fused->slot[i] == FusedSamples::kNone ? scan.surface->points[i] : scan.fused->point(i);
-        normals[i] = scan.surface->normal(i);
-      },
-      4096);
-  g.points = points;
-  g.normals = normals;
   std::vector<std::uint8_t> kept = std::move(scan.kept);
   std::vector<std::uint8_t> cells = std::move(scan.cells);
   kept.resize(fresh.size(), 0);
   cells.resize(fresh.size(), 0);
+  std::vector<Vector3f> points(fresh.size(), Vector3f::Zero());
+  std::vector<Vector3f> normals(fresh.size(), Vector3f::Zero());
   // A cell is at stake when one of its corners is new.
   std::vector<std::uint8_t> anew(fresh.size(), 0);
   const auto width = static_cast<std::size_t>(g.cols);
@@ -83,11 +37,17 @@ void add_samples(std::vector<OwnedScan>& scans, std::size_t self, std::vector<st
       fresh.size(),
       [&](std::size_t i) {
         kept[i] |= fresh[i];
+        if (kept[i] != 0) {
+          points[i] = scan.fused->point(i);
+          normals[i] = scan.surface->normal(i);
+        }
         anew[i] = i + width + 1 < fresh.size()
                       ? fresh[i] | fresh[i + 1] | fresh[i + width] | fresh[i + width + 1]
                       : 0;
       },
       16384);
+  g.points = points;
+  g.normals = normals;
   triangulate_cells_anew(g, kept, scan.surface->mirrored, grid, anew, cells);
   parallel_chunks(contest.any.size(), kContestGrain, [&](std::size_t begin, std::size_t end) {
     NodeContest here(scans, self, contest, options);
@@ -164,8 +124,8 @@ std::vector<std::uint8_t> wanted_samples(const std::vector<OwnedScan>& scans, st
   const OwnedScan& scan = scans[self];
   const StitchSurface& s = *scan.surface;
   const Lattice& lattice = s.lattice;
-  std::vector<float> wanted(lattice.size(), 0);
-  parallel_chunks(wanted.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  std::vector<float> vote(lattice.size(), 0);  // 1: it wants the place, -1: it leaves it to another
+  parallel_chunks(vote.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t node = begin; node < end; ++node) {
       if (s.node_sample[node] < 0) {
         continue;
@@ -179,17 +139,32 @@ std::vector<std::uint8_t> wanted_samples(const std::vector<OwnedScan>& scans, st
           best = s.score[node] > theirs || (s.score[node] == theirs && self < scan.other[k]);
         }
       }
-      wanted[node] = best ? 1.0F : 0.0F;
+      vote[node] = best ? 1.0F : -1.0F;
     }
   });
-  const NodeInterpolation at(s);
+  // For a sample the four nodes around it count, by how near they are.
+  const auto before = [](int at) { return (at + Lattice::kNodeSide / 2) / Lattice::kNodeSide - 1; };
+  const auto past = [&](int at) {
+    return (static_cast<float>(at) + 0.5F) / Lattice::kNodeSide - 0.5F - static_cast<float>(before(at));
+  };
   std::vector<std::uint8_t> out(s.points.size(), 0);
   parallel_for_each_index(
       static_cast<std::size_t>(lattice.rows),
-      [&](std::size_t row) {
+      [&](std::size_t r) {
+        const int row = static_cast<int>(r);
+        std::vector<float> votes(static_cast<std::size_t>(lattice.node_cols) + 2,
+                                 0.0F);  // none at either end
+        for (const int node_row : {before(row), before(row) + 1}) {
+          const float weight = node_row == before(row) ? 1.0F - past(row) : past(row);
+          for (int c = 0; node_row >= 0 && node_row < lattice.node_rows && c < lattice.node_cols; ++c) {
+            votes[static_cast<std::size_t>(c) + 1] += weight * vote[lattice.node(node_row, c)];
+          }
+        }
         for (int col = 0; col < lattice.cols; ++col) {
-          const std::size_t i = row * static_cast<std::size_t>(lattice.cols) + static_cast<std::size_t>(col);
-          out[i] = s.usable[i] != 0 && at(wanted, static_cast<int>(row), col) > 0.5F ? 1 : 0;
+          const std::size_t i = r * static_cast<std::size_t>(lattice.cols) + static_cast<std::size_t>(col);
+          const auto k = static_cast<std::size_t>(before(col) + 1);
+          const float sum = (1.0F - past(col)) * votes[k] + past(col) * votes[k + 1];
+          out[i] = s.usable[i] != 0 && sum > 0 ? 1 : 0;
         }
       },
       16);

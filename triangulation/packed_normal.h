@@ -47,7 +47,8 @@ class PackedNormal {
   static constexpr float kScale = 32767.0F;
   static constexpr std::int16_t kZero = std::numeric_limits<std::int16_t>::min();
   [[nodiscard]] static std::int16_t rounded(float x) {
-    return static_cast<std::int16_t>(std::lround(std::clamp(x, -1.0F, 1.0F) * kScale));
+    const float scaled = std::clamp(x, -1.0F, 1.0F) * kScale;
+    return static_cast<std::int16_t>(scaled + (scaled < 0 ? -0.5F : 0.5F));
   }
   std::int16_t u_ = kZero;
   std::int16_t v_ = 0;

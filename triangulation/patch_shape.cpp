@@ -14,36 +14,6 @@ constexpr std::uint8_t kBoth = kCellFirst | kCellSecond;
 /// In what group a sample was found.
 constexpr std::uint8_t kInSmall = 1, kInLarge = 2;
 
-/// Leaves samples that no kept triangle uses.
-void drop_unused(OwnedScan& scan, const GridSurface& g) {
-  parallel_for_each_index(
-      static_cast<std::size_t>(g.rows),
-      [&](std::size_t r) {
-        const int row = static_cast<int>(r);
-        for (int col = 0; col < g.cols; ++col) {
-          const std::size_t i = g.index(row, col);
-          if (scan.kept[i] == 0) {
-            continue;
-          }
-          bool used = false;
-          for (int cr = std::max(row - 1, 0); cr <= std::min(row, g.rows - 2) && !used; ++cr) {
-            for (int cc = std::max(col - 1, 0); cc <= std::min(col, g.cols - 2) && !used; ++cc) {
-              const std::uint8_t cell = scan.cells[g.index(cr, cc)];
-              for (int which = 0; which < 2 && !used; ++which) {
-                if ((cell & (which == 0 ? kCellFirst : kCellSecond)) != 0) {
-                  const auto t = cell_triangle(g, cr, cc, cell, which);
-                  used = t[0] == i || t[1] == i || t[2] == i;
-                }
-              }
-            }
-          }
-          // Rows of other chunks read `cells`, never `kept`.
-          scan.kept[i] = used ? 1 : 0;
-        }
-      },
-      16);
-}
-
 /// Marks samples all around which triangles are kept: nothing that pairs with one lies outside the patch.
 void mark_within(OwnedScan& scan) {
   const auto width = static_cast<std::size_t>(scan.surface->lattice.cols);
@@ -192,7 +162,10 @@ void settle_patches(OwnedScan& scan) {
         }
       },
       16);
-  drop_unused(scan, g);
+  const std::vector<std::uint8_t> used = corners_of_cells(scan.cells, g.rows, g.cols);
+  for (std::size_t i = 0; i < used.size(); ++i) {
+    scan.kept[i] &= used[i];
+  }
   scan.near_kept = dilated(scan.kept, g.rows, g.cols, kLookAroundSamples);
   mark_within(scan);
   count_kept(scan);

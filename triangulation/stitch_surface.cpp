@@ -105,33 +105,34 @@ std::vector<std::uint8_t> rim_distance(const std::vector<std::uint8_t>& usable,
       16);
   std::vector<std::uint8_t> within = covered;
   shrink(within, rows, cols);
-  std::vector<std::uint8_t> distance(usable.size(), 0);
-  for (std::size_t row = 0; row < height; ++row) {
-    for (std::size_t col = 0; col < width; ++col) {
-      const std::size_t i = row * width + col;
-      const bool outermost = row == 0 || col == 0 || row + 1 == height || col + 1 == width;
-      distance[i] =
-          (within[i] | inner[i]) != 0 && !outermost ? static_cast<std::uint8_t>(kMostRim) : covered[i];
+  std::vector<std::uint8_t> distance = std::move(covered);
+  for (std::size_t row = 1; row + 1 < height; ++row) {
+    for (std::size_t i = row * width + 1; i + 1 < (row + 1) * width; ++i) {
+      distance[i] = (within[i] | inner[i]) != 0 ? static_cast<std::uint8_t>(kMostRim) : distance[i];
     }
   }
-  // Two passes: from above and the left, then back.
-  const auto relax = [&](std::size_t i, std::size_t from) {
-    distance[i] = std::min<std::uint8_t>(distance[i], static_cast<std::uint8_t>(distance[from] + 1));
+  // Two passes, from above and the left, then back: first what the row before says, then along the row.
+  const auto relax = [&](std::size_t row, std::size_t before) {
+    std::uint8_t* const here = &distance[row * width];
+    const std::uint8_t* const from = &distance[before * width];
+    for (std::size_t c = 1; c + 1 < width; ++c) {
+      const std::uint8_t nearest = std::min(std::min(from[c - 1], from[c]), from[c + 1]);
+      here[c] = std::min<std::uint8_t>(here[c], static_cast<std::uint8_t>(nearest + 1));
+    }
+    return here;
   };
-  for (std::size_t i = 0; i < distance.size(); ++i) {
-    if (distance[i] > 1) {
-      relax(i, i - 1);
-      relax(i, i - width);
-      relax(i, i - width - 1);
-      relax(i, i - width + 1);
+  for (std::size_t row = 1; row + 1 < height; ++row) {
+    std::uint8_t* const here = relax(row, row - 1);
+    std::uint8_t last = here[0];
+    for (std::size_t c = 1; c + 1 < width; ++c) {
+      here[c] = last = std::min<std::uint8_t>(here[c], static_cast<std::uint8_t>(last + 1));
     }
   }
-  for (std::size_t i = distance.size(); i-- > 0;) {
-    if (distance[i] > 1) {
-      relax(i, i + 1);
-      relax(i, i + width);
-      relax(i, i + width + 1);
-      relax(i, i + width - 1);
+  for (std::size_t row = height - 1; row-- > 1;) {
+    std::uint8_t* const here = relax(row, row + 1);
+    std::uint8_t last = here[width - 1];
+    for (std::size_t c = width - 1; c-- > 1;) {
+      here[c] = last = std::min<std::uint8_t>(here[c], static_cast<std::uint8_t>(last + 1));
     }
   }
   return distance;
@@ -159,8 +160,7 @@ class Incidence {
 };
 
 /// The sample that stands for each node, and how much the scan wants to be primary there.
-void lay_nodes(StitchSurface& out, const std::vector<Vector3f>& normals, const RangeGrid& grid,
-               const Incidence& incidence, const StitchSurfaceOptions& options) {
+void lay_nodes(StitchSurface& out, const std::vector<float>& cosines, const StitchSurfaceOptions& options) {
   const Lattice& lattice = out.lattice;
   const int most = std::clamp(options.rise_samples + 1, 2, kMostRim);
   std::vector<std::uint8_t> seen(lattice.size(), 0);
@@ -178,14 +178,13 @@ void lay_nodes(StitchSurface& out, const std::vector<Vector3f>& normals, const R
           if (out.usable[i] == 0) {
             return;
           }
-          const int dr = grid.row_of(i) - middle_row;
-          const int dc = grid.col_of(i) - middle_col;
+          const int dr = lattice.sample_row(i) - middle_row;
+          const int dc = lattice.sample_col(i) - middle_col;
           if (dr * dr + dc * dc < nearest) {
             nearest = dr * dr + dc * dc;
             out.node_sample[node] = static_cast<std::int32_t>(i);
           }
-          const float cosine = incidence.cosine(out.points[i], normals[i], grid.row_of(i));
-          sum += out.is_sparse(i) ? kSparseScore * cosine : cosine;
+          sum += out.is_sparse(i) ? kSparseScore * cosines[i] : cosines[i];
           rim += std::min<int>(out.rim[i], most);
           ++count;
         });
@@ -235,13 +234,13 @@ StitchSurface make_scan_surface(const PlacedScan& scan, const StitchSurfaceOptio
   out.scanner_from_model = scan.model_from_scanner.inverse();
   const std::size_t n = grid.size();
   out.points.assign(n, Vector3f::Zero());
-  out.usable.assign(n, 0);
   out.cells.assign(n, 0);
   out.reliability_code.assign(n, 0);
   out.weight_code.assign(n, 0);
   out.rim.assign(n, 0);
   if (!(out.spacing_mm > 0) || grid.rows < 2 || grid.cols < 2) {
     out.normals.assign(n, PackedNormal());
+    out.usable.assign(n, 0);
     out.lookup = std::make_unique<GridLookup>(grid, out.usable);
     return out;
   }
@@ -265,18 +264,7 @@ StitchSurface make_scan_surface(const PlacedScan& scan, const StitchSurfaceOptio
   surface.normals = normals;
   out.mirrored = is_mirrored(surface, joined);
   out.cells = triangulate_cells(surface, joined, out.mirrored, options.grid);
-  for (int row = 0; row + 1 < grid.rows; ++row) {
-    for (int col = 0; col + 1 < grid.cols; ++col) {
-      const std::uint8_t cell = out.cells[grid.index(row, col)];
-      for (int which = 0; cell != 0 && which < 2; ++which) {
-        if ((cell & (which == 0 ? kCellFirst : kCellSecond)) != 0) {
-          for (const std::size_t i : cell_triangle(surface, row, col, cell, which)) {
-            out.usable[i] = 1;
-          }
-        }
-      }
-    }
-  }
+  out.usable = corners_of_cells(out.cells, grid.rows, grid.cols);
   const std::vector<std::uint8_t> inner = inner_samples(out.cells, grid.rows, grid.cols);
   out.rim = rim_distance(out.usable, inner, grid.rows, grid.cols);
   out.noise_mm = scan.noise_mm ? *scan.noise_mm : estimate_noise_mm(grid, out.usable);
@@ -284,13 +272,14 @@ StitchSurface make_scan_surface(const PlacedScan& scan, const StitchSurfaceOptio
   out.weight_of_best =
       static_cast<float>(1.0 / (out.noise_mm * out.noise_mm + systematic_mm * systematic_mm));
   const auto code = [](float part) {
-    return static_cast<std::uint16_t>(std::lround(std::clamp(part, 0.0F, 1.0F) * StitchSurface::kCodes));
+    return static_cast<std::uint16_t>(std::clamp(part, 0.0F, 1.0F) * StitchSurface::kCodes + 0.5F);
   };
   const auto is_sparse = [&](std::size_t i) {
     return scan.flags != nullptr && i < scan.flags->size() && !is_unflagged((*scan.flags)[i]);
   };
   out.normals.resize(n);
   const Incidence incidence(out.view);
+  std::vector<float> cosines(n);
   parallel_for_each_index(
       n,
       [&](std::size_t i) {
@@ -300,18 +289,26 @@ StitchSurface make_scan_surface(const PlacedScan& scan, const StitchSurfaceOptio
         }
         out.usable[i] = is_sparse(i) ? kUsable | kUsableSparse : kUsable;
         const float cosine = incidence.cosine(out.points[i], normals[i], grid.row_of(i));
+        cosines[i] = cosine;
         const float confidence = grid.confidence.empty() ? 1.0F : std::clamp(grid.confidence[i], 0.01F, 1.0F);
         out.reliability_code[i] = code(cosine * cosine * confidence);
         const float doubt = out.is_sparse(i) ? kSparseWeight : inner[i] == 0 ? kRimWeight : 1.0F;
         out.weight_code[i] = std::max<std::uint16_t>(code(confidence * doubt), 1);
       },
       4096);
-  lay_nodes(out, normals, grid, incidence, options);
-  for (std::size_t i = 0; i < n; ++i) {
-    if (out.usable[i] != 0) {
-      out.box.extend(out.points[i]);
-    }
-  }
+  lay_nodes(out, cosines, options);
+  out.box = parallel_reduce_ordered(
+      n, 65536, Eigen::AlignedBox3f(),
+      [&](std::size_t begin, std::size_t end) {
+        Eigen::AlignedBox3f box;
+        for (std::size_t i = begin; i < end; ++i) {
+          if (out.usable[i] != 0) {
+            box.extend(out.points[i]);
+          }
+        }
+        return box;
+      },
+      [](Eigen::AlignedBox3f& total, const Eigen::AlignedBox3f& part) { total.extend(part); });
   out.lookup = std::make_unique<GridLookup>(grid, every_fourth(out.usable, grid.rows, grid.cols),
                                             2.5 * out.spacing_mm);
   return out;
