@@ -88,13 +88,33 @@ bool edges_cut(const Face& f, const Corners& c, const Face& other, const Corners
   return false;
 }
 
+/// Of two faces that share one corner: whether one of the walls on a's edges from there, upright on it, has a
+/// on one side and b on the other. So it is with most, as faces lie around a vertex side by side.
+bool are_apart(Positions positions, const Face& fa, const FacePlane& pa, const Face& fb) {
+  const auto place = [&](std::uint32_t v) { return positions[v].cast<double>(); };
+  const std::size_t at = has(fb, fa[0]) ? 0 : has(fb, fa[1]) ? 1 : 2;
+  const Vector3d corner = place(fa[at]);
+  const Vector3d next_wall = pa.normal.cross(place(fa[(at + 1) % 3]) - corner);  // towards the face
+  const Vector3d last_wall = (place(fa[(at + 2) % 3]) - corner).cross(pa.normal);
+  bool beyond_next = true;
+  bool beyond_last = true;
+  for (const std::uint32_t v : fb) {
+    if (v != fa[at]) {
+      const Vector3d d = place(v) - corner;
+      beyond_next = beyond_next && next_wall.dot(d) < 0;
+      beyond_last = beyond_last && last_wall.dot(d) < 0;
+    }
+  }
+  return beyond_next || beyond_last;
+}
+
 bool cut(Positions positions, const Face& fa, const FacePlane& pa, const Face& fb) {
   const int shared = (has(fb, fa[0]) ? 1 : 0) + (has(fb, fa[1]) ? 1 : 0) + (has(fb, fa[2]) ? 1 : 0);
   if (shared > 1) {
     return false;
   }
   const bool a_cuts = straddles(positions, fa, pa, fb);
-  if (shared == 0 && !a_cuts) {
+  if (shared == 0 ? !a_cuts : are_apart(positions, fa, pa, fb)) {
     return false;
   }
   // Of two faces that share a corner either may be the one whose far edge passes through the other.
