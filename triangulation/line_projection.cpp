@@ -75,17 +75,23 @@ class LineProjector {
     const int last_col = s_->lattice.cols - 2;
     int row = static_cast<int>(std::clamp(at_row, 0.0F, static_cast<float>(last_row)));
     int col = static_cast<int>(std::clamp(at_col, 0.0F, static_cast<float>(last_col)));
-    for (int step = 0; step < kMostSteps; ++step) {
-      const auto [rows, cols] = towards_line(row, col);
+    bool known = false;  // the corners of the cell
+    std::array<Corner, 4> corners{};
+    for (int step = 0; step < kMostSteps && is_whole(row, col); ++step) {
+      corners = corners_of(row, col);
+      const auto [rows, cols] = towards_line(corners);
       const int next_row = std::clamp(row + rows, 0, last_row);
       const int next_col = std::clamp(col + cols, 0, last_col);
-      if (next_row == row && next_col == col) {
+      known = next_row == row && next_col == col;
+      if (known) {
         break;
       }
       row = next_row;
       col = next_col;
     }
-    meet_cell(row, col);
+    if (s_->cells[first_sample(row, col)] != 0) {
+      meet_cell(row, col, known ? corners : corners_of(row, col));
+    }
     if (!(best_.weight > 0)) {
       meet_around(row, col);
     }
@@ -103,16 +109,22 @@ class LineProjector {
     return {line_->u.dot(d), turn_ * line_->v.dot(d)};
   }
 
-  /// To which of the cells beside this one the line passes, as rows and columns: none where it passes through
-  /// this one, or a corner is missing.
-  [[nodiscard]] std::pair<int, int> towards_line(int row, int col) const {
+  /// By bits of the sample's row and column: 00, 01, 10, 11.
+  [[nodiscard]] std::array<Corner, 4> corners_of(int row, int col) const {
     const std::size_t i00 = first_sample(row, col);
     const std::size_t i10 = i00 + static_cast<std::size_t>(s_->lattice.cols);
-    if ((s_->usable[i00] & s_->usable[i00 + 1] & s_->usable[i10] & s_->usable[i10 + 1] & kUsable) == 0) {
-      return {0, 0};
-    }
-    const Corner c00 = seen_along(i00), c01 = seen_along(i00 + 1);
-    const Corner c10 = seen_along(i10), c11 = seen_along(i10 + 1);
+    return {seen_along(i00), seen_along(i00 + 1), seen_along(i10), seen_along(i10 + 1)};
+  }
+  [[nodiscard]] bool is_whole(int row, int col) const {
+    const std::uint8_t* const above = &s_->usable[first_sample(row, col)];
+    const std::uint8_t* const below = above + s_->lattice.cols;
+    return (above[0] & above[1] & below[0] & below[1] & kUsable) != 0;
+  }
+
+  /// To which of the cells beside the one with these corners the line passes, as rows and columns: none where
+  /// it passes through this one.
+  [[nodiscard]] static std::pair<int, int> towards_line(const std::array<Corner, 4>& corners) {
+    const auto& [c00, c01, c10, c11] = corners;
     const int left = wedge(c00, c10) < 0 ? 1 : 0;
     const int right = wedge(c11, c01) < 0 ? 1 : 0;
     const int above = wedge(c01, c00) < 0 ? 1 : 0;
@@ -120,16 +132,11 @@ class LineProjector {
     return {below - above, right - left};
   }
 
-  void meet_cell(int row, int col) {
+  void meet_cell(int row, int col, const std::array<Corner, 4>& corners) {
     const std::size_t i00 = first_sample(row, col);
     const std::uint8_t cell = s_->cells[i00];
-    if (cell == 0) {
-      return;
-    }
     const std::size_t i10 = i00 + static_cast<std::size_t>(s_->lattice.cols);
     const std::array<std::size_t, 4> i = {i00, i00 + 1, i10, i10 + 1};
-    const std::array<Corner, 4> corners = {seen_along(i[0]), seen_along(i[1]), seen_along(i[2]),
-                                           seen_along(i[3])};
     using Three = std::array<std::size_t, 3>;
     const bool anti = (cell & kCellAntidiagonal) != 0;
     if ((cell & kCellFirst) != 0) {
@@ -151,7 +158,7 @@ class LineProjector {
       }
     };
     if (row == 0 || row == last_row || col == 0 || col == last_col) {
-      each_cell([&](int r, int c) { meet_cell(r, c); });
+      each_cell([&](int r, int c) { meet_cell(r, c, corners_of(r, c)); });
       return;
     }
     float u[CellsAround::kCorners] = {};
@@ -172,7 +179,7 @@ class LineProjector {
     if (around.any()) {
       each_cell([&](int r, int c) {
         if (around.is_hit(r - row + 1, c - col + 1)) {
-          meet_cell(r, c);
+          meet_cell(r, c, corners_of(r, c));
         }
       });
     }
