@@ -58,7 +58,7 @@ Front::Front(Sheet& sheet) : sheet_(&sheet), link_of_(sheet.positions.size(), kN
     coarsest = std::max(coarsest, mu);
   }
   // Twice the radius that seams look around with: a query meets 8 buckets, seldom more.
-  cell_mm_ = coarsest > 0 ? 6.6F * coarsest : 1.0F;
+  cells_per_mm_ = coarsest > 0 ? 1.0F / (6.6F * coarsest) : 1.0F;
   buckets_.resize(1U << 10U);
   const std::vector<std::uint8_t> rim = rim_vertices(sheet.faces, sheet.positions.size());
   const HalfEdges edges(sheet.faces, sheet.positions.size(), rim);
@@ -98,7 +98,9 @@ Front::Front(Sheet& sheet) : sheet_(&sheet), link_of_(sheet.positions.size(), kN
 
 Front::Cell Front::cell_of(const Eigen::Vector3f& p) const {
   const auto cell = [&](float x) {
-    return static_cast<int>(std::clamp(std::floor(x / cell_mm_), -1.0e6F, 1.0e6F));
+    const float at = std::clamp(x * cells_per_mm_, -1.0e6F, 1.0e6F);
+    const auto towards_zero = static_cast<int>(at);
+    return towards_zero - (at < static_cast<float>(towards_zero) ? 1 : 0);
   };
   return {cell(p.x()), cell(p.y()), cell(p.z())};
 }
@@ -140,6 +142,7 @@ Front::Links& Front::links(std::uint32_t v) {
     Links& added = links_.emplace_back();
     added.vertex = v;
     added.position = sheet_->positions[v];
+    added.normal = sheet_->normals[v];
     std::uint64_t key = 0;
     Bucket& bucket = buckets_[slot_of(cell_of(added.position), key)];
     added.next_in_bucket = bucket.first;
@@ -238,7 +241,7 @@ std::size_t Front::last_change(const Eigen::AlignedBox3f& box) const {
   return last;
 }
 
-void Front::near(const Eigen::Vector3f& p_mm, float radius_mm, std::vector<std::uint32_t>& out) const {
+void Front::near(const Eigen::Vector3f& p_mm, float radius_mm, std::vector<const Links*>& out) const {
   out.clear();
   const Eigen::Vector3f reach = Eigen::Vector3f::Constant(radius_mm);
   const Cell low = cell_of(p_mm - reach);
@@ -252,7 +255,7 @@ void Front::near(const Eigen::Vector3f& p_mm, float radius_mm, std::vector<std::
           const Links& link = links_[l];
           if ((link.position - p_mm).squaredNorm() <= radius_mm * radius_mm &&
               (link.free || !link.out.empty())) {
-            out.push_back(link.vertex);
+            out.push_back(&link);
           }
         }
       }

@@ -67,6 +67,7 @@ class HalfEdgeSet {
 /// b→a. Refuses whatever would use a half-edge twice.
 class Front {
  public:
+  static constexpr std::uint32_t kNone = 0xffffffffU;
   /// Refers to the sheet; faces must be added through add_face() while the front lives.
   explicit Front(Sheet& sheet);
 
@@ -90,8 +91,17 @@ class Front {
   std::uint32_t add_vertex(const Eigen::Vector3f& position_mm, const Eigen::Vector3f& normal,
                            float spacing_mm);
 
-  /// Vertices of the front in buckets that meet the ball; a superset, in a fixed order.
-  void near(const Eigen::Vector3f& p_mm, float radius_mm, std::vector<std::uint32_t>& out) const;
+  /// A vertex that is, or was, on the front.
+  struct Links {
+    std::uint32_t vertex = 0;
+    std::uint32_t next_in_bucket = kNone;  ///< index into links_
+    Eigen::Vector3f position{0, 0, 0};     ///< and what else is asked of those near by: as in the sheet
+    Eigen::Vector3f normal{0, 0, 0};
+    bool free = false;                   ///< without a face
+    std::vector<std::uint32_t> out, in;  ///< heads of open edges from it, tails of those to it
+  };
+  /// Those of the front within the ball, in a fixed order. They hold until a face or a vertex is added.
+  void near(const Eigen::Vector3f& p_mm, float radius_mm, std::vector<const Links*>& out) const;
 
   /// Counts faces that were added.
   [[nodiscard]] std::size_t changes() const { return changes_; }
@@ -111,14 +121,6 @@ class Front {
   [[nodiscard]] const Sheet& sheet() const { return *sheet_; }
 
  private:
-  static constexpr std::uint32_t kNone = 0xffffffffU;
-  struct Links {
-    std::uint32_t vertex = 0;
-    std::uint32_t next_in_bucket = kNone;  ///< index into links_
-    Eigen::Vector3f position{0, 0, 0};
-    bool free = false;  ///< without a face
-    std::vector<std::uint32_t> out, in;
-  };
   struct Bucket {
     std::uint64_t key = ~std::uint64_t{0};
     std::uint32_t first = kNone;  ///< index into links_
@@ -133,7 +135,7 @@ class Front {
   [[nodiscard]] const Links* find(std::uint32_t v) const;
 
   Sheet* sheet_;
-  float cell_mm_ = 1;
+  float cells_per_mm_ = 1;
   std::size_t changes_ = 0;
   std::vector<std::uint32_t> link_of_;  ///< [V] index into links_, or kNone
   std::vector<Links> links_;

@@ -106,17 +106,19 @@ class Chooser {
     layer_.resize(near_.size());
     candidates_.clear();
     for (std::size_t k = 0; k < near_.size(); ++k) {
-      const std::uint32_t v = near_[k];
-      const Vector3f d = sheet.positions[v] - pa;
+      const Front::Links& near = *near_[k];
+      const std::uint32_t v = near.vertex;
+      const Vector3f d = near.position - pa;
       flat_[k] = {d.dot(along), d.dot(free_side)};
       const float height = std::abs(d.dot(n));
-      layer_[k] = sheet.normals[v].dot(n) > 0.2F && height <= most ? 1 : 0;
-      if (v == a || v == b || layer_[k] == 0 || sheet.normals[v].dot(n) < limits_.min_normal_cos ||
+      const float cosine = near.normal.dot(n);
+      layer_[k] = cosine > 0.2F && height <= most ? 1 : 0;
+      if (v == a || v == b || layer_[k] == 0 || cosine < limits_.min_normal_cos ||
           flat_[k].y() < 1e-3F * length) {
         continue;
       }
-      const Vector3f ca = pa - sheet.positions[v];
-      const Vector3f cb = pb - sheet.positions[v];
+      const Vector3f ca = pa - near.position;
+      const Vector3f cb = pb - near.position;
       const float longest = std::max(ca.norm(), cb.norm());
       if (longest > limits_.most_edge_factor * std::max(mu, sheet.spacing_mm[v])) {
         continue;
@@ -124,13 +126,13 @@ class Chooser {
       candidates_.push_back({ca.dot(cb) / (ca.norm() * cb.norm()), k});
     }
     std::sort(candidates_.begin(), candidates_.end(), [&](const Candidate& x, const Candidate& y) {
-      return x.cosine != y.cosine ? x.cosine < y.cosine : near_[x.at] < near_[y.at];
+      return x.cosine != y.cosine ? x.cosine < y.cosine : near_[x.at]->vertex < near_[y.at]->vertex;
     });
     if (!candidates_.empty()) {
       lay_segments(pa, along, free_side);
     }
     for (const Candidate& candidate : candidates_) {
-      const std::uint32_t c = near_[candidate.at];
+      const std::uint32_t c = near_[candidate.at]->vertex;
       const Vector3f& pc = sheet.positions[c];
       const float sine = least_sine(pa, pb, pc);
       if (sine < limits_.least_sine || !front_->accepts({b, a, c})) {
@@ -161,7 +163,7 @@ class Chooser {
     const Vector2f fb(length, 0);
     const float slack = 1e-4F * length * length;
     for (std::size_t k = 0; k < near_.size(); ++k) {
-      const std::uint32_t v = near_[k];
+      const std::uint32_t v = near_[k]->vertex;
       if (v == a || v == b || v == c || layer_[k] == 0) {
         continue;
       }
@@ -195,10 +197,10 @@ class Chooser {
       if (layer_[k] == 0) {
         continue;
       }
-      for (const std::span<const std::uint32_t> ends : {front_->out_of(near_[k]), front_->into(near_[k])}) {
-        for (const std::uint32_t w : ends) {
+      for (const auto* const ends : {&near_[k]->out, &near_[k]->in}) {
+        for (const std::uint32_t w : *ends) {
           const Vector3f d = front_->sheet().positions[w] - origin;
-          segments_.push_back({near_[k], w, flat_[k], {d.dot(along), d.dot(free_side)}});
+          segments_.push_back({near_[k]->vertex, w, flat_[k], {d.dot(along), d.dot(free_side)}});
         }
       }
     }
@@ -206,7 +208,7 @@ class Chooser {
 
   const Front* front_;
   Limits limits_;
-  std::vector<std::uint32_t> near_;
+  std::vector<const Front::Links*> near_;
   std::vector<Vector2f> flat_;
   std::vector<std::uint8_t> layer_;
   std::vector<Candidate> candidates_;
