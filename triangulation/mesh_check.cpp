@@ -250,12 +250,17 @@ void check_topology(const Mesh& mesh, MeshReport& report) {
 
 }  // namespace
 
-MeshReport check_mesh(const Mesh& mesh) {
+MeshReport check_manifold(const Mesh& mesh) {
   MeshReport report;
   report.vertices = mesh.positions.size();
   report.faces = mesh.faces.size();
   check_shapes(mesh, report);
-  check_topology(mesh, report);  // gives its memory back before what needs as much again
+  check_topology(mesh, report);
+  return report;
+}
+
+MeshReport check_mesh(const Mesh& mesh) {
+  MeshReport report = check_manifold(mesh);  // gives its memory back before what needs as much again
   report.self_intersections = self_intersections(mesh.positions, mesh.faces).size();
   return report;
 }

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <future>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -36,7 +37,8 @@ void warn_left_out(const ScanPose& pose) {
               (pose.reason.empty() ? "" : ", " + pose.reason));
 }
 
-/// Scan by scan, where the poses are known beforehand: no more than one grid is in memory.
+/// Scan by scan, where the poses are known beforehand. One is made ready while the next is read: no more than
+/// two grids are in memory.
 Result<Taken> take_scan_by_scan(const ScanSetArguments& arguments, Stitcher& stitcher,
                                 CommandContext& context) {
   std::optional<std::vector<ScanPose>> file;
@@ -49,7 +51,8 @@ Result<Taken> take_scan_by_scan(const ScanSetArguments& arguments, Stitcher& sti
   }
   Taken taken;
   std::size_t with_pose = 0;
-  const auto take = [&](const ScanSet& set, const StationScan& scan) -> Status {
+  std::future<Status> adding;
+  const auto take = [&](const ScanSet& set, StationScan scan) -> Status {
     const auto stored = std::ranges::find(set.poses, scan.id, &ScanPose::id);
     const ScanPose* pose = file ? pose_in_file(*file, scan) : stored == set.poses.end() ? nullptr : &*stored;
     taken.lacks_poses = taken.lacks_poses || (pose == nullptr && !file);
@@ -64,12 +67,20 @@ Result<Taken> take_scan_by_scan(const ScanSetArguments& arguments, Stitcher& sti
       return {};
     }
     ++taken.scans;
-    return stitcher.add(
-        {scan.id, scan.grid.get(), scan.flags.get(), pose->model_from_scanner, pose->sigma_mm}, context.job);
+    const Status before = adding.valid() ? adding.get() : Status{};
+    adding = std::async(std::launch::async, [&stitcher, &context, pose = *pose, scan = std::move(scan)] {
+      return stitcher.add(
+          {scan.id, scan.grid.get(), scan.flags.get(), pose.model_from_scanner, pose.sigma_mm}, context.job);
+    });
+    return before;
   };
-  if (const Result<ScanSet> set = visit_scan_set(arguments.path, arguments.options(), take, context.job);
-      !set) {
+  const Result<ScanSet> set = visit_scan_set(arguments.path, arguments.options(), take, context.job);
+  const Status last = adding.valid() ? adding.get() : Status{};
+  if (!set) {
     return std::unexpected(set.error());
+  }
+  if (!last) {
+    return std::unexpected(last.error());
   }
   if (file && with_pose == 0) {
     return no_pose_of_these(arguments.poses);
@@ -130,12 +141,12 @@ Result<int> stitch_all(const ScanSetArguments& arguments, CommandContext& contex
   if (const Status written = write_mesh(arguments.out, *mesh); !written) {
     return std::unexpected(written.error());
   }
-  const MeshReport report = check_mesh(*mesh);
-  nlohmann::ordered_json json{{"mesh", arguments.out}, {"scans", taken->scans}};
-  json.update(mesh_report_json(report));
   if (context.json) {
+    nlohmann::ordered_json json{{"mesh", arguments.out}, {"scans", taken->scans}};
+    json.update(mesh_report_json(check_mesh(*mesh)));
     CommandContext::print(json);
   } else {
+    const MeshReport report = check_manifold(*mesh);
     finish_progress();
     std::printf("%s: %zu vertices, %zu faces of %zu scans, %s\n", arguments.out.c_str(), report.vertices,
                 report.faces, taken->scans, report.is_manifold() ? "2-manifold" : "NOT 2-manifold");
