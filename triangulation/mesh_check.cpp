@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -19,8 +20,9 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Smallest angle of the triangle, the one across from its shortest side; 0 when it has no area.
-double smallest_angle_rad(const Vector3d& a, const Vector3d& b, const Vector3d& c) {
+/// Tangent of the smallest angle of the triangle, the one across from its shortest side; 0 when it has no
+/// area.
+double least_tangent(const Vector3d& a, const Vector3d& b, const Vector3d& c) {
   const Vector3d ab = b - a, bc = c - b, ca = a - c;
   const double area2 = ab.cross(ca).norm();
   if (!(area2 > 0)) {
@@ -28,7 +30,7 @@ double smallest_angle_rad(const Vector3d& a, const Vector3d& b, const Vector3d& 
   }
   const double ab2 = ab.squaredNorm(), bc2 = bc.squaredNorm(), ca2 = ca.squaredNorm();
   const double beside = ab2 <= bc2 && ab2 <= ca2 ? bc.dot(ca) : bc2 <= ca2 ? ca.dot(ab) : ab.dot(bc);
-  return std::atan2(area2, -beside);
+  return area2 / -beside;  // of an angle of 60° at most: the sides beside it are not at right angles
 }
 
 /// How many fans the faces around a vertex form, joined across edges of exactly two opposite half-edges.
@@ -79,8 +81,9 @@ void check_shapes(const Mesh& mesh, MeshReport& report) {
   struct Shapes {
     std::size_t faces = 0, degenerate = 0, thin = 0;
     double area_mm2 = 0;
-    double min_angle_rad = kPi;
+    double least_tangent = std::numeric_limits<double>::infinity();
   };
+  const double thin_below = std::tan(rad_from_deg(10.0));
   const Shapes all = parallel_reduce_ordered(
       mesh.faces.size(), kGrain, Shapes{},
       [&](std::size_t begin, std::size_t end) {
@@ -101,9 +104,9 @@ void check_shapes(const Mesh& mesh, MeshReport& report) {
           } else {
             part.area_mm2 += area;
           }
-          const double angle = smallest_angle_rad(a, b, c);
-          part.min_angle_rad = std::min(part.min_angle_rad, angle);
-          part.thin += angle < rad_from_deg(10.0) ? 1 : 0;
+          const double tangent = least_tangent(a, b, c);
+          part.least_tangent = std::min(part.least_tangent, tangent);
+          part.thin += tangent < thin_below ? 1 : 0;
         }
         return part;
       },
@@ -112,11 +115,11 @@ void check_shapes(const Mesh& mesh, MeshReport& report) {
         total.degenerate += part.degenerate;
         total.thin += part.thin;
         total.area_mm2 += part.area_mm2;
-        total.min_angle_rad = std::min(total.min_angle_rad, part.min_angle_rad);
+        total.least_tangent = std::min(total.least_tangent, part.least_tangent);
       });
   report.degenerate_faces = all.degenerate;
   report.area_mm2 = all.area_mm2;
-  report.min_angle_rad = mesh.faces.empty() ? 0 : all.min_angle_rad;
+  report.min_angle_rad = all.faces == 0 ? 0 : std::atan(all.least_tangent);
   report.thin_share = all.faces == 0 ? 0 : static_cast<double>(all.thin) / static_cast<double>(all.faces);
 }
 
@@ -234,7 +237,11 @@ void check_parts(const Mesh& mesh, std::span<const Triangle> faces, const HalfEd
   }
 }
 
-void check_topology(const Mesh& mesh, MeshReport& report) {
+MeshReport check(const Mesh& mesh, bool with_parts) {
+  MeshReport report;
+  report.vertices = mesh.positions.size();
+  report.faces = mesh.faces.size();
+  check_shapes(mesh, report);
   const auto sound = [&](const Triangle& f) { return has_three_corners(f, mesh.positions.size()); };
   std::vector<Triangle> copied;
   std::span<const Triangle> faces = mesh.faces;
@@ -245,22 +252,20 @@ void check_topology(const Mesh& mesh, MeshReport& report) {
   const HalfEdges edges(faces, report.vertices);
   check_edges(mesh, faces, edges, report);
   check_vertices(mesh, faces, edges, report);
-  check_parts(mesh, faces, edges, report);
+  if (with_parts) {
+    check_parts(mesh, faces, edges, report);
+  }
+  return report;
 }
 
 }  // namespace
 
 MeshReport check_manifold(const Mesh& mesh) {
-  MeshReport report;
-  report.vertices = mesh.positions.size();
-  report.faces = mesh.faces.size();
-  check_shapes(mesh, report);
-  check_topology(mesh, report);
-  return report;
+  return check(mesh, false);
 }
 
 MeshReport check_mesh(const Mesh& mesh) {
-  MeshReport report = check_manifold(mesh);  // gives its memory back before what needs as much again
+  MeshReport report = check(mesh, true);  // gives its memory back before what needs as much again
   report.self_intersections = self_intersections(mesh.positions, mesh.faces).size();
   return report;
 }

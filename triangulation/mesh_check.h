@@ -27,7 +27,7 @@ struct MeshReport {
   std::size_t inconsistent_faces = 0;     ///< faces at such an edge
   std::size_t degenerate_faces = 0;       ///< a vertex twice, an index out of range, not finite, or no area
   std::size_t duplicate_faces = 0;        ///< the same three vertices as an earlier face
-  std::size_t self_intersections = 0;     ///< pairs of faces that cut through each other: check_mesh()'s
+  std::size_t self_intersections = 0;     ///< pairs of faces that cut through each other
   std::size_t unreferenced_vertices = 0;
   double thin_share = 0;  ///< faces with an angle below 10°, of all, in [0,1]
   double min_angle_rad = 0;
@@ -44,7 +44,7 @@ struct MeshReport {
 /// Checks any mesh, broken indices included; faces with an index out of range count as degenerate and take no
 /// further part.
 [[nodiscard]] MeshReport check_mesh(const Mesh& mesh);
-/// The same but for self-intersections, which take twice as long as all the rest: they are not looked for.
+/// What is_manifold() goes by, in a third of the time: components, loops and self-intersections stay 0.
 [[nodiscard]] MeshReport check_manifold(const Mesh& mesh);
 
 }  // namespace dubsar

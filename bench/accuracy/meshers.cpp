@@ -250,7 +250,7 @@ int main(int argc, char** argv) {
   sim->add_option("--views", args.views);
   sim->add_option("--width", args.width_mm);
   auto* real = app.add_subcommand("bunny");
-  real->add_option("folder", folder)->required();
+  real->add_option("folder", folder)->required()->check(CLI::ExistingDirectory);
   CLI11_PARSE(app, argc, argv);
   if (real->parsed()) {
     bunny(folder);

@@ -353,7 +353,7 @@ int main(int argc, char** argv) {
   sim->add_option("--pose-error", args.pose_error_mm);
   sim->add_option("-o", args.out);
   auto* real = app.add_subcommand("bunny");
-  real->add_option("folder", args.folder)->required();
+  real->add_option("folder", args.folder)->required()->check(CLI::ExistingDirectory);
   real->add_option("-o", args.out);
   CLI11_PARSE(app, argc, argv);
   if (real->parsed()) {
