@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace dubsar {
 namespace {
 
@@ -81,6 +83,27 @@ TEST(MeshCheck, DegenerateDuplicateAndForeignIndices) {
   Mesh twice = tetrahedron();
   twice.faces.push_back({2, 1, 0});
   EXPECT_EQ(check_mesh(twice).duplicate_faces, 1U);
+}
+
+TEST(MeshCheck, SmallestAngleAndTheShareOfThinFaces) {
+  Mesh mesh;
+  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, -0.1F, 0}};  // 45 degrees, and 5.71
+  mesh.faces = {{0, 1, 2}, {0, 3, 1}};
+  const MeshReport report = check_mesh(mesh);
+  EXPECT_NEAR(report.min_angle_rad, std::atan(0.1), 1e-6);
+  EXPECT_EQ(report.thin_share, 0.5);
+  EXPECT_NEAR(check_mesh(tetrahedron()).min_angle_rad, 0.25 * std::acos(-1.0), 1e-6);
+}
+
+TEST(MeshCheck, ManifoldAloneIsJudgedTheSame) {
+  Mesh mesh = tetrahedron();
+  EXPECT_TRUE(check_manifold(mesh).is_closed());
+  std::swap(mesh.faces[3][0], mesh.faces[3][1]);
+  EXPECT_EQ(check_manifold(mesh).inconsistent_edges, 3U);
+  mesh = tetrahedron();
+  mesh.faces.push_back(mesh.faces.front());
+  EXPECT_EQ(check_manifold(mesh).duplicate_faces, 1U);
+  EXPECT_FALSE(check_manifold(mesh).is_manifold());
 }
 
 TEST(MeshCheck, EmptyMesh) {
