@@ -18,12 +18,12 @@ constexpr std::int64_t kSameClockNs = 500'000'000;
 
 }  // namespace
 
-void FrameCount::begin(bool same_stream) {
+void FrameCount::begin() {
+  *this = {};
+}
+
+void FrameCount::go_on() {
   last_raw_ = 0;
-  if (!same_stream) {
-    last_.reset();
-    periods_ns_.clear();
-  }
 }
 
 std::uint64_t FrameCount::missed_until(std::int64_t timestamp_ns) const {

@@ -20,8 +20,10 @@ class FrameCount {
     bool camera_restarted = false;
   };
 
-  /// The stream begins. Numbers go on from the last frame's where it is the same one over a new connection.
-  void begin(bool same_stream);
+  /// Another stream begins.
+  void begin();
+  /// The same stream goes on over a new connection: its numbers go on from the last frame's.
+  void go_on();
   /// `raw`: the camera's number, which goes round from 65535 to 1 in GigE Vision 1. `device_ns`: the camera's
   /// time, 0 where it has none.
   Step take(std::uint64_t raw, std::int64_t timestamp_ns, std::int64_t device_ns);

@@ -11,20 +11,20 @@ constexpr std::int64_t kMs = 1'000'000;
 
 TEST(FrameCount, TheCamerasNumbersTellWhatIsMissing) {
   FrameCount count;
-  count.begin(false);
+  count.begin();
   EXPECT_EQ(count.take(65533, 10 * kMs, 10 * kMs).id, 1U);  // it counts from where it likes
   EXPECT_EQ(count.take(65534, 20 * kMs, 20 * kMs).lost, 0U);
   const FrameCount::Step behind = count.take(3, 60 * kMs, 60 * kMs);  // 65535, 1 and 2 did not come
   EXPECT_EQ(behind.lost, 3U);
   EXPECT_EQ(behind.id, 6U);
   EXPECT_FALSE(behind.camera_restarted);
-  count.begin(false);
+  count.begin();
   EXPECT_EQ(count.take(9, 70 * kMs, 70 * kMs).id, 1U);
 }
 
 TEST(FrameCount, OverANewConnectionTimeTellsWhatIsMissing) {
   FrameCount count;
-  count.begin(false);
+  count.begin();
   for (std::int64_t k = 1; k <= 50; ++k) {
     static_cast<void>(count.take(static_cast<std::uint64_t>(k), 10 * k * kMs, (7000 + 10 * k) * kMs));
   }
@@ -33,26 +33,26 @@ TEST(FrameCount, OverANewConnectionTimeTellsWhatIsMissing) {
   for (std::int64_t k = 52; k <= 60; ++k) {
     static_cast<void>(count.take(static_cast<std::uint64_t>(k), (990 + 10 * k) * kMs, (7990 + 10 * k) * kMs));
   }
-  count.begin(true);
+  count.go_on();
   const FrameCount::Step kept = count.take(1, 2390 * kMs, 9391 * kMs);
   EXPECT_EQ(kept.lost, 79U);
   EXPECT_EQ(kept.id, 140U);
   EXPECT_FALSE(kept.camera_restarted);
   EXPECT_EQ(count.take(2, 2400 * kMs, 9401 * kMs).id, 141U);
   // The clock of a camera that was switched off begins anew; where a frame has none nobody can tell.
-  count.begin(true);
+  count.go_on();
   const FrameCount::Step anew = count.take(1, 3400 * kMs, 400 * kMs);
   EXPECT_TRUE(anew.camera_restarted);
   EXPECT_EQ(anew.lost, 99U);
-  count.begin(true);
+  count.go_on();
   EXPECT_TRUE(count.take(1, 3410 * kMs, 0).camera_restarted);
 }
 
 TEST(FrameCount, WithoutARateNothingIsClaimed) {
   FrameCount count;
-  count.begin(false);
+  count.begin();
   static_cast<void>(count.take(1, 10 * kMs, 10 * kMs));
-  count.begin(true);
+  count.go_on();
   const FrameCount::Step next = count.take(1, 2000 * kMs, 2000 * kMs);
   EXPECT_EQ(next.lost, 0U);
   EXPECT_EQ(next.id, 2U);
