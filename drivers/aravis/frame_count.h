@@ -30,14 +30,15 @@ class FrameCount {
 
  private:
   struct Seen {
-    std::uint64_t id;
-    std::int64_t timestamp_ns, device_ns;
+    std::uint64_t id = 0;
+    std::int64_t timestamp_ns = 0, device_ns = 0;
   };
+  [[nodiscard]] std::optional<double> period_ns() const;
   [[nodiscard]] std::uint64_t missed_until(std::int64_t timestamp_ns) const;
 
   std::uint64_t last_raw_ = 0;  ///< 0: none yet over this connection
   std::optional<Seen> last_;
-  std::deque<double> periods_ns_;  ///< from frame to frame, of late
+  std::deque<Seen> of_late_;
 };
 
 }  // namespace dubsar::aravis

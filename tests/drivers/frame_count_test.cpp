@@ -4,6 +4,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstdlib>
+
+#include "core/random.h"
+
 namespace dubsar::aravis {
 namespace {
 
@@ -46,6 +51,28 @@ TEST(FrameCount, OverANewConnectionTimeTellsWhatIsMissing) {
   EXPECT_EQ(anew.lost, 99U);
   count.go_on();
   EXPECT_TRUE(count.take(1, 3410 * kMs, 0).camera_restarted);
+}
+
+/// Frames of a camera without a clock have the times at which they came, on a busy machine unevenly.
+TEST(FrameCount, TimesThatJitterTellTheRateAllTheSame) {
+  constexpr std::int64_t kPeriod = 10 * kMs;
+  constexpr std::int64_t kMissed = 199;
+  std::int64_t worst = 0;
+  for (std::uint64_t seed = 1; seed <= 50; ++seed) {
+    Random random(seed);
+    const auto at = [&](std::int64_t k) {
+      return 1000 * kMs + k * kPeriod + static_cast<std::int64_t>(random.uniform(-0.2, 0.2) * kPeriod);
+    };
+    FrameCount count;
+    count.begin();
+    for (std::int64_t k = 0; k < 40; ++k) {
+      static_cast<void>(count.take(static_cast<std::uint64_t>(k + 1), at(k), 0));
+    }
+    count.go_on();
+    const auto lost = static_cast<std::int64_t>(count.take(1, at(40 + kMissed), 0).lost);
+    worst = std::max(worst, std::abs(lost - kMissed));
+  }
+  EXPECT_LE(worst, 3);
 }
 
 TEST(FrameCount, WithoutARateNothingIsClaimed) {
