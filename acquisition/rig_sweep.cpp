@@ -89,7 +89,8 @@ Status RigScanner::sweep(const Travel& plan, ProfileSink& sink, ScanTally& tally
                        [this](const Frame& frame) { return check_frame(frame); });
   RowCount rows(file_.start, file_.step, file_.rows);
   std::uint64_t unsure = 0;  // since the last row whose place was known
-  for (double position = plan.from; !rows.ends_within(0.5, position);) {
+  double position = plan.from;
+  while (!rows.ends_within(0.5, position)) {
     if (stopped_->load()) {
       return fail(ErrorKind::kCancelled, "scan stopped", file_.name);
     }
@@ -107,7 +108,8 @@ Status RigScanner::sweep(const Travel& plan, ProfileSink& sink, ScanTally& tally
       }
       const double rest = watch.track().last().value_or(position);
       if (rows.any() && rows.ends_within(1.5, rest)) {
-        break;  // the axis ends where the scan does
+        position = rest;  // the axis ends where the scan does
+        break;
       }
       const Status told = watch.finish();
       return !told ? told : stopped_short(file_, rest);
@@ -128,7 +130,8 @@ Status RigScanner::sweep(const Travel& plan, ProfileSink& sink, ScanTally& tally
       return handed;
     }
   }
-  tally.profiles_dropped += rows.any() ? unsure : 0;
+  // Those whose place is not known are among those that are missing, but where the stage came to rest.
+  tally.profiles_dropped += rows.any() ? std::max(unsure, rows.missed_until(position)) : 0;
   if (!rows.any()) {
     return fail(ErrorKind::kDevice,
                 unsure > 0 ? "nobody knows where the stage was: its answers come too late"

@@ -21,7 +21,16 @@ std::optional<RowCount::Placed> RowCount::place(std::int64_t id, double position
   const std::int64_t row = id - *first_;
   const std::int64_t missed = std::max<std::int64_t>(0, row - next_);
   next_ = row + 1;
+  last_ = position;
   return Placed{row, static_cast<std::uint64_t>(missed)};
+}
+
+std::uint64_t RowCount::missed_until(double position) const {
+  if (!first_) {
+    return 0;
+  }
+  const double steps = std::floor((std::min(position, end_ + step_) - last_) / step_ + 0.5) - 1;
+  return static_cast<std::uint64_t>(std::max(0.0, steps));
 }
 
 bool RowCount::ends_within(double steps, double position) const {

@@ -20,6 +20,9 @@ class RowCount {
   };
   /// Of the frame `id`, taken at `position`; nothing when it was taken outside of the scan. Numbers ascend.
   [[nodiscard]] std::optional<Placed> place(std::int64_t id, double position);
+  /// Rows of the scan that passed between the last frame that was placed and `position`, where the stage was
+  /// at a later one or came to rest, and that no frame came of.
+  [[nodiscard]] std::uint64_t missed_until(double position) const;
   /// Whether a frame was placed.
   [[nodiscard]] bool any() const { return first_.has_value(); }
   /// Whether the scan ends within `steps` of `position`: half a step is its last row.
@@ -30,6 +33,7 @@ class RowCount {
   double start_, step_, end_;
   std::optional<std::int64_t> first_;  ///< number of the frame of row 0, whether it came or not
   std::int64_t next_ = 0;
+  double last_ = 0;  ///< where the stage was at the last frame that was placed
 };
 
 }  // namespace dubsar

@@ -4,11 +4,12 @@
 // driver, a stage behind an emulated USB port that moves through, by `rig:` to a grid, against the true
 // surface.
 //   dubsar-gige-rig [--method adaptive|steger|gaussian|centroid] [--rows N] [--step MM] [--rate HZ]
-//   [--contrast C …] [--f-number N] [--loss SHARE]
+//   [--contrast C …] [--f-number N] [--loss SHARE] [--seed N]
 
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <vector>
 
@@ -84,12 +85,14 @@ int run(int argc, char** argv) {
   plan.rows = 40;
   plan.rate_hz = 40;
   plan.optics.f_number = 5.6;
+  std::uint64_t seed = 1;
   app.add_option("--rows", plan.rows)->check(CLI::Range(4, 2000));
   app.add_option("--rate", plan.rate_hz, "Of the camera, Hz")->check(CLI::Range(1.0, 1000.0));
   app.add_option("--step", plan.step, "From row to row, mm")->check(CLI::Range(0.005, 0.5));
   app.add_option("--contrast", contrasts, "Of the speckle");
   app.add_option("--f-number", plan.optics.f_number);
   app.add_option("--loss", plan.loss, "Share of the packets that are lost")->check(CLI::Range(0.0, 0.2));
+  app.add_option("--seed", seed, "Of the tablet");
   app.add_option("--method", plan.method, "Of finding the stripe")
       ->check(CLI::IsMember({"adaptive", "steger", "gaussian", "centroid"}));
   CLI11_PARSE(app, argc, argv);
@@ -101,7 +104,7 @@ int run(int argc, char** argv) {
   }
   int worst = 0;
   for (const bool written : {false, true}) {
-    const Result<std::unique_ptr<RigTablet>> made = rig_tablet(written);
+    const Result<std::unique_ptr<RigTablet>> made = rig_tablet(written, seed);
     if (!made) {
       std::fprintf(stderr, "%s\n", made.error().line().c_str());
       return 4;

@@ -6,6 +6,7 @@
 //   desktop_turntable)
 
 #include <CLI/CLI.hpp>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -13,11 +14,13 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "acquisition/calibration.h"
 #include "acquisition/calibration_laser.h"
 #include "acquisition/stripe_points.h"
+#include "bench/accuracy/real_table.h"
 #include "formats/gray_file.h"
 #include "formats/mesh_io.h"
 
@@ -67,12 +70,22 @@ GrayImage coloured(const fs::path& file, int channel) {
   return out;
 }
 
-void draw(const fs::path& from, const std::vector<Eigen::Vector2d>& points, const fs::path& to) {
+const cv::Vec3b kMagenta{255, 0, 255}, kBlue{255, 0, 0}, kRed{0, 0, 255};
+
+/// Points of one colour.
+struct Marks {
+  std::vector<Eigen::Vector2d> at_px;
+  cv::Vec3b colour = kMagenta;
+};
+
+void draw(const fs::path& from, const std::vector<Marks>& marks, const fs::path& to) {
   cv::Mat image = cv::imread(from.string(), cv::IMREAD_COLOR);
-  for (const Eigen::Vector2d& p : points) {
-    const cv::Point at(static_cast<int>(std::lround(p.x())), static_cast<int>(std::lround(p.y())));
-    if (at.x >= 0 && at.y >= 0 && at.x < image.cols && at.y < image.rows) {
-      image.at<cv::Vec3b>(at) = {255, 0, 255};
+  for (const Marks& one : marks) {
+    for (const Eigen::Vector2d& p : one.at_px) {
+      const cv::Point at(static_cast<int>(std::lround(p.x())), static_cast<int>(std::lround(p.y())));
+      if (at.x >= 0 && at.y >= 0 && at.x < image.cols && at.y < image.rows) {
+        image.at<cv::Vec3b>(at) = one.colour;
+      }
     }
   }
   cv::imwrite(to.string(), image);
@@ -113,6 +126,72 @@ void angle_and_offset(const char* what, const Plane& is, Plane should) {
       is.distance_mm - should.distance_mm, is.distance_mm, should.distance_mm);
 }
 
+/// Total least squares, with no regard to what strays.
+Plane all_points(const std::vector<Eigen::Vector3d>& points_mm) {
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3d& p : points_mm) {
+    mean += p / static_cast<double>(points_mm.size());
+  }
+  Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
+  for (const Eigen::Vector3d& p : points_mm) {
+    scatter += (p - mean) * (p - mean).transpose();
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(scatter);
+  const Eigen::Vector3d normal = solver.eigenvectors().col(0);
+  return {normal, normal.dot(mean)};
+}
+
+/// Which of two planes of light the authors' own photographs show: against the stripe on their boards, and on
+/// their empty table, whose size only its markers tell.
+void desktop_planes(const fs::path& data, const fs::path& pictures, const std::vector<CalibrationView>& views,
+                    const RigCalibration& rig, const Plane& published) {
+  const BoardSpec spec = *parse_board("chessboard:8x6:40");
+  constexpr double kPlate_mm = 100;
+  std::vector<Eigen::Vector3d> on_boards;
+  const Result<Intrinsics> boards = find_intrinsics(views);
+  if (boards) {
+    for (const StripeSample& sample : stripe_samples(views, *boards, spec, kPlate_mm)) {
+      on_boards.push_back(sample.point_mm);
+    }
+  }
+  const fs::path photo = data / "desktop_turntable/frames/TableCalib.jpg";
+  const Result<GrayImage> gray = read_gray(photo);
+  constexpr double kMarker_mm = 30;
+  const Result<MarkedTable> table =
+      gray ? find_marked_table(*gray, rig.camera, kMarker_mm) : std::unexpected(gray.error());
+  if (!table) {
+    std::printf("  %s\n", table.error().line().c_str());
+    return;
+  }
+  StripeOptions options;
+  options.axis = StripeAxis::kPerRow;
+  StripeProfile profile;
+  StripeExtractor(options).extract(coloured(photo, 1).view(), {}, profile);
+  const Eigen::Vector3d middle = table->camera_from_table.translation_mm;
+  const std::vector<Eigen::Vector2d> stripe = stripe_points(profile, options.axis);
+  const std::vector<Eigen::Vector3d> on_table =
+      stripe_on_plane(stripe, rig.camera, table->top(), middle, 1.4 * table->circle_mm);
+  std::printf(
+      "  table: markers of %.0f mm on a circle of %.1f mm radius, %.2f px rms, %.0f mm away; %zu rows of "
+      "stripe "
+      "on it\n",
+      kMarker_mm, table->circle_mm, table->rms_px, middle.z(), on_table.size());
+  std::vector<Marks> marks{{stripe, kMagenta}};
+  for (const auto& [light, name, colour] :
+       {std::tuple{&rig.laser, "found", kBlue}, std::tuple{&published, "published", kRed}}) {
+    std::printf(
+        "  the plane %s: stripe on the boards %.2f mm off it (median); stripe on the table %.1f mm off it, "
+        "at "
+        "%.2f° to it\n",
+        name, miss(*light, on_boards).median_mm, miss(*light, on_table).median_mm,
+        miss(*light, on_table).angle_rad * 180 / M_PI);
+    marks.push_back({crossing_px(*light, table->top(), rig.camera, middle, 1.6 * table->circle_mm), colour});
+  }
+  if (!pictures.empty()) {
+    draw(photo, marks, pictures / "desktop_table.png");
+  }
+}
+
 void desktop(const fs::path& data, const fs::path& pictures) {
   const BoardSpec spec = *parse_board("chessboard:8x6:40");
   std::vector<fs::path> lens = pictures_in(data / "desktop_turntable/camera", "Image");
@@ -142,7 +221,7 @@ void desktop(const fs::path& data, const fs::path& pictures) {
     one[0].stripe_px = stripe_points(profile, options.axis);
     samples += one[0].stripe_px.size();
     if (!pictures.empty() && views.size() % 20 == 0) {
-      draw(file, one[0].stripe_px, pictures / ("desktop_" + file.stem().string() + ".png"));
+      draw(file, {{one[0].stripe_px}}, pictures / ("desktop_" + file.stem().string() + ".png"));
     }
     views.push_back(std::move(one[0]));
   }
@@ -165,10 +244,12 @@ void desktop(const fs::path& data, const fs::path& pictures) {
   const Eigen::Vector3d normal(-0.84630, -0.29551, 0.38939);
   const Plane published{normal.normalized(), -211.72 / normal.norm()};
   angle_and_offset("laser plane", report->rig.laser, published);
-  // The published one fits better in a frame whose y points up and z towards the viewer, as graphics has it.
-  angle_and_offset("the same, y and z turned over", report->rig.laser,
-                   {Eigen::Vector3d(published.normal.x(), -published.normal.y(), -published.normal.z()),
-                    published.distance_mm});
+  // The published one comes nearest in a frame whose y points up and z towards the viewer, as graphics has
+  // it.
+  const Plane turned{{published.normal.x(), -published.normal.y(), -published.normal.z()},
+                     published.distance_mm};
+  angle_and_offset("the same, y and z turned over", report->rig.laser, turned);
+  desktop_planes(data, pictures, views, report->rig, turned);
 }
 
 void ciclop(const fs::path& data, const fs::path& pictures) {
@@ -195,8 +276,20 @@ void ciclop(const fs::path& data, const fs::path& pictures) {
           "  plane of laser-pc.ply: rms %.3f mm of %ld inliers of %zu (published 0.054 with RANSAC, 0.088 "
           "plain)\n",
           fit->rms_mm, std::count(fit->inlier.begin(), fit->inlier.end(), 1), points.size());
-      angle_and_offset("fit", fit->plane,
-                       {Eigen::Vector3d(0.85111, -0.00123, 0.52499).normalized(), 159.527});
+      const Plane published{Eigen::Vector3d(0.85111, -0.00123, 0.52499).normalized(), 159.527};
+      angle_and_offset("fit", fit->plane, published);
+      // The published plane goes through all points, the stray ones too. Its distance is that at the camera,
+      // far from the points.
+      angle_and_offset("least squares of all points", all_points(points), published);
+      const Plane other = fit->plane.normal.dot(published.normal) < 0
+                              ? Plane{-fit->plane.normal, -fit->plane.distance_mm}
+                              : fit->plane;
+      double most = 0;
+      for (const Eigen::Vector3d& p : points) {
+        most = std::max(most, std::abs(other.signed_distance_mm(p) - published.signed_distance_mm(p)));
+      }
+      std::printf("  the fit and the published plane are %.3f mm apart at most where there are points\n",
+                  most);
     }
   }
   // The bust with the laser on and off: how much of the line is found.
@@ -215,7 +308,7 @@ void ciclop(const fs::path& data, const fs::path& pictures) {
       profile.count_of(StripeState::kReflection), profile.count_of(StripeState::kWide),
       profile.count_of(StripeState::kSaturated));
   if (!pictures.empty()) {
-    draw(laser / "laser.png", found, pictures / "ciclop_bust.png");
+    draw(laser / "laser.png", {{found}}, pictures / "ciclop_bust.png");
   }
 }
 

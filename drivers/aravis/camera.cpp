@@ -142,14 +142,14 @@ Status Camera::start(std::uint32_t pool) {
     lose();
   }
   const bool stood = camera_ != nullptr;
-  Status begun = begin(pool, false);
+  Status begun = begin(pool);
   if (!begun && stood && camera_ == nullptr) {
-    begun = begin(pool, false);  // the connection had died unnoticed
+    begun = begin(pool);  // the connection had died unnoticed
   }
   return begun;
 }
 
-Status Camera::begin(std::uint32_t pool, bool same_stream) {
+Status Camera::begin(std::uint32_t pool) {
   const bool was_gone = camera_ == nullptr;
   if (was_gone) {
     if (const Status connected = connect(); !connected) {
@@ -205,7 +205,7 @@ Status Camera::begin(std::uint32_t pool, bool same_stream) {
     payload_ = payload;
     counts_.pool = buffers;
     counts_.reconnections += was_gone ? 1 : 0;
-    count_.begin(same_stream);
+    count_.begin();
     clock_ =
         CameraClock(ARV_IS_GV_DEVICE(device_) ? latched_offset_ns(ARV_GV_DEVICE(device_)) : std::nullopt);
   }
@@ -228,12 +228,6 @@ void Camera::say_room(std::uint64_t payload) {
   if (const auto scarce = granted ? scarce_room(*granted, payload) : std::nullopt) {
     log_warning(id_ + ": " + *scarce);
   }
-}
-
-Status Camera::retake() {
-  const std::uint32_t pool = counts_.pool;
-  lose();
-  return begin(pool, true);
 }
 
 std::unexpected<Error> Camera::gone() const {

@@ -108,15 +108,17 @@ class Camera {
   Camera() = default;
   Status connect();
   /// The stream; connects first where it has to. What breaks a connection leaves none.
-  Status begin(std::uint32_t pool, bool same_stream);
+  Status begin(std::uint32_t pool);
   [[nodiscard]] bool has_control() const;
   /// Whether the camera obeys this program, after a second's patience.
   [[nodiscard]] bool take_control();
   Status configure();
   Status choose_format();
   void lose();
-  /// Ends in a stream that runs, or without a camera.
+  /// Ends in a stream that runs, or without a camera (retake.cpp).
   Status retake();
+  /// Goes on with the connection and the stream of another, which is left with none.
+  void adopt(Camera& fresh);
   /// Once, when the kernel keeps too few of its packets.
   void say_room(std::uint64_t payload);
   [[nodiscard]] std::unexpected<Error> gone() const;

@@ -20,22 +20,25 @@ class FrameCount {
     bool camera_restarted = false;
   };
 
-  /// The stream begins. Numbers go on from the last frame's where it is the same one over a new connection.
-  void begin(bool same_stream);
+  /// Another stream begins.
+  void begin();
+  /// The same stream goes on over a new connection: its numbers go on from the last frame's.
+  void go_on();
   /// `raw`: the camera's number, which goes round from 65535 to 1 in GigE Vision 1. `device_ns`: the camera's
   /// time, 0 where it has none.
   Step take(std::uint64_t raw, std::int64_t timestamp_ns, std::int64_t device_ns);
 
  private:
   struct Seen {
-    std::uint64_t id;
-    std::int64_t timestamp_ns, device_ns;
+    std::uint64_t id = 0;
+    std::int64_t timestamp_ns = 0, device_ns = 0;
   };
+  [[nodiscard]] std::optional<double> period_ns() const;
   [[nodiscard]] std::uint64_t missed_until(std::int64_t timestamp_ns) const;
 
   std::uint64_t last_raw_ = 0;  ///< 0: none yet over this connection
   std::optional<Seen> last_;
-  std::deque<double> periods_ns_;  ///< from frame to frame, of late
+  std::deque<Seen> of_late_;
 };
 
 }  // namespace dubsar::aravis

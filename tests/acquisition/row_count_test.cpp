@@ -41,6 +41,28 @@ TEST(RowCount, FramesLostOnTheWayLeaveTheirRowsEmpty) {
   EXPECT_EQ(later->missed, 3U);
 }
 
+TEST(RowCount, RowsMissedAtTheEndAreCounted) {
+  RowCount rows(0, 1, 10);
+  EXPECT_EQ(rows.missed_until(30), 0U);  // of a scan of which nothing came, which is another failure
+  EXPECT_TRUE(rows.place(5, 0.1));
+  EXPECT_TRUE(rows.place(9, 4.2));
+  // Rows 5 to 9 went by: the next frame was taken behind the scan.
+  EXPECT_FALSE(rows.place(16, 11.2));
+  EXPECT_EQ(rows.missed_until(11.2), 5U);
+  EXPECT_EQ(rows.missed_until(6.8), 2U);
+  EXPECT_TRUE(rows.place(13, 7.9));
+  EXPECT_TRUE(rows.place(14, 9.1));
+  EXPECT_EQ(rows.missed_until(9.1), 0U);
+  EXPECT_EQ(rows.missed_until(10.2), 0U);
+}
+
+TEST(RowCount, TheRowThatAnAxisComesToRestOnIsNotMissed) {
+  RowCount rows(0, 1, 10);
+  EXPECT_TRUE(rows.place(5, 0));
+  EXPECT_TRUE(rows.place(13, 8.1));
+  EXPECT_EQ(rows.missed_until(9), 0U);
+}
+
 TEST(RowCount, NothingIsPlacedOfAStageThatStoodElsewhere) {
   RowCount rows(0, 1, 10);
   EXPECT_FALSE(rows.place(1, -3));

@@ -175,5 +175,19 @@ TEST_F(Resending, ACameraThatFallsSilentIsTold) {
   EXPECT_GE(rows.rows.size(), 80U);
 }
 
+/// It lets go of this program, is taken again, and dies of that: Aravis would wait for its answers for
+/// seconds.
+TEST_F(Resending, ACameraThatDiesWhileItIsTakenAgainIsToldAsSoonAsAnyOther) {
+  Device device = open_with({{"rows", "24000"}}).value();
+  Interrupted rows(*peer_, "forget and die when taken");
+  const auto outcome = device.scan(rows);
+  const int silent_ms = std::stoi(peer_->tell("silent ms"));
+  ASSERT_FALSE(outcome);
+  EXPECT_EQ(outcome.error().kind, ErrorKind::kDevice);
+  EXPECT_GE(rows.rows.size(), 400U);
+  EXPECT_GT(silent_ms, 0) << "it was not taken again";
+  EXPECT_LT(silent_ms, 2000);
+}
+
 }  // namespace
 }  // namespace dubsar

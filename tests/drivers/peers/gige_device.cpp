@@ -266,6 +266,10 @@ void GigeDevice::answer(const Bytes& ask, const sockaddr_in& to) {
         if (word(k) == kControlPrivilege && word(k + 4) != 0) {
           controller_ = who;
           heard_ns_ = now;
+          if (dies_when_taken) {
+            fell_silent_ns = now;
+            quiet = true;
+          }
         }
         if (word(k) == kTimestampControl && (word(k + 4) & 2U) != 0) {
           write(kTimestampLatched, static_cast<std::uint32_t>((now - switched_on_ns_) >> 32U));
@@ -344,6 +348,15 @@ int serve_gige(GigeDevice& device) {
     }
     if (line == "quiet") {
       device.quiet = true;
+    }
+    if (line == "forget and die when taken") {
+      device.dies_when_taken = true;
+      device.forget();
+    }
+    if (line == "silent ms") {
+      const std::uint64_t since = device.fell_silent_ns;
+      std::cout << (since == 0 ? 0 : (now_ns() - since) / 1'000'000) << std::endl;
+      continue;
     }
     std::cout << (line == "resent" ? std::to_string(device.resent.load()) : "ok") << std::endl;
   }

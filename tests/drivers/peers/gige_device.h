@@ -38,6 +38,8 @@ class GigeDevice {
   void restart();
 
   std::atomic<bool> quit = false, quiet = false;
+  std::atomic<bool> dies_when_taken = false;      ///< the next program that takes control has it for a moment
+  std::atomic<std::uint64_t> fell_silent_ns = 0;  ///< of a camera that died so
   std::atomic<int> resent = 0;
 
  protected:
