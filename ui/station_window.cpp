@@ -126,12 +126,16 @@ class StationWindow {
           settle = std::max(0, settle - 1);
         }
       }
-      const double frame_began = now_s();
+      ui_.watch.begin(FrameWatch::Clock::now(), script_ ? script_->place() : std::string());
       moving = draw_frame();
       if (Status taken = take_screenshot(moving); !taken) {
         return std::unexpected(taken.error());
       }
       glfwSwapBuffers(window_.handle());
+      if (script_) {
+        glFinish();  // a driver that queues would not have shown the picture yet
+      }
+      ui_.watch.end(FrameWatch::Clock::now());
       if (const auto since = operator_ && !looks_ ? operator_->profiles_since() : std::nullopt) {
         glFinish();
         const std::chrono::duration<double> waited = std::chrono::steady_clock::now() - *since;
@@ -141,16 +145,15 @@ class StationWindow {
         seen_ = true;
         log_debug(fmt::format("first picture of the mesh: {:.2f} s", now_s() - opened_s_));
       }
-      if (script_ && script_->is_dragging()) {
-        longest_drag_s_ = std::max(longest_drag_s_, now_s() - frame_began);
-      }
       keep_preferences();
       if (const auto unreadable = mesh_error()) {
         return std::unexpected(*unreadable);
       }
       if (script_ && script_->finished()) {
         tell_profile_waits();
-        log_debug(fmt::format("longest frame of a drag: {:.0f} ms", 1000 * longest_drag_s_));
+        for (const std::string& line : ui_.watch.lines()) {
+          log_info(line);
+        }
         if (script_->failure()) {
           log_error(script_->failure()->line());
           return 1;
@@ -164,6 +167,7 @@ class StationWindow {
  private:
   bool draw_frame() {
     if (loaded_px_ != ui_.preferences.font_px) {
+      const TimedWork timed(ui_.watch, "letters");
       ui_.fonts = load_fonts(ui_.preferences.font_px);
       if (loaded_px_ > 0) {
         ImGui_ImplOpenGL3_DestroyFontsTexture();
@@ -222,6 +226,7 @@ class StationWindow {
     if (!file) {
       return {};
     }
+    ui_.watch.leave_out();
     int width = 0;
     int height = 0;
     glfwGetFramebufferSize(window_.handle(), &width, &height);
@@ -267,7 +272,6 @@ class StationWindow {
   Preferences kept_;
   std::filesystem::path preferences_file_;
   float loaded_px_ = 0;
-  double longest_drag_s_ = 0;
   double opened_s_;
   std::vector<double> profile_waits_s_;  ///< a frame each, of the profile that waited longest
   bool seen_ = false;                    ///< a mesh in the viewer

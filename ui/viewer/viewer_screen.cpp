@@ -51,8 +51,12 @@ void ViewerScreen::take_state(UiContext& ui) {
   if (std::exchange(openness_due_, false)) {
     viewing_.want(MeshField::kOpenness);
   }
-  state_ = viewing_.state();
+  {
+    const TimedWork timed(ui.watch, "what is known of the mesh");
+    state_ = viewing_.state();
+  }
   if (prepared_.update(state_)) {
+    const TimedWork timed(ui.watch, "a mesh to the graphics card");
     surface_.show(prepared_.shown());
     openness_due_ = true;
     unfinished_ = true;
@@ -75,12 +79,14 @@ void ViewerScreen::take_state(UiContext& ui) {
     return known == state_.fields.end() ? nullptr : known->second;
   };
   if (const auto openness = field_values(MeshField::kOpenness); openness && openness != shown_openness_) {
+    const TimedWork timed(ui.watch, "ambient occlusion to the graphics card");
     set_openness(prepared_.shown(), *openness);
     surface_.set_traits(prepared_.shown().traits);
     shown_openness_ = openness;
   }
   if (field_) {
     if (const auto values = field_values(*field_); values && values != shown_values_) {
+      const TimedWork timed(ui.watch, "an overlay to the graphics card");
       surface_.set_values(*values);
       look_.value_range = shown_range(*values);
       look_.overlay = Overlay::kValue;
@@ -182,10 +188,13 @@ void ViewerScreen::draw_surface(UiContext& ui, ImVec2 size) {
   use_pointer(ui, origin, size);
   look_.red = ui.colours.red.head<3>();
   look_.amber = ui.colours.amber.head<3>();
-  if (surface_.draw(camera_, look_, static_cast<int>(size.x), static_cast<int>(size.y))) {
-    unfinished_ = true;
+  {
+    const TimedWork timed(ui.watch, "the surface's picture");
+    unfinished_ =
+        surface_.draw(camera_, look_, static_cast<int>(size.x), static_cast<int>(size.y)) || unfinished_;
   }
   draw->AddImage(picture_of(surface_.texture()), origin, end, {0, 1}, {1, 0});
+  const TimedWork timed(ui.watch, "lines over the surface");
   draw->PushClipRect(origin, end, true);
   if (show_wedges_ && state_.wedges) {
     draw_wedges(ui, origin, size);
@@ -203,7 +212,7 @@ void ViewerScreen::draw_surface(UiContext& ui, ImVec2 size) {
   ImGui::EndChild();
 }
 
-void ViewerScreen::use_pointer(UiContext& /*ui*/, ImVec2 origin, ImVec2 size) {
+void ViewerScreen::use_pointer(UiContext& ui, ImVec2 origin, ImVec2 size) {
   const ImGuiIO& io = ImGui::GetIO();
   if (use_hand(origin, size, camera_, look_, dragged_)) {
     untouched_ = false;
@@ -216,11 +225,13 @@ void ViewerScreen::use_pointer(UiContext& /*ui*/, ImVec2 origin, ImVec2 size) {
     if (tool_ == Tool::kSelect) {
       if (ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left) ||
           (!polygon_.empty() && (polygon_.front() - px).norm() < 8)) {
+        const TimedWork timed(ui.watch, "a selection");
         close_polygon();
       } else {
         polygon_.push_back(px);
       }
     } else if (tool_ == Tool::kMeasure || tool_ == Tool::kSection) {
+      const TimedWork timed(ui.watch, "a place on the surface");
       if (const auto place = surface_.point_at(px)) {
         if (tape_.size() == 2) {
           tape_.clear();
@@ -275,6 +286,7 @@ std::filesystem::path ViewerScreen::unused_file(const std::string& what, const s
 }
 
 void ViewerScreen::keep_picture(UiContext& ui) {
+  const TimedWork timed(ui.watch, "a picture to scale");
   // To scale: the whole surface as it is turned now, a margin and a bar, so many pixels to the inch.
   OrbitCamera camera = camera_;
   camera.fit(prepared_.shown().box_mm, 1.0F);
