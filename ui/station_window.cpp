@@ -31,6 +31,8 @@ namespace {
 
 constexpr double kIdleS = 0.5;     ///< between two looks when nothing happens
 constexpr double kMotionS = 0.06;  ///< between two frames of something that moves by itself
+/// While a picture is filled in there is only a look at what the user does.
+constexpr double kAtOnceS = 0.001;
 constexpr double kScriptWaitS = 0.1;
 /// ImGui needs some frames to settle after an event.
 constexpr int kFramesAfterEvent = 4;
@@ -115,10 +117,10 @@ class StationWindow {
     bool moving = false;
     while (glfwWindowShouldClose(window_.handle()) == GLFW_FALSE && !job.cancelled()) {
       if (script_) {
-        glfwWaitEventsTimeout(script_->waits() ? kScriptWaitS : 0.001);
+        glfwWaitEventsTimeout(script_->waits() && !draws_on_ ? kScriptWaitS : kAtOnceS);
       } else {
         const double began = now_s();
-        const double patience = settle > 0 ? 0.001 : moving ? kMotionS : kIdleS;
+        const double patience = settle > 0 || draws_on_ ? kAtOnceS : moving ? kMotionS : kIdleS;
         glfwWaitEventsTimeout(patience);
         if (now_s() - began < 0.9 * patience) {
           settle = kFramesAfterEvent;
@@ -190,14 +192,15 @@ class StationWindow {
     bool unfinished = false;
     if (pair_) {
       pair_->draw(ui_, size);
-      unfinished = pair_->unfinished();
+      draws_on_ = unfinished = pair_->unfinished();
     } else if (looks_) {
       viewer_->draw(ui_, size);
-      unfinished = viewer_->unfinished();
+      draws_on_ = unfinished = viewer_->unfinished();
       looks_ = !viewer_->wants_scanning();
     } else {
       operator_->draw(ui_, size);
       unfinished = operator_->unfinished();
+      draws_on_ = operator_->draws_on();
       if (operator_->wants_viewer()) {
         const LiveState state = session_->state();
         viewer_->show_pins(operator_->pins_on_model());
@@ -274,6 +277,7 @@ class StationWindow {
   float loaded_px_ = 0;
   double opened_s_;
   std::vector<double> profile_waits_s_;  ///< a frame each, of the profile that waited longest
+  bool draws_on_ = false;                ///< more of the picture comes at the next frame
   bool seen_ = false;                    ///< a mesh in the viewer
   bool looks_ = false;                   ///< the viewer; else the operator's screen
   std::filesystem::path session_folder_;

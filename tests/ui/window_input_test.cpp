@@ -146,6 +146,41 @@ TEST_F(MeshInput, ACutBetweenTwoClicksIsMeasuredAndKept) {
             2);
 }
 
+/// Bounds of what is not black in the upper part of a picture, columns and rows.
+std::pair<int, int> extent_px(const Image& picture, int rows) {
+  int left = picture.width, right = -1, top = rows, bottom = -1;
+  for (int y = 0; y < rows; ++y) {
+    for (int x = 0; x < picture.width; ++x) {
+      if (const Rgb8 c = picture.rgb(x, y); c[0] + c[1] + c[2] > 30) {
+        left = std::min(left, x);
+        right = std::max(right, x);
+        top = std::min(top, y);
+        bottom = std::max(bottom, y);
+      }
+    }
+  }
+  return {right - left + 1, bottom - top + 1};
+}
+
+TEST_F(MeshInput, APictureIsToScaleAlsoAboveWhatACardDrawsAtOnce) {
+  const auto before = std::filesystem::current_path();
+  std::filesystem::current_path(folder_.path());
+  const Outcome outcome =
+      look_at("plate.obj", grooved_plate(),
+              "wait whole\nwait idle\nclick keep-picture\nwait picture-kept\nclick dpi\nkey selectall\n"
+              "type 2400\nkey enter\nclick keep-picture\npause 0.1\nwait picture-kept\nquit\n");
+  std::filesystem::current_path(before);
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  for (const int dpi : {600, 2400}) {
+    const Image picture = test::read_png(folder_.path() / ("plate_" + std::to_string(dpi) + "dpi_01.png"));
+    ASSERT_GT(picture.width, 0) << dpi;
+    const double px_per_mm = dpi / 25.4;
+    const auto [wide, high] = extent_px(picture, picture.height - static_cast<int>(3.2 * px_per_mm));
+    EXPECT_NEAR(std::max(wide, high) / px_per_mm, 10, 2 / px_per_mm) << dpi;
+    EXPECT_NEAR(std::min(wide, high) / px_per_mm, 6, 2 / px_per_mm) << dpi;
+  }
+}
+
 TEST_F(MeshInput, TwoSideBySideTurnTogetherOrAlone) {
   std::ofstream(folder_.path() / "left.obj") << grooved_plate();
   std::ofstream(folder_.path() / "right.obj") << grooved_plate();

@@ -134,7 +134,7 @@ void OperatorScreen::sound_out(const UiContext& ui) {
 }
 
 void OperatorScreen::draw(UiContext& ui, ImVec2 size) {
-  unfinished_ = false;
+  unfinished_ = draws_on_ = false;
   take_state(ui);
   sound_out(ui);
   const bool has_device = !session_.device().empty();
@@ -351,8 +351,8 @@ void OperatorScreen::draw_model(UiContext& ui, ImVec2 size, bool asks_for_places
   }
   {
     const TimedWork timed(ui.watch, "the model's picture");
-    unfinished_ =
-        model_.draw(camera_, look, static_cast<int>(size.x), static_cast<int>(size.y)) || unfinished_;
+    draws_on_ = model_.draw(camera_, look, static_cast<int>(size.x), static_cast<int>(size.y));
+    unfinished_ = unfinished_ || draws_on_;
   }
   draw->AddImage(picture_of(model_.texture()), origin, end, {0, 1}, {1, 0});
   draw_pin_marks(ui, camera_, origin, size, pins_on_model());

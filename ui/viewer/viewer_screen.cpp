@@ -9,18 +9,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "archive/scale_bar.h"
-#include "station/picture_file.h"
 #include "ui/view/pin_marks.h"
 #include "ui/viewer/hand.h"
 
 namespace dubsar::ui {
-
-namespace {
-
-constexpr double kMmPerInch = 25.4;
-
-}  // namespace
 
 Eigen::Vector2f shown_range(const std::vector<float>& values) {
   constexpr std::size_t kLooked = 100000;
@@ -65,6 +57,7 @@ void ViewerScreen::take_state(UiContext& ui) {
     tape_.clear();
     polygon_.clear();
     clear_selected();
+    give_up_picture();
     wedge_ = -1;
     look_at(Face::kObverse);
     if (!prepared_.shown().colours.empty() && look_.overlay == Overlay::kClay) {
@@ -130,6 +123,7 @@ void ViewerScreen::look_at(Face face) {
 void ViewerScreen::draw(UiContext& ui, ImVec2 size) {
   unfinished_ = false;
   take_state(ui);
+  draw_picture_on(ui);
   ImGui::SetNextWindowPos({0, 0});
   ImGui::SetNextWindowSize(size);
   ImGui::Begin("viewer", nullptr,
@@ -283,47 +277,6 @@ std::filesystem::path ViewerScreen::unused_file(const std::string& what, const s
   } while (handed_out_.contains(file) || std::filesystem::exists(file, error));
   handed_out_.insert(file);
   return file;
-}
-
-void ViewerScreen::keep_picture(UiContext& ui) {
-  const TimedWork timed(ui.watch, "a picture to scale");
-  // To scale: the whole surface as it is turned now, a margin and a bar, so many pixels to the inch.
-  OrbitCamera camera = camera_;
-  camera.fit(prepared_.shown().box_mm, 1.0F);
-  Eigen::AlignedBox3f eye;
-  for (int k = 0; k < 8; ++k) {
-    eye.extend(camera.eye_from_model *
-               (prepared_.shown().box_mm.corner(static_cast<Eigen::AlignedBox3f::CornerType>(k)) -
-                camera.centre_mm));
-  }
-  const double mm_per_px = kMmPerInch / dpi_;
-  const Eigen::Vector2f mm = 1.06F * eye.sizes().head<2>() + Eigen::Vector2f(2, 8);
-  const int width = static_cast<int>(std::ceil(mm.x() / mm_per_px));
-  const int height = static_cast<int>(std::ceil(mm.y() / mm_per_px));
-  if (const int most = FrameTarget::largest_side(); width > most || height > most) {
-    picture_note_ = filled(ui.text(Text::kPictureTooLarge), width, height, most);
-    return;
-  }
-  camera.half_height_mm = static_cast<float>(0.5 * height * mm_per_px);
-  Look look = look_;
-  look.ground = {0, 0, 0, 1};
-  surface_.draw_whole(camera, look, width, height);
-  const Image drawn = surface_.read();
-  Image picture = filled_image(width, height, {0, 0, 0});
-  for (std::size_t i = 0; i < picture.bytes.size() / 3; ++i) {
-    std::copy_n(drawn.bytes.begin() + static_cast<std::ptrdiff_t>(4 * i), 3,
-                picture.bytes.begin() + static_cast<std::ptrdiff_t>(3 * i));
-  }
-  picture.mm_per_px = mm_per_px;
-  const ScaleBar bar = scale_bar_for(mm_per_px, width);
-  dubsar::draw_scale_bar(picture, bar, static_cast<int>(1.0 / mm_per_px),
-                         height - bar.height_px - static_cast<int>(1.0 / mm_per_px), {255, 255, 255});
-  const std::filesystem::path file = unused_file(fmt::format("{}dpi", dpi_), ".png");
-  const Status written = write_picture(file, picture, file.stem().string());
-  picture_note_ = written ? filled(ui.text(Text::kPictureKept), file.string()) : written.error().line();
-  if (written) {
-    ui.facts.insert("picture-kept");
-  }
 }
 
 }  // namespace dubsar::ui
