@@ -9,6 +9,7 @@
 #include "analysis/openness.h"
 #include "analysis/vertex_geometry.h"
 #include "core/tablet_frame.h"
+#include "core/thread_priority.h"
 #include "formats/mesh_io.h"
 #include "formats/wedges_json.h"
 #include "station/analysis.h"
@@ -86,6 +87,7 @@ void MeshViewing::ask(Task task) {
 }
 
 void MeshViewing::run() {
+  yield_this_thread();
   for (;;) {
     Task task;
     {

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "core/log.h"
+#include "core/yielding_loops.h"
 #include "station/picture_file.h"
 #include "ui/gl/frame_target.h"
 #include "ui/gl/gl_window.h"
@@ -294,6 +295,7 @@ class StationWindow {
 
 Result<int> run_station_window(const StationWindowOptions& options, JobContext& job) {
   const double opened_s = now_s();
+  make_loops_yield();
   auto script = load_script(options.script);
   if (!script) {
     return std::unexpected(script.error());
