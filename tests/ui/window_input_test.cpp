@@ -70,6 +70,29 @@ TEST_F(MeshInput, PointsWithoutFacesOrNormalsAreShown) {
   EXPECT_EQ(outcome.status, 0) << outcome.err;
 }
 
+TEST_F(MeshInput, APlyOfPointsIsShown) {
+  const Outcome outcome =
+      look_at("points.ply",
+              "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
+              "property float z\nend_header\n0 0 0\n10 0 1\n0 10 0\n10 10 2\n",
+              kLook);
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+}
+
+TEST_F(MeshInput, NumbersThatMeasureWronglyAreSaid) {
+  const std::string faces = "f 1 2 3\nf 2 4 3\n";
+  const std::string says = "wait whole\nwait error\nquit\n";
+  const Outcome far =
+      look_at("far.obj", "v 4000000 0 0\nv 4000010 0 0\nv 4000000 10 0\nv 4000010 10 1\n" + faces, says);
+  EXPECT_EQ(far.status, 0) << far.err;
+  const Outcome small =
+      look_at("metres.obj", "v 0 0 0\nv 0.04 0 0\nv 0 0.03 0\nv 0.04 0.03 0.01\n" + faces, says);
+  EXPECT_EQ(small.status, 0) << small.err;
+  const Outcome sound = look_at("sound.obj", "v 500 0 0\nv 510 0 0\nv 500 10 0\nv 510 10 1\n" + faces,
+                                "wait whole\nwait idle\npause 0.3\nexpect idle\nwait error 1\nquit\n");
+  EXPECT_EQ(sound.status, 1) << "nothing is wrong with it";
+}
+
 TEST_F(MeshInput, AFaceOfNoAreaIsShownWithTheOthers) {
   const Outcome outcome = look_at(
       "slivers.obj", "v 0 0 0\nv 10 0 0\nv 0 10 0\nv 10 10 1\nf 1 2 3\nf 2 4 3\nf 1 1 2\nf 1 2 2\n", kLook);

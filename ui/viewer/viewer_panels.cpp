@@ -154,6 +154,7 @@ void ViewerScreen::draw_foot(UiContext& ui) {
   draw_picture_foot(ui);
   ImGui::PushFont(ui.fonts.small);
   if (state_.error && !surface_.empty()) {
+    ui.facts.insert("error");
     coloured_text(ui.colours.red, translated(state_.error->line(), ui.preferences.language).c_str());
   } else if (!picture_note_.empty()) {
     coloured_text(ui.colours.faint, picture_note_.c_str());
