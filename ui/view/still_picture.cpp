@@ -28,11 +28,11 @@ StillPicture::StillPicture(const OrbitCamera& camera, const Look& look, int widt
 
 OrbitCamera StillPicture::camera_of(int tile) const {
   const float mm_per_px = camera_.mm_per_px(static_cast<float>(image_.height));
+  const int left = tile % across_ * kTilePx;
+  const int top = tile / across_ * kTilePx;
   // Its middle, from the middle of the whole, y down.
-  const float x =
-      static_cast<float>(tile % across_ * kTilePx) + 0.5F * static_cast<float>(kTilePx - image_.width);
-  const float y =
-      static_cast<float>(tile / across_ * kTilePx) + 0.5F * static_cast<float>(kTilePx - image_.height);
+  const float x = static_cast<float>(left) + 0.5F * static_cast<float>(kTilePx - image_.width);
+  const float y = static_cast<float>(top) + 0.5F * static_cast<float>(kTilePx - image_.height);
   OrbitCamera camera = camera_;
   camera.centre_mm += camera_.eye_from_model.conjugate() * Eigen::Vector3f(x * mm_per_px, -y * mm_per_px, 0);
   camera.half_height_mm = 0.5F * static_cast<float>(kDrawnPx) * mm_per_px;
