@@ -20,4 +20,12 @@ ThreadPriority prefer_this_thread() {
   return ::setpriority(PRIO_PROCESS, thread, kNice) == 0 ? ThreadPriority::kHigh : ThreadPriority::kUsual;
 }
 
+void yield_this_thread() {
+  constexpr int kNice = 10;
+  const auto thread = static_cast<id_t>(::syscall(SYS_gettid));
+  if (::getpriority(PRIO_PROCESS, thread) < kNice) {
+    ::setpriority(PRIO_PROCESS, thread, kNice);  // downwards everybody may
+  }
+}
+
 }  // namespace dubsar

@@ -15,4 +15,8 @@ enum class ThreadPriority {
 /// usual ones. Says what came of it; not to have the right is no error.
 ThreadPriority prefer_this_thread();
 
+/// Puts the calling thread, and those that it starts from now on, behind the others of this user: for what
+/// computes while somebody works with a window. On a machine with nothing else to do it loses nothing.
+void yield_this_thread();
+
 }  // namespace dubsar

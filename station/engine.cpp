@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright The Dubsar developers
 #include "core/heap.h"
+#include "core/thread_priority.h"
 #include "station/engine_impl.h"
 
 namespace dubsar {
@@ -67,8 +68,16 @@ Result<bool> Engine::Impl::run_round(NextStep step, EngineResult& result, JobCon
     }
   }
   {
-    std::jthread planner([&] { plan_all(job); });
-    std::jthread registration([&] { register_all(job); });
+    const auto computing = [&](auto work) {
+      return std::jthread([this, work] {
+        if (options.yields) {
+          yield_this_thread();
+        }
+        work();
+      });
+    };
+    const std::jthread planner = computing([&] { plan_all(job); });
+    const std::jthread registration = computing([&] { register_all(job); });
     std::jthread storing([&] { keep_stored(); });
     acquire(std::move(step), job);
   }

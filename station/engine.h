@@ -36,6 +36,7 @@ struct EngineOptions {
   /// scan, one for each ScanNow, until Finish.
   bool paced = false;
   bool first_scan_waits = false;                     ///< of a paced run: so does its first scan
+  bool yields = false;                               ///< to a window: what computes comes after it
   bool show_model = false;                           ///< send ModelChanged whenever the mesh has grown
   SettingWords settings = {};                        ///< of the device, over those that the session keeps
   std::vector<OperatorCommand> first_commands = {};  ///< as if posted before the first scan

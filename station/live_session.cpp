@@ -274,6 +274,7 @@ void LiveSession::run_engine(std::vector<OperatorCommand> first, bool first_scan
     options.settings = settings_;
     options.automatic = true;
     options.paced = true;
+    options.yields = true;
     options.first_scan_waits = first_scan_waits;
     options.show_model = true;
     options.first_commands = std::move(first);

@@ -2,6 +2,10 @@
 // Copyright The Dubsar developers
 #include "station/mesh_viewing.h"
 
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <limits>
 #include <utility>
 
 #include "analysis/curvature.h"
@@ -9,7 +13,8 @@
 #include "analysis/openness.h"
 #include "analysis/vertex_geometry.h"
 #include "core/tablet_frame.h"
-#include "formats/mesh_io.h"
+#include "core/thread_priority.h"
+#include "formats/mesh_points.h"
 #include "formats/wedges_json.h"
 #include "station/analysis.h"
 #include "station/section_file.h"
@@ -38,6 +43,37 @@ WedgesPlace wedges_beside(const fs::path& mesh) {
     }
   }
   return {own, false};
+}
+
+/// What somebody who measures on it has to know of its numbers.
+std::optional<Error> odd_numbers(const Mesh& mesh, const std::string& where) {
+  Eigen::AlignedBox3f box;
+  for (const Eigen::Vector3f& p : mesh.positions) {
+    if (p.allFinite()) {
+      box.extend(p);
+    }
+  }
+  if (box.isEmpty()) {
+    return std::nullopt;
+  }
+  const double size_mm = static_cast<double>(box.diagonal().norm());
+  const double far_mm = static_cast<double>(box.min().cwiseAbs().cwiseMax(box.max().cwiseAbs()).maxCoeff());
+  const double step_mm = far_mm * static_cast<double>(std::numeric_limits<float>::epsilon());
+  constexpr double kCoarseStep = 2e-5;  // of the size: a micrometre on a tablet of 5 cm
+  constexpr double kSmallMm = 2;        // no tablet; one of 20 cm in metres would be 0.2
+  if (step_mm > kCoarseStep * size_mm) {
+    return Error{
+        ErrorKind::kBadInput,
+        fmt::format("it lies {:.0f} mm from the origin of its numbers, where places are good to {:.2g} mm",
+                    far_mm, step_mm),
+        where, "export it again with its middle at the origin"};
+  }
+  if (size_mm > 0 && size_mm < kSmallMm) {
+    return Error{ErrorKind::kBadInput,
+                 fmt::format("it is {:.2g} mm large, perhaps its numbers are metres", size_mm), where,
+                 "dubsar mesh convert --unit m makes millimetres of them"};
+  }
+  return std::nullopt;
 }
 
 }  // namespace
@@ -86,6 +122,7 @@ void MeshViewing::ask(Task task) {
 }
 
 void MeshViewing::run() {
+  yield_this_thread();
   for (;;) {
     Task task;
     {
@@ -174,13 +211,17 @@ void MeshViewing::take_wedges(std::vector<Wedge> wedges) {
 
 void MeshViewing::open(const fs::path& file) {
   ask([this, file] {
-    Result<Mesh> read = read_mesh(file);
+    Result<Mesh> read = read_mesh_or_points(file);
     if (!read) {
       complain(read.error());
       return;
     }
     const RigidTransform tablet_from_model = tablet_frame(*read);
+    const std::optional<Error> odd = odd_numbers(*read, file.filename().string());
     take_mesh(std::make_shared<const Mesh>(std::move(*read)), tablet_from_model, file.filename().string());
+    if (odd) {
+      complain(*odd);
+    }
     const WedgesPlace wedges = wedges_beside(file);
     take_selections(selections_file_of(file));
     take_corrections(wedges.file, wedges.in_session);

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "core/log.h"
+#include "core/yielding_loops.h"
 #include "station/picture_file.h"
 #include "ui/gl/frame_target.h"
 #include "ui/gl/gl_window.h"
@@ -31,6 +32,8 @@ namespace {
 
 constexpr double kIdleS = 0.5;     ///< between two looks when nothing happens
 constexpr double kMotionS = 0.06;  ///< between two frames of something that moves by itself
+/// While a picture is filled in there is only a look at what the user does.
+constexpr double kAtOnceS = 0.001;
 constexpr double kScriptWaitS = 0.1;
 /// ImGui needs some frames to settle after an event.
 constexpr int kFramesAfterEvent = 4;
@@ -115,10 +118,10 @@ class StationWindow {
     bool moving = false;
     while (glfwWindowShouldClose(window_.handle()) == GLFW_FALSE && !job.cancelled()) {
       if (script_) {
-        glfwWaitEventsTimeout(script_->waits() ? kScriptWaitS : 0.001);
+        glfwWaitEventsTimeout(script_->waits() && !draws_on_ ? kScriptWaitS : kAtOnceS);
       } else {
         const double began = now_s();
-        const double patience = settle > 0 ? 0.001 : moving ? kMotionS : kIdleS;
+        const double patience = settle > 0 || draws_on_ ? kAtOnceS : moving ? kMotionS : kIdleS;
         glfwWaitEventsTimeout(patience);
         if (now_s() - began < 0.9 * patience) {
           settle = kFramesAfterEvent;
@@ -126,12 +129,16 @@ class StationWindow {
           settle = std::max(0, settle - 1);
         }
       }
-      const double frame_began = now_s();
+      ui_.watch.begin(FrameWatch::Clock::now(), script_ ? script_->place() : std::string());
       moving = draw_frame();
       if (Status taken = take_screenshot(moving); !taken) {
         return std::unexpected(taken.error());
       }
       glfwSwapBuffers(window_.handle());
+      if (script_) {
+        glFinish();  // a driver that queues would not have shown the picture yet
+      }
+      ui_.watch.end(FrameWatch::Clock::now());
       if (const auto since = operator_ && !looks_ ? operator_->profiles_since() : std::nullopt) {
         glFinish();
         const std::chrono::duration<double> waited = std::chrono::steady_clock::now() - *since;
@@ -141,16 +148,15 @@ class StationWindow {
         seen_ = true;
         log_debug(fmt::format("first picture of the mesh: {:.2f} s", now_s() - opened_s_));
       }
-      if (script_ && script_->is_dragging()) {
-        longest_drag_s_ = std::max(longest_drag_s_, now_s() - frame_began);
-      }
       keep_preferences();
       if (const auto unreadable = mesh_error()) {
         return std::unexpected(*unreadable);
       }
       if (script_ && script_->finished()) {
         tell_profile_waits();
-        log_debug(fmt::format("longest frame of a drag: {:.0f} ms", 1000 * longest_drag_s_));
+        for (const std::string& line : ui_.watch.lines()) {
+          log_info(line);
+        }
         if (script_->failure()) {
           log_error(script_->failure()->line());
           return 1;
@@ -164,6 +170,7 @@ class StationWindow {
  private:
   bool draw_frame() {
     if (loaded_px_ != ui_.preferences.font_px) {
+      const TimedWork timed(ui_.watch, "letters");
       ui_.fonts = load_fonts(ui_.preferences.font_px);
       if (loaded_px_ > 0) {
         ImGui_ImplOpenGL3_DestroyFontsTexture();
@@ -186,14 +193,15 @@ class StationWindow {
     bool unfinished = false;
     if (pair_) {
       pair_->draw(ui_, size);
-      unfinished = pair_->unfinished();
+      draws_on_ = unfinished = pair_->unfinished();
     } else if (looks_) {
       viewer_->draw(ui_, size);
-      unfinished = viewer_->unfinished();
+      draws_on_ = unfinished = viewer_->unfinished();
       looks_ = !viewer_->wants_scanning();
     } else {
       operator_->draw(ui_, size);
       unfinished = operator_->unfinished();
+      draws_on_ = operator_->draws_on();
       if (operator_->wants_viewer()) {
         const LiveState state = session_->state();
         viewer_->show_pins(operator_->pins_on_model());
@@ -222,6 +230,7 @@ class StationWindow {
     if (!file) {
       return {};
     }
+    ui_.watch.leave_out();
     int width = 0;
     int height = 0;
     glfwGetFramebufferSize(window_.handle(), &width, &height);
@@ -267,9 +276,9 @@ class StationWindow {
   Preferences kept_;
   std::filesystem::path preferences_file_;
   float loaded_px_ = 0;
-  double longest_drag_s_ = 0;
   double opened_s_;
   std::vector<double> profile_waits_s_;  ///< a frame each, of the profile that waited longest
+  bool draws_on_ = false;                ///< more of the picture comes at the next frame
   bool seen_ = false;                    ///< a mesh in the viewer
   bool looks_ = false;                   ///< the viewer; else the operator's screen
   std::filesystem::path session_folder_;
@@ -286,6 +295,7 @@ class StationWindow {
 
 Result<int> run_station_window(const StationWindowOptions& options, JobContext& job) {
   const double opened_s = now_s();
+  make_loops_yield();
   auto script = load_script(options.script);
   if (!script) {
     return std::unexpected(script.error());

@@ -10,6 +10,9 @@
 
 #include <thread>
 
+#include "core/parallel.h"
+#include "core/yielding_loops.h"
+
 namespace dubsar {
 namespace {
 
@@ -31,6 +34,23 @@ TEST(ThreadPriority, IsWhatItSaysAndOfThisThreadAlone) {
     std::thread([&] { EXPECT_NE(own_policy(), SCHED_RR); }).join();
   }).join();
   EXPECT_EQ(own_policy(), policy);
+  EXPECT_EQ(own_nice(), nice);
+}
+
+TEST(ThreadPriority, WhatComputesYieldsToTheWindowAndLeavesItAlone) {
+  const int nice = own_nice();
+  make_loops_yield();
+  EXPECT_EQ(own_nice(), nice);
+  // Helpers yield, and so does who asks to; only the thread of the window does not.
+  const auto window = std::this_thread::get_id();
+  parallel_chunks(64, 1, [&](std::size_t, std::size_t) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    EXPECT_TRUE(std::this_thread::get_id() == window || own_nice() >= 10);
+  });
+  std::thread([] {
+    yield_this_thread();
+    std::thread([] { EXPECT_GE(own_nice(), 10); }).join();
+  }).join();
   EXPECT_EQ(own_nice(), nice);
 }
 

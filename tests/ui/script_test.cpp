@@ -31,6 +31,14 @@ TEST(Script, FactsMayHoldSpaces) {
   EXPECT_EQ((*steps)[1].numbers, std::vector<double>{9});
 }
 
+TEST(Script, TargetsMayHoldSpaces) {
+  const auto steps = parse_script("click overlay.Mean curvature, 1/mm 0.2 0.5 right\n", "s");
+  ASSERT_TRUE(steps) << steps.error().line();
+  EXPECT_EQ((*steps)[0].name, "overlay.Mean curvature, 1/mm");
+  EXPECT_EQ((*steps)[0].numbers, (std::vector<double>{0.2, 0.5}));
+  EXPECT_TRUE((*steps)[0].right);
+}
+
 TEST(Script, RefusesWhatSaysTooLittleByItsLine) {
   for (const char* bad : {"shout", "key", "key hyper", "drag model 0 0", "click model 0.5", "pause", "type",
                           "screenshot", "wheel model"}) {

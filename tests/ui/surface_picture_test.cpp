@@ -14,6 +14,7 @@
 #include "tests/ui/support/display.h"
 #include "tests/ui/support/read_png.h"
 #include "ui/gl/gl_window.h"
+#include "ui/view/still_picture.h"
 #include "ui/view/surface_view.h"
 
 namespace dubsar::ui {
@@ -177,6 +178,53 @@ TEST_F(Shading, AShadowTakesLightAndGivesNone) {
   }
   EXPECT_GT(darker, with.size() / 200);
   EXPECT_EQ(brighter, 0U);
+}
+
+/// What looks over the edge of a tile (discs, shadows, shading by depth and curvature) among it.
+TEST_F(Shading, APictureDrawnTileByTileHasNoSeamsAndIsThatOfOnePiece) {
+  constexpr int kWide = 1300;
+  constexpr int kHigh = 1100;
+  const ShownMesh shown = shown_mesh(dented_slab(500));
+  view_->show(shown);
+  ColouredPoints points;
+  points.radius_mm = 0.1F;
+  for (int k = 0; k < 60; ++k) {
+    points.positions_mm.emplace_back(-9 + 0.3F * static_cast<float>(k), 0.02F * static_cast<float>(k), 1.5F);
+    points.colours.push_back(k % 2 == 0 ? kAmberOfExcused : Rgb8{255, 0, 0});
+  }
+  view_->show_points(&points);
+  look_.depth_shading = 1.5F;
+  camera_.fit(shown.box_mm, static_cast<float>(kWide) / kHigh);
+  for (const bool lamp : {false, true}) {
+    look_.lamp = lamp;
+    look_.light = {-0.9F, 0.3F, 0.35F};
+    view_->draw_whole(camera_, look_, kWide, kHigh);
+    const Image one = view_->read();
+    StillPicture still(camera_, look_, kWide, kHigh);
+    int frames = 1;
+    while (still.draw_on(*view_)) {
+      ++frames;
+    }
+    EXPECT_GE(frames, 9);  // 3 x 3 tiles
+    EXPECT_EQ(view_->read().bytes, one.bytes) << "the picture that is shown stays";
+    const Image tiled = still.take();
+    ASSERT_EQ(tiled.width, kWide);
+    ASSERT_EQ(tiled.height, kHigh);
+    if (const char* folder = std::getenv("DUBSAR_KEEP_PICTURES"); folder != nullptr) {
+      ASSERT_TRUE(write_picture(fs::path(folder) / (lamp ? "tiled_lamp.png" : "tiled.png"), tiled, "tiled"));
+    }
+    std::size_t other = 0;
+    for (int y = 0; y < kHigh; ++y) {
+      for (int x = 0; x < kWide; ++x) {
+        for (std::size_t k = 0; k < 3; ++k) {
+          other +=
+              std::abs(int{one.bytes[one.offset(x, y) + k]} - int{tiled.bytes[tiled.offset(x, y) + k]}) > 12;
+        }
+      }
+    }
+    // Edges fall otherwise by less than a pixel here and there.
+    EXPECT_LT(static_cast<double>(other) / (3.0 * kWide * kHigh), 0.002) << (lamp ? "lamp" : "lit sphere");
+  }
 }
 
 TEST_F(Shading, ThePlaceUnderAPixelIsOnTheSurface) {

@@ -70,6 +70,29 @@ TEST_F(MeshInput, PointsWithoutFacesOrNormalsAreShown) {
   EXPECT_EQ(outcome.status, 0) << outcome.err;
 }
 
+TEST_F(MeshInput, APlyOfPointsIsShown) {
+  const Outcome outcome =
+      look_at("points.ply",
+              "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
+              "property float z\nend_header\n0 0 0\n10 0 1\n0 10 0\n10 10 2\n",
+              kLook);
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+}
+
+TEST_F(MeshInput, NumbersThatMeasureWronglyAreSaid) {
+  const std::string faces = "f 1 2 3\nf 2 4 3\n";
+  const std::string says = "wait whole\nwait error\nquit\n";
+  const Outcome far =
+      look_at("far.obj", "v 4000000 0 0\nv 4000010 0 0\nv 4000000 10 0\nv 4000010 10 1\n" + faces, says);
+  EXPECT_EQ(far.status, 0) << far.err;
+  const Outcome small =
+      look_at("metres.obj", "v 0 0 0\nv 0.04 0 0\nv 0 0.03 0\nv 0.04 0.03 0.01\n" + faces, says);
+  EXPECT_EQ(small.status, 0) << small.err;
+  const Outcome sound = look_at("sound.obj", "v 500 0 0\nv 510 0 0\nv 500 10 0\nv 510 10 1\n" + faces,
+                                "wait whole\nwait idle\npause 0.3\nexpect idle\nwait error 1\nquit\n");
+  EXPECT_EQ(sound.status, 1) << "nothing is wrong with it";
+}
+
 TEST_F(MeshInput, AFaceOfNoAreaIsShownWithTheOthers) {
   const Outcome outcome = look_at(
       "slivers.obj", "v 0 0 0\nv 10 0 0\nv 0 10 0\nv 10 10 1\nf 1 2 3\nf 2 4 3\nf 1 1 2\nf 1 2 2\n", kLook);
@@ -144,6 +167,41 @@ TEST_F(MeshInput, ACutBetweenTwoClicksIsMeasuredAndKept) {
                          "3,0,0", "-o", svg})
                 .status,
             2);
+}
+
+/// Bounds of what is not black in the upper part of a picture, columns and rows.
+std::pair<int, int> extent_px(const Image& picture, int rows) {
+  int left = picture.width, right = -1, top = rows, bottom = -1;
+  for (int y = 0; y < rows; ++y) {
+    for (int x = 0; x < picture.width; ++x) {
+      if (const Rgb8 c = picture.rgb(x, y); c[0] + c[1] + c[2] > 30) {
+        left = std::min(left, x);
+        right = std::max(right, x);
+        top = std::min(top, y);
+        bottom = std::max(bottom, y);
+      }
+    }
+  }
+  return {right - left + 1, bottom - top + 1};
+}
+
+TEST_F(MeshInput, APictureIsToScaleAlsoAboveWhatACardDrawsAtOnce) {
+  const auto before = std::filesystem::current_path();
+  std::filesystem::current_path(folder_.path());
+  const Outcome outcome =
+      look_at("plate.obj", grooved_plate(),
+              "wait whole\nwait idle\nclick keep-picture\nwait picture-kept\nclick dpi\nkey selectall\n"
+              "type 2400\nkey enter\nclick keep-picture\npause 0.1\nwait picture-kept\nquit\n");
+  std::filesystem::current_path(before);
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  for (const int dpi : {600, 2400}) {
+    const Image picture = test::read_png(folder_.path() / ("plate_" + std::to_string(dpi) + "dpi_01.png"));
+    ASSERT_GT(picture.width, 0) << dpi;
+    const double px_per_mm = dpi / 25.4;
+    const auto [wide, high] = extent_px(picture, picture.height - static_cast<int>(3.2 * px_per_mm));
+    EXPECT_NEAR(std::max(wide, high) / px_per_mm, 10, 2 / px_per_mm) << dpi;
+    EXPECT_NEAR(std::min(wide, high) / px_per_mm, 6, 2 / px_per_mm) << dpi;
+  }
 }
 
 TEST_F(MeshInput, TwoSideBySideTurnTogetherOrAlone) {

@@ -68,15 +68,7 @@ void FrameTarget::release() {
   glDeleteFramebuffers(1, &frame_);
   colour_.clear();
   depth_ = frame_ = 0;
-}
-
-int FrameTarget::largest_side() {
-  constexpr int kEnough = 16384;  // 1.1 GB with its depth, at a square
-  GLint texture = 0;
-  GLint viewport[2] = {0, 0};
-  glGetIntegerv(GL_MAX_TEXTURE_SIZE, &texture);
-  glGetIntegerv(GL_MAX_VIEWPORT_DIMS, viewport);
-  return std::min({kEnough, texture, viewport[0], viewport[1]});
+  width_ = height_ = 0;
 }
 
 bool FrameTarget::resize(int width, int height) {

@@ -20,10 +20,10 @@ class FrameTarget {
   FrameTarget(const FrameTarget&) = delete;
   FrameTarget& operator=(const FrameTarget&) = delete;
 
-  /// The most pixels of a side that the graphics driver draws, and that a picture is given.
-  [[nodiscard]] static int largest_side();
   /// Makes it that large; what was drawn is lost when the size changes. True when it did.
   bool resize(int width, int height);
+  /// Lets go of its memory; the next resize() takes it again.
+  void release();
   /// All that is drawn goes here, until another target or the window is bound.
   void bind() const;
   [[nodiscard]] unsigned colour(int index) const { return colour_[static_cast<std::size_t>(index)]; }
@@ -34,7 +34,6 @@ class FrameTarget {
   [[nodiscard]] Image read() const;
 
  private:
-  void release();
   std::vector<PixelFormat> formats_;
   std::vector<unsigned> colour_;
   unsigned depth_ = 0;

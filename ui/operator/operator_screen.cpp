@@ -59,8 +59,12 @@ OperatorScreen::OperatorScreen(LiveSession& session)
     : session_(session), camera_box_(session), calibration_(session) {}
 
 void OperatorScreen::take_state(UiContext& ui) {
-  state_ = session_.state();
+  {
+    const TimedWork timed(ui.watch, "what is known of the session");
+    state_ = session_.state();
+  }
   if (const std::optional<ReadyModel> ready = prepared_.update(state_)) {
+    const TimedWork timed(ui.watch, "the model to the graphics card");
     const Eigen::AlignedBox3f box_mm = ready->whole.box_mm;
     model_.show(ready->whole);
     model_.show_points(ready->red.get());
@@ -130,7 +134,7 @@ void OperatorScreen::sound_out(const UiContext& ui) {
 }
 
 void OperatorScreen::draw(UiContext& ui, ImVec2 size) {
-  unfinished_ = false;
+  unfinished_ = draws_on_ = false;
   take_state(ui);
   sound_out(ui);
   const bool has_device = !session_.device().empty();
@@ -345,7 +349,11 @@ void OperatorScreen::draw_model(UiContext& ui, ImVec2 size, bool asks_for_places
   if (!model_has_red_) {
     look.overlay = Overlay::kFlags;  // a session that was read: the mesh itself says what is sparse
   }
-  unfinished_ = model_.draw(camera_, look, static_cast<int>(size.x), static_cast<int>(size.y)) || unfinished_;
+  {
+    const TimedWork timed(ui.watch, "the model's picture");
+    draws_on_ = model_.draw(camera_, look, static_cast<int>(size.x), static_cast<int>(size.y));
+    unfinished_ = unfinished_ || draws_on_;
+  }
   draw->AddImage(picture_of(model_.texture()), origin, end, {0, 1}, {1, 0});
   draw_pin_marks(ui, camera_, origin, size, pins_on_model());
   draw->AddText(ui.fonts.small, ui.fonts.small->FontSize, {origin.x + ui.px(0.5F), origin.y + ui.px(0.3F)},

@@ -36,6 +36,8 @@ class OperatorScreen {
   void draw(UiContext& ui, ImVec2 size);
   /// More is to be drawn though nothing happens.
   [[nodiscard]] bool unfinished() const { return unfinished_; }
+  /// The model's picture is still being filled in.
+  [[nodiscard]] bool draws_on() const { return draws_on_; }
   /// When the first profile came that the last frame was the first to show.
   [[nodiscard]] std::optional<std::chrono::steady_clock::time_point> profiles_since() const {
     return growing_.news_since();
@@ -92,6 +94,7 @@ class OperatorScreen {
   bool open_sign_ = false, open_tablet_ = false, open_settings_ = false;
   bool wants_viewer_ = false;
   bool unfinished_ = false;
+  bool draws_on_ = false;
   LivePhase heard_phase_ = LivePhase::kStill;  ///< as of the last frame
   std::string stage_;
   double stage_began_s_ = 0;

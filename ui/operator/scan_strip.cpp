@@ -73,6 +73,7 @@ void OperatorScreen::draw_strip(UiContext& ui, ImVec2 size) {
     if (scan.picture) {
       Thumbnail& thumbnail = thumbnails_[scan.id];
       if (thumbnail.of != scan.picture || thumbnail.blue != ui.preferences.blue_for_red) {
+        const TimedWork timed(ui.watch, "a scan's thumbnail");
         thumbnail.texture.upload(scan.picture->cols, scan.picture->rows, 3,
                                  coloured(*scan.picture, ui).data(), true);
         thumbnail.of = scan.picture;

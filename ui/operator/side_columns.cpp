@@ -151,7 +151,10 @@ void OperatorScreen::draw_growing(UiContext& ui, ImVec2 size) {
   ImDrawList* draw = ImGui::GetWindowDrawList();
   const ImVec2 end{origin.x + size.x, origin.y + size.y};
   draw->AddRectFilled(origin, end, packed(ui.colours.text, 0.06F), 6);
-  growing_.update(session_, ui);
+  {
+    const TimedWork timed(ui.watch, "the growing scan");
+    growing_.update(session_, ui);
+  }
   if (growing_.rows() == 0) {
     draw->AddText(ui.fonts.small, ui.fonts.small->FontSize, {origin.x + ui.px(0.6F), origin.y + ui.px(0.5F)},
                   packed(ui.colours.faint), ui.text(Text::kNoScanYet));

@@ -132,6 +132,14 @@ constexpr EnginePhrase kPhrases[] = {
     {"watershed", "Keile werden gesucht"},
     {"drawing views", "Ansichten werden gezeichnet"},
     {"kept: ", "aufgehoben: "},
+    // a mesh of others
+    {"it lies ", "es liegt "},
+    {" mm from the origin of its numbers, where places are good to ",
+     " mm vom Ursprung seiner Zahlen, wo Orte so genau sind: "},
+    {"export it again with its middle at the origin", "noch einmal mit der Mitte im Ursprung ausgeben"},
+    {" mm large, perhaps its numbers are metres", " mm groß, vielleicht sind seine Zahlen Meter"},
+    {"dubsar mesh convert --unit m makes millimetres of them",
+     "dubsar mesh convert --unit m macht Millimeter daraus"},
 };
 
 }  // namespace

@@ -96,8 +96,9 @@ Result<std::vector<ScriptStep>> parse_script(std::string_view text, const std::s
       std::string word;
       while (words >> word) {
         const auto value = number_of(word);
-        const bool fact = step.kind == Kind::kWait || step.kind == Kind::kExpect;
-        if (!value && fact && step.numbers.empty()) {
+        const bool named =
+            step.kind == Kind::kWait || step.kind == Kind::kExpect || step.kind == Kind::kClick;
+        if (!value && named && word != "right" && step.numbers.empty()) {
           step.name += ' ' + word;  // of several words
           continue;
         }
@@ -132,6 +133,10 @@ ScriptPlayer::ScriptPlayer(std::vector<ScriptStep> steps, std::string where)
 
 void ScriptPlayer::fail_step(const std::string& what) {
   failure_ = Error{ErrorKind::kUsage, what, where_ + ":" + std::to_string(steps_[next_].line), {}};
+}
+
+std::string ScriptPlayer::place() const {
+  return finished() ? std::string() : "line " + std::to_string(steps_[next_].line);
 }
 
 void ScriptPlayer::go_on() {

@@ -42,9 +42,8 @@ class ScriptPlayer {
     return !finished() &&
            (steps_[next_].kind == ScriptStep::Kind::kWait || steps_[next_].kind == ScriptStep::Kind::kPause);
   }
-  [[nodiscard]] bool is_dragging() const {
-    return !finished() && steps_[next_].kind == ScriptStep::Kind::kDrag && frame_ > 2;
-  }
+  /// Line of the step that is being played.
+  [[nodiscard]] std::string place() const;
   /// What a wait waited for in vain.
   [[nodiscard]] const std::optional<Error>& failure() const { return failure_; }
 

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "ui/shell/frame_watch.h"
 #include "ui/shell/theme.h"
 
 namespace dubsar::ui {
@@ -25,6 +26,7 @@ struct UiContext {
   std::set<std::string> facts;            ///< what is the case, for a script to wait for
   bool still = false;                     ///< a script runs: nothing moves by itself
   double time_s = 0;
+  FrameWatch watch;
 
   [[nodiscard]] const char* text(Text which) const { return text_of(which, preferences.language); }
   /// Notes where the last item is, under a name for scripts.

@@ -93,7 +93,7 @@ void SurfaceView::clear(Layer& layer, const Scene& scene) const {
   layer.target.bind();
   glClearColor(0, 0, 0, 0);
   glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
-  if (scene.look.lamp && scene.look.shadows) {
+  if (scene.look.lamp && scene.look.shadows && !layer.shadow_stands) {
     layer.shadow.resize(kShadowSize, kShadowSize);
     layer.shadow.bind();
     glClear(GL_DEPTH_BUFFER_BIT);
@@ -157,7 +157,7 @@ void SurfaceView::draw_geometry(Layer& layer, const Scene& scene, std::size_t le
     draw(run);
     faces_drawn_ += run.count;
   }
-  if (scene.look.lamp && scene.look.shadows && !blocks.empty()) {
+  if (scene.look.lamp && scene.look.shadows && !layer.shadow_stands && !blocks.empty()) {
     layer.shadow.bind();
     shadow_.use();
     shadow_.set("clip_from_model", light_clip_from_model(scene));
@@ -178,10 +178,10 @@ void SurfaceView::draw_marks(Layer& layer, const Scene& scene) {
   points_->draw();
 }
 
-void SurfaceView::light(const Layer& layer, const Scene& scene) {
+void SurfaceView::light(const Layer& layer, const Scene& scene, FrameTarget& into) {
   const float aspect = static_cast<float>(scene.width) / static_cast<float>(scene.height);
-  picture_.resize(scene.width, scene.height);
-  picture_.bind();
+  into.resize(scene.width, scene.height);
+  into.bind();
   glDisable(GL_DEPTH_TEST);
   glDisable(GL_BLEND);
   glDisable(GL_SCISSOR_TEST);
@@ -245,7 +245,7 @@ bool SurfaceView::draw_in_motion(const Scene& scene) {
   faces_drawn_ = 0;
   draw_geometry(layer, rough, level_drawn_, levels_[level_drawn_]);
   draw_marks(layer, rough);
-  light(layer, rough);
+  light(layer, rough, picture_);
   glFinish();
   const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - began;
   next_block_ = 0;
@@ -262,23 +262,23 @@ bool SurfaceView::draw_in_motion(const Scene& scene) {
   return !whole_;
 }
 
-/// Some more faces of the whole surface, into the picture that is not shown yet.
-bool SurfaceView::draw_more(const Scene& scene) {
+/// Some more faces of the whole surface, from `next_block` on, as many as this machine draws soon enough.
+/// True while more is to come.
+bool SurfaceView::add_faces(Layer& layer, const Scene& scene, std::size_t& next_block) {
   const float aspect = static_cast<float>(scene.width) / static_cast<float>(scene.height);
   const Eigen::Matrix4f clip_from_model = scene.camera.clip_from_model(aspect);
-  Layer& layer = layers_[static_cast<std::size_t>(1 - shown_layer_)];
-  if (next_block_ == 0) {
+  if (next_block == 0) {
     clear(layer, scene);
-    faces_drawn_ = 0;
   }
   const std::span<const FaceBlock> blocks = levels_.back();
-  const bool every_face = scene.look.lamp && scene.look.shadows;  // what is not seen casts shadows
-  std::size_t end = next_block_;
+  // What is not seen casts shadows.
+  const bool every_face = scene.look.lamp && scene.look.shadows && !layer.shadow_stands;
+  std::size_t end = next_block;
   for (std::size_t faces = 0; end < blocks.size() && faces < faces_at_a_time_; ++end) {
     faces += every_face ? blocks[end].count : faces_in(seen_runs(blocks.subspan(end, 1), clip_from_model));
   }
   const auto began = std::chrono::steady_clock::now();
-  draw_geometry(layer, scene, levels_.size() - 1, blocks.subspan(next_block_, end - next_block_));
+  draw_geometry(layer, scene, levels_.size() - 1, blocks.subspan(next_block, end - next_block));
   glFinish();  // else a driver that queues would let the frames pile up, and input wait behind them
   const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - began;
   if (spent.count() < 0.4 * kSoonS) {
@@ -287,16 +287,53 @@ bool SurfaceView::draw_more(const Scene& scene) {
   } else if (spent.count() > kSoonS) {
     faces_at_a_time_ = std::max(kFewestAtATime, faces_at_a_time_ / 2);
   }
-  next_block_ = end;
-  if (next_block_ < blocks.size()) {
+  next_block = end;
+  return next_block < blocks.size();
+}
+
+/// Of the picture that is not shown yet.
+bool SurfaceView::draw_more(const Scene& scene) {
+  Layer& layer = layers_[static_cast<std::size_t>(1 - shown_layer_)];
+  faces_drawn_ = next_block_ == 0 ? 0 : faces_drawn_;
+  if (add_faces(layer, scene, next_block_)) {
     return true;
   }
   draw_marks(layer, scene);
-  light(layer, scene);
+  light(layer, scene, picture_);
   shown_layer_ = 1 - shown_layer_;
   level_drawn_ = levels_.size() - 1;
   whole_ = true;
   return false;
+}
+
+void SurfaceView::begin_still(const OrbitCamera& camera, const Look& look, int width, int height,
+                              bool same_light) {
+  if (!still_) {
+    still_ = std::make_unique<Layer>();
+  }
+  still_->shadow_stands = same_light && still_->shadow.width() > 0;
+  still_scene_ = {camera, look, width, height};
+  still_block_ = 0;
+}
+
+bool SurfaceView::draw_still() {
+  if (!still_) {
+    return false;
+  }
+  const std::size_t shown = faces_drawn_;
+  const bool more = add_faces(*still_, still_scene_, still_block_);
+  faces_drawn_ = shown;
+  if (more) {
+    return true;
+  }
+  draw_marks(*still_, still_scene_);
+  light(*still_, still_scene_, still_picture_);
+  return false;
+}
+
+void SurfaceView::end_still() {
+  still_.reset();
+  still_picture_.release();
 }
 
 void SurfaceView::draw_whole(const OrbitCamera& camera, const Look& look, int width, int height) {
@@ -312,7 +349,7 @@ void SurfaceView::draw_level(std::size_t level, const OrbitCamera& camera, const
   level_drawn_ = level;
   draw_geometry(layer, scene, level, levels_[level]);
   draw_marks(layer, scene);
-  light(layer, scene);
+  light(layer, scene, picture_);
   scene_ = scene;
   dirty_ = false;
   next_block_ = 0;

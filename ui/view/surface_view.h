@@ -55,7 +55,15 @@ class SurfaceView {
 
   /// Draws what has changed since the last call. True while more is to come at the next.
   bool draw(const OrbitCamera& camera, const Look& look, int width, int height);
-  /// All of it at once, for pictures that are kept.
+  /// A picture beside the one that is shown, for one that is kept (still_picture.h). `same_light`: the last
+  /// one's, with the same model under it, so that its shadows need not be cast again.
+  void begin_still(const OrbitCamera& camera, const Look& look, int width, int height, bool same_light);
+  /// Some more faces of it. True while more is to come.
+  bool draw_still();
+  [[nodiscard]] Image read_still() const { return still_picture_.read(); }
+  /// Lets go of what it took.
+  void end_still();
+  /// All of it at once, however long that takes.
   void draw_whole(const OrbitCamera& camera, const Look& look, int width, int height);
   /// The same in a level of detail, which draw() chooses itself.
   void draw_level(std::size_t level, const OrbitCamera& camera, const Look& look, int width, int height);
@@ -88,6 +96,7 @@ class SurfaceView {
   struct Layer {  // what is seen where
     FrameTarget target{{PixelFormat::kRgba8, PixelFormat::kRgba16f}};
     FrameTarget shadow{{}};
+    bool shadow_stands = false;  ///< from another picture in the same light
   };
   struct Scene {
     OrbitCamera camera;
@@ -101,10 +110,11 @@ class SurfaceView {
   void draw_geometry(Layer& layer, const Scene& scene, std::size_t level, std::span<const FaceBlock> blocks);
   bool draw_in_motion(const Scene& scene);
   bool draw_more(const Scene& scene);
+  bool add_faces(Layer& layer, const Scene& scene, std::size_t& next_block);
   void draw_marks(Layer& layer, const Scene& scene);
   void begin_selection(MeshElement of);
   void show_selection(std::size_t level, std::size_t first_face);
-  void light(const Layer& layer, const Scene& scene);
+  void light(const Layer& layer, const Scene& scene, FrameTarget& into);
   [[nodiscard]] Eigen::Matrix4f light_clip_from_model(const Scene& scene) const;
 
   ShaderProgram surface_, shadow_, lighting_;
@@ -119,8 +129,12 @@ class SurfaceView {
   FrameTarget picture_{{PixelFormat::kRgba8}};
   unsigned no_vertices_ = 0;
   Scene scene_;
-  bool dirty_ = true;           ///< mesh, points or values have changed
-  std::size_t next_block_ = 0;  ///< of the whole picture that comes together
+  std::unique_ptr<Layer> still_;
+  FrameTarget still_picture_{{PixelFormat::kRgba8}};
+  Scene still_scene_;
+  std::size_t still_block_ = 0;  ///< next of it
+  bool dirty_ = true;            ///< mesh, points or values have changed
+  std::size_t next_block_ = 0;   ///< of the whole picture that comes together
   bool whole_ = false;
   bool slow_ = false;                    ///< this machine draws slowly
   std::size_t faces_at_a_time_ = 80000;  ///< as many as this machine draws soon enough

@@ -21,6 +21,7 @@ void PairScreen::take_state(UiContext& ui, Pane& pane) {
   }
   pane.state = pane.viewing->state();
   if (pane.prepared.update(pane.state)) {
+    const TimedWork timed(ui.watch, "a mesh to the graphics card");
     pane.surface.show(pane.prepared.shown());
     pane.openness_due = true;
     unfinished_ = true;
@@ -33,6 +34,7 @@ void PairScreen::take_state(UiContext& ui, Pane& pane) {
   const auto openness = pane.state.fields.find(MeshField::kOpenness);
   if (!pane.surface.empty() && pane.prepared.is_of(pane.state) && openness != pane.state.fields.end() &&
       openness->second != pane.openness) {
+    const TimedWork timed(ui.watch, "ambient occlusion to the graphics card");
     pane.openness = openness->second;
     set_openness(pane.prepared.shown(), *pane.openness);
     pane.surface.set_traits(pane.prepared.shown().traits);
@@ -149,8 +151,11 @@ void PairScreen::draw_pane(UiContext& ui, Pane& pane, const char* name, ImVec2 s
     if (look.overlay == Overlay::kColours && pane.prepared.shown().colours.empty()) {
       look.overlay = Overlay::kClay;
     }
-    if (pane.surface.draw(pane.camera, look, static_cast<int>(size.x), static_cast<int>(size.y))) {
-      unfinished_ = true;
+    {
+      const TimedWork timed(ui.watch, "the surface's picture");
+      const bool more =
+          pane.surface.draw(pane.camera, look, static_cast<int>(size.x), static_cast<int>(size.y));
+      unfinished_ = unfinished_ || more;
     }
     draw->AddImage(picture_of(pane.surface.texture()), origin, end, {0, 1}, {1, 0});
     draw_scale_bar(ui, pane.camera, origin, size);

@@ -151,15 +151,10 @@ void ViewerScreen::draw_foot(UiContext& ui) {
                        translated(state_.stage, ui.preferences.language).c_str());
     ImGui::PopFont();
   }
-  if (plain_button(ui, "keep-picture", ui.text(Text::kPicture), !surface_.empty())) {
-    keep_picture(ui);
-  }
-  ImGui::SameLine();
-  ImGui::SetNextItemWidth(ui.px(3));
-  ImGui::InputInt(ui.text(Text::kDpi), &dpi_, 0);
-  dpi_ = std::clamp(dpi_, 50, 2400);
+  draw_picture_foot(ui);
   ImGui::PushFont(ui.fonts.small);
   if (state_.error && !surface_.empty()) {
+    ui.facts.insert("error");
     coloured_text(ui.colours.red, translated(state_.error->line(), ui.preferences.language).c_str());
   } else if (!picture_note_.empty()) {
     coloured_text(ui.colours.faint, picture_note_.c_str());

@@ -9,18 +9,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "archive/scale_bar.h"
-#include "station/picture_file.h"
 #include "ui/view/pin_marks.h"
 #include "ui/viewer/hand.h"
 
 namespace dubsar::ui {
-
-namespace {
-
-constexpr double kMmPerInch = 25.4;
-
-}  // namespace
 
 Eigen::Vector2f shown_range(const std::vector<float>& values) {
   constexpr std::size_t kLooked = 100000;
@@ -51,8 +43,12 @@ void ViewerScreen::take_state(UiContext& ui) {
   if (std::exchange(openness_due_, false)) {
     viewing_.want(MeshField::kOpenness);
   }
-  state_ = viewing_.state();
+  {
+    const TimedWork timed(ui.watch, "what is known of the mesh");
+    state_ = viewing_.state();
+  }
   if (prepared_.update(state_)) {
+    const TimedWork timed(ui.watch, "a mesh to the graphics card");
     surface_.show(prepared_.shown());
     openness_due_ = true;
     unfinished_ = true;
@@ -61,6 +57,7 @@ void ViewerScreen::take_state(UiContext& ui) {
     tape_.clear();
     polygon_.clear();
     clear_selected();
+    give_up_picture();
     wedge_ = -1;
     look_at(Face::kObverse);
     if (!prepared_.shown().colours.empty() && look_.overlay == Overlay::kClay) {
@@ -75,12 +72,14 @@ void ViewerScreen::take_state(UiContext& ui) {
     return known == state_.fields.end() ? nullptr : known->second;
   };
   if (const auto openness = field_values(MeshField::kOpenness); openness && openness != shown_openness_) {
+    const TimedWork timed(ui.watch, "ambient occlusion to the graphics card");
     set_openness(prepared_.shown(), *openness);
     surface_.set_traits(prepared_.shown().traits);
     shown_openness_ = openness;
   }
   if (field_) {
     if (const auto values = field_values(*field_); values && values != shown_values_) {
+      const TimedWork timed(ui.watch, "an overlay to the graphics card");
       surface_.set_values(*values);
       look_.value_range = shown_range(*values);
       look_.overlay = Overlay::kValue;
@@ -124,6 +123,7 @@ void ViewerScreen::look_at(Face face) {
 void ViewerScreen::draw(UiContext& ui, ImVec2 size) {
   unfinished_ = false;
   take_state(ui);
+  draw_picture_on(ui);
   ImGui::SetNextWindowPos({0, 0});
   ImGui::SetNextWindowSize(size);
   ImGui::Begin("viewer", nullptr,
@@ -182,10 +182,13 @@ void ViewerScreen::draw_surface(UiContext& ui, ImVec2 size) {
   use_pointer(ui, origin, size);
   look_.red = ui.colours.red.head<3>();
   look_.amber = ui.colours.amber.head<3>();
-  if (surface_.draw(camera_, look_, static_cast<int>(size.x), static_cast<int>(size.y))) {
-    unfinished_ = true;
+  {
+    const TimedWork timed(ui.watch, "the surface's picture");
+    unfinished_ =
+        surface_.draw(camera_, look_, static_cast<int>(size.x), static_cast<int>(size.y)) || unfinished_;
   }
   draw->AddImage(picture_of(surface_.texture()), origin, end, {0, 1}, {1, 0});
+  const TimedWork timed(ui.watch, "lines over the surface");
   draw->PushClipRect(origin, end, true);
   if (show_wedges_ && state_.wedges) {
     draw_wedges(ui, origin, size);
@@ -203,7 +206,7 @@ void ViewerScreen::draw_surface(UiContext& ui, ImVec2 size) {
   ImGui::EndChild();
 }
 
-void ViewerScreen::use_pointer(UiContext& /*ui*/, ImVec2 origin, ImVec2 size) {
+void ViewerScreen::use_pointer(UiContext& ui, ImVec2 origin, ImVec2 size) {
   const ImGuiIO& io = ImGui::GetIO();
   if (use_hand(origin, size, camera_, look_, dragged_)) {
     untouched_ = false;
@@ -216,11 +219,13 @@ void ViewerScreen::use_pointer(UiContext& /*ui*/, ImVec2 origin, ImVec2 size) {
     if (tool_ == Tool::kSelect) {
       if (ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left) ||
           (!polygon_.empty() && (polygon_.front() - px).norm() < 8)) {
+        const TimedWork timed(ui.watch, "a selection");
         close_polygon();
       } else {
         polygon_.push_back(px);
       }
     } else if (tool_ == Tool::kMeasure || tool_ == Tool::kSection) {
+      const TimedWork timed(ui.watch, "a place on the surface");
       if (const auto place = surface_.point_at(px)) {
         if (tape_.size() == 2) {
           tape_.clear();
@@ -272,46 +277,6 @@ std::filesystem::path ViewerScreen::unused_file(const std::string& what, const s
   } while (handed_out_.contains(file) || std::filesystem::exists(file, error));
   handed_out_.insert(file);
   return file;
-}
-
-void ViewerScreen::keep_picture(UiContext& ui) {
-  // To scale: the whole surface as it is turned now, a margin and a bar, so many pixels to the inch.
-  OrbitCamera camera = camera_;
-  camera.fit(prepared_.shown().box_mm, 1.0F);
-  Eigen::AlignedBox3f eye;
-  for (int k = 0; k < 8; ++k) {
-    eye.extend(camera.eye_from_model *
-               (prepared_.shown().box_mm.corner(static_cast<Eigen::AlignedBox3f::CornerType>(k)) -
-                camera.centre_mm));
-  }
-  const double mm_per_px = kMmPerInch / dpi_;
-  const Eigen::Vector2f mm = 1.06F * eye.sizes().head<2>() + Eigen::Vector2f(2, 8);
-  const int width = static_cast<int>(std::ceil(mm.x() / mm_per_px));
-  const int height = static_cast<int>(std::ceil(mm.y() / mm_per_px));
-  if (const int most = FrameTarget::largest_side(); width > most || height > most) {
-    picture_note_ = filled(ui.text(Text::kPictureTooLarge), width, height, most);
-    return;
-  }
-  camera.half_height_mm = static_cast<float>(0.5 * height * mm_per_px);
-  Look look = look_;
-  look.ground = {0, 0, 0, 1};
-  surface_.draw_whole(camera, look, width, height);
-  const Image drawn = surface_.read();
-  Image picture = filled_image(width, height, {0, 0, 0});
-  for (std::size_t i = 0; i < picture.bytes.size() / 3; ++i) {
-    std::copy_n(drawn.bytes.begin() + static_cast<std::ptrdiff_t>(4 * i), 3,
-                picture.bytes.begin() + static_cast<std::ptrdiff_t>(3 * i));
-  }
-  picture.mm_per_px = mm_per_px;
-  const ScaleBar bar = scale_bar_for(mm_per_px, width);
-  dubsar::draw_scale_bar(picture, bar, static_cast<int>(1.0 / mm_per_px),
-                         height - bar.height_px - static_cast<int>(1.0 / mm_per_px), {255, 255, 255});
-  const std::filesystem::path file = unused_file(fmt::format("{}dpi", dpi_), ".png");
-  const Status written = write_picture(file, picture, file.stem().string());
-  picture_note_ = written ? filled(ui.text(Text::kPictureKept), file.string()) : written.error().line();
-  if (written) {
-    ui.facts.insert("picture-kept");
-  }
 }
 
 }  // namespace dubsar::ui

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <filesystem>
+#include <future>
 #include <memory>
 #include <optional>
 #include <set>
@@ -12,9 +13,11 @@
 #include <vector>
 
 #include "core/red_map.h"
+#include "core/result.h"
 #include "station/mesh_viewing.h"
 #include "station/shown_pins.h"
 #include "ui/shell/widgets.h"
+#include "ui/view/still_picture.h"
 #include "ui/view/surface_view.h"
 #include "ui/viewer/prepared_mesh.h"
 
@@ -63,7 +66,11 @@ class ViewerScreen {
   void draw_wedge_table(UiContext& ui, ImVec2 size);
   void look_at(Face face);
   void choose(int wedge, bool go_there);
-  void keep_picture(UiContext& ui);
+  // viewer_picture.cpp
+  void begin_picture(const UiContext& ui);
+  void give_up_picture();
+  void draw_picture_on(UiContext& ui);
+  void draw_picture_foot(UiContext& ui);
   // viewer_correcting.cpp
   void draw_correcting(UiContext& ui);
   void draw_split_places(UiContext& ui, ImVec2 origin, ImVec2 size) const;
@@ -111,6 +118,11 @@ class ViewerScreen {
   bool untouched_ = true;  ///< the view is still as it was set up
   float aspect_ = 1.5F;
   int dpi_ = 600;
+  std::optional<StillPicture> still_;  ///< that is being drawn
+  double still_mm_per_px_ = 0;
+  std::filesystem::path still_file_;
+  std::future<Status> writing_;
+  bool picture_kept_ = false;
   std::string picture_note_;
   float foot_px_ = 0;  ///< of the panel, as it was drawn last
   bool unfinished_ = false;

@@ -167,6 +167,7 @@ void ViewerScreen::draw_kept_selections(UiContext& ui) {
     const bool chosen = selection.name == selection_name_;
     is_kept = is_kept || chosen;
     if (ImGui::Selectable(fmt::format("{}##kept", selection.name).c_str(), chosen)) {
+      const TimedWork timed(ui.watch, "a kept selection");
       show_selection(selection);
     }
     ui.target(fmt::format("kept.{}", ++row));
