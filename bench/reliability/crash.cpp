@@ -3,6 +3,7 @@
 // dubsar-crash: kills the command, or lets the disk refuse, while it writes, and looks at what is left.
 //   dubsar-crash --trials 500 --seed 1     kills, at calls that change something and at any moment, in turn
 //   dubsar-crash --refuse                  every such call of every verb meets ENOSPC, EIO and EROFS
+//   dubsar-crash --outputs [--refuse]      the verbs that write files and no session, instead
 // Status 1 when anything that had been reported as stored was lost, or a session was left damaged.
 
 #include <CLI/CLI.hpp>
@@ -11,6 +12,7 @@
 #include <map>
 
 #include "core/random.h"
+#include "tests/station/support/output_trial.h"
 #include "tests/station/support/storage_trial.h"
 #include "tests/support/temporary_folder.h"
 
@@ -18,9 +20,9 @@ namespace dubsar {
 namespace {
 
 using test::Fault;
+using test::OutputTrials;
 using test::StorageTrials;
 using test::TrialOutcome;
-using test::WritingVerb;
 
 struct Tally {
   int trials = 0;
@@ -45,9 +47,9 @@ struct Tally {
   }
 };
 
-void report(const WritingVerb& verb, const Fault& fault, const TrialOutcome& outcome) {
+void report(const std::string& verb, const Fault& fault, const TrialOutcome& outcome) {
   for (const std::string& one : outcome.faults) {
-    std::fprintf(stderr, "%s, %s at call %lld, %.3f s (%s): %s\n", verb.name.c_str(), fault.what.c_str(),
+    std::fprintf(stderr, "%s, %s at call %lld, %.3f s (%s): %s\n", verb.c_str(), fault.what.c_str(),
                  static_cast<long long>(fault.at), fault.kill_after_s, outcome.met.c_str(), one.c_str());
   }
 }
@@ -63,49 +65,33 @@ Fault random_kill(Random& random, std::int64_t calls, double seconds) {
           .kill_after_s = -1};
 }
 
-int run(int argc, char** argv) {
-  CLI::App app("Kills the command, or lets the disk refuse, while it writes");
-  int trials = 500;
-  std::uint64_t seed = 1;
-  bool refuse = false;
-  int stride = 1;
-  std::vector<std::string> names;
-  app.add_option("--trials", trials, "kills over all verbs");
-  app.add_option("--seed", seed, "of the tablet and of the moments");
-  app.add_flag("--refuse", refuse, "let the disk refuse at every call instead");
-  app.add_option("--stride", stride, "with --refuse: every so many calls")->check(CLI::PositiveNumber);
-  app.add_option("--verb", names, "these verbs alone");
-  CLI11_PARSE(app, argc, argv);
-
-  const test::TemporaryFolder folder;
-  StorageTrials all(folder.path(), seed);
-  std::vector<WritingVerb> verbs = test::writing_verbs();
+/// Goes through the verbs (those of `names`, if any): refusals at every so many calls, or, with a stride of
+/// 0, kills. False when a verb cannot be tried.
+template <typename Trials, typename Verb>
+bool try_all(Trials& all, std::vector<Verb> verbs, const std::vector<std::string>& names, int stride,
+             int trials, std::uint64_t seed, Tally& sum) {
   if (!names.empty()) {
-    std::erase_if(
-        verbs, [&](const WritingVerb& verb) { return std::ranges::find(names, verb.name) == names.end(); });
+    std::erase_if(verbs,
+                  [&](const Verb& verb) { return std::ranges::find(names, verb.name) == names.end(); });
   }
   Random random(seed);
-  Tally sum;
-  std::printf(
-      "| verb      | trials | killed |   told | did on | FAULTS | open, s  "
-      "|\n|---|---|---|---|---|---|---|\n");
   for (std::size_t v = 0; v < verbs.size(); ++v) {
-    const WritingVerb& verb = verbs[v];
+    const Verb& verb = verbs[v];
     const TrialOutcome whole = all.undisturbed(verb);
-    if (whole.calls == 0) {
-      std::fprintf(stderr,
-                   "dubsar-crash: %s: no call that writes was counted; is LD_PRELOAD set by another?\n",
-                   verb.name.c_str());
-      return 2;
+    if (whole.calls == 0 || !whole.faults.empty()) {
+      std::fprintf(stderr, "dubsar-crash: %s: %s\n", verb.name.c_str(),
+                   whole.calls == 0 ? "no call that writes was counted; is LD_PRELOAD set by another?"
+                                    : whole.faults.front().c_str());
+      return false;
     }
     Tally tally;
     const auto trial = [&](const Fault& fault) {
       const TrialOutcome outcome = all.run(verb, fault);
       tally.add(outcome);
       sum.add(outcome);
-      report(verb, fault, outcome);
+      report(verb.name, fault, outcome);
     };
-    if (refuse) {
+    if (stride > 0) {
       int turn = 0;
       for (std::int64_t at = 1; at <= whole.calls; at += stride) {
         for (const char* what : {"ENOSPC", "EIO", "EROFS"}) {
@@ -121,6 +107,44 @@ int run(int argc, char** argv) {
       }
     }
     tally.print(verb.name);
+  }
+  return true;
+}
+
+int run(int argc, char** argv) {
+  CLI::App app("Kills the command, or lets the disk refuse, while it writes");
+  int trials = 500;
+  std::uint64_t seed = 1;
+  bool refuse = false;
+  int stride = 1;
+  bool outputs = false;
+  std::vector<std::string> names;
+  app.add_option("--trials", trials, "kills over all verbs");
+  app.add_option("--seed", seed, "of the tablet and of the moments");
+  app.add_flag("--refuse", refuse, "let the disk refuse at every call instead");
+  app.add_option("--stride", stride, "with --refuse: every so many calls")->check(CLI::PositiveNumber);
+  app.add_flag("--outputs", outputs, "verbs that write files and no session");
+  app.add_option("--verb", names, "these verbs alone");
+  CLI11_PARSE(app, argc, argv);
+
+  const test::TemporaryFolder folder;
+  Tally sum;
+  const auto go = [&](auto& all, auto verbs) {
+    return try_all(all, verbs, names, refuse ? stride : 0, trials, seed, sum);
+  };
+  std::printf(
+      "| verb      | trials | killed |   told | did on | FAULTS | open, s  "
+      "|\n|---|---|---|---|---|---|---|\n");
+  bool tried = false;
+  if (outputs) {
+    OutputTrials all(folder.path(), seed);
+    tried = go(all, test::output_verbs());
+  } else {
+    StorageTrials all(folder.path(), seed);
+    tried = go(all, test::writing_verbs());
+  }
+  if (!tried) {
+    return 2;
   }
   sum.print("all");
   return sum.faults == 0 ? 0 : 1;

@@ -184,6 +184,31 @@ Status check_corrected(const AnalyzeArguments& arguments, const std::filesystem:
               "nothing was changed; look at the place in the viewer");
 }
 
+/// Everything but what a person has said, and the stamp when all of it is there.
+Status write_outputs(const AnalyzeArguments& arguments, const WedgeFile& file, const Mesh& mesh,
+                     const Analysis& analysis, const StampedWork* work, const JobContext& job) {
+  if (Status written = write_wedges(arguments.out, file); !written) {
+    return written;
+  }
+  if (!arguments.mesh_out.empty()) {
+    if (Status written = write_mesh(arguments.mesh_out, annotated_mesh(mesh, analysis)); !written) {
+      return written;
+    }
+  }
+  std::vector<std::filesystem::path> drawings;
+  if (!arguments.svg.empty()) {
+    auto drawn = write_wedge_drawings(arguments.svg, file.wedges, *file.text_from_model, file.mesh, &mesh);
+    if (!drawn) {
+      return std::unexpected(drawn.error());
+    }
+    drawings = std::move(*drawn);
+  }
+  if (Status written = write_extras(arguments, mesh, analysis, job); !written) {
+    return written;
+  }
+  return work != nullptr ? work->finish(outputs_of(arguments, drawings), job) : Status();
+}
+
 }  // namespace
 
 Result<int> analyze(const AnalyzeArguments& arguments, CommandContext& context) {
@@ -257,29 +282,15 @@ Result<int> analyze(const AnalyzeArguments& arguments, CommandContext& context) 
       return std::unexpected(written.error());
     }
   }
-  if (const Status written = write_wedges(arguments.out, file); !written) {
-    return std::unexpected(written.error());
-  }
-  if (!arguments.mesh_out.empty()) {
-    if (const Status written = write_mesh(arguments.mesh_out, annotated_mesh(*mesh, *analysis)); !written) {
-      return std::unexpected(written.error());
+  if (const Status written =
+          write_outputs(arguments, file, *mesh, *analysis, work ? &*work : nullptr, context.job);
+      !written) {
+    Error error = written.error();
+    if (arguments.corrected) {
+      error.mend += error.mend.empty() ? "" : "; ";
+      error.mend += "the correction is noted: `dubsar analyze` then brings the outputs in line with it";
     }
-  }
-  std::vector<std::filesystem::path> drawings;
-  if (!arguments.svg.empty()) {
-    auto drawn = write_wedge_drawings(arguments.svg, file.wedges, *file.text_from_model, file.mesh, &*mesh);
-    if (!drawn) {
-      return std::unexpected(drawn.error());
-    }
-    drawings = std::move(*drawn);
-  }
-  if (const Status written = write_extras(arguments, *mesh, *analysis, context.job); !written) {
-    return std::unexpected(written.error());
-  }
-  if (work) {
-    if (const Status stamped = work->finish(outputs_of(arguments, drawings), context.job); !stamped) {
-      return std::unexpected(stamped.error());
-    }
+    return std::unexpected(std::move(error));
   }
   if (context.json) {
     CommandContext::print(summary_json(arguments, file));

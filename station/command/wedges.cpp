@@ -141,6 +141,11 @@ int list(const CorrectionFile& file, const CommandContext& context) {
   return 0;
 }
 
+bool same(const WedgeCorrection& a, const WedgeCorrection& b) {
+  return a.kind == b.kind && a.at_mm == b.at_mm && a.into_mm == b.into_mm && a.region_mm == b.region_mm &&
+         a.reach_mm == b.reach_mm;
+}
+
 Result<int> correct(const CorrectArguments& arguments, CommandContext& context) {
   const std::filesystem::path where = corrections_of(arguments.analyze);
   Result<CorrectionFile> said = read_corrections(where);
@@ -161,7 +166,10 @@ Result<int> correct(const CorrectArguments& arguments, CommandContext& context) 
     if (!next) {
       return std::unexpected(next.error());
     }
-    said->corrections.push_back(*std::move(next));
+    // It was noted before, and the disk took no more then: what is missing is the rest.
+    if (said->corrections.empty() || !same(said->corrections.back(), *next)) {
+      said->corrections.push_back(*std::move(next));
+    }
     analysis.must_make_last = true;
   }
   analysis.corrected = std::move(said->corrections);

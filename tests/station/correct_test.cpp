@@ -67,6 +67,23 @@ TEST_F(Correct, ADeletedWedgeStaysDeletedUntilItIsTakenBack) {
   EXPECT_EQ(correct({"--undo"}).status, 2) << "nothing is left to take back";
 }
 
+TEST_F(Correct, OneThatTheDiskRefusedHalfwayIsMadeWhenItIsAskedForAgain) {
+  const std::string before = bytes();
+  const std::size_t count = wedges().wedges.size();
+  // Room for what is noted, none for what is measured.
+  const Outcome refused = run_command(
+      {"wedges", "correct", in("tablet.ply"), "-o", in("w.json"), "--delete", "3"}, {.largest_file = 4096});
+  EXPECT_EQ(refused.status, 4) << refused.err;
+  EXPECT_THAT(refused.err, HasSubstr("the correction is noted: `dubsar analyze`"));
+  EXPECT_EQ(bytes(), before);
+  const Outcome again = correct({"--delete", "3"});
+  EXPECT_EQ(again.status, 0) << again.err;
+  EXPECT_THAT(wedges().wedges, SizeIs(count - 1));
+  EXPECT_THAT(correct({"--list", "--json"}).json()["corrections"], SizeIs(1));
+  ASSERT_EQ(correct({"--undo"}).status, 0);
+  EXPECT_EQ(bytes(), before);
+}
+
 TEST_F(Correct, WhatCannotBeMadeIsOneLineAndChangesNothing) {
   const std::string before = bytes();
   const auto refused = [&](const std::vector<std::string>& what, const std::string& why) {

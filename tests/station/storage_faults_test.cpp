@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "core/random.h"
+#include "tests/station/support/output_trial.h"
 #include "tests/station/support/storage_trial.h"
 #include "tests/support/temporary_folder.h"
 
@@ -43,7 +44,7 @@ class StorageFaults : public testing::Test {
 test::TemporaryFolder* StorageFaults::folder_ = nullptr;
 StorageTrials* StorageFaults::trials_ = nullptr;
 
-std::string told(const WritingVerb& verb, const Fault& fault, const TrialOutcome& outcome) {
+std::string told(const auto& verb, const Fault& fault, const TrialOutcome& outcome) {
   std::string out =
       verb.name + ", " + fault.what + " at call " + std::to_string(fault.at) + " (" + outcome.met + "):";
   for (const std::string& one : outcome.faults) {
@@ -72,6 +73,28 @@ TEST_F(StorageFaults, NothingStoredIsLostToAKillOrARefusal) {
     }
   }
   EXPECT_GE(killed, 30);
+}
+
+TEST_F(StorageFaults, FilesAreWholeOrAsTheyWereAndTheVerbCanBeStartedAgain) {
+  std::printf("seed %llu\n", static_cast<unsigned long long>(kSeed));
+  const test::TemporaryFolder folder;
+  test::OutputTrials trials(folder.path(), 5);
+  Random random(kSeed);
+  for (const test::OutputVerb& verb : test::output_verbs()) {
+    const TrialOutcome whole = trials.undisturbed(verb);
+    ASSERT_TRUE(whole.faults.empty()) << told(verb, {}, whole);
+    ASSERT_GT(whole.calls, 0) << verb.name;
+    const char* const refusal = random.below(2) == 0 ? "ENOSPC" : "EIO";
+    for (const char* what : {"KILL_HALF", refusal}) {
+      const auto call = random.below(static_cast<std::uint64_t>(whole.calls));
+      const Fault fault{.what = what,
+                        .at = 1 + static_cast<std::int64_t>(call),
+                        .stays = random.below(2) == 0,
+                        .kill_after_s = -1};
+      const TrialOutcome outcome = trials.run(verb, fault);
+      EXPECT_TRUE(outcome.faults.empty()) << told(verb, fault, outcome);
+    }
+  }
 }
 
 }  // namespace

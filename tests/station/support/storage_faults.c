@@ -241,6 +241,13 @@ int unlink(const char* path) {
   FAIL_OR(met, ((int (*)(const char*))real("unlink"))(path))
 }
 
+/* What std::filesystem::remove calls. */
+int remove(const char* path) {
+  const int full = fault == kFail && (fault_errno == ENOSPC || fault_errno == EDQUOT);
+  const enum action met = full ? kPass : meet_path("remove", path);
+  FAIL_OR(met, ((int (*)(const char*))real("remove"))(path))
+}
+
 int mkdir(const char* path, mode_t mode) {
   const enum action met = meet_path("mkdir", path);
   FAIL_OR(met, ((int (*)(const char*, mode_t))real("mkdir"))(path, mode))

@@ -2,21 +2,13 @@
 // Copyright The Dubsar developers
 #include "tests/station/support/storage_trial.h"
 
-#include <fcntl.h>
-#include <sys/mman.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <chrono>
-#include <csignal>
-#include <cstring>
-#include <fstream>
 #include <regex>
 #include <set>
 #include <stdexcept>
 
 #include "acquisition/session_store.h"
-#include "formats/atomic_file.h"
 
 namespace dubsar::test {
 
@@ -24,32 +16,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::size_t kLogBytes = 512;
 constexpr const char* kScans = "3";
 constexpr double kTimeoutS = 240;  ///< machines that build beside the trials are slow
-
-/// What storage_faults.c shares with us.
-class FaultLog {
- public:
-  explicit FaultLog(const fs::path& path) {
-    std::ofstream(path, std::ios::binary) << std::string(kLogBytes, '\0');
-    const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
-    bytes_ = static_cast<const char*>(::mmap(nullptr, kLogBytes, PROT_READ, MAP_SHARED, fd, 0));
-    ::close(fd);
-  }
-  ~FaultLog() { ::munmap(const_cast<char*>(bytes_), kLogBytes); }
-  FaultLog(const FaultLog&) = delete;
-  FaultLog& operator=(const FaultLog&) = delete;
-  [[nodiscard]] std::int64_t calls() const {
-    std::int64_t count = 0;
-    std::memcpy(&count, bytes_, sizeof count);
-    return count;
-  }
-  [[nodiscard]] std::string met() const { return bytes_ + sizeof(std::int64_t); }
-
- private:
-  const char* bytes_ = nullptr;
-};
 
 /// The numbers in "scan 7 stored".
 std::set<int> reported_scans(const std::string& log) {
@@ -57,16 +25,6 @@ std::set<int> reported_scans(const std::string& log) {
   static const std::regex kLine("scan ([0-9]+) stored");
   for (std::sregex_iterator it(log.begin(), log.end(), kLine), end; it != end; ++it) {
     out.insert(std::stoi((*it)[1]));
-  }
-  return out;
-}
-
-std::vector<fs::path> left_over(const fs::path& folder) {
-  std::vector<fs::path> out;
-  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
-    if (entry.path().filename().string().starts_with(kTemporaryPrefix)) {
-      out.push_back(entry.path());
-    }
   }
   return out;
 }
@@ -157,72 +115,20 @@ TrialOutcome StorageTrials::run(const WritingVerb& verb, const Fault& fault) {
   if (verb.on_a_session) {
     fs::copy(scanned_, session, fs::copy_options::recursive);
   }
-  Arguments arguments = verb.arguments;
-  for (std::string& word : arguments) {
-    for (const auto& [name, value] : {std::pair<std::string, std::string>{"SESSION", session.string()},
-                                      {"FOLDER", folder.string()},
-                                      {"DEVICE", device_},
-                                      {"REGISTERED", registered_}}) {
-      if (const std::size_t at = word.find(name); at != std::string::npos) {
-        word.replace(at, name.size(), value);
-      }
-    }
-  }
-  const FaultLog log(folder_ / "fault.log");
-  CommandOptions options;
-  options.timeout_s = kTimeoutS;
-  options.environment = {"LD_PRELOAD=" DUBSAR_STORAGE_FAULTS,
-                         "DUBSAR_FAULT_ROOT=" + folder.string(),
-                         "DUBSAR_FAULT_LOG=" + (folder_ / "fault.log").string(),
-                         "DUBSAR_FAULT_AT=" + std::to_string(fault.at),
-                         "DUBSAR_FAULT_DO=" + fault.what,
-                         std::string("DUBSAR_FAULT_STAYS=") + (fault.stays ? "1" : "0")};
-  TrialOutcome out;
-  {
-    const auto start = std::chrono::steady_clock::now();
-    RunningCommand running(arguments, options);
-    if (fault.kill_after_s >= 0) {
-      std::this_thread::sleep_for(std::chrono::duration<double>(fault.kill_after_s));
-      running.send(SIGKILL);
-    }
-    out.command = running.wait();
-    out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  }
-  out.calls = log.calls();
-  out.met = log.met();
-  out.killed = out.command.signal == SIGKILL && !out.command.timed_out;
-  look(verb, fault, folder, out);
+  const Arguments arguments = filled_in(verb.arguments, {{"SESSION", session.string()},
+                                                         {"FOLDER", folder.string()},
+                                                         {"DEVICE", device_},
+                                                         {"REGISTERED", registered_}});
+  TrialOutcome out = run_with_fault(arguments, folder, folder_ / "fault.log", fault);
+  look(verb, folder, out);
   fs::remove_all(folder);
   return out;
 }
 
-void StorageTrials::look(const WritingVerb& verb, const Fault& fault, const fs::path& folder,
-                         TrialOutcome& out) const {
+void StorageTrials::look(const WritingVerb& verb, const fs::path& folder, TrialOutcome& out) const {
   const auto say = [&](const std::string& what) { out.faults.push_back(what); };
   const fs::path session = folder / "session";
   const Outcome& command = out.command;
-  if (command.timed_out) {
-    say("it hung");
-  } else if (command.signal != 0 && !out.killed) {
-    say("it died of signal " + std::to_string(command.signal));
-  }
-  if (!out.killed) {
-    const auto lines = command.complaints();
-    const auto errors =
-        std::ranges::count_if(lines, [](const std::string& line) { return line.starts_with("dubsar: "); });
-    if (command.status > 1 && errors != 1) {
-      say("status " + std::to_string(command.status) + " with " + std::to_string(errors) +
-          " lines that say why");
-    }
-    if (command.status != 0 && command.status != 1 && command.status != 4) {
-      say("status " + std::to_string(command.status) + " for a disk that refuses: " + command.err);
-    }
-    // A disk that takes nothing any more does not let go of files either, unless it is only full.
-    const bool may_clean_up = !fault.stays || fault.what == "ENOSPC" || fault.what == "EDQUOT";
-    for (const fs::path& path : may_clean_up ? left_over(folder) : std::vector<fs::path>()) {
-      say("left behind: " + path.filename().string());
-    }
-  }
   std::set<int> expected = reported_scans(command.err);
   if (verb.on_a_session) {
     expected.insert(scans_.begin(), scans_.end());

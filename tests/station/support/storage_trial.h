@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "acquisition/session_store.h"
-#include "tests/station/support/command.h"
+#include "tests/station/support/faulted_command.h"
 
 namespace dubsar::test {
 
@@ -23,24 +23,6 @@ struct WritingVerb {
   std::function<bool(const SessionStore&)> is_done = {};
 };
 [[nodiscard]] std::vector<WritingVerb> writing_verbs();
-
-/// What the disk, or a power switch, does.
-struct Fault {
-  std::string what;          ///< see storage_faults.c; empty: nothing at a call
-  std::int64_t at = 0;       ///< the number of the call, from 1
-  bool stays = false;        ///< a disk that stays full
-  double kill_after_s = -1;  ///< SIGKILL then; negative: not
-};
-
-struct TrialOutcome {
-  Outcome command;
-  std::int64_t calls = 0;  ///< that would have changed something, until it ended
-  std::string met;         ///< the call that met the fault, or nothing
-  bool killed = false;
-  double seconds = 0;               ///< that it ran
-  double open_s = 0;                ///< of opening the session afterwards
-  std::vector<std::string> faults;  ///< what a session must never show; empty when all is well
-};
 
 /// A tablet scanned a few times, and copies of its session for trials, in a folder that goes with this.
 class StorageTrials {
@@ -56,8 +38,7 @@ class StorageTrials {
   [[nodiscard]] TrialOutcome undisturbed(const WritingVerb& verb) { return run(verb, {}); }
 
  private:
-  void look(const WritingVerb& verb, const Fault& fault, const std::filesystem::path& folder,
-            TrialOutcome& out) const;
+  void look(const WritingVerb& verb, const std::filesystem::path& folder, TrialOutcome& out) const;
 
   std::filesystem::path folder_;
   std::filesystem::path scanned_;
