@@ -148,11 +148,8 @@ void desktop_planes(const fs::path& data, const fs::path& pictures, const std::v
   const BoardSpec spec = *parse_board("chessboard:8x6:40");
   constexpr double kPlate_mm = 100;
   std::vector<Eigen::Vector3d> on_boards;
-  const Result<Intrinsics> boards = find_intrinsics(views);
-  if (boards) {
-    for (const StripeSample& sample : stripe_samples(views, *boards, spec, kPlate_mm)) {
-      on_boards.push_back(sample.point_mm);
-    }
+  for (const StripeSample& sample : stripe_samples(views, seen_by(rig.camera, views), spec, kPlate_mm)) {
+    on_boards.push_back(sample.point_mm);
   }
   const fs::path photo = data / "desktop_turntable/frames/TableCalib.jpg";
   const Result<GrayImage> gray = read_gray(photo);

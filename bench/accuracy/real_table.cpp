@@ -60,6 +60,31 @@ std::array<cv::Point3f, 4> corners_mm(const Placed& placed, double circle_mm, do
 
 }  // namespace
 
+Intrinsics seen_by(const CameraModel& camera, const std::vector<CalibrationView>& views) {
+  Intrinsics out;
+  out.camera = camera;
+  for (std::size_t k = 0; k < views.size(); ++k) {
+    std::vector<cv::Point2f> seen;
+    for (const Eigen::Vector2d& p : views[k].board.corners_px) {
+      seen.emplace_back(static_cast<float>(p.x()), static_cast<float>(p.y()));
+    }
+    const std::vector<cv::Point2f> straight = straightened(seen, camera);
+    if (straight.size() != seen.size()) {
+      continue;  // beyond where the lens model ends
+    }
+    std::vector<cv::Point3f> corners;
+    for (const Eigen::Vector3d& p : views[k].board.corners_mm) {
+      corners.emplace_back(static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z()));
+    }
+    cv::Mat rotation;
+    cv::Mat translation;
+    cv::solvePnP(corners, straight, cv::Mat::eye(3, 3, CV_64F), cv::noArray(), rotation, translation);
+    out.used.push_back(k);
+    out.camera_from_board.push_back(pose(rotation, translation));
+  }
+  return out;
+}
+
 Result<MarkedTable> find_marked_table(const GrayImage& image, const CameraModel& camera, double marker_mm) {
   const cv::Mat picture(image.height, image.width, CV_8UC1, const_cast<std::uint8_t*>(image.pixels.data()));
   std::vector<int> ids;

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <vector>
 
+#include "acquisition/calibration_views.h"
 #include "core/camera_model.h"
 #include "core/gray_image.h"
 #include "core/result.h"
@@ -25,6 +26,11 @@ struct MarkedTable {
     return {normal, normal.dot(camera_from_table.translation_mm)};
   }
 };
+
+/// The poses of boards as a given camera sees them. Only so may what lies on them be compared with a plane in
+/// that camera's frame: another camera model from other pictures of the same lens has its principal point,
+/// and with it all poses, some pixels aside.
+[[nodiscard]] Intrinsics seen_by(const CameraModel& camera, const std::vector<CalibrationView>& views);
 
 /// Finds the table by its ArUco markers (4×4, `marker_mm` wide, a quarter turn apart). How far from the
 /// middle they lie is found too: only their width is taken on trust. Errors (kBadInput): not four markers.
