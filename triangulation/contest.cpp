@@ -128,7 +128,7 @@ bool meets(const Window& window, const FlatTriangle& t, const Plane& plane, floa
   const FlatWindow flat(window, plane);
   const Vector2f low = t[0].cwiseMin(t[1]).cwiseMin(t[2]);
   const Vector2f high = t[0].cwiseMax(t[1]).cwiseMax(t[2]);
-  const auto& [a, b, c] = t;
+  const Vector2f &a = t[0], &b = t[1], &c = t[2];
   return window.any_triangle([&](const std::array<std::size_t, 3>& o) {
     const Vector2f &d = flat.at[o[0]], &e = flat.at[o[1]], &f = flat.at[o[2]];
     if (flat.height_mm[o[0]] > near_mm || (d.cwiseMin(e).cwiseMin(f).array() > high.array()).any() ||
