@@ -171,9 +171,10 @@ class LineProjector {
         u[r * CellsAround::kSide + c] = corner.u;
         v[r * CellsAround::kSide + c] = corner.v;
       }
-      for (int c = 0; r < 3 && c < 3; ++c) {
-        code[r * CellsAround::kSide + c] = s_->cells[first + static_cast<std::size_t>(c)];
-      }
+    }
+    for (int r = 0; r < 3; ++r) {
+      const std::size_t first = first_sample(row - 1 + r, col - 1);
+      std::copy_n(&s_->cells[first], 3, &code[r * CellsAround::kSide]);
     }
     const CellsAround around(u, v, code);
     if (around.any()) {

@@ -103,6 +103,7 @@ void remove_specks(std::vector<std::uint8_t>& kept, const std::vector<std::uint8
 void drop_scattered(std::vector<std::uint8_t>& fresh, const std::vector<std::uint8_t>& kept,
                     const Lattice& grid, int least) {
   const auto width = static_cast<std::size_t>(grid.cols);
+  const auto height = static_cast<std::size_t>(grid.rows);
   const auto enough = static_cast<std::size_t>(std::max(least, 1));
   std::vector<std::uint8_t> seen(fresh.size(), 0);
   std::vector<std::size_t> group;
@@ -126,11 +127,11 @@ void drop_scattered(std::vector<std::uint8_t>& fresh, const std::vector<std::uin
     visit(start);
     for (std::size_t at = 0; at < group.size() && !is_large; ++at) {
       const std::size_t i = group[at];
+      const std::size_t row = i / width;
       const std::size_t col = i % width;
-      for (std::size_t row_of = i >= width ? i - width : i; row_of < fresh.size() && row_of <= i + width;
-           row_of += width) {
-        for (std::size_t k = row_of - (col > 0 ? 1 : 0); k <= row_of + (col + 1 < width ? 1 : 0); ++k) {
-          visit(k);
+      for (std::size_t r = row - std::min<std::size_t>(row, 1); r <= std::min(row + 1, height - 1); ++r) {
+        for (std::size_t c = col - std::min<std::size_t>(col, 1); c <= std::min(col + 1, width - 1); ++c) {
+          visit(r * width + c);
         }
       }
       is_large = is_large || group.size() >= enough;

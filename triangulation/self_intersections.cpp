@@ -11,121 +11,17 @@
 
 #include "core/parallel.h"
 #include "core/parallel_sort.h"
+#include "triangulation/face_cut.h"
 #include "triangulation/part_cells.h"
 
 namespace dubsar {
 
 namespace {
 
-using Eigen::Vector3d;
 using Eigen::Vector3f;
-using Corners = std::array<Vector3d, 3>;
-
-/// Six times the volume of the tetrahedron abcd.
-double volume(const Vector3d& a, const Vector3d& b, const Vector3d& c, const Vector3d& d) {
-  return (b - a).cross(c - a).dot(d - a);
-}
-
-/// Whether the segment pq passes through the inside of the triangle.
-bool passes_through(const Vector3d& p, const Vector3d& q, const Corners& t) {
-  const double at_p = volume(t[0], t[1], t[2], p);
-  const double at_q = volume(t[0], t[1], t[2], q);
-  if (!(at_p * at_q < 0)) {
-    return false;
-  }
-  const double u = volume(p, q, t[0], t[1]);
-  const double v = volume(p, q, t[1], t[2]);
-  const double w = volume(p, q, t[2], t[0]);
-  return (u > 0 && v > 0 && w > 0) || (u < 0 && v < 0 && w < 0);
-}
-
 using Positions = std::span<const Vector3f>;
 constexpr std::uint32_t kNoFace = 0xffffffffU;
 using Face = std::array<std::uint32_t, 3>;
-
-Corners corners_of(Positions positions, const Face& f) {
-  return {positions[f[0]].cast<double>(), positions[f[1]].cast<double>(), positions[f[2]].cast<double>()};
-}
-
-/// A face's plane: nothing of a face that lies on one side of it cuts through.
-struct FacePlane {
-  Vector3d normal{0, 0, 0};  ///< of any length
-  double offset = 0;
-
-  FacePlane() = default;
-  FacePlane(Positions positions, const Face& f) {
-    const Corners c = corners_of(positions, f);
-    normal = (c[1] - c[0]).cross(c[2] - c[0]);
-    offset = normal.dot(c[0]);
-  }
-};
-
-bool has(const Face& f, std::uint32_t v) {
-  return v == f[0] || v == f[1] || v == f[2];
-}
-
-/// Whether the corners of `other` lie on both sides of the plane of f; those that they share lie in it.
-bool straddles(Positions positions, const Face& f, const FacePlane& plane, const Face& other) {
-  bool above = false;
-  bool below = false;
-  for (const std::uint32_t v : other) {
-    if (!has(f, v)) {
-      const double side = plane.normal.dot(positions[v].cast<double>()) - plane.offset;
-      above = above || side > 0;
-      below = below || side < 0;
-    }
-  }
-  return above && below;
-}
-
-bool edges_cut(const Face& f, const Corners& c, const Face& other, const Corners& t) {
-  for (std::size_t k = 0; k < 3; ++k) {
-    const std::size_t next = (k + 1) % 3;
-    if (!has(other, f[k]) && !has(other, f[next]) && passes_through(c[k], c[next], t)) {
-      return true;
-    }
-  }
-  return false;
-}
-
-/// Of two faces that share one corner: whether one of the walls on a's edges from there, upright on it, has a
-/// on one side and b on the other. So it is with most, as faces lie around a vertex side by side.
-bool are_apart(Positions positions, const Face& fa, const FacePlane& pa, const Face& fb) {
-  const auto place = [&](std::uint32_t v) { return positions[v].cast<double>(); };
-  const std::size_t at = has(fb, fa[0]) ? 0 : has(fb, fa[1]) ? 1 : 2;
-  const Vector3d corner = place(fa[at]);
-  const Vector3d next_wall = pa.normal.cross(place(fa[(at + 1) % 3]) - corner);  // towards the face
-  const Vector3d last_wall = (place(fa[(at + 2) % 3]) - corner).cross(pa.normal);
-  bool beyond_next = true;
-  bool beyond_last = true;
-  for (const std::uint32_t v : fb) {
-    if (v != fa[at]) {
-      const Vector3d d = place(v) - corner;
-      beyond_next = beyond_next && next_wall.dot(d) < 0;
-      beyond_last = beyond_last && last_wall.dot(d) < 0;
-    }
-  }
-  return beyond_next || beyond_last;
-}
-
-bool cut(Positions positions, const Face& fa, const FacePlane& pa, const Face& fb) {
-  const int shared = (has(fb, fa[0]) ? 1 : 0) + (has(fb, fa[1]) ? 1 : 0) + (has(fb, fa[2]) ? 1 : 0);
-  if (shared > 1) {
-    return false;
-  }
-  const bool a_cuts = straddles(positions, fa, pa, fb);
-  if (shared == 0 ? !a_cuts : are_apart(positions, fa, pa, fb)) {
-    return false;
-  }
-  // Of two faces that share a corner either may be the one whose far edge passes through the other.
-  const bool b_cuts = straddles(positions, fb, FacePlane(positions, fb), fa);
-  if (shared == 0 ? !b_cuts : !a_cuts && !b_cuts) {
-    return false;
-  }
-  const Corners ca = corners_of(positions, fa);
-  const Corners cb = corners_of(positions, fb);
-  return edges_cut(fa, ca, fb, cb) || edges_cut(fb, cb, fa, ca);
-}
 
 /// Faces by the cell that their middle lies in, at the level whose cells are no smaller than their box: what
 /// a box may touch lies in the cells within half a cell of it. Faces of one part are not asked about each
@@ -391,7 +287,7 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> self_intersections(
               plane = FacePlane(positions, all_faces[a]);
               of_plane = a;
             }
-            if (cut(positions, all_faces[a], plane, all_faces[b])) {
+            if (faces_cut(positions, all_faces[a], plane, all_faces[b])) {
               found.push_back(std::minmax(a, b));
             }
           });
