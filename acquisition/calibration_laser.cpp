@@ -87,6 +87,10 @@ std::vector<StripeSample> stripe_samples(const std::vector<CalibrationView>& vie
   return out;
 }
 
+PlaneFit least_squares_plane(const std::vector<Eigen::Vector3d>& points_mm) {
+  return through(points_mm, std::vector<std::uint8_t>(points_mm.size(), 1));
+}
+
 Result<PlaneFit> fit_plane(const std::vector<Eigen::Vector3d>& points_mm) {
   constexpr std::size_t kLeast = 10;
   if (points_mm.size() < kLeast) {

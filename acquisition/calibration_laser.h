@@ -28,6 +28,9 @@ struct PlaneFit {
   double spread_mm = 0;  ///< standard deviation of the points along their second direction: 0 is a line
 };
 
+/// Total least squares over all points, those that stray too.
+[[nodiscard]] PlaneFit least_squares_plane(const std::vector<Eigen::Vector3d>& points_mm);
+
 /// A plane through points of which up to a third may be wrong: three-point samples (seeded), then total least
 /// squares over what lies within three times the median distance. Errors (kBadInput): fewer than 10 points,
 /// or all on a line.

@@ -6,7 +6,6 @@
 //   desktop_turntable)
 
 #include <CLI/CLI.hpp>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -124,21 +123,6 @@ void angle_and_offset(const char* what, const Plane& is, Plane should) {
       "  %s: %.3f° and %.3f mm off the published plane (distance from the camera %.2f, published %.2f)\n",
       what, std::acos(std::min(1.0, is.normal.dot(should.normal))) * 180 / M_PI,
       is.distance_mm - should.distance_mm, is.distance_mm, should.distance_mm);
-}
-
-/// Total least squares, with no regard to what strays.
-Plane all_points(const std::vector<Eigen::Vector3d>& points_mm) {
-  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-  for (const Eigen::Vector3d& p : points_mm) {
-    mean += p / static_cast<double>(points_mm.size());
-  }
-  Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
-  for (const Eigen::Vector3d& p : points_mm) {
-    scatter += (p - mean) * (p - mean).transpose();
-  }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(scatter);
-  const Eigen::Vector3d normal = solver.eigenvectors().col(0);
-  return {normal, normal.dot(mean)};
 }
 
 /// Which of two planes of light the authors' own photographs show: against the stripe on their boards, and on
@@ -277,7 +261,7 @@ void ciclop(const fs::path& data, const fs::path& pictures) {
       angle_and_offset("fit", fit->plane, published);
       // The published plane goes through all points, the stray ones too. Its distance is that at the camera,
       // far from the points.
-      angle_and_offset("least squares of all points", all_points(points), published);
+      angle_and_offset("least squares of all points", least_squares_plane(points).plane, published);
       const Plane other = fit->plane.normal.dot(published.normal) < 0
                               ? Plane{-fit->plane.normal, -fit->plane.distance_mm}
                               : fit->plane;
