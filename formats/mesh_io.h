@@ -15,7 +15,9 @@ namespace dubsar {
 struct MeshReadOptions {
   /// What the file's numbers are; unset: the file's own word (PLY obj_info unit), metres for glTF, else
   /// millimetres.
-  std::optional<double> mm_per_unit;
+  std::optional<double> mm_per_unit{};
+  /// A PLY of vertices alone gives a mesh without faces, for who only looks at it.
+  bool may_be_points = false;
 };
 
 /// Reads a mesh by its extension (.ply .obj .stl .glb) or, where that says nothing, by its first bytes.

@@ -6,10 +6,8 @@
 #include <cmath>
 
 #include "core/parallel.h"
-#include "formats/atomic_file.h"
 #include "formats/byte_order.h"
 #include "formats/mesh_formats.h"
-#include "formats/mesh_points.h"
 #include "formats/number_text.h"
 #include "formats/ply_body.h"
 #include "formats/ply_scan.h"
@@ -227,14 +225,16 @@ Status read_faces(PlyBody& body, const PlyElement& face, std::uint64_t vertices,
   });
 }
 
-Result<Mesh> decode(std::string_view bytes, const std::string& where, const MeshReadOptions& options,
-                    bool points_too) {
+}  // namespace
+
+Result<Mesh> decode_mesh_ply(std::string_view bytes, const std::string& where,
+                             const MeshReadOptions& options) {
   const Result<PlyHeader> header = parse_ply_header(bytes, where);
   if (!header) {
     return std::unexpected(header.error());
   }
   const PlyElement* vertex = header->element("vertex");
-  if (vertex == nullptr || (header->element("face") == nullptr && !points_too)) {
+  if (vertex == nullptr || (header->element("face") == nullptr && !options.may_be_points)) {
     return bad_input(where, vertex == nullptr ? "a PLY file without vertices" : "a PLY file without faces",
                      "give a mesh; scans become one with dubsar stitch");
   }
@@ -259,22 +259,6 @@ Result<Mesh> decode(std::string_view bytes, const std::string& where, const Mesh
     }
   }
   return mesh;
-}
-
-}  // namespace
-
-Result<Mesh> decode_mesh_ply(std::string_view bytes, const std::string& where,
-                             const MeshReadOptions& options) {
-  return decode(bytes, where, options, false);
-}
-
-Result<Mesh> read_mesh_or_points(const std::filesystem::path& path) {
-  const Result<std::string> bytes = read_whole_file(path);
-  if (!bytes) {
-    return std::unexpected(bytes.error());
-  }
-  return bytes->starts_with("ply") ? decode(*bytes, path.string(), {}, true)
-                                   : read_mesh_bytes(*bytes, path.string(), {});
 }
 
 Status produce_mesh_ply(const Mesh& mesh, const ByteSink& sink) {

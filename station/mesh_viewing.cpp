@@ -14,7 +14,7 @@
 #include "analysis/vertex_geometry.h"
 #include "core/tablet_frame.h"
 #include "core/thread_priority.h"
-#include "formats/mesh_points.h"
+#include "formats/mesh_io.h"
 #include "formats/wedges_json.h"
 #include "station/analysis.h"
 #include "station/section_file.h"
@@ -211,7 +211,7 @@ void MeshViewing::take_wedges(std::vector<Wedge> wedges) {
 
 void MeshViewing::open(const fs::path& file) {
   ask([this, file] {
-    Result<Mesh> read = read_mesh_or_points(file);
+    Result<Mesh> read = read_mesh(file, {.may_be_points = true});
     if (!read) {
       complain(read.error());
       return;
