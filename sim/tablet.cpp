@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
+#include <span>
 #include <utility>
 
 #include "core/parallel.h"
@@ -148,10 +150,124 @@ std::vector<std::array<std::uint32_t, 3>> triangulate(const BodyGrid& grid, cons
   return faces;
 }
 
-/// How many vertices each wedge once made and how many of them are still as it left them.
-struct WedgeCounts {
-  std::vector<std::int32_t> made, kept;
+/// What the writing and the seal left at each vertex of the body's grid, before damage.
+struct Impressed {
+  std::vector<float> heights, hollows;  ///< mm along the body's normal; `hollows` as the wedge itself left it
+  std::vector<float> worn;              ///< how much the place is eroded, 0 to 1
+  std::vector<std::int32_t> facets;     ///< which face of which wedge, -1 where there is none
+  std::vector<std::int32_t> vertices_made;  ///< by each wedge, of which later ones may have taken some
 };
+
+/// Sets the kinds and the wedges of the tablet's vertices, too.
+Impressed impress(const BodyGrid& grid, const Clay& clay, const Damage& damage, const JobContext& job,
+                  SimTablet* tablet) {
+  const std::size_t count = grid.points.size();
+  Impressed out;
+  out.heights.resize(count);
+  out.hollows.resize(count);
+  out.worn.resize(count);
+  out.facets.resize(count);
+  tablet->kinds.resize(count);
+  tablet->wedge_of.resize(count);
+  using Counts = std::vector<std::int32_t>;
+  const Counts none(clay.impressions().size());
+  out.vertices_made = parallel_reduce_ordered(
+      count, kCountGrain, none,
+      [&](std::size_t begin, std::size_t end) {
+        Counts made = none;
+        for (std::size_t i = begin; i < end && !job.cancelled(); ++i) {
+          const ClayPoint point = clay.at(grid.points[i], grid.normals[i]);
+          out.heights[i] = static_cast<float>(point.height_mm);
+          out.hollows[i] = static_cast<float>(point.hollow_mm);
+          tablet->kinds[i] = point.kind;
+          tablet->wedge_of[i] = point.wedge;
+          out.facets[i] = point.wedge < 0 ? -1 : 3 * point.wedge + point.face;
+          out.worn[i] = static_cast<float>(damage.erosion(grid.points[i]));
+          const int pressed = std::min(point.pressed_count, static_cast<int>(point.pressed.size()));
+          for (int k = 0; k < pressed; ++k) {
+            ++made[point.pressed[static_cast<std::size_t>(k)]];
+          }
+        }
+        return made;
+      },
+      [](Counts& total, const Counts& part) {
+        std::ranges::transform(total, part, total.begin(), std::plus());
+      });
+  return out;
+}
+
+/// The height at p once dirt has settled and cracks and holes have opened; tells by `kind` which of them it
+/// was.
+double damaged_height_mm(const Damage& damage, const Eigen::Vector3d& p, double height_mm,
+                         SurfaceKind* kind) {
+  if (const double dirt = damage.dirt_level_mm(p); dirt > height_mm) {
+    height_mm = dirt;
+    *kind = SurfaceKind::kDirt;
+  }
+  if (const double crack = damage.crack_mm(p); crack > 0) {
+    height_mm -= crack;
+    *kind = SurfaceKind::kCrack;
+  }
+  if (const double hole = damage.hole_mm(p); hole > 0) {
+    height_mm -= hole;
+    *kind = SurfaceKind::kHole;
+  }
+  // Relief that broke off fades out beyond the face: drawn back with it, steep walls would fold over.
+  return height_mm * std::max(0.0, 1.0 - damage.broken_off_mm(p) / kFadeMm);
+}
+
+/// Positions, colours and albedo of the tablet as time has left it; what is lost belongs to no wedge any
+/// more.
+void weather(const TabletOptions& options, const BodyGrid& grid, const Damage& damage,
+             const Impressed& impressed, const JobContext& job, SimTablet* tablet) {
+  const std::size_t count = grid.points.size();
+  tablet->mesh.positions.resize(count);
+  tablet->mesh.colours.resize(count);
+  tablet->albedo.resize(count);
+  parallel_chunks(count, kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end && !job.cancelled(); ++i) {
+      SurfaceKind& kind = tablet->kinds[i];
+      if (impressed.worn[i] > 0.3F) {
+        kind = SurfaceKind::kErosion;
+      }
+      const double height = damaged_height_mm(damage, grid.points[i], impressed.heights[i], &kind);
+      Eigen::Vector3d at = grid.points[i] + height * grid.normals[i];
+      if (damage.fracture(&at)) {
+        kind = SurfaceKind::kFracture;
+        tablet->wedge_of[i] = -1;
+      } else if (tablet->wedge_of[i] >= 0 && std::abs(height - impressed.hollows[i]) > kIntactMm) {
+        tablet->wedge_of[i] = -1;
+      }
+      tablet->mesh.positions[i] = at.cast<float>();
+      tablet->albedo[i] = albedo_at(options, at, kind);
+      for (std::size_t c = 0; c < 3; ++c) {
+        tablet->mesh.colours[i][c] =
+            static_cast<std::uint8_t>(255.0F * kClayTint[c] * tablet->albedo[i] + 0.5F);
+      }
+    }
+  });
+}
+
+/// The wedges as they were impressed, each with what is left of it.
+std::vector<Wedge> true_wedges(const Clay& clay, const TabletBody& body,
+                               std::span<const std::int32_t> vertices_made,
+                               std::span<const std::int32_t> wedge_of) {
+  std::vector<Wedge> wedges;
+  for (const Impression& impression : clay.impressions()) {
+    wedges.push_back(impression.truth(body));
+    wedges.back().id = static_cast<int>(wedges.size()) - 1;
+  }
+  for (const std::int32_t wedge : wedge_of) {
+    if (wedge >= 0) {
+      ++wedges[static_cast<std::size_t>(wedge)].vertex_count;
+    }
+  }
+  for (std::size_t k = 0; k < wedges.size(); ++k) {
+    const double made = vertices_made[k];
+    wedges[k].intact = made > 0 ? static_cast<double>(wedges[k].vertex_count) / made : 0.0;
+  }
+  return wedges;
+}
 
 }  // namespace
 
@@ -197,106 +313,19 @@ Result<SimTablet> make_tablet(const TabletOptions& options, JobContext& job) {
     return cancelled;
   }
 
-  const std::size_t count = grid.points.size();
-  std::vector<float> heights(count);
-  std::vector<float> hollows(count);
-  std::vector<float> worn(count);
-  std::vector<std::int32_t> facets(count);
   SimTablet tablet;
-  tablet.kinds.resize(count);
-  tablet.wedge_of.resize(count);
-  const std::size_t wedge_count = clay.impressions().size();
-  WedgeCounts counts{std::vector<std::int32_t>(wedge_count), std::vector<std::int32_t>(wedge_count)};
-  const auto add_counts = [](WedgeCounts& into, const WedgeCounts& chunk) {
-    for (std::size_t k = 0; k < into.made.size(); ++k) {
-      into.made[k] += chunk.made[k];
-      into.kept[k] += chunk.kept[k];
-    }
-  };
-  const WedgeCounts none = counts;
-  counts = parallel_reduce_ordered(
-      count, kCountGrain, none,
-      [&](std::size_t begin, std::size_t end) {
-        WedgeCounts chunk = none;
-        for (std::size_t i = begin; i < end && !job.cancelled(); ++i) {
-          const ClayPoint point = clay.at(grid.points[i], grid.normals[i]);
-          heights[i] = static_cast<float>(point.height_mm);
-          hollows[i] = static_cast<float>(point.hollow_mm);
-          tablet.kinds[i] = point.kind;
-          tablet.wedge_of[i] = point.wedge;
-          facets[i] = point.wedge < 0 ? -1 : 3 * point.wedge + point.face;
-          worn[i] = static_cast<float>(damage.erosion(grid.points[i]));
-          const int pressed = std::min(point.pressed_count, static_cast<int>(point.pressed.size()));
-          for (int k = 0; k < pressed; ++k) {
-            ++chunk.made[point.pressed[static_cast<std::size_t>(k)]];
-          }
-        }
-        return chunk;
-      },
-      add_counts);
+  Impressed impressed = impress(grid, clay, damage, job, &tablet);
   if (stopped(0.7)) {
     return cancelled;
   }
-
-  erode(grid.lattice, worn, options.spacing_mm, &heights);
-  tablet.mesh.positions.resize(count);
-  tablet.mesh.colours.resize(count);
-  tablet.albedo.resize(count);
-  parallel_chunks(count, kGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end && !job.cancelled(); ++i) {
-      const Eigen::Vector3d& p = grid.points[i];
-      double height = heights[i];
-      SurfaceKind& kind = tablet.kinds[i];
-      if (worn[i] > 0.3F) {
-        kind = SurfaceKind::kErosion;
-      }
-      const double dirt = damage.dirt_level_mm(p);
-      if (dirt > height) {
-        height = dirt;
-        kind = SurfaceKind::kDirt;
-      }
-      if (const double crack = damage.crack_mm(p); crack > 0) {
-        height -= crack;
-        kind = SurfaceKind::kCrack;
-      }
-      if (const double hole = damage.hole_mm(p); hole > 0) {
-        height -= hole;
-        kind = SurfaceKind::kHole;
-      }
-      // Relief that broke off fades out beyond the face: drawn back with it, steep walls would fold over.
-      height *= std::max(0.0, 1.0 - damage.broken_off_mm(p) / kFadeMm);
-      Eigen::Vector3d at = p + height * grid.normals[i];
-      if (damage.fracture(&at)) {
-        kind = SurfaceKind::kFracture;
-        tablet.wedge_of[i] = -1;
-      } else if (tablet.wedge_of[i] >= 0 && std::abs(height - hollows[i]) > kIntactMm) {
-        tablet.wedge_of[i] = -1;
-      }
-      tablet.mesh.positions[i] = at.cast<float>();
-      tablet.albedo[i] = albedo_at(options, at, kind);
-      for (std::size_t c = 0; c < 3; ++c) {
-        tablet.mesh.colours[i][c] =
-            static_cast<std::uint8_t>(255.0F * kClayTint[c] * tablet.albedo[i] + 0.5F);
-      }
-    }
-  });
-  for (const std::int32_t wedge : tablet.wedge_of) {
-    if (wedge >= 0) {
-      ++counts.kept[static_cast<std::size_t>(wedge)];
-    }
-  }
+  erode(grid.lattice, impressed.worn, options.spacing_mm, &impressed.heights);
+  weather(options, grid, damage, impressed, job, &tablet);
   if (stopped(0.85)) {
     return cancelled;
   }
-  tablet.mesh.faces = triangulate(grid, clay, facets, tablet.mesh.positions);
+  tablet.mesh.faces = triangulate(grid, clay, impressed.facets, tablet.mesh.positions);
   tablet.mesh.normals = vertex_normals(tablet.mesh);
-  for (std::size_t k = 0; k < wedge_count; ++k) {
-    Wedge wedge = clay.impressions()[k].truth(body);
-    wedge.id = static_cast<int>(k);
-    wedge.vertex_count = counts.kept[k];
-    wedge.intact = counts.made[k] > 0 ? static_cast<double>(counts.kept[k]) / counts.made[k] : 0.0;
-    tablet.wedges.push_back(wedge);
-  }
+  tablet.wedges = true_wedges(clay, body, impressed.vertices_made, tablet.wedge_of);
   static_cast<void>(stopped(1.0));
   return tablet;
 }
