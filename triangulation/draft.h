@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/mesh.h"
-#include "triangulation/manifold.h"
+#include "triangulation/half_edges.h"
 #include "triangulation/owned_scan.h"
 
 namespace dubsar {

@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "triangulation/manifold.h"
+#include "triangulation/half_edges.h"
 #include "triangulation/tiling.h"
 
 namespace dubsar {

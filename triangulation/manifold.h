@@ -2,63 +2,15 @@
 // Copyright The Dubsar developers
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "core/mesh.h"
+#include "triangulation/half_edges.h"
 
 namespace dubsar {
-
-using Triangle = std::array<std::uint32_t, 3>;
-
-/// Half-edges that leave each vertex, in compressed rows: for face f and corner k the half-edge from corner k
-/// to the next one. Faces must have indices below the vertex count. With `only` given, no more than those
-/// that leave vertices v with only[v] != 0.
-class HalfEdges {
- public:
-  struct Out {
-    std::uint32_t to = 0;    ///< the vertex it runs to
-    std::uint32_t face = 0;  ///< the face on its left
-  };
-
-  HalfEdges(std::span<const Triangle> faces, std::size_t vertex_count,
-            std::span<const std::uint8_t> only = {});
-
-  [[nodiscard]] std::span<const Out> from(std::uint32_t vertex) const {
-    return {out_.data() + start_[vertex], out_.data() + start_[vertex + 1]};
-  }
-  /// How many faces run from a to b.
-  [[nodiscard]] int count(std::uint32_t a, std::uint32_t b) const;
-  /// The lowest face that runs from a to b, or -1.
-  [[nodiscard]] std::int64_t face(std::uint32_t a, std::uint32_t b) const;
-  [[nodiscard]] std::size_t vertex_count() const { return start_.size() - 1; }
-
- private:
-  std::vector<std::uint32_t> start_;
-  std::vector<Out> out_;
-};
-
-/// Component number of each face (0, 1, … in order of their first face), faces being joined across edges that
-/// two faces share in opposite directions.
-struct FaceComponents {
-  std::vector<std::uint32_t> of_face;
-  std::vector<std::size_t> sizes;  ///< faces per component
-};
-[[nodiscard]] FaceComponents face_components(std::span<const Triangle> faces, const HalfEdges& edges);
-
-/// 1 for each vertex on an open edge (a half-edge a→b of a face while no face has b→a), 0 for each whose
-/// faces close around it: one pass that tells apart the few vertices where something can be wrong. Heads and
-/// tails around a vertex are compared by sums of 64-bit hashes.
-[[nodiscard]] std::vector<std::uint8_t> rim_vertices(std::span<const Triangle> faces,
-                                                     std::size_t vertex_count);
-
-/// Closed walks along the boundary, each as its vertices in the direction of the faces beside it. Where fans
-/// touch in one vertex each walk stays with its own fan.
-[[nodiscard]] std::vector<std::vector<std::uint32_t>> boundary_loops(std::span<const Triangle> faces,
-                                                                     const HalfEdges& edges);
 
 /// Makes an oriented 2-manifold of any faces whose indices are in range, by the least deletion this finds in
 /// one pass over the faces in order: faces with a repeated vertex and repeated half-edges go (the later face

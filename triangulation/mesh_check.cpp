@@ -11,7 +11,7 @@
 
 #include "core/parallel.h"
 #include "core/units.h"
-#include "triangulation/manifold.h"
+#include "triangulation/half_edges.h"
 #include "triangulation/self_intersections.h"
 
 namespace dubsar {

@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "triangulation/half_edges.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "core/disjoint_sets.h"
+#include "core/parallel.h"
+
+namespace dubsar {
+
+namespace {
+
+constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+constexpr std::size_t kGrain = 16384;
+
+}  // namespace
+
+HalfEdges::HalfEdges(std::span<const Triangle> faces, std::size_t vertex_count,
+                     std::span<const std::uint8_t> only)
+    : start_(vertex_count + 1, 0) {
+  const auto takes = [&](std::uint32_t v) { return only.empty() || only[v] != 0; };
+  parallel_ranges(vertex_count, [&](std::size_t begin, std::size_t end) {
+    for (const Triangle& f : faces) {
+      for (const std::uint32_t v : f) {
+        if (v >= begin && v < end && takes(v)) {
+          ++start_[v + 1];
+        }
+      }
+    }
+  });
+  for (std::size_t v = 0; v < vertex_count; ++v) {
+    start_[v + 1] += start_[v];
+  }
+  out_.resize(start_.back());
+  std::vector<std::uint32_t> next(start_.begin(), start_.end() - 1);
+  parallel_ranges(vertex_count, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = 0; i < faces.size(); ++i) {
+      const Triangle& f = faces[i];
+      for (std::size_t k = 0; k < 3; ++k) {
+        if (f[k] >= begin && f[k] < end && takes(f[k])) {
+          out_[next[f[k]]++] = {f[(k + 1) % 3], static_cast<std::uint32_t>(i)};
+        }
+      }
+    }
+  });
+}
+
+std::vector<std::uint8_t> rim_vertices(std::span<const Triangle> faces, std::size_t vertex_count) {
+  const auto hash = [](std::uint32_t v) {
+    std::uint64_t x = (v + 1) * 0x9e3779b97f4a7c15ULL;
+    x = (x ^ (x >> 30U)) * 0xbf58476d1ce4e5b9ULL;
+    x = (x ^ (x >> 27U)) * 0x94d049bb133111ebULL;
+    return x ^ (x >> 31U);
+  };
+  std::vector<std::uint64_t> heads_less_tails(vertex_count, 0);
+  std::vector<std::uint8_t> rim(vertex_count);
+  parallel_ranges(vertex_count, [&](std::size_t begin, std::size_t end) {
+    const auto is_here = [&](std::uint32_t v) { return v >= begin && v < end; };
+    for (const Triangle& f : faces) {
+      if (!is_here(f[0]) && !is_here(f[1]) && !is_here(f[2])) {
+        continue;
+      }
+      const std::array<std::uint64_t, 3> h = {hash(f[0]), hash(f[1]), hash(f[2])};
+      for (std::size_t k = 0; k < 3; ++k) {
+        if (is_here(f[k])) {
+          heads_less_tails[f[k]] += h[(k + 1) % 3] - h[(k + 2) % 3];
+        }
+      }
+    }
+    for (std::size_t v = begin; v < end; ++v) {
+      rim[v] = heads_less_tails[v] != 0 ? 1 : 0;
+    }
+  });
+  return rim;
+}
+
+int HalfEdges::count(std::uint32_t a, std::uint32_t b) const {
+  int n = 0;
+  for (const Out& out : from(a)) {
+    n += out.to == b ? 1 : 0;
+  }
+  return n;
+}
+
+std::int64_t HalfEdges::face(std::uint32_t a, std::uint32_t b) const {
+  for (const Out& out : from(a)) {
+    if (out.to == b) {
+      return out.face;
+    }
+  }
+  return -1;
+}
+
+FaceComponents face_components(std::span<const Triangle> faces, const HalfEdges& edges) {
+  DisjointSets sets(faces.size());
+  parallel_for_each_index(
+      faces.size(),
+      [&](std::size_t i) {
+        for (std::size_t k = 0; k < 3; ++k) {
+          const std::int64_t other = edges.face(faces[i][(k + 1) % 3], faces[i][k]);
+          if (other >= 0) {
+            sets.unite(static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(other));
+          }
+        }
+      },
+      kGrain);
+  using Roots = std::vector<std::uint32_t>;
+  FaceComponents out;
+  out.of_face.resize(faces.size());
+  const Roots roots = parallel_reduce_ordered(
+      faces.size(), kGrain, Roots{},
+      [&](std::size_t begin, std::size_t end) {
+        Roots found;
+        for (auto i = static_cast<std::uint32_t>(begin); i < end; ++i) {
+          out.of_face[i] = sets.root(i);
+          if (out.of_face[i] == i) {
+            found.push_back(i);
+          }
+        }
+        return found;
+      },
+      [](Roots& total, const Roots& part) { total.insert(total.end(), part.begin(), part.end()); });
+  out.sizes.assign(roots.size(), 0);
+  std::uint32_t root = kNone;
+  std::uint32_t component = 0;
+  for (std::uint32_t& of_face : out.of_face) {
+    if (of_face != root) {
+      root = of_face;
+      component = static_cast<std::uint32_t>(std::ranges::lower_bound(roots, root) - roots.begin());
+    }
+    of_face = component;
+    ++out.sizes[component];
+  }
+  return out;
+}
+
+std::vector<std::vector<std::uint32_t>> boundary_loops(std::span<const Triangle> faces,
+                                                       const HalfEdges& edges) {
+  std::vector<std::vector<std::uint32_t>> loops;
+  std::vector<std::uint8_t> walked(3 * faces.size(), 0);
+  using Starts = std::vector<std::size_t>;  // 3 face + corner
+  const Starts open = parallel_reduce_ordered(
+      faces.size(), kGrain, Starts{},
+      [&](std::size_t begin, std::size_t end) {
+        Starts found;
+        for (std::size_t i = begin; i < end; ++i) {
+          for (std::size_t k = 0; k < 3; ++k) {
+            if (edges.face(faces[i][(k + 1) % 3], faces[i][k]) < 0) {
+              found.push_back(3 * i + k);
+            }
+          }
+        }
+        return found;
+      },
+      [](Starts& total, const Starts& part) { total.insert(total.end(), part.begin(), part.end()); });
+  for (const std::size_t start : open) {
+    if (walked[start] == 0) {
+      std::vector<std::uint32_t> loop;
+      std::size_t face = start / 3;
+      std::size_t corner = start % 3;
+      while (walked[3 * face + corner] == 0) {
+        walked[3 * face + corner] = 1;
+        loop.push_back(faces[face][corner]);
+        // Around the end vertex, face by face, until an edge has no face on its other side.
+        const std::uint32_t pivot = faces[face][(corner + 1) % 3];
+        corner = (corner + 1) % 3;
+        for (std::size_t turn = 0; turn < faces.size(); ++turn) {
+          const std::uint32_t to = faces[face][(corner + 1) % 3];
+          const std::int64_t across = edges.face(to, pivot);
+          if (across < 0) {
+            break;
+          }
+          face = static_cast<std::size_t>(across);
+          corner = static_cast<std::size_t>(corner_of(faces[face], pivot));
+        }
+      }
+      loops.push_back(std::move(loop));
+    }
+  }
+  return loops;
+}
+
+}  // namespace dubsar
