@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "core/parallel.h"
 #include "triangulation/line_projection.h"
@@ -46,6 +47,119 @@ Vector3f averaging_direction(const StitchSurface& from, int row, const Vector3f&
   }
   const Vector3f ray = from.view.to_laser(p.cast<double>(), row).cast<float>();
   return ray.dot(normal) > kLeastCos ? ray : normal;
+}
+
+/// Averages samples of a scan, one after the other. What those of one node share is worked out once.
+class Averager {
+ public:
+  Averager(const StitchSurface& from, std::span<const StitchSurface* const> others,
+           std::span<const Pairs* const> pairs)
+      : from_(from), others_(others), pairs_(pairs), node_(from.lattice.size()) {}
+
+  /// The sample out.samples[at], into the other arrays of `out`.
+  void average(std::size_t at, FusedSamples& out);
+
+ private:
+  /// The line on which a sample moves.
+  struct Course {
+    std::size_t sample = 0;
+    Vector3f normal;
+    Line line;
+    float tilt = 1;  ///< × a distance along the line: the distance along the normal
+  };
+
+  void enter(std::size_t node);
+  [[nodiscard]] Projection meeting(const Course& course, const PairStart& start, std::size_t other) const;
+  void write_average(const Course& course, std::size_t at, FusedSamples& out) const;
+
+  const StitchSurface& from_;
+  std::span<const StitchSurface* const> others_;
+  std::span<const Pairs* const> pairs_;  ///< with each of the others
+  std::size_t node_;
+  std::vector<std::pair<std::size_t, PairStart>>
+      starts_;         ///< which of the others, where to look from the node
+  float feather_ = 0;  ///< the widest of those with them
+  std::vector<std::pair<std::size_t, Projection>> found_;  ///< which of the others, where the line meets it
+};
+
+void Averager::enter(std::size_t node) {
+  node_ = node;
+  starts_.clear();
+  feather_ = 0;
+  for (std::size_t k = 0; k < others_.size(); ++k) {
+    if (const PairStart start = pair_start(from_, node, *others_[k], *pairs_[k]); start.sample >= 0) {
+      starts_.emplace_back(k, start);
+      feather_ = std::max(feather_, pairs_[k]->feather);
+    }
+  }
+}
+
+/// Where the line meets the other scan's surface within reach; of weight 0 where it does not.
+Projection Averager::meeting(const Course& course, const PairStart& start, std::size_t other) const {
+  const StitchSurface& on = *others_[other];
+  const Pairs& pairs = *pairs_[other];
+  const auto within_reach = [&](const Projection& q) {
+    return course.tilt * std::abs(q.along_mm) <= pairs.reach_mm;
+  };
+  const auto [row, col] = start.place_of(course.line.p);
+  Projection q = project(course.line, on, row, col);
+  if (q.weight > 0 && !(within_reach(q) && course.normal.dot(on.normal(q.sample)) > pairs.min_normal_cos)) {
+    // Another fold of the surface: from the nearest sample that looks the same way there is a way to the
+    // right one.
+    const std::int64_t j = pair_of(from_, course.sample, start, on, pairs);
+    q = j < 0
+            ? Projection()
+            : project(course.line, on, static_cast<float>(on.lattice.sample_row(static_cast<std::size_t>(j))),
+                      static_cast<float>(on.lattice.sample_col(static_cast<std::size_t>(j))));
+  }
+  return within_reach(q) ? q : Projection();
+}
+
+void Averager::write_average(const Course& course, std::size_t at, FusedSamples& out) const {
+  const std::size_t i = course.sample;
+  float shift_sum = 0;
+  float shift2_sum = 0;
+  float weight_sum = from_.weight(i) * faded(from_.rim[i], feather_);
+  float pose_sum = square(weight_sum * pose_sigma_mm(from_));
+  float doubt = 1.0F - from_.reliability(i);
+  bool sparse = from_.is_sparse(i);
+  for (const auto& [k, q] : found_) {
+    const float weight = q.weight * faded(q.rim, pairs_[k]->feather);
+    shift_sum += weight * q.along_mm;
+    shift2_sum += weight * square(course.tilt * q.along_mm);
+    pose_sum += square(weight * pose_sigma_mm(*others_[k]));
+    weight_sum += weight;
+    doubt *= 1.0F - q.reliability;
+    sparse = sparse && !q.well_sampled;
+  }
+  const float shift_mm = shift_sum / weight_sum;
+  out.points[at] = course.line.p + shift_mm * course.line.n;
+  // Weights are inverse variances: the disagreement is their chi-square.
+  const float chi2 = std::max(0.0F, shift2_sum - weight_sum * square(course.tilt * shift_mm));
+  const float excess = found_.empty() ? 1.0F : std::max(1.0F, chi2 / static_cast<float>(found_.size()));
+  out.sigma_mm[at] = std::sqrt(excess / weight_sum + pose_sum / (weight_sum * weight_sum));
+  out.reliability[at] =
+      (1.0F - doubt) / (1.0F + square(out.sigma_mm[at] / static_cast<float>(from_.spacing_mm)));
+  out.sparse[at] = sparse ? 1 : 0;
+  out.scans[at] = static_cast<std::uint8_t>(std::min<std::size_t>(found_.size() + 1, 255));
+}
+
+void Averager::average(std::size_t at, FusedSamples& out) {
+  const std::size_t i = out.samples[at];
+  if (from_.lattice.node_of(i) != node_) {
+    enter(from_.lattice.node_of(i));
+  }
+  const Vector3f& p = from_.points[i];
+  const Vector3f normal = from_.normal(i);
+  const Vector3f along = averaging_direction(from_, from_.lattice.sample_row(i), p, normal);
+  const Course course{i, normal, Line(p, along), along.dot(normal)};
+  found_.clear();
+  for (const auto& [k, start] : starts_) {
+    if (const Projection q = meeting(course, start, k); q.weight > 0) {
+      found_.emplace_back(k, q);
+    }
+  }
+  write_average(course, at, out);
 }
 
 }  // namespace
@@ -97,74 +211,10 @@ void fuse(const StitchSurface& from, std::span<const StitchSurface* const> other
   out.sparse.resize(n);
   out.scans.resize(n);
   parallel_chunks(which.size(), 2048, [&](std::size_t begin, std::size_t end) {
-    std::vector<std::pair<std::size_t, Projection>> found;
-    std::vector<std::pair<std::size_t, PairStart>> starts;  // other, where to look, of one node
-    std::size_t node = from.lattice.size();
+    Averager averager(from, others, pairs);
     for (std::size_t at = first + begin; at < first + end; ++at) {
-      const std::size_t i = out.samples[at];
-      out.slot[i] = static_cast<std::uint32_t>(at);
-      const Vector3f& p = from.points[i];
-      const Vector3f normal = from.normal(i);
-      if (from.lattice.node_of(i) != node) {
-        node = from.lattice.node_of(i);
-        starts.clear();
-        for (std::size_t k = 0; k < others.size(); ++k) {
-          if (const PairStart start = pair_start(from, node, *others[k], *pairs[k]); start.sample >= 0) {
-            starts.emplace_back(k, start);
-          }
-        }
-      }
-      const Vector3f along = averaging_direction(from, from.lattice.sample_row(i), p, normal);
-      const Line line(p, along);
-      const float tilt = along.dot(normal);  // × a distance along the line: the distance along the normal
-      float feather = 0;
-      found.clear();
-      for (const auto& [k, start] : starts) {
-        const StitchSurface& other = *others[k];
-        const auto [row, col] = start.place_of(p);
-        Projection q = project(line, other, row, col);
-        if (q.weight > 0 && !(tilt * std::abs(q.along_mm) <= pairs[k]->reach_mm &&
-                              normal.dot(other.normal(q.sample)) > pairs[k]->min_normal_cos)) {
-          // Another fold of the surface: from the nearest sample that looks the same way there is a way to
-          // the right one.
-          const std::int64_t j = pair_of(from, i, start, other, *pairs[k]);
-          q = j < 0 ? Projection()
-                    : project(line, other,
-                              static_cast<float>(other.lattice.sample_row(static_cast<std::size_t>(j))),
-                              static_cast<float>(other.lattice.sample_col(static_cast<std::size_t>(j))));
-        }
-        if (q.weight > 0 && tilt * std::abs(q.along_mm) <= pairs[k]->reach_mm) {
-          found.emplace_back(k, q);
-        }
-        feather = std::max(feather, pairs[k]->feather);
-      }
-      float shift_sum = 0;
-      float shift2_sum = 0;
-      float weight_sum = from.weight(i) * faded(from.rim[i], feather);
-      float pose_sum = square(weight_sum * pose_sigma_mm(from));
-      float doubt = 1.0F - from.reliability(i);
-      bool sparse = from.is_sparse(i);
-      int scans = 1;
-      for (const auto& [k, q] : found) {
-        const float weight = q.weight * faded(q.rim, pairs[k]->feather);
-        shift_sum += weight * q.along_mm;
-        shift2_sum += weight * square(tilt * q.along_mm);
-        pose_sum += square(weight * pose_sigma_mm(*others[k]));
-        weight_sum += weight;
-        doubt *= 1.0F - q.reliability;
-        sparse = sparse && !q.well_sampled;
-        ++scans;
-      }
-      const float shift_mm = shift_sum / weight_sum;
-      out.points[at] = p + shift_mm * along;
-      // Weights are inverse variances: the disagreement is their chi-square.
-      const float chi2 = std::max(0.0F, shift2_sum - weight_sum * square(tilt * shift_mm));
-      const float excess = scans > 1 ? std::max(1.0F, chi2 / static_cast<float>(scans - 1)) : 1.0F;
-      out.sigma_mm[at] = std::sqrt(excess / weight_sum + pose_sum / (weight_sum * weight_sum));
-      out.reliability[at] =
-          (1.0F - doubt) / (1.0F + square(out.sigma_mm[at] / static_cast<float>(from.spacing_mm)));
-      out.sparse[at] = sparse ? 1 : 0;
-      out.scans[at] = static_cast<std::uint8_t>(std::min(scans, 255));
+      out.slot[out.samples[at]] = static_cast<std::uint32_t>(at);
+      averager.average(at, out);
     }
   });
 }

@@ -72,6 +72,99 @@ bool most_are_mirrored(const GridSurface& surface, std::span<const std::uint8_t>
   return votes > 0;
 }
 
+/// Writes the triangles of a grid's cells: each row its vertices and faces where those of the rows before it
+/// end.
+struct GridMesher {
+  const RangeGrid& grid;
+  GridSurface surface;  ///< the grid's layout and normals; points are asked of the grid itself
+  bool mirrored = false;
+  std::vector<std::uint8_t> cells{};
+  /// 1 where a triangle may have the sample; count_row() leaves those that one has.
+  std::vector<std::uint8_t> used{};
+
+  [[nodiscard]] Mesh mesh();
+
+ private:
+  struct RowCounts {
+    std::size_t vertices = 0, faces = 0;
+  };
+  RowCounts count_row(int row);
+  void write_vertices(int row, std::size_t at, std::span<std::uint32_t> vertex_of, Mesh& mesh) const;
+  void write_faces(int row, std::size_t at, std::span<const std::uint32_t> vertex_of, Mesh& mesh) const;
+  [[nodiscard]] Vector3f normal_of_triangles(int row, int col) const;
+};
+
+GridMesher::RowCounts GridMesher::count_row(int row) {
+  RowCounts counts;
+  for (int col = 0; col < grid.cols; ++col) {
+    const std::size_t i = surface.index(row, col);
+    const std::uint8_t cell = cells[i];
+    counts.faces += static_cast<std::size_t>(((cell >> 1) & 1) + ((cell >> 2) & 1));
+    if (used[i] != 0 && (cell & (kCellFirst | kCellSecond)) != (kCellFirst | kCellSecond)) {
+      used[i] = 0;
+      for_each_triangle_at(surface, cells, row, col, [&](const std::array<std::size_t, 3>&) { used[i] = 1; });
+    }
+    counts.vertices += used[i];
+  }
+  return counts;
+}
+
+Vector3f GridMesher::normal_of_triangles(int row, int col) const {
+  Vector3f n = Vector3f::Zero();
+  for_each_triangle_at(surface, cells, row, col, [&](const std::array<std::size_t, 3>& t) {
+    n += (grid.point(t[1]) - grid.point(t[0])).cross(grid.point(t[2]) - grid.point(t[0]));
+  });
+  return n * ((mirrored ? -1.0F : 1.0F) / std::max(n.norm(), std::numeric_limits<float>::min()));
+}
+
+void GridMesher::write_vertices(int row, std::size_t at, std::span<std::uint32_t> vertex_of,
+                                Mesh& mesh) const {
+  for (int col = 0; col < grid.cols; ++col) {
+    const std::size_t i = surface.index(row, col);
+    if (used[i] == 0) {
+      continue;
+    }
+    vertex_of[i] = static_cast<std::uint32_t>(at);
+    mesh.positions[at] = grid.point(i);
+    // Without a neighbour along the row or the column a sample has none of its own.
+    const Vector3f& n = surface.normals[i];
+    mesh.normals[at++] = n == Vector3f::Zero() ? normal_of_triangles(row, col) : n;
+  }
+}
+
+void GridMesher::write_faces(int row, std::size_t at, std::span<const std::uint32_t> vertex_of,
+                             Mesh& mesh) const {
+  for (int col = 0; col + 1 < grid.cols; ++col) {
+    const std::uint8_t cell = cells[surface.index(row, col)];
+    for (int which = 0; cell != 0 && which < 2; ++which) {
+      if ((cell & (which == 0 ? kCellFirst : kCellSecond)) != 0) {
+        const auto f = cell_triangle(surface, row, col, cell, which);
+        mesh.faces[at++] = {vertex_of[f[0]], vertex_of[f[mirrored ? 2 : 1]], vertex_of[f[mirrored ? 1 : 2]]};
+      }
+    }
+  }
+}
+
+Mesh GridMesher::mesh() {
+  const auto rows = static_cast<std::size_t>(grid.rows);
+  const auto for_each_row = [&](const auto& body) { parallel_for_each_index(rows, body, kRowsPerChunk); };
+  std::vector<RowCounts> before(rows + 1);
+  for_each_row([&](std::size_t r) { before[r + 1] = count_row(static_cast<int>(r)); });
+  for (std::size_t r = 0; r < rows; ++r) {
+    before[r + 1].vertices += before[r].vertices;
+    before[r + 1].faces += before[r].faces;
+  }
+  Mesh mesh;
+  resize_in_huge_pages(mesh.faces, before.back().faces);
+  resize_in_huge_pages(mesh.positions, before.back().vertices);
+  resize_in_huge_pages(mesh.normals, before.back().vertices);
+  std::vector<std::uint32_t> vertex_of(grid.size());
+  for_each_row(
+      [&](std::size_t r) { write_vertices(static_cast<int>(r), before[r].vertices, vertex_of, mesh); });
+  for_each_row([&](std::size_t r) { write_faces(static_cast<int>(r), before[r].faces, vertex_of, mesh); });
+  return mesh;
+}
+
 }  // namespace
 
 bool is_mirrored(const GridSurface& surface, std::span<const std::uint8_t> keep) {
@@ -160,9 +253,8 @@ void triangulate_cells_anew(const GridSurface& surface, std::span<const std::uin
 
 Mesh triangulate_grid(const RangeGrid& grid, const SampleFlags& flags,
                       const GridTriangulationOptions& options) {
-  Mesh mesh;
   if (grid.rows < 2 || grid.cols < 2 || !(grid.spacing_mm > 0)) {
-    return mesh;
+    return {};
   }
   const GridGeometry geometry = grid_geometry(grid);
   std::vector<std::uint8_t> keep(grid.size());
@@ -173,89 +265,20 @@ Mesh triangulate_grid(const RangeGrid& grid, const SampleFlags& flags,
             grid.valid[i] != 0 && grid.point(i).allFinite() && (flags.empty() || is_unflagged(flags[i]));
       },
       4096);
-  const GridSurface surface{grid.rows, grid.cols, grid.spacing_mm, {}, {}, grid.view};
-  const bool mirrored = most_are_mirrored(surface, keep, [&](std::size_t i) { return grid.point(i); });
-  const TriangleTest good(grid.spacing_mm, mirrored, options);
-  std::vector<std::uint8_t> cells(grid.size(), 0);
+  GridMesher mesher{grid, {grid.rows, grid.cols, grid.spacing_mm, {}, geometry.normals, grid.view}};
+  mesher.mirrored = most_are_mirrored(mesher.surface, keep, [&](std::size_t i) { return grid.point(i); });
+  mesher.cells.resize(grid.size());
+  const TriangleTest good(grid.spacing_mm, mesher.mirrored, options);
   parallel_for_each_index(
       static_cast<std::size_t>(grid.rows - 1),
       [&](std::size_t r) {
         const int row = static_cast<int>(r);
         cell_codes(GridSamples{&grid, geometry.normals}, keep, row, RowCamera(grid.view, row), good,
-                   cells.data() + grid.index(row, 0));
+                   mesher.cells.data() + grid.index(row, 0));
       },
       kRowsPerChunk);
-
-  // Each row writes its vertices and faces where those of the rows before it end.
-  const auto rows = static_cast<std::size_t>(grid.rows);
-  std::vector<std::size_t> first_face(rows + 1, 0);
-  std::vector<std::size_t> first_vertex(rows + 1, 0);
-  std::vector<std::uint8_t>& used = keep;
-  parallel_for_each_index(
-      rows,
-      [&](std::size_t r) {
-        const int row = static_cast<int>(r);
-        for (int col = 0; col < grid.cols; ++col) {
-          const std::size_t i = surface.index(row, col);
-          const std::uint8_t cell = cells[i];
-          first_face[r + 1] += static_cast<std::size_t>(((cell >> 1) & 1) + ((cell >> 2) & 1));
-          if (used[i] != 0 && (cell & (kCellFirst | kCellSecond)) != (kCellFirst | kCellSecond)) {
-            used[i] = 0;
-            for_each_triangle_at(surface, cells, row, col,
-                                 [&](const std::array<std::size_t, 3>&) { used[i] = 1; });
-          }
-          first_vertex[r + 1] += used[i];
-        }
-      },
-      kRowsPerChunk);
-  for (std::size_t row = 0; row < rows; ++row) {
-    first_face[row + 1] += first_face[row];
-    first_vertex[row + 1] += first_vertex[row];
-  }
-  resize_in_huge_pages(mesh.faces, first_face.back());
-  resize_in_huge_pages(mesh.positions, first_vertex.back());
-  resize_in_huge_pages(mesh.normals, first_vertex.back());
-  std::vector<std::uint32_t> vertex_of(grid.size());
-  parallel_for_each_index(
-      rows,
-      [&](std::size_t r) {
-        std::size_t at = first_vertex[r];
-        for (int col = 0; col < grid.cols; ++col) {
-          const std::size_t i = surface.index(static_cast<int>(r), col);
-          if (used[i] == 0) {
-            continue;
-          }
-          vertex_of[i] = static_cast<std::uint32_t>(at);
-          mesh.positions[at] = grid.point(i);
-          Vector3f n = geometry.normals[i];
-          if (n == Vector3f::Zero()) {  // no neighbour along the row or the column: what its triangles say
-            for_each_triangle_at(
-                surface, cells, static_cast<int>(r), col, [&](const std::array<std::size_t, 3>& t) {
-                  n += (grid.point(t[1]) - grid.point(t[0])).cross(grid.point(t[2]) - grid.point(t[0]));
-                });
-            n *= (mirrored ? -1.0F : 1.0F) / std::max(n.norm(), std::numeric_limits<float>::min());
-          }
-          mesh.normals[at++] = n;
-        }
-      },
-      kRowsPerChunk);
-  parallel_for_each_index(
-      rows - 1,
-      [&](std::size_t r) {
-        std::size_t at = first_face[r];
-        for (int col = 0; col + 1 < grid.cols; ++col) {
-          const std::uint8_t cell = cells[surface.index(static_cast<int>(r), col)];
-          for (int which = 0; cell != 0 && which < 2; ++which) {
-            if ((cell & (which == 0 ? kCellFirst : kCellSecond)) != 0) {
-              const auto f = cell_triangle(surface, static_cast<int>(r), col, cell, which);
-              mesh.faces[at++] = {vertex_of[f[0]], vertex_of[f[mirrored ? 2 : 1]],
-                                  vertex_of[f[mirrored ? 1 : 2]]};
-            }
-          }
-        }
-      },
-      kRowsPerChunk);
-  return mesh;
+  mesher.used = std::move(keep);
+  return mesher.mesh();
 }
 
 }  // namespace dubsar

@@ -219,9 +219,8 @@ std::vector<std::uint8_t> every_fourth(const std::vector<std::uint8_t>& usable, 
   return out;
 }
 
-}  // namespace
-
-StitchSurface make_scan_surface(const PlacedScan& scan, const StitchSurfaceOptions& options) {
+/// One without triangles, laid out for the grid.
+StitchSurface bare_surface(const PlacedScan& scan) {
   const RangeGrid& grid = *scan.grid;
   StitchSurface out;
   out.id = scan.id;
@@ -234,60 +233,57 @@ StitchSurface make_scan_surface(const PlacedScan& scan, const StitchSurfaceOptio
   out.scanner_from_model = scan.model_from_scanner.inverse();
   const std::size_t n = grid.size();
   out.points.assign(n, Vector3f::Zero());
+  out.normals.assign(n, PackedNormal());
   out.cells.assign(n, 0);
+  out.usable.assign(n, 0);
   out.reliability_code.assign(n, 0);
   out.weight_code.assign(n, 0);
   out.rim.assign(n, 0);
-  if (!(out.spacing_mm > 0) || grid.rows < 2 || grid.cols < 2) {
-    out.normals.assign(n, PackedNormal());
-    out.usable.assign(n, 0);
-    out.lookup = std::make_unique<GridLookup>(grid, out.usable);
-    return out;
-  }
-  GridGeometry geometry = grid_geometry(grid, 5.0 * out.spacing_mm / std::max(grid.spacing_mm, 1e-12));
-  std::vector<Vector3f> normals = std::move(geometry.normals);
+  return out;
+}
+
+std::uint8_t flags_of(const PlacedScan& scan, std::size_t sample) {
+  return scan.flags != nullptr && sample < scan.flags->size() ? (*scan.flags)[sample] : std::uint8_t{0};
+}
+
+/// Takes the tablet's samples and their normals to the model frame; 1 for each of them.
+std::vector<std::uint8_t> place_samples(const PlacedScan& scan, std::vector<Vector3f>& points,
+                                        std::vector<Vector3f>& normals) {
+  const RangeGrid& grid = *scan.grid;
   const Eigen::Matrix3f rotation = scan.model_from_scanner.rotation.cast<float>();
-  std::vector<std::uint8_t> joined(n, 0);
+  std::vector<std::uint8_t> placed(grid.size(), 0);
   parallel_for_each_index(
-      n,
+      grid.size(),
       [&](std::size_t i) {
-        if (grid.valid[i] == 0 || !grid.point(i).allFinite() ||
-            (scan.flags != nullptr && i < scan.flags->size() && ((*scan.flags)[i] & kNotTablet) != 0)) {
+        if (grid.valid[i] == 0 || !grid.point(i).allFinite() || (flags_of(scan, i) & kNotTablet) != 0) {
           return;
         }
-        out.points[i] = (scan.model_from_scanner * grid.point(i).cast<double>()).cast<float>();
+        points[i] = (scan.model_from_scanner * grid.point(i).cast<double>()).cast<float>();
         normals[i] = rotation * normals[i];
-        joined[i] = 1;
+        placed[i] = 1;
       },
       4096);
-  GridSurface surface = out.surface();
-  surface.normals = normals;
-  out.mirrored = is_mirrored(surface, joined);
-  out.cells = triangulate_cells(surface, joined, out.mirrored, options.grid);
-  out.usable = corners_of_cells(out.cells, grid.rows, grid.cols);
-  const std::vector<std::uint8_t> inner = inner_samples(out.cells, grid.rows, grid.cols);
-  out.rim = rim_distance(out.usable, inner, grid.rows, grid.cols);
-  out.noise_mm = scan.noise_mm ? *scan.noise_mm : estimate_noise_mm(grid, out.usable);
-  const double systematic_mm = kSystematicOfSpacing * out.spacing_mm;
-  out.weight_of_best =
-      static_cast<float>(1.0 / (out.noise_mm * out.noise_mm + systematic_mm * systematic_mm));
+  return placed;
+}
+
+/// Reliability and weight of the usable samples, and which of them are sparse. Returns the cosines of their
+/// angles of incidence.
+std::vector<float> weigh_samples(const PlacedScan& scan, const std::vector<Vector3f>& normals,
+                                 const std::vector<std::uint8_t>& inner, StitchSurface& out) {
+  const RangeGrid& grid = *scan.grid;
   const auto code = [](float part) {
     return static_cast<std::uint16_t>(std::clamp(part, 0.0F, 1.0F) * StitchSurface::kCodes + 0.5F);
   };
-  const auto is_sparse = [&](std::size_t i) {
-    return scan.flags != nullptr && i < scan.flags->size() && !is_unflagged((*scan.flags)[i]);
-  };
-  out.normals.resize(n);
   const Incidence incidence(out.view);
-  std::vector<float> cosines(n);
+  std::vector<float> cosines(grid.size());
   parallel_for_each_index(
-      n,
+      grid.size(),
       [&](std::size_t i) {
         out.normals[i] = PackedNormal(normals[i]);
         if (out.usable[i] == 0) {
           return;
         }
-        out.usable[i] = is_sparse(i) ? kUsable | kUsableSparse : kUsable;
+        out.usable[i] = is_unflagged(flags_of(scan, i)) ? kUsable : kUsable | kUsableSparse;
         const float cosine = incidence.cosine(out.points[i], normals[i], grid.row_of(i));
         cosines[i] = cosine;
         const float confidence = grid.confidence.empty() ? 1.0F : std::clamp(grid.confidence[i], 0.01F, 1.0F);
@@ -296,19 +292,49 @@ StitchSurface make_scan_surface(const PlacedScan& scan, const StitchSurfaceOptio
         out.weight_code[i] = std::max<std::uint16_t>(code(confidence * doubt), 1);
       },
       4096);
-  lay_nodes(out, cosines, options);
-  out.box = parallel_reduce_ordered(
-      n, 65536, Eigen::AlignedBox3f(),
+  return cosines;
+}
+
+Eigen::AlignedBox3f box_of_usable(const StitchSurface& surface) {
+  return parallel_reduce_ordered(
+      surface.points.size(), 65536, Eigen::AlignedBox3f(),
       [&](std::size_t begin, std::size_t end) {
         Eigen::AlignedBox3f box;
         for (std::size_t i = begin; i < end; ++i) {
-          if (out.usable[i] != 0) {
-            box.extend(out.points[i]);
+          if (surface.usable[i] != 0) {
+            box.extend(surface.points[i]);
           }
         }
         return box;
       },
       [](Eigen::AlignedBox3f& total, const Eigen::AlignedBox3f& part) { total.extend(part); });
+}
+
+}  // namespace
+
+StitchSurface make_scan_surface(const PlacedScan& scan, const StitchSurfaceOptions& options) {
+  const RangeGrid& grid = *scan.grid;
+  StitchSurface out = bare_surface(scan);
+  if (!(out.spacing_mm > 0) || grid.rows < 2 || grid.cols < 2) {
+    out.lookup = std::make_unique<GridLookup>(grid, out.usable);
+    return out;
+  }
+  GridGeometry geometry = grid_geometry(grid, 5.0 * out.spacing_mm / std::max(grid.spacing_mm, 1e-12));
+  std::vector<Vector3f> normals = std::move(geometry.normals);
+  const std::vector<std::uint8_t> placed = place_samples(scan, out.points, normals);
+  GridSurface surface = out.surface();
+  surface.normals = normals;
+  out.mirrored = is_mirrored(surface, placed);
+  out.cells = triangulate_cells(surface, placed, out.mirrored, options.grid);
+  out.usable = corners_of_cells(out.cells, grid.rows, grid.cols);
+  const std::vector<std::uint8_t> inner = inner_samples(out.cells, grid.rows, grid.cols);
+  out.rim = rim_distance(out.usable, inner, grid.rows, grid.cols);
+  out.noise_mm = scan.noise_mm ? *scan.noise_mm : estimate_noise_mm(grid, out.usable);
+  const double systematic_mm = kSystematicOfSpacing * out.spacing_mm;
+  out.weight_of_best =
+      static_cast<float>(1.0 / (out.noise_mm * out.noise_mm + systematic_mm * systematic_mm));
+  lay_nodes(out, weigh_samples(scan, normals, inner, out), options);
+  out.box = box_of_usable(out);
   out.lookup = std::make_unique<GridLookup>(grid, every_fourth(out.usable, grid.rows, grid.cols),
                                             2.5 * out.spacing_mm);
   return out;
