@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "core/parallel.h"
 #include "registration/absolute_orientation.h"
@@ -18,11 +19,9 @@ namespace {
 constexpr double kFreeSpaceWeight = 2.0;
 
 double coarse_score(const ScanSurface& source, const ScanSurface& target,
-                    const RigidTransform& target_from_source, const EvidenceOptions& options, bool two_way) {
+                    const RigidTransform& target_from_source, const EvidenceOptions& options) {
   PoseEvidence e = pose_evidence(*source.coarse, *target.coarse, target_from_source, options);
-  if (two_way) {
-    e.add(pose_evidence(*target.coarse, *source.coarse, target_from_source.inverse(), options));
-  }
+  e.add(pose_evidence(*target.coarse, *source.coarse, target_from_source.inverse(), options));
   return e.sent == 0 ? 0.0 : (e.close - kFreeSpaceWeight * e.in_front) / static_cast<double>(e.sent);
 }
 
@@ -135,6 +134,70 @@ double by_support(const PoseHypothesis& h) {
   return h.support();
 }
 
+struct Votes {
+  std::vector<Vote> all;
+  std::vector<std::size_t> seeds;  ///< the best of each kind: poses that the others may agree with
+};
+
+/// What relief, tone and shape say, each by its own matches.
+Votes collect_votes(const ScanFeatures& source, const ScanFeatures& target,
+                    const GlobalAlignOptions& options) {
+  Votes votes;
+  const auto collect = [&](const RingDescriptors& of_source, const RingDescriptors& of_target,
+                           const RingDescriptorOptions& descriptors) {
+    const std::size_t first = votes.all.size();
+    collect_votes(of_source, of_target, descriptors, options.most_matches, votes.all);
+    const std::size_t end = std::min(votes.all.size(), first + static_cast<std::size_t>(options.most_seeds));
+    for (std::size_t k = first; k < end; ++k) {
+      votes.seeds.push_back(k);
+    }
+  };
+  collect(source.relief, target.relief, options.relief);
+  collect(source.tone, target.tone, options.tone);
+  collect(source.shape, target.shape, options.shape);
+  return votes;
+}
+
+/// The seeds' poses, each with the weight of the votes that agree with it as its shape score.
+std::vector<PoseHypothesis> voted_poses(const Votes& votes, double turn_rad, double shift_mm) {
+  std::vector<PoseHypothesis> poses(votes.seeds.size());
+  parallel_for_each_index(
+      poses.size(),
+      [&](std::size_t k) {
+        const RigidTransform& pose = votes.all[votes.seeds[k]].pose;
+        const Agreement agreement(pose, turn_rad, shift_mm);
+        double sum = 0;
+        for (const Vote& v : votes.all) {
+          sum += agreement.holds(v) ? static_cast<double>(v.weight) : 0.0;
+        }
+        poses[k] = {pose, sum, 0.0};
+      },
+      16);
+  return poses;
+}
+
+PoseHypothesis weighed(const ScanSurface& source, const ScanSurface& target,
+                       const RigidTransform& target_from_source, const EvidenceOptions& evidence) {
+  return {target_from_source, coarse_score(source, target, target_from_source, evidence),
+          significance(source, target, target_from_source, evidence.tolerance_mm)};
+}
+
+/// ICP between the coarse surfaces, from a wide reach to a narrow one.
+RigidTransform fitted(const ScanSurface& source, const ScanSurface& target, RigidTransform pose) {
+  IcpOptions options;
+  options.normal_cosine = 0.6;
+  options.iterations = 12;
+  options.converged_mm = 1e-3 * target.scale_mm;
+  options.two_way = true;
+  const IcpTarget onto{target.coarse.get(), {}};
+  for (const double reach : {0.08, 0.04}) {
+    options.reach_mm = reach * target.scale_mm;
+    options.kernel_mm = 0.2 * reach * target.scale_mm;
+    pose = icp(*source.coarse, {&onto, 1}, pose, options).model_from_source;
+  }
+  return pose;
+}
+
 }  // namespace
 
 double pose_support(double shape_score, double relief_significance) {
@@ -165,86 +228,44 @@ std::vector<PoseHypothesis> align_pair(const ScanFeatures& source, const ScanFea
   const ScanSurface& from = *source.surface;
   const ScanSurface& to = *target.surface;
   const double scale_mm = to.scale_mm;
-  const double turn = options.distinct_turn_rad;
-  const double shift_mm = options.distinct_shift * scale_mm;
-  std::vector<Vote> votes;
-  std::vector<std::size_t> seeds;
-  const auto collect = [&](const RingDescriptors& of_source, const RingDescriptors& of_target,
-                           const RingDescriptorOptions& descriptors) {
-    const std::size_t first = votes.size();
-    collect_votes(of_source, of_target, descriptors, options.most_matches, votes);
-    const std::size_t end = std::min(votes.size(), first + static_cast<std::size_t>(options.most_seeds));
-    for (std::size_t k = first; k < end; ++k) {
-      seeds.push_back(k);
-    }
+  const auto best_of = [&](std::vector<PoseHypothesis> all, std::size_t most, const auto& value) {
+    return distinct(std::move(all), most, from.centroid_mm, options.distinct_turn_rad,
+                    options.distinct_shift * scale_mm, value);
   };
-  collect(source.relief, target.relief, options.relief);
-  collect(source.tone, target.tone, options.tone);
-  collect(source.shape, target.shape, options.shape);
-  if (votes.empty()) {
+  const Votes votes = collect_votes(source, target, options);
+  if (votes.all.empty()) {
     return {};
   }
-  EvidenceOptions rough;
-  rough.tolerance_mm = options.rough_tolerance * scale_mm;
-  rough.band_mm = options.band * scale_mm;
   const double vote_mm = options.vote_shift * scale_mm;
-  std::vector<PoseHypothesis> found(seeds.size());
-  parallel_for_each_index(
-      seeds.size(),
-      [&](std::size_t k) {
-        const RigidTransform& pose = votes[seeds[k]].pose;
-        const Agreement agreement(pose, options.vote_turn_rad, vote_mm);
-        double sum = 0;
-        for (const Vote& v : votes) {
-          sum += agreement.holds(v) ? static_cast<double>(v.weight) : 0.0;
-        }
-        found[k] = {pose, sum, 0.0};
-      },
-      16);
-  found = distinct(std::move(found), static_cast<std::size_t>(options.most_consensus), from.centroid_mm, turn,
-                   shift_mm, by_shape);
+  std::vector<PoseHypothesis> found = best_of(voted_poses(votes, options.vote_turn_rad, vote_mm),
+                                              static_cast<std::size_t>(options.most_consensus), by_shape);
+  EvidenceOptions evidence;
+  evidence.tolerance_mm = options.rough_tolerance * scale_mm;
+  evidence.band_mm = options.band * scale_mm;
   parallel_for_each_index(
       found.size(),
       [&](std::size_t k) {
-        RigidTransform& pose = found[k].target_from_source;
-        pose = consensus(votes, pose, options.vote_turn_rad, vote_mm);
-        found[k].shape_score = coarse_score(from, to, pose, rough, true);
-        found[k].relief_significance = significance(from, to, pose, rough.tolerance_mm);
+        const RigidTransform pose =
+            consensus(votes.all, found[k].target_from_source, options.vote_turn_rad, vote_mm);
+        found[k] = weighed(from, to, pose, evidence);
       },
       4);
-  std::vector<PoseHypothesis> chosen = distinct(found, static_cast<std::size_t>(options.most_by_relief),
-                                                from.centroid_mm, turn, shift_mm, by_relief);
-  for (const PoseHypothesis& h : distinct(std::move(found), static_cast<std::size_t>(options.most_by_shape),
-                                          from.centroid_mm, turn, shift_mm, by_shape)) {
-    chosen.push_back(h);
-  }
+  std::vector<PoseHypothesis> chosen =
+      best_of(found, static_cast<std::size_t>(options.most_by_relief), by_relief);
+  std::ranges::move(best_of(std::move(found), static_cast<std::size_t>(options.most_by_shape), by_shape),
+                    std::back_inserter(chosen));
   const std::size_t all = chosen.size();
-  chosen = distinct(std::move(chosen), all, from.centroid_mm, turn, shift_mm, by_support);
+  chosen = best_of(std::move(chosen), all, by_support);
   drop_outdone(chosen, by_relief);
 
-  EvidenceOptions close = rough;
-  close.tolerance_mm = std::max(options.tolerance * scale_mm, 0.5 * to.coarse->spacing_mm);
+  evidence.tolerance_mm = std::max(options.tolerance * scale_mm, 0.5 * to.coarse->spacing_mm);
   parallel_for_each_index(
       chosen.size(),
       [&](std::size_t k) {
-        RigidTransform& pose = chosen[k].target_from_source;
-        IcpOptions icp_options;
-        const IcpTarget onto{to.coarse.get(), {}};
-        for (const double reach : {0.08, 0.04}) {
-          icp_options.reach_mm = reach * scale_mm;
-          icp_options.kernel_mm = 0.2 * reach * scale_mm;
-          icp_options.normal_cosine = 0.6;
-          icp_options.iterations = 12;
-          icp_options.converged_mm = 1e-3 * scale_mm;
-          icp_options.two_way = true;
-          pose = icp(*from.coarse, {&onto, 1}, pose, icp_options).model_from_source;
-        }
-        chosen[k].shape_score = coarse_score(from, to, pose, close, true);
-        chosen[k].relief_significance = significance(from, to, pose, close.tolerance_mm);
+        chosen[k] = weighed(from, to, fitted(from, to, chosen[k].target_from_source), evidence);
       },
       1);
-  return distinct(std::move(chosen), static_cast<std::size_t>(options.most_returned), from.centroid_mm, turn,
-                  shift_mm, by_support);
+  return best_of(std::move(chosen), static_cast<std::size_t>(options.most_returned), by_support);
 }
 
 }  // namespace dubsar

@@ -213,38 +213,39 @@ bool point_to_point(const SurfaceLevel& source, std::span<const IcpTarget> targe
   return false;
 }
 
-}  // namespace
+/// What the pairs pull at a pose of the source, every one or one in `every`; their terms, too, where asked
+/// for.
+struct Pull {
+  const SurfaceLevel& source;
+  std::span<const IcpTarget> targets;
+  const IcpOptions& options;
 
-IcpResult icp(const SurfaceLevel& source, std::span<const IcpTarget> targets,
-              const RigidTransform& model_from_source, const IcpOptions& options) {
-  IcpResult out;
-  out.model_from_source = model_from_source;
-  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
-  for (const SurfaceSample& sample : source.samples) {
-    middle += sample.position_mm.cast<double>();
-  }
-  middle /= std::max<double>(1.0, static_cast<double>(source.samples.size()));
-  const auto sums_at = [&](const RigidTransform& pose, std::size_t every, std::vector<PullTerm>* terms) {
+  [[nodiscard]] Sums at(const RigidTransform& pose, const Eigen::Vector3d& center_mm, std::size_t every = 1,
+                        std::vector<PullTerm>* terms = nullptr) const {
     Sums sums;
     for (const IcpTarget& target : targets) {
-      accumulate(source, pose, *target.level, target.model_from_scanner, true, out.center_mm, options, every,
+      accumulate(source, pose, *target.level, target.model_from_scanner, true, center_mm, options, every,
                  sums, terms);
       if (options.two_way) {
-        accumulate(*target.level, target.model_from_scanner, source, pose, false, out.center_mm, options,
-                   every, sums, terms);
+        accumulate(*target.level, target.model_from_scanner, source, pose, false, center_mm, options, every,
+                   sums, terms);
       }
     }
     return sums;
-  };
+  }
+};
+
+/// The root of the mean square distance of the pairs from the centre.
+double radius_of(const Sums& sums) {
+  return std::max(1e-9, std::sqrt(sums.radius2 / sums.weight));
+}
+
+/// Point-to-plane steps from out's pose until it moves no more; the sums at the last pose.
+Sums point_to_plane(const Pull& pull, const Eigen::Vector3d& middle, int steps, IcpResult& out) {
   const auto evaluate = [&] {
     out.center_mm = out.model_from_source * middle;
-    return sums_at(out.model_from_source, 1, nullptr);
+    return pull.at(out.model_from_source, out.center_mm);
   };
-  int steps = options.iterations;
-  if (options.metric == IcpMetric::kPointToPoint) {
-    out.converged = point_to_point(source, targets, middle, options, out.model_from_source);
-    steps = 0;
-  }
   Sums sums = evaluate();
   for (int iteration = 0; iteration < steps && sums.pairs >= 6; ++iteration) {
     const double radius2 = sums.radius2 / sums.weight;
@@ -259,52 +260,90 @@ IcpResult icp(const SurfaceLevel& source, std::span<const IcpTarget> targets,
     }
     out.model_from_source = twisted(out.model_from_source, step, out.center_mm);
     sums = evaluate();
-    if (step.head<3>().norm() * std::sqrt(radius2) + step.tail<3>().norm() < options.converged_mm) {
+    if (step.head<3>().norm() * std::sqrt(radius2) + step.tail<3>().norm() < pull.options.converged_mm) {
       out.converged = true;
       break;
     }
   }
+  return sums;
+}
+
+/// The slope of the pull, measured: the scan is moved and its pairs are made anew. The normal matrix takes
+/// every partner for fixed, and so counts the noise of the normals as slopes of the surface that hold the
+/// scan; and the nearest of noisy samples lies too near, so that the pull is too weak.
+Matrix6d measured_slope(const Pull& pull, const RigidTransform& pose, const Eigen::Vector3d& center_mm,
+                        double radius, double h_mm) {
+  Matrix6d slope;
+  for (int k = 0; k < 6; ++k) {
+    const double h = k < 3 ? h_mm / radius : h_mm;
+    const Vector6d step = h * Vector6d::Unit(k);
+    const Sums ahead = pull.at(twisted(pose, step, center_mm), center_mm, kSlopeEvery);
+    const Sums behind = pull.at(twisted(pose, -step, center_mm), center_mm, kSlopeEvery);
+    slope.col(k) = static_cast<double>(kSlopeEvery) * (ahead.g - behind.g) / (2.0 * h);
+  }
+  return slope;
+}
+
+/// The information of the fit, from the measured slope; the last steps are taken with that, too, when
+/// `may_step`: along weak directions the normal matrix makes them too short. Returns the sums at the last
+/// pose.
+Sums inform(const Pull& pull, Sums sums, bool may_step, IcpResult& out) {
+  const double radius = radius_of(sums);
+  const double h_mm = kSlopeStepSpacings * pull.source.spacing_mm;
+  const Matrix6d slope = measured_slope(pull, out.model_from_source, out.center_mm, radius, h_mm);
+  std::vector<PullTerm> terms;
+  for (int k = 0; k < (may_step ? kLastSteps : 0); ++k) {
+    const Vector6d step = held_step(slope, sums.g, sums.weight, radius, h_mm);
+    out.model_from_source = twisted(out.model_from_source, step, out.center_mm);
+    terms.clear();
+    sums = pull.at(out.model_from_source, out.center_mm, 1, &terms);
+  }
+  if (!may_step) {
+    sums = pull.at(out.model_from_source, out.center_mm, 1, &terms);
+  }
+  const FitInformation found = fit_information(slope, terms, {radius, pull.source.spacing_mm});
+  out.information = found.information;
+  out.blocks = found.blocks;
+  return sums;
+}
+
+/// How firmly the pairs hold the scan in the direction in which they hold it least, and which that is.
+void judge_stability(const Sums& sums, IcpResult& out) {
+  Vector6d scale;
+  scale << Eigen::Vector3d::Constant(1.0 / radius_of(sums)), Eigen::Vector3d::Ones();
+  const Matrix6d scaled = scale.asDiagonal() * sums.h * scale.asDiagonal() / sums.weight;
+  const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(scaled);
+  out.stability = std::max(0.0, eigen.eigenvalues()[0]);
+  out.weakest = eigen.eigenvectors().col(0);
+}
+
+}  // namespace
+
+IcpResult icp(const SurfaceLevel& source, std::span<const IcpTarget> targets,
+              const RigidTransform& model_from_source, const IcpOptions& options) {
+  IcpResult out;
+  out.model_from_source = model_from_source;
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+  for (const SurfaceSample& sample : source.samples) {
+    middle += sample.position_mm.cast<double>();
+  }
+  middle /= std::max<double>(1.0, static_cast<double>(source.samples.size()));
+  int steps = options.iterations;
+  if (options.metric == IcpMetric::kPointToPoint) {
+    out.converged = point_to_point(source, targets, middle, options, out.model_from_source);
+    steps = 0;
+  }
+  const Pull pull{source, targets, options};
+  Sums sums = point_to_plane(pull, middle, steps, out);
   if (options.information && sums.pairs >= 6 && sums.weight > 0) {
-    // The slope of the pull, measured: the scan is moved and its pairs are made anew. The normal matrix takes
-    // every partner for fixed, and so counts the noise of the normals as slopes of the surface that hold the
-    // scan; and the nearest of noisy samples lies too near, so that the pull is too weak. The last steps are
-    // taken with it too: along weak directions the normal matrix makes them too short.
-    const double radius = std::max(1e-9, std::sqrt(sums.radius2 / sums.weight));
-    const double h_mm = kSlopeStepSpacings * source.spacing_mm;
-    Matrix6d slope;
-    for (int k = 0; k < 6; ++k) {
-      const double h = k < 3 ? h_mm / radius : h_mm;
-      const Vector6d step = h * Vector6d::Unit(k);
-      const Sums ahead = sums_at(twisted(out.model_from_source, step, out.center_mm), kSlopeEvery, nullptr);
-      const Sums behind = sums_at(twisted(out.model_from_source, -step, out.center_mm), kSlopeEvery, nullptr);
-      slope.col(k) = static_cast<double>(kSlopeEvery) * (ahead.g - behind.g) / (2.0 * h);
-    }
-    std::vector<PullTerm> terms;
-    for (int k = 0; k < kLastSteps && steps > 0; ++k) {
-      const Vector6d step = held_step(slope, sums.g, sums.weight, radius, h_mm);
-      out.model_from_source = twisted(out.model_from_source, step, out.center_mm);
-      terms.clear();
-      sums = sums_at(out.model_from_source, 1, &terms);
-    }
-    if (steps == 0) {
-      sums = sums_at(out.model_from_source, 1, &terms);
-    }
-    const FitInformation found = fit_information(slope, terms, {radius, source.spacing_mm});
-    out.information = found.information;
-    out.blocks = found.blocks;
+    sums = inform(pull, std::move(sums), steps > 0, out);
   }
   out.pairs = sums.pairs;
   out.weight = sums.weight;
   out.normal_matrix = sums.h;
   if (sums.pairs >= 6 && sums.weight > 0) {
     out.rms_mm = std::sqrt(sums.residual2 / sums.weight);
-    const double radius = std::max(1e-9, std::sqrt(sums.radius2 / sums.weight));
-    Vector6d scale;
-    scale << Eigen::Vector3d::Constant(1.0 / radius), Eigen::Vector3d::Ones();
-    const Matrix6d scaled = scale.asDiagonal() * sums.h * scale.asDiagonal() / sums.weight;
-    const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(scaled);
-    out.stability = std::max(0.0, eigen.eigenvalues()[0]);
-    out.weakest = eigen.eigenvectors().col(0);
+    judge_stability(sums, out);
   }
   return out;
 }
