@@ -2,8 +2,6 @@
 // Copyright The Dubsar developers
 #include "analysis/surface_fields.h"
 
-#include <chrono>
-
 #include "analysis/curvature.h"
 #include "analysis/reliability.h"
 #include "analysis/smooth_curvature.h"
@@ -12,23 +10,6 @@
 
 namespace dubsar {
 namespace {
-
-/// Notes how long each stage took.
-class StageClock {
- public:
-  explicit StageClock(StageTimes* times) : times_(times) {}
-  void done(const char* stage) {
-    const auto now = std::chrono::steady_clock::now();
-    if (times_ != nullptr) {
-      times_->emplace_back(stage, std::chrono::duration<double>(now - start_).count());
-    }
-    start_ = now;
-  }
-
- private:
-  StageTimes* times_;
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
 
 std::unexpected<Error> stopped() {
   return fail(ErrorKind::kCancelled, "the analysis was stopped");
@@ -52,7 +33,7 @@ Result<SurfaceFields> compute_surface_fields(const Mesh& mesh, const VertexGraph
                                              const SurfaceFieldOptions& options, const JobContext& job,
                                              StageTimes* timings_s) {
   SurfaceFields fields;
-  StageClock clock(timings_s);
+  LapClock clock(timings_s);
   job.progress("surface fields", 0.0);
   VertexGeometry geometry = make_vertex_geometry(mesh, graph);
   if (!(geometry.total_area_mm2 > 0)) {

@@ -5,7 +5,6 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "analysis/free_surface.h"
@@ -16,6 +15,7 @@
 #include "core/job.h"
 #include "core/mesh.h"
 #include "core/result.h"
+#include "core/stage_times.h"
 
 namespace dubsar {
 
@@ -45,9 +45,6 @@ struct SurfaceFieldOptions {
 /// Which way the surface at large looks at each vertex, [V]: the normal of the height surface, or the
 /// vertex's own where that is out of reach.
 [[nodiscard]] std::vector<Eigen::Vector3f> outlook_of(const Mesh& mesh, const SurfaceFields& fields);
-
-/// Seconds by stage, in the order of the work.
-using StageTimes = std::vector<std::pair<std::string, double>>;
 
 /// All fields of a mesh in millimetres, faults and all. The same bytes for any number of threads.
 /// Errors: kBadInput for a mesh without a face that has an area, kCancelled.

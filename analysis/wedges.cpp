@@ -5,7 +5,6 @@
 #include <tbb/enumerable_thread_specific.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <numeric>
 
@@ -18,16 +17,6 @@
 namespace dubsar {
 
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-void note_time(StageTimes* timings_s, const char* stage, Clock::time_point* from) {
-  const Clock::time_point now = Clock::now();
-  if (timings_s != nullptr) {
-    timings_s->emplace_back(stage, std::chrono::duration<double>(now - *from).count());
-  }
-  *from = now;
-}
 
 /// How often the heights are averaged before the watershed, so that noise alone makes no basins.
 int smoothing_rounds(double noise_mm) {
@@ -55,7 +44,7 @@ BasinOptions basin_options(const WedgeOptions& options, const std::vector<float>
 Result<WedgeFindings> find_candidates(const Mesh& mesh, const VertexGraph& graph, const SurfaceFields& fields,
                                       const WedgeOptions& options, const JobContext& job,
                                       StageTimes* timings_s) {
-  Clock::time_point from = Clock::now();
+  LapClock clock(timings_s);
   const auto cancelled = [] { return fail(ErrorKind::kCancelled, "stopped while finding wedges"); };
   job.progress("watershed", 0);
   WedgeFindings out;
@@ -65,7 +54,7 @@ Result<WedgeFindings> find_candidates(const Mesh& mesh, const VertexGraph& graph
   Basins basins =
       find_basins(graph, rounds > 0 ? smooth_heights(graph, fields.height_mm, rounds) : fields.height_mm,
                   fields.free_surface, basin_options(options, out.area_mm2));
-  note_time(timings_s, "watershed", &from);
+  clock.done("watershed");
   if (job.cancelled()) {
     return cancelled();
   }
@@ -89,13 +78,13 @@ Result<WedgeFindings> find_candidates(const Mesh& mesh, const VertexGraph& graph
   for (std::vector<WedgeCandidate>& some : found) {
     std::ranges::move(some, std::back_inserter(out.candidates));
   }
-  note_time(timings_s, "features", &from);
+  clock.done("features");
 
   job.progress("judging", 0);
   reject_fragments(mesh.positions, &out.candidates);
   judge_wedges(options.judge, &out.candidates);
   out.basin_of = std::move(basins.label);
-  note_time(timings_s, "judging", &from);
+  clock.done("judging");
   return out;
 }
 

@@ -14,13 +14,9 @@
 #include "core/result.h"
 #include "core/rigid_transform.h"
 #include "core/scan_pose.h"
+#include "core/stage_times.h"
 
 namespace dubsar {
-
-struct StageTiming {
-  std::string stage;
-  double seconds = 0;
-};
 
 /// What people say of a tablet: name of the fact, fact.
 using TabletWords = std::vector<std::pair<std::string, std::string>>;
@@ -42,7 +38,7 @@ struct ReportInput {
   std::vector<std::string> accuracy;  ///< sentences on how good the registration is and how it was measured
   std::vector<std::string> calibration;  ///< sentences beyond checklist.calibration
   std::vector<std::string> not_measured;
-  std::vector<StageTiming> timings;
+  StageTimes timings;
   int longest_px = 1000;  ///< of the longest side in the pictures
 };
 

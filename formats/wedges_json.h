@@ -6,11 +6,11 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include "core/result.h"
 #include "core/rigid_transform.h"
+#include "core/stage_times.h"
 #include "core/wedge.h"
 #include "core/wedge_correction.h"
 #include "core/wedge_profile.h"
@@ -30,7 +30,7 @@ struct WedgeFile {
   double text_certainty = 0;
   /// Of the tablet and of its sides. Lengths are in millimetres whatever the file's unit.
   std::vector<WedgeProfile> profiles;
-  std::vector<std::pair<std::string, double>> timings_s;
+  StageTimes timings_s;
 };
 
 [[nodiscard]] std::string wedges_to_json(const WedgeFile& file);

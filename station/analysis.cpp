@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 
 #include "analysis/wedge_features.h"
@@ -42,11 +41,10 @@ Rgb colour_of(std::int32_t number, std::int8_t face) {
 }  // namespace
 
 Result<Analysis> analyze_mesh(const Mesh& mesh, const AnalysisOptions& options, const JobContext& job) {
-  const auto from = std::chrono::steady_clock::now();
   Analysis analysis;
+  LapClock graph_clock(&analysis.timings_s);
   analysis.graph = make_vertex_graph(mesh);
-  analysis.timings_s.emplace_back(
-      "graph", std::chrono::duration<double>(std::chrono::steady_clock::now() - from).count());
+  graph_clock.done("graph");
   Result<SurfaceFields> fields =
       compute_surface_fields(mesh, analysis.graph, options.fields, job, &analysis.timings_s);
   if (!fields) {
@@ -59,10 +57,9 @@ Result<Analysis> analyze_mesh(const Mesh& mesh, const AnalysisOptions& options, 
     return std::unexpected(findings.error());
   }
   analysis.findings = *std::move(findings);
-  const auto placing = std::chrono::steady_clock::now();
+  LapClock placing_clock(&analysis.timings_s);
   correct_analysis(mesh, options, &analysis);
-  analysis.timings_s.emplace_back(
-      "text frame", std::chrono::duration<double>(std::chrono::steady_clock::now() - placing).count());
+  placing_clock.done("text frame");
   return analysis;
 }
 

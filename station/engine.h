@@ -16,6 +16,7 @@
 #include "core/red_map.h"
 #include "core/result.h"
 #include "core/scan_pose.h"
+#include "core/stage_times.h"
 #include "station/deliverables.h"
 #include "station/event.h"
 #include "station/operator_command.h"
@@ -48,7 +49,7 @@ struct EngineResult {
   RedMap red_map;
   Checklist checklist;
   Deliverables files;
-  std::vector<StageTiming> timings;
+  StageTimes timings;
   /// What ended the run before it was through: the device failed, or scans that are not of the tablet came
   /// again and again. What came until then is kept.
   std::optional<Error> device_error;

@@ -42,7 +42,7 @@ Status Engine::Impl::finish(EngineResult& result, JobContext& job) {
   result.stored_scans = stored_count;
   result.device_error = device_error;
 
-  const auto started = std::chrono::steady_clock::now();
+  LapClock writing(&result.timings);
   PageFacts facts = page_facts_of(*store);
   facts.device = options.device;
   facts.timings = result.timings;
@@ -62,8 +62,7 @@ Status Engine::Impl::finish(EngineResult& result, JobContext& job) {
   if (wedges) {
     result.files.wedges = wedges->json;
   }
-  const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - started;
-  result.timings.push_back({"pictures and pages", spent.count()});
+  writing.done("pictures and pages");
   return store->append_event(
       "finished", result.red_map.conclusive ? R"({"conclusive":true})" : R"({"conclusive":false})");
 }

@@ -13,6 +13,7 @@
 #include "archive/report.h"
 #include "core/job.h"
 #include "core/result.h"
+#include "core/stage_times.h"
 
 namespace dubsar {
 
@@ -47,7 +48,7 @@ struct Package {
   bool has_mesh = false;
   std::size_t scans = 0;  ///< whole grids, those taken out included
   std::size_t wedges = 0;
-  std::vector<StageTiming> timings;
+  StageTimes timings;
 };
 
 /// Writes everything that leaves the storeroom into one folder, a BagIt 1.0 bag (docs/archives/package.md).

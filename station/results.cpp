@@ -208,7 +208,7 @@ PageFacts page_facts_of(const SessionStore& store) {
   }
   const JsonNode root = document->root();
   const std::string device = root.at("device").text();
-  std::vector<StageTiming> timings;
+  StageTimes timings;
   for (const JsonNode& timing : root.at("timings").items()) {
     timings.push_back({timing.at("stage").text(), timing.at("seconds").number(0)});
   }

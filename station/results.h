@@ -12,6 +12,7 @@
 #include "core/red_map.h"
 #include "core/result.h"
 #include "core/scan_pose.h"
+#include "core/stage_times.h"
 #include "station/deliverables.h"
 #include "station/planning_stage.h"
 
@@ -41,7 +42,7 @@ struct PageFacts {
   std::string title;
   TabletWords tablet{};
   std::string device;
-  std::vector<StageTiming> timings;
+  StageTimes timings;
   std::vector<ViewGain> gains;  ///< of the scans that were asked for, as they came
   std::string wedges;           ///< a sentence on them; empty where they were not measured
 };

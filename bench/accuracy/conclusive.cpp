@@ -19,6 +19,7 @@
 #include "bench/support/true_scans.h"
 #include "bench/support/view_baselines.h"
 #include "core/random.h"
+#include "core/stage_times.h"
 #include "planning/clusters.h"
 #include "planning/red_change.h"
 #include "planning/surface_cover.h"

@@ -14,6 +14,7 @@
 #include "analysis/surface_fields.h"
 #include "bench/support/cut_heights.h"
 #include "bench/support/true_surface.h"
+#include "core/stage_times.h"
 #include "core/units.h"
 #include "formats/feature_mat.h"
 #include "formats/mesh_io.h"
@@ -135,8 +136,7 @@ int run(const Options& options) {
   StageTimes times;
   const auto start = std::chrono::steady_clock::now();
   const VertexGraph graph = make_vertex_graph(mesh);
-  times.emplace_back("graph",
-                     std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+  times.emplace_back("graph", seconds_since(start));
   const auto fields = compute_surface_fields(mesh, graph, options.fields, job, &times);
   if (!fields) {
     std::fprintf(stderr, "%s\n", fields.error().line().c_str());
@@ -166,8 +166,7 @@ int run(const Options& options) {
     const auto begun = std::chrono::steady_clock::now();
     const IntegralInvariants invariants =
         integral_invariants(mesh, outlook_of(mesh, *fields), fields->mean_edge_mm, {}, job);
-    std::printf("integral invariants %.2f s\n",
-                std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count());
+    std::printf("integral invariants %.2f s\n", seconds_since(begun));
     if (!options.mat.empty()) {
       (void)write_feature_mat(options.mat, invariants.value, invariants.radii_mm.size(),
                               "multi-scale integral invariants");

@@ -20,6 +20,7 @@
 #include "acquisition/swept_light.h"
 #include "acquisition/triangulate.h"
 #include "bench/support/rig_tablet.h"
+#include "core/stage_times.h"
 #include "sim/frame_renderer.h"
 #include "sim/frame_rig.h"
 #include "sim/speckle_bound.h"
@@ -240,7 +241,7 @@ void compare(const Setup& setup, const sim::FrameOptions& optics, int frames, bo
         triangulator.triangulate(stripe, positions[i], profile);
       }
     }
-    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    const double seconds = seconds_since(start);
     std::printf("  %-9s %9.4f %9.4f %8.2f%% %7.1f%% %9.2f %9.2f %7.2f%% %8.0f\n", name, px.rms(), px.bias(),
                 100 * px.outlier_share(), 100.0 * static_cast<double>(good) / static_cast<double>(visible),
                 1e3 * mm.rms(), -1e3 * mm.bias(), 100 * mm.outlier_share(),
@@ -310,7 +311,7 @@ void throughput(const Setup& setup, const sim::FrameOptions& optics, double step
         });
       }
     }
-    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    const double seconds = seconds_since(start);
     // On a machine that does other things too, the time of the processors says what two idle ones would do.
     const double cpu_seconds = static_cast<double>(std::clock() - busy) / CLOCKS_PER_SEC;
     std::printf(

@@ -24,6 +24,7 @@
 #include "bench/support/statistics.h"
 #include "bench/support/true_scans.h"
 #include "core/parallel.h"
+#include "core/stage_times.h"
 #include "planning/cleared_map.h"
 #include "planning/sparse_flags.h"
 #include "triangulation/grid_triangulation.h"

@@ -11,6 +11,7 @@
 #include "bench/support/statistics.h"
 #include "bench/support/true_scans.h"
 #include "core/random.h"
+#include "core/stage_times.h"
 #include "core/units.h"
 #include "registration/absolute_orientation.h"
 #include "registration/pin_detection.h"
@@ -123,7 +124,7 @@ TrialSums match_trial(const PinArguments& arguments, const Trial& trial) {
       }
       const auto start = std::chrono::steady_clock::now();
       const std::vector<PinMatch> found = match_pins(source, target, {});
-      const double took = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+      const double took = seconds_since(start);
       const RigidTransform truth = b.inverse() * a;
       const Eigen::Vector3d middle = a.inverse() * Eigen::Vector3d(0, 0, 0);
       const auto is_right = [&](const PinMatch& m) { return right(m.target_from_source, truth, middle); };

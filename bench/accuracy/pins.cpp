@@ -17,6 +17,7 @@
 #include "bench/support/pinned_scans.h"
 #include "bench/support/statistics.h"
 #include "bench/support/true_scans.h"
+#include "core/stage_times.h"
 #include "core/units.h"
 #include "registration/pin_detection.h"
 #include "sim/pins.h"
@@ -62,7 +63,7 @@ void measure(const PinArguments& arguments, const bench::PinnedScan& scan, const
              Sums& sums) {
   const auto start = std::chrono::steady_clock::now();
   const PinDetection found = detect_pins(scan.grid, arguments.tip_mm, {});
-  sums.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  sums.seconds += seconds_since(start);
   sums.samples += static_cast<double>(scan.grid.size());
   ++sums.scans;
   const double radius_mm = 0.5 * arguments.tip_mm;

@@ -22,6 +22,7 @@
 #include "bench/support/pair_cases.h"
 #include "core/mesh_query.h"
 #include "core/parallel.h"
+#include "core/stage_times.h"
 #include "triangulation/grid_triangulation.h"
 
 namespace {
@@ -84,7 +85,7 @@ int run(const std::filesystem::path& conf, float cell_mm, float screening) {
   options.screening = screening;
   const Indicator indicator = solve_screened_poisson(samples, grid, options, job);
   const Mesh surface = surface_nets(grid, indicator.value, 0.0F);
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const double seconds = seconds_since(start);
   const MeshQuery query(surface);
   std::vector<double> off(points.positions.size());
   parallel_for_each_index(off.size(), [&](std::size_t i) {

@@ -17,6 +17,7 @@
 #include "bench/accuracy/gauge.h"
 #include "bench/support/statistics.h"
 #include "bench/support/true_scans.h"
+#include "core/stage_times.h"
 #include "registration/registrar.h"
 #include "registration/verify_pose.h"
 

@@ -31,6 +31,7 @@
 #include "core/mesh_query.h"
 #include "core/parallel.h"
 #include "core/random.h"
+#include "core/stage_times.h"
 #include "formats/grid_reader.h"
 #include "formats/mesh_io.h"
 #include "planning/cleared_map.h"

@@ -23,6 +23,7 @@
 #include <string>
 #include <vector>
 
+#include "core/stage_times.h"
 #include "core/thread_priority.h"
 #include "drivers/loader.h"
 #include "tests/support/own_network.h"
@@ -38,10 +39,6 @@ using Words = std::vector<std::string>;
 using Options = std::vector<std::pair<std::string, std::string>>;
 
 const std::string kBin = DUBSAR_BINARY_DIR "/bin/";
-
-double since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 /// Megabytes that this process holds.
 double resident_mb() {
@@ -127,10 +124,10 @@ int count_frames(Device& device, const Emulated& emulated, std::uint64_t count) 
       start = Clock::now();
     }
     frame.reset();
-    longest_s = std::max({longest_s, k == 0 ? 0 : since(taken),
+    longest_s = std::max({longest_s, k == 0 ? 0 : seconds_since(taken),
                           k == 0 ? 0 : std::chrono::duration<double>(taken - back).count()});
   }
-  const double seconds = since(start);
+  const double seconds = seconds_since(start);
   const double after_mb = resident_mb();
   must(device.stop_frames());
   const FrameCounters counts = must(device.frame_counters());
@@ -165,7 +162,7 @@ int count_positions(Device& device, std::uint64_t count) {
       before_mb = resident_mb();
     }
   }
-  const double seconds = since(start);
+  const double seconds = seconds_since(start);
   must(device.stop());
   std::printf("usb_stage: %llu positions, %.0f/s, %llu out of order, memory %.1f to %.1f MB\n",
               static_cast<unsigned long long>(count), static_cast<double>(count) / seconds,
@@ -233,7 +230,7 @@ double pull_once(Device& device, const Emulated& emulated, std::mt19937& random)
     }
     said = scanned.error();
   }
-  const double seconds = since(pulled);
+  const double seconds = seconds_since(pulled);
   if (said->kind != ErrorKind::kDevice) {
     give_up("not told as a device error: " + said->line());
   }

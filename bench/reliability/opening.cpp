@@ -14,6 +14,7 @@
 
 #include "acquisition/session_store.h"
 #include "core/random.h"
+#include "core/stage_times.h"
 #include "tests/support/temporary_folder.h"
 
 namespace dubsar {
@@ -80,7 +81,7 @@ int run(int argc, char** argv) {
       }
       const auto start = std::chrono::steady_clock::now();
       const Result<SessionStore> store = SessionStore::open(folder, access);
-      const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+      const double seconds = seconds_since(start);
       std::printf("%s, %s: %.3f s%s\n", cold ? "from the disk" : "from memory",
                   access == SessionStore::Access::kReadWrite ? "for writing" : "for reading", seconds,
                   store && store->opening().damage.empty() ? "" : " DAMAGED");

@@ -19,6 +19,7 @@
 #include "analysis/integral_invariants.h"
 #include "analysis/surface_fields.h"
 #include "bench/support/statistics.h"
+#include "core/stage_times.h"
 #include "sim/tablet.h"
 
 namespace {

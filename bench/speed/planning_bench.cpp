@@ -18,6 +18,7 @@
 #include "bench/support/ratio.h"
 #include "bench/support/simulated_views.h"
 #include "core/random.h"
+#include "core/stage_times.h"
 #include "planning/cleared_map.h"
 #include "planning/sparse_flags.h"
 #include "registration/registrar.h"
@@ -90,7 +91,7 @@ class ScratchSession {
 
 /// Wall clock by stage, and processor time of the whole program meanwhile (which tells what a busy machine
 /// hides); the mean of each as a counter in milliseconds.
-class StageTimes {
+class StagesSpent {
  public:
   template <class Work>
   auto time(const char* stage, const Work& work) {
@@ -114,7 +115,7 @@ class StageTimes {
     std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();
     std::clock_t cpu_start = std::clock();
     ~Stop() {
-      spent.wall_s += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+      spent.wall_s += seconds_since(start);
       spent.cpu_s += static_cast<double>(std::clock() - cpu_start) / CLOCKS_PER_SEC;
     }
   };
@@ -149,7 +150,7 @@ void profile_to_next_view(benchmark::State& state, int millions, Nominal kind) {
     return;
   }
   ScratchSession session;
-  StageTimes times;
+  StagesSpent times;
   double registered = 0;
   double next = 0;
   for (auto _ : state) {

@@ -22,6 +22,7 @@
 
 #include "bench/support/simulated_views.h"
 #include "bench/support/statistics.h"
+#include "core/stage_times.h"
 #include "formats/grid_ply.h"
 #include "formats/poses_json.h"
 #include "triangulation/stitcher.h"

@@ -17,6 +17,7 @@
 #include <optional>
 
 #include "bench/support/statistics.h"
+#include "core/stage_times.h"
 #include "core/tablet_frame.h"
 #include "formats/mesh_io.h"
 #include "tests/support/raster_mesh.h"

@@ -14,6 +14,7 @@
 
 #include "analysis/tablet_size.h"
 #include "archive/wedge_drawing.h"
+#include "core/stage_times.h"
 #include "core/units.h"
 #include "formats/corrections_json.h"
 #include "formats/mesh_io.h"
@@ -151,6 +152,33 @@ Result<int> tell_done(const AnalyzeArguments& arguments, CommandContext& context
   return 0;
 }
 
+void tell(const AnalyzeArguments& arguments, const WedgeFile& file, double took_s, CommandContext& context) {
+  if (context.json) {
+    CommandContext::print(summary_json(arguments, file));
+    return;
+  }
+  finish_progress();
+  if (file.wedges.empty()) {
+    std::printf("%s: no wedges (%zu hollows looked at), %.1f s\n", arguments.out.c_str(),
+                file.rejected.size(), took_s);
+  } else {
+    std::printf("%s: %zu wedges, %zu hollows rejected, %.1f s\n", arguments.out.c_str(), file.wedges.size(),
+                file.rejected.size(), took_s);
+  }
+}
+
+AnalysisOptions options_of(const AnalyzeArguments& arguments, const CorrectionFile& said) {
+  AnalysisOptions options;
+  options.fields = arguments.fields;
+  if (arguments.uniform_weights) {
+    options.fields.reconstruction.other_weight = 1;
+  }
+  options.wedges.exits = arguments.exits == "extent" ? ExitDefinition::kExtent : ExitDefinition::kSurface;
+  options.wedges.classical_watershed = arguments.classical;
+  options.wedges.corrections = said.corrections;
+  return options;
+}
+
 /// Everything that was written, for the stamp.
 std::vector<std::filesystem::path> outputs_of(const AnalyzeArguments& arguments,
                                               const std::vector<std::filesystem::path>& drawings) {
@@ -237,11 +265,7 @@ Result<int> analyze(const AnalyzeArguments& arguments, CommandContext& context) 
       return tell_done(arguments, context);
     }
   }
-  using Clock = std::chrono::steady_clock;
-  const auto seconds_since = [](Clock::time_point from) {
-    return std::chrono::duration<double>(Clock::now() - from).count();
-  };
-  const Clock::time_point start = Clock::now();
+  const auto start = std::chrono::steady_clock::now();
   const Result<Mesh> mesh = read_mesh(
       arguments.in, {.mm_per_unit = arguments.unit.empty() ? std::nullopt : mm_per_unit(arguments.unit)});
   if (!mesh) {
@@ -251,14 +275,7 @@ Result<int> analyze(const AnalyzeArguments& arguments, CommandContext& context) 
     return std::unexpected(sized.error());
   }
   const double reading_s = seconds_since(start);
-  AnalysisOptions options;
-  options.fields = arguments.fields;
-  if (arguments.uniform_weights) {
-    options.fields.reconstruction.other_weight = 1;
-  }
-  options.wedges.exits = arguments.exits == "extent" ? ExitDefinition::kExtent : ExitDefinition::kSurface;
-  options.wedges.classical_watershed = arguments.classical;
-  options.wedges.corrections = said->corrections;
+  const AnalysisOptions options = options_of(arguments, *said);
   Result<Analysis> analysis = analyze_mesh(*mesh, options, context.job);
   if (!analysis) {
     Error error = analysis.error();
@@ -269,9 +286,9 @@ Result<int> analyze(const AnalyzeArguments& arguments, CommandContext& context) 
     return std::unexpected(made.error());
   }
   warn_of_lost(*analysis, corrections_file.string());
-  analysis->timings_s.insert(analysis->timings_s.begin(), {"reading", reading_s});
+  analysis->timings_s.insert(analysis->timings_s.begin(), StageTiming{"reading", reading_s});
   const double took_s = seconds_since(start);
-  analysis->timings_s.emplace_back("all", took_s);
+  analysis->timings_s.push_back({"all", took_s});
   const WedgeFile file =
       wedge_file(std::filesystem::path(arguments.in).filename().string(), options, *analysis);
   if (const Status started = work ? work->start() : Status(); !started) {
@@ -292,18 +309,7 @@ Result<int> analyze(const AnalyzeArguments& arguments, CommandContext& context) 
     }
     return std::unexpected(std::move(error));
   }
-  if (context.json) {
-    CommandContext::print(summary_json(arguments, file));
-    return 0;
-  }
-  finish_progress();
-  if (file.wedges.empty()) {
-    std::printf("%s: no wedges (%zu hollows looked at), %.1f s\n", arguments.out.c_str(),
-                file.rejected.size(), took_s);
-  } else {
-    std::printf("%s: %zu wedges, %zu hollows rejected, %.1f s\n", arguments.out.c_str(), file.wedges.size(),
-                file.rejected.size(), took_s);
-  }
+  tell(arguments, file, took_s, context);
   return 0;
 }
 
