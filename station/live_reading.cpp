@@ -45,60 +45,16 @@ void LiveSession::read_folder() {
     if (!stored_pins) {
       state_.notice = stored_pins.error().line();
     }
-    for (const Error& damage : store->opening().damage) {
-      state_.notice = damage.line();
-    }
-    for (const StoredScan& stored : *scans) {
-      LiveScan& scan = scan_of(stored.id);
-      scan.file = stored.source;
-      scan.samples = stored.samples;
-      scan.dropped = stored.dropped;
-      scan.damaged = stored.damaged;
-      scan.note = stored.note;
-    }
-    if (const Result<OperatorLog> log = read_operator_log(*store)) {
-      for (LiveScan& scan : state_.scans) {
-        scan.hinted = log->word.hints.contains(scan.id);
-      }
-    }
+    show_scans(*store, *scans);
     follow(*poses);
     state_.record = tablet_record_of(*store);
     if (Result<SettingWords> kept = kept_settings(*store, options_.device)) {
       settings_ = std::move(*kept);
     }
   }
-  if (const auto text = store->load_document("red_map"); text && *text) {
-    if (auto map = parse_red_map(**text, "red map of the session")) {
-      const std::scoped_lock lock(mutex_);
-      state_.red_map = std::make_shared<const RedMap>(std::move(*map));
-    }
-  }
-  if (const auto text = store->load_document("checklist"); text && *text) {
-    if (auto list = parse_checklist(**text, "checklist of the session")) {
-      const std::scoped_lock lock(mutex_);
-      state_.checklist = std::move(*list);
-    }
-  }
-  if (const auto signed_offs = read_sign_offs(*store, *job_);
-      signed_offs && !signed_offs->sign_offs.empty()) {
-    const CheckedSignOff& latest = signed_offs->sign_offs.back();
-    const std::scoped_lock lock(mutex_);
-    state_.signed_off = latest.holds();
-    state_.signed_by = latest.holds() ? latest.sign_off.name : std::string();
-  }
+  show_verdict(*store);
   changed();
-  std::optional<Mesh> mesh = stored_mesh(*store, *poses, *job_);
-  const bool has_model = mesh.has_value();
-  if (!mesh) {  // one of other poses is better than none until there is a better one
-    if (Result<Mesh> older = read_mesh(store->mesh_folder() / "model.ply")) {
-      mesh = std::move(*older);
-    }
-  }
-  if (mesh && !job_->cancelled()) {
-    const RigidTransform tablet_from_model = tablet_frame(*mesh);
-    show_model(std::make_shared<const Mesh>(std::move(*mesh)), nullptr, tablet_from_model);
-    changed();
-  }
+  const bool has_model = show_stored_model(*store, *poses);
   ScanSet set;
   for (const StoredScan& stored : *scans) {
     if (job_->cancelled() || stored.damaged) {
@@ -115,6 +71,63 @@ void LiveSession::read_folder() {
   if (!set.scans.empty() && !job_->cancelled()) {
     rebuild_model(std::move(set), *poses);
   }
+}
+
+void LiveSession::show_scans(const SessionStore& store, const std::vector<StoredScan>& scans) {
+  for (const Error& damage : store.opening().damage) {
+    state_.notice = damage.line();
+  }
+  for (const StoredScan& stored : scans) {
+    LiveScan& scan = scan_of(stored.id);
+    scan.file = stored.source;
+    scan.samples = stored.samples;
+    scan.dropped = stored.dropped;
+    scan.damaged = stored.damaged;
+    scan.note = stored.note;
+  }
+  if (const Result<OperatorLog> log = read_operator_log(store)) {
+    for (LiveScan& scan : state_.scans) {
+      scan.hinted = log->word.hints.contains(scan.id);
+    }
+  }
+}
+
+void LiveSession::show_verdict(const SessionStore& store) {
+  if (const auto text = store.load_document("red_map"); text && *text) {
+    if (auto map = parse_red_map(**text, "red map of the session")) {
+      const std::scoped_lock lock(mutex_);
+      state_.red_map = std::make_shared<const RedMap>(std::move(*map));
+    }
+  }
+  if (const auto text = store.load_document("checklist"); text && *text) {
+    if (auto list = parse_checklist(**text, "checklist of the session")) {
+      const std::scoped_lock lock(mutex_);
+      state_.checklist = std::move(*list);
+    }
+  }
+  const auto signed_offs = read_sign_offs(store, *job_);
+  if (signed_offs && !signed_offs->sign_offs.empty()) {
+    const CheckedSignOff& latest = signed_offs->sign_offs.back();
+    const std::scoped_lock lock(mutex_);
+    state_.signed_off = latest.holds();
+    state_.signed_by = latest.holds() ? latest.sign_off.name : std::string();
+  }
+}
+
+bool LiveSession::show_stored_model(const SessionStore& store, const std::vector<ScanPose>& poses) {
+  std::optional<Mesh> mesh = stored_mesh(store, poses, *job_);
+  const bool is_of_these_poses = mesh.has_value();
+  if (!mesh) {  // one of other poses is better than none until there is a better one
+    if (Result<Mesh> older = read_mesh(store.mesh_folder() / "model.ply")) {
+      mesh = std::move(*older);
+    }
+  }
+  if (mesh && !job_->cancelled()) {
+    const RigidTransform tablet_from_model = tablet_frame(*mesh);
+    show_model(std::make_shared<const Mesh>(std::move(*mesh)), nullptr, tablet_from_model);
+    changed();
+  }
+  return is_of_these_poses;
 }
 
 void LiveSession::rebuild_model(ScanSet set, const std::vector<ScanPose>& poses) {

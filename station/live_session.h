@@ -76,6 +76,10 @@ class LiveSession {
   void rebuild_model(ScanSet set, const std::vector<ScanPose>& poses);
   void run_engine(std::vector<OperatorCommand> first, bool first_scan_waits);
   void read_folder();
+  void show_scans(const SessionStore& store, const std::vector<StoredScan>& scans);  ///< under the mutex
+  void show_verdict(const SessionStore& store);                                      ///< and who signed it
+  /// False where it is of other poses, or there is none.
+  [[nodiscard]] bool show_stored_model(const SessionStore& store, const std::vector<ScanPose>& poses);
   void keep_record(const TabletRecord& record);
   void hear(const Event& event);
   void progress(std::string_view stage, double fraction);
