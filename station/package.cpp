@@ -3,11 +3,9 @@
 #include "station/package.h"
 
 #include <algorithm>
-#include <chrono>
 
 #include "archive/staged_folder.h"
 #include "core/log.h"
-#include "station/analysis.h"
 #include "station/package_content.h"
 #include "station/session_wedges.h"
 
@@ -57,18 +55,7 @@ Result<std::optional<WedgeFile>> wedges_of(const SessionStore& store, const Mesh
     return stored;
   }
   log_info("the session holds no wedges of this surface, corrected as it says: they are measured now");
-  AnalysisOptions options;
-  options.wedges.corrections = session_corrections(store);
-  const Result<Analysis> analysis = analyze_mesh(mesh, options, job);
-  if (!analysis) {
-    if (analysis.error().kind != ErrorKind::kBadInput) {
-      return std::unexpected(analysis.error());
-    }
-    log_warning("wedges were not looked for: " + analysis.error().line());
-    return std::nullopt;
-  }
-  warn_of_lost(*analysis, store.folder().filename().string());
-  return wedge_file("model.ply", options, *analysis);
+  return measure_wedges(mesh, session_corrections(store), job);
 }
 
 std::vector<BagField> bag_fields(const PackageContent& content) {
@@ -94,7 +81,7 @@ std::vector<BagField> bag_fields(const PackageContent& content) {
 }
 
 /// Runs the writers of all parts.
-Status add_all(PackageContent& content, std::vector<StageTiming>& timings) {
+Status add_all(PackageContent& content, StageTimes& timings) {
   struct Step {
     const char* name;
     Status (*add)(PackageContent&);
@@ -118,12 +105,11 @@ Status add_all(PackageContent& content, std::vector<StageTiming>& timings) {
     if (content.job.cancelled()) {
       return fail(ErrorKind::kCancelled, "stopped");
     }
-    const auto started = std::chrono::steady_clock::now();
+    LapClock clock(&timings);
     if (const Status added = step.add(content); !added) {
       return added;
     }
-    const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - started;
-    timings.push_back({step.name, spent.count()});
+    clock.done(step.name);
   }
   return {};
 }
@@ -175,20 +161,15 @@ Result<Package> write_package(const fs::path& session, const fs::path& to, const
   if (!staged) {
     return std::unexpected(staged.error());
   }
-  std::vector<StageTiming> timings;
-  auto started = std::chrono::steady_clock::now();
-  const auto note = [&](const char* stage) {
-    const auto now = std::chrono::steady_clock::now();
-    timings.push_back({stage, std::chrono::duration<double>(now - started).count()});
-    started = now;
-  };
+  StageTimes timings;
+  LapClock opening(&timings);
   const Result<PackageSource> source = PackageSource::open(session, job);
   if (!source) {
     return std::unexpected(source.error());
   }
   const SessionStore& store = source->store();
   const Mesh& mesh = source->results().mesh;
-  note("reading");
+  opening.done("reading");
   PageFacts facts = page_facts_of(store);
   const TabletRecord tablet = tablet_record_of(store);
   const std::string identifier = !tablet.cdli.empty() ? tablet.cdli : facts.title;
@@ -216,7 +197,7 @@ Result<Package> write_package(const fs::path& session, const fs::path& to, const
       return std::unexpected(wedges.error());
     }
     content.wedges = std::move(*wedges);
-    note("wedges");
+    opening.done("wedges");
   }
   if (content.wedges && content.wedges->text_from_model && content.wedges->text_certainty >= kCertainText) {
     content.tablet_from_model = *content.wedges->text_from_model;
@@ -225,7 +206,7 @@ Result<Package> write_package(const fs::path& session, const fs::path& to, const
   if (const Status added = add_all(content, timings); !added) {
     return std::unexpected(added.error());
   }
-  started = std::chrono::steady_clock::now();
+  LapClock closing(&timings);
   const Result<BagSize> size = write_bag_tags(staged->path(), bag_fields(content), job);
   if (!size) {
     return std::unexpected(size.error());
@@ -238,7 +219,7 @@ Result<Package> write_package(const fs::path& session, const fs::path& to, const
   if (const Status published = staged->publish(); !published) {
     return std::unexpected(published.error());
   }
-  note("checksums");
+  closing.done("checksums");
   Package package{.folder = to,
                   .size = *size,
                   .identifier = identifier,

@@ -44,13 +44,14 @@ std::vector<WedgeCorrection> session_corrections(const SessionStore& store) {
   return std::move(file->corrections);
 }
 
-Result<std::optional<SessionWedges>> keep_wedges(SessionStore& store, const Mesh& mesh,
-                                                 const JobContext& job) {
+Result<std::optional<WedgeFile>> measure_wedges(const Mesh& mesh,
+                                                const std::vector<WedgeCorrection>& corrections,
+                                                const JobContext& job) {
   if (mesh.faces.empty()) {
     return std::nullopt;
   }
   AnalysisOptions options;
-  options.wedges.corrections = session_corrections(store);
+  options.wedges.corrections = corrections;
   const Result<Analysis> analysis = analyze_mesh(mesh, options, job);
   if (!analysis) {
     if (analysis.error().kind != ErrorKind::kBadInput) {
@@ -60,6 +61,20 @@ Result<std::optional<SessionWedges>> keep_wedges(SessionStore& store, const Mesh
     return std::nullopt;
   }
   warn_of_lost(*analysis, kCorrections);
+  return wedge_file("model.ply", options, *analysis);
+}
+
+Result<std::optional<SessionWedges>> keep_wedges(SessionStore& store, const Mesh& mesh,
+                                                 const JobContext& job) {
+  const std::vector<WedgeCorrection> corrections = session_corrections(store);
+  const Result<std::optional<WedgeFile>> measured = measure_wedges(mesh, corrections, job);
+  if (!measured) {
+    return std::unexpected(measured.error());
+  }
+  if (!*measured) {
+    return std::nullopt;
+  }
+  const WedgeFile& file = **measured;
   const fs::path folder = store.folder() / "analysis";
   std::error_code error;
   fs::create_directories(folder, error);
@@ -67,7 +82,6 @@ Result<std::optional<SessionWedges>> keep_wedges(SessionStore& store, const Mesh
     return fail(ErrorKind::kStorage, error.message(), folder.string(),
                 "free some space or choose another folder");
   }
-  const WedgeFile file = wedge_file("model.ply", options, *analysis);
   SessionWedges out{folder / "wedges.json", file.wedges.size(), file.rejected.size()};
   if (const Status forgotten = store.forget_files({"analysis/"}); !forgotten) {
     return std::unexpected(forgotten.error());
@@ -94,11 +108,11 @@ Result<std::optional<SessionWedges>> keep_wedges(SessionStore& store, const Mesh
     return std::unexpected(sum.error());
   }
   const std::string name = fs::relative(out.json, store.folder()).generic_string();
-  if (const Status kept = store.save_document(
-          kDocument, text_of({{"file", name},
-                              {"sha256", *sum},
-                              {"surface_sha256", digest_of(mesh)},
-                              {"corrections", corrections_to_json({{}, options.wedges.corrections})}}));
+  if (const Status kept =
+          store.save_document(kDocument, text_of({{"file", name},
+                                                  {"sha256", *sum},
+                                                  {"surface_sha256", digest_of(mesh)},
+                                                  {"corrections", corrections_to_json({{}, corrections})}}));
       !kept) {
     return std::unexpected(kept.error());
   }

@@ -27,6 +27,12 @@ struct SessionWedges {
 /// with a warning.
 [[nodiscard]] std::vector<WedgeCorrection> session_corrections(const SessionStore& store);
 
+/// The wedges of a session's mesh with what was said of them. Nothing when the mesh has no surface to look
+/// at. Errors: kCancelled.
+[[nodiscard]] Result<std::optional<WedgeFile>> measure_wedges(const Mesh& mesh,
+                                                              const std::vector<WedgeCorrection>& corrections,
+                                                              const JobContext& job);
+
 /// Measures the wedges of the mesh, corrected as the session says, and keeps them in the session. Nothing
 /// when the mesh has no surface to look at. Errors: kCancelled, kStorage.
 [[nodiscard]] Result<std::optional<SessionWedges>> keep_wedges(SessionStore& store, const Mesh& mesh,
