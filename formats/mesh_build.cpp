@@ -50,6 +50,20 @@ void weld_equal_positions(Mesh& mesh) {
   std::vector<std::uint32_t> table(std::bit_ceil(2 * mesh.positions.size() + 2), kEmpty);
   std::vector<std::uint32_t> new_index(mesh.positions.size());
   std::uint32_t kept = 0;
+  mesh.normals.clear();
+  const auto move_to = [&](std::size_t target, std::size_t v) {
+    const auto move = [&](auto& values) {
+      if (!values.empty()) {
+        values[target] = values[v];
+      }
+    };
+    move(mesh.positions);
+    move(mesh.reliability);
+    move(mesh.sigma_mm);
+    move(mesh.scans);
+    move(mesh.flags);
+    move(mesh.colours);
+  };
   for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
     const Key key = key_of(mesh.positions[v]);
     std::size_t slot = hash_of(key) & (table.size() - 1);
@@ -57,12 +71,18 @@ void weld_equal_positions(Mesh& mesh) {
       slot = (slot + 1) & (table.size() - 1);
     }
     if (table[slot] == kEmpty) {
-      mesh.positions[kept] = mesh.positions[v];
+      move_to(kept, v);
       table[slot] = kept++;
     }
     new_index[v] = table[slot];
   }
-  mesh.positions.resize(kept);
+  const auto cut = [&](auto& values) { values.resize(values.empty() ? 0 : kept); };
+  cut(mesh.positions);
+  cut(mesh.reliability);
+  cut(mesh.sigma_mm);
+  cut(mesh.scans);
+  cut(mesh.flags);
+  cut(mesh.colours);
   for (auto& face : mesh.faces) {
     for (std::uint32_t& corner : face) {
       corner = new_index[corner];

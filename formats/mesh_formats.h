@@ -45,8 +45,8 @@ namespace dubsar {
 /// Adds the fan of a polygon; fewer than three corners add nothing.
 void append_polygon(Mesh& mesh, std::span<const std::uint32_t> corners);
 
-/// Merges vertices of equal position (the first one stays) and drops faces that thereby lose a corner. Only
-/// for meshes without per-vertex arrays.
+/// Merges vertices of equal position (the first one stays, with what is known of it) and drops faces that
+/// thereby lose a corner. Normals go: those of one side of a seam are not the vertex's.
 void weld_equal_positions(Mesh& mesh);
 
 }  // namespace dubsar

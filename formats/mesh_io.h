@@ -21,9 +21,9 @@ struct MeshReadOptions {
 };
 
 /// Reads a mesh by its extension (.ply .obj .stl .glb) or, where that says nothing, by its first bytes.
-/// Polygons are triangulated as fans; STL and GLB, which keep a vertex once per facet or texture seam, are
-/// welded where positions are equal. Topological faults stay as they are: see triangulation/mesh_check.h.
-/// Errors name the file, the vertex or face, and the mend.
+/// Polygons are triangulated as fans; STL, GLB and PLY with texture coordinates, which keep a vertex once per
+/// facet or side of a texture seam, are welded where positions are equal. Topological faults stay as they
+/// are: see triangulation/mesh_check.h. Errors name the file, the vertex or face, and the mend.
 [[nodiscard]] Result<Mesh> read_mesh(const std::filesystem::path& path, const MeshReadOptions& options = {});
 [[nodiscard]] Result<Mesh> read_mesh_bytes(std::string_view bytes, const std::string& name,
                                            const MeshReadOptions& options = {});

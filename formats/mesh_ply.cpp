@@ -42,6 +42,13 @@ struct Columns {
   }
 };
 
+/// Whether a vertex stands once for each place in a texture: along the texture's seams several times.
+bool has_texture_places(const PlyElement& vertex) {
+  return (vertex.scalar("s") >= 0 && vertex.scalar("t") >= 0) ||
+         (vertex.scalar("u") >= 0 && vertex.scalar("v") >= 0) ||
+         (vertex.scalar("texture_u") >= 0 && vertex.scalar("texture_v") >= 0);
+}
+
 /// NaN and what lies outside become the nearest byte.
 std::uint8_t byte_of(double value) {
   return value > 0 ? static_cast<std::uint8_t>(std::min(value, 255.0)) : std::uint8_t{0};
@@ -257,6 +264,9 @@ Result<Mesh> decode_mesh_ply(std::string_view bytes, const std::string& where,
     if (!status) {
       return std::unexpected(status.error());
     }
+  }
+  if (has_texture_places(*vertex) && !mesh.faces.empty()) {
+    weld_equal_positions(mesh);
   }
   return mesh;
 }

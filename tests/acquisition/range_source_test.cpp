@@ -5,11 +5,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <filesystem>
 
 #include "core/units.h"
 #include "formats/poses_json.h"
+#include "tests/support/real_data.h"
 #include "tests/support/temporary_folder.h"
 
 namespace dubsar {
@@ -173,8 +173,7 @@ TEST_F(RangeSourceTest, SimOptionsOutOfRangeAreRefused) {
 }
 
 TEST_F(RangeSourceTest, ReplaysTheRealBunny) {
-  const char* named = std::getenv("DUBSAR_DATA");
-  const fs::path data = named != nullptr ? fs::path(named) : fs::path(DUBSAR_SOURCE_DIR) / "../shared/data";
+  const fs::path data = test::real_data();
   if (!fs::exists(data / "stanford_bunny")) {
     GTEST_SKIP() << "no real scans at " << data;
   }

@@ -2,44 +2,14 @@
 // Copyright The Dubsar developers
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <filesystem>
-#include <fstream>
-#include <sstream>
-#include <string>
 
 #include "archive/six_views.h"
+#include "formats/mesh_io.h"
+#include "tests/support/real_data.h"
 
 namespace dubsar {
 namespace {
-
-/// Positions and triangles of a plain ASCII PLY; this module has no reader of its own.
-Mesh ascii_ply(const std::filesystem::path& path, float mm_per_unit) {
-  std::ifstream in(path);
-  std::string line;
-  std::size_t vertices = 0, faces = 0;
-  while (std::getline(in, line) && line.rfind("end_header", 0) != 0) {
-    if (line.rfind("element vertex ", 0) == 0) {
-      vertices = std::stoul(line.substr(15));
-    } else if (line.rfind("element face ", 0) == 0) {
-      faces = std::stoul(line.substr(13));
-    }
-  }
-  Mesh mesh;
-  for (std::size_t i = 0; i < vertices && std::getline(in, line); ++i) {
-    std::istringstream words(line);
-    float x = 0, y = 0, z = 0;
-    words >> x >> y >> z;
-    mesh.positions.push_back(mm_per_unit * Eigen::Vector3f(x, y, z));
-  }
-  for (std::size_t i = 0; i < faces && std::getline(in, line); ++i) {
-    std::istringstream words(line);
-    unsigned corners = 0, a = 0, b = 0, c = 0;
-    words >> corners >> a >> b >> c;
-    mesh.faces.push_back({a, b, c});
-  }
-  return mesh;
-}
 
 int inside_pixels(const Image& image) {
   int count = 0;
@@ -54,15 +24,13 @@ int inside_pixels(const Image& image) {
 // The published bunny has four holes in its base and a small one between its forelegs, which the sides see a
 // little of; nothing is open above.
 TEST(RealMesh, HolesInTheBaseOfTheBunnyShowTheInsideFromBelow) {
-  const char* set = std::getenv("DUBSAR_DATA");
-  const std::filesystem::path data = set != nullptr
-                                         ? std::filesystem::path(set)
-                                         : std::filesystem::path(DUBSAR_SOURCE_DIR) / "../shared/data";
-  const auto file = data / "stanford_bunny/reconstruction/bun_zipper.ply";
+  const auto file = test::real_data() / "stanford_bunny/reconstruction/bun_zipper.ply";
   if (!std::filesystem::exists(file)) {
     GTEST_SKIP() << "no " << file.string() << ": set DUBSAR_DATA to the folder of real scans";
   }
-  const Mesh bunny = ascii_ply(file, 1000.0F);
+  const Result<Mesh> read = read_mesh(file, {.mm_per_unit = 1000.0});
+  ASSERT_TRUE(read) << read.error().line();
+  const Mesh& bunny = *read;
   ASSERT_EQ(bunny.positions.size(), 35947U);
   const JobContext job;
   SixViewOptions options;

@@ -126,11 +126,4 @@ std::string line_of(const Result<T>& result) {
   return result ? "no error" : result.error().line();
 }
 
-inline std::filesystem::path data_folder() {
-  if (const char* set = std::getenv("DUBSAR_DATA")) {
-    return set;
-  }
-  return std::filesystem::path(DUBSAR_SOURCE_DIR) / ".." / "shared" / "data";
-}
-
 }  // namespace dubsar::testing

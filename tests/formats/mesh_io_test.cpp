@@ -8,11 +8,11 @@
 #include "formats/glb_container.h"
 #include "formats/mesh_formats.h"
 #include "tests/formats/format_support.h"
+#include "tests/support/real_data.h"
 
 namespace dubsar {
 namespace {
 
-using testing::data_folder;
 using ::testing::HasSubstr;
 using testing::line_of;
 using testing::ScratchFolder;
@@ -132,6 +132,34 @@ TEST(MeshPly, ReadsBigEndian) {
   ASSERT_TRUE(mesh) << line_of(mesh);
   EXPECT_EQ(mesh->faces.size(), 2U);
   EXPECT_EQ(mesh->positions[2], Eigen::Vector3f(1, 1, 0));
+}
+
+TEST(MeshPly, SidesOfATextureSeamAreOneSurface) {
+  // A tetrahedron whose last face lies apart in the texture, as Blender writes it: three places stand twice.
+  const auto ply = [](const char* s, const char* t) {
+    return std::string("ply\nformat ascii 1.0\nelement vertex 7\nproperty float x\nproperty float y\n") +
+           "property float z\nproperty float nx\nproperty float ny\nproperty float nz\nproperty uchar red\n" +
+           "property uchar green\nproperty uchar blue\nproperty float " + s + "\nproperty float " + t +
+           "\nelement face 4\nproperty list uchar int vertex_indices\nend_header\n"
+           "0 0 0 0 0 1 10 0 0 0 0\n1 0 0 0 0 1 20 0 0 1 0\n0 1 0 0 0 1 30 0 0 0 1\n"
+           "1 0 0 1 0 0 21 0 0 0.5 0.5\n-0 1 0 1 0 0 31 0 0 0.6 0.5\n0 0 1 0 0 1 40 0 0 0.5 0.6\n"
+           "0 0 1 1 0 0 41 0 0 0.7 0.7\n"
+           "3 0 2 1\n3 0 1 5\n3 0 5 2\n3 3 4 6\n";
+  };
+  for (const auto& [s, t] : {std::pair{"s", "t"}, {"u", "v"}, {"texture_u", "texture_v"}}) {
+    const auto mesh = read_mesh_bytes(ply(s, t), "a.ply");
+    ASSERT_TRUE(mesh) << line_of(mesh);
+    EXPECT_EQ(mesh->positions.size(), 4U);
+    EXPECT_EQ(mesh->faces.size(), 4U);
+    EXPECT_TRUE(is_closed_and_oriented(*mesh));
+    EXPECT_TRUE(mesh->normals.empty());
+    EXPECT_EQ(mesh->colours, (std::vector<std::array<std::uint8_t, 3>>{{10}, {20}, {30}, {40}}));
+  }
+  // Nothing says that such places of other meshes are one: a pinched vertex that was split stays so.
+  const auto other = read_mesh_bytes(ply("quality", "radius"), "a.ply");
+  ASSERT_TRUE(other) << line_of(other);
+  EXPECT_EQ(other->positions.size(), 7U);
+  EXPECT_EQ(other->normals.size(), 7U);
 }
 
 /// A band of triangles that many rows are read of at a time.
@@ -304,7 +332,7 @@ TEST(MeshHostile, Glb) {
 }
 
 TEST(RealMeshes, TabletS264) {
-  const auto path = data_folder() / "tablet_S264" / "cuneiform.glb";
+  const auto path = test::real_data() / "tablet_S264" / "cuneiform.glb";
   if (!std::filesystem::exists(path)) {
     GTEST_SKIP() << "no real meshes beside the project";
   }
@@ -330,8 +358,8 @@ TEST(RealMeshes, TabletS264) {
 }
 
 TEST(RealMeshes, BunnyZipperAndOgham) {
-  const auto zipper = data_folder() / "stanford_bunny" / "reconstruction" / "bun_zipper.ply";
-  const auto stones = data_folder() / "ogham";
+  const auto zipper = test::real_data() / "stanford_bunny" / "reconstruction" / "bun_zipper.ply";
+  const auto stones = test::real_data() / "ogham";
   if (!std::filesystem::exists(zipper) || !std::filesystem::exists(stones)) {
     GTEST_SKIP() << "no real meshes beside the project";
   }

@@ -2,11 +2,11 @@
 // Copyright The Dubsar developers
 #include "formats/grid_reader.h"
 #include "tests/formats/format_support.h"
+#include "tests/support/real_data.h"
 
 namespace dubsar {
 namespace {
 
-using testing::data_folder;
 using testing::line_of;
 
 RangeGrid read_grid(const std::filesystem::path& path) {
@@ -16,7 +16,7 @@ RangeGrid read_grid(const std::filesystem::path& path) {
 }
 
 TEST(RealScans, Bunny) {
-  const auto folder = data_folder() / "stanford_bunny";
+  const auto folder = test::real_data() / "stanford_bunny";
   if (!std::filesystem::exists(folder)) {
     GTEST_SKIP() << "no real scans beside the project";
   }
@@ -37,7 +37,7 @@ TEST(RealScans, Bunny) {
 }
 
 TEST(RealScans, DragonWithStrayHeaderLines) {
-  const auto folder = data_folder() / "stanford_dragon_stand";
+  const auto folder = test::real_data() / "stanford_dragon_stand";
   if (!std::filesystem::exists(folder)) {
     GTEST_SKIP() << "no real scans beside the project";
   }
