@@ -6,6 +6,8 @@
 #include <utility>
 
 #include "core/log.h"
+#include "core/units.h"
+#include "formats/poses_conf.h"
 #include "formats/poses_json.h"
 #include "registration/registrar.h"
 
@@ -157,8 +159,15 @@ std::unexpected<Error> no_pose_of_these(const std::filesystem::path& poses_file)
                    "its `file` or `id` must name the scans");
 }
 
-Result<std::vector<ScanPose>> poses_from_file(const ScanSet& set, const std::filesystem::path& poses_file) {
-  const Result<std::vector<ScanPose>> read = read_poses(poses_file);
+Result<std::vector<ScanPose>> read_poses_file(const std::filesystem::path& poses_file,
+                                              const std::string& unit) {
+  return poses_file.extension() == ".conf" ? read_conf_poses(poses_file, mm_per_unit(unit).value_or(1.0))
+                                           : read_poses(poses_file);
+}
+
+Result<std::vector<ScanPose>> poses_from_file(const ScanSet& set, const std::filesystem::path& poses_file,
+                                              const std::string& unit) {
+  const Result<std::vector<ScanPose>> read = read_poses_file(poses_file, unit);
   if (!read) {
     return std::unexpected(read.error());
   }
@@ -177,9 +186,9 @@ Result<std::vector<ScanPose>> poses_from_file(const ScanSet& set, const std::fil
 }
 
 Result<std::vector<ScanPose>> poses_for(const ScanSet& set, const std::filesystem::path& poses_file,
-                                        JobContext& job) {
+                                        const std::string& unit, JobContext& job) {
   if (!poses_file.empty()) {
-    return poses_from_file(set, poses_file);
+    return poses_from_file(set, poses_file, unit);
   }
   // A session whose last run was stopped has scans that were never judged.
   const bool all_judged = std::ranges::all_of(

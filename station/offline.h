@@ -34,16 +34,21 @@ struct RegisterOptions {
 
 [[nodiscard]] std::unexpected<Error> no_pose_of_these(const std::filesystem::path& poses_file);
 
+/// poses.json, or a Stanford .conf, which says no unit: its scans' (see ScanSetOptions).
+[[nodiscard]] Result<std::vector<ScanPose>> read_poses_file(const std::filesystem::path& poses_file,
+                                                            const std::string& unit);
+
 /// The poses of a file for scans of the set (matched by the scans' file names, else by id). kBadInput when it
 /// has none.
 [[nodiscard]] Result<std::vector<ScanPose>> poses_from_file(const ScanSet& set,
-                                                            const std::filesystem::path& poses_file);
+                                                            const std::filesystem::path& poses_file,
+                                                            const std::string& unit);
 
 /// The poses for `plan` and `stitch`: those of the file when one is named (matched by the scans' file names,
 /// else by id), those of the session when it has any, else a registration.
 [[nodiscard]] Result<std::vector<ScanPose>> poses_for(const ScanSet& set,
                                                       const std::filesystem::path& poses_file,
-                                                      JobContext& job);
+                                                      const std::string& unit, JobContext& job);
 
 /// The registered scans in their places. Refers to the set.
 [[nodiscard]] std::vector<PlacedScan> placed_scans(const ScanSet& set, const std::vector<ScanPose>& poses);

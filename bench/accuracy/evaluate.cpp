@@ -17,13 +17,13 @@
 #include <variant>
 
 #include "bench/accuracy/gauge.h"
-#include "bench/support/conf_poses.h"
 #include "bench/support/statistics.h"
 #include "core/mesh_query.h"
 #include "core/parallel.h"
 #include "core/units.h"
 #include "formats/grid_reader.h"
 #include "formats/mesh_io.h"
+#include "formats/poses_conf.h"
 
 namespace dubsar::accuracy {
 namespace {
@@ -80,8 +80,12 @@ int evaluate_poses(const fs::path& poses_file, const fs::path& scans, const fs::
   if (conf.empty()) {
     truth = read_json_poses(truth_file, false);
   } else {
-    for (const auto& [file, pose] : bench::read_conf_poses(conf, mm_per_file_unit)) {
-      truth[file] = {-1, pose};
+    const Result<std::vector<ScanPose>> published = read_conf_poses(conf, mm_per_file_unit);
+    if (!published) {
+      die(published.error().line());
+    }
+    for (const ScanPose& pose : *published) {
+      truth[pose.file] = {-1, pose.model_from_scanner};
     }
   }
   std::vector<PosePair> pairs;

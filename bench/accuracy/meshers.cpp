@@ -18,7 +18,6 @@
 #include <memory>
 #include <variant>
 
-#include "bench/support/conf_poses.h"
 #include "bench/support/mesh_score.h"
 #include "bench/support/pair_cases.h"
 #include "bench/support/statistics.h"

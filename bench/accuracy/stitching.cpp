@@ -24,7 +24,6 @@
 #include <vector>
 
 #include "bench/support/averaging_floor.h"
-#include "bench/support/conf_poses.h"
 #include "bench/support/mesh_score.h"
 #include "bench/support/statistics.h"
 #include "bench/support/true_scans.h"
@@ -34,6 +33,7 @@
 #include "core/stage_times.h"
 #include "formats/grid_reader.h"
 #include "formats/mesh_io.h"
+#include "formats/poses_conf.h"
 #include "planning/cleared_map.h"
 #include "planning/sparse_flags.h"
 #include "triangulation/mesh_check.h"
@@ -254,7 +254,14 @@ int bunny(const Arguments& args) {
   for (const auto& entry : fs::directory_iterator(folder)) {
     conf = entry.path().extension() == ".conf" ? entry.path() : conf;
   }
-  for (const auto& [file, pose] : read_conf_poses(conf, 1000.0)) {
+  Result<std::vector<ScanPose>> published = read_conf_poses(conf, 1000.0);
+  if (!published) {
+    die(published.error().line());
+  }
+  std::ranges::sort(*published, {}, &ScanPose::file);
+  for (const ScanPose& scan : *published) {
+    const std::string& file = scan.file;
+    const RigidTransform& pose = scan.model_from_scanner;
     if (!fs::exists(folder / file)) {
       continue;
     }

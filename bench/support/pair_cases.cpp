@@ -9,11 +9,11 @@
 #include <ctime>
 #include <filesystem>
 
-#include "bench/support/conf_poses.h"
 #include "core/grid_lookup.h"
 #include "core/random.h"
 #include "core/units.h"
 #include "formats/grid_reader.h"
+#include "formats/poses_conf.h"
 
 namespace dubsar::bench {
 
@@ -110,7 +110,15 @@ void print_row(const std::vector<PublishedScan>& scans, const std::vector<PairCa
 std::vector<PublishedScan> read_published(const std::string& folder, const std::string& conf,
                                           double mm_per_file_unit) {
   std::vector<PublishedScan> scans;
-  for (const auto& [name, pose] : read_conf_poses(std::filesystem::path(folder) / conf, mm_per_file_unit)) {
+  Result<std::vector<ScanPose>> published =
+      read_conf_poses(std::filesystem::path(folder) / conf, mm_per_file_unit);
+  if (!published) {
+    std::fprintf(stderr, "%s\n", published.error().line().c_str());
+    std::exit(2);
+  }
+  std::ranges::sort(*published, {}, &ScanPose::file);
+  for (const ScanPose& scan_pose : *published) {
+    const std::string& name = scan_pose.file;
     auto read = read_scan_file(std::filesystem::path(folder) / name, {.mm_per_unit = mm_per_file_unit});
     auto* grid = read && !read->empty() ? std::get_if<RangeGrid>(&read->front()) : nullptr;
     if (grid == nullptr) {
@@ -120,7 +128,8 @@ std::vector<PublishedScan> read_published(const std::string& folder, const std::
     if (!(grid->spacing_mm > 0)) {
       grid->spacing_mm = estimate_spacing_mm(*grid);
     }
-    PublishedScan scan{name, std::make_shared<const RangeGrid>(std::move(*grid)), pose};
+    PublishedScan scan{name, std::make_shared<const RangeGrid>(std::move(*grid)),
+                       scan_pose.model_from_scanner};
     for (std::size_t i = 0; i < scan.grid->size(); ++i) {
       if (scan.grid->valid[i] != 0) {
         scan.centroid_mm += scan.grid->point(i).cast<double>();

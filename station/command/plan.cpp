@@ -154,7 +154,8 @@ Result<int> plan(const PlanArguments& arguments, CommandContext& context) {
   if (!set) {
     return std::unexpected(set.error());
   }
-  const Result<std::vector<ScanPose>> poses = poses_for(*set, arguments.set.poses, context.job);
+  const Result<std::vector<ScanPose>> poses =
+      poses_for(*set, arguments.set.poses, arguments.set.unit, context.job);
   if (!poses) {
     return std::unexpected(poses.error());
   }

@@ -45,7 +45,7 @@ Result<int> register_all(const RegisterArguments& arguments, CommandContext& con
     options.rounds = arguments.rounds;
   }
   if (!arguments.from_poses.empty()) {
-    Result<std::vector<ScanPose>> from = poses_from_file(*set, arguments.from_poses);
+    Result<std::vector<ScanPose>> from = poses_from_file(*set, arguments.from_poses, arguments.unit);
     if (!from) {
       return std::unexpected(from.error());
     }
@@ -95,8 +95,10 @@ void add_register(CLI::App& app, Action& chosen) {
   verb->add_option("--only", arguments->only,
                    "register these scans anew (0,3,5) and leave the others as they are")
       ->delimiter(',');
-  verb->add_option("--from-poses", arguments->from_poses,
-                   "start from the poses of this file: refine and verify them, look for no others");
+  verb->add_option(
+      "--from-poses", arguments->from_poses,
+      "start from the poses of this file (poses.json or a Stanford .conf): refine and verify them, look for "
+      "no others");
   verb->add_option("--rounds", arguments->rounds, "of pairwise fits and relaxation at the end")
       ->check(CLI::Range(1, 50));
   verb->add_option("--threads", arguments->threads, "at most; the result does not depend on it")

@@ -23,7 +23,7 @@ struct ScanSetArguments {
         ->check(CLI::IsMember({"m", "mm", "um"}));
     verb.add_option("--pins", pins, "the operator's pins (pins.json)");
     if (takes_poses) {
-      verb.add_option("--poses", poses, "take the poses from this file");
+      verb.add_option("--poses", poses, "take the poses from this file: poses.json, or a Stanford .conf");
     }
     verb.fallthrough();
   }

@@ -13,7 +13,6 @@
 
 #include "core/log.h"
 #include "formats/mesh_io.h"
-#include "formats/poses_json.h"
 #include "station/command/command.h"
 #include "station/command/outputs.h"
 #include "station/command/scan_set_options.h"
@@ -43,7 +42,7 @@ Result<Taken> take_scan_by_scan(const ScanSetArguments& arguments, Stitcher& sti
                                 CommandContext& context) {
   std::optional<std::vector<ScanPose>> file;
   if (!arguments.poses.empty()) {
-    Result<std::vector<ScanPose>> read = read_poses(arguments.poses);
+    Result<std::vector<ScanPose>> read = read_poses_file(arguments.poses, arguments.unit);
     if (!read) {
       return std::unexpected(read.error());
     }
@@ -95,7 +94,7 @@ Result<Taken> take_registered(const ScanSetArguments& arguments, Stitcher& stitc
   if (!set) {
     return std::unexpected(set.error());
   }
-  const Result<std::vector<ScanPose>> poses = poses_for(*set, {}, context.job);
+  const Result<std::vector<ScanPose>> poses = poses_for(*set, {}, {}, context.job);
   if (!poses) {
     return std::unexpected(poses.error());
   }

@@ -2,22 +2,34 @@
 // Copyright The Dubsar developers
 #include <gtest/gtest.h>
 
+#include "core/grid_geometry.h"
 #include "core/units.h"
+#include "formats/grid_reader.h"
+#include "formats/poses_conf.h"
 #include "registration/registrar.h"
 #include "tests/registration/support/gauge.h"
-#include "tests/registration/support/read_range_ply.h"
+#include "tests/support/real_data.h"
 
 namespace dubsar {
 namespace {
 
 TEST(RealScans, BunnyWithNoHints) {
-  const auto data = testing::data_folder();
-  if (!data || !std::filesystem::exists(*data / "stanford_bunny" / "bun.conf")) {
-    GTEST_SKIP() << "no real scans here; set DUBSAR_DATA to the folder that holds stanford_bunny";
+  const std::filesystem::path folder = test::real_data() / "stanford_bunny";
+  if (!std::filesystem::exists(folder / "bun.conf")) {
+    GTEST_SKIP() << "no " << folder.string() << ": set DUBSAR_DATA to the folder of real scans";
   }
-  const auto truth = testing::read_conf(*data / "stanford_bunny" / "bun.conf", 1000.0);
+  const auto published = read_conf_poses(folder / "bun.conf", 1000.0);
+  ASSERT_TRUE(published) << published.error().line();
+  std::map<std::string, RigidTransform> truth;
+  for (const ScanPose& pose : *published) {
+    truth[pose.file] = pose.model_from_scanner;
+  }
   std::vector<std::shared_ptr<const RangeGrid>> grids;
-  for (RangeGrid& grid : testing::read_folder(*data / "stanford_bunny", 1000.0)) {
+  for (const auto& [file, pose] : truth) {
+    auto scans = read_scan_file(folder / file, {.mm_per_unit = 1000.0});
+    ASSERT_TRUE(scans) << scans.error().line();
+    RangeGrid grid = std::get<RangeGrid>(std::move(scans->front()));
+    grid.spacing_mm = grid.spacing_mm > 0 ? grid.spacing_mm : estimate_spacing_mm(grid);
     grids.push_back(std::make_shared<const RangeGrid>(std::move(grid)));
   }
   ASSERT_EQ(grids.size(), 10U);

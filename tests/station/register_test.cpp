@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <csignal>
 #include <fstream>
 
@@ -103,6 +104,29 @@ TEST_F(Register, RefinesPosesOfAFileAndBelievesNone) {
   EXPECT_EQ(two[1]["status"], "registered");
   EXPECT_THAT(two[2]["reason"].get<std::string>(), HasSubstr("no pose for it"));
   EXPECT_EQ(registered({"--from-poses", at("nothing.json")}).status, 2);
+}
+
+TEST_F(Register, TakesPosesAsStanfordPublishesThem) {
+  test::write_bumpy_scans(at("scans"), 3);
+  std::ofstream conf(at("scans.conf"));
+  conf.precision(17);
+  for (int k = 0; k < 3; ++k) {
+    const RigidTransform pose = test::bumpy_pose(k);
+    const Eigen::Vector3d& t = pose.translation_mm;
+    const Eigen::Quaterniond q = Eigen::Quaterniond(pose.rotation).conjugate();
+    conf << "bmesh " << test::scan_name(k) << ' ' << t.x() << ' ' << t.y() << ' ' << t.z() << ' ' << q.x()
+         << ' ' << q.y() << ' ' << q.z() << ' ' << q.w() << '\n';
+  }
+  conf.close();
+  EXPECT_EQ(registered({"--from-poses", at("scans.conf")}).status, 0);
+  const Outcome stitched =
+      run_command({"stitch", at("scans"), "--poses", at("scans.conf"), "-o", at("m.ply"), "--json"});
+  EXPECT_EQ(stitched.status, 0) << stitched.err;
+  // Where --unit makes the grids metres, the .conf's numbers are metres, too.
+  const Outcome far = run_command(
+      {"stitch", at("scans"), "--unit", "m", "--poses", at("scans.conf"), "-o", at("far.ply"), "--json"});
+  EXPECT_EQ(far.status, 0) << far.err;
+  EXPECT_EQ(stitched.json()["components"], far.json()["components"]);
 }
 
 TEST_F(Register, TakesRoundsAndRefusesNonsense) {

@@ -16,7 +16,7 @@ TEST(Bunny, StitchesTheRealScans) {
   const test::ScanSet set = test::bunny();
   const std::vector<Eigen::Vector3f> published = test::bunny_zipper();
   if (set.placed.size() != 10 || published.empty()) {
-    GTEST_SKIP() << "the Stanford bunny is not at " << test::data_folder();
+    GTEST_SKIP() << "the Stanford bunny is not at " << test::real_data();
   }
   JobContext job;
   const Result<Mesh> mesh = stitch(set.placed, {}, job);

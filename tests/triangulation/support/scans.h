@@ -4,12 +4,9 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
-#include <cstdlib>
 #include <deque>
 #include <filesystem>
-#include <fstream>
 #include <functional>
-#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -17,6 +14,9 @@
 #include "core/placed_scan.h"
 #include "core/range_grid.h"
 #include "formats/grid_reader.h"
+#include "formats/mesh_io.h"
+#include "formats/poses_conf.h"
+#include "tests/support/real_data.h"
 
 namespace dubsar::test {
 
@@ -101,62 +101,33 @@ inline RangeGrid height_grid(int rows, int cols, double spacing_mm,
   return grid;
 }
 
-inline std::filesystem::path data_folder() {
-  const char* named = std::getenv("DUBSAR_DATA");
-  return named != nullptr ? std::filesystem::path(named)
-                          : std::filesystem::path(DUBSAR_SOURCE_DIR) / ".." / "shared" / "data";
-}
-
 /// The Stanford bunny's scans in the model frame of bun.conf, millimetres; empty when it is not there.
 inline ScanSet bunny(int stride = 1) {
   ScanSet set;
-  const std::filesystem::path folder = data_folder() / "stanford_bunny";
-  std::ifstream conf(folder / "bun.conf");
-  for (std::string line; std::getline(conf, line);) {
-    std::istringstream words(line);
-    std::string kind;
-    std::string file;
-    double t[3];
-    double q[4];
-    if (!(words >> kind >> file >> t[0] >> t[1] >> t[2] >> q[0] >> q[1] >> q[2] >> q[3]) || kind != "bmesh") {
-      continue;
-    }
-    auto scans = read_scan_file(folder / file, {1000.0});
+  const std::filesystem::path folder = real_data() / "stanford_bunny";
+  const auto poses = read_conf_poses(folder / "bun.conf", 1000.0);
+  if (!poses) {
+    return set;
+  }
+  for (const ScanPose& pose : *poses) {
+    auto scans = read_scan_file(folder / pose.file, {1000.0});
     if (!scans || scans->empty() || !std::holds_alternative<RangeGrid>(scans->front())) {
       return {};
     }
-    RigidTransform model_from_scanner;
-    // The file's quaternion takes model to scan: conjugated here.
-    model_from_scanner.rotation =
-        Eigen::Quaterniond(q[3], -q[0], -q[1], -q[2]).normalized().toRotationMatrix();
-    model_from_scanner.translation_mm = 1000.0 * Eigen::Vector3d(t[0], t[1], t[2]);
     RangeGrid grid = std::get<RangeGrid>(std::move(scans->front()));
     if (!(grid.spacing_mm > 0)) {
       grid.spacing_mm = estimate_spacing_mm(grid);
     }
-    set.add(decimated(grid, stride), model_from_scanner, 0.1);
+    set.add(decimated(grid, stride), pose.model_from_scanner, 0.1);
   }
   return set;
 }
 
 /// Vertices of the published zippered bunny, millimetres; empty when it is not there.
 inline std::vector<Eigen::Vector3f> bunny_zipper() {
-  std::ifstream in(data_folder() / "stanford_bunny" / "reconstruction" / "bun_zipper.ply");
-  std::size_t count = 0;
-  for (std::string line; std::getline(in, line) && line.rfind("end_header", 0) != 0;) {
-    if (line.rfind("element vertex", 0) == 0) {
-      count = std::stoul(line.substr(14));
-    }
-  }
-  std::vector<Eigen::Vector3f> out;
-  std::string line;
-  while (out.size() < count && std::getline(in, line)) {
-    std::istringstream words(line);
-    Eigen::Vector3f p;
-    words >> p.x() >> p.y() >> p.z();
-    out.push_back(1000.0F * p);
-  }
-  return out;
+  const auto mesh = read_mesh(real_data() / "stanford_bunny" / "reconstruction" / "bun_zipper.ply",
+                              {.mm_per_unit = 1000.0});
+  return mesh ? mesh->positions : std::vector<Eigen::Vector3f>();
 }
 
 }  // namespace dubsar::test
