@@ -14,6 +14,7 @@
 #include "tests/ui/support/display.h"
 #include "tests/ui/support/read_png.h"
 #include "ui/gl/gl_window.h"
+#include "ui/view/piece_size.h"
 #include "ui/view/still_picture.h"
 #include "ui/view/surface_view.h"
 
@@ -225,6 +226,38 @@ TEST_F(Shading, APictureDrawnTileByTileHasNoSeamsAndIsThatOfOnePiece) {
     // Edges fall otherwise by less than a pixel here and there.
     EXPECT_LT(static_cast<double>(other) / (3.0 * kWide * kHigh), 0.002) << (lamp ? "lamp" : "lit sphere");
   }
+}
+
+TEST_F(Shading, AMeshThatComesPieceByPieceLeavesTheOldOneUntilAllOfItIsThere) {
+  const auto drawn = [&] {
+    view_->draw_whole(camera_, look_, kWidth, kHeight);
+    return view_->read().bytes;
+  };
+  const auto before = drawn();
+  const ShownMesh next = shown_mesh(dented_slab(1600));  // 150 MB
+  int pieces = 0;
+  while (view_->show_soon(next)) {
+    ++pieces;
+    ASSERT_EQ(drawn(), before);
+  }
+  EXPECT_GT(pieces, 1);
+  const auto in_pieces = drawn();
+  EXPECT_NE(in_pieces, before);
+  view_->show(next);
+  EXPECT_EQ(drawn(), in_pieces);
+}
+
+TEST(PieceSize, LearnsFromWholePiecesAndNotFromWhatIsLeftOver) {
+  using std::chrono::milliseconds;
+  PieceSize size(100000);
+  size.took(5000, milliseconds(1));  // the last of all
+  EXPECT_EQ(size.count(), 100000U);
+  size.took(100000, milliseconds(5));
+  EXPECT_EQ(size.count(), 200000U);
+  size.took(200000, milliseconds(30));
+  EXPECT_EQ(size.count(), 200000U);
+  size.took(150000, milliseconds(80));
+  EXPECT_EQ(size.count(), 100000U);
 }
 
 TEST_F(Shading, ThePlaceUnderAPixelIsOnTheSurface) {

@@ -5,10 +5,10 @@
 #include <cstdint>
 #include <future>
 #include <memory>
-#include <optional>
 
 #include "station/live_state.h"
 #include "ui/view/shown_mesh.h"
+#include "ui/view/surface_view.h"
 
 namespace dubsar::ui {
 
@@ -20,16 +20,19 @@ struct ReadyModel {
   RigidTransform tablet_from_model;
 };
 
-/// Makes the models of a session ready to be drawn, on a thread of its own, one after the other; one that is
-/// outdated before its turn is left out. Main thread.
+/// Makes the models of a session ready to be drawn, on a thread of its own, then takes them to the graphics
+/// card piece by piece, one after the other; one that is outdated before its turn is left out. Main thread.
 class PreparedModel {
  public:
-  /// Begins where there is a new model. A model once, when it is ready.
-  std::optional<ReadyModel> update(const LiveState& state);
-  [[nodiscard]] bool busy() const { return preparing_.valid(); }
+  /// Begins where there is a new model. A model once, when it is what `surface` shows; else null.
+  std::unique_ptr<ReadyModel> update(const LiveState& state, SurfaceView& surface);
+  [[nodiscard]] bool busy() const { return preparing_.valid() || coming_; }
+  /// One goes to the graphics card, some more at each update().
+  [[nodiscard]] bool uploads() const { return coming_ != nullptr; }
 
  private:
-  std::future<ReadyModel> preparing_;
+  std::future<std::unique_ptr<ReadyModel>> preparing_;
+  std::unique_ptr<ReadyModel> coming_;
   std::uint64_t number_ = 0;
 };
 

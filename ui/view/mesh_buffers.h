@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -14,10 +15,16 @@ namespace dubsar::ui {
 /// A mesh in the memory of the graphics card: each vertex once, faces by index. Main thread.
 class MeshBuffers {
  public:
+  /// Takes the memory; upload() fills it from `mesh`, whose numbers must stay where they are until it is
+  /// done.
   explicit MeshBuffers(const ShownMesh& mesh);
   ~MeshBuffers();
   MeshBuffers(const MeshBuffers&) = delete;
   MeshBuffers& operator=(const MeshBuffers&) = delete;
+
+  /// Some more of the mesh, so much that a frame stays short.
+  void upload();
+  [[nodiscard]] bool is_uploaded() const { return parts_.empty(); }
 
   /// A number per vertex, [V], for the overlay that shows numbers.
   void set_values(const std::vector<float>& values);
@@ -38,9 +45,16 @@ class MeshBuffers {
   void bind() const;  ///< then one of:
   void draw_faces(std::size_t first, std::size_t count) const;
   void draw_level(std::size_t level, std::size_t first, std::size_t count) const;  ///< of ShownMesh::coarser
-  void draw_points() const;
+  void draw_points(std::size_t first, std::size_t count) const;
 
  private:
+  struct Part {  // that is not on the card yet
+    unsigned buffer = 0;
+    std::size_t at = 0;  ///< bytes
+    const std::byte* data = nullptr;
+    std::size_t bytes = 0;
+  };
+  std::vector<Part> parts_;
   unsigned array_ = 0;
   unsigned made_of_ = 0;
   std::vector<unsigned> buffers_;

@@ -38,24 +38,31 @@ bool SurfaceView::select(MeshElement of, const std::vector<Eigen::Vector2f>& cor
   begin_selection(of);
   const float aspect = static_cast<float>(scene_.width) / static_cast<float>(scene_.height);
   const Layer& layer = layers_[static_cast<std::size_t>(shown_layer_)];
-  selection_->apply(*mesh_, scene_.camera.clip_from_model(aspect),
-                    polygon_mask(corners, scene_.width, scene_.height), scene_.width, scene_.height,
-                    through ? 0 : layer.target.depth(), step);
-  dirty_ = true;
+  selection_->begin(scene_.camera.clip_from_model(aspect), polygon_mask(corners, scene_.width, scene_.height),
+                    scene_.width, scene_.height, through ? nullptr : &layer.target, step);
   return true;
 }
 
-void SurfaceView::set_selection(MeshElement of, const std::vector<std::uint32_t>& selected) {
+bool SurfaceView::select_more() {
+  if (!selection_ || !selection_->is_under_way()) {
+    return false;
+  }
+  const bool more = selection_->go_on(*mesh_);
+  dirty_ = dirty_ || !more;
+  return more;
+}
+
+void SurfaceView::set_selection(MeshElement of, SelectionMarks selected) {
   if (can_select(of)) {
     begin_selection(of);
-    selection_->set(selected);
+    selection_->set(std::move(selected));
     dirty_ = true;
   }
 }
 
 /// Of the program in use, for faces of a level that begin at `first_face`.
 void SurfaceView::show_selection(std::size_t level, std::size_t first_face) {
-  if (!selection_) {
+  if (!selection_ || !selection_->selected()) {
     return;
   }
   if (selection_->of() == MeshElement::kVertex) {

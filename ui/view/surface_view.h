@@ -15,6 +15,7 @@
 #include "ui/view/mesh_buffers.h"
 #include "ui/view/mesh_selecting.h"
 #include "ui/view/orbit_camera.h"
+#include "ui/view/piece_size.h"
 
 namespace dubsar::ui {
 
@@ -46,7 +47,11 @@ class SurfaceView {
  public:
   SurfaceView();
 
+  /// All of it at once, however long that takes.
   void show(const ShownMesh& mesh);
+  /// A piece at each call; what was shown before stays until all is there. True while more is to come:
+  /// `mesh` must stay until then.
+  bool show_soon(const ShownMesh& mesh);
   void show_points(const ColouredPoints* points);  ///< null: none
   void set_values(const std::vector<float>& values);
   void set_traits(const std::vector<std::array<std::uint8_t, 4>>& traits);
@@ -72,12 +77,13 @@ class SurfaceView {
   [[nodiscard]] Image read() const { return picture_.read(); }
   /// False when the mesh has more of them than the graphics driver can number: then none can be selected.
   [[nodiscard]] bool can_select(MeshElement of) const;
-  /// Selects faces, or vertices, by a polygon in the last picture, corners in its pixels from the top left.
-  /// `through`: also what is hidden there. A selection of the other kind is given up. False before the whole
-  /// surface stands in the picture.
+  /// Begins to select faces, or vertices, by a polygon in the last picture, corners in its pixels from the
+  /// top left; what is drawn next does not matter to it. `through`: also what is hidden there. A selection of
+  /// the other kind is given up. False before the whole surface stands in the picture.
   bool select(MeshElement of, const std::vector<Eigen::Vector2f>& corners, SelectionStep step, bool through);
-  /// 1 for the selected, by face of ShownMesh::faces or by vertex.
-  void set_selection(MeshElement of, const std::vector<std::uint32_t>& selected);
+  /// Some more of that. True while more is to come.
+  bool select_more();
+  void set_selection(MeshElement of, SelectionMarks selected);
   void clear_selection();
   /// Null where nothing was selected.
   [[nodiscard]] const MeshSelecting* selection() const { return selection_.get(); }
@@ -120,6 +126,7 @@ class SurfaceView {
   ShaderProgram surface_, shadow_, lighting_;
   PixelTexture sphere_, colour_map_;
   std::unique_ptr<MeshBuffers> mesh_;
+  std::unique_ptr<MeshBuffers> coming_;  ///< not all of it is on the card yet
   std::unique_ptr<PointBuffers> points_;
   std::unique_ptr<MeshSelecting> selection_;
   std::vector<std::vector<FaceBlock>> levels_{{}};  ///< fewest faces first, the whole surface last
@@ -136,8 +143,8 @@ class SurfaceView {
   bool dirty_ = true;            ///< mesh, points or values have changed
   std::size_t next_block_ = 0;   ///< of the whole picture that comes together
   bool whole_ = false;
-  bool slow_ = false;                    ///< this machine draws slowly
-  std::size_t faces_at_a_time_ = 80000;  ///< as many as this machine draws soon enough
+  bool slow_ = false;  ///< this machine draws slowly
+  PieceSize faces_at_a_time_{80000};
   std::size_t faces_in_motion_ = kFacesInMotion * 2;
   std::size_t level_drawn_ = 0;
   std::size_t faces_drawn_ = 0;

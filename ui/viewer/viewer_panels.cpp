@@ -113,7 +113,7 @@ void ViewerScreen::draw_tools(UiContext& ui) {
     if (ImGui::RadioButton(ui.text(text), tool_ == which)) {
       tool_ = which;
       tape_.clear();
-      polygon_.clear();
+      drop_polygon();
     }
     ui.target(name);
   };
