@@ -15,7 +15,6 @@ enum class Language { kEnglish, kGerman };
 
 /// Every text of the window. Another language is another column of text_table.cpp.
 enum class Text {
-  kTitle,
   kLayTablet,
   kChooseDevice,
   kReading,
@@ -44,7 +43,6 @@ enum class Text {
   kKeyScan,
   kKeyUndo,
   kKeySign,
-  kHandsOff,
   kChecklist,
   kObverse,
   kReverse,
@@ -191,7 +189,6 @@ enum class Text {
   kOverlaySigma,
   kOverlayMsii,
   kWedges,
-  kNoWedges,
   kPins,
   kWedgeNumber,
   kMeasure,
@@ -200,9 +197,7 @@ enum class Text {
   kDpi,
   kPictureKept,
   kPictureTooLarge,
-  kSixViews,
   kAnalyse,
-  kAnalysing,
   kFaces,
   kVertices,
   kLeftOut,
