@@ -228,25 +228,6 @@ TEST_F(Shading, APictureDrawnTileByTileHasNoSeamsAndIsThatOfOnePiece) {
   }
 }
 
-TEST_F(Shading, AMeshThatComesPieceByPieceLeavesTheOldOneUntilAllOfItIsThere) {
-  const auto drawn = [&] {
-    view_->draw_whole(camera_, look_, kWidth, kHeight);
-    return view_->read().bytes;
-  };
-  const auto before = drawn();
-  const ShownMesh next = shown_mesh(dented_slab(1600));  // 150 MB
-  int pieces = 0;
-  while (view_->show_soon(next)) {
-    ++pieces;
-    ASSERT_EQ(drawn(), before);
-  }
-  EXPECT_GT(pieces, 1);
-  const auto in_pieces = drawn();
-  EXPECT_NE(in_pieces, before);
-  view_->show(next);
-  EXPECT_EQ(drawn(), in_pieces);
-}
-
 TEST(PieceSize, LearnsFromWholePiecesAndNotFromWhatIsLeftOver) {
   using std::chrono::milliseconds;
   PieceSize size(100000);

@@ -81,10 +81,10 @@ void OperatorScreen::take_state(UiContext& ui) {
           Eigen::Quaternionf(Eigen::Matrix3f(ready->tablet_from_model.rotation.cast<float>())));
       camera_set_ = true;
     }
-    camera_.fit(ready->whole.box_mm, 1.2F);
+    camera_.fit(ready->whole->box_mm, 1.2F);
     giving_back_ = give_back(std::move(ready));
   }
-  draws_on_ = prepared_.uploads();
+  draws_on_ = prepared_.arrives();
   unfinished_ = unfinished_ || prepared_.busy();
   if (!record_taken_ && state_.phase != LivePhase::kReading) {
     record_ = said_record_ = state_.record;

@@ -8,6 +8,8 @@
 #include <chrono>
 #include <cstring>
 
+#include "ui/gl/card_memory.h"
+
 namespace dubsar::ui {
 
 namespace {
@@ -40,7 +42,11 @@ const void* at_offset(std::uintptr_t bytes) {
 }  // namespace
 
 MeshBuffers::MeshBuffers(const ShownMesh& mesh)
-    : vertices_(mesh.positions.size()), faces_(mesh.faces.size()), has_colours_(!mesh.colours.empty()) {
+    : vertices_(mesh.positions.size()),
+      faces_(mesh.faces.size()),
+      has_colours_(!mesh.colours.empty()),
+      whole_(mesh.instead_of_faces == 0) {
+  static_cast<void>(card_has_refused());  // what was refused before is no concern of this mesh
   const auto add = [&](GLenum target, std::size_t bytes) {
     buffers_.push_back(new_buffer(target, bytes, nullptr));
     bytes_ += bytes;
@@ -81,6 +87,7 @@ MeshBuffers::MeshBuffers(const ShownMesh& mesh)
   glBindTexture(GL_TEXTURE_BUFFER, made_of_);
   glTexBuffer(GL_TEXTURE_BUFFER, GL_R32UI, from);
   glBindVertexArray(0);
+  refused_ = card_has_refused();
 }
 
 void MeshBuffers::upload() {
@@ -100,6 +107,7 @@ void MeshBuffers::upload() {
       parts_.pop_back();
     }
   }
+  refused_ = card_has_refused();
 }
 
 MeshBuffers::~MeshBuffers() {

@@ -22,6 +22,8 @@ class MeshBuffers {
   MeshBuffers(const MeshBuffers&) = delete;
   MeshBuffers& operator=(const MeshBuffers&) = delete;
 
+  /// The graphics card has no room for it; it is not to be drawn then.
+  [[nodiscard]] bool is_refused() const { return refused_; }
   /// Some more of the mesh, so much that a frame stays short.
   void upload();
   [[nodiscard]] bool is_uploaded() const { return parts_.empty(); }
@@ -30,6 +32,8 @@ class MeshBuffers {
   void set_values(const std::vector<float>& values);
   /// Other traits for the same vertices.
   void set_traits(const std::vector<std::array<std::uint8_t, 4>>& traits);
+  /// Its faces and vertices are those of the mesh that it shows, not of a coarser level.
+  [[nodiscard]] bool is_whole() const { return whole_; }
   [[nodiscard]] bool has_values() const { return has_values_; }
   [[nodiscard]] bool has_colours() const { return has_colours_; }
   [[nodiscard]] bool points_only() const { return faces_ == 0; }
@@ -63,6 +67,8 @@ class MeshBuffers {
   std::size_t bytes_ = 0;
   bool has_values_ = false;
   bool has_colours_ = false;
+  bool whole_ = false;
+  bool refused_ = false;
 };
 
 /// Small discs over the surface. Main thread.

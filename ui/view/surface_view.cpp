@@ -42,21 +42,35 @@ SurfaceView::SurfaceView()
 }
 
 void SurfaceView::show(const ShownMesh& mesh) {
-  while (show_soon(mesh)) {
+  while (show_soon(mesh) == Arrival::kUnderWay) {
   }
 }
 
-bool SurfaceView::show_soon(const ShownMesh& mesh) {
+Arrival SurfaceView::show_soon(const ShownMesh& mesh) {
   if (!coming_) {
     coming_ = std::make_unique<MeshBuffers>(mesh);
-    return true;
-  }
-  if (!coming_->is_uploaded()) {
+  } else if (!coming_->is_uploaded()) {
     coming_->upload();
-    return true;  // its first picture comes in a frame of its own
+  } else {
+    take_shown(mesh);
+    return Arrival::kShown;  // its first picture comes in a frame of its own
   }
+  if (coming_->is_refused()) {
+    coming_.reset();
+    if (!mesh_) {
+      return Arrival::kRefused;
+    }
+    mesh_.reset();  // without it there may be room
+    selection_.reset();
+    dirty_ = true;
+  }
+  return Arrival::kUnderWay;
+}
+
+void SurfaceView::take_shown(const ShownMesh& mesh) {
   mesh_ = std::move(coming_);
   selection_.reset();
+  selection_refused_ = false;
   levels_.clear();
   for (const ShownLevel& level : mesh.coarser) {
     levels_.push_back(level.blocks);
@@ -64,7 +78,6 @@ bool SurfaceView::show_soon(const ShownMesh& mesh) {
   levels_.push_back(mesh.blocks);
   box_mm_ = mesh.box_mm;
   dirty_ = true;
-  return false;
 }
 
 void SurfaceView::show_points(const ColouredPoints* points) {

@@ -40,6 +40,9 @@ struct Look {
   bool operator==(const Look&) const = default;
 };
 
+/// How far a mesh is on its way to the graphics card.
+enum class Arrival { kUnderWay, kShown, kRefused };
+
 /// Draws a surface into a picture that the skin shows. While it is turned it is drawn in the level of detail
 /// of which the machine draws soon enough what is in the picture; at rest all faces follow, some at each
 /// frame, so that no frame takes long. Main thread.
@@ -49,9 +52,9 @@ class SurfaceView {
 
   /// All of it at once, however long that takes.
   void show(const ShownMesh& mesh);
-  /// A piece at each call; what was shown before stays until all is there. True while more is to come:
-  /// `mesh` must stay until then.
-  bool show_soon(const ShownMesh& mesh);
+  /// A piece at each call; what was shown before stays until all is there, unless the graphics card has room
+  /// for one only. While it is under way `mesh` must stay.
+  [[nodiscard]] Arrival show_soon(const ShownMesh& mesh);
   void show_points(const ColouredPoints* points);  ///< null: none
   void set_values(const std::vector<float>& values);
   void set_traits(const std::vector<std::array<std::uint8_t, 4>>& traits);
@@ -75,7 +78,8 @@ class SurfaceView {
   /// The picture; id 0 before the first draw.
   [[nodiscard]] unsigned texture() const { return picture_.width() > 0 ? picture_.colour(0) : 0; }
   [[nodiscard]] Image read() const { return picture_.read(); }
-  /// False when the mesh has more of them than the graphics driver can number: then none can be selected.
+  /// False when the mesh has more of them than the graphics driver can number or the card has room for, or is
+  /// shown in fewer faces than it has: then none can be selected.
   [[nodiscard]] bool can_select(MeshElement of) const;
   /// Begins to select faces, or vertices, by a polygon in the last picture, corners in its pixels from the
   /// top left; what is drawn next does not matter to it. `through`: also what is hidden there. A selection of
@@ -111,6 +115,7 @@ class SurfaceView {
     int height = 0;
     bool operator==(const Scene&) const = default;
   };
+  void take_shown(const ShownMesh& mesh);
   void clear(Layer& layer, const Scene& scene) const;
   void begin_surface(const Scene& scene, const Layer& layer);
   void draw_geometry(Layer& layer, const Scene& scene, std::size_t level, std::span<const FaceBlock> blocks);
@@ -118,7 +123,7 @@ class SurfaceView {
   bool draw_more(const Scene& scene);
   bool add_faces(Layer& layer, const Scene& scene, std::size_t& next_block);
   void draw_marks(Layer& layer, const Scene& scene);
-  void begin_selection(MeshElement of);
+  [[nodiscard]] bool begin_selection(MeshElement of);
   void show_selection(std::size_t level, std::size_t first_face);
   void light(const Layer& layer, const Scene& scene, FrameTarget& into);
   [[nodiscard]] Eigen::Matrix4f light_clip_from_model(const Scene& scene) const;
@@ -129,6 +134,7 @@ class SurfaceView {
   std::unique_ptr<MeshBuffers> coming_;  ///< not all of it is on the card yet
   std::unique_ptr<PointBuffers> points_;
   std::unique_ptr<MeshSelecting> selection_;
+  bool selection_refused_ = false;                  ///< the card has no room for one of this mesh
   std::vector<std::vector<FaceBlock>> levels_{{}};  ///< fewest faces first, the whole surface last
   Eigen::AlignedBox3f box_mm_;
   std::array<Layer, 2> layers_;

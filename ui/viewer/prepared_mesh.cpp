@@ -20,12 +20,13 @@ bool PreparedMesh::update(const ViewedMesh& state, SurfaceView& surface) {
     });
   }
   if (preparing_.valid() && preparing_.wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
-    coming_ = preparing_.get();
+    arrival_.begin(preparing_.get());
   }
-  if (!coming_ || surface.show_soon(*coming_)) {
+  std::shared_ptr<ShownMesh> arrived = arrival_.go_on(surface);
+  if (!arrived) {
     return false;
   }
-  giving_back_ = give_back(std::exchange(shown_, std::move(coming_)));
+  giving_back_ = give_back(std::exchange(shown_, std::move(arrived)));
   return true;
 }
 

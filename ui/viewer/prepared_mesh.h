@@ -7,8 +7,8 @@
 #include <memory>
 
 #include "station/mesh_viewing.h"
-#include "ui/view/shown_mesh.h"
-#include "ui/view/surface_view.h"
+#include "ui/shell/text_table.h"
+#include "ui/view/mesh_arrival.h"
 
 namespace dubsar::ui {
 
@@ -18,11 +18,15 @@ class PreparedMesh {
  public:
   /// Begins where the mesh is another one. True once, when it is what `surface` shows.
   bool update(const ViewedMesh& state, SurfaceView& surface);
-  [[nodiscard]] bool busy() const { return preparing_.valid() || coming_; }
+  [[nodiscard]] bool busy() const { return preparing_.valid() || arrival_.is_under_way(); }
   /// It goes to the graphics card, some more at each update().
-  [[nodiscard]] bool uploads() const { return coming_ != nullptr; }
+  [[nodiscard]] bool arrives() const { return arrival_.is_under_way(); }
   /// What stands in shown() is the mesh of this state.
   [[nodiscard]] bool is_of(const ViewedMesh& state) const { return !busy() && number_ == state.number; }
+  /// Why there is nothing to see.
+  [[nodiscard]] Text waiting_text(const ViewedMesh& state) const {
+    return state.mesh && is_of(state) ? Text::kNoRoom : Text::kOpenMesh;
+  }
   [[nodiscard]] const ShownMesh& shown() const { return *shown_; }
   [[nodiscard]] ShownMesh& shown() { return *shown_; }
   /// For other threads: of what is here only traits may change meanwhile.
@@ -30,7 +34,7 @@ class PreparedMesh {
 
  private:
   std::future<std::shared_ptr<ShownMesh>> preparing_;
-  std::shared_ptr<ShownMesh> coming_;
+  MeshArrival arrival_;
   std::shared_ptr<ShownMesh> shown_ = std::make_shared<ShownMesh>();
   std::future<void> giving_back_;  ///< what was shown before
   std::uint64_t number_ = 0;

@@ -67,7 +67,7 @@ void ViewerScreen::take_state(UiContext& ui) {
       look_.overlay = Overlay::kColours;
     }
   }
-  unfinished_ = unfinished_ || prepared_.uploads();
+  unfinished_ = unfinished_ || prepared_.arrives();
   if (surface_.empty() || prepared_.busy()) {
     return;
   }
@@ -84,7 +84,7 @@ void ViewerScreen::take_state(UiContext& ui) {
   if (field_) {
     if (const auto values = field_values(*field_); values && values != shown_values_) {
       const TimedWork timed(ui.watch, "an overlay to the graphics card");
-      surface_.set_values(*values);
+      surface_.set_values(of_shown(prepared_.shown(), *values));
       look_.value_range = shown_range(*values);
       look_.overlay = Overlay::kValue;
       shown_values_ = values;
@@ -172,8 +172,8 @@ void ViewerScreen::draw_surface(UiContext& ui, ImVec2 size) {
     }
   }
   if (surface_.empty()) {
-    const std::string words =
-        state_.error ? translated(state_.error->line(), ui.preferences.language) : ui.text(Text::kOpenMesh);
+    const std::string words = state_.error ? translated(state_.error->line(), ui.preferences.language)
+                                           : ui.text(prepared_.waiting_text(state_));
     draw->AddText(nullptr, 0, {origin.x + ui.px(2), origin.y + ui.px(2)},
                   packed(state_.error ? ui.colours.red : ui.colours.faint), words.c_str(), nullptr,
                   size.x - ui.px(4));

@@ -176,8 +176,7 @@ void ViewerScreen::draw_selecting(UiContext& ui) {
     return;
   }
   if (!surface_.can_select(select_of_)) {
-    const std::string most = filled(ui.text(Text::kTooManyToSelect), grouped(MeshSelecting::most()));
-    coloured_text(ui.colours.amber, most.c_str());
+    coloured_text(ui.colours.amber, ui.text(Text::kTooManyToSelect));
     return;
   }
   if (selects()) {
