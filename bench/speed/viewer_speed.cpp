@@ -154,7 +154,9 @@ std::size_t wrongly_selected(SurfaceView& view, const ShownMesh& shown, const Or
   const std::vector<Eigen::Vector2f> corners{{300.3F, 150.2F}, {1500.7F, 400.4F}, {700.1F, 1100.6F}};
   const auto began = Clock::now();
   view.select(MeshElement::kFace, corners, SelectionStep::kUnion, true);
-  const std::vector<std::uint32_t> selected = view.selection()->read();
+  while (view.select_more()) {
+  }
+  const std::vector<std::uint32_t>& selected = *view.selection()->selected();
   told("select by a polygon, and read back", began);
   std::size_t wrong = 0;
   std::size_t inside = 0;
@@ -186,7 +188,8 @@ std::size_t wrongly_drawn(SurfaceView& view, const ShownMesh& shown, OrbitCamera
     }
     std::vector<std::uint32_t> marks(shown.faces.size(), 0);
     marks[face] = 1;
-    view.set_selection(MeshElement::kFace, marks);
+    view.set_selection(MeshElement::kFace,
+                       std::make_shared<const std::vector<std::uint32_t>>(std::move(marks)));
     const auto& [a, b, c] = shown.faces[face];
     camera.centre_mm = (shown.positions[a] + shown.positions[b] + shown.positions[c]) / 3.0F;
     camera.half_height_mm = 8 * (shown.positions[b] - shown.positions[a]).norm();

@@ -61,6 +61,15 @@ class Selecting : public ::testing::Test {
   }
   [[nodiscard]] bool in_front(std::size_t f) const { return shown_.positions[shown_.faces[f][0]].z() > -1; }
 
+  /// To its end.
+  bool select(MeshElement of, const std::vector<Eigen::Vector2f>& corners, SelectionStep step, bool through) {
+    const bool can = view_->select(of, corners, step, through);
+    while (view_->select_more()) {
+    }
+    return can;
+  }
+  [[nodiscard]] std::vector<std::uint32_t> marks_now() const { return *view_->selection()->selected(); }
+
   test::Display display_;
   std::optional<GlWindow> window_;
   ShownMesh shown_;
@@ -74,8 +83,8 @@ std::vector<Eigen::Vector2f> box(float x1, float y1, float x2, float y2) {
 }
 
 TEST_F(Selecting, WhatAPolygonHoldsAndNothingElse) {
-  ASSERT_TRUE(view_->select(MeshElement::kFace, box(100, 80, 220, 200), SelectionStep::kUnion, true));
-  const std::vector<std::uint32_t> selected = view_->selection()->read();
+  ASSERT_TRUE(select(MeshElement::kFace, box(100, 80, 220, 200), SelectionStep::kUnion, true));
+  const std::vector<std::uint32_t> selected = marks_now();
   ASSERT_EQ(selected.size(), shown_.faces.size());
   std::size_t wrong = 0;
   std::size_t inside = 0;
@@ -95,8 +104,8 @@ TEST_F(Selecting, WhatAPolygonHoldsAndNothingElse) {
 }
 
 TEST_F(Selecting, OnlyWhatIsSeen) {
-  ASSERT_TRUE(view_->select(MeshElement::kFace, box(50, 50, 350, 250), SelectionStep::kUnion, false));
-  const std::vector<std::uint32_t> selected = view_->selection()->read();
+  ASSERT_TRUE(select(MeshElement::kFace, box(50, 50, 350, 250), SelectionStep::kUnion, false));
+  const std::vector<std::uint32_t> selected = marks_now();
   std::size_t front = 0;
   std::size_t back = 0;
   for (std::size_t f = 0; f < selected.size(); ++f) {
@@ -109,19 +118,19 @@ TEST_F(Selecting, OnlyWhatIsSeen) {
 TEST_F(Selecting, PolygonsGoTogetherAsAsked) {
   const auto count = [&] {
     std::size_t sum = 0;
-    for (const std::uint32_t one : view_->selection()->read()) {
+    for (const std::uint32_t one : marks_now()) {
       sum += one;
     }
     return static_cast<double>(sum);
   };
-  ASSERT_TRUE(view_->select(MeshElement::kFace, box(100, 100, 200, 200), SelectionStep::kUnion, true));
+  ASSERT_TRUE(select(MeshElement::kFace, box(100, 100, 200, 200), SelectionStep::kUnion, true));
   const double one = count();
   view_->draw_whole(camera_, {}, kWidth, kHeight);
-  ASSERT_TRUE(view_->select(MeshElement::kFace, box(150, 100, 250, 200), SelectionStep::kUnion, true));
+  ASSERT_TRUE(select(MeshElement::kFace, box(150, 100, 250, 200), SelectionStep::kUnion, true));
   EXPECT_NEAR(count(), 1.5 * one, 0.03 * one);
-  ASSERT_TRUE(view_->select(MeshElement::kFace, box(100, 100, 200, 200), SelectionStep::kIntersection, true));
+  ASSERT_TRUE(select(MeshElement::kFace, box(100, 100, 200, 200), SelectionStep::kIntersection, true));
   EXPECT_NEAR(count(), one, 0.03 * one);
-  ASSERT_TRUE(view_->select(MeshElement::kFace, box(100, 100, 150, 200), SelectionStep::kDifference, true));
+  ASSERT_TRUE(select(MeshElement::kFace, box(100, 100, 150, 200), SelectionStep::kDifference, true));
   EXPECT_NEAR(count(), 0.5 * one, 0.03 * one);
   // The picture tells the selected apart.
   view_->draw_whole(camera_, {}, kWidth, kHeight);
@@ -139,7 +148,7 @@ TEST_F(Selecting, PointsOfTheSurfaceAndOfACloud) {
     return at.x() > 100.5F && at.x() < 219.5F && at.y() > 80.5F && at.y() < 199.5F;
   };
   const auto count_missing = [&](bool through) {
-    const std::vector<std::uint32_t> selected = view_->selection()->read();
+    const std::vector<std::uint32_t> selected = marks_now();
     EXPECT_EQ(selected.size(), shown_.positions.size());
     std::size_t missing = 0;
     std::size_t outside = 0;
@@ -153,16 +162,16 @@ TEST_F(Selecting, PointsOfTheSurfaceAndOfACloud) {
     EXPECT_EQ(outside, 0U);
     return missing;
   };
-  ASSERT_TRUE(view_->select(MeshElement::kVertex, box(100, 80, 220, 200), SelectionStep::kUnion, false));
+  ASSERT_TRUE(select(MeshElement::kVertex, box(100, 80, 220, 200), SelectionStep::kUnion, false));
   EXPECT_EQ(count_missing(false), 0U);
   view_->draw_whole(camera_, {}, kWidth, kHeight);
   const Image picture = view_->read();
   EXPECT_GT(picture.rgb(160, 140)[2], picture.rgb(160, 140)[0]) << "told apart in the picture";
   EXPECT_LT(picture.rgb(300, 140)[2], picture.rgb(300, 140)[0]);
-  ASSERT_TRUE(view_->select(MeshElement::kVertex, box(100, 80, 220, 200), SelectionStep::kUnion, true));
+  ASSERT_TRUE(select(MeshElement::kVertex, box(100, 80, 220, 200), SelectionStep::kUnion, true));
   EXPECT_EQ(count_missing(true), 0U);
   // The other kind begins anew.
-  ASSERT_TRUE(view_->select(MeshElement::kFace, box(0, 0, 10, 10), SelectionStep::kUnion, true));
+  ASSERT_TRUE(select(MeshElement::kFace, box(0, 0, 10, 10), SelectionStep::kUnion, true));
   EXPECT_EQ(view_->selection()->of(), MeshElement::kFace);
 
   Mesh cloud = two_sheets(60);
@@ -170,17 +179,35 @@ TEST_F(Selecting, PointsOfTheSurfaceAndOfACloud) {
   shown_ = shown_mesh(cloud);
   view_->show(shown_);
   view_->draw_whole(camera_, {}, kWidth, kHeight);
-  EXPECT_FALSE(view_->select(MeshElement::kFace, box(100, 80, 220, 200), SelectionStep::kUnion, true));
-  ASSERT_TRUE(view_->select(MeshElement::kVertex, box(100, 80, 220, 200), SelectionStep::kUnion, true));
+  EXPECT_FALSE(select(MeshElement::kFace, box(100, 80, 220, 200), SelectionStep::kUnion, true));
+  ASSERT_TRUE(select(MeshElement::kVertex, box(100, 80, 220, 200), SelectionStep::kUnion, true));
   EXPECT_EQ(count_missing(true), 0U);
+  EXPECT_EQ(glGetError(), static_cast<GLenum>(GL_NO_ERROR));
+}
+
+TEST_F(Selecting, AHandMayTurnItBeforeThePolygonIsThrough) {
+  const std::vector<Eigen::Vector2f> corners = box(50, 50, 250, 250);
+  ASSERT_TRUE(select(MeshElement::kFace, corners, SelectionStep::kUnion, false));
+  const std::vector<std::uint32_t> at_rest = marks_now();
+  view_->clear_selection();
+  ASSERT_TRUE(view_->select(MeshElement::kFace, corners, SelectionStep::kUnion, false));
+  int pieces = 0;
+  while (view_->select_more()) {
+    ++pieces;
+    EXPECT_EQ(view_->selection()->selected(), nullptr) << "nothing is shown by halves";
+    camera_.drag({0, 0}, {0.3F, 0.2F});
+    view_->draw_whole(camera_, {}, kWidth / 2, kHeight);
+  }
+  EXPECT_GT(pieces, 1);
+  EXPECT_EQ(marks_now(), at_rest);
   EXPECT_EQ(glGetError(), static_cast<GLenum>(GL_NO_ERROR));
 }
 
 TEST_F(Selecting, EveryLevelOfDetailShowsWhatIsSelected) {
   ASSERT_EQ(view_->levels(), 2U);
   const std::vector<Eigen::Vector2f> left = box(60, 50, 190, 250);
-  ASSERT_TRUE(view_->select(MeshElement::kFace, left, SelectionStep::kUnion, true));
-  const std::vector<std::uint32_t> selected = view_->selection()->read();
+  ASSERT_TRUE(select(MeshElement::kFace, left, SelectionStep::kUnion, true));
+  const std::vector<std::uint32_t> selected = marks_now();
   const auto blue_of = [&](std::size_t level) {
     view_->draw_level(level, camera_, {}, kWidth, kHeight);
     const Image picture = view_->read();
@@ -199,7 +226,7 @@ TEST_F(Selecting, EveryLevelOfDetailShowsWhatIsSelected) {
     other += fine[i] != coarse[i] ? 1 : 0;
   }
   EXPECT_LT(static_cast<double>(other), 0.03 * inside) << "but for the rim";
-  EXPECT_EQ(view_->selection()->read(), selected) << "what is selected is of the whole surface";
+  EXPECT_EQ(marks_now(), selected) << "what is selected is of the whole surface";
 }
 
 TEST_F(Selecting, ASelectionThatWasKeptIsShownAgain) {
@@ -207,12 +234,12 @@ TEST_F(Selecting, ASelectionThatWasKeptIsShownAgain) {
   for (std::size_t f = 0; f < marks.size(); f += 3) {
     marks[f] = 1;
   }
-  view_->set_selection(MeshElement::kFace, marks);
-  EXPECT_EQ(view_->selection()->read(), marks);
+  view_->set_selection(MeshElement::kFace, std::make_shared<const std::vector<std::uint32_t>>(marks));
+  EXPECT_EQ(marks_now(), marks);
   // And goes on from there.
   view_->draw_whole(camera_, {}, kWidth, kHeight);
-  ASSERT_TRUE(view_->select(MeshElement::kFace, box(0, 0, kWidth, kHeight), SelectionStep::kUnion, true));
-  EXPECT_EQ(view_->selection()->read(), std::vector<std::uint32_t>(marks.size(), 1));
+  ASSERT_TRUE(select(MeshElement::kFace, box(0, 0, kWidth, kHeight), SelectionStep::kUnion, true));
+  EXPECT_EQ(marks_now(), std::vector<std::uint32_t>(marks.size(), 1));
 }
 
 TEST(PolygonMask, EvenOddAndBottomRowFirst) {
@@ -247,7 +274,8 @@ TEST_F(Selecting, MoreFacesThanTheDriverCanNumberAreNotSelectedWrongly) {
   const bool can = view_->can_select(MeshElement::kFace);
   const bool did = view_->select(MeshElement::kFace, {{0, 0}, {kWidth, 0}, {kWidth, kHeight}},
                                  SelectionStep::kUnion, true);
-  view_->set_selection(MeshElement::kFace, std::vector<std::uint32_t>(shown_.faces.size(), 1));
+  view_->set_selection(MeshElement::kFace,
+                       std::make_shared<const std::vector<std::uint32_t>>(shown_.faces.size(), 1));
   const bool marked = view_->selection() != nullptr;
   epoxy_glGetIntegerv = real_get_integer;
   EXPECT_FALSE(can);

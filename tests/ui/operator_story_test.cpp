@@ -84,7 +84,7 @@ wait idle 120
 expect conclusive
 key enter
 wait sign-name
-click sign-name
+pause 0.2
 type A. Reader
 key enter
 wait signed

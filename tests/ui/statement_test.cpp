@@ -101,8 +101,14 @@ TEST(Statement, WhatIsNotInTheSessionCannotBeSigned) {
     const Statement s = statement_of(state, true, Language::kEnglish);
     EXPECT_FALSE(s.may_sign);
     EXPECT_TRUE(s.may_scan);
-    EXPECT_EQ(s.headline, red > 0 ? "2.5 mm² are still red: scan on" : "1 scans are stored: go on");
+    EXPECT_EQ(s.headline, red > 0 ? "2.5 mm² are still red: scan on" : "Scans stored: 1. Go on");
   }
+}
+
+TEST(Statement, RedThatIsSmallIsNotSaidToBeNone) {
+  LiveState state = with_scan(PoseStatus::kRegistered);
+  state.red_map = map_with(0.02);
+  EXPECT_EQ(statement_of(state, true, Language::kEnglish).headline, "< 0.1 mm² are still red: scan on");
 }
 
 TEST(Statement, WhatEndedTheRunIsToldWithItsMend) {

@@ -14,6 +14,7 @@
 #include "tests/ui/support/display.h"
 #include "tests/ui/support/read_png.h"
 #include "ui/gl/gl_window.h"
+#include "ui/view/piece_size.h"
 #include "ui/view/still_picture.h"
 #include "ui/view/surface_view.h"
 
@@ -225,6 +226,19 @@ TEST_F(Shading, APictureDrawnTileByTileHasNoSeamsAndIsThatOfOnePiece) {
     // Edges fall otherwise by less than a pixel here and there.
     EXPECT_LT(static_cast<double>(other) / (3.0 * kWide * kHigh), 0.002) << (lamp ? "lamp" : "lit sphere");
   }
+}
+
+TEST(PieceSize, LearnsFromWholePiecesAndNotFromWhatIsLeftOver) {
+  using std::chrono::milliseconds;
+  PieceSize size(100000);
+  size.took(5000, milliseconds(1));  // the last of all
+  EXPECT_EQ(size.count(), 100000U);
+  size.took(100000, milliseconds(5));
+  EXPECT_EQ(size.count(), 200000U);
+  size.took(200000, milliseconds(30));
+  EXPECT_EQ(size.count(), 200000U);
+  size.took(150000, milliseconds(80));
+  EXPECT_EQ(size.count(), 100000U);
 }
 
 TEST_F(Shading, ThePlaceUnderAPixelIsOnTheSurface) {

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <regex>
 #include <string>
 
 namespace dubsar::ui {
@@ -34,6 +35,15 @@ TEST(TextTable, EveryTextIsThereInBothLanguagesWithTheSameGaps) {
       EXPECT_EQ(text.find("mm2"), std::string::npos) << text;
       EXPECT_EQ(text.find("} um"), std::string::npos) << text;
     }
+  }
+}
+
+/// A count may be one: "pairs: 1", never "1 pairs".
+TEST(TextTable, NoCountIsFollowedByAPlural) {
+  const std::regex plural("\\{(:\\.0f)?\\} ([a-z]+ )?[a-z]{2,}s\\b");
+  for (int k = 0; k < static_cast<int>(Text::kCount); ++k) {
+    const std::string english = text_of(static_cast<Text>(k), Language::kEnglish);
+    EXPECT_FALSE(std::regex_search(english, plural)) << english;
   }
 }
 

@@ -104,6 +104,14 @@ void FrameTarget::bind() const {
   glViewport(0, 0, width_, height_);
 }
 
+void FrameTarget::copy_depth_of(const FrameTarget& other) {
+  resize(other.width_, other.height_);
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, other.frame_);
+  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, frame_);
+  glBlitFramebuffer(0, 0, width_, height_, 0, 0, width_, height_, GL_DEPTH_BUFFER_BIT, GL_NEAREST);
+  glBindFramebuffer(GL_FRAMEBUFFER, 0);
+}
+
 Image FrameTarget::read() const {
   Image image;
   image.width = width_;

@@ -26,6 +26,8 @@ class FrameTarget {
   void release();
   /// All that is drawn goes here, until another target or the window is bound.
   void bind() const;
+  /// Takes the size and the depths of the other, and leaves it free to be drawn into.
+  void copy_depth_of(const FrameTarget& other);
   [[nodiscard]] unsigned colour(int index) const { return colour_[static_cast<std::size_t>(index)]; }
   [[nodiscard]] unsigned depth() const { return depth_; }
   [[nodiscard]] int width() const { return width_; }

@@ -106,19 +106,26 @@ void OperatorScreen::draw_signing(UiContext& ui) {
   if (!begin_box(ui, ui.text(Text::kSign), "###sign", open_sign_, ui.px(32))) {
     return;
   }
+  const auto says = [](const std::string& text) {
+    return text.find_first_not_of(" \t") != std::string::npos;
+  };
   ImGui::TextWrapped("%s", ui.text(Text::kSignHint));
+  // The first line that lacks has the cursor: whoever signs needs no mouse.
+  const bool appears = ImGui::IsWindowAppearing();
+  if (appears && !says(sign_name_)) {
+    ImGui::SetKeyboardFocusHere();
+  }
   text_line(ui, "sign-name", ui.text(Text::kSignName), sign_name_);
   text_line(ui, "sign-role", ui.text(Text::kSignRole), sign_role_);
   const bool conclusive = state_.red_map && state_.red_map->conclusive;
   if (!conclusive) {
+    if (appears && says(sign_name_) && !says(sign_incomplete_)) {
+      ImGui::SetKeyboardFocusHere();
+    }
     text_line(ui, "sign-incomplete", ui.text(Text::kSignIncomplete), sign_incomplete_);
   }
-  const auto says = [](const std::string& text) {
-    return text.find_first_not_of(" \t") != std::string::npos;
-  };
   const bool enough = says(sign_name_) && (conclusive || says(sign_incomplete_));
-  const bool by_key =
-      enough && ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Enter), false) && !ImGui::IsWindowAppearing();
+  const bool by_key = enough && ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Enter), false) && !appears;
   if (plain_button(ui, "sign-now", ui.text(Text::kSignNow), enough) || by_key) {
     SignOff wanted;
     wanted.name = sign_name_;

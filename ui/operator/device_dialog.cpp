@@ -73,8 +73,8 @@ void DeviceDialog::draw_choices(UiContext& ui) {
     return hit;
   };
   const bool any = std::ranges::any_of(drivers_, [](const OfferedDriver& d) { return !d.found.empty(); });
-  if (any) {
-    coloured_text(ui.colours.faint, ui.text(Text::kFound));
+  if (known_) {
+    coloured_text(ui.colours.faint, ui.text(any ? Text::kFound : Text::kNothingFound));
   }
   for (const OfferedDriver& driver : drivers_) {
     for (const auto& [uri, description] : driver.found) {

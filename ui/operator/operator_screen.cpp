@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ui/shell/give_back.h"
 #include "ui/shell/sound.h"
 #include "ui/view/pin_marks.h"
 
@@ -63,10 +64,13 @@ void OperatorScreen::take_state(UiContext& ui) {
     const TimedWork timed(ui.watch, "what is known of the session");
     state_ = session_.state();
   }
-  if (const std::optional<ReadyModel> ready = prepared_.update(state_)) {
+  std::unique_ptr<ReadyModel> ready;
+  {
     const TimedWork timed(ui.watch, "the model to the graphics card");
-    const Eigen::AlignedBox3f box_mm = ready->whole.box_mm;
-    model_.show(ready->whole);
+    ready = prepared_.update(state_, model_);
+  }
+  if (ready) {
+    const TimedWork timed(ui.watch, "what belongs to the model");
     model_.show_points(ready->red.get());
     model_has_red_ = ready->red != nullptr;
     pose_.show(ready->few);
@@ -77,8 +81,10 @@ void OperatorScreen::take_state(UiContext& ui) {
           Eigen::Quaternionf(Eigen::Matrix3f(ready->tablet_from_model.rotation.cast<float>())));
       camera_set_ = true;
     }
-    camera_.fit(box_mm, 1.2F);
+    camera_.fit(ready->whole->box_mm, 1.2F);
+    giving_back_ = give_back(std::move(ready));
   }
+  draws_on_ = prepared_.arrives();
   unfinished_ = unfinished_ || prepared_.busy();
   if (!record_taken_ && state_.phase != LivePhase::kReading) {
     record_ = said_record_ = state_.record;
@@ -351,7 +357,7 @@ void OperatorScreen::draw_model(UiContext& ui, ImVec2 size, bool asks_for_places
   }
   {
     const TimedWork timed(ui.watch, "the model's picture");
-    draws_on_ = model_.draw(camera_, look, static_cast<int>(size.x), static_cast<int>(size.y));
+    draws_on_ = model_.draw(camera_, look, static_cast<int>(size.x), static_cast<int>(size.y)) || draws_on_;
     unfinished_ = unfinished_ || draws_on_;
   }
   draw->AddImage(picture_of(model_.texture()), origin, end, {0, 1}, {1, 0});
@@ -359,7 +365,7 @@ void OperatorScreen::draw_model(UiContext& ui, ImVec2 size, bool asks_for_places
   draw->AddText(ui.fonts.small, ui.fonts.small->FontSize, {origin.x + ui.px(0.5F), origin.y + ui.px(0.3F)},
                 packed(ui.colours.faint), ui.text(Text::kModel));
   if (state_.red_map && !state_.red_map->conclusive) {
-    const std::string red = filled(ui.text(Text::kRedArea), red_mm2(*state_.red_map));
+    const std::string red = filled(ui.text(Text::kRedArea), area_words(red_mm2(*state_.red_map)));
     draw->AddText({origin.x + ui.px(0.5F), end.y - ui.px(1.6F)}, packed(ui.colours.red), red.c_str());
   }
   if (asks_for_places) {

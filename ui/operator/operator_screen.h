@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <functional>
+#include <future>
 #include <map>
 #include <memory>
 #include <optional>
@@ -72,7 +73,8 @@ class OperatorScreen {
   OrbitCamera camera_;
   bool camera_set_ = false;
   PreparedModel prepared_;
-  bool model_has_red_ = false;  ///< points; else the mesh itself says what is sparse
+  std::future<void> giving_back_;  ///< of the last one
+  bool model_has_red_ = false;     ///< points; else the mesh itself says what is sparse
   PosePanel pose_;
   PairDialog pairs_;
   PinDialog pins_;

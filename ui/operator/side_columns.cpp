@@ -56,12 +56,12 @@ void OperatorScreen::draw_left(UiContext& ui, ImVec2 size) {
     ImGui::TextUnformatted(ui.text(kFaceTexts[k]));
     ImGui::PushFont(ui.fonts.small);
     std::string note = !known    ? ui.text(Text::kNoArea)
-                       : red > 0 ? filled(ui.text(Text::kRedArea), red)
+                       : red > 0 ? filled(ui.text(Text::kRedArea), area_words(red))
                        : lacks   ? ui.text(Text::kRedRim)
                        : !whole  ? ui.text(Text::kNoRedSoFar)
                                  : std::string();
     if (excused > 0.05) {
-      note += (note.empty() ? "" : ", ") + filled(ui.text(Text::kExcused), excused);
+      note += (note.empty() ? "" : ", ") + filled(ui.text(Text::kExcused), area_words(excused));
     }
     if (!note.empty()) {
       // Beside the name where it fits.

@@ -79,7 +79,7 @@ void say_still(Statement& out, const LiveState& state, bool has_device, Language
     out.may_sign = true;
   } else {
     out.headline = state.red_map && !state.red_map->conclusive
-                       ? filled(text_of(Text::kStillRed, language), red_mm2(*state.red_map))
+                       ? filled(text_of(Text::kStillRed, language), area_words(red_mm2(*state.red_map)))
                        : filled(text_of(Text::kStoredScans, language), state.scans.size());
     out.tone = Tone::kAsk;
     out.scan_label = Text::kGoOn;
@@ -93,6 +93,10 @@ void say_still(Statement& out, const LiveState& state, bool has_device, Language
 }
 
 }  // namespace
+
+std::string area_words(double mm2) {
+  return mm2 < 0.05 ? "< 0.1" : fmt::format("{:.1f}", mm2);
+}
 
 double red_mm2(const RedMap& map) {
   double sum = 0;

@@ -27,6 +27,8 @@ struct Statement {
 
 [[nodiscard]] Statement statement_of(const LiveState& state, bool has_device, Language language);
 
+/// "0.5"; "< 0.1" where rounding would leave nothing of it.
+[[nodiscard]] std::string area_words(double mm2);
 /// mm² that are red, and of one face of it.
 [[nodiscard]] double red_mm2(const RedMap& map);
 [[nodiscard]] double face_mm2(const RedMap& map, Face face, RegionState state);

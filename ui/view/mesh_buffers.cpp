@@ -4,7 +4,11 @@
 
 #include <epoxy/gl.h>
 
+#include <algorithm>
+#include <chrono>
 #include <cstring>
+
+#include "ui/gl/card_memory.h"
 
 namespace dubsar::ui {
 
@@ -16,6 +20,10 @@ constexpr GLuint kNormal = 1;
 constexpr GLuint kTraits = 2;
 constexpr GLuint kValue = 3;
 constexpr GLuint kColour = 4;
+
+/// Of a frame's time, and between two looks at the clock.
+constexpr std::chrono::milliseconds kUploadFor{30};
+constexpr std::size_t kUploadAtOnce = std::size_t{4} << 20U;
 
 GLuint new_buffer(GLenum target, std::size_t bytes, const void* data) {
   GLuint id = 0;
@@ -34,49 +42,72 @@ const void* at_offset(std::uintptr_t bytes) {
 }  // namespace
 
 MeshBuffers::MeshBuffers(const ShownMesh& mesh)
-    : vertices_(mesh.positions.size()), faces_(mesh.faces.size()), has_colours_(!mesh.colours.empty()) {
-  const auto add = [&](GLenum target, std::size_t bytes, const void* data) {
-    buffers_.push_back(new_buffer(target, bytes, data));
+    : vertices_(mesh.positions.size()),
+      faces_(mesh.faces.size()),
+      has_colours_(!mesh.colours.empty()),
+      whole_(mesh.instead_of_faces == 0) {
+  static_cast<void>(card_has_refused());  // what was refused before is no concern of this mesh
+  const auto add = [&](GLenum target, std::size_t bytes) {
+    buffers_.push_back(new_buffer(target, bytes, nullptr));
     bytes_ += bytes;
     return buffers_.back();
   };
+  const auto put = [&](GLuint buffer, std::size_t at, const auto& of) {
+    parts_.push_back({buffer, at, reinterpret_cast<const std::byte*>(of.data()), of.size() * sizeof(of[0])});
+  };
   glGenVertexArrays(1, &array_);
   glBindVertexArray(array_);
-  const auto attribute = [&](GLuint place, GLint size, GLenum type, GLboolean normalised, std::size_t bytes,
-                             const void* data) {
-    add(GL_ARRAY_BUFFER, bytes, data);
-    if (bytes > 0) {
+  const auto attribute = [&](GLuint place, GLint size, GLenum type, GLboolean normalised, const auto& of) {
+    put(add(GL_ARRAY_BUFFER, of.size() * sizeof(of[0])), 0, of);
+    if (!of.empty()) {
       glEnableVertexAttribArray(place);
       glVertexAttribPointer(place, size, type, normalised, 0, nullptr);
     }
   };
-  attribute(kPosition, 3, GL_FLOAT, GL_FALSE, vertices_ * sizeof(Eigen::Vector3f), mesh.positions.data());
-  attribute(kNormal, 4, GL_INT_2_10_10_10_REV, GL_TRUE, vertices_ * 4, mesh.normals.data());
-  attribute(kTraits, 4, GL_UNSIGNED_BYTE, GL_TRUE, vertices_ * 4, mesh.traits.data());
-  attribute(kValue, 1, GL_FLOAT, GL_FALSE, 0, nullptr);  // set_values() fills it
-  attribute(kColour, 3, GL_UNSIGNED_BYTE, GL_TRUE, mesh.colours.size() * 3, mesh.colours.data());
+  attribute(kPosition, 3, GL_FLOAT, GL_FALSE, mesh.positions);
+  attribute(kNormal, 4, GL_INT_2_10_10_10_REV, GL_TRUE, mesh.normals);
+  attribute(kTraits, 4, GL_UNSIGNED_BYTE, GL_TRUE, mesh.traits);
+  attribute(kValue, 1, GL_FLOAT, GL_FALSE, std::vector<float>());  // set_values() fills it
+  attribute(kColour, 3, GL_UNSIGNED_BYTE, GL_TRUE, mesh.colours);
   std::size_t coarser = 0;
   for (const ShownLevel& level : mesh.coarser) {
     level_first_.push_back(coarser);
     coarser += level.detail.faces.size();
   }
   // One buffer for the faces of all levels, the whole surface first.
-  add(GL_ELEMENT_ARRAY_BUFFER, (faces_ + coarser) * 12, nullptr);
-  const auto put = [](GLenum target, std::size_t at, std::size_t bytes, const void* data) {
-    glBufferSubData(target, static_cast<GLintptr>(at), static_cast<GLsizeiptr>(bytes), data);
-  };
-  put(GL_ELEMENT_ARRAY_BUFFER, 0, faces_ * 12, mesh.faces.data());
-  add(GL_TEXTURE_BUFFER, coarser * 4, nullptr);
+  const GLuint corners = add(GL_ELEMENT_ARRAY_BUFFER, (faces_ + coarser) * 12);
+  const GLuint from = add(GL_TEXTURE_BUFFER, coarser * 4);
+  put(corners, 0, mesh.faces);
   for (std::size_t k = 0; k < mesh.coarser.size(); ++k) {
     const DetailLevel& level = mesh.coarser[k].detail;
-    put(GL_ELEMENT_ARRAY_BUFFER, (faces_ + level_first_[k]) * 12, level.faces.size() * 12,
-        level.faces.data());
-    put(GL_TEXTURE_BUFFER, level_first_[k] * 4, level.from.size() * 4, level.from.data());
+    put(corners, (faces_ + level_first_[k]) * 12, level.faces);
+    put(from, level_first_[k] * 4, level.from);
   }
   glGenTextures(1, &made_of_);
   glBindTexture(GL_TEXTURE_BUFFER, made_of_);
-  glTexBuffer(GL_TEXTURE_BUFFER, GL_R32UI, buffers_.back());
+  glTexBuffer(GL_TEXTURE_BUFFER, GL_R32UI, from);
   glBindVertexArray(0);
+  refused_ = card_has_refused();
+}
+
+void MeshBuffers::upload() {
+  const auto began = std::chrono::steady_clock::now();
+  while (!parts_.empty() && std::chrono::steady_clock::now() - began < kUploadFor) {
+    Part& part = parts_.back();
+    const std::size_t bytes = std::min(part.bytes, kUploadAtOnce);
+    if (bytes > 0) {
+      glBindBuffer(GL_COPY_WRITE_BUFFER, part.buffer);
+      glBufferSubData(GL_COPY_WRITE_BUFFER, static_cast<GLintptr>(part.at), static_cast<GLsizeiptr>(bytes),
+                      part.data);
+    }
+    part.at += bytes;
+    part.data += bytes;
+    part.bytes -= bytes;
+    if (part.bytes == 0) {
+      parts_.pop_back();
+    }
+  }
+  refused_ = card_has_refused();
 }
 
 MeshBuffers::~MeshBuffers() {
@@ -122,8 +153,8 @@ void MeshBuffers::draw_level(std::size_t level, std::size_t first, std::size_t c
   draw_faces(faces_ + level_first_[level] + first, count);
 }
 
-void MeshBuffers::draw_points() const {
-  glDrawArrays(GL_POINTS, 0, static_cast<GLsizei>(vertices_));
+void MeshBuffers::draw_points(std::size_t first, std::size_t count) const {
+  glDrawArrays(GL_POINTS, static_cast<GLint>(first), static_cast<GLsizei>(count));
 }
 
 PointBuffers::PointBuffers(const ColouredPoints& points)

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -14,15 +15,25 @@ namespace dubsar::ui {
 /// A mesh in the memory of the graphics card: each vertex once, faces by index. Main thread.
 class MeshBuffers {
  public:
+  /// Takes the memory; upload() fills it from `mesh`, whose numbers must stay where they are until it is
+  /// done.
   explicit MeshBuffers(const ShownMesh& mesh);
   ~MeshBuffers();
   MeshBuffers(const MeshBuffers&) = delete;
   MeshBuffers& operator=(const MeshBuffers&) = delete;
 
+  /// The graphics card has no room for it; it is not to be drawn then.
+  [[nodiscard]] bool is_refused() const { return refused_; }
+  /// Some more of the mesh, so much that a frame stays short.
+  void upload();
+  [[nodiscard]] bool is_uploaded() const { return parts_.empty(); }
+
   /// A number per vertex, [V], for the overlay that shows numbers.
   void set_values(const std::vector<float>& values);
   /// Other traits for the same vertices.
   void set_traits(const std::vector<std::array<std::uint8_t, 4>>& traits);
+  /// Its faces and vertices are those of the mesh that it shows, not of a coarser level.
+  [[nodiscard]] bool is_whole() const { return whole_; }
   [[nodiscard]] bool has_values() const { return has_values_; }
   [[nodiscard]] bool has_colours() const { return has_colours_; }
   [[nodiscard]] bool points_only() const { return faces_ == 0; }
@@ -38,9 +49,16 @@ class MeshBuffers {
   void bind() const;  ///< then one of:
   void draw_faces(std::size_t first, std::size_t count) const;
   void draw_level(std::size_t level, std::size_t first, std::size_t count) const;  ///< of ShownMesh::coarser
-  void draw_points() const;
+  void draw_points(std::size_t first, std::size_t count) const;
 
  private:
+  struct Part {  // that is not on the card yet
+    unsigned buffer = 0;
+    std::size_t at = 0;  ///< bytes
+    const std::byte* data = nullptr;
+    std::size_t bytes = 0;
+  };
+  std::vector<Part> parts_;
   unsigned array_ = 0;
   unsigned made_of_ = 0;
   std::vector<unsigned> buffers_;
@@ -49,6 +67,8 @@ class MeshBuffers {
   std::size_t bytes_ = 0;
   bool has_values_ = false;
   bool has_colours_ = false;
+  bool whole_ = false;
+  bool refused_ = false;
 };
 
 /// Small discs over the surface. Main thread.

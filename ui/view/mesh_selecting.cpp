@@ -5,7 +5,9 @@
 #include <epoxy/gl.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <utility>
 
 namespace dubsar::ui {
 
@@ -28,6 +30,7 @@ uniform int visible_only;
 uniform int step;             // 0 union, 1 intersection, 2 difference
 uniform float slack;          // of clip depth
 uniform usamplerBuffer before;
+uniform int any_before;       // else nothing was selected
 out uint selected;
 void main() {
   gl_Position = clip_from_model * vec4(position, 1.0);
@@ -39,7 +42,7 @@ void main() {
     bool away = dot(normal, normal) > 0.01 && dot(towards, normal) > 0.0;   // clip z grows away from the eye
     inside = !away && 0.5 * (gl_Position.z - slack) + 0.5 <= texture(depth_map, at).r;
   }
-  uint was = texelFetch(before, gl_VertexID).r;
+  uint was = any_before != 0 ? texelFetch(before, gl_VertexID).r : 0u;
   uint now = inside ? 1u : 0u;
   selected = step == 0 ? (was | now) : step == 1 ? (was & now) : (was & (1u - now));
 }
@@ -56,6 +59,7 @@ uniform int step;             // 0 union, 1 intersection, 2 difference
 uniform int first_face;
 uniform float slack;          // of clip depth
 uniform usamplerBuffer before;
+uniform int any_before;       // else nothing was selected
 out uint selected;
 void main() {
   vec3 middle = (gl_in[0].gl_Position.xyz + gl_in[1].gl_Position.xyz + gl_in[2].gl_Position.xyz) / 3.0;
@@ -69,7 +73,7 @@ void main() {
     bool towards = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x) > 0.0;
     inside = towards && 0.5 * (middle.z - slack) + 0.5 <= texture(depth_map, at).r;
   }
-  uint was = texelFetch(before, first_face + gl_PrimitiveIDIn).r;
+  uint was = any_before != 0 ? texelFetch(before, first_face + gl_PrimitiveIDIn).r : 0u;
   uint now = inside ? 1u : 0u;
   selected = step == 0 ? (was | now) : step == 1 ? (was & now) : (was & (1u - now));
   EmitVertex();
@@ -124,7 +128,6 @@ MeshSelecting::MeshSelecting(MeshElement of, std::size_t count)
     glBindTexture(GL_TEXTURE_BUFFER, textures_[k]);
     glTexBuffer(GL_TEXTURE_BUFFER, GL_R32UI, buffers_[k]);
   }
-  set(std::vector<std::uint32_t>(count, 0));
 }
 
 MeshSelecting::~MeshSelecting() {
@@ -132,60 +135,86 @@ MeshSelecting::~MeshSelecting() {
   glDeleteBuffers(2, buffers_);
 }
 
-void MeshSelecting::set(const std::vector<std::uint32_t>& selected) {
+void MeshSelecting::set(SelectionMarks selected) {
+  marks_.reset();
+  selected_ = std::move(selected);
   glBindBuffer(GL_TEXTURE_BUFFER, buffers_[current_]);
-  glBufferSubData(GL_TEXTURE_BUFFER, 0, static_cast<GLsizeiptr>(std::min(count_, selected.size()) * 4),
-                  selected.data());
+  glBufferSubData(GL_TEXTURE_BUFFER, 0, static_cast<GLsizeiptr>(std::min(count_, selected_->size()) * 4),
+                  selected_->data());
 }
 
-void MeshSelecting::apply(const MeshBuffers& mesh, const Eigen::Matrix4f& clip_from_model,
-                          const std::vector<std::uint8_t>& mask, int width, int height, unsigned depth,
-                          SelectionStep step) {
+void MeshSelecting::begin(const Eigen::Matrix4f& clip_from_model, const std::vector<std::uint8_t>& mask,
+                          int width, int height, const FrameTarget* seen, SelectionStep step) {
   mask_.upload(width, height, 1, mask.data(), false);
-  // Nothing is drawn, but some drivers want a whole frame to not draw into.
-  no_picture_.resize(16, 16);
-  no_picture_.bind();
+  if (seen != nullptr) {
+    depth_.copy_depth_of(*seen);
+  }
   program_.use();
   program_.set("clip_from_model", clip_from_model);
   program_.set("mask", 0);
   program_.set("depth_map", 1);
   program_.set("before", 2);
-  program_.set("visible_only", depth != 0 ? 1 : 0);
+  program_.set("visible_only", seen != nullptr ? 1 : 0);
   program_.set("step", static_cast<int>(step));
-  program_.set("first_face", 0);
+  program_.set("any_before", selected_ ? 1 : 0);
   program_.set("slack", 0.004F);
+  marks_ = std::make_shared<std::vector<std::uint32_t>>();
+  marks_->reserve(count_);
+  drawn_ = 0;
+}
+
+/// Of those that a call has drawn, the next takes the marks: by then the card is done with them.
+bool MeshSelecting::go_on(const MeshBuffers& mesh) {
+  if (!marks_) {
+    return false;
+  }
+  const auto began = std::chrono::steady_clock::now();
+  const std::size_t first = marks_->size();
+  marks_->resize(drawn_);
+  glBindBuffer(GL_TEXTURE_BUFFER, buffers_[1 - current_]);
+  glGetBufferSubData(GL_TEXTURE_BUFFER, static_cast<GLintptr>(first * 4),
+                     static_cast<GLsizeiptr>((drawn_ - first) * 4), marks_->data() + first);
+  if (drawn_ == count_) {
+    selected_ = std::exchange(marks_, nullptr);
+    current_ = 1 - current_;
+    return false;
+  }
+  const std::size_t count = std::min(at_a_time_.count(), count_ - drawn_);
+  draw(mesh, count);
+  at_a_time_.took(count, std::chrono::steady_clock::now() - began);
+  return true;
+}
+
+/// The next `count` of them.
+void MeshSelecting::draw(const MeshBuffers& mesh, std::size_t count) {
+  // Nothing is drawn, but some drivers want a whole frame to not draw into.
+  no_picture_.resize(16, 16);
+  no_picture_.bind();
+  program_.use();
+  program_.set("first_face", static_cast<int>(drawn_));
   glActiveTexture(GL_TEXTURE0);
   glBindTexture(GL_TEXTURE_2D, mask_.id());
   glActiveTexture(GL_TEXTURE1);
-  glBindTexture(GL_TEXTURE_2D, depth != 0 ? depth : mask_.id());
+  glBindTexture(GL_TEXTURE_2D, depth_.width() > 0 ? depth_.depth() : mask_.id());
   glActiveTexture(GL_TEXTURE2);
   glBindTexture(GL_TEXTURE_BUFFER, textures_[current_]);
   glActiveTexture(GL_TEXTURE0);
-  const std::size_t next = 1 - current_;
   glEnable(GL_RASTERIZER_DISCARD);
-  glBindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, buffers_[next]);
+  glBindBufferRange(GL_TRANSFORM_FEEDBACK_BUFFER, 0, buffers_[1 - current_],
+                    static_cast<GLintptr>(drawn_ * 4), static_cast<GLsizeiptr>(count * 4));
   mesh.bind();
   glBeginTransformFeedback(GL_POINTS);
   if (of_ == MeshElement::kFace) {
-    mesh.draw_faces(0, count_);
+    mesh.draw_faces(drawn_, count);
   } else {
-    mesh.draw_points();
+    mesh.draw_points(drawn_, count);
   }
   glEndTransformFeedback();
   glBindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, 0);
   glDisable(GL_RASTERIZER_DISCARD);
   glBindVertexArray(0);
   glBindFramebuffer(GL_FRAMEBUFFER, 0);
-  current_ = next;
-}
-
-std::vector<std::uint32_t> MeshSelecting::read() const {
-  std::vector<std::uint32_t> out(count_);
-  if (count_ > 0) {
-    glBindBuffer(GL_TEXTURE_BUFFER, buffers_[current_]);
-    glGetBufferSubData(GL_TEXTURE_BUFFER, 0, static_cast<GLsizeiptr>(count_ * 4), out.data());
-  }
-  return out;
+  drawn_ += count;
 }
 
 }  // namespace dubsar::ui

@@ -142,41 +142,62 @@ std::uint32_t packed_normal(const Eigen::Vector3f& n) {
 }
 
 void set_openness(ShownMesh& mesh, const std::vector<float>& openness) {
-  for (std::size_t v = 0; v < mesh.traits.size() && v < openness.size(); ++v) {
-    mesh.traits[v][0] = byte_of(openness[v]);
+  for (std::size_t v = 0; v < mesh.traits.size(); ++v) {
+    if (const std::size_t of = mesh.vertex_of.empty() ? v : mesh.vertex_of[v]; of < openness.size()) {
+      mesh.traits[v][0] = byte_of(openness[of]);
+    }
   }
 }
 
-ShownMesh fewest_faces(const ShownMesh& mesh) {
-  if (mesh.coarser.empty()) {
-    return mesh;
+std::vector<float> of_shown(const ShownMesh& mesh, const std::vector<float>& values) {
+  if (mesh.vertex_of.empty()) {
+    return values;
   }
-  const ShownLevel& level = mesh.coarser.front();
-  ShownMesh out;
-  out.box_mm = mesh.box_mm;
-  out.blocks = level.blocks;
-  out.faces = level.detail.faces;
-  constexpr std::uint32_t kNone = 0xFFFFFFFFU;
-  std::vector<std::uint32_t> now(mesh.positions.size(), kNone);
-  for (Face& face : out.faces) {
-    for (std::uint32_t& v : face) {
-      if (now[v] == kNone) {
-        now[v] = static_cast<std::uint32_t>(out.positions.size());
-        out.positions.push_back(mesh.positions[v]);
-        out.normals.push_back(mesh.normals[v]);
-        out.traits.push_back(mesh.traits[v]);
-        if (!mesh.colours.empty()) {
-          out.colours.push_back(mesh.colours[v]);
-        }
-      }
-      v = now[v];
-    }
-  }
-  out.face_of.resize(out.faces.size());
-  for (std::size_t k = 0; k < out.face_of.size(); ++k) {
-    out.face_of[k] = static_cast<std::uint32_t>(k);
+  std::vector<float> out;
+  out.reserve(mesh.vertex_of.size());
+  for (const std::uint32_t v : mesh.vertex_of) {
+    out.push_back(values[v]);
   }
   return out;
+}
+
+ShownMesh in_fewer_faces(const ShownMesh& mesh, std::size_t level) {
+  ShownMesh out;
+  out.box_mm = mesh.box_mm;
+  out.left_out = mesh.left_out;
+  out.instead_of_faces = mesh.instead_of_faces > 0 ? mesh.instead_of_faces : mesh.faces.size();
+  constexpr std::uint32_t kNone = 0xFFFFFFFFU;
+  std::vector<std::uint32_t> now(mesh.positions.size(), kNone);
+  const auto take = [&](std::vector<Face> faces) {
+    for (Face& face : faces) {
+      for (std::uint32_t& v : face) {
+        if (now[v] == kNone) {
+          now[v] = static_cast<std::uint32_t>(out.positions.size());
+          out.positions.push_back(mesh.positions[v]);
+          out.normals.push_back(mesh.normals[v]);
+          out.traits.push_back(mesh.traits[v]);
+          if (!mesh.colours.empty()) {
+            out.colours.push_back(mesh.colours[v]);
+          }
+          out.vertex_of.push_back(mesh.vertex_of.empty() ? v : mesh.vertex_of[v]);
+        }
+        v = now[v];
+      }
+    }
+    return faces;
+  };
+  const ShownLevel& finest = mesh.coarser[level];
+  out.faces = take(finest.detail.faces);
+  out.blocks = finest.blocks;
+  for (std::size_t k = 0; k < level; ++k) {
+    const ShownLevel& coarse = mesh.coarser[k];
+    out.coarser.push_back({{coarse.detail.cell_mm, take(coarse.detail.faces), {}}, coarse.blocks});
+  }
+  return out;
+}
+
+ShownMesh fewest_faces(const ShownMesh& mesh) {
+  return mesh.coarser.empty() ? mesh : in_fewer_faces(mesh, 0);
 }
 
 ShownMesh shown_mesh(const Mesh& mesh, const std::vector<float>& openness) {

@@ -40,6 +40,9 @@ struct ShownMesh {
   std::vector<ShownLevel> coarser;  ///< the same surface in fewer faces, fewest first
   Eigen::AlignedBox3f box_mm;
   std::size_t left_out = 0;  ///< faces of the mesh that cannot be drawn
+  // Of one in fewer faces, which has no face_of and whose levels have no `from`:
+  std::vector<std::uint32_t> vertex_of;  ///< [V] which vertex of the mesh each is; empty: the same
+  std::size_t instead_of_faces = 0;      ///< so many faces of the mesh could be drawn; 0: they are
 };
 
 /// A unit vector in 4 bytes, signed, 10 bits a coordinate, as the graphics card takes it.
@@ -48,12 +51,16 @@ struct ShownMesh {
 /// Faces that even a processor draws fast enough to be turned by hand (bench: 100 thousand in about 40 ms).
 inline constexpr std::size_t kFacesInMotion = 100000;
 
-/// Puts ambient occlusion, [V] in [0, 1], into the traits.
+/// Puts ambient occlusion, in [0, 1] for each vertex of the mesh, into the traits.
 void set_openness(ShownMesh& mesh, const std::vector<float>& openness);
 
-/// The coarsest level of it as a mesh of its own, with the vertices that this has; itself where there is
-/// none.
+/// A coarser level of it as a mesh of its own, with the vertices that this has and the levels that are
+/// coarser still.
+[[nodiscard]] ShownMesh in_fewer_faces(const ShownMesh& mesh, std::size_t level);
+/// The coarsest level; itself where there is none.
 [[nodiscard]] ShownMesh fewest_faces(const ShownMesh& mesh);
+/// Of numbers per vertex of the mesh those of the vertices that are shown.
+[[nodiscard]] std::vector<float> of_shown(const ShownMesh& mesh, const std::vector<float>& values);
 
 /// `openness` is ambient occlusion, [V] in [0, 1], or empty.
 [[nodiscard]] ShownMesh shown_mesh(const Mesh& mesh, const std::vector<float>& openness = {});

@@ -3,6 +3,7 @@
 // What is under a polygon or a point of the last picture, and how the selected is shown.
 #include <epoxy/gl.h>
 
+#include "ui/gl/card_memory.h"
 #include "ui/view/surface_view.h"
 
 namespace dubsar::ui {
@@ -18,15 +19,23 @@ void bind_buffer_texture(int unit, unsigned texture) {
 }  // namespace
 
 bool SurfaceView::can_select(MeshElement of) const {
-  return mesh_ && (of == MeshElement::kFace ? mesh_->faces() : mesh_->vertices()) <= MeshSelecting::most();
+  return mesh_ && mesh_->is_whole() && !selection_refused_ &&
+         (of == MeshElement::kFace ? mesh_->faces() : mesh_->vertices()) <= MeshSelecting::most();
 }
 
-void SurfaceView::begin_selection(MeshElement of) {
+/// False where the graphics card has no room for one.
+bool SurfaceView::begin_selection(MeshElement of) {
   if (!selection_ || selection_->of() != of) {
     selection_.reset();  // two at once would be too much for a small card
+    static_cast<void>(card_has_refused());
     selection_ =
         std::make_unique<MeshSelecting>(of, of == MeshElement::kFace ? mesh_->faces() : mesh_->vertices());
+    selection_refused_ = card_has_refused();
+    if (selection_refused_) {
+      selection_.reset();
+    }
   }
+  return selection_ != nullptr;
 }
 
 bool SurfaceView::select(MeshElement of, const std::vector<Eigen::Vector2f>& corners, SelectionStep step,
@@ -35,27 +44,35 @@ bool SurfaceView::select(MeshElement of, const std::vector<Eigen::Vector2f>& cor
       (of == MeshElement::kFace && mesh_->points_only())) {
     return false;
   }
-  begin_selection(of);
+  if (!begin_selection(of)) {
+    return false;
+  }
   const float aspect = static_cast<float>(scene_.width) / static_cast<float>(scene_.height);
   const Layer& layer = layers_[static_cast<std::size_t>(shown_layer_)];
-  selection_->apply(*mesh_, scene_.camera.clip_from_model(aspect),
-                    polygon_mask(corners, scene_.width, scene_.height), scene_.width, scene_.height,
-                    through ? 0 : layer.target.depth(), step);
-  dirty_ = true;
+  selection_->begin(scene_.camera.clip_from_model(aspect), polygon_mask(corners, scene_.width, scene_.height),
+                    scene_.width, scene_.height, through ? nullptr : &layer.target, step);
   return true;
 }
 
-void SurfaceView::set_selection(MeshElement of, const std::vector<std::uint32_t>& selected) {
-  if (can_select(of)) {
-    begin_selection(of);
-    selection_->set(selected);
+bool SurfaceView::select_more() {
+  if (!selection_ || !selection_->is_under_way()) {
+    return false;
+  }
+  const bool more = selection_->go_on(*mesh_);
+  dirty_ = dirty_ || !more;
+  return more;
+}
+
+void SurfaceView::set_selection(MeshElement of, SelectionMarks selected) {
+  if (can_select(of) && begin_selection(of)) {
+    selection_->set(std::move(selected));
     dirty_ = true;
   }
 }
 
 /// Of the program in use, for faces of a level that begin at `first_face`.
 void SurfaceView::show_selection(std::size_t level, std::size_t first_face) {
-  if (!selection_) {
+  if (!selection_ || !selection_->selected()) {
     return;
   }
   if (selection_->of() == MeshElement::kVertex) {

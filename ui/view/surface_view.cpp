@@ -21,10 +21,6 @@ constexpr int kShadowSize = 1024;
 constexpr double kSlowFrameS = 0.05;
 /// A machine that draws one so fast is given more.
 constexpr double kFastFrameS = 0.008;
-/// So long the whole picture may be added to between two looks at what the user does, and so few faces are
-/// added however slow the machine is.
-constexpr double kSoonS = 0.04;
-constexpr std::size_t kFewestAtATime = 20000;
 constexpr std::size_t kMostFacesInMotion = std::size_t{1} << 30U;
 
 void bind_texture(int unit, unsigned texture) {
@@ -46,8 +42,35 @@ SurfaceView::SurfaceView()
 }
 
 void SurfaceView::show(const ShownMesh& mesh) {
-  mesh_ = std::make_unique<MeshBuffers>(mesh);
+  while (show_soon(mesh) == Arrival::kUnderWay) {
+  }
+}
+
+Arrival SurfaceView::show_soon(const ShownMesh& mesh) {
+  if (!coming_) {
+    coming_ = std::make_unique<MeshBuffers>(mesh);
+  } else if (!coming_->is_uploaded()) {
+    coming_->upload();
+  } else {
+    take_shown(mesh);
+    return Arrival::kShown;  // its first picture comes in a frame of its own
+  }
+  if (coming_->is_refused()) {
+    coming_.reset();
+    if (!mesh_) {
+      return Arrival::kRefused;
+    }
+    mesh_.reset();  // without it there may be room
+    selection_.reset();
+    dirty_ = true;
+  }
+  return Arrival::kUnderWay;
+}
+
+void SurfaceView::take_shown(const ShownMesh& mesh) {
+  mesh_ = std::move(coming_);
   selection_.reset();
+  selection_refused_ = false;
   levels_.clear();
   for (const ShownLevel& level : mesh.coarser) {
     levels_.push_back(level.blocks);
@@ -141,7 +164,7 @@ void SurfaceView::draw_geometry(Layer& layer, const Scene& scene, std::size_t le
     surface_.set("marks", 2);
     surface_.set("point_px",
                  std::clamp(0.2F / scene.camera.mm_per_px(static_cast<float>(scene.height)), 2.0F, 12.0F));
-    mesh_->draw_points();
+    mesh_->draw_points(0, mesh_->vertices());
     return;
   }
   const bool whole = level + 1 == levels_.size();
@@ -255,7 +278,10 @@ bool SurfaceView::draw_in_motion(const Scene& scene) {
     slow_ = true;
   } else if (spent.count() < kFastFrameS) {
     slow_ = false;  // four times the pixels are drawn soon enough too
-    if (!all) {
+    // What these few took says little of many more: by it, as many as allowed must be drawn so fast.
+    const double most_s = spent.count() * static_cast<double>(faces_in_motion_) /
+                          static_cast<double>(std::max<std::size_t>(1, faces_drawn_));
+    if (!all && most_s < kFastFrameS) {
       faces_in_motion_ = std::min(2 * faces_in_motion_, kMostFacesInMotion);
     }
   }
@@ -274,19 +300,14 @@ bool SurfaceView::add_faces(Layer& layer, const Scene& scene, std::size_t& next_
   // What is not seen casts shadows.
   const bool every_face = scene.look.lamp && scene.look.shadows && !layer.shadow_stands;
   std::size_t end = next_block;
-  for (std::size_t faces = 0; end < blocks.size() && faces < faces_at_a_time_; ++end) {
+  std::size_t faces = 0;
+  for (; end < blocks.size() && faces < faces_at_a_time_.count(); ++end) {
     faces += every_face ? blocks[end].count : faces_in(seen_runs(blocks.subspan(end, 1), clip_from_model));
   }
   const auto began = std::chrono::steady_clock::now();
   draw_geometry(layer, scene, levels_.size() - 1, blocks.subspan(next_block, end - next_block));
   glFinish();  // else a driver that queues would let the frames pile up, and input wait behind them
-  const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - began;
-  if (spent.count() < 0.4 * kSoonS) {
-    faces_at_a_time_ =
-        std::min(2 * faces_at_a_time_, mesh_ ? mesh_->faces() + kFewestAtATime : kFewestAtATime);
-  } else if (spent.count() > kSoonS) {
-    faces_at_a_time_ = std::max(kFewestAtATime, faces_at_a_time_ / 2);
-  }
+  faces_at_a_time_.took(faces, std::chrono::steady_clock::now() - began);
   next_block = end;
   return next_block < blocks.size();
 }

@@ -15,6 +15,7 @@
 #include "ui/view/mesh_buffers.h"
 #include "ui/view/mesh_selecting.h"
 #include "ui/view/orbit_camera.h"
+#include "ui/view/piece_size.h"
 
 namespace dubsar::ui {
 
@@ -39,6 +40,9 @@ struct Look {
   bool operator==(const Look&) const = default;
 };
 
+/// How far a mesh is on its way to the graphics card.
+enum class Arrival { kUnderWay, kShown, kRefused };
+
 /// Draws a surface into a picture that the skin shows. While it is turned it is drawn in the level of detail
 /// of which the machine draws soon enough what is in the picture; at rest all faces follow, some at each
 /// frame, so that no frame takes long. Main thread.
@@ -46,7 +50,11 @@ class SurfaceView {
  public:
   SurfaceView();
 
+  /// All of it at once, however long that takes.
   void show(const ShownMesh& mesh);
+  /// A piece at each call; what was shown before stays until all is there, unless the graphics card has room
+  /// for one only. While it is under way `mesh` must stay.
+  [[nodiscard]] Arrival show_soon(const ShownMesh& mesh);
   void show_points(const ColouredPoints* points);  ///< null: none
   void set_values(const std::vector<float>& values);
   void set_traits(const std::vector<std::array<std::uint8_t, 4>>& traits);
@@ -70,14 +78,16 @@ class SurfaceView {
   /// The picture; id 0 before the first draw.
   [[nodiscard]] unsigned texture() const { return picture_.width() > 0 ? picture_.colour(0) : 0; }
   [[nodiscard]] Image read() const { return picture_.read(); }
-  /// False when the mesh has more of them than the graphics driver can number: then none can be selected.
+  /// False when the mesh has more of them than the graphics driver can number or the card has room for, or is
+  /// shown in fewer faces than it has: then none can be selected.
   [[nodiscard]] bool can_select(MeshElement of) const;
-  /// Selects faces, or vertices, by a polygon in the last picture, corners in its pixels from the top left.
-  /// `through`: also what is hidden there. A selection of the other kind is given up. False before the whole
-  /// surface stands in the picture.
+  /// Begins to select faces, or vertices, by a polygon in the last picture, corners in its pixels from the
+  /// top left; what is drawn next does not matter to it. `through`: also what is hidden there. A selection of
+  /// the other kind is given up. False before the whole surface stands in the picture.
   bool select(MeshElement of, const std::vector<Eigen::Vector2f>& corners, SelectionStep step, bool through);
-  /// 1 for the selected, by face of ShownMesh::faces or by vertex.
-  void set_selection(MeshElement of, const std::vector<std::uint32_t>& selected);
+  /// Some more of that. True while more is to come.
+  bool select_more();
+  void set_selection(MeshElement of, SelectionMarks selected);
   void clear_selection();
   /// Null where nothing was selected.
   [[nodiscard]] const MeshSelecting* selection() const { return selection_.get(); }
@@ -105,6 +115,7 @@ class SurfaceView {
     int height = 0;
     bool operator==(const Scene&) const = default;
   };
+  void take_shown(const ShownMesh& mesh);
   void clear(Layer& layer, const Scene& scene) const;
   void begin_surface(const Scene& scene, const Layer& layer);
   void draw_geometry(Layer& layer, const Scene& scene, std::size_t level, std::span<const FaceBlock> blocks);
@@ -112,7 +123,7 @@ class SurfaceView {
   bool draw_more(const Scene& scene);
   bool add_faces(Layer& layer, const Scene& scene, std::size_t& next_block);
   void draw_marks(Layer& layer, const Scene& scene);
-  void begin_selection(MeshElement of);
+  [[nodiscard]] bool begin_selection(MeshElement of);
   void show_selection(std::size_t level, std::size_t first_face);
   void light(const Layer& layer, const Scene& scene, FrameTarget& into);
   [[nodiscard]] Eigen::Matrix4f light_clip_from_model(const Scene& scene) const;
@@ -120,8 +131,10 @@ class SurfaceView {
   ShaderProgram surface_, shadow_, lighting_;
   PixelTexture sphere_, colour_map_;
   std::unique_ptr<MeshBuffers> mesh_;
+  std::unique_ptr<MeshBuffers> coming_;  ///< not all of it is on the card yet
   std::unique_ptr<PointBuffers> points_;
   std::unique_ptr<MeshSelecting> selection_;
+  bool selection_refused_ = false;                  ///< the card has no room for one of this mesh
   std::vector<std::vector<FaceBlock>> levels_{{}};  ///< fewest faces first, the whole surface last
   Eigen::AlignedBox3f box_mm_;
   std::array<Layer, 2> layers_;
@@ -136,8 +149,8 @@ class SurfaceView {
   bool dirty_ = true;            ///< mesh, points or values have changed
   std::size_t next_block_ = 0;   ///< of the whole picture that comes together
   bool whole_ = false;
-  bool slow_ = false;                    ///< this machine draws slowly
-  std::size_t faces_at_a_time_ = 80000;  ///< as many as this machine draws soon enough
+  bool slow_ = false;  ///< this machine draws slowly
+  PieceSize faces_at_a_time_{80000};
   std::size_t faces_in_motion_ = kFacesInMotion * 2;
   std::size_t level_drawn_ = 0;
   std::size_t faces_drawn_ = 0;

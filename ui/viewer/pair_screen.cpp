@@ -20,9 +20,12 @@ void PairScreen::take_state(UiContext& ui, Pane& pane) {
     pane.viewing->want(MeshField::kOpenness);
   }
   pane.state = pane.viewing->state();
-  if (pane.prepared.update(pane.state)) {
+  bool is_new = false;
+  {
     const TimedWork timed(ui.watch, "a mesh to the graphics card");
-    pane.surface.show(pane.prepared.shown());
+    is_new = pane.prepared.update(pane.state, pane.surface);
+  }
+  if (is_new) {
     pane.openness_due = true;
     unfinished_ = true;
     pane.openness.reset();
@@ -31,6 +34,7 @@ void PairScreen::take_state(UiContext& ui, Pane& pane) {
     }
     look_at(Face::kObverse);
   }
+  unfinished_ = unfinished_ || pane.prepared.arrives();
   const auto openness = pane.state.fields.find(MeshField::kOpenness);
   if (!pane.surface.empty() && pane.prepared.is_of(pane.state) && openness != pane.state.fields.end() &&
       openness->second != pane.openness) {
@@ -136,7 +140,7 @@ void PairScreen::draw_pane(UiContext& ui, Pane& pane, const char* name, ImVec2 s
   std::string words = pane.state.name;
   if (pane.surface.empty()) {
     words = pane.state.error ? translated(pane.state.error->line(), ui.preferences.language)
-                             : std::string(ui.text(Text::kOpenMesh));
+                             : std::string(ui.text(pane.prepared.waiting_text(pane.state)));
   } else {
     const OrbitCamera before = pane.camera;
     if (use_hand(origin, size, pane.camera, look_, pane.dragged)) {

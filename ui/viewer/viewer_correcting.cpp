@@ -58,7 +58,8 @@ void ViewerScreen::draw_correcting(UiContext& ui) {
       viewing_.correct({CorrectionKind::kSplit, marked_places(), std::move(into), {}, 0});
     }
   }
-  if (plain_button(ui, "wedge-add", ui.text(Text::kWedgeIsSelected), idle && !selected_.empty())) {
+  if (plain_button(ui, "wedge-add", ui.text(Text::kWedgeIsSelected),
+                   idle && !selects() && !selected_.empty())) {
     viewing_.correct_by_adding(selection_now());
   }
   if (plain_button(ui, "wedge-undo", ui.text(Text::kTakeBack), idle && state_.corrections > 0)) {

@@ -113,12 +113,12 @@ void ViewerScreen::draw_tape(UiContext& ui, ImVec2 origin, ImVec2 size) const {
 void ViewerScreen::draw_polygon(UiContext& ui, ImVec2 origin) const {
   ImDrawList* draw = ImGui::GetWindowDrawList();
   const ImU32 ink = packed(ui.colours.ghost);
-  const ImVec2 mouse = ImGui::GetIO().MousePos;
+  const auto at = [&](std::size_t k) {
+    return ImVec2{origin.x + polygon_[k].x(), origin.y + polygon_[k].y()};
+  };
   for (std::size_t k = 0; k < polygon_.size(); ++k) {
-    const ImVec2 a{origin.x + polygon_[k].x(), origin.y + polygon_[k].y()};
-    const ImVec2 b = k + 1 < polygon_.size()
-                         ? ImVec2{origin.x + polygon_[k + 1].x(), origin.y + polygon_[k + 1].y()}
-                         : mouse;
+    const ImVec2 a = at(k);
+    const ImVec2 b = k + 1 < polygon_.size() ? at(k + 1) : polygon_closed_ ? at(0) : ImGui::GetIO().MousePos;
     draw->AddLine(a, b, ink, 2);
     draw->AddCircleFilled(a, k == 0 ? 6.0F : 4.0F, ink);
   }

@@ -104,6 +104,13 @@ void ViewerScreen::draw_facts(UiContext& ui) {
     coloured_text(ui.colours.amber,
                   filled(ui.text(Text::kLeftOut), grouped(prepared_.shown().left_out)).c_str());
   }
+  if (prepared_.shown().instead_of_faces > 0) {
+    ui.facts.insert("fewer-faces");
+    coloured_text(ui.colours.amber,
+                  filled(ui.text(Text::kFewerFaces), grouped(prepared_.shown().faces.size()),
+                         grouped(prepared_.shown().instead_of_faces))
+                      .c_str());
+  }
   ImGui::PopFont();
 }
 
@@ -113,7 +120,7 @@ void ViewerScreen::draw_tools(UiContext& ui) {
     if (ImGui::RadioButton(ui.text(text), tool_ == which)) {
       tool_ = which;
       tape_.clear();
-      polygon_.clear();
+      drop_polygon();
     }
     ui.target(name);
   };

@@ -47,15 +47,18 @@ void ViewerScreen::take_state(UiContext& ui) {
     const TimedWork timed(ui.watch, "what is known of the mesh");
     state_ = viewing_.state();
   }
-  if (prepared_.update(state_)) {
+  bool is_new = false;
+  {
     const TimedWork timed(ui.watch, "a mesh to the graphics card");
-    surface_.show(prepared_.shown());
+    is_new = prepared_.update(state_, surface_);
+  }
+  if (is_new) {
     openness_due_ = true;
     unfinished_ = true;
     shown_openness_.reset();
     shown_values_.reset();
     tape_.clear();
-    polygon_.clear();
+    drop_polygon();
     clear_selected();
     give_up_picture();
     wedge_ = -1;
@@ -64,6 +67,7 @@ void ViewerScreen::take_state(UiContext& ui) {
       look_.overlay = Overlay::kColours;
     }
   }
+  unfinished_ = unfinished_ || prepared_.arrives();
   if (surface_.empty() || prepared_.busy()) {
     return;
   }
@@ -80,7 +84,7 @@ void ViewerScreen::take_state(UiContext& ui) {
   if (field_) {
     if (const auto values = field_values(*field_); values && values != shown_values_) {
       const TimedWork timed(ui.watch, "an overlay to the graphics card");
-      surface_.set_values(*values);
+      surface_.set_values(of_shown(prepared_.shown(), *values));
       look_.value_range = shown_range(*values);
       look_.overlay = Overlay::kValue;
       shown_values_ = values;
@@ -168,8 +172,8 @@ void ViewerScreen::draw_surface(UiContext& ui, ImVec2 size) {
     }
   }
   if (surface_.empty()) {
-    const std::string words =
-        state_.error ? translated(state_.error->line(), ui.preferences.language) : ui.text(Text::kOpenMesh);
+    const std::string words = state_.error ? translated(state_.error->line(), ui.preferences.language)
+                                           : ui.text(prepared_.waiting_text(state_));
     draw->AddText(nullptr, 0, {origin.x + ui.px(2), origin.y + ui.px(2)},
                   packed(state_.error ? ui.colours.red : ui.colours.faint), words.c_str(), nullptr,
                   size.x - ui.px(4));
@@ -182,10 +186,15 @@ void ViewerScreen::draw_surface(UiContext& ui, ImVec2 size) {
   use_pointer(ui, origin, size);
   look_.red = ui.colours.red.head<3>();
   look_.amber = ui.colours.amber.head<3>();
+  bool draws_on = false;
   {
     const TimedWork timed(ui.watch, "the surface's picture");
-    unfinished_ =
-        surface_.draw(camera_, look_, static_cast<int>(size.x), static_cast<int>(size.y)) || unfinished_;
+    draws_on = surface_.draw(camera_, look_, static_cast<int>(size.x), static_cast<int>(size.y));
+  }
+  if (draws_on) {
+    unfinished_ = true;
+  } else {
+    go_on_selecting(ui);
   }
   draw->AddImage(picture_of(surface_.texture()), origin, end, {0, 1}, {1, 0});
   const TimedWork timed(ui.watch, "lines over the surface");
@@ -212,15 +221,14 @@ void ViewerScreen::use_pointer(UiContext& ui, ImVec2 origin, ImVec2 size) {
     untouched_ = false;
   }
   if (dragged_ && ImGui::IsItemActive()) {
-    polygon_.clear();  // it was drawn over another view
+    drop_polygon();  // it was drawn over another view
   }
   if (ImGui::IsItemDeactivated() && !dragged_ && ImGui::IsMouseReleased(ImGuiMouseButton_Left)) {
     const Eigen::Vector2f px(io.MousePos.x - origin.x, io.MousePos.y - origin.y);
-    if (tool_ == Tool::kSelect) {
+    if (tool_ == Tool::kSelect && !polygon_closed_) {
       if (ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left) ||
           (!polygon_.empty() && (polygon_.front() - px).norm() < 8)) {
-        const TimedWork timed(ui.watch, "a selection");
-        close_polygon();
+        polygon_closed_ = true;
       } else {
         polygon_.push_back(px);
       }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <filesystem>
 #include <future>
 #include <memory>
@@ -54,8 +55,17 @@ class ViewerScreen {
   void draw_section(UiContext& ui, ImVec2 origin, ImVec2 size) const;
   void draw_polygon(UiContext& ui, ImVec2 origin) const;
   // viewer_selecting.cpp
-  void close_polygon();
-  void take_selected(std::vector<std::uint32_t> selected);
+  struct Chosen {
+    std::uint64_t number = 0;  ///< selection_number_ when it was asked for
+    SelectionMarks marks;
+    std::vector<std::uint32_t> elements;  ///< as selected_
+    double mm2 = 0;
+  };
+  void go_on_selecting(UiContext& ui);
+  void drop_polygon();
+  [[nodiscard]] bool selects() const;
+  void choose_marked(const SelectionMarks& marks);
+  void take_chosen(Chosen chosen);
   void show_selection(const MeshSelection& selection);
   void clear_selected();
   void draw_selecting(UiContext& ui);
@@ -100,6 +110,9 @@ class ViewerScreen {
   SelectionStep step_ = SelectionStep::kUnion;
   bool visible_only_ = true;
   MeshElement select_of_ = MeshElement::kFace;
+  bool polygon_closed_ = false;  ///< and is to be taken up
+  std::future<Chosen> choosing_;
+  std::uint64_t selection_number_ = 0;   ///< grows when it is cleared
   std::vector<std::uint32_t> selected_;  ///< faces or vertices of the mesh, rising
   double selected_mm2_ = 0;              ///< of faces
   std::string selection_name_;

@@ -2,7 +2,9 @@
 // Copyright The Dubsar developers
 // Selections: drawn by polygons, kept under a name, shown again, written, analysed alone.
 #include <algorithm>
+#include <chrono>
 
+#include "ui/gl/gl_window.h"
 #include "ui/viewer/viewer_screen.h"
 
 namespace dubsar::ui {
@@ -12,6 +14,28 @@ namespace {
 /// Kept selections that are listed before the list scrolls.
 constexpr int kMostListed = 4;
 
+/// Places that are not 0.
+template <class Mark>
+std::vector<std::uint32_t> chosen_of(const std::vector<Mark>& marks) {
+  std::vector<std::uint32_t> out;
+  for (std::size_t k = 0; k < marks.size(); ++k) {
+    if (marks[k] != 0) {
+      out.push_back(static_cast<std::uint32_t>(k));
+    }
+  }
+  return out;
+}
+
+double area_mm2(const Mesh& mesh, const std::vector<std::uint32_t>& faces) {
+  double sum = 0;
+  for (const std::uint32_t f : faces) {
+    const auto& [a, b, c] = mesh.faces[f];
+    const Eigen::Vector3f& at = mesh.positions[a];
+    sum += 0.5 * static_cast<double>((mesh.positions[b] - at).cross(mesh.positions[c] - at).norm());
+  }
+  return sum;
+}
+
 }  // namespace
 
 MeshSelection ViewerScreen::selection_now() const {
@@ -20,63 +44,104 @@ MeshSelection ViewerScreen::selection_now() const {
 
 void ViewerScreen::clear_selected() {
   surface_.clear_selection();
+  ++selection_number_;
   selected_.clear();
   selected_mm2_ = 0;
 }
 
-void ViewerScreen::close_polygon() {
-  if (is_current() && surface_.select(select_of_, polygon_, step_, !visible_only_)) {
-    std::vector<std::uint32_t> chosen;
-    const std::vector<std::uint32_t> selected = surface_.selection()->read();
-    for (std::size_t k = 0; k < selected.size(); ++k) {
-      if (selected[k] != 0) {
-        chosen.push_back(select_of_ == MeshElement::kFace ? prepared_.shown().face_of[k]
-                                                          : static_cast<std::uint32_t>(k));
-      }
+/// The polygon that is closed, once the picture stands in which it was drawn; then a piece at each frame;
+/// what it comes to is worked out on a thread of its own.
+void ViewerScreen::go_on_selecting(UiContext& ui) {
+  const TimedWork timed(ui.watch, "a selection");
+  if (choosing_.valid()) {
+    if (choosing_.wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
+      take_chosen(choosing_.get());
     }
-    take_selected(std::move(chosen));
+    return;
   }
+  if (const MeshSelecting* selecting = surface_.selection(); selecting && selecting->is_under_way()) {
+    unfinished_ = true;
+    if (!surface_.select_more()) {
+      choose_marked(surface_.selection()->selected());
+    }
+  } else if (polygon_closed_ && is_current() && surface_.whole()) {
+    unfinished_ = surface_.select(select_of_, polygon_, step_, !visible_only_) || unfinished_;
+    drop_polygon();
+  }
+}
+
+void ViewerScreen::drop_polygon() {
   polygon_.clear();
+  polygon_closed_ = false;
 }
 
-void ViewerScreen::take_selected(std::vector<std::uint32_t> selected) {
-  selected_ = std::move(selected);
-  std::ranges::sort(selected_);
-  selected_mm2_ = 0;
-  if (select_of_ == MeshElement::kFace) {
-    const auto& p = state_.mesh->positions;
-    for (const std::uint32_t f : selected_) {
-      const auto& [a, b, c] = state_.mesh->faces[f];
-      selected_mm2_ += 0.5 * static_cast<double>((p[b] - p[a]).cross(p[c] - p[a]).norm());
+bool ViewerScreen::selects() const {
+  return polygon_closed_ || choosing_.valid() ||
+         (surface_.selection() != nullptr && surface_.selection()->is_under_way());
+}
+
+void ViewerScreen::choose_marked(const SelectionMarks& marks) {
+  choosing_ = std::async(std::launch::async, [marks, of = select_of_, shown = prepared_.shared(),
+                                              mesh = state_.mesh, number = selection_number_] {
+    Chosen out{number, marks, {}, 0};
+    if (of == MeshElement::kVertex) {
+      out.elements = chosen_of(*marks);
+    } else {
+      std::vector<std::uint8_t> is_chosen(mesh->faces.size(), 0);
+      for (std::size_t k = 0; k < marks->size(); ++k) {
+        is_chosen[shown->face_of[k]] = (*marks)[k] != 0;
+      }
+      out.elements = chosen_of(is_chosen);
+      out.mm2 = area_mm2(*mesh, out.elements);
     }
-  }
+    wake_window();
+    return out;
+  });
 }
 
+/// A selection that was kept.
 void ViewerScreen::show_selection(const MeshSelection& selection) {
+  clear_selected();
   select_of_ = selection.of;
   selection_name_ = selection.name;
-  std::vector<std::uint32_t> chosen = indices_of(selection.ranges);
-  if (selection.of == MeshElement::kVertex) {
-    std::vector<std::uint32_t> marks(prepared_.shown().positions.size(), 0);
-    for (const std::uint32_t v : chosen) {
-      marks[v] = 1;
+  choosing_ = std::async(std::launch::async, [selection, shown = prepared_.shared(), mesh = state_.mesh,
+                                              number = selection_number_] {
+    Chosen out{number, nullptr, indices_of(selection.ranges), 0};
+    std::vector<std::uint32_t> marks;
+    if (selection.of == MeshElement::kVertex) {
+      marks.resize(shown->positions.size());
+      for (const std::uint32_t v : out.elements) {
+        marks[v] = 1;
+      }
+    } else {
+      std::vector<std::uint8_t> is_chosen(mesh->faces.size(), 0);
+      for (const std::uint32_t f : out.elements) {
+        is_chosen[f] = 1;
+      }
+      marks.resize(shown->faces.size());
+      std::ranges::transform(shown->face_of, marks.begin(), [&](std::uint32_t f) { return is_chosen[f]; });
+      std::erase_if(out.elements, [&](std::uint32_t f) {  // what cannot be drawn has no area either
+        return std::ranges::any_of(mesh->faces[f],
+                                   [&](std::uint32_t v) { return v >= mesh->positions.size(); });
+      });
+      out.mm2 = area_mm2(*mesh, out.elements);
     }
-    surface_.set_selection(selection.of, marks);
-  } else {
-    std::vector<std::uint8_t> is_chosen(state_.mesh->faces.size(), 0);
-    for (const std::uint32_t f : chosen) {
-      is_chosen[f] = 1;
-    }
-    std::vector<std::uint32_t> marks(prepared_.shown().faces.size());
-    std::ranges::transform(prepared_.shown().face_of, marks.begin(),
-                           [&](std::uint32_t f) { return is_chosen[f]; });
-    surface_.set_selection(selection.of, marks);
-    std::erase_if(chosen, [&](std::uint32_t f) {  // what cannot be drawn has no area either
-      return std::ranges::any_of(state_.mesh->faces[f],
-                                 [&](std::uint32_t v) { return v >= state_.mesh->positions.size(); });
-    });
+    out.marks = std::make_shared<const std::vector<std::uint32_t>>(std::move(marks));
+    wake_window();
+    return out;
+  });
+}
+
+void ViewerScreen::take_chosen(Chosen chosen) {
+  if (chosen.number != selection_number_) {
+    return;  // it was cleared meanwhile, or is of another mesh
   }
-  take_selected(std::move(chosen));
+  if (surface_.selection() == nullptr) {
+    surface_.set_selection(select_of_, std::move(chosen.marks));
+    unfinished_ = true;
+  }
+  selected_ = std::move(chosen.elements);
+  selected_mm2_ = chosen.mm2;
 }
 
 void ViewerScreen::draw_selecting(UiContext& ui) {
@@ -111,11 +176,12 @@ void ViewerScreen::draw_selecting(UiContext& ui) {
     return;
   }
   if (!surface_.can_select(select_of_)) {
-    const std::string most = filled(ui.text(Text::kTooManyToSelect), grouped(MeshSelecting::most()));
-    coloured_text(ui.colours.amber, most.c_str());
+    coloured_text(ui.colours.amber, ui.text(Text::kTooManyToSelect));
     return;
   }
-  if (surface_.selection() != nullptr) {
+  if (selects()) {
+    coloured_text(ui.colours.faint, "...");
+  } else if (surface_.selection() != nullptr) {
     draw_selected(ui);
   }
   draw_kept_selections(ui);
@@ -166,8 +232,7 @@ void ViewerScreen::draw_kept_selections(UiContext& ui) {
   for (const MeshSelection& selection : kept) {
     const bool chosen = selection.name == selection_name_;
     is_kept = is_kept || chosen;
-    if (ImGui::Selectable(fmt::format("{}##kept", selection.name).c_str(), chosen)) {
-      const TimedWork timed(ui.watch, "a kept selection");
+    if (ImGui::Selectable(fmt::format("{}##kept", selection.name).c_str(), chosen) && !selects()) {
       show_selection(selection);
     }
     ui.target(fmt::format("kept.{}", ++row));
