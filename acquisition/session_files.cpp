@@ -79,17 +79,6 @@ FolderLock::~FolderLock() {
   }
 }
 
-Status sync_folder(const fs::path& folder) {
-  const int fd = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (fd < 0) {
-    return refused(folder, "cannot sync the folder", errno);
-  }
-  // Some network file systems cannot sync a folder and say EINVAL.
-  const int error = ::fsync(fd) == 0 || errno == EINVAL ? 0 : errno;
-  ::close(fd);
-  return error == 0 ? Status{} : refused(folder, "cannot sync the folder", error);
-}
-
 Status make_folders(const fs::path& folder) {
   std::error_code error;
   const bool there = fs::exists(folder, error);

@@ -41,7 +41,6 @@ class FolderLock {
 
 /// Makes the session's folders, durably. Refuses a folder that holds other things and no session.
 [[nodiscard]] Status make_folders(const std::filesystem::path& folder);
-[[nodiscard]] Status sync_folder(const std::filesystem::path& folder);
 /// Removes what a killed writer left behind half-written; returns how many.
 int remove_temporaries(const std::filesystem::path& folder);
 

@@ -169,17 +169,25 @@ Status tell_lost_commits(const fs::path& folder, SessionOpening& opening, bool k
 
 /// Copies database and log to where the log can be played, for a session on a disk that cannot be written.
 Status copy_elsewhere(const fs::path& folder, SqlDatabase& memory) {
-  std::string place = (fs::temp_directory_path() / "dubsar-session-XXXXXX").string();
-  if (::mkdtemp(place.data()) == nullptr) {
-    return fail(ErrorKind::kStorage, "no temporary folder to read the session in", place, "set TMPDIR");
-  }
   std::error_code error;
+  const fs::path temporary = fs::temp_directory_path(error);
+  std::string place = (temporary / "dubsar-session-XXXXXX").string();
+  if (error || ::mkdtemp(place.data()) == nullptr) {
+    return fail(ErrorKind::kStorage, "no temporary folder to read the session in", folder.string(),
+                "set TMPDIR to a folder that can be written to");
+  }
   for (const char* suffix : {"", "-wal"}) {
-    fs::copy_file(beside(folder / kDatabase, suffix), beside(fs::path(place) / kDatabase, suffix), error);
+    if (!error) {
+      fs::copy_file(beside(folder / kDatabase, suffix), beside(fs::path(place) / kDatabase, suffix), error);
+    }
   }
   Status copied;
-  if (Result<SqlDatabase> db = SqlDatabase::open(fs::path(place) / kDatabase, SqlDatabase::Mode::kCreate);
-      db) {
+  if (error) {
+    copied = fail(ErrorKind::kStorage, "cannot copy its database to " + place + ": " + error.message(),
+                  folder.string(), "set TMPDIR to a folder with room");
+  } else if (Result<SqlDatabase> db =
+                 SqlDatabase::open(fs::path(place) / kDatabase, SqlDatabase::Mode::kCreate);
+             db) {
     copied = memory.copy_from(*db);
   } else {
     copied = std::unexpected(db.error());

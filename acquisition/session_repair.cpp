@@ -59,7 +59,7 @@ Status move_aside(const fs::path& path) {
     return fail(ErrorKind::kStorage, "cannot set the damaged file aside: " + error.message(), path.string(),
                 "see that the folder may be written to");
   }
-  return session::sync_folder(path.parent_path());
+  return sync_folder(path.parent_path());
 }
 
 bool inside_a_folder_of_the_session(const std::string& name) {

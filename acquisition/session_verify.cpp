@@ -73,9 +73,10 @@ std::optional<Error> fault_of_file(const fs::path& folder, const std::string& na
 /// All that lies in the folder and is no folder, relative, in name order. Links are named and not followed.
 std::vector<std::string> everything_in(const fs::path& folder) {
   std::vector<std::string> out;
-  std::error_code ignored;
-  fs::recursive_directory_iterator it(folder, fs::directory_options::skip_permission_denied, ignored);
-  for (const fs::recursive_directory_iterator end; !ignored && it != end; it.increment(ignored)) {
+  std::error_code error;
+  std::error_code ignored;  // of one entry: the others are listed all the same
+  fs::recursive_directory_iterator it(folder, fs::directory_options::skip_permission_denied, error);
+  for (const fs::recursive_directory_iterator end; !error && it != end; it.increment(error)) {
     if (it->is_symlink(ignored) || !it->is_directory(ignored)) {
       out.push_back(it->path().lexically_relative(folder).generic_string());
     }

@@ -26,16 +26,6 @@ std::unexpected<Error> storage(const fs::path& path, const std::string& doing, c
               "free some space or choose another folder");
 }
 
-Status sync_folder(const fs::path& folder) {
-  const int fd = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  const bool synced = fd >= 0 && (::fsync(fd) == 0 || errno == EINVAL);  // some file systems sync no folder
-  const int error = errno;
-  if (fd >= 0) {
-    ::close(fd);
-  }
-  return synced ? Status{} : storage(folder, "cannot sync the folder", std::strerror(error));
-}
-
 bool is_free(const fs::path& target) {
   std::error_code ignored;
   const fs::file_status status = fs::symlink_status(target, ignored);
@@ -71,9 +61,11 @@ Result<StagedFolder> StagedFolder::begin(const fs::path& wanted, bool replace) {
     struct stat mine {};
     struct stat there {};
     if (::flock(lock, LOCK_EX | LOCK_NB) != 0) {
+      const int why = errno;
       ::close(lock);
-      return fail(ErrorKind::kUsage, "another program is writing this folder now", target.string(),
-                  "wait for it, or choose another folder");
+      return why != EWOULDBLOCK ? storage(staged, "cannot lock the folder", std::strerror(why))
+                                : fail(ErrorKind::kUsage, "another program is writing this folder now",
+                                       target.string(), "wait for it, or choose another folder");
     }
     if (::fstat(lock, &mine) == 0 && ::stat(staged.c_str(), &there) == 0 && mine.st_ino == there.st_ino) {
       for (fs::directory_iterator it(staged, error), end; !made && !error && it != end; it.increment(error)) {
@@ -131,8 +123,13 @@ Status StagedFolder::publish() {
   if (::renameat2(AT_FDCWD, path_.c_str(), AT_FDCWD, target_.c_str(), RENAME_EXCHANGE) != 0) {
     // A file system that cannot exchange: the old one steps aside under a name that says what it is.
     const fs::path aside = target_.parent_path() / (target_.filename().string() + ".replaced");
-    if (::rename(target_.c_str(), aside.c_str()) != 0 || ::rename(path_.c_str(), target_.c_str()) != 0) {
-      return storage(target_, "cannot put the folder in its place", std::strerror(errno));
+    if (::rename(target_.c_str(), aside.c_str()) != 0) {
+      return storage(aside, "cannot move the old folder there", std::strerror(errno));
+    }
+    if (::rename(path_.c_str(), target_.c_str()) != 0) {
+      const int why = errno;
+      (void)::rename(aside.c_str(), target_.c_str());
+      return storage(target_, "cannot put the folder in its place", std::strerror(why));
     }
     path_ = aside;
   }

@@ -115,8 +115,7 @@ Status write_file_atomically(const std::filesystem::path& path, const ByteProduc
     return S_ISDIR(existing.st_mode) ? storage_error(path, "cannot write", EISDIR)
                                      : write_to_device(path, produce);
   }
-  const std::filesystem::path folder =
-      path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
+  const std::filesystem::path folder = folder_of(path);
   std::filesystem::path temporary;
   int fd = -1;
   do {
@@ -143,12 +142,7 @@ Status write_file_atomically(const std::filesystem::path& path, const ByteProduc
     return storage_error(path, "cannot put the new file in its place", errno);
   }
   unlinker.release();
-  const Descriptor directory(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-  // Some network file systems cannot sync a folder and say EINVAL: the rename is then as durable as it gets.
-  if (directory.get() < 0 || (::fsync(directory.get()) != 0 && errno != EINVAL)) {
-    return storage_error(folder, "cannot sync the folder", errno);
-  }
-  return {};
+  return sync_folder(folder);
 }
 
 Status write_file_atomically(const std::filesystem::path& path, std::span<const std::byte> bytes) {
@@ -157,6 +151,19 @@ Status write_file_atomically(const std::filesystem::path& path, std::span<const 
 
 Status write_file_atomically(const std::filesystem::path& path, std::string_view text) {
   return write_file_atomically(path, std::as_bytes(std::span(text.data(), text.size())));
+}
+
+std::filesystem::path folder_of(const std::filesystem::path& file) {
+  return file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
+}
+
+Status sync_folder(const std::filesystem::path& folder) {
+  const Descriptor directory(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  // EINVAL: it cannot, and what was done is as durable as it gets.
+  if (directory.get() < 0 || (::fsync(directory.get()) != 0 && errno != EINVAL)) {
+    return storage_error(folder, "cannot sync the folder", errno);
+  }
+  return {};
 }
 
 namespace {

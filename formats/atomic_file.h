@@ -30,6 +30,13 @@ inline constexpr std::string_view kTemporaryPrefix = ".dubsar-tmp-";
 [[nodiscard]] Status write_file_atomically(const std::filesystem::path& path, std::string_view text);
 [[nodiscard]] Status write_file_atomically(const std::filesystem::path& path, const ByteProducer& produce);
 
+/// The folder that a file lies in: "." for a name alone.
+[[nodiscard]] std::filesystem::path folder_of(const std::filesystem::path& file);
+
+/// Names that were made, renamed or removed in the folder survive a power loss after this, where the file
+/// system can sync a folder at all: some network file systems cannot. Errors: kStorage.
+[[nodiscard]] Status sync_folder(const std::filesystem::path& folder);
+
 /// Files above this are refused by read_whole_file() unless a caller says otherwise.
 inline constexpr std::uint64_t kMaxFileBytes = std::uint64_t{8} << 30U;
 

@@ -48,17 +48,7 @@ class Check {
 
   Result<BagReport> run() {
     list_files();
-    const std::optional<std::string> text = text_of(kDeclaration);
-    if (!text) {
-      return std::move(report_);
-    }
-    const Result<BagDeclaration> declared = parse_bag_declaration(*text, kDeclaration);
-    if (!declared) {
-      report_.damaged.push_back(declared.error());
-      return std::move(report_);
-    }
-    declaration_ = *declared;
-    report_.version = std::to_string(declaration_.major) + "." + std::to_string(declaration_.minor);
+    read_declaration();
     std::error_code ignored;
     if (!fs::is_directory(folder_ / "data", ignored)) {
       say("data", "missing: a bag has its payload there");
@@ -84,10 +74,27 @@ class Check {
     report_.damaged.push_back({ErrorKind::kBadInput, what, where, kMend});
   }
 
+  /// Of a bag whose declaration is lost the rest is checked as today's version has it: what is whole is to be
+  /// told all the same.
+  void read_declaration() {
+    const std::optional<std::string> text = text_of(kDeclaration);
+    if (!text) {
+      return;
+    }
+    const Result<BagDeclaration> declared = parse_bag_declaration(*text, kDeclaration);
+    if (!declared) {
+      report_.damaged.push_back(declared.error());
+      return;
+    }
+    declaration_ = *declared;
+    report_.version = std::to_string(declaration_.major) + "." + std::to_string(declaration_.minor);
+  }
+
   void list_files() {
+    std::error_code error;
     std::error_code ignored;
-    fs::recursive_directory_iterator it(folder_, fs::directory_options::skip_permission_denied, ignored);
-    for (const fs::recursive_directory_iterator end; !ignored && it != end; it.increment(ignored)) {
+    fs::recursive_directory_iterator it(folder_, fs::directory_options::skip_permission_denied, error);
+    for (const fs::recursive_directory_iterator end; !error && it != end; it.increment(error)) {
       const std::string name = it->path().lexically_relative(folder_).generic_string();
       if (it->is_symlink(ignored)) {
         say(name, "a link: a bag holds its files itself");
@@ -97,10 +104,14 @@ class Check {
         say(name, "neither a file nor a folder");
       }
     }
+    if (error) {
+      say(folder_.string(), "not all of its files can be listed: " + error.message());
+    }
   }
 
   std::optional<std::string> text_of(const std::string& name) {
     if (!files_.contains(name)) {
+      missing_.insert(name);
       say(name, "missing");
       return std::nullopt;
     }
@@ -273,7 +284,7 @@ class Check {
 
   const fs::path& folder_;
   JobContext& job_;
-  BagDeclaration declaration_;
+  BagDeclaration declaration_{.major = 1, .minor = 0};
   BagReport report_;
   std::set<std::string> files_;     ///< regular files, relative
   std::set<std::string> to_fetch_;  ///< of fetch.txt
@@ -284,7 +295,10 @@ class Check {
 
 bool is_bag(const fs::path& folder) {
   std::error_code ignored;
-  return fs::is_regular_file(folder / kDeclaration, ignored);
+  // One that has lost its declaration is a bag all the same: that is then its damage.
+  return fs::is_regular_file(folder / kDeclaration, ignored) ||
+         (fs::is_regular_file(folder / "manifest-sha512.txt", ignored) &&
+          fs::is_directory(folder / "data", ignored));
 }
 
 Result<BagReport> check_bag(const fs::path& folder, JobContext& job) {

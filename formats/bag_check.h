@@ -13,7 +13,7 @@ namespace dubsar {
 
 /// What a check of a bag found. Names are relative to the bag.
 struct BagReport {
-  std::string version;                  ///< "1.0"
+  std::string version;                  ///< "1.0"; empty where bagit.txt does not say it
   std::vector<std::string> algorithms;  ///< of the payload manifests that were checked
   std::vector<Error> damaged;           ///< everything that keeps the bag from being complete and valid
   std::vector<std::string> whole;       ///< files whose checksums fit, tag files included
@@ -22,7 +22,8 @@ struct BagReport {
   [[nodiscard]] bool ok() const { return damaged.empty(); }
 };
 
-/// True when the folder declares itself a bag (bagit.txt).
+/// True when the folder declares itself a bag (bagit.txt), or has lost that and holds a manifest and a
+/// payload.
 [[nodiscard]] bool is_bag(const std::filesystem::path& folder);
 
 /// Whether a bag is complete and valid (RFC 8493, section 3): every payload file in every manifest and the

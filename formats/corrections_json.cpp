@@ -6,6 +6,7 @@
 #include "formats/json_node.h"
 #include "formats/json_text.h"
 #include "formats/self_checked.h"
+#include "formats/writers_turn.h"
 
 namespace dubsar {
 
@@ -84,6 +85,23 @@ std::string corrections_to_json(const CorrectionFile& file) {
 
 Status write_corrections(const std::filesystem::path& path, const CorrectionFile& file) {
   return write_file_atomically(path, with_own_checksum(corrections_to_json(file)));
+}
+
+Status replace_corrections(const std::filesystem::path& path, const std::vector<WedgeCorrection>& known,
+                           const CorrectionFile& file) {
+  const Result<WritersTurn> turn = WritersTurn::take(folder_of(path));
+  if (!turn) {
+    return std::unexpected(turn.error());
+  }
+  const Result<CorrectionFile> there = read_corrections(path);
+  if (!there) {
+    return std::unexpected(there.error());
+  }
+  if (corrections_to_json({{}, there->corrections}) != corrections_to_json({{}, known})) {
+    return fail(ErrorKind::kUsage, "another program has changed the corrections meanwhile", path.string(),
+                "read the wedges again, then say it again");
+  }
+  return write_corrections(path, file);
 }
 
 Result<CorrectionFile> parse_corrections(std::string_view text, const std::string& where) {

@@ -23,6 +23,12 @@ struct CorrectionFile {
 
 [[nodiscard]] std::string corrections_to_json(const CorrectionFile& file);
 [[nodiscard]] Status write_corrections(const std::filesystem::path& path, const CorrectionFile& file);
+/// The same where the file still says what was `known` when these were made, so that nobody's correction is
+/// lost. Errors: kUsage when another program has changed them meanwhile, kBadInput when the file cannot be
+/// read, kStorage; nothing is written then.
+[[nodiscard]] Status replace_corrections(const std::filesystem::path& path,
+                                         const std::vector<WedgeCorrection>& known,
+                                         const CorrectionFile& file);
 [[nodiscard]] Result<CorrectionFile> parse_corrections(std::string_view text, const std::string& where);
 /// No corrections where there is no file.
 [[nodiscard]] Result<CorrectionFile> read_corrections(const std::filesystem::path& path);

@@ -5,6 +5,7 @@
 #include "formats/atomic_file.h"
 #include "formats/json_node.h"
 #include "formats/json_text.h"
+#include "formats/writers_turn.h"
 
 namespace dubsar {
 
@@ -84,6 +85,10 @@ Result<VerificationLog> read_verification_log(const std::filesystem::path& path)
 }
 
 Status append_verification(const std::filesystem::path& path, const VerificationEntry& entry) {
+  const Result<WritersTurn> turn = WritersTurn::take(folder_of(path));
+  if (!turn) {
+    return std::unexpected(turn.error());
+  }
   std::string whole;
   std::error_code ignored;
   if (std::filesystem::exists(path, ignored)) {

@@ -33,7 +33,8 @@ struct VerificationLog {
 [[nodiscard]] VerificationLog parse_verification_log(std::string_view text);
 /// A log that is not there is an empty one. Errors: a file that cannot be read.
 [[nodiscard]] Result<VerificationLog> read_verification_log(const std::filesystem::path& path);
-/// Adds a line; what stands there stays byte for byte. Errors: kStorage.
+/// Adds a line; what stands there stays byte for byte. Several at the same moment, from threads or programs
+/// of one computer, come one after the other. Errors: kStorage.
 [[nodiscard]] Status append_verification(const std::filesystem::path& path, const VerificationEntry& entry);
 
 /// Where the log of a calibration lies: calibration.json has calibration.verified.jsonl.

@@ -2,9 +2,6 @@
 // Copyright The Dubsar developers
 #include "station/done_stamp.h"
 
-#include <fcntl.h>
-#include <unistd.h>
-
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -153,28 +150,17 @@ Status StampedWork::start() const {
   if (!fs::remove(stamp_, error)) {
     if (error) {
       return fail(ErrorKind::kStorage, "cannot remove the old stamp: " + error.message(), stamp_.string(),
-                  "check the rights of the folder");
+                  "check the folder and its rights");
     }
     return {};  // there was none
   }
-  const fs::path folder = stamp_.has_parent_path() ? stamp_.parent_path() : fs::path(".");
-  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  const bool synced = descriptor >= 0 && ::fsync(descriptor) == 0;
-  const int number = errno;
-  if (descriptor >= 0) {
-    ::close(descriptor);
-  }
-  if (!synced) {
-    return fail(ErrorKind::kStorage, std::string("cannot write: ") + std::strerror(number), folder.string(),
-                "check the disk");
-  }
-  return {};
+  return sync_folder(folder_of(stamp_));
 }
 
 Status StampedWork::finish_staged(const std::vector<fs::path>& outputs, const fs::path& staged,
                                   const fs::path& target, const JobContext& job) const {
   DoneStamp done = made_;
-  const fs::path folder = stamp_.has_parent_path() ? stamp_.parent_path() : fs::path(".");
+  const fs::path folder = folder_of(stamp_);
   for (const fs::path& output : outputs) {
     const fs::path place = staged.empty() ? output : target / output.lexically_relative(staged);
     Result<StampedFile> written = stamped(output, output_name(place, folder), job);

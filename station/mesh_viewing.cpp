@@ -34,7 +34,7 @@ struct WedgesPlace {
 WedgesPlace wedges_beside(const fs::path& mesh) {
   fs::path own = mesh;
   own.replace_extension(".wedges.json");
-  const fs::path folder = mesh.parent_path();
+  const fs::path folder = fs::absolute(mesh).parent_path();
   const fs::path of_session = folder.parent_path() / "analysis" / "wedges.json";
   std::error_code error;
   for (const fs::path& file : {own, folder / "wedges.json", of_session}) {
@@ -42,7 +42,9 @@ WedgesPlace wedges_beside(const fs::path& mesh) {
       return {file, file == of_session};
     }
   }
-  return {own, false};
+  // What is found of a session's mesh is the session's.
+  return fs::is_regular_file(folder.parent_path() / "session.sqlite", error) ? WedgesPlace{of_session, true}
+                                                                             : WedgesPlace{own, false};
 }
 
 /// What somebody who measures on it has to know of its numbers.

@@ -76,7 +76,8 @@ class MeshViewing {
   /// Finds the wedges of the selected part alone: STEM.ply and STEM.wedges.json, then looks at that mesh.
   void analyse_part(MeshSelection selection, const std::filesystem::path& stem);
   /// Makes a correction of the wedges and keeps it; where it cannot be made, nothing is changed and not_made
-  /// says why. The wedges are measured first unless they were. Their file is written anew, that of a session
+  /// says why; nor where another program has changed them since they were read, which is an error. The wedges
+  /// are measured first unless they were. Their file is written anew, that of a session
   /// when the session is stitched or exported next.
   void correct(WedgeCorrection correction);
   void correct_by_adding(MeshSelection selection);  ///< a wedge is there

@@ -16,16 +16,9 @@ namespace fs = std::filesystem;
 void MeshViewing::take_corrections(const fs::path& wedges_file, bool in_session) {
   wedges_file_ = wedges_file;
   in_session_ = in_session;
-  std::error_code error;
-  if (wedges_file_.empty() || !fs::is_regular_file(wedges_file_, error)) {
+  if (wedges_file_.empty()) {
     return;
   }
-  Result<WedgeFile> known = read_wedges(wedges_file_);
-  if (!known) {
-    complain(known.error());
-    return;
-  }
-  analysis_options_.wedges.exits = known->exits;
   const fs::path corrections_file = corrections_file_of(wedges_file_);
   Result<CorrectionFile> said = read_corrections(corrections_file);
   if (!said) {
@@ -34,13 +27,23 @@ void MeshViewing::take_corrections(const fs::path& wedges_file, bool in_session)
     analysis_options_.wedges.corrections = std::move(said->corrections);
   }
   const std::size_t count = analysis_options_.wedges.corrections.size();
-  const bool since =
-      count > 0 && fs::last_write_time(corrections_file, error) > fs::last_write_time(wedges_file_, error);
-  take_wedges(std::move(known->wedges));
   {
     const std::scoped_lock lock(mutex_);
     state_.corrections = count;
   }
+  std::error_code error;
+  if (!fs::is_regular_file(wedges_file_, error)) {
+    return;
+  }
+  Result<WedgeFile> known = read_wedges(wedges_file_);
+  if (!known) {
+    complain(known.error());
+    return;
+  }
+  analysis_options_.wedges.exits = known->exits;
+  const bool since =
+      count > 0 && fs::last_write_time(corrections_file, error) > fs::last_write_time(wedges_file_, error);
+  take_wedges(std::move(known->wedges));
   if ((since || count != known->corrections) && measure_all()) {
     take_wedges(analysis_->set.wedges);
   }
@@ -77,16 +80,18 @@ void MeshViewing::make_corrections(std::vector<WedgeCorrection> corrections, boo
   const std::size_t count = analysis_options_.wedges.corrections.size();
   const bool refused = must_make_last && !lost.empty() && lost.back().index + 1 == count;
   Status written;
-  if (!refused) {
+  if (!refused && !wedges_file_.empty()) {
     const std::string name = state().name.empty() ? "model.ply" : state().name;
-    if (!wedges_file_.empty()) {
-      std::error_code error;
-      fs::create_directories(wedges_file_.parent_path(), error);  // what is wrong is said by the writing
-      written =
-          write_corrections(corrections_file_of(wedges_file_), {name, analysis_options_.wedges.corrections});
-    }
-    if (written && !in_session_ && !wedges_file_.empty()) {
+    const fs::path file = corrections_file_of(wedges_file_);
+    const std::vector<WedgeCorrection>& now = analysis_options_.wedges.corrections;
+    std::error_code error;
+    fs::create_directories(wedges_file_.parent_path(), error);  // what is wrong is said by the writing
+    written = replace_corrections(file, corrections, {name, now});
+    if (written && !in_session_) {
       written = write_wedges(wedges_file_, wedge_file(name, analysis_options_, *analysis_));
+      if (!written) {
+        (void)replace_corrections(file, now, {name, corrections});
+      }
     }
   }
   if (refused || !written) {  // all is as it was

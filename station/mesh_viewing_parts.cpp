@@ -8,6 +8,7 @@
 #include "formats/atomic_file.h"
 #include "formats/mesh_io.h"
 #include "formats/wedges_json.h"
+#include "formats/writers_turn.h"
 #include "station/analysis.h"
 #include "station/mesh_viewing.h"
 #include "station/selection_store.h"
@@ -49,6 +50,17 @@ void MeshViewing::change_selections(const std::function<void(std::vector<MeshSel
   }
   if (!whole || file.empty()) {
     return;
+  }
+  std::error_code error;
+  fs::create_directories(file.parent_path(), error);  // what is wrong is said by the lock
+  const Result<WritersTurn> turn = WritersTurn::take(folder_of(file));
+  if (!turn) {
+    complain(turn.error());
+    return;
+  }
+  // Another program may have kept some meanwhile.
+  if (Result<std::vector<MeshSelection>> there = kept_selections(file, *whole)) {
+    selections = std::move(*there);
   }
   change(selections);
   if (const Status kept = keep_selections(file, name, *whole, selections); !kept) {

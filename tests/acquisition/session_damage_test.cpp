@@ -220,20 +220,55 @@ TEST_F(SessionDamageTest, AWriteProtectedFolderIsToldAndCanBeRead) {
   EXPECT_EQ(status, 0);
 }
 
-TEST_F(SessionDamageTest, ALogDamagedInItsMiddleIsToldAndATornEndIsNot) {
-  const fs::path folder = temporary_.path() / "logged";
-  const pid_t child = ::fork();
-  if (child == 0) {
+/// A session with a scan and twelve documents, left as a kill leaves it: most of it stands in the log alone.
+void leave_with_log(const fs::path& folder) {
+  const int status = in_child([&]() -> int {
     Result<SessionStore> store = SessionStore::open_or_create(folder);
     bool good = store && store->add_grid(small_grid(1));
     for (int i = 0; i < 12; ++i) {
       good = good && store->save_document("document " + std::to_string(i), "{}");
     }
-    ::_exit(good ? 0 : 1);  // as a kill would: the log stays
-  }
-  int status = 0;
-  ::waitpid(child, &status, 0);
+    ::_exit(good ? 0 : 1);
+  });
   ASSERT_EQ(status, 0);
+}
+
+TEST_F(SessionDamageTest, ALogOnAWriteProtectedDiskIsPlayedWhereThereIsRoom) {
+  const fs::path folder = temporary_.path() / "logged";
+  leave_with_log(folder);
+  fs::remove(folder / "session.sqlite-shm");
+  const int status = in_child([&] {
+    fs::permissions(temporary_.path(), fs::perms(0555));
+    fs::permissions(folder, fs::perms(0555));
+    if (::getuid() == 0 && ::setuid(65534) != 0) {
+      return 9;
+    }
+    ::signal(SIGXFSZ, SIG_IGN);
+    const rlimit small{1000, RLIM_INFINITY};
+    ::setrlimit(RLIMIT_FSIZE, &small);
+    const auto full = SessionStore::open(folder, kReadOnly);
+    const rlimit free{RLIM_INFINITY, RLIM_INFINITY};
+    ::setrlimit(RLIMIT_FSIZE, &free);
+    if (full || full.error().kind != ErrorKind::kStorage || full.error().mend.empty()) {
+      return 1;
+    }
+    const auto reader = SessionStore::open(folder, kReadOnly);
+    if (!reader || reader->document_names().value().size() != 12) {
+      return 2;
+    }
+    ::setenv("TMPDIR", "/nowhere", 1);
+    const auto nowhere = SessionStore::open(folder, kReadOnly);
+    return !nowhere && nowhere.error().kind == ErrorKind::kStorage ? 0 : 3;
+  });
+  for (const fs::path& path : {temporary_.path(), folder}) {
+    fs::permissions(path, fs::perms(0755));
+  }
+  EXPECT_EQ(status, 0);
+}
+
+TEST_F(SessionDamageTest, ALogDamagedInItsMiddleIsToldAndATornEndIsNot) {
+  const fs::path folder = temporary_.path() / "logged";
+  leave_with_log(folder);
   const fs::path log = folder / "session.sqlite-wal";
   const auto size = fs::file_size(log);
   const std::size_t documents = SessionStore::open(folder, kReadOnly).value().document_names().value().size();

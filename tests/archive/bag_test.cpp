@@ -7,7 +7,6 @@
 
 #include <fstream>
 
-#include "archive/staged_folder.h"
 #include "formats/atomic_file.h"
 #include "formats/sha2.h"
 #include "tests/support/temporary_folder.h"
@@ -70,47 +69,6 @@ TEST(Bag, StopsWhenAsked) {
   stopped.cancel();
   EXPECT_EQ(write_bag_tags(folder.path(), {}, stopped).error().kind, ErrorKind::kCancelled);
   EXPECT_FALSE(fs::exists(folder.path() / "bagit.txt"));
-}
-
-TEST(StagedFolder, IsThereWholeOrNotAtAll) {
-  const test::TemporaryFolder folder;
-  const fs::path target = folder.path() / "new" / "bag";
-  {
-    auto staged = StagedFolder::begin(target, false);
-    ASSERT_TRUE(staged) << staged.error().line();
-    put(staged->path() / "file", "x");
-    EXPECT_FALSE(fs::exists(target));
-    EXPECT_EQ(StagedFolder::begin(target, false).error().kind, ErrorKind::kUsage) << "two at once";
-  }
-  EXPECT_TRUE(fs::is_empty(target.parent_path())) << "given up: nothing is left";
-  auto staged = StagedFolder::begin(target, false);
-  ASSERT_TRUE(staged);
-  put(staged->path() / "file", "y");
-  ASSERT_TRUE(staged->publish());
-  EXPECT_EQ(text_of_file(target / "file"), "y");
-  EXPECT_EQ(std::distance(fs::directory_iterator(target.parent_path()), fs::directory_iterator()), 1);
-}
-
-TEST(StagedFolder, ReplacesOnlyWhenTold) {
-  const test::TemporaryFolder folder;
-  const fs::path target = folder.path() / "bag";
-  put(target / "old", "old");
-  EXPECT_EQ(StagedFolder::begin(target, false).error().kind, ErrorKind::kUsage);
-  auto staged = StagedFolder::begin(target.string() + "/", true);
-  ASSERT_TRUE(staged) << staged.error().line();
-  put(staged->path() / "new", "new");
-  ASSERT_TRUE(staged->publish());
-  EXPECT_EQ(text_of_file(target / "new"), "new");
-  EXPECT_FALSE(fs::exists(target / "old"));
-  EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), fs::directory_iterator()), 1);
-}
-
-TEST(StagedFolder, ClearsWhatAKilledProgramLeft) {
-  const test::TemporaryFolder folder;
-  put(folder.path() / (std::string(kTemporaryPrefix) + "bag") / "half", "written");
-  auto staged = StagedFolder::begin(folder.path() / "bag", false);
-  ASSERT_TRUE(staged) << staged.error().line();
-  EXPECT_TRUE(fs::is_empty(staged->path()));
 }
 
 }  // namespace

@@ -135,8 +135,22 @@ TEST_F(BagTest, DeclarationsThatAreNoneAreTold) {
         "\xef\xbb\xbf"
         "BagIt-Version: 1.0\nTag-File-Character-Encoding: UTF-8\n"}) {
     put("bagit.txt", text);
-    EXPECT_EQ(check().damaged.size(), 1U) << text;
+    const BagReport report = check();
+    ASSERT_FALSE(report.ok()) << text;
+    EXPECT_EQ(report.damaged.front().where, "bagit.txt") << text;
+    EXPECT_THAT(report.version, IsEmpty());
+    EXPECT_THAT(report.whole, Contains("data/master.ply")) << text;
   }
+}
+
+TEST_F(BagTest, WhatIsWholeIsToldWithoutTheDeclaration) {
+  fs::remove(bag() / "bagit.txt");
+  ASSERT_TRUE(is_bag(bag()));
+  put("data/master.ply", "ply and so oh\n");
+  EXPECT_THAT(faults(), UnorderedElementsAre("bagit.txt: missing",
+                                             "data/master.ply: not the bytes that manifest-sha256.txt says",
+                                             "data/master.ply: not the bytes that manifest-sha512.txt says"));
+  EXPECT_THAT(check().whole, Contains("data/rückseite 100%.png"));
 }
 
 TEST_F(BagTest, OldBagsAndUnknownSumsAreUnderstood) {

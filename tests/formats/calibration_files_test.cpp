@@ -2,6 +2,11 @@
 // Copyright The Dubsar developers
 #include <gtest/gtest.h>
 
+#include <set>
+#include <string>
+#include <thread>
+#include <vector>
+
 #include "formats/artefact_toml.h"
 #include "formats/calibration_json.h"
 #include "formats/calibration_set.h"
@@ -213,6 +218,33 @@ TEST(VerificationLog, KeepsEveryLineAndSurvivesADamagedOne) {
   EXPECT_EQ(edited.damaged, 0U);
   EXPECT_TRUE(torn.entries.empty());
   EXPECT_TRUE(read_verification_log(folder.path() / "none")->entries.empty());
+}
+
+TEST(VerificationLog, LosesNoneOfThoseThatAreAddedAtTheSameMoment) {
+  const test::TemporaryFolder folder;
+  const auto path = folder.path() / "calibration.verified.jsonl";
+  constexpr int kWriters = 4;
+  constexpr int kEach = 20;
+  {
+    std::vector<std::jthread> writers;
+    for (int writer = 0; writer < kWriters; ++writer) {
+      writers.emplace_back([&path, writer] {
+        for (int k = 0; k < kEach; ++k) {
+          const std::string name = std::to_string(writer) + "/" + std::to_string(k);
+          EXPECT_TRUE(append_verification(path, {"w", name, "c", "m", 0.01, true, {}, "{}"}).has_value());
+        }
+      });
+    }
+  }
+  const Result<VerificationLog> log = read_verification_log(path);
+  ASSERT_TRUE(log.has_value());
+  EXPECT_EQ(log->damaged, 0U);
+  std::set<std::string> names;
+  for (const VerificationEntry& entry : log->entries) {
+    names.insert(entry.artefact);
+  }
+  EXPECT_EQ(log->entries.size(), std::size_t{kWriters * kEach});
+  EXPECT_EQ(names.size(), std::size_t{kWriters * kEach});
 }
 
 TEST(GrayFile, PngAndPgm) {

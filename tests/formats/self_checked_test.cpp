@@ -83,5 +83,17 @@ TEST_F(SelfCheckedFiles, ADamagedCorrectionIsRefused) {
   EXPECT_FALSE(parse_corrections(text, "c.json"));
 }
 
+TEST_F(SelfCheckedFiles, CorrectionsTakeThePlaceOfThoseTheyWereMadeOfAlone) {
+  WedgeCorrection one;
+  one.at_mm = {{1, 2, 3}};
+  WedgeCorrection two = one;
+  two.at_mm[0].z() = 4;
+  ASSERT_TRUE(replace_corrections(path_, {}, {"t.ply", {one}}));
+  EXPECT_EQ(replace_corrections(path_, {}, {"t.ply", {two}}).error().kind, ErrorKind::kUsage);
+  EXPECT_EQ(read_corrections(path_)->corrections.front().at_mm, one.at_mm);
+  EXPECT_TRUE(replace_corrections(path_, {one}, {"t.ply", {one, two}}));
+  EXPECT_EQ(read_corrections(path_)->corrections.size(), 2U);
+}
+
 }  // namespace
 }  // namespace dubsar

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "archive/staged_folder.h"
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <fstream>
+#include <string>
+
+#include "formats/atomic_file.h"
+#include "tests/support/temporary_folder.h"
+
+namespace {
+
+/// A file system that cannot exchange two names, as not all of them can, and then one name that it refuses.
+bool cannot_exchange = false;
+std::string refuses_from;
+
+}  // namespace
+
+// In the place of the C library's.
+extern "C" int renameat2(int from_folder, const char* from, int to_folder, const char* to,
+                         unsigned flags) noexcept {
+  if (cannot_exchange && flags != 0) {
+    errno = EINVAL;
+    return -1;
+  }
+  if (!refuses_from.empty() && from == refuses_from) {
+    errno = EIO;
+    return -1;
+  }
+  return static_cast<int>(::syscall(SYS_renameat2, from_folder, from, to_folder, to, flags));
+}
+extern "C" int rename(const char* from, const char* to) noexcept {
+  return renameat2(AT_FDCWD, from, AT_FDCWD, to, 0);
+}
+
+namespace dubsar {
+namespace {
+
+namespace fs = std::filesystem;
+
+void put(const fs::path& path, const std::string& text) {
+  fs::create_directories(path.parent_path());
+  std::ofstream(path, std::ios::binary) << text;
+}
+
+std::string text_of_file(const fs::path& path) {
+  return read_whole_file(path).value_or("cannot be read");
+}
+
+TEST(StagedFolder, IsThereWholeOrNotAtAll) {
+  const test::TemporaryFolder folder;
+  const fs::path target = folder.path() / "new" / "bag";
+  {
+    auto staged = StagedFolder::begin(target, false);
+    ASSERT_TRUE(staged) << staged.error().line();
+    put(staged->path() / "file", "x");
+    EXPECT_FALSE(fs::exists(target));
+    EXPECT_EQ(StagedFolder::begin(target, false).error().kind, ErrorKind::kUsage) << "two at once";
+  }
+  EXPECT_TRUE(fs::is_empty(target.parent_path())) << "given up: nothing is left";
+  auto staged = StagedFolder::begin(target, false);
+  ASSERT_TRUE(staged);
+  put(staged->path() / "file", "y");
+  ASSERT_TRUE(staged->publish());
+  EXPECT_EQ(text_of_file(target / "file"), "y");
+  EXPECT_EQ(std::distance(fs::directory_iterator(target.parent_path()), fs::directory_iterator()), 1);
+}
+
+TEST(StagedFolder, ReplacesOnlyWhenTold) {
+  const test::TemporaryFolder folder;
+  const fs::path target = folder.path() / "bag";
+  put(target / "old", "old");
+  EXPECT_EQ(StagedFolder::begin(target, false).error().kind, ErrorKind::kUsage);
+  auto staged = StagedFolder::begin(target.string() + "/", true);
+  ASSERT_TRUE(staged) << staged.error().line();
+  put(staged->path() / "new", "new");
+  ASSERT_TRUE(staged->publish());
+  EXPECT_EQ(text_of_file(target / "new"), "new");
+  EXPECT_FALSE(fs::exists(target / "old"));
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), fs::directory_iterator()), 1);
+}
+
+TEST(StagedFolder, ClearsWhatAKilledProgramLeft) {
+  const test::TemporaryFolder folder;
+  put(folder.path() / (std::string(kTemporaryPrefix) + "bag") / "half", "written");
+  auto staged = StagedFolder::begin(folder.path() / "bag", false);
+  ASSERT_TRUE(staged) << staged.error().line();
+  EXPECT_TRUE(fs::is_empty(staged->path()));
+}
+
+TEST(StagedFolder, WhatItReplacesIsThereAgainWhenTheFileSystemRefusesHalfway) {
+  const test::TemporaryFolder folder;
+  const fs::path target = folder.path() / "bag";
+  put(target / "old", "old");
+  cannot_exchange = true;
+  {
+    auto refused = StagedFolder::begin(target, true);
+    ASSERT_TRUE(refused) << refused.error().line();
+    put(refused->path() / "new", "new");
+    refuses_from = refused->path();
+    const Status published = refused->publish();
+    refuses_from.clear();
+    ASSERT_FALSE(published);
+    EXPECT_EQ(published.error().kind, ErrorKind::kStorage);
+  }
+  EXPECT_EQ(text_of_file(target / "old"), "old");
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), fs::directory_iterator()), 1);
+  auto staged = StagedFolder::begin(target, true);
+  ASSERT_TRUE(staged) << staged.error().line();
+  put(staged->path() / "new", "new");
+  ASSERT_TRUE(staged->publish());
+  cannot_exchange = false;
+  EXPECT_EQ(text_of_file(target / "new"), "new");
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), fs::directory_iterator()), 1);
+}
+
+}  // namespace
+}  // namespace dubsar

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+// What a person says in the viewer is kept, whatever another program or the disk does meanwhile.
+
+#include "station/mesh_viewing.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include <chrono>
+#include <csignal>
+#include <fstream>
+#include <thread>
+
+#include "formats/atomic_file.h"
+#include "formats/corrections_json.h"
+#include "formats/mesh_io.h"
+#include "formats/selections_json.h"
+#include "sim/tablet.h"
+#include "station/analysis.h"
+#include "tests/support/temporary_folder.h"
+
+namespace dubsar {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::SizeIs;
+
+/// A mesh that is looked at, and waited for.
+class Viewer {
+ public:
+  explicit Viewer(const fs::path& mesh) : viewing_([] {}) { open(mesh); }
+  void open(const fs::path& mesh) {
+    viewing_.open(mesh);
+    settle();
+  }
+  void remove_wedge(const Eigen::Vector3d& at_mm) {
+    WedgeCorrection gone;
+    gone.at_mm = {at_mm};
+    viewing_.correct(gone);
+    settle();
+  }
+  void keep(const std::string& name) {
+    viewing_.keep_selection({name, MeshElement::kFace, {{0, 3}}});
+    settle();
+  }
+  [[nodiscard]] ViewedMesh state() const { return viewing_.state(); }
+
+ private:
+  void settle() const {
+    const auto deadline = std::chrono::steady_clock::now() + std::chrono::minutes(2);
+    while (!state().stage.empty() && std::chrono::steady_clock::now() < deadline) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+  }
+  MeshViewing viewing_;
+};
+
+class MeshViewingTest : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    sim::TabletOptions options;
+    options.seed = 5;
+    options.size_mm = {14, 11, 8};
+    options.spacing_mm = 0.2;
+    JobContext job;
+    tablet_ = new Mesh(sim::make_tablet(options, job)->mesh);
+    const Result<Analysis> analysis = analyze_mesh(*tablet_, {}, job);
+    ASSERT_TRUE(analysis);
+    for (const Wedge& wedge : analysis->set.wedges) {
+      wedges_mm_.push_back(wedge.depth_point_mm);
+    }
+    ASSERT_GT(wedges_mm_.size(), 1U);
+  }
+  static void TearDownTestSuite() { delete tablet_; }
+  void SetUp() override {
+    fs::create_directories(mesh_.parent_path());
+    ASSERT_TRUE(write_mesh(mesh_, *tablet_));
+  }
+  [[nodiscard]] std::size_t noted() const { return read_corrections(corrections_)->corrections.size(); }
+
+  static Mesh* tablet_;
+  static std::vector<Eigen::Vector3d> wedges_mm_;
+  test::TemporaryFolder folder_;
+  fs::path mesh_ = folder_.path() / "mesh" / "tablet.ply";
+  fs::path corrections_ = folder_.path() / "mesh" / "tablet.wedges.corrections.json";
+};
+Mesh* MeshViewingTest::tablet_ = nullptr;
+std::vector<Eigen::Vector3d> MeshViewingTest::wedges_mm_;
+
+TEST_F(MeshViewingTest, ACorrectionThatAnotherProgramMadeMeanwhileStays) {
+  Viewer one(mesh_);
+  Viewer other(mesh_);
+  one.remove_wedge(wedges_mm_[0]);
+  ASSERT_FALSE(one.state().error) << one.state().error->line();
+  ASSERT_EQ(noted(), 1U);
+  other.remove_wedge(wedges_mm_[1]);
+  ASSERT_TRUE(other.state().error);
+  EXPECT_EQ(other.state().error->kind, ErrorKind::kUsage);
+  EXPECT_EQ(other.state().corrections, 0U);
+  EXPECT_EQ(noted(), 1U);
+  other.open(mesh_);
+  EXPECT_EQ(other.state().corrections, 1U);
+  other.remove_wedge(wedges_mm_[1]);
+  EXPECT_EQ(noted(), 2U);
+}
+
+TEST_F(MeshViewingTest, CorrectionsThatCannotBeReadAreNotWrittenOver) {
+  std::ofstream(corrections_) << "{\"corrections\":[";
+  Viewer viewer(mesh_);
+  ASSERT_TRUE(viewer.state().error);
+  viewer.remove_wedge(wedges_mm_[0]);
+  EXPECT_TRUE(viewer.state().error);
+  EXPECT_EQ(*read_whole_file(corrections_), "{\"corrections\":[");
+}
+
+TEST_F(MeshViewingTest, NothingIsNotedWhenTheWedgesCannotBeWritten) {
+  Viewer viewer(mesh_);
+  // Room for what is noted, none for what is measured.
+  std::signal(SIGXFSZ, SIG_IGN);
+  const rlimit small{4096, RLIM_INFINITY};
+  ::setrlimit(RLIMIT_FSIZE, &small);
+  viewer.remove_wedge(wedges_mm_[0]);
+  const rlimit free{RLIM_INFINITY, RLIM_INFINITY};
+  ::setrlimit(RLIMIT_FSIZE, &free);
+  ASSERT_TRUE(viewer.state().error);
+  EXPECT_EQ(viewer.state().error->kind, ErrorKind::kStorage);
+  EXPECT_EQ(viewer.state().corrections, 0U);
+  EXPECT_EQ(noted(), 0U);
+}
+
+TEST_F(MeshViewingTest, WhatIsSaidOfASessionsMeshIsKeptWithItsWedges) {
+  std::ofstream(folder_.path() / "session.sqlite") << "";
+  const fs::path kept = folder_.path() / "analysis" / "wedges.corrections.json";
+  {
+    Viewer viewer(mesh_);
+    viewer.remove_wedge(wedges_mm_[0]);
+    EXPECT_FALSE(viewer.state().error) << viewer.state().error->line();
+  }
+  EXPECT_THAT(read_corrections(kept)->corrections, SizeIs(1));
+  EXPECT_EQ(std::distance(fs::directory_iterator(mesh_.parent_path()), fs::directory_iterator()), 1);
+  // Also before the session has measured any.
+  EXPECT_EQ(Viewer(mesh_).state().corrections, 1U);
+}
+
+TEST_F(MeshViewingTest, TwoWhoSelectOnOneMeshLoseNothing) {
+  Viewer one(mesh_);
+  Viewer other(mesh_);
+  one.keep("line 1");
+  other.keep("line 2");
+  EXPECT_FALSE(other.state().error) << other.state().error->line();
+  EXPECT_THAT(read_selections(mesh_.parent_path() / "tablet.selections.json")->selections, SizeIs(2));
+  EXPECT_THAT(*other.state().selections, SizeIs(2));
+}
+
+}  // namespace
+}  // namespace dubsar
