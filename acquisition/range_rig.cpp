@@ -7,9 +7,7 @@
 #include <utility>
 
 #include "acquisition/placed_profiles.h"
-#include "acquisition/rig_parts.h"
 #include "acquisition/stage_watch.h"
-#include "formats/number_text.h"
 
 namespace dubsar {
 
@@ -61,14 +59,15 @@ Status RangeRig::scan(ProfileSink& sink) {
   if (Status homed = home_once(stage_, file_.axis); !homed) {
     return homed;
   }
-  const Status status = run(sink);
+  std::optional<LaserGuard> dark;  // goes last: a controller may take it for behind the move that still runs
+  const Status status = run(sink, dark);
   if (!status) {
     [[maybe_unused]] const Status said = stage_.stop();
   }
   return status;
 }
 
-Status RangeRig::run(ProfileSink& sink) {
+Status RangeRig::run(ProfileSink& sink, std::optional<LaserGuard>& dark) {
   const auto number = static_cast<std::uint32_t>(file_.axis);
   const PlacedProfiles::Scan scan{*file_.motion, file_.start, file_.step, file_.rows, device_id_};
   const Travel travel = travel_of(file_, axis_, file_.speed);
@@ -83,7 +82,6 @@ Status RangeRig::run(ProfileSink& sink) {
     return reports;
   }
   const auto laser = static_cast<std::size_t>(file_.laser);
-  std::optional<LaserGuard> dark;
   if (laser < now->laser.size()) {
     dark.emplace(stage_, static_cast<std::uint32_t>(laser));
     if (Status lit = stage_.set_laser(static_cast<std::uint32_t>(laser), file_.laser_power); !lit) {
@@ -93,7 +91,7 @@ Status RangeRig::run(ProfileSink& sink) {
   if (Status off = stage_.move({number, travel.to, travel.speed, true}); !off) {
     return off;
   }
-  StageWatch watch(stage_, number);
+  StageWatch watch(stage_, number, travel.time_of_way());
   PlacedProfiles placed(sink, watch.track(), scan);
   const Result<ScanOutcome> done = camera_.scan(placed);
   placed.flush();
@@ -116,12 +114,13 @@ Status RangeRig::run(ProfileSink& sink) {
                   "the camera sends the whole scan in one block, and nothing tells its rows' times",
                   file_.camera, "set a smaller height_px in camera_settings");
   } else if (done) {
-    status = fail(ErrorKind::kDevice,
-                  "the camera stopped at " + number_text(placed.position().value_or(travel.from)) +
-                      " before the end of the scan",
-                  file_.camera, "ask it for more profiles with ?rows=, or move faster");
+    status =
+        fail(ErrorKind::kDevice,
+             "the camera stopped at " + position_text(axis_.rotary, placed.position().value_or(travel.from)) +
+                 " before the end of the scan",
+             file_.camera, "ask it for more profiles with ?rows=, or move faster");
   } else {
-    status = stopped_short(file_, watch.track().last().value_or(travel.from));
+    status = stopped_short(file_, axis_.rotary, watch.track().last().value_or(travel.from));
   }
   if (placed.begun()) {
     sink.end(placed.tally());

@@ -4,8 +4,10 @@
 
 #include <atomic>
 #include <memory>
+#include <optional>
 #include <string>
 
+#include "acquisition/rig_parts.h"
 #include "acquisition/rig_source.h"
 #include "drivers/device.h"
 #include "formats/rig_toml.h"
@@ -32,7 +34,8 @@ class RangeRig : public RigSource {
 
  private:
   RangeRig(const RigFile& file, Device camera, Device stage, StageAxis axis, std::string device_id);
-  Status run(ProfileSink& sink);
+  /// Lights the laser; `dark` puts it off when it goes.
+  Status run(ProfileSink& sink, std::optional<LaserGuard>& dark);
 
   RigFile file_;
   Device camera_;

@@ -42,7 +42,8 @@ Result<SettingValue> setting_value(const SettingInfo& setting, const std::string
     case SettingType::kChoice:
       return SettingValue(word);
   }
-  return fail(ErrorKind::kUsage, "setting " + setting.key + " cannot be '" + word + "'", where);
+  return fail(ErrorKind::kUsage, "setting " + setting.key + " cannot be '" + word + "'", where,
+              "it takes " + taken_by(setting));
 }
 
 std::string setting_word(const SettingValue& value) {

@@ -2,8 +2,6 @@
 // Copyright The Dubsar developers
 #include "acquisition/stage_watch.h"
 
-#include <chrono>
-
 #include "core/thread_priority.h"
 
 namespace dubsar {
@@ -15,8 +13,11 @@ constexpr int kStill = 6;  // readings of a stage that stands, before it is beli
 
 }  // namespace
 
-StageWatch::StageWatch(const Device& stage, std::size_t axis)
-    : stage_(stage), axis_(axis), thread_([this](const std::stop_token& enough) { ask(enough); }) {}
+StageWatch::StageWatch(const Device& stage, std::size_t axis, std::chrono::milliseconds at_most)
+    : stage_(stage),
+      axis_(axis),
+      until_(std::chrono::steady_clock::now() + at_most),
+      thread_([this](const std::stop_token& enough) { ask(enough); }) {}
 
 StageWatch::~StageWatch() {
   [[maybe_unused]] const Status said = finish();
@@ -34,6 +35,12 @@ void StageWatch::ask(const std::stop_token& enough) {
     }
     track_.add(reading->timestamp_ns, reading->position[axis_], reading->uncertainty_ns);
     still = reading->moving ? 0 : still + 1;
+    if (reading->moving && std::chrono::steady_clock::now() > until_) {
+      const std::lock_guard lock(mutex_);
+      status_ = fail(ErrorKind::kDevice, "the stage says that it moves, long after it should have arrived",
+                     stage_.uri(), "see what holds it up, and home it");
+      break;
+    }
     std::this_thread::sleep_for(kAskEvery);
   }
   track_.close();

@@ -2,6 +2,7 @@
 // Copyright The Dubsar developers
 #pragma once
 
+#include <chrono>
 #include <mutex>
 #include <thread>
 
@@ -15,7 +16,8 @@ namespace dubsar {
 /// one of these lives nobody else uses the stage but for stop().
 class StageWatch {
  public:
-  StageWatch(const Device& stage, std::size_t axis);
+  /// A stage that moves for longer than `at_most` is one that failed: its motor is stuck, or it lies.
+  StageWatch(const Device& stage, std::size_t axis, std::chrono::milliseconds at_most);
   ~StageWatch();
   StageWatch(const StageWatch&) = delete;
   StageWatch& operator=(const StageWatch&) = delete;
@@ -29,6 +31,7 @@ class StageWatch {
 
   const Device& stage_;
   std::size_t axis_;
+  std::chrono::steady_clock::time_point until_;
   PositionTrack track_;
   std::mutex mutex_;
   Status status_;

@@ -32,11 +32,6 @@ Eigen::Vector3d vector_from(const double (&v)[3]) {
   return {v[0], v[1], v[2]};
 }
 
-Error faulty(const std::string& where, const std::string& what) {
-  return {ErrorKind::kDevice, "the driver " + what, where,
-          "update the driver or report the fault to its makers"};
-}
-
 /// 0 for anything that is no length at all.
 double positive_or_zero(double value) {
   return std::isfinite(value) && value > 0 ? value : 0.0;
@@ -96,6 +91,11 @@ Error error_from(std::int32_t code, const dubsar_error& error, const std::string
     out.where = where;
   }
   return out;
+}
+
+Error faulty(const std::string& where, const std::string& what) {
+  return {ErrorKind::kDevice, "the driver " + what, where,
+          "update the driver or report the fault to its makers"};
 }
 
 SettingInfo setting_from(const dubsar_setting& setting) {

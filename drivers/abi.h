@@ -65,6 +65,12 @@ template <class Things, class Name>
 
 /// The error that a driver's code and error struct mean; `where` where the driver named none.
 [[nodiscard]] Error error_from(std::int32_t code, const dubsar_error& error, const std::string& where);
+[[nodiscard]] inline Status status_from(std::int32_t code, const dubsar_error& error,
+                                        const std::string& where) {
+  return code == DUBSAR_OK ? Status{} : std::unexpected(error_from(code, error, where));
+}
+/// "the driver `what`": of one that answers what it must not.
+[[nodiscard]] Error faulty(const std::string& where, const std::string& what);
 
 [[nodiscard]] SettingInfo setting_from(const dubsar_setting& setting);
 [[nodiscard]] ScannerView view_from(const dubsar_view& view);

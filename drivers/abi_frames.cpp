@@ -9,11 +9,6 @@ namespace dubsar::abi {
 
 namespace {
 
-Error faulty(const std::string& where, const std::string& what) {
-  return {ErrorKind::kDevice, "the driver " + what, where,
-          "update the driver or report the fault to its makers"};
-}
-
 std::optional<PixelFormat> format_from(std::uint32_t code) {
   switch (code) {
     case DUBSAR_PIXEL_MONO8:

@@ -4,6 +4,8 @@
 
 #include <cmath>
 #include <cstddef>
+#include <iomanip>
+#include <sstream>
 
 #include "core/motion_limits.h"
 #include "drivers/abi.h"
@@ -13,9 +15,10 @@ namespace dubsar {
 
 namespace {
 
-std::string keys_of(const std::vector<SettingInfo>& settings) {
-  const std::string keys = abi::listed(settings, &SettingInfo::key);
-  return keys.empty() ? "there are none" : "there are " + keys;
+/// "it has a, b": those of the settings that can be read, or changed.
+std::string keys_of(std::vector<SettingInfo> settings, bool SettingInfo::*usable) {
+  std::erase_if(settings, [&](const SettingInfo& one) { return !(one.*usable); });
+  return "it has " + (settings.empty() ? "none" : abi::listed(settings, &SettingInfo::key));
 }
 
 /// Joins the sink of C callbacks to a ProfileSink. Nothing thrown by the sink may cross the driver.
@@ -74,48 +77,65 @@ struct SinkBridge {
   }
 };
 
+/// A text of a setting goes through a field of this size, with its NUL.
+constexpr std::size_t kTextField = sizeof(dubsar_value::text);
+
 Status check_value(const SettingInfo& setting, const SettingValue& value, const std::string& where) {
-  const auto refuse = [&](const std::string& takes) -> Status {
-    return fail(ErrorKind::kUsage, "setting " + setting.key + " takes " + takes, where);
-  };
   const auto in_range = [&](double number) {
     return std::isfinite(number) &&
            (!setting.range || (number >= setting.range->first && number <= setting.range->second));
   };
-  const auto range_text = [&](const std::string& what) {
-    return setting.range ? what + " from " + std::to_string(setting.range->first) + " to " +
-                               std::to_string(setting.range->second)
-                         : what;
-  };
+  const auto* integer = std::get_if<std::int64_t>(&value);
+  const auto* number = std::get_if<double>(&value);
+  const auto* words = std::get_if<std::string>(&value);
+  const bool short_enough = words != nullptr && words->size() < kTextField;
+  bool fits = false;
   switch (setting.type) {
     case SettingType::kBool:
-      return std::holds_alternative<bool>(value) ? Status{} : refuse("yes or no");
-    case SettingType::kInteger: {
-      const auto* number = std::get_if<std::int64_t>(&value);
-      return number != nullptr && in_range(static_cast<double>(*number))
-                 ? Status{}
-                 : refuse(range_text("a whole number"));
-    }
-    case SettingType::kNumber: {
-      const auto* number = std::get_if<double>(&value);
-      return number != nullptr && in_range(*number) ? Status{} : refuse(range_text("a number"));
-    }
-    case SettingType::kText:
-    case SettingType::kChoice:
+      fits = std::holds_alternative<bool>(value);
       break;
+    case SettingType::kInteger:
+      fits = integer != nullptr && in_range(static_cast<double>(*integer));
+      break;
+    case SettingType::kNumber:
+      fits = number != nullptr && in_range(*number);
+      break;
+    case SettingType::kChoice:
+      fits = short_enough && std::ranges::find(setting.choices, *words) != setting.choices.end();
+      break;
+    case SettingType::kText:
+      fits = short_enough;
   }
-  const auto* words = std::get_if<std::string>(&value);
-  if (words == nullptr || words->size() >= sizeof(dubsar_value::text)) {
-    return refuse("a text of at most 255 bytes");
-  }
-  if (setting.type == SettingType::kChoice &&
-      std::ranges::find(setting.choices, *words) == setting.choices.end()) {
-    return refuse("one of " + abi::listed(setting.choices, [](const std::string& word) { return word; }));
-  }
-  return {};
+  return fits ? Status{}
+              : fail(ErrorKind::kUsage, "setting " + setting.key + " takes " + taken_by(setting), where);
 }
 
 }  // namespace
+
+std::string taken_by(const SettingInfo& setting) {
+  const auto within = [&](const char* what) {
+    std::ostringstream out;
+    out << what;
+    if (setting.range) {
+      out << std::setprecision(12) << " from " << setting.range->first << " to " << setting.range->second;
+      out << (setting.unit.empty() ? "" : " ") << setting.unit;
+    }
+    return out.str();
+  };
+  switch (setting.type) {
+    case SettingType::kBool:
+      return "true or false";
+    case SettingType::kInteger:
+      return within("a whole number");
+    case SettingType::kNumber:
+      return within("a number");
+    case SettingType::kChoice:
+      return "one of " + abi::listed(setting.choices, [](const std::string& word) { return word; });
+    case SettingType::kText:
+      break;
+  }
+  return "a text of at most " + std::to_string(kTextField - 1) + " bytes";
+}
 
 Device::Device(const dubsar_driver* driver, dubsar_device* device, std::string uri)
     : driver_(driver),
@@ -159,7 +179,8 @@ Result<SettingValue> Device::get(const std::string& key) const {
   }
   const auto setting = std::ranges::find(*all, key, &SettingInfo::key);
   if (setting == all->end() || !setting->readable) {
-    return fail(ErrorKind::kUsage, "no setting " + key + " to read", uri_, keys_of(*all));
+    return fail(ErrorKind::kUsage, "no setting " + key + " to read", uri_,
+                keys_of(*all, &SettingInfo::readable));
   }
   auto value = abi::lent<dubsar_value>();
   auto error = abi::lent<dubsar_error>();
@@ -188,7 +209,8 @@ Status Device::set(const std::string& key, const SettingValue& value) {
   }
   const auto setting = std::ranges::find(*all, key, &SettingInfo::key);
   if (setting == all->end() || !setting->writable) {
-    return fail(ErrorKind::kUsage, "no setting " + key + " to change", uri_, keys_of(*all));
+    return fail(ErrorKind::kUsage, "no setting " + key + " to change", uri_,
+                keys_of(*all, &SettingInfo::writable));
   }
   if (Status checked = check_value(*setting, value, uri_); !checked) {
     return checked;
@@ -205,11 +227,8 @@ Status Device::set(const std::string& key, const SettingValue& value) {
     std::ranges::copy(std::get<std::string>(value), passed.text);
   }
   auto error = abi::lent<dubsar_error>();
-  if (const std::int32_t code = driver_->set_setting(device_.get(), key.c_str(), &passed, &error);
-      code != DUBSAR_OK) {
-    return std::unexpected(abi::error_from(code, error, uri_));
-  }
-  return {};
+  const std::int32_t code = driver_->set_setting(device_.get(), key.c_str(), &passed, &error);
+  return abi::status_from(code, error, uri_);
 }
 
 Status Device::place(const Placement& placement) {
@@ -237,10 +256,8 @@ Status Device::place(const Placement& placement) {
     std::ranges::copy(placement.free_pose->row_major(), passed.stage_from_scanner);
   }
   auto error = abi::lent<dubsar_error>();
-  if (const std::int32_t code = driver_->place(device_.get(), &passed, &error); code != DUBSAR_OK) {
-    return std::unexpected(abi::error_from(code, error, uri_));
-  }
-  return {};
+  const std::int32_t code = driver_->place(device_.get(), &passed, &error);
+  return abi::status_from(code, error, uri_);
 }
 
 bool Device::can_stop() const {
@@ -253,10 +270,8 @@ Status Device::stop() const {
     return {};
   }
   auto error = abi::lent<dubsar_error>();
-  if (const std::int32_t code = driver_->stop(device_.get(), &error); code != DUBSAR_OK) {
-    return std::unexpected(abi::error_from(code, error, uri_));
-  }
-  return {};
+  const std::int32_t code = driver_->stop(device_.get(), &error);
+  return abi::status_from(code, error, uri_);
 }
 
 Result<ScanOutcome> Device::scan(ProfileSink& sink) {

@@ -40,6 +40,9 @@ struct SettingInfo {
 
 using SettingValue = std::variant<bool, std::int64_t, double, std::string>;
 
+/// What a setting takes, in words: "a number from 10 to 1000".
+[[nodiscard]] std::string taken_by(const SettingInfo& setting);
+
 struct DeviceCapabilities {
   std::optional<Rig> rig;  ///< the device's geometry, where it knows one
   bool can_place = false;  ///< place() does something

@@ -16,10 +16,6 @@ std::unexpected<Error> no_camera(const std::string& where) {
   return fail(ErrorKind::kUsage, "this device yields no frames", where, "name a camera");
 }
 
-Status status_of(std::int32_t code, const dubsar_error& error, const std::string& where) {
-  return code == DUBSAR_OK ? Status{} : std::unexpected(abi::error_from(code, error, where));
-}
-
 }  // namespace
 
 FrameLease& FrameLease::operator=(FrameLease&& other) noexcept {
@@ -46,7 +42,7 @@ Status Device::start_frames(std::uint32_t pool) {
   }
   auto error = abi::lent<dubsar_error>();
   const std::int32_t code = start(device_.get(), pool, &error);
-  return status_of(code, error, uri_);
+  return abi::status_from(code, error, uri_);
 }
 
 Result<std::optional<Frame>> Device::next_frame(std::chrono::milliseconds timeout) {
@@ -80,7 +76,7 @@ Status Device::stop_frames() {
   }
   auto error = abi::lent<dubsar_error>();
   const std::int32_t code = stop(device_.get(), &error);
-  return status_of(code, error, uri_);
+  return abi::status_from(code, error, uri_);
 }
 
 Result<FrameCounters> Device::frame_counters() const {
@@ -104,7 +100,7 @@ Status Device::trigger_frame() {
   }
   auto error = abi::lent<dubsar_error>();
   const std::int32_t code = trigger(device_.get(), &error);
-  return status_of(code, error, uri_);
+  return abi::status_from(code, error, uri_);
 }
 
 }  // namespace dubsar

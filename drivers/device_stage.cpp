@@ -15,10 +15,6 @@ std::unexpected<Error> no_stage(const std::string& where) {
   return fail(ErrorKind::kUsage, "this device is no stage", where, "name a stage");
 }
 
-Status status_of(std::int32_t code, const dubsar_error& error, const std::string& where) {
-  return code == DUBSAR_OK ? Status{} : std::unexpected(abi::error_from(code, error, where));
-}
-
 struct AxisCollector {
   std::vector<StageAxis> axes;
   std::optional<Error> refused;
@@ -61,7 +57,7 @@ Status Device::home() {
   }
   auto error = abi::lent<dubsar_error>();
   const std::int32_t code = home(device_.get(), &error);
-  return status_of(code, error, uri_);
+  return abi::status_from(code, error, uri_);
 }
 
 Status Device::move(const StageMove& asked) {
@@ -79,7 +75,7 @@ Status Device::move(const StageMove& asked) {
   passed.speed = asked.speed;
   auto error = abi::lent<dubsar_error>();
   const std::int32_t code = move(device_.get(), &passed, &error);
-  return status_of(code, error, uri_);
+  return abi::status_from(code, error, uri_);
 }
 
 Result<StageReading> Device::motion() const {
@@ -105,7 +101,7 @@ Status Device::set_laser(std::uint32_t laser, double power) {
   }
   auto error = abi::lent<dubsar_error>();
   const std::int32_t code = set(device_.get(), laser, power, &error);
-  return status_of(code, error, uri_);
+  return abi::status_from(code, error, uri_);
 }
 
 Status Device::emergency_stop() const {
@@ -115,7 +111,7 @@ Status Device::emergency_stop() const {
   }
   auto error = abi::lent<dubsar_error>();
   const std::int32_t code = halt(device_.get(), &error);
-  return status_of(code, error, uri_);
+  return abi::status_from(code, error, uri_);
 }
 
 }  // namespace dubsar

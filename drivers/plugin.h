@@ -10,7 +10,10 @@
 #include <cstring>
 #include <exception>
 #include <initializer_list>
+#include <iomanip>
 #include <optional>
+#include <sstream>
+#include <string>
 #include <string_view>
 
 #include "core/result.h"
@@ -122,6 +125,20 @@ std::int32_t describe(const Rows& rows, dubsar_setting_callback callback, void* 
     }
   }
   return DUBSAR_OK;
+}
+
+/// Refuses the value of an option: says what the option takes.
+inline std::unexpected<Error> not_understood(const SettingRow& row, std::string_view value) {
+  std::ostringstream takes;
+  takes << row.key << " takes " << row.help;
+  if (row.minimum <= row.maximum) {
+    takes << std::setprecision(12) << "; from " << row.minimum << " to " << row.maximum;
+  }
+  if (row.unit != nullptr) {
+    takes << ", " << row.unit;
+  }
+  const std::string said = std::string(row.key) + "=" + std::string(value);
+  return fail(ErrorKind::kUsage, said + " is not understood", {}, takes.str());
 }
 
 /// A whole text as a finite number.

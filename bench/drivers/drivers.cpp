@@ -110,9 +110,9 @@ int count_frames(Device& device, const Emulated& emulated, std::uint64_t count) 
     if (!frame) {
       const FrameCounters now = must(device.frame_counters());
       give_up("no frame in 20 s after " + std::to_string(k) + ": " + std::to_string(now.lost) +
-              " lost before, " + std::to_string(now.starved) + " of all for want of a buffer, pool " +
-              std::to_string(now.pool) + "; the device made, lost, was held up: " + emulated.counts() +
-              ", then " + emulated.counts());
+              " lost before, " + std::to_string(now.starved) + " of all for want of a buffer, taken anew " +
+              std::to_string(now.reconnections) + " times, pool " + std::to_string(now.pool) +
+              "; the device made, lost, was held up: " + emulated.counts() + ", then " + emulated.counts());
     }
     const Clock::time_point taken = Clock::now();
     wrong += emulated.genuine(*frame) ? 0 : 1;
@@ -134,16 +134,15 @@ int count_frames(Device& device, const Emulated& emulated, std::uint64_t count) 
   std::printf(
       "%s: %llu frames, %.1f/s, %.0f MB/s, %llu lost, %llu late, %llu with wrong pixels, memory %.1f to %.1f "
       "MB\n"
-      "  driver: pool %u, %llu lost for want of a buffer, %llu packets sent again; longest wait or hold of "
-      "the "
-      "taking thread %.3f s\n"
+      "  driver: pool %u, %llu lost for want of a buffer, %llu packets sent again, taken anew %llu times; "
+      "longest wait or hold of the taking thread %.3f s\n"
       "  device: made, lost for want of a buffer, held up: %s\n",
       emulated.scheme.c_str(), static_cast<unsigned long long>(counts.delivered),
       static_cast<double>(count - 1) / seconds, static_cast<double>(bytes) / seconds / 1e6,
       static_cast<unsigned long long>(counts.lost), static_cast<unsigned long long>(counts.late),
       static_cast<unsigned long long>(wrong), before_mb, after_mb, counts.pool,
       static_cast<unsigned long long>(counts.starved), static_cast<unsigned long long>(counts.resent),
-      longest_s, emulated.counts().c_str());
+      static_cast<unsigned long long>(counts.reconnections), longest_s, emulated.counts().c_str());
   return counts.lost == 0 && wrong == 0 && after_mb < before_mb * 1.05 + 2 ? 0 : 1;
 }
 

@@ -69,7 +69,7 @@ Status Camera::connect() {
   camera_ = arv_camera_new(id_.c_str(), error.fill());
   if (camera_ == nullptr || error) {
     g_clear_object(&camera_);
-    return std::unexpected(error.told("cannot be opened", id_));
+    return std::unexpected(error.told("the camera cannot be opened", id_));
   }
   device_ = arv_camera_get_device(camera_);
   const std::string serial = text_of(arv_camera_get_device_serial_number(camera_, nullptr));
@@ -106,10 +106,12 @@ Status Camera::connect() {
     }
   }
   Status configured = configure();
-  for (const auto& [key, kept] : set_here_) {
-    if (configured) {
-      const auto [feature, value] = kept;
-      configured = set(feature, value);
+  if (configured && !set_here_.empty()) {
+    // In the order of features(): what allows another setting stands before it.
+    for (const Feature& feature : features()) {
+      if (const auto kept = set_here_.find(feature.key); configured && kept != set_here_.end()) {
+        configured = set(feature, dubsar_value{kept->second});
+      }
     }
   }
   if (!configured) {
@@ -167,7 +169,7 @@ Status Camera::begin(std::uint32_t pool) {
   }
   if (error) {
     lose();
-    return std::unexpected(error.told("does not tell its frame's size", id_));
+    return std::unexpected(error.told("the camera does not tell its frame's size", id_));
   }
   const std::uint64_t needed = std::uint64_t{static_cast<std::uint32_t>(std::max(width, 0))} *
                                static_cast<std::uint32_t>(std::max(height, 0)) * bytes_per_pixel_;
@@ -181,7 +183,7 @@ Status Camera::begin(std::uint32_t pool) {
   if (stream == nullptr || error) {
     g_clear_object(&stream);
     lose();
-    return std::unexpected(error.told("opens no stream", id_));
+    return std::unexpected(error.told("the camera opens no stream", id_));
   }
   if (ARV_IS_GV_STREAM(stream)) {
     g_object_set(stream, "packet-resend",
@@ -380,7 +382,7 @@ Status Camera::trigger() {
   }
   GErrorHolder error;
   arv_camera_software_trigger(camera_, error.fill());
-  return error ? std::unexpected(error.told("cannot be triggered", id_)) : Status{};
+  return error ? std::unexpected(error.told("the camera cannot be triggered", id_)) : Status{};
 }
 
 dubsar_frame_counters Camera::counters() {

@@ -132,7 +132,7 @@ class Camera {
   const RangeFormat* range_ = nullptr;
   std::uint32_t pixel_format_ = 0;
   std::uint32_t bytes_per_pixel_ = 1;
-  std::map<std::string, std::pair<Feature, dubsar_value>> set_here_;
+  std::map<std::string, dubsar_value> set_here_;  ///< set again over a new connection
   std::shared_ptr<std::atomic<bool>> control_lost_;
 
   mutable std::mutex mutex_;  ///< of what give_back() and counters() look at

@@ -46,22 +46,22 @@ Status Camera::choose_format() {
   }
   range_ = range_format(chosen);
   const auto* mono = std::ranges::find_if(kMono, [&](const MonoFormat& one) { return chosen == one.name; });
-  if (range_ == nullptr && mono == std::end(kMono)) {
+  if ((range_ == nullptr && mono == std::end(kMono)) || !has(chosen)) {
     std::string all;
     for (const std::string& name : offered) {
       all += (all.empty() ? "" : ", ") + name;
     }
     return fail(ErrorKind::kUsage,
                 chosen.empty() ? "the camera sends nothing that can be used"
+                : !has(chosen) ? "the camera does not offer the format " + chosen
                                : "the format " + chosen + " cannot be used",
-                id_, "it offers " + all + "; Mono8 to Mono16 and Coord3D_C, _AC and _ABC can be used");
-  }
-  if (!has(chosen)) {
-    return fail(ErrorKind::kUsage, "the camera does not offer " + chosen, id_, "ask for another ?format=");
+                id_,
+                "it offers " + (all.empty() ? "none" : all) +
+                    "; of these Mono8 to Mono16 and Coord3D_C, _AC and _ABC can be used");
   }
   arv_camera_set_pixel_format_from_string(camera_, chosen.c_str(), error.fill());
   if (error) {
-    return std::unexpected(error.told("refuses " + chosen, id_));
+    return std::unexpected(error.told("the camera refuses " + chosen, id_));
   }
   pixel_format_ = range_ != nullptr ? range_->code : mono->code;
   bytes_per_pixel_ = range_ != nullptr ? range_->sample_bytes() : mono->bytes;
@@ -80,7 +80,7 @@ Status Camera::configure() {
       arv_camera_gv_auto_packet_size(camera_, error.fill());
     }
     if (error) {
-      return std::unexpected(error.told("refuses the size of packets", id_));
+      return std::unexpected(error.told("the camera refuses the size of packets", id_));
     }
     arv_camera_gv_set_stream_options(camera_, options_.packet_socket
                                                   ? ARV_GV_STREAM_OPTION_NONE
@@ -107,7 +107,7 @@ Result<Scan3d> Camera::scan3d() {
   gint height = 0;
   arv_camera_get_region(camera_, &x, &y, &width, &height, error.fill());
   if (error) {
-    return std::unexpected(error.told("does not tell its region", id_));
+    return std::unexpected(error.told("the camera does not tell its region", id_));
   }
   out.width = static_cast<std::uint32_t>(std::max(width, 0));
   out.height = static_cast<std::uint32_t>(std::max(height, 0));
@@ -118,7 +118,7 @@ Result<Scan3d> Camera::scan3d() {
     const bool raw = mode.starts_with("Uncalibrated") || mode.starts_with("Disparity");
     // Without A in the data x is the column times a scale, which is true of rectified profiles alone.
     if (raw || (!range_->has[0] && !mode.starts_with("Rectified"))) {
-      return fail(ErrorKind::kUsage, "its output " + mode + " does not say where a sample is", id_,
+      return fail(ErrorKind::kUsage, "the camera's output " + mode + " does not say where a sample is", id_,
                   "set Scan3dOutputMode to a rectified one, or ask for a Coord3D_AC format");
     }
   }
@@ -126,7 +126,7 @@ Result<Scan3d> Camera::scan3d() {
     const std::string unit =
         text_of(arv_device_get_string_feature_value(device_, "Scan3dDistanceUnit", error.fill()));
     if (unit != "Millimeter" && unit != "Inch") {
-      return fail(ErrorKind::kUsage, "its distances are in " + unit, id_,
+      return fail(ErrorKind::kUsage, "the camera's distances are in " + unit, id_,
                   "set Scan3dDistanceUnit to Millimeter");
     }
     out.unit_mm = unit == "Inch" ? 25.4 : 1.0;
@@ -151,13 +151,13 @@ Result<Scan3d> Camera::scan3d() {
     };
     double invalid = 0;
     if (!read("Scan3dCoordinateScale", to.scale) || !read("Scan3dCoordinateOffset", to.offset)) {
-      return std::unexpected(refused.told("does not tell the scale of its coordinates", id_));
+      return std::unexpected(refused.told("the camera does not tell the scale of its coordinates", id_));
     }
     if (has("Scan3dInvalidDataFlag") &&
         arv_device_get_boolean_feature_value(device_, "Scan3dInvalidDataFlag", refused.fill()) && !refused &&
         has("Scan3dInvalidDataValue")) {
       if (!read("Scan3dInvalidDataValue", invalid)) {
-        return std::unexpected(refused.told("does not tell what an invalid sample is", id_));
+        return std::unexpected(refused.told("the camera does not tell what an invalid sample is", id_));
       }
       to.invalid = invalid;
     }

@@ -18,15 +18,17 @@ struct Known {
   const char* unit;
   const char* names[2];  ///< of the SFNC, newer before older
 };
+/// A region has to have its size before it can go from the sensor's corner, and its size and the exposure say
+/// what rates there are.
 constexpr Known kKnown[] = {
-    {"exposure_us", "exposure of a frame", "us", {"ExposureTime", "ExposureTimeAbs"}},
-    {"gain_db", "gain", "dB", {"Gain", nullptr}},
-    {"frame_rate_hz", "frames per second", "Hz", {"AcquisitionFrameRate", "AcquisitionFrameRateAbs"}},
-    {"line_rate_hz", "profiles per second", "Hz", {"AcquisitionLineRate", nullptr}},
     {"width_px", "of the region", "px", {"Width", nullptr}},
     {"height_px", "of the region", "px", {"Height", nullptr}},
     {"offset_x_px", "of the region on the sensor", "px", {"OffsetX", nullptr}},
     {"offset_y_px", "of the region on the sensor", "px", {"OffsetY", nullptr}},
+    {"exposure_us", "exposure of a frame", "us", {"ExposureTime", "ExposureTimeAbs"}},
+    {"gain_db", "gain", "dB", {"Gain", nullptr}},
+    {"frame_rate_hz", "frames per second", "Hz", {"AcquisitionFrameRate", "AcquisitionFrameRateAbs"}},
+    {"line_rate_hz", "profiles per second", "Hz", {"AcquisitionLineRate", nullptr}},
     {"light", "power of the camera's own laser or lamp", "", {"LightBrightness", nullptr}},
     {"encoder_divider", "counts of the encoder for each profile", "", {"EncoderDivider", nullptr}},
     {"encoder", "count of the encoder now", "", {"EncoderValue", nullptr}},
@@ -171,7 +173,7 @@ Status Camera::set(const Feature& feature, const dubsar_value& value) {
   if (error) {
     return std::unexpected(error.told(feature.key + " cannot be set", id_));
   }
-  set_here_[feature.key] = {feature, value};
+  set_here_[feature.key] = value;
   return {};
 }
 

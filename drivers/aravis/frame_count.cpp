@@ -12,6 +12,7 @@ namespace dubsar::aravis {
 namespace {
 
 constexpr std::uint64_t kWrap = 65535;
+constexpr std::uint64_t kLongestStep = std::uint64_t{1} << 31U;
 constexpr std::size_t kOfLate = 32;  // frames that the rate is taken from
 /// What a clock that goes on may seem to be off by: frames that waited, and a clock asked on a busy machine.
 constexpr std::int64_t kSameClockNs = 500'000'000;
@@ -57,8 +58,9 @@ FrameCount::Step FrameCount::take(std::uint64_t raw, std::int64_t timestamp_ns, 
   Step out;
   if (last_raw_ != 0) {
     const bool wrapped = raw < last_raw_ && last_raw_ <= kWrap && last_raw_ - raw > kWrap / 2;
-    const std::uint64_t step = wrapped ? raw + kWrap - last_raw_ : raw > last_raw_ ? raw - last_raw_ : 1;
-    out.lost = step - 1;
+    const std::uint64_t step = wrapped ? raw + kWrap - last_raw_ : raw - last_raw_;
+    // A step back, none, or one over more frames than any stream has: its numbers say nothing.
+    out.lost = step >= 1 && step <= kLongestStep ? step - 1 : 0;
   } else if (last_) {
     out.lost = missed_until(timestamp_ns);
     const std::int64_t theirs = device_ns - last_->device_ns;

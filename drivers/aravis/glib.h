@@ -37,7 +37,7 @@ class GErrorHolder {
       case ARV_DEVICE_ERROR_NOT_FOUND:
         return {ErrorKind::kDevice, "the camera is not there", where,
                 "see to its cable and address; dubsar drivers lists those that are; a USB camera needs "
-                "drivers/udev/60-dubsar.rules in /etc/udev/rules.d"};
+                "60-dubsar.rules in /etc/udev/rules.d"};
       case ARV_DEVICE_ERROR_NOT_CONTROLLER:
         return {ErrorKind::kDevice, "the camera is in use by another program", where,
                 "close what shows its picture, then try again"};

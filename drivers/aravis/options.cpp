@@ -30,18 +30,16 @@ constexpr std::array<plugin::SettingRow, 10> kRows{{
     {DUBSAR_TYPE_NUMBER, "wait", "of range cameras: for the next profiles (1.5)", "s", nullptr, 0.1, 600},
 }};
 
-bool take(const std::string_view key, const dubsar_option& option, CameraOptions& out) {
-  const auto row = std::ranges::find(kRows, key, &plugin::SettingRow::key);
-  if (row == kRows.end()) {
-    return false;
-  }
+/// False: the option does not take this value.
+bool take(const plugin::SettingRow& row, const dubsar_option& option, CameraOptions& out) {
+  const std::string_view key = row.key;
   if (key == "format") {
     out.format = option.value;
     return !out.format.empty() && out.format.size() < 64;
   }
   const std::optional<double> value = plugin::number(option.value);
-  const bool whole = row->type != DUBSAR_TYPE_NUMBER;
-  if (!value || *value < row->minimum || *value > row->maximum ||
+  const bool whole = row.type != DUBSAR_TYPE_NUMBER;
+  if (!value || *value < row.minimum || *value > row.maximum ||
       (whole && *value != static_cast<double>(static_cast<std::int64_t>(*value)))) {
     return false;
   }
@@ -76,10 +74,10 @@ std::span<const plugin::SettingRow> option_rows() {
 Result<CameraOptions> parse_options(std::span<const dubsar_option> options) {
   CameraOptions out;
   for (const dubsar_option& option : options) {
-    if (!take(option.key, option, out)) {
-      const auto row = std::ranges::find(kRows, std::string_view(option.key), &plugin::SettingRow::key);
-      return fail(ErrorKind::kUsage, std::string(option.key) + "=" + option.value + " is not understood", {},
-                  row == kRows.end() ? "" : std::string(option.key) + " takes " + row->help);
+    // There is one: who loads drivers passes no others.
+    const auto row = std::ranges::find(kRows, std::string_view(option.key), &plugin::SettingRow::key);
+    if (row != kRows.end() && !take(*row, option, out)) {
+      return plugin::not_understood(*row, option.value);
     }
   }
   return out;

@@ -57,9 +57,11 @@ class Scan {
     for (std::uint32_t row = 0; row < meaning_.height && next_row_ < camera_.options().rows;
          ++row, ++next_row_) {
       // Within a block the encoder is known of its first row alone.
-      const double y = by_encoder
-                           ? static_cast<double>(*frame.encoder - *first_count_) * encoder_mm + row * row_mm_
-                           : static_cast<double>(next_row_) * row_mm_;
+      const double y =
+          by_encoder
+              ? (static_cast<double>(*frame.encoder) - static_cast<double>(*first_count_)) * encoder_mm +
+                    row * row_mm_
+              : static_cast<double>(next_row_) * row_mm_;
       read_row(meaning_, {frame.pixels, frame.size}, row, y, row_);
       dubsar_profile profile{};
       profile.struct_size = sizeof profile;

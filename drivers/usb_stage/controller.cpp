@@ -244,22 +244,17 @@ Status Controller::wait_for(std::size_t axis, double position, double speed, std
       if (!now->moving && left <= tolerance(axes_[axis])) {
         return {};
       }
-      if (now->alarm) {
-        return fail(ErrorKind::kDevice, "the stage went into alarm on the way", where_,
-                    "see what holds it up, then home it");
-      }
       if (until == Clock::time_point::max()) {
-        until =
-            Clock::now() + kGrace +
-            std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(1.5 * left / speed));
+        until = Clock::now() + kGrace + duration_of(1.5 * left / speed);
       }
       still_since = now->moving ? Clock::now() : still_since;
-      if (Clock::now() - still_since > kStandstill || Clock::now() > until) {
+      if (now->alarm || Clock::now() - still_since > kStandstill || Clock::now() > until) {
         [[maybe_unused]] const Status ended = settle(firmware_->stop());
         std::ranges::fill(power_, 0.0);
         return fail(ErrorKind::kDevice,
-                    "the stage stands " + shown(axes_[axis], left) + " short of its target", where_,
-                    "see what holds it up");
+                    (now->alarm ? "the stage went into alarm " : "the stage stands ") +
+                        shown(axes_[axis], left) + " short of its target",
+                    where_, "see what holds it up, then home it");
       }
     }
     std::this_thread::sleep_for(kAskEvery);
@@ -272,7 +267,13 @@ Status Controller::home() {
   if (const Status connected = connect(); !connected) {
     return connected;
   }
-  Status homed = settle(firmware_->home([&] { return stops_ != stops; }));
+  const Clock::time_point until = Clock::now() + ways_.homing;
+  Status found = firmware_->home([&] { return stops_ != stops || Clock::now() > until; });
+  if (!found && found.error().kind == ErrorKind::kCancelled && stops_ == stops) {
+    found = fail(ErrorKind::kDevice, "the stage looked for its switch in vain", where_,
+                 "see to its switch and its motor");
+  }
+  Status homed = settle(std::move(found));
   last_.reset();  // where it is may have been told anew
   if (homed) {
     halted_ = false;

@@ -22,6 +22,8 @@ struct Ways {
   std::function<Result<std::unique_ptr<Firmware>>(Link&)> firmware;
   /// Absent: no guard, for links that no other process can open.
   std::function<Result<std::unique_ptr<Guard>>(const std::string& panic)> guard;
+  /// A search for the switches that takes longer has failed: a motor that slips turns for ever.
+  std::chrono::milliseconds homing = std::chrono::minutes(3);
 };
 
 /// A stage from open to close, plugged in or not: limits, waiting, lasers, stops. stop() and emergency_stop()

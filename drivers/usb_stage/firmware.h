@@ -82,6 +82,10 @@ class Firmware {
                                                   const std::string& where);
 [[nodiscard]] std::unique_ptr<Firmware> make_horus(Link& link, const std::string& where);
 
+/// The one of these two whose banner a reset brings. kDevice when none comes.
+[[nodiscard]] Result<std::unique_ptr<Firmware>> make_by_banner(Link& link, const std::vector<AxisWish>& axes,
+                                                               const std::string& where);
+
 struct TmclOptions {
   double steps_per_unit = 0;  ///< microsteps per mm, or per radian
   double speed_maximum = 0;   ///< mm/s or rad/s

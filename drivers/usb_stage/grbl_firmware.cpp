@@ -45,7 +45,14 @@ class Grbl : public Firmware {
       if (wish.name.size() != 1 || number == kLetters.npos) {
         return fail(ErrorKind::kUsage, "no axis " + wish.name, talk_.where(), "axes are x, y, z, a, b and c");
       }
-      axes_.push_back(axis_of(wish, static_cast<int>(number)));
+      const Axis axis = axis_of(wish, static_cast<int>(number));
+      if (!(axis.minimum < axis.maximum) || !(axis.speed_maximum > 0)) {
+        return bad_input(talk_.where(),
+                         "the controller says that axis " + wish.name + " has no way or no speed",
+                         "set its travel ($" + std::to_string(kTravel + number) + ") and its rate ($" +
+                             std::to_string(kRate + number) + ") in the controller");
+      }
+      axes_.push_back(axis);
       numbers_.push_back(number);
     }
     homed_ = false;
@@ -197,15 +204,25 @@ class Grbl : public Firmware {
         }
       }
       if (banner) {
-        // Whatever it still has to say about the reset comes at once.
-        while (const auto more = talk_.line(Clock::now() + 20ms)) {
-          if (!*more) {
-            return {};
-          }
-        }
+        return let_it_finish();
       }
     }
     return talk_.silent();
+  }
+
+  /// Whatever it still has to say about the reset comes at once; some go on for ever.
+  Status let_it_finish() {
+    const Clock::time_point enough = Clock::now() + 200ms;
+    while (Clock::now() < enough) {
+      const Result<std::optional<std::string>> more = talk_.line(Clock::now() + 20ms);
+      if (!more) {
+        return std::unexpected(more.error());
+      }
+      if (!*more) {
+        break;
+      }
+    }
+    return {};
   }
 
   /// A status report; other lines on the way are looked at as well.

@@ -48,14 +48,19 @@ Result<std::unique_ptr<Guard>> Guard::start(const UsbName& name, const std::stri
   const std::string bytes = hex_of(panic);
   int ends[2] = {-1, -1};
   int told[2] = {-1, -1};
+  pid_t process = -1;
   const auto refuse = [&](int number) -> std::unexpected<Error> {
+    if (process > 0) {  // one that started and says nothing guards nothing
+      ::kill(process, SIGKILL);
+      ::waitpid(process, nullptr, 0);
+    }
     for (const int end : {ends[0], ends[1], told[0], told[1]}) {
       if (end >= 0) {
         ::close(end);
       }
     }
     return fail(ErrorKind::kDevice, std::string("the laser's guard does not start: ") + std::strerror(number),
-                path, "reinstall; without it no laser goes on");
+                path, "try again, or reinstall: without it no laser goes on");
   };
   if (::pipe2(ends, O_CLOEXEC) != 0 || ::pipe2(told, O_CLOEXEC) != 0) {
     return refuse(errno);
@@ -66,7 +71,6 @@ Result<std::unique_ptr<Guard>> Guard::start(const UsbName& name, const std::stri
   ::posix_spawn_file_actions_adddup2(&files, told[1], 1);
   char* words[] = {const_cast<char*>(path.c_str()), const_cast<char*>(controller.c_str()),
                    const_cast<char*>(bytes.c_str()), nullptr};
-  pid_t process = -1;
   const int failed = ::posix_spawn(&process, path.c_str(), &files, nullptr, words, environ);
   ::posix_spawn_file_actions_destroy(&files);
   if (failed != 0) {
@@ -77,7 +81,11 @@ Result<std::unique_ptr<Guard>> Guard::start(const UsbName& name, const std::stri
   // It says one byte once no signal of ours reaches it.
   pollfd waiting{told[0], POLLIN, 0};
   char said = 0;
-  if (::poll(&waiting, 1, 2000) <= 0 || ::read(told[0], &said, 1) != 1) {
+  int heard = -1;
+  do {
+    heard = ::poll(&waiting, 1, 2000);
+  } while (heard < 0 && errno == EINTR);
+  if (heard <= 0 || ::read(told[0], &said, 1) != 1) {
     return refuse(ETIMEDOUT);
   }
   ::close(told[0]);

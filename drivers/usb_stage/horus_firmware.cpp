@@ -47,8 +47,7 @@ class Horus : public Firmware {
     }
     // Its ok comes when the move is accepted in some versions and when it has ended in others: read() looks.
     const double way = std::abs(position - target_);
-    move_ends_ = Clock::now() +
-                 std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(way / speed));
+    move_ends_ = Clock::now() + duration_of(way / speed);
     target_ = position;
     awaits_ok_ = true;
     return talk_.send(horus::move(position / kRadPerDeg));

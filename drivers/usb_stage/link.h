@@ -2,6 +2,7 @@
 // Copyright The Dubsar developers
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <string>
 #include <string_view>
@@ -16,6 +17,13 @@ using Clock = std::chrono::steady_clock;
 inline constexpr std::chrono::milliseconds kAnswer(1500);
 /// When a question that may be asked twice is: its answer may have been spoilt on the line.
 inline constexpr std::chrono::milliseconds kAskAgain(300);
+
+/// As a duration of the clock, a day at most: what is reckoned from a device's numbers may be any length.
+[[nodiscard]] inline Clock::duration duration_of(double seconds) {
+  constexpr double kDayS = 86400;
+  return std::chrono::duration_cast<Clock::duration>(
+      std::chrono::duration<double>(std::clamp(seconds, 0.0, kDayS)));
+}
 
 /// Bytes to and from a controller. An error means that the controller is gone for good.
 class Link {

@@ -98,7 +98,10 @@ Result<StageOptions> parse_options(std::span<const dubsar_option> options) {
     const std::string_view key = option.key;
     const std::string_view value = option.value;
     const auto row = std::ranges::find(kRows, key, &plugin::SettingRow::key);
-    bool good = row != kRows.end();
+    if (row == kRows.end()) {
+      continue;  // who loads drivers passes none that there is not
+    }
+    bool good = true;
     if (key == "firmware") {
       good = value == "auto" || value == "grbl" || value == "horus" || value == "tmcl";
       out.firmware = value;
@@ -106,7 +109,7 @@ Result<StageOptions> parse_options(std::span<const dubsar_option> options) {
       good = take_axes(value, out.axes);
     } else if (key == "limits") {
       good = take_limits(value, limits);
-    } else if (good) {
+    } else {
       good = take_number(value, *row,
                          key == "steps"       ? steps
                          : key == "speed_max" ? speed_max
@@ -114,8 +117,7 @@ Result<StageOptions> parse_options(std::span<const dubsar_option> options) {
                                               : output);
     }
     if (!good) {
-      return fail(ErrorKind::kUsage, std::string(key) + "=" + std::string(value) + " is not understood", {},
-                  row == kRows.end() ? "" : std::string(key) + " takes " + row->help);
+      return plugin::not_understood(*row, value);
     }
   }
   if (!limits.empty() && limits.size() != out.axes.size()) {

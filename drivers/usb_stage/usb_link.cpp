@@ -127,7 +127,7 @@ Error usb_error(int number, const std::string& doing, const std::string& where) 
     case LIBUSB_ERROR_IO:
     case LIBUSB_ERROR_PIPE:
       return {ErrorKind::kDevice, "the controller was unplugged or is not there", where,
-              "see to its cable, and that its laser is off"};
+              "see to its cable, and that its laser is off; dubsar drivers lists those that are"};
     default:
       return {ErrorKind::kDevice, doing + ": " + libusb_strerror(number), where, "plug it in again"};
   }
@@ -138,7 +138,7 @@ Result<std::unique_ptr<UsbLink>> UsbLink::open(const UsbName& name) {
   out->name_ = name;
   // A context of its own, so that it sees what is plugged in now.
   if (const int failed = libusb_init(&out->context_); failed != 0) {
-    return std::unexpected(usb_error(failed, "USB cannot be used", name.text()));
+    return std::unexpected(usb_error(failed, "USB cannot be used here", name.text()));
   }
   int refused = LIBUSB_ERROR_NOT_FOUND;
   const int listed =
@@ -162,7 +162,8 @@ Result<std::unique_ptr<UsbLink>> UsbLink::open(const UsbName& name) {
         return true;
       });
   if (out->handle_ == nullptr) {
-    return std::unexpected(usb_error(listed != 0 ? listed : refused, "cannot be opened", name.text()));
+    return std::unexpected(
+        usb_error(listed != 0 ? listed : refused, "the controller cannot be opened", name.text()));
   }
   if (const Status claimed = out->claim(); !claimed) {
     return std::unexpected(claimed.error());
@@ -191,7 +192,7 @@ Status UsbLink::claim() {
       failed = libusb_claim_interface(handle_, interface);
     }
     if (failed != 0) {
-      return std::unexpected(usb_error(failed, "cannot be claimed", name_.text()));
+      return std::unexpected(usb_error(failed, "the controller cannot be claimed", name_.text()));
     }
     *keep = interface;
   }
@@ -227,7 +228,7 @@ Status UsbLink::write(std::string_view bytes) {
                              static_cast<int>(copy.size() - sent), &now, kTransferMs);
     sent += static_cast<std::size_t>(now);
     if (failed != 0) {
-      return std::unexpected(usb_error(failed, "takes no bytes", name_.text()));
+      return std::unexpected(usb_error(failed, "the controller takes no bytes", name_.text()));
     }
   }
   return {};
@@ -240,7 +241,7 @@ Result<std::string> UsbLink::read(std::chrono::milliseconds timeout) {
   const auto wait = static_cast<unsigned>(std::max<std::int64_t>(timeout.count(), 1));
   const int failed = libusb_bulk_transfer(handle_, in_, bytes.data(), bytes.size(), &got, wait);
   if (failed != 0 && failed != LIBUSB_ERROR_TIMEOUT) {
-    return std::unexpected(usb_error(failed, "sends no bytes", name_.text()));
+    return std::unexpected(usb_error(failed, "the controller sends no bytes", name_.text()));
   }
   return std::string(reinterpret_cast<const char*>(bytes.data()), static_cast<std::size_t>(got));
 }

@@ -55,31 +55,7 @@ Result<std::unique_ptr<usb_stage::Firmware>> make_firmware(const usb_stage::Stag
   if (options.firmware == "grbl") {
     return usb_stage::make_grbl(link, options.axes, where);
   }
-  std::string said;
-  const auto until = usb_stage::Clock::now() + std::chrono::milliseconds(3500);
-  while (usb_stage::Clock::now() < until) {
-    if (const Status sent = link.write("\x18\r\n"); !sent) {
-      return std::unexpected(sent.error());
-    }
-    for (;;) {
-      const Result<std::string> bytes = link.read(std::chrono::milliseconds(500));
-      if (!bytes) {
-        return std::unexpected(bytes.error());
-      }
-      said += *bytes;
-      if (said.find("Grbl ") != said.npos) {
-        return usb_stage::make_grbl(link, options.axes, where);
-      }
-      if (said.find("Horus ") != said.npos) {
-        return usb_stage::make_horus(link, where);
-      }
-      if (bytes->empty() || said.size() > 1U << 16U) {
-        break;
-      }
-    }
-  }
-  return fail(ErrorKind::kDevice, "the controller says neither that it is GRBL nor that it is Horus", where,
-              "give firmware=tmcl with its steps=, or see to its firmware");
+  return usb_stage::make_by_banner(link, options.axes, where);
 }
 
 std::int32_t open(const char* locator, const dubsar_option* options, std::uint32_t count,

@@ -58,9 +58,12 @@ std::vector<fs::path> camera_files(const fs::path& folder) {
 
 std::vector<std::pair<std::string, std::string>> find_cameras(const fs::path& folder) {
   std::vector<std::pair<std::string, std::string>> out;
+  const Error no_right = error_of(EACCES, {}, {});
   for (const fs::path& file : camera_files(folder)) {
     if (const Result<Node> node = Node::open(file.string())) {
       out.emplace_back(file.string(), node->card());
+    } else if (node.error().what == no_right.what) {
+      out.emplace_back(file.string(), no_right.line());
     }
   }
   return out;
@@ -107,7 +110,7 @@ Status Camera::configure() {
   }
   const std::uint32_t asked = format.fmt.pix.pixelformat;
   if (node_->control(VIDIOC_S_FMT, &format) != 0) {
-    return std::unexpected(error_of(errno, "refuses " + name_of(mode_.fourcc), path_));
+    return std::unexpected(error_of(errno, "the camera refuses " + name_of(mode_.fourcc), path_));
   }
   const v4l2_pix_format& got = format.fmt.pix;
   if (got.pixelformat != asked || got.width != mode_.width || got.height != mode_.height) {
@@ -115,6 +118,13 @@ Status Camera::configure() {
                 "the camera sends " + name_of(got.pixelformat) + " " + std::to_string(got.width) + "x" +
                     std::to_string(got.height) + " when asked for what it offers",
                 path_, "choose another ?format= or ?size=");
+  }
+  constexpr std::uint32_t kMostPixels = 1U << 28U;  // more than any sensor has: it lies
+  if (got.width == 0 || got.height == 0 || got.height > kMostPixels / got.width) {
+    return bad_input(path_,
+                     "the camera announces frames of " + std::to_string(got.width) + " x " +
+                         std::to_string(got.height) + " pixels",
+                     "ask for another ?size=");
   }
   const FormatUse use = use_of(asked);
   stride_ = std::max(got.bytesperline, got.width * use.bytes_per_pixel);

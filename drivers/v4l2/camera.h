@@ -70,7 +70,7 @@ class Camera {
 };
 
 /// The cameras of a folder of device files (/dev): path and name, in order of their numbers. Those in use are
-/// among them.
+/// among them, and those that this user has no right to, with how to get it in place of the name.
 [[nodiscard]] std::vector<std::pair<std::string, std::string>> find_cameras(
     const std::filesystem::path& folder);
 

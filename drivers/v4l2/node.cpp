@@ -102,17 +102,17 @@ Error error_of(int number, const std::string& doing, const std::string& path) {
 Result<Node> Node::open(const std::string& path) {
   const int fd = ::open(path.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC);
   if (fd < 0) {
-    return std::unexpected(error_of(errno, "cannot be opened", path));
+    return std::unexpected(error_of(errno, "the camera cannot be opened", path));
   }
   Node node(path, fd);
   v4l2_capability can{};
   if (node.control(VIDIOC_QUERYCAP, &can) != 0) {
-    return std::unexpected(error_of(errno == EINVAL ? ENOTTY : errno, "does not answer", path));
+    return std::unexpected(error_of(errno == EINVAL ? ENOTTY : errno, "the camera does not answer", path));
   }
   const std::uint32_t flags =
       (can.capabilities & V4L2_CAP_DEVICE_CAPS) != 0 ? can.device_caps : can.capabilities;
   if ((flags & V4L2_CAP_VIDEO_CAPTURE) == 0 || (flags & V4L2_CAP_STREAMING) == 0) {
-    return fail(ErrorKind::kDevice, "no camera that streams", path, "dubsar drivers lists those that do");
+    return fail(ErrorKind::kDevice, "not a camera that streams", path, "dubsar drivers lists those that do");
   }
   node.card_ = text_of(can.card);
   node.bus_ = text_of(can.bus_info);

@@ -69,20 +69,20 @@ Status Stream::take_buffers(std::uint32_t pool) {
   request.type = kType;
   request.memory = V4L2_MEMORY_MMAP;
   if (node_->control(VIDIOC_REQBUFS, &request) != 0) {
-    return std::unexpected(error_of(errno, "it has no buffers to map", node_->path()));
+    return std::unexpected(error_of(errno, "the camera has no buffers to map", node_->path()));
   }
   if (request.count < 2) {
     return fail(ErrorKind::kDevice, "the camera gives one buffer or none", node_->path(),
-                "ask for a smaller frame");
+                "ask for a smaller frame with ?size=");
   }
   for (std::uint32_t k = 0; k < request.count; ++k) {
     v4l2_buffer buffer = buffer_at(k);
     if (node_->control(VIDIOC_QUERYBUF, &buffer) != 0) {
-      return std::unexpected(error_of(errno, "a buffer is refused", node_->path()));
+      return std::unexpected(error_of(errno, "the camera refuses a buffer", node_->path()));
     }
     void* at = node_->map(buffer.length, buffer.m.offset);
     if (at == MAP_FAILED) {
-      return std::unexpected(error_of(errno, "a buffer cannot be mapped", node_->path()));
+      return std::unexpected(error_of(errno, "the camera's buffers cannot be mapped", node_->path()));
     }
     mapped_.push_back({at, buffer.length});
   }
@@ -90,12 +90,12 @@ Status Stream::take_buffers(std::uint32_t pool) {
   const bool copied =
       compressed || use_.handling == Handling::kPackedLuma || use_.handling == Handling::kConverted;
   const std::size_t pixels = std::size_t{mode_.width} * mode_.height;
-  const std::size_t needed = compressed                               ? 1
-                             : use_.handling == Handling::kPackedLuma ? std::size_t{stride_} * mode_.height
-                                                                      : pixels;
-  if (mapped_.front().length < needed) {
-    return fail(ErrorKind::kDevice, "its buffers are smaller than its frames", node_->path(),
-                "choose another format");
+  const std::size_t needed = compressed                              ? 1
+                             : use_.handling == Handling::kConverted ? pixels
+                                                                     : std::size_t{stride_} * mode_.height;
+  if (std::ranges::any_of(mapped_, [&](const Mapped& one) { return one.length < needed; })) {
+    return fail(ErrorKind::kDevice, "the camera's buffers are smaller than its frames", node_->path(),
+                "ask for another ?format= or ?size=");
   }
   if (copied) {
     copies_.assign(mapped_.size(), std::vector<std::uint8_t>(pixels));
@@ -103,7 +103,7 @@ Status Stream::take_buffers(std::uint32_t pool) {
   lent_.assign(mapped_.size(), false);
   for (std::uint32_t k = 0; k < mapped_.size(); ++k) {
     if (!queue(k)) {
-      return std::unexpected(error_of(errno, "a buffer is refused", node_->path()));
+      return std::unexpected(error_of(errno, "the camera refuses a buffer", node_->path()));
     }
   }
   return {};
@@ -212,7 +212,8 @@ Result<std::optional<dubsar_frame>> Stream::next(Clock::time_point until) {
       continue;
     }
     if (buffer.index >= mapped_.size()) {
-      return fail(ErrorKind::kDevice, "the camera fills a buffer that there is not", node_->path());
+      return fail(ErrorKind::kDevice, "the camera fills a buffer that there is not", node_->path(),
+                  "plug it in again; if that does not help, it or its driver is broken");
     }
     const std::int64_t now = now_ns();
     if (copies_.empty()) {

@@ -62,9 +62,7 @@ Result<v4l2::CameraOptions> parse_options(std::span<const dubsar_option> options
       out.buffers = buffers.value_or(0);
     }
     if (!good) {
-      const auto row = std::ranges::find(kOptions, key, &plugin::SettingRow::key);
-      return fail(ErrorKind::kUsage, std::string(key) + "=" + std::string(value) + " is not understood", {},
-                  std::string(key) + " takes " + row->help);
+      return plugin::not_understood(*std::ranges::find(kOptions, key, &plugin::SettingRow::key), value);
     }
   }
   return out;

@@ -136,6 +136,19 @@ TEST_F(Resending, ACameraThatStartsAnewInMidScanGoesOn) {
   EXPECT_TRUE(std::ranges::is_sorted(rows.times));  // its clock began at nought
 }
 
+/// A region that does not begin at the sensor's corner has to be made narrow before it is put aside.
+TEST_F(Resending, ACameraThatStartsAnewHasItsRegionSetInTheOrderThatItTakes) {
+  Device device = open_with({{"rows", "24000"}}).value();
+  EXPECT_FALSE(device.set("offset_x_px", std::int64_t{100}));
+  ASSERT_TRUE(device.set("width_px", std::int64_t{200}));
+  ASSERT_TRUE(device.set("offset_x_px", std::int64_t{100}));
+  Interrupted rows(*peer_, "restart");
+  const auto outcome = device.scan(rows);
+  ASSERT_TRUE(outcome) << outcome.error().line();
+  EXPECT_EQ(rows.x.size(), 200U);
+  EXPECT_EQ(std::get<std::int64_t>(device.get("offset_x_px").value()), 100);
+}
+
 /// Rows that an encoder places go nowhere without its count.
 TEST_F(Resending, ACameraThatStartsAnewWithItsEncoderEndsTheScan) {
   Device device = open_with({{"rows", "24000"}, {"count", "0.5"}, {"row", "0.125"}}).value();

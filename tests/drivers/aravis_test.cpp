@@ -229,7 +229,8 @@ TEST_F(Aravis, ARefusalSaysWhatToDo) {
   EXPECT_EQ(driver.open("", {}).error().kind, ErrorKind::kUsage);
   EXPECT_THAT(driver.open("Nobody-1", {}).error().line(), HasSubstr("the camera is not there"));
   EXPECT_THAT(open({{"format", "Mono12Packed"}}).error().line(), HasSubstr("it offers Mono8"));
-  EXPECT_THAT(open({{"format", "Mono10"}}).error().line(), HasSubstr("does not offer Mono10"));
+  EXPECT_THAT(open({{"format", "Mono10"}}).error().line(),
+              HasSubstr("does not offer the format Mono10; it offers Mono8"));
   ASSERT_EQ(peer_->tell("write 2104 3"), "ok");
   {
     Device device = open().value();

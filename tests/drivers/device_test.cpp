@@ -12,6 +12,7 @@
 namespace dubsar {
 namespace {
 
+using testing::EndsWith;
 using testing::HasSubstr;
 
 class Recorder : public ProfileSink {
@@ -106,13 +107,16 @@ TEST_F(DeviceTest, SettingsAreCheckedAgainstWhatTheyTake) {
   EXPECT_EQ(std::get<std::string>(device.get("light").value()), "off");
   EXPECT_EQ(std::get<std::int64_t>(device.get("hours").value()), 1234);
 
-  EXPECT_FALSE(device.set("gain", 11.0));
+  EXPECT_THAT(device.set("gain", 11.0).error().line(),
+              HasSubstr("setting gain takes a number from 0 to 10 dB"));
   EXPECT_FALSE(device.set("gain", std::numeric_limits<double>::quiet_NaN()));
   EXPECT_FALSE(device.set("gain", std::string("2.5")));
-  EXPECT_FALSE(device.set("average", std::int64_t{17}));
+  EXPECT_THAT(device.set("average", std::int64_t{17}).error().line(),
+              HasSubstr("a whole number from 1 to 16"));
   EXPECT_THAT(device.set("light", std::string("dim")).error().line(), HasSubstr("one of on, off"));
-  EXPECT_FALSE(device.set("hours", std::int64_t{0}));
-  EXPECT_THAT(device.get("colour").error().line(), HasSubstr("gain, average, light, hours"));
+  EXPECT_THAT(device.set("hours", std::int64_t{0}).error().line(),
+              EndsWith("no setting hours to change; it has gain, average, light"));
+  EXPECT_THAT(device.get("colour").error().line(), EndsWith("it has gain, average, light, hours"));
   EXPECT_EQ(std::get<double>(device.get("gain").value()), 2.5);
 }
 

@@ -27,6 +27,16 @@ TEST(FrameCount, TheCamerasNumbersTellWhatIsMissing) {
   EXPECT_EQ(count.take(9, 70 * kMs, 70 * kMs).id, 1U);
 }
 
+TEST(FrameCount, NumbersThatCannotBeSayNothing) {
+  FrameCount count;
+  count.begin();
+  EXPECT_EQ(count.take(70000, 10 * kMs, 10 * kMs).id, 1U);
+  for (const std::uint64_t raw :
+       {std::uint64_t{1} << 63U, std::uint64_t{7}, std::uint64_t{7}, ~std::uint64_t{0}}) {
+    EXPECT_EQ(count.take(raw, 20 * kMs, 20 * kMs).lost, 0U) << raw;
+  }
+}
+
 TEST(FrameCount, OverANewConnectionTimeTellsWhatIsMissing) {
   FrameCount count;
   count.begin();

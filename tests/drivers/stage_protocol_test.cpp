@@ -122,6 +122,9 @@ TEST(StageOptions, AreChecked) {
     ASSERT_FALSE(refused) << bad.key << "=" << bad.value;
     EXPECT_EQ(refused.error().kind, ErrorKind::kUsage);
   }
+  EXPECT_THAT(
+      parse({{"module", "300"}}).error().line(),
+      HasSubstr("module=300 is not understood; module takes of tmcl: the module's address; from 1 to 255"));
 }
 
 TEST(UsbNames, AreMakerProductAndSerial) {

@@ -249,6 +249,8 @@ TEST_F(V4l2, ARefusalSaysWhatToDo) {
   EXPECT_THAT(open().error().line(),
               HasSubstr("no right to use the camera; join the group plugdev, or copy 60-dubsar.rules"));
   EXPECT_EQ(open().error().kind, ErrorKind::kDevice);
+  EXPECT_THAT(v4l2::find_cameras(folder_.path()),
+              testing::ElementsAre(testing::Pair(node(), HasSubstr("no right to use the camera; join"))));
   ASSERT_EQ(peer_->tell("occupy"), "ok");
   EXPECT_THAT(open().error().line(), HasSubstr("in use by another program"));
   ASSERT_EQ(peer_->tell("allow"), "ok");
@@ -274,6 +276,21 @@ TEST_F(V4l2, ARefusalSaysWhatToDo) {
   ASSERT_FALSE(file);
   EXPECT_THAT(file.error().line(), HasSubstr("not a camera"));
   std::filesystem::remove(folder_.path().string() + ".txt");
+}
+
+/// What it says of its lines reaches beyond its buffers: read so, the program would end.
+TEST_F(V4l2, LinesLongerThanThereIsRoomForAreRefused) {
+  ASSERT_NO_FATAL_FAILURE(plug_in({"Y12:320x240@100", "YUYV:320x240@100"}));
+  if (IsSkipped()) {
+    return;
+  }
+  ASSERT_EQ(peer_->tell("stretch"), "ok");
+  for (const char* format : {"Y12", "YUYV"}) {
+    Device device = open({{"format", format}}).value();
+    const Status started = device.start_frames();
+    ASSERT_FALSE(started) << format;
+    EXPECT_THAT(started.error().line(), HasSubstr("smaller than its frames; ask for another"));
+  }
 }
 
 TEST_F(V4l2, UnpluggedInMidStreamAndPluggedInAgain) {

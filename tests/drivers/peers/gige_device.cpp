@@ -27,6 +27,7 @@ constexpr std::uint32_t kXmlAt = 0x10000;
 constexpr std::uint32_t kEncoderChunk = 0x1001;
 constexpr std::uint32_t kHeartbeat_ms = 0x938;
 constexpr std::uint32_t kControlPrivilege = 0xa00;
+constexpr std::uint32_t kInvalidParameter = 0x8002;
 constexpr std::uint32_t kAccessDenied = 0x8006;
 constexpr std::uint32_t kStreamPort = 0xd00;
 constexpr std::uint32_t kAcquisition = 0x124;
@@ -260,6 +261,10 @@ void GigeDevice::answer(const Bytes& ask, const sockaddr_in& to) {
         break;
       }
       for (std::size_t k = 0; k + 8 <= size; k += 8) {
+        if (refuses(word(k), word(k + 4))) {
+          status = kInvalidParameter;
+          break;
+        }
         if (word(k) + 4 <= kXmlAt) {
           write(word(k), word(k + 4));
         }
@@ -292,6 +297,10 @@ void GigeDevice::answer(const Bytes& ask, const sockaddr_in& to) {
     case 0x0086:
       if (!may_write) {
         status = kAccessDenied;
+        break;
+      }
+      if (size == 8 && refuses(word(0), word(4))) {
+        status = kInvalidParameter;
         break;
       }
       for (std::size_t k = 4; k < size && word(0) + k - 4 < kXmlAt; ++k) {

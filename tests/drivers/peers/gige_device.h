@@ -51,11 +51,15 @@ class GigeDevice {
   /// Waits for the next exposure; `width`, `height` are those of the region. Nothing when none came of it.
   virtual std::optional<Picture> next(std::uint32_t id) = 0;
   virtual void restarted() {}
+  /// Whether a register does not take a value as the others stand.
+  /// Called, as restarted(), where read() and write() may be used.
+  [[nodiscard]] virtual bool refuses(std::uint32_t /*at*/, std::uint32_t /*value*/) const { return false; }
 
   [[nodiscard]] std::uint32_t reg(std::uint32_t at) {
     const std::lock_guard lock(mutex_);
     return read(at);
   }
+  [[nodiscard]] std::uint32_t read(std::uint32_t at) const;
   void write(std::uint32_t at, std::uint32_t value);
   void real(std::uint32_t at, double value);
 
@@ -64,7 +68,6 @@ class GigeDevice {
     std::uint16_t id = 0;
     std::vector<Bytes> packets;  ///< leader, payload, trailer; ready to be sent
   };
-  [[nodiscard]] std::uint32_t read(std::uint32_t at) const;
   void text(std::uint32_t at, const std::string& value);
   void send(const Bytes& packet);
   [[nodiscard]] Block packed(std::uint16_t id, Picture& picture) const;

@@ -17,6 +17,9 @@
 namespace {
 
 constexpr std::uint32_t kChunkMode = 0x2600;
+constexpr std::uint32_t kWidth = 0x100;
+constexpr std::uint32_t kOffsetX = 0x130;
+constexpr std::uint32_t kSensorWidth = 320;
 
 std::string description() {
   std::string xml = dubsar::test::range_camera_xml();
@@ -42,8 +45,9 @@ class Resender : public dubsar::test::GigeDevice {
  public:
   Resender(const std::string& serial, double loss) : GigeDevice("Resender", serial, description(), loss) {
     for (const auto& [address, value] :
-         {std::pair(0x11cU, 4096U), std::pair(0x118U, 4096U), std::pair(0x100U, 320U), std::pair(0x104U, 40U),
-          std::pair(0x128U, 0x011000B8U), std::pair(0x138U, 8000U), std::pair(0x12cU, 1U)}) {
+         {std::pair(0x11cU, kSensorWidth), std::pair(0x118U, 4096U), std::pair(kWidth, kSensorWidth),
+          std::pair(0x104U, 40U), std::pair(0x128U, 0x011000B8U), std::pair(0x138U, 8000U),
+          std::pair(0x12cU, 1U)}) {
       write(address, value);
     }
     for (std::uint32_t axis = 0; axis < 3; ++axis) {
@@ -52,7 +56,16 @@ class Resender : public dubsar::test::GigeDevice {
   }
 
  protected:
-  void restarted() override { encoder_ = 0; }
+  void restarted() override {
+    encoder_ = 0;
+    write(kWidth, kSensorWidth);
+    write(kOffsetX, 0);
+  }
+  /// A region lies on the sensor.
+  [[nodiscard]] bool refuses(std::uint32_t at, std::uint32_t value) const override {
+    return (at == kOffsetX && value + read(kWidth) > kSensorWidth) ||
+           (at == kWidth && value + read(kOffsetX) > kSensorWidth);
+  }
   /// Depth 1000 + 3 col, as the other peer paints it; the encoder counts ten for each frame.
   std::optional<Picture> next(std::uint32_t /*id*/) override {
     const auto now = std::chrono::steady_clock::now();

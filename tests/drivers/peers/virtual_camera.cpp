@@ -213,6 +213,8 @@ std::string VirtualCamera::command(const std::string& line) {
   } else if (what == "deny" || what == "occupy" || what == "allow") {
     denied_ = what == "deny";
     occupied_ = what == "occupy";
+  } else if (what == "stretch") {
+    stretched_ = true;
   } else if (what == "counts") {
     return std::to_string(made_) + " " + std::to_string(starved_) + " " + std::to_string(held_up_);
   } else if (what == "rename") {

@@ -40,7 +40,8 @@ class VirtualCamera {
   bool tick(const std::function<void(std::uint64_t, const std::vector<std::uint8_t>&)>& store);
 
   /// A line from the test: unplug, plug, pause, resume, lose N, spoil N, shorten N, deny, occupy, allow,
-  /// rename NAME, counts ("frames made, of them lost for want of a buffer, times it was held up itself").
+  /// stretch (says that its lines are longer than there is room for), rename NAME, counts ("frames made, of
+  /// them lost for want of a buffer, times it was held up itself").
   std::string command(const std::string& line);
   [[nodiscard]] bool gone();
 
@@ -65,7 +66,7 @@ class VirtualCamera {
   int gain_ = 10;
   int exposure_ = 50;
   int automatic_ = V4L2_EXPOSURE_APERTURE_PRIORITY;
-  bool gone_ = false, paused_ = false, denied_ = false, occupied_ = false;
+  bool gone_ = false, paused_ = false, denied_ = false, occupied_ = false, stretched_ = false;
   int lose_ = 0, spoil_ = 0, shorten_ = 0;
   std::vector<std::uint8_t> picture_, frame_;  ///< as painted, as sent
 };

@@ -40,7 +40,7 @@ int VirtualCamera::set_format(v4l2_format& format, bool keep) {
   pix.height = got.height;
   pix.pixelformat = got.fourcc;
   pix.field = V4L2_FIELD_NONE;
-  pix.bytesperline = picture_line_bytes(got.fourcc, got.width);
+  pix.bytesperline = (stretched_ ? 16U : 1U) * picture_line_bytes(got.fourcc, got.width);
   pix.sizeimage = pix.bytesperline * got.height;
   pix.colorspace = V4L2_COLORSPACE_SRGB;
   return 0;
