@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "formats/atomic_file.h"
+#include "formats/folder_lock.h"
 
 namespace dubsar {
 
@@ -60,8 +61,7 @@ Result<StagedFolder> StagedFolder::begin(const fs::path& wanted, bool replace) {
     }
     struct stat mine {};
     struct stat there {};
-    if (::flock(lock, LOCK_EX | LOCK_NB) != 0) {
-      const int why = errno;
+    if (const int why = lock_folder(lock, LOCK_EX | LOCK_NB); why != 0) {
       ::close(lock);
       return why != EWOULDBLOCK ? storage(staged, "cannot lock the folder", std::strerror(why))
                                 : fail(ErrorKind::kUsage, "another program is writing this folder now",

@@ -11,16 +11,14 @@
 #include <string>
 #include <utility>
 
+#include "formats/folder_lock.h"
+
 namespace dubsar {
 
 Result<WritersTurn> WritersTurn::take(const std::filesystem::path& folder) {
   WritersTurn turn(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-  int held = turn.fd_;
-  do {
-    held = turn.fd_ < 0 ? -1 : ::flock(turn.fd_, LOCK_EX);
-  } while (turn.fd_ >= 0 && held != 0 && errno == EINTR);
-  if (held != 0) {
-    return fail(ErrorKind::kStorage, std::string("cannot lock the folder: ") + std::strerror(errno),
+  if (const int error = turn.fd_ < 0 ? errno : lock_folder(turn.fd_, LOCK_EX); error != 0) {
+    return fail(ErrorKind::kStorage, std::string("cannot lock the folder: ") + std::strerror(error),
                 folder.string(), "choose a folder that can be written to");
   }
   return turn;
