@@ -133,6 +133,9 @@ Result<Device> open_device(const DeviceUri& uri, const DriverRegistry& registry)
       return fail(ErrorKind::kUsage, "a rig has no option " + uri.options.front().first, uri.text(),
                   "say it in the rig's file");
     }
+    if (uri.locator.empty()) {
+      return fail(ErrorKind::kUsage, "no rig is named", "rig:", "write rig:FILE.toml");
+    }
     return open_rig(uri.locator, registry);
   }
   const Result<const Driver*> driver = registry.find(uri.scheme);

@@ -11,8 +11,8 @@ namespace {
 
 /// A longer gap is a row number gone wrong rather than lost rows; the rows then go on without it.
 constexpr std::int64_t kLongestGap = 10000;
-/// Announced sizes are believed up to this; beyond it memory is taken as rows come.
-constexpr std::size_t kMostReserved = std::size_t{1} << 27U;
+/// Announced sizes and gaps are believed up to so many samples; beyond it memory is taken as rows come.
+constexpr std::size_t kMostSamples = std::size_t{1} << 27U;
 constexpr float kFarthestMm = 1e6F;
 
 /// A channel appears with its first profile; rows before it hold `fill`.
@@ -46,7 +46,7 @@ GridBuilder::GridBuilder(const ScanInfo& info) : spacing_known_(info.spacing_mm 
   grid_.device = info.device;
   grid_.source = info.source;
   const std::size_t expected = std::min(
-      kMostReserved, static_cast<std::size_t>(info.expected_rows) * static_cast<std::size_t>(info.cols));
+      kMostSamples, static_cast<std::size_t>(info.expected_rows) * static_cast<std::size_t>(info.cols));
   for (std::vector<float>* axis : {&grid_.x, &grid_.y, &grid_.z}) {
     axis->reserve(expected);
   }
@@ -72,7 +72,9 @@ bool GridBuilder::append(const Profile& profile) {
   }
   if (const std::int64_t gap = profile.row - grid_.rows; gap > 0) {
     faults_.rows_lost += static_cast<std::uint64_t>(gap);
-    append_empty_rows(gap > kLongestGap ? 0 : static_cast<std::size_t>(gap));
+    const auto rows = static_cast<std::size_t>(gap);
+    const bool sane = gap <= kLongestGap && rows * static_cast<std::size_t>(grid_.cols) <= kMostSamples;
+    append_empty_rows(sane ? rows : 0);
   }
   const std::size_t had = grid_.size();
   const auto cols = static_cast<std::size_t>(grid_.cols);

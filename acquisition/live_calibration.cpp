@@ -6,6 +6,8 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
+#include <string_view>
 #include <utility>
 
 #include "acquisition/calibration_folder.h"
@@ -212,11 +214,12 @@ Result<LiveCalibration::Taken> LiveCalibration::take_stops(const JobContext& job
 
 Result<LiveCalibration::Taken> LiveCalibration::stops_while_streaming(const JobContext& job) {
   const auto axis = static_cast<std::uint32_t>(plan_.axis);
-  std::size_t laid = 0;
-  for (const CalibrationSet::Stop& had : plan_.set.stops) {
-    laid = std::max<std::size_t>(laid, static_cast<std::size_t>(std::atoi(had.fixed.c_str() + 4)));
+  constexpr std::string_view kLaid = "laid";
+  int laid = 0;
+  for (const CalibrationSet::Stop& had : plan_.set.stops) {  // some may have names that somebody wrote
+    laid = had.fixed.starts_with(kLaid) ? std::max(laid, std::atoi(had.fixed.c_str() + kLaid.size())) : laid;
   }
-  const std::string name = "laid" + std::to_string(laid + 1);
+  const std::string name = std::string(kLaid) + std::to_string(laid + 1);
   std::vector<CalibrationView> views;
   std::vector<CalibrationSet::Stop> stops;
   std::vector<GrayImage> pictures;
@@ -229,16 +232,15 @@ Result<LiveCalibration::Taken> LiveCalibration::stops_while_streaming(const JobC
     if (Status moved = stage_.move({axis, there, 0, false}); !moved) {
       return std::unexpected(moved.error());
     }
-    const Result<StageReading> reading = stage_.motion();
-    if (!reading) {
-      return std::unexpected(reading.error());
+    const Result<double> position = position_of(stage_, axis);
+    if (!position) {
+      return std::unexpected(position.error());
     }
     Result<GrayImage> picture_now = picture(false, plan_.board_exposure_us);
     if (!picture_now) {
       return std::unexpected(picture_now.error());
     }
-    CalibrationSet::Stop stop{numbered("stage", plan_.set.stops.size() + stops.size(), ""), name,
-                              reading->position.at(axis)};
+    CalibrationSet::Stop stop{numbered("stage", plan_.set.stops.size() + stops.size(), ""), name, *position};
     Result<BoardView> seen = find_board(picture_now->view(), board_, stop.board);
     if (!seen) {
       continue;

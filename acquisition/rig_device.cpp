@@ -206,6 +206,10 @@ Result<Device> open_rig(const std::filesystem::path& file, const DriverRegistry&
   Result<RigCalibration> calibration = RigCalibration{};
   if (!of_range) {
     const std::filesystem::path beside = file.parent_path() / rig->calibration;
+    if (std::error_code ignored; !std::filesystem::exists(beside, ignored)) {
+      return bad_input(beside.string(), "the rig has no calibration yet",
+                       "make it: dubsar calibrate PICTURES --board BOARD --rig " + file.string());
+    }
     const Result<std::string> bytes = read_whole_file(beside);
     calibration = bytes ? parse_calibration(*bytes, beside.string()) : std::unexpected(bytes.error());
     if (!calibration) {

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "acquisition/setting_words.h"
+#include "core/units.h"
 #include "formats/number_text.h"
 
 namespace dubsar {
@@ -14,7 +15,12 @@ namespace {
 
 constexpr double kRunUpS = 0.3;     // to gather speed and for the readings around the first row
 constexpr double kRunUpSteps = 10;  // and at least so many rows
-constexpr int kRestMs = 1000;
+constexpr std::chrono::seconds kRest(1);
+constexpr std::chrono::seconds kGrace(2);  // to start and to brake
+
+std::chrono::milliseconds milliseconds_of(double seconds) {
+  return std::chrono::milliseconds(static_cast<std::int64_t>(1000 * seconds));
+}
 
 }  // namespace
 
@@ -41,18 +47,40 @@ Result<StageAxis> axis_for_scan(const RigFile& file, Device& stage, MotionKind k
   }
   const StageAxis& axis = (*axes)[static_cast<std::size_t>(file.axis)];
   if (axis.rotary != (kind != MotionKind::kLinear)) {
-    return bad_input(where, "axis " + axis.name + " does not move as is said of it",
-                     "name the axis that carries the camera or the tablet");
+    return bad_input(
+        where,
+        "axis " + axis.name +
+            (axis.rotary ? " turns, and the rig's goes straight" : " goes straight, and the rig's turns"),
+        "set axis to the one that carries the camera or the tablet; axes=x:deg in the stage's URI "
+        "says that x turns");
   }
   const double end = file.start + file.step * (file.rows - 1);
   if (!axis.endless && (file.start < axis.minimum || end > axis.maximum)) {
     return fail(ErrorKind::kUsage,
-                "the scan from " + number_text(file.start) + " to " + number_text(end) +
-                    " leaves the axis' limits, " + number_text(axis.minimum) + " to " +
-                    number_text(axis.maximum),
+                "the scan from " + position_text(axis.rotary, file.start) + " to " +
+                    position_text(axis.rotary, end) + " leaves the axis' limits, " +
+                    position_text(axis.rotary, axis.minimum) + " to " +
+                    position_text(axis.rotary, axis.maximum),
                 where, "scan less, or move the limits");
   }
   return axis;
+}
+
+std::string position_text(bool rotary, double position) {
+  const double shown = rotary ? deg_from_rad(position) : position;
+  return number_text(std::round(1000 * shown) / 1000) + (rotary ? "°" : " mm");
+}
+
+Result<double> position_of(const Device& stage, std::size_t axis) {
+  const Result<StageReading> reading = stage.motion();
+  if (!reading) {
+    return std::unexpected(reading.error());
+  }
+  if (axis >= reading->position.size()) {
+    return fail(ErrorKind::kDevice, "the stage does not tell where its axis " + std::to_string(axis) + " is",
+                stage.uri(), "see the option axes= of its URI");
+  }
+  return reading->position[axis];
 }
 
 Status home_once(Device& stage, int axis) {
@@ -75,14 +103,18 @@ Status check_reports(const StageReading& reading, const RigFile& file) {
              : Status{};
 }
 
-std::unexpected<Error> stopped_short(const RigFile& file, double position) {
+std::unexpected<Error> stopped_short(const RigFile& file, bool rotary, double position) {
   return fail(ErrorKind::kDevice,
-              "the stage stopped at " + number_text(position) + " before the end of the scan", file.stage,
-              "see whether something blocks it, and home it");
+              "the stage stopped at " + position_text(rotary, position) + " before the end of the scan",
+              file.stage, "see whether something blocks it, and home it");
+}
+
+std::chrono::milliseconds Travel::time_of_way() const {
+  return kGrace + milliseconds_of(1.5 * std::abs(to - from) / speed);
 }
 
 std::chrono::milliseconds Travel::time_to_rest(double last_row) const {
-  return std::chrono::milliseconds(kRestMs + static_cast<int>(1000 * std::abs(to - last_row) / speed));
+  return kRest + milliseconds_of(std::abs(to - last_row) / speed);
 }
 
 Travel travel_of(const RigFile& file, const StageAxis& axis, double speed) {

@@ -40,17 +40,25 @@ Status put_camera_settings(const RigFile& file, Device& camera, const std::strin
 [[nodiscard]] Result<StageAxis> axis_for_scan(const RigFile& file, Device& stage, MotionKind kind,
                                               const std::string& where);
 
+/// A place of an axis as people say it, in mm or degrees.
+[[nodiscard]] std::string position_text(bool rotary, double position);
+
+/// Where an axis of the stage is, mm or rad.
+[[nodiscard]] Result<double> position_of(const Device& stage, std::size_t axis);
+
 /// Positions mean nothing before a stage has found its switch: homes it, if it can and has not.
 Status home_once(Device& stage, int axis);
 
 /// kUsage: a stage that does not tell where it is while it moves.
 Status check_reports(const StageReading& reading, const RigFile& file);
-[[nodiscard]] std::unexpected<Error> stopped_short(const RigFile& file, double position);
+[[nodiscard]] std::unexpected<Error> stopped_short(const RigFile& file, bool rotary, double position);
 
 /// The way of a continuous scan.
 struct Travel {
   double from = 0, to = 0;  ///< with room to gather speed, where the axis has it
   double speed = 0;         ///< mm/s or rad/s
+  /// The whole way with starting and braking, at most.
+  [[nodiscard]] std::chrono::milliseconds time_of_way() const;
   /// At most, from the last row until it stands.
   [[nodiscard]] std::chrono::milliseconds time_to_rest(double last_row) const;
 };

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <cstring>
 #include <ctime>
 #include <utility>
 
@@ -17,15 +16,7 @@ namespace dubsar {
 
 namespace {
 
-constexpr auto kFrameWait = std::chrono::milliseconds(200);
 constexpr const char* kRefused = "scan cancelled";  // by who takes the rows
-constexpr int kFrameTries = 15;                     // 3 s for a frame that was exposed late enough
-
-std::int64_t monotonic_ns() {
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(
-             std::chrono::steady_clock::now().time_since_epoch())
-      .count();
-}
 
 StripeOptions stripe_options(const RigFile& file) {
   StripeOptions options;
@@ -128,38 +119,20 @@ Status RigScanner::check_frame(const Frame& frame) const {
   const CameraModel& camera = triangulator_->calibration().camera;
   if (static_cast<int>(frame.width) != camera.width || static_cast<int>(frame.height) != camera.height ||
       frame.offset_x != 0 || frame.offset_y != 0) {
-    return bad_input(file_.name,
-                     "the camera sends " + std::to_string(frame.width) + " x " +
-                         std::to_string(frame.height) + " pixels, it was calibrated with " +
-                         std::to_string(camera.width) + " x " + std::to_string(camera.height),
-                     "set the region that was calibrated in camera_settings");
+    const auto region = [](auto width, auto height, auto x, auto y) {
+      return std::to_string(width) + " x " + std::to_string(height) + " pixels from " + std::to_string(x) +
+             ", " + std::to_string(y) + " on";
+    };
+    return bad_input(file_.camera,
+                     "the camera sends " + region(frame.width, frame.height, frame.offset_x, frame.offset_y) +
+                         ", it was calibrated with " + region(camera.width, camera.height, 0, 0),
+                     "ask for the region that was calibrated: ?size= of v4l2:, camera_settings of aravis:");
   }
   if (frame.format != PixelFormat::kMono8) {
-    return bad_input(file_.name, "the camera does not send Mono8", "set pixel_format in camera_settings");
+    return bad_input(file_.camera, "the camera sends more than eight bits a pixel",
+                     "ask for eight: ?format=GREY of v4l2:, ?format=Mono8 of aravis:");
   }
   return {};
-}
-
-/// A frame whose light fell behind `not_before_ns`: what the camera sent before is given back.
-Result<Frame> RigScanner::fresh_frame(std::int64_t not_before_ns) {
-  for (int i = 0; i < kFrameTries; ++i) {
-    if (stopped_->load()) {
-      return fail(ErrorKind::kCancelled, "scan stopped", file_.name);
-    }
-    Result<std::optional<Frame>> frame = camera_.next_frame(kFrameWait);
-    if (!frame) {
-      return std::unexpected(frame.error());
-    }
-    if (!*frame || (*frame)->timestamp_ns < not_before_ns || (*frame)->incomplete) {
-      continue;
-    }
-    if (const Status fits = check_frame(**frame); !fits) {
-      return std::unexpected(fits.error());
-    }
-    return std::move(**frame);
-  }
-  return fail(ErrorKind::kDevice, "no frame came from the camera in 3 s", file_.camera,
-              "see that its trigger is free, and the cable");
 }
 
 Status RigScanner::row(int number, ProfileSink& sink, ScanTally& tally) {
@@ -169,44 +142,37 @@ Status RigScanner::row(int number, ProfileSink& sink, ScanTally& tally) {
       !moved) {
     return moved;
   }
-  // A frame that is stamped on arrival was exposed before: one whole frame is let go by then.
   const auto take = [&](double power) -> Result<Frame> {
     if (Status lit = stage_.set_laser(laser, power); !lit) {
       return std::unexpected(lit.error());
     }
-    Result<Frame> frame = fresh_frame(monotonic_ns());
-    if (frame && !frame->exposed) {
-      const std::int64_t seen = frame->timestamp_ns + 1;
-      *frame = Frame{};
-      frame = fresh_frame(seen);
-    }
-    return frame;
+    Result<Frame> frame = fresh_frame(camera_, stopped_.get());
+    const Status fits = frame ? check_frame(*frame) : Status{};
+    return fits ? std::move(frame) : std::unexpected(fits.error());
   };
   if (file_.ambient) {
     const Result<Frame> dark = take(0);
     if (!dark) {
       return std::unexpected(dark.error());
     }
-    const GrayView view = view_of(*dark);
-    dark_ = GrayImage(view.width, view.height);
-    for (int v = 0; v < view.height; ++v) {
-      std::memcpy(dark_.pixels.data() + dark_.index(0, v), view.row(v), static_cast<std::size_t>(view.width));
-    }
+    dark_ = gray_of(*dark);
   }
   const Result<Frame> lit = take(file_.laser_power);
   if (!lit) {
     return std::unexpected(lit.error());
   }
-  const Result<StageReading> motion = stage_.motion();
-  if (!motion) {
-    return std::unexpected(motion.error());
+  const Result<double> there = position_of(stage_, static_cast<std::size_t>(file_.axis));
+  if (!there) {
+    return std::unexpected(there.error());
   }
-  const auto axis = static_cast<std::size_t>(file_.axis);
-  if (axis >= motion->position.size() || std::abs(motion->position[axis] - position) > 0.5 * file_.step) {
-    return fail(ErrorKind::kDevice, "the stage is not where it was sent", file_.stage,
-                "see whether something blocks it, and home it");
+  if (std::abs(*there - position) > 0.5 * file_.step) {
+    const bool rotary = triangulator_->calibration().motion.kind != MotionKind::kLinear;
+    return fail(ErrorKind::kDevice,
+                "the stage is not where it was sent: at " + position_text(rotary, *there) + ", not " +
+                    position_text(rotary, position),
+                file_.stage, "see whether something blocks it, and home it");
   }
-  SweptRow seen{number, lit->timestamp_ns, motion->position[axis], {}};
+  SweptRow seen{number, lit->timestamp_ns, *there, {}};
   extractor_.extract(view_of(*lit), file_.ambient ? dark_.view() : GrayView{}, seen.stripe);
   return hand_on(std::move(seen), sink, tally);
 }

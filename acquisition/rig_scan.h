@@ -48,7 +48,6 @@ class RigScanner : public RigSource {
  private:
   RigScanner(const RigFile& file, const RigCalibration& calibration, Device camera, Device stage,
              StripeAxis axis);
-  [[nodiscard]] Result<Frame> fresh_frame(std::int64_t not_before_ns);
   [[nodiscard]] Status check_frame(const Frame& frame) const;
   Status row(int number, ProfileSink& sink, ScanTally& tally);
   [[nodiscard]] Result<Travel> plan_sweep();

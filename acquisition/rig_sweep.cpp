@@ -84,7 +84,7 @@ Status RigScanner::sweep(const Travel& plan, ProfileSink& sink, ScanTally& tally
   if (Status off = stage_.move({axis, plan.to, plan.speed, true}); !off) {
     return off;
   }
-  StageWatch watch(stage_, axis);
+  StageWatch watch(stage_, axis, plan.time_of_way());
   StripeStream stripes(camera_, extractor_.options(),
                        [this](const Frame& frame) { return check_frame(frame); });
   RowCount rows(file_.start, file_.step, file_.rows);
@@ -112,7 +112,9 @@ Status RigScanner::sweep(const Travel& plan, ProfileSink& sink, ScanTally& tally
         break;
       }
       const Status told = watch.finish();
-      return !told ? told : stopped_short(file_, rest);
+      return !told ? told
+                   : stopped_short(file_, triangulator_->calibration().motion.kind != MotionKind::kLinear,
+                                   rest);
     }
     if (there->sigma > kSureSteps * file_.step) {
       unsure += there->position < rows.end() + 0.5 * file_.step ? 1 : 0;

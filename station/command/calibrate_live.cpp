@@ -122,7 +122,8 @@ void add_live_options(CLI::App& verb, LiveOptions& options) {
 Result<std::string> take_pictures(const LiveOptions& options, const std::string& board,
                                   const std::string& folder, CommandContext& context) {
   if (board.empty()) {
-    return fail(ErrorKind::kUsage, "nobody says what board it is", options.rig, "say --board");
+    return fail(ErrorKind::kUsage, "nobody says what board it is", options.rig,
+                "say --board, such as chessboard:9x6:25 or charuco:9x7:5:3.7");
   }
   const DriverRegistry registry;
   Result<RigParts> parts = open_rig_parts(options.rig, registry);
@@ -132,7 +133,8 @@ Result<std::string> take_pictures(const LiveOptions& options, const std::string&
   const std::string belongs =
       (std::filesystem::path(options.rig).parent_path() / parts->file.calibration).string();
   if (parts->file.calibration.empty()) {
-    return fail(ErrorKind::kUsage, "a range camera is calibrated by its maker", options.rig);
+    return fail(ErrorKind::kUsage, "a range camera is calibrated by its maker", options.rig,
+                "scan with it: dubsar scan --device rig:" + options.rig);
   }
   Result<LiveCalibration> live =
       LiveCalibration::start(plan_for(options, parts->file, board, folder), std::move(parts->camera),
@@ -161,7 +163,7 @@ Result<std::string> take_pictures(const LiveOptions& options, const std::string&
                 "the same command goes on with them");
   }
   if (live->poses() == 0) {
-    return fail(ErrorKind::kUsage, "no picture was taken", folder);
+    return fail(ErrorKind::kUsage, "no picture was taken", folder, "press Enter for each pose of the board");
   }
   return belongs;
 }

@@ -6,6 +6,9 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <fstream>
+
+#include "tests/support/temporary_folder.h"
 
 namespace dubsar {
 namespace {
@@ -59,11 +62,19 @@ TEST(DeviceUri, TextReadsBackTheSame) {
   EXPECT_EQ(back.options, uri.options);
 }
 
-TEST(DeviceUri, AnUnknownSchemeIsAnsweredWithThoseThatThereAre) {
+TEST(DeviceUri, WhatCannotBeOpenedIsAnsweredWithTheMend) {
   const DriverRegistry registry({std::filesystem::path(DUBSAR_BINARY_DIR) / "lib/dubsar/drivers"});
   const auto device = open_device(parse_device_uri("webcam:0").value(), registry);
   ASSERT_FALSE(device);
   EXPECT_THAT(device.error().line(), HasSubstr("replay:, sim:"));
+  EXPECT_THAT(open_device(parse_device_uri("rig:").value(), registry).error().line(),
+              HasSubstr("write rig:FILE"));
+  const test::TemporaryFolder folder;
+  const std::string rig = (folder.path() / "rig.toml").string();
+  std::ofstream(rig) << "name='a'\ncamera='v4l2:/dev/video9'\nstage='usb_stage:1:2'\ncalibration='c.json'\n"
+                     << "[scan]\nfrom_mm=0\nto_mm=1\nstep_mm=0.1\n";
+  EXPECT_THAT(open_device(parse_device_uri("rig:" + rig).value(), registry).error().line(),
+              HasSubstr("the rig has no calibration yet; make it: dubsar calibrate"));
   const auto option = open_device(parse_device_uri("sim:?sede=4").value(), registry);
   ASSERT_FALSE(option);
   EXPECT_THAT(option.error().line(), HasSubstr("takes seed, size, spacing"));

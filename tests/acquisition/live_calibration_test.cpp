@@ -167,6 +167,11 @@ TEST_F(Live, FailuresLeaveTheLaserOff) {
   ASSERT_FALSE(gone.has_value());
   EXPECT_EQ(gone.error().kind, ErrorKind::kDevice);
   EXPECT_EQ(bench_.laser, 0);
+  bench_.gone_after = 1 << 30;
+  bench_.mute = true;
+  const auto lost = live->take_stops(JobContext{});
+  ASSERT_FALSE(lost.has_value());
+  EXPECT_NE(lost.error().what.find("does not tell where its axis 0 is"), std::string::npos);
   plan_.folder = folder_.path() / "other";
   plan_.to = 100;
   const Result<LiveCalibration> far = start();

@@ -6,6 +6,9 @@
 
 #include <thread>
 
+#include "acquisition/stage_watch.h"
+#include "tests/acquisition/rig_bench.h"
+
 namespace dubsar {
 namespace {
 
@@ -92,6 +95,20 @@ TEST(PositionTrack, WaitsForWhatIsBehind) {
   }
   asks.join();
   EXPECT_NEAR(told.value().position, 1.5, 1e-9);
+}
+
+/// A motor that is stuck, of a controller that reports what it asked of it; or a controller that lies.
+TEST(StageWatch, AStageThatMovesForEverIsToldAsOneThatFailed) {
+  test::RigBench bench;
+  bench.says_it_moves = true;
+  const Device stage = test::stage_of(bench);
+  StageWatch watch(stage, 0, std::chrono::milliseconds(20));
+  while (!watch.track().wait_closed(std::chrono::seconds(1))) {
+  }
+  const Status told = watch.finish();
+  ASSERT_FALSE(told.has_value());
+  EXPECT_EQ(told.error().kind, ErrorKind::kDevice);
+  EXPECT_NE(told.error().what.find("long after it should have arrived"), std::string::npos);
 }
 
 }  // namespace

@@ -81,6 +81,19 @@ TEST_F(RangeSourceTest, OddProfilesAreMadeGoodAndCounted) {
   EXPECT_EQ(record.tally.profiles_dropped, 1U);
 }
 
+TEST(GridBuilder, AGapThatNoMemoryHoldsIsANumberGoneWrong) {
+  ScanInfo info;
+  info.cols = 1 << 20;
+  GridBuilder builder(info);
+  const std::vector<float> some(8, 1.0F);
+  Profile profile;
+  profile.row = 9000;
+  profile.x = profile.y = profile.z = some;
+  ASSERT_TRUE(builder.append(profile));
+  EXPECT_EQ(builder.grid().rows, 1);
+  EXPECT_EQ(builder.faults().rows_lost, 9000U);
+}
+
 TEST_F(RangeSourceTest, AFailureInMidScanKeepsTheRowsAndTheNextScanRuns) {
   RangeSource source = open("odd:1?mode=fail");
   const auto failed = source.next({}, job_);

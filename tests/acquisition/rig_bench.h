@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <functional>
+#include <string>
 
 #include "core/mesh_query.h"
 #include "drivers/device.h"
@@ -31,6 +32,10 @@ struct RigBench {
   int cut = 0;               ///< rows that the camera leaves away at the lower edge
   int gone_after = 1 << 30;  ///< frames until the camera is unplugged
   bool stuck = false;
+  bool says_it_moves = false;  ///< for ever
+  bool mute = false;           ///< tells of no axis
+  int stale = 0;               ///< frames of long ago that the camera still holds
+  std::string asked;           ///< of the stage: L, D (laser lit, dark), S (stop)
   std::uint64_t frames = 0;
   GrayImage frame;
 };
@@ -67,7 +72,11 @@ inline const dubsar_driver& camera_driver() {
         return plugin::report(error, DUBSAR_DEVICE, "the camera is gone", "bench", "plug it in");
       }
       ++bench.frames;
-      if (bench.look) {
+      const bool stale = bench.stale > 0;
+      if (stale) {
+        --bench.stale;
+        bench.frame = GrayImage(bench.truth.camera.width, bench.truth.camera.height);
+      } else if (bench.look) {
         bench.frame = bench.look(bench);
       } else {
         const RigidTransform tablet_from_camera =
@@ -81,7 +90,7 @@ inline const dubsar_driver& camera_driver() {
       frame.flags = DUBSAR_FRAME_EXPOSED;
       frame.lease = bench.frames;
       frame.id = bench.frames;
-      frame.timestamp_ns = now_ns();
+      frame.timestamp_ns = stale ? 1 : now_ns();
       frame.pixels = bench.frame.pixels.data();
       frame.width = static_cast<std::uint32_t>(bench.frame.width);
       frame.height = static_cast<std::uint32_t>(bench.frame.height - bench.cut);
@@ -137,9 +146,9 @@ inline const dubsar_driver& stage_driver() {
       const RigBench& bench = bench_of(device);
       dubsar_motion motion{};
       motion.struct_size = sizeof motion;
-      motion.flags = DUBSAR_MOTION_HOMED;
+      motion.flags = DUBSAR_MOTION_HOMED | (bench.says_it_moves ? DUBSAR_MOTION_MOVING : 0U);
       motion.timestamp_ns = now_ns();
-      motion.axis_count = 1;
+      motion.axis_count = bench.mute ? 0 : 1;
       motion.laser_count = 1;
       motion.position[0] = bench.position;
       motion.laser[0] = bench.laser;
@@ -148,10 +157,12 @@ inline const dubsar_driver& stage_driver() {
     };
     out.set_laser = [](dubsar_device* device, std::uint32_t, double power, dubsar_error*) -> std::int32_t {
       bench_of(device).laser = power;
+      bench_of(device).asked += power > 0 ? 'L' : 'D';
       return DUBSAR_OK;
     };
     out.stop = [](dubsar_device* device, dubsar_error*) -> std::int32_t {
       bench_of(device).laser = 0;
+      bench_of(device).asked += 'S';
       return DUBSAR_OK;
     };
     out.emergency_stop = out.stop;

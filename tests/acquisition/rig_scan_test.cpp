@@ -11,6 +11,7 @@
 
 #include "acquisition/exposure.h"
 #include "acquisition/grid_builder.h"
+#include "acquisition/range_rig.h"
 #include "acquisition/rig_device.h"
 #include "tests/acquisition/rig_bench.h"
 #include "tests/sim/scenes.h"
@@ -127,7 +128,8 @@ TEST_F(RigScan, RefusesPartsThatDoNotFit) {
   EXPECT_NE(refusal().find("no axis 3"), std::string::npos);
   file.axis = 0;
   bench.limit = 0.3;
-  EXPECT_NE(refusal().find("limits"), std::string::npos);
+  EXPECT_NE(refusal().find("from -0.5 mm to 0.5 mm leaves the axis' limits, -0.3 mm to 0.3 mm"),
+            std::string::npos);
   bench.limit = 10;
   file.camera_settings = {{"exposure_us", "1500"}};
   EXPECT_FALSE(make().has_value());
@@ -161,8 +163,20 @@ TEST_F(RigScan, AFailureLeavesTheRowsAndTheLaserOff) {
   Collect stuck;
   const Status blocked = made->scan(stuck);
   ASSERT_FALSE(blocked.has_value());
-  EXPECT_NE(blocked.error().what.find("not where"), std::string::npos);
+  EXPECT_NE(blocked.error().what.find("not where it was sent: at 0.5 mm, not -0.5 mm"), std::string::npos);
   EXPECT_EQ(bench.laser, 0);
+}
+
+/// A camera's pool holds half a second of frames, of which all grow old while the stage moves.
+TEST_F(RigScan, FramesFromBeforeTheMoveAreLetGoHoweverManyThereAre) {
+  file.rows = 2;
+  Result<RigScanner> made = make();
+  ASSERT_TRUE(made.has_value());
+  bench.stale = 40;
+  Collect sink;
+  const Status scanned = made->scan(sink);
+  EXPECT_TRUE(scanned.has_value()) << scanned.error().line();
+  EXPECT_EQ(bench.frames, 44U);
 }
 
 TEST_F(RigScan, RowsCloseTogetherWaitForEachOtherAndNoneIsKeptBack) {
@@ -211,6 +225,37 @@ TEST_F(RigScan, CancelledBySinkAndRefusesAnotherRegion) {
   const Status region = made->scan(cut);
   ASSERT_FALSE(region.has_value());
   EXPECT_NE(region.error().what.find("calibrated with"), std::string::npos);
+}
+
+/// A range camera that is unplugged as soon as it is asked for profiles.
+Device gone_range_camera() {
+  static const dubsar_driver driver = [] {
+    dubsar_driver out = plugin::empty_driver();
+    out.close = [](dubsar_device*) {};
+    out.capabilities = [](dubsar_device*, dubsar_capabilities* to, dubsar_error*) -> std::int32_t {
+      dubsar_capabilities c{};
+      c.struct_size = sizeof c;
+      plugin::lend(to, c);
+      return DUBSAR_OK;
+    };
+    out.scan = [](dubsar_device*, const dubsar_sink*, dubsar_error* error) -> std::int32_t {
+      return plugin::report(error, DUBSAR_DEVICE, "the camera is gone", "bench", "plug it in");
+    };
+    return out;
+  }();
+  static int any = 0;
+  return {&driver, reinterpret_cast<dubsar_device*>(&any), "bench_range:"};
+}
+
+/// GRBL puts a laser off in its turn, behind the move that still runs: for so long it would burn on.
+TEST_F(RigScan, ARangeCameraThatFailsEndsTheMotionBeforeTheLaserIsPutOff) {
+  file.motion = RigMotion{};
+  file.speed = 5;
+  Result<RangeRig> made = RangeRig::make(file, gone_range_camera(), test::stage_of(bench), "rig.toml");
+  ASSERT_TRUE(made.has_value()) << made.error().line();
+  Collect sink;
+  EXPECT_EQ(made->scan(sink).error().kind, ErrorKind::kDevice);
+  EXPECT_EQ(bench.asked, "LSD");
 }
 
 TEST(VerificationReminder, IsOfRigsThatWereNotVerifiedToday) {
