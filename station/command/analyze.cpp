@@ -212,12 +212,10 @@ Status check_corrected(const AnalyzeArguments& arguments, const std::filesystem:
               "nothing was changed; look at the place in the viewer");
 }
 
-/// Everything but what a person has said, and the stamp when all of it is there.
+/// Everything but what a person has said, and the stamp when all of it is there. The wedges come last: they
+/// tell how many corrections the outputs have in them.
 Status write_outputs(const AnalyzeArguments& arguments, const WedgeFile& file, const Mesh& mesh,
                      const Analysis& analysis, const StampedWork* work, const JobContext& job) {
-  if (Status written = write_wedges(arguments.out, file); !written) {
-    return written;
-  }
   if (!arguments.mesh_out.empty()) {
     if (Status written = write_mesh(arguments.mesh_out, annotated_mesh(mesh, analysis)); !written) {
       return written;
@@ -232,6 +230,9 @@ Status write_outputs(const AnalyzeArguments& arguments, const WedgeFile& file, c
     drawings = std::move(*drawn);
   }
   if (Status written = write_extras(arguments, mesh, analysis, job); !written) {
+    return written;
+  }
+  if (Status written = write_wedges(arguments.out, file); !written) {
     return written;
   }
   return work != nullptr ? work->finish(outputs_of(arguments, drawings), job) : Status();
@@ -295,7 +296,7 @@ Result<int> analyze(const AnalyzeArguments& arguments, CommandContext& context) 
     return std::unexpected(started.error());
   }
   if (arguments.corrected) {
-    if (const Status written = write_corrections(corrections_file, *said); !written) {
+    if (const Status written = replace_corrections(corrections_file, arguments.known, *said); !written) {
       return std::unexpected(written.error());
     }
   }
@@ -305,7 +306,8 @@ Result<int> analyze(const AnalyzeArguments& arguments, CommandContext& context) 
     Error error = written.error();
     if (arguments.corrected) {
       error.mend += error.mend.empty() ? "" : "; ";
-      error.mend += "the correction is noted: `dubsar analyze` then brings the outputs in line with it";
+      error.mend += arguments.must_make_last ? "the correction is noted" : "the correction is taken back";
+      error.mend += ": `dubsar analyze` then brings the outputs in line with that";
     }
     return std::unexpected(std::move(error));
   }

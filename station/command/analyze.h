@@ -30,8 +30,9 @@ struct AnalyzeArguments {
   bool again = false;
   std::string corrections;                                ///< file; empty: the one beside the output
   std::optional<std::vector<WedgeCorrection>> corrected;  ///< in the place of what that file says
-  bool must_make_last =
-      false;  ///< the last of `corrected` is new: where it cannot be made, nothing is changed
+  std::vector<WedgeCorrection> known;                     ///< what that file said when they were made
+  /// The last of `corrected` is new (where it cannot be made, nothing is changed); else one was taken back.
+  bool must_make_last = false;
 };
 
 /// Every file and folder that the analysis writes.

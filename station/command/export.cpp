@@ -8,6 +8,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <string_view>
 
 #include "acquisition/session_store.h"
 #include "formats/atomic_file.h"
@@ -49,6 +50,19 @@ Result<std::vector<fs::path>> files_below(const fs::path& folder,
   }
   std::ranges::sort(files);
   return files;
+}
+
+/// Why nothing can be served below this address; empty where it can.
+std::string fault_of_address(const std::string& url) {
+  if (!url.starts_with("https://") && !url.starts_with("http://")) {
+    return "an address that viewers follow begins with https:// or http://";
+  }
+  // RFC 3986, appendix A; names of files follow at its end.
+  const bool plain = std::ranges::none_of(url, [](char c) {
+    return static_cast<unsigned char>(c) <= ' ' || c == '\x7f' ||
+           std::string_view("\"<>\\^`{|}?#").find(c) != std::string_view::npos;
+  });
+  return plain ? std::string() : "an address of a folder has no blanks, quotes, brackets, ? or #";
 }
 
 /// What decides what is in the package, beside the session.
@@ -179,8 +193,9 @@ void add_export(CLI::App& app, Action& chosen) {
       ->delimiter(',')
       ->check(CLI::IsMember(parts));
   verb->add_option(
-      "--base-url", arguments->base_url,
-      "where the package will be served from: ids in the IIIF manifest, annotations and provenance");
+          "--base-url", arguments->base_url,
+          "where the package will be served from: ids in the IIIF manifest, annotations and provenance")
+      ->check(CLI::Validator(fault_of_address, ""));
   verb->add_option("--ground", arguments->ground, "of the pictures")
       ->check(CLI::IsMember({"black", "white"}))
       ->capture_default_str();

@@ -12,6 +12,7 @@
 #include <new>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "core/file_blocks.h"
@@ -37,16 +38,30 @@ int report(const Error& error, bool json) {
   return exit_status(error.kind);
 }
 
+/// What a verb printed is a part of what it was asked for: it has not done its work where that got lost.
+Result<int> with_output_written(Result<int> status) {
+  if (!status || (std::fflush(stdout) == 0 && std::ferror(stdout) == 0)) {
+    return status;
+  }
+  return fail(ErrorKind::kStorage, "it did not take all of the answer", "standard output",
+              "free some space, or let it go elsewhere");
+}
+
 int run(int argc, char** argv) {
   CLI::App app("Dubsar: the station beside a laser scanner for cuneiform tablets", "dubsar");
   app.set_version_flag("--version", DUBSAR_VERSION);
   app.require_subcommand(1);
+  app.get_formatter()->label("SUBCOMMAND", "VERB");
+  app.footer(
+      "dubsar VERB --help says what each takes. Exit status: 0 done, 1 done but it falls short, 2 bad usage "
+      "or "
+      "input, 3 a device failed, 4 the disk refused or an internal error.");
   bool json = false;
   bool verbose = false;
   bool quiet = false;
   app.add_flag("--json", json, "Print one JSON object on standard output and nothing else there");
   app.add_flag("-v,--verbose", verbose, "Log more");
-  app.add_flag("-q,--quiet", quiet, "Log warnings and errors only");
+  app.add_flag("-q,--quiet", quiet, "Log warnings and errors only, no progress");
   app.fallthrough();
 
   Action action;
@@ -71,6 +86,7 @@ int run(int argc, char** argv) {
                   json);
   }
   set_log_level(verbose ? LogLevel::kDebug : quiet ? LogLevel::kWarning : LogLevel::kInfo);
+  show_progress(!quiet);
 
   // A limit on the size of files is an error of the write, to be told in one line, not the program's end.
   std::signal(SIGXFSZ, SIG_IGN);
@@ -78,7 +94,7 @@ int run(int argc, char** argv) {
   context.json = json;
   const InterruptScope interrupt(context.job);
   try {
-    const Result<int> status = action(context);
+    const Result<int> status = with_output_written(action(context));
     finish_progress();
     if (const std::size_t bytes = most_file_block_bytes(); bytes > 0) {
       log_info(fmt::format("memory was short: up to {:.1f} GiB lay in files meanwhile, which takes longer",

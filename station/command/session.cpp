@@ -100,8 +100,10 @@ Result<int> list(const SessionOptions& options, CommandContext& context) {
 }
 
 /// Undo, drop and restore mark scans; the poses and the mesh follow with the next register and stitch.
+/// `what`: what the scan is then.
 template <class Change>
-Result<int> change(const SessionOptions& options, CommandContext& context, const Change& apply) {
+Result<int> change(const SessionOptions& options, CommandContext& context, const char* what,
+                   const Change& apply) {
   Result<SessionStore> store = SessionStore::open(options.path);
   if (!store) {
     return std::unexpected(store.error());
@@ -113,7 +115,7 @@ Result<int> change(const SessionOptions& options, CommandContext& context, const
   if (context.json) {
     CommandContext::print({{"session", options.path}, {"scan", *id}});
   } else {
-    std::printf("scan %d; run register and stitch on the session to follow\n", *id);
+    std::printf("scan %d is %s; run register and stitch on the session to follow\n", *id, what);
   }
   return 0;
 }
@@ -191,10 +193,10 @@ void add_session(CLI::App& app, Action& chosen) {
   };
   add("list", "The scans and their states", false, list);
   add("undo", "Take the newest scan out", false, [](const SessionOptions& o, CommandContext& c) {
-    return change(o, c, [](SessionStore& store) { return undo(store); });
+    return change(o, c, "taken out", [](SessionStore& store) { return undo(store); });
   });
   add("drop", "Take a scan out; nothing is deleted", true, [](const SessionOptions& o, CommandContext& c) {
-    return change(o, c, [&o](SessionStore& store) -> Result<int> {
+    return change(o, c, "taken out", [&o](SessionStore& store) -> Result<int> {
       const Status done = store.drop_scan(o.id, o.why);
       return done ? Result<int>(o.id) : std::unexpected(done.error());
     });
@@ -203,7 +205,7 @@ void add_session(CLI::App& app, Action& chosen) {
   add_session_hints(*verb, chosen);
   add_session_sign(*verb, chosen);
   add("restore", "Put a dropped scan back", true, [](const SessionOptions& o, CommandContext& c) {
-    return change(o, c, [&o](SessionStore& store) -> Result<int> {
+    return change(o, c, "back in its place", [&o](SessionStore& store) -> Result<int> {
       const Status done = store.restore_scan(o.id);
       return done ? Result<int>(o.id) : std::unexpected(done.error());
     });

@@ -8,6 +8,7 @@
 
 #include "acquisition/session_store.h"
 #include "acquisition/sign_off_log.h"
+#include "formats/atomic_file.h"
 #include "formats/bag_check.h"
 #include "formats/grid_file.h"
 #include "formats/sign_off_json.h"
@@ -49,6 +50,12 @@ void print_damage(const char* what, const std::vector<Error>& errors) {
   for (const Error& error : errors) {
     std::printf("%s: %s\n", what, error.line().c_str());
   }
+}
+
+/// A file that says of itself, or by its name, that it is a grid.
+bool claims_to_be_grid(const fs::path& path) {
+  const Result<std::string> head = read_file_head(path, 64);
+  return path.extension() == ".grid" || (head && is_grid_file(*head));
 }
 
 int print_grid(const std::string& path, const CommandContext& context) {
@@ -197,7 +204,7 @@ Result<int> verify(const Arguments& arguments, CommandContext& context) {
     return fail(ErrorKind::kUsage, "the copy is the session itself", arguments.copy,
                 "name the folder that the session was copied to");
   }
-  if (fs::is_regular_file(arguments.path, error)) {
+  if (fs::is_regular_file(arguments.path, error) && claims_to_be_grid(arguments.path)) {
     return print_grid(arguments.path, context);
   }
   if (SessionStore::is_session(arguments.path)) {
@@ -206,7 +213,7 @@ Result<int> verify(const Arguments& arguments, CommandContext& context) {
   if (is_bag(arguments.path)) {
     return verify_bag(arguments, context);
   }
-  return fail(ErrorKind::kUsage, "this folder is neither a session nor a bag", arguments.path, kWhatToGive);
+  return fail(ErrorKind::kUsage, "this is no session, no bag and no grid", arguments.path, kWhatToGive);
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <memory>
 #include <utility>
 
+#include "core/log.h"
 #include "core/units.h"
 #include "formats/corrections_json.h"
 #include "formats/mesh_io.h"
@@ -146,6 +147,25 @@ bool same(const WedgeCorrection& a, const WedgeCorrection& b) {
          a.reach_mm == b.reach_mm;
 }
 
+/// Takes the last one back, unless that was noted before and the disk took no more then: what is missing is
+/// the rest, for the wedges still have it.
+Status take_back_last(CorrectionFile& said, const CorrectArguments& arguments,
+                      const std::filesystem::path& where) {
+  std::error_code ignored;
+  if (std::filesystem::is_regular_file(arguments.analyze.out, ignored)) {
+    const Result<WedgeFile> file = read_wedges(arguments.analyze.out);
+    if (file && file->corrections > said.corrections.size()) {
+      log_info("a correction was taken back before and the wedges still have it: they are measured again");
+      return {};
+    }
+  }
+  if (said.corrections.empty()) {
+    return fail(ErrorKind::kUsage, "there is no correction to undo", where.string());
+  }
+  said.corrections.pop_back();
+  return {};
+}
+
 Result<int> correct(const CorrectArguments& arguments, CommandContext& context) {
   const std::filesystem::path where = corrections_of(arguments.analyze);
   Result<CorrectionFile> said = read_corrections(where);
@@ -156,11 +176,11 @@ Result<int> correct(const CorrectArguments& arguments, CommandContext& context) 
     return list(*said, context);
   }
   AnalyzeArguments analysis = arguments.analyze;
+  analysis.known = said->corrections;
   if (arguments.undo) {
-    if (said->corrections.empty()) {
-      return fail(ErrorKind::kUsage, "there is no correction to undo", where.string());
+    if (const Status taken = take_back_last(*said, arguments, where); !taken) {
+      return std::unexpected(taken.error());
     }
-    said->corrections.pop_back();
   } else {
     Result<WedgeCorrection> next = asked_for(arguments);
     if (!next) {

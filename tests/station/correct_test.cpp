@@ -84,6 +84,31 @@ TEST_F(Correct, OneThatTheDiskRefusedHalfwayIsMadeWhenItIsAskedForAgain) {
   EXPECT_EQ(bytes(), before);
 }
 
+TEST_F(Correct, AnUndoThatTheDiskRefusedHalfwayTakesBackNoSecondOneWhenItIsAskedForAgain) {
+  const std::string before = bytes();
+  ASSERT_EQ(correct({"--delete", "3"}).status, 0);
+  const std::string with_one = bytes();
+  // Room for what is noted, none for the wedges or for what is drawn beside them.
+  const auto undo = [](const test::CommandOptions& options, const std::vector<std::string>& beside) {
+    std::vector<std::string> words{"wedges", "correct", in("tablet.ply"), "-o", in("w.json"), "--undo"};
+    words.insert(words.end(), beside.begin(), beside.end());
+    return run_command(words, options);
+  };
+  for (const std::vector<std::string>& beside :
+       {std::vector<std::string>{}, {"--mesh-out", in("coloured.ply")}}) {
+    ASSERT_EQ(correct({"--delete", "6"}).status, 0);
+    const Outcome refused = undo({.largest_file = 4096}, beside);
+    EXPECT_EQ(refused.status, 4) << refused.err;
+    EXPECT_THAT(refused.err, HasSubstr("the correction is taken back: `dubsar analyze`"));
+    EXPECT_EQ(wedges().corrections, 2U);
+    ASSERT_EQ(undo({}, beside).status, 0);
+    EXPECT_THAT(correct({"--list", "--json"}).json()["corrections"], SizeIs(1));
+    EXPECT_EQ(bytes(), with_one);
+  }
+  ASSERT_EQ(correct({"--undo"}).status, 0);
+  EXPECT_EQ(bytes(), before);
+}
+
 TEST_F(Correct, WhatCannotBeMadeIsOneLineAndChangesNothing) {
   const std::string before = bytes();
   const auto refused = [&](const std::vector<std::string>& what, const std::string& why) {

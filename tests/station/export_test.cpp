@@ -279,6 +279,12 @@ TEST_F(Export, BadUsageIsToldInOneLine) {
   EXPECT_EQ(run_command({"export", at("session").string()}).status, 2);
   EXPECT_EQ(run_command({"export", at("nowhere").string(), "--to", at("x").string()}).status, 2);
   EXPECT_EQ(export_to("x", {"--without", "everything"}).status, 2);
+  for (const char* url :
+       {"museum.example/t", "https://museum.example/a tablet/", "https://museum.example/?t="}) {
+    const Outcome refused = export_to("x", {"--base-url", url});
+    EXPECT_EQ(refused.status, 2) << url;
+    EXPECT_THAT(refused.err, HasSubstr("--base-url: an address")) << url;
+  }
   EXPECT_FALSE(fs::exists(at("x")));
 }
 

@@ -8,6 +8,7 @@
 #include "formats/pins_json.h"
 #include "formats/poses_json.h"
 #include "tests/station/support/command.h"
+#include "tests/station/support/shell.h"
 #include "tests/support/temporary_folder.h"
 
 namespace dubsar {
@@ -20,6 +21,15 @@ using test::run_command;
 using ::testing::HasSubstr;
 using ::testing::SizeIs;
 
+TEST(CommandUsage, AnAnswerThatCouldNotBePrintedIsNoSuccess) {
+  const test::TemporaryFolder folder;
+  const fs::path err = folder.path() / "err";
+  const int status =
+      test::shell("{ " DUBSAR_BINARY_DIR "/bin/dubsar drivers --json >/dev/full; } 2>" + test::quoted(err));
+  EXPECT_EQ(status, 4);
+  EXPECT_THAT(test::bytes_of(err), HasSubstr("dubsar: standard output: it did not take all of the answer"));
+}
+
 TEST(CommandUsage, WrongWordsAreStatusTwoAndOneLine) {
   const test::TemporaryFolder folder;
   const std::string session = (folder.path() / "session").string();
@@ -31,6 +41,7 @@ TEST(CommandUsage, WrongWordsAreStatusTwoAndOneLine) {
       {"plan", "--frob", session},
       {"verify", session},
       {"verify", folder.path().string()},
+      {"verify", DUBSAR_SOURCE_DIR "/README.md"},
       {"simulate", "tablet", "--size", "24x20", "-o", session},
       {"simulate", "tablet", "--size", "0x20x10", "-o", session},
       {"simulate", "tablet", "--spacing", "nan", "-o", session},

@@ -82,6 +82,8 @@ TEST_F(Verify, EveryFileOfAnUnharmedSessionIsWhole) {
   }
   EXPECT_THAT(report["whole"].get<std::vector<std::string>>(), testing::UnorderedElementsAreArray(there));
   EXPECT_TRUE(report["unrecorded"].empty() && report["extra"].empty());
+  const Outcome quiet = run_command({"-q", "verify", session_.string()});
+  EXPECT_EQ(quiet.err, "") << "no progress either";
 }
 
 TEST_F(Verify, DamagedMissingAndForeignFilesAreNamed) {

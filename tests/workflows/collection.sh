@@ -60,6 +60,15 @@ wait $worker 2>/dev/null || true
 "$DUBSAR" -q verify "$folder/museum/s" >/dev/null 2>&1 || fail "the session was changed"
 "$DUBSAR" -q verify "$folder/museum/s.results/package" >/dev/null 2>&1 || fail "the package is not whole"
 [ -z "$(find "$folder/museum/s.results" -name '.dubsar-tmp-*')" ] || fail "something was left behind"
+# The mesh of a session that has none is stitched beside it, and anew when the session has changed since.
+cp -r "$folder/museum/s" "$folder/museum/t"
+rm "$folder/museum/t/mesh/model.ply"
+DUBSAR_EXPORT=no "$workflows/do-tablet" "$folder" museum/t 2>/dev/null || fail "a session without a mesh"
+cp "$folder/museum/t.results/mesh.ply" "$folder/before.ply"
+"$DUBSAR" -q session drop "$folder/museum/t" 1 >/dev/null 2>&1 || fail "drop"
+DUBSAR_EXPORT=no "$workflows/do-tablet" "$folder" museum/t 2>/dev/null || fail "a session with a scan less"
+! cmp -s "$folder/before.ply" "$folder/museum/t.results/mesh.ply" || fail "the mesh is of a scan that was taken out"
+rm -r "$folder/museum/t" "$folder/museum/t.results" "$folder/before.ply"
 listed=$("$workflows/list-tablets" "$folder")
 [ "$listed" = $'museum/a b\nmuseum/s' ] || fail "list-tablets: $listed"
 if command -v xxhsum >/dev/null && command -v python3 >/dev/null; then
