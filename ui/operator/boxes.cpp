@@ -125,6 +125,10 @@ void OperatorScreen::draw_signing(UiContext& ui) {
     text_line(ui, "sign-incomplete", ui.text(Text::kSignIncomplete), sign_incomplete_);
   }
   const bool enough = says(sign_name_) && (conclusive || says(sign_incomplete_));
+  // The line that has the cursor by itself must not cost a second escape.
+  if (!enough && ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape), false)) {
+    ImGui::CloseCurrentPopup();
+  }
   const bool by_key = enough && ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Enter), false) && !appears;
   if (plain_button(ui, "sign-now", ui.text(Text::kSignNow), enough) || by_key) {
     SignOff wanted;

@@ -153,7 +153,7 @@ void OperatorScreen::draw(UiContext& ui, ImVec2 size) {
   const float gap = ImGui::GetStyle().ItemSpacing.y;
   const ImVec2 room = ImGui::GetContentRegionAvail();
   const float top = ui.px(5.6F);
-  const float strip = ui.px(8.2F);
+  const float strip = std::min(ui.px(8.2F), 0.2F * room.y);  // large letters leave the checklist its room
   const float middle = room.y - top - strip - 2 * gap;
   const float left = ui.px(13.5F);
   const float right = std::min(ui.px(19), 0.3F * room.x);
@@ -366,7 +366,8 @@ void OperatorScreen::draw_model(UiContext& ui, ImVec2 size, bool asks_for_places
                 packed(ui.colours.faint), ui.text(Text::kModel));
   if (state_.red_map && !state_.red_map->conclusive) {
     const std::string red = filled(ui.text(Text::kRedArea), area_words(red_mm2(*state_.red_map)));
-    draw->AddText({origin.x + ui.px(0.5F), end.y - ui.px(1.6F)}, packed(ui.colours.red), red.c_str());
+    const float above = asks_for_places ? ui.px(3.5F) : 0.0F;  // the button
+    draw->AddText({origin.x + ui.px(0.5F), end.y - ui.px(1.6F) - above}, packed(ui.colours.red), red.c_str());
   }
   if (asks_for_places) {
     const ImVec2 button{ui.px(13), ui.px(2.9F)};

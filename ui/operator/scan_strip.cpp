@@ -98,8 +98,10 @@ void OperatorScreen::draw_strip(UiContext& ui, ImVec2 size) {
     if (scan.dropped) {
       draw->AddLine({origin.x + 4, end.y - line - 8}, {end.x - 4, origin.y + 4}, packed(ui.colours.faint), 2);
     }
-    // Over its scan, in its own size: where a thumb rests beside the buttons.
-    ImGui::SetNextWindowPos({origin.x, origin.y - 2}, ImGuiCond_Always, {0, 1});
+    // Over its scan, in its own size, within the window: where a thumb rests beside the buttons.
+    const bool is_right = origin.x > 0.5F * ImGui::GetIO().DisplaySize.x;
+    ImGui::SetNextWindowPos({is_right ? end.x : origin.x, origin.y - 2}, ImGuiCond_Always,
+                            {is_right ? 1.0F : 0.0F, 1});
     if (ImGui::BeginPopup("menu")) {
       begin_asking(ui);
       menu = &scan;

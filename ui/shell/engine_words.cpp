@@ -127,6 +127,7 @@ constexpr EnginePhrase kPhrases[] = {
     {"stitching", "Netz wird genäht"},
     {"red map", "Rote Stellen werden gesucht"},
     {"surface fields", "Flächenmaße entstehen"},
+    {"ambient occlusion", "Umgebungsverdeckung entsteht"},
     {"writing results", "Ergebnisse werden geschrieben"},
     {"checksums", "Prüfsummen"},
     {"watershed", "Keile werden gesucht"},
