@@ -32,19 +32,6 @@ std::int64_t clock_ns(clockid_t clock) {
   return std::int64_t{now.tv_sec} * 1000000000 + now.tv_nsec;
 }
 
-/// Frees what belonged to a camera that is gone: Aravis waits for its answers for seconds, which nobody else
-/// has to.
-void dispose(ArvStream* stream, ArvChunkParser* chunks, ArvCamera* camera) {
-  std::thread([=] {
-    for (void* object :
-         {static_cast<void*>(stream), static_cast<void*>(chunks), static_cast<void*>(camera)}) {
-      if (object != nullptr) {
-        g_object_unref(object);
-      }
-    }
-  }).detach();
-}
-
 /// From Aravis's own thread, which takes packets and puts frames together.
 void stream_thread_says(void* /*data*/, ArvStreamCallbackType what, ArvBuffer* /*buffer*/) {
   if (what == ARV_STREAM_CALLBACK_TYPE_INIT) {
@@ -356,16 +343,27 @@ void Camera::stop() {
   g_clear_object(&stream_);
 }
 
-void Camera::lose() {
+Camera::Connection Camera::let_go() {
   const std::lock_guard lock(mutex_);
   add_statistics(counts_);
   stale_.merge(lent_);
   lent_.clear();
-  dispose(stream_, chunks_, camera_);
-  stream_ = nullptr;
-  chunks_ = nullptr;
-  camera_ = nullptr;
   device_ = nullptr;
+  return {std::exchange(stream_, nullptr), std::exchange(chunks_, nullptr), std::exchange(camera_, nullptr)};
+}
+
+void Camera::release(const Connection& old) {
+  for (void* object :
+       {static_cast<void*>(old.stream), static_cast<void*>(old.chunks), static_cast<void*>(old.camera)}) {
+    if (object != nullptr) {
+      g_object_unref(object);
+    }
+  }
+}
+
+void Camera::lose() {
+  // Aravis waits for the answers of a camera that is gone for seconds, which nobody else has to.
+  std::thread([old = let_go()] { release(old); }).detach();
 }
 
 Camera::~Camera() {

@@ -114,6 +114,16 @@ class Camera {
   [[nodiscard]] bool take_control();
   Status configure();
   Status choose_format();
+  /// What Aravis holds of a camera.
+  struct Connection {
+    ArvStream* stream = nullptr;
+    ArvChunkParser* chunks = nullptr;
+    ArvCamera* camera = nullptr;
+  };
+  /// Leaves this without a connection. What is let go of is to be released; that takes seconds where the
+  /// camera is gone, and tells one that is there to end its stream.
+  [[nodiscard]] Connection let_go();
+  static void release(const Connection& old);
   void lose();
   /// Ends in a stream that runs, or without a camera (retake.cpp).
   Status retake();

@@ -52,6 +52,15 @@ class GErrorHolder {
         break;
     }
     const std::string why = error_ == nullptr ? "no reason given" : std::string(error_->message);
+    // These alone may be about a value that was asked for; the others mean a description that does not hold
+    // together.
+    const bool of_description =
+        error_ != nullptr && error_->domain == ARV_GC_ERROR && error_->code != ARV_GC_ERROR_OUT_OF_RANGE &&
+        error_->code != ARV_GC_ERROR_READ_ONLY && error_->code != ARV_GC_ERROR_ENUM_ENTRY_NOT_FOUND;
+    if (of_description) {
+      return {ErrorKind::kBadInput, doing + ", for its description (GenICam) is broken: " + why, where,
+              "update its firmware with its maker's program"};
+    }
     return {ErrorKind::kDevice, doing + ": " + why, where, "see that nothing else uses it"};
   }
 

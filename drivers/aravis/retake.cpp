@@ -36,9 +36,10 @@ Status Camera::retake() {
   fresh->set_here_ = set_here_;
   fresh->said_room_ = true;
   const std::uint32_t pool = counts_.pool;
-  lose();
   const auto attempt = std::make_shared<Attempt>();
-  std::thread([attempt, pool, camera = std::move(fresh)]() mutable {
+  std::thread([attempt, pool, old = let_go(), camera = std::move(fresh)]() mutable {
+    // First of all: its last word ends the stream of that address, and must not end the new one.
+    release(old);
     const Status begun = camera->begin(pool);
     const std::lock_guard lock(attempt->mutex);
     attempt->done = begun;

@@ -15,8 +15,6 @@
 #include <filesystem>
 #include <utility>
 
-extern char** environ;
-
 namespace dubsar::usb_stage {
 
 namespace {

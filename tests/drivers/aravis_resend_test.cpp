@@ -125,6 +125,16 @@ TEST_F(Resending, ControlThatIsLostInMidScanIsTakenAgainAndTheRowsInBetweenAreCo
   EXPECT_EQ(device.frame_counters()->reconnections, 1U);
 }
 
+/// What is left of the connection before ends the stream of its address, and is in no hurry.
+TEST_F(Resending, TheEndOfTheOldConnectionDoesNotEndTheNewOne) {
+  Device device = open_with({{"rows", "24000"}}).value();
+  ASSERT_EQ(peer_->tell("lax"), "ok");
+  Interrupted rows(*peer_, "forget");
+  const auto outcome = device.scan(rows);
+  ASSERT_TRUE(outcome) << outcome.error().line();
+  EXPECT_EQ(rows.rows.back(), 23999);
+}
+
 TEST_F(Resending, ACameraThatStartsAnewInMidScanGoesOn) {
   Device device = open_with({{"rows", "24000"}}).value();
   Interrupted rows(*peer_, "restart");

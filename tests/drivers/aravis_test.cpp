@@ -270,7 +270,9 @@ TEST_F(Aravis, ADescriptionThatLiesOrBreaksOffIsBadInput) {
   ASSERT_NO_FATAL_FAILURE(plug_in({"truncated"}));
   const auto opened = open();
   ASSERT_FALSE(opened);
-  EXPECT_NE(opened.error().kind, ErrorKind::kInternal) << opened.error().line();
+  EXPECT_EQ(opened.error().kind, ErrorKind::kBadInput);
+  EXPECT_THAT(opened.error().line(), HasSubstr("description (GenICam)"));
+  EXPECT_THAT(opened.error().line(), HasSubstr("update its firmware"));
 }
 
 }  // namespace

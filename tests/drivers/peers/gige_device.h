@@ -40,6 +40,9 @@ class GigeDevice {
   std::atomic<bool> quit = false, quiet = false;
   std::atomic<bool> dies_when_taken = false;      ///< the next program that takes control has it for a moment
   std::atomic<std::uint64_t> fell_silent_ns = 0;  ///< of a camera that died so
+  /// It obeys whoever has the address of the one in control, as some cameras do, and takes its time to end a
+  /// stream.
+  std::atomic<bool> lax = false;
   std::atomic<int> resent = 0;
 
  protected:
@@ -73,6 +76,8 @@ class GigeDevice {
   [[nodiscard]] Block packed(std::uint16_t id, Picture& picture) const;
   void resend(const std::uint8_t* ask);
   void answer(const Bytes& ask, const sockaddr_in& to);
+  /// Whether it takes its time over this, and answers later.
+  bool puts_off(const Bytes& ask, const sockaddr_in& to);
 
   Bytes memory_;
   double loss_;
@@ -84,6 +89,12 @@ class GigeDevice {
   std::uint64_t controller_ = 0;
   std::uint64_t heard_ns_ = 0;
   std::atomic<std::uint64_t> switched_on_ns_ = 0;  ///< where its clock begins
+  struct PutOff {
+    Bytes ask;
+    sockaddr_in to{};
+    std::uint64_t until_ns = 0;
+  };
+  std::optional<PutOff> put_off_;
   std::deque<Block> history_;
   std::mt19937 random_{1};
 };
