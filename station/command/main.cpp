@@ -53,9 +53,8 @@ int run(int argc, char** argv) {
   app.require_subcommand(1);
   app.get_formatter()->label("SUBCOMMAND", "VERB");
   app.footer(
-      "dubsar VERB --help says what each takes. Exit status: 0 done, 1 done but it falls short, 2 bad usage "
-      "or "
-      "input, 3 a device failed, 4 the disk refused or an internal error.");
+      "Exit status: 0 done, 1 done but it falls short, 2 bad usage or input, 3 a device failed, 4 the disk "
+      "refused or an internal error. Every verb has a --help of its own.");
   bool json = false;
   bool verbose = false;
   bool quiet = false;
