@@ -2,7 +2,9 @@
 // Copyright The Dubsar developers
 #include "drivers/v4l2/camera.h"
 
+#include <fcntl.h>
 #include <linux/videodev2.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -54,16 +56,25 @@ std::vector<fs::path> camera_files(const fs::path& folder) {
   return out;
 }
 
+/// Whether this user has no right to open it.
+bool is_forbidden(const fs::path& file) {
+  const int fd = ::open(file.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC);
+  const bool forbidden = fd < 0 && errno == EACCES;
+  if (fd >= 0) {
+    ::close(fd);
+  }
+  return forbidden;
+}
+
 }  // namespace
 
 std::vector<std::pair<std::string, std::string>> find_cameras(const fs::path& folder) {
   std::vector<std::pair<std::string, std::string>> out;
-  const Error no_right = error_of(EACCES, {}, {});
   for (const fs::path& file : camera_files(folder)) {
     if (const Result<Node> node = Node::open(file.string())) {
       out.emplace_back(file.string(), node->card());
-    } else if (node.error().what == no_right.what) {
-      out.emplace_back(file.string(), no_right.line());
+    } else if (is_forbidden(file)) {
+      out.emplace_back(file.string(), error_of(EACCES, {}, {}).line());
     }
   }
   return out;
