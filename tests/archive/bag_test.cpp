@@ -5,27 +5,18 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <fstream>
-
-#include "formats/atomic_file.h"
 #include "formats/sha2.h"
+#include "tests/support/files.h"
 #include "tests/support/temporary_folder.h"
 
 namespace dubsar {
 namespace {
 
 namespace fs = std::filesystem;
+using test::put;
+using test::text_of_file;
 using ::testing::HasSubstr;
 using ::testing::Not;
-
-void put(const fs::path& path, const std::string& text) {
-  fs::create_directories(path.parent_path());
-  std::ofstream(path, std::ios::binary) << text;
-}
-
-std::string text_of_file(const fs::path& path) {
-  return read_whole_file(path).value_or("cannot be read");
-}
 
 TEST(Bag, HasTheTagFilesOfTheStandard) {
   const test::TemporaryFolder folder;

@@ -9,10 +9,9 @@
 
 #include <cerrno>
 #include <cstdio>
-#include <fstream>
 #include <string>
 
-#include "formats/atomic_file.h"
+#include "tests/support/files.h"
 #include "tests/support/temporary_folder.h"
 
 namespace {
@@ -44,15 +43,8 @@ namespace dubsar {
 namespace {
 
 namespace fs = std::filesystem;
-
-void put(const fs::path& path, const std::string& text) {
-  fs::create_directories(path.parent_path());
-  std::ofstream(path, std::ios::binary) << text;
-}
-
-std::string text_of_file(const fs::path& path) {
-  return read_whole_file(path).value_or("cannot be read");
-}
+using test::put;
+using test::text_of_file;
 
 TEST(StagedFolder, IsThereWholeOrNotAtAll) {
   const test::TemporaryFolder folder;

@@ -11,9 +11,7 @@
 #include <cmath>
 
 #include "tests/support/raster_mesh.h"
-#include "tests/ui/support/display.h"
-#include "ui/gl/gl_window.h"
-#include "ui/view/surface_view.h"
+#include "tests/ui/support/on_a_window.h"
 
 namespace dubsar::ui {
 namespace {
@@ -38,17 +36,10 @@ Mesh two_sheets(std::uint32_t n) {
   return mesh;
 }
 
-class Selecting : public ::testing::Test {
+class Selecting : public OnAWindow {
  protected:
-  void SetUp() override {
-    if (!display_.works()) {
-      GTEST_SKIP() << "there is no Xvfb here (Debian package xvfb)";
-    }
-    Result<GlWindow> window = GlWindow::open(64, 64, "test");
-    ASSERT_TRUE(window) << window.error().line();
-    window_.emplace(std::move(*window));
+  void show() override {
     shown_ = shown_mesh(two_sheets(300));  // 360 thousand faces
-    view_ = std::make_unique<SurfaceView>();
     view_->show(shown_);
     camera_.fit(shown_.box_mm, static_cast<float>(kWidth) / kHeight);
     view_->draw_whole(camera_, {}, kWidth, kHeight);
@@ -70,10 +61,7 @@ class Selecting : public ::testing::Test {
   }
   [[nodiscard]] std::vector<std::uint32_t> marks_now() const { return *view_->selection()->selected(); }
 
-  test::Display display_;
-  std::optional<GlWindow> window_;
   ShownMesh shown_;
-  std::unique_ptr<SurfaceView> view_;
   OrbitCamera camera_;
 };
 

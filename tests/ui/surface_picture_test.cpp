@@ -11,12 +11,10 @@
 
 #include "station/picture_file.h"
 #include "tests/support/raster_mesh.h"
-#include "tests/ui/support/display.h"
+#include "tests/ui/support/on_a_window.h"
 #include "tests/ui/support/read_png.h"
-#include "ui/gl/gl_window.h"
 #include "ui/view/piece_size.h"
 #include "ui/view/still_picture.h"
-#include "ui/view/surface_view.h"
 
 namespace dubsar::ui {
 namespace {
@@ -49,16 +47,9 @@ Mesh dented_slab(std::uint32_t cells = 220) {
   return mesh;
 }
 
-class Shading : public ::testing::Test {
+class Shading : public OnAWindow {
  protected:
-  void SetUp() override {
-    if (!display_.works()) {
-      GTEST_SKIP() << "there is no Xvfb here (Debian package xvfb)";
-    }
-    Result<GlWindow> window = GlWindow::open(64, 64, "test");
-    ASSERT_TRUE(window) << window.error().line();
-    window_.emplace(std::move(*window));
-    view_ = std::make_unique<SurfaceView>();
+  void show() override {
     const Mesh mesh = dented_slab();
     const ShownMesh shown = shown_mesh(mesh);
     view_->show(shown);
@@ -92,9 +83,6 @@ class Shading : public ::testing::Test {
     EXPECT_LT(static_cast<double>(far) / static_cast<double>(stored.bytes.size()), 0.01) << name;
   }
 
-  test::Display display_;
-  std::optional<GlWindow> window_;
-  std::unique_ptr<SurfaceView> view_;
   OrbitCamera camera_;
   Look look_;
 };

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "tests/station/support/bumpy_scans.h"
+#include "tests/station/support/command.h"
+#include "tests/support/temporary_folder.h"
+
+namespace dubsar {
+
+/// A session of three scans of one side, and its package, for all tests of a suite.
+class Export : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder_ = new test::TemporaryFolder;
+    const std::filesystem::path scans = test::write_bumpy_scans(at("scans"), 3);
+    const test::Outcome scanned = test::run_command(
+        {"scan", "--device", "replay:" + scans.string(), "--session", at("session").string(), "--json"});
+    ASSERT_EQ(scanned.status, 1) << scanned.err;  // one side only: not conclusive
+    whole_ = test::run_command({"export", at("session").string(), "--to", at("bag").string(), "--json",
+                                "--base-url", "https://example.org/t"});
+  }
+  static void TearDownTestSuite() { delete folder_; }
+  [[nodiscard]] static std::filesystem::path at(const std::string& name) { return folder_->path() / name; }
+  [[nodiscard]] static std::filesystem::path data(const std::string& name) {
+    return at("bag") / "data" / name;
+  }
+  [[nodiscard]] static test::Outcome export_to(const std::string& name,
+                                               const std::vector<std::string>& more) {
+    std::vector<std::string> words{"export", at("session").string(), "--to", at(name).string(), "--json"};
+    words.insert(words.end(), more.begin(), more.end());
+    return test::run_command(words);
+  }
+
+  inline static test::TemporaryFolder* folder_ = nullptr;
+  inline static test::Outcome whole_;
+};
+
+}  // namespace dubsar
