@@ -11,8 +11,8 @@
 
 namespace dubsar {
 
-/// A page of archive/report.h, which is HTML, as a PDF on A4: the same words, tables and pictures in the same
-/// order, fonts embedded, page numbers at the foot. The six views are life size where they fit. The same page
+/// A page of archive/report.h, which is HTML, as a PDF/A-1b on A4: the same words, tables and pictures in the
+/// same order, page numbers at the foot. The six views are life size where they fit. The same page
 /// gives the same bytes. Errors: kUsage where the fonts are not installed, kInternal.
 [[nodiscard]] Result<std::vector<std::uint8_t>> page_pdf(std::string_view html, const PdfInfo& info);
 

@@ -17,6 +17,8 @@
 #include <utility>
 #include <vector>
 
+#include "archive/pdf_a.h"
+
 namespace dubsar {
 
 namespace {
@@ -75,6 +77,18 @@ cairo_status_t take(void* from, unsigned char* into, unsigned int count) {
   return CAIRO_STATUS_SUCCESS;
 }
 
+/// PDF/A-1 knows nothing that is seen through, and no viewer may make up pixels between those of a picture.
+cairo_surface_t* on_white(cairo_surface_t* image, int columns, int rows) {
+  cairo_surface_t* opaque = cairo_image_surface_create(CAIRO_FORMAT_RGB24, columns, rows);
+  cairo_t* paint = cairo_create(opaque);
+  cairo_set_source_rgb(paint, 1, 1, 1);
+  cairo_paint(paint);
+  cairo_set_source_surface(paint, image, 0, 0);
+  cairo_paint(paint);
+  cairo_destroy(paint);
+  return opaque;
+}
+
 std::string terminated(std::string_view text) {
   return std::string(text.substr(0, text.find('\0')));
 }
@@ -83,6 +97,7 @@ std::string terminated(std::string_view text) {
 
 /// Everything of C, taken down in the order that its owners ask for.
 struct PdfSheet::Impl {
+  PdfInfo info;
   std::vector<std::uint8_t> bytes;
   std::array<cairo_font_face_t*, 2> font{};
   cairo_surface_t* surface = nullptr;
@@ -116,6 +131,7 @@ PdfSheet::~PdfSheet() = default;
 
 Result<PdfSheet> PdfSheet::make(const PdfInfo& info) {
   auto impl = std::make_unique<Impl>();
+  impl->info = info;
   for (std::size_t k = 0; k < kFontFiles.size(); ++k) {
     impl->font[k] = open_font(kFontFiles[k]);
     if (impl->font[k] == nullptr) {
@@ -124,14 +140,7 @@ Result<PdfSheet> PdfSheet::make(const PdfInfo& info) {
     }
   }
   impl->surface = cairo_pdf_surface_create_for_stream(append, &impl->bytes, kWidth, kHeight);
-  cairo_pdf_surface_restrict_to_version(impl->surface, CAIRO_PDF_VERSION_1_5);
-  const auto metadata = [&](cairo_pdf_metadata_t key, const std::string& value) {
-    cairo_pdf_surface_set_metadata(impl->surface, key, terminated(value).c_str());
-  };
-  metadata(CAIRO_PDF_METADATA_TITLE, info.title);
-  metadata(CAIRO_PDF_METADATA_CREATOR, info.program);
-  metadata(CAIRO_PDF_METADATA_CREATE_DATE, info.when);
-  metadata(CAIRO_PDF_METADATA_MOD_DATE, info.when);
+  cairo_pdf_surface_restrict_to_version(impl->surface, CAIRO_PDF_VERSION_1_4);
   impl->page = cairo_create(impl->surface);
   if (!impl->good()) {
     return fail(ErrorKind::kInternal, cairo_status_to_string(cairo_status(impl->page)), "PDF");
@@ -188,13 +197,17 @@ void PdfSheet::picture(const std::string& png, double x, double y, double width,
   Rest rest{png.data(), png.size()};
   cairo_surface_t* image = cairo_image_surface_create_from_png_stream(take, &rest);
   if (cairo_surface_status(image) == CAIRO_STATUS_SUCCESS) {
+    const int columns = cairo_image_surface_get_width(image);
+    const int rows = cairo_image_surface_get_height(image);
+    cairo_surface_t* opaque = on_white(image, columns, rows);
     cairo_save(impl_->page);
     cairo_translate(impl_->page, x, kHeight - y - height);
-    cairo_scale(impl_->page, width / cairo_image_surface_get_width(image),
-                height / cairo_image_surface_get_height(image));
-    cairo_set_source_surface(impl_->page, image, 0, 0);
+    cairo_scale(impl_->page, width / columns, height / rows);
+    cairo_set_source_surface(impl_->page, opaque, 0, 0);
+    cairo_pattern_set_filter(cairo_get_source(impl_->page), CAIRO_FILTER_FAST);
     cairo_paint(impl_->page);
     cairo_restore(impl_->page);
+    cairo_surface_destroy(opaque);
   }
   cairo_surface_destroy(image);
 }
@@ -210,7 +223,7 @@ Result<std::vector<std::uint8_t>> PdfSheet::bytes() {
     return fail(ErrorKind::kInternal,
                 cairo_status_to_string(drawn != CAIRO_STATUS_SUCCESS ? drawn : finished), "PDF");
   }
-  return std::move(impl_->bytes);
+  return as_pdf_a(impl_->bytes, impl_->info);
 }
 
 }  // namespace dubsar

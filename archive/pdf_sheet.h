@@ -22,8 +22,8 @@ struct PdfInfo {
   std::string when;  ///< ISO 8601, UTC: the document's date, so that the same input gives the same bytes
 };
 
-/// A PDF in the making: A4 pages, points from the lower left corner, fonts embedded as subsets. It begins
-/// with an empty page. After a failure everything is a no-op and bytes() tells it.
+/// A PDF in the making, for archives (PDF/A-1b): A4 pages, points from the lower left corner, fonts embedded
+/// as subsets. It begins with an empty page. After a failure everything is a no-op and bytes() tells it.
 class PdfSheet {
  public:
   static constexpr double kWidth = 210 * kPointsPerMm;
@@ -45,7 +45,7 @@ class PdfSheet {
   /// An entry of the document's outline that leads to a height of this page. It belongs to the last entry of
   /// a smaller level before it; levels count from 1.
   void bookmark(std::string_view text, double y, int level);
-  /// A PNG file's bytes, into the rectangle.
+  /// A PNG file's bytes, into the rectangle; what can be seen through it is white.
   void picture(const std::string& png, double x, double y, double width, double height);
 
   /// The finished file. Nothing may be added afterwards. Errors: kInternal.

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdio>
+#include <cstdlib>
 #include <fstream>
 
 #include "archive/base64.h"
@@ -109,6 +110,28 @@ TEST(PagePdf, IsTheSameForTheSamePage) {
   ASSERT_TRUE(pdf) << pdf.error().line();
   EXPECT_EQ(std::string(pdf->begin(), pdf->begin() + 5), "%PDF-");
   EXPECT_EQ(page_pdf(html, info).value(), *pdf);
+}
+
+TEST(PagePdf, IsForArchives) {
+  Image seen_through = filled_image(40, 30, {200, 100, 50}, 4);
+  for (std::size_t k = 3; k < seen_through.bytes.size(); k += 8) {
+    seen_through.bytes[k] = 100;
+  }
+  const auto uri = png_data_uri(seen_through, "half there");
+  ASSERT_TRUE(uri);
+  const auto pdf =
+      page_pdf("<h1>Tablet ḫ</h1><p>ŠÀ, <b>3 µm ≤ 5</b></p><figure><img width=\"40\" height=\"30\" src=\"" +
+                   *uri + "\"><figcaption>half there</figcaption></figure>",
+               {"Tablet <ḫ> & \"others\"", "Dubsar", "2026-01-02T03:04:05Z"});
+  ASSERT_TRUE(pdf) << pdf.error().line();
+  const test::TemporaryFolder folder;
+  const auto file = folder.path() / "page.pdf";
+  std::ofstream(file, std::ios::binary)
+      .write(reinterpret_cast<const char*>(pdf->data()), static_cast<std::streamsize>(pdf->size()));
+  const std::string check =
+      "sh '" DUBSAR_SOURCE_DIR "/tests/support/check_pdf_a.sh' '" + file.string() + "' >&2";
+  EXPECT_EQ(std::system(check.c_str()), 0)
+      << "PDF/A-1b; to be held against it needs Java and PDFBox's Preflight (packages.txt)";
 }
 
 /// What pdftotext reads on one page.
