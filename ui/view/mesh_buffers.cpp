@@ -67,7 +67,7 @@ MeshBuffers::MeshBuffers(const ShownMesh& mesh)
   attribute(kPosition, 3, GL_FLOAT, GL_FALSE, mesh.positions);
   attribute(kNormal, 4, GL_INT_2_10_10_10_REV, GL_TRUE, mesh.normals);
   attribute(kTraits, 4, GL_UNSIGNED_BYTE, GL_TRUE, mesh.traits);
-  attribute(kValue, 1, GL_FLOAT, GL_FALSE, std::vector<float>());  // set_values() fills it
+  add(GL_ARRAY_BUFFER, vertices_ * sizeof(float));  // kValue: set_values() must not find the card full
   attribute(kColour, 3, GL_UNSIGNED_BYTE, GL_TRUE, mesh.colours);
   std::size_t coarser = 0;
   for (const ShownLevel& level : mesh.coarser) {
@@ -126,15 +126,15 @@ void MeshBuffers::set_values(const std::vector<float>& values) {
   } else {
     glDisableVertexAttribArray(kValue);
   }
-  glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(has_values_ ? vertices_ * sizeof(float) : 0),
-               has_values_ ? values.data() : nullptr, GL_STATIC_DRAW);
+  glBufferSubData(GL_ARRAY_BUFFER, 0, static_cast<GLsizeiptr>(has_values_ ? vertices_ * sizeof(float) : 0),
+                  values.data());
   glBindVertexArray(0);
 }
 
 void MeshBuffers::set_traits(const std::vector<std::array<std::uint8_t, 4>>& traits) {
   if (traits.size() == vertices_) {
     glBindBuffer(GL_ARRAY_BUFFER, buffers_[kTraits]);
-    glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(vertices_ * 4), traits.data(), GL_STATIC_DRAW);
+    glBufferSubData(GL_ARRAY_BUFFER, 0, static_cast<GLsizeiptr>(vertices_ * 4), traits.data());
   }
 }
 

@@ -39,6 +39,34 @@ SurfaceView::SurfaceView()
   const auto colours = overlay_colours();
   colour_map_.upload(static_cast<int>(colours.size()), 1, 3, colours.front().data(), true);
   glGenVertexArrays(1, &no_vertices_);
+  warm_up();
+}
+
+/// Drivers, Mesa's software renderer above all, compile a program when something is drawn with it for the
+/// first time, half a second for these: now, while nobody looks, instead of when the first mesh comes.
+void SurfaceView::warm_up() {
+  ShownMesh face;
+  face.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  face.normals.assign(3, packed_normal(Eigen::Vector3f::UnitZ()));
+  face.traits.resize(3);
+  face.faces = {{0, 1, 2}};
+  for (const Eigen::Vector3f& corner : face.positions) {
+    face.box_mm.extend(corner);
+  }
+  face.blocks = {{0, 1, face.box_mm}};
+  show(face);
+  OrbitCamera camera;
+  camera.fit(face.box_mm, 1);
+  Look look;
+  look.lamp = true;  // the program that casts shadows too
+  draw_whole(camera, look, 8, 8);
+  glFinish();
+  mesh_.reset();
+  levels_ = {{}};
+  box_mm_.setEmpty();
+  picture_.release();
+  whole_ = false;
+  faces_drawn_ = 0;
 }
 
 void SurfaceView::show(const ShownMesh& mesh) {

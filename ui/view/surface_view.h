@@ -115,6 +115,7 @@ class SurfaceView {
     int height = 0;
     bool operator==(const Scene&) const = default;
   };
+  void warm_up();
   void take_shown(const ShownMesh& mesh);
   void clear(Layer& layer, const Scene& scene) const;
   void begin_surface(const Scene& scene, const Layer& layer);
@@ -149,7 +150,7 @@ class SurfaceView {
   bool dirty_ = true;            ///< mesh, points or values have changed
   std::size_t next_block_ = 0;   ///< of the whole picture that comes together
   bool whole_ = false;
-  bool slow_ = false;  ///< this machine draws slowly
+  bool slow_ = true;  ///< this machine draws slowly; so it is taken until it was seen to be fast
   PieceSize faces_at_a_time_{80000};
   std::size_t faces_in_motion_ = kFacesInMotion * 2;
   std::size_t level_drawn_ = 0;
