@@ -35,4 +35,21 @@ if(DUBSAR_SANITIZE)
     # GCC 12 reports spurious maybe-uninitialized reads in instrumented Eigen code.
     -Wno-maybe-uninitialized)
   target_link_options(dubsar_options INTERFACE -fsanitize=${DUBSAR_SANITIZE})
+
+  # What a test has to preload before a library of its own: the sanitizer's.
+  if(DUBSAR_SANITIZE MATCHES "address|thread")
+    string(SUBSTRING ${CMAKE_MATCH_0} 0 1 letter)
+    set(DUBSAR_SANITIZER_LIBRARY lib${letter}san.so)
+    if(CMAKE_CXX_COMPILER_ID STREQUAL Clang)
+      set(DUBSAR_SANITIZER_LIBRARY libclang_rt.${letter}san-${CMAKE_SYSTEM_PROCESSOR}.so)
+    endif()
+    execute_process(COMMAND ${CMAKE_CXX_COMPILER} -print-file-name=${DUBSAR_SANITIZER_LIBRARY}
+      OUTPUT_VARIABLE DUBSAR_SANITIZER_LIBRARY OUTPUT_STRIP_TRAILING_WHITESPACE)
+    if(CMAKE_CXX_COMPILER_ID STREQUAL Clang AND NOT DUBSAR_LIBFUZZER)
+      # GCC's is a library by itself; Clang's would else stand in each program, where a preloaded library comes before it.
+      get_filename_component(folder ${DUBSAR_SANITIZER_LIBRARY} DIRECTORY)
+      target_link_options(dubsar_options INTERFACE -shared-libsan -Wl,-rpath,${folder})
+    endif()
+    string(APPEND DUBSAR_SANITIZER_LIBRARY ":")
+  endif()
 endif()
