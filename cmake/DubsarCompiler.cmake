@@ -21,6 +21,11 @@ target_compile_options(dubsar_options INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual -Wcast-qual -Wformat=2 -Werror
   # Contracting a*b+c would make results differ between machines; the same input must give the same bytes.
   -ffp-contract=off)
+if(CMAKE_CXX_COMPILER_ID STREQUAL Clang)
+  # Clang before 19 says of itself that it lacks what libstdc++ asks of it for std::expected; it does not.
+  target_compile_options(dubsar_options INTERFACE -Wno-macro-redefined
+    $<$<COMPILE_LANGUAGE:CXX>:-D__cpp_concepts=202002L>)
+endif()
 
 # A package must depend on what the programs use, not on everything that a library's configuration names.
 target_link_options(dubsar_options INTERFACE -Wl,--as-needed)
@@ -33,7 +38,7 @@ if(DUBSAR_SANITIZE)
   target_compile_options(dubsar_options INTERFACE -fsanitize=${DUBSAR_SANITIZE} -fno-omit-frame-pointer -g1
     -fno-sanitize-recover=all
     # GCC 12 reports spurious maybe-uninitialized reads in instrumented Eigen code.
-    -Wno-maybe-uninitialized)
+    $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
   target_link_options(dubsar_options INTERFACE -fsanitize=${DUBSAR_SANITIZE})
 
   # What a test has to preload before a library of its own: the sanitizer's.

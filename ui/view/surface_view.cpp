@@ -57,9 +57,11 @@ void SurfaceView::warm_up() {
   show(face);
   OrbitCamera camera;
   camera.fit(face.box_mm, 1);
-  Look look;
-  look.lamp = true;  // the program that casts shadows too
-  draw_whole(camera, look, 8, 8);
+  for (const bool lamp : {true, false}) {  // under a lamp the program that casts shadows too
+    Look look;
+    look.lamp = lamp;
+    draw_whole(camera, look, 9, 7);
+  }
   glFinish();
   mesh_.reset();
   levels_ = {{}};
