@@ -108,24 +108,30 @@ TEST_F(MeshInput, WhatIsNoMeshIsOneLineAndStatusTwo) {
 }
 
 /// A plate of 10 x 6 mm with a groove, 1 mm deep, across its middle.
-std::string grooved_plate() {
+std::string grooved_plate(int rows = 6, int cols = 40) {
   std::string out;
-  constexpr int kCols = 40;
-  for (int r = 0; r <= 6; ++r) {
-    for (int c = 0; c <= kCols; ++c) {
-      const double x = -5 + 0.25 * c;
-      out += "v " + std::to_string(x) + " " + std::to_string(r - 3) + " " +
+  for (int r = 0; r <= rows; ++r) {
+    for (int c = 0; c <= cols; ++c) {
+      const double x = -5 + 10.0 * c / cols;
+      out += "v " + std::to_string(x) + " " + std::to_string(6.0 * r / rows - 3) + " " +
              std::to_string(-std::max(0.0, 1 - std::abs(x))) + "\n";
     }
   }
-  for (int r = 0; r < 6; ++r) {
-    for (int c = 0; c < kCols; ++c) {
-      const auto at = [&](int row, int col) { return std::to_string(1 + row * (kCols + 1) + col); };
+  for (int r = 0; r < rows; ++r) {
+    for (int c = 0; c < cols; ++c) {
+      const auto at = [&](int row, int col) { return std::to_string(1 + row * (cols + 1) + col); };
       out += "f " + at(r, c) + " " + at(r, c + 1) + " " + at(r + 1, c + 1) + "\nf " + at(r, c) + " " +
              at(r + 1, c + 1) + " " + at(r + 1, c) + "\n";
     }
   }
   return out;
+}
+
+TEST_F(MeshInput, AClickWhileThePictureIsRoughIsNotLost) {
+  const Outcome outcome = look_at("fine.obj", grooved_plate(450, 400),  // 360 thousand faces
+                                  "wait shown\nclick tool-section\nkey 2\nkey 1\nclick surface 0.3 0.5\n"
+                                  "click surface 0.7 0.5\nwait section 20\nquit\n");
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
 }
 
 TEST_F(MeshInput, ACutBetweenTwoClicksIsMeasuredAndKept) {

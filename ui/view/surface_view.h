@@ -91,7 +91,7 @@ class SurfaceView {
   void clear_selection();
   /// Null where nothing was selected.
   [[nodiscard]] const MeshSelecting* selection() const { return selection_.get(); }
-  /// Model point that is seen at a pixel (from the top left) of the last picture.
+  /// Model point that is seen at a pixel (from the top left) of the last picture, once that is whole().
   [[nodiscard]] std::optional<Eigen::Vector3f> point_at(const Eigen::Vector2f& px) const;
   /// Faces in the last picture, and outside it by their blocks.
   [[nodiscard]] std::size_t faces_drawn() const { return faces_drawn_; }

@@ -58,6 +58,7 @@ void ViewerScreen::take_state(UiContext& ui) {
     shown_openness_.reset();
     shown_values_.reset();
     tape_.clear();
+    clicked_px_.clear();
     drop_polygon();
     clear_selected();
     give_up_picture();
@@ -119,6 +120,7 @@ void ViewerScreen::take_state(UiContext& ui) {
 }
 
 void ViewerScreen::look_at(Face face) {
+  clicked_px_.clear();
   camera_.eye_from_model = eye_towards(face, state_.tablet_from_model);
   camera_.fit(prepared_.shown().box_mm, aspect_);
   untouched_ = true;
@@ -183,7 +185,7 @@ void ViewerScreen::draw_surface(UiContext& ui, ImVec2 size) {
     ImGui::EndChild();
     return;
   }
-  use_pointer(ui, origin, size);
+  use_pointer(origin, size);
   look_.red = ui.colours.red.head<3>();
   look_.amber = ui.colours.amber.head<3>();
   bool draws_on = false;
@@ -194,6 +196,7 @@ void ViewerScreen::draw_surface(UiContext& ui, ImVec2 size) {
   if (draws_on) {
     unfinished_ = true;
   } else {
+    take_places(ui);
     go_on_selecting(ui);
   }
   draw->AddImage(picture_of(surface_.texture()), origin, end, {0, 1}, {1, 0});
@@ -215,10 +218,11 @@ void ViewerScreen::draw_surface(UiContext& ui, ImVec2 size) {
   ImGui::EndChild();
 }
 
-void ViewerScreen::use_pointer(UiContext& ui, ImVec2 origin, ImVec2 size) {
+void ViewerScreen::use_pointer(ImVec2 origin, ImVec2 size) {
   const ImGuiIO& io = ImGui::GetIO();
   if (use_hand(origin, size, camera_, look_, dragged_)) {
     untouched_ = false;
+    clicked_px_.clear();  // of another view
   }
   if (dragged_ && ImGui::IsItemActive()) {
     drop_polygon();  // it was drawn over another view
@@ -232,27 +236,42 @@ void ViewerScreen::use_pointer(UiContext& ui, ImVec2 origin, ImVec2 size) {
       } else {
         polygon_.push_back(px);
       }
-    } else if (tool_ == Tool::kMeasure || tool_ == Tool::kSection) {
-      const TimedWork timed(ui.watch, "a place on the surface");
-      if (const auto place = surface_.point_at(px)) {
-        if (tape_.size() == 2) {
-          tape_.clear();
-        }
-        tape_.push_back(*place);
-        if (tool_ == Tool::kSection && tape_.size() == 2) {
-          cut_between_places();
-        }
-      }
-    } else if (tool_ == Tool::kCorrect && splitting_) {
-      if (const auto place = surface_.point_at(px)) {
-        split_places_.push_back(*place);
-      }
+    } else if (takes_places()) {
+      clicked_px_.push_back(px);
     } else {
       if (tool_ == Tool::kCorrect) {
         mark(wedge_at(px, size));
       }
       choose(wedge_at(px, size), false);
       scroll_to_wedge_ = wedge_ >= 0;
+    }
+  }
+}
+
+bool ViewerScreen::takes_places() const {
+  return tool_ == Tool::kMeasure || tool_ == Tool::kSection || (tool_ == Tool::kCorrect && splitting_);
+}
+
+void ViewerScreen::take_places(UiContext& ui) {
+  if (clicked_px_.empty() || !surface_.whole()) {
+    return;
+  }
+  const TimedWork timed(ui.watch, "a place on the surface");
+  for (const Eigen::Vector2f& px : std::exchange(clicked_px_, {})) {
+    const auto place = surface_.point_at(px);
+    if (!place || !takes_places()) {
+      continue;
+    }
+    if (tool_ == Tool::kCorrect) {
+      split_places_.push_back(*place);
+      continue;
+    }
+    if (tape_.size() == 2) {
+      tape_.clear();
+    }
+    tape_.push_back(*place);
+    if (tool_ == Tool::kSection && tape_.size() == 2) {
+      cut_between_places();
     }
   }
 }

@@ -46,7 +46,7 @@ class ViewerScreen {
   void draw_facts(UiContext& ui);
   void draw_foot(UiContext& ui);
   void draw_surface(UiContext& ui, ImVec2 size);
-  void use_pointer(UiContext& ui, ImVec2 origin, ImVec2 size);
+  void use_pointer(ImVec2 origin, ImVec2 size);
   void draw_wedges(UiContext& ui, ImVec2 origin, ImVec2 size) const;
   void draw_tape(UiContext& ui, ImVec2 origin, ImVec2 size) const;
   // viewer_section.cpp
@@ -92,6 +92,9 @@ class ViewerScreen {
   /// NAME_WHAT_01.ENDING of the pictures' folder, the first that is free.
   [[nodiscard]] std::filesystem::path unused_file(const std::string& what, const std::string& ending);
   [[nodiscard]] int wedge_at(const Eigen::Vector2f& px, ImVec2 size) const;
+  /// What is clicked on the surface is a place on it.
+  [[nodiscard]] bool takes_places() const;
+  void take_places(UiContext& ui);
 
   MeshViewing& viewing_;
   std::filesystem::path pictures_;
@@ -105,8 +108,9 @@ class ViewerScreen {
   std::shared_ptr<const std::vector<float>> shown_openness_, shown_values_;
   std::optional<MeshField> field_;  ///< that the overlay shows
   Tool tool_ = Tool::kTurn;
-  std::vector<Eigen::Vector3f> tape_;     ///< up to two places
-  std::vector<Eigen::Vector2f> polygon_;  ///< corners so far, pixels of the picture
+  std::vector<Eigen::Vector2f> clicked_px_;  ///< places that are read off once the whole surface stands there
+  std::vector<Eigen::Vector3f> tape_;        ///< up to two places
+  std::vector<Eigen::Vector2f> polygon_;     ///< corners so far, pixels of the picture
   SelectionStep step_ = SelectionStep::kUnion;
   bool visible_only_ = true;
   MeshElement select_of_ = MeshElement::kFace;
