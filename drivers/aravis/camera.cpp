@@ -59,9 +59,9 @@ Status Camera::connect() {
     return std::unexpected(error.told("the camera cannot be opened", id_));
   }
   device_ = arv_camera_get_device(camera_);
-  const std::string serial = text_of(arv_camera_get_device_serial_number(camera_, nullptr));
-  const std::string model = text_of(arv_camera_get_vendor_name(camera_, nullptr)) + " " +
-                            text_of(arv_camera_get_model_name(camera_, nullptr));
+  const auto told = [&](auto read) { return text_read(error, [&](GError** e) { return read(camera_, e); }); };
+  const std::string serial = told(arv_camera_get_device_serial_number);
+  const std::string model = told(arv_camera_get_vendor_name) + " " + told(arv_camera_get_model_name);
   if (!model_.empty() && (model != model_ || serial != serial_)) {
     g_clear_object(&camera_);
     return fail(ErrorKind::kDevice, "another camera is there now: " + model + " " + serial, id_,

@@ -25,7 +25,8 @@ constexpr MonoFormat kMono[] = {{DUBSAR_PIXEL_MONO8, "Mono8", 1},
 
 Status Camera::choose_format() {
   GErrorHolder error;
-  const std::string now = text_of(arv_camera_get_pixel_format_as_string(camera_, error.fill()));
+  const std::string now =
+      text_read(error, [&](GError** e) { return arv_camera_get_pixel_format_as_string(camera_, e); });
   guint count = 0;
   const char** names = arv_camera_dup_available_pixel_formats_as_strings(camera_, &count, error.fill());
   const std::vector<std::string> offered(names, names == nullptr ? names : names + count);
@@ -112,9 +113,15 @@ Result<Scan3d> Camera::scan3d() {
   out.width = static_cast<std::uint32_t>(std::max(width, 0));
   out.height = static_cast<std::uint32_t>(std::max(height, 0));
   const auto has = [&](const char* name) { return arv_device_get_feature(device_, name) != nullptr; };
+  const auto told = [&](const char* name) {
+    return text_read(error,
+                     [&](GError** e) { return arv_device_get_string_feature_value(device_, name, e); });
+  };
   if (has("Scan3dOutputMode")) {
-    const std::string mode =
-        text_of(arv_device_get_string_feature_value(device_, "Scan3dOutputMode", error.fill()));
+    const std::string mode = told("Scan3dOutputMode");
+    if (error) {
+      return std::unexpected(error.told("the camera does not tell its Scan3dOutputMode", id_));
+    }
     const bool raw = mode.starts_with("Uncalibrated") || mode.starts_with("Disparity");
     // Without A in the data x is the column times a scale, which is true of rectified profiles alone.
     if (raw || (!range_->has[0] && !mode.starts_with("Rectified"))) {
@@ -123,8 +130,10 @@ Result<Scan3d> Camera::scan3d() {
     }
   }
   if (has("Scan3dDistanceUnit")) {
-    const std::string unit =
-        text_of(arv_device_get_string_feature_value(device_, "Scan3dDistanceUnit", error.fill()));
+    const std::string unit = told("Scan3dDistanceUnit");
+    if (error) {
+      return std::unexpected(error.told("the camera does not tell its Scan3dDistanceUnit", id_));
+    }
     if (unit != "Millimeter" && unit != "Inch") {
       return fail(ErrorKind::kUsage, "the camera's distances are in " + unit, id_,
                   "set Scan3dDistanceUnit to Millimeter");

@@ -121,16 +121,17 @@ Result<dubsar_value> Camera::get(const Feature& feature) {
       out.integer = arv_device_get_integer_feature_value(device_, feature.name.c_str(), error.fill());
       break;
     default: {
-      const char* mode = feature.key == kTrigger
-                             ? arv_device_get_string_feature_value(device_, "TriggerMode", error.fill())
-                             : nullptr;
-      if (mode != nullptr && std::string_view(mode) != "On") {
+      const auto told = [&](const char* name) {
+        return text_read(error,
+                         [&](GError** e) { return arv_device_get_string_feature_value(device_, name, e); });
+      };
+      const bool is_trigger = feature.key == kTrigger;
+      if (is_trigger && told("TriggerMode") != "On" && !error) {
         plugin::copy_text(out.text, "free");
         break;
       }
-      const char* text = arv_device_get_string_feature_value(device_, feature.name.c_str(), error.fill());
-      const std::string told = text == nullptr ? std::string() : std::string(text);
-      plugin::copy_text(out.text, feature.key == kTrigger ? lower(told) : told);
+      const std::string text = told(feature.name.c_str());
+      plugin::copy_text(out.text, is_trigger ? lower(text) : text);
     }
   }
   if (error) {

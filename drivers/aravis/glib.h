@@ -68,4 +68,12 @@ class GErrorHolder {
   GError* error_ = nullptr;
 };
 
+/// A text of the camera, by read(GError**). Where there was an error it is empty: what Aravis (0.8.26) gives
+/// then may be the memory that the text was to be read into, without an end.
+template <class Read>
+[[nodiscard]] std::string text_read(GErrorHolder& error, const Read& read) {
+  const char* text = read(error.fill());
+  return error ? std::string() : text_of(text);
+}
+
 }  // namespace dubsar::aravis
