@@ -74,7 +74,8 @@ DepthMapPlan plan_depth_maps(const Mesh& mesh, const Eigen::AlignedBox3f& box, d
   return plan;
 }
 
-DepthMapPair::DepthMapPair(const Mesh& mesh, const DepthMapPlan& plan, const Vector3f& direction)
+DepthMapPair::DepthMapPair(const Mesh& mesh, std::span<const float> area_mm2, const DepthMapPlan& plan,
+                           const Vector3f& direction)
     : direction_(direction), side_(plan.side_px) {
   const Vector3f u = direction.unitOrthogonal();
   const Vector3f v = direction.cross(u);
@@ -88,8 +89,10 @@ DepthMapPair::DepthMapPair(const Mesh& mesh, const DepthMapPlan& plan, const Vec
   farthest_ = BigArray<float>(pixels);
   std::fill_n(&nearest_[0], pixels, -std::numeric_limits<float>::infinity());
   std::fill_n(&farthest_[0], pixels, std::numeric_limits<float>::infinity());
-  for (const Vector3f& p : mesh.positions) {
-    splat(p);
+  for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+    if (area_mm2[i] > 0) {
+      splat(mesh.positions[i]);
+    }
   }
   for (const std::uint32_t i : plan.large_faces) {
     const auto& f = mesh.faces[i];

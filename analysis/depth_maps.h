@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "core/big_array.h"
@@ -30,7 +31,9 @@ struct DepthMapPlan {
 /// (larger is nearer to an eye at infinity in that direction).
 class DepthMapPair {
  public:
-  DepthMapPair(const Mesh& mesh, const DepthMapPlan& plan, const Eigen::Vector3f& direction);
+  /// area_mm2: [V]; a vertex without any is of no surface and hides nothing.
+  DepthMapPair(const Mesh& mesh, std::span<const float> area_mm2, const DepthMapPlan& plan,
+               const Eigen::Vector3f& direction);
 
   struct Place {
     std::size_t pixel;

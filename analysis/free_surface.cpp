@@ -3,6 +3,7 @@
 #include "analysis/free_surface.h"
 
 #include <algorithm>
+#include <iterator>
 
 #include "core/parallel.h"
 
@@ -16,10 +17,12 @@ constexpr float kLeastThreshold = 0.5F;
 }  // namespace
 
 float automatic_openness(const std::vector<float>& openness) {
-  if (openness.empty()) {
+  // A vertex of no face reads 0.
+  std::vector<float> sorted;
+  std::ranges::copy_if(openness, std::back_inserter(sorted), [](float o) { return o > 0; });
+  if (sorted.empty()) {
     return kLeastThreshold;
   }
-  std::vector<float> sorted = openness;
   const auto at = sorted.begin() +
                   static_cast<std::ptrdiff_t>((1.0 - kOpenShare) * static_cast<double>(sorted.size() - 1));
   std::nth_element(sorted.begin(), at, sorted.end());

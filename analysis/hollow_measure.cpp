@@ -79,9 +79,14 @@ std::vector<float> vertex_areas(const Mesh& mesh, const VertexGraph& graph) {
   return areas;
 }
 
-double mean_spacing_mm(const std::vector<float>& areas) {
+double mean_area_mm2(const std::vector<float>& areas) {
   const double area = std::accumulate(areas.begin(), areas.end(), 0.0);
-  return std::sqrt(1.155 * area / std::max<double>(1.0, static_cast<double>(areas.size())));
+  const auto count = std::ranges::count_if(areas, [](float a) { return a > 0; });
+  return area / std::max<double>(1.0, static_cast<double>(count));
+}
+
+double mean_spacing_mm(const std::vector<float>& areas) {
+  return std::sqrt(1.155 * mean_area_mm2(areas));
 }
 
 HollowMeasure::HollowMeasure(const Mesh& mesh, const VertexGraph& graph, const SurfaceFields& fields,

@@ -17,6 +17,8 @@ namespace dubsar {
 
 /// mm² of the surface that each vertex stands for, [V].
 [[nodiscard]] std::vector<float> vertex_areas(const Mesh& mesh, const VertexGraph& graph);
+/// Of those that are of any face.
+[[nodiscard]] double mean_area_mm2(const std::vector<float>& areas);
 /// Edge of the equilateral triangle that the mean vertex stands for.
 [[nodiscard]] double mean_spacing_mm(const std::vector<float>& areas);
 

@@ -43,7 +43,7 @@ std::vector<float> vertex_openness(const Mesh& mesh, const VertexGeometry& geome
       maps.size(),
       [&](std::size_t i) {
         if (!job.cancelled()) {
-          maps[i] = std::make_unique<DepthMapPair>(mesh, plan, directions[i]);
+          maps[i] = std::make_unique<DepthMapPair>(mesh, geometry.area_mm2, plan, directions[i]);
         }
       },
       1);

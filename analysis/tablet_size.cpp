@@ -3,8 +3,10 @@
 #include "analysis/tablet_size.h"
 
 #include <Eigen/Geometry>
-
-#include "core/units.h"
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
 
 namespace dubsar {
 namespace {
@@ -16,9 +18,7 @@ bool plausible(double across_mm) {
   return across_mm >= kLeastMm && across_mm <= kMostMm;
 }
 
-}  // namespace
-
-double size_across_mm(const Mesh& mesh) {
+Eigen::AlignedBox3f box_in_use(const Mesh& mesh) {
   Eigen::AlignedBox3f box;
   for (const auto& f : mesh.faces) {
     for (const std::uint32_t v : f) {
@@ -27,19 +27,35 @@ double size_across_mm(const Mesh& mesh) {
       }
     }
   }
+  return box;
+}
+
+}  // namespace
+
+double size_across_mm(const Mesh& mesh) {
+  const Eigen::AlignedBox3f box = box_in_use(mesh);
   return box.isEmpty() ? 0.0 : static_cast<double>(box.diagonal().norm());
 }
 
-std::optional<std::string_view> likelier_unit(double across_mm, double mm_per_number) {
-  if (!(across_mm > 0) || plausible(across_mm)) {
-    return std::nullopt;
-  }
-  for (const std::string_view unit : {"mm", "m", "um"}) {
-    if (plausible(across_mm / mm_per_number * *mm_per_unit(unit))) {
-      return unit;
+std::vector<std::string_view> likelier_units(double across_mm, double mm_per_number) {
+  constexpr std::array<std::pair<std::string_view, double>, 5> kUnits = {
+      {{"mm", 1.0}, {"m", 1000.0}, {"um", 0.001}, {"cm", 10.0}, {"in", 25.4}}};
+  std::vector<std::string_view> likelier;
+  for (const auto& [name, mm] : kUnits) {
+    if (across_mm > 0 && !plausible(across_mm) && plausible(across_mm / mm_per_number * mm)) {
+      likelier.push_back(name);
     }
   }
-  return std::nullopt;
+  return likelier;
+}
+
+double coarsest_place_mm(const Mesh& mesh) {
+  const Eigen::AlignedBox3f box = box_in_use(mesh);
+  if (box.isEmpty()) {
+    return 0;
+  }
+  const float far_mm = box.min().cwiseAbs().cwiseMax(box.max().cwiseAbs()).maxCoeff();
+  return std::nextafter(far_mm, std::numeric_limits<float>::infinity()) - far_mm;
 }
 
 }  // namespace dubsar

@@ -2,8 +2,8 @@
 // Copyright The Dubsar developers
 #pragma once
 
-#include <optional>
 #include <string_view>
+#include <vector>
 
 #include "core/mesh.h"
 
@@ -12,9 +12,13 @@ namespace dubsar {
 /// The diagonal of the box around the vertices that faces use, mm. 0 without any.
 [[nodiscard]] double size_across_mm(const Mesh& mesh);
 
-/// A thing `across_mm` large when its numbers were read as `mm_per_number` each: the unit ("m", "mm", "um")
-/// that would make an inscribed thing of it, 6 to 800 mm across, when this one does not. Nothing when it
-/// does, or when none would.
-[[nodiscard]] std::optional<std::string_view> likelier_unit(double across_mm, double mm_per_number);
+/// A thing `across_mm` large when its numbers were read as `mm_per_number` each: the units ("mm", "m",
+/// "um", then "cm" and "in", which no file is read as) that would make an inscribed thing of it, 6 to 800 mm
+/// across, when this one does not. None when it does, or when none would.
+[[nodiscard]] std::vector<std::string_view> likelier_units(double across_mm, double mm_per_number);
+
+/// How far apart the places are, at the vertex in use that lies farthest from the origin, between which
+/// single precision knows none, mm.
+[[nodiscard]] double coarsest_place_mm(const Mesh& mesh);
 
 }  // namespace dubsar

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 
+#include "analysis/certain_text.h"
 #include "analysis/text_lines.h"
 #include "core/tablet_frame.h"
 #include "core/tablet_sides.h"
@@ -77,6 +78,9 @@ TextFrame find_text_frame(const Mesh& mesh, const std::vector<Wedge>& wedges) {
   frame.certainty = std::clamp((by_lead[3] - by_lead[2]) / votes, 0.0, 1.0);
   const double all_text = text[0] + text[1];
   frame.obverse_certainty = std::abs(text[0] - text[1]) / all_text;
+  if (frame.certainty < kCertainText) {
+    return frame;
+  }
   const double angle = 0.5 * kPi * static_cast<double>(best);
   Eigen::Matrix3d axes;  // of the text, in the tablet's frame
   axes.col(0) = Eigen::Vector3d(std::cos(angle), std::sin(angle), 0);

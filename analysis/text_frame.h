@@ -22,7 +22,8 @@ struct TextFrame {
 
 /// From the tablet's shape (core/tablet_frame.h) and its wedges: their tails run to the right, down and to
 /// the lower right, never up or to the left but for the odd Winkelhaken; the side with clearly more text is
-/// the obverse, else the one along the tablet frame's z.
+/// the obverse, else the one along the tablet frame's z. A reading that hardly leads leaves that frame as it
+/// is.
 [[nodiscard]] TextFrame find_text_frame(const Mesh& mesh, const std::vector<Wedge>& wedges);
 
 /// Gives each wedge its side, its line on that side, its order in the line and its turn. Lines are found

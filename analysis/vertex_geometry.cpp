@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 
+#include "core/disjoint_sets.h"
 #include "core/parallel.h"
 
 namespace dubsar {
@@ -28,24 +29,125 @@ Eigen::Vector3f twice_area(const Mesh& mesh, std::uint32_t face) {
   return (mesh.positions[f[1]] - a).cross(mesh.positions[f[2]] - a);
 }
 
+/// A part of the mesh that hangs together and has this share of its area is looked at by itself.
+constexpr double kLargePart = 0.05;
+
 struct Sums {
   double area = 0;
   double edges = 0;
   double edge_count = 0;
-  Eigen::Vector3d centre{0, 0, 0};   ///< times area
-  Eigen::Vector3d normals{0, 0, 0};  ///< times area
-  double outward = 0;                ///< of normal · (p − centre) times area
-  double spread = 0;                 ///< of |p − centre| times area
 };
 
 void join(Sums& into, const Sums& s) {
   into.area += s.area;
   into.edges += s.edges;
   into.edge_count += s.edge_count;
+}
+
+/// Of some of the vertices, by area.
+struct Facing {
+  double area = 0;
+  Eigen::Vector3d centre{0, 0, 0};
+  Eigen::Vector3d normals{0, 0, 0};
+  double outward = 0;  ///< of normal · (p − centre)
+  double spread = 0;   ///< of |p − centre|
+};
+
+void join(Facing& into, const Facing& s) {
+  into.area += s.area;
   into.centre += s.centre;
   into.normals += s.normals;
   into.outward += s.outward;
   into.spread += s.spread;
+}
+
+/// Whether the faces of these vertices run clockwise seen from outside.
+template <class IsOne>
+bool looks_inward(const Mesh& mesh, const VertexGeometry& geometry, const IsOne& is_one) {
+  const auto sum = [&](const auto& add) {
+    return parallel_reduce_ordered(
+        mesh.positions.size(), kGrain, Facing{},
+        [&](std::size_t begin, std::size_t end) {
+          Facing sums;
+          for (std::size_t i = begin; i < end; ++i) {
+            if (geometry.area_mm2[i] > 0 && is_one(i)) {
+              add(i, sums);
+            }
+          }
+          return sums;
+        },
+        [](Facing& into, const Facing& s) { join(into, s); });
+  };
+  const Facing first = sum([&](std::size_t i, Facing& to) {
+    const double area = geometry.area_mm2[i];
+    to.area += area;
+    to.centre += area * mesh.positions[i].cast<double>();
+  });
+  const Eigen::Vector3f centre = (first.centre / first.area).cast<float>();
+  const Facing second = sum([&](std::size_t i, Facing& to) {
+    const Eigen::Vector3f away = mesh.positions[i] - centre;
+    to.normals += (geometry.area_mm2[i] * geometry.normal[i]).cast<double>();
+    to.outward += geometry.area_mm2[i] * away.dot(geometry.normal[i]);
+    to.spread += geometry.area_mm2[i] * away.norm();
+  });
+  const bool closed = second.normals.norm() < kClosed * first.area;
+  return second.outward < (closed ? kInward : kClearlyInward) * second.spread;
+}
+
+/// The least vertex of the part that each vertex hangs together with, [V], and those of the large parts.
+struct Parts {
+  std::vector<std::uint32_t> of;
+  std::vector<std::uint32_t> large;
+};
+
+Parts find_parts(const VertexGraph& graph, const VertexGeometry& geometry) {
+  const std::size_t vertices = graph.vertex_count();
+  DisjointSets sets(vertices);
+  parallel_for_each_index(
+      vertices,
+      [&](std::size_t v) {
+        for (const std::uint32_t w : graph.ring(static_cast<std::uint32_t>(v))) {
+          if (w > v) {
+            sets.unite(static_cast<std::uint32_t>(v), w);
+          }
+        }
+      },
+      kGrain);
+  Parts parts;
+  parts.of.resize(vertices);
+  parallel_for_each_index(
+      vertices, [&](std::size_t v) { parts.of[v] = sets.root(static_cast<std::uint32_t>(v)); }, kGrain);
+  std::vector<double> area(vertices, 0.0);
+  for (std::size_t v = 0; v < vertices; ++v) {
+    area[parts.of[v]] += geometry.area_mm2[v];
+  }
+  for (std::size_t v = 0; v < vertices; ++v) {
+    if (area[v] > kLargePart * geometry.total_area_mm2) {
+      parts.large.push_back(static_cast<std::uint32_t>(v));
+    }
+  }
+  return parts;
+}
+
+/// Turns the normals that look into the clay: of each large part by itself (two fragments in one file may run
+/// either way), of the scraps as of the whole.
+void turn_outward(const Mesh& mesh, const VertexGraph& graph, VertexGeometry* geometry) {
+  geometry->turned = looks_inward(mesh, *geometry, [](std::size_t) { return true; });
+  const Parts parts = find_parts(graph, *geometry);
+  std::vector<bool> turned(mesh.positions.size(), geometry->turned);
+  if (parts.large.size() > 1) {
+    for (const std::uint32_t part : parts.large) {
+      turned[part] = looks_inward(mesh, *geometry, [&](std::size_t i) { return parts.of[i] == part; });
+    }
+  }
+  parallel_for_each_index(
+      mesh.positions.size(),
+      [&](std::size_t i) {
+        if (turned[parts.of[i]]) {
+          geometry->normal[i] = -geometry->normal[i];
+        }
+      },
+      kGrain);
 }
 
 /// The area-weighted normal at v and a third of the area; a flipped face counts the right way round.
@@ -118,8 +220,9 @@ double roughness(const Mesh& mesh, const VertexGraph& graph, const VertexGeometr
     }
     const auto count = static_cast<float>(graph.ring(v).size());
     const float off = std::abs((mesh.positions[v] - middle / count).dot(geometry.normal[v]));
-    away[k] = count > 0 && std::isfinite(off) ? off : 0.0F;
+    away[k] = count > 0 && std::isfinite(off) ? off : -1.0F;
   });
+  std::erase(away, -1.0F);
   if (away.empty()) {
     return 0;
   }
@@ -142,11 +245,7 @@ VertexGeometry make_vertex_geometry(const Mesh& mesh, const VertexGraph& graph) 
         for (std::size_t i = begin; i < end; ++i) {
           const auto v = static_cast<std::uint32_t>(i);
           at_vertex(mesh, graph.faces_at(v), &geometry.normal[i], &geometry.area_mm2[i]);
-          const double area = geometry.area_mm2[i];
-          sums.area += area;
-          if (area > 0) {
-            sums.centre += area * mesh.positions[i].cast<double>();
-          }
+          sums.area += geometry.area_mm2[i];
           float length = 0;
           for (const std::uint32_t w : graph.ring(v)) {
             length += (mesh.positions[w] - mesh.positions[i]).norm();
@@ -158,7 +257,7 @@ VertexGeometry make_vertex_geometry(const Mesh& mesh, const VertexGraph& graph) 
         }
         return sums;
       },
-      join);
+      [](Sums& into, const Sums& s) { join(into, s); });
   geometry.total_area_mm2 = first.area;
   geometry.mean_edge_mm = first.edge_count > 0 ? first.edges / first.edge_count : 0;
   if (!(first.area > 0)) {
@@ -166,28 +265,7 @@ VertexGeometry make_vertex_geometry(const Mesh& mesh, const VertexGraph& graph) 
   }
   geometry.box = box_without_strays(mesh, geometry);
   geometry.roughness_mm = roughness(mesh, graph, geometry);
-  const Eigen::Vector3f centre = (first.centre / first.area).cast<float>();
-  const Sums second = parallel_reduce_ordered(
-      vertices, kGrain, Sums{},
-      [&](std::size_t begin, std::size_t end) {
-        Sums sums;
-        for (std::size_t i = begin; i < end; ++i) {
-          if (geometry.area_mm2[i] > 0) {
-            const Eigen::Vector3f away = mesh.positions[i] - centre;
-            sums.normals += (geometry.area_mm2[i] * geometry.normal[i]).cast<double>();
-            sums.outward += geometry.area_mm2[i] * away.dot(geometry.normal[i]);
-            sums.spread += geometry.area_mm2[i] * away.norm();
-          }
-        }
-        return sums;
-      },
-      join);
-  const bool closed = second.normals.norm() < kClosed * first.area;
-  geometry.turned = second.outward < (closed ? kInward : kClearlyInward) * second.spread;
-  if (geometry.turned) {
-    parallel_for_each_index(
-        vertices, [&](std::size_t i) { geometry.normal[i] = -geometry.normal[i]; }, kGrain);
-  }
+  turn_outward(mesh, graph, &geometry);
   return geometry;
 }
 

@@ -23,11 +23,11 @@ struct VertexGeometry {
   /// Around the vertices with an area, but for the few (1 in 1000 on a side) that lie off by more than a
   /// twentieth of the rest: a stray scrap a metre away must not decide how fine a grid around a tablet is.
   Eigen::AlignedBox3f box;
-  bool turned = false;  ///< the faces run clockwise seen from outside; the normals were turned
+  bool turned = false;  ///< the faces by and large run clockwise seen from outside; the normals were turned
 };
 
-/// A face that lies against its fellows at a vertex (a flipped one) is turned there. Which side is out: the
-/// side that the mesh bulges to, seen from its centre; where that cannot be told (a flat scan), the file's.
+/// A face that lies against its fellows at a vertex is turned there. Which side is out: the side that the
+/// mesh, or a large part apart from it, bulges to, seen from its centre; untold (a flat scan): the file's.
 [[nodiscard]] VertexGeometry make_vertex_geometry(const Mesh& mesh, const VertexGraph& graph);
 
 }  // namespace dubsar

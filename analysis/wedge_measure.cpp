@@ -54,8 +54,9 @@ void choose_directional(Wedge* wedge) {
 constexpr double kPointTogether = 1.7;
 constexpr double kEdgeTogether = 1.8;
 constexpr double kPlaneTogether = 2.4;
-/// Of the free surface above an impression, which nobody has seen.
+/// Of the free surface above an impression, which nobody has seen: where it lies, and which way it looks.
 constexpr double kSurfaceMm = 0.02;
+constexpr double kSurfaceRad = 0.013;
 
 void note_sigmas(const WedgeFaces& faces, const InnerEdges& edges, Wedge* wedge) {
   WedgeSigma& sigma = wedge->sigma;
@@ -70,7 +71,7 @@ void note_sigmas(const WedgeFaces& faces, const InnerEdges& edges, Wedge* wedge)
     sigma.length_mm[k] = std::hypot(sigma.depth_mm / rise, depth * sigma.edge_rad[k] / (rise * rise));
     sigma.opening_rad[k] =
         kPlaneTogether * std::hypot(faces.plane[(k + 2) % 3].sigma_rad, faces.plane[k].sigma_rad);
-    sigma.face_slope_rad[k] = kPlaneTogether * faces.plane[k].sigma_rad;
+    sigma.face_slope_rad[k] = std::hypot(kPlaneTogether * faces.plane[k].sigma_rad, kSurfaceRad);
     const double share = sigma.length_mm[k] / std::max(wedge->edge_lengths_mm[k], 1e-3);
     relative += share * share;
   }
@@ -111,12 +112,11 @@ WedgeCandidate measure_wedge(const WedgePatch& patch, const WedgeFaces& faces, c
     const Eigen::Vector3d direction = patch.model_from_patch * edge.direction;
     const auto crossing = surface.crossing(depth_point.cast<float>(), direction.cast<float>(),
                                            static_cast<float>(kReachDepths * depth));
-    wedge.exit_points_extent_mm[k] = depth_point + edge.extent_mm * direction;
-    wedge.exit_points_surface_mm[k] = crossing ? crossing->cast<double>().eval()
-                                               : Eigen::Vector3d(depth_point + edge.extent_mm * direction);
-    wedge.exit_points_mm[k] = exits == ExitDefinition::kSurface || edge.extent_mm <= 0
-                                  ? wedge.exit_points_surface_mm[k]
-                                  : wedge.exit_points_extent_mm[k];
+    const Eigen::Vector3d seen_last = depth_point + edge.extent_mm * direction;
+    Eigen::Vector3d& at_surface = wedge.exit_points_surface_mm[k];
+    at_surface = crossing ? Eigen::Vector3d(crossing->cast<double>()) : seen_last;
+    wedge.exit_points_extent_mm[k] = edge.extent_mm > 0 ? seen_last : at_surface;
+    wedge.exit_points_mm[k] = exits == ExitDefinition::kSurface ? at_surface : wedge.exit_points_extent_mm[k];
     wedge.outer_vertices_mm[k] = wedge.exit_points_mm[k];
     wedge.edge_lengths_mm[k] = (wedge.exit_points_mm[k] - depth_point).norm();
     wedge.edge_slopes_rad[k] = std::asin(std::clamp(edge.direction.z(), -1.0, 1.0));

@@ -42,7 +42,7 @@ struct PatchTriangle {
 };
 
 /// Some vertices of a mesh, one basin's or a part of them, in a frame of their own: origin at the lowest
-/// vertex, z along the normal of the free surface above it.
+/// vertex, z along the normal of the free surface over them.
 struct WedgePatch {
   Eigen::Vector3d origin{0, 0, 0};
   Eigen::Matrix3d model_from_patch;   ///< rotation
@@ -64,7 +64,7 @@ struct WedgePatch {
 };
 
 /// `vertices` in rising height, at least one; those next to them are added as the rim. `up`: unit normal of
-/// the free surface at the first of them. `slot`: [V] scratch of the calling thread, all -1 before and after.
+/// the free surface over them. `slot`: [V] scratch of the calling thread, all -1 before and after.
 [[nodiscard]] WedgePatch make_patch(const PatchSource& source, std::span<const std::uint32_t> vertices,
                                     const Eigen::Vector3d& up, std::vector<std::int32_t>* slot);
 

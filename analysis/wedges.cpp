@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "analysis/height_noise.h"
 #include "analysis/hollow_measure.h"
@@ -29,12 +28,10 @@ int smoothing_rounds(double noise_mm) {
 }
 
 BasinOptions basin_options(const WedgeOptions& options, const std::vector<float>& areas) {
-  const double area = std::accumulate(areas.begin(), areas.end(), 0.0);
-  const double each = area / std::max<double>(1.0, static_cast<double>(areas.size()));
   BasinOptions out;
   out.classical = options.classical_watershed;
-  out.min_vertices =
-      static_cast<std::uint32_t>(std::clamp(options.min_basin_mm2 / std::max(each, 1e-9), 6.0, 1e6));
+  out.min_vertices = static_cast<std::uint32_t>(
+      std::clamp(options.min_basin_mm2 / std::max(mean_area_mm2(areas), 1e-9), 6.0, 1e6));
   out.min_depth_mm = static_cast<float>(options.min_basin_depth_mm);
   return out;
 }

@@ -19,8 +19,8 @@ struct AnnotationSource {
 };
 
 /// The wedges as one W3C AnnotationPage (Web Annotation Data Model, 2017; JSON-LD): the target of each is the
-/// triangle of its outer edges on the model, a closed ring as WKT POLYGON Z; its body says in words and as a
-/// table of values what was measured.
+/// triangle of its outer edges on the model, a closed ring as WKT POLYGON Z; its body says in words what
+/// was measured.
 [[nodiscard]] std::string wedge_annotations(const std::vector<Wedge>& wedges, const AnnotationSource& source);
 
 }  // namespace dubsar

@@ -201,10 +201,12 @@ Result<std::vector<std::filesystem::path>> write_wedge_drawings(const std::files
   std::vector<std::filesystem::path> files;
   for (int f = 0; f < kFaceCount; ++f) {
     const auto side = static_cast<Face>(f);
-    if (std::ranges::none_of(wedges, [&](const Wedge& w) { return is_on(w, side); })) {
+    const std::filesystem::path path = folder / (std::string(to_string(side)) + ".svg");
+    // One of a side that has lost its last wedge must not go on showing it.
+    if (std::ranges::none_of(wedges, [&](const Wedge& w) { return is_on(w, side); }) &&
+        !std::filesystem::exists(path, error)) {
       continue;
     }
-    const std::filesystem::path path = folder / (std::string(to_string(side)) + ".svg");
     const std::vector<OutlineRing> outline =
         scene ? side_outline(*scene, side, text_from_model) : std::vector<OutlineRing>();
     if (const Status written =

@@ -19,9 +19,11 @@ struct Column {
   std::function<std::string(const Wedge&)> value;
 };
 
-std::string number(double value) {
-  return std::isfinite(value) ? fmt::format("{:.6g}", value) : std::string();
+std::string number(double value, int digits = 6) {
+  return std::isfinite(value) ? fmt::format("{:.{}g}", value, digits) : std::string();
 }
+/// A mesh may lie metres from the origin of its numbers.
+constexpr int kPlaceDigits = 9;
 
 using Three = std::array<double, 3>;
 
@@ -35,7 +37,14 @@ std::vector<Column> columns() {
   };
   const auto point = [&](const std::string& name, const std::function<Eigen::Vector3d(const Wedge&)>& value) {
     for (int axis = 0; axis < 3; ++axis) {
-      plain(name + "_" + "xyz"[axis] + "_mm", [value, axis](const Wedge& w) { return value(w)[axis]; });
+      text(name + "_" + "xyz"[axis] + "_mm",
+           [value, axis](const Wedge& w) { return number(value(w)[axis], kPlaceDigits); });
+    }
+  };
+  const auto normal = [&](const std::string& name,
+                          const std::function<Eigen::Vector3d(const Wedge&)>& value) {
+    for (int axis = 0; axis < 3; ++axis) {
+      plain(name + "_" + "xyz"[axis], [value, axis](const Wedge& w) { return value(w)[axis]; });
     }
   };
   const auto three = [&](const std::string& name, const std::string& unit, double factor,
@@ -52,11 +61,13 @@ std::vector<Column> columns() {
   text("side", [](const Wedge& w) { return w.place.side ? std::string(to_string(*w.place.side)) : ""; });
   text("line", [=](const Wedge& w) { return placed(w.place.line); });
   text("order", [=](const Wedge& w) { return placed(w.place.order); });
-  plain("turn_deg", [](const Wedge& w) { return deg_from_rad(w.place.turn_rad); });
+  text("turn_deg",
+       [](const Wedge& w) { return w.place.side ? number(deg_from_rad(w.place.turn_rad)) : std::string(); });
   point("depth_point", [](const Wedge& w) { return w.depth_point_mm; });
   plain("depth_mm", [](const Wedge& w) { return w.depth_mm; });
   plain("volume_mm3", [](const Wedge& w) { return w.volume_mm3; });
   text("directional_edge", [](const Wedge& w) { return std::to_string(w.directional_edge); });
+  plain("directional_margin", [](const Wedge& w) { return w.directional_margin; });
   three("edge_length", "mm", 1, [](const Wedge& w) -> const Three& { return w.edge_lengths_mm; });
   three("edge_slope", "deg", deg, [](const Wedge& w) -> const Three& { return w.edge_slopes_rad; });
   three("edge_bow", "mm", 1, [](const Wedge& w) -> const Three& { return w.edge_bows_mm; });
@@ -66,11 +77,24 @@ std::vector<Column> columns() {
   for (std::size_t k = 0; k < 3; ++k) {
     point(fmt::format("exit_point_{}", k), [k](const Wedge& w) { return w.exit_points_mm[k]; });
   }
+  for (std::size_t k = 0; k < 3; ++k) {
+    point(fmt::format("exit_point_surface_{}", k),
+          [k](const Wedge& w) { return w.exit_points_surface_mm[k]; });
+    point(fmt::format("exit_point_extent_{}", k), [k](const Wedge& w) { return w.exit_points_extent_mm[k]; });
+    normal(fmt::format("face_normal_{}", k), [k](const Wedge& w) { return w.face_normals[k]; });
+  }
+  normal("surface_normal", [](const Wedge& w) { return w.surface_normal; });
+  plain("sigma_depth_point_mm", [](const Wedge& w) { return w.sigma.depth_point_mm; });
   plain("sigma_depth_mm", [](const Wedge& w) { return w.sigma.depth_mm; });
   plain("sigma_volume_mm3", [](const Wedge& w) { return w.sigma.volume_mm3; });
   three("sigma_edge_length", "mm", 1, [](const Wedge& w) -> const Three& { return w.sigma.length_mm; });
   three("sigma_opening_angle", "deg", deg,
         [](const Wedge& w) -> const Three& { return w.sigma.opening_rad; });
+  three("sigma_edge", "deg", deg, [](const Wedge& w) -> const Three& { return w.sigma.edge_rad; });
+  three("sigma_face_angle", "deg", deg,
+        [](const Wedge& w) -> const Three& { return w.sigma.face_angle_rad; });
+  three("sigma_face_slope", "deg", deg,
+        [](const Wedge& w) -> const Three& { return w.sigma.face_slope_rad; });
   plain("reliability", [](const Wedge& w) { return w.reliability; });
   plain("confidence", [](const Wedge& w) { return w.confidence; });
   plain("intact", [](const Wedge& w) { return w.intact; });

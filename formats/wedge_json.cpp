@@ -2,6 +2,9 @@
 // Copyright The Dubsar developers
 #include "formats/wedge_json.h"
 
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "core/units.h"
@@ -86,7 +89,7 @@ WedgeSigma sigma_from(const JsonNode& node, double mm) {
     sigma.face_slope_rad = radians_from(*slopes);
   }
   if (const auto volume = node.find("volume_mm3")) {
-    sigma.volume_mm3 = mm * mm * mm * volume->number(0);
+    sigma.volume_mm3 = volume->number(0);
   }
   return sigma;
 }
@@ -114,8 +117,26 @@ WedgePlace place_from(const JsonNode& node) {
   return place;
 }
 
+/// What the contract's keys tell of the others; what they do not tell is no number.
+void derive_measures(Wedge* wedge) {
+  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+  constexpr Three kThreeUnknown = {kUnknown, kUnknown, kUnknown};
+  std::array<Eigen::Vector3d, 3> edge;
+  for (std::size_t k = 0; k < 3; ++k) {
+    edge[k] = wedge->exit_points_mm[k] - wedge->depth_point_mm;
+    wedge->edge_lengths_mm[k] = edge[k].norm();
+    // Of a surface that is flat above the wedge.
+    wedge->edge_slopes_rad[k] = std::asin(std::clamp(wedge->depth_mm / edge[k].norm(), -1.0, 1.0));
+  }
+  wedge->volume_mm3 = std::abs(edge[0].dot(edge[1].cross(edge[2]))) / 6.0;
+  wedge->face_slopes_rad = wedge->edge_bows_mm = kThreeUnknown;
+  wedge->sigma = {kUnknown,      kUnknown,      kThreeUnknown, kThreeUnknown,
+                  kThreeUnknown, kThreeUnknown, kThreeUnknown, kUnknown};
+}
+
 /// What add_measures() writes, as far as it is there.
 void measures_from(const JsonNode& node, double mm, Wedge* wedge) {
+  derive_measures(wedge);
   if (const auto by = node.find("directional_by")) {
     wedge->directional_by = static_cast<DirectionalBy>(by->one_of(kDirectionalBy));
     wedge->directional_margin = node.at("directional_margin").number();
@@ -202,6 +223,7 @@ Wedge wedge_from(const JsonNode& node, double mm) {
   const std::vector<JsonNode> edges = three(node.at("inner_edges"));
   for (std::size_t k = 0; k < edges.size(); ++k) {
     wedge.exit_points_mm[k] = mm * edges[k].at("exit_point").vector3();
+    wedge.exit_points_surface_mm[k] = wedge.exit_points_extent_mm[k] = wedge.exit_points_mm[k];
     if (const auto exit = edges[k].find("exit_point_surface")) {
       wedge.exit_points_surface_mm[k] = mm * exit->vector3();
     }

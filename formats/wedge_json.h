@@ -12,7 +12,8 @@ namespace dubsar {
 [[nodiscard]] OrderedJson wedge_json(const Wedge& wedge);
 /// Adds what an analysis knows besides: both exit points, lengths, slopes, volume, sigmas, place in the text.
 void add_measures(const Wedge& wedge, OrderedJson* json);
-/// Reads either; what is absent stays at its default.
+/// Reads either. What is absent follows from the contract's keys (both exit points, lengths, slopes against a
+/// surface that is flat above the wedge, volume) or is NaN (bows, slopes of faces, sigmas).
 [[nodiscard]] Wedge wedge_from(const JsonNode& node, double mm_per_unit);
 
 }  // namespace dubsar

@@ -78,7 +78,7 @@ IndexedTablet read_tablet(const fs::path& path, const std::string& name, std::ch
   tablet.name = name;
   tablet.stamp =
       stamp_of(path, settled);  // before it is read: what changes meanwhile is read again next time
-  const Result<WedgeFile> file = read_wedges(path);
+  const Result<WedgeFile> file = read_compared_wedges(path);
   if (!file) {
     Error error = file.error();
     error.where = name;
@@ -126,6 +126,17 @@ SearchIndex read_index(const fs::path& path, std::string* remark) {
 }
 
 }  // namespace
+
+Result<WedgeFile> read_compared_wedges(const fs::path& path) {
+  Result<WedgeFile> file = read_wedges(path);
+  if (file && file->exits != ExitDefinition::kSurface) {
+    for (Wedge& wedge : file->wedges) {
+      wedge.exit_points_mm = wedge.exit_points_surface_mm;
+    }
+    file->profiles.clear();
+  }
+  return file;
+}
 
 Result<Collection> Collection::open(const fs::path& folder, std::chrono::milliseconds settled) {
   const Result<std::vector<fs::path>> paths = json_files(folder);

@@ -27,6 +27,10 @@ struct SimilarTablet {
   double distance = 0;  ///< mean shift between the feature distributions, in scatters of one hand
 };
 
+/// A wedges.json as it is compared: lengths to where the edges meet the surface, whichever definition was
+/// chosen for it. Else the choice would tell two hands apart.
+[[nodiscard]] Result<WedgeFile> read_compared_wedges(const std::filesystem::path& path);
+
 /// The analysed tablets under a folder, ready to be searched. What is known of them is kept in the folder
 /// (formats/search_index.h): only what has changed since is read again.
 class Collection {

@@ -10,7 +10,6 @@
 #include "analysis/field_colours.h"
 #include "archive/png.h"
 #include "archive/six_views.h"
-#include "core/tablet_frame.h"
 #include "formats/atomic_file.h"
 #include "formats/feature_mat.h"
 #include "formats/mesh_io.h"
@@ -35,20 +34,21 @@ Status make_folder(const fs::path& folder) {
 
 /// NAME.ply and NAME.png
 Status write_coloured(const fs::path& folder, const std::string& name, const Mesh& coloured,
-                      const JobContext& job) {
+                      const RigidTransform& tablet_from_model, const JobContext& job) {
   if (const Status written = write_mesh(folder / (name + ".ply"), coloured); !written) {
     return written;
   }
-  return write_six_view_picture(folder / (name + ".png"), coloured, job);
+  return write_six_view_picture(folder / (name + ".png"), coloured, tablet_from_model, job);
 }
 
 }  // namespace
 
-Status write_six_view_picture(const fs::path& png, const Mesh& mesh, const JobContext& job) {
+Status write_six_view_picture(const fs::path& png, const Mesh& mesh, const RigidTransform& tablet_from_model,
+                              const JobContext& job) {
   SixViewOptions options;
   options.render.style = mesh.colours.empty() ? RenderStyle::kClay : RenderStyle::kColours;
   options.render.longest_px = kLongestPx;
-  options.tablet_from_model = tablet_frame(mesh);
+  options.tablet_from_model = tablet_from_model;
   const auto sheet = render_six_view_sheet(RenderScene(mesh), options, job);
   if (!sheet) {
     return std::unexpected(sheet.error());
@@ -60,8 +60,8 @@ Status write_six_view_picture(const fs::path& png, const Mesh& mesh, const JobCo
   return write_file_atomically(png, std::string(bytes->begin(), bytes->end()));
 }
 
-Status write_field_pictures(const fs::path& folder, const Mesh& mesh, const SurfaceFields& fields,
-                            const JobContext& job) {
+Status write_field_pictures(const fs::path& folder, const Mesh& mesh, const RigidTransform& tablet_from_model,
+                            const SurfaceFields& fields, const JobContext& job) {
   if (const Status made = make_folder(folder); !made) {
     return made;
   }
@@ -69,7 +69,8 @@ Status write_field_pictures(const fs::path& folder, const Mesh& mesh, const Surf
   coloured.normals = fields.normal;
   for (const SurfaceField field : kSurfaceFields) {
     coloured.colours = field_colours(fields, field);
-    if (const Status written = write_coloured(folder, std::string(field_name(field)), coloured, job);
+    if (const Status written =
+            write_coloured(folder, std::string(field_name(field)), coloured, tablet_from_model, job);
         !written) {
       return written;
     }
@@ -78,12 +79,12 @@ Status write_field_pictures(const fs::path& folder, const Mesh& mesh, const Surf
   const VertexGraph graph = make_vertex_graph(surface);
   const Curvature curvature = vertex_curvature(surface, graph, make_vertex_geometry(surface, graph));
   surface.colours = diverging_colours(curvature.mean_per_mm, 0, kSurfaceCurvaturePerMm);
-  return write_coloured(folder, "surface", surface, job);
+  return write_coloured(folder, "surface", surface, tablet_from_model, job);
 }
 
 Status write_invariants(const fs::path& mat, const fs::path& picture_folder, const Mesh& mesh,
-                        const SurfaceFields& fields, const IntegralInvariantOptions& options,
-                        const JobContext& job) {
+                        const RigidTransform& tablet_from_model, const SurfaceFields& fields,
+                        const IntegralInvariantOptions& options, const JobContext& job) {
   const IntegralInvariants invariants =
       integral_invariants(mesh, outlook_of(mesh, fields), fields.mean_edge_mm, options, job);
   if (job.cancelled()) {
@@ -104,7 +105,7 @@ Status write_invariants(const fs::path& mat, const fs::path& picture_folder, con
   Mesh coloured = mesh;
   coloured.normals = fields.normal;
   coloured.colours = diverging_colours(strongest_response(invariants), 0, kStrongResponse);
-  return write_coloured(picture_folder, "invariants", coloured, job);
+  return write_coloured(picture_folder, "invariants", coloured, tablet_from_model, job);
 }
 
 }  // namespace dubsar

@@ -9,25 +9,27 @@
 #include "core/job.h"
 #include "core/mesh.h"
 #include "core/result.h"
+#include "core/rigid_transform.h"
 
 namespace dubsar {
 
 /// Draws six views, to scale on one sheet, of a mesh with its colours as they are, into a PNG. A mesh without
 /// colours is drawn as clay.
 [[nodiscard]] Status write_six_view_picture(const std::filesystem::path& png, const Mesh& mesh,
-                                            const JobContext& job);
+                                            const RigidTransform& tablet_from_model, const JobContext& job);
 
 /// Writes one coloured PLY and one PNG of six views for each surface field into a folder, which is made:
 /// height.ply, height.png and so on (field_name()), and the surface that heights are taken from, coloured by
 /// its curvature, as surface.ply and surface.png (seed 000, Fig. 5).
 [[nodiscard]] Status write_field_pictures(const std::filesystem::path& folder, const Mesh& mesh,
+                                          const RigidTransform& tablet_from_model,
                                           const SurfaceFields& fields, const JobContext& job);
 
 /// Multi-scale integral invariants of every vertex, into GigaMesh's .mat; with a folder also
 /// invariants.ply and invariants.png there, valleys red and ridges blue by the strongest response.
 [[nodiscard]] Status write_invariants(const std::filesystem::path& mat,
                                       const std::filesystem::path& picture_folder, const Mesh& mesh,
-                                      const SurfaceFields& fields, const IntegralInvariantOptions& options,
-                                      const JobContext& job);
+                                      const RigidTransform& tablet_from_model, const SurfaceFields& fields,
+                                      const IntegralInvariantOptions& options, const JobContext& job);
 
 }  // namespace dubsar

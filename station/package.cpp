@@ -4,6 +4,9 @@
 
 #include <algorithm>
 
+#include "analysis/certain_text.h"
+#include "analysis/text_frame.h"
+#include "analysis/wedge_features.h"
 #include "archive/staged_folder.h"
 #include "core/log.h"
 #include "station/package_content.h"
@@ -14,9 +17,6 @@ namespace dubsar {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// Text that decides how the tablet lies has to lead the next best reading by this.
-constexpr double kCertainText = 0.1;
 
 /// Letters, digits, dot, dash; anything else in a museum number becomes an underscore.
 std::string file_stem(const std::string& identifier) {
@@ -35,6 +35,14 @@ std::string file_stem(const std::string& identifier) {
   }
   constexpr std::size_t kLongest = 64;
   return stem.empty() ? "tablet" : stem.substr(0, kLongest);
+}
+
+/// Sides, lines and drawings of wedges whose text does not tell how the tablet lies go by what the pictures
+/// go by.
+void lie_as(const RigidTransform& tablet_from_model, WedgeFile* file) {
+  file->text_from_model = tablet_from_model;
+  place_wedges({tablet_from_model, file->text_certainty, 0}, &file->wedges);
+  file->profiles = make_profiles(file->wedges);
 }
 
 std::string base_url(const std::string& wanted, const std::string& stem) {
@@ -202,6 +210,8 @@ Result<Package> write_package(const fs::path& session, const fs::path& to, const
   if (content.wedges && content.wedges->text_from_model && content.wedges->text_certainty >= kCertainText) {
     content.tablet_from_model = *content.wedges->text_from_model;
     content.lies_by_text = true;
+  } else if (content.wedges) {
+    lie_as(content.tablet_from_model, &*content.wedges);
   }
   if (const Status added = add_all(content, timings); !added) {
     return std::unexpected(added.error());

@@ -59,7 +59,7 @@ Status add_features(PackageContent& content) {
        "how much of the sky each vertex sees"},
       {"msii", content.fields->invariants,
        "multi-scale integral invariants within 1 mm, f = 2 V_below / V_sphere - 1: the one of largest "
-       "magnitude over 16 radii; above 0 in a valley",
+       "magnitude over the radii that the mesh resolves; above 0 in a valley",
        "how hollow the clay is about each vertex"}};
   const auto made = content.place("features/x");
   if (!made) {

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include "archive/html.h"
 #include "formats/atomic_file.h"
 
 namespace dubsar {
@@ -14,14 +15,6 @@ namespace {
 
 constexpr double kMarginMm = 6;
 constexpr double kTextMm = 2.4;
-
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    out += c == '<' ? "&lt;" : c == '>' ? "&gt;" : c == '&' ? "&amp;" : std::string(1, c);
-  }
-  return out;
-}
 
 }  // namespace
 
@@ -45,7 +38,7 @@ std::string section_svg(const CrossSection& section, const std::string& title) {
   std::string out = fmt::format(
       "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\" version=\"1.1\" "
       "width=\"{0:.3f}mm\" height=\"{1:.3f}mm\" viewBox=\"0 0 {0:.3f} {1:.3f}\">\n<title>{2}</title>\n",
-      width, height, escaped(title));
+      width, height, html_escaped(title));
   out += fmt::format(
       "<line x1=\"{:.3f}\" y1=\"{:.3f}\" x2=\"{:.3f}\" y2=\"{:.3f}\" stroke=\"#888888\" stroke-width=\"0.1\" "
       "stroke-dasharray=\"0.8 0.5\"/>\n",

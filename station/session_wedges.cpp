@@ -90,7 +90,7 @@ Result<std::optional<SessionWedges>> keep_wedges(SessionStore& store, const Mesh
     return std::unexpected(written.error());
   }
   std::vector<fs::path> made{out.json};
-  if (file.text_from_model && !file.wedges.empty()) {
+  if (file.text_from_model) {
     const auto drawings = write_wedge_drawings(folder, file.wedges, *file.text_from_model,
                                                store.folder().filename().string(), &mesh);
     if (!drawings) {

@@ -15,6 +15,7 @@
 #include "bench/support/cut_heights.h"
 #include "bench/support/true_surface.h"
 #include "core/stage_times.h"
+#include "core/tablet_frame.h"
 #include "core/units.h"
 #include "formats/feature_mat.h"
 #include "formats/mesh_io.h"
@@ -174,11 +175,12 @@ int run(const Options& options) {
     if (!options.pictures.empty()) {
       Mesh coloured = mesh;
       coloured.colours = diverging_colours(strongest_response(invariants), 0, 0.5F);
-      (void)write_six_view_picture(options.pictures + "_invariants.png", coloured, job);
+      (void)write_six_view_picture(options.pictures + "_invariants.png", coloured, tablet_frame(mesh), job);
     }
   }
   if (!options.pictures.empty()) {
-    if (const Status drawn = write_field_pictures(options.pictures, mesh, *fields, job); !drawn) {
+    if (const Status drawn = write_field_pictures(options.pictures, mesh, tablet_frame(mesh), *fields, job);
+        !drawn) {
       std::fprintf(stderr, "%s\n", drawn.error().line().c_str());
       return 2;
     }

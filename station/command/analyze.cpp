@@ -16,7 +16,9 @@
 #include "archive/wedge_drawing.h"
 #include "core/stage_times.h"
 #include "core/units.h"
+#include "formats/atomic_file.h"
 #include "formats/corrections_json.h"
+#include "formats/json_node.h"
 #include "formats/mesh_io.h"
 #include "station/analysis.h"
 #include "station/command/analyze.h"
@@ -80,18 +82,22 @@ nlohmann::ordered_json summary_json(const AnalyzeArguments& arguments, const Wed
 /// The surface fields, and the wedges in colours, each as PLY and as PNG of six views.
 Status draw_pictures(const std::filesystem::path& folder, const Mesh& mesh, const Analysis& analysis,
                      const JobContext& job) {
-  if (Status drawn = write_field_pictures(folder, mesh, analysis.fields, job); !drawn) {
+  const RigidTransform& lies = analysis.text.text_from_model;
+  if (Status drawn = write_field_pictures(folder, mesh, lies, analysis.fields, job); !drawn) {
     return drawn;
   }
   const Mesh coloured = annotated_mesh(mesh, analysis);
   if (Status written = write_mesh(folder / "wedges.ply", coloured); !written) {
     return written;
   }
-  return write_six_view_picture(folder / "wedges.png", coloured, job);
+  return write_six_view_picture(folder / "wedges.png", coloured, lies, job);
 }
 
 /// A kilometre: beyond, areas leave what a float can tell.
 constexpr double kMostAcrossMm = 1e6;
+
+/// What the fits believe at best (analysis/inner_edges.cpp): coarser places would decide what is measured.
+constexpr double kCoarsestPlaceMm = 0.004;
 
 /// Nobody presses a stylus into a tablet a tenth of a millimetre across: without --unit its numbers are
 /// something else.
@@ -102,13 +108,23 @@ Status check_size(const AnalyzeArguments& arguments, const Mesh& mesh) {
                      "nothing inscribed is that large: look what its numbers are and say so with --unit");
   }
   const bool metres = std::filesystem::path(arguments.in).extension() == ".glb";
-  const auto likelier = likelier_unit(across_mm, metres ? *mm_per_unit("m") : 1.0);
-  if (!arguments.unit.empty() || !likelier) {
-    return {};
+  const auto likelier = likelier_units(across_mm, metres ? *mm_per_unit("m") : 1.0);
+  if (arguments.unit.empty() && !likelier.empty()) {
+    const std::string mend =
+        mm_per_unit(likelier.front())
+            ? fmt::format("say so with --unit {}, or confirm what they are", likelier.front())
+            : "export it in mm, or confirm them with --unit mm";
+    return bad_input(arguments.in, fmt::format("it would be {:.3g} mm across", across_mm),
+                     fmt::format("its numbers look like {}: {}", fmt::join(likelier, " or "), mend));
   }
-  return bad_input(arguments.in, fmt::format("it would be {:.3g} mm across", across_mm),
-                   fmt::format("its numbers look like {}: say so with --unit {}, or confirm what they are",
-                               *likelier, *likelier));
+  if (const double coarse_mm = coarsest_place_mm(mesh); coarse_mm > kCoarsestPlaceMm) {
+    return bad_input(
+        arguments.in,
+        fmt::format("it lies so far from the origin of its numbers that places are good to {:.2g} mm only",
+                    coarse_mm),
+        "export it again with its middle at the origin");
+  }
+  return {};
 }
 
 Status write_extras(const AnalyzeArguments& arguments, const Mesh& mesh, const Analysis& analysis,
@@ -119,8 +135,8 @@ Status write_extras(const AnalyzeArguments& arguments, const Mesh& mesh, const A
     }
   }
   if (!arguments.invariants.empty()) {
-    return write_invariants(arguments.invariants, arguments.pictures, mesh, analysis.fields,
-                            {.radius_mm = arguments.radius_mm}, job);
+    return write_invariants(arguments.invariants, arguments.pictures, mesh, analysis.text.text_from_model,
+                            analysis.fields, {.radius_mm = arguments.radius_mm}, job);
   }
   return {};
 }
@@ -313,6 +329,66 @@ Result<int> analyze(const AnalyzeArguments& arguments, CommandContext& context) 
   }
   tell(arguments, file, took_s, context);
   return 0;
+}
+
+void take_known_options(AnalyzeArguments& arguments, const std::function<bool(const char*)>& said) {
+  const std::filesystem::path stamp_file = stamp_beside(arguments.out);
+  std::error_code none;
+  if (!std::filesystem::is_regular_file(stamp_file, none)) {
+    // A disk that was full may have cost the stamp: the file itself tells at least where its edges end.
+    const Result<WedgeFile> file =
+        std::filesystem::is_regular_file(arguments.out, none) ? read_wedges(arguments.out) : WedgeFile();
+    if (file && !said("--exit")) {
+      arguments.exits = file->exits == ExitDefinition::kExtent ? "extent" : "surface";
+    }
+    return;
+  }
+  const Result<std::string> text = read_whole_file(stamp_file, kMaxJsonBytes);
+  const Result<DoneStamp> stamp =
+      text ? parse_done_stamp(*text, stamp_file.string()) : std::unexpected(text.error());
+  const Result<JsonDocument> known = stamp && stamp->verb == "analyze"
+                                         ? JsonDocument::parse(stamp->parameters, stamp_file.string())
+                                         : bad_input(stamp_file.string(), "is no stamp of an analysis");
+  if (!known) {
+    return;
+  }
+  const JsonNode root = known->root();
+  AnalyzeArguments a = arguments;
+  const auto number = [&](const char* option, const char* key, auto& value) {
+    value = said(option) ? value : static_cast<std::decay_t<decltype(value)>>(root.at(key).number());
+  };
+  const auto flag = [&](const char* option, const char* key, bool& value) {
+    value = said(option) ? value : root.at(key).boolean();
+  };
+  const auto word = [&](const char* option, const char* key, std::string& value) {
+    value = said(option) ? value : root.at(key).text();
+  };
+  const auto place = [&](const char* option, const char* key, std::string& value) {
+    const std::string relative = root.at(key).text();
+    if (!said(option) && !relative.empty()) {
+      value = (folder_of(arguments.out) / relative).lexically_normal().string();
+    }
+  };
+  FreeSurfaceOptions& free = a.fields.free_surface;
+  word("--exit", "exit", a.exits);
+  word("--unit", "unit", a.unit);
+  number("--free-openness", "free_openness", free.least_openness);
+  number("--free-concave", "free_concave_per_mm", free.most_concave_per_mm);
+  number("--free-convex", "free_convex_per_mm", free.most_convex_per_mm);
+  flag("--equalize", "equalize", a.fields.equalize_openness);
+  number("--fault-reach", "fault_reach", a.fields.reliability_iterations);
+  flag("--uniform-weights", "uniform_weights", a.uniform_weights);
+  flag("--classical-watershed", "classical_watershed", a.classical);
+  place("--mesh-out", "mesh_out", a.mesh_out);
+  place("--pictures", "pictures", a.pictures);
+  place("--svg", "svg", a.svg);
+  place("--invariants", "invariants", a.invariants);
+  if (!a.invariants.empty()) {
+    number("--invariant-radius", "invariant_radius_mm", a.radius_mm);
+  }
+  if (known->status("")) {
+    arguments = std::move(a);
+  }
 }
 
 std::filesystem::path corrections_of(const AnalyzeArguments& arguments) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -39,6 +40,11 @@ struct AnalyzeArguments {
 [[nodiscard]] std::vector<std::string> written_by(const AnalyzeArguments& arguments);
 
 void add_analyze_options(CLI::App& verb, AnalyzeArguments& arguments);
+
+/// Fills what the operator has not `said` ("--exit") in with what the wedges in arguments.out were found
+/// with, as the stamp beside them tells: else a correction would measure them by other rules, and leave
+/// drawings behind that show what was deleted. Without a stamp the file's own word on the exits.
+void take_known_options(AnalyzeArguments& arguments, const std::function<bool(const char*)>& said);
 
 /// Where the corrections lie that the analysis goes by.
 [[nodiscard]] std::filesystem::path corrections_of(const AnalyzeArguments& arguments);

@@ -22,7 +22,7 @@ struct SearchArguments {
 };
 
 Result<int> search(const SearchArguments& arguments, CommandContext& context) {
-  const Result<WedgeFile> like = read_wedges(arguments.like);
+  const Result<WedgeFile> like = read_compared_wedges(arguments.like);
   if (!like) {
     return std::unexpected(like.error());
   }

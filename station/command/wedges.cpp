@@ -222,7 +222,9 @@ void add_wedges(CLI::App& app, Action& chosen) {
   correct_verb->add_flag("--undo", arguments->undo, "takes the last correction back");
   correct_verb->add_flag("--list", arguments->list, "says what was corrected so far");
   correct_verb->fallthrough();
-  correct_verb->callback([&chosen, arguments] {
+  correct_verb->callback([&chosen, arguments, correct_verb] {
+    take_known_options(arguments->analyze,
+                       [correct_verb](const char* name) { return correct_verb->count(name) > 0; });
     std::vector<std::string> written = written_by(arguments->analyze);
     written.push_back(arguments->analyze.corrections);
     chosen = outside_sessions(std::move(written),

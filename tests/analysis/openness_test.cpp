@@ -22,6 +22,18 @@ TEST(Openness, AConvexBodyIsOpenEverywhere) {
   }
 }
 
+TEST(Openness, WhatIsOfNoFaceHidesNothing) {
+  Mesh mesh = shapes::sphere(20, 6);
+  const std::size_t of_faces = mesh.positions.size();
+  for (std::size_t v = 0; v < of_faces; ++v) {  // left over by a program that deleted faces only
+    mesh.positions.push_back(1.1F * mesh.positions[v]);
+  }
+  const std::vector<float> openness = openness_of(mesh);
+  for (std::size_t v = 0; v < of_faces; ++v) {
+    ASSERT_GT(openness[v], 0.95F);
+  }
+}
+
 /// On the floor of a round shaft of depth d and radius a, in its middle, the sky is the cap within atan(a/d):
 /// by the cosine, sin² of it of the whole.
 TEST(Openness, OnTheFloorOfAShaftIsTheShareOfTheSky) {

@@ -2,12 +2,16 @@
 // Copyright The Dubsar developers
 #include "analysis/tablet_size.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "tests/analysis/support/shapes.h"
 
 namespace dubsar {
 namespace {
+
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
 
 TEST(TabletSize, IsThatOfTheVerticesInUse) {
   Mesh mesh = shapes::box({3, 2, 6}, 2);
@@ -17,12 +21,24 @@ TEST(TabletSize, IsThatOfTheVerticesInUse) {
 }
 
 TEST(TabletSize, TellsTheUnitWhereTheNumbersCannotBeMillimetres) {
-  EXPECT_EQ(likelier_unit(60, 1), std::nullopt);
-  EXPECT_EQ(likelier_unit(0.06, 1), "m");
-  EXPECT_EQ(likelier_unit(60000, 1), "um");
-  EXPECT_EQ(likelier_unit(29834, 1000), "mm");  // a glTF file whose numbers are no metres
-  EXPECT_EQ(likelier_unit(1e9, 1), std::nullopt);
-  EXPECT_EQ(likelier_unit(0, 1), std::nullopt);
+  EXPECT_THAT(likelier_units(60, 1), IsEmpty());
+  EXPECT_THAT(likelier_units(0.06, 1), ElementsAre("m"));
+  EXPECT_THAT(likelier_units(60000, 1), ElementsAre("um"));
+  EXPECT_THAT(likelier_units(4, 1), ElementsAre("cm", "in"));
+  EXPECT_THAT(likelier_units(29834, 1000), ElementsAre("mm", "cm", "in"));  // a glTF file of no metres
+  EXPECT_THAT(likelier_units(1e9, 1), IsEmpty());
+  EXPECT_THAT(likelier_units(0, 1), IsEmpty());
+}
+
+TEST(TabletSize, FarFromTheOriginPlacesAreCoarse) {
+  Mesh mesh = shapes::box({3, 2, 6}, 2);
+  EXPECT_LT(coarsest_place_mm(mesh), 1e-6);
+  for (Eigen::Vector3f& p : mesh.positions) {
+    p.y() -= 300000;
+  }
+  EXPECT_EQ(coarsest_place_mm(mesh), 0.03125);
+  mesh.faces.clear();
+  EXPECT_EQ(coarsest_place_mm(mesh), 0);
 }
 
 }  // namespace

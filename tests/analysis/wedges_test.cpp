@@ -9,7 +9,9 @@
 
 #include <map>
 
+#include "analysis/certain_text.h"
 #include "analysis/text_frame.h"
+#include "core/units.h"
 #include "sim/tablet.h"
 #include "tests/analysis/support/shapes.h"
 
@@ -90,6 +92,84 @@ TEST(Wedges, OfACleanTabletAreFoundAndMeasured) {
   EXPECT_GE(directional, 0.9 * static_cast<double>(of.size() - static_cast<std::size_t>(false_ones)));
 }
 
+TEST(Wedges, SlopesOfFacesLieWithinTheirSigmasAndEveryEdgeEndsSomewhere) {
+  const sim::SimTablet made = tablet(1.0, sim::DamageOptions::none());
+  const WedgeSet set = wedges_of(made.mesh);
+  const std::vector<int> of = pairs(set.wedges, made.wedges);
+  int faces = 0;
+  int within = 0;
+  for (std::size_t f = 0; f < of.size(); ++f) {
+    const Wedge& found = set.wedges[f];
+    for (std::size_t k = 0; k < 3; ++k) {
+      EXPECT_GT((found.exit_points_extent_mm[k] - found.depth_point_mm).norm(), 0.01);
+    }
+    if (of[f] < 0 || made.wedges[static_cast<std::size_t>(of[f])].intact < 0.6) {
+      continue;
+    }
+    const Wedge& truth = made.wedges[static_cast<std::size_t>(of[f])];
+    const auto& exit = truth.exit_points_mm;
+    Eigen::Vector3d up = (exit[1] - exit[0]).cross(exit[2] - exit[0]).normalized();
+    up = up.dot(found.surface_normal) < 0 ? Eigen::Vector3d(-up) : up;
+    for (const Eigen::Vector3d& normal : truth.face_normals) {
+      std::size_t own = 0;
+      for (std::size_t k = 1; k < 3; ++k) {
+        own = normal.dot(found.face_normals[k]) > normal.dot(found.face_normals[own]) ? k : own;
+      }
+      ++faces;
+      within += std::abs(found.face_slopes_rad[own] - std::acos(normal.dot(up))) <=
+                        2 * found.sigma.face_slope_rad[own]
+                    ? 1
+                    : 0;
+    }
+  }
+  ASSERT_GT(faces, 150);
+  EXPECT_GT(within, 0.8 * faces);
+}
+
+TEST(Wedges, OfTwoFragmentsInOneFileEitherMayRunTheOtherWayRound) {
+  const sim::SimTablet made = tablet(1.0, sim::DamageOptions::none());
+  const auto count = static_cast<std::uint32_t>(made.mesh.positions.size());
+  const auto both = [&](bool flipped) {
+    Mesh mesh;
+    for (const float shift : {0.0F, 40.0F}) {
+      for (const Eigen::Vector3f& p : made.mesh.positions) {
+        mesh.positions.emplace_back(p + Eigen::Vector3f(shift, 0, 0));
+      }
+    }
+    mesh.faces = made.mesh.faces;
+    for (const auto& [a, b, c] : made.mesh.faces) {
+      mesh.faces.push_back(flipped ? std::array{a + count, c + count, b + count}
+                                   : std::array{a + count, b + count, c + count});
+    }
+    return wedges_of(mesh).wedges.size();
+  };
+  const std::size_t whole = both(false);
+  EXPECT_GT(whole, 100U);
+  EXPECT_EQ(both(true), whole);
+}
+
+TEST(Wedges, VerticesOfNoFaceChangeNothing) {
+  const sim::SimTablet made = tablet(1.0, sim::DamageOptions::none());
+  Mesh mesh = made.mesh;
+  mesh.reliability.clear();
+  const WedgeSet alone = wedges_of(mesh);
+  for (int layer = 1; layer <= 4; ++layer) {  // left over by a program that deleted faces only
+    for (std::size_t v = 0; v < made.mesh.positions.size(); ++v) {
+      mesh.positions.push_back(made.mesh.positions[v] + 0.4F * layer * made.mesh.normals[v]);
+    }
+  }
+  const WedgeSet among = wedges_of(mesh);
+  ASSERT_GT(alone.wedges.size(), 50U);
+  ASSERT_EQ(among.wedges.size(), alone.wedges.size());
+  // To the bit but for the samples that tell strays from the tablet.
+  for (const Wedge& wedge : alone.wedges) {
+    EXPECT_TRUE(std::ranges::any_of(among.wedges, [&](const Wedge& w) {
+      return (w.depth_point_mm - wedge.depth_point_mm).norm() < 0.005 &&
+             std::abs(w.depth_mm - wedge.depth_mm) < 0.005;
+    })) << wedge.id;
+  }
+}
+
 TEST(Wedges, AreTheSameForAnyNumberOfThreads) {
   const sim::SimTablet made = tablet(0.6, {});
   const WedgeSet many = wedges_of(made.mesh);
@@ -114,6 +194,33 @@ TEST(Wedges, ThereAreNoneOnABlankTabletAndASphere) {
   }
   EXPECT_TRUE(wedges_of(sphere).wedges.empty());
   EXPECT_TRUE(wedges_of(shapes::unit_sphere(0)).wedges.empty());
+}
+
+TEST(Wedges, AReadingThatHardlyLeadsDoesNotTurnTheTablet) {
+  const Mesh slab = shapes::box({50, 40, 20}, 4);
+  std::vector<Wedge> wedges;
+  const auto point = [&](double deg) {
+    Wedge wedge;
+    wedge.surface_normal = Eigen::Vector3d::UnitZ();
+    wedge.exit_points_surface_mm[0] = {std::cos(rad_from_deg(deg)), std::sin(rad_from_deg(deg)), 0};
+    wedge.confidence = 1;
+    wedge.directional_margin = 1;
+    wedges.push_back(wedge);
+  };
+  for (int k = 0; k < 20; ++k) {
+    point(90 * k);
+  }
+  point(135);  // as it would were the tablet upside down
+  const TextFrame doubtful = find_text_frame(slab, wedges);
+  EXPECT_GT(doubtful.certainty, 0.01);
+  EXPECT_LT(doubtful.certainty, kCertainText);
+  EXPECT_GT(doubtful.text_from_model.rotation(0, 0), 0.99);
+  for (int k = 0; k < 5; ++k) {
+    point(135);
+  }
+  const TextFrame clear = find_text_frame(slab, wedges);
+  EXPECT_GT(clear.certainty, kCertainText);
+  EXPECT_LT(clear.text_from_model.rotation(0, 0), -0.99);
 }
 
 TEST(Wedges, StandInLinesAsTheyWereWritten) {

@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -12,6 +13,7 @@
 #include "archive/provenance.h"
 #include "archive/wedge_annotations.h"
 #include "archive/wedge_table.h"
+#include "core/units.h"
 
 namespace dubsar {
 namespace {
@@ -38,23 +40,48 @@ std::vector<std::string> cells(const std::string& line) {
   return out;
 }
 
-TEST(WedgeTable, HasANameForEveryCell) {
-  const std::string csv = wedge_table({some_wedge()});
+/// Of a table of one line: its cell by that name.
+std::function<std::string(const std::string&)> value_in(const std::string& csv) {
   const std::size_t end = csv.find("\r\n");
-  ASSERT_NE(end, std::string::npos);
   const auto names = cells(csv.substr(0, end));
   const auto values = cells(csv.substr(end + 2, csv.size() - end - 4));
-  ASSERT_EQ(names.size(), values.size());
-  const auto value = [&](const std::string& name) {
+  EXPECT_EQ(names.size(), values.size());
+  return [names, values](const std::string& name) {
     const auto at = std::ranges::find(names, name);
     return at == names.end() ? "no such name" : values[static_cast<std::size_t>(at - names.begin())];
   };
+}
+
+TEST(WedgeTable, HasANameForEveryCell) {
+  const auto value = value_in(wedge_table({some_wedge()}));
   EXPECT_EQ(value("id"), "7");
   EXPECT_EQ(value("side"), "reverse");
   EXPECT_EQ(value("line"), "2");
   EXPECT_EQ(value("depth_point_x_mm"), "1.5");
   EXPECT_EQ(value("depth_mm"), "0.75");
   EXPECT_EQ(value("sigma_volume_mm3"), "") << "what is not known is empty";
+  EXPECT_EQ(value("turn_deg"), "0");
+}
+
+TEST(WedgeTable, HoldsEveryMeasureAndKeepsTheMicrometre) {
+  Wedge far = some_wedge();
+  far.depth_point_mm = {12345.6789, 0, 0};  // a mesh that lies twelve metres from its origin
+  far.place = {};
+  far.face_normals[2] = {0, 0.6, 0.8};
+  far.exit_points_extent_mm[1] = {1, 2, 3.25};
+  far.sigma.depth_point_mm = 0.0125;
+  far.sigma.edge_rad = {0, rad_from_deg(1.5), 0};
+  far.sigma.face_angle_rad = {0, 0, rad_from_deg(2.5)};
+  far.sigma.face_slope_rad = {rad_from_deg(0.5), 0, 0};
+  const auto value = value_in(wedge_table({far}));
+  EXPECT_EQ(value("depth_point_x_mm"), "12345.6789");
+  EXPECT_EQ(value("turn_deg"), "") << "nobody knows its side";
+  EXPECT_EQ(value("face_normal_2_z"), "0.8");
+  EXPECT_EQ(value("exit_point_extent_1_z_mm"), "3.25");
+  EXPECT_EQ(value("sigma_depth_point_mm"), "0.0125");
+  EXPECT_EQ(value("sigma_edge_1_deg"), "1.5");
+  EXPECT_EQ(value("sigma_face_angle_2_deg"), "2.5");
+  EXPECT_EQ(value("sigma_face_slope_0_deg"), "0.5");
 }
 
 TEST(WedgeAnnotations, PointAtAClosedRingOnTheModel) {

@@ -87,6 +87,9 @@ TEST(WedgeDrawing, WritesASheetForEachSideThatHasWedges) {
   EXPECT_EQ((*files)[1].filename(), "reverse.svg");
   EXPECT_TRUE(read_whole_file((*files)[0], 1U << 20U));
   EXPECT_TRUE(write_wedge_drawings(folder.path() / "none", {}, {}, "t")->empty());
+  // The reverse's only wedge was none after all.
+  ASSERT_EQ(write_wedge_drawings(folder.path() / "svg", {wedges[0]}, {}, "t")->size(), 2U);
+  EXPECT_THAT(*read_whole_file(folder.path() / "svg" / "reverse.svg", 1U << 20U), Not(HasSubstr("wedge-2")));
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright The Dubsar developers
+#include <cmath>
 #include <limits>
 
 #include "core/units.h"
@@ -327,6 +328,37 @@ TEST(WedgesJson, ReadsBackAllThatWasMeasured) {
   EXPECT_TRUE(parse_wedges(truth_to_json({}), "t"));
   EXPECT_THAT(line_of(parse_wedges("{}", "w")), HasSubstr("w: wedges is missing"));
   EXPECT_THAT(line_of(parse_wedges(R"({"exit":"middle","wedges":[]})", "w")), HasSubstr("exit is 'middle'"));
+}
+
+TEST(WedgesJson, OfTheContractsKeysAloneTellTheRestOrSayNothing) {
+  const std::string text = R"({"unit":"m","wedges":[{"id":1,"depth_point":[0,0,-0.0006],
+    "inner_edges":[{"exit_point":[0.0008,0,0]},{"exit_point":[-0.0003,0.0004,0]},{"exit_point":[-0.0003,-0.0004,0]}],
+    "directional_edge":0,"outer_vertices":[[0,0,0],[0,0,0],[0,0,0]],"face_normals":[[0,0,1],[0,0,1],[0,0,1]],
+    "depth":0.0006,"face_angles_deg":[60,60,60],"opening_angles_deg":[90,90,90],"reliability":1,"confidence":1,
+    "vertex_count":9}]})";
+  const auto file = parse_wedges(text, "w");
+  ASSERT_TRUE(file) << line_of(file);
+  const Wedge& w = file->wedges.front();
+  EXPECT_NEAR(w.edge_lengths_mm[0], 1.0, 1e-12);
+  EXPECT_NEAR(w.edge_slopes_rad[0], std::asin(0.6), 1e-12);
+  EXPECT_NEAR(w.volume_mm3, 0.5 * 0.8 * 1.1 / 3 * 0.6, 1e-12);
+  EXPECT_EQ(w.exit_points_surface_mm, w.exit_points_mm);
+  EXPECT_TRUE(std::isnan(w.sigma.depth_mm));
+  EXPECT_TRUE(std::isnan(w.sigma.opening_rad[1]));
+  EXPECT_TRUE(std::isnan(w.face_slopes_rad[2]));
+}
+
+TEST(WedgesJson, VolumesAreCubicMillimetresWhateverTheUnit) {
+  WedgeFile file;
+  file.wedges = {Wedge{}};
+  file.wedges[0].volume_mm3 = 0.125;
+  file.wedges[0].sigma.volume_mm3 = 0.02;
+  std::string text = wedges_to_json(file);
+  text.replace(text.find("\"mm\""), 4, "\"m\"");
+  const auto back = parse_wedges(text, "w");
+  ASSERT_TRUE(back) << line_of(back);
+  EXPECT_EQ(back->wedges[0].volume_mm3, 0.125);
+  EXPECT_EQ(back->wedges[0].sigma.volume_mm3, 0.02);
 }
 
 TEST(ChecklistJson, ReadsBack) {

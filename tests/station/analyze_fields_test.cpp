@@ -45,6 +45,27 @@ TEST_F(AnalyzeFields, AMeshInMetresIsToldByItsSizeAndTakenWhenSaid) {
   EXPECT_THAT(run_command({"analyze", micrometres, "-o", at("w.json").string()}).err, HasSubstr("--unit um"));
 }
 
+TEST_F(AnalyzeFields, CentimetresAndInchesAreNamed) {
+  const std::string mesh = sphere_file("small.stl", 1.5F, 3);
+  const Outcome doubted = run_command({"analyze", mesh, "-o", at("w.json").string()});
+  EXPECT_EQ(doubted.status, 2);
+  EXPECT_THAT(doubted.err, HasSubstr("look like cm or in: export it in mm"));
+  EXPECT_EQ(run_command({"analyze", mesh, "-o", at("w.json").string(), "--unit", "mm"}).status, 0);
+}
+
+TEST_F(AnalyzeFields, AMeshTooFarFromItsOriginIsRefused) {
+  Mesh mesh = shapes::sphere(15, 3);
+  for (Eigen::Vector3f& p : mesh.positions) {
+    p.x() += 250000;
+  }
+  ASSERT_TRUE(write_mesh(at("far.ply"), mesh));
+  const Outcome outcome = run_command({"analyze", at("far.ply").string(), "-o", at("w.json").string()});
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_THAT(outcome.err,
+              HasSubstr("so far from the origin of its numbers that places are good to 0.016 mm"));
+  EXPECT_FALSE(fs::exists(at("w.json")));
+}
+
 TEST_F(AnalyzeFields, PicturesAndInvariantsAreWritten) {
   const Outcome outcome =
       run_command({"analyze", sphere_file("ball.ply", 60, 4), "-o", at("w.json").string(), "--pictures",

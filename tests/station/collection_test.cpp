@@ -19,6 +19,7 @@ namespace dubsar {
 namespace {
 
 namespace fs = std::filesystem;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
@@ -66,6 +67,25 @@ class CollectionTest : public ::testing::Test {
   }
   test::TemporaryFolder folder_;
 };
+
+TEST_F(CollectionTest, WhereEdgesAreSaidToEndTellsNoTwoTabletsApart) {
+  WedgeFile extent = tablet_of(0.5, 2.0, 12);
+  extent.exits = ExitDefinition::kExtent;
+  for (Wedge& w : extent.wedges) {
+    w.exit_points_surface_mm = w.exit_points_mm;
+    w.exit_points_mm[0].x() -= 0.5;
+  }
+  put("extent.json", extent);
+  const auto like = read_compared_wedges(at("extent.json"));
+  ASSERT_TRUE(like);
+  const auto collection = open();
+  ASSERT_TRUE(collection);
+  std::vector<std::string> names;
+  for (const SimilarTablet& one : collection->similar_tablets(*like, 10)) {
+    names.push_back(one.tablet);
+  }
+  EXPECT_THAT(names, ElementsAre("x/c.json", "a.json")) << "b.json is the same tablet";
+}
 
 TEST_F(CollectionTest, OnlyWhatChangedIsReadAgain) {
   settle();

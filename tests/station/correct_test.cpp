@@ -67,6 +67,44 @@ TEST_F(Correct, ADeletedWedgeStaysDeletedUntilItIsTakenBack) {
   EXPECT_EQ(correct({"--undo"}).status, 2) << "nothing is left to take back";
 }
 
+TEST_F(Correct, KeepsWhatTheAnalysisWasAskedForAndItsDrawings) {
+  const auto at = [](const char* name) { return in(std::string("kept/") + name); };
+  std::filesystem::create_directory(in("kept"));
+  ASSERT_EQ(run_command({"analyze", in("tablet.ply"), "-o", at("w.json"), "--exit", "extent", "--svg",
+                         at("svg"), "--fault-reach", "3"})
+                .status,
+            0);
+  const auto drawn = [&](int id) {
+    const std::string group = "id=\"wedge-" + std::to_string(id) + "\"";
+    return std::ranges::any_of(std::filesystem::directory_iterator(at("svg")), [&](const auto& file) {
+      return test::bytes_of(file.path()).find(group) != std::string::npos;
+    });
+  };
+  ASSERT_TRUE(drawn(3));
+  const Outcome corrected =
+      run_command({"wedges", "correct", in("tablet.ply"), "-o", at("w.json"), "--delete", "3"});
+  ASSERT_EQ(corrected.status, 0) << corrected.err;
+  EXPECT_EQ(read_wedges(at("w.json"))->exits, ExitDefinition::kExtent);
+  EXPECT_FALSE(drawn(3));
+  EXPECT_TRUE(drawn(4));
+  EXPECT_THAT(run_command({"analyze", in("tablet.ply"), "-o", at("w.json"), "--exit", "extent", "--svg",
+                           at("svg"), "--fault-reach", "3"})
+                  .out,
+              HasSubstr("done before"));
+  // What is said now goes before what was said then; without a stamp the file tells.
+  ASSERT_EQ(
+      run_command({"wedges", "correct", in("tablet.ply"), "-o", at("w.json"), "--undo", "--exit", "surface"})
+          .status,
+      0);
+  EXPECT_EQ(read_wedges(at("w.json"))->exits, ExitDefinition::kSurface);
+  EXPECT_TRUE(drawn(3));
+  ASSERT_EQ(run_command({"analyze", in("tablet.ply"), "-o", at("w.json"), "--exit", "extent"}).status, 0);
+  std::filesystem::remove(at("w.json.done"));
+  ASSERT_EQ(run_command({"wedges", "correct", in("tablet.ply"), "-o", at("w.json"), "--delete", "4"}).status,
+            0);
+  EXPECT_EQ(read_wedges(at("w.json"))->exits, ExitDefinition::kExtent);
+}
+
 TEST_F(Correct, OneThatTheDiskRefusedHalfwayIsMadeWhenItIsAskedForAgain) {
   const std::string before = bytes();
   const std::size_t count = wedges().wedges.size();

@@ -70,11 +70,12 @@ TEST_F(ExportOfWedges, DrawingsAreWhatW3CCallsSvg11) {
   if (!fs::is_directory("/usr/share/xml/w3c-sgml-lib/schema/dtd/REC-SVG11-20110816")) {
     FAIL() << "install libxml2-utils and w3c-sgml-lib (packages.txt) to hold the drawings against them";
   }
-  ASSERT_EQ(run_command({"mesh", "section", data("model/session.ply"), "--from=-4,0,5", "--to=4,0,5", "-o",
-                         at("cut.svg")})
-                .status,
-            0);
-  std::vector<fs::path> drawings{at("cut.svg")};
+  const fs::path cut = at("cut \x01\xff&<.svg");  // its title is the file's name
+  ASSERT_EQ(
+      run_command({"mesh", "section", data("model/session.ply"), "--from=-4,0,5", "--to=4,0,5", "-o", cut})
+          .status,
+      0);
+  std::vector<fs::path> drawings{cut};
   for (const auto& file : fs::directory_iterator(data("wedges/drawings"))) {
     drawings.push_back(file.path());
   }
