@@ -205,11 +205,21 @@ void add_measures(const Wedge& wedge, OrderedJson* json) {
   (*json)["directional_margin"] = wedge.directional_margin;
   (*json)["surface_normal"] = json_of(wedge.surface_normal);
   (*json)["edge_lengths"] = wedge.edge_lengths_mm;
-  (*json)["edge_slopes_deg"] = degrees_json(wedge.edge_slopes_rad);
-  (*json)["face_slopes_deg"] = degrees_json(wedge.face_slopes_rad);
-  (*json)["edge_bows"] = wedge.edge_bows_mm;
   (*json)["volume_mm3"] = wedge.volume_mm3;
-  (*json)["sigma"] = sigma_json(wedge.sigma);
+  // Of a file with the contract's keys alone some are not known, and JSON has no word for that.
+  const auto is_known = [](double value) { return std::isfinite(value); };
+  if (std::ranges::all_of(wedge.edge_slopes_rad, is_known)) {
+    (*json)["edge_slopes_deg"] = degrees_json(wedge.edge_slopes_rad);
+  }
+  if (std::ranges::all_of(wedge.face_slopes_rad, is_known)) {
+    (*json)["face_slopes_deg"] = degrees_json(wedge.face_slopes_rad);
+  }
+  if (std::ranges::all_of(wedge.edge_bows_mm, is_known)) {
+    (*json)["edge_bows"] = wedge.edge_bows_mm;
+  }
+  if (is_known(wedge.sigma.depth_mm)) {
+    (*json)["sigma"] = sigma_json(wedge.sigma);
+  }
   if (wedge.place.side) {
     (*json)["place"] = place_json(wedge.place);
   }

@@ -346,6 +346,9 @@ TEST(WedgesJson, OfTheContractsKeysAloneTellTheRestOrSayNothing) {
   EXPECT_TRUE(std::isnan(w.sigma.depth_mm));
   EXPECT_TRUE(std::isnan(w.sigma.opening_rad[1]));
   EXPECT_TRUE(std::isnan(w.face_slopes_rad[2]));
+  const auto again = parse_wedges(wedges_to_json(*file), "w");
+  ASSERT_TRUE(again) << line_of(again);
+  EXPECT_TRUE(std::isnan(again->wedges.front().sigma.depth_mm));
 }
 
 TEST(WedgesJson, VolumesAreCubicMillimetresWhateverTheUnit) {
