@@ -43,6 +43,7 @@ Damage::Damage(const TabletBody& body, const DamageOptions& options, double spac
     crack.length = small * random.uniform(0.3, 0.9);
     crack.width = std::max(random.uniform(0.12, 0.3), 2.5 * spacing_mm);
     crack.depth = random.uniform(0.25, 0.7);
+    crack.depth = options.crack_depth_mm > 0 ? options.crack_depth_mm : crack.depth;
     crack.seed = random.next();
     cracks_.push_back(crack);
   }
@@ -68,6 +69,8 @@ Damage::Damage(const TabletBody& body, const DamageOptions& options, double spac
     hole.axis = body.normal(hole.centre);
     hole.radius = boring.uniform(0.5, 1.4);
     hole.depth = std::min(boring.uniform(1.5, 5.0), 0.6 * body.half_size_mm().z());
+    hole.radius = options.hole_radius_mm > 0 ? options.hole_radius_mm : hole.radius;
+    hole.depth = options.hole_depth_mm > 0 ? options.hole_depth_mm : hole.depth;
     holes_.push_back(hole);
   }
 }

@@ -20,8 +20,12 @@ struct DamageOptions {
   double dirt = 0.3;      ///< wedges filled
   double cracks = 0.3;
   double holes = 0;  ///< firing holes: narrow, deep, their walls and floors mostly out of any scanner's sight
+  // Of every hole and every crack instead of what is drawn for each; 0: drawn.
+  double hole_radius_mm = 0;
+  double hole_depth_mm = 0;
+  double crack_depth_mm = 0;
 
-  [[nodiscard]] static DamageOptions none() { return {0, 0, 0, 0, 0}; }
+  [[nodiscard]] static DamageOptions none() { return {0, 0, 0, 0, 0, 0, 0, 0}; }
 };
 
 struct TabletOptions {

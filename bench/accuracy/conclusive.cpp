@@ -38,6 +38,10 @@ struct Arguments {
   bool registered = false;
   bool baselines = false;
   bool holes = false;
+  double hole_radius_mm = 0;
+  double hole_depth_mm = 0;
+  double crack_depth_mm = 0;
+  std::string size;
   bool verbose = false;
 };
 
@@ -57,6 +61,7 @@ struct TabletResult {
   TabletTruth::Share share;
   double share_sampled = 0;  ///< of all
   double area_mm2 = 0;
+  double red_mm2 = 0;  ///< left in the end
   double worst_pose_mm = 0;
   ExcuseScore excuses;
   std::vector<Gain> gains;
@@ -74,10 +79,22 @@ double red_area(const RedTargets& red) {
 LoopOptions loop_options(std::uint64_t seed, const Arguments& args) {
   LoopOptions options;
   options.tablet = random_tablet(seed, "text", std::max(0.05, 0.6 * args.spacing_mm));
+  if (Eigen::Vector3d& size = options.tablet.size_mm;
+      !args.size.empty() &&
+      std::sscanf(args.size.c_str(), "%lfx%lfx%lf", &size.x(), &size.y(), &size.z()) != 3) {
+    std::fprintf(stderr, "--size %s: width x height x thickness in mm, as in 30x25x14\n", args.size.c_str());
+    std::exit(2);
+  }
   Random random(seed_for(seed, 400));
   const double wear = random.uniform();
   options.tablet.damage = {wear, random.uniform(), random.uniform(), random.uniform(), 0};
   options.tablet.damage.holes = args.holes ? random.uniform(0.4, 1.0) : 0.0;
+  options.tablet.damage.hole_radius_mm = args.hole_radius_mm;
+  options.tablet.damage.hole_depth_mm = args.hole_depth_mm;
+  if (args.crack_depth_mm > 0) {
+    options.tablet.damage.cracks = 1.0;
+    options.tablet.damage.crack_depth_mm = args.crack_depth_mm;
+  }
   options.station.scanner = sim::scanner_for(options.tablet.size_mm, args.spacing_mm, args.noise_mm);
   options.station.scanner.seed = seed;
   options.station.seed = seed;
@@ -85,10 +102,12 @@ LoopOptions loop_options(std::uint64_t seed, const Arguments& args) {
   return options;
 }
 
-void print_targets(const ClosedLoop& loop, const RedMapResult& red, double least_mm2) {
+/// What is left in the end, beside the truth.
+void print_targets(const ClosedLoop& loop, const RedMapResult& red) {
+  JobContext job;
+  const std::vector<std::uint8_t> out_of_reach = loop.truth().unreachable(loop.sampled(), job);
   for (const RedTarget& t : red.targets.targets) {
-    if (t.area_mm2 < least_mm2 ||
-        (t.state == RegionState::kExcused && t.excuse == Excuse::kUnneeded && t.area_mm2 <= 0)) {
+    if (t.state == RegionState::kExcused && t.area_mm2 <= 0) {
       continue;
     }
     const RigidTransform tablet_from_model = loop.tablet_from_model();
@@ -98,20 +117,25 @@ void print_targets(const ClosedLoop& loop, const RedMapResult& red, double least
     const auto of_sample = const_cast<ClosedLoop&>(loop).station().query().closest(s, 5.0F);
     std::size_t near = 0;
     std::size_t open = 0;
+    std::size_t never = 0;
     Eigen::Vector3f normal = Eigen::Vector3f::Zero();
     for (std::size_t i = 0; i < loop.truth().size(); ++i) {
       if ((loop.truth().points()[i] - p).norm() < 0.4F) {
         ++near;
         open += loop.sampled()[i] == 0 ? 1 : 0;
+        never += out_of_reach[i];
         normal += loop.truth().normals()[i];
       }
     }
     std::printf(
         "      %s%s %.4f mm2 at %6.2f %6.2f %6.2f, off %.3f (sample %.3f) mm, tried %zu, open %zu of %zu, "
-        "n.n %.2f %s\n",
-        t.state == RegionState::kRed ? "red" : to_string(t.excuse), t.unseen ? " unseen" : "", t.area_mm2,
-        p.x(), p.y(), p.z(), to_surface ? to_surface->distance_mm : -1.0,
-        of_sample ? of_sample->distance_mm : -1.0, t.tried.size(), open, near,
+        "out of reach %zu, n.n %.2f %s\n",
+        t.state == RegionState::kRed ? "red" : to_string(t.excuse),
+        t.rim      ? " rim"
+        : t.unseen ? " unseen"
+                   : "",
+        t.area_mm2, p.x(), p.y(), p.z(), to_surface ? to_surface->distance_mm : -1.0,
+        of_sample ? of_sample->distance_mm : -1.0, t.tried.size(), open, near, never,
         t.normal.cast<float>().dot(normal.normalized()), t.reason.c_str());
   }
 }
@@ -185,8 +209,8 @@ TabletResult run(const LoopOptions& options, const Arguments& args) {
         std::printf(" %.4f", mm);
       }
       std::printf(" mm off\n");
-      if (red.map.conclusive || loop.scans() >= 12) {
-        print_targets(loop, red, 0.0);
+      if (red.map.conclusive || red.map.next.empty() || loop.scans() >= args.max_scans) {
+        print_targets(loop, red);
       }
     }
     const bool done = red.map.conclusive || red.map.next.empty();
@@ -205,6 +229,7 @@ TabletResult run(const LoopOptions& options, const Arguments& args) {
   const std::vector<double> pose_errors_mm = loop.pose_errors_mm();
   result.worst_pose_mm = *std::max_element(pose_errors_mm.begin(), pose_errors_mm.end());
   result.scans = loop.scans();
+  result.red_mm2 = red_area(before->targets);
   result.share_sampled = loop.share_sampled();
   result.share = loop.truth().share_of_reachable(loop.sampled(), job);
   while (result.scans_to_999 < result.scans &&
@@ -230,6 +255,11 @@ int main(int argc, char** argv) {
   app.add_flag("--registered", args.registered, "poses by registration, not the true ones");
   app.add_flag("--baselines", args.baselines, "greedy set cover, turntable, boundary following beside it");
   app.add_flag("--holes", args.holes, "tablets with firing holes, mostly out of any scanner's sight");
+  app.add_option("--hole-radius", args.hole_radius_mm, "of all holes, mm; else 0.5 to 1.4");
+  app.add_option("--hole-depth", args.hole_depth_mm, "of all holes, mm; else 1.5 to 5");
+  app.add_option("--crack-depth", args.crack_depth_mm,
+                 "many cracks of this depth, mm; else some of 0.25 to 0.7");
+  app.add_option("--size", args.size, "of all tablets, WxHxT in mm");
   app.add_flag("-v,--verbose", args.verbose);
   CLI11_PARSE(app, argc, argv);
 
@@ -261,14 +291,14 @@ int main(int argc, char** argv) {
       }
     }
     std::printf(
-        "%4llu: %.0fx%.0fx%.0f %s %d scans (%d to 99.9 %%), share %.5f (%.5f outside slits), unreachable "
-        "%.2f mm2 (%.2f truly), "
+        "%4llu: %.0fx%.0fx%.0f %s %d scans (%d to 99.9 %%), red left %.2f mm2, share %.5f (%.5f outside "
+        "slits), unreachable %.2f mm2 (%.2f truly), "
         "unneeded %.3f, poses within %.4f mm; %.1f s",
         static_cast<unsigned long long>(options.tablet.seed), options.tablet.size_mm.x(),
         options.tablet.size_mm.y(), options.tablet.size_mm.z(),
-        r.conclusive ? "conclusive" : "NOT CONCLUSIVE", r.scans, r.scans_to_999, r.share.of_reachable,
-        r.share.outside_slits, r.excuses.unreachable_mm2, r.excuses.truly_unreachable_mm2,
-        r.excuses.unneeded_mm2, r.worst_pose_mm, seconds_since(start));
+        r.conclusive ? "conclusive" : "NOT CONCLUSIVE", r.scans, r.scans_to_999, r.red_mm2,
+        r.share.of_reachable, r.share.outside_slits, r.excuses.unreachable_mm2,
+        r.excuses.truly_unreachable_mm2, r.excuses.unneeded_mm2, r.worst_pose_mm, seconds_since(start));
     worst_pose_mm = std::max(worst_pose_mm, r.worst_pose_mm);
     misplaced += r.worst_pose_mm > kMisplacedMm ? 1 : 0;
     if (args.baselines) {
