@@ -121,6 +121,10 @@ Result<EngineResult> Engine::Impl::run(JobContext& job) {
     // How the tablet lies is known only once this run has scanned it.
     step = stored_count > resumed_count ? step_to(result.red_map) : std::nullopt;
   }
+  if (drives && stored_count >= options.max_scans && !result.red_map.conclusive) {
+    emit(Notice{fmt::format("{} scans are there, as many as were to be taken; --max-scans allows more",
+                            stored_count)});
+  }
   while (!close_commands()) {
     {
       const std::scoped_lock lock(mutex);

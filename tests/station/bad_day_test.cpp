@@ -111,6 +111,7 @@ TEST_F(BadDay, AFailedMoveEndsAllMotion) {
   const Outcome gone_on = scan("", "session", {"--max-scans", "3"});
   EXPECT_EQ(gone_on.status, 1) << gone_on.err;
   EXPECT_EQ(gone_on.json()["scans"], 3);
+  EXPECT_THAT(gone_on.err, HasSubstr("3 scans are there, as many as were to be taken; --max-scans"));
 }
 
 TEST_F(BadDay, CtrlCStopsAMove) {

@@ -99,6 +99,8 @@ constexpr EnginePhrase kPhrases[] = {
     {"the pins of scan ", "die Nadeln von Scan "},
     {" are labelled", " sind benannt"},
     {"there is no scan to undo", "es gibt keinen Scan zurückzunehmen"},
+    {" scans are there, as many as were to be taken; --max-scans allows more",
+     " Scans sind da, so viele, wie zu machen waren; --max-scans erlaubt mehr"},
     {"the half scan is kept: ", "der halbe Scan ist aufgehoben: "},
     {" is not taken up: ", " wird nicht aufgenommen: "},
     {"; the same view is scanned once more", "; dieselbe Ansicht wird noch einmal gescannt"},
