@@ -12,7 +12,6 @@ struct FreeSurfaceOptions {
   /// (clean and fine 0.99, scanned with 20 µm of noise 0.95).
   float least_openness = 0;
   float most_concave_per_mm = 0.5F;  ///< mean curvature below minus this is concave
-  float most_convex_per_mm = 1.0F;   ///< and above this an edge
   float scale_mm = 0.3F;             ///< at which the curvature is taken
 };
 
@@ -21,7 +20,7 @@ struct FreeSurfaceOptions {
 [[nodiscard]] float automatic_openness(const std::vector<float>& openness);
 
 /// 1 where a vertex belongs to the wedge-free surface, mostly convex and little curved (seed 000, 3.2):
-/// openness and mean curvature within the thresholds. [V]
+/// open, and not concave beyond the threshold. [V]
 [[nodiscard]] std::vector<std::uint8_t> find_free_surface(const std::vector<float>& openness,
                                                           const std::vector<float>& mean_curvature_per_mm,
                                                           const FreeSurfaceOptions& options);

@@ -203,7 +203,6 @@ int main(int argc, char** argv) {
   app.add_option("--damage", options.damage)->capture_default_str();
   app.add_option("--openness", options.fields.free_surface.least_openness)->capture_default_str();
   app.add_option("--concave", options.fields.free_surface.most_concave_per_mm)->capture_default_str();
-  app.add_option("--convex", options.fields.free_surface.most_convex_per_mm)->capture_default_str();
   app.add_option("--scale", options.fields.free_surface.scale_mm)->capture_default_str();
   app.add_option("--cell", options.fields.reconstruction.cell_mm)->capture_default_str();
   app.add_option("--other-weight", options.fields.reconstruction.other_weight)->capture_default_str();

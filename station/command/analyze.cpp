@@ -47,7 +47,6 @@ std::string parameters_of(const AnalyzeArguments& a, const CorrectionFile& said)
                               {"unit", a.unit},
                               {"free_openness", free.least_openness},
                               {"free_concave_per_mm", free.most_concave_per_mm},
-                              {"free_convex_per_mm", free.most_convex_per_mm},
                               {"equalize", a.fields.equalize_openness},
                               {"fault_reach", a.fields.reliability_iterations},
                               {"uniform_weights", a.uniform_weights},
@@ -374,7 +373,6 @@ void take_known_options(AnalyzeArguments& arguments, const std::function<bool(co
   word("--unit", "unit", a.unit);
   number("--free-openness", "free_openness", free.least_openness);
   number("--free-concave", "free_concave_per_mm", free.most_concave_per_mm);
-  number("--free-convex", "free_convex_per_mm", free.most_convex_per_mm);
   flag("--equalize", "equalize", a.fields.equalize_openness);
   number("--fault-reach", "fault_reach", a.fields.reliability_iterations);
   flag("--uniform-weights", "uniform_weights", a.uniform_weights);
@@ -416,10 +414,6 @@ void add_analyze_options(CLI::App& verb, AnalyzeArguments& arguments) {
       ->check(CLI::Range(0.0, 1.0));
   verb.add_option("--free-concave", arguments.fields.free_surface.most_concave_per_mm,
                   "free surface: mean curvature no further below zero than this, per mm")
-      ->check(CLI::Range(0.0, 100.0))
-      ->capture_default_str();
-  verb.add_option("--free-convex", arguments.fields.free_surface.most_convex_per_mm,
-                  "free surface: mean curvature at most this, per mm")
       ->check(CLI::Range(0.0, 100.0))
       ->capture_default_str();
   verb.add_flag("--equalize", arguments.fields.equalize_openness,
