@@ -2,21 +2,16 @@
 // Copyright The Dubsar developers
 #include "archive/pdf_a.h"
 
-#define POINTERHOLDER_TRANSITION 4  // qpdf: std::shared_ptr and nothing older
-
+#include <cairo.h>
 #include <fmt/format.h>
 #include <lcms2.h>
 
-#include <algorithm>
-#include <exception>
 #include <memory>
-#include <qpdf/Buffer.hh>
-#include <qpdf/QPDF.hh>
-#include <qpdf/QPDFObjectHandle.hh>
-#include <qpdf/QPDFWriter.hh>
 #include <string>
+#include <string_view>
 
 #include "archive/html.h"
+#include "archive/pdf_a_rewrite.h"
 
 namespace dubsar {
 
@@ -47,16 +42,9 @@ std::string pdf_date(std::string when) {
   return "D:" + when;
 }
 
-/// What the file says of itself, in its own words and once more as XMP; the two must agree.
-void describe(QPDF& pdf, const PdfInfo& info) {
-  QPDFObjectHandle own = pdf.getTrailer().getKey("/Info");
-  const std::string producer = own.getKey("/Producer").getUTF8Value();
-  own.replaceKey("/Title", QPDFObjectHandle::newUnicodeString(info.title));
-  own.replaceKey("/Creator", QPDFObjectHandle::newUnicodeString(info.program));
-  for (const char* date : {"/CreationDate", "/ModDate"}) {
-    own.replaceKey(date, QPDFObjectHandle::newString(pdf_date(info.when)));
-  }
-  const std::string xmp = fmt::format(
+/// What the file says of itself, as XMP.
+std::string xmp_of(const PdfInfo& info, const std::string& producer) {
+  return fmt::format(
       R"(<?xpacket begin="{}" id="W5M0MpCehiHzreSzNTczkc9d"?>
 <x:xmpmeta xmlns:x="adobe:ns:meta/"><rdf:RDF xmlns:rdf="http://www.w3.org/1999/02/22-rdf-syntax-ns#">
 <rdf:Description rdf:about="" xmlns:pdfaid="http://www.aiim.org/pdfa/ns/id/">
@@ -70,82 +58,26 @@ void describe(QPDF& pdf, const PdfInfo& info) {
 <?xpacket end="w"?>)",
       "\xEF\xBB\xBF", html_escaped(info.title), html_escaped(info.program), info.when, info.when,
       html_escaped(producer));
-  QPDFObjectHandle metadata = QPDFObjectHandle::newStream(&pdf, xmp);
-  metadata.getDict().replaceKey("/Type", QPDFObjectHandle::newName("/Metadata"));
-  metadata.getDict().replaceKey("/Subtype", QPDFObjectHandle::newName("/XML"));
-  pdf.getRoot().replaceKey("/Metadata", metadata);
-}
-
-/// What the numbers of its colours mean.
-void say_colours(QPDF& pdf, const std::string& profile) {
-  QPDFObjectHandle colours = QPDFObjectHandle::newStream(&pdf, profile);
-  colours.getDict().replaceKey("/N", QPDFObjectHandle::newInteger(3));
-  QPDFObjectHandle intent = QPDFObjectHandle::parse(
-      "<< /Type /OutputIntent /S /GTS_PDFA1 /OutputConditionIdentifier (sRGB) /Info (sRGB IEC61966-2.1) >>");
-  intent.replaceKey("/DestOutputProfile", colours);
-  pdf.getRoot().replaceKey("/OutputIntents", QPDFObjectHandle::newArray({intent}));
-}
-
-/// Which numbers of letters a subset has, a bit each; those of cairo count from 0.
-void name_letters(QPDF& pdf, QPDFObjectHandle font) {
-  QPDFObjectHandle descriptor = font.getKey("/FontDescriptor");
-  int letters = 0;
-  QPDFObjectHandle widths = font.getKey("/W");  // runs: the first number and an array of widths
-  for (int k = 0; k + 1 < widths.getArrayNItems(); k += 2) {
-    letters = std::max(
-        letters, widths.getArrayItem(k).getIntValueAsInt() + widths.getArrayItem(k + 1).getArrayNItems());
-  }
-  std::string bits((static_cast<std::size_t>(letters) + 7) / 8, '\0');
-  for (int k = 0; k < letters; ++k) {
-    auto& byte = bits[static_cast<std::size_t>(k) / 8];
-    byte = static_cast<char>(static_cast<unsigned char>(byte) | (0x80U >> (static_cast<unsigned>(k) % 8U)));
-  }
-  descriptor.replaceKey("/CIDSet", QPDFObjectHandle::newStream(&pdf, bits));
-  font.replaceKey("/CIDToGIDMap", QPDFObjectHandle::newName("/Identity"));
-}
-
-/// What cairo writes otherwise than archives want it.
-void mend(QPDF& pdf) {
-  for (QPDFObjectHandle object : pdf.getAllObjects()) {
-    QPDFObjectHandle dict = object.isStream() ? object.getDict() : object;
-    if (!dict.isDictionary()) {
-      continue;
-    }
-    dict.removeKey(
-        "/Group");  // that one could see through the page, which one cannot: pictures are put on white
-    if (dict.getKey("/Subtype").isNameAndEquals("/CIDFontType2")) {
-      name_letters(pdf, dict);
-    }
-  }
 }
 
 }  // namespace
 
 Result<std::vector<std::uint8_t>> as_pdf_a(const std::vector<std::uint8_t>& pdf, const PdfInfo& info) {
-  const std::string profile = srgb_profile();
-  if (profile.empty()) {
-    return fail(ErrorKind::kInternal, "the sRGB profile cannot be made", "PDF");
+  PdfAWords words;
+  words.title = info.title;
+  words.program = info.program;
+  words.producer = fmt::format("cairo {}", cairo_version_string());
+  words.date = pdf_date(info.when);
+  words.xmp = xmp_of(info, words.producer);
+  words.profile = srgb_profile();
+  std::string error = words.profile.empty() ? "the sRGB profile cannot be made" : "";
+  if (error.empty()) {
+    std::vector<std::uint8_t> out = rewrite_as_pdf_a(pdf, words, error);
+    if (!out.empty()) {
+      return out;
+    }
   }
-  // qpdf tells trouble by exceptions, which end here.
-  try {
-    QPDF document;
-    document.setSuppressWarnings(true);
-    document.processMemoryFile("PDF", reinterpret_cast<const char*>(pdf.data()), pdf.size());
-    describe(document, info);
-    say_colours(document, profile);
-    mend(document);
-    QPDFWriter writer(document);
-    writer.setOutputMemory();
-    writer.setObjectStreamMode(qpdf_o_disable);
-    writer.forcePDFVersion("1.4");
-    writer.setDeterministicID(true);
-    writer.setNewlineBeforeEndstream(true);
-    writer.write();
-    const std::shared_ptr<Buffer> out = writer.getBufferSharedPointer();
-    return std::vector<std::uint8_t>(out->getBuffer(), out->getBuffer() + out->getSize());
-  } catch (const std::exception& e) {
-    return fail(ErrorKind::kInternal, e.what(), "PDF");
-  }
+  return fail(ErrorKind::kInternal, error, "PDF");
 }
 
 }  // namespace dubsar

@@ -24,7 +24,7 @@ target_compile_options(dubsar_options INTERFACE
 if(CMAKE_CXX_COMPILER_ID STREQUAL Clang)
   # Clang before 19 says of itself that it lacks what libstdc++ asks of it for std::expected; it does not.
   target_compile_options(dubsar_options INTERFACE -Wno-macro-redefined
-    $<$<COMPILE_LANGUAGE:CXX>:-D__cpp_concepts=202002L>)
+    $<$<AND:$<COMPILE_LANGUAGE:CXX>,$<NOT:$<STREQUAL:$<TARGET_PROPERTY:CXX_STANDARD>,17>>>:-D__cpp_concepts=202002L>)
 endif()
 
 # A package must depend on what the programs use, not on everything that a library's configuration names.
