@@ -20,7 +20,7 @@ Registrar& Registrar::operator=(Registrar&&) noexcept = default;
 
 ScanPose Registrar::add(int id, const std::shared_ptr<const RangeGrid>& grid, const PinSet* pins,
                         JobContext& job) {
-  state_->remove(id);
+  state_->remove(id, job);
   state_->enter(id, grid.get(), pins);
   if (state_->join(id, job)) {
     state_->retry(job);
@@ -32,8 +32,8 @@ std::vector<ScanPose> Registrar::poses() const {
   return state_->poses();
 }
 
-bool Registrar::remove(int id) {
-  return state_->remove(id);
+bool Registrar::remove(int id, JobContext& job) {
+  return state_->remove(id, job);
 }
 
 bool Registrar::set_pose(int id, const RigidTransform& model_from_scanner, bool locked) {
@@ -73,7 +73,7 @@ bool Registrar::set_locked(int id, bool locked) {
 
 ScanPose Registrar::add_at(int id, const std::shared_ptr<const RangeGrid>& grid, const PinSet* pins,
                            const RigidTransform& model_from_scanner, bool locked, JobContext& job) {
-  state_->remove(id);
+  state_->remove(id, job);
   state_->enter(id, grid.get(), pins);
   if (!model_from_scanner.is_rigid()) {
     return state_->pose(id);

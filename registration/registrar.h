@@ -48,8 +48,9 @@ class Registrar {
   ScanPose add(int id, const std::shared_ptr<const RangeGrid>& grid, const PinSet* pins, JobContext& job);
   /// All scans, by id.
   [[nodiscard]] std::vector<ScanPose> poses() const;
-  /// Takes a scan out; the others keep their poses. False when there is none of this id.
-  bool remove(int id);
+  /// Takes a scan out; the others keep their poses, but for those that only it connected: they are tried
+  /// without it, and are unsure when nothing else speaks for their pose. False when there is none of this id.
+  bool remove(int id, JobContext& job);
   /// The operator's word. Locked: the scan stays exactly there, registered, whatever the surfaces say. Not
   /// locked: a hint, good to a few degrees and millimetres, from which the scan is fitted and verified; also
   /// unlocks. False when there is no such scan, the pose is not rigid, or the hint led to no verified pose.

@@ -9,9 +9,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string>
 #include <utility>
 
-#include <string>
+#include "core/disjoint_sets.h"
 #include "registration/relaxation_covariance.h"
 
 namespace dubsar {
@@ -116,6 +117,29 @@ double variance_factor(const std::vector<double>& squares, std::size_t free_scan
   return std::max(1.0, sum / static_cast<double>(squares.size() - free_scans));
 }
 
+/// What does not move: the fixed scans, and one of the largest piece that pairs connect, if none of it is
+/// fixed.
+std::vector<bool> held_scans(const std::vector<bool>& fixed, const std::vector<PairConstraint>& pairs) {
+  DisjointSets pieces(fixed.size());
+  for (const PairConstraint& pair : pairs) {
+    pieces.unite(static_cast<std::uint32_t>(pair.a), static_cast<std::uint32_t>(pair.b));
+  }
+  std::vector<std::size_t> sizes(fixed.size(), 0);
+  for (std::uint32_t k = 0; k < fixed.size(); ++k) {
+    ++sizes[pieces.root(k)];
+  }
+  std::vector<bool> held = fixed;
+  const auto largest = static_cast<std::uint32_t>(std::ranges::max_element(sizes) - sizes.begin());
+  bool is_held = false;
+  for (std::uint32_t k = 0; k < fixed.size(); ++k) {
+    is_held = is_held || (fixed[k] && pieces.root(k) == largest);
+  }
+  if (!fixed.empty() && !is_held) {
+    held[largest] = true;  // a root is the first of its piece
+  }
+  return held;
+}
+
 /// What would make Ceres fail with a word that nobody understands, or give poses that are none.
 Status check(const std::vector<RigidTransform>& start, const std::vector<bool>& fixed,
              const std::vector<Eigen::Vector3d>& centers_mm, const std::vector<PairConstraint>& pairs) {
@@ -150,10 +174,7 @@ Result<std::vector<RelaxedPose>> relax(const std::vector<RigidTransform>& start,
   if (Status sound = check(start, fixed, centers_mm, pairs); !sound) {
     return std::unexpected(sound.error());
   }
-  std::vector<bool> held = fixed;
-  if (count > 0 && std::none_of(held.begin(), held.end(), [](bool h) { return h; })) {
-    held[0] = true;
-  }
+  const std::vector<bool> held = held_scans(fixed, pairs);
   std::vector<Block> blocks;
   blocks.reserve(count);
   for (const RigidTransform& pose : start) {

@@ -66,8 +66,10 @@ bool set_covariances(std::vector<RelaxedPose>& poses, const std::vector<bool>& h
   if (unknowns == 0) {
     return true;
   }
-  Eigen::MatrixXd normal = 1e-9 * Eigen::MatrixXd::Identity(6 * unknowns, 6 * unknowns);
-  Eigen::MatrixXd pull = Eigen::MatrixXd::Zero(6 * unknowns, 6 * unknowns);
+  // What is known beforehand is next to nothing, but it makes what no pair tells very uncertain.
+  const Eigen::MatrixXd known = 1e-9 * Eigen::MatrixXd::Identity(6 * unknowns, 6 * unknowns);
+  Eigen::MatrixXd normal = known;
+  Eigen::MatrixXd pull = known;
   std::vector<Eigen::MatrixXd> of_scan(poses.size(), Eigen::MatrixXd::Zero(6 * unknowns, 6));
   for (const PairConstraint& pair : pairs) {
     const Matrix6d h = in_model(pair, poses[pair.a].model_from_scanner) / variance_factor;

@@ -90,16 +90,6 @@ void ScanModel::enter(int id, const RangeGrid* grid, const PinSet* pins) {
   scans_[id] = std::move(scan);
 }
 
-bool ScanModel::remove(int id) {
-  const bool known = scans_.erase(id) > 0;
-  std::erase_if(pairs_, [&](const auto& e) { return e.first.first == id || e.first.second == id; });
-  for (auto& [other, scan] : scans_) {
-    scan.tried_on.erase(id);
-    std::erase_if(scan.leads, [&](const Lead& lead) { return lead.on == id; });
-  }
-  return known;
-}
-
 std::vector<int> ScanModel::members(int group) const {
   std::vector<int> out;
   for (const auto& [id, scan] : scans_) {
@@ -190,7 +180,7 @@ bool ScanModel::place(int id, const RigidTransform& model_from_scanner, bool loc
     return false;
   }
   Scan& scan = found->second;
-  scan.group = next_group_++;  // out of its group while it is placed anew
+  leave(id);
   int main = scan.group;
   for (const int group : groups_by_size()) {
     if (group != scan.group) {
@@ -198,7 +188,6 @@ bool ScanModel::place(int id, const RigidTransform& model_from_scanner, bool loc
       break;
     }
   }
-  std::erase_if(pairs_, [&](const auto& e) { return e.first.first == id || e.first.second == id; });
   scan.locked = locked;
   const std::vector<int> ids = scan.group == main ? std::vector<int>{} : members(main);
   const std::vector<ModelScan> model = model_of(ids);

@@ -25,7 +25,8 @@ class ScanModel {
 
   /// Takes a scan in, as a group of its own. A null grid is an empty one.
   void enter(int id, const RangeGrid* grid, const PinSet* pins);
-  bool remove(int id);
+  /// Takes a scan out. What only it connected is tried at once without it. False when there is none.
+  bool remove(int id, JobContext& job);
   /// Tries to join the scan's group with every other group. True when it joined one.
   bool join(int id, JobContext& job);
   /// Tries the scans outside the main group on what it has that is new to them, until no more join.
@@ -99,6 +100,13 @@ class ScanModel {
   [[nodiscard]] bool groups_agree(int id, const RigidTransform& group_from_scanner,
                                   const std::vector<int>& group_ids) const;
   void connect(int id, const ModelFit& fit, bool by_stage, const std::vector<int>& group_ids, int group);
+  /// Makes the scan a group of its own, and of each piece that nothing connects without it
+  /// (scan_model_leave.cpp). True when there were such pieces.
+  bool leave(int id);
+  /// The largest first, each ascending: scans that pairs, the stage or the operator's locks connect.
+  [[nodiscard]] std::vector<std::vector<int>> pieces_of(int group) const;
+  /// Measures the pairs that touch across pieces.
+  void measure_between(const std::vector<std::vector<int>>& pieces);
   [[nodiscard]] std::optional<Pair> measured_pair(int a, int b) const;
   /// Measures the pairs (a < b), both cores over pairs, and keeps what holds.
   void measure_pairs(const std::vector<std::pair<int, int>>& pairs);

@@ -181,9 +181,8 @@ bool ScanModel::follow_hint(int id, JobContext& job) {
       return false;
     }
     // It stands in the wrong place: out of its group, and in again where the hint says.
-    scan.group = next_group_++;
+    leave(id);
     scan.leads.clear();
-    std::erase_if(pairs_, [&](const auto& e) { return e.first.first == id || e.first.second == id; });
   }
   const bool followed = join_group(id, on->second.group, job);
   if (followed) {

@@ -144,13 +144,17 @@ void ScanModel::judge(int id) {
 }
 
 Status ScanModel::finalize(JobContext& job) {
+  bool grown = false;
   for (auto& [id, scan] : scans_) {
     if (scan.usable && scan.group != main_group()) {
-      join_group(id, main_group(), job);
+      grown = join_group(id, main_group(), job) || grown;
     }
     if (job.cancelled()) {
       return fail(ErrorKind::kCancelled, "registration was stopped");
     }
+  }
+  if (grown) {
+    retry(job);  // those before the one that joined
   }
   const int group = main_group();
   const std::vector<int> ids = members(group);

@@ -121,7 +121,7 @@ Result<std::vector<StationScan>> Engine::Impl::obey(const OperatorCommand& comma
       dropped = store->drop_scan(id, drop->why);
     }
     if (dropped) {
-      registrar.remove(id);
+      registrar.remove(id, job);
       taken_out.insert(id);
     }
     return done(dropped, id, "is taken out");

@@ -2,6 +2,8 @@
 // Copyright The Dubsar developers
 // Scans that come in vain while the engine drives by itself: of nothing, of a hand, of another tablet. They
 // are asked for once more, then a person is.
+#include <algorithm>
+
 #include "station/engine_impl.h"
 
 namespace dubsar {
@@ -53,7 +55,7 @@ ScanPose Engine::Impl::set_intruders_aside(const StationScan& scan, ScanPose pos
       give_up(dropped.error());
       break;
     }
-    registrar.remove(found->id);
+    registrar.remove(found->id, job);
     emit(Notice{why + "; it is set aside (session restore puts it back)"});
     if (found->id == scan.id) {
       pose = ScanPose{};
@@ -61,6 +63,8 @@ ScanPose Engine::Impl::set_intruders_aside(const StationScan& scan, ScanPose pos
       pose.reason = why;
       break;
     }
+    const std::vector<ScanPose> without = registrar.poses();  // which may tell of this one otherwise now
+    pose = *std::ranges::find(without, scan.id, &ScanPose::id);
     if (pose.status != PoseStatus::kRegistered) {
       pose = register_scan(scan, job);
     }

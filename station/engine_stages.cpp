@@ -196,7 +196,7 @@ void Engine::Impl::register_all(JobContext& job) {
     names[scan.id] = scan.file;
     ScanPose pose = register_scan(scan, job);
     if (scan.stored.valid() && !scan.stored.get()) {
-      registrar.remove(scan.id);  // it is lost; the run ends, and nothing that is saved may speak of it
+      registrar.remove(scan.id, job);  // it is lost; the run ends, and nothing that is saved may speak of it
       names.erase(scan.id);
       return;
     }

@@ -186,7 +186,7 @@ void profile_to_next_view(benchmark::State& state, int millions, Nominal kind) {
     }
     registered = pose.status == PoseStatus::kRegistered ? 1 : 0;
     next = static_cast<double>(map->next.size());
-    registrar.remove(kNew);
+    registrar.remove(kNew, job);
     if (!planning.place(before, false, job)) {
       state.SkipWithError("the model could not be put back");
       break;

@@ -30,7 +30,7 @@ void register_into_ten(benchmark::State& state, bool hints) {
   for (auto _ : state) {
     registered = registrar.add(10, grid, nullptr, job).status == PoseStatus::kRegistered ? 1 : 0;
     state.PauseTiming();
-    registrar.remove(10);
+    registrar.remove(10, job);
     state.ResumeTiming();
   }
   double model = 0;

@@ -163,7 +163,7 @@ TEST(Hints, StandWhenTheScanIsTakenOutAndPutBack) {
   const auto grid = scanned(surface, truth, 9);
   const ScanPose before = registrar.add(1, grid, nullptr, job);
   ASSERT_EQ(before.status, PoseStatus::kRegistered) << before.reason;
-  ASSERT_TRUE(registrar.remove(1));
+  ASSERT_TRUE(registrar.remove(1, job));
   const ScanPose after = registrar.add(1, grid, nullptr, job);
   EXPECT_EQ(after.status, PoseStatus::kRegistered);
   EXPECT_EQ(after.model_from_scanner.row_major(), before.model_from_scanner.row_major());

@@ -15,6 +15,7 @@ namespace dubsar {
 namespace {
 
 using testing::bumpy;
+using ::testing::ElementsAre;
 using testing::FieldScan;
 using ::testing::HasSubstr;
 using testing::pose_of;
@@ -224,12 +225,64 @@ TEST(Registrar, RemovesAndReplacesScans) {
   JobContext job;
   registrar.add(3, share(scan_field(surface, {}, {})), nullptr, job);
   registrar.add(7, share(scan_field(surface, pose_of(0, 5, 10, {0, 0, 0}), {})), nullptr, job);
-  EXPECT_TRUE(registrar.remove(3));
-  EXPECT_FALSE(registrar.remove(3));
+  EXPECT_TRUE(registrar.remove(3, job));
+  EXPECT_FALSE(registrar.remove(3, job));
   ASSERT_EQ(registrar.poses().size(), 1U);
   EXPECT_EQ(registrar.poses()[0].status, PoseStatus::kRegistered);
   registrar.add(7, share(RangeGrid{}), nullptr, job);
   EXPECT_EQ(registrar.poses()[0].status, PoseStatus::kFailed);
+}
+
+/// Two scans of the left and of the right, 0 and 1, and a third of both, 2.
+struct Bridged {
+  explicit Bridged(double half_gap_mm) {
+    constexpr double kHalfMm = 18;
+    const RigidTransform left = pose_of(0, 0, 0, {-kHalfMm - half_gap_mm, 0, 0});
+    const RigidTransform right = pose_of(3, -4, 0, {kHalfMm + half_gap_mm, 0, 0});
+    truth = left.inverse() * right;
+    const auto surface = bumpy(18, 300);
+    bridge = share(scan_field(surface, pose_of(-5, 2, 20, {0, 1, 0}), {.seed = 3}));
+    registrar.add(0, share(scan_field(surface, left, {.half_mm = kHalfMm, .seed = 1})), nullptr, job);
+    registrar.add(1, share(scan_field(surface, right, {.half_mm = kHalfMm, .seed = 2})), nullptr, job);
+    EXPECT_THAT(registered(), ElementsAre(0));
+    registrar.add(2, bridge, nullptr, job);
+    EXPECT_THAT(registered(), ElementsAre(0, 1, 2));
+  }
+  [[nodiscard]] std::vector<int> registered() const {
+    std::vector<int> ids;
+    for (const ScanPose& pose : registrar.poses()) {
+      if (pose.status == PoseStatus::kRegistered) {
+        EXPECT_LT(pose.sigma_mm, 0.05) << pose.id;
+        ids.push_back(pose.id);
+      }
+    }
+    return ids;
+  }
+
+  RigidTransform truth;  ///< of scan 1, in the frame of scan 0
+  std::shared_ptr<const RangeGrid> bridge;
+  JobContext job;
+  Registrar registrar;
+};
+
+TEST(Registrar, WhatOnlyTheScanTakenOutConnectedIsNotRegisteredAnyMore) {
+  Bridged scans(0.5);
+  ASSERT_TRUE(scans.registrar.remove(2, scans.job));
+  EXPECT_THAT(scans.registered(), ElementsAre(0));
+  EXPECT_FALSE(scans.registrar.poses()[1].reason.empty());
+  EXPECT_TRUE(scans.registrar.finalize(scans.job));
+  EXPECT_THAT(scans.registered(), ElementsAre(0));
+
+  scans.registrar.add(2, scans.bridge, nullptr, scans.job);
+  EXPECT_THAT(scans.registered(), ElementsAre(0, 1, 2));
+  const std::vector<ScanPose> poses = scans.registrar.poses();
+  EXPECT_LT(error_mm(poses[1], poses[0], scans.truth, {}), 0.02);
+}
+
+TEST(Registrar, WhatOverlapsStaysWhenTheScanThatJoinedItIsTakenOut) {
+  Bridged scans(-2);
+  ASSERT_TRUE(scans.registrar.remove(2, scans.job));
+  EXPECT_THAT(scans.registered(), ElementsAre(0, 1));
 }
 
 TEST(Registrar, TakesTheStagesWordWhereNothingOverlaps) {

@@ -76,6 +76,20 @@ TEST(Relaxation, OneWrongPairDoesNotBendTheRing) {
   }
 }
 
+TEST(Relaxation, OfAScanThatNothingConnectsNothingIsKnown) {
+  Ring r = ring(1e-3, 4);
+  r.fixed[0] = false;
+  std::erase_if(r.pairs, [](const PairConstraint& pair) { return pair.a == 0 || pair.b == 0; });
+  JobContext job;
+  const auto relaxed = relax(r.start, r.fixed, r.centers_mm, r.pairs, {}, job);
+  ASSERT_TRUE(relaxed);
+  EXPECT_GT((*relaxed)[0].covariance.diagonal().minCoeff(), 1e6);
+  EXPECT_TRUE((*relaxed)[1].covariance.isZero()) << "the others lie to their first";
+  for (std::size_t k = 2; k < r.truth.size(); ++k) {
+    EXPECT_LT((*relaxed)[k].covariance.diagonal().maxCoeff(), 1e-3) << k;
+  }
+}
+
 TEST(Relaxation, SaysWhatIsWrong) {
   JobContext job;
   Ring r = ring(1e-3, 3);
