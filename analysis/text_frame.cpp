@@ -7,7 +7,6 @@
 #include <array>
 #include <cmath>
 
-#include "analysis/certain_text.h"
 #include "analysis/text_lines.h"
 #include "core/tablet_frame.h"
 #include "core/tablet_sides.h"

@@ -10,6 +10,9 @@
 
 namespace dubsar {
 
+/// Text that decides how a tablet lies has to lead the next best reading by this (TextFrame::certainty).
+inline constexpr double kCertainText = 0.1;
+
 /// How the text lies: z out of the obverse, x to the reader's right, y up the obverse. A tablet is turned
 /// over its lower edge, so that x is the reader's right on the reverse too, and the reverse's up is -y.
 struct TextFrame {

@@ -9,7 +9,6 @@
 
 #include <map>
 
-#include "analysis/certain_text.h"
 #include "analysis/text_frame.h"
 #include "core/units.h"
 #include "sim/tablet.h"
@@ -164,8 +163,8 @@ TEST(Wedges, VerticesOfNoFaceChangeNothing) {
   // To the bit but for the samples that tell strays from the tablet.
   for (const Wedge& wedge : alone.wedges) {
     EXPECT_TRUE(std::ranges::any_of(among.wedges, [&](const Wedge& w) {
-      return (w.depth_point_mm - wedge.depth_point_mm).norm() < 0.005 &&
-             std::abs(w.depth_mm - wedge.depth_mm) < 0.005;
+      return (w.depth_point_mm - wedge.depth_point_mm).norm() < 1e-6 &&
+             std::abs(w.depth_mm - wedge.depth_mm) < 1e-3;
     })) << wedge.id;
   }
 }
