@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "analysis/certain_text.h"
 #include "analysis/text_frame.h"
 #include "analysis/wedge_features.h"
 #include "archive/staged_folder.h"

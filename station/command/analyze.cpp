@@ -16,9 +16,6 @@
 #include "archive/wedge_drawing.h"
 #include "core/stage_times.h"
 #include "core/units.h"
-#include "formats/atomic_file.h"
-#include "formats/corrections_json.h"
-#include "formats/json_node.h"
 #include "formats/mesh_io.h"
 #include "station/analysis.h"
 #include "station/command/analyze.h"
@@ -29,39 +26,6 @@
 namespace dubsar {
 
 namespace {
-
-/// How an output lies to the main one: a tablet's folder may move. Empty for none.
-std::string place_of(const std::string& path, const std::string& main) {
-  namespace fs = std::filesystem;
-  return path.empty() ? path
-                      : fs::absolute(path)
-                            .lexically_normal()
-                            .lexically_relative(fs::absolute(main).lexically_normal().parent_path())
-                            .generic_string();
-}
-
-/// Everything beside the mesh that decides what is written, and where.
-std::string parameters_of(const AnalyzeArguments& a, const CorrectionFile& said) {
-  const FreeSurfaceOptions& free = a.fields.free_surface;
-  nlohmann::ordered_json json{{"exit", a.exits},
-                              {"unit", a.unit},
-                              {"free_openness", free.least_openness},
-                              {"free_concave_per_mm", free.most_concave_per_mm},
-                              {"equalize", a.fields.equalize_openness},
-                              {"fault_reach", a.fields.reliability_iterations},
-                              {"uniform_weights", a.uniform_weights},
-                              {"classical_watershed", a.classical},
-                              {"out", std::filesystem::path(a.out).filename().string()},
-                              {"mesh_out", place_of(a.mesh_out, a.out)},
-                              {"pictures", place_of(a.pictures, a.out)},
-                              {"svg", place_of(a.svg, a.out)},
-                              {"invariants", place_of(a.invariants, a.out)},
-                              {"invariant_radius_mm", a.invariants.empty() ? 0.0 : a.radius_mm}};
-  if (!said.corrections.empty()) {
-    json["corrections"] = corrections_to_json({{}, said.corrections});
-  }
-  return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
-}
 
 nlohmann::ordered_json summary_json(const AnalyzeArguments& arguments, const WedgeFile& file) {
   nlohmann::ordered_json json{{"wedges", arguments.out},
@@ -328,65 +292,6 @@ Result<int> analyze(const AnalyzeArguments& arguments, CommandContext& context) 
   }
   tell(arguments, file, took_s, context);
   return 0;
-}
-
-void take_known_options(AnalyzeArguments& arguments, const std::function<bool(const char*)>& said) {
-  const std::filesystem::path stamp_file = stamp_beside(arguments.out);
-  std::error_code none;
-  if (!std::filesystem::is_regular_file(stamp_file, none)) {
-    // A disk that was full may have cost the stamp: the file itself tells at least where its edges end.
-    const Result<WedgeFile> file =
-        std::filesystem::is_regular_file(arguments.out, none) ? read_wedges(arguments.out) : WedgeFile();
-    if (file && !said("--exit")) {
-      arguments.exits = file->exits == ExitDefinition::kExtent ? "extent" : "surface";
-    }
-    return;
-  }
-  const Result<std::string> text = read_whole_file(stamp_file, kMaxJsonBytes);
-  const Result<DoneStamp> stamp =
-      text ? parse_done_stamp(*text, stamp_file.string()) : std::unexpected(text.error());
-  const Result<JsonDocument> known = stamp && stamp->verb == "analyze"
-                                         ? JsonDocument::parse(stamp->parameters, stamp_file.string())
-                                         : bad_input(stamp_file.string(), "is no stamp of an analysis");
-  if (!known) {
-    return;
-  }
-  const JsonNode root = known->root();
-  AnalyzeArguments a = arguments;
-  const auto number = [&](const char* option, const char* key, auto& value) {
-    value = said(option) ? value : static_cast<std::decay_t<decltype(value)>>(root.at(key).number());
-  };
-  const auto flag = [&](const char* option, const char* key, bool& value) {
-    value = said(option) ? value : root.at(key).boolean();
-  };
-  const auto word = [&](const char* option, const char* key, std::string& value) {
-    value = said(option) ? value : root.at(key).text();
-  };
-  const auto place = [&](const char* option, const char* key, std::string& value) {
-    const std::string relative = root.at(key).text();
-    if (!said(option) && !relative.empty()) {
-      value = (folder_of(arguments.out) / relative).lexically_normal().string();
-    }
-  };
-  FreeSurfaceOptions& free = a.fields.free_surface;
-  word("--exit", "exit", a.exits);
-  word("--unit", "unit", a.unit);
-  number("--free-openness", "free_openness", free.least_openness);
-  number("--free-concave", "free_concave_per_mm", free.most_concave_per_mm);
-  flag("--equalize", "equalize", a.fields.equalize_openness);
-  number("--fault-reach", "fault_reach", a.fields.reliability_iterations);
-  flag("--uniform-weights", "uniform_weights", a.uniform_weights);
-  flag("--classical-watershed", "classical_watershed", a.classical);
-  place("--mesh-out", "mesh_out", a.mesh_out);
-  place("--pictures", "pictures", a.pictures);
-  place("--svg", "svg", a.svg);
-  place("--invariants", "invariants", a.invariants);
-  if (!a.invariants.empty()) {
-    number("--invariant-radius", "invariant_radius_mm", a.radius_mm);
-  }
-  if (known->status("")) {
-    arguments = std::move(a);
-  }
 }
 
 std::filesystem::path corrections_of(const AnalyzeArguments& arguments) {

@@ -10,6 +10,7 @@
 
 #include "analysis/surface_fields.h"
 #include "core/wedge_correction.h"
+#include "formats/corrections_json.h"
 #include "station/command/command.h"
 
 namespace dubsar {
@@ -40,6 +41,9 @@ struct AnalyzeArguments {
 [[nodiscard]] std::vector<std::string> written_by(const AnalyzeArguments& arguments);
 
 void add_analyze_options(CLI::App& verb, AnalyzeArguments& arguments);
+
+/// Everything beside the mesh that decides what is written, and where, for the stamp.
+[[nodiscard]] std::string parameters_of(const AnalyzeArguments& arguments, const CorrectionFile& said);
 
 /// Fills what the operator has not `said` ("--exit") in with what the wedges in arguments.out were found
 /// with, as the stamp beside them tells: else a correction would measure them by other rules, and leave
