@@ -73,7 +73,7 @@ class CalibrationBox : public ::testing::Test {
  protected:
   void SetUp() override {
     if (!display_.works()) {
-      GTEST_SKIP() << "there is no Xvfb here (Debian package xvfb)";
+      FAIL() << "there is no Xvfb here: install xvfb (packages.txt)";
     }
     ASSERT_TRUE(write_file_atomically(at("rig.toml"), kRig).has_value());
     RigCalibration rig = sim::frame_rig({});

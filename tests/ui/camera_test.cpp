@@ -25,7 +25,7 @@ class Camera : public ::testing::Test {
  protected:
   void SetUp() override {
     if (!display_.works()) {
-      GTEST_SKIP() << "there is no Xvfb here (Debian package xvfb)";
+      FAIL() << "there is no Xvfb here: install xvfb (packages.txt)";
     }
   }
   Outcome play(const std::string& script) {

@@ -33,7 +33,7 @@ class OperatorStory : public ::testing::Test {
  protected:
   void SetUp() override {
     if (!display_.works()) {
-      GTEST_SKIP() << "there is no Xvfb here (Debian package xvfb)";
+      FAIL() << "there is no Xvfb here: install xvfb (packages.txt)";
     }
   }
   Outcome play(const std::string& script) { return play_on(kSmallTablet, script); }

@@ -111,7 +111,7 @@ class OnATablet : public ::testing::Test {
  protected:
   void SetUp() override {
     if (!display_.works()) {
-      GTEST_SKIP() << "there is no Xvfb here (Debian package xvfb)";
+      FAIL() << "there is no Xvfb here: install xvfb (packages.txt)";
     }
     ASSERT_EQ(run_command({"simulate", "tablet", "--seed", "3", "--size", "16x14x8", "--spacing", "0.1", "-o",
                            folder_.path().string()})

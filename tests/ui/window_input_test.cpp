@@ -36,7 +36,7 @@ TEST(WindowInput, NoDisplayIsOneLineAndStatusThree) {
 TEST(WindowInput, ADisplayWithoutOpenGlIsOneLineAndStatusThree) {
   const test::Display display("800x600x24", false);
   if (!display.works()) {
-    GTEST_SKIP() << "there is no Xvfb here (Debian package xvfb)";
+    FAIL() << "there is no Xvfb here: install xvfb (packages.txt)";
   }
   const Outcome outcome = run_command({"station"});
   EXPECT_EQ(outcome.status, 3);
@@ -56,7 +56,7 @@ class MeshInput : public ::testing::Test {
   }
   void SetUp() override {
     if (!display_.works()) {
-      GTEST_SKIP() << "there is no Xvfb here (Debian package xvfb)";
+      FAIL() << "there is no Xvfb here: install xvfb (packages.txt)";
     }
   }
   test::TemporaryFolder folder_;
