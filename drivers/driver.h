@@ -17,8 +17,8 @@
  *   through a queue of fixed size and counts what it had to drop.
  * - Functions return a dubsar_code; whenever it is none of DUBSAR_OK, DUBSAR_END and DUBSAR_TIMEOUT, the
  * error is filled.
- * - Nothing blocks for ever: a function that talks to a device gives up after 2 s without an answer (a homing
- *   or a move: 2 s after the device last gave a sign of life).
+ * - Nothing blocks for ever: a function that talks to a device gives up after 2 s without an answer (a move:
+ * 2 s after the device last gave a sign of life; a homing, in which a firmware may be mute: 3 minutes).
  *
  * A driver serves any of three kinds of device, told by the flags of its capabilities: range sources
  * (scan()), cameras (start_frames() and its group) and stages (describe_axes() and its group). */

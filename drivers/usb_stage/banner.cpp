@@ -37,7 +37,7 @@ Result<std::unique_ptr<Firmware>> make_by_banner(Link& link, const std::vector<A
         return make_grbl(link, axes, where);
       }
       if (said.find("Horus ") != said.npos) {
-        return make_horus(link, where);
+        return make_horus(link, axes, where);
       }
       said.erase(0, said.size() - std::min(said.size(), kPart));
     }

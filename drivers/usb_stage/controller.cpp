@@ -19,7 +19,7 @@ constexpr auto kAskEvery = 5ms;
 constexpr auto kStandstill = 500ms;
 /// Beyond the time that the way takes, for starting and braking.
 constexpr auto kGrace = 2s;
-/// How far beyond its limits or its speed a report may be before it is impossible.
+/// How far beyond its reach or its speed a report may be before it is impossible.
 constexpr double kSlack = 0.05;
 constexpr double kSpeedSlack = 3;
 
@@ -45,7 +45,6 @@ Result<std::unique_ptr<Controller>> Controller::open(Ways ways, std::string wher
   }
   out->axes_ = out->firmware_->axes();
   out->version_ = out->firmware_->version();
-  out->speed_ = out->axes_.front().speed_maximum / 2;
   return out;
 }
 
@@ -120,9 +119,9 @@ std::unexpected<Error> Controller::stopped() const {
 Status Controller::plausible(const Position& now) {
   for (std::size_t k = 0; k < now.axes.size(); ++k) {
     const Axis& axis = firmware_->axes()[k];
-    const double slack = std::max(kSlack * (axis.maximum - axis.minimum), 1.0);
+    const double slack = std::max(kSlack * (axis.reach.second - axis.reach.first), 1.0);
     const bool beyond = firmware_->homed() && !axis.endless &&
-                        (now.axes[k] < axis.minimum - slack || now.axes[k] > axis.maximum + slack);
+                        (now.axes[k] < axis.reach.first - slack || now.axes[k] > axis.reach.second + slack);
     bool too_fast = false;
     if (last_ && !now.commanded) {
       const double seconds = static_cast<double>(now.timestamp_ns - last_->timestamp_ns + now.uncertainty_ns +
@@ -176,6 +175,10 @@ Status Controller::set_laser(std::size_t laser, double power) {
   if (const Status connected = connect(); !connected) {
     return connected;
   }
+  if (power > 0 && power < 1 && !firmware_->dims()) {
+    return fail(ErrorKind::kUsage, "this controller has no power between off and on for its laser", where_,
+                "give 0 or 1");
+  }
   if (power > 0 && ways_.guard && !guard_) {
     Result<std::unique_ptr<Guard>> guard = ways_.guard(firmware_->panic());
     if (!guard) {
@@ -203,7 +206,7 @@ Status Controller::move(std::size_t axis, double position, double speed, bool st
       return fail(ErrorKind::kUsage, shown(one, position) + " is beyond the limits of axis " + one.name,
                   where_, "it goes from " + shown(one, one.minimum) + " to " + shown(one, one.maximum));
     }
-    speed = speed > 0 ? speed : speed_.load();
+    speed = speed > 0 ? speed : speed_share_ * one.speed_maximum;
     if (!(speed > 0 && speed <= one.speed_maximum * (1 + 1e-9))) {
       return fail(ErrorKind::kUsage, shown(one, speed) + "/s is no speed of axis " + one.name, where_,
                   "at most " + shown(one, one.speed_maximum) + "/s");

@@ -44,7 +44,7 @@ class Controller {
   [[nodiscard]] const std::string& where() const { return where_; }
 
   Status home();
-  /// speed 0: as speed() says.
+  /// speed 0: the share of the axis's greatest that set_speed() made of the first axis's, at first half.
   Status move(std::size_t axis, double position, double speed, bool start_only);
   struct Motion {
     Position position;
@@ -56,8 +56,9 @@ class Controller {
   Status stop();
   Status emergency_stop();
 
-  [[nodiscard]] double speed() const { return speed_; }
-  void set_speed(double speed) { speed_ = speed; }
+  /// Of the first axis.
+  [[nodiscard]] double speed() const { return speed_share_ * axes_.front().speed_maximum; }
+  void set_speed(double speed) { speed_share_ = speed / axes_.front().speed_maximum; }
 
  private:
   Controller(Ways ways, std::string where) : ways_(std::move(ways)), where_(std::move(where)) {}
@@ -74,7 +75,7 @@ class Controller {
   std::string where_;
   std::vector<Axis> axes_;
   std::string version_;
-  std::atomic<double> speed_ = 0;
+  std::atomic<double> speed_share_ = 0.5;
 
   std::mutex
       mutex_;  ///< of all below; held for one question and its answer, or a homing that looks at stops_

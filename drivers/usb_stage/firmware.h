@@ -20,10 +20,11 @@ struct Axis {
   bool rotary = false;
   bool can_home = false;
   bool endless = false;
-  double minimum = 0;
+  double minimum = 0;  ///< soft limits
   double maximum = 0;
   double speed_maximum = 0;
   double resolution = 0;
+  std::pair<double, double> reach;  ///< where it may be found: within its limits, at its switch, at its ends
 };
 
 struct Position {
@@ -39,7 +40,7 @@ struct Position {
 struct AxisWish {
   std::string name = "x";
   bool rotary = false;
-  std::optional<std::pair<double, double>> limits;  ///< mm or rad
+  std::optional<std::pair<double, double>> limits;  ///< mm or degrees
 };
 
 /// Whether somebody wants a wait to end.
@@ -55,6 +56,8 @@ class Firmware {
   [[nodiscard]] const std::vector<Axis>& axes() const { return axes_; }
   [[nodiscard]] int lasers() const { return lasers_; }
   [[nodiscard]] const std::string& version() const { return version_; }
+  /// Whether lasers have powers between off and on.
+  [[nodiscard]] bool dims() const { return dims_; }
   /// Whether positions are those of the machine.
   [[nodiscard]] bool homed() const { return homed_; }
 
@@ -64,7 +67,8 @@ class Firmware {
   virtual Status set_laser(int laser, double power) = 0;
   /// Ends the motion with the position known, lasers off.
   virtual Status stop() = 0;
-  /// kCancelled when cancelled() came true; the axes then stand still.
+  /// Waits for the switches until cancelled(): a firmware may say nothing on the way. kCancelled then; the
+  /// axes stand still.
   virtual Status home(const Cancelled& cancelled) = 0;
   /// Afterwards nothing moves until it is homed or connected anew.
   virtual Status halt() = 0;
@@ -74,21 +78,23 @@ class Firmware {
  protected:
   std::vector<Axis> axes_;
   int lasers_ = 1;
+  bool dims_ = false;
   std::string version_;
   bool homed_ = false;
 };
 
 [[nodiscard]] std::unique_ptr<Firmware> make_grbl(Link& link, const std::vector<AxisWish>& axes,
                                                   const std::string& where);
-[[nodiscard]] std::unique_ptr<Firmware> make_horus(Link& link, const std::string& where);
+[[nodiscard]] std::unique_ptr<Firmware> make_horus(Link& link, const std::vector<AxisWish>& axes,
+                                                   const std::string& where);
 
 /// The one of these two whose banner a reset brings. kDevice when none comes.
 [[nodiscard]] Result<std::unique_ptr<Firmware>> make_by_banner(Link& link, const std::vector<AxisWish>& axes,
                                                                const std::string& where);
 
 struct TmclOptions {
-  double steps_per_unit = 0;  ///< microsteps per mm, or per radian
-  double speed_maximum = 0;   ///< mm/s or rad/s
+  std::vector<double> steps;       ///< of each axis: microsteps per mm, or per degree
+  std::vector<double> speeds_max;  ///< of each axis: mm/s or degrees/s
   int module = 1;
   int laser_output = 0;
 };

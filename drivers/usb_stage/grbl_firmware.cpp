@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright The Dubsar developers
+#include <algorithm>
 #include <map>
 #include <numbers>
 #include <thread>
@@ -27,7 +28,9 @@ constexpr int kTravel = 130;     // $130 + axis, mm
 class Grbl : public Firmware {
  public:
   Grbl(Link& link, const std::vector<AxisWish>& wishes, const std::string& where)
-      : talk_(link, where), wishes_(wishes) {}
+      : talk_(link, where), wishes_(wishes) {
+    dims_ = true;
+  }
 
   Status connect() override {
     if (const Status reset = restart(); !reset) {
@@ -94,7 +97,8 @@ class Grbl : public Firmware {
   }
 
   Status set_laser(int /*laser*/, double power) override {
-    return power > 0 ? command("M3S" + std::to_string(power * laser_scale_), kAnswer)
+    // In laser mode ($32=1) M3 alone stays dark until a G1; without axes that moves nothing.
+    return power > 0 ? command("G1F1M3S" + std::to_string(power * laser_scale_), kAnswer)
                      : command("M5", kAnswer);
   }
 
@@ -129,34 +133,27 @@ class Grbl : public Firmware {
   }
 
   Status home(const Cancelled& cancelled) override {
+    homed_ = false;
     if (const Status sent = talk_.send("$H"); !sent) {
       return sent;
     }
-    Clock::time_point life = Clock::now();
-    Clock::time_point asked{};
+    // It may say nothing at all until it has found its switches: GRBL does not even answer `?`.
     for (;;) {
       if (cancelled()) {
         const Status reset = restart();
         return reset ? fail(ErrorKind::kCancelled, "stopped while it was homed", talk_.where()) : reset;
-      }
-      if (Clock::now() - asked > 200ms) {
-        asked = Clock::now();
-        if (const Status sent = talk_.write(std::string(1, grbl::kStatus)); !sent) {
-          return sent;
-        }
       }
       const Result<std::optional<std::string>> line = talk_.line(Clock::now() + 50ms);
       if (!line) {
         return std::unexpected(line.error());
       }
       if (!*line) {
-        if (Clock::now() - life > kAnswer) {
-          return talk_.silent();
-        }
         continue;
       }
-      life = Clock::now();
       const grbl::Line said = grbl::parse(**line);
+      if (std::holds_alternative<grbl::Banner>(said) && !cancelled()) {
+        return lost_its_mind();
+      }
       if (std::holds_alternative<grbl::Ok>(said)) {
         homed_ = true;
         return {};
@@ -165,7 +162,6 @@ class Grbl : public Firmware {
         return fail(ErrorKind::kUsage, "cannot be homed: " + grbl::meaning(*fault), talk_.where());
       }
       if (const auto* alarm = std::get_if<grbl::Alarm>(&said)) {
-        homed_ = false;
         return fail(ErrorKind::kDevice, grbl::meaning(*alarm), talk_.where(), "see to its switches");
       }
     }
@@ -298,8 +294,9 @@ class Grbl : public Firmware {
     out.can_home = setting(kHoming, 0) != 0;
     const double travel = setting(kTravel + number, 200) * unit;
     // A homed GRBL counts from its switch downwards.
-    out.minimum = wish.limits ? wish.limits->first : -travel;
-    out.maximum = wish.limits ? wish.limits->second : out.can_home ? 0 : travel;
+    out.minimum = wish.limits ? wish.limits->first * unit : -travel;
+    out.maximum = wish.limits ? wish.limits->second * unit : out.can_home ? 0 : travel;
+    out.reach = {std::min(out.minimum, -travel), std::max(out.maximum, travel)};
     out.speed_maximum = setting(kRate + number, 500) / 60 * unit;
     const double steps = setting(kSteps + number, 0);
     out.resolution = steps > 0 ? unit / steps : 0;

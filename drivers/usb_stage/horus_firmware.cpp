@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright The Dubsar developers
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -19,16 +20,25 @@ constexpr auto kAskEvery = 500ms;
 constexpr double kSpeedMaximum = 500 * kRadPerDeg;
 constexpr double kStep = 0.1125 * kRadPerDeg;  // 200 steps, 16 microsteps
 /// Far enough for any scan, near enough for four decimals in a float.
-constexpr double kFarthest = 100 * 2 * std::numbers::pi;
+constexpr double kFarthest = 100 * 360;
 
 class Horus : public Firmware {
  public:
-  Horus(Link& link, const std::string& where) : talk_(link, where) {
-    axes_ = {{"x", true, false, true, -kFarthest, kFarthest, kSpeedMaximum, kStep}};
+  Horus(Link& link, const std::vector<AxisWish>& wishes, const std::string& where)
+      : talk_(link, where), wishes_(wishes) {
     lasers_ = 2;
   }
 
   Status connect() override {
+    if (wishes_.size() != 1) {
+      return fail(ErrorKind::kUsage, "a turntable has one axis", talk_.where(), "see the option axes=");
+    }
+    const auto limits = wishes_.front().limits.value_or(std::pair(-kFarthest, kFarthest));
+    const auto [low, high] = std::pair(limits.first * kRadPerDeg, limits.second * kRadPerDeg);
+    const bool endless = !wishes_.front().limits;
+    // Where it stands at first is 0, within its limits or not.
+    axes_ = {{wishes_.front().name, true, false, endless, low, high, kSpeedMaximum, kStep,
+              std::pair(std::min(low, 0.0), std::max(high, 0.0))}};
     if (const Status reset = restart(); !reset) {
       return reset;
     }
@@ -199,6 +209,7 @@ class Horus : public Firmware {
   }
 
   LineTalk talk_;
+  std::vector<AxisWish> wishes_;
   bool reports_ = false;
   bool awaits_ok_ = false;
   double target_ = 0;
@@ -207,8 +218,9 @@ class Horus : public Firmware {
 
 }  // namespace
 
-std::unique_ptr<Firmware> make_horus(Link& link, const std::string& where) {
-  return std::make_unique<Horus>(link, where);
+std::unique_ptr<Firmware> make_horus(Link& link, const std::vector<AxisWish>& axes,
+                                     const std::string& where) {
+  return std::make_unique<Horus>(link, axes, where);
 }
 
 }  // namespace dubsar::usb_stage

@@ -3,13 +3,11 @@
 #include "drivers/usb_stage/options.h"
 
 #include <algorithm>
-#include <numbers>
+#include <functional>
 
 namespace dubsar::usb_stage {
 
 namespace {
-
-constexpr double kRadPerDeg = std::numbers::pi / 180;
 
 constexpr std::array<plugin::SettingRow, 7> kRows{{
     {DUBSAR_TYPE_CHOICE, "firmware", "what the controller speaks; auto tells grbl and horus by their banner",
@@ -18,8 +16,10 @@ constexpr std::array<plugin::SettingRow, 7> kRows{{
      "its axes in their order, those that turn with :deg, e.g. x,y:deg; default: x"},
     {DUBSAR_TYPE_TEXT, "limits",
      "soft limits of each axis, e.g. 0..120,-90..90; default: the controller's own", "mm or deg"},
-    {DUBSAR_TYPE_NUMBER, "steps", "of tmcl: microsteps per mm, or per degree", nullptr, nullptr, 1e-3, 1e9},
-    {DUBSAR_TYPE_NUMBER, "speed_max", "of tmcl: the greatest speed", "mm/s or deg/s", nullptr, 1e-6, 1e6},
+    {DUBSAR_TYPE_TEXT, "steps",
+     "of tmcl: microsteps per mm, or per degree; one for all axes or one for each, e.g. 1600,88.9"},
+    {DUBSAR_TYPE_TEXT, "speed_max", "of tmcl: the greatest speed; one for all axes or one for each",
+     "mm/s or deg/s"},
     {DUBSAR_TYPE_INTEGER, "module", "of tmcl: the module's address", nullptr, nullptr, 1, 255},
     {DUBSAR_TYPE_INTEGER, "laser_output", "of tmcl: the digital output that the laser hangs on", nullptr,
      nullptr, 0, 7},
@@ -71,6 +71,28 @@ bool take_limits(std::string_view text, std::vector<std::pair<double, double>>& 
   return true;
 }
 
+/// Numbers above 0 that a motor may have.
+bool take_list(std::string_view text, std::vector<double>& numbers) {
+  numbers.clear();
+  for (const std::string_view part : parts(text)) {
+    const std::optional<double> value = plugin::number(part);
+    if (!value || !(*value >= 1e-6 && *value <= 1e9)) {
+      return false;
+    }
+    numbers.push_back(*value);
+  }
+  return true;
+}
+
+/// One for each axis. False when one is to serve both mm and degrees, or there are more or fewer.
+bool spread(const std::vector<AxisWish>& axes, std::vector<double>& numbers) {
+  const bool mixed = std::ranges::adjacent_find(axes, std::not_equal_to{}, &AxisWish::rotary) != axes.end();
+  if (numbers.size() == 1 && !mixed) {
+    numbers.resize(axes.size(), numbers.front());
+  }
+  return numbers.empty() || numbers.size() == axes.size();
+}
+
 /// A number within the range of its row.
 bool take_number(std::string_view text, const plugin::SettingRow& row, double& to) {
   const std::optional<double> value = plugin::number(text);
@@ -90,8 +112,6 @@ std::span<const plugin::SettingRow> option_rows() {
 Result<StageOptions> parse_options(std::span<const dubsar_option> options) {
   StageOptions out;
   std::vector<std::pair<double, double>> limits;
-  double steps = 0;
-  double speed_max = 0;
   double module = 1;
   double output = 0;
   for (const dubsar_option& option : options) {
@@ -109,12 +129,12 @@ Result<StageOptions> parse_options(std::span<const dubsar_option> options) {
       good = take_axes(value, out.axes);
     } else if (key == "limits") {
       good = take_limits(value, limits);
+    } else if (key == "steps") {
+      good = take_list(value, out.tmcl.steps);
+    } else if (key == "speed_max") {
+      good = take_list(value, out.tmcl.speeds_max);
     } else {
-      good = take_number(value, *row,
-                         key == "steps"       ? steps
-                         : key == "speed_max" ? speed_max
-                         : key == "module"    ? module
-                                              : output);
+      good = take_number(value, *row, key == "module" ? module : output);
     }
     if (!good) {
       return plugin::not_understood(*row, value);
@@ -127,11 +147,15 @@ Result<StageOptions> parse_options(std::span<const dubsar_option> options) {
         {}, "give limits= for each axis of axes=, or for none");
   }
   for (std::size_t k = 0; k < limits.size(); ++k) {
-    const double unit = out.axes[k].rotary ? kRadPerDeg : 1.0;
-    out.axes[k].limits = {limits[k].first * unit, limits[k].second * unit};
+    out.axes[k].limits = limits[k];
   }
-  const double unit = out.axes.front().rotary ? kRadPerDeg : 1.0;
-  out.tmcl = {steps / unit, speed_max * unit, static_cast<int>(module), static_cast<int>(output)};
+  if (!spread(out.axes, out.tmcl.steps) || !spread(out.axes, out.tmcl.speeds_max)) {
+    return fail(ErrorKind::kUsage,
+                "steps= and speed_max= do not fit the " + std::to_string(out.axes.size()) + " axes", {},
+                "give one for each axis of axes=; one for all serves where all are mm or all degrees");
+  }
+  out.tmcl.module = static_cast<int>(module);
+  out.tmcl.laser_output = static_cast<int>(output);
   return out;
 }
 

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright The Dubsar developers
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <numbers>
 #include <string>
 #include <utility>
 
@@ -17,6 +19,7 @@ using namespace std::chrono_literals;
 using tmcl::AxisParameter;
 using tmcl::Command;
 
+constexpr double kRadPerDeg = std::numbers::pi / 180;
 constexpr std::uint8_t kAbsolute = 0;  // MVP ABS
 constexpr std::uint8_t kStart = 0;     // RFS START, STOP, STATUS
 constexpr std::uint8_t kStopSearch = 1;
@@ -29,9 +32,9 @@ class Tmcl : public Firmware {
       : link_(link), wishes_(wishes), options_(options), where_(where) {}
 
   Status connect() override {
-    if (!(options_.steps_per_unit > 0) || !(options_.speed_maximum > 0)) {
+    if (options_.steps.size() != wishes_.size() || options_.speeds_max.size() != wishes_.size()) {
       return fail(ErrorKind::kUsage, "how far a step goes is not known", where_,
-                  "give steps= (microsteps per mm or degree) and speed_max=");
+                  "give steps= (microsteps per mm or degree) and speed_max=, for each axis");
     }
     const Result<std::int32_t> version = ask({Command::kVersion, 1, 0, 0});
     if (!version) {
@@ -41,13 +44,16 @@ class Tmcl : public Firmware {
     std::snprintf(text, sizeof text, "TMCM-%u", static_cast<std::uint32_t>(*version) >> 16U);
     version_ = text;
     axes_.clear();
-    const double farthest = std::numeric_limits<std::int32_t>::max() / options_.steps_per_unit;
     for (std::size_t k = 0; k < wishes_.size(); ++k) {
       const AxisWish& wish = wishes_[k];
-      axes_.push_back({wish.name, wish.rotary, true, !wish.limits && wish.rotary,
-                       wish.limits ? wish.limits->first : -farthest,
-                       wish.limits ? wish.limits->second : farthest, options_.speed_maximum,
-                       1 / options_.steps_per_unit});
+      const double unit = wish.rotary ? kRadPerDeg : 1.0;
+      const double farthest = std::numeric_limits<std::int32_t>::max() / steps_per_unit(k);
+      const double low = wish.limits ? wish.limits->first * unit : -farthest;
+      const double high = wish.limits ? wish.limits->second * unit : farthest;
+      // Its switch is at 0, within its limits or not.
+      axes_.push_back({wish.name, wish.rotary, true, !wish.limits && wish.rotary, low, high,
+                       options_.speeds_max[k] * unit, 1 / steps_per_unit(k),
+                       std::pair(std::min(low, 0.0), std::max(high, 0.0))});
     }
     homed_ = false;
     return stop();
@@ -55,13 +61,13 @@ class Tmcl : public Firmware {
 
   Status start_move(std::size_t axis, double position, double speed) override {
     const auto motor = static_cast<std::uint8_t>(axis);
-    const auto steps_per_second = static_cast<std::int32_t>(std::lround(speed * options_.steps_per_unit));
+    const auto steps_per_second = static_cast<std::int32_t>(std::lround(speed * steps_per_unit(axis)));
     if (const auto set = ask({Command::kSetAxis, static_cast<std::uint8_t>(AxisParameter::kMaxSpeed), motor,
                               std::max(steps_per_second, 1)});
         !set) {
       return std::unexpected(set.error());
     }
-    const double steps = std::round(position * options_.steps_per_unit);
+    const double steps = std::round(position * steps_per_unit(axis));
     if (std::abs(steps) > std::numeric_limits<std::int32_t>::max()) {
       return fail(ErrorKind::kUsage, "farther than the motor can count", where_);
     }
@@ -85,7 +91,7 @@ class Tmcl : public Firmware {
         }
         *to = *value;
       }
-      out.axes.push_back(at / options_.steps_per_unit);
+      out.axes.push_back(at / steps_per_unit(k));
       // Right after a move was asked for its speed is still 0; after a stop its target is behind it.
       out.moving = out.moving || speed != 0 || (target != at && !stopped_);
     }
@@ -166,6 +172,11 @@ class Tmcl : public Firmware {
   }
 
  private:
+  /// Microsteps per mm or rad.
+  [[nodiscard]] double steps_per_unit(std::size_t axis) const {
+    return options_.steps[axis] / (wishes_[axis].rotary ? kRadPerDeg : 1.0);
+  }
+
   [[nodiscard]] std::string bytes(const tmcl::Request& request) const {
     const tmcl::Bytes encoded = tmcl::encode(request, static_cast<std::uint8_t>(options_.module));
     return {encoded.begin(), encoded.end()};

@@ -50,7 +50,7 @@ Result<std::unique_ptr<usb_stage::Firmware>> make_firmware(const usb_stage::Stag
     return usb_stage::make_tmcl(link, options.axes, options.tmcl, where);
   }
   if (options.firmware == "horus") {
-    return usb_stage::make_horus(link, where);
+    return usb_stage::make_horus(link, options.axes, where);
   }
   if (options.firmware == "grbl") {
     return usb_stage::make_grbl(link, options.axes, where);
@@ -128,7 +128,7 @@ std::int32_t describe_settings(dubsar_device* device, dubsar_setting_callback ca
                              DUBSAR_TYPE_NUMBER,
                              DUBSAR_SETTING_READABLE | DUBSAR_SETTING_WRITABLE,
                              "speed",
-                             "of moves that name none",
+                             "of moves that name none; other axes go at the same share of their greatest",
                              axis.rotary ? "deg/s" : "mm/s",
                              nullptr,
                              most * 1e-6,

@@ -22,6 +22,7 @@ struct Bench {
   bool alarm = false;  ///< from the first move on
   bool finds_switch = true;
   double position = 0;
+  double asked_position = 0, asked_speed = 0;
   double laser = 0;
   int stops = 0;
 };
@@ -29,14 +30,19 @@ struct Bench {
 class BenchFirmware : public Firmware {
  public:
   explicit BenchFirmware(Bench& bench) : bench_(bench) {
-    axes_ = {{"x", false, true, false, -100, 100, 50, 0.001}};
+    axes_ = {{"x", false, true, false, 10, 100, 50, 0.001, {0, 100}},
+             {"y", true, true, false, -1, 1, 0.2, 0.001, {-1, 1}}};
     homed_ = true;
   }
   Status connect() override { return {}; }
-  Status start_move(std::size_t, double, double) override { return {}; }
+  Status start_move(std::size_t, double position, double speed) override {
+    bench_.asked_position = position;
+    bench_.asked_speed = speed;
+    return {};
+  }
   Result<Position> read() override {
     Position out;
-    out.axes = {bench_.position};
+    out.axes = {bench_.position, 0};
     out.alarm = bench_.alarm;
     out.timestamp_ns = now_ns();
     return out;
@@ -120,6 +126,40 @@ TEST(Controller, ASwitchThatIsNotFoundIsNoEndlessWait) {
   EXPECT_THAT(homed.error().line(), HasSubstr("looked for its switch in vain"));
 }
 
+/// Where a switch is outside the soft limits the stage stands there after it is homed.
+TEST(Controller, OutsideItsLimitsIsNoImpossiblePositionWithinItsReach) {
+  Bench bench;
+  const auto controller = controller_of(bench).value();
+  const auto at_switch = controller->read();
+  ASSERT_TRUE(at_switch) << at_switch.error().line();
+  EXPECT_EQ(at_switch->position.axes[0], 0);
+  EXPECT_FALSE(controller->move(0, 0, 0, true));  // but it is not sent there
+  bench.position = -30;
+  EXPECT_THAT(controller->read().error().line(), HasSubstr("impossible position"));
+}
+
+TEST(Controller, ASpeedThatNobodyNamesIsTheSameShareOfEachAxis) {
+  Bench bench;
+  const auto controller = controller_of(bench).value();
+  ASSERT_TRUE(controller->move(0, 20, 0, true));
+  EXPECT_EQ(bench.asked_speed, 25);
+  const Status turned = controller->move(1, 0.5, 0, true);
+  ASSERT_TRUE(turned) << turned.error().line();
+  EXPECT_EQ(bench.asked_speed, 0.1);
+  controller->set_speed(5);
+  EXPECT_EQ(controller->speed(), 5);
+  ASSERT_TRUE(controller->move(1, 0.5, 0, true));
+  EXPECT_NEAR(bench.asked_speed, 0.02, 1e-12);
+}
+
+TEST(Controller, ALaserThatIsOnOrOffHasNoHalfPower) {
+  Bench bench;
+  const auto controller = controller_of(bench).value();
+  EXPECT_THAT(controller->set_laser(0, 0.5).error().line(), HasSubstr("give 0 or 1"));
+  EXPECT_EQ(bench.laser, 0);
+  EXPECT_TRUE(controller->set_laser(0, 1));
+}
+
 constexpr const char* kBanner = "Grbl 1.1h ['$' for help]\r\n";
 
 TEST(Controller, AnAxisWithoutWayOrSpeedIsRefused) {
@@ -131,6 +171,44 @@ TEST(Controller, AnAxisWithoutWayOrSpeedIsRefused) {
     EXPECT_EQ(connected.error().kind, ErrorKind::kBadInput);
     EXPECT_THAT(connected.error().line(), HasSubstr("set its travel ($130) and its rate ($110)"));
   }
+}
+
+/// GRBL answers nothing while it looks for its switches, not even `?`.
+TEST(Controller, AHomingThatIsMuteForLongIsWaitedFor) {
+  BenchLink link;
+  link.answers = {{"\x18", kBanner}, {"$$\n", "$22=1\r\n$110=3000\r\nok\r\n"}};
+  const std::unique_ptr<Firmware> firmware = make_grbl(link, {AxisWish{}}, "bench");
+  ASSERT_TRUE(firmware->connect());
+  const Clock::time_point begun = Clock::now();
+  const Status homed = firmware->home([&] {
+    if (Clock::now() - begun > kAnswer + 300ms) {
+      link.babble = "ok\r\n";
+    }
+    return false;
+  });
+  EXPECT_TRUE(homed) << homed.error().line();
+  EXPECT_TRUE(firmware->homed());
+  link.babble = kBanner;  // its power failed on the way
+  EXPECT_THAT(firmware->home([] { return false; }).error().line(), HasSubstr("the controller restarted"));
+  EXPECT_FALSE(firmware->homed());
+}
+
+TEST(Controller, ATurntableKeepsTheLimitsThatItIsGiven) {
+  BenchLink link;
+  link.answers = {{"\x18\r\n", "Horus 0.2 ['$' for help]\r\n"},
+                  {"M70T1\r\n", "ok\r\n"},
+                  {"M70T2\r\n", "ok\r\n"},
+                  {"M17\r\n", "ok\r\n"}};
+  const std::unique_ptr<Firmware> firmware =
+      make_horus(link, {AxisWish{.name = "x", .rotary = false, .limits = {{30, 180}}}}, "bench");
+  const Status connected = firmware->connect();
+  ASSERT_TRUE(connected) << connected.error().line();
+  const Axis& axis = firmware->axes().front();
+  EXPECT_NEAR(axis.minimum, 30 / 57.29577951308232, 1e-12);
+  EXPECT_NEAR(axis.maximum, 180 / 57.29577951308232, 1e-12);
+  EXPECT_EQ(axis.reach.first, 0);
+  EXPECT_FALSE(axis.endless);
+  EXPECT_EQ(make_horus(link, {AxisWish{}, AxisWish{}}, "bench")->connect().error().kind, ErrorKind::kUsage);
 }
 
 TEST(Controller, OneThatNeverStopsTalkingIsNoEndlessWait) {

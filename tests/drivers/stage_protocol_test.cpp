@@ -107,17 +107,22 @@ TEST(StageOptions, AreChecked) {
   const auto good = parse({{"firmware", "tmcl"},
                            {"axes", "x,y:deg"},
                            {"limits", "0..120,-90..90"},
-                           {"steps", "51200"},
-                           {"speed_max", "5"}});
+                           {"steps", "51200,88.9"},
+                           {"speed_max", "5,20"}});
   ASSERT_TRUE(good) << good.error().line();
   EXPECT_EQ(good->axes[1].name, "y");
   EXPECT_TRUE(good->axes[1].rotary);
-  EXPECT_NEAR(good->axes[1].limits->second, 1.5707963, 1e-6);
-  EXPECT_EQ(good->tmcl.steps_per_unit, 51200);
+  EXPECT_EQ(good->axes[1].limits->second, 90);
+  EXPECT_EQ(good->tmcl.steps, (std::vector{51200, 88.9}));
+  EXPECT_EQ(parse({{"axes", "x,y"}, {"steps", "51200"}})->tmcl.steps, (std::vector{51200.0, 51200.0}));
+  // One number is not both microsteps per mm and per degree.
+  EXPECT_THAT(parse({{"axes", "x,y:deg"}, {"steps", "51200"}}).error().line(),
+              HasSubstr("do not fit the 2 axes; give one for each"));
   for (const dubsar_option& bad :
        {dubsar_option{"firmware", "marlin"}, dubsar_option{"axes", "x,x"}, dubsar_option{"axes", "left"},
         dubsar_option{"limits", "5..1"}, dubsar_option{"limits", "0..1,0..1"}, dubsar_option{"steps", "0"},
-        dubsar_option{"module", "1.5"}, dubsar_option{"speed_max", "fast"}}) {
+        dubsar_option{"steps", "1,"}, dubsar_option{"speed_max", "1,2"}, dubsar_option{"module", "1.5"},
+        dubsar_option{"speed_max", "fast"}}) {
     const auto refused = parse({bad});
     ASSERT_FALSE(refused) << bad.key << "=" << bad.value;
     EXPECT_EQ(refused.error().kind, ErrorKind::kUsage);

@@ -22,7 +22,7 @@ class GrblSim : public FirmwareSim {
     set(-3.5);  // it wakes up anywhere
     laser = 0;
     alarm_ = true;
-    hold_ = homing_ = false;
+    hold_ = homing_ = linear_ = false;
     line_.clear();
     out += "\r\nGrbl 1.1h ['$' for help]\r\n[MSG:'$H'|'$X' to unlock]\r\n";
   }
@@ -34,6 +34,7 @@ class GrblSim : public FirmwareSim {
           reset(now);
           break;
         case '?':
+          asked_ = true;
           report(now);
           break;
         case '!':
@@ -62,7 +63,7 @@ class GrblSim : public FirmwareSim {
   void reset(double now) {
     alarm_ = alarm_ || moving(now) || homing_;
     hold(now);
-    hold_ = homing_ = false;
+    hold_ = homing_ = linear_ = false;
     laser = 0;
     line_.clear();
     out += "\r\nGrbl 1.1h ['$' for help]\r\n";
@@ -75,10 +76,16 @@ class GrblSim : public FirmwareSim {
       homing_ = alarm_ = false;
       set(0);
       out += "ok\r\n";
+      report(now);
     }
   }
+  /// While it homes it is mute: who asked is answered afterwards, once.
   void report(double now) {
-    const char* state = homing_ ? "Home" : alarm_ ? "Alarm" : hold_ ? "Hold:0" : moving(now) ? "Run" : "Idle";
+    if (homing_ || !asked_) {
+      return;
+    }
+    asked_ = false;
+    const char* state = alarm_ ? "Alarm" : hold_ ? "Hold:0" : moving(now) ? "Run" : "Idle";
     char text[128];
     // The work offset comes with every tenth report, as the firmware does it.
     const bool offset = reports_++ % 10 == 0;
@@ -88,7 +95,7 @@ class GrblSim : public FirmwareSim {
   }
   void run(const std::string& line, double now) {
     if (line == "$$") {
-      out += "$22=1\r\n$30=1000\r\n$100=250.000\r\n$110=3000.000\r\n$130=200.000\r\nok\r\n";
+      out += "$22=1\r\n$30=1000\r\n$32=1\r\n$100=250.000\r\n$110=3000.000\r\n$130=200.000\r\nok\r\n";
     } else if (line == "$H") {
       homing_ = true;
       homed_at_ = now + 0.1;
@@ -117,6 +124,7 @@ class GrblSim : public FirmwareSim {
       }
       at_char = end;
       machine = machine || (letter == 'G' && value == 53);
+      linear_ = linear_ || (letter == 'G' && value == 1);
       x = letter == 'X' ? value : x;
       feed = letter == 'F' ? value : feed;
       power = letter == 'S' ? value : power;
@@ -125,7 +133,7 @@ class GrblSim : public FirmwareSim {
     if (light == 5) {
       laser = 0;
     } else if (light == 3) {
-      laser = power / 1000;
+      laser = linear_ ? power / 1000 : 0;  // laser mode: dark until a G1
     }
     if (!std::isnan(x)) {
       const double target = machine ? x : x + 5;  // G54 stands 5 mm off
@@ -139,6 +147,8 @@ class GrblSim : public FirmwareSim {
   }
   std::string line_;
   bool alarm_ = true, hold_ = false, homing_ = false;
+  bool linear_ = false;  ///< the motion mode is G1
+  bool asked_ = false;   ///< for a report that was not given yet
   double homed_at_ = 0;
   int reports_ = 0;
 };
