@@ -63,14 +63,17 @@ void ask_for_tilts(const Intrinsics& intrinsics, std::vector<std::string>& out) 
 void ask_for_stripes(const std::vector<CalibrationView>& views, const Intrinsics& intrinsics,
                      const BoardSpec& board, double margin_mm, const Plane& laser,
                      std::vector<std::string>& out) {
+  // Where the laser's plane holds the camera's y more than its x, the stripe runs down the picture.
+  const bool runs_down = std::abs(laser.normal.x()) > std::abs(laser.normal.y());
   std::vector<double> depths;
-  double left = 1;
-  double right = 0;
+  double first = 1;
+  double last = 0;
   for (const StripeSample& sample : stripe_samples(views, intrinsics, board, margin_mm)) {
     depths.push_back(sample.point_mm.z());
-    const double across = sample.pixel.x() / intrinsics.camera.width;
-    left = std::min(left, across);
-    right = std::max(right, across);
+    const double along =
+        runs_down ? sample.pixel.y() / intrinsics.camera.height : sample.pixel.x() / intrinsics.camera.width;
+    first = std::min(first, along);
+    last = std::max(last, along);
   }
   const auto reach = laser.along(Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitZ());
   if (depths.empty() || !reach) {
@@ -88,11 +91,14 @@ void ask_for_stripes(const std::vector<CalibrationView>& views, const Intrinsics
     out.push_back("show the laser on the board " + number_text(std::round(2 * wanted)) +
                   " mm farther from the camera");
   }
-  if (left > 0.25) {
-    out.emplace_back("show the laser on the board at the left side of the picture");
+  const auto ask_for_side = [&](const char* side) {
+    out.push_back(std::string("show the laser on the board at the ") + side + " side of the picture");
+  };
+  if (first > 0.25) {
+    ask_for_side(runs_down ? "upper" : "left");
   }
-  if (right < 0.75) {
-    out.emplace_back("show the laser on the board at the right side of the picture");
+  if (last < 0.75) {
+    ask_for_side(runs_down ? "lower" : "right");
   }
 }
 

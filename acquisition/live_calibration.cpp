@@ -51,6 +51,27 @@ std::optional<double> moved_px(const BoardView& a, const BoardView& b) {
   return *middle;
 }
 
+/// Where one kind of picture has an exposure of its own, the other keeps that which the camera stands at.
+Status complete_exposures(LiveCalibrationPlan& plan, const Device& camera) {
+  if (plan.board_exposure_us.has_value() == plan.laser_exposure_us.has_value()) {
+    return {};
+  }
+  const Result<SettingValue> stands = camera.get("exposure_us");
+  if (!stands) {
+    return std::unexpected(stands.error());
+  }
+  const auto* const whole = std::get_if<std::int64_t>(&*stands);
+  const auto* const number = std::get_if<double>(&*stands);
+  if (whole != nullptr || number != nullptr) {
+    const double us = whole != nullptr ? static_cast<double>(*whole) : *number;
+    plan.board_exposure_us = plan.board_exposure_us.value_or(us);
+    plan.laser_exposure_us = plan.laser_exposure_us.value_or(us);
+    return {};
+  }
+  return fail(ErrorKind::kUsage, "the camera does not tell its exposure", camera.uri(),
+              "give --board-exposure and --laser-exposure, both");
+}
+
 }  // namespace
 
 LiveCalibration::LiveCalibration(LiveCalibrationPlan plan, BoardSpec board, Device camera, Device stage)
@@ -88,6 +109,11 @@ Result<LiveCalibration> LiveCalibration::start(const LiveCalibrationPlan& given,
     }
   }
   plan.set.camera_serial = capable->serial;
+  plan.set.depth_range_mm = plan.depth_range_mm.value_or(plan.set.depth_range_mm);
+  plan.set.plate_margin_mm = plan.plate_margin_mm.value_or(plan.set.plate_margin_mm);
+  if (Status whole = complete_exposures(plan, camera); !whole) {
+    return std::unexpected(whole.error());
+  }
   std::error_code error;
   fs::create_directories(plan.folder, error);
   if (error) {
@@ -109,11 +135,16 @@ Result<LiveCalibration> LiveCalibration::start(const LiveCalibrationPlan& given,
     return bad_input(list.string(), "these pictures are of another board, stage or camera",
                      "take the new ones to an empty folder");
   }
-  const Result<CalibrationPictures> pictures = look_at_pictures(out.plan_.folder, *had, job);
+  CalibrationSet set = *had;
+  set.depth_range_mm = out.plan_.depth_range_mm.value_or(had->depth_range_mm);
+  set.plate_margin_mm = out.plan_.plate_margin_mm.value_or(had->plate_margin_mm);
+  set.stripe_sigma_px = out.plan_.set.stripe_sigma_px;  // the rig's file tells these
+  set.stripe_per_row = out.plan_.set.stripe_per_row;
+  const Result<CalibrationPictures> pictures = look_at_pictures(out.plan_.folder, set, job);
   if (!pictures) {
     return std::unexpected(pictures.error());
   }
-  out.plan_.set = *had;
+  out.plan_.set = std::move(set);
   out.views_ = pictures->views;
   return out;
 }
@@ -133,6 +164,13 @@ Result<GrayImage> LiveCalibration::picture(bool laser, const std::optional<doubl
   const Result<Frame> frame = fresh_frame(camera_);
   if (!frame) {
     return std::unexpected(frame.error());
+  }
+  if (frame->offset_x != 0 || frame->offset_y != 0) {
+    return bad_input(
+        camera_.uri(),
+        "the camera sends a region that begins at pixel " + std::to_string(frame->offset_x) + ", " +
+            std::to_string(frame->offset_y),
+        "a rig is calibrated and scans with a region from 0, 0 on: set the camera's offsets to 0");
   }
   return gray_of(*frame);
 }

@@ -24,6 +24,8 @@ struct LiveCalibrationPlan {
   double laser_power = 1;
   double from = 0, to = 0;  ///< of the stage, where it takes the board (or turns the mirror); mm or radians
   int stops = 5;
+  /// In place of those of `set`, or of the folder that is gone on with.
+  std::optional<double> depth_range_mm, plate_margin_mm;
   std::optional<double> board_exposure_us;  ///< for pictures of the board; else as the camera stands
   std::optional<double> laser_exposure_us;  ///< for pictures of the stripe
 };

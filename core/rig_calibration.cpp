@@ -93,7 +93,7 @@ double RigCalibration::depth_per_px_mm() const {
   const RigidTransform camera_from_scanner = scanner_from_camera().inverse();
   const Eigen::Vector2d low = camera.project(camera_from_scanner * Eigen::Vector3d(0, 0, -0.5));
   const Eigen::Vector2d high = camera.project(camera_from_scanner * Eigen::Vector3d(0, 0, 0.5));
-  return 1.0 / std::abs(high.y() - low.y());
+  return 1.0 / (high - low).norm();  // whichever way the stripe runs
 }
 
 Status RigCalibration::check(const std::string& where) const {

@@ -247,13 +247,13 @@ Result<std::optional<dubsar_frame>> Stream::next(Clock::time_point until) {
         std::int64_t{buffer.timestamp.tv_sec} * 1000000000 + std::int64_t{buffer.timestamp.tv_usec} * 1000;
     if ((buffer.flags & V4L2_BUF_FLAG_TIMESTAMP_MASK) == V4L2_BUF_FLAG_TIMESTAMP_MONOTONIC && stamp > 0) {
       frame.timestamp_ns = stamp;
-      if ((buffer.flags & V4L2_BUF_FLAG_TSTAMP_SRC_MASK) == V4L2_BUF_FLAG_TSTAMP_SRC_SOE) {
-        frame.flags |= DUBSAR_FRAME_EXPOSED;
-      }
       frame.device_timestamp_ns = stamp;
     }
-    // A stamp of the exposure is older by the time that the frame took to come.
-    const double periods = (frame.flags & DUBSAR_FRAME_EXPOSED) != 0 ? 2 : 1;
+    // A stamp of the frame's beginning is older by the time that the frame took to come. That of its
+    // exposure, which the flag means, it is not: uvcvideo always sets the flag, and stamps the first bytes
+    // that arrive.
+    const bool begun = (buffer.flags & V4L2_BUF_FLAG_TSTAMP_SRC_MASK) == V4L2_BUF_FLAG_TSTAMP_SRC_SOE;
+    const double periods = begun ? 2 : 1;
     const double period_ns = mode_.rate_hz > 0 ? 1e9 / mode_.rate_hz : 1e9;
     if (static_cast<double>(now - frame.timestamp_ns) > periods * period_ns) {
       frame.flags |= DUBSAR_FRAME_LATE;

@@ -2,6 +2,7 @@
 // Copyright The Dubsar developers
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "station/command/command.h"
@@ -25,8 +26,7 @@ struct LiveOptions {
   std::string rig;     ///< rig.toml
   std::string motion;  ///< linear, turntable, galvanometer or none
   int stops = 5;
-  double depth_range_mm = 40;
-  double plate_margin_mm = 0;
+  std::optional<double> depth_range_mm, plate_margin_mm;
   double board_exposure_us = 0;  ///< 0: as the camera stands
   double laser_exposure_us = 0;
   [[nodiscard]] bool wanted() const { return !rig.empty(); }

@@ -63,8 +63,8 @@ LiveCalibrationPlan plan_for(const LiveOptions& options, const RigFile& rig, con
     const auto found = std::find(words.begin(), words.end(), options.motion);
     plan.set.motion = static_cast<MotionKind>(found - words.begin());
   }
-  plan.set.depth_range_mm = options.depth_range_mm;
-  plan.set.plate_margin_mm = options.plate_margin_mm;
+  plan.depth_range_mm = options.depth_range_mm;
+  plan.plate_margin_mm = options.plate_margin_mm;
   plan.set.stripe_sigma_px = rig.stripe_sigma_px;
   plan.set.stripe_per_row = rig.stripe_per_row;
   plan.folder = folder;

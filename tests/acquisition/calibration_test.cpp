@@ -279,6 +279,27 @@ TEST(Calibration, RefusesWithTheReason) {
   EXPECT_NE(reason(moved, std::nullopt).find("laser"), std::string::npos);
 }
 
+/// Of a laser that stands beside the camera the stripe runs down the picture.
+TEST(Calibration, AsksForTheSideThatAStripeRunningDownDidNotReach) {
+  std::vector<CalibrationView> views = held_views();
+  const Result<Intrinsics> whole = find_intrinsics(views);
+  ASSERT_TRUE(whole.has_value());
+  for (CalibrationView& view : views) {
+    view.stripe_px.clear();
+    for (int y = 0; y < view.board.height / 2; y += 4) {
+      view.stripe_px.emplace_back(0.5 * view.board.width, y);
+    }
+  }
+  const Plane laser{.normal = {0.8, 0, 0.6}, .distance_mm = 150};
+  const std::vector<std::string> missing = missing_poses(views, *whole, board(), &laser);
+  const auto asks = [&](const char* side) {
+    return std::ranges::count(
+        missing, std::string("show the laser on the board at the ") + side + " side of the picture");
+  };
+  EXPECT_EQ(asks("lower"), 1);
+  EXPECT_EQ(asks("upper") + asks("left") + asks("right"), 0);
+}
+
 TEST(Calibration, AsksForThePosesThatAreMissing) {
   std::vector<CalibrationView> views = held_views();
   const Result<Intrinsics> whole = find_intrinsics(views);

@@ -158,6 +158,46 @@ TEST_F(Live, GoesOnWithWhatWasTakenAndRefusesAnothersPictures) {
   EXPECT_EQ(another.error().kind, ErrorKind::kBadInput);
 }
 
+TEST_F(Live, GoesOnWithTheOptionsThatAreGivenAnew) {
+  held_ = poses(1)[0];
+  plan_.depth_range_mm = 25;
+  plan_.plate_margin_mm = 3;
+  ASSERT_TRUE(start()->take_pose()->used);
+  plan_.depth_range_mm = 30;
+  plan_.plate_margin_mm.reset();
+  plan_.set.stripe_sigma_px = 2;
+  ASSERT_TRUE(start()->take_pose()->used);
+  const std::string list = (plan_.folder / "calibration.toml").string();
+  const auto set = parse_calibration_set(read_whole_file(list).value(), list);
+  ASSERT_TRUE(set.has_value()) << set.error().line();
+  EXPECT_EQ(set->depth_range_mm, 30);
+  EXPECT_EQ(set->plate_margin_mm, 3);
+  EXPECT_EQ(set->stripe_sigma_px, 2);
+  EXPECT_EQ(set->poses.size(), 2U);
+}
+
+/// With an exposure for the stripe alone, the board is seen with the one that the camera stood at.
+TEST_F(Live, EachKindOfPictureHasItsExposure) {
+  plan_.laser_exposure_us = 300;
+  Result<LiveCalibration> live = start();
+  ASSERT_TRUE(live.has_value()) << live.error().line();
+  for (const RigidTransform& pose : poses(2)) {
+    held_ = pose;
+    ASSERT_TRUE(live->take_pose()->used);
+  }
+  EXPECT_EQ(bench_.lit_us, (std::vector{300.0, 300.0}));
+  // Board, dark beside the stripe, board; twice.
+  EXPECT_EQ(bench_.unlit_us, (std::vector{2000.0, 300.0, 2000.0, 2000.0, 300.0, 2000.0}));
+}
+
+TEST_F(Live, ARegionThatNoScanCouldUseIsRefused) {
+  bench_.offset_x = 64;
+  held_ = poses(1)[0];
+  const auto taken = start()->take_pose();
+  ASSERT_FALSE(taken.has_value());
+  EXPECT_NE(taken.error().line().find("begins at pixel 64, 0"), std::string::npos) << taken.error().line();
+}
+
 TEST_F(Live, FailuresLeaveTheLaserOff) {
   Result<LiveCalibration> live = start();
   ASSERT_TRUE(live.has_value());

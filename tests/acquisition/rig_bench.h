@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "core/mesh_query.h"
 #include "drivers/device.h"
@@ -38,6 +39,9 @@ struct RigBench {
   std::string asked;           ///< of the stage: L, D (laser lit, dark), S (stop)
   std::uint64_t frames = 0;
   GrayImage frame;
+  double exposure_us = 2000;
+  std::uint32_t offset_x = 0;            ///< of the camera's region
+  std::vector<double> lit_us, unlit_us;  ///< exposures of the frames, by the laser
 };
 
 inline RigBench& bench_of(dubsar_device* device) {
@@ -62,6 +66,34 @@ inline const dubsar_driver& camera_driver() {
       c.calibration_age_days = -1;
       plugin::copy_text(c.serial, bench_of(device).serial);
       plugin::lend(to, c);
+      return DUBSAR_OK;
+    };
+    out.describe_settings = [](dubsar_device*, dubsar_setting_callback callback, void* user,
+                               dubsar_error*) -> std::int32_t {
+      const dubsar_setting exposure{sizeof exposure,
+                                    DUBSAR_TYPE_NUMBER,
+                                    DUBSAR_SETTING_READABLE | DUBSAR_SETTING_WRITABLE,
+                                    "exposure_us",
+                                    "",
+                                    "us",
+                                    nullptr,
+                                    1,
+                                    1e6,
+                                    0};
+      return callback(user, &exposure) == 0 ? DUBSAR_OK : DUBSAR_CANCELLED;
+    };
+    out.get_setting = [](dubsar_device* device, const char*, dubsar_value* to,
+                         dubsar_error*) -> std::int32_t {
+      dubsar_value value{};
+      value.struct_size = sizeof value;
+      value.type = DUBSAR_TYPE_NUMBER;
+      value.number = bench_of(device).exposure_us;
+      plugin::lend(to, value);
+      return DUBSAR_OK;
+    };
+    out.set_setting = [](dubsar_device* device, const char*, const dubsar_value* value,
+                         dubsar_error*) -> std::int32_t {
+      bench_of(device).exposure_us = value->number;
       return DUBSAR_OK;
     };
     out.start_frames = [](dubsar_device*, std::uint32_t, dubsar_error*) -> std::int32_t { return DUBSAR_OK; };
@@ -97,6 +129,8 @@ inline const dubsar_driver& camera_driver() {
       frame.stride_bytes = frame.width;
       frame.size_bytes = static_cast<std::uint64_t>(frame.width) * frame.height;
       frame.pixel_format = DUBSAR_PIXEL_MONO8;
+      frame.offset_x = bench.offset_x;
+      (bench.laser > 0 ? bench.lit_us : bench.unlit_us).push_back(bench.exposure_us);
       plugin::lend(to, frame);
       return DUBSAR_OK;
     };

@@ -106,6 +106,7 @@ TEST_F(V4l2, StreamsFramesInOrderAndWhole) {
     EXPECT_EQ(frame.pixels[100 * frame.stride_bytes + 17], painted(17, 100));
     EXPECT_EQ(frame.pixels[239 * frame.stride_bytes + 319], painted(319, 239));
     EXPECT_GT(frame.timestamp_ns, before_ns);
+    EXPECT_FALSE(frame.exposed) << "uvcvideo says so of each, and stamps the arrival";
     before_ns = frame.timestamp_ns;
   }
   EXPECT_TRUE(device.stop_frames());

@@ -161,7 +161,7 @@ bool VirtualCamera::tick(const std::function<void(std::uint64_t, const std::vect
   buffer.index = index;
   buffer.type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
   buffer.memory = V4L2_MEMORY_MMAP;
-  buffer.flags = V4L2_BUF_FLAG_TIMESTAMP_MONOTONIC | V4L2_BUF_FLAG_TSTAMP_SRC_EOF;
+  buffer.flags = V4L2_BUF_FLAG_TIMESTAMP_MONOTONIC | V4L2_BUF_FLAG_TSTAMP_SRC_SOE;  // as uvcvideo
   buffer.bytesused = static_cast<std::uint32_t>(frame_.size());
   buffer.sequence = sequence;
   buffer.length = static_cast<std::uint32_t>(stride_);
