@@ -29,6 +29,7 @@ class Live : public testing::Test {
     size.height = 400;
     bench_.truth = sim::frame_rig(size);
     bench_.limit = 10;
+    bench_.settable = true;
     bench_.optics.laser_sigma_mm = 0.06;
     bench_.optics.laser_signal = 0.25;
     bench_.optics.ambient_signal = 0.25;

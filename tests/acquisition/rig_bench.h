@@ -39,6 +39,7 @@ struct RigBench {
   std::string asked;           ///< of the stage: L, D (laser lit, dark), S (stop)
   std::uint64_t frames = 0;
   GrayImage frame;
+  bool settable = false;  ///< the camera has an exposure to set
   double exposure_us = 2000;
   std::uint32_t offset_x = 0;            ///< of the camera's region
   std::vector<double> lit_us, unlit_us;  ///< exposures of the frames, by the laser
@@ -68,8 +69,11 @@ inline const dubsar_driver& camera_driver() {
       plugin::lend(to, c);
       return DUBSAR_OK;
     };
-    out.describe_settings = [](dubsar_device*, dubsar_setting_callback callback, void* user,
+    out.describe_settings = [](dubsar_device* device, dubsar_setting_callback callback, void* user,
                                dubsar_error*) -> std::int32_t {
+      if (!bench_of(device).settable) {
+        return DUBSAR_OK;
+      }
       const dubsar_setting exposure{sizeof exposure,
                                     DUBSAR_TYPE_NUMBER,
                                     DUBSAR_SETTING_READABLE | DUBSAR_SETTING_WRITABLE,

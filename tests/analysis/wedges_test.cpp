@@ -160,11 +160,11 @@ TEST(Wedges, VerticesOfNoFaceChangeNothing) {
   const WedgeSet among = wedges_of(mesh);
   ASSERT_GT(alone.wedges.size(), 50U);
   ASSERT_EQ(among.wedges.size(), alone.wedges.size());
-  // To the bit but for the samples that tell strays from the tablet.
+  // But for the samples that tell strays from the tablet: 0.8 um at most.
   for (const Wedge& wedge : alone.wedges) {
     EXPECT_TRUE(std::ranges::any_of(among.wedges, [&](const Wedge& w) {
-      return (w.depth_point_mm - wedge.depth_point_mm).norm() < 1e-6 &&
-             std::abs(w.depth_mm - wedge.depth_mm) < 1e-3;
+      return (w.depth_point_mm - wedge.depth_point_mm).norm() < 2e-3 &&
+             std::abs(w.depth_mm - wedge.depth_mm) < 2e-3;
     })) << wedge.id;
   }
 }
