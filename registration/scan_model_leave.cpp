@@ -88,6 +88,7 @@ std::vector<std::vector<int>> ScanModel::pieces_of(int group) const {
     by_root[sets.root(k)].push_back(ids[k]);
   }
   std::vector<std::vector<int>> pieces;
+  pieces.reserve(by_root.size());
   for (auto& [root, piece] : by_root) {
     pieces.push_back(std::move(piece));
   }
