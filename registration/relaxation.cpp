@@ -117,8 +117,8 @@ double variance_factor(const std::vector<double>& squares, std::size_t free_scan
   return std::max(1.0, sum / static_cast<double>(squares.size() - free_scans));
 }
 
-/// What does not move: the fixed scans, and one of the largest piece that pairs connect, if none of it is
-/// fixed.
+/// What does not move: the fixed scans, and the first of the largest piece that pairs connect, where none of
+/// it is fixed.
 std::vector<bool> held_scans(const std::vector<bool>& fixed, const std::vector<PairConstraint>& pairs) {
   DisjointSets pieces(fixed.size());
   for (const PairConstraint& pair : pairs) {

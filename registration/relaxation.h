@@ -39,9 +39,9 @@ struct RelaxedPose {
 
 /// Relaxes all poses together: a pose graph over the pairs (Ceres), robust, fixed scans untouched. `start`,
 /// `fixed` and `centers_mm` (in each scan's frame: what its covariance is about) run over the same scans. Of
-/// the most scans that pairs connect one is fixed, or the first counts as fixed. Covariances are scaled by
-/// how well the pairs agree with each other, never below what they claim; of a scan that no pair connects
-/// with a fixed one, nothing is known, and its covariance is as large. kCancelled when the job was stopped;
+/// the largest piece that pairs connect a scan is fixed, or its first counts as fixed. Covariances are scaled
+/// by how well the pairs agree with each other, never below what they claim; of a scan that no pairs connect
+/// with a fixed one nothing is known: its covariance is huge. kCancelled when the job was stopped;
 /// kInternal for poses or pairs that are not finite, and when no solution was found: the caller's poses then
 /// stand. One thread; deterministic.
 [[nodiscard]] Result<std::vector<RelaxedPose>> relax(const std::vector<RigidTransform>& start,

@@ -180,7 +180,7 @@ bool ScanModel::place(int id, const RigidTransform& model_from_scanner, bool loc
     return false;
   }
   Scan& scan = found->second;
-  leave(id);
+  const bool apart = leave(id);
   int main = scan.group;
   for (const int group : groups_by_size()) {
     if (group != scan.group) {
@@ -223,6 +223,9 @@ bool ScanModel::place(int id, const RigidTransform& model_from_scanner, bool loc
   if (verdict.status != PoseStatus::kRegistered) {
     scan.reason = "the hint led to no certain pose: " + verdict.reason;
     scan.outcome = verdict.status;
+    if (apart) {
+      retry(job);
+    }
     return false;
   }
   connect(id, fits.front(), false, ids, main);

@@ -172,6 +172,7 @@ bool ScanModel::follow_hint(int id, JobContext& job) {
     return false;
   }
   Scan& scan = found->second;
+  bool apart = false;
   if (scan.group == on->second.group) {
     const RigidTransform now = on->second.group_from_scanner.inverse() * scan.group_from_scanner;
     if (agrees_with(hint->second, now, scan.features.surface->centroid_mm)) {
@@ -181,11 +182,11 @@ bool ScanModel::follow_hint(int id, JobContext& job) {
       return false;
     }
     // It stands in the wrong place: out of its group, and in again where the hint says.
-    leave(id);
+    apart = leave(id);
     scan.leads.clear();
   }
   const bool followed = join_group(id, on->second.group, job);
-  if (followed) {
+  if (followed || apart) {
     retry(job);
   }
   return followed;
