@@ -25,8 +25,7 @@ constexpr double kSpeedSlack = 3;
 
 std::string shown(const Axis& axis, double value) {
   char text[48];
-  std::snprintf(text, sizeof text, axis.rotary ? "%.3f deg" : "%.3f mm",
-                axis.rotary ? value * 57.29577951308232 : value);
+  std::snprintf(text, sizeof text, axis.rotary ? "%.3f deg" : "%.3f mm", value / unit_of(axis.rotary));
   return text;
 }
 

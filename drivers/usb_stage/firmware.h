@@ -10,9 +10,15 @@
 #include <vector>
 
 #include "core/result.h"
+#include "core/units.h"
 #include "drivers/usb_stage/link.h"
 
 namespace dubsar::usb_stage {
+
+/// mm or rad in one mm or degree, which is what people and their firmwares count in.
+[[nodiscard]] constexpr double unit_of(bool rotary) {
+  return rotary ? rad_from_deg(1) : 1.0;
+}
 
 /// One axis, in mm or rad and seconds.
 struct Axis {

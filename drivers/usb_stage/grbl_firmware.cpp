@@ -2,7 +2,6 @@
 // Copyright The Dubsar developers
 #include <algorithm>
 #include <map>
-#include <numbers>
 #include <thread>
 
 #include "drivers/usb_stage/firmware.h"
@@ -15,7 +14,6 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr double kRadPerDeg = std::numbers::pi / 180;
 /// A board that restarts when its line is opened needs a while.
 constexpr auto kBoot = 3500ms;
 constexpr auto kAskEvery = 500ms;
@@ -63,7 +61,7 @@ class Grbl : public Firmware {
   }
 
   Status start_move(std::size_t axis, double position, double speed) override {
-    const double unit = axes_[axis].rotary ? kRadPerDeg : 1.0;
+    const double unit = unit_of(axes_[axis].rotary);
     const char letter = static_cast<char>(axes_[axis].name[0] - 'a' + 'A');
     return command(grbl::move(letter, position / unit, speed / unit * 60), kAnswer);
   }
@@ -91,7 +89,7 @@ class Grbl : public Firmware {
         return fail(ErrorKind::kDevice, "the controller reports fewer axes than it is said to have",
                     talk_.where(), "see the option axes=");
       }
-      out.axes.push_back(*machine * (axes_[k].rotary ? kRadPerDeg : 1.0));
+      out.axes.push_back(*machine * unit_of(axes_[k].rotary));
     }
     return out;
   }
@@ -286,7 +284,7 @@ class Grbl : public Firmware {
   }
 
   [[nodiscard]] Axis axis_of(const AxisWish& wish, int number) {
-    const double unit = wish.rotary ? kRadPerDeg : 1.0;
+    const double unit = unit_of(wish.rotary);
     laser_scale_ = setting(kLaserScale, 1000);
     Axis out;
     out.name = wish.name;

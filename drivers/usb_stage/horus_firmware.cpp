@@ -2,7 +2,6 @@
 // Copyright The Dubsar developers
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "drivers/usb_stage/firmware.h"
 #include "drivers/usb_stage/horus_protocol.h"
@@ -14,13 +13,12 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr double kRadPerDeg = std::numbers::pi / 180;
 constexpr auto kBoot = 3500ms;  // of a board that restarts when its line is opened
 constexpr auto kAskEvery = 500ms;
-constexpr double kSpeedMaximum = 500 * kRadPerDeg;
-constexpr double kStep = 0.1125 * kRadPerDeg;  // 200 steps, 16 microsteps
+constexpr double kSpeedMaximum = rad_from_deg(500);
+constexpr double kStep = rad_from_deg(0.1125);  // 200 steps, 16 microsteps
 /// Far enough for any scan, near enough for four decimals in a float.
-constexpr double kFarthest = 100 * 360;
+constexpr double kFarthestDeg = 100 * 360;
 
 class Horus : public Firmware {
  public:
@@ -33,8 +31,8 @@ class Horus : public Firmware {
     if (wishes_.size() != 1) {
       return fail(ErrorKind::kUsage, "a turntable has one axis", talk_.where(), "see the option axes=");
     }
-    const auto limits = wishes_.front().limits.value_or(std::pair(-kFarthest, kFarthest));
-    const auto [low, high] = std::pair(limits.first * kRadPerDeg, limits.second * kRadPerDeg);
+    const auto limits = wishes_.front().limits.value_or(std::pair(-kFarthestDeg, kFarthestDeg));
+    const auto [low, high] = std::pair(rad_from_deg(limits.first), rad_from_deg(limits.second));
     const bool endless = !wishes_.front().limits;
     // Where it stands at first is 0, within its limits or not.
     axes_ = {{wishes_.front().name, true, false, endless, low, high, kSpeedMaximum, kStep,
@@ -52,7 +50,7 @@ class Horus : public Firmware {
   }
 
   Status start_move(std::size_t /*axis*/, double position, double speed) override {
-    if (const Status set = command(horus::speed(speed / kRadPerDeg)); !set) {
+    if (const Status set = command(horus::speed(deg_from_rad(speed))); !set) {
       return set;
     }
     // Its ok comes when the move is accepted in some versions and when it has ended in others: read() looks.
@@ -60,7 +58,7 @@ class Horus : public Firmware {
     move_ends_ = Clock::now() + duration_of(way / speed);
     target_ = position;
     awaits_ok_ = true;
-    return talk_.send(horus::move(position / kRadPerDeg));
+    return talk_.send(horus::move(deg_from_rad(position)));
   }
 
   Result<Position> read() override {
@@ -102,7 +100,7 @@ class Horus : public Firmware {
     out.uncertainty_ns = (answered - asked) / 2;
     out.moving = awaits_ok_ || (report && report->moving);
     out.alarm = report && report->alarm;
-    out.axes = {report ? report->degrees * kRadPerDeg : target_};
+    out.axes = {report ? rad_from_deg(report->degrees) : target_};
     return out;
   }
 

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
-#include <numbers>
 #include <string>
 #include <utility>
 
@@ -19,7 +18,6 @@ using namespace std::chrono_literals;
 using tmcl::AxisParameter;
 using tmcl::Command;
 
-constexpr double kRadPerDeg = std::numbers::pi / 180;
 constexpr std::uint8_t kAbsolute = 0;  // MVP ABS
 constexpr std::uint8_t kStart = 0;     // RFS START, STOP, STATUS
 constexpr std::uint8_t kStopSearch = 1;
@@ -46,7 +44,7 @@ class Tmcl : public Firmware {
     axes_.clear();
     for (std::size_t k = 0; k < wishes_.size(); ++k) {
       const AxisWish& wish = wishes_[k];
-      const double unit = wish.rotary ? kRadPerDeg : 1.0;
+      const double unit = unit_of(wish.rotary);
       const double farthest = std::numeric_limits<std::int32_t>::max() / steps_per_unit(k);
       const double low = wish.limits ? wish.limits->first * unit : -farthest;
       const double high = wish.limits ? wish.limits->second * unit : farthest;
@@ -174,7 +172,7 @@ class Tmcl : public Firmware {
  private:
   /// Microsteps per mm or rad.
   [[nodiscard]] double steps_per_unit(std::size_t axis) const {
-    return options_.steps[axis] / (wishes_[axis].rotary ? kRadPerDeg : 1.0);
+    return options_.steps[axis] / unit_of(wishes_[axis].rotary);
   }
 
   [[nodiscard]] std::string bytes(const tmcl::Request& request) const {

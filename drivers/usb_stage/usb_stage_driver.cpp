@@ -2,8 +2,6 @@
 // Copyright The Dubsar developers
 //
 // usb_stage: motion and laser over a serial line of USB, for controllers with GRBL, Horus or TMCL.
-#include <numbers>
-
 #include "drivers/driver.h"
 #include "drivers/plugin.h"
 #include "drivers/usb_stage/controller.h"
@@ -19,8 +17,6 @@ struct dubsar_device {
 };
 
 namespace {
-
-constexpr double kDegPerRad = 180 / std::numbers::pi;
 
 std::int32_t answer(const Status& status, dubsar_error* error) {
   return status ? std::int32_t{DUBSAR_OK} : plugin::report(error, status.error());
@@ -115,15 +111,15 @@ std::int32_t capabilities(dubsar_device* device, dubsar_capabilities* out, dubsa
   });
 }
 
-/// What a person calls one unit of the first axis.
-double shown_unit(const Controller& controller) {
-  return controller.axes().front().rotary ? kDegPerRad : 1.0;
+/// Of the first axis, in which its speed is shown.
+double unit_of_speed(const Controller& controller) {
+  return usb_stage::unit_of(controller.axes().front().rotary);
 }
 
 std::int32_t describe_settings(dubsar_device* device, dubsar_setting_callback callback, void* user,
                                dubsar_error* /*error*/) {
   const usb_stage::Axis& axis = device->controller->axes().front();
-  const double most = axis.speed_maximum * shown_unit(*device->controller);
+  const double most = axis.speed_maximum / unit_of_speed(*device->controller);
   const dubsar_setting speed{sizeof speed,
                              DUBSAR_TYPE_NUMBER,
                              DUBSAR_SETTING_READABLE | DUBSAR_SETTING_WRITABLE,
@@ -177,7 +173,7 @@ std::int32_t get_setting(dubsar_device* device, const char* key, dubsar_value* v
       }
       filled.number = now->power[static_cast<std::size_t>(laser)];
     } else if (std::string_view(key) == "speed") {
-      filled.number = device->controller->speed() * shown_unit(*device->controller);
+      filled.number = device->controller->speed() / unit_of_speed(*device->controller);
     } else {
       return plugin::report(error, DUBSAR_USAGE, "no such setting", key);
     }
@@ -193,7 +189,7 @@ std::int32_t set_setting(dubsar_device* device, const char* key, const dubsar_va
       return answer(device->controller->set_laser(static_cast<std::size_t>(laser), value->number), error);
     }
     if (std::string_view(key) == "speed") {
-      device->controller->set_speed(value->number / shown_unit(*device->controller));
+      device->controller->set_speed(value->number * unit_of_speed(*device->controller));
       return DUBSAR_OK;
     }
     return plugin::report(error, DUBSAR_USAGE, "no such setting", key);

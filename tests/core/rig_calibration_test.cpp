@@ -41,6 +41,10 @@ TEST(RigCalibration, DepthPerPixelFollowsTheTriangulationAngle) {
   const RigCalibration one = rig();
   EXPECT_NEAR(one.field_per_px_mm(), 250.0 / 10240, 1e-9);
   EXPECT_NEAR(one.depth_per_px_mm(), 250.0 / 10240 / std::sin(0.4), 1e-3);
+  RigCalibration turned = one;  // the laser beside the camera: its stripe runs down
+  turned.laser.normal = Eigen::Vector3d(std::cos(0.4), 0, -std::sin(0.4));
+  turned.motion.direction = turned.laser.normal;
+  EXPECT_NEAR(turned.depth_per_px_mm(), one.depth_per_px_mm(), 1e-3 * one.depth_per_px_mm());
 }
 
 TEST(RigCalibration, MotionTakesPointsBackToPositionZero) {

@@ -193,6 +193,18 @@ TEST(Controller, AHomingThatIsMuteForLongIsWaitedFor) {
   EXPECT_FALSE(firmware->homed());
 }
 
+TEST(Controller, GrblMayStandAtItsSwitchBeyondItsLimits) {
+  BenchLink link;
+  link.answers = {{"\x18", kBanner}, {"$$\n", "$22=1\r\n$110=3000\r\n$130=200\r\nok\r\n"}};
+  const AxisWish wish{.name = "x", .rotary = false, .limits = {{-120, -50}}};
+  const std::unique_ptr<Firmware> firmware = make_grbl(link, {wish}, "bench");
+  ASSERT_TRUE(firmware->connect());
+  const Axis& axis = firmware->axes().front();
+  EXPECT_EQ(axis.minimum, -120);
+  EXPECT_EQ(axis.maximum, -50);
+  EXPECT_EQ(axis.reach, std::pair(-200.0, 200.0));  // its switch may be at either end
+}
+
 TEST(Controller, ATurntableKeepsTheLimitsThatItIsGiven) {
   BenchLink link;
   link.answers = {{"\x18\r\n", "Horus 0.2 ['$' for help]\r\n"},
@@ -204,8 +216,8 @@ TEST(Controller, ATurntableKeepsTheLimitsThatItIsGiven) {
   const Status connected = firmware->connect();
   ASSERT_TRUE(connected) << connected.error().line();
   const Axis& axis = firmware->axes().front();
-  EXPECT_NEAR(axis.minimum, 30 / 57.29577951308232, 1e-12);
-  EXPECT_NEAR(axis.maximum, 180 / 57.29577951308232, 1e-12);
+  EXPECT_NEAR(axis.minimum, rad_from_deg(30), 1e-12);
+  EXPECT_NEAR(axis.maximum, rad_from_deg(180), 1e-12);
   EXPECT_EQ(axis.reach.first, 0);
   EXPECT_FALSE(axis.endless);
   EXPECT_EQ(make_horus(link, {AxisWish{}, AxisWish{}}, "bench")->connect().error().kind, ErrorKind::kUsage);
