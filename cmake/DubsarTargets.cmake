@@ -24,8 +24,6 @@ function(dubsar_test name)
   add_executable(${name}_test ${ARG_SOURCES})
   target_include_directories(${name}_test PRIVATE ${CMAKE_SOURCE_DIR})
   target_link_libraries(${name}_test PRIVATE dubsar_options ${ARG_LINKS} GTest::gmock GTest::gtest_main)
-  # Where the real scans lie when the project has them beside it; $DUBSAR_DATA wins at run time.
-  target_compile_definitions(${name}_test PRIVATE DUBSAR_SOURCE_DIR="${CMAKE_SOURCE_DIR}"
-    DUBSAR_BINARY_DIR="${CMAKE_BINARY_DIR}")
+  target_link_libraries(${name}_test PRIVATE dubsar_build_paths)
   gtest_discover_tests(${name}_test DISCOVERY_MODE PRE_TEST PROPERTIES LABELS ${ARG_LABEL} TIMEOUT 300)
 endfunction()

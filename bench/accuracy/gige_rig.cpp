@@ -15,6 +15,7 @@
 
 #include "acquisition/device_uri.h"
 #include "bench/support/rig_tablet.h"
+#include "build_paths.h"
 #include "drivers/loader.h"
 #include "sim/frame_rig.h"
 #include "sim/speckle_bound.h"

@@ -23,6 +23,7 @@
 #include <string>
 #include <vector>
 
+#include "build_paths.h"
 #include "core/stage_times.h"
 #include "core/thread_priority.h"
 #include "drivers/loader.h"

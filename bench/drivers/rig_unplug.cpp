@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "acquisition/device_uri.h"
+#include "build_paths.h"
 #include "core/mesh_query.h"
 #include "drivers/loader.h"
 #include "sim/frame_rig.h"

@@ -10,6 +10,7 @@
 #include <fstream>
 #include <optional>
 
+#include "build_paths.h"
 #include "core/job.h"
 #include "core/log.h"
 #include "tests/support/temporary_folder.h"
@@ -18,7 +19,7 @@
 
 int main() {
   using namespace dubsar;
-  setenv("DUBSAR_DRIVER_PATH", DUBSAR_BENCH_DRIVERS, 1);
+  setenv("DUBSAR_DRIVER_PATH", DUBSAR_BINARY_DIR "/lib/dubsar/bench_drivers", 1);
   std::optional<test::Display> display;
   if (std::getenv("DISPLAY") == nullptr) {
     display.emplace();

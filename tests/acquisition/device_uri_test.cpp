@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "build_paths.h"
 #include "tests/support/temporary_folder.h"
 
 namespace dubsar {

@@ -9,6 +9,7 @@
 
 #include "acquisition/device_uri.h"
 #include "acquisition/range_source.h"
+#include "build_paths.h"
 #include "drivers/loader.h"
 #include "sim/frame_rig.h"
 #include "tests/drivers/peers/range_surface.h"

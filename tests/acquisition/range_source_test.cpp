@@ -7,6 +7,7 @@
 
 #include <filesystem>
 
+#include "build_paths.h"
 #include "core/units.h"
 #include "formats/poses_json.h"
 #include "tests/support/real_data.h"

@@ -12,6 +12,7 @@
 #include "archive/page_pdf.h"
 #include "archive/png.h"
 #include "archive/render.h"
+#include "build_paths.h"
 #include "tests/support/temporary_folder.h"
 
 namespace dubsar {

@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "build_paths.h"
 #include "drivers/loader.h"
 #include "tests/drivers/next_frame.h"
 #include "tests/support/peer_process.h"

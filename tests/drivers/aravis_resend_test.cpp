@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "build_paths.h"
 #include "tests/drivers/aravis_fixture.h"
 
 namespace dubsar {

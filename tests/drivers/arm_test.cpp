@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <future>
 
+#include "build_paths.h"
 #include "core/keep_out.h"
 #include "core/units.h"
 #include "drivers/device.h"

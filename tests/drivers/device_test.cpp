@@ -7,6 +7,7 @@
 
 #include <filesystem>
 
+#include "build_paths.h"
 #include "drivers/loader.h"
 
 namespace dubsar {

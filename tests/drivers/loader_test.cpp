@@ -9,6 +9,7 @@
 
 #include <fstream>
 
+#include "build_paths.h"
 #include "drivers/driver.h"
 #include "drivers/trust.h"
 #include "tests/support/temporary_folder.h"

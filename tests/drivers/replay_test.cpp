@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "build_paths.h"
 #include "drivers/loader.h"
 #include "formats/grid_file.h"
 #include "tests/support/temporary_folder.h"

@@ -13,6 +13,7 @@
 #include <future>
 #include <random>
 
+#include "build_paths.h"
 #include "core/units.h"
 #include "drivers/loader.h"
 #include "tests/support/peer_process.h"

@@ -9,6 +9,7 @@
 #include <fstream>
 #include <random>
 
+#include "build_paths.h"
 #include "drivers/loader.h"
 #include "drivers/v4l2/camera.h"
 #include "tests/drivers/next_frame.h"

@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <fstream>
 
+#include "build_paths.h"
 #include "tests/station/support/exported.h"
 #include "tests/station/support/shell.h"
 

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <fstream>
 
+#include "build_paths.h"
 #include "formats/corrections_json.h"
 #include "formats/wedges_json.h"
 #include "tests/station/support/command.h"

@@ -7,6 +7,7 @@
 
 #include <map>
 
+#include "build_paths.h"
 #include "tests/station/support/command.h"
 #include "tests/support/temporary_folder.h"
 

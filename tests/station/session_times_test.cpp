@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "acquisition/session_store.h"
+#include "build_paths.h"
 #include "tests/station/support/command.h"
 #include "tests/support/temporary_folder.h"
 
@@ -59,7 +60,8 @@ INSTANTIATE_TEST_SUITE_P(Schemas, OldSessions, testing::Values("schema1_first", 
 /// The command ten years ago, as its clock has it.
 Outcome long_ago(const Arguments& arguments) {
   CommandOptions options;
-  options.environment = {"LD_PRELOAD=" DUBSAR_OTHER_CLOCK, "DUBSAR_CLOCK_OFF_S=-315360000"};
+  options.environment = {"LD_PRELOAD=" DUBSAR_BINARY_DIR "/lib/dubsar/test_support/libdubsar_other_clock.so",
+                         "DUBSAR_CLOCK_OFF_S=-315360000"};
   return run_command(arguments, options);
 }
 

@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "build_paths.h"
 #include "formats/pins_json.h"
 #include "formats/poses_json.h"
 #include "tests/station/support/command.h"

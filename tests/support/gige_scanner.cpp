@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <fstream>
 
+#include "build_paths.h"
 #include "formats/calibration_json.h"
 #include "formats/number_text.h"
 #include "sim/frame_target.h"

@@ -5,6 +5,8 @@
 #include <cstdlib>
 #include <filesystem>
 
+#include "build_paths.h"
+
 namespace dubsar::test {
 
 /// The folder of real scans: $DUBSAR_DATA, or ../shared/data beside the sources. It may not be there.

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <fstream>
 
+#include "build_paths.h"
 #include "core/range_grid.h"
 #include "formats/atomic_file.h"
 #include "formats/calibration_json.h"
@@ -83,9 +84,11 @@ class CalibrationBox : public ::testing::Test {
   Outcome play(const std::string& script) {
     const fs::path file = at("box.script");
     std::ofstream(file) << script;
-    return run_command({"station", "--session", at("session").string(), "--device",
-                        "rig:" + at("rig.toml").string(), "--script", file.string()},
-                       {.timeout_s = 150, .environment = {"DUBSAR_DRIVER_PATH=" DUBSAR_UI_TEST_DRIVERS}});
+    return run_command(
+        {"station", "--session", at("session").string(), "--device", "rig:" + at("rig.toml").string(),
+         "--script", file.string()},
+        {.timeout_s = 150,
+         .environment = {"DUBSAR_DRIVER_PATH=" DUBSAR_BINARY_DIR "/lib/dubsar/test_drivers/window"}});
   }
   void certify(double diameter_mm) {
     std::string text = kBall;
@@ -181,7 +184,8 @@ TEST_F(CalibrationBox, PicturesAreTakenThroughTheCamera) {
                              "click shot-stop\nwait shot stage_00.png\nclick close-calibration\nquit\n";
   const Outcome outcome = run_command(
       {"station", "--session", at("session").string(), "--device", "eye:", "--script", file.string()},
-      {.timeout_s = 150, .environment = {"DUBSAR_DRIVER_PATH=" DUBSAR_UI_TEST_DRIVERS}});
+      {.timeout_s = 150,
+       .environment = {"DUBSAR_DRIVER_PATH=" DUBSAR_BINARY_DIR "/lib/dubsar/test_drivers/window"}});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   for (const char* name : {"pose_00.png", "pose_00_laser.png", "stage_00.png"}) {
     EXPECT_TRUE(fs::exists(shots / name)) << name;

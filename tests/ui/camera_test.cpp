@@ -8,6 +8,7 @@
 
 #include <fstream>
 
+#include "build_paths.h"
 #include "station/device_panel.h"
 #include "tests/station/support/command.h"
 #include "tests/support/temporary_folder.h"
@@ -33,7 +34,8 @@ class Camera : public ::testing::Test {
     std::ofstream(file) << script;
     return run_command(
         {"station", "--session", session().string(), "--device", "eye:", "--script", file.string()},
-        {.timeout_s = 150, .environment = {"DUBSAR_DRIVER_PATH=" DUBSAR_UI_TEST_DRIVERS}});
+        {.timeout_s = 150,
+         .environment = {"DUBSAR_DRIVER_PATH=" DUBSAR_BINARY_DIR "/lib/dubsar/test_drivers/window"}});
   }
   [[nodiscard]] std::filesystem::path session() const { return folder_.path() / "session"; }
   [[nodiscard]] SettingWords kept() const {
@@ -112,7 +114,8 @@ quit
 }
 
 TEST_F(Camera, TheCommandLineSetsTheSame) {
-  const std::vector<std::string> environment{"DUBSAR_DRIVER_PATH=" DUBSAR_UI_TEST_DRIVERS};
+  const std::vector<std::string> environment{"DUBSAR_DRIVER_PATH=" DUBSAR_BINARY_DIR
+                                             "/lib/dubsar/test_drivers/window"};
   const Outcome wrong = run_command({"scan", "--session", session().string(), "--device",
                                      "eye:", "--max-scans", "1", "--set", "exposure_us=90000"},
                                     {.environment = environment});

@@ -11,6 +11,7 @@
 #include <regex>
 #include <string>
 
+#include "build_paths.h"
 #include "ui/shell/text_table.h"
 
 namespace dubsar::ui {

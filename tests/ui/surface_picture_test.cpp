@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <cstring>
 
+#include "build_paths.h"
 #include "station/picture_file.h"
 #include "tests/support/raster_mesh.h"
 #include "tests/ui/support/on_a_window.h"

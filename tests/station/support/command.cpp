@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright The Dubsar developers
 #include "tests/station/support/command.h"
+#include "build_paths.h"
 
 #include <fcntl.h>
 #include <sched.h>

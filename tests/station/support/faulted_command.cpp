@@ -13,6 +13,7 @@
 #include <fstream>
 #include <thread>
 
+#include "build_paths.h"
 #include "formats/atomic_file.h"
 
 namespace dubsar::test {
@@ -91,7 +92,8 @@ TrialOutcome run_with_fault(const Arguments& arguments, const fs::path& folder, 
   const FaultLog log(log_file);
   CommandOptions options;
   options.timeout_s = kTimeoutS;
-  options.environment = {"LD_PRELOAD=" DUBSAR_STORAGE_FAULTS,
+  options.environment = {"LD_PRELOAD=" DUBSAR_BINARY_DIR
+                         "/lib/dubsar/test_support/libdubsar_storage_faults.so",
                          "DUBSAR_FAULT_ROOT=" + folder.string(),
                          "DUBSAR_FAULT_LOG=" + log_file.string(),
                          "DUBSAR_FAULT_AT=" + std::to_string(fault.at),
