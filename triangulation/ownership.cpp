@@ -2,6 +2,8 @@
 // Copyright The Dubsar developers
 #include "triangulation/ownership.h"
 
+#include <algorithm>
+
 #include "core/parallel.h"
 #include "triangulation/contest.h"
 #include "triangulation/patch_shape.h"
@@ -16,11 +18,48 @@ constexpr std::uint8_t kBoth = kCellFirst | kCellSecond;
 constexpr std::size_t kGrain = 2048;
 constexpr std::size_t kContestGrain = 64;  ///< nodes: where there is a contest, each is much work
 
+/// Room for the averaged samples of one scan after another [rows*cols]. Only those of cells at stake are laid;
+/// what an earlier scan left elsewhere is not looked at.
+struct LaidSamples {
+  std::vector<Vector3f> points, normals;
+  std::vector<std::uint8_t> at_stake;  ///< 1 for the cells that have a new corner
+
+  void lay(const OwnedScan& scan, std::span<const std::uint8_t> kept, std::span<const std::uint8_t> fresh);
+};
+
+void LaidSamples::lay(const OwnedScan& scan, std::span<const std::uint8_t> kept,
+                      std::span<const std::uint8_t> fresh) {
+  const std::size_t count = fresh.size();
+  const auto width = static_cast<std::size_t>(scan.surface->lattice.cols);
+  points.resize(std::max(points.size(), count));
+  normals.resize(std::max(normals.size(), count));
+  at_stake.resize(count);
+  parallel_for_each_index(
+      count,
+      [&](std::size_t i) {
+        at_stake[i] =
+            i + width + 1 < count ? fresh[i] | fresh[i + 1] | fresh[i + width] | fresh[i + width + 1] : 0;
+      },
+      16384);
+  parallel_for_each_index(
+      count,
+      [&](std::size_t i) {
+        const bool is_corner = (at_stake[i] | (i >= 1 ? at_stake[i - 1] : 0) |
+                                (i >= width ? at_stake[i - width] : 0) |
+                                (i > width ? at_stake[i - width - 1] : 0)) != 0;
+        if (is_corner && kept[i] != 0) {
+          points[i] = scan.fused->point(i);
+          normals[i] = scan.surface->normal(i);
+        }
+      },
+      16384);
+}
+
 /// Gives a scan the samples `fresh` besides those that it keeps: triangles between them that meet no other
 /// patch; then the samples they use.
 void add_samples(std::vector<OwnedScan>& scans, std::size_t self, std::vector<std::uint8_t> fresh,
                  const Contest& contest, const GridTriangulationOptions& grid,
-                 const OwnershipOptions& options, int least_patch) {
+                 const OwnershipOptions& options, int least_patch, LaidSamples& laid) {
   OwnedScan& scan = scans[self];
   const Lattice& lattice = scan.surface->lattice;
   GridSurface g = scan.surface->surface();
@@ -28,27 +67,12 @@ void add_samples(std::vector<OwnedScan>& scans, std::size_t self, std::vector<st
   std::vector<std::uint8_t> cells = std::move(scan.cells);
   kept.resize(fresh.size(), 0);
   cells.resize(fresh.size(), 0);
-  std::vector<Vector3f> points(fresh.size(), Vector3f::Zero());
-  std::vector<Vector3f> normals(fresh.size(), Vector3f::Zero());
-  // A cell is at stake when one of its corners is new.
-  std::vector<std::uint8_t> anew(fresh.size(), 0);
-  const auto width = static_cast<std::size_t>(g.cols);
   parallel_for_each_index(
-      fresh.size(),
-      [&](std::size_t i) {
-        kept[i] |= fresh[i];
-        if (kept[i] != 0) {
-          points[i] = scan.fused->point(i);
-          normals[i] = scan.surface->normal(i);
-        }
-        anew[i] = i + width + 1 < fresh.size()
-                      ? fresh[i] | fresh[i + 1] | fresh[i + width] | fresh[i + width + 1]
-                      : 0;
-      },
-      16384);
-  g.points = points;
-  g.normals = normals;
-  triangulate_cells_anew(g, kept, scan.surface->mirrored, grid, anew, cells);
+      fresh.size(), [&](std::size_t i) { kept[i] |= fresh[i]; }, 65536);
+  laid.lay(scan, kept, fresh);
+  g.points = laid.points;
+  g.normals = laid.normals;
+  triangulate_cells_anew(g, kept, scan.surface->mirrored, grid, laid.at_stake, cells);
   parallel_chunks(contest.any.size(), kContestGrain, [&](std::size_t begin, std::size_t end) {
     NodeContest here(scans, self, contest, options);
     for (std::size_t node = begin; node < end; ++node) {
@@ -57,7 +81,7 @@ void add_samples(std::vector<OwnedScan>& scans, std::size_t self, std::vector<st
       }
       here.enter(node);
       lattice.for_each_sample(node, [&](std::size_t i) {
-        if (anew[i] == 0) {
+        if (laid.at_stake[i] == 0) {
           return;
         }
         std::uint8_t& cell = cells[i];
@@ -65,7 +89,7 @@ void add_samples(std::vector<OwnedScan>& scans, std::size_t self, std::vector<st
         const int col = lattice.sample_col(i);
         for (int which = 0; (cell & kBoth) != 0 && which < 2; ++which) {
           const std::uint8_t bit = which == 0 ? kCellFirst : kCellSecond;
-          if ((cell & bit) != 0 && here.meets_another(points, cell_triangle(g, row, col, cell, which))) {
+          if ((cell & bit) != 0 && here.meets_another(g.points, cell_triangle(g, row, col, cell, which))) {
             cell = static_cast<std::uint8_t>(cell & ~bit);
           }
         }
@@ -180,6 +204,7 @@ bool assign_owners(std::vector<OwnedScan>& scans, const GridTriangulationOptions
     scan.some_kept.clear();
     scan.all_kept.clear();
   }
+  LaidSamples laid;
   const double steps = 2.0 * static_cast<double>(scans.size());
   for (std::size_t self = 0; self < scans.size(); ++self) {
     if (job.cancelled()) {
@@ -198,7 +223,8 @@ bool assign_owners(std::vector<OwnedScan>& scans, const GridTriangulationOptions
         }
       }
     });
-    add_samples(scans, self, std::move(fresh), contest, grid, options, options.least_wanted_patch_samples);
+    add_samples(scans, self, std::move(fresh), contest, grid, options, options.least_wanted_patch_samples,
+                laid);
   }
   // What nobody keeps goes to the first scan that has it.
   for (std::size_t self = 0; self < scans.size(); ++self) {
@@ -224,7 +250,7 @@ bool assign_owners(std::vector<OwnedScan>& scans, const GridTriangulationOptions
       }
     }
     scan.fuse(unfused);
-    add_samples(scans, self, std::move(fresh), contest, grid, options, options.least_patch_samples);
+    add_samples(scans, self, std::move(fresh), contest, grid, options, options.least_patch_samples, laid);
   }
   return true;
 }

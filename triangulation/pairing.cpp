@@ -112,21 +112,28 @@ double mismatch_mm(const StitchSurface& from, const StitchSurface& to, double re
   }
   box.min().array() -= static_cast<float>(reach_mm);
   box.max().array() += static_cast<float>(reach_mm);
-  std::vector<float> distances;
-  for (std::size_t i = 0; i < n; i += step) {
-    if (from.usable[i] == 0 || !box.contains(from.points[i]) ||
-        !may_see(to.view, from.points[i], from.normal(i))) {
-      continue;
-    }
-    const std::int64_t j = nearest_sample(to, from.points[i], static_cast<float>(reach_mm));
-    if (j < 0) {
-      continue;
-    }
-    const auto q = static_cast<std::size_t>(j);
-    if (from.normal(i).dot(to.normal(q)) > 0.9F) {
-      distances.push_back(std::abs((from.points[i] - to.points[q]).dot(to.normal(q))));
-    }
-  }
+  using Distances = std::vector<float>;
+  Distances distances = parallel_reduce_ordered(
+      (n + step - 1) / step, 128, Distances{},
+      [&](std::size_t begin, std::size_t end) {
+        Distances found;
+        for (std::size_t i = begin * step; i < std::min(end * step, n); i += step) {
+          if (from.usable[i] == 0 || !box.contains(from.points[i]) ||
+              !may_see(to.view, from.points[i], from.normal(i))) {
+            continue;
+          }
+          const std::int64_t j = nearest_sample(to, from.points[i], static_cast<float>(reach_mm));
+          if (j < 0) {
+            continue;
+          }
+          const auto q = static_cast<std::size_t>(j);
+          if (from.normal(i).dot(to.normal(q)) > 0.9F) {
+            found.push_back(std::abs((from.points[i] - to.points[q]).dot(to.normal(q))));
+          }
+        }
+        return found;
+      },
+      [](Distances& total, const Distances& part) { total.insert(total.end(), part.begin(), part.end()); });
   if (distances.size() < 8) {
     return -1;
   }

@@ -56,27 +56,35 @@ void count_kept(OwnedScan& scan) {
 
 void remove_specks(std::vector<std::uint8_t>& kept, const std::vector<std::uint8_t>& cells,
                    const std::vector<std::uint8_t>& starts, const Lattice& grid, int least) {
+  const auto enough = static_cast<std::size_t>(std::max(least, 1));
   std::vector<std::uint8_t> seen(kept.size(), 0);
   std::vector<std::size_t> patch;
+  bool is_large = false;
   const auto width = static_cast<std::size_t>(grid.cols);
   const auto visit_cell = [&](std::size_t cell) {
     if ((cells[cell] & kBoth) == 0) {
       return;
     }
     for (const std::size_t i : {cell, cell + 1, cell + width, cell + width + 1}) {
-      if (kept[i] != 0 && seen[i] == 0) {
-        seen[i] = 1;
+      if (kept[i] == 0) {
+        continue;
+      }
+      if (seen[i] == 0) {
+        seen[i] = kInSmall;
         patch.push_back(i);
       }
+      is_large = is_large || seen[i] == kInLarge;
     }
   };
+  // A patch is followed until it is large enough, or comes to what is known to be.
   for (std::size_t start = 0; start < kept.size(); ++start) {
     if (kept[start] == 0 || starts[start] == 0 || seen[start] != 0) {
       continue;
     }
     patch.assign(1, start);
-    seen[start] = 1;
-    for (std::size_t at = 0; at < patch.size(); ++at) {
+    seen[start] = kInSmall;
+    is_large = enough == 1;
+    for (std::size_t at = 0; at < patch.size() && !is_large; ++at) {
       const std::size_t i = patch[at];
       const std::size_t col = i % width;
       if (i >= width && col > 0) {
@@ -91,11 +99,11 @@ void remove_specks(std::vector<std::uint8_t>& kept, const std::vector<std::uint8
       if (i + width < kept.size() && col + 1 < width) {
         visit_cell(i);
       }
+      is_large = is_large || patch.size() >= enough;
     }
-    if (patch.size() < static_cast<std::size_t>(least)) {
-      for (const std::size_t i : patch) {
-        kept[i] = 0;
-      }
+    for (const std::size_t i : patch) {
+      seen[i] = is_large ? kInLarge : kInSmall;
+      kept[i] = is_large ? kept[i] : 0;
     }
   }
 }

@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <bit>
 #include <cmath>
 #include <functional>
@@ -128,10 +129,20 @@ class FaceCells {
           }
         },
         4096);
+    // Which of two cells gets the slot that both ask for depends on who comes first; what is found does not.
     slots_.assign(std::bit_ceil(2 * cells_.size() + 16), kNone);
-    for (std::size_t c = 0; c < cells_.size(); ++c) {
-      slots_[slot_of(cells_[c].key)] = static_cast<std::uint32_t>(c);
-    }
+    parallel_for_each_index(
+        cells_.size(),
+        [&](std::size_t c) {
+          std::size_t slot = first_slot_of(cells_[c].key);
+          std::uint32_t none = kNone;
+          while (!std::atomic_ref(slots_[slot]).compare_exchange_strong(none, static_cast<std::uint32_t>(c),
+                                                                        std::memory_order_relaxed)) {
+            none = kNone;
+            slot = (slot + 1) & (slots_.size() - 1);
+          }
+        },
+        4096);
   }
 
   /// The cells, this one and those behind it, in which something may touch what it holds.
@@ -176,10 +187,13 @@ class FaceCells {
            static_cast<std::uint64_t>(cell[2]) << (2 * kAxisBits) |
            static_cast<std::uint64_t>(cell[1]) << kAxisBits | static_cast<std::uint64_t>(cell[0]);
   }
-  [[nodiscard]] std::size_t slot_of(std::uint64_t key) const {
+  [[nodiscard]] std::size_t first_slot_of(std::uint64_t key) const {
     std::uint64_t mixed = key * 0x9e3779b97f4a7c15ULL;
     mixed ^= mixed >> 32U;
-    std::size_t slot = mixed & (slots_.size() - 1);
+    return mixed & (slots_.size() - 1);
+  }
+  [[nodiscard]] std::size_t slot_of(std::uint64_t key) const {
+    std::size_t slot = first_slot_of(key);
     while (slots_[slot] != kNone && cells_[slots_[slot]].key != key) {
       slot = (slot + 1) & (slots_.size() - 1);
     }

@@ -22,6 +22,7 @@
 
 #include "bench/support/simulated_views.h"
 #include "bench/support/statistics.h"
+#include "core/heap.h"
 #include "core/stage_times.h"
 #include "formats/grid_ply.h"
 #include "formats/poses_json.h"
@@ -173,6 +174,7 @@ int measure(double millions, int scans, int repeat) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  map_large_blocks();
   std::vector<double> millions{1.0};
   int scans = 12;
   int repeat = 1;

@@ -2,7 +2,8 @@
 // Copyright The Dubsar developers
 // The program's own operator new: arrays of megabytes go into files when memory is short
 // (core/file_blocks.h), whatever container holds them and whichever stage asks. Everything else is malloc's,
-// as without it.
+// what is large on huge pages where the system has them: much of the time of a large stitch went to taking
+// page after page.
 //
 // Only of the program `dubsar`: a library leaves the operators to whoever links it, and the sanitizers bring
 // their own.
@@ -11,6 +12,7 @@
 #include <new>
 
 #include "core/file_blocks.h"
+#include "core/huge_pages.h"
 
 namespace {
 
@@ -21,9 +23,11 @@ void* take(std::size_t size, std::size_t alignment) noexcept {
     }
   }
   const std::size_t least = size == 0 ? 1 : size;
-  return alignment <= alignof(std::max_align_t)
-             ? std::malloc(least)
-             : std::aligned_alloc(alignment, (least + alignment - 1) / alignment * alignment);
+  void* const block = alignment <= alignof(std::max_align_t)
+                          ? std::malloc(least)
+                          : std::aligned_alloc(alignment, (least + alignment - 1) / alignment * alignment);
+  dubsar::wish_for_huge_pages(block, size);
+  return block;
 }
 
 void* take_or_throw(std::size_t size, std::size_t alignment) {
