@@ -9,6 +9,7 @@
 #include "acquisition/calibration_joint.h"
 #include "acquisition/calibration_laser.h"
 #include "acquisition/calibration_stage.h"
+#include "core/units.h"
 #include "formats/number_text.h"
 
 namespace dubsar {
@@ -86,8 +87,16 @@ Status first_values(const std::vector<CalibrationView>& views, const Intrinsics&
 }
 
 /// Refuses what is worse than the limits, with the reason.
-Status good_enough(const CalibrationOptions& options, const JointErrors& errors, const CameraModel& camera) {
+Status good_enough(const CalibrationOptions& options, const JointErrors& errors, const JointState& state) {
+  const CameraModel& camera = state.camera;
   const auto refuse = [](const std::string& what, const char* mend) { return bad_input({}, what, mend); };
+  if (errors.stage_rms_px >
+      options.most_stage_px) {  // first, for it spoils the corners of all boards together
+    return refuse("the board on the stage is off by " + rounded(errors.stage_rms_px) +
+                      " px from where the stage puts it, more than " + rounded(options.most_stage_px),
+                  "see that the board lay still on the stage, and that its pictures are named with the right "
+                  "positions");
+  }
   if (errors.corner_rms_px > options.most_corner_px) {
     return refuse(
         "corners are off by " + rounded(errors.corner_rms_px) + " px, more than " +
@@ -108,6 +117,12 @@ Status good_enough(const CalibrationOptions& options, const JointErrors& errors,
   if (1e3 * errors.volume_sigma_mm > options.most_volume_sigma_um) {
     return refuse("points would be known to " + rounded(1e3 * errors.volume_sigma_mm) + " µm only",
                   "show the stripe on the board near and far, left and right");
+  }
+  if (state.has_stage && state.motion.kind == MotionKind::kTurntable &&
+      errors.axis_sigma_rad > options.most_turntable_axis_rad) {
+    return refuse(
+        "the turntable's axis is known to " + rounded(deg_from_rad(errors.axis_sigma_rad)) + "° only",
+        "turn the board on the turntable as far to either side as the camera still sees it");
   }
   return {};
 }
@@ -133,7 +148,7 @@ Result<CalibrationReport> calibrate_rig(const std::vector<CalibrationView>& view
   if (!errors) {
     return std::unexpected(errors.error());
   }
-  if (Status fine = good_enough(options, *errors, state.camera); !fine) {
+  if (Status fine = good_enough(options, *errors, state); !fine) {
     return std::unexpected(fine.error());
   }
   CalibrationReport report;

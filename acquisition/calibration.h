@@ -20,9 +20,11 @@ struct CalibrationOptions {
   double plate_margin_mm = 0;  ///< of flat plate around the print, on which the stripe counts too
   /// A calibration worse than these is refused.
   double most_corner_px = 1.0;
+  double most_stage_px = 1.0;  ///< corners of the board on the stage from where the stage puts them
   double most_stripe_px = 1.0;
   double most_focal_share = 0.005;  ///< standard deviation of the focal length over its value
   double most_volume_sigma_um = 50;
+  double most_turntable_axis_rad = 0.0175;  ///< standard deviation of its direction: 1°
   double wanted_mirror_axis_rad =
       0.035;  ///< of a galvanometer: 2°; known less well, it asks for more pictures
 };

@@ -246,6 +246,7 @@ void Refinement::store() {
 JointErrors Refinement::errors() const {
   JointErrors out;
   double corners = 0;
+  double carried_px = 0;
   double carried_mm = 0;
   std::size_t corner_count = 0;
   std::size_t carried_count = 0;
@@ -259,6 +260,7 @@ JointErrors Refinement::errors() const {
       ++corner_count;
       if (x_.carried[k] != 0) {
         const double mm = p.z() / state_.camera.fx_px;
+        carried_px += square;
         carried_mm += square * mm * mm;
         ++carried_count;
       }
@@ -279,6 +281,7 @@ JointErrors Refinement::errors() const {
     return count == 0 ? 0 : std::sqrt(sum / static_cast<double>(count));
   };
   out.corner_rms_px = root(corners, corner_count);
+  out.stage_rms_px = root(carried_px, carried_count);
   out.stage_rms_mm = root(carried_mm, carried_count);
   out.stripe_rms_px = root(px, stripe_count);
   out.stripe_rms_mm = root(mm, stripe_count);

@@ -25,7 +25,8 @@ struct JointErrors {
   double corner_rms_px = 0;
   double stripe_rms_px = 0;
   double stripe_rms_mm = 0;
-  double stage_rms_mm = 0;  ///< corners of fixed boards from where the stage puts them
+  double stage_rms_px = 0;  ///< corners of fixed boards from where the stage puts them
+  double stage_rms_mm = 0;
   double focal_sigma_px = 0;
   /// Of a point in the measuring volume against the others: the largest, after the rigid motion of the whole
   /// that no measurement can see has been taken out. Contains camera, laser plane and a linear stage.

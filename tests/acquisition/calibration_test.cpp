@@ -279,6 +279,30 @@ TEST(Calibration, RefusesWithTheReason) {
   EXPECT_NE(reason(moved, std::nullopt).find("laser"), std::string::npos);
 }
 
+TEST(Calibration, RefusesAStageThatTheBoardDidNotFollow) {
+  const RigCalibration truth = truth_of(MotionKind::kTurntable);
+  CalibrationOptions options = options_for(MotionKind::kTurntable);
+  const auto refused = [&](const std::vector<CalibrationView>& on_stage) {
+    std::vector<CalibrationView> views = held_views(truth);
+    views.insert(views.end(), on_stage.begin(), on_stage.end());
+    const Result<CalibrationReport> report = calibrate_rig(views, options);
+    return report ? std::string() : report.error().line();
+  };
+  // Somebody touched the board: the last two pictures show it half a millimetre away.
+  std::vector<CalibrationView> touched = stage_views(truth, {-0.3, -0.15, 0, 0.15, 0.3});
+  for (std::size_t i = 3; i < touched.size(); ++i) {
+    for (Eigen::Vector2d& corner : touched[i].board.corners_px) {
+      corner.x() += 7;
+    }
+  }
+  EXPECT_NE(refused(touched).find("the board on the stage is off by"), std::string::npos) << refused(touched);
+  // A degree in all says little of where the axis points; corners as good as these say enough for the
+  // default.
+  options.most_turntable_axis_rad = 0.002;
+  const std::string little = refused(stage_views(truth, {-0.011, 0, 0.011}));
+  EXPECT_NE(little.find("the turntable's axis is known to"), std::string::npos) << little;
+}
+
 /// Of a laser that stands beside the camera the stripe runs down the picture.
 TEST(Calibration, AsksForTheSideThatAStripeRunningDownDidNotReach) {
   std::vector<CalibrationView> views = held_views();
