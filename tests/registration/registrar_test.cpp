@@ -285,6 +285,17 @@ TEST(Registrar, WhatOverlapsStaysWhenTheScanThatJoinedItIsTakenOut) {
   EXPECT_THAT(scans.registered(), ElementsAre(0, 1));
 }
 
+TEST(Registrar, APoseThatLeadsNowhereIsToldAndABetterOneBringsAllBack) {
+  Bridged scans(0.5);
+  const RigidTransform before = scans.registrar.poses()[2].model_from_scanner;
+  EXPECT_FALSE(scans.registrar.set_pose(2, pose_of(0, 90, 0, {40, 40, 0}), false));
+  EXPECT_THAT(scans.registered(), ElementsAre(0));
+  EXPECT_FALSE(scans.registrar.poses()[1].reason.empty());
+  EXPECT_FALSE(scans.registrar.poses()[2].reason.empty());
+  EXPECT_TRUE(scans.registrar.set_pose(2, before, false));
+  EXPECT_THAT(scans.registered(), ElementsAre(0, 1, 2));
+}
+
 TEST(Registrar, TakesTheStagesWordWhereNothingOverlaps) {
   const auto surface = bumpy(19, 120);
   FieldScan left;
