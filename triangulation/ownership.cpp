@@ -18,8 +18,8 @@ constexpr std::uint8_t kBoth = kCellFirst | kCellSecond;
 constexpr std::size_t kGrain = 2048;
 constexpr std::size_t kContestGrain = 64;  ///< nodes: where there is a contest, each is much work
 
-/// Room for the averaged samples of one scan after another [rows*cols]. Only those of cells at stake are laid;
-/// what an earlier scan left elsewhere is not looked at.
+/// Room for the averaged samples of one scan after another [rows*cols]. Only those of cells at stake are
+/// laid; what an earlier scan left elsewhere is not looked at.
 struct LaidSamples {
   std::vector<Vector3f> points, normals;
   std::vector<std::uint8_t> at_stake;  ///< 1 for the cells that have a new corner
@@ -44,9 +44,9 @@ void LaidSamples::lay(const OwnedScan& scan, std::span<const std::uint8_t> kept,
   parallel_for_each_index(
       count,
       [&](std::size_t i) {
-        const bool is_corner = (at_stake[i] | (i >= 1 ? at_stake[i - 1] : 0) |
-                                (i >= width ? at_stake[i - width] : 0) |
-                                (i > width ? at_stake[i - width - 1] : 0)) != 0;
+        const bool is_corner =
+            (at_stake[i] | (i >= 1 ? at_stake[i - 1] : 0) | (i >= width ? at_stake[i - width] : 0) |
+             (i > width ? at_stake[i - width - 1] : 0)) != 0;
         if (is_corner && kept[i] != 0) {
           points[i] = scan.fused->point(i);
           normals[i] = scan.surface->normal(i);

@@ -136,8 +136,9 @@ class FaceCells {
         [&](std::size_t c) {
           std::size_t slot = first_slot_of(cells_[c].key);
           std::uint32_t none = kNone;
-          while (!std::atomic_ref(slots_[slot]).compare_exchange_strong(none, static_cast<std::uint32_t>(c),
-                                                                        std::memory_order_relaxed)) {
+          while (
+              !std::atomic_ref(slots_[slot])
+                   .compare_exchange_strong(none, static_cast<std::uint32_t>(c), std::memory_order_relaxed)) {
             none = kNone;
             slot = (slot + 1) & (slots_.size() - 1);
           }
