@@ -6,8 +6,8 @@
 //   dubsar-meshers bunny FOLDER
 //
 // Vertices count within two µ of a sample: what a program adds where nothing was scanned is neither for nor
-// against it. The peers that CMake found stand in the same table, and so does seed 001's own stitching, to
-// the letter (bench/support/link_stitch.h). Columns: non-manifold edges and vertices, faces that are turned
+// against it. The peers that CMake found stand in the same table, and so does seed 001's own stitching
+// (bench/support/link_stitch.h). Columns: non-manifold edges and vertices, faces that are turned
 // against a neighbour, parts, boundary, pairs of faces that cut each other, faces with an angle below 10°.
 #include "bench/accuracy/meshers.h"
 
