@@ -24,19 +24,17 @@ struct LinkMerge {
   WeakEdgeCounts edges;
 };
 
-/// Stitches meshes M and M' as seed 001, 4 does, read like this:
-///   - P is paired with the vertex P' of the other mesh closest to it. The less reliable of the two is no
-///   vertex
-///     of the result: the other stands for it in its links. Of two boundary points, or two others, the one
-///     with the higher R is the more reliable; a boundary point never is beside one that is none.
-///   - The more reliable one moves along its ray to the average of itself and where the ray meets the other
-///     mesh, weighted by R. What is merged keeps the R of its more reliable vertex for the links, and the sum
-///     for averages to come.
-///   - An edge that both meshes have stays. One that only one has stays where both ends are of that mesh,
-///   goes
-///     where both are of the other, and is weak between the two (the seed's cases 1 and 2; they say the same
-///     from both ends). Then comes the second pass (weak_edges).
-///   - Triangles are read off the links that are left (link_faces). What those leave open stays open.
+/// Stitches meshes M and M' as seed 001, 4 does, read like this. P is paired with the vertex P' of the other
+/// mesh closest to it. The less reliable of the two is no vertex of the result: the other stands for it in
+/// its links. Of two boundary points, or two others, the one with the higher R is the more reliable; a
+/// boundary point never is beside one that is none. The more reliable one moves along its ray to the average
+/// of itself and where the ray meets the other mesh, weighted by R. What is merged keeps the R of its more
+/// reliable vertex for the links, and the sum for averages to come.
+///
+/// An edge that both meshes have stays. One that only one has stays where both ends are of that mesh, goes
+/// where both are of the other, and is weak between the two (the seed's cases 1 and 2; they say the same from
+/// both ends). Then comes the second pass (weak_edges). Triangles are read off the links that are left
+/// (link_faces); what those leave open stays open.
 [[nodiscard]] LinkMerge merge_links(const LinkMesh& m, const LinkMesh& m2, const LinkMergeOptions& options);
 
 }  // namespace dubsar::bench
