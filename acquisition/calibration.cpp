@@ -90,8 +90,8 @@ Status first_values(const std::vector<CalibrationView>& views, const Intrinsics&
 Status good_enough(const CalibrationOptions& options, const JointErrors& errors, const JointState& state) {
   const CameraModel& camera = state.camera;
   const auto refuse = [](const std::string& what, const char* mend) { return bad_input({}, what, mend); };
-  if (errors.stage_rms_px >
-      options.most_stage_px) {  // first, for it spoils the corners of all boards together
+  // The stage first, for a board that slid on it spoils the corners of all boards together.
+  if (errors.stage_rms_px > options.most_stage_px) {
     return refuse("the board on the stage is off by " + rounded(errors.stage_rms_px) +
                       " px from where the stage puts it, more than " + rounded(options.most_stage_px),
                   "see that the board lay still on the stage, and that its pictures are named with the right "
