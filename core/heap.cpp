@@ -8,6 +8,8 @@
 #include <malloc.h>
 #endif
 
+#include "core/kept_blocks.h"
+
 namespace dubsar {
 
 void map_large_blocks() {
@@ -19,6 +21,7 @@ void map_large_blocks() {
 }
 
 void return_unused_memory() {
+  kept_blocks().free_all();
 #if defined(__GLIBC__)
   malloc_trim(0);
 #endif

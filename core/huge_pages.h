@@ -12,11 +12,16 @@ namespace dubsar {
 /// to back, and much of the time would go to taking page after page.
 void wish_for_huge_pages(void* memory, std::size_t bytes);
 
+/// Takes the pages of memory that was not touched yet from the system, by all cores at once: it is the
+/// clearing of them that takes long. What it held is not kept.
+void touch_in_parallel(void* memory, std::size_t bytes);
+
 /// resize() of an empty array, in huge pages where there are any.
 template <class T>
 void resize_in_huge_pages(std::vector<T>& array, std::size_t size) {
   array.reserve(size);
   wish_for_huge_pages(array.data(), size * sizeof(T));
+  touch_in_parallel(array.data(), size * sizeof(T));
   array.resize(size);
 }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 
+#include "core/huge_pages.h"
 #include "core/parallel.h"
 #include "triangulation/patch_shape.h"
 
@@ -200,14 +201,19 @@ Draft lay_patches(const std::vector<OwnedScan>& scans) {
   }
   const std::size_t vertices = draft.first_vertex.back();
   Mesh& mesh = draft.mesh;
-  mesh.positions.resize(vertices);
-  mesh.normals.resize(vertices);
-  mesh.reliability.resize(vertices);
-  mesh.sigma_mm.resize(vertices);
-  mesh.scans.resize(vertices);
-  mesh.flags.resize(vertices);
-  draft.near_rim.resize(vertices);
-  mesh.faces.resize(draft.first_face.back());
+  // Seams and gaps add some: no array is copied for it.
+  const auto lay_out = [](auto& array, std::size_t size) {
+    array.reserve(size + size / 8);
+    resize_in_huge_pages(array, size);
+  };
+  lay_out(mesh.positions, vertices);
+  lay_out(mesh.normals, vertices);
+  lay_out(mesh.reliability, vertices);
+  lay_out(mesh.sigma_mm, vertices);
+  lay_out(mesh.scans, vertices);
+  lay_out(mesh.flags, vertices);
+  lay_out(draft.near_rim, vertices);
+  lay_out(mesh.faces, draft.first_face.back());
   for (std::size_t k = 0; k < patches.size(); ++k) {
     patches[k].lay(draft.first_vertex[k], draft.first_face[k], draft);
   }

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "core/disjoint_sets.h"
+#include "core/huge_pages.h"
 #include "core/parallel.h"
 
 namespace dubsar {
@@ -33,7 +34,7 @@ HalfEdges::HalfEdges(std::span<const Triangle> faces, std::size_t vertex_count,
   for (std::size_t v = 0; v < vertex_count; ++v) {
     start_[v + 1] += start_[v];
   }
-  out_.resize(start_.back());
+  resize_in_huge_pages(out_, start_.back());
   std::vector<std::uint32_t> next(start_.begin(), start_.end() - 1);
   parallel_ranges(vertex_count, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = 0; i < faces.size(); ++i) {

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <functional>
 
+#include "core/huge_pages.h"
 #include "core/parallel.h"
 #include "core/parallel_sort.h"
 #include "triangulation/face_cut.h"
@@ -35,7 +36,7 @@ class FaceCells {
     for (int level = 0; level <= kMostLevel; ++level) {
       cell_mm_[static_cast<std::size_t>(level)] = std::ldexp(smallest_mm, level);
     }
-    entries_.resize(faces.size());
+    resize_in_huge_pages(entries_, faces.size());
     parallel_for_each_index(
         faces.size(),
         [&](std::size_t k) {
@@ -45,7 +46,7 @@ class FaceCells {
         },
         4096);
     parallel_sort(entries_.begin(), entries_.end(), std::less<>{});
-    boxes_.resize(entries_.size());
+    resize_in_huge_pages(boxes_, entries_.size());
     parts_.resize(part_of_face.empty() ? 0 : entries_.size());
     parallel_for_each_index(
         entries_.size(),

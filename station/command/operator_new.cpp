@@ -2,8 +2,8 @@
 // Copyright The Dubsar developers
 // The program's own operator new: arrays of megabytes go into files when memory is short
 // (core/file_blocks.h), whatever container holds them and whichever stage asks. Everything else is malloc's,
-// what is large on huge pages where the system has them: much of the time of a large stitch went to taking
-// page after page.
+// what is large on huge pages where the system has them, and kept for the next who asks for as much
+// (core/kept_blocks.h): much of the time of a large stitch went to taking page after page.
 //
 // Only of the program `dubsar`: a library leaves the operators to whoever links it, and the sanitizers bring
 // their own.
@@ -13,20 +13,32 @@
 
 #include "core/file_blocks.h"
 #include "core/huge_pages.h"
+#include "core/kept_blocks.h"
 
 namespace {
 
 void* take(std::size_t size, std::size_t alignment) noexcept {
+  const bool is_plain = alignment <= alignof(std::max_align_t);
+  const bool is_large = size >= dubsar::KeptBlocks::kLeastBlock;
+  if (is_large && is_plain) {
+    if (void* const block = dubsar::kept_blocks().take(size)) {
+      return block;
+    }
+  }
   if (size >= dubsar::kLeastFileBlock && dubsar::belongs_in_file(size)) {
+    dubsar::kept_blocks().free_all();
     if (void* const block = dubsar::allocate_file_block(size, alignment)) {
       return block;
     }
   }
   const std::size_t least = size == 0 ? 1 : size;
-  void* const block = alignment <= alignof(std::max_align_t)
+  void* const block = is_plain
                           ? std::malloc(least)
                           : std::aligned_alloc(alignment, (least + alignment - 1) / alignment * alignment);
-  dubsar::wish_for_huge_pages(block, size);
+  if (is_large && block != nullptr) {
+    dubsar::wish_for_huge_pages(block, size);
+    dubsar::kept_blocks().count(block);
+  }
   return block;
 }
 
@@ -44,7 +56,7 @@ void* take_or_throw(std::size_t size, std::size_t alignment) {
 }
 
 void give_back(void* memory) noexcept {
-  if (!dubsar::free_file_block(memory)) {
+  if (!dubsar::free_file_block(memory) && !dubsar::kept_blocks().keep(memory)) {
     std::free(memory);
   }
 }
