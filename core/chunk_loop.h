@@ -19,6 +19,8 @@
 
 #include <cstddef>
 
+#include "core/yielding_loops.h"
+
 namespace dubsar {
 
 #ifdef DUBSAR_THREAD_SANITIZER
@@ -36,7 +38,9 @@ void for_each_chunk(std::size_t chunks, const Body& body) {
   std::atomic<std::size_t> next{0};
   std::mutex mutex;
   std::exception_ptr thrown;
+  const LoopHelpers helpers;
   const auto work = [&] {
+    helpers.let_yield();
     try {
       for (std::size_t chunk = next++; chunk < chunks; chunk = next++) {
         body(chunk);
@@ -67,7 +71,11 @@ inline std::size_t chunks_at_once() {
 /// body(chunk) for each of [0, chunks), in any order, several at once.
 template <class Body>
 void for_each_chunk(std::size_t chunks, const Body& body) {
-  tbb::parallel_for(std::size_t{0}, chunks, body);
+  const LoopHelpers helpers;
+  tbb::parallel_for(std::size_t{0}, chunks, [&](std::size_t chunk) {
+    helpers.let_yield();
+    body(chunk);
+  });
 }
 
 #endif

@@ -68,7 +68,8 @@ std::size_t KeptBlocks::kept_bytes() noexcept {
 void KeptBlocks::take_out(std::size_t k) {
   kept_bytes_ -= kept_[k].bytes;
   std::copy(kept_.begin() + static_cast<std::ptrdiff_t>(k) + 1,
-            kept_.begin() + static_cast<std::ptrdiff_t>(size_), kept_.begin() + static_cast<std::ptrdiff_t>(k));
+            kept_.begin() + static_cast<std::ptrdiff_t>(size_),
+            kept_.begin() + static_cast<std::ptrdiff_t>(k));
   --size_;
 }
 

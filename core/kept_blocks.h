@@ -10,8 +10,9 @@
 
 namespace dubsar {
 
-/// Large blocks of malloc's that were let go of, kept for whoever next asks for about as much: what comes from
-/// the system is cleared page by page, and a stitch takes and lets go of much the same arrays again and again.
+/// Large blocks of malloc's that were let go of, kept for whoever next asks for about as much: what comes
+/// from the system is cleared page by page, and a stitch takes and lets go of much the same arrays again and
+/// again.
 ///
 /// What is kept and what is in use never exceed the most that was in use at once, so that no program needs
 /// more memory for it; nor is more than kMostKept kept, which a program has that has gone on to other work.

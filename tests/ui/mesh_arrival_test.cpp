@@ -166,8 +166,12 @@ TEST_F(Arriving, ACardWithoutAnyRoomShowsNothing) {
     const SmallCard card(1000);
     EXPECT_TRUE(arrive()->coarser.empty());
     EXPECT_TRUE(view_->empty());
-    view_->draw(camera_, look_, kWidth, kHeight);  // in a hurry, then at rest
-    EXPECT_FALSE(view_->draw(camera_, look_, kWidth, kHeight));
+    constexpr int kMost = 10;
+    int pictures = 0;
+    while (view_->draw(camera_, look_, kWidth, kHeight) && pictures < kMost) {
+      ++pictures;
+    }
+    EXPECT_LT(pictures, kMost) << "it comes to rest";
   }
   EXPECT_EQ(arrive(), whole_);
 }

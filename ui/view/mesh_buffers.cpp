@@ -48,9 +48,12 @@ MeshBuffers::MeshBuffers(const ShownMesh& mesh)
       whole_(mesh.instead_of_faces == 0) {
   static_cast<void>(card_has_refused());  // what was refused before is no concern of this mesh
   const auto add = [&](GLenum target, std::size_t bytes) {
-    buffers_.push_back(new_buffer(target, bytes, nullptr));
+    GLuint& buffer = buffers_.emplace_back();
+    glGenBuffers(1, &buffer);
+    glBindBuffer(target, buffer);
+    rooms_.push_back({buffer, bytes});
     bytes_ += bytes;
-    return buffers_.back();
+    return buffer;
   };
   const auto put = [&](GLuint buffer, std::size_t at, const auto& of) {
     parts_.push_back({buffer, at, reinterpret_cast<const std::byte*>(of.data()), of.size() * sizeof(of[0])});
@@ -76,23 +79,34 @@ MeshBuffers::MeshBuffers(const ShownMesh& mesh)
   }
   // One buffer for the faces of all levels, the whole surface first.
   const GLuint corners = add(GL_ELEMENT_ARRAY_BUFFER, (faces_ + coarser) * 12);
-  const GLuint from = add(GL_TEXTURE_BUFFER, coarser * 4);
+  made_of_buffer_ = add(GL_TEXTURE_BUFFER, coarser * 4);
   put(corners, 0, mesh.faces);
   for (std::size_t k = 0; k < mesh.coarser.size(); ++k) {
     const DetailLevel& level = mesh.coarser[k].detail;
     put(corners, (faces_ + level_first_[k]) * 12, level.faces);
-    put(from, level_first_[k] * 4, level.from);
+    put(made_of_buffer_, level_first_[k] * 4, level.from);
   }
   glGenTextures(1, &made_of_);
-  glBindTexture(GL_TEXTURE_BUFFER, made_of_);
-  glTexBuffer(GL_TEXTURE_BUFFER, GL_R32UI, from);
   glBindVertexArray(0);
-  refused_ = card_has_refused();
+}
+
+void MeshBuffers::take_room(const Room& room) const {
+  glBindBuffer(GL_COPY_WRITE_BUFFER, room.buffer);
+  glBufferData(GL_COPY_WRITE_BUFFER, static_cast<GLsizeiptr>(room.bytes), nullptr, GL_STATIC_DRAW);
+  if (room.buffer == made_of_buffer_) {
+    glBindTexture(GL_TEXTURE_BUFFER, made_of_);
+    glTexBuffer(GL_TEXTURE_BUFFER, GL_R32UI, made_of_buffer_);
+  }
 }
 
 void MeshBuffers::upload() {
   const auto began = std::chrono::steady_clock::now();
-  while (!parts_.empty() && std::chrono::steady_clock::now() - began < kUploadFor) {
+  while (!is_uploaded() && std::chrono::steady_clock::now() - began < kUploadFor) {
+    if (!rooms_.empty()) {
+      take_room(rooms_.back());
+      rooms_.pop_back();
+      continue;
+    }
     Part& part = parts_.back();
     const std::size_t bytes = std::min(part.bytes, kUploadAtOnce);
     if (bytes > 0) {

@@ -15,8 +15,8 @@ namespace dubsar::ui {
 /// A mesh in the memory of the graphics card: each vertex once, faces by index. Main thread.
 class MeshBuffers {
  public:
-  /// Takes the memory; upload() fills it from `mesh`, whose numbers must stay where they are until it is
-  /// done.
+  /// Says what it will hold; upload() takes the memory for it and fills it from `mesh`, whose numbers must
+  /// stay where they are until it is done.
   explicit MeshBuffers(const ShownMesh& mesh);
   ~MeshBuffers();
   MeshBuffers(const MeshBuffers&) = delete;
@@ -24,9 +24,10 @@ class MeshBuffers {
 
   /// The graphics card has no room for it; it is not to be drawn then.
   [[nodiscard]] bool is_refused() const { return refused_; }
-  /// Some more of the mesh, so much that a frame stays short.
+  /// Some more of the mesh, so much that a frame stays short. (Where the processor draws, taking the memory
+  /// is what takes long.)
   void upload();
-  [[nodiscard]] bool is_uploaded() const { return parts_.empty(); }
+  [[nodiscard]] bool is_uploaded() const { return rooms_.empty() && parts_.empty(); }
 
   /// A number per vertex, [V], for the overlay that shows numbers.
   void set_values(const std::vector<float>& values);
@@ -58,9 +59,16 @@ class MeshBuffers {
     const std::byte* data = nullptr;
     std::size_t bytes = 0;
   };
+  struct Room {  // that the card has not been asked for yet
+    unsigned buffer = 0;
+    std::size_t bytes = 0;
+  };
+  void take_room(const Room& room) const;
+  std::vector<Room> rooms_;
   std::vector<Part> parts_;
   unsigned array_ = 0;
   unsigned made_of_ = 0;
+  unsigned made_of_buffer_ = 0;
   std::vector<unsigned> buffers_;
   std::vector<std::size_t> level_first_;  ///< faces of coarser levels before each
   std::size_t vertices_, faces_;

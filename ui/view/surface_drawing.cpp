@@ -50,6 +50,7 @@ bool SurfaceView::draw_in_motion(const Scene& scene) {
   glFinish();
   const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - began;
   next_block_ = 0;
+  faces_to_come_ = true;
   whole_ = all && !slow_;
   if (spent.count() > kSlowFrameS) {
     faces_in_motion_ = slow_ ? std::max(kFacesInMotion, faces_in_motion_ / 2) : faces_in_motion_;
@@ -71,8 +72,8 @@ bool SurfaceView::draw_in_motion(const Scene& scene) {
 bool SurfaceView::add_faces(Layer& layer, const Scene& scene, std::size_t& next_block) {
   const float aspect = static_cast<float>(scene.width) / static_cast<float>(scene.height);
   const Eigen::Matrix4f clip_from_model = scene.camera.clip_from_model(aspect);
-  if (next_block == 0) {
-    clear(layer, scene);
+  if (next_block == 0 && clear(layer, scene)) {
+    return true;  // taking the memory took as long as a piece
   }
   const std::span<const FaceBlock> blocks = levels_.back();
   // What is not seen casts shadows.
@@ -94,8 +95,9 @@ bool SurfaceView::add_faces(Layer& layer, const Scene& scene, std::size_t& next_
 bool SurfaceView::draw_more(const Scene& scene) {
   Layer& layer = layers_[static_cast<std::size_t>(1 - shown_layer_)];
   faces_drawn_ = next_block_ == 0 ? 0 : faces_drawn_;
-  if (add_faces(layer, scene, next_block_)) {
-    return true;
+  if (faces_to_come_) {
+    faces_to_come_ = add_faces(layer, scene, next_block_);
+    return true;  // the light in a frame of its own: over all pixels it takes as long as a piece
   }
   draw_marks(layer, scene);
   light(layer, scene, picture_);
@@ -152,6 +154,7 @@ void SurfaceView::draw_level(std::size_t level, const OrbitCamera& camera, const
   scene_ = scene;
   dirty_ = false;
   next_block_ = 0;
+  faces_to_come_ = true;
   whole_ = level + 1 == levels_.size();
 }
 

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "ui/view/clay_sphere.h"
 #include "ui/view/face_runs.h"
@@ -134,17 +135,18 @@ Eigen::Matrix4f SurfaceView::light_clip_from_model(const Scene& scene) const {
   return lamp.clip_from_model(1.0F);
 }
 
-void SurfaceView::clear(Layer& layer, const Scene& scene) const {
+bool SurfaceView::clear(Layer& layer, const Scene& scene) const {
   glDepthMask(GL_TRUE);
-  layer.target.resize(scene.width, scene.height);
+  bool resized = layer.target.resize(scene.width, scene.height);
   layer.target.bind();
   glClearColor(0, 0, 0, 0);
   glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
   if (scene.look.lamp && scene.look.shadows && !layer.shadow_stands) {
-    layer.shadow.resize(kShadowSize, kShadowSize);
+    resized = layer.shadow.resize(kShadowSize, kShadowSize) || resized;
     layer.shadow.bind();
     glClear(GL_DEPTH_BUFFER_BIT);
   }
+  return resized;
 }
 
 void SurfaceView::begin_surface(const Scene& scene, const Layer& layer) {
@@ -192,24 +194,29 @@ void SurfaceView::draw_geometry(Layer& layer, const Scene& scene, std::size_t le
     return;
   }
   const bool whole = level + 1 == levels_.size();
-  const auto draw = [&](const FaceRun& run) {
-    if (whole) {
-      mesh_->draw_faces(run.first, run.count);
-    } else {
-      mesh_->draw_level(level, run.first, run.count);
+  const auto draw = [&](std::span<const FaceRun> runs, const std::function<void(const FaceRun&)>& prepare) {
+    for (const FaceRun& run : in_pieces(runs, faces_a_draw_)) {
+      prepare(run);
+      if (whole) {
+        mesh_->draw_faces(run.first, run.count);
+      } else {
+        mesh_->draw_level(level, run.first, run.count);
+      }
+      if (faces_a_draw_ != kAllFaces) {
+        glFlush();
+      }
     }
   };
-  for (const FaceRun& run : seen_runs(blocks, scene.camera.clip_from_model(aspect))) {
-    show_selection(level, run.first);
-    draw(run);
-    faces_drawn_ += run.count;
-  }
+  const std::vector<FaceRun> seen = seen_runs(blocks, scene.camera.clip_from_model(aspect));
+  draw(seen, [&](const FaceRun& run) { show_selection(level, run.first); });
+  faces_drawn_ += faces_in(seen);
   if (scene.look.lamp && scene.look.shadows && !layer.shadow_stands && !blocks.empty()) {
     layer.shadow.bind();
     shadow_.use();
     shadow_.set("clip_from_model", light_clip_from_model(scene));
     shadow_.set("towards_viewer", 0.0F);
-    draw({blocks.front().first, blocks.back().first + blocks.back().count - blocks.front().first});
+    const FaceRun all{blocks.front().first, blocks.back().first + blocks.back().count - blocks.front().first};
+    draw({&all, 1}, [](const FaceRun&) {});
   }
 }
 

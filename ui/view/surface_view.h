@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "ui/gl/frame_target.h"
+#include "ui/gl/gl_window.h"
 #include "ui/gl/shader_program.h"
 #include "ui/view/mesh_buffers.h"
 #include "ui/view/mesh_selecting.h"
@@ -117,7 +118,7 @@ class SurfaceView {
   };
   void warm_up();
   void take_shown(const ShownMesh& mesh);
-  void clear(Layer& layer, const Scene& scene) const;
+  bool clear(Layer& layer, const Scene& scene) const;  ///< true when it had another size before
   void begin_surface(const Scene& scene, const Layer& layer);
   void draw_geometry(Layer& layer, const Scene& scene, std::size_t level, std::span<const FaceBlock> blocks);
   bool draw_in_motion(const Scene& scene);
@@ -149,10 +150,15 @@ class SurfaceView {
   std::size_t still_block_ = 0;  ///< next of it
   bool dirty_ = true;            ///< mesh, points or values have changed
   std::size_t next_block_ = 0;   ///< of the whole picture that comes together
+  bool faces_to_come_ = true;    ///< into it; then the light
   bool whole_ = false;
   bool slow_ = true;  ///< this machine draws slowly; so it is taken until it was seen to be fast
-  PieceSize faces_at_a_time_{80000};
+  PieceSize faces_at_a_time_{40000};
   std::size_t faces_in_motion_ = kFacesInMotion * 2;
+  static constexpr std::size_t kAllFaces = ~std::size_t{0};
+  /// Given to the driver at once: few where the processor draws. Mesa gathers all that comes between two
+  /// flushes, up to tens of megabytes, and twice the faces at once were seen to take five times as long.
+  std::size_t faces_a_draw_ = is_drawn_by_processor() ? 5120 : kAllFaces;
   std::size_t level_drawn_ = 0;
   std::size_t faces_drawn_ = 0;
 };
