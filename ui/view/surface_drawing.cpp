@@ -41,12 +41,13 @@ bool SurfaceView::draw_in_motion(const Scene& scene) {
   const bool all = level_drawn_ + 1 == levels_.size();
   glFinish();  // what is under way from before, such as a new mesh, is no fault of this picture
   const auto began = std::chrono::steady_clock::now();
-  Layer& layer = layers_[static_cast<std::size_t>(shown_layer_)];
+  shown_layer_ = kInMotion;
+  Layer& layer = layers_[shown_layer_];
   clear(layer, rough);
   faces_drawn_ = 0;
   draw_geometry(layer, rough, level_drawn_, levels_[level_drawn_]);
   draw_marks(layer, rough);
-  light(layer, rough, picture_);
+  light(layer, rough);
   glFinish();
   const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - began;
   next_block_ = 0;
@@ -93,15 +94,15 @@ bool SurfaceView::add_faces(Layer& layer, const Scene& scene, std::size_t& next_
 
 /// Of the picture that is not shown yet.
 bool SurfaceView::draw_more(const Scene& scene) {
-  Layer& layer = layers_[static_cast<std::size_t>(1 - shown_layer_)];
+  Layer& layer = layers_[kAtRest];
   faces_drawn_ = next_block_ == 0 ? 0 : faces_drawn_;
   if (faces_to_come_) {
     faces_to_come_ = add_faces(layer, scene, next_block_);
     return true;  // the light in a frame of its own: over all pixels it takes as long as a piece
   }
   draw_marks(layer, scene);
-  light(layer, scene, picture_);
-  shown_layer_ = 1 - shown_layer_;
+  light(layer, scene);
+  shown_layer_ = kAtRest;
   level_drawn_ = levels_.size() - 1;
   whole_ = true;
   return false;
@@ -128,13 +129,12 @@ bool SurfaceView::draw_still() {
     return true;
   }
   draw_marks(*still_, still_scene_);
-  light(*still_, still_scene_, still_picture_);
+  light(*still_, still_scene_);
   return false;
 }
 
 void SurfaceView::end_still() {
   still_.reset();
-  still_picture_.release();
 }
 
 void SurfaceView::draw_whole(const OrbitCamera& camera, const Look& look, int width, int height) {
@@ -144,13 +144,14 @@ void SurfaceView::draw_whole(const OrbitCamera& camera, const Look& look, int wi
 void SurfaceView::draw_level(std::size_t level, const OrbitCamera& camera, const Look& look, int width,
                              int height) {
   const Scene scene{camera, look, std::max(1, width), std::max(1, height)};
-  Layer& layer = layers_[static_cast<std::size_t>(shown_layer_)];
+  shown_layer_ = kAtRest;
+  Layer& layer = layers_[shown_layer_];
   clear(layer, scene);
   faces_drawn_ = 0;
   level_drawn_ = level;
   draw_geometry(layer, scene, level, levels_[level]);
   draw_marks(layer, scene);
-  light(layer, scene, picture_);
+  light(layer, scene);
   scene_ = scene;
   dirty_ = false;
   next_block_ = 0;

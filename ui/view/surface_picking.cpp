@@ -48,7 +48,7 @@ bool SurfaceView::select(MeshElement of, const std::vector<Eigen::Vector2f>& cor
     return false;
   }
   const float aspect = static_cast<float>(scene_.width) / static_cast<float>(scene_.height);
-  const Layer& layer = layers_[static_cast<std::size_t>(shown_layer_)];
+  const Layer& layer = shown();
   selection_->begin(scene_.camera.clip_from_model(aspect), polygon_mask(corners, scene_.width, scene_.height),
                     scene_.width, scene_.height, through ? nullptr : &layer.target, step);
   return true;
@@ -94,7 +94,7 @@ void SurfaceView::clear_selection() {
 }
 
 std::optional<Eigen::Vector3f> SurfaceView::point_at(const Eigen::Vector2f& px) const {
-  const Layer& layer = layers_[static_cast<std::size_t>(shown_layer_)];
+  const Layer& layer = shown();
   const int x = static_cast<int>(px.x());
   const int y = scene_.height - 1 - static_cast<int>(px.y());
   if (layer.target.width() != scene_.width || x < 0 || y < 0 || x >= scene_.width || y >= scene_.height) {

@@ -61,7 +61,9 @@ void SurfaceView::warm_up() {
   mesh_.reset();
   levels_ = {{}};
   box_mm_.setEmpty();
-  picture_.release();
+  for (Layer& layer : layers_) {
+    layer.picture.release();
+  }
   whole_ = false;
   faces_drawn_ = 0;
 }
@@ -232,10 +234,10 @@ void SurfaceView::draw_marks(Layer& layer, const Scene& scene) {
   points_->draw();
 }
 
-void SurfaceView::light(const Layer& layer, const Scene& scene, FrameTarget& into) {
+void SurfaceView::light(Layer& layer, const Scene& scene) {
   const float aspect = static_cast<float>(scene.width) / static_cast<float>(scene.height);
-  into.resize(scene.width, scene.height);
-  into.bind();
+  layer.picture.resize(scene.width, scene.height);
+  layer.picture.bind();
   glDisable(GL_DEPTH_TEST);
   glDisable(GL_BLEND);
   glDisable(GL_SCISSOR_TEST);

@@ -69,7 +69,7 @@ class SurfaceView {
   void begin_still(const OrbitCamera& camera, const Look& look, int width, int height, bool same_light);
   /// Some more faces of it. True while more is to come.
   bool draw_still();
-  [[nodiscard]] Image read_still() const { return still_picture_.read(); }
+  [[nodiscard]] Image read_still() const { return still_ ? still_->picture.read() : Image{}; }
   /// Lets go of what it took.
   void end_still();
   /// All of it at once, however long that takes.
@@ -77,8 +77,10 @@ class SurfaceView {
   /// The same in a level of detail, which draw() chooses itself.
   void draw_level(std::size_t level, const OrbitCamera& camera, const Look& look, int width, int height);
   /// The picture; id 0 before the first draw.
-  [[nodiscard]] unsigned texture() const { return picture_.width() > 0 ? picture_.colour(0) : 0; }
-  [[nodiscard]] Image read() const { return picture_.read(); }
+  [[nodiscard]] unsigned texture() const {
+    return shown().picture.width() > 0 ? shown().picture.colour(0) : 0;
+  }
+  [[nodiscard]] Image read() const { return shown().picture.read(); }
   /// False when the mesh has more of them than the graphics driver can number or the card has room for, or is
   /// shown in fewer faces than it has: then none can be selected.
   [[nodiscard]] bool can_select(MeshElement of) const;
@@ -107,7 +109,8 @@ class SurfaceView {
   struct Layer {  // what is seen where
     FrameTarget target{{PixelFormat::kRgba8, PixelFormat::kRgba16f}};
     FrameTarget shadow{{}};
-    bool shadow_stands = false;  ///< from another picture in the same light
+    FrameTarget picture{{PixelFormat::kRgba8}};  ///< of both, lit
+    bool shadow_stands = false;                  ///< from another picture in the same light
   };
   struct Scene {
     OrbitCamera camera;
@@ -116,6 +119,7 @@ class SurfaceView {
     int height = 0;
     bool operator==(const Scene&) const = default;
   };
+  [[nodiscard]] const Layer& shown() const { return layers_[shown_layer_]; }
   void warm_up();
   void take_shown(const ShownMesh& mesh);
   bool clear(Layer& layer, const Scene& scene) const;  ///< true when it had another size before
@@ -127,7 +131,7 @@ class SurfaceView {
   void draw_marks(Layer& layer, const Scene& scene);
   [[nodiscard]] bool begin_selection(MeshElement of);
   void show_selection(std::size_t level, std::size_t first_face);
-  void light(const Layer& layer, const Scene& scene, FrameTarget& into);
+  void light(Layer& layer, const Scene& scene);
   [[nodiscard]] Eigen::Matrix4f light_clip_from_model(const Scene& scene) const;
 
   ShaderProgram surface_, shadow_, lighting_;
@@ -139,13 +143,13 @@ class SurfaceView {
   bool selection_refused_ = false;                  ///< the card has no room for one of this mesh
   std::vector<std::vector<FaceBlock>> levels_{{}};  ///< fewest faces first, the whole surface last
   Eigen::AlignedBox3f box_mm_;
+  /// Each keeps its size: other memory for every drag would cost the first picture of it.
+  static constexpr std::size_t kInMotion = 0, kAtRest = 1;
   std::array<Layer, 2> layers_;
-  int shown_layer_ = 0;
-  FrameTarget picture_{{PixelFormat::kRgba8}};
+  std::size_t shown_layer_ = kInMotion;
   unsigned no_vertices_ = 0;
   Scene scene_;
   std::unique_ptr<Layer> still_;
-  FrameTarget still_picture_{{PixelFormat::kRgba8}};
   Scene still_scene_;
   std::size_t still_block_ = 0;  ///< next of it
   bool dirty_ = true;            ///< mesh, points or values have changed
