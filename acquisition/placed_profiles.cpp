@@ -27,9 +27,8 @@ bool PlacedProfiles::begin(const ScanInfo& info) {
   }
   out.view.direction = there.rotation * out.view.direction;
   out.expected_rows = scan_.rows;
-  if (linear) {
-    out.spacing_mm = std::max(out.spacing_mm, scan_.step * scan_.motion.direction.norm());
-  }
+  // On a turntable it goes by how far from the axis the clay is: by the grid's own samples.
+  out.spacing_mm = linear ? std::max(out.spacing_mm, scan_.step * scan_.motion.direction.norm()) : 0.0;
   out.device = scan_.device;
   begun_ = sink_.begin(out);
   cancelled_ = !begun_;

@@ -98,11 +98,9 @@ Result<RigScanner> RigScanner::make(const RigFile& file, const RigCalibration& c
   rig.view = calibration.view(file.step);
   rig.view.motion_per_row_mm = Eigen::Vector3d::Zero();  // positions are those of the middle row
   rig.field_x_mm = calibration.field_per_px_mm() * out.triangulator_->samples_per_profile();
-  const double travel = file.step * (file.rows - 1);
-  const bool linear = calibration.motion.kind == MotionKind::kLinear;
-  rig.field_y_mm =
-      linear ? travel * calibration.motion.direction.norm() : travel * calibration.working_distance_mm;
-  rig.spacing_mm = std::max(calibration.field_per_px_mm(), rig.field_y_mm / (file.rows - 1));
+  const double row_spacing_mm = calibration.row_spacing_mm(file.step);
+  rig.field_y_mm = row_spacing_mm * (file.rows - 1);
+  rig.spacing_mm = std::max(calibration.field_per_px_mm(), row_spacing_mm);
   rig.depth_range_mm = calibration.depth_range_mm;
   rig.hand_turns = file.hand_turns;
   rig.support_height_mm = file.support_height_mm;
@@ -208,7 +206,9 @@ Status RigScanner::scan(ProfileSink& sink) {
   ScanInfo info;
   info.cols = triangulator_->samples_per_profile();
   info.expected_rows = file_.rows;
-  info.spacing_mm = rig_.spacing_mm;
+  // On a turntable it goes by how far from the axis the clay is: by the grid's own samples.
+  const bool turns_tablet = triangulator_->calibration().motion.kind == MotionKind::kTurntable;
+  info.spacing_mm = turns_tablet ? 0 : rig_.spacing_mm;
   info.view = triangulator_->calibration().view(file_.step);
   // The view is that at row 0, which lies at the scan's start.
   if (info.view.laser_mm && info.view.camera_mm) {

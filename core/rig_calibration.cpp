@@ -89,6 +89,19 @@ double RigCalibration::field_per_px_mm() const {
   return reach / camera.fx_px;
 }
 
+double RigCalibration::row_spacing_mm(double step) const {
+  switch (motion.kind) {
+    case MotionKind::kLinear:
+      return step * motion.direction.norm();
+    case MotionKind::kTurntable:
+      return step * 0.25 * depth_range_mm;
+    case MotionKind::kGalvanometer:
+      break;
+  }
+  const Eigen::Vector3d middle(0, 0, working_distance_mm);
+  return step * motion.direction.cross(middle - motion.axis_point_mm).norm();
+}
+
 double RigCalibration::depth_per_px_mm() const {
   const RigidTransform camera_from_scanner = scanner_from_camera().inverse();
   const Eigen::Vector2d low = camera.project(camera_from_scanner * Eigen::Vector3d(0, 0, -0.5));

@@ -99,6 +99,10 @@ struct RigCalibration {
   /// volume.
   [[nodiscard]] double depth_per_px_mm() const;
   [[nodiscard]] double field_per_px_mm() const;
+  /// From a row to the next, of a scan in steps of `step`, in the middle of the volume. On a turntable that
+  /// is the axis itself: there, where clay lies off it by a quarter of the volume's depth, for want of a
+  /// tablet; what one has is seen in its grid.
+  [[nodiscard]] double row_spacing_mm(double step) const;
   /// Errors (kBadInput): a camera, plane or axis that cannot be; what is not known is not looked at.
   [[nodiscard]] Status check(const std::string& where) const;
 };

@@ -66,6 +66,28 @@ double worst_place_um(const RangeGrid& grid) {
   return worst;
 }
 
+TEST(PlacedProfiles, SpacingIsOfTheStepOnASlideAndOfTheClayOnATurntable) {
+  PositionTrack track;
+  for (const MotionKind kind : {MotionKind::kLinear, MotionKind::kTurntable}) {
+    class : public test::CollectGrid {
+     public:
+      bool begin(const ScanInfo& info) override {
+        spacing_mm = info.spacing_mm;
+        return test::CollectGrid::begin(info);
+      }
+      double spacing_mm = -1;
+    } sink;
+    RigMotion motion;
+    motion.kind = kind;
+    PlacedProfiles placed(sink, track, {motion, -60, 0.2, 121, "test"});
+    ScanInfo info;
+    info.cols = 1;
+    info.spacing_mm = 0.05;
+    EXPECT_TRUE(placed.begin(info));
+    EXPECT_EQ(sink.spacing_mm, kind == MotionKind::kLinear ? 0.2 : 0.0);
+  }
+}
+
 TEST(PlacedProfiles, PutsEachWhereTheStageWas) {
   PositionTrack track;
   ask(track, 0, 0, 0);

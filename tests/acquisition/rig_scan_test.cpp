@@ -98,6 +98,33 @@ TEST_F(RigScan, ScansAPlaneThroughTheDriverInterface) {
   EXPECT_EQ(bench.frames, 22U);
 }
 
+TEST_F(RigScan, OnATurntableTheSpacingIsThatOfTheClay) {
+  sim::FrameRigOptions size;
+  size.width = 256;
+  size.height = 200;
+  size.field_mm = 6.25;
+  size.motion = MotionKind::kTurntable;  // its axis lies 20 mm behind the plane
+  bench.truth = sim::frame_rig(size);
+  file.start = -0.1;
+  file.step = 0.02;
+  Result<RigScanner> made = make();
+  ASSERT_TRUE(made.has_value()) << made.error().line();
+  Device device = device_of(std::move(*made), "rig:rig.toml");
+  EXPECT_NEAR(device.capabilities()->rig->spacing_mm, 0.02 * 0.25 * bench.truth.depth_range_mm, 1e-9);
+  Collect sink;
+  ASSERT_TRUE(device.scan(sink).has_value());
+  sink.builder->estimate_spacing();
+  EXPECT_NEAR(sink.builder->grid().spacing_mm, 0.02 * 20, 0.04);
+}
+
+TEST_F(RigScan, OfAMirrorTheSpacingGoesByItsDistanceFromTheClay) {
+  sim::FrameRigOptions size;
+  size.motion = MotionKind::kGalvanometer;
+  const RigCalibration rig = sim::frame_rig(size);
+  const double away_mm = (Eigen::Vector3d(0, 0, rig.working_distance_mm) - *rig.laser_source_mm).norm();
+  EXPECT_NEAR(rig.row_spacing_mm(0.001), 0.001 * away_mm, 1e-9);
+}
+
 TEST_F(RigScan, IsLookedThroughWithTheLaserLitBetweenScans) {
   Result<RigScanner> made = make();
   ASSERT_TRUE(made.has_value());
