@@ -81,7 +81,11 @@ std::int32_t capabilities(dubsar_device* device, dubsar_capabilities* out, dubsa
     unknown.scan_count = -1;
     unknown.calibration_age_days = -1;
     dubsar_capabilities filled = rig != nullptr ? plugin::capabilities_of(*rig) : unknown;
-    filled.flags |= device->source->camera() != nullptr ? DUBSAR_YIELDS_FRAMES : 0U;
+    if (Device* const camera = device->source->camera()) {
+      filled.flags |= DUBSAR_YIELDS_FRAMES;
+      const Result<DeviceCapabilities> capable = camera->capabilities();
+      plugin::copy_text(filled.serial, capable ? capable->serial : std::string());
+    }
     plugin::lend(out, filled);
     return std::int32_t{DUBSAR_OK};
   });

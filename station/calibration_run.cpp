@@ -83,7 +83,8 @@ Result<CalibrateOutcome> calibrate_folder(const CalibrateRequest& request, const
 }
 
 Result<std::string> add_calibration_shot(const fs::path& folder, const std::string& board,
-                                         CalibrationShot shot, const GrayImage& image, double position) {
+                                         const CalibrationPicture& picture) {
+  const CalibrationShot shot = picture.shot;
   std::error_code error;
   fs::create_directories(folder, error);
   if (error) {
@@ -100,6 +101,15 @@ Result<std::string> add_calibration_shot(const fs::path& folder, const std::stri
   }
   if (!board.empty()) {
     set.board = board;
+  }
+  if (!picture.camera_serial.empty()) {
+    if (!set.camera_serial.empty() && set.camera_serial != picture.camera_serial) {
+      return bad_input(
+          list.string(),
+          "its pictures are of camera " + set.camera_serial + ", this is camera " + picture.camera_serial,
+          "calibrate each camera in a folder of its own");
+    }
+    set.camera_serial = picture.camera_serial;
   }
   const bool of_pose = shot == CalibrationShot::kLaser || shot == CalibrationShot::kDark;
   if (of_pose && set.poses.empty()) {
@@ -120,12 +130,12 @@ Result<std::string> add_calibration_shot(const fs::path& folder, const std::stri
       break;
     case CalibrationShot::kStop:
       name = fmt::format("stage_{:02d}.png", set.stops.size());
-      set.stops.push_back({name, "board", position});
+      set.stops.push_back({name, "board", picture.position});
       set.motion = set.motion.value_or(MotionKind::kLinear);
       break;
   }
   // The picture first: a list must not name what is not there.
-  if (Status written = write_gray_png(image, folder / name); !written) {
+  if (Status written = write_gray_png(picture.image, folder / name); !written) {
     return std::unexpected(written.error());
   }
   if (Status written = write_file_atomically(list, calibration_set_to_toml(set)); !written) {

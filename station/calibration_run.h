@@ -38,11 +38,18 @@ enum class CalibrationShot {
   kStop,   ///< the board that lies still on the stage, at `position`
 };
 
-/// Adds a picture to a calibration's folder, which is made, and to its calibration.toml. `position` (mm or
-/// radians) is of the stage, for kStop. Returns the name of its file. Errors: kUsage for laser and dark
-/// before any board, kBadInput for a calibration.toml that cannot be read, kStorage.
+struct CalibrationPicture {
+  CalibrationShot shot = CalibrationShot::kBoard;
+  GrayImage image;
+  std::string camera_serial;  ///< empty when not known
+  double position = 0;        ///< of the stage, for kStop: mm or radians
+};
+
+/// Adds a picture to a calibration's folder, which is made, and to its calibration.toml. Returns the name of
+/// its file. Errors: kUsage for laser and dark before any board, kBadInput for a calibration.toml that cannot
+/// be read or is of another camera, kStorage.
 [[nodiscard]] Result<std::string> add_calibration_shot(const std::filesystem::path& folder,
-                                                       const std::string& board, CalibrationShot shot,
-                                                       const GrayImage& image, double position = 0);
+                                                       const std::string& board,
+                                                       const CalibrationPicture& picture);
 
 }  // namespace dubsar

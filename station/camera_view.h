@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "acquisition/exposure.h"
@@ -20,6 +21,7 @@ struct CameraView {
   Exposure exposure;               ///< of the whole frame
   std::int64_t frame_id = 0;
   std::shared_ptr<const GrayImage> image;  ///< the whole frame
+  std::string camera_serial;               ///< empty when not known
 };
 
 /// Sides of at most `most_px`. Two bytes per pixel become one.

@@ -27,13 +27,17 @@ Status CameraStream::show() {
       return started;
     }
     runs_ = true;
+    const Result<DeviceCapabilities> capable = device_.capabilities();
+    serial_ = capable ? capable->serial : std::string();
   }
   const Result<std::optional<Frame>> frame = device_.next_frame(kFrameWait);
   if (!frame) {
     return std::unexpected(frame.error());
   }
   if (*frame && sink_) {
-    sink_(CameraFrame{std::make_shared<const CameraView>(camera_view_of(**frame))});
+    CameraView view = camera_view_of(**frame);
+    view.camera_serial = serial_;
+    sink_(CameraFrame{std::make_shared<const CameraView>(std::move(view))});
   }
   return {};
 }

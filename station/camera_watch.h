@@ -61,6 +61,7 @@ class CameraStream {
   Device& device_;
   const EventSink& sink_;
   bool runs_ = false;
+  std::string serial_;
 };
 
 }  // namespace dubsar

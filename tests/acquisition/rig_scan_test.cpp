@@ -76,6 +76,7 @@ TEST_F(RigScan, ScansAPlaneThroughTheDriverInterface) {
   ASSERT_TRUE(can.has_value()) << can.error().line();
   ASSERT_TRUE(can->rig.has_value());
   EXPECT_EQ(can->rig->name, "bench rig");
+  EXPECT_EQ(can->serial, "SIM-CAMERA");
   EXPECT_NEAR(can->rig->field_x_mm, 6.25, 0.01);
   EXPECT_NEAR(can->rig->field_y_mm, 1.0, 1e-9);
   EXPECT_GT(can->rig->calibration_age_days.value_or(0), 100);

@@ -194,6 +194,7 @@ TEST_F(CalibrationBox, PicturesAreTakenThroughTheCamera) {
   ASSERT_TRUE(list.has_value());
   EXPECT_THAT(*list, HasSubstr("pose_00_laser.png"));
   EXPECT_THAT(*list, HasSubstr("stage_00.png"));
+  EXPECT_THAT(*list, HasSubstr("camera_serial = \"EYE-1\"")) << "so that no other camera is scanned with it";
 }
 
 }  // namespace

@@ -125,9 +125,9 @@ void CalibrationDialog::draw_shots(UiContext& ui) {
   const std::optional<double> position = number_in(position_);
   const auto offer = [&](const char* name, Text text, CalibrationShot shot, bool enabled) {
     if (plain_button(ui, name, ui.text(text), may && enabled)) {
-      shooting_ = std::async(std::launch::async, [image = view->image, shot, folder = calibrate_.folder,
+      shooting_ = std::async(std::launch::async, [view, shot, folder = calibrate_.folder,
                                                   board = calibrate_.board, at = position.value_or(0)] {
-        auto said = add_calibration_shot(folder, board, shot, *image, at);
+        auto said = add_calibration_shot(folder, board, {shot, *view->image, view->camera_serial, at});
         wake_window();
         return said;
       });
