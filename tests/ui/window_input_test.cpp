@@ -175,6 +175,15 @@ TEST_F(MeshInput, ACutBetweenTwoClicksIsMeasuredAndKept) {
             2);
 }
 
+TEST_F(MeshInput, ADoubleClickClosesAPolygonOfThreeCornersOrMore) {
+  const Outcome outcome = look_at("plate.obj", grooved_plate(),
+                                  "wait whole\nwait idle\nclick tool-select\n"
+                                  "doubleclick surface 0.3 0.5\nexpect corners.1\n"  // encloses nothing
+                                  "click surface 0.7 0.5\nexpect corners.2\n"
+                                  "doubleclick surface 0.5 0.3\nwait selected 20\nexpect corners.0\nquit\n");
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+}
+
 /// Bounds of what is not black in the upper part of a picture, columns and rows.
 std::pair<int, int> extent_px(const Image& picture, int rows) {
   int left = picture.width, right = -1, top = rows, bottom = -1;

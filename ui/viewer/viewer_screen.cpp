@@ -227,14 +227,14 @@ void ViewerScreen::use_pointer(ImVec2 origin, ImVec2 size) {
   if (dragged_ && ImGui::IsItemActive()) {
     drop_polygon();  // it was drawn over another view
   }
+  if (ImGui::IsItemActivated()) {  // ImGui says it at the press, a click counts at the release
+    double_clicked_ = ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left);
+  }
   if (ImGui::IsItemDeactivated() && !dragged_ && ImGui::IsMouseReleased(ImGuiMouseButton_Left)) {
     const Eigen::Vector2f px(io.MousePos.x - origin.x, io.MousePos.y - origin.y);
-    if (tool_ == Tool::kSelect && !polygon_closed_) {
-      if (ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left) ||
-          (!polygon_.empty() && (polygon_.front() - px).norm() < 8)) {
-        polygon_closed_ = true;
-      } else {
-        polygon_.push_back(px);
+    if (tool_ == Tool::kSelect) {
+      if (!polygon_closed_) {
+        add_corner(px);
       }
     } else if (takes_places()) {
       clicked_px_.push_back(px);

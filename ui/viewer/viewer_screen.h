@@ -62,6 +62,7 @@ class ViewerScreen {
     double mm2 = 0;
   };
   void go_on_selecting(UiContext& ui);
+  void add_corner(const Eigen::Vector2f& px);
   void drop_polygon();
   [[nodiscard]] bool selects() const;
   void choose_marked(const SelectionMarks& marks);
@@ -132,7 +133,8 @@ class ViewerScreen {
   std::vector<ShownPin> pins_;  ///< of the session's model
   bool show_pins_ = true;
   bool dragged_ = false;
-  bool untouched_ = true;  ///< the view is still as it was set up
+  bool double_clicked_ = false;  ///< the click that is under way is the second of two
+  bool untouched_ = true;        ///< the view is still as it was set up
   float aspect_ = 1.5F;
   int dpi_ = 600;
   std::optional<StillPicture> still_;  ///< that is being drawn
