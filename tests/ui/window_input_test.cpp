@@ -184,6 +184,21 @@ TEST_F(MeshInput, ADoubleClickClosesAPolygonOfThreeCornersOrMore) {
   EXPECT_EQ(outcome.status, 0) << outcome.err;
 }
 
+TEST_F(MeshInput, CornersOverOneViewAreNotOfAnother) {
+  const Outcome outcome = look_at("plate.obj", grooved_plate(),
+                                  "wait whole\nwait idle\nclick tool-select\n"
+                                  "click surface 0.3 0.5\nclick surface 0.7 0.5\nexpect corners.2\n"
+                                  "drag surface 0.5 0.5 0.6 0.6 right\nexpect corners.2\n"  // the lamp
+                                  "wheel surface 1\nexpect corners.0\n"
+                                  "click surface 0.3 0.5\nclick surface 0.7 0.5\nexpect corners.2\n"
+                                  "key 2\nexpect corners.0\n"
+                                  "click surface 0.3 0.5\nclick surface 0.7 0.5\nexpect corners.2\n"
+                                  "click view.obverse\nexpect corners.0\n"
+                                  "click surface 0.3 0.5\nclick surface 0.7 0.5\nexpect corners.2\n"
+                                  "drag surface 0.5 0.5 0.6 0.6\nexpect corners.0\nquit\n");
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+}
+
 /// Bounds of what is not black in the upper part of a picture, columns and rows.
 std::pair<int, int> extent_px(const Image& picture, int rows) {
   int left = picture.width, right = -1, top = rows, bottom = -1;

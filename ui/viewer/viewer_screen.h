@@ -47,6 +47,7 @@ class ViewerScreen {
   void draw_foot(UiContext& ui);
   void draw_surface(UiContext& ui, ImVec2 size);
   void use_pointer(ImVec2 origin, ImVec2 size);
+  void drop_what_is_of_another_view(ImVec2 size);
   void draw_wedges(UiContext& ui, ImVec2 origin, ImVec2 size) const;
   void draw_tape(UiContext& ui, ImVec2 origin, ImVec2 size) const;
   // viewer_section.cpp
@@ -112,6 +113,8 @@ class ViewerScreen {
   std::vector<Eigen::Vector2f> clicked_px_;  ///< places that are read off once the whole surface stands there
   std::vector<Eigen::Vector3f> tape_;        ///< up to two places
   std::vector<Eigen::Vector2f> polygon_;     ///< corners so far, pixels of the picture
+  OrbitCamera clicked_camera_;               ///< of these clicks and corners, and the picture's size
+  ImVec2 clicked_size_;
   SelectionStep step_ = SelectionStep::kUnion;
   bool visible_only_ = true;
   MeshElement select_of_ = MeshElement::kFace;
