@@ -140,7 +140,7 @@ TEST_F(MeshInput, ACutBetweenTwoClicksIsMeasuredAndKept) {
   const Outcome outcome =
       look_at("plate.obj", grooved_plate(),
               "wait whole\nclick tool-section\nclick surface 0.3 0.5\nclick surface 0.7 0.5\nwait section\n"
-              "click keep-section\nwait idle\npause 0.3\nquit\n");
+              "wait idle\nclick keep-section\nwait section-kept\nquit\n");
   std::filesystem::current_path(before);
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   std::ifstream csv(folder_.path() / "plate_section_01.csv");

@@ -125,6 +125,7 @@ class ViewerScreen {
   double selected_mm2_ = 0;              ///< of faces
   std::string selection_name_;
   std::set<std::filesystem::path> handed_out_;  ///< names of files that are perhaps not written yet
+  std::filesystem::path section_file_;          ///< that was asked for last
   std::vector<std::filesystem::path> seen_written_;
   std::shared_ptr<const std::vector<Wedge>> seen_wedges_;
   std::vector<int> marked_;  ///< wedges that a correction is about, as in the table
