@@ -156,16 +156,16 @@ std::vector<std::size_t> assigned(const std::vector<Found>& found, const Artefac
 void judge(const Artefact& artefact, Verification& out) {
   const auto over = [&](const std::string& what, double is, double limit) {
     if (std::abs(is) > limit) {
-      out.failed.push_back(what + " is " + micrometres(is) + ", the limit " + micrometres(limit));
+      out.failed.push_back(what + ": " + micrometres(is) + ", the limit " + micrometres(limit));
     }
   };
   for (const MeasuredBall& ball : out.balls) {
-    const std::string name = "ball " + std::to_string(ball.certified + 1);
-    over("probing error (form) of " + name, ball.form_mm, artefact.form_limit_mm);
-    over("probing error (size) of " + name, ball.size_mm, artefact.size_limit_mm);
+    const std::string number = std::to_string(ball.certified + 1);
+    over("probing error (form) of ball " + number, ball.form_mm, artefact.form_limit_mm);
+    over("probing error (size) of ball " + number, ball.size_mm, artefact.size_limit_mm);
   }
   for (const MeasuredSpacing& spacing : out.spacings) {
-    over("sphere spacing error of balls " + std::to_string(spacing.a + 1) + " and " +
+    over("sphere spacing error of balls " + std::to_string(spacing.a + 1) + ", " +
              std::to_string(spacing.b + 1),
          spacing.error_mm, artefact.spacing_limit_mm);
   }
@@ -210,8 +210,8 @@ Result<Verification> verify_artefact(const RangeGrid& grid, const Artefact& arte
     found.push_back(std::move(*ball));
   }
   if (found.size() < artefact.balls.size()) {
-    out.failed.push_back("only " + std::to_string(found.size()) + " of " +
-                         std::to_string(artefact.balls.size()) + " balls were found");
+    out.failed.push_back("not all balls were found: " + std::to_string(found.size()) +
+                         ", and the artefact has " + std::to_string(artefact.balls.size()));
   } else {
     const std::vector<std::size_t> order = assigned(found, artefact);
     for (std::size_t i = 0; i < order.size(); ++i) {

@@ -199,8 +199,8 @@ Result<BoardView> find_board(const GrayView& view, const BoardSpec& spec, const 
       cv::aruco::interpolateCornersCharuco(markers, marker_ids, image, board, corners, ids);
     }
     if (static_cast<int>(ids.size()) < kLeastCharucoCorners) {
-      return not_found("only " + std::to_string(ids.size()) +
-                       " corners of the board were found: " + what_it_looks_like(image));
+      return not_found("too few corners of the board were found, " + std::to_string(ids.size()) + ": " +
+                       what_it_looks_like(image));
     }
     refine(image, corners, 0, 0.35 * (1 - spec.marker_mm / spec.square_mm));
     for (std::size_t i = 0; i < ids.size(); ++i) {

@@ -17,9 +17,25 @@ namespace {
 constexpr double kTiltedRad = rad_from_deg(15);
 constexpr std::size_t kEnoughViews = 10;
 
-constexpr std::array<const char*, 9> kParts{"upper left corner", "upper edge", "upper right corner",
-                                            "left edge",         "middle",     "right edge",
-                                            "lower left corner", "lower edge", "lower right corner"};
+// Whole sentences, as the window has them in other languages.
+constexpr std::array<const char*, 9> kParts{"show the board in the upper left corner of the picture",
+                                            "show the board in the upper edge of the picture",
+                                            "show the board in the upper right corner of the picture",
+                                            "show the board in the left edge of the picture",
+                                            "show the board in the middle of the picture",
+                                            "show the board in the right edge of the picture",
+                                            "show the board in the lower left corner of the picture",
+                                            "show the board in the lower edge of the picture",
+                                            "show the board in the lower right corner of the picture"};
+constexpr std::array<const char*, 4> kTilts{
+    "tilt the board by 25 to 40° so that its right side in the picture comes nearer",
+    "tilt the board by 25 to 40° so that its left side in the picture comes nearer",
+    "tilt the board by 25 to 40° so that its lower side in the picture comes nearer",
+    "tilt the board by 25 to 40° so that its upper side in the picture comes nearer"};
+constexpr const char* kLaserUpper = "show the laser on the board at the upper side of the picture";
+constexpr const char* kLaserLower = "show the laser on the board at the lower side of the picture";
+constexpr const char* kLaserLeft = "show the laser on the board at the left side of the picture";
+constexpr const char* kLaserRight = "show the laser on the board at the right side of the picture";
 
 void ask_for_parts(const std::vector<CalibrationView>& views, const Intrinsics& intrinsics,
                    std::vector<std::string>& out) {
@@ -34,7 +50,7 @@ void ask_for_parts(const std::vector<CalibrationView>& views, const Intrinsics& 
   }
   for (std::size_t part = 0; part < corners.size(); ++part) {
     if (corners[part] == 0) {
-      out.push_back(std::string("show the board in the ") + kParts[part] + " of the picture");
+      out.emplace_back(kParts[part]);
     }
   }
 }
@@ -51,11 +67,9 @@ void ask_for_tilts(const Intrinsics& intrinsics, std::vector<std::string>& out) 
     tilted[2] += about_x > kTiltedRad ? 1 : 0;
     tilted[3] += about_x < -kTiltedRad ? 1 : 0;
   }
-  constexpr std::array<const char*, 4> kSides{"right", "left", "lower", "upper"};
   for (std::size_t side = 0; side < tilted.size(); ++side) {
     if (tilted[side] == 0) {
-      out.push_back(std::string("tilt the board by 25 to 40° so that its ") + kSides[side] +
-                    " side in the picture comes nearer");
+      out.emplace_back(kTilts[side]);
     }
   }
 }
@@ -91,14 +105,11 @@ void ask_for_stripes(const std::vector<CalibrationView>& views, const Intrinsics
     out.push_back("show the laser on the board " + number_text(std::round(2 * wanted)) +
                   " mm farther from the camera");
   }
-  const auto ask_for_side = [&](const char* side) {
-    out.push_back(std::string("show the laser on the board at the ") + side + " side of the picture");
-  };
   if (first > 0.25) {
-    ask_for_side(runs_down ? "upper" : "left");
+    out.emplace_back(runs_down ? kLaserUpper : kLaserLeft);
   }
   if (last < 0.75) {
-    ask_for_side(runs_down ? "lower" : "right");
+    out.emplace_back(runs_down ? kLaserLower : kLaserRight);
   }
 }
 
@@ -114,8 +125,8 @@ std::vector<std::string> missing_poses(const std::vector<CalibrationView>& views
   }
   ask_for_parts(views, intrinsics, out);
   if (intrinsics.used.size() < kEnoughViews) {
-    out.push_back("take " + std::to_string(kEnoughViews - intrinsics.used.size()) +
-                  " more pictures of the board, each tilted another way");
+    out.push_back("take more pictures of the board, each tilted another way: " +
+                  std::to_string(kEnoughViews - intrinsics.used.size()));
   }
   return out;
 }

@@ -237,14 +237,15 @@ class Corrector {
         return (mesh_.positions[v].cast<double>() - correction.into_mm[k]).norm() <= around_seed_mm_;
       });
       if (deepest == left.end()) {
-        return std::unexpected(fmt::format("place {} does not lie in the wedge", k + 1));
+        return std::unexpected(fmt::format("one of the places does not lie in the wedge: number {}", k + 1));
       }
       Vertices part = left;
       std::rotate(part.begin(), part.begin() + (deepest - left.begin()),
                   part.begin() + (deepest - left.begin()) + 1);
       auto one = measure(part, ByHand::kSplit);
       if (!one) {
-        return std::unexpected(fmt::format("part {} is not measured as a wedge: {}", k + 1, one.error()));
+        return std::unexpected(
+            fmt::format("one of the parts is not measured as a wedge, number {}: {}", k + 1, one.error()));
       }
       const std::unordered_set<std::uint32_t> taken(one->vertices.begin(), one->vertices.end());
       std::erase_if(left, [&](std::uint32_t v) { return taken.contains(v); });

@@ -157,6 +157,9 @@ void MeshViewing::run() {
 void MeshViewing::stop() {
   const std::scoped_lock lock(mutex_);
   tasks_.clear();
+  if (state_.section_due) {
+    forget_section();
+  }
   if (job_) {
     job_->cancel();
   }
@@ -180,7 +183,7 @@ void MeshViewing::take_mesh(std::shared_ptr<const Mesh> mesh, const RigidTransfo
     ++state_.number;
     state_.fields.clear();
     state_.wedges.reset();
-    state_.section.reset();
+    forget_section();
     state_.selections = std::make_shared<const std::vector<MeshSelection>>();
     state_.written.clear();
     state_.is_part = false;
@@ -255,38 +258,65 @@ void MeshViewing::analyse() {
   ask([this] { work_out_everything(false); });
 }
 
+void MeshViewing::forget_section() {
+  ++section_number_;
+  state_.section.reset();
+  state_.section_due = false;
+}
+
 void MeshViewing::cut(const Eigen::Vector3d& from_mm, const Eigen::Vector3d& to_mm,
                       const Eigen::Vector3d& towards) {
-  ask([this, from_mm, to_mm, towards] {
-    const std::shared_ptr<const Mesh> whole = mesh();
+  std::uint64_t number = 0;
+  {
+    const std::scoped_lock lock(mutex_);
+    forget_section();
+    number = section_number_;
+    state_.section_due = state_.mesh != nullptr && !ended_;
+  }
+  ask([this, number, from_mm, to_mm, towards] {
+    std::shared_ptr<const Mesh> whole;
+    {
+      const std::scoped_lock lock(mutex_);
+      if (number == section_number_) {  // else another was asked for, or another mesh is looked at
+        whole = state_.mesh;
+      }
+    }
     if (!whole) {
       return;
     }
     Result<CrossSection> section = cross_section(*whole, from_mm, to_mm, towards);
     if (!section) {
       complain(section.error());
-      return;
     }
     const std::scoped_lock lock(mutex_);
-    state_.section = std::make_shared<const CrossSection>(std::move(*section));
+    if (number == section_number_) {
+      state_.section_due = false;
+      state_.section = section ? std::make_shared<const CrossSection>(*std::move(section)) : nullptr;
+    }
   });
 }
 
 void MeshViewing::keep_section(const fs::path& stem) {
-  ask([this, stem] {
-    std::shared_ptr<const CrossSection> section;
-    {
-      const std::scoped_lock lock(mutex_);
-      section = state_.section;
-    }
+  std::shared_ptr<const CrossSection> section;  // that somebody saw who wants it kept
+  {
+    const std::scoped_lock lock(mutex_);
+    section = state_.section;
+  }
+  if (!section) {
+    return;
+  }
+  ask([this, stem, section] {
+    std::vector<fs::path> files;
     for (const char* ending : {".csv", ".svg"}) {
       fs::path file = stem;
       file += ending;
-      if (const Status written = section ? write_section(*section, file) : Status{}; !written) {
+      if (const Status written = write_section(*section, file); !written) {
         complain(written.error());
         return;
       }
+      files.push_back(std::move(file));
     }
+    take_written(std::move(files));
   });
 }
 

@@ -36,8 +36,9 @@ struct ViewedMesh {
   std::uint64_t number = 0;  ///< grows whenever the mesh is another one
   std::map<MeshField, std::shared_ptr<const std::vector<float>>> fields;  ///< [V]
   std::shared_ptr<const std::vector<Wedge>> wedges;                       ///< null: none are known
-  std::shared_ptr<const CrossSection> section;                            ///< the last that was asked for
-  std::shared_ptr<const std::vector<MeshSelection>> selections;           ///< that are kept; never null
+  std::shared_ptr<const CrossSection> section;  ///< the last that was asked for; else null
+  bool section_due = false;                     ///< one is asked for and neither there nor given up
+  std::shared_ptr<const std::vector<MeshSelection>> selections;  ///< that are kept; never null
   std::vector<std::filesystem::path> written;  ///< what was asked for last, once it is written
   bool is_part = false;                        ///< a part of a mesh that one can go back to
   std::size_t corrections = 0;                 ///< how many a person has made
@@ -83,9 +84,11 @@ class MeshViewing {
   void correct_by_adding(MeshSelection selection);  ///< a wedge is there
   void undo_correction();                           ///< the last one
   void leave_part();                                ///< looks at the mesh again that the part is of
-  /// Cuts the mesh between two places of it, as it is seen from `towards` (model frame).
+  /// Cuts the mesh between two places of it, as it is seen from `towards` (model frame). The last cut is gone
+  /// at once, also when this one has to wait, and whether or not it can be made.
   void cut(const Eigen::Vector3d& from_mm, const Eigen::Vector3d& to_mm, const Eigen::Vector3d& towards);
-  /// Writes the cut as STEM.csv and STEM.svg.
+  /// Writes the cut that is there as STEM.csv and STEM.svg, which `written` says then; nothing where
+  /// none is.
   void keep_section(const std::filesystem::path& stem);
   void stop();  ///< gives up what runs and what waits
 
@@ -107,6 +110,7 @@ class MeshViewing {
   void work_out(MeshField field);
   void work_out_everything(bool with_invariant);
   [[nodiscard]] std::shared_ptr<const Mesh> mesh() const;
+  void forget_section();  ///< also one that is due; with the mutex held
 
   std::function<void()> on_change_;
   mutable std::mutex mutex_;  ///< of what follows
@@ -120,6 +124,7 @@ class MeshViewing {
   std::filesystem::path whole_wedges_file_;
   bool whole_in_session_ = false;
   // Of whoever holds the mutex.
+  std::uint64_t section_number_ = 0;  ///< of the cut that was asked for last
   std::filesystem::path selections_file_;
   std::optional<ViewedMesh> whole_;  ///< that a part is of, and where its selections are
   std::filesystem::path whole_selections_file_;

@@ -182,6 +182,7 @@ void MeshViewing::leave_part() {
       const std::uint64_t number = state_.number;
       state_ = *std::exchange(whole_, std::nullopt);
       state_.number = number + 1;
+      forget_section();  // its places are no longer clicked
       state_.written.clear();
       selections_file_ = whole_selections_file_;
     }

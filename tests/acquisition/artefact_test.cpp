@@ -95,7 +95,7 @@ TEST(Artefact, WhatIsNotThereIsSaid) {
   const Result<Verification> is = verify_artefact(scanned_bar(0.004, 0, 1), three);
   ASSERT_TRUE(is.has_value());
   ASSERT_FALSE(is->failed.empty());
-  EXPECT_NE(is->failed[0].find("2 of 3"), std::string::npos);
+  EXPECT_NE(is->failed[0].find("found: 2, and the artefact has 3"), std::string::npos);
   RangeGrid empty;
   empty.allocate(4, 4);
   EXPECT_FALSE(verify_artefact(empty, bar()).has_value());

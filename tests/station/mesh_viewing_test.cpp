@@ -11,6 +11,7 @@
 #include <chrono>
 #include <csignal>
 #include <fstream>
+#include <mutex>
 #include <thread>
 
 #include "formats/atomic_file.h"
@@ -26,6 +27,13 @@ namespace {
 
 namespace fs = std::filesystem;
 using ::testing::SizeIs;
+
+void settle(const MeshViewing& viewing) {
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::minutes(2);
+  while (!viewing.state().stage.empty() && std::chrono::steady_clock::now() < deadline) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+}
 
 /// A mesh that is looked at, and waited for.
 class Viewer {
@@ -48,12 +56,7 @@ class Viewer {
   [[nodiscard]] ViewedMesh state() const { return viewing_.state(); }
 
  private:
-  void settle() const {
-    const auto deadline = std::chrono::steady_clock::now() + std::chrono::minutes(2);
-    while (!state().stage.empty() && std::chrono::steady_clock::now() < deadline) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(2));
-    }
-  }
+  void settle() const { dubsar::settle(viewing_); }
   MeshViewing viewing_;
 };
 
@@ -152,6 +155,67 @@ TEST_F(MeshViewingTest, TwoWhoSelectOnOneMeshLoseNothing) {
   EXPECT_FALSE(other.state().error) << other.state().error->line();
   EXPECT_THAT(read_selections(mesh_.parent_path() / "tablet.selections.json")->selections, SizeIs(2));
   EXPECT_THAT(*other.state().selections, SizeIs(2));
+}
+
+TEST_F(MeshViewingTest, ACutThatIsAskedForTakesThePlaceOfTheLastAtOnce) {
+  std::mutex gate;  // closed, the worker comes no farther
+  MeshViewing viewing([&] { const std::scoped_lock passing(gate); });
+  viewing.open(mesh_);
+  settle(viewing);
+  const Eigen::Vector3d a(-4, 0, 4), b(4, 0, 4), c(4, 2, 4);
+  viewing.cut(a, b, Eigen::Vector3d::UnitZ());
+  settle(viewing);
+  ASSERT_TRUE(viewing.state().section);
+  const fs::path stem = folder_.path() / "cut";
+  {
+    const std::scoped_lock closed(gate);
+    viewing.want(MeshField::kMeanCurvature);
+    viewing.cut(a, c, Eigen::Vector3d::UnitZ());
+    EXPECT_FALSE(viewing.state().section) << "of other places";
+    EXPECT_TRUE(viewing.state().section_due);
+    viewing.keep_section(stem);
+    viewing.stop();
+    EXPECT_FALSE(viewing.state().section_due);
+  }
+  settle(viewing);
+  EXPECT_FALSE(viewing.state().section);
+  EXPECT_TRUE(viewing.state().written.empty());
+  // Asked for again it is there; of two that wait the last one is.
+  {
+    const std::scoped_lock closed(gate);
+    viewing.cut(a, b, Eigen::Vector3d::UnitZ());
+    viewing.cut(a, c, Eigen::Vector3d::UnitZ());
+  }
+  settle(viewing);
+  ASSERT_TRUE(viewing.state().section);
+  EXPECT_FALSE(viewing.state().section_due);
+  EXPECT_NEAR(viewing.state().section->length_mm, (c - a).norm(), 1e-6);
+  // One that cannot be made leaves none.
+  viewing.cut(a, a, Eigen::Vector3d::UnitZ());
+  settle(viewing);
+  EXPECT_FALSE(viewing.state().section);
+  EXPECT_FALSE(viewing.state().section_due);
+  EXPECT_TRUE(viewing.state().error);
+}
+
+TEST_F(MeshViewingTest, ACutIsSaidToBeKeptOnceItIsWritten) {
+  MeshViewing viewing([] {});
+  viewing.open(mesh_);
+  settle(viewing);
+  viewing.cut({-4, 0, 4}, {4, 0, 4}, Eigen::Vector3d::UnitZ());
+  settle(viewing);
+  viewing.keep_section(folder_.path() / "not there" / "cut");
+  settle(viewing);
+  ASSERT_TRUE(viewing.state().error);
+  EXPECT_EQ(viewing.state().error->kind, ErrorKind::kStorage);
+  EXPECT_TRUE(viewing.state().written.empty());
+  viewing.keep_section(folder_.path() / "cut");
+  settle(viewing);
+  EXPECT_FALSE(viewing.state().error);
+  ASSERT_THAT(viewing.state().written, SizeIs(2));
+  for (const fs::path& file : viewing.state().written) {
+    EXPECT_TRUE(fs::exists(file)) << file;
+  }
 }
 
 }  // namespace

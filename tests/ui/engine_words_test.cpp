@@ -10,6 +10,7 @@
 #include <iterator>
 #include <regex>
 #include <string>
+#include <vector>
 
 #include "build_paths.h"
 #include "ui/shell/text_table.h"
@@ -17,10 +18,15 @@
 namespace dubsar::ui {
 namespace {
 
-/// All string literals of the engine's sources, adjacent ones joined, with {} and what it holds taken out.
+std::string joined(const std::string& source) {
+  return std::regex_replace(source, std::regex("\"\\s*\\n\\s*\""), "");
+}
+
+/// The engine's sources, adjacent string literals joined.
 std::string words_of_the_engine() {
   std::string all;
-  for (const char* folder : {"station", "registration", "planning", "triangulation", "archive", "analysis"}) {
+  for (const char* folder :
+       {"station", "registration", "planning", "triangulation", "archive", "analysis", "acquisition"}) {
     for (const auto& entry :
          std::filesystem::directory_iterator(std::filesystem::path(DUBSAR_SOURCE_DIR) / folder)) {
       if (entry.path().extension() == ".cpp") {
@@ -29,7 +35,34 @@ std::string words_of_the_engine() {
       }
     }
   }
-  return std::regex_replace(all, std::regex("\"\\s*\\n\\s*\""), "");
+  return joined(all);
+}
+
+/// What the first group of a pattern holds, wherever it is found in a file of the engine or in all of it.
+std::vector<std::string> said_by(const std::string& source, const char* pattern) {
+  std::vector<std::string> out;
+  const std::regex wanted(pattern);
+  for (std::sregex_iterator at(source.begin(), source.end(), wanted), end; at != end; ++at) {
+    out.push_back((*at)[1]);
+  }
+  return out;
+}
+
+std::string source_of(const char* file) {
+  std::ifstream in(std::filesystem::path(DUBSAR_SOURCE_DIR) / file);
+  return joined({std::istreambuf_iterator<char>(in), {}});
+}
+
+/// A format string without what is put in, a piece a line.
+std::vector<std::string> pieces_of(const std::string& sentence) {
+  const std::regex holes("\\{[^}]*\\}");
+  std::vector<std::string> out;
+  for (std::sregex_token_iterator at(sentence.begin(), sentence.end(), holes, -1), end; at != end; ++at) {
+    if (at->str().find_first_of("abcdefghijklmnopqrstuvwxyz") != std::string::npos) {
+      out.push_back(*at);
+    }
+  }
+  return out;
 }
 
 TEST(EngineWords, EveryPhraseIsStillSaidByTheEngine) {
@@ -47,6 +80,58 @@ TEST(EngineWords, EveryPhraseIsStillSaidByTheEngine) {
     const std::size_t first = english.find_first_not_of(' ');
     EXPECT_NE(said.find(english.substr(first)), std::string::npos) << english;
   }
+}
+
+TEST(EngineWords, EveryStageThatIsSaidHasAPhrase) {
+  const std::vector<std::string> said = said_by(words_of_the_engine(), R"re(progress\(\s*"([^"]+)")re");
+  EXPECT_GT(said.size(), 40U);
+  for (const std::string& stage : said) {
+    EXPECT_NE(translated(stage, Language::kGerman), stage);
+  }
+  const std::string all = words_of_the_engine();
+  for (const EnginePhrase& stage : engine_stages()) {
+    EXPECT_NE(all.find('"' + std::string(stage.english) + '"'), std::string::npos) << stage.english;
+  }
+  // All that is said, or nothing: a file may have such a name.
+  EXPECT_EQ(translated("board", Language::kGerman), "Muster wird gesucht");
+  EXPECT_EQ(translated("calibration/board_01.png", Language::kGerman), "calibration/board_01.png");
+}
+
+TEST(EngineWords, EveryRefusalAndAdviceThatIsShownHasAPhrase) {
+  struct Said {
+    const char* file;
+    const char* pattern;
+    std::size_t at_least;
+  };
+  // Why a correction is not made, why an artefact fails, what a calibration lacks.
+  constexpr Said kSaid[] = {
+      {"analysis/wedge_corrections.cpp", R"re(unexpected\(\s*(?:fmt::format\(\s*)?"([^"]+)")re", 10},
+      {"analysis/hollow_measure.cpp", R"re((?:unexpected\(|constexpr const char\* k\w+ = )"([^"]+)")re", 3},
+      {"analysis/wedge_faces.cpp", R"re((?:unexpected\(|return |wrong = )"([^"]+)")re", 7},
+      {"acquisition/artefact.cpp", R"re((?:failed\.\w+\(|over\()"([^"]+)")re", 6},
+      {"acquisition/calibration_mirror.cpp", R"re([=+]\s*"([^"]+)")re", 6},
+      {"acquisition/calibration_advice.cpp", R"re("([a-z ][^"]{6,}[^"h])"[,;})\s])re", 17}};
+  for (const Said& one : kSaid) {
+    const std::vector<std::string> sentences = said_by(source_of(one.file), one.pattern);
+    EXPECT_GE(sentences.size(), one.at_least) << one.file;
+    for (const std::string& sentence : sentences) {
+      for (const std::string& piece : pieces_of(sentence)) {
+        EXPECT_NE(translated(piece, Language::kGerman), piece) << one.file << ": " << sentence;
+      }
+    }
+  }
+}
+
+TEST(EngineWords, RefusalsOfCorrectionsAndArtefactsAreGerman) {
+  EXPECT_EQ(translated("no wedge is measured there: too shallow", Language::kGerman),
+            "dort lässt sich kein Keil messen: zu flach");
+  EXPECT_EQ(translated("one of the parts is not measured as a wedge, number 2: too few faces of the mesh",
+                       Language::kGerman),
+            "einer der Teile lässt sich nicht als Keil messen, Nummer 2: zu wenige Flächen des Netzes");
+  EXPECT_EQ(translated("not all balls were found: 3, and the artefact has 5", Language::kGerman),
+            "nicht alle Kugeln wurden gefunden: 3, und der Prüfkörper hat 5");
+  EXPECT_EQ(translated("show the laser on the board 12 mm nearer to the camera", Language::kGerman),
+            "den Laser auf dem Muster zeigen, 12 mm näher an der Kamera");
 }
 
 TEST(EngineWords, NoPhraseHidesALongerOneBehindIt) {

@@ -39,6 +39,15 @@ TEST(Script, TargetsMayHoldSpaces) {
   EXPECT_TRUE((*steps)[0].right);
 }
 
+TEST(Script, ADoubleClickIsSaidLikeAClick) {
+  const auto steps = parse_script("doubleclick surface 0.2 0.5\ndoubleclick overlay.Mean curvature\n", "s");
+  ASSERT_TRUE(steps) << steps.error().line();
+  EXPECT_EQ((*steps)[0].kind, ScriptStep::Kind::kDoubleClick);
+  EXPECT_EQ((*steps)[0].numbers, (std::vector<double>{0.2, 0.5}));
+  EXPECT_EQ((*steps)[1].name, "overlay.Mean curvature");
+  EXPECT_FALSE(parse_script("doubleclick surface 0.2\n", "s"));
+}
+
 TEST(Script, RefusesWhatSaysTooLittleByItsLine) {
   for (const char* bad : {"shout", "key", "key hyper", "drag model 0 0", "click model 0.5", "pause", "type",
                           "screenshot", "wheel model"}) {

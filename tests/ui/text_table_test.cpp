@@ -55,5 +55,13 @@ TEST(TextTable, TheEnginesWordsAreTranslatedAsFarAsTheyAreKnown) {
   EXPECT_EQ(translated("something new", Language::kGerman), "something new");
 }
 
+TEST(TextTable, TheBoardOfACalibrationIsNoTablet) {
+  for (const Text text : {Text::kCalibrateHow, Text::kBoard, Text::kShotBoard, Text::kCameraLine}) {
+    const std::string german = text_of(text, Language::kGerman);
+    EXPECT_EQ(german.find("Tafel"), std::string::npos) << german;
+    EXPECT_NE(german.find("Muster"), std::string::npos) << german;
+  }
+}
+
 }  // namespace
 }  // namespace dubsar::ui

@@ -140,7 +140,7 @@ TEST_F(MeshInput, ACutBetweenTwoClicksIsMeasuredAndKept) {
   const Outcome outcome =
       look_at("plate.obj", grooved_plate(),
               "wait whole\nclick tool-section\nclick surface 0.3 0.5\nclick surface 0.7 0.5\nwait section\n"
-              "click keep-section\nwait idle\npause 0.3\nquit\n");
+              "wait idle\nclick keep-section\nwait section-kept\nquit\n");
   std::filesystem::current_path(before);
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   std::ifstream csv(folder_.path() / "plate_section_01.csv");
@@ -173,6 +173,30 @@ TEST_F(MeshInput, ACutBetweenTwoClicksIsMeasuredAndKept) {
                          "3,0,0", "-o", svg})
                 .status,
             2);
+}
+
+TEST_F(MeshInput, ADoubleClickClosesAPolygonOfThreeCornersOrMore) {
+  const Outcome outcome = look_at("plate.obj", grooved_plate(),
+                                  "wait whole\nwait idle\nclick tool-select\n"
+                                  "doubleclick surface 0.3 0.5\nexpect corners.1\n"  // encloses nothing
+                                  "click surface 0.7 0.5\nexpect corners.2\n"
+                                  "doubleclick surface 0.5 0.3\nwait selected 20\nexpect corners.0\nquit\n");
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+}
+
+TEST_F(MeshInput, CornersOverOneViewAreNotOfAnother) {
+  const Outcome outcome = look_at("plate.obj", grooved_plate(),
+                                  "wait whole\nwait idle\nclick tool-select\n"
+                                  "click surface 0.3 0.5\nclick surface 0.7 0.5\nexpect corners.2\n"
+                                  "drag surface 0.5 0.5 0.6 0.6 right\nexpect corners.2\n"  // the lamp
+                                  "wheel surface 1\nexpect corners.0\n"
+                                  "click surface 0.3 0.5\nclick surface 0.7 0.5\nexpect corners.2\n"
+                                  "key 2\nexpect corners.0\n"
+                                  "click surface 0.3 0.5\nclick surface 0.7 0.5\nexpect corners.2\n"
+                                  "click view.obverse\nexpect corners.0\n"
+                                  "click surface 0.3 0.5\nclick surface 0.7 0.5\nexpect corners.2\n"
+                                  "drag surface 0.5 0.5 0.6 0.6\nexpect corners.0\nquit\n");
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
 }
 
 /// Bounds of what is not black in the upper part of a picture, columns and rows.

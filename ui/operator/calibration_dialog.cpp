@@ -62,10 +62,11 @@ void draw_report(UiContext& ui, const CalibrateOutcome& outcome) {
     say(ui.colours.text, filled(ui.text(Text::kStageLine), q.stage_rms_um, q.stage_positions));
   }
   for (const std::string& line : outcome.left_out) {
-    say(ui.colours.faint, line);
+    say(ui.colours.faint, translated(line, ui.preferences.language));
   }
   for (const std::string& line : outcome.report.missing) {
-    say(ui.colours.amber, fmt::format("{}: {}", ui.text(Text::kNextPose), line));
+    say(ui.colours.amber,
+        fmt::format("{}: {}", ui.text(Text::kNextPose), translated(line, ui.preferences.language)));
   }
   ui.facts.insert(outcome.report.missing.empty() ? "calibration-whole" : "calibration-lacks");
 }
@@ -148,7 +149,8 @@ void CalibrationDialog::draw_shots(UiContext& ui) {
   }
   if (!shot_said_.empty()) {
     ui.facts.insert("shot " + shot_said_);
-    say(shot_failed_ ? ui.colours.red : ui.colours.good, shot_said_);
+    say(shot_failed_ ? ui.colours.red : ui.colours.good,
+        shot_failed_ ? translated(shot_said_, ui.preferences.language) : shot_said_);
   }
 }
 

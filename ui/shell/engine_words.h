@@ -12,7 +12,10 @@ struct EnginePhrase {
   const char* german;
 };
 
-/// All that are known, in the order in which they are replaced (text_table.h: translated()).
+/// What is said of a job that runs; replaced where it is all that is said.
+[[nodiscard]] std::span<const EnginePhrase> engine_stages();
+
+/// All others that are known, in the order in which they are replaced (text_table.h: translated()).
 [[nodiscard]] std::span<const EnginePhrase> engine_phrases();
 
 }  // namespace dubsar::ui

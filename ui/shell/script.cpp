@@ -16,6 +16,8 @@ namespace {
 
 constexpr double kPatienceS = 60;
 constexpr int kQuietFrames = 4;
+constexpr float kDoubleClickS = 0.3F;  ///< between two clicks at most, as ImGui has it
+constexpr float kAnyTimeS = 60;
 
 const std::map<std::string, int>& keys() {
   static const std::map<std::string, int> kKeys{{"space", GLFW_KEY_SPACE},
@@ -44,11 +46,10 @@ const std::map<std::string, int>& keys() {
 const std::map<std::string, ScriptStep::Kind>& kinds() {
   using Kind = ScriptStep::Kind;
   static const std::map<std::string, Kind> kKinds{
-      {"key", Kind::kKey},       {"click", Kind::kClick},
-      {"drag", Kind::kDrag},     {"wheel", Kind::kWheel},
-      {"type", Kind::kType},     {"wait", Kind::kWait},
-      {"expect", Kind::kExpect}, {"screenshot", Kind::kScreenshot},
-      {"pause", Kind::kPause},   {"quit", Kind::kQuit}};
+      {"key", Kind::kKey},     {"click", Kind::kClick},   {"doubleclick", Kind::kDoubleClick},
+      {"drag", Kind::kDrag},   {"wheel", Kind::kWheel},   {"type", Kind::kType},
+      {"wait", Kind::kWait},   {"expect", Kind::kExpect}, {"screenshot", Kind::kScreenshot},
+      {"pause", Kind::kPause}, {"quit", Kind::kQuit}};
   return kKinds;
 }
 
@@ -79,13 +80,15 @@ Result<std::vector<ScriptStep>> parse_script(std::string_view text, const std::s
     const std::string place = where + ":" + std::to_string(number);
     const auto kind = kinds().find(verb);
     if (kind == kinds().end()) {
-      return fail(ErrorKind::kUsage, "there is no step '" + verb + "'", place,
-                  "it is key, click, drag, wheel, type, wait, expect, screenshot, pause or quit");
+      return fail(
+          ErrorKind::kUsage, "there is no step '" + verb + "'", place,
+          "it is key, click, doubleclick, drag, wheel, type, wait, expect, screenshot, pause or quit");
     }
     ScriptStep step;
     step.kind = kind->second;
     step.line = number;
     using Kind = ScriptStep::Kind;
+    const bool is_click = step.kind == Kind::kClick || step.kind == Kind::kDoubleClick;
     std::size_t wants = 0;  // numbers
     if (step.kind == Kind::kType || step.kind == Kind::kScreenshot) {
       step.name = rest_of(words);
@@ -96,8 +99,7 @@ Result<std::vector<ScriptStep>> parse_script(std::string_view text, const std::s
       std::string word;
       while (words >> word) {
         const auto value = number_of(word);
-        const bool named =
-            step.kind == Kind::kWait || step.kind == Kind::kExpect || step.kind == Kind::kClick;
+        const bool named = step.kind == Kind::kWait || step.kind == Kind::kExpect || is_click;
         if (!value && named && word != "right" && step.numbers.empty()) {
           step.name += ' ' + word;  // of several words
           continue;
@@ -114,7 +116,7 @@ Result<std::vector<ScriptStep>> parse_script(std::string_view text, const std::s
       wants = step.kind == Kind::kDrag ? 4 : step.kind == Kind::kWheel || step.kind == Kind::kPause ? 1 : 0;
     }
     const bool nameless = step.name.empty() && step.kind != Kind::kPause && step.kind != Kind::kQuit;
-    const bool odd_click = step.kind == Kind::kClick && step.numbers.size() != 0 && step.numbers.size() != 2;
+    const bool odd_click = is_click && step.numbers.size() != 0 && step.numbers.size() != 2;
     if (nameless || step.numbers.size() < wants || odd_click) {
       return fail(ErrorKind::kUsage, "step '" + verb + "' says too little", place,
                   "see docs/operators/window_scripts.md");
@@ -194,6 +196,19 @@ void ScriptPlayer::inject(const UiContext& ui, double now_s) {
       io.MousePos = pointer_;
       io.MouseDown[button] = frame_ == 2 || frame_ == 3;
       if (++frame_ > 6) {
+        go_on();
+      }
+      return;
+    }
+    case Kind::kDoubleClick: {
+      if (frame_ == 0 && !place_of(ui, 0, pointer_)) {
+        return;
+      }
+      io.MousePos = pointer_;
+      io.MouseDown[button] = frame_ == 2 || frame_ == 3 || frame_ == 5 || frame_ == 6;
+      // Hands are as fast on any machine; frames are not.
+      io.MouseDoubleClickTime = frame_ >= 5 && frame_ <= 6 ? kAnyTimeS : kDoubleClickS;
+      if (++frame_ > 9) {
         go_on();
       }
       return;

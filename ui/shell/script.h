@@ -16,7 +16,19 @@ namespace dubsar::ui {
 
 /// One line of a script: what a person would do, or what they would wait for.
 struct ScriptStep {
-  enum class Kind { kKey, kClick, kDrag, kWheel, kType, kWait, kExpect, kScreenshot, kPause, kQuit };
+  enum class Kind {
+    kKey,
+    kClick,
+    kDoubleClick,
+    kDrag,
+    kWheel,
+    kType,
+    kWait,
+    kExpect,
+    kScreenshot,
+    kPause,
+    kQuit
+  };
   Kind kind = Kind::kQuit;
   std::string name;             ///< of a key, a target, a fact or a file; the text to type
   std::vector<double> numbers;  ///< places within the target, parts of its size; seconds to wait

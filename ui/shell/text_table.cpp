@@ -174,7 +174,7 @@ constexpr Row kRows[] = {
      "For each pose of the board, which stays where it is: one picture of it lit, one with the laser on, one "
      "with the laser off. Then the board on the stage, at several positions. Then work it out: what is next "
      "stands below.",
-     "Für jede Lage der Tafel mit dem Muster, die liegen bleibt: ein Bild beleuchtet, eines mit Laser, eines "
+     "Für jede Lage des Musters, das dabei liegen bleibt: ein Bild beleuchtet, eines mit Laser, eines "
      "ohne. Dann das Muster auf dem Tisch, an mehreren Stellungen. Dann auswerten: was als Nächstes kommt, "
      "steht unten."},
     {Text::kPictureFolder, "Folder of the pictures", "Ordner der Bilder"},

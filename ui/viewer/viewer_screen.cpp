@@ -120,7 +120,6 @@ void ViewerScreen::take_state(UiContext& ui) {
 }
 
 void ViewerScreen::look_at(Face face) {
-  clicked_px_.clear();
   camera_.eye_from_model = eye_towards(face, state_.tablet_from_model);
   camera_.fit(prepared_.shown().box_mm, aspect_);
   untouched_ = true;
@@ -222,19 +221,16 @@ void ViewerScreen::use_pointer(ImVec2 origin, ImVec2 size) {
   const ImGuiIO& io = ImGui::GetIO();
   if (use_hand(origin, size, camera_, look_, dragged_)) {
     untouched_ = false;
-    clicked_px_.clear();  // of another view
   }
-  if (dragged_ && ImGui::IsItemActive()) {
-    drop_polygon();  // it was drawn over another view
+  drop_what_is_of_another_view(size);
+  if (ImGui::IsItemActivated()) {  // ImGui says it at the press, a click counts at the release
+    double_clicked_ = ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left);
   }
   if (ImGui::IsItemDeactivated() && !dragged_ && ImGui::IsMouseReleased(ImGuiMouseButton_Left)) {
     const Eigen::Vector2f px(io.MousePos.x - origin.x, io.MousePos.y - origin.y);
-    if (tool_ == Tool::kSelect && !polygon_closed_) {
-      if (ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left) ||
-          (!polygon_.empty() && (polygon_.front() - px).norm() < 8)) {
-        polygon_closed_ = true;
-      } else {
-        polygon_.push_back(px);
+    if (tool_ == Tool::kSelect) {
+      if (!polygon_closed_) {
+        add_corner(px);
       }
     } else if (takes_places()) {
       clicked_px_.push_back(px);
@@ -245,6 +241,17 @@ void ViewerScreen::use_pointer(ImVec2 origin, ImVec2 size) {
       choose(wedge_at(px, size), false);
       scroll_to_wedge_ = wedge_ >= 0;
     }
+  }
+}
+
+/// Clicks and corners are pixels: turned, moved, nearer or in a picture of another size they would be other
+/// places. Whatever moves the camera between two frames is noticed here, before they are used.
+void ViewerScreen::drop_what_is_of_another_view(ImVec2 size) {
+  if (clicked_camera_ != camera_ || clicked_size_.x != size.x || clicked_size_.y != size.y) {
+    clicked_camera_ = camera_;
+    clicked_size_ = size;
+    clicked_px_.clear();
+    drop_polygon();
   }
 }
 

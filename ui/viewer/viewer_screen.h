@@ -47,6 +47,7 @@ class ViewerScreen {
   void draw_foot(UiContext& ui);
   void draw_surface(UiContext& ui, ImVec2 size);
   void use_pointer(ImVec2 origin, ImVec2 size);
+  void drop_what_is_of_another_view(ImVec2 size);
   void draw_wedges(UiContext& ui, ImVec2 origin, ImVec2 size) const;
   void draw_tape(UiContext& ui, ImVec2 origin, ImVec2 size) const;
   // viewer_section.cpp
@@ -62,6 +63,7 @@ class ViewerScreen {
     double mm2 = 0;
   };
   void go_on_selecting(UiContext& ui);
+  void add_corner(const Eigen::Vector2f& px);
   void drop_polygon();
   [[nodiscard]] bool selects() const;
   void choose_marked(const SelectionMarks& marks);
@@ -111,6 +113,8 @@ class ViewerScreen {
   std::vector<Eigen::Vector2f> clicked_px_;  ///< places that are read off once the whole surface stands there
   std::vector<Eigen::Vector3f> tape_;        ///< up to two places
   std::vector<Eigen::Vector2f> polygon_;     ///< corners so far, pixels of the picture
+  OrbitCamera clicked_camera_;               ///< of these clicks and corners, and the picture's size
+  ImVec2 clicked_size_;
   SelectionStep step_ = SelectionStep::kUnion;
   bool visible_only_ = true;
   MeshElement select_of_ = MeshElement::kFace;
@@ -121,6 +125,7 @@ class ViewerScreen {
   double selected_mm2_ = 0;              ///< of faces
   std::string selection_name_;
   std::set<std::filesystem::path> handed_out_;  ///< names of files that are perhaps not written yet
+  std::filesystem::path section_file_;          ///< that was asked for last
   std::vector<std::filesystem::path> seen_written_;
   std::shared_ptr<const std::vector<Wedge>> seen_wedges_;
   std::vector<int> marked_;  ///< wedges that a correction is about, as in the table
@@ -132,7 +137,8 @@ class ViewerScreen {
   std::vector<ShownPin> pins_;  ///< of the session's model
   bool show_pins_ = true;
   bool dragged_ = false;
-  bool untouched_ = true;  ///< the view is still as it was set up
+  bool double_clicked_ = false;  ///< the click that is under way is the second of two
+  bool untouched_ = true;        ///< the view is still as it was set up
   float aspect_ = 1.5F;
   int dpi_ = 600;
   std::optional<StillPicture> still_;  ///< that is being drawn

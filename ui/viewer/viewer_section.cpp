@@ -26,21 +26,35 @@ double exaggeration(double fits) {
 void ViewerScreen::cut_between_places() {
   const Eigen::Vector3f towards = camera_.eye_from_model.conjugate() * Eigen::Vector3f::UnitZ();
   viewing_.cut(tape_[0].cast<double>(), tape_[1].cast<double>(), towards.cast<double>());
+  state_.section.reset();  // of other places; the rest of this frame is drawn without it
+  state_.section_due = true;
 }
 
 void ViewerScreen::draw_section_panel(UiContext& ui) {
   coloured_text(ui.colours.faint, ui.text(Text::kSectionHint));
-  if (!state_.section || tape_.size() != 2) {
+  if (tape_.size() != 2) {
+    return;
+  }
+  if (state_.section_due) {
+    ui.facts.insert("section-due");
+    coloured_text(ui.colours.faint, "...");
+    return;
+  }
+  if (!state_.section) {  // it was stopped while it waited, or cannot be made, which the foot says
+    tape_.clear();
     return;
   }
   const CrossSection& section = *state_.section;
   ui.facts.insert("section");
   coloured_text(ui.colours.text,
                 filled(ui.text(Text::kSectionLine), section.length_mm, -section.lowest_mm).c_str());
-  if (plain_button(ui, "keep-section", ui.text(Text::kKeepSection), !section.lines.empty())) {
-    const std::filesystem::path stem = unused_file("section", ".csv").replace_extension();
-    viewing_.keep_section(stem);
-    picture_note_ = filled(ui.text(Text::kPictureKept), (std::filesystem::path(stem) += ".svg").string());
+  if (plain_button(ui, "keep-section", ui.text(Text::kKeepSection),
+                   !section.lines.empty() && state_.stage.empty())) {
+    section_file_ = unused_file("section", ".csv");
+    viewing_.keep_section(std::filesystem::path(section_file_).replace_extension());
+  }
+  if (!state_.written.empty() && state_.written.front() == section_file_) {
+    ui.facts.insert("section-kept");
   }
 }
 

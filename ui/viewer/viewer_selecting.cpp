@@ -70,6 +70,17 @@ void ViewerScreen::go_on_selecting(UiContext& ui) {
   }
 }
 
+/// The first corner again closes the polygon, and so does a double click, whose first click was a corner.
+void ViewerScreen::add_corner(const Eigen::Vector2f& px) {
+  constexpr std::size_t kFewestCorners = 3;
+  constexpr float kSamePlacePx = 8;
+  if (polygon_.empty() || !(double_clicked_ || (polygon_.front() - px).norm() < kSamePlacePx)) {
+    polygon_.push_back(px);
+  } else {
+    polygon_closed_ = polygon_.size() >= kFewestCorners;
+  }
+}
+
 void ViewerScreen::drop_polygon() {
   polygon_.clear();
   polygon_closed_ = false;
@@ -146,6 +157,7 @@ void ViewerScreen::take_chosen(Chosen chosen) {
 
 void ViewerScreen::draw_selecting(UiContext& ui) {
   coloured_text(ui.colours.faint, ui.text(Text::kSelectHint));
+  ui.facts.insert(fmt::format("corners.{}", polygon_.size()));
   const auto of = [&](const char* name, Text text, MeshElement which) {
     if (ImGui::RadioButton(ui.text(text), select_of_ == which) && select_of_ != which) {
       clear_selected();
