@@ -65,6 +65,7 @@ class StampedWork {
                                      const JobContext& job) const;
 
   [[nodiscard]] const std::filesystem::path& stamp() const { return stamp_; }
+  [[nodiscard]] const std::vector<StampedFile>& inputs() const { return made_.inputs; }
 
  private:
   StampedWork(std::filesystem::path stamp, DoneStamp made)

@@ -17,22 +17,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The poses of the scans that stand, as plan_again() takes them.
-Result<std::vector<ScanPose>> standing_poses(const SessionStore& store) {
-  const auto scans = store.scans();
-  if (!scans) {
-    return std::unexpected(scans.error());
-  }
-  Result<std::vector<ScanPose>> poses = store.poses();
-  if (poses) {
-    std::erase_if(*poses, [&](const ScanPose& pose) {
-      const auto scan = std::ranges::find(*scans, pose.id, &StoredScan::id);
-      return scan == scans->end() || scan->dropped || scan->damaged;
-    });
-  }
-  return poses;
-}
-
 /// A file of the session's export folder, when it is what was recorded.
 std::optional<std::string> recorded(const SessionStore& store, const VerifyReport& whole, const char* name) {
   const std::string file = std::string("export/") + name;

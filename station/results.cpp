@@ -26,17 +26,6 @@ namespace {
 constexpr const char* kRun = "run";
 constexpr const char* kModel = "model";
 
-/// What a mesh depends on: program, and which scans lie where, how certainly.
-std::string origin_of_mesh(std::vector<ScanPose> poses) {
-  std::erase_if(poses, [](const ScanPose& pose) { return pose.status != PoseStatus::kRegistered; });
-  std::ranges::sort(poses, {}, &ScanPose::id);
-  OrderedJson places = OrderedJson::array();
-  for (const ScanPose& pose : poses) {
-    places.push_back({pose.id, json_of(pose.model_from_scanner), pose.sigma_mm});
-  }
-  return sha256_hex(program_name() + "\n" + text_of(places));
-}
-
 /// How well the planner knew what a scan would clear; nothing where none was asked for.
 std::optional<std::string> prediction_sentence(const std::vector<ViewGain>& gains) {
   std::vector<double> off;
@@ -243,8 +232,34 @@ Status keep_verdict(SessionStore& store, const RedMap& red_map, const Checklist&
   return store.save_document("checklist", checklist_to_json(checklist));
 }
 
-std::optional<Mesh> stored_mesh(const SessionStore& store, const std::vector<ScanPose>& poses,
-                                JobContext& job) {
+Result<std::vector<ScanPose>> standing_poses(const SessionStore& store) {
+  const auto scans = store.scans();
+  if (!scans) {
+    return std::unexpected(scans.error());
+  }
+  Result<std::vector<ScanPose>> poses = store.poses();
+  if (poses) {
+    std::erase_if(*poses, [&](const ScanPose& pose) {
+      const auto scan = std::ranges::find(*scans, pose.id, &StoredScan::id);
+      return scan == scans->end() || scan->dropped || scan->damaged;
+    });
+  }
+  return poses;
+}
+
+std::string origin_of_mesh(std::vector<ScanPose> poses) {
+  std::erase_if(poses, [](const ScanPose& pose) { return pose.status != PoseStatus::kRegistered; });
+  std::ranges::sort(poses, {}, &ScanPose::id);
+  OrderedJson places = OrderedJson::array();
+  for (const ScanPose& pose : poses) {
+    places.push_back({pose.id, json_of(pose.model_from_scanner), pose.sigma_mm});
+  }
+  return sha256_hex(program_name() + "\n" + text_of(places));
+}
+
+Result<std::optional<std::filesystem::path>> stored_mesh_file(const SessionStore& store,
+                                                              const std::vector<ScanPose>& poses,
+                                                              JobContext& job) {
   const auto text = store.load_document(kModel);
   if (!text || !*text) {
     return std::nullopt;
@@ -260,10 +275,19 @@ std::optional<Mesh> stored_mesh(const SessionStore& store, const std::vector<Sca
     return std::nullopt;
   }
   const Result<std::string> now = sha256_of_file(store.folder() / file, job);
-  if (!now || *now != sum) {
+  if (!now && now.error().kind == ErrorKind::kCancelled) {
+    return std::unexpected(now.error());
+  }
+  return now && *now == sum ? std::optional(store.folder() / file) : std::nullopt;
+}
+
+std::optional<Mesh> stored_mesh(const SessionStore& store, const std::vector<ScanPose>& poses,
+                                JobContext& job) {
+  const auto file = stored_mesh_file(store, poses, job);
+  if (!file || !*file) {
     return std::nullopt;
   }
-  Result<Mesh> mesh = read_mesh(store.folder() / file);
+  Result<Mesh> mesh = read_mesh(**file);
   return mesh ? std::optional(std::move(*mesh)) : std::nullopt;
 }
 

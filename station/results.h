@@ -2,6 +2,8 @@
 // Copyright The Dubsar developers
 #pragma once
 
+#include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -57,6 +59,16 @@ struct PageFacts {
 
 /// Red map and checklist into the session's documents.
 [[nodiscard]] Status keep_verdict(SessionStore& store, const RedMap& red_map, const Checklist& checklist);
+
+/// The poses of the scans that stand: neither taken out nor damaged.
+[[nodiscard]] Result<std::vector<ScanPose>> standing_poses(const SessionStore& store);
+
+/// What a mesh depends on, as a digest: program, and which registered scans lie where, how certainly.
+[[nodiscard]] std::string origin_of_mesh(std::vector<ScanPose> poses);
+
+/// The file of stored_mesh(), which is not read as a mesh; nothing otherwise. Errors: kCancelled.
+[[nodiscard]] Result<std::optional<std::filesystem::path>> stored_mesh_file(
+    const SessionStore& store, const std::vector<ScanPose>& poses, JobContext& job);
 
 /// The session's stored mesh, when it was stitched of just these registered scans in just these places by
 /// this program, and its file is as it was stored; nothing otherwise.

@@ -12,10 +12,12 @@
 
 #include "acquisition/session_store.h"
 #include "formats/atomic_file.h"
+#include "formats/json_node.h"
 #include "station/command/command.h"
 #include "station/command/outputs.h"
 #include "station/command/terminal.h"
 #include "station/done_stamp.h"
+#include "station/earlier_package.h"
 #include "station/package.h"
 
 namespace dubsar {
@@ -31,6 +33,7 @@ struct ExportArguments {
   std::string base_url;
   std::string ground = "black";
   bool force = false;
+  bool update = false;
 };
 
 /// Every file below a folder but those to be passed over, in order.
@@ -106,9 +109,26 @@ int tell_done(const ExportArguments& arguments, const CommandContext& context) {
   return 0;
 }
 
+/// The stamp as it lies there; empty where none does.
+std::string stamp_text(const StampedWork& work) {
+  std::error_code none;
+  const Result<std::string> text = fs::is_regular_file(work.stamp(), none)
+                                       ? read_whole_file(work.stamp(), kMaxJsonBytes)
+                                       : Result<std::string>();
+  return text.value_or(std::string());
+}
+
+/// Nothing was done: the stamp says again what it said before, for what lies there is what lay there.
+void take_back(const StampedWork& work, const std::string& before) {
+  if (before.empty() || !write_file_atomically(work.stamp(), before)) {
+    (void)work.start();  // a stamp that stays all the same fits nothing that is there
+  }
+}
+
 Result<int> export_session(const ExportArguments& arguments, CommandContext& context) {
   std::error_code ignored;
   std::optional<StampedWork> work;
+  bool replace = arguments.force;
   if (SessionStore::is_session(arguments.session)) {
     Result<StampedWork> begun = begin_work(arguments, context.job);
     if (!begun) {
@@ -122,14 +142,21 @@ Result<int> export_session(const ExportArguments& arguments, CommandContext& con
     if (*done) {
       return tell_done(arguments, context);
     }
-    if (arguments.force || !fs::exists(arguments.to, ignored)) {
+    // Whatever is replaced keeps its stamp until the new one is whole.
+    if (!fs::exists(arguments.to, ignored)) {
       if (const Status started = work->start(); !started) {
         return std::unexpected(started.error());
       }
+    } else if (arguments.update && !replace) {
+      const Result<bool> earlier = is_earlier_package(target_of(arguments), *work, context.job);
+      if (!earlier) {
+        return std::unexpected(earlier.error());
+      }
+      replace = *earlier;
     }
   }
   PackageOptions options;
-  options.replace = arguments.force;
+  options.replace = replace;
   options.base_url = arguments.base_url;
   options.white_ground = arguments.ground == "white";
   for (const PackagePart part : all_package_parts()) {
@@ -138,6 +165,7 @@ Result<int> export_session(const ExportArguments& arguments, CommandContext& con
     }
   }
   bool stamped = false;
+  const std::string before = work ? stamp_text(*work) : std::string();
   if (work) {
     options.before_publishing = [&](const fs::path& staged) -> Status {
       const auto outputs = files_below(staged, [](const fs::path&) { return false; });
@@ -151,7 +179,7 @@ Result<int> export_session(const ExportArguments& arguments, CommandContext& con
   const Result<Package> package = write_package(arguments.session, arguments.to, options, context.job);
   if (!package) {
     if (stamped) {
-      (void)work->start();  // nothing was done; a stamp that stays all the same fits nothing that is there
+      take_back(*work, before);
     }
     return std::unexpected(package.error());
   }
@@ -201,6 +229,10 @@ void add_export(CLI::App& app, Action& chosen) {
       ->capture_default_str();
   verb->add_flag("--force", arguments->force,
                  "replace a package that lies there already, done before or not");
+  verb->add_flag(
+      "--update", arguments->update,
+      "replace a package that lies there already where it is whole and its stamp says that it is of "
+      "an earlier state of this session");
   verb->callback([&chosen, arguments] {
     chosen = outside_sessions({arguments->to},
                               [arguments](CommandContext& c) { return export_session(*arguments, c); });

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright The Dubsar developers
 // dubsar session list | undo | drop | restore: what the operator does to a scan (hint, lock and unlock:
-// session_hint.cpp).
+// session_hint.cpp; mesh: session_mesh.cpp).
 
 #include <cstdio>
 #include <memory>
@@ -203,6 +203,7 @@ void add_session(CLI::App& app, Action& chosen) {
   })->add_option("--why", options->why, "the reason");
   add_describe(*verb, chosen);
   add_session_hints(*verb, chosen);
+  add_session_mesh(*verb, chosen);
   add_session_sign(*verb, chosen);
   add("restore", "Put a dropped scan back", true, [](const SessionOptions& o, CommandContext& c) {
     return change(o, c, "back in its place", [&o](SessionStore& store) -> Result<int> {

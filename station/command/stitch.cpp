@@ -16,8 +16,10 @@
 #include "station/command/command.h"
 #include "station/command/outputs.h"
 #include "station/command/scan_set_options.h"
+#include "station/done_stamp.h"
 #include "station/mesh_json.h"
 #include "station/offline.h"
+#include "station/results.h"
 #include "triangulation/mesh_check.h"
 #include "triangulation/stitcher.h"
 
@@ -110,7 +112,59 @@ Result<Taken> take_registered(const ScanSetArguments& arguments, Stitcher& stitc
   return Taken{placed.size(), false};
 }
 
-Result<int> stitch_all(const ScanSetArguments& arguments, CommandContext& context) {
+struct StitchArguments {
+  ScanSetArguments set;
+  bool unless_done = false;
+};
+
+/// Stamped work is told by the grids and where the session has them lie. Nothing where that does not decide
+/// the mesh: a folder is registered anew, and so is a session with a scan that has not been judged yet.
+Result<std::optional<StampedWork>> begin_work(const StitchArguments& arguments, CommandContext& context) {
+  const std::filesystem::path session = arguments.set.path;
+  if (!arguments.unless_done || !SessionStore::is_session(session)) {
+    return std::nullopt;
+  }
+  const Result<SessionStore> store = SessionStore::open(session, SessionStore::Access::kReadOnly);
+  if (!store) {
+    return std::unexpected(store.error());
+  }
+  const auto scans = store->scans();
+  if (!scans) {
+    return std::unexpected(scans.error());
+  }
+  const Result<std::vector<ScanPose>> poses = standing_poses(*store);
+  if (!poses) {
+    return std::unexpected(poses.error());
+  }
+  std::vector<std::filesystem::path> grids;
+  for (const StoredScan& scan : *scans) {
+    if (scan.dropped || scan.damaged) {
+      continue;
+    }
+    std::error_code gone;
+    grids.push_back(session / scan.file);
+    if (std::ranges::find(*poses, scan.id, &ScanPose::id) == poses->end() ||
+        !std::filesystem::is_regular_file(grids.back(), gone)) {
+      return std::nullopt;
+    }
+  }
+  const nlohmann::ordered_json parameters{
+      {"out", std::filesystem::path(arguments.set.out).filename().string()},
+      {"origin", origin_of_mesh(*poses)}};
+  return StampedWork::begin(stamp_beside(arguments.set.out), "stitch", parameters.dump(), grids, context.job);
+}
+
+int tell_done(const StitchArguments& arguments, const CommandContext& context) {
+  if (context.json) {
+    CommandContext::print({{"mesh", arguments.set.out}, {"done_before", true}});
+  } else {
+    finish_progress();
+    std::printf("%s: done before, of the scans as they stand\n", arguments.set.out.c_str());
+  }
+  return 0;
+}
+
+Result<int> stitch_all(const ScanSetArguments& arguments, const StampedWork* work, CommandContext& context) {
   auto stitcher = std::make_unique<Stitcher>();
   const bool has_poses = !arguments.poses.empty() || SessionStore::is_session(arguments.path);
   Result<Taken> taken = has_poses ? take_scan_by_scan(arguments, *stitcher, context)
@@ -137,8 +191,14 @@ Result<int> stitch_all(const ScanSetArguments& arguments, CommandContext& contex
   if (!mesh) {
     return std::unexpected(mesh.error());
   }
+  if (const Status started = work != nullptr ? work->start() : Status(); !started) {
+    return std::unexpected(started.error());
+  }
   if (const Status written = write_mesh(arguments.out, *mesh); !written) {
     return std::unexpected(written.error());
+  }
+  if (const Status kept = work != nullptr ? work->finish({arguments.out}, context.job) : Status(); !kept) {
+    return std::unexpected(kept.error());
   }
   if (context.json) {
     nlohmann::ordered_json json{{"mesh", arguments.out}, {"scans", taken->scans}};
@@ -153,16 +213,35 @@ Result<int> stitch_all(const ScanSetArguments& arguments, CommandContext& contex
   return 0;
 }
 
+Result<int> stitch(const StitchArguments& arguments, CommandContext& context) {
+  const Result<std::optional<StampedWork>> work = begin_work(arguments, context);
+  if (!work) {
+    return std::unexpected(work.error());
+  }
+  const Result<bool> done = *work ? (*work)->done(context.job) : false;
+  if (!done) {
+    return std::unexpected(done.error());
+  }
+  return *done ? tell_done(arguments, context)
+               : stitch_all(arguments.set, *work ? &**work : nullptr, context);
+}
+
 }  // namespace
 
 void add_stitch(CLI::App& app, Action& chosen) {
   CLI::App* verb = app.add_subcommand("stitch", "One mesh of all registered scans");
-  const auto arguments = std::make_shared<ScanSetArguments>();
-  arguments->add_to(*verb, true);
-  verb->add_option("-o,--out", arguments->out, "the mesh: PLY, OBJ, STL or GLB")->required();
+  const auto arguments = std::make_shared<StitchArguments>();
+  arguments->set.add_to(*verb, true);
+  verb->add_option("-o,--out", arguments->set.out, "the mesh: PLY, OBJ, STL or GLB")->required();
+  verb->add_flag(
+          "--unless-done", arguments->unless_done,
+          "of a session: leave a stamp, and do nothing where it tells that the mesh is of the scans as "
+          "they stand")
+      ->excludes(verb->get_option("--poses"))
+      ->excludes(verb->get_option("--pins"));
   verb->callback([&chosen, arguments] {
-    chosen = outside_sessions({arguments->out},
-                              [arguments](CommandContext& c) { return stitch_all(*arguments, c); });
+    chosen = outside_sessions({arguments->set.out},
+                              [arguments](CommandContext& c) { return stitch(*arguments, c); });
   });
 }
 

@@ -204,6 +204,47 @@ TEST_F(Export, FindsItsWorkDoneUntilTheSessionOrThePackageChanges) {
   EXPECT_EQ(export_to("found", small).status, 2) << "not what was written: it is not made anew unasked";
 }
 
+TEST_F(Export, ReplacesAPackageOfAnEarlierStateOfItsSessionWhenAsked) {
+  const fs::path session = at("scanned_further");
+  fs::copy(at("session"), session, fs::copy_options::recursive);
+  const auto update = [&](const char* name) {
+    return run_command({"export", session.string(), "--to", at(name).string(), "--json", "--update",
+                        "--without", "renderings,features,wedges,grid-ply"});
+  };
+  ASSERT_EQ(update("renewed").status, 0) << "nothing lies there yet";
+  EXPECT_EQ(update("renewed").json()["done_before"], true);
+  ASSERT_EQ(run_command({"session", "drop", session.string(), "2", "--why", "hand in view"}).status, 0);
+  const Outcome asked = run_command({"export", session.string(), "--to", at("renewed").string(), "--without",
+                                     "renderings,features,wedges,grid-ply"});
+  EXPECT_EQ(asked.status, 2) << "never unasked";
+  const Outcome renewed = update("renewed");
+  ASSERT_EQ(renewed.status, 0) << renewed.err;
+  EXPECT_THAT(bytes_of(at("renewed") / "data" / "scans" / "scans.json"), HasSubstr("hand in view"));
+  EXPECT_EQ(update("renewed").json()["done_before"], true);
+  // Killed between stamp and package: the stamp says more than lies there, and it is replaced all the same.
+  std::string stamp = bytes_of(at("renewed.done"));
+  stamp[stamp.find("\"program\": \"") + 12] = '9';
+  stamp[stamp.rfind("\"xxh128\": \"") + 11] = 'x';
+  std::ofstream(at("renewed.done")) << stamp;
+  const Outcome again = update("renewed");
+  ASSERT_EQ(again.status, 0) << again.err;
+  EXPECT_FALSE(again.json().contains("done_before"));
+  // What a person changed is kept, and so is what is of another session or has lost its stamp.
+  std::ofstream(at("renewed") / "data" / "README.txt", std::ios::app) << "a note of mine";
+  EXPECT_EQ(update("renewed").status, 2);
+  EXPECT_THAT(bytes_of(at("renewed") / "data" / "README.txt"), HasSubstr("a note of mine"));
+  fs::remove_all(at("renewed"));
+  ASSERT_EQ(update("renewed").status, 0);
+  stamp = bytes_of(at("renewed.done"));
+  const std::size_t grid = stamp.find(".grid\"");
+  std::string other = stamp;
+  other[stamp.find("\"xxh128\": \"", grid) + 11] = 'z';
+  std::ofstream(at("renewed.done")) << other;
+  EXPECT_EQ(update("renewed").status, 2) << "of another session";
+  fs::remove(at("renewed.done"));
+  EXPECT_EQ(update("renewed").status, 2) << "without a stamp";
+}
+
 /// Killed in the very step between taking its place and whatever else it would do, it has to be found done.
 TEST_F(Export, TheStampIsThereBeforeThePackageIs) {
   const fs::path to = at("stamped");

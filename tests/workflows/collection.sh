@@ -60,15 +60,43 @@ wait $worker 2>/dev/null || true
 "$DUBSAR" -q verify "$folder/museum/s" >/dev/null 2>&1 || fail "the session was changed"
 "$DUBSAR" -q verify "$folder/museum/s.results/package" >/dev/null 2>&1 || fail "the package is not whole"
 [ -z "$(find "$folder/museum/s.results" -name '.dubsar-tmp-*')" ] || fail "something was left behind"
-# The mesh of a session that has none is stitched beside it, and anew when the session has changed since.
+# The mesh that a session keeps is used while it is of its scans as they stand; else one is stitched beside it.
+packed() { DUBSAR_EXPORT=yes "$workflows/do-tablet" "$folder" museum/t 2>/dev/null; }
+wedges_of() { python3 -c 'import json, sys; print(len(json.load(open(sys.argv[1]))["wedges"]))' "$1"; }
 cp -r "$folder/museum/s" "$folder/museum/t"
-rm "$folder/museum/t/mesh/model.ply"
-DUBSAR_EXPORT=no "$workflows/do-tablet" "$folder" museum/t 2>/dev/null || fail "a session without a mesh"
-cp "$folder/museum/t.results/mesh.ply" "$folder/before.ply"
+log=$folder/log/museum/t.log
+DUBSAR_EXPORT=no "$workflows/do-tablet" "$folder" museum/t 2>/dev/null || fail "a copied session"
+[ ! -e "$folder/museum/t.results/mesh.ply" ] || fail "the session's own mesh was stitched again"
+cp "$folder/museum/t.results/wedges.json.done" "$folder/before.done"
 "$DUBSAR" -q session drop "$folder/museum/t" 1 >/dev/null 2>&1 || fail "drop"
 DUBSAR_EXPORT=no "$workflows/do-tablet" "$folder" museum/t 2>/dev/null || fail "a session with a scan less"
-! cmp -s "$folder/before.ply" "$folder/museum/t.results/mesh.ply" || fail "the mesh is of a scan that was taken out"
-rm -r "$folder/museum/t" "$folder/museum/t.results" "$folder/before.ply"
+! cmp -s "$folder/before.done" "$folder/museum/t.results/wedges.json.done" || fail "the wedges are of a scan that was taken out"
+[ "$(tail -n 1 "$log" | grep -c ' analyze end$')" = 1 ] || fail "wedges of a scan that was taken out: $(cat "$log")"
+DUBSAR_EXPORT=no "$workflows/do-tablet" "$folder" museum/t 2>/dev/null || fail "a session with a scan less, again"
+[ "$(grep -c ' stitch end$' "$log")" = 1 ] || fail "the mesh was stitched again: $(cat "$log")"
+[ "$(grep -c ' stitch found-done$' "$log")" = 1 ] || fail "the mesh was not found done: $(cat "$log")"
+cp "$folder/museum/t.results/mesh.ply" "$folder/before.ply"
+"$DUBSAR" -q export "$folder/museum/t" --to "$folder/fresh" --without renderings,features >/dev/null 2>&1 || fail "export"
+if command -v python3 >/dev/null; then
+  [ "$(wedges_of "$folder/museum/t.results/wedges.json")" = "$(wedges_of "$folder/fresh/data/wedges/wedges.json")" ] ||
+    fail "the workflow and export count other wedges"
+fi
+cmp -s "$folder/before.ply" "$folder"/fresh/data/model/*.ply || fail "the workflow and export stitch other meshes"
+# Its package follows: an earlier one goes when the new one is whole, one that somebody changed stays.
+cp -r "$folder/museum/s.results/package" "$folder/museum/s.results/package.done" "$folder/museum/t.results/"
+packed || fail "the package of a session that has changed: $(cat "$log")"
+[ "$(tail -n 1 "$log" | grep -c ' export end$')" = 1 ] || fail "the package of a session that has changed: $(cat "$log")"
+cmp -s "$folder/before.ply" "$folder"/museum/t.results/package/data/model/*.ply || fail "the package has another mesh"
+packed || fail "the package of a session that has changed, again"
+[ "$(tail -n 1 "$log" | grep -c ' export found-done$')" = 1 ] || fail "the new package was not found done: $(cat "$log")"
+"$DUBSAR" -q session restore "$folder/museum/t" 1 >/dev/null 2>&1 || fail "restore"
+"$DUBSAR" -q session drop "$folder/museum/t" 0 >/dev/null 2>&1 || fail "drop"
+DUBSAR_EXPORT=no "$workflows/do-tablet" "$folder" museum/t 2>/dev/null || fail "a session with another scan less"
+! cmp -s "$folder/before.ply" "$folder/museum/t.results/mesh.ply" || fail "the mesh beside is of a scan that was taken out"
+printf 'mine' >>"$folder/museum/t.results/package/data/README.txt"
+packed && fail "a package that somebody changed was replaced"
+grep -q mine "$folder/museum/t.results/package/data/README.txt" || fail "a package that somebody changed is gone"
+rm -r "$folder/museum/t" "$folder/museum/t.results" "$folder/before.ply" "$folder/before.done" "$folder/fresh"
 listed=$("$workflows/list-tablets" "$folder")
 [ "$listed" = $'museum/a b\nmuseum/s' ] || fail "list-tablets: $listed"
 if command -v xxhsum >/dev/null && command -v python3 >/dev/null; then

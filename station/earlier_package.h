@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <filesystem>
+
+#include "core/job.h"
+#include "core/result.h"
+#include "station/done_stamp.h"
+
+namespace dubsar {
+
+/// Whether the package may go for the one that `now` makes: it is whole by its own checksums, and the stamp
+/// beside it says that it was made of this very session when that held the same scans or fewer, by whatever
+/// version and with whatever options. A package that somebody changed, one of another session, and one that
+/// holds a scan which the session has lost since, may not. Reads every byte of it. Errors: kCancelled.
+[[nodiscard]] Result<bool> is_earlier_package(const std::filesystem::path& package, const StampedWork& now,
+                                              JobContext& job);
+
+}  // namespace dubsar
