@@ -2,6 +2,7 @@
 // Copyright The Dubsar developers
 #include "acquisition/rig_device.h"
 #include "station/engine_impl.h"
+#include "station/verification.h"
 
 namespace dubsar {
 
@@ -73,6 +74,13 @@ Status Engine::Impl::open(JobContext& job) {
   }
   if (rig) {
     if (const Status saved = store->save_document("rig", rig_to_json(*rig)); !saved) {
+      return saved;
+    }
+  }
+  // As it stands today: its file may be written anew before the tablet is exported. Each keeps its own place.
+  if (const auto calibration = calibration_file_of(options.device)) {
+    if (const Status saved = store->save_document("calibration " + calibration->made_at, calibration->json);
+        !saved) {
       return saved;
     }
   }

@@ -101,7 +101,7 @@ Result<VerifyOutcome> verify_rig(const VerifyRequest& request, JobContext& job) 
   return out;
 }
 
-std::optional<RigCare> care_of(const std::string& device_uri) {
+std::optional<CalibrationFile> calibration_file_of(const std::string& device_uri) {
   constexpr std::string_view kScheme = "rig:";
   if (!device_uri.starts_with(kScheme)) {
     return std::nullopt;
@@ -112,16 +112,26 @@ std::optional<RigCare> care_of(const std::string& device_uri) {
   if (!rig) {
     return std::nullopt;
   }
-  RigCare care;
   const std::filesystem::path beside = file.parent_path() / rig->calibration;
-  care.calibration = beside.string();
-  const Result<RigCalibration> calibration = calibration_in(beside);
+  const Result<std::string> json = read_whole_file(beside);
+  const Result<RigCalibration> calibration =
+      json ? parse_calibration(*json, beside.string()) : std::unexpected(json.error());
   if (!calibration) {
     return std::nullopt;
   }
+  return CalibrationFile{beside, *json, calibration->made_at};
+}
+
+std::optional<RigCare> care_of(const std::string& device_uri) {
+  const std::optional<CalibrationFile> file = calibration_file_of(device_uri);
+  if (!file) {
+    return std::nullopt;
+  }
+  RigCare care;
+  care.calibration = file->path.string();
   // A log that cannot be read says nothing of the rig: it is due.
-  const Result<VerificationLog> log = read_verification_log(verification_log_of(beside));
-  if (log && !log->entries.empty() && log->entries.back().calibration == calibration->made_at) {
+  const Result<VerificationLog> log = read_verification_log(verification_log_of(file->path));
+  if (log && !log->entries.empty() && log->entries.back().calibration == file->made_at) {
     care.last = log->entries.back();
     care.age_days = days_since(care.last->when);
   }

@@ -47,7 +47,15 @@ struct RigCare {
   }
 };
 
+/// The file that turns a rig's pictures into millimetres, as it stands.
+struct CalibrationFile {
+  std::filesystem::path path;
+  std::string json;     ///< all of it (docs/formats/calibration.md)
+  std::string made_at;  ///< ISO 8601, UTC
+};
+
 /// Of a device "rig:FILE"; nothing for another device, or a file that cannot be read (opening it says why).
+[[nodiscard]] std::optional<CalibrationFile> calibration_file_of(const std::string& device_uri);
 [[nodiscard]] std::optional<RigCare> care_of(const std::string& device_uri);
 
 }  // namespace dubsar

@@ -16,6 +16,7 @@
 #include "formats/grid_ply.h"
 #include "formats/verification_log.h"
 #include "sim/frame_rig.h"
+#include "station/verification.h"
 #include "tests/station/support/command.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/ui/support/display.h"
@@ -172,6 +173,16 @@ TEST_F(CalibrationBox, PicturesOfABoardBecomeACalibrationOrAreRefusedWithTheReas
   ASSERT_TRUE(calibration.has_value());
   EXPECT_FALSE(calibration->has_laser);
   EXPECT_LT(calibration->quality.corner_rms_px, 0.5);
+}
+
+TEST_F(CalibrationBox, OfARigIsItsFileAsItStands) {
+  const auto file = calibration_file_of("rig:" + at("rig.toml").string());
+  ASSERT_TRUE(file.has_value());
+  EXPECT_EQ(file->made_at, "2026-01-02T03:04:05Z");
+  EXPECT_EQ(file->json, read_whole_file(at("calibration.json")).value());
+  EXPECT_FALSE(calibration_file_of("sim:?seed=1").has_value());
+  fs::remove(at("calibration.json"));
+  EXPECT_FALSE(calibration_file_of("rig:" + at("rig.toml").string()).has_value());
 }
 
 TEST_F(CalibrationBox, PicturesAreTakenThroughTheCamera) {
