@@ -10,6 +10,7 @@
 #include <csignal>
 #include <fstream>
 #include <map>
+#include <regex>
 #include <thread>
 
 #include "acquisition/session_store.h"
@@ -94,6 +95,28 @@ TEST_F(Export, PacksEverythingWhateverTheVerdictSays) {
       EXPECT_TRUE(readme.find("  " + name + "\n") != std::string::npos ||
                   readme.find("  " + name.substr(0, name.rfind('/') + 1) + "\n") != std::string::npos)
           << file << " is not explained";
+    }
+  }
+}
+
+TEST_F(Export, EveryFormOfItsOwnIsDescribedAndEveryLinkLeadsSomewhere) {
+  const std::string session = bytes_of(data("formats/session.txt"));
+  EXPECT_THAT(session, HasSubstr("scans/scans.json"));
+  for (const std::string& file : files_below(data("session"))) {
+    EXPECT_THAT(session, HasSubstr("`" + file + "`"));
+  }
+  const nlohmann::json scans = nlohmann::json::parse(bytes_of(data("scans/scans.json")))["scans"];
+  for (const auto& [key, value] : scans.at(0).items()) {
+    EXPECT_THAT(session, HasSubstr("`" + key + "`"));
+  }
+  for (const std::string& file : files_below(data("formats"))) {
+    const std::string text = bytes_of(data("formats/" + file));
+    const std::regex link("\\]\\(([^)#]*)");
+    for (std::sregex_iterator at(text.begin(), text.end(), link), end; at != end; ++at) {
+      const std::string to = (*at)[1];
+      if (!to.empty() && !to.starts_with("http")) {
+        EXPECT_TRUE(fs::exists(data("formats/" + to))) << file << " links to " << to;
+      }
     }
   }
 }
