@@ -5,6 +5,7 @@
 #include "archive/provenance.h"
 
 #include <cmath>
+#include <set>
 
 #include "formats/json_text.h"
 
@@ -90,14 +91,34 @@ OrderedJson scan_node(const ProvenanceInput& input, const ProvenanceScan& scan) 
   return node;
 }
 
+/// One node a program, named by its version where it is not the package's own.
+std::string software_id(const ProvenanceInput& input, const std::string& program) {
+  std::string id = input.base_url + "provenance/software";
+  if (program.empty() || program == input.program) {
+    return id;
+  }
+  id += '-';
+  for (const char c : program) {
+    const bool plain = (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '.';
+    id += plain ? c : '-';
+  }
+  return id;
+}
+
+OrderedJson software_node(const ProvenanceInput& input, const std::string& program) {
+  return {{"@id", software_id(input, program)}, {"@type", "crmdig:D14_Software"}, {"rdfs:label", program}};
+}
+
 OrderedJson step_node(const ProvenanceInput& input, const ProvenanceStep& step) {
-  OrderedJson node = {
-      {"@id", input.base_url + "provenance/" + step.name},
-      {"@type", "crmdig:D3_Formal_Derivation"},
-      {"rdfs:label", step.label},
-      {"crmdig:L23_used_software_or_firmware", reference(input.base_url + "provenance/software")},
-      {"crmdig:L21_used_as_derivation_source", references(input.base_url, step.from)},
-      {"crmdig:L22_created_derivative", references(input.base_url, step.made)}};
+  OrderedJson node = {{"@id", input.base_url + "provenance/" + step.name},
+                      {"@type", "crmdig:D3_Formal_Derivation"},
+                      {"rdfs:label", step.label},
+                      {"crmdig:L23_used_software_or_firmware", reference(software_id(input, step.program))},
+                      {"crmdig:L21_used_as_derivation_source", references(input.base_url, step.from)},
+                      {"crmdig:L22_created_derivative", references(input.base_url, step.made)}};
+  if (!step.note.empty()) {
+    node["crm:P3_has_note"] = step.note;
+  }
   if (!step.parameters.empty()) {
     node["crmdig:L13_used_parameters"] = dimensions(step.parameters);
   }
@@ -120,9 +141,13 @@ std::string provenance_jsonld(const ProvenanceInput& input) {
   graph.push_back({{"@id", input.base_url + "provenance/device"},
                    {"@type", "crmdig:D8_Digital_Device"},
                    {"rdfs:label", input.device.empty() ? "unknown device" : input.device}});
-  graph.push_back({{"@id", input.base_url + "provenance/software"},
-                   {"@type", "crmdig:D14_Software"},
-                   {"rdfs:label", input.program}});
+  std::set<std::string> programs{input.program};
+  for (const ProvenanceStep& step : input.steps) {
+    programs.insert(step.program.empty() ? input.program : step.program);
+  }
+  for (const std::string& program : programs) {
+    graph.push_back(software_node(input, program));
+  }
   if (!input.operator_name.empty()) {
     graph.push_back({{"@id", input.base_url + "provenance/operator"},
                      {"@type", "crm:E21_Person"},

@@ -32,6 +32,8 @@ struct ProvenanceStep {
   std::vector<std::string> made;
   std::vector<ProvenanceValue> parameters;
   std::vector<ProvenanceValue> results;  ///< errors and counts
+  std::string program{};                 ///< that did it; empty: the one that made the package
+  std::string note{};                    ///< in words, or empty
 };
 
 struct ProvenanceInput {

@@ -41,7 +41,7 @@ std::string wedge_annotations(const std::vector<Wedge>& wedges, const Annotation
   const OrderedJson generator = {{"type", "Software"}, {"name", source.program}};
   OrderedJson items = OrderedJson::array();
   for (const Wedge& wedge : wedges) {
-    const std::string id = fmt::format("{}annotations/wedge-{}", source.base_url, wedge.id);
+    const std::string id = fmt::format("{}{}#wedge-{}", source.base_url, source.page, wedge.id);
     OrderedJson bodies =
         OrderedJson::array({{{"type", "TextualBody"},
                              {"purpose", "describing"},
@@ -63,7 +63,7 @@ std::string wedge_annotations(const std::vector<Wedge>& wedges, const Annotation
   // The selector is not among those of 2017: its terms are told here, so that it stays valid JSON-LD.
   const OrderedJson terms = {{"WktSelector", "http://www.opengis.net/ont/geosparql#wktLiteral"}};
   return text_of({{"@context", OrderedJson::array({"http://www.w3.org/ns/anno.jsonld", terms})},
-                  {"id", source.base_url + "annotations"},
+                  {"id", source.base_url + source.page},
                   {"type", "AnnotationPage"},
                   {"label", "Wedges of " + source.identifier},
                   {"items", std::move(items)}});

@@ -12,6 +12,7 @@ namespace dubsar {
 /// What annotations say of themselves.
 struct AnnotationSource {
   std::string base_url;    ///< ids and the model's address begin with it; ends with a slash
+  std::string page;        ///< the file of the annotations, relative to base_url: ids are addresses in it
   std::string model;       ///< the annotated mesh, relative to base_url; its numbers are millimetres
   std::string identifier;  ///< of the tablet, for people
   std::string program;     ///< "Dubsar 0.1.0"

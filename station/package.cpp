@@ -52,17 +52,23 @@ std::string base_url(const std::string& wanted, const std::string& stem) {
   return url;
 }
 
+struct FoundWedges {
+  std::optional<WedgeFile> file;
+  bool kept = false;  ///< in the session
+};
+
 /// The session's own wedges, or, where it has none of this surface, measured now.
-Result<std::optional<WedgeFile>> wedges_of(const SessionStore& store, const Mesh& mesh,
-                                           const JobContext& job) {
+Result<FoundWedges> wedges_of(const SessionStore& store, const Mesh& mesh, const JobContext& job) {
   if (mesh.faces.empty()) {
-    return std::nullopt;
+    return FoundWedges{};
   }
   if (std::optional<WedgeFile> stored = stored_wedges(store, mesh, job)) {
-    return stored;
+    return FoundWedges{std::move(stored), true};
   }
   log_info("the session holds no wedges of this surface, corrected as it says: they are measured now");
-  return measure_wedges(mesh, session_corrections(store), job);
+  Result<std::optional<WedgeFile>> measured = measure_wedges(mesh, session_corrections(store), job);
+  return measured ? Result<FoundWedges>(FoundWedges{std::move(*measured), false})
+                  : std::unexpected(measured.error());
 }
 
 std::vector<BagField> bag_fields(const PackageContent& content) {
@@ -192,6 +198,7 @@ Result<Package> write_package(const fs::path& session, const fs::path& to, const
                          .tablet_from_model = source->tablet_from_model(),
                          .lies_by_text = false,
                          .wedges = {},
+                         .wedges_are_kept = false,
                          .fields = {},
                          .files = {},
                          .pictures = {},
@@ -199,11 +206,12 @@ Result<Package> write_package(const fs::path& session, const fs::path& to, const
                          .job = job};
   content.options.base_url = base_url(options.base_url, content.stem);
   if (content.has(PackagePart::kWedges)) {
-    Result<std::optional<WedgeFile>> wedges = wedges_of(store, mesh, job);
+    Result<FoundWedges> wedges = wedges_of(store, mesh, job);
     if (!wedges) {
       return std::unexpected(wedges.error());
     }
-    content.wedges = std::move(*wedges);
+    content.wedges = std::move(wedges->file);
+    content.wedges_are_kept = wedges->kept;
     opening.done("wedges");
   }
   if (content.wedges && content.wedges->text_from_model && content.wedges->text_certainty >= kCertainText) {

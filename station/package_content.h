@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "acquisition/session_store.h"
+#include "archive/provenance.h"
 #include "formats/wedges_json.h"
 #include "station/package.h"
 #include "station/package_features.h"
@@ -49,6 +50,7 @@ struct PackageContent {
       tablet_from_model;  ///< how the pictures lie: by the text where that is certain, else by the shape
   bool lies_by_text = false;
   std::optional<WedgeFile> wedges;
+  bool wedges_are_kept = false;         ///< as the session has them; else measured for the package
   std::optional<PackageFields> fields;  ///< see need_fields()
   std::vector<PackagedFile> files;
   std::vector<PackagedPicture> pictures;
@@ -66,6 +68,17 @@ struct PackageContent {
   [[nodiscard]] Status need_fields();
   void list(std::string path, std::string what) { files.push_back({std::move(path), std::move(what)}); }
 };
+
+/// What each step was done with (package_parameters.cpp). Thresholds are this
+/// program's: what another version went by is told only where the session keeps it.
+[[nodiscard]] std::vector<ProvenanceValue> registration_parameters(const PackageContent& content);
+[[nodiscard]] std::vector<ProvenanceValue> verdict_parameters(const PackageContent& content);
+[[nodiscard]] std::vector<ProvenanceValue> stitching_parameters(const PackageContent& content);
+[[nodiscard]] std::vector<ProvenanceValue> analysis_parameters(const PackageContent& content);
+/// Which program made what the session keeps; program_name() where that is not known.
+[[nodiscard]] std::string keeper_of(const PackageContent& content);
+/// Where inner edges end, and what a person has corrected.
+[[nodiscard]] std::string analysis_note(const WedgeFile& wedges);
 
 // The parts, in the order of the work. Each lists what it wrote. Errors: kStorage, kCancelled, and those of
 // the stages.

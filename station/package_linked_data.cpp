@@ -89,7 +89,9 @@ void add_step(const PackageContent& content, std::string_view folder, Provenance
 }
 
 void add_steps(const PackageContent& content, ProvenanceInput& input) {
-  ProvenanceStep registration{"registration", "Registration of the scans", {}, {"scans/poses.json"}, {}, {}};
+  ProvenanceStep registration{"registration",       "Registration of the scans",      {},
+                              {"scans/poses.json"}, registration_parameters(content), {},
+                              keeper_of(content)};
   double worst_rms_mm = 0;
   double worst_sigma_mm = 0;
   for (const ScanPose& pose : content.results().poses) {
@@ -109,17 +111,19 @@ void add_steps(const PackageContent& content, ProvenanceInput& input) {
                          "What is sampled densely enough",
                          registration.from,
                          {"verdict/red_map.json", "verdict/checklist.json"},
-                         {},
-                         {{"conclusive", content.results().red_map.conclusive ? 1.0 : 0.0, ""}}};
+                         verdict_parameters(content),
+                         {{"conclusive", content.results().red_map.conclusive ? 1.0 : 0.0, ""}},
+                         content.source.pages() ? keeper_of(content) : program_name()};
   verdict.from.emplace_back("scans/poses.json");
   const std::string model = "model/" + content.stem + ".ply";
   std::vector<ProvenanceStep> steps{std::move(registration), verdict};
   if (!content.mesh().faces.empty()) {
+    // A mesh that another version stitched is never taken (stored_mesh()).
     steps.push_back({"stitching",
                      "Stitching into one surface",
                      verdict.from,
                      {model},
-                     {},
+                     stitching_parameters(content),
                      {{"vertices", static_cast<double>(content.mesh().positions.size()), ""},
                       {"triangles", static_cast<double>(content.mesh().faces.size()), ""}}});
     std::vector<std::string> forms = files_of(content, "model/");
@@ -135,9 +139,11 @@ void add_steps(const PackageContent& content, ProvenanceInput& input) {
               "Measurement of the wedges",
               {model},
               {},
-              {},
+              analysis_parameters(content),
               {{"wedges", static_cast<double>(content.wedges->wedges.size()), ""},
-               {"hollows rejected", static_cast<double>(content.wedges->rejected.size()), ""}}},
+               {"hollows rejected", static_cast<double>(content.wedges->rejected.size()), ""}},
+              content.wedges_are_kept ? keeper_of(content) : program_name(),
+              analysis_note(*content.wedges)},
              input);
   }
   add_step(content, "features/", {"features", "Values by vertex", {model}, {}, {}, {}}, input);

@@ -153,7 +153,8 @@ Status add_scans(PackageContent& content) {
                  "the same scans as ordered PLY, which other programs read: formats/range_grid_ply.txt");
   }
   return content.text("scans/scans.json", text_of({{"scans", list}}),
-                      "the list of the scans: files, device, time, size, and which were taken out and why");
+                      "the list of the scans: files, device, time, size, and which were taken out and why: "
+                      "formats/session.txt");
 }
 
 Status add_records(PackageContent& content) {
@@ -179,8 +180,9 @@ Status add_records(PackageContent& content) {
       return std::unexpected(document.error());
     }
     if (*document) {
-      if (const Status written = content.text("session/" + file_name(name) + ".json", **document,
-                                              "the session's document \"" + name + "\", as it was kept");
+      if (const Status written =
+              content.text("session/" + file_name(name) + ".json", **document,
+                           "the session's document \"" + name + "\", as it was kept: formats/session.txt");
           !written) {
         return written;
       }

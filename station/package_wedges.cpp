@@ -24,6 +24,7 @@ Status add_wedges(PackageContent& content) {
                      "the same as a table, one line a wedge; millimetres and degrees"),
         content.text("wedges/annotations.json",
                      wedge_annotations(file.wedges, {.base_url = content.options.base_url,
+                                                    .page = "wedges/annotations.json",
                                                     .model = "model/" + content.stem + ".ply",
                                                     .identifier = content.identifier,
                                                     .program = program_name(),

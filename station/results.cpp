@@ -197,6 +197,8 @@ PageFacts page_facts_of(const SessionStore& store) {
   }
   const JsonNode root = document->root();
   const std::string device = root.at("device").text();
+  const auto program = root.find("program");
+  const std::string made_by = program ? program->text() : std::string();
   StageTimes timings;
   for (const JsonNode& timing : root.at("timings").items()) {
     timings.push_back({timing.at("stage").text(), timing.at("seconds").number(0)});
@@ -220,6 +222,7 @@ PageFacts page_facts_of(const SessionStore& store) {
     facts.wedges = std::move(wedges);
     facts.gains = std::move(gains);
     facts.device = device;
+    facts.program = made_by;
     facts.timings = std::move(timings);
   }
   return facts;

@@ -47,6 +47,7 @@ struct PageFacts {
   StageTimes timings;
   std::vector<ViewGain> gains;  ///< of the scans that were asked for, as they came
   std::string wedges;           ///< a sentence on them; empty where they were not measured
+  std::string program{};        ///< that scanned and judged, as the session says; empty when it does not
 };
 
 /// The input of pages and pictures. Refers to the results.

@@ -85,9 +85,13 @@ TEST(WedgeTable, HoldsEveryMeasureAndKeepsTheMicrometre) {
 }
 
 TEST(WedgeAnnotations, PointAtAClosedRingOnTheModel) {
-  const auto page = nlohmann::json::parse(wedge_annotations(
-      {some_wedge()}, {"https://example.org/t/", "model/t.ply", "BM 1", "Dubsar", "2026-01-02T03:04:05Z"}));
+  const auto page = nlohmann::json::parse(
+      wedge_annotations({some_wedge()}, {"https://example.org/t/", "wedges/annotations.json", "model/t.ply",
+                                         "BM 1", "Dubsar", "2026-01-02T03:04:05Z"}));
   EXPECT_EQ(page["type"], "AnnotationPage");
+  const std::string address = "https://example.org/t/wedges/annotations.json";
+  EXPECT_EQ(page["id"], address);
+  EXPECT_THAT(page["items"][0]["id"].get<std::string>(), ::testing::StartsWith(address + "#wedge-"));
   const auto& target = page["items"][0]["target"];
   EXPECT_EQ(target["source"], "https://example.org/t/model/t.ply");
   EXPECT_EQ(target["selector"]["value"],
@@ -122,7 +126,16 @@ TEST(Provenance, EveryFileOfAStepHasItsSource) {
   input.when = "2026-01-02T03:04:05Z";
   input.scans = {
       {0, "2026-01-01T00:00:00Z", "scans/grids/000.grid", "registered", true, {{"RMS", 0.01, "mm"}}}};
-  input.steps = {{"stitching", "Stitching", {"scans/grids/000.grid"}, {"model/t.ply"}, {}, {}}};
+  input.steps = {
+      {"stitching", "Stitching", {"scans/grids/000.grid"}, {"model/t.ply"}, {{"gap", 0.5, "mm"}}, {}},
+      {"analysis",
+       "Measurement",
+       {"model/t.ply"},
+       {"wedges/wedges.json"},
+       {},
+       {},
+       "Dubsar 0.0.9",
+       "1 correction"}};
   const auto json = nlohmann::json::parse(provenance_jsonld(input));
   const auto& graph = json["@graph"];
   const auto find = [&](const std::string& id) {
@@ -137,6 +150,14 @@ TEST(Provenance, EveryFileOfAStepHasItsSource) {
             "https://example.org/t/scans/grids/000.grid");
   EXPECT_EQ(find("provenance/stitching")["crmdig:L21_used_as_derivation_source"][0]["@id"],
             "https://example.org/t/scans/grids/000.grid");
+  EXPECT_EQ(find("provenance/stitching")["crmdig:L13_used_parameters"][0]["rdfs:label"], "gap");
+  const auto software = [&](const char* step) {
+    const std::string id = find(step)["crmdig:L23_used_software_or_firmware"]["@id"];
+    return find(id.substr(input.base_url.size()))["rdfs:label"];
+  };
+  EXPECT_EQ(software("provenance/stitching"), "Dubsar");
+  EXPECT_EQ(software("provenance/analysis"), "Dubsar 0.0.9");
+  EXPECT_EQ(find("provenance/analysis")["crm:P3_has_note"], "1 correction");
   EXPECT_EQ(find("tablet")["crm:P1_is_identified_by"][0]["rdfs:label"], "P123456");
 }
 

@@ -10,8 +10,10 @@
 #include <csignal>
 #include <fstream>
 #include <map>
+#include <regex>
 #include <thread>
 
+#include "acquisition/session_store.h"
 #include "formats/mesh_io.h"
 #include "formats/poses_json.h"
 #include "tests/station/support/exported.h"
@@ -93,6 +95,28 @@ TEST_F(Export, PacksEverythingWhateverTheVerdictSays) {
       EXPECT_TRUE(readme.find("  " + name + "\n") != std::string::npos ||
                   readme.find("  " + name.substr(0, name.rfind('/') + 1) + "\n") != std::string::npos)
           << file << " is not explained";
+    }
+  }
+}
+
+TEST_F(Export, EveryFormOfItsOwnIsDescribedAndEveryLinkLeadsSomewhere) {
+  const std::string session = bytes_of(data("formats/session.txt"));
+  EXPECT_THAT(session, HasSubstr("scans/scans.json"));
+  for (const std::string& file : files_below(data("session"))) {
+    EXPECT_THAT(session, HasSubstr("`" + file + "`"));
+  }
+  const nlohmann::json scans = nlohmann::json::parse(bytes_of(data("scans/scans.json")))["scans"];
+  for (const auto& [key, value] : scans.at(0).items()) {
+    EXPECT_THAT(session, HasSubstr("`" + key + "`"));
+  }
+  for (const std::string& file : files_below(data("formats"))) {
+    const std::string text = bytes_of(data("formats/" + file));
+    const std::regex link("\\]\\(([^)#]*)");
+    for (std::sregex_iterator at(text.begin(), text.end(), link), end; at != end; ++at) {
+      const std::string to = (*at)[1];
+      if (!to.empty() && !to.starts_with("http")) {
+        EXPECT_TRUE(fs::exists(data("formats/" + to))) << file << " links to " << to;
+      }
     }
   }
 }
@@ -243,6 +267,35 @@ TEST_F(Export, ReplacesAPackageOfAnEarlierStateOfItsSessionWhenAsked) {
   EXPECT_EQ(update("renewed").status, 2) << "of another session";
   fs::remove(at("renewed.done"));
   EXPECT_EQ(update("renewed").status, 2) << "without a stamp";
+}
+
+TEST_F(Export, WhatWasCopiedIsThatOfTheProgramThatMadeIt) {
+  const fs::path session = at("of_old");
+  fs::copy(at("session"), session, fs::copy_options::recursive);
+  {
+    Result<SessionStore> store = SessionStore::open(session);
+    ASSERT_TRUE(store);
+    nlohmann::json run = nlohmann::json::parse(**store->load_document("run"));
+    run["program"] = "Dubsar 0.0.9";
+    ASSERT_TRUE(store->save_document("run", run.dump()));
+  }
+  ASSERT_EQ(run_command({"export", session.string(), "--to", at("old_bag").string(), "--without",
+                         "renderings,features,grid-ply"})
+                .status,
+            0);
+  const auto graph = nlohmann::json::parse(bytes_of(at("old_bag") / "data/provenance.jsonld"))["@graph"];
+  const auto node = [&](const std::string& ends) {
+    const auto at = std::ranges::find_if(
+        graph, [&](const nlohmann::json& n) { return n["@id"].get<std::string>().ends_with(ends); });
+    return at == graph.end() ? nlohmann::json() : *at;
+  };
+  const auto program = [&](const std::string& step) {
+    return node(node("provenance/" + step)["crmdig:L23_used_software_or_firmware"]["@id"])["rdfs:label"]
+        .get<std::string>();
+  };
+  EXPECT_EQ(program("registration"), "Dubsar 0.0.9");
+  EXPECT_EQ(program("verdict"), "Dubsar 0.0.9");
+  EXPECT_NE(program("packing"), "Dubsar 0.0.9");
 }
 
 /// Killed in the very step between taking its place and whatever else it would do, it has to be found done.

@@ -24,6 +24,7 @@ using test::Outcome;
 using test::quoted;
 using test::run_command;
 using test::shell;
+using ::testing::EndsWith;
 using ::testing::HasSubstr;
 
 class ExportOfWedges : public ::testing::Test {
@@ -99,6 +100,7 @@ TEST_F(ExportOfWedges, AnnotationsHaveTheShapeOfTheStandard) {
       "jsonschema.validate(json.load(open(sys.argv[1])), json.load(open(sys.argv[2])))' ";
   EXPECT_EQ(shell(check + quoted(data("wedges/annotations.json")) + " " + quoted(schema)), 0);
   const nlohmann::json page = json_of("wedges/annotations.json");
+  EXPECT_THAT(page["id"].get<std::string>(), EndsWith("/wedges/annotations.json")) << "where it is served";
   EXPECT_THAT(page["items"][0]["target"]["selector"]["value"].get<std::string>(), HasSubstr("POLYGON Z"));
 }
 
@@ -119,6 +121,8 @@ TEST_F(ExportOfWedges, CorrectionsOfTheSessionAreMadeAndCounted) {
   EXPECT_EQ(left->wedges[3].id, found[4].id) << "the others keep their numbers";
   EXPECT_EQ(left->wedges[3].depth_point_mm, found[4].depth_point_mm);
   EXPECT_EQ(run_command({"verify", at("corrected_bag")}).status, 0);
+  EXPECT_THAT(bytes_of(at("corrected_bag") / "data/provenance.jsonld"),
+              HasSubstr("A person has corrected what was found: 1 corrections, 1 of which could be made."));
 }
 
 }  // namespace
