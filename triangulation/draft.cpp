@@ -35,8 +35,8 @@ std::vector<std::array<std::size_t, 3>> bridge(const OwnedScan& scan, std::size_
   const auto at = [&](std::size_t k) { return scan.fused->point(k); };
   const bool upright = s.normal(north).dot(s.normal(south)) > s.normal(west).dot(s.normal(east));
   using Pair = std::vector<std::array<std::size_t, 3>>;
-  const Pair triangles = upright ? Pair{{north, west, south}, {north, south, east}}
-                                 : Pair{{north, west, east}, {west, south, east}};
+  Pair triangles = upright ? Pair{{north, west, south}, {north, south, east}}
+                           : Pair{{north, west, east}, {west, south, east}};
   for (const auto& t : triangles) {
     Vector3f n = (at(t[1]) - at(t[0])).cross(at(t[2]) - at(t[0]));
     n *= s.mirrored ? -1.0F : 1.0F;
