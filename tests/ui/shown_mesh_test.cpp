@@ -145,26 +145,6 @@ TEST(ShownMesh, RunsLeaveOutOnlyWhatIsOutside) {
   EXPECT_GT(left_out, shown.faces.size() / 5);
 }
 
-TEST(ShownMesh, PiecesOfRunsAreTheSameFacesInTheSameOrder) {
-  const std::vector<FaceRun> runs = {{3, 10}, {20, 4}, {30, 0}, {40, 9}};
-  std::vector<std::size_t> faces;
-  for (const FaceRun& piece : in_pieces(runs, 4)) {
-    EXPECT_GT(piece.count, 0U);
-    EXPECT_LE(piece.count, 4U);
-    for (std::size_t k = 0; k < piece.count; ++k) {
-      faces.push_back(piece.first + k);
-    }
-  }
-  std::vector<std::size_t> expected;
-  for (const FaceRun& run : runs) {
-    for (std::size_t k = 0; k < run.count; ++k) {
-      expected.push_back(run.first + k);
-    }
-  }
-  EXPECT_EQ(faces, expected);
-  EXPECT_EQ(in_pieces(runs, ~std::size_t{0}).size(), 3U);
-}
-
 TEST(ShownMesh, BrokenFacesAreLeftOutAndCounted) {
   Mesh mesh = sheet(4);
   const std::size_t sound = mesh.faces.size();

@@ -7,7 +7,6 @@
 #include <GLFW/glfw3.h>
 
 #include <atomic>
-#include <string_view>
 #include <utility>
 
 namespace dubsar::ui {
@@ -80,12 +79,6 @@ GlWindow::~GlWindow() {
     glfwDestroyWindow(window_);
     glfwTerminate();
   }
-}
-
-bool is_drawn_by_processor() {
-  const auto* name = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
-  const std::string_view renderer = name != nullptr ? name : "";
-  return renderer.starts_with("llvmpipe") || renderer.starts_with("softpipe");
 }
 
 void wake_window() {

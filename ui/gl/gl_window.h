@@ -30,9 +30,6 @@ class GlWindow {
   std::string renderer_;
 };
 
-/// True where the processor draws what this thread's context is asked to (Mesa's software renderers).
-[[nodiscard]] bool is_drawn_by_processor();
-
 /// Wakes the main thread where it waits for input; from any thread.
 void wake_window();
 

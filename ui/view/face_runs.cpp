@@ -2,8 +2,6 @@
 // Copyright The Dubsar developers
 #include "ui/view/face_runs.h"
 
-#include <algorithm>
-
 namespace dubsar::ui {
 
 namespace {
@@ -29,16 +27,6 @@ std::vector<FaceRun> seen_runs(std::span<const FaceBlock> blocks, const Eigen::M
     }
   }
   return runs;
-}
-
-std::vector<FaceRun> in_pieces(std::span<const FaceRun> runs, std::size_t most_faces) {
-  std::vector<FaceRun> pieces;
-  for (const FaceRun& run : runs) {
-    for (std::size_t drawn = 0; drawn < run.count; drawn += most_faces) {
-      pieces.push_back({run.first + drawn, std::min(most_faces, run.count - drawn)});
-    }
-  }
-  return pieces;
 }
 
 std::size_t faces_in(std::span<const FaceRun> runs) {

@@ -21,8 +21,6 @@ struct FaceRun {
 /// gives.
 [[nodiscard]] std::vector<FaceRun> seen_runs(std::span<const FaceBlock> blocks,
                                              const Eigen::Matrix4f& clip_from_model);
-/// The same faces in runs of `most_faces` at most.
-[[nodiscard]] std::vector<FaceRun> in_pieces(std::span<const FaceRun> runs, std::size_t most_faces);
 [[nodiscard]] std::size_t faces_in(std::span<const FaceRun> runs);
 
 /// Of levels of detail, fewest faces first, the finest of which no more than `most_faces` may be seen; the

@@ -197,15 +197,12 @@ void SurfaceView::draw_geometry(Layer& layer, const Scene& scene, std::size_t le
   }
   const bool whole = level + 1 == levels_.size();
   const auto draw = [&](std::span<const FaceRun> runs, const std::function<void(const FaceRun&)>& prepare) {
-    for (const FaceRun& run : in_pieces(runs, faces_a_draw_)) {
+    for (const FaceRun& run : runs) {
       prepare(run);
       if (whole) {
         mesh_->draw_faces(run.first, run.count);
       } else {
         mesh_->draw_level(level, run.first, run.count);
-      }
-      if (faces_a_draw_ != kAllFaces) {
-        glFlush();
       }
     }
   };

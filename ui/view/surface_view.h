@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "ui/gl/frame_target.h"
-#include "ui/gl/gl_window.h"
 #include "ui/gl/shader_program.h"
 #include "ui/view/mesh_buffers.h"
 #include "ui/view/mesh_selecting.h"
@@ -159,10 +158,6 @@ class SurfaceView {
   bool slow_ = true;  ///< this machine draws slowly; so it is taken until it was seen to be fast
   PieceSize faces_at_a_time_{40000};
   std::size_t faces_in_motion_ = kFacesInMotion * 2;
-  static constexpr std::size_t kAllFaces = ~std::size_t{0};
-  /// Given to the driver at once: few where the processor draws. Mesa gathers all that comes between two
-  /// flushes, up to tens of megabytes, and twice the faces at once were seen to take five times as long.
-  std::size_t faces_a_draw_ = is_drawn_by_processor() ? 5120 : kAllFaces;
   std::size_t level_drawn_ = 0;
   std::size_t faces_drawn_ = 0;
 };
