@@ -17,15 +17,19 @@
 
 namespace {
 
+/// From here on a block may lie in a file, or be kept.
+constexpr std::size_t kLarge = dubsar::KeptBlocks::kLeastBlock;
+static_assert(kLarge == dubsar::kLeastFileBlock);
+
 void* take(std::size_t size, std::size_t alignment) noexcept {
   const bool is_plain = alignment <= alignof(std::max_align_t);
-  const bool is_large = size >= dubsar::KeptBlocks::kLeastBlock;
+  const bool is_large = size >= kLarge;
   if (is_large && is_plain) {
     if (void* const block = dubsar::kept_blocks().take(size)) {
       return block;
     }
   }
-  if (size >= dubsar::kLeastFileBlock && dubsar::belongs_in_file(size)) {
+  if (is_large && dubsar::belongs_in_file(size)) {
     dubsar::kept_blocks().free_all();
     if (void* const block = dubsar::allocate_file_block(size, alignment)) {
       return block;
@@ -61,6 +65,15 @@ void give_back(void* memory) noexcept {
   }
 }
 
+/// Most are small, and who says so spares the look at what malloc knows of the block.
+void give_back(void* memory, std::size_t size) noexcept {
+  if (size < kLarge) {
+    std::free(memory);
+  } else {
+    give_back(memory);
+  }
+}
+
 constexpr std::size_t kPlain = alignof(std::max_align_t);
 
 }  // namespace
@@ -75,12 +88,12 @@ void* operator new(std::size_t size, std::align_val_t alignment) {
 void operator delete(void* memory) noexcept {
   give_back(memory);
 }
-void operator delete(void* memory, std::size_t /*size*/) noexcept {
-  give_back(memory);
+void operator delete(void* memory, std::size_t size) noexcept {
+  give_back(memory, size);
 }
 void operator delete(void* memory, std::align_val_t /*alignment*/) noexcept {
   give_back(memory);
 }
-void operator delete(void* memory, std::size_t /*size*/, std::align_val_t /*alignment*/) noexcept {
-  give_back(memory);
+void operator delete(void* memory, std::size_t size, std::align_val_t /*alignment*/) noexcept {
+  give_back(memory, size);
 }

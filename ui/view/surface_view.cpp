@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 
 #include "ui/view/clay_sphere.h"
 #include "ui/view/face_runs.h"
@@ -196,26 +195,24 @@ void SurfaceView::draw_geometry(Layer& layer, const Scene& scene, std::size_t le
     return;
   }
   const bool whole = level + 1 == levels_.size();
-  const auto draw = [&](std::span<const FaceRun> runs, const std::function<void(const FaceRun&)>& prepare) {
-    for (const FaceRun& run : runs) {
-      prepare(run);
-      if (whole) {
-        mesh_->draw_faces(run.first, run.count);
-      } else {
-        mesh_->draw_level(level, run.first, run.count);
-      }
+  const auto draw = [&](const FaceRun& run) {
+    if (whole) {
+      mesh_->draw_faces(run.first, run.count);
+    } else {
+      mesh_->draw_level(level, run.first, run.count);
     }
   };
-  const std::vector<FaceRun> seen = seen_runs(blocks, scene.camera.clip_from_model(aspect));
-  draw(seen, [&](const FaceRun& run) { show_selection(level, run.first); });
-  faces_drawn_ += faces_in(seen);
+  for (const FaceRun& run : seen_runs(blocks, scene.camera.clip_from_model(aspect))) {
+    show_selection(level, run.first);
+    draw(run);
+    faces_drawn_ += run.count;
+  }
   if (scene.look.lamp && scene.look.shadows && !layer.shadow_stands && !blocks.empty()) {
     layer.shadow.bind();
     shadow_.use();
     shadow_.set("clip_from_model", light_clip_from_model(scene));
     shadow_.set("towards_viewer", 0.0F);
-    const FaceRun all{blocks.front().first, blocks.back().first + blocks.back().count - blocks.front().first};
-    draw({&all, 1}, [](const FaceRun&) {});
+    draw({blocks.front().first, blocks.back().first + blocks.back().count - blocks.front().first});
   }
 }
 
