@@ -4,27 +4,17 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <filesystem>
-#include <functional>
 #include <memory>
-#include <optional>
 #include <string_view>
 
-#include "acquisition/session_store.h"
-#include "formats/atomic_file.h"
-#include "formats/json_node.h"
 #include "station/command/command.h"
 #include "station/command/outputs.h"
 #include "station/command/terminal.h"
-#include "station/done_stamp.h"
-#include "station/earlier_package.h"
-#include "station/package.h"
+#include "station/packing.h"
 
 namespace dubsar {
 
 namespace {
-
-namespace fs = std::filesystem;
 
 struct ExportArguments {
   std::string session;
@@ -35,25 +25,6 @@ struct ExportArguments {
   bool force = false;
   bool update = false;
 };
-
-/// Every file below a folder but those to be passed over, in order.
-Result<std::vector<fs::path>> files_below(const fs::path& folder,
-                                          const std::function<bool(const fs::path&)>& passes_over) {
-  std::vector<fs::path> files;
-  std::error_code error;
-  for (fs::recursive_directory_iterator at(folder, error), end; !error && at != end; at.increment(error)) {
-    if (passes_over(at->path())) {
-      at.disable_recursion_pending();
-    } else if (at->is_regular_file(error)) {
-      files.push_back(at->path());
-    }
-  }
-  if (error) {
-    return fail(ErrorKind::kStorage, error.message(), folder.string(), "look at its rights");
-  }
-  std::ranges::sort(files);
-  return files;
-}
 
 /// Why nothing can be served below this address; empty where it can.
 std::string fault_of_address(const std::string& url) {
@@ -68,37 +39,6 @@ std::string fault_of_address(const std::string& url) {
   return plain ? std::string() : "an address of a folder has no blanks, quotes, brackets, ? or #";
 }
 
-/// What decides what is in the package, beside the session.
-std::string parameters_of(const ExportArguments& arguments) {
-  nlohmann::ordered_json json{{"base_url", arguments.base_url}, {"ground", arguments.ground}};
-  std::vector<std::string> without = arguments.without;
-  std::ranges::sort(without);
-  json["without"] = without;
-  return json.dump();
-}
-
-/// The folder to make, whole and without a slash at its end: its stamp lies beside it.
-fs::path target_of(const ExportArguments& arguments) {
-  const fs::path target = fs::absolute(arguments.to).lexically_normal();
-  return target.has_filename() ? target : target.parent_path();
-}
-
-/// A package that is made again from the same session is found done (docs/collections.md).
-Result<StampedWork> begin_work(const ExportArguments& arguments, const JobContext& job) {
-  const fs::path target = target_of(arguments);
-  const auto passes_over = [&](const fs::path& file) {
-    const std::string name = file.filename().string();
-    const fs::path normal = fs::absolute(file).lexically_normal();
-    return normal == target || normal == stamp_beside(target) || name == "session.lock" ||
-           name.ends_with("-shm") || name.starts_with(kTemporaryPrefix);
-  };
-  const Result<std::vector<fs::path>> inputs = files_below(arguments.session, passes_over);
-  if (!inputs) {
-    return std::unexpected(inputs.error());
-  }
-  return StampedWork::begin(stamp_beside(target), "export", parameters_of(arguments), *inputs, job);
-}
-
 int tell_done(const ExportArguments& arguments, const CommandContext& context) {
   if (context.json) {
     CommandContext::print({{"package", arguments.to}, {"done_before", true}});
@@ -109,80 +49,24 @@ int tell_done(const ExportArguments& arguments, const CommandContext& context) {
   return 0;
 }
 
-/// The stamp as it lies there; empty where none does.
-std::string stamp_text(const StampedWork& work) {
-  std::error_code none;
-  const Result<std::string> text = fs::is_regular_file(work.stamp(), none)
-                                       ? read_whole_file(work.stamp(), kMaxJsonBytes)
-                                       : Result<std::string>();
-  return text.value_or(std::string());
-}
-
-/// Nothing was done: the stamp says again what it said before, for what lies there is what lay there.
-void take_back(const StampedWork& work, const std::string& before) {
-  if (before.empty() || !write_file_atomically(work.stamp(), before)) {
-    (void)work.start();  // a stamp that stays all the same fits nothing that is there
-  }
-}
-
 Result<int> export_session(const ExportArguments& arguments, CommandContext& context) {
-  std::error_code ignored;
-  std::optional<StampedWork> work;
-  bool replace = arguments.force;
-  if (SessionStore::is_session(arguments.session)) {
-    Result<StampedWork> begun = begin_work(arguments, context.job);
-    if (!begun) {
-      return std::unexpected(begun.error());
-    }
-    work = std::move(*begun);
-    const Result<bool> done = arguments.force ? false : work->done(context.job);
-    if (!done) {
-      return std::unexpected(done.error());
-    }
-    if (*done) {
-      return tell_done(arguments, context);
-    }
-    // Whatever is replaced keeps its stamp until the new one is whole.
-    if (!fs::exists(arguments.to, ignored)) {
-      if (const Status started = work->start(); !started) {
-        return std::unexpected(started.error());
-      }
-    } else if (arguments.update && !replace) {
-      const Result<bool> earlier = is_earlier_package(target_of(arguments), *work, context.job);
-      if (!earlier) {
-        return std::unexpected(earlier.error());
-      }
-      replace = *earlier;
-    }
-  }
-  PackageOptions options;
-  options.replace = replace;
-  options.base_url = arguments.base_url;
-  options.white_ground = arguments.ground == "white";
+  PackRequest request{arguments.session, arguments.to, {}, arguments.update};
+  request.package.replace = arguments.force;
+  request.package.base_url = arguments.base_url;
+  request.package.white_ground = arguments.ground == "white";
   for (const PackagePart part : all_package_parts()) {
     if (std::ranges::find(arguments.without, to_string(part)) != arguments.without.end()) {
-      options.without.insert(part);
+      request.package.without.insert(part);
     }
   }
-  bool stamped = false;
-  const std::string before = work ? stamp_text(*work) : std::string();
-  if (work) {
-    options.before_publishing = [&](const fs::path& staged) -> Status {
-      const auto outputs = files_below(staged, [](const fs::path&) { return false; });
-      if (!outputs) {
-        return std::unexpected(outputs.error());
-      }
-      stamped = true;
-      return work->finish_staged(*outputs, staged, target_of(arguments), context.job);
-    };
+  const Result<Packing> packing = pack_session(request, context.job);
+  if (!packing) {
+    return std::unexpected(packing.error());
   }
-  const Result<Package> package = write_package(arguments.session, arguments.to, options, context.job);
-  if (!package) {
-    if (stamped) {
-      take_back(*work, before);
-    }
-    return std::unexpected(package.error());
+  if (packing->done_before) {
+    return tell_done(arguments, context);
   }
+  const Package* package = &packing->package;
   if (context.json) {
     nlohmann::ordered_json json{
         {"package", arguments.to},      {"identifier", package->identifier}, {"files", package->size.files},

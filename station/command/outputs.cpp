@@ -2,57 +2,16 @@
 // Copyright The Dubsar developers
 #include "station/command/outputs.h"
 
-#include <filesystem>
-#include <optional>
 #include <utility>
 
-#include "acquisition/session_store.h"
+#include "station/place_outside.h"
 
 namespace dubsar {
-
-namespace {
-
-namespace fs = std::filesystem;
-
-/// The session that a path lies in or is.
-std::optional<fs::path> session_around(const fs::path& path) {
-  for (fs::path at = path; !at.empty(); at = at.parent_path()) {
-    if (SessionStore::is_session(at)) {
-      return at;
-    }
-    if (at == at.parent_path()) {
-      break;
-    }
-  }
-  return std::nullopt;
-}
-
-Status check_place(const std::string& output) {
-  std::error_code error;
-  fs::path resolved = fs::weakly_canonical(output, error);
-  if (error) {
-    resolved = fs::absolute(output, error).lexically_normal();
-  }
-  if (!resolved.has_filename()) {
-    resolved = resolved.parent_path();  // a slash at the end
-  }
-  const std::optional<fs::path> session = session_around(resolved);
-  if (!session) {
-    return {};
-  }
-  const std::string own = *session == resolved ? "results" : resolved.filename().string();
-  const fs::path beside = session->parent_path() / (session->filename().string() + "-" + own);
-  return fail(ErrorKind::kUsage,
-              "a session keeps a checksum of every file in it; nothing else is written there", output,
-              "write it beside the session: " + beside.string());
-}
-
-}  // namespace
 
 Action outside_sessions(std::vector<std::string> outputs, Action action) {
   return [outputs = std::move(outputs), action = std::move(action)](CommandContext& context) -> Result<int> {
     for (const std::string& output : outputs) {
-      if (const Status outside = output.empty() ? Status() : check_place(output); !outside) {
+      if (const Status outside = output.empty() ? Status() : check_outside_sessions(output); !outside) {
         return std::unexpected(outside.error());
       }
     }

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "station/packing.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "acquisition/session_store.h"
+#include "formats/atomic_file.h"
+#include "formats/json_node.h"
+#include "station/done_stamp.h"
+#include "station/earlier_package.h"
+
+namespace dubsar {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Every file below a folder but those to be passed over, in order.
+Result<std::vector<fs::path>> files_below(const fs::path& folder,
+                                          const std::function<bool(const fs::path&)>& passes_over) {
+  std::vector<fs::path> files;
+  std::error_code error;
+  for (fs::recursive_directory_iterator at(folder, error), end; !error && at != end; at.increment(error)) {
+    if (passes_over(at->path())) {
+      at.disable_recursion_pending();
+    } else if (at->is_regular_file(error)) {
+      files.push_back(at->path());
+    }
+  }
+  if (error) {
+    return fail(ErrorKind::kStorage, error.message(), folder.string(), "look at its rights");
+  }
+  std::ranges::sort(files);
+  return files;
+}
+
+/// What decides what is in the package, beside the session.
+std::string parameters_of(const PackageOptions& options) {
+  nlohmann::ordered_json json{{"base_url", options.base_url},
+                              {"ground", options.white_ground ? "white" : "black"}};
+  std::vector<std::string> without;
+  for (const PackagePart part : options.without) {
+    without.emplace_back(to_string(part));
+  }
+  std::ranges::sort(without);
+  json["without"] = without;
+  return json.dump();
+}
+
+/// The folder to make, whole and without a slash at its end: its stamp lies beside it.
+fs::path target_of(const PackRequest& request) {
+  const fs::path target = fs::absolute(request.to).lexically_normal();
+  return target.has_filename() ? target : target.parent_path();
+}
+
+/// A package that is made again from the same session is found done (docs/collections.md).
+Result<StampedWork> begin_work(const PackRequest& request, const JobContext& job) {
+  const fs::path target = target_of(request);
+  const auto passes_over = [&](const fs::path& file) {
+    const std::string name = file.filename().string();
+    const fs::path normal = fs::absolute(file).lexically_normal();
+    return normal == target || normal == stamp_beside(target) || name == "session.lock" ||
+           name.ends_with("-shm") || name.starts_with(kTemporaryPrefix);
+  };
+  const Result<std::vector<fs::path>> inputs = files_below(request.session, passes_over);
+  if (!inputs) {
+    return std::unexpected(inputs.error());
+  }
+  return StampedWork::begin(stamp_beside(target), "export", parameters_of(request.package), *inputs, job);
+}
+
+/// The stamp as it lies there; empty where none does.
+std::string stamp_text(const StampedWork& work) {
+  std::error_code none;
+  const Result<std::string> text = fs::is_regular_file(work.stamp(), none)
+                                       ? read_whole_file(work.stamp(), kMaxJsonBytes)
+                                       : Result<std::string>();
+  return text.value_or(std::string());
+}
+
+/// Nothing was done: the stamp says again what it said before, for what lies there is what lay there.
+void take_back(const StampedWork& work, const std::string& before) {
+  if (before.empty() || !write_file_atomically(work.stamp(), before)) {
+    (void)work.start();  // a stamp that stays all the same fits nothing that is there
+  }
+}
+
+}  // namespace
+
+Result<Packing> pack_session(const PackRequest& request, JobContext& job) {
+  std::error_code ignored;
+  std::optional<StampedWork> work;
+  PackageOptions options = request.package;
+  if (SessionStore::is_session(request.session)) {
+    Result<StampedWork> begun = begin_work(request, job);
+    if (!begun) {
+      return std::unexpected(begun.error());
+    }
+    work = std::move(*begun);
+    const Result<bool> done = options.replace ? false : work->done(job);
+    if (!done) {
+      return std::unexpected(done.error());
+    }
+    if (*done) {
+      return Packing{.done_before = true, .package = {}};
+    }
+    // Whatever is replaced keeps its stamp until the new one is whole.
+    if (!fs::exists(request.to, ignored)) {
+      if (const Status started = work->start(); !started) {
+        return std::unexpected(started.error());
+      }
+    } else if (request.update && !options.replace) {
+      const Result<bool> earlier = is_earlier_package(target_of(request), *work, job);
+      if (!earlier) {
+        return std::unexpected(earlier.error());
+      }
+      options.replace = *earlier;
+    }
+  }
+  bool stamped = false;
+  const std::string before = work ? stamp_text(*work) : std::string();
+  if (work) {
+    options.before_publishing = [&](const fs::path& staged) -> Status {
+      const auto outputs = files_below(staged, [](const fs::path&) { return false; });
+      if (!outputs) {
+        return std::unexpected(outputs.error());
+      }
+      stamped = true;
+      return work->finish_staged(*outputs, staged, target_of(request), job);
+    };
+  }
+  Result<Package> package = write_package(request.session, request.to, options, job);
+  if (!package) {
+    if (stamped) {
+      take_back(*work, before);
+    }
+    return std::unexpected(package.error());
+  }
+  return Packing{.done_before = false, .package = std::move(*package)};
+}
+
+fs::path usual_package_of(const fs::path& session) {
+  const fs::path folder = session.has_filename() ? session : session.parent_path();
+  return fs::path(folder.string() + ".results") / "package";
+}
+
+}  // namespace dubsar

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <filesystem>
+
+#include "core/job.h"
+#include "core/result.h"
+#include "station/package.h"
+
+namespace dubsar {
+
+struct PackRequest {
+  std::filesystem::path session;
+  std::filesystem::path to;  ///< the folder to make
+  PackageOptions package;    ///< `replace`: done before or not
+  bool update = false;       ///< replaces what lies there where it is an earlier package of this session
+};
+
+struct Packing {
+  bool done_before = false;  ///< from the same session; then nothing was written, and `package` is empty
+  Package package;
+};
+
+/// write_package() with a stamp beside it (done_stamp.h), so that packing the same session again finds it
+/// done. Errors: those of write_package().
+[[nodiscard]] Result<Packing> pack_session(const PackRequest& request, JobContext& job);
+
+/// "SESSION.results/package", where a session's package goes unless somebody says otherwise
+/// (docs/collections.md).
+[[nodiscard]] std::filesystem::path usual_package_of(const std::filesystem::path& session);
+
+}  // namespace dubsar
