@@ -126,6 +126,14 @@ Result<std::vector<StationScan>> Engine::Impl::obey(const OperatorCommand& comma
     }
     return done(dropped, id, "is taken out");
   }
+  if (const auto* retake = std::get_if<ScanAgain>(&command)) {
+    const Status dropped = store->drop_scan(retake->id, "to be scanned again");
+    if (dropped) {
+      registrar.remove(retake->id, job);
+      taken_out.insert(retake->id);
+    }
+    return done(dropped, retake->id, "is taken out");
+  }
   if (const auto* restore = std::get_if<RestoreScan>(&command)) {
     what = "scan " + std::to_string(restore->id) + " is put back";
     Result<StationScan> back = bring_back(restore->id, job);
@@ -213,8 +221,13 @@ void Engine::Impl::obey_commands(JobContext& job) {
     for (std::size_t k = 0; k + 1 < obeyed->size(); ++k) {
       queues->to_plan.push({std::move((*obeyed)[k]), poses, false});
     }
-    queues->to_plan.push(
-        {obeyed->empty() ? std::nullopt : std::optional(std::move(obeyed->back())), std::move(poses), true});
+    const auto* retake = std::get_if<ScanAgain>(&command);
+    queues->to_plan.push({.scan = obeyed->empty() ? std::nullopt : std::optional(std::move(obeyed->back())),
+                          .poses = std::move(poses),
+                          .plan_now = true,
+                          .device_waits = false,
+                          .resumed = false,
+                          .view_of = retake != nullptr ? std::optional(retake->id) : std::nullopt});
   }
 }
 

@@ -61,8 +61,9 @@ struct ScanToPlan {
   std::vector<ScanPose> poses;
   bool plan_now =
       true;  ///< false for all but the last of the stored scans that a resumed session goes through again
-  bool device_waits = false;  ///< the device waits for what to do after it
-  bool resumed = false;       ///< of a run before this one
+  bool device_waits = false;     ///< the device waits for what to do after it
+  bool resumed = false;          ///< of a run before this one
+  std::optional<int> view_of{};  ///< a scan that is to be taken again, from where it was taken
 };
 /// Where to next.
 struct Step {
@@ -122,6 +123,7 @@ struct Engine::Impl {
   std::map<int, Placement> drives_of_scans;  ///< of the storing thread once the pipeline runs
   bool wait_for_plan = false;                ///< the session that goes on says first whether it needs more
   bool drives = false;                       ///< automatic, and the device can be placed
+  bool begins_again = false;                 ///< the run was started for a ScanAgain
 
   struct Queues {
     BoundedQueue<RawScan> to_store{kQueueLength};
@@ -215,6 +217,7 @@ struct Engine::Impl {
   void stop_motion_after_trouble(const JobContext& job);
   [[nodiscard]] StageScene unseen() const;
   NextStep step_to(const RedMap& red_map) const;
+  [[nodiscard]] NextStep step_again(int id) const;  ///< to where a scan was taken from
   // engine_misses.cpp
   /// Where to after a scan: by the red map when the scan was taken up; else the same view again, then one
   /// that has more in common with the others, then nothing more.

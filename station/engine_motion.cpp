@@ -110,6 +110,12 @@ bool Engine::Impl::move_to(const Placement& target, const StageScene& on_stage, 
   return true;
 }
 
+NextStep Engine::Impl::step_again(int id) const {
+  const std::optional<NextView> view = rig ? planning.same_view(*rig, id) : std::nullopt;
+  // The scan that goes may be the one that tells how the tablet lies: room for whatever way it does.
+  return view ? NextStep(Step{.view = *view, .scene = unseen(), .again = false}) : std::nullopt;
+}
+
 NextStep Engine::Impl::step_to(const RedMap& red_map) const {
   if (red_map.conclusive || red_map.next.empty() || !red_map.next.front().placement) {
     return std::nullopt;

@@ -123,6 +123,9 @@ Status Engine::Impl::open(JobContext& job) {
     return loaded;
   }
   wait_for_plan = drives && !resumed.empty();
+  begins_again = std::ranges::any_of(options.first_commands, [](const OperatorCommand& command) {
+    return std::holds_alternative<ScanAgain>(command);
+  });
   {
     const std::scoped_lock lock(mutex);
     commands.insert(commands.end(), options.first_commands.begin(), options.first_commands.end());

@@ -76,7 +76,7 @@ void Engine::Impl::acquire(NextStep step, JobContext& job) {
   // A session that goes on begins with a scan of how the tablet lies now, unless it is conclusive already.
   if (wait_for_plan) {
     const std::optional<NextStep> planned = queues->to_device.pop();
-    if (!planned || !*planned) {
+    if (!planned || !(*planned || begins_again)) {
       queues->to_store.close();
       return;
     }
@@ -261,6 +261,8 @@ void Engine::Impl::plan_all(JobContext& job) {
       continue;
     }
     const StageClock timing = clock("planning and meshing");
+    // While it is known where the scan lies that was taken out.
+    const NextStep as_before = item->view_of && drives ? step_again(*item->view_of) : std::nullopt;
     if (const Status placed = planning.place(item->poses, false, job); !placed) {
       give_up(placed.error());
       continue;
@@ -280,7 +282,7 @@ void Engine::Impl::plan_all(JobContext& job) {
       queues->to_device.push(std::move(step));
     } else if (drives && options.paced) {
       const std::scoped_lock lock(mutex);
-      changed_step = step_to(*red_map);
+      changed_step = as_before ? as_before : step_to(*red_map);
       pace.notify_all();
     }
     emit(RedMapChanged{std::move(*red_map), planning.last_gain()});

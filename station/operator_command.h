@@ -17,6 +17,10 @@ struct DropScan {
   int id = -1;  ///< -1: the newest that stands
   std::string why;
 };
+/// Takes a scan out, and proposes its view as the next, where the rig was driven to it.
+struct ScanAgain {
+  int id = 0;
+};
 struct RestoreScan {
   int id = 0;
 };
@@ -61,7 +65,8 @@ struct ScanNow {};
 /// Of a paced run: take no more scans, and bring what there is to its end.
 struct Finish {};
 
-using OperatorCommand = std::variant<DropScan, RestoreScan, HintScan, WithdrawHint, LockScan, UnlockScan,
-                                     LabelPins, DescribeTablet, ChangeSetting, WatchCamera, ScanNow, Finish>;
+using OperatorCommand =
+    std::variant<DropScan, ScanAgain, RestoreScan, HintScan, WithdrawHint, LockScan, UnlockScan, LabelPins,
+                 DescribeTablet, ChangeSetting, WatchCamera, ScanNow, Finish>;
 
 }  // namespace dubsar

@@ -195,20 +195,63 @@ std::optional<NextView> PlanningStage::before_lifting(const Rig& rig, const Next
   return side_view(rig, *state, scans.front(), model_surface(scans), from_the_side);
 }
 
-std::optional<NextView> PlanningStage::after_miss(const Rig& rig, int id) const {
+std::optional<PlacedScan> PlanningStage::where_driven(int id) const {
   const std::vector<PlacedScan> scans = cleared_.scans();
   const auto found = scans_.find(id);
-  if (found == scans_.end() || !found->second.drive || !found->second.grid->nominal || scans.empty() ||
-      !scans.front().grid->nominal) {
+  if (found == scans_.end() || !found->second.drive || scans.empty()) {
     return std::nullopt;
   }
-  const StationScan& missed = found->second;
+  if (const auto placed = std::ranges::find(scans, id, &PlacedScan::id); placed != scans.end()) {
+    return *placed;
+  }
   const PlacedScan& first = scans.front();
+  const StationScan& scan = found->second;
+  if (!scan.grid->nominal || !first.grid->nominal) {
+    return std::nullopt;
+  }
   const RigidTransform model_from_tablet =
       first.model_from_scanner * first.grid->nominal->tablet_from_scanner.inverse();
-  const PlacedScan there{id, missed.grid.get(), missed.flags.get(),
-                         model_from_tablet * missed.grid->nominal->tablet_from_scanner, 0.0};
-  return side_view(rig, {id, *missed.drive}, there, model_surface(scans), 0.0);
+  return PlacedScan{id, scan.grid.get(), scan.flags.get(),
+                    model_from_tablet * scan.grid->nominal->tablet_from_scanner, 0.0};
+}
+
+std::optional<NextView> PlanningStage::after_miss(const Rig& rig, int id) const {
+  const std::optional<PlacedScan> there = where_driven(id);
+  return there ? side_view(rig, {id, *drive_of(id)}, *there, model_surface(cleared_.scans()), 0.0)
+               : std::nullopt;
+}
+
+std::optional<NextView> PlanningStage::same_view(const Rig& rig, int id) const {
+  constexpr double kLiesAsBefore = 0.17;  ///< rad: a hand that turns a tablet turns it farther
+  const std::optional<PlacedScan> then = where_driven(id);
+  std::optional<PlacedScan> now;
+  for (auto scan = scans_.rbegin(); scan != scans_.rend() && !now; ++scan) {
+    now = where_driven(scan->first);
+  }
+  if (!then || !now) {
+    return std::nullopt;
+  }
+  const StageState state{now->id, *drive_of(now->id)};
+  const Placement drive = *drive_of(id);
+  const Eigen::Matrix3d lay = TabletOnStage::of({id, drive}, *then).stage_from_model;
+  const Eigen::Matrix3d lies = TabletOnStage::of(state, *now).stage_from_model;
+  if (Eigen::AngleAxisd(lay * lies.transpose()).angle() < kLiesAsBefore) {
+    NextView view{then->model_from_scanner, 0.0, say_placement(rig, drive), drive};
+    view.placement->hand_turn.reset();
+    return view;
+  }
+  const auto off_rad = [&](const ViewCandidate& candidate) {
+    return Eigen::AngleAxisd(candidate.model_from_scanner.rotation.transpose() *
+                             then->model_from_scanner.rotation)
+        .angle();
+  };
+  const std::vector<ViewCandidate> candidates =
+      rig_candidates(rig, state, *now, model_surface(cleared_.scans()));
+  const auto nearest = std::ranges::min_element(candidates, {}, off_rad);
+  if (nearest == candidates.end()) {
+    return std::nullopt;
+  }
+  return NextView{nearest->model_from_scanner, 0.0, nearest->say, nearest->placement};
 }
 
 std::optional<Placement> PlanningStage::drive_of(int id) const {

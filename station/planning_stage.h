@@ -63,6 +63,10 @@ class PlanningStage {
   /// common with what is placed, by where the motors and the asked turns say that the scan is.
   [[nodiscard]] std::optional<NextView> after_miss(const Rig& rig, int id) const;
 
+  /// The view that a scan was taken from, as the tablet lies now: the very same while it lies as it did then,
+  /// else the nearest that the rig and a turn by hand allow. Nothing of a scan that no motor was driven to.
+  [[nodiscard]] std::optional<NextView> same_view(const Rig& rig, int id) const;
+
   /// Where a scan was taken from, where that is known.
   [[nodiscard]] std::optional<Placement> drive_of(int id) const;
 
@@ -97,6 +101,8 @@ class PlanningStage {
   void take_out(int id);
   [[nodiscard]] std::optional<ViewGain> gain_of_new(std::span<const PlacedScan> scans) const;
   [[nodiscard]] std::optional<StageState> stage() const;
+  /// As placed; else by what the motors and the asked turns say.
+  [[nodiscard]] std::optional<PlacedScan> where_driven(int id) const;
 
   std::map<int, StationScan> scans_;
   std::map<int, Placed> placed_;

@@ -6,8 +6,11 @@
 #include <gtest/gtest.h>
 
 #include <condition_variable>
+#include <future>
 #include <mutex>
+#include <thread>
 
+#include "acquisition/session_store.h"
 #include "station/live_session.h"
 #include "tests/support/temporary_folder.h"
 
@@ -134,6 +137,47 @@ TEST(LiveSession, TakingAScanOutMovesNothingByItself) {
   ASSERT_TRUE(followed.wait_until([](const LiveState& s) { return !s.scans.back().dropped; }));
   followed.session.stop();
   ASSERT_TRUE(followed.wait_for_rest());
+}
+
+double apart_rad(const RigidTransform& a, const RigidTransform& b) {
+  return Eigen::AngleAxisd(a.rotation.transpose() * b.rotation).angle();
+}
+
+TEST(LiveSession, AScanThatIsTakenAgainIsAimedAsItWas) {
+  const test::TemporaryFolder folder;
+  Followed followed(kSmallTablet, folder.path() / "s");
+  followed.session.scan_now();
+  ASSERT_TRUE(followed.wait_for_phase(LivePhase::kWaiting));
+  // While the tablet lies as it did: the very same view, and nothing moves before the key.
+  const LiveScan last = followed.session.state().scans.back();
+  ASSERT_TRUE(last.pose);
+  const RigidTransform then = last.pose->model_from_scanner;
+  followed.session.ask(ScanAgain{last.id});
+  ASSERT_TRUE(followed.wait_until([&](const LiveState& s) {
+    return s.phase == LivePhase::kWaiting && s.scans.back().dropped && s.next &&
+           !s.next->placement->hand_turn;
+  }));
+  EXPECT_LT(apart_rad(followed.session.state().next->model_from_scanner, then), 0.01);
+  EXPECT_EQ(followed.session.state().scans.back().id, last.id);
+  const auto retaken = static_cast<std::size_t>(last.id) + 1;
+  followed.session.scan_now();
+  ASSERT_TRUE(followed.wait_until([&](const LiveState& s) {
+    return s.phase == LivePhase::kWaiting && s.scans.size() > retaken && s.scans.back().pose;
+  }));
+  const RigidTransform now = followed.session.state().scans[retaken].pose->model_from_scanner;
+  EXPECT_LT(apart_rad(now, then), 0.05);
+  // It is turned by hand since, and so it is turned back first, as near as may be.
+  const std::size_t before = followed.session.state().scans.size();
+  followed.session.scan_now();
+  ASSERT_TRUE(followed.wait_until([&](const LiveState& s) {
+    return s.phase == LivePhase::kWaiting && s.scans.size() > before && s.scans.back().pose;
+  }));
+  followed.session.ask(ScanAgain{last.id + 1});
+  ASSERT_TRUE(followed.wait_until([&](const LiveState& s) {
+    return s.phase == LivePhase::kWaiting && s.scans[retaken].dropped && s.next &&
+           apart_rad(s.next->model_from_scanner, now) < 0.4;
+  }));
+  EXPECT_TRUE(followed.session.state().next->placement->hand_turn);
 }
 
 TEST(LiveSession, WhatWasStoppedGoesOnWithEverythingThatWasStored) {

@@ -166,12 +166,7 @@ void OperatorScreen::draw_scan_menu(UiContext& ui, const LiveScan& scan) {
     offer("label-pins", Text::kLabelPins, [&] { pins_.open(scan, state_); });
   }
   offer("drop", Text::kDrop, [&] { session_.ask(DropScan{scan.id, "taken out by the operator"}); });
-  offer("rescan", Text::kRescan, [&] {
-    session_.ask(DropScan{scan.id, "to be scanned again"});
-    if (state_.phase == LivePhase::kWaiting) {
-      session_.scan_now();
-    }
-  });
+  offer("rescan", Text::kRescan, [&] { session_.ask(ScanAgain{scan.id}); });
   if (fits && !scan.pose->locked) {
     offer("lock", Text::kLock, [&] { session_.ask(LockScan{scan.id}); });
   } else if (fits) {
