@@ -61,7 +61,8 @@ struct EngineResult {
 /// not depend on timing.
 ///
 /// Cancelling the job stops it in good order: scans that were stored stay stored, a half-taken scan is given
-/// up, and run() returns kCancelled. Going on later is run() on the same session.
+/// up (unless KeepHalfScan was posted), and run() returns kCancelled. Going on later is run() on the same
+/// session.
 class Engine {
  public:
   Engine(EngineOptions options, EventSink sink);

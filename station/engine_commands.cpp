@@ -16,6 +16,10 @@ bool Engine::post(OperatorCommand command) {
     impl_->pace.notify_all();
     return true;
   }
+  if (std::holds_alternative<KeepHalfScan>(command)) {
+    impl_->keeps_half = true;
+    return true;
+  }
   if (auto* change = std::get_if<ChangeSetting>(&command)) {
     impl_->settings_asked.push_back(std::move(*change));
     return true;

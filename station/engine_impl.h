@@ -165,6 +165,7 @@ struct Engine::Impl {
   bool takes_commands = false;
   bool scan_asked = false;    ///< of a paced run: ScanNow since the last scan
   bool finish_asked = false;  ///< of a paced run: Finish
+  bool keeps_half = false;    ///< KeepHalfScan
   std::vector<ChangeSetting> settings_asked;
   bool watch_asked = false;              ///< WatchCamera
   bool last_scan_taken_up = true;        ///< as registration has judged it
@@ -180,13 +181,17 @@ struct Engine::Impl {
 
   /// The first error ends the run; everything that is in the queues behind it still gets through.
   void give_up(const Error& error) {
+    bool half_comes = false;
     {
       const std::scoped_lock lock(mutex);
       if (!first_error) {
         first_error = error;
       }
+      half_comes = keeps_half && error.kind == ErrorKind::kCancelled;
     }
-    queues->to_store.close();
+    if (!half_comes) {  // else the acquiring thread closes it, once it has given what came
+      queues->to_store.close();
+    }
     queues->to_device.close();
   }
   bool failed() {
@@ -228,6 +233,8 @@ struct Engine::Impl {
   bool another_tablet(int id, const std::set<int>& before, const std::set<int>& now);
   Taken refuse_empty();  ///< of a scan without a sample
   Taken take_scan(const std::optional<Placement>& drive, JobContext& job);
+  /// The rows of a scan that ended in its middle are as good as any.
+  void keep_half(const std::optional<Placement>& drive);
   void keep_stored();
   /// Onto the disk, and only then reported; false when it is not there.
   bool store_scan(int id, const RangeGrid& grid, const std::optional<Placement>& drive);

@@ -4,6 +4,18 @@
 
 namespace dubsar {
 
+void Engine::Impl::keep_half(const std::optional<Placement>& drive) {
+  std::optional<RangeGrid> half = source->take_partial();
+  if (!half || half->valid_count() == 0) {
+    return;
+  }
+  emit(Notice{fmt::format("the half scan is kept: {} rows", half->rows)});
+  if (half->nominal) {
+    half->nominal->placement += placement_offset;
+  }
+  queues->to_store.push({std::move(*half), std::nullopt, drive});
+}
+
 /// Takes the next scan of the device. kEnd when there is none, or the run is over; kNothing when this one
 /// does not count, but others may follow.
 Taken Engine::Impl::take_scan(const std::optional<Placement>& drive, JobContext& job) {
@@ -28,19 +40,21 @@ Taken Engine::Impl::take_scan(const std::optional<Placement>& drive, JobContext&
       device_error = device_error ? device_error : grid.error();
     }
     emit(Notice{grid.error().line()});
-    // A device that stopped in mid-scan leaves profiles that are as good as any.
-    if (std::optional<RangeGrid> partial = source->take_partial(); partial && partial->valid_count() > 0) {
-      emit(Notice{fmt::format("the half scan is kept: {} rows", partial->rows)});
-      if (partial->nominal) {
-        partial->nominal->placement += placement_offset;
-      }
-      queues->to_store.push({std::move(*partial), std::nullopt, drive});
-    }
+    keep_half(drive);
     // A bad file of a folder does not stop the others.
     const bool others = source->capabilities().finite && grid.error().kind == ErrorKind::kBadInput;
     return others ? Taken::kNothing : Taken::kEnd;
   }
   if (!grid) {
+    // Who stopped the scan did not like it; who shut the window had something else to do. A file of a finite
+    // source would never be read to its end if its half were stored.
+    const bool keeps = [&] {
+      const std::scoped_lock lock(mutex);
+      return keeps_half && !source->capabilities().finite;
+    }();
+    if (keeps) {
+      keep_half(drive);
+    }
     give_up(grid.error());
     return Taken::kEnd;
   }

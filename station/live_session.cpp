@@ -13,6 +13,12 @@ LiveSession::LiveSession(Options options, std::function<void()> on_change)
     : options_(std::move(options)), on_change_(std::move(on_change)) {}
 
 LiveSession::~LiveSession() {
+  {
+    const std::scoped_lock lock(mutex_);
+    if (engine_) {
+      engine_->post(KeepHalfScan{});
+    }
+  }
   stop();
   {
     const std::scoped_lock lock(mutex_);

@@ -34,7 +34,8 @@ class LiveSession {
 
   /// `on_change` is called on other threads whenever there is something new to show.
   LiveSession(Options options, std::function<void()> on_change);
-  /// Stops what is under way in good order; a half-taken scan is given up.
+  /// Stops what is under way in good order; what came of a scan under way is kept (of a device;
+  /// a recorded scan is read again).
   ~LiveSession();
   LiveSession(const LiveSession&) = delete;
   LiveSession& operator=(const LiveSession&) = delete;

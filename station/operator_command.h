@@ -65,8 +65,11 @@ struct ScanNow {};
 /// Of a paced run: take no more scans, and bring what there is to its end.
 struct Finish {};
 
+/// Whoever looks at it goes away: where a cancelled run would give up the scan under way, its rows are kept.
+struct KeepHalfScan {};
+
 using OperatorCommand =
     std::variant<DropScan, ScanAgain, RestoreScan, HintScan, WithdrawHint, LockScan, UnlockScan, LabelPins,
-                 DescribeTablet, ChangeSetting, WatchCamera, ScanNow, Finish>;
+                 DescribeTablet, ChangeSetting, WatchCamera, ScanNow, Finish, KeepHalfScan>;
 
 }  // namespace dubsar

@@ -180,6 +180,45 @@ TEST(LiveSession, AScanThatIsTakenAgainIsAimedAsItWas) {
   EXPECT_TRUE(followed.session.state().next->placement->hand_turn);
 }
 
+TEST(LiveSession, TheScanUnderWayIsKeptWhenItsWindowIsShut) {
+  for (const bool is_shut : {false, true}) {
+    const test::TemporaryFolder folder;
+    std::promise<void> in_the_middle;
+    std::promise<void> stopped;
+    Engine engine({kSmallTablet, folder.path() / "s", true, 0, std::nullopt}, [&](const Event& event) {
+      if (const auto* profile = std::get_if<ProfileArrived>(&event); profile && profile->row == 30) {
+        in_the_middle.set_value();
+        stopped.get_future().wait();
+      }
+    });
+    JobContext job;
+    std::optional<Result<EngineResult>> result;
+    std::jthread runs([&] { result.emplace(engine.run(job)); });
+    in_the_middle.get_future().wait();
+    if (is_shut) {
+      EXPECT_TRUE(engine.post(KeepHalfScan{}));
+    }
+    job.cancel();
+    stopped.set_value();
+    runs.join();
+    ASSERT_FALSE(*result);
+    EXPECT_EQ(result->error().kind, ErrorKind::kCancelled);
+    const Result<SessionStore> store =
+        SessionStore::open(folder.path() / "s", SessionStore::Access::kReadOnly);
+    ASSERT_TRUE(store);
+    const auto scans = store->scans();
+    ASSERT_TRUE(scans);
+    ASSERT_THAT(*scans, SizeIs(is_shut ? 1 : 0));
+    if (is_shut) {
+      const Result<RangeGrid> half = store->load_grid(0);
+      ASSERT_TRUE(half);
+      EXPECT_GE(half->rows, 30);
+      EXPECT_LT(half->rows, 60);
+      EXPECT_GT(half->valid_count(), 0U);
+    }
+  }
+}
+
 TEST(LiveSession, WhatWasStoppedGoesOnWithEverythingThatWasStored) {
   const test::TemporaryFolder folder;
   std::size_t stored = 0;
