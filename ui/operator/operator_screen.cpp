@@ -17,22 +17,6 @@ namespace dubsar::ui {
 
 namespace {
 
-Eigen::Vector4f tone_colour(const UiContext& ui, Tone tone) {
-  switch (tone) {
-    case Tone::kHandsOff:
-      return ui.colours.amber;
-    case Tone::kAsk:
-      return ui.colours.ghost;
-    case Tone::kGood:
-      return ui.colours.good;
-    case Tone::kBad:
-      return ui.colours.red;
-    case Tone::kPlain:
-      break;
-  }
-  return ui.colours.faint;
-}
-
 bool pressed(std::initializer_list<int> keys) {
   return std::ranges::any_of(keys, [](int key) { return ImGui::IsKeyPressed(key, false); });
 }
@@ -152,7 +136,7 @@ void OperatorScreen::draw(UiContext& ui, ImVec2 size) {
                    ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoSavedSettings);
   const float gap = ImGui::GetStyle().ItemSpacing.y;
   const ImVec2 room = ImGui::GetContentRegionAvail();
-  const float top = ui.px(5.6F);
+  const float top = statement_high_px(ui, statement, room);
   const float strip = std::min(ui.px(8.2F), 0.2F * room.y);  // large letters leave the checklist its room
   const float middle = room.y - top - strip - 2 * gap;
   const float left = ui.px(13.5F);
@@ -240,78 +224,6 @@ void OperatorScreen::open_pairs() {
       pairs_.open(scan, state_.scans);
     }
   }
-}
-
-void OperatorScreen::draw_statement(UiContext& ui, const Statement& statement, ImVec2 size) {
-  ImGui::BeginChild("statement", size);
-  const ImVec2 origin = ImGui::GetWindowPos();
-  const Eigen::Vector4f tone = tone_colour(ui, statement.tone);
-  ImDrawList* draw = ImGui::GetWindowDrawList();
-  draw->AddRectFilled(origin, {origin.x + size.x, origin.y + size.y}, packed(tone, 0.16F), 6);
-  draw->AddRectFilled(origin, {origin.x + ui.px(0.5F), origin.y + size.y}, packed(tone), 3);
-  const ImVec2 button{ui.px(7.6F), size.y - ui.px(0.8F)};
-  const float buttons = 3 * (button.x + ImGui::GetStyle().ItemSpacing.x) + ui.px(6.4F);
-  const float text_width = size.x - buttons - ui.px(1.6F);
-  ImGui::SetCursorPos({ui.px(1.1F), ui.px(0.5F)});
-  ImGui::BeginChild("words", {text_width, size.y - ui.px(0.6F)}, false, ImGuiWindowFlags_NoBackground);
-  // The headline is as large as fits in two lines.
-  ImFont* font = ui.fonts.large;
-  const auto high_px = [&](float scale) {
-    return font->CalcTextSizeA(scale * font->FontSize, 1e6F, text_width, statement.headline.c_str()).y;
-  };
-  float scale = 1;
-  while (scale > 0.65F && high_px(scale) > 2.1F * scale * font->FontSize) {
-    scale -= 0.05F;
-  }
-  const float headline_px = high_px(scale);
-  ImDrawList* words = ImGui::GetWindowDrawList();
-  words->AddText(font, scale * font->FontSize, ImGui::GetCursorScreenPos(), packed(ui.colours.text),
-                 statement.headline.c_str(), nullptr, text_width);
-  ImGui::Dummy({text_width, headline_px});
-  // The detail in the larger letters as long as they fit.
-  const float room_px = ImGui::GetContentRegionAvail().y;
-  const ImFont* normal = ui.fonts.normal;
-  const bool fits =
-      normal->CalcTextSizeA(normal->FontSize, 1e6F, text_width, statement.detail.c_str()).y <= room_px;
-  ImGui::PushFont(fits ? ui.fonts.normal : ui.fonts.small);
-  coloured_text(ui.colours.text, statement.detail.c_str());
-  ImGui::PopFont();
-  ImGui::EndChild();
-  ImGui::SameLine();
-  ImGui::SetCursorPos({size.x - buttons, ui.px(0.4F)});
-  if (big_button(ui, "scan", ui.text(statement.scan_label), ui.text(Text::kKeyScan), button,
-                 statement.tone == Tone::kGood ? ButtonKind::kPlain : ButtonKind::kMain,
-                 statement.may_scan)) {
-    session_.scan_now();
-  }
-  ImGui::SameLine();
-  if (big_button(ui, "undo", ui.text(Text::kUndo), ui.text(Text::kKeyUndo), button, ButtonKind::kPlain,
-                 statement.may_undo)) {
-    undo();
-  }
-  ImGui::SameLine();
-  const bool finish = statement.may_finish;
-  if (big_button(ui, finish ? "finish" : "sign", ui.text(finish ? Text::kFinish : Text::kSign),
-                 ui.text(Text::kKeySign), button, statement.may_sign ? ButtonKind::kMain : ButtonKind::kPlain,
-                 statement.may_sign || finish)) {
-    if (finish) {
-      session_.finish();
-    } else {
-      open_signing(ui);
-    }
-  }
-  ImGui::SameLine();
-  ImGui::BeginGroup();
-  const ImVec2 half{ui.px(6.0F), 0.5F * (button.y - ImGui::GetStyle().ItemSpacing.y)};
-  if (big_button(ui, "stop", ui.text(Text::kStop), nullptr, half, ButtonKind::kPlain, statement.may_stop)) {
-    session_.stop();
-  }
-  if (big_button(ui, "viewer", ui.text(Text::kView), nullptr, half, ButtonKind::kPlain,
-                 state_.mesh != nullptr)) {
-    wants_viewer_ = true;
-  }
-  ImGui::EndGroup();
-  ImGui::EndChild();
 }
 
 void OperatorScreen::draw_model(UiContext& ui, ImVec2 size, bool asks_for_places) {

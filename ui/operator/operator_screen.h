@@ -51,7 +51,10 @@ class OperatorScreen {
  private:
   void take_state(UiContext& ui);
   void sound_out(const UiContext& ui);
+  // statement_band.cpp
+  [[nodiscard]] static float statement_high_px(const UiContext& ui, const Statement& statement, ImVec2 room);
   void draw_statement(UiContext& ui, const Statement& statement, ImVec2 size);
+  void draw_last_action(UiContext& ui, const Statement& statement, ImVec2 button);
   void draw_left(UiContext& ui, ImVec2 size);
   void draw_model(UiContext& ui, ImVec2 size, bool asks_for_places);
   void draw_right(UiContext& ui, ImVec2 size);

@@ -115,15 +115,7 @@ void OperatorScreen::draw_left(UiContext& ui, ImVec2 size) {
   }
   const ImVec2 half{0.5F * (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x), wide.y};
   const auto narrow = [&](const char* name, Text text, ButtonKind kind, bool enabled) {
-    const bool small = ImGui::CalcTextSize(ui.text(text)).x > half.x - ui.px(0.4F);
-    if (small) {
-      ImGui::PushFont(ui.fonts.small);
-    }
-    const bool is_pressed = big_button(ui, name, ui.text(text), nullptr, half, kind, enabled);
-    if (small) {
-      ImGui::PopFont();
-    }
-    return is_pressed;
+    return big_button(ui, name, ui.text(text), nullptr, half, kind, enabled);
   };
   const bool has_device = !session_.device().empty();
   if (narrow("device", Text::kDevice, has_device ? ButtonKind::kPlain : ButtonKind::kMain,
@@ -177,17 +169,24 @@ void OperatorScreen::draw_right(UiContext& ui, ImVec2 size) {
   ImGui::BeginChild("right", size, true, ImGuiWindowFlags_NoScrollbar);
   const ImVec2 room = ImGui::GetContentRegionAvail();
   const float line = ImGui::GetTextLineHeightWithSpacing();
-  const float foot = 2.6F * line;
+  const bool works = session_.busy() && !state_.stage.empty() && state_.phase != LivePhase::kWaiting;
+  // Of a scan that is unsure the statement says it all.
+  const bool tells =
+      !works && !state_.notice.empty() && !(state_.phase == LivePhase::kWaiting && state_.last_not_taken_up);
+  const float foot = works || tells ? 2.6F * line : 0.0F;
   const bool shows_next = state_.next && state_.next->placement && state_.mesh;
-  const float each = shows_next ? 0.5F * (room.y - foot) - line : room.y - foot - line;
+  const float pictures = room.y - foot - (shows_next ? 2 : 1) * line;
+  const float growing =
+      shows_next ? (state_.phase == LivePhase::kWaiting ? 0.35F : 0.5F) * pictures : pictures;
   ImGui::TextUnformatted(ui.text(Text::kScanGrowing));
-  draw_growing(ui, {room.x, each});
+  draw_growing(ui, {room.x, growing});
   if (shows_next) {
     ImGui::TextUnformatted(ui.text(Text::kNextPose));
     unfinished_ =
-        pose_.draw(ui, *state_.next, {room.x, each - ImGui::GetStyle().ItemSpacing.y}) || unfinished_;
+        pose_.draw(ui, *state_.next, {room.x, pictures - growing - 2 * ImGui::GetStyle().ItemSpacing.y}) ||
+        unfinished_;
   }
-  if (session_.busy() && !state_.stage.empty() && state_.phase != LivePhase::kWaiting) {
+  if (works) {
     ImGui::PushFont(ui.fonts.small);
     ImGui::ProgressBar(static_cast<float>(state_.fraction), {-1, 0},
                        translated(state_.stage, ui.preferences.language).c_str());
@@ -197,8 +196,7 @@ void OperatorScreen::draw_right(UiContext& ui, ImVec2 size) {
           filled(ui.text(Text::kTimeLeft), spent * (1 - state_.fraction) / state_.fraction).c_str());
     }
     ImGui::PopFont();
-  } else if (!state_.notice.empty() && !(state_.phase == LivePhase::kWaiting && state_.last_not_taken_up)) {
-    // Of a scan that is unsure the statement says it all.
+  } else if (tells) {
     ImGui::PushFont(ui.fonts.small);
     coloured_text(ui.colours.faint, translated(state_.notice, ui.preferences.language).c_str());
     ImGui::PopFont();

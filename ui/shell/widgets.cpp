@@ -56,6 +56,10 @@ bool big_button(UiContext& ui, const char* name, const char* label, const char* 
   const ImVec2 low = ImGui::GetItemRectMin();
   const ImVec2 high = ImGui::GetItemRectMax();
   ImDrawList* draw = ImGui::GetWindowDrawList();
+  const bool in_small = ImGui::CalcTextSize(label).x > high.x - low.x - ui.px(0.4F);
+  if (in_small) {
+    ImGui::PushFont(ui.fonts.small);
+  }
   const ImVec2 label_size = ImGui::CalcTextSize(label);
   const float small = ui.fonts.small->FontSize;
   const float height = label_size.y + (key != nullptr ? small : 0.0F);
@@ -63,6 +67,9 @@ bool big_button(UiContext& ui, const char* name, const char* label, const char* 
   float y = 0.5F * (low.y + high.y - height);
   const ImU32 ink = packed(enabled ? ui.colours.text : ui.colours.faint);
   draw->AddText({middle - 0.5F * label_size.x, y}, ink, label);
+  if (in_small) {
+    ImGui::PopFont();
+  }
   if (key != nullptr) {
     y += label_size.y;
     const ImVec2 key_size = ui.fonts.small->CalcTextSizeA(small, 1e4F, 0, key);

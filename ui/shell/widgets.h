@@ -41,7 +41,7 @@ struct UiContext {
 enum class ButtonKind { kPlain, kMain };
 
 /// A button large enough for a glove, known to scripts by its name. The key that does the same is shown on
-/// it.
+/// it. A label that is too long for it is in the small letters.
 bool big_button(UiContext& ui, const char* name, const char* label, const char* key, ImVec2 size,
                 ButtonKind kind = ButtonKind::kPlain, bool enabled = true);
 bool plain_button(UiContext& ui, const char* name, const char* label, bool enabled = true);
