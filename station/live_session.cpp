@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "station/packing.h"
+#include "station/place_outside.h"
 #include "station/signing.h"
 
 namespace dubsar {
@@ -267,6 +269,27 @@ void LiveSession::sign(const SignOff& wanted) {
   });
 }
 
+void LiveSession::pack(const std::filesystem::path& to) {
+  launch([this, to] {
+    {
+      const std::scoped_lock lock(mutex_);
+      state_.phase = LivePhase::kPacking;
+      state_.package.clear();
+    }
+    changed();
+    const Status outside = check_outside_sessions(to);
+    const Result<Packing> packing =
+        outside ? pack_session({.session = options_.session, .to = to, .package = {}, .update = true}, *job_)
+                : std::unexpected(outside.error());
+    if (!packing) {
+      end(std::unexpected(packing.error()));
+      return;
+    }
+    const std::scoped_lock lock(mutex_);
+    state_.package = to;
+  });
+}
+
 void LiveSession::run_engine(std::vector<OperatorCommand> first, bool first_scan_waits) {
   EngineOptions options;
   JobContext* job = nullptr;
@@ -293,6 +316,7 @@ void LiveSession::run_engine(std::vector<OperatorCommand> first, bool first_scan
     state_.phase = LivePhase::kOpening;
     state_.next.reset();
     state_.signed_off = false;
+    state_.package.clear();
     state_.checklist.reset();
   }
   changed();

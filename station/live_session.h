@@ -47,6 +47,7 @@ class LiveSession {
   /// What the camera sees; nothing while nobody looks.
   [[nodiscard]] std::shared_ptr<const CameraView> camera() const;
   [[nodiscard]] std::string device() const;
+  [[nodiscard]] const std::filesystem::path& folder() const { return options_.session; }
   /// For the next run.
   void set_device(std::string uri);
 
@@ -65,6 +66,8 @@ class LiveSession {
   void change_setting(const std::string& key, const std::string& word);
   void describe(const TabletRecord& record);
   void sign(const SignOff& wanted);
+  /// `dubsar export --update`: all that leaves the storeroom, into that folder.
+  void pack(const std::filesystem::path& to);
   /// `dubsar calibrate --verify`, and `dubsar calibrate`: each a job of its own, with its outcome in the
   /// state.
   void verify(const VerifyRequest& request);

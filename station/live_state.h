@@ -5,6 +5,7 @@
 #include <array>
 #include <chrono>
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -38,6 +39,7 @@ enum class LivePhase {
   kFinishing,  ///< final registration, mesh, wedges, pages
   kSigning,
   kMeasuring,  ///< an artefact, or the pictures of a calibration
+  kPacking,    ///< the package of the session
 };
 
 /// A scan of the session. The grid is thinned to what a person needs to point at places in it.
@@ -86,8 +88,9 @@ struct LiveState {
   std::optional<Checklist> checklist;
   bool signed_off = false;  ///< the verdict as it stands
   std::string signed_by;
-  std::optional<Error> error;  ///< what ended the last run or job
-  std::string notice;          ///< what the operator should know; empty when a later scan has made it old
+  std::filesystem::path package;  ///< of the session as it stands; empty: none was made in this window
+  std::optional<Error> error;     ///< what ended the last run or job
+  std::string notice;             ///< what the operator should know; empty when a later scan has made it old
   TabletRecord record;
   std::shared_ptr<const PinSet> pins;        ///< with the operator's labels; nothing while none are known
   std::shared_ptr<const DevicePanel> panel;  ///< of the device that was opened last

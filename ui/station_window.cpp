@@ -90,6 +90,7 @@ class StationWindow {
     }
     ui_.still = script_.has_value();
     kept_ = ui_.preferences;
+    pins_ = options.pins;
     looks_ = !options.mesh.empty();
     viewing_ = std::make_unique<MeshViewing>(wake_window);
     if (looks_) {
@@ -103,14 +104,8 @@ class StationWindow {
       viewer_ = std::make_unique<ViewerScreen>(*viewing_, std::filesystem::path("."), false);
       return;
     }
-    viewer_ = std::make_unique<ViewerScreen>(*viewing_, options.session / "export", true);
-    session_folder_ = options.session;
-    session_ = std::make_unique<LiveSession>(
-        LiveSession::Options{options.device.empty() ? ui_.preferences.device : options.device,
-                             options.session, options.pins},
-        wake_window);
-    session_->read();
-    operator_ = std::make_unique<OperatorScreen>(*session_);
+    open_session(
+        {options.device.empty() ? ui_.preferences.device : options.device, options.session, options.pins});
   }
 
   Result<int> run(const JobContext& job) {
@@ -168,7 +163,29 @@ class StationWindow {
   }
 
  private:
+  void open_session(const LiveSession::Options& options) {
+    operator_.reset();
+    session_ = std::make_unique<LiveSession>(options, wake_window);
+    session_->read();
+    operator_ = std::make_unique<OperatorScreen>(*session_);
+    viewer_ = std::make_unique<ViewerScreen>(*viewing_, options.session / "export", true);
+  }
+
+  /// Between two frames: what the last one drew is still wanted until it is shown.
+  void go_to_next_session() {
+    const auto folder = operator_ ? operator_->wants_session() : std::nullopt;
+    if (!folder) {
+      return;
+    }
+    std::optional<PinSet> pins = pins_;
+    if (pins) {
+      pins->tips.clear();  // those were of the scans of another tablet
+    }
+    open_session({session_->device(), *folder, pins});
+  }
+
   bool draw_frame() {
+    go_to_next_session();
     if (loaded_px_ != ui_.preferences.font_px) {
       const TimedWork timed(ui_.watch, "letters");
       ui_.fonts = load_fonts(ui_.preferences.font_px);
@@ -205,7 +222,7 @@ class StationWindow {
       if (operator_->wants_viewer()) {
         const LiveState state = session_->state();
         viewer_->show_pins(operator_->pins_on_model());
-        viewing_->show(state.mesh, state.tablet_from_model, session_folder_ / "analysis" / "wedges.json");
+        viewing_->show(state.mesh, state.tablet_from_model, session_->folder() / "analysis" / "wedges.json");
         looks_ = true;
       }
     }
@@ -281,7 +298,7 @@ class StationWindow {
   bool draws_on_ = false;                ///< more of the picture comes at the next frame
   bool seen_ = false;                    ///< a mesh in the viewer
   bool looks_ = false;                   ///< the viewer; else the operator's screen
-  std::filesystem::path session_folder_;
+  std::optional<PinSet> pins_;           ///< that the window was opened with
   // The screens go before the context does.
   std::unique_ptr<LiveSession> session_;
   std::unique_ptr<MeshViewing> viewing_;

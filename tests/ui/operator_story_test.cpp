@@ -88,6 +88,22 @@ pause 0.2
 type A. Reader
 key enter
 wait signed
+)";
+
+/// What comes after it: the package, and the next tablet.
+constexpr const char* kAfterwards = R"(
+expect statement-whole
+key enter
+wait package-now
+key enter
+wait packed 120
+wait idle
+key space
+wait next-now
+key enter
+wait scans.0
+wait idle
+expect scan
 quit
 )";
 
@@ -106,8 +122,11 @@ int presses_beyond_turns(const std::string& script) {
 
 TEST_F(OperatorStory, FromTheFirstKeyToASignedConclusiveTablet) {
   EXPECT_LE(presses_beyond_turns(kStory), 12);
-  const Outcome played = play(kStory);
+  const Outcome played = play(std::string(kStory) + kAfterwards);
   ASSERT_EQ(played.status, 0) << played.err;
+  EXPECT_EQ(run_command({"verify", session() + ".results/package"}).status, 0);
+  const auto again = run_command({"export", session(), "--to", session() + ".results/package", "--json"});
+  EXPECT_EQ(again.json()["done_before"], true) << "the command makes the same";
   const auto list = run_command({"session", "list", session(), "--json"}).json();
   ASSERT_EQ(list["sign_offs"].size(), 1U);
   EXPECT_EQ(list["sign_offs"][0]["name"], "A. Reader");

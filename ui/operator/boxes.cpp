@@ -27,6 +27,22 @@ bool begin_box(UiContext& ui, const char* title, const char* id, bool& open, flo
   return true;
 }
 
+/// The button that a box is for; enter does the same, but not the one that has opened the box.
+bool confirmed(UiContext& ui, const char* name, Text text, bool enough) {
+  const bool by_key =
+      enough && ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Enter), false) && !ImGui::IsWindowAppearing();
+  return plain_button(ui, name, ui.text(text), enough) || by_key;
+}
+
+/// Ends a box with its last button.
+void end_box(UiContext& ui, const char* close_name) {
+  ImGui::SameLine();
+  if (plain_button(ui, close_name, ui.text(Text::kClose))) {
+    ImGui::CloseCurrentPopup();
+  }
+  ImGui::EndPopup();
+}
+
 }  // namespace
 
 void OperatorScreen::draw_settings(UiContext& ui) {
@@ -87,7 +103,10 @@ void OperatorScreen::draw_tablet(UiContext& ui) {
   coloured_text(ui.colours.faint, ui.text(Text::kKept));
   ImGui::PopFont();
   const bool close = plain_button(ui, "close-tablet", ui.text(Text::kClose), cdli_good);
-  if (close || left_line) {
+  ImGui::SameLine();
+  const bool next = plain_button(ui, "next-tablet", fmt::format("{}  N", ui.text(Text::kNextTablet)).c_str(),
+                                 cdli_good && may_leave());
+  if (close || next || left_line) {
     TabletRecord said = record_;
     said.cdli = cdli_good ? record_.cdli : said_record_.cdli;
     ui.preferences.operator_name = said.operator_name;
@@ -96,7 +115,10 @@ void OperatorScreen::draw_tablet(UiContext& ui) {
       said_record_ = said;
     }
   }
-  if (close) {
+  if (next) {
+    open_next();
+  }
+  if (close || next) {
     ImGui::CloseCurrentPopup();
   }
   ImGui::EndPopup();
@@ -129,8 +151,7 @@ void OperatorScreen::draw_signing(UiContext& ui) {
   if (!enough && ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape), false)) {
     ImGui::CloseCurrentPopup();
   }
-  const bool by_key = enough && ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Enter), false) && !appears;
-  if (plain_button(ui, "sign-now", ui.text(Text::kSignNow), enough) || by_key) {
+  if (confirmed(ui, "sign-now", Text::kSignNow, enough)) {
     SignOff wanted;
     wanted.name = sign_name_;
     wanted.role = sign_role_;
@@ -139,11 +160,35 @@ void OperatorScreen::draw_signing(UiContext& ui) {
     session_.sign(wanted);
     ImGui::CloseCurrentPopup();
   }
-  ImGui::SameLine();
-  if (plain_button(ui, "sign-close", ui.text(Text::kClose))) {
+  end_box(ui, "sign-close");
+}
+
+void OperatorScreen::draw_package(UiContext& ui) {
+  if (!begin_box(ui, ui.text(Text::kPackage), "###package", open_package_, ui.px(36))) {
+    return;
+  }
+  ImGui::TextWrapped("%s", ui.text(Text::kPackageHint));
+  text_line(ui, "package-folder", ui.text(Text::kPackageFolder), package_folder_);
+  if (confirmed(ui, "package-now", Text::kPackageNow, !package_folder_.empty())) {
+    session_.pack(package_folder_);
     ImGui::CloseCurrentPopup();
   }
-  ImGui::EndPopup();
+  end_box(ui, "package-close");
+}
+
+void OperatorScreen::draw_next(UiContext& ui) {
+  if (!begin_box(ui, ui.text(Text::kNextTablet), "###next", open_next_, ui.px(32))) {
+    return;
+  }
+  text_line(ui, "next-folder", ui.text(Text::kNextFolder), next_folder_);
+  ImGui::PushFont(ui.fonts.small);
+  coloured_text(ui.colours.faint, ui.text(Text::kNextBeside));
+  ImGui::PopFont();
+  if (confirmed(ui, "next-now", Text::kNextNow, !next_folder_.empty() && may_leave())) {
+    next_session_ = session_.folder().parent_path() / next_folder_;
+    ImGui::CloseCurrentPopup();
+  }
+  end_box(ui, "next-close");
 }
 
 }  // namespace dubsar::ui

@@ -9,6 +9,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "station/next_session.h"
+#include "station/packing.h"
 #include "ui/shell/give_back.h"
 #include "ui/shell/sound.h"
 #include "ui/view/pin_marks.h"
@@ -77,12 +79,8 @@ void OperatorScreen::take_state(UiContext& ui) {
     }
     record_taken_ = true;
   }
-  if (state_.stage != stage_) {
-    stage_ = state_.stage;
-    stage_began_s_ = ui.time_s;
-  }
-  constexpr const char* kPhases[] = {"still",   "reading", "opening",   "moving",  "scanning",
-                                     "judging", "waiting", "finishing", "signing", "measuring"};
+  constexpr const char* kPhases[] = {"still",   "reading",   "opening", "moving",    "scanning", "judging",
+                                     "waiting", "finishing", "signing", "measuring", "packing"};
   ui.facts.insert(kPhases[static_cast<int>(state_.phase)]);
   if (state_.phase == LivePhase::kStill && state_.error) {
     ui.facts.insert("stopped");
@@ -92,6 +90,9 @@ void OperatorScreen::take_state(UiContext& ui) {
   }
   if (state_.signed_off) {
     ui.facts.insert("signed");
+  }
+  if (!state_.package.empty()) {
+    ui.facts.insert("packed");
   }
   if (state_.phase == LivePhase::kWaiting) {
     ui.facts.insert(state_.last_not_taken_up ? "waiting-unsure" : "waiting-turn");
@@ -166,6 +167,8 @@ void OperatorScreen::draw(UiContext& ui, ImVec2 size) {
   draw_settings(ui);
   draw_tablet(ui);
   draw_signing(ui);
+  draw_package(ui);
+  draw_next(ui);
   act(statement, ui);
 }
 
@@ -191,6 +194,18 @@ void OperatorScreen::open_signing(const UiContext& ui) {
   open_sign_ = true;
 }
 
+void OperatorScreen::open_package() {
+  if (package_folder_.empty()) {
+    package_folder_ = usual_package_of(std::filesystem::absolute(session_.folder())).string();
+  }
+  open_package_ = true;
+}
+
+void OperatorScreen::open_next() {
+  next_folder_ = next_session_name(session_.folder()).string();
+  open_next_ = true;
+}
+
 void OperatorScreen::act(const Statement& statement, const UiContext& ui) {
   if (ImGui::GetIO().WantTextInput || ui.facts.contains("dialog")) {
     return;
@@ -198,6 +213,8 @@ void OperatorScreen::act(const Statement& statement, const UiContext& ui) {
   // Keys, and what foot pedals send: F9 to F11, or page down, page up and end.
   if (statement.may_scan && pressed({GLFW_KEY_SPACE, GLFW_KEY_F9, GLFW_KEY_PAGE_DOWN})) {
     session_.scan_now();
+  } else if (statement.may_next && pressed({GLFW_KEY_SPACE, GLFW_KEY_F9, GLFW_KEY_PAGE_DOWN})) {
+    open_next();
   } else if (statement.may_undo && pressed({GLFW_KEY_BACKSPACE, GLFW_KEY_F10, GLFW_KEY_PAGE_UP})) {
     undo();
   } else if (pressed({GLFW_KEY_ENTER, GLFW_KEY_KP_ENTER, GLFW_KEY_F11, GLFW_KEY_END})) {
@@ -205,7 +222,11 @@ void OperatorScreen::act(const Statement& statement, const UiContext& ui) {
       open_signing(ui);
     } else if (statement.may_finish) {
       session_.finish();
+    } else if (statement.may_pack) {
+      open_package();
     }
+  } else if (may_leave() && pressed({GLFW_KEY_N})) {
+    open_next();
   } else if (statement.may_stop && pressed({GLFW_KEY_ESCAPE})) {
     session_.stop();
   } else if (asks_for_places(statement) && pressed({GLFW_KEY_P})) {

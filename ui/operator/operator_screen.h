@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <filesystem>
 #include <functional>
 #include <future>
 #include <map>
@@ -45,6 +46,10 @@ class OperatorScreen {
   }
   /// Labelled pins and places on the rim, where the registered scans show them.
   [[nodiscard]] std::vector<ShownPin> pins_on_model() const;
+  /// The session of the next tablet is wanted in place of this one; cleared by asking.
+  [[nodiscard]] std::optional<std::filesystem::path> wants_session() {
+    return std::exchange(next_session_, std::nullopt);
+  }
   /// The operator wants to look at the model; cleared by asking.
   [[nodiscard]] bool wants_viewer() { return std::exchange(wants_viewer_, false); }
 
@@ -64,11 +69,17 @@ class OperatorScreen {
   void draw_settings(UiContext& ui);
   void draw_tablet(UiContext& ui);
   void draw_signing(UiContext& ui);
+  void draw_package(UiContext& ui);
+  void draw_next(UiContext& ui);
   void act(const Statement& statement, const UiContext& ui);
   [[nodiscard]] bool asks_for_places(const Statement& statement) const;
   void open_pairs();
   void undo();
   void open_signing(const UiContext& ui);
+  void open_package();
+  void open_next();
+  /// Nothing is under way that the next tablet would end.
+  [[nodiscard]] bool may_leave() const { return !session_.busy() && !state_.scans.empty(); }
 
   LiveSession& session_;
   LiveState state_;
@@ -96,7 +107,10 @@ class OperatorScreen {
   TabletRecord said_record_;  ///< to the session
   bool record_taken_ = false;
   std::string sign_name_, sign_role_, sign_incomplete_;
+  std::string package_folder_, next_folder_;
+  std::optional<std::filesystem::path> next_session_;
   bool open_sign_ = false, open_tablet_ = false, open_settings_ = false;
+  bool open_package_ = false, open_next_ = false;
   bool wants_viewer_ = false;
   bool unfinished_ = false;
   bool draws_on_ = false;

@@ -54,12 +54,18 @@ void say_still(Statement& out, const LiveState& state, bool has_device, Language
   const bool any = newest(state) != nullptr;
   out.may_scan = has_device;
   const bool conclusive = any && state.red_map && state.red_map->conclusive && state.verdict_kept;
+  out.may_pack = any && state.signed_off;
+  if (conclusive && state.signed_off) {  // another scan would undo the signature
+    out.may_scan = false;
+    out.may_next = true;
+    out.scan_label = Text::kNextTablet;
+  }
   if (state.error) {
     out.tone = Tone::kBad;
     out.headline = text_of(Text::kStopped, language);
     out.detail = translated(state.error->line(), language);
-    out.scan_label = Text::kGoOn;
-    out.may_sign = conclusive;
+    out.scan_label = out.may_next ? Text::kNextTablet : Text::kGoOn;
+    out.may_sign = conclusive && !state.signed_off;
   } else if (!has_device) {
     out.headline = text_of(Text::kChooseDevice, language);
     out.tone = Tone::kAsk;
@@ -71,7 +77,9 @@ void say_still(Statement& out, const LiveState& state, bool has_device, Language
     }
   } else if (conclusive && state.signed_off) {
     out.headline = filled(text_of(Text::kSigned, language), state.signed_by.c_str());
-    out.detail = text_of(Text::kSignedNext, language);
+    out.detail = state.package.empty()
+                     ? text_of(Text::kSignedNext, language)
+                     : filled(text_of(Text::kPackageKept, language), state.package.string());
     out.tone = Tone::kGood;
   } else if (conclusive) {
     out.headline = text_of(Text::kConclusive, language);
@@ -83,7 +91,8 @@ void say_still(Statement& out, const LiveState& state, bool has_device, Language
                        : filled(text_of(Text::kStoredScans, language), state.scans.size());
     out.tone = Tone::kAsk;
     out.scan_label = Text::kGoOn;
-    out.may_sign = state.red_map != nullptr && state.verdict_kept;  // as incomplete, with the reason
+    // As incomplete, with the reason.
+    out.may_sign = state.red_map != nullptr && state.verdict_kept && !state.signed_off;
     if (state.signed_off) {
       out.detail = filled(text_of(Text::kSigned, language), state.signed_by.c_str());
     } else if (state.red_map && !state.red_map->next.empty()) {
@@ -117,7 +126,7 @@ double face_mm2(const RedMap& map, Face face, RegionState state) {
 Statement statement_of(const LiveState& state, bool has_device, Language language) {
   Statement out;
   out.may_undo = newest(state) != nullptr && state.phase != LivePhase::kReading &&
-                 state.phase != LivePhase::kSigning && has_device;
+                 state.phase != LivePhase::kSigning && state.phase != LivePhase::kPacking && has_device;
   out.may_stop = state.phase != LivePhase::kStill;
   const auto hands_off = [&](Text headline) {
     out.tone = Tone::kHandsOff;
@@ -153,6 +162,9 @@ Statement statement_of(const LiveState& state, bool has_device, Language languag
       break;
     case LivePhase::kSigning:
       out.headline = text_of(Text::kSigning, language);
+      break;
+    case LivePhase::kPacking:
+      out.headline = text_of(Text::kPacking, language);
       break;
     case LivePhase::kMeasuring:
       hands_off(Text::kMeasuring);

@@ -22,6 +22,8 @@ struct Statement {
   bool may_sign = false;
   bool may_finish = false;
   bool may_stop = false;
+  bool may_pack = false;  ///< it is signed: the package
+  bool may_next = false;  ///< and conclusive: the next tablet, in place of another scan
   Text scan_label = Text::kScan;
 };
 

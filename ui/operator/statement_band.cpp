@@ -87,10 +87,15 @@ void OperatorScreen::draw_statement(UiContext& ui, const Statement& statement, I
   }
   const ImVec2 button{band.button_wide, size.y - ui.px(0.8F)};
   ImGui::SetCursorPos({size.x - band.buttons_wide, ui.px(0.4F)});
-  if (big_button(ui, "scan", ui.text(statement.scan_label), ui.text(Text::kKeyScan), button,
-                 statement.tone == Tone::kGood ? ButtonKind::kPlain : ButtonKind::kMain,
-                 statement.may_scan)) {
-    session_.scan_now();
+  if (big_button(
+          ui, "scan", ui.text(statement.scan_label), ui.text(Text::kKeyScan), button,
+          statement.tone == Tone::kGood && state_.package.empty() ? ButtonKind::kPlain : ButtonKind::kMain,
+          statement.may_scan || statement.may_next)) {
+    if (statement.may_next) {
+      open_next();
+    } else {
+      session_.scan_now();
+    }
   }
   ImGui::SameLine();
   if (big_button(ui, "undo", ui.text(Text::kUndo), ui.text(Text::kKeyUndo), button, ButtonKind::kPlain,
@@ -113,8 +118,15 @@ void OperatorScreen::draw_statement(UiContext& ui, const Statement& statement, I
   ImGui::EndChild();
 }
 
-/// No more scans, then the signature.
+/// No more scans, then the signature, then the package.
 void OperatorScreen::draw_last_action(UiContext& ui, const Statement& statement, ImVec2 button) {
+  if (statement.may_pack) {
+    if (big_button(ui, "package", ui.text(Text::kPackage), ui.text(Text::kKeySign), button,
+                   state_.package.empty() ? ButtonKind::kMain : ButtonKind::kPlain)) {
+      open_package();
+    }
+    return;
+  }
   const bool finish = statement.may_finish;
   if (big_button(ui, finish ? "finish" : "sign", ui.text(finish ? Text::kFinish : Text::kSign),
                  ui.text(Text::kKeySign), button, statement.may_sign ? ButtonKind::kMain : ButtonKind::kPlain,

@@ -123,6 +123,12 @@ constexpr EnginePhrase kPhrases[] = {
     {" scans in a row are not taken up, scan ", " Scans nacheinander werden nicht aufgenommen, Scan "},
     {" because ", ", denn "},
     {"kept: ", "aufgehoben: "},
+    // why a package is not made
+    {"something lies there already", "dort liegt schon etwas"},
+    {"choose another folder, or replace it with --force", "einen anderen Ordner wählen"},
+    {"a session keeps a checksum of every file in it; nothing else is written there",
+     "eine Sitzung hat eine Prüfsumme für jede ihrer Dateien; anderes wird nicht hineingeschrieben"},
+    {"write it beside the session: ", "neben die Sitzung schreiben: "},
     // why a wedge is not what somebody says
     {"no wedge lies at ", "kein Keil liegt bei "},
     {" any more", " mehr"},

@@ -29,6 +29,7 @@ const std::map<std::string, int>& keys() {
                                                 {"f10", GLFW_KEY_F10},
                                                 {"f11", GLFW_KEY_F11},
                                                 {"l", GLFW_KEY_L},
+                                                {"n", GLFW_KEY_N},
                                                 {"p", GLFW_KEY_P},
                                                 {"pagedown", GLFW_KEY_PAGE_DOWN},
                                                 {"pageup", GLFW_KEY_PAGE_UP},

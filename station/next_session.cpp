@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "station/next_session.h"
+
+#include <charconv>
+#include <string>
+#include <system_error>
+
+namespace dubsar {
+
+namespace fs = std::filesystem;
+
+fs::path next_session_name(const fs::path& session) {
+  const fs::path folder = session.has_filename() ? session : session.parent_path();
+  std::string stem = folder.filename().string();
+  int number = 1;
+  if (const auto dash = stem.rfind('-'); dash != std::string::npos && dash > 0) {
+    int counted = 0;
+    const char* end = stem.data() + stem.size();
+    const auto [rest, error] = std::from_chars(stem.data() + dash + 1, end, counted);
+    if (error == std::errc() && rest == end && counted > 0) {
+      number = counted;
+      stem.resize(dash);
+    }
+  }
+  std::error_code ignored;
+  fs::path name;
+  do {
+    ++number;
+    name = stem + "-" + std::to_string(number);
+  } while (fs::exists(folder.parent_path() / name, ignored));
+  return name;
+}
+
+}  // namespace dubsar

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "station/next_session.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/temporary_folder.h"
+
+namespace dubsar {
+namespace {
+
+TEST(NextSession, CountsOnPastWhatIsThere) {
+  const test::TemporaryFolder folder;
+  EXPECT_EQ(next_session_name(folder.path() / "box"), "box-2");
+  EXPECT_EQ(next_session_name(folder.path() / "box/"), "box-2");
+  EXPECT_EQ(next_session_name(folder.path() / "box-9"), "box-10");
+  EXPECT_EQ(next_session_name(folder.path() / "VAT-12-a"), "VAT-12-a-2");
+  std::filesystem::create_directory(folder.path() / "box-2");
+  EXPECT_EQ(next_session_name(folder.path() / "box"), "box-3");
+}
+
+}  // namespace
+}  // namespace dubsar
