@@ -217,7 +217,7 @@ void CalibrationDialog::draw(UiContext& ui, const LiveState& state) {
     verifying_ = false;
   }
   ui.target("page-calibrate");
-  const float foot = ImGui::GetFrameHeightWithSpacing() + 2 * ImGui::GetTextLineHeightWithSpacing();
+  const float foot = 2 * ImGui::GetFrameHeightWithSpacing() + ImGui::GetTextLineHeightWithSpacing();
   const ImVec2 room{ImGui::GetContentRegionAvail().x, ImGui::GetContentRegionAvail().y - foot};
   const float right = verifying_ ? 0 : 0.42F * room.x;
   ImGui::BeginChild("page", {room.x - right, room.y}, true);
@@ -235,8 +235,12 @@ void CalibrationDialog::draw(UiContext& ui, const LiveState& state) {
     ImGui::EndChild();
   }
   ImGui::PushFont(ui.fonts.small);
-  if (session_.busy()) {
-    coloured_text(ui.colours.faint, translated(state.stage, ui.preferences.language).c_str());
+  if (session_.busy() && !state.stage.empty()) {
+    if (plain_button(ui, "stop-calibration", ui.text(Text::kStop))) {
+      session_.stop();
+    }
+    ImGui::SameLine();
+    job_bar(ui, time_left_, state.stage, state.fraction);
   } else if (state.error) {
     ui.facts.insert("calibration-refused");
     coloured_text(ui.colours.red, translated(state.error->line(), ui.preferences.language).c_str());

@@ -38,6 +38,7 @@ class CalibrationDialog {
   bool verifying_ = true;  ///< the first of the two pages
   PixelTexture texture_;
   std::shared_ptr<const CameraView> shown_;
+  TimeLeft time_left_;
   bool opening_ = false;
   bool open_ = false;
 };

@@ -115,8 +115,7 @@ class OperatorScreen {
   bool unfinished_ = false;
   bool draws_on_ = false;
   LivePhase heard_phase_ = LivePhase::kStill;  ///< as of the last frame
-  std::string stage_;
-  double stage_began_s_ = 0;
+  TimeLeft time_left_;
   std::size_t strip_scans_ = 0;
 };
 

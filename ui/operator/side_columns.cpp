@@ -188,13 +188,7 @@ void OperatorScreen::draw_right(UiContext& ui, ImVec2 size) {
   }
   if (works) {
     ImGui::PushFont(ui.fonts.small);
-    ImGui::ProgressBar(static_cast<float>(state_.fraction), {-1, 0},
-                       translated(state_.stage, ui.preferences.language).c_str());
-    const double spent = ui.time_s - stage_began_s_;
-    if (state_.fraction > 0.05 && spent > 2) {
-      ImGui::TextUnformatted(
-          filled(ui.text(Text::kTimeLeft), spent * (1 - state_.fraction) / state_.fraction).c_str());
-    }
+    job_bar(ui, time_left_, state_.stage, state_.fraction);
     ImGui::PopFont();
   } else if (tells) {
     ImGui::PushFont(ui.fonts.small);

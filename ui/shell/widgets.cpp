@@ -175,6 +175,16 @@ float rows_of(const std::vector<int>& ids, float width) {
   return rows;
 }
 
+void job_bar(UiContext& ui, TimeLeft& left, const std::string& stage, double fraction) {
+  ImGui::ProgressBar(static_cast<float>(fraction), {-1, ImGui::GetFrameHeight()},
+                     translated(stage, ui.preferences.language).c_str());
+  ui.target("job");
+  if (const std::optional<double> seconds = left.of(stage, fraction, ui.time_s)) {
+    ImGui::TextUnformatted(filled(ui.text(Text::kTimeLeft), *seconds).c_str());
+    ui.target("time-left");
+  }
+}
+
 void coloured_text(const Eigen::Vector4f& c, const char* text) {
   ImGui::PushStyleColor(ImGuiCol_Text, ImVec4(c.x(), c.y(), c.z(), c.w()));
   ImGui::PushTextWrapPos(0);

@@ -13,6 +13,7 @@
 
 #include "ui/shell/frame_watch.h"
 #include "ui/shell/theme.h"
+#include "ui/shell/time_left.h"
 
 namespace dubsar::ui {
 
@@ -65,6 +66,8 @@ void begin_asking(UiContext& ui);
 bool one_of(UiContext& ui, const std::string& name, const std::vector<int>& ids, int& chosen);
 /// Rows that one_of() takes in such a width.
 [[nodiscard]] float rows_of(const std::vector<int>& ids, float width);
+/// How far a job is with what it is at, and below how long that will take.
+void job_bar(UiContext& ui, TimeLeft& left, const std::string& stage, double fraction);
 void coloured_text(const Eigen::Vector4f& colour, const char* text);
 /// A text of the table with its gaps filled in.
 template <class... Arguments>

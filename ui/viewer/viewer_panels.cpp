@@ -154,8 +154,7 @@ void ViewerScreen::draw_foot(UiContext& ui) {
       viewing_.stop();
     }
     ImGui::SameLine();
-    ImGui::ProgressBar(static_cast<float>(state_.fraction), {-1, ImGui::GetFrameHeight()},
-                       translated(state_.stage, ui.preferences.language).c_str());
+    job_bar(ui, time_left_, state_.stage, state_.fraction);
     ImGui::PopFont();
   }
   draw_picture_foot(ui);

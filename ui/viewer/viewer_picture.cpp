@@ -94,8 +94,7 @@ void ViewerScreen::draw_picture_foot(UiContext& ui) {
       give_up_picture();
     }
     ImGui::SameLine();
-    ImGui::ProgressBar(still_ ? static_cast<float>(still_->fraction()) : 1.0F, {-1, ImGui::GetFrameHeight()},
-                       ui.text(Text::kPicture));
+    job_bar(ui, picture_time_left_, ui.text(Text::kPicture), still_ ? still_->fraction() : 1.0);
     ImGui::PopFont();
   }
   if (plain_button(ui, "keep-picture", ui.text(Text::kPicture), is_current() && !busy)) {

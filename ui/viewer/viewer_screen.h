@@ -147,6 +147,7 @@ class ViewerScreen {
   std::future<Status> writing_;
   bool picture_kept_ = false;
   std::string picture_note_;
+  TimeLeft time_left_, picture_time_left_;
   float foot_px_ = 0;  ///< of the panel, as it was drawn last
   bool unfinished_ = false;
   bool wants_scanning_ = false;
