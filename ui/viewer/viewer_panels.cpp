@@ -33,6 +33,12 @@ constexpr PlainChoice kPlain[] = {{Text::kOverlayClay, Overlay::kClay},
                                   {Text::kOverlayScans, Overlay::kScans},
                                   {Text::kOverlayFlags, Overlay::kFlags}};
 
+/// By the order of kWedgeFeatures.
+constexpr std::array<Text, kWedgeFeatures.size()> kFeatures{
+    Text::kFeatureDepth, Text::kFeatureLength1,  Text::kFeatureLength2,  Text::kFeatureLength3,
+    Text::kFeatureSlope, Text::kFeatureOpening1, Text::kFeatureOpening2, Text::kFeatureOpening3,
+    Text::kFeatureFace1, Text::kFeatureFace2,    Text::kFeatureFace3};
+
 }  // namespace
 
 void ViewerScreen::draw_light(UiContext& ui) {
@@ -227,25 +233,42 @@ void ViewerScreen::draw_panel(UiContext& ui, ImVec2 size) {
   ImGui::EndChild();
 }
 
+/// How the wedges are distributed over one of the features that they are compared by.
+void ViewerScreen::draw_histogram(UiContext& ui) {
+  constexpr std::size_t kBins = 24;
+  const Text chosen = kFeatures[histogram_feature_];
+  ImGui::SetNextItemWidth(-1);
+  if (ImGui::BeginCombo("##feature", ui.text(chosen), ImGuiComboFlags_HeightLargest)) {
+    for (std::size_t f = 0; f < kFeatures.size(); ++f) {
+      if (ImGui::Selectable(ui.text(kFeatures[f]), f == histogram_feature_)) {
+        histogram_feature_ = f;
+        histogram_wedges_.reset();
+      }
+      ui.target(fmt::format("feature.{}", kWedgeFeatures[f]));
+    }
+    ImGui::EndCombo();
+  }
+  ui.target("feature");
+  if (histogram_wedges_ != state_.wedges) {
+    histogram_wedges_ = state_.wedges;
+    histogram_ = histogram_of(*state_.wedges, histogram_feature_, kBins);
+  }
+  ui.facts.insert(fmt::format("histogram.{}", kWedgeFeatures[histogram_feature_]));
+  ImGui::PlotHistogram("##bins", histogram_.bins.data(), static_cast<int>(kBins), 0, nullptr, 0, FLT_MAX,
+                       {ImGui::GetContentRegionAvail().x, ui.px(3.5F)});
+  // Below the ends of the bars, over which they could not be read.
+  ImGui::TextUnformatted(fmt::format("{:.2f}", histogram_.least).c_str());
+  const std::string most = fmt::format("{:.2f}", histogram_.most);
+  ImGui::SameLine(ImGui::GetContentRegionMax().x - ImGui::CalcTextSize(most.c_str()).x);
+  ImGui::TextUnformatted(most.c_str());
+}
+
 void ViewerScreen::draw_wedge_table(UiContext& ui, ImVec2 size) {
   ImGui::BeginChild("wedges", size, true);
   const std::vector<Wedge>& wedges = *state_.wedges;
   ImGui::TextUnformatted(fmt::format("{}: {}", ui.text(Text::kWedges), wedges.size()).c_str());
   ImGui::PushFont(ui.fonts.small);
-  constexpr std::size_t kBins = 24;
-  std::array<float, kBins> bins{};
-  double deepest = 0;
-  for (const Wedge& wedge : wedges) {
-    deepest = std::max(deepest, wedge.depth_mm);
-  }
-  for (const Wedge& wedge : wedges) {
-    const double part = deepest > 0 ? wedge.depth_mm / deepest : 0.0;
-    bins[std::min(kBins - 1, static_cast<std::size_t>(std::max(0.0, part) * kBins))] += 1;
-  }
-  const std::string title = fmt::format("{}, 0 - {:.2f} mm", ui.text(Text::kDepth), deepest);
-  ImGui::TextUnformatted(title.c_str());  // over the bars it could not be read
-  ImGui::PlotHistogram("##depths", bins.data(), static_cast<int>(kBins), 0, nullptr, 0, FLT_MAX,
-                       {ImGui::GetContentRegionAvail().x, ui.px(3.5F)});
+  draw_histogram(ui);
   if (ImGui::BeginTable(
           "table", 4, ImGuiTableFlags_ScrollY | ImGuiTableFlags_RowBg | ImGuiTableFlags_SizingStretchProp)) {
     ImGui::TableSetupScrollFreeze(0, 1);

@@ -17,6 +17,7 @@
 #include "core/result.h"
 #include "station/mesh_viewing.h"
 #include "station/shown_pins.h"
+#include "station/wedge_histogram.h"
 #include "ui/shell/widgets.h"
 #include "ui/view/still_picture.h"
 #include "ui/view/surface_view.h"
@@ -75,6 +76,8 @@ class ViewerScreen {
   void draw_kept_selections(UiContext& ui);
   [[nodiscard]] MeshSelection selection_now() const;
   void draw_legend(UiContext& ui, ImVec2 origin, ImVec2 size) const;
+  void draw_flags_legend(UiContext& ui, ImVec2 origin, ImVec2 size) const;
+  void draw_histogram(UiContext& ui);
   void draw_wedge_table(UiContext& ui, ImVec2 size);
   void look_at(Face face);
   void choose(int wedge, bool go_there);
@@ -132,6 +135,9 @@ class ViewerScreen {
   bool splitting_ = false;   ///< clicks are places of new wedges
   std::vector<Eigen::Vector3f> split_places_;
   int wedge_ = -1;
+  std::size_t histogram_feature_ = 0;  ///< of kWedgeFeatures
+  std::shared_ptr<const std::vector<Wedge>> histogram_wedges_;
+  WedgeHistogram histogram_;  ///< of these two
   bool scroll_to_wedge_ = false;
   bool show_wedges_ = true;
   std::vector<ShownPin> pins_;  ///< of the session's model
