@@ -91,6 +91,16 @@ TEST_F(Selecting, WhatAPolygonHoldsAndNothingElse) {
   EXPECT_GT(last, std::size_t{1} << 17U) << "faces beyond 2^16 take part";
 }
 
+TEST_F(Selecting, PicturesAndSelectionsCountAsGraphicsMemory) {
+  constexpr std::size_t kPixels = std::size_t{kWidth} * kHeight;
+  const std::size_t before = view_->graphics_bytes();
+  EXPECT_GT(before, view_->buffers()->bytes() + 20 * kPixels) << "lit, shaded and deep";
+  ASSERT_TRUE(select(MeshElement::kFace, box(100, 80, 220, 200), SelectionStep::kUnion, true));
+  EXPECT_GE(view_->graphics_bytes(), before + 8 * shown_.faces.size());
+  view_->clear_selection();
+  EXPECT_EQ(view_->graphics_bytes(), before);
+}
+
 TEST_F(Selecting, OnlyWhatIsSeen) {
   ASSERT_TRUE(select(MeshElement::kFace, box(50, 50, 350, 250), SelectionStep::kUnion, false));
   const std::vector<std::uint32_t> selected = marks_now();

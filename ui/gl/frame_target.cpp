@@ -99,6 +99,14 @@ bool FrameTarget::resize(int width, int height) {
   return true;
 }
 
+std::size_t FrameTarget::bytes() const {
+  std::size_t each = 4;  // the depth
+  for (const PixelFormat format : formats_) {
+    each += format == PixelFormat::kRgba16f ? 8 : format == PixelFormat::kR8 ? 1 : 4;
+  }
+  return static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_) * each;
+}
+
 void FrameTarget::bind() const {
   glBindFramebuffer(GL_FRAMEBUFFER, frame_);
   glViewport(0, 0, width_, height_);
@@ -131,12 +139,16 @@ PixelTexture::~PixelTexture() {
 }
 
 PixelTexture::PixelTexture(PixelTexture&& other) noexcept
-    : id_(std::exchange(other.id_, 0U)), width_(other.width_), height_(other.height_) {}
+    : id_(std::exchange(other.id_, 0U)),
+      width_(other.width_),
+      height_(other.height_),
+      channels_(other.channels_) {}
 
 PixelTexture& PixelTexture::operator=(PixelTexture&& other) noexcept {
   std::swap(id_, other.id_);
   std::swap(width_, other.width_);
   std::swap(height_, other.height_);
+  std::swap(channels_, other.channels_);
   return *this;
 }
 
@@ -156,6 +168,12 @@ void PixelTexture::upload(int width, int height, int channels, const unsigned ch
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
   width_ = width;
   height_ = height;
+  channels_ = channels;
+}
+
+std::size_t PixelTexture::bytes() const {
+  const std::size_t each = channels_ > 1 ? 4 : 1;
+  return static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_) * each;
 }
 
 void PixelTexture::put_rows(int first, int count, const unsigned char* bytes) const {

@@ -2,6 +2,7 @@
 // Copyright The Dubsar developers
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "archive/image.h"
@@ -32,6 +33,8 @@ class FrameTarget {
   [[nodiscard]] unsigned depth() const { return depth_; }
   [[nodiscard]] int width() const { return width_; }
   [[nodiscard]] int height() const { return height_; }
+  /// Of the graphics card's memory.
+  [[nodiscard]] std::size_t bytes() const;
   /// The first texture, top row first, RGBA.
   [[nodiscard]] Image read() const;
 
@@ -57,11 +60,14 @@ class PixelTexture {
   [[nodiscard]] unsigned id() const { return id_; }
   [[nodiscard]] int width() const { return width_; }
   [[nodiscard]] int height() const { return height_; }
+  /// Of the graphics card's memory, where three channels take as much as four.
+  [[nodiscard]] std::size_t bytes() const;
 
  private:
   unsigned id_ = 0;
   int width_ = 0;
   int height_ = 0;
+  int channels_ = 0;
 };
 
 /// The pixels of the window's own frame, as they stand, RGB.

@@ -188,7 +188,8 @@ PointBuffers::PointBuffers(const ColouredPoints& points)
   }
   glGenVertexArrays(1, &array_);
   glBindVertexArray(array_);
-  buffer_ = new_buffer(GL_ARRAY_BUFFER, count_ * sizeof(Vertex), vertices.data());
+  bytes_ = count_ * sizeof(Vertex);
+  buffer_ = new_buffer(GL_ARRAY_BUFFER, bytes_, vertices.data());
   const auto attribute = [](GLuint place, GLint size, GLenum type, GLboolean normalised,
                             std::uintptr_t offset) {
     glEnableVertexAttribArray(place);

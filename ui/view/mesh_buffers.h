@@ -88,6 +88,7 @@ class PointBuffers {
   PointBuffers& operator=(const PointBuffers&) = delete;
   void draw() const;
   [[nodiscard]] std::size_t size() const { return count_; }
+  [[nodiscard]] std::size_t bytes() const { return bytes_; }  ///< of the graphics card's memory
   [[nodiscard]] float radius_mm() const { return radius_mm_; }
   [[nodiscard]] float bury_mm() const { return bury_mm_; }
 
@@ -95,6 +96,7 @@ class PointBuffers {
   unsigned array_ = 0;
   unsigned buffer_ = 0;
   std::size_t count_;
+  std::size_t bytes_ = 0;
   float radius_mm_, bury_mm_;
 };
 

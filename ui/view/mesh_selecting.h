@@ -54,6 +54,10 @@ class MeshSelecting {
   [[nodiscard]] unsigned texture() const { return textures_[current_]; }
   /// Null while nothing was.
   [[nodiscard]] const SelectionMarks& selected() const { return selected_; }
+  /// Of the graphics card's memory.
+  [[nodiscard]] std::size_t bytes() const {
+    return 2 * 4 * count_ + mask_.bytes() + depth_.bytes() + no_picture_.bytes();
+  }
   /// A polygon was begun and is not through.
   [[nodiscard]] bool is_under_way() const { return marks_ != nullptr; }
 

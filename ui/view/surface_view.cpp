@@ -270,4 +270,17 @@ void SurfaceView::light(Layer& layer, const Scene& scene) {
   glBindFramebuffer(GL_FRAMEBUFFER, 0);
 }
 
+std::size_t SurfaceView::graphics_bytes() const {
+  const auto of_layer = [](const Layer& layer) {
+    return layer.target.bytes() + layer.shadow.bytes() + layer.picture.bytes();
+  };
+  std::size_t sum = sphere_.bytes() + colour_map_.bytes() + of_layer(layers_[0]) + of_layer(layers_[1]);
+  sum += still_ ? of_layer(*still_) : 0;
+  sum += mesh_ ? mesh_->bytes() : 0;
+  sum += coming_ ? coming_->bytes() : 0;
+  sum += points_ ? points_->bytes() : 0;
+  sum += selection_ ? selection_->bytes() : 0;
+  return sum;
+}
+
 }  // namespace dubsar::ui

@@ -60,6 +60,8 @@ class SurfaceView {
   void set_traits(const std::vector<std::array<std::uint8_t, 4>>& traits);
   [[nodiscard]] bool empty() const { return mesh_ == nullptr && points_ == nullptr; }
   [[nodiscard]] const MeshBuffers* buffers() const { return mesh_.get(); }
+  /// Of the graphics card's memory, that this takes: meshes, pictures, shadows and what is selected.
+  [[nodiscard]] std::size_t graphics_bytes() const;
 
   /// Draws what has changed since the last call. True while more is to come at the next.
   bool draw(const OrbitCamera& camera, const Look& look, int width, int height);

@@ -97,14 +97,15 @@ void ViewerScreen::draw_overlay_choice(UiContext& ui) {
 
 void ViewerScreen::draw_facts(UiContext& ui) {
   ImGui::PushFont(ui.fonts.small);
-  if (const MeshBuffers* buffers = surface_.buffers()) {
+  if (surface_.buffers() != nullptr) {
     coloured_text(ui.colours.faint,
                   filled(ui.text(Text::kFaces), grouped(prepared_.shown().faces.size())).c_str());
     coloured_text(ui.colours.faint,
                   filled(ui.text(Text::kVertices), grouped(prepared_.shown().positions.size())).c_str());
     coloured_text(
         ui.colours.faint,
-        filled(ui.text(Text::kGraphicsMemory), static_cast<double>(buffers->bytes()) / 1e6).c_str());
+        filled(ui.text(Text::kGraphicsMemory), static_cast<double>(surface_.graphics_bytes()) / 1e6).c_str());
+    ui.target("graphics-memory");
   }
   if (prepared_.shown().left_out > 0) {
     coloured_text(ui.colours.amber,
