@@ -124,7 +124,34 @@ void ViewerScreen::draw_polygon(UiContext& ui, ImVec2 origin) const {
   }
 }
 
+void ViewerScreen::draw_flags_legend(UiContext& ui, ImVec2 origin, ImVec2 size) const {
+  ui.facts.insert("legend");
+  const ImFont* font = ui.fonts.small;
+  const float line = 1.4F * font->FontSize;
+  const std::pair<Text, Eigen::Vector4f> lines[] = {{Text::kSparse, ui.colours.red},
+                                                    {Text::kFilledIn, ui.colours.amber}};
+  float wide = 0;
+  for (const auto& [text, colour] : lines) {
+    wide = std::max(wide, font->CalcTextSizeA(font->FontSize, 1e4F, 0, ui.text(text)).x);
+  }
+  wide += 1.5F * line + ui.px(0.4F);
+  ImDrawList* draw = ImGui::GetWindowDrawList();
+  ImVec2 at{origin.x + size.x - wide - ui.px(0.8F), origin.y + ui.px(0.7F)};
+  draw->AddRectFilled({at.x - ui.px(0.4F), at.y - ui.px(0.3F)}, {at.x + wide, at.y + 2 * line + ui.px(0.3F)},
+                      packed(ui.colours.panel, 0.85F), 4);
+  for (const auto& [text, colour] : lines) {
+    draw->AddRectFilled({at.x, at.y + 0.2F * line}, {at.x + 0.9F * line, at.y + 0.85F * line},
+                        packed(colour));
+    draw->AddText(font, font->FontSize, {at.x + 1.3F * line, at.y + 0.15F * line}, packed(ui.colours.text),
+                  ui.text(text));
+    at.y += line;
+  }
+}
+
 void ViewerScreen::draw_legend(UiContext& ui, ImVec2 origin, ImVec2 size) const {
+  if (look_.overlay == Overlay::kFlags) {
+    draw_flags_legend(ui, origin, size);
+  }
   const bool ranged = look_.overlay == Overlay::kValue || look_.overlay == Overlay::kReliability ||
                       look_.overlay == Overlay::kScans;
   if (!ranged) {
@@ -134,6 +161,7 @@ void ViewerScreen::draw_legend(UiContext& ui, ImVec2 origin, ImVec2 size) const 
   const Eigen::Vector2f range = look_.overlay == Overlay::kValue         ? look_.value_range
                                 : look_.overlay == Overlay::kReliability ? Eigen::Vector2f(0, 1)
                                                                          : Eigen::Vector2f(0, 8);
+  ui.facts.insert("legend");
   ImDrawList* draw = ImGui::GetWindowDrawList();
   const float height = std::min(0.5F * size.y, ui.px(14));
   const float width = ui.px(0.9F);
