@@ -206,6 +206,13 @@ TEST_F(OperatorStory, ClicksOnTheSamePlaceSettleAnUnsureScan) {
   const auto list = run_command({"session", "list", session(), "--json"}).json();
   EXPECT_EQ(list["scans"][1]["status"], "registered");
   EXPECT_EQ(list["scans"][1]["hint_on"], 0);
+  // The places can be taken back.
+  const Outcome withdrawn = play_on("replay:" + scans.string(),
+                                    "wait scan.1.fits\nwait idle 90\nclick scan.1\nclick withdraw\n"
+                                    "wait idle 90\nquit\n");
+  ASSERT_EQ(withdrawn.status, 0) << withdrawn.err;
+  const auto after = run_command({"session", "list", session(), "--json"}).json();
+  EXPECT_TRUE(after["scans"][1]["hint_on"].is_null());
 }
 
 TEST_F(OperatorStory, LabelledPlacesOnTheRimSettleAnUnsureScan) {

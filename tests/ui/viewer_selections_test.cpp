@@ -5,19 +5,19 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
+#include <iterator>
+#include <map>
 
 #include "formats/mesh_io.h"
 #include "formats/wedges_json.h"
 #include "station/selection_store.h"
-#include "tests/station/support/command.h"
-#include "tests/support/temporary_folder.h"
-#include "tests/ui/support/display.h"
+#include "tests/ui/support/on_a_tablet.h"
 
 namespace dubsar {
 namespace {
 
-namespace fs = std::filesystem;
 using test::run_command;
 
 constexpr const char* kSelect = R"(wait wedges 60
@@ -107,35 +107,7 @@ wait corrections.1 60
 quit
 )";
 
-class OnATablet : public ::testing::Test {
- protected:
-  void SetUp() override {
-    if (!display_.works()) {
-      FAIL() << "there is no Xvfb here: install xvfb (packages.txt)";
-    }
-    ASSERT_EQ(run_command({"simulate", "tablet", "--seed", "3", "--size", "16x14x8", "--spacing", "0.1", "-o",
-                           folder_.path().string()})
-                  .status,
-              0);
-    ASSERT_EQ(run_command({"analyze", in("tablet.ply"), "-o", in("tablet.wedges.json")}).status, 0);
-  }
-  [[nodiscard]] std::string in(const std::string& name) const { return (folder_.path() / name).string(); }
-  /// In the folder, where what is kept of a mesh goes.
-  [[nodiscard]] test::Outcome play(const char* script) const {
-    std::ofstream(folder_.path() / "a.script") << script;
-    const fs::path before = fs::current_path();
-    fs::current_path(folder_.path());
-    auto outcome =
-        run_command({"station", "--mesh", "tablet.ply", "--script", "a.script"}, {.timeout_s = 240});
-    fs::current_path(before);
-    return outcome;
-  }
-
-  test::Display display_;
-  test::TemporaryFolder folder_;
-};
-
-using ViewerCorrections = OnATablet;
+using ViewerCorrections = test::OnATablet;
 
 TEST_F(ViewerCorrections, AreMadeKeptAndTakenBack) {
   const auto before = read_wedges(in("tablet.wedges.json"));
@@ -163,7 +135,7 @@ TEST_F(ViewerCorrections, AreMadeKeptAndTakenBack) {
   EXPECT_EQ(read_wedges(in("tablet.wedges.json"))->wedges.size(), before->wedges.size() - 1);
 }
 
-using ViewerSelections = OnATablet;
+using ViewerSelections = test::OnATablet;
 
 TEST_F(ViewerSelections, AreNamedKeptWrittenAndAnalysedAlone) {
   const auto outcome = play(kSelect);
@@ -214,6 +186,92 @@ TEST_F(ViewerSelections, AreNamedKeptWrittenAndAnalysedAlone) {
   for (std::size_t k = 0; k < alone->wedges.size(); ++k) {
     EXPECT_EQ(alone->wedges[k].depth_point_mm, by_command->wedges[k].depth_point_mm);
   }
+}
+
+constexpr const char* kAlgebra = R"(wait wedges 60
+wait whole
+wait idle
+click tool-select
+click surface 0.3 0.35
+click surface 0.6 0.35
+click surface 0.6 0.6
+click surface 0.3 0.6
+click surface 0.3 0.35
+wait selected
+click selection-name
+type a
+click name-selection
+wait kept.1
+click clear-selection
+{b}
+wait selected
+click selection-name
+key selectall
+type b
+click name-selection
+wait kept.2
+click kept.1
+wait selected
+click select-intersect
+{b}
+wait selected
+click selection-name
+key selectall
+type both
+click name-selection
+wait kept.3
+click kept.1
+wait selected
+click select-subtract
+{b}
+wait selected
+click selection-name
+key selectall
+type without
+click name-selection
+wait kept.4
+click kept.1
+wait selected
+click select-union
+{b}
+wait selected
+click selection-name
+key selectall
+type either
+click name-selection
+wait kept.5
+quit
+)";
+constexpr const char* kPolygonB =
+    "click surface 0.5 0.45\nclick surface 0.75 0.45\nclick surface 0.75 0.7\nclick surface 0.5 0.7\n"
+    "click surface 0.5 0.45\nwait whole";
+
+TEST_F(ViewerSelections, PolygonsAreAddedCutAndTakenAway) {
+  std::string script = kAlgebra;
+  for (std::size_t at = script.find("{b}"); at != std::string::npos; at = script.find("{b}")) {
+    script.replace(at, 3, kPolygonB);
+  }
+  const auto outcome = play(script);
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const auto mesh = read_mesh(in("tablet.ply"));
+  ASSERT_TRUE(mesh);
+  const auto kept = kept_selections(in("tablet.selections.json"), *mesh);
+  ASSERT_TRUE(kept) << kept.error().line();
+  std::map<std::string, std::vector<std::uint32_t>> faces;
+  for (const MeshSelection& selection : *kept) {
+    faces[selection.name] = indices_of(selection.ranges);
+  }
+  ASSERT_EQ(faces.size(), 5U);
+  std::vector<std::uint32_t> wanted;
+  std::ranges::set_intersection(faces["a"], faces["b"], std::back_inserter(wanted));
+  EXPECT_GT(wanted.size(), 50U);
+  EXPECT_EQ(faces["both"], wanted);
+  wanted.clear();
+  std::ranges::set_difference(faces["a"], faces["b"], std::back_inserter(wanted));
+  EXPECT_EQ(faces["without"], wanted);
+  wanted.clear();
+  std::ranges::set_union(faces["a"], faces["b"], std::back_inserter(wanted));
+  EXPECT_EQ(faces["either"], wanted);
 }
 
 }  // namespace

@@ -88,6 +88,9 @@ void OperatorScreen::take_state(UiContext& ui) {
   if (state_.red_map && state_.red_map->conclusive) {
     ui.facts.insert("conclusive");
   }
+  if (ui.preferences.language == Language::kGerman) {
+    ui.facts.insert("german-words");
+  }
   if (state_.signed_off) {
     ui.facts.insert("signed");
   }

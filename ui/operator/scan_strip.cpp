@@ -92,6 +92,7 @@ void OperatorScreen::draw_strip(UiContext& ui, ImVec2 size) {
                   state == Text::kUnsure || state == Text::kFailed ? 3.0F : 1.5F);
     std::string words = std::to_string(scan.id) + "  " + ui.text(state);
     if (scan.pose && scan.pose->locked) {
+      ui.facts.insert("scan." + std::to_string(scan.id) + ".locked");
       words += std::string(", ") + ui.text(Text::kLocked);
     }
     draw->AddText(ui.fonts.small, line, {origin.x + 6, end.y - line - 3}, packed(colour), words.c_str());

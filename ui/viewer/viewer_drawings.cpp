@@ -98,6 +98,7 @@ void ViewerScreen::draw_tape(UiContext& ui, ImVec2 origin, ImVec2 size) const {
     draw->AddCircleFilled(at(place.cast<double>()), ui.px(0.3F), ink);
   }
   if (tape_.size() == 2) {
+    ui.facts.insert("measured");
     const ImVec2 a = at(tape_[0].cast<double>());
     const ImVec2 b = at(tape_[1].cast<double>());
     draw->AddLine(a, b, ink, 2.5F);

@@ -310,9 +310,8 @@ void ViewerScreen::draw_wedge_table(UiContext& ui, ImVec2 size) {
     }
     ImGui::EndTable();
   }
-  if (wedge_ >= 0) {
-    ui.facts.insert(fmt::format("chosen.{}", wedges[static_cast<std::size_t>(wedge_)].id));
-  }
+  ui.facts.insert(wedge_ >= 0 ? fmt::format("chosen.{}", wedges[static_cast<std::size_t>(wedge_)].id)
+                              : std::string("chosen.none"));
   ImGui::PopFont();
   ImGui::EndChild();
 }

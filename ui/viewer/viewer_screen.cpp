@@ -92,6 +92,9 @@ void ViewerScreen::take_state(UiContext& ui) {
     }
   }
   ui.facts.insert("shown");
+  if (untouched_) {
+    ui.facts.insert(fmt::format("looks-at.{}", to_string(looked_at_)));
+  }
   if (state_.wedges) {
     ui.facts.insert("wedges");
   }
@@ -123,6 +126,7 @@ void ViewerScreen::look_at(Face face) {
   camera_.eye_from_model = eye_towards(face, state_.tablet_from_model);
   camera_.fit(prepared_.shown().box_mm, aspect_);
   untouched_ = true;
+  looked_at_ = face;
 }
 
 void ViewerScreen::draw(UiContext& ui, ImVec2 size) {

@@ -145,6 +145,7 @@ class ViewerScreen {
   bool dragged_ = false;
   bool double_clicked_ = false;  ///< the click that is under way is the second of two
   bool untouched_ = true;        ///< the view is still as it was set up
+  Face looked_at_ = Face::kObverse;
   float aspect_ = 1.5F;
   int dpi_ = 600;
   std::optional<StillPicture> still_;  ///< that is being drawn

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+// What an operator does beside the straight way: other keys, a scan that is fixed, one that is taken again,
+// how the window looks.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+
+#include "tests/station/support/command.h"
+#include "tests/support/temporary_folder.h"
+#include "tests/ui/support/display.h"
+#include "tests/ui/support/read_png.h"
+
+namespace dubsar {
+namespace {
+
+using test::Outcome;
+using test::run_command;
+
+class OperatorWindow : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (!display_.works()) {
+      FAIL() << "there is no Xvfb here: install xvfb (packages.txt)";
+    }
+  }
+  [[nodiscard]] std::string in(const std::string& name) const { return (folder_.path() / name).string(); }
+  [[nodiscard]] Outcome play(const std::string& script) const {
+    std::ofstream(in("a.script")) << script;
+    return run_command({"station", "--session", in("session"), "--device",
+                        "sim:?seed=1&size=20x16x8&spacing=0.25&noise=0.02", "--script", in("a.script"),
+                        "--width", "1366", "--height", "768"},
+                       {.timeout_s = 150});
+  }
+
+  test::TemporaryFolder folder_;
+  test::Display display_;
+};
+
+TEST_F(OperatorWindow, PedalsScansThatAreFixedAndOnesThatAreTakenAgain) {
+  const Outcome outcome = play(R"(wait idle
+key pagedown
+wait waiting-turn
+expect scan.1.fits
+click scan.0
+click lock
+wait scan.0.locked
+click scan.0
+click unlock
+wait waiting-turn
+click scan.0
+wait lock
+key escape
+# the tablet lies as it did: nothing moves before the key, and no turn is asked for
+click scan.1
+click rescan
+wait scan.1.taken out
+wait waiting
+key f9
+wait scan.2.fits
+wait waiting-turn
+key pageup
+wait scan.2.taken out
+wait waiting
+key end
+wait idle 60
+quit
+)");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const auto scans = run_command({"session", "list", in("session"), "--json"}).json()["scans"];
+  ASSERT_EQ(scans.size(), 3U);
+  EXPECT_EQ(scans[0]["status"], "registered");
+}
+
+/// Means of red, green and blue.
+std::array<double, 3> mean_of(const Image& image) {
+  std::array<double, 3> sum{};
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x) {
+      for (std::size_t c = 0; c < 3; ++c) {
+        sum[c] += image.rgb(x, y)[c];
+      }
+    }
+  }
+  for (double& one : sum) {
+    one /= std::max(1, image.width * image.height);
+  }
+  return sum;
+}
+
+/// Pixels that are as red as what is under-sampled.
+int red_pixels(const Image& image) {
+  int count = 0;
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x) {
+      const auto rgb = image.rgb(x, y);
+      count += rgb[0] > 140 && rgb[1] < 80 && rgb[2] < 80 ? 1 : 0;
+    }
+  }
+  return count;
+}
+
+TEST_F(OperatorWindow, LooksAsItsUserLikesAndSaysWhatIsNextInWhole) {
+  const Outcome outcome =
+      play("wait idle\nkey space\nwait waiting-turn\nwait model-shown\nscreenshot " + in("dark.png") +
+           "\nclick settings\nclick colour-blind\nkey escape\nscreenshot " + in("blue.png") +
+           "\nclick settings\nclick dark\nkey escape\nscreenshot " + in("light.png") + R"(
+click settings
+click german
+click font-larger
+click font-larger
+click font-larger
+click font-larger
+click font-larger
+click font-larger
+click font-larger
+key escape
+pause 0.2
+expect waiting-turn
+expect statement-whole
+expect german-words
+key space
+wait waiting
+expect statement-whole
+quit
+)");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const Image dark = test::read_png(in("dark.png"));
+  const Image blue = test::read_png(in("blue.png"));
+  EXPECT_GT(red_pixels(dark), 1000);
+  EXPECT_LT(red_pixels(blue), 20);
+  EXPECT_LT(mean_of(dark)[1], 90);
+  EXPECT_GT(mean_of(test::read_png(in("light.png")))[1], 150);
+}
+
+}  // namespace
+}  // namespace dubsar
