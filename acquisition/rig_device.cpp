@@ -108,6 +108,13 @@ std::int32_t stop(dubsar_device* device, dubsar_error* error) {
   });
 }
 
+std::int32_t emergency_stop(dubsar_device* device, dubsar_error* error) {
+  return plugin::fenced(error, [&] {
+    const Status status = device->source->halt();
+    return status ? std::int32_t{DUBSAR_OK} : plugin::report(error, status.error());
+  });
+}
+
 std::int32_t nothing(dubsar_setting_callback, void*, dubsar_error*) {
   return DUBSAR_OK;
 }
@@ -139,6 +146,7 @@ const dubsar_driver& rig_driver() {
     out.capabilities = capabilities;
     out.scan = scan;
     out.stop = stop;
+    out.emergency_stop = emergency_stop;
     offer_view(out);
     return out;
   }();

@@ -238,6 +238,29 @@ TEST_F(RigScan, RowsCloseTogetherWaitForEachOtherAndNoneIsKeptBack) {
   EXPECT_EQ(enough.error().kind, ErrorKind::kCancelled);
   EXPECT_EQ(few.builder->grid().rows, 2);
 }
+TEST_F(RigScan, AnEmergencyStopIsTheStagesAndKeepsTheRows) {
+  Result<RigScanner> made = make();
+  ASSERT_TRUE(made.has_value());
+  Device device = device_of(std::move(*made), "rig:a.toml");
+  struct Halts : Collect {
+    explicit Halts(Device& one) : device(one) {}
+    bool profile(const Profile& profile) override {
+      if (profile.row == 3) {
+        EXPECT_TRUE(device.emergency_stop());
+      }
+      return Collect::profile(profile);
+    }
+    Device& device;
+  } sink(device);
+  const Result<ScanOutcome> halted = device.scan(sink);
+  ASSERT_FALSE(halted.has_value());
+  EXPECT_EQ(halted.error().kind, ErrorKind::kCancelled);
+  EXPECT_GE(sink.builder->grid().rows, 4);
+  EXPECT_LT(sink.builder->grid().rows, file.rows);
+  EXPECT_NE(bench.asked.find('E'), std::string::npos);
+  EXPECT_EQ(bench.laser, 0);
+}
+
 
 TEST_F(RigScan, CancelledBySinkAndRefusesAnotherRegion) {
   Result<RigScanner> made = make();

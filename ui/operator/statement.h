@@ -22,6 +22,7 @@ struct Statement {
   bool may_sign = false;
   bool may_finish = false;
   bool may_stop = false;
+  bool may_halt = false;  ///< something moves, or a laser is lit
   Text scan_label = Text::kScan;
 };
 

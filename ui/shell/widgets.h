@@ -38,7 +38,7 @@ struct UiContext {
   [[nodiscard]] float px(float fonts_high) const { return fonts_high * preferences.font_px; }
 };
 
-enum class ButtonKind { kPlain, kMain };
+enum class ButtonKind { kPlain, kMain, kDanger };
 
 /// A button large enough for a glove, known to scripts by its name. The key that does the same is shown on
 /// it.
