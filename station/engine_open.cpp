@@ -57,7 +57,7 @@ Status Engine::Impl::open(JobContext& job) {
     }
   }
   rig = source->capabilities().rig;
-  if (const auto reminder = rig ? verification_reminder(options.device, *rig) : std::nullopt) {
+  if (const auto reminder = verification_reminder(options.device)) {
     emit(Notice{*reminder});
   }
   drives = options.automatic && source->capabilities().can_place;

@@ -45,6 +45,9 @@ void draw_outcome(UiContext& ui, const VerifyOutcome& outcome) {
   say(passed ? ui.colours.good : ui.colours.red,
       fmt::format("{}: {}", outcome.artefact.name,
                   ui.text(passed ? Text::kVerifyPassed : Text::kVerifyFailed)));
+  if (outcome.time_unknown) {
+    say(ui.colours.amber, ui.text(Text::kVerifyTimeUnknown));
+  }
   if (!outcome.log.empty()) {
     say(ui.colours.faint, outcome.log);
   }
@@ -89,10 +92,10 @@ void CalibrationDialog::open(const LiveState& state) {
   opening_ = true;
   verify_.scan = session_.device();
   if (state.care) {
-    verify_.calibration = state.care->calibration;
-    const std::filesystem::path beside = std::filesystem::path(state.care->calibration).parent_path();
+    verify_.calibration = state.care->verified;
+    const std::filesystem::path beside = std::filesystem::path(state.care->verified).parent_path();
     verify_.artefact = verify_.artefact.empty() ? (beside / "artefact.toml").string() : verify_.artefact;
-    out_ = state.care->calibration;
+    out_ = state.care->calibration.empty() ? out_ : state.care->calibration;
   }
   if (calibrate_.board.empty()) {
     calibrate_.board = kUsualBoard;

@@ -150,7 +150,7 @@ constexpr Row kRows[] = {
     {Text::kMeasuring, "Hands off: it is being measured", "Hände weg: es wird gemessen"},
     {Text::kVerifyFirst, "The rig was not measured today: first measure the artefact (Calibration).",
      "Das Gerät wurde heute nicht geprüft: zuerst den Prüfkörper messen (Kalibrierung)."},
-    {Text::kNeverVerified, "never measured with this calibration", "mit dieser Kalibrierung nie geprüft"},
+    {Text::kNeverVerified, "never measured as it is set up now", "so eingerichtet nie geprüft"},
     {Text::kVerifiedBadly, "failed when last measured", "bei der letzten Prüfung durchgefallen"},
     {Text::kVerifiedLongAgo, "last measured {:.0f} d ago: due", "zuletzt vor {:.0f} d geprüft: fällig"},
     {Text::kVerifiedToday, "measured {:.0f} h ago", "vor {:.0f} h geprüft"},
@@ -171,6 +171,8 @@ constexpr Row kRows[] = {
     {Text::kSpacingLine, "balls {} and {}: spacing {:+.1f} µm", "Kugeln {} und {}: Abstand {:+.1f} µm"},
     {Text::kFlatnessLine, "plane: flatness {:.1f} µm", "Ebene: Ebenheit {:.1f} µm"},
     {Text::kVerifyPassed, "passed", "bestanden"},
+    {Text::kVerifyTimeUnknown, "the file does not say when it was scanned: it counts as measured now",
+     "die Datei sagt nicht, wann gescannt wurde: es gilt als jetzt gemessen"},
     {Text::kVerifyFailed, "FAILED", "DURCHGEFALLEN"},
     {Text::kCalibrateHow,
      "For each pose of the board, which stays where it is: one picture of it lit, one with the laser on, one "

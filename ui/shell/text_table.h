@@ -140,6 +140,7 @@ enum class Text {
   kSpacingLine,
   kFlatnessLine,
   kVerifyPassed,
+  kVerifyTimeUnknown,
   kVerifyFailed,
   kCalibrateHow,
   kPictureFolder,
