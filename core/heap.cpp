@@ -12,11 +12,23 @@
 
 namespace dubsar {
 
+namespace {
+
+/// Free at the end of the heap before it goes back to the system.
+constexpr std::size_t kHeldBytes = std::size_t{128} << 20U;
+
+}  // namespace
+
 void map_large_blocks() {
 #if defined(__GLIBC__)
   // Said outright, it also stays: left alone, glibc raises the threshold to the largest block that was let go
   // of.
   mallopt(M_MMAP_THRESHOLD, static_cast<int>(kOwnMappingBytes));
+  // That alone would leave the heap's end where it was to be given back at every 128 KiB, however often it is
+  // taken again: the graphics driver for a processor did so hundreds of times a second, each time a wait for
+  // all cores.
+  mallopt(M_TRIM_THRESHOLD, static_cast<int>(kHeldBytes));
+  mallopt(M_TOP_PAD, static_cast<int>(kOwnMappingBytes));
 #endif
 }
 

@@ -74,6 +74,8 @@ int run(int argc, char** argv) {
     bytes += entry.is_regular_file() ? entry.file_size() : 0;
   }
   std::printf("%d scans of %d samples, %.0f MB\n", scans, samples, static_cast<double>(bytes) / 1e6);
+  constexpr double kOpensWithinS = 1;
+  bool good = true;
   for (const bool cold : {true, false}) {
     for (const auto access : {SessionStore::Access::kReadWrite, SessionStore::Access::kReadOnly}) {
       if (cold) {
@@ -85,9 +87,10 @@ int run(int argc, char** argv) {
       std::printf("%s, %s: %.3f s%s\n", cold ? "from the disk" : "from memory",
                   access == SessionStore::Access::kReadWrite ? "for writing" : "for reading", seconds,
                   store && store->opening().damage.empty() ? "" : " DAMAGED");
+      good = good && store && store->opening().damage.empty() && seconds <= kOpensWithinS;
     }
   }
-  return 0;
+  return good ? 0 : 1;
 }
 
 }  // namespace

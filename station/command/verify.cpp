@@ -100,6 +100,9 @@ Result<int> verify_bag(const Arguments& arguments, CommandContext& context) {
   print_damage("damaged", report->damaged);
   print_names("no checksum kept", report->unrecorded);
   print_names("cannot be checked here", report->unchecked);
+  if (!report->ok()) {
+    print_names("whole", report->whole);
+  }
   std::printf("%zu whole, %zu faults: the bag is %s\n", report->whole.size(), report->damaged.size(),
               report->ok() ? "complete and valid" : "NOT valid");
   return report->ok() ? 0 : 1;
@@ -149,6 +152,9 @@ int print_session(const std::string& path, const VerifyReport& report, const Sig
   print_damage("damaged sign-off", signed_off.damage);
   for (const CheckedSignOff& one : signed_off.sign_offs) {
     std::printf("%s\n", sign_off_line(one).c_str());
+  }
+  if (status != 0) {
+    print_names("whole", report.whole);
   }
   std::printf("%zu whole, %zu damaged\n", report.whole.size(), report.damaged.size());
   return status;

@@ -4,7 +4,10 @@
 
 #include <gtest/gtest.h>
 #include <malloc.h>
+#include <unistd.h>
 
+#include <array>
+#include <cstdlib>
 #include <cstring>
 #include <memory>
 
@@ -31,6 +34,31 @@ TEST(Heap, LargeBlocksStayMappingsOfTheirOwnWhateverWasLetGoOf) {
   EXPECT_GE(mapped_bytes(), before + 2 * kOwnMappingBytes);
   second.reset();
   EXPECT_EQ(mapped_bytes(), before);
+}
+
+// A program that draws by the processor takes and lets go of these many times a second.
+TEST(Heap, MiddlingBlocksDoNotGoBackToTheSystemEachTime) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "a sanitizer brings its own allocator";
+#endif
+  map_large_blocks();
+  std::array<void*, 16> blocks{};
+  const auto end_of_heap_after_use = [&] {
+    for (void*& block : blocks) {
+      block = std::malloc(kOwnMappingBytes / 2);
+      std::memset(block, 1, kOwnMappingBytes / 2);
+    }
+    void* const end = sbrk(0);
+    for (auto block = blocks.rbegin(); block != blocks.rend(); ++block) {
+      std::free(*block);
+    }
+    return end;
+  };
+  const void* const used = end_of_heap_after_use();
+  EXPECT_EQ(sbrk(0), used);
+  EXPECT_EQ(end_of_heap_after_use(), used);
+  return_unused_memory();
+  EXPECT_LT(sbrk(0), used);
 }
 
 }  // namespace

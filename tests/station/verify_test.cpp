@@ -98,6 +98,10 @@ TEST_F(Verify, DamagedMissingAndForeignFilesAreNamed) {
   EXPECT_EQ(report["damaged"][1]["what"], "missing");
   EXPECT_EQ(report["extra"], nlohmann::json({"holiday/photo.jpg", "mesh/link.ply"}));
   EXPECT_EQ(report["unrecorded"], nlohmann::json({"export/note.txt"}));
+  const Outcome read = run_command({"verify", session_.string()});
+  EXPECT_THAT(read.out, HasSubstr("damaged: export/red_map.png: missing"));
+  EXPECT_THAT(read.out, HasSubstr("\nwhole: grids/000.grid\n"));
+  EXPECT_THAT(read.out, Not(HasSubstr("whole: grids/001.grid")));
 }
 
 TEST_F(Verify, DerivedFilesAreMadeAnewByteForByte) {

@@ -48,8 +48,8 @@ struct ShownMesh {
 /// A unit vector in 4 bytes, signed, 10 bits a coordinate, as the graphics card takes it.
 [[nodiscard]] std::uint32_t packed_normal(const Eigen::Vector3f& n);
 
-/// Faces that even a processor draws fast enough to be turned by hand (bench: 100 thousand in about 40 ms).
-inline constexpr std::size_t kFacesInMotion = 100000;
+/// Faces that even a processor draws fast enough to be turned by hand (bench: 34 thousand in about 25 ms).
+inline constexpr std::size_t kFacesInMotion = 40000;
 
 /// Puts ambient occlusion, in [0, 1] for each vertex of the mesh, into the traits.
 void set_openness(ShownMesh& mesh, const std::vector<float>& openness);

@@ -75,8 +75,7 @@ std::vector<WritingVerb> writing_verbs() {
       {"plan", {"plan", "SESSION"}},
       {"stitch", {"stitch", "SESSION", "-o", "FOLDER/model.ply"}},
       {"analyze", {"analyze", "SESSION/mesh/model.ply", "-o", "FOLDER/wedges.json"}},
-      {"export",
-       {"export", "SESSION", "--to", "FOLDER/package", "--without", "renderings,features,wedges,grid-ply"}},
+      {"export", {"export", "SESSION", "--to", "FOLDER/package"}},
   };
 }
 

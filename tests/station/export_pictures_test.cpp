@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+// dubsar export: its pictures of the six sides show one tablet, each in the light that its folder says.
+
+#include <gtest/gtest.h>
+#include <png.h>
+
+#include <array>
+#include <cmath>
+
+#include "tests/station/support/exported.h"
+
+namespace dubsar {
+namespace {
+
+using Pixels = std::vector<std::array<std::uint8_t, 3>>;
+
+struct Picture {
+  std::uint32_t width = 0;
+  std::uint32_t height = 0;
+  Pixels pixels;
+};
+
+Picture read_png(const std::filesystem::path& file) {
+  png_image png{};
+  png.version = PNG_IMAGE_VERSION;
+  Picture out;
+  if (png_image_begin_read_from_file(&png, file.c_str()) == 0) {
+    ADD_FAILURE() << file << ": " << png.message;
+    return out;
+  }
+  png.format = PNG_FORMAT_RGB;
+  out = {png.width, png.height, Pixels(std::size_t{png.width} * png.height)};
+  EXPECT_NE(png_image_finish_read(&png, nullptr, out.pixels.data(), 0, nullptr), 0) << png.message;
+  return out;
+}
+
+/// The ground is black.
+bool is_clay(const std::array<std::uint8_t, 3>& p) {
+  return p != std::array<std::uint8_t, 3>{};
+}
+
+double spread(const Picture& picture) {
+  double n = 0, sum = 0, squares = 0;
+  for (const auto& p : picture.pixels) {
+    if (is_clay(p)) {
+      const double level = p[1];
+      n += 1;
+      sum += level;
+      squares += level * level;
+    }
+  }
+  return std::sqrt(squares / n - (sum / n) * (sum / n));
+}
+
+/// In grey levels, over what either shows as clay.
+double difference(const Picture& a, const Picture& b) {
+  double n = 0, sum = 0;
+  for (std::size_t k = 0; k < a.pixels.size(); ++k) {
+    if (is_clay(a.pixels[k]) || is_clay(b.pixels[k])) {
+      n += 1;
+      sum += std::abs(int{a.pixels[k][1]} - int{b.pixels[k][1]});
+    }
+  }
+  return sum / n;
+}
+
+double share_that_one_alone_shows(const Picture& a, const Picture& b) {
+  double either = 0, one = 0;
+  for (std::size_t k = 0; k < a.pixels.size(); ++k) {
+    const bool in_a = is_clay(a.pixels[k]), in_b = is_clay(b.pixels[k]);
+    either += in_a || in_b ? 1 : 0;
+    one += in_a != in_b ? 1 : 0;
+  }
+  return one / either;
+}
+
+TEST_F(Export, ItsPicturesAreOfOneTabletInFourLights) {
+  constexpr std::array<const char*, 4> kLights{"clay", "msii", "ao", "radiance"};
+  for (const auto& entry : std::filesystem::directory_iterator(data("pictures/clay"))) {
+    const std::string name = entry.path().filename().string();
+    SCOPED_TRACE(name);
+    std::array<Picture, kLights.size()> of;
+    for (std::size_t k = 0; k < kLights.size(); ++k) {
+      of[k] = read_png(data("pictures") / kLights[k] / name);
+      ASSERT_EQ(of[k].width, of[0].width) << kLights[k];
+      ASSERT_EQ(of[k].height, of[0].height) << kLights[k];
+      EXPECT_LT(share_that_one_alone_shows(of[k], of[0]), 0.03) << kLights[k];
+      if (name == "06_back.png") {  // not scanned: what shows of the clay there is its inside, in no light
+        EXPECT_LT(spread(of[k]), 3) << kLights[k];
+        continue;
+      }
+      EXPECT_GT(spread(of[k]), 3) << kLights[k] << " is of one tone";
+      for (std::size_t other = 0; other < k; ++other) {
+        EXPECT_GT(difference(of[k], of[other]), 3) << kLights[k] << " and " << kLights[other] << " are alike";
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace dubsar
