@@ -3,6 +3,7 @@
 #include "acquisition/placed_profiles.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <utility>
 
@@ -30,6 +31,11 @@ bool PlacedProfiles::begin(const ScanInfo& info) {
   // On a turntable it goes by how far from the axis the clay is: by the grid's own samples.
   out.spacing_mm = linear ? std::max(out.spacing_mm, scan_.step * scan_.motion.direction.norm()) : 0.0;
   out.device = scan_.device;
+  if (out.timestamp_ns == 0) {  // the camera's profiles are timed on a clock that began when this machine did
+    out.timestamp_ns = std::chrono::duration_cast<std::chrono::nanoseconds>(
+                           std::chrono::system_clock::now().time_since_epoch())
+                           .count();
+  }
   begun_ = sink_.begin(out);
   cancelled_ = !begun_;
   return begun_;

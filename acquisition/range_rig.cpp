@@ -135,4 +135,11 @@ Status RangeRig::stop() {
   return of_stage ? of_camera : of_stage;
 }
 
+Status RangeRig::halt() {
+  stopped_->store(true);
+  Status of_stage = stage_.emergency_stop();
+  [[maybe_unused]] const Status of_camera = camera_.stop();
+  return of_stage;
+}
+
 }  // namespace dubsar

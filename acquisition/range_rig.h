@@ -30,6 +30,7 @@ class RangeRig : public RigSource {
   /// meanwhile, where it has one.
   Status scan(ProfileSink& sink) override;
   Status stop() override;
+  Status halt() override;
   [[nodiscard]] const Rig* geometry() const override { return nullptr; }
 
  private:

@@ -3,6 +3,7 @@
 #include "acquisition/range_source.h"
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <mutex>
@@ -58,7 +59,8 @@ class CloudBuilder {
 
 class Collector : public ProfileSink {
  public:
-  Collector(const RangeSource::RowObserver& observer, JobContext& job) : observer_(observer), job_(job) {}
+  Collector(const RangeSource::RowObserver& observer, JobContext& job, const std::atomic<bool>& halted)
+      : observer_(observer), job_(job), halted_(halted) {}
 
   bool begin(const ScanInfo& info) override {
     info_ = info;
@@ -67,10 +69,10 @@ class Collector : public ProfileSink {
     } else {
       cloud.emplace();
     }
-    return !job_.cancelled();
+    return !ended();
   }
   bool profile(const Profile& profile) override {
-    if (job_.cancelled()) {
+    if (ended()) {
       return false;
     }
     if (cloud) {
@@ -92,7 +94,7 @@ class Collector : public ProfileSink {
     builder.emplace(info_);
     const auto cols = static_cast<std::size_t>(grid.cols);
     for (int row = 0; row < grid.rows; ++row) {
-      if (job_.cancelled()) {
+      if (ended()) {
         return fail(ErrorKind::kCancelled, "scan cancelled", info_.source);
       }
       const auto part = [&](const auto& channel, std::size_t per) {
@@ -120,6 +122,7 @@ class Collector : public ProfileSink {
   ScanTally tally;
 
  private:
+  [[nodiscard]] bool ended() const { return job_.cancelled() || halted_; }
   void show_row() {
     if (observer_) {
       observer_(builder->grid(), builder->grid().rows - 1);
@@ -128,23 +131,33 @@ class Collector : public ProfileSink {
 
   const RangeSource::RowObserver& observer_;
   JobContext& job_;
+  const std::atomic<bool>& halted_;
   ScanInfo info_;
 };
 
-/// While it lives, a cancelled job stops the device. A stop that comes before the motion has begun is lost,
-/// so it is said until the motion has ended.
+/// The emergency stop of a stage; of what has none, its stop.
+void halt_device(const Device& device) {
+  if (!device.emergency_stop()) {
+    [[maybe_unused]] const Status said = device.stop();
+  }
+}
+
+/// While it lives, a cancelled job stops the device, and a halt stops it at once. A stop that comes before
+/// the motion has begun is lost, so it is said until the motion has ended.
 class StopsWhenCancelled {
  public:
-  StopsWhenCancelled(const Device& device, const JobContext& job) {
+  StopsWhenCancelled(const Device& device, const JobContext& job, const std::atomic<bool>& halted) {
     if (device.can_stop()) {
-      watcher_ = std::jthread([this, &device, &job](const std::stop_token& done) {
+      watcher_ = std::jthread([this, &device, &job, &halted](const std::stop_token& done) {
         constexpr auto kPause = std::chrono::milliseconds(20);
         std::unique_lock lock(mutex_);
         while (!wake_.wait_for(lock, done, kPause, [&] { return done.stop_requested(); })) {
           if (done.stop_requested()) {
             return;
           }
-          if (job.cancelled()) {
+          if (halted) {
+            halt_device(device);
+          } else if (job.cancelled()) {
             [[maybe_unused]] const Status said = device.stop();
           }
         }
@@ -164,8 +177,23 @@ Status RangeSource::place(const Placement& placement, JobContext& job) {
   if (job.cancelled()) {
     return fail(ErrorKind::kCancelled, "stopped before the move", uri_.text());
   }
-  const StopsWhenCancelled watch(device_, job);
-  return device_.place(placement);
+  if (const auto halt = halted()) {
+    return std::unexpected(*halt);
+  }
+  const Status placed = [&] {
+    const StopsWhenCancelled watch(device_, job, *halted_);
+    return device_.place(placement);
+  }();
+  const auto halt = halted();
+  return halt ? std::unexpected(*halt) : placed;
+}
+
+std::optional<Error> RangeSource::halted() const {
+  if (!*halted_) {
+    return std::nullopt;
+  }
+  return Error{ErrorKind::kDevice, "the emergency stop was pressed: lasers are off and nothing moves",
+               uri_.text(), "see that all is clear, then scan: a stage with switches is homed first"};
 }
 
 RangeSource::RangeSource(DeviceUri uri, Device device, DeviceCapabilities capabilities,
@@ -201,13 +229,19 @@ Result<RangeSource> RangeSource::open(std::string_view text, const DriverRegistr
 Result<std::optional<RangeGrid>> RangeSource::next(const RowObserver& observer, JobContext& job) {
   partial_.reset();
   record_ = {};
-  Collector collector(observer, job);
+  if (const auto halt = halted()) {
+    return std::unexpected(*halt);
+  }
+  Collector collector(observer, job, *halted_);
   const Result<ScanOutcome> outcome = [&] {
-    const StopsWhenCancelled watch(device_, job);
+    const StopsWhenCancelled watch(device_, job, *halted_);
     return device_.scan(collector);
   }();
   record_.tally = collector.tally;
   std::optional<Error> fault = outcome ? std::nullopt : std::optional(outcome.error());
+  if (fault) {
+    fault = halted().value_or(*fault);
+  }
   if (outcome && *outcome == ScanOutcome::kExhausted) {
     return std::optional<RangeGrid>();
   }

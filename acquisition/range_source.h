@@ -2,7 +2,9 @@
 // Copyright The Dubsar developers
 #pragma once
 
+#include <atomic>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -45,6 +47,11 @@ class RangeSource {
   Status place(const Placement& placement, JobContext& job);
   /// Stops all motion, where the device offers that.
   Status stop() const { return device_.stop(); }
+  /// The emergency stop, from any thread: within some milliseconds of this a scan or a placement that runs
+  /// has been told to end at once, lasers off, whatever that does to the stage's position. What was scanned
+  /// is in partial(), and the answer, now and to all that is asked later, is the error of halted().
+  void halt() const { *halted_ = true; }
+  [[nodiscard]] std::optional<Error> halted() const;
 
   /// Runs the next scan. Nothing: the source is exhausted. On an error (kDevice, kBadInput, kCancelled when
   /// `job` was cancelled) the rows that came are in partial(); a finite source goes on with its next scan at
@@ -63,6 +70,7 @@ class RangeSource {
   Device device_;
   DeviceCapabilities capabilities_;
   ResampleOptions resampling_;
+  std::unique_ptr<std::atomic<bool>> halted_ = std::make_unique<std::atomic<bool>>(false);
   std::optional<RangeGrid> partial_;
   ScanRecord record_;
 };

@@ -9,13 +9,13 @@
 
 #include "acquisition/device_uri.h"
 #include "acquisition/range_rig.h"
+#include "acquisition/rig_log.h"
 #include "acquisition/rig_view.h"
 #include "drivers/driver.h"
 #include "drivers/plugin.h"
 #include "formats/atomic_file.h"
 #include "formats/calibration_json.h"
 #include "formats/number_text.h"
-#include "formats/verification_log.h"
 
 namespace dubsar {
 
@@ -108,6 +108,13 @@ std::int32_t stop(dubsar_device* device, dubsar_error* error) {
   });
 }
 
+std::int32_t emergency_stop(dubsar_device* device, dubsar_error* error) {
+  return plugin::fenced(error, [&] {
+    const Status status = device->source->halt();
+    return status ? std::int32_t{DUBSAR_OK} : plugin::report(error, status.error());
+  });
+}
+
 std::int32_t nothing(dubsar_setting_callback, void*, dubsar_error*) {
   return DUBSAR_OK;
 }
@@ -139,6 +146,7 @@ const dubsar_driver& rig_driver() {
     out.capabilities = capabilities;
     out.scan = scan;
     out.stop = stop;
+    out.emergency_stop = emergency_stop;
     offer_view(out);
     return out;
   }();
@@ -244,36 +252,25 @@ Result<Device> open_rig(const std::filesystem::path& file, const DriverRegistry&
 }
 
 std::optional<CalibrationCheck> last_verification(const std::filesystem::path& rig_file) {
-  const Result<std::string> text = read_whole_file(rig_file);
-  const Result<RigFile> rig = text ? parse_rig_file(*text, rig_file.string()) : std::unexpected(text.error());
-  if (!rig) {
+  const Result<RigLog> log = rig_log_of(rig_file);
+  const std::optional<VerificationEntry> last = log ? log->last() : std::nullopt;
+  if (!last || !last->passed) {
     return std::nullopt;
   }
-  const std::filesystem::path beside = rig_file.parent_path() / rig->calibration;
-  const Result<std::string> bytes = read_whole_file(beside);
-  const Result<RigCalibration> calibration =
-      bytes ? parse_calibration(*bytes, beside.string()) : std::unexpected(bytes.error());
-  const Result<VerificationLog> log = read_verification_log(verification_log_of(beside));
-  if (!calibration || !log || log->entries.empty()) {
-    return std::nullopt;
-  }
-  const VerificationEntry& last = log->entries.back();
-  if (!last.passed || last.calibration != calibration->made_at) {
-    return std::nullopt;
-  }
-  return CalibrationCheck{last.when, last.artefact, last.error_mm};
+  return CalibrationCheck{last->when, last->artefact, last->error_mm};
 }
 
-std::optional<std::string> verification_reminder(const std::string& device_uri, const Rig& rig) {
+std::optional<std::string> verification_reminder(const std::string& device_uri) {
   const Result<DeviceUri> uri = parse_device_uri(device_uri);
   if (!uri || uri->scheme != "rig") {
     return std::nullopt;
   }
   const std::string mend = "; measure the artefact first: dubsar calibrate --verify";
-  if (!rig.calibration_check) {
-    return "this calibration has not been verified yet" + mend;
+  const std::optional<CalibrationCheck> last = last_verification(uri->locator);
+  if (!last) {
+    return "the rig as it stands has not been verified yet" + mend;
   }
-  const std::optional<double> age = days_since(rig.calibration_check->when);
+  const std::optional<double> age = days_since(last->when);
   if (age && *age <= 1) {
     return std::nullopt;
   }

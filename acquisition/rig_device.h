@@ -27,12 +27,12 @@ struct RigParts {
 /// Errors: kUsage, kBadInput, kDevice.
 [[nodiscard]] Result<Device> open_rig(const std::filesystem::path& file, const DriverRegistry& registry);
 
-/// The latest line of the log beside the calibration that a rig's file names, if it is of that calibration
-/// and was passed: what the checklist shows. Nothing where there is none, or the files cannot be read.
+/// The latest line of a rig's log, if it is of the rig as it stands and was passed: what the checklist shows.
+/// Nothing where there is none, or the files cannot be read.
 [[nodiscard]] std::optional<CalibrationCheck> last_verification(const std::filesystem::path& rig_file);
 
 /// A rig is verified before each day's work: what to tell the operator when the last verification that was
-/// passed is older than a day, or there is none with this calibration. Nothing for other devices.
-[[nodiscard]] std::optional<std::string> verification_reminder(const std::string& device_uri, const Rig& rig);
+/// passed is older than a day, or there is none of the rig as it stands. Nothing for other devices.
+[[nodiscard]] std::optional<std::string> verification_reminder(const std::string& device_uri);
 
 }  // namespace dubsar

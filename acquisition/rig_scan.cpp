@@ -265,4 +265,9 @@ Status RigScanner::stop() {
   return stage_.stop();
 }
 
+Status RigScanner::halt() {
+  stopped_->store(true);
+  return stage_.emergency_stop();
+}
+
 }  // namespace dubsar

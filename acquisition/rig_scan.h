@@ -43,6 +43,7 @@ class RigScanner : public RigSource {
   [[nodiscard]] Device* camera() override { return &camera_; }
   /// Ends the motion and puts the laser off; a scan that runs returns kCancelled soon.
   Status stop() override;
+  Status halt() override;
   [[nodiscard]] const Rig* geometry() const override { return &rig_; }
 
  private:

@@ -18,6 +18,8 @@ class RigSource {
   virtual Status scan(ProfileSink& sink) = 0;
   /// From any thread: a scan that runs returns kCancelled soon.
   virtual Status stop() = 0;
+  /// From any thread: the stage's emergency stop; a scan that runs returns kCancelled soon.
+  virtual Status halt() = 0;
   /// What is known of its geometry; nullptr when nothing is.
   [[nodiscard]] virtual const Rig* geometry() const = 0;
   /// Of a rig that can be looked through between scans; nullptr where none can.

@@ -24,6 +24,7 @@ void read_scan(const JsonNode& scan, RigFile& rig) {
   const double to = scan.at(degrees ? "to_deg" : "to_mm").number(-kMostTravel, kMostTravel) * unit;
   rig.step = scan.at(degrees ? "step_deg" : "step_mm").number(1e-6, kMostTravel) * unit;
   rig.start = from;
+  rig.turns = degrees;
   const double rows = std::floor((to - from) / rig.step + 1e-6) + 1;
   if (!scan.failed() && !(rows >= 2 && rows <= kMostRows)) {
     scan.complain("has fewer than 2 rows or more than 100000: it goes up from `from` to `to`");

@@ -26,8 +26,9 @@ struct RigFile {
   int axis = 0;   ///< of the stage, that moves while a scan runs
   int laser = 0;  ///< of the stage
   double laser_power = 1;
-  double start = 0;  ///< of the stage at row 0; mm or radians
-  double step = 0;   ///< from row to row, > 0
+  double start = 0;    ///< of the stage at row 0; mm or radians
+  double step = 0;     ///< from row to row, > 0
+  bool turns = false;  ///< the scan is said in degrees: a turntable or a mirror
   int rows = 0;
   double speed = 0;         ///< mm/s or rad/s; 0: as the stage likes
   bool continuous = false;  ///< the stage moves through, and rows come at the camera's rate

@@ -4,10 +4,15 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "acquisition/calibration_folder.h"
+#include "core/units.h"
 #include "formats/atomic_file.h"
 #include "formats/calibration_json.h"
 #include "formats/gray_file.h"
+#include "formats/number_text.h"
+#include "formats/rig_toml.h"
 #include "station/results.h"
 
 namespace dubsar {
@@ -15,6 +20,8 @@ namespace dubsar {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr double kHottestC = 100;
 
 Result<CalibrationSet> set_in(const fs::path& list) {
   const Result<std::string> text = read_whole_file(list);
@@ -45,10 +52,39 @@ Result<CalibrationSet> set_for(const CalibrateRequest& request) {
 
 }  // namespace
 
+MotionKind stage_kind_of(const std::string& device_uri) {
+  constexpr std::string_view kScheme = "rig:";
+  if (!device_uri.starts_with(kScheme)) {
+    return MotionKind::kLinear;
+  }
+  const fs::path file = device_uri.substr(kScheme.size());
+  const Result<std::string> text = read_whole_file(file);
+  const Result<RigFile> rig = text ? parse_rig_file(*text, file.string()) : std::unexpected(text.error());
+  if (!rig) {
+    return MotionKind::kLinear;
+  }
+  const fs::path beside = file.parent_path() / rig->calibration;
+  const Result<std::string> json = read_whole_file(beside);
+  const auto known = json ? parse_calibration(*json, beside.string()) : std::unexpected(json.error());
+  if (known && known->has_motion) {
+    return known->motion.kind;
+  }
+  return rig->turns ? MotionKind::kTurntable : MotionKind::kLinear;
+}
+
 Result<CalibrateOutcome> calibrate_folder(const CalibrateRequest& request, const JobContext& job) {
+  if (request.temperature_c && !(std::abs(*request.temperature_c) <= kHottestC)) {
+    return fail(ErrorKind::kUsage, number_text(*request.temperature_c) + " °C is no temperature of a room",
+                request.folder, "give degrees Celsius, or leave it away");
+  }
   Result<CalibrationSet> set = set_for(request);
   if (!set) {
     return std::unexpected(set.error());
+  }
+  if (!request.serial.empty() && !set->camera_serial.empty() && request.serial != set->camera_serial) {
+    return bad_input(request.folder,
+                     "its pictures are of camera " + set->camera_serial + ", not of " + request.serial,
+                     "leave the serial number away, or take pictures with that camera");
   }
   Result<CalibrationPictures> pictures = look_at_pictures(request.folder, *set, job);
   if (!pictures) {
@@ -72,7 +108,7 @@ Result<CalibrateOutcome> calibrate_folder(const CalibrateRequest& request, const
   RigCalibration& rig = report->rig;
   rig.made_at = utc_now();
   rig.camera_serial = request.serial.empty() ? set->camera_serial : request.serial;
-  rig.temperature_c = set->temperature_c;
+  rig.temperature_c = request.temperature_c ? request.temperature_c : set->temperature_c;
   rig.note = set->note;
   if (!request.out.empty()) {
     if (Status status = write_file_atomically(request.out, calibration_to_json(rig)); !status) {
@@ -82,9 +118,14 @@ Result<CalibrateOutcome> calibrate_folder(const CalibrateRequest& request, const
   return CalibrateOutcome{std::move(*report), std::move(pictures->left_out)};
 }
 
-Result<std::string> add_calibration_shot(const fs::path& folder, const std::string& board,
+Result<std::string> add_calibration_shot(const fs::path& folder, const CalibrationWords& words,
                                          const CalibrationPicture& picture) {
   const CalibrationShot shot = picture.shot;
+  const bool mirror = words.motion == MotionKind::kGalvanometer;
+  if (mirror && shot == CalibrationShot::kStop) {
+    return fail(ErrorKind::kUsage, "a mirror carries no board", folder.string(),
+                "take poses of the board by hand, at three positions of the mirror or more");
+  }
   std::error_code error;
   fs::create_directories(folder, error);
   if (error) {
@@ -99,9 +140,18 @@ Result<std::string> add_calibration_shot(const fs::path& folder, const std::stri
     }
     set = std::move(*known);
   }
-  if (!board.empty()) {
-    set.board = board;
+  const bool moves = shot == CalibrationShot::kStop || (mirror && shot == CalibrationShot::kBoard);
+  if (moves && set.motion && *set.motion != words.motion) {
+    return bad_input(list.string(),
+                     std::string("its pictures are of a ") + motion_word(*set.motion) +
+                         " stage, this is of a " + motion_word(words.motion) + " one",
+                     "take the new ones to an empty folder");
   }
+  set.motion = moves ? words.motion : set.motion;
+  set.board = words.board.empty() ? set.board : words.board;
+  set.temperature_c = words.temperature_c ? words.temperature_c : set.temperature_c;
+  const bool turns = words.motion != MotionKind::kLinear;
+  const double position = turns ? rad_from_deg(picture.position) : picture.position;
   if (!picture.camera_serial.empty()) {
     if (!set.camera_serial.empty() && set.camera_serial != picture.camera_serial) {
       return bad_input(
@@ -120,7 +170,7 @@ Result<std::string> add_calibration_shot(const fs::path& folder, const std::stri
   switch (shot) {
     case CalibrationShot::kBoard:
       name = fmt::format("pose_{:02d}.png", set.poses.size());
-      set.poses.push_back({name, {}, {}, 0});
+      set.poses.push_back({name, {}, {}, mirror ? position : 0.0});
       break;
     case CalibrationShot::kLaser:
       name = set.poses.back().laser = fmt::format("pose_{:02d}_laser.png", set.poses.size() - 1);
@@ -130,8 +180,7 @@ Result<std::string> add_calibration_shot(const fs::path& folder, const std::stri
       break;
     case CalibrationShot::kStop:
       name = fmt::format("stage_{:02d}.png", set.stops.size());
-      set.stops.push_back({name, "board", picture.position});
-      set.motion = set.motion.value_or(MotionKind::kLinear);
+      set.stops.push_back({name, "board", position});
       break;
   }
   // The picture first: a list must not name what is not there.

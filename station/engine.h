@@ -77,6 +77,10 @@ class Engine {
   /// once. False when the engine is not running, or already writes its final results.
   bool post(OperatorCommand command);
 
+  /// The emergency stop, from any thread; returns at once. Lasers go off and motors stop, wherever run() is;
+  /// it then ends like one whose device has failed: what was scanned until then is kept.
+  void halt();
+
  private:
   struct Impl;
   std::unique_ptr<Impl> impl_;

@@ -163,6 +163,7 @@ struct Engine::Impl {
   std::optional<PinSet> pins;  ///< options.pins, and what the operator has labelled since
   std::deque<OperatorCommand> commands;
   bool takes_commands = false;
+  bool halt_asked = false;
   bool scan_asked = false;    ///< of a paced run: ScanNow since the last scan
   bool finish_asked = false;  ///< of a paced run: Finish
   bool keeps_half = false;    ///< KeepHalfScan
@@ -220,6 +221,7 @@ struct Engine::Impl {
   bool move_to(const Placement& target, const StageScene& on_stage, JobContext& job);
   void end_motion(Error error);  ///< notes what ended it
   void stop_motion_after_trouble(const JobContext& job);
+  void end_halted();  ///< notes the emergency stop, if there was one
   [[nodiscard]] StageScene unseen() const;
   NextStep step_to(const RedMap& red_map) const;
   [[nodiscard]] NextStep step_again(int id) const;  ///< to where a scan was taken from

@@ -38,6 +38,25 @@ void Engine::Impl::end_motion(Error error) {
   }
 }
 
+void Engine::Impl::end_halted() {
+  const std::optional<Error> halt = source->halted();
+  const bool told = [&] {
+    const std::scoped_lock lock(mutex);
+    return device_error.has_value();
+  }();
+  if (halt && !told) {
+    end_motion(*halt);
+  }
+}
+
+void Engine::halt() {
+  const std::scoped_lock lock(impl_->mutex);
+  impl_->halt_asked = true;
+  if (impl_->source) {
+    impl_->source->halt();
+  }
+}
+
 void Engine::Impl::stop_motion_after_trouble(const JobContext& job) {
   const bool failed_device = [&] {
     const std::scoped_lock lock(mutex);

@@ -49,9 +49,15 @@ Status Engine::Impl::open(JobContext& job) {
   if (!opened) {
     return std::unexpected(opened.error());
   }
-  source = std::move(*opened);
+  {
+    const std::scoped_lock lock(mutex);
+    source = std::move(*opened);
+    if (halt_asked) {
+      source->halt();
+    }
+  }
   rig = source->capabilities().rig;
-  if (const auto reminder = rig ? verification_reminder(options.device, *rig) : std::nullopt) {
+  if (const auto reminder = verification_reminder(options.device)) {
     emit(Notice{*reminder});
   }
   drives = options.automatic && source->capabilities().can_place;

@@ -32,7 +32,7 @@ bool Engine::Impl::wait_for_operator(NextStep& step, const JobContext& job) {
   bool told = false;
   bool changed = false;
   for (;;) {
-    if (finish_asked || job.cancelled()) {
+    if (finish_asked || job.cancelled() || source->halted()) {
       lock.unlock();
       if (job.cancelled()) {
         give_up(stopped());

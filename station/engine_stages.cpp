@@ -133,6 +133,7 @@ void Engine::Impl::acquire(NextStep step, JobContext& job) {
       }
     }
   }
+  end_halted();
   stop_motion_after_trouble(job);
   queues->to_store.close();
 }

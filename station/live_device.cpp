@@ -16,6 +16,9 @@ void LiveSession::watch_camera(bool on) {
   std::shared_ptr<CameraWatch> over;  // goes outside of the lock: its thread may want it
   {
     const std::scoped_lock lock(mutex_);
+    looks_ = on;
+    halted_ = halted_ && on;
+    on = on && !halted_;
     if (watch_ && watch_->ended()) {
       over = std::exchange(watch_, nullptr);
       on = on && over == nullptr;  // one that ended by itself has said why; the next call tries again

@@ -203,6 +203,22 @@ void LiveSession::stop() {
   hurry();
 }
 
+void LiveSession::halt() {
+  const std::scoped_lock lock(mutex_);
+  scan_later_ = false;
+  halted_ = looks_;
+  if (engine_) {
+    engine_->halt();
+    return;
+  }
+  if (watch_) {
+    watch_->stop();
+  }
+  if (job_) {  // an artefact that is measured, perhaps
+    job_->cancel();
+  }
+}
+
 void LiveSession::ask(OperatorCommand command) {
   {
     const std::scoped_lock lock(mutex_);

@@ -57,6 +57,9 @@ class LiveSession {
   void scan_now();  ///< starts a run, or lets the one that waits go on
   void finish();    ///< takes no more scans
   void stop();      ///< cancels what is under way
+  /// The emergency stop, whatever is under way: lasers off, nothing moves. What was scanned is kept. The
+  /// camera is looked through again once watch_camera(false) was said.
+  void halt();
   /// Asks the engine, which is started for it where it does not run.
   void ask(OperatorCommand command);
   /// Looks through the camera, and opens the device for it where no run has it; to be said again and again
@@ -110,6 +113,8 @@ class LiveSession {
   std::function<void()> next_;                ///< a job that was asked for meanwhile
   std::deque<OperatorCommand> later_;         ///< asked for while a job ran that takes none
   bool scan_later_ = false;                   ///< likewise
+  bool looks_ = false;                        ///< somebody, through the camera
+  bool halted_ = false;                       ///< until they look no more: looking lights a rig's laser
   std::optional<TabletRecord> record_later_;  ///< likewise
   SettingWords settings_;                     ///< of the device, that were changed while no run had it
   std::shared_ptr<const CameraView> camera_;

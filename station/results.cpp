@@ -97,13 +97,16 @@ int picture_size_px(const std::vector<PlacedScan>& scans, const Mesh& mesh) {
 
 }  // namespace
 
-std::string utc_now() {
-  const std::time_t now = std::time(nullptr);
+std::string utc_text(std::time_t time) {
   std::tm utc{};
-  gmtime_r(&now, &utc);
+  gmtime_r(&time, &utc);
   char text[32];
   std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc);
   return text;
+}
+
+std::string utc_now() {
+  return utc_text(std::time(nullptr));
 }
 
 std::string program_name() {

@@ -2,6 +2,7 @@
 // Copyright The Dubsar developers
 #pragma once
 
+#include <ctime>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -29,6 +30,7 @@ struct Results {
 };
 
 /// "2026-01-02T03:04:05Z"
+[[nodiscard]] std::string utc_text(std::time_t time);
 [[nodiscard]] std::string utc_now();
 /// "Dubsar 0.1.0"
 [[nodiscard]] std::string program_name();

@@ -2,24 +2,25 @@
 // Copyright The Dubsar developers
 #include "station/verification.h"
 
+#include <ctime>
+
 #include "acquisition/range_source.h"
+#include "acquisition/rig_log.h"
 #include "acquisition/rig_scan.h"
 #include "drivers/loader.h"
 #include "formats/atomic_file.h"
-#include "formats/calibration_json.h"
-#include "formats/rig_toml.h"
 #include "station/results.h"
 
 namespace dubsar {
 
 namespace {
 
-Result<RigCalibration> calibration_in(const std::filesystem::path& file) {
-  const Result<std::string> bytes = read_whole_file(file);
-  return bytes ? parse_calibration(*bytes, file.string()) : std::unexpected(bytes.error());
-}
+struct ArtefactScan {
+  RangeGrid grid;
+  bool recorded = false;  ///< scanned some time before
+};
 
-Result<RangeGrid> scan_of(const std::string& uri, JobContext& job) {
+Result<ArtefactScan> scan_of(const std::string& uri, JobContext& job) {
   const DriverRegistry registry;
   Result<RangeSource> source = RangeSource::open(uri, registry);
   if (!source) {
@@ -32,7 +33,28 @@ Result<RangeGrid> scan_of(const std::string& uri, JobContext& job) {
   if (!*grid) {
     return fail(ErrorKind::kBadInput, "there is no scan in it", uri, "scan the artefact first");
   }
-  return std::move(**grid);
+  return ArtefactScan{std::move(**grid), source->capabilities().finite};
+}
+
+/// When it was scanned, where it says a time that can be.
+std::optional<std::time_t> time_of(const RangeGrid& grid) {
+  constexpr std::time_t kYear2000 = 946684800;
+  const std::time_t time = static_cast<std::time_t>(grid.timestamp_ns / 1'000'000'000);
+  return time >= kYear2000 && time <= std::time(nullptr) ? std::optional(time) : std::nullopt;
+}
+
+std::optional<RigLog> log_of_device(const std::string& uri) {
+  constexpr std::string_view kScheme = "rig:";
+  if (!uri.starts_with(kScheme)) {
+    return std::nullopt;
+  }
+  Result<RigLog> log = rig_log_of(uri.substr(kScheme.size()));
+  return log ? std::optional(std::move(*log)) : std::nullopt;
+}
+
+/// A range camera's rig is verified by its rig.toml.
+bool is_calibration(const std::filesystem::path& verified) {
+  return verified.extension() != ".toml";
 }
 
 }  // namespace
@@ -70,30 +92,32 @@ Result<VerifyOutcome> verify_rig(const VerifyRequest& request, JobContext& job) 
   VerifyOutcome out;
   out.artefact = std::move(*artefact);
   if (!request.calibration.empty()) {
-    const Result<RigCalibration> calibration = calibration_in(request.calibration);
-    if (!calibration) {
-      return std::unexpected(calibration.error());
+    const Result<RigLog> log = rig_log_of(request.calibration);
+    if (!log) {
+      return std::unexpected(log.error());
     }
-    out.entry.calibration = calibration->made_at;
+    out.entry.calibration = log->as_it_stands;
+    out.log = log->log.string();
   }
-  const Result<RangeGrid> grid = scan_of(request.scan, job);
-  if (!grid) {
-    return std::unexpected(grid.error());
+  const Result<ArtefactScan> scan = scan_of(request.scan, job);
+  if (!scan) {
+    return std::unexpected(scan.error());
   }
-  Result<Verification> is = verify_artefact(*grid, out.artefact);
+  Result<Verification> is = verify_artefact(scan->grid, out.artefact);
   if (!is) {
     return std::unexpected(is.error());
   }
   out.is = std::move(*is);
-  out.entry.when = utc_now();
+  const std::optional<std::time_t> when = time_of(scan->grid);
+  out.time_unknown = scan->recorded && !when;
+  out.entry.when = when ? utc_text(*when) : utc_now();
   out.entry.artefact = out.artefact.name;
   out.entry.certificate = out.artefact.certificate;
   out.entry.error_mm = out.is.worst_mm();
   out.entry.passed = out.is.passed();
   out.entry.failed = out.is.failed;
   out.entry.measured = verification_figures(out.is).dump();
-  if (!request.calibration.empty()) {
-    out.log = verification_log_of(request.calibration).string();
+  if (!out.log.empty()) {
     if (Status status = append_verification(out.log, out.entry); !status) {
       return std::unexpected(status.error());
     }
@@ -102,39 +126,24 @@ Result<VerifyOutcome> verify_rig(const VerifyRequest& request, JobContext& job) 
 }
 
 std::optional<CalibrationFile> calibration_file_of(const std::string& device_uri) {
-  constexpr std::string_view kScheme = "rig:";
-  if (!device_uri.starts_with(kScheme)) {
+  const std::optional<RigLog> log = log_of_device(device_uri);
+  if (!log || !is_calibration(log->verified)) {
     return std::nullopt;
   }
-  const std::filesystem::path file = device_uri.substr(kScheme.size());
-  const Result<std::string> text = read_whole_file(file);
-  const Result<RigFile> rig = text ? parse_rig_file(*text, file.string()) : std::unexpected(text.error());
-  if (!rig) {
-    return std::nullopt;
-  }
-  const std::filesystem::path beside = file.parent_path() / rig->calibration;
-  const Result<std::string> json = read_whole_file(beside);
-  const Result<RigCalibration> calibration =
-      json ? parse_calibration(*json, beside.string()) : std::unexpected(json.error());
-  if (!calibration) {
-    return std::nullopt;
-  }
-  return CalibrationFile{beside, *json, calibration->made_at};
+  const Result<std::string> json = read_whole_file(log->verified);
+  return json ? std::optional(CalibrationFile{log->verified, *json, log->as_it_stands}) : std::nullopt;
 }
 
 std::optional<RigCare> care_of(const std::string& device_uri) {
-  const std::optional<CalibrationFile> file = calibration_file_of(device_uri);
-  if (!file) {
+  const std::optional<RigLog> log = log_of_device(device_uri);
+  if (!log) {
     return std::nullopt;
   }
   RigCare care;
-  care.calibration = file->path.string();
-  // A log that cannot be read says nothing of the rig: it is due.
-  const Result<VerificationLog> log = read_verification_log(verification_log_of(file->path));
-  if (log && !log->entries.empty() && log->entries.back().calibration == file->made_at) {
-    care.last = log->entries.back();
-    care.age_days = days_since(care.last->when);
-  }
+  care.verified = log->verified.string();
+  care.calibration = is_calibration(log->verified) ? care.verified : std::string();
+  care.last = log->last();
+  care.age_days = care.last ? days_since(care.last->when) : std::nullopt;
   return care;
 }
 

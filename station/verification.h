@@ -14,16 +14,19 @@
 namespace dubsar {
 
 struct VerifyRequest {
-  std::string artefact;     ///< artefact.toml
-  std::string scan;         ///< of the artefact: a file, or a device that takes it
-  std::string calibration;  ///< that is verified; the outcome goes into the log beside it. Empty: into none
+  std::string artefact;  ///< artefact.toml
+  std::string scan;      ///< of the artefact: a file, or a device that takes it
+  /// That is verified, or the rig.toml of a range camera; the outcome goes into the log beside it. Empty:
+  /// into none.
+  std::string calibration;
 };
 
 struct VerifyOutcome {
   Artefact artefact;
   Verification is;
   VerificationEntry entry;
-  std::string log;  ///< that it was written into; empty: none
+  std::string log;            ///< that it was written into; empty: none
+  bool time_unknown = false;  ///< the file does not say when it was scanned: the entry has the time of now
 };
 
 /// Measures a certified artefact in one scan and judges it by its certificate. One that fails is an outcome,
@@ -38,10 +41,11 @@ inline constexpr double kVerifyEveryDays = 1.0;
 
 /// What a station says of its rig before it is used.
 struct RigCare {
-  std::string calibration;                ///< file
-  std::optional<VerificationEntry> last;  ///< of this calibration
+  std::string verified;                   ///< file, beside which the log lies
+  std::string calibration;                ///< the same, where it is one; empty: of a range camera
+  std::optional<VerificationEntry> last;  ///< of the rig as it stands
   std::optional<double> age_days;         ///< of it
-  /// Nothing was measured with this calibration, or too long ago, or it failed.
+  /// Nothing was measured with the rig as it stands, or too long ago, or it failed.
   [[nodiscard]] bool is_due() const {
     return !last || !last->passed || !age_days || *age_days > kVerifyEveryDays;
   }

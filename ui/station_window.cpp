@@ -206,6 +206,11 @@ class StationWindow {
     ui_.targets.clear();
     ui_.facts.clear();
     ImGui::NewFrame();
+    // Whatever is open and whichever screen is shown.
+    if (session_ &&
+        (ImGui::IsKeyPressed(GLFW_KEY_F12, false) || ImGui::IsKeyPressed(GLFW_KEY_PAUSE, false))) {
+      session_->halt();
+    }
     const ImVec2 size = ImGui::GetIO().DisplaySize;
     bool unfinished = false;
     if (pair_) {

@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <vector>
 
+#include "bench/support/asked.h"
 #include "bench/support/simulated_calibration.h"
 #include "sim/frame_rig.h"
 
@@ -35,6 +36,7 @@ int run(int argc, char** argv) {
     return 2;
   }
   const RigCalibration truth = sim::frame_rig(size);
+  Asked asked;
   for (int seed = 1; seed <= seeds; ++seed) {
     SimulatedBoard camera(truth, *board, optics);
     std::vector<CalibrationView> views;
@@ -62,6 +64,7 @@ int run(int argc, char** argv) {
     const Result<CalibrationReport> report = calibrate_rig(views, options);
     if (!report) {
       std::printf("seed %d: %s\n", seed, report.error().line().c_str());
+      asked.nothing_of("the laser plane");
       continue;
     }
     const RigCalibration& rig = report->rig;
@@ -79,10 +82,13 @@ int run(int argc, char** argv) {
         "um); "
         "%.1f um in the camera's frame\n",
         1e3 * shape_error_mm(truth, rig), rig.quality.volume_sigma_um, 1e3 * plane_error_mm(truth, rig));
+    constexpr double kPlane_um = 20;
+    asked.at_most("the laser plane over the volume", 1e3 * shape_error_mm(truth, rig), kPlane_um, "um");
+    asked.at_most("the laser plane in the camera's frame", 1e3 * plane_error_mm(truth, rig), kPlane_um, "um");
     std::printf("  slide: scale %+.1f ppm, %.4f° from square to the plane (truth 0)\n",
                 1e6 * (rig.motion.direction.norm() - 1), shear * 180 / M_PI);
   }
-  return 0;
+  return asked.status();
 }
 
 }  // namespace

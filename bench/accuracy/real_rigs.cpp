@@ -20,6 +20,7 @@
 #include "acquisition/calibration_laser.h"
 #include "acquisition/stripe_points.h"
 #include "bench/accuracy/real_table.h"
+#include "bench/support/asked.h"
 #include "formats/gray_file.h"
 #include "formats/mesh_io.h"
 
@@ -90,7 +91,7 @@ void draw(const fs::path& from, const std::vector<Marks>& marks, const fs::path&
   cv::imwrite(to.string(), image);
 }
 
-void chessboards(const fs::path& data) {
+void chessboards(const fs::path& data, Asked& asked) {
   for (const auto& [side, published] : {std::pair{"left", 0.3926}, {"right", 0.0}}) {
     const BoardSpec spec = *parse_board("chessboard:9x6:25");
     const std::vector<CalibrationView> views = boards_in(pictures_in(data / "opencv_chessboard", side), spec);
@@ -101,8 +102,12 @@ void chessboards(const fs::path& data) {
     if (!start || !report) {
       std::printf("opencv_chessboard %s: %s\n", side,
                   (start ? report.error() : start.error()).line().c_str());
+      asked.nothing_of(std::string("the camera of opencv_chessboard, ") + side);
       continue;
     }
+    constexpr double kRounding_px = 1e-4;
+    asked.at_most(std::string("opencv_chessboard ") + side, report->rig.quality.corner_rms_px,
+                  start->rms_px + kRounding_px, "px");
     std::printf("opencv_chessboard %s, %zu views: rms %.4f px, calibrateCamera on the same corners %.4f",
                 side, views.size(), report->rig.quality.corner_rms_px, start->rms_px);
     if (published > 0) {
@@ -113,16 +118,18 @@ void chessboards(const fs::path& data) {
   }
 }
 
-void angle_and_offset(const char* what, const Plane& is, Plane should) {
+/// Returns the angle between them, degrees.
+double angle_and_offset(const char* what, const Plane& is, Plane should) {
   if (is.normal.dot(should.normal) < 0) {
     should = {-should.normal, -should.distance_mm};
   }
   std::printf("  %s: normal %.5f %.5f %.5f, published %.5f %.5f %.5f\n", what, is.normal.x(), is.normal.y(),
               is.normal.z(), should.normal.x(), should.normal.y(), should.normal.z());
+  const double angle_deg = std::acos(std::min(1.0, is.normal.dot(should.normal))) * 180 / M_PI;
   std::printf(
       "  %s: %.3f° and %.3f mm off the published plane (distance from the camera %.2f, published %.2f)\n",
-      what, std::acos(std::min(1.0, is.normal.dot(should.normal))) * 180 / M_PI,
-      is.distance_mm - should.distance_mm, is.distance_mm, should.distance_mm);
+      what, angle_deg, is.distance_mm - should.distance_mm, is.distance_mm, should.distance_mm);
+  return angle_deg;
 }
 
 /// Which of two planes of light the authors' own photographs show: against the stripe on their boards, and on
@@ -173,12 +180,13 @@ void desktop_planes(const fs::path& data, const fs::path& pictures, const std::v
   }
 }
 
-void desktop(const fs::path& data, const fs::path& pictures) {
+void desktop(const fs::path& data, const fs::path& pictures, Asked& asked) {
   const BoardSpec spec = *parse_board("chessboard:8x6:40");
   std::vector<fs::path> lens = pictures_in(data / "desktop_turntable/camera", "Image");
   const Result<Intrinsics> camera = find_intrinsics(boards_in(lens, spec));
   if (!camera) {
     std::printf("desktop_turntable: %s\n", camera.error().line().c_str());
+    asked.nothing_of("the camera of desktop_turntable");
     return;
   }
   std::printf(
@@ -216,6 +224,7 @@ void desktop(const fs::path& data, const fs::path& pictures) {
   const Result<CalibrationReport> report = calibrate_rig(views, options);
   if (!report) {
     std::printf("  laser: %s\n", report.error().line().c_str());
+    asked.nothing_of("the laser of desktop_turntable");
     return;
   }
   const CalibrationQuality& q = report->rig.quality;
@@ -233,13 +242,14 @@ void desktop(const fs::path& data, const fs::path& pictures) {
   desktop_planes(data, pictures, views, report->rig, turned);
 }
 
-void ciclop(const fs::path& data, const fs::path& pictures) {
+void ciclop(const fs::path& data, const fs::path& pictures, Asked& asked) {
   const BoardSpec spec = *parse_board("chessboard:11x6:13");
   const fs::path laser = data / "ciclop/laser";
   std::vector<CalibrationView> views = boards_in(pictures_in(data / "ciclop/chessboard", "frame"), spec);
   const Result<Intrinsics> camera = find_intrinsics(views);
   if (!camera) {
     std::printf("ciclop: %s\n", camera.error().line().c_str());
+    asked.nothing_of("the camera of ciclop");
     return;
   }
   std::printf("ciclop: camera from %zu of %zu views, rms %.3f px, fx %.1f, cx %.1f, cy %.1f\n",
@@ -261,7 +271,10 @@ void ciclop(const fs::path& data, const fs::path& pictures) {
       angle_and_offset("fit", fit->plane, published);
       // The published plane goes through all points, the stray ones too. Its distance is that at the camera,
       // far from the points.
-      angle_and_offset("least squares of all points", least_squares_plane(points).plane, published);
+      asked.at_most(
+          "ciclop: least squares of all points, off the published plane",
+          angle_and_offset("least squares of all points", least_squares_plane(points).plane, published), 0.01,
+          "degrees");
       const Plane other = fit->plane.normal.dot(published.normal) < 0
                               ? Plane{-fit->plane.normal, -fit->plane.distance_mm}
                               : fit->plane;
@@ -304,10 +317,11 @@ int run(int argc, char** argv) {
   if (!pictures.empty()) {
     fs::create_directories(pictures);
   }
-  chessboards(data);
-  ciclop(data, pictures);
-  desktop(data, pictures);
-  return 0;
+  Asked asked;
+  chessboards(data, asked);
+  ciclop(data, pictures, asked);
+  desktop(data, pictures, asked);
+  return asked.status();
 }
 
 }  // namespace

@@ -177,7 +177,7 @@ std::int32_t next_frame(dubsar_device* device, std::uint32_t timeout_ms, dubsar_
     const aravis::Taken& taken = **next;
     dubsar_frame out{};
     out.struct_size = sizeof out;
-    out.flags = taken.encoder ? DUBSAR_FRAME_ENCODER : 0U;
+    out.flags = (taken.encoder ? DUBSAR_FRAME_ENCODER : 0U) | (taken.late ? DUBSAR_FRAME_LATE : 0U);
     out.lease = reinterpret_cast<std::uintptr_t>(taken.buffer);
     out.id = taken.id;
     out.timestamp_ns = taken.timestamp_ns;

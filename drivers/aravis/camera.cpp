@@ -281,6 +281,9 @@ Result<std::optional<Taken>> Camera::next(Clock::time_point until) {
     if (out.device_timestamp_ns > 0) {
       out.timestamp_ns = clock_.ours(out.device_timestamp_ns, out.timestamp_ns);
     }
+    // It came with its first packet, and had a period for the others.
+    const std::optional<double> period_ns = count_.period_ns();
+    out.late = period_ns && static_cast<double>(now - arrived) > 2 * *period_ns;
     const FrameCount::Step step =
         count_.take(arv_buffer_get_frame_id(buffer), out.timestamp_ns, out.device_timestamp_ns);
     out.id = step.id;
@@ -298,6 +301,7 @@ Result<std::optional<Taken>> Camera::next(Clock::time_point until) {
     lent_.insert(buffer);
     ++counts_.delivered;
     counts_.lost += out.lost;
+    counts_.late += out.late ? 1 : 0;
     return out;
   }
 }

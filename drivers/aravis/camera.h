@@ -58,6 +58,7 @@ struct Taken {
   std::int64_t device_timestamp_ns = 0;
   std::optional<std::int64_t> encoder;
   bool camera_restarted = false;  ///< the first since: its counts begin elsewhere
+  bool late = false;              ///< waited longer than a frame takes
 };
 
 /// A GigE Vision or USB3 Vision camera from open to close, plugged in or not. The stream's own thread puts
@@ -101,7 +102,7 @@ class Camera {
   void give_back(ArvBuffer* buffer);
   void stop();
   Status trigger();
-  /// From any thread; as counters of the interface, late and incomplete left out.
+  /// From any thread; as counters of the interface; none is incomplete.
   [[nodiscard]] dubsar_frame_counters counters();
 
  private:

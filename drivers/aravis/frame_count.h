@@ -27,13 +27,14 @@ class FrameCount {
   /// `raw`: the camera's number, which goes round from 65535 to 1 in GigE Vision 1. `device_ns`: the camera's
   /// time, 0 where it has none.
   Step take(std::uint64_t raw, std::int64_t timestamp_ns, std::int64_t device_ns);
+  /// From frame to frame, as those of late came; nothing before there are two.
+  [[nodiscard]] std::optional<double> period_ns() const;
 
  private:
   struct Seen {
     std::uint64_t id = 0;
     std::int64_t timestamp_ns = 0, device_ns = 0;
   };
-  [[nodiscard]] std::optional<double> period_ns() const;
   [[nodiscard]] std::uint64_t missed_until(std::int64_t timestamp_ns) const;
 
   std::uint64_t last_raw_ = 0;  ///< 0: none yet over this connection

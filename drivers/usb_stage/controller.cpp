@@ -178,6 +178,16 @@ Status Controller::set_laser(std::size_t laser, double power) {
     return fail(ErrorKind::kUsage, "this controller has no power between off and on for its laser", where_,
                 "give 0 or 1");
   }
+  if (power <= 0 && firmware_->light_waits()) {
+    const Result<Position> now = read_locked();
+    if (!now) {
+      return std::unexpected(now.error());
+    }
+    if (now->moving) {
+      ++stops_;
+      return end_locked();
+    }
+  }
   if (power > 0 && ways_.guard && !guard_) {
     Result<std::unique_ptr<Guard>> guard = ways_.guard(firmware_->panic());
     if (!guard) {
@@ -291,6 +301,10 @@ Status Controller::stop() {
   if (!firmware_) {
     return {};  // gone, and dark as far as can be told
   }
+  return end_locked();
+}
+
+Status Controller::end_locked() {
   Status ended = settle(firmware_->stop());
   std::ranges::fill(power_, 0.0);
   last_.reset();

@@ -52,6 +52,7 @@ class Controller {
     std::vector<double> power;
   };
   [[nodiscard]] Result<Motion> read();
+  /// Off is at once: where the firmware would obey only behind a move, that move ends, with kCancelled.
   Status set_laser(std::size_t laser, double power);
   Status stop();
   Status emergency_stop();
@@ -68,6 +69,7 @@ class Controller {
   Status settle(Status status);
   Status plausible(const Position& now);
   Result<Position> read_locked();
+  Status end_locked();  ///< the motion, and the light
   Status wait_for(std::size_t axis, double position, double speed, std::uint64_t stops);
   [[nodiscard]] std::unexpected<Error> stopped() const;
 

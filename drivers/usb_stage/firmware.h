@@ -71,6 +71,8 @@ class Firmware {
   virtual Status start_move(std::size_t axis, double position, double speed) = 0;
   virtual Result<Position> read() = 0;
   virtual Status set_laser(int laser, double power) = 0;
+  /// Whether set_laser() is obeyed only when the move before it is over.
+  [[nodiscard]] virtual bool light_waits() const { return true; }
   /// Ends the motion with the position known, lasers off.
   virtual Status stop() = 0;
   /// Waits for the switches until cancelled(): a firmware may say nothing on the way. kCancelled then; the
@@ -103,6 +105,7 @@ struct TmclOptions {
   std::vector<double> speeds_max;  ///< of each axis: mm/s or degrees/s
   int module = 1;
   int laser_output = 0;
+  bool switches = true;  ///< to home to
 };
 [[nodiscard]] std::unique_ptr<Firmware> make_tmcl(Link& link, const std::vector<AxisWish>& axes,
                                                   const TmclOptions& options, const std::string& where);

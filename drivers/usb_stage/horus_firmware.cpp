@@ -108,7 +108,7 @@ class Horus : public Firmware {
 
   /// This firmware has no way to brake: a reset ends the motion, and its position counts from there.
   Status stop() override {
-    if (awaits_ok_) {
+    if (awaits_ok_ || moving()) {
       return connect();
     }
     for (int laser = 0; laser < lasers_; ++laser) {
@@ -116,7 +116,7 @@ class Horus : public Firmware {
         return off;
       }
     }
-    return moving() ? connect() : Status{};
+    return {};
   }
 
   Status home(const Cancelled& /*cancelled*/) override {

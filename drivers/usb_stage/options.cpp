@@ -9,7 +9,7 @@ namespace dubsar::usb_stage {
 
 namespace {
 
-constexpr std::array<plugin::SettingRow, 7> kRows{{
+constexpr std::array<plugin::SettingRow, 8> kRows{{
     {DUBSAR_TYPE_CHOICE, "firmware", "what the controller speaks; auto tells grbl and horus by their banner",
      nullptr, "auto|grbl|horus|tmcl"},
     {DUBSAR_TYPE_TEXT, "axes",
@@ -23,6 +23,8 @@ constexpr std::array<plugin::SettingRow, 7> kRows{{
     {DUBSAR_TYPE_INTEGER, "module", "of tmcl: the module's address", nullptr, nullptr, 1, 255},
     {DUBSAR_TYPE_INTEGER, "laser_output", "of tmcl: the digital output that the laser hangs on", nullptr,
      nullptr, 0, 7},
+    {DUBSAR_TYPE_CHOICE, "switches",
+     "of tmcl: whether its axes have reference switches to home to; default: yes", nullptr, "yes|no"},
 }};
 
 /// The parts between commas.
@@ -133,6 +135,9 @@ Result<StageOptions> parse_options(std::span<const dubsar_option> options) {
       good = take_list(value, out.tmcl.steps);
     } else if (key == "speed_max") {
       good = take_list(value, out.tmcl.speeds_max);
+    } else if (key == "switches") {
+      good = value == "yes" || value == "no";
+      out.tmcl.switches = value != "no";
     } else {
       good = take_number(value, *row, key == "module" ? module : output);
     }

@@ -48,8 +48,8 @@ class Tmcl : public Firmware {
       const double farthest = std::numeric_limits<std::int32_t>::max() / steps_per_unit(k);
       const double low = wish.limits ? wish.limits->first * unit : -farthest;
       const double high = wish.limits ? wish.limits->second * unit : farthest;
-      // Its switch is at 0, within its limits or not.
-      axes_.push_back({wish.name, wish.rotary, true, !wish.limits && wish.rotary, low, high,
+      // Its switch, or where it stands first, is at 0, within its limits or not.
+      axes_.push_back({wish.name, wish.rotary, options_.switches, !wish.limits && wish.rotary, low, high,
                        options_.speeds_max[k] * unit, 1 / steps_per_unit(k),
                        std::pair(std::min(low, 0.0), std::max(high, 0.0))});
     }
@@ -105,6 +105,8 @@ class Tmcl : public Firmware {
     return set ? Status{} : std::unexpected(set.error());
   }
 
+  [[nodiscard]] bool light_waits() const override { return false; }
+
   Status stop() override {
     if (const Status dark = set_laser(0, 0); !dark) {
       return dark;  // and no waiting for more answers: whoever gets this sends panic()
@@ -128,6 +130,10 @@ class Tmcl : public Firmware {
   }
 
   Status home(const Cancelled& cancelled) override {
+    if (!options_.switches) {
+      return fail(ErrorKind::kUsage, "a stage without switches cannot be homed", where_,
+                  "open it anew; it counts from where its controller was switched on");
+    }
     for (std::size_t k = 0; k < axes_.size(); ++k) {
       const auto motor = static_cast<std::uint8_t>(k);
       if (const auto begun = ask({Command::kReference, kStart, motor, 0}); !begun) {

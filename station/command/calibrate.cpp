@@ -4,6 +4,7 @@
 
 #include <cstdio>
 #include <memory>
+#include <optional>
 
 #include "acquisition/board.h"
 #include "core/units.h"
@@ -24,6 +25,7 @@ struct Options {
   std::string serial;
   std::string out;
   std::string print;
+  std::optional<double> temperature_c;
   VerifyOptions verify;
   LiveOptions live;
 };
@@ -109,8 +111,8 @@ Result<int> calibrate(Options options, CommandContext& context) {
     }
     options.out = options.out.empty() ? *belongs : options.out;
   }
-  const Result<CalibrateOutcome> outcome =
-      calibrate_folder({options.source, options.board, options.serial, options.out}, context.job);
+  const Result<CalibrateOutcome> outcome = calibrate_folder(
+      {options.source, options.board, options.serial, options.out, options.temperature_c}, context.job);
   if (!outcome) {
     return std::unexpected(outcome.error());
   }
@@ -140,6 +142,8 @@ void add_calibrate(CLI::App& app, Action& chosen) {
   verb->add_option("--board", options->board, "chessboard:9x6:25 (inner corners, mm) or charuco:9x7:5:3.7");
   verb->add_option("--serial", options->serial,
                    "of the camera; a rig refuses the calibration of another one");
+  verb->add_option("--temperature", options->temperature_c,
+                   "of the room, degrees Celsius; default: as calibration.toml says");
   verb->add_option("-o,--out", options->out, "the calibration, calibration.json");
   CLI::Option* print =
       verb->add_option("--print", options->print, "write the board of --board as a PNG for printing");

@@ -24,7 +24,7 @@ void add_verify_options(CLI::App& verb, VerifyOptions& options);
 /// Options of `dubsar calibrate --rig`.
 struct LiveOptions {
   std::string rig;     ///< rig.toml
-  std::string motion;  ///< linear, turntable, galvanometer or none
+  std::string motion;  ///< linear, turntable, galvanometer or none; empty: as the rig's files tell
   int stops = 5;
   std::optional<double> depth_range_mm, plate_margin_mm;
   double board_exposure_us = 0;  ///< 0: as the camera stands

@@ -14,6 +14,7 @@
 #include "acquisition/live_calibration.h"
 #include "acquisition/rig_device.h"
 #include "formats/calibration_json.h"
+#include "station/calibration_run.h"
 #include "station/command/calibrate.h"
 #include "station/command/command.h"
 #include "station/command/terminal.h"
@@ -58,7 +59,9 @@ LiveCalibrationPlan plan_for(const LiveOptions& options, const RigFile& rig, con
                              const std::string& folder) {
   LiveCalibrationPlan plan;
   plan.set.board = board;
-  if (options.motion != "none") {
+  if (options.motion.empty()) {
+    plan.set.motion = stage_kind_of("rig:" + options.rig);
+  } else if (options.motion != "none") {
     const auto& words = motion_words();
     const auto found = std::find(words.begin(), words.end(), options.motion);
     plan.set.motion = static_cast<MotionKind>(found - words.begin());
@@ -105,9 +108,10 @@ void tell_next(const LiveCalibration& live) {
 void add_live_options(CLI::App& verb, LiveOptions& options) {
   verb.add_option("--rig", options.rig,
                   "rig.toml, whose camera and stage take the pictures; the calibration goes where it says");
-  verb.add_option("--motion", options.motion, "with --rig: what the stage does")
-      ->check(CLI::IsMember({"linear", "turntable", "galvanometer", "none"}))
-      ->default_val("linear");
+  verb.add_option(
+          "--motion", options.motion,
+          "with --rig: what the stage does; default: as the rig's files tell (a scan in degrees: turntable)")
+      ->check(CLI::IsMember({"linear", "turntable", "galvanometer", "none"}));
   verb.add_option("--stops", options.stops, "with --rig: positions of the stage")->check(CLI::Range(3, 50));
   verb.add_option("--depth-range", options.depth_range_mm, "with --rig: of the measuring volume, mm")
       ->check(CLI::Range(1.0, 2000.0));

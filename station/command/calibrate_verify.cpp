@@ -37,7 +37,7 @@ void add_verify_options(CLI::App& verb, VerifyOptions& options) {
                       "artefact.toml: measure this artefact in the scan that SOURCE is (a file or a "
                       "device) and judge it by its limits");
   verb.add_option("--calibration", options.calibration,
-                  "the calibration that is verified; the outcome goes into the log beside it")
+                  "the calibration that is verified, or a rig.toml; the outcome goes into the log beside it")
       ->needs(verify);
 }
 
@@ -55,7 +55,8 @@ Result<int> verify_rig(const VerifyOptions& options, const std::string& scan, Co
                                 {"passed", entry.passed},
                                 {"error_mm", entry.error_mm},
                                 {"failed", entry.failed},
-                                {"measured", verification_figures(outcome->is)}};
+                                {"measured", verification_figures(outcome->is)},
+                                {"time_unknown", outcome->time_unknown}};
     if (!outcome->log.empty()) {
       json["log"] = outcome->log;
     }
@@ -63,6 +64,9 @@ Result<int> verify_rig(const VerifyOptions& options, const std::string& scan, Co
   } else {
     finish_progress();
     print_figures(outcome->artefact, outcome->is);
+    if (outcome->time_unknown) {
+      std::printf("the file does not say when it was scanned: it counts as measured now\n");
+    }
   }
   return outcome->is.passed() ? 0 : 1;
 }

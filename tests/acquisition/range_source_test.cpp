@@ -118,6 +118,19 @@ TEST_F(RangeSourceTest, ACancelledJobStopsAnEndlessScan) {
   EXPECT_EQ(source.take_partial()->rows, 21);
 }
 
+TEST_F(RangeSourceTest, AHaltKeepsTheRowsAndNothingMovesUntilItIsOpenedAnew) {
+  RangeSource source = open("odd:1?mode=forever");
+  const auto halted =
+      source.next([&](const RangeGrid&, int row) { row == 20 ? source.halt() : void(); }, job_);
+  ASSERT_FALSE(halted);
+  EXPECT_EQ(halted.error().kind, ErrorKind::kDevice);
+  EXPECT_THAT(halted.error().line(), HasSubstr("emergency stop was pressed"));
+  EXPECT_EQ(source.take_partial()->rows, 21);
+  EXPECT_THAT(source.next({}, job_).error().line(), HasSubstr("emergency stop was pressed"));
+  EXPECT_THAT(source.place(Placement{}, job_).error().line(), HasSubstr("emergency stop was pressed"));
+  EXPECT_TRUE(open("odd:1").next({}, job_));
+}
+
 TEST_F(RangeSourceTest, AScanWithoutProfilesIsAnError) {
   RangeSource source = open("odd:1?mode=empty");
   EXPECT_THAT(source.next({}, job_).error().line(), HasSubstr("without a single profile"));

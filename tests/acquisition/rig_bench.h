@@ -36,7 +36,7 @@ struct RigBench {
   bool says_it_moves = false;  ///< for ever
   bool mute = false;           ///< tells of no axis
   int stale = 0;               ///< frames of long ago that the camera still holds
-  std::string asked;           ///< of the stage: L, D (laser lit, dark), S (stop)
+  std::string asked;           ///< of the stage: L, D (laser lit, dark), S (stop), E (emergency stop)
   std::uint64_t frames = 0;
   GrayImage frame;
   bool settable = false;  ///< the camera has an exposure to set
@@ -203,7 +203,11 @@ inline const dubsar_driver& stage_driver() {
       bench_of(device).asked += 'S';
       return DUBSAR_OK;
     };
-    out.emergency_stop = out.stop;
+    out.emergency_stop = [](dubsar_device* device, dubsar_error*) -> std::int32_t {
+      bench_of(device).laser = 0;
+      bench_of(device).asked += 'E';
+      return DUBSAR_OK;
+    };
     return out;
   }();
   return driver;

@@ -7,7 +7,6 @@
 
 #include <chrono>
 #include <cmath>
-#include <ctime>
 
 #include "acquisition/exposure.h"
 #include "acquisition/grid_builder.h"
@@ -239,6 +238,29 @@ TEST_F(RigScan, RowsCloseTogetherWaitForEachOtherAndNoneIsKeptBack) {
   EXPECT_EQ(few.builder->grid().rows, 2);
 }
 
+TEST_F(RigScan, AnEmergencyStopIsTheStagesAndKeepsTheRows) {
+  Result<RigScanner> made = make();
+  ASSERT_TRUE(made.has_value());
+  Device device = device_of(std::move(*made), "rig:a.toml");
+  struct Halts : Collect {
+    explicit Halts(Device& one) : device(one) {}
+    bool profile(const Profile& profile) override {
+      if (profile.row == 3) {
+        EXPECT_TRUE(device.emergency_stop());
+      }
+      return Collect::profile(profile);
+    }
+    Device& device;
+  } sink(device);
+  const Result<ScanOutcome> halted = device.scan(sink);
+  ASSERT_FALSE(halted.has_value());
+  EXPECT_EQ(halted.error().kind, ErrorKind::kCancelled);
+  EXPECT_GE(sink.builder->grid().rows, 4);
+  EXPECT_LT(sink.builder->grid().rows, file.rows);
+  EXPECT_NE(bench.asked.find('E'), std::string::npos);
+  EXPECT_EQ(bench.laser, 0);
+}
+
 TEST_F(RigScan, CancelledBySinkAndRefusesAnotherRegion) {
   Result<RigScanner> made = make();
   ASSERT_TRUE(made.has_value());
@@ -284,30 +306,6 @@ TEST_F(RigScan, ARangeCameraThatFailsEndsTheMotionBeforeTheLaserIsPutOff) {
   Collect sink;
   EXPECT_EQ(made->scan(sink).error().kind, ErrorKind::kDevice);
   EXPECT_EQ(bench.asked, "LSD");
-}
-
-TEST(VerificationReminder, IsOfRigsThatWereNotVerifiedToday) {
-  Rig rig;
-  EXPECT_FALSE(verification_reminder("sim:", rig).has_value());
-  EXPECT_NE(verification_reminder("rig:a.toml", rig).value().find("not been verified"), std::string::npos);
-  const auto days_ago = [](double days) {
-    const auto then =
-        std::chrono::system_clock::now() - std::chrono::seconds(static_cast<long>(86400 * days));
-    const std::time_t time = std::chrono::system_clock::to_time_t(then);
-    std::tm parts{};
-    gmtime_r(&time, &parts);
-    char text[32];
-    std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &parts);
-    return CalibrationCheck{text, "bar", 0.01};
-  };
-  rig.calibration_check = days_ago(0.4);
-  EXPECT_FALSE(verification_reminder("rig:a.toml", rig).has_value());
-  rig.calibration_check = days_ago(3.7);
-  EXPECT_NE(verification_reminder("rig:a.toml", rig).value().find("3 days ago"), std::string::npos);
-  rig.calibration_check = days_ago(1.2);
-  EXPECT_NE(verification_reminder("rig:a.toml", rig).value().find("1 day ago"), std::string::npos);
-  rig.calibration_check->when = "some day";
-  EXPECT_NE(verification_reminder("rig:a.toml", rig).value().find("nobody knows"), std::string::npos);
 }
 
 TEST(DaysSince, ReadsOnlyTimes) {

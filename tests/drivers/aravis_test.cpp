@@ -60,6 +60,20 @@ TEST_F(Aravis, FindsTheCameraAndStreamsItsFrames) {
   EXPECT_EQ(next(device).id, 1);
 }
 
+TEST_F(Aravis, AFrameThatWaitedIsLate) {
+  Device device = open({{"format", "Mono8"}}).value();
+  ASSERT_TRUE(device.set("frame_rate_hz", 100.0));
+  ASSERT_TRUE(device.start_frames(2));
+  for (int k = 0; k < 10; ++k) {  // the rate is that of the frames before
+    next(device);
+  }
+  const FrameCounters before = device.frame_counters().value();
+  while (device.frame_counters()->starved < before.starved + 20) {
+  }
+  EXPECT_TRUE(next(device).late);
+  EXPECT_GT(device.frame_counters()->late, before.late);
+}
+
 TEST_F(Aravis, FeaturesAreTypedSettings) {
   Device device = open({{"format", "Mono16"}}).value();
   const auto settings = device.settings().value();

@@ -115,6 +115,8 @@ TEST(StageOptions, AreChecked) {
   EXPECT_EQ(good->axes[1].limits->second, 90);
   EXPECT_EQ(good->tmcl.steps, (std::vector{51200, 88.9}));
   EXPECT_EQ(parse({{"axes", "x,y"}, {"steps", "51200"}})->tmcl.steps, (std::vector{51200.0, 51200.0}));
+  EXPECT_TRUE(good->tmcl.switches);
+  EXPECT_FALSE(parse({{"switches", "no"}})->tmcl.switches);
   // One number is not both microsteps per mm and per degree.
   EXPECT_THAT(parse({{"axes", "x,y:deg"}, {"steps", "51200"}}).error().line(),
               HasSubstr("do not fit the 2 axes; give one for each"));
@@ -122,7 +124,7 @@ TEST(StageOptions, AreChecked) {
        {dubsar_option{"firmware", "marlin"}, dubsar_option{"axes", "x,x"}, dubsar_option{"axes", "left"},
         dubsar_option{"limits", "5..1"}, dubsar_option{"limits", "0..1,0..1"}, dubsar_option{"steps", "0"},
         dubsar_option{"steps", "1,"}, dubsar_option{"speed_max", "1,2"}, dubsar_option{"module", "1.5"},
-        dubsar_option{"speed_max", "fast"}}) {
+        dubsar_option{"speed_max", "fast"}, dubsar_option{"switches", "maybe"}}) {
     const auto refused = parse({bad});
     ASSERT_FALSE(refused) << bad.key << "=" << bad.value;
     EXPECT_EQ(refused.error().kind, ErrorKind::kUsage);

@@ -187,6 +187,31 @@ TEST_P(Firmwares, AMoveEndsWhenAnotherThreadSaysStop) {
   EXPECT_TRUE(again) << again.error().line();
 }
 
+/// GRBL and Horus would obey behind the move, half a minute later.
+TEST_P(Firmwares, ALaserIsPutOffAtOnceEvenIfThatEndsTheMove) {
+  Device device = open_homed();
+  ASSERT_TRUE(device.set_laser(0, 1));
+  std::future<Status> moving = std::async(std::launch::async, [&] {
+    return device.move(
+        {.axis = 0, .position = target(), .speed = std::abs(target()) / 30, .start_only = false});
+  });
+  while (std::abs(at()) < step()) {
+    std::this_thread::sleep_for(1ms);
+  }
+  const Status dark = device.set_laser(0, 0);
+  ASSERT_TRUE(dark) << dark.error().line();
+  EXPECT_EQ(laser(), "0");
+  EXPECT_LT(std::abs(at()), std::abs(firmware_units(target())));
+  if (std::string(GetParam()) == "tmcl") {  // whose outputs wait for no motor
+    EXPECT_TRUE(device.motion()->moving);
+    EXPECT_TRUE(device.stop());
+  }
+  EXPECT_EQ(moving.get().error().kind, ErrorKind::kCancelled);
+  EXPECT_FALSE(device.motion()->moving);
+  const Status again = device.move({.axis = 0, .position = target(), .speed = 0, .start_only = false});
+  EXPECT_TRUE(again) << again.error().line();
+}
+
 TEST_P(Firmwares, AfterAnEmergencyStopNothingMovesUntilHome) {
   Device device = open_homed();
   ASSERT_TRUE(device.set_laser(0, 1));
@@ -316,6 +341,16 @@ TEST_F(UsbStage, FindsControllers) {
   ASSERT_EQ(found.size(), 1U);
   EXPECT_EQ(found[0].uri, "usb_stage:2341:0043:SN-42");
   EXPECT_EQ(found[0].description, "Stage peer");
+}
+
+TEST_F(UsbStage, ATrinamicModuleWithoutSwitchesIsNotHomed) {
+  ASSERT_EQ(peer()->tell("firmware tmcl"), "ok");
+  Options options = options_of("tmcl");
+  options.emplace_back("switches", "no");
+  Device device = (*registry_.find("usb_stage"))->open(kController, options).value();
+  EXPECT_FALSE(device.axes()->front().can_home);
+  EXPECT_THAT(device.home().error().line(), HasSubstr("without switches cannot be homed"));
+  EXPECT_TRUE(device.move({.axis = 0, .position = 5, .speed = 0, .start_only = false}));
 }
 
 TEST_F(UsbStage, ARefusalSaysWhatToDo) {

@@ -220,6 +220,22 @@ TEST_F(V4l2, CountsWhatIsLostSpoiltOrHeldTooLong) {
   EXPECT_EQ(painted_number(after) + 1, after.id);
 }
 
+TEST_F(V4l2, AFrameThatWaitedIsLate) {
+  ASSERT_NO_FATAL_FAILURE(plug_in({"GREY:160x120@200"}));
+  if (IsSkipped()) {
+    return;
+  }
+  Device device = open({{"buffers", "4"}}).value();
+  ASSERT_TRUE(device.start_frames());
+  next(device);
+  const std::uint64_t before = device.frame_counters()->late;
+  const auto made = [&] { return std::stoll(peer_->tell("counts")); };
+  for (const long long then = made(); made() < then + 40;) {
+  }
+  EXPECT_TRUE(next(device).late);
+  EXPECT_GT(device.frame_counters()->late, before);
+}
+
 TEST_F(V4l2, ControlsAreTypedSettings) {
   ASSERT_NO_FATAL_FAILURE(plug_in({"GREY:160x120@100"}));
   if (IsSkipped()) {

@@ -11,11 +11,14 @@
 
 #include "build_paths.h"
 #include "core/range_grid.h"
+#include "core/units.h"
 #include "formats/atomic_file.h"
 #include "formats/calibration_json.h"
+#include "formats/calibration_set.h"
 #include "formats/grid_ply.h"
 #include "formats/verification_log.h"
 #include "sim/frame_rig.h"
+#include "station/calibration_run.h"
 #include "station/verification.h"
 #include "tests/station/support/command.h"
 #include "tests/support/temporary_folder.h"
@@ -38,6 +41,19 @@ calibration = "calibration.json"
 from_mm = -5
 to_mm = 5
 step_mm = 0.1
+)";
+
+constexpr const char* kRangeRig = R"(name = "head"
+camera = "eye:"
+stage = "none:"
+[motion]
+kind = "linear"
+direction = [0, 1, 0]
+[scan]
+from_mm = -5
+to_mm = 5
+step_mm = 0.1
+speed_mm_s = 5
 )";
 
 constexpr const char* kBall = R"(name = "ball 7"
@@ -131,6 +147,21 @@ TEST_F(CalibrationBox, TheDailyMeasurementIsAskedForDoneAndLogged) {
   EXPECT_FALSE(log()[1].passed);
 }
 
+TEST_F(CalibrationBox, ARigOfARangeCameraIsAskedForAndLoggedBesideItsFile) {
+  write_scan_of_a_ball(at("ball.ply"));
+  certify(12.0);
+  ASSERT_TRUE(write_file_atomically(at("rig.toml"), kRangeRig).has_value());
+  const Outcome passed = play("wait idle\nwait verify-due 10\nclick calibration\nwait verify-artefact\n" +
+                              retype("verify-scan", at("ball.ply").string()) +
+                              "click verify-now\nwait verify-passed\nwait verified-today\nquit\n");
+  ASSERT_EQ(passed.status, 0) << passed.err;
+  const auto lines = read_verification_log(at("rig.verified.jsonl"));
+  ASSERT_TRUE(lines.has_value());
+  ASSERT_THAT(lines->entries, SizeIs(1));
+  EXPECT_THAT(lines->entries[0].calibration, HasSubstr("eye:, linear, direction 0 1 0"));
+  EXPECT_EQ(read_whole_file(at("rig.toml")).value(), kRangeRig);
+}
+
 TEST_F(CalibrationBox, ACheckOfTheDayBeforeIsTooOld) {
   VerificationEntry entry;
   entry.when = "2026-01-03T00:00:00Z";
@@ -206,6 +237,61 @@ TEST_F(CalibrationBox, PicturesAreTakenThroughTheCamera) {
   EXPECT_THAT(*list, HasSubstr("pose_00_laser.png"));
   EXPECT_THAT(*list, HasSubstr("stage_00.png"));
   EXPECT_THAT(*list, HasSubstr("camera_serial = \"EYE-1\"")) << "so that no other camera is scanned with it";
+}
+
+TEST_F(CalibrationBox, ATurntableAndAMirrorAreCalibratedWithTheTemperature) {
+  const auto shoot = [&](const fs::path& shots, const std::string& script) {
+    const fs::path file = at("shots.script");
+    std::ofstream(file) << "wait idle\nclick calibration\nclick page-calibrate\n" +
+                               retype("calibrate-folder", shots.string()) + "wait camera-picture\n" + script +
+                               "click close-calibration\nquit\n";
+    return run_command(
+        {"station", "--session", at("session").string(), "--device", "eye:", "--script", file.string()},
+        {.timeout_s = 150,
+         .environment = {"DUBSAR_DRIVER_PATH=" DUBSAR_BINARY_DIR "/lib/dubsar/test_drivers/window"}});
+  };
+  const auto set_of = [&](const fs::path& shots) {
+    const Result<std::string> text = read_whole_file(shots / "calibration.toml");
+    return text ? parse_calibration_set(*text, "list") : std::unexpected(text.error());
+  };
+  const Outcome turned =
+      shoot(at("turned"), "click stage-turntable\n" + retype("temperature", "21.5") +
+                              "click shot-board\nwait shot pose_00.png\n" + retype("shot-position", "45") +
+                              "click shot-stop\nwait shot stage_00.png\n");
+  ASSERT_EQ(turned.status, 0) << turned.err;
+  const auto table = set_of(at("turned"));
+  ASSERT_TRUE(table.has_value()) << table.error().line();
+  EXPECT_EQ(table->motion, MotionKind::kTurntable);
+  EXPECT_EQ(table->temperature_c, 21.5);
+  ASSERT_THAT(table->stops, SizeIs(1));
+  EXPECT_NEAR(table->stops[0].position, rad_from_deg(45), 1e-9);
+  const Outcome mirrored = shoot(at("mirrored"), "click stage-mirror\n" + retype("shot-position", "3") +
+                                                     "click shot-board\nwait shot pose_00.png\n");
+  ASSERT_EQ(mirrored.status, 0) << mirrored.err;
+  const auto mirror = set_of(at("mirrored"));
+  ASSERT_TRUE(mirror.has_value()) << mirror.error().line();
+  EXPECT_EQ(mirror->motion, MotionKind::kGalvanometer);
+  EXPECT_FALSE(mirror->temperature_c.has_value());
+  ASSERT_THAT(mirror->poses, SizeIs(1));
+  EXPECT_NEAR(mirror->poses[0].mirror_rad, rad_from_deg(3), 1e-9);
+}
+
+TEST_F(CalibrationBox, WhatTheStageDoesIsKnownFromTheRigsFiles) {
+  EXPECT_EQ(stage_kind_of("eye:"), MotionKind::kLinear);
+  const std::string uri = "rig:" + at("rig.toml").string();
+  EXPECT_EQ(stage_kind_of(uri), MotionKind::kLinear);
+  std::string turns = kRig;
+  for (const char* word : {"from", "to", "step"}) {
+    const std::string millimetres = std::string(word) + "_mm";
+    turns.replace(turns.find(millimetres), millimetres.size(), std::string(word) + "_deg");
+  }
+  fs::remove(at("calibration.json"));
+  ASSERT_TRUE(write_file_atomically(at("rig.toml"), turns).has_value());
+  EXPECT_EQ(stage_kind_of(uri), MotionKind::kTurntable);
+  RigCalibration rig = sim::frame_rig({});
+  rig.motion.kind = MotionKind::kGalvanometer;
+  ASSERT_TRUE(write_file_atomically(at("calibration.json"), calibration_to_json(rig)).has_value());
+  EXPECT_EQ(stage_kind_of(uri), MotionKind::kGalvanometer);
 }
 
 }  // namespace

@@ -315,6 +315,14 @@ quit
   EXPECT_EQ(played.status, 0) << played.err;
 }
 
+/// Whatever is open, and wherever the run is; what came is kept, and space goes on.
+TEST_F(OperatorStory, TheEmergencyStopEndsTheRunAndSpaceGoesOn) {
+  const Outcome outcome = play(
+      "wait idle\nkey space\nwait emergency-stop\nclick settings\nhalt\nwait stopped\nwait idle\n"
+      "key escape\nkey space\nwait waiting\nkey f12\nwait stopped\nwait idle\nquit\n");
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+}
+
 TEST_F(OperatorStory, TheListOfScannersBeginsWithTheOneInUse) {
   // It was another, without its options, as soon as the list was looked at.
   const Outcome played =

@@ -51,6 +51,7 @@ TEST(Statement, HandsOffWhileTheScannerWorks) {
     EXPECT_EQ(s.tone, Tone::kHandsOff);
     EXPECT_FALSE(s.may_scan);
     EXPECT_TRUE(s.may_stop);
+    EXPECT_EQ(s.may_halt, phase != LivePhase::kJudging) << "nothing moves while it computes";
   }
 }
 

@@ -45,6 +45,9 @@ void draw_outcome(UiContext& ui, const VerifyOutcome& outcome) {
   say(passed ? ui.colours.good : ui.colours.red,
       fmt::format("{}: {}", outcome.artefact.name,
                   ui.text(passed ? Text::kVerifyPassed : Text::kVerifyFailed)));
+  if (outcome.time_unknown) {
+    say(ui.colours.amber, ui.text(Text::kVerifyTimeUnknown));
+  }
   if (!outcome.log.empty()) {
     say(ui.colours.faint, outcome.log);
   }
@@ -88,11 +91,12 @@ std::string care_line(const RigCare& care, Language language) {
 void CalibrationDialog::open(const LiveState& state) {
   opening_ = true;
   verify_.scan = session_.device();
+  motion_ = stage_kind_of(session_.device());
   if (state.care) {
-    verify_.calibration = state.care->calibration;
-    const std::filesystem::path beside = std::filesystem::path(state.care->calibration).parent_path();
+    verify_.calibration = state.care->verified;
+    const std::filesystem::path beside = std::filesystem::path(state.care->verified).parent_path();
     verify_.artefact = verify_.artefact.empty() ? (beside / "artefact.toml").string() : verify_.artefact;
-    out_ = state.care->calibration;
+    out_ = state.care->calibration.empty() ? out_ : state.care->calibration;
   }
   if (calibrate_.board.empty()) {
     calibrate_.board = kUsualBoard;
@@ -120,28 +124,51 @@ void CalibrationDialog::draw_verify(UiContext& ui, const LiveState& state) {
   }
 }
 
+/// What the stage does, and how warm the room is: of all pictures.
+void CalibrationDialog::draw_stage(UiContext& ui) {
+  const auto offer = [&](const char* name, Text text, MotionKind kind) {
+    if (ImGui::RadioButton(ui.text(text), motion_ == kind)) {
+      motion_ = kind;
+    }
+    ui.target(name);
+    ImGui::SameLine();
+  };
+  offer("stage-linear", Text::kStageLinear, MotionKind::kLinear);
+  offer("stage-turntable", Text::kStageTurntable, MotionKind::kTurntable);
+  offer("stage-mirror", Text::kStageMirror, MotionKind::kGalvanometer);
+  ImGui::NewLine();
+  short_text(ui, "temperature", temperature_, ui.px(5));
+  ImGui::SameLine();
+  ImGui::TextUnformatted(ui.text(Text::kTemperature));
+  calibrate_.temperature_c = number_in(temperature_);
+}
+
 void CalibrationDialog::draw_shots(UiContext& ui) {
   const auto view = session_.camera();
   const bool may = view && view->image && !shooting_.valid() && !calibrate_.folder.empty();
   const std::optional<double> position = number_in(position_);
+  const bool mirror = motion_ == MotionKind::kGalvanometer;
   const auto offer = [&](const char* name, Text text, CalibrationShot shot, bool enabled) {
     if (plain_button(ui, name, ui.text(text), may && enabled)) {
-      shooting_ = std::async(std::launch::async, [view, shot, folder = calibrate_.folder,
-                                                  board = calibrate_.board, at = position.value_or(0)] {
-        auto said = add_calibration_shot(folder, board, {shot, *view->image, view->camera_serial, at});
-        wake_window();
-        return said;
-      });
+      const CalibrationWords words{calibrate_.board, motion_, calibrate_.temperature_c};
+      shooting_ = std::async(
+          std::launch::async, [view, shot, words, folder = calibrate_.folder, at = position.value_or(0)] {
+            auto said = add_calibration_shot(folder, words, {shot, *view->image, view->camera_serial, at});
+            wake_window();
+            return said;
+          });
     }
   };
-  offer("shot-board", Text::kShotBoard, CalibrationShot::kBoard, true);
+  offer("shot-board", Text::kShotBoard, CalibrationShot::kBoard, !mirror || position.has_value());
   ImGui::SameLine();
   offer("shot-laser", Text::kShotLaser, CalibrationShot::kLaser, true);
   ImGui::SameLine();
   offer("shot-dark", Text::kShotDark, CalibrationShot::kDark, true);
-  offer("shot-stop", Text::kShotStop, CalibrationShot::kStop, position.has_value());
+  offer("shot-stop", Text::kShotStop, CalibrationShot::kStop, !mirror && position.has_value());
   ImGui::SameLine();
   short_text(ui, "shot-position", position_, ui.px(5));
+  ImGui::SameLine();
+  ImGui::TextUnformatted(mirror ? ui.text(Text::kMirrorAt) : motion_ == MotionKind::kTurntable ? "°" : "mm");
   if (shooting_.valid() && shooting_.wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
     const Result<std::string> said = shooting_.get();
     shot_failed_ = !said;
@@ -158,9 +185,11 @@ void CalibrationDialog::draw_calibrate(UiContext& ui, const LiveState& state) {
   ImGui::TextWrapped("%s", ui.text(Text::kCalibrateHow));
   text_line(ui, "calibrate-folder", ui.text(Text::kPictureFolder), calibrate_.folder);
   text_line(ui, "calibrate-board", ui.text(Text::kBoard), calibrate_.board);
+  draw_stage(ui);
   draw_shots(ui);
   text_line(ui, "calibrate-out", ui.text(Text::kCalibrationFile), out_);
-  const bool may = !session_.busy() && !calibrate_.folder.empty();
+  const bool room = temperature_.empty() || calibrate_.temperature_c;
+  const bool may = !session_.busy() && !calibrate_.folder.empty() && room;
   if (plain_button(ui, "calibrate-now", ui.text(Text::kCalibrateNow), may)) {
     calibrate_.out.clear();
     session_.calibrate(calibrate_);

@@ -25,13 +25,16 @@ class CalibrationDialog {
  private:
   void draw_verify(UiContext& ui, const LiveState& state);
   void draw_calibrate(UiContext& ui, const LiveState& state);
+  void draw_stage(UiContext& ui);
   void draw_shots(UiContext& ui);
   void draw_camera(UiContext& ui, ImVec2 size);
   LiveSession& session_;
   VerifyRequest verify_;
   CalibrateRequest calibrate_;
   std::string out_;
+  MotionKind motion_ = MotionKind::kLinear;
   std::string position_ = "0";
+  std::string temperature_;  ///< °C; may be empty
   std::future<Result<std::string>> shooting_;
   std::string shot_said_;
   bool shot_failed_ = false;

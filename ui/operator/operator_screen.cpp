@@ -150,9 +150,13 @@ void OperatorScreen::draw(UiContext& ui, ImVec2 size) {
   ImGui::SameLine();
   draw_model(ui, {room.x - left - right - 2 * ImGui::GetStyle().ItemSpacing.x, middle},
              asks_for_places(statement));
+  const ImVec2 model_end = ImGui::GetItemRectMax();
   ImGui::SameLine();
   draw_right(ui, {right, middle});
   draw_strip(ui, {room.x, strip});
+  if (statement.may_halt) {
+    draw_halt(ui, model_end);
+  }
   ImGui::End();
 
   if (const auto uri = devices_.draw(ui)) {
@@ -248,6 +252,18 @@ void OperatorScreen::open_pairs() {
       pairs_.open(scan, state_.scans);
     }
   }
+}
+
+/// Over the model, where nothing else is pressed while something moves.
+void OperatorScreen::draw_halt(UiContext& ui, ImVec2 model_end) {
+  const ImVec2 size{ui.px(17), ui.px(5)};
+  ImGui::SetCursorScreenPos({model_end.x - size.x, model_end.y - size.y});
+  ImGui::BeginChild("halt", size);
+  if (big_button(ui, "emergency-stop", ui.text(Text::kHalt), ui.text(Text::kKeyHalt), size,
+                 ButtonKind::kDanger)) {
+    session_.halt();
+  }
+  ImGui::EndChild();
 }
 
 void OperatorScreen::draw_model(UiContext& ui, ImVec2 size, bool asks_for_places) {

@@ -62,6 +62,7 @@ class OperatorScreen {
   void draw_last_action(UiContext& ui, const Statement& statement, ImVec2 button);
   void draw_left(UiContext& ui, ImVec2 size);
   void draw_model(UiContext& ui, ImVec2 size, bool asks_for_places);
+  void draw_halt(UiContext& ui, ImVec2 model_end);
   void draw_right(UiContext& ui, ImVec2 size);
   void draw_growing(UiContext& ui, ImVec2 size);
   void draw_strip(UiContext& ui, ImVec2 size);

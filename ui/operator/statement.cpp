@@ -132,6 +132,8 @@ Statement statement_of(const LiveState& state, bool has_device, Language languag
     out.tone = Tone::kHandsOff;
     out.headline = text_of(headline, language);
   };
+  out.may_halt = state.phase == LivePhase::kOpening || state.phase == LivePhase::kMoving ||
+                 state.phase == LivePhase::kScanning || state.phase == LivePhase::kMeasuring;
   switch (state.phase) {
     case LivePhase::kStill:
       say_still(out, state, has_device, language);

@@ -24,6 +24,7 @@ struct Statement {
   bool may_stop = false;
   bool may_pack = false;  ///< it is signed: the package
   bool may_next = false;  ///< and conclusive: the next tablet, in place of another scan
+  bool may_halt = false;  ///< something moves, or a laser is lit
   Text scan_label = Text::kScan;
 };
 

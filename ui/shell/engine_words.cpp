@@ -24,6 +24,11 @@ constexpr EnginePhrase kPhrases[] = {
     {"; then ", "; dann "},
     {"turntable to", "Drehteller auf"},
     {"tilt to", "Neigung auf"},
+    // the emergency stop
+    {"the emergency stop was pressed: lasers are off and nothing moves",
+     "der Not-Halt wurde gedrückt: die Laser sind aus, nichts bewegt sich"},
+    {"see that all is clear, then scan: a stage with switches is homed first",
+     "nachsehen, dass alles frei ist, dann scannen: ein Tisch mit Schaltern fährt sie zuerst an"},
     // why a scan is unsure
     {"no overlap with the registered scans was found; scan again with at least 30 % overlap",
      "keine Überlappung mit den eingepassten Scans gefunden; mit mindestens 30 % Überlappung neu scannen"},

@@ -28,6 +28,7 @@ const std::map<std::string, int>& keys() {
                                                 {"f9", GLFW_KEY_F9},
                                                 {"f10", GLFW_KEY_F10},
                                                 {"f11", GLFW_KEY_F11},
+                                                {"f12", GLFW_KEY_F12},
                                                 {"l", GLFW_KEY_L},
                                                 {"n", GLFW_KEY_N},
                                                 {"p", GLFW_KEY_P},
@@ -50,7 +51,7 @@ const std::map<std::string, ScriptStep::Kind>& kinds() {
       {"key", Kind::kKey},     {"click", Kind::kClick},   {"doubleclick", Kind::kDoubleClick},
       {"drag", Kind::kDrag},   {"wheel", Kind::kWheel},   {"type", Kind::kType},
       {"wait", Kind::kWait},   {"expect", Kind::kExpect}, {"screenshot", Kind::kScreenshot},
-      {"pause", Kind::kPause}, {"quit", Kind::kQuit}};
+      {"pause", Kind::kPause}, {"quit", Kind::kQuit},     {"halt", Kind::kKey}};
   return kKinds;
 }
 
@@ -83,7 +84,7 @@ Result<std::vector<ScriptStep>> parse_script(std::string_view text, const std::s
     if (kind == kinds().end()) {
       return fail(
           ErrorKind::kUsage, "there is no step '" + verb + "'", place,
-          "it is key, click, doubleclick, drag, wheel, type, wait, expect, screenshot, pause or quit");
+          "it is key, click, doubleclick, drag, wheel, type, wait, expect, screenshot, pause, halt or quit");
     }
     ScriptStep step;
     step.kind = kind->second;
@@ -91,7 +92,9 @@ Result<std::vector<ScriptStep>> parse_script(std::string_view text, const std::s
     using Kind = ScriptStep::Kind;
     const bool is_click = step.kind == Kind::kClick || step.kind == Kind::kDoubleClick;
     std::size_t wants = 0;  // numbers
-    if (step.kind == Kind::kType || step.kind == Kind::kScreenshot) {
+    if (verb == "halt") {
+      step.name = "f12";
+    } else if (step.kind == Kind::kType || step.kind == Kind::kScreenshot) {
       step.name = rest_of(words);
     } else {
       if (step.kind != Kind::kPause && step.kind != Kind::kQuit) {

@@ -36,9 +36,11 @@ std::string grouped(std::size_t number) {
 
 bool big_button(UiContext& ui, const char* name, const char* label, const char* key, ImVec2 size,
                 ButtonKind kind, bool enabled) {
-  const bool main = kind == ButtonKind::kMain && enabled;
-  if (main) {
-    const Eigen::Vector4f c = ui.colours.strong;
+  const bool coloured = kind != ButtonKind::kPlain && enabled;
+  const bool danger = kind == ButtonKind::kDanger;
+  if (coloured) {
+    // Danger is red whatever the operator has chosen in place of it.
+    const Eigen::Vector4f c = danger ? Eigen::Vector4f(0.78F, 0.08F, 0.08F, 1) : ui.colours.strong;
     ImGui::PushStyleColor(ImGuiCol_Button, ImVec4(c.x(), c.y(), c.z(), 1));
     ImGui::PushStyleColor(ImGuiCol_ButtonHovered, ImVec4(c.x() * 1.15F, c.y() * 1.15F, c.z() * 1.15F, 1));
   }
@@ -50,7 +52,7 @@ bool big_button(UiContext& ui, const char* name, const char* label, const char* 
   if (enabled) {
     ui.target(name);
   }
-  if (main) {
+  if (coloured) {
     ImGui::PopStyleColor(2);
   }
   const ImVec2 low = ImGui::GetItemRectMin();
@@ -65,7 +67,8 @@ bool big_button(UiContext& ui, const char* name, const char* label, const char* 
   const float height = label_size.y + (key != nullptr ? small : 0.0F);
   const float middle = 0.5F * (low.x + high.x);
   float y = 0.5F * (low.y + high.y - height);
-  const ImU32 ink = packed(enabled ? ui.colours.text : ui.colours.faint);
+  const Eigen::Vector4f letters = danger ? Eigen::Vector4f(1, 1, 1, 1) : ui.colours.text;
+  const ImU32 ink = packed(enabled ? letters : ui.colours.faint);
   draw->AddText({middle - 0.5F * label_size.x, y}, ink, label);
   if (in_small) {
     ImGui::PopFont();
@@ -74,7 +77,7 @@ bool big_button(UiContext& ui, const char* name, const char* label, const char* 
     y += label_size.y;
     const ImVec2 key_size = ui.fonts.small->CalcTextSizeA(small, 1e4F, 0, key);
     // Faint letters cannot be read on a button's blue.
-    const ImU32 key_ink = enabled ? packed(ui.colours.text, 0.85F) : packed(ui.colours.faint);
+    const ImU32 key_ink = enabled ? packed(letters, 0.85F) : packed(ui.colours.faint);
     draw->AddText(ui.fonts.small, small, {middle - 0.5F * key_size.x, y}, key_ink, key);
   }
   return pressed;

@@ -39,7 +39,7 @@ struct UiContext {
   [[nodiscard]] float px(float fonts_high) const { return fonts_high * preferences.font_px; }
 };
 
-enum class ButtonKind { kPlain, kMain };
+enum class ButtonKind { kPlain, kMain, kDanger };
 
 /// A button large enough for a glove, known to scripts by its name. The key that does the same is shown on
 /// it. A label that is too long for it is in the small letters.

@@ -14,7 +14,8 @@ namespace dubsar::test {
 
 namespace {
 
-/// GRBL 1.1: three axes of which x moves, a switch to home to, a laser.
+/// GRBL 1.1: three axes of which x moves, a switch to home to, a laser that is obeyed behind the move that
+/// runs, as is every line after it.
 class GrblSim : public FirmwareSim {
  public:
   GrblSim() { power_up(); }
@@ -24,10 +25,12 @@ class GrblSim : public FirmwareSim {
     alarm_ = true;
     hold_ = homing_ = linear_ = false;
     line_.clear();
+    queue_.clear();
     out += "\r\nGrbl 1.1h ['$' for help]\r\n[MSG:'$H'|'$X' to unlock]\r\n";
   }
   void take(std::string_view bytes, double now) override {
     finish_homing(now);
+    finish_move(now);
     for (const char c : bytes) {
       switch (c) {
         case 0x18:
@@ -49,9 +52,10 @@ class GrblSim : public FirmwareSim {
         case '\r':
         case '\n':
           if (!line_.empty()) {
-            run(line_, now);
+            queue_.push_back(line_);
           }
           line_.clear();
+          finish_move(now);
           break;
         default:
           line_ += static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
@@ -66,9 +70,17 @@ class GrblSim : public FirmwareSim {
     hold_ = homing_ = linear_ = false;
     laser = 0;
     line_.clear();
+    queue_.clear();
     out += "\r\nGrbl 1.1h ['$' for help]\r\n";
     if (alarm_) {
       out += "[MSG:'$H'|'$X' to unlock]\r\n";
+    }
+  }
+  void finish_move(double now) {
+    while (!queue_.empty() && !(moving(now) && queue_.front().contains('M'))) {
+      const std::string line = queue_.front();
+      queue_.erase(queue_.begin());
+      run(line, now);
     }
   }
   void finish_homing(double now) {
@@ -146,6 +158,7 @@ class GrblSim : public FirmwareSim {
     out += "ok\r\n";
   }
   std::string line_;
+  std::vector<std::string> queue_;  ///< whole lines that wait for the move
   bool alarm_ = true, hold_ = false, homing_ = false;
   bool linear_ = false;  ///< the motion mode is G1
   bool asked_ = false;   ///< for a report that was not given yet

@@ -100,7 +100,7 @@ OutputTrials::OutputTrials(fs::path folder, std::uint64_t seed)
   fs::rename(place_ / "scans" / "truth_poses.json", place_ / "poses.json");
   must({"simulate", "rig", "--poses", "9", "--stops", "3", "--width", "768", "--height", "408", "-o",
         at + "/board"});
-  must({"calibrate", at + "/board", "--serial", "before", "-o", at + "/calibration.json"});
+  must({"calibrate", at + "/board", "--temperature", "19", "-o", at + "/calibration.json"});
   if (!write_grid_file(place_ / "plate.grid", plate()) ||
       !write_file_atomically(place_ / "plate.toml", kPlate)) {
     throw std::runtime_error("the plate for the trials was not written");

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "acquisition/rig_log.h"
+
+#include "formats/atomic_file.h"
+#include "formats/calibration_json.h"
+#include "formats/number_text.h"
+#include "formats/rig_toml.h"
+
+namespace dubsar {
+
+namespace {
+
+std::string vector_text(const Eigen::Vector3d& v) {
+  return number_text(v.x()) + " " + number_text(v.y()) + " " + number_text(v.z());
+}
+
+/// A rig file has much that may change with the measurement still good, such as where a scan begins.
+std::string range_camera_text(const RigFile& rig) {
+  const RigMotion motion = rig.motion.value_or(RigMotion{});
+  return rig.camera + ", " + motion_word(motion.kind) + ", direction " + vector_text(motion.direction) +
+         ", point " + vector_text(motion.axis_point_mm);
+}
+
+Result<RigLog> log_of_calibration(const std::filesystem::path& file) {
+  const Result<std::string> json = read_whole_file(file);
+  const Result<RigCalibration> calibration =
+      json ? parse_calibration(*json, file.string()) : std::unexpected(json.error());
+  if (!calibration) {
+    return std::unexpected(calibration.error());
+  }
+  return RigLog{file, verification_log_of(file), calibration->made_at};
+}
+
+}  // namespace
+
+std::optional<VerificationEntry> RigLog::last() const {
+  const Result<VerificationLog> lines = read_verification_log(log);
+  if (!lines || lines->entries.empty() || lines->entries.back().calibration != as_it_stands) {
+    return std::nullopt;
+  }
+  return lines->entries.back();
+}
+
+Result<RigLog> rig_log_of(const std::filesystem::path& file) {
+  if (file.extension() != ".toml") {
+    return log_of_calibration(file);
+  }
+  const Result<std::string> text = read_whole_file(file);
+  const Result<RigFile> rig = text ? parse_rig_file(*text, file.string()) : std::unexpected(text.error());
+  if (!rig) {
+    return std::unexpected(rig.error());
+  }
+  if (!rig->calibration.empty()) {
+    return log_of_calibration(file.parent_path() / rig->calibration);
+  }
+  return RigLog{file, verification_log_of(file), range_camera_text(*rig)};
+}
+
+}  // namespace dubsar

@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+// dubsar calibrate, from the command line: sets that are good, that lack something, that are of no use, and
+// the time that a verification counts from.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <string>
+
+#include "core/range_grid.h"
+#include "formats/atomic_file.h"
+#include "formats/calibration_json.h"
+#include "formats/calibration_set.h"
+#include "formats/grid_file.h"
+#include "formats/grid_ply.h"
+#include "formats/verification_log.h"
+#include "sim/frame_rig.h"
+#include "tests/station/support/command.h"
+#include "tests/support/temporary_folder.h"
+
+namespace dubsar {
+namespace {
+
+namespace fs = std::filesystem;
+using test::Arguments;
+using test::Outcome;
+using test::run_command;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using ::testing::SizeIs;
+
+/// A turntable's pictures, rendered once; each test takes as much of the list as it wants.
+class Calibrate : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    rendered_ = new test::TemporaryFolder();
+    const Outcome made = run_command({"simulate", "rig", "--motion", "turntable", "--poses", "9", "--stops",
+                                      "3", "--width", "768", "--height", "408", "-o", pictures().string()},
+                                     {.timeout_s = 240});
+    ASSERT_EQ(made.status, 0) << made.err;
+  }
+  static void TearDownTestSuite() {
+    delete rendered_;
+    rendered_ = nullptr;
+  }
+  static fs::path pictures() { return rendered_->path() / "pictures"; }
+  void list(std::size_t poses, std::size_t stops, const std::string& more = {}) {
+    const Result<std::string> text = read_whole_file(pictures() / "calibration.toml");
+    ASSERT_TRUE(text.has_value());
+    Result<CalibrationSet> set = parse_calibration_set(*text, "list");
+    ASSERT_TRUE(set.has_value());
+    fs::remove_all(set_);
+    fs::copy(pictures(), set_, fs::copy_options::recursive);
+    set->poses.resize(std::min(poses, set->poses.size()));
+    set->stops.resize(std::min(stops, set->stops.size()));
+    ASSERT_TRUE(write_file_atomically(set_ / "calibration.toml", more + calibration_set_to_toml(*set)));
+  }
+  Outcome calibrate(Arguments more = {}) {
+    Arguments words{"calibrate", set_.string(), "-o", out().string()};
+    words.insert(words.end(), more.begin(), more.end());
+    return run_command(words, {.timeout_s = 120});
+  }
+  [[nodiscard]] fs::path out() const { return folder_.path() / "out.json"; }
+  static test::TemporaryFolder* rendered_;
+  test::TemporaryFolder folder_;
+  fs::path set_ = folder_.path() / "set";
+};
+test::TemporaryFolder* Calibrate::rendered_ = nullptr;
+
+TEST_F(Calibrate, ATurntableWithTheTemperatureOfTheRoom) {
+  list(9, 3);
+  const Outcome made = calibrate({"--temperature", "21.5"});
+  ASSERT_EQ(made.status, 0) << made.err;
+  EXPECT_THAT(made.out, HasSubstr("stage: turntable"));
+  EXPECT_THAT(made.out, Not(HasSubstr("next:")));
+  const Result<std::string> text = read_whole_file(out());
+  ASSERT_TRUE(text.has_value());
+  const Result<RigCalibration> rig = parse_calibration(*text, "out.json");
+  ASSERT_TRUE(rig.has_value()) << rig.error().line();
+  EXPECT_EQ(rig->motion.kind, MotionKind::kTurntable);
+  EXPECT_EQ(rig->temperature_c, 21.5);
+  EXPECT_EQ(rig->camera_serial, "SIM-CAMERA");
+  EXPECT_LT(rig->quality.stage_rms_um, 20);
+  EXPECT_EQ(calibrate({"--temperature", "900"}).status, 2);
+}
+
+TEST_F(Calibrate, WhatIsMissingIsSaidWithStatusOne) {
+  list(2, 3);
+  const Outcome few = calibrate();
+  EXPECT_EQ(few.status, 1) << few.err;
+  EXPECT_THAT(few.out, HasSubstr("next: tilt the board"));
+  EXPECT_THAT(few.out, HasSubstr("next: take more pictures of the board, each tilted another way: 5"));
+}
+
+TEST_F(Calibrate, ABadSetIsOneLineAndNoFile) {
+  list(9, 1);
+  Outcome refused = calibrate();
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_THAT(refused.err, HasSubstr("the board was seen on the stage at 1 positions, 3 are the least"));
+  list(9, 3);
+  refused = calibrate({"--board", "chessboard:9x6:25"});
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_THAT(refused.err, HasSubstr("pictures without a board"));
+  fs::remove(set_ / "pose_03.png");
+  refused = calibrate();
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_THAT(refused.err, HasSubstr("pose_03.png"));
+  list(9, 3, "colour = \"red\"\n");
+  EXPECT_EQ(calibrate().status, 2);
+  EXPECT_FALSE(fs::exists(out()));
+  EXPECT_EQ(run_command({"calibrate", (folder_.path() / "none").string()}).status, 2);
+}
+
+TEST_F(Calibrate, ThePicturesOfOneCameraAreNoCalibrationOfAnother) {
+  list(9, 3);
+  const Outcome other = calibrate({"--serial", "OTHER"});
+  EXPECT_EQ(other.status, 2);
+  EXPECT_THAT(other.err, HasSubstr("are of camera SIM-CAMERA, not of OTHER"));
+  EXPECT_FALSE(fs::exists(out()));
+  EXPECT_EQ(calibrate({"--serial", "SIM-CAMERA"}).status, 0);
+}
+
+/// A plate, measured some time or other.
+class VerifiedWhen : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    RigCalibration rig = sim::frame_rig({});
+    rig.made_at = "2026-01-02T03:04:05Z";
+    ASSERT_TRUE(write_file_atomically(at("calibration.json"), calibration_to_json(rig)));
+    ASSERT_TRUE(write_file_atomically(at("plate.toml"),
+                                      "name = \"plate\"\ncertificate = \"none\"\nplane = true\n[limit]\n"
+                                      "flatness_um = 60\n"));
+  }
+  static RangeGrid plate(std::int64_t timestamp_ns) {
+    constexpr int kSide = 60;
+    RangeGrid grid;
+    grid.allocate(kSide, kSide);
+    for (std::size_t i = 0; i < grid.size(); ++i) {
+      grid.x[i] = 0.2F * static_cast<float>(grid.col_of(i));
+      grid.y[i] = 0.2F * static_cast<float>(grid.row_of(i));
+      grid.z[i] = 0.002F * std::sin(static_cast<float>(i));
+      grid.valid[i] = 1;
+    }
+    grid.timestamp_ns = timestamp_ns;
+    return grid;
+  }
+  Outcome verify(const std::string& scan) {
+    return run_command({"calibrate", at(scan), "--verify", at("plate.toml"), "--calibration",
+                        at("calibration.json"), "--json"});
+  }
+  [[nodiscard]] std::string at(const std::string& name) const { return (folder_.path() / name).string(); }
+  [[nodiscard]] std::vector<VerificationEntry> log() const {
+    const auto read = read_verification_log(verification_log_of(at("calibration.json")));
+    return read ? read->entries : std::vector<VerificationEntry>{};
+  }
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(VerifiedWhen, AGridThatSaysItsTimeCountsFromThen) {
+  ASSERT_TRUE(write_grid_file(at("plate.grid"), plate(1'767'400'000'000'000'000)));
+  const Outcome outcome = verify("plate.grid");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(outcome.json()["when"], "2026-01-03T00:26:40Z");
+  EXPECT_EQ(outcome.json()["time_unknown"], false);
+  ASSERT_THAT(log(), SizeIs(1));
+  EXPECT_EQ(log()[0].when, "2026-01-03T00:26:40Z");
+}
+
+TEST_F(VerifiedWhen, AFileWithoutATimeCountsFromNowAndThatIsSaid) {
+  ASSERT_TRUE(write_grid_ply(at("plate.ply"), plate(0)));
+  const Outcome outcome = verify("plate.ply");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(outcome.json()["time_unknown"], true);
+  // A time since the machine was started, or one that has not come, is none.
+  for (const std::int64_t odd : {std::int64_t{40'000'000'000}, std::int64_t{9'000'000'000'000'000'000}}) {
+    ASSERT_TRUE(write_grid_file(at("odd.grid"), plate(odd)));
+    EXPECT_EQ(verify("odd.grid").json()["time_unknown"], true) << odd;
+  }
+}
+
+}  // namespace
+}  // namespace dubsar
