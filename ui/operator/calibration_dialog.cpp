@@ -264,12 +264,14 @@ void CalibrationDialog::draw(UiContext& ui, const LiveState& state) {
     ImGui::EndChild();
   }
   ImGui::PushFont(ui.fonts.small);
-  if (session_.busy() && !state.stage.empty()) {
-    if (plain_button(ui, "stop-calibration", ui.text(Text::kStop))) {
-      session_.stop();
+  if (session_.busy()) {
+    if (!state.stage.empty()) {
+      if (plain_button(ui, "stop-calibration", ui.text(Text::kStop))) {
+        session_.stop();
+      }
+      ImGui::SameLine();
+      job_bar(ui, time_left_, state.stage, state.fraction);
     }
-    ImGui::SameLine();
-    job_bar(ui, time_left_, state.stage, state.fraction);
   } else if (state.error) {
     ui.facts.insert("calibration-refused");
     coloured_text(ui.colours.red, translated(state.error->line(), ui.preferences.language).c_str());
