@@ -159,7 +159,7 @@ class SurfaceView {
   bool whole_ = false;
   bool slow_ = true;  ///< this machine draws slowly; so it is taken until it was seen to be fast
   PieceSize faces_at_a_time_{40000};
-  std::size_t faces_in_motion_ = kFacesInMotion * 2;
+  std::size_t faces_in_motion_ = kFacesInMotion * 3;
   std::size_t level_drawn_ = 0;
   std::size_t faces_drawn_ = 0;
 };
