@@ -44,6 +44,7 @@ std::string parameters_of(const PackageOptions& options) {
   nlohmann::ordered_json json{{"base_url", options.base_url},
                               {"ground", options.white_ground ? "white" : "black"}};
   std::vector<std::string> without;
+  without.reserve(options.without.size());
   for (const PackagePart part : options.without) {
     without.emplace_back(to_string(part));
   }
