@@ -261,12 +261,12 @@ std::optional<CalibrationCheck> last_verification(const std::filesystem::path& r
 }
 
 std::optional<std::string> verification_reminder(const std::string& device_uri) {
-  const Result<DeviceUri> uri = parse_device_uri(device_uri);
-  if (!uri || uri->scheme != "rig") {
+  const std::optional<std::filesystem::path> file = rig_file_of(device_uri);
+  if (!file) {
     return std::nullopt;
   }
   const std::string mend = "; measure the artefact first: dubsar calibrate --verify";
-  const std::optional<CalibrationCheck> last = last_verification(uri->locator);
+  const std::optional<CalibrationCheck> last = last_verification(*file);
   if (!last) {
     return "the rig as it stands has not been verified yet" + mend;
   }

@@ -2,6 +2,7 @@
 // Copyright The Dubsar developers
 #include "acquisition/rig_log.h"
 
+#include "acquisition/device_uri.h"
 #include "formats/atomic_file.h"
 #include "formats/calibration_json.h"
 #include "formats/number_text.h"
@@ -40,6 +41,11 @@ std::optional<VerificationEntry> RigLog::last() const {
     return std::nullopt;
   }
   return lines->entries.back();
+}
+
+std::optional<std::filesystem::path> rig_file_of(const std::string& device_uri) {
+  const Result<DeviceUri> uri = parse_device_uri(device_uri);
+  return uri && uri->scheme == "rig" ? std::optional<std::filesystem::path>(uri->locator) : std::nullopt;
 }
 
 Result<RigLog> rig_log_of(const std::filesystem::path& file) {

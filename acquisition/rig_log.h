@@ -23,6 +23,9 @@ struct RigLog {
   [[nodiscard]] std::optional<VerificationEntry> last() const;
 };
 
+/// The FILE.toml of a device "rig:FILE.toml"; nothing for another device.
+[[nodiscard]] std::optional<std::filesystem::path> rig_file_of(const std::string& device_uri);
+
 /// `file`: a calibration, or a rig.toml. Errors: kBadInput, kStorage.
 [[nodiscard]] Result<RigLog> rig_log_of(const std::filesystem::path& file);
 

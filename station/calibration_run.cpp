@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "acquisition/calibration_folder.h"
+#include "acquisition/rig_log.h"
 #include "core/units.h"
 #include "formats/atomic_file.h"
 #include "formats/calibration_json.h"
@@ -14,6 +15,7 @@
 #include "formats/number_text.h"
 #include "formats/rig_toml.h"
 #include "station/results.h"
+#include "station/verification.h"
 
 namespace dubsar {
 
@@ -53,23 +55,19 @@ Result<CalibrationSet> set_for(const CalibrateRequest& request) {
 }  // namespace
 
 MotionKind stage_kind_of(const std::string& device_uri) {
-  constexpr std::string_view kScheme = "rig:";
-  if (!device_uri.starts_with(kScheme)) {
+  if (const auto calibration = calibration_file_of(device_uri)) {
+    const auto known = parse_calibration(calibration->json, calibration->path.string());
+    if (known && known->has_motion) {
+      return known->motion.kind;
+    }
+  }
+  const std::optional<fs::path> file = rig_file_of(device_uri);
+  if (!file) {
     return MotionKind::kLinear;
   }
-  const fs::path file = device_uri.substr(kScheme.size());
-  const Result<std::string> text = read_whole_file(file);
-  const Result<RigFile> rig = text ? parse_rig_file(*text, file.string()) : std::unexpected(text.error());
-  if (!rig) {
-    return MotionKind::kLinear;
-  }
-  const fs::path beside = file.parent_path() / rig->calibration;
-  const Result<std::string> json = read_whole_file(beside);
-  const auto known = json ? parse_calibration(*json, beside.string()) : std::unexpected(json.error());
-  if (known && known->has_motion) {
-    return known->motion.kind;
-  }
-  return rig->turns ? MotionKind::kTurntable : MotionKind::kLinear;
+  const Result<std::string> text = read_whole_file(*file);
+  const Result<RigFile> rig = text ? parse_rig_file(*text, file->string()) : std::unexpected(text.error());
+  return rig && rig->turns ? MotionKind::kTurntable : MotionKind::kLinear;
 }
 
 Result<CalibrateOutcome> calibrate_folder(const CalibrateRequest& request, const JobContext& job) {

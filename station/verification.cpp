@@ -44,11 +44,11 @@ std::optional<std::time_t> time_of(const RangeGrid& grid) {
 }
 
 std::optional<RigLog> log_of_device(const std::string& uri) {
-  constexpr std::string_view kScheme = "rig:";
-  if (!uri.starts_with(kScheme)) {
+  const std::optional<std::filesystem::path> file = rig_file_of(uri);
+  if (!file) {
     return std::nullopt;
   }
-  Result<RigLog> log = rig_log_of(uri.substr(kScheme.size()));
+  Result<RigLog> log = rig_log_of(*file);
   return log ? std::optional(std::move(*log)) : std::nullopt;
 }
 

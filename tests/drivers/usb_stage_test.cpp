@@ -89,6 +89,18 @@ class Firmwares : public UsbStage, public testing::WithParamInterface<const char
                                                : position;
   }
   static double step() { return std::string(GetParam()) == "tmcl" ? 2 : 0.01; }
+  /// With its laser lit, half a minute from its end; returns once it is under way.
+  std::future<Status> long_move(Device& device) {
+    EXPECT_TRUE(device.set_laser(0, 1));
+    std::future<Status> moving = std::async(std::launch::async, [&device] {
+      return device.move(
+          {.axis = 0, .position = target(), .speed = std::abs(target()) / 30, .start_only = false});
+    });
+    while (std::abs(at()) < step()) {
+      std::this_thread::sleep_for(1ms);
+    }
+    return moving;
+  }
 };
 
 TEST_P(Firmwares, MovesWhereItIsAskedAndSaysWhere) {
@@ -166,14 +178,7 @@ TEST_P(Firmwares, KeepsItsLimits) {
 
 TEST_P(Firmwares, AMoveEndsWhenAnotherThreadSaysStop) {
   Device device = open_homed();
-  ASSERT_TRUE(device.set_laser(0, 1));
-  const double slow = std::abs(target()) / 30;
-  std::future<Status> moving = std::async(std::launch::async, [&] {
-    return device.move({.axis = 0, .position = target(), .speed = slow, .start_only = false});
-  });
-  while (std::abs(at()) < step()) {
-    std::this_thread::sleep_for(1ms);
-  }
+  std::future<Status> moving = long_move(device);
   const Status stopped = device.stop();
   EXPECT_TRUE(stopped) << stopped.error().line();
   const Status moved = moving.get();
@@ -190,14 +195,7 @@ TEST_P(Firmwares, AMoveEndsWhenAnotherThreadSaysStop) {
 /// GRBL and Horus would obey behind the move, half a minute later.
 TEST_P(Firmwares, ALaserIsPutOffAtOnceEvenIfThatEndsTheMove) {
   Device device = open_homed();
-  ASSERT_TRUE(device.set_laser(0, 1));
-  std::future<Status> moving = std::async(std::launch::async, [&] {
-    return device.move(
-        {.axis = 0, .position = target(), .speed = std::abs(target()) / 30, .start_only = false});
-  });
-  while (std::abs(at()) < step()) {
-    std::this_thread::sleep_for(1ms);
-  }
+  std::future<Status> moving = long_move(device);
   const Status dark = device.set_laser(0, 0);
   ASSERT_TRUE(dark) << dark.error().line();
   EXPECT_EQ(laser(), "0");
@@ -214,14 +212,7 @@ TEST_P(Firmwares, ALaserIsPutOffAtOnceEvenIfThatEndsTheMove) {
 
 TEST_P(Firmwares, AfterAnEmergencyStopNothingMovesUntilHome) {
   Device device = open_homed();
-  ASSERT_TRUE(device.set_laser(0, 1));
-  std::future<Status> moving = std::async(std::launch::async, [&] {
-    return device.move(
-        {.axis = 0, .position = target(), .speed = std::abs(target()) / 30, .start_only = false});
-  });
-  while (std::abs(at()) < step()) {
-    std::this_thread::sleep_for(1ms);
-  }
+  std::future<Status> moving = long_move(device);
   const Status halted = device.emergency_stop();
   EXPECT_TRUE(halted) << halted.error().line();
   EXPECT_EQ(laser(), "0");

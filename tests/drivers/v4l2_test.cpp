@@ -50,6 +50,13 @@ class V4l2 : public testing::Test {
     return out;
   }
   static Frame next(Device& device) { return test::next_frame(device); }
+  /// With a pool of four, its first frame seen.
+  [[nodiscard]] Device streaming() const {
+    Device device = open({{"buffers", "4"}}).value();
+    EXPECT_TRUE(device.start_frames());
+    next(device);
+    return device;
+  }
 
   test::TemporaryFolder folder_;
   std::optional<test::PeerProcess> peer_;
@@ -185,9 +192,7 @@ TEST_F(V4l2, CountsWhatIsLostSpoiltOrHeldTooLong) {
   if (IsSkipped()) {
     return;
   }
-  Device device = open({{"buffers", "4"}}).value();
-  ASSERT_TRUE(device.start_frames());
-  next(device);
+  Device device = streaming();
   ASSERT_EQ(peer_->tell("lose 3"), "ok");
   ASSERT_EQ(peer_->tell("spoil 1"), "ok");
   bool incomplete = false;
@@ -225,9 +230,7 @@ TEST_F(V4l2, AFrameThatWaitedIsLate) {
   if (IsSkipped()) {
     return;
   }
-  Device device = open({{"buffers", "4"}}).value();
-  ASSERT_TRUE(device.start_frames());
-  next(device);
+  Device device = streaming();
   const std::uint64_t before = device.frame_counters()->late;
   const auto made = [&] { return std::stoll(peer_->tell("counts")); };
   for (const long long then = made(); made() < then + 40;) {
