@@ -187,6 +187,7 @@ Result<std::vector<StationScan>> Engine::Impl::obey(const OperatorCommand& comma
 void Engine::Impl::obey_commands(JobContext& job) {
   for (;;) {
     OperatorCommand command;
+    std::shared_ptr<void> thought;
     {
       const std::scoped_lock lock(mutex);
       if (commands.empty()) {
@@ -194,6 +195,7 @@ void Engine::Impl::obey_commands(JobContext& job) {
       }
       command = std::move(commands.front());
       commands.pop_front();
+      thought = begin_thought();
     }
     if (const auto* describe = std::get_if<DescribeTablet>(&command)) {
       const Status kept = keep_tablet_record(*store, describe->record);
@@ -231,7 +233,8 @@ void Engine::Impl::obey_commands(JobContext& job) {
                           .plan_now = true,
                           .device_waits = false,
                           .resumed = false,
-                          .view_of = retake != nullptr ? std::optional(retake->id) : std::nullopt});
+                          .view_of = retake != nullptr ? std::optional(retake->id) : std::nullopt,
+                          .thought = std::move(thought)});
   }
 }
 

@@ -6,12 +6,14 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <ctime>
 #include <deque>
 #include <limits>
 #include <map>
+#include <memory>
 #include <mutex>
 #include <set>
 #include <thread>
@@ -61,9 +63,10 @@ struct ScanToPlan {
   std::vector<ScanPose> poses;
   bool plan_now =
       true;  ///< false for all but the last of the stored scans that a resumed session goes through again
-  bool device_waits = false;     ///< the device waits for what to do after it
-  bool resumed = false;          ///< of a run before this one
-  std::optional<int> view_of{};  ///< a scan that is to be taken again, from where it was taken
+  bool device_waits = false;        ///< the device waits for what to do after it
+  bool resumed = false;             ///< of a run before this one
+  std::optional<int> view_of{};     ///< a scan that is to be taken again, from where it was taken
+  std::shared_ptr<void> thought{};  ///< of the command it comes from: let go of once its next step is known
 };
 /// Where to next.
 struct Step {
@@ -172,6 +175,7 @@ struct Engine::Impl {
   bool last_scan_taken_up = true;        ///< as registration has judged it
   std::optional<NextStep> changed_step;  ///< what the operator's commands made of the step that waits
   std::condition_variable pace;
+  std::atomic<int> thoughts = 0;  ///< commands that are being obeyed, or whose next step is worked out
 
   void emit(const Event& event) const {
     if (sink) {
@@ -206,6 +210,10 @@ struct Engine::Impl {
   /// Of a paced run: waits until the operator wants the scan; `step` follows what they ask for meanwhile.
   /// False when they want no more. engine_pace.cpp
   bool wait_for_operator(NextStep& step, const JobContext& job);
+  /// A command of theirs may still change the step; under the mutex.
+  [[nodiscard]] bool thinks_over() const { return !commands.empty() || thoughts > 0; }
+  /// Thinks for as long as somebody holds it.
+  std::shared_ptr<void> begin_thought();
   [[nodiscard]] bool must_wait(const NextStep& step) const;  ///< under the mutex
   void show_model(JobContext& job);
   // engine_device.cpp

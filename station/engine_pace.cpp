@@ -19,6 +19,14 @@ bool Engine::Impl::must_wait(const NextStep& step) const {
   return by_hand || !last_scan_taken_up;
 }
 
+std::shared_ptr<void> Engine::Impl::begin_thought() {
+  ++thoughts;
+  return {this, [](Impl* engine) {
+            --engine->thoughts;
+            engine->pace.notify_all();
+          }};
+}
+
 bool Engine::Impl::wait_for_operator(NextStep& step, const JobContext& job) {
   if (!options.paced) {
     return true;
@@ -32,7 +40,7 @@ bool Engine::Impl::wait_for_operator(NextStep& step, const JobContext& job) {
   bool told = false;
   bool changed = false;
   for (;;) {
-    if (finish_asked || job.cancelled() || source->halted()) {
+    if (finish_asked || first_error || job.cancelled() || source->halted()) {
       lock.unlock();
       if (job.cancelled()) {
         give_up(stopped());
@@ -47,12 +55,14 @@ bool Engine::Impl::wait_for_operator(NextStep& step, const JobContext& job) {
       told = false;
       changed = true;  // motors must not start because a scan was taken out
     }
-    if ((told && scan_asked) || !(changed || must_wait(step))) {
+    // Of several commands only the last one's step is worth telling: a key for one before it would be lost.
+    const bool settled = !thinks_over();
+    if (settled && ((told && scan_asked) || !(changed || must_wait(step)))) {
       scan_asked = false;
       asked_once = true;
       return true;
     }
-    if (!told) {
+    if (settled && !told) {
       scan_asked = false;  // of a key that was pressed too early: the tablet may not lie there yet
       WaitsForOperator event;
       if (step && !step->again) {
@@ -71,8 +81,9 @@ bool Engine::Impl::wait_for_operator(NextStep& step, const JobContext& job) {
     lock.lock();
     if (!showed) {
       // Cancelling a job wakes nobody.
-      pace.wait_for(lock, std::chrono::milliseconds(50),
-                    [this] { return scan_asked || finish_asked || changed_step.has_value(); });
+      pace.wait_for(lock, std::chrono::milliseconds(50), [&] {
+        return finish_asked || changed_step || (!thinks_over() && (scan_asked || !told));
+      });
     }
   }
 }

@@ -298,8 +298,8 @@ void Engine::Impl::plan_all(JobContext& job) {
     } else if (drives && options.paced) {
       const std::scoped_lock lock(mutex);
       changed_step = as_before ? as_before : step_to(*red_map);
-      pace.notify_all();
     }
+    item->thought.reset();
     emit(RedMapChanged{std::move(*red_map), planning.last_gain()});
     // Last: the red map waits for no mesh, and the next scan is under way meanwhile.
     if (const Status stitched = planning.stitch(job); !stitched) {

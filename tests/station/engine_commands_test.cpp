@@ -26,9 +26,10 @@ using ::testing::HasSubstr;
 class RunningEngine {
  public:
   RunningEngine(const std::filesystem::path& scans, const std::filesystem::path& session, double rate)
-      : engine_(
-            {"replay:" + scans.string() + "?rate=" + std::to_string(rate), session, false, 0, std::nullopt},
-            [this](const Event& event) { hear(event); }),
+      : RunningEngine({"replay:" + scans.string() + "?rate=" + std::to_string(rate), session, false, 0,
+                       std::nullopt}) {}
+  explicit RunningEngine(EngineOptions options)
+      : engine_(std::move(options), [this](const Event& event) { hear(event); }),
         thread_([this] { result_.emplace(engine_.run(job_)); }) {}
   ~RunningEngine() { join(); }
   RunningEngine(const RunningEngine&) = delete;
@@ -51,6 +52,20 @@ class RunningEngine {
     const std::scoped_lock lock(mutex_);
     return red_maps_;
   }
+  [[nodiscard]] int times_waited() {
+    const std::scoped_lock lock(mutex_);
+    return waits_;
+  }
+  /// What it said then that it waits for.
+  [[nodiscard]] std::optional<NextView> next() {
+    const std::scoped_lock lock(mutex_);
+    return next_;
+  }
+  /// Waits until it has waited for the operator that often.
+  [[nodiscard]] bool waits(int times) {
+    std::unique_lock lock(mutex_);
+    return heard_.wait_for(lock, std::chrono::seconds(30), [&] { return waits_ >= times; });
+  }
 
  private:
   void hear(const Event& event) {
@@ -65,6 +80,9 @@ class RunningEngine {
       said_ += notice->text + "\n";
     } else if (std::holds_alternative<RedMapChanged>(event)) {
       ++red_maps_;
+    } else if (const auto* waits = std::get_if<WaitsForOperator>(&event)) {
+      ++waits_;
+      next_ = waits->next;
     }
     heard_.notify_all();
   }
@@ -73,11 +91,41 @@ class RunningEngine {
   std::condition_variable heard_;
   std::string said_;
   int red_maps_ = 0;
+  int waits_ = 0;
+  std::optional<NextView> next_;
   JobContext job_;
   Engine engine_;
   std::optional<Result<EngineResult>> result_;
   std::thread thread_;
 };
+
+// Of several commands in a row the first's next step is not told as the one to press the key for.
+TEST(EngineCommands, ThinksAllOfThemOverBeforeItWaitsAgain) {
+  const test::TemporaryFolder folder;
+  EngineOptions options;
+  options.device = "sim:?seed=1&size=20x16x8&spacing=0.25&noise=0.02";
+  options.session = folder.path() / "session";
+  options.automatic = options.paced = true;
+  RunningEngine engine(options);
+  ASSERT_TRUE(engine.waits(1));
+  ASSERT_TRUE(engine.post(LockScan{0}));
+  ASSERT_TRUE(engine.post(UnlockScan{0}));
+  ASSERT_TRUE(engine.post(ScanAgain{0}));
+  ASSERT_TRUE(engine.says("scan 0 is taken out"));
+  ASSERT_TRUE(engine.waits(2));
+  // The key is for the scan that is taken again from where it was taken, not for where the lock would go on.
+  const std::optional<NextView> next = engine.next();
+  ASSERT_TRUE(next && next->placement);
+  EXPECT_EQ(next->placement->turntable_rad, 0);
+  EXPECT_EQ(next->placement->tilt_rad, 0);
+  ASSERT_TRUE(engine.post(ScanNow{}));
+  ASSERT_TRUE(engine.says("stored 1\n"));
+  ASSERT_TRUE(engine.waits(3));
+  ASSERT_TRUE(engine.post(Finish{}));
+  const Result<EngineResult>& result = engine.join();
+  ASSERT_TRUE(result.has_value()) << result.error().line();
+  EXPECT_EQ(engine.times_waited(), 3);
+}
 
 std::vector<int> ids_of(const std::vector<ScanPose>& poses) {
   std::vector<int> ids;
