@@ -3,6 +3,8 @@
 #include "drivers/aravis/camera.h"
 
 #include <algorithm>
+#include <cstdlib>
+#include <cstring>
 #include <ctime>
 #include <thread>
 #include <utility>
@@ -37,6 +39,17 @@ void stream_thread_says(void* /*data*/, ArvStreamCallbackType what, ArvBuffer* /
   if (what == ARV_STREAM_CALLBACK_TYPE_INIT) {
     prefer_this_thread();
   }
+}
+
+/// Its pages are there already: were the kernel to clear them as the first packets come, it would not keep up
+/// with a fast camera, and the first hundreds of frames would be lost.
+ArvBuffer* buffer_in_memory(std::size_t bytes) {
+  void* const memory = std::malloc(bytes);
+  if (memory == nullptr) {
+    return nullptr;
+  }
+  std::memset(memory, 0xff, bytes);  // zeros would be left to calloc, which leaves them to the kernel
+  return arv_buffer_new_full(bytes, memory, memory, std::free);
 }
 
 }  // namespace
@@ -185,7 +198,15 @@ Status Camera::begin(std::uint32_t pool) {
   const std::uint32_t buffers = asked == 0 ? pool_depth(unknown ? 0 : rate_hz, payload, kMostBuffers)
                                            : std::clamp(asked, 2U, kMostBuffers);
   for (std::uint32_t k = 0; k < buffers; ++k) {
-    arv_stream_push_buffer(stream, arv_buffer_new_allocate(payload));
+    ArvBuffer* const buffer = buffer_in_memory(payload);
+    if (buffer == nullptr) {
+      g_clear_object(&stream);
+      return fail(ErrorKind::kDevice,
+                  "this machine has no room for " + std::to_string(buffers) + " frames of " +
+                      std::to_string(payload) + " bytes",
+                  id_, "ask for fewer with buffers=, or for a smaller region");
+    }
+    arv_stream_push_buffer(stream, buffer);
   }
   {
     const std::lock_guard lock(mutex_);

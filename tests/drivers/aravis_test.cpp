@@ -4,10 +4,12 @@
 // range camera, in another process, on the loopback of a network of its own.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <csignal>
 #include <cstdlib>
+#include <fstream>
 #include <random>
 #include <thread>
 
@@ -58,6 +60,24 @@ TEST_F(Aravis, FindsTheCameraAndStreamsItsFrames) {
   EXPECT_EQ(held.pixels[60 * held.stride_bytes + 200], static_cast<std::uint8_t>(7 * 200 + 3 * 60));
   ASSERT_TRUE(device.start_frames(4));
   EXPECT_EQ(next(device).id, 1);
+}
+
+double resident_bytes() {
+  std::ifstream file("/proc/self/statm");
+  double pages = 0;
+  file >> pages >> pages;
+  return pages * static_cast<double>(::sysconf(_SC_PAGESIZE));
+}
+
+// Memory that only comes when it is written to comes too slowly for a fast camera's first frames.
+TEST_F(Aravis, ThePoolIsInMemoryBeforeTheFirstFrameComes) {
+  Device device = open({{"format", "Mono8"}}).value();
+  ASSERT_TRUE(device.set("width_px", std::int64_t{1024}));
+  ASSERT_TRUE(device.set("height_px", std::int64_t{1024}));
+  ASSERT_TRUE(device.set("frame_rate_hz", 1.0));
+  const double before = resident_bytes();
+  ASSERT_TRUE(device.start_frames(64));
+  EXPECT_GT(resident_bytes() - before, 0.95 * 64 * 1024 * 1024);
 }
 
 TEST_F(Aravis, AFrameThatWaitedIsLate) {
