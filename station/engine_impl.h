@@ -40,6 +40,7 @@
 #include "station/planning_stage.h"
 #include "station/scan_set.h"
 #include "station/session_pins.h"
+#include "station/unfinished_scan.h"
 
 #include "station/engine.h"
 
@@ -54,6 +55,7 @@ struct RawScan {
   RangeGrid grid;
   std::optional<SampleFlags> flags;
   std::optional<Placement> drive;
+  std::shared_ptr<UnfinishedScan> kept{};  ///< its rows on disk until it is stored
 };
 /// Stands in the queue to registration for commands of the operator that wait beside it.
 struct CommandsWait {};
@@ -244,8 +246,12 @@ struct Engine::Impl {
   Taken refuse_empty();  ///< of a scan without a sample
   Taken take_scan(const std::optional<Placement>& drive, JobContext& job);
   /// The rows of a scan that ended in its middle are as good as any.
-  void keep_half(const std::optional<Placement>& drive);
+  void keep_half(const std::optional<Placement>& drive, std::shared_ptr<UnfinishedScan> kept);
+  /// What an earlier program had of a scan as it ended becomes a scan; before the session's are read.
+  void take_up_left_scans();
   void keep_stored();
+  bool hand_to_store(RawScan scan);  ///< false when nothing is stored any more
+  void note_drive(int id, const Placement& drive);
   /// Onto the disk, and only then reported; false when it is not there.
   bool store_scan(int id, const RangeGrid& grid, const std::optional<Placement>& drive);
   /// Into the model, as the operator's word on it has it.

@@ -39,6 +39,30 @@ Status Engine::Impl::load_resumed(JobContext& job) {
   return {};
 }
 
+void Engine::Impl::take_up_left_scans() {
+  for (const LeftScan& left : left_scans(store->folder())) {
+    const auto stored = store->scans();
+    if (!stored) {
+      return;
+    }
+    // A program may also end between the storing of a scan and the end of its copy here.
+    const Result<RangeGrid> newest = stored->empty() ? RangeGrid{} : store->load_grid(stored->back().id);
+    if (left.grid.valid_count() > 0 && !(newest && begins_with(*newest, left.grid))) {
+      const Result<int> id = store->add_grid(left.grid);
+      if (!id) {
+        emit(Notice{id.error().line()});
+        return;
+      }
+      if (left.drive) {
+        note_drive(*id, *left.drive);
+      }
+      emit(Notice{fmt::format("a scan in whose middle the program ended is kept: {} rows, as scan {}",
+                              left.grid.rows, *id)});
+    }
+    forget(left);
+  }
+}
+
 Status Engine::Impl::open(JobContext& job) {
   // The device first: a wrong URI must not leave an empty session behind.
   const DriverRegistry registry;
@@ -125,6 +149,7 @@ Status Engine::Impl::open(JobContext& job) {
       emit(Notice{given.error().line()});
     }
   }
+  take_up_left_scans();
   if (const Status loaded = load_resumed(job); !loaded) {
     return loaded;
   }

@@ -4,7 +4,7 @@
 
 namespace dubsar {
 
-void Engine::Impl::keep_half(const std::optional<Placement>& drive) {
+void Engine::Impl::keep_half(const std::optional<Placement>& drive, std::shared_ptr<UnfinishedScan> kept) {
   std::optional<RangeGrid> half = source->take_partial();
   if (!half || half->valid_count() == 0) {
     return;
@@ -13,7 +13,16 @@ void Engine::Impl::keep_half(const std::optional<Placement>& drive) {
   if (half->nominal) {
     half->nominal->placement += placement_offset;
   }
-  queues->to_store.push({std::move(*half), std::nullopt, drive});
+  hand_to_store({std::move(*half), std::nullopt, drive, std::move(kept)});
+}
+
+bool Engine::Impl::hand_to_store(RawScan scan) {
+  const std::shared_ptr<UnfinishedScan> kept = scan.kept;
+  const bool taken = queues->to_store.push(std::move(scan));
+  if (!taken && kept) {
+    kept->leave();  // the disk has refused one before it
+  }
+  return taken;
 }
 
 /// Takes the next scan of the device. kEnd when there is none, or the run is over; kNothing when this one
@@ -21,7 +30,13 @@ void Engine::Impl::keep_half(const std::optional<Placement>& drive) {
 Taken Engine::Impl::take_scan(const std::optional<Placement>& drive, JobContext& job) {
   std::optional<SparseFlagger> flagger;
   SampleFlags flags;
+  // What comes from files is there anyway.
+  const std::shared_ptr<UnfinishedScan> kept =
+      source->capabilities().finite ? nullptr : std::make_shared<UnfinishedScan>(store->folder(), drive);
   const auto on_profile = [&](const RangeGrid& grid, int row) {
+    if (kept) {
+      kept->follow(grid, placement_offset);
+    }
     if (!flagger && grid.spacing_mm > 0) {
       flagger.emplace(grid.cols, grid.spacing_mm);
     }
@@ -40,7 +55,7 @@ Taken Engine::Impl::take_scan(const std::optional<Placement>& drive, JobContext&
       device_error = device_error ? device_error : grid.error();
     }
     emit(Notice{grid.error().line()});
-    keep_half(drive);
+    keep_half(drive, kept);
     // A bad file of a folder does not stop the others.
     const bool others = source->capabilities().finite && grid.error().kind == ErrorKind::kBadInput;
     return others ? Taken::kNothing : Taken::kEnd;
@@ -53,7 +68,7 @@ Taken Engine::Impl::take_scan(const std::optional<Placement>& drive, JobContext&
       return keeps_half && !source->capabilities().finite;
     }();
     if (keeps) {
-      keep_half(drive);
+      keep_half(drive, kept);
     }
     give_up(grid.error());
     return Taken::kEnd;
@@ -75,8 +90,8 @@ Taken Engine::Impl::take_scan(const std::optional<Placement>& drive, JobContext&
     (*grid)->nominal->placement += placement_offset;
   }
   const bool streamed = flagger.has_value() && flags.size() == (*grid)->size();
-  const bool taken = queues->to_store.push(
-      {std::move(**grid), streamed ? std::optional(std::move(flags)) : std::nullopt, drive});
+  const bool taken = hand_to_store(
+      {std::move(**grid), streamed ? std::optional(std::move(flags)) : std::nullopt, drive, kept});
   return taken ? Taken::kScan : Taken::kEnd;
 }
 
@@ -155,12 +170,16 @@ bool Engine::Impl::store_scan(int id, const RangeGrid& grid, const std::optional
   }
   emit(ScanStored{id, grid.source, static_cast<std::int64_t>(grid.valid_count())});
   if (drive) {
-    drives_of_scans[id] = *drive;
-    if (const Status saved = store->save_document("drives", drives_to_json(drives_of_scans)); !saved) {
-      give_up(saved.error());
-    }
+    note_drive(id, *drive);
   }
   return true;
+}
+
+void Engine::Impl::note_drive(int id, const Placement& drive) {
+  drives_of_scans[id] = drive;
+  if (const Status saved = store->save_document("drives", drives_to_json(drives_of_scans)); !saved) {
+    give_up(saved.error());
+  }
 }
 
 /// Each scan goes to registration while it is being stored; what registration finds of it waits until it is
@@ -183,6 +202,9 @@ void Engine::Impl::keep_stored() {
     // Where registration is behind, the disk does not wait for it.
     const bool handed_on = queues->to_register.try_push(scan);
     const bool stored = store_scan(*id, as_it_came ? *as_it_came : *scan.measured, scan.drive);
+    if (!stored && raw->kept) {
+      raw->kept->leave();
+    }
     outcome.set_value(stored);
     if (stored && !handed_on) {
       queues->to_register.push(std::move(scan));

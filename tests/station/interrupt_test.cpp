@@ -154,5 +154,31 @@ TEST_F(Interrupted, KilledAtAnyMomentKeepsWhatItSaidIsStored) {
   }
 }
 
+// Nobody scans the same side once more because the power went.
+TEST_F(Interrupted, KilledInMidScanKeepsTheRowsUntilThen) {
+  const fs::path session = at("half");
+  RunningCommand running({"scan", "--device", "sim:?seed=4&size=100x80x20&spacing=0.03&mesh_spacing=1",
+                          "--session", session.string()});
+  const fs::path rows = session / "grids" / "unfinished" / "1" / "0000.grid";
+  const auto patience = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+  while (!fs::exists(rows) && std::chrono::steady_clock::now() < patience) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  running.send(SIGKILL);
+  ASSERT_EQ(running.wait().signal, SIGKILL);
+  ASSERT_TRUE(fs::exists(rows));
+  EXPECT_THAT(stored_in("half"), SizeIs(0));
+  expect_whole("half");
+  // Whatever scans here next takes it up, once.
+  const Outcome next = run_command(words("scans", "half", ""));
+  EXPECT_THAT(next.err, HasSubstr("a scan in whose middle the program ended is kept: "));
+  EXPECT_FALSE(fs::exists(session / "grids" / "unfinished"));
+  const nlohmann::json listed = run_command({"session", "list", session.string(), "--json"}).json();
+  ASSERT_THAT(listed["scans"], SizeIs(kScans + 1));
+  EXPECT_GT(listed["scans"][0]["samples"], 1000);
+  EXPECT_THAT(run_command(words("scans", "half", "")).err, ::testing::Not(HasSubstr("is kept")));
+  expect_whole("half");
+}
+
 }  // namespace
 }  // namespace dubsar

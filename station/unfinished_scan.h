@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <filesystem>
+#include <mutex>
+#include <optional>
+#include <stop_token>
+#include <thread>
+#include <vector>
+
+#include "core/range_grid.h"
+#include "core/rig.h"
+
+namespace dubsar {
+
+/// The rows of a scan under way, on disk while the others still come: nobody may touch the tablet twice
+/// because a program was killed or a battery was empty. They are gone once the scan is stored, or was ended
+/// on purpose. A session keeps them in grids/unfinished/N/, as grid files of some rows each.
+class UnfinishedScan {
+ public:
+  /// Nothing is written before the scan has taken `every`, nor more often than that.
+  UnfinishedScan(const std::filesystem::path& session, std::optional<Placement> drive,
+                 std::chrono::milliseconds every = std::chrono::seconds(1));
+  /// Takes the rows away, unless they were left.
+  ~UnfinishedScan();
+  UnfinishedScan(const UnfinishedScan&) = delete;
+  UnfinishedScan& operator=(const UnfinishedScan&) = delete;
+
+  /// Copies what has come since the last time; a thread of its own writes it. From the scanning thread: rows
+  /// that have come do not change any more. A disk that refuses ends it with one warning, and not the scan.
+  void follow(const RangeGrid& grid, int placement_offset);
+  /// The scan could not be stored: its rows stay for the next program.
+  void leave() { left_ = true; }
+
+ private:
+  void write_rows(const std::stop_token& stop);
+
+  const std::filesystem::path folder_;
+  const std::optional<Placement> drive_;
+  const std::chrono::milliseconds every_;
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+  int copied_rows_ = 0;
+  std::atomic<bool> left_ = false;
+  std::atomic<bool> refused_ = false;
+  std::mutex mutex_;  ///< of what follows
+  std::condition_variable_any comes_;
+  std::optional<RangeGrid> to_write_;
+  std::jthread writer_;
+};
+
+/// A scan whose program ended in the middle of it.
+struct LeftScan {
+  RangeGrid grid;  ///< the rows that are there in a row and whole
+  std::optional<Placement> drive;
+  std::filesystem::path folder;
+};
+
+/// By age. For a session that this program alone writes to.
+[[nodiscard]] std::vector<LeftScan> left_scans(const std::filesystem::path& session);
+/// Whether the one has the other's rows, and perhaps more below them.
+[[nodiscard]] bool begins_with(const RangeGrid& grid, const RangeGrid& rows);
+/// Once its rows are stored as a scan.
+void forget(const LeftScan& scan);
+
+}  // namespace dubsar
