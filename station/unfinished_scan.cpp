@@ -36,7 +36,8 @@ std::vector<int> numbered_folders(const fs::path& home) {
   std::error_code ignored;
   for (fs::directory_iterator it(home, ignored), end; !ignored && it != end; it.increment(ignored)) {
     const std::string name = it->path().filename().string();
-    if (!name.empty() && name.size() < 9 && std::ranges::all_of(name, [](char c) { return c >= '0' && c <= '9'; })) {
+    if (!name.empty() && name.size() < 9 &&
+        std::ranges::all_of(name, [](char c) { return c >= '0' && c <= '9'; })) {
       out.push_back(std::stoi(name));
     }
   }
@@ -88,14 +89,14 @@ void UnfinishedScan::follow(const RangeGrid& grid, int placement_offset) {
   }
   copied_rows_ = grid.rows;
   if (!writer_.joinable()) {
+    std::error_code told_when_written_to;
+    fs::create_directories(folder_, told_when_written_to);  // here: the next scan takes another number
     writer_ = std::jthread([this](const std::stop_token& stop) { write_rows(stop); });
   }
   comes_.notify_one();
 }
 
 void UnfinishedScan::write_rows(const std::stop_token& stop) {
-  std::error_code error;
-  fs::create_directories(folder_, error);
   Status written;
   if (drive_) {
     written = write_file_atomically(folder_ / kDrive, std::string_view(drives_to_json({{0, *drive_}})));
@@ -118,7 +119,8 @@ void UnfinishedScan::write_rows(const std::stop_token& stop) {
 std::vector<LeftScan> left_scans(const fs::path& session) {
   std::vector<LeftScan> out;
   for (const int folder_number : numbered_folders(home_of(session))) {
-    LeftScan left{.grid = {}, .drive = std::nullopt, .folder = home_of(session) / std::to_string(folder_number)};
+    LeftScan left{
+        .grid = {}, .drive = std::nullopt, .folder = home_of(session) / std::to_string(folder_number)};
     for (int number = 0;; ++number) {
       Result<RangeGrid> rows = read_grid_file(rows_file(left.folder, number));
       if (!rows || !append_rows(left.grid, *rows)) {
