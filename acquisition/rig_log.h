@@ -19,6 +19,7 @@ struct RigLog {
   /// how the stage moves it.
   std::string as_it_stands;
 
+  [[nodiscard]] bool of_range_camera() const { return verified.extension() == ".toml"; }
   /// The latest line, if it is of the rig as it stands. A log that cannot be read says nothing.
   [[nodiscard]] std::optional<VerificationEntry> last() const;
 };

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/units.h"
+#include "formats/calibration_check_json.h"
 #include "formats/json_node.h"
 #include "formats/json_text.h"
 #include "formats/sign_off_json.h"
@@ -118,9 +119,7 @@ OrderedJson checklist_json(const Checklist& list) {
     root["calibration_age_days"] = *list.calibration_age_days;
   }
   if (list.calibration_check) {
-    root["calibration_check"] = OrderedJson{{"when", list.calibration_check->when},
-                                            {"artefact", list.calibration_check->artefact},
-                                            {"error_mm", list.calibration_check->error_mm}};
+    root["calibration_check"] = json_of(*list.calibration_check);
   }
   root["disk_free_gib"] = list.disk_free_gib;
   root["store_whole"] = list.store_whole;
@@ -169,8 +168,7 @@ Result<Checklist> parse_checklist(std::string_view text, const std::string& wher
     list.calibration_age_days = age->number();
   }
   if (const auto check = root.find("calibration_check")) {
-    list.calibration_check = {check->at("when").text(), check->at("artefact").text(),
-                              check->at("error_mm").number(0)};
+    list.calibration_check = read_calibration_check(*check);
   }
   list.disk_free_gib = root.at("disk_free_gib").number(0);
   list.store_whole = root.at("store_whole").boolean();

@@ -3,6 +3,7 @@
 #include "formats/rig_json.h"
 
 #include "core/units.h"
+#include "formats/calibration_check_json.h"
 #include "formats/json_node.h"
 #include "formats/json_text.h"
 
@@ -76,9 +77,7 @@ std::string rig_to_json(const Rig& rig) {
     json["calibration_age_days"] = *rig.calibration_age_days;
   }
   if (rig.calibration_check) {
-    json["calibration_check"] = OrderedJson{{"when", rig.calibration_check->when},
-                                            {"artefact", rig.calibration_check->artefact},
-                                            {"error_mm", rig.calibration_check->error_mm}};
+    json["calibration_check"] = json_of(*rig.calibration_check);
   }
   return text_of(json);
 }
@@ -122,8 +121,7 @@ Result<Rig> parse_rig(std::string_view text, const std::string& where) {
   }
   read_motion(root, rig);
   if (const auto check = root.find("calibration_check")) {
-    rig.calibration_check = {check->at("when").text(), check->at("artefact").text(),
-                             check->at("error_mm").number(0, 1e6)};
+    rig.calibration_check = read_calibration_check(*check);
   }
   if (const Status status = document->status("scan again with the device, which writes it anew"); !status) {
     return std::unexpected(status.error());

@@ -2,6 +2,7 @@
 // Copyright The Dubsar developers
 #include "acquisition/rig_device.h"
 #include "station/engine_impl.h"
+#include "station/range_camera_record.h"
 #include "station/verification.h"
 
 namespace dubsar {
@@ -113,6 +114,9 @@ Status Engine::Impl::open(JobContext& job) {
         !saved) {
       return saved;
     }
+  }
+  if (const Status saved = keep_range_camera(*store, options.device); !saved) {
+    return saved;
   }
   if (const Status set = open_settings(); !set) {
     return set;

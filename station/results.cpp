@@ -17,6 +17,7 @@
 #include "formats/red_map_json.h"
 #include "formats/sha2.h"
 #include "planning/checklist.h"
+#include "station/range_camera_record.h"
 #include "station/tablet_record.h"
 
 namespace dubsar {
@@ -119,6 +120,9 @@ Result<Checklist> checklist_of(const RedMap& red_map, const std::vector<ScanPose
   Checklist list = make_checklist(red_map, poses, stage.placed(), mesh, rig);
   if (store == nullptr) {
     return list;
+  }
+  if (rig == nullptr) {
+    tell_of_range_camera(*store, list);
   }
   list.disk_free_gib = rounded_gib(store->disk_free_gib());
   const Result<VerifyReport> whole = store->verify(job);

@@ -36,7 +36,8 @@ struct Results {
 [[nodiscard]] std::string program_name();
 
 /// The checklist of what the stage has placed. With a session: its disk, a verification of every stored byte,
-/// and the latest sign-off held against it. Errors: kCancelled.
+/// the latest sign-off held against it, and without a rig what it knows of a range camera. Errors:
+/// kCancelled.
 [[nodiscard]] Result<Checklist> checklist_of(const RedMap& red_map, const std::vector<ScanPose>& poses,
                                              const PlanningStage& stage, const Mesh& mesh, const Rig* rig,
                                              const SessionStore* store, JobContext& job);

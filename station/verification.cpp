@@ -52,11 +52,6 @@ std::optional<RigLog> log_of_device(const std::string& uri) {
   return log ? std::optional(std::move(*log)) : std::nullopt;
 }
 
-/// A range camera's rig is verified by its rig.toml.
-bool is_calibration(const std::filesystem::path& verified) {
-  return verified.extension() != ".toml";
-}
-
 }  // namespace
 
 nlohmann::ordered_json verification_figures(const Verification& is) {
@@ -127,7 +122,7 @@ Result<VerifyOutcome> verify_rig(const VerifyRequest& request, JobContext& job) 
 
 std::optional<CalibrationFile> calibration_file_of(const std::string& device_uri) {
   const std::optional<RigLog> log = log_of_device(device_uri);
-  if (!log || !is_calibration(log->verified)) {
+  if (!log || log->of_range_camera()) {
     return std::nullopt;
   }
   const Result<std::string> json = read_whole_file(log->verified);
@@ -141,7 +136,7 @@ std::optional<RigCare> care_of(const std::string& device_uri) {
   }
   RigCare care;
   care.verified = log->verified.string();
-  care.calibration = is_calibration(log->verified) ? care.verified : std::string();
+  care.calibration = log->of_range_camera() ? std::string() : care.verified;
   care.last = log->last();
   care.age_days = care.last ? days_since(care.last->when) : std::nullopt;
   return care;
