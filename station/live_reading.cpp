@@ -15,6 +15,7 @@
 #include "station/plan_again.h"
 #include "station/results.h"
 #include "station/session_pins.h"
+#include "station/unfinished_scan.h"
 
 namespace dubsar {
 
@@ -52,6 +53,7 @@ void LiveSession::read_folder() {
       settings_ = std::move(*kept);
     }
   }
+  look_for_broken_off();
   show_verdict(*store);
   changed();
   const bool has_model = show_stored_model(*store, *poses);
@@ -71,6 +73,15 @@ void LiveSession::read_folder() {
   if (!set.scans.empty() && !job_->cancelled()) {
     rebuild_model(std::move(set), *poses);
   }
+}
+
+void LiveSession::look_for_broken_off() {
+  int rows = 0;
+  for (const LeftScan& left : left_scans(options_.session)) {
+    rows += left.grid.valid_count() > 0 ? left.grid.rows : 0;
+  }
+  const std::scoped_lock lock(mutex_);
+  state_.broken_off_rows = rows;
 }
 
 void LiveSession::show_scans(const SessionStore& store, const std::vector<StoredScan>& scans) {

@@ -337,6 +337,7 @@ void LiveSession::run_engine(std::vector<OperatorCommand> first, bool first_scan
   }
   changed();
   const Result<EngineResult> result = engine->run(*job);
+  look_for_broken_off();
   // What was set while it ran is in the session.
   const Result<SessionStore> store = SessionStore::open(options_.session, SessionStore::Access::kReadOnly);
   Result<SettingWords> kept = store ? kept_settings(*store, uri) : std::unexpected(store.error());

@@ -83,6 +83,7 @@ class LiveSession {
   void rebuild_model(ScanSet set, const std::vector<ScanPose>& poses);
   void run_engine(std::vector<OperatorCommand> first, bool first_scan_waits);
   void read_folder();
+  void look_for_broken_off();
   void show_scans(const SessionStore& store, const std::vector<StoredScan>& scans);  ///< under the mutex
   void show_verdict(const SessionStore& store);                                      ///< and who signed it
   /// False where it is of other poses, or there is none.

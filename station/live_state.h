@@ -99,6 +99,7 @@ struct LiveState {
   std::shared_ptr<const CalibrateOutcome> calibration;  ///< likewise
   bool exists = false;                                  ///< the folder holds a session
   int profiles = 0;                                     ///< of the scan under way
+  int broken_off_rows = 0;  ///< of scans in whose middle a program ended; the next run stores them
 };
 
 }  // namespace dubsar

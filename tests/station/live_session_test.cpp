@@ -12,6 +12,7 @@
 
 #include "acquisition/session_store.h"
 #include "station/live_session.h"
+#include "station/unfinished_scan.h"
 #include "tests/support/temporary_folder.h"
 
 namespace dubsar {
@@ -246,6 +247,38 @@ TEST(LiveSession, WhatWasStoppedGoesOnWithEverythingThatWasStored) {
   EXPECT_EQ(state.record.museum_number, "VAT 1");
   again.session.scan_now();
   ASSERT_TRUE(again.wait_until([&](const LiveState& s) { return s.scans.size() > stored; }));
+}
+
+TEST(LiveSession, AScanThatWasBrokenOffIsToldUntilARunHasStoredIt) {
+  const test::TemporaryFolder folder;
+  ASSERT_TRUE(SessionStore::open_or_create(folder.path() / "s"));
+  RangeGrid rows;
+  rows.allocate(30, 40);
+  rows.spacing_mm = 0.25;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    rows.x[i] = 0.25F * static_cast<float>(i % 40);
+    rows.y[i] = 0.25F * static_cast<float>(i / 40);
+    rows.valid[i] = 1;
+  }
+  {
+    UnfinishedScan killed(folder.path() / "s", std::nullopt, std::chrono::milliseconds(0));
+    killed.follow(rows, 0);
+    for (int k = 0; k < 500 && (left_scans(folder.path() / "s").empty() ||
+                                left_scans(folder.path() / "s").front().grid.rows < 30);
+         ++k) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+    killed.leave();
+  }
+  Followed followed(kSmallTablet, folder.path() / "s");
+  followed.session.read();
+  ASSERT_TRUE(followed.wait_for_rest());
+  EXPECT_EQ(followed.session.state().broken_off_rows, 30);
+  followed.session.scan_now();
+  ASSERT_TRUE(followed.wait_until([](const LiveState& s) { return s.scans.size() >= 2; }));
+  followed.session.finish();
+  ASSERT_TRUE(followed.wait_for_rest());
+  EXPECT_EQ(followed.session.state().broken_off_rows, 0);
 }
 
 TEST(LiveSession, WhatIsAskedForGoesBeforeTheModelOfAnInterruptedSession) {

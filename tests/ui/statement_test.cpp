@@ -106,6 +106,17 @@ TEST(Statement, WhatIsNotInTheSessionCannotBeSigned) {
   }
 }
 
+TEST(Statement, AScanThatWasBrokenOffIsSaidToBeThere) {
+  LiveState none;
+  none.broken_off_rows = 431;
+  EXPECT_THAT(statement_of(none, true, Language::kEnglish).detail, HasSubstr("broken off is kept"));
+  LiveState some = with_scan(PoseStatus::kRegistered);
+  some.broken_off_rows = 431;
+  EXPECT_THAT(statement_of(some, true, Language::kGerman).detail, HasSubstr("Zeilen: 431"));
+  some.broken_off_rows = 0;
+  EXPECT_EQ(statement_of(some, true, Language::kEnglish).detail, "");
+}
+
 TEST(Statement, RedThatIsSmallIsNotSaidToBeNone) {
   LiveState state = with_scan(PoseStatus::kRegistered);
   state.red_map = map_with(0.02);

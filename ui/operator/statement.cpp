@@ -50,8 +50,15 @@ void say_waiting(Statement& out, const LiveState& state, Language language) {
   }
 }
 
+void add_sentence(std::string& to, const std::string& sentence) {
+  to += (to.empty() ? "" : " ") + sentence;
+}
+
 void say_still(Statement& out, const LiveState& state, bool has_device, Language language) {
   const bool any = newest(state) != nullptr;
+  const std::string broken_off = state.broken_off_rows > 0
+                                     ? filled(text_of(Text::kBrokenOff, language), state.broken_off_rows)
+                                     : std::string();
   out.may_scan = has_device;
   const bool conclusive = any && state.red_map && state.red_map->conclusive && state.verdict_kept;
   out.may_pack = any && state.signed_off;
@@ -72,8 +79,9 @@ void say_still(Statement& out, const LiveState& state, bool has_device, Language
   } else if (!any) {
     out.headline = text_of(Text::kLayTablet, language);
     out.tone = Tone::kAsk;
+    out.detail = broken_off;
     if (state.care && state.care->is_due()) {
-      out.detail = text_of(Text::kVerifyFirst, language);
+      add_sentence(out.detail, text_of(Text::kVerifyFirst, language));
     }
   } else if (conclusive && state.signed_off) {
     out.headline = filled(text_of(Text::kSigned, language), state.signed_by.c_str());
@@ -93,10 +101,11 @@ void say_still(Statement& out, const LiveState& state, bool has_device, Language
     out.scan_label = Text::kGoOn;
     // As incomplete, with the reason.
     out.may_sign = state.red_map != nullptr && state.verdict_kept && !state.signed_off;
+    out.detail = broken_off;
     if (state.signed_off) {
-      out.detail = filled(text_of(Text::kSigned, language), state.signed_by.c_str());
+      add_sentence(out.detail, filled(text_of(Text::kSigned, language), state.signed_by.c_str()));
     } else if (state.red_map && !state.red_map->next.empty()) {
-      out.detail = sentence(state.red_map->next.front().say, language);
+      add_sentence(out.detail, sentence(state.red_map->next.front().say, language));
     }
   }
 }

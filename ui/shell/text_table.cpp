@@ -28,6 +28,8 @@ constexpr Row kRows[] = {
     {Text::kSigning, "Checking every byte, then signing", "Jedes Byte wird geprüft, dann unterschrieben"},
     {Text::kStillRed, "{} mm² are still red: scan on", "{} mm² sind noch rot: weiter scannen"},
     {Text::kStoredScans, "Scans stored: {}. Go on", "Gespeicherte Scans: {}. Weiter"},
+    {Text::kBrokenOff, "The scan that was broken off is kept as you go on, rows: {}.",
+     "Der abgebrochene Scan wird beim Weitermachen behalten, Zeilen: {}."},
     {Text::kConclusive, "Conclusive: nothing is missing. Sign it",
      "Vollständig: nichts fehlt. Unterschreiben"},
     {Text::kSigned, "Signed by {}", "Unterschrieben von {}"},

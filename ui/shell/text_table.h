@@ -26,6 +26,7 @@ enum class Text {
   kSigning,
   kStillRed,
   kStoredScans,
+  kBrokenOff,
   kConclusive,
   kSigned,
   kSignedNext,
