@@ -14,6 +14,7 @@
 #include "acquisition/calibration_laser.h"
 #include "acquisition/fresh_frame.h"
 #include "acquisition/rig_parts.h"
+#include "acquisition/stops_when_cancelled.h"
 #include "formats/atomic_file.h"
 #include "formats/gray_file.h"
 
@@ -104,6 +105,7 @@ Result<LiveCalibration> LiveCalibration::start(const LiveCalibrationPlan& given,
     if (!axis) {
       return std::unexpected(axis.error());
     }
+    const StopsWhenCancelled watch(stage, job);
     if (Status homed = home_once(stage, plan.axis); !homed) {
       return std::unexpected(homed.error());
     }
@@ -153,7 +155,11 @@ Status LiveCalibration::expose(const std::optional<double>& exposure_us) {
   return exposure_us ? camera_.set("exposure_us", *exposure_us) : Status{};
 }
 
-Result<GrayImage> LiveCalibration::picture(bool laser, const std::optional<double>& exposure_us) {
+Result<GrayImage> LiveCalibration::picture(bool laser, const std::optional<double>& exposure_us,
+                                           const JobContext& job) {
+  if (job.cancelled()) {
+    return fail(ErrorKind::kCancelled, "calibration cancelled", plan_.folder.string());
+  }
   if (Status exposed = expose(exposure_us); !exposed) {
     return std::unexpected(exposed.error());
   }
@@ -175,16 +181,17 @@ Result<GrayImage> LiveCalibration::picture(bool laser, const std::optional<doubl
   return gray_of(*frame);
 }
 
-Result<LiveCalibration::Taken> LiveCalibration::take_pose() {
+Result<LiveCalibration::Taken> LiveCalibration::take_pose(const JobContext& job) {
   if (Status started = camera_.start_frames(); !started) {
     return std::unexpected(started.error());
   }
   const StreamGuard stream(camera_);
   const LaserGuard dark(stage_, static_cast<std::uint32_t>(plan_.laser));
-  return pose_while_streaming();
+  const StopsWhenCancelled watch(stage_, job);
+  return pose_while_streaming(job);
 }
 
-Result<LiveCalibration::Taken> LiveCalibration::pose_while_streaming() {
+Result<LiveCalibration::Taken> LiveCalibration::pose_while_streaming(const JobContext& job) {
   const std::size_t number = plan_.set.poses.size();
   CalibrationView view;
   if (plan_.set.motion == MotionKind::kGalvanometer) {
@@ -195,7 +202,7 @@ Result<LiveCalibration::Taken> LiveCalibration::pose_while_streaming() {
     }
     view.mirror_position = mirror;
   }
-  const Result<GrayImage> board = picture(false, plan_.board_exposure_us);
+  const Result<GrayImage> board = picture(false, plan_.board_exposure_us, job);
   if (!board) {
     return std::unexpected(board.error());
   }
@@ -205,9 +212,9 @@ Result<LiveCalibration::Taken> LiveCalibration::pose_while_streaming() {
   if (!seen) {
     return Taken{false, seen.error().what};
   }
-  const Result<GrayImage> lit = picture(true, plan_.laser_exposure_us);
-  const Result<GrayImage> dim = lit ? picture(false, plan_.laser_exposure_us) : lit;
-  const Result<GrayImage> again = dim ? picture(false, plan_.board_exposure_us) : dim;
+  const Result<GrayImage> lit = picture(true, plan_.laser_exposure_us, job);
+  const Result<GrayImage> dim = lit ? picture(false, plan_.laser_exposure_us, job) : lit;
+  const Result<GrayImage> again = dim ? picture(false, plan_.board_exposure_us, job) : dim;
   if (!again) {
     return std::unexpected(again.error());
   }
@@ -247,6 +254,7 @@ Result<LiveCalibration::Taken> LiveCalibration::take_stops(const JobContext& job
     return std::unexpected(started.error());
   }
   const StreamGuard stream(camera_);
+  const StopsWhenCancelled watch(stage_, job);
   return stops_while_streaming(job);
 }
 
@@ -262,9 +270,6 @@ Result<LiveCalibration::Taken> LiveCalibration::stops_while_streaming(const JobC
   std::vector<CalibrationSet::Stop> stops;
   std::vector<GrayImage> pictures;
   for (int i = 0; i < plan_.stops; ++i) {
-    if (job.cancelled()) {
-      return fail(ErrorKind::kCancelled, "calibration cancelled", plan_.folder.string());
-    }
     job.progress("stage", static_cast<double>(i) / plan_.stops);
     const double there = plan_.from + (plan_.to - plan_.from) * i / std::max(1, plan_.stops - 1);
     if (Status moved = stage_.move({axis, there, 0, false}); !moved) {
@@ -274,7 +279,7 @@ Result<LiveCalibration::Taken> LiveCalibration::stops_while_streaming(const JobC
     if (!position) {
       return std::unexpected(position.error());
     }
-    Result<GrayImage> picture_now = picture(false, plan_.board_exposure_us);
+    Result<GrayImage> picture_now = picture(false, plan_.board_exposure_us, job);
     if (!picture_now) {
       return std::unexpected(picture_now.error());
     }

@@ -46,8 +46,9 @@ class LiveCalibration {
     std::string said;  ///< what was seen, or why it is of no use
   };
   /// The board held still: a picture with the laser off, one with it on, one with it off again. Of no use: no
-  /// board, or one that moved meanwhile. The laser is off afterwards. Errors: kDevice, kStorage.
-  [[nodiscard]] Result<Taken> take_pose();
+  /// board, or one that moved meanwhile. The laser is off afterwards. Errors: kDevice, kStorage,
+  /// kCancelled.
+  [[nodiscard]] Result<Taken> take_pose(const JobContext& job);
   /// The board lying on the stage, which goes to its stops. Of no use: a board that is seen at fewer than
   /// three.
   [[nodiscard]] Result<Taken> take_stops(const JobContext& job);
@@ -62,8 +63,9 @@ class LiveCalibration {
  private:
   LiveCalibration(LiveCalibrationPlan plan, BoardSpec board, Device camera, Device stage);
   Status expose(const std::optional<double>& exposure_us);
-  [[nodiscard]] Result<GrayImage> picture(bool laser, const std::optional<double>& exposure_us);
-  [[nodiscard]] Result<Taken> pose_while_streaming();
+  [[nodiscard]] Result<GrayImage> picture(bool laser, const std::optional<double>& exposure_us,
+                                          const JobContext& job);
+  [[nodiscard]] Result<Taken> pose_while_streaming(const JobContext& job);
   [[nodiscard]] Result<Taken> stops_while_streaming(const JobContext& job);
   [[nodiscard]] CalibrationOptions options() const;
   Status keep() const;

@@ -4,13 +4,10 @@
 
 #include <algorithm>
 #include <atomic>
-#include <chrono>
-#include <condition_variable>
-#include <mutex>
-#include <thread>
 #include <utility>
 
 #include "acquisition/rig_device.h"
+#include "acquisition/stops_when_cancelled.h"
 
 namespace dubsar {
 
@@ -135,42 +132,6 @@ class Collector : public ProfileSink {
   ScanInfo info_;
 };
 
-/// The emergency stop of a stage; of what has none, its stop.
-void halt_device(const Device& device) {
-  if (!device.emergency_stop()) {
-    [[maybe_unused]] const Status said = device.stop();
-  }
-}
-
-/// While it lives, a cancelled job stops the device, and a halt stops it at once. A stop that comes before
-/// the motion has begun is lost, so it is said until the motion has ended.
-class StopsWhenCancelled {
- public:
-  StopsWhenCancelled(const Device& device, const JobContext& job, const std::atomic<bool>& halted) {
-    if (device.can_stop()) {
-      watcher_ = std::jthread([this, &device, &job, &halted](const std::stop_token& done) {
-        constexpr auto kPause = std::chrono::milliseconds(20);
-        std::unique_lock lock(mutex_);
-        while (!wake_.wait_for(lock, done, kPause, [&] { return done.stop_requested(); })) {
-          if (done.stop_requested()) {
-            return;
-          }
-          if (halted) {
-            halt_device(device);
-          } else if (job.cancelled()) {
-            [[maybe_unused]] const Status said = device.stop();
-          }
-        }
-      });
-    }
-  }
-
- private:
-  std::mutex mutex_;
-  std::condition_variable_any wake_;
-  std::jthread watcher_;
-};
-
 }  // namespace
 
 Status RangeSource::place(const Placement& placement, JobContext& job) {
@@ -181,11 +142,18 @@ Status RangeSource::place(const Placement& placement, JobContext& job) {
     return std::unexpected(*halt);
   }
   const Status placed = [&] {
-    const StopsWhenCancelled watch(device_, job, *halted_);
+    const StopsWhenCancelled watch(device_, job, halted_.get());
     return device_.place(placement);
   }();
-  const auto halt = halted();
+  const auto halt = halted(job);
   return halt ? std::unexpected(*halt) : placed;
+}
+
+std::optional<Error> RangeSource::halted(const JobContext& job) const {
+  if (job.halted()) {
+    halt();
+  }
+  return halted();
 }
 
 std::optional<Error> RangeSource::halted() const {
@@ -229,18 +197,18 @@ Result<RangeSource> RangeSource::open(std::string_view text, const DriverRegistr
 Result<std::optional<RangeGrid>> RangeSource::next(const RowObserver& observer, JobContext& job) {
   partial_.reset();
   record_ = {};
-  if (const auto halt = halted()) {
+  if (const auto halt = halted(job)) {
     return std::unexpected(*halt);
   }
   Collector collector(observer, job, *halted_);
   const Result<ScanOutcome> outcome = [&] {
-    const StopsWhenCancelled watch(device_, job, *halted_);
+    const StopsWhenCancelled watch(device_, job, halted_.get());
     return device_.scan(collector);
   }();
   record_.tally = collector.tally;
   std::optional<Error> fault = outcome ? std::nullopt : std::optional(outcome.error());
   if (fault) {
-    fault = halted().value_or(*fault);
+    fault = halted(job).value_or(*fault);
   }
   if (outcome && *outcome == ScanOutcome::kExhausted) {
     return std::optional<RangeGrid>();

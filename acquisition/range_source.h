@@ -43,7 +43,7 @@ class RangeSource {
   [[nodiscard]] Device& device() { return device_; }
 
   /// Asks for where the next scan is taken from. When the job is cancelled meanwhile the device is stopped,
-  /// where it offers that, and the answer is kCancelled.
+  /// where it offers that, and the answer is kCancelled; a job that is halted halts this, for good.
   Status place(const Placement& placement, JobContext& job);
   /// Stops all motion, where the device offers that.
   Status stop() const { return device_.stop(); }
@@ -65,6 +65,7 @@ class RangeSource {
 
  private:
   RangeSource(DeviceUri uri, Device device, DeviceCapabilities capabilities, ResampleOptions resampling);
+  [[nodiscard]] std::optional<Error> halted(const JobContext& job) const;
 
   DeviceUri uri_;
   Device device_;

@@ -22,6 +22,13 @@ class JobContext {
 
   void cancel() noexcept { cancelled_.store(true, std::memory_order_relaxed); }
   [[nodiscard]] bool cancelled() const noexcept { return cancelled_.load(std::memory_order_relaxed); }
+  /// The emergency stop: cancelled, and a device that the job drives is to stop at once, lasers off, whatever
+  /// that does to its position. From where `cancel` may be called from.
+  void halt() noexcept {
+    halted_.store(true, std::memory_order_relaxed);
+    cancel();
+  }
+  [[nodiscard]] bool halted() const noexcept { return halted_.load(std::memory_order_relaxed); }
   /// fraction in [0, 1]. The sink is called on the caller's thread and must be thread-safe.
   void progress(std::string_view stage, double fraction) const {
     if (sink_) {
@@ -32,6 +39,7 @@ class JobContext {
  private:
   ProgressSink sink_;
   std::atomic<bool> cancelled_{false};
+  std::atomic<bool> halted_{false};
 };
 
 }  // namespace dubsar

@@ -8,6 +8,7 @@ namespace dubsar {
 
 Engine::Engine(EngineOptions options, EventSink sink) : impl_(std::make_unique<Impl>()) {
   impl_->options = std::move(options);
+  impl_->keeps_half = impl_->options.keep_half_scan;
   impl_->sink = std::move(sink);
 }
 Engine::~Engine() {

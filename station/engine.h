@@ -41,6 +41,7 @@ struct EngineOptions {
   bool show_model = false;                           ///< send ModelChanged whenever the mesh has grown
   SettingWords settings = {};                        ///< of the device, over those that the session keeps
   std::vector<OperatorCommand> first_commands = {};  ///< as if posted before the first scan
+  bool keep_half_scan = false;                       ///< as if KeepHalfScan had been posted
 };
 
 /// What a run of the engine leaves behind.
@@ -61,8 +62,8 @@ struct EngineResult {
 /// not depend on timing.
 ///
 /// Cancelling the job stops it in good order: scans that were stored stay stored, a half-taken scan is given
-/// up (unless KeepHalfScan was posted), and run() returns kCancelled. Going on later is run() on the same
-/// session.
+/// up (unless it is to be kept: keep_half_scan, KeepHalfScan), and run() returns kCancelled. Going on later
+/// is run() on the same session.
 class Engine {
  public:
   Engine(EngineOptions options, EventSink sink);

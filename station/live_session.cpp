@@ -215,7 +215,7 @@ void LiveSession::halt() {
     watch_->stop();
   }
   if (job_) {  // an artefact that is measured, perhaps
-    job_->cancel();
+    job_->halt();
   }
 }
 

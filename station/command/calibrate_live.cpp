@@ -146,6 +146,7 @@ Result<std::string> take_pictures(const LiveOptions& options, const std::string&
   if (!live) {
     return std::unexpected(live.error());
   }
+  outlive_readers();
   OperatorLines lines(context.job);
   tell_next(*live);
   for (std::optional<std::string> line = lines.next(); line && *line != "q"; line = lines.next()) {
@@ -154,10 +155,14 @@ Result<std::string> take_pictures(const LiveOptions& options, const std::string&
       continue;
     }
     const Result<LiveCalibration::Taken> taken =
-        line->empty() ? live->take_pose() : live->take_stops(context.job);
+        line->empty() ? live->take_pose(context.job) : live->take_stops(context.job);
+    const ErrorKind fault = taken ? ErrorKind::kCancelled : taken.error().kind;
     // A camera or a stage that is gone can be plugged in again: what was taken is kept either way.
-    if (!taken && taken.error().kind != ErrorKind::kDevice) {
+    if (fault != ErrorKind::kDevice && fault != ErrorKind::kCancelled) {
       return std::unexpected(taken.error());
+    }
+    if (context.job.cancelled()) {
+      break;
     }
     tell(taken ? (taken->used ? "taken: " : "of no use: ") + taken->said : taken.error().line());
     tell_next(*live);

@@ -18,6 +18,7 @@
 #include "formats/rig_limits_json.h"
 #include "station/command/command.h"
 #include "station/command/size_option.h"
+#include "station/command/terminal.h"
 #include "station/engine.h"
 
 namespace dubsar {
@@ -147,6 +148,7 @@ Result<int> scan(const ScanArguments& arguments, CommandContext& context) {
   options.session = arguments.session;
   options.automatic = arguments.automatic;
   options.max_scans = arguments.max_scans;
+  options.keep_half_scan = true;  // whatever ends the command: a tablet is not laid there twice for nothing
   if (!arguments.pins.empty()) {
     Result<PinSet> pins = read_pins(arguments.pins);
     if (!pins) {
@@ -178,6 +180,7 @@ Result<int> scan(const ScanArguments& arguments, CommandContext& context) {
     options.size_mm = *size;
   }
   show_progress(false);
+  outlive_readers();
   Narrator narrator;
   Engine engine(std::move(options), [&narrator](const Event& event) { narrator(event); });
   const Result<EngineResult> result = engine.run(context.job);

@@ -36,6 +36,7 @@ Result<int> open_station(const StationArguments& arguments, CommandContext& cont
     options.pins = std::move(*pins);
   }
   show_progress(false);
+  outlive_readers();
   const Result<int> status = ui::run_station_window(options, context.job);
   if (status && context.json) {
     CommandContext::print({{"session", arguments.session}, {"status", *status}});

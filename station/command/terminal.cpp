@@ -18,10 +18,13 @@ namespace {
 std::atomic<JobContext*> g_job{nullptr};  // a signal handler has no other way to reach the job
 std::atomic<bool> g_bar_stands{false};
 std::atomic<bool> g_progress_on{true};
+bool g_ends_with_terminal = false;
 
 extern "C" void on_interrupt(int signal_number) {
   JobContext* job = g_job.load();
-  if (job != nullptr && !job->cancelled()) {
+  // A SIGHUP seldom comes alone: shells, the kernel and the end of a login send it again, or behind a
+  // SIGTERM.
+  if (job != nullptr && (signal_number == SIGHUP || !job->cancelled())) {
     job->cancel();
     return;
   }
@@ -80,6 +83,10 @@ void show_progress(bool on) {
   g_progress_on = on;
 }
 
+void outlive_readers() {
+  std::signal(SIGPIPE, SIG_IGN);
+}
+
 void finish_progress() {
   if (g_bar_stands.exchange(false)) {
     std::fputc('\n', stderr);
@@ -90,11 +97,19 @@ InterruptScope::InterruptScope(JobContext& job) {
   g_job = &job;
   std::signal(SIGINT, on_interrupt);
   std::signal(SIGTERM, on_interrupt);
+  // A terminal that is closed is no reason to leave a motor running; nohup's wish is.
+  g_ends_with_terminal = std::signal(SIGHUP, on_interrupt) != SIG_IGN;
+  if (!g_ends_with_terminal) {
+    std::signal(SIGHUP, SIG_IGN);
+  }
 }
 
 InterruptScope::~InterruptScope() {
   std::signal(SIGINT, SIG_DFL);
   std::signal(SIGTERM, SIG_DFL);
+  if (g_ends_with_terminal) {
+    std::signal(SIGHUP, SIG_DFL);
+  }
   g_job = nullptr;
 }
 

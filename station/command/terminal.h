@@ -19,7 +19,12 @@ void show_progress(bool on);
 /// Ends a bar that stands on the terminal, so that the next line starts clean.
 void finish_progress();
 
-/// The first Ctrl-C (or SIGTERM) cancels the job in good order; the second ends the program at once.
+/// For verbs that drive a device: whoever reads what is said may go (`| tee` gets the same Ctrl-C), and what
+/// was scanned is still brought to its place.
+void outlive_readers();
+
+/// The first Ctrl-C (SIGTERM, or SIGHUP of a terminal that is closed) cancels the job in good order; the
+/// second ends the program at once, but for a SIGHUP. One that is ignored (nohup) stays so.
 class InterruptScope {
  public:
   explicit InterruptScope(JobContext& job);

@@ -6,7 +6,9 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
+#include <thread>
 
 #include "acquisition/calibration_folder.h"
 #include "bench/support/simulated_calibration.h"
@@ -94,10 +96,10 @@ TEST_F(Live, LeadsAnOperatorToACalibration) {
   const std::vector<RigidTransform> all = poses(12);
   // Nothing to see, then a board that is not held still: of no use, and nothing is kept.
   held_.translation_mm = {500, 0, 250};
-  EXPECT_FALSE(live->take_pose()->used);
+  EXPECT_FALSE(live->take_pose(JobContext{})->used);
   held_ = all[0];
   shaking_ = true;
-  const auto moved = live->take_pose();
+  const auto moved = live->take_pose(JobContext{});
   ASSERT_TRUE(moved.has_value());
   EXPECT_FALSE(moved->used);
   EXPECT_NE(moved->said.find("moved"), std::string::npos);
@@ -106,7 +108,7 @@ TEST_F(Live, LeadsAnOperatorToACalibration) {
   shaking_ = false;
   for (const RigidTransform& pose : all) {
     held_ = pose;
-    const auto taken = live->take_pose();
+    const auto taken = live->take_pose(JobContext{});
     ASSERT_TRUE(taken.has_value()) << taken.error().line();
     EXPECT_TRUE(taken->used) << taken->said;
     EXPECT_EQ(bench_.laser, 0) << "off when it is done";
@@ -143,14 +145,14 @@ TEST_F(Live, GoesOnWithWhatWasTakenAndRefusesAnothersPictures) {
     Result<LiveCalibration> live = start();
     ASSERT_TRUE(live.has_value());
     held_ = poses(2)[0];
-    ASSERT_TRUE(live->take_pose()->used);
+    ASSERT_TRUE(live->take_pose(JobContext{})->used);
   }
   {
     Result<LiveCalibration> again = start();
     ASSERT_TRUE(again.has_value()) << again.error().line();
     EXPECT_EQ(again->poses(), 1);
     held_ = poses(2)[1];
-    ASSERT_TRUE(again->take_pose()->used);
+    ASSERT_TRUE(again->take_pose(JobContext{})->used);
     EXPECT_TRUE(std::filesystem::exists(plan_.folder / "pose_01_dark.png"));
   }
   bench_.serial = "ANOTHER";
@@ -163,11 +165,11 @@ TEST_F(Live, GoesOnWithTheOptionsThatAreGivenAnew) {
   held_ = poses(1)[0];
   plan_.depth_range_mm = 25;
   plan_.plate_margin_mm = 3;
-  ASSERT_TRUE(start()->take_pose()->used);
+  ASSERT_TRUE(start()->take_pose(JobContext{})->used);
   plan_.depth_range_mm = 30;
   plan_.plate_margin_mm.reset();
   plan_.set.stripe_sigma_px = 2;
-  ASSERT_TRUE(start()->take_pose()->used);
+  ASSERT_TRUE(start()->take_pose(JobContext{})->used);
   const std::string list = (plan_.folder / "calibration.toml").string();
   const auto set = parse_calibration_set(read_whole_file(list).value(), list);
   ASSERT_TRUE(set.has_value()) << set.error().line();
@@ -184,7 +186,7 @@ TEST_F(Live, EachKindOfPictureHasItsExposure) {
   ASSERT_TRUE(live.has_value()) << live.error().line();
   for (const RigidTransform& pose : poses(2)) {
     held_ = pose;
-    ASSERT_TRUE(live->take_pose()->used);
+    ASSERT_TRUE(live->take_pose(JobContext{})->used);
   }
   EXPECT_EQ(bench_.lit_us, (std::vector{300.0, 300.0}));
   // Board, dark beside the stripe, board; twice.
@@ -194,7 +196,7 @@ TEST_F(Live, EachKindOfPictureHasItsExposure) {
 TEST_F(Live, ARegionThatNoScanCouldUseIsRefused) {
   bench_.offset_x = 64;
   held_ = poses(1)[0];
-  const auto taken = start()->take_pose();
+  const auto taken = start()->take_pose(JobContext{});
   ASSERT_FALSE(taken.has_value());
   EXPECT_NE(taken.error().line().find("begins at pixel 64, 0"), std::string::npos) << taken.error().line();
 }
@@ -204,7 +206,7 @@ TEST_F(Live, FailuresLeaveTheLaserOff) {
   ASSERT_TRUE(live.has_value());
   held_ = poses(1)[0];
   bench_.gone_after = 2;
-  const auto gone = live->take_pose();
+  const auto gone = live->take_pose(JobContext{});
   ASSERT_FALSE(gone.has_value());
   EXPECT_EQ(gone.error().kind, ErrorKind::kDevice);
   EXPECT_EQ(bench_.laser, 0);
@@ -220,6 +222,32 @@ TEST_F(Live, FailuresLeaveTheLaserOff) {
   EXPECT_NE(far.error().what.find("limits"), std::string::npos);
   plan_.set.board = "charuco:1x1:0:0";
   EXPECT_FALSE(start().has_value());
+}
+
+TEST_F(Live, ACancelledOneEndsTheMoveAndLightsNothing) {
+  Result<LiveCalibration> live = start();
+  ASSERT_TRUE(live.has_value());
+  held_ = poses(1)[0];
+  for (const bool halted : {false, true}) {
+    bench_.asked.clear();
+    bench_.far = true;
+    JobContext job;
+    std::jthread presses([&] {
+      std::this_thread::sleep_for(std::chrono::milliseconds(50));
+      halted ? job.halt() : job.cancel();
+    });
+    const auto stopped = live->take_stops(job);
+    ASSERT_FALSE(stopped.has_value());
+    EXPECT_EQ(stopped.error().kind, ErrorKind::kCancelled);
+    EXPECT_NE(bench_.asked.find(halted ? 'E' : 'S'), std::string::npos) << bench_.asked;
+    const auto pose = live->take_pose(job);
+    ASSERT_FALSE(pose.has_value());
+    EXPECT_EQ(pose.error().kind, ErrorKind::kCancelled);
+    EXPECT_EQ(bench_.asked.find('L'), std::string::npos) << bench_.asked;
+    EXPECT_EQ(bench_.laser, 0);
+    bench_.far = false;
+  }
+  EXPECT_EQ(live->stops(), 0);
 }
 
 }  // namespace

@@ -2,11 +2,14 @@
 // Copyright The Dubsar developers
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <cstdint>
 #include <cstdio>
 #include <functional>
+#include <mutex>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "core/mesh_query.h"
@@ -33,10 +36,12 @@ struct RigBench {
   int cut = 0;               ///< rows that the camera leaves away at the lower edge
   int gone_after = 1 << 30;  ///< frames until the camera is unplugged
   bool stuck = false;
-  bool says_it_moves = false;  ///< for ever
-  bool mute = false;           ///< tells of no axis
-  int stale = 0;               ///< frames of long ago that the camera still holds
-  std::string asked;           ///< of the stage: L, D (laser lit, dark), S (stop), E (emergency stop)
+  bool says_it_moves = false;     ///< for ever
+  bool mute = false;              ///< tells of no axis
+  std::atomic<bool> far = false;  ///< a move ends by nothing but a stop
+  int stale = 0;                  ///< frames of long ago that the camera still holds
+  std::mutex line;                ///< of laser and asked: a stop comes from another thread
+  std::string asked;              ///< of the stage: L, D (laser lit, dark), S (stop), E (emergency stop)
   std::uint64_t frames = 0;
   GrayImage frame;
   bool settable = false;  ///< the camera has an exposure to set
@@ -177,6 +182,12 @@ inline const dubsar_driver& stage_driver() {
     out.home = [](dubsar_device*, dubsar_error*) -> std::int32_t { return DUBSAR_OK; };
     out.move = [](dubsar_device* device, const dubsar_move* move, dubsar_error*) -> std::int32_t {
       RigBench& bench = bench_of(device);
+      if (bench.far) {
+        while (bench.far) {
+          std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        }
+        return DUBSAR_CANCELLED;
+      }
       bench.position = bench.stuck ? bench.position : move->position;
       return DUBSAR_OK;
     };
@@ -194,18 +205,23 @@ inline const dubsar_driver& stage_driver() {
       return DUBSAR_OK;
     };
     out.set_laser = [](dubsar_device* device, std::uint32_t, double power, dubsar_error*) -> std::int32_t {
+      const std::scoped_lock lock(bench_of(device).line);
       bench_of(device).laser = power;
       bench_of(device).asked += power > 0 ? 'L' : 'D';
       return DUBSAR_OK;
     };
     out.stop = [](dubsar_device* device, dubsar_error*) -> std::int32_t {
+      const std::scoped_lock lock(bench_of(device).line);
       bench_of(device).laser = 0;
       bench_of(device).asked += 'S';
+      bench_of(device).far = false;
       return DUBSAR_OK;
     };
     out.emergency_stop = [](dubsar_device* device, dubsar_error*) -> std::int32_t {
+      const std::scoped_lock lock(bench_of(device).line);
       bench_of(device).laser = 0;
       bench_of(device).asked += 'E';
+      bench_of(device).far = false;
       return DUBSAR_OK;
     };
     return out;

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "acquisition/stops_when_cancelled.h"
+
+#include <chrono>
+
+namespace dubsar {
+
+namespace {
+
+constexpr auto kPause = std::chrono::milliseconds(20);
+
+}  // namespace
+
+StopsWhenCancelled::StopsWhenCancelled(const Device& device, const JobContext& job,
+                                       const std::atomic<bool>* halted)
+    : device_(device), job_(job), halted_(halted) {
+  if (device.can_stop()) {
+    watcher_ = std::jthread([this](const std::stop_token& done) { watch(done); });
+  }
+}
+
+StopsWhenCancelled::~StopsWhenCancelled() {
+  if (watcher_.joinable()) {
+    watcher_.request_stop();
+    watcher_.join();
+    if (halted() && !said_) {  // whoever drives it saw the halt first
+      halt_device();
+    }
+  }
+}
+
+bool StopsWhenCancelled::halted() const {
+  return job_.halted() || (halted_ != nullptr && *halted_);
+}
+
+void StopsWhenCancelled::halt_device() {
+  said_ = true;
+  if (!device_.emergency_stop()) {
+    [[maybe_unused]] const Status said = device_.stop();
+  }
+}
+
+void StopsWhenCancelled::watch(const std::stop_token& done) {
+  std::unique_lock lock(mutex_);
+  while (!wake_.wait_for(lock, done, kPause, [&] { return done.stop_requested(); })) {
+    if (done.stop_requested()) {
+      return;
+    }
+    if (halted()) {
+      halt_device();
+    } else if (job_.cancelled()) {
+      [[maybe_unused]] const Status said = device_.stop();
+    }
+  }
+}
+
+}  // namespace dubsar

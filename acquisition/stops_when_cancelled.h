@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <mutex>
+#include <thread>
+
+#include "core/job.h"
+#include "drivers/device.h"
+
+namespace dubsar {
+
+/// While it lives, a device that is driven on another thread is stopped when the job is cancelled, and by its
+/// emergency stop (its stop, where it has none) when the job is halted or `halted` is set: within some
+/// milliseconds. A stop that comes before the motion has begun is lost, so it is said until this goes; one of
+/// the halts is said in any case.
+class StopsWhenCancelled {
+ public:
+  /// Nothing is watched of a device that cannot stop.
+  StopsWhenCancelled(const Device& device, const JobContext& job, const std::atomic<bool>* halted = nullptr);
+  ~StopsWhenCancelled();
+  StopsWhenCancelled(const StopsWhenCancelled&) = delete;
+  StopsWhenCancelled& operator=(const StopsWhenCancelled&) = delete;
+
+ private:
+  [[nodiscard]] bool halted() const;
+  void halt_device();
+  void watch(const std::stop_token& done);
+
+  const Device& device_;
+  const JobContext& job_;
+  const std::atomic<bool>* halted_;
+  bool said_ = false;  ///< the device's emergency stop; read when the watcher has ended
+  std::mutex mutex_;
+  std::condition_variable_any wake_;
+  std::jthread watcher_;
+};
+
+}  // namespace dubsar
