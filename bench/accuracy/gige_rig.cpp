@@ -55,19 +55,20 @@ int scan(const test::GigeScannerPlan& plan, const MeshQuery& truth, test::PeerPr
   }
   const auto lost = static_cast<unsigned long long>(sink.tally.profiles_dropped);
   const RangeGrid grid = sink.grid();
-  const test::DepthErrors errors =
-      test::depth_errors(grid, scanner.tablet_from_grid(), truth, 1e3 * plan.truth.depth_per_px_mm());
+  const double um_per_px = 1e3 * plan.truth.depth_per_px_mm();
+  const test::DepthErrors errors = test::depth_errors(grid, scanner.tablet_from_grid(), truth, um_per_px);
   const Eigen::Vector3d per_mm = plan.truth.scanner_from_camera().rotation * plan.truth.motion.direction;
   const double seconds = std::chrono::duration<double>(sink.last - sink.first).count();
   std::printf(
       "  contrast %.2f: %d rows at %.1f/s, %llu lost, %s packets resent, %.1f%% of the samples; depth %.2f "
-      "um "
-      "rms, bias %.2f, without the %.3f%% that are off by more than a pixel (%.3f%% miss the surface); %.2f "
+      "um rms, %.3f px of the picture, bias %.2f, without the %.3f%% that are off by more than a pixel "
+      "(%.3f%% miss the surface); %.2f "
       "um with those within 0.2 mm",
       plan.optics.speckle_contrast, grid.rows, (grid.rows - 1) / seconds, lost,
       scanner.camera().tell("resent").c_str(),
       100.0 * static_cast<double>(grid.valid_count()) / static_cast<double>(grid.size()), errors.clean_um,
-      errors.bias_um, 100 * (errors.off + errors.missed), 100 * errors.missed, errors.rms_um);
+      errors.clean_um / um_per_px, errors.bias_um, 100 * (errors.off + errors.missed), 100 * errors.missed,
+      errors.rms_um);
   if (bound_um > 0) {
     std::printf(" (bound of the speckle %.1f um: %.2f times)", bound_um, errors.clean_um / bound_um);
   }
