@@ -19,7 +19,7 @@ std::size_t mapped_bytes() {
 }
 
 TEST(Heap, LargeBlocksStayMappingsOfTheirOwnWhateverWasLetGoOf) {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#ifdef DUBSAR_SANITIZED
   GTEST_SKIP() << "a sanitizer brings its own allocator";
 #endif
   map_large_blocks();
@@ -38,7 +38,7 @@ TEST(Heap, LargeBlocksStayMappingsOfTheirOwnWhateverWasLetGoOf) {
 
 // A program that draws by the processor takes and lets go of these many times a second.
 TEST(Heap, MiddlingBlocksDoNotGoBackToTheSystemEachTime) {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#ifdef DUBSAR_SANITIZED
   GTEST_SKIP() << "a sanitizer brings its own allocator";
 #endif
   map_large_blocks();
