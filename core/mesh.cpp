@@ -5,6 +5,7 @@
 #include "core/parallel.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 
 namespace dubsar {
 
@@ -15,6 +16,9 @@ std::vector<Eigen::Vector3f> vertex_normals(const Mesh& mesh) {
     for (const auto& f : mesh.faces) {
       if (!is_here(f[0]) && !is_here(f[1]) && !is_here(f[2])) {
         continue;
+      }
+      if (std::max({f[0], f[1], f[2]}) >= normals.size()) {
+        continue;  // a broken one, that names a vertex which is not there
       }
       const Eigen::Vector3f n =
           (mesh.positions[f[1]] - mesh.positions[f[0]]).cross(mesh.positions[f[2]] - mesh.positions[f[0]]);
