@@ -14,10 +14,10 @@ function(dubsar_library name)
   endif()
 endfunction()
 
-# dubsar_test(NAME SOURCES a_test.cpp ... LINKS dubsar_core ... [LABEL unit])
-# One GoogleTest executable per module, its tests known to ctest one by one.
+# dubsar_test(NAME SOURCES a_test.cpp ... LINKS dubsar_core ... [LABEL unit] [ALONE])
+# One GoogleTest executable per module, its tests known to ctest one by one. ALONE: no other test runs beside these.
 function(dubsar_test name)
-  cmake_parse_arguments(ARG "" "LABEL" "SOURCES;LINKS" ${ARGN})
+  cmake_parse_arguments(ARG "ALONE" "LABEL" "SOURCES;LINKS" ${ARGN})
   if(NOT ARG_LABEL)
     set(ARG_LABEL unit)
   endif()
@@ -28,5 +28,6 @@ function(dubsar_test name)
   if(DUBSAR_SANITIZE)
     target_compile_definitions(${name}_test PRIVATE DUBSAR_SANITIZED)
   endif()
-  gtest_discover_tests(${name}_test DISCOVERY_MODE PRE_TEST PROPERTIES LABELS ${ARG_LABEL} TIMEOUT 300)
+  gtest_discover_tests(${name}_test DISCOVERY_MODE PRE_TEST PROPERTIES
+    LABELS ${ARG_LABEL} TIMEOUT 300 RUN_SERIAL ${ARG_ALONE})
 endfunction()

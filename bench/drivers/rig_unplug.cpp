@@ -19,7 +19,6 @@
 #include "build_paths.h"
 #include "core/mesh_query.h"
 #include "drivers/loader.h"
-#include "sim/frame_rig.h"
 #include "sim/tablet.h"
 #include "tests/support/gige_scanner.h"
 #include "tests/support/grid_truth.h"
@@ -116,15 +115,8 @@ int run(int argc, char** argv) {
   sim::Scene scene;
   scene.tablet = &*tablet;
   scene.query = &query;
-  sim::FrameRigOptions size;
-  size.width = 256;
-  size.height = 200;
-  size.field_mm = 6.25;
-  test::GigeScannerPlan plan;
-  plan.truth = sim::frame_rig(size);
-  plan.scene = &scene;
+  test::GigeScannerPlan plan = test::small_gige_scanner(scene);
   plan.rate_hz = 20;
-  plan.tablet_from_scanner.translation_mm.z() = test::top_mm(tablet->mesh) - 0.5;
   test::GigeScanner scanner(plan, *stage);
   if (!scanner.refusal().empty()) {
     std::fprintf(stderr, "dubsar-rig-unplug: %s\n", scanner.refusal().c_str());

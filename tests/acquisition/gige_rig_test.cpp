@@ -11,7 +11,6 @@
 #include "acquisition/range_source.h"
 #include "build_paths.h"
 #include "drivers/loader.h"
-#include "sim/frame_rig.h"
 #include "tests/drivers/peers/range_surface.h"
 #include "tests/sim/scenes.h"
 #include "tests/support/gige_scanner.h"
@@ -30,15 +29,6 @@ sim::TestScene& tablet_scene() {
 
 class GigeRig : public testing::Test {
  protected:
-  GigeRig() {
-    sim::FrameRigOptions size;
-    size.width = 256;
-    size.height = 200;
-    size.field_mm = 6.25;
-    plan_.truth = sim::frame_rig(size);
-    plan_.scene = &scene_.scene;
-    plan_.tablet_from_scanner.translation_mm.z() = test::top_mm(scene_.tablet.mesh) - 0.5;
-  }
   void SetUp() override {
     if (stage == nullptr) {
       GTEST_SKIP() << "no emulated camera and stage: " << why_not;
@@ -60,7 +50,7 @@ class GigeRig : public testing::Test {
     return open_device(uri.value(), registry_);
   }
   sim::TestScene& scene_ = tablet_scene();
-  test::GigeScannerPlan plan_;
+  test::GigeScannerPlan plan_ = test::small_gige_scanner(scene_.scene);
   DriverRegistry registry_{{std::filesystem::path(DUBSAR_BINARY_DIR) / "lib/dubsar/drivers"}};
   std::uint64_t lost_ = 0;
 };

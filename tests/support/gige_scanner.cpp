@@ -12,8 +12,10 @@
 #include "build_paths.h"
 #include "formats/calibration_json.h"
 #include "formats/number_text.h"
+#include "sim/frame_rig.h"
 #include "sim/frame_target.h"
 #include "tests/drivers/peers/scanner_frames.h"
+#include "tests/support/grid_truth.h"
 #include "tests/support/own_network.h"
 
 namespace dubsar::test {
@@ -25,6 +27,18 @@ constexpr const char* kPeer = "DUBSAR_TEST_PEER";
 constexpr const char* kLibrary = "libumockdev-preload.so.0";
 
 }  // namespace
+
+GigeScannerPlan small_gige_scanner(const sim::Scene& scene) {
+  sim::FrameRigOptions size;
+  size.width = 256;
+  size.height = 200;
+  size.field_mm = 6.25;
+  GigeScannerPlan plan;
+  plan.truth = sim::frame_rig(size);
+  plan.scene = &scene;
+  plan.tablet_from_scanner.translation_mm.z() = top_mm(scene.tablet->mesh) - 0.5;
+  return plan;
+}
 
 GigeScanner::GigeScanner(const GigeScannerPlan& plan, PeerProcess& stage) {
   const double end = plan.start + plan.step * (plan.rows - 1);

@@ -34,6 +34,9 @@ struct GigeScannerPlan {
   std::string method = "adaptive";  ///< of finding the stripe
 };
 
+/// A camera of few pixels over the middle of the scene's tablet, for tests that are quick.
+[[nodiscard]] GigeScannerPlan small_gige_scanner(const sim::Scene& scene);
+
 class GigeScanner {
  public:
   /// Renders, writes rig.toml and calibration.json, and starts the camera. `stage` is a usb_peer.

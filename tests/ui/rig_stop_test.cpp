@@ -16,13 +16,11 @@
 #include <thread>
 
 #include "acquisition/session_store.h"
-#include "sim/frame_rig.h"
 #include "station/engine.h"
 #include "station/verification.h"
 #include "tests/sim/scenes.h"
 #include "tests/station/support/command.h"
 #include "tests/support/gige_scanner.h"
-#include "tests/support/grid_truth.h"
 #include "tests/ui/support/display.h"
 
 namespace dubsar {
@@ -42,14 +40,7 @@ class RigStop : public testing::TestWithParam<int> {
     }
     ASSERT_EQ(stage->tell("plug"), "ok");
     static const sim::TestScene scene(sim::make_or_fail(sim::small_clean_tablet()));
-    sim::FrameRigOptions size;
-    size.width = 256;
-    size.height = 200;
-    size.field_mm = 6.25;
-    test::GigeScannerPlan plan;
-    plan.truth = sim::frame_rig(size);
-    plan.scene = &scene.scene;
-    plan.tablet_from_scanner.translation_mm.z() = test::top_mm(scene.tablet.mesh) - 0.5;
+    test::GigeScannerPlan plan = test::small_gige_scanner(scene.scene);
     plan.rows = kRows;
     plan.start = kStart;
     plan.step = kStep;
