@@ -156,9 +156,8 @@ Result<std::string> take_pictures(const LiveOptions& options, const std::string&
     }
     const Result<LiveCalibration::Taken> taken =
         line->empty() ? live->take_pose(context.job) : live->take_stops(context.job);
-    const ErrorKind fault = taken ? ErrorKind::kCancelled : taken.error().kind;
     // A camera or a stage that is gone can be plugged in again: what was taken is kept either way.
-    if (fault != ErrorKind::kDevice && fault != ErrorKind::kCancelled) {
+    if (!taken && taken.error().kind != ErrorKind::kDevice && taken.error().kind != ErrorKind::kCancelled) {
       return std::unexpected(taken.error());
     }
     if (context.job.cancelled()) {
