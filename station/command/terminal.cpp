@@ -22,9 +22,9 @@ bool g_ends_with_terminal = false;
 
 extern "C" void on_interrupt(int signal_number) {
   JobContext* job = g_job.load();
-  // A SIGHUP seldom comes alone: shells, the kernel and the end of a login send it again, or behind a
-  // SIGTERM.
-  if (job != nullptr && (signal_number == SIGHUP || !job->cancelled())) {
+  // Only a person insists. What ends a login, a service or a time limit sends SIGTERM and SIGHUP at once and
+  // more than once, in whatever order they are delivered.
+  if (job != nullptr && (signal_number != SIGINT || !job->cancelled())) {
     job->cancel();
     return;
   }

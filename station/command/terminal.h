@@ -23,8 +23,8 @@ void finish_progress();
 /// was scanned is still brought to its place.
 void outlive_readers();
 
-/// The first Ctrl-C (SIGTERM, or SIGHUP of a terminal that is closed) cancels the job in good order; the
-/// second ends the program at once, but for a SIGHUP. One that is ignored (nohup) stays so.
+/// Ctrl-C, SIGTERM and SIGHUP (of a terminal that is closed) cancel the job in good order; a Ctrl-C after
+/// that ends the program at once. A SIGHUP that is ignored (nohup) stays so.
 class InterruptScope {
  public:
   explicit InterruptScope(JobContext& job);

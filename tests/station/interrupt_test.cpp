@@ -120,6 +120,21 @@ TEST_F(Interrupted, CtrlCStopsInGoodOrder) {
   expect_whole("stopped");
 }
 
+// As a login, a service or a time limit does when it ends; of two that wait, the lower number comes first.
+TEST_F(Interrupted, WhateverSystemsSendTogetherIsOneRequest) {
+  RunningCommand running(words("scans", "ended", "?rate=100"));
+  ASSERT_TRUE(running.says("scan 0 stored"));
+  for (const int signal : {SIGHUP, SIGTERM, SIGTERM, SIGHUP}) {
+    running.send(signal);
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  const Outcome stopped = running.wait();
+  EXPECT_EQ(stopped.status, 1) << stopped.err;
+  EXPECT_EQ(stopped.signal, 0);
+  EXPECT_THAT(stopped.err, HasSubstr("stopped; 1 scan is stored"));
+  expect_whole("ended");
+}
+
 TEST_F(Interrupted, WhatIsPlacedIsInTheSessionAtOnce) {
   RunningCommand running(words("scans", "poses", "?rate=100"));
   ASSERT_TRUE(running.says("scan 0 registered"));
