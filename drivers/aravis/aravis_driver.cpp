@@ -178,7 +178,7 @@ std::int32_t next_frame(dubsar_device* device, std::uint32_t timeout_ms, dubsar_
     dubsar_frame out{};
     out.struct_size = sizeof out;
     out.flags = (taken.encoder ? DUBSAR_FRAME_ENCODER : 0U) | (taken.late ? DUBSAR_FRAME_LATE : 0U);
-    out.lease = reinterpret_cast<std::uintptr_t>(taken.buffer);
+    out.lease = taken.lease;
     out.id = taken.id;
     out.timestamp_ns = taken.timestamp_ns;
     out.device_timestamp_ns = taken.device_timestamp_ns;
@@ -197,7 +197,7 @@ std::int32_t next_frame(dubsar_device* device, std::uint32_t timeout_ms, dubsar_
 }
 
 void release_frame(dubsar_device* device, std::uint64_t lease) {
-  device->camera->give_back(reinterpret_cast<ArvBuffer*>(static_cast<std::uintptr_t>(lease)));
+  device->camera->give_back(lease);
 }
 
 std::int32_t stop_frames(dubsar_device* device, dubsar_error* error) {

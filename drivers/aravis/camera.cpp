@@ -290,7 +290,6 @@ Result<std::optional<Taken>> Camera::next(Clock::time_point until) {
       arv_stream_push_buffer(stream_, buffer);
       continue;
     }
-    out.buffer = buffer;
     out.size = std::size_t{out.width} * out.height * bytes_per_pixel_;
     out.offset_x = static_cast<std::uint32_t>(std::max(arv_buffer_get_image_x(buffer), 0));
     out.offset_y = static_cast<std::uint32_t>(std::max(arv_buffer_get_image_y(buffer), 0));
@@ -319,7 +318,8 @@ Result<std::optional<Taken>> Camera::next(Clock::time_point until) {
       }
     }
     const std::lock_guard lock(mutex_);
-    lent_.insert(buffer);
+    out.lease = ++last_lease_;
+    lent_.emplace(out.lease, buffer);
     ++counts_.delivered;
     counts_.lost += out.lost;
     counts_.late += out.late ? 1 : 0;
@@ -327,12 +327,12 @@ Result<std::optional<Taken>> Camera::next(Clock::time_point until) {
   }
 }
 
-void Camera::give_back(ArvBuffer* buffer) {
+void Camera::give_back(std::uint64_t lease) {
   const std::lock_guard lock(mutex_);
-  if (lent_.erase(buffer) > 0) {
-    arv_stream_push_buffer(stream_, buffer);
-  } else if (stale_.erase(buffer) > 0) {
-    g_object_unref(buffer);
+  if (const auto lent = lent_.extract(lease)) {
+    arv_stream_push_buffer(stream_, lent.mapped());
+  } else if (const auto stale = stale_.extract(lease)) {
+    g_object_unref(stale.mapped());
   }
 }
 
@@ -393,7 +393,7 @@ void Camera::lose() {
 
 Camera::~Camera() {
   stop();
-  for (ArvBuffer* buffer : stale_) {
+  for (const auto& [lease, buffer] : stale_) {
     g_object_unref(buffer);
   }
   g_clear_object(&camera_);

@@ -9,7 +9,6 @@
 #include <memory>
 #include <mutex>
 #include <optional>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -46,9 +45,9 @@ struct CameraOptions {
   double wait_s = 1.5;  ///< for the next profiles
 };
 
-/// A frame as it came; give it back.
+/// A frame as it came; give it back by its lease.
 struct Taken {
-  ArvBuffer* buffer = nullptr;
+  std::uint64_t lease = 0;
   const std::uint8_t* pixels = nullptr;
   std::size_t size = 0;
   std::uint32_t width = 0, height = 0, offset_x = 0, offset_y = 0;
@@ -99,7 +98,8 @@ class Camera {
   [[nodiscard]] Result<std::optional<Taken>> next(Clock::time_point until);
   /// True when it has not answered of late: next() will tell before long whether it is gone.
   [[nodiscard]] bool is_doubtful() const { return presence_ && presence_->is_doubtful(); }
-  void give_back(ArvBuffer* buffer);
+  /// What is not lent is passed over.
+  void give_back(std::uint64_t lease);
   void stop();
   Status trigger();
   /// From any thread; as counters of the interface; none is incomplete.
@@ -150,9 +150,10 @@ class Camera {
   ArvStream* stream_ = nullptr;
   ArvChunkParser* chunks_ = nullptr;
   bool has_encoder_chunk_ = false;
-  std::set<ArvBuffer*> lent_;
-  std::set<ArvBuffer*> stale_;  ///< lent by a stream that is no more
-  std::uint64_t payload_ = 0;   ///< bytes of a buffer
+  std::uint64_t last_lease_ = 0;
+  std::map<std::uint64_t, ArvBuffer*> lent_;   ///< by their leases
+  std::map<std::uint64_t, ArvBuffer*> stale_;  ///< lent by a stream that is no more
+  std::uint64_t payload_ = 0;                  ///< bytes of a buffer
   FrameCount count_;
   CameraClock clock_{std::nullopt};
   dubsar_frame_counters counts_{};

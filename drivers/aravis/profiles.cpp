@@ -127,13 +127,13 @@ Status stream_rows(Camera& camera, Scan& scan, const std::atomic<bool>& stopped)
       continue;
     }
     if (scan.has_lost_count(**frame)) {
-      camera.give_back((*frame)->buffer);
+      camera.give_back((*frame)->lease);
       return fail(ErrorKind::kDevice,
                   "the camera started anew in mid-scan, and its encoder counts from elsewhere", camera.id(),
                   "see to its power supply, then scan again");
     }
     const bool goes_on = scan.block(**frame);
-    camera.give_back((*frame)->buffer);
+    camera.give_back((*frame)->lease);
     if (!goes_on) {
       return fail(ErrorKind::kCancelled, "scan cancelled", camera.id());
     }
