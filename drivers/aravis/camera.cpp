@@ -124,6 +124,26 @@ bool Camera::has_control() const {
   return !arv_camera_is_gv_device(camera_) || arv_gv_device_is_controller(ARV_GV_DEVICE(device_)) != 0;
 }
 
+bool Camera::has_let_go() {
+  // GigE Vision 1.2, bootstrap registers: the control channel's privilege, exclusive or control.
+  constexpr std::uint64_t kPrivilege = 0xa00;
+  constexpr std::uint32_t kHeld = 3;
+  GErrorHolder error;
+  guint32 held = kHeld;
+  arv_device_read_register(device_, kPrivilege, &held, error.fill());
+  return !error && (held & kHeld) == 0;
+}
+
+bool Camera::is_doubtful() {
+  if (!presence_ || device_ == nullptr) {
+    return false;
+  }
+  if (!presence_->is_doubtful() && !*control_lost_ && has_let_go()) {
+    *control_lost_ = true;
+  }
+  return presence_->is_doubtful() || *control_lost_;
+}
+
 bool Camera::take_control() {
   // Aravis takes it when it opens a camera, and does not say when that fails: as it does while the connection
   // before this one still lets go.

@@ -96,8 +96,9 @@ class Camera {
   /// let go of this program (its heartbeat was missed, it started anew) is taken anew on the way, and goes on
   /// with its settings; what it would have sent meanwhile is lost, counted at the rate of the frames before.
   [[nodiscard]] Result<std::optional<Taken>> next(Clock::time_point until);
-  /// True when it has not answered of late: next() will tell before long whether it is gone.
-  [[nodiscard]] bool is_doubtful() const { return presence_ && presence_->is_doubtful(); }
+  /// True when its silence has a reason that next() comes to before long: it has not answered of late and may
+  /// be gone, or it obeys this program no more and is taken anew. Asks it.
+  [[nodiscard]] bool is_doubtful();
   /// What is not lent is passed over.
   void give_back(std::uint64_t lease);
   void stop();
@@ -111,6 +112,8 @@ class Camera {
   /// The stream; connects first where it has to. What breaks a connection leaves none.
   Status begin(std::uint32_t pool);
   [[nodiscard]] bool has_control() const;
+  /// Whether it says that it obeys nobody, which Aravis asks once a second.
+  [[nodiscard]] bool has_let_go();
   /// Whether the camera obeys this program, after a second's patience.
   [[nodiscard]] bool take_control();
   Status configure();

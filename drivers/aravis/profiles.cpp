@@ -107,6 +107,7 @@ Status stream_rows(Camera& camera, Scan& scan, const std::atomic<bool>& stopped)
   const auto wait =
       std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(camera.options().wait_s));
   Clock::time_point until = Clock::now() + wait;
+  std::uint64_t retaken = camera.counters().reconnections;
   while (!scan.whole()) {
     if (stopped) {
       return fail(ErrorKind::kCancelled, "stopped in mid-scan", camera.id());
@@ -119,6 +120,11 @@ Status stream_rows(Camera& camera, Scan& scan, const std::atomic<bool>& stopped)
       return std::unexpected(frame.error());
     }
     if (!*frame) {
+      // One that was taken anew has all of the time again.
+      if (const std::uint64_t now = camera.counters().reconnections; now != retaken) {
+        retaken = now;
+        until = Clock::now() + wait;
+      }
       // One that no longer answers is told apart from one that has nothing to send.
       if (Clock::now() >= until && !camera.is_doubtful()) {
         return fail(ErrorKind::kDevice, "the camera sends no profiles", camera.id(),

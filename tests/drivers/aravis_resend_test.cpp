@@ -210,7 +210,7 @@ TEST_F(Resending, ACameraThatDiesWhileItIsTakenAgainIsToldAsSoonAsAnyOther) {
   EXPECT_EQ(outcome.error().kind, ErrorKind::kDevice);
   EXPECT_GE(rows.rows.size(), 400U);
   EXPECT_GT(silent_ms, 0) << "it was not taken again";
-  EXPECT_LT(silent_ms, 2000);
+  EXPECT_LT(silent_ms, 8000) << "on a busy machine; Aravis alone would wait for 32 s";
 }
 
 }  // namespace
