@@ -3,6 +3,8 @@
 // A camera's features as typed settings.
 #include <algorithm>
 #include <cctype>
+#include <string_view>
+#include <utility>
 
 #include "drivers/aravis/camera.h"
 #include "drivers/aravis/glib.h"
@@ -27,6 +29,7 @@ constexpr Known kKnown[] = {
     {"offset_y_px", "of the region on the sensor", "px", {"OffsetY", nullptr}},
     {"exposure_us", "exposure of a frame", "us", {"ExposureTime", "ExposureTimeAbs"}},
     {"gain_db", "gain", "dB", {"Gain", nullptr}},
+    {"gain_raw", "gain, in steps of the camera's own", "", {"GainRaw", nullptr}},
     {"frame_rate_hz", "frames per second", "Hz", {"AcquisitionFrameRate", "AcquisitionFrameRateAbs"}},
     {"line_rate_hz", "profiles per second", "Hz", {"AcquisitionLineRate", nullptr}},
     {"light", "power of the camera's own laser or lamp", "", {"LightBrightness", nullptr}},
@@ -34,6 +37,9 @@ constexpr Known kKnown[] = {
     {"encoder", "count of the encoder now", "", {"EncoderValue", nullptr}},
 };
 constexpr const char* kTrigger = "trigger";
+/// What a camera may do by itself, and then neither takes nor keeps a value of ours.
+constexpr std::pair<std::string_view, const char*> kAutomatics[] = {
+    {"exposure_us", "ExposureAuto"}, {"gain_db", "GainAuto"}, {"gain_raw", "GainAuto"}};
 
 std::string lower(std::string text) {
   std::ranges::transform(text, text.begin(), [](char c) {
@@ -51,6 +57,20 @@ std::vector<std::string> trigger_sources(ArvDevice* device) {
   std::vector<std::string> out(names, names == nullptr ? names : names + count);
   g_free(names);
   return out;
+}
+
+/// A value set by hand means that the camera is to leave it alone. Cameras without the automatic need
+/// nothing.
+void end_automatic(ArvDevice* device, const std::string& key, GErrorHolder& error) {
+  const auto* found = std::ranges::find(kAutomatics, key, &std::pair<std::string_view, const char*>::first);
+  if (found == std::end(kAutomatics) || arv_device_get_feature(device, found->second) == nullptr) {
+    return;
+  }
+  const std::string now = text_read(
+      error, [&](GError** e) { return arv_device_get_string_feature_value(device, found->second, e); });
+  if (!error && now != "Off") {
+    arv_device_set_string_feature_value(device, found->second, "Off", error.fill());
+  }
 }
 
 }  // namespace
@@ -149,6 +169,10 @@ Status Camera::set(const Feature& feature, const dubsar_value& value) {
                 "stop the frames first");
   }
   GErrorHolder error;
+  end_automatic(device_, feature.key, error);
+  if (error) {
+    return std::unexpected(error.told("the camera goes on setting " + feature.key + " by itself", id_));
+  }
   const char* name = feature.name.c_str();
   if (feature.key == kTrigger) {
     if (std::string_view(value.text) == "free") {

@@ -122,6 +122,21 @@ TEST_F(Aravis, FeaturesAreTypedSettings) {
   EXPECT_EQ(frame.pixels[2] | frame.pixels[3] << 8, 300);
 }
 
+// Cameras come from their maker with both on: what is set by hand would be undone with the next frame.
+TEST_F(Aravis, AValueSetByHandEndsTheCamerasAutomatic) {
+  ASSERT_EQ(peer_->tell("write 2404 2"), "ok");
+  ASSERT_EQ(peer_->tell("write 2408 2"), "ok");
+  Device device = open({{"format", "Mono8"}}).value();
+  ASSERT_TRUE(device.set("exposure_us", 800.0));
+  EXPECT_EQ(peer_->tell("read 2404"), "0");
+  EXPECT_EQ(peer_->tell("read 2408"), "2") << "nobody has said anything of the gain";
+  EXPECT_EQ(std::get<double>(device.get("exposure_us").value()), 800.0);
+  EXPECT_FALSE(device.set("gain_raw", std::int64_t{49}));
+  ASSERT_TRUE(device.set("gain_raw", std::int64_t{12}));
+  EXPECT_EQ(peer_->tell("read 2408"), "0");
+  EXPECT_EQ(peer_->tell("read 240c"), "12");
+}
+
 TEST_F(Aravis, ARangeCameraYieldsProfiles) {
   Device device = open({{"rows", "200"}, {"row", "0.1"}}).value();
   const DeviceCapabilities can = device.capabilities().value();

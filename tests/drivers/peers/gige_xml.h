@@ -16,6 +16,9 @@ enum Register : unsigned {
   kOffsets = 0x2240,       // three doubles
   kEncoder = 0x2300,
   kLight = 0x2400,
+  kExposureAuto = 0x2404,
+  kGainAuto = 0x2408,
+  kGain = 0x240c,
   kPayloadLie = 0x2500,  // bytes that the announced payload is short of
 };
 
@@ -83,6 +86,9 @@ inline std::string range_camera_xml() {
                            "AcquisitionStop",
                            "AcquisitionFrameRate",
                            "ExposureTime",
+                           "ExposureAuto",
+                           "GainAuto",
+                           "GainRaw",
                            "TriggerSelector",
                            "TriggerMode",
                            "TriggerSource",
@@ -129,6 +135,9 @@ inline std::string range_camera_xml() {
       "Name='ExposureOfReg'><FormulaTo>FROM</FormulaTo><FormulaFrom>TO</FormulaFrom>"
       "<pValue>ExposureReg</pValue></Converter>\n" +
       reg("ExposureReg", 0x120);
+  const std::string automatic = entry("Off", "0") + entry("Continuous", "2");
+  out += choice("ExposureAuto", kExposureAuto, automatic) + choice("GainAuto", kGainAuto, automatic);
+  out += integer("GainRaw", kGain, 0, 48);
   out += choice("TriggerSelector", 0x2004, entry("FrameStart", "0"));
   out += choice("TriggerMode", 0x300, entry("Off", "0") + entry("On", "1"));
   out += choice("TriggerSource", 0x304, entry("Line0", "0") + entry("Software", "1"));
