@@ -16,6 +16,7 @@
 #include "drivers/v4l2/controls.h"
 #include "drivers/v4l2/modes.h"
 #include "drivers/v4l2/node.h"
+#include "drivers/v4l2/region.h"
 #include "drivers/v4l2/stream.h"
 
 namespace dubsar::v4l2 {
@@ -34,7 +35,14 @@ class Camera {
   [[nodiscard]] const std::string& model() const { return card_; }
   [[nodiscard]] const std::string& serial() const { return serial_; }
   [[nodiscard]] const std::string& path() const { return path_; }
+  /// What it sends: of the region, at the rate that it told.
   [[nodiscard]] const Mode& mode() const { return mode_; }
+  /// What a region can be chosen from; nothing where the camera sends its whole picture or none.
+  [[nodiscard]] const std::optional<Region>& whole() const { return whole_; }
+  [[nodiscard]] Region region() const;
+  /// Both kUsage while frames run, and where the camera makes something else of it; then all is as before.
+  Status set_region(const Region& wanted);
+  Status set_rate(double rate_hz);
   [[nodiscard]] const std::vector<Control>& controls() const { return controls_; }
 
   [[nodiscard]] Result<dubsar_value> get(const Control& control) const;
@@ -49,13 +57,22 @@ class Camera {
  private:
   Camera() = default;
   Status configure();
+  Status put_format(std::uint32_t width, std::uint32_t height);
+  Status put_region_and_format(const Region& region);
+  void put_rate(double rate_hz);
+  [[nodiscard]] double wanted_rate_hz() const;
+  [[nodiscard]] Status may_change(const char* what) const;
   Status find_again();
   void end_stream();
 
   std::string path_, card_, bus_, serial_;
   CameraOptions options_;
   std::unique_ptr<Node> node_;  ///< none while the camera is gone
+  Mode chosen_;                 ///< of those that it lists
   Mode mode_;
+  std::optional<Region> whole_;
+  Region region_;                  ///< of no size: the whole picture
+  std::optional<double> rate_hz_;  ///< that was set
   std::uint32_t stride_ = 0;
   std::vector<Control> controls_;
   std::map<std::string, dubsar_value> set_here_;  ///< set again after the camera was gone

@@ -101,13 +101,14 @@ Status put(const Node& node, std::uint32_t id, std::int32_t count, const std::st
   return std::unexpected(error_of(errno, key + " cannot be set", node.path()));
 }
 
-/// Exposure set by hand means that the camera is to leave it alone. Cameras without the control need nothing.
-Status put_exposure_to_manual(const Node& node) {
-  v4l2_control now{V4L2_CID_EXPOSURE_AUTO, 0};
-  if (node.control(VIDIOC_G_CTRL, &now) != 0 || now.value == V4L2_EXPOSURE_MANUAL) {
+/// A value set by hand means that the camera is to leave it alone. Cameras without the automatic need
+/// nothing.
+Status end_automatic(const Node& node, std::uint32_t id, std::int32_t by_hand, const std::string& what) {
+  v4l2_control now{id, 0};
+  if (node.control(VIDIOC_G_CTRL, &now) != 0 || now.value == by_hand) {
     return {};
   }
-  return put(node, V4L2_CID_EXPOSURE_AUTO, V4L2_EXPOSURE_MANUAL, "manual exposure");
+  return put(node, id, by_hand, what);
 }
 
 }  // namespace
@@ -183,10 +184,14 @@ Status write_control(const Node& node, const Control& control, const dubsar_valu
     }
     count = choice->second;
   }
+  Status manual;
   if (control.id == V4L2_CID_EXPOSURE_ABSOLUTE) {
-    if (const Status manual = put_exposure_to_manual(node); !manual) {
-      return manual;
-    }
+    manual = end_automatic(node, V4L2_CID_EXPOSURE_AUTO, V4L2_EXPOSURE_MANUAL, "manual exposure");
+  } else if (control.id == V4L2_CID_GAIN) {
+    manual = end_automatic(node, V4L2_CID_AUTOGAIN, 0, "manual gain");
+  }
+  if (!manual) {
+    return manual;
   }
   return put(node, control.id, static_cast<std::int32_t>(count), control.key);
 }

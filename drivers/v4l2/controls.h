@@ -36,7 +36,7 @@ struct Control {
 [[nodiscard]] std::vector<Control> controls_of(const Node& node);
 
 [[nodiscard]] Result<dubsar_value> read_control(const Node& node, const Control& control);
-/// Setting the exposure puts an automatic exposure to manual first. The value has the control's type.
+/// Setting exposure or gain ends the camera's own automatic of it first. The value has the control's type.
 Status write_control(const Node& node, const Control& control, const dubsar_value& value);
 
 /// "Gain, Automatic" -> "gain_automatic".

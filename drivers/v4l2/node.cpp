@@ -33,25 +33,6 @@ double rate_of(const v4l2_fract& interval) {
   return interval.numerator > 0 ? static_cast<double>(interval.denominator) / interval.numerator : 0.0;
 }
 
-double fastest(const Node& node, std::uint32_t fourcc, std::uint32_t width, std::uint32_t height) {
-  double best = 0;
-  for (std::uint32_t k = 0; k < kMostEntries; ++k) {
-    v4l2_frmivalenum interval{};
-    interval.index = k;
-    interval.pixel_format = fourcc;
-    interval.width = width;
-    interval.height = height;
-    if (node.control(VIDIOC_ENUM_FRAMEINTERVALS, &interval) != 0) {
-      break;
-    }
-    if (interval.type != V4L2_FRMIVAL_TYPE_DISCRETE) {
-      return rate_of(interval.stepwise.min);
-    }
-    best = std::max(best, rate_of(interval.discrete));
-  }
-  return best;
-}
-
 void add_sizes(const Node& node, std::uint32_t fourcc, std::vector<Mode>& to) {
   for (std::uint32_t k = 0; k < kMostEntries; ++k) {
     v4l2_frmsizeenum size{};
@@ -63,7 +44,7 @@ void add_sizes(const Node& node, std::uint32_t fourcc, std::vector<Mode>& to) {
     const bool discrete = size.type == V4L2_FRMSIZE_TYPE_DISCRETE;
     const std::uint32_t width = discrete ? size.discrete.width : size.stepwise.max_width;
     const std::uint32_t height = discrete ? size.discrete.height : size.stepwise.max_height;
-    to.push_back({fourcc, width, height, fastest(node, fourcc, width, height)});
+    to.push_back({fourcc, width, height, node.fastest_hz(fourcc, width, height)});
     if (!discrete) {
       break;
     }
@@ -161,6 +142,25 @@ Status Node::convert() {
 bool Node::alive() const {
   v4l2_capability can{};
   return ::ioctl(fd_, VIDIOC_QUERYCAP, &can) == 0 || !means_gone(errno);
+}
+
+double Node::fastest_hz(std::uint32_t fourcc, std::uint32_t width, std::uint32_t height) const {
+  double best = 0;
+  for (std::uint32_t k = 0; k < kMostEntries; ++k) {
+    v4l2_frmivalenum interval{};
+    interval.index = k;
+    interval.pixel_format = fourcc;
+    interval.width = width;
+    interval.height = height;
+    if (control(VIDIOC_ENUM_FRAMEINTERVALS, &interval) != 0) {
+      break;
+    }
+    if (interval.type != V4L2_FRMIVAL_TYPE_DISCRETE) {
+      return rate_of(interval.stepwise.min);
+    }
+    best = std::max(best, rate_of(interval.discrete));
+  }
+  return best;
 }
 
 std::vector<Mode> Node::modes() const {

@@ -40,6 +40,8 @@ class Node {
 
   /// What the camera can send.
   [[nodiscard]] std::vector<Mode> modes() const;
+  /// Of frames of this size; 0 where it does not say.
+  [[nodiscard]] double fastest_hz(std::uint32_t fourcc, std::uint32_t width, std::uint32_t height) const;
 
  private:
   Node(std::string path, int fd) : path_(std::move(path)), fd_(fd) {}

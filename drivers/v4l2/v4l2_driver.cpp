@@ -6,6 +6,8 @@
 #include <array>
 #include <charconv>
 #include <span>
+#include <string_view>
+#include <vector>
 
 #include "drivers/driver.h"
 #include "drivers/plugin.h"
@@ -19,12 +21,15 @@ struct dubsar_device {
 
 namespace {
 
+constexpr double kSlowestHz = 0.01;
+constexpr double kFastestHz = 100000;
+
 constexpr std::array<plugin::SettingRow, 4> kOptions{{
     {DUBSAR_TYPE_TEXT, "format",
      "what the camera sends, by its four letters, e.g. GREY; default: the best for stripes"},
     {DUBSAR_TYPE_TEXT, "size", "width x height, e.g. 1280x1024; default: the largest of that format", "px"},
-    {DUBSAR_TYPE_NUMBER, "rate", "frames per second, at least; default: the fastest", "Hz", nullptr, 0.01,
-     100000},
+    {DUBSAR_TYPE_NUMBER, "rate", "frames per second, at least; default: the fastest", "Hz", nullptr,
+     kSlowestHz, kFastestHz},
     {DUBSAR_TYPE_INTEGER, "buffers", "frames in the pool; default: half a second of them", nullptr, nullptr,
      2, 32},
 }};
@@ -124,19 +129,48 @@ std::int32_t capabilities(dubsar_device* device, dubsar_capabilities* out, dubsa
   });
 }
 
-/// Of the mode, which is chosen when the camera is opened.
-constexpr std::array<plugin::SettingRow, 4> kModeRows{{
-    {DUBSAR_TYPE_TEXT, "pixel_format", "what the camera sends", nullptr, nullptr, 1, 0,
-     DUBSAR_SETTING_READABLE},
-    {DUBSAR_TYPE_INTEGER, "width_px", "of a frame", "px", nullptr, 1, 0, DUBSAR_SETTING_READABLE},
-    {DUBSAR_TYPE_INTEGER, "height_px", "of a frame", "px", nullptr, 1, 0, DUBSAR_SETTING_READABLE},
-    {DUBSAR_TYPE_NUMBER, "frame_rate_hz", "frames per second", "Hz", nullptr, 1, 0, DUBSAR_SETTING_READABLE},
+/// A number of the region that a camera may be asked for, on its way to and from a setting.
+struct RegionKey {
+  const char* key;
+  const char* help;
+  std::uint32_t v4l2::Region::*value;
+  std::uint32_t v4l2::Region::*within;  ///< of the whole picture: what it ends at
+};
+/// A region has to have its size before it can go from the corner.
+constexpr std::array<RegionKey, 4> kRegionKeys{{
+    {"width_px", "of a frame", &v4l2::Region::width, &v4l2::Region::width},
+    {"height_px", "of a frame", &v4l2::Region::height, &v4l2::Region::height},
+    {"offset_x_px", "of a frame in the whole picture", &v4l2::Region::x, &v4l2::Region::width},
+    {"offset_y_px", "of a frame in the whole picture", &v4l2::Region::y, &v4l2::Region::height},
 }};
+
+const RegionKey* find_region_key(std::string_view key) {
+  const auto* found = std::ranges::find(kRegionKeys, key, &RegionKey::key);
+  return found == kRegionKeys.end() ? nullptr : found;
+}
+
+/// Of what the camera sends.
+std::vector<plugin::SettingRow> mode_rows(const v4l2::Camera& camera) {
+  std::vector<plugin::SettingRow> out{{DUBSAR_TYPE_TEXT, "pixel_format", "what the camera sends", nullptr,
+                                       nullptr, 1, 0, DUBSAR_SETTING_READABLE}};
+  const bool cuts = camera.whole().has_value();
+  for (const RegionKey& one : kRegionKeys) {
+    const bool is_size = one.value == one.within;
+    const double most = cuts ? (*camera.whole()).*one.within : 0;
+    out.push_back({DUBSAR_TYPE_INTEGER, one.key, one.help, "px", nullptr, is_size ? 1.0 : 0.0,
+                   cuts ? most - (is_size ? 0 : 1) : -1.0,
+                   DUBSAR_SETTING_READABLE | (cuts ? DUBSAR_SETTING_WRITABLE : 0U)});
+  }
+  out.push_back(
+      {DUBSAR_TYPE_NUMBER, "frame_rate_hz", "frames per second", "Hz", nullptr, kSlowestHz, kFastestHz});
+  return out;
+}
 
 std::int32_t describe_settings(dubsar_device* device, dubsar_setting_callback callback, void* user,
                                dubsar_error* error) {
   return plugin::fenced(error, [&]() -> std::int32_t {
-    if (const std::int32_t code = plugin::describe(kModeRows, callback, user); code != DUBSAR_OK) {
+    if (const std::int32_t code = plugin::describe(mode_rows(*device->camera), callback, user);
+        code != DUBSAR_OK) {
       return code;
     }
     for (const v4l2::Control& control : device->camera->controls()) {
@@ -173,8 +207,8 @@ std::int32_t get_setting(dubsar_device* device, const char* key, dubsar_value* v
     const v4l2::Mode& mode = device->camera->mode();
     if (name == "pixel_format") {
       plugin::copy_text(filled.text, v4l2::name_of(mode.fourcc));
-    } else if (name == "width_px" || name == "height_px") {
-      filled.integer = name == "width_px" ? mode.width : mode.height;
+    } else if (const RegionKey* const of_region = find_region_key(name)) {
+      filled.integer = device->camera->region().*of_region->value;
     } else if (name == "frame_rate_hz") {
       filled.number = mode.rate_hz;
     } else {
@@ -196,11 +230,19 @@ std::int32_t get_setting(dubsar_device* device, const char* key, dubsar_value* v
 std::int32_t set_setting(dubsar_device* device, const char* key, const dubsar_value* value,
                          dubsar_error* error) {
   return plugin::fenced(error, [&]() -> std::int32_t {
-    const v4l2::Control* control = find_control(*device->camera, key);
-    if (control == nullptr) {
+    v4l2::Camera& camera = *device->camera;
+    Status set;
+    if (const RegionKey* const of_region = find_region_key(key)) {
+      v4l2::Region wanted = camera.region();
+      wanted.*of_region->value = static_cast<std::uint32_t>(value->integer);
+      set = camera.set_region(wanted);
+    } else if (std::string_view(key) == "frame_rate_hz") {
+      set = camera.set_rate(value->number);
+    } else if (const v4l2::Control* const control = find_control(camera, key)) {
+      set = camera.set(*control, *value);
+    } else {
       return plugin::report(error, DUBSAR_USAGE, "no such setting to change", key);
     }
-    const Status set = device->camera->set(*control, *value);
     return set ? std::int32_t{DUBSAR_OK} : plugin::report(error, set.error());
   });
 }

@@ -256,9 +256,84 @@ TEST_F(V4l2, ControlsAreTypedSettings) {
   EXPECT_EQ(std::get<std::string>(device.get("auto_exposure").value()), "Manual Mode");
   EXPECT_FALSE(device.set("exposure_us", 1e9));
   EXPECT_FALSE(device.set("gain", std::int64_t{101}));
-  ASSERT_TRUE(device.set("gain", std::int64_t{40}));
+  EXPECT_TRUE(std::get<bool>(device.get("gain_automatic").value()));
+  ASSERT_TRUE(device.set("gain", std::int64_t{40}));  // which ends that
   EXPECT_EQ(std::get<std::int64_t>(device.get("gain").value()), 40);
-  EXPECT_FALSE(device.set("width_px", std::int64_t{100}));
+  EXPECT_FALSE(std::get<bool>(device.get("gain_automatic").value()));
+  EXPECT_FALSE(device.set("width_px", std::int64_t{100})) << "this one sends its whole picture";
+}
+
+TEST_F(V4l2, ARateIsASettingThatStays) {
+  ASSERT_NO_FATAL_FAILURE(plug_in({"GREY:160x120@100"}));
+  if (IsSkipped()) {
+    return;
+  }
+  Device device = open().value();
+  EXPECT_EQ(std::get<double>(device.get("frame_rate_hz").value()), 100.0);
+  ASSERT_TRUE(device.set("frame_rate_hz", 50.0));
+  EXPECT_EQ(std::get<double>(device.get("frame_rate_hz").value()), 50.0);
+  const Status between = device.set("frame_rate_hz", 2.5);  // this one counts in whole frames
+  ASSERT_FALSE(between);
+  EXPECT_THAT(between.error().line(), HasSubstr("does not send 2.5 frames a second; it would send 3"));
+  EXPECT_EQ(std::get<double>(device.get("frame_rate_hz").value()), 50.0);
+  ASSERT_TRUE(device.start_frames());
+  next(device);
+  EXPECT_THAT(device.set("frame_rate_hz", 20.0).error().line(), HasSubstr("while frames run"));
+  ASSERT_EQ(peer_->tell("unplug"), "ok");
+  while (device.next_frame(60s)) {
+  }
+  ASSERT_EQ(peer_->tell("plug"), "ok");  // at its own rate
+  ASSERT_TRUE(device.start_frames());
+  EXPECT_EQ(std::get<double>(device.get("frame_rate_hz").value()), 50.0) << "as the camera tells it";
+}
+
+TEST_F(V4l2, ARegionIsSentWhereTheCameraHasOne) {
+  ASSERT_NO_FATAL_FAILURE(plug_in({"GREY:320x240@100"}));
+  if (IsSkipped()) {
+    return;
+  }
+  ASSERT_EQ(peer_->tell("crop 4"), "ok");
+  const auto at = [](Device& device, const char* key) {
+    return std::get<std::int64_t>(device.get(key).value());
+  };
+  {
+    Device device = open().value();
+    const auto settings = device.settings().value();
+    const auto width = std::ranges::find(settings, "width_px", &SettingInfo::key);
+    ASSERT_NE(width, settings.end());
+    EXPECT_EQ(width->range, std::pair(1.0, 320.0));
+    EXPECT_FALSE(device.set("offset_x_px", std::int64_t{16})) << "all of the picture cannot move";
+    ASSERT_TRUE(device.set("width_px", std::int64_t{200}));
+    ASSERT_TRUE(device.set("height_px", std::int64_t{60}));
+    ASSERT_TRUE(device.set("offset_x_px", std::int64_t{100}));
+    ASSERT_TRUE(device.set("offset_y_px", std::int64_t{140}));
+    const Status odd = device.set("offset_y_px", std::int64_t{141});
+    ASSERT_FALSE(odd);
+    EXPECT_THAT(odd.error().line(), HasSubstr("it can send 200 x 60 from 100, 140 on"));
+    EXPECT_EQ(at(device, "offset_y_px"), 140);
+    const auto expect_region = [&](const Frame& frame) {
+      EXPECT_EQ(frame.width, 200U);
+      EXPECT_EQ(frame.height, 60U);
+      EXPECT_EQ(frame.offset_x, 100U);
+      EXPECT_EQ(frame.offset_y, 140U);
+      EXPECT_EQ(frame.pixels[31 * frame.stride_bytes + 17], painted(117, 171));
+    };
+    ASSERT_TRUE(device.start_frames());
+    expect_region(next(device));
+    EXPECT_THAT(device.set("width_px", std::int64_t{100}).error().line(), HasSubstr("while frames run"));
+    ASSERT_EQ(peer_->tell("unplug"), "ok");
+    while (device.next_frame(60s)) {
+    }
+    ASSERT_EQ(peer_->tell("plug"), "ok");  // with its whole picture
+    ASSERT_TRUE(device.start_frames());
+    expect_region(next(device));
+    ASSERT_TRUE(device.stop_frames());
+  }
+  // A camera keeps its region; whoever opens it next gets the whole picture.
+  Device again = open().value();
+  EXPECT_EQ(at(again, "width_px"), 320);
+  ASSERT_TRUE(again.start_frames());
+  EXPECT_EQ(next(again).pixels[31 * 320 + 17], painted(17, 31));
 }
 
 TEST_F(V4l2, ARefusalSaysWhatToDo) {

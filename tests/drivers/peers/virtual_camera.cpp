@@ -154,7 +154,7 @@ bool VirtualCamera::tick(const std::function<void(std::uint64_t, const std::vect
   }
   const std::uint32_t index = queued_.front();
   queued_.pop_front();
-  paint_picture(picture_, now_.fourcc, now_.width, now_.height, sequence);
+  paint_picture(picture_, now_.fourcc, now_.width, now_.height, sequence, 7 * crop_x_ + 3 * crop_y_);
   const bool compressed = now_.fourcc == V4L2_PIX_FMT_MJPEG;
   frame_ = compressed ? packed_picture(picture_, now_.width, now_.height) : picture_;
   v4l2_buffer buffer{};
@@ -208,6 +208,10 @@ std::string VirtualCamera::command(const std::string& line) {
     gain_ = 10;
     automatic_ = V4L2_EXPOSURE_APERTURE_PRIORITY;
     exposure_ = 50;
+    automatic_gain_ = 1;
+    crop_x_ = crop_y_ = 0;
+    now_ = modes_.front();
+    picture_.clear();
   } else if (what == "pause" || what == "resume") {
     paused_ = what == "pause";
   } else if (what == "deny" || what == "occupy" || what == "allow") {
@@ -219,7 +223,9 @@ std::string VirtualCamera::command(const std::string& line) {
     return std::to_string(made_) + " " + std::to_string(starved_) + " " + std::to_string(held_up_);
   } else if (what == "rename") {
     words >> card_;
-  } else if (words >> count && what == "lose") {
+  } else if (words >> count && what == "crop") {
+    crop_step_ = static_cast<std::uint32_t>(count);
+  } else if (what == "lose") {
     lose_ = count;
   } else if (what == "spoil") {
     spoil_ = count;

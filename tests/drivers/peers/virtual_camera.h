@@ -40,6 +40,7 @@ class VirtualCamera {
   bool tick(const std::function<void(std::uint64_t, const std::vector<std::uint8_t>&)>& store);
 
   /// A line from the test: unplug, plug, pause, resume, lose N, spoil N, shorten N, deny, occupy, allow,
+  /// crop N (it sends parts of its picture, whose edges are multiples of N),
   /// stretch (says that its lines are longer than there is room for), rename NAME, counts ("frames made, of
   /// them lost for want of a buffer, times it was held up itself").
   std::string command(const std::string& line);
@@ -49,6 +50,7 @@ class VirtualCamera {
   int set_format(v4l2_format& format, bool keep);
   int buffers(const void* who, std::uint32_t request, void* argument);
   int settings(std::uint32_t request, void* argument);
+  int selection(bool set, v4l2_selection& selection);
 
   std::mutex mutex_;
   std::string card_;
@@ -65,7 +67,10 @@ class VirtualCamera {
   std::uint64_t made_ = 0, starved_ = 0, held_up_ = 0;
   int gain_ = 10;
   int exposure_ = 50;
+  int automatic_gain_ = 1;
   int automatic_ = V4L2_EXPOSURE_APERTURE_PRIORITY;
+  std::uint32_t crop_step_ = 0;  ///< 0: it sends its whole picture only
+  std::uint32_t crop_x_ = 0, crop_y_ = 0;
   bool gone_ = false, paused_ = false, denied_ = false, occupied_ = false, stretched_ = false;
   int lose_ = 0, spoil_ = 0, shorten_ = 0;
   std::vector<std::uint8_t> picture_, frame_;  ///< as painted, as sent

@@ -31,7 +31,8 @@ int VirtualCamera::set_format(v4l2_format& format, bool keep) {
   if (mode == modes_.end()) {
     mode = std::ranges::find(modes_, pix.pixelformat, &Mode::fourcc);
   }
-  const Mode& got = mode == modes_.end() ? modes_.front() : *mode;
+  // What is cut has the size that it was cut to.
+  const Mode got = crop_step_ != 0 ? now_ : mode == modes_.end() ? modes_.front() : *mode;
   if (keep) {
     now_ = got;
   }
@@ -46,6 +47,38 @@ int VirtualCamera::set_format(v4l2_format& format, bool keep) {
   return 0;
 }
 
+/// A sensor whose first lines and columns are dark, and which does not scale.
+int VirtualCamera::selection(bool set, v4l2_selection& selection) {
+  constexpr std::int32_t kDarkColumns = 8;
+  constexpr std::int32_t kDarkLines = 4;
+  const Mode& whole = modes_.front();
+  if (crop_step_ == 0) {
+    return -ENOTTY;
+  }
+  if (!set) {
+    const bool now = selection.target == V4L2_SEL_TGT_CROP;
+    selection.r = now ? v4l2_rect{kDarkColumns + static_cast<std::int32_t>(crop_x_),
+                                  kDarkLines + static_cast<std::int32_t>(crop_y_), now_.width, now_.height}
+                      : v4l2_rect{kDarkColumns, kDarkLines, whole.width, whole.height};
+    return 0;
+  }
+  if (selection.target != V4L2_SEL_TGT_CROP) {
+    return -EINVAL;
+  }
+  if (streaming_) {
+    return -EBUSY;
+  }
+  const auto stepped = [&](std::int64_t value, std::int64_t most) {
+    return static_cast<std::uint32_t>(std::clamp<std::int64_t>(value, 0, most) / crop_step_ * crop_step_);
+  };
+  now_.width = std::max(crop_step_, stepped(selection.r.width, whole.width));
+  now_.height = std::max(crop_step_, stepped(selection.r.height, whole.height));
+  crop_x_ = stepped(selection.r.left - kDarkColumns, whole.width - now_.width);
+  crop_y_ = stepped(selection.r.top - kDarkLines, whole.height - now_.height);
+  picture_.clear();
+  return this->selection(false, selection);
+}
+
 int VirtualCamera::settings(std::uint32_t request, void* argument) {
   struct Known {
     std::uint32_t id;
@@ -53,10 +86,12 @@ int VirtualCamera::settings(std::uint32_t request, void* argument) {
     int type, minimum, maximum, fallback;
     int* value;
   };
-  const Known all[] = {{V4L2_CID_GAIN, "Gain", V4L2_CTRL_TYPE_INTEGER, 0, 100, 10, &gain_},
-                       {V4L2_CID_EXPOSURE_AUTO, "Auto Exposure", V4L2_CTRL_TYPE_MENU, 0, 3, 3, &automatic_},
-                       {V4L2_CID_EXPOSURE_ABSOLUTE, "Exposure Time, Absolute", V4L2_CTRL_TYPE_INTEGER, 1,
-                        5000, 50, &exposure_}};
+  const Known all[] = {
+      {V4L2_CID_AUTOGAIN, "Gain, Automatic", V4L2_CTRL_TYPE_BOOLEAN, 0, 1, 1, &automatic_gain_},
+      {V4L2_CID_GAIN, "Gain", V4L2_CTRL_TYPE_INTEGER, 0, 100, 10, &gain_},
+      {V4L2_CID_EXPOSURE_AUTO, "Auto Exposure", V4L2_CTRL_TYPE_MENU, 0, 3, 3, &automatic_},
+      {V4L2_CID_EXPOSURE_ABSOLUTE, "Exposure Time, Absolute", V4L2_CTRL_TYPE_INTEGER, 1, 5000, 50,
+       &exposure_}};
   const auto find = [&](std::uint32_t id) {
     const bool next = (id & V4L2_CTRL_FLAG_NEXT_CTRL) != 0;
     id &= V4L2_CTRL_ID_MASK;
@@ -98,7 +133,8 @@ int VirtualCamera::settings(std::uint32_t request, void* argument) {
     return 0;
   }
   if (control.value < one->minimum || control.value > one->maximum ||
-      (one->value == &exposure_ && automatic_ != V4L2_EXPOSURE_MANUAL)) {
+      (one->value == &exposure_ && automatic_ != V4L2_EXPOSURE_MANUAL) ||
+      (one->value == &gain_ && automatic_gain_ != 0)) {
     return -ERANGE;
   }
   *one->value = control.value;
@@ -184,6 +220,9 @@ int VirtualCamera::control(const void* who, std::uint32_t request, void* argumen
       capture.timeperframe = {1, now_.rate_hz};
       return 0;
     }
+    case VIDIOC_G_SELECTION:
+    case VIDIOC_S_SELECTION:
+      return selection(request == VIDIOC_S_SELECTION, *static_cast<v4l2_selection*>(argument));
     case VIDIOC_QUERY_EXT_CTRL:
     case VIDIOC_QUERYMENU:
     case VIDIOC_G_CTRL:

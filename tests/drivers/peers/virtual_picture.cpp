@@ -26,7 +26,7 @@ std::uint32_t picture_line_bytes(std::uint32_t fourcc, std::uint32_t width) {
 }
 
 void paint_picture(std::vector<std::uint8_t>& picture, std::uint32_t fourcc, std::uint32_t width,
-                   std::uint32_t height, std::uint32_t sequence) {
+                   std::uint32_t height, std::uint32_t sequence, std::uint32_t corner) {
   const std::size_t size = std::size_t{picture_line_bytes(fourcc, width)} * height;
   const std::size_t wide = picture_line_bytes(fourcc, width) / width;
   const std::size_t bright = fourcc == V4L2_PIX_FMT_YUYV ? 1 : wide;
@@ -35,7 +35,7 @@ void paint_picture(std::vector<std::uint8_t>& picture, std::uint32_t fourcc, std
     for (std::size_t y = 0; y < height; ++y) {
       for (std::size_t x = 0; x < width; ++x) {
         std::fill_n(picture.begin() + static_cast<std::ptrdiff_t>((y * width + x) * wide), bright,
-                    static_cast<std::uint8_t>(7 * x + 3 * y));
+                    static_cast<std::uint8_t>(corner + 7 * x + 3 * y));
       }
     }
   }
