@@ -20,6 +20,7 @@ namespace {
 
 constexpr double kLeftOut = 0.003;  // of the samples, as the guideline allows
 constexpr double kSeenWithinRad = rad_from_deg(60);
+constexpr double kSeenOfPlane = 0.9;  // of its sides: the last samples at an edge are seldom good
 constexpr int kTries = 6000;
 constexpr std::size_t kLeastOnBall = 100;
 
@@ -39,6 +40,48 @@ double range_of(std::vector<double> values) {
   values.resize(values.size() - drop);
   const auto [low, high] = std::minmax_element(values.begin(), values.end());
   return *high - *low;
+}
+
+/// Sides of the smallest rectangle in the plane that holds the points, less the few that stray; longer first.
+std::array<double, 2> extent_mm(const Plane& plane, const std::vector<Eigen::Vector3d>& points) {
+  constexpr std::size_t kMost = 20000;
+  constexpr int kTurns = 90;  // by a degree, which hides 0.02 % of a side
+  const Eigen::Vector3d across = plane.normal.unitOrthogonal();
+  const Eigen::Vector3d along = plane.normal.cross(across);
+  const std::size_t stride = std::max<std::size_t>(1, points.size() / kMost);
+  const auto width_mm = [&](const Eigen::Vector3d& direction) {
+    std::vector<double> at;
+    for (std::size_t i = 0; i < points.size(); i += stride) {
+      at.push_back(direction.dot(points[i]));
+    }
+    const auto stray = static_cast<std::ptrdiff_t>(0.5 * kLeftOut * static_cast<double>(at.size()));
+    std::nth_element(at.begin(), at.begin() + stray, at.end());
+    const double low = at[static_cast<std::size_t>(stray)];
+    std::nth_element(at.begin(), at.end() - 1 - stray, at.end());
+    return *(at.end() - 1 - stray) - low;
+  };
+  std::array<double, kTurns> widths{};
+  std::array<double, 2> best{1e150, 1e150};
+  const auto turned = [&](int degrees) -> Eigen::Vector3d {
+    const double angle = rad_from_deg(degrees);
+    return std::cos(angle) * across + std::sin(angle) * along;
+  };
+  for (int turn = 0; turn < 2 * kTurns; ++turn) {
+    const double width = width_mm(turned(turn));
+    if (turn < kTurns) {
+      widths[static_cast<std::size_t>(turn)] = width;
+      continue;
+    }
+    const double other = widths[static_cast<std::size_t>(turn - kTurns)];
+    if (width * other < best[0] * best[1]) {
+      best = {std::max(width, other), std::min(width, other)};
+    }
+  }
+  return best;
+}
+
+std::string rounded_mm(double mm) {
+  return number_text(std::round(10 * mm) / 10);
 }
 
 /// The part of a ball that counts: near the sphere, facing the scanner.
@@ -169,6 +212,12 @@ void judge(const Artefact& artefact, Verification& out) {
              std::to_string(spacing.b + 1),
          spacing.error_mm, artefact.spacing_limit_mm);
   }
+  if (out.flatness_mm && (out.plane_mm[0] < kSeenOfPlane * artefact.plane_mm[0] ||
+                          out.plane_mm[1] < kSeenOfPlane * artefact.plane_mm[1])) {
+    out.failed.push_back("the plane was seen over " + rounded_mm(out.plane_mm[0]) + " x " +
+                         rounded_mm(out.plane_mm[1]) + " mm only, and it has " +
+                         rounded_mm(artefact.plane_mm[0]) + " x " + rounded_mm(artefact.plane_mm[1]) + " mm");
+  }
   if (out.flatness_mm) {
     over("flatness error", *out.flatness_mm, artefact.flatness_limit_mm);
   }
@@ -240,17 +289,20 @@ Result<Verification> verify_artefact(const RangeGrid& grid, const Artefact& arte
     }
     const Result<PlaneFit> fit = fit_plane(points);
     std::vector<double> distances;
+    std::vector<Eigen::Vector3d> on_plane;
     for (std::size_t i = 0; fit && i < points.size(); ++i) {
       // What lies far off is another thing; what lies a little off is the error that is asked for.
       const double d = fit->plane.signed_distance_mm(points[i]);
       if (std::abs(d) < std::max(0.1, 10 * fit->rms_mm)) {
         distances.push_back(d);
+        on_plane.push_back(points[i]);
       }
     }
     if (distances.size() < kLeastOnBall) {
       out.failed.emplace_back("the plane was not found");
     } else {
       out.plane_samples = distances.size();
+      out.plane_mm = extent_mm(fit->plane, on_plane);
       out.flatness_mm = range_of(distances);
     }
   }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -36,6 +37,8 @@ struct Verification {
   std::vector<MeasuredSpacing> spacings;
   std::optional<double> flatness_mm;  ///< range of the distances from the least-squares plane
   std::size_t plane_samples = 0;
+  /// Sides of the smallest rectangle around what was seen of it, the longer one first.
+  std::array<double, 2> plane_mm{0, 0};
   std::vector<std::string> failed;  ///< each limit that is not kept, and each part that was not found
   [[nodiscard]] bool passed() const { return failed.empty(); }
   /// The largest deviation from the certificate, mm.
@@ -44,7 +47,8 @@ struct Verification {
 
 /// Measures the artefact in one scan. Spheres and plane are found by random samples (seeded), fitted by least
 /// squares; three in a thousand samples may be left out, as the guideline allows. Of a ball only what is
-/// within 60° of the view counts. Errors (kBadInput): no sample at all.
+/// within 60° of the view counts. A plane whose size is known has to be seen over nine tenths of both its
+/// sides: the flatness of a small part is always good. Errors (kBadInput): no sample at all.
 [[nodiscard]] Result<Verification> verify_artefact(const RangeGrid& grid, const Artefact& artefact);
 
 }  // namespace dubsar

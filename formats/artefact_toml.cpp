@@ -2,6 +2,9 @@
 // Copyright The Dubsar developers
 #include "formats/artefact_toml.h"
 
+#include <algorithm>
+#include <vector>
+
 #include "formats/toml_document.h"
 
 namespace dubsar {
@@ -15,7 +18,7 @@ Result<Artefact> parse_artefact(std::string_view toml, const std::string& where)
   constexpr double kMostUm = 1e6;
   constexpr std::size_t kMostBalls = 6;
   const JsonNode root = document->root();
-  root.only({"name", "certificate", "ball", "plane", "limit"});
+  root.only({"name", "certificate", "ball", "plane", "plane_mm", "limit"});
   Artefact out;
   out.name = root.at("name").text();
   out.certificate = root.at("certificate").text();
@@ -30,6 +33,15 @@ Result<Artefact> parse_artefact(std::string_view toml, const std::string& where)
   }
   if (const auto plane = root.find("plane")) {
     out.has_plane = plane->boolean();
+  }
+  if (const auto size = root.find("plane_mm")) {
+    const std::vector<double> sides = size->numbers(2);
+    if (sides.size() == 2 && std::min(sides[0], sides[1]) > 0 && std::max(sides[0], sides[1]) <= kMostMm) {
+      out.plane_mm = {std::max(sides[0], sides[1]), std::min(sides[0], sides[1])};
+    } else {
+      size->complain("is no size of a plane");
+    }
+    out.has_plane = true;
   }
   const JsonNode limit = root.at("limit");
   limit.only({"form_um", "size_um", "spacing_um", "flatness_um"});

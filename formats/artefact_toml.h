@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -22,6 +23,8 @@ struct Artefact {
   std::string certificate;  ///< number and date
   std::vector<Ball> balls;
   bool has_plane = false;
+  /// Of the plane, the longer side first: what has to be seen of it. Both 0: any part will do.
+  std::array<double, 2> plane_mm{0, 0};
   double form_limit_mm = 0;     ///< probing error (form)
   double size_limit_mm = 0;     ///< probing error (size), either way
   double spacing_limit_mm = 0;  ///< sphere spacing error, either way

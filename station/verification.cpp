@@ -71,6 +71,7 @@ nlohmann::ordered_json verification_figures(const Verification& is) {
   if (is.flatness_mm) {
     out["flatness_um"] = 1e3 * *is.flatness_mm;
     out["plane_samples"] = is.plane_samples;
+    out["plane_mm"] = {is.plane_mm[0], is.plane_mm[1]};
   }
   return out;
 }

@@ -22,7 +22,8 @@ void print_figures(const Artefact& artefact, const Verification& is) {
                 1e3 * one.error_mm);
   }
   if (is.flatness_mm) {
-    std::printf("plane: flatness error %.1f µm, %zu samples\n", 1e3 * *is.flatness_mm, is.plane_samples);
+    std::printf("plane: flatness error %.1f µm over %.1f x %.1f mm, %zu samples\n", 1e3 * *is.flatness_mm,
+                is.plane_mm[0], is.plane_mm[1], is.plane_samples);
   }
   for (const std::string& line : is.failed) {
     std::printf("failed: %s\n", line.c_str());

@@ -89,6 +89,29 @@ TEST(Artefact, ABentPlaneFailsOnFlatness) {
   EXPECT_FALSE(is->passed());
 }
 
+TEST(Artefact, APlaneHasToBeSeenOverItsSize) {
+  // 64 mm square, lying askew in the picture.
+  RangeGrid grid = scanned_bar(0.004, 0, 1);
+  const Eigen::AngleAxisf askew(0.4F, Eigen::Vector3f::UnitZ());
+  for (std::size_t i = 0; i < grid.x.size(); ++i) {
+    const Eigen::Vector3f p = askew * grid.point(i);
+    grid.x[i] = p.x();
+    grid.y[i] = p.y();
+  }
+  Artefact plate = bar();
+  plate.plane_mm = {66, 64};
+  const Result<Verification> whole = verify_artefact(grid, plate);
+  ASSERT_TRUE(whole.has_value());
+  EXPECT_TRUE(whole->passed()) << whole->failed.front();
+  EXPECT_NEAR(whole->plane_mm[0], 63.8, 0.4);
+  EXPECT_NEAR(whole->plane_mm[1], 63.8, 0.4);
+  plate.plane_mm = {80, 60};
+  const Result<Verification> part = verify_artefact(grid, plate);
+  ASSERT_TRUE(part.has_value());
+  ASSERT_EQ(part->failed.size(), 1U);
+  EXPECT_NE(part->failed[0].find("mm only, and it has 80 x 60 mm"), std::string::npos) << part->failed[0];
+}
+
 TEST(Artefact, WhatIsNotThereIsSaid) {
   Artefact three = bar();
   three.balls.push_back({25, {100, 0, 0}});

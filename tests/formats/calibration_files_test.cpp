@@ -136,6 +136,11 @@ center_mm = [30.4142, 0, 0]
   ASSERT_TRUE(bar.has_value()) << bar.error().line();
   EXPECT_EQ(bar->balls.size(), 2U);
   EXPECT_DOUBLE_EQ(bar->form_limit_mm, 0.02);
+  EXPECT_FALSE(parse_artefact(std::string("plane_mm = [0, 4]\n") + kBar, "a").has_value());
+  const Result<Artefact> plate = parse_artefact(std::string("plane_mm = [40, 60]\n") + kBar, "a");
+  ASSERT_TRUE(plate.has_value()) << plate.error().line();
+  EXPECT_TRUE(plate->has_plane);
+  EXPECT_EQ(plate->plane_mm, (std::array<double, 2>{60, 40}));
   EXPECT_FALSE(parse_artefact("name = \"x\"\ncertificate = \"y\"\n[limit]\n", "a").has_value());
   std::string near(kBar);
   near.replace(near.find("30.4142"), 7, "3.0");

@@ -163,6 +163,8 @@ constexpr EnginePhrase kPhrases[] = {
     {"not all balls were found: ", "nicht alle Kugeln wurden gefunden: "},
     {", and the artefact has ", ", und der Prüfkörper hat "},
     {"the plane was not found", "die Ebene wurde nicht gefunden"},
+    {"the plane was seen over ", "die Ebene wurde gesehen über "},
+    {" mm only, and it has ", " mm, und sie hat "},
     {"probing error (form) of ball ", "Antastabweichung (Form) der Kugel "},
     {"probing error (size) of ball ", "Antastabweichung (Größe) der Kugel "},
     {"sphere spacing error of balls ", "Abstandsabweichung der Kugeln "},
