@@ -266,7 +266,13 @@ std::optional<std::string> verification_reminder(const std::string& device_uri) 
     return std::nullopt;
   }
   const std::string mend = "; measure the artefact first: dubsar calibrate --verify";
-  const std::optional<CalibrationCheck> last = last_verification(*file);
+  const Result<RigLog> log = rig_log_of(*file);
+  const std::optional<VerificationEntry> last = log ? log->last() : std::nullopt;
+  if (last && !last->passed) {
+    return "the rig FAILED its last verification (" + last->when +
+           (last->failed.empty() ? std::string() : "; " + last->failed.front()) +
+           "): do not scan tablets with it; see to it, then dubsar calibrate --verify";
+  }
   if (!last) {
     return "the rig as it stands has not been verified yet" + mend;
   }

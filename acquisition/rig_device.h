@@ -32,7 +32,8 @@ struct RigParts {
 [[nodiscard]] std::optional<CalibrationCheck> last_verification(const std::filesystem::path& rig_file);
 
 /// A rig is verified before each day's work: what to tell the operator when the last verification that was
-/// passed is older than a day, or there is none of the rig as it stands. Nothing for other devices.
+/// passed is older than a day, there is none of the rig as it stands, or it failed the last one. Nothing for
+/// other devices.
 [[nodiscard]] std::optional<std::string> verification_reminder(const std::string& device_uri);
 
 }  // namespace dubsar

@@ -46,6 +46,9 @@ class LogOfARig : public testing::Test {
     entry.calibration = of->as_it_stands;
     entry.error_mm = 0.01;
     entry.passed = passed;
+    if (!passed) {
+      entry.failed = {"flatness error: 90 µm, the limit 60 µm"};
+    }
     ASSERT_TRUE(append_verification(of->log, entry).has_value());
   }
   [[nodiscard]] std::string reminder() const {
@@ -67,7 +70,8 @@ TEST_F(LogOfARig, RemindsUnlessItWasVerifiedToday) {
   log(time_of(0.4));
   EXPECT_EQ(reminder(), "none");
   log(time_of(0.1), false);
-  EXPECT_NE(reminder().find("not been verified"), std::string::npos) << "it failed";
+  EXPECT_NE(reminder().find("FAILED its last verification"), std::string::npos);
+  EXPECT_NE(reminder().find("flatness"), std::string::npos) << "which limit";
   log("some day");
   EXPECT_NE(reminder().find("nobody knows"), std::string::npos);
 }
