@@ -145,7 +145,7 @@ TEST_F(RigStop, TheKeyOfTheWindow) {
   const test::Display display;
   ASSERT_TRUE(display.works()) << "there is no Xvfb here: install xvfb (packages.txt)";
   const std::string script = (folder_.path() / "a.script").string();
-  std::ofstream(script) << "wait idle\nkey space\nwait scanning\npause 2\nhalt\nwait stopped\nwait idle\n"
+  std::ofstream(script) << "wait idle\nkey space\nwait rows.10\nhalt\nwait stopped\nwait idle\n"
                            "quit\n";
   const test::Outcome played = test::run_command(
       {"station", "--device", device(), "--session", session(), "--script", script}, {.timeout_s = 200});

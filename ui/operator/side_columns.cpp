@@ -147,6 +147,9 @@ void OperatorScreen::draw_growing(UiContext& ui, ImVec2 size) {
     const TimedWork timed(ui.watch, "the growing scan");
     growing_.update(session_, ui);
   }
+  if (growing_.rows() >= 10) {
+    ui.facts.insert("rows.10");
+  }
   if (growing_.rows() == 0) {
     draw->AddText(ui.fonts.small, ui.fonts.small->FontSize, {origin.x + ui.px(0.6F), origin.y + ui.px(0.5F)},
                   packed(ui.colours.faint), ui.text(Text::kNoScanYet));
