@@ -126,6 +126,15 @@ TEST_F(Resending, ControlThatIsLostInMidScanIsTakenAgainAndTheRowsInBetweenAreCo
   EXPECT_EQ(device.frame_counters()->reconnections, 1U);
 }
 
+/// Aravis asks for its control once a second, which is later than a short wait for profiles ends.
+TEST_F(Resending, ControlThatIsLostIsNoSilenceHoweverShortTheWait) {
+  Device device = open_with({{"rows", "24000"}, {"wait", "0.5"}}).value();
+  Interrupted rows(*peer_, "forget");
+  const auto outcome = device.scan(rows);
+  ASSERT_TRUE(outcome) << outcome.error().line();
+  EXPECT_EQ(rows.rows.back(), 23999);
+}
+
 /// What is left of the connection before ends the stream of its address, and is in no hurry.
 TEST_F(Resending, TheEndOfTheOldConnectionDoesNotEndTheNewOne) {
   Device device = open_with({{"rows", "24000"}}).value();
