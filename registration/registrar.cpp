@@ -22,9 +22,8 @@ ScanPose Registrar::add(int id, const std::shared_ptr<const RangeGrid>& grid, co
                         JobContext& job) {
   state_->remove(id, job);
   state_->enter(id, grid.get(), pins);
-  if (state_->join(id, job)) {
-    state_->retry(job);
-  }
+  state_->join(id, job);
+  state_->retry(job);
   return state_->pose(id);
 }
 
@@ -86,9 +85,8 @@ ScanPose Registrar::add_at(int id, const std::shared_ptr<const RangeGrid>& grid,
     return state_->pose(id);
   }
   state_->enter_at(id, model_from_scanner);
-  if (state_->join(id, job)) {
-    state_->retry(job);
-  }
+  state_->join(id, job);
+  state_->retry(job);
   return state_->pose(id);
 }
 

@@ -31,9 +31,10 @@ struct RegistrationOptions {
 /// The online model: scans come one by one, each is registered against all that are in place, and all are
 /// relaxed together. A pose that is not certain is never accepted: the scan stays kUnsure or kFailed with its
 /// reason and is tried again whenever the model has grown. The first scan is the model frame (with a nominal
-/// pose, the model frame is its tablet frame); scans that do not connect to it form groups of their own, and
-/// poses() reports those of the largest. Keeps features of each scan, not its grid. Not thread-safe; uses all
-/// cores inside. Same scans in the same order, same bytes.
+/// pose, the model frame is its tablet frame), unless it shows much less than a later one that does not fit
+/// it; scans that do not connect to it form groups of their own, and poses() reports those of the largest.
+/// Keeps features of each scan, not its grid. Not thread-safe; uses all cores inside. Same scans in the same
+/// order, same bytes.
 class Registrar {
  public:
   explicit Registrar(const RegistrationOptions& options = {});

@@ -20,8 +20,13 @@ namespace {
 constexpr const char* kOtherGroup =
     "it fits other scans, but not the largest group; scan what connects them, with at least 30 % overlap";
 
-bool size_is_possible(double a_mm, double b_mm, double most_ratio) {
-  return a_mm <= most_ratio * b_mm && b_mm <= most_ratio * a_mm;
+/// A scan that sees so much more than the first one (by its scale) shows what the object's size is: the first
+/// was broken off, or saw a rim.
+constexpr double kMuchLarger = 2.0;
+
+bool size_is_possible(const ScanSize& a, const ScanSize& b, double most_ratio) {
+  return same_spacing(a, b) ||
+         (a.scale_mm <= most_ratio * b.scale_mm && b.scale_mm <= most_ratio * a.scale_mm);
 }
 
 /// True when the pins alone leave no doubt that the first match is the right one.
@@ -67,6 +72,9 @@ void ScanModel::enter(int id, const RangeGrid* grid, const PinSet* pins) {
     first_spacing_mm_ = size.spacing_mm;
   }
   const ScanSize before{scale_mm_, first_spacing_mm_};
+  if (impossible.empty() && size.scale_mm > kMuchLarger * before.scale_mm && same_spacing(size, before)) {
+    rescale(size.scale_mm);
+  }
   ScanSurfaceOptions surface = options_.surface;
   surface.scale_mm = scale_mm_;
   if (scan.nominal) {
@@ -74,7 +82,7 @@ void ScanModel::enter(int id, const RangeGrid* grid, const PinSet* pins) {
   }
   if (!(scan.own_scale_mm > 0)) {
     scan.reason = "the scan has no surface in it; scan it again";
-  } else if (scale_mm_ > 0 && !size_is_possible(scan.own_scale_mm, scale_mm_, options_.most_unit_ratio)) {
+  } else if (scale_mm_ > 0 && !size_is_possible(size, before, options_.most_unit_ratio)) {
     scan.reason = other_unit(size, before);
   } else if (!impossible.empty()) {
     scan.reason = impossible;
@@ -88,6 +96,19 @@ void ScanModel::enter(int id, const RangeGrid* grid, const PinSet* pins) {
     }
   }
   scans_[id] = std::move(scan);
+}
+
+void ScanModel::rescale(double scale_mm) {
+  scale_mm_ = scale_mm;
+  ScanSurfaceOptions surface = options_.surface;
+  surface.scale_mm = scale_mm;
+  for (auto& [id, scan] : scans_) {
+    scan.self_similar.reset();
+    scan.tried_on.clear();
+    if (scan.features.surface) {
+      scan.features = make_scan_features(rescaled(*scan.features.surface, surface), options_.search.align);
+    }
+  }
 }
 
 std::vector<int> ScanModel::members(int group) const {
@@ -118,6 +139,15 @@ std::vector<int> ScanModel::groups_by_size() const {
     const auto& [size_b, first_b] = size_and_first[b];
     return size_a != size_b ? size_a > size_b : first_a < first_b;
   });
+  // As long as nothing is registered with anything, a scan that was broken off must not be the model.
+  if (!out.empty() && size_and_first[out.front()].first == 1) {
+    const auto scale_mm = [&](int group) { return scans_.at(size_and_first[group].second).own_scale_mm; };
+    const auto largest =
+        std::max_element(out.begin(), out.end(), [&](int a, int b) { return scale_mm(a) < scale_mm(b); });
+    if (scale_mm(*largest) > kMuchLarger * scale_mm(out.front())) {
+      std::rotate(out.begin(), largest, largest + 1);
+    }
+  }
   return out;
 }
 

@@ -86,8 +86,12 @@ class ScanModel {
     Matrix6d information = Matrix6d::Zero();
   };
 
+  /// Makes the surfaces of all scans anew for another scale; what was searched before is searched again.
+  void rescale(double scale_mm);
   [[nodiscard]] std::vector<int> members(int group) const;  ///< ascending ids
   [[nodiscard]] int main_group() const;
+  /// The largest first, which is the model; of equals the one whose scan came first, but for single scans
+  /// that show much less than another.
   [[nodiscard]] std::vector<int> groups_by_size() const;
   [[nodiscard]] PoseHints hints_for(const Scan& scan, const std::vector<int>& group_ids) const;
   [[nodiscard]] ScanPins pins_of(int id) const;

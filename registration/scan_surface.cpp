@@ -283,6 +283,66 @@ std::vector<std::uint8_t> kept_samples(const RangeGrid& grid, const std::vector<
   return keep;
 }
 
+std::shared_ptr<ScanSurface> surface_of(const RangeGrid& grid, const std::vector<std::uint8_t>& ignore,
+                                        const ScanSurfaceOptions& options) {
+  auto out = std::make_shared<ScanSurface>();
+  const std::vector<std::uint8_t> keep = kept_samples(grid, ignore);
+  for (const std::uint8_t k : keep) {
+    out->valid += k;
+  }
+  out->spacing_mm = grid.spacing_mm > 0 ? grid.spacing_mm : estimate_spacing_mm(grid);
+  if (!(out->spacing_mm > 0) || !std::isfinite(out->spacing_mm)) {
+    out->spacing_mm = 1.0;  // no two neighbours: there is nothing that a spacing could be wrong for
+  }
+  out->scale_mm = options.scale_mm > 0 ? options.scale_mm : surface_scale_mm(grid);
+  out->toward_camera = -grid.view.direction;
+  const auto stride_for = [&](double spacing_mm) {
+    return std::clamp(static_cast<int>(std::lround(spacing_mm / out->spacing_mm)), 1, 1 << 12);
+  };
+  int fine = 1;
+  while (out->valid / (static_cast<std::size_t>(fine) * static_cast<std::size_t>(fine)) >
+         options.most_fine_samples) {
+    ++fine;
+  }
+  const int medium = std::max(fine, stride_for(options.medium_spacing * out->scale_mm));
+  const int coarse = std::max(medium, stride_for(options.coarse_spacing * out->scale_mm));
+  side_by_side(
+      [&] { out->fine = make_level(grid, keep, fine, out->spacing_mm, options.fine_points, options); },
+      [&] { out->medium = make_level(grid, keep, medium, out->spacing_mm, options.medium_points, options); },
+      [&] { out->coarse = make_level(grid, keep, coarse, out->spacing_mm, options.coarse_points, options); },
+      [&] { out->noise_mm = estimate_noise_mm(grid, keep); });
+  out->fine->grid.intensity = block_intensity(grid, keep, fine);
+  out->relief = make_relief(*out->medium, block_intensity(grid, keep, medium),
+                            std::max(options.relief_radius * out->scale_mm, 3.0 * out->medium->spacing_mm),
+                            static_cast<std::size_t>(options.relief_points));
+
+  const SurfaceLevel& level = *out->medium;
+  std::size_t count = 0;
+  double spread = 0;
+  for (int pass = 0; pass < 2; ++pass) {
+    for (std::size_t i = 0; i < level.grid.size(); ++i) {
+      if (level.usable[i] == 0) {
+        continue;
+      }
+      const Eigen::Vector3d p = level.grid.point(i).cast<double>();
+      if (pass == 0) {
+        out->centroid_mm += p;
+        ++count;
+      } else {
+        spread += (p - out->centroid_mm).squaredNorm();
+      }
+    }
+    if (count == 0) {
+      break;
+    }
+    if (pass == 0) {
+      out->centroid_mm /= static_cast<double>(count);
+    }
+  }
+  out->extent_mm = count == 0 ? 0 : 2.0 * std::sqrt(spread / static_cast<double>(count));
+  return out;
+}
+
 }  // namespace
 
 double surface_scale_mm(const RangeGrid& grid) {
@@ -315,60 +375,15 @@ double surface_scale_mm(const RangeGrid& grid) {
 std::shared_ptr<const ScanSurface> make_scan_surface(const RangeGrid& grid,
                                                      const std::vector<std::uint8_t>& ignore,
                                                      const ScanSurfaceOptions& options) {
-  auto out = std::make_shared<ScanSurface>();
-  const std::vector<std::uint8_t> keep = kept_samples(grid, ignore);
-  for (const std::uint8_t k : keep) {
-    out->valid += k;
-  }
-  out->spacing_mm = grid.spacing_mm > 0 ? grid.spacing_mm : estimate_spacing_mm(grid);
-  if (!(out->spacing_mm > 0) || !std::isfinite(out->spacing_mm)) {
-    out->spacing_mm = 1.0;  // no two neighbours: there is nothing that a spacing could be wrong for
-  }
-  out->scale_mm = options.scale_mm > 0 ? options.scale_mm : surface_scale_mm(grid);
-  out->toward_camera = -grid.view.direction;
-  const auto stride_for = [&](double spacing_mm) {
-    return std::clamp(static_cast<int>(std::lround(spacing_mm / out->spacing_mm)), 1, 1 << 12);
-  };
-  int fine = 1;
-  while (out->valid / (static_cast<std::size_t>(fine) * static_cast<std::size_t>(fine)) >
-         options.most_fine_samples) {
-    ++fine;
-  }
-  const int medium = std::max(fine, stride_for(options.medium_spacing * out->scale_mm));
-  const int coarse = std::max(medium, stride_for(options.coarse_spacing * out->scale_mm));
-  side_by_side(
-      [&] { out->fine = make_level(grid, keep, fine, out->spacing_mm, options.fine_points, options); },
-      [&] { out->medium = make_level(grid, keep, medium, out->spacing_mm, options.medium_points, options); },
-      [&] { out->coarse = make_level(grid, keep, coarse, out->spacing_mm, options.coarse_points, options); },
-      [&] { out->noise_mm = estimate_noise_mm(grid, keep); });
-  out->relief = make_relief(*out->medium, block_intensity(grid, keep, medium),
-                            std::max(options.relief_radius * out->scale_mm, 3.0 * out->medium->spacing_mm),
-                            static_cast<std::size_t>(options.relief_points));
+  return surface_of(grid, ignore, options);
+}
 
-  const SurfaceLevel& level = *out->medium;
-  std::size_t count = 0;
-  double spread = 0;
-  for (int pass = 0; pass < 2; ++pass) {
-    for (std::size_t i = 0; i < level.grid.size(); ++i) {
-      if (level.usable[i] == 0) {
-        continue;
-      }
-      const Eigen::Vector3d p = level.grid.point(i).cast<double>();
-      if (pass == 0) {
-        out->centroid_mm += p;
-        ++count;
-      } else {
-        spread += (p - out->centroid_mm).squaredNorm();
-      }
-    }
-    if (count == 0) {
-      break;
-    }
-    if (pass == 0) {
-      out->centroid_mm /= static_cast<double>(count);
-    }
-  }
-  out->extent_mm = count == 0 ? 0 : 2.0 * std::sqrt(spread / static_cast<double>(count));
+std::shared_ptr<const ScanSurface> rescaled(const ScanSurface& surface, const ScanSurfaceOptions& options) {
+  std::shared_ptr<ScanSurface> out = surface_of(surface.fine->grid, {}, options);
+  // Of the full grid, which the finest level may be coarser than.
+  out->spacing_mm = surface.spacing_mm;
+  out->noise_mm = surface.noise_mm;
+  out->valid = surface.valid;
   return out;
 }
 

@@ -25,7 +25,7 @@ struct SurfaceSample {
 /// A scan at one resolution. Cells of the decimated grid average the samples of a block that lie on one
 /// sheet.
 struct SurfaceLevel {
-  RangeGrid grid;  ///< geometry only
+  RangeGrid grid;  ///< geometry; of the finest level intensity, too, where the scan has it
   std::vector<Eigen::Vector3f>
       normals;  ///< [rows*cols], smoothed over the 3×3 neighbours of the same sheet; zero if none
   /// [rows*cols], 1 where a sample may be matched: it has a normal and lies neither on the boundary nor
@@ -77,5 +77,9 @@ struct ScanSurface {
 [[nodiscard]] std::shared_ptr<const ScanSurface> make_scan_surface(const RangeGrid& grid,
                                                                    const std::vector<std::uint8_t>& ignore,
                                                                    const ScanSurfaceOptions& options);
+
+/// The same scan for another scale_mm, made of what its finest level keeps.
+[[nodiscard]] std::shared_ptr<const ScanSurface> rescaled(const ScanSurface& surface,
+                                                          const ScanSurfaceOptions& options);
 
 }  // namespace dubsar

@@ -69,6 +69,10 @@ std::string impossible_size(const ScanSize& scan, double least_mm, double most_m
          ", another unit than was said; " + unit.mend;
 }
 
+bool same_spacing(const ScanSize& a, const ScanSize& b) {
+  return a.spacing_mm > 0 && b.spacing_mm > 0 && near(a.spacing_mm / b.spacing_mm, 1.0, kSpacingWithin);
+}
+
 std::string other_unit(const ScanSize& scan, const ScanSize& before) {
   const double by_size = before.scale_mm / scan.scale_mm;
   const double by_spacing =

@@ -16,6 +16,10 @@ struct ScanSize {
 /// scanned; with the unit that its numbers look like and the mend. Empty when its size is possible.
 [[nodiscard]] std::string impossible_size(const ScanSize& scan, double least_mm, double most_mm);
 
+/// Samples as far apart, as one scanner sets them: then no unit stands between the two, however little of the
+/// object one of them shows. False where a spacing is not known.
+[[nodiscard]] bool same_spacing(const ScanSize& a, const ScanSize& b);
+
 /// Of a scan whose size differs from that of the scans before it by more than anything but a unit explains.
 [[nodiscard]] std::string other_unit(const ScanSize& scan, const ScanSize& before);
 

@@ -40,13 +40,15 @@ double residual_doubt(const ModelFit& fit, const VerifyOptions& o) {
 /// What overlap, fit and free space say, the relief left aside.
 PoseVerdict judged_by_shape(const ModelFit& fit, const VerifyOptions& o) {
   const PoseEvidence both = fit.both();
-  if (fit.outward.close + fit.inward.close < o.least_close || fit.overlap < o.least_overlap) {
-    if (fit.overlap < 0.3 * o.least_overlap) {
+  // Over the smaller of the two: one may be a scan that was broken off.
+  const double overlap = std::max(fit.overlap, fit.best_pair_overlap);
+  if (fit.outward.close + fit.inward.close < o.least_close || overlap < o.least_overlap) {
+    if (overlap < 0.3 * o.least_overlap) {
       return {PoseStatus::kFailed,
               "no overlap with the registered scans was found; scan again with at least 30 % overlap"};
     }
     return {PoseStatus::kUnsure,
-            "only " + percent(fit.overlap) +
+            "only " + percent(overlap) +
                 " of it overlaps the registered scans; scan again with at least 30 % overlap"};
   }
   const bool relief_is_sure = sure(fit, o);

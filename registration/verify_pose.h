@@ -12,8 +12,9 @@ namespace dubsar {
 
 /// What a pose must show before it is accepted. Shares are of samples, in [0, 1].
 struct VerifyOptions {
-  double least_overlap = 0.10;  ///< of the scan's samples on the model's surface
-  int least_close = 300;        ///< samples, of the fine level
+  double least_overlap =
+      0.10;               ///< of the scan's samples on the model's surface, or of a smaller scan's on it
+  int least_close = 300;  ///< samples, of the fine level
   // What speaks against a pose is added up, each in parts of what alone would be too much. Tuned on the
   // bunny, the dragon and a simulated tablet laid on its own back: right poses that carry a group stay below
   // 1, the wrong ones seen began at 1.6. Free space shows next to nothing against a right pose; a camera does
