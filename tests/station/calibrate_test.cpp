@@ -39,8 +39,7 @@ class Calibrate : public ::testing::Test {
   static void SetUpTestSuite() {
     rendered_ = new test::TemporaryFolder();
     const Outcome made = run_command({"simulate", "rig", "--motion", "turntable", "--poses", "9", "--stops",
-                                      "3", "--width", "768", "--height", "408", "-o", pictures().string()},
-                                     {.timeout_s = 240});
+                                      "3", "--width", "768", "--height", "408", "-o", pictures().string()});
     ASSERT_EQ(made.status, 0) << made.err;
   }
   static void TearDownTestSuite() {
@@ -62,7 +61,7 @@ class Calibrate : public ::testing::Test {
   Outcome calibrate(Arguments more = {}) {
     Arguments words{"calibrate", set_.string(), "-o", out().string()};
     words.insert(words.end(), more.begin(), more.end());
-    return run_command(words, {.timeout_s = 120});
+    return run_command(words);
   }
   [[nodiscard]] fs::path out() const { return folder_.path() / "out.json"; }
   static test::TemporaryFolder* rendered_;

@@ -44,7 +44,7 @@ class RegistrationInput : public ::testing::Test {
   [[nodiscard]] nlohmann::json registered(const Arguments& more = {}) const {
     Arguments words{"register", at("scans").string(), "--json"};
     words.insert(words.end(), more.begin(), more.end());
-    const Outcome outcome = test::run_command(words, {.timeout_s = 240});
+    const Outcome outcome = test::run_command(words);
     EXPECT_EQ(outcome.status, 1) << outcome.err;
     EXPECT_FALSE(outcome.timed_out);
     return outcome.json()["scans"];
@@ -179,7 +179,7 @@ TEST_F(RegistrationInput, SpacingsThatDifferTenfold) {
   const std::vector<RigidTransform> truth{{}, pose_of(3, -4, 35, {1, 2, 0})};
   put(0, surface, truth[0], coarse);
   put(1, surface, truth[1], fine);
-  const Outcome outcome = test::run_command({"register", at("scans").string(), "--json"}, {.timeout_s = 240});
+  const Outcome outcome = test::run_command({"register", at("scans").string(), "--json"});
   const auto poses = parse_poses(outcome.out, "answer");
   ASSERT_TRUE(poses.has_value()) << outcome.out;
   if (poses->at(1).status == PoseStatus::kRegistered) {
@@ -212,8 +212,8 @@ TEST_F(RegistrationInput, PinsWithWrongLabels) {
     tips.back().label = id > 0 ? first : tips.back().label;
   }
   ASSERT_TRUE(write_pins(at("wrong.json"), *pins));
-  const Outcome outcome = test::run_command(
-      {"register", scans, "--pins", at("wrong.json").string(), "--json"}, {.timeout_s = 240});
+  const Outcome outcome =
+      test::run_command({"register", scans, "--pins", at("wrong.json").string(), "--json"});
   const auto poses = parse_poses(outcome.out, "answer");
   ASSERT_TRUE(poses) << outcome.out << outcome.err;
   ASSERT_EQ(poses->size(), truth->size());

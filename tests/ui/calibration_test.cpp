@@ -104,8 +104,7 @@ class CalibrationBox : public ::testing::Test {
     return run_command(
         {"station", "--session", at("session").string(), "--device", "rig:" + at("rig.toml").string(),
          "--script", file.string()},
-        {.timeout_s = 150,
-         .environment = {"DUBSAR_DRIVER_PATH=" DUBSAR_BINARY_DIR "/lib/dubsar/test_drivers/window"}});
+        {.environment = {"DUBSAR_DRIVER_PATH=" DUBSAR_BINARY_DIR "/lib/dubsar/test_drivers/window"}});
   }
   void certify(double diameter_mm) {
     std::string text = kBall;
@@ -177,8 +176,7 @@ TEST_F(CalibrationBox, ACheckOfTheDayBeforeIsTooOld) {
 TEST_F(CalibrationBox, PicturesOfABoardBecomeACalibrationOrAreRefusedWithTheReason) {
   const fs::path coarse = at("coarse");
   ASSERT_EQ(run_command({"simulate", "rig", "--poses", "10", "--stops", "3", "--width", "320", "--height",
-                         "240", "-o", coarse.string()},
-                        {.timeout_s = 140})
+                         "240", "-o", coarse.string()})
                 .status,
             0);
   const fs::path board = at("board");
@@ -226,8 +224,7 @@ TEST_F(CalibrationBox, PicturesAreTakenThroughTheCamera) {
                              "click shot-stop\nwait shot stage_00.png\nclick close-calibration\nquit\n";
   const Outcome outcome = run_command(
       {"station", "--session", at("session").string(), "--device", "eye:", "--script", file.string()},
-      {.timeout_s = 150,
-       .environment = {"DUBSAR_DRIVER_PATH=" DUBSAR_BINARY_DIR "/lib/dubsar/test_drivers/window"}});
+      {.environment = {"DUBSAR_DRIVER_PATH=" DUBSAR_BINARY_DIR "/lib/dubsar/test_drivers/window"}});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   for (const char* name : {"pose_00.png", "pose_00_laser.png", "stage_00.png"}) {
     EXPECT_TRUE(fs::exists(shots / name)) << name;
@@ -247,8 +244,7 @@ TEST_F(CalibrationBox, ATurntableAndAMirrorAreCalibratedWithTheTemperature) {
                                "click close-calibration\nquit\n";
     return run_command(
         {"station", "--session", at("session").string(), "--device", "eye:", "--script", file.string()},
-        {.timeout_s = 150,
-         .environment = {"DUBSAR_DRIVER_PATH=" DUBSAR_BINARY_DIR "/lib/dubsar/test_drivers/window"}});
+        {.environment = {"DUBSAR_DRIVER_PATH=" DUBSAR_BINARY_DIR "/lib/dubsar/test_drivers/window"}});
   };
   const auto set_of = [&](const fs::path& shots) {
     const Result<std::string> text = read_whole_file(shots / "calibration.toml");

@@ -34,8 +34,7 @@ class Camera : public ::testing::Test {
     std::ofstream(file) << script;
     return run_command(
         {"station", "--session", session().string(), "--device", "eye:", "--script", file.string()},
-        {.timeout_s = 150,
-         .environment = {"DUBSAR_DRIVER_PATH=" DUBSAR_BINARY_DIR "/lib/dubsar/test_drivers/window"}});
+        {.environment = {"DUBSAR_DRIVER_PATH=" DUBSAR_BINARY_DIR "/lib/dubsar/test_drivers/window"}});
   }
   [[nodiscard]] std::filesystem::path session() const { return folder_.path() / "session"; }
   [[nodiscard]] SettingWords kept() const {

@@ -40,8 +40,7 @@ class OperatorStory : public ::testing::Test {
   Outcome play_on(const std::string& device, const std::string& script) {
     const fs::path file = folder_.path() / "story.script";
     std::ofstream(file) << script;
-    return run_command({"station", "--session", session(), "--device", device, "--script", file.string()},
-                       {.timeout_s = 150});
+    return run_command({"station", "--session", session(), "--device", device, "--script", file.string()});
   }
   [[nodiscard]] std::string session() const { return (folder_.path() / "session").string(); }
 

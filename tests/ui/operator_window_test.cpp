@@ -32,8 +32,7 @@ class OperatorWindow : public ::testing::Test {
     std::ofstream(in("a.script")) << script;
     return run_command({"station", "--session", in("session"), "--device",
                         "sim:?seed=1&size=20x16x8&spacing=0.25&noise=0.02", "--script", in("a.script"),
-                        "--width", "1366", "--height", "768"},
-                       {.timeout_s = 150});
+                        "--width", "1366", "--height", "768"});
   }
 
   test::TemporaryFolder folder_;

@@ -123,7 +123,7 @@ TEST_F(RigStop, TheEmergencyStopOfAVerification) {
 }
 
 TEST_P(RigStop, ASignalToTheCommand) {
-  test::RunningCommand running({"scan", "--device", device(), "--session", session()}, {.timeout_s = 200});
+  test::RunningCommand running({"scan", "--device", device(), "--session", session()});
   ASSERT_TRUE(wait_for_some_rows()) << running.log_until_now();
   running.send(GetParam());
   if (GetParam() != SIGINT) {
@@ -147,8 +147,8 @@ TEST_F(RigStop, TheKeyOfTheWindow) {
   const std::string script = (folder_.path() / "a.script").string();
   std::ofstream(script) << "wait idle\nkey space\nwait rows.10\nhalt\nwait stopped\nwait idle\n"
                            "quit\n";
-  const test::Outcome played = test::run_command(
-      {"station", "--device", device(), "--session", session(), "--script", script}, {.timeout_s = 200});
+  const test::Outcome played =
+      test::run_command({"station", "--device", device(), "--session", session(), "--script", script});
   EXPECT_EQ(played.status, 0) << played.err;
   expect_dark_and_still();
   expect_half_a_scan();

@@ -18,7 +18,9 @@ namespace dubsar::test {
 using Arguments = std::vector<std::string>;
 
 struct CommandOptions {
-  double timeout_s = 60;           ///< then it is killed and the outcome says so
+  /// Then it is killed and the outcome says so. Nothing takes as long but what hangs: machines that build
+  /// beside the tests are slow, and a test that waits is no measure of speed.
+  double timeout_s = 240;
   std::uint64_t largest_file = 0;  ///< bytes, RLIMIT_FSIZE; 0: no limit
   bool one_core = false;
   std::vector<std::string> environment{};  ///< NAME=VALUE, besides ours
@@ -47,7 +49,7 @@ class RunningCommand {
 
   void send(int signal_number) const;
   /// Waits until standard error has the text. False when it ended, or the time is up, without it.
-  [[nodiscard]] bool says(const std::string& text, double timeout_s = 60);
+  [[nodiscard]] bool says(const std::string& text, double timeout_s = 240);
   [[nodiscard]] std::string log_until_now();
   Outcome wait();
 

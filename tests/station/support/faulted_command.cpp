@@ -23,7 +23,6 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::size_t kLogBytes = 512;
-constexpr double kTimeoutS = 240;  ///< machines that build beside the trials are slow
 
 /// What storage_faults.c shares with us.
 class FaultLog {
@@ -91,7 +90,6 @@ TrialOutcome run_with_fault(const Arguments& arguments, const fs::path& folder, 
                             const Fault& fault) {
   const FaultLog log(log_file);
   CommandOptions options;
-  options.timeout_s = kTimeoutS;
   options.environment = {"LD_PRELOAD=" DUBSAR_BINARY_DIR
                          "/lib/dubsar/test_support/libdubsar_storage_faults.so",
                          "DUBSAR_FAULT_ROOT=" + folder.string(),

@@ -109,9 +109,7 @@ OutputTrials::OutputTrials(fs::path folder, std::uint64_t seed)
 }
 
 void OutputTrials::must(const Arguments& arguments) const {
-  CommandOptions patient;
-  patient.timeout_s = 240;
-  const Outcome made = run_command(arguments, patient);
+  const Outcome made = run_command(arguments);
   if (made.status != 0) {
     throw std::runtime_error(arguments.front() + " did not make what the trials need, status " +
                              std::to_string(made.status) + ": " + made.err);
@@ -189,14 +187,12 @@ void OutputTrials::look(const OutputVerb& verb, TrialOutcome& out) const {
   if (!verb.repeats) {
     return;
   }
-  CommandOptions patient;
-  patient.timeout_s = 240;
   const auto in_place = [&](const Arguments& words) {
     return filled_in(words, {{"FOLDER", place_.string()}});
   };
-  Outcome again = run_command(in_place(verb.arguments), patient);
+  Outcome again = run_command(in_place(verb.arguments));
   if (!verb.then.empty()) {
-    again = run_command(in_place(verb.then), patient);
+    again = run_command(in_place(verb.then));
   }
   const Files in_the_end = files();
   for (const auto& [name, bytes] : after_) {

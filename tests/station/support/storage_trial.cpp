@@ -17,7 +17,6 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* kScans = "3";
-constexpr double kTimeoutS = 240;  ///< machines that build beside the trials are slow
 
 /// The numbers in "scan 7 stored".
 std::set<int> reported_scans(const std::string& log) {
@@ -83,11 +82,8 @@ StorageTrials::StorageTrials(fs::path folder, std::uint64_t seed)
     : folder_(std::move(folder)),
       scanned_(folder_ / "scanned"),
       device_("sim:?seed=" + std::to_string(seed) + "&size=14x11x8&spacing=0.55") {
-  CommandOptions patient;
-  patient.timeout_s = kTimeoutS;
   const Outcome scanned = run_command(
-      {"scan", "--auto", "--max-scans", kScans, "--device", device_, "--session", scanned_.string()},
-      patient);
+      {"scan", "--auto", "--max-scans", kScans, "--device", device_, "--session", scanned_.string()});
   const auto store = SessionStore::open(scanned_, SessionStore::Access::kReadOnly);
   if (scanned.status < 0 || scanned.status > 1 || !store) {
     throw std::runtime_error("the session for the trials was not scanned, status " +

@@ -33,8 +33,7 @@ class OnATablet : public ::testing::Test {
     std::ofstream(folder_.path() / "a.script") << script;
     const std::filesystem::path before = std::filesystem::current_path();
     std::filesystem::current_path(folder_.path());
-    auto outcome =
-        run_command({"station", "--mesh", "tablet.ply", "--script", "a.script"}, {.timeout_s = 240});
+    auto outcome = run_command({"station", "--mesh", "tablet.ply", "--script", "a.script"});
     std::filesystem::current_path(before);
     return outcome;
   }
