@@ -172,11 +172,11 @@ Result<GrayImage> LiveCalibration::picture(bool laser, const std::optional<doubl
     return std::unexpected(frame.error());
   }
   if (frame->offset_x != 0 || frame->offset_y != 0) {
-    return bad_input(
-        camera_.uri(),
-        "the camera sends a region that begins at pixel " + std::to_string(frame->offset_x) + ", " +
-            std::to_string(frame->offset_y),
-        "a rig is calibrated and scans with a region from 0, 0 on: set the camera's offsets to 0");
+    return bad_input(camera_.uri(),
+                     "the camera sends a region that begins at pixel " + std::to_string(frame->offset_x) +
+                         ", " + std::to_string(frame->offset_y),
+                     "a rig is calibrated with a picture from 0, 0 on, of which it may scan a part "
+                     "(region_px): set the camera's offsets to 0");
   }
   return gray_of(*frame);
 }

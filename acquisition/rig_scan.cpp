@@ -8,6 +8,7 @@
 #include <ctime>
 #include <utility>
 
+#include "acquisition/camera_region.h"
 #include "acquisition/fresh_frame.h"
 #include "acquisition/rig_parts.h"
 #include "formats/number_text.h"
@@ -88,20 +89,28 @@ Result<RigScanner> RigScanner::make(const RigFile& file, const RigCalibration& c
   if (const Result<StageAxis> axis = axis_for_scan(file, stage, calibration.motion.kind, where); !axis) {
     return std::unexpected(axis.error());
   }
-  if (Status status = put_camera_settings(file, camera, where); !status) {
+  const Result<RigCalibration> seen =
+      file.region ? seen_in(*file.region, calibration, where) : Result<RigCalibration>(calibration);
+  if (!seen) {
+    return std::unexpected(seen.error());
+  }
+  // How fast a camera is goes by its region.
+  Status status = file.region ? put_region(*file.region, camera, where) : Status{};
+  status = status ? put_camera_settings(file, camera, where) : status;
+  if (!status) {
     return std::unexpected(status.error());
   }
-  RigScanner out(file, calibration, std::move(camera), std::move(stage),
+  RigScanner out(file, *seen, std::move(camera), std::move(stage),
                  file.stripe_per_row ? StripeAxis::kPerRow : StripeAxis::kPerColumn);
   Rig& rig = out.rig_;
   rig.name = file.name;
   rig.view = calibration.view(file.step);
   rig.view.motion_per_row_mm = Eigen::Vector3d::Zero();  // positions are those of the middle row
-  rig.field_x_mm = calibration.field_per_px_mm() * out.triangulator_->samples_per_profile();
+  rig.field_x_mm = field_mm(*seen, file.stripe_per_row);
   const double row_spacing_mm = calibration.row_spacing_mm(file.step);
   rig.field_y_mm = row_spacing_mm * (file.rows - 1);
   rig.spacing_mm = std::max(calibration.field_per_px_mm(), row_spacing_mm);
-  rig.depth_range_mm = calibration.depth_range_mm;
+  rig.depth_range_mm = depth_mm(*seen);
   rig.hand_turns = file.hand_turns;
   rig.support_height_mm = file.support_height_mm;
   rig.head = file.head;
@@ -115,16 +124,21 @@ Result<RigScanner> RigScanner::make(const RigFile& file, const RigCalibration& c
 
 Status RigScanner::check_frame(const Frame& frame) const {
   const CameraModel& camera = triangulator_->calibration().camera;
-  if (static_cast<int>(frame.width) != camera.width || static_cast<int>(frame.height) != camera.height ||
-      frame.offset_x != 0 || frame.offset_y != 0) {
+  const PictureRegion asked = file_.region.value_or(PictureRegion{0, 0, camera.width, camera.height});
+  if (static_cast<int>(frame.width) != asked.width || static_cast<int>(frame.height) != asked.height ||
+      static_cast<int>(frame.offset_x) != asked.x || static_cast<int>(frame.offset_y) != asked.y) {
     const auto region = [](auto width, auto height, auto x, auto y) {
       return std::to_string(width) + " x " + std::to_string(height) + " pixels from " + std::to_string(x) +
              ", " + std::to_string(y) + " on";
     };
     return bad_input(file_.camera,
                      "the camera sends " + region(frame.width, frame.height, frame.offset_x, frame.offset_y) +
-                         ", it was calibrated with " + region(camera.width, camera.height, 0, 0),
-                     "ask for the region that was calibrated: ?size= of v4l2:, camera_settings of aravis:");
+                         (file_.region ? ", the rig asks for " : ", it was calibrated with ") +
+                         region(asked.width, asked.height, asked.x, asked.y),
+                     file_.region
+                         ? "leave the region to region_px of the rig"
+                         : "ask for the picture that was calibrated (?size= of v4l2:, camera_settings "
+                           "of aravis:), or for a part of it with region_px of the rig");
   }
   if (frame.format != PixelFormat::kMono8) {
     return bad_input(file_.camera, "the camera sends more than eight bits a pixel",

@@ -13,6 +13,7 @@ namespace {
 
 constexpr double kMostTravel = 1e5;
 constexpr int kMostRows = 100'000;
+constexpr int kMostPixels = 65'536;
 
 /// Where the scan begins and ends, in mm or in degrees.
 void read_scan(const JsonNode& scan, RigFile& rig) {
@@ -49,6 +50,17 @@ void read_scan(const JsonNode& scan, RigFile& rig) {
   }
 }
 
+PictureRegion read_region(const JsonNode& node) {
+  if (node.size() != 4) {
+    node.complain("is not x, y, width and height of a part of the picture");
+    return {};
+  }
+  const auto pixels = [&](std::size_t k, int least) {
+    return static_cast<int>(node.item(k).integer(least, kMostPixels));
+  };
+  return {pixels(0, 0), pixels(1, 0), pixels(2, 16), pixels(3, 16)};
+}
+
 /// How a stage moves a range camera.
 void read_motion(const JsonNode& node, RigFile& rig) {
   node.only({"kind", "direction", "point_mm"});
@@ -82,8 +94,8 @@ Result<RigFile> parse_rig_file(std::string_view toml, const std::string& where) 
     return std::unexpected(document.error());
   }
   const JsonNode root = document->root();
-  root.only({"name", "camera", "stage", "calibration", "motion", "camera_settings", "axis", "laser", "scan",
-             "stripe", "hand_turns", "support_height_mm", "head"});
+  root.only({"name", "camera", "stage", "calibration", "motion", "camera_settings", "region_px", "axis",
+             "laser", "scan", "stripe", "hand_turns", "support_height_mm", "head"});
   RigFile rig;
   rig.name = root.at("name").text();
   rig.camera = root.at("camera").text();
@@ -99,6 +111,12 @@ Result<RigFile> parse_rig_file(std::string_view toml, const std::string& where) 
   if (const auto settings = root.find("camera_settings")) {
     for (const JsonNode& pair : settings->items()) {
       rig.camera_settings.emplace_back(pair.item(0).text(), setting_text(pair));
+    }
+  }
+  if (const auto region = root.find("region_px")) {
+    rig.region = read_region(*region);
+    if (rig.motion) {
+      region->complain("is for a rig with a calibration: a range camera has it among camera_settings");
     }
   }
   if (const auto axis = root.find("axis")) {

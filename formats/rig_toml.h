@@ -14,6 +14,11 @@
 
 namespace dubsar {
 
+/// A part of a camera's picture, pixels; x and y are those of its first corner.
+struct PictureRegion {
+  int x = 0, y = 0, width = 0, height = 0;
+};
+
 /// A rig put together from parts, as rig.toml names them (docs/formats/rig_toml.md).
 struct RigFile {
   std::string name;
@@ -23,8 +28,9 @@ struct RigFile {
   std::optional<RigMotion> motion;  ///< of a range camera: how the stage moves it, in its own frame
   /// Settings of the camera, put in this order before the first scan; the words as they stand.
   std::vector<std::pair<std::string, std::string>> camera_settings;
-  int axis = 0;   ///< of the stage, that moves while a scan runs
-  int laser = 0;  ///< of the stage
+  std::optional<PictureRegion> region;  ///< of the calibrated picture, that the camera is to send
+  int axis = 0;                         ///< of the stage, that moves while a scan runs
+  int laser = 0;                        ///< of the stage
   double laser_power = 1;
   double start = 0;    ///< of the stage at row 0; mm or radians
   double step = 0;     ///< from row to row, > 0

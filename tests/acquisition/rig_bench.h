@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <functional>
+#include <map>
 #include <mutex>
 #include <string>
 #include <thread>
@@ -46,7 +47,9 @@ struct RigBench {
   GrayImage frame;
   bool settable = false;  ///< the camera has an exposure to set
   double exposure_us = 2000;
-  std::uint32_t offset_x = 0;            ///< of the camera's region
+  std::uint32_t offset_x = 0;  ///< that it says its region has
+  /// Settings of the part that it sends: width_px, height_px, offset_x_px, offset_y_px; empty: all, always.
+  std::map<std::string, int> part;
   std::vector<double> lit_us, unlit_us;  ///< exposures of the frames, by the laser
 };
 
@@ -76,6 +79,18 @@ inline const dubsar_driver& camera_driver() {
     };
     out.describe_settings = [](dubsar_device* device, dubsar_setting_callback callback, void* user,
                                dubsar_error*) -> std::int32_t {
+      for (const auto& [key, value] : bench_of(device).part) {
+        dubsar_setting of_part{};
+        of_part.struct_size = sizeof of_part;
+        of_part.type = DUBSAR_TYPE_INTEGER;
+        of_part.flags = DUBSAR_SETTING_READABLE | DUBSAR_SETTING_WRITABLE;
+        of_part.key = key.c_str();
+        of_part.help = "";
+        of_part.maximum = 4096;
+        if (callback(user, &of_part) != 0) {
+          return DUBSAR_CANCELLED;
+        }
+      }
       if (!bench_of(device).settable) {
         return DUBSAR_OK;
       }
@@ -100,8 +115,12 @@ inline const dubsar_driver& camera_driver() {
       plugin::lend(to, value);
       return DUBSAR_OK;
     };
-    out.set_setting = [](dubsar_device* device, const char*, const dubsar_value* value,
+    out.set_setting = [](dubsar_device* device, const char* key, const dubsar_value* value,
                          dubsar_error*) -> std::int32_t {
+      if (const auto of_part = bench_of(device).part.find(key); of_part != bench_of(device).part.end()) {
+        of_part->second = static_cast<int>(value->integer);
+        return DUBSAR_OK;
+      }
       bench_of(device).exposure_us = value->number;
       return DUBSAR_OK;
     };
@@ -126,6 +145,16 @@ inline const dubsar_driver& camera_driver() {
         bench.frame = sim::FrameRenderer(bench.truth, bench.optics)
                           .render(target, bench.laser > 0, bench.position, bench.frames);
       }
+      if (!bench.part.empty()) {
+        GrayImage part(bench.part["width_px"], bench.part["height_px"]);
+        for (int row = 0; row < part.height; ++row) {
+          for (int col = 0; col < part.width; ++col) {
+            part.pixels[part.index(col, row)] =
+                bench.frame.at(col + bench.part["offset_x_px"], row + bench.part["offset_y_px"]);
+          }
+        }
+        bench.frame = std::move(part);
+      }
       dubsar_frame frame{};
       frame.struct_size = sizeof frame;
       frame.flags = DUBSAR_FRAME_EXPOSED;
@@ -138,7 +167,8 @@ inline const dubsar_driver& camera_driver() {
       frame.stride_bytes = frame.width;
       frame.size_bytes = static_cast<std::uint64_t>(frame.width) * frame.height;
       frame.pixel_format = DUBSAR_PIXEL_MONO8;
-      frame.offset_x = bench.offset_x;
+      frame.offset_x = bench.part.empty() ? bench.offset_x : bench.part["offset_x_px"];
+      frame.offset_y = bench.part.empty() ? 0 : bench.part["offset_y_px"];
       (bench.laser > 0 ? bench.lit_us : bench.unlit_us).push_back(bench.exposure_us);
       plugin::lend(to, frame);
       return DUBSAR_OK;

@@ -62,6 +62,12 @@ class RigScan : public testing::Test {
     return made ? std::string() : made.error().line();
   }
 
+  /// What the field has less to either side of the lens's axis than half of the picture.
+  [[nodiscard]] double off_middle_mm() const {
+    const CameraModel& camera = bench.truth.camera;
+    return std::abs(2 * camera.cx_px - (camera.width - 1)) * 6.25 / camera.width;
+  }
+
   sim::TestScene scene{sim::plane(20, 0.5F, 0.5F)};
   test::RigBench bench;
   RigFile file;
@@ -76,7 +82,7 @@ TEST_F(RigScan, ScansAPlaneThroughTheDriverInterface) {
   ASSERT_TRUE(can->rig.has_value());
   EXPECT_EQ(can->rig->name, "bench rig");
   EXPECT_EQ(can->serial, "SIM-CAMERA");
-  EXPECT_NEAR(can->rig->field_x_mm, 6.25, 0.01);
+  EXPECT_NEAR(can->rig->field_x_mm, 6.25 - off_middle_mm(), 0.01);
   EXPECT_NEAR(can->rig->field_y_mm, 1.0, 1e-9);
   EXPECT_GT(can->rig->calibration_age_days.value_or(0), 100);
   Collect sink;
@@ -96,6 +102,53 @@ TEST_F(RigScan, ScansAPlaneThroughTheDriverInterface) {
   EXPECT_NEAR(static_cast<double>(grid.y[grid.index(10, 128)]), 0.5, 0.003);
   EXPECT_EQ(bench.laser, 0) << "off when it is done";
   EXPECT_EQ(bench.frames, 22U);
+}
+
+/// Real cameras are as fast as their region is low.
+TEST_F(RigScan, APartOfTheCalibratedPictureGivesTheSamePoints) {
+  file.stripe_method = "gaussian";  // which sees nothing but its column
+  Collect whole;
+  {
+    Result<RigScanner> made = make();
+    ASSERT_TRUE(made.has_value()) << made.error().line();
+    ASSERT_TRUE(made->scan(whole).has_value());
+  }
+  bench.frames = 0;  // the same noise again
+  bench.part = {{"width_px", 256}, {"height_px", 200}, {"offset_x_px", 0}, {"offset_y_px", 0}};
+  file.region = PictureRegion{32, 60, 192, 90};
+  Result<RigScanner> made = make();
+  ASSERT_TRUE(made.has_value()) << made.error().line();
+  EXPECT_EQ(bench.part["offset_y_px"], 60);
+  EXPECT_NEAR(made->rig().field_x_mm, 6.25 * 192 / 256 - off_middle_mm(), 0.01);
+  EXPECT_LT(made->rig().depth_range_mm, 0.5 * bench.truth.depth_range_mm);
+  Collect part;
+  const Status scanned = made->scan(part);
+  ASSERT_TRUE(scanned.has_value()) << scanned.error().line();
+  const RangeGrid& all = whole.builder->grid();
+  const RangeGrid& some = part.builder->grid();
+  ASSERT_EQ(some.cols, 192);
+  ASSERT_EQ(some.rows, all.rows);
+  std::size_t both = 0;
+  for (int row = 0; row < some.rows; ++row) {
+    for (int col = 0; col < some.cols; ++col) {
+      if (some.is_valid(row, col) && all.is_valid(row, col + 32)) {
+        const Eigen::Vector3f apart = some.point(some.index(row, col)) - all.point(all.index(row, col + 32));
+        ASSERT_LT(apart.norm(), 1e-4F) << row << " " << col;
+        ++both;
+      }
+    }
+  }
+  EXPECT_GT(both, 0.9 * static_cast<double>(some.size()));
+}
+
+TEST_F(RigScan, APartThatCannotBeSentOrHoldsNotTheMiddleIsRefused) {
+  file.region = PictureRegion{0, 60, 256, 90};
+  EXPECT_NE(refusal().find("offset_x_px"), std::string::npos) << "a camera without that setting";
+  bench.part = {{"width_px", 256}, {"height_px", 200}, {"offset_x_px", 0}, {"offset_y_px", 0}};
+  file.region = PictureRegion{0, 120, 256, 81};
+  EXPECT_NE(refusal().find("beyond the picture"), std::string::npos);
+  file.region = PictureRegion{0, 0, 256, 64};
+  EXPECT_NE(refusal().find("the middle of the measuring volume"), std::string::npos);
 }
 
 TEST_F(RigScan, OnATurntableTheSpacingIsThatOfTheClay) {

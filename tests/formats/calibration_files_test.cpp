@@ -176,6 +176,17 @@ step_deg = 0.5
   EXPECT_TRUE(refused("name", "nam"));
   EXPECT_TRUE(refused("\"1500\"", "1500"));
   EXPECT_TRUE(refused("[scan]", "[scann]"));
+  EXPECT_FALSE(rig->region);
+  std::string part(kRig);
+  part.insert(part.find("[scan]"), "region_px = [0, 400, 2048, 288]\n");
+  const Result<RigFile> cut = parse_rig_file(part, "rig.toml");
+  ASSERT_TRUE(cut.has_value()) << cut.error().line();
+  ASSERT_TRUE(cut->region);
+  EXPECT_EQ(cut->region->y, 400);
+  EXPECT_EQ(cut->region->height, 288);
+  EXPECT_TRUE(refused("[scan]", "region_px = [0, 400, 2048]\n[scan]"));
+  EXPECT_TRUE(refused("[scan]", "region_px = [-1, 400, 2048, 288]\n[scan]"));
+  EXPECT_TRUE(refused("[scan]", "region_px = [0, 400, 2048, 0]\n[scan]"));
   // A stage that moves through: nothing stands still for an ambient frame.
   const std::string through = std::string(kRig) + "continuous = true\n";
   const Result<RigFile> moving = parse_rig_file(through, "rig.toml");
