@@ -5,12 +5,19 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include "acquisition/setting_words.h"
 
 namespace dubsar {
 
 namespace {
+
+/// It has to have its size before it can go from the corner, and its size may be what keeps it there.
+Status put_at_corner(Device& camera, const std::string& where) {
+  return put_settings(camera, {{"offset_x_px", "0"}, {"offset_y_px", "0"}}, where);
+}
 
 /// Height of the clay, scanner frame, that the camera sees lit at an image point; at stage position 0.
 std::optional<double> height_at(const RigCalibration& rig, const Eigen::Vector2d& pixel) {
@@ -81,15 +88,31 @@ double field_mm(const RigCalibration& calibration, bool stripe_per_row) {
 
 Status put_region(const PictureRegion& region, Device& camera, const std::string& where) {
   const auto words = [](int number) { return std::to_string(number); };
-  // A region has to have its size before it can go from the corner.
-  return put_settings(camera,
-                      {{"offset_x_px", "0"},
-                       {"offset_y_px", "0"},
-                       {"width_px", words(region.width)},
-                       {"height_px", words(region.height)},
-                       {"offset_x_px", words(region.x)},
-                       {"offset_y_px", words(region.y)}},
-                      where);
+  Status put = put_at_corner(camera, where);
+  return put ? put_settings(camera,
+                            {{"width_px", words(region.width)},
+                             {"height_px", words(region.height)},
+                             {"offset_x_px", words(region.x)},
+                             {"offset_y_px", words(region.y)}},
+                            where)
+             : put;
+}
+
+Status put_whole_picture(Device& camera, const std::string& where) {
+  if (Status put = put_at_corner(camera, where); !put) {
+    return put;
+  }
+  const Result<std::vector<SettingInfo>> settings = camera.settings();
+  if (!settings) {
+    return std::unexpected(settings.error());
+  }
+  std::vector<std::pair<std::string, std::string>> all;
+  for (const SettingInfo& setting : *settings) {
+    if ((setting.key == "width_px" || setting.key == "height_px") && setting.range) {
+      all.emplace_back(setting.key, std::to_string(std::llround(setting.range->second)));
+    }
+  }
+  return put_settings(camera, all, where);
 }
 
 }  // namespace dubsar

@@ -23,5 +23,8 @@ namespace dubsar {
 
 /// Asks the camera for it. kUsage: it sends no part of its picture, or not this one.
 Status put_region(const PictureRegion& region, Device& camera, const std::string& where);
+/// Asks it for all it has, as it is calibrated: scans with a part may have been before. Errors as
+/// put_region().
+Status put_whole_picture(Device& camera, const std::string& where);
 
 }  // namespace dubsar

@@ -7,6 +7,7 @@
 #include <memory>
 #include <utility>
 
+#include "acquisition/camera_region.h"
 #include "acquisition/device_uri.h"
 #include "acquisition/range_rig.h"
 #include "acquisition/rig_log.h"
@@ -196,7 +197,9 @@ Result<RigParts> open_rig_parts(const std::filesystem::path& file, const DriverR
   if (!stage) {
     return std::unexpected(stage.error());
   }
-  if (Status put = put_camera_settings(*rig, *camera, file.string()); !put) {
+  Status put = rig->region ? put_whole_picture(*camera, file.string()) : Status{};
+  put = put ? put_camera_settings(*rig, *camera, file.string()) : put;
+  if (!put) {
     return std::unexpected(put.error());
   }
   return RigParts{*rig, std::move(*camera), std::move(*stage)};

@@ -86,7 +86,8 @@ inline const dubsar_driver& camera_driver() {
         of_part.flags = DUBSAR_SETTING_READABLE | DUBSAR_SETTING_WRITABLE;
         of_part.key = key.c_str();
         of_part.help = "";
-        of_part.maximum = 4096;
+        const CameraModel& all = bench_of(device).truth.camera;
+        of_part.maximum = key == "width_px" || key == "offset_x_px" ? all.width : all.height;
         if (callback(user, &of_part) != 0) {
           return DUBSAR_CANCELLED;
         }

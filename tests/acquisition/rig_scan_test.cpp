@@ -8,6 +8,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "acquisition/camera_region.h"
 #include "acquisition/exposure.h"
 #include "acquisition/grid_builder.h"
 #include "acquisition/range_rig.h"
@@ -139,6 +140,11 @@ TEST_F(RigScan, APartOfTheCalibratedPictureGivesTheSamePoints) {
     }
   }
   EXPECT_GT(both, 0.9 * static_cast<double>(some.size()));
+  // It is calibrated with all of it.
+  Device camera = test::camera_of(bench);
+  ASSERT_TRUE(put_whole_picture(camera, "rig.toml"));
+  EXPECT_EQ(bench.part, (std::map<std::string, int>{
+                            {"width_px", 256}, {"height_px", 200}, {"offset_x_px", 0}, {"offset_y_px", 0}}));
 }
 
 TEST_F(RigScan, APartThatCannotBeSentOrHoldsNotTheMiddleIsRefused) {
