@@ -64,11 +64,10 @@ TEST_P(HalfScan, ThatASessionBeginsWithSpoilsNothing) {
       continue;
     }
     ASSERT_EQ(poses[k].status, PoseStatus::kRegistered) << poses[k].reason;
-    EXPECT_LT(bench::pair_error(scans[1], scans[k],
-                                poses[1].model_from_scanner.inverse() * poses[k].model_from_scanner)
-                  .shift_mm,
-              0.05)
-        << k;
+    const bench::PairError error = bench::pair_error(
+        scans[1], scans[k], poses[1].model_from_scanner.inverse() * poses[k].model_from_scanner);
+    EXPECT_LT(error.shift_mm, 0.004) << k;
+    EXPECT_LT(error.turn_deg, 0.02) << k;
   }
 }
 INSTANTIATE_TEST_SUITE_P(Each, HalfScan,
