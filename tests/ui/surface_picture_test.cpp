@@ -25,22 +25,23 @@ namespace fs = std::filesystem;
 constexpr int kWidth = 240;
 constexpr int kHeight = 180;
 
-/// A slab with two wedge-like dents and a bump.
+/// Of the slab with two wedge-like dents and a bump.
+float slab_height_mm(float x, float y) {
+  const auto dent = [](float dx, float dy, float depth) {
+    return std::max(0.0F, depth - 0.9F * std::abs(dy) - 0.35F * std::abs(dx - 0.4F * dx * dx / 3));
+  };
+  const float bump = 1.2F * std::exp(-((x - 5) * (x - 5) + (y + 3) * (y + 3)) / 3);
+  return -0.015F * (x * x + y * y) - dent(x + 4, y - 2, 1.5F) - dent(x - 2, y - 3, 1.0F) + bump;
+}
+
 Mesh dented_slab(std::uint32_t cells = 220) {
   const auto side = static_cast<float>(cells);
   Mesh mesh;
-  const auto dent = [](float x, float y, float at_x, float at_y, float depth) {
-    const float dx = x - at_x;
-    const float dy = y - at_y;
-    return std::max(0.0F, depth - 0.9F * std::abs(dy) - 0.35F * std::abs(dx - 0.4F * dx * dx / 3));
-  };
   for (std::uint32_t j = 0; j <= cells; ++j) {
     for (std::uint32_t i = 0; i <= cells; ++i) {
       const float x = -10 + 20 * static_cast<float>(i) / side;
       const float y = -7.5F + 15 * static_cast<float>(j) / side;
-      const float bump = 1.2F * std::exp(-((x - 5) * (x - 5) + (y + 3) * (y + 3)) / 3);
-      const float z = -0.015F * (x * x + y * y) - dent(x, y, -4, 2, 1.5F) - dent(x, y, 2, 3, 1.0F) + bump;
-      mesh.positions.emplace_back(x, y, z);
+      mesh.positions.emplace_back(x, y, slab_height_mm(x, y));
       mesh.flags.push_back(i > cells - 20 ? std::uint8_t{kVertexSparse} : std::uint8_t{0});
     }
   }
@@ -232,12 +233,33 @@ TEST(PieceSize, LearnsFromWholePiecesAndNotFromWhatIsLeftOver) {
   EXPECT_EQ(size.count(), 100000U);
 }
 
-TEST_F(Shading, ThePlaceUnderAPixelIsOnTheSurface) {
+TEST_F(Shading, ThePlaceUnderAPixelIsOnTheSurfaceAndTheTapeIsAsLong) {
   view_->draw_whole(camera_, look_, kWidth, kHeight);
-  const auto place = view_->point_at({0.5F * kWidth, 0.5F * kHeight});
-  ASSERT_TRUE(place);
-  const Eigen::Vector2f back = camera_.pixel_of(*place, {kWidth, kHeight});
-  EXPECT_LT((back - Eigen::Vector2f(0.5F * kWidth, 0.5F * kHeight)).norm(), 1.0F);
+  // Where the ray through the pixel's middle meets the clay, from its heights alone.
+  const Eigen::Vector3f away = camera_.eye_from_model.conjugate() * -Eigen::Vector3f::UnitZ();
+  const auto truth = [&](const Eigen::Vector2f& pixel) {
+    const float mm_per_px = camera_.mm_per_px(kHeight);
+    const Eigen::Vector3f in_eye((pixel.x() + 0.5F - 0.5F * kWidth) * mm_per_px,
+                                 (0.5F * kHeight - pixel.y() - 0.5F) * mm_per_px, 0);
+    Eigen::Vector3f at = camera_.centre_mm + camera_.eye_from_model.conjugate() * in_eye - 20 * away;
+    while (at.z() > slab_height_mm(at.x(), at.y())) {
+      at += 0.001F * away;
+    }
+    return at;
+  };
+  const Eigen::Vector2f pixels[] = {{60, 95}, {120, 90}, {150, 40}, {170, 120}};
+  std::vector<Eigen::Vector3f> places;
+  for (const Eigen::Vector2f& pixel : pixels) {
+    for (const float inside : {0.0F, 0.9F}) {  // anywhere in a pixel is that pixel
+      const auto place = view_->point_at(pixel.array() + inside);
+      ASSERT_TRUE(place);
+      EXPECT_LT((*place - truth(pixel)).norm(), 0.01F) << pixel.transpose();
+      places.push_back(*place);
+    }
+  }
+  for (std::size_t k = 2; k < places.size(); k += 2) {
+    EXPECT_NEAR((places[k] - places[0]).norm(), (truth(pixels[k / 2]) - truth(pixels[0])).norm(), 0.01F);
+  }
   EXPECT_FALSE(view_->point_at({1, 1}));
 }
 

@@ -108,8 +108,10 @@ std::optional<Eigen::Vector3f> SurfaceView::point_at(const Eigen::Vector2f& px) 
     return std::nullopt;
   }
   const float aspect = static_cast<float>(scene_.width) / static_cast<float>(scene_.height);
-  const Eigen::Vector4f clip(2 * (px.x()) / static_cast<float>(scene_.width) - 1,
-                             1 - 2 * (px.y()) / static_cast<float>(scene_.height), 2 * depth - 1, 1);
+  // The depth is that of the pixel's middle: on a slope it belongs to no other place in the pixel.
+  const Eigen::Vector2f middle = px.array().floor() + 0.5F;
+  const Eigen::Vector4f clip(2 * middle.x() / static_cast<float>(scene_.width) - 1,
+                             1 - 2 * middle.y() / static_cast<float>(scene_.height), 2 * depth - 1, 1);
   return Eigen::Vector3f((scene_.camera.clip_from_model(aspect).inverse() * clip).head<3>());
 }
 
