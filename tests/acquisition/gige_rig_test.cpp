@@ -72,6 +72,21 @@ TEST_F(GigeRig, ScansATabletWhileTheStageMovesThrough) {
   EXPECT_EQ(stage->tell("laser"), "0");
 }
 
+TEST_F(GigeRig, ScansWithAPartOfThePicture) {
+  plan_.region = PictureRegion{32, 50, 192, 100};
+  test::GigeScanner scanner(plan_, *stage);
+  ASSERT_EQ(scanner.refusal(), "");
+  const Result<RangeGrid> grid = scan(scanner);
+  ASSERT_TRUE(grid.has_value()) << grid.error().line();
+  EXPECT_EQ(grid->cols, 192);
+  EXPECT_NEAR(grid->rows, plan_.rows, 1);
+  EXPECT_GT(grid->valid_count(), 0.9 * 192 * 31);
+  // As if it were the whole: what is left out of the picture moves nothing.
+  const test::DepthErrors errors = test::depth_errors(*grid, scanner.tablet_from_grid(), scene_.query);
+  EXPECT_LT(errors.rms_um, 3);
+  EXPECT_LT(errors.missed, 0.01);
+}
+
 TEST_F(GigeRig, SurvivesLostPackets) {
   plan_.loss = 0.02;
   plan_.rows = 12;

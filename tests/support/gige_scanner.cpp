@@ -45,7 +45,9 @@ GigeScanner::GigeScanner(const GigeScannerPlan& plan, PeerProcess& stage) {
   const double middle = 0.5 * (plan.start + end);
   RigCalibration truth = plan.truth;
   truth.camera_serial = kSerial;
-  truth.made_at = "2026-01-01T00:00:00Z";
+  truth.made_at = GigeScanner::kMadeAt;
+  truth.temperature_c = GigeScanner::kTemperatureC;
+  truth.note = GigeScanner::kNote;
   tablet_from_grid_ = plan.tablet_from_scanner;
   tablet_from_grid_.translation_mm -=
       tablet_from_grid_.rotation * (truth.scanner_from_camera().rotation * truth.motion.direction) * middle;
@@ -64,11 +66,16 @@ GigeScanner::GigeScanner(const GigeScannerPlan& plan, PeerProcess& stage) {
   }
   const std::string path = folder_.path().string();
   std::ofstream(path + "/calibration.json") << calibration_to_json(truth);
+  std::string region;
+  if (plan.region) {
+    region = "region_px = [" + std::to_string(plan.region->x) + ", " + std::to_string(plan.region->y) + ", " +
+             std::to_string(plan.region->width) + ", " + std::to_string(plan.region->height) + "]\n";
+  }
   std::ofstream(rig_file()) << "name = 'emulated'\ncamera = 'aravis:Dubsar-Scanner-" << kSerial
                             << "?format=Mono8&packet=8000'\nstage = 'usb_stage:2341:0043'\n"
                             << "calibration = 'calibration.json'\ncamera_settings = [['frame_rate_hz', '"
-                            << number_text(plan.rate_hz)
-                            << "']]\n[scan]\nfrom_mm = " << number_text(plan.start)
+                            << number_text(plan.rate_hz) << "']]\n"
+                            << region << "[scan]\nfrom_mm = " << number_text(plan.start)
                             << "\nto_mm = " << number_text(end) << "\nstep_mm = " << number_text(plan.step)
                             << "\ncontinuous = true\n[stripe]\nmethod = '" << plan.method << "'\n";
   if (!ScannerFrames::write(path + "/frames", static_cast<std::uint32_t>(truth.camera.width),

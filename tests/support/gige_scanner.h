@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/rig_calibration.h"
+#include "formats/rig_toml.h"
 #include "sim/frame_renderer.h"
 #include "sim/scene.h"
 #include "tests/support/peer_process.h"
@@ -30,8 +31,9 @@ struct GigeScannerPlan {
   double rate_hz = 50;  ///< of the camera
   /// How far the frames lie from even spacing, in steps: only the clock tells where each was taken.
   double jitter = 0.2;
-  double loss = 0;                  ///< share of the packets
-  std::string method = "adaptive";  ///< of finding the stripe
+  double loss = 0;                           ///< share of the packets
+  std::string method = "adaptive";           ///< of finding the stripe
+  std::optional<PictureRegion> region = {};  ///< of the picture that the rig asks for
 };
 
 /// A camera of few pixels over the middle of the scene's tablet, for tests that are quick.
@@ -39,6 +41,11 @@ struct GigeScannerPlan {
 
 class GigeScanner {
  public:
+  // What its calibration says of itself.
+  static constexpr const char* kMadeAt = "2026-01-01T00:00:00Z";
+  static constexpr double kTemperatureC = 18.5;
+  static constexpr const char* kNote = "by the window";
+
   /// Renders, writes rig.toml and calibration.json, and starts the camera. `stage` is a usb_peer.
   GigeScanner(const GigeScannerPlan& plan, PeerProcess& stage);
   /// Empty when it is ready.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright The Dubsar developers
 // Every way to stop a rig, from the key, the call or the signal to the board of the emulated stage: it
-// stands, its laser is off, and what was scanned is kept.
+// stands, its laser is off, and what was scanned is kept, with what is known of the calibration.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -16,6 +16,8 @@
 #include <thread>
 
 #include "acquisition/session_store.h"
+#include "formats/calibration_json.h"
+#include "formats/rig_json.h"
 #include "station/engine.h"
 #include "station/verification.h"
 #include "tests/sim/scenes.h"
@@ -77,6 +79,23 @@ class RigStop : public testing::TestWithParam<int> {
     ASSERT_THAT(*scans, SizeIs(1));
     EXPECT_GE(scans->front().rows, 5);
     EXPECT_LT(scans->front().rows, kRows);
+    expect_the_calibration(*store);
+  }
+  /// Its age, and at what temperature and with what note it was made.
+  static void expect_the_calibration(const SessionStore& store) {
+    const std::string made_at = test::GigeScanner::kMadeAt;
+    const auto kept = store.load_document("rig");
+    ASSERT_TRUE(kept && *kept);
+    const Result<Rig> rig = parse_rig(**kept, "rig");
+    ASSERT_TRUE(rig) << rig.error().line();
+    EXPECT_THAT(rig->calibration, HasSubstr("made " + made_at + " at 18.5 °C"));
+    EXPECT_GT(rig->calibration_age_days.value_or(0), 300);
+    const auto whole = store.load_document("calibration " + made_at);
+    ASSERT_TRUE(whole && *whole);
+    const Result<RigCalibration> calibration = parse_calibration(**whole, "calibration");
+    ASSERT_TRUE(calibration) << calibration.error().line();
+    EXPECT_EQ(calibration->temperature_c, test::GigeScanner::kTemperatureC);
+    EXPECT_EQ(calibration->note, test::GigeScanner::kNote);
   }
 
   static constexpr int kRows = 150;     // at 10 a second

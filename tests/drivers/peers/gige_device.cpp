@@ -214,7 +214,7 @@ GigeDevice::Block GigeDevice::packed(std::uint16_t id, Picture& picture) const {
   const std::uint64_t stamp_ns = picture.timestamp_ns - switched_on_ns_;
   put32(leader, static_cast<std::uint32_t>(stamp_ns >> 32U));
   put32(leader, static_cast<std::uint32_t>(stamp_ns));
-  for (const std::uint32_t word : {read(0x128), width, height, 0U, 0U, 0U}) {
+  for (const std::uint32_t word : {read(0x128), width, height, read(0x130), read(0x134), 0U}) {
     put32(leader, word);
   }
   out.packets.push_back(leader);

@@ -4,12 +4,14 @@
 // scanner_peer SERIAL FRAMES LAW LOSS: the camera of a rig on 127.0.0.1. It exposes whenever the stage, whose
 // law stands in the file LAW, passes one of the positions of the file FRAMES (scanner_frames.h), stamps the
 // frame with that time, and sends what was rendered for it; with the laser off, and where nothing was
-// rendered, a dark frame at its own rate. LOSS is the share of packets lost. Commands: resent, quiet.
+// rendered, a dark frame at its own rate; of all frames the region that it is asked for. LOSS is the share of
+// packets lost. Commands: resent, quiet.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <string>
 #include <thread>
+#include <utility>
 
 #include "tests/drivers/peers/gige_device.h"
 #include "tests/drivers/peers/gige_xml.h"
@@ -19,6 +21,11 @@
 namespace {
 
 using namespace dubsar::test;
+
+constexpr std::uint32_t kWidth = 0x100;
+constexpr std::uint32_t kHeight = 0x104;
+constexpr std::uint32_t kOffsetX = 0x130;
+constexpr std::uint32_t kOffsetY = 0x134;
 
 double now_s() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -34,13 +41,20 @@ class ScannerCamera : public GigeDevice {
       : GigeDevice("Scanner", serial, range_camera_xml(), loss), frames_(frames), law_(law) {
     for (const auto& [address, value] :
          {std::pair(0x11cU, frames.width()), std::pair(0x118U, frames.height()),
-          std::pair(0x100U, frames.width()), std::pair(0x104U, frames.height()),
+          std::pair(kWidth, frames.width()), std::pair(kHeight, frames.height()),
           std::pair(0x128U, 0x01080001U), std::pair(0x138U, 10000U), std::pair(0x12cU, 1U)}) {
       write(address, value);
     }
   }
 
  protected:
+  [[nodiscard]] bool refuses(std::uint32_t at, std::uint32_t value) const override {
+    const auto with = [&](std::uint32_t one) { return one == at ? value : read(one); };
+    const bool of_region = at == kWidth || at == kHeight || at == kOffsetX || at == kOffsetY;
+    return of_region && (with(kWidth) == 0 || with(kHeight) == 0 ||
+                         with(kOffsetX) + std::uint64_t{with(kWidth)} > frames_.width() ||
+                         with(kOffsetY) + std::uint64_t{with(kHeight)} > frames_.height());
+  }
   std::optional<Picture> next(std::uint32_t /*id*/) override {
     const double period = 1e-6 * reg(0x138);
     const StageLaw law = law_.read();
@@ -65,8 +79,18 @@ class ScannerCamera : public GigeDevice {
   }
 
  private:
-  [[nodiscard]] Picture picture(std::span<const std::uint8_t> pixels) const {
-    return {{pixels.begin(), pixels.end()}, static_cast<std::uint64_t>(1e9 * last_), std::nullopt};
+  [[nodiscard]] Picture picture(std::span<const std::uint8_t> pixels) {
+    const std::uint32_t width = reg(kWidth);
+    const std::uint32_t offset_x = reg(kOffsetX);
+    const std::uint32_t offset_y = reg(kOffsetY);
+    const std::uint32_t end = offset_y + reg(kHeight);
+    Bytes region;
+    region.reserve(std::size_t{width} * (end - offset_y));
+    for (std::uint32_t row = offset_y; row < end; ++row) {
+      const auto part = pixels.subspan(std::size_t{row} * frames_.width() + offset_x, width);
+      region.insert(region.end(), part.begin(), part.end());
+    }
+    return {std::move(region), static_cast<std::uint64_t>(1e9 * last_), std::nullopt};
   }
   const ScannerFrames& frames_;
   const SharedLaw& law_;
