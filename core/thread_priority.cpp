@@ -9,11 +9,15 @@
 
 namespace dubsar {
 
-ThreadPriority prefer_this_thread() {
-  const sched_param lowest{.sched_priority = ::sched_get_priority_min(SCHED_RR)};
-  // 0 is the calling thread, not the process.
-  if (::sched_setscheduler(0, SCHED_RR | SCHED_RESET_ON_FORK, &lowest) == 0) {
-    return ThreadPriority::kRealTime;
+ThreadPriority prefer_this_thread(ThreadTakes what) {
+  const int lowest = ::sched_get_priority_min(SCHED_RR);
+  const int wanted = what == ThreadTakes::kPackets ? lowest + 1 : lowest;
+  for (int priority = wanted; priority >= lowest; --priority) {  // the right may end at the lowest
+    const sched_param asked{.sched_priority = priority};
+    // 0 is the calling thread, not the process.
+    if (::sched_setscheduler(0, SCHED_RR | SCHED_RESET_ON_FORK, &asked) == 0) {
+      return ThreadPriority::kRealTime;
+    }
   }
   constexpr int kNice = -10;
   const auto thread = static_cast<id_t>(::syscall(SYS_gettid));

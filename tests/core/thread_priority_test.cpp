@@ -37,6 +37,26 @@ TEST(ThreadPriority, IsWhatItSaysAndOfThisThreadAlone) {
   EXPECT_EQ(own_nice(), nice);
 }
 
+TEST(ThreadPriority, WhoTakesPacketsGoesBeforeWhoTakesFrames) {
+  const auto own_priority = [](ThreadTakes what, ThreadPriority& got) {
+    sched_param own{};
+    std::thread([&] {
+      got = prefer_this_thread(what);
+      ::sched_getparam(0, &own);
+    }).join();
+    return own.sched_priority;
+  };
+  rlimit most{};
+  ASSERT_EQ(::getrlimit(RLIMIT_RTPRIO, &most), 0);
+  const rlim_t right = ::geteuid() == 0 ? 99 : most.rlim_cur;
+  ThreadPriority frames{};
+  ThreadPriority packets{};
+  const int of_frames = own_priority(ThreadTakes::kFrames, frames);
+  const int of_packets = own_priority(ThreadTakes::kPackets, packets);
+  EXPECT_EQ(packets, frames);
+  EXPECT_EQ(of_packets > of_frames, packets == ThreadPriority::kRealTime && right >= 2);
+}
+
 TEST(ThreadPriority, WhatComputesYieldsToTheWindowAndLeavesItAlone) {
   const int nice = own_nice();
   make_loops_yield();

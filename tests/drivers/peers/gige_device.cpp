@@ -15,6 +15,7 @@
 #include <thread>
 
 #include "core/thread_priority.h"
+#include "tests/drivers/peers/device_thread.h"
 
 namespace dubsar::test {
 
@@ -141,7 +142,7 @@ bool GigeDevice::puts_off(const Bytes& ask, const sockaddr_in& to) {
 }
 
 void GigeDevice::serve_stream() {
-  prefer_this_thread();
+  become_device_thread();
   std::uint16_t id = 0;
   while (!quit) {
     bool on = false;

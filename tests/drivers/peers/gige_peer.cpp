@@ -16,11 +16,12 @@
 #include <fstream>
 #include <iostream>
 #include <limits>
+#include <mutex>
 #include <sstream>
 #include <string>
 #include <vector>
 
-#include "core/thread_priority.h"
+#include "tests/drivers/peers/device_thread.h"
 #include "tests/drivers/peers/gige_xml.h"
 
 namespace {
@@ -38,7 +39,8 @@ void put_double(ArvFakeCamera* camera, guint32 address, double value) {
 
 /// What the tests expect of each format; column 5 has no return.
 void paint(ArvBuffer* buffer, void* /*user*/, guint32 /*exposure*/, guint32 /*gain*/, ArvPixelFormat format) {
-  [[maybe_unused]] static const auto first = dubsar::prefer_this_thread();  // the camera's only thread
+  static std::once_flag first;
+  std::call_once(first, become_device_thread);  // the camera's only thread
   ++painted;
   std::size_t ignored = 0;
   auto* to = static_cast<std::uint8_t*>(const_cast<void*>(arv_buffer_get_data(buffer, &ignored)));
