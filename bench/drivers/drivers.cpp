@@ -19,10 +19,12 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <optional>
 #include <random>
 #include <string>
 #include <vector>
 
+#include "bench/drivers/processor_watch.h"
 #include "build_paths.h"
 #include "core/stage_times.h"
 #include "core/thread_priority.h"
@@ -105,6 +107,7 @@ int count_frames(Device& device, const Emulated& emulated, std::uint64_t count) 
   double before_mb = 0;
   Clock::time_point start{};
   double longest_s = 0;  // that this thread was away
+  std::optional<ProcessorWatch> watch;
   for (std::uint64_t k = 0; k < count; ++k) {
     const Clock::time_point back = Clock::now();
     auto frame = must(device.next_frame(20s));  // the whole machine may stand still for a while
@@ -123,6 +126,7 @@ int count_frames(Device& device, const Emulated& emulated, std::uint64_t count) 
     }
     if (k == 0) {
       start = Clock::now();
+      watch.emplace();
     }
     frame.reset();
     longest_s = std::max({longest_s, k == 0 ? 0 : seconds_since(taken),
@@ -136,14 +140,15 @@ int count_frames(Device& device, const Emulated& emulated, std::uint64_t count) 
       "%s: %llu frames, %.1f/s, %.0f MB/s, %llu lost, %llu late, %llu with wrong pixels, memory %.1f to %.1f "
       "MB\n"
       "  driver: pool %u, %llu lost for want of a buffer, %llu packets sent again, taken anew %llu times; "
-      "longest wait or hold of the taking thread %.3f s\n"
+      "longest wait or hold of the taking thread %.3f s, of a processor away %.3f s\n"
       "  device: made, lost for want of a buffer, held up: %s\n",
       emulated.scheme.c_str(), static_cast<unsigned long long>(counts.delivered),
       static_cast<double>(count - 1) / seconds, static_cast<double>(bytes) / seconds / 1e6,
       static_cast<unsigned long long>(counts.lost), static_cast<unsigned long long>(counts.late),
       static_cast<unsigned long long>(wrong), before_mb, after_mb, counts.pool,
       static_cast<unsigned long long>(counts.starved), static_cast<unsigned long long>(counts.resent),
-      static_cast<unsigned long long>(counts.reconnections), longest_s, emulated.counts().c_str());
+      static_cast<unsigned long long>(counts.reconnections), longest_s, watch ? watch->longest_s() : 0.0,
+      emulated.counts().c_str());
   return counts.lost == 0 && wrong == 0 && after_mb < before_mb * 1.05 + 2 ? 0 : 1;
 }
 
