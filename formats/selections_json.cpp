@@ -27,7 +27,7 @@ std::vector<IndexRange> ranges_from(const JsonNode& node) {
       entry.complain("is not a first number and how many");
       break;
     }
-    const std::int64_t first = entry.item(0).integer(0, kMost);
+    const std::int64_t first = entry.item(0).integer(0, kMost - 1);
     const std::int64_t count = entry.item(1).integer(1, kMost - first);
     if (first < least) {
       entry.complain("does not come after the one before");
