@@ -4,11 +4,12 @@
 
 #include <sched.h>
 
-#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <thread>
 #include <vector>
+
+#include "tests/support/processors.h"
 
 namespace dubsar {
 
@@ -19,16 +20,7 @@ namespace dubsar {
 class ProcessorWatch {
  public:
   ProcessorWatch() {
-    cpu_set_t allowed;
-    if (::sched_getaffinity(0, sizeof allowed, &allowed) != 0) {
-      return;
-    }
-    std::vector<int> processors;
-    for (int one = 0; one < CPU_SETSIZE; ++one) {
-      if (CPU_ISSET(one, &allowed)) {
-        processors.push_back(one);
-      }
-    }
+    const std::vector<int> processors = test::allowed_processors();
     for (std::size_t k = 0; k + 1 < processors.size(); ++k) {
       threads_.emplace_back([this, on = processors[k]](const std::stop_token& enough) { watch(on, enough); });
     }
@@ -40,11 +32,8 @@ class ProcessorWatch {
  private:
   void watch(int processor, const std::stop_token& enough) {
     using Clock = std::chrono::steady_clock;
-    cpu_set_t one;
-    CPU_ZERO(&one);
-    CPU_SET(processor, &one);
     const sched_param high{.sched_priority = ::sched_get_priority_max(SCHED_RR)};
-    if (::sched_setaffinity(0, sizeof one, &one) != 0 ||
+    if (!test::keep_this_thread_on(processor) ||
         ::sched_setscheduler(0, SCHED_RR | SCHED_RESET_ON_FORK, &high) != 0) {
       return;
     }

@@ -2,9 +2,10 @@
 // Copyright The Dubsar developers
 #pragma once
 
-#include <sched.h>
+#include <vector>
 
 #include "core/thread_priority.h"
+#include "tests/support/processors.h"
 
 namespace dubsar::test {
 
@@ -14,18 +15,9 @@ namespace dubsar::test {
 /// while it sends from another, as no camera of metal does.
 inline void become_device_thread() {
   prefer_this_thread();
-  cpu_set_t allowed;
-  if (::sched_getaffinity(0, sizeof allowed, &allowed) != 0) {
-    return;
+  if (const std::vector<int> processors = allowed_processors(); !processors.empty()) {
+    keep_this_thread_on(processors.back());
   }
-  int last = CPU_SETSIZE - 1;
-  while (last > 0 && !CPU_ISSET(last, &allowed)) {
-    --last;
-  }
-  cpu_set_t one;
-  CPU_ZERO(&one);
-  CPU_SET(last, &one);
-  ::sched_setaffinity(0, sizeof one, &one);
 }
 
 }  // namespace dubsar::test

@@ -189,8 +189,8 @@ void GigeDevice::send(const Bytes& packet) {
 GigeDevice::Block GigeDevice::packed(std::uint16_t id, Picture& picture) const {
   Bytes& data = picture.data;
   const bool chunks = picture.chunk.has_value();
-  const std::uint32_t width = read(0x100);
-  const std::uint32_t height = read(0x104);
+  const std::uint32_t width = read(kWidthAt);
+  const std::uint32_t height = read(kHeightAt);
   if (chunks) {
     const auto size = static_cast<std::uint32_t>(data.size());
     put32(data, 1);
@@ -215,7 +215,7 @@ GigeDevice::Block GigeDevice::packed(std::uint16_t id, Picture& picture) const {
   const std::uint64_t stamp_ns = picture.timestamp_ns - switched_on_ns_;
   put32(leader, static_cast<std::uint32_t>(stamp_ns >> 32U));
   put32(leader, static_cast<std::uint32_t>(stamp_ns));
-  for (const std::uint32_t word : {read(0x128), width, height, read(0x130), read(0x134), 0U}) {
+  for (const std::uint32_t word : {read(0x128), width, height, read(kOffsetXAt), read(kOffsetYAt), 0U}) {
     put32(leader, word);
   }
   out.packets.push_back(leader);

@@ -22,6 +22,12 @@ class GigeDevice {
  public:
   using Bytes = std::vector<std::uint8_t>;
 
+  // Registers of the region, as gige_xml.h and Aravis's fake camera have them.
+  static constexpr std::uint32_t kWidthAt = 0x100;
+  static constexpr std::uint32_t kHeightAt = 0x104;
+  static constexpr std::uint32_t kOffsetXAt = 0x130;
+  static constexpr std::uint32_t kOffsetYAt = 0x134;
+
   /// `xml` is its GenICam description; `loss` the share of packets that are not sent at first.
   GigeDevice(const std::string& model, const std::string& serial, const std::string& xml, double loss);
   virtual ~GigeDevice() = default;

@@ -17,8 +17,6 @@
 namespace {
 
 constexpr std::uint32_t kChunkMode = 0x2600;
-constexpr std::uint32_t kWidth = 0x100;
-constexpr std::uint32_t kOffsetX = 0x130;
 constexpr std::uint32_t kSensorWidth = 320;
 
 std::string description() {
@@ -45,7 +43,7 @@ class Resender : public dubsar::test::GigeDevice {
  public:
   Resender(const std::string& serial, double loss) : GigeDevice("Resender", serial, description(), loss) {
     for (const auto& [address, value] :
-         {std::pair(0x11cU, kSensorWidth), std::pair(0x118U, 4096U), std::pair(kWidth, kSensorWidth),
+         {std::pair(0x11cU, kSensorWidth), std::pair(0x118U, 4096U), std::pair(kWidthAt, kSensorWidth),
           std::pair(0x104U, 40U), std::pair(0x128U, 0x011000B8U), std::pair(0x138U, 8000U),
           std::pair(0x12cU, 1U)}) {
       write(address, value);
@@ -58,13 +56,13 @@ class Resender : public dubsar::test::GigeDevice {
  protected:
   void restarted() override {
     encoder_ = 0;
-    write(kWidth, kSensorWidth);
-    write(kOffsetX, 0);
+    write(kWidthAt, kSensorWidth);
+    write(kOffsetXAt, 0);
   }
   /// A region lies on the sensor.
   [[nodiscard]] bool refuses(std::uint32_t at, std::uint32_t value) const override {
-    return (at == kOffsetX && value + read(kWidth) > kSensorWidth) ||
-           (at == kWidth && value + read(kOffsetX) > kSensorWidth);
+    return (at == kOffsetXAt && value + read(kWidthAt) > kSensorWidth) ||
+           (at == kWidthAt && value + read(kOffsetXAt) > kSensorWidth);
   }
   /// Depth 1000 + 3 col, as the other peer paints it; the encoder counts ten for each frame.
   std::optional<Picture> next(std::uint32_t /*id*/) override {
@@ -76,8 +74,8 @@ class Resender : public dubsar::test::GigeDevice {
     out.timestamp_ns = static_cast<std::uint64_t>(std::chrono::duration_cast<std::chrono::nanoseconds>(
                                                       std::chrono::steady_clock::now().time_since_epoch())
                                                       .count());
-    const std::uint32_t width = reg(0x100);
-    const std::uint32_t height = reg(0x104);
+    const std::uint32_t width = reg(kWidthAt);
+    const std::uint32_t height = reg(kHeightAt);
     for (std::uint32_t k = 0; k < width * height; ++k) {
       const std::uint32_t depth = 1000 + 3 * (k % width);
       out.data.push_back(static_cast<std::uint8_t>(depth));

@@ -22,11 +22,6 @@ namespace {
 
 using namespace dubsar::test;
 
-constexpr std::uint32_t kWidth = 0x100;
-constexpr std::uint32_t kHeight = 0x104;
-constexpr std::uint32_t kOffsetX = 0x130;
-constexpr std::uint32_t kOffsetY = 0x134;
-
 double now_s() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
@@ -41,7 +36,7 @@ class ScannerCamera : public GigeDevice {
       : GigeDevice("Scanner", serial, range_camera_xml(), loss), frames_(frames), law_(law) {
     for (const auto& [address, value] :
          {std::pair(0x11cU, frames.width()), std::pair(0x118U, frames.height()),
-          std::pair(kWidth, frames.width()), std::pair(kHeight, frames.height()),
+          std::pair(kWidthAt, frames.width()), std::pair(kHeightAt, frames.height()),
           std::pair(0x128U, 0x01080001U), std::pair(0x138U, 10000U), std::pair(0x12cU, 1U)}) {
       write(address, value);
     }
@@ -50,10 +45,10 @@ class ScannerCamera : public GigeDevice {
  protected:
   [[nodiscard]] bool refuses(std::uint32_t at, std::uint32_t value) const override {
     const auto with = [&](std::uint32_t one) { return one == at ? value : read(one); };
-    const bool of_region = at == kWidth || at == kHeight || at == kOffsetX || at == kOffsetY;
-    return of_region && (with(kWidth) == 0 || with(kHeight) == 0 ||
-                         with(kOffsetX) + std::uint64_t{with(kWidth)} > frames_.width() ||
-                         with(kOffsetY) + std::uint64_t{with(kHeight)} > frames_.height());
+    const bool of_region = at == kWidthAt || at == kHeightAt || at == kOffsetXAt || at == kOffsetYAt;
+    return of_region && (with(kWidthAt) == 0 || with(kHeightAt) == 0 ||
+                         with(kOffsetXAt) + std::uint64_t{with(kWidthAt)} > frames_.width() ||
+                         with(kOffsetYAt) + std::uint64_t{with(kHeightAt)} > frames_.height());
   }
   std::optional<Picture> next(std::uint32_t /*id*/) override {
     const double period = 1e-6 * reg(0x138);
@@ -80,10 +75,10 @@ class ScannerCamera : public GigeDevice {
 
  private:
   [[nodiscard]] Picture picture(std::span<const std::uint8_t> pixels) {
-    const std::uint32_t width = reg(kWidth);
-    const std::uint32_t offset_x = reg(kOffsetX);
-    const std::uint32_t offset_y = reg(kOffsetY);
-    const std::uint32_t end = offset_y + reg(kHeight);
+    const std::uint32_t width = reg(kWidthAt);
+    const std::uint32_t offset_x = reg(kOffsetXAt);
+    const std::uint32_t offset_y = reg(kOffsetYAt);
+    const std::uint32_t end = offset_y + reg(kHeightAt);
     Bytes region;
     region.reserve(std::size_t{width} * (end - offset_y));
     for (std::uint32_t row = offset_y; row < end; ++row) {
