@@ -86,6 +86,35 @@ class Setter {
     }
   }
 
+  /// Bytes of a word, whole characters of it and one at least, that are no wider than a line. Never more than
+  /// about two lines are measured at once: some scripts have no blanks, and a note may be one long word.
+  std::size_t fitting(std::string_view word, PdfFont font, double size, double width) {
+    constexpr std::size_t kFirstLook = 64;
+    const auto character_from = [&](std::size_t at) {
+      while (at < word.size() && (static_cast<unsigned char>(word[at]) & 0xc0U) == 0x80U) {
+        ++at;
+      }
+      return std::min(at, word.size());
+    };
+    const auto fits = [&](std::size_t end) {
+      return sheet_.text_width(word.substr(0, end), font, size) <= width;
+    };
+    std::size_t low = character_from(1);
+    std::size_t high = character_from(kFirstLook);
+    for (; fits(high); high = character_from(2 * high)) {
+      low = high;
+      if (low == word.size()) {
+        return low;
+      }
+    }
+    while (character_from(low + 1) < high) {
+      const std::size_t middle = character_from((low + high) / 2);
+      const std::size_t next = middle < high && middle > low ? middle : character_from(low + 1);
+      (fits(next) ? low : high) = next;
+    }
+    return low;
+  }
+
   /// Broken at blanks; a word wider than the line is broken within, at a character.
   std::vector<Line> lines_of(const RichText& text, double size, double width) {
     std::vector<Line> lines(1);
@@ -108,17 +137,12 @@ class Setter {
       std::size_t at = 0;
       while (at < run.text.size()) {
         const std::size_t end = std::min(run.text.find(' ', at), run.text.size());
-        std::string word = run.text.substr(at, end - at);
+        std::string_view word = std::string_view(run.text).substr(at, end - at);
         at = end + 1;
         while (!word.empty()) {
-          std::size_t fits = word.size();
-          while (fits > 1 && sheet_.text_width(word.substr(0, fits), font_of(run.bold), size) > width) {
-            do {
-              --fits;
-            } while (fits > 1 && (static_cast<unsigned char>(word[fits]) & 0xc0U) == 0x80U);
-          }
-          add({word.substr(0, fits), run.bold, run.soft});
-          word.erase(0, fits);
+          const std::size_t fits = fitting(word, font_of(run.bold), size, width);
+          add({std::string(word.substr(0, fits)), run.bold, run.soft});
+          word.remove_prefix(fits);
         }
       }
     }

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
@@ -150,6 +151,26 @@ std::string read_page(const std::vector<std::uint8_t>& pdf, int page) {
   }
   EXPECT_EQ(::pclose(from), 0) << "install poppler-utils (packages.txt)";
   return text;
+}
+
+// A script without blanks, a number that somebody pasted: once a line of it took time with its third power.
+TEST(PagePdf, OneLongWordIsBrokenBetweenCharacters) {
+  const auto word_of = [](int characters) {
+    std::string word;
+    for (int i = 0; i < characters; ++i) {
+      word += i % 7 == 0 ? "ḫ" : i % 5 == 0 ? "Š" : std::string(1, static_cast<char>('a' + i % 26));
+    }
+    return word;
+  };
+  const PdfInfo info{"Tablet", "Dubsar", "2026-01-02T03:04:05Z"};
+  const std::string word = word_of(3000);
+  const auto pdf = page_pdf("<p>" + word + "</p>", info);
+  ASSERT_TRUE(pdf) << pdf.error().line();
+  std::string read = read_page(*pdf, 1);
+  EXPECT_LT(std::count(read.begin(), read.end(), '\n'), 40);  // lines of 75 characters and more
+  std::erase(read, '\n');
+  EXPECT_TRUE(read.starts_with(word)) << read;
+  EXPECT_TRUE(page_pdf("<p>" + word_of(100000) + "</p>", info));
 }
 
 TEST(PagePdf, AHeadingStandsOnThePageOfItsPicture) {
