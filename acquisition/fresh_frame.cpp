@@ -21,13 +21,13 @@ std::int64_t monotonic_ns() {
 
 }  // namespace
 
-Result<Frame> fresh_frame(Device& camera, const std::atomic<bool>* stopped) {
+Result<Frame> fresh_frame(Device& camera, const std::function<bool()>& stopped) {
   std::int64_t not_before_ns = monotonic_ns();
   bool let_go = false;
   const auto until = std::chrono::steady_clock::now() + kAtMost;
   while (std::chrono::steady_clock::now() < until) {
-    if (stopped != nullptr && stopped->load()) {
-      return fail(ErrorKind::kCancelled, "scan stopped", camera.uri());
+    if (stopped()) {
+      return fail(ErrorKind::kCancelled, "stopped before a frame came", camera.uri());
     }
     Result<std::optional<Frame>> frame = camera.next_frame(kWait);
     if (!frame) {

@@ -2,7 +2,7 @@
 // Copyright The Dubsar developers
 #pragma once
 
-#include <atomic>
+#include <functional>
 
 #include "core/gray_image.h"
 #include "core/result.h"
@@ -23,8 +23,8 @@ class StreamGuard {
 };
 
 /// A whole frame of a camera that streams, whose light fell after this was called. Errors: kDevice when the
-/// camera is gone, or none came in 5 s; kCancelled once `stopped`, where it is given, is true.
-[[nodiscard]] Result<Frame> fresh_frame(Device& camera, const std::atomic<bool>* stopped = nullptr);
+/// camera is gone, or none came in 5 s; kCancelled soon after stopped() is true.
+[[nodiscard]] Result<Frame> fresh_frame(Device& camera, const std::function<bool()>& stopped);
 
 /// A copy with 8 bits a pixel: of more bits the highest eight.
 [[nodiscard]] GrayImage gray_of(const Frame& frame);

@@ -167,7 +167,7 @@ Result<GrayImage> LiveCalibration::picture(bool laser, const std::optional<doubl
   if (Status lit = stage_.set_laser(number, laser ? plan_.laser_power : 0); !lit) {
     return std::unexpected(lit.error());
   }
-  const Result<Frame> frame = fresh_frame(camera_);
+  const Result<Frame> frame = fresh_frame(camera_, [&job] { return job.cancelled(); });
   if (!frame) {
     return std::unexpected(frame.error());
   }

@@ -158,7 +158,7 @@ Status RigScanner::row(int number, ProfileSink& sink, ScanTally& tally) {
     if (Status lit = stage_.set_laser(laser, power); !lit) {
       return std::unexpected(lit.error());
     }
-    Result<Frame> frame = fresh_frame(camera_, stopped_.get());
+    Result<Frame> frame = fresh_frame(camera_, [this] { return stopped_->load(); });
     const Status fits = frame ? check_frame(*frame) : Status{};
     return fits ? std::move(frame) : std::unexpected(fits.error());
   };

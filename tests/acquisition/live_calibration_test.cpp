@@ -250,5 +250,19 @@ TEST_F(Live, ACancelledOneEndsTheMoveAndLightsNothing) {
   EXPECT_EQ(live->stops(), 0);
 }
 
+TEST_F(Live, ACancelledOneWaitsForNoPicture) {
+  Result<LiveCalibration> live = start();
+  ASSERT_TRUE(live.has_value());
+  bench_.stale = 1 << 30;
+  JobContext job;
+  std::jthread presses([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    job.cancel();
+  });
+  const auto pose = live->take_pose(job);
+  ASSERT_FALSE(pose.has_value());
+  EXPECT_EQ(pose.error().kind, ErrorKind::kCancelled) << pose.error().line();
+}
+
 }  // namespace
 }  // namespace dubsar
