@@ -2,6 +2,7 @@
 // Copyright The Dubsar developers
 #pragma once
 
+#include <Eigen/Core>
 #include <cmath>
 #include <cstdint>
 
@@ -10,8 +11,9 @@
 namespace dubsar {
 
 /// A small seeded generator (SplitMix64, Steele et al. 2014). The standard distributions may differ between
-/// library versions; these draws are the same bytes everywhere. Never a global: pass it, or seed one per
-/// item.
+/// library versions; these draws are the same bytes everywhere, as long as no two of them are operands of one
+/// operator or arguments of one call, between which C++ leaves the order to the compiler. Never a global:
+/// pass it, or seed one per item.
 class Random {
  public:
   explicit Random(std::uint64_t seed) : state_(seed) {}
@@ -33,6 +35,13 @@ class Random {
     const double u = 1.0 - uniform();
     const double v = uniform();
     return std::sqrt(-2.0 * std::log(u)) * std::cos(2.0 * kPi * v);
+  }
+  /// Of independent standard normals; the last coordinate is drawn first.
+  Eigen::Vector3d normal3() {
+    const double z = normal();
+    const double y = normal();
+    const double x = normal();
+    return {x, y, z};
   }
 
  private:

@@ -49,7 +49,7 @@ std::vector<Candidate> neighbourhood(const ScanSurface& scan, const RigidTransfo
   std::vector<Candidate> out;
   Random random(kSeed);
   const auto in_ball = [&](double radius) {
-    const Eigen::Vector3d direction(random.normal(), random.normal(), random.normal());
+    const Eigen::Vector3d direction = random.normal3();
     return Eigen::Vector3d(direction.normalized() * radius * std::sqrt(random.uniform()));
   };
   for (int k = 0; k < options.tried; ++k) {

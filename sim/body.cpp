@@ -36,8 +36,8 @@ TabletBody::TabletBody(const Eigen::Vector3d& size_mm, double unevenness_mm, std
   // On the faces the gradient is q/c per mm: this turns millimetres into levels of the function.
   const double level = unevenness_mm * q_ / half_.z();
   for (Wave& wave : waves_) {
-    const Eigen::Vector3d direction =
-        Eigen::Vector3d(random.normal(), random.normal(), 0.5 * random.normal()).normalized();
+    const Eigen::Vector3d drawn = random.normal3();
+    const Eigen::Vector3d direction = Eigen::Vector3d(drawn.x(), drawn.y(), 0.5 * drawn.z()).normalized();
     wave.k = direction * (kPi / (extent * random.uniform(0.5, 1.6)));
     wave.phase = random.uniform(0.0, 2.0 * kPi);
     wave.strength = level * random.uniform(0.2, 0.5);

@@ -14,12 +14,15 @@ namespace dubsar::sim {
 namespace {
 
 int how_many(Random& random, double amount, double most) {
-  return static_cast<int>(std::floor(amount * most * random.uniform(0.6, 1.2) + random.uniform()));
+  const double mean = amount * most * random.uniform(0.6, 1.2);
+  return static_cast<int>(std::floor(mean + random.uniform()));
 }
 
 Eigen::Vector3d somewhere(const TabletBody& body, Random& random) {
-  const Eigen::Vector3d d(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform() < 0.5 ? -0.6 : 0.6);
-  return body.radial(d.cwiseProduct(body.half_size_mm()));
+  const double z = random.uniform() < 0.5 ? -0.6 : 0.6;
+  const double y = random.uniform(-1, 1);
+  const double x = random.uniform(-1, 1);
+  return body.radial(Eigen::Vector3d(x, y, z).cwiseProduct(body.half_size_mm()));
 }
 
 }  // namespace
@@ -38,7 +41,7 @@ Damage::Damage(const TabletBody& body, const DamageOptions& options, double spac
   for (int i = 0, n = options.cracks > 0 ? how_many(random, options.cracks, 6) : 0; i < n; ++i) {
     Crack crack;
     crack.centre = somewhere(body, random);
-    const Eigen::Vector3d any(random.normal(), random.normal(), random.normal());
+    const Eigen::Vector3d any = random.normal3();
     crack.across = body.normal(crack.centre).cross(any).normalized();
     crack.length = small * random.uniform(0.3, 0.9);
     crack.width = std::max(random.uniform(0.12, 0.3), 2.5 * spacing_mm);
@@ -49,11 +52,13 @@ Damage::Damage(const TabletBody& body, const DamageOptions& options, double spac
   }
   for (int i = 0, n = options.fracture > 0 ? how_many(random, options.fracture, 5) : 0; i < n; ++i) {
     const double corner = random.uniform(0.4, 1.0);
-    Eigen::Vector3d d(random.uniform() < 0.5 ? -1 : 1, random.uniform() < 0.5 ? -1 : 1,
-                      random.uniform(-0.8, 0.8));
+    const double z = random.uniform(-0.8, 0.8);
+    const double y = random.uniform() < 0.5 ? -1 : 1;
+    const double x = random.uniform() < 0.5 ? -1 : 1;
+    Eigen::Vector3d d(x, y, z);
     d[static_cast<int>(random.below(2))] *= corner;
     const Eigen::Vector3d at = body.radial(d.cwiseProduct(body.half_size_mm()));
-    const Eigen::Vector3d turn(random.normal(), random.normal(), random.normal());
+    const Eigen::Vector3d turn = random.normal3();
     Break broken;
     broken.normal = (at.normalized() + 0.9 * body.normal(at) + 0.18 * turn).normalized();
     broken.offset = broken.normal.dot(at) - small * random.uniform(0.06, 0.2);

@@ -142,7 +142,7 @@ std::vector<PinTip> clicked_tips(const std::vector<PinTip>& true_tips, double ma
   std::vector<PinTip> clicked = true_tips;
   Random random(seed_for(seed, 43));
   for (PinTip& tip : clicked) {
-    Eigen::Vector3d error(random.normal(), random.normal(), random.normal());
+    Eigen::Vector3d error = random.normal3();
     error *= 0.4 * max_error_mm;
     if (error.norm() > max_error_mm) {
       error *= max_error_mm / error.norm();

@@ -34,8 +34,8 @@ Eigen::Matrix3d looking_from(const Eigen::Vector3d& from, double roll_rad) {
 }
 
 RigidTransform held(const Eigen::Matrix3d& rotation, Random& random) {
-  const Eigen::Vector3d axis(random.normal(), random.normal(), random.normal());
-  const Eigen::Vector3d slip(random.normal(), random.normal(), random.normal());
+  const Eigen::Vector3d axis = random.normal3();
+  const Eigen::Vector3d slip = random.normal3();
   const double angle = std::min(1.0, 0.5 * std::abs(random.normal())) * rad_from_deg(kHandDeg);
   const double distance = std::min(1.0, 0.5 * std::abs(random.normal())) * kHandMm;
   return {Eigen::AngleAxisd(angle, axis.normalized()).toRotationMatrix() * rotation,

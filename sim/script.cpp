@@ -105,8 +105,8 @@ class Scribe {
         return;
       }
       for (const SignStroke& stroke : sign.strokes) {
-        impressions_.emplace_back(body_, at, write_stroke(stroke, hand_, random_),
-                                  options_.dam_mm * random_.uniform(0.7, 1.3));
+        const double dam_mm = options_.dam_mm * random_.uniform(0.7, 1.3);
+        impressions_.emplace_back(body_, at, write_stroke(stroke, hand_, random_), dam_mm);
       }
       const double step = width + kSignGap * hand_.line_height_mm * random_.uniform(0.7, 1.6);
       at = body_.walk_line(at, line, step);

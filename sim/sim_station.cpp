@@ -23,7 +23,7 @@ constexpr double kMarginMm = 6;
 constexpr double kPinRoomMm = 40;
 
 Eigen::Vector3d random_direction(Random& random) {
-  return Eigen::Vector3d(random.normal(), random.normal(), random.normal()).normalized();
+  return random.normal3().normalized();
 }
 
 /// Size of an error: normal, so that small ones are usual, cut off at its greatest.
@@ -155,7 +155,7 @@ void SimStation::drive_to(const Placement& placement) {
     true_drive_.focus_mm[axis] += options_.motor_sigma_mm * random.normal();
   }
   if (true_drive_.arm) {
-    const Eigen::Vector3d turn(random.normal(), random.normal(), random.normal());
+    const Eigen::Vector3d turn = random.normal3();
     const Eigen::Vector3d shift = true_drive_.focus_mm - nominal_drive_.focus_mm;
     true_drive_.arm->rotation =
         true_drive_.arm->rotation * RigidTransform::from_twist(sigma * turn, {0, 0, 0}).rotation;

@@ -26,7 +26,7 @@ struct Sums {
 /// The truth, off by about what a fit to the model leaves.
 RigidTransform near_truth(const RigidTransform& truth, const ScanSurface& moved, double sigma_mm,
                           Random& random) {
-  const auto draw = [&] { return Eigen::Vector3d(random.normal(), random.normal(), random.normal()); };
+  const auto draw = [&] { return random.normal3(); };
   const RigidTransform turn =
       RigidTransform::from_twist(sigma_mm / moved.extent_mm * draw(), Eigen::Vector3d::Zero());
   const Eigen::Vector3d center = truth * moved.centroid_mm;

@@ -41,7 +41,8 @@ struct TrialSums {
 };
 
 RigidTransform random_pose(Random& random) {
-  const Eigen::Quaterniond q(random.normal(), random.normal(), random.normal(), random.normal());
+  const Eigen::Vector3d xyz = random.normal3();
+  const Eigen::Quaterniond q(random.normal(), xyz.x(), xyz.y(), xyz.z());
   return {q.normalized().toRotationMatrix(),
           {random.uniform(-20, 20), random.uniform(-20, 20), random.uniform(-20, 20)}};
 }
@@ -61,7 +62,7 @@ std::vector<SeenPin> seen_pins(const std::vector<sim::Pin>& pins, const Trial& t
     box.extend(pin.tip_mm);
   }
   const auto add = [&](int label, const Eigen::Vector3d& at) {
-    const Eigen::Vector3d off(random.normal(), random.normal(), random.normal());
+    const Eigen::Vector3d off = random.normal3();
     out.push_back({trial.labels ? label : -1,
                    tablet_from_scanner.inverse() * Eigen::Vector3d(at + kTipSigmaMm * off),
                    kTipSigmaMm * kTipSigmaMm * Eigen::Matrix3d::Identity()});
@@ -71,9 +72,10 @@ std::vector<SeenPin> seen_pins(const std::vector<sim::Pin>& pins, const Trial& t
         pin.tip_mm);
   }
   for (int k = 0; k < trial.false_tips; ++k) {
-    const Eigen::Vector3d at =
-        box.min() +
-        Eigen::Vector3d(random.uniform(), random.uniform(), random.uniform()).cwiseProduct(box.sizes());
+    const double z = random.uniform();
+    const double y = random.uniform();
+    const double x = random.uniform();
+    const Eigen::Vector3d at = box.min() + Eigen::Vector3d(x, y, z).cwiseProduct(box.sizes());
     add(-1, at);
   }
   return out;

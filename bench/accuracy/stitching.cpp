@@ -155,7 +155,7 @@ int tablet(const Arguments& args, std::uint64_t seed) {
     grids.push_back(scan.grid);
     RigidTransform pose = scan.tablet_from_scanner;
     if (args.pose_error_mm > 0) {
-      const Eigen::Vector3d shift(random.normal(), random.normal(), random.normal());
+      const Eigen::Vector3d shift = random.normal3();
       pose.translation_mm += args.pose_error_mm * shift.normalized();
     }
     poses.push_back(pose);

@@ -68,7 +68,7 @@ BENCHMARK(prepare_scan)->Unit(benchmark::kMillisecond)->UseRealTime();
 void relax_fifteen(benchmark::State& state) {
   constexpr std::size_t kScans = 15;
   Random random(1);
-  const auto draw = [&] { return Eigen::Vector3d(random.normal(), random.normal(), random.normal()); };
+  const auto draw = [&] { return random.normal3(); };
   std::vector<RigidTransform> truth;
   std::vector<RigidTransform> start;
   for (std::size_t k = 0; k < kScans; ++k) {

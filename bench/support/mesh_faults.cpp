@@ -29,11 +29,7 @@ void add_faults(std::uint64_t seed, Mesh* mesh) {
   const std::size_t scraps = mesh->faces.size() / 1000;
   for (std::size_t i = 0; i < scraps; ++i) {
     const Eigen::Vector3f& at = mesh->positions[random.below(own)];
-    const auto shift = [&](double size) {
-      return Eigen::Vector3d(size * random.normal(), size * random.normal(), size * random.normal())
-          .cast<float>()
-          .eval();
-    };
+    const auto shift = [&](double size) { return Eigen::Vector3f((size * random.normal3()).cast<float>()); };
     const auto first = static_cast<std::uint32_t>(mesh->positions.size());
     const Eigen::Vector3f middle = at + shift(0.4);
     for (int corner = 0; corner < 4; ++corner) {

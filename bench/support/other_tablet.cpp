@@ -37,9 +37,12 @@ class Bun {
     half_ = {random_.uniform(12, 26), random_.uniform(10, 20)};
     thick_ = random_.uniform(6, 10);
     width_ = random_.uniform(0.9, 2.6);
-    broken_ = options.wear > 0
-                  ? Eigen::Vector2d(random_.uniform(0.6, 1.0), random_.uniform(0.6, 1.0)).normalized()
-                  : Eigen::Vector2d::Zero();
+    broken_.setZero();
+    if (options.wear > 0) {
+      broken_.y() = random_.uniform(0.6, 1.0);
+      broken_.x() = random_.uniform(0.6, 1.0);
+      broken_.normalize();
+    }
     write();
   }
 
@@ -118,7 +121,8 @@ class Bun {
   void press(const Eigen::Vector2d& head) {
     constexpr std::array<double, 6> kTurns = {0, -90, -90, 0, -45, 45};
     const bool hook = random_.uniform() < 0.15;
-    const double turn = rad_from_deg((hook ? 180 : kTurns[random_.below(6)]) + 6 * random_.normal());
+    const double straight = hook ? 180 : kTurns[random_.below(6)];
+    const double turn = rad_from_deg(straight + 6 * random_.normal());
     const double width = width_ * random_.uniform(0.8, 1.25);
     const double depth = width * random_.uniform(0.28, 0.5);
     const double length = hook ? 0.75 * width : width * random_.uniform(1.4, 3.6);

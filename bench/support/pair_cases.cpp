@@ -49,7 +49,7 @@ double median(std::vector<double> values) {
 }
 
 Eigen::Vector3d random_direction(Random& random) {
-  return Eigen::Vector3d(random.normal(), random.normal(), random.normal()).normalized();
+  return random.normal3().normalized();
 }
 
 /// One method over some of the pairs.

@@ -50,9 +50,9 @@ SimulatedViews make_views(const ViewOptions& options) {
     }
     // What a stage would say after a hand turn: off by some degrees and millimetres.
     Random hand(seed_for(7, k));
-    const RigidTransform off = RigidTransform::from_twist(
-        Eigen::Vector3d(hand.normal(), hand.normal(), hand.normal()) * rad_from_deg(3.0),
-        Eigen::Vector3d(hand.normal(), hand.normal(), hand.normal()) * 1.5);
+    const Eigen::Vector3d shift_mm = hand.normal3() * 1.5;
+    const Eigen::Vector3d turn_rad = hand.normal3() * rad_from_deg(3.0);
+    const RigidTransform off = RigidTransform::from_twist(turn_rad, shift_mm);
     grid->nominal = NominalPose{off * plan[k].tablet_from_scanner, static_cast<int>(k)};
     views.flags.push_back(flag_sparse(*grid));
     views.poses.push_back(plan[k].tablet_from_scanner);

@@ -51,7 +51,7 @@ TEST(NormalClusters, FindsThreeDirectionsInNoise) {
   Random random(3);
   std::vector<Eigen::Vector3f> normals;
   for (int i = 0; i < 600; ++i) {
-    const Eigen::Vector3d shake(random.normal(), random.normal(), random.normal());
+    const Eigen::Vector3d shake = random.normal3();
     normals.push_back(
         (pit.normal(static_cast<std::size_t>(i % 3)) + 0.15 * shake).normalized().cast<float>());
   }

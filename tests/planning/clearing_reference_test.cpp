@@ -26,8 +26,8 @@ struct Scan {
 
 /// Turned by up to a third of a turn about the model's centre, and not quite there.
 RigidTransform random_pose(Random& random, double turn_rad) {
-  const Eigen::Vector3d axis(random.normal(), random.normal(), random.normal());
-  const Eigen::Vector3d shift(random.normal(), random.normal(), random.normal());
+  const Eigen::Vector3d axis = random.normal3();
+  const Eigen::Vector3d shift = random.normal3();
   return RigidTransform::from_twist(axis.normalized() * random.uniform(0.0, turn_rad), 0.2 * shift);
 }
 

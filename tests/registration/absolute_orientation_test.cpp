@@ -46,7 +46,7 @@ TEST(AbsoluteOrientation, IsTheSeedsWeightedFormula) {
   Eigen::Vector3d c_prime = Eigen::Vector3d::Zero();
   double total = 0;
   for (const auto& p : source) {
-    target.push_back(truth * p + 0.3 * Eigen::Vector3d(random.normal(), random.normal(), random.normal()));
+    target.push_back(truth * p + 0.3 * random.normal3());
     weights.push_back(random.uniform(0.1, 4));
     c += weights.back() * target.back();
     c_prime += weights.back() * p;

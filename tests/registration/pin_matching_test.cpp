@@ -33,7 +33,7 @@ std::vector<SeenPin> put_back(const std::vector<SeenPin>& tips, const RigidTrans
   std::vector<SeenPin> out;
   for (std::size_t k = 0; k < kept; ++k) {
     SeenPin tip = tips[(first + k) % tips.size()];
-    const Eigen::Vector3d off(random.normal(), random.normal(), random.normal());
+    const Eigen::Vector3d off = random.normal3();
     tip.position_mm = pose.inverse() * Eigen::Vector3d(tip.position_mm + 0.3 * off);
     tip.label = labels ? tip.label : -1;
     out.push_back(tip);

@@ -20,7 +20,7 @@ struct Ring {
 };
 
 RigidTransform jittered(const RigidTransform& pose, double sigma, Random& random) {
-  const auto draw = [&] { return Eigen::Vector3d(random.normal(), random.normal(), random.normal()); };
+  const auto draw = [&] { return random.normal3(); };
   const Eigen::Vector3d omega = 0.01 * sigma * draw();
   return (RigidTransform::from_twist(omega, sigma * draw()) * pose).orthonormalised();
 }

@@ -44,10 +44,8 @@ TEST(Pins, RaysMeetThemWhereTheirShapeSays) {
   Random random(5);
   int hits = 0;
   for (int i = 0; i < 3000; ++i) {
-    const Eigen::Vector3d aim = pin.tip_mm + random.uniform(-1, 32) * pin.arm +
-                                Eigen::Vector3d(random.normal(), random.normal(), random.normal());
-    const Eigen::Vector3d side =
-        Eigen::Vector3d(random.normal(), random.normal(), random.normal()).cross(pin.arm).normalized();
+    const Eigen::Vector3d aim = pin.tip_mm + random.uniform(-1, 32) * pin.arm + random.normal3();
+    const Eigen::Vector3d side = random.normal3().cross(pin.arm).normalized();
     const Eigen::Vector3d origin = aim + 60.0 * side;
     const auto hit = hit_pin(pin, origin, -side, 0, 200);
     // March along the ray: the first step inside must agree.

@@ -168,8 +168,7 @@ TEST(Stitcher, PosesThatAreOffStillGiveOneSoundSurface) {
   test::ScanSet set = ball();
   Random random(5);
   for (PlacedScan& scan : set.placed) {
-    const Eigen::Vector3d off =
-        0.2 * Eigen::Vector3d(random.normal(), random.normal(), random.normal()).normalized();
+    const Eigen::Vector3d off = 0.2 * random.normal3().normalized();
     scan.model_from_scanner = RigidTransform::from_twist({0, 0, 0}, off) * scan.model_from_scanner;
   }
   const Mesh mesh = stitched(set);
