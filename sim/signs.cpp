@@ -96,8 +96,9 @@ Sign make_sign(Random& random) {
 Stroke write_stroke(const SignStroke& stroke, const Hand& hand, Random& random) {
   const auto jitter = [&](double scale) { return scale * std::clamp(random.normal(), -2.5, 2.5); };
   const double unit = 0.84 * hand.line_height_mm;
-  const Eigen::Vector2d at(unit * stroke.x + jitter(0.4 * hand.unsteadiness * unit),
-                           unit * stroke.y + jitter(0.4 * hand.unsteadiness * unit));
+  const double y = unit * stroke.y + jitter(0.4 * hand.unsteadiness * unit);
+  const double x = unit * stroke.x + jitter(0.4 * hand.unsteadiness * unit);
+  const Eigen::Vector2d at(x, y);
   const double width = hand.head_width * hand.line_height_mm * (1.0 + jitter(1.4 * hand.unsteadiness));
   const double depth = width * hand.depth * (1.0 + jitter(hand.unsteadiness));
   // A wedge shorter than this has no tail left and would turn its directional edge about.
