@@ -30,7 +30,8 @@ std::optional<fs::path> session_around(const fs::path& path) {
 
 Status check_outside_sessions(const fs::path& output) {
   std::error_code error;
-  fs::path resolved = fs::weakly_canonical(output, error);
+  // A name of which nothing exists yet would stay relative, and have no folders above it.
+  fs::path resolved = fs::weakly_canonical(fs::absolute(output), error);
   if (error) {
     resolved = fs::absolute(output, error).lexically_normal();
   }

@@ -346,8 +346,9 @@ void add_analyze(CLI::App& app, Action& chosen) {
   const auto arguments = std::make_shared<AnalyzeArguments>();
   add_analyze_options(*verb, *arguments);
   verb->callback([&chosen, arguments] {
-    chosen = outside_sessions(written_by(*arguments),
-                              [arguments](CommandContext& c) { return analyze(*arguments, c); });
+    chosen =
+        outside_sessions(written_by(*arguments),
+                         [arguments](CommandContext& c) { return analyze(*arguments, c); }, {arguments->in});
   });
 }
 

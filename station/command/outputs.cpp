@@ -2,18 +2,57 @@
 // Copyright The Dubsar developers
 #include "station/command/outputs.h"
 
+#include <algorithm>
+#include <filesystem>
 #include <utility>
 
 #include "station/place_outside.h"
 
 namespace dubsar {
 
-Action outside_sessions(std::vector<std::string> outputs, Action action) {
-  return [outputs = std::move(outputs), action = std::move(action)](CommandContext& context) -> Result<int> {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The same file or folder, whatever it is called and whether it exists yet. A device may be written to
+/// twice.
+bool is_same_place(const std::string& a, const std::string& b) {
+  std::error_code error;
+  if (fs::exists(a, error) && fs::exists(b, error)) {
+    return !fs::is_character_file(a, error) && fs::equivalent(a, b, error);
+  }
+  return fs::weakly_canonical(fs::absolute(a), error) == fs::weakly_canonical(fs::absolute(b), error);
+}
+
+Status check_apart(const std::vector<std::string>& outputs, const std::vector<std::string>& inputs) {
+  for (auto output = outputs.begin(); output != outputs.end(); ++output) {
+    const auto is_this = [&](const std::string& other) {
+      return !output->empty() && !other.empty() && is_same_place(*output, other);
+    };
+    if (std::any_of(inputs.begin(), inputs.end(), is_this)) {
+      return fail(ErrorKind::kUsage, "what is read would be written over", *output,
+                  "give the output a name of its own");
+    }
+    if (std::any_of(outputs.begin(), output, is_this)) {
+      return fail(ErrorKind::kUsage, "two outputs would be written to one place", *output,
+                  "give each a name of its own");
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+Action outside_sessions(std::vector<std::string> outputs, Action action, std::vector<std::string> inputs) {
+  return [outputs = std::move(outputs), inputs = std::move(inputs),
+          action = std::move(action)](CommandContext& context) -> Result<int> {
     for (const std::string& output : outputs) {
       if (const Status outside = output.empty() ? Status() : check_outside_sessions(output); !outside) {
         return std::unexpected(outside.error());
       }
+    }
+    if (const Status apart = check_apart(outputs, inputs); !apart) {
+      return std::unexpected(apart.error());
     }
     return action(context);
   };

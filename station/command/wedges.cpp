@@ -228,7 +228,8 @@ void add_wedges(CLI::App& app, Action& chosen) {
     std::vector<std::string> written = written_by(arguments->analyze);
     written.push_back(arguments->analyze.corrections);
     chosen = outside_sessions(std::move(written),
-                              [arguments](CommandContext& c) { return correct(*arguments, c); });
+                              [arguments](CommandContext& c) { return correct(*arguments, c); },
+                              {arguments->analyze.in});
   });
 }
 

@@ -83,6 +83,35 @@ TEST_F(Outputs, NoPackageGoesIntoASessionUnderAnyName) {
   expect_refused({"export", session(), "--to", beside("shortcut") / "package"});
 }
 
+TEST_F(Outputs, OfABareNameGoIntoNoSessionThatOneStandsIn) {
+  const fs::path stood = fs::current_path();
+  fs::current_path(session());
+  expect_refused({"analyze", "mesh/model.ply", "-o", "wedges.json"});
+  expect_refused({"export", ".", "--to", "package"});
+  fs::current_path(stood);
+}
+
+TEST_F(Outputs, ReplaceNeitherWhatIsReadNorEachOther) {
+  const fs::path own = beside("own.ply");
+  fs::copy_file(mesh(), own);
+  const std::string before = bytes_of(own);
+  const fs::path link = beside("link.ply");
+  fs::create_hard_link(own, link);
+  for (const Arguments& arguments : {Arguments{"analyze", own, "-o", own},
+                                     {"analyze", own, "-o", beside("w.json"), "--mesh-out", link},
+                                     {"mesh", "convert", own, beside("shut/../own.ply")},
+                                     {"mesh", "section", own, "--from", "0,0,0", "--to", "1,0,0", "-o", own},
+                                     {"mesh", "part", own, "--selection", "line 3", "-o", own},
+                                     {"analyze", own, "-o", beside("w.json"), "--svg", beside("w.json")}}) {
+    const Outcome outcome = run_command(arguments);
+    EXPECT_EQ(outcome.status, 2) << outcome.err;
+    EXPECT_THAT(outcome.complaints(), SizeIs(1)) << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr("a name of its own"));
+    EXPECT_EQ(bytes_of(own), before);
+    EXPECT_FALSE(fs::exists(beside("w.json")));
+  }
+}
+
 TEST_F(Outputs, GoBesideASessionAsBefore) {
   const Outcome converted = run_command({"mesh", "convert", mesh(), beside("tablet-model.stl")});
   EXPECT_EQ(converted.status, 0) << converted.err;
