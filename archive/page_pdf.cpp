@@ -8,6 +8,7 @@
 
 #include "archive/cross_plan.h"
 #include "archive/page_blocks.h"
+#include "archive/pdf_lines.h"
 
 namespace dubsar {
 
@@ -17,21 +18,7 @@ constexpr double kMargin = 15 * kPointsPerMm;
 constexpr double kFoot = 20 * kPointsPerMm;
 constexpr double kColumn = PdfSheet::kWidth - 2 * kMargin;
 constexpr double kBody = 9.0;
-constexpr double kSoftGrey = 0.4;
-constexpr double kLeading = 1.35;
 constexpr std::array<double, 4> kHeading = {kBody, 17, 12.5, 10};
-
-/// A piece of a line that is not broken.
-struct Word {
-  std::string text;
-  bool bold = false;
-  bool soft = false;
-  double width = 0;
-};
-struct Line {
-  std::vector<Word> words;
-  double width = 0;
-};
 
 class Setter {
  public:
@@ -39,7 +26,7 @@ class Setter {
 
   void finish() {
     const std::string foot = foot_ + ", page " + std::to_string(sheet_.pages());
-    sheet_.text(foot, kMargin, 0.5 * kFoot, PdfFont::kPlain, 6.5, kSoftGrey);
+    sheet_.text(foot, kMargin, 0.5 * kFoot, PdfFont::kPlain, 6.5, kPdfSoftGrey);
   }
 
   /// next: what follows, or null.
@@ -76,95 +63,12 @@ class Setter {
   }
 
  private:
-  static PdfFont font_of(bool bold) { return bold ? PdfFont::kBold : PdfFont::kPlain; }
-
   void room_for(double height) {
     if (y_ - height < kFoot) {
       finish();
       sheet_.new_page();
       y_ = PdfSheet::kHeight - kMargin;
     }
-  }
-
-  /// Bytes of a word, whole characters of it and one at least, that are no wider than a line. Never more than
-  /// about two lines are measured at once: some scripts have no blanks, and a note may be one long word.
-  std::size_t fitting(std::string_view word, PdfFont font, double size, double width) {
-    constexpr std::size_t kFirstLook = 64;
-    const auto character_from = [&](std::size_t at) {
-      while (at < word.size() && (static_cast<unsigned char>(word[at]) & 0xc0U) == 0x80U) {
-        ++at;
-      }
-      return std::min(at, word.size());
-    };
-    const auto fits = [&](std::size_t end) {
-      return sheet_.text_width(word.substr(0, end), font, size) <= width;
-    };
-    std::size_t low = character_from(1);
-    std::size_t high = character_from(kFirstLook);
-    for (; fits(high); high = character_from(2 * high)) {
-      low = high;
-      if (low == word.size()) {
-        return low;
-      }
-    }
-    while (character_from(low + 1) < high) {
-      const std::size_t middle = character_from((low + high) / 2);
-      const std::size_t next = middle < high && middle > low ? middle : character_from(low + 1);
-      (fits(next) ? low : high) = next;
-    }
-    return low;
-  }
-
-  /// Broken at blanks; a word wider than the line is broken within, at a character.
-  std::vector<Line> lines_of(const RichText& text, double size, double width) {
-    std::vector<Line> lines(1);
-    const double blank = sheet_.text_width(" ", PdfFont::kPlain, size);
-    const auto add = [&](Word word) {
-      word.width = sheet_.text_width(word.text, font_of(word.bold), size);
-      const double gap = lines.back().words.empty() ? 0 : blank;
-      if (!lines.back().words.empty() && lines.back().width + gap + word.width > width) {
-        lines.emplace_back();
-      } else {
-        lines.back().width += gap;
-      }
-      lines.back().width += word.width;
-      lines.back().words.push_back(std::move(word));
-    };
-    for (const TextRun& run : text) {
-      if (run.breaks && !lines.back().words.empty()) {
-        lines.emplace_back();
-      }
-      std::size_t at = 0;
-      while (at < run.text.size()) {
-        const std::size_t end = std::min(run.text.find(' ', at), run.text.size());
-        std::string_view word = std::string_view(run.text).substr(at, end - at);
-        at = end + 1;
-        while (!word.empty()) {
-          const std::size_t fits = fitting(word, font_of(run.bold), size, width);
-          add({std::string(word.substr(0, fits)), run.bold, run.soft});
-          word.remove_prefix(fits);
-        }
-      }
-    }
-    return lines;
-  }
-
-  /// The first line's baseline lies a line's height below `top`.
-  void draw(const std::vector<Line>& lines, double left, double top, double size, double grey) {
-    const double blank = sheet_.text_width(" ", PdfFont::kPlain, size);
-    double y = top;
-    for (const Line& line : lines) {
-      y -= kLeading * size;
-      double x = left;
-      for (const Word& word : line.words) {
-        sheet_.text(word.text, x, y, font_of(word.bold), size, word.soft ? kSoftGrey : grey);
-        x += word.width + blank;
-      }
-    }
-  }
-
-  static double height_of(const std::vector<Line>& lines, double size) {
-    return kLeading * size * static_cast<double>(lines.size());
   }
 
   /// What has to stand on the heading's page of that which follows it.
@@ -176,7 +80,7 @@ class Setter {
       const CrossPlan plan = cross_plan(next->figures, kColumn / kPointsPerMm);
       return plan.all_high_mm * plan.unit;
     }
-    return 5 * kLeading * kBody;
+    return 5 * kPdfLeading * kBody;
   }
 
   void heading(const PageBlock& block, const PageBlock* next) {
@@ -185,7 +89,7 @@ class Setter {
     for (TextRun& run : text) {
       run.bold = true;
     }
-    const auto lines = lines_of(text, size, kColumn);
+    const auto lines = pdf_lines(sheet_, text, size, kColumn);
     room_for(height_of(lines, size) + size + least_height(next));  // never alone at the foot
     y_ -= 0.6 * size;
     std::string words;
@@ -193,22 +97,22 @@ class Setter {
       words += run.text;
     }
     sheet_.bookmark(words, y_ + size, block.level);
-    draw(lines, kMargin, y_, size, 0);
+    draw_lines(sheet_, lines, kMargin, y_, size, 0);
     y_ -= height_of(lines, size) + 0.35 * size;
   }
 
   /// Line by line, so that it may go on over the page.
   void paragraph(const RichText& text, double indent) {
-    for (const Line& line : lines_of(text, kBody, kColumn - indent)) {
-      room_for(kLeading * kBody);
-      draw({line}, kMargin + indent, y_, kBody, 0);
-      y_ -= kLeading * kBody;
+    for (const PdfLine& line : pdf_lines(sheet_, text, kBody, kColumn - indent)) {
+      room_for(kPdfLeading * kBody);
+      draw_lines(sheet_, {line}, kMargin + indent, y_, kBody, 0);
+      y_ -= kPdfLeading * kBody;
     }
   }
 
   void marked(const PageBlock& block, double indent) {
-    room_for(kLeading * kBody);
-    sheet_.text(block.mark, kMargin, y_ - kLeading * kBody, PdfFont::kPlain, kBody, kSoftGrey);
+    room_for(kPdfLeading * kBody);
+    sheet_.text(block.mark, kMargin, y_ - kPdfLeading * kBody, PdfFont::kPlain, kBody, kPdfSoftGrey);
     paragraph(block.text, indent);
     y_ -= 0.2 * kBody;
   }
@@ -224,28 +128,28 @@ class Setter {
       return;
     }
     const std::vector<double> widths = column_widths(rows, columns, kSize, kGap);
-    const auto height = [&](const std::vector<std::vector<Line>>& cells) {
-      double most = kLeading * kSize;
+    const auto height = [&](const std::vector<PdfLines>& cells) {
+      double most = kPdfLeading * kSize;
       for (const auto& cell : cells) {
         most = std::max(most, height_of(cell, kSize));
       }
       return most + 3;
     };
     const auto broken = [&](const std::vector<RichText>& row, bool head) {
-      std::vector<std::vector<Line>> cells;
+      std::vector<PdfLines> cells;
       for (std::size_t c = 0; c < row.size(); ++c) {
         RichText text = row[c];
         for (TextRun& run : text) {
           run.bold = run.bold || head;
         }
-        cells.push_back(lines_of(text, kSize, widths[c]));
+        cells.push_back(pdf_lines(sheet_, text, kSize, widths[c]));
       }
       return cells;
     };
-    const auto put = [&](const std::vector<std::vector<Line>>& cells, bool head) {
+    const auto put = [&](const std::vector<PdfLines>& cells, bool head) {
       double x = kMargin;
       for (std::size_t c = 0; c < cells.size(); ++c) {
-        draw(cells[c], x, y_, kSize, 0);
+        draw_lines(sheet_, cells[c], x, y_, kSize, 0);
         x += widths[c] + kGap;
       }
       y_ -= height(cells);
@@ -305,7 +209,7 @@ class Setter {
     double width = 0;        ///< of each, with what is free beside it
     double size = 0;         ///< of the captions
     double high = 0;
-    std::vector<std::vector<Line>> captions;
+    std::vector<PdfLines> captions;
     std::vector<std::array<double, 2>> sizes;
   };
 
@@ -317,7 +221,7 @@ class Setter {
     row.width = (kColumn - kFigureGap * (across - 1)) / across;
     row.size = alone ? kBody : 6.8;
     for (std::size_t k = first; k < std::min(first + row.across, all.size()); ++k) {
-      row.captions.push_back(lines_of(all[k].caption, row.size, row.width));
+      row.captions.push_back(pdf_lines(sheet_, all[k].caption, row.size, row.width));
       const double shape = static_cast<double>(all[k].height_px) / std::max(1, all[k].width_px);
       constexpr double kHighest = 215 * kPointsPerMm;
       const double wide = std::min(row.width, kHighest / std::max(shape, 1e-3));
@@ -335,7 +239,7 @@ class Setter {
         const auto& [wide, tall] = row.sizes[k];
         const double x = kMargin + static_cast<double>(k) * (row.width + kFigureGap);
         sheet_.picture(all[first + k].png, x + 0.5 * (row.width - wide), y_ - tall, wide, tall);
-        draw(row.captions[k], x, y_ - tall - 2, row.size, kSoftGrey);
+        draw_lines(sheet_, row.captions[k], x, y_ - tall - 2, row.size, kPdfSoftGrey);
       }
       y_ -= row.high + kFigureGap;
       first += row.across;
@@ -375,7 +279,7 @@ class Setter {
     const double bar = middle + (0.5 * column_mm + kGapMm) * unit;
     const double bar_y = y_ - all_high_mm * unit + 8;
     sheet_.line(bar, bar_y, bar + 10 * unit, bar_y, 1.2, 0);
-    sheet_.text("10 mm", bar, bar_y - 8, PdfFont::kPlain, 6.5, kSoftGrey);
+    sheet_.text("10 mm", bar, bar_y - 8, PdfFont::kPlain, 6.5, kPdfSoftGrey);
     y_ -= all_high_mm * unit + kBody;
   }
 

@@ -28,16 +28,19 @@ std::optional<fs::path> session_around(const fs::path& path) {
 
 }  // namespace
 
-Status check_outside_sessions(const fs::path& output) {
+fs::path resolved_place(const fs::path& path) {
   std::error_code error;
   // A name of which nothing exists yet would stay relative, and have no folders above it.
-  fs::path resolved = fs::weakly_canonical(fs::absolute(output), error);
+  const fs::path whole = fs::absolute(path, error);
+  fs::path resolved = fs::weakly_canonical(whole, error);
   if (error) {
-    resolved = fs::absolute(output, error).lexically_normal();
+    resolved = whole.lexically_normal();
   }
-  if (!resolved.has_filename()) {
-    resolved = resolved.parent_path();  // a slash at the end
-  }
+  return resolved.has_filename() ? resolved : resolved.parent_path();
+}
+
+Status check_outside_sessions(const fs::path& output) {
+  const fs::path resolved = resolved_place(output);
   const std::optional<fs::path> session = session_around(resolved);
   if (!session) {
     return {};

@@ -138,6 +138,12 @@ Status load_folder(const fs::path& path, const ScanSetOptions& options, const Sc
     }
     StationScan prepared = prepare_scan(static_cast<int>(set.scans.size()), std::move(**grid), set.pins);
     grid->reset();
+    std::error_code not_there;
+    const fs::path folder = fs::is_directory(path, not_there) ? path : path.parent_path();
+    if (!options.output.empty() && fs::equivalent(folder / prepared.file, options.output, not_there)) {
+      return fail(ErrorKind::kUsage, "a scan would be written over", options.output.string(),
+                  "give the output a name of its own");
+    }
     if (const Status kept = keep(std::move(prepared), visit, set); !kept) {
       return kept;
     }

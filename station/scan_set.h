@@ -34,6 +34,9 @@ struct ScanSetOptions {
   std::string unit{};                 ///< "m", "mm", "um"; empty: the file's own word, else mm
   std::filesystem::path pins_file{};  ///< empty: the session's, or none
   SessionStore::Access access = SessionStore::Access::kReadWrite;  ///< of a session
+  /// A file that is going to be written: kUsage where it is one of a folder's scans, which cannot be made
+  /// again.
+  std::filesystem::path output{};
 };
 
 /// Is given each scan as it is read, and owns it; what the set knows so far (poses, pins, the operator's

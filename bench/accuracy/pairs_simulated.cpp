@@ -26,12 +26,11 @@ struct Sums {
 /// The truth, off by about what a fit to the model leaves.
 RigidTransform near_truth(const RigidTransform& truth, const ScanSurface& moved, double sigma_mm,
                           Random& random) {
-  const auto draw = [&] { return random.normal3(); };
   const RigidTransform turn =
-      RigidTransform::from_twist(sigma_mm / moved.extent_mm * draw(), Eigen::Vector3d::Zero());
+      RigidTransform::from_twist(sigma_mm / moved.extent_mm * random.normal3(), Eigen::Vector3d::Zero());
   const Eigen::Vector3d center = truth * moved.centroid_mm;
   return {turn.rotation * truth.rotation,
-          turn.rotation * (truth.translation_mm - center) + center + sigma_mm * draw()};
+          turn.rotation * (truth.translation_mm - center) + center + sigma_mm * random.normal3()};
 }
 
 void measure(const TrueScan& a, const TrueScan& b, const ScanSurface& on, const ScanSurface& moved,

@@ -63,9 +63,8 @@ NominalPose nominal_of(const SimulatedViews& views, std::size_t k, Nominal kind)
     return *views.grids[k]->nominal;
   }
   Random motor(seed_for(11, k));
-  const auto draw = [&] { return motor.normal3(); };
-  const Eigen::Vector3d turn_rad = 0.0001 * draw();
-  const RigidTransform off = RigidTransform::from_twist(turn_rad, 0.01 * draw());
+  const Eigen::Vector3d turn_rad = 0.0001 * motor.normal3();
+  const RigidTransform off = RigidTransform::from_twist(turn_rad, 0.01 * motor.normal3());
   return {.tablet_from_scanner = off * views.poses[k]};
 }
 

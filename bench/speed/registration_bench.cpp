@@ -68,19 +68,19 @@ BENCHMARK(prepare_scan)->Unit(benchmark::kMillisecond)->UseRealTime();
 void relax_fifteen(benchmark::State& state) {
   constexpr std::size_t kScans = 15;
   Random random(1);
-  const auto draw = [&] { return random.normal3(); };
   std::vector<RigidTransform> truth;
   std::vector<RigidTransform> start;
   for (std::size_t k = 0; k < kScans; ++k) {
     truth.push_back(RigidTransform::from_twist({0, 0.42 * static_cast<double>(k), 0}, {1, 2, 3}));
-    const Eigen::Vector3d turn = 0.005 * draw();
-    start.push_back((RigidTransform::from_twist(turn, 0.5 * draw()) * truth.back()).orthonormalised());
+    const Eigen::Vector3d turn = 0.005 * random.normal3();
+    start.push_back(
+        (RigidTransform::from_twist(turn, 0.5 * random.normal3()) * truth.back()).orthonormalised());
   }
   std::vector<PairConstraint> pairs;
   for (std::size_t a = 0; a < kScans; ++a) {
     for (std::size_t step = 1; step <= 4; ++step) {
       const std::size_t b = (a + step) % kScans;
-      const RigidTransform off = RigidTransform::from_twist({0, 0, 0}, 0.01 * draw());
+      const RigidTransform off = RigidTransform::from_twist({0, 0, 0}, 0.01 * random.normal3());
       pairs.push_back({a, b, off * truth[a].inverse() * truth[b], {0, 0, 0}, 1e4 * Matrix6d::Identity()});
     }
   }

@@ -347,8 +347,8 @@ void add_analyze(CLI::App& app, Action& chosen) {
   add_analyze_options(*verb, *arguments);
   verb->callback([&chosen, arguments] {
     chosen =
-        outside_sessions(written_by(*arguments),
-                         [arguments](CommandContext& c) { return analyze(*arguments, c); }, {arguments->in});
+        with_safe_outputs(written_by(*arguments),
+                          [arguments](CommandContext& c) { return analyze(*arguments, c); }, {arguments->in});
   });
 }
 

@@ -155,8 +155,8 @@ void add_calibrate(CLI::App& app, Action& chosen) {
     if (options->source.empty() && options->print.empty()) {
       throw CLI::RequiredError("source");
     }
-    chosen = outside_sessions({options->out, options->print},
-                              [options](CommandContext& c) { return calibrate(*options, c); });
+    chosen = with_safe_outputs({options->out, options->print},
+                               [options](CommandContext& c) { return calibrate(*options, c); });
   });
 }
 

@@ -118,8 +118,8 @@ void add_export(CLI::App& app, Action& chosen) {
       "replace a package that lies there already where it is whole and its stamp says that it is of "
       "an earlier state of this session");
   verb->callback([&chosen, arguments] {
-    chosen = outside_sessions({arguments->to},
-                              [arguments](CommandContext& c) { return export_session(*arguments, c); });
+    chosen = with_safe_outputs({arguments->to},
+                               [arguments](CommandContext& c) { return export_session(*arguments, c); });
   });
 }
 

@@ -166,8 +166,8 @@ void add_mesh(CLI::App& app, Action& chosen) {
   convert_verb->add_option("out", options->out)->required();
   convert_verb->fallthrough();
   convert_verb->callback([&chosen, options] {
-    chosen = outside_sessions({options->out}, [options](CommandContext& c) { return convert(*options, c); },
-                              {options->in});
+    chosen = with_safe_outputs({options->out}, [options](CommandContext& c) { return convert(*options, c); },
+                               {options->in});
   });
   CLI::App* section_verb = verb->add_subcommand(
       "section", "The profile of a cut between two places of the surface; status 1 when nothing is cut");
@@ -179,8 +179,8 @@ void add_mesh(CLI::App& app, Action& chosen) {
   section_verb->add_option("-o,--out", options->out, "profile.csv or profile.svg, in mm, 1:1")->required();
   section_verb->fallthrough();
   section_verb->callback([&chosen, options] {
-    chosen = outside_sessions({options->out}, [options](CommandContext& c) { return section(*options, c); },
-                              {options->in});
+    chosen = with_safe_outputs({options->out}, [options](CommandContext& c) { return section(*options, c); },
+                               {options->in});
   });
   CLI::App* part_verb = verb->add_subcommand(
       "part", "What a selection kept in the viewer holds: a mesh, or with --wedges a table");
@@ -192,8 +192,8 @@ void add_mesh(CLI::App& app, Action& chosen) {
   part_verb->add_option("-o,--out", options->out, "part.ply, or wedges.csv")->required();
   part_verb->fallthrough();
   part_verb->callback([&chosen, options] {
-    chosen = outside_sessions({options->out}, [options](CommandContext& c) { return part(*options, c); },
-                              {options->in, options->wedges});
+    chosen = with_safe_outputs({options->out}, [options](CommandContext& c) { return part(*options, c); },
+                               {options->in, options->wedges});
   });
   for (CLI::App* sub : {check_verb, convert_verb, section_verb, part_verb}) {
     sub->add_option("--unit", options->unit, "what the file's numbers are")

@@ -14,14 +14,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The same file or folder, whatever it is called and whether it exists yet. A device may be written to
-/// twice.
+/// The same file or folder, whatever it is called (two hard links, too) and whether it exists yet. A device
+/// may be written to twice.
 bool is_same_place(const std::string& a, const std::string& b) {
   std::error_code error;
   if (fs::exists(a, error) && fs::exists(b, error)) {
     return !fs::is_character_file(a, error) && fs::equivalent(a, b, error);
   }
-  return fs::weakly_canonical(fs::absolute(a), error) == fs::weakly_canonical(fs::absolute(b), error);
+  return resolved_place(a) == resolved_place(b);
 }
 
 Status check_apart(const std::vector<std::string>& outputs, const std::vector<std::string>& inputs) {
@@ -43,7 +43,7 @@ Status check_apart(const std::vector<std::string>& outputs, const std::vector<st
 
 }  // namespace
 
-Action outside_sessions(std::vector<std::string> outputs, Action action, std::vector<std::string> inputs) {
+Action with_safe_outputs(std::vector<std::string> outputs, Action action, std::vector<std::string> inputs) {
   return [outputs = std::move(outputs), inputs = std::move(inputs),
           action = std::move(action)](CommandContext& context) -> Result<int> {
     for (const std::string& output : outputs) {

@@ -168,7 +168,7 @@ void add_pins(CLI::App& app, Action& chosen) {
   verb->fallthrough();
   verb->callback([&chosen, arguments] {
     chosen =
-        outside_sessions({arguments->out}, [arguments](CommandContext& c) { return pins(*arguments, c); });
+        with_safe_outputs({arguments->out}, [arguments](CommandContext& c) { return pins(*arguments, c); });
   });
 }
 

@@ -223,8 +223,8 @@ void add_plan(CLI::App& app, Action& chosen) {
   verb->add_option("--states", arguments->states,
                    "write what has become of every sample into this folder, a PLY for each scan");
   verb->callback([&chosen, arguments] {
-    chosen = outside_sessions({arguments->set.out, arguments->page, arguments->states},
-                              [arguments](CommandContext& c) { return plan(*arguments, c); });
+    chosen = with_safe_outputs({arguments->set.out, arguments->page, arguments->states},
+                               [arguments](CommandContext& c) { return plan(*arguments, c); });
   });
 }
 

@@ -104,8 +104,8 @@ void add_register(CLI::App& app, Action& chosen) {
   verb->add_option("--threads", arguments->threads, "at most; the result does not depend on it")
       ->check(CLI::Range(1, 1024));
   verb->callback([&chosen, arguments] {
-    chosen = outside_sessions({arguments->out},
-                              [arguments](CommandContext& c) { return register_all(*arguments, c); });
+    chosen = with_safe_outputs({arguments->out},
+                               [arguments](CommandContext& c) { return register_all(*arguments, c); });
   });
 }
 

@@ -27,7 +27,7 @@ struct ScanSetArguments {
     }
     verb.fallthrough();
   }
-  [[nodiscard]] ScanSetOptions options() const { return {unit, pins}; }
+  [[nodiscard]] ScanSetOptions options() const { return {.unit = unit, .pins_file = pins, .output = out}; }
 };
 
 }  // namespace dubsar

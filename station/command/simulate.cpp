@@ -196,8 +196,8 @@ void add_simulate(CLI::App& app, Action& chosen) {
   tablet->add_option("--damage", options->damage, "fractures, erosion, dirt and cracks, 0 none to 1 badly")
       ->check(CLI::Range(0.0, 1.0));
   tablet->callback([&chosen, options] {
-    chosen = outside_sessions({options->out},
-                              [options](CommandContext& c) { return simulate_tablet(*options, c); });
+    chosen = with_safe_outputs({options->out},
+                               [options](CommandContext& c) { return simulate_tablet(*options, c); });
   });
 
   CLI::App* scans =
@@ -212,8 +212,8 @@ void add_simulate(CLI::App& app, Action& chosen) {
   scans->add_flag("--pins", options->pins,
                   "fifteen pins around the rim; writes pins.json, as an operator clicks them");
   scans->callback([&chosen, options] {
-    chosen = outside_sessions({options->out},
-                              [options](CommandContext& c) { return simulate_scans(*options, c); });
+    chosen = with_safe_outputs({options->out},
+                               [options](CommandContext& c) { return simulate_scans(*options, c); });
   });
 
   add_simulate_rig(*verb, chosen);

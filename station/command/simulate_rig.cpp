@@ -74,7 +74,7 @@ void add_simulate_rig(CLI::App& simulate, Action& chosen) {
   verb->fallthrough();
   verb->callback([&chosen, options] {
     chosen =
-        outside_sessions({options->out}, [options](CommandContext& c) { return simulate_rig(*options, c); });
+        with_safe_outputs({options->out}, [options](CommandContext& c) { return simulate_rig(*options, c); });
   });
 }
 

@@ -240,8 +240,8 @@ void add_stitch(CLI::App& app, Action& chosen) {
       ->excludes(verb->get_option("--poses"))
       ->excludes(verb->get_option("--pins"));
   verb->callback([&chosen, arguments] {
-    chosen = outside_sessions({arguments->set.out},
-                              [arguments](CommandContext& c) { return stitch(*arguments, c); });
+    chosen = with_safe_outputs({arguments->set.out},
+                               [arguments](CommandContext& c) { return stitch(*arguments, c); });
   });
 }
 

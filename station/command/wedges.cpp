@@ -227,9 +227,9 @@ void add_wedges(CLI::App& app, Action& chosen) {
                        [correct_verb](const char* name) { return correct_verb->count(name) > 0; });
     std::vector<std::string> written = written_by(arguments->analyze);
     written.push_back(arguments->analyze.corrections);
-    chosen = outside_sessions(std::move(written),
-                              [arguments](CommandContext& c) { return correct(*arguments, c); },
-                              {arguments->analyze.in});
+    chosen = with_safe_outputs(std::move(written),
+                               [arguments](CommandContext& c) { return correct(*arguments, c); },
+                               {arguments->analyze.in});
   });
 }
 

@@ -20,9 +20,8 @@ struct Ring {
 };
 
 RigidTransform jittered(const RigidTransform& pose, double sigma, Random& random) {
-  const auto draw = [&] { return random.normal3(); };
-  const Eigen::Vector3d omega = 0.01 * sigma * draw();
-  return (RigidTransform::from_twist(omega, sigma * draw()) * pose).orthonormalised();
+  const Eigen::Vector3d omega = 0.01 * sigma * random.normal3();
+  return (RigidTransform::from_twist(omega, sigma * random.normal3()) * pose).orthonormalised();
 }
 
 /// Fifteen scans around an object, each measured against the next three.

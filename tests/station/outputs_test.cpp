@@ -112,6 +112,32 @@ TEST_F(Outputs, ReplaceNeitherWhatIsReadNorEachOther) {
   }
 }
 
+TEST_F(Outputs, ReplaceNoScanOfTheFolderThatIsRead) {
+  const fs::path scans = beside("scans");
+  ASSERT_EQ(
+      run_command({"simulate", "scans", "--tablet", mesh(), "--views", "2", "--spacing", "0.8", "-o", scans})
+          .status,
+      0);
+  const fs::path scan = scans / "scan_000.ply";
+  const std::string before = bytes_of(scan);
+  ASSERT_FALSE(before.empty());
+  const std::string poses = (scans / "truth_poses.json").string();
+  for (const Arguments& arguments : {Arguments{"stitch", scans, "--poses", poses, "-o", scan},
+                                     {"register", scans, "-o", scan},
+                                     {"register", scan, "-o", scan},
+                                     {"plan", scans, "--poses", poses, "-o", scan}}) {
+    const Outcome outcome = run_command(arguments);
+    EXPECT_EQ(outcome.status, 2) << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr("a scan would be written over")) << arguments.front();
+    EXPECT_TRUE(bytes_of(scan) == before) << arguments.front();
+  }
+  // What an earlier run left there is no scan: the same command writes it again.
+  for (int run = 0; run < 2; ++run) {
+    const Outcome outcome = run_command({"stitch", scans, "--poses", poses, "-o", scans / "mesh.ply"});
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+  }
+}
+
 TEST_F(Outputs, GoBesideASessionAsBefore) {
   const Outcome converted = run_command({"mesh", "convert", mesh(), beside("tablet-model.stl")});
   EXPECT_EQ(converted.status, 0) << converted.err;
