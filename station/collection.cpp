@@ -11,10 +11,11 @@
 #include <map>
 #include <system_error>
 
-#include "acquisition/session_store.h"
 #include "analysis/wedge_features.h"
 #include "core/parallel.h"
 #include "formats/atomic_file.h"
+#include "formats/json_node.h"
+#include "station/place_outside.h"
 
 namespace dubsar {
 
@@ -64,6 +65,23 @@ Result<std::vector<fs::path>> json_files(const fs::path& folder) {
   return paths;
 }
 
+/// Sessions and packages hold many a .json that has no list of wedges. Text that is no JSON at all is not
+/// meant: it may have been one.
+bool is_of_another_kind(const fs::path& path) {
+  const Result<std::string> text = read_whole_file(path, kMaxJsonBytes);
+  if (text && nlohmann::json::accept(*text) && text->at(text->find_first_not_of(" \t\r\n")) != '{') {
+    return true;
+  }
+  const Result<JsonDocument> document =
+      text ? JsonDocument::parse(*text, path.string()) : std::unexpected(text.error());
+  if (!document) {
+    return false;
+  }
+  const JsonNode root = document->root();
+  const std::optional<JsonNode> wedges = root.find("wedges");
+  return !wedges || (wedges->items().empty() && root.failed());
+}
+
 /// The file's own, unless wedges were put in or taken out since.
 WedgeProfile profile_of(const WedgeFile& file) {
   const auto own = std::ranges::find_if(file.profiles, [](const WedgeProfile& p) { return !p.side; });
@@ -82,7 +100,7 @@ IndexedTablet read_tablet(const fs::path& path, const std::string& name, std::ch
   if (!file) {
     Error error = file.error();
     error.where = name;
-    tablet.complaint = error.line();
+    tablet.complaint = is_of_another_kind(path) ? std::string(kNoWedgesJson) : error.line();
     return tablet;
   }
   for (const Wedge& wedge : file->wedges) {
@@ -180,8 +198,7 @@ Result<Collection> Collection::open(const fs::path& folder, std::chrono::millise
   collection.read_anew_ = to_read.size();
   collection.index_ = std::move(kept);
   collection.index_.tablets = std::move(tablets);
-  // A session keeps a checksum of every file in it: the index would be a foreign one.
-  if (collection.plant(changed) && !SessionStore::is_session(folder)) {
+  if (collection.plant(changed) && !checked_folder_around(folder)) {
     const Status written = write_file_atomically(index_path, search_index_to_bytes(collection.index_));
     if (!written) {
       collection.remark_ = "the search index is not kept: " + written.error().line();

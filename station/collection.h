@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "analysis/feature_search.h"
@@ -27,6 +28,9 @@ struct SimilarTablet {
   double distance = 0;  ///< mean shift between the feature distributions, in scatters of one hand
 };
 
+/// What IndexedTablet::complaint says of a .json that never was a wedges.json: no more than that.
+inline constexpr std::string_view kNoWedgesJson = "no wedges.json";
+
 /// A wedges.json as it is compared: lengths to where the edges meet the surface, whichever definition was
 /// chosen for it. Else the choice would tell two hands apart.
 [[nodiscard]] Result<WedgeFile> read_compared_wedges(const std::filesystem::path& path);
@@ -36,7 +40,8 @@ struct SimilarTablet {
 class Collection {
  public:
   /// Takes in every .json file at or below the folder, but truth.json, and keeps the index; an index that is
-  /// damaged, foreign or cannot be written costs time alone and is told in `remark`. Errors: kBadInput when
+  /// damaged, foreign or cannot be written costs time alone and is told in `remark`; in a session or package
+  /// none is kept. Errors: kBadInput when
   /// there is no such folder or nothing analysed in it.
   /// A file that changed less than `settled` before it is read may change once more without its times
   /// telling, for some file systems count whole seconds: it is read again next time.

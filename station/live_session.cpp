@@ -293,7 +293,7 @@ void LiveSession::pack(const std::filesystem::path& to) {
       state_.package.clear();
     }
     changed();
-    const Status outside = check_outside_sessions(to);
+    const Status outside = check_place_of_package(to);
     const Result<Packing> packing =
         outside ? pack_session({.session = options_.session, .to = to, .package = {}, .update = true}, *job_)
                 : std::unexpected(outside.error());

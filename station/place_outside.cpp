@@ -6,6 +6,7 @@
 #include <string>
 
 #include "acquisition/session_store.h"
+#include "formats/bag_check.h"
 
 namespace dubsar {
 
@@ -13,10 +14,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The session that a path lies in or is.
-std::optional<fs::path> session_around(const fs::path& path) {
+/// Of a resolved path.
+std::optional<fs::path> around(const fs::path& path) {
   for (fs::path at = path; !at.empty(); at = at.parent_path()) {
-    if (SessionStore::is_session(at)) {
+    if (SessionStore::is_session(at) || is_bag(at)) {
       return at;
     }
     if (at == at.parent_path()) {
@@ -24,6 +25,19 @@ std::optional<fs::path> session_around(const fs::path& path) {
     }
   }
   return std::nullopt;
+}
+
+Status refuse_within(const std::optional<fs::path>& folder, const fs::path& output) {
+  if (!folder) {
+    return {};
+  }
+  const fs::path resolved = resolved_place(output);
+  const std::string kind = SessionStore::is_session(*folder) ? "session" : "package";
+  const std::string own = *folder == resolved ? "results" : resolved.filename().string();
+  const fs::path beside = folder->parent_path() / (folder->filename().string() + "-" + own);
+  return fail(ErrorKind::kUsage,
+              "a " + kind + " keeps a checksum of every file in it; nothing else is written there",
+              output.string(), "write it beside the " + kind + ": " + beside.string());
 }
 
 }  // namespace
@@ -39,17 +53,18 @@ fs::path resolved_place(const fs::path& path) {
   return resolved.has_filename() ? resolved : resolved.parent_path();
 }
 
-Status check_outside_sessions(const fs::path& output) {
-  const fs::path resolved = resolved_place(output);
-  const std::optional<fs::path> session = session_around(resolved);
-  if (!session) {
-    return {};
-  }
-  const std::string own = *session == resolved ? "results" : resolved.filename().string();
-  const fs::path beside = session->parent_path() / (session->filename().string() + "-" + own);
-  return fail(ErrorKind::kUsage,
-              "a session keeps a checksum of every file in it; nothing else is written there",
-              output.string(), "write it beside the session: " + beside.string());
+std::optional<fs::path> checked_folder_around(const fs::path& path) {
+  return around(resolved_place(path));
+}
+
+Status check_outside_checked_folders(const fs::path& output) {
+  return refuse_within(checked_folder_around(output), output);
+}
+
+Status check_place_of_package(const fs::path& package) {
+  const fs::path resolved = resolved_place(package);
+  return refuse_within(SessionStore::is_session(resolved) ? resolved : around(resolved.parent_path()),
+                       package);
 }
 
 }  // namespace dubsar

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 
 #include "core/result.h"
 
@@ -11,8 +12,13 @@ namespace dubsar {
 /// Where a path leads, whether it is there yet or not: absolute, links followed, no slash at the end.
 [[nodiscard]] std::filesystem::path resolved_place(const std::filesystem::path& path);
 
-/// kUsage, with a better place, for a file or folder that would lie in a session or be one: every byte of a
-/// session has its checksum, and a result beside them would look like something foreign. Links are followed.
-[[nodiscard]] Status check_outside_sessions(const std::filesystem::path& output);
+/// The session or package that a path lies in or is: every byte of it has its checksum, and whatever else is
+/// laid there makes it fail its verification. Links are followed.
+[[nodiscard]] std::optional<std::filesystem::path> checked_folder_around(const std::filesystem::path& path);
+
+/// kUsage, with a better place, for a file or folder that would lie in a session or package or be one.
+[[nodiscard]] Status check_outside_checked_folders(const std::filesystem::path& output);
+/// The same for a package, which may take the place of an earlier one.
+[[nodiscard]] Status check_place_of_package(const std::filesystem::path& package);
 
 }  // namespace dubsar

@@ -8,9 +8,9 @@
 #include <string_view>
 
 #include "station/command/command.h"
-#include "station/command/outputs.h"
 #include "station/command/terminal.h"
 #include "station/packing.h"
+#include "station/place_outside.h"
 
 namespace dubsar {
 
@@ -50,6 +50,9 @@ int tell_done(const ExportArguments& arguments, const CommandContext& context) {
 }
 
 Result<int> export_session(const ExportArguments& arguments, CommandContext& context) {
+  if (const Status place = check_place_of_package(arguments.to); !place) {
+    return std::unexpected(place.error());
+  }
   PackRequest request{arguments.session, arguments.to, {}, arguments.update};
   request.package.replace = arguments.force;
   request.package.base_url = arguments.base_url;
@@ -118,8 +121,7 @@ void add_export(CLI::App& app, Action& chosen) {
       "replace a package that lies there already where it is whole and its stamp says that it is of "
       "an earlier state of this session");
   verb->callback([&chosen, arguments] {
-    chosen = with_safe_outputs({arguments->to},
-                               [arguments](CommandContext& c) { return export_session(*arguments, c); });
+    chosen = [arguments](CommandContext& c) { return export_session(*arguments, c); };
   });
 }
 

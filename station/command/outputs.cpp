@@ -47,7 +47,8 @@ Action with_safe_outputs(std::vector<std::string> outputs, Action action, std::v
   return [outputs = std::move(outputs), inputs = std::move(inputs),
           action = std::move(action)](CommandContext& context) -> Result<int> {
     for (const std::string& output : outputs) {
-      if (const Status outside = output.empty() ? Status() : check_outside_sessions(output); !outside) {
+      if (const Status outside = output.empty() ? Status() : check_outside_checked_folders(output);
+          !outside) {
         return std::unexpected(outside.error());
       }
     }

@@ -10,9 +10,8 @@
 namespace dubsar {
 
 /// The action of a verb that writes these files or folders: kUsage, before it begins, where one of them lies
-/// in a session or is one. Every byte of a session has its checksum: a result written over one of its files
-/// would look like damage, one laid beside them like something foreign. Empty paths are passed over; links
-/// are followed. So, too, where one of them is what the verb reads (`inputs`), or two are the same place.
+/// in a session or package or is one (place_outside.h). Empty paths are passed over; links are followed. So,
+/// too, where one of them is what the verb reads (`inputs`), or two are the same place.
 [[nodiscard]] Action with_safe_outputs(std::vector<std::string> outputs, Action action,
                                        std::vector<std::string> inputs = {});
 

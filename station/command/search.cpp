@@ -2,6 +2,8 @@
 // Copyright The Dubsar developers
 // dubsar search: similar wedges and similar tablets over a collection of analysed ones.
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstdio>
 #include <memory>
@@ -33,10 +35,16 @@ Result<int> search(const SearchArguments& arguments, CommandContext& context) {
   if (!collection->remark().empty()) {
     log_warning(collection->remark());
   }
+  std::size_t of_another_kind = 0;
   for (const IndexedTablet& file : collection->files()) {
-    if (!file.complaint.empty()) {
+    if (file.complaint == kNoWedgesJson) {
+      ++of_another_kind;
+    } else if (!file.complaint.empty()) {
       log_warning("left out: " + file.complaint);
     }
+  }
+  if (of_another_kind > 0) {
+    log_debug(fmt::format("{} .json files hold no wedges: passed over", of_another_kind));
   }
   nlohmann::ordered_json json{{"collection", arguments.folder},
                               {"files", collection->files().size()},

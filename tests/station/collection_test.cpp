@@ -148,25 +148,40 @@ TEST_F(CollectionTest, AnIndexThatCannotBeKeptCostsTimeAlone) {
   }
 }
 
-TEST_F(CollectionTest, ASessionIsLeftWithoutAnIndex) {
-  std::ofstream(at("session.sqlite")) << "what makes a folder a session";
-  for (int turn = 0; turn < 2; ++turn) {
-    const auto collection = open();
-    ASSERT_TRUE(collection);
-    EXPECT_EQ(collection->remark(), "");
-    EXPECT_EQ(collection->similar_tablets(tablet_of(0.53, 2.06, 12), 1).size(), 1U);
-    EXPECT_FALSE(fs::exists(at(std::string(kSearchIndexName))));
+TEST_F(CollectionTest, ASessionOrPackageIsLeftWithoutAnIndexWhereverInItOneLooks) {
+  for (const char* made_by : {"session.sqlite", "bagit.txt"}) {
+    std::ofstream(at(made_by)) << "what makes a folder one";
+    for (const fs::path& folder : {at(""), at("x"), folder_.path()}) {
+      const auto collection = Collection::open(folder, kSettled);
+      ASSERT_TRUE(collection);
+      EXPECT_EQ(collection->remark(), "");
+      EXPECT_EQ(collection->similar_tablets(tablet_of(0.53, 2.06, 12), 1).size(), 1U);
+      EXPECT_FALSE(fs::exists(folder / kSearchIndexName)) << folder;
+    }
+    fs::remove(at(made_by));
   }
 }
 
-TEST_F(CollectionTest, WhatIsNoWedgesJsonIsToldEveryTime) {
-  std::ofstream(at("note.json")) << "{}";
+TEST_F(CollectionTest, WhatNeverWasAWedgesJsonIsToldApartFromADamagedOne) {
+  const std::vector<std::pair<const char*, const char*>> others{
+      {"list.json", "[1, 2]"}, {"note.json", "{}"}, {"run.json", R"({"wedges": "41"})"}};
+  for (const auto& [name, text] : others) {
+    std::ofstream(at(name)) << text;
+  }
+  std::ofstream(at("cut.json")) << R"({"unit": "mm", "wed)";
+  std::ofstream(at("odd.json")) << R"({"unit": "mm", "wedges": [{"id": 3}]})";
   settle();
   for (int turn = 0; turn < 2; ++turn) {
     const auto collection = open();
     ASSERT_TRUE(collection);
-    EXPECT_EQ(collection->read_anew(), turn == 0 ? 4U : 0U);
-    EXPECT_THAT(collection->files()[2].complaint, HasSubstr("note.json"));
+    EXPECT_EQ(collection->read_anew(), turn == 0 ? 8U : 0U);
+    for (const IndexedTablet& file : collection->files()) {
+      const bool other = std::ranges::any_of(others, [&](const auto& o) { return o.first == file.name; });
+      EXPECT_EQ(file.complaint == kNoWedgesJson, other) << file.name << ": " << file.complaint;
+      if (file.name == "cut.json" || file.name == "odd.json") {
+        EXPECT_THAT(file.complaint, HasSubstr(file.name));
+      }
+    }
   }
 }
 

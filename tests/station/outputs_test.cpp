@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright The Dubsar developers
-// No verb writes its result into a session, where every file has its checksum.
+// No verb writes its result into a session or package, where every file has its checksum.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <fstream>
 #include <map>
 
 #include "build_paths.h"
@@ -81,6 +82,21 @@ TEST_F(Outputs, NoPackageGoesIntoASessionUnderAnyName) {
   expect_refused({"export", session(), "--to", in_session("grids/../package")});
   fs::create_directory_symlink(session() / "mesh", beside("shortcut"));
   expect_refused({"export", session(), "--to", beside("shortcut") / "package"});
+}
+
+TEST_F(Outputs, OfNoVerbGoIntoAPackage) {
+  const fs::path bag = beside("bag");
+  fs::create_directories(bag / "data" / "model");
+  std::ofstream(bag / "bagit.txt") << "BagIt-Version: 1.0\n";
+  for (const Arguments& arguments : {Arguments{"mesh", "convert", mesh(), bag / "data" / "model" / "m.stl"},
+                                     {"simulate", "tablet", "--size", "8x8x4", "--spacing", "1", "-o", bag},
+                                     {"export", session(), "--to", bag / "data" / "inner"}}) {
+    const Outcome outcome = run_command(arguments);
+    EXPECT_EQ(outcome.status, 2) << arguments.front() << ": " << outcome.err;
+    EXPECT_THAT(outcome.complaints(), SizeIs(1)) << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr("beside the package: " + beside("bag-").string()));
+  }
+  EXPECT_TRUE(fs::is_empty(bag / "data" / "model"));
 }
 
 TEST_F(Outputs, OfABareNameGoIntoNoSessionThatOneStandsIn) {
