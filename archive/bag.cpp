@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "core/parallel.h"
+#include "core/utf8.h"
 #include "formats/atomic_file.h"
 #include "formats/sha2.h"
 
@@ -71,12 +72,6 @@ Result<std::string> manifest_of(const fs::path& root, const std::vector<Listed>&
     }
     text += **sums[i] + "  " + bag_path(files[i].name) + "\n";
   }
-  return text;
-}
-
-std::string one_line(std::string text) {
-  std::ranges::replace_if(
-      text, [](char c) { return static_cast<unsigned char>(c) < ' '; }, ' ');
   return text;
 }
 

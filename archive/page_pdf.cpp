@@ -288,6 +288,25 @@ class Setter {
   double y_ = PdfSheet::kHeight - kMargin;
 };
 
+void spell(const PdfSheet& sheet, RichText& text) {
+  for (TextRun& run : text) {
+    run.text = sheet.spelt(run.text);
+  }
+}
+
+void spell(const PdfSheet& sheet, PageBlock& block) {
+  spell(sheet, block.text);
+  block.mark = sheet.spelt(block.mark);
+  for (auto& row : block.rows) {
+    for (RichText& cell : row) {
+      spell(sheet, cell);
+    }
+  }
+  for (PageFigure& figure : block.figures) {
+    spell(sheet, figure.caption);
+  }
+}
+
 }  // namespace
 
 Result<std::vector<std::uint8_t>> page_pdf(std::string_view html, const PdfInfo& info) {
@@ -295,8 +314,11 @@ Result<std::vector<std::uint8_t>> page_pdf(std::string_view html, const PdfInfo&
   if (!sheet) {
     return std::unexpected(sheet.error());
   }
-  Setter setter(*sheet, info.title + ", " + info.when);
-  const std::vector<PageBlock> blocks = page_blocks(html);
+  Setter setter(*sheet, sheet->spelt(info.title + ", " + info.when));
+  std::vector<PageBlock> blocks = page_blocks(html);
+  for (PageBlock& block : blocks) {
+    spell(*sheet, block);
+  }
   for (std::size_t k = 0; k < blocks.size(); ++k) {
     setter.set(blocks[k], k + 1 < blocks.size() ? &blocks[k + 1] : nullptr);
   }

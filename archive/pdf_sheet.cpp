@@ -6,6 +6,7 @@
 
 #include <cairo-ft.h>
 #include <cairo-pdf.h>
+#include <fmt/format.h>
 #include <ft2build.h>
 #include FT_FREETYPE_H
 
@@ -18,6 +19,7 @@
 #include <vector>
 
 #include "archive/pdf_a.h"
+#include "core/utf8.h"
 
 namespace dubsar {
 
@@ -37,9 +39,10 @@ FontLibrary& fonts() {
   return *kFonts;
 }
 
+const cairo_user_data_key_t kFaceOfFont{};
+
 /// Null when the file is no font.
 cairo_font_face_t* open_font(const char* file) {
-  static const cairo_user_data_key_t kKey{};
   FT_Face face = nullptr;
   {
     const std::scoped_lock lock(fonts().mutex);
@@ -48,7 +51,7 @@ cairo_font_face_t* open_font(const char* file) {
     }
   }
   cairo_font_face_t* font = cairo_ft_font_face_create_for_ft_face(face, FT_LOAD_NO_HINTING);
-  cairo_font_face_set_user_data(font, &kKey, face, [](void* owned) {
+  cairo_font_face_set_user_data(font, &kFaceOfFont, face, [](void* owned) {
     const std::scoped_lock lock(fonts().mutex);
     FT_Done_Face(static_cast<FT_Face>(owned));
   });
@@ -119,11 +122,19 @@ struct PdfSheet::Impl {
 
   /// False once anything has failed: cairo goes on, doing nothing.
   [[nodiscard]] bool good() const { return cairo_status(page) == CAIRO_STATUS_SUCCESS; }
+  [[nodiscard]] bool has(std::uint32_t code_point) const;  ///< in both fonts
   void use(PdfFont which, double size) const {
     cairo_set_font_face(page, font[static_cast<std::size_t>(which)]);
     cairo_set_font_size(page, size);
   }
 };
+
+bool PdfSheet::Impl::has(std::uint32_t code_point) const {
+  return std::ranges::all_of(font, [&](cairo_font_face_t* face) {
+    auto* const in_it = static_cast<FT_Face>(cairo_font_face_get_user_data(face, &kFaceOfFont));
+    return FT_Get_Char_Index(in_it, code_point) != 0;
+  });
+}
 
 PdfSheet::PdfSheet(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 PdfSheet::PdfSheet(PdfSheet&&) noexcept = default;
@@ -155,6 +166,18 @@ void PdfSheet::new_page() {
 
 int PdfSheet::pages() const {
   return impl_->pages;
+}
+
+std::string PdfSheet::spelt(std::string_view text) const {
+  const std::string whole = as_utf8(text);
+  std::string out;
+  for (std::string_view rest = whole; !rest.empty();) {
+    const CodePoint c = first_code_point(rest);
+    const bool shown = is_control(c.value) || impl_->has(c.value);
+    out += shown ? std::string(rest.substr(0, c.bytes)) : fmt::format("[U+{:04X}]", c.value);
+    rest.remove_prefix(c.bytes);
+  }
+  return out;
 }
 
 double PdfSheet::text_width(std::string_view text, PdfFont font, double size) {

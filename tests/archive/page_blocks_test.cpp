@@ -173,6 +173,17 @@ TEST(PagePdf, OneLongWordIsBrokenBetweenCharacters) {
   EXPECT_TRUE(page_pdf("<p>" + word_of(100000) + "</p>", info));
 }
 
+TEST(PagePdf, WhatTheFontLacksIsSpeltOut) {
+  const PdfInfo info{"\xF0\x92\x80\x80 \xFF", "Dubsar", "2026-01-02T03:04:05Z"};
+  const auto pdf =
+      page_pdf("<h1>\xF0\x92\x80\xAD an</h1><p>\xE5\xBA\xAB, ḫ <b>š\xF0\x92\x88\xA8</b></p>", info);
+  ASSERT_TRUE(pdf) << pdf.error().line();
+  const std::string read = read_page(*pdf, 1);
+  EXPECT_TRUE(read.find("[U+1202D] an") != std::string::npos) << read;
+  EXPECT_TRUE(read.find("[U+5EAB], ḫ š[U+12228]") != std::string::npos) << read;
+  EXPECT_TRUE(read.find("[U+12000] \xEF\xBF\xBD, 2026") != std::string::npos) << read << "at the foot";
+}
+
 TEST(PagePdf, AHeadingStandsOnThePageOfItsPicture) {
   Image image = filled_image(600, 700, {200, 200, 200});
   image.mm_per_px = 0.1;
