@@ -252,6 +252,12 @@ Status mark_scan(SqlDatabase& db, int id, bool dropped, std::string_view why, co
     if (*there == 0) {
       return fail(ErrorKind::kUsage, "no scan " + std::to_string(id), folder.string());
     }
+    // What is so already stays as it is: the reason that it was dropped for, above all.
+    const Result<std::int64_t> stood =
+        db.integer_of(("SELECT dropped FROM scans WHERE id = " + std::to_string(id)).c_str());
+    if (!stood || (*stood != 0) == dropped) {
+      return stood ? Status() : std::unexpected(stood.error());
+    }
     Result<SqlStatement> mark = db.prepare(
         "UPDATE scans SET dropped = ?2, note = ?3, sum = dubsar_sum(id,file,bytes,hash,rows,cols,samples,"
         "spacing_mm,timestamp_ns,device,source,?2,?3) WHERE id = ?1");

@@ -107,7 +107,8 @@ class SessionStore {
   /// The grid of a scan, dropped or not; its bytes are checked against their checksum.
   [[nodiscard]] Result<RangeGrid> load_grid(int id) const;
   [[nodiscard]] Result<std::vector<StoredScan>> scans() const;  ///< by id, dropped ones included
-  /// Marks a scan as taken out, with the operator's reason. Nothing is deleted.
+  /// Marks a scan as taken out, with the operator's reason. Nothing is deleted. One that is out already keeps
+  /// the reason that it has.
   Status drop_scan(int id, std::string_view why = {});
   Status restore_scan(int id);
   /// Drops the newest scan that stands and returns its id; nothing when there is none.

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <map>
 #include <sstream>
+#include <utility>
 
+#include "core/utf8.h"
 #include "formats/number_text.h"
 #include "formats/red_map_json.h"
 #include "formats/sha2.h"
@@ -129,6 +131,13 @@ Result<std::string> session_manifest(const SessionStore& store, const JobContext
 Result<SignOff> sign_session(SessionStore& store, SignOff sign_off, const JobContext& job) {
   if (sign_off.name.find_first_not_of(" \t\r\n") == std::string::npos) {
     return fail(ErrorKind::kUsage, "a sign-off needs a name", "--name", "give yours");
+  }
+  for (const auto& [option, text] : {std::pair{"--name", &sign_off.name}, std::pair{"--role", &sign_off.role},
+                                     std::pair{"--incomplete", &sign_off.incomplete}}) {
+    if (!is_one_line(*text)) {
+      return fail(ErrorKind::kUsage, "it has control characters, such as a line break", option,
+                  "say it in one line");
+    }
   }
   const Result<SignOffLog> earlier = read_sign_offs(store, job);
   if (!earlier) {

@@ -6,12 +6,14 @@
 #include <string>
 #include <system_error>
 
+#include "station/session_name.h"
+
 namespace dubsar {
 
 namespace fs = std::filesystem;
 
 fs::path next_session_name(const fs::path& session) {
-  const fs::path folder = session.has_filename() ? session : session.parent_path();
+  const fs::path folder = whole_name(session);
   std::string stem = folder.filename().string();
   int number = 1;
   if (const auto dash = stem.rfind('-'); dash != std::string::npos && dash > 0) {

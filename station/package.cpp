@@ -9,6 +9,7 @@
 #include "archive/staged_folder.h"
 #include "core/log.h"
 #include "station/package_content.h"
+#include "station/session_name.h"
 #include "station/session_wedges.h"
 
 namespace dubsar {
@@ -85,7 +86,7 @@ std::vector<BagField> bag_fields(const PackageContent& content) {
   return {{"Source-Organization", content.tablet.collection},
           {"External-Identifier", content.tablet.cdli},
           {"External-Identifier", content.tablet.museum_number},
-          {"Internal-Sender-Identifier", content.store.folder().lexically_normal().filename().string()},
+          {"Internal-Sender-Identifier", session_name(content.store.folder())},
           {"Contact-Name", content.tablet.operator_name},
           {"External-Description", description},
           {"Bagging-Date", content.when.substr(0, 10)},

@@ -13,6 +13,7 @@
 #include "formats/json_node.h"
 #include "station/done_stamp.h"
 #include "station/earlier_package.h"
+#include "station/session_name.h"
 
 namespace dubsar {
 
@@ -53,15 +54,9 @@ std::string parameters_of(const PackageOptions& options) {
   return json.dump();
 }
 
-/// The folder to make, whole and without a slash at its end: its stamp lies beside it.
-fs::path target_of(const PackRequest& request) {
-  const fs::path target = fs::absolute(request.to).lexically_normal();
-  return target.has_filename() ? target : target.parent_path();
-}
-
 /// A package that is made again from the same session is found done (docs/collections.md).
 Result<StampedWork> begin_work(const PackRequest& request, const JobContext& job) {
-  const fs::path target = target_of(request);
+  const fs::path target = whole_name(request.to);
   const auto passes_over = [&](const fs::path& file) {
     const std::string name = file.filename().string();
     const fs::path normal = fs::absolute(file).lexically_normal();
@@ -116,7 +111,7 @@ Result<Packing> pack_session(const PackRequest& request, JobContext& job) {
         return std::unexpected(started.error());
       }
     } else if (request.update && !options.replace) {
-      const Result<bool> earlier = is_earlier_package(target_of(request), *work, job);
+      const Result<bool> earlier = is_earlier_package(whole_name(request.to), *work, job);
       if (!earlier) {
         return std::unexpected(earlier.error());
       }
@@ -132,7 +127,7 @@ Result<Packing> pack_session(const PackRequest& request, JobContext& job) {
         return std::unexpected(outputs.error());
       }
       stamped = true;
-      return work->finish_staged(*outputs, staged, target_of(request), job);
+      return work->finish_staged(*outputs, staged, whole_name(request.to), job);
     };
   }
   Result<Package> package = write_package(request.session, request.to, options, job);
@@ -146,8 +141,7 @@ Result<Packing> pack_session(const PackRequest& request, JobContext& job) {
 }
 
 fs::path usual_package_of(const fs::path& session) {
-  const fs::path folder = session.has_filename() ? session : session.parent_path();
-  return fs::path(folder.string() + ".results") / "package";
+  return fs::path(whole_name(session).string() + ".results") / "package";
 }
 
 }  // namespace dubsar

@@ -18,6 +18,7 @@
 #include "formats/sha2.h"
 #include "planning/checklist.h"
 #include "station/range_camera_record.h"
+#include "station/session_name.h"
 #include "station/tablet_record.h"
 
 namespace dubsar {
@@ -187,10 +188,7 @@ Status keep_page_facts(SessionStore& store, const PageFacts& facts) {
 
 PageFacts page_facts_of(const SessionStore& store) {
   PageFacts facts;
-  facts.title = store.folder().lexically_normal().filename().string();
-  if (facts.title.empty()) {  // a trailing slash
-    facts.title = store.folder().lexically_normal().parent_path().filename().string();
-  }
+  facts.title = session_name(store.folder());
   const TabletRecord tablet = tablet_record_of(store);
   if (!tablet.museum_number.empty()) {
     facts.title = tablet.museum_number;

@@ -11,6 +11,7 @@
 #include "formats/json_text.h"
 #include "formats/sha2.h"
 #include "station/analysis.h"
+#include "station/session_name.h"
 
 namespace dubsar {
 
@@ -91,8 +92,8 @@ Result<std::optional<SessionWedges>> keep_wedges(SessionStore& store, const Mesh
   }
   std::vector<fs::path> made{out.json};
   if (file.text_from_model) {
-    const auto drawings = write_wedge_drawings(folder, file.wedges, *file.text_from_model,
-                                               store.folder().filename().string(), &mesh);
+    const auto drawings =
+        write_wedge_drawings(folder, file.wedges, *file.text_from_model, session_name(store.folder()), &mesh);
     if (!drawings) {
       return std::unexpected(drawings.error());
     }

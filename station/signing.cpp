@@ -82,6 +82,10 @@ Result<Signing> sign_verdict(const std::filesystem::path& session, SignOff wante
   if (out.refused = falls_short(*set, results, session.string()); out.refused && wanted.incomplete.empty()) {
     return out;
   }
+  if (!out.refused && !wanted.incomplete.empty()) {
+    return fail(ErrorKind::kUsage, "it is conclusive and whole: there is nothing that it falls short of",
+                session.string(), "sign it without --incomplete; --note takes a remark");
+  }
   out.refused.reset();
   SessionStore& store = *set->store;
   if (const Status kept = keep_verdict(store, results.red_map, results.checklist); !kept) {

@@ -3,6 +3,7 @@
 // dubsar session list | undo | drop | restore: what the operator does to a scan (hint, lock and unlock:
 // session_hint.cpp; mesh: session_mesh.cpp).
 
+#include <algorithm>
 #include <cstdio>
 #include <memory>
 
@@ -10,7 +11,9 @@
 #include "acquisition/session_store.h"
 #include "acquisition/sign_off_log.h"
 #include "core/log.h"
+#include "core/utf8.h"
 #include "formats/sign_off_json.h"
+#include "station/command/option_checks.h"
 #include "station/command/session_verbs.h"
 #include "station/command/sign_off_words.h"
 #include "station/tablet_record.h"
@@ -91,7 +94,8 @@ Result<int> list(const SessionOptions& options, CommandContext& context) {
     }
     std::printf("%3d  %-10s %9ld samples  %s%s%s\n", row["id"].get<int>(),
                 row["status"].get<std::string>().c_str(), row["samples"].get<long>(),
-                row["file"].get<std::string>().c_str(), more.empty() ? "" : ": ", more.c_str());
+                one_line(row["file"].get<std::string>()).c_str(), more.empty() ? "" : ": ",
+                one_line(more).c_str());
   }
   for (const CheckedSignOff& one : signed_off->sign_offs) {
     std::printf("%s\n", sign_off_line(one).c_str());
@@ -99,40 +103,96 @@ Result<int> list(const SessionOptions& options, CommandContext& context) {
   return 0;
 }
 
+/// What came of it for the scan.
+struct Change {
+  int id = -1;
+  std::string is;  ///< what the scan is now
+  bool made = true;
+};
+
 /// Undo, drop and restore mark scans; the poses and the mesh follow with the next register and stitch.
-/// `what`: what the scan is then.
-template <class Change>
-Result<int> change(const SessionOptions& options, CommandContext& context, const char* what,
-                   const Change& apply) {
+template <class Apply>
+Result<int> change(const SessionOptions& options, CommandContext& context, const Apply& apply) {
   Result<SessionStore> store = SessionStore::open(options.path);
   if (!store) {
     return std::unexpected(store.error());
   }
-  const Result<int> id = apply(*store);
-  if (!id) {
-    return std::unexpected(id.error());
+  const Result<Change> change = apply(*store);
+  if (!change) {
+    return std::unexpected(change.error());
   }
   if (context.json) {
-    CommandContext::print({{"session", options.path}, {"scan", *id}});
+    CommandContext::print({{"session", options.path}, {"scan", change->id}, {"changed", change->made}});
   } else {
-    std::printf("scan %d is %s; run register and stitch on the session to follow\n", *id, what);
+    std::printf("scan %d %s%s\n", change->id, change->is.c_str(),
+                change->made ? "; run register and stitch on the session to follow" : "; nothing changed");
   }
   return 0;
 }
 
-/// Says what tablet it is; what is not given stays as it was.
-Result<int> describe(const std::string& path, const TabletRecord& given, CommandContext& context) {
+/// As the session has it now.
+Result<StoredScan> stored_scan(const SessionStore& store, int id) {
+  Result<std::vector<StoredScan>> scans = store.scans();
+  if (!scans) {
+    return std::unexpected(scans.error());
+  }
+  const auto scan = std::ranges::find(*scans, id, &StoredScan::id);
+  if (scan == scans->end()) {
+    return fail(ErrorKind::kUsage, "there is no scan " + std::to_string(id), store.folder().string(),
+                "dubsar session list shows the scans");
+  }
+  return std::move(*scan);
+}
+
+/// The first reason stands: it is what the pages and the record say.
+Result<Change> drop(SessionStore& store, int id, const std::string& why) {
+  const Result<StoredScan> before = stored_scan(store, id);
+  if (!before) {
+    return std::unexpected(before.error());
+  }
+  if (before->dropped) {
+    const std::string reason = before->note.empty() ? "" : ": " + one_line(before->note);
+    if (!why.empty() && why != before->note) {
+      return fail(ErrorKind::kUsage, "scan " + std::to_string(id) + " was taken out before" + reason,
+                  store.folder().string(), "to give another reason, restore it first");
+    }
+    return Change{id, "was taken out before" + reason, false};
+  }
+  const Status done = store.drop_scan(id, why);
+  return done ? Result<Change>(Change{id, "is taken out"}) : std::unexpected(done.error());
+}
+
+Result<Change> restore(SessionStore& store, int id) {
+  const Result<StoredScan> before = stored_scan(store, id);
+  if (!before) {
+    return std::unexpected(before.error());
+  }
+  if (!before->dropped) {
+    return Change{id, "was not taken out", false};
+  }
+  const Status done = store.restore_scan(id);
+  return done ? Result<Change>(Change{id, "is back in its place"}) : std::unexpected(done.error());
+}
+
+/// A field of the tablet's record, and what was said of it on the command line.
+struct DescribedField {
+  const char* option;
+  const char* help;
+  std::string TabletRecord::*field;
+  std::string given{};
+};
+
+/// Says what tablet it is; what is not given stays as it was, and an empty text takes it away.
+Result<int> describe(const std::string& path, const std::vector<DescribedField>& given,
+                     CommandContext& context) {
   Result<SessionStore> store = SessionStore::open(path);
   if (!store) {
     return std::unexpected(store.error());
   }
   TabletRecord record = tablet_record_of(*store);
-  const auto take = [](const std::string& from, std::string& into) { into = from.empty() ? into : from; };
-  take(given.museum_number, record.museum_number);
-  take(given.cdli, record.cdli);
-  take(given.collection, record.collection);
-  take(given.operator_name, record.operator_name);
-  take(given.notes, record.notes);
+  for (const DescribedField& one : given) {
+    record.*one.field = one.given;
+  }
   if (const Status kept = keep_tablet_record(*store, record); !kept) {
     return std::unexpected(kept.error());
   }
@@ -140,28 +200,36 @@ Result<int> describe(const std::string& path, const TabletRecord& given, Command
     CommandContext::print(
         {{"session", path}, {"tablet", nlohmann::ordered_json::parse(tablet_record_to_json(record))}});
   } else {
-    std::printf("%s %s %s\n", record.museum_number.c_str(), record.cdli.c_str(), record.collection.c_str());
+    std::printf("%s\n", one_line(record.museum_number + " " + record.cdli + " " + record.collection).c_str());
   }
   return 0;
 }
 
 void add_describe(CLI::App& session, Action& chosen) {
-  CLI::App* verb = session.add_subcommand("describe", "Say what tablet it is");
+  CLI::App* verb = session.add_subcommand("describe", "Say what tablet it is; an empty text takes it away");
   const auto path = std::make_shared<std::string>();
-  const auto given = std::make_shared<TabletRecord>();
+  const auto fields = std::make_shared<std::vector<DescribedField>>(
+      std::vector<DescribedField>{{"--museum-number", "heads the report", &TabletRecord::museum_number},
+                                  {"--cdli", "P and six digits", &TabletRecord::cdli},
+                                  {"--collection", "that it belongs to", &TabletRecord::collection},
+                                  {"--operator", "who scanned it", &TabletRecord::operator_name},
+                                  {"--notes", "anything else", &TabletRecord::notes}});
   verb->add_option("session", *path)->required();
-  verb->add_option("--museum-number", given->museum_number, "heads the report");
-  verb->add_option("--cdli", given->cdli, "P and six digits");
-  verb->add_option("--collection", given->collection, "that it belongs to");
-  verb->add_option("--operator", given->operator_name, "who scanned it");
-  verb->add_option("--notes", given->notes, "anything else");
+  for (DescribedField& one : *fields) {
+    CLI::Option* option = verb->add_option(one.option, one.given, one.help);
+    option->type_name(kMayBeEmpty);
+    if (one.field != &TabletRecord::notes) {
+      option->check(single_line());
+    }
+  }
   verb->fallthrough();
-  verb->callback([&chosen, path, given] {
-    chosen = [path, given](CommandContext& c) { return describe(*path, *given, c); };
+  verb->callback([&chosen, path, fields, verb] {
+    std::erase_if(*fields, [verb](const DescribedField& one) { return verb->count(one.option) == 0; });
+    chosen = [path, fields](CommandContext& c) { return describe(*path, *fields, c); };
   });
 }
 
-Result<int> undo(SessionStore& store) {
+Result<Change> undo(SessionStore& store) {
   const auto dropped = store.undo_last_scan();
   if (!dropped) {
     return std::unexpected(dropped.error());
@@ -169,7 +237,7 @@ Result<int> undo(SessionStore& store) {
   if (!*dropped) {
     return fail(ErrorKind::kUsage, "there is no scan to undo", store.folder().string());
   }
-  return **dropped;
+  return Change{**dropped, "is taken out"};
 }
 
 }  // namespace
@@ -193,23 +261,20 @@ void add_session(CLI::App& app, Action& chosen) {
   };
   add("list", "The scans and their states", false, list);
   add("undo", "Take the newest scan out", false, [](const SessionOptions& o, CommandContext& c) {
-    return change(o, c, "taken out", [](SessionStore& store) { return undo(store); });
+    return change(o, c, [](SessionStore& store) { return undo(store); });
   });
-  add("drop", "Take a scan out; nothing is deleted", true, [](const SessionOptions& o, CommandContext& c) {
-    return change(o, c, "taken out", [&o](SessionStore& store) -> Result<int> {
-      const Status done = store.drop_scan(o.id, o.why);
-      return done ? Result<int>(o.id) : std::unexpected(done.error());
-    });
-  })->add_option("--why", options->why, "the reason");
+  add("drop", "Take a scan out; nothing is deleted", true,
+      [](const SessionOptions& o, CommandContext& c) {
+        return change(o, c, [&o](SessionStore& store) { return drop(store, o.id, o.why); });
+      })
+      ->add_option("--why", options->why, "the reason")
+      ->check(single_line());
   add_describe(*verb, chosen);
   add_session_hints(*verb, chosen);
   add_session_mesh(*verb, chosen);
   add_session_sign(*verb, chosen);
   add("restore", "Put a dropped scan back", true, [](const SessionOptions& o, CommandContext& c) {
-    return change(o, c, "back in its place", [&o](SessionStore& store) -> Result<int> {
-      const Status done = store.restore_scan(o.id);
-      return done ? Result<int>(o.id) : std::unexpected(done.error());
-    });
+    return change(o, c, [&o](SessionStore& store) { return restore(store, o.id); });
   });
 }
 

@@ -7,6 +7,7 @@
 
 #include "core/log.h"
 #include "formats/sign_off_json.h"
+#include "station/command/option_checks.h"
 #include "station/command/session_verbs.h"
 #include "station/command/sign_off_words.h"
 #include "station/signing.h"
@@ -76,11 +77,12 @@ void add_session_sign(CLI::App& session, Action& chosen) {
       },
       "TEXT");
   verb->add_option("session", arguments->path)->required();
-  verb->add_option("--name", arguments->name, "who signs")->required()->check(said);
-  verb->add_option("--role", arguments->role, "as what");
+  verb->add_option("--name", arguments->name, "who signs")->required()->check(said)->check(single_line());
+  verb->add_option("--role", arguments->role, "as what")->check(single_line());
   verb->add_option("--note", arguments->note, "anything that a reader should know");
   verb->add_option("--incomplete", arguments->incomplete, "sign although it falls short, and why")
-      ->check(said);
+      ->check(said)
+      ->check(single_line());
   verb->fallthrough();
   verb->callback(
       [&chosen, arguments] { chosen = [arguments](CommandContext& c) { return sign(*arguments, c); }; });

@@ -138,9 +138,11 @@ TEST_F(SessionStoreTest, DroppingAndUndoingDeleteNothing) {
       ASSERT_TRUE(store.add_grid(small_grid(i)));
     }
     ASSERT_TRUE(store.drop_scan(1, "a thumb in the way"));
+    ASSERT_TRUE(store.drop_scan(1, "something else"));
     EXPECT_EQ(store.undo_last_scan().value(), 2);
     EXPECT_EQ(store.undo_last_scan().value(), 0);
     EXPECT_EQ(store.undo_last_scan().value(), std::nullopt);
+    ASSERT_TRUE(store.restore_scan(0));
     ASSERT_TRUE(store.restore_scan(0));
     EXPECT_EQ(store.drop_scan(8).error().kind, ErrorKind::kUsage);
   }

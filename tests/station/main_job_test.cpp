@@ -123,6 +123,10 @@ TEST_F(MainJob, TheVerdictCanBeWorkedOutFromGridsAndPosesAlone) {
 TEST_F(MainJob, ASignatureHoldsUntilTheSessionChanges) {
   fs::copy(at("first"), at("signed"), fs::copy_options::recursive);
   const std::string session = at("signed").string();
+  const Outcome idle =
+      run_command({"session", "sign", session, "--name", "A. Reader", "--incomplete", "the back is missing"});
+  EXPECT_EQ(idle.status, 2) << "nothing is incomplete";
+  EXPECT_THAT(idle.complaints(), ::testing::SizeIs(1)) << idle.err;
   const Outcome signed_off =
       run_command({"session", "sign", session, "--name", "A. Reader", "--role", "conservator", "--json"});
   ASSERT_EQ(signed_off.status, 0) << signed_off.err;

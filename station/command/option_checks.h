@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <filesystem>
+#include <string>
+
+#include "core/utf8.h"
+
+/// What the values of options are held against. Nothing here is left to CLI::Range: "nan" is neither below
+/// nor above any limit, and passes it.
+namespace dubsar {
+
+/// A finite number from `low` to `high`, both included.
+template <class T>
+[[nodiscard]] CLI::Validator in_range(T low, T high) {
+  const CLI::Range range(low, high);
+  return CLI::Validator(
+      [range](std::string& text) {
+        double value = 0;
+        const bool is_number = CLI::detail::lexical_cast(text, value) && std::isfinite(value);
+        return is_number ? range(text) : "'" + text + "' is no number";
+      },
+      range.get_description());
+}
+
+/// Text of one line: a name or a reason. Lists show many of them, and a terminal obeys control characters.
+[[nodiscard]] inline CLI::Validator single_line() {
+  return CLI::Validator(
+      [](std::string& text) {
+        return is_one_line(text) ? std::string()
+                                 : std::string("has control characters, such as a line break");
+      },
+      "TEXT");
+}
+
+/// The name of a file that is written in one form only; a device has no form.
+[[nodiscard]] inline CLI::Validator ends_as(const std::string& ending) {
+  return CLI::Validator(
+      [ending](std::string& name) {
+        std::string own = std::filesystem::path(name).extension().string();
+        std::ranges::transform(own, own.begin(), [](unsigned char c) { return std::tolower(c); });
+        return own == ending || name.starts_with("/dev/") ? std::string()
+                                                          : "'" + name + "' does not end in " + ending;
+      },
+      "FILE" + ending);
+}
+
+/// The type of an option whose empty text means something; all others refuse it (main.cpp).
+inline constexpr const char* kMayBeEmpty = "TEXT or \"\"";
+
+}  // namespace dubsar
