@@ -15,6 +15,7 @@
 #include "formats/mesh_io.h"
 #include "formats/wedges_json.h"
 #include "station/command/analyze.h"
+#include "station/command/option_checks.h"
 #include "station/command/outputs.h"
 #include "station/command/place_option.h"
 #include "station/correction_region.h"
@@ -62,14 +63,28 @@ Result<std::vector<Eigen::Vector3d>> depth_points(const std::string& wedges_json
   return places;
 }
 
-/// The correction that is asked for; its kind follows from the options.
-Result<WedgeCorrection> asked_for(const CorrectArguments& a) {
+/// Nothing that is said may pass unheard.
+Status check_asked(const CorrectArguments& a) {
   const int asked = (a.remove.empty() ? 0 : 1) + (a.merge.empty() ? 0 : 1) + (a.split >= 0 ? 1 : 0) +
-                    (a.add.empty() ? 0 : 1) + (a.add_at.empty() ? 0 : 1);
+                    (a.add.empty() ? 0 : 1) + (a.add_at.empty() ? 0 : 1) + (a.undo ? 1 : 0) +
+                    (a.list ? 1 : 0);
   if (asked != 1) {
     return fail(ErrorKind::kUsage, "say one thing at a time", "wedges correct",
                 "one of --delete, --merge, --split, --add, --add-at, --undo, --list");
   }
+  if (!a.into.empty() && a.split < 0) {
+    return fail(ErrorKind::kUsage, "only a split goes into several places", "--into",
+                "say which wedge: --split 7 --into x,y,z --into x,y,z");
+  }
+  if (a.reach_mm > 0 && a.add_at.empty()) {
+    return fail(ErrorKind::kUsage, "only a wedge that is added at a place is told its reach", "--reach",
+                "say where: --add-at x,y,z --reach 3");
+  }
+  return {};
+}
+
+/// The correction that is asked for; its kind follows from the options.
+Result<WedgeCorrection> asked_for(const CorrectArguments& a) {
   WedgeCorrection out;
   if (!a.add_at.empty()) {
     const Result<Eigen::Vector3d> place = place_of(a.add_at, "--add-at");
@@ -117,7 +132,7 @@ Result<WedgeCorrection> asked_for(const CorrectArguments& a) {
     }
     out.into_mm.push_back(*place);
   }
-  if ((out.kind == CorrectionKind::kSplit) != (out.into_mm.size() > 1)) {
+  if (out.kind == CorrectionKind::kSplit && out.into_mm.size() < 2) {
     return fail(ErrorKind::kUsage, "a split goes into two wedges or more", "--into",
                 "say a place in each: --split 7 --into x,y,z --into x,y,z");
   }
@@ -167,6 +182,9 @@ Status take_back_last(CorrectionFile& said, const CorrectArguments& arguments,
 }
 
 Result<int> correct(const CorrectArguments& arguments, CommandContext& context) {
+  if (const Status asked = check_asked(arguments); !asked) {
+    return std::unexpected(asked.error());
+  }
   const std::filesystem::path where = corrections_of(arguments.analyze);
   Result<CorrectionFile> said = read_corrections(where);
   if (!said) {
@@ -218,7 +236,7 @@ void add_wedges(CLI::App& app, Action& chosen) {
                            "name of a selection kept in the viewer: a wedge is there");
   correct_verb->add_option("--add-at", arguments->add_at, "x,y,z in mm: a wedge is there; with --reach");
   correct_verb->add_option("--reach", arguments->reach_mm, "mm, how far around that place")
-      ->check(CLI::Range(0.05, 50.0));
+      ->check(in_range(0.05, 50.0));
   correct_verb->add_flag("--undo", arguments->undo, "takes the last correction back");
   correct_verb->add_flag("--list", arguments->list, "says what was corrected so far");
   correct_verb->fallthrough();

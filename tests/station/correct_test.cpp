@@ -62,6 +62,17 @@ TEST_F(Correct, ADeletedWedgeStaysDeletedUntilItIsTakenBack) {
   EXPECT_THAT(wedges().wedges, SizeIs(count - 2));
   const Outcome listed = correct({"--list", "--json"});
   EXPECT_EQ(listed.json()["corrections"][0]["do"], "delete");
+  for (const std::vector<std::string>& more :
+       std::vector<std::vector<std::string>>{{"--list", "--delete", "3"},
+                                             {"--undo", "--delete", "3"},
+                                             {"--undo", "--list"},
+                                             {"--delete", "3", "--into", "1,2,3"},
+                                             {"--delete", "3", "--reach", "2"}}) {
+    const Outcome both = correct(more);
+    EXPECT_EQ(both.status, 2) << "no part passes unheard";
+    EXPECT_THAT(both.complaints(), SizeIs(1)) << both.err;
+  }
+  EXPECT_EQ(wedges().corrections, 1U);
   ASSERT_EQ(correct({"--undo"}).status, 0);
   EXPECT_EQ(bytes(), before);
   EXPECT_EQ(correct({"--undo"}).status, 2) << "nothing is left to take back";
