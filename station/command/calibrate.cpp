@@ -13,6 +13,7 @@
 #include "station/calibration_run.h"
 #include "station/command/calibrate.h"
 #include "station/command/command.h"
+#include "station/command/option_checks.h"
 #include "station/command/outputs.h"
 
 namespace dubsar {
@@ -143,7 +144,8 @@ void add_calibrate(CLI::App& app, Action& chosen) {
   verb->add_option("--serial", options->serial,
                    "of the camera; a rig refuses the calibration of another one");
   verb->add_option("--temperature", options->temperature_c,
-                   "of the room, degrees Celsius; default: as calibration.toml says");
+                   "of the room, degrees Celsius; default: as calibration.toml says")
+      ->check(in_range(-60.0, 60.0));
   verb->add_option("-o,--out", options->out, "the calibration, calibration.json");
   CLI::Option* print =
       verb->add_option("--print", options->print, "write the board of --board as a PNG for printing");

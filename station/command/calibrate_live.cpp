@@ -17,6 +17,7 @@
 #include "station/calibration_run.h"
 #include "station/command/calibrate.h"
 #include "station/command/command.h"
+#include "station/command/option_checks.h"
 #include "station/command/terminal.h"
 
 namespace dubsar {
@@ -112,15 +113,15 @@ void add_live_options(CLI::App& verb, LiveOptions& options) {
           "--motion", options.motion,
           "with --rig: what the stage does; default: as the rig's files tell (a scan in degrees: turntable)")
       ->check(CLI::IsMember({"linear", "turntable", "galvanometer", "none"}));
-  verb.add_option("--stops", options.stops, "with --rig: positions of the stage")->check(CLI::Range(3, 50));
+  verb.add_option("--stops", options.stops, "with --rig: positions of the stage")->check(in_range(3, 50));
   verb.add_option("--depth-range", options.depth_range_mm, "with --rig: of the measuring volume, mm")
-      ->check(CLI::Range(1.0, 2000.0));
+      ->check(in_range(1.0, 2000.0));
   verb.add_option("--plate-margin", options.plate_margin_mm, "with --rig: of flat plate around the print, mm")
-      ->check(CLI::Range(0.0, 500.0));
+      ->check(in_range(0.0, 500.0));
   verb.add_option("--board-exposure", options.board_exposure_us, "with --rig: for pictures of the board, us")
-      ->check(CLI::Range(1.0, 1e7));
+      ->check(in_range(1.0, 1e7));
   verb.add_option("--laser-exposure", options.laser_exposure_us, "with --rig: for pictures of the stripe, us")
-      ->check(CLI::Range(1.0, 1e7));
+      ->check(in_range(1.0, 1e7));
 }
 
 Result<std::string> take_pictures(const LiveOptions& options, const std::string& board,

@@ -10,6 +10,7 @@
 #include <cstdio>
 #include <exception>
 #include <new>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -19,6 +20,7 @@
 #include "core/heap.h"
 #include "core/log.h"
 #include "station/command/command.h"
+#include "station/command/wrong_words.h"
 
 namespace dubsar {
 
@@ -76,13 +78,11 @@ int run(int argc, char** argv) {
   } catch (const CLI::ParseError& bad) {
     // The parser may have stopped before it came to --json.
     json = json || std::find(argv, argv + argc, std::string_view("--json")) != argv + argc;
-    const std::vector<std::string> unknown = app.remaining();
-    const bool no_verb = app.get_subcommands().empty() && !unknown.empty();
-    return report({ErrorKind::kUsage,
-                   no_verb ? "there is no verb " + unknown.front() : bad.what(),
-                   {},
-                   "see dubsar --help, or dubsar VERB --help"},
-                  json);
+    const Error wrong{ErrorKind::kUsage, bad.what(), {}, "see dubsar --help, or dubsar VERB --help"};
+    return report(unknown_verb(app).value_or(wrong), json);
+  }
+  if (const std::optional<Error> empty = empty_option(app)) {
+    return report(*empty, json);
   }
   set_log_level(verbose ? LogLevel::kDebug : quiet ? LogLevel::kWarning : LogLevel::kInfo);
   show_progress(!quiet);

@@ -2,6 +2,9 @@
 // Copyright The Dubsar developers
 #include "station/command/outputs.h"
 
+#include <sys/stat.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <utility>
@@ -41,7 +44,38 @@ Status check_apart(const std::vector<std::string>& outputs, const std::vector<st
   return {};
 }
 
+/// A name that is mistyped makes no folder.
+Status check_folder_of(const std::string& output) {
+  const fs::path file = output;
+  const fs::path folder = file.parent_path();
+  std::error_code error;
+  if (!file.has_filename() || folder.empty() || fs::is_directory(folder, error)) {
+    return {};
+  }
+  return fail(ErrorKind::kUsage, "there is no folder " + folder.string(), output,
+              "make it first, or look for a slip in the name");
+}
+
+/// Two would write to one place at once.
+Status check_not_printed_to(const std::string& output) {
+  struct stat printed {};
+  struct stat written {};
+  struct stat nowhere {};
+  if (::fstat(STDOUT_FILENO, &printed) != 0 || ::stat(output.c_str(), &written) != 0 ||
+      printed.st_dev != written.st_dev || printed.st_ino != written.st_ino ||
+      (::stat("/dev/null", &nowhere) == 0 && nowhere.st_rdev == printed.st_rdev &&
+       S_ISCHR(printed.st_mode))) {
+    return {};
+  }
+  return fail(ErrorKind::kUsage, "--json prints its object there, and nothing else", output,
+              "give the output a file, or leave --json out");
+}
+
 }  // namespace
+
+std::string as_folder(const std::string& path) {
+  return path.empty() ? path : (fs::path(path) / "").string();
+}
 
 Action with_safe_outputs(std::vector<std::string> outputs, Action action, std::vector<std::string> inputs) {
   return [outputs = std::move(outputs), inputs = std::move(inputs),
@@ -54,6 +88,17 @@ Action with_safe_outputs(std::vector<std::string> outputs, Action action, std::v
     }
     if (const Status apart = check_apart(outputs, inputs); !apart) {
       return std::unexpected(apart.error());
+    }
+    for (const std::string& output : outputs) {
+      if (output.empty()) {
+        continue;
+      }
+      for (const Status& checked :
+           {check_folder_of(output), context.json ? check_not_printed_to(output) : Status()}) {
+        if (!checked) {
+          return std::unexpected(checked.error());
+        }
+      }
     }
     return action(context);
   };

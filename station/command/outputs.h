@@ -9,10 +9,16 @@
 
 namespace dubsar {
 
-/// The action of a verb that writes these files or folders: kUsage, before it begins, where one of them lies
-/// in a session or package or is one (place_outside.h). Empty paths are passed over; links are followed. So,
-/// too, where one of them is what the verb reads (`inputs`), or two are the same place.
+/// The action of a verb that writes these files: kUsage, before it begins, where one of them
+/// - lies in a session or package or is one (place_outside.h);
+/// - has no folder to lie in;
+/// - is what the verb reads (`inputs`), or two are the same place;
+/// - is standard output, while --json prints its object there.
+/// Empty paths are passed over; links are followed.
 [[nodiscard]] Action with_safe_outputs(std::vector<std::string> outputs, Action action,
                                        std::vector<std::string> inputs = {});
+
+/// For the list of outputs: a folder, which is made with all the folders that it lies in.
+[[nodiscard]] std::string as_folder(const std::string& path);
 
 }  // namespace dubsar

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright The Dubsar developers
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <cstdio>
 #include <filesystem>
@@ -18,6 +19,7 @@
 #include "station/command/sign_off_words.h"
 #include "station/offline.h"
 #include "station/plan_again.h"
+#include "station/session_name.h"
 
 namespace dubsar {
 
@@ -35,7 +37,7 @@ struct PlanArguments {
 struct Comparison {
   bool compared = false;
   std::vector<std::string> differs;
-  bool kept = false;  ///< the stored one, since its signature holds
+  bool kept = false;  ///< the stored one, since its signature holds or the session cannot be written to
 };
 
 std::string joined(const std::vector<std::string>& parts) {
@@ -47,7 +49,7 @@ std::string joined(const std::vector<std::string>& parts) {
 }
 
 /// Compares with what is stored, and stores what is new. A red map that was signed is never replaced.
-Result<Comparison> compare_and_keep(SessionStore& store, const Results& results) {
+Result<Comparison> compare_and_keep(SessionStore& store, const Results& results, bool may_write) {
   const auto differs = differs_from_stored(store, results.red_map);
   Comparison out;
   if (differs && *differs) {
@@ -64,6 +66,12 @@ Result<Comparison> compare_and_keep(SessionStore& store, const Results& results)
     }
   } else if (!differs) {
     log_warning(differs.error().line());
+  }
+  if (!may_write) {
+    log_warning(store.folder().string() +
+                ": it cannot be written to, so that it keeps the verdict that it has");
+    out.kept = true;
+    return out;
   }
   if (const Status kept = keep_verdict(store, results.red_map, results.checklist); !kept) {
     return std::unexpected(kept.error());
@@ -150,7 +158,10 @@ void print_map(const RedMap& map) {
 }
 
 Result<int> plan(const PlanArguments& arguments, CommandContext& context) {
-  Result<ScanSet> set = load_scan_set(arguments.set.path, arguments.set.options(), context.job);
+  ScanSetOptions how = arguments.set.options();
+  const bool may_write = ::access(arguments.set.path.c_str(), W_OK) == 0;
+  how.access = may_write ? SessionStore::Access::kReadWrite : SessionStore::Access::kReadOnly;
+  Result<ScanSet> set = load_scan_set(arguments.set.path, how, context.job);
   if (!set) {
     return std::unexpected(set.error());
   }
@@ -167,7 +178,7 @@ Result<int> plan(const PlanArguments& arguments, CommandContext& context) {
   Comparison comparison;
   // Poses or pins of a file judge alone: the session keeps its own verdict.
   if (set->is_session() && arguments.set.poses.empty() && arguments.set.pins.empty()) {
-    Result<Comparison> compared = compare_and_keep(*set->store, results);
+    Result<Comparison> compared = compare_and_keep(*set->store, results, may_write);
     if (!compared) {
       return std::unexpected(compared.error());
     }
@@ -185,7 +196,7 @@ Result<int> plan(const PlanArguments& arguments, CommandContext& context) {
   }
   if (!arguments.page.empty()) {
     PageFacts facts;
-    facts.title = fs::path(arguments.set.path).filename().string();
+    facts.title = session_name(arguments.set.path);
     if (set->is_session()) {
       facts = page_facts_of(*set->store);
     }
@@ -223,7 +234,7 @@ void add_plan(CLI::App& app, Action& chosen) {
   verb->add_option("--states", arguments->states,
                    "write what has become of every sample into this folder, a PLY for each scan");
   verb->callback([&chosen, arguments] {
-    chosen = with_safe_outputs({arguments->set.out, arguments->page, arguments->states},
+    chosen = with_safe_outputs({arguments->set.out, arguments->page, as_folder(arguments->states)},
                                [arguments](CommandContext& c) { return plan(*arguments, c); });
   });
 }

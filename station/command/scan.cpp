@@ -17,6 +17,7 @@
 #include "formats/red_map_json.h"
 #include "formats/rig_limits_json.h"
 #include "station/command/command.h"
+#include "station/command/option_checks.h"
 #include "station/command/size_option.h"
 #include "station/command/terminal.h"
 #include "station/engine.h"
@@ -225,7 +226,7 @@ void add_scan(CLI::App& app, Action& chosen) {
   verb->add_option("--set", arguments->settings,
                    "key=value of the open device, such as exposure_us=800; kept with the session");
   verb->add_flag("--auto", arguments->automatic, "drive the rig, or ask for hand turns, until conclusive");
-  verb->add_option("--max-scans", arguments->max_scans, "of the whole session")->check(CLI::Range(1, 100000));
+  verb->add_option("--max-scans", arguments->max_scans, "of the whole session")->check(in_range(1, 100000));
   verb->fallthrough();
   verb->callback(
       [&chosen, arguments] { chosen = [arguments](CommandContext& c) { return scan(*arguments, c); }; });

@@ -11,6 +11,7 @@
 #include "core/log.h"
 #include "station/collection.h"
 #include "station/command/command.h"
+#include "station/command/option_checks.h"
 
 namespace dubsar {
 
@@ -95,7 +96,7 @@ void add_search(CLI::App& app, Action& chosen) {
   verb->add_option("--like", arguments->like, "the wedges.json to search by")->required();
   verb->add_option("--wedge", arguments->wedge, "search for this wedge of it; otherwise for tablets like it")
       ->check(CLI::NonNegativeNumber);
-  verb->add_option("--count", arguments->count, "how many to show")->check(CLI::Range(1, 100000));
+  verb->add_option("--count", arguments->count, "how many to show")->check(in_range(1, 100000));
   verb->callback(
       [&chosen, arguments] { chosen = [arguments](CommandContext& c) { return search(*arguments, c); }; });
 }

@@ -17,6 +17,7 @@
 #include "sim/scanner.h"
 #include "sim/tablet.h"
 #include "station/command/command.h"
+#include "station/command/option_checks.h"
 #include "station/command/outputs.h"
 #include "station/command/simulate_rig.h"
 #include "station/tablet_file.h"
@@ -190,13 +191,12 @@ void add_simulate(CLI::App& app, Action& chosen) {
   CLI::App* tablet = verb->add_subcommand("tablet", "A procedural tablet: tablet.ply and truth.json");
   tablet->add_option("--size", options->size, "width x height x thickness, mm")->capture_default_str();
   tablet->add_option("--text", options->text, "share of the room for text that is written on")
-      ->check(CLI::Range(0.0, 1.0));
-  tablet->add_option("--holes", options->holes, "firing holes, 0 none to 1 many")
-      ->check(CLI::Range(0.0, 1.0));
+      ->check(in_range(0.0, 1.0));
+  tablet->add_option("--holes", options->holes, "firing holes, 0 none to 1 many")->check(in_range(0.0, 1.0));
   tablet->add_option("--damage", options->damage, "fractures, erosion, dirt and cracks, 0 none to 1 badly")
-      ->check(CLI::Range(0.0, 1.0));
+      ->check(in_range(0.0, 1.0));
   tablet->callback([&chosen, options] {
-    chosen = with_safe_outputs({options->out},
+    chosen = with_safe_outputs({as_folder(options->out)},
                                [options](CommandContext& c) { return simulate_tablet(*options, c); });
   });
 
@@ -204,15 +204,15 @@ void add_simulate(CLI::App& app, Action& chosen) {
       verb->add_subcommand("scans", "Range grids of a tablet: scan_000.ply … and truth_poses.json");
   scans->add_option("--tablet", options->tablet, "the true surface, a mesh")->required();
   scans->add_option("--views", options->views, "how many, turned by hand")
-      ->check(CLI::Range(1, 1000))
+      ->check(in_range(1, 1000))
       ->capture_default_str();
   scans->add_option("--noise", options->noise_mm, "mm, at normal incidence")
-      ->check(CLI::Range(0.0, 1.0))
+      ->check(in_range(0.0, 1.0))
       ->capture_default_str();
   scans->add_flag("--pins", options->pins,
                   "fifteen pins around the rim; writes pins.json, as an operator clicks them");
   scans->callback([&chosen, options] {
-    chosen = with_safe_outputs({options->out},
+    chosen = with_safe_outputs({as_folder(options->out)},
                                [options](CommandContext& c) { return simulate_scans(*options, c); });
   });
 
@@ -221,7 +221,7 @@ void add_simulate(CLI::App& app, Action& chosen) {
   for (CLI::App* sub : {tablet, scans}) {
     sub->add_option("--seed", options->seed, "the same seed gives the same bytes")->capture_default_str();
     sub->add_option("--spacing", options->spacing_mm, "mm")
-        ->check(CLI::Range(0.005, 5.0))
+        ->check(in_range(0.005, 5.0))
         ->capture_default_str();
     sub->add_option("-o,--out", options->out, "folder")->required();
     sub->fallthrough();

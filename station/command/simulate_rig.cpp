@@ -7,6 +7,7 @@
 
 #include "formats/calibration_json.h"
 #include "station/command/command.h"
+#include "station/command/option_checks.h"
 #include "station/command/outputs.h"
 #include "station/command/simulate_rig.h"
 #include "station/rig_pictures.h"
@@ -52,29 +53,29 @@ void add_simulate_rig(CLI::App& simulate, Action& chosen) {
       ->check(CLI::IsMember(motion_words()))
       ->capture_default_str();
   verb->add_option("--poses", pictures.poses, "of the board, held by hand")
-      ->check(CLI::Range(1, 200))
+      ->check(in_range(1, 200))
       ->capture_default_str();
   verb->add_option("--stops", pictures.stops, "of the stage with the board on it")
-      ->check(CLI::Range(0, 200))
+      ->check(in_range(0, 200))
       ->capture_default_str();
   verb->add_option("--board", pictures.board)->capture_default_str();
-  verb->add_option("--width", pictures.rig.width, "px")->check(CLI::Range(64, 8192))->capture_default_str();
-  verb->add_option("--height", pictures.rig.height, "px")->check(CLI::Range(64, 8192))->capture_default_str();
+  verb->add_option("--width", pictures.rig.width, "px")->check(in_range(64, 8192))->capture_default_str();
+  verb->add_option("--height", pictures.rig.height, "px")->check(in_range(64, 8192))->capture_default_str();
   verb->add_option("--field", pictures.rig.field_mm, "mm across the picture")
-      ->check(CLI::Range(1.0, 500.0))
+      ->check(in_range(1.0, 500.0))
       ->capture_default_str();
   verb->add_option("--laser-sigma", pictures.optics.laser_sigma_mm, "of the laser sheet, mm")
-      ->check(CLI::Range(0.002, 1.0))
+      ->check(in_range(0.002, 1.0))
       ->capture_default_str();
   verb->add_option("--speckle", pictures.optics.speckle_contrast, "contrast, 0 to 1")
-      ->check(CLI::Range(0.0, 1.0))
+      ->check(in_range(0.0, 1.0))
       ->capture_default_str();
   verb->add_option("--seed", pictures.seed, "the same seed gives the same bytes")->capture_default_str();
   verb->add_option("-o,--out", options->out, "folder")->required();
   verb->fallthrough();
   verb->callback([&chosen, options] {
-    chosen =
-        with_safe_outputs({options->out}, [options](CommandContext& c) { return simulate_rig(*options, c); });
+    chosen = with_safe_outputs({as_folder(options->out)},
+                               [options](CommandContext& c) { return simulate_rig(*options, c); });
   });
 }
 

@@ -6,6 +6,7 @@
 
 #include "formats/pins_json.h"
 #include "station/command/command.h"
+#include "station/command/option_checks.h"
 #include "station/command/size_option.h"
 #include "ui/station_window.h"
 
@@ -50,9 +51,8 @@ void add_window_options(CLI::App& verb, StationArguments& arguments) {
                   "play what a person would do (docs/operators/window_scripts.md)");
   verb.add_option("--language", arguments.window.language, "of the window")
       ->check(CLI::IsMember({"en", "de"}));
-  verb.add_option("--width", arguments.window.width, "of the window, pixels")->check(CLI::Range(640, 16384));
-  verb.add_option("--height", arguments.window.height, "of the window, pixels")
-      ->check(CLI::Range(480, 16384));
+  verb.add_option("--width", arguments.window.width, "of the window, pixels")->check(in_range(640, 16384));
+  verb.add_option("--height", arguments.window.height, "of the window, pixels")->check(in_range(480, 16384));
   verb.fallthrough();
 }
 

@@ -154,6 +154,31 @@ TEST_F(Outputs, ReplaceNoScanOfTheFolderThatIsRead) {
   }
 }
 
+TEST_F(Outputs, WithoutAFolderToLieInAreRefusedAtOnce) {
+  const std::string nowhere = beside("resluts").string();
+  for (const Arguments& arguments :
+       {Arguments{"analyze", mesh(), "-o", nowhere + "/w.json"},
+        {"analyze", mesh(), "-o", beside("w.json"), "--mesh-out", nowhere + "/m.ply"},
+        {"mesh", "convert", mesh(), nowhere + "/m.stl"},
+        {"plan", session(), "-o", nowhere + "/red_map.json"},
+        {"pins", "--size", "50x40x20", "-o", nowhere + "/pins.png"}}) {
+    const Outcome outcome = run_command(arguments);
+    EXPECT_EQ(outcome.status, 2) << outcome.err;
+    EXPECT_THAT(outcome.complaints(), SizeIs(1)) << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr("there is no folder " + nowhere));
+    EXPECT_FALSE(fs::exists(nowhere));
+  }
+}
+
+TEST_F(Outputs, AndTheJsonObjectDoNotShareStandardOutput) {
+  const Outcome outcome = run_command({"mesh", "convert", mesh(), beside("m.ply"), "--json"});
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  const Outcome mixed = run_command({"analyze", mesh(), "-o", "/dev/stdout", "--json"});
+  EXPECT_EQ(mixed.status, 2) << mixed.err;
+  EXPECT_TRUE(mixed.json().contains("error")) << mixed.out;
+  EXPECT_THAT(mixed.err, HasSubstr("--json prints its object there"));
+}
+
 TEST_F(Outputs, GoBesideASessionAsBefore) {
   const Outcome converted = run_command({"mesh", "convert", mesh(), beside("tablet-model.stl")});
   EXPECT_EQ(converted.status, 0) << converted.err;

@@ -73,6 +73,63 @@ TEST(CommandUsage, WrongWordsAreStatusTwoAndOneLine) {
   EXPECT_FALSE(fs::exists(session)) << "a wrong word must leave nothing behind";
 }
 
+TEST(CommandUsage, AVerbThatIsMistypedOrMissingIsAnsweredWithThoseThatThereAre) {
+  const std::vector<std::pair<Arguments, const char*>> said{
+      {{"analyse", "m.ply", "-o", "w.json"}, "there is no verb analyse; do you mean analyze?"},
+      {{"mesh", "chek", "m.ply"}, "mesh: there is no verb chek; do you mean check?"},
+      {{"session", "remove", "s"}, "session: there is no verb remove; there are: list, undo, drop"},
+      {{"mesh"}, "mesh: a verb is missing; there are: check, convert, section, part"},
+      {{}, "a verb is missing; there are: drivers, "}};
+  for (const auto& [words, answer] : said) {
+    const Outcome outcome = run_command(words);
+    EXPECT_EQ(outcome.status, 2);
+    EXPECT_THAT(outcome.err, HasSubstr(answer));
+    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+  }
+}
+
+TEST(CommandUsage, AnEmptyTextIsNoNameAndNoPlace) {
+  const std::vector<std::pair<Arguments, const char*>> said{
+      {{"export", "s", "--to", ""}, "--to: nothing is said"},
+      {{"analyze", "m.ply", "-o", ""}, "--out: nothing is said"},
+      {{"stitch", "s", "-o", ""}, "--out: nothing is said"},
+      {{"verify", ""}, "path: nothing is said"},
+      {{"mesh", "convert", "m.ply", ""}, "out: nothing is said"}};
+  for (const auto& [words, answer] : said) {
+    const Outcome outcome = run_command(words);
+    EXPECT_EQ(outcome.status, 2) << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr(answer));
+    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+  }
+}
+
+TEST(CommandUsage, APictureOfPinsIsAPng) {
+  EXPECT_THAT(run_command({"pins", "--size", "50x40x20", "-o", "x.gif"}).err,
+              HasSubstr("does not end in .png"));
+}
+
+TEST(CommandUsage, WhatIsNoNumberPassesNoLimit) {
+  const std::string mesh = DUBSAR_SOURCE_DIR "/tests/data/sessions/schema1_first/mesh/model.ply";
+  const std::vector<Arguments> limited{
+      {"simulate", "tablet", "-o", "x", "--damage"},
+      {"simulate", "scans", "--tablet", mesh, "-o", "x", "--spacing"},
+      {"analyze", mesh, "-o", "x.json", "--free-openness"},
+      {"analyze", mesh, "-o", "x.json", "--invariant-radius"},
+      {"wedges", "correct", mesh, "-o", "x.json", "--add-at", "0,0,0", "--reach"},
+      {"pins", "--mesh", mesh, "-o", "x.png", "--triangulation"},
+      {"simulate", "rig", "-o", "x", "--laser-sigma"},
+  };
+  for (const Arguments& words : limited) {
+    for (const char* number : {"nan", "-nan", "NAN", "inf"}) {
+      Arguments all = words;
+      all.back() += std::string("=") + number;
+      const Outcome refused = run_command(all);
+      EXPECT_EQ(refused.status, 2) << ::testing::PrintToString(all);
+      EXPECT_THAT(refused.err, HasSubstr("is no number")) << ::testing::PrintToString(all) << refused.err;
+    }
+  }
+}
+
 TEST(CommandUsage, HelpIsStatusZero) {
   for (const Arguments& words : std::vector<Arguments>{{"--help"}, {"scan", "--help"}, {"--version"}}) {
     const Outcome asked = run_command(words);
