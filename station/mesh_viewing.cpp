@@ -17,6 +17,7 @@
 #include "formats/mesh_io.h"
 #include "formats/wedges_json.h"
 #include "station/analysis.h"
+#include "station/outward_faces.h"
 #include "station/section_file.h"
 #include "station/selection_store.h"
 
@@ -222,7 +223,8 @@ void MeshViewing::open(const fs::path& file) {
       return;
     }
     const RigidTransform tablet_from_model = tablet_frame(*read);
-    const std::optional<Error> odd = odd_numbers(*read, file.filename().string());
+    std::optional<Error> odd = odd_numbers(*read, file.filename().string());
+    odd = odd ? odd : inside_out(*read, file.filename().string());
     take_mesh(std::make_shared<const Mesh>(std::move(*read)), tablet_from_model, file.filename().string());
     if (odd) {
       complain(*odd);

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "formats/mesh_io.h"
+#include "station/outward_faces.h"
 
 namespace dubsar {
 
@@ -35,6 +36,7 @@ Result<sim::SimTablet> read_tablet_file(const std::filesystem::path& path) {
   if (mesh->faces.empty()) {
     return bad_input(path.string(), "it has no faces to scan", "give a triangle mesh");
   }
+  face_outwards(&*mesh, path.string());
   sim::SimTablet tablet;
   tablet.albedo.assign(mesh->positions.size(), kPlainClayAlbedo);
   for (std::size_t i = 0; i < mesh->colours.size(); ++i) {

@@ -19,9 +19,11 @@
 #include "formats/mesh_io.h"
 #include "station/analysis.h"
 #include "station/command/analyze.h"
+#include "station/command/option_checks.h"
 #include "station/command/outputs.h"
 #include "station/done_stamp.h"
 #include "station/field_pictures.h"
+#include "station/outward_faces.h"
 
 namespace dubsar {
 
@@ -62,6 +64,13 @@ constexpr double kMostAcrossMm = 1e6;
 /// What the fits believe at best (analysis/inner_edges.cpp): coarser places would decide what is measured.
 constexpr double kCoarsestPlaceMm = 0.004;
 
+/// What the reader took the file's numbers for: it may say so itself.
+double mm_per_number(const std::string& file, double across_mm) {
+  const Result<Mesh> numbers = across_mm > 0 ? read_mesh(file, {.mm_per_unit = 1.0}) : Result<Mesh>();
+  const double across = numbers ? size_across_mm(*numbers) : 0;
+  return across > 0 ? across_mm / across : 1.0;
+}
+
 /// Nobody presses a stylus into a tablet a tenth of a millimetre across: without --unit its numbers are
 /// something else.
 Status check_size(const AnalyzeArguments& arguments, const Mesh& mesh) {
@@ -70,9 +79,10 @@ Status check_size(const AnalyzeArguments& arguments, const Mesh& mesh) {
     return bad_input(arguments.in, fmt::format("it would be {:.3g} mm across", across_mm),
                      "nothing inscribed is that large: look what its numbers are and say so with --unit");
   }
-  const bool metres = std::filesystem::path(arguments.in).extension() == ".glb";
-  const auto likelier = likelier_units(across_mm, metres ? *mm_per_unit("m") : 1.0);
-  if (arguments.unit.empty() && !likelier.empty()) {
+  const auto likelier = arguments.unit.empty()
+                            ? likelier_units(across_mm, mm_per_number(arguments.in, across_mm))
+                            : std::vector<std::string_view>();
+  if (!likelier.empty()) {
     const std::string mend =
         mm_per_unit(likelier.front())
             ? fmt::format("say so with --unit {}, or confirm what they are", likelier.front())
@@ -246,7 +256,7 @@ Result<int> analyze(const AnalyzeArguments& arguments, CommandContext& context) 
     }
   }
   const auto start = std::chrono::steady_clock::now();
-  const Result<Mesh> mesh = read_mesh(
+  Result<Mesh> mesh = read_mesh(
       arguments.in, {.mm_per_unit = arguments.unit.empty() ? std::nullopt : mm_per_unit(arguments.unit)});
   if (!mesh) {
     return std::unexpected(mesh.error());
@@ -254,6 +264,7 @@ Result<int> analyze(const AnalyzeArguments& arguments, CommandContext& context) 
   if (const Status sized = check_size(arguments, *mesh); !sized) {
     return std::unexpected(sized.error());
   }
+  face_outwards(&*mesh, arguments.in);
   const double reading_s = seconds_since(start);
   const AnalysisOptions options = options_of(arguments, *said);
   Result<Analysis> analysis = analyze_mesh(*mesh, options, context.job);
@@ -300,7 +311,8 @@ std::filesystem::path corrections_of(const AnalyzeArguments& arguments) {
 }
 
 std::vector<std::string> written_by(const AnalyzeArguments& arguments) {
-  return {arguments.out, arguments.mesh_out, arguments.pictures, arguments.svg, arguments.invariants};
+  return {arguments.out, arguments.mesh_out, as_folder(arguments.pictures), as_folder(arguments.svg),
+          arguments.invariants};
 }
 
 void add_analyze_options(CLI::App& verb, AnalyzeArguments& arguments) {
@@ -316,23 +328,23 @@ void add_analyze_options(CLI::App& verb, AnalyzeArguments& arguments) {
                   "a folder for the surface fields and the wedges as coloured PLY and PNG");
   verb.add_option("--free-openness", arguments.fields.free_surface.least_openness,
                   "free surface: at least this open, 0 to 1; unset: told by the mesh")
-      ->check(CLI::Range(0.0, 1.0));
+      ->check(in_range(0.0, 1.0));
   verb.add_option("--free-concave", arguments.fields.free_surface.most_concave_per_mm,
                   "free surface: mean curvature no further below zero than this, per mm")
-      ->check(CLI::Range(0.0, 100.0))
+      ->check(in_range(0.0, 100.0))
       ->capture_default_str();
   verb.add_flag("--equalize", arguments.fields.equalize_openness,
                 "openness by rank: --free-openness is then a share of the surface");
   verb.add_option("--fault-reach", arguments.fields.reliability_iterations,
                   "how many rings of faces around a fault of the mesh are less reliable")
-      ->check(CLI::Range(0, 100))
+      ->check(in_range(0, 100))
       ->capture_default_str();
   verb.add_flag("--uniform-weights", arguments.uniform_weights,
                 "all points weigh the same in the surface that heights are taken from, for comparison");
   verb.add_option("--invariants", arguments.invariants,
                   "multi-scale integral invariants of every vertex, as GigaMesh's .mat");
   verb.add_option("--invariant-radius", arguments.radius_mm, "mm, of their largest sphere")
-      ->check(CLI::Range(0.05, 50.0))
+      ->check(in_range(0.05, 50.0))
       ->capture_default_str();
   verb.add_option("--svg", arguments.svg, "a folder for one drawing to scale of each side that has wedges");
   verb.add_flag("--classical-watershed", arguments.classical, "the textbook watershed, for comparison");

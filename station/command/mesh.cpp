@@ -8,6 +8,8 @@
 
 #include "analysis/cross_section.h"
 #include "archive/wedge_table.h"
+#include "core/inside_out.h"
+#include "core/log.h"
 #include "core/units.h"
 #include "formats/atomic_file.h"
 #include "formats/mesh_io.h"
@@ -16,6 +18,7 @@
 #include "station/command/outputs.h"
 #include "station/command/place_option.h"
 #include "station/mesh_json.h"
+#include "station/outward_faces.h"
 #include "station/section_file.h"
 #include "station/selection_store.h"
 #include "triangulation/mesh_check.h"
@@ -30,11 +33,21 @@ struct MeshOptions {
   std::string unit;
   std::string from, to, towards;              ///< of a section
   std::string selection, selections, wedges;  ///< of a part
+  bool turn_over = false;
 };
 
 Result<Mesh> read(const MeshOptions& options) {
   return read_mesh(options.in,
                    {.mm_per_unit = options.unit.empty() ? std::nullopt : mm_per_unit(options.unit)});
+}
+
+/// The same for who needs its faces.
+Result<Mesh> read_faces(const MeshOptions& options) {
+  Result<Mesh> mesh = read(options);
+  if (mesh && mesh->faces.empty()) {
+    return bad_input(options.in, "it has no faces", "give a triangle mesh");
+  }
+  return mesh;
 }
 
 Result<int> check(const MeshOptions& options, CommandContext& context) {
@@ -43,7 +56,9 @@ Result<int> check(const MeshOptions& options, CommandContext& context) {
     return std::unexpected(mesh.error());
   }
   const MeshReport report = check_mesh(*mesh);
-  const nlohmann::ordered_json json = mesh_report_json(report);
+  nlohmann::ordered_json json = mesh_report_json(report);
+  const std::optional<Error> fault = inside_out(*mesh, options.in);
+  json["inside_out"] = fault.has_value();
   if (context.json) {
     CommandContext::print(json);
   } else {
@@ -51,13 +66,22 @@ Result<int> check(const MeshOptions& options, CommandContext& context) {
       std::printf("%-24s %s\n", key.c_str(), value.dump().c_str());
     }
   }
+  if (fault) {
+    log_warning(fault->line());
+  }
   return report.is_manifold() ? 0 : 1;
 }
 
 Result<int> convert(const MeshOptions& options, CommandContext& context) {
-  const Result<Mesh> mesh = read(options);
+  Result<Mesh> mesh = read_faces(options);
   if (!mesh) {
     return std::unexpected(mesh.error());
+  }
+  if (options.turn_over) {
+    turn_over(&*mesh);
+  }
+  if (const std::optional<Error> fault = inside_out(*mesh, options.turn_over ? options.out : options.in)) {
+    log_warning(fault->line());
   }
   if (const Status written = write_mesh(options.out, *mesh); !written) {
     return std::unexpected(written.error());
@@ -72,6 +96,17 @@ Result<int> convert(const MeshOptions& options, CommandContext& context) {
   return 0;
 }
 
+/// It ran, but there is nothing to draw: one line, and no file.
+int nothing_cut(const MeshOptions& options, const CommandContext& context) {
+  const Error nothing{ErrorKind::kBadInput, "nothing is cut between the two places, and nothing is written",
+                      options.in, "say two places of its surface, and --towards out of it there"};
+  log_warning(nothing.line());
+  if (context.json) {
+    CommandContext::print({{"file", nullptr}, {"pieces", 0}});
+  }
+  return 1;
+}
+
 Result<int> section(const MeshOptions& options, CommandContext& context) {
   const Result<Eigen::Vector3d> from = place_of(options.from, "--from");
   const Result<Eigen::Vector3d> to = place_of(options.to, "--to");
@@ -81,13 +116,17 @@ Result<int> section(const MeshOptions& options, CommandContext& context) {
       return std::unexpected(place->error());
     }
   }
-  const Result<Mesh> mesh = read(options);
+  Result<Mesh> mesh = read_faces(options);
   if (!mesh) {
     return std::unexpected(mesh.error());
   }
+  face_outwards(&*mesh, options.in);
   const Result<CrossSection> cut = cross_section(*mesh, *from, *to, *towards);
   if (!cut) {
     return std::unexpected(cut.error());
+  }
+  if (cut->lines.empty()) {
+    return nothing_cut(options, context);
   }
   if (const Status written = write_section(*cut, options.out); !written) {
     return std::unexpected(written.error());
@@ -103,7 +142,7 @@ Result<int> section(const MeshOptions& options, CommandContext& context) {
     std::printf("%s: %.3f mm long, %.3f mm below the line at %.3f mm\n", options.out.c_str(), cut->length_mm,
                 -cut->lowest_mm, cut->lowest_along_mm);
   }
-  return cut->lines.empty() ? 1 : 0;
+  return 0;
 }
 
 /// What a selection of the viewer holds: a mesh, or a table of its wedges.
@@ -164,6 +203,8 @@ void add_mesh(CLI::App& app, Action& chosen) {
       verb->add_subcommand("convert", "From one format to another, by the names' endings");
   convert_verb->add_option("in", options->in)->required();
   convert_verb->add_option("out", options->out)->required();
+  convert_verb->add_flag("--turn-over", options->turn_over,
+                         "the faces look the other way: for one inside out");
   convert_verb->fallthrough();
   convert_verb->callback([&chosen, options] {
     chosen = with_safe_outputs({options->out}, [options](CommandContext& c) { return convert(*options, c); },

@@ -14,8 +14,10 @@
 #include "formats/mesh_io.h"
 #include "planning/pin_layout.h"
 #include "station/command/command.h"
+#include "station/command/option_checks.h"
 #include "station/command/outputs.h"
 #include "station/command/size_option.h"
+#include "station/outward_faces.h"
 
 namespace dubsar {
 
@@ -97,6 +99,7 @@ Result<int> pins(const PinsArguments& arguments, CommandContext& context) {
     if (!read) {
       return std::unexpected(read.error());
     }
+    face_outwards(&*read, arguments.mesh);
     const RigidTransform tablet_from_model = tablet_frame(*read);
     hull = hull_of_mesh(*read, tablet_from_model);
     tablet = std::move(*read);
@@ -160,11 +163,11 @@ void add_pins(CLI::App& app, Action& chosen) {
   CLI::Option* mesh =
       verb->add_option("--mesh", arguments->mesh, "a mesh of the tablet, instead of its size");
   size->excludes(mesh);
-  verb->add_option("-o,--out", arguments->out, "write the picture here (PNG)");
-  verb->add_option("--count", arguments->count, "pins, at most 15")->check(CLI::Range(3, 15));
+  verb->add_option("-o,--out", arguments->out, "write the picture here (PNG)")->check(ends_as(".png"));
+  verb->add_option("--count", arguments->count, "pins, at most 15")->check(in_range(3, 15));
   verb->add_option("--triangulation", arguments->triangulation_deg,
                    "degrees between laser and camera; 0: one viewpoint")
-      ->check(CLI::Range(0.0, 80.0));
+      ->check(in_range(0.0, 80.0));
   verb->fallthrough();
   verb->callback([&chosen, arguments] {
     chosen =

@@ -132,5 +132,25 @@ TEST(AnalyzeCommand, AsksForTheUnitAndRefusesWhatIsNoMesh) {
   EXPECT_EQ(empty.status, 2) << empty.err;
 }
 
+TEST(AnalyzeCommand, TheUnitThatIsAdvisedIsCountedFromTheOneThatTheFileNames) {
+  const test::TemporaryFolder folder;
+  const auto at = [&](const char* name) { return (folder.path() / name).string(); };
+  const std::string body =
+      "element vertex 5\nproperty float x\nproperty float y\nproperty float z\nelement face 6\n"
+      "property list uchar int vertex_indices\nend_header\n0 0 0\n30 0 0\n30 30 0\n0 30 0\n15 15 9\n"
+      "3 0 1 4\n3 1 2 4\n3 2 3 4\n3 3 0 4\n3 0 2 1\n3 0 3 2\n";
+  std::ofstream(at("m.ply")) << "ply\nformat ascii 1.0\nobj_info unit m\n" << body;
+  const Outcome asked = run_command({"analyze", at("m.ply"), "-o", at("w.json")});
+  EXPECT_EQ(asked.status, 2);
+  EXPECT_THAT(asked.err, HasSubstr("its numbers look like mm or cm: say so with --unit mm"));
+  EXPECT_EQ(run_command({"analyze", at("m.ply"), "-o", at("w.json"), "--unit", "mm"}).status, 0);
+  // glTF is in metres, however its name is written.
+  std::ofstream(at("mm.ply")) << "ply\nformat ascii 1.0\n" << body;
+  ASSERT_EQ(run_command({"mesh", "convert", at("mm.ply"), at("a.glb"), "--unit", "m"}).status, 0);
+  std::filesystem::rename(at("a.glb"), at("A.GLB"));
+  const Outcome upper = run_command({"analyze", at("A.GLB"), "-o", at("w.json")});
+  EXPECT_THAT(upper.err, HasSubstr("its numbers look like mm or cm: say so with --unit mm"));
+}
+
 }  // namespace
 }  // namespace dubsar

@@ -168,6 +168,17 @@ TEST_F(RegistrationInput, AFolderInMetresThatWasReadAsMillimetresIsNamed) {
   EXPECT_EQ(said.status, 0) << said.out << said.err;
 }
 
+TEST_F(RegistrationInput, AWrongWordForTheUnitIsNotAnsweredWithAnotherWrongOne) {
+  for (int k = 0; k < 2; ++k) {
+    put(k, scan_field(bumpy(16), pose_of(4 * k, 3 * k, 30 * k, {1, 0, 0}), {}));
+  }
+  for (const char* said : {"um", "m"}) {
+    const Outcome wrong = test::run_command({"register", at("scans").string(), "--unit", said, "--json"});
+    EXPECT_EQ(wrong.status, 1) << wrong.err;
+    EXPECT_THAT(reason(wrong.json()["scans"][0]), HasSubstr(std::string("--unit mm in place of ") + said));
+  }
+}
+
 TEST_F(RegistrationInput, SpacingsThatDifferTenfold) {
   const Height surface = bumpy(17);
   FieldScan fine;

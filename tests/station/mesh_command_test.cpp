@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+// dubsar mesh: what it says to meshes that are inside out or have no faces, and to cuts that meet nothing.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "tests/station/support/command.h"
+#include "tests/support/temporary_folder.h"
+
+namespace dubsar {
+namespace {
+
+namespace fs = std::filesystem;
+using test::bytes_of;
+using test::Outcome;
+using test::run_command;
+using ::testing::HasSubstr;
+using ::testing::SizeIs;
+
+constexpr const char* kCorners = "v 0 0 0\nv 30 0 0\nv 30 30 0\nv 0 30 0\nv 15 15 9\n";
+
+class MeshCommand : public ::testing::Test {
+ protected:
+  MeshCommand() {
+    std::ofstream(at("tent.obj")) << kCorners << "f 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\nf 1 3 2\nf 1 4 3\n";
+    std::ofstream(at("turned.obj")) << kCorners << "f 2 1 5\nf 3 2 5\nf 4 3 5\nf 1 4 5\nf 3 1 2\nf 4 1 3\n";
+  }
+  [[nodiscard]] std::string at(const char* name) const { return (folder_.path() / name).string(); }
+  [[nodiscard]] Outcome cut(const char* mesh, const char* from, const char* to, const char* out) const {
+    return run_command({"mesh", "section", at(mesh), "--from", from, "--to", to, "-o", at(out), "--json"});
+  }
+
+ private:
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(MeshCommand, AMeshThatIsInsideOutIsToldAndTurned) {
+  EXPECT_EQ(run_command({"mesh", "check", at("tent.obj"), "--json"}).json()["inside_out"], false);
+  const Outcome checked = run_command({"mesh", "check", at("turned.obj"), "--json"});
+  EXPECT_EQ(checked.json()["inside_out"], true);
+  EXPECT_THAT(checked.err, HasSubstr("its faces look inwards"));
+
+  const Outcome turned = run_command({"mesh", "convert", at("turned.obj"), at("mended.ply"), "--turn-over"});
+  EXPECT_EQ(turned.status, 0) << turned.err;
+  EXPECT_THAT(turned.complaints(), SizeIs(0)) << turned.err;
+  EXPECT_EQ(run_command({"mesh", "check", at("mended.ply"), "--json"}).json()["inside_out"], false);
+  EXPECT_THAT(run_command({"mesh", "convert", at("turned.obj"), at("kept.ply")}).err,
+              HasSubstr("--turn-over"));
+}
+
+TEST_F(MeshCommand, OfAMeshThatIsInsideOutTheNearSideIsCutAndAnalysed) {
+  ASSERT_EQ(cut("tent.obj", "2,15,0", "28,15,0", "right.csv").status, 0);
+  const Outcome inside = cut("turned.obj", "2,15,0", "28,15,0", "inside.csv");
+  EXPECT_EQ(inside.status, 0) << inside.err;
+  EXPECT_THAT(inside.err, HasSubstr("turned over"));
+  EXPECT_EQ(inside.json()["highest_mm"], 9.0);
+  EXPECT_EQ(bytes_of(at("inside.csv")), bytes_of(at("right.csv")));
+  const Outcome analysed =
+      run_command({"analyze", at("turned.obj"), "-o", at("w.json"), "--mesh-out", at("out.ply")});
+  EXPECT_EQ(analysed.status, 0) << analysed.err;
+  EXPECT_THAT(analysed.err, HasSubstr("turned over"));
+  EXPECT_EQ(run_command({"mesh", "check", at("out.ply"), "--json"}).json()["inside_out"], false);
+}
+
+TEST_F(MeshCommand, ACutThatMeetsNothingWritesNothing) {
+  for (const char* file : {"cut.csv", "cut.svg"}) {
+    const Outcome beside = cut("tent.obj", "200,0,0", "220,0,0", file);
+    EXPECT_EQ(beside.status, 1);
+    EXPECT_THAT(beside.err, HasSubstr("nothing is cut"));
+    EXPECT_EQ(beside.json()["pieces"], 0);
+    EXPECT_FALSE(fs::exists(at(file)));
+  }
+}
+
+TEST_F(MeshCommand, WhatHasNoFacesIsNeitherConvertedNorCut) {
+  std::ofstream(at("points.ply"))
+      << "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
+         "property float z\nelement face 0\nproperty list uchar int vertex_indices\n"
+         "end_header\n0 0 0\n";
+  const Outcome converted = run_command({"mesh", "convert", at("points.ply"), at("points.stl")});
+  EXPECT_EQ(converted.status, 2) << converted.out;
+  EXPECT_THAT(converted.complaints(), SizeIs(1)) << converted.err;
+  EXPECT_FALSE(fs::exists(at("points.stl")));
+  EXPECT_EQ(cut("points.ply", "0,0,0", "1,0,0", "cut.csv").status, 2);
+}
+
+}  // namespace
+}  // namespace dubsar
