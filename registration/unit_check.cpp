@@ -62,11 +62,21 @@ std::string impossible_size(const ScanSize& scan, double least_mm, double most_m
   if (scan.scale_mm >= least_mm && scan.scale_mm <= most_mm) {
     return {};
   }
-  const Unit& unit = scan.scale_mm < least_mm ? kUnits.front() : kUnits.back();
+  // What was said is not known here, and may be what is wrong: the advice is a step from there.
+  const bool is_small = scan.scale_mm < least_mm;
+  const double thousand_times_mm = is_small ? 1000.0 * scan.scale_mm : 0.001 * scan.scale_mm;
+  const bool one_step = is_small ? thousand_times_mm >= least_mm : thousand_times_mm <= most_mm;
+  const char* times = one_step ? "1000" : "1 000 000";
+  const char* instead = is_small
+                            ? (one_step ? "--unit m (metres) in place of mm, or --unit mm in place of um"
+                                        : "--unit m in place of um")
+                            : (one_step ? "--unit um (micrometres) in place of mm, or --unit mm in place of m"
+                                        : "--unit um in place of m");
   char across[32];
   std::snprintf(across, sizeof across, "%.3g", scan.scale_mm);
-  return std::string("it would be ") + across + " mm across: its numbers look like " + unit.numbers +
-         ", another unit than was said; " + unit.mend;
+  return std::string("it would be ") + across + " mm across: its unit is " + times + " times " +
+         (is_small ? "larger" : "smaller") + " than was said; give " + instead +
+         " (in a file's header: `obj_info unit`)";
 }
 
 bool same_spacing(const ScanSize& a, const ScanSize& b) {

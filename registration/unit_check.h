@@ -13,7 +13,8 @@ struct ScanSize {
 };
 
 /// Why a scan cannot be what it says whatever the others are: too small or too large for anything that is
-/// scanned; with the unit that its numbers look like and the mend. Empty when its size is possible.
+/// scanned; with how far its unit is from the one that was said, and the mend. Empty when its size is
+/// possible.
 [[nodiscard]] std::string impossible_size(const ScanSize& scan, double least_mm, double most_mm);
 
 /// Samples as far apart, as one scanner sets them: then no unit stands between the two, however little of the
