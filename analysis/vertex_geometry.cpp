@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "core/disjoint_sets.h"
+#include "core/inside_out.h"
 #include "core/parallel.h"
 
 namespace dubsar {
@@ -16,12 +17,6 @@ namespace {
 constexpr std::size_t kGrain = 1U << 14U;
 /// A face whose normal stands this much (cosine) against the sum of all at the vertex is taken to be flipped.
 constexpr float kAgainst = -0.3F;
-/// Share of the whole area-times-distance that must point inwards before the orientation of an open mesh is
-/// doubted (a bowl scanned from above has some); of a closed one the sign of its volume tells.
-constexpr double kClearlyInward = -0.5;
-constexpr double kInward = -0.01;
-/// A mesh whose normals sum up to less than this share of its area is as good as closed.
-constexpr double kClosed = 0.03;
 
 Eigen::Vector3f twice_area(const Mesh& mesh, std::uint32_t face) {
   const auto& f = mesh.faces[face];
@@ -45,7 +40,7 @@ void join(Sums& into, const Sums& s) {
 }
 
 /// Of some of the vertices, by area.
-struct Facing {
+struct FacingSums {
   double area = 0;
   Eigen::Vector3d centre{0, 0, 0};
   Eigen::Vector3d normals{0, 0, 0};
@@ -53,7 +48,7 @@ struct Facing {
   double spread = 0;   ///< of |p − centre|
 };
 
-void join(Facing& into, const Facing& s) {
+void join(FacingSums& into, const FacingSums& s) {
   into.area += s.area;
   into.centre += s.centre;
   into.normals += s.normals;
@@ -66,9 +61,9 @@ template <class IsOne>
 bool looks_inward(const Mesh& mesh, const VertexGeometry& geometry, const IsOne& is_one) {
   const auto sum = [&](const auto& add) {
     return parallel_reduce_ordered(
-        mesh.positions.size(), kGrain, Facing{},
+        mesh.positions.size(), kGrain, FacingSums{},
         [&](std::size_t begin, std::size_t end) {
-          Facing sums;
+          FacingSums sums;
           for (std::size_t i = begin; i < end; ++i) {
             if (geometry.area_mm2[i] > 0 && is_one(i)) {
               add(i, sums);
@@ -76,22 +71,21 @@ bool looks_inward(const Mesh& mesh, const VertexGeometry& geometry, const IsOne&
           }
           return sums;
         },
-        [](Facing& into, const Facing& s) { join(into, s); });
+        [](FacingSums& into, const FacingSums& s) { join(into, s); });
   };
-  const Facing first = sum([&](std::size_t i, Facing& to) {
+  const FacingSums first = sum([&](std::size_t i, FacingSums& to) {
     const double area = geometry.area_mm2[i];
     to.area += area;
     to.centre += area * mesh.positions[i].cast<double>();
   });
   const Eigen::Vector3f centre = (first.centre / first.area).cast<float>();
-  const Facing second = sum([&](std::size_t i, Facing& to) {
+  const FacingSums second = sum([&](std::size_t i, FacingSums& to) {
     const Eigen::Vector3f away = mesh.positions[i] - centre;
     to.normals += (geometry.area_mm2[i] * geometry.normal[i]).cast<double>();
     to.outward += geometry.area_mm2[i] * away.dot(geometry.normal[i]);
     to.spread += geometry.area_mm2[i] * away.norm();
   });
-  const bool closed = second.normals.norm() < kClosed * first.area;
-  return second.outward < (closed ? kInward : kClearlyInward) * second.spread;
+  return Facing{first.area, second.normals, second.outward, second.spread}.is_inward();
 }
 
 /// The least vertex of the part that each vertex hangs together with, [V], and those of the large parts.

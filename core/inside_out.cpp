@@ -10,12 +10,12 @@ namespace dubsar {
 
 namespace {
 
-/// Sums over the faces that are none of them broken.
-struct Enclosure {
-  double volume_mm3 = 0;
-  double area_mm2 = 0;
-  Eigen::Vector3d facing_mm2{0, 0, 0};  ///< the faces' areas as vectors: zero for what is closed
-};
+/// Share of the whole area-times-distance that must point inwards before the orientation of an open surface
+/// is doubted, and of a closed one.
+constexpr double kClearlyInward = -0.5;
+constexpr double kInward = -0.01;
+/// What a surface's normals sum up to at most, as a share of its area, where it is as good as closed.
+constexpr double kClosed = 0.03;
 
 template <class Visit>
 void for_each_whole_face(const Mesh& mesh, const Visit& visit) {
@@ -29,35 +29,41 @@ void for_each_whole_face(const Mesh& mesh, const Visit& visit) {
   }
 }
 
-Enclosure enclosure_of(const Mesh& mesh) {
+Facing facing_of(const Mesh& mesh) {
   using P = Eigen::Vector3d;
-  P middle = P::Zero();
-  double faces = 0;
-  for_each_whole_face(mesh, [&](const P& a, const P& b, const P& c) {
-    middle += (a + b + c) / 3;
-    faces += 1;
-  });
-  middle /= std::max(faces, 1.0);
-  Enclosure out;
+  Facing out;
+  P centre = P::Zero();
   for_each_whole_face(mesh, [&](const P& a, const P& b, const P& c) {
     const P facing = 0.5 * (b - a).cross(c - a);
-    out.facing_mm2 += facing;
+    out.normals_mm2 += facing;
     out.area_mm2 += facing.norm();
-    out.volume_mm3 += facing.dot(a - middle) / 3;
+    centre += facing.norm() / 3 * (a + b + c);
+  });
+  if (out.area_mm2 > 0) {
+    centre /= out.area_mm2;
+  }
+  for_each_whole_face(mesh, [&](const P& a, const P& b, const P& c) {
+    const P facing = 0.5 * (b - a).cross(c - a);
+    const P away = (a + b + c) / 3 - centre;
+    out.outward_mm3 += facing.dot(away);
+    out.spread_mm3 += facing.norm() * away.norm();
   });
   return out;
 }
 
 }  // namespace
 
+bool Facing::is_inward() const {
+  const bool closed = normals_mm2.norm() < kClosed * area_mm2;
+  return outward_mm3 < (closed ? kInward : kClearlyInward) * spread_mm3;
+}
+
 double signed_volume_mm3(const Mesh& mesh) {
-  return enclosure_of(mesh).volume_mm3;
+  return facing_of(mesh).outward_mm3 / 3;
 }
 
 bool is_inside_out(const Mesh& mesh) {
-  constexpr double kMostOpen = 0.1;  // of the area: a hole of a tenth leaves the volume its sign
-  const Enclosure all = enclosure_of(mesh);
-  return all.volume_mm3 < 0 && all.facing_mm2.norm() < kMostOpen * all.area_mm2;
+  return facing_of(mesh).is_inward();
 }
 
 void turn_over(Mesh* mesh) {
