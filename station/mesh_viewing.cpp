@@ -18,6 +18,7 @@
 #include "formats/wedges_json.h"
 #include "station/analysis.h"
 #include "station/outward_faces.h"
+#include "station/place_outside.h"
 #include "station/section_file.h"
 #include "station/selection_store.h"
 
@@ -312,7 +313,8 @@ void MeshViewing::keep_section(const fs::path& stem) {
     for (const char* ending : {".csv", ".svg"}) {
       fs::path file = stem;
       file += ending;
-      if (const Status written = write_section(*section, file); !written) {
+      const Status outside = check_outside_packages(file);
+      if (const Status written = outside ? write_section(*section, file) : outside; !written) {
         complain(written.error());
         return;
       }

@@ -7,6 +7,7 @@
 #include "formats/wedges_json.h"
 #include "station/correction_region.h"
 #include "station/mesh_viewing.h"
+#include "station/place_outside.h"
 
 namespace dubsar {
 
@@ -79,8 +80,9 @@ void MeshViewing::make_corrections(std::vector<WedgeCorrection> corrections, boo
   const std::vector<LostCorrection> lost = analysis_->set.lost;
   const std::size_t count = analysis_options_.wedges.corrections.size();
   const bool refused = must_make_last && !lost.empty() && lost.back().index + 1 == count;
-  Status written;
-  if (!refused && !wedges_file_.empty()) {
+  const bool is_kept = !refused && !wedges_file_.empty();
+  Status written = is_kept ? check_outside_packages(wedges_file_) : Status();
+  if (is_kept && written) {
     const std::string name = state().name.empty() ? "model.ply" : state().name;
     const fs::path file = corrections_file_of(wedges_file_);
     const std::vector<WedgeCorrection>& now = analysis_options_.wedges.corrections;

@@ -11,6 +11,7 @@
 #include "formats/writers_turn.h"
 #include "station/analysis.h"
 #include "station/mesh_viewing.h"
+#include "station/place_outside.h"
 #include "station/selection_store.h"
 
 namespace dubsar {
@@ -52,6 +53,10 @@ void MeshViewing::change_selections(const std::function<void(std::vector<MeshSel
     return;
   }
   std::error_code error;
+  if (const Status outside = check_outside_packages(file); !outside) {
+    complain(outside.error());
+    return;
+  }
   fs::create_directories(file.parent_path(), error);  // what is wrong is said by the lock
   const Result<WritersTurn> turn = WritersTurn::take(folder_of(file));
   if (!turn) {
@@ -96,7 +101,8 @@ void MeshViewing::forget_selection(const std::string& name) {
 void MeshViewing::write_part(MeshSelection selection, const fs::path& file) {
   ask([this, selection = std::move(selection), file] {
     if (const std::shared_ptr<const Mesh> whole = mesh(); whole && fits(selection, *whole)) {
-      if (const Status written = write_mesh(file, part_of(*whole, selection)); !written) {
+      const Status outside = check_outside_packages(file);
+      if (const Status written = outside ? write_mesh(file, part_of(*whole, selection)) : outside; !written) {
         complain(written.error());
         return;
       }
@@ -112,7 +118,9 @@ void MeshViewing::write_wedges_of(MeshSelection selection, const fs::path& file)
       return;
     }
     const std::vector<Wedge> wedges = selected_wedges(*now.wedges, *now.mesh, selection);
-    if (const Status written = write_file_atomically(file, wedge_table(wedges)); !written) {
+    const Status outside = check_outside_packages(file);
+    if (const Status written = outside ? write_file_atomically(file, wedge_table(wedges)) : outside;
+        !written) {
       complain(written.error());
       return;
     }
@@ -138,7 +146,8 @@ void MeshViewing::analyse_part(MeshSelection selection, const fs::path& stem) {
     const WedgeFile wedges = wedge_file(mesh_file.filename().string(), options, *analysis);
     fs::path wedges_file = stem;
     wedges_file += ".wedges.json";
-    Status written = write_mesh(mesh_file, *part);
+    Status written = check_outside_packages(mesh_file);
+    written = written ? write_mesh(mesh_file, *part) : written;
     written = written ? write_wedges(wedges_file, wedges) : written;
     if (!written) {
       complain(written.error());

@@ -61,6 +61,11 @@ Status check_outside_checked_folders(const fs::path& output) {
   return refuse_within(checked_folder_around(output), output);
 }
 
+Status check_outside_packages(const fs::path& output) {
+  const std::optional<fs::path> folder = checked_folder_around(output);
+  return folder && !SessionStore::is_session(*folder) ? refuse_within(folder, output) : Status();
+}
+
 Status check_place_of_package(const fs::path& package) {
   const fs::path resolved = resolved_place(package);
   return refuse_within(SessionStore::is_session(resolved) ? resolved : around(resolved.parent_path()),

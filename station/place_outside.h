@@ -18,7 +18,9 @@ namespace dubsar {
 
 /// kUsage, with a better place, for a file or folder that would lie in a session or package or be one.
 [[nodiscard]] Status check_outside_checked_folders(const std::filesystem::path& output);
-/// The same for a package, which may take the place of an earlier one.
+/// The same for a package alone: what a viewer keeps of a session's mesh is the session's.
+[[nodiscard]] Status check_outside_packages(const std::filesystem::path& output);
+/// The same for a new package, which may take the place of an earlier one.
 [[nodiscard]] Status check_place_of_package(const std::filesystem::path& package);
 
 }  // namespace dubsar

@@ -14,6 +14,7 @@
 #include <mutex>
 #include <thread>
 
+#include "core/inside_out.h"
 #include "formats/atomic_file.h"
 #include "formats/corrections_json.h"
 #include "formats/mesh_io.h"
@@ -145,6 +146,29 @@ TEST_F(MeshViewingTest, WhatIsSaidOfASessionsMeshIsKeptWithItsWedges) {
   EXPECT_EQ(std::distance(fs::directory_iterator(mesh_.parent_path()), fs::directory_iterator()), 1);
   // Also before the session has measured any.
   EXPECT_EQ(Viewer(mesh_).state().corrections, 1U);
+}
+
+TEST_F(MeshViewingTest, NothingIsLaidIntoAPackage) {
+  std::ofstream(folder_.path() / "bagit.txt") << "BagIt-Version: 1.0\n";
+  Viewer one(mesh_);
+  one.keep("line 1");
+  ASSERT_TRUE(one.state().error);
+  EXPECT_THAT(one.state().error->line(), testing::HasSubstr("a package keeps a checksum"));
+  Viewer other(mesh_);
+  other.remove_wedge(wedges_mm_[0]);
+  ASSERT_TRUE(other.state().error);
+  EXPECT_EQ(other.state().corrections, 0U);
+  EXPECT_EQ(std::distance(fs::directory_iterator(mesh_.parent_path()), {}), 1) << "the mesh alone";
+}
+
+TEST_F(MeshViewingTest, AMeshThatIsInsideOutIsShownWithAWord) {
+  Mesh turned = *tablet_;
+  turn_over(&turned);
+  ASSERT_TRUE(write_mesh(mesh_, turned));
+  Viewer one(mesh_);
+  ASSERT_TRUE(one.state().error);
+  EXPECT_THAT(one.state().error->line(), testing::HasSubstr("inside out"));
+  EXPECT_TRUE(one.state().mesh);
 }
 
 TEST_F(MeshViewingTest, TwoWhoSelectOnOneMeshLoseNothing) {

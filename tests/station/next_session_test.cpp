@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "station/packing.h"
 #include "tests/support/temporary_folder.h"
 
 namespace dubsar {
@@ -17,6 +18,12 @@ TEST(NextSession, CountsOnPastWhatIsThere) {
   EXPECT_EQ(next_session_name(folder.path() / "VAT-12-a"), "VAT-12-a-2");
   std::filesystem::create_directory(folder.path() / "box-2");
   EXPECT_EQ(next_session_name(folder.path() / "box"), "box-3");
+  std::filesystem::create_directory(folder.path() / "box");
+  const std::filesystem::path stood = std::filesystem::current_path();
+  std::filesystem::current_path(folder.path() / "box");
+  EXPECT_EQ(next_session_name("."), "box-3");
+  EXPECT_EQ(usual_package_of(".").parent_path().filename(), "box.results");
+  std::filesystem::current_path(stood);
 }
 
 }  // namespace
