@@ -35,7 +35,7 @@ template <class T>
         return is_one_line(text) ? std::string()
                                  : std::string("has control characters, such as a line break");
       },
-      "TEXT");
+      "");
 }
 
 /// The name of a file that is written in one form only; a device has no form.
@@ -47,7 +47,7 @@ template <class T>
         return own == ending || name.starts_with("/dev/") ? std::string()
                                                           : "'" + name + "' does not end in " + ending;
       },
-      "FILE" + ending);
+      "");
 }
 
 /// The type of an option whose empty text means something; all others refuse it (main.cpp).

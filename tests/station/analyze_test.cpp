@@ -85,11 +85,13 @@ TEST(SearchCommand, FindsTheLikeAndLeavesOutTheSame) {
   write("b.json", 0.5, 2.0);
   write("c.json", 0.52, 2.05);
   std::ofstream(at("note.json")) << "{}";
+  std::ofstream(at("torn.json")) << R"({"unit": "mm", "wedges": [)";
   const Outcome tablets = run_command({"--json", "search", folder.path().string(), "--like", at("b.json")});
   ASSERT_EQ(tablets.status, 0) << tablets.err;
   ASSERT_EQ(tablets.json()["tablets"].size(), 2U) << tablets.out;
   EXPECT_EQ(tablets.json()["tablets"][0]["tablet"], "c.json");
-  EXPECT_THAT(tablets.err, HasSubstr("note.json"));
+  EXPECT_THAT(tablets.err, HasSubstr("torn.json"));
+  EXPECT_THAT(tablets.err, ::testing::Not(HasSubstr("note.json"))) << "it never was a wedges.json";
   const Outcome wedges = run_command(
       {"--json", "search", folder.path().string(), "--like", at("b.json"), "--wedge", "5", "--count", "3"});
   ASSERT_EQ(wedges.status, 0) << wedges.err;
