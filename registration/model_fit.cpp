@@ -100,12 +100,15 @@ using LevelOf = std::unique_ptr<SurfaceLevel> ScanSurface::*;
 IcpResult icp_in_model(const ScanSurface& scan, std::span<const ModelScan> model,
                        const std::vector<std::size_t>& members, LevelOf level, const RigidTransform& start,
                        const IcpOptions& options) {
-  std::vector<IcpTarget> targets;
-  targets.reserve(members.size());
-  for (const std::size_t k : members) {
-    targets.push_back({(model[k].surface->*level).get(), model[k].model_from_scanner});
-  }
-  return icp(*(scan.*level), targets, start, options);
+  return icp(*(scan.*level), targets_of(model, members, level), start, options);
+}
+
+EvidenceOptions fine_evidence(const ScanSurface& scan, const ScanSurface& other,
+                              const ModelFitOptions& options) {
+  EvidenceOptions evidence;
+  evidence.tolerance_mm = options.tolerance_sigmas * residual_sigma_mm(scan, other, options);
+  evidence.band_mm = options.band * scan.scale_mm;
+  return evidence;
 }
 
 void keep_distinct(std::vector<Start>& starts, std::size_t most, const Eigen::Vector3d& center_mm,
@@ -134,6 +137,43 @@ double residual_sigma_mm(const ScanSurface& a, const ScanSurface& b, const Model
   return std::hypot(a.noise_mm, b.noise_mm, options.systematic_of_spacing * spacing_mm);
 }
 
+PoseEvidence evidence_of_part(const SurfaceLevel& part, const ScanSurface& scan,
+                              std::span<const ModelScan> model, const std::vector<std::size_t>& targets,
+                              const RigidTransform& model_from_scanner, const ModelFitOptions& options) {
+  PoseEvidence sum;
+  for (const std::size_t k : targets) {
+    const ScanSurface& other = *model[k].surface;
+    sum.add(pose_evidence(part, *other.fine, model[k].model_from_scanner.inverse() * model_from_scanner,
+                          fine_evidence(scan, other, options)));
+  }
+  return sum;
+}
+
+std::vector<IcpTarget> targets_of(std::span<const ModelScan> model, const std::vector<std::size_t>& members,
+                                  std::unique_ptr<SurfaceLevel> ScanSurface::*level) {
+  std::vector<IcpTarget> targets;
+  targets.reserve(members.size());
+  for (const std::size_t k : members) {
+    targets.push_back({(model[k].surface->*level).get(), model[k].model_from_scanner});
+  }
+  return targets;
+}
+
+IcpResult refine_fine(const SurfaceLevel& source, std::span<const IcpTarget> targets,
+                      const RigidTransform& start, double residual_sigma_mm) {
+  IcpOptions fine;
+  fine.iterations = 8;
+  fine.converged_mm = 0.03 * residual_sigma_mm;
+  IcpResult result;
+  result.model_from_source = start;
+  for (const double sigmas : {4.0, 1.5}) {
+    fine.kernel_mm = sigmas * residual_sigma_mm;
+    fine.reach_mm = std::max(2.0 * source.spacing_mm, 5.0 * fine.kernel_mm);
+    result = icp(source, targets, result.model_from_source, fine);
+  }
+  return result;
+}
+
 ModelFit judge_in_model(const ScanSurface& scan, std::span<const ModelScan> model,
                         const RigidTransform& model_from_scanner, const ModelFitOptions& options) {
   ModelFit out;
@@ -145,9 +185,7 @@ ModelFit judge_in_model(const ScanSurface& scan, std::span<const ModelScan> mode
       model.size(),
       [&](std::size_t k) {
         const ScanSurface& other = *model[k].surface;
-        EvidenceOptions evidence;
-        evidence.tolerance_mm = options.tolerance_sigmas * residual_sigma_mm(scan, other, options);
-        evidence.band_mm = options.band * scan.scale_mm;
+        const EvidenceOptions evidence = fine_evidence(scan, other, options);
         const RigidTransform other_from_scan = model[k].model_from_scanner.inverse() * model_from_scanner;
         outward[k] = pose_evidence(*scan.fine, *other.fine, other_from_scan, evidence, &marks[k]);
         inward[k] = pose_evidence(*other.fine, *scan.fine, other_from_scan.inverse(), evidence);
@@ -308,16 +346,8 @@ std::vector<ModelFit> fit_to_model(const ScanSurface& scan, std::span<const Mode
     if (fit.significance < options.least_significance && options.least_significance > 0) {
       continue;
     }
-    IcpOptions fine;
-    IcpResult result;
-    result.model_from_source = fit.model_from_scanner;
-    for (const double sigmas : {4.0, 1.5}) {
-      fine.kernel_mm = sigmas * fit.residual_sigma_mm;
-      fine.reach_mm = std::max(2.0 * scan.fine->spacing_mm, 5.0 * fine.kernel_mm);
-      fine.iterations = 8;
-      fine.converged_mm = 0.03 * fit.residual_sigma_mm;
-      result = icp_in_model(scan, model, fit.targets, &ScanSurface::fine, result.model_from_source, fine);
-    }
+    const IcpResult result = refine_fine(*scan.fine, targets_of(model, fit.targets, &ScanSurface::fine),
+                                         fit.model_from_scanner, fit.residual_sigma_mm);
     fit = judge_in_model(scan, model, result.model_from_source, options);
     fit.icp = result;
     fit.slid_significance = slid_significance(scan, model, result, options);

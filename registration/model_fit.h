@@ -72,6 +72,22 @@ struct ModelFit {
 [[nodiscard]] double residual_sigma_mm(const ScanSurface& a, const ScanSurface& b,
                                        const ModelFitOptions& options);
 
+/// One level of the members of the model, for others to be fitted to.
+[[nodiscard]] std::vector<IcpTarget> targets_of(std::span<const ModelScan> model,
+                                                const std::vector<std::size_t>& members,
+                                                std::unique_ptr<SurfaceLevel> ScanSurface::*level);
+
+/// The last steps of a fit, from within the fine level's reach; residual_sigma_mm as in ModelFit.
+[[nodiscard]] IcpResult refine_fine(const SurfaceLevel& source, std::span<const IcpTarget> targets,
+                                    const RigidTransform& start, double residual_sigma_mm);
+
+/// What a part of the scan says of a pose, fine level, over the targets in the model.
+[[nodiscard]] PoseEvidence evidence_of_part(const SurfaceLevel& part, const ScanSurface& scan,
+                                            std::span<const ModelScan> model,
+                                            const std::vector<std::size_t>& targets,
+                                            const RigidTransform& model_from_scanner,
+                                            const ModelFitOptions& options);
+
 /// Counts the evidence for a given pose without moving it; `icp` stays empty.
 [[nodiscard]] ModelFit judge_in_model(const ScanSurface& scan, std::span<const ModelScan> model,
                                       const RigidTransform& model_from_scanner,

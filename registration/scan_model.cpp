@@ -172,6 +172,15 @@ std::vector<ModelScan> ScanModel::model_of(const std::vector<int>& ids) const {
   return out;
 }
 
+std::vector<const ScanFeatures*> ScanModel::features_of(const std::vector<int>& ids) const {
+  std::vector<const ScanFeatures*> out;
+  out.reserve(ids.size());
+  for (const int id : ids) {
+    out.push_back(&scans_.at(id).features);
+  }
+  return out;
+}
+
 PoseHints ScanModel::hints_for(const Scan& scan, const std::vector<int>& group_ids) const {
   PoseHints hints;
   std::optional<RigidTransform> group_from_tablet;
@@ -287,7 +296,10 @@ ScanPose ScanModel::pose(int id) const {
   if (!scan.usable || scan.group != main_group()) {
     const bool in_group = scan.usable && members(scan.group).size() > 1;
     out.status = in_group ? PoseStatus::kUnsure : scan.outcome;
-    out.reason = in_group ? kOtherGroup : !scan.suspicion.empty() ? scan.suspicion : scan.reason;
+    out.reason = in_group                      ? kOtherGroup
+                 : !scan.motion_reason.empty() ? scan.motion_reason
+                 : !scan.suspicion.empty()     ? scan.suspicion
+                                               : scan.reason;
     if (!scan.hint_reason.empty()) {
       out.reason = scan.hint_reason;
     }

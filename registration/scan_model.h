@@ -12,6 +12,7 @@
 #include "core/pose_hint.h"
 #include "registration/pin_advice.h"
 #include "registration/registrar.h"
+#include "registration/scan_motion.h"
 #include "registration/seen_pin.h"
 
 namespace dubsar {
@@ -31,6 +32,10 @@ class ScanModel {
   bool join(int id, JobContext& job);
   /// Tries the scans outside the main group on what it has that is new to them, until no more join.
   void retry(JobContext& job);
+  /// Takes out of the model what moved while it was scanned (scan_motion.h), as far as scans were joined
+  /// since the last time: that shows with the others in place, and each that is in place may turn out to be
+  /// the one.
+  void put_out_moved(JobContext& job);
   bool place(int id, const RigidTransform& model_from_scanner, bool locked);
   Status finalize(JobContext& job);
 
@@ -68,10 +73,11 @@ class ScanModel {
     int group = 0;
     RigidTransform group_from_scanner;
     bool locked = false;
-    bool given = false;       ///< joins from where it is or not at all
-    std::string reason;       ///< why it does not join; empty when it has joined or was not tried
-    std::string hint_reason;  ///< why its hint led to no pose
-    std::string suspicion;    ///< what may ail it when it joins nothing; empty for nothing in particular
+    bool given = false;         ///< joins from where it is or not at all
+    std::string reason;         ///< why it does not join; empty when it has joined or was not tried
+    std::string hint_reason;    ///< why its hint led to no pose
+    std::string motion_reason;  ///< that something moved while it was scanned, as it was last in place
+    std::string suspicion;      ///< what may ail it when it joins nothing; empty for nothing in particular
     PoseStatus outcome = PoseStatus::kFailed;
     double rms_mm = 0, overlap = 0, stage_sigma_mm = 0;
     Matrix6d covariance = Matrix6d::Zero();
@@ -96,6 +102,7 @@ class ScanModel {
   [[nodiscard]] PoseHints hints_for(const Scan& scan, const std::vector<int>& group_ids) const;
   [[nodiscard]] ScanPins pins_of(int id) const;
   [[nodiscard]] std::vector<ModelScan> model_of(const std::vector<int>& ids) const;
+  [[nodiscard]] std::vector<const ScanFeatures*> features_of(const std::vector<int>& ids) const;
   /// Looks for the scan's pose in the group: from its leads, and on the members that are new to it.
   bool join_group(int id, int group, JobContext& job);
   /// True when neither the scan nor what it was fitted to looks the same turned.
@@ -121,6 +128,7 @@ class ScanModel {
   /// The same while scans come in: a failure is logged, and the next scan or finalize() tries again.
   void settle_group(int group, const JobContext& job);
   void judge(int id);
+  [[nodiscard]] std::optional<ScanMotion> motion_of(int id) const;
   /// The scan whose hint says how two groups lie to each other.
   [[nodiscard]] std::optional<int> hint_between(int group_a, int group_b) const;
   /// Whether no hint between the scan's group and the other contradicts the pose.
@@ -136,6 +144,7 @@ class ScanModel {
   int next_group_ = 0;
   std::map<int, Scan> scans_;
   std::map<std::pair<int, int>, Pair> pairs_;
+  std::set<int> unchecked_;        ///< joined, or with another that joined beside it, since put_out_moved()
   std::map<int, PoseHint> hints_;  ///< by the id of the scan that they are for
 };
 

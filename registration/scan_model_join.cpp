@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "registration/scan_model.h"
+#include "registration/second_body.h"
 #include "registration/self_similarity.h"
 
 namespace dubsar {
@@ -17,6 +18,12 @@ constexpr const char* kContradiction =
 
 /// Poses of an unsettled search that are kept for the next.
 constexpr std::size_t kMostLeads = 5;
+
+/// True when what is left of a scan whose other half lies elsewhere may show this much relief.
+bool half_sure(const ModelFit& fit, const VerifyOptions& options) {
+  return fit.significance >= 0.5 * options.sure_relief &&
+         fit.relief.correlation() >= options.sure_correlation;
+}
 
 }  // namespace
 
@@ -104,6 +111,11 @@ bool ScanModel::join_group(int id, int group, JobContext& job) {
     // What the largest group says counts; groups are tried by size.
     if (members(scan.group).size() == 1 && (group == main_group() || scan.reason.empty())) {
       scan.reason = job.cancelled() ? kStopped : found.verdict.reason;
+      if (!found.fits.empty() && !job.cancelled() && half_sure(found.fits.front(), options_.search.verify)) {
+        const std::optional<ScanMotion> motion =
+            find_motion(*scan.features.surface, model, found.fits.front(), options_.search.fit);
+        scan.reason = motion ? reason_of(*motion) : scan.reason;
+      }
       scan.outcome =
           found.verdict.status == PoseStatus::kRegistered ? PoseStatus::kUnsure : found.verdict.status;
       if (!found.fits.empty()) {
@@ -111,6 +123,13 @@ bool ScanModel::join_group(int id, int group, JobContext& job) {
         scan.overlap = std::max(found.fits.front().overlap, found.fits.front().best_pair_overlap);
       }
     }
+    return false;
+  }
+  if (const std::optional<SecondBody> body =
+          find_second_body(*scan.features.surface, features_of(ids), model, found.fits.front(),
+                           options_.surface, options_.search, job)) {
+    scan.reason = reason_of(*body);
+    scan.outcome = PoseStatus::kUnsure;
     return false;
   }
   if (!groups_agree(id, found.fits.front().model_from_scanner, ids)) {
@@ -181,10 +200,13 @@ void ScanModel::connect(int id, const ModelFit& fit, bool by_stage, const std::v
   }
   std::vector<std::pair<int, int>> pairs;
   pairs.reserve(fit.touching.size());
+  unchecked_.insert(id);
   for (const std::size_t k : fit.touching) {
     pairs.push_back(std::minmax(id, group_ids[k]));
+    unchecked_.insert(group_ids[k]);
   }
   measure_pairs(pairs);
+  scan.motion_reason.clear();
   scan.reason.clear();
 }
 

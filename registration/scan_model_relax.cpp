@@ -188,6 +188,8 @@ Status ScanModel::finalize(JobContext& job) {
   for (const int id : ids) {
     judge(id);
   }
+  unchecked_.insert(ids.begin(), ids.end());
+  put_out_moved(job);
   job.progress("relax", 1.0);
   return {};
 }

@@ -212,8 +212,9 @@ void choose_samples(SurfaceLevel& level, int count, const ScanSurfaceOptions& op
   chosen.erase(std::unique(chosen.begin(), chosen.end()), chosen.end());
   level.samples.reserve(chosen.size());
   for (const std::uint32_t i : chosen) {
-    level.samples.push_back(
-        {grid.point(i), level.normals[i], closeness[i] / static_cast<float>(mean), beside[i] != 0});
+    level.samples.push_back({grid.point(i), level.normals[i], closeness[i] / static_cast<float>(mean),
+                             beside[i] != 0, static_cast<float>(i / cols) / static_cast<float>(grid.rows),
+                             static_cast<float>(i % cols) / static_cast<float>(grid.cols)});
   }
 }
 

@@ -20,6 +20,8 @@ struct SurfaceSample {
   Eigen::Vector3f normal;  ///< unit, out of the surface
   float weight = 1;     ///< mean of 1/d_ik over its neighbours, relative to the scan's mean (seed 001, 3.2)
   bool crease = false;  ///< on a crease edge or beside one
+  float row = 0;        ///< of the scan's rows, in [0, 1): when it was scanned …
+  float col = 0;        ///< … and of its columns
 };
 
 /// A scan at one resolution. Cells of the decimated grid average the samples of a block that lie on one
