@@ -3,6 +3,8 @@
 #include "station/offline.h"
 
 #include <algorithm>
+#include <set>
+#include <string>
 #include <utility>
 
 #include "core/log.h"
@@ -161,8 +163,17 @@ std::unexpected<Error> no_pose_of_these(const std::filesystem::path& poses_file)
 
 Result<std::vector<ScanPose>> read_poses_file(const std::filesystem::path& poses_file,
                                               const std::string& unit) {
-  return poses_file.extension() == ".conf" ? read_conf_poses(poses_file, mm_per_unit(unit).value_or(1.0))
-                                           : read_poses(poses_file);
+  Result<std::vector<ScanPose>> poses = poses_file.extension() == ".conf"
+                                            ? read_conf_poses(poses_file, mm_per_unit(unit).value_or(1.0))
+                                            : read_poses(poses_file);
+  std::set<std::string> names;
+  for (const ScanPose& pose : poses ? *poses : std::vector<ScanPose>{}) {
+    const std::string name = pose.file.empty() ? "scan " + std::to_string(pose.id) : pose.file;
+    if (!names.insert(name).second) {
+      return bad_input(poses_file.string(), "it has two poses of " + name, "leave the right one");
+    }
+  }
+  return poses;
 }
 
 Result<std::vector<ScanPose>> poses_from_file(const ScanSet& set, const std::filesystem::path& poses_file,
@@ -177,6 +188,8 @@ Result<std::vector<ScanPose>> poses_from_file(const ScanSet& set, const std::fil
       poses.push_back(*found);
       poses.back().id = scan.id;
       poses.back().file = scan.file;
+    } else {
+      log_warning(scan.file + ": " + poses_file.string() + " has no pose of it");
     }
   }
   if (poses.empty()) {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright The Dubsar developers
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <cstdio>
 #include <filesystem>
@@ -158,9 +157,8 @@ void print_map(const RedMap& map) {
 }
 
 Result<int> plan(const PlanArguments& arguments, CommandContext& context) {
-  ScanSetOptions how = arguments.set.options();
-  const bool may_write = ::access(arguments.set.path.c_str(), W_OK) == 0;
-  how.access = may_write ? SessionStore::Access::kReadWrite : SessionStore::Access::kReadOnly;
+  const ScanSetOptions how = arguments.set.reading();
+  const bool may_write = how.access == SessionStore::Access::kReadWrite;
   Result<ScanSet> set = load_scan_set(arguments.set.path, how, context.job);
   if (!set) {
     return std::unexpected(set.error());

@@ -2,6 +2,8 @@
 // Copyright The Dubsar developers
 #pragma once
 
+#include <unistd.h>
+
 #include <CLI/CLI.hpp>
 #include <string>
 
@@ -28,6 +30,13 @@ struct ScanSetArguments {
     verb.fallthrough();
   }
   [[nodiscard]] ScanSetOptions options() const { return {.unit = unit, .pins_file = pins, .output = out}; }
+  /// For who needs to write nothing into a session: it may lie on a share that can only be read.
+  [[nodiscard]] ScanSetOptions reading() const {
+    ScanSetOptions how = options();
+    how.access = ::access(path.c_str(), W_OK) == 0 ? SessionStore::Access::kReadWrite
+                                                   : SessionStore::Access::kReadOnly;
+    return how;
+  }
 };
 
 }  // namespace dubsar

@@ -7,18 +7,24 @@
 #include <algorithm>
 #include <cstdio>
 #include <future>
+#include <map>
 #include <memory>
 #include <optional>
+#include <set>
+#include <string>
 #include <vector>
 
 #include "core/log.h"
 #include "formats/mesh_io.h"
+#include "registration/registrar.h"
+#include "registration/unit_check.h"
 #include "station/command/command.h"
 #include "station/command/outputs.h"
 #include "station/command/scan_set_options.h"
 #include "station/done_stamp.h"
 #include "station/mesh_json.h"
 #include "station/offline.h"
+#include "station/outward_faces.h"
 #include "station/results.h"
 #include "triangulation/mesh_check.h"
 #include "triangulation/stitcher.h"
@@ -30,12 +36,36 @@ namespace {
 /// What a stitcher was given.
 struct Taken {
   std::size_t scans = 0;
-  bool lacks_poses = false;  ///< of a scan that has not been judged yet: then the rest was not taken
+  std::map<int, std::string> names;  ///< of those, by id
+  bool lacks_poses = false;          ///< of a scan that has not been judged yet: then the rest was not taken
 };
+
+/// Why the grid cannot be in the unit that was said; empty when it may be.
+std::string size_fault(const RangeGrid& grid) {
+  const RegistrationOptions usual;
+  const double scale_mm = surface_scale_mm(grid);
+  return scale_mm > 0
+             ? impossible_size({scale_mm, grid.spacing_mm}, usual.least_size_mm, usual.most_size_mm)
+             : "";
+}
 
 void warn_left_out(const ScanPose& pose) {
   log_warning(pose.file + " is left out: " + to_string(pose.status) +
               (pose.reason.empty() ? "" : ", " + pose.reason));
+}
+
+/// A scan that touches no other lies wrong, or alone; the mesh shows it beside the rest.
+void warn_of_strays(const Stitcher& stitcher, const std::map<int, std::string>& names) {
+  std::set<int> touching;
+  for (const Stitcher::Overlap& overlap : stitcher.overlaps()) {
+    touching.insert(overlap.id);
+    touching.insert(overlap.other_id);
+  }
+  for (const auto& [id, name] : names) {
+    if (names.size() > 1 && !touching.contains(id)) {
+      log_warning(name + " overlaps no other scan where its pose puts it; look whether that pose is right");
+    }
+  }
 }
 
 /// Scan by scan, where the poses are known beforehand. One is made ready while the next is read: no more than
@@ -57,8 +87,15 @@ Result<Taken> take_scan_by_scan(const ScanSetArguments& arguments, Stitcher& sti
     const auto stored = std::ranges::find(set.poses, scan.id, &ScanPose::id);
     const ScanPose* pose = file ? pose_in_file(*file, scan) : stored == set.poses.end() ? nullptr : &*stored;
     taken.lacks_poses = taken.lacks_poses || (pose == nullptr && !file);
+    if (pose == nullptr && file) {
+      log_warning(scan.file + " is left out: " + arguments.poses + " has no pose of it");
+    }
     if (pose == nullptr || taken.lacks_poses) {
       return {};
+    }
+    // Registration refuses such scans; here nothing else would tell.
+    if (const std::string impossible = file ? size_fault(*scan.grid) : ""; !impossible.empty()) {
+      return bad_input(scan.file, impossible);
     }
     ++with_pose;
     if (pose->status != PoseStatus::kRegistered) {
@@ -68,6 +105,7 @@ Result<Taken> take_scan_by_scan(const ScanSetArguments& arguments, Stitcher& sti
       return {};
     }
     ++taken.scans;
+    taken.names[scan.id] = scan.file;
     const Status before = adding.valid() ? adding.get() : Status{};
     adding = std::async(std::launch::async, [&stitcher, &context, pose = *pose, scan = std::move(scan)] {
       return stitcher.add(
@@ -75,7 +113,7 @@ Result<Taken> take_scan_by_scan(const ScanSetArguments& arguments, Stitcher& sti
     });
     return before;
   };
-  const Result<ScanSet> set = visit_scan_set(arguments.path, arguments.options(), take, context.job);
+  const Result<ScanSet> set = visit_scan_set(arguments.path, arguments.reading(), take, context.job);
   const Status last = adding.valid() ? adding.get() : Status{};
   if (!set) {
     return std::unexpected(set.error());
@@ -92,7 +130,7 @@ Result<Taken> take_scan_by_scan(const ScanSetArguments& arguments, Stitcher& sti
 /// With a registration first, which needs all of them.
 Result<Taken> take_registered(const ScanSetArguments& arguments, Stitcher& stitcher,
                               CommandContext& context) {
-  Result<ScanSet> set = load_scan_set(arguments.path, arguments.options(), context.job);
+  Result<ScanSet> set = load_scan_set(arguments.path, arguments.reading(), context.job);
   if (!set) {
     return std::unexpected(set.error());
   }
@@ -109,7 +147,13 @@ Result<Taken> take_registered(const ScanSetArguments& arguments, Stitcher& stitc
   if (const Status added = stitcher.add(placed, context.job); !added) {
     return std::unexpected(added.error());
   }
-  return Taken{placed.size(), false};
+  Taken taken{placed.size(), {}, false};
+  for (const ScanPose& pose : *poses) {
+    if (pose.status == PoseStatus::kRegistered) {
+      taken.names[pose.id] = pose.file;
+    }
+  }
+  return taken;
 }
 
 struct StitchArguments {
@@ -179,6 +223,7 @@ Result<int> stitch_all(const ScanSetArguments& arguments, const StampedWork* wor
   if (taken->scans == 0) {
     return bad_input(arguments.path, "no scan is registered", "see dubsar register");
   }
+  warn_of_strays(*stitcher, taken->names);
   for (const Stitcher::Overlap& overlap : stitcher->overlaps()) {
     if (overlap.is_off()) {
       log_warning(
@@ -190,6 +235,14 @@ Result<int> stitch_all(const ScanSetArguments& arguments, const StampedWork* wor
   const Result<Mesh> mesh = stitcher->take_mesh(context.job);
   if (!mesh) {
     return std::unexpected(mesh.error());
+  }
+  if (mesh->faces.empty()) {
+    return bad_input(arguments.path,
+                     "its scans have no surface: nowhere do three neighbouring samples hang together",
+                     "scan again, nearer or with more of the tablet in view");
+  }
+  if (const std::optional<Error> wrong_way = inside_out(*mesh, arguments.out)) {
+    log_warning(wrong_way->line());
   }
   if (const Status started = work != nullptr ? work->start() : Status(); !started) {
     return std::unexpected(started.error());

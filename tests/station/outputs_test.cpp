@@ -131,7 +131,7 @@ TEST_F(Outputs, ReplaceNeitherWhatIsReadNorEachOther) {
 TEST_F(Outputs, ReplaceNoScanOfTheFolderThatIsRead) {
   const fs::path scans = beside("scans");
   ASSERT_EQ(
-      run_command({"simulate", "scans", "--tablet", mesh(), "--views", "2", "--spacing", "0.8", "-o", scans})
+      run_command({"simulate", "scans", "--tablet", mesh(), "--views", "2", "--spacing", "0.05", "-o", scans})
           .status,
       0);
   const fs::path scan = scans / "scan_000.ply";

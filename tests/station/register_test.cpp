@@ -106,27 +106,46 @@ TEST_F(Register, RefinesPosesOfAFileAndBelievesNone) {
   EXPECT_EQ(registered({"--from-poses", at("nothing.json")}).status, 2);
 }
 
-TEST_F(Register, TakesPosesAsStanfordPublishesThem) {
-  test::write_bumpy_scans(at("scans"), 3);
-  std::ofstream conf(at("scans.conf"));
+void write_conf(const std::string& path, double units_per_mm) {
+  std::ofstream conf(path);
   conf.precision(17);
   for (int k = 0; k < 3; ++k) {
     const RigidTransform pose = test::bumpy_pose(k);
-    const Eigen::Vector3d& t = pose.translation_mm;
+    const Eigen::Vector3d t = units_per_mm * pose.translation_mm;
     const Eigen::Quaterniond q = Eigen::Quaterniond(pose.rotation).conjugate();
     conf << "bmesh " << test::scan_name(k) << ' ' << t.x() << ' ' << t.y() << ' ' << t.z() << ' ' << q.x()
          << ' ' << q.y() << ' ' << q.z() << ' ' << q.w() << '\n';
   }
-  conf.close();
+}
+
+TEST_F(Register, TakesPosesAsStanfordPublishesThem) {
+  test::write_bumpy_scans(at("scans"), 3);
+  write_conf(at("scans.conf"), 1.0);
   EXPECT_EQ(registered({"--from-poses", at("scans.conf")}).status, 0);
   const Outcome stitched =
       run_command({"stitch", at("scans"), "--poses", at("scans.conf"), "-o", at("m.ply"), "--json"});
   EXPECT_EQ(stitched.status, 0) << stitched.err;
   // Where --unit makes the grids metres, the .conf's numbers are metres, too.
-  const Outcome far = run_command(
-      {"stitch", at("scans"), "--unit", "m", "--poses", at("scans.conf"), "-o", at("far.ply"), "--json"});
-  EXPECT_EQ(far.status, 0) << far.err;
-  EXPECT_EQ(stitched.json()["components"], far.json()["components"]);
+  fs::create_directory(at("metres"));
+  for (int k = 0; k < 3; ++k) {
+    RangeGrid grid = test::bumpy_scan(k);
+    for (std::vector<float>* numbers : {&grid.x, &grid.y, &grid.z}) {
+      std::ranges::transform(*numbers, numbers->begin(), [](float mm) { return 0.001F * mm; });
+    }
+    grid.spacing_mm *= 0.001;
+    ASSERT_TRUE(write_grid_ply(fs::path(at("metres")) / test::scan_name(k), grid));
+  }
+  write_conf(at("metres.conf"), 0.001);
+  const Arguments far{"stitch", at("metres"), "--poses", at("metres.conf"), "-o", at("far.ply"), "--json"};
+  const Outcome refused = run_command(far);
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_THAT(refused.complaints(), SizeIs(1)) << refused.err;
+  EXPECT_THAT(refused.err, HasSubstr("--unit m"));
+  Arguments told = far;
+  told.insert(told.end(), {"--unit", "m"});
+  const Outcome in_metres = run_command(told);
+  EXPECT_EQ(in_metres.status, 0) << in_metres.err;
+  EXPECT_EQ(stitched.json()["components"], in_metres.json()["components"]);
 }
 
 TEST_F(Register, TakesRoundsAndRefusesNonsense) {

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+// dubsar stitch with the poses of a file: what it does not use, or cannot believe, is told.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "formats/poses_json.h"
+#include "tests/station/support/bumpy_scans.h"
+#include "tests/station/support/command.h"
+#include "tests/support/temporary_folder.h"
+
+namespace dubsar {
+namespace {
+
+namespace fs = std::filesystem;
+using test::Outcome;
+using test::run_command;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using ::testing::SizeIs;
+
+class StitchCommand : public ::testing::Test {
+ protected:
+  StitchCommand() : poses_(3) {
+    test::write_bumpy_scans(at("scans"), 3);
+    for (int k = 0; k < 3; ++k) {
+      ScanPose& pose = poses_[static_cast<std::size_t>(k)];
+      pose.id = k;
+      pose.file = test::scan_name(k);
+      pose.status = PoseStatus::kRegistered;
+      pose.model_from_scanner = test::bumpy_pose(k);
+    }
+  }
+  [[nodiscard]] std::string at(const std::string& name) const { return (folder_.path() / name).string(); }
+  [[nodiscard]] Outcome stitched() const {
+    EXPECT_TRUE(write_poses(at("poses.json"), poses_));
+    return run_command({"stitch", at("scans"), "--poses", at("poses.json"), "-o", at("mesh.ply")});
+  }
+  std::vector<ScanPose> poses_;
+
+ private:
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(StitchCommand, SaysNothingWhereAllIsWell) {
+  const Outcome outcome = stitched();
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.complaints(), SizeIs(0)) << outcome.err;
+}
+
+TEST_F(StitchCommand, NamesAScanThatTheFileHasNoPoseOf) {
+  poses_.pop_back();
+  const Outcome outcome = stitched();
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.complaints(), SizeIs(1)) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr(test::scan_name(2) + " is left out"));
+}
+
+TEST_F(StitchCommand, TakesNoFileWithTwoPosesOfAScan) {
+  poses_.push_back(poses_.back());
+  const Outcome outcome = stitched();
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_THAT(outcome.complaints(), SizeIs(1)) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("two poses of " + test::scan_name(2)));
+  EXPECT_FALSE(fs::exists(at("mesh.ply")));
+}
+
+TEST_F(StitchCommand, NamesAScanThatLiesByItself) {
+  poses_[1].model_from_scanner.translation_mm += Eigen::Vector3d(90, 0, 0);
+  const Outcome outcome = stitched();
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.complaints(), SizeIs(1)) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr(test::scan_name(1) + " overlaps no other scan"));
+}
+
+TEST_F(StitchCommand, WritesNoMeshOfNoFaces) {
+  fs::remove_all(at("scans"));
+  fs::create_directory(at("scans"));
+  RangeGrid sparse = test::bumpy_scan(0);
+  for (int row = 0; row < sparse.rows; ++row) {
+    for (int col = 0; col < sparse.cols; ++col) {
+      sparse.valid[sparse.index(row, col)] &= row % 2 == 0 && col % 2 == 0 ? 1 : 0;
+    }
+  }
+  ASSERT_TRUE(write_grid_ply(fs::path(at("scans")) / test::scan_name(0), sparse));
+  const Outcome outcome = stitched();
+  EXPECT_EQ(outcome.status, 2) << outcome.out;
+  EXPECT_THAT(outcome.err, HasSubstr("no surface"));
+  EXPECT_THAT(outcome.out, Not(HasSubstr("2-manifold")));
+  EXPECT_FALSE(fs::exists(at("mesh.ply")));
+}
+
+}  // namespace
+}  // namespace dubsar
