@@ -13,6 +13,7 @@
 #include "core/parallel.h"
 #include "registration/absolute_orientation.h"
 #include "registration/icp_information.h"
+#include "registration/nearest_usable.h"
 
 namespace dubsar {
 
@@ -36,40 +37,12 @@ struct Sums {
   }
 };
 
-/// Tukey's weight; pairs far off say nothing.
-double robust_weight(double residual, double scale) {
-  const double u = residual / (4.685 * scale);
-  const double v = 1.0 - u * u;
-  return v > 0 ? v * v : 0.0;
-}
-
 /// The slope of the pull is measured over moves of so many spacings …
 constexpr double kSlopeStepSpacings = 0.5;
 /// … on each so-manieth sample.
 constexpr std::size_t kSlopeEvery = 4;
 /// Steps that are taken with it.
 constexpr int kLastSteps = 2;
-/// How far beyond a boundary sample the usable ones begin, in raster cells.
-constexpr float kRimCells = 2.0F;
-
-/// The usable sample of `level` nearest to p within reach_mm, or -1. What the camera saw straight at p bounds
-/// the search, so that it seldom looks farther than the next cell; where nothing was seen, only the next
-/// cells are searched: the nearest sample would be one of the border.
-std::int64_t nearest_usable(const SurfaceLevel& level, const Eigen::Vector3f& p, float reach_mm) {
-  const DepthRaster::Cell* cell = level.raster.at(p);
-  const auto cell_mm = static_cast<float>(level.raster.cell_mm());
-  float radius_mm = std::min(reach_mm, cell_mm);
-  if (cell != nullptr && cell->sample >= 0) {
-    const auto straight = static_cast<std::size_t>(cell->sample);
-    if (std::abs(level.raster.height(p) - cell->height_mm) > 2.0F * reach_mm) {
-      return -1;
-    }
-    const float d = 1.0001F * (level.grid.point(straight) - p).norm();
-    radius_mm = std::min(reach_mm, level.usable[straight] != 0 ? d : d + kRimCells * cell_mm);
-  }
-  return level.lookup->nearest(p, radius_mm);
-}
-
 /// Pairs each sample of `from` with the nearest usable sample of `into`. `moving_is_from` tells which side
 /// the perturbation acts on. Both frames are given in the model frame.
 void accumulate(const SurfaceLevel& from, const RigidTransform& model_from_from, const SurfaceLevel& into,
@@ -104,7 +77,7 @@ void accumulate(const SurfaceLevel& from, const RigidTransform& model_from_from,
           }
           const Eigen::Vector3f n = (n_from + n_into).normalized();
           const double residual = static_cast<double>(n.dot(p - into.grid.point(j)));
-          const double w = static_cast<double>(sample.weight) * robust_weight(residual, options.kernel_mm);
+          const double w = static_cast<double>(sample.weight) * tukey_weight(residual, options.kernel_mm);
           if (w <= 0) {
             continue;
           }
@@ -176,7 +149,7 @@ void collect(const SurfaceLevel& from, const RigidTransform& model_from_from, co
     const Eigen::Vector3d q =
         model_from_into *
         Eigen::Vector3d(into.grid.point(static_cast<std::size_t>(partner[k])).cast<double>());
-    const double w = static_cast<double>(sample.weight) * robust_weight((p - q).norm(), options.kernel_mm);
+    const double w = static_cast<double>(sample.weight) * tukey_weight((p - q).norm(), options.kernel_mm);
     if (w > 0) {
       pairs.moved.push_back(moving_is_from ? p : q);
       pairs.still.push_back(moving_is_from ? q : p);

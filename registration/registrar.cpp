@@ -24,7 +24,7 @@ ScanPose Registrar::add(int id, const std::shared_ptr<const RangeGrid>& grid, co
   state_->enter(id, grid.get(), pins);
   state_->join(id, job);
   state_->retry(job);
-  state_->put_out_moved(job);
+  state_->put_out_faulty(job);
   return state_->pose(id);
 }
 
@@ -60,7 +60,7 @@ Status Registrar::set_hint(int id, const PoseHint& hint, JobContext& job) {
   }
   state_->set_hint(id, hint);
   state_->follow_hint(id, job);
-  state_->put_out_moved(job);
+  state_->put_out_faulty(job);
   return {};
 }
 
@@ -89,7 +89,7 @@ ScanPose Registrar::add_at(int id, const std::shared_ptr<const RangeGrid>& grid,
   state_->enter_at(id, model_from_scanner);
   state_->join(id, job);
   state_->retry(job);
-  state_->put_out_moved(job);
+  state_->put_out_faulty(job);
   return state_->pose(id);
 }
 

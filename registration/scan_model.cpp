@@ -296,10 +296,10 @@ ScanPose ScanModel::pose(int id) const {
   if (!scan.usable || scan.group != main_group()) {
     const bool in_group = scan.usable && members(scan.group).size() > 1;
     out.status = in_group ? PoseStatus::kUnsure : scan.outcome;
-    out.reason = in_group                      ? kOtherGroup
-                 : !scan.motion_reason.empty() ? scan.motion_reason
-                 : !scan.suspicion.empty()     ? scan.suspicion
-                                               : scan.reason;
+    out.reason = in_group                     ? kOtherGroup
+                 : !scan.fault_reason.empty() ? scan.fault_reason
+                 : !scan.suspicion.empty()    ? scan.suspicion
+                                              : scan.reason;
     if (!scan.hint_reason.empty()) {
       out.reason = scan.hint_reason;
     }

@@ -12,7 +12,6 @@
 #include "core/pose_hint.h"
 #include "registration/pin_advice.h"
 #include "registration/registrar.h"
-#include "registration/scan_motion.h"
 #include "registration/seen_pin.h"
 
 namespace dubsar {
@@ -35,7 +34,7 @@ class ScanModel {
   /// Takes out of the model what moved while it was scanned (scan_motion.h), as far as scans were joined
   /// since the last time: that shows with the others in place, and each that is in place may turn out to be
   /// the one.
-  void put_out_moved(JobContext& job);
+  void put_out_faulty(JobContext& job);
   bool place(int id, const RigidTransform& model_from_scanner, bool locked);
   Status finalize(JobContext& job);
 
@@ -73,11 +72,11 @@ class ScanModel {
     int group = 0;
     RigidTransform group_from_scanner;
     bool locked = false;
-    bool given = false;         ///< joins from where it is or not at all
-    std::string reason;         ///< why it does not join; empty when it has joined or was not tried
-    std::string hint_reason;    ///< why its hint led to no pose
-    std::string motion_reason;  ///< that something moved while it was scanned, as it was last in place
-    std::string suspicion;      ///< what may ail it when it joins nothing; empty for nothing in particular
+    bool given = false;        ///< joins from where it is or not at all
+    std::string reason;        ///< why it does not join; empty when it has joined or was not tried
+    std::string hint_reason;   ///< why its hint led to no pose
+    std::string fault_reason;  ///< why it was taken out of the model when it was last in it
+    std::string suspicion;     ///< what may ail it when it joins nothing; empty for nothing in particular
     PoseStatus outcome = PoseStatus::kFailed;
     double rms_mm = 0, overlap = 0, stage_sigma_mm = 0;
     Matrix6d covariance = Matrix6d::Zero();
@@ -90,6 +89,12 @@ class ScanModel {
     RigidTransform a_from_b;
     Eigen::Vector3d center_mm{0, 0, 0};
     Matrix6d information = Matrix6d::Zero();
+  };
+
+  /// What takes a scan out of the model.
+  struct Fault {
+    int gained = 0;  ///< samples that say so
+    std::string reason;
   };
 
   /// Makes the surfaces of all scans anew for another scale; what was searched before is searched again.
@@ -128,7 +133,10 @@ class ScanModel {
   /// The same while scans come in: a failure is logged, and the next scan or finalize() tries again.
   void settle_group(int group, const JobContext& job);
   void judge(int id);
-  [[nodiscard]] std::optional<ScanMotion> motion_of(int id) const;
+  [[nodiscard]] std::optional<Fault> fault_of(int id) const;
+  /// Says which scans of the group are of another size than the rest.
+  void warn_of_stretched(const std::vector<int>& ids) const;
+  [[nodiscard]] std::string name_of(int id) const;  ///< for people
   /// The scan whose hint says how two groups lie to each other.
   [[nodiscard]] std::optional<int> hint_between(int group_a, int group_b) const;
   /// Whether no hint between the scan's group and the other contradicts the pose.
@@ -144,7 +152,7 @@ class ScanModel {
   int next_group_ = 0;
   std::map<int, Scan> scans_;
   std::map<std::pair<int, int>, Pair> pairs_;
-  std::set<int> unchecked_;        ///< joined, or with another that joined beside it, since put_out_moved()
+  std::set<int> unchecked_;        ///< joined, or with another that joined beside it, since put_out_faulty()
   std::map<int, PoseHint> hints_;  ///< by the id of the scan that they are for
 };
 

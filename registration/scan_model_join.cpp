@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "registration/scan_model.h"
+#include "registration/scan_motion.h"
 #include "registration/second_body.h"
 #include "registration/self_similarity.h"
 
@@ -206,7 +207,7 @@ void ScanModel::connect(int id, const ModelFit& fit, bool by_stage, const std::v
     unchecked_.insert(group_ids[k]);
   }
   measure_pairs(pairs);
-  scan.motion_reason.clear();
+  scan.fault_reason.clear();
   scan.reason.clear();
 }
 

@@ -189,7 +189,8 @@ Status ScanModel::finalize(JobContext& job) {
     judge(id);
   }
   unchecked_.insert(ids.begin(), ids.end());
-  put_out_moved(job);
+  put_out_faulty(job);
+  warn_of_stretched(members(main_group()));
   job.progress("relax", 1.0);
   return {};
 }

@@ -44,9 +44,8 @@ struct Taken {
 std::string size_fault(const RangeGrid& grid) {
   const RegistrationOptions usual;
   const double scale_mm = surface_scale_mm(grid);
-  return scale_mm > 0
-             ? impossible_size({scale_mm, grid.spacing_mm}, usual.least_size_mm, usual.most_size_mm)
-             : "";
+  return scale_mm > 0 ? impossible_size({scale_mm, grid.spacing_mm}, usual.least_size_mm, usual.most_size_mm)
+                      : "";
 }
 
 void warn_left_out(const ScanPose& pose) {

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+
+#include "registration/scan_surface.h"
+
+namespace dubsar {
+
+/// The usable sample of `level` nearest to p within reach_mm, or -1. What the camera saw straight at p bounds
+/// the search, so that it seldom looks farther than the next cell; where nothing was seen, only the next
+/// cells are searched: the nearest sample would be one of the border.
+[[nodiscard]] std::int64_t nearest_usable(const SurfaceLevel& level, const Eigen::Vector3f& p,
+                                          float reach_mm);
+
+/// Tukey's weight; pairs far off say nothing.
+[[nodiscard]] inline double tukey_weight(double residual, double scale) {
+  const double u = residual / (4.685 * scale);
+  const double v = 1.0 - u * u;
+  return v > 0 ? v * v : 0.0;
+}
+
+}  // namespace dubsar

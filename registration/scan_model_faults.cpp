@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+// How a scan is found during which something moved, or whose lengths are not those of the others.
+#include <algorithm>
+
+#include "core/log.h"
+#include "core/parallel.h"
+
+#include "registration/scan_model.h"
+#include "registration/scan_motion.h"
+#include "registration/scan_stretch.h"
+
+namespace dubsar {
+
+void ScanModel::put_out_faulty(JobContext& job) {
+  std::set<int> candidates;
+  candidates.swap(unchecked_);
+  while (true) {
+    if (job.cancelled()) {
+      unchecked_.merge(candidates);  // for the next time
+      return;
+    }
+    std::optional<Fault> worst;
+    int worst_id = -1;
+    for (const int id : candidates) {
+      const std::optional<Fault> fault = fault_of(id);
+      if (fault && (!worst || fault->gained > worst->gained)) {
+        worst = fault;
+        worst_id = id;
+      }
+    }
+    if (!worst) {
+      return;
+    }
+    candidates.erase(worst_id);
+    Scan& scan = scans_.at(worst_id);
+    const int group = scan.group;
+    const bool apart = leave(worst_id);
+    const std::vector<int> rest = members(group);
+    scan.fault_reason = worst->reason;
+    if (rest.size() == 1) {
+      scan.fault_reason +=
+          "; or that is wrong with " + name_of(rest.front()) + ", the only one that it was compared with";
+    }
+    scan.outcome = PoseStatus::kUnsure;
+    scan.leads.clear();
+    // Tried again when there is a scan that it has not met: the other one may be the one that moved.
+    for (const auto& [other, unused] : scans_) {
+      scan.tried_on.insert(other);
+    }
+    settle_group(group, job);
+    for (const int other : rest) {
+      judge(other);
+    }
+    if (apart) {
+      retry(job);
+      candidates.merge(unchecked_);
+      unchecked_.clear();
+      candidates.erase(worst_id);
+    }
+  }
+}
+
+std::optional<ScanModel::Fault> ScanModel::fault_of(int id) const {
+  const auto found = scans_.find(id);
+  if (found == scans_.end() || !found->second.usable || found->second.locked) {
+    return std::nullopt;
+  }
+  const Scan& scan = found->second;
+  std::vector<int> others = members(scan.group);
+  std::erase(others, id);
+  if (others.empty()) {
+    return std::nullopt;
+  }
+  const std::vector<ModelScan> model = model_of(others);
+  const ModelFit fit =
+      judge_in_model(*scan.features.surface, model, scan.group_from_scanner, options_.search.fit);
+  const ScanSurface& surface = *scan.features.surface;
+  const std::optional<ScanMotion> motion = find_motion(surface, model, fit, options_.search.fit);
+  if (!motion) {
+    return std::nullopt;
+  }
+  // Rows that drift apart one by one look as if something had moved, too.
+  const std::optional<ScanStretch> stretch = find_stretch(surface, model, fit);
+  if (stretch && stretch->is_off()) {
+    ModelFit mended = fit;
+    mended.model_from_scanner = stretch->model_from_mended;
+    if (!find_motion(*stretch->mended, model, mended, options_.search.fit)) {
+      return Fault{motion->gained, reason_of(*stretch)};
+    }
+  }
+  return Fault{motion->gained, reason_of(*motion)};
+}
+
+void ScanModel::warn_of_stretched(const std::vector<int>& ids) const {
+  std::vector<std::string> warnings(ids.size());
+  parallel_for_each_index(
+      ids.size(),
+      [&](std::size_t k) {
+        const Scan& scan = scans_.at(ids[k]);
+        std::vector<int> others = ids;
+        std::erase(others, ids[k]);
+        const std::vector<ModelScan> model = model_of(others);
+        const ScanSurface& surface = *scan.features.surface;
+        const ModelFit fit = judge_in_model(surface, model, scan.group_from_scanner, options_.search.fit);
+        const std::optional<ScanStretch> stretch = find_stretch(surface, model, fit);
+        if (stretch && stretch->is_off()) {
+          warnings[k] = name_of(ids[k]) + ": " + reason_of(*stretch);
+        }
+      },
+      1);
+  for (const std::string& warning : warnings) {
+    if (!warning.empty()) {
+      log_warning(warning);
+    }
+  }
+}
+
+std::string ScanModel::name_of(int id) const {
+  const std::string& file = scans_.at(id).file;
+  return file.empty() ? "scan " + std::to_string(id) : file;
+}
+
+}  // namespace dubsar

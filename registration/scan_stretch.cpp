@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "registration/scan_stretch.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "core/parallel.h"
+#include "registration/nearest_usable.h"
+
+namespace dubsar {
+
+namespace {
+
+using Vector9d = Eigen::Matrix<double, 9, 1>;
+using Matrix9d = Eigen::Matrix<double, 9, 9>;
+
+/// Right scans of the bunny and the dragon show up to 0.003 along either axis, simulated tablets up to
+/// 0.0055.
+constexpr double kLeastStretch = 0.008;
+constexpr double kMostStretch = 0.1;   ///< beyond, the fit went astray
+constexpr double kMostSigma = 0.0004;  ///< of what is too little shared to tell
+
+/// A pose of the scan and a stretch of it about a centre in its own frame.
+struct Stretched {
+  RigidTransform model_from_scanner;
+  Eigen::Vector3d stretch{0, 0, 0};
+  Eigen::Vector3d center_mm{0, 0, 0};
+
+  [[nodiscard]] Eigen::Vector3d from_center(const Eigen::Vector3d& p_mm) const {
+    return (Eigen::Vector3d::Ones() + stretch).cwiseProduct(p_mm - center_mm);
+  }
+  /// The samples with the stretch taken off.
+  [[nodiscard]] std::unique_ptr<SurfaceLevel> taken_off(const SurfaceLevel& level) const {
+    auto out = std::make_unique<SurfaceLevel>();
+    out->spacing_mm = level.spacing_mm;
+    out->samples = level.samples;
+    for (SurfaceSample& sample : out->samples) {
+      sample.position_mm = (center_mm + from_center(sample.position_mm.cast<double>())).cast<float>();
+    }
+    return out;
+  }
+  [[nodiscard]] Eigen::Vector3d operator()(const Eigen::Vector3d& p_mm) const {
+    return model_from_scanner * (center_mm + from_center(p_mm));
+  }
+};
+
+struct Normals {
+  Matrix9d h = Matrix9d::Zero();
+  Vector9d g = Vector9d::Zero();
+  double weight = 0, radius2 = 0;
+};
+
+Normals normals_at(const Stretched& at, const SurfaceLevel& source, std::span<const IcpTarget> targets,
+                   double reach_mm, double kernel_mm) {
+  const Eigen::Vector3d center = at.model_from_scanner * at.center_mm;
+  return parallel_reduce_ordered(
+      source.samples.size(), 256, Normals{},
+      [&](std::size_t begin, std::size_t end) {
+        Normals out;
+        for (std::size_t k = begin; k < end; ++k) {
+          const SurfaceSample& sample = source.samples[k];
+          const Eigen::Vector3d own = sample.position_mm.cast<double>();
+          const Eigen::Vector3d p = at(own);
+          const Eigen::Vector3d n_from = at.model_from_scanner.rotation * sample.normal.cast<double>();
+          for (const IcpTarget& target : targets) {
+            const RigidTransform target_from_model = target.model_from_scanner.inverse();
+            const Eigen::Vector3f q = (target_from_model * p).cast<float>();
+            const std::int64_t found = nearest_usable(*target.level, q, static_cast<float>(reach_mm));
+            if (found < 0) {
+              continue;
+            }
+            const auto j = static_cast<std::size_t>(found);
+            const Eigen::Vector3d n_into =
+                target.model_from_scanner.rotation * target.level->normals[j].cast<double>();
+            if (n_from.dot(n_into) < 0.7) {
+              continue;
+            }
+            const Eigen::Vector3d n = (n_from + n_into).normalized();
+            const Eigen::Vector3d there =
+                target.model_from_scanner * Eigen::Vector3d(target.level->grid.point(j).cast<double>());
+            const double residual = n.dot(p - there);
+            const double w = static_cast<double>(sample.weight) * tukey_weight(residual, kernel_mm);
+            if (w <= 0) {
+              continue;
+            }
+            const Eigen::Vector3d arm = p - center;
+            Vector9d jacobian;
+            jacobian << arm.cross(n), n,
+                (at.model_from_scanner.rotation.transpose() * n).cwiseProduct(own - at.center_mm);
+            out.h.noalias() += w * jacobian * jacobian.transpose();
+            out.g += w * residual * jacobian;
+            out.weight += w;
+            out.radius2 += w * arm.squaredNorm();
+          }
+        }
+        return out;
+      },
+      [](Normals& into, const Normals& part) {
+        into.h += part.h;
+        into.g += part.g;
+        into.weight += part.weight;
+        into.radius2 += part.radius2;
+      });
+}
+
+}  // namespace
+
+std::optional<ScanStretch> find_stretch(const ScanSurface& scan, std::span<const ModelScan> model,
+                                        const ModelFit& fit) {
+  Stretched at{fit.model_from_scanner, {0, 0, 0}, scan.centroid_mm};
+  double sigma = 0;
+  for (const double sigmas : {12.0, 6.0, 3.0}) {
+    const bool wide = sigmas == 12.0;
+    const SurfaceLevel& level = wide ? *scan.medium : *scan.fine;
+    const std::vector<IcpTarget> targets =
+        targets_of(model, fit.targets, wide ? &ScanSurface::medium : &ScanSurface::fine);
+    const double kernel_mm = std::max(sigmas * fit.residual_sigma_mm, wide ? 0.2 * level.spacing_mm : 0.0);
+    const double reach_mm = std::max(2.0 * level.spacing_mm, 5.0 * kernel_mm);
+    for (int step = 0; step < 6; ++step) {
+      Normals sums = normals_at(at, level, targets, reach_mm, kernel_mm);
+      if (!(sums.weight > 0)) {
+        return std::nullopt;
+      }
+      const double radius2 = sums.radius2 / sums.weight;
+      const double hold = 1e-3 * sums.weight;
+      sums.h.diagonal().head<3>().array() += hold * radius2;
+      sums.h.diagonal().segment<3>(3).array() += hold;
+      sums.h.diagonal().tail<3>().array() += hold * radius2;
+      const Vector9d move = sums.h.ldlt().solve(-sums.g);
+      if (!move.allFinite()) {
+        return std::nullopt;
+      }
+      const Eigen::Vector3d center = at.model_from_scanner * at.center_mm;
+      const RigidTransform turn = RigidTransform::from_twist(move.head<3>(), Eigen::Vector3d::Zero());
+      RigidTransform& pose = at.model_from_scanner;
+      pose = RigidTransform{turn.rotation * pose.rotation,
+                            turn.rotation * (pose.translation_mm - center) + center + move.segment<3>(3)}
+                 .orthonormalised();
+      at.stretch += move.tail<3>();
+      const Vector9d variances = sums.h.inverse().diagonal();
+      sigma = fit.residual_sigma_mm * std::sqrt(std::max(variances[6], variances[7]));
+    }
+  }
+  // What would make it fit is the opposite of what is wrong with it.
+  ScanStretch out{-at.stretch.x(), -at.stretch.y(), sigma, std::make_unique<ScanSurface>(),
+                  at.model_from_scanner};
+  out.mended->fine = at.taken_off(*scan.fine);
+  out.mended->medium = at.taken_off(*scan.medium);
+  out.mended->noise_mm = scan.noise_mm;
+  out.mended->scale_mm = scan.scale_mm;
+  return out;
+}
+
+bool ScanStretch::is_off() const {
+  const double larger = std::max(std::abs(along_line), std::abs(along_motion));
+  return larger >= kLeastStretch && larger <= kMostStretch && sigma <= kMostSigma;
+}
+
+std::string reason_of(const ScanStretch& stretch) {
+  const auto percent = [](double share) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.1f %%", 100.0 * std::abs(share));
+    return std::string(text);
+  };
+  const double mean = 0.5 * (stretch.along_line + stretch.along_motion);
+  if (std::abs(stretch.along_line - stretch.along_motion) < kLeastStretch) {
+    return "it is " + percent(mean) + " too " + (mean > 0 ? "large" : "small") +
+           " against the other scans: its calibration is not theirs; verify the scanner, then scan it again";
+  }
+  const bool motion = std::abs(stretch.along_motion) > std::abs(stretch.along_line);
+  const double worse = motion ? stretch.along_motion : stretch.along_line;
+  return "it is " + percent(worse) + " too " + (worse > 0 ? "long" : "short") + " along " +
+         (motion ? "the motion against the other scans: the step of the stage, or the calibration, is off"
+                 : "the laser line against the other scans: the calibration is off") +
+         "; verify the scanner, then scan it again";
+}
+
+}  // namespace dubsar

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "registration/model_fit.h"
+
+namespace dubsar {
+
+/// How much larger a scan is than the others say, along two axes of its scanner; 0.01 is one per cent. Depth
+/// is not told: a face that is seen from above hardly holds it.
+struct ScanStretch {
+  double along_line = 0;    ///< the laser's line, x
+  double along_motion = 0;  ///< the stage's, y
+  double sigma = 0;         ///< of the worse determined one, if samples were independent
+  /// The scan's samples with it taken off, and where they then lie: for what else may be wrong.
+  std::unique_ptr<ScanSurface> mended;
+  RigidTransform model_from_mended;
+
+  /// Beyond what right scans were seen to show, and certain.
+  [[nodiscard]] bool is_off() const;
+};
+
+/// Fits the scan to the others with its lengths left free: a stage whose step is not what it says, or a scan
+/// of another calibration, is stretched against the rest, and a rigid fit hides half of it. `fit` is that of
+/// the whole scan in `model`. Nothing where too little is shared.
+[[nodiscard]] std::optional<ScanStretch> find_stretch(const ScanSurface& scan,
+                                                      std::span<const ModelScan> model, const ModelFit& fit);
+
+/// For people: what is off, and the mend.
+[[nodiscard]] std::string reason_of(const ScanStretch& stretch);
+
+}  // namespace dubsar

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+//
+// A scan whose lengths are not those of the others: a stage with another step, another calibration.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bench/support/true_scans.h"
+#include "registration/registrar.h"
+#include "registration/scan_stretch.h"
+
+namespace dubsar {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+constexpr double kSpacing_mm = 0.15;
+constexpr std::uint64_t kSeed = 71;
+constexpr std::size_t kStretched = 1;
+
+const std::vector<bench::TrueScan>& true_scans() {
+  static const std::vector<bench::TrueScan> scans =
+      bench::true_scans(bench::random_tablet(kSeed, "text", kSpacing_mm),
+                        {kSpacing_mm, 0.02, 12, {0, 2, 4}, kSeed, bench::Pins::kNone, 0});
+  return scans;
+}
+
+/// About its middle, as a scan comes out that was taken with wrong lengths.
+std::shared_ptr<const RangeGrid> stretched(const RangeGrid& grid, const Eigen::Vector3f& by) {
+  auto out = std::make_shared<RangeGrid>(grid);
+  Eigen::Vector3f middle = Eigen::Vector3f::Zero();
+  for (std::size_t i = 0; i < grid.size(); ++i) {
+    middle += grid.valid[i] != 0 ? grid.point(i) : Eigen::Vector3f(0, 0, 0);
+  }
+  middle /= static_cast<float>(grid.valid_count());
+  for (std::size_t i = 0; i < grid.size(); ++i) {
+    const Eigen::Vector3f p = by.cwiseProduct(grid.point(i) - middle) + middle;
+    out->x[i] = p.x();
+    out->y[i] = p.y();
+    out->z[i] = p.z();
+  }
+  return out;
+}
+
+struct Lengths {
+  const char* name;
+  Eigen::Vector3f by;
+  const char* reason;  ///< empty: nothing is off
+};
+
+class StretchedScan : public testing::TestWithParam<Lengths> {
+ protected:
+  /// What all say of registering the scans with that one stretched.
+  static std::string said() {
+    JobContext job;
+    Registrar registrar;
+    ::testing::internal::CaptureStderr();
+    for (std::size_t k = 0; k < true_scans().size(); ++k) {
+      const auto& grid = true_scans()[k].grid;
+      registrar.add(static_cast<int>(k), k == kStretched ? stretched(*grid, GetParam().by) : grid, nullptr,
+                    job);
+    }
+    const bool done = registrar.finalize(job).has_value();
+    std::string all = ::testing::internal::GetCapturedStderr();
+    EXPECT_TRUE(done);
+    for (const ScanPose& pose : registrar.poses()) {
+      all += pose.reason + "\n";
+    }
+    return all;
+  }
+};
+
+TEST_P(StretchedScan, IsMeasuredFromWhereItLies) {
+  std::vector<std::shared_ptr<const ScanSurface>> surfaces;
+  std::vector<ModelScan> others;
+  double scale_mm = 0;
+  for (std::size_t k = 0; k < true_scans().size(); ++k) {
+    const auto& grid = true_scans()[k].grid;
+    scale_mm = k == 0 ? surface_scale_mm(*grid) : scale_mm;
+    ScanSurfaceOptions options;
+    options.scale_mm = scale_mm;
+    surfaces.push_back(
+        make_scan_surface(k == kStretched ? *stretched(*grid, GetParam().by) : *grid, {}, options));
+    if (k != kStretched) {
+      others.push_back({surfaces.back().get(), true_scans()[k].tablet_from_scanner});
+    }
+  }
+  const ModelFit fit =
+      judge_in_model(*surfaces[kStretched], others, true_scans()[kStretched].tablet_from_scanner, {});
+  const std::optional<ScanStretch> found = find_stretch(*surfaces[kStretched], others, fit);
+  ASSERT_TRUE(found);
+  EXPECT_NEAR(found->along_line, static_cast<double>(GetParam().by.x()) - 1.0, 0.004);
+  EXPECT_NEAR(found->along_motion, static_cast<double>(GetParam().by.y()) - 1.0, 0.004);
+  EXPECT_EQ(found->is_off(), *GetParam().reason != '\0');
+}
+
+TEST_P(StretchedScan, IsTold) {
+  if (*GetParam().reason == '\0') {
+    EXPECT_THAT(said(), Not(HasSubstr("against the other scans")));
+  } else {
+    EXPECT_THAT(said(), HasSubstr(GetParam().reason));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Each, StretchedScan,
+    testing::Values(Lengths{"NotAtAll", {1.0F, 1.0F, 1.0F}, ""},
+                    Lengths{"TooLarge", {1.02F, 1.02F, 1.02F}, "too large against the other scans"},
+                    Lengths{"TooShortAStep", {1.0F, 0.97F, 1.0F}, "too short along the motion"},
+                    // One of two scans, and nothing tells which: said of either.
+                    Lengths{"TooLongALine", {1.02F, 1.0F, 1.0F}, "against the other scans"}),
+    [](const auto& one) { return std::string(one.param.name); });
+
+}  // namespace
+}  // namespace dubsar
