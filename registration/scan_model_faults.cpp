@@ -5,7 +5,6 @@
 
 #include "core/log.h"
 #include "core/parallel.h"
-
 #include "registration/scan_model.h"
 #include "registration/scan_motion.h"
 #include "registration/scan_stretch.h"

@@ -23,6 +23,9 @@ constexpr double kLeastStretch = 0.008;
 constexpr double kMostStretch = 0.1;   ///< beyond, the fit went astray
 constexpr double kMostSigma = 0.0004;  ///< of what is too little shared to tell
 
+/// A step that changes them by less is the last.
+constexpr double kSettled = 1e-4;
+
 /// A pose of the scan and a stretch of it about a centre in its own frame.
 struct Stretched {
   RigidTransform model_from_scanner;
@@ -142,6 +145,9 @@ std::optional<ScanStretch> find_stretch(const ScanSurface& scan, std::span<const
       at.stretch += move.tail<3>();
       const Vector9d variances = sums.h.inverse().diagonal();
       sigma = fit.residual_sigma_mm * std::sqrt(std::max(variances[6], variances[7]));
+      if (move.tail<3>().head<2>().cwiseAbs().maxCoeff() < kSettled) {
+        break;
+      }
     }
   }
   // What would make it fit is the opposite of what is wrong with it.
