@@ -36,9 +36,9 @@ std::string say_placement(const Rig& rig, const Placement& placement) {
   if (placement.free_pose) {
     return "arm " + degrees(tilt_of(placement)) + " off the vertical";
   }
-  std::string text = rig.has_turntable ? "turntable " + degrees(placement.turntable_rad) : std::string();
+  std::string text = rig.has_turntable ? "turntable to " + degrees(placement.turntable_rad) : std::string();
   if (rig.tilt_max_rad > rig.tilt_min_rad || text.empty()) {
-    text += (text.empty() ? "tilt " : ", tilt ") + degrees(placement.tilt_rad);
+    text += (text.empty() ? "tilt to " : ", tilt to ") + degrees(placement.tilt_rad);
   }
   return text;
 }

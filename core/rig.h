@@ -108,7 +108,7 @@ struct Placement {
 /// Angle of the scanner's axis from the vertical.
 [[nodiscard]] double tilt_of(const Placement& placement);
 
-/// A placement in a few words, for people: "turntable 40°, tilt 35°", "arm 40° off the vertical".
+/// A placement in a few words, for people: "turntable to 40°, tilt to 35°", "arm 40° off the vertical".
 [[nodiscard]] std::string say_placement(const Rig& rig, const Placement& placement);
 
 }  // namespace dubsar

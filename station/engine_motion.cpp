@@ -112,7 +112,7 @@ bool Engine::Impl::move_to(const Placement& target, const StageScene& on_stage, 
     way = safe_way(*rig, on_stage, present, target, options.device);
   }
   if (!way) {
-    way.error().what = "not driven to " + say_placement(*rig, target) + ": " + way.error().what;
+    way.error().what = "not driven (" + say_placement(*rig, target) + "): " + way.error().what;
     way.error().mend = "lay the tablet elsewhere or allow the rig more, then give the same command again";
     return refused(way.error());
   }

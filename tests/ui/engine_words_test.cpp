@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -70,8 +71,9 @@ TEST(EngineWords, EveryPhraseIsStillSaidByTheEngine) {
   ASSERT_GT(said.size(), 100000U);
   for (const EnginePhrase& phrase : engine_phrases()) {
     std::string english = phrase.english;
-    // Where to turn is put together of the face's name, and what a scan can do on an overlap of a word.
-    if (english.starts_with("turn the ")) {
+    // Where to turn is put together of the face's name, where an arm goes likewise, and what a scan can do on
+    // an overlap of a word.
+    if (english.starts_with("turn the ") || english.starts_with("arm to the side of ")) {
       continue;
     }
     for (const char* word : {"turn on it", "slide on it"}) {
@@ -134,6 +136,69 @@ TEST(EngineWords, RefusalsOfCorrectionsAndArtefactsAreGerman) {
             "den Laser auf dem Muster zeigen, 12 mm näher an der Kamera");
 }
 
+/// The string literals of a source that are more than a word.
+std::vector<std::string> sentences_in(const char* file) {
+  const std::string source = std::regex_replace(source_of(file), std::regex("//[^\\n]*|#include[^\\n]*"), "");
+  std::vector<std::string> out = said_by(source, R"re("([^"\n]*)")re");
+  std::erase_if(out,
+                [](const std::string& one) { return one.size() < 10 || one.find(' ') == std::string::npos; });
+  return out;
+}
+
+/// Every sentence of what the window shows of a run, and of why nothing is signed.
+TEST(EngineWords, NothingOfARunIsHalfGerman) {
+  const std::vector<std::string> no_sentence{"a command of pace came among those to the registrar",
+                                             "no session there",
+                                             "name the folder that a scan was stored in",
+                                             "pins labelled",
+                                             "labels of scan ",
+                                             "arm to the side of "};
+  for (const char* file : {"station/engine_misses.cpp", "station/engine_commands.cpp", "station/signing.cpp",
+                           "planning/motor_placements.cpp"}) {
+    int sentences = 0;
+    for (const std::string& sentence : sentences_in(file)) {
+      if (std::ranges::find(no_sentence, sentence) != no_sentence.end()) {
+        continue;
+      }
+      ++sentences;
+      for (const std::string& piece : pieces_of(sentence)) {
+        const std::string said = " " + piece;  // after the scan's number
+        const bool is_number = std::regex_match(piece, std::regex(" ?scans? "));
+        EXPECT_TRUE(is_number || translated(said, Language::kGerman) != said) << file << ": " << sentence;
+      }
+    }
+    EXPECT_GE(sentences, 3) << file;
+  }
+}
+
+TEST(EngineWords, WhoSetsAScanAsideSaysItInOneLanguage) {
+  const std::string said =
+      "something was in the way of scan 3: 12 % of it, where scan 2 looked too, stands in the air; it is set "
+      "aside (session restore puts it back)";
+  EXPECT_EQ(translated(said, Language::kGerman),
+            "etwas war im Weg von Scan 3: 12 % davon stehen in der Luft, wo auch Scan 2 hinsah; er ist "
+            "beiseitegelegt (ein Klick holt ihn zurück)");
+  EXPECT_EQ(translated(said, Language::kEnglish),
+            "something was in the way of scan 3: 12 % of it, where scan 2 looked too, stands in the air; it "
+            "is set aside (a click on it puts it back)");
+  EXPECT_EQ(translated("scans 1, 2 and 5 fit each other and not scan 0", Language::kGerman),
+            "Scans 1, 2 und 5 passen zueinander und nicht zu Scan 0");
+}
+
+TEST(EngineWords, NobodyInTheWindowIsToldToGiveACommand) {
+  for (const char* file : {"station/engine_misses.cpp", "station/engine_motion.cpp", "station/signing.cpp"}) {
+    for (const std::string& sentence : sentences_in(file)) {
+      for (const Language language : {Language::kEnglish, Language::kGerman}) {
+        const std::string shown = translated(sentence, language);
+        for (const char* of_commands :
+             {"command again", "session restore", "session drop", "--", "run dubsar"}) {
+          EXPECT_EQ(shown.find(of_commands), std::string::npos) << file << ": " << shown;
+        }
+      }
+    }
+  }
+}
+
 TEST(EngineWords, NoPhraseHidesALongerOneBehindIt) {
   const auto phrases = engine_phrases();
   for (std::size_t a = 0; a < phrases.size(); ++a) {
@@ -151,7 +216,7 @@ TEST(EngineWords, SentencesOfUnsureScansAreGerman) {
                  Language::kGerman),
       "die Flächen stimmen überein in nur 41 % der Überlappung; mit mehr Überlappung neu scannen, oder "
       "drei Stellen in beiden Scans anklicken");
-  EXPECT_EQ(translated("scan 4 is taken out", Language::kGerman), "scan 4 ist entfernt");
+  EXPECT_EQ(translated("scan 4 is taken out", Language::kGerman), "Scan 4 ist entfernt");
 }
 
 }  // namespace

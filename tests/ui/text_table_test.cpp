@@ -8,6 +8,9 @@
 #include <regex>
 #include <string>
 
+#include "core/rig.h"
+#include "core/units.h"
+
 namespace dubsar::ui {
 namespace {
 
@@ -52,6 +55,14 @@ TEST(TextTable, TheEnginesWordsAreTranslatedAsFarAsTheyAreKnown) {
   EXPECT_EQ(translated(said, Language::kEnglish), said);
   EXPECT_EQ(translated(said, Language::kGerman),
             "die Rückseite zur Kamera drehen, 90°; dann Drehteller auf 40°, Neigung auf 52°");
+  Rig rig;
+  rig.has_turntable = true;
+  rig.tilt_max_rad = 1;
+  Placement placement;
+  placement.turntable_rad = rad_from_deg(40.0);
+  placement.tilt_rad = rad_from_deg(-20.0);
+  EXPECT_EQ(translated(say_placement(rig, placement), Language::kGerman),
+            "Drehteller auf 40°, Neigung auf -20°");
   EXPECT_EQ(translated("something new", Language::kGerman), "something new");
 }
 

@@ -3,11 +3,11 @@
 #include "ui/operator/calibration_dialog.h"
 
 #include <algorithm>
-#include <charconv>
 #include <filesystem>
 
 #include "ui/gl/gl_window.h"
 #include "ui/operator/camera_dialog.h"
+#include "ui/shell/typed_number.h"
 
 namespace dubsar::ui {
 
@@ -18,12 +18,6 @@ constexpr const char* kUsualBoard = "chessboard:9x6:25";
 
 void say(const Eigen::Vector4f& colour, const std::string& line) {
   coloured_text(colour, line.c_str());
-}
-
-std::optional<double> number_in(const std::string& text) {
-  double value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return error == std::errc() && end == text.data() + text.size() ? std::optional(value) : std::nullopt;
 }
 
 void draw_outcome(UiContext& ui, const VerifyOutcome& outcome) {
@@ -140,13 +134,13 @@ void CalibrationDialog::draw_stage(UiContext& ui) {
   short_text(ui, "temperature", temperature_, ui.px(5));
   ImGui::SameLine();
   ImGui::TextUnformatted(ui.text(Text::kTemperature));
-  calibrate_.temperature_c = number_in(temperature_);
+  calibrate_.temperature_c = typed_number(temperature_);
 }
 
 void CalibrationDialog::draw_shots(UiContext& ui) {
   const auto view = session_.camera();
   const bool may = view && view->image && !shooting_.valid() && !calibrate_.folder.empty();
-  const std::optional<double> position = number_in(position_);
+  const std::optional<double> position = typed_number(position_);
   const bool mirror = motion_ == MotionKind::kGalvanometer;
   const auto offer = [&](const char* name, Text text, CalibrationShot shot, bool enabled) {
     if (plain_button(ui, name, ui.text(text), may && enabled)) {

@@ -3,10 +3,10 @@
 #include "ui/operator/pin_dialog.h"
 
 #include <algorithm>
-#include <charconv>
 
 #include "ui/operator/grid_places.h"
 #include "ui/operator/operator_screen.h"
+#include "ui/shell/typed_number.h"
 
 namespace dubsar::ui {
 
@@ -17,9 +17,7 @@ constexpr double kUsualTipMm = 1.0;
 
 /// 0 when the text is no length.
 double diameter_of(const std::string& text) {
-  double value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return error == std::errc() && end == text.data() + text.size() && value > 0 ? value : 0;
+  return std::max(0.0, typed_number(text).value_or(0));
 }
 
 /// From what of a ball is seen to its centre, or back: pins stand between the scanner and their centres.

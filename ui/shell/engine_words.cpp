@@ -21,7 +21,20 @@ constexpr EnginePhrase kPhrases[] = {
     {"turn the right edge towards the camera", "den rechten Rand zur Kamera drehen"},
     {"turn the top edge towards the camera", "den oberen Rand zur Kamera drehen"},
     {"turn the bottom edge towards the camera", "den unteren Rand zur Kamera drehen"},
+    {"leave the tablet as it lies", "die Tafel liegen lassen"},
+    {"turn the tablet where it lies, ", "die Tafel drehen, wo sie liegt, "},
+    {" counter-clockwise seen from the camera", " gegen den Uhrzeigersinn, von der Kamera aus"},
+    {" clockwise seen from the camera", " im Uhrzeigersinn, von der Kamera aus"},
     {"; then ", "; dann "},
+    {"arm straight above, rolled ", "Arm senkrecht darüber, gerollt um "},
+    {"arm to the side of the obverse", "Arm zur Seite der Vorderseite"},
+    {"arm to the side of the reverse", "Arm zur Seite der Rückseite"},
+    {"arm to the side of the left edge", "Arm zur Seite des linken Rands"},
+    {"arm to the side of the right edge", "Arm zur Seite des rechten Rands"},
+    {"arm to the side of the top edge", "Arm zur Seite des oberen Rands"},
+    {"arm to the side of the bottom edge", "Arm zur Seite des unteren Rands"},
+    {" off the vertical, rolled ", " aus der Senkrechten, gerollt um "},
+    {" off the vertical", " aus der Senkrechten"},
     {"turntable to", "Drehteller auf"},
     {"tilt to", "Neigung auf"},
     // the emergency stop
@@ -100,6 +113,7 @@ constexpr EnginePhrase kPhrases[] = {
     {" has no hint any more", " hat keinen Hinweis mehr"},
     {" has a hint", " hat einen Hinweis"},
     {" is unlocked", " ist gelöst"},
+    {"the scan is locked", "der Scan ist festgehalten"},
     {" is locked", " ist festgehalten"},
     {"the pins of scan ", "die Nadeln von Scan "},
     {" are labelled", " sind benannt"},
@@ -108,13 +122,67 @@ constexpr EnginePhrase kPhrases[] = {
      " Scans sind da, so viele, wie zu machen waren; --max-scans erlaubt mehr"},
     {"the half scan is kept: ", "der halbe Scan ist aufgehoben: "},
     {" is not taken up: ", " wird nicht aufgenommen: "},
+    {" shows much more than what is known; the same view is scanned once more, to see whether something was "
+     "in the way",
+     " zeigt viel mehr, als bekannt ist; dieselbe Ansicht wird noch einmal gescannt, um zu sehen, ob etwas "
+     "im Weg war"},
     {"; the same view is scanned once more", "; dieselbe Ansicht wird noch einmal gescannt"},
     {"; the next view shows more of what is known",
      "; die nächste Ansicht zeigt mehr von dem, was bekannt ist"},
     {"; it is set aside (session restore puts it back)",
      "; er ist beiseitegelegt (ein Klick holt ihn zurück)"},
+    {"; the view of scan ", "; die Ansicht von Scan "},
+    {" is scanned once more, to see which of them is right",
+     " wird noch einmal gescannt, um zu sehen, welcher von beiden stimmt"},
+    {" fit each other and not ", " passen zueinander und nicht zu "},
+    {": something was in the way before, or another tablet lies there now",
+     ": vorher war etwas im Weg, oder jetzt liegt eine andere Tafel dort"},
     {"something was in the way of scan ", "etwas war im Weg von Scan "},
+    {" % of it, where scan ", " % davon stehen in der Luft, wo auch Scan "},
+    {" looked too, stands in the air", " hinsah"},
     {"something was in the way", "etwas war im Weg"},
+    {"the limits exclude every view: ", "die Grenzen schließen jede Ansicht aus: "},
+    {"no place that the arm reaches is within them", "keine Stelle, die der Arm erreicht, liegt darin"},
+    {"allow some of what the device can do, or give the tablet's size",
+     "etwas von dem erlauben, was das Gerät kann, oder die Größe der Tafel nennen"},
+    {"not driven (", "nicht gefahren ("},
+    {"lay the tablet elsewhere or allow the rig more, then give the same command again",
+     "die Tafel anders legen oder dem Gerät mehr erlauben, dann weiter"},
+    {"a scan in whose middle the program ended is kept: ",
+     "ein Scan, in dessen Mitte das Programm endete, ist aufgehoben: "},
+    {" rows, as scan ", " Zeilen, als Scan "},
+    {"there is no hint for scan ", "es gibt keinen Hinweis für Scan "},
+    {" is not locked", " ist nicht festgehalten"},
+    // why a scan is out
+    {"taken out by the operator", "vom Bearbeiter entfernt"},
+    {"to be scanned again", "wird neu gescannt"},
+    // why nothing is signed
+    {" was never judged", " wurde nie beurteilt"},
+    {"run dubsar register and dubsar plan on it first", "zuerst weiter, dann abschließen"},
+    {"run dubsar plan on it, read what it says, and sign again",
+     "weiter, abschließen, lesen, was da steht, und noch einmal unterschreiben"},
+    {"it has no verdict yet", "es gibt noch kein Urteil"},
+    {"the stored red map is not what its scans and poses give: ",
+     "das aufgehobene Urteil ist nicht das, was Scans und Lagen ergeben: "},
+    {"scan on, or sign it as it is with --incomplete REASON",
+     "weiter scannen, oder als unvollständig unterschreiben, mit Grund"},
+    {"not conclusive: about ", "nicht vollständig: ungefähr "},
+    {" mm2 are still red", " mm² sind noch rot"},
+    {"the session is damaged", "die Sitzung ist beschädigt"},
+    {"see dubsar verify and bring back what is damaged, or sign with --incomplete REASON",
+     "zurückholen, was beschädigt ist (dubsar verify nennt es), oder als unvollständig unterschreiben"},
+    {"bring it back, take the scan out, or sign with --incomplete REASON",
+     "zurückholen, den Scan entfernen, oder als unvollständig unterschreiben"},
+    // why a hint is not taken
+    {" mm from the nearest sample of scan ", " mm vom nächsten Messpunkt von Scan "},
+    {"no other scan has a place that the pose could be related to",
+     "kein anderer Scan hat eine Lage, auf die sich diese beziehen könnte"},
+    {"it is the only scan", "es ist der einzige Scan"},
+    {"there is nothing that it could lie on; scan again first",
+     "es gibt nichts, worauf er liegen könnte; zuerst noch einmal scannen"},
+    {"unlock it first", "ihn zuerst lösen"},
+    {" is not registered: it has no place to keep",
+     " ist nicht eingepasst: es gibt keine Lage, die festzuhalten wäre"},
     {"the scan has no sample at all: nothing stands before the scanner",
      "der Scan hat keinen Messpunkt: nichts steht vor dem Scanner"},
     {"see that the tablet lies in the measuring field, then give the same command again",
@@ -241,6 +309,7 @@ constexpr EnginePhrase kPhrases[] = {
     {" mm large, perhaps its numbers are metres", " mm groß, vielleicht sind seine Zahlen Meter"},
     {"dubsar mesh convert --unit m makes millimetres of them",
      "dubsar mesh convert --unit m macht Millimeter daraus"},
+    {" rows", " Zeilen"},
 };
 
 /// What is under way. Single words, some of them: they are replaced where they are all that is said, for
@@ -294,25 +363,6 @@ std::span<const EnginePhrase> engine_stages() {
 
 std::span<const EnginePhrase> engine_phrases() {
   return kPhrases;
-}
-
-std::string translated(const std::string& english, Language language) {
-  if (language == Language::kEnglish) {
-    return english;
-  }
-  for (const auto& [from, to] : kStages) {
-    if (english == from) {
-      return to;
-    }
-  }
-  std::string out = english;
-  for (const auto& [from, to] : kPhrases) {
-    for (std::size_t at = out.find(from); at != std::string::npos; at = out.find(from, at)) {
-      out.replace(at, std::string_view(from).size(), to);
-      at += std::string_view(to).size();
-    }
-  }
-  return out;
 }
 
 }  // namespace dubsar::ui

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "ui/shell/typed_number.h"
+
+#include <gtest/gtest.h>
+
+namespace dubsar::ui {
+namespace {
+
+TEST(TypedNumber, TakesAPointOrAComma) {
+  EXPECT_EQ(typed_number("1.5"), 1.5);
+  EXPECT_EQ(typed_number("1,5"), 1.5);
+  EXPECT_EQ(typed_number(" -20,25 "), -20.25);
+}
+
+TEST(TypedNumber, WhatIsNoNumberIsNone) {
+  for (const char* text : {"", " ", "mm", "1,2,3", "1.000,5", "1.5 mm", "inf", "nan"}) {
+    EXPECT_EQ(typed_number(text), std::nullopt) << text;
+  }
+}
+
+}  // namespace
+}  // namespace dubsar::ui

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+// Sentences of the engine in the words of the window.
+#include <regex>
+#include <string_view>
+#include <utility>
+
+#include "ui/shell/engine_words.h"
+#include "ui/shell/text_table.h"
+
+namespace dubsar::ui {
+
+namespace {
+
+/// What the engine says to somebody at the command line, as the window says it.
+constexpr std::pair<std::string_view, std::string_view> kInWindow[] = {
+    {" (session restore puts it back)", " (a click on it puts it back)"},
+    {"take the wrong ones out (session drop), then give the same command again",
+     "take the wrong ones out, then go on"},
+    {", then give the same command again", ", then go on"},
+    {"; --max-scans allows more", ""},
+    {", or replace it with --force", ""},
+    {"run dubsar register and dubsar plan on it first", "go on and finish first"},
+    {"run dubsar plan on it, read what it says, and sign again",
+     "go on, finish, read what it says, and sign again"},
+    {"sign it as it is with --incomplete REASON", "sign it as incomplete, with the reason"},
+    {"sign with --incomplete REASON", "sign it as incomplete, with the reason"},
+};
+
+template <class Pairs>
+void replace_each(std::string& text, const Pairs& pairs) {
+  for (const auto& [from, to] : pairs) {
+    for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at)) {
+      text.replace(at, std::string_view(from).size(), to);
+      at += std::string_view(to).size();
+    }
+  }
+}
+
+/// "scan 4" and "scans 4 and 5", wherever they stand.
+std::string with_german_scans(const std::string& text) {
+  static const std::regex kScan("\\bscan(s?) (?=[0-9])");
+  static const std::regex kAnd("(\\bScans [0-9, ]*[0-9]) and (?=[0-9])");
+  return std::regex_replace(std::regex_replace(text, kScan, "Scan$1 "), kAnd, "$1 und ");
+}
+
+}  // namespace
+
+std::string translated(const std::string& english, Language language) {
+  std::string out = english;
+  if (language == Language::kEnglish) {
+    replace_each(out, kInWindow);
+    return out;
+  }
+  for (const auto& [from, to] : engine_stages()) {
+    if (english == from) {
+      return to;
+    }
+  }
+  replace_each(out, engine_phrases());
+  return with_german_scans(out);
+}
+
+}  // namespace dubsar::ui

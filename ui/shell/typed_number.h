@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <optional>
+#include <string>
+
+namespace dubsar::ui {
+
+/// What somebody typed as a number, all of it, with a decimal point or a comma and blanks around it; nothing
+/// where it is none, or not finite.
+[[nodiscard]] std::optional<double> typed_number(const std::string& text);
+
+}  // namespace dubsar::ui
