@@ -259,7 +259,8 @@ struct Engine::Impl {
   void register_all(JobContext& job);
   /// Takes out scans that show a hand or the like, that one included, and says so; then what they stood in
   /// the way of is tried again. engine_misses.cpp
-  ScanPose set_intruders_aside(const StationScan& scan, ScanPose pose, JobContext& job);
+  ScanPose set_intruders_aside(const StationScan& scan, ScanPose pose, std::vector<SetAside>& aside,
+                               JobContext& job);
   void plan_all(JobContext& job);
   std::vector<ScanPose> named_poses() const;
   // engine_commands.cpp

@@ -40,7 +40,8 @@ Taken Engine::Impl::refuse_empty() {
   return source->capabilities().finite ? Taken::kNothing : Taken::kEnd;
 }
 
-ScanPose Engine::Impl::set_intruders_aside(const StationScan& scan, ScanPose pose, JobContext& job) {
+ScanPose Engine::Impl::set_intruders_aside(const StationScan& scan, ScanPose pose,
+                                           std::vector<SetAside>& aside, JobContext& job) {
   intruders.add(scan);
   while (!job.cancelled()) {
     const std::optional<Intruder> found = intruders.look(scan.id, registrar.poses());
@@ -56,6 +57,7 @@ ScanPose Engine::Impl::set_intruders_aside(const StationScan& scan, ScanPose pos
       break;
     }
     registrar.remove(found->id, job);
+    aside.push_back({found->id, why});
     emit(Notice{why + "; it is set aside (session restore puts it back)"});
     if (found->id == scan.id) {
       pose = ScanPose{};

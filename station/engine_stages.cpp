@@ -237,7 +237,8 @@ void Engine::Impl::register_all(JobContext& job) {
       names.erase(scan.id);
       return;
     }
-    pose = set_intruders_aside(scan, std::move(pose), job);
+    std::vector<SetAside> aside;
+    pose = set_intruders_aside(scan, std::move(pose), aside, job);
     pose.file = scan.file;
     std::vector<ScanPose> poses = named_poses();
     // Whatever ends the run, what it found until now is in the session.
@@ -250,7 +251,7 @@ void Engine::Impl::register_all(JobContext& job) {
       const std::scoped_lock lock(mutex);
       last_scan_taken_up = pose.status == PoseStatus::kRegistered;
     }
-    emit(ScanPlaced{pose, poses, scan.measured, scan.grid, scan.flags});
+    emit(ScanPlaced{pose, poses, scan.measured, scan.grid, scan.flags, std::move(aside)});
     queues->to_plan.push({std::move(scan), std::move(poses), plan_now, true, is_resumed});
   };
   for (std::size_t k = 0; k < resumed.size() && !job.cancelled(); ++k) {

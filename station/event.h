@@ -36,6 +36,11 @@ struct ScanStored {
   std::string file;
   std::int64_t samples = 0;
 };
+/// A scan that the engine has dropped by itself: what was in its way.
+struct SetAside {
+  int id = 0;
+  std::string why;
+};
 /// Registration has judged the scan; relaxation may have moved the others.
 struct ScanPlaced {
   ScanPose pose;
@@ -43,6 +48,7 @@ struct ScanPlaced {
   std::shared_ptr<const RangeGrid> measured;  ///< as it came, pins and all
   std::shared_ptr<const RangeGrid> grid;      ///< the tablet alone
   std::shared_ptr<const SampleFlags> flags;   ///< of its samples, as the scan alone gives them
+  std::vector<SetAside> set_aside;            ///< since it came: itself, or earlier ones
 };
 /// What the operator asked for is done and stored; the poses are those that follow from it.
 struct OperatorObeyed {

@@ -40,7 +40,8 @@ void LiveSession::follow(const std::vector<ScanPose>& poses) {
     const auto pose = std::ranges::find(poses, scan.id, &ScanPose::id);
     if (pose != poses.end()) {
       scan.pose = *pose;
-      scan.dropped = false;
+      scan.dropped = scan.set_aside = false;
+      scan.note.clear();
     } else if (scan.pose) {  // it was judged, and is no longer among them
       scan.pose.reset();
       scan.dropped = true;
@@ -133,19 +134,20 @@ void LiveSession::hear(const Event& event) {
       show_grid(placed->pose.id, *placed->measured, *placed->grid, *placed->flags);
     }
     const std::scoped_lock lock(mutex_);
-    LiveScan& scan = scan_of(placed->pose.id);
-    scan.file = placed->pose.file;
+    scan_of(placed->pose.id).file = placed->pose.file;
     follow(placed->all);
-    if (placed->pose.status == PoseStatus::kRegistered) {
+    for (const SetAside& one : placed->set_aside) {
+      LiveScan& scan = scan_of(one.id);
+      scan.dropped = scan.set_aside = true;
+      scan.note = one.why;
+      scan.pose.reset();
+    }
+    // The notice of what was set aside came before.
+    if (placed->pose.status == PoseStatus::kRegistered && placed->set_aside.empty()) {
       state_.notice.clear();
     }
     if (state_.phase == LivePhase::kWaiting) {
       state_.last_not_taken_up = placed->pose.status != PoseStatus::kRegistered;
-    }
-    if (std::ranges::find(placed->all, placed->pose.id, &ScanPose::id) == placed->all.end()) {
-      scan.dropped = true;  // something was in its way
-      scan.note = placed->pose.reason;
-      scan.pose.reset();
     }
   } else {
     const std::scoped_lock lock(mutex_);

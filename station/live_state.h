@@ -49,6 +49,7 @@ struct LiveScan {
   std::int64_t samples = 0;
   std::optional<ScanPose> pose;  ///< nothing while it is judged
   bool dropped = false;
+  bool set_aside = false;  ///< by the run that goes on: something was in its way
   bool damaged = false;
   bool hinted = false;  ///< the operator has said where it lies
   std::string note;     ///< why it was dropped

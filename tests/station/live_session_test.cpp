@@ -140,6 +140,34 @@ TEST(LiveSession, TakingAScanOutMovesNothingByItself) {
   ASSERT_TRUE(followed.wait_for_rest());
 }
 
+/// A hand in the first scan is seen only when others have looked where it was.
+TEST(LiveSession, AScanThatIsSetAsideLaterSaysWhy) {
+  const test::TemporaryFolder folder;
+  Followed followed("sim:?seed=2&size=24x20x10&spacing=0.3&intrude=hand@0", folder.path() / "s");
+  followed.session.scan_now();
+  const auto set_aside = [](const LiveState& s) { return !s.scans.empty() && s.scans[0].set_aside; };
+  for (int turn = 0; turn < 4; ++turn) {
+    ASSERT_TRUE(followed.wait_until(
+        [&](const LiveState& s) { return set_aside(s) || s.phase == LivePhase::kWaiting; }));
+    if (set_aside(followed.session.state())) {
+      break;
+    }
+    followed.session.scan_now();
+    ASSERT_TRUE(followed.wait_until(
+        [&](const LiveState& s) { return set_aside(s) || s.phase != LivePhase::kWaiting; }));
+  }
+  const LiveState state = followed.session.state();
+  ASSERT_TRUE(set_aside(state));
+  EXPECT_TRUE(state.scans[0].dropped);
+  EXPECT_THAT(state.scans[0].note, HasSubstr("something was in the way of scan 0"));
+  EXPECT_THAT(state.notice, HasSubstr("something was in the way of scan 0"));
+  followed.session.ask(RestoreScan{0});
+  ASSERT_TRUE(followed.wait_until([](const LiveState& s) { return !s.scans[0].dropped; }));
+  EXPECT_EQ(followed.session.state().scans[0].note, "");
+  followed.session.stop();
+  ASSERT_TRUE(followed.wait_for_rest());
+}
+
 double apart_rad(const RigidTransform& a, const RigidTransform& b) {
   return Eigen::AngleAxisd(a.rotation.transpose() * b.rotation).angle();
 }

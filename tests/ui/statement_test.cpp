@@ -77,6 +77,78 @@ TEST(Statement, AnUnsureScanIsToldWithItsReason) {
   const Statement s = statement_of(state, true, Language::kEnglish);
   EXPECT_EQ(s.headline, "Scan 4 is unsure");
   EXPECT_THAT(s.detail, HasSubstr("The overlap is too small."));
+  EXPECT_TRUE(s.may_point);
+}
+
+/// A scanner that nothing drives: what the red map proposes is all that is known of the next view.
+TEST(Statement, WithoutMotorsTheRedMapSaysHowToTurn) {
+  LiveState state = with_scan(PoseStatus::kRegistered);
+  state.phase = LivePhase::kWaiting;
+  auto map = std::make_shared<RedMap>(*map_with(12));
+  map->scans.push_back({});
+  map->scans.back().id = 4;
+  NextView next;
+  next.say = "turn the reverse towards the camera, 90°";
+  map->next.push_back(next);
+  state.red_map = map;
+  const Statement s = statement_of(state, true, Language::kEnglish);
+  EXPECT_EQ(s.headline, "Turn the reverse towards the camera, 90°");
+  EXPECT_THAT(s.detail, HasSubstr("Then scan"));
+  EXPECT_TRUE(s.may_scan);
+  EXPECT_EQ(statement_of(state, true, Language::kGerman).headline, "Die Rückseite zur Kamera drehen, 90°");
+  // A scan later, while that one is judged and until the map tells of it.
+  LiveScan another;
+  another.id = 5;
+  state.scans.push_back(another);
+  EXPECT_THAT(statement_of(state, true, Language::kEnglish).headline, HasSubstr("Working out"));
+  EXPECT_TRUE(statement_of(state, true, Language::kEnglish).may_scan);
+  state.scans.back().pose = state.scans.front().pose;
+  EXPECT_THAT(statement_of(state, true, Language::kEnglish).headline, HasSubstr("Working out"));
+  map->scans.push_back({});
+  map->scans.back().id = 5;
+  EXPECT_THAT(statement_of(state, true, Language::kEnglish).headline, HasSubstr("Turn the reverse"));
+}
+
+TEST(Statement, AFailedScanIsNotCalledUnsure) {
+  LiveState state = with_scan(PoseStatus::kFailed);
+  state.phase = LivePhase::kWaiting;
+  state.last_not_taken_up = true;
+  const Statement s = statement_of(state, true, Language::kEnglish);
+  EXPECT_EQ(s.headline, "No place for scan 4");
+  EXPECT_TRUE(s.may_point);
+}
+
+TEST(Statement, AScanThatWasSetAsideIsNamedAndNoOther) {
+  LiveState state = with_scan(PoseStatus::kRegistered);
+  state.phase = LivePhase::kWaiting;
+  state.last_not_taken_up = true;
+  LiveScan aside;
+  aside.id = 5;
+  aside.dropped = aside.set_aside = true;
+  aside.note = "something was in the way of scan 5: 12 % of it, where scan 4 looked too, stands in the air";
+  state.scans.push_back(aside);
+  const Statement s = statement_of(state, true, Language::kEnglish);
+  EXPECT_EQ(s.headline, "Scan 5 is set aside");
+  EXPECT_THAT(s.detail, HasSubstr("Something was in the way"));
+  EXPECT_FALSE(s.may_point) << "there is nothing to point at";
+  EXPECT_THAT(statement_of(state, true, Language::kGerman).detail, HasSubstr("wo auch Scan 4 hinsah"));
+  // One that the operator took out is nothing to ask about.
+  state.scans.back().set_aside = false;
+  EXPECT_EQ(statement_of(state, true, Language::kEnglish).headline.find("unsure"), std::string::npos);
+}
+
+TEST(Statement, AFailedVerificationIsNotCalledAMissingOne) {
+  LiveState state;
+  state.care = RigCare{};
+  EXPECT_THAT(statement_of(state, true, Language::kEnglish).detail, HasSubstr("not measured today"));
+  state.care->last = VerificationEntry{};
+  state.care->last->passed = false;
+  state.care->age_days = 0.1;
+  const Statement s = statement_of(state, true, Language::kEnglish);
+  EXPECT_THAT(s.detail, HasSubstr("FAILED"));
+  EXPECT_THAT(s.detail, HasSubstr("measure it again"));
+  EXPECT_EQ(s.tone, Tone::kBad);
+  EXPECT_THAT(statement_of(state, true, Language::kGerman).detail, HasSubstr("DURCHGEFALLEN"));
 }
 
 TEST(Statement, OnlyWhatIsThereMayBeSigned) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright The Dubsar developers
 // What is asked in a box of its own: the window's settings, what tablet it is, and the signature.
+#include <GLFW/glfw3.h>
+
 #include <algorithm>
 
 #include "ui/operator/operator_screen.h"
@@ -27,10 +29,12 @@ bool begin_box(UiContext& ui, const char* title, const char* id, bool& open, flo
   return true;
 }
 
-/// The button that a box is for; enter does the same, but not the one that has opened the box.
+/// The button that a box is for; the keys and the pedal that have opened the box do the same when they are
+/// pressed again. In a line that is typed into, end goes to its end.
 bool confirmed(UiContext& ui, const char* name, Text text, bool enough) {
-  const bool by_key =
-      enough && ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Enter), false) && !ImGui::IsWindowAppearing();
+  const bool pressed = any_pressed({GLFW_KEY_ENTER, GLFW_KEY_KP_ENTER, GLFW_KEY_F11}) ||
+                       (!ImGui::GetIO().WantTextInput && any_pressed({GLFW_KEY_END}));
+  const bool by_key = enough && pressed && !ImGui::IsWindowAppearing();
   return plain_button(ui, name, ui.text(text), enough) || by_key;
 }
 
@@ -105,7 +109,8 @@ void OperatorScreen::draw_tablet(UiContext& ui) {
   const bool close = plain_button(ui, "close-tablet", ui.text(Text::kClose), cdli_good);
   ImGui::SameLine();
   const bool next = plain_button(ui, "next-tablet", fmt::format("{}  N", ui.text(Text::kNextTablet)).c_str(),
-                                 cdli_good && may_leave());
+                                 cdli_good && may_leave()) ||
+                    (cdli_good && may_leave() && !ImGui::GetIO().WantTextInput && any_pressed({GLFW_KEY_N}));
   if (close || next || left_line) {
     TabletRecord said = record_;
     said.cdli = cdli_good ? record_.cdli : said_record_.cdli;

@@ -17,14 +17,6 @@
 
 namespace dubsar::ui {
 
-namespace {
-
-bool pressed(std::initializer_list<int> keys) {
-  return std::ranges::any_of(keys, [](int key) { return ImGui::IsKeyPressed(key, false); });
-}
-
-}  // namespace
-
 std::vector<unsigned char> coloured(const GridPicture& picture, const UiContext& ui) {
   std::vector<unsigned char> out(picture.shade.size() * 3);
   const Eigen::Vector3f ground = 255 * (ui.preferences.dark ? Eigen::Vector3f(0.08F, 0.08F, 0.09F)
@@ -148,8 +140,7 @@ void OperatorScreen::draw(UiContext& ui, ImVec2 size) {
   draw_statement(ui, statement, {room.x, top});
   draw_left(ui, {left, middle});
   ImGui::SameLine();
-  draw_model(ui, {room.x - left - right - 2 * ImGui::GetStyle().ItemSpacing.x, middle},
-             asks_for_places(statement));
+  draw_model(ui, {room.x - left - right - 2 * ImGui::GetStyle().ItemSpacing.x, middle}, statement.may_point);
   const ImVec2 model_end = ImGui::GetItemRectMax();
   ImGui::SameLine();
   draw_right(ui, {right, middle});
@@ -218,13 +209,13 @@ void OperatorScreen::act(const Statement& statement, const UiContext& ui) {
     return;
   }
   // Keys, and what foot pedals send: F9 to F11, or page down, page up and end.
-  if (statement.may_scan && pressed({GLFW_KEY_SPACE, GLFW_KEY_F9, GLFW_KEY_PAGE_DOWN})) {
+  if (statement.may_scan && any_pressed({GLFW_KEY_SPACE, GLFW_KEY_F9, GLFW_KEY_PAGE_DOWN})) {
     session_.scan_now();
-  } else if (statement.may_next && pressed({GLFW_KEY_SPACE, GLFW_KEY_F9, GLFW_KEY_PAGE_DOWN})) {
+  } else if (statement.may_next && any_pressed({GLFW_KEY_SPACE, GLFW_KEY_F9, GLFW_KEY_PAGE_DOWN})) {
     open_next();
-  } else if (statement.may_undo && pressed({GLFW_KEY_BACKSPACE, GLFW_KEY_F10, GLFW_KEY_PAGE_UP})) {
+  } else if (statement.may_undo && any_pressed({GLFW_KEY_BACKSPACE, GLFW_KEY_F10, GLFW_KEY_PAGE_UP})) {
     undo();
-  } else if (pressed({GLFW_KEY_ENTER, GLFW_KEY_KP_ENTER, GLFW_KEY_F11, GLFW_KEY_END})) {
+  } else if (any_pressed({GLFW_KEY_ENTER, GLFW_KEY_KP_ENTER, GLFW_KEY_F11, GLFW_KEY_END})) {
     if (statement.may_sign) {
       open_signing(ui);
     } else if (statement.may_finish) {
@@ -232,17 +223,13 @@ void OperatorScreen::act(const Statement& statement, const UiContext& ui) {
     } else if (statement.may_pack) {
       open_package();
     }
-  } else if (may_leave() && pressed({GLFW_KEY_N})) {
+  } else if (may_leave() && any_pressed({GLFW_KEY_N})) {
     open_next();
-  } else if (statement.may_stop && pressed({GLFW_KEY_ESCAPE})) {
+  } else if (statement.may_stop && any_pressed({GLFW_KEY_ESCAPE})) {
     session_.stop();
-  } else if (asks_for_places(statement) && pressed({GLFW_KEY_P})) {
+  } else if (statement.may_point && any_pressed({GLFW_KEY_P})) {
     open_pairs();
   }
-}
-
-bool OperatorScreen::asks_for_places(const Statement& statement) const {
-  return statement.may_scan && state_.phase == LivePhase::kWaiting && state_.last_not_taken_up;
 }
 
 /// For the newest scan that is not sure.
@@ -304,8 +291,10 @@ void OperatorScreen::draw_model(UiContext& ui, ImVec2 size, bool asks_for_places
   look.occlusion = false;
   look.red = ui.colours.red.head<3>();
   look.amber = ui.colours.amber.head<3>();
-  if (!model_has_red_) {
-    look.overlay = Overlay::kFlags;  // a session that was read: the mesh itself says what is sparse
+  const bool conclusive = state_.red_map && state_.red_map->conclusive;
+  if (!model_has_red_ && !conclusive) {
+    // A session that was read: the mesh itself says what is sparse, also what the verdict excuses.
+    look.overlay = Overlay::kFlags;
   }
   {
     const TimedWork timed(ui.watch, "the model's picture");

@@ -73,7 +73,6 @@ class OperatorScreen {
   void draw_package(UiContext& ui);
   void draw_next(UiContext& ui);
   void act(const Statement& statement, const UiContext& ui);
-  [[nodiscard]] bool asks_for_places(const Statement& statement) const;
   void open_pairs();
   void undo();
   void open_signing(const UiContext& ui);

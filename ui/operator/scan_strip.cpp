@@ -133,7 +133,7 @@ void OperatorScreen::draw_scan_menu(UiContext& ui, const LiveScan& scan) {
     const std::size_t labelled = state_.pins->tips.at(scan.id).size();
     coloured_text(ui.colours.faint, filled(ui.text(Text::kPinsLabelled), labelled).c_str());
   }
-  const std::string why = scan.dropped ? scan.note
+  const std::string why = scan.dropped ? translated(scan.note, ui.preferences.language)
                           : scan.pose  ? translated(scan.pose->reason, ui.preferences.language)
                                        : std::string();
   if (!why.empty()) {

@@ -28,30 +28,63 @@ const LiveScan* newest(const LiveState& state) {
   return last == state.scans.rend() ? nullptr : &*last;
 }
 
+void add_sentence(std::string& to, const std::string& sentence) {
+  to += (to.empty() ? "" : " ") + sentence;
+}
+
+/// The last scan is not taken up: it was set aside, or it lies nowhere for certain. False where it does.
+bool say_not_taken_up(Statement& out, const LiveState& state, Language language) {
+  const LiveScan* last = newest(state);
+  if (!state.scans.empty() && state.scans.back().set_aside) {
+    const LiveScan& aside = state.scans.back();
+    out.headline = filled(text_of(Text::kSetAsideScan, language), aside.id);
+    out.detail = fmt::format("{} {}", sentence(aside.note, language), text_of(Text::kSetAsideHow, language));
+  } else if (last != nullptr && last->pose && last->pose->status != PoseStatus::kRegistered) {
+    const bool failed = last->pose->status == PoseStatus::kFailed;
+    out.headline = filled(text_of(failed ? Text::kFailedScan : Text::kUnsureScan, language), last->id);
+    out.detail =
+        fmt::format("{} {}", sentence(last->pose->reason, language), text_of(Text::kUnsureHow, language));
+    out.may_point = true;
+  } else {
+    return false;
+  }
+  if (state.next) {
+    add_sentence(out.detail, sentence(state.next->say, language));
+  }
+  return true;
+}
+
+/// The red map is not one of before this scan was taken up.
+bool is_mapped(const LiveState& state, const LiveScan& scan) {
+  return scan.pose->status != PoseStatus::kRegistered ||
+         (state.red_map &&
+          std::ranges::find(state.red_map->scans, scan.id, &RedScan::id) != state.red_map->scans.end());
+}
+
 void say_waiting(Statement& out, const LiveState& state, Language language) {
   out.tone = Tone::kAsk;
   out.may_scan = out.may_finish = true;
-  const LiveScan* last = newest(state);
-  const bool turn = state.next && state.next->placement && state.next->placement->hand_turn;
-  if (state.last_not_taken_up && last != nullptr && last->pose) {
-    out.headline = filled(text_of(Text::kUnsureScan, language), last->id);
-    out.detail =
-        fmt::format("{} {}", sentence(last->pose->reason, language), text_of(Text::kUnsureHow, language));
-    if (state.next) {
-      out.detail += fmt::format(" {}.", capitalised(translated(state.next->say, language)));
-    }
+  if (state.last_not_taken_up && say_not_taken_up(out, state, language)) {
     return;
   }
+  const LiveScan* last = newest(state);
   if (state.next) {
+    const bool turn = state.next->placement && state.next->placement->hand_turn;
     out.headline = capitalised(translated(state.next->say, language));
     out.detail = text_of(turn ? Text::kTurnThenScan : Text::kScanAsItLies, language);
-  } else {
+  } else if (last == nullptr) {
     out.headline = text_of(Text::kLayTablet, language);
+  } else if (!last->pose ||
+             !is_mapped(state,
+                        *last)) {  // nothing drives this scanner: it waits while its scan is still judged
+    out.headline = text_of(Text::kJudging, language);
+    out.detail = text_of(Text::kJudgedWhileWaiting, language);
+  } else if (state.red_map && !state.red_map->next.empty()) {
+    out.headline = capitalised(translated(state.red_map->next.front().say, language));
+    out.detail = text_of(Text::kThenScan, language);
+  } else {
+    out.headline = text_of(Text::kScanTheRed, language);
   }
-}
-
-void add_sentence(std::string& to, const std::string& sentence) {
-  to += (to.empty() ? "" : " ") + sentence;
 }
 
 void say_still(Statement& out, const LiveState& state, bool has_device, Language language) {
@@ -81,7 +114,9 @@ void say_still(Statement& out, const LiveState& state, bool has_device, Language
     out.tone = Tone::kAsk;
     out.detail = broken_off;
     if (state.care && state.care->is_due()) {
-      add_sentence(out.detail, text_of(Text::kVerifyFirst, language));
+      const bool failed = state.care->last && !state.care->last->passed;
+      out.tone = failed ? Tone::kBad : out.tone;
+      add_sentence(out.detail, text_of(failed ? Text::kVerifyHasFailed : Text::kVerifyFirst, language));
     }
   } else if (conclusive && state.signed_off) {
     out.headline = filled(text_of(Text::kSigned, language), state.signed_by.c_str());

@@ -2,6 +2,8 @@
 // Copyright The Dubsar developers
 #include "ui/shell/widgets.h"
 
+#include <algorithm>
+
 namespace dubsar::ui {
 
 namespace {
@@ -34,6 +36,17 @@ std::string grouped(std::size_t number) {
   return text;
 }
 
+std::string shortened(const std::string& text, float width_px) {
+  std::string out = text;
+  for (std::size_t kept = text.size(); kept > 0 && ImGui::CalcTextSize(out.c_str()).x > width_px;) {
+    do {  // a whole letter of UTF-8
+      --kept;
+    } while (kept > 0 && (static_cast<unsigned char>(text[kept]) & 0xC0U) == 0x80U);
+    out = text.substr(0, kept) + "...";
+  }
+  return out;
+}
+
 bool big_button(UiContext& ui, const char* name, const char* label, const char* key, ImVec2 size,
                 ButtonKind kind, bool enabled) {
   const bool coloured = kind != ButtonKind::kPlain && enabled;
@@ -62,14 +75,18 @@ bool big_button(UiContext& ui, const char* name, const char* label, const char* 
   if (in_small) {
     ImGui::PushFont(ui.fonts.small);
   }
-  const ImVec2 label_size = ImGui::CalcTextSize(label);
+  const std::string shown = shortened(label, high.x - low.x - ui.px(0.4F));
+  if (shown != label && ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) {
+    ImGui::SetTooltip("%s", label);
+  }
+  const ImVec2 label_size = ImGui::CalcTextSize(shown.c_str());
   const float small = ui.fonts.small->FontSize;
   const float height = label_size.y + (key != nullptr ? small : 0.0F);
   const float middle = 0.5F * (low.x + high.x);
   float y = 0.5F * (low.y + high.y - height);
   const Eigen::Vector4f letters = danger ? Eigen::Vector4f(1, 1, 1, 1) : ui.colours.text;
   const ImU32 ink = packed(enabled ? letters : ui.colours.faint);
-  draw->AddText({middle - 0.5F * label_size.x, y}, ink, label);
+  draw->AddText({middle - 0.5F * label_size.x, y}, ink, shown.c_str());
   if (in_small) {
     ImGui::PopFont();
   }
@@ -132,6 +149,10 @@ bool begin_wide_box(UiContext& ui, const char* title, const char* id, bool& open
   }
   begin_asking(ui);
   return true;
+}
+
+bool any_pressed(std::initializer_list<int> keys) {
+  return std::ranges::any_of(keys, [](int key) { return ImGui::IsKeyPressed(key, false); });
 }
 
 void begin_asking(UiContext& ui) {

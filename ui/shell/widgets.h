@@ -6,6 +6,7 @@
 #include <imgui.h>
 
 #include <cstdint>
+#include <initializer_list>
 #include <map>
 #include <set>
 #include <string>
@@ -39,10 +40,13 @@ struct UiContext {
   [[nodiscard]] float px(float fonts_high) const { return fonts_high * preferences.font_px; }
 };
 
+/// The beginning of a text that is too long for a width in the letters of now, with dots at its end.
+[[nodiscard]] std::string shortened(const std::string& text, float width_px);
+
 enum class ButtonKind { kPlain, kMain, kDanger };
 
 /// A button large enough for a glove, known to scripts by its name. The key that does the same is shown on
-/// it. A label that is too long for it is in the small letters.
+/// it. A label that is too long for it is in the small letters, and its end is left out where those are.
 bool big_button(UiContext& ui, const char* name, const char* label, const char* key, ImVec2 size,
                 ButtonKind kind = ButtonKind::kPlain, bool enabled = true);
 bool plain_button(UiContext& ui, const char* name, const char* label, bool enabled = true);
@@ -60,6 +64,8 @@ bool tick(UiContext& ui, const char* name, const char* label, bool& value);
 /// shut; ImGui::EndPopup() ends it.
 [[nodiscard]] bool begin_wide_box(UiContext& ui, const char* title, const char* id, bool& opening,
                                   ImVec2 of_window = {0.94F, 0.92F});
+/// One of these keys of GLFW went down.
+[[nodiscard]] bool any_pressed(std::initializer_list<int> keys);
 /// To be said at the beginning of every box that is open: keys go to it alone, and escape shuts it.
 void begin_asking(UiContext& ui);
 /// One of several numbers, in as many rows as they take; true when another was chosen.
