@@ -116,6 +116,7 @@ void MeshViewing::ask(Task task) {
   if (running_) {
     return;
   }
+  state_.error.reset();  // of what was asked for before
   state_.stage = "...";
   state_.fraction = 0;
   if (worker_.joinable()) {

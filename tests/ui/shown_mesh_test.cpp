@@ -50,6 +50,25 @@ TEST(ShownMesh, KeepsEveryFaceOnceInBlocksThatHoldThem) {
   EXPECT_EQ(shown.normals.size(), mesh.positions.size()) << "made where the mesh has none";
 }
 
+TEST(ShownMesh, AFarVertexThatNoFaceHasIsNotLookedAt) {
+  Mesh mesh = sheet(4);
+  const Eigen::AlignedBox3f box = shown_mesh(mesh).box_mm;
+  mesh.positions.emplace_back(9000, 0, 0);
+  EXPECT_TRUE(shown_mesh(mesh).box_mm.isApprox(box));
+  EXPECT_EQ(shown_mesh(mesh).positions.size(), mesh.positions.size());
+}
+
+TEST(ShownMesh, TellsWhatTheMeshSaysOfItsVertices) {
+  Mesh mesh = sheet(4);
+  const ShownMesh bare = shown_mesh(mesh);
+  EXPECT_FALSE(bare.has_reliability || bare.has_scans || bare.has_flags);
+  mesh.reliability.assign(mesh.positions.size(), 0.5F);
+  mesh.scans.assign(mesh.positions.size(), 2);
+  const ShownMesh told = shown_mesh(mesh);
+  EXPECT_TRUE(told.has_reliability && told.has_scans);
+  EXPECT_FALSE(told.has_flags);
+}
+
 TEST(ShownMesh, LevelsOfDetailAreInBlocksThatHoldThem) {
   const Mesh mesh = sheet(900);  // 1.6 million faces
   const ShownMesh shown = shown_mesh(mesh);

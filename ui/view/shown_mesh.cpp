@@ -165,6 +165,9 @@ ShownMesh in_fewer_faces(const ShownMesh& mesh, std::size_t level) {
   ShownMesh out;
   out.box_mm = mesh.box_mm;
   out.left_out = mesh.left_out;
+  out.has_reliability = mesh.has_reliability;
+  out.has_scans = mesh.has_scans;
+  out.has_flags = mesh.has_flags;
   out.instead_of_faces = mesh.instead_of_faces > 0 ? mesh.instead_of_faces : mesh.faces.size();
   constexpr std::uint32_t kNone = 0xFFFFFFFFU;
   std::vector<std::uint32_t> now(mesh.positions.size(), kNone);
@@ -207,14 +210,17 @@ ShownMesh shown_mesh(const Mesh& mesh, const std::vector<float>& openness) {
   take_positions(mesh, finite, out);
   take_faces(mesh, finite, out);
   take_normals(mesh, out);
+  out.has_reliability = n > 0 && mesh.reliability.size() == n;
+  out.has_scans = n > 0 && mesh.scans.size() == n;
+  out.has_flags = n > 0 && mesh.flags.size() == n;
   out.traits.resize(n);
   parallel_for_each_index(
       n,
       [&](std::size_t v) {
         out.traits[v] = {openness.size() == n ? byte_of(openness[v]) : std::uint8_t{255},
-                         mesh.reliability.size() == n ? byte_of(mesh.reliability[v]) : std::uint8_t{255},
-                         mesh.scans.size() == n ? mesh.scans[v] : std::uint8_t{0},
-                         mesh.flags.size() == n ? mesh.flags[v] : std::uint8_t{0}};
+                         out.has_reliability ? byte_of(mesh.reliability[v]) : std::uint8_t{255},
+                         out.has_scans ? mesh.scans[v] : std::uint8_t{0},
+                         out.has_flags ? mesh.flags[v] : std::uint8_t{0}};
       },
       kAtOnce);
   if (mesh.colours.size() == n) {
@@ -224,6 +230,12 @@ ShownMesh shown_mesh(const Mesh& mesh, const std::vector<float>& openness) {
   for (DetailLevel& level : detail_levels(out.positions, out.faces, out.box_mm, kFacesInMotion)) {
     std::vector<FaceBlock> blocks = blocks_of(level.faces, out.positions);
     out.coarser.push_back({std::move(level), std::move(blocks)});
+  }
+  if (!out.faces.empty()) {  // a vertex that no face has, far away, must not shrink what is looked at
+    out.box_mm.setEmpty();
+    for (const FaceBlock& block : out.blocks) {
+      out.box_mm.extend(block.box_mm);
+    }
   }
   return out;
 }

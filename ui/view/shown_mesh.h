@@ -38,8 +38,12 @@ struct ShownMesh {
   std::vector<std::uint32_t> face_of;                ///< [faces] which face of the mesh it is
   std::vector<FaceBlock> blocks;
   std::vector<ShownLevel> coarser;  ///< the same surface in fewer faces, fewest first
-  Eigen::AlignedBox3f box_mm;
-  std::size_t left_out = 0;  ///< faces of the mesh that cannot be drawn
+  Eigen::AlignedBox3f box_mm;       ///< of the faces; without any, of the vertices
+  std::size_t left_out = 0;         ///< faces of the mesh that cannot be drawn
+  // What the mesh says of its vertices; `traits` hold nothing that counts where it does not.
+  bool has_reliability = false;
+  bool has_scans = false;
+  bool has_flags = false;
   // Of one in fewer faces, which has no face_of and whose levels have no `from`:
   std::vector<std::uint32_t> vertex_of;  ///< [V] which vertex of the mesh each is; empty: the same
   std::size_t instead_of_faces = 0;      ///< so many faces of the mesh could be drawn; 0: they are

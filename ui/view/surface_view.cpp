@@ -24,6 +24,23 @@ void bind_texture(int unit, unsigned texture) {
 
 }  // namespace
 
+bool tells(const ShownMesh& mesh, Overlay overlay) {
+  switch (overlay) {
+    case Overlay::kColours:
+      return !mesh.colours.empty();
+    case Overlay::kReliability:
+      return mesh.has_reliability;
+    case Overlay::kScans:
+      return mesh.has_scans;
+    case Overlay::kFlags:
+      return mesh.has_flags;
+    case Overlay::kClay:
+    case Overlay::kValue:
+      break;
+  }
+  return true;
+}
+
 SurfaceView::SurfaceView()
     : surface_(kSurfaceVertex, kSurfaceFragment),
       shadow_(kSurfaceVertex, kShadowFragment),

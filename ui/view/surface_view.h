@@ -21,6 +21,9 @@ namespace dubsar::ui {
 
 enum class Overlay { kClay, kColours, kValue, kReliability, kScans, kFlags };
 
+/// The mesh has what the overlay shows.
+[[nodiscard]] bool tells(const ShownMesh& mesh, Overlay overlay);
+
 /// How a surface is lit and coloured.
 struct Look {
   Overlay overlay = Overlay::kClay;

@@ -23,9 +23,13 @@ class PreparedMesh {
   [[nodiscard]] bool arrives() const { return arrival_.is_under_way(); }
   /// What stands in shown() is the mesh of this state.
   [[nodiscard]] bool is_of(const ViewedMesh& state) const { return !busy() && number_ == state.number; }
+  /// Its mesh has nothing in it.
+  [[nodiscard]] bool is_empty(const ViewedMesh& state) const {
+    return state.mesh && is_of(state) && state.mesh->positions.empty();
+  }
   /// Why there is nothing to see.
   [[nodiscard]] Text waiting_text(const ViewedMesh& state) const {
-    return state.mesh && is_of(state) ? Text::kNoRoom : Text::kOpenMesh;
+    return is_empty(state) ? Text::kEmptyMesh : state.mesh && is_of(state) ? Text::kNoRoom : Text::kOpenMesh;
   }
   [[nodiscard]] const ShownMesh& shown() const { return *shown_; }
   [[nodiscard]] ShownMesh& shown() { return *shown_; }

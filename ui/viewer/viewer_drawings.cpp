@@ -149,6 +149,23 @@ void ViewerScreen::draw_flags_legend(UiContext& ui, ImVec2 origin, ImVec2 size) 
   }
 }
 
+namespace {
+
+/// Of what a field's numbers are; empty where they are shares or ranks.
+const char* unit_of(MeshField field) {
+  switch (field) {
+    case MeshField::kMeanCurvature:
+      return "1/mm";
+    case MeshField::kSigma:
+    case MeshField::kHeight:
+      return "mm";
+    default:
+      return "";
+  }
+}
+
+}  // namespace
+
 void ViewerScreen::draw_legend(UiContext& ui, ImVec2 origin, ImVec2 size) const {
   if (look_.overlay == Overlay::kFlags) {
     draw_flags_legend(ui, origin, size);
@@ -167,9 +184,11 @@ void ViewerScreen::draw_legend(UiContext& ui, ImVec2 origin, ImVec2 size) const 
   const float height = std::min(0.5F * size.y, ui.px(14));
   const float width = ui.px(0.9F);
   const ImVec2 at{origin.x + size.x - ui.px(1) - width, origin.y + ui.px(1)};
+  const char* unit = look_.overlay == Overlay::kValue && field_ ? unit_of(*field_) : "";
+  const float foot = ui.px(0.7F) + (*unit != '\0' ? ui.fonts.small->FontSize : 0.0F);
   // On a ground of its own: the surface may lie behind it.
   draw->AddRectFilled({at.x - ui.px(3.6F), at.y - ui.px(0.7F)},
-                      {origin.x + size.x - ui.px(0.4F), at.y + height + ui.px(0.7F)},
+                      {origin.x + size.x - ui.px(0.4F), at.y + height + foot},
                       packed(ui.colours.panel, 0.85F), 4);
   constexpr int kSteps = 64;
   for (int k = 0; k < kSteps; ++k) {
@@ -186,6 +205,9 @@ void ViewerScreen::draw_legend(UiContext& ui, ImVec2 origin, ImVec2 size) const 
                   {at.x - box.x - ui.px(0.3F), at.y + (1 - part) * height - 0.5F * box.y},
                   packed(ui.colours.text), words.c_str());
   }
+  const float unit_wide = ui.fonts.small->CalcTextSizeA(ui.fonts.small->FontSize, 1e4F, 0, unit).x;
+  draw->AddText(ui.fonts.small, ui.fonts.small->FontSize,
+                {at.x - unit_wide - ui.px(0.3F), at.y + height + ui.px(0.5F)}, packed(ui.colours.text), unit);
 }
 
 }  // namespace dubsar::ui

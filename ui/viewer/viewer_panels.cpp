@@ -33,6 +33,11 @@ constexpr PlainChoice kPlain[] = {{Text::kOverlayClay, Overlay::kClay},
                                   {Text::kOverlayScans, Overlay::kScans},
                                   {Text::kOverlayFlags, Overlay::kFlags}};
 
+/// "Obverse ", before a line of it.
+std::string side_words(const UiContext& ui, const std::optional<Face>& side) {
+  return side ? fmt::format("{} ", ui.text(kFaceTexts[static_cast<std::size_t>(*side)])) : std::string();
+}
+
 /// By the order of kWedgeFeatures.
 constexpr std::array<Text, kWedgeFeatures.size()> kFeatures{
     Text::kFeatureDepth, Text::kFeatureLength1,  Text::kFeatureLength2,  Text::kFeatureLength3,
@@ -69,7 +74,7 @@ void ViewerScreen::draw_overlay_choice(UiContext& ui) {
   }
   if (ImGui::BeginCombo("##overlay", ui.text(now), ImGuiComboFlags_HeightLargest)) {
     for (const PlainChoice& choice : kPlain) {
-      if (choice.overlay == Overlay::kColours && prepared_.shown().colours.empty()) {
+      if (!tells(prepared_.shown(), choice.overlay)) {
         continue;
       }
       if (ImGui::Selectable(ui.text(choice.text), now == choice.text)) {
@@ -169,7 +174,8 @@ void ViewerScreen::draw_foot(UiContext& ui) {
   if (state_.error && !surface_.empty()) {
     ui.facts.insert("error");
     coloured_text(ui.colours.red, translated(state_.error->line(), ui.preferences.language).c_str());
-  } else if (!picture_note_.empty()) {
+  }
+  if (!picture_note_.empty()) {
     coloured_text(ui.colours.faint, picture_note_.c_str());
   }
   ImGui::PopFont();
@@ -295,8 +301,11 @@ void ViewerScreen::draw_wedge_table(UiContext& ui, ImVec2 size) {
         }
         ui.target(fmt::format("wedge.{}", wedge.id));
         ImGui::TableNextColumn();
-        ImGui::TextUnformatted(
-            wedge.place.line > 0 ? fmt::format("{}.{}", wedge.place.line, wedge.place.order).c_str() : "-");
+        ImGui::TextUnformatted(wedge.place.line <= 0
+                                   ? "-"
+                                   : fmt::format("{}{}.{}", side_words(ui, wedge.place.side),
+                                                 wedge.place.line, wedge.place.order)
+                                         .c_str());
         ImGui::TableNextColumn();
         ImGui::TextUnformatted(fmt::format("{:.2f}", wedge.depth_mm).c_str());
         ImGui::TableNextColumn();

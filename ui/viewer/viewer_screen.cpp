@@ -64,6 +64,9 @@ void ViewerScreen::take_state(UiContext& ui) {
     give_up_picture();
     wedge_ = -1;
     look_at(Face::kObverse);
+    if (!tells(prepared_.shown(), look_.overlay)) {
+      look_.overlay = Overlay::kClay;
+    }
     if (!prepared_.shown().colours.empty() && look_.overlay == Overlay::kClay) {
       look_.overlay = Overlay::kColours;
     }
@@ -176,7 +179,7 @@ void ViewerScreen::draw_surface(UiContext& ui, ImVec2 size) {
       camera_.fit(prepared_.shown().box_mm, aspect_);
     }
   }
-  if (surface_.empty()) {
+  if (surface_.empty() || prepared_.is_empty(state_)) {
     const std::string words = state_.error ? translated(state_.error->line(), ui.preferences.language)
                                            : ui.text(prepared_.waiting_text(state_));
     draw->AddText(nullptr, 0, {origin.x + ui.px(2), origin.y + ui.px(2)},

@@ -46,8 +46,9 @@ void ViewerScreen::draw_section_panel(UiContext& ui) {
   }
   const CrossSection& section = *state_.section;
   ui.facts.insert("section");
-  coloured_text(ui.colours.text,
-                filled(ui.text(Text::kSectionLine), section.length_mm, -section.lowest_mm).c_str());
+  coloured_text(
+      ui.colours.text,
+      filled(ui.text(Text::kSectionLine), section.length_mm, std::max(0.0, -section.lowest_mm)).c_str());
   if (plain_button(ui, "keep-section", ui.text(Text::kKeepSection),
                    !section.lines.empty() && state_.stage.empty())) {
     section_file_ = unused_file("section", ".csv");
