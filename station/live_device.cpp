@@ -37,6 +37,7 @@ void LiveSession::watch_camera(bool on) {
 
 void LiveSession::change_setting(const std::string& key, const std::string& word) {
   const std::scoped_lock lock(mutex_);
+  state_.notice.clear();  // why another word was refused
   if (engine_) {
     engine_->post(ChangeSetting{key, word});
   } else if (watch_) {

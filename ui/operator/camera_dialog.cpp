@@ -112,6 +112,11 @@ void CameraDialog::draw_settings(UiContext& ui, const DevicePanel& panel) {
 }
 
 void CameraDialog::draw(UiContext& ui, const LiveState& state) {
+  if (opening_) {
+    old_notice_ = state.notice;
+  } else if (state.notice != old_notice_) {
+    old_notice_.clear();
+  }
   open_ = open_ || opening_;
   if (!begin_wide_box(ui, ui.text(Text::kCamera), kPopup, opening_)) {
     if (std::exchange(open_, false)) {
@@ -144,7 +149,7 @@ void CameraDialog::draw(UiContext& ui, const LiveState& state) {
   }
   ImGui::EndChild();
   ImGui::PushFont(ui.fonts.small);
-  coloured_text(ui.colours.faint, state.notice.empty()
+  coloured_text(ui.colours.faint, state.notice.empty() || state.notice == old_notice_
                                       ? ui.text(Text::kSettingsKept)
                                       : translated(state.notice, ui.preferences.language).c_str());
   ImGui::PopFont();

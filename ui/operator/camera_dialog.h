@@ -27,6 +27,7 @@ class CameraDialog {
   std::shared_ptr<const CameraView> shown_;
   std::shared_ptr<const DevicePanel> panel_;  ///< that `typed_` was taken from
   std::map<std::string, std::string> typed_;  ///< by setting
+  std::string old_notice_;                    ///< said before the box was opened: of something else
   bool opening_ = false;
   bool open_ = false;
 };

@@ -176,7 +176,14 @@ void OperatorScreen::draw_right(UiContext& ui, ImVec2 size) {
   // Of a scan that is unsure the statement says it all.
   const bool tells =
       !works && !state_.notice.empty() && !(state_.phase == LivePhase::kWaiting && state_.last_not_taken_up);
-  const float foot = works || tells ? 2.6F * line : 0.0F;
+  const std::string notice = tells ? translated(state_.notice, ui.preferences.language) : std::string();
+  // As high as its words take, but the pictures keep their half.
+  const ImFont* small = ui.fonts.small;
+  const float notice_high =
+      tells ? small->CalcTextSizeA(small->FontSize, 1e6F, room.x, notice.c_str()).y + line : 0.0F;
+  const float foot = works   ? 2.6F * line
+                     : tells ? std::min(std::max(notice_high, 2.6F * line), 0.5F * room.y)
+                             : 0.0F;
   const bool shows_next = state_.next && state_.next->placement && state_.mesh;
   const float pictures = room.y - foot - (shows_next ? 2 : 1) * line;
   const float growing =
@@ -195,8 +202,11 @@ void OperatorScreen::draw_right(UiContext& ui, ImVec2 size) {
     ImGui::PopFont();
   } else if (tells) {
     ImGui::PushFont(ui.fonts.small);
-    coloured_text(ui.colours.faint, translated(state_.notice, ui.preferences.language).c_str());
+    coloured_text(ui.colours.faint, notice.c_str());
     ImGui::PopFont();
+    if (ImGui::GetItemRectMax().y <= ImGui::GetWindowPos().y + size.y) {
+      ui.facts.insert("notice-whole");
+    }
   }
   ImGui::EndChild();
 }
