@@ -107,16 +107,18 @@ std::shared_ptr<const Mesh> MeshViewing::mesh() const {
   return state_.mesh;
 }
 
-void MeshViewing::ask(Task task) {
+void MeshViewing::ask(Task task, AskedBy by) {
   const std::scoped_lock lock(mutex_);
   if (ended_) {
     return;
+  }
+  if (by == AskedBy::kPerson) {
+    state_.error = odd_;  // what was refused before is no matter any more
   }
   tasks_.push_back(std::move(task));
   if (running_) {
     return;
   }
-  state_.error.reset();  // of what was asked for before
   state_.stage = "...";
   state_.fraction = 0;
   if (worker_.joinable()) {
@@ -197,6 +199,7 @@ void MeshViewing::take_mesh(std::shared_ptr<const Mesh> mesh, const RigidTransfo
     state_.tablet_from_model = tablet_from_model;
     state_.name = name;
     state_.error.reset();
+    odd_.reset();
     const std::size_t vertices = state_.mesh->positions.size();
     if (state_.mesh->sigma_mm.size() == vertices && vertices > 0) {
       state_.fields[MeshField::kSigma] = std::make_shared<const std::vector<float>>(state_.mesh->sigma_mm);
@@ -230,6 +233,8 @@ void MeshViewing::open(const fs::path& file) {
     take_mesh(std::make_shared<const Mesh>(std::move(*read)), tablet_from_model, file.filename().string());
     if (odd) {
       complain(*odd);
+      const std::scoped_lock lock(mutex_);
+      odd_ = odd;
     }
     const WedgesPlace wedges = wedges_beside(file);
     take_selections(selections_file_of(file));
@@ -247,15 +252,17 @@ void MeshViewing::show(std::shared_ptr<const Mesh> mesh, const RigidTransform& t
 }
 
 void MeshViewing::want(MeshField field) {
-  ask([this, field] {
-    {
-      const std::scoped_lock lock(mutex_);
-      if (!state_.mesh || state_.fields.contains(field)) {
-        return;
-      }
-    }
-    work_out(field);
-  });
+  ask(
+      [this, field] {
+        {
+          const std::scoped_lock lock(mutex_);
+          if (!state_.mesh || state_.fields.contains(field)) {
+            return;
+          }
+        }
+        work_out(field);
+      },
+      AskedBy::kWindow);
 }
 
 void MeshViewing::analyse() {

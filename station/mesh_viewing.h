@@ -94,7 +94,9 @@ class MeshViewing {
 
  private:
   using Task = std::function<void()>;
-  void ask(Task task);
+  /// What a person asks for makes a refusal of before old; what the window wants by itself does not.
+  enum class AskedBy { kPerson, kWindow };
+  void ask(Task task, AskedBy by = AskedBy::kPerson);
   void run();
   void take_mesh(std::shared_ptr<const Mesh> mesh, const RigidTransform& tablet_from_model,
                  const std::string& name);
@@ -128,6 +130,7 @@ class MeshViewing {
   std::filesystem::path selections_file_;
   std::optional<ViewedMesh> whole_;  ///< that a part is of, and where its selections are
   std::filesystem::path whole_selections_file_;
+  std::optional<Error> odd_;  ///< what is odd in the mesh's numbers, as long as it is looked at
   std::deque<Task> tasks_;
   std::unique_ptr<JobContext> job_;
   bool running_ = false;

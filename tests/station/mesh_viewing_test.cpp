@@ -117,6 +117,8 @@ TEST_F(MeshViewingTest, CorrectionsThatCannotBeReadAreNotWrittenOver) {
   viewer.remove_wedge(wedges_mm_[0]);
   EXPECT_TRUE(viewer.state().error);
   EXPECT_EQ(*read_whole_file(corrections_), "{\"corrections\":[");
+  viewer.keep("another thing");
+  EXPECT_FALSE(viewer.state().error) << "the refusal is of what was asked for before";
 }
 
 TEST_F(MeshViewingTest, NothingIsNotedWhenTheWedgesCannotBeWritten) {

@@ -92,13 +92,23 @@ wait signed
 /// What comes after it: the package, and the next tablet.
 constexpr const char* kAfterwards = R"(
 expect statement-whole
-key enter
+key f11
 wait package-now
-key enter
+pause 0.2
+key f11
 wait packed 120
 wait idle
 key space
 wait next-now
+pause 0.2
+key escape
+pause 0.2
+click tablet
+wait next-tablet
+pause 0.2
+key n
+wait next-now
+pause 0.2
 key enter
 wait scans.0
 wait idle
