@@ -216,10 +216,11 @@ TEST(EngineWords, SentencesOfUnsureScansAreGerman) {
                  Language::kGerman),
       "die Flächen stimmen überein in nur 41 % der Überlappung; mit mehr Überlappung neu scannen, oder "
       "drei Stellen in beiden Scans anklicken");
-  EXPECT_EQ(translated("it contradicts the stage's pose; check that the tablet did not move between the scans",
-                       Language::kGerman),
-            "er widerspricht der Stellung des Tisches; nachsehen, ob sich die Tafel zwischen den Scans bewegt "
-            "hat");
+  EXPECT_EQ(
+      translated("it contradicts the stage's pose; check that the tablet did not move between the scans",
+                 Language::kGerman),
+      "er widerspricht der Stellung des Tisches; nachsehen, ob sich die Tafel zwischen den Scans bewegt "
+      "hat");
   EXPECT_EQ(translated("scan 4 is taken out", Language::kGerman), "Scan 4 ist entfernt");
 }
 
