@@ -14,6 +14,9 @@ namespace {
 constexpr Text kFaceTexts[] = {Text::kObverse, Text::kReverse, Text::kLeft,
                                Text::kRight,   Text::kTop,     Text::kBottom};
 
+constexpr Text kShortTexts[] = {Text::kObverseShort, Text::kReverseShort, Text::kLeftShort,
+                                Text::kRightShort,   Text::kTopShort,     Text::kBottomShort};
+
 struct FieldChoice {
   Text text;
   MeshField field;
@@ -33,9 +36,9 @@ constexpr PlainChoice kPlain[] = {{Text::kOverlayClay, Overlay::kClay},
                                   {Text::kOverlayScans, Overlay::kScans},
                                   {Text::kOverlayFlags, Overlay::kFlags}};
 
-/// "Obverse ", before a line of it.
+/// "obv. ", before a line of it.
 std::string side_words(const UiContext& ui, const std::optional<Face>& side) {
-  return side ? fmt::format("{} ", ui.text(kFaceTexts[static_cast<std::size_t>(*side)])) : std::string();
+  return side ? fmt::format("{} ", ui.text(kShortTexts[static_cast<std::size_t>(*side)])) : std::string();
 }
 
 /// By the order of kWedgeFeatures.
