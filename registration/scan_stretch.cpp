@@ -171,17 +171,21 @@ std::string reason_of(const ScanStretch& stretch) {
     std::snprintf(text, sizeof text, "%.1f %%", 100.0 * std::abs(share));
     return std::string(text);
   };
-  const double mean = 0.5 * (stretch.along_line + stretch.along_motion);
+  const auto told = [&](double by, const char* larger, const char* smaller) {
+    return "against the other scans it is " + percent(by) + (by > 0 ? larger : smaller) +
+           "; verify the scanner, then scan it again";
+  };
   if (std::abs(stretch.along_line - stretch.along_motion) < kLeastStretch) {
-    return "it is " + percent(mean) + " too " + (mean > 0 ? "large" : "small") +
-           " against the other scans: its calibration is not theirs; verify the scanner, then scan it again";
+    return told(0.5 * (stretch.along_line + stretch.along_motion),
+                " too large: its calibration is not theirs", " too small: its calibration is not theirs");
   }
-  const bool motion = std::abs(stretch.along_motion) > std::abs(stretch.along_line);
-  const double worse = motion ? stretch.along_motion : stretch.along_line;
-  return "it is " + percent(worse) + " too " + (worse > 0 ? "long" : "short") + " along " +
-         (motion ? "the motion against the other scans: the step of the stage, or the calibration, is off"
-                 : "the laser line against the other scans: the calibration is off") +
-         "; verify the scanner, then scan it again";
+  if (std::abs(stretch.along_motion) > std::abs(stretch.along_line)) {
+    return told(stretch.along_motion,
+                " too long along the motion: the step of the stage, or the calibration, is off",
+                " too short along the motion: the step of the stage, or the calibration, is off");
+  }
+  return told(stretch.along_line, " too long along the laser line: the calibration is off",
+              " too short along the laser line: the calibration is off");
 }
 
 }  // namespace dubsar

@@ -32,12 +32,15 @@ Status refuse_within(const std::optional<fs::path>& folder, const fs::path& outp
     return {};
   }
   const fs::path resolved = resolved_place(output);
-  const std::string kind = SessionStore::is_session(*folder) ? "session" : "package";
   const std::string own = *folder == resolved ? "results" : resolved.filename().string();
-  const fs::path beside = folder->parent_path() / (folder->filename().string() + "-" + own);
-  return fail(ErrorKind::kUsage,
-              "a " + kind + " keeps a checksum of every file in it; nothing else is written there",
-              output.string(), "write it beside the " + kind + ": " + beside.string());
+  const std::string beside = (folder->parent_path() / (folder->filename().string() + "-" + own)).string();
+  return SessionStore::is_session(*folder)
+             ? fail(ErrorKind::kUsage,
+                    "a session keeps a checksum of every file in it; nothing else is written there",
+                    output.string(), "write it beside the session: " + beside)
+             : fail(ErrorKind::kUsage,
+                    "a package keeps a checksum of every file in it; nothing else is written there",
+                    output.string(), "write it beside the package: " + beside);
 }
 
 }  // namespace

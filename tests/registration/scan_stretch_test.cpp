@@ -111,7 +111,7 @@ TEST_P(StretchedScan, IsTold) {
 INSTANTIATE_TEST_SUITE_P(
     Each, StretchedScan,
     testing::Values(Lengths{"NotAtAll", {1.0F, 1.0F, 1.0F}, ""},
-                    Lengths{"TooLarge", {1.02F, 1.02F, 1.02F}, "too large against the other scans"},
+                    Lengths{"TooLarge", {1.02F, 1.02F, 1.02F}, "too large: its calibration is not theirs"},
                     Lengths{"TooShortAStep", {1.0F, 0.97F, 1.0F}, "too short along the motion"},
                     // One of two scans, and nothing tells which: said of either.
                     Lengths{"TooLongALine", {1.02F, 1.0F, 1.0F}, "against the other scans"}),

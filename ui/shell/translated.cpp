@@ -25,6 +25,7 @@ constexpr std::pair<std::string_view, std::string_view> kInWindow[] = {
      "go on, finish, read what it says, and sign again"},
     {"sign it as it is with --incomplete REASON", "sign it as incomplete, with the reason"},
     {"sign with --incomplete REASON", "sign it as incomplete, with the reason"},
+    {"sign it without --incomplete; --note takes a remark", "sign it as it is; a note takes a remark"},
 };
 
 template <class Pairs>
