@@ -110,7 +110,11 @@ PoseVerdict two_poses(const ModelFit& a, const ModelFit& b) {
 }  // namespace
 
 bool sure(const ModelFit& fit, const VerifyOptions& options) {
-  return telling_significance(fit, options) >= options.sure_relief &&
+  // However firmly the shape holds it: lines of another tablet of the same make fall together a little way
+  // off, too.
+  const bool as_well_beside =
+      fit.refined() && fit.slid_significance >= options.most_slid_held * fit.significance;
+  return !as_well_beside && telling_significance(fit, options) >= options.sure_relief &&
          fit.relief.correlation() >= options.sure_correlation;
 }
 

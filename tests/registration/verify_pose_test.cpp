@@ -71,6 +71,15 @@ TEST(VerifyPose, AReliefThatHoldsAnotherPoseIsARival) {
   EXPECT_EQ(verdict({right_pose(), held}).status, PoseStatus::kUnsure);
 }
 
+TEST(VerifyPose, WhatAgreesAsWellALittleWayOffIsNotSure) {
+  ModelFit other_tablet = right_pose();
+  other_tablet.significance = 7.2;
+  other_tablet.slid_significance = 7.6;
+  EXPECT_EQ(verdict({other_tablet}).status, PoseStatus::kUnsure);
+  other_tablet.slid_significance = 6.4;  // the worst of the right ones
+  EXPECT_EQ(verdict({other_tablet}).status, PoseStatus::kRegistered);
+}
+
 TEST(VerifyPose, AMouldingAloneTellsNoPose) {
   EXPECT_EQ(verdict({on_a_moulding()}).status, PoseStatus::kUnsure);
 }
