@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "core/units.h"
+#include "core/utf8.h"
 #include "formats/calibration_json.h"
 #include "formats/number_text.h"
 #include "formats/toml_document.h"
@@ -30,12 +31,11 @@ std::string file_name(const JsonNode& node) {
 
 std::string quoted(const std::string& text) {
   std::string out(1, '"');
-  for (const char c : text) {
+  for (const char c : one_line(text)) {
     if (c == '"' || c == '\\') {
       out += '\\';
     }
-    // Control characters have no place in a name or a note.
-    out += static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? ' ' : c;
+    out += c;
   }
   out += '"';
   return out;

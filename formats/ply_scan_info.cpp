@@ -7,6 +7,7 @@
 #include <cmath>
 #include <optional>
 
+#include "core/utf8.h"
 #include "formats/number_text.h"
 #include "formats/text_scanner.h"
 
@@ -57,16 +58,6 @@ std::string vector_line(const char* key, const Eigen::Vector3d& v) {
 
 std::string value_line(const char* key, const std::string& value) {
   return std::string("obj_info ") + key + " " + value + "\n";
-}
-
-/// Text that keeps to its header line.
-std::string on_one_line(std::string text) {
-  for (char& c : text) {
-    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) {
-      c = ' ';
-    }
-  }
-  return text;
 }
 
 }  // namespace
@@ -132,7 +123,7 @@ std::string scan_info_lines(const RangeGrid& grid) {
     text += value_line(ply_info::kTimestamp, std::to_string(grid.timestamp_ns));
   }
   if (!grid.device.empty()) {
-    text += value_line(ply_info::kDevice, on_one_line(grid.device));
+    text += value_line(ply_info::kDevice, one_line(grid.device));
   }
   return text;
 }

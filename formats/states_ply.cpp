@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <limits>
 
+#include "core/utf8.h"
 #include "formats/atomic_file.h"
 #include "formats/byte_order.h"
 
@@ -17,12 +18,6 @@ namespace {
 /// By SampleState: clay, red, green, amber, violet, dark grey. Told apart by lightness too.
 constexpr std::array<std::array<std::uint8_t, 3>, kSampleStateCount> kColours = {
     {{0, 0, 0}, {200, 186, 168}, {214, 30, 38}, {70, 140, 90}, {226, 160, 42}, {112, 72, 160}, {50, 50, 50}}};
-
-std::string one_line(std::string text) {
-  std::ranges::replace_if(
-      text, [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }, ' ');
-  return text;
-}
 
 std::int16_t small(int value) {
   return static_cast<std::int16_t>(std::clamp<int>(value, -1, std::numeric_limits<std::int16_t>::max()));
