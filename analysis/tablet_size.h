@@ -13,7 +13,7 @@ namespace dubsar {
 [[nodiscard]] double size_across_mm(const Mesh& mesh);
 
 /// A thing `across_mm` large when its numbers were read as `mm_per_number` each: the units ("mm", "m",
-/// "um", then "cm" and "in", which no file is read as) that would make an inscribed thing of it, 6 to 800 mm
+/// "um", then "cm" and "in") that would make an inscribed thing of it, 6 to 800 mm
 /// across, when this one does not. None when it does, or when none would.
 [[nodiscard]] std::vector<std::string_view> likelier_units(double across_mm, double mm_per_number);
 

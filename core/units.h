@@ -2,6 +2,7 @@
 // Copyright The Dubsar developers
 #pragma once
 
+#include <array>
 #include <numbers>
 #include <optional>
 #include <string_view>
@@ -17,7 +18,11 @@ inline constexpr double kPi = std::numbers::pi;
   return rad * 180.0 / kPi;
 }
 
-/// Millimetres per unit for "m", "mm", "um"; nothing for any other word.
+/// The words for what a file's numbers are, and the same as a sentence has them.
+inline constexpr std::array<std::string_view, 5> kLengthUnits{"m", "cm", "mm", "um", "in"};
+inline constexpr std::string_view kLengthUnitsText = "m, cm, mm, um or in";
+
+/// Millimetres per unit for the words above; nothing for any other.
 [[nodiscard]] constexpr std::optional<double> mm_per_unit(std::string_view unit) {
   if (unit == "mm") {
     return 1.0;
@@ -27,6 +32,12 @@ inline constexpr double kPi = std::numbers::pi;
   }
   if (unit == "um") {
     return 0.001;
+  }
+  if (unit == "cm") {
+    return 10.0;
+  }
+  if (unit == "in") {
+    return 25.4;
   }
   return std::nullopt;
 }

@@ -312,7 +312,7 @@ double mm_per_unit_of(const JsonNode& root) {
   }
   const std::optional<double> mm = mm_per_unit(unit->text());
   if (!mm) {
-    unit->complain("is not m, mm or um");
+    unit->complain("is not " + std::string(kLengthUnitsText));
   }
   return mm.value_or(1.0);
 }

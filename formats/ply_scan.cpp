@@ -240,7 +240,7 @@ Result<double> mm_per_unit_of(const PlyHeader& header, const std::string& name) 
   if (const std::optional<double> mm = mm_per_unit(word)) {
     return *mm;
   }
-  return bad_input(name, "obj_info unit is " + in_quotes(word) + ", not m, mm or um",
+  return bad_input(name, "obj_info unit is " + in_quotes(word) + ", not " + std::string(kLengthUnitsText),
                    "say what the numbers are with --unit");
 }
 

@@ -189,7 +189,7 @@ std::optional<double> mm_per_unit_named(const std::optional<std::string>& unit) 
   }
   const std::optional<double> scale = mm_per_unit(*unit);
   if (!scale) {
-    raise({ErrorKind::kUsage, "no unit " + *unit, {}, "there are m, mm and um"});
+    raise({ErrorKind::kUsage, "no unit " + *unit, {}, "there are " + std::string(kLengthUnitsText)});
   }
   return scale;
 }

@@ -19,8 +19,8 @@ struct Unit {
 };
 constexpr std::array<Unit, 4> kUnits{
     {{1000.0, "metres", "give its unit: --unit m for a folder, or `obj_info unit m` in its header"},
-     {25.4, "inches", "export it in millimetres"},
-     {10.0, "centimetres", "export it in millimetres"},
+     {25.4, "inches", "give its unit: --unit in for a folder, or `obj_info unit in` in its header"},
+     {10.0, "centimetres", "give its unit: --unit cm for a folder, or `obj_info unit cm` in its header"},
      {0.001, "micrometres", "give its unit: --unit um for a folder, or `obj_info unit um` in its header"}}};
 
 /// One scanner keeps its spacing; what it sees of the object in one view varies.
@@ -114,7 +114,7 @@ std::string perhaps_other_unit(const ScanSize& scan, const ScanSize& before) {
     return "it is about " + times(by_size) +
            " than the scans before it, in size and in spacing: if their "
            "numbers are " +
-           unit->numbers + ", that is the wrong unit; export them in millimetres";
+           unit->numbers + ", that is the wrong unit; " + unit->mend;
   }
   return {};
 }

@@ -31,7 +31,7 @@ struct ScanSet {
 };
 
 struct ScanSetOptions {
-  std::string unit{};                 ///< "m", "mm", "um"; empty: the file's own word, else mm
+  std::string unit{};                 ///< one of kLengthUnits; empty: the file's own word, else mm
   std::filesystem::path pins_file{};  ///< empty: the session's, or none
   SessionStore::Access access = SessionStore::Access::kReadWrite;  ///< of a session
   /// A file that is going to be written: kUsage where it is one of a folder's scans, which cannot be made

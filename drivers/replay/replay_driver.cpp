@@ -33,7 +33,7 @@ constexpr double kSlowestRate = 1.0;
 
 const plugin::SettingRow kOptions[] = {
     {DUBSAR_TYPE_CHOICE, "unit", "what the numbers in the files are; without it the file's own word, else mm",
-     nullptr, "m|mm|um"},
+     nullptr, "m|cm|mm|um|in"},
     {DUBSAR_TYPE_NUMBER, "rate", "profiles per second; 0 is as fast as can be", "1/s", nullptr, 0.0, 1e6},
 };
 const plugin::SettingRow kSettings[] = {
@@ -148,7 +148,8 @@ std::int32_t open(const char* locator, const dubsar_option* options, std::uint32
       if (key == "unit") {
         reading.mm_per_unit = mm_per_unit(value);
         if (!reading.mm_per_unit) {
-          return plugin::report(error, DUBSAR_USAGE, "unit '" + value + "' is none", {}, "write m, mm or um");
+          return plugin::report(error, DUBSAR_USAGE, "unit '" + value + "' is none", {},
+                                "write " + std::string(kLengthUnitsText));
         }
       } else if (key == "rate") {
         const std::optional<double> number = plugin::number(value);

@@ -323,7 +323,7 @@ void add_analyze_options(CLI::App& verb, AnalyzeArguments& arguments) {
                   "where an inner edge ends: at the free surface, or as far as seen")
       ->check(CLI::IsMember({"surface", "extent"}));
   verb.add_option("--unit", arguments.unit, "what the file's numbers are")
-      ->check(CLI::IsMember({"m", "mm", "um"}));
+      ->check(CLI::IsMember(std::vector<std::string>(kLengthUnits.begin(), kLengthUnits.end())));
   verb.add_option("--pictures", arguments.pictures,
                   "a folder for the surface fields and the wedges as coloured PLY and PNG");
   verb.add_option("--free-openness", arguments.fields.free_surface.least_openness,

@@ -238,7 +238,7 @@ void add_mesh(CLI::App& app, Action& chosen) {
   });
   for (CLI::App* sub : {check_verb, convert_verb, section_verb, part_verb}) {
     sub->add_option("--unit", options->unit, "what the file's numbers are")
-        ->check(CLI::IsMember({"m", "mm", "um"}));
+        ->check(CLI::IsMember(std::vector<std::string>(kLengthUnits.begin(), kLengthUnits.end())));
   }
 }
 

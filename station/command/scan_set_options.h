@@ -6,7 +6,9 @@
 
 #include <CLI/CLI.hpp>
 #include <string>
+#include <vector>
 
+#include "core/units.h"
 #include "station/scan_set.h"
 
 namespace dubsar {
@@ -22,7 +24,7 @@ struct ScanSetArguments {
   void add_to(CLI::App& verb, bool takes_poses) {
     verb.add_option("path", path, "a session, or a folder or file of range grids")->required();
     verb.add_option("--unit", unit, "what the numbers in the files are")
-        ->check(CLI::IsMember({"m", "mm", "um"}));
+        ->check(CLI::IsMember(std::vector<std::string>(kLengthUnits.begin(), kLengthUnits.end())));
     verb.add_option("--pins", pins, "the operator's pins (pins.json)");
     if (takes_poses) {
       verb.add_option("--poses", poses, "take the poses from this file: poses.json, or a Stanford .conf");

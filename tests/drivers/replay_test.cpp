@@ -118,14 +118,15 @@ TEST_F(ReplayTest, ReadsEachFileOnlyWhenItsTurnHasCome) {
 
 TEST_F(ReplayTest, TheUnitOptionScales) {
   std::ofstream(folder_.path() / "c.ply") << kPoints;
-  for (const auto& [unit, x] : {std::pair("m", 1000.0F), std::pair("mm", 1.0F), std::pair("um", 0.001F)}) {
+  for (const auto& [unit, x] : {std::pair("m", 1000.0F), std::pair("mm", 1.0F), std::pair("um", 0.001F),
+                                std::pair("cm", 10.0F), std::pair("in", 25.4F)}) {
     Result<Device> device = open(folder_.path() / "c.ply", {{"unit", unit}});
     ASSERT_TRUE(device);
     Names sink;
     ASSERT_TRUE(device->scan(sink));
     EXPECT_FLOAT_EQ(sink.x[0], x);
   }
-  EXPECT_THAT(open(folder_.path(), {{"unit", "inch"}}).error().line(), HasSubstr("m, mm or um"));
+  EXPECT_THAT(open(folder_.path(), {{"unit", "inch"}}).error().line(), HasSubstr("m, cm, mm, um or in"));
   EXPECT_FALSE(open(folder_.path(), {{"rate", "fast"}}));
   EXPECT_FALSE(open(folder_.path(), {{"rate", "-3"}}));
 }

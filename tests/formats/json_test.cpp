@@ -108,7 +108,7 @@ TEST(PosesJson, NamesWhatIsWrongByItsPath) {
   EXPECT_THAT(line("{}"), HasSubstr("p.json: scans is missing; give poses as docs/formats/poses.md"));
   EXPECT_THAT(line(R"({"scans":3})"), HasSubstr("scans is a number, not an array"));
   EXPECT_THAT(line(R"({"scans":[4]})"), HasSubstr("scans[0] has neither id nor file"));
-  EXPECT_THAT(line(R"({"unit":"ell","scans":[]})"), HasSubstr("unit is not m, mm or um"));
+  EXPECT_THAT(line(R"({"unit":"ell","scans":[]})"), HasSubstr("unit is not m, cm, mm, um or in"));
   EXPECT_THAT(line(R"({"scans":[{"id":0}]})"), HasSubstr("scans[0].model_from_scanner is missing"));
   EXPECT_THAT(line(R"({"scans":[{"id":-1}]})"), HasSubstr("scans[0].id is -1, out of range"));
   EXPECT_THAT(line(R"({"scans":[{"id":1.5}]})"), HasSubstr("scans[0].id is 1.5, not a whole number"));

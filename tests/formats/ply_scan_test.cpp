@@ -109,7 +109,15 @@ TEST(PlyScan, TakesTheUnitFromTheFileUnlessTold) {
   parts.info += "obj_info unit furlong\n";
   parts.info.replace(parts.info.find("unit m\n"), 6, "unit ell");
   EXPECT_THAT(line(parts),
-              HasSubstr("a.ply: obj_info unit is 'ell', not m, mm or um; say what the numbers are"));
+              HasSubstr("a.ply: obj_info unit is 'ell', not m, cm, mm, um or in; say what the numbers are"));
+}
+
+TEST(PlyScan, CentimetresAndInchesAreUnits) {
+  Parts parts;
+  parts.info += "obj_info unit cm\n";
+  EXPECT_EQ(grid_of(parts.text()).point(1), Eigen::Vector3f(10, 0, 5));
+  parts.info.replace(parts.info.find("unit cm"), 7, "unit in");
+  EXPECT_EQ(grid_of(parts.text()).point(1), Eigen::Vector3f(25.4F, 0, 12.7F));
 }
 
 TEST(PlyScan, ReadsIntensityColourAndConfidence) {

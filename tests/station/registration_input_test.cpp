@@ -148,7 +148,9 @@ TEST_F(RegistrationInput, AnotherUnitIsNamed) {
   put(4, scaled(second, 0.1));
   const nlohmann::json scans = registered();
   const std::vector<std::string> unit{"", "metres", "inches", "micrometres", "centimetres"};
+  const std::vector<std::string> mend{"", "--unit m ", "--unit in ", "--unit um ", "--unit cm "};
   for (std::size_t k = 1; k < unit.size(); ++k) {
+    EXPECT_THAT(reason(scans[k]), HasSubstr(mend[k])) << k;
     expect_no_pose(scans[k]);
     EXPECT_THAT(reason(scans[k]), HasSubstr(unit[k])) << k;
     EXPECT_THAT(reason(scans[k]), HasSubstr("unit")) << k;
