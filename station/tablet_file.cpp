@@ -28,8 +28,8 @@ Status write_tablet_file(const std::filesystem::path& path, const sim::SimTablet
   return write_mesh(path, mesh);
 }
 
-Result<sim::SimTablet> read_tablet_file(const std::filesystem::path& path) {
-  Result<Mesh> mesh = read_mesh(path, {});
+Result<sim::SimTablet> read_tablet_file(const std::filesystem::path& path, const MeshReadOptions& options) {
+  Result<Mesh> mesh = read_mesh(path, options);
   if (!mesh) {
     return std::unexpected(mesh.error());
   }

@@ -2,11 +2,16 @@
 // Copyright The Dubsar developers
 // dubsar simulate tablet | scans: test pieces whose truth is known.
 
+#include <fmt/format.h>
+
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
 
+#include "analysis/tablet_size.h"
 #include "core/mesh_query.h"
+#include "core/units.h"
 #include "formats/grid_ply.h"
 #include "formats/mesh_io.h"
 #include "formats/pins_json.h"
@@ -40,6 +45,7 @@ struct SimulateOptions {
   int views = 12;
   double noise_mm = 0.02;
   bool pins = false;
+  std::string unit;
 };
 
 Result<Eigen::Vector3d> parse_size(const std::string& text) {
@@ -103,10 +109,32 @@ Result<int> simulate_tablet(const SimulateOptions& options, CommandContext& cont
   return 0;
 }
 
+/// Above this a scan takes gigabytes.
+constexpr double kMostSamples = 5e7;
+
+/// A tablet whose unit is taken wrongly would take all memory there is.
+Status check_scan_size(const SimulateOptions& options, const sim::SimTablet& tablet) {
+  const double across_mm = size_across_mm(tablet.mesh);
+  const double samples = std::pow(across_mm / options.spacing_mm, 2);
+  if (samples <= kMostSamples) {
+    return {};
+  }
+  return bad_input(
+      options.tablet,
+      fmt::format("it is {:.3g} mm across: at a spacing of {:.3g} mm a scan would have {:.2g} samples",
+                  across_mm, options.spacing_mm, samples),
+      fmt::format("say what its numbers are with --unit, or give --spacing {:.2g} or more",
+                  1.05 * across_mm / std::sqrt(kMostSamples)));
+}
+
 Result<int> simulate_scans(const SimulateOptions& options, CommandContext& context) {
-  const Result<sim::SimTablet> tablet = read_tablet_file(options.tablet);
+  const Result<sim::SimTablet> tablet = read_tablet_file(
+      options.tablet, {.mm_per_unit = options.unit.empty() ? std::nullopt : mm_per_unit(options.unit)});
   if (!tablet) {
     return std::unexpected(tablet.error());
+  }
+  if (const Status size = check_scan_size(options, *tablet); !size) {
+    return std::unexpected(size.error());
   }
   if (const Status made = make_folder(options.out); !made) {
     return std::unexpected(made.error());
@@ -203,6 +231,8 @@ void add_simulate(CLI::App& app, Action& chosen) {
   CLI::App* scans =
       verb->add_subcommand("scans", "Range grids of a tablet: scan_000.ply … and truth_poses.json");
   scans->add_option("--tablet", options->tablet, "the true surface, a mesh")->required();
+  scans->add_option("--unit", options->unit, "what the mesh's numbers are")
+      ->check(CLI::IsMember(std::vector<std::string>(kLengthUnits.begin(), kLengthUnits.end())));
   scans->add_option("--views", options->views, "how many, turned by hand")
       ->check(in_range(1, 1000))
       ->capture_default_str();

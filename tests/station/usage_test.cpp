@@ -31,6 +31,22 @@ TEST(CommandUsage, AnAnswerThatCouldNotBePrintedIsNoSuccess) {
   EXPECT_THAT(test::bytes_of(err), HasSubstr("dubsar: standard output: it did not take all of the answer"));
 }
 
+TEST(CommandUsage, ATabletOfTheWrongUnitIsNotScannedUntilTheMemoryIsFull) {
+  const test::TemporaryFolder folder;
+  const std::string made = (folder.path() / "made").string();
+  ASSERT_EQ(run_command({"simulate", "tablet", "--size", "24x20x10", "--spacing", "1", "-o", made}).status,
+            0);
+  const auto scans = [&](const char* unit) {
+    return run_command({"simulate", "scans", "--tablet", made + "/tablet.ply", "--unit", unit, "--views", "1",
+                        "--spacing", "1", "-o", made});
+  };
+  const Outcome wrong = scans("m");
+  EXPECT_EQ(wrong.status, 2);
+  EXPECT_THAT(wrong.err, HasSubstr("mm across: at a spacing of 1 mm a scan would have"));
+  EXPECT_THAT(wrong.err, HasSubstr("--unit"));
+  EXPECT_EQ(scans("mm").status, 0);
+}
+
 TEST(CommandUsage, WrongWordsAreStatusTwoAndOneLine) {
   const test::TemporaryFolder folder;
   const std::string session = (folder.path() / "session").string();
