@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -18,7 +19,9 @@ namespace dubsar {
 
 struct GridReadOptions {
   /// What the file's numbers are; unset: the file's own word (obj_info unit), else millimetres.
-  std::optional<double> mm_per_unit;
+  std::optional<double> mm_per_unit{};
+  /// Told, with its name, of a scan that was read otherwise than its file says, or that is doubtful.
+  std::function<void(const std::string& scan, const std::string& remark)> remark{};
 };
 
 using ScanData = std::variant<RangeGrid, PointCloud>;

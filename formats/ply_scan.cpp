@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 #include <optional>
 
@@ -13,6 +14,7 @@
 #include "formats/ply_body.h"
 #include "formats/ply_scan_info.h"
 #include "formats/scan_samples.h"
+#include "formats/seen_side.h"
 #include "formats/text_scanner.h"
 
 namespace dubsar {
@@ -94,6 +96,12 @@ struct VertexColumns {
     return three[0] >= 0 && three[1] >= 0 && three[2] >= 0;
   }
 };
+
+std::string short_text(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g", value);
+  return text;
+}
 
 std::uint8_t colour_byte(double value) {
   return value > 0 ? static_cast<std::uint8_t>(std::min(value + 0.5, 255.0)) : std::uint8_t{0};
@@ -201,6 +209,24 @@ void drop_zero_points(ScanSamples& samples) {
   }
 }
 
+/// What the scanner is set to differs from what the samples show by the depth of the object in its field.
+constexpr double kSpacingWithin = 1.5;
+
+/// Answers with what the operator should know; empty: nothing.
+std::string settle_spacing(RangeGrid& grid, bool in_its_unit) {
+  const double measured_mm = estimate_spacing_mm(grid);
+  const double said_mm = in_its_unit ? grid.spacing_mm : 0.0;
+  if (said_mm <= 0) {
+    grid.spacing_mm = measured_mm;
+  } else if (measured_mm > 0 &&
+             (said_mm > kSpacingWithin * measured_mm || measured_mm > kSpacingWithin * said_mm)) {
+    grid.spacing_mm = measured_mm;
+    return "its header says a spacing of " + short_text(said_mm) + " mm, but its samples lie " +
+           short_text(measured_mm) + " mm apart, which is taken; mend or remove `obj_info dubsar_spacing_mm`";
+  }
+  return {};
+}
+
 Status check_sizes(const PlyHeader& header, const std::optional<GridSize>& size, const std::string& name) {
   const PlyElement* vertex = header.element("vertex");
   const PlyElement* grid = header.element("range_grid");
@@ -289,6 +315,9 @@ Result<ScanData> read_ply_scan(std::string_view bytes, const std::string& name,
     }
   }
 
+  if (const Status near = samples.check_place(name); !near) {
+    return std::unexpected(near.error());
+  }
   const bool has_cells = header->element("range_grid") != nullptr;
   const bool ordered = has_cells || (*size && (*size)->cells() == vertex.count);
   if (!ordered) {
@@ -311,8 +340,15 @@ Result<ScanData> read_ply_scan(std::string_view bytes, const std::string& name,
     return bad_input(name, "holds no usable sample", kExportAgain);
   }
   // A spacing that was written for other units says nothing.
-  if (grid.spacing_mm <= 0 || (said && *said != mm)) {
-    grid.spacing_mm = estimate_spacing_mm(grid);
+  const std::string spacing = settle_spacing(grid, said && *said == mm);
+  if (const Status precise = check_precision(grid, name); !precise) {
+    return std::unexpected(precise.error());
+  }
+  const bool seen_from = header->info_value(ply_info::kDirection) || grid.view.camera_mm;
+  for (const std::string& remark : {spacing, seen_from ? std::string() : settle_direction(grid)}) {
+    if (!remark.empty() && options.remark) {
+      options.remark(grid.source, remark);
+    }
   }
   return grid;
 }

@@ -134,6 +134,9 @@ Result<ScanData> read_point_text(std::string_view bytes, const std::string& name
       samples.normals = std::move(triples);
     }
   }
+  if (const Status near = samples.check_place(name); !near) {
+    return std::unexpected(near.error());
+  }
   PointCloud cloud = cloud_from_samples(samples);
   if (cloud.points.empty()) {
     return bad_input(name, "holds no usable point", "export the points as lines of x y z");

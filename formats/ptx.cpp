@@ -5,6 +5,7 @@
 #include <array>
 
 #include "formats/scan_samples.h"
+#include "formats/seen_side.h"
 #include "formats/text_scanner.h"
 #include "formats/text_scans.h"
 
@@ -17,6 +18,8 @@ constexpr std::int64_t kMaxSide = std::int64_t{1} << 24U;
 constexpr int kHeaderNumbers = 3 + 9 + 16;
 /// A line of a sample is at least "0 0 0".
 constexpr std::size_t kLeastSampleBytes = 6;
+/// Fewer show nothing of where they were seen from.
+constexpr std::size_t kLeastSamples = 1000;
 
 struct PtxHeader {
   int profiles = 0;
@@ -65,7 +68,44 @@ int columns_of_next_line(TextScanner text) {
   return columns;
 }
 
-Result<RangeGrid> read_one(TextScanner& text, const std::string& name, double mm) {
+/// No scanner of objects sees a tenth of its samples so far off the middle of its view: what has its origin
+/// there has been moved to the object.
+constexpr double kWidestCosine = 0.5;
+constexpr double kFewOutside = 0.1;
+
+/// The scanner stands at the origin, unless the origin lies in the surface: that is answered with a remark.
+Result<std::string> place_scanner(RangeGrid& grid, const std::string& name) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  Eigen::Vector3d rays = Eigen::Vector3d::Zero();
+  for (std::size_t i = 0; i < grid.size(); ++i) {
+    if (grid.valid[i] != 0) {
+      const Eigen::Vector3d p = grid.point(i).cast<double>();
+      sum += p;
+      rays += p.normalized();
+    }
+  }
+  std::size_t outside = 0;
+  for (std::size_t i = 0; i < grid.size(); ++i) {
+    const Eigen::Vector3d p = grid.point(i).cast<double>();
+    outside += grid.valid[i] != 0 && p.dot(rays) < kWidestCosine * p.norm() * rays.norm() ? 1 : 0;
+  }
+  if (static_cast<double>(outside) > kFewOutside * static_cast<double>(grid.valid_count()) &&
+      grid.valid_count() >= kLeastSamples) {
+    if (const Status found = find_direction(grid, name); !found) {
+      return std::unexpected(found.error());
+    }
+    return "the scanner would stand at 0 0 0, in the scanned surface: which way it looked is taken from the "
+           "outline; better export it in the scanner's own frame";
+  }
+  grid.view.laser_mm = Eigen::Vector3d::Zero();
+  grid.view.camera_mm = Eigen::Vector3d::Zero();
+  if (sum.norm() > 0) {
+    grid.view.direction = sum.normalized();
+  }
+  return std::string();
+}
+
+Result<RangeGrid> read_one(TextScanner& text, const std::string& name, double mm, std::string& remark) {
   const Result<PtxHeader> header = read_header(text, name);
   if (!header) {
     return std::unexpected(header.error());
@@ -96,19 +136,19 @@ Result<RangeGrid> read_one(TextScanner& text, const std::string& name, double mm
       samples.rgb.push_back(v[k] > 0 ? static_cast<std::uint8_t>(std::min(v[k], 255.0)) : std::uint8_t{0});
     }
   }
+  if (const Status near = samples.check_place(name); !near) {
+    return std::unexpected(near.error());
+  }
   RangeGrid grid = grid_from_samples(samples, header->profiles, header->samples, {});
-  grid.view.laser_mm = Eigen::Vector3d::Zero();
-  grid.view.camera_mm = Eigen::Vector3d::Zero();
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (std::size_t i = 0; i < grid.size(); ++i) {
-    if (grid.valid[i] != 0) {
-      sum += grid.point(i).cast<double>();
-    }
+  const Result<std::string> doubt = place_scanner(grid, name);
+  if (!doubt) {
+    return std::unexpected(doubt.error());
   }
-  if (sum.norm() > 0) {
-    grid.view.direction = sum.normalized();
-  }
+  remark = *doubt;
   grid.spacing_mm = estimate_spacing_mm(grid);
+  if (const Status precise = check_precision(grid, name); !precise) {
+    return std::unexpected(precise.error());
+  }
   return grid;
 }
 
@@ -118,9 +158,10 @@ Result<std::vector<ScanData>> read_ptx(std::string_view bytes, const std::string
                                        const GridReadOptions& options) {
   TextScanner text(bytes);
   std::vector<RangeGrid> grids;
+  std::vector<std::string> remarks;
   bool any_sample = false;
   while (!text.at_end() || grids.empty()) {
-    Result<RangeGrid> grid = read_one(text, name, options.mm_per_unit.value_or(1.0));
+    Result<RangeGrid> grid = read_one(text, name, options.mm_per_unit.value_or(1.0), remarks.emplace_back());
     if (!grid) {
       return std::unexpected(grid.error());
     }
@@ -136,6 +177,9 @@ Result<std::vector<ScanData>> read_ptx(std::string_view bytes, const std::string
     if (grids.size() > 1) {
       grids[i].source += '#';
       grids[i].source += std::to_string(i);
+    }
+    if (!remarks[i].empty() && options.remark) {
+      options.remark(grids[i].source, remarks[i]);
     }
     scans.emplace_back(std::move(grids[i]));
   }

@@ -6,12 +6,20 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 
 #include "formats/grid_reader.h"
 
 namespace dubsar {
 
 namespace {
+
+constexpr const char* kMoveNear =
+    "export it without the offset of a map or a room, or give its unit if that is what is wrong";
+/// Rounded to an eighth of the spacing at the most, samples keep what noise leaves of them.
+constexpr double kStepsPerSpacing = 8;
+/// Whatever the spacing, rounding to a tenth of a micrometre takes nothing away.
+constexpr double kSurelyPreciseMm = 1000;
 
 bool within_bounds(double mm) {
   return std::abs(mm) <= kMaxCoordinateMm;  // false for NaN
@@ -25,6 +33,38 @@ void ScanSamples::add(double x_mm, double y_mm, double z_mm, bool usable_sample)
   y.push_back(keep ? static_cast<float>(y_mm) : 0.0F);
   z.push_back(keep ? static_cast<float>(z_mm) : 0.0F);
   usable.push_back(keep ? 1 : 0);
+  const bool returned = usable_sample && std::isfinite(x_mm) && std::isfinite(y_mm) && std::isfinite(z_mm);
+  too_far += returned && !keep ? 1 : 0;
+}
+
+Status ScanSamples::check_place(const std::string& name) const {
+  const auto near = static_cast<std::size_t>(std::ranges::count(usable, std::uint8_t{1}));
+  if (too_far <= near) {
+    return {};
+  }
+  return bad_input(name, "lies beyond 1 km from the origin (" + std::to_string(too_far) + " samples)",
+                   kMoveNear);
+}
+
+Status check_precision(const RangeGrid& grid, const std::string& name) {
+  const std::size_t count = grid.valid_count();
+  double farthest_mm = 0;
+  for (const std::vector<float>* axis : {&grid.x, &grid.y, &grid.z}) {
+    double sum = 0;
+    for (std::size_t i = 0; i < axis->size(); ++i) {
+      sum += grid.valid[i] != 0 ? static_cast<double>((*axis)[i]) : 0.0;
+    }
+    farthest_mm = std::max(farthest_mm, count == 0 ? 0.0 : std::abs(sum) / static_cast<double>(count));
+  }
+  const double step_mm = farthest_mm * static_cast<double>(std::numeric_limits<float>::epsilon());
+  if (farthest_mm < kSurelyPreciseMm || kStepsPerSpacing * step_mm <= grid.spacing_mm) {
+    return {};
+  }
+  return bad_input(name,
+                   "lies " + std::to_string(std::lround(farthest_mm / 1000.0)) +
+                       " m from the origin, too far for its samples to keep their places to a small part of "
+                       "their spacing",
+                   kMoveNear);
 }
 
 RangeGrid grid_from_samples(const ScanSamples& samples, int rows, int cols,

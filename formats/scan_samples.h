@@ -9,6 +9,7 @@
 
 #include "core/point_cloud.h"
 #include "core/range_grid.h"
+#include "core/result.h"
 
 namespace dubsar {
 
@@ -22,10 +23,17 @@ struct ScanSamples {
   std::vector<std::uint8_t> rgb;  ///< [3N]
   std::vector<float> normals;     ///< [3N]
 
+  std::size_t too_far = 0;  ///< unusable for being beyond kMaxCoordinateMm alone
+
   [[nodiscard]] std::size_t size() const { return x.size(); }
   /// Appends a position; unusable when it is not finite or beyond kMaxCoordinateMm.
   void add(double x_mm, double y_mm, double z_mm, bool usable_sample = true);
+  /// kBadInput when most of what was returned lies too far away: an object is there, not a stray.
+  [[nodiscard]] Status check_place(const std::string& name) const;
 };
+
+/// kBadInput when a grid lies so far from its origin that float coordinates blur its spacing.
+[[nodiscard]] Status check_precision(const RangeGrid& grid, const std::string& name);
 
 inline constexpr std::uint32_t kNoSample = 0xffffffffU;
 

@@ -3,13 +3,21 @@
 #include "drivers/replay/scan_files.h"
 
 #include <algorithm>
+#include <utility>
+
+#include "core/log.h"
 
 namespace dubsar::replay {
 
 namespace fs = std::filesystem;
 
 ScanFiles::ScanFiles(std::vector<fs::path> files, GridReadOptions options)
-    : files_(std::move(files)), options_(options) {
+    : files_(std::move(files)), options_(std::move(options)) {
+  if (!options_.remark) {
+    options_.remark = [](const std::string& scan, const std::string& remark) {
+      log_warning(scan + ": " + remark);
+    };
+  }
   // Only PTX holds several scans; looking into one means reading all of it.
   const bool one_each = std::ranges::none_of(files_, [](const fs::path& file) {
     std::string extension = file.extension().string();

@@ -3,6 +3,7 @@
 #include "formats/ply_scan.h"
 
 #include "formats/byte_order.h"
+#include "formats/grid_ply.h"
 #include "tests/formats/format_support.h"
 
 namespace dubsar {
@@ -118,6 +119,51 @@ TEST(PlyScan, CentimetresAndInchesAreUnits) {
   EXPECT_EQ(grid_of(parts.text()).point(1), Eigen::Vector3f(10, 0, 5));
   parts.info.replace(parts.info.find("unit cm"), 7, "unit in");
   EXPECT_EQ(grid_of(parts.text()).point(1), Eigen::Vector3f(25.4F, 0, 12.7F));
+}
+
+TEST(PlyScan, ASpacingThatTheSamplesContradictIsMeasuredAndTold) {
+  Parts parts;
+  std::vector<std::string> told;
+  const GridReadOptions options{.remark = [&](const std::string& scan, const std::string& remark) {
+    told.push_back(scan + ": " + remark);
+  }};
+  parts.info += "obj_info dubsar_spacing_mm 1.2\n";
+  EXPECT_EQ(grid_of(parts.text(), options).spacing_mm, 1.2);
+  EXPECT_TRUE(told.empty());
+  for (const char* said : {"15 ", "0.2"}) {
+    parts.info.replace(parts.info.find("_mm ") + 4, 3, said);
+    EXPECT_FLOAT_EQ(static_cast<float>(grid_of(parts.text(), options).spacing_mm), 1.0F);
+  }
+  ASSERT_EQ(told.size(), 2U);
+  EXPECT_THAT(told[0],
+              HasSubstr("a.ply: its header says a spacing of 15 mm, but its samples lie 1 mm apart"));
+  EXPECT_THAT(told[1], HasSubstr("mend or remove `obj_info dubsar_spacing_mm`"));
+}
+
+TEST(PlyScan, CoordinatesOfAMapAreNotBlurredSilently) {
+  const auto moved = [](const std::string& by) {
+    Parts parts;
+    const std::string x0 = by + "00";
+    const std::string x1 = by + "01";
+    parts.body = x0 + " 0 0\n" + x1 + " 0 0.5\n" + x0 + " 1 0\n" + x1 + " 1 0\n1 0\n1 1\n0\n1 2\n0\n1 3\n";
+    return parts;
+  };
+  EXPECT_TRUE(read_scan_bytes(moved("1000").text(), "a.ply"));
+  EXPECT_TRUE(read_scan_bytes(moved("9000").text(), "a.ply", {.mm_per_unit = 1.0}))
+      << "1 mm is coarse enough";
+  EXPECT_TRUE(read_scan_bytes(moved("9000").text(), "a.ply", {.mm_per_unit = 0.1}));
+  EXPECT_THAT(line(moved("50000")),
+              HasSubstr("a.ply: lies beyond 1 km from the origin (4 samples); export it without the offset"));
+  RangeGrid fine;
+  fine.allocate(20, 20);
+  fine.spacing_mm = 0.1;
+  for (std::size_t i = 0; i < fine.size(); ++i) {
+    fine.x[i] = 900000.0F + static_cast<float>(0.1 * fine.col_of(i));
+    fine.y[i] = static_cast<float>(0.1 * fine.row_of(i));
+    fine.valid[i] = 1;
+  }
+  EXPECT_THAT(line_of(read_scan_bytes(encode_grid_ply(fine), "b.ply")),
+              HasSubstr("b.ply: lies 900 m from the origin, too far"));
 }
 
 TEST(PlyScan, ReadsIntensityColourAndConfidence) {

@@ -51,6 +51,54 @@ TEST(Ptx, ReadsSeveralScansAndCountsThem) {
   EXPECT_EQ(std::get<RangeGrid>((*scans)[1]).source, "two.ptx#1");
 }
 
+/// A dome as PTX, its top at (0, 0, top_mm).
+std::string dome_ptx(double top_mm, bool with_outline) {
+  constexpr int kSide = 60;
+  std::string text = std::to_string(kSide) + "\n" + std::to_string(kSide) +
+                     "\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n";
+  for (int row = 0; row < kSide; ++row) {
+    for (int col = 0; col < kSide; ++col) {
+      const double x = col - 0.5 * kSide + 0.25;
+      const double y = row - 0.5 * kSide + 0.25;
+      const double square = 1 - (x * x + y * y) / 676;
+      const double z = with_outline ? 12 * std::sqrt(std::max(0.0, square)) - 12 : -0.01 * x * x;
+      text += with_outline && square <= 0
+                  ? std::string("0 0 0\n")
+                  : std::to_string(x) + " " + std::to_string(y) + " " + std::to_string(z + top_mm) + "\n";
+    }
+  }
+  return text;
+}
+
+TEST(Ptx, AnObjectAtTheOriginIsNotSeenFromWithinItself) {
+  std::string told;
+  const GridReadOptions options{
+      .remark = [&](const std::string& scan, const std::string& remark) { told += scan + ": " + remark; }};
+  const auto proper = read_scan_bytes(dome_ptx(-100, true), "a.ptx", options);
+  ASSERT_TRUE(proper) << line_of(proper);
+  EXPECT_EQ(std::get<RangeGrid>(proper->front()).view.camera_mm, Eigen::Vector3d(0, 0, 0));
+  EXPECT_EQ(told, "");
+  for (const double top_mm : {3.0, 12.0}) {
+    told.clear();
+    const auto centred = read_scan_bytes(dome_ptx(top_mm, true), "a.ptx", options);
+    ASSERT_TRUE(centred) << line_of(centred);
+    const auto& grid = std::get<RangeGrid>(centred->front());
+    EXPECT_EQ(grid.view.direction, Eigen::Vector3d(0, 0, -1));
+    EXPECT_FALSE(grid.view.camera_mm);
+    EXPECT_FALSE(grid.view.laser_mm);
+    EXPECT_THAT(told, HasSubstr("a.ptx: the scanner would stand at 0 0 0, in the scanned surface"));
+  }
+  EXPECT_THAT(line_of(read_scan_bytes(dome_ptx(3, false), "a.ptx")),
+              HasSubstr("a.ptx: the scanner's position 0 0 0 lies in the scanned surface"));
+}
+
+TEST(Ptx, CoordinatesOfAMapAreNamed) {
+  EXPECT_THAT(line_of(read_scan_bytes(dome_ptx(5e6, true), "a.ptx")),
+              HasSubstr("a.ptx: lies beyond 1 km from the origin"));
+  EXPECT_THAT(line_of(read_scan_bytes("5000000 5000000 1\n5000001 5000000 2\n", "a.xyz")),
+              HasSubstr("a.xyz: lies beyond 1 km from the origin (2 samples)"));
+}
+
 TEST(Ptx, NamesWhatIsWrong) {
   const auto line = [](const std::string& text) { return line_of(read_scan_bytes(text, "a.ptx")); };
   EXPECT_THAT(line(""), HasSubstr("a.ptx: line 1: '' stands where a count"));
