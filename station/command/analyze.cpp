@@ -83,12 +83,10 @@ Status check_size(const AnalyzeArguments& arguments, const Mesh& mesh) {
                             ? likelier_units(across_mm, mm_per_number(arguments.in, across_mm))
                             : std::vector<std::string_view>();
   if (!likelier.empty()) {
-    const std::string mend =
-        mm_per_unit(likelier.front())
-            ? fmt::format("say so with --unit {}, or confirm what they are", likelier.front())
-            : "export it in mm, or confirm them with --unit mm";
+    const std::string words = fmt::format("{}", fmt::join(likelier, " or "));
     return bad_input(arguments.in, fmt::format("it would be {:.3g} mm across", across_mm),
-                     fmt::format("its numbers look like {}: {}", fmt::join(likelier, " or "), mend));
+                     fmt::format("its numbers look like {}: say so with --unit {}, or confirm what they are",
+                                 words, words));
   }
   if (const double coarse_mm = coarsest_place_mm(mesh); coarse_mm > kCoarsestPlaceMm) {
     return bad_input(

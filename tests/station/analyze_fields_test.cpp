@@ -49,7 +49,7 @@ TEST_F(AnalyzeFields, CentimetresAndInchesAreNamed) {
   const std::string mesh = sphere_file("small.stl", 1.5F, 3);
   const Outcome doubted = run_command({"analyze", mesh, "-o", at("w.json").string()});
   EXPECT_EQ(doubted.status, 2);
-  EXPECT_THAT(doubted.err, HasSubstr("look like cm or in: export it in mm"));
+  EXPECT_THAT(doubted.err, HasSubstr("look like cm or in: say so with --unit cm or in"));
   EXPECT_EQ(run_command({"analyze", mesh, "-o", at("w.json").string(), "--unit", "mm"}).status, 0);
 }
 
