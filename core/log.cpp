@@ -5,6 +5,8 @@
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
+#include "core/utf8.h"
+
 namespace dubsar {
 
 namespace {
@@ -40,16 +42,16 @@ void set_log_level(LogLevel level) {
 }
 
 void log_debug(const std::string& text) {
-  logger().debug(text);
+  logger().debug(one_line(text));
 }
 void log_info(const std::string& text) {
-  logger().info(text);
+  logger().info(one_line(text));
 }
 void log_warning(const std::string& text) {
-  logger().warn(text);
+  logger().warn(one_line(text));
 }
 void log_error(const std::string& text) {
-  logger().error(text);
+  logger().error(one_line(text));
 }
 
 }  // namespace dubsar

@@ -33,7 +33,9 @@ std::vector<ScanPose> Registrar::poses() const {
 }
 
 bool Registrar::remove(int id, JobContext& job) {
-  return state_->remove(id, job);
+  const bool there = state_->remove(id, job);
+  state_->put_out_faulty(job);
+  return there;
 }
 
 bool Registrar::set_pose(int id, const RigidTransform& model_from_scanner, bool locked) {

@@ -159,7 +159,12 @@ int ScanModel::main_group() const {
       return group;  // what the operator has fixed is the model, however little it is
     }
   }
-  return groups.empty() ? -1 : groups.front();
+  // A scan that was taken out is not what others are tried on, while there is another.
+  const auto sound = std::find_if(groups.begin(), groups.end(), [&](int group) {
+    const std::vector<int> ids = members(group);
+    return std::any_of(ids.begin(), ids.end(), [&](int i) { return scans_.at(i).fault_reason.empty(); });
+  });
+  return sound != groups.end() ? *sound : groups.empty() ? -1 : groups.front();
 }
 
 std::vector<ModelScan> ScanModel::model_of(const std::vector<int>& ids) const {
@@ -220,6 +225,7 @@ bool ScanModel::place(int id, const RigidTransform& model_from_scanner, bool loc
   }
   Scan& scan = found->second;
   const bool apart = leave(id);
+  scan.fault_reason.clear();
   int main = scan.group;
   for (const int group : groups_by_size()) {
     if (group != scan.group) {

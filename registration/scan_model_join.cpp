@@ -207,7 +207,9 @@ void ScanModel::connect(int id, const ModelFit& fit, bool by_stage, const std::v
     unchecked_.insert(group_ids[k]);
   }
   measure_pairs(pairs);
-  scan.fault_reason.clear();
+  for (const int i : members(scan.group)) {
+    scans_.at(i).fault_reason.clear();
+  }
   scan.reason.clear();
 }
 

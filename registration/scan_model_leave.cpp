@@ -21,11 +21,18 @@ bool ScanModel::remove(int id, JobContext& job) {
   }
   const bool apart = leave(id);
   scans_.erase(id);
+  bool accused = false;
   for (auto& [other, scan] : scans_) {
     scan.tried_on.erase(id);
     std::erase_if(scan.leads, [&](const Lead& lead) { return lead.on == id; });
+    if (!scan.fault_reason.empty()) {
+      // What contradicted it may have been the one that is gone.
+      scan.fault_reason.clear();
+      scan.tried_on.clear();
+      accused = true;
+    }
   }
-  if (apart) {
+  if (apart || accused) {
     retry(job);
   }
   return true;
@@ -49,6 +56,7 @@ bool ScanModel::leave(int id) {
       Scan& apart = scans_.at(member);
       apart.group = own;
       apart.reason = kConnectionGone;
+      apart.fault_reason.clear();
       apart.outcome = PoseStatus::kUnsure;
       apart.tried_on.clear();
       // Where it stood may be right still, but has to be verified without the scan that spoke for it.

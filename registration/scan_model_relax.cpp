@@ -190,6 +190,9 @@ Status ScanModel::finalize(JobContext& job) {
   }
   unchecked_.insert(ids.begin(), ids.end());
   put_out_faulty(job);
+  if (job.cancelled()) {
+    return fail(ErrorKind::kCancelled, "registration was stopped");
+  }
   warn_of_stretched(members(main_group()));
   job.progress("relax", 1.0);
   return {};

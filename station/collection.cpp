@@ -69,8 +69,11 @@ Result<std::vector<fs::path>> json_files(const fs::path& folder) {
 /// meant: it may have been one.
 bool is_of_another_kind(const fs::path& path) {
   const Result<std::string> text = read_whole_file(path, kMaxJsonBytes);
-  if (text && nlohmann::json::accept(*text) && text->at(text->find_first_not_of(" \t\r\n")) != '{') {
-    return true;
+  if (text) {
+    const nlohmann::json any = nlohmann::json::parse(*text, nullptr, false);
+    if (!any.is_discarded() && !any.is_object()) {
+      return true;
+    }
   }
   const Result<JsonDocument> document =
       text ? JsonDocument::parse(*text, path.string()) : std::unexpected(text.error());

@@ -143,10 +143,16 @@ Result<std::vector<ScanPose>> register_scans(const ScanSet& set, const RegisterO
   return poses;
 }
 
+namespace {
+
+/// By which a pose of a file is known: whatever folder its scan lay in then.
+std::string name_of(const std::string& file) {
+  return std::filesystem::path(file).filename().string();
+}
+
+}  // namespace
+
 const ScanPose* pose_in_file(const std::vector<ScanPose>& file, const StationScan& scan) {
-  const auto name_of = [](const std::string& name) {
-    return std::filesystem::path(name).filename().string();
-  };
   const auto by_name = std::ranges::find_if(file, [&](const ScanPose& pose) {
     return !pose.file.empty() && name_of(pose.file) == name_of(scan.file);
   });
@@ -168,7 +174,7 @@ Result<std::vector<ScanPose>> read_poses_file(const std::filesystem::path& poses
                                             : read_poses(poses_file);
   std::set<std::string> names;
   for (const ScanPose& pose : poses ? *poses : std::vector<ScanPose>{}) {
-    const std::string name = pose.file.empty() ? "scan " + std::to_string(pose.id) : pose.file;
+    const std::string name = pose.file.empty() ? "scan " + std::to_string(pose.id) : name_of(pose.file);
     if (!names.insert(name).second) {
       return bad_input(poses_file.string(), "it has two poses of " + name, "leave the right one");
     }

@@ -9,6 +9,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/utf8.h"
 #include "formats/atomic_file.h"
 #include "formats/poses_json.h"
 #include "station/command/command.h"
@@ -71,8 +72,8 @@ Result<int> register_all(const RegisterArguments& arguments, CommandContext& con
   } else {
     for (const ScanPose& pose : *poses) {
       std::printf("%3d  %-10s rms %.4f mm  sigma %.4f mm  overlap %3.0f %%  %s%s%s\n", pose.id,
-                  to_string(pose.status), pose.rms_mm, pose.sigma_mm, 100 * pose.overlap, pose.file.c_str(),
-                  pose.reason.empty() ? "" : ": ", pose.reason.c_str());
+                  to_string(pose.status), pose.rms_mm, pose.sigma_mm, 100 * pose.overlap,
+                  one_line(pose.file).c_str(), pose.reason.empty() ? "" : ": ", pose.reason.c_str());
     }
   }
   for (const ScanPose& pose : *poses) {

@@ -65,6 +65,22 @@ TEST(ScanMotion, NoneIsFoundWhereNothingMoved) {
   }
 }
 
+TEST(ScanMotion, IsLookedForAgainWhenAnotherScanIsTakenOutAndForgottenWithTheScan) {
+  JobContext job;
+  Registrar registrar;
+  for (std::size_t k = 0; k < still_scans().size(); ++k) {
+    const auto& grid = still_scans()[k].grid;
+    registrar.add(static_cast<int>(k), k == 1 ? slipped(*grid, {0, 0, 1.0F}) : grid, nullptr, job);
+  }
+  ASSERT_TRUE(registrar.remove(2, job));
+  const ScanPose slipped_one = registrar.poses().at(1);
+  EXPECT_NE(slipped_one.status, PoseStatus::kRegistered);
+  EXPECT_NE(slipped_one.reason.find("by 1.0 mm"), std::string::npos) << slipped_one.reason;
+  const ScanPose again = registrar.add(1, still_scans()[1].grid, nullptr, job);
+  EXPECT_EQ(again.status, PoseStatus::kRegistered) << again.reason;
+  EXPECT_TRUE(again.reason.empty());
+}
+
 struct Slip {
   const char* name;
   std::size_t scan;

@@ -48,6 +48,23 @@ std::shared_ptr<const RangeGrid> stretched(const RangeGrid& grid, const Eigen::V
   return out;
 }
 
+/// What is said while they are registered, and of each of them.
+std::string said_of(const std::vector<std::shared_ptr<const RangeGrid>>& grids) {
+  JobContext job;
+  Registrar registrar;
+  ::testing::internal::CaptureStderr();
+  for (std::size_t k = 0; k < grids.size(); ++k) {
+    registrar.add(static_cast<int>(k), grids[k], nullptr, job);
+  }
+  const bool done = registrar.finalize(job).has_value();
+  std::string all = ::testing::internal::GetCapturedStderr();
+  EXPECT_TRUE(done);
+  for (const ScanPose& pose : registrar.poses()) {
+    all += pose.reason + "\n";
+  }
+  return all;
+}
+
 struct Lengths {
   const char* name;
   Eigen::Vector3f by;
@@ -56,23 +73,13 @@ struct Lengths {
 
 class StretchedScan : public testing::TestWithParam<Lengths> {
  protected:
-  /// What all say of registering the scans with that one stretched.
   static std::string said() {
-    JobContext job;
-    Registrar registrar;
-    ::testing::internal::CaptureStderr();
+    std::vector<std::shared_ptr<const RangeGrid>> grids;
     for (std::size_t k = 0; k < true_scans().size(); ++k) {
       const auto& grid = true_scans()[k].grid;
-      registrar.add(static_cast<int>(k), k == kStretched ? stretched(*grid, GetParam().by) : grid, nullptr,
-                    job);
+      grids.push_back(k == kStretched ? stretched(*grid, GetParam().by) : grid);
     }
-    const bool done = registrar.finalize(job).has_value();
-    std::string all = ::testing::internal::GetCapturedStderr();
-    EXPECT_TRUE(done);
-    for (const ScanPose& pose : registrar.poses()) {
-      all += pose.reason + "\n";
-    }
-    return all;
+    return said_of(grids);
   }
 };
 
@@ -95,8 +102,8 @@ TEST_P(StretchedScan, IsMeasuredFromWhereItLies) {
       judge_in_model(*surfaces[kStretched], others, true_scans()[kStretched].tablet_from_scanner, {});
   const std::optional<ScanStretch> found = find_stretch(*surfaces[kStretched], others, fit);
   ASSERT_TRUE(found);
-  EXPECT_NEAR(found->along_line, static_cast<double>(GetParam().by.x()) - 1.0, 0.004);
-  EXPECT_NEAR(found->along_motion, static_cast<double>(GetParam().by.y()) - 1.0, 0.004);
+  EXPECT_NEAR(found->along_line, static_cast<double>(GetParam().by.x()) - 1.0, 0.006);
+  EXPECT_NEAR(found->along_motion, static_cast<double>(GetParam().by.y()) - 1.0, 0.006);
   EXPECT_EQ(found->is_off(), *GetParam().reason != '\0');
 }
 
@@ -116,6 +123,21 @@ INSTANTIATE_TEST_SUITE_P(
                     // One of two scans, and nothing tells which: said of either.
                     Lengths{"TooLongALine", {1.02F, 1.0F, 1.0F}, "against the other scans"}),
     [](const auto& one) { return std::string(one.param.name); });
+
+/// Small and coarse: a rim is a larger part of them.
+class RightScans : public testing::TestWithParam<std::uint64_t> {};
+
+TEST_P(RightScans, AreNotAccused) {
+  sim::TabletOptions tablet = bench::random_tablet(GetParam(), "text", 0.2);
+  tablet.size_mm = {20, 20, 8};
+  std::vector<std::shared_ptr<const RangeGrid>> grids;
+  for (const bench::TrueScan& scan :
+       bench::true_scans(tablet, {0.2, 0.02, 12, {0, 2, 4, 1, 3, 5}, GetParam(), bench::Pins::kNone, 0})) {
+    grids.push_back(scan.grid);
+  }
+  EXPECT_THAT(said_of(grids), Not(HasSubstr("against the other scans")));
+}
+INSTANTIATE_TEST_SUITE_P(OfSmallTablets, RightScans, testing::Values(4, 5, 6, 7));
 
 }  // namespace
 }  // namespace dubsar

@@ -59,6 +59,7 @@ TEST_F(StitchCommand, NamesAScanThatTheFileHasNoPoseOf) {
 
 TEST_F(StitchCommand, TakesNoFileWithTwoPosesOfAScan) {
   poses_.push_back(poses_.back());
+  poses_.back().file = "elsewhere/" + poses_.back().file;  // the same scan by the name it is looked up by
   const Outcome outcome = stitched();
   EXPECT_EQ(outcome.status, 2);
   EXPECT_THAT(outcome.complaints(), SizeIs(1)) << outcome.err;
