@@ -11,8 +11,8 @@
 
 #include "core/utf8.h"
 
-/// What the values of options are held against. Nothing here is left to CLI::Range: "nan" is neither below
-/// nor above any limit, and passes it.
+/// What the values of options are held against. No number with a point is left to CLI::Range: "nan" is
+/// neither below nor above any limit, and passes it.
 namespace dubsar {
 
 /// A finite number from `low` to `high`, both included.
