@@ -164,7 +164,7 @@ constexpr EnginePhrase kPhrases[] = {
     {" are labelled", " sind benannt"},
     {"there is no scan to undo", "es gibt keinen Scan zurückzunehmen"},
     {" scans are there, as many as were to be taken; --max-scans allows more",
-     " Scans sind da, so viele, wie zu machen waren; --max-scans erlaubt mehr"},
+     " Scans sind da, so viele, wie zu machen waren"},
     {"the half scan is kept: ", "der halbe Scan ist aufgehoben: "},
     {" is not taken up: ", " wird nicht aufgenommen: "},
     {" shows much more than what is known; the same view is scanned once more, to see whether something was "
