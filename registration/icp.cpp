@@ -14,6 +14,7 @@
 #include "registration/absolute_orientation.h"
 #include "registration/icp_information.h"
 #include "registration/nearest_usable.h"
+#include "registration/twist.h"
 
 namespace dubsar {
 
@@ -103,14 +104,6 @@ void accumulate(const SurfaceLevel& from, const RigidTransform& model_from_from,
         return sums;
       },
       [](Sums& into_sum, const Sums& part) { into_sum.add(part); }));
-}
-
-/// The pose after a left twist about the centre.
-RigidTransform twisted(const RigidTransform& pose, const Vector6d& twist, const Eigen::Vector3d& center_mm) {
-  const RigidTransform turn = RigidTransform::from_twist(twist.head<3>(), Eigen::Vector3d::Zero());
-  return RigidTransform{turn.rotation * pose.rotation,
-                        turn.rotation * (pose.translation_mm - center_mm) + center_mm + twist.tail<3>()}
-      .orthonormalised();
 }
 
 /// Pairs of points in the model frame with their weights, the moved scan's first.

@@ -9,6 +9,7 @@
 
 #include "core/parallel.h"
 #include "registration/nearest_usable.h"
+#include "registration/twist.h"
 
 namespace dubsar {
 
@@ -139,12 +140,8 @@ std::optional<ScanStretch> find_stretch(const ScanSurface& scan, std::span<const
       if (!move.allFinite()) {
         return std::nullopt;
       }
-      const Eigen::Vector3d center = at.model_from_scanner * at.center_mm;
-      const RigidTransform turn = RigidTransform::from_twist(move.head<3>(), Eigen::Vector3d::Zero());
-      RigidTransform& pose = at.model_from_scanner;
-      pose = RigidTransform{turn.rotation * pose.rotation,
-                            turn.rotation * (pose.translation_mm - center) + center + move.segment<3>(3)}
-                 .orthonormalised();
+      at.model_from_scanner =
+          twisted(at.model_from_scanner, move.head<6>(), at.model_from_scanner * at.center_mm);
       at.stretch += move.tail<2>();
       const Vector8d variances = sums.h.inverse().diagonal();
       sigma = fit.residual_sigma_mm * std::sqrt(std::max(variances[6], variances[7]));

@@ -69,16 +69,13 @@ Result<std::vector<fs::path>> json_files(const fs::path& folder) {
 /// meant: it may have been one.
 bool is_of_another_kind(const fs::path& path) {
   const Result<std::string> text = read_whole_file(path, kMaxJsonBytes);
-  if (text) {
-    const nlohmann::json any = nlohmann::json::parse(*text, nullptr, false);
-    if (!any.is_discarded() && !any.is_object()) {
-      return true;
-    }
-  }
-  const Result<JsonDocument> document =
-      text ? JsonDocument::parse(*text, path.string()) : std::unexpected(text.error());
-  if (!document) {
+  if (!text) {
     return false;
+  }
+  const Result<JsonDocument> document = JsonDocument::parse(*text, path.string());
+  if (!document) {
+    const nlohmann::json other = nlohmann::json::parse(*text, nullptr, false);
+    return !other.is_discarded() && !other.is_object();
   }
   const JsonNode root = document->root();
   const std::optional<JsonNode> wedges = root.find("wedges");

@@ -170,15 +170,17 @@ TEST_F(CollectionTest, WhatNeverWasAWedgesJsonIsToldApartFromADamagedOne) {
   }
   std::ofstream(at("cut.json")) << R"({"unit": "mm", "wed)";
   std::ofstream(at("odd.json")) << R"({"unit": "mm", "wedges": [{"id": 3}]})";
+  std::ofstream(at("marked.json")) << "\xEF\xBB\xBF"
+                                   << R"({"unit": "mm", "wedges": [{"id": 3}]})";
   settle();
   for (int turn = 0; turn < 2; ++turn) {
     const auto collection = open();
     ASSERT_TRUE(collection);
-    EXPECT_EQ(collection->read_anew(), turn == 0 ? 8U : 0U);
+    EXPECT_EQ(collection->read_anew(), turn == 0 ? 9U : 0U);
     for (const IndexedTablet& file : collection->files()) {
       const bool other = std::ranges::any_of(others, [&](const auto& o) { return o.first == file.name; });
       EXPECT_EQ(file.complaint == kNoWedgesJson, other) << file.name << ": " << file.complaint;
-      if (file.name == "cut.json" || file.name == "odd.json") {
+      if (file.name == "cut.json" || file.name == "odd.json" || file.name == "marked.json") {
         EXPECT_THAT(file.complaint, HasSubstr(file.name));
       }
     }
