@@ -53,6 +53,9 @@ std::string json_from_pose(const ScanPose& pose) {
   out["sigma_mm"] = finite_or_null(pose.sigma_mm);
   out["overlap"] = finite_or_null(pose.overlap);
   out["reason"] = pose.reason;
+  if (!pose.warning.empty()) {
+    out["warning"] = pose.warning;
+  }
   out["locked"] = pose.locked;
   if (pose.covariance) {
     std::vector<double> values;
@@ -78,6 +81,7 @@ Result<ScanPose> pose_from_json(int id, std::string_view text) {
   pose.id = id;
   pose.file = text_of(in, "file");
   pose.reason = text_of(in, "reason");
+  pose.warning = text_of(in, "warning");
   pose.rms_mm = number_of(in, "rms_mm");
   pose.sigma_mm = number_of(in, "sigma_mm");
   pose.overlap = number_of(in, "overlap");

@@ -167,6 +167,9 @@ std::string checklist_section(const ReportInput& input) {
     html += dl_entry("Worst place", "scan " + std::to_string(list.worst_sigma_scan) + ", σ " +
                                         fixed(1000 * list.worst_sigma_mm, 1) + " µm");
   }
+  for (const ScanWarning& warning : list.warnings) {
+    html += dl_entry("Warning", "scan " + std::to_string(warning.scan) + ": " + html_escaped(warning.text));
+  }
   html += dl_entry("Calibration", calibration_words(list));
   html += dl_entry("Store", store_words(list));
   html += dl_entry("Disk", fixed(list.disk_free_gib, 1) + " GiB free");

@@ -47,13 +47,14 @@ std::string scans_section(const ReportInput& input) {
          placed ? micrometres(scan.rms_mm) : dash, placed ? micrometres(scan.sigma_mm) : dash,
          placed ? fixed(100.0 * scan.overlap, 0) : dash, counts ? std::to_string(counts->samples) : dash,
          counts ? std::to_string(counts->sparse) : dash, counts ? std::to_string(counts->cleared) : dash,
-         counts ? std::to_string(counts->excused) : dash, html_escaped(scan.reason)},
-        scan.status == PoseStatus::kRegistered ? "" : "open");
+         counts ? std::to_string(counts->excused) : dash,
+         html_escaped(scan.reason.empty() ? scan.warning : scan.reason)},
+        scan.status == PoseStatus::kRegistered && scan.warning.empty() ? "" : "open");
   }
   return "<section>\n<h2>Scans</h2>\n" +
          html_table("scans",
                     {"No", "File", "Status", "rms, µm", "σ, µm", "Overlap, %", "Samples", "Red", "Cleared",
-                     "Excused", "Reason"},
+                     "Excused", "Remark"},
                     rows) +
          "<p class=\"aside\">rms: residual from points to the surface of the other scans over the overlap. "
          "σ: how far "

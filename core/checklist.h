@@ -60,6 +60,12 @@ struct FaceCoverage {
   return region.state == RegionState::kExcused && !(region.area_mm2 > 0);
 }
 
+/// What is wrong with a scan although it is registered.
+struct ScanWarning {
+  int scan = 0;  ///< its id
+  std::string text;
+};
+
 /// What an operator signs before the tablet goes back into its box.
 struct Checklist {
   bool conclusive = false;
@@ -72,6 +78,7 @@ struct Checklist {
   int scans_failed = 0;
   double worst_sigma_mm = 0;  ///< of the registered scans
   int worst_sigma_scan = -1;  ///< its id; -1 when no scan is registered
+  std::vector<ScanWarning> warnings;
 
   std::string calibration;                     ///< empty when the device told none
   std::optional<double> calibration_age_days;  ///< when the device was opened

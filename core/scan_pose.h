@@ -22,6 +22,7 @@ struct ScanPose {
   double sigma_mm = 0;  ///< predicted surface displacement error of this pose
   double overlap = 0;   ///< with the rest of the model, over the smaller scan, in [0,1]
   std::string reason;   ///< why it is unsure or failed and what would settle it; empty when registered
+  std::string warning;  ///< what is wrong with a registered scan although its pose is sure; mostly empty
   bool locked = false;  ///< fixed by the operator; relaxation leaves it alone
   /// Covariance of the left perturbation twist (omega rad, v mm) about the scan's centroid in the model
   /// frame.

@@ -114,6 +114,9 @@ OrderedJson checklist_json(const Checklist& list) {
     root["worst_sigma_mm"] = list.worst_sigma_mm;
     root["worst_sigma_scan"] = list.worst_sigma_scan;
   }
+  for (const ScanWarning& warning : list.warnings) {
+    root["warnings"].push_back({{"scan", warning.scan}, {"text", warning.text}});
+  }
   root["calibration"] = list.calibration;
   if (list.calibration_age_days) {
     root["calibration_age_days"] = *list.calibration_age_days;
@@ -162,6 +165,13 @@ Result<Checklist> parse_checklist(std::string_view text, const std::string& wher
   if (const auto sigma = root.find("worst_sigma_mm")) {
     list.worst_sigma_mm = sigma->number(0);
     list.worst_sigma_scan = count("worst_sigma_scan");
+  }
+  if (const auto warnings = root.find("warnings")) {
+    for (const JsonNode& warning : warnings->items()) {
+      list.warnings.push_back(
+          {static_cast<int>(warning.at("scan").integer(0, std::numeric_limits<int>::max())),
+           warning.at("text").text()});
+    }
   }
   list.calibration = root.at("calibration").text();
   if (const auto age = root.find("calibration_age_days")) {

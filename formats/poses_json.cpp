@@ -62,6 +62,9 @@ ScanPose pose_from(const JsonNode& node, double mm) {
   if (const auto reason = node.find("reason")) {
     pose.reason = reason->text();
   }
+  if (const auto warning = node.find("warning")) {
+    pose.warning = warning->text();
+  }
   if (const auto locked = node.find("locked")) {
     pose.locked = locked->boolean();
   }
@@ -89,6 +92,9 @@ std::string poses_to_json(std::span<const ScanPose> poses) {
     scan["sigma_mm"] = pose.sigma_mm;
     scan["overlap"] = pose.overlap;
     scan["reason"] = pose.reason;
+    if (!pose.warning.empty()) {
+      scan["warning"] = pose.warning;
+    }
     scan["locked"] = pose.locked;
     if (pose.covariance) {
       scan["covariance"] = covariance_json(*pose.covariance);

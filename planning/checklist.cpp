@@ -22,6 +22,9 @@ void count_scans(std::span<const ScanPose> poses, Checklist& list) {
       list.worst_sigma_mm = pose.sigma_mm;
       list.worst_sigma_scan = pose.id;
     }
+    if (pose.status == PoseStatus::kRegistered && !pose.warning.empty()) {
+      list.warnings.push_back({pose.id, pose.warning});
+    }
   }
 }
 

@@ -127,6 +127,7 @@ void bind_pose(py::module_& module) {
       .def_readonly("sigma_mm", &ScanPose::sigma_mm)
       .def_readonly("overlap", &ScanPose::overlap)
       .def_readonly("reason", &ScanPose::reason)
+      .def_readonly("warning", &ScanPose::warning)
       .def_property_readonly("covariance", &covariance_of,
                              "[6, 6] of (omega rad, v mm) about the scan's centroid, or None")
       .def("__repr__", [](const ScanPose& pose) {

@@ -325,6 +325,7 @@ ScanPose ScanModel::pose(int id) const {
     return out;
   }
   out.status = PoseStatus::kRegistered;
+  out.warning = scan.warning;
   out.covariance = scan.covariance;
   // Mean square displacement over points at rms radius r about the centroid: trace of the shift plus two
   // thirds of r² times that of the turn.

@@ -76,6 +76,7 @@ class ScanModel {
     std::string reason;        ///< why it does not join; empty when it has joined or was not tried
     std::string hint_reason;   ///< why its hint led to no pose
     std::string fault_reason;  ///< why it was taken out of the model when it was last in it
+    std::string warning;       ///< whose lengths were off when all were in place, while it is in the model
     std::string suspicion;     ///< what may ail it when it joins nothing; empty for nothing in particular
     PoseStatus outcome = PoseStatus::kFailed;
     double rms_mm = 0, overlap = 0, stage_sigma_mm = 0;
@@ -134,8 +135,8 @@ class ScanModel {
   void settle_group(int group, const JobContext& job);
   void judge(int id);
   [[nodiscard]] std::optional<Fault> fault_of(int id) const;
-  /// Says which scans of the group are of another size than the rest.
-  void warn_of_stretched(const std::vector<int>& ids) const;
+  /// Marks which scans of the main group are of another size than the rest, and says so.
+  void warn_of_stretched();
   [[nodiscard]] std::string name_of(int id) const;  ///< for people
   /// The scan whose hint says how two groups lie to each other.
   [[nodiscard]] std::optional<int> hint_between(int group_a, int group_b) const;

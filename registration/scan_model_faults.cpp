@@ -91,12 +91,15 @@ std::optional<ScanModel::Fault> ScanModel::fault_of(int id) const {
   return Fault{motion->gained, reason_of(*motion)};
 }
 
-void ScanModel::warn_of_stretched(const std::vector<int>& ids) const {
-  std::vector<std::string> warnings(ids.size());
+void ScanModel::warn_of_stretched() {
+  for (auto& [id, scan] : scans_) {
+    scan.warning.clear();
+  }
+  const std::vector<int> ids = members(main_group());
   parallel_for_each_index(
       ids.size(),
       [&](std::size_t k) {
-        const Scan& scan = scans_.at(ids[k]);
+        Scan& scan = scans_.at(ids[k]);
         std::vector<int> others = ids;
         std::erase(others, ids[k]);
         const std::vector<ModelScan> model = model_of(others);
@@ -104,13 +107,13 @@ void ScanModel::warn_of_stretched(const std::vector<int>& ids) const {
         const ModelFit fit = judge_in_model(surface, model, scan.group_from_scanner, options_.search.fit);
         const std::optional<ScanStretch> stretch = find_stretch(surface, model, fit);
         if (stretch && stretch->is_off()) {
-          warnings[k] = name_of(ids[k]) + ": " + reason_of(*stretch);
+          scan.warning = reason_of(*stretch);
         }
       },
       1);
-  for (const std::string& warning : warnings) {
-    if (!warning.empty()) {
-      log_warning(warning);
+  for (const int id : ids) {
+    if (const std::string& warning = scans_.at(id).warning; !warning.empty()) {
+      log_warning(name_of(id) + ": " + warning);
     }
   }
 }

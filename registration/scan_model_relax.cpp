@@ -193,7 +193,7 @@ Status ScanModel::finalize(JobContext& job) {
   if (job.cancelled()) {
     return fail(ErrorKind::kCancelled, "registration was stopped");
   }
-  warn_of_stretched(members(main_group()));
+  warn_of_stretched();
   job.progress("relax", 1.0);
   return {};
 }

@@ -65,6 +65,12 @@ std::vector<std::string> accuracy_sentences(const std::vector<ScanPose>& poses,
           "The predicted error of a scan's place is at most {:.1f} µm (one standard deviation), from the "
           "overlaps alone; the calibration of the scanner comes on top.",
           1000 * worst_sigma_mm)};
+  for (const ScanPose& pose : poses) {
+    if (pose.status == PoseStatus::kRegistered && !pose.warning.empty()) {
+      out.push_back(fmt::format("Lengths in the model that come from scan {} are not to be trusted: {}.",
+                                pose.id, pose.warning));
+    }
+  }
   if (auto prediction = prediction_sentence(gains)) {
     out.push_back(std::move(*prediction));
   }

@@ -48,11 +48,12 @@ Result<int> list(const SessionOptions& options, CommandContext& context) {
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
   for (const StoredScan& scan : *scans) {
     std::string status = scan.damaged ? "damaged" : scan.dropped ? "dropped" : "stored";
-    std::string reason;
+    std::string reason, warning;
     for (const ScanPose& pose : *poses) {
       if (pose.id == scan.id && !scan.dropped && !scan.damaged) {
         status = to_string(pose.status);
         reason = pose.reason;
+        warning = pose.warning;
       }
     }
     rows.push_back({{"id", scan.id},
@@ -62,6 +63,7 @@ Result<int> list(const SessionOptions& options, CommandContext& context) {
                     {"samples", scan.samples},
                     {"status", status},
                     {"reason", reason},
+                    {"warning", warning},
                     {"locked", log->word.locked.contains(scan.id)},
                     {"hint_on", nullptr},
                     {"note", scan.note}});
@@ -85,7 +87,8 @@ Result<int> list(const SessionOptions& options, CommandContext& context) {
     return 0;
   }
   for (const auto& row : rows) {
-    std::string more = row["note"].get<std::string>() + row["reason"].get<std::string>();
+    std::string more =
+        row["note"].get<std::string>() + row["reason"].get<std::string>() + row["warning"].get<std::string>();
     if (row["locked"].get<bool>()) {
       more = "locked" + (more.empty() ? "" : "; " + more);
     }

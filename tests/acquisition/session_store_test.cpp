@@ -73,6 +73,7 @@ TEST_F(SessionStoreTest, PosesComeBackBitForBit) {
   pose.sigma_mm = std::numeric_limits<double>::quiet_NaN();
   pose.overlap = 0.75;
   pose.reason = "two places fit equally";
+  pose.warning = "its lengths are off";
   pose.locked = true;
   pose.covariance.emplace();
   for (int i = 0; i < 36; ++i) {
@@ -98,6 +99,7 @@ TEST_F(SessionStoreTest, PosesComeBackBitForBit) {
   EXPECT_EQ(back.rms_mm, pose.rms_mm);
   EXPECT_TRUE(std::isnan(back.sigma_mm));
   EXPECT_EQ(back.reason, pose.reason);
+  EXPECT_EQ(back.warning, pose.warning);
   EXPECT_TRUE(back.locked);
   ASSERT_TRUE(back.covariance);
   EXPECT_EQ(*back.covariance, *pose.covariance);

@@ -36,7 +36,8 @@ ScanPose sample_pose(int id) {
 }
 
 TEST(PosesJson, ReadsBackToTheBit) {
-  const std::vector<ScanPose> poses{sample_pose(0), sample_pose(7)};
+  std::vector<ScanPose> poses{sample_pose(0), sample_pose(7)};
+  poses[1].warning = "its lengths are off";
   const auto back = parse_poses(poses_to_json(poses), "p");
   ASSERT_TRUE(back) << line_of(back);
   ASSERT_EQ(back->size(), 2U);
@@ -50,6 +51,7 @@ TEST(PosesJson, ReadsBackToTheBit) {
   EXPECT_EQ(a.sigma_mm, b.sigma_mm);
   EXPECT_EQ(a.overlap, b.overlap);
   EXPECT_EQ(a.reason, b.reason);
+  EXPECT_EQ(a.warning, b.warning);
   EXPECT_EQ(a.locked, b.locked);
   EXPECT_EQ(a.covariance, b.covariance);
   EXPECT_EQ(poses_to_json(*back), poses_to_json(poses));
@@ -262,6 +264,7 @@ TEST(ChecklistJson, ReadsBack) {
   checklist.strays = 3;
   checklist.worst_sigma_scan = 4;
   checklist.worst_sigma_mm = 0.0125;
+  checklist.warnings = {{2, "it is 2.0 % too long"}};
   checklist.calibration_check = {"2026-01-02", "ball bar 7", 0.012};
   checklist.store_checked = "2026-01-02T03:04:05Z";
   checklist.store_files = 31;
@@ -275,6 +278,9 @@ TEST(ChecklistJson, ReadsBack) {
   EXPECT_EQ(back->faces[3].seen_mm2, 1.0 / 3);
   EXPECT_EQ(back->faces[3].sampling.spacing_mm.median, 0.061);
   EXPECT_TRUE(std::isinf(back->faces[3].sampling.spacing_mm.p95)) << "null: not sampled so far";
+  ASSERT_EQ(back->warnings.size(), 1U);
+  EXPECT_EQ(back->warnings[0].scan, 2);
+  EXPECT_EQ(back->warnings[0].text, "it is 2.0 % too long");
   EXPECT_EQ(back->calibration_age_days, 3.5);
   EXPECT_EQ(back->calibration_check->artefact, "ball bar 7");
   EXPECT_EQ(checklist_to_json(*back), checklist_to_json(checklist));

@@ -297,11 +297,16 @@ TEST(RedMap, ChecklistAddsUpFaces) {
   mesh.faces = {{0, 1, 2}};
   ScanPose pose;
   pose.status = PoseStatus::kRegistered;
+  pose.id = 3;
+  pose.warning = "its lengths are off";
   const Checklist list =
       make_checklist(result->map, std::vector<ScanPose>{pose}, session.map.scans(), mesh, &rig);
   EXPECT_NEAR(list.faces[static_cast<std::size_t>(Face::kObverse)].seen_mm2, 6.0, 1e-6);
   EXPECT_GT(list.faces[static_cast<std::size_t>(Face::kReverse)].red_mm2, 150.0);
   EXPECT_EQ(list.scans_registered, 1);
+  ASSERT_EQ(list.warnings.size(), 1U);
+  EXPECT_EQ(list.warnings[0].scan, 3);
+  EXPECT_EQ(list.warnings[0].text, "its lengths are off");
   EXPECT_FALSE(list.conclusive);
 }
 

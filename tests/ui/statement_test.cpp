@@ -165,6 +165,32 @@ TEST(Statement, OnlyWhatIsThereMayBeSigned) {
   EXPECT_FALSE(s.may_sign);
 }
 
+/// Its place is sure, and yet its lengths are wrong: whoever signs has read it.
+TEST(Statement, WrongLengthsAreSaidBeforeTheSignature) {
+  LiveState state = with_scan(PoseStatus::kRegistered);
+  state.scans.back().pose->warning =
+      "against the other scans it is 1.2 % too large: its calibration is not theirs; verify the scanner, "
+      "then "
+      "scan it again";
+  for (const double red : {2.5, 0.0}) {
+    state.red_map = map_with(red);
+    const Statement s = statement_of(state, true, Language::kEnglish);
+    EXPECT_EQ(s.tone, Tone::kAsk);
+    EXPECT_TRUE(s.may_sign);
+    EXPECT_THAT(s.detail, HasSubstr("Scan 4: against the other scans it is 1.2 % too large"));
+    EXPECT_THAT(statement_of(state, true, Language::kGerman).detail,
+                HasSubstr("Scan 4: gegen die anderen Scans ist er 1.2 % zu groß"));
+  }
+  EXPECT_EQ(statement_of(state, true, Language::kEnglish).headline,
+            "Conclusive, but lengths of a scan are off");
+  state.scans.push_back(state.scans.back());
+  EXPECT_THAT(statement_of(state, true, Language::kEnglish).detail,
+              HasSubstr("scan it again. More scans whose lengths are off: 1."));
+  state.scans.pop_back();
+  state.scans.back().dropped = true;
+  EXPECT_EQ(statement_of(state, true, Language::kEnglish).detail, "");
+}
+
 /// An interrupted session: its red is worked out to be seen, no verdict is in it.
 TEST(Statement, WhatIsNotInTheSessionCannotBeSigned) {
   for (const double red : {2.5, 0.0}) {

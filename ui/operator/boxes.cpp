@@ -137,6 +137,11 @@ void OperatorScreen::draw_signing(UiContext& ui) {
     return text.find_first_not_of(" \t") != std::string::npos;
   };
   ImGui::TextWrapped("%s", ui.text(Text::kSignHint));
+  for (const LiveScan& scan : state_.scans) {
+    if (const std::string warning = scan_warning(scan, ui.preferences.language); !warning.empty()) {
+      coloured_text(ui.colours.amber, warning.c_str());
+    }
+  }
   // The first line that lacks has the cursor: whoever signs needs no mouse.
   const bool appears = ImGui::IsWindowAppearing();
   if (appears && !says(sign_name_)) {

@@ -67,7 +67,8 @@ void OperatorScreen::draw_strip(UiContext& ui, ImVec2 size) {
     if (state_.pins && state_.pins->tips.contains(scan.id)) {
       ui.facts.insert(fmt::format("scan.{}.pins.{}", scan.id, state_.pins->tips.at(scan.id).size()));
     }
-    const Eigen::Vector4f colour = state_colour(ui, state);
+    const bool is_warned = !scan_warning(scan, ui.preferences.language).empty();
+    const Eigen::Vector4f colour = is_warned ? ui.colours.amber : state_colour(ui, state);
     const float line = ui.fonts.small->FontSize;
     draw->AddRectFilled(origin, end, packed(ui.colours.text, ImGui::IsItemHovered() ? 0.14F : 0.07F), 5);
     if (scan.picture) {
@@ -89,8 +90,8 @@ void OperatorScreen::draw_strip(UiContext& ui, ImVec2 size) {
                      ImGui::ColorConvertFloat4ToU32({1, 1, 1, scan.dropped ? 0.3F : 1.0F}));
     }
     draw->AddRect(origin, end, packed(colour), 5, 0,
-                  state == Text::kUnsure || state == Text::kFailed ? 3.0F : 1.5F);
-    std::string words = std::to_string(scan.id) + "  " + ui.text(state);
+                  state == Text::kUnsure || state == Text::kFailed || is_warned ? 3.0F : 1.5F);
+    std::string words = std::to_string(scan.id) + "  " + ui.text(is_warned ? Text::kLengthsOff : state);
     if (scan.pose && scan.pose->locked) {
       ui.facts.insert("scan." + std::to_string(scan.id) + ".locked");
       words += std::string(", ") + ui.text(Text::kLocked);
@@ -134,8 +135,10 @@ void OperatorScreen::draw_scan_menu(UiContext& ui, const LiveScan& scan) {
     coloured_text(ui.colours.faint, filled(ui.text(Text::kPinsLabelled), labelled).c_str());
   }
   const std::string why = scan.dropped ? translated(scan.note, ui.preferences.language)
-                          : scan.pose  ? translated(scan.pose->reason, ui.preferences.language)
-                                       : std::string();
+                          : !scan.pose
+                              ? std::string()
+                              : translated(scan.pose->reason.empty() ? scan.pose->warning : scan.pose->reason,
+                                           ui.preferences.language);
   if (!why.empty()) {
     ImGui::PushTextWrapPos(ui.px(22));
     ImGui::TextUnformatted(why.c_str());

@@ -82,6 +82,15 @@ void OperatorScreen::draw_left(UiContext& ui, ImVec2 size) {
     }
     ImGui::PopFont();
   }
+  for (const LiveScan& scan : state_.scans) {
+    if (!scan_warning(scan, ui.preferences.language).empty()) {
+      ui.facts.insert(fmt::format("scan.{}.warned", scan.id));
+      ImGui::PushFont(ui.fonts.small);
+      coloured_text(ui.colours.amber,
+                    filled(ui.text(Text::kScanSays), scan.id, ui.text(Text::kLengthsOff)).c_str());
+      ImGui::PopFont();
+    }
+  }
   if (state_.checklist) {
     const Checklist& list = *state_.checklist;
     ImGui::Separator();

@@ -32,6 +32,21 @@ void add_sentence(std::string& to, const std::string& sentence) {
   to += (to.empty() ? "" : " ") + sentence;
 }
 
+/// What is wrong with scans that are in the model: before the signature, not after it. True where something
+/// is.
+bool add_warnings(Statement& out, const LiveState& state, Language language) {
+  int warned = 0;
+  for (const LiveScan& scan : state.scans) {
+    if (const std::string warning = scan_warning(scan, language); !warning.empty() && warned++ == 0) {
+      add_sentence(out.detail, warning);
+    }
+  }
+  if (warned > 1) {
+    add_sentence(out.detail, filled(text_of(Text::kMoreLengthsOff, language), warned - 1));
+  }
+  return warned > 0;
+}
+
 /// The last scan is not taken up: it was set aside, or it lies nowhere for certain. False where it does.
 bool say_not_taken_up(Statement& out, const LiveState& state, Language language) {
   const LiveScan* last = newest(state);
@@ -125,8 +140,9 @@ void say_still(Statement& out, const LiveState& state, bool has_device, Language
                      : filled(text_of(Text::kPackageKept, language), state.package.string());
     out.tone = Tone::kGood;
   } else if (conclusive) {
-    out.headline = text_of(Text::kConclusive, language);
-    out.tone = Tone::kGood;
+    const bool warned = add_warnings(out, state, language);
+    out.headline = text_of(warned ? Text::kConclusiveBut : Text::kConclusive, language);
+    out.tone = warned ? Tone::kAsk : Tone::kGood;
     out.may_sign = true;
   } else {
     out.headline = state.red_map && !state.red_map->conclusive
@@ -142,10 +158,19 @@ void say_still(Statement& out, const LiveState& state, bool has_device, Language
     } else if (state.red_map && !state.red_map->next.empty()) {
       add_sentence(out.detail, sentence(state.red_map->next.front().say, language));
     }
+    add_warnings(out, state, language);
   }
 }
 
 }  // namespace
+
+std::string scan_warning(const LiveScan& scan, Language language) {
+  if (scan.dropped || !scan.pose || scan.pose->status != PoseStatus::kRegistered ||
+      scan.pose->warning.empty()) {
+    return {};
+  }
+  return filled(text_of(Text::kScanSays, language), scan.id, translated(scan.pose->warning, language));
+}
 
 std::string area_words(double mm2) {
   return mm2 < 0.05 ? "< 0.1" : fmt::format("{:.1f}", mm2);

@@ -31,6 +31,9 @@ struct Statement {
 
 [[nodiscard]] Statement statement_of(const LiveState& state, bool has_device, Language language);
 
+/// What is wrong with a scan although it is in the model, as a sentence; empty where nothing is.
+[[nodiscard]] std::string scan_warning(const LiveScan& scan, Language language);
+
 /// "0.5"; "< 0.1" where rounding would leave nothing of it.
 [[nodiscard]] std::string area_words(double mm2);
 /// mm² that are red, and of one face of it.
