@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <vector>
 
 #include "core/parallel.h"
 #include "core/units.h"
@@ -17,6 +18,12 @@ namespace {
 constexpr int kRings = RingDescriptors::kRings;
 constexpr int kSectors = RingDescriptors::kSectors;
 constexpr int kHarmonics = RingDescriptors::kHarmonics;
+
+/// A cell that holds no sample takes what lies between those within so many spacings of its middle: cells
+/// are narrower than the spacing of coarse scans, and a narrow gap leaves some empty.
+constexpr float kBetween = 1.1F;
+/// Steeper (cosine against the frame's normal) a surface is not gone on along.
+constexpr float kLeastUp = 0.3F;
 
 using Heights = std::array<float, static_cast<std::size_t>(kRings) * kSectors>;
 
@@ -42,6 +49,41 @@ std::optional<Eigen::Vector3f> plane_normal(const SurfaceLevel& level, const Eig
   return sum.normalized();
 }
 
+/// A sample near a frame's origin: where in its plane, what is there, and how that changes with the place.
+struct Near {
+  Eigen::Vector2f at;
+  float value;
+  Eigen::Vector2f slope;
+};
+
+/// Of a surface with this normal over the frame's plane; flat where it is too steep to go on along it.
+Eigen::Vector2f slope(const Eigen::Vector3f& normal, const Frame& frame) {
+  const float up = normal.dot(frame.normal);
+  return up < kLeastUp ? Eigen::Vector2f::Zero()
+                       : Eigen::Vector2f(-normal.dot(frame.u) / up, -normal.dot(frame.v) / up);
+}
+
+Eigen::Vector2f center_of(int ring, int sector, float radius_mm) {
+  const auto rho = radius_mm * (static_cast<float>(ring) + 0.5F) / static_cast<float>(kRings);
+  const auto turn = static_cast<float>(2 * kPi * (sector + 0.5) / kSectors - kPi);
+  return {rho * std::cos(turn), rho * std::sin(turn)};
+}
+
+/// What lies at a place between the samples within reach; nothing when there are none.
+std::optional<float> between(const std::vector<Near>& around, const Eigen::Vector2f& at, float reach) {
+  float total = 0;
+  float weights = 0;
+  for (const Near& sample : around) {
+    const Eigen::Vector2f d = at - sample.at;
+    const float w = 1.0F - d.squaredNorm() / (reach * reach);
+    if (w > 0) {
+      total += w * (sample.value + sample.slope.dot(d));
+      weights += w;
+    }
+  }
+  return weights > 0 ? std::optional<float>(total / weights) : std::nullopt;
+}
+
 /// Mean heights in rings × sectors, nothing when too much is missing: over the tangent plane in units of the
 /// radius, or of what is on it in units of its rms.
 std::optional<Heights> ring_heights(const ScanSurface& surface, RingContent content, const Frame& frame,
@@ -54,27 +96,37 @@ std::optional<Heights> ring_heights(const ScanSurface& surface, RingContent cont
   const float unit = values != nullptr ? std::max(static_cast<float>(rms), 1e-6F) : radius_mm;
   Heights sum{};
   std::array<int, static_cast<std::size_t>(kRings) * kSectors> count{};
+  std::vector<Near> around;
   level.lookup->for_each_near(frame.origin, radius_mm, [&](std::size_t i) {
     const Eigen::Vector3f d = level.grid.point(i) - frame.origin;
     const float h = d.dot(frame.normal);
-    const float a = d.dot(frame.u);
-    const float b = d.dot(frame.v);
-    const float rho = std::sqrt(a * a + b * b);
+    const Eigen::Vector2f at(d.dot(frame.u), d.dot(frame.v));
+    const float rho = at.norm();
     if (rho >= radius_mm || std::abs(h) > radius_mm || (values != nullptr && std::isnan((*values)[i]))) {
       return;
     }
     const int ring = std::min(static_cast<int>(rho / radius_mm * kRings), kRings - 1);
-    const float turn = (std::atan2(b, a) + static_cast<float>(kPi)) / static_cast<float>(2 * kPi);
+    const float turn = (std::atan2(at.y(), at.x()) + static_cast<float>(kPi)) / static_cast<float>(2 * kPi);
     const int sector = std::min(static_cast<int>(turn * kSectors), kSectors - 1);
     const auto cell = static_cast<std::size_t>(ring * kSectors + sector);
-    sum[cell] += values != nullptr ? (*values)[i] : h;
+    const float value = values != nullptr ? (*values)[i] : h;
+    sum[cell] += value;
     ++count[cell];
+    around.push_back(
+        {at, value, values != nullptr ? Eigen::Vector2f::Zero() : slope(level.normals[i], frame)});
   });
   int filled = 0;
   int expected = 0;
+  const float reach = kBetween * static_cast<float>(level.spacing_mm);
   for (int ring = 0; ring < kRings; ++ring) {
     for (int sector = 0; sector < kSectors; ++sector) {
       const auto cell = static_cast<std::size_t>(ring * kSectors + sector);
+      if (count[cell] == 0) {
+        if (const std::optional<float> value = between(around, center_of(ring, sector, radius_mm), reach)) {
+          sum[cell] = *value;
+          count[cell] = 1;
+        }
+      }
       // The innermost sectors are narrower than the sample spacing.
       expected += ring == 0 ? 0 : 1;
       filled += ring > 0 && count[cell] > 0 ? 1 : 0;

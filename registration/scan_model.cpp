@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "registration/align_near.h"
 #include "registration/pin_advice.h"
@@ -27,6 +28,22 @@ constexpr double kMuchLarger = 2.0;
 bool size_is_possible(const ScanSize& a, const ScanSize& b, double most_ratio) {
   return same_spacing(a, b) ||
          (a.scale_mm <= most_ratio * b.scale_mm && b.scale_mm <= most_ratio * a.scale_mm);
+}
+
+/// Samples farther apart than this part of the scale show neither what is written nor the finer shape: with
+/// 0.020 the bunny and written tablets are registered, with 0.030 hardly any.
+constexpr double kCoarsestSpacing = 0.025;
+
+/// Why a scan that found no place may have found none; empty where it is fine enough.
+std::string too_coarse(double spacing_mm, double scale_mm) {
+  if (!(scale_mm > 0) || spacing_mm <= kCoarsestSpacing * scale_mm) {
+    return {};
+  }
+  char numbers[96];
+  std::snprintf(numbers, sizeof numbers, "%.2g mm, where it needs at most %.2g mm", spacing_mm,
+                kCoarsestSpacing * scale_mm);
+  return std::string("too coarse for this object: samples every ") + numbers +
+         "; scan it with a smaller spacing";
 }
 
 /// True when the pins alone leave no doubt that the first match is the right one.
@@ -89,6 +106,9 @@ void ScanModel::enter(int id, const RangeGrid* grid, const PinSet* pins) {
   } else {
     scan.features = make_scan_features(make_scan_surface(g, ignore, surface), options_.search.align);
     scan.suspicion = perhaps_other_unit(size, before);
+    if (scan.suspicion.empty()) {
+      scan.suspicion = too_coarse(size.spacing_mm, scale_mm_);
+    }
     scan.usable = scan.features.surface->fine->samples.size() >= options_.least_samples;
     if (!scan.usable) {
       scan.reason =
