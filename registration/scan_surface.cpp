@@ -13,6 +13,8 @@
 #include "core/grid_geometry.h"
 #include "core/grid_noise.h"
 #include "core/parallel.h"
+#include "registration/narrow_gaps.h"
+#include "registration/surface_samples.h"
 
 namespace dubsar {
 
@@ -20,8 +22,11 @@ namespace {
 
 /// Neighbours farther apart than this many spacings are on two sheets.
 constexpr float kStepFactor = 5.0F;
-/// A block that holds less than this share of its samples lies at a border or a drop-out.
+/// A block that holds less than this share of its samples, those missing in narrow gaps counted, lies at a
+/// border or a drop-out.
 constexpr double kLeastBlockShare = 0.7;
+/// How long a narrow gap must be, in parts of the scale: longer than what a wedge hides.
+constexpr double kShortestGap = 0.15;
 /// A raster cell of this many spacings seldom stays empty on a slope or a warped grid.
 constexpr double kRasterCell = 1.5;
 
@@ -41,16 +46,31 @@ std::vector<std::pair<int, int>> from_the_middle(int stride) {
   return cells;
 }
 
+/// The samples of a scan that are entered.
+struct Entered {
+  const RangeGrid& grid;
+  double spacing_mm = 0;
+  std::vector<std::uint8_t> keep;
+  std::vector<std::uint8_t> gaps;  ///< narrow_gaps()
+};
+
+/// Which blocks are complete, and which of the empty ones are so because of a narrow gap (empty: none).
+struct Blocks {
+  std::vector<std::uint8_t> full, hollow;
+};
+
 /// Decimates by averaging blocks of stride × stride samples that lie on the sheet of the block's middle
-/// sample. full[i] tells which blocks are complete.
-RangeGrid averaged(const RangeGrid& grid, const std::vector<std::uint8_t>& keep, int stride,
-                   double spacing_mm, std::vector<std::uint8_t>& full) {
+/// sample.
+RangeGrid averaged(const Entered& entered, int stride, Blocks& blocks) {
+  const auto& [grid, spacing_mm, keep, gaps] = entered;
   RangeGrid out;
   out.allocate((grid.rows + stride - 1) / stride, (grid.cols + stride - 1) / stride);
   out.spacing_mm = spacing_mm * stride;
   out.view = grid.view;
   out.view.motion_per_row_mm *= stride;
-  full.assign(out.size(), 0);
+  blocks.full.assign(out.size(), 0);
+  blocks.hollow.assign(gaps.empty() ? 0 : out.size(), 0);
+  const double least = kLeastBlockShare * stride * stride;
   const float reach2 =
       std::pow(kStepFactor * 0.5F * static_cast<float>(spacing_mm) * static_cast<float>(stride), 2.0F);
   const std::vector<std::pair<int, int>> order = from_the_middle(stride);
@@ -69,7 +89,17 @@ RangeGrid averaged(const RangeGrid& grid, const std::vector<std::uint8_t>& keep,
           const auto middle = std::find_if(order.begin(), order.end(), [&](const auto& cell) {
             return cell.first < rows_in && cell.second < cols_in && keep[place(cell.first, cell.second)] != 0;
           });
+          const std::size_t to = out.index(row, col);
+          int missing = 0;
+          for (int dr = 0; dr < rows_in && !gaps.empty(); ++dr) {
+            for (int dc = 0; dc < cols_in; ++dc) {
+              missing += gaps[place(dr, dc)];
+            }
+          }
           if (middle == order.end()) {
+            if (missing >= least) {
+              blocks.hollow[to] = 1;
+            }
             continue;
           }
           const Eigen::Vector3f base = grid.point(place(middle->first, middle->second));
@@ -89,12 +119,11 @@ RangeGrid averaged(const RangeGrid& grid, const std::vector<std::uint8_t>& keep,
             }
           }
           const Eigen::Vector3f p = base + sum / static_cast<float>(count);
-          const std::size_t to = out.index(row, col);
           out.x[to] = p.x();
           out.y[to] = p.y();
           out.z[to] = p.z();
           out.valid[to] = 1;
-          full[to] = count >= kLeastBlockShare * stride * stride ? 1 : 0;
+          blocks.full[to] = count + missing >= least ? 1 : 0;
         }
       },
       8);
@@ -142,97 +171,24 @@ void side_by_side(const Tasks&... tasks) {
       all.size(), [&](std::size_t k) { all[k](); }, 1);
 }
 
-/// `count` of the indices in `from`, evenly spread over their order.
-void take_spread(const std::vector<std::uint32_t>& from, std::size_t count,
-                 std::vector<std::uint32_t>& into) {
-  count = std::min(count, from.size());
-  for (std::size_t k = 0; k < count; ++k) {
-    into.push_back(from[(2 * k + 1) * from.size() / (2 * count)]);
-  }
-}
-
-/// Points on crease edges and in their neighbourhoods, and the rest spread evenly (seed 001, 3.2: edges
-/// suffice at high resolution; a smooth object has few).
-void choose_samples(SurfaceLevel& level, int count, const ScanSurfaceOptions& options) {
-  const RangeGrid& grid = level.grid;
-  const auto turns = static_cast<float>(std::cos(options.crease_angle_rad));
-  std::vector<std::uint8_t> crease(grid.size(), 0);
-  std::vector<float> closeness(grid.size(), 0.0F);
-  const auto cols = static_cast<std::ptrdiff_t>(grid.cols);
-  const std::array<std::ptrdiff_t, 4> around{1, -1, cols, -cols};  // inside: i is no boundary sample
-  const auto beside_of = [&](std::size_t i, std::ptrdiff_t step) {
-    return static_cast<std::size_t>(static_cast<std::ptrdiff_t>(i) + step);
-  };
-  parallel_for_each_index(
-      grid.size(),
-      [&](std::size_t i) {
-        if (level.usable[i] == 0) {
-          return;
-        }
-        float sum = 0;
-        for (const std::ptrdiff_t step : around) {
-          const std::size_t j = beside_of(i, step);
-          sum += 1.0F / std::max((grid.point(j) - grid.point(i)).norm(),
-                                 1e-3F * static_cast<float>(grid.spacing_mm));
-          if (!level.normals[j].isZero() && level.normals[j].dot(level.normals[i]) < turns) {
-            crease[i] = 1;
-          }
-        }
-        closeness[i] = sum / 4.0F;
-      },
-      8192);
-  std::vector<std::uint32_t> edges;
-  std::vector<std::uint8_t> beside(grid.size(), 0);
-  std::vector<std::uint32_t> all;
-  double mean = 0;
-  for (std::size_t i = 0; i < grid.size(); ++i) {
-    if (level.usable[i] == 0) {
-      continue;
-    }
-    all.push_back(static_cast<std::uint32_t>(i));
-    mean += static_cast<double>(closeness[i]);
-    bool near_edge = crease[i] != 0;
-    for (const std::ptrdiff_t step : around) {
-      near_edge = near_edge || crease[beside_of(i, step)] != 0;
-    }
-    beside[i] = near_edge ? 1 : 0;
-    if (near_edge) {
-      edges.push_back(static_cast<std::uint32_t>(i));
-    }
-  }
-  if (all.empty()) {
-    return;
-  }
-  mean /= static_cast<double>(all.size());
-  std::vector<std::uint32_t> chosen;
-  const auto on_edges = std::min(static_cast<std::size_t>(options.most_crease_share * count), edges.size());
-  take_spread(edges, on_edges, chosen);
-  take_spread(all, static_cast<std::size_t>(count) - on_edges, chosen);
-  std::sort(chosen.begin(), chosen.end());
-  chosen.erase(std::unique(chosen.begin(), chosen.end()), chosen.end());
-  level.samples.reserve(chosen.size());
-  for (const std::uint32_t i : chosen) {
-    level.samples.push_back({grid.point(i), level.normals[i], closeness[i] / static_cast<float>(mean),
-                             beside[i] != 0, static_cast<float>(i / cols) / static_cast<float>(grid.rows),
-                             static_cast<float>(i % cols) / static_cast<float>(grid.cols)});
-  }
-}
-
-std::unique_ptr<SurfaceLevel> make_level(const RangeGrid& grid, const std::vector<std::uint8_t>& keep,
-                                         int stride, double spacing_mm, int points,
+std::unique_ptr<SurfaceLevel> make_level(const Entered& entered, int stride, int points,
                                          const ScanSurfaceOptions& options) {
   auto level = std::make_unique<SurfaceLevel>();
-  std::vector<std::uint8_t> full;
-  level->grid = averaged(grid, keep, stride, spacing_mm, full);
+  Blocks blocks;
+  level->grid = averaged(entered, stride, blocks);
   level->spacing_mm = level->grid.spacing_mm;
-  const GridGeometry geometry = grid_geometry(level->grid, static_cast<double>(kStepFactor));
+  GridGeometry geometry = grid_geometry(level->grid, static_cast<double>(kStepFactor));
   level->normals = smoothed_normals(level->grid, geometry.normals);
+  if (!blocks.hollow.empty()) {
+    bridge_gaps(level->grid, blocks.hollow, static_cast<double>(kStepFactor) * level->spacing_mm,
+                geometry.boundary);
+  }
   level->usable.assign(level->grid.size(), 0);
   for (std::size_t i = 0; i < level->grid.size(); ++i) {
-    level->usable[i] =
-        level->grid.valid[i] != 0 && full[i] != 0 && geometry.boundary[i] == 0 && !level->normals[i].isZero()
-            ? 1
-            : 0;
+    level->usable[i] = level->grid.valid[i] != 0 && blocks.full[i] != 0 && geometry.boundary[i] == 0 &&
+                               !level->normals[i].isZero()
+                           ? 1
+                           : 0;
   }
   side_by_side([&] { level->lookup = std::make_unique<GridLookup>(level->grid, level->usable); },
                [&] { level->raster = DepthRaster(level->grid, kRasterCell * level->spacing_mm); },
@@ -287,7 +243,8 @@ std::vector<std::uint8_t> kept_samples(const RangeGrid& grid, const std::vector<
 std::shared_ptr<ScanSurface> surface_of(const RangeGrid& grid, const std::vector<std::uint8_t>& ignore,
                                         const ScanSurfaceOptions& options) {
   auto out = std::make_shared<ScanSurface>();
-  const std::vector<std::uint8_t> keep = kept_samples(grid, ignore);
+  Entered entered{grid, 0, kept_samples(grid, ignore), {}};
+  const std::vector<std::uint8_t>& keep = entered.keep;
   for (const std::uint8_t k : keep) {
     out->valid += k;
   }
@@ -296,6 +253,11 @@ std::shared_ptr<ScanSurface> surface_of(const RangeGrid& grid, const std::vector
     out->spacing_mm = 1.0;  // no two neighbours: there is nothing that a spacing could be wrong for
   }
   out->scale_mm = options.scale_mm > 0 ? options.scale_mm : surface_scale_mm(grid);
+  entered.spacing_mm = out->spacing_mm;
+  NarrowGapOptions gaps;
+  gaps.least_along =
+      std::max(gaps.least_along, static_cast<int>(std::ceil(kShortestGap * out->scale_mm / out->spacing_mm)));
+  entered.gaps = narrow_gaps(grid, keep, gaps);
   out->toward_camera = -grid.view.direction;
   const auto stride_for = [&](double spacing_mm) {
     return std::clamp(static_cast<int>(std::lround(spacing_mm / out->spacing_mm)), 1, 1 << 12);
@@ -307,11 +269,10 @@ std::shared_ptr<ScanSurface> surface_of(const RangeGrid& grid, const std::vector
   }
   const int medium = std::max(fine, stride_for(options.medium_spacing * out->scale_mm));
   const int coarse = std::max(medium, stride_for(options.coarse_spacing * out->scale_mm));
-  side_by_side(
-      [&] { out->fine = make_level(grid, keep, fine, out->spacing_mm, options.fine_points, options); },
-      [&] { out->medium = make_level(grid, keep, medium, out->spacing_mm, options.medium_points, options); },
-      [&] { out->coarse = make_level(grid, keep, coarse, out->spacing_mm, options.coarse_points, options); },
-      [&] { out->noise_mm = estimate_noise_mm(grid, keep); });
+  side_by_side([&] { out->fine = make_level(entered, fine, options.fine_points, options); },
+               [&] { out->medium = make_level(entered, medium, options.medium_points, options); },
+               [&] { out->coarse = make_level(entered, coarse, options.coarse_points, options); },
+               [&] { out->noise_mm = estimate_noise_mm(grid, keep); });
   out->fine->grid.intensity = block_intensity(grid, keep, fine);
   out->relief = make_relief(*out->medium, block_intensity(grid, keep, medium),
                             std::max(options.relief_radius * out->scale_mm, 3.0 * out->medium->spacing_mm),
