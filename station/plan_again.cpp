@@ -80,8 +80,10 @@ Result<std::optional<std::vector<std::string>>> differs_from_stored(const Sessio
                             std::to_string(anew.scans.size()));
   }
   if (differs("regions")) {
-    out.push_back("the regions: stored " + std::to_string(stored->regions.size()) + ", now " +
-                  std::to_string(anew.regions.size()));
+    out.push_back(stored->regions.size() == anew.regions.size()
+                      ? "the places or sizes of the regions"
+                      : "the regions: stored " + std::to_string(stored->regions.size()) + ", now " +
+                            std::to_string(anew.regions.size()));
   }
   if (differs("next")) {
     out.emplace_back("the next placements");

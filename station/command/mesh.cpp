@@ -80,7 +80,11 @@ Result<int> convert(const MeshOptions& options, CommandContext& context) {
   if (options.turn_over) {
     turn_over(&*mesh);
   }
-  if (const std::optional<Error> fault = inside_out(*mesh, options.turn_over ? options.out : options.in)) {
+  if (std::optional<Error> fault = inside_out(*mesh, options.turn_over ? options.out : options.in)) {
+    if (options.turn_over) {
+      fault->what = "its faces looked outwards, and look inwards now";
+      fault->mend = "convert it again without --turn-over";
+    }
     log_warning(fault->line());
   }
   if (const Status written = write_mesh(options.out, *mesh); !written) {

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <filesystem>
 #include <string>
+#include <type_traits>
 
 #include "core/utf8.h"
 
@@ -23,7 +24,13 @@ template <class T>
       [range](std::string& text) {
         double value = 0;
         const bool is_number = CLI::detail::lexical_cast(text, value) && std::isfinite(value);
-        return is_number ? range(text) : "'" + text + "' is no number";
+        if (!is_number) {
+          return "'" + text + "' is no number";
+        }
+        if (std::is_integral_v<T> && value != std::floor(value)) {
+          return "'" + text + "' is no whole number";
+        }
+        return range(text);
       },
       range.get_description());
 }

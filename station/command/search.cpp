@@ -24,6 +24,11 @@ struct SearchArguments {
   int count = 10;
 };
 
+// What is just like the one that is asked for is it, or a copy of it.
+constexpr const char* kNoOtherWedge = "there is no other wedge to compare it with, but copies of it";
+constexpr const char* kNoOtherTablet =
+    "there is no other tablet to compare it with, but copies of it or those with fewer than five wedges";
+
 Result<int> search(const SearchArguments& arguments, CommandContext& context) {
   const Result<WedgeFile> like = read_compared_wedges(arguments.like);
   if (!like) {
@@ -81,6 +86,12 @@ Result<int> search(const SearchArguments& arguments, CommandContext& context) {
   }
   if (context.json) {
     CommandContext::print(json);
+  }
+  const bool of_wedges = arguments.wedge >= 0;
+  if (json[of_wedges ? "wedges" : "tablets"].empty()) {
+    log_warning(Error{ErrorKind::kBadInput, of_wedges ? kNoOtherWedge : kNoOtherTablet, arguments.folder,
+                      "search a folder with more tablets"}
+                    .line());
   }
   return 0;
 }

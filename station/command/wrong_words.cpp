@@ -51,7 +51,7 @@ std::optional<Error> unknown_verb(const CLI::App& app) {
     all += (all.empty() ? "there are: " : ", ") + one->get_name();
   }
   const std::string within = &verb == &app ? "" : verb.get_name();
-  if (rest.empty()) {
+  if (rest.empty() || word->empty()) {
     return Error{ErrorKind::kUsage, "a verb is missing", within, all};
   }
   std::size_t least = std::min(kSlips + 1, word->size());

@@ -51,6 +51,13 @@ TEST_F(MeshCommand, AMeshThatIsInsideOutIsToldAndTurned) {
               HasSubstr("--turn-over"));
 }
 
+TEST_F(MeshCommand, AMeshThatIsRightIsNotTurnedWithoutAWord) {
+  const Outcome turned = run_command({"mesh", "convert", at("tent.obj"), at("wrong.ply"), "--turn-over"});
+  EXPECT_EQ(turned.status, 0) << turned.err;
+  EXPECT_THAT(turned.err, HasSubstr("wrong.ply: its faces looked outwards, and look inwards now; convert it "
+                                    "again without --turn-over"));
+}
+
 TEST_F(MeshCommand, OfAMeshThatIsInsideOutTheNearSideIsCutAndAnalysed) {
   ASSERT_EQ(cut("tent.obj", "2,15,0", "28,15,0", "right.csv").status, 0);
   const Outcome inside = cut("turned.obj", "2,15,0", "28,15,0", "inside.csv");

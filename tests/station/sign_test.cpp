@@ -7,6 +7,7 @@
 
 #include <fstream>
 
+#include "acquisition/session_store.h"
 #include "tests/station/support/bumpy_scans.h"
 #include "tests/station/support/command.h"
 #include "tests/support/temporary_folder.h"
@@ -114,6 +115,23 @@ TEST_F(HalfScanned, AStaleRedMapIsNamedAndMadeAnew) {
   EXPECT_EQ(plan.json()["checklist"]["scans_registered"], 2);
   EXPECT_EQ(run_command({"plan", session_, "--json"}).json()["stored"]["same"], true);
   EXPECT_EQ(sign({"--name", "A", "--incomplete", "why"}).status, 0);
+}
+
+TEST_F(HalfScanned, EqualCountsAreNoDifference) {
+  {
+    Result<SessionStore> store = SessionStore::open(session_);
+    ASSERT_TRUE(store);
+    const auto text = store->load_document("red_map");
+    ASSERT_TRUE(text && *text);
+    nlohmann::ordered_json map = nlohmann::ordered_json::parse(**text);
+    ASSERT_FALSE(map["regions"].empty());
+    map["regions"][0]["area_mm2"] = map["regions"][0]["area_mm2"].get<double>() + 1;
+    ASSERT_TRUE(store->save_document("red_map", map.dump()));
+  }
+  const Outcome refused = sign({"--name", "A", "--incomplete", "why"});
+  EXPECT_EQ(refused.status, 1);
+  EXPECT_THAT(refused.json()["error"]["what"].get<std::string>(),
+              HasSubstr("scans and poses give: the places or sizes of the regions"));
 }
 
 TEST(Sign, NeedsASession) {

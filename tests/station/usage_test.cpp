@@ -8,6 +8,7 @@
 #include "build_paths.h"
 #include "formats/pins_json.h"
 #include "formats/poses_json.h"
+#include "formats/wedges_json.h"
 #include "tests/station/support/command.h"
 #include "tests/station/support/shell.h"
 #include "tests/support/temporary_folder.h"
@@ -94,6 +95,8 @@ TEST(CommandUsage, AVerbThatIsMistypedOrMissingIsAnsweredWithThoseThatThereAre) 
       {{"analyse", "m.ply", "-o", "w.json"}, "there is no verb analyse; do you mean analyze?"},
       {{"mesh", "chek", "m.ply"}, "mesh: there is no verb chek; do you mean check?"},
       {{"session", "remove", "s"}, "session: there is no verb remove; there are: list, undo, drop"},
+      {{""}, "a verb is missing; there are: drivers, "},
+      {{"session", ""}, "session: a verb is missing; there are: list, "},
       {{"mesh"}, "mesh: a verb is missing; there are: check, convert, section, part"},
       {{}, "a verb is missing; there are: drivers, "}};
   for (const auto& [words, answer] : said) {
@@ -144,6 +147,34 @@ TEST(CommandUsage, WhatIsNoNumberPassesNoLimit) {
       EXPECT_THAT(refused.err, HasSubstr("is no number")) << ::testing::PrintToString(all) << refused.err;
     }
   }
+}
+
+TEST(CommandUsage, ACountIsAWholeNumber) {
+  const Outcome refused = run_command({"search", "x", "--like", "x.json", "--count", "5.5"});
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_THAT(refused.err, HasSubstr("--count: '5.5' is no whole number"));
+}
+
+TEST(CommandUsage, ASearchThatFindsOnlyCopiesSaysSo) {
+  const test::TemporaryFolder folder;
+  WedgeFile file;
+  for (int i = 0; i < 12; ++i) {
+    const double x = 3.0 * i;
+    Wedge wedge;
+    wedge.id = i;
+    wedge.depth_mm = 0.5;
+    wedge.depth_point_mm = {x, 0, -0.5};
+    wedge.exit_points_mm = {Eigen::Vector3d(x + 2, 0, 0), Eigen::Vector3d(x - 0.3, 0.5, 0),
+                            Eigen::Vector3d(x - 0.3, -0.5 - 0.01 * i, 0)};
+    file.wedges.push_back(wedge);
+  }
+  const std::string like = (folder.path() / "a.json").string();
+  ASSERT_TRUE(write_wedges(like, file));
+  ASSERT_TRUE(write_wedges(folder.path() / "b.json", file));
+  const Outcome found = run_command({"search", folder.path().string(), "--like", like});
+  EXPECT_EQ(found.status, 0) << found.err;
+  EXPECT_EQ(found.out, "");
+  EXPECT_THAT(found.err, HasSubstr("there is no other tablet to compare it with"));
 }
 
 TEST(CommandUsage, HelpIsStatusZero) {
