@@ -59,6 +59,14 @@ Result<StationScan> Engine::Impl::enter_again(int id, JobContext& job) {
 }
 
 Result<StationScan> Engine::Impl::bring_back(int id, JobContext& job) {
+  const auto stored = store->scans();
+  if (!stored) {
+    return std::unexpected(stored.error());
+  }
+  const auto scan = std::ranges::find(*stored, id, &StoredScan::id);
+  if (scan != stored->end() && !scan->dropped) {
+    return fail(ErrorKind::kUsage, "scan " + std::to_string(id) + " was not taken out");
+  }
   if (const Status restored = store->restore_scan(id); !restored) {
     return std::unexpected(restored.error());
   }

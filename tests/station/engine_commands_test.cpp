@@ -147,6 +147,8 @@ TEST(EngineCommands, DropRestoreAndLock) {
   ASSERT_TRUE(engine.says("scan 1 is locked"));
   ASSERT_TRUE(engine.post(LockScan{9}));
   ASSERT_TRUE(engine.says("there is no scan 9"));
+  ASSERT_TRUE(engine.post(RestoreScan{1}));
+  ASSERT_TRUE(engine.says("scan 1 was not taken out"));
   ASSERT_TRUE(engine.post(DropScan{}));
   ASSERT_TRUE(engine.post(RestoreScan{0}));
   ASSERT_TRUE(engine.says("scan 0 is put back"));
