@@ -86,9 +86,9 @@ key backspace
 key backspace
 key backspace
 key backspace
-type 400
+type 400,5
 click put.exposure_us
-wait setting.exposure_us=400
+wait setting.exposure_us=400.5
 wait exposure-too-short
 click close-camera
 key space
@@ -97,17 +97,17 @@ wait waiting
 key escape
 wait idle
 click camera
-wait setting.exposure_us=400
+wait setting.exposure_us=400.5
 wait exposure-too-short
 click close-camera
 quit
 )");
   ASSERT_EQ(played.status, 0) << played.err;
-  EXPECT_THAT(kept(), Contains(Pair("exposure_us", "400")));
+  EXPECT_THAT(kept(), Contains(Pair("exposure_us", "400.5")));
   EXPECT_THAT(kept(), Contains(Pair("flip", "1")));
   // And again, when the session goes on.
   const Outcome again = play(
-      "wait idle\nclick camera\nwait setting.exposure_us=400\nwait exposure-too-short\n"
+      "wait idle\nclick camera\nwait setting.exposure_us=400.5\nwait exposure-too-short\n"
       "expect setting.flip=true\nclick close-camera\nquit\n");
   EXPECT_EQ(again.status, 0) << again.err;
 }

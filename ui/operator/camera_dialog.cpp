@@ -102,7 +102,7 @@ void CameraDialog::draw_settings(UiContext& ui, const DevicePanel& panel) {
     }
     if (put) {
       const bool off = setting.info.type == SettingType::kBool && typed.empty();
-      session_.change_setting(setting.info.key, off ? "0" : typed);
+      session_.change_setting(setting.info.key, off ? "0" : driver_word(setting.info, typed));
     }
     ui.facts.insert(fmt::format("{}={}", name, setting.word));
   }

@@ -121,7 +121,12 @@ void DeviceDialog::draw_options(UiContext& ui) {
               changed;
   }
   if (changed) {
-    uri_ = compose_uri(driver.scheme, locator_, {values_.begin(), values_.end()});
+    std::vector<std::pair<std::string, std::string>> options{values_.begin(), values_.end()};
+    for (auto& [key, value] : options) {
+      const auto option = std::ranges::find(driver.options, key, &SettingInfo::key);
+      value = option == driver.options.end() ? value : driver_word(*option, value);
+    }
+    uri_ = compose_uri(driver.scheme, locator_, options);
   }
 }
 

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <vector>
 
+#include "ui/shell/typed_number.h"
+
 namespace dubsar::ui {
 
 namespace {
@@ -35,6 +37,11 @@ bool choose_one(UiContext& ui, const std::string& name, const std::vector<Choice
 }
 
 }  // namespace
+
+std::string driver_word(const SettingInfo& setting, const std::string& value) {
+  const bool is_number = setting.type == SettingType::kNumber || setting.type == SettingType::kInteger;
+  return is_number ? number_word(value) : value;
+}
 
 bool setting_widget(UiContext& ui, const std::string& name, const SettingInfo& setting, std::string& value,
                     MaySay may) {

@@ -18,4 +18,7 @@ enum class MaySay { kValue, kNothing };
 bool setting_widget(UiContext& ui, const std::string& name, const SettingInfo& setting, std::string& value,
                     MaySay may = MaySay::kValue);
 
+/// What was said in it, as the driver reads it: a number with a point.
+[[nodiscard]] std::string driver_word(const SettingInfo& setting, const std::string& value);
+
 }  // namespace dubsar::ui
