@@ -30,8 +30,10 @@ struct Edge {
 };
 
 const std::array<Edge, 4>& edges() {
-  static const std::array<Edge, 4> all{
-      {{"left", {-1, 0, 0}}, {"right", {1, 0, 0}}, {"top", {0, 1, 0}}, {"bottom", {0, -1, 0}}}};
+  static const std::array<Edge, 4> all{{{"left edge", {-1, 0, 0}},
+                                        {"right edge", {1, 0, 0}},
+                                        {"top edge", {0, 1, 0}},
+                                        {"bottom edge", {0, -1, 0}}}};
   return all;
 }
 
@@ -102,10 +104,10 @@ class Adviser {
     const std::size_t least = least_pins();
     if (at_.size() < least) {
       return fault(PinFault::kTooFew, -1,
-                   "only " + std::to_string(at_.size()) + (at_.size() == 1 ? " pin is" : " pins are") +
-                       " seen where " + std::to_string(least) + " are needed" +
+                   "too few pins are seen, " + std::to_string(at_.size()) + ", and needed are " +
+                       std::to_string(least) +
                        (labelled_ < at_.size() ? " (fewer when they are labelled)" : "") +
-                       ": set more at the " + best_edge(at_.size()).name + " edge");
+                       ": set more at the " + best_edge(at_.size()).name);
     }
     if (now.width < kLineWidth) {
       return move(PinFault::kInLine, "the pins stand nearly in one line");
@@ -148,8 +150,7 @@ class Adviser {
 
   [[nodiscard]] std::string name(std::size_t pin) const {
     const int label = scan_.tips[pin].label;
-    return label >= 0 ? "pin " + std::to_string(label)
-                      : std::string("a pin at the ") + edge_of(pin).name + " edge";
+    return label >= 0 ? "pin " + std::to_string(label) : std::string("a pin at the ") + edge_of(pin).name;
   }
 
   /// Where the pin (or one more, when it is at_.size()) serves best; its error then goes to *surface_mm.
@@ -194,7 +195,7 @@ class Adviser {
       }
     }
     return fault(what, static_cast<int>(best),
-                 why + ": move " + name(best) + " to the " + best_edge(best).name + " edge");
+                 why + "; to be moved to the " + best_edge(best).name + ": " + name(best));
   }
 
   PinAdvice too_close() {
@@ -219,12 +220,13 @@ class Adviser {
     (void)best_edge(second, &error_second);
     const std::size_t moved = error_first <= error_second ? first : second;
     const std::size_t stays = moved == first ? second : first;
-    char distance[32];
-    std::snprintf(distance, sizeof distance, "%.1f mm", least);
+    char distance[48];
+    std::snprintf(distance, sizeof distance, " (%.1f mm): move it to the ", least);
     return fault(PinFault::kTooClose, static_cast<int>(moved),
-                 name(moved) + " stands within " + distance + " of " +
-                     (scan_.tips[stays].label >= 0 ? name(stays) : std::string("another")) +
-                     ": move it to the " + best_edge(moved).name + " edge");
+                 name(moved) +
+                     (scan_.tips[stays].label >= 0 ? " stands too close to " + name(stays)
+                                                   : std::string(" stands too close to another")) +
+                     distance + best_edge(moved).name);
   }
 
   /// The earlier scan that shows most of the same pins.
@@ -244,9 +246,8 @@ class Adviser {
     if (!best || best->pairs.size() < options_.least_labelled) {
       const std::size_t shared = best ? best->pairs.size() : 0;
       return fault(PinFault::kNotShared, -1,
-                   (shared == 0 ? std::string("none") : "only " + std::to_string(shared)) +
-                       " of its pins can be told to be those of an earlier scan: leave at least " +
-                       std::to_string(least_pins()) +
+                   "too few of its pins can be told to be those of an earlier scan, " +
+                       std::to_string(shared) + ": leave at least " + std::to_string(least_pins()) +
                        " pins standing from scan to scan, put back where they were");
     }
     // Pins that bear one label in both scans and yet do not come together.
@@ -260,8 +261,8 @@ class Adviser {
         if (off > std::max(options_.too_close_mm, 5.0 * std::sqrt(variance_[s]))) {
           char text[128];
           std::snprintf(text, sizeof text,
-                        " is %.1f mm from where scan %d shows it: put it back, or correct its label", off,
-                        best_scan->id);
+                        " has moved: scan %d shows it %.1f mm away; put it back, or correct its label",
+                        best_scan->id, off);
           return fault(PinFault::kMoved, static_cast<int>(s), name(s) + text);
         }
       }

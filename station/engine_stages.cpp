@@ -9,7 +9,7 @@ void Engine::Impl::keep_half(const std::optional<Placement>& drive, std::shared_
   if (!half || half->valid_count() == 0) {
     return;
   }
-  emit(Notice{fmt::format("the half scan is kept: {} rows", half->rows)});
+  emit(Notice{fmt::format("the half scan is kept, rows: {}", half->rows)});
   if (half->nominal) {
     half->nominal->placement += placement_offset;
   }

@@ -61,9 +61,8 @@ Result<std::optional<std::vector<std::string>>> differs_from_stored(const Sessio
   }
   std::vector<std::string> out;
   if (stored->conclusive != anew.conclusive) {
-    out.push_back(std::string("the verdict: stored ") +
-                  (stored->conclusive ? "conclusive" : "not conclusive") + ", now " +
-                  (anew.conclusive ? "conclusive" : "not conclusive"));
+    out.emplace_back(anew.conclusive ? "the verdict: stored not conclusive, now conclusive"
+                                     : "the verdict: stored conclusive, now not conclusive");
   }
   const std::string now = red_map_to_json(anew);
   if (now == **text) {

@@ -191,7 +191,7 @@ TEST(PinAdvice, AsksForMoreWhereThereAreNone) {
   const PinAdvice few = advise_pins(
       scan_of({{-1, {-22, 5, 0}}, {-1, {-21, -6, 2}}, {-1, {-2, 15, 1}}, {-1, {-6, -15, 0}}}), {});
   EXPECT_EQ(few.fault, PinFault::kTooFew);
-  EXPECT_NE(few.say.find("only 4 pins"), std::string::npos) << few.say;
+  EXPECT_NE(few.say.find("too few pins are seen, 4"), std::string::npos) << few.say;
   EXPECT_NE(few.say.find("right edge"), std::string::npos) << few.say;
 }
 
@@ -200,7 +200,7 @@ TEST(PinAdvice, NamesThePinToMove) {
       scan_of({{1, {-20, 0, 0}}, {2, {-8, 0.3, 0}}, {3, {3, -0.2, 0.1}}, {4, {12, 0, 0}}, {5, {21, 0, 0}}}),
       {});
   EXPECT_EQ(line.fault, PinFault::kInLine);
-  EXPECT_NE(line.say.find("move pin"), std::string::npos) << line.say;
+  EXPECT_NE(line.say.find(" edge: pin "), std::string::npos) << line.say;
   EXPECT_TRUE(line.say.find("top") != std::string::npos || line.say.find("bottom") != std::string::npos)
       << line.say;
   const PinAdvice bunched = advise_pins(
@@ -215,7 +215,7 @@ TEST(PinAdvice, NamesThePinToMove) {
   const PinAdvice twins = advise_pins(scan_of(close), {});
   EXPECT_EQ(twins.fault, PinFault::kTooClose);
   EXPECT_TRUE(twins.pin == 3 || twins.pin == 4);
-  EXPECT_NE(twins.say.find("within 1.2 mm of pin"), std::string::npos) << twins.say;
+  EXPECT_NE(twins.say.find("(1.2 mm): move it"), std::string::npos) << twins.say;
 }
 
 TEST(PinAdvice, ComparesWithEarlierScans) {
@@ -228,7 +228,7 @@ TEST(PinAdvice, ComparesWithEarlierScans) {
   const PinAdvice moved = advise_pins(scan_of(tips, 1), {&all, 1});
   EXPECT_EQ(moved.fault, PinFault::kMoved) << moved.say;
   EXPECT_EQ(moved.pin, 4);
-  EXPECT_NE(moved.say.find("pin 4 is"), std::string::npos) << moved.say;
+  EXPECT_NE(moved.say.find("pin 4 has moved"), std::string::npos) << moved.say;
 }
 
 }  // namespace

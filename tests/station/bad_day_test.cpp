@@ -83,7 +83,7 @@ TEST_F(BadDay, AHalfScanIsKeptRegisteredAndUseful) {
   const Outcome stopped = scan("stop_at=1&stop_rows=45");
   EXPECT_EQ(stopped.status, 3) << stopped.err;
   EXPECT_THAT(stopped.err, HasSubstr("the scanner stopped in the middle of the scan"));
-  EXPECT_THAT(stopped.err, HasSubstr("the half scan is kept: 45 rows"));
+  EXPECT_THAT(stopped.err, HasSubstr("the half scan is kept, rows: 45"));
   expect_whole();
   const nlohmann::json json = stopped.json();
   ASSERT_EQ(json["scans"], 2) << stopped.out;

@@ -61,7 +61,7 @@ TEST_F(Halt, InMidScanKeepsWhatCameAndSaysHowToGoOn) {
   ASSERT_TRUE(halted->device_error.has_value());
   EXPECT_THAT(halted->device_error->line(), HasSubstr("emergency stop was pressed"));
   EXPECT_THAT(halted->device_error->mend, HasSubstr("see that all is clear, then scan"));
-  EXPECT_THAT(said_, HasSubstr("the half scan is kept: 41 rows"));
+  EXPECT_THAT(said_, HasSubstr("the half scan is kept, rows: 41"));
   ASSERT_THAT(stored(), SizeIs(1));
   // The same command goes on.
   const Result<EngineResult> again = run_until(1 << 30);

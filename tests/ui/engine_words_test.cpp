@@ -152,10 +152,12 @@ TEST(EngineWords, NothingOfARunIsHalfGerman) {
                                              "name the folder that a scan was stored in",
                                              "pins labelled",
                                              "labels of scan ",
+                                             " (red map)",
                                              "arm to the side of "};
-  for (const char* file : {"station/engine_misses.cpp", "station/engine_commands.cpp", "station/signing.cpp",
-                           "planning/motor_placements.cpp", "registration/scan_motion.cpp",
-                           "registration/scan_stretch.cpp", "registration/second_body.cpp"}) {
+  for (const char* file :
+       {"station/engine_misses.cpp", "station/engine_commands.cpp", "station/signing.cpp",
+        "station/plan_again.cpp", "planning/motor_placements.cpp", "registration/pin_advice.cpp",
+        "registration/scan_motion.cpp", "registration/scan_stretch.cpp", "registration/second_body.cpp"}) {
     int sentences = 0;
     for (const std::string& sentence : sentences_in(file)) {
       if (std::ranges::find(no_sentence, sentence) != no_sentence.end()) {
@@ -170,6 +172,29 @@ TEST(EngineWords, NothingOfARunIsHalfGerman) {
     }
     EXPECT_GE(sentences, 3) << file;
   }
+}
+
+TEST(EngineWords, AdviceOnPinsIsGerman) {
+  EXPECT_EQ(
+      translated("too few pins are seen, 2, and needed are 6 (fewer when they are labelled): set more at "
+                 "the left edge",
+                 Language::kGerman),
+      "zu wenige Nadeln sind zu sehen, 2, nötig sind 6 (weniger, wenn sie benannt sind): mehr setzen am "
+      "linken Rand");
+  EXPECT_EQ(
+      translated("the pins stand nearly in one line; to be moved to the top edge: pin 3", Language::kGerman),
+      "die Nadeln stehen fast in einer Linie; zu versetzen zum oberen Rand: Nadel 3");
+  EXPECT_EQ(
+      translated("a pin at the bottom edge stands too close to pin 4 (0.8 mm): move it to the right edge",
+                 Language::kGerman),
+      "eine Nadel am unteren Rand steht zu nah an Nadel 4 (0.8 mm): sie versetzen zum rechten Rand");
+}
+
+/// A file's name is left as it is.
+TEST(EngineWords, AWordAloneIsNotReplacedAnywhere) {
+  EXPECT_EQ(translated("/data/new rows/scan.ply", Language::kGerman), "/data/new rows/scan.ply");
+  EXPECT_EQ(translated("the half scan is kept, rows: 41", Language::kGerman),
+            "der halbe Scan ist aufgehoben, Zeilen: 41");
 }
 
 TEST(EngineWords, WhoSetsAScanAsideSaysItInOneLanguage) {

@@ -24,6 +24,8 @@ constexpr std::pair<std::string_view, std::string_view> kInWindow[] = {
     {"run dubsar plan on it, read what it says, and sign again",
      "go on, finish, read what it says, and sign again"},
     {"sign it as it is with --incomplete REASON", "sign it as incomplete, with the reason"},
+    {"see dubsar verify and bring back what is damaged", "bring back what is damaged"},
+    {"dubsar mesh convert --unit m makes millimetres of them", "export it again in millimetres"},
     {"sign with --incomplete REASON", "sign it as incomplete, with the reason"},
     {"sign it without --incomplete; --note takes a remark", "sign it as it is; a note takes a remark"},
 };
@@ -38,11 +40,13 @@ void replace_each(std::string& text, const Pairs& pairs) {
   }
 }
 
-/// "scan 4" and "scans 4 and 5", wherever they stand.
+/// "scan 4", "scans 4 and 5" and "pin 4", wherever they stand.
 std::string with_german_scans(const std::string& text) {
   static const std::regex kScan("\\bscan(s?) (?=[0-9])");
   static const std::regex kAnd("(\\bScans [0-9, ]*[0-9]) and (?=[0-9])");
-  return std::regex_replace(std::regex_replace(text, kScan, "Scan$1 "), kAnd, "$1 und ");
+  static const std::regex kPin("\\bpin (?=[0-9])");
+  const std::string pins = std::regex_replace(text, kPin, "Nadel ");
+  return std::regex_replace(std::regex_replace(pins, kScan, "Scan$1 "), kAnd, "$1 und ");
 }
 
 }  // namespace
