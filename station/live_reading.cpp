@@ -57,6 +57,11 @@ void LiveSession::read_folder() {
   show_verdict(*store);
   changed();
   const bool has_model = show_stored_model(*store, *poses);
+  // The mesh says what is sparse, not what of it is excused.
+  const bool is_shown = has_model && [this] {
+    const std::scoped_lock lock(mutex_);
+    return state_.red_map && state_.red_map->conclusive;
+  }();
   ScanSet set;
   for (const StoredScan& stored : *scans) {
     if (job_->cancelled() || stored.damaged) {
@@ -65,13 +70,16 @@ void LiveSession::read_folder() {
     if (const auto grid = store->load_grid(stored.id)) {
       StationScan scan = prepare_scan(stored.id, *grid, pins);
       show_grid(stored.id, *scan.measured, *scan.grid, *scan.flags);
-      if (!has_model && !stored.dropped) {
+      if (!is_shown && !stored.dropped) {
         set.scans.push_back(std::move(scan));
       }
     }
   }
   if (!set.scans.empty() && !job_->cancelled()) {
-    rebuild_model(std::move(set), *poses);
+    if (Result<std::optional<Rig>> rig = session_rig(*store)) {
+      set.rig = std::move(*rig);
+    }
+    rebuild_model(set, *poses, has_model);
   }
 }
 
@@ -141,7 +149,7 @@ bool LiveSession::show_stored_model(const SessionStore& store, const std::vector
   return is_of_these_poses;
 }
 
-void LiveSession::rebuild_model(ScanSet set, const std::vector<ScanPose>& poses) {
+void LiveSession::rebuild_model(const ScanSet& set, const std::vector<ScanPose>& poses, bool red_alone) {
   const auto job = std::make_shared<JobContext>(
       [this](std::string_view stage, double fraction) { progress(stage, fraction); });
   {
@@ -153,6 +161,15 @@ void LiveSession::rebuild_model(ScanSet set, const std::vector<ScanPose>& poses)
     state_.phase = LivePhase::kStill;  // what is asked for begins at once
   }
   changed();
+  if (red_alone) {
+    const LiveState now = state();
+    if (Result<ColouredPoints> red = red_points_again(set, poses, *now.mesh, *job)) {
+      show_model(now.mesh, std::make_shared<const ColouredPoints>(std::move(*red)), now.tablet_from_model);
+    }
+    const std::scoped_lock lock(mutex_);
+    unasked_.reset();
+    return;
+  }
   const Result<PlannedAgain> planned = plan_again(set, poses, *job);
   if (planned && !planned->results.mesh.faces.empty()) {
     auto mesh = std::make_shared<const Mesh>(planned->results.mesh);

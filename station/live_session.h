@@ -80,7 +80,9 @@ class LiveSession {
  private:
   void launch(std::function<void()> job);
   void hurry();  ///< under the mutex: something was asked for, what nobody waits for ends
-  void rebuild_model(ScanSet set, const std::vector<ScanPose>& poses);
+  /// Work that nobody waits for: the model of these scans, or on the mesh that is shown what is red and
+  /// excused.
+  void rebuild_model(const ScanSet& set, const std::vector<ScanPose>& poses, bool red_alone);
   void run_engine(std::vector<OperatorCommand> first, bool first_scan_waits);
   void read_folder();
   void look_for_broken_off();

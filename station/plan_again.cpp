@@ -9,20 +9,42 @@
 
 namespace dubsar {
 
+namespace {
+
+std::vector<ScanPose> poses_in(const ScanSet& set, const std::vector<ScanPose>& poses) {
+  std::vector<ScanPose> out;
+  std::ranges::copy_if(poses, std::back_inserter(out), [&](const ScanPose& pose) {
+    return std::ranges::find(set.scans, pose.id, &StationScan::id) != set.scans.end();
+  });
+  return out;
+}
+
+Result<RedMap> red_map_again(const ScanSet& set, const std::vector<ScanPose>& poses, PlanningStage& stage,
+                             JobContext& job) {
+  for (const StationScan& scan : set.scans) {
+    stage.add(scan);
+  }
+  if (const Status placed = stage.place(poses, true, job); !placed) {
+    return std::unexpected(placed.error());
+  }
+  return stage.red_map(set.rig ? &*set.rig : nullptr, job);
+}
+
+}  // namespace
+
+Result<ColouredPoints> red_points_again(const ScanSet& set, const std::vector<ScanPose>& poses,
+                                        const Mesh& mesh, JobContext& job) {
+  PlanningStage stage;
+  const Result<RedMap> map = red_map_again(set, poses_in(set, poses), stage, job);
+  return map ? Result<ColouredPoints>(stage.red_points(mesh)) : std::unexpected(map.error());
+}
+
 Result<PlannedAgain> plan_again(const ScanSet& set, const std::vector<ScanPose>& poses, JobContext& job) {
   PlannedAgain out;
   out.stage = std::make_unique<PlanningStage>();
-  for (const StationScan& scan : set.scans) {
-    out.stage->add(scan);
-  }
-  std::ranges::copy_if(poses, std::back_inserter(out.results.poses), [&](const ScanPose& pose) {
-    return std::ranges::find(set.scans, pose.id, &StationScan::id) != set.scans.end();
-  });
-  if (const Status placed = out.stage->place(out.results.poses, true, job); !placed) {
-    return std::unexpected(placed.error());
-  }
+  out.results.poses = poses_in(set, poses);
   const Rig* rig = set.rig ? &*set.rig : nullptr;
-  Result<RedMap> map = out.stage->red_map(rig, job);
+  Result<RedMap> map = red_map_again(set, out.results.poses, *out.stage, job);
   if (!map) {
     return std::unexpected(map.error());
   }

@@ -26,6 +26,11 @@ struct PlannedAgain {
 [[nodiscard]] Result<PlannedAgain> plan_again(const ScanSet& set, const std::vector<ScanPose>& poses,
                                               JobContext& job);
 
+/// What is red and what is excused on a mesh of the same scans under these poses, as the engine showed it: of
+/// the verdict nothing else is worked out. Errors: kCancelled, the stages'.
+[[nodiscard]] Result<ColouredPoints> red_points_again(const ScanSet& set, const std::vector<ScanPose>& poses,
+                                                      const Mesh& mesh, JobContext& job);
+
 /// Where a red map that was worked out anew is not the stored one, in words; empty when both are the same to
 /// the last digit. Nothing when none is stored. kBadInput when the stored one cannot be read.
 [[nodiscard]] Result<std::optional<std::vector<std::string>>> differs_from_stored(const SessionStore& store,

@@ -53,13 +53,11 @@ Status load_session(const fs::path& path, const ScanSetOptions& options, const S
     }
     set.pins = std::move(*pins);
   }
-  if (const auto text = store->load_document("rig"); text && *text) {
-    Result<Rig> rig = parse_rig(**text, (path / "session.sqlite").string() + " (rig)");
-    if (!rig) {
-      return std::unexpected(rig.error());
-    }
-    set.rig = std::move(*rig);
+  Result<std::optional<Rig>> rig = session_rig(*store);
+  if (!rig) {
+    return std::unexpected(rig.error());
   }
+  set.rig = std::move(*rig);
   Result<OperatorLog> log = read_operator_log(*store);
   if (!log) {
     return std::unexpected(log.error());
@@ -159,6 +157,15 @@ Status load_folder(const fs::path& path, const ScanSetOptions& options, const Sc
 }
 
 }  // namespace
+
+Result<std::optional<Rig>> session_rig(const SessionStore& store) {
+  const auto text = store.load_document("rig");
+  if (!text || !*text) {
+    return std::optional<Rig>();
+  }
+  Result<Rig> rig = parse_rig(**text, (store.folder() / "session.sqlite").string() + " (rig)");
+  return rig ? Result<std::optional<Rig>>(std::move(*rig)) : std::unexpected(rig.error());
+}
 
 Result<ScanSet> load_scan_set(const fs::path& path, const ScanSetOptions& options, JobContext& job) {
   return visit_scan_set(path, options, {}, job);

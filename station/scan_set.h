@@ -43,6 +43,9 @@ struct ScanSetOptions {
 /// word) comes with it. An error stops the reading.
 using ScanVisitor = std::function<Status(const ScanSet& set, StationScan scan)>;
 
+/// The rig that the session was scanned with last; nothing when none was known. Errors: kBadInput.
+[[nodiscard]] Result<std::optional<Rig>> session_rig(const SessionStore& store);
+
 /// Reads a session or a folder. Damaged scans of a session are named in the log and left out; so are bad
 /// files of a folder, unless none is good.
 [[nodiscard]] Result<ScanSet> load_scan_set(const std::filesystem::path& path, const ScanSetOptions& options,

@@ -277,6 +277,40 @@ TEST(LiveSession, WhatWasStoppedGoesOnWithEverythingThatWasStored) {
   ASSERT_TRUE(again.wait_until([&](const LiveState& s) { return s.scans.size() > stored; }));
 }
 
+TEST(LiveSession, AReopenedSessionShowsWhatIsExcusedAsBefore) {
+  const test::TemporaryFolder folder;
+  std::shared_ptr<const ColouredPoints> before;
+  std::array<int, kFaceCount> red_points{};
+  {
+    Followed followed(kSmallTablet, folder.path() / "s");
+    followed.session.scan_now();
+    ASSERT_TRUE(followed.wait_for_phase(LivePhase::kWaiting));
+    // Until something is excused, and something is still red.
+    for (int turns = 0; turns < 4; ++turns) {
+      const std::size_t scans = followed.session.state().scans.size();
+      followed.session.scan_now();
+      ASSERT_TRUE(followed.wait_until(
+          [&](const LiveState& s) { return s.scans.size() > scans && s.phase == LivePhase::kWaiting; }));
+    }
+    followed.session.finish();
+    ASSERT_TRUE(followed.wait_for_rest());
+    before = followed.session.state().red;
+    red_points = followed.session.state().red_points;
+    ASSERT_FALSE(followed.session.state().red_map->conclusive);
+  }
+  ASSERT_TRUE(before);
+  EXPECT_GT(std::ranges::count(before->colours, kAmberOfExcused), 0)
+      << "nothing is excused: it shows nothing";
+  Followed again(kSmallTablet, folder.path() / "s");
+  again.session.read();
+  ASSERT_TRUE(again.wait_for_rest());
+  const LiveState state = again.session.state();
+  ASSERT_TRUE(state.red);
+  EXPECT_EQ(state.red->positions_mm, before->positions_mm);
+  EXPECT_EQ(state.red->colours, before->colours);
+  EXPECT_EQ(state.red_points, red_points);
+}
+
 TEST(LiveSession, AScanThatWasBrokenOffIsToldUntilARunHasStoredIt) {
   const test::TemporaryFolder folder;
   ASSERT_TRUE(SessionStore::open_or_create(folder.path() / "s"));

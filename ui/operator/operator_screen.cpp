@@ -293,7 +293,7 @@ void OperatorScreen::draw_model(UiContext& ui, ImVec2 size, bool asks_for_places
   look.amber = ui.colours.amber.head<3>();
   const bool conclusive = state_.red_map && state_.red_map->conclusive;
   if (!model_has_red_ && !conclusive) {
-    // A session that was read: the mesh itself says what is sparse, also what the verdict excuses.
+    // A session that is being read: the mesh itself says what is sparse, until it is known what is excused.
     look.overlay = Overlay::kFlags;
   }
   {
