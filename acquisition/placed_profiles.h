@@ -31,6 +31,7 @@ class PlacedProfiles : public ProfileSink {
   bool begin(const ScanInfo& info) override;
   bool profile(const Profile& profile) override;
   void end(const ScanTally& tally) override;
+  void remark(const std::string& text) override { sink_.remark(text); }
   /// Hands on what still waits; call it when no more profiles come.
   void flush();
 

@@ -80,6 +80,7 @@ class Collector : public ProfileSink {
     return true;
   }
   void end(const ScanTally& ended) override { tally = ended; }
+  void remark(const std::string& text) override { remarks.push_back(text); }
 
   /// Hands a grid on row by row as if it came from the device.
   Status replay(const RangeGrid& grid) {
@@ -117,6 +118,7 @@ class Collector : public ProfileSink {
   std::optional<GridBuilder> builder;
   std::optional<CloudBuilder> cloud;
   ScanTally tally;
+  std::vector<std::string> remarks;
 
  private:
   [[nodiscard]] bool ended() const { return job_.cancelled() || halted_; }
@@ -206,6 +208,7 @@ Result<std::optional<RangeGrid>> RangeSource::next(const RowObserver& observer, 
     return device_.scan(collector);
   }();
   record_.tally = collector.tally;
+  record_.remarks = std::move(collector.remarks);
   std::optional<Error> fault = outcome ? std::nullopt : std::optional(outcome.error());
   if (fault) {
     fault = halted(job).value_or(*fault);

@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "acquisition/device_uri.h"
 #include "acquisition/grid_builder.h"
@@ -24,7 +25,8 @@ namespace dubsar {
 struct ScanRecord {
   ScanTally tally;  ///< as the driver counted
   ProfileFaults faults;
-  bool resampled = false;  ///< the device gave points without an order
+  bool resampled = false;              ///< the device gave points without an order
+  std::vector<std::string> remarks{};  ///< of the driver, for the operator; one line each
 };
 
 /// A device opened by its URI, as a source of range grids. Use from one thread at a time.

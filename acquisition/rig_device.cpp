@@ -12,6 +12,7 @@
 #include "acquisition/range_rig.h"
 #include "acquisition/rig_log.h"
 #include "acquisition/rig_view.h"
+#include "core/log.h"
 #include "drivers/driver.h"
 #include "drivers/plugin.h"
 #include "formats/atomic_file.h"
@@ -55,6 +56,12 @@ class SinkBridge : public ProfileSink {
   void end(const ScanTally& tally) override {
     tally_ = tally;
     begun_ = true;
+  }
+
+  void remark(const std::string& text) override {
+    if (!plugin::remark(sink_, text)) {
+      log_warning(text);
+    }
   }
 
   void finish(std::int32_t code) {

@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "core/motion_limits.h"
+#include "core/utf8.h"
 #include "drivers/abi.h"
 #include "drivers/driver.h"
 
@@ -66,6 +67,13 @@ struct SinkBridge {
       return 1;
     }
     return self.pass(self.sink.profile(*taken)) ? 0 : 1;
+  }
+  static void on_remark(void* user, const char* text) noexcept {
+    auto& self = *static_cast<SinkBridge*>(user);
+    const std::string said = one_line(abi::text(text));
+    if (self.begun && !self.ended && !said.empty()) {
+      self.sink.remark(said);
+    }
   }
   static void on_end(void* user, const dubsar_scan_end* end) noexcept {
     auto& self = *static_cast<SinkBridge*>(user);
@@ -276,8 +284,9 @@ Status Device::stop() const {
 
 Result<ScanOutcome> Device::scan(ProfileSink& sink) {
   SinkBridge bridge{sink, uri_, {}};
-  const dubsar_sink passed{sizeof(dubsar_sink), 0, &bridge, &SinkBridge::on_begin, &SinkBridge::on_profile,
-                           &SinkBridge::on_end};
+  const dubsar_sink passed{
+      sizeof(dubsar_sink),   0, &bridge, &SinkBridge::on_begin, &SinkBridge::on_profile, &SinkBridge::on_end,
+      &SinkBridge::on_remark};
   auto error = abi::lent<dubsar_error>();
   const std::int32_t code = driver_->scan(device_.get(), &passed, &error);
   if (bridge.begun && !bridge.ended) {

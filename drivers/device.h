@@ -94,6 +94,8 @@ class ProfileSink {
   virtual bool begin(const ScanInfo& info) = 0;
   virtual bool profile(const Profile& profile) = 0;
   virtual void end(const ScanTally& tally) = 0;
+  /// What the operator should know of the scan and what stops nothing: one line, between begin and end.
+  virtual void remark(const std::string& /*text*/) {}
 };
 
 enum class ScanOutcome { kScanned, kExhausted };

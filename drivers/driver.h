@@ -29,8 +29,8 @@
 extern "C" {
 #endif
 
-/* Version 1 has grown at its end only: stop() came first, then frames and stages. A program or driver of
- * before them still fits. */
+/* Version 1 has grown at its end only: stop() came first, then frames and stages, then remark() of a
+ * sink. A program or driver of before them still fits. */
 #define DUBSAR_DRIVER_ABI_VERSION 1u
 
 typedef enum dubsar_code {
@@ -251,6 +251,9 @@ typedef struct dubsar_sink {
   int32_t (*begin)(void* user, const dubsar_scan_info* info);
   int32_t (*profile)(void* user, const dubsar_profile* profile);
   void (*end)(void* user, const dubsar_scan_end* end);
+  /* NULL, or beyond struct_size, in a program that takes none: the driver then tells its log. Between begin
+   * and end: what the operator should know of this scan and what stops nothing, in one line. */
+  void (*remark)(void* user, const char* text);
 } dubsar_sink;
 
 /* ---- Frames of a camera ---- */

@@ -61,6 +61,16 @@ inline std::int32_t report(dubsar_error* error, dubsar_code code, std::string_vi
   return code;
 }
 
+/// Says it to whoever takes the scan; false where they take no remarks.
+inline bool remark(const dubsar_sink& sink, const std::string& text) {
+  constexpr std::size_t kEnd = offsetof(dubsar_sink, remark) + sizeof(dubsar_sink::remark);
+  if (sink.struct_size < kEnd || sink.remark == nullptr) {
+    return false;
+  }
+  sink.remark(sink.user, text.c_str());
+  return true;
+}
+
 inline dubsar_code code_of(ErrorKind kind) {
   switch (kind) {
     case ErrorKind::kUsage:

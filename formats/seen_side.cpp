@@ -173,8 +173,8 @@ std::string settle_direction(RangeGrid& grid) {
   }
   if (outline == Witness::kSilent && turn == Witness::kAgainst) {
     return "its rows and columns run as if it was seen along " + text_of(-said) +
-           ", and no outline settles it: it is read as seen along " + text_of(said) + "; write " +
-           header_line(-said) + " or " + header_line(said) + " in its header";
+           ", and no outline settles it: it is read as seen along " + text_of(said) +
+           "; write one of them in its header: " + header_line(-said) + ", " + header_line(said);
   }
   return {};
 }

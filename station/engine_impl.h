@@ -56,6 +56,7 @@ struct RawScan {
   std::optional<SampleFlags> flags;
   std::optional<Placement> drive;
   std::shared_ptr<UnfinishedScan> kept{};  ///< its rows on disk until it is stored
+  std::string remark{};                    ///< of the device
 };
 /// Stands in the queue to registration for commands of the operator that wait beside it.
 struct CommandsWait {};
@@ -253,7 +254,8 @@ struct Engine::Impl {
   bool hand_to_store(RawScan scan);  ///< false when nothing is stored any more
   void note_drive(int id, const Placement& drive);
   /// Onto the disk, and only then reported; false when it is not there.
-  bool store_scan(int id, const RangeGrid& grid, const std::optional<Placement>& drive);
+  bool store_scan(int id, const RangeGrid& grid, const std::optional<Placement>& drive,
+                  const std::string& remark);
   /// Into the model, as the operator's word on it has it.
   ScanPose register_scan(const StationScan& scan, JobContext& job);
   void register_all(JobContext& job);

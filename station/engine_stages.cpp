@@ -4,6 +4,14 @@
 
 namespace dubsar {
 
+namespace {
+
+std::string remark_of(const ScanRecord& record) {
+  return fmt::format("{}", fmt::join(record.remarks, "; "));
+}
+
+}  // namespace
+
 void Engine::Impl::keep_half(const std::optional<Placement>& drive, std::shared_ptr<UnfinishedScan> kept) {
   std::optional<RangeGrid> half = source->take_partial();
   if (!half || half->valid_count() == 0) {
@@ -13,7 +21,7 @@ void Engine::Impl::keep_half(const std::optional<Placement>& drive, std::shared_
   if (half->nominal) {
     half->nominal->placement += placement_offset;
   }
-  hand_to_store({std::move(*half), std::nullopt, drive, std::move(kept)});
+  hand_to_store({std::move(*half), std::nullopt, drive, std::move(kept), remark_of(source->record())});
 }
 
 bool Engine::Impl::hand_to_store(RawScan scan) {
@@ -90,8 +98,9 @@ Taken Engine::Impl::take_scan(const std::optional<Placement>& drive, JobContext&
     (*grid)->nominal->placement += placement_offset;
   }
   const bool streamed = flagger.has_value() && flags.size() == (*grid)->size();
-  const bool taken = hand_to_store(
-      {std::move(**grid), streamed ? std::optional(std::move(flags)) : std::nullopt, drive, kept});
+  const bool taken =
+      hand_to_store({std::move(**grid), streamed ? std::optional(std::move(flags)) : std::nullopt, drive,
+                     kept, remark_of(source->record())});
   return taken ? Taken::kScan : Taken::kEnd;
 }
 
@@ -153,7 +162,8 @@ void Engine::Impl::acquire(NextStep step, JobContext& job) {
   queues->to_store.close();
 }
 
-bool Engine::Impl::store_scan(int id, const RangeGrid& grid, const std::optional<Placement>& drive) {
+bool Engine::Impl::store_scan(int id, const RangeGrid& grid, const std::optional<Placement>& drive,
+                              const std::string& remark) {
   const StageClock timing = clock("storing");
   const Result<int> stored = store->add_grid(grid);
   if (!stored) {
@@ -168,7 +178,7 @@ bool Engine::Impl::store_scan(int id, const RangeGrid& grid, const std::optional
     const std::scoped_lock lock(mutex);
     ++stored_count;
   }
-  emit(ScanStored{id, grid.source, static_cast<std::int64_t>(grid.valid_count())});
+  emit(ScanStored{id, grid.source, static_cast<std::int64_t>(grid.valid_count()), remark});
   if (drive) {
     note_drive(id, *drive);
   }
@@ -201,7 +211,7 @@ void Engine::Impl::keep_stored() {
     scan.stored = outcome.get_future().share();
     // Where registration is behind, the disk does not wait for it.
     const bool handed_on = queues->to_register.try_push(scan);
-    const bool stored = store_scan(*id, as_it_came ? *as_it_came : *scan.measured, scan.drive);
+    const bool stored = store_scan(*id, as_it_came ? *as_it_came : *scan.measured, scan.drive, raw->remark);
     if (!stored && raw->kept) {
       raw->kept->leave();
     }

@@ -35,6 +35,7 @@ struct ScanStored {
   int id = 0;
   std::string file;
   std::int64_t samples = 0;
+  std::string remark{};  ///< of its device, for the operator; empty where there is none
 };
 /// A scan that the engine has dropped by itself: what was in its way.
 struct SetAside {

@@ -14,6 +14,10 @@ namespace {
 /// Samples of a scan that are kept to be pointed at: a few megabytes.
 constexpr double kShownSamples = 250000;
 
+std::string remark_line(const LiveScan& scan) {
+  return "scan " + std::to_string(scan.id) + " (" + scan.file + "): " + scan.remark;
+}
+
 }  // namespace
 
 void LiveSession::progress(std::string_view stage, double fraction) {
@@ -146,6 +150,10 @@ void LiveSession::hear(const Event& event) {
     if (placed->pose.status == PoseStatus::kRegistered && placed->set_aside.empty()) {
       state_.notice.clear();
     }
+    // The scan's own remark stays until another scan comes.
+    if (const LiveScan& scan = scan_of(placed->pose.id); state_.notice.empty() && !scan.remark.empty()) {
+      state_.notice = remark_line(scan);
+    }
     if (state_.phase == LivePhase::kWaiting) {
       state_.last_not_taken_up = placed->pose.status != PoseStatus::kRegistered;
     }
@@ -161,6 +169,10 @@ void LiveSession::hear(const Event& event) {
       LiveScan& scan = scan_of(stored->id);
       scan.file = stored->file;
       scan.samples = stored->samples;
+      scan.remark = stored->remark;
+      if (!scan.remark.empty()) {
+        state_.notice = remark_line(scan);
+      }
       state_.exists = true;
       // A device that nothing drives waits for the operator while its scan is still being judged.
       if (state_.phase != LivePhase::kWaiting) {

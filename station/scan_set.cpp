@@ -134,6 +134,9 @@ Status load_folder(const fs::path& path, const ScanSetOptions& options, const Sc
     if (!*grid) {
       break;
     }
+    for (const std::string& remark : source->record().remarks) {
+      log_warning((*grid)->source + ": " + remark);
+    }
     StationScan prepared = prepare_scan(static_cast<int>(set.scans.size()), std::move(**grid), set.pins);
     grid->reset();
     std::error_code not_there;

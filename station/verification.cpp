@@ -7,6 +7,7 @@
 #include "acquisition/range_source.h"
 #include "acquisition/rig_log.h"
 #include "acquisition/rig_scan.h"
+#include "core/log.h"
 #include "drivers/loader.h"
 #include "formats/atomic_file.h"
 #include "station/results.h"
@@ -32,6 +33,9 @@ Result<ArtefactScan> scan_of(const std::string& uri, JobContext& job) {
   }
   if (!*grid) {
     return fail(ErrorKind::kBadInput, "there is no scan in it", uri, "scan the artefact first");
+  }
+  for (const std::string& remark : source->record().remarks) {
+    log_warning((*grid)->source + ": " + remark);
   }
   return ArtefactScan{std::move(**grid), source->capabilities().finite};
 }

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <thread>
 
+#include "core/log.h"
 #include "core/units.h"
 #include "drivers/driver.h"
 #include "drivers/plugin.h"
@@ -69,7 +70,18 @@ std::int32_t finish(const dubsar_sink& sink, bool cancelled, std::uint64_t sent)
   return code;
 }
 
-std::int32_t send_grid(const RangeGrid& grid, Pace pace, const dubsar_sink& sink) {
+using Remarks = std::vector<std::string>;
+
+/// An older program takes no remarks: they stand in its log.
+void tell(const dubsar_sink& sink, const std::string& scan, const Remarks& remarks) {
+  for (const std::string& one : remarks) {
+    if (!plugin::remark(sink, one)) {
+      log_warning(scan + ": " + one);
+    }
+  }
+}
+
+std::int32_t send_grid(const RangeGrid& grid, const Remarks& remarks, Pace pace, const dubsar_sink& sink) {
   dubsar_scan_info info = plugin::scan_info_of(grid);
   if (!(info.spacing_mm > 0)) {
     info.spacing_mm = estimate_spacing_mm(grid);
@@ -77,6 +89,7 @@ std::int32_t send_grid(const RangeGrid& grid, Pace pace, const dubsar_sink& sink
   if (sink.begin(sink.user, &info) != 0) {
     return finish(sink, true, 0);
   }
+  tell(sink, grid.source, remarks);
   for (int row = 0; row < grid.rows; ++row) {
     pace.wait();
     const dubsar_profile profile = plugin::profile_of(grid, row);
@@ -87,7 +100,7 @@ std::int32_t send_grid(const RangeGrid& grid, Pace pace, const dubsar_sink& sink
   return finish(sink, false, static_cast<std::uint64_t>(grid.rows));
 }
 
-std::int32_t send_cloud(const PointCloud& cloud, Pace pace, const dubsar_sink& sink) {
+std::int32_t send_cloud(const PointCloud& cloud, const Remarks& remarks, Pace pace, const dubsar_sink& sink) {
   dubsar_scan_info info{};
   info.struct_size = sizeof info;
   info.flags = DUBSAR_SCAN_UNORDERED;
@@ -96,6 +109,7 @@ std::int32_t send_cloud(const PointCloud& cloud, Pace pace, const dubsar_sink& s
   if (sink.begin(sink.user, &info) != 0) {
     return finish(sink, true, 0);
   }
+  tell(sink, cloud.source, remarks);
   std::vector<float> x;
   std::vector<float> y;
   std::vector<float> z;
@@ -221,8 +235,10 @@ std::int32_t scan(dubsar_device* device, const dubsar_sink* sink, dubsar_error* 
     }
     const Pace pace(device->rate_per_s);
     const auto* grid = std::get_if<RangeGrid>(&**data);
-    const std::int32_t code = grid != nullptr ? send_grid(*grid, pace, *sink)
-                                              : send_cloud(std::get<PointCloud>(**data), pace, *sink);
+    const auto* cloud = std::get_if<PointCloud>(&**data);
+    const Remarks remarks = device->files.remarks_on(grid != nullptr ? grid->source : cloud->source);
+    const std::int32_t code =
+        grid != nullptr ? send_grid(*grid, remarks, pace, *sink) : send_cloud(*cloud, remarks, pace, *sink);
     return code == DUBSAR_OK ? code : plugin::report(error, DUBSAR_CANCELLED, "scan cancelled");
   });
 }

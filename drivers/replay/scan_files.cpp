@@ -5,19 +5,12 @@
 #include <algorithm>
 #include <utility>
 
-#include "core/log.h"
-
 namespace dubsar::replay {
 
 namespace fs = std::filesystem;
 
 ScanFiles::ScanFiles(std::vector<fs::path> files, GridReadOptions options)
     : files_(std::move(files)), options_(std::move(options)) {
-  if (!options_.remark) {
-    options_.remark = [](const std::string& scan, const std::string& remark) {
-      log_warning(scan + ": " + remark);
-    };
-  }
   // Only PTX holds several scans; looking into one means reading all of it.
   const bool one_each = std::ranges::none_of(files_, [](const fs::path& file) {
     std::string extension = file.extension().string();
@@ -71,6 +64,10 @@ Result<std::optional<ScanData>> ScanFiles::next() {
     if (next_file_ == files_.size()) {
       return std::optional<ScanData>();
     }
+    remarks_.clear();
+    options_.remark = [this](const std::string& scan, const std::string& remark) {
+      remarks_.emplace_back(scan, remark);
+    };
     Result<std::vector<ScanData>> scans = read_scan_file(files_[next_file_++], options_);
     if (!scans) {
       return std::unexpected(scans.error());
@@ -80,6 +77,16 @@ Result<std::optional<ScanData>> ScanFiles::next() {
   std::optional<ScanData> scan(std::move(waiting_.front()));
   waiting_.pop_front();
   return scan;
+}
+
+std::vector<std::string> ScanFiles::remarks_on(const std::string& scan) const {
+  std::vector<std::string> out;
+  for (const auto& [name, remark] : remarks_) {
+    if (name == scan) {
+      out.push_back(remark);
+    }
+  }
+  return out;
 }
 
 }  // namespace dubsar::replay

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/result.h"
@@ -29,6 +30,9 @@ class ScanFiles {
   /// Nothing when some file must be read to know (PTX holds several scans).
   [[nodiscard]] std::optional<std::int64_t> count() const { return count_; }
 
+  /// What reading says of a scan of the last file, by the scan's name.
+  [[nodiscard]] std::vector<std::string> remarks_on(const std::string& scan) const;
+
  private:
   ScanFiles(std::vector<std::filesystem::path> files, GridReadOptions options);
 
@@ -37,6 +41,7 @@ class ScanFiles {
   std::optional<std::int64_t> count_;
   std::size_t next_file_ = 0;
   std::deque<ScanData> waiting_;  ///< the other scans of the file that was read last
+  std::vector<std::pair<std::string, std::string>> remarks_;  ///< on its scans, by name
 };
 
 }  // namespace dubsar::replay

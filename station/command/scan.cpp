@@ -58,6 +58,9 @@ class Narrator {
     if (const auto* stored = std::get_if<ScanStored>(&event)) {
       log_info(fmt::format("scan {} stored: {} samples{}{}", stored->id, stored->samples,
                            stored->file.empty() ? "" : " of ", stored->file));
+      if (!stored->remark.empty()) {
+        log_warning(stored->file + ": " + stored->remark);
+      }
     } else if (const auto* placed = std::get_if<ScanPlaced>(&event)) {
       const ScanPose& pose = placed->pose;
       log_info(fmt::format("scan {} {}{}{}", pose.id, to_string(pose.status), pose.reason.empty() ? "" : ": ",

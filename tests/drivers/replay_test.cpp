@@ -8,8 +8,10 @@
 
 #include "build_paths.h"
 #include "drivers/loader.h"
+#include "drivers/plugin.h"
 #include "formats/grid_file.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/wrong_spacing.h"
 
 namespace dubsar {
 namespace {
@@ -30,7 +32,9 @@ class Names : public ProfileSink {
     return ++rows < stop_after_;
   }
   void end(const ScanTally& /*tally*/) override {}
+  void remark(const std::string& text) override { remarks.push_back(text); }
 
+  std::vector<std::string> remarks;
   ScanInfo last;
   std::vector<float> x;
   int rows = 0;
@@ -97,6 +101,36 @@ TEST_F(ReplayTest, PlaysAFolderInNameOrderAndSkipsWhatIsNoScan) {
   EXPECT_THAT(third.x, ElementsAre(1, 4, 7));
   Names after;
   EXPECT_EQ(device->scan(after).value(), ScanOutcome::kExhausted);
+}
+
+TEST_F(ReplayTest, WhatReadingRemarksIsToldWithItsScan) {
+  ASSERT_TRUE(write_grid_file(folder_.path() / "a.grid", small_grid(3, 2)));
+  std::ofstream(folder_.path() / "b.ply") << test::ply_of_wrong_spacing();
+  Result<Device> device = open(folder_.path());
+  ASSERT_TRUE(device);
+  Names right;
+  ASSERT_TRUE(device->scan(right));
+  EXPECT_THAT(right.remarks, testing::IsEmpty());
+  Names wrong;
+  testing::internal::CaptureStderr();
+  ASSERT_TRUE(device->scan(wrong));
+  EXPECT_THAT(wrong.remarks, ElementsAre(HasSubstr("its header says a spacing of 2.5 mm")));
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "") << "who is told says it";
+}
+
+/// A program of before there were remarks lends a shorter sink.
+TEST_F(ReplayTest, AnOlderProgramFindsRemarksInItsLog) {
+  int called = 0;
+  dubsar_sink sink{};
+  sink.user = &called;
+  sink.remark = [](void* user, const char* /*text*/) { ++*static_cast<int*>(user); };
+  sink.struct_size = offsetof(dubsar_sink, remark);
+  EXPECT_FALSE(plugin::remark(sink, "the header is wrong"));
+  sink.struct_size = sizeof sink;
+  EXPECT_TRUE(plugin::remark(sink, "the header is wrong"));
+  EXPECT_EQ(called, 1);
+  sink.remark = nullptr;
+  EXPECT_FALSE(plugin::remark(sink, "the header is wrong"));
 }
 
 TEST_F(ReplayTest, ReadsEachFileOnlyWhenItsTurnHasCome) {

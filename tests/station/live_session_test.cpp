@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <condition_variable>
+#include <fstream>
 #include <future>
 #include <mutex>
 #include <thread>
@@ -14,6 +15,7 @@
 #include "station/live_session.h"
 #include "station/unfinished_scan.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/wrong_spacing.h"
 
 namespace dubsar {
 namespace {
@@ -357,6 +359,21 @@ TEST(LiveSession, WhatIsAskedForGoesBeforeTheModelOfAnInterruptedSession) {
   again.session.finish();
   ASSERT_TRUE(again.wait_for_rest());
   EXPECT_FALSE(again.session.state().error);
+}
+
+TEST(LiveSession, WhatADeviceRemarksOnItsScanStays) {
+  const test::TemporaryFolder folder;
+  std::filesystem::create_directory(folder.path() / "scans");
+  std::ofstream(folder.path() / "scans" / "a.ply") << test::ply_of_wrong_spacing();
+  Followed followed("replay:" + (folder.path() / "scans").string(), folder.path() / "s");
+  followed.session.scan_now();
+  ASSERT_TRUE(followed.wait_for_rest());
+  const LiveState state = followed.session.state();
+  ASSERT_THAT(state.scans, SizeIs(1));
+  EXPECT_EQ(state.scans.front().pose->status, PoseStatus::kRegistered)
+      << "its placing clears no remark on it";
+  EXPECT_THAT(state.scans.front().remark, HasSubstr("its header says a spacing of 2.5 mm"));
+  EXPECT_THAT(state.notice, HasSubstr("scan 0 (a.ply): its header says"));
 }
 
 TEST(LiveSession, ADeviceThatIsNotThereIsSaidAndLeavesNoSession) {

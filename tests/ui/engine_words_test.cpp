@@ -26,8 +26,8 @@ std::string joined(const std::string& source) {
 /// The engine's sources, adjacent string literals joined.
 std::string words_of_the_engine() {
   std::string all;
-  for (const char* folder :
-       {"station", "registration", "planning", "triangulation", "archive", "analysis", "acquisition"}) {
+  for (const char* folder : {"station", "registration", "planning", "triangulation", "archive", "analysis",
+                             "acquisition", "formats"}) {
     for (const auto& entry :
          std::filesystem::directory_iterator(std::filesystem::path(DUBSAR_SOURCE_DIR) / folder)) {
       if (entry.path().extension() == ".cpp") {

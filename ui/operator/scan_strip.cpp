@@ -134,6 +134,11 @@ void OperatorScreen::draw_scan_menu(UiContext& ui, const LiveScan& scan) {
     const std::size_t labelled = state_.pins->tips.at(scan.id).size();
     coloured_text(ui.colours.faint, filled(ui.text(Text::kPinsLabelled), labelled).c_str());
   }
+  if (!scan.remark.empty()) {
+    ImGui::PushTextWrapPos(ui.px(22));
+    coloured_text(ui.colours.amber, translated(scan.remark, ui.preferences.language).c_str());
+    ImGui::PopTextWrapPos();
+  }
   const std::string why = scan.dropped ? translated(scan.note, ui.preferences.language)
                           : !scan.pose
                               ? std::string()
