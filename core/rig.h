@@ -38,6 +38,8 @@ struct RobotReach {
 };
 
 inline constexpr double kFullTurnRad = 6.283185307179586;
+/// Larger angles of a turntable or tilt, ten turns, are a slip of the keyboard or no angles at all.
+inline constexpr double kMostTurnRad = 10 * kFullTurnRad;
 
 /// A measurement of a certified artefact that showed how true the calibration is.
 struct CalibrationCheck {

@@ -3,6 +3,7 @@
 #include "drivers/abi.h"
 
 #include <cmath>
+#include <limits>
 #include <sstream>
 
 namespace dubsar::abi {
@@ -37,8 +38,9 @@ double positive_or_zero(double value) {
   return std::isfinite(value) && value > 0 ? value : 0.0;
 }
 
-Result<Range> range_from(double low, double high, const char* of, const std::string& where) {
-  if (!(std::isfinite(low) && std::isfinite(high) && low <= high)) {
+Result<Range> range_from(double low, double high, const char* of, const std::string& where,
+                         double most = std::numeric_limits<double>::max()) {
+  if (!(std::abs(low) <= most && std::abs(high) <= most && low <= high)) {
     return std::unexpected(faulty(where, std::string("told a range of ") + of + " that is none"));
   }
   return Range{low, high};
@@ -47,8 +49,9 @@ Result<Range> range_from(double low, double high, const char* of, const std::str
 /// Head, turntable and arm.
 Status reach_from(const dubsar_capabilities& from, Rig& rig, const std::string& where) {
   Status status;
-  const auto take = [&](Range& to, double low, double high, const char* of) {
-    const Result<Range> range = range_from(low, high, of, where);
+  const auto take = [&](Range& to, double low, double high, const char* of,
+                        double most = std::numeric_limits<double>::max()) {
+    const Result<Range> range = range_from(low, high, of, where, most);
     if (range) {
       to = *range;
     } else if (status) {
@@ -56,7 +59,7 @@ Status reach_from(const dubsar_capabilities& from, Rig& rig, const std::string& 
     }
   };
   if ((from.flags & DUBSAR_HAS_TURN_LIMITS) != 0) {
-    take(rig.turntable_rad, from.turntable_min_rad, from.turntable_max_rad, "its turntable");
+    take(rig.turntable_rad, from.turntable_min_rad, from.turntable_max_rad, "its turntable", kMostTurnRad);
   }
   if ((from.flags & DUBSAR_HAS_HEAD) != 0) {
     const HeadBox head{vector_from(from.head_low_mm), vector_from(from.head_high_mm)};
@@ -163,12 +166,13 @@ Result<DeviceCapabilities> capabilities_from(const dubsar_capabilities& from, co
   }
   rig.has_turntable = (from.flags & DUBSAR_HAS_TURNTABLE) != 0;
   if ((from.flags & (DUBSAR_HAS_TILT | DUBSAR_HAS_ARM)) != 0) {
-    if (!(std::isfinite(from.tilt_min_rad) && std::isfinite(from.tilt_max_rad) &&
-          from.tilt_min_rad <= from.tilt_max_rad)) {
-      return std::unexpected(faulty(where, "told a tilt range that is none"));
+    const Result<Range> tilt =
+        range_from(from.tilt_min_rad, from.tilt_max_rad, "its tilt", where, kMostTurnRad);
+    if (!tilt) {
+      return std::unexpected(tilt.error());
     }
-    rig.tilt_min_rad = from.tilt_min_rad;
-    rig.tilt_max_rad = from.tilt_max_rad;
+    rig.tilt_min_rad = tilt->low;
+    rig.tilt_max_rad = tilt->high;
   }
   rig.hand_turns = (from.flags & DUBSAR_HAS_HAND_TURNS) != 0;
   rig.support_height_mm = std::isfinite(from.support_height_mm) ? from.support_height_mm : 0.0;

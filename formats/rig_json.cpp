@@ -2,6 +2,8 @@
 // Copyright The Dubsar developers
 #include "formats/rig_json.h"
 
+#include <cmath>
+
 #include "core/units.h"
 #include "formats/calibration_check_json.h"
 #include "formats/json_node.h"
@@ -11,21 +13,38 @@ namespace dubsar {
 
 namespace {
 
+Range range(const JsonNode& node, double scale = 1.0) {
+  const std::vector<double> ends = node.numbers(2);
+  if (!(ends[0] <= ends[1])) {
+    node.complain("goes from more to less");
+  }
+  return Range{ends[0] * scale, ends[1] * scale};
+}
+
+Range angles(const JsonNode& node, double scale) {
+  const Range found = range(node, scale);
+  if (!(std::abs(found.low) <= kMostTurnRad && std::abs(found.high) <= kMostTurnRad)) {
+    node.complain("is out of all reason");
+  }
+  return found;
+}
+
+void read_tilt(const JsonNode& root, Rig& rig) {
+  const auto exact = root.find("tilt_rad");
+  const Range rounded = angles(root.at("tilt_deg"), rad_from_deg(1.0));
+  const Range tilt = exact ? angles(*exact, 1.0) : rounded;
+  rig.tilt_min_rad = tilt.low;
+  rig.tilt_max_rad = tilt.high;
+}
+
 /// What sessions of before arms and limits do not have.
 void read_motion(const JsonNode& root, Rig& rig) {
-  const auto range = [](const JsonNode& node, double scale) {
-    const std::vector<double> ends = node.numbers(2);
-    if (!(ends[0] <= ends[1])) {
-      node.complain("goes from more to less");
-    }
-    return Range{ends[0] * scale, ends[1] * scale};
-  };
   if (const auto turntable = root.find("turntable_deg")) {
-    rig.turntable_rad = range(*turntable, rad_from_deg(1.0));
+    rig.turntable_rad = angles(*turntable, rad_from_deg(1.0));
   }
   if (const auto arm = root.find("arm")) {
-    rig.robot = RobotReach{arm->at("base").vector3(), range(arm->at("reach"), 1.0),
-                           range(arm->at("height"), 1.0), range(arm->at("standoff"), 1.0)};
+    rig.robot = RobotReach{arm->at("base").vector3(), range(arm->at("reach")), range(arm->at("height")),
+                           range(arm->at("standoff"))};
   }
   if (const auto head = root.find("head")) {
     rig.head = HeadBox{head->at("low").vector3(), head->at("high").vector3()};
@@ -105,14 +124,7 @@ Result<Rig> parse_rig(std::string_view text, const std::string& where) {
   rig.field_y_mm = field[1];
   rig.depth_range_mm = root.at("depth_range").number(0, 1e6);
   rig.has_turntable = root.at("has_turntable").boolean();
-  const std::vector<double> tilt_deg = root.at("tilt_deg").numbers(2);
-  rig.tilt_min_rad = rad_from_deg(tilt_deg[0]);
-  rig.tilt_max_rad = rad_from_deg(tilt_deg[1]);
-  if (const auto exact = root.find("tilt_rad")) {
-    const std::vector<double> tilt_rad = exact->numbers(2);
-    rig.tilt_min_rad = tilt_rad[0];
-    rig.tilt_max_rad = tilt_rad[1];
-  }
+  read_tilt(root, rig);
   rig.hand_turns = root.at("hand_turns").boolean();
   rig.support_height_mm = root.at("support_height").number(-1e6, 1e6);
   rig.calibration = root.at("calibration").text();

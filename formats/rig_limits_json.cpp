@@ -15,8 +15,7 @@ namespace dubsar {
 
 namespace {
 
-/// Larger angles and lengths are a slip of the keyboard.
-constexpr double kMostDeg = 3600;
+/// Larger lengths are a slip of the keyboard.
 constexpr double kMostMm = 1e6;
 
 std::optional<Range> range_of(const JsonNode& node, const char* key, double scale, double most) {
@@ -51,8 +50,8 @@ Result<RigLimits> parse_rig_limits(std::string_view text, const std::string& whe
   const double mm = mm_per_unit_of(root);
   RigLimits limits;
   const double rad = rad_from_deg(1.0);
-  limits.turntable_rad = range_of(root, "turntable_deg", rad, rad_from_deg(kMostDeg));
-  limits.tilt_rad = range_of(root, "tilt_deg", rad, rad_from_deg(kMostDeg));
+  limits.turntable_rad = range_of(root, "turntable_deg", rad, kMostTurnRad);
+  limits.tilt_rad = range_of(root, "tilt_deg", rad, kMostTurnRad);
   if (const auto arm = root.find("arm")) {
     arm->only({"reach", "height", "standoff"});
     limits.reach_mm = range_of(*arm, "reach", mm, kMostMm);

@@ -82,6 +82,13 @@ TEST_F(DeviceTest, TellsTheRig) {
   EXPECT_FALSE(capabilities->rig->view.camera_mm);
 }
 
+/// What is kept of it in a session could not be read again.
+TEST_F(DeviceTest, ATiltOutOfAllReasonIsAFaultOfTheDriver) {
+  const auto capabilities = open("twisted").capabilities();
+  ASSERT_FALSE(capabilities);
+  EXPECT_THAT(capabilities.error().line(), HasSubstr("told a range of its tilt that is none"));
+}
+
 TEST_F(DeviceTest, PlacesWithinItsReachOnly) {
   Device device = open("good");
   ASSERT_TRUE(device.place({.turntable_rad = 0.5, .tilt_rad = 0.25, .hand_turn = {}}));

@@ -54,6 +54,39 @@ TEST(RigJson, ArmHeadAndLimits) {
   EXPECT_EQ(back->keep_out_margin_mm, 22);
 }
 
+/// Radians that have no finite number of degrees were read, and written as what cannot be read again.
+TEST(RigJson, AnglesOutOfAllReasonAreRefused) {
+  Rig rig;
+  rig.view.motion_per_row_mm = {0, 0.1, 0};
+  rig.tilt_max_rad = 1.25;
+  std::string text = rig_to_json(rig);
+  text.replace(text.find("1.25"), 4, "1.25e307");
+  const Result<Rig> tilt = parse_rig(text, "rig");
+  ASSERT_FALSE(tilt);
+  EXPECT_NE(tilt.error().line().find("tilt_rad is out of all reason"), std::string::npos)
+      << tilt.error().line();
+  rig.tilt_min_rad = -kMostTurnRad;
+  rig.tilt_max_rad = kMostTurnRad;
+  rig.has_turntable = true;
+  rig.turntable_rad = {-kMostTurnRad, -kMostTurnRad};
+  const Result<Rig> most = parse_rig(rig_to_json(rig), "rig");
+  ASSERT_TRUE(most) << most.error().line();
+  EXPECT_EQ(most->tilt_max_rad, kMostTurnRad);
+  rig.turntable_rad = {2 * kMostTurnRad, 2 * kMostTurnRad};
+  const Result<Rig> turntable = parse_rig(rig_to_json(rig), "rig");
+  ASSERT_FALSE(turntable);
+  EXPECT_NE(turntable.error().line().find("turntable_deg"), std::string::npos) << turntable.error().line();
+}
+
+TEST(RigJson, ATiltFromMoreToLessIsRefused) {
+  Rig rig;
+  rig.view.motion_per_row_mm = {0, 0.1, 0};
+  rig.tilt_min_rad = 1;
+  const Result<Rig> back = parse_rig(rig_to_json(rig), "rig");
+  ASSERT_FALSE(back);
+  EXPECT_NE(back.error().line().find("goes from more to less"), std::string::npos) << back.error().line();
+}
+
 TEST(RigJson, NamesWhatIsMissing) {
   const Result<Rig> rig = parse_rig(R"({"name":"x"})", "session");
   ASSERT_FALSE(rig);

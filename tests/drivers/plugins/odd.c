@@ -26,7 +26,7 @@ static int32_t describe_options(dubsar_setting_callback callback, void* user, du
                                .flags = DUBSAR_SETTING_WRITABLE,
                                .key = "mode",
                                .help = "how to behave",
-                               .choices = "good|ragged|fail|forever|silent|cols|points|late|empty",
+                               .choices = "good|ragged|fail|forever|silent|cols|points|late|empty|twisted",
                                .minimum = 1,
                                .maximum = 0};
   (void)error;
@@ -64,13 +64,12 @@ static void close_device(dubsar_device* device) {
 
 static int32_t capabilities(dubsar_device* device, dubsar_capabilities* out, dubsar_error* error) {
   dubsar_capabilities filled;
-  (void)device;
   (void)error;
   memset(&filled, 0, sizeof filled);
   filled.struct_size = out->struct_size;
   filled.flags = DUBSAR_HAS_RIG | DUBSAR_HAS_TURNTABLE | DUBSAR_HAS_TILT | DUBSAR_IS_FINITE;
   filled.scan_count = 2;
-  filled.tilt_max_rad = 1.0;
+  filled.tilt_max_rad = strcmp(device->mode, "twisted") == 0 ? 1e306 : 1.0;
   filled.spacing_mm = 0.5;
   filled.field_x_mm = filled.field_y_mm = filled.depth_range_mm = 40;
   filled.calibration_age_days = -1;
