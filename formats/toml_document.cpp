@@ -17,15 +17,85 @@
 
 #include <toml++/toml.h>
 
+#include <algorithm>
 #include <sstream>
+#include <vector>
 
 namespace dubsar {
+
+namespace {
+
+/// Where the string that begins with the quote at `at` ends: at its last quote, or at the end of the line or
+/// of the text where that is missing.
+std::size_t end_of_string(std::string_view text, std::size_t at) {
+  const char quote = text[at];
+  const std::string three(3, quote);
+  const bool many_lines = text.substr(at, 3) == three;
+  for (std::size_t i = at + (many_lines ? 3 : 1); i < text.size(); ++i) {
+    if (text[i] == '\\' && quote == '"') {
+      ++i;
+    } else if (many_lines ? text.substr(i, 3) == three : text[i] == quote) {
+      if (many_lines) {  // up to two quotes may stand before the three that end it
+        const std::size_t behind = std::min(text.find_first_not_of(quote, i), text.size());
+        return std::min(behind, i + 5) - 1;
+      }
+      return i;
+    } else if (text[i] == '\n' && !many_lines) {
+      return i - 1;
+    }
+  }
+  return text.size();
+}
+
+/// The line in which a key's dots and the brackets around it go deeper than `most`, or 0. toml++ 3.3 counts
+/// brackets alone, and goes through the tables that dots open by calling itself for each.
+int line_too_deep(std::string_view text, int most) {
+  struct Outside {
+    int depth, at_comma;
+  };
+  std::vector<Outside> brackets;
+  Outside now{0, 0};
+  int line = 1;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (c == '#') {
+      i = std::min(text.find('\n', i), text.size()) - 1;
+    } else if (c == '"' || c == '\'') {
+      const std::size_t end = end_of_string(text, i);
+      line += static_cast<int>(std::ranges::count(text.substr(i, end - i), '\n'));
+      i = end;
+    } else if (c == '\n' || c == ',') {
+      line += c == '\n' ? 1 : 0;
+      now.depth = now.at_comma;
+    } else if (c == '[' || c == '{') {
+      brackets.push_back(now);
+      now.at_comma = ++now.depth;
+    } else if ((c == ']' || c == '}') && !brackets.empty()) {
+      now = brackets.back();
+      brackets.pop_back();
+    } else if (c == '.') {
+      ++now.depth;
+    }
+    if (now.depth > most) {
+      return line;
+    }
+  }
+  return 0;
+}
+
+}  // namespace
 
 Result<JsonDocument> parse_toml(std::string_view text, const std::string& where) {
   constexpr std::size_t kMostBytes = std::size_t{1} << 20U;
   constexpr const char* kMend = "write it as TOML: name = value, [table], [[list of tables]]";
   if (text.size() > kMostBytes) {
     return bad_input(where, "this file is far too large for a few settings", kMend);
+  }
+  if (const int line = line_too_deep(text, kMaxJsonDepth); line > 0) {
+    return bad_input(
+        where,
+        "line " + std::to_string(line) + ": nested deeper than " + std::to_string(kMaxJsonDepth) + " levels",
+        "check what the file is");
   }
   const toml::parse_result parsed = toml::parse(text);
   if (!parsed) {
