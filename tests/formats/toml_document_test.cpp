@@ -34,8 +34,9 @@ std::string dotted(int keys) {
 TEST(TomlDocument, KeysOfTooManyDotsAreBadInputOfTheirLine) {
   for (const int keys : {66, 500'000}) {
     const std::string key = dotted(keys);
-    for (const std::string& line : {key + " = 1\n", "[" + key + "]\n", "[[" + key + "]]\n", "b = {" + key + " = 1}\n",
-                                    "b = [\"]\", '#', {" + key + " = 1}]\n", "b = {c = \"\"\"d\"\"\"\", " + key + " = 1}\n"}) {
+    for (const std::string& line :
+         {key + " = 1\n", "[" + key + "]\n", "[[" + key + "]]\n", "b = {" + key + " = 1}\n",
+          "b = [\"]\", '#', {" + key + " = 1}]\n", "b = {c = \"\"\"d\"\"\"\", " + key + " = 1}\n"}) {
       const auto document = parse_toml("note = \"\"\"\n[\"\"\"  # [\n" + line, "rig.toml");
       ASSERT_FALSE(document) << keys << ": " << line.substr(0, 20);
       EXPECT_EQ(document.error().kind, ErrorKind::kBadInput);
@@ -46,8 +47,8 @@ TEST(TomlDocument, KeysOfTooManyDotsAreBadInputOfTheirLine) {
 
 TEST(TomlDocument, DotsThatNestNothingAreAsManyAsTheyLike) {
   std::string text = "# " + dotted(100) + "\nnote = \"" + dotted(100) + "\"\nplace = '" + dotted(100) +
-                     "'\nlong = \'\'\'\n" + dotted(100) + "\n" + dotted(100) + "\'\'\'\nquoted = \"\\\"" + dotted(100) +
-                     "\"\nnumbers = [\n";
+                     "'\nlong = \'\'\'\n" + dotted(100) + "\n" + dotted(100) + "\'\'\'\nquoted = \"\\\"" +
+                     dotted(100) + "\"\nnumbers = [\n";
   for (int k = 0; k < 100; ++k) {
     text += "  1.5, [2.5, 3.5],\n";
   }
