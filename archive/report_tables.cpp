@@ -7,6 +7,7 @@
 #include "archive/html.h"
 #include "archive/html_table.h"
 #include "archive/report_sections.h"
+#include "core/scan_remark.h"
 
 namespace dubsar {
 
@@ -47,8 +48,7 @@ std::string scans_section(const ReportInput& input) {
          placed ? micrometres(scan.rms_mm) : dash, placed ? micrometres(scan.sigma_mm) : dash,
          placed ? fixed(100.0 * scan.overlap, 0) : dash, counts ? std::to_string(counts->samples) : dash,
          counts ? std::to_string(counts->sparse) : dash, counts ? std::to_string(counts->cleared) : dash,
-         counts ? std::to_string(counts->excused) : dash,
-         html_escaped(scan.reason.empty() ? scan.warning : scan.reason)},
+         counts ? std::to_string(counts->excused) : dash, html_escaped(remark_of(scan))},
         scan.status == PoseStatus::kRegistered && scan.warning.empty() ? "" : "open");
   }
   return "<section>\n<h2>Scans</h2>\n" +

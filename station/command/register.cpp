@@ -9,6 +9,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/scan_remark.h"
 #include "core/utf8.h"
 #include "formats/atomic_file.h"
 #include "formats/poses_json.h"
@@ -71,7 +72,7 @@ Result<int> register_all(const RegisterArguments& arguments, CommandContext& con
     CommandContext::print(nlohmann::ordered_json::parse(poses_to_json(*poses)));
   } else {
     for (const ScanPose& pose : *poses) {
-      const std::string& remark = pose.reason.empty() ? pose.warning : pose.reason;
+      const std::string& remark = remark_of(pose);
       std::printf("%3d  %-10s rms %.4f mm  sigma %.4f mm  overlap %3.0f %%  %s%s%s\n", pose.id,
                   to_string(pose.status), pose.rms_mm, pose.sigma_mm, 100 * pose.overlap,
                   one_line(pose.file).c_str(), remark.empty() ? "" : ": ", remark.c_str());

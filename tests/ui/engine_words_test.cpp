@@ -66,10 +66,17 @@ std::vector<std::string> pieces_of(const std::string& sentence) {
   return out;
 }
 
+/// In the order in which they are replaced.
+std::vector<EnginePhrase> all_phrases() {
+  std::vector<EnginePhrase> out(engine_phrases().begin(), engine_phrases().end());
+  out.insert(out.end(), engine_remarks().begin(), engine_remarks().end());
+  return out;
+}
+
 TEST(EngineWords, EveryPhraseIsStillSaidByTheEngine) {
   const std::string said = words_of_the_engine();
   ASSERT_GT(said.size(), 100000U);
-  for (const EnginePhrase& phrase : engine_phrases()) {
+  for (const EnginePhrase& phrase : all_phrases()) {
     std::string english = phrase.english;
     // Where to turn is put together of the face's name, where an arm goes likewise, and what a scan can do on
     // an overlap of a word.
@@ -226,7 +233,7 @@ TEST(EngineWords, NobodyInTheWindowIsToldToGiveACommand) {
 }
 
 TEST(EngineWords, NoPhraseHidesALongerOneBehindIt) {
-  const auto phrases = engine_phrases();
+  const std::vector<EnginePhrase> phrases = all_phrases();
   for (std::size_t a = 0; a < phrases.size(); ++a) {
     for (std::size_t b = a + 1; b < phrases.size(); ++b) {
       EXPECT_EQ(std::string(phrases[b].english).find(phrases[a].english), std::string::npos)

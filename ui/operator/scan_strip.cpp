@@ -3,6 +3,7 @@
 // The scans that there are, and what can be done with each.
 #include <algorithm>
 
+#include "core/scan_remark.h"
 #include "ui/operator/operator_screen.h"
 #include "ui/shell/widgets.h"
 
@@ -140,10 +141,8 @@ void OperatorScreen::draw_scan_menu(UiContext& ui, const LiveScan& scan) {
     ImGui::PopTextWrapPos();
   }
   const std::string why = scan.dropped ? translated(scan.note, ui.preferences.language)
-                          : !scan.pose
-                              ? std::string()
-                              : translated(scan.pose->reason.empty() ? scan.pose->warning : scan.pose->reason,
-                                           ui.preferences.language);
+                          : scan.pose  ? translated(remark_of(*scan.pose), ui.preferences.language)
+                                       : std::string();
   if (!why.empty()) {
     ImGui::PushTextWrapPos(ui.px(22));
     ImGui::TextUnformatted(why.c_str());

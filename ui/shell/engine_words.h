@@ -15,6 +15,9 @@ struct EnginePhrase {
 /// What is said of a job that runs; replaced where it is all that is said.
 [[nodiscard]] std::span<const EnginePhrase> engine_stages();
 
+/// What readers remark on the files of others; replaced after the rest.
+[[nodiscard]] std::span<const EnginePhrase> engine_remarks();
+
 /// All others that are known, in the order in which they are replaced (text_table.h: translated()).
 [[nodiscard]] std::span<const EnginePhrase> engine_phrases();
 

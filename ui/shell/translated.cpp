@@ -63,6 +63,7 @@ std::string translated(const std::string& english, Language language) {
     }
   }
   replace_each(out, engine_phrases());
+  replace_each(out, engine_remarks());
   return with_german_scans(out);
 }
 
