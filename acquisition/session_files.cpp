@@ -39,6 +39,11 @@ struct StateFreer {
 
 }  // namespace
 
+bool in_a_folder_of_the_session(const fs::path& name) {
+  return !name.empty() && name.is_relative() && std::ranges::find(name, fs::path("..")) == name.end() &&
+         std::ranges::any_of(kFolders, [&](const char* folder) { return *name.begin() == folder; });
+}
+
 Result<FolderLock> FolderLock::take(const fs::path& folder) {
   const fs::path path = folder / kLock;
   const int fd = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
@@ -169,6 +174,10 @@ std::int64_t hash_of(std::string_view bytes) {
 }
 
 Result<FileSum> sum_of_file(const fs::path& path, const JobContext* job) {
+  std::error_code ignored;
+  if (fs::exists(path, ignored) && !fs::is_regular_file(path, ignored)) {
+    return bad_input(path.string(), "not a file", "bring it back from a copy");
+  }
   std::ifstream file(path, std::ios::binary);
   if (!file) {
     return bad_input(path.string(), "missing or unreadable", "bring it back from a copy");

@@ -23,6 +23,9 @@ inline constexpr const char* kLock = "session.lock";
 inline constexpr const char* kGrids = "grids";
 inline constexpr const char* kFolders[] = {kGrids, "mesh", "analysis", "export"};
 
+/// True for a name below one of those folders. What the tables name is untrusted: it may lead elsewhere.
+[[nodiscard]] bool in_a_folder_of_the_session(const std::filesystem::path& name);
+
 /// Held by the one program that writes; the system lets go of it when that program ends, however it ends.
 class FolderLock {
  public:

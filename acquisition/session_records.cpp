@@ -181,7 +181,7 @@ Status SessionStore::record_file(const fs::path& relative) {
     return writable;
   }
   const fs::path normal = relative.lexically_normal();
-  if (normal.is_absolute() || normal.empty() || *normal.begin() == "..") {
+  if (!session::in_a_folder_of_the_session(normal)) {
     return fail(ErrorKind::kUsage, "not a file of the session", relative.string());
   }
   const Result<FileSum> sum = session::sum_of_file(impl_->folder / normal);

@@ -62,12 +62,6 @@ Status move_aside(const fs::path& path) {
   return sync_folder(path.parent_path());
 }
 
-bool inside_a_folder_of_the_session(const std::string& name) {
-  const fs::path path(name);
-  return path.is_relative() && std::ranges::find(path, fs::path("..")) == path.end() &&
-         std::ranges::any_of(session::kFolders, [&](const char* folder) { return *path.begin() == folder; });
-}
-
 }  // namespace
 
 Result<RepairReport> SessionStore::repair(const VerifyReport& found, const std::optional<fs::path>& copy,
@@ -84,7 +78,7 @@ Result<RepairReport> SessionStore::repair(const VerifyReport& found, const std::
     }
     const Error& fault = found.damaged[i];
     const std::string& name = fault.where;
-    if (!inside_a_folder_of_the_session(name)) {
+    if (!session::in_a_folder_of_the_session(name)) {
       continue;  // a table: opening has seen to it
     }
     const fs::path path = impl_->folder / name;

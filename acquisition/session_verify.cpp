@@ -40,18 +40,18 @@ Result<std::vector<Recorded>> recorded(SqlDatabase& db, const char* sql) {
 constexpr const char* kScanFiles = "SELECT id, file, bytes, hash FROM scans ORDER BY id";
 constexpr const char* kOtherFiles = "SELECT -1, path, bytes, hash FROM files ORDER BY path";
 
-bool in_a_session_folder(const std::string& name) {
-  return std::ranges::any_of(session::kFolders,
-                             [&](const char* folder) { return name.starts_with(std::string(folder) + "/"); });
-}
-
 /// Nothing when the file is as it was stored.
 std::optional<Error> fault_of_file(const fs::path& folder, const std::string& name, const FileSum& expected,
                                    const JobContext* job) {
+  const bool in_a_folder = session::in_a_folder_of_the_session(name);
+  if (!in_a_folder && name != session::kDatabase && name != session::kBackup) {
+    return Error{ErrorKind::kBadInput, "named by the tables, and no file of a session", name,
+                 "bring the session back from a copy: somebody changed this one"};
+  }
   const std::string mend =
-      name.ends_with(".grid") ? "bring it back from a copy (dubsar verify --repair --from COPY) or scan again"
-                              : std::string("dubsar verify --repair ") +
-                                    (in_a_session_folder(name) ? "makes it anew" : "mends it");
+      name.ends_with(".grid")
+          ? "bring it back from a copy (dubsar verify --repair --from COPY) or scan again"
+          : std::string("dubsar verify --repair ") + (in_a_folder ? "makes it anew" : "mends it");
   std::error_code ignored;
   if (!fs::exists(folder / name, ignored)) {
     return Error{ErrorKind::kBadInput, "missing", name, mend};
@@ -115,7 +115,8 @@ void place_the_rest(const fs::path& folder, const std::vector<Recorded>& checked
     const bool left_over = fs::path(name).filename().string().starts_with(kTemporaryPrefix);
     if (session::is_set_aside(name)) {
       report.set_aside.push_back(name);
-    } else if (plain && !left_over && (in_a_session_folder(name) || name == session::kBackup)) {
+    } else if (plain && !left_over &&
+               (session::in_a_folder_of_the_session(name) || name == session::kBackup)) {
       switch (own_checksum_in(folder / name)) {
         case OwnChecksum::kFits:
           report.whole.push_back(name);

@@ -188,6 +188,11 @@ Result<SqlDatabase> SqlDatabase::open(const std::filesystem::path& path, Mode mo
       flags |= SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE;
       break;
   }
+  std::error_code ignored;  // SQLite would wait for somebody to write into a pipe
+  if (mode != Mode::kMemory && std::filesystem::exists(path, ignored) &&
+      !std::filesystem::is_regular_file(path, ignored)) {
+    return std::unexpected(error_of(nullptr, SQLITE_NOTADB, path.string()));
+  }
   sqlite3* raw = nullptr;
   const int code = sqlite3_open_v2(name.c_str(), &raw, flags, nullptr);
   SqlDatabase db(raw, path.string());

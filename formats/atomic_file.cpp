@@ -179,7 +179,8 @@ std::unexpected<Error> read_error(const std::filesystem::path& path, int error) 
 
 /// Reads up to `limit` bytes; a larger file is an error when the whole is asked for.
 Result<std::string> read_up_to(const std::filesystem::path& path, std::uint64_t limit, bool whole) {
-  Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  // What is no file is refused below: opening a pipe would wait for somebody to write into it.
+  Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   if (file.get() < 0) {
     return read_error(path, errno);
   }

@@ -59,6 +59,10 @@ std::string sha2_hex(Sha2 kind, std::string_view bytes) {
 }
 
 Result<std::string> sha2_of_file(Sha2 kind, const std::filesystem::path& path, const JobContext& job) {
+  std::error_code ignored;
+  if (std::filesystem::exists(path, ignored) && !std::filesystem::is_regular_file(path, ignored)) {
+    return bad_input(path.string(), "not a file", "bring it back from a copy");
+  }
   std::ifstream file(path, std::ios::binary);
   if (!file) {
     return bad_input(path.string(), "missing or unreadable", "bring it back from a copy");

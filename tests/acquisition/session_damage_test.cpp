@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -14,6 +15,7 @@
 #include "acquisition/session_files.h"
 #include "acquisition/session_log.h"
 #include "acquisition/session_store.h"
+#include "acquisition/sqlite_db.h"
 #include "tests/acquisition/session_support.h"
 #include "tests/support/temporary_folder.h"
 
@@ -84,6 +86,57 @@ TEST_F(SessionDamageTest, AMissingOrCutGridIsNamed) {
   const SessionStore store = SessionStore::open(folder_).value();
   EXPECT_EQ(store.opening().damage.size(), 2U);
   expect_content(store, {0, 3});
+}
+
+TEST_F(SessionDamageTest, WhatIsNoFileIsNamedAndNotWaitedFor) {
+  ASSERT_EQ(::mkfifo((folder_ / "grids/007.grid").c_str(), 0600), 0);
+  fs::remove(folder_ / "grids/003.grid");
+  ASSERT_EQ(::mkfifo((folder_ / "grids/003.grid").c_str(), 0600), 0);
+  ASSERT_EQ(::mkfifo((folder_ / "mesh/notes.json").c_str(), 0600), 0);
+  for (const auto access : {kReadOnly, SessionStore::Access::kReadWrite}) {
+    const SessionStore store = SessionStore::open(folder_, access).value();
+    expect_content(store, {3});
+    const VerifyReport report = store.verify(job_).value();
+    ASSERT_EQ(report.damaged.size(), 2U);
+    EXPECT_EQ(report.damaged[0].where, "grids/007.grid");
+    EXPECT_EQ(report.damaged[1].where, "grids/003.grid");
+    EXPECT_EQ(report.damaged[1].what, "not a file");
+    EXPECT_THAT(report.extra, testing::Contains("mesh/notes.json"));
+  }
+}
+
+TEST_F(SessionDamageTest, APipeInPlaceOfTheDatabaseIsNotWaitedFor) {
+  fs::remove(folder_ / session::kDatabase);
+  ASSERT_EQ(::mkfifo((folder_ / session::kDatabase).c_str(), 0600), 0);
+  for (const auto access : {kReadOnly, SessionStore::Access::kReadWrite}) {
+    const SessionStore store = SessionStore::open(folder_, access).value();
+    ASSERT_EQ(store.opening().damage.size(), 1U);
+    expect_content(store);
+  }
+  EXPECT_TRUE(fs::is_regular_file(folder_ / session::kDatabase));
+}
+
+TEST_F(SessionDamageTest, TablesThatLeadOutOfTheSessionAreNotFollowed) {
+  {
+    SqlDatabase db = SqlDatabase::open(folder_ / session::kDatabase, SqlDatabase::Mode::kCreate).value();
+    ASSERT_TRUE(db.execute("UPDATE scans SET file = '/dev/zero' WHERE id = 2"));
+    ASSERT_TRUE(
+        db.execute("UPDATE scans SET sum = dubsar_sum(id,file,bytes,hash,rows,cols,samples,spacing_mm,"
+                   "timestamp_ns,device,source,dropped,note)"));
+    ASSERT_TRUE(db.execute("INSERT INTO files(path,bytes,hash) VALUES('mesh/../../other.ply',1,1)"));
+    ASSERT_TRUE(db.execute("UPDATE files SET sum = dubsar_sum(path,bytes,hash)"));
+  }
+  std::ofstream(temporary_.path() / "other.ply") << "x";
+  const SessionStore store = SessionStore::open(folder_, kReadOnly).value();
+  EXPECT_TRUE(store.scans().value()[2].damaged);
+  const VerifyReport report = store.verify(job_).value();
+  std::vector<std::string> named;
+  for (const Error& fault : report.damaged) {
+    named.push_back(fault.where + ": " + fault.what);
+  }
+  EXPECT_THAT(named,
+              testing::IsSupersetOf({"/dev/zero: named by the tables, and no file of a session",
+                                     "mesh/../../other.ply: named by the tables, and no file of a session"}));
 }
 
 TEST_F(SessionDamageTest, VerifyNoticesAFlippedByteAnywhere) {

@@ -120,6 +120,8 @@ TEST(ReadWholeFile, ErrorsNameTheFile) {
   const ScratchFolder folder;
   EXPECT_THAT(line_of(read_whole_file(folder / "none")), HasSubstr("none: cannot read: No such file"));
   EXPECT_THAT(line_of(read_whole_file(folder.path())), HasSubstr("not a file"));
+  ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);  // opening it would wait for a writer
+  EXPECT_THAT(line_of(read_whole_file(folder / "pipe")), HasSubstr("not a file"));
   ASSERT_TRUE(write_file_atomically(folder / "a", "12345"));
   EXPECT_THAT(line_of(read_whole_file(folder / "a", 4)), HasSubstr("holds 5 bytes, more than the 4"));
   EXPECT_EQ(read_file_head(folder / "a", 3).value(), "123");

@@ -58,6 +58,7 @@ TEST(Sha2, OfAFile) {
   EXPECT_EQ(sha512_of_file(path, JobContext()).value_or(""), sha512_hex("abc"));
   EXPECT_EQ(sha256_of_file(path, JobContext()).value_or(""), sha256_hex("abc"));
   EXPECT_EQ(sha512_of_file(folder.path() / "none", JobContext()).error().kind, ErrorKind::kBadInput);
+  EXPECT_EQ(sha512_of_file("/dev/zero", JobContext()).error().what, "not a file");
   JobContext stopped;
   stopped.cancel();
   EXPECT_EQ(sha512_of_file(path, stopped).error().kind, ErrorKind::kCancelled);
