@@ -135,6 +135,11 @@ std::int64_t salvage_rows(SqlDatabase& from, SqlDatabase& to, bool results_too) 
     for (const char* order : {"ASC", "DESC"}) {
       salvage_table(table, order, from, to);
     }
+    // A value that is no value of its column (a text where a number should be, none for a key) becomes
+    // another one as it is put there: such a row is no row of a session.
+    const std::string unlike =
+        std::string("DELETE FROM ") + table.name + " WHERE sum IS NOT dubsar_sum(" + table.columns + ")";
+    (void)to.execute(unlike.c_str());
     rows += to.integer_of((std::string("SELECT count(*) FROM ") + table.name).c_str()).value_or(0);
   }
   return rows;

@@ -16,6 +16,7 @@
 #include "acquisition/session_log.h"
 #include "acquisition/session_store.h"
 #include "acquisition/sqlite_db.h"
+#include "formats/atomic_file.h"
 #include "tests/acquisition/session_support.h"
 #include "tests/support/temporary_folder.h"
 
@@ -103,6 +104,26 @@ TEST_F(SessionDamageTest, WhatIsNoFileIsNamedAndNotWaitedFor) {
     EXPECT_EQ(report.damaged[1].what, "not a file");
     EXPECT_THAT(report.extra, testing::Contains("mesh/notes.json"));
   }
+}
+
+TEST_F(SessionDamageTest, RowsWithoutTheirKeyAreNotTakenIntoTheRebuiltDatabase) {
+  std::string bytes = read_whole_file(folder_ / session::kDatabase).value();
+  const std::string key = "scans(id INTEGER PRIMARY KEY";
+  const std::size_t at = bytes.find(key);
+  ASSERT_NE(at, std::string::npos);
+  bytes.replace(at, key.size(),
+                "scans(id INTEGEM PRIMARY KEY");  // no longer the row's number: reads as nothing
+  std::ofstream(folder_ / session::kDatabase, std::ios::binary) << bytes;
+  {
+    SqlDatabase db = SqlDatabase::open(folder_ / session::kDatabase, SqlDatabase::Mode::kCreate).value();
+    ASSERT_TRUE(
+        db.execute("UPDATE scans SET sum = dubsar_sum(id,file,bytes,hash,rows,cols,samples,spacing_mm,"
+                   "timestamp_ns,device,source,dropped,note)"));
+  }
+  EXPECT_FALSE(SessionStore::open(folder_).value().opening().damage.empty());
+  const SessionStore again = SessionStore::open(folder_).value();
+  EXPECT_THAT(again.opening().damage, IsEmpty());
+  EXPECT_EQ(again.scans().value().size(), 4U);
 }
 
 TEST_F(SessionDamageTest, APipeInPlaceOfTheDatabaseIsNotWaitedFor) {
