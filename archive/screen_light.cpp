@@ -63,13 +63,26 @@ std::vector<Step> steps_along(double ux, double uy, int reach, double growth, do
   return steps;
 }
 
+/// What stands far in front is another part of the body: it hides the clay, it is not its surroundings.
+class Surroundings {
+ public:
+  Surroundings(int reach, double mm_per_px) : per_too_high_(static_cast<float>(0.5 / (reach * mm_per_px))) {}
+  /// How much of it counts, by how far it stands in front. It fades: were it all or nothing, stripes of light
+  /// and dark would cross a slope whose depth comes about there.
+  [[nodiscard]] float share(float up_mm) const {
+    return std::clamp(2.0F - 2.0F * up_mm * per_too_high_, 0.0F, 1.0F);
+  }
+
+ private:
+  float per_too_high_;
+};
+
 }  // namespace
 
 std::vector<float> sky_visibility(const SurfacePixels& pixels, double mm_per_px, double radius_mm) {
   const int reach = reach_px(radius_mm, mm_per_px);
   const PaddedDepth depth(pixels, reach + 1);
-  // What stands far in front is another part of the body: it hides the clay, it is not its surroundings.
-  const auto too_high_mm = static_cast<float>(2.0 * reach * mm_per_px);
+  const Surroundings surroundings(reach, mm_per_px);
   const auto width = static_cast<std::size_t>(pixels.width);
   std::vector<float> open(pixels.size(), 1.0F);
   parallel_chunks(
@@ -93,7 +106,7 @@ std::vector<float> sky_visibility(const SurfacePixels& pixels, double mm_per_px,
                 const float up = there[x] - here[x];
                 const float tangent = -(nx[x] * step.ux + ny[x] * step.uy) / std::max(nz[x], 0.2F);
                 const float above = (up * per_mm - tangent) * step.fade;
-                rise[x] = std::max(rise[x], up < too_high_mm ? above : 0.0F);
+                rise[x] = std::max(rise[x], above * surroundings.share(up));
               }
             }
             for (std::size_t x = 0; x < width; ++x) {
@@ -121,7 +134,7 @@ std::vector<float> lamp_visibility(const SurfacePixels& pixels, double mm_per_px
       steps_along(towards_lamp.x() / across, towards_lamp.y() / across, reach, 1.12, mm_per_px);
   const auto climb = static_cast<float>(towards_lamp.z() / across);
   constexpr float kPenumbra = 0.35F;  // of the tangent: a lamp some 15 degrees wide
-  const auto too_high_mm = static_cast<float>(2.0 * reach * mm_per_px);
+  const Surroundings surroundings(reach, mm_per_px);
   const auto width = static_cast<std::size_t>(pixels.width);
   parallel_chunks(static_cast<std::size_t>(pixels.height), kRowGrain,
                   [&](std::size_t begin, std::size_t end) {
@@ -135,11 +148,11 @@ std::vector<float> lamp_visibility(const SurfacePixels& pixels, double mm_per_px
                         for (std::size_t x = 0; x < width; ++x) {
                           const float up = there[x] - here[x];
                           const float above = (up * per_mm - climb) * step.fade;
-                          over[x] = std::max(over[x], up < too_high_mm ? above : 0.0F);
+                          over[x] = std::max(over[x], std::min(above, kPenumbra) * surroundings.share(up));
                         }
                       }
                       for (std::size_t x = 0; x < width; ++x) {
-                        const float t = std::min(over[x] / kPenumbra, 1.0F);
+                        const float t = over[x] / kPenumbra;
                         open[y * width + x] = 1.0F - t * t * (3.0F - 2.0F * t);
                       }
                     }

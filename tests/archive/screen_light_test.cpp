@@ -54,6 +54,24 @@ TEST(LampVisibility, AWallThrowsItsShadowAwayFromTheLamp) {
   EXPECT_GT(open[at(pixels, 2.5, 0)], 0.99F) << "a wall of 1 mm under a lamp at 45 degrees shades 1 mm";
 }
 
+/// A floor that sinks away under a ledge, from nothing to 12 mm: no two pixels beside each other differ by
+/// more than the slope explains, also where the ledge stands so far in front that it no longer counts.
+TEST(ScreenLight, ComesBackGraduallyWhereTheSurroundingsAreTooFarInFront) {
+  const auto place = [](float x, float y) { return x > 0 ? 0.0F : -0.6F * (y + 10.0F); };
+  const SurfacePixels pixels = pixels_of(height_sheet(640, 20.0F, place), 19.0);
+  const auto sky = sky_visibility(pixels, kMmPerPx, 1.0);
+  const auto lamp = lamp_visibility(pixels, kMmPerPx, 1.0, Eigen::Vector3d(1, 0, 1).normalized());
+  float sky_step = 0;
+  float lamp_step = 0;
+  for (double y = -9.0; y < 9.0; y += kMmPerPx) {
+    const std::size_t i = at(pixels, -0.3, y), next = at(pixels, -0.3, y + kMmPerPx);
+    sky_step = std::max(sky_step, std::abs(sky[next] - sky[i]));
+    lamp_step = std::max(lamp_step, std::abs(lamp[next] - lamp[i]));
+  }
+  EXPECT_LT(sky_step, 0.025F);
+  EXPECT_LT(lamp_step, 0.045F);
+}
+
 TEST(Bending, IsPositiveOnRidgesNegativeInValleysAndNoughtBetween) {
   const SurfacePixels pixels =
       pixels_of(height_sheet(320, 8.0F, [](float x, float) { return 0.3F * std::cos(2.0F * x); }), 7.8);
