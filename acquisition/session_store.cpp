@@ -3,6 +3,7 @@
 #include "acquisition/session_store.h"
 
 #include <algorithm>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "acquisition/session_impl.h"
@@ -19,6 +20,29 @@ using session::for_each_row;
 using session::in_transaction;
 
 namespace {
+
+constexpr const char* kScanStored = "scan stored";
+
+/// What devices remarked on scans, by id: it stands in the record of their storing, so that sessions of
+/// earlier versions, which have none, need no other tables.
+Result<std::map<int, std::string>> stored_remarks(SqlDatabase& db) {
+  std::map<int, std::string> out;
+  const Status read = for_each_row(
+      db, "SELECT kind, json FROM events WHERE sum IS dubsar_sum(number,time_ns,kind,json) ORDER BY number",
+      [&](const SqlStatement& row) -> Status {
+        if (row.text(0) != kScanStored) {
+          return {};
+        }
+        const nlohmann::json detail = nlohmann::json::parse(row.text(1), nullptr, false);
+        const auto id = detail.is_object() ? detail.find("id") : detail.end();
+        const auto remark = detail.is_object() ? detail.find("remark") : detail.end();
+        if (remark != detail.end() && remark->is_string() && id != detail.end() && id->is_number_integer()) {
+          out[id->get<int>()] = remark->get<std::string>();
+        }
+        return {};
+      });
+  return read ? Result<std::map<int, std::string>>(std::move(out)) : std::unexpected(read.error());
+}
 
 Status check_arrays(const RangeGrid& grid) {
   const auto n =
@@ -137,7 +161,7 @@ Result<int> SessionStore::next_id() const {
   return impl_->next_id();
 }
 
-Result<int> SessionStore::add_grid(const RangeGrid& grid) {
+Result<int> SessionStore::add_grid(const RangeGrid& grid, std::string_view remark) {
   if (Status writable = impl_->writable(); !writable) {
     return std::unexpected(writable.error());
   }
@@ -163,9 +187,12 @@ Result<int> SessionStore::add_grid(const RangeGrid& grid) {
     if (Status put = session::insert_scan(*impl_->db, id, sum, grid); !put) {
       return put;
     }
-    Status noted = session::insert_event(*impl_->db, "scan stored",
-                                         nlohmann::json{{"id", id}, {"source", grid.source}}.dump(
-                                             -1, ' ', false, nlohmann::json::error_handler_t::replace));
+    nlohmann::json detail{{"id", id}, {"source", grid.source}};
+    if (!remark.empty()) {
+      detail["remark"] = std::string(remark);
+    }
+    Status noted = session::insert_event(
+        *impl_->db, kScanStored, detail.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
     in_the_balance = noted.has_value();
     return noted;
   });
@@ -212,6 +239,10 @@ Result<RangeGrid> SessionStore::load_grid(int id) const {
 
 Result<std::vector<StoredScan>> SessionStore::scans() const {
   const std::scoped_lock hold(impl_->mutex);
+  Result<std::map<int, std::string>> remarks = stored_remarks(*impl_->db);
+  if (!remarks) {
+    return std::unexpected(remarks.error());
+  }
   std::vector<StoredScan> out;
   const Status read =
       for_each_row(*impl_->db,
@@ -230,6 +261,9 @@ Result<std::vector<StoredScan>> SessionStore::scans() const {
                      scan.source = row.text(8);
                      scan.dropped = row.integer(9) != 0;
                      scan.note = row.text(10);
+                     if (const auto said = remarks->find(scan.id); said != remarks->end()) {
+                       scan.remark = std::move(said->second);
+                     }
                      scan.damaged = std::ranges::binary_search(impl_->damaged_grids, scan.id);
                      out.push_back(std::move(scan));
                      return {};

@@ -30,6 +30,7 @@ struct StoredScan {
   std::string device;
   std::string source;  ///< original name, or empty
   std::string note;    ///< why it was dropped; empty otherwise
+  std::string remark;  ///< of the device on this scan, when it was stored; empty where there was none
   bool dropped = false;
   bool damaged = false;  ///< its grid file is missing or not what was stored
 };
@@ -100,8 +101,9 @@ class SessionStore {
   [[nodiscard]] std::filesystem::path export_folder() const { return folder() / "export"; }
   [[nodiscard]] double disk_free_gib() const;
 
-  /// Stores a grid and returns its id (0, 1, …, never used twice) once it is durable.
-  [[nodiscard]] Result<int> add_grid(const RangeGrid& grid);
+  /// Stores a grid, and what its device remarks on it, and returns its id (0, 1, …, never used twice) once
+  /// both are durable.
+  [[nodiscard]] Result<int> add_grid(const RangeGrid& grid, std::string_view remark = {});
   /// The id that add_grid() will give to the next grid.
   [[nodiscard]] Result<int> next_id() const;
   /// The grid of a scan, dropped or not; its bytes are checked against their checksum.

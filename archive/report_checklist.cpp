@@ -170,6 +170,9 @@ std::string checklist_section(const ReportInput& input) {
   for (const ScanWarning& warning : list.warnings) {
     html += dl_entry("Warning", "scan " + std::to_string(warning.scan) + ": " + html_escaped(warning.text));
   }
+  for (const ScanWarning& remark : list.remarks) {
+    html += dl_entry("Remark", "scan " + std::to_string(remark.scan) + ": " + html_escaped(remark.text));
+  }
   html += dl_entry("Calibration", calibration_words(list));
   html += dl_entry("Store", store_words(list));
   html += dl_entry("Disk", fixed(list.disk_free_gib, 1) + " GiB free");

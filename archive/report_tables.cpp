@@ -25,6 +25,17 @@ std::string micrometres(double mm) {
   return fixed(mm * 1000.0, 1);
 }
 
+/// What registration found of it, then what its device remarked.
+std::string remarks_on(const ScanPose& scan, const Checklist& checklist) {
+  std::string out = remark_of(scan);
+  for (const ScanWarning& remark : checklist.remarks) {
+    if (remark.scan == scan.id) {
+      out += (out.empty() ? "" : "; ") + remark.text;
+    }
+  }
+  return out;
+}
+
 const RedScan* find_counts(const RedMap& map, int id) {
   const auto found =
       std::find_if(map.scans.begin(), map.scans.end(), [&](const RedScan& scan) { return scan.id == id; });
@@ -48,7 +59,7 @@ std::string scans_section(const ReportInput& input) {
          placed ? micrometres(scan.rms_mm) : dash, placed ? micrometres(scan.sigma_mm) : dash,
          placed ? fixed(100.0 * scan.overlap, 0) : dash, counts ? std::to_string(counts->samples) : dash,
          counts ? std::to_string(counts->sparse) : dash, counts ? std::to_string(counts->cleared) : dash,
-         counts ? std::to_string(counts->excused) : dash, html_escaped(remark_of(scan))},
+         counts ? std::to_string(counts->excused) : dash, html_escaped(remarks_on(scan, input.checklist))},
         scan.status == PoseStatus::kRegistered && scan.warning.empty() ? "" : "open");
   }
   return "<section>\n<h2>Scans</h2>\n" +

@@ -60,7 +60,7 @@ struct FaceCoverage {
   return region.state == RegionState::kExcused && !(region.area_mm2 > 0);
 }
 
-/// What is wrong with a scan although it is registered.
+/// What a person should know of a scan.
 struct ScanWarning {
   int scan = 0;  ///< its id
   std::string text;
@@ -76,9 +76,10 @@ struct Checklist {
   int scans_registered = 0;
   int scans_unsure = 0;
   int scans_failed = 0;
-  double worst_sigma_mm = 0;  ///< of the registered scans
-  int worst_sigma_scan = -1;  ///< its id; -1 when no scan is registered
-  std::vector<ScanWarning> warnings;
+  double worst_sigma_mm = 0;          ///< of the registered scans
+  int worst_sigma_scan = -1;          ///< its id; -1 when no scan is registered
+  std::vector<ScanWarning> warnings;  ///< what is wrong with scans although they are registered
+  std::vector<ScanWarning> remarks;   ///< of the devices on the scans that stand
 
   std::string calibration;                     ///< empty when the device told none
   std::optional<double> calibration_age_days;  ///< when the device was opened

@@ -97,6 +97,18 @@ FaceCoverage face_from(const JsonNode& node) {
   return face;
 }
 
+/// Absent where there are none.
+std::vector<ScanWarning> lines_from(const JsonNode& root, const char* key) {
+  std::vector<ScanWarning> out;
+  if (const auto lines = root.find(key)) {
+    for (const JsonNode& line : lines->items()) {
+      out.push_back({static_cast<int>(line.at("scan").integer(0, std::numeric_limits<int>::max())),
+                     line.at("text").text()});
+    }
+  }
+  return out;
+}
+
 }  // namespace
 
 OrderedJson checklist_json(const Checklist& list) {
@@ -114,9 +126,13 @@ OrderedJson checklist_json(const Checklist& list) {
     root["worst_sigma_mm"] = list.worst_sigma_mm;
     root["worst_sigma_scan"] = list.worst_sigma_scan;
   }
-  for (const ScanWarning& warning : list.warnings) {
-    root["warnings"].push_back({{"scan", warning.scan}, {"text", warning.text}});
-  }
+  const auto add_lines = [&](const char* key, const std::vector<ScanWarning>& lines) {
+    for (const ScanWarning& line : lines) {
+      root[key].push_back({{"scan", line.scan}, {"text", line.text}});
+    }
+  };
+  add_lines("warnings", list.warnings);
+  add_lines("remarks", list.remarks);
   root["calibration"] = list.calibration;
   if (list.calibration_age_days) {
     root["calibration_age_days"] = *list.calibration_age_days;
@@ -166,13 +182,8 @@ Result<Checklist> parse_checklist(std::string_view text, const std::string& wher
     list.worst_sigma_mm = sigma->number(0);
     list.worst_sigma_scan = count("worst_sigma_scan");
   }
-  if (const auto warnings = root.find("warnings")) {
-    for (const JsonNode& warning : warnings->items()) {
-      list.warnings.push_back(
-          {static_cast<int>(warning.at("scan").integer(0, std::numeric_limits<int>::max())),
-           warning.at("text").text()});
-    }
-  }
+  list.warnings = lines_from(root, "warnings");
+  list.remarks = lines_from(root, "remarks");
   list.calibration = root.at("calibration").text();
   if (const auto age = root.find("calibration_age_days")) {
     list.calibration_age_days = age->number();

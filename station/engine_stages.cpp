@@ -165,7 +165,7 @@ void Engine::Impl::acquire(NextStep step, JobContext& job) {
 bool Engine::Impl::store_scan(int id, const RangeGrid& grid, const std::optional<Placement>& drive,
                               const std::string& remark) {
   const StageClock timing = clock("storing");
-  const Result<int> stored = store->add_grid(grid);
+  const Result<int> stored = store->add_grid(grid, remark);
   if (!stored) {
     give_up(stored.error());
     return false;

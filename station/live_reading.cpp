@@ -103,6 +103,7 @@ void LiveSession::show_scans(const SessionStore& store, const std::vector<Stored
     scan.dropped = stored.dropped;
     scan.damaged = stored.damaged;
     scan.note = stored.note;
+    scan.remark = stored.remark;
   }
   if (const Result<OperatorLog> log = read_operator_log(store)) {
     for (LiveScan& scan : state_.scans) {

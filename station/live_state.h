@@ -53,7 +53,7 @@ struct LiveScan {
   bool damaged = false;
   bool hinted = false;  ///< the operator has said where it lies
   std::string note;     ///< why it was dropped
-  std::string remark;   ///< of the device that it came from in this run
+  std::string remark;   ///< of the device that it came from
   std::shared_ptr<const RangeGrid> grid;
   std::shared_ptr<const GridPicture> picture;
   /// Likewise, with the pins that stand in it; the same as `grid` where there are none.

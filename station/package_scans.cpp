@@ -69,6 +69,9 @@ OrderedJson scan_json(const PackageContent& content, const StoredScan& scan) {
   if (!scan.note.empty()) {
     json["note"] = scan.note;
   }
+  if (!scan.remark.empty()) {
+    json["remark"] = scan.remark;
+  }
   json["damaged"] = scan.damaged;
   const auto pose = std::ranges::find(content.results().poses, scan.id, &ScanPose::id);
   json["status"] =

@@ -77,6 +77,20 @@ std::vector<std::string> accuracy_sentences(const std::vector<ScanPose>& poses,
   return out;
 }
 
+/// What devices remarked on the scans that stand.
+Status tell_remarks(const SessionStore& store, Checklist& list) {
+  const auto scans = store.scans();
+  if (!scans) {
+    return std::unexpected(scans.error());
+  }
+  for (const StoredScan& scan : *scans) {
+    if (!scan.dropped && !scan.damaged && !scan.remark.empty()) {
+      list.remarks.push_back({scan.id, scan.remark});
+    }
+  }
+  return {};
+}
+
 /// As people say it: whole ones, tenths where they are few. Nor should every byte that another program writes
 /// change what `plan` prints.
 double rounded_gib(double gib) {
@@ -130,6 +144,9 @@ Result<Checklist> checklist_of(const RedMap& red_map, const std::vector<ScanPose
   }
   if (rig == nullptr) {
     tell_of_range_camera(*store, list);
+  }
+  if (const Status told = tell_remarks(*store, list); !told) {
+    return std::unexpected(told.error());
   }
   list.disk_free_gib = rounded_gib(store->disk_free_gib());
   const Result<VerifyReport> whole = store->verify(job);

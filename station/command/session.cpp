@@ -64,6 +64,7 @@ Result<int> list(const SessionOptions& options, CommandContext& context) {
                     {"status", status},
                     {"reason", reason},
                     {"warning", warning},
+                    {"remark", scan.remark},
                     {"locked", log->word.locked.contains(scan.id)},
                     {"hint_on", nullptr},
                     {"note", scan.note}});
@@ -87,13 +88,18 @@ Result<int> list(const SessionOptions& options, CommandContext& context) {
     return 0;
   }
   for (const auto& row : rows) {
-    std::string more =
-        row["note"].get<std::string>() + row["reason"].get<std::string>() + row["warning"].get<std::string>();
-    if (row["locked"].get<bool>()) {
-      more = "locked" + (more.empty() ? "" : "; " + more);
-    }
+    std::string more;
+    const auto add = [&more](const std::string& said) {
+      more += (more.empty() || said.empty() ? "" : "; ") + said;
+    };
     if (!row["hint_on"].is_null()) {
-      more = "hint on scan " + std::to_string(row["hint_on"].get<int>()) + (more.empty() ? "" : "; " + more);
+      add("hint on scan " + std::to_string(row["hint_on"].get<int>()));
+    }
+    if (row["locked"].get<bool>()) {
+      add("locked");
+    }
+    for (const char* key : {"note", "reason", "warning", "remark"}) {
+      add(row[key].get<std::string>());
     }
     std::printf("%3d  %-10s %9ld samples  %s%s%s\n", row["id"].get<int>(),
                 row["status"].get<std::string>().c_str(), row["samples"].get<long>(),

@@ -133,6 +133,26 @@ TEST_F(SessionStoreTest, FlagsDocumentsAndEventsComeBack) {
   EXPECT_GE(events[1].time_ns, events[0].time_ns);
 }
 
+TEST_F(SessionStoreTest, WhatTheDeviceRemarkedOnAScanComesBack) {
+  const std::string said = "read as seen along 0 0 -1, \"by its outline\"; a spacing of 0.25 mm, nicht 2,5";
+  {
+    SessionStore store = open();
+    ASSERT_TRUE(store.add_grid(small_grid(0)));
+    ASSERT_TRUE(store.add_grid(small_grid(1), said));
+    ASSERT_TRUE(store.append_event("scan stored", "not JSON"));
+    ASSERT_TRUE(store.append_event("scan stored", R"({"id":"0","remark":"of no scan"})"));
+    ASSERT_TRUE(store.append_event("note", R"({"id":0,"remark":"of no device"})"));
+    EXPECT_EQ(store.scans().value()[1].remark, said);
+  }
+  for (const auto access : {SessionStore::Access::kReadOnly, SessionStore::Access::kReadWrite}) {
+    const Result<SessionStore> store = SessionStore::open(folder_, access);
+    ASSERT_TRUE(store);
+    const auto scans = store->scans().value();
+    EXPECT_EQ(scans[0].remark, "");
+    EXPECT_EQ(scans[1].remark, said);
+  }
+}
+
 TEST_F(SessionStoreTest, DroppingAndUndoingDeleteNothing) {
   {
     SessionStore store = open();

@@ -293,6 +293,7 @@ TEST_F(Report, TheChecklistPageHasWhatIsSigned) {
   list_.worst_sigma_scan = 7;
   list_.worst_sigma_mm = 0.0123;
   list_.warnings = {{3, "2 % < 3 %"}};
+  list_.remarks = {{2, "2.5 mm & not 0.25"}};
   list_.calibration_check = {"2026-01-02", "ball bar 7", 0.012};
   const std::string page = html(checklist_html);
   EXPECT_THAT(page, HasSubstr("3.25 in 2: 2.00, 1.25"));
@@ -301,6 +302,7 @@ TEST_F(Report, TheChecklistPageHasWhatIsSigned) {
   EXPECT_THAT(page, HasSubstr("0: 1.0 %, 1: 20.0 %, 2: 79.0 %"));
   EXPECT_THAT(page, HasSubstr("scan 7, σ 12.3 µm"));
   EXPECT_THAT(page, HasSubstr("scan 3: 2 % &lt; 3 %"));
+  EXPECT_THAT(page, HasSubstr("scan 2: 2.5 mm &amp; not 0.25"));
   EXPECT_THAT(page, HasSubstr("what: not told; age: not told; last verified 2026-01-02 on ball bar 7, off by "
                               "at most 12.0 µm"));
   EXPECT_THAT(page, HasSubstr("Not signed."));

@@ -265,6 +265,7 @@ TEST(ChecklistJson, ReadsBack) {
   checklist.worst_sigma_scan = 4;
   checklist.worst_sigma_mm = 0.0125;
   checklist.warnings = {{2, "it is 2.0 % too long"}};
+  checklist.remarks = {{4, "its header says another spacing"}};
   checklist.calibration_check = {"2026-01-02", "ball bar 7", 0.012};
   checklist.store_checked = "2026-01-02T03:04:05Z";
   checklist.store_files = 31;
@@ -281,6 +282,9 @@ TEST(ChecklistJson, ReadsBack) {
   ASSERT_EQ(back->warnings.size(), 1U);
   EXPECT_EQ(back->warnings[0].scan, 2);
   EXPECT_EQ(back->warnings[0].text, "it is 2.0 % too long");
+  ASSERT_EQ(back->remarks.size(), 1U);
+  EXPECT_EQ(back->remarks[0].scan, 4);
+  EXPECT_EQ(back->remarks[0].text, "its header says another spacing");
   EXPECT_EQ(back->calibration_age_days, 3.5);
   EXPECT_EQ(back->calibration_check->artefact, "ball bar 7");
   EXPECT_EQ(checklist_to_json(*back), checklist_to_json(checklist));

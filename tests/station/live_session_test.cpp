@@ -374,6 +374,12 @@ TEST(LiveSession, WhatADeviceRemarksOnItsScanStays) {
       << "its placing clears no remark on it";
   EXPECT_THAT(state.scans.front().remark, HasSubstr("its header says a spacing of 2.5 mm"));
   EXPECT_THAT(state.notice, HasSubstr("scan 0 (a.ply): its header says"));
+
+  Followed again({}, folder.path() / "s");
+  again.session.read();
+  ASSERT_TRUE(again.wait_for_rest());
+  ASSERT_THAT(again.session.state().scans, SizeIs(1));
+  EXPECT_EQ(again.session.state().scans.front().remark, state.scans.front().remark);
 }
 
 TEST(LiveSession, ADeviceThatIsNotThereIsSaidAndLeavesNoSession) {
@@ -383,18 +389,6 @@ TEST(LiveSession, ADeviceThatIsNotThereIsSaidAndLeavesNoSession) {
   ASSERT_TRUE(followed.wait_until([](const LiveState& s) { return s.error.has_value(); }));
   EXPECT_THAT(followed.session.state().error->line(), HasSubstr("size"));
   EXPECT_FALSE(std::filesystem::exists(folder.path() / "s"));
-}
-
-TEST(TabletRecord, ACdliNumberIsAPAndSixDigits) {
-  EXPECT_TRUE(check_cdli(""));
-  EXPECT_TRUE(check_cdli("P123456"));
-  for (const char* bad : {"P12345", "P1234567", "p123456", "123456", "P12345x", "P 12345"}) {
-    EXPECT_FALSE(check_cdli(bad)) << bad;
-  }
-  TabletRecord record{"VAT \"1\"", "P000001", "Berlin", "A. Reader", "line\nbreak"};
-  const auto again = parse_tablet_record(tablet_record_to_json(record), "test");
-  ASSERT_TRUE(again) << again.error().line();
-  EXPECT_EQ(*again, record);
 }
 
 }  // namespace

@@ -6,9 +6,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <fstream>
+
 #include "build_paths.h"
 #include "tests/station/support/command.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/wrong_spacing.h"
 
 namespace dubsar {
 namespace {
@@ -115,6 +118,30 @@ TEST_F(SessionWords, AFolderWhoseNameIsNoUtf8IsExportedAllTheSame) {
   EXPECT_EQ(made.json()["identifier"], "B\xEF\xBF\xBDM");
   EXPECT_EQ(run_command({"verify", at("package").string()}).status, 0);
   EXPECT_THAT(bytes_of(at("package") / "bag-info.txt"), Not(HasSubstr("\xFF")));
+}
+
+/// Whoever reads the session later knows what the operator was told.
+TEST_F(SessionWords, WhatTheReaderOfAScanRemarkedStaysWithTheSession) {
+  fs::create_directory(at("scans"));
+  std::ofstream(at("scans") / "a.ply") << test::ply_of_wrong_spacing();
+  const std::string session = at("s").string();
+  ASSERT_LE(run_command({"scan", "--device", "replay:" + at("scans").string(), "--session", session}).status,
+            1);
+  const std::string said = "its header says a spacing of 2.5 mm";
+  EXPECT_THAT(run_command({"session", "list", session, "--json"}).json()["scans"][0].value("remark", ""),
+              HasSubstr(said));
+  EXPECT_THAT(run_command({"session", "list", session}).out, HasSubstr("a.ply: " + said));
+  const nlohmann::json remarks = run_command({"plan", session, "--json"}).json()["checklist"]["remarks"];
+  ASSERT_EQ(remarks.size(), 1U);
+  EXPECT_EQ(remarks[0]["scan"], 0);
+  EXPECT_THAT(remarks[0].value("text", ""), HasSubstr(said));
+  ASSERT_EQ(run_command({"export", session, "--to", at("package").string(), "--without",
+                         "renderings,features,wedges,grid-ply"})
+                .status,
+            0);
+  for (const char* file : {"scans/scans.json", "report/report.html", "report/checklist.html"}) {
+    EXPECT_THAT(bytes_of(at("package") / "data" / file), HasSubstr(said)) << file;
+  }
 }
 
 }  // namespace
