@@ -28,6 +28,9 @@ namespace py = pybind11;
 /// or InternalError, all of them dubsar.Error.
 [[noreturn]] void raise(const Error& error);
 
+/// Warns the caller of a scan (dubsar.ScanWarning); raises where warnings are errors to them.
+void warn_of_scan(const std::string& line);
+
 template <class T>
 T value_of(Result<T> result) {
   if (!result) {

@@ -32,7 +32,16 @@ std::array<Kind, 6>& kinds() {
   return all;
 }
 
+/// Likewise kept as long as the interpreter runs.
+PyObject* scan_warning = nullptr;
+
 }  // namespace
+
+void warn_of_scan(const std::string& line) {
+  if (PyErr_WarnEx(scan_warning, line.c_str(), 1) != 0) {
+    throw py::error_already_set();
+  }
+}
 
 void raise(const Error& error) {
   for (const Kind& kind : kinds()) {
@@ -68,6 +77,13 @@ void bind_errors(py::module_& module) {
     }
     module.attr(kind.name) = py::reinterpret_borrow<py::object>(kind.type);
   }
+  scan_warning = PyErr_NewExceptionWithDoc("dubsar.ScanWarning",
+                                           "A scan was read otherwise than its file says, or is doubtful.",
+                                           PyExc_UserWarning, nullptr);
+  if (scan_warning == nullptr) {
+    throw py::error_already_set();
+  }
+  module.attr("ScanWarning") = py::reinterpret_borrow<py::object>(scan_warning);
 }
 
 }  // namespace dubsar::python

@@ -8,6 +8,7 @@
 
 #include "acquisition/resample.h"
 #include "core/units.h"
+#include "core/utf8.h"
 #include "formats/grid_file.h"
 #include "formats/grid_ply.h"
 #include "formats/grid_reader.h"
@@ -85,8 +86,13 @@ std::vector<fs::path> scan_files(const fs::path& path) {
   return files;
 }
 
+/// `remarks` takes what the readers remark on the scans, one line each.
 Result<std::vector<GridPointer>> read_grids(const fs::path& path, std::optional<double> mm_per_unit,
-                                            JobContext& job) {
+                                            std::vector<std::string>& remarks, JobContext& job) {
+  GridReadOptions options{.mm_per_unit = mm_per_unit};
+  options.remark = [&remarks](const std::string& scan, const std::string& remark) {
+    remarks.push_back(one_line(scan + ": " + remark));
+  };
   std::vector<GridPointer> out;
   const std::vector<fs::path> files = scan_files(path);
   for (std::size_t k = 0; k < files.size(); ++k) {
@@ -94,7 +100,7 @@ Result<std::vector<GridPointer>> read_grids(const fs::path& path, std::optional<
     if (job.cancelled()) {
       return fail(ErrorKind::kCancelled, "stopped");
     }
-    Result<std::vector<ScanData>> scans = read_scan_file(files[k], {.mm_per_unit = mm_per_unit});
+    Result<std::vector<ScanData>> scans = read_scan_file(files[k], options);
     if (!scans) {
       return std::unexpected(scans.error());
     }
@@ -204,10 +210,18 @@ void bind_grids(py::module_& module) {
       "read_grids",
       [](const fs::path& path, const std::optional<std::string>& unit, const py::object& progress) {
         const std::optional<double> scale = mm_per_unit_named(unit);
-        return run_for_result(progress, [&](JobContext& job) { return read_grids(path, scale, job); });
+        std::vector<std::string> remarks;
+        auto grids =
+            run_for_result(progress, [&](JobContext& job) { return read_grids(path, scale, remarks, job); });
+        for (const std::string& remark : remarks) {
+          warn_of_scan(remark);
+        }
+        return grids;
       },
       py::arg("path"), py::arg("unit") = py::none(), py::arg("progress") = py::none(),
-      "The range grids of a file, or of a folder in name order. Points without an order are resampled.");
+      "The range grids of a file, or of a folder in name order. Points without an order are resampled. A "
+      "scan "
+      "that is read otherwise than its file says, or that is doubtful, is warned of (ScanWarning).");
   module.def(
       "write_grid",
       [](const fs::path& path, const GridPointer& grid) {

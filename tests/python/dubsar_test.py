@@ -6,12 +6,14 @@ import ast
 import gc
 import json
 import os
+import re
 import runpy
 import signal
 import sys
 import tempfile
 import threading
 import unittest
+import warnings
 
 import numpy as np
 
@@ -101,6 +103,27 @@ class Grids(unittest.TestCase):
                 dubsar.write_grid(os.path.join(folder, "c.txt"), grid)
             scaled = dubsar.read_grids(os.path.join(folder, "b.ply"), unit="um")[0]
             self.assertLess(scaled.points().max(), 0.1)
+
+    def test_a_scan_that_is_read_otherwise_than_it_says_is_warned_of(self):
+        grid = plane(60, 60)
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "a.ply")
+            dubsar.write_grid(path, grid)
+            with warnings.catch_warnings(record=True) as said:
+                warnings.simplefilter("always")
+                dubsar.read_grids(path)
+            self.assertEqual([str(one.message) for one in said], [])
+            with open(path, "rb") as file:
+                was = file.read()
+            with open(path, "wb") as file:
+                file.write(re.sub(rb"dubsar_spacing_mm \S+", b"dubsar_spacing_mm 2.5", was))
+            with self.assertWarnsRegex(dubsar.ScanWarning, "a.ply: its header says a spacing of 2.5 mm"):
+                (back,) = dubsar.read_grids(path)
+            self.assertAlmostEqual(back.spacing_mm, 0.1, places=2)
+            with warnings.catch_warnings():
+                warnings.simplefilter("error")
+                with self.assertRaises(dubsar.ScanWarning):
+                    dubsar.read_grids(path)
 
 
 class Meshes(unittest.TestCase):
