@@ -6,6 +6,8 @@
 #include <limits>
 #include <sstream>
 
+#include "core/rig_limits.h"
+
 namespace dubsar::abi {
 
 namespace {
@@ -44,6 +46,29 @@ Result<Range> range_from(double low, double high, const char* of, const std::str
     return std::unexpected(faulty(where, std::string("told a range of ") + of + " that is none"));
   }
   return Range{low, high};
+}
+
+/// A session that keeps the rig would not be read again.
+Status within_reason(const Rig& rig, const std::string& where) {
+  const auto beyond = [&](const char* what, double value, double most, const char* unit) -> Status {
+    std::ostringstream words;
+    words.precision(9);
+    words << "told a rig " << what << " of " << value << " " << unit << ", beyond " << most << " " << unit;
+    return std::unexpected(faulty(where, words.str()));
+  };
+  if (rig.spacing_mm > kMostRigSpacingMm) {
+    return beyond("with a spacing", rig.spacing_mm, kMostRigSpacingMm, "mm");
+  }
+  if (rig.depth_range_mm > kMostDepthRangeMm) {
+    return beyond("with a depth range", rig.depth_range_mm, kMostDepthRangeMm, "mm");
+  }
+  if (std::abs(rig.support_height_mm) > kMostSupportHeightMm) {
+    return beyond("with a support height", rig.support_height_mm, kMostSupportHeightMm, "mm");
+  }
+  if (rig.calibration_age_days.value_or(0) > kMostCalibrationAgeDays) {
+    return beyond("whose calibration has an age", *rig.calibration_age_days, kMostCalibrationAgeDays, "days");
+  }
+  return {};
 }
 
 /// Head, turntable and arm.
@@ -179,6 +204,9 @@ Result<DeviceCapabilities> capabilities_from(const dubsar_capabilities& from, co
   rig.calibration = text(from.calibration);
   if (std::isfinite(from.calibration_age_days) && from.calibration_age_days >= 0) {
     rig.calibration_age_days = from.calibration_age_days;
+  }
+  if (const Status sane = within_reason(rig, where); !sane) {
+    return std::unexpected(sane.error());
   }
   if (const Status moves = reach_from(from, rig, where); !moves) {
     return std::unexpected(moves.error());

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "core/rig_limits.h"
 #include "core/units.h"
 #include "formats/calibration_check_json.h"
 #include "formats/json_node.h"
@@ -118,18 +119,18 @@ Result<Rig> parse_rig(std::string_view text, const std::string& where) {
     rig.view.camera_mm = camera->vector3();
   }
   rig.view.motion_per_row_mm = view.at("motion_per_row").vector3();
-  rig.spacing_mm = root.at("spacing").number(0, 1e3);
+  rig.spacing_mm = root.at("spacing").number(0, kMostRigSpacingMm);
   const std::vector<double> field = root.at("field").numbers(2);
   rig.field_x_mm = field[0];
   rig.field_y_mm = field[1];
-  rig.depth_range_mm = root.at("depth_range").number(0, 1e6);
+  rig.depth_range_mm = root.at("depth_range").number(0, kMostDepthRangeMm);
   rig.has_turntable = root.at("has_turntable").boolean();
   read_tilt(root, rig);
   rig.hand_turns = root.at("hand_turns").boolean();
-  rig.support_height_mm = root.at("support_height").number(-1e6, 1e6);
+  rig.support_height_mm = root.at("support_height").number(-kMostSupportHeightMm, kMostSupportHeightMm);
   rig.calibration = root.at("calibration").text();
   if (const auto age = root.find("calibration_age_days")) {
-    rig.calibration_age_days = age->number(0, 1e6);
+    rig.calibration_age_days = age->number(0, kMostCalibrationAgeDays);
   }
   read_motion(root, rig);
   if (const auto check = root.find("calibration_check")) {

@@ -9,6 +9,7 @@
 
 #include "build_paths.h"
 #include "drivers/loader.h"
+#include "formats/rig_json.h"
 
 namespace dubsar {
 namespace {
@@ -87,6 +88,28 @@ TEST_F(DeviceTest, ATiltOutOfAllReasonIsAFaultOfTheDriver) {
   const auto capabilities = open("twisted").capabilities();
   ASSERT_FALSE(capabilities);
   EXPECT_THAT(capabilities.error().line(), HasSubstr("told a range of its tilt that is none"));
+}
+
+/// Likewise: the refusals of drivers and of the reader have the same limits.
+TEST_F(DeviceTest, ARigOutOfAllReasonIsAFaultOfTheDriver) {
+  constexpr std::pair<const char*, const char*> kBeyond[] = {
+      {"coarse", "odd:1: the driver told a rig with a spacing of 2000 mm, beyond 1000 mm"},
+      {"deep", "the driver told a rig with a depth range of 2000000 mm, beyond 1000000 mm"},
+      {"high", "the driver told a rig with a support height of 2000000 mm, beyond 1000000 mm"},
+      {"ancient", "the driver told a rig whose calibration has an age of 2000000 days, beyond 1000000 days"}};
+  for (const auto& [mode, said] : kBeyond) {
+    const auto capabilities = open(mode).capabilities();
+    ASSERT_FALSE(capabilities) << mode;
+    EXPECT_THAT(capabilities.error().line(), HasSubstr(said));
+  }
+  for (const char* mode : {"good", "largest"}) {
+    const auto capabilities = open(mode).capabilities();
+    ASSERT_TRUE(capabilities) << capabilities.error().line();
+    const auto read = parse_rig(rig_to_json(*capabilities->rig), "session");
+    ASSERT_TRUE(read) << read.error().line();
+    EXPECT_EQ(read->spacing_mm, capabilities->rig->spacing_mm);
+    EXPECT_EQ(read->depth_range_mm, capabilities->rig->depth_range_mm);
+  }
 }
 
 TEST_F(DeviceTest, PlacesWithinItsReachOnly) {

@@ -26,7 +26,9 @@ static int32_t describe_options(dubsar_setting_callback callback, void* user, du
                                .flags = DUBSAR_SETTING_WRITABLE,
                                .key = "mode",
                                .help = "how to behave",
-                               .choices = "good|ragged|fail|forever|silent|cols|points|late|empty|twisted",
+                               .choices =
+                                   "good|ragged|fail|forever|silent|cols|points|late|empty|twisted|coarse|"
+                                   "deep|high|ancient|largest",
                                .minimum = 1,
                                .maximum = 0};
   (void)error;
@@ -62,6 +64,15 @@ static void close_device(dubsar_device* device) {
   free(device);
 }
 
+/* The most that a rig may tell, in the mode that tells so of everything; more than that in the mode of its
+ * own. */
+static double told(const dubsar_device* device, const char* mode, double most, double mostly) {
+  if (strcmp(device->mode, "largest") == 0) {
+    return most;
+  }
+  return strcmp(device->mode, mode) == 0 ? 2 * most : mostly;
+}
+
 static int32_t capabilities(dubsar_device* device, dubsar_capabilities* out, dubsar_error* error) {
   dubsar_capabilities filled;
   (void)error;
@@ -70,9 +81,11 @@ static int32_t capabilities(dubsar_device* device, dubsar_capabilities* out, dub
   filled.flags = DUBSAR_HAS_RIG | DUBSAR_HAS_TURNTABLE | DUBSAR_HAS_TILT | DUBSAR_IS_FINITE;
   filled.scan_count = 2;
   filled.tilt_max_rad = strcmp(device->mode, "twisted") == 0 ? 1e306 : 1.0;
-  filled.spacing_mm = 0.5;
-  filled.field_x_mm = filled.field_y_mm = filled.depth_range_mm = 40;
-  filled.calibration_age_days = -1;
+  filled.field_x_mm = filled.field_y_mm = 40;
+  filled.spacing_mm = told(device, "coarse", 1e3, 0.5);
+  filled.depth_range_mm = told(device, "deep", 1e6, 40);
+  filled.support_height_mm = told(device, "high", 1e6, 0);
+  filled.calibration_age_days = told(device, "ancient", 1e6, -1);
   filled.view.direction[2] = -1;
   filled.view.flags = DUBSAR_VIEW_LASER;
   filled.view.laser_mm[2] = 200;
