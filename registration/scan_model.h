@@ -111,12 +111,15 @@ class ScanModel {
   [[nodiscard]] std::vector<const ScanFeatures*> features_of(const std::vector<int>& ids) const;
   /// Looks for the scan's pose in the group: from its leads, and on the members that are new to it.
   bool join_group(int id, int group, JobContext& job);
+  /// The same on these members of it alone, whatever a hint says of another scan.
+  bool join_unhinted(int id, const std::vector<int>& ids, int group, JobContext& job);
   /// True when neither the scan nor what it was fitted to looks the same turned.
   bool shape_is_distinctive(int id, const ModelFit& fit, const std::vector<int>& group_ids);
   /// True when none of the scans that the scan brings along contradicts the group that it joins.
   [[nodiscard]] bool groups_agree(int id, const RigidTransform& group_from_scanner,
                                   const std::vector<int>& group_ids) const;
-  void connect(int id, const ModelFit& fit, bool by_stage, const std::vector<int>& group_ids, int group);
+  /// The groups of the scan and of what it was fitted to become one.
+  void connect(int id, const ModelFit& fit, bool by_stage, const std::vector<int>& fitted_ids, int group);
   /// Makes the scan a group of its own, and of each piece that nothing connects without it
   /// (scan_model_leave.cpp). True when there were such pieces.
   bool leave(int id);

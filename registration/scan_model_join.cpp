@@ -67,14 +67,34 @@ void ScanModel::retry(JobContext& job) {
 
 bool ScanModel::join_group(int id, int group, JobContext& job) {
   Scan& scan = scans_.at(id);
-  const std::vector<int> ids = members(group);
+  std::vector<int> ids = members(group);
   if (ids.empty()) {
     return false;  // it was joined with another meanwhile
   }
-  if (const std::optional<int> hinted = hint_between(scan.group, group)) {
-    scan.tried_on.insert(ids.begin(), ids.end());
-    return join_by_hint(*hinted, job);
+  const std::optional<int> hinted = hint_between(scan.group, group);
+  if (!hinted) {
+    return join_unhinted(id, ids, group, job);
   }
+  const bool joined = join_by_hint(*hinted, job);
+  std::erase(ids, *hinted);
+  if (joined || job.cancelled() || id == *hinted || ids.empty()) {
+    scan.tried_on.insert(ids.begin(), ids.end());
+    scan.tried_on.insert(*hinted);
+    return joined;
+  }
+  // It is the hinted scan that a word which leads nowhere leaves out, not the one that it was said to lie on,
+  // nor those that came with either.
+  scan.tried_on.insert(*hinted);
+  if (!join_unhinted(id, ids, group, job)) {
+    return false;
+  }
+  scans_.at(hints_.at(*hinted).on).hint_reason.clear();
+  follow_hint(*hinted, job);
+  return true;
+}
+
+bool ScanModel::join_unhinted(int id, const std::vector<int>& ids, int group, JobContext& job) {
+  Scan& scan = scans_.at(id);
   if (scan.given) {
     return join_as_given(id, group, job);
   }
@@ -174,9 +194,10 @@ bool ScanModel::groups_agree(int id, const RigidTransform& group_from_scanner,
   return brought.violation() <= options_.search.verify.most_violation;
 }
 
-void ScanModel::connect(int id, const ModelFit& fit, bool by_stage, const std::vector<int>& group_ids,
+void ScanModel::connect(int id, const ModelFit& fit, bool by_stage, const std::vector<int>& fitted_ids,
                         int group) {
   Scan& scan = scans_.at(id);
+  const std::vector<int> group_ids = members(group);
   scan.stage_sigma_mm = by_stage && scan.nominal ? scan.nominal->sigma_mm : 0.0;
   const int own = scan.group;
   const std::vector<int> own_ids = members(own);
@@ -203,8 +224,8 @@ void ScanModel::connect(int id, const ModelFit& fit, bool by_stage, const std::v
   pairs.reserve(fit.touching.size());
   unchecked_.insert(id);
   for (const std::size_t k : fit.touching) {
-    pairs.push_back(std::minmax(id, group_ids[k]));
-    unchecked_.insert(group_ids[k]);
+    pairs.push_back(std::minmax(id, fitted_ids[k]));
+    unchecked_.insert(fitted_ids[k]);
   }
   measure_pairs(pairs);
   for (const int i : members(scan.group)) {

@@ -35,8 +35,8 @@ PoseHint clicked(int on, const Height& surface, const RigidTransform& model_from
   hint.on = on;
   Random random(5);
   const auto off = [&] {
-    return Eigen::Vector3d(sigma_mm * random.normal(), sigma_mm * random.normal(),
-                           sigma_mm * random.normal());
+    return Eigen::Vector3d{sigma_mm * random.normal(), sigma_mm * random.normal(),
+                           sigma_mm * random.normal()};
   };
   for (const Eigen::Vector2d& place : places) {
     const Eigen::Vector3d p(place.x(), place.y(), surface(place.x(), place.y()));
@@ -151,6 +151,59 @@ TEST(Hints, AWrongWordIsNeverBelieved) {
   }
   registrar.clear_hint(1);
   EXPECT_EQ(registrar.add(1, scanned(surface, truth, 9), nullptr, job).status, PoseStatus::kRegistered);
+}
+
+/// The operator clicked on the wrong places for scan 1: that one is in doubt, nothing else.
+TEST(Hints, AWrongWordLeavesOutNeitherTheScanThatItIsGivenOnNorTheOthers) {
+  const auto surface = bumpy(27);
+  const std::vector<RigidTransform> truth{pose_of(0, 0, 0, {0, 0, 0}), pose_of(9, -5, 100, {2, -1, 0}),
+                                          pose_of(-7, 6, -50, {-2, 2, 0}), pose_of(4, 7, 30, {1, 1, 0})};
+  const PoseHint wrong =
+      clicked(0, surface, pose_of(0, 0, 95, {3, 0, 0}) * truth[1], truth[0], {{-15, -12}, {16, -8}, {2, 17}});
+  for (const std::vector<int>& order :
+       {std::vector{1, 2, 3, 0}, std::vector{1, 2, 0, 3}, std::vector{0, 1, 2, 3}, std::vector{1, 0, 2, 3}}) {
+    Registrar registrar;
+    JobContext job;
+    ASSERT_TRUE(registrar.set_hint(1, wrong, job));
+    for (const int id : order) {
+      registrar.add(id,
+                    scanned(surface, truth[static_cast<std::size_t>(id)], 30U + static_cast<unsigned>(id)),
+                    nullptr, job);
+    }
+    ASSERT_TRUE(registrar.finalize(job));
+    const RigidTransform model_from_truth = pose_in(registrar, 0).model_from_scanner * truth[0].inverse();
+    for (const int id : {0, 2, 3}) {
+      const ScanPose pose = pose_in(registrar, id);
+      EXPECT_EQ(pose.status, PoseStatus::kRegistered) << id << pose.reason;
+      EXPECT_LT(error_mm(pose, model_from_truth * truth[static_cast<std::size_t>(id)]), 0.02) << id;
+    }
+    EXPECT_NE(pose_in(registrar, 1).status, PoseStatus::kRegistered);
+    EXPECT_THAT(pose_in(registrar, 1).reason, HasSubstr("the hint leads to no certain pose"));
+  }
+}
+
+/// Nothing but the hinted scan overlaps the one that the hint is given on: what is registered stays.
+TEST(Hints, AWrongWordTakesNothingApartForNothing) {
+  const auto surface = bumpy(28, 160);
+  const auto part = [&](double low_mm, double high_mm, std::uint64_t seed) {
+    FieldScan scan;
+    scan.seed = seed;
+    scan.low_x_mm = low_mm;
+    scan.high_x_mm = high_mm;
+    return std::make_shared<const RangeGrid>(scan_field(surface, {}, scan));
+  };
+  Registrar registrar;
+  JobContext job;
+  const PoseHint wrong = clicked(0, surface, pose_of(0, 0, 95, {3, 0, 0}), {}, {{-6, -12}, {3, -8}, {0, 17}});
+  registrar.add(1, part(-10, 30, 2), nullptr, job);
+  registrar.add(2, part(8, 30, 3), nullptr, job);
+  ASSERT_TRUE(registrar.set_hint(1, wrong, job));
+  registrar.add(0, part(-30, 4, 1), nullptr, job);
+  ASSERT_TRUE(registrar.finalize(job));
+  for (const int id : {1, 2}) {
+    EXPECT_EQ(pose_in(registrar, id).status, PoseStatus::kRegistered) << pose_in(registrar, id).reason;
+  }
+  EXPECT_THAT(pose_in(registrar, 0).reason, HasSubstr("the hint leads to no certain pose"));
 }
 
 TEST(Hints, StandWhenTheScanIsTakenOutAndPutBack) {
