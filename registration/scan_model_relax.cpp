@@ -188,13 +188,15 @@ Status ScanModel::finalize(JobContext& job) {
   for (const int id : ids) {
     judge(id);
   }
+  job.progress("relax", 1.0);
+  job.progress("checking scans", 0.0);
   unchecked_.insert(ids.begin(), ids.end());
   put_out_faulty(job);
   if (job.cancelled()) {
     return fail(ErrorKind::kCancelled, "registration was stopped");
   }
   warn_of_stretched();
-  job.progress("relax", 1.0);
+  job.progress("checking scans", 1.0);
   return {};
 }
 

@@ -81,6 +81,32 @@ TEST(ScanMotion, IsLookedForAgainWhenAnotherScanIsTakenOutAndForgottenWithTheSca
   EXPECT_TRUE(again.reason.empty());
 }
 
+/// The check comes last; what it has not come to is looked at the next time.
+TEST(ScanMotion, AStopDuringTheLastCheckIsSaidAndTheCheckIsMadeTheNextTime) {
+  JobContext job;
+  Registrar registrar;
+  for (std::size_t k = 0; k < still_scans().size(); ++k) {
+    registrar.add(static_cast<int>(k), still_scans()[k].grid, nullptr, job);
+  }
+  JobContext* under_way = nullptr;
+  bool is_checked = false;
+  JobContext stopped([&](std::string_view stage, double fraction) {
+    if (stage == "checking scans") {
+      under_way->cancel();
+      is_checked = is_checked || fraction == 1.0;
+    }
+  });
+  under_way = &stopped;
+  const Status status = registrar.finalize(stopped);
+  ASSERT_FALSE(status);
+  EXPECT_EQ(status.error().kind, ErrorKind::kCancelled);
+  EXPECT_FALSE(is_checked);
+  EXPECT_TRUE(registrar.finalize(job));
+  for (const ScanPose& pose : registrar.poses()) {
+    EXPECT_EQ(pose.status, PoseStatus::kRegistered) << pose.id << pose.reason;
+  }
+}
+
 struct Slip {
   const char* name;
   std::size_t scan;

@@ -14,6 +14,7 @@ constexpr EnginePhrase kStages[] = {
     {"reading the session", "Sitzung wird gelesen"},
     {"registering", "Scans werden eingepasst"},
     {"relax", "Lagen werden ausgeglichen"},
+    {"checking scans", "Scans werden geprüft"},
     {"red map", "Rote Stellen werden gesucht"},
     {"clearing", "Rote Stellen werden geprüft"},
     {"pins: views", "Nadeln: Ansichten"},
