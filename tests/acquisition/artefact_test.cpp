@@ -129,7 +129,7 @@ TEST(SphereFit, ThroughFourPointsAndThroughMany) {
   std::vector<Eigen::Vector3d> points;
   Random random(9);
   for (int i = 0; i < 500; ++i) {
-    const Eigen::Vector3d direction(random.normal(), random.normal(), std::abs(random.normal()) + 0.5);
+    const Eigen::Vector3d direction{random.normal(), random.normal(), std::abs(random.normal()) + 0.5};
     points.push_back(middle + 5 * direction.normalized());
   }
   const auto first = sphere_through(points[0], points[1], points[2], points[3]);

@@ -56,8 +56,8 @@ CalibrationView ideal_view(const RigCalibration& truth, const RigidTransform& po
     const Eigen::Vector2d pixel = truth.camera.project(pose * corner);
     if (truth.camera.sees(pixel, 10)) {
       view.board.corners_mm.push_back(corner);
-      view.board.corners_px.emplace_back(pixel.x() + 0.05 * random.normal(),
-                                         pixel.y() + 0.05 * random.normal());
+      view.board.corners_px.push_back(
+          {pixel.x() + 0.05 * random.normal(), pixel.y() + 0.05 * random.normal()});
     }
   }
   const Plane laser = truth.motion.laser_at(truth.laser, mirror);

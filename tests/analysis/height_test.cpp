@@ -190,8 +190,8 @@ TEST(SurfaceFields, HoldOnAFaultyMesh) {
   }
   for (int i = 0; i < 20; ++i) {
     const auto first = static_cast<std::uint32_t>(faulty.positions.size());
-    const Eigen::Vector3f at(static_cast<float>(random.uniform(-15, 15)),
-                             static_cast<float>(random.uniform(-15, 15)), 1.0F);
+    const Eigen::Vector3f at{static_cast<float>(random.uniform(-15, 15)),
+                             static_cast<float>(random.uniform(-15, 15)), 1.0F};
     faulty.positions.insert(faulty.positions.end(),
                             {at, at + Eigen::Vector3f(0.2F, 0, 0), at + Eigen::Vector3f(0, 0.2F, 0)});
     faulty.faces.push_back({first, first + 1, first + 2});

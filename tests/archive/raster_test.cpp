@@ -24,8 +24,8 @@ TEST(Rasterise, LeavesNoCrackBetweenNeighbours) {
   for (Eigen::Vector3f& p : mesh.positions) {
     const bool is_rim = std::abs(p.x()) > 4.9F || std::abs(p.y()) > 4.9F;
     if (!is_rim) {
-      p += Eigen::Vector3f(static_cast<float>(random.uniform(-0.05, 0.05)),
-                           static_cast<float>(random.uniform(-0.05, 0.05)), 0);
+      p += Eigen::Vector3f{static_cast<float>(random.uniform(-0.05, 0.05)),
+                           static_cast<float>(random.uniform(-0.05, 0.05)), 0};
     }
   }
   const RenderScene scene(mesh);

@@ -47,9 +47,9 @@ TEST(GridLookup, AgreesWithASearchThroughAll) {
     Random random(seed + 100);
     int found = 0;
     for (int k = 0; k < 500; ++k) {
-      const Eigen::Vector3f p(static_cast<float>(random.uniform(-7, 7)),
+      const Eigen::Vector3f p{static_cast<float>(random.uniform(-7, 7)),
                               static_cast<float>(random.uniform(-6, 6)),
-                              static_cast<float>(random.uniform(-3, 6)));
+                              static_cast<float>(random.uniform(-3, 6))};
       const auto radius = static_cast<float>(random.uniform(0.05, 3.0));
       const std::int64_t expected = nearest_by_search(grid, p, radius);
       EXPECT_EQ(lookup.nearest(p, radius), expected);
@@ -63,7 +63,7 @@ TEST(GridLookup, AgreesWhereSamplesAreFewAndFarApart) {
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
     RangeGrid grid = warped_grid(seed);
     Random random(seed + 40);
-    grid.view.direction = Eigen::Vector3d(random.normal(), random.normal(), -1).normalized();
+    grid.view.direction = Eigen::Vector3d{random.normal(), random.normal(), -1}.normalized();
     for (std::uint8_t& valid : grid.valid) {
       valid = valid != 0 && random.uniform() < 0.01 ? 1 : 0;
     }
@@ -77,9 +77,9 @@ TEST(GridLookup, AgreesWhereSamplesAreFewAndFarApart) {
     int found = 0;
     for (int k = 0; k < 600; ++k) {
       const double spread = k % 3 == 0 ? 400.0 : 8.0;
-      const Eigen::Vector3f p(static_cast<float>(random.uniform(-spread, spread)),
+      const Eigen::Vector3f p{static_cast<float>(random.uniform(-spread, spread)),
                               static_cast<float>(random.uniform(-spread, spread)),
-                              static_cast<float>(random.uniform(-spread, spread)));
+                              static_cast<float>(random.uniform(-spread, spread))};
       const auto radius = static_cast<float>(random.uniform(0.5, k % 2 == 0 ? 10.0 : 500.0));
       const std::int64_t expected = nearest_by_search(grid, p, radius);
       EXPECT_EQ(lookup.nearest(p, radius), expected) << "seed " << seed << " radius " << radius;
@@ -101,9 +101,9 @@ TEST(GridLookup, AgreesFarFromTheOrigin) {
   const GridLookup lookup(grid);
   Random random(7);
   for (int k = 0; k < 300; ++k) {
-    const Eigen::Vector3f p(50000.0F + static_cast<float>(random.uniform(-7, 7)),
+    const Eigen::Vector3f p{50000.0F + static_cast<float>(random.uniform(-7, 7)),
                             -20000.0F + static_cast<float>(random.uniform(-6, 6)),
-                            static_cast<float>(random.uniform(-3, 6)));
+                            static_cast<float>(random.uniform(-3, 6))};
     EXPECT_EQ(lookup.nearest(p, 1.0F), nearest_by_search(grid, p, 1.0F));
   }
 }
@@ -157,9 +157,9 @@ TEST(GridLookup, AnyWithinIsWhatASearchThroughAllFinds) {
     const GridLookup lookup(grid);
     Random random(seed + 200);
     for (int k = 0; k < 500; ++k) {
-      const Eigen::Vector3f p(static_cast<float>(random.uniform(-7, 7)),
+      const Eigen::Vector3f p{static_cast<float>(random.uniform(-7, 7)),
                               static_cast<float>(random.uniform(-6, 6)),
-                              static_cast<float>(random.uniform(-3, 6)));
+                              static_cast<float>(random.uniform(-3, 6))};
       const auto radius = static_cast<float>(random.uniform(0.05, 1.0));
       const std::size_t third = random.below(3);
       bool expected = false;
@@ -191,8 +191,8 @@ TEST(GridLookup, ALargeGridBuiltInPartsHoldsEverySampleInOrder) {
   EXPECT_EQ(seen, grid.valid_count());
   EXPECT_EQ(times, grid.valid);
   for (int k = 0; k < 2000; ++k) {
-    const Eigen::Vector3f p(static_cast<float>(random.uniform(-45, 45)),
-                            static_cast<float>(random.uniform(-35, 35)), 0);
+    const Eigen::Vector3f p{static_cast<float>(random.uniform(-45, 45)),
+                            static_cast<float>(random.uniform(-35, 35)), 0};
     std::int64_t before = -1;
     lookup.for_each_near(p, 0.0F, [&](std::size_t i) {  // one bucket
       EXPECT_GT(static_cast<std::int64_t>(i), before);

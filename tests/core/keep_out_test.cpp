@@ -78,10 +78,12 @@ TEST(KeepOut, AgreesWithPointsOfTheHead) {
   int refused = 0;
   int allowed = 0;
   for (int trial = 0; trial < 400; ++trial) {
-    const StageScene scene = tablet(random.uniform(5, 80), random.uniform(5, 80), random.uniform(5, 90));
-    Placement placement = arm_at(random.uniform(0, 360), random.uniform(0, 80), scene.focus_mm);
+    const Eigen::Vector3d size{random.uniform(5, 80), random.uniform(5, 80), random.uniform(5, 90)};
+    const StageScene scene = tablet(size.x(), size.y(), size.z());
+    const double around_deg = random.uniform(0, 360);
+    Placement placement = arm_at(around_deg, random.uniform(0, 80), scene.focus_mm);
     placement.free_pose->translation_mm +=
-        Eigen::Vector3d(random.uniform(-60, 60), random.uniform(-60, 60), 0);
+        Eigen::Vector3d{random.uniform(-60, 60), random.uniform(-60, 60), 0};
     const bool clear = check_clear(rig, scene, placement, "").has_value();
     const double gap = clearance_mm(rig, scene.tablet_mm, *placement.free_pose);
     if (clear) {

@@ -17,7 +17,7 @@ std::vector<Eigen::Vector3d> random_points(int count, std::uint64_t seed) {
   Random random(seed);
   std::vector<Eigen::Vector3d> out;
   for (int k = 0; k < count; ++k) {
-    out.emplace_back(random.uniform(-20, 20), random.uniform(-20, 20), random.uniform(-20, 20));
+    out.push_back({random.uniform(-20, 20), random.uniform(-20, 20), random.uniform(-20, 20)});
   }
   return out;
 }

@@ -139,8 +139,8 @@ TEST(PinDetection, TakesNoSpecksAndBumpsForTips) {
   RangeGrid grid = slab_with_pins({}, {});
   Random random(9);
   for (int k = 0; k < 300; ++k) {  // outliers, and specks of a few samples
-    const std::size_t i =
-        grid.index(static_cast<int>(random.below(290)), static_cast<int>(random.below(390)));
+    const auto row = static_cast<int>(random.below(290));
+    const std::size_t i = grid.index(row, static_cast<int>(random.below(390)));
     const int side = k % 3;
     for (int dr = 0; dr <= side; ++dr) {
       for (int dc = 0; dc <= side; ++dc) {

@@ -79,8 +79,8 @@ TEST(PinMatching, FindsThePoseFromDistancesWithHalfMissingOrFalse) {
     std::vector<SeenPin> source = put_back(rim_pins(), pose, 0, 8, seed, false);
     Random random(seed);
     for (int k = 0; k < 4; ++k) {
-      source.push_back({-1, pose.inverse() * Eigen::Vector3d(random.uniform(-30, 30), random.uniform(-22, 22),
-                                                             random.uniform(-9, 9))});
+      source.push_back({-1, pose.inverse() * Eigen::Vector3d{random.uniform(-30, 30), random.uniform(-22, 22),
+                                                             random.uniform(-9, 9)}});
     }
     const auto found = match_pins(source, put_back(rim_pins(), {}, 2, 8, seed + 50, false), {});
     ASSERT_LE(found.size(), PinMatchOptions{}.most_candidates);

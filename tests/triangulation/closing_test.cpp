@@ -25,8 +25,8 @@ TEST(Tiling, APlaceLiesInTheBoxOfItsTileAndInNoOther) {
     ASSERT_GT(tiling.size(), 10U);
     for (int k = 0; k < 2000; ++k) {
       const Vector3f p =
-          box.min() + Vector3f(static_cast<float>(random.uniform()), static_cast<float>(random.uniform()),
-                               static_cast<float>(random.uniform()))
+          box.min() + Vector3f{static_cast<float>(random.uniform()), static_cast<float>(random.uniform()),
+                               static_cast<float>(random.uniform())}
                           .cwiseProduct(box.sizes());
       for (std::size_t tile = 0; tile < tiling.size(); ++tile) {
         if (lies_within(tiling.box(tile), p, 1e-5F)) {

@@ -31,7 +31,7 @@ TEST(Manifold, MakesSomethingSoundOfAnyFaces) {
     Mesh mesh;
     constexpr std::uint32_t kVertices = 12;
     for (std::uint32_t v = 0; v < kVertices; ++v) {
-      mesh.positions.emplace_back(random.normal(), random.normal(), random.normal());
+      mesh.positions.push_back({random.normal(), random.normal(), random.normal()});
     }
     for (int f = 0; f < 40; ++f) {
       mesh.faces.push_back({static_cast<std::uint32_t>(random.below(kVertices)),

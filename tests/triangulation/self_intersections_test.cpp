@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <limits>
 
 #include "core/mesh.h"
@@ -84,13 +85,15 @@ TEST(SelfIntersections, AgreesWithEveryPairLookedAt) {
   Mesh mesh;
   for (int k = 0; k < 300; ++k) {
     const auto draw = [&](double size) {
-      return Eigen::Vector3f(static_cast<float>(random.uniform(-size, size)),
+      return Eigen::Vector3f{static_cast<float>(random.uniform(-size, size)),
                              static_cast<float>(random.uniform(-size, size)),
-                             static_cast<float>(random.uniform(-size, size)));
+                             static_cast<float>(random.uniform(-size, size))};
     };
     const Eigen::Vector3f middle = draw(5);
     const double size = k % 20 == 0 ? 4.0 : 0.5;
-    add_face(mesh, middle + draw(size), middle + draw(size), middle + draw(size));
+    const std::array<Eigen::Vector3f, 3> corners{middle + draw(size), middle + draw(size),
+                                                 middle + draw(size)};
+    add_face(mesh, corners[0], corners[1], corners[2]);
   }
   Pairs each;
   for (std::uint32_t a = 0; a < mesh.faces.size(); ++a) {
