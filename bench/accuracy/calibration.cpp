@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "bench/support/asked.h"
+#include "bench/support/options.h"
 #include "bench/support/simulated_calibration.h"
 #include "sim/frame_rig.h"
 
@@ -29,7 +30,9 @@ int run(int argc, char** argv) {
   app.add_option("--height", size.height);
   app.add_option("--laser-sigma", optics.laser_sigma_mm);
   app.add_option("--speckle", optics.speckle_contrast);
-  CLI11_PARSE(app, argc, argv);
+  if (const auto status = dubsar::bench::ends_with(app, argc, argv)) {
+    return *status;
+  }
   const Result<BoardSpec> board = parse_board(name);
   if (!board) {
     std::fprintf(stderr, "%s\n", board.error().line().c_str());

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "bench/support/closed_loop.h"
+#include "bench/support/options.h"
 #include "bench/support/statistics.h"
 #include "bench/support/true_scans.h"
 #include "bench/support/view_baselines.h"
@@ -261,7 +262,9 @@ int main(int argc, char** argv) {
                  "many cracks of this depth, mm; else some of 0.25 to 0.7");
   app.add_option("--size", args.size, "of all tablets, WxHxT in mm");
   app.add_flag("-v,--verbose", args.verbose);
-  CLI11_PARSE(app, argc, argv);
+  if (const auto status = dubsar::bench::ends_with(app, argc, argv)) {
+    return *status;
+  }
 
   std::vector<double> shares, outside_slits, errors, interpolation;
   double unreachable = 0, truly = 0, unneeded = 0, area = 0, worst_pose_mm = 0;

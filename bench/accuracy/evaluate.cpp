@@ -17,6 +17,7 @@
 #include <variant>
 
 #include "bench/accuracy/gauge.h"
+#include "bench/support/options.h"
 #include "bench/support/statistics.h"
 #include "core/mesh_query.h"
 #include "core/parallel.h"
@@ -197,15 +198,19 @@ int main(int argc, char** argv) {
   poses->add_option("scans", second, "their folder, or the session")->required();
   poses->add_option("--truth", truth);
   poses->add_option("--conf", conf);
-  poses->add_option("--unit", unit, "of the scans and the .conf: m, mm or um");
+  const CLI::IsMember is_unit(
+      std::vector<std::string>(dubsar::kLengthUnits.begin(), dubsar::kLengthUnits.end()));
+  poses->add_option("--unit", unit, "of the scans and the .conf")->check(is_unit);
   poses->add_option("--gauge-out", gauge);
   CLI::App* mesh = app.add_subcommand("mesh", "A mesh against a reference mesh");
   mesh->add_option("mesh", first)->required();
   mesh->add_option("reference", second)->required();
   mesh->add_option("--within", within_mm, "mm");
-  mesh->add_option("--reference-unit", unit);
+  mesh->add_option("--reference-unit", unit)->check(is_unit);
   mesh->add_option("--gauge", gauge);
-  CLI11_PARSE(app, argc, argv);
+  if (const auto status = dubsar::bench::ends_with(app, argc, argv)) {
+    return *status;
+  }
   if (*poses) {
     return evaluate_poses(first, second, truth, conf, dubsar::mm_per_unit(unit).value_or(1.0), gauge);
   }

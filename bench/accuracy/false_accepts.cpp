@@ -7,10 +7,10 @@
 // Prints one line per case and the sums; exits 1 when any accepted pose is wrong.
 //   dubsar-false-accepts [first seed [seeds [kind [spacing_mm]]]]
 #include <cstdio>
-#include <cstdlib>
-#include <string_view>
+#include <string>
 #include <vector>
 
+#include "bench/support/options.h"
 #include "bench/support/true_scans.h"
 #include "registration/registrar.h"
 
@@ -101,13 +101,22 @@ Tally run(const Case& c, std::uint64_t seed, double spacing_mm, const sim::Table
 }  // namespace
 
 int main(int argc, char** argv) {
-  const auto number = [&](int k, std::uint64_t fallback) {
-    return argc > k ? std::strtoull(argv[k], nullptr, 10) : fallback;
-  };
-  const std::uint64_t first_seed = number(1, 1);
-  const std::uint64_t seeds = number(2, 4);
-  const std::string_view only = argc > 3 ? argv[3] : "";
-  const double spacing_mm = argc > 4 ? std::strtod(argv[4], nullptr) : 0.25;
+  std::uint64_t first_seed = 1;
+  std::uint64_t seeds = 4;
+  std::string only;
+  double spacing_mm = 0.25;
+  std::vector<std::string> names{""};
+  for (const Case& c : cases()) {
+    names.emplace_back(c.name);
+  }
+  CLI::App app("Scans that are made to mislead: how many are accepted, and wrongly", "dubsar-false-accepts");
+  app.add_option("first_seed", first_seed);
+  app.add_option("seeds", seeds);
+  app.add_option("case", only, "this one alone")->check(CLI::IsMember(names));
+  app.add_option("spacing", spacing_mm, "mm")->check(CLI::Range(0.05, 2.0));
+  if (const auto status = dubsar::bench::ends_with(app, argc, argv)) {
+    return *status;
+  }
   Tally total;
   for (std::uint64_t seed = first_seed; seed < first_seed + seeds; ++seed) {
     for (const Case& c : cases()) {

@@ -13,6 +13,7 @@
 #include "analysis/integral_invariants.h"
 #include "analysis/surface_fields.h"
 #include "bench/support/cut_heights.h"
+#include "bench/support/options.h"
 #include "bench/support/true_surface.h"
 #include "core/stage_times.h"
 #include "core/tablet_frame.h"
@@ -214,6 +215,8 @@ int main(int argc, char** argv) {
       ->check(CLI::IsMember({"half", "obverse"}));
   app.add_flag("--brief", options.brief);
   app.add_option("--pictures", options.pictures, "a folder: the fields as PLY and PNG");
-  CLI11_PARSE(app, argc, argv);
+  if (const auto status = dubsar::bench::ends_with(app, argc, argv)) {
+    return *status;
+  }
   return run(options);
 }

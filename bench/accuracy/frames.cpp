@@ -20,6 +20,7 @@
 #include "acquisition/swept_light.h"
 #include "acquisition/triangulate.h"
 #include "bench/support/asked.h"
+#include "bench/support/options.h"
 #include "bench/support/rig_tablet.h"
 #include "core/stage_times.h"
 #include "sim/frame_renderer.h"
@@ -363,7 +364,9 @@ int run(int argc, char** argv) {
   app.add_option("--f-number", f_number);
   app.add_option("--laser-sigma", sigma_mm, "Of the sheet, mm");
   app.add_option("--contrast", contrasts);
-  CLI11_PARSE(app, argc, argv);
+  if (const auto status = dubsar::bench::ends_with(app, argc, argv)) {
+    return *status;
+  }
   Asked asked;
   for (const bool written : {false, true}) {
     Result<std::unique_ptr<RigTablet>> clay = rig_tablet(written, seed);

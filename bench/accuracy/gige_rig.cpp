@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "acquisition/device_uri.h"
+#include "bench/support/options.h"
 #include "bench/support/rig_tablet.h"
 #include "build_paths.h"
 #include "drivers/loader.h"
@@ -97,7 +98,9 @@ int run(int argc, char** argv) {
   app.add_option("--seed", seed, "Of the tablet");
   app.add_option("--method", plan.method, "Of finding the stripe")
       ->check(CLI::IsMember({"adaptive", "steger", "gaussian", "centroid"}));
-  CLI11_PARSE(app, argc, argv);
+  if (const auto status = dubsar::bench::ends_with(app, argc, argv)) {
+    return *status;
+  }
   std::string why;
   test::PeerProcess* const stage = test::enter_emulated_machine(argv, why);
   if (stage == nullptr) {

@@ -10,6 +10,7 @@
 // (bench/support/link_stitch.h). Columns: non-manifold edges and vertices, faces that are turned
 // against a neighbour, parts, boundary, pairs of faces that cut each other, faces with an angle below 10°.
 #include "bench/accuracy/meshers.h"
+#include "bench/support/options.h"
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -260,7 +261,9 @@ int main(int argc, char** argv) {
   sim->add_option("--width", args.width_mm);
   auto* real = app.add_subcommand("bunny");
   real->add_option("folder", folder)->required()->check(CLI::ExistingDirectory);
-  CLI11_PARSE(app, argc, argv);
+  if (const auto status = dubsar::bench::ends_with(app, argc, argv)) {
+    return *status;
+  }
   if (real->parsed()) {
     bunny(folder);
     return 0;

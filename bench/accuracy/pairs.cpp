@@ -17,6 +17,7 @@
 #include "bench/accuracy/pairs_dubsar.h"
 #include "bench/accuracy/pairs_simulated.h"
 #include "bench/accuracy/peers.h"
+#include "bench/support/options.h"
 #include "bench/support/pair_cases.h"
 #include "core/units.h"
 
@@ -43,7 +44,9 @@ int main(int argc, char** argv) {
   app.add_option("--seed", seed);
   app.add_flag("--peers", peers, "the other libraries as well, where they were found");
   app.add_flag("--verbose", verbose, "the pairs, and what failed");
-  CLI11_PARSE(app, argc, argv);
+  if (const auto status = dubsar::bench::ends_with(app, argc, argv)) {
+    return *status;
+  }
   if (simulated > 0) {
     bench::print_simulated_pairs(simulated, seed);
     return 0;

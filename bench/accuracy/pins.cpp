@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "bench/accuracy/pin_matches.h"
+#include "bench/support/options.h"
 #include "bench/support/pinned_scans.h"
 #include "bench/support/statistics.h"
 #include "bench/support/true_scans.h"
@@ -182,7 +183,9 @@ int main(int argc, char** argv) {
   app.add_option("--tip", arguments.tip_mm, "diameter of the tips, mm");
   app.add_flag("-v,--verbose", arguments.verbose, "each miss");
   app.add_option("--matching", arguments.matching, "tablets whose pins are matched, without scans of them");
-  CLI11_PARSE(app, argc, argv);
+  if (const auto status = dubsar::bench::ends_with(app, argc, argv)) {
+    return *status;
+  }
   Sums sums;
   ScanPairSums from_scans[2];
   for (std::uint64_t k = 0; k < arguments.tablets; ++k) {

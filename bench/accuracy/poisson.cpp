@@ -10,8 +10,8 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "analysis/cell_samples.h"
@@ -19,6 +19,7 @@
 #include "analysis/screened_poisson.h"
 #include "analysis/surface_nets.h"
 #include "analysis/vertex_geometry.h"
+#include "bench/support/options.h"
 #include "bench/support/pair_cases.h"
 #include "core/mesh_query.h"
 #include "core/parallel.h"
@@ -111,10 +112,15 @@ int run(const std::filesystem::path& conf, float cell_mm, float screening) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc < 2) {
-    std::fprintf(stderr, "dubsar-poisson FOLDER/bun.conf [cell mm [screening]]\n");
-    return 2;
+  std::string conf;
+  float cell_mm = 0.67F;
+  float screening = PoissonOptions{}.screening;
+  CLI::App app("Screened Poisson reconstruction of the Stanford bunny", "dubsar-poisson");
+  app.add_option("conf", conf, "FOLDER/bun.conf")->required()->check(CLI::ExistingFile);
+  app.add_option("cell", cell_mm, "mm")->check(CLI::Range(0.05F, 10.0F));
+  app.add_option("screening", screening)->check(CLI::NonNegativeNumber);
+  if (const auto status = dubsar::bench::ends_with(app, argc, argv)) {
+    return *status;
   }
-  return run(argv[1], argc > 2 ? std::strtof(argv[2], nullptr) : 0.67F,
-             argc > 3 ? std::strtof(argv[3], nullptr) : PoissonOptions{}.screening);
+  return run(conf, cell_mm, screening);
 }

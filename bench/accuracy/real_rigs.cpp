@@ -21,6 +21,7 @@
 #include "acquisition/stripe_points.h"
 #include "bench/accuracy/real_table.h"
 #include "bench/support/asked.h"
+#include "bench/support/options.h"
 #include "formats/gray_file.h"
 #include "formats/mesh_io.h"
 
@@ -313,7 +314,9 @@ int run(int argc, char** argv) {
   app.add_option("data", data);
   app.add_option("--pictures", pictures,
                  "Draw the stripes that were found into copies of the photographs, here");
-  CLI11_PARSE(app, argc, argv);
+  if (const auto status = dubsar::bench::ends_with(app, argc, argv)) {
+    return *status;
+  }
   if (!pictures.empty()) {
     fs::create_directories(pictures);
   }

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/support/options.h"
 #include "bench/support/pair_cases.h"
 #include "core/grid_noise.h"
 #include "planning/cleared_map.h"
@@ -129,7 +130,9 @@ int main(int argc, char** argv) {
   CLI::App app("predicted against actual clearing on real scans");
   app.add_option("--set", sets, "folder of range grids, and their published poses")->required();
   app.add_option("--unit-mm", mm_per_unit, "millimetres per unit of the files");
-  CLI11_PARSE(app, argc, argv);
+  if (const auto status = dubsar::bench::ends_with(app, argc, argv)) {
+    return *status;
+  }
   Shares each;
   Shares together;
   for (const auto& [folder, conf] : sets) {

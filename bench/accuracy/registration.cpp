@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "bench/accuracy/gauge.h"
+#include "bench/support/options.h"
 #include "bench/support/statistics.h"
 #include "bench/support/true_scans.h"
 #include "core/stage_times.h"
@@ -258,7 +259,9 @@ int main(int argc, char** argv) {
   app.add_flag("-v,--verbose", arguments.verbose, "each scan");
   app.add_flag("--at-truth", arguments.at_truth,
                "also judge the true poses and list every pose that pairs are found in");
-  CLI11_PARSE(app, argc, argv);
+  if (const auto status = dubsar::bench::ends_with(app, argc, argv)) {
+    return *status;
+  }
   Sums sums;
   for (std::uint64_t k = 0; k < arguments.tablets; ++k) {
     run(arguments, arguments.first_seed + k, sums);

@@ -25,6 +25,7 @@
 
 #include "bench/support/averaging_floor.h"
 #include "bench/support/mesh_score.h"
+#include "bench/support/options.h"
 #include "bench/support/statistics.h"
 #include "bench/support/true_scans.h"
 #include "core/mesh_query.h"
@@ -363,7 +364,9 @@ int main(int argc, char** argv) {
   auto* real = app.add_subcommand("bunny");
   real->add_option("folder", args.folder)->required()->check(CLI::ExistingDirectory);
   real->add_option("-o", args.out);
-  CLI11_PARSE(app, argc, argv);
+  if (const auto status = dubsar::bench::ends_with(app, argc, argv)) {
+    return *status;
+  }
   if (real->parsed()) {
     return bunny(args);
   }

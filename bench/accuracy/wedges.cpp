@@ -16,6 +16,7 @@
 #include "analysis/wedges.h"
 #include "bench/support/confidence_diagram.h"
 #include "bench/support/mesh_faults.h"
+#include "bench/support/options.h"
 #include "bench/support/other_tablet.h"
 #include "bench/support/true_scans.h"
 #include "bench/support/true_surface.h"
@@ -322,7 +323,9 @@ int main(int argc, char** argv) {
   app.add_flag("--faults", args.faults, "1 % of the faces deleted, 1 % doubled or flipped, loose scraps");
   app.add_flag("--evidence", args.evidence, "print what each candidate shows, and whether it is a wedge");
   app.add_flag("--verbose", args.verbose);
-  CLI11_PARSE(app, argc, argv);
+  if (const auto status = dubsar::bench::ends_with(app, argc, argv)) {
+    return *status;
+  }
   WedgeScore all;
   for (const std::string& folder : args.folders) {
     all.add(judge_folder(folder, args));

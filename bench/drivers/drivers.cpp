@@ -25,6 +25,7 @@
 #include <vector>
 
 #include "bench/drivers/processor_watch.h"
+#include "bench/support/options.h"
 #include "build_paths.h"
 #include "core/stage_times.h"
 #include "core/thread_priority.h"
@@ -363,24 +364,39 @@ void become_preloaded(char** words) {
   give_up("cannot start itself");
 }
 
+std::string is_size(const std::string& text) {
+  const std::size_t by = text.find('x');
+  const auto is_number = [](const std::string& digits) {
+    return !digits.empty() && digits.size() < 6 && digits.find_first_not_of("0123456789") == digits.npos;
+  };
+  const bool fits = by != text.npos && is_number(text.substr(0, by)) && is_number(text.substr(by + 1));
+  return fits ? std::string() : "'" + text + "' is no WIDTHxHEIGHT";
+}
+
 }  // namespace
 
 int main(int count, char** words) {
-  const std::string what = count > 1 ? words[1] : "";
-  const std::string scheme = count > 2 ? words[2] : "";
-  if ((what != "frames" && what != "unplug") ||
-      (scheme != "v4l2" && scheme != "aravis" && scheme != "usb_stage")) {
-    std::fputs(
-        "dubsar-drivers frames|unplug v4l2|aravis|usb_stage [N] [RATE] [WIDTHxHEIGHT] [OPTION=VALUE...]\n",
-        stderr);
-    return 2;
+  std::string what;
+  std::string scheme;
+  std::uint64_t asked = 0;
+  int rate_hz = 400;
+  std::string size = "640x480";
+  Words own;
+  CLI::App app("The drivers of devices against the emulated ones of the tests", "dubsar-drivers");
+  app.add_option("what", what)->required()->check(CLI::IsMember({"frames", "unplug"}));
+  app.add_option("scheme", scheme)->required()->check(CLI::IsMember({"v4l2", "aravis", "usb_stage"}));
+  app.add_option("count", asked, "frames or positions (100000), or pulls (100)")
+      ->check(CLI::Range(1, 1000000000));
+  app.add_option("rate", rate_hz, "Hz")->check(CLI::Range(1, 100000));
+  app.add_option("size", size, "WIDTHxHEIGHT")->check(CLI::Validator(is_size, ""));
+  app.add_option("options", own, "OPTION=VALUE of the driver");
+  if (const auto status = dubsar::bench::ends_with(app, count, words)) {
+    return *status;
   }
-  const std::uint64_t n = count > 3 ? std::strtoull(words[3], nullptr, 10) : what == "frames" ? 100000 : 100;
-  const std::string rate = count > 4 ? words[4] : "400";
-  const std::string size = count > 5 ? words[5] : "640x480";
+  const std::uint64_t n = asked > 0 ? asked : what == "frames" ? 100000 : 100;
+  const std::string rate = std::to_string(rate_hz);
   Options options;
-  for (int k = 6; k < count; ++k) {
-    const std::string word = words[k];
+  for (const std::string& word : own) {
     const std::size_t sign = word.find('=');
     options.emplace_back(word.substr(0, sign), sign == word.npos ? "1" : word.substr(sign + 1));
   }

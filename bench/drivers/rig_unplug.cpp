@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "acquisition/device_uri.h"
+#include "bench/support/options.h"
 #include "build_paths.h"
 #include "core/mesh_query.h"
 #include "drivers/loader.h"
@@ -134,7 +135,9 @@ int run(int argc, char** argv) {
   app.add_option("--trials", trials)->check(CLI::Range(1, 100000));
   app.add_option("--seed", seed);
   app.add_option("--camera", which)->check(CLI::IsMember({"gige", "v4l2"}));
-  CLI11_PARSE(app, argc, argv);
+  if (const auto status = dubsar::bench::ends_with(app, argc, argv)) {
+    return *status;
+  }
   std::string why;
   test::PeerProcess* const stage = test::enter_emulated_machine(argv, why);
   if (stage == nullptr) {

@@ -11,6 +11,7 @@
 #include <cstdio>
 #include <map>
 
+#include "bench/support/options.h"
 #include "core/random.h"
 #include "tests/station/support/output_trial.h"
 #include "tests/station/support/storage_trial.h"
@@ -125,7 +126,9 @@ int run(int argc, char** argv) {
   app.add_option("--stride", stride, "with --refuse: every so many calls")->check(CLI::PositiveNumber);
   app.add_flag("--outputs", outputs, "verbs that write files and no session");
   app.add_option("--verb", names, "these verbs alone");
-  CLI11_PARSE(app, argc, argv);
+  if (const auto status = dubsar::bench::ends_with(app, argc, argv)) {
+    return *status;
+  }
 
   const test::TemporaryFolder folder;
   Tally sum;

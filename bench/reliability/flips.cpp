@@ -13,6 +13,7 @@
 
 #include "acquisition/session_log.h"
 #include "acquisition/session_store.h"
+#include "bench/support/options.h"
 #include "formats/self_checked.h"
 #include "tests/station/support/byte_flips.h"
 #include "tests/station/support/command.h"
@@ -113,7 +114,9 @@ int run(int argc, char** argv) {
   std::uint64_t seed = 1;
   app.add_option("--per-file", per_file, "bytes tried of each file")->check(CLI::Range(1, 1 << 30));
   app.add_option("--seed", seed);
-  CLI11_PARSE(app, argc, argv);
+  if (const auto status = dubsar::bench::ends_with(app, argc, argv)) {
+    return *status;
+  }
 
   const test::TemporaryFolder folder;
   const fs::path session = folder.path() / "session";

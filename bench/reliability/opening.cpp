@@ -13,6 +13,7 @@
 #include <cstdio>
 
 #include "acquisition/session_store.h"
+#include "bench/support/options.h"
 #include "core/random.h"
 #include "core/stage_times.h"
 #include "tests/support/temporary_folder.h"
@@ -56,7 +57,9 @@ int run(int argc, char** argv) {
   int samples = 1000000;
   app.add_option("--scans", scans);
   app.add_option("--samples", samples, "of each scan");
-  CLI11_PARSE(app, argc, argv);
+  if (const auto status = dubsar::bench::ends_with(app, argc, argv)) {
+    return *status;
+  }
 
   const test::TemporaryFolder temporary;
   const fs::path folder = temporary.path() / "session";

@@ -23,6 +23,7 @@
 #include <string_view>
 #include <vector>
 
+#include "bench/support/options.h"
 #include "core/heap.h"
 #include "station/engine.h"
 #include "tests/support/temporary_folder.h"
@@ -92,7 +93,9 @@ int run(int argc, char** argv) {
   app.add_option("--scans", scans, "of each tablet at most");
   app.add_option("--size", size, "of a tablet, mm");
   app.add_option("--spacing", spacing_mm, "mm");
-  CLI11_PARSE(app, argc, argv);
+  if (const auto status = dubsar::bench::ends_with(app, argc, argv)) {
+    return *status;
+  }
 
   std::vector<double> resident;
   std::vector<double> own;

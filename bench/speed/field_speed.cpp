@@ -9,15 +9,17 @@
 #include <tbb/global_control.h>
 #include <tbb/info.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
-#include <cstdlib>
 #include <iterator>
 #include <map>
 #include <string>
+#include <vector>
 
 #include "analysis/integral_invariants.h"
 #include "analysis/surface_fields.h"
+#include "bench/support/options.h"
 #include "bench/support/statistics.h"
 #include "core/stage_times.h"
 #include "sim/tablet.h"
@@ -104,17 +106,20 @@ int time_case(const Case& c) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  std::vector<int> wanted;
+  CLI::App app("Seconds by stage of the surface fields", "dubsar-field-speed");
+  app.add_option("case", wanted, "which of the three; all without")
+      ->check(CLI::Range(0, static_cast<int>(std::size(kCases)) - 1));
+  if (const auto status = dubsar::bench::ends_with(app, argc, argv)) {
+    return *status;
+  }
   std::printf(
       "Other programs at 6.9 million vertices, one core: curvature 2.66 s (trimesh2), ambient occlusion "
       "125.7 s (Embree, 64 rays).\nPoisson reconstruction of depth 8 at 1.6 million: 6.5 s (PoissonRecon); "
       "closest points 2.6 us each (Embree).\n");
   int status = 0;
   for (int i = 0; i < static_cast<int>(std::size(kCases)); ++i) {
-    bool wanted = argc < 2;
-    for (int k = 1; k < argc; ++k) {
-      wanted = wanted || std::atoi(argv[k]) == i;
-    }
-    if (wanted) {
+    if (wanted.empty() || std::ranges::find(wanted, i) != wanted.end()) {
       status = std::max(status, time_case(kCases[i]));
     }
   }

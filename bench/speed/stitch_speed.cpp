@@ -20,6 +20,7 @@
 #include <utility>
 #include <vector>
 
+#include "bench/support/options.h"
 #include "bench/support/simulated_views.h"
 #include "bench/support/statistics.h"
 #include "core/heap.h"
@@ -186,7 +187,9 @@ int main(int argc, char** argv) {
   std::string folder;
   app.add_option("--write", folder, "no stitching: the scans into this folder, with their poses");
   app.add_flag("--adding", adding, "scan by scan instead, as while scanning");
-  CLI11_PARSE(app, argc, argv);
+  if (const auto status = dubsar::bench::ends_with(app, argc, argv)) {
+    return *status;
+  }
   std::printf("%d threads\n", tbb::info::default_concurrency());
   for (const double m : millions) {
     const int status = !folder.empty() ? write_files(m, scans, folder)

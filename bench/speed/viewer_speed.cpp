@@ -16,6 +16,7 @@
 #include <limits>
 #include <optional>
 
+#include "bench/support/options.h"
 #include "bench/support/statistics.h"
 #include "core/stage_times.h"
 #include "core/tablet_frame.h"
@@ -241,7 +242,9 @@ int main(int argc, char** argv) {
   CLI::App* picking = app.add_subcommand("pick", "faces by number, status 1 when one is wrong");
   double millions = 20;
   picking->add_option("--faces", millions, "millions of faces")->check(CLI::Range(0.1, 200.0));
-  CLI11_PARSE(app, argc, argv);
+  if (const auto status = dubsar::bench::ends_with(app, argc, argv)) {
+    return *status;
+  }
   std::optional<dubsar::test::Display> display;
   if (std::getenv("DISPLAY") == nullptr) {
     display.emplace("1920x1200x24");

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <cstdio>
+#include <optional>
+#include <string>
+
+/// How every bench reads its words.
+namespace dubsar::bench {
+
+/// A number with a point that is one: "nan" is neither below nor above any limit, and passes every range.
+inline void refuse_what_is_not_finite(CLI::App& app) {
+  static const CLI::Validator kFinite(
+      [](std::string& text) {
+        double value = 0;
+        return CLI::detail::lexical_cast(text, value) && std::isfinite(value) ? std::string()
+                                                                              : "'" + text + "' is no number";
+      },
+      "");
+  for (CLI::Option* option : app.get_options({})) {
+    if (option->get_type_name().find(CLI::detail::type_name<double>()) != std::string::npos) {
+      option->check(kFinite);
+    }
+  }
+  for (CLI::App* verb : app.get_subcommands({})) {
+    refuse_what_is_not_finite(*verb);
+  }
+}
+
+/// Reads the words. A status where the bench is to end with it at once: 0 when help was asked for, and 2,
+/// with one line, for wrong use.
+[[nodiscard]] inline std::optional<int> ends_with(CLI::App& app, int argc, const char* const* argv) {
+  refuse_what_is_not_finite(app);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& asked_for_help) {
+    return app.exit(asked_for_help);
+  } catch (const CLI::ParseError& bad) {
+    const std::string name = app.get_name().empty() ? std::string("bench") : app.get_name();
+    std::fprintf(stderr, "%s: %s; see --help\n", name.c_str(), bad.what());
+    return 2;
+  }
+  return std::nullopt;
+}
+
+}  // namespace dubsar::bench
