@@ -14,14 +14,19 @@ namespace {
 /// A unit that scans come in, against the millimetre that is wanted.
 struct Unit {
   double mm;
-  const char* numbers;  ///< what the smaller (or, under a millimetre, the larger) numbers look like
+  const char* looks;  ///< what the smaller (or, under a millimetre, the larger) numbers look like
+  const char* are;    ///< the same, of what may be so
   const char* mend;
 };
 constexpr std::array<Unit, 4> kUnits{
-    {{1000.0, "metres", "give its unit: --unit m for a folder, or `obj_info unit m` in its header"},
-     {25.4, "inches", "give its unit: --unit in for a folder, or `obj_info unit in` in its header"},
-     {10.0, "centimetres", "give its unit: --unit cm for a folder, or `obj_info unit cm` in its header"},
-     {0.001, "micrometres", "give its unit: --unit um for a folder, or `obj_info unit um` in its header"}}};
+    {{1000.0, " and look like metres", "are metres, that is the wrong unit",
+      "give its unit: --unit m for a folder, or `obj_info unit m` in its header"},
+     {25.4, " and look like inches", "are inches, that is the wrong unit",
+      "give its unit: --unit in for a folder, or `obj_info unit in` in its header"},
+     {10.0, " and look like centimetres", "are centimetres, that is the wrong unit",
+      "give its unit: --unit cm for a folder, or `obj_info unit cm` in its header"},
+     {0.001, " and look like micrometres", "are micrometres, that is the wrong unit",
+      "give its unit: --unit um for a folder, or `obj_info unit um` in its header"}}};
 
 /// One scanner keeps its spacing; what it sees of the object in one view varies.
 constexpr double kSpacingWithin = 1.3;
@@ -33,8 +38,9 @@ bool near(double ratio, double factor, double within) {
 
 /// How many times smaller (below 1: larger) a scan is when read as millimetres, rounded for people.
 std::string times(double ratio) {
-  return std::to_string(std::lround(ratio >= 1.0 ? ratio : 1.0 / ratio)) + " times " +
-         (ratio >= 1.0 ? "smaller" : "larger");
+  return std::to_string(std::lround(ratio >= 1.0 ? ratio : 1.0 / ratio)) +
+         (ratio >= 1.0 ? " times smaller than the scans before it"
+                       : " times larger than the scans before it");
 }
 
 std::optional<Unit> unit_of(double smaller_by, double within) {
@@ -74,8 +80,8 @@ std::string impossible_size(const ScanSize& scan, double least_mm, double most_m
                                         : "--unit um in place of m");
   char across[32];
   std::snprintf(across, sizeof across, "%.3g", scan.scale_mm);
-  return std::string("it would be ") + across + " mm across: its unit is " + times + " times " +
-         (is_small ? "larger" : "smaller") + " than was said; give " + instead +
+  return std::string("it would be ") + across + " mm across: its unit is " + times +
+         (is_small ? " times larger than was said; give " : " times smaller than was said; give ") + instead +
          " (in a file's header: `obj_info unit`)";
 }
 
@@ -87,13 +93,12 @@ std::string other_unit(const ScanSize& scan, const ScanSize& before) {
   const double by_size = before.scale_mm / scan.scale_mm;
   const double by_spacing =
       scan.spacing_mm > 0 && before.spacing_mm > 0 ? before.spacing_mm / scan.spacing_mm : by_size;
-  const std::string what =
-      "it is " + times(by_size) + " than the scans before it: its numbers are in another unit";
+  const std::string what = "by its numbers it is " + times(by_size) + ": they are in another unit";
   std::optional<Unit> unit = unit_of(by_spacing, kSpacingWithin);
   if (!unit) {
     unit = unit_of(by_size, kSizeWithin);
   }
-  return unit ? what + " and look like " + unit->numbers + "; " + unit->mend
+  return unit ? what + unit->looks + "; " + unit->mend
               : what + "; give the right --unit, or export it in millimetres";
 }
 
@@ -103,18 +108,13 @@ std::string perhaps_other_unit(const ScanSize& scan, const ScanSize& before) {
   }
   const double by_size = before.scale_mm / scan.scale_mm;
   const double by_spacing = before.spacing_mm / scan.spacing_mm;
+  const std::string what = "by its numbers it is about " + times(by_size);
   if (const auto unit = unit_of(by_spacing, kSpacingWithin); unit && near(by_size, unit->mm, kSizeWithin)) {
-    return "it is about " + times(by_size) +
-           " than the scans before it, in size and in spacing: if its numbers "
-           "are " +
-           unit->numbers + ", that is the wrong unit; " + unit->mend;
+    return what + ", in size and in spacing: if they " + unit->are + "; " + unit->mend;
   }
   if (const auto unit = unit_of_others(by_spacing, kSpacingWithin);
       unit && near(by_size, 1.0 / unit->mm, kSizeWithin)) {
-    return "it is about " + times(by_size) +
-           " than the scans before it, in size and in spacing: if their "
-           "numbers are " +
-           unit->numbers + ", that is the wrong unit; " + unit->mend;
+    return what + ", in size and in spacing: if those of the others " + unit->are + "; " + unit->mend;
   }
   return {};
 }

@@ -43,7 +43,7 @@ Status Camera::connect() {
   if (!model_.empty() && (model != model_ || serial != serial_)) {
     g_clear_object(&camera_);
     return fail(ErrorKind::kDevice, "another camera is there now: " + model + " " + serial, id_,
-                "plug " + model_ + " " + serial_ + " in again");
+                "plug in again: " + model_ + " " + serial_);
   }
   model_ = model;
   serial_ = serial;

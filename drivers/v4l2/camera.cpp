@@ -118,7 +118,7 @@ Status Camera::find_again() {
     if (node->card() != card_ || (serial_.empty() ? node->bus() != bus_ : serial != serial_)) {
       if (k == 0) {
         first = {ErrorKind::kDevice, "another camera is there now: " + node->card(), path_,
-                 "plug " + card_ + " in again"};
+                 "plug in again: " + card_};
       }
       continue;
     }

@@ -31,7 +31,8 @@ TEST(Manifold, MakesSomethingSoundOfAnyFaces) {
     Mesh mesh;
     constexpr std::uint32_t kVertices = 12;
     for (std::uint32_t v = 0; v < kVertices; ++v) {
-      mesh.positions.push_back({random.normal(), random.normal(), random.normal()});
+      const auto draw = [&] { return static_cast<float>(random.normal()); };
+      mesh.positions.push_back({draw(), draw(), draw()});
     }
     for (int f = 0; f < 40; ++f) {
       mesh.faces.push_back({static_cast<std::uint32_t>(random.below(kVertices)),

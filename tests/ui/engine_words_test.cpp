@@ -23,14 +23,15 @@ std::string joined(const std::string& source) {
   return std::regex_replace(source, std::regex("\"\\s*\\n\\s*\""), "");
 }
 
-/// The engine's sources, adjacent string literals joined.
+/// The sources of the engine and of its drivers, adjacent string literals joined.
 std::string words_of_the_engine() {
   std::string all;
-  for (const char* folder : {"station", "registration", "planning", "triangulation", "archive", "analysis",
-                             "acquisition", "formats"}) {
+  for (const char* folder :
+       {"station", "registration", "planning", "triangulation", "archive", "analysis", "acquisition",
+        "formats", "drivers", "drivers/v4l2", "drivers/aravis", "drivers/usb_stage", "drivers/replay"}) {
     for (const auto& entry :
          std::filesystem::directory_iterator(std::filesystem::path(DUBSAR_SOURCE_DIR) / folder)) {
-      if (entry.path().extension() == ".cpp") {
+      if (entry.path().extension() == ".cpp" || entry.path().extension() == ".h") {
         std::ifstream in(entry.path());
         all.append(std::istreambuf_iterator<char>(in), {});
       }
@@ -66,17 +67,10 @@ std::vector<std::string> pieces_of(const std::string& sentence) {
   return out;
 }
 
-/// In the order in which they are replaced.
-std::vector<EnginePhrase> all_phrases() {
-  std::vector<EnginePhrase> out(engine_phrases().begin(), engine_phrases().end());
-  out.insert(out.end(), engine_remarks().begin(), engine_remarks().end());
-  return out;
-}
-
 TEST(EngineWords, EveryPhraseIsStillSaidByTheEngine) {
   const std::string said = words_of_the_engine();
   ASSERT_GT(said.size(), 100000U);
-  for (const EnginePhrase& phrase : all_phrases()) {
+  for (const EnginePhrase& phrase : engine_sentences()) {
     std::string english = phrase.english;
     // Where to turn is put together of the face's name, where an arm goes likewise, and what a scan can do on
     // an overlap of a word.
@@ -194,7 +188,7 @@ TEST(EngineWords, AdviceOnPinsIsGerman) {
   EXPECT_EQ(
       translated("a pin at the bottom edge stands too close to pin 4 (0.8 mm): move it to the right edge",
                  Language::kGerman),
-      "eine Nadel am unteren Rand steht zu nah an Nadel 4 (0.8 mm): sie versetzen zum rechten Rand");
+      "eine Nadel am unteren Rand steht zu nah an Nadel 4 (0,8 mm): sie versetzen zum rechten Rand");
 }
 
 /// A file's name is left as it is.
@@ -219,12 +213,14 @@ TEST(EngineWords, WhoSetsAScanAsideSaysItInOneLanguage) {
 }
 
 TEST(EngineWords, NobodyInTheWindowIsToldToGiveACommand) {
-  for (const char* file : {"station/engine_misses.cpp", "station/engine_motion.cpp", "station/signing.cpp"}) {
+  for (const char* file : {"station/engine_misses.cpp", "station/engine_motion.cpp", "station/signing.cpp",
+                           "registration/unit_check.cpp", "acquisition/rig_device.cpp",
+                           "drivers/v4l2/node.cpp", "drivers/usb_stage/usb_link.cpp"}) {
     for (const std::string& sentence : sentences_in(file)) {
       for (const Language language : {Language::kEnglish, Language::kGerman}) {
         const std::string shown = translated(sentence, language);
         for (const char* of_commands :
-             {"command again", "session restore", "session drop", "--", "run dubsar"}) {
+             {"command again", "session restore", "session drop", "--", "run dubsar", "dubsar drivers"}) {
           EXPECT_EQ(shown.find(of_commands), std::string::npos) << file << ": " << shown;
         }
       }
@@ -233,7 +229,7 @@ TEST(EngineWords, NobodyInTheWindowIsToldToGiveACommand) {
 }
 
 TEST(EngineWords, NoPhraseHidesALongerOneBehindIt) {
-  const std::vector<EnginePhrase> phrases = all_phrases();
+  const std::vector<EnginePhrase>& phrases = engine_sentences();
   for (std::size_t a = 0; a < phrases.size(); ++a) {
     for (std::size_t b = a + 1; b < phrases.size(); ++b) {
       EXPECT_EQ(std::string(phrases[b].english).find(phrases[a].english), std::string::npos)

@@ -179,7 +179,7 @@ TEST(Statement, WrongLengthsAreSaidBeforeTheSignature) {
     EXPECT_TRUE(s.may_sign);
     EXPECT_THAT(s.detail, HasSubstr("Scan 4: against the other scans it is 1.2 % too large"));
     EXPECT_THAT(statement_of(state, true, Language::kGerman).detail,
-                HasSubstr("Scan 4: gegen die anderen Scans ist er 1.2 % zu groß"));
+                HasSubstr("Scan 4: gegen die anderen Scans ist er 1,2 % zu groß"));
   }
   EXPECT_EQ(statement_of(state, true, Language::kEnglish).headline,
             "Conclusive, but lengths of a scan are off");

@@ -268,7 +268,7 @@ void CalibrationDialog::draw(UiContext& ui, const LiveState& state) {
     }
   } else if (state.error) {
     ui.facts.insert("calibration-refused");
-    coloured_text(ui.colours.red, translated(state.error->line(), ui.preferences.language).c_str());
+    coloured_text(ui.colours.red, translated(*state.error, ui.preferences.language).c_str());
   } else {
     if (state.notice.starts_with("kept: ")) {
       ui.facts.insert("calibration-kept");

@@ -306,7 +306,8 @@ void OperatorScreen::draw_model(UiContext& ui, ImVec2 size, bool asks_for_places
   draw->AddText(ui.fonts.small, ui.fonts.small->FontSize, {origin.x + ui.px(0.5F), origin.y + ui.px(0.3F)},
                 packed(ui.colours.faint), ui.text(Text::kModel));
   if (state_.red_map && !state_.red_map->conclusive) {
-    const std::string red = filled(ui.text(Text::kRedArea), area_words(red_mm2(*state_.red_map)));
+    const std::string red =
+        filled(ui.text(Text::kRedArea), area_words(red_mm2(*state_.red_map), ui.preferences.language));
     const float above = asks_for_places ? ui.px(3.5F) : 0.0F;  // the button
     draw->AddText({origin.x + ui.px(0.5F), end.y - ui.px(1.6F) - above}, packed(ui.colours.red), red.c_str());
   }

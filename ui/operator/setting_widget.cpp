@@ -70,13 +70,14 @@ bool setting_widget(UiContext& ui, const std::string& name, const SettingInfo& s
     changed = choose_one(ui, name, choices, value);
   } else {
     if (setting.range && setting.range->second < 1e9) {
-      label += fmt::format("  {:g} - {:g}", setting.range->first, setting.range->second);
+      label += decimal(fmt::format("  {:g} - {:g}", setting.range->first, setting.range->second),
+                       ui.preferences.language);
     }
     changed = text_line(ui, name.c_str(), label.c_str(), value);
   }
   if (!setting.help.empty()) {
     ImGui::PushFont(ui.fonts.small);
-    coloured_text(ui.colours.faint, setting.help.c_str());
+    coloured_text(ui.colours.faint, translated(setting.help, ui.preferences.language).c_str());
     ImGui::PopFont();
   }
   return changed;

@@ -56,12 +56,13 @@ void OperatorScreen::draw_left(UiContext& ui, ImVec2 size) {
     ImGui::TextUnformatted(ui.text(kFaceTexts[k]));
     ImGui::PushFont(ui.fonts.small);
     std::string note = !known    ? ui.text(Text::kNoArea)
-                       : red > 0 ? filled(ui.text(Text::kRedArea), area_words(red))
+                       : red > 0 ? filled(ui.text(Text::kRedArea), area_words(red, ui.preferences.language))
                        : lacks   ? ui.text(Text::kRedRim)
                        : !whole  ? ui.text(Text::kNoRedSoFar)
                                  : std::string();
     if (excused > 0.05) {
-      note += (note.empty() ? "" : ", ") + filled(ui.text(Text::kExcused), area_words(excused));
+      note += (note.empty() ? "" : ", ") +
+              filled(ui.text(Text::kExcused), area_words(excused, ui.preferences.language));
     }
     if (!note.empty()) {
       // Beside the name where it fits.

@@ -118,7 +118,7 @@ void say_still(Statement& out, const LiveState& state, bool has_device, Language
   if (state.error) {
     out.tone = Tone::kBad;
     out.headline = text_of(Text::kStopped, language);
-    out.detail = translated(state.error->line(), language);
+    out.detail = translated(*state.error, language);
     out.scan_label = out.may_next ? Text::kNextTablet : Text::kGoOn;
     out.may_sign = conclusive && !state.signed_off;
   } else if (!has_device) {
@@ -145,9 +145,10 @@ void say_still(Statement& out, const LiveState& state, bool has_device, Language
     out.tone = warned ? Tone::kAsk : Tone::kGood;
     out.may_sign = true;
   } else {
-    out.headline = state.red_map && !state.red_map->conclusive
-                       ? filled(text_of(Text::kStillRed, language), area_words(red_mm2(*state.red_map)))
-                       : filled(text_of(Text::kStoredScans, language), state.scans.size());
+    out.headline =
+        state.red_map && !state.red_map->conclusive
+            ? filled(text_of(Text::kStillRed, language), area_words(red_mm2(*state.red_map), language))
+            : filled(text_of(Text::kStoredScans, language), state.scans.size());
     out.tone = Tone::kAsk;
     out.scan_label = Text::kGoOn;
     // As incomplete, with the reason.
@@ -172,8 +173,8 @@ std::string scan_warning(const LiveScan& scan, Language language) {
   return filled(text_of(Text::kScanSays, language), scan.id, translated(scan.pose->warning, language));
 }
 
-std::string area_words(double mm2) {
-  return mm2 < 0.05 ? "< 0.1" : fmt::format("{:.1f}", mm2);
+std::string area_words(double mm2, Language language) {
+  return mm2 < 0.05 ? decimal("< 0.1", language) : decimal(mm2, 1, language);
 }
 
 double red_mm2(const RedMap& map) {

@@ -35,7 +35,7 @@ struct Statement {
 [[nodiscard]] std::string scan_warning(const LiveScan& scan, Language language);
 
 /// "0.5"; "< 0.1" where rounding would leave nothing of it.
-[[nodiscard]] std::string area_words(double mm2);
+[[nodiscard]] std::string area_words(double mm2, Language language);
 /// mm² that are red, and of one face of it.
 [[nodiscard]] double red_mm2(const RedMap& map);
 [[nodiscard]] double face_mm2(const RedMap& map, Face face, RegionState state);

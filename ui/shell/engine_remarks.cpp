@@ -7,7 +7,6 @@ namespace dubsar::ui {
 
 namespace {
 
-/// Where one phrase holds another it stands first.
 constexpr EnginePhrase kRemarks[] = {
     // what the reading of a scan remarks
     {"its header says a spacing of ", "sein Kopf nennt einen Punktabstand von "},
@@ -32,6 +31,43 @@ constexpr EnginePhrase kRemarks[] = {
      ", und kein Umriss entscheidet es: gelesen ist er entlang "},
     {"; write one of them in its header: ", "; eins davon in seinen Kopf schreiben: "},
     {" in its header", " in seinen Kopf"},
+    // what its numbers are
+    {"by its numbers it is about ", "nach seinen Zahlen ist er ungefähr "},
+    {"by its numbers it is ", "nach seinen Zahlen ist er "},
+    {" times smaller than the scans before it", "-mal kleiner als die Scans davor"},
+    {" times larger than the scans before it", "-mal größer als die Scans davor"},
+    {": they are in another unit", ": sie sind in einer anderen Einheit"},
+    {" and look like metres", " und sehen nach Metern aus"},
+    {"are metres, that is the wrong unit", "Meter sind, ist das die falsche Einheit"},
+    {" and look like inches", " und sehen nach Zoll aus"},
+    {"are inches, that is the wrong unit", "Zoll sind, ist das die falsche Einheit"},
+    {" and look like centimetres", " und sehen nach Zentimetern aus"},
+    {"are centimetres, that is the wrong unit", "Zentimeter sind, ist das die falsche Einheit"},
+    {" and look like micrometres", " und sehen nach Mikrometern aus"},
+    {"are micrometres, that is the wrong unit", "Mikrometer sind, ist das die falsche Einheit"},
+    {", in size and in spacing: if they ", ", an Größe und Abstand: wenn sie "},
+    {", in size and in spacing: if those of the others ", ", an Größe und Abstand: wenn die der anderen "},
+    {"give its unit: --unit m for a folder, or `obj_info unit m` in its header",
+     "seine Einheit angeben: ?unit=m hinter dem Ordner, oder `obj_info unit m` in seinem Kopf"},
+    {"give its unit: --unit in for a folder, or `obj_info unit in` in its header",
+     "seine Einheit angeben: ?unit=in hinter dem Ordner, oder `obj_info unit in` in seinem Kopf"},
+    {"give its unit: --unit cm for a folder, or `obj_info unit cm` in its header",
+     "seine Einheit angeben: ?unit=cm hinter dem Ordner, oder `obj_info unit cm` in seinem Kopf"},
+    {"give its unit: --unit um for a folder, or `obj_info unit um` in its header",
+     "seine Einheit angeben: ?unit=um hinter dem Ordner, oder `obj_info unit um` in seinem Kopf"},
+    {"give the right --unit, or export it in millimetres",
+     "die richtige ?unit= angeben, oder in Millimetern ausgeben"},
+    {"it would be ", "er wäre "},
+    {" mm across: its unit is ", " mm groß: seine Einheit ist "},
+    {" times larger than was said; give ", "-mal größer als angegeben; richtig wäre "},
+    {" times smaller than was said; give ", "-mal kleiner als angegeben; richtig wäre "},
+    {"--unit m (metres) in place of mm, or --unit mm in place of um",
+     "?unit=m (Meter) statt mm, oder ?unit=mm statt um"},
+    {"--unit m in place of um", "?unit=m statt um"},
+    {"--unit um (micrometres) in place of mm, or --unit mm in place of m",
+     "?unit=um (Mikrometer) statt mm, oder ?unit=mm statt m"},
+    {"--unit um in place of m", "?unit=um statt m"},
+    {" (in a file's header: `obj_info unit`)", " (im Kopf einer Datei: `obj_info unit`)"},
     // a mesh of others
     {"it lies ", "es liegt "},
     {" mm from the origin of its numbers, where places are good to ",

@@ -6,6 +6,8 @@
 #include <string>
 #include <string_view>
 
+#include "core/result.h"
+
 namespace dubsar::ui {
 
 enum class Language { kEnglish, kGerman };
@@ -305,5 +307,7 @@ enum class Text {
 /// What the engine says in English (where to turn the tablet, why a scan is unsure), as far as its phrases
 /// are known; the rest stays as it is.
 [[nodiscard]] std::string translated(const std::string& english, Language language);
+/// The line of an error; where it is stays as it is if that is a name.
+[[nodiscard]] std::string translated(const Error& error, Language language);
 
 }  // namespace dubsar::ui

@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright The Dubsar developers
 // Sentences of the engine in the words of the window.
+#include <algorithm>
+#include <functional>
 #include <regex>
 #include <string_view>
 #include <utility>
+#include <vector>
 
+#include "ui/shell/decimal_comma.h"
 #include "ui/shell/engine_words.h"
 #include "ui/shell/text_table.h"
 
@@ -26,6 +30,14 @@ constexpr std::pair<std::string_view, std::string_view> kInWindow[] = {
     {"sign it as it is with --incomplete REASON", "sign it as incomplete, with the reason"},
     {"see dubsar verify and bring back what is damaged", "bring back what is damaged"},
     {"dubsar mesh convert --unit m makes millimetres of them", "export it again in millimetres"},
+    {"dubsar drivers lists", "the list under Scanner shows"},
+    {"see dubsar drivers", "see the list under Scanner"},
+    {"give the right --unit", "give the right ?unit="},
+    {" for a folder, or `obj_info", " behind the folder, or `obj_info"},
+    {"--unit ", "?unit="},
+    {"make it: dubsar calibrate PICTURES --board BOARD --rig ", "make it under Calibrate, for "},
+    {"; measure the artefact first: dubsar calibrate --verify", "; measure the artefact first"},
+    {", then dubsar calibrate --verify", ", then verify it again"},
     {"sign with --incomplete REASON", "sign it as incomplete, with the reason"},
     {"sign it without --incomplete; --note takes a remark", "sign it as it is; a note takes a remark"},
 };
@@ -51,20 +63,44 @@ std::string with_german_scans(const std::string& text) {
 
 }  // namespace
 
+const std::vector<EnginePhrase>& engine_sentences() {
+  static const std::vector<EnginePhrase> kSorted = [] {
+    std::vector<EnginePhrase> all;
+    for (const auto& table : {engine_phrases(), engine_calibration(), engine_remarks(), engine_cameras(),
+                              engine_controllers(), engine_rigs()}) {
+      all.insert(all.end(), table.begin(), table.end());
+    }
+    std::ranges::stable_sort(all, std::ranges::greater(),
+                             [](const EnginePhrase& one) { return std::string_view(one.english).size(); });
+    return all;
+  }();
+  return kSorted;
+}
+
 std::string translated(const std::string& english, Language language) {
   std::string out = english;
   if (language == Language::kEnglish) {
     replace_each(out, kInWindow);
     return out;
   }
-  for (const auto& [from, to] : engine_stages()) {
-    if (english == from) {
-      return to;
+  for (const auto& whole : {engine_stages(), engine_settings()}) {
+    for (const auto& [from, to] : whole) {
+      if (english == from) {
+        return to;
+      }
     }
   }
-  replace_each(out, engine_phrases());
-  replace_each(out, engine_remarks());
-  return with_german_scans(out);
+  replace_each(out, engine_sentences());
+  return with_decimal_commas(with_german_scans(out));
+}
+
+std::string translated(const Error& error, Language language) {
+  // Where it is may be any file's or device's name.
+  const bool is_name = error.where.find_first_of("/:.") != std::string::npos;
+  const auto in_words = [language](const std::string& text) { return translated(text, language); };
+  return Error{error.kind, in_words(error.what), is_name ? error.where : in_words(error.where),
+               in_words(error.mend)}
+      .line();
 }
 
 }  // namespace dubsar::ui

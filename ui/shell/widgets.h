@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "ui/shell/decimal_comma.h"
 #include "ui/shell/frame_watch.h"
 #include "ui/shell/theme.h"
 #include "ui/shell/time_left.h"
@@ -75,10 +76,10 @@ bool one_of(UiContext& ui, const std::string& name, const std::vector<int>& ids,
 /// How far a job is with what it is at, and below how long that will take.
 void job_bar(UiContext& ui, TimeLeft& left, const std::string& stage, double fraction);
 void coloured_text(const Eigen::Vector4f& colour, const char* text);
-/// A text of the table with its gaps filled in.
+/// A text of the table with its gaps filled in; numbers that are marked so ({:.1Lf}) with a decimal comma.
 template <class... Arguments>
 [[nodiscard]] std::string filled(const char* format, const Arguments&... arguments) {
-  return fmt::vformat(format, fmt::make_format_args(arguments...));
+  return fmt::vformat(with_comma(), format, fmt::make_format_args(arguments...));
 }
 [[nodiscard]] ImU32 packed(const Eigen::Vector4f& colour, float alpha = 1.0F);
 /// "1 234 567"

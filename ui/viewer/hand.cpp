@@ -79,7 +79,8 @@ void draw_scale_bar(const UiContext& ui, const OrbitCamera& camera, ImVec2 origi
       draw->AddRect({from, y}, {to, y + height}, ink);
     }
   }
-  draw->AddText({x + px + ui.px(0.4F), y - ui.px(0.35F)}, ink, fmt::format("{:g} mm", length_mm).c_str());
+  draw->AddText({x + px + ui.px(0.4F), y - ui.px(0.35F)}, ink,
+                decimal(fmt::format("{:g} mm", length_mm), ui.preferences.language).c_str());
 }
 
 }  // namespace dubsar::ui

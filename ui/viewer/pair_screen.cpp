@@ -139,7 +139,7 @@ void PairScreen::draw_pane(UiContext& ui, Pane& pane, const char* name, ImVec2 s
   draw->AddRectFilled(origin, end, packed(ui.colours.text, 0.05F), 6);
   std::string words = pane.state.name;
   if (pane.surface.empty()) {
-    words = pane.state.error ? translated(pane.state.error->line(), ui.preferences.language)
+    words = pane.state.error ? translated(*pane.state.error, ui.preferences.language)
                              : std::string(ui.text(pane.prepared.waiting_text(pane.state)));
   } else {
     const OrbitCamera before = pane.camera;

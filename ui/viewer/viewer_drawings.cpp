@@ -102,7 +102,8 @@ void ViewerScreen::draw_tape(UiContext& ui, ImVec2 origin, ImVec2 size) const {
     const ImVec2 a = at(tape_[0].cast<double>());
     const ImVec2 b = at(tape_[1].cast<double>());
     draw->AddLine(a, b, ink, 2.5F);
-    const std::string words = fmt::format("{:.3f} mm", (tape_[1] - tape_[0]).norm());
+    const std::string words =
+        fmt::format("{} mm", decimal((tape_[1] - tape_[0]).norm(), 3, ui.preferences.language));
     const ImVec2 box = ImGui::CalcTextSize(words.c_str());
     const ImVec2 middle{0.5F * (a.x + b.x), 0.5F * (a.y + b.y) + ui.px(0.3F)};
     draw->AddRectFilled({middle.x - 4, middle.y - 2}, {middle.x + box.x + 4, middle.y + box.y + 2},
@@ -199,7 +200,8 @@ void ViewerScreen::draw_legend(UiContext& ui, ImVec2 origin, ImVec2 size) const 
   }
   for (int k = 0; k <= 4; ++k) {
     const float part = static_cast<float>(k) / 4;
-    const std::string words = fmt::format("{:.3g}", range.x() + part * (range.y() - range.x()));
+    const std::string words =
+        decimal(fmt::format("{:.3g}", range.x() + part * (range.y() - range.x())), ui.preferences.language);
     const ImVec2 box = ui.fonts.small->CalcTextSizeA(ui.fonts.small->FontSize, 1e4F, 0, words.c_str());
     draw->AddText(ui.fonts.small, ui.fonts.small->FontSize,
                   {at.x - box.x - ui.px(0.3F), at.y + (1 - part) * height - 0.5F * box.y},

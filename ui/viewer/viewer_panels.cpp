@@ -176,7 +176,7 @@ void ViewerScreen::draw_foot(UiContext& ui) {
   ImGui::PushFont(ui.fonts.small);
   if (state_.error && !surface_.empty()) {
     ui.facts.insert("error");
-    coloured_text(ui.colours.red, translated(state_.error->line(), ui.preferences.language).c_str());
+    coloured_text(ui.colours.red, translated(*state_.error, ui.preferences.language).c_str());
   }
   if (!picture_note_.empty()) {
     coloured_text(ui.colours.faint, picture_note_.c_str());
@@ -267,8 +267,8 @@ void ViewerScreen::draw_histogram(UiContext& ui) {
   ImGui::PlotHistogram("##bins", histogram_.bins.data(), static_cast<int>(kBins), 0, nullptr, 0, FLT_MAX,
                        {ImGui::GetContentRegionAvail().x, ui.px(3.5F)});
   // Below the ends of the bars, over which they could not be read.
-  ImGui::TextUnformatted(fmt::format("{:.2f}", histogram_.least).c_str());
-  const std::string most = fmt::format("{:.2f}", histogram_.most);
+  ImGui::TextUnformatted(decimal(histogram_.least, 2, ui.preferences.language).c_str());
+  const std::string most = decimal(histogram_.most, 2, ui.preferences.language);
   ImGui::SameLine(ImGui::GetContentRegionMax().x - ImGui::CalcTextSize(most.c_str()).x);
   ImGui::TextUnformatted(most.c_str());
 }
@@ -310,10 +310,10 @@ void ViewerScreen::draw_wedge_table(UiContext& ui, ImVec2 size) {
                                                  wedge.place.line, wedge.place.order)
                                          .c_str());
         ImGui::TableNextColumn();
-        ImGui::TextUnformatted(fmt::format("{:.2f}", wedge.depth_mm).c_str());
+        ImGui::TextUnformatted(decimal(wedge.depth_mm, 2, ui.preferences.language).c_str());
         ImGui::TableNextColumn();
         const auto leading = static_cast<std::size_t>(std::clamp(wedge.directional_edge, 0, 2));
-        ImGui::TextUnformatted(fmt::format("{:.2f}", wedge.edge_lengths_mm[leading]).c_str());
+        ImGui::TextUnformatted(decimal(wedge.edge_lengths_mm[leading], 2, ui.preferences.language).c_str());
       }
     }
     if (scroll_to_wedge_ && wedge_ >= 0) {

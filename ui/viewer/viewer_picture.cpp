@@ -78,7 +78,7 @@ void ViewerScreen::draw_picture_on(UiContext& ui) {
     const Status written = writing_.get();
     picture_kept_ = written.has_value();
     picture_note_ = written ? filled(ui.text(Text::kPictureKept), still_file_.string())
-                            : translated(written.error().line(), ui.preferences.language);
+                            : translated(written.error(), ui.preferences.language);
   }
   if (picture_kept_) {
     ui.facts.insert("picture-kept");

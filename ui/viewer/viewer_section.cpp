@@ -107,12 +107,13 @@ void ViewerScreen::draw_section(UiContext& ui, ImVec2 origin, ImVec2 size) const
     draw->AddText(ui.fonts.small, small, where, packed(colour), text.c_str());
   };
   words({low.x + ui.px(0.6F), low.y + ui.px(0.2F)}, ui.colours.text,
-        fmt::format("{:.3f} mm{}", section.length_mm,
+        fmt::format("{} mm{}", decimal(section.length_mm, 3, ui.preferences.language),
                     times > 1 ? "   " + filled(ui.text(Text::kSectionTimes), times) : std::string()));
   if (section.lowest_mm < 0) {
     const ImVec2 deep = at(section.lowest_along_mm, section.lowest_mm);
     draw->AddLine(at(section.lowest_along_mm, 0), deep, packed(ui.colours.red), 1.5F);
-    words({deep.x + 4, deep.y - 2}, ui.colours.red, fmt::format("{:.3f} mm", -section.lowest_mm));
+    words({deep.x + 4, deep.y - 2}, ui.colours.red,
+          fmt::format("{} mm", decimal(-section.lowest_mm, 3, ui.preferences.language)));
   }
 }
 

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+// What devices say, and registration of the units of what comes from them, in the words of the window.
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <regex>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "build_paths.h"
+#include "core/result.h"
+#include "registration/unit_check.h"
+#include "ui/shell/engine_words.h"
+#include "ui/shell/text_table.h"
+
+namespace dubsar::ui {
+namespace {
+
+/// A source without comments, adjacent string literals joined.
+std::string source_of(const std::string& file) {
+  std::ifstream in(std::filesystem::path(DUBSAR_SOURCE_DIR) / file);
+  const std::string all{std::istreambuf_iterator<char>(in), {}};
+  const std::string bare = std::regex_replace(all, std::regex("//[^\\n]*|#include[^\\n]*"), "");
+  return std::regex_replace(bare, std::regex("\"\\s*\\n\\s*\""), "");
+}
+
+/// The string literals of what a source refuses: within the statements that make an error.
+std::vector<std::string> refusals_in(const std::string& file) {
+  static const std::regex kMaker(
+      R"re((fail|bad_input|report|error_of|usb_error|told)\([^;]*;|\{ErrorKind::[^;]*;)re");
+  static const std::regex kLiteral(R"re("([^"\n]*)")re");
+  // A mend may hold a semicolon of its own.
+  const std::string source = std::regex_replace(source_of(file), std::regex("; (?=[a-z])"), "\x01 ");
+  std::vector<std::string> out;
+  for (std::sregex_iterator call(source.begin(), source.end(), kMaker), end; call != end; ++call) {
+    const std::string text = call->str();
+    for (std::sregex_iterator one(text.begin(), text.end(), kLiteral); one != end; ++one) {
+      out.push_back(std::regex_replace((*one)[1].str(), std::regex("\x01"), ";"));
+    }
+  }
+  return out;
+}
+
+TEST(DeviceWords, NoRefusalOfADeviceIsHalfGerman) {
+  // What stands between the parts of a sentence, or is one in both languages.
+  const std::set<std::string> no_sentence{" x ",    " to ",      ", from 0", "it has ",     " from ", " at ",
+                                          " bytes", ", camera ", "at most ", "laser plane", ", not "};
+  // Words that a German sentence does not have.
+  const std::regex english(
+      "\\b(and|the|is|it|its|see|not|with|does|that|this|ask|give|are|from|for|of|to|or|has)\\b");
+  int sentences = 0;
+  for (const char* file : {"drivers/v4l2/camera.cpp",
+                           "drivers/v4l2/camera_mode.cpp",
+                           "drivers/v4l2/controls.cpp",
+                           "drivers/v4l2/modes.cpp",
+                           "drivers/v4l2/node.cpp",
+                           "drivers/v4l2/region.cpp",
+                           "drivers/v4l2/stream.cpp",
+                           "drivers/v4l2/v4l2_driver.cpp",
+                           "drivers/aravis/aravis_driver.cpp",
+                           "drivers/aravis/camera.cpp",
+                           "drivers/aravis/camera_setup.cpp",
+                           "drivers/aravis/connection.cpp",
+                           "drivers/aravis/features.cpp",
+                           "drivers/aravis/glib.h",
+                           "drivers/aravis/profiles.cpp",
+                           "drivers/usb_stage/banner.cpp",
+                           "drivers/usb_stage/controller.cpp",
+                           "drivers/usb_stage/grbl_firmware.cpp",
+                           "drivers/usb_stage/guard.cpp",
+                           "drivers/usb_stage/horus_firmware.cpp",
+                           "drivers/usb_stage/tmcl_firmware.cpp",
+                           "drivers/usb_stage/usb_link.cpp",
+                           "drivers/usb_stage/usb_stage_driver.cpp",
+                           "drivers/replay/scan_files.cpp",
+                           "acquisition/range_source.cpp",
+                           "acquisition/fresh_frame.cpp",
+                           "acquisition/stripe_stream.cpp",
+                           "acquisition/stage_watch.cpp",
+                           "acquisition/rig_scan.cpp",
+                           "acquisition/rig_sweep.cpp"}) {
+    for (const std::string& sentence : refusals_in(file)) {
+      const bool has_words = std::regex_search(sentence, std::regex("[a-z]{2}.* | .*[a-z]{2}"));
+      const bool is_typed = sentence.starts_with("write ") && sentence.find(' ', 6) == std::string::npos;
+      if (!has_words || is_typed || no_sentence.contains(sentence)) {
+        continue;
+      }
+      ++sentences;
+      const std::string german = translated(sentence, Language::kGerman);
+      EXPECT_NE(german, sentence) << file;
+      EXPECT_FALSE(std::regex_search(german, english)) << file << ": " << german;
+    }
+  }
+  EXPECT_GT(sentences, 150);
+}
+
+TEST(DeviceWords, HelpOfSettingsIsGerman) {
+  std::string said;
+  for (const char* file :
+       {"drivers/v4l2/v4l2_driver.cpp", "drivers/v4l2/controls.cpp", "drivers/aravis/features.cpp",
+        "drivers/replay/replay_driver.cpp", "drivers/usb_stage/usb_stage_driver.cpp"}) {
+    said += source_of(file);
+  }
+  for (const EnginePhrase& help : engine_settings()) {
+    EXPECT_NE(said.find('"' + std::string(help.english) + '"'), std::string::npos) << help.english;
+    EXPECT_EQ(translated(help.english, Language::kGerman), help.german);
+  }
+}
+
+TEST(DeviceWords, AnErrorOfADeviceIsGermanAndItsNameStays) {
+  const Error gone{ErrorKind::kDevice, "the camera was unplugged or has stopped answering",
+                   "v4l2:/dev/the camera is gone 0.5 mm", "plug it in again, then go on"};
+  EXPECT_EQ(
+      translated(gone, Language::kGerman),
+      "v4l2:/dev/the camera is gone 0.5 mm: die Kamera ist abgesteckt oder antwortet nicht mehr; wieder "
+      "anstecken, dann weiter");
+  EXPECT_EQ(translated(gone, Language::kEnglish), gone.line());
+  const Error blocked{ErrorKind::kDevice, "the stage stands 3.125 mm short of its target", "2341:0043",
+                      "see what holds it up, then home it"};
+  EXPECT_EQ(translated(blocked, Language::kGerman),
+            "2341:0043: der Tisch steht, es fehlen 3,125 mm zum Ziel; nachsehen, was ihn aufhält, dann "
+            "Referenzfahrt");
+}
+
+TEST(DeviceWords, OtherUnitsAreSaidInGermanAndWithoutCommands) {
+  const ScanSize metres{.scale_mm = 0.05, .spacing_mm = 0.0001};
+  const ScanSize before{.scale_mm = 50, .spacing_mm = 0.1};
+  EXPECT_EQ(translated(other_unit(metres, before), Language::kGerman),
+            "nach seinen Zahlen ist er 1000-mal kleiner als die Scans davor: sie sind in einer anderen "
+            "Einheit und sehen nach Metern aus; seine Einheit angeben: ?unit=m hinter dem Ordner, oder "
+            "`obj_info unit m` in seinem Kopf");
+  EXPECT_EQ(translated(other_unit(metres, before), Language::kEnglish),
+            "by its numbers it is 1000 times smaller than the scans before it: they are in another unit and "
+            "look like metres; give its unit: ?unit=m behind the folder, or `obj_info unit m` in its header");
+  EXPECT_EQ(translated(impossible_size({.scale_mm = 0.0525, .spacing_mm = 0}, 2, 2000), Language::kGerman),
+            "er wäre 0,0525 mm groß: seine Einheit ist 1000-mal größer als angegeben; richtig wäre ?unit=m "
+            "(Meter) statt mm, oder ?unit=mm statt um (im Kopf einer Datei: `obj_info unit`)");
+  EXPECT_EQ(translated(perhaps_other_unit(metres, before), Language::kGerman),
+            "nach seinen Zahlen ist er ungefähr 1000-mal kleiner als die Scans davor, an Größe und Abstand: "
+            "wenn sie Meter sind, ist das die falsche Einheit; seine Einheit angeben: ?unit=m hinter dem "
+            "Ordner, oder `obj_info unit m` in seinem Kopf");
+}
+
+}  // namespace
+}  // namespace dubsar::ui
