@@ -41,6 +41,14 @@ std::string side_words(const UiContext& ui, const std::optional<Face>& side) {
   return side ? fmt::format("{} ", ui.text(kShortTexts[static_cast<std::size_t>(*side)])) : std::string();
 }
 
+/// How much of something, from 0 to 3.
+void part_slider(const UiContext& ui, Text text, float& value) {
+  constexpr float kMost = 3;
+  // ImGui writes its numbers with a point: the word for it is given instead.
+  const std::string word = decimal(static_cast<double>(value), 1, ui.preferences.language);
+  ImGui::SliderFloat(ui.text(text), &value, 0, kMost, word.c_str());
+}
+
 /// By the order of kWedgeFeatures.
 constexpr std::array<Text, kWedgeFeatures.size()> kFeatures{
     Text::kFeatureDepth, Text::kFeatureLength1,  Text::kFeatureLength2,  Text::kFeatureLength3,
@@ -57,10 +65,10 @@ void ViewerScreen::draw_light(UiContext& ui) {
   tick(ui, "occlusion", ui.text(Text::kOcclusion), look_.occlusion);
   tick(ui, "flat", ui.text(Text::kFlat), look_.flat);
   ImGui::SetNextItemWidth(ui.px(5));
-  ImGui::SliderFloat(ui.text(Text::kRadiance), &look_.radiance, 0, 3, "%.1f");
+  part_slider(ui, Text::kRadiance, look_.radiance);
   ui.target("radiance");
   ImGui::SetNextItemWidth(ui.px(5));
-  ImGui::SliderFloat(ui.text(Text::kDepthShading), &look_.depth_shading, 0, 3, "%.1f");
+  part_slider(ui, Text::kDepthShading, look_.depth_shading);
   ui.target("depth-shading");
   ImGui::PopFont();
 }
