@@ -22,7 +22,7 @@ constexpr std::size_t kLeastTiles = 4;
 constexpr double kLeastShare = 0.05;  ///< of the samples on which another scan says something
 constexpr double kLeastSheet = 0.1;   ///< of the scan's samples: what is apart and smaller is no second thing
 constexpr double kConfirmed = 0.2;    ///< of its samples agree somewhere, where it lies right
-constexpr double kLeastTurn_rad = 0.02;
+constexpr double kLeastTurnRad = 0.02;
 constexpr double kLeastSpacings = 3.0;  ///< a smaller shift is scan_motion.h's to find
 
 /// What the other scans say of parts of the one that was fitted to them.
@@ -183,7 +183,7 @@ std::optional<SecondBody> find_second_body(const ScanSurface& scan,
           [](const ModelFit&) { return false; }, options, job);
       for (const ModelFit& there : found.fits) {
         const RigidTransform& pose = there.model_from_scanner;
-        if (certain(there) && !same_pose(pose, fit.model_from_scanner, middle, kLeastTurn_rad,
+        if (certain(there) && !same_pose(pose, fit.model_from_scanner, middle, kLeastTurnRad,
                                          kLeastSpacings * scan.fine->spacing_mm)) {
           return SecondBody{(pose * fit.model_from_scanner.inverse()).angle_rad(),
                             (pose * middle - fit.model_from_scanner * middle).norm()};
