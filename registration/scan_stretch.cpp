@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <memory>
+#include <utility>
 
 #include "core/parallel.h"
 #include "registration/nearest_usable.h"
@@ -150,14 +152,13 @@ std::optional<ScanStretch> find_stretch(const ScanSurface& scan, std::span<const
       }
     }
   }
+  auto mended = std::make_unique<ScanSurface>();
+  mended->fine = at.taken_off(*scan.fine);
+  mended->medium = at.taken_off(*scan.medium);
+  mended->noise_mm = scan.noise_mm;
+  mended->scale_mm = scan.scale_mm;
   // What would make it fit is the opposite of what is wrong with it.
-  ScanStretch out{-at.stretch.x(), -at.stretch.y(), sigma, std::make_unique<ScanSurface>(),
-                  at.model_from_scanner};
-  out.mended->fine = at.taken_off(*scan.fine);
-  out.mended->medium = at.taken_off(*scan.medium);
-  out.mended->noise_mm = scan.noise_mm;
-  out.mended->scale_mm = scan.scale_mm;
-  return out;
+  return ScanStretch{-at.stretch.x(), -at.stretch.y(), sigma, std::move(mended), at.model_from_scanner};
 }
 
 bool ScanStretch::is_off() const {
