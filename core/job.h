@@ -20,13 +20,13 @@ class JobContext {
   JobContext(const JobContext&) = delete;
   JobContext& operator=(const JobContext&) = delete;
 
-  void cancel() noexcept { cancelled_.store(true, std::memory_order_relaxed); }
-  [[nodiscard]] bool cancelled() const noexcept { return cancelled_.load(std::memory_order_relaxed); }
+  void cancel() noexcept { cancelled_.store(true, std::memory_order_release); }
+  [[nodiscard]] bool cancelled() const noexcept { return cancelled_.load(std::memory_order_acquire); }
   /// The emergency stop: cancelled, and a device that the job drives is to stop at once, lasers off, whatever
   /// that does to its position. From where `cancel` may be called from.
   void halt() noexcept {
     halted_.store(true, std::memory_order_relaxed);
-    cancel();
+    cancel();  // releases it: whoever sees the job cancelled by this sees it halted, and stops nothing gently
   }
   [[nodiscard]] bool halted() const noexcept { return halted_.load(std::memory_order_relaxed); }
   /// fraction in [0, 1]. The sink is called on the caller's thread and must be thread-safe.
