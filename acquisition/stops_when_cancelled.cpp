@@ -47,9 +47,10 @@ void StopsWhenCancelled::watch(const std::stop_token& done) {
     if (done.stop_requested()) {
       return;
     }
+    const bool is_cancelled = job_.cancelled();  // before: a halt that comes between is not taken for less
     if (halted()) {
       halt_device();
-    } else if (job_.cancelled()) {
+    } else if (is_cancelled) {
       [[maybe_unused]] const Status said = device_.stop();
     }
   }
