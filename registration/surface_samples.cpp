@@ -87,9 +87,11 @@ void choose_samples(SurfaceLevel& level, int count, const ScanSurfaceOptions& op
   chosen.erase(std::unique(chosen.begin(), chosen.end()), chosen.end());
   level.samples.reserve(chosen.size());
   for (const std::uint32_t i : chosen) {
+    const auto row = i / cols;
+    const auto col = i % cols;
     level.samples.push_back({grid.point(i), level.normals[i], closeness[i] / static_cast<float>(mean),
-                             beside[i] != 0, static_cast<float>(i / cols) / static_cast<float>(grid.rows),
-                             static_cast<float>(i % cols) / static_cast<float>(grid.cols)});
+                             beside[i] != 0, static_cast<float>(row) / static_cast<float>(grid.rows),
+                             static_cast<float>(col) / static_cast<float>(grid.cols)});
   }
 }
 
