@@ -39,6 +39,12 @@ status=0
 printf 'x' >>"$folder/museum/c/wedges.json"
 said=$("$workflows/check-collection" "$folder" 2>/dev/null) && fail "check-collection overlooks damage"
 [ "$said" = "museum/c: wedges.json has other bytes than were written" ] || fail "check-collection: $said"
+printf 'x' >"$folder/museum/c/wedges.json.done"
+said=$("$workflows/check-collection" "$folder" 2>/dev/null) && fail "check-collection overlooks a stamp that is none"
+[ "$said" = "museum/c: wedges.json.done cannot be read as a stamp" ] || fail "check-collection: $said"
+status=0
+said=$("$workflows/check-collection" "$folder/nowhere" 2>&1) || status=$?
+[ "$status $said" = "2 usage: check-collection COLLECTION (a folder)" ] || fail "check-collection of nothing: $status $said"
 # A session is only read: what comes of it lies beside it, and it verifies as before.
 export DUBSAR_EXPORT=yes
 rm -r "$folder/museum/c"
