@@ -21,12 +21,24 @@ run "$dubsar" simulate tablet --size 16x14x9 --spacing 0.2 -o "$2/tablet" >/dev/
 run "$dubsar" simulate scans --tablet "$2/tablet/tablet.ply" --views 8 --spacing 0.15 --noise 0.01 -o "$2/scans" \
   >/dev/null 2>&1 || fail "simulate scans"
 
+[[ $(run "$prefix/bin/dubsar-station" --help) == usage:* ]] || fail "dubsar-station --help"
+status=0
+run "$prefix/bin/dubsar-station" --sesion x 2>/dev/null || status=$?
+[ $status = 2 ] || fail "dubsar-station takes an option for a session: status $status"
+
 share=$prefix/share
 for file in applications/dubsar.desktop applications/dubsar-mesh.desktop icons/hicolor/scalable/apps/dubsar.svg \
   mime/packages/dubsar.xml bash-completion/completions/dubsar zsh/vendor-completions/_dubsar \
   doc/dubsar/copyright doc/dubsar/operators/storeroom-guide.md; do
   [ -s "$share/$file" ] || fail "no $file"
 done
+# A link of a page that is not installed leads nowhere.
+dead=$(find "$share/doc/dubsar" -name '*.md' -print | while IFS= read -r page; do
+  { grep -oE '\]\([^)#]+' "$page" || true; } | sed 's/^](//' | while IFS= read -r target; do
+    [[ $target == http* ]] || [ -e "$(dirname "$page")/$target" ] || echo "$page: $target"
+  done
+done)
+[ -z "$dead" ] || fail "dead links: $dead"
 [ -s "$prefix/lib/udev/rules.d/60-dubsar.rules" ] || fail "no udev rules"
 for packed in man/man1/dubsar.1 man/man1/dubsar-station.1 doc/dubsar/third-party-notices doc/dubsar/changelog; do
   gzip -t "$share/$packed.gz" || fail "$packed.gz"
