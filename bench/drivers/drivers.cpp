@@ -24,8 +24,8 @@
 #include <string>
 #include <vector>
 
+#include "bench/drivers/driver_words.h"
 #include "bench/drivers/processor_watch.h"
-#include "bench/support/options.h"
 #include "build_paths.h"
 #include "core/stage_times.h"
 #include "core/thread_priority.h"
@@ -364,42 +364,15 @@ void become_preloaded(char** words) {
   give_up("cannot start itself");
 }
 
-std::string is_size(const std::string& text) {
-  const std::size_t by = text.find('x');
-  const auto is_number = [](const std::string& digits) {
-    return !digits.empty() && digits.size() < 6 && digits.find_first_not_of("0123456789") == digits.npos;
-  };
-  const bool fits = by != text.npos && is_number(text.substr(0, by)) && is_number(text.substr(by + 1));
-  return fits ? std::string() : "'" + text + "' is no WIDTHxHEIGHT";
-}
-
 }  // namespace
 
 int main(int count, char** words) {
-  std::string what;
-  std::string scheme;
-  std::uint64_t asked = 0;
-  int rate_hz = 400;
-  std::string size = "640x480";
-  Words own;
-  CLI::App app("The drivers of devices against the emulated ones of the tests", "dubsar-drivers");
-  app.add_option("what", what)->required()->check(CLI::IsMember({"frames", "unplug"}));
-  app.add_option("scheme", scheme)->required()->check(CLI::IsMember({"v4l2", "aravis", "usb_stage"}));
-  app.add_option("count", asked, "frames or positions (100000), or pulls (100)")
-      ->check(CLI::Range(1, 1000000000));
-  app.add_option("rate", rate_hz, "Hz")->check(CLI::Range(1, 100000));
-  app.add_option("size", size, "WIDTHxHEIGHT")->check(CLI::Validator(is_size, ""));
-  app.add_option("options", own, "OPTION=VALUE of the driver");
-  if (const auto status = dubsar::bench::ends_with(app, count, words)) {
+  bench::DriverWords asked;
+  if (const auto status = asked.read(count, words)) {
     return *status;
   }
-  const std::uint64_t n = asked > 0 ? asked : what == "frames" ? 100000 : 100;
-  const std::string rate = std::to_string(rate_hz);
-  Options options;
-  for (const std::string& word : own) {
-    const std::size_t sign = word.find('=');
-    options.emplace_back(word.substr(0, sign), sign == word.npos ? "1" : word.substr(sign + 1));
-  }
+  const std::uint64_t n = asked.count;
+  const std::string& scheme = asked.scheme;
   if (scheme == "usb_stage" && std::getenv("DUBSAR_BENCH_PEER") == nullptr) {
     become_preloaded(words);
   }
@@ -407,9 +380,9 @@ int main(int count, char** words) {
     give_up("this kernel gives nobody a network of his own");
   }
   const DriverRegistry registry({std::filesystem::path(DUBSAR_BINARY_DIR) / "lib/dubsar/drivers"});
-  Stand stand(scheme, what == "frames", rate, size, options);
+  Stand stand(scheme, asked.what == "frames", std::to_string(asked.rate_hz), asked.size, asked.options);
   Device device = open(registry, stand.device);
-  if (what == "unplug") {
+  if (asked.what == "unplug") {
     return count_pulls(device, stand.device, n);
   }
   return scheme == "usb_stage" ? count_positions(device, n) : count_frames(device, stand.device, n);
