@@ -112,7 +112,9 @@ std::filesystem::path temporary_beside(const std::filesystem::path& folder) {
 Status write_file_atomically(const std::filesystem::path& path, const ByteProducer& produce) {
   struct stat existing {};
   if (::stat(path.c_str(), &existing) == 0 && !S_ISREG(existing.st_mode)) {
-    return S_ISDIR(existing.st_mode) ? storage_error(path, "cannot write", EISDIR)
+    // Wrong words, no disk that refuses: to do it again is of no use.
+    return S_ISDIR(existing.st_mode) ? Status(fail(ErrorKind::kUsage, "cannot write: it is a folder",
+                                                   path.string(), mend_of(EISDIR)))
                                      : write_to_device(path, produce);
   }
   const std::filesystem::path folder = folder_of(path);

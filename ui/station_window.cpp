@@ -65,6 +65,10 @@ Result<std::optional<ScriptPlayer>> load_script(const std::filesystem::path& fil
   if (file.empty()) {
     return std::nullopt;
   }
+  std::error_code error;
+  if (std::filesystem::is_directory(file, error)) {  // it opens, and reading it throws
+    return fail(ErrorKind::kBadInput, "not a file", file.string(), "name a file");
+  }
   std::ifstream in(file);
   const std::string text{std::istreambuf_iterator<char>(in), {}};
   if (!in) {

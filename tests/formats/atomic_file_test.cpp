@@ -113,6 +113,7 @@ TEST(AtomicFile, RefusesToReplaceAFolder) {
   const ScratchFolder folder;
   const Status status = write_file_atomically(folder.path(), "x");
   ASSERT_FALSE(status);
+  EXPECT_EQ(status.error().kind, ErrorKind::kUsage);  // not the disk's: to try again is of no use
   EXPECT_THAT(line_of(status), HasSubstr("name a file, not a folder"));
 }
 
