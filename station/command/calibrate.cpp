@@ -82,7 +82,7 @@ void print_report(const CalibrationReport& report, const std::vector<std::string
   }
 }
 
-Result<int> print_board(const Options& options) {
+Result<int> print_board(const Options& options, const CommandContext& context) {
   const Result<BoardSpec> board = parse_board(options.board);
   if (!board) {
     return std::unexpected(board.error());
@@ -91,16 +91,22 @@ Result<int> print_board(const Options& options) {
   if (Status status = write_gray_png(board_pattern(*board, kTexels), options.print); !status) {
     return std::unexpected(status.error());
   }
+  const double dots_per_inch = 25.4 * kTexels / board->square_mm;
+  if (context.json) {
+    CommandContext::print(
+        {{"picture", options.print}, {"square_mm", board->square_mm}, {"dots_per_inch", dots_per_inch}});
+    return 0;
+  }
   std::printf(
       "%s: print it so that a square is %g mm wide (%g dots per inch), glue it on a flat plate and measure "
       "it\n",
-      options.print.c_str(), board->square_mm, 25.4 * kTexels / board->square_mm);
+      options.print.c_str(), board->square_mm, dots_per_inch);
   return 0;
 }
 
 Result<int> calibrate(Options options, CommandContext& context) {
   if (!options.print.empty()) {
-    return print_board(options);
+    return print_board(options, context);
   }
   if (options.verify.wanted()) {
     return verify_rig(options.verify, options.source, context);

@@ -114,6 +114,17 @@ TEST_F(Calibrate, ABadSetIsOneLineAndNoFile) {
   EXPECT_EQ(run_command({"calibrate", (folder_.path() / "none").string()}).status, 2);
 }
 
+TEST(CalibrateBoard, PrintedWithJsonIsOneObject) {
+  const test::TemporaryFolder folder;
+  const std::string picture = (folder.path() / "board.png").string();
+  const Outcome printed =
+      run_command({"calibrate", "--board", "chessboard:9x6:25", "--print", picture, "--json"});
+  EXPECT_EQ(printed.status, 0) << printed.err;
+  EXPECT_EQ(printed.json()["picture"], picture) << printed.out;
+  EXPECT_EQ(printed.json()["square_mm"], 25.0);
+  EXPECT_NEAR(printed.json()["dots_per_inch"], 101.6, 1e-9);
+}
+
 TEST_F(Calibrate, ThePicturesOfOneCameraAreNoCalibrationOfAnother) {
   list(9, 3);
   const Outcome other = calibrate({"--serial", "OTHER"});
