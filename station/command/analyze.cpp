@@ -317,10 +317,11 @@ void add_analyze_options(CLI::App& verb, AnalyzeArguments& arguments) {
   verb.add_option("mesh", arguments.in, "PLY, OBJ, STL or GLB, faults and all")->required();
   verb.add_option("-o,--out", arguments.out, "wedges.json")->required();
   verb.add_option("--mesh-out", arguments.mesh_out, "the mesh with its wedges in colours");
-  verb.add_option("--exit", arguments.exits,
-                  "where an inner edge ends: at the free surface, or as far as seen")
+  verb.add_option(
+          "--exit", arguments.exits,
+          "where an inner edge ends: surface, at the free surface (unless said); extent, as far as seen")
       ->check(CLI::IsMember({"surface", "extent"}));
-  verb.add_option("--unit", arguments.unit, "what the file's numbers are")
+  verb.add_option("--unit", arguments.unit, "what the file's numbers are; default: its own word, else mm")
       ->check(CLI::IsMember(std::vector<std::string>(kLengthUnits.begin(), kLengthUnits.end())));
   verb.add_option("--pictures", arguments.pictures,
                   "a folder for the surface fields and the wedges as coloured PLY and PNG");

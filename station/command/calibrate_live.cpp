@@ -113,7 +113,9 @@ void add_live_options(CLI::App& verb, LiveOptions& options) {
           "--motion", options.motion,
           "with --rig: what the stage does; default: as the rig's files tell (a scan in degrees: turntable)")
       ->check(CLI::IsMember({"linear", "turntable", "galvanometer", "none"}));
-  verb.add_option("--stops", options.stops, "with --rig: positions of the stage")->check(in_range(3, 50));
+  verb.add_option("--stops", options.stops, "with --rig: positions of the stage")
+      ->check(in_range(3, 50))
+      ->capture_default_str();
   verb.add_option("--depth-range", options.depth_range_mm, "with --rig: of the measuring volume, mm")
       ->check(in_range(1.0, 2000.0));
   verb.add_option("--plate-margin", options.plate_margin_mm, "with --rig: of flat plate around the print, mm")

@@ -205,8 +205,8 @@ void add_mesh(CLI::App& app, Action& chosen) {
       [&chosen, options] { chosen = [options](CommandContext& c) { return check(*options, c); }; });
   CLI::App* convert_verb =
       verb->add_subcommand("convert", "From one format to another, by the names' endings");
-  convert_verb->add_option("in", options->in)->required();
-  convert_verb->add_option("out", options->out)->required();
+  convert_verb->add_option("in", options->in, "PLY, OBJ, STL or GLB")->required();
+  convert_verb->add_option("out", options->out, "the same: .ply, .obj, .stl or .glb")->required();
   convert_verb->add_flag("--turn-over", options->turn_over,
                          "the faces look the other way: for one inside out");
   convert_verb->fallthrough();
@@ -241,7 +241,7 @@ void add_mesh(CLI::App& app, Action& chosen) {
                                {options->in, options->wedges});
   });
   for (CLI::App* sub : {check_verb, convert_verb, section_verb, part_verb}) {
-    sub->add_option("--unit", options->unit, "what the file's numbers are")
+    sub->add_option("--unit", options->unit, "what the file's numbers are; default: its own word, else mm")
         ->check(CLI::IsMember(std::vector<std::string>(kLengthUnits.begin(), kLengthUnits.end())));
   }
 }

@@ -35,6 +35,14 @@ template <class T>
       range.get_description());
 }
 
+/// The number of a scan or a wedge, or a seed. CLI reads an unsigned "-1" as 18446744073709551615, and
+/// CLI::NonNegativeNumber tells the upper limit in 309 digits.
+[[nodiscard]] inline CLI::Validator not_negative() {
+  return CLI::Validator(
+      [](std::string& text) { return text.starts_with('-') ? "'" + text + "' is below 0" : std::string(); },
+      "NONNEGATIVE");
+}
+
 /// Text of one line: a name or a reason. Lists show many of them, and a terminal obeys control characters.
 [[nodiscard]] inline CLI::Validator single_line() {
   return CLI::Validator(

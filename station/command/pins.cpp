@@ -164,10 +164,13 @@ void add_pins(CLI::App& app, Action& chosen) {
       verb->add_option("--mesh", arguments->mesh, "a mesh of the tablet, instead of its size");
   size->excludes(mesh);
   verb->add_option("-o,--out", arguments->out, "write the picture here (PNG)")->check(ends_as(".png"));
-  verb->add_option("--count", arguments->count, "pins, at most 15")->check(in_range(3, 15));
+  verb->add_option("--count", arguments->count, "pins, at most 15")
+      ->check(in_range(3, 15))
+      ->capture_default_str();
   verb->add_option("--triangulation", arguments->triangulation_deg,
                    "degrees between laser and camera; 0: one viewpoint")
-      ->check(in_range(0.0, 80.0));
+      ->check(in_range(0.0, 80.0))
+      ->capture_default_str();
   verb->fallthrough();
   verb->callback([&chosen, arguments] {
     chosen =

@@ -102,9 +102,10 @@ void add_register(CLI::App& app, Action& chosen) {
       "--from-poses", arguments->from_poses,
       "start from the poses of this file (poses.json or a Stanford .conf): refine and verify them, look for "
       "no others");
-  verb->add_option("--rounds", arguments->rounds, "of pairwise fits and relaxation at the end")
+  verb->add_option("--rounds", arguments->rounds, "of pairwise fits and relaxation at the end; default: 2")
       ->check(CLI::Range(1, 50));
-  verb->add_option("--threads", arguments->threads, "at most; the result does not depend on it")
+  verb->add_option("--threads", arguments->threads,
+                   "at most; the result does not depend on it; default: all cores")
       ->check(CLI::Range(1, 1024));
   verb->callback([&chosen, arguments] {
     chosen = with_safe_outputs({arguments->out},

@@ -229,7 +229,9 @@ void add_scan(CLI::App& app, Action& chosen) {
   verb->add_option("--set", arguments->settings,
                    "key=value of the open device, such as exposure_us=800; kept with the session");
   verb->add_flag("--auto", arguments->automatic, "drive the rig, or ask for hand turns, until conclusive");
-  verb->add_option("--max-scans", arguments->max_scans, "of the whole session")->check(in_range(1, 100000));
+  verb->add_option("--max-scans", arguments->max_scans,
+                   "of the whole session; default: 40 with --auto, else no limit")
+      ->check(in_range(1, 100000));
   verb->fallthrough();
   verb->callback(
       [&chosen, arguments] { chosen = [arguments](CommandContext& c) { return scan(*arguments, c); }; });

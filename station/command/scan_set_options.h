@@ -23,7 +23,8 @@ struct ScanSetArguments {
 
   void add_to(CLI::App& verb, bool takes_poses) {
     verb.add_option("path", path, "a session, or a folder or file of range grids")->required();
-    verb.add_option("--unit", unit, "what the numbers in the files are")
+    verb.add_option("--unit", unit,
+                    "what the numbers in the files are; default: each file's own word, else mm")
         ->check(CLI::IsMember(std::vector<std::string>(kLengthUnits.begin(), kLengthUnits.end())));
     verb.add_option("--pins", pins, "the operator's pins (pins.json)");
     if (takes_poses) {

@@ -106,8 +106,10 @@ void add_search(CLI::App& app, Action& chosen) {
       ->required();
   verb->add_option("--like", arguments->like, "the wedges.json to search by")->required();
   verb->add_option("--wedge", arguments->wedge, "search for this wedge of it; otherwise for tablets like it")
-      ->check(CLI::NonNegativeNumber);
-  verb->add_option("--count", arguments->count, "how many to show")->check(in_range(1, 100000));
+      ->check(not_negative());
+  verb->add_option("--count", arguments->count, "how many to show")
+      ->check(in_range(1, 100000))
+      ->capture_default_str();
   verb->callback(
       [&chosen, arguments] { chosen = [arguments](CommandContext& c) { return search(*arguments, c); }; });
 }

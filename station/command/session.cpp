@@ -223,7 +223,7 @@ void add_describe(CLI::App& session, Action& chosen) {
                                   {"--collection", "that it belongs to", &TabletRecord::collection},
                                   {"--operator", "who scanned it", &TabletRecord::operator_name},
                                   {"--notes", "anything else", &TabletRecord::notes}});
-  verb->add_option("session", *path)->required();
+  verb->add_option("session", *path, "a session folder")->required();
   for (DescribedField& one : *fields) {
     CLI::Option* option = verb->add_option(one.option, one.given, one.help);
     option->type_name(kMayBeEmpty);
@@ -258,7 +258,7 @@ void add_session(CLI::App& app, Action& chosen) {
   const auto options = std::make_shared<SessionOptions>();
   const auto add = [&](const char* name, const char* help, bool needs_id, auto action) {
     CLI::App* sub = verb->add_subcommand(name, help);
-    sub->add_option("session", options->path)->required();
+    sub->add_option("session", options->path, "a session folder")->required();
     if (needs_id) {
       sub->add_option("scan", options->id, "the scan's number")->required();
     }

@@ -8,6 +8,7 @@
 #include "acquisition/operator_log.h"
 #include "formats/atomic_file.h"
 #include "formats/hint_json.h"
+#include "station/command/option_checks.h"
 #include "station/command/session_verbs.h"
 #include "station/operator_hint.h"
 
@@ -200,7 +201,7 @@ void add_session_hints(CLI::App& session, Action& chosen) {
   const auto arguments = std::make_shared<HintArguments>();
   const auto add = [&](const char* name, const char* help, auto action) {
     CLI::App* sub = session.add_subcommand(name, help);
-    sub->add_option("session", arguments->session)->required();
+    sub->add_option("session", arguments->session, "a session folder")->required();
     sub->add_option("scan", arguments->id, "the scan's number")->required();
     sub->fallthrough();
     sub->callback([&chosen, arguments, action] {
@@ -209,7 +210,7 @@ void add_session_hints(CLI::App& session, Action& chosen) {
     return sub;
   };
   CLI::App* sub = add("hint", "Say where a scan lies: points on it and on another, or a rough pose", hint);
-  sub->add_option("--on", arguments->on, "the other scan's number")->check(CLI::NonNegativeNumber);
+  sub->add_option("--on", arguments->on, "the other scan's number")->check(not_negative());
   sub->add_option(
          "--points", arguments->points,
          "x,y,z=x,y,z: a place in the scan and the same place in the other; three or more, or one or "

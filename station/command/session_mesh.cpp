@@ -47,7 +47,7 @@ void add_session_mesh(CLI::App& session, Action& chosen) {
   CLI::App* verb = session.add_subcommand(
       "mesh", "Where the mesh lies that the session keeps; status 1 when none is of its scans as they stand");
   const auto path = std::make_shared<std::string>();
-  verb->add_option("session", *path)->required();
+  verb->add_option("session", *path, "a session folder")->required();
   verb->fallthrough();
   verb->callback([&chosen, path] { chosen = [path](CommandContext& c) { return mesh(*path, c); }; });
 }

@@ -76,7 +76,7 @@ void add_session_sign(CLI::App& session, Action& chosen) {
         return text.find_first_not_of(" \t\r\n") == std::string::npos ? "says nothing" : std::string();
       },
       "TEXT");
-  verb->add_option("session", arguments->path)->required();
+  verb->add_option("session", arguments->path, "a session folder")->required();
   verb->add_option("--name", arguments->name, "who signs")->required()->check(said)->check(single_line());
   verb->add_option("--role", arguments->role, "as what")->check(single_line());
   verb->add_option("--note", arguments->note, "anything that a reader should know");

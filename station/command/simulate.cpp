@@ -219,10 +219,14 @@ void add_simulate(CLI::App& app, Action& chosen) {
   CLI::App* tablet = verb->add_subcommand("tablet", "A procedural tablet: tablet.ply and truth.json");
   tablet->add_option("--size", options->size, "width x height x thickness, mm")->capture_default_str();
   tablet->add_option("--text", options->text, "share of the room for text that is written on")
-      ->check(in_range(0.0, 1.0));
-  tablet->add_option("--holes", options->holes, "firing holes, 0 none to 1 many")->check(in_range(0.0, 1.0));
+      ->check(in_range(0.0, 1.0))
+      ->capture_default_str();
+  tablet->add_option("--holes", options->holes, "firing holes, 0 none to 1 many")
+      ->check(in_range(0.0, 1.0))
+      ->capture_default_str();
   tablet->add_option("--damage", options->damage, "fractures, erosion, dirt and cracks, 0 none to 1 badly")
-      ->check(in_range(0.0, 1.0));
+      ->check(in_range(0.0, 1.0))
+      ->capture_default_str();
   tablet->callback([&chosen, options] {
     chosen = with_safe_outputs({as_folder(options->out)},
                                [options](CommandContext& c) { return simulate_tablet(*options, c); });
@@ -231,7 +235,9 @@ void add_simulate(CLI::App& app, Action& chosen) {
   CLI::App* scans =
       verb->add_subcommand("scans", "Range grids of a tablet: scan_000.ply … and truth_poses.json");
   scans->add_option("--tablet", options->tablet, "the true surface, a mesh")->required();
-  scans->add_option("--unit", options->unit, "what the mesh's numbers are")
+  scans
+      ->add_option("--unit", options->unit,
+                   "what the mesh's numbers are; default: the file's own word, else mm")
       ->check(CLI::IsMember(std::vector<std::string>(kLengthUnits.begin(), kLengthUnits.end())));
   scans->add_option("--views", options->views, "how many, turned by hand")
       ->check(in_range(1, 1000))
@@ -249,7 +255,9 @@ void add_simulate(CLI::App& app, Action& chosen) {
   add_simulate_rig(*verb, chosen);
 
   for (CLI::App* sub : {tablet, scans}) {
-    sub->add_option("--seed", options->seed, "the same seed gives the same bytes")->capture_default_str();
+    sub->add_option("--seed", options->seed, "the same seed gives the same bytes")
+        ->check(not_negative())
+        ->capture_default_str();
     sub->add_option("--spacing", options->spacing_mm, "mm")
         ->check(in_range(0.005, 5.0))
         ->capture_default_str();

@@ -58,7 +58,7 @@ void add_simulate_rig(CLI::App& simulate, Action& chosen) {
   verb->add_option("--stops", pictures.stops, "of the stage with the board on it")
       ->check(in_range(0, 200))
       ->capture_default_str();
-  verb->add_option("--board", pictures.board)->capture_default_str();
+  verb->add_option("--board", pictures.board, "as calibrate takes it")->capture_default_str();
   verb->add_option("--width", pictures.rig.width, "px")->check(in_range(64, 8192))->capture_default_str();
   verb->add_option("--height", pictures.rig.height, "px")->check(in_range(64, 8192))->capture_default_str();
   verb->add_option("--field", pictures.rig.field_mm, "mm across the picture")
@@ -70,7 +70,9 @@ void add_simulate_rig(CLI::App& simulate, Action& chosen) {
   verb->add_option("--speckle", pictures.optics.speckle_contrast, "contrast, 0 to 1")
       ->check(in_range(0.0, 1.0))
       ->capture_default_str();
-  verb->add_option("--seed", pictures.seed, "the same seed gives the same bytes")->capture_default_str();
+  verb->add_option("--seed", pictures.seed, "the same seed gives the same bytes")
+      ->check(not_negative())
+      ->capture_default_str();
   verb->add_option("-o,--out", options->out, "folder")->required();
   verb->fallthrough();
   verb->callback([&chosen, options] {

@@ -49,10 +49,14 @@ Result<int> open_station(const StationArguments& arguments, CommandContext& cont
 void add_window_options(CLI::App& verb, StationArguments& arguments) {
   verb.add_option("--script", arguments.script,
                   "play what a person would do (docs/operators/window_scripts.md)");
-  verb.add_option("--language", arguments.window.language, "of the window")
+  verb.add_option("--language", arguments.window.language, "of the window; default: as chosen last")
       ->check(CLI::IsMember({"en", "de"}));
-  verb.add_option("--width", arguments.window.width, "of the window, pixels")->check(in_range(640, 16384));
-  verb.add_option("--height", arguments.window.height, "of the window, pixels")->check(in_range(480, 16384));
+  verb.add_option("--width", arguments.window.width, "of the window, pixels")
+      ->check(in_range(640, 16384))
+      ->capture_default_str();
+  verb.add_option("--height", arguments.window.height, "of the window, pixels")
+      ->check(in_range(480, 16384))
+      ->capture_default_str();
   verb.fallthrough();
 }
 

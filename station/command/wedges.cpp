@@ -228,7 +228,7 @@ void add_wedges(CLI::App& app, Action& chosen) {
   correct_verb->add_option("--delete", arguments->remove, "ids of what is no wedge")->delimiter(',');
   correct_verb->add_option("--merge", arguments->merge, "ids of what is one wedge")->delimiter(',');
   correct_verb->add_option("--split", arguments->split, "id of what is several wedges; with --into")
-      ->check(CLI::NonNegativeNumber);
+      ->check(not_negative());
   correct_verb->add_option("--into", arguments->into, "x,y,z in mm: the deepest place of one of them")
       ->expected(1)
       ->take_all();

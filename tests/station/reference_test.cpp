@@ -21,6 +21,7 @@ using test::Arguments;
 using test::run_command;
 using ::testing::Contains;
 using ::testing::HasSubstr;
+using ::testing::Not;
 using ::testing::SizeIs;
 
 struct Helped {
@@ -106,6 +107,27 @@ TEST(Reference, ManualPageNamesEveryVerbAndOption) {
     }
   }
   EXPECT_THAT(page.out, HasSubstr(".SH \"EXIT STATUS\""));
+  EXPECT_THAT(page.out, Not(HasSubstr("\nRequired."))) << "that is no description";
+}
+
+TEST(Reference, HelpSaysWhatIsTakenWhereNothingIsSaid) {
+  const std::vector<std::pair<Arguments, const char*>> said{
+      {{"simulate", "tablet"}, "--text FLOAT:FLOAT in [0 - 1]=1"},
+      {{"simulate", "tablet"}, "--holes FLOAT:FLOAT in [0 - 1]=0"},
+      {{"simulate", "tablet"}, "--damage FLOAT:FLOAT in [0 - 1]=0.3"},
+      {{"pins"}, "--count INT:INT in [3 - 15]=15"},
+      {{"pins"}, "--triangulation FLOAT:FLOAT in [0 - 80]=24"},
+      {{"search"}, "--count INT:INT in [1 - 100000]=10"},
+      {{"calibrate"}, "--stops INT:INT in [3 - 50]=5"},
+      {{"view"}, "--width INT:INT in [640 - 16384]=1366"},
+      {{"view"}, "--height INT:INT in [480 - 16384]=768"},
+      {{"scan"}, "default: 40 with --auto"},
+  };
+  for (const auto& [verb, words] : said) {
+    Arguments asked = verb;
+    asked.emplace_back("--help");
+    EXPECT_THAT(run_command(asked).out, HasSubstr(words));
+  }
 }
 
 /// What bash offers after `words`, one answer a line of each, in order.

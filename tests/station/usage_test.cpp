@@ -122,6 +122,41 @@ TEST(CommandUsage, AnEmptyTextIsNoNameAndNoPlace) {
   }
 }
 
+TEST(CommandUsage, ANumberBelowZeroIsRefusedInAFewWords) {
+  const std::string mesh = DUBSAR_SOURCE_DIR "/tests/data/sessions/schema1_first/mesh/model.ply";
+  const std::vector<Arguments> counted{
+      {"simulate", "tablet", "-o", "x", "--seed"},
+      {"simulate", "scans", "--tablet", mesh, "-o", "x", "--seed"},
+      {"simulate", "rig", "-o", "x", "--seed"},
+      {"search", ".", "--like", "w.json", "--wedge"},
+      {"wedges", "correct", mesh, "-o", "x.json", "--into", "0,0,0", "--split"},
+      {"session", "hint", "s", "0", "--pose", "p.json", "--on"},
+  };
+  for (Arguments words : counted) {
+    words.emplace_back("-1");
+    const Outcome outcome = run_command(words);
+    EXPECT_EQ(outcome.status, 2) << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr("'-1' is below 0; see dubsar --help, or dubsar VERB --help\n"));
+  }
+}
+
+TEST(CommandUsage, AFolderIsNoScriptAndNoOutput) {
+  const test::TemporaryFolder folder;
+  const std::string here = folder.path().string();
+  const std::string mesh = DUBSAR_SOURCE_DIR "/tests/data/sessions/schema1_first/mesh/model.ply";
+  const std::vector<Arguments> wrong{
+      {"station", "--session", here + "/s", "--script", here},
+      {"view", mesh, "--script", here},
+      {"analyze", mesh, "-o", here},
+  };
+  for (const Arguments& words : wrong) {
+    const Outcome outcome = run_command(words);
+    EXPECT_EQ(outcome.status, 2) << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr("dubsar: " + here + ": "));
+    EXPECT_THAT(outcome.err, HasSubstr("name a file"));
+  }
+}
+
 TEST(CommandUsage, APictureOfPinsIsAPng) {
   EXPECT_THAT(run_command({"pins", "--size", "50x40x20", "-o", "x.gif"}).err,
               HasSubstr("does not end in .png"));
