@@ -2,8 +2,12 @@
 // Copyright The Dubsar developers
 // dubsar drivers: plugins, devices, what each offers.
 
+#include <fmt/format.h>
+
 #include <cstdio>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "drivers/loader.h"
 #include "station/command/command.h"
@@ -40,6 +44,18 @@ nlohmann::ordered_json option_json(const SettingInfo& option) {
     json["range"] = {option.range->first, option.range->second};
   }
   return json;
+}
+
+/// " (mm; 0.01 to 5)": what may stand behind the option's "=".
+std::string bounds_of(const nlohmann::ordered_json& option) {
+  std::string said = option.value("unit", "");
+  const auto add = [&](const std::string& more) { said += (said.empty() ? "" : "; ") + more; };
+  if (option.contains("choices")) {
+    add(fmt::format("{}", fmt::join(option["choices"].get<std::vector<std::string>>(), "|")));
+  } else if (option.contains("range")) {
+    add(fmt::format("{} to {}", option["range"][0].get<double>(), option["range"][1].get<double>()));
+  }
+  return said.empty() ? said : " (" + said + ")";
 }
 
 Result<int> list_drivers(CommandContext& context) {
@@ -81,8 +97,11 @@ Result<int> list_drivers(CommandContext& context) {
                 driver["locator"].get<std::string>().c_str(),
                 driver["description"].get<std::string>().c_str());
     for (const auto& option : driver["options"]) {
-      std::printf("    ?%s=  %s\n", option["key"].get<std::string>().c_str(),
-                  option["help"].get<std::string>().c_str());
+      std::printf("    ?%s=  %s%s\n", option["key"].get<std::string>().c_str(),
+                  option["help"].get<std::string>().c_str(), bounds_of(option).c_str());
+    }
+    if (driver.contains("error")) {
+      std::printf("    devices cannot be looked for: %s\n", driver["error"].get<std::string>().c_str());
     }
     for (const auto& device : driver["devices"]) {
       std::printf("    device %s  %s\n", device["uri"].get<std::string>().c_str(),

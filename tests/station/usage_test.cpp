@@ -231,6 +231,13 @@ TEST(CommandUsage, DriversListsWhatIsThere) {
   EXPECT_THAT(schemes, ::testing::IsSupersetOf({"replay", "sim"}));
 }
 
+TEST(CommandUsage, DriversSaysWhatAnOptionMayBe) {
+  const std::string said = run_command({"drivers"}).out;
+  EXPECT_THAT(said, HasSubstr("?spacing=  lateral spacing of the samples (mm; 0.01 to 5)\n"));
+  EXPECT_THAT(said, HasSubstr("?motion=  what is driven (turntable|robot)\n"));
+  EXPECT_THAT(said, HasSubstr("?size=  of the tablet, WxHxT, each 5 to 300 (mm)\n"));
+}
+
 TEST(CommandSimulate, TheSameSeedGivesTheSameBytes) {
   const test::TemporaryFolder folder;
   const auto tablet = [&](const char* name, const char* seed) {
