@@ -32,7 +32,7 @@ static int32_t describe_options(dubsar_setting_callback callback, void* user, du
                                 .type = DUBSAR_TYPE_INTEGER,
                                 .flags = DUBSAR_SETTING_WRITABLE,
                                 .key = "scans",
-                                .help = "how many times the plate is scanned (1)",
+                                .help = "how many times the plate is scanned; default: 1",
                                 .minimum = 1,
                                 .maximum = kMostScans};
   (void)error;

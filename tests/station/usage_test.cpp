@@ -233,9 +233,9 @@ TEST(CommandUsage, DriversListsWhatIsThere) {
 
 TEST(CommandUsage, DriversSaysWhatAnOptionMayBe) {
   const std::string said = run_command({"drivers"}).out;
-  EXPECT_THAT(said, HasSubstr("?spacing=  lateral spacing of the samples (mm; 0.01 to 5)\n"));
-  EXPECT_THAT(said, HasSubstr("?motion=  what is driven (turntable|robot)\n"));
-  EXPECT_THAT(said, HasSubstr("?size=  of the tablet, WxHxT, each 5 to 300 (mm)\n"));
+  EXPECT_THAT(said, HasSubstr("?spacing=  lateral spacing of the samples; default: 0.1 (mm; 0.01 to 5)\n"));
+  EXPECT_THAT(said, HasSubstr("?motion=  what is driven; default: turntable (turntable|robot)\n"));
+  EXPECT_THAT(said, HasSubstr("?size=  of the tablet, WxHxT, each 5 to 300; default: 50x40x20 (mm)\n"));
 }
 
 TEST(CommandSimulate, TheSameSeedGivesTheSameBytes) {
