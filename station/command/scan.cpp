@@ -11,6 +11,7 @@
 #include <set>
 #include <string>
 
+#include "archive/html.h"
 #include "core/log.h"
 #include "formats/pins_json.h"
 #include "formats/poses_json.h"
@@ -97,11 +98,12 @@ std::string verdict(const EngineResult& result) {
   const auto registered = std::count_if(result.poses.begin(), result.poses.end(), [](const ScanPose& pose) {
     return pose.status == PoseStatus::kRegistered;
   });
+  const std::string scans = counted(static_cast<long long>(result.poses.size()), "scan", "scans");
   if (result.red_map.conclusive) {
-    return fmt::format("conclusive after {} scans, {} registered", result.poses.size(), registered);
+    return fmt::format("conclusive after {}, {} registered", scans, registered);
   }
-  return fmt::format("not conclusive: about {:.1f} mm2 are still red after {} scans, {} registered",
-                     red_area_mm2(result.red_map), result.poses.size(), registered);
+  return fmt::format("not conclusive: about {:.1f} mm2 are still red after {}, {} registered",
+                     red_area_mm2(result.red_map), scans, registered);
 }
 
 nlohmann::ordered_json result_json(const ScanArguments& arguments, const EngineResult& result) {

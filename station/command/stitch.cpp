@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "archive/html.h"
 #include "core/log.h"
 #include "formats/mesh_io.h"
 #include "registration/registrar.h"
@@ -259,8 +260,9 @@ Result<int> stitch_all(const ScanSetArguments& arguments, const StampedWork* wor
   } else {
     const MeshReport report = check_manifold(*mesh);
     finish_progress();
-    std::printf("%s: %zu vertices, %zu faces of %zu scans, %s\n", arguments.out.c_str(), report.vertices,
-                report.faces, taken->scans, report.is_manifold() ? "2-manifold" : "NOT 2-manifold");
+    std::printf("%s: %zu vertices, %zu faces of %s, %s\n", arguments.out.c_str(), report.vertices,
+                report.faces, counted(static_cast<long long>(taken->scans), "scan", "scans").c_str(),
+                report.is_manifold() ? "2-manifold" : "NOT 2-manifold");
   }
   return 0;
 }

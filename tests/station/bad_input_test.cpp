@@ -71,6 +71,12 @@ TEST_F(BadInput, AFolderWithoutGridsIsTwoAndOneLine) {
   EXPECT_FALSE(fs::exists(at("session")));
 }
 
+TEST_F(BadInput, OneScanIsCountedAsOne) {
+  const Outcome outcome = scan(write_bumpy_scans(at("one"), 1), "session");
+  EXPECT_EQ(outcome.status, 1) << outcome.err;
+  EXPECT_THAT(outcome.json()["verdict"].get<std::string>(), HasSubstr("after 1 scan, 1 registered"));
+}
+
 TEST_F(BadInput, OneBadFileDoesNotStopTheOthers) {
   const std::string good = [&] {
     const fs::path folder = write_bumpy_scans(at("good"), 1);
