@@ -264,12 +264,12 @@ void SimStation::swap(SimTablet tablet) {
   set_scene();
 }
 
-void SimStation::disturb(Disturbance what) {
+void SimStation::disturb(Disturbance what, int turn) {
   set_scene();
   if (what == Disturbance::kNone) {
     return;
   }
-  disturbed_ = std::make_unique<SimTablet>(disturbed(*tablet_, true_tablet_from_scanner(), what));
+  disturbed_ = std::make_unique<SimTablet>(disturbed(*tablet_, true_tablet_from_scanner(), what, turn));
   disturbed_query_ = std::make_unique<MeshQuery>(disturbed_->mesh);
   // The field stays where the tablet was.
   scene_.tablet = what == Disturbance::kGone ? tablet_.get() : disturbed_.get();

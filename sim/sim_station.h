@@ -66,8 +66,9 @@ class SimStation {
   /// Another tablet lies there from now on, put down by hand as the old one lay; motors and asked turns know
   /// nothing of it.
   void swap(SimTablet tablet);
-  /// What is in the way of the scans from now on, from where everything stands. kNone: nothing any more.
-  void disturb(Disturbance what);
+  /// What is in the way of the scans from now on, from where everything stands. kNone: nothing any more. A
+  /// grip is elsewhere at each turn.
+  void disturb(Disturbance what, int turn = 0);
 
   /// Header of the scan that would be made now: an empty grid with geometry, nominal pose and pins filled in.
   [[nodiscard]] RangeGrid empty_grid() const;

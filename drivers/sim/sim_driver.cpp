@@ -181,9 +181,10 @@ std::int32_t scan(dubsar_device* device, const dubsar_sink* sink, dubsar_error* 
         return plugin::report(error, swapped.error());
       }
     }
-    const bool in_the_way = device->scans >= options.intrude_at && device->scans <= options.intrude_until;
+    const bool in_the_way = device->scans >= options.intrude_at && device->scans <= options.intrude_until &&
+                            (device->scans - options.intrude_at) % options.intrude_every == 0;
     if (options.intrude_at >= 0) {
-      device->station.disturb(in_the_way ? options.intrude : sim::Disturbance::kNone);
+      device->station.disturb(in_the_way ? options.intrude : sim::Disturbance::kNone, device->scans);
     }
     const bool breaks_off = device->scans == options.stop_at;
     RangeGrid header = device->station.empty_grid();

@@ -36,8 +36,9 @@ const SettingRow kRows[] = {
      0, 1e6},
     {DUBSAR_TYPE_INTEGER, "stop_rows", "rows of the scan that stops; default: 30", nullptr, nullptr, 0, 1e6},
     {DUBSAR_TYPE_TEXT, "intrude",
-     "hand@N (over half of the tablet), glove@N (over all of it) or gone@N (the tablet is away): in scan N, "
-     "from 0, or in N-M"},
+     "hand@N (over half of the tablet), glove@N (over all of it), grip@N (fingers at its edge) or gone@N "
+     "(the "
+     "tablet is away): in scan N, from 0, in N-M, or in each Kth of these, N-M/K"},
     {DUBSAR_TYPE_INTEGER, "swap_at", "another tablet lies there from this scan on", nullptr, nullptr, 0, 1e6},
     {DUBSAR_TYPE_NUMBER, "holes", "firing holes, from none to many; default: 0", nullptr, nullptr, 0, 1},
     {DUBSAR_TYPE_TEXT, "truth", "a folder that gets the truth: poses, pins and the surface"},
@@ -80,26 +81,30 @@ std::optional<int> count_of(std::string_view text) {
              : std::nullopt;
 }
 
-/// "hand@3", "gone@2-4"
+/// "hand@3", "gone@2-4", "grip@1-30/3"
 bool take_intrusion(std::string_view text, SimOptions& out) {
   const std::size_t at = text.find('@');
   const std::string_view what = text.substr(0, at);
   out.intrude = what == "hand"    ? sim::Disturbance::kHand
                 : what == "glove" ? sim::Disturbance::kGlove
+                : what == "grip"  ? sim::Disturbance::kGrip
                 : what == "gone"  ? sim::Disturbance::kGone
                                   : sim::Disturbance::kNone;
   if (out.intrude == sim::Disturbance::kNone || at == std::string_view::npos) {
     return false;
   }
-  const std::string_view scans = text.substr(at + 1);
+  const std::size_t slash = text.find('/', at);
+  const std::string_view scans = text.substr(at + 1, slash - (at + 1));
+  const std::optional<int> every = slash == std::string_view::npos ? 1 : count_of(text.substr(slash + 1));
   const std::size_t dash = scans.find('-');
   const std::optional<int> first = count_of(scans.substr(0, dash));
   const std::optional<int> last = dash == std::string_view::npos ? first : count_of(scans.substr(dash + 1));
-  if (!first || !last || *last < *first) {
+  if (!first || !last || *last < *first || !every || *every < 1) {
     return false;
   }
   out.intrude_at = *first;
   out.intrude_until = *last;
+  out.intrude_every = *every;
   return true;
 }
 

@@ -29,7 +29,8 @@ struct SimOptions {
   int swap_at = -1;  ///< another tablet lies there from this scan on
   sim::Disturbance intrude = sim::Disturbance::kNone;
   int intrude_at = -1;    ///< the first scan that it is in the way of …
-  int intrude_until = 0;  ///< … and the last
+  int intrude_until = 0;  ///< … and the last …
+  int intrude_every = 1;  ///< … of which each so manieth
 };
 
 /// The options that there are, for describe_options().

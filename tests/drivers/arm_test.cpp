@@ -146,6 +146,7 @@ TEST_F(Arm, BadDaysAreSaidPlainly) {
                                           {"intrude", "hand"},
                                           {"intrude", "hand@3-1"},
                                           {"intrude", "hand@x"},
+                                          {"intrude", "grip@1-9/0"},
                                           {"swap_at", "-1"},
                                           {"stop_at", "1.5"},
                                           {"move_time", "nan"}}) {
