@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "core/range_grid.h"
+
+namespace dubsar {
+
+/// The neighbours that a sample's own surface goes on to.
+template <class Visit>
+void for_each_link(const RangeGrid& grid, std::size_t i, float longest_mm, const Visit& visit) {
+  const int row = grid.row_of(i);
+  const int col = grid.col_of(i);
+  for (int k = 0; k < 9; ++k) {
+    const int r = row + k / 3 - 1;
+    const int c = col + k % 3 - 1;
+    if (k == 4 || !grid.is_valid(r, c)) {
+      continue;
+    }
+    const std::size_t j = grid.index(r, c);
+    if ((grid.point(j) - grid.point(i)).norm() <= longest_mm) {
+      visit(j);
+    }
+  }
+}
+
+/// Parts that hang together of what `enter` lets in, as far as they begin with a sample that `begin` holds
+/// for.
+template <class Begin, class Enter>
+std::vector<std::vector<std::size_t>> linked_parts(const RangeGrid& grid, float longest_mm,
+                                                   const Begin& begin, const Enter& enter) {
+  std::vector<std::vector<std::size_t>> out;
+  std::vector<std::uint8_t> visited(grid.size(), 0);
+  for (std::size_t i = 0; i < grid.size(); ++i) {
+    if (visited[i] != 0 || grid.valid[i] == 0 || !begin(i)) {
+      continue;
+    }
+    std::vector<std::size_t>& part = out.emplace_back(1, i);
+    visited[i] = 1;
+    for (std::size_t k = 0; k < part.size(); ++k) {
+      for_each_link(grid, part[k], longest_mm, [&](std::size_t j) {
+        if (visited[j] == 0 && enter(j)) {
+          visited[j] = 1;
+          part.push_back(j);
+        }
+      });
+    }
+  }
+  return out;
+}
+
+/// [rows*cols], 1 on cells no more than `steps` rows and columns from one that `is_one` holds for.
+template <class IsOne>
+std::vector<std::uint8_t> cells_near(const RangeGrid& grid, int steps, const IsOne& is_one) {
+  const int cols = grid.cols;
+  std::vector<std::uint8_t> along(grid.size(), 0);
+  const auto spread = [steps](int count, const auto& is_set, const auto& set) {
+    int last = -steps - 1;
+    for (int k = 0; k < count; ++k) {
+      last = is_set(k) ? k : last;
+      if (k - last <= steps) {
+        set(k);
+      }
+    }
+    last = count + steps + 1;
+    for (int k = count - 1; k >= 0; --k) {
+      last = is_set(k) ? k : last;
+      if (last - k <= steps) {
+        set(k);
+      }
+    }
+  };
+  for (int row = 0; row < grid.rows; ++row) {
+    spread(
+        cols, [&](int c) { return is_one(grid.index(row, c)); },
+        [&](int c) { along[grid.index(row, c)] = 1; });
+  }
+  std::vector<std::uint8_t> out(grid.size(), 0);
+  for (int col = 0; col < cols; ++col) {
+    spread(
+        grid.rows, [&](int r) { return along[grid.index(r, col)] != 0; },
+        [&](int r) { out[grid.index(r, col)] = 1; });
+  }
+  return out;
+}
+
+}  // namespace dubsar
