@@ -44,6 +44,7 @@ Status Engine::Impl::settle(EngineResult& result, JobContext& job) {
   if (const Status placed = planning.place(result.poses, true, job); !placed) {
     return placed;
   }
+  tell_foreign();
   Result<RedMap> red_map = planning.red_map(rig ? &*rig : nullptr, job);
   if (!red_map) {
     return std::unexpected(red_map.error());

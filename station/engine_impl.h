@@ -159,6 +159,7 @@ struct Engine::Impl {
   int misses = 0;      ///< scans in a row that were not taken up
   bool again = false;  ///< the scan that comes is of the same view as the one before
   std::set<int> taken_up;
+  std::set<int> told_foreign;  ///< scans of which it was said that something is left out
   std::map<int, int> lies_as;  ///< placement by scan, of scans that motors were told of
 
   mutable std::mutex mutex;  ///< of what follows
@@ -264,6 +265,7 @@ struct Engine::Impl {
   ScanPose set_intruders_aside(const StationScan& scan, ScanPose pose, std::vector<SetAside>& aside,
                                JobContext& job);
   void plan_all(JobContext& job);
+  void tell_foreign();  ///< what the planning stage has left out of scans, once of each
   std::vector<ScanPose> named_poses() const;
   // engine_commands.cpp
   void obey_commands(JobContext& job);  ///< those that wait, on the thread that owns the registrar

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "station/engine_impl.h"
+#include "station/scan_list.h"
 
 namespace dubsar {
 
@@ -13,17 +14,6 @@ namespace {
 /// Scans in a row that may come in vain.
 constexpr int kMostInVain = 3;
 constexpr int kMostEmpty = 2;
-
-std::string listed(const std::set<int>& ids) {
-  std::string text = ids.size() == 1 ? "scan " : "scans ";
-  std::size_t left = ids.size();
-  for (const int id : ids) {
-    text += std::to_string(id);
-    --left;
-    text += left > 1 ? ", " : left == 1 ? " and " : "";
-  }
-  return text;
-}
 
 }  // namespace
 
@@ -72,6 +62,14 @@ ScanPose Engine::Impl::set_intruders_aside(const StationScan& scan, ScanPose pos
     }
   }
   return pose;
+}
+
+void Engine::Impl::tell_foreign() {
+  for (const ForeignFound& found : planning.foreign()) {
+    if (told_foreign.insert(found.id).second) {
+      emit(Notice{sentence_of(found)});
+    }
+  }
 }
 
 bool Engine::Impl::another_tablet(int id, const std::set<int>& before, const std::set<int>& now) {

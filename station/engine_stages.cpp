@@ -315,6 +315,7 @@ void Engine::Impl::plan_all(JobContext& job) {
       give_up(placed.error());
       continue;
     }
+    tell_foreign();
     Result<RedMap> red_map = planning.red_map(rig ? &*rig : nullptr, job);
     if (!red_map) {
       give_up(red_map.error());

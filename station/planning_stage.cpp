@@ -82,6 +82,7 @@ bool same_placement(const Placement& a, const Placement& b) {
 void PlanningStage::add(const StationScan& scan) {
   take_out(scan.id);  // nothing may refer to a grid that is replaced
   scans_[scan.id] = scan;
+  flags_.add(scan);
 }
 
 void PlanningStage::take_out(int id) {
@@ -91,11 +92,12 @@ void PlanningStage::take_out(int id) {
 }
 
 Status PlanningStage::place(const std::vector<ScanPose>& poses, bool exact, JobContext& job) {
+  std::ranges::for_each(flags_.follow(poses), [this](int id) { take_out(id); });
   std::map<int, PlacedScan> wanted;
   for (const ScanPose& pose : poses) {
     const auto scan = scans_.find(pose.id);
     if (pose.status == PoseStatus::kRegistered && scan != scans_.end()) {
-      wanted[pose.id] = {pose.id, scan->second.grid.get(), scan->second.flags.get(), pose.model_from_scanner,
+      wanted[pose.id] = {pose.id, scan->second.grid.get(), &flags_.of(pose.id), pose.model_from_scanner,
                          pose.sigma_mm};
     }
   }

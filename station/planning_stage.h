@@ -22,15 +22,16 @@
 #include "planning/red_targets.h"
 #include "planning/tablet_on_stage.h"
 #include "station/station_scan.h"
+#include "station/tablet_flags.h"
 #include "station/view_gain.h"
 #include "triangulation/stitcher.h"
 
 namespace dubsar {
 
-/// The stage behind registration: keeps the flags of all placed scans cleared against each other, makes the
-/// red map from them, and keeps the mesh stitched. The operator waits for the red map, nobody for the mesh:
-/// stitching has a call of its own. The online engine and the verb `plan` work through it, so that both give
-/// the same. One thread at a time.
+/// The stage behind registration: leaves out what the placed scans show to be foreign in each other, keeps
+/// the flags of all placed scans cleared against each other, makes the red map from them, and keeps the mesh
+/// stitched. The operator waits for the red map, nobody for the mesh: stitching has a call of its own. The
+/// online engine and the verb `plan` work through it, so that both give the same. One thread at a time.
 class PlanningStage {
  public:
   /// Makes a scan known. It takes part once place() says that it is registered.
@@ -43,6 +44,9 @@ class PlanningStage {
 
   /// The red map over what is placed.
   [[nodiscard]] Result<RedMap> red_map(const Rig* rig, JobContext& job);
+
+  /// Scans in which the last place() found something that is not of the tablet, and left it out; by id.
+  [[nodiscard]] const std::vector<ForeignFound>& foreign() const { return flags_.foreign(); }
 
   /// How the one scan that came between the last two red maps did; nothing when none or several came.
   [[nodiscard]] const std::optional<ViewGain>& last_gain() const { return last_gain_; }
@@ -105,6 +109,7 @@ class PlanningStage {
   [[nodiscard]] std::optional<PlacedScan> where_driven(int id) const;
 
   std::map<int, StationScan> scans_;
+  TabletFlags flags_;
   std::map<int, Placed> placed_;
   ClearedMap cleared_;
   Stitcher stitcher_;

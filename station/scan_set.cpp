@@ -21,6 +21,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
+void tell(const std::string& what, const ScanSetOptions& options) {
+  if (!options.again) {
+    log_warning(what);
+  }
+}
+
 /// Keeps a scan in the set, or hands it on.
 Status keep(StationScan scan, const ScanVisitor& visit, ScanSet& set) {
   if (!visit) {
@@ -40,7 +46,7 @@ Status load_session(const fs::path& path, const ScanSetOptions& options, const S
     return std::unexpected(store.error());
   }
   for (const Error& damage : store->opening().damage) {
-    log_warning(damage.line());
+    tell(damage.line(), options);
   }
   const auto scans = store->scans();
   if (!scans) {
@@ -63,7 +69,7 @@ Status load_session(const fs::path& path, const ScanSetOptions& options, const S
     return std::unexpected(log.error());
   }
   for (const Error& damage : log->damage) {
-    log_warning(damage.line());
+    tell(damage.line(), options);
   }
   set.word = std::move(log->word);
   std::map<int, Placement> drives;
@@ -91,7 +97,7 @@ Status load_session(const fs::path& path, const ScanSetOptions& options, const S
     }
     Result<RangeGrid> grid = store->load_grid(scan.id);
     if (!grid) {
-      log_warning(grid.error().line());
+      tell(grid.error().line(), options);
       continue;
     }
     StationScan prepared = prepare_scan(scan.id, std::move(*grid), set.pins);
@@ -135,7 +141,7 @@ Status load_folder(const fs::path& path, const ScanSetOptions& options, const Sc
       break;
     }
     for (const std::string& remark : source->record().remarks) {
-      log_warning((*grid)->source + ": " + remark);
+      tell((*grid)->source + ": " + remark, options);
     }
     StationScan prepared = prepare_scan(static_cast<int>(set.scans.size()), std::move(**grid), set.pins);
     grid->reset();
@@ -153,7 +159,7 @@ Status load_folder(const fs::path& path, const ScanSetOptions& options, const Sc
     return std::unexpected(set.left_out.front());
   }
   for (const Error& error : set.left_out) {
-    log_warning(error.line());
+    tell(error.line(), options);
   }
   job.progress("reading scans", 1.0);
   return {};

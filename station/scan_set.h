@@ -37,6 +37,8 @@ struct ScanSetOptions {
   /// A file that is going to be written: kUsage where it is one of a folder's scans, which cannot be made
   /// again.
   std::filesystem::path output{};
+  /// The set was read before: what there is to say of its files was said.
+  bool again = false;
 };
 
 /// Is given each scan as it is read, and owns it; what the set knows so far (poses, pins, the operator's

@@ -19,6 +19,7 @@
 #include "station/offline.h"
 #include "station/plan_again.h"
 #include "station/session_name.h"
+#include "station/tablet_flags.h"
 
 namespace dubsar {
 
@@ -171,6 +172,9 @@ Result<int> plan(const PlanArguments& arguments, CommandContext& context) {
   const Result<PlannedAgain> planned = plan_again(*set, *poses, context.job);
   if (!planned) {
     return std::unexpected(planned.error());
+  }
+  for (const ForeignFound& found : planned->stage->foreign()) {
+    log_warning(sentence_of(found));
   }
   const Results& results = planned->results;
   Comparison comparison;

@@ -27,6 +27,7 @@
 #include "station/offline.h"
 #include "station/outward_faces.h"
 #include "station/results.h"
+#include "station/tablet_flags.h"
 #include "triangulation/mesh_check.h"
 #include "triangulation/stitcher.h"
 
@@ -39,6 +40,7 @@ struct Taken {
   std::size_t scans = 0;
   std::map<int, std::string> names;  ///< of those, by id
   bool lacks_poses = false;          ///< of a scan that has not been judged yet: then the rest was not taken
+  std::vector<ScanPose> poses;       ///< of those
 };
 
 /// Why the grid cannot be in the unit that was said; empty when it may be.
@@ -68,6 +70,36 @@ void warn_of_strays(const Stitcher& stitcher, const std::map<int, std::string>& 
   }
 }
 
+Status put(Stitcher& stitcher, const StationScan& scan, const SampleFlags& flags, const ScanPose& pose,
+           const CommandContext& context) {
+  return stitcher.add({scan.id, scan.grid.get(), &flags, pose.model_from_scanner, pose.sigma_mm},
+                      context.job);
+}
+
+/// Which samples are foreign only all scans together tell: those that show some are read once more.
+Status leave_out_foreign(const ScanSetArguments& arguments, const Taken& taken, ForeignMatter& matter,
+                         Stitcher& stitcher, CommandContext& context) {
+  const std::vector<ForeignFound> foreign = matter.find(taken.poses);
+  if (foreign.empty()) {
+    return {};
+  }
+  for (const ForeignFound& found : foreign) {
+    log_warning(sentence_of(found));
+  }
+  ScanSetOptions reading = arguments.reading();
+  reading.again = true;
+  const auto take = [&](const ScanSet&, const StationScan& scan) -> Status {
+    if (std::ranges::find(foreign, scan.id, &ForeignFound::id) == foreign.end()) {
+      return {};
+    }
+    stitcher.remove(scan.id);
+    return put(stitcher, scan, without_foreign(*scan.grid, *scan.flags, matter.matter(scan.id, *scan.grid)),
+               *std::ranges::find(taken.poses, scan.id, &ScanPose::id), context);
+  };
+  const Result<ScanSet> set = visit_scan_set(arguments.path, reading, take, context.job);
+  return set ? Status() : std::unexpected(set.error());
+}
+
 /// Scan by scan, where the poses are known beforehand. One is made ready while the next is read: no more than
 /// two grids are in memory.
 Result<Taken> take_scan_by_scan(const ScanSetArguments& arguments, Stitcher& stitcher,
@@ -82,6 +114,7 @@ Result<Taken> take_scan_by_scan(const ScanSetArguments& arguments, Stitcher& sti
   }
   Taken taken;
   std::size_t with_pose = 0;
+  ForeignMatter matter;
   std::future<Status> adding;
   const auto take = [&](const ScanSet& set, StationScan scan) -> Status {
     const auto stored = std::ranges::find(set.poses, scan.id, &ScanPose::id);
@@ -107,10 +140,13 @@ Result<Taken> take_scan_by_scan(const ScanSetArguments& arguments, Stitcher& sti
     ++taken.scans;
     taken.names[scan.id] = scan.file;
     const Status before = adding.valid() ? adding.get() : Status{};
-    adding = std::async(std::launch::async, [&stitcher, &context, pose = *pose, scan = std::move(scan)] {
-      return stitcher.add(
-          {scan.id, scan.grid.get(), scan.flags.get(), pose.model_from_scanner, pose.sigma_mm}, context.job);
-    });
+    taken.poses.push_back(*pose);
+    taken.poses.back().id = scan.id;
+    adding =
+        std::async(std::launch::async, [&stitcher, &matter, &context, pose = *pose, scan = std::move(scan)] {
+          matter.add(scan.id, *scan.grid, *scan.flags);
+          return put(stitcher, scan, *scan.flags, pose, context);
+        });
     return before;
   };
   const Result<ScanSet> set = visit_scan_set(arguments.path, arguments.reading(), take, context.job);
@@ -124,7 +160,9 @@ Result<Taken> take_scan_by_scan(const ScanSetArguments& arguments, Stitcher& sti
   if (file && with_pose == 0) {
     return no_pose_of_these(arguments.poses);
   }
-  return taken;
+  const Status left_out =
+      taken.lacks_poses ? Status() : leave_out_foreign(arguments, taken, matter, stitcher, context);
+  return left_out ? Result<Taken>(std::move(taken)) : std::unexpected(left_out.error());
 }
 
 /// With a registration first, which needs all of them.
@@ -143,11 +181,22 @@ Result<Taken> take_registered(const ScanSetArguments& arguments, Stitcher& stitc
       warn_left_out(pose);
     }
   }
-  const std::vector<PlacedScan> placed = placed_scans(*set, *poses);
+  std::vector<PlacedScan> placed = placed_scans(*set, *poses);
+  TabletFlags flags;
+  for (const StationScan& scan : set->scans) {
+    flags.add(scan);
+  }
+  flags.follow(*poses);
+  for (PlacedScan& scan : placed) {
+    scan.flags = &flags.of(scan.id);
+  }
+  for (const ForeignFound& found : flags.foreign()) {
+    log_warning(sentence_of(found));
+  }
   if (const Status added = stitcher.add(placed, context.job); !added) {
     return std::unexpected(added.error());
   }
-  Taken taken{placed.size(), {}, false};
+  Taken taken{placed.size(), {}, false, {}};
   for (const ScanPose& pose : *poses) {
     if (pose.status == PoseStatus::kRegistered) {
       taken.names[pose.id] = pose.file;

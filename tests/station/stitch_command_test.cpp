@@ -5,6 +5,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
+#include "formats/mesh_io.h"
 #include "formats/poses_json.h"
 #include "tests/station/support/bumpy_scans.h"
 #include "tests/station/support/command.h"
@@ -73,6 +77,38 @@ TEST_F(StitchCommand, NamesAScanThatLiesByItself) {
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_THAT(outcome.complaints(), SizeIs(1)) << outcome.err;
   EXPECT_THAT(outcome.err, HasSubstr(test::scan_name(1) + " overlaps no other scan"));
+}
+
+/// Each of two scans has a finger of its own before it, where the others see the field.
+TEST_F(StitchCommand, LeavesOutFingersInSeveralScans) {
+  const auto highest = [&]() {
+    float out = 0;
+    const Result<Mesh> mesh = read_mesh(at("mesh.ply"));
+    EXPECT_TRUE(mesh);
+    for (const Eigen::Vector3f& p : mesh->positions) {
+      out = std::max(out, p.z());
+    }
+    return out;
+  };
+  ASSERT_EQ(stitched().status, 0);
+  const float of_the_field = highest();
+  for (const int number : {1, 2}) {
+    RangeGrid grid = test::bumpy_scan(number);
+    const Eigen::Vector3d middle =
+        test::bumpy_pose(number).inverse() * Eigen::Vector3d(12 * number - 18, 3, 0);
+    for (std::size_t i = 0; i < grid.size(); ++i) {
+      const Eigen::Vector2f away = (grid.point(i).cast<double>() - middle).head<2>().cast<float>();
+      grid.z[i] += away.norm() < 5 ? 4 + std::sqrt(25.0F - away.squaredNorm()) : 0;
+    }
+    ASSERT_TRUE(write_grid_ply(fs::path(at("scans")) / test::scan_name(number), grid));
+  }
+  const Outcome outcome = stitched();
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.complaints(), SizeIs(2)) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("something was in the way of scan 1: "));
+  EXPECT_THAT(outcome.err, HasSubstr("left out (looked through by scans 0 and 2)"));
+  EXPECT_THAT(outcome.err, HasSubstr("something was in the way of scan 2: "));
+  EXPECT_LT(highest(), of_the_field + 0.5F);
 }
 
 TEST_F(StitchCommand, WritesNoMeshOfNoFaces) {

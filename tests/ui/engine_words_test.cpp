@@ -208,6 +208,13 @@ TEST(EngineWords, WhoSetsAScanAsideSaysItInOneLanguage) {
   EXPECT_EQ(translated(said, Language::kEnglish),
             "something was in the way of scan 3: 12 % of it, where scan 2 looked too, stands in the air; it "
             "is set aside (a click on it puts it back)");
+  EXPECT_EQ(
+      translated(
+          "something was in the way of scan 3: 12 mm² of it are left out (looked through by scans 1, 2 and "
+          "5); 30 mm² may be of it or of the tablet and stay red until another scan tells",
+          Language::kGerman),
+      "etwas war im Weg von Scan 3: 12 mm² davon sind weggelassen (es sahen hindurch: Scans 1, 2 und 5); "
+      "30 mm² können davon oder von der Tafel sein und bleiben rot, bis ein anderer Scan es zeigt");
   EXPECT_EQ(translated("scans 1, 2 and 5 fit each other and not scan 0", Language::kGerman),
             "Scans 1, 2 und 5 passen zueinander und nicht zu Scan 0");
 }
