@@ -88,6 +88,7 @@ Status leave_out_foreign(const ScanSetArguments& arguments, const Taken& taken, 
   }
   ScanSetOptions reading = arguments.reading();
   reading.again = true;
+  reading.access = SessionStore::Access::kReadOnly;  // the first reading still holds the session
   const auto take = [&](const ScanSet&, const StationScan& scan) -> Status {
     if (std::ranges::find(foreign, scan.id, &ForeignFound::id) == foreign.end()) {
       return {};

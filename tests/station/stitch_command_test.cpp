@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "acquisition/session_store.h"
 #include "formats/mesh_io.h"
 #include "formats/poses_json.h"
 #include "tests/station/support/bumpy_scans.h"
@@ -92,6 +93,7 @@ TEST_F(StitchCommand, LeavesOutFingersInSeveralScans) {
   };
   ASSERT_EQ(stitched().status, 0);
   const float of_the_field = highest();
+  std::vector<RangeGrid> grids{test::bumpy_scan(0)};
   for (const int number : {1, 2}) {
     RangeGrid grid = test::bumpy_scan(number);
     const Eigen::Vector3d middle =
@@ -101,6 +103,7 @@ TEST_F(StitchCommand, LeavesOutFingersInSeveralScans) {
       grid.z[i] += away.norm() < 5 ? 4 + std::sqrt(25.0F - away.squaredNorm()) : 0;
     }
     ASSERT_TRUE(write_grid_ply(fs::path(at("scans")) / test::scan_name(number), grid));
+    grids.push_back(std::move(grid));
   }
   const Outcome outcome = stitched();
   EXPECT_EQ(outcome.status, 0) << outcome.err;
@@ -108,6 +111,18 @@ TEST_F(StitchCommand, LeavesOutFingersInSeveralScans) {
   EXPECT_THAT(outcome.err, HasSubstr("something was in the way of scan 1: "));
   EXPECT_THAT(outcome.err, HasSubstr("left out (looked through by scans 0 and 2)"));
   EXPECT_THAT(outcome.err, HasSubstr("something was in the way of scan 2: "));
+  EXPECT_LT(highest(), of_the_field + 0.5F);
+
+  {  // of a session, which the command itself keeps from others meanwhile
+    SessionStore store = SessionStore::open_or_create(at("session")).value();
+    for (const RangeGrid& grid : grids) {
+      ASSERT_TRUE(store.add_grid(grid));
+    }
+    ASSERT_TRUE(store.save_poses(poses_));
+  }
+  fs::remove(at("mesh.ply"));
+  const Outcome of_session = test::run_command({"stitch", at("session"), "-o", at("mesh.ply")});
+  EXPECT_EQ(of_session.status, 0) << of_session.err;
   EXPECT_LT(highest(), of_the_field + 0.5F);
 }
 
