@@ -12,7 +12,6 @@
 #include <cerrno>
 #include <charconv>
 #include <cstring>
-#include <fstream>
 #include <memory>
 #include <sstream>
 #include <utility>
@@ -174,13 +173,9 @@ std::int64_t hash_of(std::string_view bytes) {
 }
 
 Result<FileSum> sum_of_file(const fs::path& path, const JobContext* job) {
-  std::error_code ignored;
-  if (fs::exists(path, ignored) && !fs::is_regular_file(path, ignored)) {
-    return bad_input(path.string(), "not a file", "bring it back from a copy");
-  }
-  std::ifstream file(path, std::ios::binary);
+  Result<std::ifstream> file = open_stored_file(path);
   if (!file) {
-    return bad_input(path.string(), "missing or unreadable", "bring it back from a copy");
+    return std::unexpected(file.error());
   }
   const std::unique_ptr<XXH64_state_t, StateFreer> state(XXH64_createState());
   XXH64_reset(state.get(), 0);
@@ -189,16 +184,16 @@ Result<FileSum> sum_of_file(const fs::path& path, const JobContext* job) {
   const std::uintmax_t size = fs::file_size(path, unknown);
   std::vector<char> piece(unknown ? kPieceBytes : std::min<std::uintmax_t>(kPieceBytes, size + 1));
   FileSum sum;
-  while (file) {
+  while (*file) {
     if (job != nullptr && job->cancelled()) {
       return fail(ErrorKind::kCancelled, "verification cancelled");
     }
-    file.read(piece.data(), static_cast<std::streamsize>(piece.size()));
-    const auto got = static_cast<std::size_t>(file.gcount());
+    file->read(piece.data(), static_cast<std::streamsize>(piece.size()));
+    const auto got = static_cast<std::size_t>(file->gcount());
     XXH64_update(state.get(), piece.data(), got);
     sum.bytes += static_cast<std::int64_t>(got);
   }
-  if (file.bad()) {
+  if (file->bad()) {
     return fail(ErrorKind::kStorage, "cannot be read to its end", path.string(), "check the disk");
   }
   sum.hash = static_cast<std::int64_t>(XXH64_digest(state.get()));

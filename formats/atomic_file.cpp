@@ -232,6 +232,18 @@ Result<std::string> read_whole_file(const std::filesystem::path& path, std::uint
   return read_up_to(path, limit_bytes, true);
 }
 
+Result<std::ifstream> open_stored_file(const std::filesystem::path& path) {
+  std::error_code ignored;
+  if (std::filesystem::exists(path, ignored) && !std::filesystem::is_regular_file(path, ignored)) {
+    return bad_input(path.string(), "not a file", "bring it back from a copy");
+  }
+  std::ifstream file(path, std::ios::binary);
+  if (!file) {
+    return bad_input(path.string(), "missing or unreadable", "bring it back from a copy");
+  }
+  return file;
+}
+
 Result<std::string> read_file_head(const std::filesystem::path& path, std::size_t count) {
   return read_up_to(path, count, false);
 }

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <fstream>
 #include <functional>
 #include <span>
 #include <string>
@@ -44,6 +45,9 @@ inline constexpr std::uint64_t kMaxFileBytes = std::uint64_t{8} << 30U;
 /// program). Errors: missing, unreadable, a folder, larger than `limit_bytes`.
 [[nodiscard]] Result<std::string> read_whole_file(const std::filesystem::path& path,
                                                   std::uint64_t limit_bytes = kMaxFileBytes);
+/// A stored file, to be read in pieces. What is no file is refused and not opened: a pipe would keep the
+/// reader waiting, a device give bytes without an end. Errors: kBadInput.
+[[nodiscard]] Result<std::ifstream> open_stored_file(const std::filesystem::path& path);
 /// The first bytes of a file, at most `count`.
 [[nodiscard]] Result<std::string> read_file_head(const std::filesystem::path& path, std::size_t count);
 

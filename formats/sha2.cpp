@@ -6,9 +6,10 @@
 
 #include <array>
 #include <cstddef>
-#include <fstream>
 #include <new>
 #include <vector>
+
+#include "formats/atomic_file.h"
 
 namespace dubsar {
 
@@ -59,24 +60,20 @@ std::string sha2_hex(Sha2 kind, std::string_view bytes) {
 }
 
 Result<std::string> sha2_of_file(Sha2 kind, const std::filesystem::path& path, const JobContext& job) {
-  std::error_code ignored;
-  if (std::filesystem::exists(path, ignored) && !std::filesystem::is_regular_file(path, ignored)) {
-    return bad_input(path.string(), "not a file", "bring it back from a copy");
-  }
-  std::ifstream file(path, std::ios::binary);
+  Result<std::ifstream> file = open_stored_file(path);
   if (!file) {
-    return bad_input(path.string(), "missing or unreadable", "bring it back from a copy");
+    return std::unexpected(file.error());
   }
   std::vector<char> piece(kPieceBytes);
   Sha2Sum sum(kind);
-  while (file) {
+  while (*file) {
     if (job.cancelled()) {
       return fail(ErrorKind::kCancelled, "stopped", path.string());
     }
-    file.read(piece.data(), static_cast<std::streamsize>(piece.size()));
-    sum.add({piece.data(), static_cast<std::size_t>(file.gcount())});
+    file->read(piece.data(), static_cast<std::streamsize>(piece.size()));
+    sum.add({piece.data(), static_cast<std::size_t>(file->gcount())});
   }
-  if (file.bad()) {
+  if (file->bad()) {
     return fail(ErrorKind::kStorage, "cannot be read to its end", path.string(), "check the disk");
   }
   return sum.hex();

@@ -2,10 +2,14 @@
 // Copyright The Dubsar developers
 #pragma once
 
+#include <unistd.h>
+
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
+#include <filesystem>
+#include <string>
 #include <string_view>
 
 #include "core/mesh.h"
@@ -15,6 +19,16 @@ namespace dubsar::fuzz {
 
 [[nodiscard]] inline std::string_view text_of(const std::uint8_t* data, std::size_t size) {
   return {reinterpret_cast<const char*>(data), size};
+}
+
+/// A place of this process, in memory where there is such a thing: the disk's speed is not what is looked
+/// for.
+[[nodiscard]] inline std::filesystem::path work_path() {
+  std::error_code ignored;
+  const std::filesystem::path base = std::filesystem::is_directory("/dev/shm", ignored)
+                                         ? std::filesystem::path("/dev/shm")
+                                         : std::filesystem::temp_directory_path();
+  return base / ("dubsar-fuzz-" + std::to_string(::getpid()));
 }
 
 /// A reader that hands on something inconsistent is as wrong as one that crashes.

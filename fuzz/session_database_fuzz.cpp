@@ -3,8 +3,6 @@
 // The database of a session alone: found whole or damaged, and what can be saved of its rows, without the
 // session around it, so that it runs ten times as often as in the target `session`. After a first byte 's'
 // the rows get checksums that fit, or hardly any that was changed would be looked at.
-#include <unistd.h>
-
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -18,14 +16,9 @@ using namespace dubsar;
 
 namespace {
 
-/// In memory where there is such a place. SQLite reads files only.
+/// SQLite reads files only.
 struct File {
-  fs::path path;
-  File() {
-    std::error_code ignored;
-    const fs::path base = fs::is_directory("/dev/shm", ignored) ? "/dev/shm" : fs::temp_directory_path();
-    path = base / ("dubsar-fuzz-" + std::to_string(::getpid()) + ".sqlite");
-  }
+  fs::path path = fuzz::work_path();
   ~File() {
     std::error_code ignored;
     fs::remove(path, ignored);

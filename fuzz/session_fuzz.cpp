@@ -4,7 +4,6 @@
 // log, its backup, the list of checksums or a grid. Opening for reading and for writing, verifying and
 // mending must come to an end, and the scan that was not touched must be there.
 #include <sys/stat.h>
-#include <unistd.h>
 
 #include <cstdlib>
 #include <filesystem>
@@ -33,15 +32,8 @@ RangeGrid small_grid(int number) {
   return grid;
 }
 
-/// In memory where there is such a place: the disk's speed is not what is looked for here.
-fs::path work_folder() {
-  std::error_code ignored;
-  const fs::path base = fs::is_directory("/dev/shm", ignored) ? "/dev/shm" : fs::temp_directory_path();
-  return base / ("dubsar-fuzz-" + std::to_string(::getpid()));
-}
-
 struct Folders {
-  fs::path all = work_folder();
+  fs::path all = fuzz::work_path();
   fs::path good = all / "good";
   Folders() {
     fs::remove_all(all);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/dilated.h"
 #include "core/parallel.h"
 #include "registration/foreign_witness.h"
 #include "registration/grid_links.h"
@@ -150,9 +151,12 @@ bool ForeignMatter::look(const Placed& own, std::span<const Placed> all) {
   set_to(Matter::kDoubtful, contested, matter);
   // Pins are looked for and known; what remains of an arm is no reason to doubt the clay beside it.
   if (!mine.pins) {
+    std::vector<std::uint8_t> is_foreign(grid.size());
+    std::ranges::transform(matter, is_foreign.begin(), [](Matter what) {
+      return what == Matter::kForeign ? std::uint8_t{1} : std::uint8_t{0};
+    });
     const std::vector<std::uint8_t> near =
-        cells_near(grid, static_cast<int>(std::ceil(kDoubtMm / grid.spacing_mm)),
-                   [&](std::size_t i) { return matter[i] == Matter::kForeign; });
+        dilated(is_foreign, grid.rows, grid.cols, static_cast<int>(std::ceil(kDoubtMm / grid.spacing_mm)));
     for (std::size_t i = 0; i < grid.size(); ++i) {
       if (near[i] != 0 && grid.valid[i] != 0 && unknown(i)) {
         matter[i] = Matter::kDoubtful;

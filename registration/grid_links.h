@@ -53,39 +53,4 @@ std::vector<std::vector<std::size_t>> linked_parts(const RangeGrid& grid, float 
   return out;
 }
 
-/// [rows*cols], 1 on cells no more than `steps` rows and columns from one that `is_one` holds for.
-template <class IsOne>
-std::vector<std::uint8_t> cells_near(const RangeGrid& grid, int steps, const IsOne& is_one) {
-  const int cols = grid.cols;
-  std::vector<std::uint8_t> along(grid.size(), 0);
-  const auto spread = [steps](int count, const auto& is_set, const auto& set) {
-    int last = -steps - 1;
-    for (int k = 0; k < count; ++k) {
-      last = is_set(k) ? k : last;
-      if (k - last <= steps) {
-        set(k);
-      }
-    }
-    last = count + steps + 1;
-    for (int k = count - 1; k >= 0; --k) {
-      last = is_set(k) ? k : last;
-      if (last - k <= steps) {
-        set(k);
-      }
-    }
-  };
-  for (int row = 0; row < grid.rows; ++row) {
-    spread(
-        cols, [&](int c) { return is_one(grid.index(row, c)); },
-        [&](int c) { along[grid.index(row, c)] = 1; });
-  }
-  std::vector<std::uint8_t> out(grid.size(), 0);
-  for (int col = 0; col < cols; ++col) {
-    spread(
-        grid.rows, [&](int r) { return along[grid.index(r, col)] != 0; },
-        [&](int r) { out[grid.index(r, col)] = 1; });
-  }
-  return out;
-}
-
 }  // namespace dubsar

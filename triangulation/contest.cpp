@@ -6,6 +6,7 @@
 #include <cmath>
 #include <optional>
 
+#include "core/dilated.h"
 #include "core/parallel.h"
 #include "triangulation/patch_shape.h"
 

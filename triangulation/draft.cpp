@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 
+#include "core/dilated.h"
 #include "core/huge_pages.h"
 #include "core/parallel.h"
 #include "triangulation/patch_shape.h"

@@ -23,8 +23,4 @@ void drop_scattered(std::vector<std::uint8_t>& fresh, const std::vector<std::uin
 /// scan tells others of its patches (near_kept, some_kept, all_kept) up to date.
 void settle_patches(OwnedScan& scan);
 
-/// 1 within `radius` (a square) of a mark.
-[[nodiscard]] std::vector<std::uint8_t> dilated(const std::vector<std::uint8_t>& marks, int height, int width,
-                                                int radius);
-
 }  // namespace dubsar

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/dilated.h"
 #include "core/parallel.h"
 #include "triangulation/assembly.h"
 #include "triangulation/patch_shape.h"

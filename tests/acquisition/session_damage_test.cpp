@@ -3,7 +3,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
-#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -15,9 +14,7 @@
 #include "acquisition/session_files.h"
 #include "acquisition/session_log.h"
 #include "acquisition/session_store.h"
-#include "acquisition/sqlite_db.h"
-#include "formats/atomic_file.h"
-#include "tests/acquisition/session_support.h"
+#include "tests/acquisition/session_damage_support.h"
 #include "tests/support/temporary_folder.h"
 
 namespace dubsar {
@@ -25,48 +22,12 @@ namespace {
 
 namespace fs = std::filesystem;
 using test::flip_byte;
+using test::SessionDamageTest;
 using test::small_grid;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
 constexpr auto kReadOnly = SessionStore::Access::kReadOnly;
-
-class SessionDamageTest : public testing::Test {
- protected:
-  void SetUp() override {
-    SessionStore store = SessionStore::open_or_create(folder_).value();
-    for (int i = 0; i < 4; ++i) {
-      ASSERT_EQ(store.add_grid(small_grid(i)).value(), i);
-    }
-    ASSERT_TRUE(store.drop_scan(1, "blurred"));
-    ASSERT_TRUE(store.save_document("rig", "{\"name\":\"bench\"}"));
-    ScanPose pose;
-    pose.status = PoseStatus::kRegistered;
-    pose.id = 2;
-    ASSERT_TRUE(store.save_poses({pose}));
-  }
-
-  /// Everything that SetUp stored is there and whole, apart from the grids named.
-  static void expect_content(const SessionStore& store, const std::vector<int>& lost = {}) {
-    const auto scans = store.scans().value();
-    ASSERT_EQ(scans.size(), 4U);
-    for (int id = 0; id < 4; ++id) {
-      const bool gone = std::ranges::find(lost, id) != lost.end();
-      EXPECT_EQ(scans[static_cast<std::size_t>(id)].damaged, gone) << id;
-      const Result<RangeGrid> grid = store.load_grid(id);
-      EXPECT_EQ(grid.has_value(), !gone) << id;
-      if (grid) {
-        EXPECT_EQ(grid->z, small_grid(id).z);
-      }
-    }
-    EXPECT_TRUE(scans[1].dropped);
-    EXPECT_EQ(store.load_document("rig").value(), "{\"name\":\"bench\"}");
-  }
-
-  test::TemporaryFolder temporary_;
-  fs::path folder_ = temporary_.path() / "session";
-  JobContext job_;
-};
 
 TEST_F(SessionDamageTest, ADamagedGridIsNamedAndTheRestStands) {
   flip_byte(folder_ / "grids/002.grid", 1234);
@@ -87,77 +48,6 @@ TEST_F(SessionDamageTest, AMissingOrCutGridIsNamed) {
   const SessionStore store = SessionStore::open(folder_).value();
   EXPECT_EQ(store.opening().damage.size(), 2U);
   expect_content(store, {0, 3});
-}
-
-TEST_F(SessionDamageTest, WhatIsNoFileIsNamedAndNotWaitedFor) {
-  ASSERT_EQ(::mkfifo((folder_ / "grids/007.grid").c_str(), 0600), 0);
-  fs::remove(folder_ / "grids/003.grid");
-  ASSERT_EQ(::mkfifo((folder_ / "grids/003.grid").c_str(), 0600), 0);
-  ASSERT_EQ(::mkfifo((folder_ / "mesh/notes.json").c_str(), 0600), 0);
-  for (const auto access : {kReadOnly, SessionStore::Access::kReadWrite}) {
-    const SessionStore store = SessionStore::open(folder_, access).value();
-    expect_content(store, {3});
-    const VerifyReport report = store.verify(job_).value();
-    ASSERT_EQ(report.damaged.size(), 2U);
-    EXPECT_EQ(report.damaged[0].where, "grids/007.grid");
-    EXPECT_EQ(report.damaged[1].where, "grids/003.grid");
-    EXPECT_EQ(report.damaged[1].what, "not a file");
-    EXPECT_THAT(report.extra, testing::Contains("mesh/notes.json"));
-  }
-}
-
-TEST_F(SessionDamageTest, RowsWithoutTheirKeyAreNotTakenIntoTheRebuiltDatabase) {
-  std::string bytes = read_whole_file(folder_ / session::kDatabase).value();
-  const std::string key = "scans(id INTEGER PRIMARY KEY";
-  const std::size_t at = bytes.find(key);
-  ASSERT_NE(at, std::string::npos);
-  bytes.replace(at, key.size(),
-                "scans(id INTEGEM PRIMARY KEY");  // no longer the row's number: reads as nothing
-  std::ofstream(folder_ / session::kDatabase, std::ios::binary) << bytes;
-  {
-    SqlDatabase db = SqlDatabase::open(folder_ / session::kDatabase, SqlDatabase::Mode::kCreate).value();
-    ASSERT_TRUE(
-        db.execute("UPDATE scans SET sum = dubsar_sum(id,file,bytes,hash,rows,cols,samples,spacing_mm,"
-                   "timestamp_ns,device,source,dropped,note)"));
-  }
-  EXPECT_FALSE(SessionStore::open(folder_).value().opening().damage.empty());
-  const SessionStore again = SessionStore::open(folder_).value();
-  EXPECT_THAT(again.opening().damage, IsEmpty());
-  EXPECT_EQ(again.scans().value().size(), 4U);
-}
-
-TEST_F(SessionDamageTest, APipeInPlaceOfTheDatabaseIsNotWaitedFor) {
-  fs::remove(folder_ / session::kDatabase);
-  ASSERT_EQ(::mkfifo((folder_ / session::kDatabase).c_str(), 0600), 0);
-  for (const auto access : {kReadOnly, SessionStore::Access::kReadWrite}) {
-    const SessionStore store = SessionStore::open(folder_, access).value();
-    ASSERT_EQ(store.opening().damage.size(), 1U);
-    expect_content(store);
-  }
-  EXPECT_TRUE(fs::is_regular_file(folder_ / session::kDatabase));
-}
-
-TEST_F(SessionDamageTest, TablesThatLeadOutOfTheSessionAreNotFollowed) {
-  {
-    SqlDatabase db = SqlDatabase::open(folder_ / session::kDatabase, SqlDatabase::Mode::kCreate).value();
-    ASSERT_TRUE(db.execute("UPDATE scans SET file = '/dev/zero' WHERE id = 2"));
-    ASSERT_TRUE(
-        db.execute("UPDATE scans SET sum = dubsar_sum(id,file,bytes,hash,rows,cols,samples,spacing_mm,"
-                   "timestamp_ns,device,source,dropped,note)"));
-    ASSERT_TRUE(db.execute("INSERT INTO files(path,bytes,hash) VALUES('mesh/../../other.ply',1,1)"));
-    ASSERT_TRUE(db.execute("UPDATE files SET sum = dubsar_sum(path,bytes,hash)"));
-  }
-  std::ofstream(temporary_.path() / "other.ply") << "x";
-  const SessionStore store = SessionStore::open(folder_, kReadOnly).value();
-  EXPECT_TRUE(store.scans().value()[2].damaged);
-  const VerifyReport report = store.verify(job_).value();
-  std::vector<std::string> named;
-  for (const Error& fault : report.damaged) {
-    named.push_back(fault.where + ": " + fault.what);
-  }
-  EXPECT_THAT(named,
-              testing::IsSupersetOf({"/dev/zero: named by the tables, and no file of a session",
-                                     "mesh/../../other.ply: named by the tables, and no file of a session"}));
 }
 
 TEST_F(SessionDamageTest, VerifyNoticesAFlippedByteAnywhere) {

@@ -71,13 +71,5 @@ TEST(PatchShape, ScatteredSamplesAreDroppedGroupsAndAdditionsStay) {
   EXPECT_EQ(count(fresh), 0U);
 }
 
-TEST(PatchShape, DilatedMarksASquare) {
-  Marks marks(100, 0);
-  marks[0] = marks[57] = 1;
-  const Marks wide = dilated(marks, 10, 10, 2);
-  EXPECT_EQ(count(wide), 9U + 25U);
-  EXPECT_EQ(wide[22] & wide[35] & wide[79], 1);
-}
-
 }  // namespace
 }  // namespace dubsar
