@@ -7,9 +7,11 @@
 #include <array>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "acquisition/calibration_laser.h"
 #include "acquisition/sphere_fit.h"
+#include "core/order_statistics.h"
 #include "core/random.h"
 #include "core/units.h"
 #include "formats/number_text.h"
@@ -54,11 +56,9 @@ std::array<double, 2> extent_mm(const Plane& plane, const std::vector<Eigen::Vec
     for (std::size_t i = 0; i < points.size(); i += stride) {
       at.push_back(direction.dot(points[i]));
     }
-    const auto stray = static_cast<std::ptrdiff_t>(0.5 * kLeftOut * static_cast<double>(at.size()));
-    std::nth_element(at.begin(), at.begin() + stray, at.end());
-    const double low = at[static_cast<std::size_t>(stray)];
-    std::nth_element(at.begin(), at.end() - 1 - stray, at.end());
-    return *(at.end() - 1 - stray) - low;
+    const auto stray = static_cast<std::size_t>(0.5 * kLeftOut * static_cast<double>(at.size()));
+    const double low = value_at_rank(at, stray);
+    return value_at_rank(at, at.size() - 1 - stray) - low;
   };
   std::array<double, kTurns> widths{};
   std::array<double, 2> best{1e150, 1e150};

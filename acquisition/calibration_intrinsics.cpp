@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <opencv2/calib3d.hpp>
+#include <utility>
 
 #include "acquisition/calibration_views.h"
+#include "core/order_statistics.h"
 #include "core/units.h"
 #include "formats/number_text.h"
 
@@ -88,12 +90,6 @@ Solved solve(const std::vector<CalibrationView>& views, const std::vector<std::s
   }
   out.total_rms_px = std::sqrt(all / static_cast<double>(count));
   return out;
-}
-
-double median_of(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 /// The largest angle between the normals of two boards.

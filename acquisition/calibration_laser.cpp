@@ -6,7 +6,9 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include "core/order_statistics.h"
 #include "core/random.h"
 
 namespace dubsar {
@@ -46,9 +48,7 @@ double median_distance(const Plane& plane, const std::vector<Eigen::Vector3d>& p
   for (const Eigen::Vector3d& p : points_mm) {
     distances.push_back(std::abs(plane.signed_distance_mm(p)));
   }
-  const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
-  std::nth_element(distances.begin(), middle, distances.end());
-  return *middle;
+  return median_of(std::move(distances));
 }
 
 }  // namespace
@@ -124,7 +124,7 @@ Result<PlaneFit> fit_plane(const std::vector<Eigen::Vector3d>& points_mm) {
   }
   PlaneFit fit;
   for (int round = 0; round < 5; ++round) {
-    const double limit = std::max(1e-6, 3 * 1.4826 * median_distance(best, points_mm));
+    const double limit = std::max(1e-6, 3 * kSigmaOfMedian * median_distance(best, points_mm));
     std::vector<std::uint8_t> marked;
     marked.reserve(points_mm.size());
     for (const Eigen::Vector3d& p : points_mm) {

@@ -15,6 +15,7 @@
 #include "acquisition/fresh_frame.h"
 #include "acquisition/rig_parts.h"
 #include "acquisition/stops_when_cancelled.h"
+#include "core/order_statistics.h"
 #include "formats/atomic_file.h"
 #include "formats/gray_file.h"
 
@@ -47,9 +48,7 @@ std::optional<double> moved_px(const BoardView& a, const BoardView& b) {
   if (ways.empty()) {
     return std::nullopt;
   }
-  const auto middle = ways.begin() + static_cast<std::ptrdiff_t>(ways.size() / 2);
-  std::ranges::nth_element(ways, middle);
-  return *middle;
+  return median_of(std::move(ways));
 }
 
 /// Where one kind of picture has an exposure of its own, the other keeps that which the camera stands at.

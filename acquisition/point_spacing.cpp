@@ -9,6 +9,9 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <utility>
+
+#include "core/order_statistics.h"
 
 namespace dubsar {
 
@@ -142,9 +145,7 @@ NeighbourStatistics nearest_neighbours(const std::vector<Eigen::Vector3f>& point
   if (std::abs(sum) > kShared * static_cast<double>(distances.size())) {
     out.lattice_rad = std::arg(sum) / 4.0;
   }
-  const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
-  std::nth_element(distances.begin(), middle, distances.end());
-  out.median_mm = *middle;
+  out.median_mm = median_of(std::move(distances));
   return out;
 }
 
@@ -172,9 +173,7 @@ double even_spacing_mm(const std::vector<Eigen::Vector3f>& points, double neares
     per_point.insert(per_point.end(), end - i, end - i);
     i = end;
   }
-  const auto middle = per_point.begin() + static_cast<std::ptrdiff_t>(per_point.size() / 2);
-  std::nth_element(per_point.begin(), middle, per_point.end());
-  return cell / std::sqrt(static_cast<double>(*middle));
+  return cell / std::sqrt(static_cast<double>(median_of(std::move(per_point))));
 }
 
 }  // namespace dubsar

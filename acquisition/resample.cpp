@@ -10,6 +10,7 @@
 #include <numeric>
 
 #include "acquisition/point_spacing.h"
+#include "core/order_statistics.h"
 #include "core/units.h"
 
 namespace dubsar {
@@ -112,12 +113,10 @@ void trim(Raster& raster) {
     for (const Eigen::Vector3f& p : raster.uvw) {
       values.push_back(p[axis]);
     }
-    const auto cut = static_cast<std::ptrdiff_t>(values.size() / 1000 + 1);
-    const auto last = static_cast<std::ptrdiff_t>(values.size()) - 1;
-    std::nth_element(values.begin(), values.begin() + std::min(cut, last), values.end());
-    low[axis] = values[static_cast<std::size_t>(std::min(cut, last))];
-    std::nth_element(values.begin(), values.begin() + std::max<std::ptrdiff_t>(0, last - cut), values.end());
-    high[axis] = values[static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, last - cut))];
+    const std::size_t last = values.size() - 1;
+    const std::size_t cut = std::min(values.size() / 1000 + 1, last);
+    low[axis] = value_at_rank(values, cut);
+    high[axis] = value_at_rank(values, last - cut);
   }
   const Eigen::Vector2f margin = 0.5F * (high - low) + Eigen::Vector2f::Constant(raster.cell);
   low -= margin;

@@ -10,6 +10,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/order_statistics.h"
+
 namespace dubsar {
 
 namespace {
@@ -34,16 +36,14 @@ double median_difference(const std::vector<float>& at, std::size_t lag, std::vec
   if (scratch.size() < kFewest) {
     return 0;
   }
-  const auto middle = scratch.begin() + static_cast<std::ptrdiff_t>(scratch.size() / 2);
-  std::nth_element(scratch.begin(), middle, scratch.end());
-  return static_cast<double>(*middle);
+  return static_cast<double>(value_at_rank(scratch, scratch.size() / 2));
 }
 
 }  // namespace
 
 double line_noise_px(const StripeLine& line) {
-  // The median of |x| is 0.6745 of a Gaussian's standard deviation; a - 2 b + c has √6 times that of each.
-  constexpr double kSigma = 1.0 / (0.6745 * 2.449489743);
+  // a - 2 b + c has √6 times the standard deviation of each.
+  constexpr double kSigma = kSigmaOfMedian / 2.449489743;
   std::vector<float> scratch;
   scratch.reserve(line.at_px.size());
   return kSigma *

@@ -7,8 +7,10 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "acquisition/stripe_line.h"
+#include "core/order_statistics.h"
 
 namespace dubsar {
 
@@ -120,9 +122,7 @@ std::optional<double> common_bend(std::span<const Sweep> sweeps) {
   if (bends.size() < kFewest) {
     return std::nullopt;
   }
-  const auto middle = bends.begin() + static_cast<std::ptrdiff_t>(bends.size() / 2);
-  std::nth_element(bends.begin(), middle, bends.end());
-  return *middle;
+  return median_of(std::move(bends));
 }
 
 }  // namespace

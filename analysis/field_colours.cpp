@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/order_statistics.h"
 #include "core/parallel.h"
 
 namespace dubsar {
@@ -49,9 +50,7 @@ float deep_mm(std::vector<float> heights) {
   if (heights.empty()) {
     return kLeastHeightRangeMm;
   }
-  const auto at = heights.begin() + static_cast<std::ptrdiff_t>(heights.size() / 100);
-  std::nth_element(heights.begin(), at, heights.end());
-  return std::max(kLeastHeightRangeMm, -*at);
+  return std::max(kLeastHeightRangeMm, -value_at_rank(heights, heights.size() / 100));
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <iterator>
 
+#include "core/order_statistics.h"
 #include "core/parallel.h"
 
 namespace dubsar {
@@ -23,10 +24,8 @@ float automatic_openness(const std::vector<float>& openness) {
   if (sorted.empty()) {
     return kLeastThreshold;
   }
-  const auto at = sorted.begin() +
-                  static_cast<std::ptrdiff_t>((1.0 - kOpenShare) * static_cast<double>(sorted.size() - 1));
-  std::nth_element(sorted.begin(), at, sorted.end());
-  return std::max(kLeastThreshold, *at - kBelowOpen);
+  const auto rank = static_cast<std::size_t>((1.0 - kOpenShare) * static_cast<double>(sorted.size() - 1));
+  return std::max(kLeastThreshold, value_at_rank(sorted, rank) - kBelowOpen);
 }
 
 std::vector<std::uint8_t> find_free_surface(const std::vector<float>& openness,

@@ -2,9 +2,10 @@
 // Copyright The Dubsar developers
 #include "analysis/height_noise.h"
 
-#include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include "core/order_statistics.h"
 #include "core/parallel.h"
 
 namespace dubsar {
@@ -39,9 +40,7 @@ double height_noise_mm(const VertexGraph& graph, std::span<const float> height_m
   if (off.empty()) {
     return 0;
   }
-  const auto middle = off.begin() + static_cast<std::ptrdiff_t>(off.size() / 2);
-  std::ranges::nth_element(off, middle);
-  return 1.4826 * static_cast<double>(*middle);
+  return kSigmaOfMedian * static_cast<double>(median_of(std::move(off)));
 }
 
 std::vector<float> smooth_heights(const VertexGraph& graph, std::span<const float> height_mm, int rounds) {

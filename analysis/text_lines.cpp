@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
+#include "core/order_statistics.h"
 #include "core/units.h"
 
 namespace dubsar {
@@ -111,9 +113,7 @@ void find_lines(std::vector<LineMember>* members) {
   for (const LineMember& m : *members) {
     heights.push_back(m.high - m.low);
   }
-  const auto middle = heights.begin() + static_cast<std::ptrdiff_t>(heights.size() / 2);
-  std::ranges::nth_element(heights, middle);
-  const double typical_height = *middle;
+  const double typical_height = median_of(std::move(heights));
 
   double lean = 0;
   double best = contrast(profile_at(*members, 0)) * 1.02;  // straight unless another is clearly better

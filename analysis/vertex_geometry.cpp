@@ -6,9 +6,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "core/disjoint_sets.h"
 #include "core/inside_out.h"
+#include "core/order_statistics.h"
 #include "core/parallel.h"
 
 namespace dubsar {
@@ -188,11 +190,9 @@ Eigen::AlignedBox3f box_without_strays(const Mesh& mesh, const VertexGeometry& g
     if (at.empty()) {
       continue;
     }
-    const auto skip = static_cast<std::ptrdiff_t>(kStray * static_cast<double>(at.size()));
-    std::nth_element(at.begin(), at.begin() + skip, at.end());
-    const float low = at[static_cast<std::size_t>(skip)];
-    std::nth_element(at.begin(), at.end() - 1 - skip, at.end());
-    const float high = *(at.end() - 1 - skip);
+    const auto skip = static_cast<std::size_t>(kStray * static_cast<double>(at.size()));
+    const float low = value_at_rank(at, skip);
+    const float high = value_at_rank(at, at.size() - 1 - skip);
     const float beyond = kBeyond * (high - low) + 2.0F * static_cast<float>(geometry.mean_edge_mm);
     box.min()[axis] = std::max(whole.min()[axis], low - beyond);
     box.max()[axis] = std::min(whole.max()[axis], high + beyond);
@@ -200,7 +200,7 @@ Eigen::AlignedBox3f box_without_strays(const Mesh& mesh, const VertexGeometry& g
   return box;
 }
 
-/// 1.48 times the median, the standard deviation where it is noise, over about kSampled vertices.
+/// The standard deviation where it is noise, from the median over about kSampled vertices.
 double roughness(const Mesh& mesh, const VertexGraph& graph, const VertexGeometry& geometry) {
   constexpr std::size_t kSampled = 100000;
   const std::size_t vertices = graph.vertex_count();
@@ -220,9 +220,7 @@ double roughness(const Mesh& mesh, const VertexGraph& graph, const VertexGeometr
   if (away.empty()) {
     return 0;
   }
-  const auto middle = away.begin() + static_cast<std::ptrdiff_t>(away.size() / 2);
-  std::nth_element(away.begin(), middle, away.end());
-  return 1.48 * *middle;
+  return kSigmaOfMedian * median_of(std::move(away));
 }
 
 }  // namespace

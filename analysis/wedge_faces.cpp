@@ -6,9 +6,11 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "analysis/face_labels.h"
 #include "analysis/normal_clusters.h"
+#include "core/order_statistics.h"
 #include "core/units.h"
 
 namespace dubsar {
@@ -226,9 +228,7 @@ double spread_of(const Search& s) {
   if (off.empty()) {
     return 0;
   }
-  const auto middle = off.begin() + static_cast<std::ptrdiff_t>(off.size() / 2);
-  std::ranges::nth_element(off, middle);
-  return 1.4826 * *middle;
+  return kSigmaOfMedian * median_of(std::move(off));
 }
 
 /// Depth point and inner edges of the planes; what is wrong when they do not bound a pit.

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "core/order_statistics.h"
 #include "core/parallel.h"
 #include "core/units.h"
 
@@ -45,12 +46,6 @@ void look_at(WedgeCandidate* c) {
   value(e, Evidence::kLevelRim) = c->level_rim;
   value(e, Evidence::kWidestFace) = sorted(w.face_angles_rad)[2] / kPi;
   value(e, Evidence::kSecondSlope) = sorted(w.edge_slopes_rad)[1] / (0.5 * kPi);
-}
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
 }
 
 /// Logistic regression over candidates of simulated tablets of two makes, clean, worn, broken, and scanned
@@ -99,8 +94,7 @@ void compare(const std::vector<const WedgeCandidate*>& good, double typical_dept
     nearest = std::min(nearest, (other->wedge.depth_point_mm - w.depth_point_mm).norm());
   }
   const std::size_t few = std::min<std::size_t>(5, unlike.size() - 1);
-  std::ranges::nth_element(unlike, unlike.begin() + static_cast<std::ptrdiff_t>(few));
-  value(e, Evidence::kLonely) = std::min(1.0, unlike[few]);
+  value(e, Evidence::kLonely) = std::min(1.0, value_at_rank(unlike, few));
   value(e, Evidence::kFar) = std::clamp(nearest / typical_width / 6.0, 0.0, 1.0);
 }
 
@@ -185,11 +179,11 @@ void judge_wedges(const JudgeOptions& options, std::vector<WedgeCandidate>* cand
     for (const WedgeCandidate* c : good) {
       is_good[static_cast<std::size_t>(c - candidates->data())] = 1;
     }
-    note_company(*candidates, is_good, median(widths), &open);
+    note_company(*candidates, is_good, median_of(widths), &open);
   }
   for (WedgeCandidate* c : open) {
     if (enough) {
-      compare(good, median(depths), median(widths), c);
+      compare(good, median_of(depths), median_of(widths), c);
     }
     const double odds = (enough ? kAmongOthers : kAlone).of(c->evidence);
     c->wedge.confidence = 1.0 / (1.0 + std::exp(-odds));

@@ -4,6 +4,9 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <utility>
+
+#include "core/order_statistics.h"
 
 namespace dubsar {
 
@@ -31,9 +34,7 @@ double median_edge(const WedgePatch& patch) {
   if (lengths.empty()) {
     return 0;
   }
-  const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
-  std::ranges::nth_element(lengths, middle);
-  return *middle;
+  return median_of(std::move(lengths));
 }
 
 void add_triangles(const PatchSource& source, const std::vector<std::int32_t>& slot, WedgePatch* patch) {

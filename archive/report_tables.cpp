@@ -7,6 +7,7 @@
 #include "archive/html.h"
 #include "archive/html_table.h"
 #include "archive/report_sections.h"
+#include "core/order_statistics.h"
 #include "core/scan_remark.h"
 
 namespace dubsar {
@@ -85,9 +86,8 @@ std::string accuracy_section(const ReportInput& input) {
   }
   std::string html = "<section>\n<h2>Accuracy</h2>\n";
   if (!rms_mm.empty()) {
-    const auto middle = rms_mm.begin() + static_cast<std::ptrdiff_t>(rms_mm.size() / 2);
-    std::nth_element(rms_mm.begin(), middle, rms_mm.end());
-    html += "<p>Over the registered scans, the median residual between scans is " + micrometres(*middle) +
+    html += "<p>Over the registered scans, the median residual between scans is " +
+            micrometres(median_of(rms_mm)) +
             " µm; the largest predicted displacement of a scan by its pose is " +
             micrometres(worst_sigma_mm) +
             " µm. Both say how well the scans agree with each other, not how true the scanner’s lengths "

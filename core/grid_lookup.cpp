@@ -10,6 +10,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/order_statistics.h"
 #include "core/parallel.h"
 
 namespace dubsar {
@@ -28,11 +29,8 @@ constexpr float kFar = std::numeric_limits<float>::infinity();
 /// Where nearly all of the values lie, with as much again on either side.
 std::pair<float, float> window_of(std::vector<float>& values) {
   const std::size_t skipped = values.size() / 64;
-  const auto at = [&](std::size_t k) { return values.begin() + static_cast<std::ptrdiff_t>(k); };
-  std::nth_element(values.begin(), at(skipped), values.end());
-  const float low = *at(skipped);
-  std::nth_element(values.begin(), at(values.size() - 1 - skipped), values.end());
-  const float high = *at(values.size() - 1 - skipped);
+  const float low = value_at_rank(values, skipped);
+  const float high = value_at_rank(values, values.size() - 1 - skipped);
   return {low - (high - low), high + (high - low)};
 }
 

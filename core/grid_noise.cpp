@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+
+#include "core/order_statistics.h"
 
 namespace dubsar {
 
@@ -30,10 +33,9 @@ double estimate_noise_mm(const RangeGrid& grid, const std::vector<std::uint8_t>&
   if (bends.empty()) {
     return 0.0;
   }
-  const auto middle = bends.begin() + static_cast<std::ptrdiff_t>(bends.size() / 2);
-  std::nth_element(bends.begin(), middle, bends.end());
-  // The median of |N(0, s)| is 0.6745 s; a second difference has sqrt(6) times the noise of a sample.
-  return std::min(static_cast<double>(*middle) / 0.6745 / std::sqrt(6.0), 0.5 * spacing_mm);
+  // A second difference has sqrt(6) times the noise of a sample.
+  return std::min(kSigmaOfMedian * static_cast<double>(median_of(std::move(bends))) / std::sqrt(6.0),
+                  0.5 * spacing_mm);
 }
 
 }  // namespace dubsar

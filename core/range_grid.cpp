@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
+
+#include "core/order_statistics.h"
 
 namespace dubsar {
 
@@ -17,13 +20,8 @@ Eigen::Vector3d towards(const std::optional<Eigen::Vector3d>& at_row_0_mm, const
   return (*at_row_0_mm + row * view.motion_per_row_mm - p_mm).normalized();
 }
 
-double median(std::vector<float>& values) {
-  if (values.empty()) {
-    return 0.0;
-  }
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+double median_or_0(std::vector<float> values) {
+  return values.empty() ? 0.0 : median_of(std::move(values));
 }
 
 }  // namespace
@@ -73,7 +71,7 @@ double estimate_spacing_mm(const RangeGrid& grid) {
       along_cols.push_back(lateral(grid.index(row + 1, col)));
     }
   }
-  return std::max(median(along_rows), median(along_cols));
+  return std::max(median_or_0(std::move(along_rows)), median_or_0(std::move(along_cols)));
 }
 
 double displacement_mm(const Eigen::AlignedBox3f& box_mm, const RigidTransform& from,

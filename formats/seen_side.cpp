@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "core/order_statistics.h"
 #include "formats/number_text.h"
 
 namespace dubsar {
@@ -105,10 +106,10 @@ class Outline {
       const double deeper = direction_.dot(d);
       slopes[static_cast<std::size_t>(k)] = deeper / std::max((d - deeper * direction_).norm(), 1e-9);
     }
-    std::ranges::nth_element(slopes, slopes.begin() + 1);
-    all_.add(slopes[1]);
+    const double middle = value_at_rank(slopes, 1);
+    all_.add(middle);
     if (outermost) {
-      outermost_.add(slopes[1]);
+      outermost_.add(middle);
     }
   }
 

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <utility>
 
 #include "acquisition/session_tables.h"
 #include "acquisition/sqlite_db.h"
@@ -16,48 +17,61 @@ using namespace dubsar;
 
 namespace {
 
-/// SQLite reads files only.
-struct File {
+/// SQLite reads files only. The two databases beside it are kept: to make their tables took longer than all
+/// that is tried.
+struct Databases {
   fs::path path = fuzz::work_path();
-  ~File() {
+  SqlDatabase memory = open_memory("memory");
+  SqlDatabase saved = open_memory("saved");
+  Databases() { fuzz::require(session::prepare_schema(saved, "saved").has_value()); }
+  ~Databases() {
     std::error_code ignored;
     fs::remove(path, ignored);
   }
+  static SqlDatabase open_memory(const char* name) {
+    auto opened = SqlDatabase::open(name, SqlDatabase::Mode::kMemory);
+    fuzz::require(opened.has_value());
+    return std::move(*opened);
+  }
 };
+
+void try_to_save(SqlDatabase& from, SqlDatabase& saved) {
+  const auto taken_back = SqlTransaction::begin(saved);
+  fuzz::require(taken_back.has_value());
+  // What is saved is whole, and all that is counted as saved is there.
+  const std::int64_t count = session::salvage_rows(from, saved, true);
+  const auto damaged = session::damaged_rows(saved);
+  fuzz::require(count >= 0 && damaged && damaged->empty() && saved.structure_fault().empty());
+}
 
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  static const File file;
+  static Databases databases;
   if (size == 0) {
     return 0;
   }
-  std::ofstream(file.path, std::ios::binary)
+  std::ofstream(databases.path, std::ios::binary)
       .write(reinterpret_cast<const char*>(data + 1), static_cast<std::streamsize>(size - 1));
-  auto from = SqlDatabase::open(file.path, SqlDatabase::Mode::kImmutable);
-  auto memory = SqlDatabase::open("memory", SqlDatabase::Mode::kMemory);
-  auto saved = SqlDatabase::open("saved", SqlDatabase::Mode::kMemory);
-  fuzz::require(memory && saved && session::prepare_schema(*saved, "saved"));
+  auto from = SqlDatabase::open(databases.path, SqlDatabase::Mode::kImmutable);
   if (!from) {
     return 0;
   }
+  SqlDatabase& memory = databases.memory;
   SqlDatabase* rows = &*from;
-  if (memory->copy_from(*from)) {
+  if (memory.copy_from(*from)) {
     if (data[0] == 's') {
       for (const session::Table& table : session::kTables) {
         const std::string fit =
             std::string("UPDATE ") + table.name + " SET sum = dubsar_sum(" + table.columns + ")";
-        (void)memory->execute(fit.c_str());
+        (void)memory.execute(fit.c_str());
       }
-      rows = &*memory;
+      rows = &memory;
     }
-    if (session::prepare_schema(*memory, "memory") && memory->structure_fault().empty()) {
-      (void)session::damaged_rows(*memory);
+    if (session::prepare_schema(memory, "memory") && memory.structure_fault().empty()) {
+      (void)session::damaged_rows(memory);
     }
   }
-  // What is saved is whole, and all that is counted as saved is there.
-  const std::int64_t count = session::salvage_rows(*rows, *saved, true);
-  const auto damaged = session::damaged_rows(*saved);
-  fuzz::require(count >= 0 && damaged && damaged->empty() && saved->structure_fault().empty());
+  try_to_save(*rows, databases.saved);
   return 0;
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/grid_lookup.h"
+#include "core/order_statistics.h"
 #include "core/parallel.h"
 #include "core/units.h"
 #include "planning/clearing.h"
@@ -134,8 +135,7 @@ struct Together {
 Spread spread_of(std::vector<float>& values) {
   const auto at = [&](double part) {
     const auto k = static_cast<std::size_t>(part * static_cast<double>(values.size() - 1));
-    std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(k), values.end());
-    return static_cast<double>(values[k]);
+    return static_cast<double>(value_at_rank(values, k));
   };
   return values.empty() ? Spread{} : Spread{at(0.5), at(0.95)};
 }

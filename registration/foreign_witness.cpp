@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
+#include "core/order_statistics.h"
 #include "core/parallel.h"
 
 namespace dubsar {
@@ -46,7 +48,6 @@ constexpr float kStepSpacings = 3.0F;  ///< a longer step to a neighbour is an e
 /// lie.
 constexpr float kSameMm = 3.0F;
 constexpr float kSameNormals = 0.7F;
-constexpr double kSigmaOfMedian = 1.48;  ///< of absolute values of a normal distribution
 
 float in_the_air_mm(double spacing_mm, double apart_mm) {
   return static_cast<float>(
@@ -156,9 +157,7 @@ double ForeignMatter::Witness::apart_mm(const Witness& other, const IntoOther& i
   if (off_mm.empty()) {
     return 0;
   }
-  const auto middle = off_mm.begin() + static_cast<std::ptrdiff_t>(off_mm.size() / 2);
-  std::nth_element(off_mm.begin(), middle, off_mm.end());
-  return static_cast<double>(*middle);
+  return static_cast<double>(median_of(std::move(off_mm)));
 }
 
 std::size_t ForeignMatter::Witness::ask(const Witness& other, const IntoOther& into, double sigma_mm,

@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+
+#include "core/order_statistics.h"
 
 namespace dubsar {
 
@@ -41,8 +44,7 @@ std::optional<Ball> tip_of(const RangeGrid& grid, const GridPiece& piece, const 
   }
   const auto strays = static_cast<std::size_t>(std::max(1.0, kMostStrays * scale.disc));
   const std::size_t first = std::min(strays, places.size() - 1);
-  std::nth_element(places.begin(), places.begin() + static_cast<std::ptrdiff_t>(first), places.end());
-  const Eigen::Vector3d start = cone.point_mm + (places[first] + r) * cone.axis;
+  const Eigen::Vector3d start = cone.point_mm + (value_at_rank(places, first) + r) * cone.axis;
   std::optional<Ball> ball =
       fit_ball(piece.points_mm, start, cone.axis, piece.to_camera, r, scale.on_ball_mm);
   if (!ball ||

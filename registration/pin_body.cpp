@@ -9,6 +9,7 @@
 #include <array>
 #include <cmath>
 
+#include "core/order_statistics.h"
 #include "core/units.h"
 
 namespace dubsar {
@@ -48,10 +49,8 @@ std::optional<Cone> rough_cone(std::span<const Eigen::Vector3d> points, const Ei
   for (const Eigen::Vector3d& p : points) {
     offsets.push_back(std::abs((p - mean).dot(side.normalized())));
   }
-  const auto at =
-      offsets.begin() + static_cast<std::ptrdiff_t>(0.9 * static_cast<double>(offsets.size() - 1));
-  std::nth_element(offsets.begin(), at, offsets.end());
-  cone.radius_mm = *at / 0.9;
+  const auto rank = static_cast<std::size_t>(0.9 * static_cast<double>(offsets.size() - 1));
+  cone.radius_mm = value_at_rank(offsets, rank) / 0.9;
   // A half cylinder's samples have their mean π/4 of the radius before the axis.
   const Eigen::Vector3d view = (to_camera - to_camera.dot(cone.axis) * cone.axis).normalized();
   cone.point_mm = mean - 0.25 * kPi * cone.radius_mm * view;

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "core/disjoint_sets.h"
+#include "core/order_statistics.h"
 #include "registration/relaxation_covariance.h"
 
 namespace dubsar {
@@ -98,9 +99,7 @@ double loss_factor(std::vector<double> squares) {
   if (squares.empty()) {
     return 1.0;
   }
-  const auto middle = squares.begin() + static_cast<std::ptrdiff_t>(squares.size() / 2);
-  std::nth_element(squares.begin(), middle, squares.end());
-  return std::max(1.0, *middle);
+  return std::max(1.0, median_of(std::move(squares)));
 }
 
 /// For the covariances: the variance of unit weight, of as many pairs as are more than a tree needs; at least

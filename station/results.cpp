@@ -9,8 +9,10 @@
 #include <cmath>
 #include <ctime>
 #include <limits>
+#include <utility>
 
 #include "acquisition/sign_off_log.h"
+#include "core/order_statistics.h"
 #include "formats/checklist_json.h"
 #include "formats/json_node.h"
 #include "formats/mesh_io.h"
@@ -39,12 +41,10 @@ std::optional<std::string> prediction_sentence(const std::vector<ViewGain>& gain
   if (off.empty()) {
     return std::nullopt;
   }
-  const auto middle = off.begin() + static_cast<std::ptrdiff_t>(off.size() / 2);
-  std::nth_element(off.begin(), middle, off.end());
   return fmt::format(
       "What each scan would clear was predicted to within {:.0f} % of what it did clear (median of {} "
       "scans).",
-      100 * *middle, off.size());
+      100 * median_of(off), off.size());
 }
 
 std::vector<std::string> accuracy_sentences(const std::vector<ScanPose>& poses,

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include "core/order_statistics.h"
 #include "core/parallel.h"
 
 namespace dubsar {
@@ -137,9 +139,7 @@ double mismatch_mm(const StitchSurface& from, const StitchSurface& to, double re
   if (distances.size() < 8) {
     return -1;
   }
-  const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
-  std::nth_element(distances.begin(), middle, distances.end());
-  return *middle;
+  return median_of(std::move(distances));
 }
 
 double pair_reach_mm(const StitchSurface& a, const StitchSurface& b, const PairingOptions& options) {
@@ -154,8 +154,7 @@ double pair_reach_mm(const StitchSurface& a, const StitchSurface& b, const Pairi
 }
 
 double step_mm(const StitchSurface& a, const StitchSurface& b, double reach_mm) {
-  constexpr double kMedianOfSigma = 0.6745;  // of the absolute value
-  const double sigma_mm = std::max(mismatch_mm(a, b, reach_mm), mismatch_mm(b, a, reach_mm)) / kMedianOfSigma;
+  const double sigma_mm = kSigmaOfMedian * std::max(mismatch_mm(a, b, reach_mm), mismatch_mm(b, a, reach_mm));
   const double noise2 = a.noise_mm * a.noise_mm + b.noise_mm * b.noise_mm;
   return sigma_mm > 0 ? std::sqrt(std::max(0.0, sigma_mm * sigma_mm - noise2)) : 0.0;
 }

@@ -8,6 +8,9 @@
 #include <cmath>
 #include <opencv2/aruco.hpp>
 #include <opencv2/calib3d.hpp>
+#include <utility>
+
+#include "core/order_statistics.h"
 
 namespace dubsar {
 
@@ -196,9 +199,7 @@ StripeMiss miss(const Plane& light, const std::vector<Eigen::Vector3d>& stripe_m
     scatter += (p - mean) * (p - mean).transpose();
   }
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(scatter);
-  const auto middle = off.begin() + static_cast<std::ptrdiff_t>(off.size() / 2);
-  std::ranges::nth_element(off, middle);
-  out.median_mm = *middle;
+  out.median_mm = median_of(std::move(off));
   out.angle_rad = std::asin(std::min(1.0, std::abs(solver.eigenvectors().col(2).dot(light.normal))));
   return out;
 }

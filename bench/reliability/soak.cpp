@@ -25,6 +25,7 @@
 
 #include "bench/support/options.h"
 #include "core/heap.h"
+#include "core/order_statistics.h"
 #include "station/engine.h"
 #include "tests/support/temporary_folder.h"
 
@@ -74,10 +75,7 @@ double in_use_mib() {
 }
 
 double median(std::span<const double> values) {
-  std::vector<double> sorted(values.begin(), values.end());
-  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-  std::ranges::nth_element(sorted, middle);
-  return *middle;
+  return median_of(std::vector<double>(values.begin(), values.end()));
 }
 
 int run(int argc, char** argv) {

@@ -8,8 +8,10 @@
 #include <cstdlib>
 #include <ctime>
 #include <filesystem>
+#include <utility>
 
 #include "core/grid_lookup.h"
+#include "core/order_statistics.h"
 #include "core/random.h"
 #include "core/units.h"
 #include "formats/grid_reader.h"
@@ -43,9 +45,7 @@ double median(std::vector<double> values) {
   if (values.empty()) {
     return 0;
   }
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+  return median_of(std::move(values));
 }
 
 Eigen::Vector3d random_direction(Random& random) {

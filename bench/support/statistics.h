@@ -2,9 +2,10 @@
 // Copyright The Dubsar developers
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
 #include <vector>
+
+#include "core/order_statistics.h"
 
 namespace dubsar::bench {
 
@@ -13,9 +14,7 @@ inline double quantile(std::vector<double> values, double q) {
   if (values.empty()) {
     return 0;
   }
-  const auto k = static_cast<std::ptrdiff_t>(q * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), values.begin() + k, values.end());
-  return values[static_cast<std::size_t>(k)];
+  return value_at_rank(values, static_cast<std::size_t>(q * static_cast<double>(values.size() - 1)));
 }
 
 }  // namespace dubsar::bench

@@ -5,7 +5,9 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include "core/order_statistics.h"
 #include "core/units.h"
 
 namespace dubsar::bench {
@@ -187,9 +189,7 @@ double median(std::vector<double> values) {
   if (values.empty()) {
     return std::nan("");
   }
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
+  return median_of(std::move(values));
 }
 
 }  // namespace dubsar::bench

@@ -5,7 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <utility>
 #include <vector>
+
+#include "core/order_statistics.h"
 
 namespace dubsar::aravis {
 
@@ -40,9 +43,8 @@ std::optional<double> FrameCount::period_ns() const {
     periods.push_back(static_cast<double>(of_late_[k].timestamp_ns - from.timestamp_ns) /
                       static_cast<double>(of_late_[k].id - from.id));
   }
-  const auto middle = periods.begin() + static_cast<std::ptrdiff_t>(periods.size() / 2);
-  std::ranges::nth_element(periods, middle);
-  return *middle > 0 ? std::optional(*middle) : std::nullopt;
+  const auto middle = median_of(std::move(periods));
+  return middle > 0 ? std::optional(middle) : std::nullopt;
 }
 
 std::uint64_t FrameCount::missed_until(std::int64_t timestamp_ns) const {

@@ -8,6 +8,7 @@
 
 #include "acquisition/grid_builder.h"
 #include "core/mesh_query.h"
+#include "core/order_statistics.h"
 #include "drivers/device.h"
 
 namespace dubsar::test {
@@ -63,11 +64,9 @@ struct CollectGrid : ProfileSink {
     if (along.empty()) {
       continue;
     }
-    const auto middle = along.begin() + static_cast<std::ptrdiff_t>(along.size() / 2);
-    std::nth_element(along.begin(), middle, along.end());
     double nearest = 1e9;
     for (const double position : positions) {
-      nearest = std::min(nearest, std::abs(position - *middle));
+      nearest = std::min(nearest, std::abs(position - median_of(along)));
     }
     squares += 1e6 * nearest * nearest;
     ++rows;
