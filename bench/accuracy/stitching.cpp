@@ -27,6 +27,7 @@
 #include "bench/support/mesh_score.h"
 #include "bench/support/options.h"
 #include "bench/support/statistics.h"
+#include "bench/support/surface_samples.h"
 #include "bench/support/true_scans.h"
 #include "core/mesh_query.h"
 #include "core/parallel.h"
@@ -251,6 +252,7 @@ int bunny(const Arguments& args) {
   std::vector<std::shared_ptr<const RangeGrid>> grids;
   std::vector<RigidTransform> poses;
   std::vector<Vector3f> samples;
+  std::vector<std::uint8_t> of_peers;
   fs::path conf;
   for (const auto& entry : fs::directory_iterator(folder)) {
     conf = entry.path().extension() == ".conf" ? entry.path() : conf;
@@ -276,9 +278,16 @@ int bunny(const Arguments& args) {
         samples.push_back((pose * grid->point(i).cast<double>()).cast<float>());
       }
     }
+    const std::vector<std::uint8_t> of_grid = surface_samples(*grid, kPeersLongestSideMm);
+    of_peers.insert(of_peers.end(), of_grid.begin(), of_grid.end());
     grids.push_back(std::move(grid));
     poses.push_back(pose);
   }
+  const auto print_distances = [&](const char* of, const std::vector<double>& all) {
+    const std::vector<double> p = chosen(all, of_peers);
+    std::printf("  %s: mean %.4f, RMS %.4f, 95 %% %.4f mm; the %zu that count for peers: %.4f, %.4f, %.4f\n",
+                of, mean(all), rms(all), quantile(all, 0.95), p.size(), mean(p), rms(p), quantile(p, 0.95));
+  };
   std::vector<SampleFlags> flags;
   ClearedMap map;
   const std::vector<PlacedScan> placed = cleared(grids, poses, 0.0, flags, map);
@@ -326,19 +335,17 @@ int bunny(const Arguments& args) {
     std::printf("    %s %zu: mean %.4f, RMS %.4f, 95 %% %.4f mm\n", name, part->size(), mean(*part),
                 rms(*part), quantile(*part, 0.95));
   }
-  std::printf("  sample to mesh: mean %.4f, RMS %.4f, 95 %% %.4f mm\n", mean(d), rms(d), quantile(d, 0.95));
+  print_distances("sample to mesh", d);
   for (const double reach_mm : {0.4, 1.5}) {
     const AveragingFloor floor = averaging_floor(grids, poses, flags, reach_mm);
-    std::printf("    perfect averaging of what lies within %.1f mm would leave: mean %.4f, RMS %.4f mm\n",
-                reach_mm, mean(floor.residual_mm), rms(floor.residual_mm));
+    std::printf("    perfect averaging of what lies within %.1f mm would leave", reach_mm);
+    print_distances("", floor.residual_mm);
   }
   if (const auto zipper = read_mesh(folder / "reconstruction" / "bun_zipper.ply", {.mm_per_unit = 1000.0})) {
     print_topology(*zipper);
     print_boundary(mesh, *zipper, 3.0);
     const MeshQuery to_zipper(*zipper);
-    std::vector<double> z = distances_mm(samples, to_zipper, 10.0);
-    std::printf("  sample to bun_zipper: mean %.4f, RMS %.4f, 95 %% %.4f mm\n", mean(z), rms(z),
-                quantile(z, 0.95));
+    print_distances("sample to bun_zipper", distances_mm(samples, to_zipper, 10.0));
     const std::vector<double> held = distances_mm(zipper->positions, model, 5.0);
     std::printf("  bun_zipper's vertices within 0.4 mm of the mesh: %.3f %%\n",
                 100 * share_within(held, 0.4));

@@ -49,6 +49,16 @@ std::vector<double> distances_mm(const std::vector<Vector3f>& points, const Mesh
   return d;
 }
 
+std::vector<double> chosen(const std::vector<double>& values, const std::vector<std::uint8_t>& of) {
+  std::vector<double> out;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (of[i] != 0) {
+      out.push_back(values[i]);
+    }
+  }
+  return out;
+}
+
 double share_within(const std::vector<double>& d, double mm) {
   return d.empty()
              ? 1.0

@@ -21,6 +21,10 @@ namespace dubsar::bench {
 [[nodiscard]] std::vector<double> distances_mm(const std::vector<Eigen::Vector3f>& points,
                                                const MeshQuery& to, double most_mm);
 
+/// Those of the values where `of` is not 0.
+[[nodiscard]] std::vector<double> chosen(const std::vector<double>& values,
+                                         const std::vector<std::uint8_t>& of);
+
 [[nodiscard]] double share_within(const std::vector<double>& distances_mm, double mm);
 
 /// 1 for points within 0.2 mm of a line in which two faces of a wedge meet, or a face and the surface around
