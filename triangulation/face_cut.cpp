@@ -3,6 +3,7 @@
 #include "triangulation/face_cut.h"
 
 #include <Eigen/Geometry>
+#include <cmath>
 
 namespace dubsar {
 
@@ -12,22 +13,31 @@ using Eigen::Vector3d;
 using Eigen::Vector3f;
 using Corners = std::array<Vector3d, 3>;
 
-/// Six times the volume of the tetrahedron abcd.
-double volume(const Vector3d& a, const Vector3d& b, const Vector3d& c, const Vector3d& d) {
-  return (b - a).cross(c - a).dot(d - a);
+/// The sign of the volume of the tetrahedron abcd; 0 where rounding could have made it: of corners that lie in
+/// one plane, as samples do whose depths come in steps, it would be any. Differences of floats are exact here
+/// but for their last bits; the bound is that of Shewchuk, "Adaptive precision floating-point arithmetic and
+/// fast robust geometric predicates", 1997, for the determinant.
+int side_of(const Vector3d& a, const Vector3d& b, const Vector3d& c, const Vector3d& d) {
+  constexpr double kRounding = 8e-16;
+  const Vector3d u = b - a;
+  const Vector3d v = c - a;
+  const Vector3d w = d - a;
+  const double volume = u.cross(v).dot(w);
+  const Vector3d size = u.cwiseAbs();
+  const Vector3d other = v.cwiseAbs();
+  const double most = (size.y() * other.z() + size.z() * other.y()) * std::abs(w.x()) +
+                      (size.z() * other.x() + size.x() * other.z()) * std::abs(w.y()) +
+                      (size.x() * other.y() + size.y() * other.x()) * std::abs(w.z());
+  return std::abs(volume) <= kRounding * most ? 0 : volume > 0 ? 1 : -1;
 }
 
 /// Whether the segment pq passes through the inside of the triangle.
 bool passes_through(const Vector3d& p, const Vector3d& q, const Corners& t) {
-  const double at_p = volume(t[0], t[1], t[2], p);
-  const double at_q = volume(t[0], t[1], t[2], q);
-  if (!(at_p * at_q < 0)) {
+  if (side_of(t[0], t[1], t[2], p) * side_of(t[0], t[1], t[2], q) >= 0) {
     return false;
   }
-  const double u = volume(p, q, t[0], t[1]);
-  const double v = volume(p, q, t[1], t[2]);
-  const double w = volume(p, q, t[2], t[0]);
-  return (u > 0 && v > 0 && w > 0) || (u < 0 && v < 0 && w < 0);
+  const int turn = side_of(p, q, t[0], t[1]);
+  return turn != 0 && side_of(p, q, t[1], t[2]) == turn && side_of(p, q, t[2], t[0]) == turn;
 }
 
 using Positions = std::span<const Vector3f>;

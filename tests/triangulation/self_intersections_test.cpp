@@ -51,6 +51,27 @@ TEST(SelfIntersections, TwoFacesThatCross) {
   EXPECT_EQ(intersections(mesh), (Pairs{{0, 1}}));
 }
 
+/// Depths that come in steps put many samples into exactly one plane, which no sum of their products tells.
+TEST(SelfIntersections, FacesOfOnePlaneDoNot) {
+  Random random(1);
+  const auto draw = [&] {
+    const Eigen::Vector3d v = 0.1 * random.normal3();
+    constexpr double kSteps = 1U << 22U;  // sums of a few are exact, and their products are not
+    return Eigen::Vector3f((kSteps * v).array().round().matrix().cast<float>() / static_cast<float>(kSteps));
+  };
+  std::size_t found = 0;
+  for (int k = 0; k < 200; ++k) {
+    const Eigen::Vector3f right = draw();
+    const Eigen::Vector3f down = draw();
+    Mesh tilted = sheet(4, 0);
+    for (Eigen::Vector3f& p : tilted.positions) {
+      p = (p.x() * right + p.y() * down).eval();
+    }
+    found += intersections(tilted).size();
+  }
+  EXPECT_EQ(found, 0U);
+}
+
 TEST(SelfIntersections, TouchingAndParallelFacesDoNot) {
   Mesh mesh;
   add_face(mesh, {0, 0, 0}, {4, 0, 0}, {0, 4, 0});

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+//
+//   dubsar-odd-scans [--cases 1000 --seed 1 --only CASE -o FOLDER]
+//
+// Stitches small sets of scans that no tablet gives: folded, thin and touching bodies, exact coincidences,
+// stray samples, holes, poses that are wrong, spacings that differ. Whatever the scans, the mesh has to be an
+// oriented 2-manifold without faces that cut each other, and the same one whatever the order of the scans.
+// Prints the cases that are not, ends with status 1 when there is one, and writes their scans to FOLDER.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "bench/support/odd_body.h"
+#include "bench/support/options.h"
+#include "core/placed_scan.h"
+#include "formats/grid_ply.h"
+#include "formats/mesh_io.h"
+#include "planning/sparse_flags.h"
+#include "triangulation/mesh_check.h"
+#include "triangulation/stitcher.h"
+
+namespace {
+
+using namespace dubsar;
+using namespace dubsar::bench;
+
+struct Arguments {
+  int cases = 1000;
+  std::uint64_t seed = 1;
+  int only = -1;
+  std::string out;
+};
+
+struct Case {
+  std::string what;
+  std::vector<RangeGrid> grids;
+  std::vector<RigidTransform> poses;
+  std::vector<SampleFlags> flags;
+  double sigma_mm = 0;
+};
+
+Case make_case(std::uint64_t seed) {
+  Random random(seed);
+  Case out;
+  const OddBody body(random);
+  out.what = body.name();
+  const int scans = 1 + static_cast<int>(random.uniform(0, 7));
+  const double pose_error_mm = random.uniform(0, 1) < 0.5 ? 0.0 : std::pow(10.0, random.uniform(-3, 0));
+  const OddScanning scanning(random);
+  out.what += ", " + scanning.name();
+  for (int k = 0; k < scans; ++k) {
+    if (k > 0 && random.uniform(0, 1) < 0.08) {
+      out.grids.push_back(out.grids.back());  // the same scan twice
+      out.poses.push_back(out.poses.back());
+      continue;
+    }
+    auto [grid, pose] = scanning.scan(body, random);
+    const Eigen::Vector3d turn = 0.1 * pose_error_mm * random.normal3();
+    pose = RigidTransform::from_twist(turn, pose_error_mm * random.normal3()) * pose;
+    out.grids.push_back(std::move(grid));
+    out.poses.push_back(pose);
+  }
+  out.sigma_mm = random.uniform(0, 1) < 0.5 ? pose_error_mm : 0.0;
+  for (const RangeGrid& grid : out.grids) {
+    out.flags.push_back(random.uniform(0, 1) < 0.7 ? flag_sparse(grid) : SampleFlags(grid.size(), 0));
+  }
+  return out;
+}
+
+Mesh stitched(const Case& of, bool backwards) {
+  std::vector<PlacedScan> placed;
+  for (std::size_t k = 0; k < of.grids.size(); ++k) {
+    placed.push_back(
+        {static_cast<int>(k), &of.grids[k], &of.flags[k], of.poses[k], of.sigma_mm, std::nullopt});
+  }
+  if (backwards) {
+    std::ranges::reverse(placed);
+  }
+  JobContext job;
+  StitchOptions options;
+  options.least_component_faces = 4;
+  Result<Mesh> mesh = stitch(placed, options, job);
+  if (!mesh) {
+    std::fprintf(stderr, "%s\n", mesh.error().line().c_str());
+    return {};
+  }
+  return std::move(*mesh);
+}
+
+bool same(const Mesh& a, const Mesh& b) {
+  return a.faces == b.faces && std::ranges::equal(a.positions, b.positions, [](const auto& p, const auto& q) {
+           return (p.array() == q.array()).all();
+         });
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Arguments args;
+  CLI::App app("stitching scans that no tablet gives");
+  app.add_option("--cases", args.cases)->capture_default_str();
+  app.add_option("--seed", args.seed)->capture_default_str();
+  app.add_option("--only", args.only);
+  app.add_option("-o", args.out);
+  if (const auto status = dubsar::bench::ends_with(app, argc, argv)) {
+    return *status;
+  }
+  int bad = 0, cut = 0, faces_none = 0;
+  std::size_t faces = 0;
+  const int from = args.only < 0 ? 0 : args.only;
+  const int to = args.only < 0 ? args.cases : args.only + 1;
+  for (int k = from; k < to; ++k) {
+    const Case one = make_case(seed_for(args.seed, static_cast<std::uint64_t>(k)));
+    const Mesh mesh = stitched(one, false);
+    const MeshReport report = check_mesh(mesh);
+    const bool same_again = same(mesh, stitched(one, true));
+    faces += report.faces;
+    faces_none += report.faces == 0 ? 1 : 0;
+    if (!report.is_manifold() || report.self_intersections > 0 || report.unreferenced_vertices > 0 ||
+        !same_again) {
+      bad += 1;
+      cut += report.self_intersections > 0 ? 1 : 0;
+      std::printf(
+          "%d: %s: %zu scans, %zu faces; non-manifold edges %zu, vertices %zu; inconsistent %zu, degenerate "
+          "%zu, "
+          "duplicate %zu, self-intersections %zu, unreferenced %zu%s\n",
+          k, one.what.c_str(), one.grids.size(), report.faces, report.non_manifold_edges,
+          report.non_manifold_vertices, report.inconsistent_faces, report.degenerate_faces,
+          report.duplicate_faces, report.self_intersections, report.unreferenced_vertices,
+          same_again ? "" : "; another mesh in another order");
+      std::fflush(stdout);
+      if (!args.out.empty()) {
+        const std::filesystem::path folder = std::filesystem::path(args.out) / std::to_string(k);
+        std::filesystem::create_directories(folder);
+        (void)write_mesh(folder / "mesh.ply", mesh);
+        for (std::size_t s = 0; s < one.grids.size(); ++s) {
+          (void)write_grid_ply(folder / ("scan" + std::to_string(s) + ".ply"), one.grids[s]);
+        }
+      }
+    }
+  }
+  std::printf("%d cases, %.2f million faces, %d without a face, %d with a fault (%d with faces that cut)\n",
+              to - from, 1e-6 * static_cast<double>(faces), faces_none, bad, cut);
+  return bad == 0 ? 0 : 1;
+}
