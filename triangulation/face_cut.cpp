@@ -13,10 +13,10 @@ using Eigen::Vector3d;
 using Eigen::Vector3f;
 using Corners = std::array<Vector3d, 3>;
 
-/// The sign of the volume of the tetrahedron abcd; 0 where rounding could have made it: of corners that lie in
-/// one plane, as samples do whose depths come in steps, it would be any. Differences of floats are exact here
-/// but for their last bits; the bound is that of Shewchuk, "Adaptive precision floating-point arithmetic and
-/// fast robust geometric predicates", 1997, for the determinant.
+/// The sign of the volume of the tetrahedron abcd; 0 where rounding could have made it: of corners that lie
+/// in one plane, as samples do whose depths come in steps, it would be any. Differences of floats are exact
+/// here but for their last bits; the bound is that of Shewchuk, "Adaptive precision floating-point arithmetic
+/// and fast robust geometric predicates", 1997, for the determinant.
 int side_of(const Vector3d& a, const Vector3d& b, const Vector3d& c, const Vector3d& d) {
   constexpr double kRounding = 8e-16;
   const Vector3d u = b - a;

@@ -60,6 +60,8 @@ Status draw_pictures(const std::filesystem::path& folder, const Mesh& mesh, cons
 
 /// A kilometre: beyond, areas leave what a float can tell.
 constexpr double kMostAcrossMm = 1e6;
+/// The tip of a stylus.
+constexpr double kLeastAcrossMm = 0.1;
 
 /// What the fits believe at best (analysis/inner_edges.cpp): coarser places would decide what is measured.
 constexpr double kCoarsestPlaceMm = 0.004;
@@ -87,6 +89,10 @@ Status check_size(const AnalyzeArguments& arguments, const Mesh& mesh) {
     return bad_input(arguments.in, fmt::format("it would be {:.3g} mm across", across_mm),
                      fmt::format("its numbers look like {}: say so with --unit {}, or confirm what they are",
                                  words, words));
+  }
+  if (arguments.unit.empty() && across_mm > 0 && across_mm < kLeastAcrossMm) {
+    return bad_input(arguments.in, fmt::format("it would be {:.3g} mm across", across_mm),
+                     "nothing inscribed is that small: look what its numbers are and say so with --unit");
   }
   if (const double coarse_mm = coarsest_place_mm(mesh); coarse_mm > kCoarsestPlaceMm) {
     return bad_input(

@@ -129,6 +129,10 @@ TEST(AnalyzeCommand, AsksForTheUnitAndRefusesWhatIsNoMesh) {
   EXPECT_EQ(run_command({"analyze", at("metres.obj"), "-o", at("w.json"), "--unit", "cubit"}).status, 2);
   EXPECT_EQ(run_command({"analyze", at("nowhere.ply"), "-o", at("w.json")}).status, 2);
   EXPECT_EQ(run_command({"analyze", at("metres.obj")}).status, 2);
+  std::ofstream(at("speck.obj")) << "v 0 0 0\nv 4e-5 0 0\nv 0 3e-5 0\nf 1 2 3\n";
+  const Outcome speck = run_command({"analyze", at("speck.obj"), "-o", at("w.json")});
+  EXPECT_EQ(speck.status, 2);
+  EXPECT_THAT(speck.err, HasSubstr("it would be 5e-05 mm across; nothing inscribed is that small"));
   std::ofstream(at("empty.obj")) << "v 0 0 0\n";
   const Outcome empty = run_command({"analyze", at("empty.obj"), "-o", at("w.json")});
   EXPECT_EQ(empty.status, 2) << empty.err;
