@@ -34,6 +34,12 @@ bool size_is_possible(const ScanSize& a, const ScanSize& b, double most_ratio) {
 /// 0.020 the bunny and written tablets are registered, with 0.030 hardly any.
 constexpr double kCoarsestSpacing = 0.025;
 
+/// A pose that the surfaces hold no better than this (ScanPose::sigma_mm) is none to measure by, even where
+/// the relief seemed to settle it: on a smooth ball the fall of the samples towards its rim passes for
+/// relief. Scans with an edge or something written in the overlap are held to a small part of it.
+constexpr double kLoosestMm = 0.5;
+constexpr double kLoosestSpacings = 3.0;
+
 /// Why a scan that found no place may have found none; empty where it is fine enough.
 std::string too_coarse(double spacing_mm, double scale_mm) {
   if (!(scale_mm > 0) || spacing_mm <= kCoarsestSpacing * scale_mm) {
@@ -350,9 +356,15 @@ ScanPose ScanModel::pose(int id) const {
   // Mean square displacement over points at rms radius r about the centroid: trace of the shift plus two
   // thirds of r² times that of the turn.
   const double radius_mm = 0.5 * scan.features.surface->extent_mm;
-  const double square = scan.covariance.bottomRightCorner<3, 3>().trace() +
-                        2.0 / 3.0 * radius_mm * radius_mm * scan.covariance.topLeftCorner<3, 3>().trace();
-  out.sigma_mm = std::max(std::sqrt(std::max(0.0, square)), scan.stage_sigma_mm);
+  const double shifted = scan.covariance.bottomRightCorner<3, 3>().trace();
+  const double turned = 2.0 / 3.0 * radius_mm * radius_mm * scan.covariance.topLeftCorner<3, 3>().trace();
+  out.sigma_mm = std::max(std::sqrt(std::max(0.0, shifted + turned)), scan.stage_sigma_mm);
+  const bool told = scan.locked || scan.stage_sigma_mm > 0;
+  if (!told &&
+      out.sigma_mm > std::max(kLoosestMm, kLoosestSpacings * scan.features.surface->spacing_mm)) {
+    out.status = PoseStatus::kUnsure;
+    out.reason = too_even(turned > shifted);
+  }
   return out;
 }
 

@@ -15,11 +15,6 @@ std::string percent(double share) {
   return std::to_string(std::lround(100.0 * share)) + " %";
 }
 
-/// How the scan can move without anything changing, for people.
-std::string loose_direction(const IcpResult& icp) {
-  return icp.weakest.head<3>().norm() > icp.weakest.tail<3>().norm() ? "turn" : "slide";
-}
-
 /// The significance of the relief where shape or relief hold the scan in place. 0 where it can slide along
 /// and the relief agrees as well: a moulding, a ruled line or a wheel mark agrees with itself all along, and
 /// with others of its kind, and tells no pose from the next.
@@ -89,8 +84,7 @@ PoseVerdict judged_by_shape(const ModelFit& fit, const VerifyOptions& o) {
   }
   if (fit.refined() && fit.icp.stability < o.least_stability && !relief_is_sure) {
     return {PoseStatus::kUnsure,
-            "the overlap is too even: the scan can " + loose_direction(fit.icp) +
-                " on it; scan again with an edge or more relief in the overlap, or use pins"};
+            too_even(fit.icp.weakest.head<3>().norm() > fit.icp.weakest.tail<3>().norm())};
   }
   return {PoseStatus::kRegistered, {}};
 }
@@ -116,6 +110,11 @@ bool sure(const ModelFit& fit, const VerifyOptions& options) {
       fit.refined() && fit.slid_significance >= options.most_slid_held * fit.significance;
   return !as_well_beside && telling_significance(fit, options) >= options.sure_relief &&
          fit.relief.correlation() >= options.sure_correlation;
+}
+
+std::string too_even(bool turns) {
+  return std::string("the overlap is too even: the scan can ") + (turns ? "turn" : "slide") +
+         " on it; scan again with an edge or more relief in the overlap, or use pins";
 }
 
 double doubt(const ModelFit& fit, const VerifyOptions& options) {

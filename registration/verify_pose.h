@@ -65,6 +65,9 @@ struct PoseVerdict {
 /// falling score; of those that may be accepted, the one that least speaks against is moved to the front.
 [[nodiscard]] PoseVerdict verify_pose(std::vector<ModelFit>& fits, const VerifyOptions& options);
 
+/// Why a scan is unsure whose overlap lets it move: it `turns`, or else slides.
+[[nodiscard]] std::string too_even(bool turns);
+
 /// True when nothing that was seen contradicts the pose: what a scan needs whose pose the stage guarantees.
 [[nodiscard]] bool consistent_pose(const ModelFit& fit, const VerifyOptions& options);
 

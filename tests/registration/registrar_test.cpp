@@ -8,6 +8,8 @@
 
 #include <limits>
 
+#include "bench/support/odd_body.h"
+#include "core/random.h"
 #include "core/units.h"
 #include "tests/registration/support/height_field.h"
 
@@ -61,6 +63,25 @@ TEST(Registrar, RegistersScansTurnedAnyWayWithNoHints) {
     EXPECT_GT(poses[k].overlap, 0.5);
     EXPECT_TRUE(poses[k].covariance.has_value());
   }
+}
+
+TEST(Registrar, ABallThatOnlySeemsToHoldIsUnsure) {
+  // A smooth ball with stray samples: the relief that two of its scans seem to share is no relief, and the
+  // pose is known to more than a millimetre only.
+  Random random(seed_for(77, 56));
+  const bench::OddBody ball(random);
+  const bench::OddScanning scanning(random);
+  (void)random.below(6);
+  Registrar registrar;
+  JobContext job;
+  for (int k = 0; k < 2; ++k) {
+    registrar.add(k, share(scanning.scan(ball, random).first), nullptr, job);
+  }
+  ASSERT_TRUE(registrar.finalize(job));
+  const ScanPose pose = registrar.poses().back();
+  EXPECT_GT(pose.sigma_mm, 1.0);
+  EXPECT_EQ(pose.status, PoseStatus::kUnsure);
+  EXPECT_THAT(pose.reason, HasSubstr("the overlap is too even: the scan can turn on it"));
 }
 
 TEST(Registrar, GivesTheSameBytesOnOneThreadAndOnMany) {
