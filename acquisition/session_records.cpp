@@ -22,6 +22,16 @@ constexpr int kFlagsLevel = 1;
 /// Larger than any grid; a damaged count must not ask for all memory.
 constexpr std::int64_t kMaxFlags = std::int64_t{1} << 31;
 
+/// Whether the packed bytes say that they are `count` flags, and are enough for them: a block of zstd takes
+/// four bytes at least and gives 128 KiB at most (RFC 8878, 3.1.1.2).
+bool may_hold(std::string_view packed, std::int64_t count) {
+  constexpr std::size_t kLeastBlock = 4;
+  constexpr std::size_t kMostFromABlock = std::size_t{128} << 10U;
+  return count >= 0 && count <= kMaxFlags &&
+         static_cast<std::size_t>(count) <= packed.size() / kLeastBlock * kMostFromABlock &&
+         ZSTD_getFrameContentSize(packed.data(), packed.size()) == static_cast<std::uint64_t>(count);
+}
+
 }  // namespace
 
 Status SessionStore::save_poses(const std::vector<ScanPose>& poses) {
@@ -104,8 +114,8 @@ Result<std::optional<SampleFlags>> SessionStore::load_flags(int id) const {
     count = (*row)->integer(1);
     packed = (*row)->text(2);
   }
-  if (count < 0 || count > kMaxFlags) {
-    return bad_input(where, "the stored count is no count", "flag the scan anew");
+  if (!may_hold(packed, count)) {
+    return bad_input(where, "the stored count is not that of the stored flags", "flag the scan anew");
   }
   SampleFlags flags(static_cast<std::size_t>(count));
   const std::size_t got = ZSTD_decompress(flags.data(), flags.size(), packed.data(), packed.size());

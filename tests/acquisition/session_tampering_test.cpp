@@ -93,5 +93,20 @@ TEST_F(SessionDamageTest, TablesThatLeadOutOfTheSessionAreNotFollowed) {
                                      "mesh/../../other.ply: named by the tables, and no file of a session"}));
 }
 
+// A count that the bytes beside it cannot give is not asked for as memory.
+TEST_F(SessionDamageTest, ACountOfFlagsThatTheirBytesDoNotHoldIsRefusedBeforeTheyAreUnpacked) {
+  ASSERT_TRUE(SessionStore::open(folder_)->save_flags(0, SampleFlags(100000, kSparse)));
+  for (const char* count : {"2147483648", "100001", "99999", "-1"}) {
+    {
+      SqlDatabase db = SqlDatabase::open(folder_ / session::kDatabase, SqlDatabase::Mode::kCreate).value();
+      ASSERT_TRUE(db.execute((std::string("UPDATE flags SET count = ") + count).c_str()));
+      ASSERT_TRUE(db.execute("UPDATE flags SET sum = dubsar_sum(id,count,packed)"));
+    }
+    const auto flags = SessionStore::open(folder_, kReadOnly)->load_flags(0);
+    ASSERT_FALSE(flags) << count;
+    EXPECT_EQ(flags.error().what, "the stored count is not that of the stored flags") << count;
+  }
+}
+
 }  // namespace
 }  // namespace dubsar
