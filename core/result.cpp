@@ -5,7 +5,8 @@
 namespace dubsar {
 
 std::string Error::line() const {
-  std::string text = where.empty() ? what : where + ": " + what;
+  // A device that is named by its scheme alone ends in a colon of its own.
+  std::string text = where.empty() ? what : where + (where.ends_with(':') ? " " : ": ") + what;
   if (!mend.empty()) {
     text += "; " + mend;
   }

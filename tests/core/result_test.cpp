@@ -12,6 +12,11 @@ TEST(Error, IsOneLineWhateverTheFileSaid) {
   EXPECT_EQ(error.line(), "a?b.ply: bad?header?[2J; export it again");
 }
 
+TEST(Error, ASchemeThatStandsAloneHasOneColon) {
+  const Error error{ErrorKind::kUsage, "no option speed", "sim:", "it takes seed"};
+  EXPECT_EQ(error.line(), "sim: no option speed; it takes seed");
+}
+
 TEST(Error, ExitStatusFollowsTheContract) {
   EXPECT_EQ(exit_status(ErrorKind::kUsage), 2);
   EXPECT_EQ(exit_status(ErrorKind::kBadInput), 2);
