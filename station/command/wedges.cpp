@@ -11,6 +11,7 @@
 
 #include "core/log.h"
 #include "core/units.h"
+#include "formats/atomic_file.h"
 #include "formats/corrections_json.h"
 #include "formats/mesh_io.h"
 #include "formats/wedges_json.h"
@@ -69,8 +70,9 @@ Status check_asked(const CorrectArguments& a) {
                     (a.add.empty() ? 0 : 1) + (a.add_at.empty() ? 0 : 1) + (a.undo ? 1 : 0) +
                     (a.list ? 1 : 0);
   if (asked != 1) {
-    return fail(ErrorKind::kUsage, "say one thing at a time", "wedges correct",
-                "one of --delete, --merge, --split, --add, --add-at, --undo, --list");
+    return fail(ErrorKind::kUsage,
+                asked == 0 ? "it is not said what is to be corrected" : "only one thing is said at a time",
+                "wedges correct", "say one of --delete, --merge, --split, --add, --add-at, --undo, --list");
   }
   if (!a.into.empty() && a.split < 0) {
     return fail(ErrorKind::kUsage, "only a split goes into several places", "--into",
@@ -182,6 +184,9 @@ Status take_back_last(CorrectionFile& said, const CorrectArguments& arguments,
 }
 
 Result<int> correct(const CorrectArguments& arguments, CommandContext& context) {
+  if (const Result<std::string> head = read_file_head(arguments.analyze.in, 1); !head) {
+    return std::unexpected(head.error());  // whatever else is wrong: a name that was mistyped comes first
+  }
   if (const Status asked = check_asked(arguments); !asked) {
     return std::unexpected(asked.error());
   }

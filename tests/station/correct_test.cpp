@@ -169,12 +169,21 @@ TEST_F(Correct, WhatCannotBeMadeIsOneLineAndChangesNothing) {
   refused({"--delete", "99999"}, "no wedge 99999");
   refused({"--merge", "2"}, "nothing to merge");
   refused({"--split", "2"}, "two wedges or more");
-  refused({"--delete", "1", "--merge", "2,3"}, "one thing at a time");
-  refused({}, "one thing at a time");
+  refused({"--delete", "1", "--merge", "2,3"}, "only one thing is said at a time");
+  refused({}, "not said what is to be corrected");
   refused({"--add-at", "1,2,3"}, "how far");
   refused({"--add-at", "nan,2,3", "--reach", "1"}, "no place");
   refused({"--add", "nothing"}, "no selection");
   refused({"--add-at", "500,0,0", "--reach", "1"}, "too few vertices");
+  for (const std::vector<std::string>& what :
+       {std::vector<std::string>{}, {"--list"}, {"--undo"}, {"--delete", "1", "--merge", "2,3"}}) {
+    std::vector<std::string> words{"wedges", "correct", in("tablt.ply"), "-o", in("w.json")};
+    words.insert(words.end(), what.begin(), what.end());
+    const Outcome mistyped = run_command(words);
+    EXPECT_EQ(mistyped.status, 2);
+    ASSERT_THAT(mistyped.complaints(), SizeIs(1)) << mistyped.err;
+    EXPECT_THAT(mistyped.complaints().front(), HasSubstr("tablt.ply: cannot read: No such file"));
+  }
   const Outcome too_soon =
       run_command({"wedges", "correct", in("tablet.ply"), "-o", in("not_yet.json"), "--delete", "1"});
   EXPECT_EQ(too_soon.status, 2);
