@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <map>
 #include <sstream>
+#include <string_view>
 #include <utility>
 
 #include "core/utf8.h"
@@ -18,7 +19,9 @@ namespace dubsar {
 namespace {
 
 constexpr const char* kSigned = "signed";
-constexpr const char* kFirstLine = "dubsar sign-off 1\n";
+constexpr const char* kFirstLine = "dubsar sign-off 2\n";
+/// Of a manifest that has no warnings, as earlier versions made them.
+constexpr std::string_view kFirstLineBefore = "dubsar sign-off 1\n";
 
 std::string pose_line(const ScanPose& pose) {
   std::string line = "pose " + std::to_string(pose.id) + " " + to_string(pose.status);
@@ -33,6 +36,23 @@ std::string pose_line(const ScanPose& pose) {
   return line + "\n";
 }
 
+/// What is wrong with a scan that is in the model all the same; nothing where nothing is.
+std::string warning_line(const ScanPose& pose) {
+  return pose.status != PoseStatus::kRegistered || pose.warning.empty()
+             ? std::string()
+             : "warning " + std::to_string(pose.id) + " " + one_line(pose.warning) + "\n";
+}
+
+/// A manifest as earlier versions would have made it.
+std::string without_warnings(const std::string& manifest) {
+  std::string out(kFirstLineBefore);
+  std::istringstream lines(manifest.substr(std::string_view(kFirstLine).size()));
+  for (std::string line; std::getline(lines, line);) {
+    out += line.starts_with("warning ") ? std::string() : line + "\n";
+  }
+  return out;
+}
+
 /// The manifest by what each line is about: "scan 3", "pose 3", "red map", "verdict".
 std::map<std::string, std::string> by_subject(const std::string& manifest) {
   std::map<std::string, std::string> out;
@@ -40,7 +60,8 @@ std::map<std::string, std::string> by_subject(const std::string& manifest) {
   for (std::string line; std::getline(lines, line);) {
     const std::size_t first = std::min(line.find(' '), line.size());
     std::size_t end = line.size();
-    if (const std::string kind = line.substr(0, first); kind == "scan" || kind == "pose") {
+    if (const std::string kind = line.substr(0, first);
+        kind == "scan" || kind == "pose" || kind == "warning") {
       end = std::min(line.find(' ', std::min(first + 1, line.size())), line.size());
     } else if (kind == "red_map" || kind == "verdict") {
       end = first;
@@ -56,6 +77,9 @@ std::string spoken(const std::string& subject) {
   }
   if (subject.starts_with("pose ")) {
     return "the place of scan " + subject.substr(5);
+  }
+  if (subject.starts_with("warning ")) {
+    return "the warning of scan " + subject.substr(8);
   }
   return subject == "red_map" ? "the red map" : subject == "verdict" ? "the verdict" : "\"" + subject + "\"";
 }
@@ -114,7 +138,8 @@ Result<std::string> session_manifest(const SessionStore& store, const JobContext
     }
     out += "scan " + std::to_string(scan.id) + " " + *sum + " " + scan.file + "\n";
     const auto pose = std::ranges::find(*poses, scan.id, &ScanPose::id);
-    out += pose == poses->end() ? "pose " + std::to_string(scan.id) + " none\n" : pose_line(*pose);
+    out += pose == poses->end() ? "pose " + std::to_string(scan.id) + " none\n"
+                                : pose_line(*pose) + warning_line(*pose);
   }
   const Result<std::string> text = document_of(store, "red_map", "run dubsar plan on it first");
   if (!text) {
@@ -216,9 +241,11 @@ Result<SignOffLog> read_sign_offs(const SessionStore& store, const JobContext& j
     if (!*now) {
       checked.changed.push_back(now->error().line());
     } else {
-      const std::vector<std::string> more = differences(recorded->manifest, **now);
+      const bool is_of_before = recorded->manifest.starts_with(kFirstLineBefore);
+      const std::string is = is_of_before ? without_warnings(**now) : **now;
+      const std::vector<std::string> more = differences(recorded->manifest, is);
       checked.changed.insert(checked.changed.end(), more.begin(), more.end());
-      if (more.empty() && recorded->manifest != **now) {
+      if (more.empty() && recorded->manifest != is) {
         checked.changed.push_back("the record lists things twice, or in another order");
       }
     }

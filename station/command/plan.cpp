@@ -15,6 +15,7 @@
 #include "station/command/command.h"
 #include "station/command/outputs.h"
 #include "station/command/scan_set_options.h"
+#include "station/command/scan_warnings.h"
 #include "station/command/sign_off_words.h"
 #include "station/offline.h"
 #include "station/plan_again.h"
@@ -177,6 +178,7 @@ Result<int> plan(const PlanArguments& arguments, CommandContext& context) {
     log_warning(sentence_of(found));
   }
   const Results& results = planned->results;
+  log_scan_warnings(results.checklist.warnings);
   Comparison comparison;
   // Poses or pins of a file judge alone: the session keeps its own verdict.
   if (set->is_session() && arguments.set.poses.empty() && arguments.set.pins.empty()) {

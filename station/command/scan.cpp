@@ -19,6 +19,7 @@
 #include "formats/rig_limits_json.h"
 #include "station/command/command.h"
 #include "station/command/option_checks.h"
+#include "station/command/scan_warnings.h"
 #include "station/command/size_option.h"
 #include "station/command/terminal.h"
 #include "station/engine.h"
@@ -199,6 +200,7 @@ Result<int> scan(const ScanArguments& arguments, CommandContext& context) {
     }
     return exit_status(result.error().kind);
   }
+  log_scan_warnings(result->checklist.warnings);
   if (context.json) {
     CommandContext::print(result_json(arguments, *result));
   } else {

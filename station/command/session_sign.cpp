@@ -8,6 +8,7 @@
 #include "core/log.h"
 #include "formats/sign_off_json.h"
 #include "station/command/option_checks.h"
+#include "station/command/scan_warnings.h"
 #include "station/command/session_verbs.h"
 #include "station/command/sign_off_words.h"
 #include "station/signing.h"
@@ -48,6 +49,7 @@ Result<int> sign(const SignArguments& arguments, CommandContext& context) {
     return refuse(*signing->refused, context);
   }
   finish_progress();
+  log_scan_warnings(signing->checklist.warnings);
   if (signing->no_pages) {
     log_warning("signed, but the pages could not be made: " + signing->no_pages->line());
   }

@@ -7,6 +7,7 @@
 
 #include "formats/red_map_json.h"
 #include "formats/sha2.h"
+#include "formats/sign_off_json.h"
 #include "tests/acquisition/session_support.h"
 #include "tests/support/temporary_folder.h"
 
@@ -64,7 +65,7 @@ TEST_F(SignedSession, TheManifestCanBeReadAndCheckedWithoutThisProgram) {
   const auto manifest = session_manifest(*store_, job_);
   ASSERT_TRUE(manifest) << manifest.error().line();
   const std::string sum = *sha256_of_file(folder_.path() / "s" / "grids" / "001.grid", job_);
-  EXPECT_THAT(*manifest, HasSubstr("dubsar sign-off 1\nscan 0 "));
+  EXPECT_THAT(*manifest, HasSubstr("dubsar sign-off 2\nscan 0 "));
   EXPECT_THAT(*manifest, HasSubstr("\nscan 1 " + sum + " grids/001.grid\n"));
   EXPECT_THAT(*manifest, HasSubstr("\npose 1 registered 1 0 0 0.1 0 1 0 0.3333333333333333 0 0 1 0 0 0 0 1 "
                                    "sigma_mm 0.01\n"));
@@ -97,6 +98,46 @@ TEST_F(SignedSession, HoldsUntilSomethingChangesAndSaysWhat) {
   save_map(true);
   ASSERT_TRUE(store_->add_grid(test::small_grid(9)));
   EXPECT_THAT(changed(), ElementsAre("the place of scan 3 has come since", "scan 3 has come since"));
+}
+
+// Whoever signs a model with lengths that are not to be trusted has said so: it cannot be taken away, or
+// come, without the signature saying so.
+TEST_F(SignedSession, WhatIsWrongWithAScanInTheModelIsSigned) {
+  poses_[1].warning = "against the other scans it is 2 % too long along the motion";
+  ASSERT_TRUE(store_->save_poses(poses_));
+  EXPECT_THAT(*session_manifest(*store_, job_),
+              HasSubstr(" sigma_mm 0.01\nwarning 1 against the other scans it is 2 % too long along the "
+                        "motion\nscan 2 "));
+  ASSERT_TRUE(sign("A. Reader"));
+  EXPECT_THAT(changed(), IsEmpty());
+  poses_[1].warning = "";
+  ASSERT_TRUE(store_->save_poses(poses_));
+  EXPECT_THAT(changed(), ElementsAre("the warning of scan 1 is no longer part of it"));
+  ASSERT_TRUE(sign("A. Reader"));
+  poses_[0].warning = "its calibration is not theirs";
+  ASSERT_TRUE(store_->save_poses(poses_));
+  EXPECT_THAT(changed(), ElementsAre("the warning of scan 0 has come since"));
+}
+
+TEST_F(SignedSession, ASignatureOfAVersionThatSignedNoWarningsHolds) {
+  poses_[1].warning = "its calibration is not theirs";
+  ASSERT_TRUE(store_->save_poses(poses_));
+  std::string manifest = *session_manifest(*store_, job_);
+  const std::string line = "warning 1 its calibration is not theirs\n";
+  manifest.erase(manifest.find(line), line.size());
+  manifest.replace(0, manifest.find('\n'), "dubsar sign-off 1");
+  SignOff made;
+  made.number = 1;
+  made.name = "A. Reader";
+  made.when = "2026-01-02T03:04:05Z";
+  made.conclusive = true;
+  made.program = "Dubsar 0.1.0";
+  made.digest = sha256_hex(manifest);
+  ASSERT_TRUE(store_->append_event("signed", recorded_sign_off_to_json({made, manifest})));
+  EXPECT_THAT(changed(), IsEmpty());
+  poses_[0].sigma_mm = 0.02;
+  ASSERT_TRUE(store_->save_poses(poses_));
+  EXPECT_THAT(changed(), ElementsAre("the place of scan 0 has changed"));
 }
 
 TEST_F(SignedSession, ADamagedScanMakesItVoid) {

@@ -68,6 +68,30 @@ TEST_F(HalfScanned, IsSignedAsIncompleteOnlyAndWithTheReason) {
   EXPECT_EQ(list[0]["holds"], true) << "a second signature changes nothing of what the first one stands for";
 }
 
+TEST_F(HalfScanned, WhatIsWrongWithAScanInTheModelIsToldBeforeAndWithTheSignature) {
+  const std::string wrong = "against the other scans it is 2 % too large: its calibration is not theirs";
+  {
+    SessionStore store = SessionStore::open(session_).value();
+    std::vector<ScanPose> poses = store.poses().value();
+    ASSERT_EQ(poses.at(1).status, PoseStatus::kRegistered);
+    poses[1].warning = wrong;
+    ASSERT_TRUE(store.save_poses(poses));
+  }
+  EXPECT_THAT(run_command({"plan", session_}).err, HasSubstr("scan 1: " + wrong));
+  const Outcome made = sign({"--name", "A. Reader", "--incomplete", "the back is in plaster"});
+  ASSERT_EQ(made.status, 0) << made.err;
+  EXPECT_THAT(made.err, HasSubstr("scan 1: " + wrong));
+  {
+    SessionStore store = SessionStore::open(session_).value();
+    std::vector<ScanPose> poses = store.poses().value();
+    poses[1].warning.clear();
+    ASSERT_TRUE(store.save_poses(poses));
+  }
+  const Outcome void_now = run_command({"verify", session_});
+  EXPECT_EQ(void_now.status, 1);
+  EXPECT_THAT(void_now.out + void_now.err, HasSubstr("the warning of scan 1 is no longer part of it"));
+}
+
 TEST_F(HalfScanned, PlanSaysTheSameAndWritesPageAndStates) {
   const fs::path page = folder_.path() / "page.html";
   const fs::path states = folder_.path() / "states";
