@@ -56,8 +56,9 @@ class CloudBuilder {
 
 class Collector : public ProfileSink {
  public:
-  Collector(const RangeSource::RowObserver& observer, JobContext& job, const std::atomic<bool>& halted)
-      : observer_(observer), job_(job), halted_(halted) {}
+  Collector(const RangeSource::RowObserver& observer, std::vector<std::string>& remarks, JobContext& job,
+            const std::atomic<bool>& halted)
+      : observer_(observer), remarks_(remarks), job_(job), halted_(halted) {}
 
   bool begin(const ScanInfo& info) override {
     info_ = info;
@@ -80,7 +81,7 @@ class Collector : public ProfileSink {
     return true;
   }
   void end(const ScanTally& ended) override { tally = ended; }
-  void remark(const std::string& text) override { remarks.push_back(text); }
+  void remark(const std::string& text) override { remarks_.push_back(text); }
 
   /// Hands a grid on row by row as if it came from the device.
   Status replay(const RangeGrid& grid) {
@@ -118,7 +119,6 @@ class Collector : public ProfileSink {
   std::optional<GridBuilder> builder;
   std::optional<CloudBuilder> cloud;
   ScanTally tally;
-  std::vector<std::string> remarks;
 
  private:
   [[nodiscard]] bool ended() const { return job_.cancelled() || halted_; }
@@ -129,6 +129,7 @@ class Collector : public ProfileSink {
   }
 
   const RangeSource::RowObserver& observer_;
+  std::vector<std::string>& remarks_;
   JobContext& job_;
   const std::atomic<bool>& halted_;
   ScanInfo info_;
@@ -202,13 +203,12 @@ Result<std::optional<RangeGrid>> RangeSource::next(const RowObserver& observer, 
   if (const auto halt = halted(job)) {
     return std::unexpected(*halt);
   }
-  Collector collector(observer, job, *halted_);
+  Collector collector(observer, record_.remarks, job, *halted_);
   const Result<ScanOutcome> outcome = [&] {
     const StopsWhenCancelled watch(device_, job, halted_.get());
     return device_.scan(collector);
   }();
   record_.tally = collector.tally;
-  record_.remarks = std::move(collector.remarks);
   std::optional<Error> fault = outcome ? std::nullopt : std::optional(outcome.error());
   if (fault) {
     fault = halted(job).value_or(*fault);

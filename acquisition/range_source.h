@@ -62,7 +62,7 @@ class RangeSource {
 
   /// The rows of the last scan when next() failed in the middle of it; moved out.
   [[nodiscard]] std::optional<RangeGrid> take_partial() { return std::exchange(partial_, std::nullopt); }
-  /// About the last scan.
+  /// About the last scan; its remarks are there as soon as the driver made them.
   [[nodiscard]] const ScanRecord& record() const { return record_; }
 
  private:

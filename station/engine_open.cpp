@@ -49,7 +49,7 @@ void Engine::Impl::take_up_left_scans() {
     // A program may also end between the storing of a scan and the end of its copy here.
     const Result<RangeGrid> newest = stored->empty() ? RangeGrid{} : store->load_grid(stored->back().id);
     if (left.grid.valid_count() > 0 && !(newest && begins_with(*newest, left.grid))) {
-      const Result<int> id = store->add_grid(left.grid);
+      const Result<int> id = store->add_grid(left.grid, left.remark);
       if (!id) {
         emit(Notice{id.error().line()});
         return;
@@ -57,6 +57,8 @@ void Engine::Impl::take_up_left_scans() {
       if (left.drive) {
         note_drive(*id, *left.drive);
       }
+      emit(
+          ScanStored{*id, left.grid.source, static_cast<std::int64_t>(left.grid.valid_count()), left.remark});
       emit(Notice{fmt::format("a scan in whose middle the program ended is kept: {} rows, as scan {}",
                               left.grid.rows, *id)});
     }

@@ -26,6 +26,9 @@ void Engine::Impl::keep_half(const std::optional<Placement>& drive, std::shared_
 
 bool Engine::Impl::hand_to_store(RawScan scan) {
   const std::shared_ptr<UnfinishedScan> kept = scan.kept;
+  if (kept) {
+    kept->remark(scan.remark);  // a device may make it after its last row
+  }
   const bool taken = queues->to_store.push(std::move(scan));
   if (!taken && kept) {
     kept->leave();  // the disk has refused one before it
@@ -43,6 +46,7 @@ Taken Engine::Impl::take_scan(const std::optional<Placement>& drive, JobContext&
       source->capabilities().finite ? nullptr : std::make_shared<UnfinishedScan>(store->folder(), drive);
   const auto on_profile = [&](const RangeGrid& grid, int row) {
     if (kept) {
+      kept->remark(remark_of(source->record()));
       kept->follow(grid, placement_offset);
     }
     if (!flagger && grid.spacing_mm > 0) {

@@ -9,6 +9,7 @@
 
 #include "core/grid_rows.h"
 #include "core/log.h"
+#include "core/utf8.h"
 #include "formats/atomic_file.h"
 #include "formats/grid_file.h"
 #include "station/drives.h"
@@ -20,7 +21,8 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* kDrive = "drive.json";
-constexpr std::size_t kDriveBytes = 65536;
+constexpr const char* kRemark = "remark.txt";
+constexpr std::size_t kSmallFileBytes = 65536;
 
 fs::path home_of(const fs::path& session) {
   return session / "grids" / "unfinished";
@@ -96,19 +98,34 @@ void UnfinishedScan::follow(const RangeGrid& grid, int placement_offset) {
   comes_.notify_one();
 }
 
+void UnfinishedScan::remark(const std::string& text) {
+  const std::scoped_lock lock(mutex_);
+  if (text != remark_) {
+    remark_ = text;
+    comes_.notify_one();
+  }
+}
+
 void UnfinishedScan::write_rows(const std::stop_token& stop) {
   Status written;
   if (drive_) {
     written = write_file_atomically(folder_ / kDrive, std::string_view(drives_to_json({{0, *drive_}})));
   }
-  for (int number = 0; written; ++number) {
+  std::string remarked;
+  for (int number = 0; written;) {
     std::unique_lock lock(mutex_);
-    if (!comes_.wait(lock, stop, [this] { return to_write_.has_value(); })) {
+    if (!comes_.wait(lock, stop, [&] { return to_write_ || remark_ != remarked; })) {
       return;
+    }
+    if (remark_ != remarked) {
+      remarked = remark_;
+      lock.unlock();
+      written = write_file_atomically(folder_ / kRemark, std::string_view(remarked));
+      continue;
     }
     const RangeGrid rows = std::move(*to_write_);
     lock.unlock();
-    written = write_grid_file(rows_file(folder_, number), rows);
+    written = write_grid_file(rows_file(folder_, number++), rows);
     lock.lock();
     to_write_.reset();
   }
@@ -119,18 +136,23 @@ void UnfinishedScan::write_rows(const std::stop_token& stop) {
 std::vector<LeftScan> left_scans(const fs::path& session) {
   std::vector<LeftScan> out;
   for (const int folder_number : numbered_folders(home_of(session))) {
-    LeftScan left{
-        .grid = {}, .drive = std::nullopt, .folder = home_of(session) / std::to_string(folder_number)};
+    LeftScan left{.grid = {},
+                  .drive = std::nullopt,
+                  .remark = {},
+                  .folder = home_of(session) / std::to_string(folder_number)};
     for (int number = 0;; ++number) {
       Result<RangeGrid> rows = read_grid_file(rows_file(left.folder, number));
       if (!rows || !append_rows(left.grid, *rows)) {
         break;
       }
     }
-    if (const Result<std::string> text = read_whole_file(left.folder / kDrive, kDriveBytes)) {
+    if (const Result<std::string> text = read_whole_file(left.folder / kDrive, kSmallFileBytes)) {
       if (auto drives = parse_drives(*text, (left.folder / kDrive).string()); drives && drives->contains(0)) {
         left.drive = drives->at(0);
       }
+    }
+    if (const Result<std::string> text = read_whole_file(left.folder / kRemark, kSmallFileBytes)) {
+      left.remark = one_line(*text);
     }
     out.push_back(std::move(left));
   }

@@ -9,6 +9,7 @@
 #include <mutex>
 #include <optional>
 #include <stop_token>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -33,6 +34,9 @@ class UnfinishedScan {
   /// Copies what has come since the last time; a thread of its own writes it. From the scanning thread: rows
   /// that have come do not change any more. A disk that refuses ends it with one warning, and not the scan.
   void follow(const RangeGrid& grid, int placement_offset);
+  /// What the device has remarked on it until now; written with the rows, or after them. From the scanning
+  /// thread.
+  void remark(const std::string& text);
   /// The scan could not be stored: its rows stay for the next program.
   void leave() { left_ = true; }
 
@@ -49,6 +53,7 @@ class UnfinishedScan {
   std::mutex mutex_;  ///< of what follows
   std::condition_variable_any comes_;
   std::optional<RangeGrid> to_write_;
+  std::string remark_;
   std::jthread writer_;
 };
 
@@ -56,6 +61,7 @@ class UnfinishedScan {
 struct LeftScan {
   RangeGrid grid;  ///< the rows that are there in a row and whole
   std::optional<Placement> drive;
+  std::string remark;  ///< of the device on it; empty where there was none
   std::filesystem::path folder;
 };
 

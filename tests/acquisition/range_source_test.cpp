@@ -6,12 +6,14 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <fstream>
 
 #include "build_paths.h"
 #include "core/units.h"
 #include "formats/poses_json.h"
 #include "tests/support/real_data.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/wrong_spacing.h"
 
 namespace dubsar {
 namespace {
@@ -107,6 +109,17 @@ TEST_F(RangeSourceTest, AFailureInMidScanKeepsTheRowsAndTheNextScanRuns) {
   EXPECT_FALSE(source.take_partial());
   EXPECT_EQ(source.next({}, job_).value()->rows, 6);
   EXPECT_FALSE(source.take_partial());
+}
+
+TEST_F(RangeSourceTest, WhatADeviceRemarksIsThereWhileItStillScans) {
+  const test::TemporaryFolder folder;
+  std::ofstream(folder.path() / "a.ply") << test::ply_of_wrong_spacing();
+  RangeSource source = open("replay:" + folder.path().string());
+  std::vector<std::size_t> remarks;
+  ASSERT_TRUE(
+      source.next([&](const RangeGrid&, int) { remarks.push_back(source.record().remarks.size()); }, job_));
+  EXPECT_THAT(remarks, testing::Each(1U));
+  EXPECT_FALSE(remarks.empty());
 }
 
 TEST_F(RangeSourceTest, ACancelledJobStopsAnEndlessScan) {

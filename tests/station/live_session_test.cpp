@@ -326,6 +326,7 @@ TEST(LiveSession, AScanThatWasBrokenOffIsToldUntilARunHasStoredIt) {
   }
   {
     UnfinishedScan killed(folder.path() / "s", std::nullopt, std::chrono::milliseconds(0));
+    killed.remark("the lamp is low");
     killed.follow(rows, 0);
     for (int k = 0; k < 500 && (left_scans(folder.path() / "s").empty() ||
                                 left_scans(folder.path() / "s").front().grid.rows < 30);
@@ -343,6 +344,8 @@ TEST(LiveSession, AScanThatWasBrokenOffIsToldUntilARunHasStoredIt) {
   followed.session.finish();
   ASSERT_TRUE(followed.wait_for_rest());
   EXPECT_EQ(followed.session.state().broken_off_rows, 0);
+  EXPECT_EQ(followed.session.state().scans.front().remark, "the lamp is low");
+  EXPECT_EQ(SessionStore::open(folder.path() / "s").value().scans()->front().remark, "the lamp is low");
 }
 
 TEST(LiveSession, WhatIsAskedForGoesBeforeTheModelOfAnInterruptedSession) {

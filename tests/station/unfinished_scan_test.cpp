@@ -83,6 +83,7 @@ TEST_F(Unfinished, RowsOfAScanThatWasBrokenOffAreThereAgain) {
   EXPECT_EQ(left[0].grid.nominal.value().placement, 4);
   EXPECT_EQ(left[0].drive.value().turntable_rad, 0.5);
   EXPECT_FALSE(left[1].drive);
+  EXPECT_EQ(left[1].remark, "");
   EXPECT_EQ(left[1].grid.rows, 9);
   EXPECT_TRUE(begins_with(whole, left[1].grid));
   EXPECT_FALSE(begins_with(left[1].grid, left[0].grid));
@@ -90,6 +91,22 @@ TEST_F(Unfinished, RowsOfAScanThatWasBrokenOffAreThereAgain) {
   EXPECT_THAT(left_scans(session_), SizeIs(1));
   forget(left[1]);
   EXPECT_FALSE(std::filesystem::exists(session_ / "grids" / "unfinished"));
+}
+
+TEST_F(Unfinished, WhatTheDeviceRemarkedIsThereAgain) {
+  {
+    UnfinishedScan scan(session_, std::nullopt, 0ms);
+    scan.remark("the lamp is low");
+    while (files() == 0) {
+      scan.follow(grown_to(5), 0);
+    }
+    scan.remark("the lamp is low; the lid was open");  // after its last row
+    scan.leave();
+  }
+  const std::vector<LeftScan> left = left_scans(session_);
+  ASSERT_THAT(left, SizeIs(1));
+  EXPECT_EQ(left[0].grid.rows, 5);
+  EXPECT_EQ(left[0].remark, "the lamp is low; the lid was open");
 }
 
 TEST_F(Unfinished, WhatIsDamagedEndsTheRowsThere) {
