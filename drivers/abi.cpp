@@ -53,20 +53,21 @@ Status within_reason(const Rig& rig, const std::string& where) {
   const auto beyond = [&](const char* what, double value, double most, const char* unit) -> Status {
     std::ostringstream words;
     words.precision(9);
-    words << "told a rig " << what << " of " << value << " " << unit << ", beyond " << most << " " << unit;
+    words << "told a rig " << what << value << " " << unit << ", beyond " << most << " " << unit;
     return std::unexpected(faulty(where, words.str()));
   };
   if (rig.spacing_mm > kMostRigSpacingMm) {
-    return beyond("with a spacing", rig.spacing_mm, kMostRigSpacingMm, "mm");
+    return beyond("with a spacing of ", rig.spacing_mm, kMostRigSpacingMm, "mm");
   }
   if (rig.depth_range_mm > kMostDepthRangeMm) {
-    return beyond("with a depth range", rig.depth_range_mm, kMostDepthRangeMm, "mm");
+    return beyond("with a depth range of ", rig.depth_range_mm, kMostDepthRangeMm, "mm");
   }
   if (std::abs(rig.support_height_mm) > kMostSupportHeightMm) {
-    return beyond("with a support height", rig.support_height_mm, kMostSupportHeightMm, "mm");
+    return beyond("with a support height of ", rig.support_height_mm, kMostSupportHeightMm, "mm");
   }
   if (rig.calibration_age_days.value_or(0) > kMostCalibrationAgeDays) {
-    return beyond("whose calibration has an age", *rig.calibration_age_days, kMostCalibrationAgeDays, "days");
+    return beyond("whose calibration has an age of ", *rig.calibration_age_days, kMostCalibrationAgeDays,
+                  "days");
   }
   return {};
 }

@@ -12,20 +12,20 @@ namespace dubsar {
 
 namespace {
 
-const char* kind_of(const nlohmann::json& value) {
+const char* is_what(const nlohmann::json& value) {
   switch (value.type()) {
     case nlohmann::json::value_t::object:
-      return "an object";
+      return "is an object";
     case nlohmann::json::value_t::array:
-      return "an array";
+      return "is an array";
     case nlohmann::json::value_t::string:
-      return "text";
+      return "is text";
     case nlohmann::json::value_t::boolean:
-      return "true or false";
+      return "is true or false";
     case nlohmann::json::value_t::null:
-      return "null";
+      return "is null";
     default:
-      return "a number";
+      return "is a number";
   }
 }
 
@@ -61,7 +61,7 @@ JsonNode JsonNode::at(const char* key) const {
     return {nullptr, path, complaint_};
   }
   if (!value_->is_object()) {
-    complain(std::string("is ") + kind_of(*value_) + ", not an object");
+    complain(std::string(is_what(*value_)) + ", not an object");
     return {nullptr, path, complaint_};
   }
   const auto member = value_->find(key);
@@ -104,7 +104,7 @@ std::vector<JsonNode> JsonNode::items() const {
     return nodes;
   }
   if (!value_->is_array()) {
-    complain(std::string("is ") + kind_of(*value_) + ", not an array");
+    complain(std::string(is_what(*value_)) + ", not an array");
     return nodes;
   }
   nodes.reserve(value_->size());
@@ -141,7 +141,7 @@ double JsonNode::number(double low, double high) const {
     return neutral;
   }
   if (!value_->is_number()) {
-    complain(std::string("is ") + kind_of(*value_) + ", not a number");
+    complain(std::string(is_what(*value_)) + ", not a number");
     return neutral;
   }
   const auto number = value_->get<double>();
@@ -180,7 +180,7 @@ std::string JsonNode::text() const {
     return {};
   }
   if (!value_->is_string()) {
-    complain(std::string("is ") + kind_of(*value_) + ", not text");
+    complain(std::string(is_what(*value_)) + ", not text");
     return {};
   }
   return value_->get<std::string>();
@@ -191,7 +191,7 @@ bool JsonNode::boolean() const {
     return false;
   }
   if (!value_->is_boolean()) {
-    complain(std::string("is ") + kind_of(*value_) + ", not true or false");
+    complain(std::string(is_what(*value_)) + ", not true or false");
     return false;
   }
   return value_->get<bool>();
@@ -218,7 +218,7 @@ std::vector<double> JsonNode::numbers(std::size_t count) const {
   }
   if (!value_->is_array() || value_->size() != count) {
     complain((value_->is_array() ? "has " + std::to_string(value_->size()) + " entries"
-                                 : std::string("is ") + kind_of(*value_)) +
+                                 : std::string(is_what(*value_))) +
              ", not " + std::to_string(count) + " numbers");
     return values;
   }
@@ -288,7 +288,7 @@ Result<JsonDocument> JsonDocument::parse(std::string_view text, const std::strin
   }
   if (!document.state_->value.is_object()) {
     return bad_input(where,
-                     std::string("the document is ") + kind_of(document.state_->value) + ", not an object",
+                     std::string("the document ") + is_what(document.state_->value) + ", not an object",
                      "check what the file is");
   }
   return document;

@@ -4,98 +4,52 @@
 
 #include <gtest/gtest.h>
 
-#include <filesystem>
-#include <fstream>
-#include <iterator>
-#include <regex>
 #include <set>
 #include <string>
-#include <vector>
 
-#include "build_paths.h"
 #include "core/result.h"
 #include "registration/unit_check.h"
+#include "tests/ui/support/refusals.h"
 #include "ui/shell/engine_words.h"
 #include "ui/shell/text_table.h"
 
 namespace dubsar::ui {
 namespace {
 
-/// A source without comments, adjacent string literals joined.
-std::string source_of(const std::string& file) {
-  std::ifstream in(std::filesystem::path(DUBSAR_SOURCE_DIR) / file);
-  const std::string all{std::istreambuf_iterator<char>(in), {}};
-  const std::string bare = std::regex_replace(all, std::regex("//[^\\n]*|#include[^\\n]*"), "");
-  return std::regex_replace(bare, std::regex("\"\\s*\\n\\s*\""), "");
-}
-
-/// The string literals of what a source refuses: within the statements that make an error.
-std::vector<std::string> refusals_in(const std::string& file) {
-  static const std::regex kMaker(
-      R"re((fail|bad_input|report|error_of|usb_error|told)\([^;]*;|\{ErrorKind::[^;]*;)re");
-  static const std::regex kLiteral(R"re("([^"\n]*)")re");
-  // A mend may hold a semicolon of its own.
-  const std::string source = std::regex_replace(source_of(file), std::regex("; (?=[a-z])"), "\x01 ");
-  std::vector<std::string> out;
-  for (std::sregex_iterator call(source.begin(), source.end(), kMaker), end; call != end; ++call) {
-    const std::string text = call->str();
-    for (std::sregex_iterator one(text.begin(), text.end(), kLiteral); one != end; ++one) {
-      out.push_back(std::regex_replace((*one)[1].str(), std::regex("\x01"), ";"));
-    }
-  }
-  return out;
-}
-
 TEST(DeviceWords, NoRefusalOfADeviceIsHalfGerman) {
-  // What stands between the parts of a sentence, or is one in both languages.
   const std::set<std::string> no_sentence{" x ",    " to ",      ", from 0", "it has ",     " from ", " at ",
                                           " bytes", ", camera ", "at most ", "laser plane", ", not "};
-  // Words that a German sentence does not have.
-  const std::regex english(
-      "\\b(and|the|is|it|its|see|not|with|does|that|this|ask|give|are|from|for|of|to|or|has)\\b");
-  int sentences = 0;
-  for (const char* file : {"drivers/v4l2/camera.cpp",
-                           "drivers/v4l2/camera_mode.cpp",
-                           "drivers/v4l2/controls.cpp",
-                           "drivers/v4l2/modes.cpp",
-                           "drivers/v4l2/node.cpp",
-                           "drivers/v4l2/region.cpp",
-                           "drivers/v4l2/stream.cpp",
-                           "drivers/v4l2/v4l2_driver.cpp",
-                           "drivers/aravis/aravis_driver.cpp",
-                           "drivers/aravis/camera.cpp",
-                           "drivers/aravis/camera_setup.cpp",
-                           "drivers/aravis/connection.cpp",
-                           "drivers/aravis/features.cpp",
-                           "drivers/aravis/glib.h",
-                           "drivers/aravis/profiles.cpp",
-                           "drivers/usb_stage/banner.cpp",
-                           "drivers/usb_stage/controller.cpp",
-                           "drivers/usb_stage/grbl_firmware.cpp",
-                           "drivers/usb_stage/guard.cpp",
-                           "drivers/usb_stage/horus_firmware.cpp",
-                           "drivers/usb_stage/tmcl_firmware.cpp",
-                           "drivers/usb_stage/usb_link.cpp",
-                           "drivers/usb_stage/usb_stage_driver.cpp",
-                           "drivers/replay/scan_files.cpp",
-                           "acquisition/range_source.cpp",
-                           "acquisition/fresh_frame.cpp",
-                           "acquisition/stripe_stream.cpp",
-                           "acquisition/stage_watch.cpp",
-                           "acquisition/rig_scan.cpp",
-                           "acquisition/rig_sweep.cpp"}) {
-    for (const std::string& sentence : refusals_in(file)) {
-      const bool has_words = std::regex_search(sentence, std::regex("[a-z]{2}.* | .*[a-z]{2}"));
-      const bool is_typed = sentence.starts_with("write ") && sentence.find(' ', 6) == std::string::npos;
-      if (!has_words || is_typed || no_sentence.contains(sentence)) {
-        continue;
-      }
-      ++sentences;
-      const std::string german = translated(sentence, Language::kGerman);
-      EXPECT_NE(german, sentence) << file;
-      EXPECT_FALSE(std::regex_search(german, english)) << file << ": " << german;
-    }
-  }
+  const int sentences = test::expect_german({"drivers/v4l2/camera.cpp",
+                                             "drivers/v4l2/camera_mode.cpp",
+                                             "drivers/v4l2/controls.cpp",
+                                             "drivers/v4l2/modes.cpp",
+                                             "drivers/v4l2/node.cpp",
+                                             "drivers/v4l2/region.cpp",
+                                             "drivers/v4l2/stream.cpp",
+                                             "drivers/v4l2/v4l2_driver.cpp",
+                                             "drivers/aravis/aravis_driver.cpp",
+                                             "drivers/aravis/camera.cpp",
+                                             "drivers/aravis/camera_setup.cpp",
+                                             "drivers/aravis/connection.cpp",
+                                             "drivers/aravis/features.cpp",
+                                             "drivers/aravis/glib.h",
+                                             "drivers/aravis/profiles.cpp",
+                                             "drivers/usb_stage/banner.cpp",
+                                             "drivers/usb_stage/controller.cpp",
+                                             "drivers/usb_stage/grbl_firmware.cpp",
+                                             "drivers/usb_stage/guard.cpp",
+                                             "drivers/usb_stage/horus_firmware.cpp",
+                                             "drivers/usb_stage/tmcl_firmware.cpp",
+                                             "drivers/usb_stage/usb_link.cpp",
+                                             "drivers/usb_stage/usb_stage_driver.cpp",
+                                             "drivers/replay/scan_files.cpp",
+                                             "acquisition/range_source.cpp",
+                                             "acquisition/fresh_frame.cpp",
+                                             "acquisition/stripe_stream.cpp",
+                                             "acquisition/stage_watch.cpp",
+                                             "acquisition/rig_scan.cpp",
+                                             "acquisition/rig_sweep.cpp"},
+                                            no_sentence);
   EXPECT_GT(sentences, 150);
 }
 
@@ -104,7 +58,7 @@ TEST(DeviceWords, HelpOfSettingsIsGerman) {
   for (const char* file :
        {"drivers/v4l2/v4l2_driver.cpp", "drivers/v4l2/controls.cpp", "drivers/aravis/features.cpp",
         "drivers/replay/replay_driver.cpp", "drivers/usb_stage/usb_stage_driver.cpp"}) {
-    said += source_of(file);
+    said += test::source_of(file);
   }
   for (const EnginePhrase& help : engine_settings()) {
     EXPECT_NE(said.find('"' + std::string(help.english) + '"'), std::string::npos) << help.english;

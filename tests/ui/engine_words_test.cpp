@@ -26,9 +26,9 @@ std::string joined(const std::string& source) {
 /// The sources of the engine and of its drivers, adjacent string literals joined.
 std::string words_of_the_engine() {
   std::string all;
-  for (const char* folder :
-       {"station", "registration", "planning", "triangulation", "archive", "analysis", "acquisition",
-        "formats", "drivers", "drivers/v4l2", "drivers/aravis", "drivers/usb_stage", "drivers/replay"}) {
+  for (const char* folder : {"station", "registration", "planning", "triangulation", "archive", "analysis",
+                             "acquisition", "formats", "drivers", "drivers/v4l2", "drivers/aravis",
+                             "drivers/usb_stage", "drivers/replay", "drivers/sim"}) {
     for (const auto& entry :
          std::filesystem::directory_iterator(std::filesystem::path(DUBSAR_SOURCE_DIR) / folder)) {
       if (entry.path().extension() == ".cpp" || entry.path().extension() == ".h") {

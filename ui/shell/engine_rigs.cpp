@@ -139,6 +139,16 @@ constexpr EnginePhrase kRigs[] = {
     {"a camera that yields pictures needs a calibration",
      "eine Kamera, die Bilder liefert, braucht eine Kalibrierung"},
     {"this rig has no camera to look through", "dieses Gerät hat keine Kamera, durch die zu sehen wäre"},
+    {"nobody says how the stage moves the range camera",
+     "niemand sagt, wie der Tisch die Tiefenkamera bewegt"},
+    {"see [motion] in docs/formats/rig_toml.md", "siehe [motion] in docs/formats/rig_toml.md"},
+    {"give speed_mm_s or speed_deg_s: the camera's rate of profiles times the step",
+     "speed_mm_s oder speed_deg_s angeben: die Profilrate der Kamera mal den Schritt"},
+    {"the camera sends the whole scan in one block, and nothing tells its rows' times",
+     "die Kamera sendet den ganzen Scan in einem Block, und nichts sagt die Zeiten seiner Zeilen"},
+    {"set a smaller height_px in camera_settings", "in camera_settings ein kleineres height_px setzen"},
+    {"a rig is put together, not opened", "ein Gerät wird zusammengesetzt, nicht geöffnet"},
+    {"a rig cannot be a part of a rig", "ein Gerät kann kein Teil eines Geräts sein"},
 };
 
 }  // namespace

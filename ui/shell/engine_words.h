@@ -3,6 +3,7 @@
 #pragma once
 
 #include <span>
+#include <string>
 #include <vector>
 
 namespace dubsar::ui {
@@ -30,9 +31,22 @@ struct EnginePhrase {
 [[nodiscard]] std::span<const EnginePhrase> engine_controllers();
 /// Of any device, and of what is put together of them.
 [[nodiscard]] std::span<const EnginePhrase> engine_rigs();
+/// Of drivers, their options and settings.
+[[nodiscard]] std::span<const EnginePhrase> engine_drivers();
+/// Of small files that cannot be read.
+[[nodiscard]] std::span<const EnginePhrase> engine_files();
+/// Of scans and meshes that cannot be read.
+[[nodiscard]] std::span<const EnginePhrase> engine_shapes();
+/// Of sessions, of their disk and of signatures.
+[[nodiscard]] std::span<const EnginePhrase> engine_stored();
 
 /// The phrases of all these tables in the order in which they are replaced (text_table.h: translated()): the
 /// longest first, for one may hold another.
 [[nodiscard]] const std::vector<EnginePhrase>& engine_sentences();
+
+/// What is said around a name that stands in the middle of it; before the phrases are replaced.
+[[nodiscard]] std::string with_german_names(const std::string& english);
+/// "scan 4", "scans 4 and 5", "pin 4", "line 12", "5 bytes", and what the system says; after them.
+[[nodiscard]] std::string with_german_numbers(const std::string& english);
 
 }  // namespace dubsar::ui

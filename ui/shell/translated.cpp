@@ -3,8 +3,9 @@
 // Sentences of the engine in the words of the window.
 #include <algorithm>
 #include <functional>
-#include <regex>
+#include <string>
 #include <string_view>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -40,6 +41,15 @@ constexpr std::pair<std::string_view, std::string_view> kInWindow[] = {
     {", then dubsar calibrate --verify", ", then verify it again"},
     {"sign with --incomplete REASON", "sign it as incomplete, with the reason"},
     {"sign it without --incomplete; --note takes a remark", "sign it as it is; a note takes a remark"},
+    {"run dubsar plan on it, read it, and sign again", "go on, finish, read it, and sign again"},
+    {"run dubsar plan on it first", "go on and finish first"},
+    {"see dubsar session list", "see the strip of scans"},
+    {"say what the numbers are with --unit", "say what the numbers are with ?unit="},
+    {"; scans become one with dubsar stitch", ""},
+    {"give a folder with a calibration.toml, or with pictures of the board and --board",
+     "give a folder with a calibration.toml, or with pictures of the board, and name the board"},
+    {"give --board-exposure and --laser-exposure, both", "give both exposures, for board and laser"},
+    {"say --motion linear or turntable", "choose linear or turntable"},
 };
 
 template <class Pairs>
@@ -52,22 +62,14 @@ void replace_each(std::string& text, const Pairs& pairs) {
   }
 }
 
-/// "scan 4", "scans 4 and 5" and "pin 4", wherever they stand.
-std::string with_german_scans(const std::string& text) {
-  static const std::regex kScan("\\bscan(s?) (?=[0-9])");
-  static const std::regex kAnd("(\\bScans [0-9, ]*[0-9]) and (?=[0-9])");
-  static const std::regex kPin("\\bpin (?=[0-9])");
-  const std::string pins = std::regex_replace(text, kPin, "Nadel ");
-  return std::regex_replace(std::regex_replace(pins, kScan, "Scan$1 "), kAnd, "$1 und ");
-}
-
 }  // namespace
 
 const std::vector<EnginePhrase>& engine_sentences() {
   static const std::vector<EnginePhrase> kSorted = [] {
     std::vector<EnginePhrase> all;
-    for (const auto& table : {engine_phrases(), engine_calibration(), engine_remarks(), engine_cameras(),
-                              engine_controllers(), engine_rigs()}) {
+    for (const auto& table :
+         {engine_phrases(), engine_calibration(), engine_remarks(), engine_cameras(), engine_controllers(),
+          engine_rigs(), engine_drivers(), engine_files(), engine_shapes(), engine_stored()}) {
       all.insert(all.end(), table.begin(), table.end());
     }
     std::ranges::stable_sort(all, std::ranges::greater(),
@@ -77,12 +79,9 @@ const std::vector<EnginePhrase>& engine_sentences() {
   return kSorted;
 }
 
-std::string translated(const std::string& english, Language language) {
-  std::string out = english;
-  if (language == Language::kEnglish) {
-    replace_each(out, kInWindow);
-    return out;
-  }
+namespace {
+
+std::string german_of(const std::string& english) {
   for (const auto& whole : {engine_stages(), engine_settings()}) {
     for (const auto& [from, to] : whole) {
       if (english == from) {
@@ -90,8 +89,30 @@ std::string translated(const std::string& english, Language language) {
       }
     }
   }
+  std::string out = with_german_names(english);
   replace_each(out, engine_sentences());
-  return with_decimal_commas(with_german_scans(out));
+  return with_decimal_commas(with_german_numbers(out));
+}
+
+}  // namespace
+
+std::string translated(const std::string& english, Language language) {
+  if (language == Language::kEnglish) {
+    std::string out = english;
+    replace_each(out, kInWindow);
+    return out;
+  }
+  // The window asks for the same few sentences in every picture that it draws.
+  constexpr std::size_t kMostKept = 500;
+  thread_local std::unordered_map<std::string, std::string> kept;
+  if (kept.size() > kMostKept) {
+    kept.clear();
+  }
+  const auto [said, is_new] = kept.try_emplace(english);
+  if (is_new) {
+    said->second = german_of(english);
+  }
+  return said->second;
 }
 
 std::string translated(const Error& error, Language language) {

@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+// What drivers do wrong, and what is said of files, sessions and calibrations that cannot be used, in the
+// words of the window.
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <set>
+#include <string>
+
+#include "acquisition/session_store.h"
+#include "acquisition/setting_words.h"
+#include "drivers/abi.h"
+#include "formats/json_node.h"
+#include "formats/mesh_io.h"
+#include "formats/pins_json.h"
+#include "tests/support/temporary_folder.h"
+#include "tests/ui/support/refusals.h"
+#include "ui/shell/text_table.h"
+
+namespace dubsar::ui {
+namespace {
+
+/// Before and behind numbers and names: the sentences below have them in German.
+const std::set<std::string> kAround{
+    " is ",         " is not ",     " of ",         " on",       " to ",
+    " belong",      " belongs",     " bytes",       " elements", " entries",
+    " in it",       " levels",      " numbers",     " samples",  " samples)",
+    " to change",   " to read",     " vertices",    ", not ",    ", out",
+    "axis ",        "chunk ",       "claims ",      "element ",  "facet ",
+    "format ",      "has ",         "header line ", "holds ",    "is ",
+    "is missing",   "is not ",      "is text",      "it has ",   "lies ",
+    "line ",        "more than ",   "no scan ",     "obj_info ", "obj_info unit is ",
+    "option ",      "rate '",       "sample ",      "setting ",  " takes ",
+    " cannot be '", "the document", "unit '",       "vertex ",   "write ",
+    " is"};
+
+std::set<std::string> and_these(std::set<std::string> more) {
+  more.insert(kAround.begin(), kAround.end());
+  return more;
+}
+
+TEST(FileWords, NoFaultOfADriverIsHalfGerman) {
+  const int sentences = test::expect_german(
+      {"drivers/abi.cpp", "drivers/abi_frames.cpp", "drivers/loader.cpp", "drivers/trust.cpp",
+       "drivers/device.cpp", "drivers/device_frames.cpp", "drivers/device_stage.cpp",
+       "drivers/sim/sim_driver.cpp", "drivers/replay/replay_driver.cpp", "acquisition/setting_words.cpp",
+       "acquisition/device_uri.cpp"},
+      kAround);
+  EXPECT_GT(sentences, 60);
+}
+
+TEST(FileWords, NoRefusalOfAReaderIsHalfGerman) {
+  const int sentences = test::expect_german(
+      {"formats/json_node.cpp",        "formats/toml_document.cpp",   "formats/self_checked.cpp",
+       "formats/atomic_file.cpp",      "formats/hint_json.cpp",       "formats/pins_json.cpp",
+       "formats/ply_header.cpp",       "formats/ply_body.cpp",        "formats/ply_scan.cpp",
+       "formats/ply_scan_info.cpp",    "formats/point_text.cpp",      "formats/ptx.cpp",
+       "formats/scan_samples.cpp",     "formats/grid_file.cpp",       "formats/grid_header.cpp",
+       "formats/grid_reader.cpp",      "formats/glb_container.cpp",   "formats/mesh_glb.cpp",
+       "formats/mesh_io.cpp",          "formats/mesh_obj.cpp",        "formats/mesh_ply.cpp",
+       "formats/mesh_stl.cpp",         "formats/gray_file.cpp",       "formats/gray_jpeg.cpp",
+       "formats/calibration_json.cpp", "formats/calibration_set.cpp", "formats/artefact_toml.cpp",
+       "formats/corrections_json.cpp", "formats/selections_json.cpp", "formats/rig_json.cpp",
+       "formats/rig_toml.cpp",         "formats/rig_limits_json.cpp", "formats/red_map_json.cpp",
+       "formats/wedge_json.cpp",       "formats/search_index.cpp",    "formats/sha2.cpp",
+       "formats/writers_turn.cpp",     "formats/seen_side.cpp",       "acquisition/resample.cpp"},
+      and_these({"`obj_info dubsar_direction "}));
+  EXPECT_GT(sentences, 150);
+}
+
+TEST(FileWords, NothingSaidOfASessionIsHalfGerman) {
+  const int sentences = test::expect_german(
+      {"acquisition/session_files.cpp", "acquisition/session_log.cpp", "acquisition/session_open.cpp",
+       "acquisition/session_records.cpp", "acquisition/session_repair.cpp", "acquisition/session_store.cpp",
+       "acquisition/session_tables.cpp", "acquisition/session_verify.cpp", "acquisition/sqlite_db.cpp",
+       "acquisition/sign_off_log.cpp", "acquisition/operator_log.cpp", "acquisition/pose_json.cpp"},
+      and_these({"scan stored", "dubsar sign-off 1\\n", "dubsar sign-off 2\\n", "pose hint",
+                 "pose hint withdrawn", "scan locked", "scan unlocked", "signed ",
+                 "PRAGMA integrity_check(1)", "SELECT id, file, bytes, hash FROM scans ORDER BY id",
+                 "SELECT -1, path, bytes, hash FROM files ORDER BY path"}));
+  EXPECT_GT(sentences, 70);
+}
+
+TEST(FileWords, NothingSaidOfACalibrationIsHalfGerman) {
+  const int sentences = test::expect_german(
+      {"acquisition/range_rig.cpp", "acquisition/rig_device.cpp", "acquisition/rig_parts.cpp",
+       "acquisition/board.cpp", "acquisition/calibration.cpp", "acquisition/calibration_folder.cpp",
+       "acquisition/calibration_intrinsics.cpp", "acquisition/calibration_joint.cpp",
+       "acquisition/calibration_laser.cpp", "acquisition/calibration_stage.cpp",
+       "acquisition/camera_region.cpp", "acquisition/live_calibration.cpp", "acquisition/artefact.cpp",
+       "acquisition/rig_view.cpp"},
+      and_these({"laser plane", " day ago"}));
+  EXPECT_GT(sentences, 70);
+}
+
+std::string german(const Error& error) {
+  return translated(error, Language::kGerman);
+}
+
+TEST(FileWords, AFileOfPinsIsRefusedInGerman) {
+  const auto refused = [](const char* text) { return german(parse_pins(text, "/a/pins.json").error()); };
+  EXPECT_EQ(
+      refused("{\"tip_diameter_mm\":\"x\"}"),
+      "/a/pins.json: tip_diameter_mm ist Text, keine Zahl; Nadeln so angeben wie in docs/formats/pins.md");
+  EXPECT_EQ(refused("{\"tip_diameter_mm\":900}"),
+            "/a/pins.json: tip_diameter_mm ist 900, außerhalb des Bereichs; Nadeln so angeben wie in "
+            "docs/formats/pins.md");
+  EXPECT_EQ(refused("{}"),
+            "/a/pins.json: tip_diameter_mm fehlt; Nadeln so angeben wie in docs/formats/pins.md");
+  EXPECT_EQ(refused("[]"),
+            "/a/pins.json: das Dokument ist eine Liste, kein Objekt; nachsehen, was für eine Datei es ist");
+  EXPECT_EQ(refused("{\n]"),
+            "/a/pins.json: Zeile 2: kein JSON ab Byte 3; die Datei berichtigen oder neu schreiben");
+}
+
+TEST(FileWords, AMeshIsRefusedInGerman) {
+  const dubsar::test::TemporaryFolder folder;
+  const auto refused = [&](const std::string& name, const std::string& bytes) {
+    const std::filesystem::path file = folder.path() / name;
+    std::ofstream(file, std::ios::binary) << bytes;
+    const std::string line = german(read_mesh(file).error());
+    EXPECT_TRUE(line.starts_with(file.string() + ": ")) << line;
+    return line.substr(std::min(line.size(), file.string().size() + 2));
+  };
+  const std::string head =
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+      "property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n";
+  EXPECT_EQ(refused("a.ply", head + "0 0 0\n1 0 0\n0 1 0\n3 0 1 7\n"),
+            "Fläche 0 (Zeile 13): Punkt 7 ist keiner der 3 Punkte; das Netz noch einmal ausgeben");
+  EXPECT_EQ(refused("b.ply", "ply\nformat ascii 1.0\nelement vertex many\nend_header\n"),
+            "Kopfzeile 3: Element 'vertex' hat keine Anzahl, sondern 'many'; noch einmal ausgeben");
+  EXPECT_EQ(refused("c.obj", "v 1 2 x\n"),
+            "Zeile 1: 'x' ist keine Koordinate; das Netz noch einmal ausgeben");
+  const dubsar::test::TemporaryFolder other;
+  const std::string none = german(read_mesh(other.path() / "none.ply").error());
+  EXPECT_EQ(none, (other.path() / "none.ply").string() +
+                      ": nicht lesbar: keine solche Datei, kein solcher Ordner; den Namen prüfen");
+}
+
+TEST(FileWords, ADriverAndItsSettingsAreGerman) {
+  EXPECT_EQ(
+      german(abi::faulty("eye:1", "told a rig with a depth range of 5000 mm, beyond 2000 mm")),
+      "eye:1: der Treiber meldet ein Gerät mit einem Tiefenbereich von 5000 mm, jenseits von 2000 mm; den "
+      "Treiber erneuern, oder den Fehler seinen Machern melden");
+  EXPECT_EQ(
+      german(abi::faulty("eye:1", "told a range of its tilt that is none")),
+      "eye:1: der Treiber meldet einen unmöglichen Bereich für seine Neigung; den Treiber erneuern, oder "
+      "den Fehler seinen Machern melden");
+  SettingInfo exposure;
+  exposure.key = "exposure";
+  exposure.unit = "ms";
+  exposure.type = SettingType::kNumber;
+  exposure.range = {1, 5};
+  EXPECT_EQ(german(setting_value(exposure, "long", "eye:1").error()),
+            "eye:1: exposure kann nicht sein: 'long'; zulässig ist eine Zahl von 1 bis 5 ms");
+  EXPECT_EQ(translated("setting exposure takes a number from 1 to 5 ms", Language::kGerman),
+            "Einstellung exposure: zulässig ist eine Zahl von 1 bis 5 ms");
+}
+
+TEST(FileWords, ASessionThatCannotBeOpenedSaysSoInGerman) {
+  const dubsar::test::TemporaryFolder folder;
+  std::ofstream(folder.path() / "letter.txt") << "not a session";
+  EXPECT_EQ(german(SessionStore::open_or_create(folder.path()).error()),
+            folder.path().string() +
+                ": der Ordner enthält anderes und keine Sitzung; einen neuen oder leeren Ordner nennen");
+}
+
+}  // namespace
+}  // namespace dubsar::ui
