@@ -9,6 +9,7 @@
 #include <fstream>
 #include <set>
 #include <string>
+#include <utility>
 
 #include "acquisition/session_store.h"
 #include "acquisition/setting_words.h"
@@ -25,17 +26,17 @@ namespace {
 
 /// Before and behind numbers and names: the sentences below have them in German.
 const std::set<std::string> kAround{
-    " is ",         " is not ",     " of ",         " on",       " to ",
-    " belong",      " belongs",     " bytes",       " elements", " entries",
-    " in it",       " levels",      " numbers",     " samples",  " samples)",
-    " to change",   " to read",     " vertices",    ", not ",    ", out",
-    "axis ",        "chunk ",       "claims ",      "element ",  "facet ",
-    "format ",      "has ",         "header line ", "holds ",    "is ",
-    "is missing",   "is not ",      "is text",      "it has ",   "lies ",
-    "line ",        "more than ",   "no scan ",     "obj_info ", "obj_info unit is ",
-    "option ",      "rate '",       "sample ",      "setting ",  " takes ",
-    " cannot be '", "the document", "unit '",       "vertex ",   "write ",
-    " is"};
+    " belong",      " belongs",   " bytes",       " cannot be '",   " elements",  " entries",
+    " in it",       " is",        " is ",         " is not ",       " levels",    " lies ",
+    " numbers",     " of ",       " on",          " samples",       " samples)",  " takes ",
+    " to ",         " to change", " to read",     " vertices",      ", not ",     ", out",
+    "a direction",  "a length",   "a number",     "a whole number", "axis ",      "chunk ",
+    "claims ",      "element ",   "facet ",       "format ",        "has ",       "header line ",
+    "holds ",       "is ",        "is missing",   "is not ",        "is text",    "it has ",
+    "lies ",        "line ",      "more than ",   "no scan ",       "obj_info ",  "obj_info unit is ",
+    "one of ",      "option ",    "rate '",       "sample ",        "scan again", "setting ",
+    "the document", "there are ", "there is no ", "three numbers",  "unit '",     "vertex ",
+    "write "};
 
 std::set<std::string> and_these(std::set<std::string> more) {
   more.insert(kAround.begin(), kAround.end());
@@ -94,6 +95,17 @@ TEST(FileWords, NothingSaidOfACalibrationIsHalfGerman) {
        "acquisition/rig_view.cpp"},
       and_these({"laser plane", " day ago"}));
   EXPECT_GT(sentences, 70);
+}
+
+TEST(FileWords, NothingSaidOfARunOrOfTheViewerIsHalfGerman) {
+  const int sentences = test::expect_german(
+      {"station/calibration_run.cpp", "station/engine_motion.cpp", "station/operator_hint.cpp",
+       "station/outward_faces.cpp", "station/package_content.cpp", "station/section_file.cpp",
+       "station/selection_store.cpp", "station/tablet_record.cpp", "station/verification.cpp",
+       "analysis/cross_section.cpp", "registration/registrar.cpp"},
+      and_these(
+          {"its pictures are of a ", " stage, this is of a ", " one", "point ", "scan ", "point pair "}));
+  EXPECT_GT(sentences, 50);
 }
 
 std::string german(const Error& error) {
@@ -158,6 +170,34 @@ TEST(FileWords, ADriverAndItsSettingsAreGerman) {
             "eye:1: exposure kann nicht sein: 'long'; zulässig ist eine Zahl von 1 bis 5 ms");
   EXPECT_EQ(translated("setting exposure takes a number from 1 to 5 ms", Language::kGerman),
             "Einstellung exposure: zulässig ist eine Zahl von 1 bis 5 ms");
+}
+
+TEST(FileWords, WhatStandsAroundNamesAndNumbersIsGerman) {
+  for (const auto& [english, german] :
+       {std::pair{"there is no scan 7", "es gibt keinen Scan 7"},
+        {"obj_info dubsar_direction is not a direction", "obj_info dubsar_direction ist keine Richtung"},
+        {"obj_info unit is 'yard', not m, cm, mm, um or in",
+         "obj_info unit ist 'yard', nicht m, cm, mm, um oder in"},
+        {"line 3: has 2 numbers where 3 belong", "Zeile 3: hat 2 Zahlen statt 3"},
+        {"claims 12 of element vertex, but only 7 bytes are left for them",
+         "nennt 12 vom Element vertex, aber nur 7 Byte sind dafür da"},
+        {"ends within vertex 3 of 10", "endet mitten in Punkt 3 von 10"},
+        {"scans[2].id has 4 entries, not 3 numbers", "scans[2].id hat 4 Einträge, nicht 3 Zahlen"},
+        {"the document has 'tip', and knows unit, scans", "das Dokument hat 'tip', bekannt ist: unit, scans"},
+        {"option speed is given twice", "die Option speed steht zweimal da"},
+        {"another user (4242) owns it", "ein anderer Benutzer (4242) besitzt sie"},
+        {"it takes one of linear, turntable", "zulässig ist eins von linear, turntable"},
+        {"there are sim, replay", "es gibt sim, replay"}}) {
+    EXPECT_EQ(translated(english, Language::kGerman), german);
+  }
+}
+
+// A phrase that is part of another sentence must not make half of it German.
+TEST(FileWords, WordsAloneAreLeftInOtherSentences) {
+  for (const char* sentence : {"no pose in it is of one of these scans", "the lamp needs a direction",
+                               "register the scan again", "there is no mast"}) {
+    EXPECT_EQ(translated(sentence, Language::kGerman), sentence);
+  }
 }
 
 TEST(FileWords, ASessionThatCannotBeOpenedSaysSoInGerman) {

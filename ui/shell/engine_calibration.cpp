@@ -178,6 +178,26 @@ constexpr EnginePhrase kCalibration[] = {
     {"which the camera sees at pixel ", "diese sieht die Kamera bei Pixel "},
     {"there is not a single sample in the scan", "im Scan ist kein einziger Messpunkt"},
     {"scan the artefact again", "den Prüfkörper neu scannen"},
+    // what a calibration or a verification begins with
+    {"there is no such folder", "den Ordner gibt es nicht"},
+    {"there is no calibration.toml in it", "es ist keine calibration.toml darin"},
+    {"write one, or say --board for pictures of the board alone",
+     "eine schreiben, oder für Bilder des Musters allein das Muster nennen"},
+    {" °C is no temperature of a room", " °C ist keine Raumtemperatur"},
+    {"give degrees Celsius, or leave it away", "Grad Celsius angeben, oder weglassen"},
+    {"its pictures are of camera ", "seine Bilder sind von Kamera "},
+    {", not of ", ", nicht von "},
+    {"leave the serial number away, or take pictures with that camera",
+     "die Seriennummer weglassen, oder Bilder mit dieser Kamera aufnehmen"},
+    {"a mirror carries no board", "ein Spiegel trägt kein Muster"},
+    {"take poses of the board by hand, at three positions of the mirror or more",
+     "das Muster von Hand in Lagen aufnehmen, bei mindestens drei Stellungen des Spiegels"},
+    {"calibrate each camera in a folder of its own", "jede Kamera in einem eigenen Ordner kalibrieren"},
+    {"there is no pose of the board yet", "es gibt noch keine Lage des Musters"},
+    {"take a picture of the board first, and leave it where it is",
+     "zuerst das Muster aufnehmen, und es liegen lassen"},
+    {"there is no scan in it", "es ist kein Scan darin"},
+    {"scan the artefact first", "zuerst den Prüfkörper scannen"},
 };
 
 }  // namespace

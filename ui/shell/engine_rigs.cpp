@@ -149,6 +149,13 @@ constexpr EnginePhrase kRigs[] = {
     {"set a smaller height_px in camera_settings", "in camera_settings ein kleineres height_px setzen"},
     {"a rig is put together, not opened", "ein Gerät wird zusammengesetzt, nicht geöffnet"},
     {"a rig cannot be a part of a rig", "ein Gerät kann kein Teil eines Geräts sein"},
+    // a run
+    {"the device gave no scan", "das Gerät gab keinen Scan"},
+    {"check what stands before the scanner", "nachsehen, was vor dem Scanner steht"},
+    {"this device tells of no rig whose limits could be narrowed",
+     "dieses Gerät nennt keine Grenzen, die enger zu machen wären"},
+    {"leave the rig file out", "die Gerätedatei weglassen"},
+    {"the same command goes on with what is there", "es geht weiter mit dem, was da ist"},
 };
 
 }  // namespace

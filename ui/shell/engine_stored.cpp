@@ -126,7 +126,6 @@ constexpr EnginePhrase kStored[] = {
      "nachsehen, ob er voll oder defekt ist; nichts Gespeichertes ist verloren"},
     {"database error ", "Fehler der Datenbank "},
     // of the operator's word
-    {"there is no ", "es gibt nicht: "},
     {"see dubsar session list", "siehe die Leiste der Scans"},
     {" was taken out", " ist entfernt"},
     {"restore it first", "ihn zuerst zurückholen"},
@@ -153,6 +152,23 @@ constexpr EnginePhrase kStored[] = {
     {" is no longer part of it", " gehört nicht mehr dazu"},
     {" has changed", " hat sich geändert"},
     {" has come since", " ist seither dazugekommen"},
+    // packages and what goes into them
+    {"free some space or choose another folder", "Platz schaffen, oder einen anderen Ordner wählen"},
+    {"choose a folder that can be written", "einen Ordner wählen, in den geschrieben werden darf"},
+    {"what lies there is no package, so it is not replaced",
+     "was dort liegt, ist kein Paket, also wird es nicht ersetzt"},
+    {"choose another folder, or remove it yourself", "einen anderen Ordner wählen, oder es selbst entfernen"},
+    {"look at its rights", "seine Rechte ansehen"},
+    {"cannot remove the old stamp: ", "der alte Stempel lässt sich nicht entfernen: "},
+    {"check the folder and its rights", "den Ordner und seine Rechte prüfen"},
+    {"check the disk and the rights", "den Datenträger und die Rechte prüfen"},
+    {"the font for PDF files is missing", "die Schrift für PDF-Dateien fehlt"},
+    {"install fonts-dejavu-core", "fonts-dejavu-core installieren"},
+    {"there is nothing here", "hier ist nichts"},
+    {"give a session or a folder of range grids", "eine Sitzung oder einen Ordner mit Rastern nennen"},
+    {"no scan in it", "kein Scan darin"},
+    {"this is no CDLI number", "das ist keine CDLI-Nummer"},
+    {"it is a P and six digits, such as P123456", "sie ist ein P und sechs Ziffern, etwa P123456"},
 };
 
 }  // namespace

@@ -50,6 +50,8 @@ constexpr std::pair<std::string_view, std::string_view> kInWindow[] = {
      "give a folder with a calibration.toml, or with pictures of the board, and name the board"},
     {"give --board-exposure and --laser-exposure, both", "give both exposures, for board and laser"},
     {"say --motion linear or turntable", "choose linear or turntable"},
+    {"write one, or say --board for", "write one, or name the board for"},
+    {" with --on", ""},
 };
 
 template <class Pairs>
