@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright The Dubsar developers
+#include "acquisition/told_device.h"
 #include "station/engine_impl.h"
 #include "station/results.h"
 #include "station/session_wedges.h"
@@ -44,7 +45,7 @@ Status Engine::Impl::finish(EngineResult& result, JobContext& job) {
 
   LapClock writing(&result.timings);
   PageFacts facts = page_facts_of(*store);
-  facts.device = options.device;
+  facts.device = told_device(options.device);
   facts.timings = result.timings;
   facts.wedges = wedges ? wedge_sentence(*wedges) : std::string();
   facts.gains.insert(facts.gains.end(), planning.gains().begin(), planning.gains().end());

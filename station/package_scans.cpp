@@ -8,6 +8,7 @@
 #include <atomic>
 #include <optional>
 
+#include "acquisition/told_device.h"
 #include "core/parallel.h"
 #include "formats/atomic_file.h"
 #include "formats/checklist_json.h"
@@ -77,6 +78,20 @@ OrderedJson scan_json(const PackageContent& content, const StoredScan& scan) {
   json["status"] =
       scan.dropped || pose == content.results().poses.end() ? "not placed" : to_string(pose->status);
   return json;
+}
+
+/// A document as it was kept, but for where the files of a device lay on that computer.
+std::string told(const std::string& name, std::string text) {
+  OrderedJson json = name == "device_settings" ? OrderedJson::parse(text, nullptr, false) : OrderedJson();
+  if (!json.is_object() || !json.contains("devices")) {
+    return text;
+  }
+  for (OrderedJson& device : json["devices"]) {
+    if (device.is_object() && device.contains("uri") && device["uri"].is_string()) {
+      device["uri"] = told_device(device["uri"].get<std::string>());
+    }
+  }
+  return text_of(json);
 }
 
 /// A document's name as a file name.
@@ -184,7 +199,7 @@ Status add_records(PackageContent& content) {
     }
     if (*document) {
       if (const Status written =
-              content.text("session/" + file_name(name) + ".json", **document,
+              content.text("session/" + file_name(name) + ".json", told(name, **document),
                            "the session's document \"" + name + "\", as it was kept: formats/session.txt");
           !written) {
         return written;

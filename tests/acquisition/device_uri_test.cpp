@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "acquisition/told_device.h"
 #include "build_paths.h"
 #include "tests/support/temporary_folder.h"
 
@@ -44,6 +45,15 @@ TEST(DeviceUri, ABarePathIsReplayedLetterByLetter) {
     EXPECT_EQ(uri.locator, path);
     EXPECT_THAT(uri.options, IsEmpty());
   }
+}
+
+TEST(DeviceUri, PeopleAreToldNoFoldersAndWhatIsNoDevice) {
+  EXPECT_EQ(told_device("replay:/home/anna/my%20scans/?unit=m"), "replay:my%20scans?unit=m");
+  EXPECT_EQ(told_device("/home/anna/scans"), "replay:scans");
+  EXPECT_EQ(told_device("rig:../museum.toml"), "rig:museum.toml");
+  EXPECT_EQ(told_device("v4l2:/dev/video0"), "v4l2:/dev/video0");
+  EXPECT_EQ(told_device("sim:?seed=5"), "sim:?seed=5 (simulated: there is no such tablet)");
+  EXPECT_EQ(told_device("sim:?seed"), "sim:?seed") << "what is no device is told as it is";
 }
 
 TEST(DeviceUri, RefusesWhatIsBroken) {
