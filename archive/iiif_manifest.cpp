@@ -2,6 +2,7 @@
 // Copyright The Dubsar developers
 #include "archive/iiif_manifest.h"
 
+#include "archive/rights.h"
 #include "formats/json_text.h"
 
 namespace dubsar {
@@ -73,6 +74,12 @@ std::string iiif_manifest(const ManifestInput& input) {
   }
   if (!metadata.empty()) {
     json["metadata"] = std::move(metadata);
+  }
+  if (!input.rights.empty()) {
+    if (const std::string address = iiif_rights(input.rights); !address.empty()) {
+      json["rights"] = address;
+    }
+    json["requiredStatement"] = {{"label", words("en", "Rights")}, {"value", words("none", input.rights)}};
   }
   if (!input.rendering.empty()) {
     json["rendering"] = links(input.base_url, input.rendering);

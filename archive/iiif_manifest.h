@@ -31,6 +31,7 @@ struct ManifestInput {
   std::string label;
   std::string summary;
   std::vector<std::pair<std::string, std::string>> metadata;  ///< label, value; empty values are left out
+  std::string rights{};  ///< in words; shown with every picture, and as `rights` where it holds an address
   std::vector<ManifestPicture> pictures;
   std::vector<ManifestLink> rendering;  ///< for people
   std::vector<ManifestLink> see_also;   ///< for machines

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <set>
 
+#include "archive/rights.h"
 #include "formats/json_text.h"
 
 namespace dubsar {
@@ -62,6 +63,9 @@ OrderedJson tablet_node(const ProvenanceInput& input) {
   }
   if (!identifiers.empty()) {
     node["crm:P1_is_identified_by"] = std::move(identifiers);
+  }
+  if (!input.tablet_note.empty()) {
+    node["crm:P3_has_note"] = input.tablet_note;
   }
   if (!input.collection.empty()) {
     node["crm:P46i_forms_part_of"] = {{"@type", "crm:E78_Curated_Holding"}, {"rdfs:label", input.collection}};
@@ -138,6 +142,12 @@ std::string provenance_jsonld(const ProvenanceInput& input) {
                            {"crm:P70_documents", reference(input.base_url + "tablet")},
                            {"dcterms:created", {{"@type", "xsd:dateTime"}, {"@value", input.when}}}},
                           tablet_node(input)});
+  if (!input.rights.empty()) {
+    graph.front()["dcterms:rights"] = input.rights;
+    if (const std::string address = rights_address(input.rights); !address.empty()) {
+      graph.front()["dcterms:license"] = reference(address);
+    }
+  }
   graph.push_back({{"@id", input.base_url + "provenance/device"},
                    {"@type", "crmdig:D8_Digital_Device"},
                    {"rdfs:label", input.device.empty() ? "unknown device" : input.device}});

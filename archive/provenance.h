@@ -42,7 +42,9 @@ struct ProvenanceInput {
   std::string museum_number;
   std::string cdli;
   std::string collection;
+  std::string tablet_note{};  ///< what else has to be known of the tablet, or empty
   std::string operator_name;
+  std::string rights{};  ///< in words, or empty
   std::string device;
   std::string program;      ///< "Dubsar 0.1.0"
   std::string when;         ///< ISO 8601, of the package

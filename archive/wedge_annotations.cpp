@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "archive/rights.h"
 #include "core/units.h"
 #include "formats/json_text.h"
 
@@ -62,11 +63,15 @@ std::string wedge_annotations(const std::vector<Wedge>& wedges, const Annotation
   }
   // The selector is not among those of 2017: its terms are told here, so that it stays valid JSON-LD.
   const OrderedJson terms = {{"WktSelector", "http://www.opengis.net/ont/geosparql#wktLiteral"}};
-  return text_of({{"@context", OrderedJson::array({"http://www.w3.org/ns/anno.jsonld", terms})},
-                  {"id", source.base_url + source.page},
-                  {"type", "AnnotationPage"},
-                  {"label", "Wedges of " + source.identifier},
-                  {"items", std::move(items)}});
+  OrderedJson page = {{"@context", OrderedJson::array({"http://www.w3.org/ns/anno.jsonld", terms})},
+                      {"id", source.base_url + source.page},
+                      {"type", "AnnotationPage"},
+                      {"label", "Wedges of " + source.identifier}};
+  if (const std::string rights = rights_address(source.rights); !rights.empty()) {
+    page["rights"] = rights;
+  }
+  page["items"] = std::move(items);
+  return text_of(page);
 }
 
 }  // namespace dubsar

@@ -17,6 +17,7 @@ struct AnnotationSource {
   std::string identifier;  ///< of the tablet, for people
   std::string program;     ///< "Dubsar 0.1.0"
   std::string when;        ///< ISO 8601
+  std::string rights{};    ///< in words; what is no address has no place in an annotation
 };
 
 /// The wedges as one W3C AnnotationPage (Web Annotation Data Model, 2017; JSON-LD): the target of each is the

@@ -18,6 +18,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Names that Windows keeps for devices whatever follows their first dot: NUL.ply cannot be opened there.
+bool is_device_name(const std::string& stem) {
+  std::string base = stem.substr(0, stem.find('.'));
+  std::ranges::transform(base, base.begin(), [](char c) { return c >= 'a' && c <= 'z' ? c - 'a' + 'A' : c; });
+  const bool numbered = base.size() == 4 && (base.starts_with("COM") || base.starts_with("LPT")) &&
+                        base[3] >= '0' && base[3] <= '9';
+  return numbered || base == "CON" || base == "PRN" || base == "AUX" || base == "NUL";
+}
+
 /// Letters, digits, dot, dash; anything else in a museum number becomes an underscore.
 std::string file_stem(const std::string& identifier) {
   std::string stem;
@@ -34,7 +43,8 @@ std::string file_stem(const std::string& identifier) {
     stem.pop_back();
   }
   constexpr std::size_t kLongest = 64;
-  return stem.empty() ? "tablet" : stem.substr(0, kLongest);
+  stem = stem.empty() ? "tablet" : stem.substr(0, kLongest);
+  return is_device_name(stem) ? "tablet_" + stem : stem;
 }
 
 /// Sides, lines and drawings of wedges whose text does not tell how the tablet lies go by what the pictures
@@ -72,10 +82,25 @@ Result<FoundWedges> wedges_of(const SessionStore& store, const Mesh& mesh, const
                   : std::unexpected(measured.error());
 }
 
+/// Where a scan comes from the simulator, by the id that it gives its grids: an archive that outlives
+/// whoever tried the scanner must not take such a tablet for clay.
+Result<std::string> simulated_words(const SessionStore& store) {
+  const Result<std::vector<StoredScan>> scans = store.scans();
+  if (!scans) {
+    return std::unexpected(scans.error());
+  }
+  const bool simulated = std::ranges::any_of(
+      *scans, [](const StoredScan& scan) { return scan.device == "sim" || scan.device.starts_with("sim-"); });
+  return simulated ? "A program made up this tablet and its scans: there is no such tablet, and nothing was "
+                     "measured."
+                   : "";
+}
+
 std::vector<BagField> bag_fields(const PackageContent& content) {
-  std::string description =
-      "Surface of a cuneiform tablet, measured by laser triangulation: raw range "
-      "grids, poses, model, pictures, wedges, report. ";
+  std::string description = content.simulated.empty()
+                                ? "Surface of a cuneiform tablet, measured by laser triangulation: "
+                                : "SIMULATED. " + content.simulated + " Here are ";
+  description += "raw range grids, poses, model, pictures, wedges, report. ";
   description += content.results().red_map.conclusive
                      ? "The verdict is conclusive: what the scanner can reach is sampled densely enough."
                      : "The verdict is not conclusive: see data/report/report.html for what is missing.";
@@ -89,6 +114,7 @@ std::vector<BagField> bag_fields(const PackageContent& content) {
           {"Internal-Sender-Identifier", session_name(content.store.folder())},
           {"Contact-Name", content.tablet.operator_name},
           {"External-Description", description},
+          {"Rights", content.tablet.rights},
           {"Bagging-Date", content.when.substr(0, 10)},
           {"Bag-Software-Agent", program_name()},
           {"Dubsar-Left-Out", left_out}};
@@ -185,6 +211,13 @@ Result<Package> write_package(const fs::path& session, const fs::path& to, const
   const Mesh& mesh = source->results().mesh;
   opening.done("reading");
   PageFacts facts = page_facts_of(store);
+  const Result<std::string> simulated = simulated_words(store);
+  if (!simulated) {
+    return std::unexpected(simulated.error());
+  }
+  if (!simulated->empty()) {
+    facts.tablet.emplace(facts.tablet.begin(), "Simulated", *simulated);
+  }
   const TabletRecord tablet = tablet_record_of(store);
   const std::string identifier = !tablet.cdli.empty() ? tablet.cdli : facts.title;
   PackageContent content{.root = staged->path() / "data",
@@ -196,6 +229,7 @@ Result<Package> write_package(const fs::path& session, const fs::path& to, const
                          .identifier = identifier,
                          .stem = file_stem(identifier),
                          .when = utc_now(),
+                         .simulated = *simulated,
                          .tablet_from_model = source->tablet_from_model(),
                          .lies_by_text = false,
                          .wedges = {},

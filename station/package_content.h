@@ -46,6 +46,7 @@ struct PackageContent {
   std::string identifier;  ///< for people: "BM 12345"
   std::string stem;        ///< for file names: "BM_12345"
   std::string when;        ///< ISO 8601, one for the whole package
+  std::string simulated;   ///< a sentence, where a program made the tablet up; empty of clay
   RigidTransform
       tablet_from_model;  ///< how the pictures lie: by the text where that is certain, else by the shape
   bool lies_by_text = false;

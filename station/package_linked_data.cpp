@@ -177,7 +177,9 @@ Status add_provenance(PackageContent& content) {
   input.museum_number = content.tablet.museum_number;
   input.cdli = content.tablet.cdli;
   input.collection = content.tablet.collection;
+  input.tablet_note = content.simulated;
   input.operator_name = content.tablet.operator_name;
+  input.rights = content.tablet.rights;
   input.device = content.facts.device;
   input.program = program_name();
   input.when = content.when;
@@ -206,12 +208,13 @@ Status add_manifest(PackageContent& content) {
   ManifestInput input;
   input.base_url = content.options.base_url;
   input.label = content.identifier;
-  input.summary = "Pictures of the tablet, drawn to scale from its measured surface";
-  input.metadata = {{"Museum number", content.tablet.museum_number},
-                    {"CDLI number", content.tablet.cdli},
-                    {"Collection", content.tablet.collection},
-                    {"Scanned with", content.facts.device},
-                    {"Drawn by", program_name()}};
+  input.summary = content.simulated.empty()
+                      ? "Pictures of the tablet, drawn to scale from its measured surface"
+                      : "Pictures, drawn to scale. " + content.simulated;
+  input.metadata = {{"Simulated", content.simulated},       {"Museum number", content.tablet.museum_number},
+                    {"CDLI number", content.tablet.cdli},   {"Collection", content.tablet.collection},
+                    {"Scanned with", content.facts.device}, {"Drawn by", program_name()}};
+  input.rights = content.tablet.rights;
   for (const PackagedPicture& p : content.pictures) {
     input.pictures.push_back({p.path, p.label, p.media_type, p.width, p.height, p.mm_per_px});
   }

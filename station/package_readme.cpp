@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 
 #include "station/package_content.h"
@@ -12,8 +13,10 @@ namespace dubsar {
 
 namespace {
 
-/// Lines of at most 100 characters, indented.
-std::string folded(const std::string& text, std::size_t indent) {
+/// Lines of at most 100 characters, indented; line breaks of the text count as blanks.
+std::string folded(std::string text, std::size_t indent) {
+  std::ranges::replace_if(
+      text, [](char c) { return c == '\n' || c == '\r' || c == '\t'; }, ' ');
   constexpr std::size_t kWide = 100;
   std::string out;
   out.append(indent, ' ');
@@ -21,6 +24,10 @@ std::string folded(const std::string& text, std::size_t indent) {
   std::size_t at = 0;
   while (at < text.size()) {
     const std::size_t end = std::min(text.find(' ', at), text.size());
+    if (end == at) {
+      ++at;
+      continue;
+    }
     if (column > indent && column + 1 + (end - at) > kWide) {
       out.push_back('\n');
       out.append(indent, ' ');
@@ -70,6 +77,27 @@ std::string sides_sentence(const PackageContent& content) {
       name(Eigen::Vector3d::UnitZ()), name(Eigen::Vector3d::UnitY()), name(Eigen::Vector3d::UnitX()));
 }
 
+/// Where the tablet's frame lies in the pictures: docs/frames-and-units.md has the rule, here are its
+/// numbers.
+std::string pictures_paragraph(const PackageContent& content) {
+  const Mesh& mesh = content.mesh();
+  Eigen::AlignedBox3d box;
+  for (const auto& face : mesh.faces) {
+    for (const std::uint32_t v : face) {
+      box.extend(content.tablet_from_model * mesh.positions[v].cast<double>());
+    }
+  }
+  if (content.pictures.empty() || box.isEmpty()) {
+    return {};
+  }
+  return folded(
+      fmt::format("In that frame the model reaches from {:.4f} {:.4f} {:.4f} to {:.4f} {:.4f} {:.4f}; "
+                  "the middle of a single view is the middle of it. Which axis goes right and up in "
+                  "each view, and how a place becomes a pixel: formats/frames-and-units.txt.",
+                  box.min().x(), box.min().y(), box.min().z(), box.max().x(), box.max().y(), box.max().z()),
+      2);
+}
+
 std::string left_out_sentence(PackagePart part) {
   switch (part) {
     case PackagePart::kGridPly:
@@ -94,10 +122,12 @@ Status add_readme(PackageContent& content) {
       .append(std::string(content.identifier.size(), '='))
       .append("\n\n");
   text +=
-      folded(fmt::format("A cuneiform tablet, measured by laser triangulation and packed by {} on {}. "
+      folded(fmt::format("{} packed by {} on {}. "
                          "This folder is the payload of a bag (BagIt 1.0, RFC 8493): manifest-sha512.txt "
                          "beside it holds the checksum of every file here, so that anybody can tell whether "
                          "they are still what they were: sha512sum -c manifest-sha512.txt.",
+                         content.simulated.empty() ? "A cuneiform tablet, measured by laser triangulation and"
+                                                   : "SIMULATED. " + content.simulated + " This was",
                          program_name(), content.when),
              0);
   text += "\n";
@@ -107,7 +137,7 @@ Status add_readme(PackageContent& content) {
                         : "The verdict is NOT CONCLUSIVE: report/report.html says what is missing.",
              0);
   text += "\nTHE TABLET\n\n";
-  TabletWords words = words_of(content.tablet);
+  TabletWords words = content.facts.tablet;
   if (!content.facts.device.empty()) {
     words.emplace_back("Scanned with", content.facts.device);
   }
@@ -122,7 +152,8 @@ Status add_readme(PackageContent& content) {
   text += folded(
       "Lengths are millimetres wherever a file does not say otherwise (GLB: metres). Scans are in the "
       "frame of the scanner as it stood for each; scans/poses.json takes each into the frame of the "
-      "model. Model, wedges, annotations, red map share that frame.",
+      "model. Model (in all its forms), wedges, annotations, red map share that frame; report and "
+      "checklist give places in the tablet's. All frames: formats/frames-and-units.txt.",
       2);
   const auto rows = content.tablet_from_model.row_major();
   text +=
@@ -133,6 +164,8 @@ Status add_readme(PackageContent& content) {
                         rows[4 * r + 3]);
   }
   text += "\n";
+  text += pictures_paragraph(content);
+  text += "\n";
   text += folded(sides_sentence(content), 2);
   std::vector<std::string> lacking = content.lacking;
   for (const PackagePart part : content.options.without) {
@@ -140,6 +173,11 @@ Status add_readme(PackageContent& content) {
   }
   if (content.has(PackagePart::kWedges) && !content.wedges) {
     lacking.emplace_back("Wedges are not here: the model has no surface that they could be looked for on.");
+  }
+  if (content.tablet.rights.empty()) {
+    lacking.emplace_back(
+        "Nobody has said whose these scans and pictures are, nor under which licence they may be used "
+        "(dubsar session describe --rights): ask the collection.");
   }
   if (content.results().checklist.calibration.empty()) {
     lacking.emplace_back("The device told nothing of its calibration.");

@@ -21,14 +21,16 @@ Status add_wedges(PackageContent& content) {
        {content.text("wedges/wedges.json", wedges_to_json(file),
                      "every measure of every wedge, with its uncertainty: formats/wedges.txt"),
         content.text("wedges/wedges.csv", wedge_table(file.wedges),
-                     "the same as a table, one line a wedge; millimetres and degrees"),
+                     "the same as a table, one line a wedge; millimetres and degrees; its columns: "
+                     "formats/wedges.txt"),
         content.text("wedges/annotations.json",
                      wedge_annotations(file.wedges, {.base_url = content.options.base_url,
                                                     .page = "wedges/annotations.json",
                                                     .model = "model/" + content.stem + ".ply",
                                                     .identifier = content.identifier,
                                                     .program = program_name(),
-                                                    .when = content.when}),
+                                                    .when = content.when,
+                                                    .rights = content.tablet.rights}),
                      "the wedges as W3C Web Annotations: the triangle of its outer edges on the model, "
                      "millimetres, as WKT POLYGON Z")}) {
     if (!written) {
@@ -41,7 +43,9 @@ Status add_wedges(PackageContent& content) {
     if (!drawings) {
       return std::unexpected(drawings.error());
     }
-    content.list("wedges/drawings/", "a drawing of each inscribed side, to scale (SVG 1.1, millimetres)");
+    content.list("wedges/drawings/",
+                 "a drawing of each inscribed side as it is read, to scale (SVG 1.1, millimetres): "
+                 "formats/frames-and-units.txt");
   }
   return {};
 }

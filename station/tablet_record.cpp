@@ -30,7 +30,7 @@ std::vector<std::pair<std::string, std::string>> words_of(const TabletRecord& re
   for (const auto& [name, value] :
        {std::pair{"Museum number", record.museum_number}, std::pair{"CDLI number", record.cdli},
         std::pair{"Collection", record.collection}, std::pair{"Scanned by", record.operator_name},
-        std::pair{"Notes", record.notes}}) {
+        std::pair{"Rights", record.rights}, std::pair{"Notes", record.notes}}) {
     if (!value.empty()) {
       words.emplace_back(name, value);
     }
@@ -43,6 +43,7 @@ std::string tablet_record_to_json(const TabletRecord& record) {
                   {"cdli", record.cdli},
                   {"collection", record.collection},
                   {"operator", record.operator_name},
+                  {"rights", record.rights},
                   {"notes", record.notes}});
 }
 
@@ -61,6 +62,7 @@ Result<TabletRecord> parse_tablet_record(std::string_view text, const std::strin
   take("cdli", record.cdli);
   take("collection", record.collection);
   take("operator", record.operator_name);
+  take("rights", record.rights);
   take("notes", record.notes);
   if (const Status status = document->status("say anew what tablet it is"); !status) {
     return std::unexpected(status.error());

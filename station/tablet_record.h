@@ -18,6 +18,7 @@ struct TabletRecord {
   std::string cdli;  ///< "P" and six digits
   std::string collection;
   std::string operator_name;
+  std::string rights;  ///< whose they are and under which licence they may be used, as a sentence
   std::string notes;
   bool operator==(const TabletRecord&) const = default;
 };

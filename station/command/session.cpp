@@ -217,12 +217,13 @@ Result<int> describe(const std::string& path, const std::vector<DescribedField>&
 void add_describe(CLI::App& session, Action& chosen) {
   CLI::App* verb = session.add_subcommand("describe", "Say what tablet it is; an empty text takes it away");
   const auto path = std::make_shared<std::string>();
-  const auto fields = std::make_shared<std::vector<DescribedField>>(
-      std::vector<DescribedField>{{"--museum-number", "heads the report", &TabletRecord::museum_number},
-                                  {"--cdli", "P and six digits", &TabletRecord::cdli},
-                                  {"--collection", "that it belongs to", &TabletRecord::collection},
-                                  {"--operator", "who scanned it", &TabletRecord::operator_name},
-                                  {"--notes", "anything else", &TabletRecord::notes}});
+  const auto fields = std::make_shared<std::vector<DescribedField>>(std::vector<DescribedField>{
+      {"--museum-number", "heads the report", &TabletRecord::museum_number},
+      {"--cdli", "P and six digits", &TabletRecord::cdli},
+      {"--collection", "that it belongs to", &TabletRecord::collection},
+      {"--operator", "who scanned it", &TabletRecord::operator_name},
+      {"--rights", "whose scans and pictures are, and their licence", &TabletRecord::rights},
+      {"--notes", "anything else", &TabletRecord::notes}});
   verb->add_option("session", *path, "a session folder")->required();
   for (DescribedField& one : *fields) {
     CLI::Option* option = verb->add_option(one.option, one.given, one.help);

@@ -11,6 +11,7 @@
 
 #include "archive/iiif_manifest.h"
 #include "archive/provenance.h"
+#include "archive/rights.h"
 #include "archive/wedge_annotations.h"
 #include "archive/wedge_table.h"
 #include "core/units.h"
@@ -115,6 +116,33 @@ TEST(IiifManifest, HasACanvasAPictureWithItsScale) {
   EXPECT_DOUBLE_EQ(canvas["service"][0]["physicalScale"].get<double>(), 0.005);
   EXPECT_FALSE(manifest["items"][1].contains("service")) << "not to scale";
   EXPECT_EQ(manifest["metadata"].size(), 1U);
+}
+
+TEST(Rights, TheAddressIsFoundInTheSentence) {
+  EXPECT_EQ(rights_address("CC BY 4.0 (https://creativecommons.org/licenses/by/4.0/), the museum"),
+            "https://creativecommons.org/licenses/by/4.0/");
+  EXPECT_EQ(rights_address("see http://museum.example/rights."), "http://museum.example/rights");
+  EXPECT_EQ(rights_address("all rights reserved"), "");
+  EXPECT_EQ(rights_address("https://"), "");
+}
+
+TEST(Rights, GoWithPicturesAndAnnotations) {
+  ManifestInput input;
+  input.base_url = "https://example.org/t/";
+  EXPECT_FALSE(nlohmann::json::parse(iiif_manifest(input)).contains("requiredStatement"));
+  input.rights = "CC BY 4.0, https://creativecommons.org/licenses/by/4.0/";
+  auto manifest = nlohmann::json::parse(iiif_manifest(input));
+  EXPECT_EQ(manifest["rights"], "http://creativecommons.org/licenses/by/4.0/");
+  EXPECT_EQ(manifest["requiredStatement"]["value"]["none"][0], input.rights);
+  input.rights = "https://museum.example/rights";
+  manifest = nlohmann::json::parse(iiif_manifest(input));
+  EXPECT_FALSE(manifest.contains("rights")) << "IIIF takes those of two bodies only";
+  EXPECT_EQ(manifest["requiredStatement"]["value"]["none"][0], input.rights);
+  AnnotationSource source{"https://example.org/t/", "a.json", "t.ply", "BM 1", "Dubsar",
+                          "2026-01-02T03:04:05Z"};
+  EXPECT_FALSE(nlohmann::json::parse(wedge_annotations({some_wedge()}, source)).contains("rights"));
+  source.rights = input.rights;
+  EXPECT_EQ(nlohmann::json::parse(wedge_annotations({some_wedge()}, source))["rights"], input.rights);
 }
 
 TEST(Provenance, EveryFileOfAStepHasItsSource) {

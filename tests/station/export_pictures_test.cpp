@@ -5,14 +5,19 @@
 #include <gtest/gtest.h>
 #include <png.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <regex>
+#include <sstream>
 
+#include "formats/mesh_io.h"
 #include "tests/station/support/exported.h"
 
 namespace dubsar {
 namespace {
 
+using test::bytes_of;
 using Pixels = std::vector<std::array<std::uint8_t, 3>>;
 
 struct Picture {
@@ -73,6 +78,57 @@ double share_that_one_alone_shows(const Picture& a, const Picture& b) {
     one += in_a != in_b ? 1 : 0;
   }
   return one / either;
+}
+
+/// The numbers that follow `words`, in a text that may break lines anywhere.
+std::vector<double> numbers_after(const std::string& text, const std::string& words, std::size_t count) {
+  std::string rest = text.substr(std::min(text.size(), text.find(words) + words.size()));
+  for (std::size_t at = rest.find(" to "); at != std::string::npos; at = rest.find(" to ")) {
+    rest.replace(at, 4, " ");
+  }
+  std::istringstream in(rest);
+  std::vector<double> out(count, std::nan(""));
+  for (double& value : out) {
+    in >> value;
+  }
+  return out;
+}
+
+TEST_F(Export, ItsReadmeTellsWhereAPlaceLiesInAPicture) {
+  const std::string readme = std::regex_replace(bytes_of(data("README.txt")), std::regex("\\s+"), " ");
+  const auto m = numbers_after(readme, "z out of the obverse)", 16);
+  const auto e = numbers_after(readme, "In that frame the model reaches from", 6);
+  const auto mesh = read_mesh(data("model/session.ply"));
+  ASSERT_TRUE(mesh);
+  // Of docs/frames-and-units.md: which axis goes right and which up, and whether against it.
+  struct Rule {
+    const char* picture;
+    int r, u;
+    double r_sign, u_sign;
+  };
+  for (const Rule& rule :
+       {Rule{"01_top", 0, 2, 1, -1}, Rule{"02_left", 2, 1, 1, 1}, Rule{"03_front", 0, 1, 1, 1},
+        Rule{"04_right", 2, 1, -1, 1}, Rule{"05_bottom", 0, 2, 1, 1}, Rule{"06_back", 0, 1, 1, -1}}) {
+    const Picture picture = read_png(data("pictures/clay/" + std::string(rule.picture) + ".png"));
+    constexpr double kPixelMm = 25.4 / 600;
+    std::size_t on_clay = 0;
+    for (const Eigen::Vector3f& v : mesh->positions) {
+      const auto along = [&](int axis) {
+        const auto k = static_cast<std::size_t>(4 * axis);
+        return m[k] * v.x() + m[k + 1] * v.y() + m[k + 2] * v.z() + m[k + 3] -
+               0.5 * (e[static_cast<std::size_t>(axis)] + e[static_cast<std::size_t>(axis + 3)]);
+      };
+      const double column = 0.5 * picture.width + rule.r_sign * along(rule.r) / kPixelMm;
+      const double row = 0.5 * picture.height - rule.u_sign * along(rule.u) / kPixelMm;
+      const double x = std::floor(std::clamp(column, 0.0, picture.width - 1.0));
+      const double y = std::floor(std::clamp(row, 0.0, picture.height - 1.0));
+      const bool inside = column > -1 && column < picture.width + 1 && row > -1 && row < picture.height + 1;
+      on_clay += inside && is_clay(picture.pixels[static_cast<std::size_t>(y * picture.width + x)]) ? 1 : 0;
+    }
+    // What shows from its inside alone is drawn too; single pixels at the rim may miss the clay.
+    EXPECT_GT(static_cast<double>(on_clay), 0.99 * static_cast<double>(mesh->positions.size()))
+        << rule.picture;
+  }
 }
 
 TEST_F(Export, ItsPicturesAreOfOneTabletInFourLights) {

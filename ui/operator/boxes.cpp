@@ -102,6 +102,7 @@ void OperatorScreen::draw_tablet(UiContext& ui) {
   }
   line("collection", Text::kCollection, record_.collection);
   line("operator", Text::kOperator, record_.operator_name);
+  line("rights", Text::kRights, record_.rights);
   line("notes", Text::kNotes, record_.notes);
   ImGui::PushFont(ui.fonts.small);
   coloured_text(ui.colours.faint, ui.text(Text::kKept));

@@ -109,6 +109,7 @@ constexpr Row kRows[] = {
     {Text::kCdli, "CDLI number", "CDLI-Nummer"},
     {Text::kCollection, "Collection", "Sammlung"},
     {Text::kOperator, "Operator", "Bearbeiter"},
+    {Text::kRights, "Rights, licence", "Rechte, Lizenz"},
     {Text::kNotes, "Notes", "Notizen"},
     {Text::kCdliWrong, "a P and six digits, such as P123456", "ein P und sechs Ziffern, etwa P123456"},
     {Text::kKept, "Everything is kept as soon as it is said: there is no Save.",

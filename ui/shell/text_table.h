@@ -99,6 +99,7 @@ enum class Text {
   kCdli,
   kCollection,
   kOperator,
+  kRights,
   kNotes,
   kCdliWrong,
   kKept,

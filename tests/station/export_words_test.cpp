@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+// What a package says of itself to whoever opens it without its makers: whose it is, whether it is of clay,
+// where things lie in it; and what it must not say.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "tests/station/support/exported.h"
+
+namespace dubsar {
+namespace {
+
+namespace fs = std::filesystem;
+using test::bytes_of;
+using test::Outcome;
+using test::run_command;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+/// The session described so, and packed quickly.
+Outcome pack_described(const fs::path& session, const fs::path& to, std::vector<std::string> words) {
+  words.insert(words.begin(), {"session", "describe", session.string()});
+  EXPECT_EQ(run_command(words).status, 0);
+  return run_command({"export", session.string(), "--to", to.string(), "--without",
+                      "renderings,features,wedges,grid-ply", "--json"});
+}
+
+TEST_F(Export, SaysWhoseItIsOrThatNobodySaidSo) {
+  EXPECT_THAT(bytes_of(data("README.txt")), HasSubstr("Nobody has said whose these scans"));
+  EXPECT_THAT(bytes_of(at("bag") / "bag-info.txt"), Not(HasSubstr("Rights:")));
+  const fs::path session = at("owned");
+  fs::copy(at("session"), session, fs::copy_options::recursive);
+  const std::string rights = "© A Museum; CC BY 4.0 (https://creativecommons.org/licenses/by/4.0/)";
+  ASSERT_EQ(pack_described(session, at("owned_bag"), {"--rights", rights}).status, 0);
+  const fs::path packed = at("owned_bag") / "data";
+  EXPECT_THAT(bytes_of(at("owned_bag") / "bag-info.txt"), HasSubstr("Rights: " + rights + "\n"));
+  EXPECT_THAT(bytes_of(packed / "README.txt"), HasSubstr("  Rights: " + rights + "\n"));
+  EXPECT_THAT(bytes_of(packed / "README.txt"), Not(HasSubstr("Nobody has said whose")));
+  EXPECT_THAT(bytes_of(packed / "report/report.html"), HasSubstr("<dt>Rights</dt><dd>" + rights + "</dd>"));
+  EXPECT_THAT(bytes_of(packed / "provenance.jsonld"),
+              HasSubstr("\"https://creativecommons.org/licenses/by/4.0/\""));
+}
+
+TEST_F(Export, NamesNoFolderOfTheComputerThatItWasMadeOn) {
+  const std::string folder = at("scans").parent_path().string();
+  std::size_t looked_at = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(at("bag"))) {
+    if (entry.is_regular_file()) {
+      EXPECT_THAT(bytes_of(entry.path()).find(folder), std::string::npos) << entry.path();
+      ++looked_at;
+    }
+  }
+  EXPECT_GT(looked_at, 50U);
+  EXPECT_THAT(bytes_of(data("README.txt")), HasSubstr("  Scanned with: replay:scans\n"));
+}
+
+TEST_F(Export, ASimulatedTabletIsNotPassedOffAsClay) {
+  EXPECT_THAT(bytes_of(data("README.txt")), HasSubstr("A cuneiform tablet, measured by laser"));
+  const fs::path session = at("made_up");
+  ASSERT_NE(run_command({"scan", "--device", "sim:?seed=2&size=14x11x8&spacing=0.5", "--session",
+                         session.string(), "--max-scans", "1"})
+                .status,
+            2);
+  ASSERT_EQ(pack_described(session, at("made_up_bag"), {"--cdli", "P000001"}).status, 0);
+  const fs::path packed = at("made_up_bag") / "data";
+  EXPECT_THAT(bytes_of(at("made_up_bag") / "bag-info.txt"), HasSubstr("External-Description: SIMULATED. "));
+  for (const char* page :
+       {"README.txt", "report/report.html", "report/checklist.html", "provenance.jsonld"}) {
+    EXPECT_THAT(bytes_of(packed / page), HasSubstr("there is no such tablet")) << page;
+  }
+  EXPECT_THAT(bytes_of(packed / "README.txt"), Not(HasSubstr("measured by laser")));
+}
+
+TEST_F(Export, FileNamesAreGoodOnOtherSystems) {
+  const fs::path session = at("named");
+  fs::copy(at("session"), session, fs::copy_options::recursive);
+  int count = 0;
+  for (const auto& [number, stem] :
+       {std::pair{"nul", "tablet_nul"}, std::pair{"COM1.a", "tablet_COM1.a"}, std::pair{"Console", "Console"},
+        std::pair{R"(VAT 12/34 + "x" ü?)", "VAT_12_34_x"}, std::pair{"𒀭", "tablet"}}) {
+    const fs::path bag = at("named_bag_" + std::to_string(count++));
+    ASSERT_EQ(pack_described(session, bag, {"--museum-number", number}).status, 0);
+    EXPECT_TRUE(fs::exists(bag / "data/model" / (std::string(stem) + ".ply"))) << number;
+  }
+}
+
+TEST_F(Export, NotesOfSeveralLinesStayUnderTheirHeading) {
+  const fs::path session = at("noted");
+  fs::copy(at("session"), session, fs::copy_options::recursive);
+  ASSERT_EQ(pack_described(session, at("noted_bag"), {"--notes", "one\n\nTHE FILES\ntwo"}).status, 0);
+  EXPECT_THAT(bytes_of(at("noted_bag") / "data/README.txt"), HasSubstr("  Notes: one THE FILES two\n"));
+}
+
+}  // namespace
+}  // namespace dubsar
