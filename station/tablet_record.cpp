@@ -74,7 +74,12 @@ Status keep_tablet_record(SessionStore& store, const TabletRecord& record) {
   if (const Status checked = check_cdli(record.cdli); !checked) {
     return checked;
   }
-  return store.save_document(kDocument, tablet_record_to_json(record));
+  const bool says_more = record != tablet_record_of(store);
+  const std::string text = tablet_record_to_json(record);
+  if (const Status saved = store.save_document(kDocument, text); !saved || !says_more) {
+    return saved;
+  }
+  return store.append_event("tablet described", text);
 }
 
 TabletRecord tablet_record_of(const SessionStore& store) {

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/temporary_folder.h"
+
 namespace dubsar {
 namespace {
 
@@ -17,6 +19,26 @@ TEST(TabletRecord, ACdliNumberIsAPAndSixDigits) {
   const auto again = parse_tablet_record(tablet_record_to_json(record), "test");
   ASSERT_TRUE(again) << again.error().line();
   EXPECT_EQ(*again, record);
+}
+
+TEST(TabletRecord, WhatWasSaidBeforeStaysInTheRecord) {
+  const test::TemporaryFolder folder;
+  Result<SessionStore> store = SessionStore::open_or_create(folder.path() / "session");
+  ASSERT_TRUE(store) << store.error().line();
+  for (const char* number : {"BM 1", "BM 1", "BM 2"}) {
+    TabletRecord record;
+    record.museum_number = number;
+    ASSERT_TRUE(keep_tablet_record(*store, record));
+  }
+  std::vector<std::string> said;
+  const Result<std::vector<SessionEvent>> events = store->events();
+  ASSERT_TRUE(events);
+  for (const SessionEvent& event : *events) {
+    if (event.kind == "tablet described") {
+      said.push_back(parse_tablet_record(event.json, "event")->museum_number);
+    }
+  }
+  EXPECT_EQ(said, (std::vector<std::string>{"BM 1", "BM 2"})) << "once for each time that it changed";
 }
 
 }  // namespace
