@@ -360,8 +360,7 @@ ScanPose ScanModel::pose(int id) const {
   const double turned = 2.0 / 3.0 * radius_mm * radius_mm * scan.covariance.topLeftCorner<3, 3>().trace();
   out.sigma_mm = std::max(std::sqrt(std::max(0.0, shifted + turned)), scan.stage_sigma_mm);
   const bool told = scan.locked || scan.stage_sigma_mm > 0;
-  if (!told &&
-      out.sigma_mm > std::max(kLoosestMm, kLoosestSpacings * scan.features.surface->spacing_mm)) {
+  if (!told && out.sigma_mm > std::max(kLoosestMm, kLoosestSpacings * scan.features.surface->spacing_mm)) {
     out.status = PoseStatus::kUnsure;
     out.reason = too_even(turned > shifted);
   }
