@@ -21,6 +21,10 @@ constexpr double kBroadSide = 0.6;
 /// The side that looks along the tablet frame's z is the obverse unless the other has so much more text.
 constexpr double kMoreText = 1.25;
 
+/// Fewer votes that count (their sum squared over the sum of their squares) are chance: two hollows of a body
+/// without text that happened to lean the same way turned its pictures.
+constexpr double kFewestVotes = 5.0;
+
 Eigen::Vector3d tail_of(const Wedge& wedge) {
   return (wedge.exit_points_surface_mm[static_cast<std::size_t>(wedge.directional_edge)] -
           wedge.depth_point_mm)
@@ -51,6 +55,7 @@ TextFrame find_text_frame(const Mesh& mesh, const std::vector<Wedge>& wedges) {
   std::array<double, 2> text{};
   std::array<double, 4> reading{};
   double votes = 0;
+  double squared_votes = 0;
   for (const Wedge& wedge : wedges) {
     const Eigen::Vector3d normal = tablet_from_model.rotation * wedge.surface_normal;
     if (std::abs(normal.z()) < kBroadSide) {
@@ -60,6 +65,7 @@ TextFrame find_text_frame(const Mesh& mesh, const std::vector<Wedge>& wedges) {
     const Eigen::Vector3d tail = tablet_from_model.rotation * tail_of(wedge);
     const double vote = vote_of(wedge);
     votes += vote;
+    squared_votes += vote * vote;
     for (std::size_t turn = 0; turn < 4; ++turn) {
       const double angle = 0.5 * kPi * static_cast<double>(turn);
       const Eigen::Vector3d right(std::cos(angle), std::sin(angle), 0);
@@ -74,7 +80,8 @@ TextFrame find_text_frame(const Mesh& mesh, const std::vector<Wedge>& wedges) {
   const auto best = static_cast<std::size_t>(std::ranges::max_element(reading) - reading.begin());
   std::array<double, 4> by_lead = reading;
   std::ranges::sort(by_lead);
-  frame.certainty = std::clamp((by_lead[3] - by_lead[2]) / votes, 0.0, 1.0);
+  const bool few = votes * votes < kFewestVotes * squared_votes;
+  frame.certainty = few ? 0.0 : std::clamp((by_lead[3] - by_lead[2]) / votes, 0.0, 1.0);
   const double all_text = text[0] + text[1];
   frame.obverse_certainty = std::abs(text[0] - text[1]) / all_text;
   if (frame.certainty < kCertainText) {

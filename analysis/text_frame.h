@@ -17,7 +17,7 @@ inline constexpr double kCertainText = 0.1;
 /// over its lower edge, so that x is the reader's right on the reverse too, and the reverse's up is -y.
 struct TextFrame {
   RigidTransform text_from_model;
-  /// By how much this reading of right and up leads the next best, 0 to 1; 0 without wedges.
+  /// By how much this reading of right and up leads the next best, 0 to 1; 0 where hardly a wedge says it.
   double certainty = 0;
   /// By how much the obverse has more text than the reverse, 0 to 1.
   double obverse_certainty = 0;

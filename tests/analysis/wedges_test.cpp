@@ -206,6 +206,13 @@ TEST(Wedges, AReadingThatHardlyLeadsDoesNotTurnTheTablet) {
     wedge.directional_margin = 1;
     wedges.push_back(wedge);
   };
+  for (int k = 0; k < 4; ++k) {
+    point(135);
+  }
+  const TextFrame few = find_text_frame(slab, wedges);
+  EXPECT_EQ(few.certainty, 0);
+  EXPECT_GT(few.text_from_model.rotation(0, 0), 0.99);
+  wedges.clear();
   for (int k = 0; k < 20; ++k) {
     point(90 * k);
   }
