@@ -91,8 +91,13 @@ bool enough(const FoundPose& found, const PoseSearchOptions& options) {
 
 FoundPose search_pose(const ScanSurface& scan, std::span<const ModelScan> model, const PoseHints& hints,
                       const PairHypotheses& pair_hypotheses, const ShapeTest& shape_is_distinctive,
-                      const PoseSearchOptions& options, const JobContext& job) {
+                      const PoseSearchOptions& options, const JobContext& job,
+                      const SecondLook& second_look) {
   FoundPose found;
+  const auto settled_by_second_look = [&] {
+    return found.verdict.status != PoseStatus::kRegistered && second_look && !job.cancelled() &&
+           second_look(found);
+  };
   const auto take = [&](std::vector<ModelFit> fits) {
     std::erase_if(fits,
                   [&](const ModelFit& f) { return !near_asked(f.model_from_scanner, hints, scan, options); });
@@ -163,23 +168,24 @@ FoundPose search_pose(const ScanSurface& scan, std::span<const ModelScan> model,
     found.verdict = {PoseStatus::kUnsure,
                      "it contradicts the stage's pose; check that the tablet did not move between the scans"};
     found.fits.push_back(std::move(as_told));
+    settled_by_second_look();
     return found;
   }
   bool settled = false;
   if (!hints.told.empty()) {
     look(hints.told, true);
-    settled = enough(found, options);
+    settled = enough(found, options) || settled_by_second_look();
   }
   if (!hints.starts.empty() && !settled) {
     look(hints.starts);
-    settled = enough(found, options);
+    settled = enough(found, options) || settled_by_second_look();
   }
   if (hints.asked && !settled) {
     AlignNearOptions near;
     near.fit = told_fit;
     near.verify = options.verify;
     take(align_near(scan, model, *hints.asked, near));
-    settled = enough(found, options);
+    settled = enough(found, options) || settled_by_second_look();
   }
   if (hints.asked && settled) {
     return found;  // a half turn is far from what was asked for
@@ -199,7 +205,7 @@ FoundPose search_pose(const ScanSurface& scan, std::span<const ModelScan> model,
       continue;
     }
     look(starts, hints.asked.has_value());
-    settled = enough(found, options);
+    settled = enough(found, options) || settled_by_second_look();
   }
   if (found.verdict.status != PoseStatus::kRegistered && !found.fits.empty() && !job.cancelled()) {
     look_by_shape();

@@ -57,12 +57,16 @@ using PairHypotheses = std::function<std::vector<PoseHypothesis>(std::size_t k)>
 /// (self_similarity.h). May be cached by the caller.
 using ShapeTest = std::function<bool(const ModelFit& fit)>;
 
+/// Looks once more at what was found and is refused, or is not enough to end the search; true when it has
+/// settled it. Then `found` holds what it accepted.
+using SecondLook = std::function<bool(FoundPose& found)>;
+
 /// Looks for the pose of a scan in a model: hints first, then the surface alone against one batch of the
 /// model's scans after the other; everything that is found is refined against the whole model and judged
 /// (verify_pose.h).
 [[nodiscard]] FoundPose search_pose(const ScanSurface& scan, std::span<const ModelScan> model,
                                     const PoseHints& hints, const PairHypotheses& pair_hypotheses,
                                     const ShapeTest& shape_is_distinctive, const PoseSearchOptions& options,
-                                    const JobContext& job);
+                                    const JobContext& job, const SecondLook& second_look = {});
 
 }  // namespace dubsar

@@ -13,6 +13,7 @@
 #include "registration/pin_matching.h"
 #include "registration/pin_merge.h"
 #include "registration/unit_check.h"
+#include "registration/without_foreign.h"
 
 namespace dubsar {
 
@@ -132,7 +133,9 @@ void ScanModel::rescale(double scale_mm) {
     scan.self_similar.reset();
     scan.tried_on.clear();
     if (scan.features.surface) {
-      scan.features = make_scan_features(rescaled(*scan.features.surface, surface), options_.search.align);
+      scan.features = make_scan_features(rescaled(whole_of(id), surface), options_.search.align);
+      scan.whole.reset();
+      scan.left_out.clear();
     }
   }
 }
@@ -291,7 +294,9 @@ bool ScanModel::place(int id, const RigidTransform& model_from_scanner, bool loc
     fit.told = true;
   }
   const PoseVerdict verdict = verify_pose(fits, options_.search.verify);
-  if (verdict.status != PoseStatus::kRegistered) {
+  FoundPose fitted{std::move(fits), verdict};
+  WithoutForeign without_foreign(*this, id, ids);
+  if (verdict.status != PoseStatus::kRegistered && !without_foreign.settles(fitted)) {
     scan.reason = "the hint led to no certain pose: " + verdict.reason;
     scan.outcome = verdict.status;
     if (apart) {
@@ -299,7 +304,8 @@ bool ScanModel::place(int id, const RigidTransform& model_from_scanner, bool loc
     }
     return false;
   }
-  connect(id, fits.front(), false, ids, main);
+  without_foreign.keep();
+  connect(id, fitted.fits.front(), false, ids, main);
   settle_group(scan.group, job);
   judge(id);
   retry(job);

@@ -55,6 +55,8 @@ class ScanModel {
   void enter_at(int id, const RigidTransform& model_from_scanner);
 
  private:
+  class WithoutForeign;
+
   /// The best poses of a search that settled nothing, relative to a scan of the group that was searched.
   struct Lead {
     int on = 0;
@@ -63,6 +65,8 @@ class ScanModel {
   struct Scan {
     std::string file;
     ScanFeatures features;
+    std::shared_ptr<const ScanSurface> whole;  ///< as it was entered, while something is left out of it …
+    std::vector<std::uint8_t> left_out;        ///< … [cells of its fine grid]: a hand
     std::optional<NominalPose> nominal;
     std::vector<SeenPin> pins;
     bool pins_expected = false;
@@ -118,6 +122,9 @@ class ScanModel {
   /// True when none of the scans that the scan brings along contradicts the group that it joins.
   [[nodiscard]] bool groups_agree(int id, const RigidTransform& group_from_scanner,
                                   const std::vector<int>& group_ids) const;
+  [[nodiscard]] const ScanSurface& whole_of(int id) const;
+  /// Puts back what was left out of it.
+  void make_whole(int id);
   /// The groups of the scan and of what it was fitted to become one.
   void connect(int id, const ModelFit& fit, bool by_stage, const std::vector<int>& fitted_ids, int group);
   /// Makes the scan a group of its own, and of each piece that nothing connects without it

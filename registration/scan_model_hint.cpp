@@ -6,6 +6,7 @@
 #include "registration/hint_starts.h"
 #include "registration/point_pairs.h"
 #include "registration/scan_model.h"
+#include "registration/without_foreign.h"
 
 namespace dubsar {
 
@@ -86,12 +87,15 @@ bool ScanModel::join_from(int id, int group, const std::vector<RigidTransform>& 
   std::stable_sort(fits.begin(), fits.end(),
                    [](const ModelFit& a, const ModelFit& b) { return a.score > b.score; });
   const PoseVerdict verdict = verify_pose(fits, options_.search.verify);
-  if (verdict.status != PoseStatus::kRegistered) {
+  FoundPose found{std::move(fits), verdict};
+  WithoutForeign without_foreign(*this, id, ids);
+  if (verdict.status != PoseStatus::kRegistered && !without_foreign.settles(found)) {
     scan.reason = verdict.reason;
     scan.outcome = verdict.status;
     return false;
   }
-  connect(id, fits.front(), false, ids, group);
+  without_foreign.keep();
+  connect(id, found.fits.front(), false, ids, group);
   scan.hint_reason.clear();
   settle_group(scans_.at(id).group, job);
   judge(id);
@@ -208,9 +212,11 @@ bool ScanModel::join_as_given(int id, int group, JobContext& job) {
   // Groups keep the frame of the poses that they were given in.
   PoseHints hints;
   hints.told.push_back(scan.group_from_scanner);
+  WithoutForeign without_foreign(*this, id, ids);
   const FoundPose found = search_pose(
       *scan.features.surface, model_of(ids), hints, [](std::size_t) { return std::vector<PoseHypothesis>{}; },
-      [&](const ModelFit& fit) { return shape_is_distinctive(id, fit, ids); }, options_.search, job);
+      [&](const ModelFit& fit) { return shape_is_distinctive(id, fit, ids); }, options_.search, job,
+      [&](FoundPose& refused) { return without_foreign.settles(refused); });
   const bool registered = found.verdict.status == PoseStatus::kRegistered && !job.cancelled();
   // A rival that the given pose called up may fit better: then the given one is wrong, and no word says so.
   const PoseHint given{-1, {}, scan.group_from_scanner};
@@ -224,6 +230,7 @@ bool ScanModel::join_as_given(int id, int group, JobContext& job) {
     }
     return false;
   }
+  without_foreign.keep();
   connect(id, found.fits.front(), false, ids, group);
   settle_group(scans_.at(id).group, job);
   judge(id);

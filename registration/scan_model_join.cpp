@@ -7,6 +7,7 @@
 #include "registration/scan_motion.h"
 #include "registration/second_body.h"
 #include "registration/self_similarity.h"
+#include "registration/without_foreign.h"
 
 namespace dubsar {
 
@@ -113,9 +114,11 @@ bool ScanModel::join_unhinted(int id, const std::vector<int>& ids, int group, Jo
       hints.starts.push_back(scans_.at(lead.on).group_from_scanner * lead.on_from_scanner);
     }
   }
-  const FoundPose found = search_pose(
+  WithoutForeign without_foreign(*this, id, ids);
+  FoundPose found = search_pose(
       *scan.features.surface, model, hints, from_pairs,
-      [&](const ModelFit& fit) { return shape_is_distinctive(id, fit, ids); }, options_.search, job);
+      [&](const ModelFit& fit) { return shape_is_distinctive(id, fit, ids); }, options_.search, job,
+      [&](FoundPose& refused) { return without_foreign.settles(refused); });
   if (!job.cancelled()) {
     for (std::size_t k = 0; k < ids.size(); ++k) {
       if (searched[k] != 0) {
@@ -146,18 +149,22 @@ bool ScanModel::join_unhinted(int id, const std::vector<int>& ids, int group, Jo
     }
     return false;
   }
+  // What was left out as a hand may be the tablet, and what stays what it lies on.
+  const std::vector<ModelScan> whole_model = without_foreign.whole_model();
   if (const std::optional<SecondBody> body =
-          find_second_body(*scan.features.surface, features_of(ids), model, found.fits.front(),
+          find_second_body(without_foreign.whole(), features_of(ids), whole_model, found.fits.front(),
                            options_.surface, options_.search, job)) {
     scan.reason = reason_of(*body);
     scan.outcome = PoseStatus::kUnsure;
     return false;
   }
-  if (!groups_agree(id, found.fits.front().model_from_scanner, ids)) {
+  if (!groups_agree(id, found.fits.front().model_from_scanner, ids) &&
+      (!without_foreign.settles(found) || !groups_agree(id, found.fits.front().model_from_scanner, ids))) {
     scan.reason = kContradiction;
     scan.outcome = PoseStatus::kUnsure;
     return false;
   }
+  without_foreign.keep();
   connect(id, found.fits.front(), found.by_stage, ids, group);
   settle_group(scans_.at(id).group, job);
   judge(id);

@@ -41,6 +41,9 @@ bool ScanModel::remove(int id, JobContext& job) {
 bool ScanModel::leave(int id) {
   Scan& scan = scans_.at(id);
   const int group = scan.group;
+  for (const int member : members(group)) {
+    make_whole(member);  // what was left out followed from where all of them were
+  }
   scan.group = next_group_++;
   std::erase_if(pairs_, [&](const auto& e) { return e.first.first == id || e.first.second == id; });
   std::vector<std::vector<int>> pieces = pieces_of(group);

@@ -278,7 +278,15 @@ std::shared_ptr<ScanSurface> surface_of(const RangeGrid& grid, const std::vector
                             std::max(options.relief_radius * out->scale_mm, 3.0 * out->medium->spacing_mm),
                             static_cast<std::size_t>(options.relief_points));
 
-  const SurfaceLevel& level = *out->medium;
+  measure_middle(*out);
+  return out;
+}
+
+}  // namespace
+
+void measure_middle(ScanSurface& surface) {
+  surface.centroid_mm.setZero();
+  const SurfaceLevel& level = *surface.medium;
   std::size_t count = 0;
   double spread = 0;
   for (int pass = 0; pass < 2; ++pass) {
@@ -288,24 +296,21 @@ std::shared_ptr<ScanSurface> surface_of(const RangeGrid& grid, const std::vector
       }
       const Eigen::Vector3d p = level.grid.point(i).cast<double>();
       if (pass == 0) {
-        out->centroid_mm += p;
+        surface.centroid_mm += p;
         ++count;
       } else {
-        spread += (p - out->centroid_mm).squaredNorm();
+        spread += (p - surface.centroid_mm).squaredNorm();
       }
     }
     if (count == 0) {
       break;
     }
     if (pass == 0) {
-      out->centroid_mm /= static_cast<double>(count);
+      surface.centroid_mm /= static_cast<double>(count);
     }
   }
-  out->extent_mm = count == 0 ? 0 : 2.0 * std::sqrt(spread / static_cast<double>(count));
-  return out;
+  surface.extent_mm = count == 0 ? 0 : 2.0 * std::sqrt(spread / static_cast<double>(count));
 }
-
-}  // namespace
 
 double surface_scale_mm(const RangeGrid& grid) {
   const double spacing_mm = grid.spacing_mm > 0 ? grid.spacing_mm : estimate_spacing_mm(grid);

@@ -84,4 +84,13 @@ struct ScanSurface {
 [[nodiscard]] std::shared_ptr<const ScanSurface> rescaled(const ScanSurface& surface,
                                                           const ScanSurfaceOptions& options);
 
+/// The same scan with nothing matched where left_out is not 0 ([cells of the fine grid]) or beside it: what
+/// is left out still hides what lies behind it.
+[[nodiscard]] std::shared_ptr<const ScanSurface> without(const ScanSurface& surface,
+                                                         const std::vector<std::uint8_t>& left_out,
+                                                         const ScanSurfaceOptions& options);
+
+/// Sets centroid and extent from the usable samples of the medium level.
+void measure_middle(ScanSurface& surface);
+
 }  // namespace dubsar

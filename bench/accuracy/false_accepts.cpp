@@ -5,7 +5,7 @@
 // nothing known, many of them such that no pose can be told (blank, worn, tiny, symmetric, another tablet
 // among the scans, faces that do not overlap). Every scan but a tablet's first is one judged registration.
 // Prints one line per case and the sums; exits 1 when any accepted pose is wrong.
-//   dubsar-false-accepts [first seed [seeds [kind [spacing_mm]]]]
+//   dubsar-false-accepts [first seed [seeds [kind [spacing_mm]]]] [--gripped-every N]
 #include <cstdio>
 #include <string>
 #include <vector>
@@ -51,14 +51,15 @@ const std::vector<Case>& cases() {
   return all;
 }
 
-Tally run(const Case& c, std::uint64_t seed, double spacing_mm, const sim::TabletOptions& tablet) {
-  std::vector<bench::TrueScan> scans =
-      bench::true_scans(tablet, {spacing_mm, 0.02, 8, c.views, seed, bench::Pins::kNone, 0});
+Tally run(const Case& c, std::uint64_t seed, double spacing_mm, int gripped_every,
+          const sim::TabletOptions& tablet) {
+  std::vector<bench::TrueScan> scans = bench::true_scans(
+      tablet, {spacing_mm, 0.02, 8, c.views, seed, bench::Pins::kNone, 0, 1.0, gripped_every});
   if (!c.foreign_views.empty()) {
     sim::TabletOptions other = tablet;
     other.seed = seed + 5000;
-    for (bench::TrueScan& scan : bench::true_scans(
-             other, {spacing_mm, 0.02, 8, c.foreign_views, seed + 5000, bench::Pins::kNone, 1})) {
+    for (bench::TrueScan& scan : bench::true_scans(other, {spacing_mm, 0.02, 8, c.foreign_views, seed + 5000,
+                                                           bench::Pins::kNone, 1, 1.0, gripped_every})) {
       scans.push_back(std::move(scan));
     }
   }
@@ -105,6 +106,7 @@ int main(int argc, char** argv) {
   std::uint64_t seeds = 4;
   std::string only;
   double spacing_mm = 0.25;
+  int gripped_every = 0;
   std::vector<std::string> names{""};
   for (const Case& c : cases()) {
     names.emplace_back(c.name);
@@ -114,6 +116,8 @@ int main(int argc, char** argv) {
   app.add_option("seeds", seeds);
   app.add_option("case", only, "this one alone")->check(CLI::IsMember(names));
   app.add_option("spacing", spacing_mm, "mm")->check(CLI::Range(0.05, 2.0));
+  app.add_option("--gripped-every", gripped_every, "fingers hold the tablet in each so manieth scan")
+      ->check(CLI::Range(0, 100));
   if (const auto status = dubsar::bench::ends_with(app, argc, argv)) {
     return *status;
   }
@@ -124,7 +128,7 @@ int main(int argc, char** argv) {
         continue;
       }
       const sim::TabletOptions tablet = bench::random_tablet(seed, c.kind, 0.2);
-      const Tally tally = run(c, seed, spacing_mm, tablet);
+      const Tally tally = run(c, seed, spacing_mm, gripped_every, tablet);
       std::printf("%-11s %4llu  %2.0f x %2.0f x %2.0f mm  accepted %d  unsure %d  failed %d  wrong %d\n",
                   c.name, static_cast<unsigned long long>(seed), tablet.size_mm.x(), tablet.size_mm.y(),
                   tablet.size_mm.z(), tally.accepted, tally.unsure, tally.failed, tally.wrong);

@@ -36,6 +36,7 @@ struct Arguments {
   double spacing_mm = 0.1;
   double noise_mm = 0.02;
   std::vector<double> size_mm;
+  int gripped_every = 0;
   bool verbose = false;
   bool at_truth = false;
 };
@@ -139,8 +140,15 @@ void run(const Arguments& arguments, std::uint64_t seed, Sums& sums) {
   const bench::Pins pins = arguments.pins == "labelled"     ? bench::Pins::kLabelled
                            : arguments.pins == "unlabelled" ? bench::Pins::kUnlabelled
                                                             : bench::Pins::kNone;
-  const std::vector<bench::TrueScan> scans = bench::true_scans(
-      tablet, {arguments.spacing_mm, arguments.noise_mm, arguments.views, {}, seed, pins, 0});
+  const std::vector<bench::TrueScan> scans = bench::true_scans(tablet, {arguments.spacing_mm,
+                                                                        arguments.noise_mm,
+                                                                        arguments.views,
+                                                                        {},
+                                                                        seed,
+                                                                        pins,
+                                                                        0,
+                                                                        1.0,
+                                                                        arguments.gripped_every});
   const PinSet pin_set = bench::pin_set(scans, pins);
   if (arguments.at_truth) {
     judge_truth(scans);
@@ -256,6 +264,9 @@ int main(int argc, char** argv) {
   app.add_option("--spacing", arguments.spacing_mm, "of the scans, mm");
   app.add_option("--noise", arguments.noise_mm, "mm");
   app.add_option("--size", arguments.size_mm, "width height thickness, mm; else random")->expected(3);
+  app.add_option("--gripped-every", arguments.gripped_every,
+                 "fingers hold the tablet in each so manieth scan")
+      ->check(CLI::Range(0, 100));
   app.add_flag("-v,--verbose", arguments.verbose, "each scan");
   app.add_flag("--at-truth", arguments.at_truth,
                "also judge the true poses and list every pose that pairs are found in");

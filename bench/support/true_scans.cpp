@@ -4,9 +4,11 @@
 
 #include <cstdio>
 #include <cstdlib>
+#include <optional>
 
 #include "core/random.h"
 #include "core/units.h"
+#include "sim/disturbance.h"
 #include "sim/pins.h"
 #include "sim/scan_plan.h"
 #include "sim/scanner.h"
@@ -18,6 +20,11 @@ namespace {
 [[noreturn]] void give_up(const Error& error) {
   std::fprintf(stderr, "%s\n", error.line().c_str());
   std::exit(2);
+}
+
+bool is_gripped(std::size_t view, const TrueScanOptions& options) {
+  const auto every = static_cast<std::size_t>(options.gripped_every);
+  return every == 1 || (every > 1 && view % every == 1);
 }
 
 }  // namespace
@@ -72,7 +79,12 @@ std::vector<TrueScan> true_scans(const sim::TabletOptions& tablet_options, const
   std::vector<TrueScan> scans;
   for (const std::size_t v : views) {
     const RigidTransform& pose = plan[v].tablet_from_scanner;
-    sim::Scene scene{&*tablet, &query, {}, std::nullopt};
+    const bool gripped = is_gripped(v, options);
+    const sim::SimTablet held =
+        gripped ? sim::disturbed(*tablet, pose, sim::Disturbance::kGrip, static_cast<int>(v))
+                : sim::SimTablet{};
+    const std::optional<MeshQuery> held_query = gripped ? std::optional<MeshQuery>(held.mesh) : std::nullopt;
+    sim::Scene scene{gripped ? &held : &*tablet, gripped ? &*held_query : &query, {}, std::nullopt};
     if (options.pins != Pins::kNone) {
       scene.pins = sim::standing_pins(stand.placed(static_cast<int>(v)), scene, scanner, pose);
     }

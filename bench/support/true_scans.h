@@ -35,6 +35,7 @@ struct TrueScanOptions {
   Pins pins = Pins::kNone;
   int tablet_number = 0;
   double tip_diameter_mm = 1.0;
+  int gripped_every = 0;  ///< fingers hold it by an edge in each so manieth scan; 0: in none
 };
 
 /// Is shown each scan as it is made, with the scene that it was made of (tablet frame).
