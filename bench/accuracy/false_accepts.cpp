@@ -53,13 +53,19 @@ const std::vector<Case>& cases() {
 
 Tally run(const Case& c, std::uint64_t seed, double spacing_mm, int gripped_every,
           const sim::TabletOptions& tablet) {
-  std::vector<bench::TrueScan> scans = bench::true_scans(
-      tablet, {spacing_mm, 0.02, 8, c.views, seed, bench::Pins::kNone, 0, 1.0, gripped_every});
+  const auto scanning = [&](const std::vector<std::size_t>& views, std::uint64_t scan_seed, int number) {
+    return bench::TrueScanOptions{.spacing_mm = spacing_mm,
+                                  .views = 8,
+                                  .only = views,
+                                  .seed = scan_seed,
+                                  .tablet_number = number,
+                                  .gripped_every = gripped_every};
+  };
+  std::vector<bench::TrueScan> scans = bench::true_scans(tablet, scanning(c.views, seed, 0));
   if (!c.foreign_views.empty()) {
     sim::TabletOptions other = tablet;
     other.seed = seed + 5000;
-    for (bench::TrueScan& scan : bench::true_scans(other, {spacing_mm, 0.02, 8, c.foreign_views, seed + 5000,
-                                                           bench::Pins::kNone, 1, 1.0, gripped_every})) {
+    for (bench::TrueScan& scan : bench::true_scans(other, scanning(c.foreign_views, other.seed, 1))) {
       scans.push_back(std::move(scan));
     }
   }

@@ -140,15 +140,13 @@ void run(const Arguments& arguments, std::uint64_t seed, Sums& sums) {
   const bench::Pins pins = arguments.pins == "labelled"     ? bench::Pins::kLabelled
                            : arguments.pins == "unlabelled" ? bench::Pins::kUnlabelled
                                                             : bench::Pins::kNone;
-  const std::vector<bench::TrueScan> scans = bench::true_scans(tablet, {arguments.spacing_mm,
-                                                                        arguments.noise_mm,
-                                                                        arguments.views,
-                                                                        {},
-                                                                        seed,
-                                                                        pins,
-                                                                        0,
-                                                                        1.0,
-                                                                        arguments.gripped_every});
+  const std::vector<bench::TrueScan> scans =
+      bench::true_scans(tablet, {.spacing_mm = arguments.spacing_mm,
+                                 .noise_mm = arguments.noise_mm,
+                                 .views = arguments.views,
+                                 .seed = seed,
+                                 .pins = pins,
+                                 .gripped_every = arguments.gripped_every});
   const PinSet pin_set = bench::pin_set(scans, pins);
   if (arguments.at_truth) {
     judge_truth(scans);

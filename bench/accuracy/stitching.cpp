@@ -8,6 +8,8 @@
 //     published scans with their published poses (the .conf of the folder), the bunny or any other: input
 //     sample to mesh and what perfect averaging would leave, topology, shape, time; boundary beside that of
 //     reconstruction/bun_zipper.ply
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
@@ -283,10 +285,11 @@ int bunny(const Arguments& args) {
     grids.push_back(std::move(grid));
     poses.push_back(pose);
   }
-  const auto print_distances = [&](const char* of, const std::vector<double>& all) {
+  const auto print_distances = [&](const std::string& of, const std::vector<double>& all) {
     const std::vector<double> p = chosen(all, of_peers);
     std::printf("  %s: mean %.4f, RMS %.4f, 95 %% %.4f mm; the %zu that count for peers: %.4f, %.4f, %.4f\n",
-                of, mean(all), rms(all), quantile(all, 0.95), p.size(), mean(p), rms(p), quantile(p, 0.95));
+                of.c_str(), mean(all), rms(all), quantile(all, 0.95), p.size(), mean(p), rms(p),
+                quantile(p, 0.95));
   };
   std::vector<SampleFlags> flags;
   ClearedMap map;
@@ -338,8 +341,8 @@ int bunny(const Arguments& args) {
   print_distances("sample to mesh", d);
   for (const double reach_mm : {0.4, 1.5}) {
     const AveragingFloor floor = averaging_floor(grids, poses, flags, reach_mm);
-    std::printf("    perfect averaging of what lies within %.1f mm would leave", reach_mm);
-    print_distances("", floor.residual_mm);
+    print_distances(fmt::format("  perfect averaging of what lies within {:.1f} mm would leave", reach_mm),
+                    floor.residual_mm);
   }
   if (const auto zipper = read_mesh(folder / "reconstruction" / "bun_zipper.ply", {.mm_per_unit = 1000.0})) {
     print_topology(*zipper);

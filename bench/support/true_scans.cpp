@@ -22,9 +22,11 @@ namespace {
   std::exit(2);
 }
 
-bool is_gripped(std::size_t view, const TrueScanOptions& options) {
+/// By the scan's number among those that are made, not among those of the plan: some are made of its even
+/// views only.
+bool is_gripped(std::size_t scan, const TrueScanOptions& options) {
   const auto every = static_cast<std::size_t>(options.gripped_every);
-  return every == 1 || (every > 1 && view % every == 1);
+  return every == 1 || (every > 1 && scan % every == 1);
 }
 
 }  // namespace
@@ -79,7 +81,7 @@ std::vector<TrueScan> true_scans(const sim::TabletOptions& tablet_options, const
   std::vector<TrueScan> scans;
   for (const std::size_t v : views) {
     const RigidTransform& pose = plan[v].tablet_from_scanner;
-    const bool gripped = is_gripped(v, options);
+    const bool gripped = is_gripped(scans.size(), options);
     const sim::SimTablet held =
         gripped ? sim::disturbed(*tablet, pose, sim::Disturbance::kGrip, static_cast<int>(v))
                 : sim::SimTablet{};

@@ -105,7 +105,7 @@ TEST(SimulatedTablets, ScansOfAnotherOneStayOut) {
 TEST(SimulatedTablets, ScansWithFingersInThemAreRegistered) {
   sim::TabletOptions tablet = bench::random_tablet(1, "text", 0.25);
   tablet.size_mm = {48, 36, 18};
-  const auto scans = bench::true_scans(tablet, {0.3, 0.02, 12, {}, 1, bench::Pins::kNone, 0, 1.0, 3});
+  const auto scans = bench::true_scans(tablet, {.spacing_mm = 0.3, .gripped_every = 3});
   const Outcome outcome = register_all(scans);
   EXPECT_GE(outcome.registered, 11);
   EXPECT_EQ(outcome.wrong, 0);
@@ -114,11 +114,16 @@ TEST(SimulatedTablets, ScansWithFingersInThemAreRegistered) {
 
 TEST(SimulatedTablets, FingersMakeNoScanOfAnotherOneFit) {
   const sim::TabletOptions tablet = bench::random_tablet(7, "text", 0.2);
-  auto scans = bench::true_scans(tablet, {0.25, 0.02, 8, {0, 2, 4}, 7, bench::Pins::kNone, 0, 1.0, 2});
+  auto scans = bench::true_scans(
+      tablet, {.spacing_mm = 0.25, .views = 8, .only = {0, 2, 4}, .seed = 7, .gripped_every = 2});
   sim::TabletOptions other = tablet;
   other.seed = 8;
-  for (bench::TrueScan& scan :
-       bench::true_scans(other, {0.25, 0.02, 8, {0, 2}, 8, bench::Pins::kNone, 1, 1.0, 1})) {
+  for (bench::TrueScan& scan : bench::true_scans(other, {.spacing_mm = 0.25,
+                                                        .views = 8,
+                                                        .only = {0, 2},
+                                                        .seed = 8,
+                                                        .tablet_number = 1,
+                                                        .gripped_every = 1})) {
     scans.push_back(std::move(scan));
   }
   EXPECT_EQ(register_all(scans).wrong, 0);
