@@ -3,9 +3,12 @@
 // dubsar-viewer-speed: what it takes to look at a mesh, in the viewer's own view, off screen.
 //   dubsar-viewer-speed open MESH    seconds from the file to the first picture, by step, and to all faces
 //   dubsar-viewer-speed turn MESH    milliseconds a picture while it is turned, at several zooms
-//   dubsar-viewer-speed pick MESH    faces selected and drawn by number beyond 2^16 and 2^24, checked one by
+//   dubsar-viewer-speed frames MESH  frames a second with every face drawn, beside a bare draw of them, and
+//                                    what it takes to select all; --faces MILLIONS: of a body made for it
+//   dubsar-viewer-speed pick         faces selected and drawn by number beyond 2^16 and 2^24, checked one by
 //   one
-// Without a display it starts one of its own (Xvfb, drawn by the processor).
+// Without a display it starts one of its own (Xvfb, drawn by the processor); --card takes a graphics card
+// that no display is on.
 
 #include <sys/resource.h>
 
@@ -13,14 +16,19 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <functional>
 #include <limits>
 #include <optional>
 
+#include "bench/speed/viewer_frames.h"
+#include "bench/support/card_context.h"
+#include "bench/support/opened_view.h"
 #include "bench/support/options.h"
+#include "bench/support/pebble.h"
 #include "bench/support/statistics.h"
 #include "core/stage_times.h"
-#include "core/tablet_frame.h"
 #include "formats/mesh_io.h"
+#include "station/picture_file.h"
 #include "tests/support/raster_mesh.h"
 #include "tests/ui/support/display.h"
 #include "ui/gl/gl_window.h"
@@ -33,67 +41,16 @@ using namespace dubsar::bench;
 using namespace dubsar::ui;
 using Clock = std::chrono::steady_clock;
 
-constexpr int kWidth = 1920;
-constexpr int kHeight = 1200;
-
-/// A step that just ended.
-double told(const char* what, Clock::time_point began) {
-  const double s = seconds_since(began);
-  std::printf("  %-34s %7.2f s\n", what, s);
-  return s;
-}
-
-struct Opened {
-  Mesh mesh;
-  ShownMesh shown;
-  std::unique_ptr<SurfaceView> view;
-  OrbitCamera camera;
-};
-
-std::optional<Opened> open_mesh(const std::string& file) {
-  Opened out;
-  double sum = 0;
-  auto began = Clock::now();
+std::optional<OpenedView> open_mesh(const std::string& file) {
+  const auto began = Clock::now();
   Result<Mesh> mesh = read_mesh(file);
   if (!mesh) {
     std::fprintf(stderr, "%s\n", mesh.error().line().c_str());
     return std::nullopt;
   }
-  out.mesh = std::move(*mesh);
-  std::printf("%s: %zu faces, %zu vertices\n", file.c_str(), out.mesh.faces.size(),
-              out.mesh.positions.size());
-  sum += told("read", began);
-  began = Clock::now();
-  const RigidTransform tablet_from_model = tablet_frame(out.mesh);
-  sum += told("which way it lies", began);
-  began = Clock::now();
-  out.shown = shown_mesh(out.mesh);
-  sum += told("blocks and levels of detail", began);
-  for (const ShownLevel& level : out.shown.coarser) {
-    std::printf("    %zu faces, cells of %.3f mm\n", level.detail.faces.size(),
-                static_cast<double>(level.detail.cell_mm));
-  }
-  began = Clock::now();
-  out.view = std::make_unique<SurfaceView>();
-  out.view->show(out.shown);
-  sum += told("to the graphics card", began);
-  out.camera.eye_from_model = Eigen::Quaternionf(Eigen::Matrix3f(tablet_from_model.rotation.cast<float>()));
-  out.camera.fit(out.shown.box_mm, static_cast<float>(kWidth) / kHeight);
-  began = Clock::now();
-  bool more = out.view->draw(out.camera, {}, kWidth, kHeight);
-  sum += told("first picture", began);
-  std::printf("  %-34s %7.2f s, %zu faces drawn, %.0f MB on the card\n", "all of it", sum,
-              out.view->faces_drawn(), static_cast<double>(out.view->buffers()->bytes()) / 1e6);
-  began = Clock::now();
-  double longest = 0;
-  while (more) {
-    const auto one = Clock::now();
-    more = out.view->draw(out.camera, {}, kWidth, kHeight);
-    longest = std::max(longest, seconds_since(one));
-  }
-  told("then, until every face is there", began);
-  std::printf("  %-34s %7.0f ms\n", "longest frame of that", 1000 * longest);
-  return out;
+  std::printf("%s: %zu faces, %zu vertices\n", file.c_str(), mesh->faces.size(), mesh->positions.size());
+  const double read_s = told("read", began);
+  return open_view(*mesh, read_s);
 }
 
 int time_opening(const std::string& file) {
@@ -108,7 +65,7 @@ int time_opening(const std::string& file) {
 
 int time_turning(const std::string& file) {
   constexpr int kPictures = 40;
-  std::optional<Opened> opened = open_mesh(file);
+  std::optional<OpenedView> opened = open_mesh(file);
   if (!opened) {
     return 2;
   }
@@ -157,7 +114,7 @@ std::size_t wrongly_selected(SurfaceView& view, const ShownMesh& shown, const Or
   view.select(MeshElement::kFace, corners, SelectionStep::kUnion, true);
   while (view.select_more()) {
   }
-  const std::vector<std::uint32_t>& selected = *view.selection()->selected();
+  const BitMarks& selected = *view.selection()->selected();
   told("select by a polygon, and read back", began);
   std::size_t wrong = 0;
   std::size_t inside = 0;
@@ -171,8 +128,8 @@ std::size_t wrongly_selected(SurfaceView& view, const ShownMesh& shown, const Or
       const Eigen::Vector2f to = at - corners[k];
       least = std::min(least, (edge.x() * to.y() - edge.y() * to.x()) / edge.norm());
     }
-    inside += selected[f];
-    wrong += std::abs(least) > kNearPx && (least > 0) != (selected[f] != 0) ? 1 : 0;
+    inside += selected[f] ? 1 : 0;
+    wrong += std::abs(least) > kNearPx && (least > 0) != selected[f] ? 1 : 0;
   }
   std::printf("  %zu of %zu faces selected, %zu of them wrong\n", inside, shown.faces.size(), wrong);
   return wrong;
@@ -187,10 +144,9 @@ std::size_t wrongly_drawn(SurfaceView& view, const ShownMesh& shown, OrbitCamera
     if (face >= shown.faces.size()) {
       continue;
     }
-    std::vector<std::uint32_t> marks(shown.faces.size(), 0);
-    marks[face] = 1;
-    view.set_selection(MeshElement::kFace,
-                       std::make_shared<const std::vector<std::uint32_t>>(std::move(marks)));
+    BitMarks marks(shown.faces.size());
+    marks.mark(face);
+    view.set_selection(MeshElement::kFace, std::make_shared<const BitMarks>(std::move(marks)));
     const auto& [a, b, c] = shown.faces[face];
     camera.centre_mm = (shown.positions[a] + shown.positions[b] + shown.positions[c]) / 3.0F;
     camera.half_height_mm = 8 * (shown.positions[b] - shown.positions[a]).norm();
@@ -216,6 +172,23 @@ std::size_t wrongly_drawn(SurfaceView& view, const ShownMesh& shown, OrbitCamera
   return wrong;
 }
 
+int time_many_frames(const std::string& file, double millions, const std::string& picture) {
+  std::optional<OpenedView> opened = file.empty() ? open_view(pebble(millions), 0) : open_mesh(file);
+  if (!opened) {
+    return 2;
+  }
+  time_frames(*opened);
+  if (picture.empty()) {
+    return 0;
+  }
+  const Status written = write_picture(picture, opened->view->read(), "viewer");
+  if (!written) {
+    std::fprintf(stderr, "%s\n", written.error().line().c_str());
+    return 2;
+  }
+  return 0;
+}
+
 int check_picking(double millions) {
   const Mesh mesh = sheet(static_cast<std::uint32_t>(std::sqrt(millions * 5e5)));
   const ShownMesh shown = shown_mesh(mesh);
@@ -228,35 +201,58 @@ int check_picking(double millions) {
   return wrong == 0 ? 0 : 1;
 }
 
+/// With the context until that ends; status 3 without one.
+template <class Context>
+int with_context(Result<Context> context, const std::function<int(const std::string&)>& run) {
+  if (!context) {
+    std::fprintf(stderr, "%s\n", context.error().line().c_str());
+    return 3;
+  }
+  return run(context->renderer());
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   CLI::App app("What it takes to look at a mesh");
   app.require_subcommand(1);
+  bool card = false;
+  app.add_flag("--card", card, "a graphics card without a display (EGL)");
   std::string mesh;
   CLI::App* opening = app.add_subcommand("open", "from the file to the picture");
   CLI::App* turning = app.add_subcommand("turn", "pictures of a mesh that is turned");
   for (CLI::App* verb : {opening, turning}) {
     verb->add_option("mesh", mesh, "PLY, OBJ, STL or GLB")->required();
   }
-  CLI::App* picking = app.add_subcommand("pick", "faces by number, status 1 when one is wrong");
   double millions = 20;
-  picking->add_option("--faces", millions, "millions of faces")->check(CLI::Range(0.1, 200.0));
+  std::string picture;
+  CLI::App* frames = app.add_subcommand("frames", "frames a second, every face drawn");
+  CLI::Option* of_mesh = frames->add_option("mesh", mesh, "PLY, OBJ, STL or GLB");
+  frames->add_option("--picture", picture, "PNG that the last frame is written to");
+  CLI::App* picking = app.add_subcommand("pick", "faces by number, status 1 when one is wrong");
+  for (CLI::App* verb : {frames, picking}) {
+    verb->add_option("--faces", millions, "millions of faces")->check(CLI::Range(0.1, 200.0));
+  }
+  frames->get_option("--faces")->excludes(of_mesh);
   if (const auto status = dubsar::bench::ends_with(app, argc, argv)) {
     return *status;
   }
   std::optional<dubsar::test::Display> display;
-  if (std::getenv("DISPLAY") == nullptr) {
+  if (!card && std::getenv("DISPLAY") == nullptr) {
     display.emplace("1920x1200x24");
   }
-  Result<GlWindow> window = GlWindow::open(64, 64, "bench");
-  if (!window) {
-    std::fprintf(stderr, "%s\n", window.error().line().c_str());
-    return 3;
+  const auto run = [&](const std::string& renderer) {
+    std::printf("drawn by %s\n", renderer.c_str());
+    if (picking->parsed()) {
+      return check_picking(millions);
+    }
+    if (frames->parsed()) {
+      return time_many_frames(mesh, millions, picture);
+    }
+    return opening->parsed() ? time_opening(mesh) : time_turning(mesh);
+  };
+  if (card) {
+    return with_context(CardContext::open(), run);
   }
-  std::printf("drawn by %s\n", window->renderer().c_str());
-  if (picking->parsed()) {
-    return check_picking(millions);
-  }
-  return opening->parsed() ? time_opening(mesh) : time_turning(mesh);
+  return with_context(GlWindow::open(64, 64, "bench"), run);
 }

@@ -31,15 +31,12 @@ void attach(GLuint program, GLenum stage, const char* source) {
 }  // namespace
 
 ShaderProgram::ShaderProgram(const char* vertex, const char* fragment)
-    : ShaderProgram(vertex, nullptr, fragment, {}) {}
+    : ShaderProgram(vertex, fragment, {}) {}
 
-ShaderProgram::ShaderProgram(const char* vertex, const char* geometry, const char* fragment,
+ShaderProgram::ShaderProgram(const char* vertex, const char* fragment,
                              const std::vector<const char*>& feedback)
     : id_(glCreateProgram()) {
   attach(id_, GL_VERTEX_SHADER, vertex);
-  if (geometry != nullptr) {
-    attach(id_, GL_GEOMETRY_SHADER, geometry);
-  }
   if (fragment != nullptr) {
     attach(id_, GL_FRAGMENT_SHADER, fragment);
   }

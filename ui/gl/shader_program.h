@@ -14,9 +14,8 @@ namespace dubsar::ui {
 class ShaderProgram {
  public:
   ShaderProgram(const char* vertex, const char* fragment);
-  /// `geometry` and `fragment` may be null. `feedback`: what transform feedback records, interleaved.
-  ShaderProgram(const char* vertex, const char* geometry, const char* fragment,
-                const std::vector<const char*>& feedback);
+  /// `fragment` may be null. `feedback`: what transform feedback records, interleaved.
+  ShaderProgram(const char* vertex, const char* fragment, const std::vector<const char*>& feedback);
   ~ShaderProgram();
   ShaderProgram(const ShaderProgram&) = delete;
   ShaderProgram& operator=(const ShaderProgram&) = delete;

@@ -78,12 +78,12 @@ MeshBuffers::MeshBuffers(const ShownMesh& mesh)
     coarser += level.detail.faces.size();
   }
   // One buffer for the faces of all levels, the whole surface first.
-  const GLuint corners = add(GL_ELEMENT_ARRAY_BUFFER, (faces_ + coarser) * 12);
+  corner_buffer_ = add(GL_ELEMENT_ARRAY_BUFFER, (faces_ + coarser) * 12);
   made_of_buffer_ = add(GL_TEXTURE_BUFFER, coarser * 4);
-  put(corners, 0, mesh.faces);
+  put(corner_buffer_, 0, mesh.faces);
   for (std::size_t k = 0; k < mesh.coarser.size(); ++k) {
     const DetailLevel& level = mesh.coarser[k].detail;
-    put(corners, (faces_ + level_first_[k]) * 12, level.faces);
+    put(corner_buffer_, (faces_ + level_first_[k]) * 12, level.faces);
     put(made_of_buffer_, level_first_[k] * 4, level.from);
   }
   glGenTextures(1, &made_of_);
@@ -150,6 +150,14 @@ void MeshBuffers::set_traits(const std::vector<std::array<std::uint8_t, 4>>& tra
     glBindBuffer(GL_ARRAY_BUFFER, buffers_[kTraits]);
     glBufferSubData(GL_ARRAY_BUFFER, 0, static_cast<GLsizeiptr>(vertices_ * 4), traits.data());
   }
+}
+
+unsigned MeshBuffers::position_buffer() const {
+  return buffers_[kPosition];
+}
+
+unsigned MeshBuffers::normal_buffer() const {
+  return buffers_[kNormal];
 }
 
 void MeshBuffers::bind() const {

@@ -47,6 +47,12 @@ class MeshBuffers {
   [[nodiscard]] unsigned made_of() const { return made_of_; }
   [[nodiscard]] std::size_t first_of(std::size_t level) const { return level_first_[level]; }
 
+  // Buffers of three floats a vertex, packed_normal() of each, and three corners a face, the whole surface
+  // first.
+  [[nodiscard]] unsigned position_buffer() const;
+  [[nodiscard]] unsigned normal_buffer() const;
+  [[nodiscard]] unsigned corner_buffer() const { return corner_buffer_; }
+
   void bind() const;  ///< then one of:
   void draw_faces(std::size_t first, std::size_t count) const;
   void draw_level(std::size_t level, std::size_t first, std::size_t count) const;  ///< of ShownMesh::coarser
@@ -69,6 +75,7 @@ class MeshBuffers {
   unsigned array_ = 0;
   unsigned made_of_ = 0;
   unsigned made_of_buffer_ = 0;
+  unsigned corner_buffer_ = 0;
   std::vector<unsigned> buffers_;
   std::vector<std::size_t> level_first_;  ///< faces of coarser levels before each
   std::size_t vertices_, faces_;

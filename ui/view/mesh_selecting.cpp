@@ -7,23 +7,20 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <string>
 #include <utility>
 
 namespace dubsar::ui {
 
 namespace {
 
-constexpr const char* kVertex = R"glsl(#version 410 core
-layout(location = 0) in vec3 position;
+/// Numbers of words in, words of BitMarks out. Faces, or vertices, are looked
+/// up by number: one invocation for many of them is what makes it fast, many times so beside a geometry
+/// shader that makes a number of each face.
+constexpr const char* kWord = R"glsl(
 uniform mat4 clip_from_model;
-void main() { gl_Position = clip_from_model * vec4(position, 1.0); }
-)glsl";
-
-/// A vertex in, whether it is selected out.
-constexpr const char* kPoint = R"glsl(#version 410 core
-layout(location = 0) in vec3 position;
-layout(location = 1) in vec3 normal;
-uniform mat4 clip_from_model;
+uniform int count;            // of elements
+uniform samplerBuffer positions;
 uniform sampler2D mask;
 uniform sampler2D depth_map;
 uniform int visible_only;
@@ -31,55 +28,77 @@ uniform int step;             // 0 union, 1 intersection, 2 difference
 uniform float slack;          // of clip depth
 uniform usamplerBuffer before;
 uniform int any_before;       // else nothing was selected
-out uint selected;
+flat out uint selected;
+
+vec3 clip_of(vec3 p) { return (clip_from_model * vec4(p, 1.0)).xyz; }
+
+// Clip depth grows away from the eye.
+bool is_towards(vec3 n) {
+  return dot(vec3(clip_from_model[0].z, clip_from_model[1].z, clip_from_model[2].z), n) < 0.0;
+}
+
+bool is_in_polygon(vec3 clip) {
+  vec2 at = 0.5 * clip.xy + 0.5;
+  return all(greaterThanEqual(at, vec2(0.0))) && all(lessThan(at, vec2(1.0))) &&
+         textureLod(mask, at, 0.0).r > 0.5;
+}
+
+bool is_seen(vec3 clip) {
+  return 0.5 * (clip.z - slack) + 0.5 <= textureLod(depth_map, 0.5 * clip.xy + 0.5, 0.0).r;
+}
+
+bool is_inside(int k);
+
 void main() {
-  gl_Position = clip_from_model * vec4(position, 1.0);
-  vec2 at = 0.5 * gl_Position.xy + 0.5;
-  bool inside = all(greaterThanEqual(at, vec2(0.0))) && all(lessThan(at, vec2(1.0))) &&
-                texture(mask, at).r > 0.5;
-  if (inside && visible_only != 0) {
-    vec3 towards = vec3(clip_from_model[0].z, clip_from_model[1].z, clip_from_model[2].z);
-    bool away = dot(normal, normal) > 0.01 && dot(towards, normal) > 0.0;   // clip z grows away from the eye
-    inside = !away && 0.5 * (gl_Position.z - slack) + 0.5 <= texture(depth_map, at).r;
+  int first = (gl_VertexID >> 5) * 1024 + (gl_VertexID & 31);
+  uint now = 0u;
+  for (int k = 0; k < 32 && first + 32 * k < count; ++k) {
+    now |= is_inside(first + 32 * k) ? 1u << k : 0u;
   }
   uint was = any_before != 0 ? texelFetch(before, gl_VertexID).r : 0u;
-  uint now = inside ? 1u : 0u;
-  selected = step == 0 ? (was | now) : step == 1 ? (was & now) : (was & (1u - now));
+  selected = step == 0 ? (was | now) : step == 1 ? (was & now) : (was & ~now);
 }
 )glsl";
 
-/// A triangle in, whether it is selected out.
-constexpr const char* kGeometry = R"glsl(#version 410 core
-layout(triangles) in;
-layout(points, max_vertices = 1) out;
-uniform sampler2D mask;
-uniform sampler2D depth_map;
-uniform int visible_only;
-uniform int step;             // 0 union, 1 intersection, 2 difference
-uniform int first_face;
-uniform float slack;          // of clip depth
-uniform usamplerBuffer before;
-uniform int any_before;       // else nothing was selected
-out uint selected;
-void main() {
-  vec3 middle = (gl_in[0].gl_Position.xyz + gl_in[1].gl_Position.xyz + gl_in[2].gl_Position.xyz) / 3.0;
-  vec2 at = 0.5 * middle.xy + 0.5;
-  bool inside = all(greaterThanEqual(at, vec2(0.0))) && all(lessThan(at, vec2(1.0))) &&
-                texture(mask, at).r > 0.5;
-  if (inside && visible_only != 0) {
-    vec3 a = gl_in[0].gl_Position.xyz;
-    vec3 b = gl_in[1].gl_Position.xyz;
-    vec3 c = gl_in[2].gl_Position.xyz;
-    bool towards = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x) > 0.0;
-    inside = towards && 0.5 * (middle.z - slack) + 0.5 <= texture(depth_map, at).r;
-  }
-  uint was = any_before != 0 ? texelFetch(before, first_face + gl_PrimitiveIDIn).r : 0u;
-  uint now = inside ? 1u : 0u;
-  selected = step == 0 ? (was | now) : step == 1 ? (was & now) : (was & (1u - now));
-  EmitVertex();
-  EndPrimitive();
+constexpr const char* kFace = R"glsl(
+uniform usamplerBuffer corners;
+bool is_inside(int k) {
+  uvec3 corner = texelFetch(corners, k).rgb;
+  vec3 a = texelFetch(positions, int(corner.x)).rgb;
+  vec3 b = texelFetch(positions, int(corner.y)).rgb;
+  vec3 c = texelFetch(positions, int(corner.z)).rgb;
+  vec3 middle = clip_of((a + b + c) / 3.0);
+  return is_in_polygon(middle) &&
+         (visible_only == 0 || (is_towards(cross(b - a, c - a)) && is_seen(middle)));
 }
 )glsl";
+
+constexpr const char* kPoint = R"glsl(
+uniform usamplerBuffer normals;   // packed_normal()
+float signed10(uint bits) { return float(int(bits << 22) >> 22); }
+bool is_inside(int k) {
+  vec3 clip = clip_of(texelFetch(positions, k).rgb);
+  if (!is_in_polygon(clip)) {
+    return false;
+  }
+  if (visible_only == 0) {
+    return true;
+  }
+  uint bits = texelFetch(normals, k).r;
+  vec3 n = vec3(signed10(bits), signed10(bits >> 10), signed10(bits >> 20));
+  return (n == vec3(0.0) || is_towards(n)) && is_seen(clip);
+}
+)glsl";
+
+std::string shader_of(MeshElement of) {
+  return std::string("#version 410 core\n") + kWord + (of == MeshElement::kFace ? kFace : kPoint);
+}
+
+/// A buffer as a texture that is looked up by number.
+void make_readable(GLuint texture, GLenum format, GLuint buffer) {
+  glBindTexture(GL_TEXTURE_BUFFER, texture);
+  glTexBuffer(GL_TEXTURE_BUFFER, format, buffer);
+}
 
 }  // namespace
 
@@ -114,33 +133,42 @@ std::size_t MeshSelecting::most() {
   return static_cast<std::size_t>(std::max(texels, 0));
 }
 
-MeshSelecting::MeshSelecting(MeshElement of, std::size_t count)
-    : program_(of == MeshElement::kFace ? kVertex : kPoint, of == MeshElement::kFace ? kGeometry : nullptr,
-               nullptr, {"selected"}),
+MeshSelecting::MeshSelecting(const MeshBuffers& mesh, MeshElement of)
+    : program_(shader_of(of).c_str(), nullptr, {"selected"}),
       of_(of),
-      count_(count) {
+      count_(of == MeshElement::kFace ? mesh.faces() : mesh.vertices()) {
+  glGenVertexArrays(1, &no_vertices_);
   glGenBuffers(2, buffers_);
   glGenTextures(2, textures_);
   for (int k = 0; k < 2; ++k) {
     glBindBuffer(GL_TEXTURE_BUFFER, buffers_[k]);
-    glBufferData(GL_TEXTURE_BUFFER, static_cast<GLsizeiptr>(std::max<std::size_t>(1, count) * 4), nullptr,
+    glBufferData(GL_TEXTURE_BUFFER, static_cast<GLsizeiptr>(std::max<std::size_t>(1, words()) * 4), nullptr,
                  GL_DYNAMIC_COPY);
-    glBindTexture(GL_TEXTURE_BUFFER, textures_[k]);
-    glTexBuffer(GL_TEXTURE_BUFFER, GL_R32UI, buffers_[k]);
+    make_readable(textures_[k], GL_R32UI, buffers_[k]);
+  }
+  glGenTextures(2, mesh_textures_);
+  make_readable(mesh_textures_[0], GL_RGB32F, mesh.position_buffer());
+  if (of == MeshElement::kFace) {
+    make_readable(mesh_textures_[1], GL_RGB32UI, mesh.corner_buffer());
+  } else {
+    make_readable(mesh_textures_[1], GL_R32UI, mesh.normal_buffer());
   }
 }
 
 MeshSelecting::~MeshSelecting() {
+  glDeleteTextures(2, mesh_textures_);
   glDeleteTextures(2, textures_);
   glDeleteBuffers(2, buffers_);
+  glDeleteVertexArrays(1, &no_vertices_);
 }
 
 void MeshSelecting::set(SelectionMarks selected) {
-  marks_.reset();
+  words_.reset();
   selected_ = std::move(selected);
   glBindBuffer(GL_TEXTURE_BUFFER, buffers_[current_]);
-  glBufferSubData(GL_TEXTURE_BUFFER, 0, static_cast<GLsizeiptr>(std::min(count_, selected_->size()) * 4),
-                  selected_->data());
+  glBufferSubData(GL_TEXTURE_BUFFER, 0,
+                  static_cast<GLsizeiptr>(std::min(words(), selected_->words().size()) * 4),
+                  selected_->words().data());
 }
 
 void MeshSelecting::begin(const Eigen::Matrix4f& clip_from_model, const std::vector<std::uint8_t>& mask,
@@ -151,64 +179,68 @@ void MeshSelecting::begin(const Eigen::Matrix4f& clip_from_model, const std::vec
   }
   program_.use();
   program_.set("clip_from_model", clip_from_model);
+  program_.set("count", static_cast<int>(count_));
   program_.set("mask", 0);
   program_.set("depth_map", 1);
   program_.set("before", 2);
+  program_.set("positions", 3);
+  program_.set("corners", 4);
+  program_.set("normals", 4);
   program_.set("visible_only", seen != nullptr ? 1 : 0);
   program_.set("step", static_cast<int>(step));
   program_.set("any_before", selected_ ? 1 : 0);
   program_.set("slack", 0.004F);
-  marks_ = std::make_shared<std::vector<std::uint32_t>>();
-  marks_->reserve(count_);
+  words_.emplace();
+  words_->reserve(words());
   drawn_ = 0;
 }
 
 /// Of those that a call has drawn, the next takes the marks: by then the card is done with them.
-bool MeshSelecting::go_on(const MeshBuffers& mesh) {
-  if (!marks_) {
+bool MeshSelecting::go_on() {
+  if (!words_) {
     return false;
   }
   const auto began = std::chrono::steady_clock::now();
-  const std::size_t first = marks_->size();
-  marks_->resize(drawn_);
+  const std::size_t first = words_->size();
+  words_->resize(drawn_);
   glBindBuffer(GL_TEXTURE_BUFFER, buffers_[1 - current_]);
   glGetBufferSubData(GL_TEXTURE_BUFFER, static_cast<GLintptr>(first * 4),
-                     static_cast<GLsizeiptr>((drawn_ - first) * 4), marks_->data() + first);
-  if (drawn_ == count_) {
-    selected_ = std::exchange(marks_, nullptr);
+                     static_cast<GLsizeiptr>((drawn_ - first) * 4), words_->data() + first);
+  if (drawn_ == words()) {
+    selected_ = std::make_shared<const BitMarks>(count_, std::move(*words_));
+    words_.reset();
     current_ = 1 - current_;
     return false;
   }
-  const std::size_t count = std::min(at_a_time_.count(), count_ - drawn_);
-  draw(mesh, count);
-  at_a_time_.took(count, std::chrono::steady_clock::now() - began);
+  const std::size_t count = std::min(BitMarks::words_for(at_a_time_.count()), words() - drawn_);
+  draw(count);
+  at_a_time_.took(count * 32, std::chrono::steady_clock::now() - began);
   return true;
 }
 
-/// The next `count` of them.
-void MeshSelecting::draw(const MeshBuffers& mesh, std::size_t count) {
+/// The next `count` words of them.
+void MeshSelecting::draw(std::size_t count) {
   // Nothing is drawn, but some drivers want a whole frame to not draw into.
   no_picture_.resize(16, 16);
   no_picture_.bind();
   program_.use();
-  program_.set("first_face", static_cast<int>(drawn_));
   glActiveTexture(GL_TEXTURE0);
   glBindTexture(GL_TEXTURE_2D, mask_.id());
   glActiveTexture(GL_TEXTURE1);
   glBindTexture(GL_TEXTURE_2D, depth_.width() > 0 ? depth_.depth() : mask_.id());
   glActiveTexture(GL_TEXTURE2);
   glBindTexture(GL_TEXTURE_BUFFER, textures_[current_]);
+  for (GLuint k = 0; k < 2; ++k) {
+    glActiveTexture(GL_TEXTURE3 + k);
+    glBindTexture(GL_TEXTURE_BUFFER, mesh_textures_[k]);
+  }
   glActiveTexture(GL_TEXTURE0);
   glEnable(GL_RASTERIZER_DISCARD);
   glBindBufferRange(GL_TRANSFORM_FEEDBACK_BUFFER, 0, buffers_[1 - current_],
                     static_cast<GLintptr>(drawn_ * 4), static_cast<GLsizeiptr>(count * 4));
-  mesh.bind();
+  glBindVertexArray(no_vertices_);
   glBeginTransformFeedback(GL_POINTS);
-  if (of_ == MeshElement::kFace) {
-    mesh.draw_faces(drawn_, count);
-  } else {
-    mesh.draw_points(drawn_, count);
-  }
+  glDrawArrays(GL_POINTS, static_cast<GLint>(drawn_), static_cast<GLsizei>(count));
   glEndTransformFeedback();
   glBindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, 0);
   glDisable(GL_RASTERIZER_DISCARD);

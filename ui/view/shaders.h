@@ -4,74 +4,109 @@
 
 namespace dubsar::ui {
 
-/// Vertices of surface, points and shadow casters.
-inline constexpr const char* kSurfaceVertex = R"glsl(#version 410 core
+/// Whether element k is marked in words that lie as BitMarks has them.
+inline constexpr const char* kIsMarked = R"glsl(
+bool is_marked(usamplerBuffer words, int k) {
+  return (texelFetch(words, (k >> 10) * 32 + (k & 31)).r >> (k >> 5 & 31) & 1u) != 0u;
+}
+)glsl";
+
+/// Vertices of surface and points. What the picture does not ask for is not carried to its pixels: where
+/// faces are smaller than those, that is half the time.
+inline constexpr const char* kSurfaceVertex = R"glsl(
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
 layout(location = 2) in vec4 traits;   // openness, reliability, scans / 255, flags / 255
-layout(location = 3) in float value;
-layout(location = 4) in vec3 colour;
 uniform mat4 clip_from_model;
 uniform mat3 eye_from_model;
+out vec3 eye_normal;
+out float openness;
+#ifdef EVERYTHING
+layout(location = 3) in float value;
+layout(location = 4) in vec3 colour;
 uniform float point_px;
 uniform float towards_viewer;   // in clip depth
+uniform int overlay;
+uniform vec2 value_range;
 uniform int selection;            // 2: vertices that are selected are told apart
-uniform usamplerBuffer selected;  // by vertex
-out float vertex_selected;
-out vec3 eye_normal;
+uniform usamplerBuffer selected;  // vertices
 out vec3 eye_position;
-out vec4 vertex_traits;
-out float vertex_value;
-out vec3 vertex_colour;
-out float vertex_sparse;
-out float vertex_interpolated;
+out vec3 paint;                   // what the overlay shows: a colour, flags, or a part of the colour map
+out float vertex_selected;
+vec3 painted() {
+  if (overlay == 1) {
+    return colour;
+  }
+  if (overlay == 5) {
+    int flags = int(traits.w * 255.0 + 0.5);
+    return vec3(float(flags & 1), float((flags >> 1) & 1), 0.0);   // sparse, interpolated
+  }
+  return vec3(overlay == 2   ? (value - value_range.x) / max(value_range.y - value_range.x, 1e-20)
+              : overlay == 3 ? traits.y
+                             : traits.z * 255.0 / 8.0,
+              0.0, 0.0);
+}
+#endif
 void main() {
   gl_Position = clip_from_model * vec4(position, 1.0);
+  eye_normal = eye_from_model * normal;
+  openness = traits.x;
+#ifdef EVERYTHING
   gl_Position.z -= towards_viewer;
   gl_PointSize = point_px;
-  eye_normal = eye_from_model * normal;
   eye_position = eye_from_model * position;
-  vertex_traits = traits;
-  vertex_value = value;
-  vertex_colour = colour;
-  int flags = int(traits.w * 255.0 + 0.5);
-  vertex_sparse = float(flags & 1);
-  vertex_interpolated = float((flags >> 1) & 1);
-  vertex_selected = selection == 2 ? float(texelFetch(selected, gl_VertexID).r) : 0.0;
+  paint = painted();
+  vertex_selected = selection == 2 && is_marked(selected, gl_VertexID) ? 1.0 : 0.0;
+#endif
 }
 )glsl";
 
 /// What is seen where: colour and openness, and the way the surface looks.
-inline constexpr const char* kSurfaceFragment = R"glsl(#version 410 core
+inline constexpr const char* kSurfaceFragment = R"glsl(
 in vec3 eye_normal;
+in float openness;
+uniform vec3 clay;
+layout(location = 0) out vec4 albedo;
+layout(location = 1) out vec4 surface;
+#ifdef EVERYTHING
 in vec3 eye_position;
-in vec4 vertex_traits;
-in float vertex_value;
-in vec3 vertex_colour;
-in float vertex_sparse;
-in float vertex_interpolated;
+in vec3 paint;
+in float vertex_selected;
 uniform int overlay;        // 0 clay, 1 own colours, 2 value, 3 reliability, 4 scans, 5 flags
 uniform int flat_shading;
 uniform int marks;          // 1: points of red and amber, 2: points of a mesh without faces
-uniform vec2 value_range;
-uniform vec3 clay;
 uniform vec3 red;
 uniform vec3 amber;
 uniform sampler2D colour_map;
-in float vertex_selected;
 uniform int selection;            // faces that are selected are told apart: 1, of the whole surface; 3, by
 uniform int first_face;           // the one that each was made of. Counted from the first of this draw
-uniform usamplerBuffer selected;  // by face
+uniform usamplerBuffer selected;  // faces
 uniform usamplerBuffer made_of;
 uniform vec3 selected_colour;
-layout(location = 0) out vec4 albedo;
-layout(location = 1) out vec4 surface;
-vec3 mapped(float part) {
-  return texture(colour_map, vec2(clamp(part, 0.002, 0.998), 0.5)).rgb;
+
+vec3 painted() {
+  if (overlay == 1) {
+    return paint;
+  }
+  if (overlay == 5) {
+    return paint.x > 0.5 ? red : paint.y > 0.5 ? amber : clay;
+  }
+  return texture(colour_map, vec2(clamp(paint.x, 0.002, 0.998), 0.5)).rgb;
 }
+
+bool is_selected() {
+  int face = first_face + gl_PrimitiveID;
+  if (selection == 3) {
+    face = int(texelFetch(made_of, face).r);
+  }
+  return vertex_selected > 0.5 || ((selection & 1) != 0 && is_marked(selected, face));
+}
+#endif
 void main() {
   vec3 n = eye_normal;
   bool facing_known = dot(n, n) > 0.01;
+  vec3 c = clay;
+#ifdef EVERYTHING
   if (marks != 0) {
     vec2 at = 2.0 * gl_PointCoord - 1.0;
     if (dot(at, at) > 1.0 || (facing_known && n.z < 0.0)) {
@@ -79,7 +114,7 @@ void main() {
     }
   }
   if (marks == 1) {
-    albedo = vec4(mix(red, amber, vertex_traits.x), 1.0);
+    albedo = vec4(mix(red, amber, openness), 1.0);
     surface = vec4(facing_known ? normalize(n) : vec3(0.0, 0.0, 1.0), 0.5);
     return;
   }
@@ -87,34 +122,32 @@ void main() {
     n = cross(dFdx(eye_position), dFdy(eye_position));
     facing_known = dot(n, n) > 0.0;
   }
-  n = facing_known ? normalize(n) : vec3(0.0, 0.0, 1.0);
-  vec3 c = clay;
-  if (overlay == 1) {
-    c = vertex_colour;
-  } else if (overlay == 2) {
-    c = mapped((vertex_value - value_range.x) / max(value_range.y - value_range.x, 1e-20));
-  } else if (overlay == 3) {
-    c = mapped(vertex_traits.y);
-  } else if (overlay == 4) {
-    c = mapped(vertex_traits.z * 255.0 / 8.0);
-  } else if (overlay == 5) {
-    c = vertex_sparse > 0.5 ? red : vertex_interpolated > 0.5 ? amber : clay;
+  if (overlay != 0) {
+    c = painted();
   }
-  int face = first_face + gl_PrimitiveID;
-  if (selection == 3) {
-    face = int(texelFetch(made_of, face).r);
-  }
-  if (vertex_selected > 0.5 || ((selection & 1) != 0 && texelFetch(selected, face).r != 0u)) {
+  if (is_selected()) {
     c = mix(c, selected_colour, 0.65);
   }
+  bool may_be_inside = marks == 0;
+#else
+  const bool may_be_inside = true;
+#endif
+  n = facing_known ? normalize(n) : vec3(0.0, 0.0, 1.0);
   // The inside of the clay, seen through a hole.
-  if (n.z < 0.0 && marks == 0) {
+  if (n.z < 0.0 && may_be_inside) {
     n = -n;
     c = vec3(0.30, 0.32, 0.36);
   }
-  albedo = vec4(c, vertex_traits.x);
+  albedo = vec4(c, openness);
   surface = vec4(n, 1.0);
 }
+)glsl";
+
+/// Of what casts shadows.
+inline constexpr const char* kShadowVertex = R"glsl(#version 410 core
+layout(location = 0) in vec3 position;
+uniform mat4 clip_from_model;
+void main() { gl_Position = clip_from_model * vec4(position, 1.0); }
 )glsl";
 
 inline constexpr const char* kShadowFragment = R"glsl(#version 410 core

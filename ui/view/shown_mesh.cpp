@@ -127,6 +127,8 @@ void take_normals(const Mesh& mesh, ShownMesh& out) {
   out.normals.resize(normals.size());
   parallel_for_each_index(
       normals.size(), [&](std::size_t v) { out.normals[v] = packed_normal(normals[v]); }, kAtOnce);
+  // Those that were made are zero only where there is no face.
+  out.has_normals = !made.empty() || std::ranges::find(out.normals, 0U) == out.normals.end();
 }
 
 }  // namespace
@@ -165,6 +167,7 @@ ShownMesh in_fewer_faces(const ShownMesh& mesh, std::size_t level) {
   ShownMesh out;
   out.box_mm = mesh.box_mm;
   out.left_out = mesh.left_out;
+  out.has_normals = mesh.has_normals;
   out.has_reliability = mesh.has_reliability;
   out.has_scans = mesh.has_scans;
   out.has_flags = mesh.has_flags;

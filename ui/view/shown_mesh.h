@@ -41,6 +41,7 @@ struct ShownMesh {
   Eigen::AlignedBox3f box_mm;       ///< of the faces; without any, of the vertices
   std::size_t left_out = 0;         ///< faces of the mesh that cannot be drawn
   // What the mesh says of its vertices; `traits` hold nothing that counts where it does not.
+  bool has_normals = false;  ///< for every vertex of a face
   bool has_reliability = false;
   bool has_scans = false;
   bool has_flags = false;

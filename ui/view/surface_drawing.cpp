@@ -6,20 +6,10 @@
 #include <algorithm>
 #include <chrono>
 
-#include "ui/view/face_runs.h"
+#include "core/stage_times.h"
 #include "ui/view/surface_view.h"
 
 namespace dubsar::ui {
-
-namespace {
-
-/// A picture that takes longer to draw makes the window feel stuck while it is turned.
-constexpr double kSlowFrameS = 0.05;
-/// A machine that draws one so fast is given more.
-constexpr double kFastFrameS = 0.008;
-constexpr std::size_t kMostFacesInMotion = std::size_t{1} << 30U;
-
-}  // namespace
 
 bool SurfaceView::draw(const OrbitCamera& camera, const Look& look, int width, int height) {
   const Scene scene{camera, look, std::max(1, width), std::max(1, height)};
@@ -32,12 +22,13 @@ bool SurfaceView::draw(const OrbitCamera& camera, const Look& look, int width, i
 /// The level of detail that is soon drawn, and half the pixels where that is slow still.
 bool SurfaceView::draw_in_motion(const Scene& scene) {
   Scene rough = scene;
-  if (slow_) {
+  const bool half = motion_.is_slow();
+  if (half) {
     rough.width = std::max(1, scene.width / 2);
     rough.height = std::max(1, scene.height / 2);
   }
   const float aspect = static_cast<float>(scene.width) / static_cast<float>(scene.height);
-  level_drawn_ = level_within(levels_, scene.camera.clip_from_model(aspect), faces_in_motion_);
+  level_drawn_ = level_within(levels_, scene.camera.clip_from_model(aspect), motion_.faces());
   const bool all = level_drawn_ + 1 == levels_.size();
   glFinish();  // what is under way from before, such as a new mesh, is no fault of this picture
   const auto began = std::chrono::steady_clock::now();
@@ -45,59 +36,63 @@ bool SurfaceView::draw_in_motion(const Scene& scene) {
   Layer& layer = layers_[shown_layer_];
   clear(layer, rough);
   faces_drawn_ = 0;
-  draw_geometry(layer, rough, level_drawn_, levels_[level_drawn_]);
+  draw_surface(layer, rough, level_drawn_, levels_[level_drawn_]);
+  if (casts_shadows(layer, rough)) {
+    const std::size_t level = shadow_level(rough, level_drawn_);
+    draw_shadow(layer, rough, level, levels_[level]);
+  }
   draw_marks(layer, rough);
   light(layer, rough);
   glFinish();
-  const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - began;
-  next_block_ = 0;
+  const double spent_s = seconds_since(began);
+  next_ = {};
   faces_to_come_ = true;
-  whole_ = all && !slow_;
-  if (spent.count() > kSlowFrameS) {
-    faces_in_motion_ = slow_ ? std::max(kFacesInMotion, faces_in_motion_ / 2) : faces_in_motion_;
-    slow_ = true;
-  } else if (spent.count() < kFastFrameS) {
-    slow_ = false;  // four times the pixels are drawn soon enough too
-    // What these few took says little of many more: by it, as many as allowed must be drawn so fast.
-    const double most_s = spent.count() * static_cast<double>(faces_in_motion_) /
-                          static_cast<double>(std::max<std::size_t>(1, faces_drawn_));
-    if (!all && most_s < kFastFrameS) {
-      faces_in_motion_ = std::min(2 * faces_in_motion_, kMostFacesInMotion);
-    }
+  whole_ = all && !half;
+  in_motion_.look.light = rough.look.light;  // the lamp may be dragged
+  if (rough.look != in_motion_.look || rough.width != in_motion_.width || rough.height != in_motion_.height) {
+    motion_.begin_other_pictures();
+    in_motion_ = rough;
   }
+  motion_.took(faces_drawn_, all, spent_s);
   return !whole_;
 }
 
-/// Some more faces of the whole surface, from `next_block` on, as many as this machine draws soon enough.
-/// True while more is to come.
-bool SurfaceView::add_faces(Layer& layer, const Scene& scene, std::size_t& next_block) {
-  const float aspect = static_cast<float>(scene.width) / static_cast<float>(scene.height);
-  const Eigen::Matrix4f clip_from_model = scene.camera.clip_from_model(aspect);
-  if (next_block == 0 && clear(layer, scene)) {
+/// Some more faces of the whole surface, and before them of what casts its shadows, as many as this machine
+/// draws soon enough. True while more is to come.
+bool SurfaceView::add_faces(Layer& layer, const Scene& scene, Progress& next) {
+  if (next.surface == 0 && next.shadow == 0 && clear(layer, scene)) {
     return true;  // taking the memory took as long as a piece
   }
-  const std::span<const FaceBlock> blocks = levels_.back();
-  // What is not seen casts shadows.
-  const bool every_face = scene.look.lamp && scene.look.shadows && !layer.shadow_stands;
-  std::size_t end = next_block;
+  const float aspect = static_cast<float>(scene.width) / static_cast<float>(scene.height);
+  const Eigen::Matrix4f clip_from_model = scene.camera.clip_from_model(aspect);
+  const std::size_t whole = levels_.size() - 1;
+  const std::size_t casting = shadow_level(scene, whole);
+  const bool shadows = casts_shadows(layer, scene) && next.shadow < levels_[casting].size();
+  const std::span<const FaceBlock> blocks = levels_[shadows ? casting : whole];
+  std::size_t& done = shadows ? next.shadow : next.surface;
+  std::size_t end = done;
   std::size_t faces = 0;
   for (; end < blocks.size() && faces < faces_at_a_time_.count(); ++end) {
-    faces += every_face ? blocks[end].count : faces_in(seen_runs(blocks.subspan(end, 1), clip_from_model));
+    faces += shadows ? blocks[end].count : faces_in(seen_runs(blocks.subspan(end, 1), clip_from_model));
   }
   const auto began = std::chrono::steady_clock::now();
-  draw_geometry(layer, scene, levels_.size() - 1, blocks.subspan(next_block, end - next_block));
+  if (shadows) {
+    draw_shadow(layer, scene, casting, blocks.subspan(done, end - done));
+  } else {
+    draw_surface(layer, scene, whole, blocks.subspan(done, end - done));
+  }
   glFinish();  // else a driver that queues would let the frames pile up, and input wait behind them
   faces_at_a_time_.took(faces, std::chrono::steady_clock::now() - began);
-  next_block = end;
-  return next_block < blocks.size();
+  done = end;
+  return shadows || next.surface < blocks.size();
 }
 
 /// Of the picture that is not shown yet.
 bool SurfaceView::draw_more(const Scene& scene) {
   Layer& layer = layers_[kAtRest];
-  faces_drawn_ = next_block_ == 0 ? 0 : faces_drawn_;
+  faces_drawn_ = next_.surface == 0 ? 0 : faces_drawn_;
   if (faces_to_come_) {
-    faces_to_come_ = add_faces(layer, scene, next_block_);
+    faces_to_come_ = add_faces(layer, scene, next_);
     return true;  // the light in a frame of its own: over all pixels it takes as long as a piece
   }
   draw_marks(layer, scene);
@@ -115,7 +110,7 @@ void SurfaceView::begin_still(const OrbitCamera& camera, const Look& look, int w
   }
   still_->shadow_stands = same_light && still_->shadow.width() > 0;
   still_scene_ = {camera, look, width, height};
-  still_block_ = 0;
+  still_next_ = {};
 }
 
 bool SurfaceView::draw_still() {
@@ -123,7 +118,7 @@ bool SurfaceView::draw_still() {
     return false;
   }
   const std::size_t shown = faces_drawn_;
-  const bool more = add_faces(*still_, still_scene_, still_block_);
+  const bool more = add_faces(*still_, still_scene_, still_next_);
   faces_drawn_ = shown;
   if (more) {
     return true;
@@ -149,12 +144,16 @@ void SurfaceView::draw_level(std::size_t level, const OrbitCamera& camera, const
   clear(layer, scene);
   faces_drawn_ = 0;
   level_drawn_ = level;
-  draw_geometry(layer, scene, level, levels_[level]);
+  draw_surface(layer, scene, level, levels_[level]);
+  if (casts_shadows(layer, scene)) {
+    const std::size_t casting = shadow_level(scene, level);
+    draw_shadow(layer, scene, casting, levels_[casting]);
+  }
   draw_marks(layer, scene);
   light(layer, scene);
   scene_ = scene;
   dirty_ = false;
-  next_block_ = 0;
+  next_ = {};
   faces_to_come_ = true;
   whole_ = level + 1 == levels_.size();
 }

@@ -19,8 +19,8 @@ void bind_buffer_texture(int unit, unsigned texture) {
 }  // namespace
 
 bool SurfaceView::can_select(MeshElement of) const {
-  return mesh_ && mesh_->is_whole() && !selection_refused_ &&
-         (of == MeshElement::kFace ? mesh_->faces() : mesh_->vertices()) <= MeshSelecting::most();
+  return mesh_ && mesh_->is_whole() && !selection_refused_ && mesh_->vertices() <= MeshSelecting::most() &&
+         (of == MeshElement::kVertex || mesh_->faces() <= MeshSelecting::most());
 }
 
 /// False where the graphics card has no room for one.
@@ -28,8 +28,7 @@ bool SurfaceView::begin_selection(MeshElement of) {
   if (!selection_ || selection_->of() != of) {
     selection_.reset();  // two at once would be too much for a small card
     static_cast<void>(card_has_refused());
-    selection_ =
-        std::make_unique<MeshSelecting>(of, of == MeshElement::kFace ? mesh_->faces() : mesh_->vertices());
+    selection_ = std::make_unique<MeshSelecting>(*mesh_, of);
     selection_refused_ = card_has_refused();
     if (selection_refused_) {
       selection_.reset();
@@ -58,7 +57,7 @@ bool SurfaceView::select_more() {
   if (!selection_ || !selection_->is_under_way()) {
     return false;
   }
-  const bool more = selection_->go_on(*mesh_);
+  const bool more = selection_->go_on();
   dirty_ = dirty_ || !more;
   return more;
 }
@@ -71,20 +70,20 @@ void SurfaceView::set_selection(MeshElement of, SelectionMarks selected) {
 }
 
 /// Of the program in use, for faces of a level that begin at `first_face`.
-void SurfaceView::show_selection(std::size_t level, std::size_t first_face) {
+void SurfaceView::show_selection(ShaderProgram& surface, std::size_t level, std::size_t first_face) {
   if (!selection_ || !selection_->selected()) {
     return;
   }
   if (selection_->of() == MeshElement::kVertex) {
-    surface_.set("selection", 2);  // all levels have the same vertices
+    surface.set("selection", 2);  // all levels have the same vertices
   } else if (level + 1 == levels_.size()) {
-    surface_.set("selection", 1);
+    surface.set("selection", 1);
   } else {
-    surface_.set("selection", 3);
+    surface.set("selection", 3);
     first_face += mesh_->first_of(level);
     bind_buffer_texture(2, mesh_->made_of());
   }
-  surface_.set("first_face", static_cast<int>(first_face));
+  surface.set("first_face", static_cast<int>(first_face));
   bind_buffer_texture(1, selection_->texture());
 }
 

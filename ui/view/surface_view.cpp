@@ -6,9 +6,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 #include "ui/view/clay_sphere.h"
-#include "ui/view/face_runs.h"
 #include "ui/view/shaders.h"
 
 namespace dubsar::ui {
@@ -16,6 +16,16 @@ namespace dubsar::ui {
 namespace {
 
 constexpr int kShadowSize = 1024;
+
+/// A surface_* shader for what may be shown on it, or for bare clay.
+std::string surface_shader(const char* source, bool everything) {
+  return std::string("#version 410 core\n") + (everything ? "#define EVERYTHING\n" : "") + kIsMarked + source;
+}
+
+ShaderProgram surface_program(bool everything) {
+  return ShaderProgram(surface_shader(kSurfaceVertex, everything).c_str(),
+                       surface_shader(kSurfaceFragment, everything).c_str());
+}
 
 void bind_texture(int unit, unsigned texture) {
   glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
@@ -42,8 +52,9 @@ bool tells(const ShownMesh& mesh, Overlay overlay) {
 }
 
 SurfaceView::SurfaceView()
-    : surface_(kSurfaceVertex, kSurfaceFragment),
-      shadow_(kSurfaceVertex, kShadowFragment),
+    : clay_(surface_program(false)),
+      surface_(surface_program(true)),
+      shadow_(kShadowVertex, kShadowFragment),
       lighting_(kPictureVertex, kLightFragment) {
   const Image sphere = clay_sphere();
   sphere_.upload(sphere.width, sphere.height, 3, sphere.bytes.data(), true);
@@ -59,6 +70,7 @@ void SurfaceView::warm_up() {
   ShownMesh face;
   face.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
   face.normals.assign(3, packed_normal(Eigen::Vector3f::UnitZ()));
+  face.has_normals = true;
   face.traits.resize(3);
   face.faces = {{0, 1, 2}};
   for (const Eigen::Vector3f& corner : face.positions) {
@@ -68,14 +80,16 @@ void SurfaceView::warm_up() {
   show(face);
   OrbitCamera camera;
   camera.fit(face.box_mm, 1);
-  for (const bool lamp : {true, false}) {  // under a lamp the program that casts shadows too
+  for (const bool other : {true, false}) {  // under a lamp the program that casts shadows too
     Look look;
-    look.lamp = lamp;
+    look.lamp = other;
+    look.overlay = other ? Overlay::kFlags : Overlay::kClay;
     draw_whole(camera, look, 9, 7);
   }
   glFinish();
   mesh_.reset();
   levels_ = {{}};
+  cells_mm_.clear();
   box_mm_.setEmpty();
   for (Layer& layer : layers_) {
     layer.picture.release();
@@ -115,10 +129,13 @@ void SurfaceView::take_shown(const ShownMesh& mesh) {
   selection_.reset();
   selection_refused_ = false;
   levels_.clear();
+  cells_mm_.clear();
   for (const ShownLevel& level : mesh.coarser) {
     levels_.push_back(level.blocks);
+    cells_mm_.push_back(level.detail.cell_mm);
   }
   levels_.push_back(mesh.blocks);
+  has_normals_ = mesh.has_normals;
   box_mm_ = mesh.box_mm;
   dirty_ = true;
 }
@@ -143,14 +160,27 @@ void SurfaceView::set_traits(const std::vector<std::array<std::uint8_t, 4>>& tra
   }
 }
 
-Eigen::Matrix4f SurfaceView::light_clip_from_model(const Scene& scene) const {
+OrbitCamera SurfaceView::lamp_of(const Scene& scene) const {
   OrbitCamera lamp;
   const Eigen::Vector3f towards = scene.look.light.normalized();
   const Eigen::Quaternionf lamp_from_eye =
       Eigen::Quaternionf::FromTwoVectors(towards, Eigen::Vector3f::UnitZ());
   lamp.eye_from_model = lamp_from_eye * scene.camera.eye_from_model;
   lamp.fit(box_mm_, 1.0F);
-  return lamp.clip_from_model(1.0F);
+  return lamp;
+}
+
+Eigen::Matrix4f SurfaceView::light_clip_from_model(const Scene& scene) const {
+  return lamp_of(scene).clip_from_model(1.0F);
+}
+
+std::size_t SurfaceView::shadow_level(const Scene& scene, std::size_t finest) const {
+  const float pixel_mm = lamp_of(scene).mm_per_px(kShadowSize);
+  std::size_t level = 0;
+  while (level < finest && cells_mm_[level] > 1.5F * pixel_mm) {
+    ++level;
+  }
+  return level;
 }
 
 bool SurfaceView::clear(Layer& layer, const Scene& scene) const {
@@ -159,7 +189,7 @@ bool SurfaceView::clear(Layer& layer, const Scene& scene) const {
   layer.target.bind();
   glClearColor(0, 0, 0, 0);
   glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
-  if (scene.look.lamp && scene.look.shadows && !layer.shadow_stands) {
+  if (casts_shadows(layer, scene)) {
     resized = layer.shadow.resize(kShadowSize, kShadowSize) || resized;
     layer.shadow.bind();
     glClear(GL_DEPTH_BUFFER_BIT);
@@ -167,81 +197,97 @@ bool SurfaceView::clear(Layer& layer, const Scene& scene) const {
   return resized;
 }
 
-void SurfaceView::begin_surface(const Scene& scene, const Layer& layer) {
+ShaderProgram& SurfaceView::begin_surface(const Scene& scene, const Layer& layer, bool everything) {
   const float aspect = static_cast<float>(scene.width) / static_cast<float>(scene.height);
   layer.target.bind();
-  surface_.use();
-  surface_.set("clip_from_model", scene.camera.clip_from_model(aspect));
-  surface_.set("eye_from_model", Eigen::Matrix3f(scene.camera.eye_from_model.toRotationMatrix()));
-  surface_.set("towards_viewer", 0.0F);
-  surface_.set("point_px", 2.0F);
-  surface_.set("overlay", static_cast<int>(scene.look.overlay));
-  surface_.set("flat_shading", scene.look.flat ? 1 : 0);
-  surface_.set("marks", 0);
-  surface_.set("value_range", scene.look.value_range);
-  surface_.set("clay", scene.look.clay);
-  surface_.set("red", scene.look.red);
-  surface_.set("amber", scene.look.amber);
-  surface_.set("colour_map", 0);
-  surface_.set("selected_colour", scene.look.selected);
-  surface_.set("selection", 0);
-  surface_.set("selected", 1);
-  surface_.set("made_of", 2);
-  bind_texture(0, colour_map_.id());
+  ShaderProgram& surface = everything ? surface_ : clay_;
+  surface.use();
+  surface.set("clip_from_model", scene.camera.clip_from_model(aspect));
+  surface.set("eye_from_model", Eigen::Matrix3f(scene.camera.eye_from_model.toRotationMatrix()));
+  surface.set("clay", scene.look.clay);
   glEnable(GL_DEPTH_TEST);
-  glEnable(GL_PROGRAM_POINT_SIZE);
   glDisable(GL_BLEND);
   glDisable(GL_CULL_FACE);
   glDisable(GL_SCISSOR_TEST);
+  if (!everything) {
+    return surface;
+  }
+  surface.set("towards_viewer", 0.0F);
+  surface.set("point_px", 2.0F);
+  surface.set("overlay", static_cast<int>(scene.look.overlay));
+  surface.set("flat_shading", scene.look.flat ? 1 : 0);
+  surface.set("marks", 0);
+  surface.set("value_range", scene.look.value_range);
+  surface.set("red", scene.look.red);
+  surface.set("amber", scene.look.amber);
+  surface.set("colour_map", 0);
+  surface.set("selected_colour", scene.look.selected);
+  surface.set("selection", 0);
+  surface.set("selected", 1);
+  surface.set("made_of", 2);
+  bind_texture(0, colour_map_.id());
+  glEnable(GL_PROGRAM_POINT_SIZE);
+  return surface;
 }
 
-void SurfaceView::draw_geometry(Layer& layer, const Scene& scene, std::size_t level,
-                                std::span<const FaceBlock> blocks) {
+void SurfaceView::draw_faces(std::size_t level, const FaceRun& run) const {
+  if (level + 1 == levels_.size()) {
+    mesh_->draw_faces(run.first, run.count);
+  } else {
+    mesh_->draw_level(level, run.first, run.count);
+  }
+}
+
+void SurfaceView::draw_surface(Layer& layer, const Scene& scene, std::size_t level,
+                               std::span<const FaceBlock> blocks) {
   if (!mesh_) {
     return;
   }
   const float aspect = static_cast<float>(scene.width) / static_cast<float>(scene.height);
-  begin_surface(scene, layer);
+  const bool bare = scene.look.overlay == Overlay::kClay && !scene.look.flat && has_normals_ &&
+                    !mesh_->points_only() && (!selection_ || !selection_->selected());
+  ShaderProgram& surface = begin_surface(scene, layer, !bare);
   mesh_->bind();
   if (mesh_->points_only()) {
-    show_selection(0, 0);
-    surface_.set("marks", 2);
-    surface_.set("point_px",
-                 std::clamp(0.2F / scene.camera.mm_per_px(static_cast<float>(scene.height)), 2.0F, 12.0F));
+    show_selection(surface, 0, 0);
+    surface.set("marks", 2);
+    surface.set("point_px",
+                std::clamp(0.2F / scene.camera.mm_per_px(static_cast<float>(scene.height)), 2.0F, 12.0F));
     mesh_->draw_points(0, mesh_->vertices());
     return;
   }
-  const bool whole = level + 1 == levels_.size();
-  const auto draw = [&](const FaceRun& run) {
-    if (whole) {
-      mesh_->draw_faces(run.first, run.count);
-    } else {
-      mesh_->draw_level(level, run.first, run.count);
-    }
-  };
   for (const FaceRun& run : seen_runs(blocks, scene.camera.clip_from_model(aspect))) {
-    show_selection(level, run.first);
-    draw(run);
+    show_selection(surface, level, run.first);
+    draw_faces(level, run);
     faces_drawn_ += run.count;
   }
-  if (scene.look.lamp && scene.look.shadows && !layer.shadow_stands && !blocks.empty()) {
-    layer.shadow.bind();
-    shadow_.use();
-    shadow_.set("clip_from_model", light_clip_from_model(scene));
-    shadow_.set("towards_viewer", 0.0F);
-    draw({blocks.front().first, blocks.back().first + blocks.back().count - blocks.front().first});
+}
+
+/// What is not seen casts shadows too.
+void SurfaceView::draw_shadow(Layer& layer, const Scene& scene, std::size_t level,
+                              std::span<const FaceBlock> blocks) {
+  if (!mesh_ || blocks.empty()) {
+    return;
   }
+  layer.shadow.bind();
+  glEnable(GL_DEPTH_TEST);
+  glDisable(GL_CULL_FACE);
+  glDisable(GL_SCISSOR_TEST);
+  shadow_.use();
+  shadow_.set("clip_from_model", light_clip_from_model(scene));
+  mesh_->bind();
+  draw_faces(level, {blocks.front().first, blocks.back().first + blocks.back().count - blocks.front().first});
 }
 
 void SurfaceView::draw_marks(Layer& layer, const Scene& scene) {
   if (!points_) {
     return;
   }
-  begin_surface(scene, layer);
+  ShaderProgram& surface = begin_surface(scene, layer, true);
   const float mm_per_px = scene.camera.mm_per_px(static_cast<float>(scene.height));
-  surface_.set("marks", 1);
-  surface_.set("point_px", std::clamp(2.0F * points_->radius_mm() / mm_per_px, 3.0F, 40.0F));
-  surface_.set("towards_viewer", points_->bury_mm() / scene.camera.depth_mm);
+  surface.set("marks", 1);
+  surface.set("point_px", std::clamp(2.0F * points_->radius_mm() / mm_per_px, 3.0F, 40.0F));
+  surface.set("towards_viewer", points_->bury_mm() / scene.camera.depth_mm);
   points_->draw();
 }
 

@@ -12,8 +12,10 @@
 
 #include "ui/gl/frame_target.h"
 #include "ui/gl/shader_program.h"
+#include "ui/view/face_runs.h"
 #include "ui/view/mesh_buffers.h"
 #include "ui/view/mesh_selecting.h"
+#include "ui/view/motion_budget.h"
 #include "ui/view/orbit_camera.h"
 #include "ui/view/piece_size.h"
 
@@ -107,7 +109,7 @@ class SurfaceView {
   [[nodiscard]] std::size_t level_drawn() const { return level_drawn_; }
   [[nodiscard]] std::size_t levels() const { return levels_.size(); }
   /// As many faces as are drawn in motion at most, once this machine's speed is known.
-  [[nodiscard]] std::size_t faces_in_motion() const { return faces_in_motion_; }
+  [[nodiscard]] std::size_t faces_in_motion() const { return motion_.faces(); }
 
  private:
   struct Layer {  // what is seen where
@@ -123,22 +125,36 @@ class SurfaceView {
     int height = 0;
     bool operator==(const Scene&) const = default;
   };
+  struct Progress {  // next blocks of a picture that comes together
+    std::size_t shadow = 0;
+    std::size_t surface = 0;
+  };
   [[nodiscard]] const Layer& shown() const { return layers_[shown_layer_]; }
+  [[nodiscard]] static bool casts_shadows(const Layer& layer, const Scene& scene) {
+    return scene.look.lamp && scene.look.shadows && !layer.shadow_stands;
+  }
   void warm_up();
   void take_shown(const ShownMesh& mesh);
   bool clear(Layer& layer, const Scene& scene) const;  ///< true when it had another size before
-  void begin_surface(const Scene& scene, const Layer& layer);
-  void draw_geometry(Layer& layer, const Scene& scene, std::size_t level, std::span<const FaceBlock> blocks);
+  ShaderProgram& begin_surface(const Scene& scene, const Layer& layer, bool everything);
+  void draw_surface(Layer& layer, const Scene& scene, std::size_t level, std::span<const FaceBlock> blocks);
+  void draw_shadow(Layer& layer, const Scene& scene, std::size_t level, std::span<const FaceBlock> blocks);
+  void draw_faces(std::size_t level, const FaceRun& run) const;
+  /// The coarsest level up to `finest` whose shadows are as good as that one's.
+  [[nodiscard]] std::size_t shadow_level(const Scene& scene, std::size_t finest) const;
   bool draw_in_motion(const Scene& scene);
   bool draw_more(const Scene& scene);
-  bool add_faces(Layer& layer, const Scene& scene, std::size_t& next_block);
+  bool add_faces(Layer& layer, const Scene& scene, Progress& next);
   void draw_marks(Layer& layer, const Scene& scene);
   [[nodiscard]] bool begin_selection(MeshElement of);
-  void show_selection(std::size_t level, std::size_t first_face);
+  void show_selection(ShaderProgram& surface, std::size_t level, std::size_t first_face);
   void light(Layer& layer, const Scene& scene);
+  [[nodiscard]] OrbitCamera lamp_of(const Scene& scene) const;
   [[nodiscard]] Eigen::Matrix4f light_clip_from_model(const Scene& scene) const;
 
-  ShaderProgram surface_, shadow_, lighting_;
+  ShaderProgram clay_;     ///< a surface of one colour, nothing selected
+  ShaderProgram surface_;  ///< with all that may be shown on it
+  ShaderProgram shadow_, lighting_;
   PixelTexture sphere_, colour_map_;
   std::unique_ptr<MeshBuffers> mesh_;
   std::unique_ptr<MeshBuffers> coming_;  ///< not all of it is on the card yet
@@ -146,6 +162,8 @@ class SurfaceView {
   std::unique_ptr<MeshSelecting> selection_;
   bool selection_refused_ = false;                  ///< the card has no room for one of this mesh
   std::vector<std::vector<FaceBlock>> levels_{{}};  ///< fewest faces first, the whole surface last
+  std::vector<float> cells_mm_;                     ///< of all levels but the last
+  bool has_normals_ = false;
   Eigen::AlignedBox3f box_mm_;
   /// Each keeps its size: other memory for every drag would cost the first picture of it.
   static constexpr std::size_t kInMotion = 0, kAtRest = 1;
@@ -155,14 +173,14 @@ class SurfaceView {
   Scene scene_;
   std::unique_ptr<Layer> still_;
   Scene still_scene_;
-  std::size_t still_block_ = 0;  ///< next of it
-  bool dirty_ = true;            ///< mesh, points or values have changed
-  std::size_t next_block_ = 0;   ///< of the whole picture that comes together
-  bool faces_to_come_ = true;    ///< into it; then the light
+  Progress still_next_;
+  bool dirty_ = true;          ///< mesh, points or values have changed
+  Progress next_;              ///< of the whole picture that comes together
+  bool faces_to_come_ = true;  ///< into it; then the light
   bool whole_ = false;
-  bool slow_ = true;  ///< this machine draws slowly; so it is taken until it was seen to be fast
   PieceSize faces_at_a_time_{40000};
-  std::size_t faces_in_motion_ = kFacesInMotion * 3;
+  MotionBudget motion_;
+  Scene in_motion_;  ///< the last picture of it
   std::size_t level_drawn_ = 0;
   std::size_t faces_drawn_ = 0;
 };

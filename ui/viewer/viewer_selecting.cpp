@@ -14,12 +14,11 @@ namespace {
 /// Kept selections that are listed before the list scrolls.
 constexpr int kMostListed = 4;
 
-/// Places that are not 0.
-template <class Mark>
-std::vector<std::uint32_t> chosen_of(const std::vector<Mark>& marks) {
+/// Places of the marked.
+std::vector<std::uint32_t> chosen_of(const BitMarks& marks) {
   std::vector<std::uint32_t> out;
   for (std::size_t k = 0; k < marks.size(); ++k) {
-    if (marks[k] != 0) {
+    if (marks[k]) {
       out.push_back(static_cast<std::uint32_t>(k));
     }
   }
@@ -98,9 +97,11 @@ void ViewerScreen::choose_marked(const SelectionMarks& marks) {
     if (of == MeshElement::kVertex) {
       out.elements = chosen_of(*marks);
     } else {
-      std::vector<std::uint8_t> is_chosen(mesh->faces.size(), 0);
+      BitMarks is_chosen(mesh->faces.size());
       for (std::size_t k = 0; k < marks->size(); ++k) {
-        is_chosen[shown->face_of[k]] = (*marks)[k] != 0;
+        if ((*marks)[k]) {
+          is_chosen.mark(shown->face_of[k]);
+        }
       }
       out.elements = chosen_of(is_chosen);
       out.mm2 = area_mm2(*mesh, out.elements);
@@ -118,26 +119,26 @@ void ViewerScreen::show_selection(const MeshSelection& selection) {
   choosing_ = std::async(std::launch::async, [selection, shown = prepared_.shared(), mesh = state_.mesh,
                                               number = selection_number_] {
     Chosen out{number, nullptr, indices_of(selection.ranges), 0};
-    std::vector<std::uint32_t> marks;
+    BitMarks chosen(selection.of == MeshElement::kVertex ? shown->positions.size() : mesh->faces.size());
+    for (const std::uint32_t k : out.elements) {
+      chosen.mark(k);
+    }
     if (selection.of == MeshElement::kVertex) {
-      marks.resize(shown->positions.size());
-      for (const std::uint32_t v : out.elements) {
-        marks[v] = 1;
-      }
+      out.marks = std::make_shared<const BitMarks>(std::move(chosen));
     } else {
-      std::vector<std::uint8_t> is_chosen(mesh->faces.size(), 0);
-      for (const std::uint32_t f : out.elements) {
-        is_chosen[f] = 1;
+      BitMarks marks(shown->faces.size());
+      for (std::size_t k = 0; k < marks.size(); ++k) {
+        if (chosen[shown->face_of[k]]) {
+          marks.mark(k);
+        }
       }
-      marks.resize(shown->faces.size());
-      std::ranges::transform(shown->face_of, marks.begin(), [&](std::uint32_t f) { return is_chosen[f]; });
+      out.marks = std::make_shared<const BitMarks>(std::move(marks));
       std::erase_if(out.elements, [&](std::uint32_t f) {  // what cannot be drawn has no area either
         return std::ranges::any_of(mesh->faces[f],
                                    [&](std::uint32_t v) { return v >= mesh->positions.size(); });
       });
       out.mm2 = area_mm2(*mesh, out.elements);
     }
-    out.marks = std::make_shared<const std::vector<std::uint32_t>>(std::move(marks));
     wake_window();
     return out;
   });
