@@ -6,6 +6,7 @@
 #include "acquisition/session_impl.h"
 #include "acquisition/session_log.h"
 #include "acquisition/session_query.h"
+#include "core/shell_word.h"
 #include "formats/atomic_file.h"
 #include "formats/grid_file.h"
 #include "formats/json_node.h"
@@ -40,6 +41,18 @@ Result<std::vector<Recorded>> recorded(SqlDatabase& db, const char* sql) {
 constexpr const char* kScanFiles = "SELECT id, file, bytes, hash FROM scans ORDER BY id";
 constexpr const char* kOtherFiles = "SELECT -1, path, bytes, hash FROM files ORDER BY path";
 
+/// The session as a word of the command line that mends it: whoever reads this may sit at the window, or
+/// elsewhere than where it was started.
+std::string word_of(const fs::path& folder) {
+  std::error_code ignored;
+  const fs::path whole = fs::absolute(folder, ignored).lexically_normal();
+  return shell_word((whole.has_filename() ? whole : whole.parent_path()).string());
+}
+
+std::string from_a_copy(const fs::path& folder, const char* end) {
+  return "bring it back from a copy (dubsar verify --repair --from COPY " + word_of(folder) + end;
+}
+
 /// Nothing when the file is as it was stored.
 std::optional<Error> fault_of_file(const fs::path& folder, const std::string& name, const FileSum& expected,
                                    const JobContext* job) {
@@ -48,10 +61,9 @@ std::optional<Error> fault_of_file(const fs::path& folder, const std::string& na
     return Error{ErrorKind::kBadInput, "named by the tables, and no file of a session", name,
                  "bring the session back from a copy: somebody changed this one"};
   }
-  const std::string mend =
-      name.ends_with(".grid")
-          ? "bring it back from a copy (dubsar verify --repair --from COPY) or scan again"
-          : std::string("dubsar verify --repair ") + (in_a_folder ? "makes it anew" : "mends it");
+  const std::string mend = name.ends_with(".grid") ? from_a_copy(folder, ") or scan again")
+                                                   : "dubsar verify --repair " + word_of(folder) +
+                                                         (in_a_folder ? " makes it anew" : " mends it");
   std::error_code ignored;
   if (!fs::exists(folder / name, ignored)) {
     return Error{ErrorKind::kBadInput, "missing", name, mend};
@@ -122,8 +134,8 @@ void place_the_rest(const fs::path& folder, const std::vector<Recorded>& checked
           report.whole.push_back(name);
           break;
         case OwnChecksum::kFails:
-          report.damaged.push_back({ErrorKind::kBadInput, "its own checksum does not fit", name,
-                                    "bring it back from a copy (dubsar verify --repair --from COPY)"});
+          report.damaged.push_back(
+              {ErrorKind::kBadInput, "its own checksum does not fit", name, from_a_copy(folder, ")")});
           break;
         case OwnChecksum::kNone:
           report.unrecorded.push_back(name);
@@ -137,8 +149,8 @@ void place_the_rest(const fs::path& folder, const std::vector<Recorded>& checked
 
 /// What is wrong with the tables, with the log beside them, and with the list of checksums.
 void check_records(SqlDatabase& db, const fs::path& folder, VerifyReport& report) {
-  const char* mend =
-      "see `dubsar verify --repair`, which rebuilds it from its rows, its backup and the grids";
+  const std::string mend =
+      "dubsar verify --repair " + word_of(folder) + " rebuilds it from its rows, its backup and the grids";
   const std::string fault = db.structure_fault();
   const Result<std::vector<std::string>> rows = session::damaged_rows(db);
   if (!fault.empty() || !rows) {

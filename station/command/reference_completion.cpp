@@ -5,23 +5,12 @@
 #include <algorithm>
 #include <string_view>
 
+#include "core/shell_word.h"
 #include "station/command/reference.h"
 
 namespace dubsar {
 
 namespace {
-
-std::string shell_word(std::string_view text) {
-  std::string out = "'";
-  for (const char c : text) {
-    if (c == '\'') {
-      out += "'\\''";
-    } else {
-      out += c;
-    }
-  }
-  return out + "'";
-}
 
 /// "session undo" as part of the name of a function.
 std::string identifier(const ReferenceVerb& verb) {

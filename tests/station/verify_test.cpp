@@ -9,6 +9,7 @@
 #include <iterator>
 #include <random>
 
+#include "core/shell_word.h"
 #include "formats/self_checked.h"
 #include "tests/acquisition/session_support.h"
 #include "tests/station/support/byte_flips.h"
@@ -100,6 +101,10 @@ TEST_F(Verify, DamagedMissingAndForeignFilesAreNamed) {
   EXPECT_EQ(report["unrecorded"], nlohmann::json({"export/note.txt"}));
   const Outcome read = run_command({"verify", session_.string()});
   EXPECT_THAT(read.out, HasSubstr("damaged: export/red_map.png: missing"));
+  // What is to be typed is there whole: the window shows the same words.
+  const std::string word = shell_word(fs::absolute(session_).string());
+  EXPECT_THAT(read.out, HasSubstr("dubsar verify --repair " + word + " makes it anew\n"));
+  EXPECT_THAT(read.out, HasSubstr("(dubsar verify --repair --from COPY " + word + ") or scan again\n"));
   EXPECT_THAT(read.out, HasSubstr("\nwhole: grids/000.grid\n"));
   EXPECT_THAT(read.out, Not(HasSubstr("whole: grids/001.grid")));
 }

@@ -13,6 +13,7 @@
 
 #include "acquisition/session_store.h"
 #include "acquisition/setting_words.h"
+#include "core/shell_word.h"
 #include "drivers/abi.h"
 #include "formats/json_node.h"
 #include "formats/mesh_io.h"
@@ -206,6 +207,29 @@ TEST(FileWords, ASessionThatCannotBeOpenedSaysSoInGerman) {
   EXPECT_EQ(german(SessionStore::open_or_create(folder.path()).error()),
             folder.path().string() +
                 ": der Ordner enthält anderes und keine Sitzung; einen neuen oder leeren Ordner nennen");
+}
+
+TEST(FileWords, WhatMendsADamagedSessionIsTypedAsItStands) {
+  const dubsar::test::TemporaryFolder folder;
+  const std::filesystem::path session = folder.path() / "BM 1";
+  RangeGrid grid;
+  grid.allocate(2, 2);
+  ASSERT_TRUE(SessionStore::open_or_create(session)->add_grid(grid));
+  std::filesystem::remove(session / "grids/000.grid");
+  const Result<SessionStore> opened = SessionStore::open(session, SessionStore::Access::kReadOnly);
+  ASSERT_TRUE(opened);
+  ASSERT_EQ(opened->opening().damage.size(), 1U);
+  // As the window gets it.
+  const std::string notice = "damaged: " + opened->opening().damage.front().line();
+  const std::string word = shell_word(session.string());
+  EXPECT_EQ(
+      translated(notice, Language::kEnglish),
+      "damaged: grids/000.grid: missing; bring it back from a copy (dubsar verify --repair --from COPY " +
+          word + ") or scan again");
+  EXPECT_EQ(
+      translated(notice, Language::kGerman),
+      "beschädigt: grids/000.grid: fehlt; aus einer Kopie zurückholen (dubsar verify --repair --from KOPIE " +
+          word + "), oder neu scannen");
 }
 
 }  // namespace
