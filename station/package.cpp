@@ -8,6 +8,7 @@
 #include "analysis/wedge_features.h"
 #include "archive/staged_folder.h"
 #include "core/log.h"
+#include "formats/bag_check.h"
 #include "station/package_content.h"
 #include "station/session_name.h"
 #include "station/session_wedges.h"
@@ -152,6 +153,20 @@ Status add_all(PackageContent& content, StageTimes& timings) {
     clock.done(step.name);
   }
   return {};
+/// What is going to be replaced may hold what others put there.
+Result<KeptFiles> keep_others(const fs::path& to, JobContext& job) {
+  if (!is_bag(to)) {
+    return KeptFiles{};  // nothing, or an empty folder
+  }
+  const fs::path whole = whole_name(to);
+  Result<KeptFiles> kept = keep_what_is_not_of_the_bag(whole, job);
+  if (kept && kept->files > 0) {
+    log_warning(whole.string() + ": files that its manifest does not list, or lists otherwise, are kept in " +
+                kept->folder.string());
+  }
+  return kept;
+}
+
 }
 
 /// A folder that `replace` may let go of: an earlier package, and nothing else.
@@ -260,12 +275,17 @@ Result<Package> write_package(const fs::path& session, const fs::path& to, const
   }
   LapClock closing(&timings);
   const Result<BagSize> size = write_bag_tags(staged->path(), bag_fields(content), job);
+  const Result<KeptFiles> kept = keep_others(to, job);
+  if (!kept) {
+    return std::unexpected(kept.error());
+  }
   if (!size) {
     return std::unexpected(size.error());
   }
   if (options.before_publishing) {
     if (const Status allowed = options.before_publishing(staged->path()); !allowed) {
       return std::unexpected(allowed.error());
+                  .kept = *kept,
     }
   }
   if (const Status published = staged->publish(); !published) {

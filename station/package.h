@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "archive/bag.h"
+#include "archive/kept_files.h"
 #include "archive/report.h"
 #include "core/job.h"
 #include "core/result.h"
@@ -30,7 +31,7 @@ enum class PackagePart {
 
 struct PackageOptions {
   std::set<PackagePart> without;
-  bool replace = false;  ///< a package that lies there already
+  bool replace = false;  ///< a package that lies there already; what others added to it is kept beside
   /// Where the pictures will be served: the ids of the IIIF manifest and of the annotations begin with it.
   /// Empty: a name under `.invalid`, which nothing answers to.
   std::string base_url;
@@ -43,6 +44,7 @@ struct PackageOptions {
 struct Package {
   std::filesystem::path folder;
   BagSize size;
+  KeptFiles kept;          ///< of the package that was replaced: what was not its own
   std::string identifier;  ///< CDLI number, museum number or name of the session
   bool conclusive = false;
   bool has_mesh = false;

@@ -75,6 +75,9 @@ Result<int> export_session(const ExportArguments& arguments, CommandContext& con
         {"package", arguments.to},      {"identifier", package->identifier}, {"files", package->size.files},
         {"bytes", package->size.bytes}, {"conclusive", package->conclusive}, {"scans", package->scans},
         {"mesh", package->has_mesh},    {"wedges", package->wedges},         {"without", arguments.without}};
+    if (package->kept.files > 0) {
+      json["kept"] = {{"folder", package->kept.folder.string()}, {"files", package->kept.files}};
+    }
     json["timings_s"] = nlohmann::ordered_json::object();
     for (const StageTiming& timing : package->timings) {
       json["timings_s"][timing.stage] = timing.seconds;
@@ -115,7 +118,8 @@ void add_export(CLI::App& app, Action& chosen) {
       ->check(CLI::IsMember({"black", "white"}))
       ->capture_default_str();
   verb->add_flag("--force", arguments->force,
-                 "replace a package that lies there already, done before or not");
+                 "replace a package that lies there already, done before or not; what others added to it is "
+                 "kept beside it");
   verb->add_flag(
       "--update", arguments->update,
       "replace a package that lies there already where it is whole and its stamp says that it is of "

@@ -24,6 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using test::bytes_of;
+using test::files_below;
 using test::Outcome;
 using test::quoted;
 using test::run_command;
@@ -32,17 +33,6 @@ using ::testing::Contains;
 using ::testing::HasSubstr;
 using ::testing::Not;
 using ::testing::SizeIs;
-
-std::vector<std::string> files_below(const fs::path& folder) {
-  std::vector<std::string> names;
-  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
-    if (entry.is_regular_file()) {
-      names.push_back(entry.path().lexically_relative(folder).generic_string());
-    }
-  }
-  std::ranges::sort(names);
-  return names;
-}
 
 TEST_F(Export, PacksEverythingWhateverTheVerdictSays) {
   ASSERT_EQ(whole_.status, 0) << whole_.err;
@@ -194,27 +184,6 @@ TEST_F(Export, TakesTheVerdictAsTheSessionKeepsItWhileItHolds) {
   EXPECT_EQ(list["scans"][2]["taken_out"], true);
 }
 
-TEST_F(Export, NeverOverwritesUnasked) {
-  const Outcome refused = export_to("bag", {});
-  EXPECT_EQ(refused.status, 2);
-  EXPECT_THAT(refused.complaints(), SizeIs(1));
-  EXPECT_THAT(refused.err, HasSubstr("--force"));
-
-  fs::create_directories(at("precious"));
-  std::ofstream(at("precious") / "thesis.txt") << "all of it";
-  EXPECT_EQ(export_to("precious", {}).status, 2);
-  EXPECT_EQ(export_to("precious", {"--force"}).status, 2) << "that is no package";
-  EXPECT_EQ(bytes_of(at("precious") / "thesis.txt"), "all of it");
-
-  const std::vector<std::string> small{"--without", "renderings,features,wedges,grid-ply"};
-  ASSERT_EQ(export_to("twice", small).status, 0);
-  std::ofstream(at("twice") / "data" / "left.txt") << "of the first";
-  std::vector<std::string> forced = small;
-  forced.emplace_back("--force");
-  ASSERT_EQ(export_to("twice", forced).status, 0);
-  EXPECT_FALSE(fs::exists(at("twice") / "data" / "left.txt"));
-}
-
 TEST_F(Export, FindsItsWorkDoneUntilTheSessionOrThePackageChanges) {
   const std::vector<std::string> small{"--without", "renderings,features,wedges,grid-ply"};
   const Outcome first = export_to("found", small);
@@ -226,47 +195,6 @@ TEST_F(Export, FindsItsWorkDoneUntilTheSessionOrThePackageChanges) {
   EXPECT_EQ(fs::last_write_time(at("found") / "manifest-sha512.txt"), written);
   std::ofstream(at("found") / "data" / "README.txt", std::ios::app) << "something else";
   EXPECT_EQ(export_to("found", small).status, 2) << "not what was written: it is not made anew unasked";
-}
-
-TEST_F(Export, ReplacesAPackageOfAnEarlierStateOfItsSessionWhenAsked) {
-  const fs::path session = at("scanned_further");
-  fs::copy(at("session"), session, fs::copy_options::recursive);
-  const auto update = [&](const char* name) {
-    return run_command({"export", session.string(), "--to", at(name).string(), "--json", "--update",
-                        "--without", "renderings,features,wedges,grid-ply"});
-  };
-  ASSERT_EQ(update("renewed").status, 0) << "nothing lies there yet";
-  EXPECT_EQ(update("renewed").json()["done_before"], true);
-  ASSERT_EQ(run_command({"session", "drop", session.string(), "2", "--why", "hand in view"}).status, 0);
-  const Outcome asked = run_command({"export", session.string(), "--to", at("renewed").string(), "--without",
-                                     "renderings,features,wedges,grid-ply"});
-  EXPECT_EQ(asked.status, 2) << "never unasked";
-  const Outcome renewed = update("renewed");
-  ASSERT_EQ(renewed.status, 0) << renewed.err;
-  EXPECT_THAT(bytes_of(at("renewed") / "data" / "scans" / "scans.json"), HasSubstr("hand in view"));
-  EXPECT_EQ(update("renewed").json()["done_before"], true);
-  // Killed between stamp and package: the stamp says more than lies there, and it is replaced all the same.
-  std::string stamp = bytes_of(at("renewed.done"));
-  stamp[stamp.find("\"program\": \"") + 12] = '9';
-  stamp[stamp.rfind("\"xxh128\": \"") + 11] = 'x';
-  std::ofstream(at("renewed.done")) << stamp;
-  const Outcome again = update("renewed");
-  ASSERT_EQ(again.status, 0) << again.err;
-  EXPECT_FALSE(again.json().contains("done_before"));
-  // What a person changed is kept, and so is what is of another session or has lost its stamp.
-  std::ofstream(at("renewed") / "data" / "README.txt", std::ios::app) << "a note of mine";
-  EXPECT_EQ(update("renewed").status, 2);
-  EXPECT_THAT(bytes_of(at("renewed") / "data" / "README.txt"), HasSubstr("a note of mine"));
-  fs::remove_all(at("renewed"));
-  ASSERT_EQ(update("renewed").status, 0);
-  stamp = bytes_of(at("renewed.done"));
-  const std::size_t grid = stamp.find(".grid\"");
-  std::string other = stamp;
-  other[stamp.find("\"xxh128\": \"", grid) + 11] = 'z';
-  std::ofstream(at("renewed.done")) << other;
-  EXPECT_EQ(update("renewed").status, 2) << "of another session";
-  fs::remove(at("renewed.done"));
-  EXPECT_EQ(update("renewed").status, 2) << "without a stamp";
 }
 
 TEST_F(Export, WhatWasCopiedIsThatOfTheProgramThatMadeIt) {

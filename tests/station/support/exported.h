@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -13,6 +14,22 @@
 #include "tests/support/temporary_folder.h"
 
 namespace dubsar {
+
+namespace test {
+
+/// Relative, in name order.
+inline std::vector<std::string> files_below(const std::filesystem::path& folder) {
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
+    if (entry.is_regular_file()) {
+      names.push_back(entry.path().lexically_relative(folder).generic_string());
+    }
+  }
+  std::ranges::sort(names);
+  return names;
+}
+
+}  // namespace test
 
 /// A session of three scans of one side, and its package, for all tests of a suite.
 class Export : public ::testing::Test {

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+
+#include "core/job.h"
+#include "core/result.h"
+
+namespace dubsar {
+
+/// What of a bag stays when the bag is replaced.
+struct KeptFiles {
+  std::filesystem::path folder;  ///< "BAG.kept-1"; empty where there was nothing to keep
+  std::size_t files = 0;
+};
+
+/// Puts everything in a bag that its manifests do not list, or list with other bytes, under the same names
+/// into a new folder beside it, so that the bag may be removed: what others added or changed is theirs. The
+/// bag itself stays as it is (the files are linked, or copied where the file system has no links). Reads
+/// every byte. Errors: kStorage, kCancelled; then no such folder stays.
+[[nodiscard]] Result<KeptFiles> keep_what_is_not_of_the_bag(const std::filesystem::path& bag,
+                                                            JobContext& job);
+
+}  // namespace dubsar

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+// dubsar export where a package lies already: nothing is replaced unasked, and nothing of others is lost.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "tests/station/support/exported.h"
+
+namespace dubsar {
+namespace {
+
+namespace fs = std::filesystem;
+using test::bytes_of;
+using test::files_below;
+using test::Outcome;
+using test::run_command;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::SizeIs;
+
+TEST_F(Export, NeverOverwritesUnasked) {
+  const Outcome refused = export_to("bag", {});
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_THAT(refused.complaints(), SizeIs(1));
+  EXPECT_THAT(refused.err, HasSubstr("--force"));
+
+  fs::create_directories(at("precious"));
+  std::ofstream(at("precious") / "thesis.txt") << "all of it";
+  EXPECT_EQ(export_to("precious", {}).status, 2);
+  EXPECT_EQ(export_to("precious", {"--force"}).status, 2) << "that is no package";
+  EXPECT_EQ(bytes_of(at("precious") / "thesis.txt"), "all of it");
+
+  const std::vector<std::string> small{"--without", "renderings,features,wedges,grid-ply"};
+  ASSERT_EQ(export_to("twice", small).status, 0);
+  std::ofstream(at("twice") / "data" / "left.txt") << "of the first";
+  std::vector<std::string> forced = small;
+  forced.emplace_back("--force");
+  ASSERT_EQ(export_to("twice", forced).status, 0);
+  EXPECT_FALSE(fs::exists(at("twice") / "data" / "left.txt"));
+}
+
+TEST_F(Export, KeepsWhatOthersPutIntoThePackageThatItReplaces) {
+  const std::vector<std::string> small{"--without", "renderings,features,wedges,grid-ply"};
+  std::vector<std::string> forced = small;
+  forced.emplace_back("--force");
+  const fs::path bag = at("lent");
+  ASSERT_EQ(export_to("lent", small).status, 0);
+  const Outcome nothing = export_to("lent", forced);
+  ASSERT_EQ(nothing.status, 0) << nothing.err;
+  EXPECT_FALSE(nothing.json().contains("kept")) << nothing.out;
+  EXPECT_FALSE(fs::exists(at("lent.kept-1"))) << "the package's own files are not";
+  std::ofstream(bag / "data/notes.txt") << "of a curator";
+  std::ofstream(bag / "letter.txt") << "beside the payload";
+  fs::create_directories(bag / "data/photos");
+  std::ofstream(bag / "data/photos/one.jpg") << "a photograph";
+  fs::create_symlink("/nowhere", bag / "data/photos/link");
+  std::ofstream(bag / "data/README.txt", std::ios::app) << "a remark of mine";
+  const std::string remarked = bytes_of(bag / "data/README.txt");
+  const Outcome replaced = export_to("lent", forced);
+  ASSERT_EQ(replaced.status, 0) << replaced.err;
+  const fs::path kept = at("lent.kept-1");
+  EXPECT_THAT(replaced.complaints(), SizeIs(1));
+  EXPECT_THAT(replaced.err, HasSubstr(kept.string()));
+  EXPECT_EQ(replaced.json()["kept"]["folder"], kept.string());
+  EXPECT_EQ(replaced.json()["kept"]["files"], 5);
+  EXPECT_THAT(files_below(kept),
+              ElementsAre("data/README.txt", "data/notes.txt", "data/photos/one.jpg", "letter.txt"));
+  EXPECT_EQ(fs::read_symlink(kept / "data/photos/link"), "/nowhere");
+  EXPECT_EQ(bytes_of(kept / "data/notes.txt"), "of a curator");
+  EXPECT_EQ(bytes_of(kept / "data/README.txt"), remarked);
+  EXPECT_EQ(run_command({"verify", bag.string()}).status, 0);
+  EXPECT_FALSE(fs::exists(bag / "letter.txt"));
+  std::ofstream(bag / "letter.txt") << "another";
+  ASSERT_EQ(export_to("lent", forced).status, 0);
+  EXPECT_EQ(bytes_of(at("lent.kept-2") / "letter.txt"), "another");
+  EXPECT_EQ(bytes_of(kept / "letter.txt"), "beside the payload");
+}
+
+TEST_F(Export, ReplacesAPackageOfAnEarlierStateOfItsSessionWhenAsked) {
+  const fs::path session = at("scanned_further");
+  fs::copy(at("session"), session, fs::copy_options::recursive);
+  const auto update = [&](const char* name) {
+    return run_command({"export", session.string(), "--to", at(name).string(), "--json", "--update",
+                        "--without", "renderings,features,wedges,grid-ply"});
+  };
+  ASSERT_EQ(update("renewed").status, 0) << "nothing lies there yet";
+  EXPECT_EQ(update("renewed").json()["done_before"], true);
+  ASSERT_EQ(run_command({"session", "drop", session.string(), "2", "--why", "hand in view"}).status, 0);
+  const Outcome asked = run_command({"export", session.string(), "--to", at("renewed").string(), "--without",
+                                     "renderings,features,wedges,grid-ply"});
+  EXPECT_EQ(asked.status, 2) << "never unasked";
+  const Outcome renewed = update("renewed");
+  ASSERT_EQ(renewed.status, 0) << renewed.err;
+  EXPECT_THAT(bytes_of(at("renewed") / "data" / "scans" / "scans.json"), HasSubstr("hand in view"));
+  EXPECT_EQ(update("renewed").json()["done_before"], true);
+  // Killed between stamp and package: the stamp says more than lies there, and it is replaced all the same.
+  std::string stamp = bytes_of(at("renewed.done"));
+  stamp[stamp.find("\"program\": \"") + 12] = '9';
+  stamp[stamp.rfind("\"xxh128\": \"") + 11] = 'x';
+  std::ofstream(at("renewed.done")) << stamp;
+  const Outcome again = update("renewed");
+  ASSERT_EQ(again.status, 0) << again.err;
+  EXPECT_FALSE(again.json().contains("done_before"));
+  // What a person changed is kept, and so is what is of another session or has lost its stamp.
+  std::ofstream(at("renewed") / "data" / "README.txt", std::ios::app) << "a note of mine";
+  EXPECT_EQ(update("renewed").status, 2);
+  EXPECT_THAT(bytes_of(at("renewed") / "data" / "README.txt"), HasSubstr("a note of mine"));
+  fs::remove_all(at("renewed"));
+  ASSERT_EQ(update("renewed").status, 0);
+  stamp = bytes_of(at("renewed.done"));
+  const std::size_t grid = stamp.find(".grid\"");
+  std::string other = stamp;
+  other[stamp.find("\"xxh128\": \"", grid) + 11] = 'z';
+  std::ofstream(at("renewed.done")) << other;
+  EXPECT_EQ(update("renewed").status, 2) << "of another session";
+  fs::remove(at("renewed.done"));
+  EXPECT_EQ(update("renewed").status, 2) << "without a stamp";
+}
+
+}  // namespace
+}  // namespace dubsar
