@@ -13,9 +13,10 @@ namespace dubsar {
 
 namespace {
 
-std::string header_of(const RangeGrid& grid, bool ascii) {
-  std::string text = ascii ? "ply\nformat ascii 1.0\n" : "ply\nformat binary_little_endian 1.0\n";
-  text += "comment Range grid of Dubsar; rows are profiles\n" + scan_info_lines(grid);
+std::string header_of(const RangeGrid& grid, const GridPlyOptions& options) {
+  std::string text = options.ascii ? "ply\nformat ascii 1.0\n" : "ply\nformat binary_little_endian 1.0\n";
+  text += "comment Range grid of Dubsar; rows are profiles\n" + label_lines(options.label, "comment ") +
+          scan_info_lines(grid, options.keep_source);
   text += "element vertex " + std::to_string(grid.valid_count()) +
           "\nproperty float x\nproperty float y\nproperty float z\n";
   if (!grid.intensity.empty()) {
@@ -72,7 +73,7 @@ struct BinaryPut {
 }  // namespace
 
 std::string encode_grid_ply(const RangeGrid& grid, const GridPlyOptions& options) {
-  std::string out = header_of(grid, options.ascii);
+  std::string out = header_of(grid, options);
   out.reserve(out.size() + grid.valid_count() * 32 + grid.size() * 2);
   for (std::size_t i = 0; i < grid.size(); ++i) {
     if (grid.valid[i] == 0) {

@@ -10,6 +10,7 @@
 #include "core/mesh.h"
 #include "core/result.h"
 #include "formats/atomic_file.h"
+#include "formats/file_label.h"
 #include "formats/mesh_io.h"
 
 namespace dubsar {
@@ -18,23 +19,24 @@ namespace dubsar {
 // take no more memory than a fixed multiple of the bytes given; `where` stands in errors.
 
 /// In pieces, so that no second copy of a large mesh is in memory. Its errors are the sink's.
-[[nodiscard]] Status produce_mesh_ply(const Mesh& mesh, const ByteSink& sink);
-[[nodiscard]] std::string encode_mesh_ply(const Mesh& mesh);
+[[nodiscard]] Status produce_mesh_ply(const Mesh& mesh, const ByteSink& sink, const FileLabel& label = {});
+[[nodiscard]] std::string encode_mesh_ply(const Mesh& mesh, const FileLabel& label = {});
 [[nodiscard]] Result<Mesh> decode_mesh_ply(std::string_view bytes, const std::string& where,
                                            const MeshReadOptions& options);
 
-[[nodiscard]] std::string encode_mesh_obj(const Mesh& mesh);
+[[nodiscard]] std::string encode_mesh_obj(const Mesh& mesh, const FileLabel& label = {});
 [[nodiscard]] Result<Mesh> decode_mesh_obj(std::string_view bytes, const std::string& where,
                                            const MeshReadOptions& options);
 
 /// Binary; at most 4 294 967 295 faces.
-[[nodiscard]] std::string encode_mesh_stl(const Mesh& mesh);
+[[nodiscard]] std::string encode_mesh_stl(const Mesh& mesh, const FileLabel& label = {});
 [[nodiscard]] Result<Mesh> decode_mesh_stl(std::string_view bytes, const std::string& where,
                                            const MeshReadOptions& options);
 [[nodiscard]] bool is_binary_stl(std::string_view bytes);
 
 /// Positions stay in millimetres to the bit; the node scales them to metres.
-[[nodiscard]] Result<std::string> encode_mesh_glb(const Mesh& mesh, const std::string& where);
+[[nodiscard]] Result<std::string> encode_mesh_glb(const Mesh& mesh, const std::string& where,
+                                                  const FileLabel& label = {});
 [[nodiscard]] Result<Mesh> decode_mesh_glb(std::string_view bytes, const std::string& where,
                                            const MeshReadOptions& options);
 [[nodiscard]] bool is_glb(std::string_view bytes);

@@ -183,6 +183,19 @@ void check_extensions(const JsonNode& root) {
   }
 }
 
+/// ISO/IEC 12113:2022, 5.8: copyright is text "suitable for display to credit the content creator"; what else
+/// there is to say has no place of its own.
+OrderedJson asset_of(const FileLabel& label) {
+  OrderedJson asset{{"version", "2.0"}, {"generator", "Dubsar"}};
+  if (!label.rights.empty()) {
+    asset["copyright"] = label_value(label.rights);
+  }
+  for (const auto& [name, value] : label.words) {
+    asset["extras"][label_value(name)] = label_value(value);
+  }
+  return asset;
+}
+
 }  // namespace
 
 Result<Mesh> decode_mesh_glb(std::string_view bytes, const std::string& where,
@@ -210,10 +223,15 @@ Result<Mesh> decode_mesh_glb(std::string_view bytes, const std::string& where,
   return mesh;
 }
 
-Result<std::string> encode_mesh_glb(const Mesh& mesh, const std::string& where) {
+Result<std::string> encode_mesh_glb(const Mesh& mesh, const std::string& where, const FileLabel& label) {
   const std::uint64_t vertices = mesh.positions.size();
   constexpr std::uint64_t kHeaderRoom = 4096;
-  if (vertices * 28 + mesh.faces.size() * 12 + kHeaderRoom > std::numeric_limits<std::uint32_t>::max()) {
+  const OrderedJson asset = asset_of(label);
+  const std::string name = label_value(label.name);
+  // The name stands twice, and every byte of it as six at most ("\u0022").
+  const std::uint64_t label_room = asset.dump().size() + 12 * name.size();
+  if (vertices * 28 + mesh.faces.size() * 12 + kHeaderRoom + label_room >
+      std::numeric_limits<std::uint32_t>::max()) {
     return fail(ErrorKind::kUsage, "the mesh is too large for GLB (4 GiB)", where, "write .ply instead");
   }
   std::string binary;
@@ -281,13 +299,18 @@ Result<std::string> encode_mesh_glb(const Mesh& mesh, const std::string& where) 
   primitive["indices"] = accessors.size() - 1;
   primitive["mode"] = kTriangles;
   OrderedJson root;
-  root["asset"] = {{"version", "2.0"}, {"generator", "Dubsar"}};
+  root["asset"] = asset;
   root["scene"] = 0;
   root["scenes"] = OrderedJson::array({{{"nodes", OrderedJson::array({0})}}});
   root["nodes"] = OrderedJson::array();
   root["nodes"].push_back({{"mesh", 0}, {"scale", OrderedJson::array({0.001, 0.001, 0.001})}});
   root["meshes"] = OrderedJson::array();
   root["meshes"].push_back({{"primitives", OrderedJson::array({std::move(primitive)})}});
+  for (const char* named : {"nodes", "meshes"}) {
+    if (!name.empty()) {
+      root[named][0]["name"] = name;
+    }
+  }
   root["buffers"] = OrderedJson::array();
   root["buffers"].push_back({{"byteLength", binary.size()}});
   root["bufferViews"] = std::move(views);

@@ -71,16 +71,17 @@ Result<Mesh> read_mesh(const std::filesystem::path& path, const MeshReadOptions&
   return bytes ? read_mesh_bytes(*bytes, path.string(), options) : std::unexpected(bytes.error());
 }
 
-Status write_mesh(const std::filesystem::path& path, const Mesh& mesh) {
+Status write_mesh(const std::filesystem::path& path, const Mesh& mesh, const FileLabel& label) {
   switch (format_of(path)) {
     case MeshFormat::kPly:
-      return write_file_atomically(path, [&](const ByteSink& sink) { return produce_mesh_ply(mesh, sink); });
+      return write_file_atomically(path,
+                                   [&](const ByteSink& sink) { return produce_mesh_ply(mesh, sink, label); });
     case MeshFormat::kObj:
-      return write_file_atomically(path, encode_mesh_obj(mesh));
+      return write_file_atomically(path, encode_mesh_obj(mesh, label));
     case MeshFormat::kStl:
-      return write_file_atomically(path, encode_mesh_stl(mesh));
+      return write_file_atomically(path, encode_mesh_stl(mesh, label));
     case MeshFormat::kGlb: {
-      const Result<std::string> bytes = encode_mesh_glb(mesh, path.string());
+      const Result<std::string> bytes = encode_mesh_glb(mesh, path.string(), label);
       return bytes ? write_file_atomically(path, *bytes) : std::unexpected(bytes.error());
     }
     case MeshFormat::kUnknown:

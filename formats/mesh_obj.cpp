@@ -79,8 +79,8 @@ Result<Mesh> decode_mesh_obj(std::string_view bytes, const std::string& where,
   return mesh;
 }
 
-std::string encode_mesh_obj(const Mesh& mesh) {
-  std::string out = "# Mesh of Dubsar, millimetres\n";
+std::string encode_mesh_obj(const Mesh& mesh, const FileLabel& label) {
+  std::string out = "# Mesh of Dubsar, millimetres\n" + label_lines(label, "# ");
   const auto append_three = [&](const char* keyword, const Eigen::Vector3f& v) {
     out += keyword;
     for (const float component : v) {

@@ -271,12 +271,12 @@ Result<Mesh> decode_mesh_ply(std::string_view bytes, const std::string& where,
   return mesh;
 }
 
-Status produce_mesh_ply(const Mesh& mesh, const ByteSink& sink) {
+Status produce_mesh_ply(const Mesh& mesh, const ByteSink& sink, const FileLabel& label) {
   constexpr std::size_t kPiece = std::size_t{1} << 20U;
   const std::size_t vertices = mesh.positions.size();
-  std::string out =
-      "ply\nformat binary_little_endian 1.0\ncomment Mesh of Dubsar\nobj_info unit mm\nelement vertex " +
-      std::to_string(vertices) + "\n";
+  std::string out = "ply\nformat binary_little_endian 1.0\ncomment Mesh of Dubsar\n" +
+                    label_lines(label, "comment ") + "obj_info unit mm\nelement vertex " +
+                    std::to_string(vertices) + "\n";
   for (const char* name : {"x", "y", "z", "nx", "ny", "nz", "reliability"}) {
     out += std::string("property float ") + name + "\n";
   }
@@ -331,12 +331,15 @@ Status produce_mesh_ply(const Mesh& mesh, const ByteSink& sink) {
   return pass_on(1);
 }
 
-std::string encode_mesh_ply(const Mesh& mesh) {
+std::string encode_mesh_ply(const Mesh& mesh, const FileLabel& label) {
   std::string out;
-  (void)produce_mesh_ply(mesh, [&](std::span<const std::byte> bytes) -> Status {
-    out.append(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-    return {};
-  });
+  (void)produce_mesh_ply(
+      mesh,
+      [&](std::span<const std::byte> bytes) -> Status {
+        out.append(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+        return {};
+      },
+      label);
   return out;
 }
 

@@ -102,8 +102,10 @@ Result<Mesh> decode_mesh_stl(std::string_view bytes, const std::string& where,
   return mesh;
 }
 
-std::string encode_mesh_stl(const Mesh& mesh) {
-  std::string out = "Mesh of Dubsar, millimetres";
+std::string encode_mesh_stl(const Mesh& mesh, const FileLabel& label) {
+  // Never "solid", which would be taken for the text form.
+  std::string out = label.empty() ? "Mesh of Dubsar, millimetres" : "Dubsar, mm; ";
+  out += label_in_ascii(label, kHeaderBytes - out.size());
   out.resize(kHeaderBytes, ' ');
   out.reserve(kHeaderBytes + 4 + mesh.faces.size() * kFacetBytes);
   append(out, static_cast<std::uint32_t>(mesh.faces.size()));

@@ -98,10 +98,13 @@ Status apply_scan_info(const PlyHeader& header, const std::string& where, RangeG
   if (const auto value = header.info_value(ply_info::kDevice)) {
     grid.device = *value;
   }
+  if (const auto value = header.info_value(ply_info::kSource); value && !value->empty()) {
+    grid.source = *value;
+  }
   return {};
 }
 
-std::string scan_info_lines(const RangeGrid& grid) {
+std::string scan_info_lines(const RangeGrid& grid, bool with_source) {
   std::string text = value_line(ply_info::kUnit, "mm") +
                      value_line(ply_info::kCols, std::to_string(grid.cols)) +
                      value_line(ply_info::kRows, std::to_string(grid.rows)) +
@@ -124,6 +127,9 @@ std::string scan_info_lines(const RangeGrid& grid) {
   }
   if (!grid.device.empty()) {
     text += value_line(ply_info::kDevice, one_line(grid.device));
+  }
+  if (with_source && !grid.source.empty()) {
+    text += value_line(ply_info::kSource, one_line(grid.source));
   }
   return text;
 }

@@ -23,12 +23,14 @@ inline constexpr const char* kMotion = "dubsar_motion_per_row_mm";
 inline constexpr const char* kPinTip = "dubsar_pin_tip_diameter_mm";
 inline constexpr const char* kTimestamp = "dubsar_timestamp_ns";
 inline constexpr const char* kDevice = "dubsar_device";
+inline constexpr const char* kSource = "dubsar_source";
 }  // namespace ply_info
 
 /// Takes the dubsar_ lines of a header over into the grid; what is absent stays as it is.
 [[nodiscard]] Status apply_scan_info(const PlyHeader& header, const std::string& where, RangeGrid& grid);
 
 /// The lines "obj_info …" for a grid, each with its line end; numbers print so that they read back the same.
-[[nodiscard]] std::string scan_info_lines(const RangeGrid& grid);
+/// The original name is among them where it is asked for.
+[[nodiscard]] std::string scan_info_lines(const RangeGrid& grid, bool with_source);
 
 }  // namespace dubsar

@@ -14,6 +14,7 @@
 #include "analysis/vertex_geometry.h"
 #include "core/tablet_frame.h"
 #include "core/thread_priority.h"
+#include "formats/file_label_reader.h"
 #include "formats/mesh_io.h"
 #include "formats/wedges_json.h"
 #include "station/analysis.h"
@@ -230,6 +231,7 @@ void MeshViewing::open(const fs::path& file) {
     const RigidTransform tablet_from_model = tablet_frame(*read);
     std::optional<Error> odd = odd_numbers(*read, file.filename().string());
     odd = odd ? odd : inside_out(*read, file.filename().string());
+    label_ = read_file_label(file);
     take_mesh(std::make_shared<const Mesh>(std::move(*read)), tablet_from_model, file.filename().string());
     if (odd) {
       complain(*odd);
@@ -245,6 +247,7 @@ void MeshViewing::open(const fs::path& file) {
 void MeshViewing::show(std::shared_ptr<const Mesh> mesh, const RigidTransform& tablet_from_model,
                        const fs::path& wedges_file) {
   ask([this, mesh = std::move(mesh), tablet_from_model, wedges_file] {
+    label_ = {};
     take_mesh(mesh, tablet_from_model, {});
     take_corrections(wedges_file, true);
     take_selections(wedges_file.parent_path() / "selections.json");

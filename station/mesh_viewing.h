@@ -23,6 +23,7 @@
 #include "core/rigid_transform.h"
 #include "core/wedge.h"
 #include "core/wedge_correction.h"
+#include "formats/file_label.h"
 #include "station/analysis.h"
 
 namespace dubsar {
@@ -118,6 +119,7 @@ class MeshViewing {
   mutable std::mutex mutex_;  ///< of what follows
   ViewedMesh state_;
   // Of the worker alone.
+  FileLabel label_;                     ///< of the file that was opened, for what is written of its mesh
   std::unique_ptr<Analysis> analysis_;  ///< of the mesh, once it was asked for
   AnalysisOptions analysis_options_;
   std::filesystem::path wedges_file_;

@@ -102,7 +102,8 @@ void MeshViewing::write_part(MeshSelection selection, const fs::path& file) {
   ask([this, selection = std::move(selection), file] {
     if (const std::shared_ptr<const Mesh> whole = mesh(); whole && fits(selection, *whole)) {
       const Status outside = check_outside_packages(file);
-      if (const Status written = outside ? write_mesh(file, part_of(*whole, selection)) : outside; !written) {
+      if (const Status written = outside ? write_mesh(file, part_of(*whole, selection), label_) : outside;
+          !written) {
         complain(written.error());
         return;
       }
@@ -147,7 +148,7 @@ void MeshViewing::analyse_part(MeshSelection selection, const fs::path& stem) {
     fs::path wedges_file = stem;
     wedges_file += ".wedges.json";
     Status written = check_outside_packages(mesh_file);
-    written = written ? write_mesh(mesh_file, *part) : written;
+    written = written ? write_mesh(mesh_file, *part, label_) : written;
     written = written ? write_wedges(wedges_file, wedges) : written;
     if (!written) {
       complain(written.error());

@@ -12,6 +12,7 @@
 #include "station/package_content.h"
 #include "station/session_name.h"
 #include "station/session_wedges.h"
+#include "station/tablet_label.h"
 
 namespace dubsar {
 
@@ -83,20 +84,6 @@ Result<FoundWedges> wedges_of(const SessionStore& store, const Mesh& mesh, const
                   : std::unexpected(measured.error());
 }
 
-/// Where a scan comes from the simulator, by the id that it gives its grids: an archive that outlives
-/// whoever tried the scanner must not take such a tablet for clay.
-Result<std::string> simulated_words(const SessionStore& store) {
-  const Result<std::vector<StoredScan>> scans = store.scans();
-  if (!scans) {
-    return std::unexpected(scans.error());
-  }
-  const bool simulated = std::ranges::any_of(
-      *scans, [](const StoredScan& scan) { return scan.device == "sim" || scan.device.starts_with("sim-"); });
-  return simulated ? "A program made up this tablet and its scans: there is no such tablet, and nothing was "
-                     "measured."
-                   : "";
-}
-
 std::vector<BagField> bag_fields(const PackageContent& content) {
   std::string description = content.simulated.empty()
                                 ? "Surface of a cuneiform tablet, measured by laser triangulation: "
@@ -153,6 +140,19 @@ Status add_all(PackageContent& content, StageTimes& timings) {
     clock.done(step.name);
   }
   return {};
+}
+
+/// A folder that `replace` may let go of: an earlier package, and nothing else.
+Status check_target(const fs::path& to, bool replace) {
+  std::error_code ignored;
+  if (replace && fs::exists(to, ignored) && !fs::is_empty(to, ignored) &&
+      !fs::is_regular_file(to / "bagit.txt", ignored)) {
+    return fail(ErrorKind::kUsage, "what lies there is no package, so it is not replaced", to.string(),
+                "choose another folder, or remove it yourself");
+  }
+  return {};
+}
+
 /// What is going to be replaced may hold what others put there.
 Result<KeptFiles> keep_others(const fs::path& to, JobContext& job) {
   if (!is_bag(to)) {
@@ -165,19 +165,6 @@ Result<KeptFiles> keep_others(const fs::path& to, JobContext& job) {
                 kept->folder.string());
   }
   return kept;
-}
-
-}
-
-/// A folder that `replace` may let go of: an earlier package, and nothing else.
-Status check_target(const fs::path& to, bool replace) {
-  std::error_code ignored;
-  if (replace && fs::exists(to, ignored) && !fs::is_empty(to, ignored) &&
-      !fs::is_regular_file(to / "bagit.txt", ignored)) {
-    return fail(ErrorKind::kUsage, "what lies there is no package, so it is not replaced", to.string(),
-                "choose another folder, or remove it yourself");
-  }
-  return {};
 }
 
 }  // namespace
@@ -230,6 +217,10 @@ Result<Package> write_package(const fs::path& session, const fs::path& to, const
   if (!simulated) {
     return std::unexpected(simulated.error());
   }
+  Result<FileLabel> label = tablet_label(store);
+  if (!label) {
+    return std::unexpected(label.error());
+  }
   if (!simulated->empty()) {
     facts.tablet.emplace(facts.tablet.begin(), "Simulated", *simulated);
   }
@@ -245,6 +236,7 @@ Result<Package> write_package(const fs::path& session, const fs::path& to, const
                          .stem = file_stem(identifier),
                          .when = utc_now(),
                          .simulated = *simulated,
+                         .label = std::move(*label),
                          .tablet_from_model = source->tablet_from_model(),
                          .lies_by_text = false,
                          .wedges = {},
@@ -275,18 +267,17 @@ Result<Package> write_package(const fs::path& session, const fs::path& to, const
   }
   LapClock closing(&timings);
   const Result<BagSize> size = write_bag_tags(staged->path(), bag_fields(content), job);
-  const Result<KeptFiles> kept = keep_others(to, job);
-  if (!kept) {
-    return std::unexpected(kept.error());
-  }
   if (!size) {
     return std::unexpected(size.error());
   }
   if (options.before_publishing) {
     if (const Status allowed = options.before_publishing(staged->path()); !allowed) {
       return std::unexpected(allowed.error());
-                  .kept = *kept,
     }
+  }
+  const Result<KeptFiles> kept = keep_others(to, job);
+  if (!kept) {
+    return std::unexpected(kept.error());
   }
   if (const Status published = staged->publish(); !published) {
     return std::unexpected(published.error());
@@ -294,6 +285,7 @@ Result<Package> write_package(const fs::path& session, const fs::path& to, const
   closing.done("checksums");
   Package package{.folder = to,
                   .size = *size,
+                  .kept = *kept,
                   .identifier = identifier,
                   .conclusive = source->results().red_map.conclusive,
                   .has_mesh = !mesh.faces.empty(),

@@ -10,6 +10,7 @@
 
 #include "acquisition/session_store.h"
 #include "archive/provenance.h"
+#include "formats/file_label.h"
 #include "formats/wedges_json.h"
 #include "station/package.h"
 #include "station/package_features.h"
@@ -47,6 +48,7 @@ struct PackageContent {
   std::string stem;        ///< for file names: "BM_12345"
   std::string when;        ///< ISO 8601, one for the whole package
   std::string simulated;   ///< a sentence, where a program made the tablet up; empty of clay
+  FileLabel label;         ///< what its meshes and scans say of themselves
   RigidTransform
       tablet_from_model;  ///< how the pictures lie: by the text where that is certain, else by the shape
   bool lies_by_text = false;

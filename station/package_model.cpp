@@ -39,8 +39,8 @@ Status add_model(PackageContent& content) {
         if (content.job.cancelled()) {
           return;
         }
-        if (const Status written =
-                write_mesh(content.root / "model" / (content.stem + kForms[k].extension), content.mesh());
+        if (const Status written = write_mesh(content.root / "model" / (content.stem + kForms[k].extension),
+                                              content.mesh(), content.label);
             !written) {
           failed[k] = written.error();
         }

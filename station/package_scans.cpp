@@ -48,7 +48,9 @@ Status add_scan(const PackageContent& content, const StoredScan& scan) {
     return written;
   }
   const Result<RangeGrid> grid = decode_grid(span, from.string());
-  return grid ? write_grid_ply(content.root / ply_name(scan), *grid) : std::unexpected(grid.error());
+  return grid ? write_grid_ply(content.root / ply_name(scan), *grid,
+                               {.keep_source = true, .label = content.label})
+              : std::unexpected(grid.error());
 }
 
 OrderedJson scan_json(const PackageContent& content, const StoredScan& scan) {

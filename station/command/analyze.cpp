@@ -16,6 +16,7 @@
 #include "archive/wedge_drawing.h"
 #include "core/stage_times.h"
 #include "core/units.h"
+#include "formats/file_label_reader.h"
 #include "formats/mesh_io.h"
 #include "station/analysis.h"
 #include "station/command/analyze.h"
@@ -210,7 +211,9 @@ Status check_corrected(const AnalyzeArguments& arguments, const std::filesystem:
 Status write_outputs(const AnalyzeArguments& arguments, const WedgeFile& file, const Mesh& mesh,
                      const Analysis& analysis, const StampedWork* work, const JobContext& job) {
   if (!arguments.mesh_out.empty()) {
-    if (Status written = write_mesh(arguments.mesh_out, annotated_mesh(mesh, analysis)); !written) {
+    if (Status written =
+            write_mesh(arguments.mesh_out, annotated_mesh(mesh, analysis), read_file_label(arguments.in));
+        !written) {
       return written;
     }
   }

@@ -12,6 +12,7 @@
 #include "core/log.h"
 #include "core/units.h"
 #include "formats/atomic_file.h"
+#include "formats/file_label_reader.h"
 #include "formats/mesh_io.h"
 #include "formats/wedges_json.h"
 #include "station/command/command.h"
@@ -87,7 +88,7 @@ Result<int> convert(const MeshOptions& options, CommandContext& context) {
     }
     log_warning(fault->line());
   }
-  if (const Status written = write_mesh(options.out, *mesh); !written) {
+  if (const Status written = write_mesh(options.out, *mesh, read_file_label(options.in)); !written) {
     return std::unexpected(written.error());
   }
   if (context.json) {
@@ -178,7 +179,7 @@ Result<int> part(const MeshOptions& options, CommandContext& context) {
     return wedges.empty() ? 1 : 0;
   }
   const Mesh out = part_of(*mesh, *selection);
-  if (const Status written = write_mesh(options.out, out); !written) {
+  if (const Status written = write_mesh(options.out, out, read_file_label(options.in)); !written) {
     return std::unexpected(written.error());
   }
   if (context.json) {

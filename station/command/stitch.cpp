@@ -28,6 +28,7 @@
 #include "station/outward_faces.h"
 #include "station/results.h"
 #include "station/tablet_flags.h"
+#include "station/tablet_label.h"
 #include "triangulation/mesh_check.h"
 #include "triangulation/stitcher.h"
 
@@ -242,7 +243,12 @@ Result<std::optional<StampedWork>> begin_work(const StitchArguments& arguments, 
       return std::nullopt;
     }
   }
+  const Result<FileLabel> label = tablet_label(*store);
+  if (!label) {
+    return std::unexpected(label.error());
+  }
   const nlohmann::ordered_json parameters{
+      {"label", label_lines(*label, "")},
       {"out", std::filesystem::path(arguments.set.out).filename().string()},
       {"origin", origin_of_mesh(*poses)}};
   return StampedWork::begin(stamp_beside(arguments.set.out), "stitch", parameters.dump(), grids, context.job);
@@ -256,6 +262,15 @@ int tell_done(const StitchArguments& arguments, const CommandContext& context) {
     std::printf("%s: done before, of the scans as they stand\n", arguments.set.out.c_str());
   }
   return 0;
+}
+
+/// Of a folder nobody knows what lies in it.
+Result<FileLabel> label_of(const std::string& path) {
+  if (!SessionStore::is_session(path)) {
+    return FileLabel{};
+  }
+  const Result<SessionStore> store = SessionStore::open(path, SessionStore::Access::kReadOnly);
+  return store ? tablet_label(*store) : std::unexpected(store.error());
 }
 
 Result<int> stitch_all(const ScanSetArguments& arguments, const StampedWork* work, CommandContext& context) {
@@ -294,10 +309,14 @@ Result<int> stitch_all(const ScanSetArguments& arguments, const StampedWork* wor
   if (const std::optional<Error> wrong_way = inside_out(*mesh, arguments.out)) {
     log_warning(wrong_way->line());
   }
+  const Result<FileLabel> label = label_of(arguments.path);
+  if (!label) {
+    return std::unexpected(label.error());
+  }
   if (const Status started = work != nullptr ? work->start() : Status(); !started) {
     return std::unexpected(started.error());
   }
-  if (const Status written = write_mesh(arguments.out, *mesh); !written) {
+  if (const Status written = write_mesh(arguments.out, *mesh, *label); !written) {
     return std::unexpected(written.error());
   }
   if (const Status kept = work != nullptr ? work->finish({arguments.out}, context.job) : Status(); !kept) {

@@ -27,6 +27,19 @@ TEST(GridPly, ReadsBackToTheBit) {
   }
 }
 
+TEST(GridPly, KeepsTheOriginalNameAndTheLabelWhereItIsAskedTo) {
+  RangeGrid grid = sample_grid(4, 5, true);
+  grid.source = "front side.ply\nelement vertex 9";
+  const std::string bytes = encode_grid_ply(
+      grid,
+      {.keep_source = true, .label = {.name = "BM 1", .words = {{"Museum number", "BM 1\nend_header"}}}});
+  EXPECT_THAT(bytes, HasSubstr("\ncomment Museum number: BM 1 end header\n"));
+  const auto scans = read_scan_bytes(bytes, "dir/003.ply");
+  ASSERT_TRUE(scans) << line_of(scans);
+  expect_same_grid(grid, std::get<RangeGrid>(scans->front()));
+  EXPECT_EQ(std::get<RangeGrid>(scans->front()).source, "front side.ply element vertex 9");
+}
+
 TEST(GridPly, WritesAFileThatIsSeenAsAScan) {
   const ScratchFolder folder;
   ASSERT_TRUE(write_grid_ply(folder / "a.ply", sample_grid(4, 5, true)));

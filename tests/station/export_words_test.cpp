@@ -17,6 +17,7 @@ namespace fs = std::filesystem;
 using test::bytes_of;
 using test::Outcome;
 using test::run_command;
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
@@ -72,6 +73,48 @@ TEST_F(Export, ASimulatedTabletIsNotPassedOffAsClay) {
     EXPECT_THAT(bytes_of(packed / page), HasSubstr("there is no such tablet")) << page;
   }
   EXPECT_THAT(bytes_of(packed / "README.txt"), Not(HasSubstr("measured by laser")));
+}
+
+TEST_F(Export, MeshesAndScansSayWhatTheyAreWhereTheyTravelAlone) {
+  const std::string unnamed = bytes_of(data("model/session.ply"));
+  EXPECT_THAT(unnamed.substr(0, unnamed.find("end_header")), HasSubstr("comment Session: session\n"));
+  const fs::path session = at("alone");
+  ASSERT_NE(run_command({"scan", "--device", "sim:?seed=2&size=14x11x8&spacing=0.5", "--session",
+                         session.string(), "--max-scans", "2"})
+                .status,
+            2);
+  ASSERT_EQ(
+      run_command({"session", "describe", session.string(), "--museum-number", "BM 12345", "--cdli",
+                   "P000001", "--collection", "A Museum", "--rights", "© A Museum; CC0", "--notes", "mine"})
+          .status,
+      0);
+  ASSERT_EQ(run_command({"export", session.string(), "--to", at("alone_bag").string(), "--without",
+                         "renderings,features,wedges"})
+                .status,
+            0);
+  const std::string stl = bytes_of(at("alone_bag") / "data/model/P000001.stl");
+  EXPECT_THAT(stl, ::testing::StartsWith("Dubsar, mm; SIMULATED; P000001, BM 12345; (c) A Museum; CC0"));
+  const std::string glb = bytes_of(at("alone_bag") / "data/model/P000001.glb");
+  EXPECT_THAT(glb, HasSubstr("\"copyright\":"));
+  EXPECT_THAT(glb, HasSubstr("there is no such tablet"));
+  const fs::path converted = at("converted.ply");
+  ASSERT_EQ(run_command({"mesh", "convert", (at("alone_bag") / "data/model/P000001.glb").string(),
+                         converted.string()})
+                .status,
+            0);
+  const fs::path stitched = at("alone.ply");
+  ASSERT_EQ(run_command({"stitch", session.string(), "-o", stitched.string()}).status, 0);
+  for (const fs::path& file : {at("alone_bag") / "data/model/P000001.ply",
+                               at("alone_bag") / "data/scans/ply/000.ply", stitched, converted}) {
+    const std::string ply = bytes_of(file);
+    const std::string head = ply.substr(0, ply.find("end_header"));
+    EXPECT_THAT(head, HasSubstr("comment SIMULATED: A program made up this tablet")) << file;
+    EXPECT_THAT(head, AllOf(HasSubstr("comment Museum number: BM 12345\n"),
+                            HasSubstr("comment CDLI number: P000001\n")))
+        << file;
+    EXPECT_THAT(head, HasSubstr("comment Rights: © A Museum; CC0\n")) << file;
+    EXPECT_THAT(head, Not(HasSubstr("mine"))) << file;
+  }
 }
 
 TEST_F(Export, FileNamesAreGoodOnOtherSystems) {

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "formats/file_label.h"
+
+namespace dubsar {
+
+/// A label of words with their usual names ("Museum number", "CDLI number", "Session", "Rights",
+/// "SIMULATED"): what the tablet is called follows from them.
+[[nodiscard]] FileLabel label_of_words(std::vector<std::pair<std::string, std::string>> words);
+
+/// What a mesh in PLY, OBJ, GLB or STL that Dubsar wrote says of itself, so that what is made of it says the
+/// same; empty where that is nothing, is another program's, or cannot be read. Looks at the first MiB alone.
+[[nodiscard]] FileLabel read_file_label(const std::filesystem::path& mesh);
+[[nodiscard]] FileLabel file_label_in(std::string_view head);
+
+}  // namespace dubsar

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "station/tablet_label.h"
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+#include <vector>
+
+#include "formats/file_label_reader.h"
+#include "station/session_name.h"
+#include "station/tablet_record.h"
+
+namespace dubsar {
+
+Result<std::string> simulated_words(const SessionStore& store) {
+  const Result<std::vector<StoredScan>> scans = store.scans();
+  if (!scans) {
+    return std::unexpected(scans.error());
+  }
+  const bool simulated = std::ranges::any_of(
+      *scans, [](const StoredScan& scan) { return scan.device == "sim" || scan.device.starts_with("sim-"); });
+  return simulated ? "A program made up this tablet and its scans: there is no such tablet, and nothing was "
+                     "measured."
+                   : "";
+}
+
+Result<FileLabel> tablet_label(const SessionStore& store) {
+  const Result<std::string> simulated = simulated_words(store);
+  if (!simulated) {
+    return std::unexpected(simulated.error());
+  }
+  TabletRecord record = tablet_record_of(store);
+  record.notes.clear();
+  std::vector<std::pair<std::string, std::string>> words;
+  if (!simulated->empty()) {
+    words.emplace_back("SIMULATED", *simulated);
+  }
+  if (record.cdli.empty() && record.museum_number.empty()) {
+    words.emplace_back("Session", session_name(store.folder()));
+  }
+  std::ranges::move(words_of(record), std::back_inserter(words));
+  return label_of_words(std::move(words));
+}
+
+}  // namespace dubsar

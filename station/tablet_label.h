@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <string>
+
+#include "acquisition/session_store.h"
+#include "core/result.h"
+#include "formats/file_label.h"
+
+namespace dubsar {
+
+/// A sentence where a scan comes from the simulator, by the id that it gives its grids: an archive that
+/// outlives whoever tried the scanner must not take such a tablet for clay. Empty of clay.
+[[nodiscard]] Result<std::string> simulated_words(const SessionStore& store);
+
+/// What the files of a session's tablet say of themselves: its numbers (without any the session's name),
+/// collection, who scanned it, rights, and whether a program made it up. Notes stay with the session.
+[[nodiscard]] Result<FileLabel> tablet_label(const SessionStore& store);
+
+}  // namespace dubsar
