@@ -209,6 +209,7 @@ Result<std::optional<RangeGrid>> RangeSource::next(const RowObserver& observer, 
     return device_.scan(collector);
   }();
   record_.tally = collector.tally;
+  record_.file = collector.info().file;
   std::optional<Error> fault = outcome ? std::nullopt : std::optional(outcome.error());
   if (fault) {
     fault = halted(job).value_or(*fault);

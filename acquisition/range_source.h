@@ -27,6 +27,7 @@ struct ScanRecord {
   ProfileFaults faults;
   bool resampled = false;              ///< the device gave points without an order
   std::vector<std::string> remarks{};  ///< of the driver, for the operator; one line each
+  std::string file{};                  ///< that a recorded scan was read from, with its folders; else empty
 };
 
 /// A device opened by its URI, as a source of range grids. Use from one thread at a time.

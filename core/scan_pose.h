@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/rigid_transform.h"
 
@@ -27,6 +28,8 @@ struct ScanPose {
   /// Covariance of the left perturbation twist (omega rad, v mm) about the scan's centroid in the model
   /// frame.
   std::optional<Eigen::Matrix<double, 6, 6>> covariance;
+  /// The scan's files in the package that the pose is of ("scans/ply/003.ply"); empty elsewhere.
+  std::vector<std::string> packed_as{};
 };
 
 [[nodiscard]] constexpr const char* to_string(PoseStatus status) {

@@ -245,6 +245,7 @@ Result<ScanInfo> scan_info_from(const dubsar_scan_info& from, const std::string&
   out.timestamp_ns = from.timestamp_ns;
   out.device = text(from.device_id);
   out.source = text(from.source);
+  out.file = text(from.file);
   return out;
 }
 

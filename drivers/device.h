@@ -67,6 +67,7 @@ struct ScanInfo {
   std::int64_t timestamp_ns = 0;
   std::string device;
   std::string source;
+  std::string file{};  ///< that a recorded scan is read from, with its folders; empty without one
 };
 
 /// One row as it came: spans are as long as x, or empty (rgb and normals: three times as long).

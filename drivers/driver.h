@@ -211,6 +211,7 @@ typedef struct dubsar_scan_info {
   int64_t timestamp_ns;       /* since 1970; 0 when not known */
   const char* device_id;      /* of this one device, e.g. with its serial number; NULL when not known */
   const char* source;         /* the scan's original name; NULL without one */
+  const char* file;           /* that a recorded scan is read from, with its folders; NULL without one */
 } dubsar_scan_info;
 
 /* One row of the scan. Arrays are as long as count (rgb: three times) and live until the callback returns. */

@@ -45,6 +45,11 @@ ScanPose pose_from(const JsonNode& node, double mm) {
   if (file) {
     pose.file = file->text();
   }
+  if (const auto packed = node.find("packed_as")) {
+    for (const JsonNode& one : packed->items()) {
+      pose.packed_as.push_back(one.text());
+    }
+  }
   pose.status = PoseStatus::kRegistered;
   if (const auto status = node.find("status")) {
     constexpr PoseStatus kStatus[] = {PoseStatus::kRegistered, PoseStatus::kUnsure, PoseStatus::kFailed};
@@ -84,6 +89,9 @@ std::string poses_to_json(std::span<const ScanPose> poses) {
       scan["id"] = pose.id;
     }
     scan["file"] = pose.file;
+    if (!pose.packed_as.empty()) {
+      scan["packed_as"] = pose.packed_as;
+    }
     // A failed pose may hold anything; the file keeps its shape.
     scan["model_from_scanner"] =
         json_of(pose.model_from_scanner.is_rigid() ? pose.model_from_scanner : RigidTransform{});

@@ -3,6 +3,7 @@
 #include "station/offline.h"
 
 #include <algorithm>
+#include <iterator>
 #include <set>
 #include <string>
 #include <utility>
@@ -150,16 +151,31 @@ std::string name_of(const std::string& file) {
   return std::filesystem::path(file).filename().string();
 }
 
+/// Whether a path ends in that one, which is relative.
+bool lies_at(const std::filesystem::path& whole, const std::filesystem::path& end) {
+  const auto parts = std::distance(end.begin(), end.end());
+  return parts > 0 && parts < std::distance(whole.begin(), whole.end()) &&
+         std::equal(end.begin(), end.end(), std::prev(whole.end(), parts));
+}
+
 }  // namespace
 
 const ScanPose* pose_in_file(const std::vector<ScanPose>& file, const StationScan& scan) {
-  const auto by_name = std::ranges::find_if(file, [&](const ScanPose& pose) {
-    return !pose.file.empty() && name_of(pose.file) == name_of(scan.file);
+  const auto the_one = [&](const auto& is_it) -> const ScanPose* {
+    const auto found = std::ranges::find_if(file, is_it);
+    return found == file.end() || std::any_of(std::next(found), file.end(), is_it) ? nullptr : &*found;
+  };
+  const ScanPose* found = the_one([&](const ScanPose& pose) {
+    return std::ranges::any_of(pose.packed_as,
+                               [&](const std::string& path) { return lies_at(scan.read_from, path); });
   });
-  const auto by_id = std::ranges::find_if(
-      file, [&](const ScanPose& pose) { return pose.file.empty() && pose.id == scan.id; });
-  const auto found = by_name != file.end() ? by_name : by_id;
-  return found == file.end() ? nullptr : &*found;
+  if (found == nullptr) {
+    found = the_one(
+        [&](const ScanPose& pose) { return !pose.file.empty() && name_of(pose.file) == name_of(scan.file); });
+  }
+  return found != nullptr
+             ? found
+             : the_one([&](const ScanPose& pose) { return pose.file.empty() && pose.id == scan.id; });
 }
 
 std::unexpected<Error> no_pose_of_these(const std::filesystem::path& poses_file) {
@@ -175,7 +191,8 @@ Result<std::vector<ScanPose>> read_poses_file(const std::filesystem::path& poses
   std::set<std::string> names;
   for (const ScanPose& pose : poses ? *poses : std::vector<ScanPose>{}) {
     const std::string name = pose.file.empty() ? "scan " + std::to_string(pose.id) : name_of(pose.file);
-    if (!names.insert(name).second) {
+    // Those of a package are told apart by their files there.
+    if (!names.insert(name).second && pose.packed_as.empty()) {
       return bad_input(poses_file.string(), "it has two poses of " + name, "leave the right one");
     }
   }
@@ -194,6 +211,7 @@ Result<std::vector<ScanPose>> poses_from_file(const ScanSet& set, const std::fil
       poses.push_back(*found);
       poses.back().id = scan.id;
       poses.back().file = scan.file;
+      poses.back().packed_as.clear();
     } else {
       log_warning(scan.file + ": " + poses_file.string() + " has no pose of it");
     }

@@ -107,6 +107,26 @@ std::string file_name(std::string name) {
   return name;
 }
 
+/// The poses with the files of their scans: original names may be missing, or those of two scans.
+Result<std::vector<ScanPose>> packed_poses(const PackageContent& content) {
+  const Result<std::vector<StoredScan>> scans = content.store.scans();
+  if (!scans) {
+    return std::unexpected(scans.error());
+  }
+  std::vector<ScanPose> poses = content.results().poses;
+  for (ScanPose& pose : poses) {
+    const auto scan = std::ranges::find(*scans, pose.id, &StoredScan::id);
+    if (scan == scans->end() || scan->damaged) {
+      continue;
+    }
+    pose.packed_as = {own_name(*scan)};
+    if (content.has(PackagePart::kGridPly)) {
+      pose.packed_as.push_back(ply_name(*scan));
+    }
+  }
+  return poses;
+}
+
 Result<std::string> events_text(const SessionStore& store) {
   const Result<std::vector<SessionEvent>> events = store.events();
   if (!events) {
@@ -179,8 +199,12 @@ Status add_scans(PackageContent& content) {
 
 Status add_records(PackageContent& content) {
   const Results& results = content.results();
+  const Result<std::vector<ScanPose>> poses = packed_poses(content);
+  if (!poses) {
+    return std::unexpected(poses.error());
+  }
   for (const Status& written :
-       {content.text("scans/poses.json", poses_to_json(results.poses),
+       {content.text("scans/poses.json", poses_to_json(*poses),
                      "where every scan lies in the model, and how certainly: formats/poses.txt"),
         content.text("verdict/red_map.json", red_map_to_json(results.red_map),
                      "what is sampled too thinly or excused, and why: formats/red_map.txt"),

@@ -146,6 +146,7 @@ Status load_folder(const fs::path& path, const ScanSetOptions& options, const Sc
     StationScan prepared = prepare_scan(static_cast<int>(set.scans.size()), std::move(**grid), set.pins);
     grid->reset();
     std::error_code not_there;
+    prepared.read_from = fs::absolute(source->record().file, not_there).lexically_normal();
     const fs::path folder = fs::is_directory(path, not_there) ? path : path.parent_path();
     if (!options.output.empty() && fs::equivalent(folder / prepared.file, options.output, not_there)) {
       return fail(ErrorKind::kUsage, "a scan would be written over", options.output.string(),

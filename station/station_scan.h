@@ -2,6 +2,7 @@
 // Copyright The Dubsar developers
 #pragma once
 
+#include <filesystem>
 #include <future>
 #include <memory>
 #include <optional>
@@ -19,6 +20,7 @@ namespace dubsar {
 struct StationScan {
   int id = 0;
   std::string file;                           ///< original name, or "scan ID"
+  std::filesystem::path read_from{};          ///< of a plain folder, absolute; else empty
   std::shared_ptr<const RangeGrid> measured;  ///< as it came, pins and all: registration finds the pins in it
   std::shared_ptr<const RangeGrid> grid;      ///< the tablet alone
   std::shared_ptr<const SampleFlags> flags;

@@ -81,15 +81,22 @@ void tell(const dubsar_sink& sink, const std::string& scan, const Remarks& remar
   }
 }
 
-std::int32_t send_grid(const RangeGrid& grid, const Remarks& remarks, Pace pace, const dubsar_sink& sink) {
+/// A scan of a file, and what there is to say of it.
+struct Played {
+  std::string file;
+  Remarks remarks;
+};
+
+std::int32_t send_grid(const RangeGrid& grid, const Played& played, Pace pace, const dubsar_sink& sink) {
   dubsar_scan_info info = plugin::scan_info_of(grid);
+  info.file = played.file.c_str();
   if (!(info.spacing_mm > 0)) {
     info.spacing_mm = estimate_spacing_mm(grid);
   }
   if (sink.begin(sink.user, &info) != 0) {
     return finish(sink, true, 0);
   }
-  tell(sink, grid.source, remarks);
+  tell(sink, grid.source, played.remarks);
   for (int row = 0; row < grid.rows; ++row) {
     pace.wait();
     const dubsar_profile profile = plugin::profile_of(grid, row);
@@ -100,16 +107,17 @@ std::int32_t send_grid(const RangeGrid& grid, const Remarks& remarks, Pace pace,
   return finish(sink, false, static_cast<std::uint64_t>(grid.rows));
 }
 
-std::int32_t send_cloud(const PointCloud& cloud, const Remarks& remarks, Pace pace, const dubsar_sink& sink) {
+std::int32_t send_cloud(const PointCloud& cloud, const Played& played, Pace pace, const dubsar_sink& sink) {
   dubsar_scan_info info{};
   info.struct_size = sizeof info;
   info.flags = DUBSAR_SCAN_UNORDERED;
   info.view = plugin::view_of({});
   info.source = cloud.source.c_str();
+  info.file = played.file.c_str();
   if (sink.begin(sink.user, &info) != 0) {
     return finish(sink, true, 0);
   }
-  tell(sink, cloud.source, remarks);
+  tell(sink, cloud.source, played.remarks);
   std::vector<float> x;
   std::vector<float> y;
   std::vector<float> z;
@@ -236,9 +244,10 @@ std::int32_t scan(dubsar_device* device, const dubsar_sink* sink, dubsar_error* 
     const Pace pace(device->rate_per_s);
     const auto* grid = std::get_if<RangeGrid>(&**data);
     const auto* cloud = std::get_if<PointCloud>(&**data);
-    const Remarks remarks = device->files.remarks_on(grid != nullptr ? grid->source : cloud->source);
+    const Played played{device->files.file().string(),
+                        device->files.remarks_on(grid != nullptr ? grid->source : cloud->source)};
     const std::int32_t code =
-        grid != nullptr ? send_grid(*grid, remarks, pace, *sink) : send_cloud(*cloud, remarks, pace, *sink);
+        grid != nullptr ? send_grid(*grid, played, pace, *sink) : send_cloud(*cloud, played, pace, *sink);
     return code == DUBSAR_OK ? code : plugin::report(error, DUBSAR_CANCELLED, "scan cancelled");
   });
 }

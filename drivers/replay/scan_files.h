@@ -30,6 +30,9 @@ class ScanFiles {
   /// Nothing when some file must be read to know (PTX holds several scans).
   [[nodiscard]] std::optional<std::int64_t> count() const { return count_; }
 
+  /// Which the last scan came from; next() has given one.
+  [[nodiscard]] const std::filesystem::path& file() const { return files_[next_file_ - 1]; }
+
   /// What reading says of a scan of the last file, by the scan's name.
   [[nodiscard]] std::vector<std::string> remarks_on(const std::string& scan) const;
 
