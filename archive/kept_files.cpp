@@ -118,6 +118,12 @@ Status keep_all(const fs::path& bag, const std::vector<fs::path>& names, const f
 
 }  // namespace
 
+std::string sentence_of(const KeptFiles& kept) {
+  return kept.files == 0
+             ? ""
+             : "what was put into the earlier package, or changed in it, is kept in " + kept.folder.string();
+}
+
 Result<KeptFiles> keep_what_is_not_of_the_bag(const fs::path& bag, JobContext& job) {
   const Result<BagReport> report = check_bag(bag, job);
   if (!report) {

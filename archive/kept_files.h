@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <string>
 
 #include "core/job.h"
 #include "core/result.h"
@@ -15,6 +16,8 @@ struct KeptFiles {
   std::filesystem::path folder;  ///< "BAG.kept-1"; empty where there was nothing to keep
   std::size_t files = 0;
 };
+/// Where they are, for people; empty where there was nothing to keep.
+[[nodiscard]] std::string sentence_of(const KeptFiles& kept);
 
 /// Puts everything in a bag that its manifests do not list, or list with other bytes, under the same names
 /// into a new folder beside it, so that the bag may be removed: what others added or changed is theirs. The

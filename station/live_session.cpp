@@ -303,6 +303,9 @@ void LiveSession::pack(const std::filesystem::path& to) {
     }
     const std::scoped_lock lock(mutex_);
     state_.package = to;
+    if (packing->package.kept.files > 0) {
+      state_.notice = sentence_of(packing->package.kept);
+    }
   });
 }
 

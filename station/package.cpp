@@ -158,11 +158,9 @@ Result<KeptFiles> keep_others(const fs::path& to, JobContext& job) {
   if (!is_bag(to)) {
     return KeptFiles{};  // nothing, or an empty folder
   }
-  const fs::path whole = whole_name(to);
-  Result<KeptFiles> kept = keep_what_is_not_of_the_bag(whole, job);
+  Result<KeptFiles> kept = keep_what_is_not_of_the_bag(whole_name(to), job);
   if (kept && kept->files > 0) {
-    log_warning(whole.string() + ": files that its manifest does not list, or lists otherwise, are kept in " +
-                kept->folder.string());
+    log_warning(sentence_of(*kept));
   }
   return kept;
 }

@@ -85,6 +85,8 @@ constexpr EnginePhrase kStored[] = {
      "aus einer Kopie zurückholen (dubsar verify --repair --from KOPIE "},
     {") or scan again", "), oder neu scannen"},
     {": missing; ", ": fehlt; "},
+    {"what was put into the earlier package, or changed in it, is kept in ",
+     "was in das frühere Paket gelegt oder darin geändert wurde, liegt nun in "},
     {"bring it back from a copy", "aus einer Kopie zurückholen"},
     {"its own checksum does not fit", "die eigene Prüfsumme passt nicht"},
     {" rebuilds it from its rows, its backup and the grids",
