@@ -3,6 +3,8 @@
 // The dubsar command: a skin over the engine and the stages. Contract: design.md, "Command".
 
 #include <fmt/format.h>
+#include <poll.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -40,9 +42,15 @@ int report(const Error& error, bool json) {
   return exit_status(error.kind);
 }
 
+/// Of a pipe, as `| head` does when it has what it wants.
+bool has_reader_left() {
+  pollfd out{STDOUT_FILENO, POLLOUT, 0};
+  return poll(&out, 1, 0) == 1 && (out.revents & POLLERR) != 0;
+}
+
 /// What a verb printed is a part of what it was asked for: it has not done its work where that got lost.
 Result<int> with_output_written(Result<int> status) {
-  if (!status || (std::fflush(stdout) == 0 && std::ferror(stdout) == 0)) {
+  if (!status || (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) || has_reader_left()) {
     return status;
   }
   return fail(ErrorKind::kStorage, "it did not take all of the answer", "standard output",

@@ -32,6 +32,17 @@ TEST(CommandUsage, AnAnswerThatCouldNotBePrintedIsNoSuccess) {
   EXPECT_THAT(test::bytes_of(err), HasSubstr("dubsar: standard output: it did not take all of the answer"));
 }
 
+TEST(CommandUsage, AReaderThatHasWhatItWantsIsNoFault) {
+  const test::TemporaryFolder folder;
+  const fs::path err = folder.path() / "err";
+  // The reader of the pipe is gone before anything is written.
+  const int status =
+      test::shell("bash -c 'exec 3> >(:); wait $!; " DUBSAR_BINARY_DIR "/bin/dubsar drivers --json >&3' 2>" +
+                  test::quoted(err));
+  EXPECT_EQ(status, 0);
+  EXPECT_EQ(test::bytes_of(err), "");
+}
+
 TEST(CommandUsage, ATabletOfTheWrongUnitIsNotScannedUntilTheMemoryIsFull) {
   const test::TemporaryFolder folder;
   const std::string made = (folder.path() / "made").string();
