@@ -21,7 +21,6 @@
 #include <optional>
 
 #include "bench/speed/viewer_frames.h"
-#include "bench/support/card_context.h"
 #include "bench/support/opened_view.h"
 #include "bench/support/options.h"
 #include "bench/support/pebble.h"
@@ -30,6 +29,7 @@
 #include "formats/mesh_io.h"
 #include "station/picture_file.h"
 #include "tests/support/raster_mesh.h"
+#include "tests/ui/support/card_context.h"
 #include "tests/ui/support/display.h"
 #include "ui/gl/gl_window.h"
 #include "ui/view/surface_view.h"
@@ -252,7 +252,7 @@ int main(int argc, char** argv) {
     return opening->parsed() ? time_opening(mesh) : time_turning(mesh);
   };
   if (card) {
-    return with_context(CardContext::open(), run);
+    return with_context(dubsar::test::CardContext::open(), run);
   }
   return with_context(GlWindow::open(64, 64, "bench"), run);
 }

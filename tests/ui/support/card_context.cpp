@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright The Dubsar developers
-#include "bench/support/card_context.h"
+#include "tests/ui/support/card_context.h"
 
 #include <epoxy/egl.h>
 #include <epoxy/gl.h>
@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-namespace dubsar::bench {
+namespace dubsar::test {
 
 namespace {
 
@@ -104,4 +104,4 @@ CardContext::~CardContext() {
   }
 }
 
-}  // namespace dubsar::bench
+}  // namespace dubsar::test

@@ -6,7 +6,7 @@
 
 #include "core/result.h"
 
-namespace dubsar::bench {
+namespace dubsar::test {
 
 /// OpenGL 4.1 without a display, through EGL: on the first graphics card that has it, else drawn by the
 /// processor. Current until it goes; one at a time, main thread.
@@ -26,4 +26,4 @@ class CardContext {
   std::string renderer_;
 };
 
-}  // namespace dubsar::bench
+}  // namespace dubsar::test
