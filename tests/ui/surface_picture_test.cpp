@@ -173,6 +173,41 @@ TEST_F(Shading, AShadowTakesLightAndGivesNone) {
   EXPECT_EQ(brighter, 0U);
 }
 
+/// What a wedge is deep, on a tablet of 110 mm.
+TEST_F(Shading, AStepOfAThirdOfAMillimetreCastsItsShadow) {
+  constexpr float kStepMm = 0.3F;
+  Mesh step;
+  for (const auto& [x, z] : {std::pair{-55.0F, kStepMm}, {0.0F, kStepMm}, {0.0F, 0.0F}, {55.0F, 0.0F}}) {
+    step.positions.emplace_back(x, -40.0F, z);
+    step.positions.emplace_back(x, 40.0F, z);
+  }
+  for (const std::uint32_t k : {0U, 2U, 4U}) {
+    step.faces.push_back({k, k + 2, k + 1});
+    step.faces.push_back({k + 1, k + 2, k + 3});
+  }
+  view_->show(shown_mesh(step));
+  look_.lamp = true;
+  look_.flat = true;
+  look_.radiance = 0;
+  look_.light = {-0.94F, 0, 0.34F};
+  camera_.fit({Eigen::Vector3f(-55, -40, 0), Eigen::Vector3f(55, 40, kStepMm)},
+              static_cast<float>(kWidth) / kHeight);
+  camera_.half_height_mm = 1.5F;
+  const auto brightness_at = [&](float x) {
+    const Image picture = view_->read();
+    const Eigen::Vector2f at = camera_.pixel_of({x, 0, 0}, {kWidth, kHeight});
+    return static_cast<int>(picture.rgb(static_cast<int>(at.x()), static_cast<int>(at.y()))[0]);
+  };
+  view_->draw_whole(camera_, look_, kWidth, kHeight);
+  const float reach_mm = kStepMm * 0.94F / 0.34F;
+  const int lit = brightness_at(reach_mm + 0.3F);
+  EXPECT_GT(lit, 50);
+  EXPECT_EQ(brightness_at(-0.5F), lit);
+  for (const float part : {0.3F, 0.5F, 0.7F}) {
+    EXPECT_LT(brightness_at(part * reach_mm), lit / 2) << part;
+  }
+}
+
 /// What looks over the edge of a tile (discs, shadows, shading by depth and curvature) among it.
 TEST_F(Shading, APictureDrawnTileByTileHasNoSeamsAndIsThatOfOnePiece) {
   constexpr int kWide = 1300;

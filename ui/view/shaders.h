@@ -175,6 +175,7 @@ uniform sampler2D shadow_map;
 uniform int lamp;             // 0: lit sphere, 1: raking lamp
 uniform vec3 light;           // towards the lamp, eye space, unit
 uniform int shadows;
+uniform float shadow_slack;   // of clip depth
 uniform int occlusion;
 uniform float radiance;       // 0: off
 uniform float depth_shading;  // 0: off
@@ -220,7 +221,7 @@ float lit() {
   float open = 0.0;
   for (int i = -1; i <= 1; ++i) {
     for (int j = -1; j <= 1; ++j) {
-      open += texture(shadow_map, q.xy + vec2(i, j) * texel).r + 0.004 > q.z ? 1.0 : 0.0;
+      open += texture(shadow_map, q.xy + vec2(i, j) * texel).r + shadow_slack > q.z ? 1.0 : 0.0;
     }
   }
   return open / 9.0;

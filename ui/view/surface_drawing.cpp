@@ -38,7 +38,7 @@ bool SurfaceView::draw_in_motion(const Scene& scene) {
   faces_drawn_ = 0;
   draw_surface(layer, rough, level_drawn_, levels_[level_drawn_]);
   if (casts_shadows(layer, rough)) {
-    const std::size_t level = shadow_level(rough, level_drawn_);
+    const std::size_t level = shadow_level(layer, rough, level_drawn_);
     draw_shadow(layer, rough, level, levels_[level]);
   }
   draw_marks(layer, rough);
@@ -66,7 +66,7 @@ bool SurfaceView::add_faces(Layer& layer, const Scene& scene, Progress& next) {
   const float aspect = static_cast<float>(scene.width) / static_cast<float>(scene.height);
   const Eigen::Matrix4f clip_from_model = scene.camera.clip_from_model(aspect);
   const std::size_t whole = levels_.size() - 1;
-  const std::size_t casting = shadow_level(scene, whole);
+  const std::size_t casting = shadow_level(layer, scene, whole);
   const bool shadows = casts_shadows(layer, scene) && next.shadow < levels_[casting].size();
   const std::span<const FaceBlock> blocks = levels_[shadows ? casting : whole];
   std::size_t& done = shadows ? next.shadow : next.surface;
@@ -146,7 +146,7 @@ void SurfaceView::draw_level(std::size_t level, const OrbitCamera& camera, const
   level_drawn_ = level;
   draw_surface(layer, scene, level, levels_[level]);
   if (casts_shadows(layer, scene)) {
-    const std::size_t casting = shadow_level(scene, level);
+    const std::size_t casting = shadow_level(layer, scene, level);
     draw_shadow(layer, scene, casting, levels_[casting]);
   }
   draw_marks(layer, scene);

@@ -15,7 +15,14 @@ namespace dubsar::ui {
 
 namespace {
 
-constexpr int kShadowSize = 1024;
+/// Pixels of a shadow's side: of a tablet of 110 mm 0.07 mm each, and twice that while a slow machine turns
+/// it.
+constexpr int kShadowPx = 2048;
+constexpr int kRoughShadowPx = 1024;
+/// Noise of the surface casts no shadow.
+constexpr float kShadowSlackMm = 0.02F;
+/// A pixel of the shadow is asked for around where it is (3 × 3): on a slope that is so much deeper.
+constexpr float kShadowSlopes = 2.5F;
 
 /// A surface_* shader for what may be shown on it, or for bare clay.
 std::string surface_shader(const char* source, bool everything) {
@@ -174,8 +181,12 @@ Eigen::Matrix4f SurfaceView::light_clip_from_model(const Scene& scene) const {
   return lamp_of(scene).clip_from_model(1.0F);
 }
 
-std::size_t SurfaceView::shadow_level(const Scene& scene, std::size_t finest) const {
-  const float pixel_mm = lamp_of(scene).mm_per_px(kShadowSize);
+int SurfaceView::shadow_px(const Layer& layer) const {
+  return &layer == &layers_[kInMotion] && motion_.is_slow() ? kRoughShadowPx : kShadowPx;
+}
+
+std::size_t SurfaceView::shadow_level(const Layer& layer, const Scene& scene, std::size_t finest) const {
+  const float pixel_mm = lamp_of(scene).mm_per_px(static_cast<float>(shadow_px(layer)));
   std::size_t level = 0;
   while (level < finest && cells_mm_[level] > 1.5F * pixel_mm) {
     ++level;
@@ -190,7 +201,7 @@ bool SurfaceView::clear(Layer& layer, const Scene& scene) const {
   glClearColor(0, 0, 0, 0);
   glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
   if (casts_shadows(layer, scene)) {
-    resized = layer.shadow.resize(kShadowSize, kShadowSize) || resized;
+    resized = layer.shadow.resize(shadow_px(layer), shadow_px(layer)) || resized;
     layer.shadow.bind();
     glClear(GL_DEPTH_BUFFER_BIT);
   }
@@ -275,8 +286,12 @@ void SurfaceView::draw_shadow(Layer& layer, const Scene& scene, std::size_t leve
   glDisable(GL_SCISSOR_TEST);
   shadow_.use();
   shadow_.set("clip_from_model", light_clip_from_model(scene));
+  glEnable(GL_POLYGON_OFFSET_FILL);
+  glPolygonOffset(kShadowSlopes, 0);
   mesh_->bind();
   draw_faces(level, {blocks.front().first, blocks.back().first + blocks.back().count - blocks.front().first});
+  glDisable(GL_POLYGON_OFFSET_FILL);
+  layer.shadow_slack_mm = kShadowSlackMm + (level < cells_mm_.size() ? 0.5F * cells_mm_[level] : 0.0F);
 }
 
 void SurfaceView::draw_marks(Layer& layer, const Scene& scene) {
@@ -323,6 +338,7 @@ void SurfaceView::light(Layer& layer, const Scene& scene) {
   lighting_.set("mm_per_px", scene.camera.mm_per_px(static_cast<float>(scene.height)));
   lighting_.set("depth_mm", scene.camera.depth_mm);
   if (shadows) {
+    lighting_.set("shadow_slack", layer.shadow_slack_mm / (2 * lamp_of(scene).depth_mm));
     lighting_.set("light_clip_from_clip", Eigen::Matrix4f(light_clip_from_model(scene) *
                                                           scene.camera.clip_from_model(aspect).inverse()));
   }

@@ -117,6 +117,7 @@ class SurfaceView {
     FrameTarget shadow{{}};
     FrameTarget picture{{PixelFormat::kRgba8}};  ///< of both, lit
     bool shadow_stands = false;                  ///< from another picture in the same light
+    float shadow_slack_mm = 0;                   ///< what casts it may lie so far off the surface
   };
   struct Scene {
     OrbitCamera camera;
@@ -140,8 +141,9 @@ class SurfaceView {
   void draw_surface(Layer& layer, const Scene& scene, std::size_t level, std::span<const FaceBlock> blocks);
   void draw_shadow(Layer& layer, const Scene& scene, std::size_t level, std::span<const FaceBlock> blocks);
   void draw_faces(std::size_t level, const FaceRun& run) const;
+  [[nodiscard]] int shadow_px(const Layer& layer) const;
   /// The coarsest level up to `finest` whose shadows are as good as that one's.
-  [[nodiscard]] std::size_t shadow_level(const Scene& scene, std::size_t finest) const;
+  [[nodiscard]] std::size_t shadow_level(const Layer& layer, const Scene& scene, std::size_t finest) const;
   bool draw_in_motion(const Scene& scene);
   bool draw_more(const Scene& scene);
   bool add_faces(Layer& layer, const Scene& scene, Progress& next);
