@@ -61,7 +61,7 @@ std::string in_ascii(std::string_view text) {
 
 std::string label_value(std::string_view text) {
   constexpr std::string_view kCut = "…";
-  const std::string line = one_line(text);
+  std::string line = one_line(text);
   if (line.size() <= kMaxLabelBytes) {
     return line;
   }

@@ -97,6 +97,7 @@ Result<std::vector<ScanPose>> register_scans(const ScanSet& set, const RegisterO
     }
   }
   std::vector<PlannedEntry> entries;
+  entries.reserve(set.scans.size());
   for (const StationScan& scan : set.scans) {
     entries.push_back(plan_entry(scan, set, options));
   }

@@ -16,7 +16,6 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <functional>
 #include <limits>
 #include <optional>
 
@@ -202,8 +201,8 @@ int check_picking(double millions) {
 }
 
 /// With the context until that ends; status 3 without one.
-template <class Context>
-int with_context(Result<Context> context, const std::function<int(const std::string&)>& run) {
+template <class Context, class Run>
+int with_context(const Result<Context>& context, const Run& run) {
   if (!context) {
     std::fprintf(stderr, "%s\n", context.error().line().c_str());
     return 3;
@@ -227,13 +226,12 @@ int main(int argc, char** argv) {
   double millions = 20;
   std::string picture;
   CLI::App* frames = app.add_subcommand("frames", "frames a second, every face drawn");
-  CLI::Option* of_mesh = frames->add_option("mesh", mesh, "PLY, OBJ, STL or GLB");
+  frames->add_option("mesh", mesh, "PLY, OBJ, STL or GLB; else a body of --faces");
   frames->add_option("--picture", picture, "PNG that the last frame is written to");
   CLI::App* picking = app.add_subcommand("pick", "faces by number, status 1 when one is wrong");
   for (CLI::App* verb : {frames, picking}) {
     verb->add_option("--faces", millions, "millions of faces")->check(CLI::Range(0.1, 200.0));
   }
-  frames->get_option("--faces")->excludes(of_mesh);
   if (const auto status = dubsar::bench::ends_with(app, argc, argv)) {
     return *status;
   }
