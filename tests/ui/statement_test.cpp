@@ -5,6 +5,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <regex>
+#include <string>
+
 namespace dubsar::ui {
 namespace {
 
@@ -51,6 +54,7 @@ TEST(Statement, HandsOffWhileTheScannerWorks) {
     EXPECT_EQ(s.tone, Tone::kHandsOff);
     EXPECT_FALSE(s.may_scan);
     EXPECT_TRUE(s.may_stop);
+    EXPECT_THAT(s.headline + s.detail, HasSubstr("Hands off"));
     EXPECT_EQ(s.may_halt, phase != LivePhase::kJudging) << "nothing moves while it computes";
   }
 }
@@ -75,9 +79,43 @@ TEST(Statement, AnUnsureScanIsToldWithItsReason) {
   state.phase = LivePhase::kWaiting;
   state.last_not_taken_up = true;
   const Statement s = statement_of(state, true, Language::kEnglish);
-  EXPECT_EQ(s.headline, "Scan 4 is unsure");
+  EXPECT_EQ(s.headline, "Scan 4 is unsure: scan on, or show same places");
   EXPECT_THAT(s.detail, HasSubstr("The overlap is too small."));
   EXPECT_TRUE(s.may_point);
+}
+
+/// What motors do is not asked of the operator.
+TEST(Statement, WhereMotorsGoIsToldAndThatTheTabletStays) {
+  LiveState state = with_scan(PoseStatus::kRegistered);
+  state.phase = LivePhase::kWaiting;
+  state.next = NextView{};
+  state.next->say = "turntable to 320°, tilt to 70°";
+  state.next->placement = Placement{};
+  const Statement s = statement_of(state, true, Language::kEnglish);
+  EXPECT_EQ(s.headline, "Leave the tablet as it lies, and scan");
+  EXPECT_EQ(s.detail, "The scanner goes by itself: turntable to 320°, tilt to 70°.");
+  state.last_not_taken_up = true;
+  state.scans.back().pose->status = PoseStatus::kUnsure;
+  EXPECT_THAT(statement_of(state, true, Language::kGerman).detail,
+              HasSubstr("Der Scanner fährt selbst: Drehteller auf 320°, Neigung auf 70°."));
+}
+
+TEST(Statement, WhatIsShownInBlueIsCalledBlue) {
+  LiveState state = with_scan(PoseStatus::kRegistered);
+  state.red_map = map_with(2.5);
+  EXPECT_EQ(statement_of(state, true, {Language::kEnglish, true}).headline,
+            "2.5 mm² are still blue: scan on");
+  EXPECT_EQ(statement_of(state, true, {Language::kGerman, true}).headline,
+            "2,5 mm² sind noch blau: weiter scannen");
+  for (int k = 0; k < static_cast<int>(Text::kCount); ++k) {
+    const auto text = static_cast<Text>(k);
+    if (text != Text::kColourBlind) {
+      const std::string english = std::string(" ") + text_of(text, {Language::kEnglish, true}) + " ";
+      const std::string german = std::string(" ") + text_of(text, {Language::kGerman, true}) + " ";
+      EXPECT_FALSE(std::regex_search(english, std::regex("[^a-z]red[^a-z]"))) << english;
+      EXPECT_FALSE(std::regex_search(german, std::regex("[^a-z]rot[^a-z]"))) << german;
+    }
+  }
 }
 
 /// A scanner that nothing drives: what the red map proposes is all that is known of the next view.
@@ -114,7 +152,7 @@ TEST(Statement, AFailedScanIsNotCalledUnsure) {
   state.phase = LivePhase::kWaiting;
   state.last_not_taken_up = true;
   const Statement s = statement_of(state, true, Language::kEnglish);
-  EXPECT_EQ(s.headline, "No place for scan 4");
+  EXPECT_EQ(s.headline, "No place for scan 4: scan on, or show same places");
   EXPECT_TRUE(s.may_point);
 }
 
@@ -128,7 +166,7 @@ TEST(Statement, AScanThatWasSetAsideIsNamedAndNoOther) {
   aside.note = "something was in the way of scan 5: 12 % of it, where scan 4 looked too, stands in the air";
   state.scans.push_back(aside);
   const Statement s = statement_of(state, true, Language::kEnglish);
-  EXPECT_EQ(s.headline, "Scan 5 is set aside");
+  EXPECT_EQ(s.headline, "Scan 5 is set aside: scan again");
   EXPECT_THAT(s.detail, HasSubstr("Something was in the way"));
   EXPECT_FALSE(s.may_point) << "there is nothing to point at";
   EXPECT_THAT(statement_of(state, true, Language::kGerman).detail, HasSubstr("wo auch Scan 4 hinsah"));
@@ -140,7 +178,9 @@ TEST(Statement, AScanThatWasSetAsideIsNamedAndNoOther) {
 TEST(Statement, AFailedVerificationIsNotCalledAMissingOne) {
   LiveState state;
   state.care = RigCare{};
-  EXPECT_THAT(statement_of(state, true, Language::kEnglish).detail, HasSubstr("not measured today"));
+  const Statement never = statement_of(state, true, Language::kEnglish);
+  EXPECT_EQ(never.headline, "First measure the artefact: press Calibration");
+  EXPECT_THAT(never.detail, HasSubstr("not measured today"));
   state.care->last = VerificationEntry{};
   state.care->last->passed = false;
   state.care->age_days = 0.1;
@@ -161,8 +201,11 @@ TEST(Statement, OnlyWhatIsThereMayBeSigned) {
   state.signed_off = true;
   state.signed_by = "A. Reader";
   const Statement s = statement_of(state, true, Language::kEnglish);
-  EXPECT_EQ(s.headline, "Signed by A. Reader");
+  EXPECT_EQ(s.headline, "Signed by A. Reader: make the package");
   EXPECT_FALSE(s.may_sign);
+  state.package = "/disk/package";
+  EXPECT_EQ(statement_of(state, true, Language::kEnglish).headline,
+            "Signed by A. Reader: lay the next tablet");
 }
 
 /// Its place is sure, and yet its lengths are wrong: whoever signs has read it.
@@ -182,7 +225,7 @@ TEST(Statement, WrongLengthsAreSaidBeforeTheSignature) {
                 HasSubstr("Scan 4: gegen die anderen Scans ist er 1,2 % zu groß"));
   }
   EXPECT_EQ(statement_of(state, true, Language::kEnglish).headline,
-            "Conclusive, but lengths of a scan are off");
+            "Conclusive, but lengths of a scan are off: check, then sign");
   state.scans.push_back(state.scans.back());
   EXPECT_THAT(statement_of(state, true, Language::kEnglish).detail,
               HasSubstr("scan it again. More scans whose lengths are off: 1."));
@@ -226,6 +269,7 @@ TEST(Statement, WhatEndedTheRunIsToldWithItsMend) {
   state.error = Error{ErrorKind::kDevice, "the camera is gone", "v4l2:/dev/video0", "plug it in"};
   const Statement s = statement_of(state, true, Language::kEnglish);
   EXPECT_EQ(s.tone, Tone::kBad);
+  EXPECT_EQ(s.headline, "Stopped: put this right, then go on");
   EXPECT_THAT(s.detail, HasSubstr("the camera is gone"));
   EXPECT_THAT(s.detail, HasSubstr("plug it in"));
   EXPECT_TRUE(s.may_scan) << "it goes on with what is there";

@@ -98,7 +98,7 @@ void OperatorScreen::draw_tablet(UiContext& ui) {
   line("cdli", Text::kCdli, record_.cdli);
   const bool cdli_good = check_cdli(record_.cdli).has_value();
   if (!cdli_good) {
-    coloured_text(ui.colours.red, ui.text(Text::kCdliWrong));
+    coloured_text(ui.colours.bad, ui.text(Text::kCdliWrong));
   }
   line("collection", Text::kCollection, record_.collection);
   line("operator", Text::kOperator, record_.operator_name);

@@ -32,11 +32,11 @@ void draw_outcome(UiContext& ui, const VerifyOutcome& outcome) {
     say(ui.colours.text, filled(ui.text(Text::kFlatnessLine), 1e3 * *outcome.is.flatness_mm));
   }
   for (const std::string& line : outcome.is.failed) {
-    say(ui.colours.red, translated(line, ui.preferences.language));
+    say(ui.colours.bad, translated(line, ui.preferences.language));
   }
   const bool passed = outcome.is.passed();
   ui.facts.insert(passed ? "verify-passed" : "verify-failed");
-  say(passed ? ui.colours.good : ui.colours.red,
+  say(passed ? ui.colours.good : ui.colours.bad,
       fmt::format("{}: {}", outcome.artefact.name,
                   ui.text(passed ? Text::kVerifyPassed : Text::kVerifyFailed)));
   if (outcome.time_unknown) {
@@ -170,7 +170,7 @@ void CalibrationDialog::draw_shots(UiContext& ui) {
   }
   if (!shot_said_.empty()) {
     ui.facts.insert("shot " + shot_said_);
-    say(shot_failed_ ? ui.colours.red : ui.colours.good,
+    say(shot_failed_ ? ui.colours.bad : ui.colours.good,
         shot_failed_ ? translated(shot_said_, ui.preferences.language) : shot_said_);
   }
 }
@@ -268,7 +268,7 @@ void CalibrationDialog::draw(UiContext& ui, const LiveState& state) {
     }
   } else if (state.error) {
     ui.facts.insert("calibration-refused");
-    coloured_text(ui.colours.red, translated(*state.error, ui.preferences.language).c_str());
+    coloured_text(ui.colours.bad, translated(*state.error, ui.preferences.language).c_str());
   } else {
     if (state.notice.starts_with("kept: ")) {
       ui.facts.insert("calibration-kept");

@@ -108,7 +108,7 @@ void DeviceDialog::draw_options(UiContext& ui) {
   ImGui::PushTextWrapPos(0);
   ImGui::TextUnformatted(driver.description.c_str());
   if (!driver.trouble.empty()) {
-    coloured_text(ui.colours.red, driver.trouble.c_str());
+    coloured_text(ui.colours.bad, driver.trouble.c_str());
   }
   ImGui::PopTextWrapPos();
   bool changed = false;

@@ -124,7 +124,7 @@ void OperatorScreen::draw(UiContext& ui, ImVec2 size) {
   take_state(ui);
   sound_out(ui);
   const bool has_device = !session_.device().empty();
-  const Statement statement = statement_of(state_, has_device, ui.preferences.language);
+  const Statement statement = statement_of(state_, has_device, ui.preferences.wording());
   ImGui::SetNextWindowPos({0, 0});
   ImGui::SetNextWindowSize(size);
   ImGui::Begin("operator", nullptr,

@@ -40,7 +40,7 @@ Eigen::Vector4f state_colour(const UiContext& ui, Text state) {
       return ui.colours.amber;
     case Text::kFailed:
     case Text::kDamaged:
-      return ui.colours.red;
+      return ui.colours.bad;
     default:
       return ui.colours.faint;
   }

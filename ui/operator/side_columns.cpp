@@ -98,7 +98,7 @@ void OperatorScreen::draw_left(UiContext& ui, ImVec2 size) {
     ImGui::PushFont(ui.fonts.small);
     ImGui::TextUnformatted(ui.text(Text::kStore));
     ImGui::SameLine();
-    coloured_text(list.store_whole ? ui.colours.good : ui.colours.red,
+    coloured_text(list.store_whole ? ui.colours.good : ui.colours.bad,
                   ui.text(list.store_whole ? Text::kStoreWhole : Text::kStoreDamaged));
     ImGui::TextUnformatted(filled(ui.text(Text::kDiskFree), list.disk_free_gib).c_str());
     ImGui::TextUnformatted(ui.text(Text::kCalibration));

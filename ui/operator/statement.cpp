@@ -47,6 +47,17 @@ bool add_warnings(Statement& out, const LiveState& state, Language language) {
   return warned > 0;
 }
 
+bool is_turned_by_hand(const NextView& next) {
+  return next.placement && next.placement->hand_turn;
+}
+
+/// What motors do is not told as if the operator were to do it.
+std::string what_is_next(const NextView& next, Language language) {
+  return next.placement && !is_turned_by_hand(next)
+             ? filled(text_of(Text::kGoesItself, language), translated(next.say, language))
+             : sentence(next.say, language);
+}
+
 /// The last scan is not taken up: it was set aside, or it lies nowhere for certain. False where it does.
 bool say_not_taken_up(Statement& out, const LiveState& state, Language language) {
   const LiveScan* last = newest(state);
@@ -57,14 +68,13 @@ bool say_not_taken_up(Statement& out, const LiveState& state, Language language)
   } else if (last != nullptr && last->pose && last->pose->status != PoseStatus::kRegistered) {
     const bool failed = last->pose->status == PoseStatus::kFailed;
     out.headline = filled(text_of(failed ? Text::kFailedScan : Text::kUnsureScan, language), last->id);
-    out.detail =
-        fmt::format("{} {}", sentence(last->pose->reason, language), text_of(Text::kUnsureHow, language));
+    out.detail = sentence(last->pose->reason, language);
     out.may_point = true;
   } else {
     return false;
   }
   if (state.next) {
-    add_sentence(out.detail, sentence(state.next->say, language));
+    add_sentence(out.detail, what_is_next(*state.next, language));
   }
   return true;
 }
@@ -76,7 +86,8 @@ bool is_mapped(const LiveState& state, const LiveScan& scan) {
           std::ranges::find(state.red_map->scans, scan.id, &RedScan::id) != state.red_map->scans.end());
 }
 
-void say_waiting(Statement& out, const LiveState& state, Language language) {
+void say_waiting(Statement& out, const LiveState& state, Wording wording) {
+  const Language language = wording.language;
   out.tone = Tone::kAsk;
   out.may_scan = out.may_finish = true;
   if (state.last_not_taken_up && say_not_taken_up(out, state, language)) {
@@ -84,9 +95,13 @@ void say_waiting(Statement& out, const LiveState& state, Language language) {
   }
   const LiveScan* last = newest(state);
   if (state.next) {
-    const bool turn = state.next->placement && state.next->placement->hand_turn;
-    out.headline = capitalised(translated(state.next->say, language));
-    out.detail = text_of(turn ? Text::kTurnThenScan : Text::kScanAsItLies, language);
+    if (state.next->placement && !is_turned_by_hand(*state.next)) {
+      out.headline = text_of(Text::kScanAsItLies, language);
+      out.detail = what_is_next(*state.next, language);
+    } else {
+      out.headline = capitalised(translated(state.next->say, language));
+      out.detail = text_of(Text::kTurnThenScan, language);
+    }
   } else if (last == nullptr) {
     out.headline = text_of(Text::kLayTablet, language);
   } else if (!last->pose ||
@@ -96,13 +111,14 @@ void say_waiting(Statement& out, const LiveState& state, Language language) {
     out.detail = text_of(Text::kJudgedWhileWaiting, language);
   } else if (state.red_map && !state.red_map->next.empty()) {
     out.headline = capitalised(translated(state.red_map->next.front().say, language));
-    out.detail = text_of(Text::kThenScan, language);
+    out.detail = text_of(Text::kThenScan, wording);
   } else {
-    out.headline = text_of(Text::kScanTheRed, language);
+    out.headline = text_of(Text::kScanTheRed, wording);
   }
 }
 
-void say_still(Statement& out, const LiveState& state, bool has_device, Language language) {
+void say_still(Statement& out, const LiveState& state, bool has_device, Wording wording) {
+  const Language language = wording.language;
   const bool any = newest(state) != nullptr;
   const std::string broken_off = state.broken_off_rows > 0
                                      ? filled(text_of(Text::kBrokenOff, language), state.broken_off_rows)
@@ -131,13 +147,15 @@ void say_still(Statement& out, const LiveState& state, bool has_device, Language
     if (state.care && state.care->is_due()) {
       const bool failed = state.care->last && !state.care->last->passed;
       out.tone = failed ? Tone::kBad : out.tone;
+      out.headline = text_of(Text::kMeasureFirst, language);
       add_sentence(out.detail, text_of(failed ? Text::kVerifyHasFailed : Text::kVerifyFirst, language));
     }
   } else if (conclusive && state.signed_off) {
-    out.headline = filled(text_of(Text::kSigned, language), state.signed_by.c_str());
-    out.detail = state.package.empty()
-                     ? text_of(Text::kSignedNext, language)
-                     : filled(text_of(Text::kPackageKept, language), state.package.string());
+    const bool packed = !state.package.empty();
+    out.headline =
+        filled(text_of(packed ? Text::kSignedNext : Text::kSignedPack, language), state.signed_by.c_str());
+    out.detail = packed ? filled(text_of(Text::kPackageKept, language), state.package.string())
+                        : text_of(Text::kIntoItsBox, language);
     out.tone = Tone::kGood;
   } else if (conclusive) {
     const bool warned = add_warnings(out, state, language);
@@ -147,7 +165,7 @@ void say_still(Statement& out, const LiveState& state, bool has_device, Language
   } else {
     out.headline =
         state.red_map && !state.red_map->conclusive
-            ? filled(text_of(Text::kStillRed, language), area_words(red_mm2(*state.red_map), language))
+            ? filled(text_of(Text::kStillRed, wording), area_words(red_mm2(*state.red_map), language))
             : filled(text_of(Text::kStoredScans, language), state.scans.size());
     out.tone = Tone::kAsk;
     out.scan_label = Text::kGoOn;
@@ -193,7 +211,8 @@ double face_mm2(const RedMap& map, Face face, RegionState state) {
   return sum;
 }
 
-Statement statement_of(const LiveState& state, bool has_device, Language language) {
+Statement statement_of(const LiveState& state, bool has_device, Wording wording) {
+  const Language language = wording.language;
   Statement out;
   out.may_undo = newest(state) != nullptr && state.phase != LivePhase::kReading &&
                  state.phase != LivePhase::kSigning && state.phase != LivePhase::kPacking && has_device;
@@ -206,7 +225,7 @@ Statement statement_of(const LiveState& state, bool has_device, Language languag
                  state.phase == LivePhase::kScanning || state.phase == LivePhase::kMeasuring;
   switch (state.phase) {
     case LivePhase::kStill:
-      say_still(out, state, has_device, language);
+      say_still(out, state, has_device, wording);
       break;
     case LivePhase::kReading:
       out.headline = text_of(Text::kReading, language);
@@ -224,9 +243,10 @@ Statement statement_of(const LiveState& state, bool has_device, Language languag
       break;
     case LivePhase::kJudging:
       hands_off(Text::kJudging);
+      out.detail = text_of(Text::kHandsOffYet, language);
       break;
     case LivePhase::kWaiting:
-      say_waiting(out, state, language);
+      say_waiting(out, state, wording);
       break;
     case LivePhase::kFinishing:
       out.tone = Tone::kPlain;

@@ -29,7 +29,7 @@ struct Statement {
   Text scan_label = Text::kScan;
 };
 
-[[nodiscard]] Statement statement_of(const LiveState& state, bool has_device, Language language);
+[[nodiscard]] Statement statement_of(const LiveState& state, bool has_device, Wording wording);
 
 /// What is wrong with a scan although it is in the model, as a sentence; empty where nothing is.
 [[nodiscard]] std::string scan_warning(const LiveScan& scan, Language language);

@@ -19,7 +19,7 @@ Eigen::Vector4f tone_colour(const UiContext& ui, Tone tone) {
     case Tone::kGood:
       return ui.colours.good;
     case Tone::kBad:
-      return ui.colours.red;
+      return ui.colours.bad;
     case Tone::kPlain:
       break;
   }

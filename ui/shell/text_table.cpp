@@ -4,25 +4,22 @@
 
 #include <iterator>
 
+#include "ui/shell/text_in_blue.h"
+
 namespace dubsar::ui {
 
 namespace {
 
-struct Row {
-  Text text;
-  const char* english;
-  const char* german;
-};
-
-constexpr Row kRows[] = {
+constexpr TextRow kRows[] = {
     {Text::kLayTablet, "Lay the tablet before the scanner, then scan",
      "Tafel vor den Scanner legen, dann scannen"},
     {Text::kChooseDevice, "Choose a scanner", "Scanner wählen"},
     {Text::kReading, "Reading the session", "Sitzung wird gelesen"},
-    {Text::kOpening, "Opening the scanner", "Scanner wird geöffnet"},
+    {Text::kOpening, "Hands off: the scanner is opened", "Hände weg: der Scanner wird geöffnet"},
     {Text::kMoving, "Hands off: the scanner moves", "Hände weg: der Scanner fährt"},
     {Text::kScanning, "Hands off: scanning", "Hände weg: es wird gescannt"},
     {Text::kJudging, "Working out where this scan belongs", "Es wird ermittelt, wohin dieser Scan gehört"},
+    {Text::kHandsOffYet, "Hands off until it says what is next.", "Hände weg, bis hier steht, was kommt."},
     {Text::kFinishing, "Nearly done: mesh, wedges and pages are made",
      "Fast fertig: Netz, Keile und Seiten entstehen"},
     {Text::kSigning, "Checking every byte, then signing", "Jedes Byte wird geprüft, dann unterschrieben"},
@@ -32,17 +29,18 @@ constexpr Row kRows[] = {
      "Der abgebrochene Scan wird beim Weitermachen behalten, Zeilen: {}."},
     {Text::kConclusive, "Conclusive: nothing is missing. Sign it",
      "Vollständig: nichts fehlt. Unterschreiben"},
-    {Text::kConclusiveBut, "Conclusive, but lengths of a scan are off",
-     "Vollständig, aber Maße eines Scans sind falsch"},
+    {Text::kConclusiveBut, "Conclusive, but lengths of a scan are off: check, then sign",
+     "Vollständig, aber Maße eines Scans sind falsch: prüfen, dann unterschreiben"},
     {Text::kSigned, "Signed by {}", "Unterschrieben von {}"},
-    {Text::kSignedNext, "The tablet can go back into its box. Make the package, then lay the next one.",
-     "Die Tafel kann zurück in ihre Schachtel. Das Paket anlegen, dann die nächste holen."},
-    {Text::kStopped, "Stopped", "Angehalten"},
-    {Text::kUnsureScan, "Scan {} is unsure", "Scan {} ist unsicher"},
-    {Text::kFailedScan, "No place for scan {}", "Kein Platz für Scan {}"},
-    {Text::kUnsureHow, "Show the same places in two scans, or scan on.",
-     "Gleiche Stellen in zwei Scans zeigen, oder weiter scannen."},
-    {Text::kSetAsideScan, "Scan {} is set aside", "Scan {} ist beiseitegelegt"},
+    {Text::kSignedPack, "Signed by {}: make the package", "Unterschrieben von {}: das Paket anlegen"},
+    {Text::kSignedNext, "Signed by {}: lay the next tablet", "Unterschrieben von {}: nächste Tafel holen"},
+    {Text::kIntoItsBox, "The tablet can go back into its box.", "Die Tafel kann zurück in ihre Schachtel."},
+    {Text::kStopped, "Stopped: put this right, then go on", "Angehalten: in Ordnung bringen, dann weiter"},
+    {Text::kUnsureScan, "Scan {} is unsure: scan on, or show same places",
+     "Scan {} ist unsicher: weiter scannen, oder gleiche Stellen zeigen"},
+    {Text::kFailedScan, "No place for scan {}: scan on, or show same places",
+     "Kein Platz für Scan {}: weiter scannen, oder gleiche Stellen zeigen"},
+    {Text::kSetAsideScan, "Scan {} is set aside: scan again", "Scan {} ist beiseitegelegt: neu scannen"},
     {Text::kSetAsideHow, "Take away what was in the way, then scan. A click on the scan puts it back.",
      "Wegnehmen, was im Weg war, dann scannen. Ein Klick auf den Scan holt ihn zurück."},
     {Text::kJudgedWhileWaiting, "Then it is said here how to turn the tablet.",
@@ -53,7 +51,8 @@ constexpr Row kRows[] = {
      "Was noch rot ist, zur Kamera drehen, dann scannen"},
     {Text::kTurnThenScan, "Turn the tablet as shown, then scan.",
      "Die Tafel wie gezeigt drehen, dann scannen."},
-    {Text::kScanAsItLies, "The tablet stays as it lies.", "Die Tafel bleibt liegen."},
+    {Text::kScanAsItLies, "Leave the tablet as it lies, and scan", "Die Tafel liegen lassen und scannen"},
+    {Text::kGoesItself, "The scanner goes by itself: {}.", "Der Scanner fährt selbst: {}."},
     {Text::kScan, "Scan", "Scannen"},
     {Text::kUndo, "Undo", "Rückgängig"},
     {Text::kSign, "Sign", "Unterschreiben"},
@@ -133,8 +132,8 @@ constexpr Row kRows[] = {
     {Text::kSound, "Tones when done or failed", "Töne, wenn fertig oder misslungen"},
     {Text::kClickSamePlace,
      "Click the same place in both pictures, three times or more. One or two choose among the fits.",
-     "Dieselbe Stelle in beiden Bildern anklicken, dreimal oder öfter. Eine oder zwei wählen unter den "
-     "Lagen."},
+     "Dieselbe Stelle in beiden Bildern anklicken, dreimal oder öfter. Eine oder zwei wählen unter "
+     "mehreren Lagen."},
     {Text::kInUnsure, "Scan {} (unsure)", "Scan {} (unsicher)"},
     {Text::kInOther, "Scan {} (fits)", "Scan {} (passt)"},
     {Text::kPairsDone, "Use these places", "Diese Stellen nehmen"},
@@ -143,11 +142,9 @@ constexpr Row kRows[] = {
     {Text::kLabelPins, "Label pins", "Nadeln benennen"},
     {Text::kLabelPinsHow,
      "Choose a number, then click the tip of that pin in each picture. Letters are for places on the rim "
-     "that "
-     "you know again. Three that two scans share tell how they lie.",
+     "that you know again. Three that two scans share tell how they lie.",
      "Eine Nummer wählen, dann die Spitze dieser Nadel in jedem Bild anklicken. Buchstaben stehen für "
-     "Stellen "
-     "am Rand, die man wiedererkennt. Drei gemeinsame sagen, wie zwei Scans liegen."},
+     "Stellen am Rand, die man wiedererkennt. Drei gemeinsame sagen, wie zwei Scans liegen."},
     {Text::kUseLabels, "Use these labels", "Diese Namen nehmen"},
     {Text::kTipDiameter, "Tip, mm", "Spitze, mm"},
     {Text::kPinsLabelled, "Pins labelled: {}", "Benannte Nadeln: {}"},
@@ -173,6 +170,8 @@ constexpr Row kRows[] = {
     {Text::kSettingsKept, "What is set is kept with the session, and put again when it goes on.",
      "Was gesetzt ist, bleibt bei der Sitzung und gilt wieder, wenn sie weitergeht."},
     {Text::kMeasuring, "Hands off: it is being measured", "Hände weg: es wird gemessen"},
+    {Text::kMeasureFirst, "First measure the artefact: press Calibration",
+     "Zuerst den Prüfkörper messen: Kalibrierung drücken"},
     {Text::kVerifyFirst, "The rig was not measured today: first measure the artefact (Calibration).",
      "Das Gerät wurde heute nicht geprüft: zuerst den Prüfkörper messen (Kalibrierung)."},
     {Text::kVerifyHasFailed,
@@ -182,7 +181,7 @@ constexpr Row kRows[] = {
      "messen; fällt es wieder durch, kalibrieren (Kalibrierung)."},
     {Text::kNeverVerified, "never measured as it is set up now", "so eingerichtet nie geprüft"},
     {Text::kVerifiedBadly, "failed when last measured", "bei der letzten Prüfung durchgefallen"},
-    {Text::kVerifiedLongAgo, "last measured {:.0f} d ago: due", "zuletzt vor {:.0f} d geprüft: fällig"},
+    {Text::kVerifiedLongAgo, "last measured {:.0f} d ago: due", "zuletzt vor {:.0f} Tagen geprüft: fällig"},
     {Text::kVerifiedToday, "measured {:.0f} h ago", "vor {:.0f} h geprüft"},
     {Text::kVerifyPage, "Measure the artefact", "Prüfkörper messen"},
     {Text::kCalibratePage, "Calibrate", "Kalibrieren"},
@@ -190,8 +189,7 @@ constexpr Row kRows[] = {
      "Every day before the first tablet: lay the artefact where tablets lie and measure it. One scan is "
      "judged by its certificate, and the outcome goes into the log of the calibration.",
      "Jeden Tag vor der ersten Tafel: den Prüfkörper an die Stelle der Tafeln legen und messen. Ein Scan "
-     "wird "
-     "an seinem Zertifikat gemessen, das Ergebnis kommt ins Protokoll der Kalibrierung."},
+     "wird an seinem Zertifikat gemessen, das Ergebnis kommt ins Protokoll der Kalibrierung."},
     {Text::kArtefactFile, "Artefact (artefact.toml)", "Prüfkörper (artefact.toml)"},
     {Text::kVerifyScan, "Scanner, or a scan of it", "Scanner, oder ein Scan davon"},
     {Text::kCalibrationFile, "Calibration (calibration.json)", "Kalibrierung (calibration.json)"},
@@ -244,7 +242,7 @@ constexpr Row kRows[] = {
     {Text::kStoreDamaged, "damaged or not checked", "beschädigt oder ungeprüft"},
     {Text::kDiskFree, "{:.0f} GiB free", "{:.0f} GiB frei"},
     {Text::kCalibration, "Calibration", "Kalibrierung"},
-    {Text::kDaysOld, "{:.0f} d old", "{:.0f} d alt"},
+    {Text::kDaysOld, "days old: {:.0f}", "Tage alt: {:.0f}"},
     {Text::kNoCalibration, "the scanner tells none", "der Scanner nennt keine"},
     {Text::kNoModelYet, "The model grows here.", "Hier wächst das Modell."},
     {Text::kNoScanYet, "The scan grows here.", "Hier wächst der Scan."},
@@ -326,8 +324,7 @@ constexpr Row kRows[] = {
     {Text::kAnalysePart, "Find its wedges alone", "Nur hier Keile suchen"},
     {Text::kWholeMesh, "Back to the whole", "Zurück zum Ganzen"},
     {Text::kCorrect, "Correct", "Berichtigen"},
-    {Text::kCorrectHint, "Click wedges, then say what they are.",
-     "Keile anklicken, dann sagen, was sie sind."},
+    {Text::kCorrectHint, "Click wedges, then say what they are.", "Keile anklicken und sagen, was sie sind."},
     {Text::kMarkedWedges, "{} clicked: {}", "{} angeklickt: {}"},
     {Text::kNoWedge, "No wedge", "Kein Keil"},
     {Text::kOneWedge, "One wedge", "Ein Keil"},
@@ -348,12 +345,11 @@ constexpr Row kRows[] = {
     {Text::kPackageHint,
      "All that leaves the storeroom, with checksums. A package that was made of this session before is "
      "replaced.",
-     "Alles, was den Speicher verlässt, mit Prüfsummen. Ein früheres Paket dieser Sitzung wird ersetzt."},
+     "Alles, was das Magazin verlässt, mit Prüfsummen. Ein früheres Paket dieser Sitzung wird ersetzt."},
     {Text::kPackageFolder, "Folder of the package", "Ordner des Pakets"},
     {Text::kPackageNow, "Make it", "Anlegen"},
     {Text::kPacking, "The package is made", "Das Paket entsteht"},
-    {Text::kPackageKept, "The package lies in {}. Now the next tablet.",
-     "Das Paket liegt in {}. Jetzt die nächste Tafel."},
+    {Text::kPackageKept, "The package lies in {}.", "Das Paket liegt in {}."},
     {Text::kSparse, "sparse", "dünn"},
     {Text::kFilledIn, "filled", "gefüllt"},
     {Text::kFeatureDepth, "Depth, mm", "Tiefe, mm"},
@@ -392,9 +388,12 @@ const char* code_of(Language language) {
   return language == Language::kGerman ? "de" : "en";
 }
 
-const char* text_of(Text text, Language language) {
-  const Row& row = kRows[static_cast<std::size_t>(text)];
-  return language == Language::kGerman ? row.german : row.english;
+const char* text_of(Text text, Wording wording) {
+  const TextRow* row = wording.blue_for_red ? text_in_blue(text) : nullptr;
+  if (row == nullptr) {
+    row = &kRows[static_cast<std::size_t>(text)];
+  }
+  return wording.language == Language::kGerman ? row->german : row->english;
 }
 
 }  // namespace dubsar::ui

@@ -24,6 +24,7 @@ enum class Text {
   kMoving,
   kScanning,
   kJudging,
+  kHandsOffYet,
   kFinishing,
   kSigning,
   kStillRed,
@@ -32,11 +33,12 @@ enum class Text {
   kConclusive,
   kConclusiveBut,
   kSigned,
+  kSignedPack,
   kSignedNext,
+  kIntoItsBox,
   kStopped,
   kUnsureScan,
   kFailedScan,
-  kUnsureHow,
   kSetAsideScan,
   kSetAsideHow,
   kJudgedWhileWaiting,
@@ -44,6 +46,7 @@ enum class Text {
   kScanTheRed,
   kTurnThenScan,
   kScanAsItLies,
+  kGoesItself,
   kScan,
   kUndo,
   kSign,
@@ -144,6 +147,7 @@ enum class Text {
   kNoSettings,
   kSettingsKept,
   kMeasuring,
+  kMeasureFirst,
   kVerifyFirst,
   kVerifyHasFailed,
   kNeverVerified,
@@ -303,7 +307,15 @@ enum class Text {
   kCount
 };
 
-[[nodiscard]] const char* text_of(Text text, Language language);
+/// How it is said: in what language, and of what colour what is under-sampled is.
+struct Wording {
+  // NOLINTNEXTLINE(google-explicit-constructor): most texts name no colour
+  constexpr Wording(Language said_in, bool blue = false) : language(said_in), blue_for_red(blue) {}
+  Language language;
+  bool blue_for_red;
+};
+
+[[nodiscard]] const char* text_of(Text text, Wording wording);
 
 /// What the engine says in English (where to turn the tablet, why a scan is unsure), as far as its phrases
 /// are known; the rest stays as it is.

@@ -96,10 +96,13 @@ Colours colours_of(const Preferences& preferences) {
   Colours c;
   if (preferences.blue_for_red) {  // Okabe and Ito 2008
     c.red = {0.00F, 0.45F, 0.90F, 1};
+    c.bad = {0.84F, 0.37F, 0.00F, 1};  // blue asks, or is under-sampled
+    c.outline = {0.48F, 0.17F, 0.00F, 1};
     c.amber = {0.90F, 0.62F, 0.00F, 1};
     c.good = {0.80F, 0.78F, 0.70F, 1};
   } else {
-    c.red = {0.90F, 0.16F, 0.18F, 1};
+    c.red = c.bad = {0.90F, 0.16F, 0.18F, 1};
+    c.outline = {0.10F, 0.24F, 0.50F, 1};
     c.amber = {0.89F, 0.63F, 0.16F, 1};
     c.good = {0.30F, 0.72F, 0.38F, 1};
   }
@@ -113,6 +116,7 @@ Colours colours_of(const Preferences& preferences) {
   } else {
     if (preferences.blue_for_red) {
       c.good = {0.35F, 0.33F, 0.25F, 1};
+      c.bad = {0.70F, 0.15F, 0.00F, 1};
     } else {
       c.good = {0.10F, 0.50F, 0.20F, 1};
     }

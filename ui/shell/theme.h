@@ -22,6 +22,7 @@ struct Preferences {
   std::string operator_name;
   std::string device;  ///< URI that was used last
 
+  [[nodiscard]] Wording wording() const { return {language, blue_for_red}; }
   bool operator==(const Preferences&) const = default;
 };
 
@@ -35,9 +36,10 @@ inline constexpr float kLargestFontPx = 32;
 /// Best effort: the window works without.
 void write_preferences(const std::filesystem::path& file, const Preferences& preferences);
 
-/// Colours that mean something, by preference.
+/// Colours that mean something, by preference. `red`: what is under-sampled; `bad`: what went wrong;
+/// `outline`: the outer edges of wedges.
 struct Colours {
-  Eigen::Vector4f red, amber, good, ghost, clay, faint, text, panel, strong;
+  Eigen::Vector4f red, bad, outline, amber, good, ghost, clay, faint, text, panel, strong;
 };
 [[nodiscard]] Colours colours_of(const Preferences& preferences);
 

@@ -31,7 +31,7 @@ struct UiContext {
   double time_s = 0;
   FrameWatch watch;
 
-  [[nodiscard]] const char* text(Text which) const { return text_of(which, preferences.language); }
+  [[nodiscard]] const char* text(Text which) const { return text_of(which, preferences.wording()); }
   /// Notes where the last item is, under a name for scripts.
   void target(const std::string& name) {
     const ImVec2 low = ImGui::GetItemRectMin();

@@ -165,7 +165,7 @@ void PairScreen::draw_pane(UiContext& ui, Pane& pane, const char* name, ImVec2 s
     draw_scale_bar(ui, pane.camera, origin, size);
   }
   draw->AddText(nullptr, 0, {origin.x + ui.px(1), origin.y + ui.px(0.6F)},
-                packed(pane.surface.empty() && pane.state.error ? ui.colours.red : ui.colours.text),
+                packed(pane.surface.empty() && pane.state.error ? ui.colours.bad : ui.colours.text),
                 words.c_str(), nullptr, size.x - ui.px(2));
   ImGui::EndChild();
 }

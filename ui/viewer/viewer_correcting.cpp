@@ -73,7 +73,7 @@ void ViewerScreen::draw_correcting(UiContext& ui) {
   for (const std::string& why : state_.not_made) {
     ui.facts.insert("not-made");
     ImGui::PushTextWrapPos();
-    coloured_text(ui.colours.red,
+    coloured_text(ui.colours.bad,
                   filled(ui.text(Text::kNotMade), translated(why, ui.preferences.language)).c_str());
     ImGui::PopTextWrapPos();
   }

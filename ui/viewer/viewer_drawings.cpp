@@ -41,7 +41,7 @@ void ViewerScreen::draw_wedges(UiContext& ui, ImVec2 origin, ImVec2 size) const 
                    ? 1
                    : 0;
   }
-  const ImU32 outer = packed({0.10F, 0.24F, 0.50F, 1}, 0.9F);
+  const ImU32 outer = packed(ui.colours.outline, 0.9F);
   const ImU32 inner = packed({0.05F, 0.05F, 0.07F, 1}, 0.9F);
   const ImU32 directional = packed(ui.colours.red);
   const ImU32 strong = packed(ui.colours.ghost);

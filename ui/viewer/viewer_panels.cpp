@@ -184,7 +184,7 @@ void ViewerScreen::draw_foot(UiContext& ui) {
   ImGui::PushFont(ui.fonts.small);
   if (state_.error && !surface_.empty()) {
     ui.facts.insert("error");
-    coloured_text(ui.colours.red, translated(*state_.error, ui.preferences.language).c_str());
+    coloured_text(ui.colours.bad, translated(*state_.error, ui.preferences.language).c_str());
   }
   if (!picture_note_.empty()) {
     coloured_text(ui.colours.faint, picture_note_.c_str());

@@ -183,7 +183,7 @@ void ViewerScreen::draw_surface(UiContext& ui, ImVec2 size) {
     const std::string words = state_.error ? translated(*state_.error, ui.preferences.language)
                                            : ui.text(prepared_.waiting_text(state_));
     draw->AddText(nullptr, 0, {origin.x + ui.px(2), origin.y + ui.px(2)},
-                  packed(state_.error ? ui.colours.red : ui.colours.faint), words.c_str(), nullptr,
+                  packed(state_.error ? ui.colours.bad : ui.colours.faint), words.c_str(), nullptr,
                   size.x - ui.px(4));
     if (state_.error) {
       ui.facts.insert("error");
