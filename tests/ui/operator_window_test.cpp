@@ -135,5 +135,43 @@ quit
   EXPECT_GT(mean_of(test::read_png(in("light.png")))[1], 150);
 }
 
+/// On a small display, in the largest letters, in the language with the longer words.
+TEST_F(OperatorWindow, NothingIsCutOffInTheLargestLetters) {
+  std::string larger = "wait idle\nclick settings\nclick german\n";
+  for (int k = 0; k < 7; ++k) {
+    larger += "click font-larger\n";
+  }
+  const Outcome outcome = play(larger + R"(
+expect title-whole
+key escape
+key space
+wait waiting-turn
+key space
+wait scans.3
+wait waiting
+pause 0.2
+expect whole.face.obverse
+expect whole.face.bottom
+expect scan.0.words-whole
+expect scan.2.words-whole
+click scan.0
+click label-pins
+wait pins-left
+pause 0.2
+expect whole.label.15
+expect whole.label.F
+expect whole.pins-left
+expect whole.pins-close
+key escape
+pause 0.2
+click tablet
+wait cdli
+pause 0.2
+expect title-whole
+quit
+)");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+}
+
 }  // namespace
 }  // namespace dubsar

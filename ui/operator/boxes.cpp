@@ -19,13 +19,18 @@ bool begin_box(UiContext& ui, const char* title, const char* id, bool& open, flo
     open = false;
   }
   const ImVec2 window = ImGui::GetIO().DisplaySize;
+  // A high one is in the middle, and scrolls: its title stays in the window.
+  ImGui::SetNextWindowSizeConstraints({0, 0}, {window.x, 0.98F * window.y});
   ImGui::SetNextWindowSize({std::min(width, 0.92F * window.x), 0});
-  ImGui::SetNextWindowPos({0.5F * window.x, 0.45F * window.y}, ImGuiCond_Always, {0.5F, 0.5F});
+  ImGui::SetNextWindowPos({0.5F * window.x, 0.5F * window.y}, ImGuiCond_Always, {0.5F, 0.5F});
   if (!ImGui::BeginPopupModal((std::string(title) + id).c_str(), nullptr,
                               ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove)) {
     return false;
   }
   begin_asking(ui);
+  if (ImGui::GetWindowPos().y >= 0) {
+    ui.facts.insert("title-whole");
+  }
   return true;
 }
 

@@ -308,8 +308,9 @@ void OperatorScreen::draw_model(UiContext& ui, ImVec2 size, bool asks_for_places
   if (state_.red_map && !state_.red_map->conclusive) {
     const std::string red =
         filled(ui.text(Text::kRedArea), area_words(red_mm2(*state_.red_map), ui.preferences.language));
-    const float above = asks_for_places ? ui.px(3.5F) : 0.0F;  // the button
-    draw->AddText({origin.x + ui.px(0.5F), end.y - ui.px(1.6F) - above}, packed(ui.colours.red), red.c_str());
+    // Above the model: below are its edge and the buttons.
+    const float wide = ImGui::CalcTextSize(red.c_str()).x;
+    draw->AddText({end.x - ui.px(0.5F) - wide, origin.y + ui.px(0.3F)}, packed(ui.colours.red), red.c_str());
   }
   if (asks_for_places) {
     const ImVec2 button{ui.px(13), ui.px(2.9F)};

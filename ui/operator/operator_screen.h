@@ -60,6 +60,14 @@ class OperatorScreen {
   [[nodiscard]] static float statement_high_px(const UiContext& ui, const Statement& statement, ImVec2 room);
   void draw_statement(UiContext& ui, const Statement& statement, ImVec2 size);
   void draw_last_action(UiContext& ui, const Statement& statement, ImVec2 button);
+  // side_columns.cpp
+  struct FaceState {
+    bool whole = false;  ///< nothing of it is missing
+    bool lacks = false;
+    std::string note;
+  };
+  [[nodiscard]] FaceState face_state(const UiContext& ui, Face face) const;
+  void draw_faces(UiContext& ui) const;
   void draw_left(UiContext& ui, ImVec2 size);
   void draw_model(UiContext& ui, ImVec2 size, bool asks_for_places);
   void draw_halt(UiContext& ui, ImVec2 model_end);

@@ -79,12 +79,16 @@ void PinDialog::open(const LiveScan& scan, const LiveState& state) {
 
 void PinDialog::draw_labels(UiContext& ui) {
   const float side = ui.px(1.9F);
+  const float row_end = ImGui::GetCursorScreenPos().x + ImGui::GetContentRegionAvail().x;
   for (int k = 0; k < kPinNumbers + kRimPlaces; ++k) {
     const int label = k < kPinNumbers ? k + 1 : kFirstRimLabel + k - kPinNumbers;
     const bool in_left = left_.marks.contains(label);
     const bool in_right = right_.marks.contains(label);
     if (k > 0) {
-      ImGui::SameLine(0, k == kPinNumbers ? ui.px(0.8F) : ui.px(0.15F));
+      const float gap = k == kPinNumbers ? ui.px(0.8F) : ui.px(0.15F);
+      if (ImGui::GetItemRectMax().x + gap + side <= row_end) {
+        ImGui::SameLine(0, gap);
+      }
     }
     const std::string name = pin_name(label);
     if (big_button(ui, ("label." + name).c_str(), name.c_str(), nullptr, {side, side},

@@ -46,12 +46,30 @@ Eigen::Vector4f state_colour(const UiContext& ui, Text state) {
   }
 }
 
+std::string words_under(const UiContext& ui, const LiveScan& scan) {
+  const bool is_warned = !scan_warning(scan, ui.preferences.language).empty();
+  std::string words =
+      fmt::format("{}  {}", scan.id, ui.text(is_warned ? Text::kLengthsOff : state_text(scan)));
+  if (scan.pose && scan.pose->locked) {
+    words += fmt::format(", {}", ui.text(Text::kLocked));
+  }
+  return words;
+}
+
 }  // namespace
 
 void OperatorScreen::draw_strip(UiContext& ui, ImVec2 size) {
   ImGui::BeginChild("strip", size, true, ImGuiWindowFlags_HorizontalScrollbar);
   const float height = size.y - 2 * ImGui::GetStyle().WindowPadding.y - ImGui::GetStyle().ScrollbarSize;
-  const float width = 1.35F * height;
+  // As wide as its words, however large the letters are.
+  const float line = ui.fonts.small->FontSize;
+  const auto words_wide = [&](const std::string& words) {
+    return ui.fonts.small->CalcTextSizeA(line, 1e4F, 0, words.c_str()).x + 12;
+  };
+  float width = 1.35F * height;
+  for (const LiveScan& scan : state_.scans) {
+    width = std::max(width, words_wide(words_under(ui, scan)));
+  }
   const LiveScan* menu = nullptr;
   for (const LiveScan& scan : state_.scans) {
     ImGui::PushID(scan.id);
@@ -70,7 +88,6 @@ void OperatorScreen::draw_strip(UiContext& ui, ImVec2 size) {
     }
     const bool is_warned = !scan_warning(scan, ui.preferences.language).empty();
     const Eigen::Vector4f colour = is_warned ? ui.colours.amber : state_colour(ui, state);
-    const float line = ui.fonts.small->FontSize;
     draw->AddRectFilled(origin, end, packed(ui.colours.text, ImGui::IsItemHovered() ? 0.14F : 0.07F), 5);
     if (scan.picture) {
       Thumbnail& thumbnail = thumbnails_[scan.id];
@@ -92,12 +109,14 @@ void OperatorScreen::draw_strip(UiContext& ui, ImVec2 size) {
     }
     draw->AddRect(origin, end, packed(colour), 5, 0,
                   state == Text::kUnsure || state == Text::kFailed || is_warned ? 3.0F : 1.5F);
-    std::string words = std::to_string(scan.id) + "  " + ui.text(is_warned ? Text::kLengthsOff : state);
     if (scan.pose && scan.pose->locked) {
       ui.facts.insert("scan." + std::to_string(scan.id) + ".locked");
-      words += std::string(", ") + ui.text(Text::kLocked);
     }
+    const std::string words = words_under(ui, scan);
     draw->AddText(ui.fonts.small, line, {origin.x + 6, end.y - line - 3}, packed(colour), words.c_str());
+    if (words_wide(words) <= width) {
+      ui.facts.insert(fmt::format("scan.{}.words-whole", scan.id));
+    }
     if (scan.dropped) {
       draw->AddLine({origin.x + 4, end.y - line - 8}, {end.x - 4, origin.y + 4}, packed(ui.colours.faint), 2);
     }

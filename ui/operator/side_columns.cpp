@@ -14,8 +14,105 @@ namespace {
 
 constexpr Text kFaceTexts[] = {Text::kObverse, Text::kReverse, Text::kLeft,
                                Text::kRight,   Text::kTop,     Text::kBottom};
+constexpr Text kShortFaceTexts[] = {Text::kObverseShort, Text::kReverseShort, Text::kLeftShort,
+                                    Text::kRightShort,   Text::kTopShort,     Text::kBottomShort};
+
+/// A tick, or an empty box, beside the colour: colour alone tells nothing to some.
+void draw_mark(const UiContext& ui, bool whole, bool lacks, float box) {
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  ImDrawList* draw = ImGui::GetWindowDrawList();
+  if (whole) {
+    draw->AddLine({at.x + 0.1F * box, at.y + 0.55F * box}, {at.x + 0.4F * box, at.y + 0.85F * box},
+                  packed(ui.colours.good), 0.16F * box);
+    draw->AddLine({at.x + 0.4F * box, at.y + 0.85F * box}, {at.x + 0.95F * box, at.y + 0.15F * box},
+                  packed(ui.colours.good), 0.16F * box);
+  } else {
+    draw->AddRect({at.x + 0.1F * box, at.y + 0.15F * box}, {at.x + 0.9F * box, at.y + 0.9F * box},
+                  packed(lacks ? ui.colours.red : ui.colours.faint), 2, 0, 0.12F * box);
+  }
+  ImGui::Dummy({box, box});
+  ImGui::SameLine();
+}
+
+/// Small, beside what was drawn last where it fits, else below it.
+void draw_note(const UiContext& ui, const std::string& note, bool lacks, float room_end, float indent) {
+  ImGui::PushFont(ui.fonts.small);
+  ImGui::SameLine();
+  const bool beside = ImGui::GetCursorScreenPos().x + ImGui::CalcTextSize(note.c_str()).x < room_end;
+  if (beside) {
+    ImGui::SetCursorPosY(ImGui::GetCursorPosY() + 0.2F * ui.fonts.small->FontSize);
+  } else {
+    ImGui::NewLine();
+    ImGui::Indent(indent);
+  }
+  coloured_text(lacks ? ui.colours.red : ui.colours.faint, note.c_str());
+  if (!beside) {
+    ImGui::Unindent(indent);
+  }
+  ImGui::PopFont();
+}
 
 }  // namespace
+
+OperatorScreen::FaceState OperatorScreen::face_state(const UiContext& ui, Face face) const {
+  // While a hole gapes, a face without red may be one that nobody has looked at yet: no tick then.
+  constexpr double kSmallHoles = 0.05;
+  const double seen_mm2 = std::accumulate(state_.seen_mm2.begin(), state_.seen_mm2.end(), 0.0);
+  const bool small_holes = state_.red_map && red_mm2(*state_.red_map) < kSmallHoles * seen_mm2;
+  const double red = state_.red_map ? face_mm2(*state_.red_map, face, RegionState::kRed) : 0.0;
+  const double excused = state_.red_map ? face_mm2(*state_.red_map, face, RegionState::kExcused) : 0.0;
+  const auto f = static_cast<std::size_t>(face);
+  // A hole is listed under one face; its rim may run over others.
+  const bool known = state_.red_map && (state_.seen_mm2[f] > 0 || red > 0);
+  FaceState out;
+  out.whole = known && red <= 0 && (state_.red_map->conclusive || (small_holes && state_.red_points[f] == 0));
+  out.lacks = known && (red > 0 || state_.red_points[f] > 0) && !out.whole;
+  out.note = !known       ? ui.text(Text::kNoArea)
+             : red > 0    ? filled(ui.text(Text::kRedArea), area_words(red, ui.preferences.language))
+             : out.lacks  ? ui.text(Text::kRedRim)
+             : !out.whole ? ui.text(Text::kNoRedSoFar)
+                          : std::string();
+  if (excused > 0.05) {
+    out.note += (out.note.empty() ? "" : ", ") +
+                filled(ui.text(Text::kExcused), area_words(excused, ui.preferences.language));
+  }
+  return out;
+}
+
+/// All six are seen at once: where letters are too large for a line each, in short first.
+void OperatorScreen::draw_faces(UiContext& ui) const {
+  const float end = ImGui::GetCursorScreenPos().x + ImGui::GetContentRegionAvail().x;
+  if (ImGui::GetContentRegionAvail().y < (kFaceCount + 1) * ImGui::GetTextLineHeightWithSpacing()) {
+    constexpr int kInRow = 3;
+    const float left = ImGui::GetCursorPosX();
+    const float wide = ImGui::GetContentRegionAvail().x / kInRow;
+    ImGui::PushFont(ui.fonts.small);
+    ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {ui.px(0.2F), 2});
+    for (int k = 0; k < kFaceCount; ++k) {
+      const FaceState face = face_state(ui, static_cast<Face>(k));
+      if (k % kInRow > 0) {
+        ImGui::SameLine(left + static_cast<float>(k % kInRow) * wide);
+      }
+      draw_mark(ui, face.whole, face.lacks, ImGui::GetTextLineHeight());
+      ImGui::TextUnformatted(ui.text(kShortFaceTexts[k]));
+      ui.target(fmt::format("face.{}", to_string(static_cast<Face>(k))));
+    }
+    ImGui::PopStyleVar();
+    ImGui::PopFont();
+    ImGui::Separator();
+  }
+  ImGui::TextUnformatted(ui.text(Text::kChecklist));
+  for (int k = 0; k < kFaceCount; ++k) {
+    const FaceState face = face_state(ui, static_cast<Face>(k));
+    const float box = ImGui::GetTextLineHeight();
+    draw_mark(ui, face.whole, face.lacks, box);
+    ImGui::TextUnformatted(ui.text(kFaceTexts[k]));
+    ui.target(fmt::format("face.{}", to_string(static_cast<Face>(k))));
+    if (!face.note.empty()) {
+      draw_note(ui, face.note, face.lacks, end, box + ImGui::GetStyle().ItemSpacing.x);
+    }
+  }
+}
 
 void OperatorScreen::draw_left(UiContext& ui, ImVec2 size) {
   ImGui::BeginChild("left", size, true, ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse);
@@ -23,66 +120,7 @@ void OperatorScreen::draw_left(UiContext& ui, ImVec2 size) {
   const float row = ui.px(2.1F);
   const float buttons = 3 * row + 4 * ImGui::GetStyle().ItemSpacing.y;
   ImGui::BeginChild("list", {0, ImGui::GetContentRegionAvail().y - buttons});
-  ImGui::TextUnformatted(ui.text(Text::kChecklist));
-  // While a hole gapes, a face without red may be one that nobody has looked at yet: no tick then.
-  constexpr double kSmallHoles = 0.05;
-  const double seen_mm2 = std::accumulate(state_.seen_mm2.begin(), state_.seen_mm2.end(), 0.0);
-  const bool small_holes = state_.red_map && red_mm2(*state_.red_map) < kSmallHoles * seen_mm2;
-  for (int k = 0; k < kFaceCount; ++k) {
-    const Face face = static_cast<Face>(k);
-    const double red = state_.red_map ? face_mm2(*state_.red_map, face, RegionState::kRed) : 0.0;
-    const double excused = state_.red_map ? face_mm2(*state_.red_map, face, RegionState::kExcused) : 0.0;
-    const auto f = static_cast<std::size_t>(k);
-    // A hole is listed under one face; its rim may run over others.
-    const bool known = state_.red_map && (state_.seen_mm2[f] > 0 || red > 0);
-    const bool whole =
-        known && red <= 0 && (state_.red_map->conclusive || (small_holes && state_.red_points[f] == 0));
-    const bool lacks = known && (red > 0 || state_.red_points[f] > 0) && !whole;
-    const ImVec2 at = ImGui::GetCursorScreenPos();
-    ImDrawList* draw = ImGui::GetWindowDrawList();
-    const float box = ImGui::GetTextLineHeight();
-    // A tick or a bar beside the colour: colour alone tells nothing to some.
-    if (whole) {
-      draw->AddLine({at.x + 0.1F * box, at.y + 0.55F * box}, {at.x + 0.4F * box, at.y + 0.85F * box},
-                    packed(ui.colours.good), 0.16F * box);
-      draw->AddLine({at.x + 0.4F * box, at.y + 0.85F * box}, {at.x + 0.95F * box, at.y + 0.15F * box},
-                    packed(ui.colours.good), 0.16F * box);
-    } else {
-      draw->AddRect({at.x + 0.1F * box, at.y + 0.15F * box}, {at.x + 0.9F * box, at.y + 0.9F * box},
-                    packed(lacks ? ui.colours.red : ui.colours.faint), 2, 0, 0.12F * box);
-    }
-    ImGui::Dummy({box, box});
-    ImGui::SameLine();
-    ImGui::TextUnformatted(ui.text(kFaceTexts[k]));
-    ImGui::PushFont(ui.fonts.small);
-    std::string note = !known    ? ui.text(Text::kNoArea)
-                       : red > 0 ? filled(ui.text(Text::kRedArea), area_words(red, ui.preferences.language))
-                       : lacks   ? ui.text(Text::kRedRim)
-                       : !whole  ? ui.text(Text::kNoRedSoFar)
-                                 : std::string();
-    if (excused > 0.05) {
-      note += (note.empty() ? "" : ", ") +
-              filled(ui.text(Text::kExcused), area_words(excused, ui.preferences.language));
-    }
-    if (!note.empty()) {
-      // Beside the name where it fits.
-      const float indent = box + ImGui::GetStyle().ItemSpacing.x;
-      const float room = at.x + ImGui::GetContentRegionAvail().x;
-      ImGui::SameLine();
-      const bool beside = ImGui::GetCursorScreenPos().x + ImGui::CalcTextSize(note.c_str()).x < room;
-      if (beside) {
-        ImGui::SetCursorPosY(ImGui::GetCursorPosY() + 0.2F * ui.fonts.small->FontSize);
-      } else {
-        ImGui::NewLine();
-        ImGui::Indent(indent);
-      }
-      coloured_text(lacks ? ui.colours.red : ui.colours.faint, note.c_str());
-      if (!beside) {
-        ImGui::Unindent(indent);
-      }
-    }
-    ImGui::PopFont();
-  }
+  draw_faces(ui);
   for (const LiveScan& scan : state_.scans) {
     if (!scan_warning(scan, ui.preferences.language).empty()) {
       ui.facts.insert(fmt::format("scan.{}.warned", scan.id));
@@ -211,12 +249,12 @@ void OperatorScreen::draw_right(UiContext& ui, ImVec2 size) {
     job_bar(ui, time_left_, state_.stage, state_.fraction);
     ImGui::PopFont();
   } else if (tells) {
+    ImGui::BeginChild("notice");  // what is longer than the half is scrolled to
     ImGui::PushFont(ui.fonts.small);
     coloured_text(ui.colours.faint, notice.c_str());
     ImGui::PopFont();
-    if (ImGui::GetItemRectMax().y <= ImGui::GetWindowPos().y + size.y) {
-      ui.facts.insert("notice-whole");
-    }
+    ui.target("notice");
+    ImGui::EndChild();
   }
   ImGui::EndChild();
 }

@@ -20,6 +20,17 @@ int grow(ImGuiInputTextCallbackData* data) {
 
 }  // namespace
 
+void UiContext::target(const std::string& name) {
+  const ImVec2 low = ImGui::GetItemRectMin();
+  const ImVec2 high = ImGui::GetItemRectMax();
+  targets[name] = {low.x, low.y, high.x, high.y};
+  const ImVec2 first = ImGui::GetWindowDrawList()->GetClipRectMin();
+  const ImVec2 last = ImGui::GetWindowDrawList()->GetClipRectMax();
+  if (low.x >= first.x && low.y >= first.y && high.x <= last.x && high.y <= last.y) {
+    facts.insert("whole." + name);
+  }
+}
+
 ImU32 packed(const Eigen::Vector4f& c, float alpha) {
   return ImGui::ColorConvertFloat4ToU32({c.x(), c.y(), c.z(), c.w() * alpha});
 }

@@ -32,12 +32,8 @@ struct UiContext {
   FrameWatch watch;
 
   [[nodiscard]] const char* text(Text which) const { return text_of(which, preferences.wording()); }
-  /// Notes where the last item is, under a name for scripts.
-  void target(const std::string& name) {
-    const ImVec2 low = ImGui::GetItemRectMin();
-    const ImVec2 high = ImGui::GetItemRectMax();
-    targets[name] = {low.x, low.y, high.x, high.y};
-  }
+  /// Notes where the last item is, under a name for scripts, and whether nothing of it is cut off.
+  void target(const std::string& name);
   [[nodiscard]] float px(float fonts_high) const { return fonts_high * preferences.font_px; }
 };
 
