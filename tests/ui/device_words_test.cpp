@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <regex>
 #include <set>
 #include <string>
 
@@ -61,6 +62,31 @@ TEST(DeviceWords, HelpOfSettingsIsGerman) {
     said += test::source_of(file);
   }
   for (const EnginePhrase& help : engine_settings()) {
+    EXPECT_NE(said.find('"' + std::string(help.english) + '"'), std::string::npos) << help.english;
+    EXPECT_EQ(translated(help.english, Language::kGerman), help.german);
+  }
+}
+
+/// Every option of every driver, and the driver itself.
+TEST(DeviceWords, HelpOfOptionsIsGerman) {
+  std::string said;
+  for (const char* file :
+       {"drivers/sim/sim_options.cpp", "drivers/sim/sim_driver.cpp", "drivers/replay/replay_driver.cpp",
+        "drivers/v4l2/v4l2_driver.cpp", "drivers/aravis/options.cpp", "drivers/aravis/aravis_driver.cpp",
+        "drivers/usb_stage/options.cpp", "drivers/usb_stage/usb_stage_driver.cpp",
+        "station/offered_devices.cpp"}) {
+    said += test::source_of(file);
+  }
+  static const std::regex kSaid(
+      R"re((?:\{DUBSAR_TYPE_[A-Z]+,\s*"[a-z_]+",\s*|description = |\{"rig", |info, "sim:", )"([^"]+)")re");
+  int helps = 0;
+  for (std::sregex_iterator one(said.begin(), said.end(), kSaid), end; one != end; ++one) {
+    const std::string english = (*one)[1];
+    EXPECT_NE(translated(english, Language::kGerman), english);
+    ++helps;
+  }
+  EXPECT_GT(helps, 45);
+  for (const EnginePhrase& help : engine_options()) {
     EXPECT_NE(said.find('"' + std::string(help.english) + '"'), std::string::npos) << help.english;
     EXPECT_EQ(translated(help.english, Language::kGerman), help.german);
   }

@@ -168,6 +168,12 @@ click tablet
 wait cdli
 pause 0.2
 expect title-whole
+key escape
+pause 0.2
+click viewer
+wait whole
+expect whole.view.right
+expect whole.view.bottom
 quit
 )");
   ASSERT_EQ(outcome.status, 0) << outcome.err;

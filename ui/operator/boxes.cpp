@@ -19,8 +19,7 @@ bool begin_box(UiContext& ui, const char* title, const char* id, bool& open, flo
     open = false;
   }
   const ImVec2 window = ImGui::GetIO().DisplaySize;
-  // A high one is in the middle, and scrolls: its title stays in the window.
-  ImGui::SetNextWindowSizeConstraints({0, 0}, {window.x, 0.98F * window.y});
+  // In the middle: the title of one that is as high as the window stays in it.
   ImGui::SetNextWindowSize({std::min(width, 0.92F * window.x), 0});
   ImGui::SetNextWindowPos({0.5F * window.x, 0.5F * window.y}, ImGuiCond_Always, {0.5F, 0.5F});
   if (!ImGui::BeginPopupModal((std::string(title) + id).c_str(), nullptr,

@@ -79,7 +79,7 @@ void DeviceDialog::draw_choices(UiContext& ui) {
   for (const OfferedDriver& driver : drivers_) {
     for (const auto& [uri, description] : driver.found) {
       ImGui::PushID(uri.c_str());
-      if (line(description, uri, uri_ == uri)) {
+      if (line(translated(description, ui.preferences.language), uri, uri_ == uri)) {
         take(uri);
       }
       ImGui::PopID();
@@ -92,7 +92,8 @@ void DeviceDialog::draw_choices(UiContext& ui) {
   for (std::size_t k = 0; k < drivers_.size(); ++k) {
     const OfferedDriver& driver = drivers_[k];
     ImGui::PushID(static_cast<int>(k));
-    if (line(fmt::format("{}:", driver.scheme), driver.description, chosen_ == k) && chosen_ != k) {
+    const std::string words = translated(driver.description, ui.preferences.language);
+    if (line(fmt::format("{}:", driver.scheme), words, chosen_ == k) && chosen_ != k) {
       take(fmt::format("{}:", driver.scheme));
     }
     ImGui::PopID();
@@ -106,14 +107,15 @@ void DeviceDialog::draw_options(UiContext& ui) {
   }
   const OfferedDriver& driver = drivers_[chosen_];
   ImGui::PushTextWrapPos(0);
-  ImGui::TextUnformatted(driver.description.c_str());
+  const auto in_words = [&ui](const std::string& text) { return translated(text, ui.preferences.language); };
+  ImGui::TextUnformatted(in_words(driver.description).c_str());
   if (!driver.trouble.empty()) {
-    coloured_text(ui.colours.bad, driver.trouble.c_str());
+    coloured_text(ui.colours.bad, in_words(driver.trouble).c_str());
   }
   ImGui::PopTextWrapPos();
   bool changed = false;
   if (!driver.locator_help.empty()) {
-    changed = text_line(ui, "locator", driver.locator_help.c_str(), locator_);
+    changed = text_line(ui, "locator", in_words(driver.locator_help).c_str(), locator_);
   }
   for (const SettingInfo& option : driver.options) {
     changed = setting_widget(ui, fmt::format("option.{}", option.key), option, values_[option.key],
@@ -149,7 +151,7 @@ std::optional<std::string> DeviceDialog::draw(UiContext& ui) {
     return out;
   }
   begin_asking(ui);
-  const float foot = ImGui::GetFrameHeightWithSpacing() * 3 + ui.px(0.6F);
+  const float foot = 2 * ImGui::GetFrameHeightWithSpacing() + ImGui::GetTextLineHeightWithSpacing();
   ImGui::BeginChild("drivers", {ui.px(17), -foot}, true);
   draw_choices(ui);
   ImGui::EndChild();

@@ -2,20 +2,17 @@
 // Copyright The Dubsar developers
 // The columns beside the model: faces, tablet and machine on the left, the scan as it grows and the next turn
 // on the right.
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 
 #include "ui/operator/operator_screen.h"
+#include "ui/shell/face_texts.h"
 #include "ui/shell/widgets.h"
 
 namespace dubsar::ui {
 
 namespace {
-
-constexpr Text kFaceTexts[] = {Text::kObverse, Text::kReverse, Text::kLeft,
-                               Text::kRight,   Text::kTop,     Text::kBottom};
-constexpr Text kShortFaceTexts[] = {Text::kObverseShort, Text::kReverseShort, Text::kLeftShort,
-                                    Text::kRightShort,   Text::kTopShort,     Text::kBottomShort};
 
 /// A tick, or an empty box, beside the colour: colour alone tells nothing to some.
 void draw_mark(const UiContext& ui, bool whole, bool lacks, float box) {
@@ -117,8 +114,12 @@ void OperatorScreen::draw_faces(UiContext& ui) const {
 void OperatorScreen::draw_left(UiContext& ui, ImVec2 size) {
   ImGui::BeginChild("left", size, true, ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse);
   // The buttons below are wanted without scrolling, whatever the size of the letters.
-  const float row = ui.px(2.1F);
-  const float buttons = 3 * row + 4 * ImGui::GetStyle().ItemSpacing.y;
+  // They leave the six faces in short their two lines.
+  const float gap = ImGui::GetStyle().ItemSpacing.y;
+  const float faces = 2.3F * ui.fonts.small->FontSize;
+  const float row =
+      std::clamp((ImGui::GetContentRegionAvail().y - faces - 4 * gap) / 3, ui.px(1.4F), ui.px(2.1F));
+  const float buttons = 3 * row + 4 * gap;
   ImGui::BeginChild("list", {0, ImGui::GetContentRegionAvail().y - buttons});
   draw_faces(ui);
   for (const LiveScan& scan : state_.scans) {

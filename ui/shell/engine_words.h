@@ -18,6 +18,8 @@ struct EnginePhrase {
 [[nodiscard]] std::span<const EnginePhrase> engine_stages();
 /// What drivers say of their settings; likewise.
 [[nodiscard]] std::span<const EnginePhrase> engine_settings();
+/// And of themselves and the options of their addresses; likewise.
+[[nodiscard]] std::span<const EnginePhrase> engine_options();
 
 /// What the engine says of a run, its scans and its wedges.
 [[nodiscard]] std::span<const EnginePhrase> engine_phrases();

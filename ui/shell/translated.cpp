@@ -84,7 +84,7 @@ const std::vector<EnginePhrase>& engine_sentences() {
 namespace {
 
 std::string german_of(const std::string& english) {
-  for (const auto& whole : {engine_stages(), engine_settings()}) {
+  for (const auto& whole : {engine_stages(), engine_settings(), engine_options()}) {
     for (const auto& [from, to] : whole) {
       if (english == from) {
         return to;

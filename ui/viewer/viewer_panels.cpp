@@ -5,17 +5,12 @@
 #include <array>
 #include <cfloat>
 
+#include "ui/shell/face_texts.h"
 #include "ui/viewer/viewer_screen.h"
 
 namespace dubsar::ui {
 
 namespace {
-
-constexpr Text kFaceTexts[] = {Text::kObverse, Text::kReverse, Text::kLeft,
-                               Text::kRight,   Text::kTop,     Text::kBottom};
-
-constexpr Text kShortTexts[] = {Text::kObverseShort, Text::kReverseShort, Text::kLeftShort,
-                                Text::kRightShort,   Text::kTopShort,     Text::kBottomShort};
 
 struct FieldChoice {
   Text text;
@@ -38,7 +33,7 @@ constexpr PlainChoice kPlain[] = {{Text::kOverlayClay, Overlay::kClay},
 
 /// "obv. ", before a line of it.
 std::string side_words(const UiContext& ui, const std::optional<Face>& side) {
-  return side ? fmt::format("{} ", ui.text(kShortTexts[static_cast<std::size_t>(*side)])) : std::string();
+  return side ? fmt::format("{} ", ui.text(kShortFaceTexts[static_cast<std::size_t>(*side)])) : std::string();
 }
 
 /// How much of something, from 0 to 3.
@@ -211,7 +206,10 @@ void ViewerScreen::draw_panel(UiContext& ui, ImVec2 size) {
   ImGui::PushFont(ui.fonts.small);
   for (int k = 0; k < kFaceCount; ++k) {
     const std::string name = fmt::format("view.{}", to_string(static_cast<Face>(k)));
-    const std::string key = fmt::format("{}  {}", k + 1, ui.text(kFaceTexts[k]));
+    std::string key = fmt::format("{}  {}", k + 1, ui.text(kFaceTexts[k]));
+    if (ImGui::CalcTextSize(key.c_str()).x > half - ui.px(0.4F)) {
+      key = fmt::format("{}  {}", k + 1, ui.text(kShortFaceTexts[k]));
+    }
     if (big_button(ui, name.c_str(), key.c_str(), nullptr, {half, ui.px(1.9F)}, ButtonKind::kPlain,
                    !surface_.empty())) {
       look_at(static_cast<Face>(k));
@@ -281,19 +279,22 @@ void ViewerScreen::draw_histogram(UiContext& ui) {
   ImGui::TextUnformatted(most.c_str());
 }
 
-void ViewerScreen::draw_wedge_table(UiContext& ui, ImVec2 size) {
+void ViewerScreen::draw_wedge_table(UiContext& ui, ImVec2 size, bool with_length) {
   ImGui::BeginChild("wedges", size, true);
   const std::vector<Wedge>& wedges = *state_.wedges;
   ImGui::TextUnformatted(fmt::format("{}: {}", ui.text(Text::kWedges), wedges.size()).c_str());
   ImGui::PushFont(ui.fonts.small);
   draw_histogram(ui);
   if (ImGui::BeginTable(
-          "table", 4, ImGuiTableFlags_ScrollY | ImGuiTableFlags_RowBg | ImGuiTableFlags_SizingStretchProp)) {
+          "table", with_length ? 4 : 3,
+          ImGuiTableFlags_ScrollY | ImGuiTableFlags_RowBg | ImGuiTableFlags_SizingStretchProp)) {
     ImGui::TableSetupScrollFreeze(0, 1);
     ImGui::TableSetupColumn(ui.text(Text::kWedgeNumber));
     ImGui::TableSetupColumn(ui.text(Text::kOrder));
     ImGui::TableSetupColumn(fmt::format("{} mm", ui.text(Text::kDepth)).c_str());
-    ImGui::TableSetupColumn(fmt::format("{} mm", ui.text(Text::kLength)).c_str());
+    if (with_length) {
+      ImGui::TableSetupColumn(fmt::format("{} mm", ui.text(Text::kLength)).c_str());
+    }
     ImGui::TableHeadersRow();
     ImGuiListClipper rows;
     rows.Begin(static_cast<int>(wedges.size()));
@@ -319,9 +320,11 @@ void ViewerScreen::draw_wedge_table(UiContext& ui, ImVec2 size) {
                                          .c_str());
         ImGui::TableNextColumn();
         ImGui::TextUnformatted(decimal(wedge.depth_mm, 2, ui.preferences.language).c_str());
-        ImGui::TableNextColumn();
-        const auto leading = static_cast<std::size_t>(std::clamp(wedge.directional_edge, 0, 2));
-        ImGui::TextUnformatted(decimal(wedge.edge_lengths_mm[leading], 2, ui.preferences.language).c_str());
+        if (with_length) {
+          ImGui::TableNextColumn();
+          const auto leading = static_cast<std::size_t>(std::clamp(wedge.directional_edge, 0, 2));
+          ImGui::TextUnformatted(decimal(wedge.edge_lengths_mm[leading], 2, ui.preferences.language).c_str());
+        }
       }
     }
     if (scroll_to_wedge_ && wedge_ >= 0) {

@@ -142,15 +142,17 @@ void ViewerScreen::draw(UiContext& ui, ImVec2 size) {
                ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
                    ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoSavedSettings);
   const ImVec2 room = ImGui::GetContentRegionAvail();
-  const float left = ui.px(15.5F);
-  const float right = state_.wedges ? ui.px(16.5F) : 0.0F;
+  // In large letters the panels are narrower: the surface is what is looked at.
+  const bool narrow = room.x < ui.px(60);
+  const float left = ui.px(narrow ? 14 : 15.5F);
+  const float right = !state_.wedges ? 0 : ui.px(narrow ? 11.5F : 16.5F);
   const float gaps = ImGui::GetStyle().ItemSpacing.x * (state_.wedges ? 2.0F : 1.0F);
   draw_panel(ui, {left, room.y});
   ImGui::SameLine();
   draw_surface(ui, {room.x - left - right - gaps, room.y});
   if (state_.wedges) {
     ImGui::SameLine();
-    draw_wedge_table(ui, {right, room.y});
+    draw_wedge_table(ui, {right, room.y}, !narrow);
   }
   ImGui::End();
   if (!ImGui::GetIO().WantTextInput) {

@@ -78,7 +78,7 @@ class ViewerScreen {
   void draw_legend(UiContext& ui, ImVec2 origin, ImVec2 size) const;
   void draw_flags_legend(UiContext& ui, ImVec2 origin, ImVec2 size) const;
   void draw_histogram(UiContext& ui);
-  void draw_wedge_table(UiContext& ui, ImVec2 size);
+  void draw_wedge_table(UiContext& ui, ImVec2 size, bool with_length);
   void look_at(Face face);
   void choose(int wedge, bool go_there);
   // viewer_picture.cpp
