@@ -175,7 +175,7 @@ void say_still(Statement& out, const LiveState& state, bool has_device, Wording 
     if (state.signed_off) {
       add_sentence(out.detail, filled(text_of(Text::kSigned, language), state.signed_by.c_str()));
     } else if (state.red_map && !state.red_map->next.empty()) {
-      add_sentence(out.detail, sentence(state.red_map->next.front().say, language));
+      add_sentence(out.detail, what_is_next(state.red_map->next.front(), language));
     }
     add_warnings(out, state, language);
   }
