@@ -78,6 +78,10 @@ click overlay
 click overlay.Openness
 wait legend
 click overlay
+click overlay.Height over free surface, mm
+wait legend
+expect overlay-whole
+click overlay
 click overlay.Mean curvature, 1/mm
 wait legend
 wait idle

@@ -279,6 +279,18 @@ TEST_F(MeshInput, TwoSideBySideTurnTogetherOrAlone) {
   EXPECT_EQ(broken.status, 2);
 }
 
+/// As in large letters, in the language with the longer words.
+TEST_F(MeshInput, WhereTheWindowIsNarrowTheBarOfTwoTakesMoreRows) {
+  const auto in = [&](const char* name) { return (folder_.path() / name).string(); };
+  std::ofstream(in("left.obj")) << grooved_plate();
+  std::ofstream(in("narrow.script")) << "wait whole\nexpect whole.view.bottom\nexpect whole.together\n"
+                                        "expect whole.lamp\nclick lamp\nquit\n";
+  const Outcome outcome =
+      run_command({"view", in("left.obj"), in("left.obj"), "--script", in("narrow.script"), "--language",
+                   "de", "--width", "700", "--height", "600"});
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+}
+
 TEST(WindowInput, ABadScriptIsNamedByItsLine) {
   const test::TemporaryFolder folder;
   const auto file = folder.path() / "bad.script";

@@ -264,7 +264,7 @@ constexpr TextRow kRows[] = {
     {Text::kOverlayScans, "Scans that agree", "Übereinstimmende Scans"},
     {Text::kOverlayFlags, "Sparse and filled", "Dünn und gefüllt"},
     {Text::kOverlayCurvature, "Mean curvature, 1/mm", "Mittlere Krümmung, 1/mm"},
-    {Text::kOverlayHeight, "Height over the free surface, mm", "Höhe über der freien Fläche, mm"},
+    {Text::kOverlayHeight, "Height over free surface, mm", "Höhe über freier Fläche, mm"},
     {Text::kOverlayOpenness, "Openness", "Offenheit"},
     {Text::kOverlaySigma, "Uncertainty, mm", "Unsicherheit, mm"},
     {Text::kOverlayMsii, "Integral invariant", "Integralinvariante"},

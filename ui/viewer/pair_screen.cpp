@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include "ui/shell/face_texts.h"
 #include "ui/viewer/hand.h"
 
 namespace dubsar::ui {
@@ -106,24 +107,35 @@ void PairScreen::draw(UiContext& ui, ImVec2 size) {
 }
 
 void PairScreen::draw_bar(UiContext& ui) {
-  static constexpr Text kFaceTexts[] = {Text::kObverse, Text::kReverse, Text::kLeft,
-                                        Text::kRight,   Text::kTop,     Text::kBottom};
   ImGui::PushFont(ui.fonts.small);
+  const ImGuiStyle& style = ImGui::GetStyle();
+  const float end = ImGui::GetCursorScreenPos().x + ImGui::GetContentRegionAvail().x;
+  // Beside what was drawn last where it fits, else in a row below.
+  const auto beside = [&](float wide) {
+    if (ImGui::GetItemRectMax().x + style.ItemSpacing.x + wide <= end) {
+      ImGui::SameLine();
+    }
+  };
+  const auto tick_beside = [&](const char* name, Text text, bool& value) {
+    beside(ImGui::GetFrameHeight() + style.ItemInnerSpacing.x + ImGui::CalcTextSize(ui.text(text)).x);
+    tick(ui, name, ui.text(text), value);
+  };
   for (int k = 0; k < kFaceCount; ++k) {
     const std::string name = fmt::format("view.{}", to_string(static_cast<Face>(k)));
     const std::string label = fmt::format("{}  {}", k + 1, ui.text(kFaceTexts[k]));
+    if (k > 0) {
+      beside(ImGui::CalcTextSize(label.c_str()).x + 2 * style.FramePadding.x);
+    }
     if (plain_button(ui, name.c_str(), label.c_str()) || ImGui::IsKeyPressed(GLFW_KEY_1 + k, false)) {
       look_at(static_cast<Face>(k));
     }
-    ImGui::SameLine();
   }
-  tick(ui, "together", ui.text(Text::kTogether), together_);
+  tick_beside("together", Text::kTogether, together_);
   if (ImGui::IsKeyPressed(GLFW_KEY_L, false)) {
     together_ = !together_;
   }
   ui.facts.insert(together_ ? "turned-together" : "turned-alone");
-  ImGui::SameLine();
-  tick(ui, "lamp", ui.text(Text::kLamp), look_.lamp);
+  tick_beside("lamp", Text::kLamp, look_.lamp);
   ImGui::PopFont();
 }
 

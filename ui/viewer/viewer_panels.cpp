@@ -78,6 +78,16 @@ void ViewerScreen::draw_overlay_choice(UiContext& ui) {
   for (const FieldChoice& choice : kFields) {
     now = field_ == choice.field ? choice.text : now;
   }
+  // What is too long for it is in the small letters.
+  const float room =
+      ImGui::GetContentRegionAvail().x - ImGui::GetFrameHeight() - ImGui::GetStyle().FramePadding.x;
+  const bool in_small = ImGui::CalcTextSize(ui.text(now)).x > room;
+  if (in_small) {
+    ImGui::PushFont(ui.fonts.small);
+  }
+  if (ImGui::CalcTextSize(ui.text(now)).x <= room) {
+    ui.facts.insert("overlay-whole");
+  }
   if (ImGui::BeginCombo("##overlay", ui.text(now), ImGuiComboFlags_HeightLargest)) {
     for (const PlainChoice& choice : kPlain) {
       if (!tells(prepared_.shown(), choice.overlay)) {
@@ -102,6 +112,9 @@ void ViewerScreen::draw_overlay_choice(UiContext& ui) {
       ui.target(fmt::format("overlay.{}", text_of(choice.text, Language::kEnglish)));
     }
     ImGui::EndCombo();
+  }
+  if (in_small) {
+    ImGui::PopFont();
   }
   ui.target("overlay");
 }
