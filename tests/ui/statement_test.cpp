@@ -264,6 +264,14 @@ TEST(Statement, RedThatIsSmallIsNotSaidToBeNone) {
   EXPECT_EQ(statement_of(state, true, Language::kEnglish).headline, "< 0.1 mm² are still red: scan on");
 }
 
+/// As after a window that was closed in mid scan.
+TEST(Statement, AMapThatKnowsOfNoRedYetIsNotSaidToBeNearlyDone) {
+  LiveState state = with_scan(PoseStatus::kRegistered);
+  state.scans.back().pose.reset();
+  state.red_map = std::make_shared<RedMap>();
+  EXPECT_EQ(statement_of(state, true, Language::kEnglish).headline, "Scans stored: 1. Go on");
+}
+
 TEST(Statement, WhatEndedTheRunIsToldWithItsMend) {
   LiveState state = with_scan(PoseStatus::kRegistered);
   state.error = Error{ErrorKind::kDevice, "the camera is gone", "v4l2:/dev/video0", "plug it in"};

@@ -163,10 +163,10 @@ void say_still(Statement& out, const LiveState& state, bool has_device, Wording 
     out.tone = warned ? Tone::kAsk : Tone::kGood;
     out.may_sign = true;
   } else {
-    out.headline =
-        state.red_map && !state.red_map->conclusive
-            ? filled(text_of(Text::kStillRed, wording), area_words(red_mm2(*state.red_map), language))
-            : filled(text_of(Text::kStoredScans, language), state.scans.size());
+    // A map that knows of no red yet is one of scans that are not judged.
+    const double red = state.red_map && !state.red_map->conclusive ? red_mm2(*state.red_map) : 0.0;
+    out.headline = red > 0 ? filled(text_of(Text::kStillRed, wording), area_words(red, language))
+                           : filled(text_of(Text::kStoredScans, language), state.scans.size());
     out.tone = Tone::kAsk;
     out.scan_label = Text::kGoOn;
     // As incomplete, with the reason.
