@@ -186,9 +186,11 @@ int SurfaceView::shadow_px(const Layer& layer) const {
 }
 
 std::size_t SurfaceView::shadow_level(const Layer& layer, const Scene& scene, std::size_t finest) const {
-  const float pixel_mm = lamp_of(scene).mm_per_px(static_cast<float>(shadow_px(layer)));
+  const float shadow_pixel_mm = lamp_of(scene).mm_per_px(static_cast<float>(shadow_px(layer)));
+  const float pixel_mm = scene.camera.mm_per_px(static_cast<float>(scene.height));
+  const float seen_mm = std::max(1.5F * shadow_pixel_mm, 2.5F * pixel_mm);
   std::size_t level = 0;
-  while (level < finest && cells_mm_[level] > 1.5F * pixel_mm) {
+  while (level < finest && cells_mm_[level] > seen_mm) {
     ++level;
   }
   return level;
