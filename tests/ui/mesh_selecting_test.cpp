@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "tests/support/raster_mesh.h"
@@ -20,7 +21,7 @@ constexpr int kWidth = 400;
 constexpr int kHeight = 300;
 
 /// Two sheets, one behind the other, seen from +z: 2 × 2 n² faces.
-Mesh two_sheets(std::uint32_t n) {
+Mesh two_sheets(std::uint32_t n, float apart_mm = 5) {
   Mesh mesh;
   for (std::uint32_t sheet = 0; sheet < 2; ++sheet) {
     const auto first = static_cast<std::uint32_t>(mesh.positions.size());
@@ -28,7 +29,7 @@ Mesh two_sheets(std::uint32_t n) {
       for (std::uint32_t x = 0; x <= n; ++x) {
         mesh.positions.emplace_back(static_cast<float>(x) * 40 / static_cast<float>(n),
                                     static_cast<float>(y) * 30 / static_cast<float>(n),
-                                    sheet == 0 ? 0.0F : -5.0F);
+                                    sheet == 0 ? 0.0F : -apart_mm);
       }
     }
     test::add_raster_faces(mesh, first, n);
@@ -111,6 +112,34 @@ TEST_F(Selecting, OnlyWhatIsSeen) {
   }
   EXPECT_GT(front, std::size_t{60000});
   EXPECT_EQ(back, 0U);
+}
+
+TEST_F(Selecting, WhatIsHiddenCloseBehindIsNotSeenAndASlopeIs) {
+  constexpr float kApartMm = 0.15F;
+  shown_ = shown_mesh(two_sheets(301, kApartMm));
+  view_->show(shown_);
+  const auto front_and_back = [&] {
+    view_->draw_whole(camera_, {}, kWidth, kHeight);
+    EXPECT_TRUE(
+        select(MeshElement::kFace, box(-1, -1, kWidth + 1, kHeight + 1), SelectionStep::kUnion, false));
+    const BitMarks marks = marks_now();
+    std::array<std::size_t, 2> sums{};
+    for (std::size_t f = 0; f < shown_.faces.size(); ++f) {
+      const bool front = shown_.positions[shown_.faces[f][0]].z() > -kApartMm / 2;
+      sums[front ? 0 : 1] += marks[f] ? 1 : 0;
+    }
+    view_->clear_selection();
+    return sums;
+  };
+  const std::size_t all = shown_.faces.size() / 2;
+  EXPECT_EQ(front_and_back(), (std::array<std::size_t, 2>{all, 0}));
+  camera_.eye_from_model = Eigen::AngleAxisf(1.1F, Eigen::Vector3f::UnitX());  // 63 degrees
+  const auto [front, back] = front_and_back();
+  EXPECT_EQ(front, all);
+  const float high_px = 30 * std::cos(1.1F) / camera_.mm_per_px(kHeight);
+  const float wide_px = 40 / camera_.mm_per_px(kHeight);
+  EXPECT_LT(static_cast<float>(back) / static_cast<float>(all), 4 / high_px + 4 / wide_px)
+      << "but for two pixels of its rim, more than one of which stands out";
 }
 
 TEST_F(Selecting, PolygonsGoTogetherAsAsked) {

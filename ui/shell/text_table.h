@@ -309,7 +309,7 @@ enum class Text {
 
 /// How it is said: in what language, and of what colour what is under-sampled is.
 struct Wording {
-  // NOLINTNEXTLINE(google-explicit-constructor): most texts name no colour
+  // Not explicit: most texts name no colour.
   constexpr Wording(Language said_in, bool blue = false) : language(said_in), blue_for_red(blue) {}
   Language language;
   bool blue_for_red;

@@ -12,6 +12,7 @@
 #include "ui/gl/shader_program.h"
 #include "ui/view/bit_marks.h"
 #include "ui/view/mesh_buffers.h"
+#include "ui/view/orbit_camera.h"
 #include "ui/view/piece_size.h"
 
 namespace dubsar::ui {
@@ -39,10 +40,10 @@ class MeshSelecting {
   MeshSelecting(const MeshSelecting&) = delete;
   MeshSelecting& operator=(const MeshSelecting&) = delete;
 
-  /// A polygon more. `seen`: a picture of that size under `clip_from_model`, when only what is seen in it is
+  /// A polygon more. `seen`: a picture of that size by `camera`, when only what is seen in it is
   /// meant; null for all. A face belongs to a polygon when its middle does.
-  void begin(const Eigen::Matrix4f& clip_from_model, const std::vector<std::uint8_t>& mask, int width,
-             int height, const FrameTarget* seen, SelectionStep step);
+  void begin(const OrbitCamera& camera, const std::vector<std::uint8_t>& mask, int width, int height,
+             const FrameTarget* seen, SelectionStep step);
   /// Some more elements, so many that a frame stays short. True while more is to come; until then all else
   /// stays as it was before the polygon.
   bool go_on();

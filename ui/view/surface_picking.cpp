@@ -46,10 +46,8 @@ bool SurfaceView::select(MeshElement of, const std::vector<Eigen::Vector2f>& cor
   if (!begin_selection(of)) {
     return false;
   }
-  const float aspect = static_cast<float>(scene_.width) / static_cast<float>(scene_.height);
-  const Layer& layer = shown();
-  selection_->begin(scene_.camera.clip_from_model(aspect), polygon_mask(corners, scene_.width, scene_.height),
-                    scene_.width, scene_.height, through ? nullptr : &layer.target, step);
+  selection_->begin(scene_.camera, polygon_mask(corners, scene_.width, scene_.height), scene_.width,
+                    scene_.height, through ? nullptr : &shown().target, step);
   return true;
 }
 
