@@ -144,7 +144,7 @@ std::vector<std::uint32_t> uncovered_samples(const std::vector<OwnedScan>& scans
 
 }  // namespace
 
-std::vector<std::uint8_t> wanted_samples(const std::vector<OwnedScan>& scans, std::size_t self) {
+std::vector<std::uint8_t> wanted_samples(const std::vector<OwnedScan>& scans, std::size_t self, int least) {
   const OwnedScan& scan = scans[self];
   const StitchSurface& s = *scan.surface;
   const Lattice& lattice = s.lattice;
@@ -192,6 +192,7 @@ std::vector<std::uint8_t> wanted_samples(const std::vector<OwnedScan>& scans, st
         }
       },
       16);
+  drop_scattered(out, {}, lattice, least);
   return out;
 }
 

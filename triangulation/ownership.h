@@ -11,8 +11,10 @@
 namespace dubsar {
 
 /// 1 for the samples around which this scan would be primary: no pair has a better score; of equals the lower
-/// position. Looks at surfaces and pairs only.
-[[nodiscard]] std::vector<std::uint8_t> wanted_samples(const std::vector<OwnedScan>& scans, std::size_t self);
+/// position. Those of which fewer than `least` lie beside each other are none: no patch would come of them.
+/// Looks at surfaces and pairs only.
+[[nodiscard]] std::vector<std::uint8_t> wanted_samples(const std::vector<OwnedScan>& scans, std::size_t self,
+                                                       int least);
 
 /// Gives each place of the surface one primary scan, the view closest to the normal there (seed 001, 4), and
 /// keeps that scan's samples and triangles: patches of single scans that nowhere overlap, with a seam about

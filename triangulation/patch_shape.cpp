@@ -109,8 +109,8 @@ void remove_specks(std::vector<std::uint8_t>& kept, const std::vector<std::uint8
   }
 }
 
-void drop_scattered(std::vector<std::uint8_t>& fresh, const std::vector<std::uint8_t>& kept,
-                    const Lattice& grid, int least) {
+void drop_scattered(std::vector<std::uint8_t>& fresh, std::span<const std::uint8_t> kept, const Lattice& grid,
+                    int least) {
   const auto width = static_cast<std::size_t>(grid.cols);
   const auto height = static_cast<std::size_t>(grid.rows);
   const auto enough = static_cast<std::size_t>(std::max(least, 1));
@@ -118,7 +118,7 @@ void drop_scattered(std::vector<std::uint8_t>& fresh, const std::vector<std::uin
   std::vector<std::size_t> group;
   bool is_large = false;
   const auto visit = [&](std::size_t i) {
-    if ((fresh[i] | kept[i]) == 0) {
+    if (fresh[i] == 0 && (kept.empty() || kept[i] == 0)) {
       return;
     }
     if (seen[i] == 0) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "triangulation/owned_scan.h"
@@ -15,9 +16,10 @@ void remove_specks(std::vector<std::uint8_t>& kept, const std::vector<std::uint8
                    const std::vector<std::uint8_t>& starts, const Lattice& grid, int least);
 
 /// Takes back those of the fresh samples that will not be part of a patch of `least` samples, whatever
-/// triangles there are between them: fresh and kept samples beside each other are fewer.
-void drop_scattered(std::vector<std::uint8_t>& fresh, const std::vector<std::uint8_t>& kept,
-                    const Lattice& grid, int least);
+/// triangles there are between them: fresh and kept samples beside each other are fewer. `kept` may be empty:
+/// none.
+void drop_scattered(std::vector<std::uint8_t>& fresh, std::span<const std::uint8_t> kept, const Lattice& grid,
+                    int least);
 
 /// Takes away the triangles that lack a corner, then the samples that no triangle uses; and brings what the
 /// scan tells others of its patches (near_kept, some_kept, all_kept) up to date.

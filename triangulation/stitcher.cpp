@@ -192,7 +192,7 @@ struct Stitcher::Impl {
       job.progress("average samples", static_cast<double>(at) / static_cast<double>(scans.size()));
       if (!entry.changed.empty()) {
         const Lattice& lattice = entry.surface.lattice;
-        entry.wanted = wanted_samples(scans, at);
+        entry.wanted = wanted_samples(scans, at, options.ownership.least_wanted_patch_samples);
         // Samples of a node may go by the pair of one beside it.
         const std::vector<std::uint8_t> anew =
             dilated(entry.changed, lattice.node_rows, lattice.node_cols, 1);

@@ -25,6 +25,7 @@
 
 #include "bench/support/options.h"
 #include "core/heap.h"
+#include "core/kept_blocks.h"
 #include "core/order_statistics.h"
 #include "station/engine.h"
 #include "tests/support/temporary_folder.h"
@@ -98,11 +99,12 @@ int run(int argc, char** argv) {
   std::vector<double> resident;
   std::vector<double> own;
   std::vector<double> in_use;
+  std::vector<double> kept;  // of large blocks, for the next who asks
   std::signal(SIGINT, [](int) { interrupted = 1; });
   std::vector<std::ptrdiff_t> descriptors;
   int failed = 0;
   int several = 0;  // tablets with two registered scans or more
-  std::printf("tablet resident_MiB own_MiB in_use_MiB descriptors\n");
+  std::printf("tablet resident_MiB own_MiB in_use_MiB kept_MiB descriptors\n");
   for (int i = 0; i < tablets && (interrupted == 0); ++i) {
     const test::TemporaryFolder folder;
     EngineOptions options;
@@ -141,10 +143,11 @@ int run(int argc, char** argv) {
     resident.push_back(status_mib("VmRSS:"));
     own.push_back(status_mib("RssAnon:"));
     in_use.push_back(in_use_mib());
+    kept.push_back(static_cast<double>(kept_blocks().kept_bytes()) / (1024 * 1024));
     descriptors.push_back(open_descriptors());
     if (i % std::max(1, tablets / 20) == 0 || i + 1 == tablets) {
-      std::printf("%6d %12.1f %7.1f %10.2f %6td\n", i + 1, resident.back(), own.back(), in_use.back(),
-                  descriptors.back());
+      std::printf("%6d %12.1f %7.1f %10.2f %8.2f %6td\n", i + 1, resident.back(), own.back(), in_use.back(),
+                  kept.back(), descriptors.back());
       std::fflush(stdout);
     }
   }

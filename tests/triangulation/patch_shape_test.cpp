@@ -67,6 +67,10 @@ TEST(PatchShape, ScatteredSamplesAreDroppedGroupsAndAdditionsStay) {
   EXPECT_EQ(count(all), 7U);
   EXPECT_EQ(all[at(12, 5)] & all[at(14, 14)] & all[at(17, 16)], 1);
   EXPECT_EQ(all[at(0, 1)] | all[at(5, 19)] | all[at(6, 0)], 0);
+  Marks beside_none = fresh;
+  drop_scattered(beside_none, {}, grid, 5);
+  EXPECT_EQ(count(beside_none), 5U);
+  EXPECT_EQ(beside_none[at(12, 5)], 1);
   drop_scattered(fresh, kept, grid, 6);
   EXPECT_EQ(count(fresh), 0U);
 }
