@@ -29,9 +29,6 @@ HeightSurface::HeightSurface(Mesh mesh, const NodeGrid& grid, float below_mm, fl
       distance_mm_(std::move(distance_mm)) {}
 
 void HeightSurface::shift(const std::function<float(const Vector3f& p_mm)>& outward_mm) {
-  parallel_for_each_index(mesh_.positions.size(), [&](std::size_t i) {
-    mesh_.positions[i] += outward_mm(mesh_.positions[i]) * mesh_.normals[i];
-  });
   parallel_for_each_index(
       static_cast<std::size_t>(grid_.nz),
       [&](std::size_t z) {
@@ -46,6 +43,12 @@ void HeightSurface::shift(const std::function<float(const Vector3f& p_mm)>& outw
         }
       },
       1);
+  // Between the nodes heights are straight lines, which cut a curved surface short: the triangles follow
+  // them.
+  parallel_for_each_index(mesh_.positions.size(), [&](std::size_t i) {
+    const Vector3f moved = mesh_.positions[i] + outward_mm(mesh_.positions[i]) * mesh_.normals[i];
+    mesh_.positions[i] = closest(moved).value_or(moved);
+  });
 }
 
 std::optional<HeightSurface::Cell> HeightSurface::cell_at(const Vector3f& p_mm) const {

@@ -71,6 +71,14 @@ TEST(Height, OfASpheresOwnVerticesIsAFewMicrometres) {
   }
 }
 
+TEST(Height, IsMeasuredFromTheSurfaceThatIsShown) {
+  const HeightSurface surface = surface_of(shapes::scaled(shapes::unit_sphere(7), {25, 18, 8}));
+  ASSERT_FALSE(surface.mesh().positions.empty());
+  for (const Eigen::Vector3f& p : surface.mesh().positions) {
+    ASSERT_NEAR(surface.height_mm(p), 0, 0.001) << p.transpose();
+  }
+}
+
 TEST(Height, OfAnEllipsoidsOwnVerticesIsNone) {
   const Mesh mesh = shapes::scaled(shapes::unit_sphere(7), {25, 18, 8});
   const HeightSurface surface = surface_of(mesh);
