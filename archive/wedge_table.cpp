@@ -67,6 +67,9 @@ std::vector<Column> columns() {
   plain("depth_mm", [](const Wedge& w) { return w.depth_mm; });
   plain("volume_mm3", [](const Wedge& w) { return w.volume_mm3; });
   text("directional_edge", [](const Wedge& w) { return std::to_string(w.directional_edge); });
+  text("directional_by", [](const Wedge& w) {
+    return std::string(kDirectionalByNames[static_cast<std::size_t>(w.directional_by)]);
+  });
   plain("directional_margin", [](const Wedge& w) { return w.directional_margin; });
   three("edge_length", "mm", 1, [](const Wedge& w) -> const Three& { return w.edge_lengths_mm; });
   three("edge_slope", "deg", deg, [](const Wedge& w) -> const Three& { return w.edge_slopes_rad; });

@@ -25,6 +25,8 @@ enum class DirectionalBy {
   kLongest,   ///< they differ; the longest one leads by more
   kFlattest,  ///< they differ; the flattest one leads by more
 };
+inline constexpr std::array<std::string_view, 3> kDirectionalByNames = {"longest and flattest", "longest",
+                                                                        "flattest"};
 
 /// Standard deviations of what was measured, from reliability, the scatter of the vertices and how well the
 /// free surface is known.
@@ -71,8 +73,8 @@ struct Wedge {
   double directional_margin = 0;  ///< by how much it leads the next, as a share: of length or of slope
   std::array<Eigen::Vector3d, 3> outer_vertices_mm = three_zeros();
   std::array<Eigen::Vector3d, 3> face_normals = three_zeros();  ///< out of the clay
-  Eigen::Vector3d surface_normal{0, 0, 0};                      ///< of the free surface above the depth point
-  double depth_mm = 0;                                          ///< of the depth point below the free surface
+  Eigen::Vector3d surface_normal{0, 0, 0};  ///< mean of the free surface over the impression
+  double depth_mm = 0;                      ///< of the depth point below the free surface
   std::array<double, 3> face_angles_rad{};
   std::array<double, 3> opening_angles_rad{};
   std::array<double, 3> edge_lengths_mm{};  ///< depth point to exit point
@@ -85,7 +87,7 @@ struct Wedge {
   double reliability = 0;
   double confidence = 0;
   int vertex_count = 0;
-  double intact = 1.0;  ///< share of the impression that later wedges and damage left
+  double intact = 1.0;  ///< share of the three faces that is there
   ByHand by_hand = ByHand::kNo;
 };
 

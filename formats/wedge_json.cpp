@@ -15,7 +15,7 @@ namespace {
 
 using Three = std::array<double, 3>;
 
-const std::vector<std::string> kDirectionalBy = {"longest and flattest", "longest", "flattest"};
+const std::vector<std::string> kDirectionalBy(kDirectionalByNames.begin(), kDirectionalByNames.end());
 
 OrderedJson degrees_json(const Three& angles_rad) {
   OrderedJson json = OrderedJson::array();

@@ -24,6 +24,7 @@ struct WedgeRow {
   double face_normals[3][3];
   double surface_normal[3];
   std::int8_t directional_edge;
+  char directional_by[24];
   double directional_margin;
   double depth_mm;
   double face_angles_rad[3];
@@ -35,7 +36,12 @@ struct WedgeRow {
   double volume_mm3;
   double sigma_depth_point_mm;
   double sigma_depth_mm;
+  double sigma_edge_rad[3];
   double sigma_opening_rad[3];
+  double sigma_face_angle_rad[3];
+  double sigma_face_slope_rad[3];
+  double sigma_length_mm[3];
+  double sigma_volume_mm3;
   char side[8];
   std::int32_t line;
   std::int32_t order;
@@ -58,6 +64,11 @@ void put(double (&to)[3][3], const std::array<Eigen::Vector3d, 3>& from) {
     put(to[k], from[k]);
   }
 }
+/// numpy reads such a text to its first zero, or to its end.
+template <std::size_t N>
+void put(char (&to)[N], std::string_view from) {
+  std::copy_n(from.begin(), std::min(from.size(), N), to);
+}
 
 WedgeRow row_of(const Wedge& wedge) {
   WedgeRow row{};
@@ -70,6 +81,7 @@ WedgeRow row_of(const Wedge& wedge) {
   put(row.face_normals, wedge.face_normals);
   put(row.surface_normal, wedge.surface_normal);
   row.directional_edge = static_cast<std::int8_t>(wedge.directional_edge);
+  put(row.directional_by, kDirectionalByNames[static_cast<std::size_t>(wedge.directional_by)]);
   row.directional_margin = wedge.directional_margin;
   row.depth_mm = wedge.depth_mm;
   put(row.face_angles_rad, wedge.face_angles_rad);
@@ -81,10 +93,14 @@ WedgeRow row_of(const Wedge& wedge) {
   row.volume_mm3 = wedge.volume_mm3;
   row.sigma_depth_point_mm = wedge.sigma.depth_point_mm;
   row.sigma_depth_mm = wedge.sigma.depth_mm;
+  put(row.sigma_edge_rad, wedge.sigma.edge_rad);
   put(row.sigma_opening_rad, wedge.sigma.opening_rad);
+  put(row.sigma_face_angle_rad, wedge.sigma.face_angle_rad);
+  put(row.sigma_face_slope_rad, wedge.sigma.face_slope_rad);
+  put(row.sigma_length_mm, wedge.sigma.length_mm);
+  row.sigma_volume_mm3 = wedge.sigma.volume_mm3;
   if (wedge.place.side) {
-    const std::string side = to_string(*wedge.place.side);
-    std::copy_n(side.begin(), std::min(side.size(), sizeof row.side), row.side);
+    put(row.side, to_string(*wedge.place.side));
   }
   row.line = wedge.place.line;
   row.order = wedge.place.order;
@@ -93,8 +109,7 @@ WedgeRow row_of(const Wedge& wedge) {
   row.confidence = wedge.confidence;
   row.vertex_count = wedge.vertex_count;
   row.intact = wedge.intact;
-  const std::string_view by_hand = kByHandNames[static_cast<std::size_t>(wedge.by_hand)];
-  std::copy_n(by_hand.begin(), std::min(by_hand.size(), sizeof row.by_hand), row.by_hand);
+  put(row.by_hand, kByHandNames[static_cast<std::size_t>(wedge.by_hand)]);
   return row;
 }
 
@@ -109,10 +124,11 @@ py::array wedge_rows(const std::vector<Wedge>& wedges) {
 void bind_wedge_rows() {
   PYBIND11_NUMPY_DTYPE(WedgeRow, id, depth_point_mm, exit_points_mm, exit_points_surface_mm,
                        exit_points_extent_mm, outer_vertices_mm, face_normals, surface_normal,
-                       directional_edge, directional_margin, depth_mm, face_angles_rad, opening_angles_rad,
-                       edge_lengths_mm, edge_slopes_rad, face_slopes_rad, edge_bows_mm, volume_mm3,
-                       sigma_depth_point_mm, sigma_depth_mm, sigma_opening_rad, side, line, order, turn_rad,
-                       reliability, confidence, vertex_count, intact, by_hand);
+                       directional_edge, directional_by, directional_margin, depth_mm, face_angles_rad,
+                       opening_angles_rad, edge_lengths_mm, edge_slopes_rad, face_slopes_rad, edge_bows_mm,
+                       volume_mm3, sigma_depth_point_mm, sigma_depth_mm, sigma_edge_rad, sigma_opening_rad,
+                       sigma_face_angle_rad, sigma_face_slope_rad, sigma_length_mm, sigma_volume_mm3, side,
+                       line, order, turn_rad, reliability, confidence, vertex_count, intact, by_hand);
 }
 
 }  // namespace dubsar::python

@@ -145,11 +145,14 @@ class Wedges:
     def table(self) -> NDArray[np.void]:
         """One row a wedge. Columns: id, depth_point_mm[3], exit_points_mm[3, 3], exit_points_surface_mm[3, 3],
         exit_points_extent_mm[3, 3], outer_vertices_mm[3, 3], face_normals[3, 3], surface_normal[3],
-        directional_edge, directional_margin, depth_mm, face_angles_rad[3], opening_angles_rad[3],
-        edge_lengths_mm[3], edge_slopes_rad[3], face_slopes_rad[3], edge_bows_mm[3], volume_mm3,
-        sigma_depth_point_mm, sigma_depth_mm, sigma_opening_rad[3], side (bytes, b"obverse"), line, order,
+        directional_edge, directional_by (bytes, b"longest"), directional_margin, depth_mm, face_angles_rad[3],
+        opening_angles_rad[3], edge_lengths_mm[3], edge_slopes_rad[3], face_slopes_rad[3], edge_bows_mm[3],
+        volume_mm3, sigma_depth_point_mm, sigma_depth_mm, sigma_edge_rad[3] (direction and slope),
+        sigma_opening_rad[3], sigma_face_angle_rad[3], sigma_face_slope_rad[3], sigma_length_mm[3],
+        sigma_volume_mm3, side (bytes, b"obverse"; b"" where not known, line and order are 0 then), line, order,
         turn_rad, reliability, confidence, vertex_count, intact, by_hand
-        (b"no", or what a person said: b"merged", b"split", b"added")."""
+        (b"no", or what a person said: b"merged", b"split", b"added"). What each means: wedges.json's page,
+        docs/formats/wedges.md. Sigmas, face slopes and bows that a file does not say are NaN."""
     @property
     def rejected(self) -> list[Rejected]: ...
     @property

@@ -60,6 +60,7 @@ TEST(WedgeTable, HasANameForEveryCell) {
   EXPECT_EQ(value("line"), "2");
   EXPECT_EQ(value("depth_point_x_mm"), "1.5");
   EXPECT_EQ(value("depth_mm"), "0.75");
+  EXPECT_EQ(value("directional_by"), "longest and flattest");
   EXPECT_EQ(value("sigma_volume_mm3"), "") << "what is not known is empty";
   EXPECT_EQ(value("turn_deg"), "0");
 }

@@ -248,6 +248,21 @@ class Pipeline(Scans):
         np.testing.assert_allclose(
             [w["depth_point"] for w in stored["wedges"]], table["depth_point_mm"], atol=1e-5
         )
+        for key, column, unit in (
+            ("depth_point", "sigma_depth_point_mm", 1),
+            ("depth", "sigma_depth_mm", 1),
+            ("edges_deg", "sigma_edge_rad", np.pi / 180),
+            ("opening_angles_deg", "sigma_opening_rad", np.pi / 180),
+            ("face_angles_deg", "sigma_face_angle_rad", np.pi / 180),
+            ("face_slopes_deg", "sigma_face_slope_rad", np.pi / 180),
+            ("edge_lengths", "sigma_length_mm", 1),
+            ("volume_mm3", "sigma_volume_mm3", 1),
+        ):
+            sigmas = unit * np.array([w["sigma"][key] for w in stored["wedges"]])
+            np.testing.assert_allclose(table[column], sigmas, rtol=1e-9, err_msg=column)
+        self.assertEqual(
+            [w["directional_by"] for w in stored["wedges"]], [by.decode() for by in table["directional_by"]]
+        )
         with tempfile.TemporaryDirectory() as folder:
             path = os.path.join(folder, "wedges.json")
             wedges.write(path)
