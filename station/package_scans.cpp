@@ -238,7 +238,7 @@ Status add_records(PackageContent& content) {
   }
   if (const Status written = content.text("session/events.json", *events,
                                           "everything that happened in the session, in order; sign-offs with "
-                                          "what was signed: formats/sign_off.txt");
+                                          "what was signed: formats/session.txt, formats/sign_off.txt");
       !written) {
     return written;
   }
