@@ -136,6 +136,12 @@ void report_sigmas(const WedgeScore& s) {
   line("inner edge", s.edge_sigmas);
   line("opening angle", s.opening_sigmas);
   line("edge length", s.length_sigmas);
+  line("face angle", s.face_angle_sigmas);
+  std::printf(
+      "found less true, medians: depths %+.1f um, edge lengths %+.1f um, opening angles %+.2f deg, "
+      "face angles %+.2f deg\n",
+      median(s.depth_off_um), median(s.length_off_um), median(s.opening_off_deg),
+      median(s.face_angle_off_deg));
 }
 
 void explain(const sim::SimTablet& tablet, const WedgeSet& set, const std::vector<int>& pair) {

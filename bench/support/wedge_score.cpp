@@ -40,9 +40,12 @@ void compare(const Wedge& found, const Wedge& truth, WedgeScore* score) {
   score->depth_point_sigmas.push_back((found.depth_point_mm - truth.depth_point_mm).norm() /
                                       found.sigma.depth_point_mm);
   score->depth_sigmas.push_back(std::abs(found.depth_mm - truth.depth_mm) / found.sigma.depth_mm);
+  score->depth_off_um.push_back(1000.0 * (found.depth_mm - truth.depth_mm));
   for (std::size_t k = 0; k < 3; ++k) {
     const std::size_t f = (k + best_shift) % 3;
-    const double opening = std::abs(found.opening_angles_rad[f] - truth.opening_angles_rad[k]);
+    const double opening_off = found.opening_angles_rad[f] - truth.opening_angles_rad[k];
+    const double opening = std::abs(opening_off);
+    const double face_angle_off = found.face_angles_rad[f] - truth.face_angles_rad[k];
     const double length = (found.exit_points_surface_mm[f] - found.depth_point_mm).norm();
     const double true_length = (truth.exit_points_mm[k] - truth.depth_point_mm).norm();
     score->edge_deg.push_back(best_angles[k]);
@@ -50,6 +53,10 @@ void compare(const Wedge& found, const Wedge& truth, WedgeScore* score) {
     score->edge_sigmas.push_back(rad_from_deg(best_angles[k]) / found.sigma.edge_rad[f]);
     score->opening_sigmas.push_back(opening / found.sigma.opening_rad[f]);
     score->length_sigmas.push_back(std::abs(length - true_length) / found.sigma.length_mm[f]);
+    score->face_angle_sigmas.push_back(std::abs(face_angle_off) / found.sigma.face_angle_rad[f]);
+    score->length_off_um.push_back(1000.0 * (length - true_length));
+    score->opening_off_deg.push_back(deg_from_rad(opening_off));
+    score->face_angle_off_deg.push_back(deg_from_rad(face_angle_off));
   }
   const auto directional = (static_cast<std::size_t>(found.directional_edge) + 3 - best_shift) % 3;
   score->directional_right += directional == static_cast<std::size_t>(truth.directional_edge) ? 1 : 0;
@@ -89,6 +96,11 @@ void WedgeScore::add(const WedgeScore& other) {
   append(&edge_sigmas, other.edge_sigmas);
   append(&opening_sigmas, other.opening_sigmas);
   append(&length_sigmas, other.length_sigmas);
+  append(&face_angle_sigmas, other.face_angle_sigmas);
+  append(&depth_off_um, other.depth_off_um);
+  append(&length_off_um, other.length_off_um);
+  append(&opening_off_deg, other.opening_off_deg);
+  append(&face_angle_off_deg, other.face_angle_off_deg);
   fracture.add(other.fracture);
 }
 

@@ -30,7 +30,10 @@ struct WedgeScore {
   std::vector<double> false_confidence, right_confidence;
   FractureScore fracture;
   /// Errors in the standard deviations that the wedge itself states.
-  std::vector<double> depth_point_sigmas, depth_sigmas, edge_sigmas, opening_sigmas, length_sigmas;
+  std::vector<double> depth_point_sigmas, depth_sigmas, edge_sigmas, opening_sigmas, length_sigmas,
+      face_angle_sigmas;
+  /// Found less true: what does not average away.
+  std::vector<double> depth_off_um, length_off_um, opening_off_deg, face_angle_off_deg;
   [[nodiscard]] double precision() const;
   [[nodiscard]] double recall() const;
   [[nodiscard]] double f1() const;
