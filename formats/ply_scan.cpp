@@ -339,13 +339,14 @@ Result<ScanData> read_ply_scan(std::string_view bytes, const std::string& name,
   if (grid.valid_count() == 0) {
     return bad_input(name, "holds no usable sample", kExportAgain);
   }
-  // A spacing that was written for other units says nothing.
+  // The spacing is counted across the direction. One that was written for other units says nothing.
+  const bool seen_from = header->info_value(ply_info::kDirection) || grid.view.camera_mm;
+  const std::string direction = seen_from ? std::string() : settle_direction(grid);
   const std::string spacing = settle_spacing(grid, said && *said == mm);
   if (const Status precise = check_precision(grid, name); !precise) {
     return std::unexpected(precise.error());
   }
-  const bool seen_from = header->info_value(ply_info::kDirection) || grid.view.camera_mm;
-  for (const std::string& remark : {spacing, seen_from ? std::string() : settle_direction(grid)}) {
+  for (const std::string& remark : {spacing, direction}) {
     if (!remark.empty() && options.remark) {
       options.remark(grid.source, remark);
     }

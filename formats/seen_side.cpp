@@ -7,8 +7,11 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 
 #include "core/order_statistics.h"
+#include "core/units.h"
+#include "formats/grid_axis.h"
 #include "formats/number_text.h"
 
 namespace dubsar {
@@ -22,6 +25,21 @@ constexpr double kNearlyAll = 0.9;
 constexpr std::size_t kLeastFacets = 100;
 /// Within this of an axis of the frame, the axis is meant.
 constexpr double kNearAxisCosine = 0.85;
+
+// The axis that rows and columns show may lie off the one that was assumed by as much as a camera looks from
+// the side (the dragon's by 28 degrees: its columns follow the camera's rays), but then the laser line or the
+// motion runs along an axis of the frame, square to both. Wide lenses and stages that run unevenly move it a
+// little.
+constexpr double kLeastTurnedDeg = 20;
+constexpr double kMostObliqueDeg = 50;
+constexpr double kSquareDeg = 5;
+/// Of a surface that was seen along the axis, next to all facets are turned one way.
+constexpr double kAllTurnedOneWay = 0.97;
+constexpr double kNotTurnedOneWay = 0.95;
+/// The bunny's axis shows to 16 to 58 of these, the dragon's to 14 to 32; unevenness along a flat face does
+/// not.
+constexpr double kClear = 8;
+constexpr double kFairlyClear = 4;
 
 enum class Witness { kFor, kAgainst, kSilent };
 
@@ -133,21 +151,62 @@ void for_each_facet(const RangeGrid& grid, const Take& take) {
   }
 }
 
-/// Whether the turn from columns to rows is anticlockwise as seen along a direction.
-Witness anticlockwise(const RangeGrid& grid, const Eigen::Vector3d& direction) {
+struct Facing {
   std::size_t facing = 0;
   std::size_t all = 0;
+  /// Of the facets that are turned one way, those that are turned the way of most.
+  [[nodiscard]] double one_way() const {
+    return all == 0 ? 0.0 : static_cast<double>(std::max(facing, all - facing)) / static_cast<double>(all);
+  }
+};
+
+Facing facing_of(const RangeGrid& grid, const Eigen::Vector3d& direction) {
+  Facing out;
   for_each_facet(grid, [&](const Eigen::Vector3d& normal) {
-    facing += normal.dot(direction) < 0 ? 1 : 0;
-    ++all;
+    out.facing += normal.dot(direction) < 0 ? 1 : 0;
+    ++out.all;
   });
-  return judged(facing, all, kLeastFacets);
+  return out;
+}
+
+/// Whether the turn from columns to rows is anticlockwise as seen along a direction.
+Witness anticlockwise(const RangeGrid& grid, const Eigen::Vector3d& direction) {
+  const Facing facing = facing_of(grid, direction);
+  return judged(facing.facing, facing.all, kLeastFacets);
+}
+
+/// The axis of a grid whose frame is plainly not the scanner's, so that it was not seen along `said`.
+std::optional<Eigen::Vector3d> axis_of_another_frame(const RangeGrid& grid, const Eigen::Vector3d& said) {
+  const std::optional<GridAxis> found = grid_axis(grid);
+  if (!found || found->clearness < kFairlyClear) {
+    return std::nullopt;
+  }
+  const Eigen::Vector3d& axis = found->axis;
+  const double turned_deg = deg_from_rad(std::acos(std::min(1.0, std::abs(axis.dot(said)))));
+  bool square = false;
+  for (int k = 0; k < 3; ++k) {
+    const Eigen::Vector3d across = Eigen::Vector3d::Unit(k);
+    const double along =
+        std::max(std::abs(across.dot(found->along_rows)), std::abs(across.dot(found->along_cols)));
+    square = square || (std::abs(across.dot(said)) < 0.5 &&
+                        std::abs(across.dot(axis)) < std::sin(rad_from_deg(kSquareDeg)) &&
+                        along > std::cos(rad_from_deg(kSquareDeg)));
+  }
+  if (turned_deg < kLeastTurnedDeg || (square && turned_deg < kMostObliqueDeg) ||
+      facing_of(grid, axis).one_way() < kAllTurnedOneWay) {
+    return std::nullopt;
+  }
+  if (found->clearness < kClear && facing_of(grid, said).one_way() > kNotTurnedOneWay) {
+    return std::nullopt;
+  }
+  return axis;
 }
 
 std::string text_of(const Eigen::Vector3d& v) {
   std::string text;
   for (const double component : v) {
-    text.append(text.empty() ? "" : " ").append(number_text(component == 0 ? 0.0 : component));
+    const double rounded = std::round(component * 1e4) / 1e4;
+    text.append(text.empty() ? "" : " ").append(number_text(rounded == 0 ? 0.0 : rounded));
   }
   return text;
 }
@@ -156,10 +215,25 @@ std::string header_line(const Eigen::Vector3d& direction) {
   return "`obj_info dubsar_direction " + text_of(direction) + "`";
 }
 
+/// The side along an axis: what the outline says, or else the turn from columns to rows.
+std::string take_axis(RangeGrid& grid, const Eigen::Vector3d& axis) {
+  const Eigen::Vector3d turned = anticlockwise(grid, axis) == Witness::kFor ? axis : Eigen::Vector3d(-axis);
+  const Witness outline = Outline(grid, turned).seen_so();
+  grid.view.direction = outline == Witness::kAgainst ? Eigen::Vector3d(-turned) : turned;
+  return "its rows and columns show that its frame is not the scanner's: it is read as seen along " +
+         text_of(grid.view.direction) +
+         (outline == Witness::kSilent ? " (from which side no outline settles)" : "") +
+         "; better export it in the scanner's own frame, or write " + header_line(grid.view.direction) +
+         " in its header, with the direction from the scanner to the object";
+}
+
 }  // namespace
 
 std::string settle_direction(RangeGrid& grid) {
   const Eigen::Vector3d said = grid.view.direction;
+  if (const std::optional<Eigen::Vector3d> axis = axis_of_another_frame(grid, said)) {
+    return take_axis(grid, *axis);
+  }
   const Witness outline = Outline(grid, said).seen_so();
   const Witness turn = anticlockwise(grid, said);
   if (outline == Witness::kAgainst && turn == Witness::kAgainst) {
@@ -184,7 +258,11 @@ Status find_direction(RangeGrid& grid, const std::string& name) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for_each_facet(grid, [&](const Eigen::Vector3d& normal) { sum += normal; });
   if (sum.norm() > 0) {
-    Eigen::Vector3d axis = sum.normalized();
+    const std::optional<GridAxis> shown = grid_axis(grid);
+    const bool clear =
+        shown && shown->clearness > kClear && facing_of(grid, shown->axis).one_way() >= kAllTurnedOneWay;
+    Eigen::Vector3d axis =
+        clear ? Eigen::Vector3d(std::copysign(1.0, shown->axis.dot(sum)) * shown->axis) : sum.normalized();
     Eigen::Index main = 0;
     if (axis.cwiseAbs().maxCoeff(&main) > kNearAxisCosine) {
       axis = (axis[main] > 0 ? 1.0 : -1.0) * Eigen::Vector3d::Unit(main);

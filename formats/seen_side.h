@@ -14,8 +14,8 @@ namespace dubsar {
 /// as they see it (but a profile that is read backwards reverses it, so that alone it proves nothing).
 
 /// Of a grid that is read as seen along view.direction for want of a better word: turns the direction where
-/// both witnesses say so. Answers with what the operator should know, then or where it is doubtful; else
-/// empty.
+/// both witnesses say so, and takes the axis that its rows and columns show where its frame is plainly not
+/// the scanner's. Answers with what the operator should know, then or where it is doubtful; else empty.
 [[nodiscard]] std::string settle_direction(RangeGrid& grid);
 
 /// Of a grid of which not even the axis is known: the direction from its facets and its outline. kBadInput

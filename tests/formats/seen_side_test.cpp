@@ -2,8 +2,10 @@
 // Copyright The Dubsar developers
 #include "formats/seen_side.h"
 
+#include <Eigen/Geometry>
 #include <filesystem>
 
+#include "core/units.h"
 #include "formats/grid_ply.h"
 #include "formats/grid_reader.h"
 #include "tests/formats/format_support.h"
@@ -113,6 +115,40 @@ TEST(SeenSide, TheAxisIsFoundWhereNothingIsKnown) {
   EXPECT_THAT(line_of(find_direction(full, "a.ptx")), HasSubstr("a.ptx: the scanner's position 0 0 0"));
 }
 
+RangeGrid turned(RangeGrid grid, const Eigen::Matrix3d& turn) {
+  for (std::size_t i = 0; i < grid.size(); ++i) {
+    const Eigen::Vector3f p = (turn * grid.point(i).cast<double>()).cast<float>();
+    grid.x[i] = p.x();
+    grid.y[i] = p.y();
+    grid.z[i] = p.z();
+  }
+  return grid;
+}
+
+TEST(SeenSide, AScanInAFrameThatIsNotTheScannersIsReadAlongItsOwnAxis) {
+  for (const double deg : {30.0, 75.0, 100.0, 160.0}) {
+    const Eigen::Matrix3d turn =
+        Eigen::AngleAxisd(rad_from_deg(deg), Eigen::Vector3d(1, 2, 0.5).normalized()).toRotationMatrix();
+    for (const float order : {1.0F, -1.0F}) {  // profiles in the other order
+      const Read read = read_without_direction(turned(moved(pebble(), {1, order, 1}), turn));
+      EXPECT_LT(deg_from_rad(std::acos(std::min(1.0, read.grid.view.direction.dot(turn * kDown)))), 1.0)
+          << deg;
+      EXPECT_THAT(read.remark, HasSubstr("its frame is not the scanner's"));
+      EXPECT_NEAR(read.grid.spacing_mm, 0.2, 0.02);
+    }
+  }
+}
+
+TEST(SeenSide, UnevenProfilesOfAFlatFaceDoNotTurnIt) {
+  RangeGrid flat = test::height_field(80, 80, 0.2, [](double x, double y) { return 0.1 * std::sin(x) * y; });
+  for (std::size_t i = 0; i < flat.size(); ++i) {
+    flat.y[i] += static_cast<float>(1.5 * std::sin(0.05 * flat.row_of(i)));
+  }
+  const Read read = read_without_direction(flat);
+  EXPECT_EQ(read.grid.view.direction, kDown);
+  EXPECT_THAT(read.remark, IsEmpty());
+}
+
 TEST(SeenSide, RealScansAreReadAsBefore) {
   int scans = 0;
   for (const char* name : {"stanford_bunny", "stanford_dragon_stand"}) {
@@ -132,6 +168,13 @@ TEST(SeenSide, RealScansAreReadAsBefore) {
       RangeGrid grid = std::get<RangeGrid>(read->front());
       EXPECT_EQ(grid.view.direction, kDown) << entry.path();
       EXPECT_THAT(told, IsEmpty()) << entry.path();
+      const Eigen::Matrix3d turn =
+          Eigen::AngleAxisd(rad_from_deg(70 + 5 * scans), Eigen::Vector3d(1, 2, 0.5).normalized())
+              .toRotationMatrix();
+      RangeGrid elsewhere = turned(grid, turn);
+      EXPECT_THAT(settle_direction(elsewhere), ::testing::Not(IsEmpty())) << entry.path();
+      // The dragon's columns follow its camera's rays, 28 degrees from the laser's.
+      EXPECT_LT(deg_from_rad(std::acos(elsewhere.view.direction.dot(turn * kDown))), 30.0) << entry.path();
       // The same with its z away from the camera.
       for (std::vector<float>* axis : {&grid.y, &grid.z}) {
         for (float& value : *axis) {

@@ -25,6 +25,13 @@ constexpr EnginePhrase kRemarks[] = {
      "sein Umriss steigt zum Scanner an: wird z vom Scanner weg gemessen, mit -z ausgeben; ist nur die Folge "
      "der Zeilen oder Spalten verkehrt, schreiben: "},
     {" in its header; else write ", " in seinen Kopf; sonst: "},
+    {"its rows and columns show that its frame is not the scanner's: it is read as seen along ",
+     "seine Zeilen und Spalten zeigen, dass sein Rahmen nicht der des Scanners ist: gelesen ist er entlang "},
+    {" (from which side no outline settles)", " (von welcher Seite, entscheidet kein Umriss)"},
+    {"; better export it in the scanner's own frame, or write ",
+     "; besser im Rahmen des Scanners ausgeben, oder schreiben: "},
+    {" in its header, with the direction from the scanner to the object",
+     " in seinen Kopf, mit der Richtung vom Scanner zum Gegenstand"},
     {"its rows and columns run as if it was seen along ",
      "seine Zeilen und Spalten laufen wie gesehen entlang "},
     {", and no outline settles it: it is read as seen along ",
