@@ -73,7 +73,8 @@ int columns_of_next_line(TextScanner text) {
 constexpr double kWidestCosine = 0.5;
 constexpr double kFewOutside = 0.1;
 
-/// The scanner stands at the origin, unless the origin lies in the surface: that is answered with a remark.
+/// The scanner stands at the origin, unless the origin lies in the surface or rows and columns were plainly
+/// seen from elsewhere: that is answered with a remark.
 Result<std::string> place_scanner(RangeGrid& grid, const std::string& name) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   Eigen::Vector3d rays = Eigen::Vector3d::Zero();
@@ -97,11 +98,16 @@ Result<std::string> place_scanner(RangeGrid& grid, const std::string& name) {
     return "the scanner would stand at 0 0 0, in the scanned surface: which way it looked is taken from the "
            "outline; better export it in the scanner's own frame";
   }
-  grid.view.laser_mm = Eigen::Vector3d::Zero();
-  grid.view.camera_mm = Eigen::Vector3d::Zero();
   if (sum.norm() > 0) {
     grid.view.direction = sum.normalized();
   }
+  if (take_shown_axis(grid)) {
+    return "the scanner would stand at 0 0 0, but its rows and columns were not seen from there: which way "
+           "it "
+           "looked is taken from them; better export it in the scanner's own frame";
+  }
+  grid.view.laser_mm = Eigen::Vector3d::Zero();
+  grid.view.camera_mm = Eigen::Vector3d::Zero();
   return std::string();
 }
 

@@ -216,23 +216,28 @@ std::string header_line(const Eigen::Vector3d& direction) {
 }
 
 /// The side along an axis: what the outline says, or else the turn from columns to rows.
-std::string take_axis(RangeGrid& grid, const Eigen::Vector3d& axis) {
+Eigen::Vector3d side_along(const RangeGrid& grid, const Eigen::Vector3d& axis) {
   const Eigen::Vector3d turned = anticlockwise(grid, axis) == Witness::kFor ? axis : Eigen::Vector3d(-axis);
-  const Witness outline = Outline(grid, turned).seen_so();
-  grid.view.direction = outline == Witness::kAgainst ? Eigen::Vector3d(-turned) : turned;
-  return "its rows and columns show that its frame is not the scanner's: it is read as seen along " +
-         text_of(grid.view.direction) +
-         (outline == Witness::kSilent ? " (from which side no outline settles)" : "") +
-         "; better export it in the scanner's own frame, or write " + header_line(grid.view.direction) +
-         " in its header, with the direction from the scanner to the object";
+  return Outline(grid, turned).seen_so() == Witness::kAgainst ? Eigen::Vector3d(-turned) : turned;
 }
 
 }  // namespace
 
+bool take_shown_axis(RangeGrid& grid) {
+  const std::optional<Eigen::Vector3d> axis = axis_of_another_frame(grid, grid.view.direction);
+  if (axis) {
+    grid.view.direction = side_along(grid, *axis);
+  }
+  return axis.has_value();
+}
+
 std::string settle_direction(RangeGrid& grid) {
   const Eigen::Vector3d said = grid.view.direction;
-  if (const std::optional<Eigen::Vector3d> axis = axis_of_another_frame(grid, said)) {
-    return take_axis(grid, *axis);
+  if (take_shown_axis(grid)) {
+    const Eigen::Vector3d& shown = grid.view.direction;
+    return "its rows and columns show that its frame is not the scanner's: it is read as seen along " +
+           text_of(shown) + "; better export it in the scanner's own frame, or write " + header_line(shown) +
+           " in its header, with the direction from the scanner to the object";
   }
   const Witness outline = Outline(grid, said).seen_so();
   const Witness turn = anticlockwise(grid, said);

@@ -18,6 +18,10 @@ namespace dubsar {
 /// the scanner's. Answers with what the operator should know, then or where it is doubtful; else empty.
 [[nodiscard]] std::string settle_direction(RangeGrid& grid);
 
+/// Turns the direction to the axis that rows and columns show, where that lies so far from it that the frame
+/// is plainly not the scanner's; true then. Its side is that of the outline, else of the turn.
+[[nodiscard]] bool take_shown_axis(RangeGrid& grid);
+
 /// Of a grid of which not even the axis is known: the direction from its facets and its outline. kBadInput
 /// when they leave it open.
 [[nodiscard]] Status find_direction(RangeGrid& grid, const std::string& name);

@@ -2,7 +2,9 @@
 // Copyright The Dubsar developers
 #include "formats/text_scans.h"
 
+#include <Eigen/Geometry>
 #include "formats/atomic_file.h"
+
 #include "tests/formats/format_support.h"
 
 namespace dubsar {
@@ -51,8 +53,9 @@ TEST(Ptx, ReadsSeveralScansAndCountsThem) {
   EXPECT_EQ(std::get<RangeGrid>((*scans)[1]).source, "two.ptx#1");
 }
 
-/// A dome as PTX, its top at (0, 0, top_mm).
-std::string dome_ptx(double top_mm, bool with_outline) {
+/// A dome as PTX, its top at (0, 0, top_mm), turned about that by `turn`.
+std::string dome_ptx(double top_mm, bool with_outline,
+                     const Eigen::Matrix3d& turn = Eigen::Matrix3d::Identity()) {
   constexpr int kSide = 60;
   std::string text = std::to_string(kSide) + "\n" + std::to_string(kSide) +
                      "\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n";
@@ -62,9 +65,10 @@ std::string dome_ptx(double top_mm, bool with_outline) {
       const double y = row - 0.5 * kSide + 0.25;
       const double square = 1 - (x * x + y * y) / 676;
       const double z = with_outline ? 12 * std::sqrt(std::max(0.0, square)) - 12 : -0.01 * x * x;
+      const Eigen::Vector3d p = turn * Eigen::Vector3d(x, y, z) + Eigen::Vector3d(0, 0, top_mm);
       text += with_outline && square <= 0
                   ? std::string("0 0 0\n")
-                  : std::to_string(x) + " " + std::to_string(y) + " " + std::to_string(z + top_mm) + "\n";
+                  : std::to_string(p.x()) + " " + std::to_string(p.y()) + " " + std::to_string(p.z()) + "\n";
     }
   }
   return text;
@@ -90,6 +94,20 @@ TEST(Ptx, AnObjectAtTheOriginIsNotSeenFromWithinItself) {
   }
   EXPECT_THAT(line_of(read_scan_bytes(dome_ptx(3, false), "a.ptx")),
               HasSubstr("a.ptx: the scanner's position 0 0 0 lies in the scanned surface"));
+}
+
+TEST(Ptx, AScanThatWasMovedAwayFromItsScannerIsNotSeenFromTheOrigin) {
+  std::string told;
+  const Eigen::Matrix3d turn =
+      Eigen::AngleAxisd(1.2, Eigen::Vector3d(1, 2, 0.5).normalized()).toRotationMatrix();
+  const auto scans = read_scan_bytes(
+      dome_ptx(-200, true, turn), "a.ptx",
+      {.remark = [&](const std::string& scan, const std::string& remark) { told += scan + ": " + remark; }});
+  ASSERT_TRUE(scans) << line_of(scans);
+  const auto& grid = std::get<RangeGrid>(scans->front());
+  EXPECT_LT((grid.view.direction - turn * Eigen::Vector3d(0, 0, -1)).norm(), 0.03);
+  EXPECT_FALSE(grid.view.camera_mm);
+  EXPECT_THAT(told, HasSubstr("a.ptx: the scanner would stand at 0 0 0, but its rows and columns"));
 }
 
 TEST(Ptx, CoordinatesOfAMapAreNamed) {

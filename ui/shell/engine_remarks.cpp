@@ -27,7 +27,11 @@ constexpr EnginePhrase kRemarks[] = {
     {" in its header; else write ", " in seinen Kopf; sonst: "},
     {"its rows and columns show that its frame is not the scanner's: it is read as seen along ",
      "seine Zeilen und Spalten zeigen, dass sein Rahmen nicht der des Scanners ist: gelesen ist er entlang "},
-    {" (from which side no outline settles)", " (von welcher Seite, entscheidet kein Umriss)"},
+    {"the scanner would stand at 0 0 0, but its rows and columns were not seen from there: which way it "
+     "looked is taken from them; better export it in the scanner's own frame",
+     "der Scanner stünde bei 0 0 0, aber seine Zeilen und Spalten wurden nicht von dort gesehen: wohin er "
+     "sah, "
+     "ist ihnen entnommen; besser im Rahmen des Scanners ausgeben"},
     {"; better export it in the scanner's own frame, or write ",
      "; besser im Rahmen des Scanners ausgeben, oder schreiben: "},
     {" in its header, with the direction from the scanner to the object",
