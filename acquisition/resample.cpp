@@ -2,7 +2,6 @@
 // Copyright The Dubsar developers
 #include "acquisition/resample.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <complex>
@@ -10,8 +9,10 @@
 #include <numeric>
 
 #include "acquisition/point_spacing.h"
+#include "acquisition/view_axis.h"
 #include "core/order_statistics.h"
 #include "core/units.h"
+#include "formats/seen_side.h"
 
 namespace dubsar {
 
@@ -37,7 +38,13 @@ struct Frame {
   Eigen::Vector3f u, v, w;  ///< columns, rows, towards the scanner
 };
 
-Eigen::Vector3d direction_of(const PointCloud& cloud, const std::vector<std::uint32_t>& kept) {
+/// Which way the points were seen, and whether that leaves the side open.
+struct View {
+  Eigen::Vector3d direction;
+  bool side_is_open = false;
+};
+
+View view_of(const PointCloud& cloud, const std::vector<std::uint32_t>& kept) {
   if (cloud.normals.size() == cloud.points.size() && !cloud.normals.empty()) {
     Eigen::Vector3d mean = Eigen::Vector3d::Zero();
     for (const std::uint32_t i : kept) {
@@ -47,29 +54,15 @@ Eigen::Vector3d direction_of(const PointCloud& cloud, const std::vector<std::uin
     }
     mean /= static_cast<double>(kept.size());
     if (mean.norm() > kNormalsAgree) {
-      return -mean.normalized();
+      return {.direction = -mean.normalized()};
     }
   }
-  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+  std::vector<Eigen::Vector3f> points;
+  points.reserve(kept.size());
   for (const std::uint32_t i : kept) {
-    centre += cloud.points[i].cast<double>();
+    points.push_back(cloud.points[i]);
   }
-  centre /= static_cast<double>(kept.size());
-  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
-  for (const std::uint32_t i : kept) {
-    const Eigen::Vector3d d = cloud.points[i].cast<double>() - centre;
-    spread += d * d.transpose();
-  }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(spread);
-  Eigen::Vector3d axis = solver.eigenvectors().col(0);
-  // Nothing tells the two ends of the axis apart; scanners mostly look down their z.
-  for (const int k : {2, 1, 0}) {
-    if (std::abs(axis[k]) > 1e-6) {
-      axis *= axis[k] > 0 ? 1.0 : -1.0;
-      break;
-    }
-  }
-  return -axis;
+  return {.direction = -view_axis(points), .side_is_open = true};
 }
 
 Frame frame_of(const Eigen::Vector3d& direction) {
@@ -322,8 +315,9 @@ Result<RangeGrid> resample(const PointCloud& cloud, const ResampleOptions& optio
   if (raster.kept.size() < 3) {
     return bad_input(cloud.source, "fewer than three points", "scan again");
   }
-  const Eigen::Vector3d direction =
-      options.view_direction ? *options.view_direction : direction_of(cloud, raster.kept);
+  const View view =
+      options.view_direction ? View{.direction = *options.view_direction} : view_of(cloud, raster.kept);
+  const Eigen::Vector3d& direction = view.direction;
   const Frame frame = frame_of(direction);
   raster.uvw.reserve(raster.kept.size());
   for (const std::uint32_t i : raster.kept) {
@@ -370,6 +364,11 @@ Result<RangeGrid> resample(const PointCloud& cloud, const ResampleOptions& optio
   grid.spacing_mm = raster.cell;
   grid.view.direction = direction;
   grid.source = cloud.source;
+  if (view.side_is_open && outline_contradicts(grid)) {
+    ResampleOptions other = options;
+    other.view_direction = -direction;
+    return resample(cloud, other, job);
+  }
   return grid;
 }
 

@@ -29,8 +29,8 @@ struct ResampleOptions {
 /// is a point as it was measured: nothing is averaged, moved or invented, and cells that no point falls into
 /// stay empty.
 ///
-/// The view is, in this order: options.view_direction; against the mean of the normals where they agree; the
-/// axis along which the points vary least, seen from +z (or +y, +x where it lies square to that). The cells
+/// The view is, in this order: options.view_direction; against the mean of the normals where they agree;
+/// view_axis(), seen from its +z end unless the outline shows that it was the other. The cells
 /// are as wide as the larger of µ and what an even spread needs, so that a regular cloud leaves no empty rows
 /// by aliasing.
 ///

@@ -223,6 +223,10 @@ Eigen::Vector3d side_along(const RangeGrid& grid, const Eigen::Vector3d& axis) {
 
 }  // namespace
 
+bool outline_contradicts(const RangeGrid& grid) {
+  return Outline(grid, grid.view.direction).seen_so() == Witness::kAgainst;
+}
+
 bool take_shown_axis(RangeGrid& grid) {
   const std::optional<Eigen::Vector3d> axis = axis_of_another_frame(grid, grid.view.direction);
   if (axis) {

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -122,6 +123,40 @@ TEST(Resample, NormalsDecideTheView) {
   EXPECT_NEAR(grid.view.direction.z(), 1, 1e-6);
   EXPECT_EQ(grid.intensity[grid.index(5, 5)], 0.25F);
   EXPECT_EQ(grid.rgb.size(), 3 * grid.size());
+}
+
+/// A long thumb seen from its tip, with a knuckle that hides what lies behind it.
+PointCloud thumb(const Eigen::Matrix3d& turn) {
+  PointCloud cloud;
+  for (double x = -10; x <= 10; x += 0.3) {
+    for (double y = -12; y <= 12; y += 0.3) {
+      const double body = 1 - x * x / 81 - y * y / 121;
+      const double knuckle = 1 - (x - 4) * (x - 4) / 9 - (y - 3) * (y - 3) / 9;
+      if (body > 0.01) {
+        const double z = knuckle > 0.01 ? 34 + 3 * std::sqrt(knuckle) : 30 * std::sqrt(body);
+        cloud.points.push_back((turn * Eigen::Vector3d(x, y, z)).cast<float>());
+      }
+    }
+  }
+  return cloud;
+}
+
+TEST(Resample, AScanThatIsDeeperThanWideIsSeenAlongItsDepth) {
+  JobContext job;
+  const auto grid = resample(thumb(Eigen::Matrix3d::Identity()), {}, job);
+  ASSERT_TRUE(grid);
+  EXPECT_EQ(grid->view.direction, Eigen::Vector3d(0, 0, -1));
+}
+
+TEST(Resample, AScanInAFrameThatIsNotTheScannersIsSeenAlongItsDepth) {
+  JobContext job;
+  for (const double turn_rad : {0.9, 1.6, 2.4}) {
+    const Eigen::Matrix3d turn =
+        Eigen::AngleAxisd(turn_rad, Eigen::Vector3d(1, 2, 0.5).normalized()).toRotationMatrix();
+    const auto grid = resample(thumb(turn), {}, job);
+    ASSERT_TRUE(grid);
+    EXPECT_GT(grid->view.direction.dot(turn * Eigen::Vector3d(0, 0, -1)), std::cos(0.35)) << turn_rad;
+  }
 }
 
 TEST(Resample, StraysFarAwayDoNotBlowUpTheGrid) {
