@@ -101,7 +101,11 @@ Result<std::string> place_scanner(RangeGrid& grid, const std::string& name) {
   if (sum.norm() > 0) {
     grid.view.direction = sum.normalized();
   }
-  if (take_shown_axis(grid)) {
+  const bool from_behind = outline_contradicts(grid);
+  if (from_behind) {
+    grid.view.direction = -grid.view.direction;
+  }
+  if (take_shown_axis(grid) || from_behind) {
     return "the scanner would stand at 0 0 0, but its rows and columns were not seen from there: which way "
            "it "
            "looked is taken from them; better export it in the scanner's own frame";

@@ -97,17 +97,20 @@ TEST(Ptx, AnObjectAtTheOriginIsNotSeenFromWithinItself) {
 }
 
 TEST(Ptx, AScanThatWasMovedAwayFromItsScannerIsNotSeenFromTheOrigin) {
-  std::string told;
-  const Eigen::Matrix3d turn =
-      Eigen::AngleAxisd(1.2, Eigen::Vector3d(1, 2, 0.5).normalized()).toRotationMatrix();
-  const auto scans = read_scan_bytes(
-      dome_ptx(-200, true, turn), "a.ptx",
-      {.remark = [&](const std::string& scan, const std::string& remark) { told += scan + ": " + remark; }});
-  ASSERT_TRUE(scans) << line_of(scans);
-  const auto& grid = std::get<RangeGrid>(scans->front());
-  EXPECT_LT((grid.view.direction - turn * Eigen::Vector3d(0, 0, -1)).norm(), 0.03);
-  EXPECT_FALSE(grid.view.camera_mm);
-  EXPECT_THAT(told, HasSubstr("a.ptx: the scanner would stand at 0 0 0, but its rows and columns"));
+  for (const double turn_rad : {1.2, std::numbers::pi}) {
+    std::string told;
+    const Eigen::Matrix3d turn =
+        Eigen::AngleAxisd(turn_rad, Eigen::Vector3d(1, 2, 0).normalized()).toRotationMatrix();
+    const auto scans = read_scan_bytes(dome_ptx(-200, true, turn), "a.ptx",
+                                       {.remark = [&](const std::string& scan, const std::string& remark) {
+                                         told += scan + ": " + remark;
+                                       }});
+    ASSERT_TRUE(scans) << line_of(scans);
+    const auto& grid = std::get<RangeGrid>(scans->front());
+    EXPECT_LT((grid.view.direction - turn * Eigen::Vector3d(0, 0, -1)).norm(), 0.03) << turn_rad;
+    EXPECT_FALSE(grid.view.camera_mm);
+    EXPECT_THAT(told, HasSubstr("a.ptx: the scanner would stand at 0 0 0, but its rows and columns"));
+  }
 }
 
 TEST(Ptx, CoordinatesOfAMapAreNamed) {
