@@ -239,8 +239,10 @@ std::string settle_direction(RangeGrid& grid) {
   const Eigen::Vector3d said = grid.view.direction;
   if (take_shown_axis(grid)) {
     const Eigen::Vector3d& shown = grid.view.direction;
+    const bool open = Outline(grid, shown).seen_so() == Witness::kSilent;
     return "its rows and columns show that its frame is not the scanner's: it is read as seen along " +
-           text_of(shown) + "; better export it in the scanner's own frame, or write " + header_line(shown) +
+           text_of(shown) + (open ? ", though no outline settles from which side" : "") +
+           "; better export it in the scanner's own frame, or write " + header_line(shown) +
            " in its header, with the direction from the scanner to the object";
   }
   const Witness outline = Outline(grid, said).seen_so();

@@ -139,6 +139,15 @@ TEST(SeenSide, AScanInAFrameThatIsNotTheScannersIsReadAlongItsOwnAxis) {
   }
 }
 
+TEST(SeenSide, AFullFieldInAnotherFrameTellsThatItsSideIsOpen) {
+  const RangeGrid full = test::height_field(80, 80, 0.2, [](double x, double y) { return 0.03 * x * y; });
+  const Eigen::Matrix3d turn =
+      Eigen::AngleAxisd(1.2, Eigen::Vector3d(1, 2, 0.5).normalized()).toRotationMatrix();
+  const Read read = read_without_direction(turned(full, turn));
+  EXPECT_GT(read.grid.view.direction.dot(turn * kDown), 0.99);
+  EXPECT_THAT(read.remark, HasSubstr("though no outline settles from which side"));
+}
+
 TEST(SeenSide, UnevenProfilesOfAFlatFaceDoNotTurnIt) {
   RangeGrid flat = test::height_field(80, 80, 0.2, [](double x, double y) { return 0.1 * std::sin(x) * y; });
   for (std::size_t i = 0; i < flat.size(); ++i) {

@@ -32,6 +32,7 @@ constexpr EnginePhrase kRemarks[] = {
      "der Scanner stünde bei 0 0 0, aber seine Zeilen und Spalten wurden nicht von dort gesehen: wohin er "
      "sah, "
      "ist ihnen entnommen; besser im Rahmen des Scanners ausgeben"},
+    {", though no outline settles from which side", ", wobei kein Umriss entscheidet, von welcher Seite"},
     {"; better export it in the scanner's own frame, or write ",
      "; besser im Rahmen des Scanners ausgeben, oder schreiben: "},
     {" in its header, with the direction from the scanner to the object",
