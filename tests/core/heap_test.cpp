@@ -9,7 +9,9 @@
 #include <array>
 #include <cstdlib>
 #include <cstring>
+#include <fstream>
 #include <memory>
+#include <thread>
 
 namespace dubsar {
 namespace {
@@ -59,6 +61,38 @@ TEST(Heap, MiddlingBlocksDoNotGoBackToTheSystemEachTime) {
   EXPECT_EQ(end_of_heap_after_use(), used);
   return_unused_memory();
   EXPECT_LT(sbrk(0), used);
+}
+
+std::size_t resident_bytes() {
+  std::ifstream statm("/proc/self/statm");
+  std::size_t all = 0, resident = 0;
+  statm >> all >> resident;
+  return resident * static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+}
+
+TEST(Heap, WhatAThreadHasLetGoOfIsNotKeptForIt) {
+#ifdef DUBSAR_SANITIZED
+  GTEST_SKIP() << "a sanitizer brings its own allocator";
+#endif
+  map_large_blocks();
+  return_unused_memory();
+  const std::size_t before = resident_bytes();
+  constexpr std::size_t kBlock = kOwnMappingBytes / 2;
+  std::size_t at_most = 0;
+  std::thread([&] {
+    std::array<void*, 96> blocks{};
+    for (void*& block : blocks) {
+      block = std::malloc(kBlock);
+      std::memset(block, 1, kBlock);
+    }
+    at_most = resident_bytes();
+    for (auto block = blocks.rbegin(); block != blocks.rend(); ++block) {
+      std::free(*block);
+    }
+  }).join();
+  return_unused_memory();
+  ASSERT_GE(at_most, before + 90 * kBlock);
+  EXPECT_LE(resident_bytes(), before + 40 * kBlock);  // 16 MiB of 48, and what the thread was
 }
 
 }  // namespace
