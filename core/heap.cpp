@@ -16,7 +16,7 @@ namespace {
 
 /// Free at the end of a heap before it goes back to the system. Each thread has a heap, and what lies free at
 /// the end of one stays: malloc_trim() gives back the end of the first heap only.
-constexpr std::size_t kHeldBytes = std::size_t{16} << 20U;
+constexpr std::size_t kHeldBytes = std::size_t{4} << 20U;
 
 }  // namespace
 

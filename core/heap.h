@@ -11,7 +11,7 @@ inline constexpr std::size_t kOwnMappingBytes = std::size_t{1} << 20U;
 
 /// Large arrays go back to the system when they are let go of, instead of lying about in the heap between
 /// smaller ones: it halves the memory of a large stitch. What is smaller is kept at the end of the heap, up
-/// to 16 MiB for each thread. For the whole process, so a program says it first thing in main() and no
+/// to 4 MiB for each thread. For the whole process, so a program says it first thing in main() and no
 /// library does. (glibc; with another allocator nothing happens.)
 void map_large_blocks();
 

@@ -44,7 +44,7 @@ TEST(Heap, MiddlingBlocksDoNotGoBackToTheSystemEachTime) {
   GTEST_SKIP() << "a sanitizer brings its own allocator";
 #endif
   map_large_blocks();
-  std::array<void*, 16> blocks{};
+  std::array<void*, 6> blocks{};
   const auto end_of_heap_after_use = [&] {
     for (void*& block : blocks) {
       block = std::malloc(kOwnMappingBytes / 2);
@@ -92,7 +92,7 @@ TEST(Heap, WhatAThreadHasLetGoOfIsNotKeptForIt) {
   }).join();
   return_unused_memory();
   ASSERT_GE(at_most, before + 90 * kBlock);
-  EXPECT_LE(resident_bytes(), before + 40 * kBlock);  // 16 MiB of 48, and what the thread was
+  EXPECT_LE(resident_bytes(), before + 16 * kBlock);  // 4 MiB of 48, and what the thread was
 }
 
 }  // namespace
