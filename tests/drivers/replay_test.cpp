@@ -165,6 +165,20 @@ TEST_F(ReplayTest, TheUnitOptionScales) {
   EXPECT_FALSE(open(folder_.path(), {{"rate", "-3"}}));
 }
 
+TEST_F(ReplayTest, AFolderAboveTheScansSaysWhichToName) {
+  const auto line = [&] { return open(folder_.path()).error().line(); };
+  fs::create_directory(folder_.path() / "pictures");
+  std::ofstream(folder_.path() / "pictures/1.jpg") << "no scan";
+  EXPECT_THAT(line(), HasSubstr("holds no files, and of its subfolders (1) none holds scans; name a folder"));
+  for (const char* name : {"b", "a", ".hidden"}) {
+    fs::create_directory(folder_.path() / name);
+    ASSERT_TRUE(write_grid_file(folder_.path() / name / "0.grid", small_grid(3, 2)));
+  }
+  EXPECT_THAT(line(), HasSubstr("of its subfolders (3) these hold scans: a, b; name one of these"));
+  std::ofstream(folder_.path() / "readme.txt") << "Nothing but words here.\n";
+  EXPECT_THAT(line(), HasSubstr("none of the 1 files in the folder is a scan, but of its subfolders (3)"));
+}
+
 TEST_F(ReplayTest, AFolderWithoutScansIsOneClearLine) {
   const auto empty = open(folder_.path());
   ASSERT_FALSE(empty);
