@@ -99,7 +99,7 @@ Axis towards_z(Axis axis) {
 }  // namespace
 
 Eigen::Vector3d view_axis(const std::vector<Eigen::Vector3f>& points) {
-  const Axis least = towards_z(least_variation(points));
+  Axis least = towards_z(least_variation(points));
   const double spacing_mm = nearest_neighbours(points).median_mm;
   if (!(spacing_mm > 0)) {
     return least;
