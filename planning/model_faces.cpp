@@ -6,8 +6,6 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
-#include "planning/convex_hull.h"
-
 namespace dubsar {
 
 namespace {
@@ -92,10 +90,6 @@ ModelFaces model_faces(std::span<const PlacedScan> scans, std::span<const Eigen:
   faces.model_from_faces.col(1) = y;
   faces.model_from_faces.col(2) = z;
   return faces;
-}
-
-ModelFaces model_faces(std::span<const PlacedScan> scans, std::span<const Eigen::Vector3f> vertices) {
-  return model_faces(scans, hull_points(thinned_for_hull(vertices)));
 }
 
 const char* spoken(Face face) {

@@ -25,14 +25,9 @@ struct ModelFaces {
   [[nodiscard]] Face of(const Eigen::Vector3d& normal) const;
 };
 
-/// points: of the model's hull, for the extents.
+/// points: of the model's hull or surface, for the extents.
 [[nodiscard]] ModelFaces model_faces(std::span<const PlacedScan> scans,
                                      std::span<const Eigen::Vector3d> points);
-
-/// The same from a surface's vertices, by their hull: all who name faces of one model agree, and where the
-/// vertices crowd says nothing of the shape.
-[[nodiscard]] ModelFaces model_faces(std::span<const PlacedScan> scans,
-                                     std::span<const Eigen::Vector3f> vertices);
 
 /// "the obverse", "the top edge": as an operator would say it.
 [[nodiscard]] const char* spoken(Face face);
