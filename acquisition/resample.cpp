@@ -364,10 +364,14 @@ Result<RangeGrid> resample(const PointCloud& cloud, const ResampleOptions& optio
   grid.spacing_mm = raster.cell;
   grid.view.direction = direction;
   grid.source = cloud.source;
-  if (view.side_is_open && outline_contradicts(grid)) {
-    ResampleOptions other = options;
-    other.view_direction = -direction;
-    return resample(cloud, other, job);
+  if (const int side = view.side_is_open ? outline_side(grid) : 1; side != 1) {
+    ResampleOptions turned = options;
+    turned.view_direction = -direction;
+    Result<RangeGrid> from_there = resample(cloud, turned, job);
+    // An outline that tells nothing from behind, where its rim hides itself, may tell from the front.
+    if (!from_there || side == -1 || outline_side(*from_there) == 1) {
+      return from_there;
+    }
   }
   return grid;
 }

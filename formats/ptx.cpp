@@ -101,7 +101,7 @@ Result<std::string> place_scanner(RangeGrid& grid, const std::string& name) {
   if (sum.norm() > 0) {
     grid.view.direction = sum.normalized();
   }
-  const bool from_behind = outline_contradicts(grid);
+  const bool from_behind = outline_side(grid) < 0;
   if (from_behind) {
     grid.view.direction = -grid.view.direction;
   }

@@ -223,8 +223,9 @@ Eigen::Vector3d side_along(const RangeGrid& grid, const Eigen::Vector3d& axis) {
 
 }  // namespace
 
-bool outline_contradicts(const RangeGrid& grid) {
-  return Outline(grid, grid.view.direction).seen_so() == Witness::kAgainst;
+int outline_side(const RangeGrid& grid) {
+  const Witness outline = Outline(grid, grid.view.direction).seen_so();
+  return outline == Witness::kSilent ? 0 : outline == Witness::kFor ? 1 : -1;
 }
 
 bool take_shown_axis(RangeGrid& grid) {

@@ -18,8 +18,9 @@ namespace dubsar {
 /// the scanner's. Answers with what the operator should know, then or where it is doubtful; else empty.
 [[nodiscard]] std::string settle_direction(RangeGrid& grid);
 
-/// True where the outline shows that the grid was seen from the other side.
-[[nodiscard]] bool outline_contradicts(const RangeGrid& grid);
+/// Whether a grid's outline falls away from the scanner that view.direction says: 1; towards it, so that it
+/// was seen from the other side: -1; 0 where it does not tell.
+[[nodiscard]] int outline_side(const RangeGrid& grid);
 
 /// Turns the direction to the axis that rows and columns show, where that lies so far from it that the frame
 /// is plainly not the scanner's; true then. Its side is that of the outline, else of the turn.

@@ -150,7 +150,7 @@ TEST(Resample, AScanThatIsDeeperThanWideIsSeenAlongItsDepth) {
 
 TEST(Resample, AScanInAFrameThatIsNotTheScannersIsSeenAlongItsDepth) {
   JobContext job;
-  for (const double turn_rad : {0.9, 1.6, 2.4}) {
+  for (const double turn_rad : {0.5, 0.9, 1.3, 1.6, 2.0, 2.4, 2.8}) {
     const Eigen::Matrix3d turn =
         Eigen::AngleAxisd(turn_rad, Eigen::Vector3d(1, 2, 0.5).normalized()).toRotationMatrix();
     const auto grid = resample(thumb(turn), {}, job);
