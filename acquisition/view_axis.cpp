@@ -7,10 +7,10 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <numbers>
 #include <utility>
 
 #include "acquisition/point_spacing.h"
+#include "core/sphere_directions.h"
 #include "core/units.h"
 
 namespace dubsar {
@@ -19,7 +19,7 @@ namespace {
 
 /// As many points show how a cloud folds; with more the directions take longer and say the same.
 constexpr std::size_t kMostPoints = 20000;
-constexpr int kDirections = 150;
+constexpr std::size_t kDirections = 150;  ///< over half of the sphere
 /// Cells are this many spacings wide, and a step of so many cells in one of them is a fold: a slope of 83
 /// degrees.
 constexpr double kCellSpacings = 2.0;
@@ -79,14 +79,6 @@ Axis least_variation(const std::vector<Eigen::Vector3f>& points) {
   return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvectors().col(0);
 }
 
-/// Evenly over the half of the sphere with z > 0.
-Axis direction(int k) {
-  const double z = 1.0 - (k + 0.5) / kDirections;
-  const double turn = k * std::numbers::pi * (1.0 + std::sqrt(5.0));
-  const double across = std::sqrt(1.0 - z * z);
-  return {across * std::cos(turn), across * std::sin(turn), z};
-}
-
 Axis towards_z(Axis axis) {
   for (const int k : {2, 1, 0}) {
     if (std::abs(axis[k]) > 1e-6) {
@@ -119,9 +111,11 @@ Eigen::Vector3d view_axis(const std::vector<Eigen::Vector3f>& points) {
   }
   double fewest = std::min(along_least, along_z);
   std::vector<std::pair<Axis, double>> tried{{least, along_least}, {Axis::UnitZ(), along_z}};
-  for (int k = 0; k < kDirections; ++k) {
-    tried.emplace_back(direction(k), folds.along(direction(k)));
-    fewest = std::min(fewest, tried.back().second);
+  for (const Axis& axis : sphere_directions(2 * kDirections)) {
+    if (axis.z() > 0) {
+      tried.emplace_back(axis, folds.along(axis));
+      fewest = std::min(fewest, tried.back().second);
+    }
   }
   const double most = fewest + kAsFewFolds;
   if (along_z <= most && (near || along_least > most)) {

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "core/parallel.h"
+#include "core/sphere_directions.h"
 #include "core/units.h"
 
 namespace dubsar {
@@ -115,18 +116,6 @@ class Hull {
 };
 
 }  // namespace
-
-std::vector<Eigen::Vector3d> sphere_directions(std::size_t count) {
-  std::vector<Eigen::Vector3d> out(count);
-  const double golden_rad = kPi * (3.0 - std::sqrt(5.0));
-  for (std::size_t k = 0; k < count; ++k) {
-    const double z = 1.0 - (2.0 * static_cast<double>(k) + 1.0) / static_cast<double>(count);
-    const double r = std::sqrt(std::max(0.0, 1.0 - z * z));
-    const double phi = golden_rad * static_cast<double>(k);
-    out[k] = {r * std::cos(phi), r * std::sin(phi), z};
-  }
-  return out;
-}
 
 std::vector<Eigen::Vector3d> extreme_points(std::span<const Eigen::Vector3f> points,
                                             std::span<const Eigen::Vector3d> directions) {

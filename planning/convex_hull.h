@@ -11,9 +11,6 @@
 
 namespace dubsar {
 
-/// `count` unit vectors spread evenly over the sphere (Fibonacci lattice).
-[[nodiscard]] std::vector<Eigen::Vector3d> sphere_directions(std::size_t count);
-
 /// The points that lie farthest along each of the directions, each once, in the order of the points: a small
 /// set whose hull is close to the hull of all.
 [[nodiscard]] std::vector<Eigen::Vector3d> extreme_points(std::span<const Eigen::Vector3f> points,

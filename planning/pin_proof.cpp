@@ -15,6 +15,7 @@
 #include <cmath>
 
 #include "core/parallel.h"
+#include "core/sphere_directions.h"
 #include "planning/convex_hull.h"
 #include "planning/pin_layout.h"
 

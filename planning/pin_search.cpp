@@ -13,6 +13,7 @@
 
 #include "core/parallel.h"
 #include "core/random.h"
+#include "core/sphere_directions.h"
 #include "planning/convex_hull.h"
 
 namespace dubsar {

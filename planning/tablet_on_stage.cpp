@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "core/sample_flags.h"
+#include "core/sphere_directions.h"
 #include "planning/convex_hull.h"
 
 namespace dubsar {

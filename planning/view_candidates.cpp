@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 
+#include "core/sphere_directions.h"
 #include "core/units.h"
 #include "planning/convex_hull.h"
 #include "planning/tablet_on_stage.h"

@@ -9,6 +9,7 @@
 
 #include "core/parallel.h"
 #include "core/random.h"
+#include "core/sphere_directions.h"
 #include "core/units.h"
 
 namespace dubsar::sim {
@@ -16,18 +17,6 @@ namespace dubsar::sim {
 namespace {
 
 constexpr double kShadowMarginMm = 0.02;
-
-/// Directions spread evenly over the sphere (a Fibonacci spiral).
-std::vector<Eigen::Vector3d> spread_directions(int count) {
-  std::vector<Eigen::Vector3d> directions;
-  const double golden = kPi * (3.0 - std::sqrt(5.0));
-  for (int i = 0; i < count; ++i) {
-    const double z = 1.0 - 2.0 * (i + 0.5) / count;
-    const double r = std::sqrt(1.0 - z * z);
-    directions.emplace_back(r * std::cos(golden * i), r * std::sin(golden * i), z);
-  }
-  return directions;
-}
 
 }  // namespace
 
@@ -66,7 +55,8 @@ Result<std::vector<std::uint8_t>> reachable_points(const std::vector<Eigen::Vect
                                                    const MeshQuery& query, const ScannerOptions& scanner,
                                                    const ReachOptions& options, JobContext& job) {
   std::vector<std::uint8_t> reachable(points.size(), 0);
-  const std::vector<Eigen::Vector3d> directions = spread_directions(options.directions);
+  const std::vector<Eigen::Vector3d> directions =
+      sphere_directions(static_cast<std::size_t>(options.directions));
   const double flattest = std::cos(rad_from_deg(options.max_slope_deg));
   const auto seen = [&](const Eigen::Vector3d& p, const Eigen::Vector3d& n, const Eigen::Vector3d& from) {
     const Eigen::Matrix3d level =
