@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "planning/convex_hull.h"
 #include "planning/model_faces.h"
 
 namespace dubsar {
@@ -57,8 +56,7 @@ Checklist make_checklist(const RedMap& map, std::span<const ScanPose> poses,
     list.calibration_age_days = rig->calibration_age_days;
     list.calibration_check = rig->calibration_check;
   }
-  const SurfaceQuality quality =
-      surface_quality(registered, mesh, model_faces(registered, hull_points(mesh.positions)));
+  const SurfaceQuality quality = surface_quality(registered, mesh, model_faces(registered, mesh.positions));
   list.sampling = quality.all;
   for (std::size_t face = 0; face < kFaceCount; ++face) {
     list.faces[face].seen_mm2 = quality.seen_mm2[face];

@@ -157,6 +157,15 @@ std::vector<Eigen::Vector3d> hull_points(std::span<const Eigen::Vector3f> points
   return out;
 }
 
+std::vector<Eigen::Vector3f> thinned_for_hull(std::span<const Eigen::Vector3f> points) {
+  const std::size_t stride = points.size() / 40000 + 1;
+  std::vector<Eigen::Vector3f> thinned;
+  for (std::size_t i = 0; i < points.size(); i += stride) {
+    thinned.push_back(points[i]);
+  }
+  return thinned;
+}
+
 Mesh convex_hull(std::span<const Eigen::Vector3d> points) {
   Mesh mesh;
   for (const Eigen::Vector3d& p : points) {

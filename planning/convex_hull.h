@@ -20,6 +20,9 @@ namespace dubsar {
 /// model would be cut short.
 [[nodiscard]] std::vector<Eigen::Vector3d> hull_points(std::span<const Eigen::Vector3f> points);
 
+/// Every so many-th point: of millions, some ten thousand show the hull.
+[[nodiscard]] std::vector<Eigen::Vector3f> thinned_for_hull(std::span<const Eigen::Vector3f> points);
+
 /// Convex hull of some hundred points, faces counter-clockwise from outside; only its corners are used by the
 /// faces. No faces when the points lie in a plane. Incremental (de Berg et al., Computational Geometry,
 /// ch. 11), time O(n²): thin the points with extreme_points() first.

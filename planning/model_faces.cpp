@@ -6,6 +6,8 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
+#include "planning/convex_hull.h"
+
 namespace dubsar {
 
 namespace {
@@ -23,6 +25,35 @@ const PlacedScan* lowest(std::span<const PlacedScan> scans, bool with_nominal) {
 /// The direction itself or its opposite, whichever is nearer to the wish.
 Eigen::Vector3d turned_towards(const Eigen::Vector3d& direction, const Eigen::Vector3d& wish) {
   return direction.dot(wish) < 0 ? Eigen::Vector3d(-direction) : direction;
+}
+
+/// How the hull's surface lies about its middle. By area: how many corners an edge has is chance.
+Eigen::Matrix3d spread_of(const Mesh& hull) {
+  double area = 0;
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d moment = Eigen::Matrix3d::Zero();
+  for (const auto& f : hull.faces) {
+    const Eigen::Vector3d a = hull.positions[f[0]].cast<double>();
+    const Eigen::Vector3d b = hull.positions[f[1]].cast<double>();
+    const Eigen::Vector3d c = hull.positions[f[2]].cast<double>();
+    const double weight = 0.5 * (b - a).cross(c - a).norm();
+    const Eigen::Vector3d sum = a + b + c;
+    area += weight;
+    mean += weight / 3.0 * sum;
+    moment +=
+        weight / 12.0 * (a * a.transpose() + b * b.transpose() + c * c.transpose() + sum * sum.transpose());
+  }
+  return moment / area - mean * mean.transpose() / (area * area);
+}
+
+/// Of what is as wide as high, which way is up is chance: a square's corners lead to its diagonal.
+constexpr double kLongerOfVariance = 1.1;  // 5 % longer
+
+/// The scanner's y axis, or its x where y runs across the faces, laid into the plane across z.
+Eigen::Vector3d in_plane(const Eigen::Matrix3d& scanner, const Eigen::Vector3d& z) {
+  const bool y_runs_across = std::abs(z.dot(scanner.col(1))) > 0.9;
+  const Eigen::Vector3d axis = scanner.col(y_runs_across ? 0 : 1);
+  return (axis - z * z.dot(axis)).normalized();
 }
 
 }  // namespace
@@ -60,7 +91,7 @@ Face ModelFaces::of(const Eigen::Vector3d& normal_in_model) const {
   return n.x() < 0 ? Face::kLeft : Face::kRight;
 }
 
-ModelFaces model_faces(std::span<const PlacedScan> scans, std::span<const Eigen::Vector3d> points) {
+ModelFaces model_faces(std::span<const PlacedScan> scans, const Mesh& hull) {
   ModelFaces faces;
   if (const PlacedScan* told = lowest(scans, true)) {
     faces.model_from_faces =
@@ -68,28 +99,26 @@ ModelFaces model_faces(std::span<const PlacedScan> scans, std::span<const Eigen:
     return faces;
   }
   const PlacedScan* first = lowest(scans, false);
-  if (first == nullptr || points.size() < 4) {
+  if (first == nullptr || hull.faces.empty()) {
     return faces;
   }
-  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-  for (const Eigen::Vector3d& p : points) {
-    mean += p / static_cast<double>(points.size());
-  }
-  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
-  for (const Eigen::Vector3d& p : points) {
-    spread += (p - mean) * (p - mean).transpose();
-  }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(spread);
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(spread_of(hull));
   const Eigen::Matrix3d scanner = first->model_from_scanner.rotation;
   const Eigen::Vector3d z =
       turned_towards(axes.eigenvectors().col(0), -(scanner * first->grid->view.direction));
-  const Eigen::Vector3d height = axes.eigenvectors().col(2);
+  const Eigen::Vector3d height = axes.eigenvalues()[2] > kLongerOfVariance * axes.eigenvalues()[1]
+                                     ? Eigen::Vector3d(axes.eigenvectors().col(2))
+                                     : in_plane(scanner, z);
   const bool along_y = std::abs(height.dot(scanner.col(1))) >= std::abs(height.dot(scanner.col(0)));
   const Eigen::Vector3d y = turned_towards(height, scanner.col(along_y ? 1 : 0));
   faces.model_from_faces.col(0) = y.cross(z);
   faces.model_from_faces.col(1) = y;
   faces.model_from_faces.col(2) = z;
   return faces;
+}
+
+ModelFaces model_faces(std::span<const PlacedScan> scans, std::span<const Eigen::Vector3f> vertices) {
+  return model_faces(scans, convex_hull(hull_points(thinned_for_hull(vertices))));
 }
 
 const char* spoken(Face face) {

@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <span>
 
+#include "core/mesh.h"
 #include "core/placed_scan.h"
 #include "core/red_map.h"
 
@@ -16,7 +17,8 @@ namespace dubsar {
 /// Where a scan came with a nominal pose, its tablet frame says so: the frame of the registered scan of the
 /// lowest id. Otherwise the faces follow from the shape: the thickness is the smallest extent, the height the
 /// largest; the obverse is the side that the first scan looked at, and up is the first scan's y axis or x
-/// axis, whichever runs along the height.
+/// axis, whichever runs along the height. Of what is about as wide as high (5 %) the y axis is up, or x where
+/// y runs across the faces.
 struct ModelFaces {
   Eigen::Matrix3d model_from_faces = Eigen::Matrix3d::Identity();
 
@@ -25,9 +27,13 @@ struct ModelFaces {
   [[nodiscard]] Face of(const Eigen::Vector3d& normal) const;
 };
 
-/// points: of the model's hull or surface, for the extents.
+/// hull: the model's convex hull; without faces, all stands as the model does.
+[[nodiscard]] ModelFaces model_faces(std::span<const PlacedScan> scans, const Mesh& hull);
+
+/// The same from a surface's vertices, by their convex hull: all who name faces of one model agree, and where
+/// the vertices crowd says nothing of the shape.
 [[nodiscard]] ModelFaces model_faces(std::span<const PlacedScan> scans,
-                                     std::span<const Eigen::Vector3d> points);
+                                     std::span<const Eigen::Vector3f> vertices);
 
 /// "the obverse", "the top edge": as an operator would say it.
 [[nodiscard]] const char* spoken(Face face);

@@ -216,14 +216,10 @@ ModelSurface model_surface(std::span<const PlacedScan> scans, const Mesh* model,
   Mesh mesh = model != nullptr && !model->faces.empty() ? *model : thinned_surface(scans, step_mm);
   ModelSurface out{MeshQuery(mesh), std::move(mesh), step_mm, {0, 0, 0}, {}, {}, {}, {}};
 
-  const std::size_t stride = out.mesh.positions.size() / 40000 + 1;
-  std::vector<Eigen::Vector3f> thinned;
-  for (std::size_t i = 0; i < out.mesh.positions.size(); i += stride) {
-    thinned.push_back(out.mesh.positions[i]);
-  }
+  std::vector<Eigen::Vector3f> thinned = thinned_for_hull(out.mesh.positions);
   std::vector<Eigen::Vector3d> extremes = hull_points(thinned);
   Mesh hull = convex_hull(extremes);
-  out.faces = model_faces(scans, extremes);
+  out.faces = model_faces(scans, hull);
   if (const auto mirrored = mirrored_points(out.mesh, hull, extremes, out.faces); !mirrored.empty()) {
     for (const Eigen::Vector3d& p : mirrored) {
       thinned.push_back(p.cast<float>());

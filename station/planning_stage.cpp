@@ -378,20 +378,15 @@ std::optional<SampleStates> PlanningStage::states(int id) const {
 }
 
 RigidTransform PlanningStage::tablet_from_model(const Mesh& mesh) const {
-  std::vector<Eigen::Vector3d> points;
-  points.reserve(mesh.positions.size());
-  for (const Eigen::Vector3f& p : mesh.positions) {
-    points.push_back(p.cast<double>());
-  }
   const std::vector<PlacedScan> scans = cleared_.scans();
-  const RigidTransform named{model_faces(scans, points).model_from_faces.transpose(),
+  const RigidTransform named{model_faces(scans, mesh.positions).model_from_faces.transpose(),
                              Eigen::Vector3d::Zero()};
   // The faces have their names; the tablet's own shape sets them straight (it was laid down by hand).
   Mesh turned;
   turned.faces = mesh.faces;
-  turned.positions.reserve(points.size());
-  for (const Eigen::Vector3d& p : points) {
-    turned.positions.emplace_back((named * p).cast<float>());
+  turned.positions.reserve(mesh.positions.size());
+  for (const Eigen::Vector3f& p : mesh.positions) {
+    turned.positions.emplace_back((named * p.cast<double>()).cast<float>());
   }
   return tablet_frame(turned) * named;
 }

@@ -4,7 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "formats/red_map_json.h"
+#include "planning/model_faces.h"
 #include "tests/station/support/bumpy_scans.h"
 
 namespace dubsar {
@@ -51,6 +54,33 @@ TEST(PlanningStage, TheWayThereDoesNotMatter) {
   wandering[1].model_from_scanner.translation_mm.x() += 0.7;
   wandering[2].status = PoseStatus::kUnsure;
   EXPECT_EQ(map_after({wandering, poses_with(0.01)}), map_after({poses_with(0.01)}));
+}
+
+/// A side of 44 × 50 mm; where its left and right ends crowd with vertices, it is no wider for that.
+TEST(PlanningStage, ThePicturesNameTheFacesAsThePlanDoes) {
+  Mesh mesh;
+  const auto row_at = [&](float x, int steps) {
+    for (int k = 0; k <= steps; ++k) {
+      const float y = -25.0F + 50.0F * static_cast<float>(k) / static_cast<float>(steps);
+      mesh.positions.emplace_back(x, y, 0.0F);
+      mesh.positions.emplace_back(x, y, -12.0F);
+    }
+  };
+  for (const float x : {-22.0F, 22.0F}) {
+    row_at(x, 500);
+  }
+  for (int x = -20; x <= 20; x += 5) {
+    row_at(static_cast<float>(x), 10);
+  }
+  PlanningStage stage;
+  stage.add(prepare_scan(0, test::bumpy_scan(0), std::nullopt));
+  JobContext job;
+  std::vector<ScanPose> poses = poses_with(0.01);
+  poses.resize(1);
+  ASSERT_TRUE(stage.place(poses, true, job));
+  const Eigen::Vector3d top = model_faces(stage.placed(), mesh.positions).normal(Face::kTop);
+  EXPECT_GT(std::abs(top.y()), 0.9) << "the height is the largest extent";
+  EXPECT_GT((stage.tablet_from_model(mesh).rotation * top).y(), 0.9);
 }
 
 }  // namespace
