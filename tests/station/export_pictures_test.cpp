@@ -150,14 +150,16 @@ TEST_F(Export, ItsReadmeTellsWhereAPlaceLiesInAPicture) {
       missed += clay_within_a_pixel(picture, column, row) ? 0 : 1;
       if (column >= 0 && column < int(picture.width) && row >= 0 && row < int(picture.height)) {
         const auto at = static_cast<std::size_t>(row) * picture.width + static_cast<std::size_t>(column);
-        if (is_clay(picture.pixels[at])) {
+        // At the rim of a sheet the spheres reach past it, and the tones end before the values do.
+        const bool inner = std::max(std::abs(along(0)), std::abs(along(1))) < 12.5;
+        if (inner && is_clay(picture.pixels[at])) {
           hollow_is_dark.add(msii[2 * i + 1], hollows.pixels[at][1]);
         }
       }
     }
     EXPECT_EQ(missed, 0U) << rule.picture;
     if (rule.picture == std::string_view("03_front")) {  // the one side that was scanned
-      EXPECT_LT(hollow_is_dark.value(), -0.8);
+      EXPECT_LT(hollow_is_dark.value(), -0.99);
     }
   }
 }
