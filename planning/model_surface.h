@@ -29,7 +29,8 @@ struct ModelSurfaceOptions {
 /// The model so far as planning sees it: a thin surface that casts shadows, and the convex hull, which a
 /// tablet nearly is (made whole by symmetry, completion.h), as the estimate of what nobody has seen. A patch
 /// of the hull counts as seen when a ray from it into the clay meets the surface from outside; what has no
-/// samples yet is met from behind, or not at all.
+/// samples yet is met from behind, or not at all. Where it is not met at all and cameras looked through all
+/// that the hull spans there, no surface is missing: such a patch is neither seen nor unseen.
 struct ModelSurface {
   MeshQuery query;
   Mesh mesh;
