@@ -40,6 +40,23 @@ void draw_on_paper(Image& image, int x, int y, const std::string& number) {
   draw_text(image, x, y, number, kNumberInk, kNumberScale);
 }
 
+/// Right of a ring, or left of it; in it where it is wider than the picture.
+Eigen::AlignedBox2i box_of_number(const Image& image, double x, double y, double radius_px, int wide,
+                                  int high) {
+  double left = x + radius_px + 4;
+  if (left + wide >= image.width) {
+    left = x - radius_px - 4 - wide;
+  }
+  if (left < 0) {
+    left = x - 0.5 * wide;
+  }
+  const int most_left = std::max(0, image.width - wide);
+  const int most_top = std::max(0, image.height - high);
+  const Eigen::Vector2i at(std::clamp(static_cast<int>(left), 0, most_left),
+                           std::clamp(static_cast<int>(y) - high / 2, 0, most_top));
+  return {at, at + Eigen::Vector2i(wide, high)};
+}
+
 /// Rings and numbers on the side that each place belongs to.
 Status number_places(const ReportInput& input, const std::vector<RegionPicture>& places,
                      const RenderScene& scene, const RenderOptions& drawn_with, SixViews& views) {
@@ -66,11 +83,8 @@ Status number_places(const ReportInput& input, const std::vector<RegionPicture>&
       draw_ring(image, x, y, radius_px, 3.0, kNumberInk);
       const std::string number = std::to_string(region_number(place.region));
       const int wide = text_width(number, kNumberScale);
-      const bool fits_right = x + radius_px + 4 + wide < image.width;
-      const int left = static_cast<int>(fits_right ? x + radius_px + 4 : x - radius_px - 4 - wide);
       const int high = kGlyphHeight * kNumberScale;
-      Eigen::AlignedBox2i box(Eigen::Vector2i(left, static_cast<int>(y) - high / 2),
-                              Eigen::Vector2i(left + wide, static_cast<int>(y) + high / 2));
+      Eigen::AlignedBox2i box = box_of_number(image, x, y, radius_px, wide, high);
       while (std::ranges::any_of(taken, [&](const Eigen::AlignedBox2i& other) {
         return other.intersects(box);
       })) {  // places close together: their numbers stand in a column

@@ -266,7 +266,7 @@ void leave_out_air(std::span<const PlacedScan> scans, const Mesh& hull, ModelSur
   for (const Eigen::Vector3d& p : surface.corners_mm) {
     box.extend(p);
   }
-  const FreeSpace air(scans, box, 2.0 * surface.step_mm);
+  const FreeSpace air(scans, box, 4.0 * surface.step_mm);
   const MeshQuery hull_query(hull);
   std::vector<std::uint8_t> gone(surface.unseen.size());
   parallel_for_each_index(

@@ -266,6 +266,23 @@ TEST_F(Report, StraysAreCountedInOneLine) {
   EXPECT_EQ(count(page, "<img "), 7U);
 }
 
+TEST_F(Report, TheNumberOfAPlaceWiderThanThePictureIsInIt) {
+  RedRegion stray;
+  stray.state = RegionState::kExcused;
+  stray.excuse = Excuse::kUnneeded;
+  RedRegion wide;
+  wide.area_mm2 = 30000;
+  wide.normal = {0, 0, 1};
+  wide.center_mm = {0, 0, 10};
+  const auto sheet = [&](std::vector<RedRegion> regions) {
+    map_.regions = std::move(regions);
+    const auto pictures = draw_pictures(input(), JobContext());
+    EXPECT_TRUE(pictures);
+    return pictures ? pictures->red_sheet.bytes : std::vector<std::uint8_t>();
+  };
+  EXPECT_NE(sheet({wide}), sheet({stray, wide})) << "1 and 2 are told apart by their numbers alone";
+}
+
 TEST_F(Report, PlacesAreInTheFrameOfTheTablet) {
   RedRegion region;
   region.area_mm2 = 1;
