@@ -70,6 +70,9 @@ Result<StagedFolder> StagedFolder::begin(const fs::path& wanted, bool replace) {
     if (::fstat(lock, &mine) == 0 && ::stat(staged.c_str(), &there) == 0 && mine.st_ino == there.st_ino) {
       for (fs::directory_iterator it(staged, error), end; !made && !error && it != end; it.increment(error)) {
         fs::remove_all(it->path(), error);
+        if (error) {
+          break;  // going on to the next would forget it
+        }
       }
       if (error) {
         ::close(lock);

@@ -3,6 +3,7 @@
 #include "archive/staged_folder.h"
 
 #include <fcntl.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/syscall.h>
 #include <unistd.h>
@@ -19,6 +20,8 @@ namespace {
 /// A file system that cannot exchange two names, as not all of them can, and then one name that it refuses.
 bool cannot_exchange = false;
 std::string refuses_from;
+/// A name that cannot be taken away.
+std::string refuses_to_go;
 
 }  // namespace
 
@@ -38,6 +41,13 @@ extern "C" int renameat2(int from_folder, const char* from, int to_folder, const
 extern "C" int rename(const char* from, const char* to) noexcept {
   return renameat2(AT_FDCWD, from, AT_FDCWD, to, 0);
 }
+extern "C" int unlinkat(int folder, const char* name, int flags) noexcept {
+  if (!refuses_to_go.empty() && name == refuses_to_go) {
+    errno = EPERM;
+    return -1;
+  }
+  return static_cast<int>(::syscall(SYS_unlinkat, folder, name, flags));
+}
 
 namespace dubsar {
 namespace {
@@ -45,6 +55,24 @@ namespace {
 namespace fs = std::filesystem;
 using test::put;
 using test::text_of_file;
+using ::testing::HasSubstr;
+
+TEST(StagedFolder, WhatWasLeftAndCannotBeTakenAwayIsSaid) {
+  const test::TemporaryFolder folder;
+  const fs::path left = folder.path() / (std::string(kTemporaryPrefix) + "bag");
+  const std::string names[] = {"a", "b", "c"};
+  for (const std::string& name : names) {  // in whatever order they are listed, others come after one of them
+    for (const std::string& each : names) {
+      put(left / each / ("in_" + each), "of a program that was killed");
+    }
+    refuses_to_go = "in_" + name;
+    const auto staged = StagedFolder::begin(folder.path() / "bag", false);
+    refuses_to_go.clear();
+    ASSERT_FALSE(staged) << name << " would have become a part of the new folder";
+    EXPECT_EQ(staged.error().kind, ErrorKind::kStorage);
+    EXPECT_THAT(staged.error().line(), HasSubstr("cannot clear what was left there"));
+  }
+}
 
 TEST(StagedFolder, IsThereWholeOrNotAtAll) {
   const test::TemporaryFolder folder;
