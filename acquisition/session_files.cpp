@@ -89,8 +89,14 @@ Status make_folders(const fs::path& folder) {
   if (there && !fs::is_directory(folder, error)) {
     return fail(ErrorKind::kUsage, "not a folder", folder.string(), "name a folder for the session");
   }
-  if (there && !fs::exists(folder / kDatabase) && !fs::exists(folder / kGrids) &&
-      !fs::exists(folder / kBackup)) {
+  bool ours = false;
+  for (const char* name : {kDatabase, kGrids, kBackup}) {
+    ours = ours || fs::exists(folder / name, error);
+    if (there && error) {
+      return refused(folder, "cannot read the folder", error.value());
+    }
+  }
+  if (there && !ours) {
     fs::directory_iterator it(folder, error);
     if (error) {
       return refused(folder, "cannot read the folder", error.value());
@@ -129,8 +135,11 @@ Status make_folders(const fs::path& folder) {
 
 int remove_temporaries(const fs::path& folder) {
   int removed = 0;
-  for (const fs::path& place :
-       {folder, folder / kGrids, folder / "mesh", folder / "analysis", folder / "export"}) {
+  std::vector<fs::path> places{folder};
+  for (const char* name : kFolders) {
+    places.push_back(folder / name);
+  }
+  for (const fs::path& place : places) {
     std::error_code ignored;
     std::vector<fs::path> found;
     for (fs::directory_iterator it(place, ignored), end; !ignored && it != end; it.increment(ignored)) {

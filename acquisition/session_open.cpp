@@ -216,7 +216,8 @@ Status snapshot(const fs::path& folder, SqlDatabase& memory) {
 Result<SqlDatabase> open_for_writing(const fs::path& folder, SessionOpening& opening, bool& rebuilt) {
   const fs::path path = folder / kDatabase;
   // An empty file with nothing beside it is what a program leaves that was stopped before its first change.
-  opening.created = !has_content(path) && !fs::exists(folder / kBackup) && grid_ids(folder).empty();
+  std::error_code unknown;
+  opening.created = !has_content(path) && !fs::exists(folder / kBackup, unknown) && grid_ids(folder).empty();
   const bool missing = !opening.created && !has_content(path);
   // Once something is written the old checksum is wrong; the backup's stays good.
   Sums sums = read_sums(folder).value_or(Sums());

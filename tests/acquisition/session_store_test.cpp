@@ -216,6 +216,16 @@ TEST_F(SessionStoreTest, RefusesFoldersThatAreNoSession) {
   EXPECT_FALSE(SessionStore::open_or_create(folder_ / "letter.txt"));
 }
 
+TEST_F(SessionStoreTest, AFolderThatCannotBeLookedIntoIsRefusedInWords) {
+  fs::create_directories(folder_);
+  fs::create_symlink("session.sqlite",
+                     folder_ / "session.sqlite");  // to itself: as good as one without rights
+  const auto store = SessionStore::open_or_create(folder_);
+  ASSERT_FALSE(store);
+  EXPECT_EQ(store.error().kind, ErrorKind::kStorage);
+  EXPECT_THAT(store.error().line(), HasSubstr("session: cannot read the folder"));
+}
+
 TEST_F(SessionStoreTest, AGridWithWrongArraysIsRefused) {
   SessionStore store = open();
   RangeGrid grid = small_grid(1);
