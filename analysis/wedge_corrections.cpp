@@ -13,6 +13,7 @@
 #include <unordered_set>
 
 #include "analysis/hollow_measure.h"
+#include "core/near_cells.h"
 
 namespace dubsar {
 
@@ -259,22 +260,9 @@ class Corrector {
   }
 
   Made add(const WedgeCorrection& correction) {
-    const double cell = std::max(correction.reach_mm, 1e-3);
-    const auto key_of = [&](const Eigen::Vector3d& p, int k) {
-      std::uint64_t key = 0;
-      for (int axis = 0; axis < 3; ++axis) {
-        const int step = (axis == 0 ? k : axis == 1 ? k / 3 : k / 9) % 3 - 1;
-        const double at = std::clamp(std::floor(p[axis] / cell), -1e6, 1e6) + step;
-        key = (key << 21U) | static_cast<std::uint64_t>(static_cast<std::int64_t>(at) + (1 << 20));
-      }
-      return key;
-    };
-    constexpr int kSame = 13;  // of the 27 cells around
-    std::unordered_map<std::uint64_t, std::vector<std::size_t>> places;
+    NearCells places(std::max(correction.reach_mm, 1e-3));
     for (std::size_t r = 0; r < correction.region_mm.size(); ++r) {
-      for (int k = 0; k < 27; ++k) {
-        places[key_of(correction.region_mm[r], k)].push_back(r);
-      }
+      places.add(correction.region_mm[r], r);
     }
     Vertices region;
     std::size_t of_others = 0;
@@ -283,8 +271,7 @@ class Corrector {
         continue;
       }
       const Eigen::Vector3d p = mesh_.positions[v].cast<double>();
-      const auto near = places.find(key_of(p, kSame));
-      if (near == places.end() || std::ranges::none_of(near->second, [&](std::size_t r) {
+      if (std::ranges::none_of(places.about(p), [&](std::size_t r) {
             return (correction.region_mm[r] - p).norm() <= correction.reach_mm;
           })) {
         continue;

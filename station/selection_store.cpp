@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <unordered_map>
 #include <utility>
 
+#include "core/near_cells.h"
 #include "formats/selections_json.h"
 
 namespace dubsar {
@@ -101,32 +101,18 @@ Status keep_selections(const fs::path& file, const std::string& mesh_name, const
 
 std::vector<Wedge> selected_wedges(const std::vector<Wedge>& wedges, const Mesh& mesh,
                                    const MeshSelection& selection) {
-  const auto cell_of = [](const Eigen::Vector3f& p) -> Eigen::Vector3i {
-    return (p / kReachMm).array().floor().cwiseMax(-1e6F).cwiseMin(1e6F).matrix().cast<int>();
-  };
-  const auto key_of = [](const Eigen::Vector3i& cell) {
-    std::uint64_t key = 0;
-    for (int axis = 0; axis < 3; ++axis) {
-      key = (key << 21U) | static_cast<std::uint64_t>(cell[axis] + (1 << 20));
-    }
-    return key;
-  };
-  std::unordered_map<std::uint64_t, std::vector<std::size_t>> around;  // wedges within a cell's reach
+  NearCells around(kReachMm);
   for (std::size_t w = 0; w < wedges.size(); ++w) {
-    const Eigen::Vector3i cell = cell_of(wedges[w].depth_point_mm.cast<float>());
-    for (int k = 0; k < 27; ++k) {
-      around[key_of(cell + Eigen::Vector3i(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1))].push_back(w);
-    }
+    around.add(wedges[w].depth_point_mm.cast<float>().cast<double>(), w);
   }
   std::vector<std::pair<float, std::size_t>> nearest(wedges.size(),
                                                      {kReachMm * kReachMm, mesh.positions.size()});
   for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
     const Eigen::Vector3f& p = mesh.positions[v];
-    const auto near = p.allFinite() ? around.find(key_of(cell_of(p))) : around.end();
-    if (near == around.end()) {
+    if (!p.allFinite()) {
       continue;
     }
-    for (const std::size_t w : near->second) {
+    for (const std::size_t w : around.about(p.cast<double>())) {
       const float off = (p - wedges[w].depth_point_mm.cast<float>()).squaredNorm();
       if (off < nearest[w].first) {
         nearest[w] = {off, v};
