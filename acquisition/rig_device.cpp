@@ -102,25 +102,18 @@ std::int32_t capabilities(dubsar_device* device, dubsar_capabilities* out, dubsa
 std::int32_t scan(dubsar_device* device, const dubsar_sink* sink, dubsar_error* error) {
   return plugin::fenced(error, [&] {
     SinkBridge bridge(*sink);
-    const Status status = device->source->scan(bridge);
-    const std::int32_t code = status ? std::int32_t{DUBSAR_OK} : plugin::report(error, status.error());
+    const std::int32_t code = plugin::answer(device->source->scan(bridge), error);
     bridge.finish(code);
     return code;
   });
 }
 
 std::int32_t stop(dubsar_device* device, dubsar_error* error) {
-  return plugin::fenced(error, [&] {
-    const Status status = device->source->stop();
-    return status ? std::int32_t{DUBSAR_OK} : plugin::report(error, status.error());
-  });
+  return plugin::fenced(error, [&] { return plugin::answer(device->source->stop(), error); });
 }
 
 std::int32_t emergency_stop(dubsar_device* device, dubsar_error* error) {
-  return plugin::fenced(error, [&] {
-    const Status status = device->source->halt();
-    return status ? std::int32_t{DUBSAR_OK} : plugin::report(error, status.error());
-  });
+  return plugin::fenced(error, [&] { return plugin::answer(device->source->halt(), error); });
 }
 
 std::int32_t nothing(dubsar_setting_callback, void*, dubsar_error*) {

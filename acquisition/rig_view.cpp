@@ -11,10 +11,6 @@ namespace dubsar {
 
 namespace {
 
-std::int32_t code_of(dubsar_error* error, const Status& status) {
-  return status ? std::int32_t{DUBSAR_OK} : plugin::report(error, status.error());
-}
-
 std::int32_t no_camera(dubsar_error* error) {
   return plugin::report(error, DUBSAR_USAGE, "this rig has no camera to look through");
 }
@@ -106,12 +102,12 @@ std::int32_t set_setting(dubsar_device* device, const char* key, const dubsar_va
         to = std::string(value->text);
         break;
     }
-    return code_of(error, camera->set(key, to));
+    return plugin::answer(camera->set(key, to), error);
   });
 }
 
 std::int32_t start_frames(dubsar_device* device, std::uint32_t /*pool*/, dubsar_error* error) {
-  return plugin::fenced(error, [&] { return code_of(error, device->source->start_view()); });
+  return plugin::fenced(error, [&] { return plugin::answer(device->source->start_view(), error); });
 }
 
 std::int32_t next_frame(dubsar_device* device, std::uint32_t timeout_ms, dubsar_frame* frame,
@@ -160,7 +156,7 @@ void release_frame(dubsar_device* device, std::uint64_t lease) {
 }
 
 std::int32_t stop_frames(dubsar_device* device, dubsar_error* error) {
-  return plugin::fenced(error, [&] { return code_of(error, device->source->stop_view()); });
+  return plugin::fenced(error, [&] { return plugin::answer(device->source->stop_view(), error); });
 }
 
 std::int32_t frame_counters(dubsar_device* device, dubsar_frame_counters* counters, dubsar_error* error) {

@@ -93,6 +93,11 @@ inline std::int32_t report(dubsar_error* error, const Error& what) {
   return report(error, code_of(what.kind), what.what, what.where, what.mend);
 }
 
+/// What a function of the interface returns for that.
+inline std::int32_t answer(const Status& status, dubsar_error* error) {
+  return status ? std::int32_t{DUBSAR_OK} : report(error, status.error());
+}
+
 /// Runs a function of the interface; an exception ends here, as an error.
 template <class Body>
 std::int32_t fenced(dubsar_error* error, const Body& body) noexcept {

@@ -21,10 +21,6 @@ struct dubsar_device {
 
 namespace {
 
-std::int32_t answer(const Status& status, dubsar_error* error) {
-  return status ? std::int32_t{DUBSAR_OK} : plugin::report(error, status.error());
-}
-
 std::int32_t describe_options(dubsar_setting_callback callback, void* user, dubsar_error* /*error*/) {
   return plugin::describe(aravis::option_rows(), callback, user);
 }
@@ -133,7 +129,7 @@ std::int32_t get_setting(dubsar_device* device, const char* key, dubsar_value* v
 std::int32_t set_setting(dubsar_device* device, const char* key, const dubsar_value* value,
                          dubsar_error* error) {
   return with_feature(device, key, error, [&](const Camera::Feature& feature) {
-    return answer(device->camera->set(feature, *value), error);
+    return plugin::answer(device->camera->set(feature, *value), error);
   });
 }
 
@@ -144,7 +140,7 @@ std::int32_t scan(dubsar_device* device, const dubsar_sink* sink, dubsar_error* 
                             "name it in a rig file and scan with rig:FILE.toml");
     }
     device->stopped = false;
-    return answer(aravis::run_scan(*device->camera, *sink, device->stopped), error);
+    return plugin::answer(aravis::run_scan(*device->camera, *sink, device->stopped), error);
   });
 }
 
@@ -159,7 +155,7 @@ std::int32_t start_frames(dubsar_device* device, std::uint32_t pool, dubsar_erro
       return plugin::report(error, DUBSAR_USAGE, "this camera sends profiles, no frames",
                             device->camera->id(), "scan with it, or open it with ?format=Mono8");
     }
-    return answer(device->camera->start(pool), error);
+    return plugin::answer(device->camera->start(pool), error);
   });
 }
 
@@ -215,7 +211,7 @@ std::int32_t frame_counters(dubsar_device* device, dubsar_frame_counters* counte
 }
 
 std::int32_t trigger_frame(dubsar_device* device, dubsar_error* error) {
-  return plugin::fenced(error, [&] { return answer(device->camera->trigger(), error); });
+  return plugin::fenced(error, [&] { return plugin::answer(device->camera->trigger(), error); });
 }
 
 constexpr dubsar_driver kDriver = [] {

@@ -241,7 +241,7 @@ std::int32_t scan(dubsar_device* device, const dubsar_sink* sink, dubsar_error* 
     if (refused) {
       return plugin::report(error, DUBSAR_CANCELLED, "scan cancelled");
     }
-    return scanned ? std::int32_t{DUBSAR_OK} : plugin::report(error, scanned.error());
+    return plugin::answer(scanned, error);
   });
 }
 

@@ -18,10 +18,6 @@ struct dubsar_device {
 
 namespace {
 
-std::int32_t answer(const Status& status, dubsar_error* error) {
-  return status ? std::int32_t{DUBSAR_OK} : plugin::report(error, status.error());
-}
-
 std::int32_t describe_options(dubsar_setting_callback callback, void* user, dubsar_error* /*error*/) {
   return plugin::describe(usb_stage::option_rows(), callback, user);
 }
@@ -186,7 +182,8 @@ std::int32_t set_setting(dubsar_device* device, const char* key, const dubsar_va
                          dubsar_error* error) {
   return plugin::fenced(error, [&]() -> std::int32_t {
     if (const int laser = laser_of(key); laser >= 0) {
-      return answer(device->controller->set_laser(static_cast<std::size_t>(laser), value->number), error);
+      return plugin::answer(device->controller->set_laser(static_cast<std::size_t>(laser), value->number),
+                            error);
     }
     if (std::string_view(key) == "speed") {
       device->controller->set_speed(value->number * unit_of_speed(*device->controller));
@@ -202,7 +199,7 @@ std::int32_t scan(dubsar_device* device, const dubsar_sink* /*sink*/, dubsar_err
 }
 
 std::int32_t stop(dubsar_device* device, dubsar_error* error) {
-  return plugin::fenced(error, [&] { return answer(device->controller->stop(), error); });
+  return plugin::fenced(error, [&] { return plugin::answer(device->controller->stop(), error); });
 }
 
 std::int32_t describe_axes(dubsar_device* device, dubsar_axis_callback callback, void* user,
@@ -225,14 +222,14 @@ std::int32_t describe_axes(dubsar_device* device, dubsar_axis_callback callback,
 }
 
 std::int32_t home(dubsar_device* device, dubsar_error* error) {
-  return plugin::fenced(error, [&] { return answer(device->controller->home(), error); });
+  return plugin::fenced(error, [&] { return plugin::answer(device->controller->home(), error); });
 }
 
 std::int32_t move(dubsar_device* device, const dubsar_move* asked, dubsar_error* error) {
   return plugin::fenced(error, [&] {
-    return answer(device->controller->move(asked->axis, asked->position, asked->speed,
-                                           (asked->flags & DUBSAR_MOVE_START_ONLY) != 0),
-                  error);
+    return plugin::answer(device->controller->move(asked->axis, asked->position, asked->speed,
+                                                   (asked->flags & DUBSAR_MOVE_START_ONLY) != 0),
+                          error);
   });
 }
 
@@ -259,11 +256,12 @@ std::int32_t read_motion(dubsar_device* device, dubsar_motion* motion, dubsar_er
 }
 
 std::int32_t set_laser(dubsar_device* device, std::uint32_t laser, double power, dubsar_error* error) {
-  return plugin::fenced(error, [&] { return answer(device->controller->set_laser(laser, power), error); });
+  return plugin::fenced(error,
+                        [&] { return plugin::answer(device->controller->set_laser(laser, power), error); });
 }
 
 std::int32_t emergency_stop(dubsar_device* device, dubsar_error* error) {
-  return plugin::fenced(error, [&] { return answer(device->controller->emergency_stop(), error); });
+  return plugin::fenced(error, [&] { return plugin::answer(device->controller->emergency_stop(), error); });
 }
 
 constexpr dubsar_driver kDriver = [] {

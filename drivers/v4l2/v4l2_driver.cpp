@@ -243,7 +243,7 @@ std::int32_t set_setting(dubsar_device* device, const char* key, const dubsar_va
     } else {
       return plugin::report(error, DUBSAR_USAGE, "no such setting to change", key);
     }
-    return set ? std::int32_t{DUBSAR_OK} : plugin::report(error, set.error());
+    return plugin::answer(set, error);
   });
 }
 
@@ -253,10 +253,7 @@ std::int32_t scan(dubsar_device* device, const dubsar_sink* /*sink*/, dubsar_err
 }
 
 std::int32_t start_frames(dubsar_device* device, std::uint32_t pool, dubsar_error* error) {
-  return plugin::fenced(error, [&]() -> std::int32_t {
-    const Status started = device->camera->start(pool);
-    return started ? std::int32_t{DUBSAR_OK} : plugin::report(error, started.error());
-  });
+  return plugin::fenced(error, [&] { return plugin::answer(device->camera->start(pool), error); });
 }
 
 std::int32_t next_frame(dubsar_device* device, std::uint32_t timeout_ms, dubsar_frame* frame,
