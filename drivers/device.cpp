@@ -3,7 +3,6 @@
 #include "drivers/device.h"
 
 #include <cmath>
-#include <cstddef>
 #include <iomanip>
 #include <sstream>
 
@@ -269,8 +268,7 @@ Status Device::place(const Placement& placement) {
 }
 
 bool Device::can_stop() const {
-  constexpr std::size_t kEnd = offsetof(dubsar_driver, stop) + sizeof(dubsar_driver::stop);
-  return driver_->struct_size >= kEnd && driver_->stop != nullptr;
+  return abi::offered(driver_, &dubsar_driver::stop) != nullptr;
 }
 
 Status Device::stop() const {

@@ -65,9 +65,8 @@ Result<const dubsar_driver*> entry_of(void* library, const fs::path& path) {
       driver->close == nullptr || driver->capabilities == nullptr || driver->scan == nullptr) {
     return reject(path, "the driver lacks a function that every driver has");
   }
-  const int settings = (driver->describe_settings != nullptr ? 1 : 0) +
-                       (driver->get_setting != nullptr ? 1 : 0) + (driver->set_setting != nullptr ? 1 : 0);
-  if (settings != 0 && settings != 3) {
+  if (!whole(driver, &dubsar_driver::describe_settings, &dubsar_driver::get_setting,
+             &dubsar_driver::set_setting)) {
     return reject(path, "the driver has some of the settings functions and not all");
   }
   if (!whole(driver, &dubsar_driver::start_frames, &dubsar_driver::next_frame, &dubsar_driver::release_frame,
