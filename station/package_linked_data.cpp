@@ -12,21 +12,15 @@
 #include "archive/iiif_manifest.h"
 #include "archive/provenance.h"
 #include "station/package_content.h"
+#include "station/results.h"
 
 namespace dubsar {
 
 namespace {
 
+/// Empty when it is not known.
 std::string utc(std::int64_t time_ns) {
-  if (time_ns <= 0) {
-    return {};
-  }
-  const auto seconds = static_cast<std::time_t>(time_ns / 1'000'000'000);
-  std::tm parts{};
-  gmtime_r(&seconds, &parts);
-  char text[32];
-  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &parts);
-  return text;
+  return time_ns > 0 ? utc_text(static_cast<std::time_t>(time_ns / 1'000'000'000)) : std::string();
 }
 
 std::string fate_of(const StoredScan& scan, const ScanPose* pose) {
