@@ -25,6 +25,7 @@
 #include "station/command/option_checks.h"
 #include "station/command/outputs.h"
 #include "station/command/simulate_rig.h"
+#include "station/command/size_option.h"
 #include "station/tablet_file.h"
 
 namespace dubsar {
@@ -48,17 +49,6 @@ struct SimulateOptions {
   std::string unit;
 };
 
-Result<Eigen::Vector3d> parse_size(const std::string& text) {
-  Eigen::Vector3d size;
-  char rest = 0;
-  if (std::sscanf(text.c_str(), "%lfx%lfx%lf%c", &size.x(), &size.y(), &size.z(), &rest) != 3 ||
-      !(size.minCoeff() > 0)) {
-    return fail(ErrorKind::kUsage, "\"" + text + "\" is no size", "--size",
-                "give width x height x thickness in mm, 50x40x20");
-  }
-  return size;
-}
-
 Status make_folder(const fs::path& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
@@ -69,7 +59,7 @@ Status make_folder(const fs::path& folder) {
 }
 
 Result<int> simulate_tablet(const SimulateOptions& options, CommandContext& context) {
-  const Result<Eigen::Vector3d> size = parse_size(options.size);
+  const Result<Eigen::Vector3d> size = parse_size_mm(options.size);
   if (!size) {
     return std::unexpected(size.error());
   }
