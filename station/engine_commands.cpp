@@ -165,11 +165,15 @@ Result<std::vector<StationScan>> Engine::Impl::obey(const OperatorCommand& comma
     return done(status, hint->id, "has a hint");
   }
   if (const auto* withdraw = std::get_if<WithdrawHint>(&command)) {
-    if (word.hints.erase(withdraw->id) == 0) {
+    if (!word.hints.contains(withdraw->id)) {
       return fail(ErrorKind::kUsage, "there is no hint for scan " + std::to_string(withdraw->id));
     }
-    registrar.clear_hint(withdraw->id);
-    return done(record_hint_withdrawn(*store, withdraw->id), withdraw->id, "has no hint any more");
+    const Status status = record_hint_withdrawn(*store, withdraw->id);
+    if (status) {
+      word.hints.erase(withdraw->id);
+      registrar.clear_hint(withdraw->id);
+    }
+    return done(status, withdraw->id, "has no hint any more");
   }
   if (const auto* lock = std::get_if<LockScan>(&command)) {
     const Result<RigidTransform> pose = lockable_pose(*store, lock->id);
@@ -185,11 +189,15 @@ Result<std::vector<StationScan>> Engine::Impl::obey(const OperatorCommand& comma
     return fail(ErrorKind::kInternal, "a command of pace came among those to the registrar");
   }
   const int id = unlock->id;
-  if (word.locked.erase(id) == 0) {
+  if (!word.locked.contains(id)) {
     return fail(ErrorKind::kUsage, "scan " + std::to_string(id) + " is not locked");
   }
-  registrar.set_locked(id, false);
-  return done(record_unlock(*store, id), id, "is unlocked");
+  const Status status = record_unlock(*store, id);
+  if (status) {
+    word.locked.erase(id);
+    registrar.set_locked(id, false);
+  }
+  return done(status, id, "is unlocked");
 }
 
 void Engine::Impl::obey_commands(JobContext& job) {
