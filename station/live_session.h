@@ -32,7 +32,8 @@ class LiveSession {
     std::optional<PinSet> pins;
   };
 
-  /// `on_change` is called on other threads whenever there is something new to show.
+  /// `on_change` is called on other threads whenever there is something new to show; of the profiles of a
+  /// scan, once until look_at_growing() has seen them.
   LiveSession(Options options, std::function<void()> on_change);
   /// Stops what is under way in good order; what came of a scan under way is kept (of a device;
   /// a recorded scan is read again).

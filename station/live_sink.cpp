@@ -122,14 +122,14 @@ void LiveSession::hear(const Event& event) {
       const std::scoped_lock lock(mutex_);
       growing_number_ += profile->row < growing_.rows || growing_.cols != profile->grid->cols ? 1 : 0;
       growing_.append(*profile->grid, *profile->flags, profile->row);
+      is_news = !unseen_since_ || state_.phase != LivePhase::kScanning;
+      unseen_since_ = unseen_since_.value_or(came);
       state_.phase = LivePhase::kScanning;
       camera_.reset();
       state_.profiles = profile->row + 1;
-      is_news = !unseen_since_;
-      unseen_since_ = is_news ? came : unseen_since_;
     }
-    if (is_news) {  // the skin looks at all that came meanwhile: it is woken once
-      changed();
+    if (!is_news) {  // the skin looks at all that came meanwhile: it is woken once
+      return;
     }
   } else if (const auto* model = std::get_if<ModelChanged>(&event)) {
     show_model(model->mesh, model->red, model->tablet_from_model);

@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <condition_variable>
 #include <fstream>
 #include <future>
@@ -123,6 +124,25 @@ TEST(LiveSession, TheRowsThatAreHandedOverMakeUpTheScan) {
   EXPECT_EQ(built.rows, whole.total);
   EXPECT_EQ(built.shade, whole.rows.shade);
   EXPECT_EQ(built.state, whole.rows.state);
+}
+
+TEST(LiveSession, ProfilesThatNobodyHasLookedAtWakeOnce) {
+  const test::TemporaryFolder folder;
+  std::filesystem::create_directory(folder.path() / "scans");
+  std::ofstream(folder.path() / "scans" / "a.ply") << test::ply_of_wrong_spacing();
+  std::atomic<int> wakes = 0;
+  LiveSession* watched = nullptr;
+  LiveSession session({"replay:" + (folder.path() / "scans").string(), folder.path() / "s", std::nullopt},
+                      [&] { wakes += watched->state().phase == LivePhase::kScanning ? 1 : 0; });
+  watched = &session;
+  session.scan_now();
+  while (session.busy()) {
+    std::this_thread::yield();
+  }
+  EXPECT_EQ(session.state().profiles, 60);
+  EXPECT_EQ(session.look_at_growing(0, 0).total, 60);
+  EXPECT_GE(wakes, 1);
+  EXPECT_LT(wakes, 30);  // a remark on the scan, say, comes while it is scanned
 }
 
 TEST(LiveSession, TakingAScanOutMovesNothingByItself) {
