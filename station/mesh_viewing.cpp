@@ -109,23 +109,27 @@ std::shared_ptr<const Mesh> MeshViewing::mesh() const {
 }
 
 void MeshViewing::ask(Task task, AskedBy by) {
-  const std::scoped_lock lock(mutex_);
-  if (ended_) {
-    return;
+  std::thread ended;
+  {
+    const std::scoped_lock lock(mutex_);
+    if (ended_) {
+      return;
+    }
+    if (by == AskedBy::kPerson) {
+      state_.error = odd_;  // what was refused before is no matter any more
+    }
+    tasks_.push_back(std::move(task));
+    if (running_) {
+      return;
+    }
+    state_.stage = "...";
+    state_.fraction = 0;
+    running_ = true;
+    ended = std::move(worker_);
   }
-  if (by == AskedBy::kPerson) {
-    state_.error = odd_;  // what was refused before is no matter any more
+  if (ended.joinable()) {
+    ended.join();  // without the lock: its last change may be looked at still
   }
-  tasks_.push_back(std::move(task));
-  if (running_) {
-    return;
-  }
-  state_.stage = "...";
-  state_.fraction = 0;
-  if (worker_.joinable()) {
-    worker_.join();
-  }
-  running_ = true;
   worker_ = std::thread([this] { run(); });
 }
 

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
+#include <atomic>
 #include <chrono>
 #include <csignal>
 #include <fstream>
@@ -222,6 +223,32 @@ TEST_F(MeshViewingTest, ACutThatIsAskedForTakesThePlaceOfTheLastAtOnce) {
   EXPECT_FALSE(viewing.state().section);
   EXPECT_FALSE(viewing.state().section_due);
   EXPECT_TRUE(viewing.state().error);
+}
+
+TEST(MeshViewing, TheNextIsAskedForWhileSomebodyLooksAtWhatTheLastOneDid) {
+  MeshViewing* looked_at = nullptr;
+  std::atomic<bool> done = false;
+  std::atomic<bool> asking = false;
+  MeshViewing viewing([&] {
+    if (!looked_at->state().stage.empty() || done.exchange(true)) {
+      return;
+    }
+    while (!asking) {
+      std::this_thread::yield();
+    }
+    for (int k = 0; k < 100000; ++k) {  // one of these looks meets the asking
+      [[maybe_unused]] const ViewedMesh seen = looked_at->state();
+    }
+  });
+  looked_at = &viewing;
+  viewing.want(MeshField::kOpenness);
+  while (!done) {
+    std::this_thread::yield();
+  }
+  asking = true;
+  viewing.want(MeshField::kOpenness);
+  settle(viewing);
+  EXPECT_TRUE(viewing.state().stage.empty());
 }
 
 TEST_F(MeshViewingTest, ACutIsSaidToBeKeptOnceItIsWritten) {
