@@ -3,11 +3,11 @@
 #include "acquisition/placed_profiles.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <utility>
 
 #include "acquisition/rig_parts.h"
+#include "acquisition/wall_clock.h"
 
 namespace dubsar {
 
@@ -32,9 +32,7 @@ bool PlacedProfiles::begin(const ScanInfo& info) {
   out.spacing_mm = linear ? std::max(out.spacing_mm, scan_.step * scan_.motion.direction.norm()) : 0.0;
   out.device = scan_.device;
   if (out.timestamp_ns == 0) {  // the camera's profiles are timed on a clock that began when this machine did
-    out.timestamp_ns = std::chrono::duration_cast<std::chrono::nanoseconds>(
-                           std::chrono::system_clock::now().time_since_epoch())
-                           .count();
+    out.timestamp_ns = wall_clock_ns();
   }
   begun_ = sink_.begin(out);
   cancelled_ = !begun_;

@@ -3,7 +3,6 @@
 #include "acquisition/rig_scan.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <ctime>
 #include <utility>
@@ -11,6 +10,7 @@
 #include "acquisition/camera_region.h"
 #include "acquisition/fresh_frame.h"
 #include "acquisition/rig_parts.h"
+#include "acquisition/wall_clock.h"
 #include "formats/number_text.h"
 
 namespace dubsar {
@@ -230,9 +230,7 @@ Status RigScanner::scan(ProfileSink& sink) {
     *info.view.laser_mm += there;
     *info.view.camera_mm += there;
   }
-  info.timestamp_ns = std::chrono::duration_cast<std::chrono::nanoseconds>(
-                          std::chrono::system_clock::now().time_since_epoch())
-                          .count();
+  info.timestamp_ns = wall_clock_ns();
   info.device = device_id_;
   ScanTally tally;
   window_ = std::make_unique<RowWindow>(*triangulator_, extractor_.options(), file_.step);

@@ -3,7 +3,8 @@
 #include "acquisition/session_tables.h"
 
 #include <algorithm>
-#include <chrono>
+
+#include "acquisition/wall_clock.h"
 
 namespace dubsar::session {
 
@@ -29,12 +30,6 @@ int column_count(const Table& table) {
 std::string key_of(const Table& table) {
   const std::string_view columns(table.columns);
   return std::string(columns.substr(0, columns.find(',')));
-}
-
-std::int64_t now_ns() {
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(
-             std::chrono::system_clock::now().time_since_epoch())
-      .count();
 }
 
 void salvage_table(const Table& table, const char* order, SqlDatabase& from, SqlDatabase& to) {
@@ -166,7 +161,7 @@ Status insert_event(SqlDatabase& db, std::string_view kind, std::string_view jso
   if (!put) {
     return std::unexpected(put.error());
   }
-  put->bind(1, *last + 1).bind(2, now_ns()).bind(3, kind).bind(4, json);
+  put->bind(1, *last + 1).bind(2, wall_clock_ns()).bind(3, kind).bind(4, json);
   return put->run();
 }
 
