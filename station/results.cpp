@@ -348,7 +348,7 @@ Result<Deliverables> keep_deliverables(SessionStore& store, const ReportInput& i
     return files;
   }
   for (const std::filesystem::path& file : files->all()) {
-    if (const Status s = store.record_file(std::filesystem::relative(file, store.folder())); !s) {
+    if (const Status s = store.record_file(file.lexically_relative(store.folder())); !s) {
       return std::unexpected(s.error());
     }
   }
@@ -357,7 +357,7 @@ Result<Deliverables> keep_deliverables(SessionStore& store, const ReportInput& i
     if (!sum) {
       return std::unexpected(sum.error());
     }
-    const std::string name = std::filesystem::relative(files->mesh, store.folder()).generic_string();
+    const std::string name = files->mesh.lexically_relative(store.folder()).generic_string();
     if (const Status s =
             store.save_document(kModel, text_of({{"file", name},
                                                  {"sha256", *sum},

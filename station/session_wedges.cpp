@@ -100,7 +100,7 @@ Result<std::optional<SessionWedges>> keep_wedges(SessionStore& store, const Mesh
     made.insert(made.end(), drawings->begin(), drawings->end());
   }
   for (const fs::path& path : made) {
-    if (const Status kept = store.record_file(fs::relative(path, store.folder())); !kept) {
+    if (const Status kept = store.record_file(path.lexically_relative(store.folder())); !kept) {
       return std::unexpected(kept.error());
     }
   }
@@ -108,7 +108,7 @@ Result<std::optional<SessionWedges>> keep_wedges(SessionStore& store, const Mesh
   if (!sum) {
     return std::unexpected(sum.error());
   }
-  const std::string name = fs::relative(out.json, store.folder()).generic_string();
+  const std::string name = out.json.lexically_relative(store.folder()).generic_string();
   if (const Status kept =
           store.save_document(kDocument, text_of({{"file", name},
                                                   {"sha256", *sum},

@@ -30,5 +30,43 @@ TEST(PageFacts, WhatWasPredictedAndWhatCameOfItStayInTheSession) {
   EXPECT_FALSE(read.gains[1].predicted_mm2.has_value());
 }
 
+/// Of a session without a scan: the pages alone.
+Result<Deliverables> keep_pages(SessionStore& store) {
+  const Mesh none;
+  const RedMap red_map;
+  const Checklist checklist;
+  const std::vector<ScanPose> poses;
+  const ReportInput input{.title = "T 1",
+                          .tablet = {},
+                          .tool_version = "Dubsar",
+                          .when = "2026-01-01T00:00:00Z",
+                          .device = "sim:",
+                          .model = none,
+                          .red_map = red_map,
+                          .checklist = checklist,
+                          .scans = poses,
+                          .red_points = {},
+                          .tablet_from_model = {},
+                          .wedges = {},
+                          .accuracy = {},
+                          .calibration = {},
+                          .not_measured = {},
+                          .timings = {}};
+  JobContext job;
+  return keep_deliverables(store, input, job);
+}
+
+TEST(Deliverables, AFolderThatIsALinkToAnotherDiskStaysAFolderOfTheSession) {
+  const test::TemporaryFolder folder;
+  const std::filesystem::path session = folder.path() / "session";
+  Result<SessionStore> store = SessionStore::open_or_create(session);
+  ASSERT_TRUE(store) << store.error().line();
+  std::filesystem::rename(session / "export", folder.path() / "disk");
+  std::filesystem::create_directory_symlink(folder.path() / "disk", session / "export");
+  const Result<Deliverables> kept = keep_pages(*store);
+  ASSERT_TRUE(kept) << kept.error().line();
+  EXPECT_TRUE(std::filesystem::is_regular_file(folder.path() / "disk" / "report.html"));
+}
+
 }  // namespace
 }  // namespace dubsar
