@@ -36,11 +36,12 @@ std::vector<std::string> deliverable_names() {
 Result<Deliverables> write_deliverables(const fs::path& session, const ReportInput& input, JobContext& job) {
   Deliverables files;
   std::error_code error;
-  fs::create_directories(session / "mesh", error);
-  fs::create_directories(session / "export", error);
-  if (error) {
-    return fail(ErrorKind::kStorage, error.message(), session.string(),
-                "free some space or choose another folder");
+  for (const char* name : {"mesh", "export"}) {
+    fs::create_directories(session / name, error);
+    if (error) {
+      return fail(ErrorKind::kStorage, error.message(), (session / name).string(),
+                  "free some space or choose another folder");
+    }
   }
   const auto keep = [](Status status, const fs::path& made, fs::path& into) {
     if (status) {

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/files.h"
 #include "tests/support/temporary_folder.h"
 
 namespace dubsar {
@@ -66,6 +67,18 @@ TEST(Deliverables, AFolderThatIsALinkToAnotherDiskStaysAFolderOfTheSession) {
   const Result<Deliverables> kept = keep_pages(*store);
   ASSERT_TRUE(kept) << kept.error().line();
   EXPECT_TRUE(std::filesystem::is_regular_file(folder.path() / "disk" / "report.html"));
+}
+
+TEST(Deliverables, AFolderThatCannotBeMadeIsSaid) {
+  const test::TemporaryFolder folder;
+  const std::filesystem::path session = folder.path() / "session";
+  Result<SessionStore> store = SessionStore::open_or_create(session);
+  ASSERT_TRUE(store) << store.error().line();
+  std::filesystem::remove(session / "mesh");
+  test::put(session / "mesh", "no folder");
+  const Result<Deliverables> kept = keep_pages(*store);
+  ASSERT_FALSE(kept);
+  EXPECT_EQ(kept.error().where, (session / "mesh").string());
 }
 
 }  // namespace
