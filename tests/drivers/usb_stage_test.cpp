@@ -9,14 +9,11 @@
 
 #include <csignal>
 #include <cstdlib>
-#include <filesystem>
 #include <future>
 #include <random>
 
-#include "build_paths.h"
 #include "core/units.h"
-#include "drivers/loader.h"
-#include "tests/support/peer_process.h"
+#include "tests/drivers/usb_stage_fixture.h"
 
 namespace dubsar {
 namespace {
@@ -24,54 +21,12 @@ namespace {
 using namespace std::chrono_literals;
 using testing::HasSubstr;
 
-const std::filesystem::path kDrivers = std::filesystem::path(DUBSAR_BINARY_DIR) / "lib/dubsar/drivers";
-constexpr const char* kController = "2341:0043";
-using Options = std::vector<std::pair<std::string, std::string>>;
-
-/// nullptr where umockdev does not work; then the tests are skipped.
-test::PeerProcess* peer() {
-  static const char* handed_over = std::getenv("DUBSAR_TEST_PEER");
-  static test::PeerProcess* one =
-      handed_over == nullptr ? nullptr : new test::PeerProcess(test::PeerProcess::HandedOver{handed_over});
-  return one;
-}
-
-Options options_of(const std::string& firmware) {
-  return firmware == "tmcl"
-             ? Options{{"firmware", "tmcl"}, {"steps", "1000"}, {"speed_max", "50"}, {"limits", "-10..100"}}
-             : Options{};
-}
-
-class UsbStage : public testing::Test {
- protected:
-  void SetUp() override {
-    if (peer() == nullptr) {
-      GTEST_SKIP() << "no emulated USB controller: umockdev's library cannot be preloaded here";
-    }
-    ASSERT_EQ(peer()->tell("plug"), "ok");
-  }
-  Result<Device> open(const std::string& firmware) {
-    EXPECT_EQ(peer()->tell("firmware " + firmware), "ok");
-    return (*registry_.find("usb_stage"))->open(kController, options_of(firmware));
-  }
-  static Device homed(Result<Device> opened) {
-    Device device = std::move(opened).value();
-    if (device.axes()->front().can_home) {
-      const Status homed = device.home();
-      EXPECT_TRUE(homed) << homed.error().line();
-    }
-    return device;
-  }
-  static std::string laser() { return peer()->tell("laser"); }
-  static double at() { return std::stod(peer()->tell("at")); }
-  /// Waits for what another process does; the test's own time limit ends a wait in vain.
-  static void wait_for_dark() {
-    while (laser() != "0") {
-      std::this_thread::sleep_for(10ms);
-    }
-  }
-  DriverRegistry registry_{{kDrivers}};
-};
+using test::kController;
+using test::kDrivers;
+using test::options_of;
+using test::peer;
+using test::StageOptions;
+using test::UsbStage;
 
 /// Each test with each firmware.
 class Firmwares : public UsbStage, public testing::WithParamInterface<const char*> {
@@ -336,7 +291,7 @@ TEST_F(UsbStage, FindsControllers) {
 
 TEST_F(UsbStage, ATrinamicModuleWithoutSwitchesIsNotHomed) {
   ASSERT_EQ(peer()->tell("firmware tmcl"), "ok");
-  Options options = options_of("tmcl");
+  StageOptions options = options_of("tmcl");
   options.emplace_back("switches", "no");
   Device device = (*registry_.find("usb_stage"))->open(kController, options).value();
   EXPECT_FALSE(device.axes()->front().can_home);
@@ -402,6 +357,6 @@ int main(int count, char** words) {
   }
   testing::InitGoogleTest(&count, words);
   const int failed = RUN_ALL_TESTS();
-  delete dubsar::peer();
+  delete dubsar::test::peer();
   return failed;
 }
