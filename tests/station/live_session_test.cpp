@@ -5,62 +5,24 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <atomic>
-#include <condition_variable>
 #include <fstream>
 #include <future>
-#include <mutex>
 #include <thread>
 
 #include "acquisition/session_store.h"
-#include "station/live_session.h"
+#include "station/engine.h"
 #include "station/unfinished_scan.h"
+#include "tests/station/support/followed_session.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/wrong_spacing.h"
 
 namespace dubsar {
 namespace {
 
+using test::Followed;
+using test::kSmallTablet;
 using ::testing::HasSubstr;
 using ::testing::SizeIs;
-
-constexpr const char* kSmallTablet = "sim:?seed=1&size=20x16x8&spacing=0.25&noise=0.02";
-
-/// A session whose changes can be waited for.
-class Followed {
- public:
-  Followed(const std::string& device, const std::filesystem::path& folder)
-      : session({device, folder, std::nullopt}, [this] {
-          const std::scoped_lock lock(mutex_);
-          ++changes_;
-          changed_.notify_all();
-        }) {}
-
-  template <class Is>
-  [[nodiscard]] bool wait_until(const Is& is) {
-    std::unique_lock lock(mutex_);
-    return changed_.wait_for(lock, std::chrono::seconds(60), [&] {
-      lock.unlock();
-      const bool so = is(session.state());
-      lock.lock();
-      return so;
-    });
-  }
-  [[nodiscard]] bool wait_for_phase(LivePhase phase) {
-    return wait_until([&](const LiveState& state) { return state.phase == phase; });
-  }
-  [[nodiscard]] bool wait_for_rest() {
-    return wait_until([this](const LiveState&) { return !session.busy(); });
-  }
-
- private:
-  std::mutex mutex_;
-  std::condition_variable changed_;
-  int changes_ = 0;
-
- public:
-  LiveSession session;  ///< last: its threads use what stands above
-};
 
 TEST(LiveSession, WaitsForEveryTurnByHandAndGoesOnWhenAsked) {
   const test::TemporaryFolder folder;
@@ -83,66 +45,6 @@ TEST(LiveSession, WaitsForEveryTurnByHandAndGoesOnWhenAsked) {
   EXPECT_FALSE(ended.error) << ended.error->line();
   ASSERT_TRUE(ended.red_map && ended.checklist);
   EXPECT_FALSE(ended.red_map->conclusive) << "finished in the middle";
-}
-
-TEST(LiveSession, TheRowsThatAreHandedOverMakeUpTheScan) {
-  const test::TemporaryFolder folder;
-  Followed followed(kSmallTablet, folder.path() / "s");
-  GridPicture built;
-  std::uint64_t scan = 0;
-  int looks = 0;
-  const auto look = [&] {
-    const GrowingRows news = followed.session.look_at_growing(scan, built.rows);
-    if (news.scan != scan) {
-      built = {};
-      scan = news.scan;
-      EXPECT_EQ(news.first, 0);
-    }
-    EXPECT_EQ(news.since.has_value(), news.rows.rows > 0) << "woken for rows, and for nothing else";
-    if (news.rows.rows > 0) {
-      const auto cells = static_cast<std::size_t>(news.first) * static_cast<std::size_t>(news.rows.cols);
-      ASSERT_LE(cells, built.shade.size());
-      built.cols = news.rows.cols;
-      built.rows = news.total;
-      built.shade.resize(cells);
-      built.state.resize(cells);
-      built.shade.insert(built.shade.end(), news.rows.shade.begin(), news.rows.shade.end());
-      built.state.insert(built.state.end(), news.rows.state.begin(), news.rows.state.end());
-      ++looks;
-    }
-  };
-  followed.session.scan_now();
-  ASSERT_TRUE(followed.wait_until([&](const LiveState& s) {
-    look();
-    return s.phase == LivePhase::kWaiting;
-  }));
-  look();
-  EXPECT_GT(looks, 0);
-  const GrowingRows whole = followed.session.look_at_growing(0, 0);
-  EXPECT_FALSE(whole.since) << "all of it has been seen";
-  EXPECT_GT(whole.total, 20);
-  EXPECT_EQ(built.rows, whole.total);
-  EXPECT_EQ(built.shade, whole.rows.shade);
-  EXPECT_EQ(built.state, whole.rows.state);
-}
-
-TEST(LiveSession, ProfilesThatNobodyHasLookedAtWakeOnce) {
-  const test::TemporaryFolder folder;
-  std::filesystem::create_directory(folder.path() / "scans");
-  std::ofstream(folder.path() / "scans" / "a.ply") << test::ply_of_wrong_spacing();
-  std::atomic<int> wakes = 0;
-  LiveSession* watched = nullptr;
-  LiveSession session({"replay:" + (folder.path() / "scans").string(), folder.path() / "s", std::nullopt},
-                      [&] { wakes += watched->state().phase == LivePhase::kScanning ? 1 : 0; });
-  watched = &session;
-  session.scan_now();
-  while (session.busy()) {
-    std::this_thread::yield();
-  }
-  EXPECT_EQ(session.state().profiles, 60);
-  EXPECT_EQ(session.look_at_growing(0, 0).total, 60);
-  EXPECT_GE(wakes, 1);
-  EXPECT_LT(wakes, 30);  // a remark on the scan, say, comes while it is scanned
 }
 
 TEST(LiveSession, TakingAScanOutMovesNothingByItself) {
