@@ -155,7 +155,8 @@ void LiveSession::rebuild_model(const ScanSet& set, const std::vector<ScanPose>&
       [this](std::string_view stage, double fraction) { progress(stage, fraction); });
   {
     const std::scoped_lock lock(mutex_);
-    if (!later_.empty() || scan_later_ || next_) {
+    // stop() may have come before there was a job of this to cancel.
+    if (job_->cancelled() || !later_.empty() || scan_later_ || next_) {
       return;
     }
     unasked_ = job;
