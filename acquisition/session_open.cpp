@@ -33,6 +33,18 @@ bool has_content(const fs::path& path) {
   return !error && size > 0;
 }
 
+/// No database where there was one. An empty file with nothing beside it is what a program leaves that was
+/// stopped before its first change.
+bool is_gone(const fs::path& folder) {
+  std::error_code unknown;
+  return !has_content(folder / kDatabase) &&
+         (fs::exists(folder / kBackup, unknown) || !grid_ids(folder).empty());
+}
+
+Error gone_error(const std::string& where) {
+  return {ErrorKind::kBadInput, "the database is missing or empty", where, {}};
+}
+
 /// What is wrong with a database that opens, or nothing.
 std::optional<Error> fault_of(SqlDatabase& db, const std::string& where) {
   if (const Status schema = prepare_schema(db, where); !schema) {
@@ -215,10 +227,8 @@ Status snapshot(const fs::path& folder, SqlDatabase& memory) {
 
 Result<SqlDatabase> open_for_writing(const fs::path& folder, SessionOpening& opening, bool& rebuilt) {
   const fs::path path = folder / kDatabase;
-  // An empty file with nothing beside it is what a program leaves that was stopped before its first change.
-  std::error_code unknown;
-  opening.created = !has_content(path) && !fs::exists(folder / kBackup, unknown) && grid_ids(folder).empty();
-  const bool missing = !opening.created && !has_content(path);
+  const bool missing = is_gone(folder);
+  opening.created = !missing && !has_content(path);
   // Once something is written the old checksum is wrong; the backup's stays good.
   Sums sums = read_sums(folder).value_or(Sums());
   if (sums.erase(kDatabase) > 0) {
@@ -232,7 +242,7 @@ Result<SqlDatabase> open_for_writing(const fs::path& folder, SessionOpening& ope
   Result<SqlDatabase> db = SqlDatabase::open(path, SqlDatabase::Mode::kCreate);
   std::optional<Error> fault;
   if (missing) {
-    fault = Error{ErrorKind::kBadInput, "the database is missing or empty", path.string(), {}};
+    fault = gone_error(path.string());
   } else if (!db) {
     fault = db.error();
   } else {
@@ -266,12 +276,18 @@ Result<SqlDatabase> open_for_reading(const fs::path& folder, SessionOpening& ope
   if (Status told = tell_lost_commits(folder, opening, false); !told) {
     return std::unexpected(told.error());
   }
-  const Status copied = snapshot(folder, *memory);
-  std::optional<Error> fault = copied ? fault_of(*memory, where) : std::optional(copied.error());
+  const bool gone = is_gone(folder);
+  std::optional<Error> fault;
+  if (gone) {
+    fault = gone_error(where);  // an empty file opens without a fault, as a database without a row
+  } else if (const Status copied = snapshot(folder, *memory); copied) {
+    fault = fault_of(*memory, where);
+  } else {
+    fault = copied.error();
+  }
   if (!fault) {
     return memory;
   }
-  const bool gone = !has_content(folder / kDatabase);
   if (fault->kind != ErrorKind::kBadInput && !gone) {
     return std::unexpected(*fault);
   }

@@ -103,6 +103,16 @@ TEST_F(SessionDamageTest, AnUnreadableDatabaseIsRebuiltFromBackupAndGrids) {
   expect_content(again);
 }
 
+TEST_F(SessionDamageTest, AnEmptiedDatabaseIsToldAndReadFromItsBackup) {
+  std::ofstream(folder_ / "session.sqlite", std::ios::trunc);
+  for (const auto access : {kReadOnly, SessionStore::Access::kReadWrite}) {
+    const SessionStore store = SessionStore::open(folder_, access).value();
+    ASSERT_EQ(store.opening().damage.size(), 1U);
+    EXPECT_THAT(store.opening().damage[0].line(), HasSubstr("missing or empty"));
+    expect_content(store);
+  }
+}
+
 TEST_F(SessionDamageTest, WithoutDatabaseAndBackupTheGridsAreTakenIn) {
   fs::remove(folder_ / "session.sqlite");
   fs::remove(folder_ / "session.backup.sqlite");
