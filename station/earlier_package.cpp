@@ -3,10 +3,17 @@
 #include "station/earlier_package.h"
 
 #include <algorithm>
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
 
+#include "acquisition/session_store.h"
 #include "formats/atomic_file.h"
 #include "formats/bag_check.h"
 #include "formats/json_node.h"
+#include "station/package.h"
+#include "station/package_source.h"
 
 namespace dubsar {
 
@@ -19,9 +26,55 @@ bool is_grid(const StampedFile& file) {
   return fs::path(file.name).extension() == ".grid";
 }
 
+Error lost(const std::string& what, const fs::path& package) {
+  return {ErrorKind::kBadInput, what + ", and the package that lies here holds it", package.string(),
+          "mend the session (dubsar verify --repair --from COPY), or choose another folder"};
+}
+
+std::int64_t number_of(const nlohmann::json& event, const char* key) {
+  return event.is_object() && event.contains(key) && event[key].is_number_integer()
+             ? event[key].get<std::int64_t>()
+             : 0;
+}
+std::string text_of(const nlohmann::json& event, const char* key) {
+  return event.is_object() && event.contains(key) && event[key].is_string() ? event[key].get<std::string>()
+                                                                            : std::string();
+}
+
+/// The record of a session is only ever added to: what a package of it has and the session lacks was lost.
+Status check_record(const fs::path& package, const fs::path& session) {
+  const Result<SessionStore> store = SessionStore::open(session, SessionStore::Access::kReadOnly);
+  if (!store) {
+    return std::unexpected(store.error());
+  }
+  if (const std::vector<Error> damage = damage_of_record(*store); !damage.empty()) {
+    return std::unexpected(
+        lost("the session may have lost some of its record (" + damage.front().what + ")", package));
+  }
+  const Result<std::vector<SessionEvent>> kept = store->events();
+  if (!kept) {
+    return std::unexpected(kept.error());
+  }
+  const Result<std::string> text = read_whole_file(package / "data" / kPackedEvents, kMaxJsonBytes);
+  // A package without a list of events tells nothing of what the session once held.
+  const auto packed = nlohmann::json::parse(text.value_or(std::string()), nullptr, false);
+  for (const nlohmann::json& event : packed.is_array() ? packed : nlohmann::json::array()) {
+    const std::string kind = text_of(event, "kind");
+    const bool there = std::ranges::any_of(*kept, [&](const SessionEvent& own) {
+      return number_of(event, "number") == own.number && number_of(event, "time_ns") == own.time_ns &&
+             kind == own.kind;
+    });
+    if (!there) {
+      return std::unexpected(lost("the session has lost of its record \"" + kind + "\"", package));
+    }
+  }
+  return {};
+}
+
 }  // namespace
 
-Result<bool> is_earlier_package(const fs::path& package, const StampedWork& now, JobContext& job) {
+Result<bool> is_earlier_package(const fs::path& package, const fs::path& session, const StampedWork& now,
+                                JobContext& job) {
   std::error_code error;
   if (!fs::is_regular_file(now.stamp(), error) || !is_bag(package)) {
     return false;
@@ -29,9 +82,11 @@ Result<bool> is_earlier_package(const fs::path& package, const StampedWork& now,
   const Result<std::string> text = read_whole_file(now.stamp(), kMaxJsonBytes);
   const Result<DoneStamp> known =
       text ? parse_done_stamp(*text, now.stamp().string()) : std::unexpected(text.error());
-  if (!known || known->verb != "export" || std::ranges::none_of(known->inputs, is_grid) ||
-      !std::ranges::all_of(known->inputs, [&](const StampedFile& file) {
-        return !is_grid(file) || std::ranges::find(now.inputs(), file) != now.inputs().end();
+  const auto is_here = [&](const StampedFile& file) {
+    return std::ranges::find(now.inputs(), file) != now.inputs().end();
+  };
+  if (!known || known->verb != "export" || std::ranges::none_of(known->inputs, [&](const StampedFile& file) {
+        return is_grid(file) && is_here(file);
       })) {
     return false;
   }
@@ -41,7 +96,16 @@ Result<bool> is_earlier_package(const fs::path& package, const StampedWork& now,
   if (!report) {
     return std::unexpected(report.error());
   }
-  return report->ok();
+  if (!report->ok()) {
+    return false;
+  }
+  const auto gone = std::ranges::find_if(
+      known->inputs, [&](const StampedFile& file) { return is_grid(file) && !is_here(file); });
+  if (gone != known->inputs.end()) {
+    return std::unexpected(lost("the session no longer has " + gone->name + " as it was stored", package));
+  }
+  const Status record = check_record(package, session);
+  return record ? Result<bool>(true) : std::unexpected(record.error());
 }
 
 }  // namespace dubsar

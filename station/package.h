@@ -40,6 +40,9 @@ struct PackageOptions {
   std::function<Status(const std::filesystem::path& staged)> before_publishing;
 };
 
+/// Where a package has the session's events, below its payload's folder.
+inline constexpr const char* kPackedEvents = "session/events.json";
+
 /// What was written.
 struct Package {
   std::filesystem::path folder;

@@ -175,6 +175,13 @@ Status add_scans(PackageContent& content) {
   if (content.job.cancelled()) {
     return fail(ErrorKind::kCancelled, "stopped");
   }
+  for (const Error& damage : damage_of_record(content.store)) {
+    content.lacking.push_back(fmt::format(
+        "When this was packed the session's own record was not whole: {}. What could be read of it, of its "
+        "backup and of its scans is here; what it said besides, signatures and places of scans maybe among "
+        "it, is not.",
+        damage.what));
+  }
   OrderedJson list = OrderedJson::array();
   for (std::size_t i = 0; i < scans->size(); ++i) {
     if (failed[i]) {
@@ -236,7 +243,7 @@ Status add_records(PackageContent& content) {
   if (!events) {
     return std::unexpected(events.error());
   }
-  if (const Status written = content.text("session/events.json", *events,
+  if (const Status written = content.text(kPackedEvents, *events,
                                           "everything that happened in the session, in order; sign-offs with "
                                           "what was signed: formats/session.txt, formats/sign_off.txt");
       !written) {

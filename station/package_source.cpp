@@ -35,6 +35,12 @@ bool signed_as_shown(const std::vector<CheckedSignOff>& sign_offs, const std::st
 
 }  // namespace
 
+std::vector<Error> damage_of_record(const SessionStore& store) {
+  std::vector<Error> out = store.opening().damage;
+  std::erase_if(out, [](const Error& damage) { return damage.where.ends_with(".grid"); });
+  return out;
+}
+
 Status PackageSource::take_kept(JobContext& job) {
   const SessionStore& store = *store_;
   Result<VerifyReport> whole = store.verify(job);

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/job.h"
 #include "core/result.h"
@@ -21,6 +22,9 @@ struct KeptPages {
   std::string checklist;            ///< HTML
   std::filesystem::path red_sheet;  ///< PNG
 };
+
+/// What is wrong with the record of the session; its grids, each of which is marked itself, are left aside.
+[[nodiscard]] std::vector<Error> damage_of_record(const SessionStore& store);
 
 /// What a package is made of: the verdict with its mesh and pages, as the session keeps them or worked out
 /// anew.

@@ -111,7 +111,7 @@ Result<Packing> pack_session(const PackRequest& request, JobContext& job) {
         return std::unexpected(started.error());
       }
     } else if (request.update && !options.replace) {
-      const Result<bool> earlier = is_earlier_package(whole_name(request.to), *work, job);
+      const Result<bool> earlier = is_earlier_package(whole_name(request.to), request.session, *work, job);
       if (!earlier) {
         return std::unexpected(earlier.error());
       }

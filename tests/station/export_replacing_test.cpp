@@ -123,5 +123,34 @@ TEST_F(Export, ReplacesAPackageOfAnEarlierStateOfItsSessionWhenAsked) {
   EXPECT_EQ(update("renewed").status, 2) << "without a stamp";
 }
 
+// A disk that lost the session must not take the package along that is the only copy then.
+TEST_F(Export, DoesNotReplaceAPackageThatHoldsMoreThanADamagedSession) {
+  const fs::path session = at("failing");
+  const auto update = [&] {
+    return run_command({"export", session.string(), "--to", at("only_copy").string(), "--update", "--without",
+                        "renderings,features,wedges,grid-ply"});
+  };
+  const auto expect_kept = [&](const char* why) {
+    const Outcome refused = update();
+    EXPECT_EQ(refused.status, 2) << refused.out;
+    EXPECT_THAT(refused.err, HasSubstr(why));
+    EXPECT_THAT(refused.err, HasSubstr("the package that lies here holds it"));
+    EXPECT_THAT(bytes_of(at("only_copy") / "data/session/events.json"), HasSubstr("\"finished\""));
+  };
+  fs::copy(at("session"), session, fs::copy_options::recursive);
+  ASSERT_EQ(update().status, 0);
+  const std::string grid = bytes_of(session / "grids/001.grid");
+  std::ofstream(session / "grids/001.grid", std::ios::trunc) << "cut";
+  expect_kept("001.grid");
+  std::ofstream(session / "grids/001.grid", std::ios::trunc | std::ios::binary) << grid;
+  EXPECT_EQ(update().status, 0);
+  std::ofstream(session / "session.sqlite", std::ios::trunc);
+  expect_kept("missing or empty");
+  // Opened for writing it is put together from what is left: whole again, and poorer.
+  fs::remove(session / "session.backup.sqlite");
+  ASSERT_EQ(run_command({"session", "describe", session.string(), "--notes", "what is left"}).status, 0);
+  expect_kept("\"scan stored\"");
+}
+
 }  // namespace
 }  // namespace dubsar
