@@ -3,6 +3,8 @@
 #include "station/package.h"
 
 #include <algorithm>
+#include <initializer_list>
+#include <utility>
 
 #include "analysis/text_frame.h"
 #include "analysis/wedge_features.h"
@@ -84,11 +86,24 @@ Result<FoundWedges> wedges_of(const SessionStore& store, const Mesh& mesh, const
                   : std::unexpected(measured.error());
 }
 
+/// "raw range grids, poses, report": what of the kinds of things that a package may hold is in this one.
+std::string kinds_of_things(const PackageContent& content) {
+  std::string words = "raw range grids, poses";
+  for (const auto& [word, there] : std::initializer_list<std::pair<const char*, bool>>{
+           {"model", !content.mesh().faces.empty()},
+           {"pictures", !content.pictures.empty()},
+           {"wedges", content.wedges && !content.wedges->wedges.empty()},
+           {"report", true}}) {
+    words += there ? std::string(", ") + word : std::string();
+  }
+  return words;
+}
+
 std::vector<BagField> bag_fields(const PackageContent& content) {
   std::string description = content.simulated.empty()
                                 ? "Surface of a cuneiform tablet, measured by laser triangulation: "
                                 : "SIMULATED. " + content.simulated + " Here are ";
-  description += "raw range grids, poses, model, pictures, wedges, report. ";
+  description += kinds_of_things(content) + ". ";
   description += content.results().red_map.conclusive
                      ? "The verdict is conclusive: what the scanner can reach is sampled densely enough."
                      : "The verdict is not conclusive: see data/report/report.html for what is missing.";

@@ -174,6 +174,10 @@ Status add_readme(PackageContent& content) {
   if (content.has(PackagePart::kWedges) && !content.wedges) {
     lacking.emplace_back("Wedges are not here: the model has no surface that they could be looked for on.");
   }
+  if (content.wedges && content.wedges->wedges.empty()) {
+    lacking.emplace_back(
+        "No wedge was found on the model: the lists in wedges/ are empty, and there are no drawings.");
+  }
   if (content.tablet.rights.empty()) {
     lacking.emplace_back(
         "Nobody has said whose these scans and pictures are, nor under which licence they may be used "

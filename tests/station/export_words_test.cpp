@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <fstream>
 
 #include "tests/station/support/exported.h"
 
@@ -135,6 +136,28 @@ TEST_F(Export, NotesOfSeveralLinesStayUnderTheirHeading) {
   fs::copy(at("session"), session, fs::copy_options::recursive);
   ASSERT_EQ(pack_described(session, at("noted_bag"), {"--notes", "one\n\nTHE FILES\ntwo"}).status, 0);
   EXPECT_THAT(bytes_of(at("noted_bag") / "data/README.txt"), HasSubstr("  Notes: one THE FILES two\n"));
+}
+
+TEST_F(Export, SaysOfADamagedSessionThatItsRecordIsNotWhole) {
+  EXPECT_THAT(bytes_of(data("README.txt")), Not(HasSubstr("own record was not whole")));
+  const fs::path session = at("emptied");
+  fs::copy(at("session"), session, fs::copy_options::recursive);
+  std::ofstream(session / "session.sqlite", std::ios::trunc);
+  fs::remove(session / "session.backup.sqlite");
+  const Outcome packed = run_command({"export", session.string(), "--to", at("emptied_bag").string()});
+  ASSERT_EQ(packed.status, 0) << packed.err;
+  EXPECT_THAT(packed.err, HasSubstr("the database is missing or empty"));
+  EXPECT_THAT(bytes_of(at("emptied_bag") / "data/README.txt"),
+              HasSubstr("own record was not whole: the database is missing"));
+}
+
+TEST_F(Export, TheLabelOfTheBagNamesWhatIsInItOnly) {
+  EXPECT_THAT(bytes_of(at("bag") / "bag-info.txt"),
+              HasSubstr(": raw range grids, poses, model, pictures, report. "));
+  EXPECT_THAT(bytes_of(data("README.txt")), HasSubstr("No wedge was found on the model"));
+  ASSERT_EQ(export_to("unpictured", {"--without", "renderings"}).status, 0);
+  EXPECT_THAT(bytes_of(at("unpictured") / "bag-info.txt"),
+              HasSubstr(": raw range grids, poses, model, report. "));
 }
 
 }  // namespace
