@@ -19,6 +19,7 @@ namespace {
 
 constexpr const char* kDeclaration = "bagit.txt";
 constexpr const char* kMend = "get the bag again from its source";
+constexpr const char* kMendExtra = "see what it is, and take it out of data/";
 
 struct Manifest {
   std::string name;
@@ -55,7 +56,9 @@ class Check {
     }
     const std::vector<Manifest> payload = manifests("manifest-");
     const std::vector<Manifest> tags = manifests("tagmanifest-");
-    if (payload.empty()) {
+    const bool lists = std::ranges::any_of(
+        files_, [](const std::string& name) { return is_known(algorithm_of(name, "manifest-")); });
+    if (!lists) {
       say("manifest-sha512.txt", "missing: without a manifest of SHA-256 or SHA-512 nothing can be checked");
     }
     for (const Manifest& manifest : payload) {
@@ -70,8 +73,8 @@ class Check {
   }
 
  private:
-  void say(const std::string& where, const std::string& what) {
-    report_.damaged.push_back({ErrorKind::kBadInput, what, where, kMend});
+  void say(const std::string& where, const std::string& what, const char* mend = kMend) {
+    report_.damaged.push_back({ErrorKind::kBadInput, what, where, mend});
   }
 
   /// Of a bag whose declaration is lost the rest is checked as today's version has it: what is whole is to be
@@ -98,6 +101,7 @@ class Check {
       const std::string name = it->path().lexically_relative(folder_).generic_string();
       if (it->is_symlink(ignored)) {
         say(name, "a link: a bag holds its files itself");
+        missing_.insert(name);
       } else if (it->is_regular_file(ignored)) {
         files_.insert(name);
       } else if (!it->is_directory(ignored)) {
@@ -173,8 +177,10 @@ class Check {
     for (const std::string& name : files_) {
       const auto found = listed.find(name);
       const std::size_t times = found == listed.end() ? 0 : found->second;
-      if (is_payload(name) && times < wanted) {
-        say(name, times == 0 ? "no manifest lists it" : "not every manifest lists it");
+      if (is_payload(name) && times == 0 && wanted > 0) {
+        say(name, "no manifest lists it", kMendExtra);
+      } else if (is_payload(name) && times < wanted) {
+        say(name, "not every manifest lists it");
       }
       if (!is_payload(name) && !tagged.contains(name) && algorithm_of(name, "tagmanifest-").empty()) {
         report_.unrecorded.push_back(name);

@@ -33,6 +33,9 @@ Result<int> list(const SessionOptions& options, CommandContext& context) {
   if (!store) {
     return std::unexpected(store.error());
   }
+  for (const Error& damage : store->opening().damage) {
+    log_warning(damage.line());
+  }
   const auto scans = store->scans();
   if (!scans) {
     return std::unexpected(scans.error());

@@ -103,7 +103,8 @@ Result<int> verify_bag(const Arguments& arguments, CommandContext& context) {
   if (!report->ok()) {
     print_names("whole", report->whole);
   }
-  std::printf("%zu whole, %zu faults: the bag is %s\n", report->whole.size(), report->damaged.size(),
+  std::printf("%zu whole, %zu %s: the bag is %s\n", report->whole.size(), report->damaged.size(),
+              report->damaged.size() == 1 ? "fault" : "faults",
               report->ok() ? "complete and valid" : "NOT valid");
   return report->ok() ? 0 : 1;
 }

@@ -107,6 +107,24 @@ TEST_F(BagTest, MissingAndExtraFilesAreNamed) {
   EXPECT_THAT(found, Contains(HasSubstr("Payload-Oxum says 23 bytes in 2 files; there are 35 in 2")));
   EXPECT_EQ(found.size(), 3U);
   EXPECT_THAT(check().unrecorded, ElementsAre("notes.txt"));
+  // A file too many is not mended by another copy of the bag.
+  for (const Error& error : check().damaged) {
+    EXPECT_EQ(error.mend.find("from its source") == std::string::npos, error.where == "data/stowaway.txt");
+  }
+}
+
+TEST_F(BagTest, OneFaultIsToldOnce) {
+  fs::remove(bag() / "tagmanifest-sha512.txt");
+  fs::remove(bag() / "manifest-sha256.txt");
+  const std::string manifest = line("data/master.ply", sum512("data/master.ply")) +
+                               line("data/rückseite 100%25.png", sum512("data/rückseite 100%.png"));
+  put("manifest-sha512.txt", manifest + line("data/master.ply", sum512("data/master.ply")));
+  EXPECT_THAT(faults(), ElementsAre(HasSubstr("for the second time"))) << "the manifest is there";
+  put("manifest-sha512.txt", manifest);
+  put("bag-info.txt", "Source-Organization: A museum\n");
+  fs::rename(bag() / "data/master.ply", temporary_.path() / "master.ply");
+  fs::create_symlink(temporary_.path() / "master.ply", bag() / "data/master.ply");
+  EXPECT_THAT(faults(), ElementsAre(HasSubstr("data/master.ply: a link"))) << "and not missing besides";
 }
 
 TEST_F(BagTest, EveryPayloadFileStandsInEveryManifest) {

@@ -104,6 +104,11 @@ rm -r "$folder/museum/t" "$folder/museum/t.results" "$folder/before.ply" "$folde
 listed=$("$workflows/list-tablets" "$folder")
 [ "$listed" = $'museum/a b\nmuseum/s' ] || fail "list-tablets: $listed"
 "$workflows/check-collection" "$folder" 2>/dev/null || fail "check-collection"
+mv "$folder/museum/s.results/package.done" "$folder/aside.done"
+DUBSAR_EXPORT=no "$workflows/check-collection" "$folder" 2>/dev/null || fail "check-collection, of wedges alone"
+said=$(DUBSAR_EXPORT=yes "$workflows/check-collection" "$folder" 2>/dev/null) && fail "check-collection overlooks a package that is not there"
+[ "$said" = "museum/s: has no package" ] || fail "check-collection: $said"
+mv "$folder/aside.done" "$folder/museum/s.results/package.done"
 printf 'x' >>"$folder/museum/s.results/package/data/README.txt"
 said=$("$workflows/check-collection" "$folder" 2>/dev/null) && fail "check-collection overlooks damage to a package"
 [ "$said" = "museum/s: package/data/README.txt has other bytes than were written" ] || fail "check-collection: $said"
