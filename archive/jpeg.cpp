@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <string>
 
+#include "archive/html.h"
 #include "formats/jpeg_complaint.h"
 
 namespace dubsar {
@@ -23,7 +24,29 @@ struct Buffer {
   unsigned long size = 0;
 };
 
-bool encode(const Image& image, int quality, Buffer& into, JpegComplaint& complaint) {
+/// A property of XMP in the language that nobody has said; nothing where the text is empty.
+std::string property(const std::string& name, const std::string& text) {
+  return text.empty() ? std::string()
+                      : "<dc:" + name + "><rdf:Alt><rdf:li xml:lang=\"x-default\">" + html_escaped(text) +
+                            "</rdf:li></rdf:Alt></dc:" + name + ">\n";
+}
+
+/// The content of an APP1 segment, whose head tells XMP from other things that stand in one.
+std::string xmp_segment(const PictureWords& words) {
+  const std::string said = property("title", words.title) + property("description", words.description) +
+                           property("rights", words.copyright);
+  using namespace std::string_literals;
+  return said.empty()
+             ? std::string()
+             : "http://ns.adobe.com/xap/1.0/\0"s +
+                   "<?xpacket begin=\"\xEF\xBB\xBF\" id=\"W5M0MpCehiHzreSzNTczkc9d\"?>\n"
+                   "<x:xmpmeta xmlns:x=\"adobe:ns:meta/\"><rdf:RDF "
+                   "xmlns:rdf=\"http://www.w3.org/1999/02/22-rdf-syntax-ns#\">\n"
+                   "<rdf:Description rdf:about=\"\" xmlns:dc=\"http://purl.org/dc/elements/1.1/\">\n" +
+                   said + "</rdf:Description></rdf:RDF></x:xmpmeta>\n<?xpacket end=\"r\"?>";
+}
+
+bool encode(const Image& image, const std::string& xmp, int quality, Buffer& into, JpegComplaint& complaint) {
   jpeg_compress_struct info{};
   info.err = jpeg_std_error(&complaint.manager);
   complaint.manager.error_exit = JpegComplaint::leave;
@@ -50,6 +73,10 @@ bool encode(const Image& image, int quality, Buffer& into, JpegComplaint& compla
         static_cast<UINT16>(std::clamp(std::lround(kMmPerInch / image.mm_per_px), 1L, 65535L));
   }
   jpeg_start_compress(&info, TRUE);
+  if (!xmp.empty()) {
+    jpeg_write_marker(&info, JPEG_APP0 + 1, reinterpret_cast<const JOCTET*>(xmp.data()),
+                      static_cast<unsigned>(xmp.size()));
+  }
   while (info.next_scanline < info.image_height) {
     // libjpeg only reads the row, though it does not say so.
     JSAMPROW row = const_cast<JSAMPROW>(image.bytes.data()) +
@@ -63,14 +90,20 @@ bool encode(const Image& image, int quality, Buffer& into, JpegComplaint& compla
 
 }  // namespace
 
-Result<std::vector<std::uint8_t>> encode_jpeg(const Image& image, int quality) {
+Result<std::vector<std::uint8_t>> encode_jpeg(const Image& image, const PictureWords& words, int quality) {
   if (image.width <= 0 || image.height <= 0 || image.channels != 3 ||
       image.bytes.size() != image.offset(0, image.height)) {
     return fail(ErrorKind::kUsage, "the picture is empty or its size and bytes disagree", "JPEG");
   }
   Buffer buffer;
   JpegComplaint complaint{};
-  const bool done = encode(image, quality, buffer, complaint);
+  std::string xmp = xmp_segment(words);
+  constexpr std::size_t kLargestSegment = 65533;
+  if (xmp.size() > kLargestSegment) {
+    xmp = xmp_segment({.title = words.title.substr(0, words.title.find('\n'))});
+  }
+  const bool done =
+      encode(image, xmp.size() <= kLargestSegment ? xmp : std::string(), quality, buffer, complaint);
   std::vector<std::uint8_t> bytes;
   if (done) {
     bytes.assign(buffer.bytes, buffer.bytes + buffer.size);

@@ -40,8 +40,8 @@ void flush(png_structp) {}
 void on_warning(png_structp, png_const_charp) {}
 
 /// Plain values and pointers only between setjmp and a jump. Returns false when libpng gave up.
-bool write_png(Sink& sink, const Image& image, const std::uint8_t* const* rows, char* title,
-               bool title_is_ascii) {
+bool write_png(Sink& sink, const Image& image, const std::uint8_t* const* rows,
+               std::vector<png_text>& texts) {
   png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &sink, on_error, on_warning);
   if (png == nullptr) {
     return false;
@@ -61,13 +61,8 @@ bool write_png(Sink& sink, const Image& image, const std::uint8_t* const* rows, 
         static_cast<png_uint_32>(std::lround(std::clamp(1000.0 / image.mm_per_px, 1.0, 1e9)));
     png_set_pHYs(png, info, per_metre, per_metre, PNG_RESOLUTION_METER);
   }
-  char key[] = "Title";
-  png_text text{};
-  if (title[0] != '\0') {
-    text.compression = title_is_ascii ? PNG_TEXT_COMPRESSION_NONE : PNG_ITXT_COMPRESSION_NONE;
-    text.key = key;
-    text.text = title;
-    png_set_text(png, info, &text, 1);
+  if (!texts.empty()) {
+    png_set_text(png, info, texts.data(), static_cast<int>(texts.size()));
   }
   // Up and Sub suit shaded surfaces; trying every filter costs twice the time for 2 %.
   png_set_filter(png, PNG_FILTER_TYPE_BASE, PNG_FILTER_SUB | PNG_FILTER_UP);
@@ -81,9 +76,29 @@ bool write_png(Sink& sink, const Image& image, const std::uint8_t* const* rows, 
   return true;
 }
 
+/// A keyword and its text, which libpng wants as its own.
+struct Text {
+  std::string key;
+  std::string words;
+};
+
+png_text as_png(Text& text) {
+  const bool plain =
+      std::ranges::all_of(text.words, [](char c) { return c == '\n' || (c >= 32 && c < 127); });
+  png_text out{};
+  out.compression = plain ? PNG_TEXT_COMPRESSION_NONE : PNG_ITXT_COMPRESSION_NONE;
+  out.key = text.key.data();
+  out.text = text.words.data();
+  return out;
+}
+
 }  // namespace
 
 Result<std::vector<std::uint8_t>> encode_png(const Image& image, std::string_view title) {
+  return encode_png(image, PictureWords{.title = std::string(title)});
+}
+
+Result<std::vector<std::uint8_t>> encode_png(const Image& image, const PictureWords& words) {
   if (image.width <= 0 || image.height <= 0 || (image.channels != 3 && image.channels != 4) ||
       image.bytes.size() != image.offset(0, image.height)) {
     return fail(ErrorKind::kUsage, "the picture is empty or its size and bytes disagree", "PNG");
@@ -93,10 +108,17 @@ Result<std::vector<std::uint8_t>> encode_png(const Image& image, std::string_vie
   for (int y = 0; y < image.height; ++y) {
     rows.push_back(image.bytes.data() + image.offset(0, y));
   }
-  std::string words(title.substr(0, title.find('\0')));
-  const bool is_ascii = std::all_of(words.begin(), words.end(), [](char c) { return c >= 32 && c < 127; });
+  std::array<Text, 3> said = {
+      {{"Title", words.title}, {"Description", words.description}, {"Copyright", words.copyright}}};
+  std::vector<png_text> texts;
+  for (Text& text : said) {
+    text.words = text.words.substr(0, text.words.find('\0'));
+    if (!text.words.empty()) {
+      texts.push_back(as_png(text));
+    }
+  }
   Sink sink;
-  if (!write_png(sink, image, rows.data(), words.data(), is_ascii)) {
+  if (!write_png(sink, image, rows.data(), texts)) {
     return fail(ErrorKind::kInternal, std::string("libpng: ") + sink.message.data(), "PNG");
   }
   return std::move(sink.bytes);

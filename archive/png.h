@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "archive/image.h"
+#include "archive/picture_words.h"
 #include "core/result.h"
 
 namespace dubsar {
@@ -17,6 +18,8 @@ namespace dubsar {
 /// it is plain ASCII, else iTXt in UTF-8). The same picture gives the same bytes. Errors: an empty or
 /// inconsistent picture (kUsage), libpng's own complaint (kInternal).
 [[nodiscard]] Result<std::vector<std::uint8_t>> encode_png(const Image& image, std::string_view title = {});
+/// Description and copyright likewise, under the names that PNG registers for them.
+[[nodiscard]] Result<std::vector<std::uint8_t>> encode_png(const Image& image, const PictureWords& words);
 
 /// "data:image/png;base64,…" of a picture.
 [[nodiscard]] Result<std::string> png_data_uri(const Image& image, std::string_view title = {});

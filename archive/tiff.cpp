@@ -60,7 +60,7 @@ toff_t size_of(thandle_t handle) {
 
 }  // namespace
 
-Result<std::vector<std::uint8_t>> encode_tiff(const Image& image, const std::string& description,
+Result<std::vector<std::uint8_t>> encode_tiff(const Image& image, const PictureWords& words,
                                               const std::string& software) {
   if (image.width <= 0 || image.height <= 0 || image.channels != 3 ||
       image.bytes.size() != image.offset(0, image.height)) {
@@ -99,7 +99,11 @@ Result<std::vector<std::uint8_t>> encode_tiff(const Image& image, const std::str
     TIFFSetField(t, TIFFTAG_COMPRESSION, COMPRESSION_LZW);
     TIFFSetField(t, TIFFTAG_PREDICTOR, PREDICTOR_HORIZONTAL);
     TIFFSetField(t, TIFFTAG_ROWSPERSTRIP, rows_per_strip);
+    const std::string description = words.title + (words.description.empty() ? "" : "\n") + words.description;
     TIFFSetField(t, TIFFTAG_IMAGEDESCRIPTION, description.c_str());
+    if (!words.copyright.empty()) {
+      TIFFSetField(t, TIFFTAG_COPYRIGHT, words.copyright.c_str());
+    }
     TIFFSetField(t, TIFFTAG_SOFTWARE, software.c_str());
     if (image.mm_per_px > 0) {
       TIFFSetField(t, TIFFTAG_RESOLUTIONUNIT, RESUNIT_INCH);

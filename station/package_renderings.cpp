@@ -10,6 +10,7 @@
 #include <cmath>
 #include <functional>
 #include <optional>
+#include <utility>
 
 #include "archive/fatcross.h"
 #include "archive/jpeg.h"
@@ -18,6 +19,7 @@
 #include "archive/tiff.h"
 #include "core/parallel.h"
 #include "formats/atomic_file.h"
+#include "formats/file_label.h"
 #include "station/package_content.h"
 
 namespace dubsar {
@@ -115,7 +117,16 @@ class Drawing {
   void list(const std::string& path, const std::string& label, const char* media_type, const Image& image) {
     content_.pictures.push_back({path, label, media_type, image.width, image.height, image.mm_per_px});
   }
-  [[nodiscard]] std::string title(const std::string& what) const { return content_.identifier + ", " + what; }
+  [[nodiscard]] PictureWords words(const std::string& what) const {
+    std::string description;
+    for (const auto& [name, value] : content_.label.words) {
+      description.append(description.empty() ? "" : "\n").append(label_value(name));
+      description.append(": ").append(label_value(value));
+    }
+    return {.title = label_value(content_.identifier + ", " + what),
+            .description = std::move(description),
+            .copyright = label_value(content_.label.rights)};
+  }
 
   PackageContent& content_;
   RenderScene scene_;
@@ -149,11 +160,13 @@ Status Drawing::views() {
       const Image& image = (*images)[k];
       const std::string path = fmt::format("pictures/{}/{}.png", looks[k].name, view_file_stem(face));
       const std::string label = fmt::format("{}, {}", to_string(face), looks[k].label);
-      tasks.push_back({path, [&image, name = title(label)] { return encode_png(image, name); }});
+      tasks.push_back({path, [&image, said = words(label)] { return encode_png(image, said); }});
       listed[k].push_back({path, label, "image/png", image.width, image.height, image.mm_per_px});
     }
     tasks.push_back({fmt::format("pictures/cdli/{}_{}.jpg", content_.stem, cdli_suffix(face)),
-                     [&clay = images->front()] { return encode_jpeg(clay); }});
+                     [&clay = images->front(), said = words(fmt::format("{}, clay", to_string(face)))] {
+                       return encode_jpeg(clay, said);
+                     }});
     if (const Status written = write_all(content_, tasks); !written) {
       return written;
     }
@@ -207,9 +220,9 @@ Status Drawing::fatcrosses() {
       const std::string stem =
           fmt::format("pictures/fatcross/{}_{}_{}dpi", content_.stem, kKinds[k].name, dpi);
       const Image& sheet = sheets[k];
-      const std::string name = title(fmt::format("{}, {} dpi, to scale", kKinds[k].label, dpi));
-      tasks.push_back({stem + ".tif", [&sheet, name] { return encode_tiff(sheet, name, program_name()); }});
-      tasks.push_back({stem + ".jpg", [&sheet] { return encode_jpeg(sheet); }});
+      const PictureWords said = words(fmt::format("{}, {} dpi, to scale", kKinds[k].label, dpi));
+      tasks.push_back({stem + ".tif", [&sheet, said] { return encode_tiff(sheet, said, program_name()); }});
+      tasks.push_back({stem + ".jpg", [&sheet, said] { return encode_jpeg(sheet, said); }});
       if (dpi == kViewDpi) {
         list(stem + ".jpg", kKinds[k].label, "image/jpeg", sheet);
       }
@@ -241,7 +254,7 @@ Status Drawing::rollout() {
   }
   const std::string path = "pictures/" + content_.stem + "_rollout.png";
   if (const Status written =
-          write_all(content_, {{path, [&] { return encode_png(*image, title("rollout")); }}});
+          write_all(content_, {{path, [&] { return encode_png(*image, words("rollout")); }}});
       !written) {
     return written;
   }

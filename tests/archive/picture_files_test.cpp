@@ -9,6 +9,7 @@
 #include <fstream>
 
 #include "archive/jpeg.h"
+#include "archive/png.h"
 #include "archive/tiff.h"
 #include "formats/gray_jpeg.h"
 #include "tests/support/temporary_folder.h"
@@ -30,7 +31,7 @@ Image slope(int width, int height) {
 
 TEST(Tiff, KeepsEveryPixelAndTheScale) {
   const Image image = slope(301, 707);
-  const auto bytes = encode_tiff(image, "BM 1, fatcross", "Dubsar");
+  const auto bytes = encode_tiff(image, {.title = "BM 1, fatcross"}, "Dubsar");
   ASSERT_TRUE(bytes) << bytes.error().line();
   const test::TemporaryFolder folder;
   const auto path = folder.path() / "a.tif";
@@ -64,8 +65,8 @@ TEST(Tiff, KeepsEveryPixelAndTheScale) {
         << y;
   }
   TIFFClose(tiff);
-  EXPECT_EQ(encode_tiff(image, "BM 1, fatcross", "Dubsar").value(), *bytes);
-  EXPECT_EQ(encode_tiff(Image{}, "", "").error().kind, ErrorKind::kUsage);
+  EXPECT_EQ(encode_tiff(image, {.title = "BM 1, fatcross"}, "Dubsar").value(), *bytes);
+  EXPECT_EQ(encode_tiff(Image{}, {}, "").error().kind, ErrorKind::kUsage);
 }
 
 TEST(Jpeg, SaysHowLargeAPixelIs) {
@@ -83,6 +84,37 @@ TEST(Jpeg, SaysHowLargeAPixelIs) {
   EXPECT_EQ(back->height, 48);
   EXPECT_EQ(encode_jpeg(image).value(), *bytes);
   EXPECT_EQ(encode_jpeg(Image{}).error().kind, ErrorKind::kUsage);
+}
+
+TEST(PictureFiles, SayWhatTheyShowAndWhose) {
+  const Image image = slope(16, 16);
+  const PictureWords words{.title = "BM 1, <obverse>",
+                           .description = "SIMULATED: made up\nMuseum number: BM 1 & 2 𒁾",
+                           .copyright = "© A Museum"};
+  const auto text_of = [](const std::vector<std::uint8_t>& bytes) {
+    return std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  };
+  const std::string jpeg = text_of(encode_jpeg(image, words).value());
+  // APP1 with XMP, after JFIF's APP0.
+  EXPECT_EQ(jpeg.substr(20, 2), "\xFF\xE1");
+  EXPECT_EQ(jpeg.substr(24, 29), std::string("http://ns.adobe.com/xap/1.0/\0", 29));
+  EXPECT_NE(jpeg.find("<dc:title><rdf:Alt><rdf:li xml:lang=\"x-default\">BM 1, &lt;obverse&gt;</rdf:li>"),
+            std::string::npos);
+  EXPECT_NE(
+      jpeg.find("SIMULATED: made up\nMuseum number: BM 1 &amp; 2 𒁾</rdf:li></rdf:Alt></dc:description>"),
+      std::string::npos);
+  EXPECT_NE(jpeg.find("© A Museum</rdf:li></rdf:Alt></dc:rights>"), std::string::npos);
+  EXPECT_EQ(text_of(encode_jpeg(image).value()).find("xap"), std::string::npos);
+  PictureWords endless = words;
+  endless.description = std::string(70000, 'x');
+  EXPECT_LT(encode_jpeg(image, endless).value().size(), jpeg.size()) << "more than a segment holds";
+  const std::string tiff = text_of(encode_tiff(image, words, "Dubsar").value());
+  EXPECT_NE(tiff.find("BM 1, <obverse>\n" + words.description), std::string::npos);
+  EXPECT_NE(tiff.find(words.copyright), std::string::npos);
+  const std::string png = text_of(encode_png(image, words).value());
+  EXPECT_NE(png.find(std::string("tEXtTitle\0BM 1, <obverse>", 25)), std::string::npos);
+  EXPECT_NE(png.find(std::string("iTXtDescription\0\0\0\0\0SIMULATED", 29)), std::string::npos);
+  EXPECT_NE(png.find(std::string("iTXtCopyright\0\0\0\0\0", 18) + words.copyright), std::string::npos);
 }
 
 }  // namespace

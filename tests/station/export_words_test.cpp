@@ -79,6 +79,12 @@ TEST_F(Export, ASimulatedTabletIsNotPassedOffAsClay) {
 TEST_F(Export, MeshesAndScansSayWhatTheyAreWhereTheyTravelAlone) {
   const std::string unnamed = bytes_of(data("model/session.ply"));
   EXPECT_THAT(unnamed.substr(0, unnamed.find("end_header")), HasSubstr("comment Session: session\n"));
+  for (const char* picture : {"pictures/clay/03_front.png", "pictures/cdli/session_o.jpg",
+                              "pictures/fatcross/session_ebl_300dpi.tif",
+                              "pictures/fatcross/session_cdli_600dpi.jpg", "pictures/session_rollout.png"}) {
+    EXPECT_THAT(bytes_of(data(picture)), AllOf(HasSubstr("Session: session"), HasSubstr("session, ")))
+        << picture;
+  }
   const fs::path session = at("alone");
   ASSERT_NE(run_command({"scan", "--device", "sim:?seed=2&size=14x11x8&spacing=0.5", "--session",
                          session.string(), "--max-scans", "2"})

@@ -107,6 +107,8 @@ TEST_F(Verify, DamagedMissingAndForeignFilesAreNamed) {
   EXPECT_THAT(read.out, HasSubstr("(dubsar verify --repair --from COPY " + word + ") or scan again\n"));
   EXPECT_THAT(read.out, HasSubstr("\nwhole: grids/000.grid\n"));
   EXPECT_THAT(read.out, Not(HasSubstr("whole: grids/001.grid")));
+  EXPECT_THAT(run_command({"session", "list", session_.string()}).err,
+              HasSubstr("warning: grids/001.grid: not the bytes"));
 }
 
 TEST_F(Verify, DerivedFilesAreMadeAnewByteForByte) {
