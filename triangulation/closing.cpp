@@ -15,6 +15,7 @@
 #include "triangulation/manifold.h"
 #include "triangulation/region.h"
 #include "triangulation/self_intersections.h"
+#include "triangulation/slivers.h"
 #include "triangulation/tiling.h"
 
 namespace dubsar {
@@ -300,6 +301,7 @@ std::vector<std::uint32_t> corners_of(const Draft& draft, const FacePairs& pairs
 
 void close_patches(Draft& draft, const ClosingOptions& options) {
   close_around(draft, draft.near_rim, options);
+  remove_slivers(draft, draft.first_face.back());
 }
 
 void repair_self_intersections(Draft& draft, const ClosingOptions& options) {
@@ -332,6 +334,7 @@ void repair_self_intersections(Draft& draft, const ClosingOptions& options) {
     }
     const std::size_t faces_before = draft.mesh.faces.size();
     close_around(draft, near, options);
+    remove_slivers(draft, faces_before);
     for (std::size_t f = faces_before; f < draft.mesh.faces.size(); ++f) {
       corners.insert(corners.end(), draft.mesh.faces[f].begin(), draft.mesh.faces[f].end());
     }

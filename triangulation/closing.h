@@ -18,7 +18,8 @@ struct ClosingOptions {
 };
 
 /// Closes the seams between the patches of a draft, and its gaps. Where patches touch by a corner only, the
-/// largest keeps it; around a gap that cannot be closed faces go and another try is made.
+/// largest keeps it; around a gap that cannot be closed faces go and another try is made. What comes of it as
+/// slivers is flipped where that helps.
 void close_patches(Draft& draft, const ClosingOptions& options);
 
 /// Takes out faces that cut through each other, later with those around them, and closes the place anew; what

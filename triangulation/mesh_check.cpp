@@ -13,25 +13,13 @@
 #include "core/units.h"
 #include "triangulation/half_edges.h"
 #include "triangulation/self_intersections.h"
+#include "triangulation/triangle_shape.h"
 
 namespace dubsar {
 
 namespace {
 
 using Eigen::Vector3d;
-
-/// Tangent of the smallest angle of the triangle, the one across from its shortest side; 0 when it has no
-/// area.
-double least_tangent(const Vector3d& a, const Vector3d& b, const Vector3d& c) {
-  const Vector3d ab = b - a, bc = c - b, ca = a - c;
-  const double area2 = ab.cross(ca).norm();
-  if (!(area2 > 0)) {
-    return 0;
-  }
-  const double ab2 = ab.squaredNorm(), bc2 = bc.squaredNorm(), ca2 = ca.squaredNorm();
-  const double beside = ab2 <= bc2 && ab2 <= ca2 ? bc.dot(ca) : bc2 <= ca2 ? ca.dot(ab) : ab.dot(bc);
-  return area2 / -beside;  // of an angle of 60° at most: the sides beside it are not at right angles
-}
 
 /// How many fans the faces around a vertex form, joined across edges of exactly two opposite half-edges.
 int fan_count(std::span<const Triangle> faces, const HalfEdges& edges, std::uint32_t v) {

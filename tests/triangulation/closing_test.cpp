@@ -10,6 +10,7 @@
 #include "tests/triangulation/support/scans.h"
 #include "triangulation/grid_triangulation.h"
 #include "triangulation/mesh_check.h"
+#include "triangulation/slivers.h"
 #include "triangulation/tiling.h"
 
 namespace dubsar {
@@ -79,6 +80,48 @@ Draft cut_sheet(int side, int piece) {
 MeshReport report_of(Draft draft) {
   std::erase_if(draft.mesh.faces, is_gone);
   return check_mesh(draft.mesh);
+}
+
+/// Two strips of one plane whose facing rims have each a corner that nearly lies on an edge of the other.
+TEST(Closing, SliversThatAnEdgeFlipHelpsAreFlipped) {
+  Draft draft;
+  draft.mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0.5F, 0.02F, 0}, {0.5F, -0.8F, 0}, {0.5F, 0.9F, 0}};
+  const std::size_t count = draft.mesh.positions.size();
+  draft.mesh.normals.assign(count, {0, 0, 1});
+  draft.mesh.flags.assign(count, 0);
+  draft.near_rim.assign(count, 1);
+  draft.first_vertex = {0, static_cast<std::uint32_t>(count)};
+  draft.patch_spacing_mm = {1.0F};
+  // The needle 0-1-2 lies between the face below and those above.
+  draft.mesh.faces = {{0, 3, 1}, {0, 2, 4}, {2, 1, 4}};
+  draft.first_face = {0, 3};
+  draft.mesh.faces.push_back({0, 1, 2});
+  EXPECT_EQ(remove_slivers(draft, 3), 1U);
+  const MeshReport report = report_of(draft);
+  EXPECT_EQ(report.faces, 4U);
+  EXPECT_EQ(report.boundary_edges, 4U);
+  EXPECT_EQ(report.thin_share, 0);
+  EXPECT_TRUE(report.is_manifold());
+  EXPECT_NEAR(report.area_mm2, 0.85, 1e-6);
+  // One that stands off the plane is there because its samples are.
+  draft.mesh.faces = {{0, 3, 1}, {0, 2, 4}, {2, 1, 4}, {0, 1, 2}};
+  draft.mesh.positions[2] = {0.5F, 0, 0.07F};
+  EXPECT_EQ(remove_slivers(draft, 3), 0U);
+}
+
+/// Where its longest edge is open nothing stands beyond it.
+TEST(Closing, ASliverOnTheRimGoes) {
+  Draft draft;
+  draft.mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0.5F, 0.02F, 0}, {0.5F, 0.9F, 0}};
+  draft.mesh.normals.assign(4, {0, 0, 1});
+  draft.near_rim.assign(4, 1);
+  draft.first_vertex = {0, 4};
+  draft.patch_spacing_mm = {1.0F};
+  draft.mesh.faces = {{0, 2, 3}, {2, 1, 3}, {0, 1, 2}};
+  draft.first_face = {0, 2};
+  EXPECT_EQ(remove_slivers(draft, 2), 1U);
+  EXPECT_EQ(report_of(draft).faces, 2U);
+  EXPECT_TRUE(report_of(draft).is_manifold());
 }
 
 TEST(Closing, TilesLeaveNoTraceOfTheirSides) {
