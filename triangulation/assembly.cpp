@@ -12,6 +12,7 @@
 #include "triangulation/closing.h"
 #include "triangulation/draft.h"
 #include "triangulation/manifold.h"
+#include "triangulation/parted_fans.h"
 
 namespace dubsar {
 
@@ -78,20 +79,13 @@ Mesh assemble(const std::vector<OwnedScan>& scans, const AssemblyOptions& option
   repair_self_intersections(draft, closing);
 
   job.progress("finish mesh", 0.0);
-  Mesh mesh = std::move(draft.mesh);
+  Mesh& mesh = draft.mesh;
   const std::vector<Vector3f>& p = mesh.positions;
   erase_where(mesh.faces, [&](const Triangle& f) {
     return is_gone(f) ||
            !((p[f[1]] - p[f[0]]).cast<double>().cross((p[f[2]] - p[f[0]]).cast<double>()).norm() > 0);
   });
-  // Elsewhere faces are those of grids.
-  for (const std::uint32_t copied : make_manifold(mesh.faces, mesh.positions.size(), draft.near_rim)) {
-    mesh.positions.push_back(Vector3f(mesh.positions[copied]));
-    mesh.reliability.push_back(float(mesh.reliability[copied]));
-    mesh.sigma_mm.push_back(float(mesh.sigma_mm[copied]));
-    mesh.scans.push_back(std::uint8_t(mesh.scans[copied]));
-    mesh.flags.push_back(std::uint8_t(mesh.flags[copied]));
-  }
+  part_fans(draft);
   mesh.normals.clear();
   remove_pieces(mesh, static_cast<std::size_t>(std::max(options.least_component_faces, 0)));
   // After this every vertex holds one fan: it is on the boundary when that fan is open.
@@ -100,7 +94,7 @@ Mesh assemble(const std::vector<OwnedScan>& scans, const AssemblyOptions& option
     mesh.flags[v] |= rim[v] != 0 ? kVertexBoundary : 0;
   }
   mesh.normals = vertex_normals(mesh);
-  return mesh;
+  return std::move(mesh);
 }
 
 }  // namespace dubsar

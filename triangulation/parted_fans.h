@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include "triangulation/draft.h"
+
+namespace dubsar {
+
+/// Makes the faces of a draft, none of them gone, an oriented 2-manifold (make_manifold()). Fans that touched
+/// in a vertex each get one of their own, a thousandth of the way towards what lies around it: they do not
+/// touch any more, and whoever welds equal places, as STL has it, does not join them again. A fan that would
+/// cut something there goes.
+void part_fans(Draft& draft);
+
+}  // namespace dubsar
