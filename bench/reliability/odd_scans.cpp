@@ -5,14 +5,17 @@
 //
 // Stitches small sets of scans that no tablet gives: folded, thin and touching bodies, exact coincidences,
 // stray samples, holes, poses that are wrong, spacings that differ. Whatever the scans, the mesh has to be an
-// oriented 2-manifold without faces that cut each other, and the same one whatever the order of the scans.
+// oriented 2-manifold without faces that cut each other or vertices in one place, and the same one whatever
+// the order of the scans and whatever came and went in between.
 // Prints the cases that are not, ends with status 1 when there is one, and writes their scans and meshes to
 // FOLDER.
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -73,19 +76,24 @@ Case make_case(std::uint64_t seed) {
   return out;
 }
 
-Mesh stitched(const Case& of, bool backwards) {
+std::vector<PlacedScan> placed_scans(const Case& of) {
   std::vector<PlacedScan> placed;
   for (std::size_t k = 0; k < of.grids.size(); ++k) {
     placed.push_back(
         {static_cast<int>(k), &of.grids[k], &of.flags[k], of.poses[k], of.sigma_mm, std::nullopt});
   }
-  if (backwards) {
-    std::ranges::reverse(placed);
-  }
-  JobContext job;
+  return placed;
+}
+
+StitchOptions options_of_all() {
   StitchOptions options;
   options.least_component_faces = 4;
-  Result<Mesh> mesh = stitch(placed, options, job);
+  return options;
+}
+
+Mesh stitched(const Case& of) {
+  const JobContext job;
+  Result<Mesh> mesh = stitch(placed_scans(of), options_of_all(), job);
   if (!mesh) {
     std::fprintf(stderr, "%s\n", mesh.error().line().c_str());
     return {};
@@ -93,26 +101,78 @@ Mesh stitched(const Case& of, bool backwards) {
   return std::move(*mesh);
 }
 
-bool same(const Mesh& a, const Mesh& b) {
-  return a.faces == b.faces && std::ranges::equal(a.positions, b.positions, [](const auto& p, const auto& q) {
-           return (p.array() == q.array()).all();
-         });
+/// The same scans after they have come and gone in any order, with updates and meshes in between, some of
+/// them stopped on the way.
+Mesh stitched_by_detours(const Case& of, std::uint64_t seed) {
+  Random random(seed);
+  std::vector<PlacedScan> placed = placed_scans(of);
+  for (std::size_t k = placed.size(); k > 1; --k) {
+    std::swap(placed[k - 1], placed[random.below(k)]);
+  }
+  Stitcher stitcher(options_of_all());
+  const JobContext job;
+  const auto pause = [&] {
+    std::uint64_t left = random.below(12);  // 0: to the end
+    JobContext* stopped = nullptr;
+    JobContext some([&](std::string_view, double) {
+      if (left > 0 && --left == 0) {
+        stopped->cancel();
+      }
+    });
+    stopped = &some;
+    const std::uint64_t what = random.below(4);
+    if (what == 0) {
+      (void)stitcher.mesh(some);
+    } else if (what == 1) {
+      (void)stitcher.update(some);
+    }
+  };
+  const std::uint64_t detours = random.below(placed.size() + 1);
+  for (std::uint64_t k = 0; k < detours; ++k) {
+    const PlacedScan& scan = placed[random.below(placed.size())];
+    if (!stitcher.remove(scan.id)) {
+      (void)stitcher.add(scan, job);
+    }
+    pause();
+  }
+  for (const PlacedScan& scan : placed) {
+    stitcher.remove(scan.id);
+    (void)stitcher.add(scan, job);
+    pause();
+  }
+  return stitcher.mesh();
 }
 
-/// Stitches a case both ways and says what is wrong with it; true when nothing is.
-bool is_sound(int number, const Case& one, const Mesh& mesh) {
+bool same(const Mesh& a, const Mesh& b) {
+  return a.faces == b.faces && a.reliability == b.reliability && a.sigma_mm == b.sigma_mm &&
+         a.scans == b.scans && a.flags == b.flags &&
+         std::ranges::equal(a.positions, b.positions,
+                            [](const auto& p, const auto& q) { return (p.array() == q.array()).all(); });
+}
+
+/// Vertices that lie where another does: whoever welds equal places joins them.
+std::size_t shared_places(const Mesh& mesh) {
+  std::set<std::array<float, 3>> places;
+  for (const Eigen::Vector3f& p : mesh.positions) {
+    places.insert({p.x(), p.y(), p.z()});
+  }
+  return mesh.positions.size() - places.size();
+}
+
+/// Stitches a case again by detours and says what is wrong with it; true when nothing is.
+bool is_sound(int number, const Case& one, const Mesh& mesh, std::uint64_t seed) {
   const MeshReport report = check_mesh(mesh);
-  const bool same_again = same(mesh, stitched(one, true));
+  const bool same_again = same(mesh, stitched_by_detours(one, seed));
   if (report.is_manifold() && report.self_intersections == 0 && report.unreferenced_vertices == 0 &&
-      same_again) {
+      same_again && shared_places(mesh) == 0) {
     return true;
   }
   std::printf(
       "%d: %s: %zu scans, %zu faces; non-manifold edges %zu, vertices %zu; inconsistent %zu, degenerate %zu, "
-      "duplicate %zu, self-intersections %zu, unreferenced %zu%s\n",
+      "duplicate %zu, self-intersections %zu, unreferenced %zu, in one place %zu%s\n",
       number, one.what.c_str(), one.grids.size(), report.faces, report.non_manifold_edges,
       report.non_manifold_vertices, report.inconsistent_faces, report.degenerate_faces,
-      report.duplicate_faces, report.self_intersections, report.unreferenced_vertices,
+      report.duplicate_faces, report.self_intersections, report.unreferenced_vertices, shared_places(mesh),
       same_again ? "" : "; another mesh in another order");
   std::fflush(stdout);
   return false;
@@ -145,11 +205,12 @@ int main(int argc, char** argv) {
   const int from = args.only < 0 ? 0 : args.only;
   const int to = args.only < 0 ? args.cases : args.only + 1;
   for (int k = from; k < to; ++k) {
-    const Case one = make_case(seed_for(args.seed, static_cast<std::uint64_t>(k)));
-    const Mesh mesh = stitched(one, false);
+    const std::uint64_t seed = seed_for(args.seed, static_cast<std::uint64_t>(k));
+    const Case one = make_case(seed);
+    const Mesh mesh = stitched(one);
     faces += mesh.faces.size();
     empty += mesh.faces.empty() ? 1 : 0;
-    if (is_sound(k, one, mesh)) {
+    if (is_sound(k, one, mesh, seed)) {
       continue;
     }
     ++faulty;
