@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright The Dubsar developers
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -28,6 +29,62 @@ std::size_t hash_of(const Key& key) {
 
 constexpr std::uint32_t kEmpty = 0xffffffffU;
 
+using Eigen::Vector3d;
+
+Vector3d cross_at(const Mesh& mesh, std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+  const Vector3d p = mesh.positions[a].cast<double>();
+  return (mesh.positions[b].cast<double>() - p).cross(mesh.positions[c].cast<double>() - p);
+}
+
+/// Twice the polygon's area, along its normal.
+Vector3d area_of(const Mesh& mesh, std::span<const std::uint32_t> corners) {
+  Vector3d area = Vector3d::Zero();
+  for (std::size_t k = 2; k < corners.size(); ++k) {
+    area += cross_at(mesh, corners[0], corners[k - 1], corners[k]);
+  }
+  return area;
+}
+
+/// Whether no triangle of the fan from its first corner is turned over.
+bool fans_out(const Mesh& mesh, std::span<const std::uint32_t> corners) {
+  const Vector3d normal = area_of(mesh, corners);
+  for (std::size_t k = 2; k < corners.size(); ++k) {
+    if (cross_at(mesh, corners[0], corners[k - 1], corners[k]).dot(normal) < 0) {
+      return false;
+    }
+  }
+  return true;
+}
+
+/// The triangles of a polygon that need not be convex, ear by ear; where there is none (it crosses itself)
+/// the rest is a fan.
+void clip_ears(Mesh& mesh, std::vector<std::uint32_t> corners) {
+  const Vector3d normal = area_of(mesh, corners);
+  const auto is_left = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+    return cross_at(mesh, a, b, c).dot(normal) > 0;
+  };
+  while (corners.size() > 3) {
+    const std::size_t n = corners.size();
+    std::size_t ear = 0;
+    for (; ear < n; ++ear) {
+      const std::uint32_t a = corners[(ear + n - 1) % n], b = corners[ear], c = corners[(ear + 1) % n];
+      if (is_left(a, b, c) && std::ranges::none_of(corners, [&](std::uint32_t v) {
+            return v != a && v != b && v != c && is_left(a, b, v) && is_left(b, c, v) && is_left(c, a, v);
+          })) {
+        mesh.faces.push_back({a, b, c});
+        break;
+      }
+    }
+    if (ear == n) {
+      break;
+    }
+    corners.erase(corners.begin() + static_cast<std::ptrdiff_t>(ear));
+  }
+  for (std::size_t k = 2; k < corners.size(); ++k) {
+    mesh.faces.push_back({corners[0], corners[k - 1], corners[k]});
+  }
+}
+
 }  // namespace
 
 bool append_position(Mesh& mesh, double x_mm, double y_mm, double z_mm) {
@@ -40,6 +97,14 @@ bool append_position(Mesh& mesh, double x_mm, double y_mm, double z_mm) {
 }
 
 void append_polygon(Mesh& mesh, std::span<const std::uint32_t> corners) {
+  // Without its places, or so long that it would take too much time, a polygon is taken for a convex one.
+  constexpr std::size_t kMostClipped = 64;
+  const bool placed =
+      std::ranges::all_of(corners, [&](std::uint32_t v) { return v < mesh.positions.size(); });
+  if (corners.size() > 3 && corners.size() <= kMostClipped && placed && !fans_out(mesh, corners)) {
+    clip_ears(mesh, {corners.begin(), corners.end()});
+    return;
+  }
   for (std::size_t k = 2; k < corners.size(); ++k) {
     mesh.faces.push_back({corners[0], corners[k - 1], corners[k]});
   }

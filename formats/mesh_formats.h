@@ -44,7 +44,7 @@ namespace dubsar {
 /// A vertex in millimetres, or nothing when it is not finite.
 [[nodiscard]] bool append_position(Mesh& mesh, double x_mm, double y_mm, double z_mm);
 
-/// Adds the fan of a polygon; fewer than three corners add nothing.
+/// Adds the triangles of a polygon, convex or not; fewer than three corners add nothing.
 void append_polygon(Mesh& mesh, std::span<const std::uint32_t> corners);
 
 /// Merges vertices of equal position (the first one stays, with what is known of it) and drops faces that

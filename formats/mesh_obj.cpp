@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright The Dubsar developers
+#include <algorithm>
 #include <charconv>
 #include <optional>
 #include <vector>
@@ -14,69 +15,117 @@ namespace {
 
 constexpr const char* kExportAgain = "export the mesh again";
 
-std::unexpected<Error> line_error(const std::string& where, std::size_t line, const std::string& what) {
-  return bad_input(where, "line " + std::to_string(line) + ": " + what, kExportAgain);
-}
+/// Reads an OBJ mesh line by line.
+class ObjReader {
+ public:
+  ObjReader(std::string_view bytes, const std::string& where, double mm)
+      : text_(bytes), where_(where), mm_(mm) {}
 
-/// The vertex of a corner such as "7", "7/1", "7//2" or "-1" (counted back from the last); nothing when it is
-/// none.
-std::optional<std::uint32_t> corner_of(std::string_view word, std::size_t vertices) {
-  const std::string_view index_word = word.substr(0, word.find('/'));
-  std::int64_t index = 0;
-  if (!parse_integer(index_word, index)) {
-    return std::nullopt;
+  [[nodiscard]] Result<Mesh> mesh(bool may_be_points) {
+    bool any_keyword = false;
+    while (text_.remaining() > 0) {
+      std::string_view rest = next_line();
+      const std::string_view keyword = take_word(rest);
+      const bool is_vertex = keyword == "v";
+      if (is_vertex || keyword == "f") {
+        any_keyword = true;
+        if (const Status read = is_vertex ? read_vertex(rest) : read_face(rest); !read) {
+          return std::unexpected(read.error());
+        }
+      }
+    }
+    if (!any_keyword) {
+      return bad_input(where_, "not an OBJ mesh (no line begins with v or f)", "check what the file is");
+    }
+    if (highest_ > static_cast<std::int64_t>(mesh_.positions.size())) {
+      return line_error(highest_line_, in_quotes(std::to_string(highest_)) + " is not one of the " +
+                                           std::to_string(mesh_.positions.size()) + " vertices");
+    }
+    if (mesh_.faces.empty() && !may_be_points) {
+      return bad_input(where_, "an OBJ file without faces", "give a mesh");
+    }
+    return std::move(mesh_);
   }
-  const auto count = static_cast<std::int64_t>(vertices);
-  const std::int64_t at = index < 0 ? count + index : index - 1;
-  if (index == 0 || at < 0 || at >= count) {
-    return std::nullopt;
+
+ private:
+  std::string_view next_line() {
+    ++line_number_;
+    return text_.line();
   }
-  return static_cast<std::uint32_t>(at);
-}
+  [[nodiscard]] std::unexpected<Error> line_error(std::size_t line, const std::string& what) const {
+    return bad_input(where_, "line " + std::to_string(line) + ": " + what, kExportAgain);
+  }
+  Status read_vertex(std::string_view rest) {
+    double xyz[3];
+    for (double& coordinate : xyz) {
+      const std::string_view word = take_word(rest);
+      if (!parse_number(word, coordinate)) {
+        return line_error(line_number_, in_quotes(word) + " is not a coordinate");
+      }
+    }
+    return append_position(mesh_, mm_ * xyz[0], mm_ * xyz[1], mm_ * xyz[2])
+               ? Status()
+               : line_error(line_number_, "a position is not finite");
+  }
+  /// Corners such as "7", "7/1", "7//2" or "-1" (counted back from the last); vertices may follow later. A
+  /// line that ends with a backslash goes on in the next.
+  Status read_face(std::string_view rest) {
+    corners_.clear();
+    for (std::string_view word = take_word(rest); !word.empty() && word.front() != '#';
+         word = take_word(rest)) {
+      const bool goes_on = word.back() == '\\';
+      if (goes_on) {
+        word.remove_suffix(1);
+        rest = next_line();
+      }
+      if (!word.empty()) {
+        const std::optional<std::uint32_t> corner = corner_of(word);
+        if (!corner) {
+          return line_error(line_number_, in_quotes(word) + " is not one of the " +
+                                              std::to_string(mesh_.positions.size()) + " vertices so far");
+        }
+        corners_.push_back(*corner);
+      }
+    }
+    append_polygon(mesh_, corners_);
+    return {};
+  }
+  std::optional<std::uint32_t> corner_of(std::string_view word) {
+    std::int64_t index = 0;
+    if (!parse_integer(word.substr(0, word.find('/')), index) || index == 0 || index > kMostVertices) {
+      return std::nullopt;
+    }
+    if (index > highest_) {
+      highest_ = index;
+      highest_line_ = line_number_;
+    }
+    const std::int64_t at = index < 0 ? static_cast<std::int64_t>(mesh_.positions.size()) + index : index - 1;
+    return at < 0 ? std::nullopt : std::optional(static_cast<std::uint32_t>(at));
+  }
+
+  static constexpr std::int64_t kMostVertices = 0xfffffffe;
+  TextScanner text_;
+  const std::string& where_;
+  double mm_;
+  Mesh mesh_;
+  std::vector<std::uint32_t> corners_;
+  std::size_t line_number_ = 0;
+  std::int64_t highest_ = 0;  ///< of the corners counted from the first vertex
+  std::size_t highest_line_ = 0;
+};
 
 }  // namespace
 
 Result<Mesh> decode_mesh_obj(std::string_view bytes, const std::string& where,
                              const MeshReadOptions& options) {
-  const double mm = options.mm_per_unit.value_or(1.0);
-  Mesh mesh;
-  std::vector<std::uint32_t> corners;
-  TextScanner text(bytes);
-  bool any_keyword = false;
-  for (std::size_t line_number = 1; text.remaining() > 0; ++line_number) {
-    std::string_view rest = text.line();
-    const std::string_view keyword = take_word(rest);
-    if (keyword == "v") {
-      double xyz[3];
-      for (double& coordinate : xyz) {
-        const std::string_view word = take_word(rest);
-        if (!parse_number(word, coordinate)) {
-          return line_error(where, line_number, in_quotes(word) + " is not a coordinate");
-        }
-      }
-      if (!append_position(mesh, mm * xyz[0], mm * xyz[1], mm * xyz[2])) {
-        return line_error(where, line_number, "a position is not finite");
-      }
-      any_keyword = true;
-    } else if (keyword == "f") {
-      corners.clear();
-      for (std::string_view word = take_word(rest); !word.empty(); word = take_word(rest)) {
-        const std::optional<std::uint32_t> corner = corner_of(word, mesh.positions.size());
-        if (!corner) {
-          return line_error(where, line_number,
-                            in_quotes(word) + " is not one of the " + std::to_string(mesh.positions.size()) +
-                                " vertices so far");
-        }
-        corners.push_back(*corner);
-      }
-      append_polygon(mesh, corners);
-      any_keyword = true;
-    }
+  bytes = without_byte_order_mark(bytes);
+  std::string in_lines;
+  if (bytes.find('\n') == std::string_view::npos) {  // lines of an old Macintosh
+    in_lines = bytes;
+    std::ranges::replace(in_lines, '\r', '\n');
+    bytes = in_lines;
   }
-  if (!any_keyword) {
-    return bad_input(where, "not an OBJ mesh (no line begins with v or f)", "check what the file is");
-  }
-  return mesh;
+  return ObjReader(bytes, where, options.mm_per_unit.value_or(1.0)).mesh(options.may_be_points);
 }
 
 std::string encode_mesh_obj(const Mesh& mesh, const FileLabel& label) {

@@ -200,8 +200,8 @@ Status read_vertices(PlyBody& body, const PlyElement& vertex, double mm, const s
   });
 }
 
-Status read_faces(PlyBody& body, const PlyElement& face, std::uint64_t vertices, const std::string& where,
-                  Mesh& mesh) {
+/// The property that lists vertices, or -1.
+int vertex_list(const PlyElement& face) {
   int list = -1;
   for (std::size_t p = 0; p < face.properties.size(); ++p) {
     const std::string& name = face.properties[p].name;
@@ -209,6 +209,56 @@ Status read_faces(PlyBody& body, const PlyElement& face, std::uint64_t vertices,
       list = static_cast<int>(p);
     }
   }
+  return list;
+}
+
+std::unexpected<Error> no_such_vertex(const PlyBody& body, const PlyElement& element, std::uint64_t index,
+                                      double corner, std::uint64_t vertices) {
+  return body.error_at(
+      element, index,
+      "vertex index " + number_text(corner) + " is not one of the " + std::to_string(vertices) + " vertices",
+      kExportAgain);
+}
+
+bool is_index(double corner, std::uint64_t vertices) {
+  return corner >= 0 && corner < static_cast<double>(vertices) && corner == std::floor(corner);
+}
+
+/// Triangle strips, as trimesh2 and some of Stanford's files have them: each vertex makes a triangle with the
+/// two before it, every other one turned over; -1 begins anew.
+Status read_strips(PlyBody& body, const PlyElement& strips, std::uint64_t vertices, const std::string& where,
+                   Mesh& mesh) {
+  const int list = vertex_list(strips);
+  if (list < 0) {
+    return bad_input(where, "its tristrips have no list vertex_indices", kExportAgain);
+  }
+  return body.read(strips, [&](std::uint64_t index, const PlyRow& row) -> Status {
+    std::array<std::uint32_t, 2> last{};
+    std::size_t length = 0;
+    for (const double corner : row.lists[static_cast<std::size_t>(list)]) {
+      if (corner == -1) {
+        length = 0;
+        continue;
+      }
+      if (!is_index(corner, vertices)) {
+        return no_such_vertex(body, strips, index, corner, vertices);
+      }
+      const auto v = static_cast<std::uint32_t>(corner);
+      const std::size_t turned = length % 2;
+      // One without area only leads on to the next.
+      if (length >= 2 && v != last[0] && v != last[1] && last[0] != last[1]) {
+        mesh.faces.push_back({last[turned], last[1 - turned], v});
+      }
+      last = {last[1], v};
+      ++length;
+    }
+    return {};
+  });
+}
+
+Status read_faces(PlyBody& body, const PlyElement& face, std::uint64_t vertices, const std::string& where,
+                  Mesh& mesh) {
+  const int list = vertex_list(face);
   if (list < 0 && face.count > 0) {
     return bad_input(where, "its faces have no list vertex_indices", kExportAgain);
   }
@@ -219,11 +269,8 @@ Status read_faces(PlyBody& body, const PlyElement& face, std::uint64_t vertices,
   return body.read(face, [&](std::uint64_t index, const PlyRow& row) -> Status {
     corners.clear();
     for (const double corner : row.lists[static_cast<std::size_t>(list)]) {
-      if (!(corner >= 0 && corner < static_cast<double>(vertices) && corner == std::floor(corner))) {
-        return body.error_at(face, index,
-                             "vertex index " + number_text(corner) + " is not one of the " +
-                                 std::to_string(vertices) + " vertices",
-                             kExportAgain);
+      if (!is_index(corner, vertices)) {
+        return no_such_vertex(body, face, index, corner, vertices);
       }
       corners.push_back(static_cast<std::uint32_t>(corner));
     }
@@ -241,7 +288,8 @@ Result<Mesh> decode_mesh_ply(std::string_view bytes, const std::string& where,
     return std::unexpected(header.error());
   }
   const PlyElement* vertex = header->element("vertex");
-  if (vertex == nullptr || (header->element("face") == nullptr && !options.may_be_points)) {
+  const bool has_faces = header->element("face") != nullptr || header->element("tristrips") != nullptr;
+  if (vertex == nullptr || (!has_faces && !options.may_be_points)) {
     return bad_input(where, vertex == nullptr ? "a PLY file without vertices" : "a PLY file without faces",
                      "give a mesh; scans become one with dubsar stitch");
   }
@@ -252,12 +300,15 @@ Result<Mesh> decode_mesh_ply(std::string_view bytes, const std::string& where,
   const double mm = options.mm_per_unit ? *options.mm_per_unit : *said;
   PlyBody body(*header, bytes, where);
   Mesh mesh;
+  const std::uint64_t vertices = std::min<std::uint64_t>(vertex->count, 0xffffffffU);
   for (const PlyElement& element : header->elements) {
     Status status;
     if (element.name == "vertex") {
       status = read_vertices(body, element, mm, where, mesh);
     } else if (element.name == "face") {
-      status = read_faces(body, element, std::min<std::uint64_t>(vertex->count, 0xffffffffU), where, mesh);
+      status = read_faces(body, element, vertices, where, mesh);
+    } else if (element.name == "tristrips") {
+      status = read_strips(body, element, vertices, where, mesh);
     } else {
       status = body.skip(element);
     }

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright The Dubsar developers
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <array>
+#include <vector>
 
 #include "formats/byte_order.h"
 #include "formats/mesh_formats.h"
@@ -15,41 +17,100 @@ constexpr std::size_t kHeaderBytes = 80;
 constexpr std::size_t kFacetBytes = 50;
 constexpr const char* kExportAgain = "the file is cut short or no STL: copy or export it again";
 
-/// Three appended positions become a face.
-void close_facet(Mesh& mesh) {
-  const auto last = static_cast<std::uint32_t>(mesh.positions.size());
-  mesh.faces.push_back({last - 3, last - 2, last - 1});
+/// A word in any case.
+bool is(std::string_view word, std::string_view keyword) {
+  return std::ranges::equal(word, keyword, [](char a, char b) {
+    return (a >= 'A' && a <= 'Z' ? static_cast<char>(a + ('a' - 'A')) : a) == b;
+  });
 }
 
-Result<Mesh> decode_ascii(std::string_view bytes, const std::string& where, double mm) {
-  TextScanner text(bytes);
-  Mesh mesh;
-  for (std::size_t line_number = 1; text.remaining() > 0; ++line_number) {
-    std::string_view rest = text.line();
-    if (take_word(rest) != "vertex") {
-      continue;
-    }
-    std::array<double, 3> v{};
-    for (double& coordinate : v) {
-      const std::string_view word = take_word(rest);
-      if (!parse_number(word, coordinate)) {
-        return bad_input(
-            where, "line " + std::to_string(line_number) + ": " + in_quotes(word) + " is not a coordinate",
-            kExportAgain);
+/// Words in any case and in lines of any kind, as ASCII STL is written.
+class AsciiReader {
+ public:
+  AsciiReader(std::string_view bytes, const std::string& where, double mm)
+      : bytes_(bytes), rest_(bytes), where_(where), mm_(mm) {}
+
+  [[nodiscard]] Result<Mesh> mesh() {
+    bool within = false;  // a solid
+    for (std::string_view word = take_word(rest_); !word.empty(); word = take_word(rest_)) {
+      Status status;
+      if (is(word, "vertex")) {
+        status = read_vertex();
+      } else if (is(word, "endloop") || is(word, "facet") || is(word, "endsolid")) {
+        status = close_loop();
+      }
+      if (!status) {
+        return std::unexpected(status.error());
+      }
+      if (is(word, "solid") || is(word, "endsolid")) {
+        within = is(word, "solid");
+        pass_name();
       }
     }
-    if (!append_position(mesh, mm * v[0], mm * v[1], mm * v[2])) {
-      return bad_input(where, "line " + std::to_string(line_number) + ": a position is not finite",
+    if (const Status closed = close_loop(); !closed) {
+      return std::unexpected(closed.error());
+    }
+    if (within || mesh_.faces.empty()) {
+      return bad_input(where_,
+                       mesh_.faces.empty() ? "holds no facet" : "ends before its solid does (no endsolid)",
                        kExportAgain);
     }
-    if (mesh.positions.size() % 3 == 0) {
-      close_facet(mesh);
+    return std::move(mesh_);
+  }
+
+ private:
+  [[nodiscard]] std::unexpected<Error> error(const std::string& what) const {
+    const auto line =
+        1 + std::count(bytes_.begin(), bytes_.end() - static_cast<std::ptrdiff_t>(rest_.size()), '\n');
+    return bad_input(where_, "line " + std::to_string(line) + ": " + what, kExportAgain);
+  }
+  /// To the end of the line, or to the first facet where there are no lines.
+  void pass_name() {
+    while (!rest_.empty() && rest_.front() != '\n' && rest_.front() != '\r') {
+      std::string_view after = rest_;
+      if (is(take_word(after), "facet")) {
+        return;
+      }
+      rest_.remove_prefix(1);
     }
   }
-  if (mesh.positions.size() % 3 != 0 || mesh.positions.empty()) {
-    return bad_input(where, mesh.positions.empty() ? "holds no facet" : "ends within a facet", kExportAgain);
+  Status read_vertex() {
+    std::array<double, 3> v{};
+    for (double& coordinate : v) {
+      const std::string_view word = take_word(rest_);
+      if (!parse_number(word, coordinate)) {
+        return error(in_quotes(word) + " is not a coordinate");
+      }
+    }
+    loop_.push_back(static_cast<std::uint32_t>(mesh_.positions.size()));
+    return append_position(mesh_, mm_ * v[0], mm_ * v[1], mm_ * v[2]) ? Status()
+                                                                      : error("a position is not finite");
   }
-  return mesh;
+  Status close_loop() {
+    if (loop_.size() == 1 || loop_.size() == 2) {
+      return bad_input(where_, "ends within a facet", kExportAgain);
+    }
+    append_polygon(mesh_, loop_);
+    loop_.clear();
+    return {};
+  }
+
+  std::string_view bytes_, rest_;
+  const std::string& where_;
+  double mm_;
+  Mesh mesh_;
+  std::vector<std::uint32_t> loop_;
+};
+
+/// Text begins with "solid", as do some binary files; those hold zero bytes.
+bool is_ascii_stl(std::string_view bytes) {
+  constexpr std::size_t kLooked = 512;
+  std::string_view start = bytes.substr(0, kLooked);
+  if (start.find('\0') != std::string_view::npos || is_binary_stl(bytes)) {
+    return false;
+  }
+  const std::string_view word = take_word(start);
+  return is(word, "solid") || is(word, "facet");
 }
 
 Result<Mesh> decode_binary(std::string_view bytes, const std::string& where, double mm) {
@@ -58,6 +119,9 @@ Result<Mesh> decode_binary(std::string_view bytes, const std::string& where, dou
   }
   const auto count = load<std::uint32_t>(bytes.data() + kHeaderBytes);
   const std::size_t room = (bytes.size() - kHeaderBytes - 4) / kFacetBytes;
+  if (count == 0) {
+    return bad_input(where, "holds no facet", kExportAgain);
+  }
   if (count > room) {
     return bad_input(where, "claims " + std::to_string(count) + " facets, but holds " + std::to_string(room),
                      kExportAgain);
@@ -75,7 +139,8 @@ Result<Mesh> decode_binary(std::string_view bytes, const std::string& where, dou
                          kExportAgain);
       }
     }
-    close_facet(mesh);
+    const auto last = static_cast<std::uint32_t>(mesh.positions.size());
+    mesh.faces.push_back({last - 3, last - 2, last - 1});
   }
   return mesh;
 }
@@ -93,9 +158,9 @@ bool is_binary_stl(std::string_view bytes) {
 Result<Mesh> decode_mesh_stl(std::string_view bytes, const std::string& where,
                              const MeshReadOptions& options) {
   const double mm = options.mm_per_unit.value_or(1.0);
-  // Binary files may begin with "solid" as well; their length tells.
-  Result<Mesh> mesh = bytes.starts_with("solid") && !is_binary_stl(bytes) ? decode_ascii(bytes, where, mm)
-                                                                          : decode_binary(bytes, where, mm);
+  const std::string_view text = without_byte_order_mark(bytes);
+  Result<Mesh> mesh =
+      is_ascii_stl(text) ? AsciiReader(text, where, mm).mesh() : decode_binary(bytes, where, mm);
   if (mesh) {
     weld_equal_positions(*mesh);
   }

@@ -51,6 +51,11 @@ class TextScanner {
   const char* end_;
 };
 
+/// The text after the mark that some editors put before UTF-8.
+[[nodiscard]] inline std::string_view without_byte_order_mark(std::string_view text) {
+  return text.starts_with("\xEF\xBB\xBF") ? text.substr(3) : text;
+}
+
 /// The word between quotes, shortened to what fits into a message.
 [[nodiscard]] std::string in_quotes(std::string_view word);
 

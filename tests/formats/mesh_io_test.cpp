@@ -2,6 +2,7 @@
 // Copyright The Dubsar developers
 #include "formats/mesh_io.h"
 
+#include <algorithm>
 #include <map>
 
 #include "formats/byte_order.h"
@@ -114,6 +115,16 @@ TEST(MeshPly, ReadsForeignAsciiAndTriangulatesPolygons) {
   ASSERT_TRUE(mesh) << line_of(mesh);
   EXPECT_EQ(mesh->faces, (std::vector<std::array<std::uint32_t, 3>>{{0, 1, 2}, {0, 2, 3}}));
   EXPECT_TRUE(mesh->normals.empty());
+}
+
+TEST(MeshPly, ReadsTriangleStrips) {
+  const auto mesh = read_mesh_bytes(
+      "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty float y\nproperty float z\n"
+      "element tristrips 1\nproperty list int int vertex_indices\nend_header\n"
+      "0 0 0\n1 0 0\n0 1 0\n1 1 0\n2 2 0\n10 0 1 2 3 -1 1 4 4 3 2\n",
+      "a.ply");
+  ASSERT_TRUE(mesh) << line_of(mesh);
+  EXPECT_EQ(mesh->faces, (std::vector<std::array<std::uint32_t, 3>>{{0, 1, 2}, {2, 1, 3}, {4, 3, 2}}));
 }
 
 TEST(MeshPly, ReadsBigEndian) {
@@ -252,13 +263,44 @@ TEST(MeshObj, ReadsWhatOthersWrite) {
   EXPECT_EQ(mesh->faces, (std::vector<std::array<std::uint32_t, 3>>{{0, 1, 2}, {0, 2, 3}}));
 }
 
+TEST(MeshObj, ReadsLinesOfEveryKind) {
+  const std::string vertices = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+  std::string macintosh = vertices + "f 1 2 3\nf 1 3 4\n";
+  std::ranges::replace(macintosh, '\n', '\r');
+  for (const std::string& text :
+       {vertices + "f 1 2 3 4 # a face\n", "\xEF\xBB\xBF" + vertices + "f 1 2 3 4\n",
+        vertices + "f 1 2 \\\n 3 4\n", vertices + "f 1 2 3\\\n4\n", "f 1 2 3 4\n" + vertices, macintosh}) {
+    SCOPED_TRACE(text);
+    const auto mesh = read_mesh_bytes(text, "a.obj");
+    ASSERT_TRUE(mesh) << line_of(mesh);
+    EXPECT_EQ(mesh->positions.size(), 4U);
+    EXPECT_EQ(mesh->faces, (std::vector<std::array<std::uint32_t, 3>>{{0, 1, 2}, {0, 2, 3}}));
+  }
+}
+
+TEST(MeshObj, PolygonsNeedNotBeConvex) {
+  for (int first = 0; first < 6; ++first) {  // an L, from each of its corners
+    std::string text = "v 0 0 0\nv 2 0 0\nv 2 1 0\nv 1 1 0\nv 1 2 0\nv 0 2 0\nf";
+    for (int k = 0; k < 6; ++k) {
+      text += ' ';
+      text += std::to_string((first + k) % 6 + 1);
+    }
+    const auto mesh = read_mesh_bytes(text, "a.obj");
+    ASSERT_TRUE(mesh) << line_of(mesh);
+    EXPECT_EQ(mesh->faces.size(), 4U);
+    EXPECT_NEAR(surface_area_mm2(*mesh), 3.0, 1e-6) << first;
+  }
+}
+
 TEST(MeshHostile, Obj) {
   const auto line = [](const std::string& text) { return line_of(read_mesh_bytes(text, "a.obj")); };
   EXPECT_THAT(line("v 0 0 zero\n"), HasSubstr("a.obj: line 1: 'zero' is not a coordinate"));
-  EXPECT_THAT(line("v 0 0 0\nf 1 2 1\n"), HasSubstr("line 2: '2' is not one of the 1 vertices so far"));
+  EXPECT_THAT(line("v 0 0 0\nf 1 2 1\n"), HasSubstr("line 2: '2' is not one of the 1 vertices"));
   EXPECT_THAT(line("v 0 0 0\nf 1 0 1\n"), HasSubstr("'0' is not one of"));
   EXPECT_THAT(line("v 0 0 0\nf -2\n"), HasSubstr("'-2' is not one of"));
   EXPECT_THAT(line("v 0 0 1e60\n"), HasSubstr("a position is not finite"));
+  EXPECT_THAT(line("f 1 4294967295 2\n"), HasSubstr("line 1: '4294967295' is not one of"));
+  EXPECT_THAT(line("v 0 0 0\nl 1 1\n"), HasSubstr("an OBJ file without faces"));
   EXPECT_THAT(line("a poem\n"), HasSubstr("not an OBJ mesh"));
 }
 
@@ -272,6 +314,38 @@ TEST(MeshStl, ReadsAscii) {
   ASSERT_TRUE(mesh) << line_of(mesh);
   EXPECT_EQ(mesh->positions.size(), 4U);
   EXPECT_EQ(mesh->faces.size(), 2U);
+}
+
+TEST(MeshStl, ReadsAsciiOfEveryKind) {
+  const std::string plain =
+      "solid facts\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 1 1 0\nvertex 0 1 0\n"
+      "endloop\nendfacet\nendsolid vertex\n";
+  std::string upper = plain;
+  std::ranges::transform(upper, upper.begin(),
+                         [](char c) { return c >= 'a' ? static_cast<char>(c - 32) : c; });
+  std::string one_line = plain;
+  std::ranges::replace(one_line, '\n', ' ');
+  std::string macintosh = plain;
+  std::ranges::replace(macintosh, '\n', '\r');
+  for (const std::string& text :
+       {plain, upper, one_line, macintosh, " \n " + plain, "\xEF\xBB\xBF" + plain}) {
+    SCOPED_TRACE(text);
+    const auto mesh = read_mesh_bytes(text, "a.stl");
+    ASSERT_TRUE(mesh) << line_of(mesh);
+    EXPECT_EQ(mesh->positions.size(), 4U);
+    EXPECT_EQ(mesh->faces, (std::vector<std::array<std::uint32_t, 3>>{{0, 1, 2}, {0, 2, 3}}));
+  }
+  EXPECT_THAT(line_of(read_mesh_bytes(plain.substr(0, plain.size() - 18), "a.stl")),
+              HasSubstr("no endsolid"));
+}
+
+TEST(MeshStl, BinaryMayBeginWithSolid) {
+  std::string binary = encode_mesh_stl(tetrahedron());
+  std::ranges::copy(std::string_view("solid binary"), binary.begin());
+  EXPECT_TRUE(read_mesh_bytes(binary, "a.stl"));
+  EXPECT_TRUE(read_mesh_bytes(binary + "\n\n", "a.stl"));
+  EXPECT_THAT(line_of(read_mesh_bytes(binary.substr(0, binary.size() - 60), "a.stl")),
+              HasSubstr("claims 4 facets, but holds 2"));
 }
 
 TEST(MeshHostile, Stl) {
