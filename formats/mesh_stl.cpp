@@ -67,11 +67,16 @@ class AsciiReader {
   /// To the end of the line, or to the first facet where there are no lines.
   void pass_name() {
     while (!rest_.empty() && rest_.front() != '\n' && rest_.front() != '\r') {
-      std::string_view after = rest_;
-      if (is(take_word(after), "facet")) {
-        return;
+      std::size_t step = 1;  // over a blank
+      if (rest_.front() != ' ' && rest_.front() != '\t') {
+        std::string_view after = rest_;
+        const std::string_view word = take_word(after);
+        if (is(word, "facet")) {
+          return;
+        }
+        step = std::max<std::size_t>(word.size(), 1);
       }
-      rest_.remove_prefix(1);
+      rest_.remove_prefix(step);
     }
   }
   Status read_vertex() {
