@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
+#include <cmath>
 #include <cstdlib>
 #include <fstream>
 #include <system_error>
@@ -62,7 +64,11 @@ Preferences read_preferences(const fs::path& file) {
     } else if (key == "sound") {
       out.sound = value == "1";
     } else if (key == "font_px") {
-      out.font_px = std::clamp(std::strtof(value.c_str(), nullptr), kSmallestFontPx, kLargestFontPx);
+      float px = 0;
+      const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), px);
+      if (error == std::errc() && std::isfinite(px)) {
+        out.font_px = std::clamp(px, kSmallestFontPx, kLargestFontPx);
+      }
     } else if (key == "operator") {
       out.operator_name = value;
     } else if (key == "device") {
