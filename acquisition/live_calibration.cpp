@@ -18,6 +18,7 @@
 #include "core/order_statistics.h"
 #include "formats/atomic_file.h"
 #include "formats/gray_file.h"
+#include "formats/make_folder.h"
 
 namespace dubsar {
 
@@ -115,14 +116,12 @@ Result<LiveCalibration> LiveCalibration::start(const LiveCalibrationPlan& given,
   if (Status whole = complete_exposures(plan, camera); !whole) {
     return std::unexpected(whole.error());
   }
-  std::error_code error;
-  fs::create_directories(plan.folder, error);
-  if (error) {
-    return fail(ErrorKind::kStorage, "the folder cannot be made: " + error.message(), plan.folder.string());
+  if (const Status made = make_folder(plan.folder); !made) {
+    return std::unexpected(made.error());
   }
   LiveCalibration out(std::move(plan), *board, std::move(camera), std::move(stage));
   const fs::path list = out.plan_.folder / "calibration.toml";
-  if (!fs::exists(list, error)) {
+  if (std::error_code ignored; !fs::exists(list, ignored)) {
     return out;
   }
   const Result<std::string> text = read_whole_file(list);

@@ -13,6 +13,7 @@
 #include "core/tablet_sides.h"
 #include "core/units.h"
 #include "formats/atomic_file.h"
+#include "formats/make_folder.h"
 
 namespace dubsar {
 
@@ -188,23 +189,21 @@ Result<std::vector<std::filesystem::path>> write_wedge_drawings(const std::files
                                                                 const std::vector<Wedge>& wedges,
                                                                 const RigidTransform& text_from_model,
                                                                 const std::string& title, const Mesh* mesh) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error) {
-    return fail(ErrorKind::kStorage, "cannot make the folder: " + error.message(), folder.string(),
-                "choose another place");
+  if (const Status made = make_folder(folder); !made) {
+    return std::unexpected(made.error());
   }
   std::optional<RenderScene> scene;
   if (mesh != nullptr) {
     scene.emplace(*mesh);
   }
   std::vector<std::filesystem::path> files;
+  std::error_code ignored;
   for (int f = 0; f < kFaceCount; ++f) {
     const auto side = static_cast<Face>(f);
     const std::filesystem::path path = folder / (std::string(to_string(side)) + ".svg");
     // One of a side that has lost its last wedge must not go on showing it.
     if (std::ranges::none_of(wedges, [&](const Wedge& w) { return is_on(w, side); }) &&
-        !std::filesystem::exists(path, error)) {
+        !std::filesystem::exists(path, ignored)) {
       continue;
     }
     const std::vector<OutlineRing> outline =

@@ -12,6 +12,7 @@
 #include "formats/atomic_file.h"
 #include "formats/calibration_json.h"
 #include "formats/gray_file.h"
+#include "formats/make_folder.h"
 #include "formats/number_text.h"
 #include "formats/rig_toml.h"
 #include "station/results.h"
@@ -124,14 +125,12 @@ Result<std::string> add_calibration_shot(const fs::path& folder, const Calibrati
     return fail(ErrorKind::kUsage, "a mirror carries no board", folder.string(),
                 "take poses of the board by hand, at three positions of the mirror or more");
   }
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error) {
-    return fail(ErrorKind::kStorage, "the folder cannot be made: " + error.message(), folder.string());
+  if (const Status made = make_folder(folder); !made) {
+    return std::unexpected(made.error());
   }
   const fs::path list = folder / "calibration.toml";
   CalibrationSet set;
-  if (fs::exists(list, error)) {
+  if (std::error_code ignored; fs::exists(list, ignored)) {
     Result<CalibrationSet> known = set_in(list);
     if (!known) {
       return std::unexpected(known.error());

@@ -5,6 +5,7 @@
 #include "archive/png.h"
 #include "archive/report_pictures.h"
 #include "formats/atomic_file.h"
+#include "formats/make_folder.h"
 #include "formats/mesh_io.h"
 #include "formats/poses_json.h"
 #include "formats/red_map_json.h"
@@ -35,12 +36,9 @@ std::vector<std::string> deliverable_names() {
 
 Result<Deliverables> write_deliverables(const fs::path& session, const ReportInput& input, JobContext& job) {
   Deliverables files;
-  std::error_code error;
   for (const char* name : {"mesh", "export"}) {
-    fs::create_directories(session / name, error);
-    if (error) {
-      return fail(ErrorKind::kStorage, error.message(), (session / name).string(),
-                  "free some space or choose another folder");
+    if (const Status made = make_folder(session / name); !made) {
+      return std::unexpected(made.error());
     }
   }
   const auto keep = [](Status status, const fs::path& made, fs::path& into) {

@@ -12,6 +12,7 @@
 #include "archive/six_views.h"
 #include "formats/atomic_file.h"
 #include "formats/feature_mat.h"
+#include "formats/make_folder.h"
 #include "formats/mesh_io.h"
 
 namespace dubsar {
@@ -22,15 +23,6 @@ constexpr int kLongestPx = 700;
 
 constexpr float kStrongResponse = 0.5F;
 constexpr float kSurfaceCurvaturePerMm = 0.3F;
-
-Status make_folder(const fs::path& folder) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error) {
-    return fail(ErrorKind::kStorage, error.message(), folder.string(), "choose a folder that can be written");
-  }
-  return {};
-}
 
 /// NAME.ply and NAME.png
 Status write_coloured(const fs::path& folder, const std::string& name, const Mesh& coloured,

@@ -3,6 +3,7 @@
 #include "station/package_content.h"
 
 #include "formats/atomic_file.h"
+#include "formats/make_folder.h"
 
 namespace dubsar {
 
@@ -10,11 +11,8 @@ namespace fs = std::filesystem;
 
 Result<fs::path> PackageContent::place(const std::string& path) const {
   const fs::path whole = root / path;
-  std::error_code error;
-  fs::create_directories(whole.parent_path(), error);
-  if (error) {
-    return fail(ErrorKind::kStorage, error.message(), whole.parent_path().string(),
-                "free some space or choose another folder");
+  if (const Status made = make_folder(whole.parent_path()); !made) {
+    return std::unexpected(made.error());
   }
   return whole;
 }

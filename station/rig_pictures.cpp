@@ -11,6 +11,7 @@
 #include "formats/calibration_json.h"
 #include "formats/calibration_set.h"
 #include "formats/gray_file.h"
+#include "formats/make_folder.h"
 #include "sim/board_poses.h"
 
 namespace dubsar {
@@ -63,10 +64,8 @@ Status write_rig_pictures(const RigPicturesOptions& options, const std::filesyst
   if (!board) {
     return std::unexpected(board.error());
   }
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error) {
-    return fail(ErrorKind::kStorage, "the folder cannot be made: " + error.message(), folder.string());
+  if (Status made = make_folder(folder); !made) {
+    return made;
   }
   const RigCalibration truth = sim::frame_rig(options.rig);
   sim::FrameOptions optics = options.optics;

@@ -9,6 +9,7 @@
 #include "formats/corrections_json.h"
 #include "formats/json_node.h"
 #include "formats/json_text.h"
+#include "formats/make_folder.h"
 #include "formats/sha2.h"
 #include "station/analysis.h"
 #include "station/session_name.h"
@@ -77,11 +78,8 @@ Result<std::optional<SessionWedges>> keep_wedges(SessionStore& store, const Mesh
   }
   const WedgeFile& file = **measured;
   const fs::path folder = store.folder() / "analysis";
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error) {
-    return fail(ErrorKind::kStorage, error.message(), folder.string(),
-                "free some space or choose another folder");
+  if (const Status made = make_folder(folder); !made) {
+    return std::unexpected(made.error());
   }
   SessionWedges out{folder / "wedges.json", file.wedges.size(), file.rejected.size()};
   if (const Status forgotten = store.forget_files({"analysis/"}); !forgotten) {

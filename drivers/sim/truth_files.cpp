@@ -2,6 +2,7 @@
 // Copyright The Dubsar developers
 #include "drivers/sim/truth_files.h"
 
+#include "formats/make_folder.h"
 #include "formats/mesh_io.h"
 #include "formats/pins_json.h"
 #include "formats/poses_json.h"
@@ -16,11 +17,8 @@ TruthFiles::TruthFiles(std::filesystem::path folder, const sim::SimStation& stat
 }
 
 Status TruthFiles::begin(const sim::SimStation& station) const {
-  std::error_code error;
-  std::filesystem::create_directories(folder_, error);
-  if (error) {
-    return fail(ErrorKind::kStorage, "cannot make the folder: " + error.message(), folder_.string(),
-                "choose a folder that can be written to");
+  if (Status made = make_folder(folder_); !made) {
+    return made;
   }
   if (Status written = write_mesh(folder_ / "tablet.ply", station.tablet().mesh); !written) {
     return written;

@@ -10,6 +10,7 @@
 #include "core/log.h"
 #include "formats/atomic_file.h"
 #include "formats/checklist_json.h"
+#include "formats/make_folder.h"
 #include "formats/red_map_json.h"
 #include "formats/states_ply.h"
 #include "station/command/command.h"
@@ -84,11 +85,8 @@ Result<Comparison> compare_and_keep(SessionStore& store, const Results& results,
 }
 
 Status write_states(const fs::path& folder, const ScanSet& set, const PlannedAgain& planned) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error) {
-    return fail(ErrorKind::kStorage, error.message(), folder.string(),
-                "choose a folder that can be written to");
+  if (Status made = make_folder(folder); !made) {
+    return made;
   }
   for (const PlacedScan& scan : planned.stage->placed()) {
     const auto states = planned.stage->states(scan.id);

@@ -13,6 +13,7 @@
 #include "core/mesh_query.h"
 #include "core/units.h"
 #include "formats/grid_ply.h"
+#include "formats/make_folder.h"
 #include "formats/mesh_io.h"
 #include "formats/pins_json.h"
 #include "formats/poses_json.h"
@@ -48,15 +49,6 @@ struct SimulateOptions {
   bool pins = false;
   std::string unit;
 };
-
-Status make_folder(const fs::path& folder) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error) {
-    return fail(ErrorKind::kStorage, error.message(), folder.string(), "choose a folder that can be written");
-  }
-  return {};
-}
 
 Result<int> simulate_tablet(const SimulateOptions& options, CommandContext& context) {
   const Result<Eigen::Vector3d> size = parse_size_mm(options.size);

@@ -100,7 +100,6 @@ constexpr EnginePhrase kCalibration[] = {
     {"give a folder with a calibration.toml, or with pictures of the board and --board",
      "einen Ordner mit einer calibration.toml nennen, oder einen mit Bildern des Musters, und das Muster "
      "dazu"},
-    {"the folder cannot be made: ", "der Ordner lässt sich nicht anlegen: "},
     {"these pictures are of another board, stage or camera",
      "diese Bilder sind von einem anderen Muster, Tisch oder einer anderen Kamera"},
     {"take the new ones to an empty folder", "die neuen in einen leeren Ordner aufnehmen"},

@@ -156,7 +156,6 @@ constexpr EnginePhrase kStored[] = {
     {" has come since", " ist seither dazugekommen"},
     // packages and what goes into them
     {"free some space or choose another folder", "Platz schaffen, oder einen anderen Ordner wählen"},
-    {"choose a folder that can be written", "einen Ordner wählen, in den geschrieben werden darf"},
     {"what lies there is no package, so it is not replaced",
      "was dort liegt, ist kein Paket, also wird es nicht ersetzt"},
     {"choose another folder, or remove it yourself", "einen anderen Ordner wählen, oder es selbst entfernen"},

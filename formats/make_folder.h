@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <filesystem>
+
+#include "core/result.h"
+
+namespace dubsar {
+
+/// Makes the folder, and those that it lies in, where they are not there yet. Errors: kStorage.
+[[nodiscard]] Status make_folder(const std::filesystem::path& folder);
+
+}  // namespace dubsar

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "formats/make_folder.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/support/files.h"
+#include "tests/support/temporary_folder.h"
+
+namespace dubsar {
+namespace {
+
+using ::testing::HasSubstr;
+
+TEST(MakeFolder, MakesWhatIsNotThereAndLeavesWhatIs) {
+  const test::TemporaryFolder folder;
+  const std::filesystem::path deep = folder.path() / "a" / "b" / "c";
+  ASSERT_TRUE(make_folder(deep));
+  test::put(deep / "file", "kept");
+  ASSERT_TRUE(make_folder(deep));
+  EXPECT_EQ(test::text_of_file(deep / "file"), "kept");
+}
+
+TEST(MakeFolder, SaysWhatWhereAndTheMend) {
+  const test::TemporaryFolder folder;
+  test::put(folder.path() / "file", "in the way");
+  const Status made = make_folder(folder.path() / "file" / "below");
+  ASSERT_FALSE(made);
+  EXPECT_EQ(made.error().kind, ErrorKind::kStorage);
+  EXPECT_EQ(made.error().where, (folder.path() / "file" / "below").string());
+  EXPECT_THAT(made.error().line(), HasSubstr("cannot make the folder: Not a directory"));
+  EXPECT_THAT(made.error().line(), HasSubstr("choose a folder that can be written to"));
+}
+
+}  // namespace
+}  // namespace dubsar
