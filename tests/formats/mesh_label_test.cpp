@@ -10,6 +10,7 @@
 #include "formats/mesh_formats.h"
 #include "formats/mesh_io.h"
 #include "tests/formats/format_support.h"
+#include "tests/formats/tetrahedron.h"
 
 namespace dubsar {
 namespace {
@@ -17,13 +18,7 @@ namespace {
 using ::testing::HasSubstr;
 using testing::line_of;
 using testing::ScratchFolder;
-
-Mesh tetrahedron() {
-  Mesh mesh;
-  mesh.positions = {{1.0F / 3, 0, 0}, {10, 1e-7F, 0}, {0, 12345.678F, 0}, {0, 0, -7.7F}};
-  mesh.faces = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}};
-  return mesh;
-}
+using testing::tetrahedron;
 
 FileLabel label_of_bm_12345() {
   return {.name = "P123456, BM 12345",
