@@ -103,13 +103,25 @@ std::string left_out_sentence(PackagePart part) {
     case PackagePart::kGridPly:
       return "The scans are not here as PLY: it was asked to leave them out. The grids hold the same.";
     case PackagePart::kWedges:
-      return "Wedges are not here: it was asked to leave them out.";
+      return "Wedges are not here, though the report may tell of files with them: it was asked to leave them "
+             "out.";
     case PackagePart::kFeatures:
       return "Values by vertex are not here as text: it was asked to leave them out.";
     case PackagePart::kRenderings:
       break;
   }
   return "Pictures are not here: it was asked to leave them out.";
+}
+
+/// "wedges/annotations.json and provenance.jsonld": those that are here.
+std::string files_with_addresses(const PackageContent& content) {
+  std::string names;
+  for (const char* path : {"iiif/manifest.json", "wedges/annotations.json"}) {
+    if (std::ranges::find(content.files, path, &PackagedFile::path) != content.files.end()) {
+      names.append(names.empty() ? "" : ", ").append(path);
+    }
+  }
+  return names.append(names.empty() ? "" : " and ").append("provenance.jsonld");
 }
 
 }  // namespace
@@ -164,8 +176,9 @@ Status add_readme(PackageContent& content) {
                         rows[4 * r + 3]);
   }
   text += "\n";
-  text += pictures_paragraph(content);
-  text += "\n";
+  if (const std::string pictures = pictures_paragraph(content); !pictures.empty()) {
+    text += pictures + "\n";
+  }
   text += folded(sides_sentence(content), 2);
   std::vector<std::string> lacking = content.lacking;
   for (const PackagePart part : content.options.without) {
@@ -187,11 +200,10 @@ Status add_readme(PackageContent& content) {
     lacking.emplace_back("The device told nothing of its calibration.");
   }
   if (content.options.base_url.starts_with("https://dubsar.invalid/")) {
-    lacking.emplace_back(
-        "The addresses in iiif/, wedges/annotations.json and provenance.jsonld begin with " +
-        content.options.base_url +
-        ", which nothing answers to: replace it by where this folder is served from, or export "
-        "with --base-url.");
+    lacking.emplace_back("The addresses in " + files_with_addresses(content) + " begin with " +
+                         content.options.base_url +
+                         ", which nothing answers to: replace it by where this folder is served from, or "
+                         "export with --base-url.");
   }
   text += "\nWHAT IS NOT HERE\n\n";
   for (const std::string& sentence : lacking) {

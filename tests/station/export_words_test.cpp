@@ -162,6 +162,10 @@ TEST_F(Export, TheLabelOfTheBagNamesWhatIsInItOnly) {
               HasSubstr(": raw range grids, poses, model, pictures, report. "));
   EXPECT_THAT(bytes_of(data("README.txt")), HasSubstr("No wedge was found on the model"));
   ASSERT_EQ(export_to("unpictured", {"--without", "renderings"}).status, 0);
+  const std::string readme = bytes_of(at("unpictured") / "data/README.txt");
+  EXPECT_THAT(readme, Not(HasSubstr("iiif")));
+  EXPECT_THAT(readme, HasSubstr("The addresses in wedges/annotations.json and provenance.jsonld"));
+  EXPECT_THAT(readme, Not(HasSubstr("\n\n\n")));
   EXPECT_THAT(bytes_of(at("unpictured") / "bag-info.txt"),
               HasSubstr(": raw range grids, poses, model, report. "));
 }
