@@ -97,7 +97,15 @@ Result<bool> is_earlier_package(const fs::path& package, const fs::path& session
     return std::unexpected(report.error());
   }
   if (!report->ok()) {
-    return false;
+    // A file by its name tells more than a sum of all of them.
+    const auto file = std::ranges::find_if(
+        report->damaged, [](const Error& damage) { return damage.where.starts_with("data/"); });
+    const Error& damage = file == report->damaged.end() ? report->damaged.front() : *file;
+    return fail(
+        ErrorKind::kBadInput,
+        "the package that lies here is not what was written (" + damage.where + ": " + damage.what + ")",
+        package.string(),
+        "see what differs (dubsar verify), choose another folder, or replace it with --force");
   }
   const auto gone = std::ranges::find_if(
       known->inputs, [&](const StampedFile& file) { return is_grid(file) && !is_here(file); });

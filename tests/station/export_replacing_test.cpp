@@ -109,7 +109,9 @@ TEST_F(Export, ReplacesAPackageOfAnEarlierStateOfItsSessionWhenAsked) {
   EXPECT_FALSE(again.json().contains("done_before"));
   // What a person changed is kept, and so is what is of another session or has lost its stamp.
   std::ofstream(at("renewed") / "data" / "README.txt", std::ios::app) << "a note of mine";
-  EXPECT_EQ(update("renewed").status, 2);
+  const Outcome changed = update("renewed");
+  EXPECT_EQ(changed.status, 2);
+  EXPECT_THAT(changed.err, HasSubstr("README.txt: not the bytes that manifest-sha512.txt says"));
   EXPECT_THAT(bytes_of(at("renewed") / "data" / "README.txt"), HasSubstr("a note of mine"));
   fs::remove_all(at("renewed"));
   ASSERT_EQ(update("renewed").status, 0);
