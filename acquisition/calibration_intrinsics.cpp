@@ -175,7 +175,6 @@ Result<Intrinsics> find_intrinsics(const std::vector<CalibrationView>& views,
     }
     out.camera = solved.camera;
     out.camera_from_board = std::move(solved.poses);
-    out.view_rms_px = std::move(solved.rms_px);
     out.rms_px = solved.total_rms_px;
   } catch (const cv::Exception& defect) {
     return bad_input({}, "the pictures do not determine the camera: " + defect.err, kMend);

@@ -29,9 +29,8 @@ struct Intrinsics {
   CameraModel camera;
   std::vector<std::size_t> used;                  ///< indices of the views that agree
   std::vector<RigidTransform> camera_from_board;  ///< [used]
-  std::vector<double> view_rms_px;    ///< [used] distance of the corners from where they should be
-  double rms_px = 0;                  ///< over all corners that were used
-  std::vector<std::string> left_out;  ///< name and reason
+  double rms_px = 0;                              ///< over all corners that were used
+  std::vector<std::string> left_out;              ///< name and reason
 };
 
 /// How many coefficients of distortion pictures of this width of view can tell: a narrow one shows no more

@@ -82,8 +82,6 @@ TextFrame find_text_frame(const Mesh& mesh, const std::vector<Wedge>& wedges) {
   std::ranges::sort(by_lead);
   const bool few = votes * votes < kFewestVotes * squared_votes;
   frame.certainty = few ? 0.0 : std::clamp((by_lead[3] - by_lead[2]) / votes, 0.0, 1.0);
-  const double all_text = text[0] + text[1];
-  frame.obverse_certainty = std::abs(text[0] - text[1]) / all_text;
   if (frame.certainty < kCertainText) {
     return frame;
   }

@@ -19,8 +19,6 @@ struct TextFrame {
   RigidTransform text_from_model;
   /// By how much this reading of right and up leads the next best, 0 to 1; 0 where hardly a wedge says it.
   double certainty = 0;
-  /// By how much the obverse has more text than the reverse, 0 to 1.
-  double obverse_certainty = 0;
 };
 
 /// From the tablet's shape (core/tablet_frame.h) and its wedges: their tails run to the right, down and to

@@ -158,9 +158,4 @@ Result<RedMap> parse_red_map(std::string_view text, const std::string& where) {
   return map;
 }
 
-Result<RedMap> read_red_map(const std::filesystem::path& path) {
-  const Result<std::string> text = read_whole_file(path, kMaxJsonBytes);
-  return text ? parse_red_map(*text, path.string()) : std::unexpected(text.error());
-}
-
 }  // namespace dubsar

@@ -15,6 +15,5 @@ namespace dubsar {
 [[nodiscard]] std::string red_map_to_json(const RedMap& map);
 [[nodiscard]] Status write_red_map(const std::filesystem::path& path, const RedMap& map);
 [[nodiscard]] Result<RedMap> parse_red_map(std::string_view text, const std::string& where);
-[[nodiscard]] Result<RedMap> read_red_map(const std::filesystem::path& path);
 
 }  // namespace dubsar

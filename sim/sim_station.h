@@ -75,7 +75,6 @@ class SimStation {
   /// Scans from where everything stands, profile by profile; each call is a scan of its own.
   [[nodiscard]] Status scan(const RowSink& sink, JobContext& job);
   [[nodiscard]] Result<RangeGrid> scan_grid(JobContext& job);
-  [[nodiscard]] int scans_made() const { return scans_made_; }
 
  private:
   struct Drive {

@@ -37,7 +37,6 @@ CameraView camera_view_of(const Frame& frame, int most_px) {
   const GrayImage& image = *whole;
   std::vector<PixelMark> marks;
   CameraView out;
-  out.frame_id = frame.id;
   out.image = whole;
   out.exposure = judge_exposure(image.view(), &marks);
   const int stride = std::max(1, (std::max(image.width, image.height) + most_px - 1) / most_px);

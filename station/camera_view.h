@@ -19,7 +19,6 @@ struct CameraView {
   std::vector<std::uint8_t> grey;  ///< [width*height]
   std::vector<PixelMark> mark;     ///< [width*height]; of any pixel that fell into it, saturated before dark
   Exposure exposure;               ///< of the whole frame
-  std::int64_t frame_id = 0;
   std::shared_ptr<const GrayImage> image;  ///< the whole frame
   std::string camera_serial;               ///< empty when not known
 };

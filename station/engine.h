@@ -54,7 +54,6 @@ struct EngineResult {
   /// What ended the run before it was through: the device failed, or scans that are not of the tablet came
   /// again and again. What came until then is kept.
   std::optional<Error> device_error;
-  int stored_scans = 0;
 };
 
 /// The online engine: device → profiles and flags → store → registration → red map, next view, mesh. One

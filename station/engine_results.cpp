@@ -40,7 +40,6 @@ Status Engine::Impl::finish(EngineResult& result, JobContext& job) {
   for (const auto& [stage, spent] : seconds) {
     result.timings.push_back({stage, spent});
   }
-  result.stored_scans = stored_count;
   result.device_error = device_error;
 
   LapClock writing(&result.timings);

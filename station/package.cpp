@@ -55,7 +55,7 @@ std::string file_stem(const std::string& identifier) {
 /// go by.
 void lie_as(const RigidTransform& tablet_from_model, WedgeFile* file) {
   file->text_from_model = tablet_from_model;
-  place_wedges({tablet_from_model, file->text_certainty, 0}, &file->wedges);
+  place_wedges({tablet_from_model, file->text_certainty}, &file->wedges);
   file->profiles = make_profiles(file->wedges);
 }
 
