@@ -3,9 +3,13 @@
 #include "triangulation/parted_fans.h"
 
 #include <algorithm>
+#include <bit>
+#include <functional>
+#include <utility>
 #include <vector>
 
 #include "core/parallel_erase.h"
+#include "core/parallel_sort.h"
 #include "triangulation/manifold.h"
 #include "triangulation/region.h"
 #include "triangulation/self_intersections.h"
@@ -43,47 +47,104 @@ Vector3f drawn(const Vector3f& p, const Eigen::Vector3d& way) {
   return p;
 }
 
-/// Draws the vertices from `first` on into their fans. [vertices - first] 1 for those that stay where they
-/// were.
-std::vector<std::uint8_t> draw_apart(Mesh& mesh, std::size_t first) {
+std::uint64_t hash_of(const Vector3f& p) {
+  std::uint64_t hash = 0;
+  for (const float x : p) {
+    hash = (hash ^ std::bit_cast<std::uint32_t>(x + 0.0F)) * 0x9e3779b97f4a7c15ULL;  // -0 is 0
+    hash ^= hash >> 29U;
+  }
+  return hash;
+}
+
+/// Vertices near rims that lie where one before them does: samples of two scans may coincide.
+std::vector<std::uint32_t> in_a_place_taken(const Draft& draft) {
+  const std::vector<Vector3f>& p = draft.mesh.positions;
+  const auto count = static_cast<std::size_t>(
+      std::ranges::count_if(draft.near_rim, [](std::uint8_t near) { return near != 0; }));
+  // First by one bit of many for each place: few are left to be sorted.
+  const std::size_t bits = std::bit_ceil(16 * count + 64);
+  std::vector<std::uint64_t> once(bits / 64, 0), again(bits / 64, 0);
+  const auto for_each_near = [&](const auto& visit) {
+    for (std::size_t v = 0; v < p.size(); ++v) {
+      if (draft.near_rim[v] != 0) {
+        const std::uint64_t hash = hash_of(p[v]);
+        const std::uint64_t bit = (hash ^ (hash >> 32U)) & (bits - 1);
+        visit(static_cast<std::uint32_t>(v), hash, bit / 64, std::uint64_t{1} << (bit % 64));
+      }
+    }
+  };
+  for_each_near([&](std::uint32_t, std::uint64_t, std::size_t word, std::uint64_t bit) {
+    again[word] |= once[word] & bit;
+    once[word] |= bit;
+  });
+  std::vector<std::pair<std::uint64_t, std::uint32_t>> places;
+  for_each_near([&](std::uint32_t v, std::uint64_t hash, std::size_t word, std::uint64_t bit) {
+    if ((again[word] & bit) != 0) {
+      places.emplace_back(hash, v);
+    }
+  });
+  parallel_sort(places.begin(), places.end(), std::less<>());
+  std::vector<std::uint32_t> taken;
+  for (std::size_t k = 1; k < places.size(); ++k) {
+    if (places[k].first == places[k - 1].first && p[places[k].second] == p[places[k - 1].second]) {
+      taken.push_back(places[k].second);
+    }
+  }
+  std::ranges::sort(taken);
+  return taken;
+}
+
+/// Draws the vertices (ascending) into their fans. [V] 1 for those that stay where they were.
+/// `faces`: all that have one of them.
+std::vector<std::uint8_t> draw_apart(Mesh& mesh, std::span<const Triangle> faces,
+                                     std::span<const std::uint32_t> moved) {
+  std::vector<std::uint8_t> moves(mesh.positions.size(), 0);
+  for (const std::uint32_t v : moved) {
+    moves[v] = 1;
+  }
   struct Around {
     Eigen::Vector3d sum{0, 0, 0};
     int count = 0;
   };
-  std::vector<Around> around(mesh.positions.size() - first);
-  for (const Triangle& f : mesh.faces) {
+  std::vector<Around> around(moved.size());
+  for (const Triangle& f : faces) {
     for (std::size_t k = 0; k < 3; ++k) {
-      if (f[k] >= first) {
-        Around& at = around[f[k] - first];
+      if (moves[f[k]] != 0) {
+        Around& at = around[static_cast<std::size_t>(std::ranges::lower_bound(moved, f[k]) - moved.begin())];
         at.sum += (mesh.positions[f[(k + 1) % 3]] + mesh.positions[f[(k + 2) % 3]]).cast<double>();
         at.count += 2;
       }
     }
   }
-  std::vector<std::uint8_t> stays(around.size(), 0);
-  for (std::size_t k = 0; k < around.size(); ++k) {
-    Vector3f& p = mesh.positions[first + k];
-    const Vector3f q = drawn(p, around[k].sum / std::max(around[k].count, 1) - p.cast<double>());
-    stays[k] = q == p ? 1 : 0;
+  std::vector<std::uint8_t> stays(mesh.positions.size(), 0);
+  for (std::size_t k = 0; k < moved.size(); ++k) {
+    Vector3f& p = mesh.positions[moved[k]];
+    const Vector3f q =
+        around[k].count == 0 ? p : drawn(p, around[k].sum / around[k].count - p.cast<double>());
+    stays[moved[k]] = q == p ? 1 : 0;
     p = q;
   }
   return stays;
 }
 
-/// Marks the vertices from `first` on that a face has which cuts another, of those with a near vertex.
-void mark_cutting(const Mesh& mesh, std::span<const std::uint8_t> near, std::size_t first,
-                  std::vector<std::uint8_t>& marked) {
+std::vector<Triangle> faces_with(const Mesh& mesh, std::span<const std::uint8_t> near) {
   std::vector<Triangle> faces;
   for (const Triangle& f : mesh.faces) {
-    if (std::ranges::any_of(f, [&](std::uint32_t v) { return v >= first || near[v] != 0; })) {
+    if ((near[f[0]] | near[f[1]] | near[f[2]]) != 0) {
       faces.push_back(f);
     }
   }
+  return faces;
+}
+
+/// Marks those of the moved vertices that a face has which cuts another.
+void mark_cutting(const Mesh& mesh, std::span<const Triangle> faces, std::span<const std::uint32_t> moved,
+                  std::vector<std::uint8_t>& marked) {
   for (const auto& [a, b] : self_intersections(mesh.positions, faces)) {
     for (const std::uint32_t face : {a, b}) {
       for (const std::uint32_t v : faces[face]) {
-        if (v >= first) {
-          marked[v - first] = 1;
+        if (std::ranges::binary_search(moved, v)) {
+          marked[v] = 1;
         }
       }
     }
@@ -94,23 +155,20 @@ void mark_cutting(const Mesh& mesh, std::span<const std::uint8_t> near, std::siz
 
 void part_fans(Draft& draft) {
   Mesh& mesh = draft.mesh;
-  // Where fans go others may part: until none is left, for there are fewer faces each time.
+  std::vector<std::uint8_t> near = draft.near_rim;  // elsewhere faces are those of grids
+  // Where fans go others beside them may part: until none is left, for there are fewer faces each time.
   while (true) {
-    // Elsewhere faces are those of grids.
-    const std::vector<std::uint32_t> copied =
-        make_manifold(mesh.faces, mesh.positions.size(), draft.near_rim);
-    if (copied.empty()) {
+    append_copies(draft, make_manifold(mesh.faces, mesh.positions.size(), near));
+    const std::vector<std::uint32_t> moved = in_a_place_taken(draft);
+    if (moved.empty()) {
       return;
     }
-    const std::vector<std::uint8_t> near = vertices_near(draft, copied);
-    const std::size_t first = mesh.positions.size();
-    append_copies(draft, copied);
-    std::vector<std::uint8_t> goes = draw_apart(mesh, first);
-    mark_cutting(mesh, near, first, goes);
+    near = vertices_near(draft, moved);
+    const std::vector<Triangle> faces = faces_with(mesh, near);
+    std::vector<std::uint8_t> goes = draw_apart(mesh, faces, moved);
+    mark_cutting(mesh, faces, moved, goes);
     const std::size_t before = mesh.faces.size();
-    erase_where(mesh.faces, [&](const Triangle& f) {
-      return std::ranges::any_of(f, [&](std::uint32_t v) { return v >= first && goes[v - first] != 0; });
-    });
+    erase_where(mesh.faces, [&](const Triangle& f) { return (goes[f[0]] | goes[f[1]] | goes[f[2]]) != 0; });
     if (mesh.faces.size() == before) {
       return;
     }
