@@ -100,20 +100,22 @@ struct Stitcher::Impl {
     return check(scan);
   }
 
-  /// All checks first; then the surfaces side by side.
+  /// Checks first, as far as the first bad one; then the surfaces side by side.
   Status insert(std::span<const PlacedScan> scans) {
     std::vector<Entry*> added;
+    Status ok;
     for (const PlacedScan& scan : scans) {
-      if (const Status ok = may_enter(scan); !ok) {
-        return ok;
+      ok = may_enter(scan);
+      if (!ok) {
+        break;
       }
       added.push_back(&entries[scan.id]);
       unpaired.insert(scan.id);
     }
     parallel_for_each_index(
-        scans.size(),
+        added.size(),
         [&](std::size_t k) { added[k]->surface = make_scan_surface(scans[k], options.surface); }, 1);
-    return {};
+    return ok;
   }
 
   /// Pairs the new scan with those that its box touches.

@@ -51,7 +51,7 @@ class Stitcher {
   /// Errors: kUsage when the id is there already, kBadInput when the scan has no grid, its flags have another
   /// size or its pose is not rigid; kCancelled, and then the scan is not in.
   Status add(const PlacedScan& scan, const JobContext& job);
-  /// All or, on an error, none of them that came after the bad one.
+  /// All or, on an error, those before the bad one.
   Status add(std::span<const PlacedScan> scans, const JobContext& job);
   /// False when there is no such scan.
   bool remove(int id);

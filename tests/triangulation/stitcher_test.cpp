@@ -402,5 +402,16 @@ TEST(Stitcher, RefusesWhatItCannotPlace) {
   EXPECT_TRUE(check_mesh(stitcher.mesh()).is_manifold());
 }
 
+TEST(Stitcher, OfSeveralTheOnesBeforeABadOneAreIn) {
+  test::ScanSet set = ball(0.4);
+  const JobContext job;
+  std::vector<PlacedScan> several = set.placed;
+  several[2].model_from_scanner.rotation *= 2.0;
+  Stitcher stitcher;
+  EXPECT_EQ(stitcher.add(several, job).error().kind, ErrorKind::kBadInput);
+  set.placed.resize(2);
+  expect_same(stitcher.mesh(), stitched(set));
+}
+
 }  // namespace
 }  // namespace dubsar
