@@ -303,7 +303,9 @@ Result<int> stitch_all(const ScanSetArguments& arguments, const StampedWork* wor
   }
   if (mesh->faces.empty()) {
     return bad_input(arguments.path,
-                     "its scans have no surface: nowhere do three neighbouring samples hang together",
+                     fmt::format("its scans have no surface: nowhere do {} triangles of neighbouring samples "
+                                 "hang together",
+                                 StitchOptions().least_component_faces),
                      "scan again, nearer or with more of the tablet in view");
   }
   if (const std::optional<Error> wrong_way = inside_out(*mesh, arguments.out)) {
