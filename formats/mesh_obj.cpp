@@ -42,7 +42,8 @@ class ObjReader {
                                            std::to_string(mesh_.positions.size()) + " vertices");
     }
     if (mesh_.faces.empty() && !may_be_points) {
-      return bad_input(where_, "an OBJ file without faces", "give a mesh");
+      return bad_input(where_, "an OBJ file without faces",
+                       "give a mesh; scans become one with dubsar stitch");
     }
     return std::move(mesh_);
   }
