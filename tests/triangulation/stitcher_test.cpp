@@ -6,11 +6,9 @@
 
 #include <tbb/global_control.h>
 
-#include <array>
 #include <cmath>
 #include <limits>
 #include <memory>
-#include <set>
 
 #include "core/mesh_query.h"
 #include "core/random.h"
@@ -314,26 +312,6 @@ TEST(Stitcher, SpecksGo) {
   const MeshReport report = check_mesh(stitched(set));
   EXPECT_EQ(report.components, 1U);
   EXPECT_LT(report.box.max().z(), 1.0F);
-}
-
-/// Formats without indices, as STL, know vertices by their places alone.
-TEST(Stitcher, FansThatWerePartedDoNotTouch) {
-  Random random(8);
-  test::ScanSet set;
-  for (int side = 0; side < 3; ++side) {
-    RangeGrid grid = test::height_grid(90, 90, 0.1, [&](double, double) { return 0.09 * random.normal(); });
-    for (std::uint8_t& valid : grid.valid) {
-      valid = random.uniform() < 0.7 ? 1 : 0;
-    }
-    set.add(std::move(grid), {});
-  }
-  const Mesh mesh = stitched(set);
-  ASSERT_GT(mesh.faces.size(), 500U);
-  std::set<std::array<float, 3>> places;
-  for (const Eigen::Vector3f& p : mesh.positions) {
-    places.insert({p.x(), p.y(), p.z()});
-  }
-  EXPECT_EQ(places.size(), mesh.positions.size());
 }
 
 TEST(Stitcher, NothingToStitch) {
