@@ -106,6 +106,7 @@ Status write_rig_pictures(const RigPicturesOptions& options, const std::filesyst
     }
   }
   std::vector<double> positions;
+  positions.reserve(static_cast<std::size_t>(std::max(0, options.stops)));
   const double half = options.rig.motion == MotionKind::kTurntable ? kHalfTurnRad : kHalfTravelMm;
   for (int i = 0; i < (mirror ? 0 : options.stops); ++i) {
     positions.push_back(half * (2.0 * i / std::max(1, options.stops - 1) - 1));

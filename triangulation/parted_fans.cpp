@@ -39,7 +39,7 @@ void append_copies(Draft& draft, std::span<const std::uint32_t> copied) {
 Vector3f drawn(const Vector3f& p, const Eigen::Vector3d& way) {
   constexpr double kMost = 0.1;
   for (double part = 1e-3; part < kMost; part *= 2) {
-    const Vector3f q = (p.cast<double>() + part * way).cast<float>();
+    Vector3f q = (p.cast<double>() + part * way).cast<float>();
     if (q != p) {
       return q;
     }
