@@ -4,13 +4,15 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/parallel.h"
 #include "planning/clearing.h"
 #include "planning/completion.h"
 #include "planning/convex_hull.h"
-#include "planning/free_space.h"
+#include "planning/hull_air.h"
+#include "planning/patch_rays.h"
 
 namespace dubsar {
 
@@ -180,73 +182,12 @@ void sample_face(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen
 
 }  // namespace
 
-namespace {
-
-constexpr double kFarMm = 1.0e4;
-// The expected hull may lie inside the real surface. Above it there is nothing that could be met.
-constexpr double kLiftMm = 5.0;
-constexpr int kRays = 9;
-
-/// Where the rays of a patch begin, above it: a sunflower spread over it, the first in the middle.
-std::array<Eigen::Vector3d, kRays> ray_starts(const SurfacePatch& patch, double step_mm) {
-  const Eigen::Vector3d u = patch.normal.unitOrthogonal();
-  const Eigen::Vector3d v = patch.normal.cross(u);
-  const double reach_mm = std::max(1.5 * step_mm, 0.45 * std::sqrt(patch.area_mm2));
-  std::array<Eigen::Vector3d, kRays> starts;
-  for (int k = 0; k < kRays; ++k) {
-    const double radius = reach_mm * std::sqrt(static_cast<double>(k) / (kRays - 1));
-    const double angle = 2.399963229728653 * k;
-    starts[static_cast<std::size_t>(k)] = patch.position_mm + kLiftMm * patch.normal +
-                                          radius * std::cos(angle) * u + radius * std::sin(angle) * v;
-  }
-  return starts;
-}
-
-/// Whether a ray that meets no surface leads through nothing but air, from where it enters the hull to where
-/// it leaves it. Lines of sight leave single cells out.
-bool leads_through_air(const Eigen::Vector3d& from_mm, const Eigen::Vector3d& along, const MeshQuery& hull,
-                       const FreeSpace& air) {
-  const auto ray = along.cast<float>();
-  const auto into = hull.first_hit(from_mm.cast<float>(), ray, 0.0F, static_cast<float>(kFarMm));
-  if (!into) {
-    return true;  // beside it
-  }
-  const double enters_mm = into->distance_mm;
-  const auto out_of =
-      hull.first_hit(from_mm.cast<float>(), ray, static_cast<float>(enters_mm + 1e-3 * air.cell_mm()),
-                     static_cast<float>(kFarMm));
-  const double leaves_mm = out_of ? out_of->distance_mm : enters_mm;
-  double dark_mm = 0;
-  const double most_dark_mm = 2.5 * air.cell_mm();
-  const double step_mm = 0.5 * air.cell_mm();
-  for (double at = enters_mm + 0.5 * step_mm; at < leaves_mm && dark_mm <= most_dark_mm; at += step_mm) {
-    dark_mm = air.was_looked_through(from_mm + at * along) ? 0 : dark_mm + step_mm;
-  }
-  return dark_mm <= most_dark_mm;
-}
-
-/// A patch where the hull spans a hollow that somebody looked through: no surface is missing there.
-bool lies_over_air(const SurfacePatch& patch, const ModelSurface& surface, const MeshQuery& hull,
-                   const FreeSpace& air) {
-  constexpr int kEnough = 7;
-  int fine = 0;
-  for (const Eigen::Vector3d& from : ray_starts(patch, surface.step_mm)) {
-    const auto hit = surface.query.first_hit(from.cast<float>(), -patch.normal.cast<float>(), 0.0F,
-                                             static_cast<float>(kFarMm));
-    fine += hit ? (hit->normal.dot(patch.normal.cast<float>()) > 0 ? 1 : 0)
-                : (leads_through_air(from, -patch.normal, hull, air) ? 1 : 0);
-  }
-  return fine >= kEnough;
-}
-
-}  // namespace
-
 bool seen_from_outside(const MeshQuery& query, const SurfacePatch& patch, double step_mm) {
   constexpr int kEnough = 3;
   const Eigen::Vector3f n = patch.normal.cast<float>();
   int hits = 0;
-  for (const Eigen::Vector3d& from : ray_starts(patch, step_mm)) {
-    const auto hit = query.first_hit(from.cast<float>(), -n, 0.0F, static_cast<float>(kFarMm));
+  for (const Eigen::Vector3d& from : patch_ray_starts(patch, step_mm)) {
+    const auto hit = query.first_hit(from.cast<float>(), -n, 0.0F, static_cast<float>(kFarFromPatchMm));
     hits += hit && hit->normal.dot(n) > 0 ? 1 : 0;
     if (hits >= kEnough) {
       return true;
@@ -254,30 +195,6 @@ bool seen_from_outside(const MeshQuery& query, const SurfacePatch& patch, double
   }
   return false;
 }
-
-namespace {
-
-/// Of an object that is no tablet the hull spans hollows: what lies over them is not waited for.
-void leave_out_air(std::span<const PlacedScan> scans, const Mesh& hull, ModelSurface& surface) {
-  if (surface.unseen.empty()) {
-    return;
-  }
-  Eigen::AlignedBox3d box;
-  for (const Eigen::Vector3d& p : surface.corners_mm) {
-    box.extend(p);
-  }
-  const FreeSpace air(scans, box, 4.0 * surface.step_mm);
-  const MeshQuery hull_query(hull);
-  std::vector<std::uint8_t> gone(surface.unseen.size());
-  parallel_for_each_index(
-      gone.size(),
-      [&](std::size_t i) { gone[i] = lies_over_air(surface.unseen[i], surface, hull_query, air) ? 1 : 0; },
-      64);
-  std::size_t i = 0;
-  std::erase_if(surface.unseen, [&](const SurfacePatch&) { return gone[i++] != 0; });
-}
-
-}  // namespace
 
 ModelSurface model_surface(std::span<const PlacedScan> scans, const Mesh* model,
                            const ModelSurfaceOptions& options) {
