@@ -176,7 +176,9 @@ typedef struct dubsar_placement {
   uint32_t has_hand_turn; /* nonzero: the tablet is first turned by hand */
   double turntable_rad;
   double tilt_rad;
-  /* The turn that is asked for, tablet_new_from_tablet_old in the stage frame, about the tablet's centre. */
+  /* The turn that is asked for, tablet_new_from_tablet_old in the stage frame, about the tablet's centre. The
+   * translation is where the centre then lies, from the stage's origin along the support; 0, 0, 0 but for
+   * tablets that are larger than the field. */
   double hand_turn[16];
   /* Of a device with an arm, when nonzero: drive to stage_from_scanner; turntable and tilt are 0. Zero: the
    * arm stays. The stage stands still under an arm. */

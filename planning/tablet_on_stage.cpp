@@ -31,8 +31,9 @@ TabletOnStage TabletOnStage::of(const StageState& state, const PlacedScan& last)
   return out;
 }
 
-TabletOnStage TabletOnStage::turned(const Eigen::Matrix3d& turn, const Eigen::Vector3d& center_mm) const {
-  return {turn * stage_from_model, center_mm, std::nullopt, room_mm};
+TabletOnStage TabletOnStage::turned(const RigidTransform& turn, const Eigen::Vector3d& center_mm) const {
+  const Eigen::Matrix3d then = turn.rotation * stage_from_model;
+  return {then, center_mm - then.transpose() * turn.translation_mm, std::nullopt, room_mm};
 }
 
 RigidTransform TabletOnStage::pose(const Rig& rig, std::span<const Eigen::Vector3d> points) const {

@@ -23,8 +23,8 @@ struct TabletOnStage {
   double room_mm = 0;  ///< that pins take around the model
 
   [[nodiscard]] static TabletOnStage of(const StageState& state, const PlacedScan& last);
-  /// After a turn by hand, about the model's centre, which then lies over the middle of the stage.
-  [[nodiscard]] TabletOnStage turned(const Eigen::Matrix3d& turn, const Eigen::Vector3d& center_mm) const;
+  /// After a turn by hand about the model's centre (Placement::hand_turn).
+  [[nodiscard]] TabletOnStage turned(const RigidTransform& turn, const Eigen::Vector3d& center_mm) const;
   /// The whole pose. points: of the model's hull; the lowest of them lies on the support (the support is not
   /// lower than that, whatever is not seen yet of the underside).
   [[nodiscard]] RigidTransform pose(const Rig& rig, std::span<const Eigen::Vector3d> points) const;

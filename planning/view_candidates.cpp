@@ -6,10 +6,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 
 #include "core/sphere_directions.h"
 #include "core/units.h"
 #include "planning/convex_hull.h"
+#include "planning/places_in_field.h"
 #include "planning/tablet_on_stage.h"
 
 namespace dubsar {
@@ -22,6 +24,9 @@ constexpr std::array<Face, kFaceCount> kFaces = {Face::kObverse, Face::kReverse,
 std::string degrees(double rad) {
   return std::to_string(std::lround(deg_from_rad(rad))) + "°";
 }
+
+/// A place of the tablet that lies so near to the middle of the field, as a hand lays it, lies there.
+constexpr double kLiesThereMm = 10;
 
 /// The least rotation that takes one unit vector to another; half turns go about `spare`.
 Eigen::Matrix3d least_turn(const Eigen::Vector3d& from, const Eigen::Vector3d& to,
@@ -42,7 +47,25 @@ struct Rest {
   Eigen::Vector3d focus_mm{0, 0, 0};   ///< the point of the model that the scanner looks at
   std::optional<RigidTransform> turn;  ///< as the operator is asked for it, none for the present rest
   std::string say;
+  bool off_middle = false;  ///< another place than the tablet's middle is looked at
 };
+
+/// A rest by hand as it is, or where the tablet is larger than the field with one place of it after the other
+/// in the field, its middle first.
+std::vector<Rest> laid(const Rig& rig, const Rest& rest, const ModelSurface& surface) {
+  std::vector<Rest> out;
+  if (!rig.robot) {  // an arm looks where it is told to
+    for (const PlaceInField& place : places_in_field(rig, rest.stage_from_model, surface)) {
+      Rest& there = out.emplace_back(rest);
+      there.focus_mm = surface.center_mm + place.offset_mm;
+      there.turn->translation_mm = -(rest.stage_from_model * place.offset_mm);
+      there.turn->translation_mm.z() = 0;
+      there.say += (there.say.empty() ? "" : "; ") + place.say;
+      there.off_middle = !place.offset_mm.isZero();
+    }
+  }
+  return out.empty() ? std::vector<Rest>{rest} : out;
+}
 
 /// Corners and samples of the model that are lowest decide where the support is.
 HiddenHalf support_under(const Eigen::Matrix3d& stage_from_model, const ModelSurface& surface) {
@@ -69,6 +92,14 @@ std::vector<Rest> rests(const Rig& rig, const Eigen::Matrix3d& stage_from_model,
     return out;
   }
   const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
+  const std::vector<Rest> pushed =
+      laid(rig, {nominal_stage_from_model, surface.center_mm, RigidTransform{}, {}}, surface);
+  for (const Rest& rest : pushed) {
+    const Eigen::Vector3d way_mm = nominal_stage_from_model * (rest.focus_mm - focus_mm);
+    if (pushed.size() > 1 && way_mm.head<2>().norm() > kLiesThereMm) {
+      out.push_back(rest);
+    }
+  }
   const Face lies_up = surface.faces.of(stage_from_model.transpose() * up);
   const int yaws = rig.has_turntable ? 1 : options.yaw_steps;
   for (const Face face : kFaces) {
@@ -85,7 +116,7 @@ std::vector<Rest> rests(const Rig& rig, const Eigen::Matrix3d& stage_from_model,
       rest.focus_mm = surface.center_mm;
       rest.turn = RigidTransform{turn, Eigen::Vector3d::Zero()};
       rest.say = say_turn(turn, nominal_stage_from_model, up, surface.faces);
-      out.push_back(std::move(rest));
+      std::ranges::move(laid(rig, rest, surface), std::back_inserter(out));
     }
   }
   return out;
@@ -104,6 +135,25 @@ std::string say_drive(const Rig& rig, const Placement& placement, const Eigen::M
     drive += (drive.empty() ? "tilt to " : ", tilt to ") + degrees(placement.tilt_rad);
   }
   return drive;
+}
+
+/// What the motors can do for one rest. Places off the middle are many: fewer views of each are enough.
+std::vector<Placement> placements_of(const Rig& rig, const Placement& now, const Eigen::Vector3d& focus_mm,
+                                     const Rest& rest, const ModelSurface& surface,
+                                     const CandidateOptions& options) {
+  MotorSteps fewer = options.motors;
+  fewer.turntable_steps = (fewer.turntable_steps + 1) / 2;
+  fewer.arm_rolls = (fewer.arm_rolls + 1) / 2;
+  std::vector<Placement> out = motor_placements(rig, now, focus_mm, rest.off_middle ? fewer : options.motors);
+  if (rig.robot) {
+    for (const PlaceInField& place : places_in_field(rig, rest.stage_from_model, surface)) {
+      if (!place.offset_mm.isZero()) {
+        const Eigen::Vector3d there_mm = focus_mm + rest.stage_from_model * place.offset_mm;
+        std::ranges::move(motor_placements(rig, now, there_mm, fewer), std::back_inserter(out));
+      }
+    }
+  }
+  return out;
 }
 
 }  // namespace
@@ -155,7 +205,7 @@ std::vector<ViewCandidate> rig_candidates(const Rig& rig, const StageState& stat
     }
     const StageScene scene = on_stage.scene(rig, surface.corners_mm);
     const RigidTransform model_from_stage = on_stage.pose(rig, surface.corners_mm).inverse();
-    for (Placement& placement : motor_placements(rig, state.drive, scene.focus_mm, options.motors)) {
+    for (Placement& placement : placements_of(rig, state.drive, scene.focus_mm, rest, surface, options)) {
       if (!check_clear(rig, scene, placement, {})) {
         continue;
       }

@@ -38,10 +38,11 @@ struct CandidateOptions {
 
 /// All poses that the rig allows: the tablet as it lies and on each of its other five sides (where the rig
 /// allows hand turns), times what its motors can do within their limits (motor_placements()), without those
-/// where the head would come into the keep-out volume around the model or touch the support. `last` is the
-/// scan that `state` speaks of: it tells how the tablet really lies. The hand turn that is asked for goes
-/// from how the tablet lies by the nominal pose, when the scan has one, so that errors of many turns do not
-/// add up.
+/// where the head would come into the keep-out volume around the model or touch the support. Where the tablet
+/// is larger than the field (places_in_field()), on each side with one part of it after the other in the
+/// field: pushed there by hand, or looked at there by an arm. `last` is the scan that `state` speaks of: it
+/// tells how the tablet really lies. The hand turn that is asked for goes from how the tablet lies by the
+/// nominal pose, when the scan has one, so that errors of many turns do not add up.
 [[nodiscard]] std::vector<ViewCandidate> rig_candidates(const Rig& rig, const StageState& state,
                                                         const PlacedScan& last, const ModelSurface& surface,
                                                         const CandidateOptions& options = {});

@@ -221,12 +221,14 @@ Status SimStation::move(const Placement& placement, double share) {
   }
   if (placement.hand_turn) {
     ++placement_;
+    const Eigen::Vector3d off_mm =
+        true_stage_from_tablet_.translation_mm - nominal_stage_from_tablet_.translation_mm;
     nominal_stage_from_tablet_ = asked_pose(nominal_stage_from_tablet_, *placement.hand_turn);
     // The operator turns what lies there, and looks at the tablet while doing so: neither this turn nor the
     // way in which the tablet then lies is off by more than a hand's error, however many turns there were.
     RigidTransform after_turn = *placement.hand_turn;
     after_turn.rotation *= true_stage_from_tablet_.rotation;
-    after_turn.translation_mm += true_stage_from_tablet_.translation_mm;
+    after_turn.translation_mm += off_mm;
     true_stage_from_tablet_ = by_hand(nominal_stage_from_tablet_, after_turn);
   }
   drive_to(share < 1.0 ? on_the_way(from, goal, share) : goal);

@@ -69,8 +69,11 @@ class NearMesh {
 
 bool same_placement(const Placement& a, const Placement& b) {
   constexpr double kSameRad = 1e-6;
+  constexpr double kSameMm = 1e-3;
   const auto same = [=](const std::optional<RigidTransform>& p, const std::optional<RigidTransform>& q) {
-    return p.has_value() == q.has_value() && (!p || p->rotation.isApprox(q->rotation, kSameRad));
+    return p.has_value() == q.has_value() &&
+           (!p || (p->rotation.isApprox(q->rotation, kSameRad) &&
+                   (p->translation_mm - q->translation_mm).norm() < kSameMm));
   };
   return same(a.hand_turn, b.hand_turn) && same(a.free_pose, b.free_pose) &&
          std::abs(a.turntable_rad - b.turntable_rad) < kSameRad &&
@@ -181,7 +184,7 @@ std::optional<StageScene> PlanningStage::scene_for(const Rig& rig, const Placeme
   for (const Eigen::Vector3d& p : points) {
     box.extend(p);
   }
-  return lies.turned(placement.hand_turn->rotation, box.center()).scene(rig, points);
+  return lies.turned(*placement.hand_turn, box.center()).scene(rig, points);
 }
 
 std::optional<NextView> PlanningStage::before_lifting(const Rig& rig, const NextView& next) const {
@@ -224,7 +227,8 @@ std::optional<NextView> PlanningStage::after_miss(const Rig& rig, int id) const 
 }
 
 std::optional<NextView> PlanningStage::same_view(const Rig& rig, int id) const {
-  constexpr double kLiesAsBefore = 0.17;  ///< rad: a hand that turns a tablet turns it farther
+  constexpr double kLiesAsBefore = 0.17;    ///< rad: a hand that turns a tablet turns it farther
+  constexpr double kLiesThereStillMm = 10;  ///< and pushes it farther than that
   const std::optional<PlacedScan> then = where_driven(id);
   std::optional<PlacedScan> now;
   for (auto scan = scans_.rbegin(); scan != scans_.rend() && !now; ++scan) {
@@ -237,19 +241,27 @@ std::optional<NextView> PlanningStage::same_view(const Rig& rig, int id) const {
   const Placement drive = *drive_of(id);
   const Eigen::Matrix3d lay = TabletOnStage::of({id, drive}, *then).stage_from_model;
   const Eigen::Matrix3d lies = TabletOnStage::of(state, *now).stage_from_model;
-  if (Eigen::AngleAxisd(lay * lies.transpose()).angle() < kLiesAsBefore) {
+  // What turntable and tilt turn the scanner about; an arm looks about it.
+  const auto apart_mm = [&](const RigidTransform& model_from_scanner) {
+    return rig.robot ? 0.0
+                     : (model_from_scanner.translation_mm - then->model_from_scanner.translation_mm).norm();
+  };
+  if (Eigen::AngleAxisd(lay * lies.transpose()).angle() < kLiesAsBefore &&
+      apart_mm(now->model_from_scanner) < kLiesThereStillMm) {
     NextView view{then->model_from_scanner, 0.0, say_placement(rig, drive), drive};
     view.placement->hand_turn.reset();
     return view;
   }
-  const auto off_rad = [&](const ViewCandidate& candidate) {
+  const auto off = [&](const ViewCandidate& candidate) {
+    constexpr double kMmAsBadAsOneRad = 100;
     return Eigen::AngleAxisd(candidate.model_from_scanner.rotation.transpose() *
                              then->model_from_scanner.rotation)
-        .angle();
+               .angle() +
+           apart_mm(candidate.model_from_scanner) / kMmAsBadAsOneRad;
   };
   const std::vector<ViewCandidate> candidates =
       rig_candidates(rig, state, *now, model_surface(cleared_.scans()));
-  const auto nearest = std::ranges::min_element(candidates, {}, off_rad);
+  const auto nearest = std::ranges::min_element(candidates, {}, off);
   if (nearest == candidates.end()) {
     return std::nullopt;
   }

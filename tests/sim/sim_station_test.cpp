@@ -66,6 +66,25 @@ TEST(SimStation, HandTurnsComeOutOffByAHandsErrorAndRestOnTheSupport) {
   EXPECT_GT(worst_mm, 2.5);
 }
 
+/// A tablet larger than the field is pushed along: each time as far off as a hand is, and no farther.
+TEST(SimStation, APushedTabletLiesWhereItWasAskedToButForAHandsError) {
+  SimStation station(rough_tablet(), coarse());
+  double worst_mm = 0;
+  for (int i = 0; i < 20; ++i) {
+    RigidTransform push;
+    push.translation_mm = Eigen::Vector3d(i % 2 == 0 ? 30.0 : -30.0, i % 3 == 0 ? 15.0 : 0.0, 0);
+    ASSERT_TRUE(station.move({0, 0, push}));
+    const double off_mm =
+        (station.true_stage_from_tablet().translation_mm - push.translation_mm).head<2>().norm();
+    EXPECT_LE(off_mm, 5.0 + 1e-6);
+    worst_mm = std::max(worst_mm, off_mm);
+    const RigidTransform nominal = station.nominal().tablet_from_scanner;
+    EXPECT_LT((nominal.translation_mm + push.translation_mm).head<2>().norm(), 1e-6)
+        << "the scanner looks beside";
+  }
+  EXPECT_GT(worst_mm, 1.0) << "no hand is that exact";
+}
+
 TEST(SimStation, MotorsAreNearlyExactWithinAPlacement) {
   SimStation station(rough_tablet(), coarse());
   const RigidTransform offset =

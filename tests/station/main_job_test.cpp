@@ -156,6 +156,16 @@ TEST_F(MainJob, ASignatureHoldsUntilTheSessionChanges) {
   EXPECT_EQ(run_command({"verify", session}).status, 0) << "all is as it was signed";
 }
 
+/// 100 mm of tablet under a scanner whose field is 70 mm wide: its ends come under it when it is pushed
+/// along.
+TEST_F(MainJob, ATabletLargerThanTheFieldIsPushedAlongUntilAllOfItIsScanned) {
+  const Outcome large =
+      run_command({"scan", "--auto", "--json", "--device", "sim:?seed=2&size=100x20x12&spacing=0.5",
+                   "--max-scans", "24", "--session", at("large").string()});
+  EXPECT_EQ(large.status, 0) << large.err;
+  EXPECT_EQ(large.json()["conclusive"], true);
+}
+
 TEST_F(MainJob, AConclusiveSessionAsksForNothingMore) {
   fs::copy(at("first"), at("gone on"), fs::copy_options::recursive);
   const Outcome again = scan("gone on", {});
