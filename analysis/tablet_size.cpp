@@ -2,7 +2,9 @@
 // Copyright The Dubsar developers
 #include "analysis/tablet_size.h"
 
+#include <fmt/format.h>
 #include <Eigen/Geometry>
+
 #include <array>
 #include <cmath>
 #include <limits>
@@ -13,6 +15,10 @@ namespace {
 
 constexpr double kLeastMm = 6;
 constexpr double kMostMm = 800;
+/// A kilometre: beyond, areas leave what a float can tell.
+constexpr double kMostAcrossMm = 1e6;
+/// What the fits believe at best (inner_edges.cpp): coarser places would decide what is measured.
+constexpr double kCoarsestPlaceMm = 0.004;
 
 bool plausible(double across_mm) {
   return across_mm >= kLeastMm && across_mm <= kMostMm;
@@ -56,6 +62,21 @@ double coarsest_place_mm(const Mesh& mesh) {
   }
   const float far_mm = box.min().cwiseAbs().cwiseMax(box.max().cwiseAbs()).maxCoeff();
   return std::nextafter(far_mm, std::numeric_limits<float>::infinity()) - far_mm;
+}
+
+Status check_measurable(const Mesh& mesh, const std::string& where) {
+  if (const double across_mm = size_across_mm(mesh); !(across_mm < kMostAcrossMm)) {
+    return bad_input(where, fmt::format("it would be {:.3g} mm across", across_mm),
+                     "nothing inscribed is that large: look what its numbers are and give their unit");
+  }
+  if (const double coarse_mm = coarsest_place_mm(mesh); coarse_mm > kCoarsestPlaceMm) {
+    return bad_input(
+        where,
+        fmt::format("it lies so far from the origin of its numbers that places are good to {:.2g} mm only",
+                    coarse_mm),
+        "export it again with its middle at the origin");
+  }
+  return {};
 }
 
 }  // namespace dubsar

@@ -2,10 +2,12 @@
 // Copyright The Dubsar developers
 #pragma once
 
+#include <string>
 #include <string_view>
 #include <vector>
 
 #include "core/mesh.h"
+#include "core/result.h"
 
 namespace dubsar {
 
@@ -20,5 +22,9 @@ namespace dubsar {
 /// How far apart the places are, at the vertex in use that lies farthest from the origin, between which
 /// single precision knows none, mm.
 [[nodiscard]] double coarsest_place_mm(const Mesh& mesh);
+
+/// Why nothing can be measured of a mesh, whatever its unit: a kilometre across and more, or so far from the
+/// origin of its numbers that single precision decides what is measured. `where`: the mesh, for the error.
+[[nodiscard]] Status check_measurable(const Mesh& mesh, const std::string& where);
 
 }  // namespace dubsar

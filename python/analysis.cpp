@@ -3,8 +3,14 @@
 // The wedges of a mesh.
 
 #include "station/analysis.h"
+
+#include <fmt/format.h>
+
+#include "analysis/tablet_size.h"
+#include "core/inside_out.h"
 #include "formats/wedges_json.h"
 #include "python/jobs.h"
+#include "station/outward_faces.h"
 
 namespace dubsar::python {
 
@@ -20,6 +26,32 @@ struct Wedges {
 };
 using WedgesPointer = std::shared_ptr<Wedges>;
 
+/// Makes of a mesh what `dubsar analyze` measures, and gives what to warn of. What the command refuses until
+/// --unit settles it is doubted only: arrays are millimetres by contract.
+Result<std::vector<std::string>> make_measurable(std::shared_ptr<const Mesh>& mesh, const std::string& name) {
+  std::vector<std::string> doubts;
+  const Status measurable = check_measurable(*mesh, name);
+  const double across_mm = size_across_mm(*mesh);
+  if (const auto likelier = likelier_units(across_mm, 1.0); !likelier.empty()) {
+    const Error doubt{ErrorKind::kBadInput, fmt::format("it would be {:.3g} mm across", across_mm), name,
+                      fmt::format("its numbers look like {}: give millimetres", fmt::join(likelier, " or "))};
+    if (!measurable) {
+      return std::unexpected(doubt);  // micrometres look as if they were far from their origin
+    }
+    doubts.push_back(doubt.line());
+  }
+  if (!measurable) {
+    return std::unexpected(measurable.error());
+  }
+  if (const std::optional<Error> fault = inside_out(*mesh, name)) {
+    doubts.push_back(fault->line());
+    auto turned = std::make_shared<Mesh>(*mesh);
+    turn_over(turned.get());
+    mesh = std::move(turned);
+  }
+  return doubts;
+}
+
 WedgesPointer analyze(const std::shared_ptr<Mesh>& mesh, const std::string& exit, const std::string& name,
                       const py::object& progress) {
   AnalysisOptions options;
@@ -27,11 +59,18 @@ WedgesPointer analyze(const std::shared_ptr<Mesh>& mesh, const std::string& exit
     raise({ErrorKind::kUsage, "no exit " + exit, {}, "there are surface and extent"});
   }
   options.wedges.exits = exit == "extent" ? ExitDefinition::kExtent : ExitDefinition::kSurface;
+  check_sound(*mesh);
+  std::shared_ptr<const Mesh> measured = mesh;
+  const std::vector<std::string> doubts =
+      run_for_result(py::none(), [&](JobContext&) { return make_measurable(measured, name); });
+  for (const std::string& doubt : doubts) {
+    warn_of_mesh(doubt);
+  }
   Analysis analysis =
-      run_for_result(progress, [&](JobContext& job) { return analyze_mesh(*mesh, options, job); });
+      run_for_result(progress, [&](JobContext& job) { return analyze_mesh(*measured, options, job); });
   auto out = std::make_shared<Wedges>();
   out->file = wedge_file(name, options, analysis);
-  out->mesh = mesh;
+  out->mesh = std::move(measured);
   out->analysis = std::make_shared<const Analysis>(std::move(analysis));
   return out;
 }
@@ -113,8 +152,8 @@ void bind_analysis(py::module_& module) {
         return "<dubsar.Wedges " + std::to_string(w.file.wedges.size()) + " wedges, " +
                std::to_string(w.file.rejected.size()) + " rejected>";
       });
-  module.def("analyze", &analyze, py::arg("mesh"), py::arg("exit") = "surface", py::arg("name") = "",
-             py::arg("progress") = py::none(),
+  module.def("analyze", &analyze, py::arg("mesh").none(false), py::arg("exit") = "surface",
+             py::arg("name") = "", py::arg("progress") = py::none(),
              "Every wedge of a mesh, measured. exit: where an inner edge ends, 'surface' or 'extent'.");
   module.def(
       "read_wedges",

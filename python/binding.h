@@ -30,6 +30,8 @@ namespace py = pybind11;
 
 /// Warns the caller of a scan (dubsar.ScanWarning); raises where warnings are errors to them.
 void warn_of_scan(const std::string& line);
+/// The same of a mesh (dubsar.MeshWarning).
+void warn_of_mesh(const std::string& line);
 
 template <class T>
 T value_of(Result<T> result) {
@@ -62,6 +64,9 @@ std::optional<double> mm_per_unit_named(const std::optional<std::string>& unit);
 py::array wedge_rows(const std::vector<Wedge>& wedges);
 /// Tells numpy of the columns; once, before the first wedge_rows().
 void bind_wedge_rows();
+
+/// Raises UsageError where a face names no vertex, or a place is not finite: the arrays are open to writing.
+void check_sound(const Mesh& mesh);
 
 using GridPointer = std::shared_ptr<RangeGrid>;
 

@@ -32,15 +32,35 @@ std::array<Kind, 6>& kinds() {
   return all;
 }
 
-/// Likewise kept as long as the interpreter runs.
+// Likewise kept as long as the interpreter runs.
 PyObject* scan_warning = nullptr;
+PyObject* mesh_warning = nullptr;
+
+void warn(PyObject* category, const std::string& line) {
+  if (PyErr_WarnEx(category, line.c_str(), 1) != 0) {
+    throw py::error_already_set();
+  }
+}
+
+/// A UserWarning of the module.
+PyObject* add_warning(py::module_& module, const char* name, const char* help) {
+  const std::string full = std::string("dubsar.") + name;
+  PyObject* const type = PyErr_NewExceptionWithDoc(full.c_str(), help, PyExc_UserWarning, nullptr);
+  if (type == nullptr) {
+    throw py::error_already_set();
+  }
+  module.attr(name) = py::reinterpret_borrow<py::object>(type);
+  return type;
+}
 
 }  // namespace
 
 void warn_of_scan(const std::string& line) {
-  if (PyErr_WarnEx(scan_warning, line.c_str(), 1) != 0) {
-    throw py::error_already_set();
-  }
+  warn(scan_warning, line);
+}
+
+void warn_of_mesh(const std::string& line) {
+  warn(mesh_warning, line);
 }
 
 void raise(const Error& error) {
@@ -77,13 +97,9 @@ void bind_errors(py::module_& module) {
     }
     module.attr(kind.name) = py::reinterpret_borrow<py::object>(kind.type);
   }
-  scan_warning = PyErr_NewExceptionWithDoc("dubsar.ScanWarning",
-                                           "A scan was read otherwise than its file says, or is doubtful.",
-                                           PyExc_UserWarning, nullptr);
-  if (scan_warning == nullptr) {
-    throw py::error_already_set();
-  }
-  module.attr("ScanWarning") = py::reinterpret_borrow<py::object>(scan_warning);
+  scan_warning =
+      add_warning(module, "ScanWarning", "A scan was read otherwise than its file says, or is doubtful.");
+  mesh_warning = add_warning(module, "MeshWarning", "A mesh is measured, but hardly what was meant.");
 }
 
 }  // namespace dubsar::python

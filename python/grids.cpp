@@ -197,7 +197,15 @@ void bind_grids(py::module_& module) {
       .def_property_readonly("intensity", plane(&RangeGrid::intensity), "[rows, cols] in [0, 1], or None")
       .def_property_readonly("confidence", plane(&RangeGrid::confidence), "[rows, cols] in [0, 1], or None")
       .def_property_readonly("rgb", &colour_plane, "[rows, cols, 3] uint8, or None")
-      .def_readwrite("spacing_mm", &RangeGrid::spacing_mm, "nominal lateral spacing, mm")
+      .def_property(
+          "spacing_mm", [](const RangeGrid& g) { return g.spacing_mm; },
+          [](RangeGrid& g, double spacing_mm) {
+            if (!(spacing_mm >= 0) || !std::isfinite(spacing_mm)) {
+              raise({ErrorKind::kUsage, "spacing_mm is no length", {}, "give millimetres, or 0: not known"});
+            }
+            g.spacing_mm = spacing_mm;
+          },
+          "nominal lateral spacing, mm; 0: not known")
       .def_readwrite("source", &RangeGrid::source, "the scan's original file name")
       .def_readonly("device", &RangeGrid::device)
       .def("points", &valid_points, "[n, 3] float32, the valid samples in row order; a copy")
@@ -227,7 +235,8 @@ void bind_grids(py::module_& module) {
       [](const fs::path& path, const GridPointer& grid) {
         run_for_result(py::none(), [&](JobContext&) { return write_grid(path, *grid); });
       },
-      py::arg("path"), py::arg("grid"), "As .grid (every field) or range-grid .ply; whole or not at all.");
+      py::arg("path"), py::arg("grid").none(false),
+      "As .grid (every field) or range-grid .ply; whole or not at all.");
 }
 
 }  // namespace dubsar::python

@@ -33,11 +33,30 @@ std::vector<Eigen::Vector3f> vectors_of(const Input<float>& array) {
   return out;
 }
 
-MeshPointer make_mesh(const Input<float>& vertices, const Input<std::int64_t>& faces,
+[[noreturn]] void raise_no_vertex(std::size_t face, std::int64_t vertex, std::int64_t count) {
+  raise({ErrorKind::kUsage,
+         "face " + std::to_string(face) + " names vertex " + std::to_string(vertex) + " of " +
+             std::to_string(count),
+         {},
+         "give indices from 0"});
+}
+
+/// numpy would cut 0.7 to 0, and take True for 1.
+Input<std::int64_t> whole_numbers(const py::object& given) {
+  const auto faces = py::array::ensure(given);
+  const char kind = faces ? faces.dtype().kind() : '?';
+  if (!faces || (kind != 'i' && kind != 'u' && faces.size() > 0)) {
+    raise({ErrorKind::kUsage, "faces are no whole numbers", {}, "give indices from 0, of an integer type"});
+  }
+  check_rows(faces, -1, "faces");
+  return Input<std::int64_t>(faces);
+}
+
+MeshPointer make_mesh(const Input<float>& vertices, const py::object& given_faces,
                       const std::optional<Input<float>>& normals,
                       const std::optional<Input<float>>& reliability) {
   check_rows(vertices, -1, "vertices");
-  check_rows(faces, -1, "faces");
+  const Input<std::int64_t> faces = whole_numbers(given_faces);
   auto mesh = std::make_shared<Mesh>();
   mesh->positions = vectors_of(vertices);
   const auto count = static_cast<std::int64_t>(mesh->positions.size());
@@ -46,11 +65,7 @@ MeshPointer make_mesh(const Input<float>& vertices, const Input<std::int64_t>& f
     for (std::size_t k = 0; k < 3; ++k) {
       const std::int64_t vertex = faces.data()[3 * f + k];
       if (vertex < 0 || vertex >= count) {
-        raise({ErrorKind::kUsage,
-               "face " + std::to_string(f) + " names vertex " + std::to_string(vertex) + " of " +
-                   std::to_string(count),
-               {},
-               "give indices from 0"});
+        raise_no_vertex(f, vertex, count);
       }
       mesh->faces[f][k] = static_cast<std::uint32_t>(vertex);
     }
@@ -65,6 +80,7 @@ MeshPointer make_mesh(const Input<float>& vertices, const Input<std::int64_t>& f
     }
     mesh->reliability.assign(reliability->data(), reliability->data() + count);
   }
+  check_sound(*mesh);
   return mesh;
 }
 
@@ -152,17 +168,39 @@ void bind_meshes(py::module_& module) {
   module.def(
       "write_mesh",
       [](const fs::path& path, const MeshPointer& mesh) {
+        check_sound(*mesh);
         run_for_result(py::none(), [&](JobContext&) { return write_mesh(path, *mesh); });
       },
-      py::arg("path"), py::arg("mesh"), "PLY, OBJ, STL or GLB by the ending; whole or not at all.");
+      py::arg("path"), py::arg("mesh").none(false),
+      "PLY, OBJ, STL or GLB by the ending; whole or not at all.");
   module.def(
       "check_mesh",
       [](const MeshPointer& mesh) {
+        check_sound(*mesh);
         MeshReport report;
         run_job(py::none(), [&](JobContext&) { report = check_mesh(*mesh); });
         return report_of(report);
       },
-      py::arg("mesh"), "Topology and size, as `dubsar mesh check` tells them.");
+      py::arg("mesh").none(false), "Topology and size, as `dubsar mesh check` tells them.");
+}
+
+void check_sound(const Mesh& mesh) {
+  const std::size_t count = mesh.positions.size();
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+    for (const std::uint32_t vertex : mesh.faces[f]) {
+      if (vertex >= count) {
+        raise_no_vertex(f, vertex, static_cast<std::int64_t>(count));
+      }
+    }
+  }
+  for (std::size_t v = 0; v < count; ++v) {
+    if (!mesh.positions[v].allFinite()) {
+      raise({ErrorKind::kUsage,
+             "vertex " + std::to_string(v) + " is not finite",
+             {},
+             "leave it out, and the faces that use it"});
+    }
+  }
 }
 
 py::array_t<double> matrix_of(const RigidTransform& transform) {

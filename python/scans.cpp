@@ -2,6 +2,8 @@
 // Copyright The Dubsar developers
 // From range grids to poses, and from grids in their places to a mesh.
 
+#include <cmath>
+
 #include "formats/pins_json.h"
 #include "formats/poses_json.h"
 #include "planning/sparse_flags.h"
@@ -92,6 +94,9 @@ ScanPose make_pose(int id, const Input<double>& model_from_scanner, const std::s
   pose.file = file;
   pose.model_from_scanner = transform_of(model_from_scanner, "model_from_scanner");
   pose.status = PoseStatus::kRegistered;
+  if (!(sigma_mm >= 0) || !std::isfinite(sigma_mm)) {
+    raise({ErrorKind::kUsage, "sigma_mm is no standard deviation", {}, "give 0 or more"});
+  }
   pose.sigma_mm = sigma_mm;
   return pose;
 }

@@ -87,6 +87,7 @@ void bind_simulation(py::module_& module) {
       "simulate_scans",
       [](const TabletPointer& tablet, int views, double spacing_mm, double noise_mm, std::uint64_t seed,
          const py::object& progress) {
+        check_sound(tablet->mesh);
         need(views >= 1 && views <= 10000, "views is out of bounds", "give 1 to 10000");
         need(spacing_mm >= 0.005 && spacing_mm <= 5, "spacing_mm is out of bounds", "give 0.005 to 5");
         need(noise_mm >= 0 && noise_mm <= 5, "noise_mm is out of bounds", "give 0 to 5");
@@ -95,8 +96,8 @@ void bind_simulation(py::module_& module) {
         });
         return std::pair(std::move(scans.grids), std::move(scans.poses));
       },
-      py::arg("tablet"), py::arg("views") = 12, py::arg("spacing_mm") = 0.1, py::arg("noise_mm") = 0.02,
-      py::arg("seed") = 1, py::arg("progress") = py::none(),
+      py::arg("tablet").none(false), py::arg("views") = 12, py::arg("spacing_mm") = 0.1,
+      py::arg("noise_mm") = 0.02, py::arg("seed") = 1, py::arg("progress") = py::none(),
       "Grids, and their true poses: a tablet turned by hand before a triangulation scanner.");
 }
 

@@ -59,13 +59,8 @@ Status draw_pictures(const std::filesystem::path& folder, const Mesh& mesh, cons
   return write_six_view_picture(folder / "wedges.png", coloured, lies, job);
 }
 
-/// A kilometre: beyond, areas leave what a float can tell.
-constexpr double kMostAcrossMm = 1e6;
 /// The tip of a stylus.
 constexpr double kLeastAcrossMm = 0.1;
-
-/// What the fits believe at best (analysis/inner_edges.cpp): coarser places would decide what is measured.
-constexpr double kCoarsestPlaceMm = 0.004;
 
 /// What the reader took the file's numbers for: it may say so itself.
 double mm_per_number(const std::string& file, double across_mm) {
@@ -78,10 +73,6 @@ double mm_per_number(const std::string& file, double across_mm) {
 /// something else.
 Status check_size(const AnalyzeArguments& arguments, const Mesh& mesh) {
   const double across_mm = size_across_mm(mesh);
-  if (!(across_mm < kMostAcrossMm)) {
-    return bad_input(arguments.in, fmt::format("it would be {:.3g} mm across", across_mm),
-                     "nothing inscribed is that large: look what its numbers are and say so with --unit");
-  }
   const auto likelier = arguments.unit.empty()
                             ? likelier_units(across_mm, mm_per_number(arguments.in, across_mm))
                             : std::vector<std::string_view>();
@@ -95,14 +86,7 @@ Status check_size(const AnalyzeArguments& arguments, const Mesh& mesh) {
     return bad_input(arguments.in, fmt::format("it would be {:.3g} mm across", across_mm),
                      "nothing inscribed is that small: look what its numbers are and say so with --unit");
   }
-  if (const double coarse_mm = coarsest_place_mm(mesh); coarse_mm > kCoarsestPlaceMm) {
-    return bad_input(
-        arguments.in,
-        fmt::format("it lies so far from the origin of its numbers that places are good to {:.2g} mm only",
-                    coarse_mm),
-        "export it again with its middle at the origin");
-  }
-  return {};
+  return check_measurable(mesh, arguments.in);
 }
 
 Status write_extras(const AnalyzeArguments& arguments, const Mesh& mesh, const Analysis& analysis,

@@ -11,6 +11,7 @@ namespace dubsar {
 namespace {
 
 using ::testing::ElementsAre;
+using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
 TEST(TabletSize, IsThatOfTheVerticesInUse) {
@@ -39,6 +40,23 @@ TEST(TabletSize, FarFromTheOriginPlacesAreCoarse) {
   EXPECT_EQ(coarsest_place_mm(mesh), 0.03125);
   mesh.faces.clear();
   EXPECT_EQ(coarsest_place_mm(mesh), 0);
+}
+
+TEST(TabletSize, WhatCannotBeMeasuredIsRefusedByItsNumbers) {
+  const Mesh mesh = shapes::box({3, 2, 6}, 2);
+  EXPECT_TRUE(check_measurable(mesh, "m.ply"));
+  Mesh far = mesh;
+  Mesh large = mesh;
+  for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+    far.positions[v].y() -= 300000;
+    large.positions[v] *= 1e5F;
+  }
+  const Status refused = check_measurable(far, "m.ply");
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().where, "m.ply");
+  EXPECT_THAT(refused.error().what, HasSubstr("places are good to 0.031 mm only"));
+  ASSERT_FALSE(check_measurable(large, ""));
+  EXPECT_THAT(check_measurable(large, "").error().what, HasSubstr("1.4e+06 mm across"));
 }
 
 }  // namespace

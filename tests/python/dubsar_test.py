@@ -145,6 +145,37 @@ class Meshes(unittest.TestCase):
             with self.assertRaises(dubsar.UsageError):
                 dubsar.Mesh(self.corners, bad)
 
+    def test_faces_are_whole_numbers(self):
+        # numpy would make a face of vertices 0, 1 and 2 of each of the first three, without a word.
+        for bad in ([[0.7, 1.2, 2.9]], [["0", "1", "2"]], [[True, False, True]], [[np.nan, 1, 2]], None):
+            with self.assertRaises(dubsar.UsageError, msg=bad):
+                dubsar.Mesh(self.corners, bad)
+        for good in (np.asfortranarray(self.sides), np.array(self.sides, np.uint8), np.repeat(self.sides, 2, 0)[::2]):
+            np.testing.assert_array_equal(dubsar.Mesh(self.corners, good).faces, self.sides)
+
+    def test_places_that_are_not_finite(self):
+        for bad in (np.nan, np.inf):
+            with self.assertRaisesRegex(dubsar.UsageError, "vertex 2 is not finite"):
+                dubsar.Mesh([[0, 0, 0], [1, 0, 0], [0, bad, 0], [0, 0, 1]], self.sides)
+
+    def test_what_was_written_into_the_arrays_is_looked_at(self):
+        # A face of a vertex that is not there took the interpreter down (STL), or went into a file that none reads.
+        astray = dubsar.Mesh(self.corners, self.sides)
+        astray.faces[1, 2] = 10**9
+        nowhere = dubsar.Mesh(self.corners, self.sides)
+        nowhere.vertices[3] = np.nan
+        with tempfile.TemporaryDirectory() as folder:
+            for mesh, what in ((astray, "face 1 names vertex 1000000000 of 4"), (nowhere, "vertex 3 is not finite")):
+                for call in (
+                    dubsar.check_mesh,
+                    dubsar.analyze,
+                    lambda m: dubsar.write_mesh(folder + "/m.ply", m),
+                    lambda m: dubsar.write_mesh(folder + "/m.stl", m),
+                ):
+                    with self.assertRaisesRegex(dubsar.UsageError, what):
+                        call(mesh)
+            self.assertEqual(os.listdir(folder), [])
+
     def test_files(self):
         mesh = dubsar.Mesh(self.corners, self.sides)
         with tempfile.TemporaryDirectory() as folder:
@@ -172,6 +203,18 @@ class Errors(unittest.TestCase):
         self.assertTrue(error.what and error.mend)
         self.assertIn(error.what, str(error))
 
+    def test_none_is_no_mesh(self):
+        # Each of them took the interpreter down.
+        for call in (
+            lambda: dubsar.analyze(None),
+            lambda: dubsar.check_mesh(None),
+            lambda: dubsar.write_mesh("x.ply", None),
+            lambda: dubsar.write_grid("x.grid", None),
+            lambda: dubsar.simulate_scans(None),
+        ):
+            with self.assertRaises(TypeError):
+                call()
+
     def test_storage(self):
         with self.assertRaises(OSError) as caught:
             dubsar.write_mesh("/proc/nowhere/mesh.ply", dubsar.Mesh(Meshes.corners, Meshes.sides))
@@ -182,6 +225,9 @@ class Errors(unittest.TestCase):
             lambda: dubsar.read_mesh("x.ply", unit="inch"),
             lambda: dubsar.simulate_tablet(spacing_mm=-1),
             lambda: dubsar.Pose(0, np.diag([2, 1, 1, 1])),
+            lambda: dubsar.Pose(0, np.eye(4), sigma_mm=-1),
+            lambda: dubsar.Pose(0, np.eye(4), sigma_mm=np.nan),
+            lambda: setattr(plane(), "spacing_mm", np.nan),
             lambda: dubsar.stitch([], [dubsar.Pose(0, np.eye(4))]),
             lambda: dubsar.stitch([plane()], []),
             lambda: dubsar.register([plane()], starts=[]),
@@ -276,6 +322,29 @@ class Pipeline(Scans):
             self.assertEqual(back.fields, {})
             with self.assertRaises(dubsar.UsageError):
                 back.annotated_mesh()
+
+    def test_a_mesh_in_metres_is_warned_of(self):
+        metres = dubsar.Mesh(self.mesh.vertices / 1000, self.mesh.faces)
+        with self.assertWarnsRegex(dubsar.MeshWarning, r"m\.ply: it would be 0\.0\d+ mm across; its numbers look like m:"):
+            dubsar.analyze(metres, name="m.ply")
+
+    def test_what_cannot_be_measured_is_refused(self):
+        with self.assertRaisesRegex(dubsar.BadInputError, "its numbers look like um"):
+            dubsar.analyze(dubsar.Mesh(self.mesh.vertices * 10000, self.mesh.faces))
+        far = dubsar.Mesh(self.mesh.vertices + np.float32(1e6), self.mesh.faces)
+        with self.assertRaisesRegex(dubsar.BadInputError, "so far from the origin"):
+            dubsar.analyze(far)
+        with self.assertRaisesRegex(dubsar.BadInputError, "nothing inscribed is that large"):
+            dubsar.analyze(dubsar.Mesh(self.mesh.vertices * 1e5, self.mesh.faces))
+
+    def test_a_mesh_inside_out_is_warned_of_and_measured_as_the_command_does(self):
+        inwards = dubsar.Mesh(self.mesh.vertices, self.mesh.faces[:, [0, 2, 1]])
+        before = inwards.faces.copy()
+        with self.assertWarnsRegex(dubsar.MeshWarning, "inside out"):
+            wedges = dubsar.analyze(inwards)
+        outwards = dubsar.analyze(dubsar.Mesh(self.mesh.vertices, self.mesh.faces))
+        self.assertEqual(wedges.table.tobytes(), outwards.table.tobytes())
+        np.testing.assert_array_equal(inwards.faces, before)
 
     def test_fields_outlive_the_wedges(self):
         openness = dubsar.analyze(self.mesh).fields["openness"]

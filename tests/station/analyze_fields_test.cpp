@@ -43,6 +43,9 @@ TEST_F(AnalyzeFields, AMeshInMetresIsToldByItsSizeAndTakenWhenSaid) {
   EXPECT_EQ(run_command({"analyze", mesh, "-o", at("w.json").string(), "--unit", "mm"}).status, 0);
   const std::string micrometres = sphere_file("um.stl", 15000, 3);
   EXPECT_THAT(run_command({"analyze", micrometres, "-o", at("w.json").string()}).err, HasSubstr("--unit um"));
+  // As millimetres such numbers would be too coarse: that must not be what is told.
+  const std::string large = sphere_file("large_um.stl", 100000, 3);
+  EXPECT_THAT(run_command({"analyze", large, "-o", at("w.json").string()}).err, HasSubstr("--unit um"));
 }
 
 TEST_F(AnalyzeFields, CentimetresAndInchesAreNamed) {
