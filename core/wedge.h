@@ -33,7 +33,7 @@ inline constexpr std::array<std::string_view, 3> kDirectionalByNames = {"longest
 struct WedgeSigma {
   double depth_point_mm = 0;  ///< of the point, all three axes together
   double depth_mm = 0;
-  std::array<double, 3> edge_rad{};  ///< of the direction, and so of the slope, of each inner edge
+  std::array<double, 3> edge_rad{};  ///< of each inner edge's direction; not all that its slope has
   std::array<double, 3> opening_rad{};
   std::array<double, 3> face_angle_rad{};
   std::array<double, 3> face_slope_rad{};

@@ -148,7 +148,7 @@ class Wedges:
         exit_points_extent_mm[3, 3], outer_vertices_mm[3, 3], face_normals[3, 3], surface_normal[3],
         directional_edge, directional_by (bytes, b"longest"), directional_margin, depth_mm, face_angles_rad[3],
         opening_angles_rad[3], edge_lengths_mm[3], edge_slopes_rad[3], face_slopes_rad[3], edge_bows_mm[3],
-        volume_mm3, sigma_depth_point_mm, sigma_depth_mm, sigma_edge_rad[3] (direction and slope),
+        volume_mm3, sigma_depth_point_mm, sigma_depth_mm, sigma_edge_rad[3] (direction),
         sigma_opening_rad[3], sigma_face_angle_rad[3], sigma_face_slope_rad[3], sigma_length_mm[3],
         sigma_volume_mm3, side (bytes, b"obverse"; b"" where not known, line and order are 0 then), line, order,
         turn_rad, reliability, confidence, vertex_count, intact, by_hand
