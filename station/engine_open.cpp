@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright The Dubsar developers
 #include "acquisition/rig_device.h"
+#include "station/calibration_record.h"
 #include "station/engine_impl.h"
 #include "station/range_camera_record.h"
-#include "station/verification.h"
 
 namespace dubsar {
 
@@ -110,11 +110,9 @@ Status Engine::Impl::open(JobContext& job) {
       return saved;
     }
   }
-  // As it stands today: its file may be written anew before the tablet is exported. Each keeps its own place.
   if (const auto calibration = calibration_file_of(options.device)) {
-    if (const Status saved = store->save_document("calibration " + calibration->made_at, calibration->json);
-        !saved) {
-      return saved;
+    if (const Status kept = keep_calibration(*store, *calibration); !kept) {
+      return kept;
     }
   }
   if (const Status saved = keep_range_camera(*store, options.device); !saved) {

@@ -12,6 +12,7 @@
 #include "core/log.h"
 #include "formats/bag_check.h"
 #include "station/package_content.h"
+#include "station/packed_names.h"
 #include "station/session_name.h"
 #include "station/session_wedges.h"
 #include "station/tablet_label.h"
@@ -21,35 +22,6 @@ namespace dubsar {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// Names that Windows keeps for devices whatever follows their first dot: NUL.ply cannot be opened there.
-bool is_device_name(const std::string& stem) {
-  std::string base = stem.substr(0, stem.find('.'));
-  std::ranges::transform(base, base.begin(), [](char c) { return c >= 'a' && c <= 'z' ? c - 'a' + 'A' : c; });
-  const bool numbered = base.size() == 4 && (base.starts_with("COM") || base.starts_with("LPT")) &&
-                        base[3] >= '0' && base[3] <= '9';
-  return numbered || base == "CON" || base == "PRN" || base == "AUX" || base == "NUL";
-}
-
-/// Letters, digits, dot, dash; anything else in a museum number becomes an underscore.
-std::string file_stem(const std::string& identifier) {
-  std::string stem;
-  for (const char c : identifier) {
-    const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
-                       c == '-' || (c == '.' && !stem.empty());
-    if (plain) {
-      stem += c;
-    } else if (!stem.empty() && stem.back() != '_') {
-      stem += '_';
-    }
-  }
-  while (!stem.empty() && stem.back() == '_') {
-    stem.pop_back();
-  }
-  constexpr std::size_t kLongest = 64;
-  stem = stem.empty() ? "tablet" : stem.substr(0, kLongest);
-  return is_device_name(stem) ? "tablet_" + stem : stem;
-}
 
 /// Sides, lines and drawings of wedges whose text does not tell how the tablet lies go by what the pictures
 /// go by.

@@ -18,6 +18,7 @@
 #include "formats/poses_json.h"
 #include "formats/red_map_json.h"
 #include "station/package_content.h"
+#include "station/packed_names.h"
 
 namespace dubsar {
 
@@ -94,17 +95,6 @@ std::string told(const std::string& name, std::string text) {
     }
   }
   return text_of(json);
-}
-
-/// A document's name as a file name.
-std::string file_name(std::string name) {
-  std::ranges::replace_if(
-      name,
-      [](char c) {
-        return !((c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-');
-      },
-      '_');
-  return name;
 }
 
 /// The poses with the files of their scans: original names may be missing, or those of two scans.
@@ -225,14 +215,16 @@ Status add_records(PackageContent& content) {
   if (!names) {
     return std::unexpected(names.error());
   }
-  for (const std::string& name : *names) {
+  const std::vector<std::string> files = document_files(*names);
+  for (std::size_t k = 0; k < names->size(); ++k) {
+    const std::string& name = (*names)[k];
     const auto document = content.store.load_document(name);
     if (!document) {
       return std::unexpected(document.error());
     }
     if (*document) {
       if (const Status written =
-              content.text("session/" + file_name(name) + ".json", told(name, **document),
+              content.text("session/" + files[k], told(name, **document),
                            "the session's document \"" + name + "\", as it was kept: formats/session.txt");
           !written) {
         return written;

@@ -111,6 +111,33 @@ TEST_F(Export, EveryFormOfItsOwnIsDescribedAndEveryLinkLeadsSomewhere) {
   }
 }
 
+TEST_F(Export, NoDocumentOfTheSessionIsWrittenOverAnother) {
+  const fs::path session = at("documents");
+  fs::copy(at("session"), session, fs::copy_options::recursive);
+  const std::map<std::string, std::string> texts = {
+      {"a b", R"({"n":1})"}, {"a/b", R"({"n":2})"}, {"A_b", R"({"n":3})"}, {"events", R"({"n":4})"}};
+  {
+    Result<SessionStore> store = SessionStore::open_or_create(session);
+    for (const auto& [name, text] : texts) {
+      ASSERT_TRUE(store->save_document(name, text));
+    }
+  }
+  const Outcome packed = run_command({"export", session.string(), "--to", at("documents_bag").string(),
+                                      "--without", "renderings,features,wedges,grid-ply"});
+  ASSERT_EQ(packed.status, 0) << packed.err;
+  const fs::path root = at("documents_bag") / "data";
+  std::vector<std::string> kept;
+  for (const std::string& file : files_below(root / "session")) {
+    kept.push_back(bytes_of(root / "session" / file));
+  }
+  const std::string readme = bytes_of(root / "README.txt");
+  for (const auto& [name, text] : texts) {
+    EXPECT_THAT(kept, Contains(text));
+    EXPECT_THAT(readme, HasSubstr("document \"" + name + "\"")) << "which file it is";
+  }
+  EXPECT_TRUE(nlohmann::json::parse(bytes_of(root / "session/events.json")).is_array());
+}
+
 TEST_F(Export, EveryByteIsCoveredByAChecksum) {
   const std::string bag = quoted(at("bag"));
   EXPECT_EQ(
