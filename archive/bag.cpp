@@ -30,17 +30,25 @@ struct Listed {
 Result<std::vector<Listed>> files_below(const fs::path& root, const fs::path& folder) {
   std::vector<Listed> files;
   std::error_code error;
+  const auto unreadable = [](const fs::path& path, const std::error_code& why) {
+    return fail(ErrorKind::kStorage, why.message(), path.string(), "check the disk");
+  };
   for (fs::recursive_directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
-    if (it->is_directory() && !it->is_symlink()) {
-      continue;
-    }
-    if (!it->is_regular_file() || it->is_symlink()) {
+    std::error_code unknown;  // of its own: going on to the next one forgets it
+    const fs::file_status status = it->symlink_status(unknown);
+    if (!unknown && !fs::is_directory(status) && !fs::is_regular_file(status)) {
       return bad_input(it->path().string(), "a bag holds files and folders only", "take it out");
     }
-    files.push_back({it->path().lexically_relative(root).generic_string(), it->file_size()});
+    const std::uint64_t bytes = !unknown && fs::is_regular_file(status) ? it->file_size(unknown) : 0;
+    if (unknown) {
+      return unreadable(it->path(), unknown);
+    }
+    if (fs::is_regular_file(status)) {
+      files.push_back({it->path().lexically_relative(root).generic_string(), bytes});
+    }
   }
   if (error) {
-    return fail(ErrorKind::kStorage, error.message(), folder.string(), "check the disk");
+    return unreadable(folder, error);
   }
   std::ranges::sort(files, {}, &Listed::name);
   return files;

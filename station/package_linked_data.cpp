@@ -7,11 +7,14 @@
 #include <algorithm>
 #include <ctime>
 #include <filesystem>
+#include <iterator>
 #include <string_view>
 
 #include "archive/iiif_manifest.h"
 #include "archive/provenance.h"
 #include "station/package_content.h"
+#include "formats/atomic_file.h"
+#include "formats/files_below.h"
 #include "station/results.h"
 
 namespace dubsar {
@@ -57,32 +60,39 @@ ProvenanceScan scan_of(const PackageContent& content, const StoredScan& scan) {
   return out;
 }
 
-/// The files that lie there by now and whose path begins so, in order.
-std::vector<std::string> files_of(const PackageContent& content, std::string_view begins) {
-  namespace fs = std::filesystem;
-  std::vector<std::string> files;
-  std::error_code ignored;
-  for (fs::recursive_directory_iterator it(content.root, ignored), end; !ignored && it != end;
-       it.increment(ignored)) {
-    if (std::string path = it->path().lexically_relative(content.root).generic_string();
-        it->is_regular_file(ignored) && path.starts_with(begins)) {
-      files.push_back(std::move(path));
-    }
+/// The files that lie there by now, below the payload's folder, in order.
+Result<std::vector<std::string>> payload_of(const PackageContent& content) {
+  const Result<std::vector<std::filesystem::path>> files = files_below(content.root);
+  if (!files) {
+    return std::unexpected(files.error());
   }
-  std::ranges::sort(files);
+  std::vector<std::string> paths;
+  paths.reserve(files->size());
+  for (const std::filesystem::path& file : *files) {
+    paths.push_back(file.lexically_relative(content.root).generic_string());
+  }
+  return paths;
+}
+
+/// Those in a folder.
+std::vector<std::string> files_of(const std::vector<std::string>& payload, std::string_view folder) {
+  std::vector<std::string> files;
+  std::ranges::copy_if(payload, std::back_inserter(files),
+                       [&](const std::string& path) { return path.starts_with(folder); });
   return files;
 }
 
 /// What a step made is what lies in its folder: so no file is forgotten that another part came to write.
-void add_step(const PackageContent& content, std::string_view folder, ProvenanceStep step,
+void add_step(const std::vector<std::string>& payload, std::string_view folder, ProvenanceStep step,
               ProvenanceInput& input) {
-  step.made = files_of(content, folder);
+  step.made = files_of(payload, folder);
   if (!step.made.empty()) {
     input.steps.push_back(std::move(step));
   }
 }
 
-void add_steps(const PackageContent& content, ProvenanceInput& input) {
+void add_steps(const PackageContent& content, const std::vector<std::string>& payload,
+               ProvenanceInput& input) {
   ProvenanceStep registration{"registration",       "Registration of the scans",      {},
                               {"scans/poses.json"}, registration_parameters(content), {},
                               keeper_of(content)};
@@ -120,15 +130,15 @@ void add_steps(const PackageContent& content, ProvenanceInput& input) {
                      stitching_parameters(content),
                      {{"vertices", static_cast<double>(content.mesh().positions.size()), ""},
                       {"triangles", static_cast<double>(content.mesh().faces.size()), ""}}});
-    std::vector<std::string> forms = files_of(content, "model/");
+    std::vector<std::string> forms = files_of(payload, "model/");
     std::erase(forms, model);
     steps.push_back({"conversion", "Other forms of the same surface", {model}, forms, {}, {}});
   }
   input.steps = std::move(steps);
-  std::vector<std::string> grids = files_of(content, "scans/grids/");
-  add_step(content, "scans/ply/", {"unfolding", "The scans as ordered PLY", grids, {}, {}, {}}, input);
+  std::vector<std::string> grids = files_of(payload, "scans/grids/");
+  add_step(payload, "scans/ply/", {"unfolding", "The scans as ordered PLY", grids, {}, {}, {}}, input);
   if (content.wedges) {
-    add_step(content, "wedges/",
+    add_step(payload, "wedges/",
              {"analysis",
               "Measurement of the wedges",
               {model},
@@ -140,17 +150,18 @@ void add_steps(const PackageContent& content, ProvenanceInput& input) {
               analysis_note(*content.wedges)},
              input);
   }
-  add_step(content, "features/", {"features", "Values by vertex", {model}, {}, {}, {}}, input);
-  add_step(content, "pictures/", {"drawing", "Pictures drawn from the surface", {model}, {}, {}, {}}, input);
+  add_step(payload, "features/", {"features", "Values by vertex", {model}, {}, {}, {}}, input);
+  add_step(payload, "pictures/", {"drawing", "Pictures drawn from the surface", {model}, {}, {}, {}}, input);
   std::vector<std::string> told = verdict.made;
   told.emplace_back("scans/poses.json");
   if (!content.mesh().faces.empty()) {
     told.push_back(model);
   }
-  add_step(content, "report/", {"report", "Pages for people", std::move(told), {}, {}, {}}, input);
+  add_step(payload, "report/", {"report", "Pages for people", std::move(told), {}, {}, {}}, input);
   // What the session wrote down while it was scanned, and what says what lies here.
   ProvenanceStep packing{"packing", "Records of the session, and lists", std::move(grids), {}, {}, {}};
-  packing.made = files_of(content, "session/");
+  packing.made = files_of(payload, "session/");
+  std::ranges::copy(files_of(payload, "iiif/annotations/"), std::back_inserter(packing.made));
   packing.made.emplace_back("scans/scans.json");
   packing.made.emplace_back("README.txt");
   if (!content.pictures.empty()) {
@@ -190,7 +201,11 @@ Status add_provenance(PackageContent& content) {
   for (const StoredScan& scan : *scans) {
     input.scans.push_back(scan_of(content, scan));
   }
-  add_steps(content, input);
+  const Result<std::vector<std::string>> payload = payload_of(content);
+  if (!payload) {
+    return std::unexpected(payload.error());
+  }
+  add_steps(content, *payload, input);
   return content.text(
       "provenance.jsonld", provenance_jsonld(input),
       "how every file came about (but for formats/): device, calibration, every scan, every step with its "

@@ -10,6 +10,7 @@
 
 #include "acquisition/session_store.h"
 #include "formats/atomic_file.h"
+#include "formats/files_below.h"
 #include "formats/json_node.h"
 #include "station/done_stamp.h"
 #include "station/earlier_package.h"
@@ -20,25 +21,6 @@ namespace dubsar {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// Every file below a folder but those to be passed over, in order.
-Result<std::vector<fs::path>> files_below(const fs::path& folder,
-                                          const std::function<bool(const fs::path&)>& passes_over) {
-  std::vector<fs::path> files;
-  std::error_code error;
-  for (fs::recursive_directory_iterator at(folder, error), end; !error && at != end; at.increment(error)) {
-    if (passes_over(at->path())) {
-      at.disable_recursion_pending();
-    } else if (at->is_regular_file(error)) {
-      files.push_back(at->path());
-    }
-  }
-  if (error) {
-    return fail(ErrorKind::kStorage, error.message(), folder.string(), "look at its rights");
-  }
-  std::ranges::sort(files);
-  return files;
-}
 
 /// What decides what is in the package, beside the session.
 std::string parameters_of(const PackageOptions& options) {
@@ -122,7 +104,7 @@ Result<Packing> pack_session(const PackRequest& request, JobContext& job) {
   const std::string before = work ? stamp_text(*work) : std::string();
   if (work) {
     options.before_publishing = [&](const fs::path& staged) -> Status {
-      const auto outputs = files_below(staged, [](const fs::path&) { return false; });
+      const auto outputs = files_below(staged);
       if (!outputs) {
         return std::unexpected(outputs.error());
       }

@@ -53,6 +53,18 @@ TEST(Bag, RefusesWhatIsNoPayload) {
   EXPECT_EQ(write_bag_tags(folder.path(), {}, JobContext()).error().kind, ErrorKind::kBadInput);
 }
 
+TEST(Bag, RefusesWhatIsNeitherFileNorFolder) {
+  for (const char* to : {"elsewhere", "b.txt", "link"}) {  // in vain, to a file, to itself
+    const test::TemporaryFolder folder;
+    put(folder.path() / "data" / "b.txt", "b");
+    fs::create_symlink(to, folder.path() / "data" / "link");
+    const auto size = write_bag_tags(folder.path(), {}, {});
+    ASSERT_FALSE(size) << to;
+    EXPECT_EQ(size.error().kind, ErrorKind::kBadInput) << to;
+    EXPECT_EQ(size.error().where, (folder.path() / "data/link").string()) << to;
+  }
+}
+
 TEST(Bag, StopsWhenAsked) {
   const test::TemporaryFolder folder;
   put(folder.path() / "data" / "a", "a");
