@@ -12,6 +12,7 @@
 #include "formats/mesh_io.h"
 #include "formats/red_map_json.h"
 #include "station/live_session.h"
+#include "station/packing.h"
 #include "station/plan_again.h"
 #include "station/results.h"
 #include "station/session_pins.h"
@@ -150,19 +151,45 @@ bool LiveSession::show_stored_model(const SessionStore& store, const std::vector
   return is_of_these_poses;
 }
 
-void LiveSession::rebuild_model(const ScanSet& set, const std::vector<ScanPose>& poses, bool red_alone) {
-  const auto job = std::make_shared<JobContext>(
+std::shared_ptr<JobContext> LiveSession::begin_unasked() {
+  auto job = std::make_shared<JobContext>(
       [this](std::string_view stage, double fraction) { progress(stage, fraction); });
   {
     const std::scoped_lock lock(mutex_);
     // stop() may have come before there was a job of this to cancel.
     if (job_->cancelled() || !later_.empty() || scan_later_ || next_) {
-      return;
+      return nullptr;
     }
     unasked_ = job;
     state_.phase = LivePhase::kStill;  // what is asked for begins at once
   }
   changed();
+  return job;
+}
+
+void LiveSession::look_for_package() {
+  const std::filesystem::path usual = usual_package_of(std::filesystem::absolute(options_.session));
+  std::error_code none;
+  if (!std::filesystem::exists(usual, none) || !state().signed_off) {
+    return;
+  }
+  const auto job = begin_unasked();
+  if (!job) {
+    return;
+  }
+  const Result<bool> packed = is_packed(options_.session, usual, *job);
+  const std::scoped_lock lock(mutex_);
+  if (packed && *packed) {
+    state_.package = usual;
+  }
+  unasked_.reset();
+}
+
+void LiveSession::rebuild_model(const ScanSet& set, const std::vector<ScanPose>& poses, bool red_alone) {
+  const auto job = begin_unasked();
+  if (!job) {
+    return;
+  }
   if (red_alone) {
     const LiveState now = state();
     if (Result<ColouredPoints> red = red_points_again(set, poses, *now.mesh, *job)) {

@@ -167,6 +167,7 @@ void LiveSession::read() {
   launch([this] {
     look_after_rig();
     read_folder();
+    look_for_package();
   });
 }
 
@@ -242,6 +243,9 @@ void LiveSession::ask(OperatorCommand command) {
 void LiveSession::describe(const TabletRecord& record) {
   {
     const std::scoped_lock lock(mutex_);
+    if (!(state_.record == record)) {
+      state_.package.clear();  // it says otherwise
+    }
     state_.record = record;
     if (engine_ && engine_->post(DescribeTablet{record})) {
       return;

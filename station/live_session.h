@@ -81,12 +81,15 @@ class LiveSession {
  private:
   void launch(std::function<void()> job);
   void hurry();  ///< under the mutex: something was asked for, what nobody waits for ends
-  /// Work that nobody waits for: the model of these scans, or on the mesh that is shown what is red and
+  /// The job of work that nobody waits for; null where something else is wanted already.
+  [[nodiscard]] std::shared_ptr<JobContext> begin_unasked();
+  /// Such work: the model of these scans, or on the mesh that is shown what is red and
   /// excused.
   void rebuild_model(const ScanSet& set, const std::vector<ScanPose>& poses, bool red_alone);
   void run_engine(std::vector<OperatorCommand> first, bool first_scan_waits);
   void read_folder();
   void look_for_broken_off();
+  void look_for_package();  ///< of the signed session, in its usual place
   void show_scans(const SessionStore& store, const std::vector<StoredScan>& scans);  ///< under the mutex
   void show_verdict(const SessionStore& store);                                      ///< and who signed it
   /// False where it is of other poses, or there is none.

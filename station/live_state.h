@@ -90,7 +90,7 @@ struct LiveState {
   std::optional<Checklist> checklist;
   bool signed_off = false;  ///< the verdict as it stands
   std::string signed_by;
-  std::filesystem::path package;  ///< of the session as it stands; empty: none was made in this window
+  std::filesystem::path package;  ///< of the session as it stands, made or found here; empty: none
   std::optional<Error> error;     ///< what ended the last run or job
   std::string notice;             ///< what the operator should know; empty when a later scan has made it old
   TabletRecord record;

@@ -122,6 +122,23 @@ Result<Packing> pack_session(const PackRequest& request, JobContext& job) {
   return Packing{.done_before = false, .package = std::move(*package)};
 }
 
+Result<bool> is_packed(const fs::path& session, const fs::path& package, const JobContext& job) {
+  std::error_code error;
+  if (!fs::is_regular_file(stamp_beside(whole_name(package)), error)) {
+    return false;
+  }
+  const Result<StampedWork> now = begin_work({.session = session, .to = package, .package = {}}, job);
+  if (!now) {
+    return std::unexpected(now.error());
+  }
+  const Result<DoneStamp> known = parse_done_stamp(stamp_text(*now), now->stamp().string());
+  return known && known->verb == "export" && known->inputs == now->inputs() && !known->outputs.empty() &&
+         std::ranges::all_of(known->outputs, [&](const StampedFile& file) {
+           const auto bytes = fs::file_size(now->stamp().parent_path() / file.name, error);
+           return !error && bytes == file.bytes;
+         });
+}
+
 fs::path usual_package_of(const fs::path& session) {
   return fs::path(whole_name(session).string() + ".results") / "package";
 }

@@ -26,6 +26,13 @@ struct Packing {
 /// done. Errors: those of write_package().
 [[nodiscard]] Result<Packing> pack_session(const PackRequest& request, JobContext& job);
 
+/// Whether a package of the session as it stands lies there, by whatever version and with whatever was left
+/// out: the stamp beside it says that it was made of these very files, and each of its own is there, as long
+/// as it was written. Reads the session, and nothing of the package: dubsar verify does that. Errors:
+/// kStorage, kCancelled.
+[[nodiscard]] Result<bool> is_packed(const std::filesystem::path& session,
+                                     const std::filesystem::path& package, const JobContext& job);
+
 /// "SESSION.results/package", where a session's package goes unless somebody says otherwise
 /// (docs/collections.md).
 [[nodiscard]] std::filesystem::path usual_package_of(const std::filesystem::path& session);
