@@ -211,13 +211,14 @@ class Reader {
     } else if (name == "div" && !tag.closes && tag.attribute("class") == "places") {
       begin(PageBlock::Kind::kFigures);
       into_ = nullptr;
+    } else if (name == "div" && !tag.closes && tag.attribute("class") == "bar" && in_cross()) {
+      into_ = &blocks_.back().text;
     } else if (name == "div") {
       into_ = nullptr;
     } else if (name == "figure" && !tag.closes) {
       const bool among =
-          !blocks_.empty() &&
-          (blocks_.back().kind == PageBlock::Kind::kCross ||
-           (blocks_.back().kind == PageBlock::Kind::kFigures && tag.attribute("class") != "sheet"));
+          !blocks_.empty() && (in_cross() || (blocks_.back().kind == PageBlock::Kind::kFigures &&
+                                              tag.attribute("class") != "sheet"));
       if (!among) {
         begin(PageBlock::Kind::kFigures);
       }
@@ -249,6 +250,9 @@ class Reader {
 
   [[nodiscard]] bool in_table() const {
     return !blocks_.empty() && blocks_.back().kind == PageBlock::Kind::kTable;
+  }
+  [[nodiscard]] bool in_cross() const {
+    return !blocks_.empty() && blocks_.back().kind == PageBlock::Kind::kCross;
   }
   [[nodiscard]] bool in_figure() const { return !blocks_.empty() && !blocks_.back().figures.empty(); }
 

@@ -34,7 +34,8 @@ struct PageBlock {
     kDefinition,  ///< text after the term `mark`
     kTable,       ///< cells by row; the first row is the head
     kFigures,     ///< figures, all alike
-    kCross,       ///< the six views, in the order of kSixViewOrder, laid out as a cross and to scale
+    kCross,       ///< the six views, in the order of kSixViewOrder, laid out as a cross and to scale;
+                  ///< text: how long the bar beside them is, of the tablet, such as "5 mm"
   };
   Kind kind = Kind::kParagraph;
   int level = 0;

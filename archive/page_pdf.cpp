@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
+#include <cmath>
 #include <utility>
 
 #include "archive/cross_plan.h"
@@ -19,6 +21,22 @@ constexpr double kFoot = 20 * kPointsPerMm;
 constexpr double kColumn = PdfSheet::kWidth - 2 * kMargin;
 constexpr double kBody = 9.0;
 constexpr std::array<double, 4> kHeading = {kBody, 17, 12.5, 10};
+
+std::string words_of(const RichText& text) {
+  std::string words;
+  for (const TextRun& run : text) {
+    words += run.text;
+  }
+  return words;
+}
+
+/// Of "5 mm"; 0 where it says something else.
+double millimetres_in(std::string_view words) {
+  double mm = 0;
+  const auto [end, error] = std::from_chars(words.data(), words.data() + words.size(), mm);
+  const std::string_view unit = words.substr(static_cast<std::size_t>(end - words.data()));
+  return error == std::errc() && unit == " mm" && std::isfinite(mm) ? mm : 0;
+}
 
 class Setter {
  public:
@@ -57,7 +75,7 @@ class Setter {
         figures(block.figures);
         break;
       case PageBlock::Kind::kCross:
-        cross(block.figures);
+        cross(block);
         break;
     }
   }
@@ -92,11 +110,7 @@ class Setter {
     const auto lines = pdf_lines(sheet_, text, size, kColumn);
     room_for(height_of(lines, size) + size + least_height(next));  // never alone at the foot
     y_ -= 0.6 * size;
-    std::string words;
-    for (const TextRun& run : block.text) {
-      words += run.text;
-    }
-    sheet_.bookmark(words, y_ + size, block.level);
+    sheet_.bookmark(words_of(block.text), y_ + size, block.level);
     draw_lines(sheet_, lines, kMargin, y_, size, 0);
     y_ -= height_of(lines, size) + 0.35 * size;
   }
@@ -247,7 +261,8 @@ class Setter {
   }
 
   /// In the order top, left, obverse, right, bottom, reverse.
-  void cross(const std::vector<PageFigure>& six) {
+  void cross(const PageBlock& block) {
+    const std::vector<PageFigure>& six = block.figures;
     if (six.size() != 6) {
       figures(six);
       return;
@@ -275,11 +290,14 @@ class Setter {
     centred(4, top);
     top -= (high_mm(4) + kGapMm) * unit;
     centred(5, top);
-    // Ten millimetres of the tablet, beside the reverse.
-    const double bar = middle + (0.5 * column_mm + kGapMm) * unit;
-    const double bar_y = y_ - all_high_mm * unit + 8;
-    sheet_.line(bar, bar_y, bar + 10 * unit, bar_y, 1.2, 0);
-    sheet_.text("10 mm", bar, bar_y - 8, PdfFont::kPlain, 6.5, kPdfSoftGrey);
+    const std::string words = words_of(block.text);
+    if (const double bar_mm = millimetres_in(words);
+        bar_mm > 0 && bar_mm <= all_wide_mm) {  // beside the reverse
+      const double bar = middle + (0.5 * column_mm + kGapMm) * unit;
+      const double bar_y = y_ - all_high_mm * unit + 8;
+      sheet_.line(bar, bar_y, bar + bar_mm * unit, bar_y, 1.2, 0);
+      sheet_.text(words, bar, bar_y - 8, PdfFont::kPlain, 6.5, kPdfSoftGrey);
+    }
     y_ -= all_high_mm * unit + kBody;
   }
 

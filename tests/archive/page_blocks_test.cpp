@@ -72,9 +72,19 @@ TEST(PageBlocks, TakePicturesOutOfThePage) {
   EXPECT_EQ(words(figure.caption), "top");
 }
 
+TEST(PageBlocks, TakeTheLengthOfTheBarFromThePage) {
+  const auto blocks = page_blocks(
+      "<div class=\"cross\"><figure><img><figcaption>back</figcaption></figure><div class=\"bar\" "
+      "style=\"--share: 60%\">5 mm</div></div><p>after</p><div class=\"bar\">7 mm</div>");
+  ASSERT_EQ(blocks.size(), 2U);
+  EXPECT_EQ(words(blocks[0].text), "5 mm");
+  EXPECT_EQ(words(blocks[1].text), "after");
+}
+
 TEST(PageBlocks, TakeAnythingForAPage) {
-  for (const char* broken : {"", "<", "<p", "<td>x", "<tr><td>", "<img src=\"data:image/png;base64,?\">",
-                             "<figcaption>x", "</dt>", "<dd>x</dd>", "<h9>", "<style>", "<p>&amp"}) {
+  for (const char* broken : {"", "<", "<p", "<td>x", "<tr><td>", "<div class=\"bar\">5 mm",
+                             "<img src=\"data:image/png;base64,?\">", "<figcaption>x", "</dt>", "<dd>x</dd>",
+                             "<h9>", "<style>", "<p>&amp"}) {
     EXPECT_LE(page_blocks(broken).size(), 1U) << broken;
   }
 }
@@ -182,6 +192,28 @@ TEST(PagePdf, WhatTheFontLacksIsSpeltOut) {
   EXPECT_TRUE(read.find("[U+1202D] an") != std::string::npos) << read;
   EXPECT_TRUE(read.find("[U+5EAB], ḫ š[U+12228]") != std::string::npos) << read;
   EXPECT_TRUE(read.find("[U+12000] \xEF\xBF\xBD, 2026") != std::string::npos) << read << "at the foot";
+}
+
+TEST(PagePdf, HasTheBarOfThePage) {
+  Image image = filled_image(40, 40, {200, 200, 200});
+  image.mm_per_px = 0.5;
+  const auto uri = png_data_uri(image, "side");
+  ASSERT_TRUE(uri);
+  std::string html = "<div class=\"cross\">";
+  for (int side = 0; side < 6; ++side) {
+    html += "<figure><img width=\"40\" height=\"40\" style=\"--mm: 20mm\" src=\"" + *uri +
+            "\"><figcaption>side</figcaption></figure>";
+  }
+  const PdfInfo info{"Tablet", "Dubsar", "2026-01-02T03:04:05Z"};
+  const auto with_bar = [&](const std::string& words) {
+    const auto pdf = page_pdf(html + "<div class=\"bar\">" + words + "</div></div>", info);
+    EXPECT_TRUE(pdf) << pdf.error().line();
+    return pdf ? read_page(*pdf, 1) : std::string();
+  };
+  EXPECT_NE(with_bar("5 mm").find("5 mm"), std::string::npos);
+  for (const char* none : {"", "mm", "-5 mm", "inf mm", "900 mm", "5 cm"}) {
+    EXPECT_EQ(with_bar(none).find("m"), std::string::npos) << none;
+  }
 }
 
 TEST(PagePdf, AHeadingStandsOnThePageOfItsPicture) {
