@@ -17,14 +17,14 @@ struct MeshReadOptions {
   /// What the file's numbers are; unset: the file's own word (PLY obj_info unit), metres for glTF, else
   /// millimetres.
   std::optional<double> mm_per_unit{};
-  /// A PLY of vertices alone gives a mesh without faces, for who only looks at it.
+  /// A PLY or OBJ of vertices alone gives a mesh without faces, for who only looks at it.
   bool may_be_points = false;
 };
 
 /// Reads a mesh by its extension (.ply .obj .stl .glb) or, where that says nothing, by its first bytes.
-/// Polygons are triangulated as fans; STL, GLB and PLY with texture coordinates, which keep a vertex once per
-/// facet or side of a texture seam, are welded where positions are equal. Topological faults stay as they
-/// are: see triangulation/mesh_check.h. Errors name the file, the vertex or face, and the mend.
+/// Polygons are triangulated; STL, GLB and PLY with texture coordinates, which keep a vertex once per facet
+/// or side of a texture seam, are welded where positions are equal. Topological faults stay (mesh_check.h);
+/// that there is no face is an error. Errors name the file, the vertex or face, and the mend.
 [[nodiscard]] Result<Mesh> read_mesh(const std::filesystem::path& path, const MeshReadOptions& options = {});
 [[nodiscard]] Result<Mesh> read_mesh_bytes(std::string_view bytes, const std::string& name,
                                            const MeshReadOptions& options = {});

@@ -288,10 +288,15 @@ Result<Mesh> decode_mesh_ply(std::string_view bytes, const std::string& where,
     return std::unexpected(header.error());
   }
   const PlyElement* vertex = header->element("vertex");
-  const bool has_faces = header->element("face") != nullptr || header->element("tristrips") != nullptr;
-  if (vertex == nullptr || (!has_faces && !options.may_be_points)) {
-    return bad_input(where, vertex == nullptr ? "a PLY file without vertices" : "a PLY file without faces",
-                     "give a mesh; scans become one with dubsar stitch");
+  const auto refused = [&](const char* why) {
+    return bad_input(where, why, "give a mesh; scans become one with dubsar stitch");
+  };
+  constexpr const char* kNoFaces = "a PLY file without faces";
+  const bool claims_faces = std::ranges::any_of(header->elements, [](const PlyElement& element) {
+    return (element.name == "face" || element.name == "tristrips") && element.count > 0;
+  });
+  if (vertex == nullptr || (!claims_faces && !options.may_be_points)) {
+    return refused(vertex == nullptr ? "a PLY file without vertices" : kNoFaces);
   }
   const Result<double> said = mm_per_unit_of(*header, where);
   if (!said && !options.mm_per_unit) {
@@ -315,6 +320,9 @@ Result<Mesh> decode_mesh_ply(std::string_view bytes, const std::string& where,
     if (!status) {
       return std::unexpected(status.error());
     }
+  }
+  if (mesh.faces.empty() && !options.may_be_points) {
+    return refused(kNoFaces);
   }
   if (has_texture_places(*vertex) && !mesh.faces.empty()) {
     weld_equal_positions(mesh);

@@ -4,6 +4,7 @@
 
 #include <array>
 
+#include "core/lower_case.h"
 #include "formats/text_scanner.h"
 
 namespace dubsar {
@@ -57,7 +58,7 @@ Complaint read_format(std::string_view rest, PlyHeader& header) {
 }
 
 Complaint read_element(std::string_view rest, PlyHeader& header) {
-  const std::string_view name = take_word(rest);
+  const std::string name = in_lower_case(std::string(take_word(rest)));
   const std::string_view count_word = take_word(rest);
   std::int64_t count = 0;
   if (name.empty() || !parse_integer(count_word, count)) {
@@ -72,7 +73,7 @@ Complaint read_element(std::string_view rest, PlyHeader& header) {
   if (header.elements.size() == kMaxPlyElements) {
     return "more than " + std::to_string(kMaxPlyElements) + " elements";
   }
-  header.elements.push_back({std::string(name), static_cast<std::uint64_t>(count), {}});
+  header.elements.push_back({name, static_cast<std::uint64_t>(count), {}});
   return std::nullopt;
 }
 
@@ -99,7 +100,7 @@ Complaint read_property(std::string_view rest, PlyHeader& header) {
     return "property type " + in_quotes(word) + " is not known";
   }
   property.type = *type;
-  property.name = take_word(rest);
+  property.name = in_lower_case(std::string(take_word(rest)));
   if (property.name.empty()) {
     return "a property has no name";
   }

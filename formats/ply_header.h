@@ -55,8 +55,8 @@ struct PlyHeader {
 /// True when the bytes begin as a PLY file does.
 [[nodiscard]] bool is_ply(std::string_view bytes);
 
-/// Parses the header (Turk 1994). Lines with a keyword that the format does not know are passed over: scans
-/// of the Stanford archive hold some. CRLF is taken for LF. Errors name the header line.
+/// Parses the header (Turk 1994). Lines with a keyword that the format does not know are passed over. Names
+/// come in small letters, however they are written. CRLF is taken for LF. Errors name the header line.
 [[nodiscard]] Result<PlyHeader> parse_ply_header(std::string_view bytes, const std::string& where);
 
 }  // namespace dubsar

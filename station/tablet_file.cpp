@@ -33,9 +33,6 @@ Result<sim::SimTablet> read_tablet_file(const std::filesystem::path& path, const
   if (!mesh) {
     return std::unexpected(mesh.error());
   }
-  if (mesh->faces.empty()) {
-    return bad_input(path.string(), "it has no faces to scan", "give a triangle mesh");
-  }
   face_outwards(&*mesh, path.string());
   sim::SimTablet tablet;
   tablet.albedo.assign(mesh->positions.size(), kPlainClayAlbedo);

@@ -39,9 +39,6 @@ Result<sim::SimTablet> tablet_from_file(const std::filesystem::path& path) {
   if (!mesh) {
     return std::unexpected(mesh.error());
   }
-  if (mesh->faces.empty()) {
-    return bad_input(path.string(), "the mesh has no faces", "name a surface");
-  }
   Eigen::Vector3f low = mesh->positions.front();
   Eigen::Vector3f high = low;
   for (const Eigen::Vector3f& p : mesh->positions) {

@@ -42,15 +42,6 @@ Result<Mesh> read(const MeshOptions& options) {
                    {.mm_per_unit = options.unit.empty() ? std::nullopt : mm_per_unit(options.unit)});
 }
 
-/// The same for who needs its faces.
-Result<Mesh> read_faces(const MeshOptions& options) {
-  Result<Mesh> mesh = read(options);
-  if (mesh && mesh->faces.empty()) {
-    return bad_input(options.in, "it has no faces", "give a triangle mesh");
-  }
-  return mesh;
-}
-
 Result<int> check(const MeshOptions& options, CommandContext& context) {
   const Result<Mesh> mesh = read(options);
   if (!mesh) {
@@ -74,7 +65,7 @@ Result<int> check(const MeshOptions& options, CommandContext& context) {
 }
 
 Result<int> convert(const MeshOptions& options, CommandContext& context) {
-  Result<Mesh> mesh = read_faces(options);
+  Result<Mesh> mesh = read(options);
   if (!mesh) {
     return std::unexpected(mesh.error());
   }
@@ -121,7 +112,7 @@ Result<int> section(const MeshOptions& options, CommandContext& context) {
       return std::unexpected(place->error());
     }
   }
-  Result<Mesh> mesh = read_faces(options);
+  Result<Mesh> mesh = read(options);
   if (!mesh) {
     return std::unexpected(mesh.error());
   }

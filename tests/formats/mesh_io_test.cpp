@@ -95,6 +95,17 @@ TEST(MeshPly, ReadsForeignAsciiAndTriangulatesPolygons) {
   EXPECT_TRUE(mesh->normals.empty());
 }
 
+TEST(MeshPly, NamesMayBeInCapitals) {
+  const auto mesh = read_mesh_bytes(
+      "ply\nformat ascii 1.0\nelement Vertex 3\nproperty float X\nproperty float Y\nproperty float Z\n"
+      "property uchar Red\nproperty uchar Green\nproperty uchar Blue\nelement FACE 1\n"
+      "property list uchar int Vertex_Indices\nend_header\n0 0 0 9 8 7\n1 0 0 9 8 7\n0 1 0 9 8 7\n3 0 1 2\n",
+      "a.ply");
+  ASSERT_TRUE(mesh) << line_of(mesh);
+  EXPECT_EQ(mesh->faces, (std::vector<std::array<std::uint32_t, 3>>{{0, 1, 2}}));
+  EXPECT_EQ(mesh->colours[2], (std::array<std::uint8_t, 3>{9, 8, 7}));
+}
+
 TEST(MeshPly, ReadsTriangleStrips) {
   const auto mesh = read_mesh_bytes(
       "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty float y\nproperty float z\n"
@@ -224,6 +235,15 @@ TEST(MeshHostile, Ply) {
   EXPECT_THAT(line_of(read_mesh_bytes(
                   "ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\nend_header\n", "a.ply")),
               HasSubstr("a PLY file without faces; give a mesh; scans become one with dubsar stitch"));
+  for (const char* corners : {"", "2 0 0\n"}) {  // none; one that is no polygon
+    const std::string empty =
+        "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n"
+        "element face " +
+        std::string(*corners == '\0' ? "0" : "1") +
+        "\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n" + corners;
+    EXPECT_THAT(line_of(read_mesh_bytes(empty, "a.ply")), HasSubstr("a PLY file without faces")) << corners;
+    EXPECT_TRUE(read_mesh_bytes(empty, "a.ply", {.may_be_points = true})) << corners;
+  }
   EXPECT_THAT(line_of(read_mesh_bytes("", "a.ply")), HasSubstr("a.ply: the file is empty"));
   EXPECT_THAT(line_of(read_mesh_bytes("hello", "a.doc")), HasSubstr("not a mesh that Dubsar reads"));
   const std::string whole = encode_mesh_ply(full_mesh());

@@ -82,7 +82,7 @@ TEST_F(MeshCommand, ACutThatMeetsNothingWritesNothing) {
   }
 }
 
-TEST_F(MeshCommand, WhatHasNoFacesIsNeitherConvertedNorCut) {
+TEST_F(MeshCommand, WhatHasNoFacesIsNoMesh) {
   std::ofstream(at("points.ply"))
       << "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
          "property float z\nelement face 0\nproperty list uchar int vertex_indices\n"
@@ -92,6 +92,7 @@ TEST_F(MeshCommand, WhatHasNoFacesIsNeitherConvertedNorCut) {
   EXPECT_THAT(converted.complaints(), SizeIs(1)) << converted.err;
   EXPECT_FALSE(fs::exists(at("points.stl")));
   EXPECT_EQ(cut("points.ply", "0,0,0", "1,0,0", "cut.csv").status, 2);
+  EXPECT_EQ(run_command({"mesh", "check", at("points.ply")}).status, 2) << "nothing is no 2-manifold either";
 }
 
 }  // namespace

@@ -104,8 +104,6 @@ constexpr EnginePhrase kDrivers[] = {
     {"the scanner stopped in the middle of the scan", "der Scanner hielt mitten im Scan"},
     {"see to its cable and power, then give the same command again",
      "nach Kabel und Strom sehen, dann weiter"},
-    {"the mesh has no faces", "das Netz hat keine Flächen"},
-    {"name a surface", "eine Fläche nennen"},
 };
 
 }  // namespace
