@@ -35,6 +35,18 @@ killed=$(grep -c ' analyze end$' "$folder/log/museum/c.log" || true)
 status=0
 "$workflows/do-tablet" "$folder" nowhere 2>/dev/null || status=$?
 [ $status = 2 ] || fail "a tablet that is not there: status $status"
+grep -q ' analyze failed status=2 {"error":{.*"there is no folder' "$folder/log/nowhere.log" || fail "no reason: $(cat "$folder/log/nowhere.log")"
+mkdir "$folder/museum/bad"
+echo 'no mesh' >"$folder/museum/bad/model.ply"
+"$workflows/do-tablet" "$folder" museum/bad 2>/dev/null && fail "what is no mesh was done"
+said=$("$workflows/check-collection" "$folder" 2>/dev/null) && fail "check-collection overlooks what is not done"
+[[ $said == 'museum/bad: is not done: analyze failed status=2 {"error":'*'not a PLY file'* ]] || fail "check-collection: $said"
+mkdir "$folder/museum/broken"
+echo 'no database' >"$folder/museum/broken/session.sqlite"
+status=0
+"$workflows/do-tablet" "$folder" museum/broken 2>/dev/null || status=$?
+grep -q " failed status=$status {\"error\":{" "$folder/log/museum/broken.log" || fail "no reason: $(cat "$folder/log/museum/broken.log")"
+rm -r "$folder/museum/bad" "$folder/museum/broken"*
 "$workflows/check-collection" "$folder" 2>/dev/null || fail "check-collection"
 printf 'x' >>"$folder/museum/c/wedges.json"
 said=$("$workflows/check-collection" "$folder" 2>/dev/null) && fail "check-collection overlooks damage"
