@@ -9,7 +9,6 @@
 #include <cstdlib>
 #include <string>
 
-#include "archive/html.h"
 #include "formats/jpeg_complaint.h"
 
 namespace dubsar {
@@ -24,26 +23,15 @@ struct Buffer {
   unsigned long size = 0;
 };
 
-/// A property of XMP in the language that nobody has said; nothing where the text is empty.
-std::string property(const std::string& name, const std::string& text) {
-  return text.empty() ? std::string()
-                      : "<dc:" + name + "><rdf:Alt><rdf:li xml:lang=\"x-default\">" + html_escaped(text) +
-                            "</rdf:li></rdf:Alt></dc:" + name + ">\n";
-}
-
 /// The content of an APP1 segment, whose head tells XMP from other things that stand in one.
 std::string xmp_segment(const PictureWords& words) {
-  const std::string said = property("title", words.title) + property("description", words.description) +
-                           property("rights", words.copyright);
   using namespace std::string_literals;
-  return said.empty()
-             ? std::string()
-             : "http://ns.adobe.com/xap/1.0/\0"s +
-                   "<?xpacket begin=\"\xEF\xBB\xBF\" id=\"W5M0MpCehiHzreSzNTczkc9d\"?>\n"
-                   "<x:xmpmeta xmlns:x=\"adobe:ns:meta/\"><rdf:RDF "
-                   "xmlns:rdf=\"http://www.w3.org/1999/02/22-rdf-syntax-ns#\">\n"
-                   "<rdf:Description rdf:about=\"\" xmlns:dc=\"http://purl.org/dc/elements/1.1/\">\n" +
-                   said + "</rdf:Description></rdf:RDF></x:xmpmeta>\n<?xpacket end=\"r\"?>";
+  const std::string rdf = rdf_of(words);
+  return rdf.empty() ? rdf
+                     : "http://ns.adobe.com/xap/1.0/\0"s +
+                           "<?xpacket begin=\"\xEF\xBB\xBF\" id=\"W5M0MpCehiHzreSzNTczkc9d\"?>\n"
+                           "<x:xmpmeta xmlns:x=\"adobe:ns:meta/\">" +
+                           rdf + "</x:xmpmeta>\n<?xpacket end=\"r\"?>";
 }
 
 bool encode(const Image& image, const std::string& xmp, int quality, Buffer& into, JpegComplaint& complaint) {

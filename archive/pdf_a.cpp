@@ -12,6 +12,7 @@
 
 #include "archive/html.h"
 #include "archive/pdf_a_rewrite.h"
+#include "archive/picture_words.h"
 
 namespace dubsar {
 
@@ -50,14 +51,15 @@ std::string xmp_of(const PdfInfo& info, const std::string& producer) {
 <rdf:Description rdf:about="" xmlns:pdfaid="http://www.aiim.org/pdfa/ns/id/">
 <pdfaid:part>1</pdfaid:part><pdfaid:conformance>B</pdfaid:conformance></rdf:Description>
 <rdf:Description rdf:about="" xmlns:dc="http://purl.org/dc/elements/1.1/"><dc:format>application/pdf</dc:format>
-<dc:title><rdf:Alt><rdf:li xml:lang="x-default">{}</rdf:li></rdf:Alt></dc:title></rdf:Description>
+{}</rdf:Description>
 <rdf:Description rdf:about="" xmlns:xmp="http://ns.adobe.com/xap/1.0/"><xmp:CreatorTool>{}</xmp:CreatorTool>
 <xmp:CreateDate>{}</xmp:CreateDate><xmp:ModifyDate>{}</xmp:ModifyDate></rdf:Description>
 <rdf:Description rdf:about="" xmlns:pdf="http://ns.adobe.com/pdf/1.3/"><pdf:Producer>{}</pdf:Producer></rdf:Description>
 </rdf:RDF></x:xmpmeta>
 <?xpacket end="w"?>)",
-      "\xEF\xBB\xBF", html_escaped(info.title), html_escaped(info.program), info.when, info.when,
-      html_escaped(producer));
+      "\xEF\xBB\xBF",
+      dublin_core({.title = info.title, .description = info.description, .copyright = info.rights}),
+      html_escaped(info.program), info.when, info.when, html_escaped(producer));
 }
 
 }  // namespace

@@ -20,6 +20,8 @@ struct PdfInfo {
   std::string title;
   std::string program;
   std::string when;  ///< ISO 8601, UTC: the document's date, so that the same input gives the same bytes
+  std::string description{};  ///< lines parted by line feeds; empty: none
+  std::string rights{};       ///< whose it is, and its licence; likewise
 };
 
 /// A PDF in the making, for archives (PDF/A-1b): A4 pages, points from the lower left corner, fonts embedded

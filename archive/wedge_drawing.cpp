@@ -125,7 +125,8 @@ std::vector<OutlineRing> side_outline(const RenderScene& scene, Face side,
 }  // namespace
 
 std::string wedge_drawing(Face side, const std::vector<Wedge>& wedges, const RigidTransform& text_from_model,
-                          const std::string& title, const std::vector<OutlineRing>& outline) {
+                          PictureWords words, const std::vector<OutlineRing>& outline) {
+  words.title.append(", ").append(to_string(side));
   Sheet sheet{side_axes(side), text_from_model};
   double left = 1e30;
   double right = -1e30;
@@ -168,7 +169,7 @@ std::string wedge_drawing(Face side, const std::vector<Wedge>& wedges, const Rig
       "<svg xmlns=\"http://www.w3.org/2000/svg\" version=\"1.1\" width=\"%.3fmm\" height=\"%.3fmm\" "
       "viewBox=\"0 0 %.3f %.3f\">\n",
       sheet.width, sheet.height, sheet.width, sheet.height);
-  out += "<title>" + html_escaped(title) + ", " + to_string(side) + "</title>\n";
+  out += "<title>" + html_escaped(words.title) + "</title>\n<metadata>" + rdf_of(words) + "</metadata>\n";
   out +=
       "<style type=\"text/css\">.outer{fill:#e8e4dc;stroke:#000;stroke-width:.08;stroke-linejoin:round}"
       ".inner{fill:none;stroke:#000;stroke-width:.06;stroke-linecap:round}.directional{stroke-width:.16}"
@@ -188,7 +189,7 @@ std::string wedge_drawing(Face side, const std::vector<Wedge>& wedges, const Rig
 Result<std::vector<std::filesystem::path>> write_wedge_drawings(const std::filesystem::path& folder,
                                                                 const std::vector<Wedge>& wedges,
                                                                 const RigidTransform& text_from_model,
-                                                                const std::string& title, const Mesh* mesh) {
+                                                                const PictureWords& words, const Mesh* mesh) {
   if (const Status made = make_folder(folder); !made) {
     return std::unexpected(made.error());
   }
@@ -209,7 +210,7 @@ Result<std::vector<std::filesystem::path>> write_wedge_drawings(const std::files
     const std::vector<OutlineRing> outline =
         scene ? side_outline(*scene, side, text_from_model) : std::vector<OutlineRing>();
     if (const Status written =
-            write_file_atomically(path, wedge_drawing(side, wedges, text_from_model, title, outline));
+            write_file_atomically(path, wedge_drawing(side, wedges, text_from_model, words, outline));
         !written) {
       return std::unexpected(written.error());
     }

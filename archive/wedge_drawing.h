@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "archive/outline.h"
+#include "archive/picture_words.h"
 #include "core/mesh.h"
 #include "core/result.h"
 #include "core/rigid_transform.h"
@@ -16,16 +17,17 @@ namespace dubsar {
 
 /// The wedges of one side as a drawing to scale: SVG 1.1 in millimetres, seen straight on, up as it is read.
 /// One group per wedge with its outer edges, its inner edges, the directional one heavier, and its numbers in
-/// a title and as JSON. Wedges of other sides are left out. outline: the tablet's rim in the same
+/// a title and as JSON. Wedges of other sides are left out. words: of the tablet; the side's name is added to
+/// their title, and all of them stand in the drawing's metadata as RDF. outline: the tablet's rim in the same
 /// plane (x the side's right, y its up, mm, text's frame), or none.
 [[nodiscard]] std::string wedge_drawing(Face side, const std::vector<Wedge>& wedges,
-                                        const RigidTransform& text_from_model, const std::string& title,
+                                        const RigidTransform& text_from_model, PictureWords words,
                                         const std::vector<OutlineRing>& outline = {});
 
 /// Writes obverse.svg and so on for every side that has wedges, or a drawing from before, into a folder,
 /// which is made; returns the files. mesh: what the wedges are on, for the outline; null leaves it out.
 [[nodiscard]] Result<std::vector<std::filesystem::path>> write_wedge_drawings(
     const std::filesystem::path& folder, const std::vector<Wedge>& wedges,
-    const RigidTransform& text_from_model, const std::string& title, const Mesh* mesh = nullptr);
+    const RigidTransform& text_from_model, const PictureWords& words, const Mesh* mesh = nullptr);
 
 }  // namespace dubsar

@@ -34,7 +34,8 @@ std::vector<std::string> deliverable_names() {
           "export/checklist.html", "export/poses.json",    "export/red_map.json"};
 }
 
-Result<Deliverables> write_deliverables(const fs::path& session, const ReportInput& input, JobContext& job) {
+Result<Deliverables> write_deliverables(const fs::path& session, const ReportInput& input,
+                                        const FileLabel& label, JobContext& job) {
   Deliverables files;
   for (const char* name : {"mesh", "export"}) {
     if (const Status made = make_folder(session / name); !made) {
@@ -56,20 +57,21 @@ Result<Deliverables> write_deliverables(const fs::path& session, const ReportInp
   job.progress("writing results", 0.5);
   if (!input.model.faces.empty()) {
     const fs::path mesh = session / "mesh" / "model.ply";
-    if (Status s = keep(write_mesh(mesh, input.model), mesh, files.mesh); !s) {
+    if (Status s = keep(write_mesh(mesh, input.model, label), mesh, files.mesh); !s) {
       return std::unexpected(s.error());
     }
   }
   if (!pictures->empty) {
     const fs::path six_views = session / "export" / "six_views.png";
-    if (Status s =
-            keep(write_picture(six_views, pictures->sides_sheet, input.title), six_views, files.six_views);
+    const auto words = [&](const char* what) { return picture_words(label, input.title + ", " + what); };
+    if (Status s = keep(write_picture(six_views, pictures->sides_sheet, words("six sides")), six_views,
+                        files.six_views);
         !s) {
       return std::unexpected(s.error());
     }
     const fs::path red_map = session / "export" / "red_map.png";
-    if (Status s = keep(write_picture(red_map, pictures->red_sheet, input.title + ", red map"), red_map,
-                        files.red_map);
+    if (Status s =
+            keep(write_picture(red_map, pictures->red_sheet, words("red map")), red_map, files.red_map);
         !s) {
       return std::unexpected(s.error());
     }

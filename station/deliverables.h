@@ -9,6 +9,7 @@
 #include "archive/report.h"
 #include "core/job.h"
 #include "core/result.h"
+#include "formats/file_label.h"
 
 namespace dubsar {
 
@@ -31,8 +32,9 @@ struct Deliverables {
 [[nodiscard]] std::vector<std::string> deliverable_names();
 
 /// Writes mesh, pictures, report, checklist page, poses and red map, each atomically. An empty mesh gives no
-/// pictures.
+/// pictures. Mesh and pictures say of themselves what the label says.
 [[nodiscard]] Result<Deliverables> write_deliverables(const std::filesystem::path& session,
-                                                      const ReportInput& input, JobContext& job);
+                                                      const ReportInput& input, const FileLabel& label,
+                                                      JobContext& job);
 
 }  // namespace dubsar

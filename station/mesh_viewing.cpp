@@ -329,7 +329,7 @@ void MeshViewing::keep_section(const fs::path& stem) {
       fs::path file = stem;
       file += ending;
       const Status outside = check_outside_packages(file);
-      if (const Status written = outside ? write_section(*section, file) : outside; !written) {
+      if (const Status written = outside ? write_section(*section, file, label_) : outside; !written) {
         complain(written.error());
         return;
       }

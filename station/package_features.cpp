@@ -73,8 +73,9 @@ Status add_features(PackageContent& content) {
     if (content.job.cancelled()) {
       return fail(ErrorKind::kCancelled, "stopped");
     }
-    if (const Status written = write_feature_mat(content.root / path, feature.value, 1, feature.comment);
-        !written) {
+    std::string comment = feature.comment;
+    comment.append("\n").append(label_lines(content.label, ""));
+    if (const Status written = write_feature_mat(content.root / path, feature.value, 1, comment); !written) {
       return written;
     }
     content.list(path,

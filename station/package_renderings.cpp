@@ -19,7 +19,6 @@
 #include "archive/tiff.h"
 #include "core/parallel.h"
 #include "formats/atomic_file.h"
-#include "formats/file_label.h"
 #include "station/package_content.h"
 
 namespace dubsar {
@@ -118,14 +117,7 @@ class Drawing {
     content_.pictures.push_back({path, label, media_type, image.width, image.height, image.mm_per_px});
   }
   [[nodiscard]] PictureWords words(const std::string& what) const {
-    std::string description;
-    for (const auto& [name, value] : content_.label.words) {
-      description.append(description.empty() ? "" : "\n").append(label_value(name));
-      description.append(": ").append(label_value(value));
-    }
-    return {.title = label_value(content_.identifier + ", " + what),
-            .description = std::move(description),
-            .copyright = label_value(content_.label.rights)};
+    return picture_words(content_.label, content_.identifier + ", " + what);
   }
 
   PackageContent& content_;

@@ -6,6 +6,7 @@
 
 #include "archive/page_pdf.h"
 #include "archive/png.h"
+#include "archive/png_text.h"
 #include "archive/report_pictures.h"
 #include "formats/atomic_file.h"
 #include "station/package_content.h"
@@ -33,10 +34,13 @@ struct Pages {
 };
 
 Result<Pages> pages_of(const PackageContent& content) {
+  const PictureWords words = picture_words(content.label, content.identifier + ", red map");
   if (const auto& kept = content.source.pages()) {
-    Result<std::string> sheet = read_whole_file(kept->red_sheet);
-    return Pages{moved(kept->report, content), moved(kept->checklist, content),
-                 sheet ? std::move(*sheet) : std::string()};
+    Result<std::string> sheet = png_with_words(kept->red_sheet, words);
+    if (!sheet) {
+      return std::unexpected(sheet.error());
+    }
+    return Pages{moved(kept->report, content), moved(kept->checklist, content), std::move(*sheet)};
   }
   PageFacts facts = content.facts;
   facts.title = content.identifier;
@@ -57,7 +61,7 @@ Result<Pages> pages_of(const PackageContent& content) {
   }
   Pages pages{std::move(*report), checklist_html(input, *pictures), {}};
   if (!pictures->empty) {
-    const auto png = encode_png(pictures->red_sheet, input.title + ", red map");
+    const auto png = encode_png(pictures->red_sheet, words);
     if (!png) {
       return std::unexpected(png.error());
     }
@@ -73,8 +77,12 @@ Status add_reports(PackageContent& content) {
   if (!pages) {
     return std::unexpected(pages.error());
   }
-  const auto pdf =
-      page_pdf(pages->report, {content.identifier + ": scan report", program_name(), content.when});
+  const PictureWords words = picture_words(content.label, content.identifier + ": scan report");
+  const auto pdf = page_pdf(pages->report, {.title = words.title,
+                                            .program = program_name(),
+                                            .when = content.when,
+                                            .description = words.description,
+                                            .rights = words.copyright});
   if (!pdf) {
     return std::unexpected(pdf.error());
   }

@@ -55,8 +55,9 @@ Status PackageSource::take_kept(JobContext& job) {
   const auto list_text = store.load_document("checklist");
   const auto report = recorded(store, *whole, "report.html");
   const auto checklist = recorded(store, *whole, "checklist.html");
+  const auto red_sheet = recorded(store, *whole, "red_map.png");  // there is one wherever there is a mesh
   const bool together = whole->ok() && map_text && *map_text && list_text && *list_text && report &&
-                        checklist && recorded(store, *whole, "red_map.json") == **map_text &&
+                        checklist && red_sheet && recorded(store, *whole, "red_map.json") == **map_text &&
                         recorded(store, *whole, "poses.json") == poses_to_json(*poses);
   if (!together) {
     return {};
@@ -81,7 +82,7 @@ Status PackageSource::take_kept(JobContext& job) {
   }
   results_ = {std::move(*poses), std::move(*map), std::move(*mesh), std::move(*list)};
   tablet_from_model_ = *lies;
-  pages_ = KeptPages{*report, *checklist, store.folder() / "export" / "red_map.png"};
+  pages_ = KeptPages{*report, *checklist, *red_sheet};
   return {};
 }
 

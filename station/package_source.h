@@ -18,9 +18,9 @@ namespace dubsar {
 
 /// Pages as the session keeps them.
 struct KeptPages {
-  std::string report;               ///< HTML
-  std::string checklist;            ///< HTML
-  std::filesystem::path red_sheet;  ///< PNG
+  std::string report;     ///< HTML
+  std::string checklist;  ///< HTML
+  std::string red_sheet;  ///< PNG
 };
 
 /// What is wrong with the record of the session; its grids, each of which is marked itself, are left aside.

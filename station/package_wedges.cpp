@@ -38,8 +38,9 @@ Status add_wedges(PackageContent& content) {
     }
   }
   if (file.text_from_model && !file.wedges.empty()) {
-    const auto drawings = write_wedge_drawings(content.root / "wedges" / "drawings", file.wedges,
-                                               *file.text_from_model, content.identifier, &content.mesh());
+    const auto drawings =
+        write_wedge_drawings(content.root / "wedges" / "drawings", file.wedges, *file.text_from_model,
+                             picture_words(content.label, content.identifier), &content.mesh());
     if (!drawings) {
       return std::unexpected(drawings.error());
     }

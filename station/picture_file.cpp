@@ -9,8 +9,8 @@
 
 namespace dubsar {
 
-Status write_picture(const std::filesystem::path& file, const Image& image, const std::string& title) {
-  const auto png = encode_png(image, title);
+Status write_picture(const std::filesystem::path& file, const Image& image, const PictureWords& words) {
+  const auto png = encode_png(image, words);
   if (!png) {
     return std::unexpected(png.error());
   }

@@ -21,6 +21,7 @@
 #include "planning/checklist.h"
 #include "station/range_camera_record.h"
 #include "station/session_name.h"
+#include "station/tablet_label.h"
 #include "station/tablet_record.h"
 
 namespace dubsar {
@@ -343,7 +344,11 @@ Result<Deliverables> keep_deliverables(SessionStore& store, const ReportInput& i
   if (const Status forgotten = store.forget_files(deliverable_names()); !forgotten) {
     return std::unexpected(forgotten.error());
   }
-  Result<Deliverables> files = write_deliverables(store.folder(), input, job);
+  const Result<FileLabel> label = tablet_label(store);
+  if (!label) {
+    return std::unexpected(label.error());
+  }
+  Result<Deliverables> files = write_deliverables(store.folder(), input, *label, job);
   if (!files) {
     return files;
   }

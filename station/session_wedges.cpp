@@ -13,6 +13,7 @@
 #include "formats/sha2.h"
 #include "station/analysis.h"
 #include "station/session_name.h"
+#include "station/tablet_label.h"
 
 namespace dubsar {
 
@@ -90,8 +91,12 @@ Result<std::optional<SessionWedges>> keep_wedges(SessionStore& store, const Mesh
   }
   std::vector<fs::path> made{out.json};
   if (file.text_from_model) {
-    const auto drawings =
-        write_wedge_drawings(folder, file.wedges, *file.text_from_model, session_name(store.folder()), &mesh);
+    const Result<FileLabel> label = tablet_label(store);
+    if (!label) {
+      return std::unexpected(label.error());
+    }
+    const auto drawings = write_wedge_drawings(folder, file.wedges, *file.text_from_model,
+                                               picture_words(*label, session_name(store.folder())), &mesh);
     if (!drawings) {
       return std::unexpected(drawings.error());
     }

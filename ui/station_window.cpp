@@ -260,7 +260,7 @@ class StationWindow {
     int width = 0;
     int height = 0;
     glfwGetFramebufferSize(window_.handle(), &width, &height);
-    return write_picture(*file, read_window(width, height), "Dubsar");
+    return write_picture(*file, read_window(width, height), {.title = "Dubsar"});
   }
 
   /// Why the mesh that the window was opened for cannot be shown at all.

@@ -180,7 +180,7 @@ int time_many_frames(const std::string& file, double millions, const std::string
   if (picture.empty()) {
     return 0;
   }
-  const Status written = write_picture(picture, opened->view->read(), "viewer");
+  const Status written = write_picture(picture, opened->view->read(), {.title = "viewer"});
   if (!written) {
     std::fprintf(stderr, "%s\n", written.error().line().c_str());
     return 2;

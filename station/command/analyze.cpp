@@ -194,16 +194,16 @@ Status check_corrected(const AnalyzeArguments& arguments, const std::filesystem:
 /// tell how many corrections the outputs have in them.
 Status write_outputs(const AnalyzeArguments& arguments, const WedgeFile& file, const Mesh& mesh,
                      const Analysis& analysis, const StampedWork* work, const JobContext& job) {
+  const FileLabel label = read_file_label(arguments.in);
   if (!arguments.mesh_out.empty()) {
-    if (Status written =
-            write_mesh(arguments.mesh_out, annotated_mesh(mesh, analysis), read_file_label(arguments.in));
-        !written) {
+    if (Status written = write_mesh(arguments.mesh_out, annotated_mesh(mesh, analysis), label); !written) {
       return written;
     }
   }
   std::vector<std::filesystem::path> drawings;
   if (!arguments.svg.empty()) {
-    auto drawn = write_wedge_drawings(arguments.svg, file.wedges, *file.text_from_model, file.mesh, &mesh);
+    auto drawn = write_wedge_drawings(arguments.svg, file.wedges, *file.text_from_model,
+                                      picture_words(label, file.mesh), &mesh);
     if (!drawn) {
       return std::unexpected(drawn.error());
     }

@@ -124,7 +124,7 @@ Result<int> section(const MeshOptions& options, CommandContext& context) {
   if (cut->lines.empty()) {
     return nothing_cut(options, context);
   }
-  if (const Status written = write_section(*cut, options.out); !written) {
+  if (const Status written = write_section(*cut, options.out, read_file_label(options.in)); !written) {
     return std::unexpected(written.error());
   }
   if (context.json) {

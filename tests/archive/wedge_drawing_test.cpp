@@ -31,7 +31,7 @@ TEST(WedgeDrawing, IsToScaleWithOneGroupPerWedgeOfTheSide) {
   const std::vector<Wedge> wedges = {wedge_at(0, Face::kObverse, 0, 0, 5),
                                      wedge_at(1, Face::kObverse, 10, 4, 5),
                                      wedge_at(2, Face::kReverse, 3, 0, -5)};
-  const std::string svg = wedge_drawing(Face::kObverse, wedges, {}, "K. 1 <a & b>");
+  const std::string svg = wedge_drawing(Face::kObverse, wedges, {}, {.title = "K. 1 <a & b>"});
   // 12.5 mm from the first wedge's head to the second one's tail, 3 mm of margin on each side.
   EXPECT_THAT(svg, HasSubstr("width=\"18.500mm\""));
   EXPECT_THAT(svg, HasSubstr("viewBox=\"0 0 18.500 19.000\""));
@@ -50,9 +50,10 @@ TEST(WedgeDrawing, CarriesTheNumbersOfEachWedgeForPrograms) {
   wedge.place.line = 3;
   wedge.depth_mm = 0.5;
   wedge.volume_mm3 = 0.125;
-  const std::string svg = wedge_drawing(Face::kObverse, {wedge}, {}, "t");
-  const std::size_t from = svg.find("<metadata>") + 10;
-  const auto json = nlohmann::json::parse(svg.substr(from, svg.find("</metadata>") - from), nullptr, false);
+  const std::string svg = wedge_drawing(Face::kObverse, {wedge}, {}, {.title = "t"});
+  const std::size_t from = svg.find("<metadata>", svg.find("<g ")) + 10;
+  const auto json =
+      nlohmann::json::parse(svg.substr(from, svg.find("</metadata>", from) - from), nullptr, false);
   ASSERT_TRUE(json.is_object()) << svg;
   EXPECT_EQ(json["id"], 7);
   EXPECT_EQ(json["line"], 3);
@@ -61,11 +62,20 @@ TEST(WedgeDrawing, CarriesTheNumbersOfEachWedgeForPrograms) {
   EXPECT_EQ(json["volume_mm3"], 0.125);
 }
 
+TEST(WedgeDrawing, SaysOfItselfWhatItIs) {
+  const std::string svg = wedge_drawing(Face::kReverse, {}, {},
+                                        {.title = "K. 1", .description = "a < b", .copyright = "© A & B"});
+  const std::string metadata = svg.substr(0, svg.find("</metadata>"));
+  EXPECT_THAT(metadata, HasSubstr("x-default\">K. 1, reverse<"));
+  EXPECT_THAT(metadata, HasSubstr("<dc:description><rdf:Alt><rdf:li xml:lang=\"x-default\">a &lt; b<"));
+  EXPECT_THAT(metadata, HasSubstr("<dc:rights><rdf:Alt><rdf:li xml:lang=\"x-default\">© A &amp; B<"));
+}
+
 TEST(WedgeDrawing, MarksWhatAPersonHasCorrected) {
   Wedge added = wedge_at(1, Face::kObverse, 10, 4, 5);
   added.by_hand = ByHand::kAdded;
   const std::string svg =
-      wedge_drawing(Face::kObverse, {wedge_at(0, Face::kObverse, 0, 0, 5), added}, {}, "t");
+      wedge_drawing(Face::kObverse, {wedge_at(0, Face::kObverse, 0, 0, 5), added}, {}, {.title = "t"});
   EXPECT_THAT(svg, HasSubstr("<g id=\"wedge-0\" class=\"wedge\">"));
   EXPECT_THAT(svg, HasSubstr("<g id=\"wedge-1\" class=\"wedge by-hand\">"));
   EXPECT_THAT(svg, HasSubstr("corrected by hand: added"));
@@ -81,14 +91,14 @@ TEST(WedgeDrawing, WritesASheetForEachSideThatHasWedges) {
   const test::TemporaryFolder folder;
   const std::vector<Wedge> wedges = {wedge_at(0, Face::kObverse, 0, 0, 5),
                                      wedge_at(2, Face::kReverse, 3, 0, -5)};
-  const auto files = write_wedge_drawings(folder.path() / "svg", wedges, {}, "t");
+  const auto files = write_wedge_drawings(folder.path() / "svg", wedges, {}, {.title = "t"});
   ASSERT_TRUE(files);
   ASSERT_EQ(files->size(), 2U);
   EXPECT_EQ((*files)[1].filename(), "reverse.svg");
   EXPECT_TRUE(read_whole_file((*files)[0], 1U << 20U));
-  EXPECT_TRUE(write_wedge_drawings(folder.path() / "none", {}, {}, "t")->empty());
+  EXPECT_TRUE(write_wedge_drawings(folder.path() / "none", {}, {}, {.title = "t"})->empty());
   // The reverse's only wedge was none after all.
-  ASSERT_EQ(write_wedge_drawings(folder.path() / "svg", {wedges[0]}, {}, "t")->size(), 2U);
+  ASSERT_EQ(write_wedge_drawings(folder.path() / "svg", {wedges[0]}, {}, {.title = "t"})->size(), 2U);
   EXPECT_THAT(*read_whole_file(folder.path() / "svg" / "reverse.svg", 1U << 20U), Not(HasSubstr("wedge-2")));
 }
 

@@ -121,7 +121,7 @@ TEST_F(Export, ItsReadmeTellsWhereAPlaceLiesInAPicture) {
   const auto mesh = read_mesh(data("model/session.ply"));
   ASSERT_TRUE(mesh);
   const std::string values = bytes_of(data("features/msii.mat"));
-  const auto msii = numbers_after(values, values.substr(0, values.find('\n')), 2 * mesh->positions.size());
+  const auto msii = numbers_after(values, values.substr(0, values.find("\n0 ")), 2 * mesh->positions.size());
   // Of docs/frames-and-units.md: which axis goes right and which up, and whether against it.
   struct Rule {
     const char* picture;

@@ -159,10 +159,8 @@ TEST_F(Export, ScansModelAndPosesAreThoseOfTheSession) {
     EXPECT_TRUE(bytes_of(data(std::string("scans/grids/") + id + ".grid")) ==
                 bytes_of(at("session") / "grids" / (std::string(id) + ".grid")));
   }
-  // The packed one says what it is of.
-  const auto unlabelled = [](const std::string& ply) { return ply.substr(ply.find("obj_info unit mm")); };
-  EXPECT_TRUE(unlabelled(bytes_of(data("model/session.ply"))) ==
-              unlabelled(bytes_of(at("session") / "mesh" / "model.ply")));
+  EXPECT_TRUE(bytes_of(data("model/session.ply")) == bytes_of(at("session") / "mesh" / "model.ply"));
+  EXPECT_TRUE(bytes_of(data("report/red_map.png")) == bytes_of(at("session") / "export" / "red_map.png"));
   EXPECT_EQ(bytes_of(data("verdict/red_map.json")), bytes_of(at("session") / "export" / "red_map.json"));
   EXPECT_EQ(read_poses(data("scans/poses.json"))->size(), 3U);
   // Another reader than the grid's own gives the same samples.

@@ -85,6 +85,7 @@ TEST_F(Export, MeshesAndScansSayWhatTheyAreWhereTheyTravelAlone) {
     EXPECT_THAT(bytes_of(data(picture)), AllOf(HasSubstr("Session: session"), HasSubstr("session, ")))
         << picture;
   }
+  EXPECT_THAT(bytes_of(data("features/msii.mat")), HasSubstr("\n# Session: session\n0 "));
   const fs::path session = at("alone");
   ASSERT_NE(run_command({"scan", "--device", "sim:?seed=2&size=14x11x8&spacing=0.5", "--session",
                          session.string(), "--max-scans", "2"})
@@ -121,6 +122,31 @@ TEST_F(Export, MeshesAndScansSayWhatTheyAreWhereTheyTravelAlone) {
         << file;
     EXPECT_THAT(head, HasSubstr("comment Rights: © A Museum; CC0\n")) << file;
     EXPECT_THAT(head, Not(HasSubstr("mine"))) << file;
+  }
+}
+
+TEST_F(Export, PagesAndTheRedMapSayWhatTheyAreWhereTheyTravelAlone) {
+  const fs::path session = at("paged");
+  fs::copy(at("session"), session, fs::copy_options::recursive);
+  ASSERT_EQ(
+      pack_described(session, at("paged_bag"), {"--museum-number", "BM 7", "--rights", "© A; CC0"}).status,
+      0);
+  const std::string red_map = bytes_of(at("paged_bag") / "data/report/red_map.png");
+  EXPECT_THAT(red_map, HasSubstr("Copyright")) << "described after it was drawn";
+  EXPECT_THAT(red_map, AllOf(HasSubstr("© A; CC0"), HasSubstr("Museum number: BM 7"),
+                             HasSubstr("BM 7, red map"), Not(HasSubstr("session, red map"))));
+  const std::string pdf = bytes_of(at("paged_bag") / "data/report/report.pdf");
+  EXPECT_THAT(pdf, HasSubstr("<dc:rights><rdf:Alt><rdf:li xml:lang=\"x-default\">© A; CC0<"));
+  EXPECT_THAT(pdf, HasSubstr("Museum number: BM 7"));
+}
+
+TEST_F(Export, TheSessionsOwnFilesSayWhatTheyAreToo) {
+  const std::string mesh = bytes_of(at("session") / "mesh/model.ply");
+  EXPECT_THAT(mesh.substr(0, mesh.find("end_header")), HasSubstr("comment Session: session\n"));
+  for (const char* picture : {"six_views.png", "red_map.png"}) {
+    EXPECT_THAT(bytes_of(at("session") / "export" / picture),
+                AllOf(HasSubstr("Session: session"), HasSubstr("session, ")))
+        << picture;
   }
 }
 

@@ -68,7 +68,7 @@ void ViewerScreen::draw_picture_on(UiContext& ui) {
         const int margin = static_cast<int>(1.0 / picture.mm_per_px);
         dubsar::draw_scale_bar(picture, bar, margin, picture.height - bar.height_px - margin,
                                {255, 255, 255});
-        Status written = write_picture(file, picture, file.stem().string());
+        Status written = write_picture(file, picture, {.title = file.stem().string()});
         wake_window();
         return written;
       });
