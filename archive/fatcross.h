@@ -21,6 +21,10 @@ enum class FatcrossKind {
   kEbl,
 };
 
+/// Where the upper left corner of each view, by Face, comes to lie on that picture: pixels right and down.
+[[nodiscard]] std::array<Eigen::Vector2i, kFaceCount> fatcross_corners(const SixViews& views,
+                                                                       FatcrossKind kind);
+
 /// Photographs get rescaled until they fit; these views are all to one scale, and so is the picture: its
 /// mm_per_px is theirs. The views must have been drawn with `ground` as their background, without margins.
 [[nodiscard]] Image fatcross(const SixViews& views, FatcrossKind kind, Rgb8 ground);

@@ -24,8 +24,7 @@ OrderedJson links(const std::string& base_url, const std::vector<ManifestLink>& 
   return list;
 }
 
-OrderedJson canvas(const std::string& base_url, const ManifestPicture& picture, std::size_t number) {
-  const std::string id = base_url + "iiif/canvas/" + std::to_string(number);
+OrderedJson canvas(const std::string& base_url, const ManifestPicture& picture, const std::string& id) {
   const OrderedJson body = {{"id", base_url + picture.path},
                             {"type", "Image"},
                             {"format", picture.media_type},
@@ -45,6 +44,10 @@ OrderedJson canvas(const std::string& base_url, const ManifestPicture& picture, 
       {"items",
        OrderedJson::array(
            {{{"id", id + "/page"}, {"type", "AnnotationPage"}, {"items", OrderedJson::array({painting})}}})}};
+  if (!picture.annotations.empty()) {
+    json["annotations"] =
+        OrderedJson::array({{{"id", base_url + picture.annotations}, {"type", "AnnotationPage"}}});
+  }
   if (picture.mm_per_px > 0) {
     constexpr double kCmPerMm = 0.1;
     json["service"] =
@@ -59,6 +62,10 @@ OrderedJson canvas(const std::string& base_url, const ManifestPicture& picture, 
 }
 
 }  // namespace
+
+std::string canvas_id(const std::string& base_url, std::size_t picture) {
+  return base_url + "iiif/canvas/" + std::to_string(picture + 1);
+}
 
 std::string iiif_manifest(const ManifestInput& input) {
   OrderedJson json = {{"@context", "http://iiif.io/api/presentation/3/context.json"},
@@ -89,7 +96,7 @@ std::string iiif_manifest(const ManifestInput& input) {
   }
   json["items"] = OrderedJson::array();
   for (std::size_t i = 0; i < input.pictures.size(); ++i) {
-    json["items"].push_back(canvas(input.base_url, input.pictures[i], i + 1));
+    json["items"].push_back(canvas(input.base_url, input.pictures[i], canvas_id(input.base_url, i)));
   }
   return text_of(json);
 }

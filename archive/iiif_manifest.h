@@ -15,7 +15,8 @@ struct ManifestPicture {
   std::string media_type;  ///< "image/png", "image/jpeg"
   int width = 0;
   int height = 0;
-  double mm_per_px = 0;  ///< 0: not to scale
+  double mm_per_px = 0;       ///< 0: not to scale
+  std::string annotations{};  ///< the page of what is said about places on it, relative likewise; empty: none
 };
 
 /// Another file of the object, for the links of a manifest.
@@ -36,6 +37,9 @@ struct ManifestInput {
   std::vector<ManifestLink> rendering;  ///< for people
   std::vector<ManifestLink> see_also;   ///< for machines
 };
+
+/// The id of the canvas of a picture, counted from 0.
+[[nodiscard]] std::string canvas_id(const std::string& base_url, std::size_t picture);
 
 /// A IIIF Presentation 3.0 manifest: one canvas a picture, as large as the picture, with its scale as a
 /// physical dimensions service.

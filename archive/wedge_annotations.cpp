@@ -22,7 +22,9 @@ std::string polygon_z(const Wedge& wedge) {
   return text + "))";
 }
 
-std::string in_words(const Wedge& w) {
+}  // namespace
+
+std::string wedge_in_words(const Wedge& w) {
   const auto directional = static_cast<std::size_t>(w.directional_edge);
   std::string where = w.place.side ? std::string(" on the ") + to_string(*w.place.side) : "";
   if (w.place.side && w.place.line > 0) {
@@ -36,7 +38,10 @@ std::string in_words(const Wedge& w) {
           : fmt::format("; corrected by hand: {}", kByHandNames[static_cast<std::size_t>(w.by_hand)]));
 }
 
-}  // namespace
+std::string label_of_wedges(const AnnotationSource& source) {
+  return (source.simulated.empty() ? "" : "SIMULATED. ") + ("Wedges of " + source.identifier) +
+         (source.simulated.empty() ? "" : ". " + source.simulated);
+}
 
 std::string wedge_annotations(const std::vector<Wedge>& wedges, const AnnotationSource& source) {
   const OrderedJson generator = {{"type", "Software"}, {"name", source.program}};
@@ -48,7 +53,7 @@ std::string wedge_annotations(const std::vector<Wedge>& wedges, const Annotation
                              {"purpose", "describing"},
                              {"format", "text/plain"},
                              {"language", "en"},
-                             {"value", in_words(wedge)}},
+                             {"value", wedge_in_words(wedge)}},
                             {{"type", "TextualBody"}, {"purpose", "tagging"}, {"value", "wedge"}}});
     items.push_back({{"id", id},
                      {"type", "Annotation"},
@@ -66,7 +71,7 @@ std::string wedge_annotations(const std::vector<Wedge>& wedges, const Annotation
   OrderedJson page = {{"@context", OrderedJson::array({"http://www.w3.org/ns/anno.jsonld", terms})},
                       {"id", source.base_url + source.page},
                       {"type", "AnnotationPage"},
-                      {"label", "Wedges of " + source.identifier}};
+                      {"label", label_of_wedges(source)}};
   if (const std::string rights = rights_address(source.rights); !rights.empty()) {
     page["rights"] = rights;
   }

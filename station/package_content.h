@@ -10,6 +10,7 @@
 
 #include "acquisition/session_store.h"
 #include "archive/provenance.h"
+#include "archive/wedges_in_view.h"
 #include "formats/file_label.h"
 #include "formats/wedges_json.h"
 #include "station/package.h"
@@ -34,6 +35,7 @@ struct PackagedPicture {
   int width = 0;
   int height = 0;
   double mm_per_px = 0;
+  std::vector<WedgeOnPicture> wedges{};  ///< that it shows
 };
 
 /// What the writers of a package's parts share. Refers to what write_package() keeps alive.

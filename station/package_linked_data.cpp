@@ -10,11 +10,12 @@
 #include <iterator>
 #include <string_view>
 
+#include "archive/canvas_annotations.h"
 #include "archive/iiif_manifest.h"
 #include "archive/provenance.h"
-#include "station/package_content.h"
 #include "formats/atomic_file.h"
 #include "formats/files_below.h"
+#include "station/package_content.h"
 #include "station/results.h"
 
 namespace dubsar {
@@ -213,6 +214,46 @@ Status add_provenance(PackageContent& content) {
       "(JSON-LD, terms of CIDOC CRM and CRMdig)");
 }
 
+std::string annotations_file(std::size_t picture) {
+  return fmt::format("iiif/annotations/{}.json", picture + 1);
+}
+
+/// The wedges on the canvases that show any.
+Status add_canvas_annotations(PackageContent& content) {
+  bool any = false;
+  for (std::size_t k = 0; k < content.pictures.size(); ++k) {
+    const PackagedPicture& picture = content.pictures[k];
+    if (picture.wedges.empty()) {
+      continue;
+    }
+    any = true;
+    const Result<std::filesystem::path> file = content.place(annotations_file(k));
+    if (!file) {
+      return std::unexpected(file.error());
+    }
+    const std::string page =
+        canvas_annotations(content.wedges->wedges, picture.wedges,
+                           {canvas_id(content.options.base_url, k), picture.width, picture.height},
+                           {.base_url = content.options.base_url,
+                            .page = annotations_file(k),
+                            .model = {},
+                            .identifier = content.identifier,
+                            .program = program_name(),
+                            .when = content.when,
+                            .rights = content.tablet.rights,
+                            .simulated = content.simulated});
+    if (const Status written = write_file_atomically(*file, page); !written) {
+      return written;
+    }
+  }
+  if (any) {
+    content.list("iiif/annotations/",
+                 "the wedges on the pictures of the manifest that show them, one page for each: the triangle "
+                 "of a wedge's outer edges, in pixels (IIIF Presentation 3.0)");
+  }
+  return {};
+}
+
 Status add_manifest(PackageContent& content) {
   ManifestInput input;
   input.base_url = content.options.base_url;
@@ -224,8 +265,10 @@ Status add_manifest(PackageContent& content) {
                     {"CDLI number", content.tablet.cdli},   {"Collection", content.tablet.collection},
                     {"Scanned with", content.facts.device}, {"Drawn by", program_name()}};
   input.rights = content.tablet.rights;
-  for (const PackagedPicture& p : content.pictures) {
-    input.pictures.push_back({p.path, p.label, p.media_type, p.width, p.height, p.mm_per_px});
+  for (std::size_t k = 0; k < content.pictures.size(); ++k) {
+    const PackagedPicture& p = content.pictures[k];
+    input.pictures.push_back({p.path, p.label, p.media_type, p.width, p.height, p.mm_per_px,
+                              p.wedges.empty() ? std::string() : annotations_file(k)});
   }
   const std::string model = "model/" + content.stem;
   input.rendering = {{model + ".glb", "The surface", "Model", "model/gltf-binary"},
@@ -243,8 +286,10 @@ Status add_manifest(PackageContent& content) {
 }  // namespace
 
 Status add_linked_data(PackageContent& content) {
-  if (const Status added = add_provenance(content); !added) {
-    return added;
+  for (const auto add : {add_canvas_annotations, add_provenance}) {
+    if (const Status added = add(content); !added) {
+      return added;
+    }
   }
   return content.pictures.empty() ? Status{} : add_manifest(content);
 }

@@ -116,7 +116,7 @@ std::string left_out_sentence(PackagePart part) {
 /// "wedges/annotations.json and provenance.jsonld": those that are here.
 std::string files_with_addresses(const PackageContent& content) {
   std::string names;
-  for (const char* path : {"iiif/manifest.json", "wedges/annotations.json"}) {
+  for (const char* path : {"iiif/manifest.json", "iiif/annotations/", "wedges/annotations.json"}) {
     if (std::ranges::find(content.files, path, &PackagedFile::path) != content.files.end()) {
       names.append(names.empty() ? "" : ", ").append(path);
     }
@@ -164,8 +164,8 @@ Status add_readme(PackageContent& content) {
   text += folded(
       "Lengths are millimetres wherever a file does not say otherwise (GLB: metres). Scans are in the "
       "frame of the scanner as it stood for each; scans/poses.json takes each into the frame of the "
-      "model. Model (in all its forms), wedges, annotations, red map share that frame; report and "
-      "checklist give places in the tablet's. All frames: formats/frames-and-units.txt.",
+      "model. Model (in all its forms), wedges, wedges/annotations.json, red map share that frame; report "
+      "and checklist give places in the tablet's. All frames: formats/frames-and-units.txt.",
       2);
   const auto rows = content.tablet_from_model.row_major();
   text +=

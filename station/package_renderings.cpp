@@ -113,17 +113,47 @@ class Drawing {
     options.background = ground();
     return options;
   }
-  void list(const std::string& path, const std::string& label, const char* media_type, const Image& image) {
-    content_.pictures.push_back({path, label, media_type, image.width, image.height, image.mm_per_px});
+  void list(const std::string& path, const std::string& label, const char* media_type, const Image& image,
+            std::vector<WedgeOnPicture> wedges = {}) {
+    content_.pictures.push_back(
+        {path, label, media_type, image.width, image.height, image.mm_per_px, std::move(wedges)});
   }
+  /// Those that a side's views at kViewDpi show.
+  [[nodiscard]] Result<std::vector<WedgeOnPicture>> wedges_on(Face face) const;
+  [[nodiscard]] std::vector<WedgeOnPicture> wedges_on_fatcross(FatcrossKind kind) const;
   [[nodiscard]] PictureWords words(const std::string& what) const {
     return picture_words(content_.label, content_.identifier + ", " + what);
   }
 
   PackageContent& content_;
   RenderScene scene_;
-  SixViews clay_;  ///< at kViewDpi, for the fatcross
+  SixViews clay_;                                                 ///< at kViewDpi, for the fatcross
+  std::array<std::vector<WedgeOnPicture>, kFaceCount> wedges_{};  ///< on them, by Face
 };
+
+Result<std::vector<WedgeOnPicture>> Drawing::wedges_on(Face face) const {
+  if (!content_.wedges || content_.wedges->wedges.empty()) {
+    return std::vector<WedgeOnPicture>();
+  }
+  const ViewCamera camera = face_camera(face, content_.tablet_from_model);
+  const Result<Framing> framing = framing_of(scene_, camera, options(kViewDpi));
+  return framing ? wedges_in_view(content_.wedges->wedges, scene_, camera, *framing)
+                 : Result<std::vector<WedgeOnPicture>>(std::unexpected(framing.error()));
+}
+
+std::vector<WedgeOnPicture> Drawing::wedges_on_fatcross(FatcrossKind kind) const {
+  const auto corners = fatcross_corners(clay_, kind);
+  std::vector<WedgeOnPicture> all;
+  for (const Face face : kSixViewOrder) {
+    for (WedgeOnPicture on : wedges_[static_cast<std::size_t>(face)]) {
+      for (Eigen::Vector2d& corner : on.corners_px) {
+        corner += corners[static_cast<std::size_t>(face)].cast<double>();
+      }
+      all.push_back(on);
+    }
+  }
+  return all;
+}
 
 Status Drawing::views() {
   if (const Status had = content_.need_fields(); !had) {
@@ -147,13 +177,17 @@ Status Drawing::views() {
     if (!images) {
       return std::unexpected(images.error());
     }
+    Result<std::vector<WedgeOnPicture>> wedges = wedges_on(face);
+    if (!wedges) {
+      return std::unexpected(wedges.error());
+    }
     std::vector<Task> tasks;
     for (std::size_t k = 0; k < looks.size(); ++k) {
       const Image& image = (*images)[k];
       const std::string path = fmt::format("pictures/{}/{}.png", looks[k].name, view_file_stem(face));
       const std::string label = fmt::format("{}, {}", to_string(face), looks[k].label);
       tasks.push_back({path, [&image, said = words(label)] { return encode_png(image, said); }});
-      listed[k].push_back({path, label, "image/png", image.width, image.height, image.mm_per_px});
+      listed[k].push_back({path, label, "image/png", image.width, image.height, image.mm_per_px, *wedges});
     }
     tasks.push_back({fmt::format("pictures/cdli/{}_{}.jpg", content_.stem, cdli_suffix(face)),
                      [&clay = images->front(), said = words(fmt::format("{}, clay", to_string(face)))] {
@@ -163,6 +197,7 @@ Status Drawing::views() {
       return written;
     }
     clay_.of[static_cast<std::size_t>(face)] = std::move(images->front());
+    wedges_[static_cast<std::size_t>(face)] = std::move(*wedges);
   }
   for (std::size_t k = 0; k < looks.size(); ++k) {
     content_.pictures.insert(content_.pictures.end(), listed[k].begin(), listed[k].end());
@@ -216,7 +251,7 @@ Status Drawing::fatcrosses() {
       tasks.push_back({stem + ".tif", [&sheet, said] { return encode_tiff(sheet, said, program_name()); }});
       tasks.push_back({stem + ".jpg", [&sheet, said] { return encode_jpeg(sheet, said); }});
       if (dpi == kViewDpi) {
-        list(stem + ".jpg", kKinds[k].label, "image/jpeg", sheet);
+        list(stem + ".jpg", kKinds[k].label, "image/jpeg", sheet, wedges_on_fatcross(kKinds[k].kind));
       }
     }
     if (const Status written = write_all(content_, tasks); !written) {

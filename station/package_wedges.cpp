@@ -30,7 +30,8 @@ Status add_wedges(PackageContent& content) {
                                                     .identifier = content.identifier,
                                                     .program = program_name(),
                                                     .when = content.when,
-                                                    .rights = content.tablet.rights}),
+                                                    .rights = content.tablet.rights,
+                                                    .simulated = content.simulated}),
                      "the wedges as W3C Web Annotations: the triangle of its outer edges on the model, "
                      "millimetres, as WKT POLYGON Z")}) {
     if (!written) {

@@ -66,6 +66,21 @@ TEST(Fatcross, OfEblHasGapsAndARulerBelow) {
   EXPECT_NEAR(last - first + 1, 50 / mm_per_px, 1);
 }
 
+TEST(Fatcross, TellsWhereEachViewLies) {
+  const SixViews views = views_of(coloured_box(30, 24, 12), 0.1);
+  for (const FatcrossKind kind : {FatcrossKind::kCdli, FatcrossKind::kEbl}) {
+    const Image sheet = fatcross(views, kind, kBlackGround);
+    const auto corners = fatcross_corners(views, kind);
+    for (const Face face : kSixViewOrder) {
+      const Image& view = views[face];
+      const Eigen::Vector2i& at = corners[static_cast<std::size_t>(face)];
+      for (const auto& [x, y] : {std::pair{0, 0}, {view.width - 1, 0}, {view.width / 2, view.height - 1}}) {
+        EXPECT_EQ(sheet.rgb(at.x() + x, at.y() + y), view.rgb(x, y)) << to_string(face);
+      }
+    }
+  }
+}
+
 TEST(Ruler, IsTheLongestThatHasRoom) {
   EXPECT_EQ(ruler_for(0.1, 900).length_cm, 5);
   EXPECT_EQ(ruler_for(0.1, 400).length_cm, 2);

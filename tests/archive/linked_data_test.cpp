@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "archive/canvas_annotations.h"
 #include "archive/iiif_manifest.h"
 #include "archive/provenance.h"
 #include "archive/rights.h"
@@ -99,6 +100,52 @@ TEST(WedgeAnnotations, PointAtAClosedRingOnTheModel) {
   EXPECT_EQ(target["selector"]["value"],
             "POLYGON Z ((1.0000 0.0000 0.0000, 0.0000 2.0000 0.0000, 0.0000 0.0000 3.0000, 1.0000 0.0000 "
             "0.0000))");
+}
+
+TEST(WedgeAnnotations, SayThatNoClayWasMeasured) {
+  AnnotationSource source{"https://example.org/t/", "a.json", "t.ply", "BM 1", "Dubsar",
+                          "2026-01-02T03:04:05Z"};
+  EXPECT_EQ(nlohmann::json::parse(wedge_annotations({}, source))["label"], "Wedges of BM 1");
+  source.simulated = "Made up.";
+  EXPECT_EQ(nlohmann::json::parse(wedge_annotations({}, source))["label"],
+            "SIMULATED. Wedges of BM 1. Made up.");
+  EXPECT_EQ(nlohmann::json::parse(canvas_annotations({}, {}, {}, source))["label"]["en"][0],
+            "SIMULATED. Wedges of BM 1. Made up.");
+}
+
+TEST(CanvasAnnotations, PointAtAPartOfTheCanvas) {
+  const WedgeOnPicture on{
+      0, {Eigen::Vector2d(10.25, 20), Eigen::Vector2d(30, 20.5), Eigen::Vector2d(-1.04, 41)}};
+  AnnotationSource source{"https://example.org/t/", "iiif/annotations/3.json", "", "BM 1", "Dubsar",
+                          "2026-01-02T03:04:05Z"};
+  source.rights = "© A Museum; CC0 (https://creativecommons.org/publicdomain/zero/1.0/)";
+  const auto page = nlohmann::json::parse(
+      canvas_annotations({some_wedge()}, {on}, {canvas_id("https://example.org/t/", 2), 100, 40}, source));
+  EXPECT_EQ(page["id"], "https://example.org/t/iiif/annotations/3.json");
+  EXPECT_EQ(page["rights"], "http://creativecommons.org/publicdomain/zero/1.0/");
+  EXPECT_EQ(page["requiredStatement"]["value"]["none"][0], source.rights);
+  const auto& item = page["items"][0];
+  EXPECT_EQ(item["id"], "https://example.org/t/iiif/annotations/3.json#wedge-7");
+  EXPECT_THAT(item["body"]["value"].get<std::string>(),
+              StartsWith("Wedge 7 on the reverse, line 2, number 3"));
+  EXPECT_EQ(item["target"]["source"]["id"], "https://example.org/t/iiif/canvas/3");
+  const auto& selectors = item["target"]["selector"];
+  EXPECT_EQ(selectors[0]["value"], "xywh=0,20,30,20") << "what lies on the canvas, in whole pixels";
+  EXPECT_EQ(selectors[1]["value"],
+            R"(<svg xmlns="http://www.w3.org/2000/svg"><path d="M10.2 20.0L30.0 20.5L-1.0 41.0Z"/></svg>)");
+}
+
+TEST(IiifManifest, NamesThePageOfAnnotationsOfACanvas) {
+  ManifestInput input;
+  input.base_url = "https://example.org/t/";
+  input.pictures = {{"a.png", "Obverse", "image/png", 300, 200, 0.05},
+                    {"b.png", "Reverse", "image/png", 300, 200, 0.05, "iiif/annotations/2.json"}};
+  const auto manifest = nlohmann::json::parse(iiif_manifest(input));
+  EXPECT_FALSE(manifest["items"][0].contains("annotations"));
+  EXPECT_EQ(manifest["items"][1]["id"], canvas_id(input.base_url, 1));
+  EXPECT_EQ(manifest["items"][1]["annotations"],
+            nlohmann::json::parse(
+                R"([{"id":"https://example.org/t/iiif/annotations/2.json","type":"AnnotationPage"}])"));
 }
 
 TEST(IiifManifest, HasACanvasAPictureWithItsScale) {

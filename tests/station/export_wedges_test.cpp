@@ -4,8 +4,10 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <png.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <fstream>
 
 #include "build_paths.h"
@@ -26,6 +28,7 @@ using test::run_command;
 using test::shell;
 using ::testing::EndsWith;
 using ::testing::HasSubstr;
+using ::testing::StartsWith;
 
 class ExportOfWedges : public ::testing::Test {
  protected:
@@ -56,6 +59,41 @@ class ExportOfWedges : public ::testing::Test {
   static test::TemporaryFolder* folder_;
   static Outcome exported_;
 };
+/// In integral invariants hollows are dark: inside the triangles they must be darker than the clay is.
+void expect_hollows(const fs::path& msii, const nlohmann::json& page) {
+  png_image png{};
+  png.version = PNG_IMAGE_VERSION;
+  ASSERT_NE(png_image_begin_read_from_file(&png, msii.c_str()), 0) << png.message;
+  png.format = PNG_FORMAT_GRAY;
+  std::vector<std::uint8_t> pixels(std::size_t{png.width} * png.height);
+  ASSERT_NE(png_image_finish_read(&png, nullptr, pixels.data(), 0, nullptr), 0) << png.message;
+  double all = 0;
+  double clay = 0;
+  for (const std::uint8_t pixel : pixels) {
+    all += pixel > 0 ? 1 : 0;
+    clay += pixel;
+  }
+  int dark = 0;
+  int looked_at = 0;
+  for (const nlohmann::json& item : page["items"]) {
+    const std::string svg = item["target"]["selector"][1]["value"];
+    double x[3];
+    double y[3];
+    ASSERT_EQ(std::sscanf(svg.c_str() + svg.find("d=\"") + 3, "M%lf %lfL%lf %lfL%lf %lfZ", &x[0], &y[0],
+                          &x[1], &y[1], &x[2], &y[2]),
+              6)
+        << svg;
+    const auto column = static_cast<std::size_t>((x[0] + x[1] + x[2]) / 3);
+    const auto row = static_cast<std::size_t>((y[0] + y[1] + y[2]) / 3);
+    ASSERT_LT(column, png.width);
+    ASSERT_LT(row, png.height);
+    ++looked_at;
+    dark += pixels[row * png.width + column] < 0.8 * clay / all ? 1 : 0;
+  }
+  EXPECT_GT(looked_at, 10);
+  EXPECT_GT(dark, 0.9 * looked_at);
+}
+
 test::TemporaryFolder* ExportOfWedges::folder_ = nullptr;
 Outcome ExportOfWedges::exported_;
 
@@ -77,12 +115,18 @@ TEST_F(ExportOfWedges, DrawingsAreWhatW3CCallsSvg11) {
       run_command({"mesh", "section", data("model/session.ply"), "--from=-4,0,5", "--to=4,0,5", "-o", cut})
           .status,
       0);
+  EXPECT_THAT(bytes_of(cut), HasSubstr("Session: session")) << "it says what the mesh says";
   std::vector<fs::path> drawings{cut};
   for (const auto& file : fs::directory_iterator(data("wedges/drawings"))) {
     drawings.push_back(file.path());
   }
   ASSERT_GE(drawings.size(), 2U);
+  // What stands in metadata is no part of SVG: W3C's own definition is asked about the rest, and once more
+  // with the place in it that it leaves for that.
   const std::string check = "xmllint --nonet --noout --dtdvalidfpi '-//W3C//DTD SVG 1.1//EN' ";
+  const std::string whole = "xmllint --nonet --noout --dtdvalid " +
+                            quoted(fs::path(DUBSAR_SOURCE_DIR) / "tests/station/support/svg11_with_rdf.dtd") +
+                            " ";
   for (const fs::path& drawing : drawings) {
     EXPECT_EQ(shell(whole + quoted(drawing)), 0) << drawing;
     const std::string svg = bytes_of(drawing);
@@ -147,6 +191,48 @@ TEST_F(ExportOfWedges, AnnotationsHaveTheShapeOfTheStandard) {
   EXPECT_THAT(page["items"][0]["target"]["selector"]["value"].get<std::string>(), HasSubstr("POLYGON Z"));
 }
 
+TEST_F(ExportOfWedges, OnThePicturesWedgesAreWhereTheHollowsAre) {
+  const Outcome drawn = run_command({"export", at("session"), "--to", at("drawn"), "--without",
+                                     "features,grid-ply", "--base-url", "https://example.org/t"});
+  ASSERT_EQ(drawn.status, 0) << drawn.err;
+  const auto json = [](const std::string& name) {
+    return nlohmann::json::parse(bytes_of(at("drawn") / "data" / name), nullptr, false);
+  };
+  const std::size_t wedges = json("wedges/wedges.json")["wedges"].size();
+  const fs::path schema = fs::path(DUBSAR_SOURCE_DIR) / "tests/station/schemas/canvas_annotations.json";
+  const std::string valid =
+      "/usr/bin/python3 -c 'import json, jsonschema, sys; "
+      "jsonschema.validate(json.load(open(sys.argv[1])), json.load(open(sys.argv[2])))' ";
+  std::size_t pages = 0;
+  for (const nlohmann::json& canvas : json("iiif/manifest.json")["items"]) {
+    const std::string picture = canvas["items"][0]["items"][0]["body"]["id"].get<std::string>().substr(22);
+    if (!canvas.contains("annotations")) {
+      EXPECT_EQ(picture.find("front"), std::string::npos) << picture;
+      continue;
+    }
+    SCOPED_TRACE(picture);
+    ++pages;
+    const std::string address = canvas["annotations"][0]["id"];
+    ASSERT_THAT(address, StartsWith("https://example.org/t/iiif/annotations/"));
+    const std::string file = address.substr(22);
+    EXPECT_EQ(shell(valid + quoted(at("drawn") / "data" / file) + " " + quoted(schema)), 0);
+    const nlohmann::json page = json(file);
+    EXPECT_EQ(page["id"], address);
+    for (const nlohmann::json& item : page["items"]) {
+      EXPECT_EQ(item["target"]["source"]["id"], canvas["id"]);
+    }
+    if (picture.starts_with("pictures/fatcross/")) {
+      EXPECT_GE(page["items"].size(), wedges * 9 / 10) << "nearly all of them are on some side";
+    } else if (picture == "pictures/msii/03_front.png") {
+      expect_hollows(at("drawn") / "data" / picture, page);
+    }
+  }
+  EXPECT_GT(pages, 5U);
+  EXPECT_EQ(shell("cd " + quoted(at("drawn") / "data/iiif/annotations") +
+                  " && [ $(ls | wc -l) = " + std::to_string(pages) + " ]"),
+            0);
+}
+
 TEST_F(ExportOfWedges, CorrectionsOfTheSessionAreMadeAndCounted) {
   const fs::path session = at("corrected");
   fs::copy(at("session"), session, fs::copy_options::recursive);
@@ -158,18 +244,12 @@ TEST_F(ExportOfWedges, CorrectionsOfTheSessionAreMadeAndCounted) {
                                         "renderings,features,grid-ply", "--json"});
   ASSERT_EQ(exported.status, 0) << exported.err;
   const Result<WedgeFile> left = read_wedges(at("corrected_bag") / "data/wedges/wedges.json");
-  EXPECT_THAT(bytes_of(cut), HasSubstr("Session: session")) << "it says what the mesh says";
   ASSERT_TRUE(left);
   EXPECT_EQ(left->corrections, 1U);
   ASSERT_EQ(left->wedges.size(), found.size() - 1);
   EXPECT_EQ(left->wedges[3].id, found[4].id) << "the others keep their numbers";
   EXPECT_EQ(left->wedges[3].depth_point_mm, found[4].depth_point_mm);
-  // What stands in metadata is no part of SVG: W3C's own definition is asked about the rest, and once more
-  // with the place in it that it leaves for that.
   EXPECT_EQ(run_command({"verify", at("corrected_bag")}).status, 0);
-  const std::string whole = "xmllint --nonet --noout --dtdvalid " +
-                            quoted(fs::path(DUBSAR_SOURCE_DIR) / "tests/station/support/svg11_with_rdf.dtd") +
-                            " ";
   EXPECT_THAT(bytes_of(at("corrected_bag") / "data/provenance.jsonld"),
               HasSubstr("A person has corrected what was found: 1 corrections, 1 of which could be made."));
 }
