@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright The Dubsar developers
 //
-//   dubsar-odd-scans [--cases 1000 --seed 1 --only CASE -o FOLDER]
+//   dubsar-odd-scans [--cases 1000 --seed 1 --only CASE --lost 0.01 -o FOLDER]
 //
 // Stitches small sets of scans that no tablet gives: folded, thin and touching bodies, exact coincidences,
 // stray samples, holes, poses that are wrong, spacings that differ. Whatever the scans, the mesh has to be an
 // oriented 2-manifold without faces that cut each other or vertices in one place, and the same one whatever
 // the order of the scans and whatever came and went in between.
+// With --lost also the cases of which more than this share of the samples is lost: taken where the body is,
+// with good neighbours, and farther than the spacing from the mesh.
 // Prints the cases that are not, ends with status 1 when there is one, and writes their scans and meshes to
 // FOLDER.
 #include <CLI/CLI.hpp>
@@ -21,6 +23,7 @@
 
 #include "bench/support/odd_body.h"
 #include "bench/support/options.h"
+#include "core/mesh_query.h"
 #include "core/placed_scan.h"
 #include "formats/grid_ply.h"
 #include "formats/mesh_io.h"
@@ -37,16 +40,31 @@ struct Arguments {
   int cases = 1000;
   std::uint64_t seed = 1;
   int only = -1;
+  double lost = 1;  ///< share of the samples
   std::string out;
 };
 
 struct Case {
   std::string what;
+  std::vector<std::vector<std::uint8_t>> on_body;  ///< by scan and sample
   std::vector<RangeGrid> grids;
   std::vector<RigidTransform> poses;
   std::vector<SampleFlags> flags;
   double sigma_mm = 0;
 };
+
+/// Those that noise and steps may have moved, and no more.
+std::vector<std::uint8_t> samples_on_body(const RangeGrid& grid, const RigidTransform& pose,
+                                          const OddBody& body) {
+  std::vector<std::uint8_t> on_body(grid.size(), 0);
+  for (std::size_t i = 0; i < grid.size(); ++i) {
+    on_body[i] = grid.valid[i] != 0 && std::abs(body.outside_mm(pose * grid.point(i).cast<double>())) <
+                                           0.5 * grid.spacing_mm
+                     ? 1
+                     : 0;
+  }
+  return on_body;
+}
 
 Case make_case(std::uint64_t seed) {
   Random random(seed);
@@ -60,10 +78,12 @@ Case make_case(std::uint64_t seed) {
   for (int k = 0; k < scans; ++k) {
     if (k > 0 && random.uniform(0, 1) < 0.08) {
       out.grids.push_back(out.grids.back());  // the same scan twice
+      out.on_body.push_back(out.on_body.back());
       out.poses.push_back(out.poses.back());
       continue;
     }
     auto [grid, pose] = scanning.scan(body, random);
+    out.on_body.push_back(samples_on_body(grid, pose, body));
     const Eigen::Vector3d turn = 0.1 * pose_error_mm * random.normal3();
     pose = RigidTransform::from_twist(turn, pose_error_mm * random.normal3()) * pose;
     out.grids.push_back(std::move(grid));
@@ -178,6 +198,25 @@ bool is_sound(int number, const Case& one, const Mesh& mesh, std::uint64_t seed)
   return false;
 }
 
+/// Share of the samples that are farther than the spacing from the mesh, though the body is there and their
+/// neighbours are good.
+double share_lost(const Case& one, const Mesh& mesh) {
+  const MeshQuery query(mesh);
+  std::size_t all = 0;
+  std::size_t lost = 0;
+  for (std::size_t s = 0; s < one.grids.size(); ++s) {
+    const RangeGrid& grid = one.grids[s];
+    for (std::size_t i = 0; i < grid.size(); ++i) {
+      if (one.on_body[s][i] != 0 && is_unflagged(one.flags[s][i])) {
+        const Eigen::Vector3f p = (one.poses[s] * grid.point(i).cast<double>()).cast<float>();
+        ++all;
+        lost += query.closest(p, static_cast<float>(grid.spacing_mm)) ? 0 : 1;
+      }
+    }
+  }
+  return all > 0 ? static_cast<double>(lost) / static_cast<double>(all) : 0.0;
+}
+
 Status keep(const std::filesystem::path& folder, const Case& one, const Mesh& mesh) {
   std::filesystem::create_directories(folder);
   Status kept = write_mesh(folder / "mesh.ply", mesh);
@@ -195,6 +234,7 @@ int main(int argc, char** argv) {
   app.add_option("--cases", args.cases)->capture_default_str();
   app.add_option("--seed", args.seed)->capture_default_str();
   app.add_option("--only", args.only);
+  app.add_option("--lost", args.lost)->check(CLI::Range(0.0, 1.0));
   app.add_option("-o", args.out);
   if (const auto status = dubsar::bench::ends_with(app, argc, argv)) {
     return *status;
@@ -210,6 +250,10 @@ int main(int argc, char** argv) {
     const Mesh mesh = stitched(one);
     faces += mesh.faces.size();
     empty += mesh.faces.empty() ? 1 : 0;
+    if (const double lost = args.lost < 1 ? share_lost(one, mesh) : 0; lost > args.lost) {
+      std::printf("%d: %s: %zu scans, %zu faces; %.2f %% of the samples lost\n", k, one.what.c_str(),
+                  one.grids.size(), mesh.faces.size(), 100 * lost);
+    }
     if (is_sound(k, one, mesh, seed)) {
       continue;
     }
