@@ -276,7 +276,7 @@ void Region::put_back(Draft& draft, std::size_t interpolated) const {
     Triangle& f = mesh.faces.emplace_back(sheet.faces[k]);
     for (std::uint32_t& v : f) {
       v = v < vertices_.size() ? vertices_[v] : base + v;
-      draft.near_rim[v] = 1;
+      draft.near_rim[v] = std::max<std::uint8_t>(draft.near_rim[v], 1);  // the rim of a patch stays one
     }
   }
 }

@@ -124,6 +124,21 @@ TEST(Closing, ASliverOnTheRimGoes) {
   EXPECT_TRUE(report_of(draft).is_manifold());
 }
 
+/// Only there patches may cut themselves: who forgets it looks for no cuts.
+TEST(Closing, TheRimOfAPatchStaysItsRimWhenASeamIsClosedAlongIt) {
+  Draft draft = cut_sheet(60, 12);
+  const std::vector<std::uint8_t> rim = rim_vertices(draft.mesh.faces, draft.mesh.positions.size());
+  for (std::size_t v = 0; v < rim.size(); ++v) {
+    draft.near_rim[v] = rim[v] != 0 ? Draft::kAtRim : draft.near_rim[v];
+  }
+  const std::size_t faces = draft.mesh.faces.size();
+  close_patches(draft, {});
+  ASSERT_GT(draft.mesh.faces.size(), faces + 500U);
+  for (std::size_t v = 0; v < rim.size(); ++v) {
+    EXPECT_TRUE(rim[v] == 0 || draft.near_rim[v] == Draft::kAtRim);
+  }
+}
+
 TEST(Closing, TilesLeaveNoTraceOfTheirSides) {
   const Draft cut = cut_sheet(160, 12);
   ASSERT_GT(report_of(cut).components, 100U);
