@@ -212,11 +212,12 @@ void Front::add_face(const Triangle& f) {
 }
 
 std::uint32_t Front::add_vertex(const Eigen::Vector3f& position_mm, const Eigen::Vector3f& normal,
-                                float spacing_mm) {
+                                float spacing_mm, float sigma_mm) {
   const auto v = static_cast<std::uint32_t>(sheet_->positions.size());
   sheet_->positions.push_back(position_mm);
   sheet_->normals.push_back(normal);
   sheet_->spacing_mm.push_back(spacing_mm);
+  sheet_->sigma_mm.push_back(sigma_mm);
   if (!sheet_->whole.empty()) {
     sheet_->whole.push_back(1);
   }

@@ -20,6 +20,7 @@ struct Sheet {
   std::vector<Eigen::Vector3f> positions;  ///< mm
   std::vector<Eigen::Vector3f> normals;    ///< unit, as measured, not from the faces
   std::vector<float> spacing_mm;           ///< µ of the scan that a vertex comes from
+  std::vector<float> sigma_mm;             ///< standard deviation along the normal
   std::vector<Triangle> faces;
   /// 0 for vertices of which some faces are elsewhere: an edge between two of them is not open, whatever it
   /// looks like. Empty: all faces are here.
@@ -89,7 +90,7 @@ class Front {
   /// accepts() must hold.
   void add_face(const Triangle& f);
   std::uint32_t add_vertex(const Eigen::Vector3f& position_mm, const Eigen::Vector3f& normal,
-                           float spacing_mm);
+                           float spacing_mm, float sigma_mm);
 
   /// A vertex that is, or was, on the front.
   struct Links {

@@ -71,6 +71,7 @@ class Averager {
   void enter(std::size_t node);
   [[nodiscard]] Projection meeting(const Course& course, const PairStart& start, std::size_t other) const;
   void write_average(const Course& course, std::size_t at, FusedSamples& out) const;
+  [[nodiscard]] float sigma_mm(const Course& course, float shift_mm, float weight_sum) const;
 
   const StitchSurface& from_;
   std::span<const StitchSurface* const> others_;
@@ -118,30 +119,47 @@ Projection Averager::meeting(const Course& course, const PairStart& start, std::
 void Averager::write_average(const Course& course, std::size_t at, FusedSamples& out) const {
   const std::size_t i = course.sample;
   float shift_sum = 0;
-  float shift2_sum = 0;
   float weight_sum = from_.weight(i) * faded(from_.rim[i], feather_);
-  float pose_sum = square(weight_sum * pose_sigma_mm(from_));
   float doubt = 1.0F - from_.reliability(i);
   bool sparse = from_.is_sparse(i);
   for (const auto& [k, q] : found_) {
     const float weight = q.weight * faded(q.rim, pairs_[k]->feather);
     shift_sum += weight * q.along_mm;
-    shift2_sum += weight * square(course.tilt * q.along_mm);
-    pose_sum += square(weight * pose_sigma_mm(*others_[k]));
     weight_sum += weight;
     doubt *= 1.0F - q.reliability;
     sparse = sparse && !q.well_sampled;
   }
   const float shift_mm = shift_sum / weight_sum;
   out.points[at] = course.line.p + shift_mm * course.line.n;
-  // Weights are inverse variances: the disagreement is their chi-square.
-  const float chi2 = std::max(0.0F, shift2_sum - weight_sum * square(course.tilt * shift_mm));
-  const float excess = found_.empty() ? 1.0F : std::max(1.0F, chi2 / static_cast<float>(found_.size()));
-  out.sigma_mm[at] = std::sqrt(excess / weight_sum + pose_sum / (weight_sum * weight_sum));
+  out.sigma_mm[at] = sigma_mm(course, shift_mm, weight_sum);
   out.reliability[at] =
       (1.0F - doubt) / (1.0F + square(out.sigma_mm[at] / static_cast<float>(from_.spacing_mm)));
   out.sparse[at] = sparse ? 1 : 0;
   out.scans[at] = static_cast<std::uint8_t>(std::min<std::size_t>(found_.size() + 1, 255));
+}
+
+/// Of the average: noise and poses of different scans are independent, but where the clay bends all other
+/// scans' triangles lie to the same side of it.
+float Averager::sigma_mm(const Course& course, float shift_mm, float weight_sum) const {
+  const auto variance_of = [](const StitchSurface& s, float weight) {
+    return s.variance_of_weight / weight + square(pose_sigma_mm(s));
+  };
+  const float own = from_.weight(course.sample);
+  const float own_variance = variance_of(from_, own);
+  float variance_sum = square(own * faded(from_.rim[course.sample], feather_)) * own_variance;
+  float bulge_sum = 0;
+  float chi2 = 0;
+  for (const auto& [k, q] : found_) {
+    const float weight = q.weight * faded(q.rim, pairs_[k]->feather);
+    const float variance = variance_of(*others_[k], q.weight);
+    variance_sum += square(weight) * variance;
+    bulge_sum += weight * std::abs(q.bulge_mm);
+    chi2 += square(course.tilt * (q.along_mm - shift_mm)) / (variance + square(q.bulge_mm));
+  }
+  // That it stands off by as much says nothing against the sample.
+  chi2 += square(course.tilt * shift_mm) / (own_variance + square(bulge_sum / weight_sum));
+  const float excess = found_.empty() ? 1.0F : std::max(1.0F, chi2 / static_cast<float>(found_.size()));
+  return std::sqrt(excess * (variance_sum + square(bulge_sum))) / weight_sum;
 }
 
 void Averager::average(std::size_t at, FusedSamples& out) {

@@ -23,8 +23,8 @@ struct FusedSamples {
   std::vector<Eigen::Vector3f> points;  ///< model frame
   /// (1 - Π(1 - r) over the supporting scans) / (1 + (sigma / µ)²)
   std::vector<float> reliability;
-  /// Standard deviation along the normal, mm: of the noise that averaging leaves, or what the scans' own
-  /// disagreement says when that is more, and of the poses.
+  /// Standard deviation along the normal, mm: of noise and poses, as far as averaging leaves them, and of
+  /// triangles that lie off bent clay; more where the scans disagree by more.
   std::vector<float> sigma_mm;
   std::vector<std::uint8_t> sparse;  ///< 1 for a sparse sample that projects onto no well-sampled triangle
   std::vector<std::uint8_t> scans;   ///< supporting scans, itself included

@@ -39,11 +39,11 @@ bool inside_polygon(const std::vector<Vector2f>& polygon, const Vector2f& p) {
   return inside;
 }
 
-/// Mean value coordinates' interpolation at p of the heights at the polygon's corners (Floater 2003).
-float mean_value(const std::vector<Vector2f>& polygon, const std::vector<float>& heights, const Vector2f& p) {
+/// Mean value coordinates of p for the polygon's corners (Floater 2003); they add up to 1.
+std::vector<double> mean_value_coordinates(const std::vector<Vector2f>& polygon, const Vector2f& p) {
   const std::size_t n = polygon.size();
+  std::vector<double> weights(n);
   double sum = 0;
-  double weights = 0;
   const auto half_tangent = [&](std::size_t i, std::size_t j) {
     const Vector2f a = polygon[i] - p;
     const Vector2f b = polygon[j] - p;
@@ -54,18 +54,51 @@ float mean_value(const std::vector<Vector2f>& polygon, const std::vector<float>&
   };
   for (std::size_t i = 0; i < n; ++i) {
     const double r = std::max<double>((polygon[i] - p).norm(), 1e-9);
-    const double w = (half_tangent((i + n - 1) % n, i) + half_tangent(i, (i + 1) % n)) / r;
-    sum += w * heights[i];
-    weights += w;
+    weights[i] = (half_tangent((i + n - 1) % n, i) + half_tangent(i, (i + 1) % n)) / r;
+    sum += weights[i];
   }
-  if (std::abs(weights) < 1e-12) {
-    double mean = 0;
-    for (const float h : heights) {
-      mean += h;
-    }
-    return static_cast<float>(mean / static_cast<double>(n));
+  for (double& weight : weights) {
+    weight = std::abs(sum) < 1e-12 ? 1.0 / static_cast<double>(n) : weight / sum;
   }
-  return static_cast<float>(sum / weights);
+  return weights;
+}
+
+/// What is known around an opening, in its mean plane, mm.
+struct Rim {
+  std::vector<Vector2f> places;
+  std::vector<float> heights;
+  std::vector<Vector2f> slopes;  ///< of the clay, by the normals
+  std::vector<float> variances;  ///< of the heights
+};
+
+struct Interpolated {
+  float height = 0;
+  float sigma = 0;
+};
+
+/// Between the heights of the rim, which may all be off the same way, by the poses of scans. How far clay
+/// that nobody saw lies from there is told by how it goes into the opening: where it bends evenly it lies
+/// half way between the interpolated height and the planes that touch it at the rim, and at a step one of
+/// these planes is right. What noise makes of a plane through samples two spacings apart is taken off.
+Interpolated interpolate(const Rim& rim, const Vector2f& p, float spacing_mm) {
+  constexpr double kOfBend = 0.5;
+  const std::vector<double> shares = mean_value_coordinates(rim.places, p);
+  double height = 0;
+  for (std::size_t i = 0; i < shares.size(); ++i) {
+    height += shares[i] * rim.heights[i];
+  }
+  double bend2 = 0, noise2 = 0, sum = 0;
+  for (std::size_t i = 0; i < shares.size(); ++i) {
+    const double share = std::abs(shares[i]);
+    const Vector2f away = p - rim.places[i];
+    const double off = rim.heights[i] + rim.slopes[i].dot(away) - height;
+    const double steps2 = away.squaredNorm() / (spacing_mm * spacing_mm);
+    bend2 += share * (off * off - 0.5 * steps2 * rim.variances[i]);
+    noise2 += share * rim.variances[i];
+    sum += share;
+  }
+  const double variance = noise2 + kOfBend * kOfBend * std::max(bend2, 0.0);
+  return {static_cast<float>(height), static_cast<float>(std::sqrt(variance / std::max(sum, 1e-12)))};
 }
 
 }  // namespace
@@ -163,14 +196,18 @@ std::size_t interpolate_vertices(Front& front, const std::vector<std::uint32_t>&
   normal.normalize();
   const Vector3f u = normal.unitOrthogonal();
   const Vector3f v_axis = normal.cross(u);
-  std::vector<Vector2f> polygon;
-  std::vector<float> heights;
+  constexpr float kLeastCos = 0.2F;  // steeper walls are as steep as this
+  Rim rim;
+  const std::vector<Vector2f>& polygon = rim.places;
   Vector2f low = Vector2f::Constant(std::numeric_limits<float>::max());
   Vector2f high = -low;
   for (const std::uint32_t v : opening) {
     const Vector3f d = sheet.positions[v] - centre;
-    polygon.emplace_back(d.dot(u), d.dot(v_axis));
-    heights.push_back(d.dot(normal));
+    rim.places.emplace_back(d.dot(u), d.dot(v_axis));
+    rim.heights.push_back(d.dot(normal));
+    const Vector3f& n = sheet.normals[v];
+    rim.slopes.push_back(-Vector2f(n.dot(u), n.dot(v_axis)) / std::max(n.dot(normal), kLeastCos));
+    rim.variances.push_back(sheet.sigma_mm[v] * sheet.sigma_mm[v]);
     low = low.cwiseMin(polygon.back());
     high = high.cwiseMax(polygon.back());
   }
@@ -190,8 +227,8 @@ std::size_t interpolate_vertices(Front& front, const std::vector<std::uint32_t>&
         clear = (a + t * ab - p).squaredNorm() > 0.36F * mu * mu;
       }
       if (clear && inside_polygon(polygon, p)) {
-        const float h = mean_value(polygon, heights, p);
-        front.add_vertex(centre + u * p.x() + v_axis * p.y() + normal * h, normal, mu);
+        const Interpolated at = interpolate(rim, p, mu);
+        front.add_vertex(centre + u * p.x() + v_axis * p.y() + normal * at.height, normal, mu, at.sigma);
         ++added;
       }
     }

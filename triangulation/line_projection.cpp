@@ -95,6 +95,9 @@ class LineProjector {
     if (!(best_.weight > 0)) {
       meet_around(row, col);
     }
+    if (best_.weight > 0) {
+      best_.bulge_mm = bulge_mm();
+    }
     return best_;
   }
 
@@ -211,6 +214,8 @@ class LineProjector {
       return;
     }
     best_.sample = t[0];
+    corners_ = t;
+    shares_ = {wa * inverse, wb * inverse, wc * inverse};
     best_.along_mm = along;
     best_.well_sampled = !s_->is_sparse(t[0]) && !s_->is_sparse(t[1]) && !s_->is_sparse(t[2]);
     best_.rim = std::min({s_->rim[t[0]], s_->rim[t[1]], s_->rim[t[2]]});
@@ -223,11 +228,29 @@ class LineProjector {
         0.0F, 1.0F);
   }
 
+  /// Along an edge whose ends look apart, a surface of even curvature rises above the chord by
+  /// ½ λ (1 - λ) (n_b - n_a)·(b - a); of a triangle the three edges' parts add up.
+  [[nodiscard]] float bulge_mm() const {
+    std::array<Vector3f, 3> n;
+    for (std::size_t k = 0; k < 3; ++k) {
+      n[k] = s_->normal(corners_[k]);
+    }
+    float sum = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::size_t next = k == 2 ? 0 : k + 1;
+      sum += shares_[k] * shares_[next] *
+             (n[next] - n[k]).dot(s_->points[corners_[next]] - s_->points[corners_[k]]);
+    }
+    return 0.5F * sum;
+  }
+
   static constexpr int kMostSteps = 6;
   const StitchSurface* s_;
   const Line* line_;
   float turn_;
   Projection best_;
+  std::array<std::size_t, 3> corners_{};  ///< of the triangle that it meets
+  std::array<float, 3> shares_{};         ///< barycentric
 };
 
 }  // namespace

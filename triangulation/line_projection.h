@@ -28,6 +28,9 @@ struct Projection {
   std::uint8_t rim = 0;       ///< of the corner that is nearest to it
   float weight = 0;           ///< interpolated; 0 where the line misses the other scan's triangles
   float reliability = 0;      ///< interpolated
+  /// How far the surface lies from the flat triangle there if it bends as the normals at its corners say; out
+  /// of the clay is positive.
+  float bulge_mm = 0;
 };
 
 /// Steps from a cell of the scan's grid (row and column as they are guessed, cut off at its rim) towards the

@@ -13,8 +13,6 @@ namespace {
 
 using Eigen::Vector3f;
 
-/// Of µ; measured on simulated tablets.
-constexpr float kSigmaOfInterpolated = 0.4F;
 constexpr std::size_t kGrain = 16384;
 constexpr std::uint32_t kNowhere = 0xffffffffU;
 
@@ -204,6 +202,7 @@ void Region::fill(const Draft& draft, std::span<const std::uint32_t> local_of,
   sheet.positions.resize(count);
   sheet.normals.resize(count);
   sheet.spacing_mm.resize(count);
+  sheet.sigma_mm.resize(count);
   sheet.whole.resize(count);
   parallel_for_each_index(
       count,
@@ -212,6 +211,7 @@ void Region::fill(const Draft& draft, std::span<const std::uint32_t> local_of,
         sheet.positions[k] = mesh.positions[v];
         sheet.normals[k] = mesh.normals[v];
         sheet.spacing_mm[k] = draft.spacing_mm(v);
+        sheet.sigma_mm[k] = mesh.sigma_mm[v];
         sheet.whole[k] = k < whole_ ? 1 : 0;
       },
       kGrain);
@@ -266,7 +266,7 @@ void Region::put_back(Draft& draft, std::size_t interpolated) const {
     mesh.positions.push_back(sheet.positions[k]);
     mesh.normals.push_back(sheet.normals[k]);
     mesh.reliability.push_back(0);
-    mesh.sigma_mm.push_back(kSigmaOfInterpolated * sheet.spacing_mm[k]);
+    mesh.sigma_mm.push_back(sheet.sigma_mm[k]);
     mesh.scans.push_back(0);
     mesh.flags.push_back(k >= interpolated ? kVertexInterpolated : 0);
     draft.added_spacing_mm.push_back(sheet.spacing_mm[k]);

@@ -10,6 +10,7 @@
 #include "core/grid_geometry.h"
 #include "core/grid_noise.h"
 #include "core/parallel.h"
+#include "triangulation/normal_noise.h"
 
 namespace dubsar {
 
@@ -19,6 +20,8 @@ using Eigen::Vector3f;
 
 /// What a surface through samples µ apart is off by however little they err: of µ.
 constexpr double kSystematicOfSpacing = 0.1;
+/// No scanner errs less, and made-up scans without noise have a sigma, too.
+constexpr double kLeastNoiseMm = 1e-4;
 /// At the rim a camera sees part of what lies beyond.
 constexpr float kRimWeight = 0.5F;
 /// Sparse samples hold the surface together where there is nothing better, and hardly count where there is.
@@ -333,6 +336,9 @@ StitchSurface make_scan_surface(const PlacedScan& scan, const StitchSurfaceOptio
   const double systematic_mm = kSystematicOfSpacing * out.spacing_mm;
   out.weight_of_best =
       static_cast<float>(1.0 / (out.noise_mm * out.noise_mm + systematic_mm * systematic_mm));
+  const double normal_noise_mm =
+      std::max(noise_along_normal_mm(surface, out.usable).value_or(out.noise_mm), kLeastNoiseMm);
+  out.variance_of_weight = static_cast<float>(normal_noise_mm * normal_noise_mm) * out.weight_of_best;
   lay_nodes(out, weigh_samples(scan, normals, inner, out), options);
   out.box = box_of_usable(out);
   out.lookup = std::make_unique<GridLookup>(grid, every_fourth(out.usable, grid.rows, grid.cols),

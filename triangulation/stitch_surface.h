@@ -42,6 +42,8 @@ struct StitchSurface {
   double pose_sigma_mm = 0;
   double spacing_mm = 0;
   double noise_mm = 0;  ///< of a sample along the view
+  /// × 1 / weight(): the variance of a sample along the normal, mm², by its noise alone.
+  float variance_of_weight = 0;
   bool mirrored = false;
   ScannerView view;                             ///< in the model frame
   std::vector<Eigen::Vector3f> points;          ///< model frame, mm
@@ -69,7 +71,7 @@ struct StitchSurface {
   }
   /// For averaging, 1 / mm²: inverse to the variance along the normal, which hardly grows with the incidence
   /// (the noise along the view does, its part along the normal shrinks). Less at the rim, little for sparse
-  /// samples; > 0 if usable.
+  /// samples; > 0 if usable. It takes in what a surface through samples µ apart may be off by.
   [[nodiscard]] float weight(std::size_t i) const {
     return static_cast<float>(weight_code[i]) * (weight_of_best / kCodes);
   }

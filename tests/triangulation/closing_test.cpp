@@ -88,6 +88,7 @@ TEST(Closing, SliversThatAnEdgeFlipHelpsAreFlipped) {
   draft.mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0.5F, 0.02F, 0}, {0.5F, -0.8F, 0}, {0.5F, 0.9F, 0}};
   const std::size_t count = draft.mesh.positions.size();
   draft.mesh.normals.assign(count, {0, 0, 1});
+  draft.mesh.sigma_mm.assign(count, 0.01F);
   draft.mesh.flags.assign(count, 0);
   draft.near_rim.assign(count, 1);
   draft.first_vertex = {0, static_cast<std::uint32_t>(count)};
@@ -114,6 +115,7 @@ TEST(Closing, ASliverOnTheRimGoes) {
   Draft draft;
   draft.mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0.5F, 0.02F, 0}, {0.5F, 0.9F, 0}};
   draft.mesh.normals.assign(4, {0, 0, 1});
+  draft.mesh.sigma_mm.assign(4, 0.01F);
   draft.near_rim.assign(4, 1);
   draft.first_vertex = {0, 4};
   draft.patch_spacing_mm = {1.0F};

@@ -16,11 +16,14 @@
 namespace dubsar {
 namespace {
 
+constexpr float kSigmaMm = 0.002F;
+
 void append(Sheet& sheet, const Mesh& mesh, float spacing_mm) {
   const auto base = static_cast<std::uint32_t>(sheet.positions.size());
   sheet.positions.insert(sheet.positions.end(), mesh.positions.begin(), mesh.positions.end());
   sheet.normals.insert(sheet.normals.end(), mesh.normals.begin(), mesh.normals.end());
   sheet.spacing_mm.resize(sheet.positions.size(), spacing_mm);
+  sheet.sigma_mm.resize(sheet.positions.size(), kSigmaMm);
   for (const Triangle& f : mesh.faces) {
     sheet.faces.push_back({f[0] + base, f[1] + base, f[2] + base});
   }
