@@ -11,10 +11,10 @@
 
 #include "acquisition/calibration_laser.h"
 #include "acquisition/sphere_fit.h"
+#include "core/number_text.h"
 #include "core/order_statistics.h"
 #include "core/random.h"
 #include "core/units.h"
-#include "formats/number_text.h"
 
 namespace dubsar {
 

@@ -10,7 +10,7 @@
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
 
-#include "formats/number_text.h"
+#include "core/number_text.h"
 
 namespace dubsar {
 

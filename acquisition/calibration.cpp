@@ -9,8 +9,8 @@
 #include "acquisition/calibration_joint.h"
 #include "acquisition/calibration_laser.h"
 #include "acquisition/calibration_stage.h"
+#include "core/number_text.h"
 #include "core/units.h"
-#include "formats/number_text.h"
 
 namespace dubsar {
 

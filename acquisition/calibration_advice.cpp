@@ -7,8 +7,8 @@
 
 #include "acquisition/calibration.h"
 #include "acquisition/calibration_laser.h"
+#include "core/number_text.h"
 #include "core/units.h"
-#include "formats/number_text.h"
 
 namespace dubsar {
 

@@ -7,9 +7,9 @@
 #include <utility>
 
 #include "acquisition/calibration_views.h"
+#include "core/number_text.h"
 #include "core/order_statistics.h"
 #include "core/units.h"
-#include "formats/number_text.h"
 
 namespace dubsar {
 

@@ -6,8 +6,8 @@
 #include <array>
 #include <cmath>
 
+#include "core/number_text.h"
 #include "core/units.h"
-#include "formats/number_text.h"
 
 namespace dubsar {
 

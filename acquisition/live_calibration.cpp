@@ -15,6 +15,7 @@
 #include "acquisition/fresh_frame.h"
 #include "acquisition/rig_parts.h"
 #include "acquisition/stops_when_cancelled.h"
+#include "core/number_text.h"
 #include "core/order_statistics.h"
 #include "formats/atomic_file.h"
 #include "formats/gray_file.h"
@@ -219,10 +220,8 @@ Result<LiveCalibration::Taken> LiveCalibration::pose_while_streaming(const JobCo
   const Result<BoardView> later = find_board(again->view(), board_, names.board);
   const std::optional<double> moved = later ? moved_px(*seen, *later) : std::nullopt;
   if (!moved || *moved > kMovedPx) {
-    char text[96];
-    std::snprintf(text, sizeof text, "the board moved by %.1f px while the pictures were taken",
-                  moved.value_or(99));
-    return Taken{false, text};
+    return Taken{false, "the board moved by " + fixed_text(moved.value_or(99), 1) +
+                            " px while the pictures were taken"};
   }
   for (const auto& [file, image] :
        {std::pair(&names.board, &*board), std::pair(&names.laser, &*lit), std::pair(&names.dark, &*dim)}) {

@@ -13,11 +13,11 @@
 #include "acquisition/rig_log.h"
 #include "acquisition/rig_view.h"
 #include "core/log.h"
+#include "core/number_text.h"
 #include "drivers/driver.h"
 #include "drivers/plugin.h"
 #include "formats/atomic_file.h"
 #include "formats/calibration_json.h"
-#include "formats/number_text.h"
 
 namespace dubsar {
 

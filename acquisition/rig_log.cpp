@@ -3,9 +3,9 @@
 #include "acquisition/rig_log.h"
 
 #include "acquisition/device_uri.h"
+#include "core/number_text.h"
 #include "formats/atomic_file.h"
 #include "formats/calibration_json.h"
-#include "formats/number_text.h"
 #include "formats/rig_toml.h"
 
 namespace dubsar {

@@ -11,7 +11,7 @@
 #include "acquisition/fresh_frame.h"
 #include "acquisition/rig_parts.h"
 #include "acquisition/wall_clock.h"
-#include "formats/number_text.h"
+#include "core/number_text.h"
 
 namespace dubsar {
 

@@ -10,7 +10,7 @@
 #include "acquisition/row_count.h"
 #include "acquisition/stage_watch.h"
 #include "acquisition/stripe_stream.h"
-#include "formats/number_text.h"
+#include "core/number_text.h"
 
 namespace dubsar {
 

@@ -8,8 +8,8 @@
 #include <string_view>
 #include <utility>
 
+#include "core/number_text.h"
 #include "core/utf8.h"
-#include "formats/number_text.h"
 #include "formats/red_map_json.h"
 #include "formats/sha2.h"
 #include "formats/sign_off_json.h"

@@ -5,8 +5,8 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
 
+#include "core/number_text.h"
 #include "core/utf8.h"
 
 namespace dubsar {
@@ -51,9 +51,7 @@ std::string fixed(double value, int decimals) {
   if (!std::isfinite(value)) {
     return "\xE2\x80\x93";
   }
-  std::array<char, 400> text{};
-  std::snprintf(text.data(), text.size(), "%.*f", decimals, value);
-  return text.data();
+  return fixed_text(value, decimals);
 }
 
 std::string counted(long long count, std::string_view one, std::string_view many) {

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/number_text.h"
+
 namespace dubsar {
 
 namespace {
@@ -68,7 +70,7 @@ Result<Framing> framing_of(const RenderScene& scene, const ViewCamera& camera, c
   if (!(wide <= kMaxSidePx) || !(high <= kMaxSidePx) ||
       !(wide * high * options.supersampling * options.supersampling <= kMaxSubpixels)) {
     return fail(ErrorKind::kUsage,
-                "the picture would be too large at " + std::to_string(framing.mm_per_px) + " mm per pixel",
+                "the picture would be too large at " + fixed_text(framing.mm_per_px, 6) + " mm per pixel",
                 "rendering", "take more mm per pixel, or look for stray points far from the tablet");
   }
   framing.width_px = std::max(1, static_cast<int>(wide));

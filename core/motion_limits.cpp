@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "core/keep_out.h"
+#include "core/number_text.h"
 #include "core/units.h"
 
 namespace dubsar {
@@ -30,9 +30,7 @@ constexpr Quantity kHeight{"the head's height", "mm", 1};
 constexpr Quantity kStandoff{"the head's stand-off", "mm", 1};
 
 std::string text_of(const Quantity& what, double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.2f", value * what.scale);
-  return text;
+  return fixed_text(value * what.scale, 2);
 }
 
 std::string text_of(const Quantity& what, const Range& range) {

@@ -4,10 +4,10 @@
 
 #include <filesystem>
 
+#include "core/number_text.h"
 #include "core/units.h"
 #include "core/utf8.h"
 #include "formats/calibration_json.h"
-#include "formats/number_text.h"
 #include "formats/toml_document.h"
 
 namespace dubsar {

@@ -4,9 +4,9 @@
 
 #include <cstdint>
 
+#include "core/number_text.h"
 #include "formats/atomic_file.h"
 #include "formats/byte_order.h"
-#include "formats/number_text.h"
 #include "formats/ply_scan_info.h"
 
 namespace dubsar {

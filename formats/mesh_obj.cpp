@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
+#include "core/number_text.h"
 #include "formats/mesh_formats.h"
-#include "formats/number_text.h"
 #include "formats/text_scanner.h"
 
 namespace dubsar {

@@ -5,10 +5,10 @@
 #include <atomic>
 #include <cmath>
 
+#include "core/number_text.h"
 #include "core/parallel.h"
 #include "formats/byte_order.h"
 #include "formats/mesh_formats.h"
-#include "formats/number_text.h"
 #include "formats/ply_body.h"
 #include "formats/ply_scan.h"
 

@@ -5,12 +5,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <optional>
 
+#include "core/number_text.h"
 #include "core/units.h"
-#include "formats/number_text.h"
 #include "formats/ply_body.h"
 #include "formats/ply_scan_info.h"
 #include "formats/scan_samples.h"
@@ -96,12 +95,6 @@ struct VertexColumns {
     return three[0] >= 0 && three[1] >= 0 && three[2] >= 0;
   }
 };
-
-std::string short_text(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  return text;
-}
 
 std::uint8_t colour_byte(double value) {
   return value > 0 ? static_cast<std::uint8_t>(std::min(value + 0.5, 255.0)) : std::uint8_t{0};
@@ -221,8 +214,9 @@ std::string settle_spacing(RangeGrid& grid, bool in_its_unit) {
   } else if (measured_mm > 0 &&
              (said_mm > kSpacingWithin * measured_mm || measured_mm > kSpacingWithin * said_mm)) {
     grid.spacing_mm = measured_mm;
-    return "its header says a spacing of " + short_text(said_mm) + " mm, but its samples lie " +
-           short_text(measured_mm) + " mm apart, which is taken; mend or remove `obj_info dubsar_spacing_mm`";
+    return "its header says a spacing of " + short_text(said_mm, 3) + " mm, but its samples lie " +
+           short_text(measured_mm, 3) +
+           " mm apart, which is taken; mend or remove `obj_info dubsar_spacing_mm`";
   }
   return {};
 }

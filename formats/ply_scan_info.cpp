@@ -7,8 +7,8 @@
 #include <cmath>
 #include <optional>
 
+#include "core/number_text.h"
 #include "core/utf8.h"
-#include "formats/number_text.h"
 #include "formats/text_scanner.h"
 
 namespace dubsar {

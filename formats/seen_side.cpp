@@ -9,10 +9,10 @@
 #include <cstddef>
 #include <optional>
 
+#include "core/number_text.h"
 #include "core/order_statistics.h"
 #include "core/units.h"
 #include "formats/grid_axis.h"
-#include "formats/number_text.h"
 
 namespace dubsar {
 

@@ -3,6 +3,7 @@
 #include "formats/text_scanner.h"
 
 #include <algorithm>
+#include <clocale>
 #include <cstdlib>
 
 namespace dubsar {
@@ -17,6 +18,12 @@ bool is_blank(char c) {
   return c == ' ' || (c >= '\t' && c <= '\r');
 }
 
+/// strtod in the C locale: a host may have set one with decimal commas.
+double strtod_with_point(const char* text) {
+  static const locale_t kWithPoint = newlocale(LC_ALL_MASK, "C", nullptr);
+  return strtod_l(text, nullptr, kWithPoint);
+}
+
 /// from_chars, and zero or infinity where that gives up on the magnitude. Null when there is no number.
 const char* number_at(const char* at, const char* end, double& value) {
   if (at != end && *at == '+' && at + 1 != end && at[1] != '-') {
@@ -25,7 +32,7 @@ const char* number_at(const char* at, const char* end, double& value) {
   const auto [stop, error] = std::from_chars(at, end, value);
   if (error == std::errc::result_out_of_range) {
     const std::string copy(at, std::min<std::size_t>(static_cast<std::size_t>(stop - at), kMaxNumberChars));
-    value = std::strtod(copy.c_str(), nullptr);
+    value = strtod_with_point(copy.c_str());
     return stop;
   }
   return error == std::errc{} ? stop : nullptr;

@@ -7,10 +7,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <map>
 #include <optional>
 
+#include "core/number_text.h"
 #include "core/parallel.h"
 #include "core/units.h"
 #include "planning/clearing.h"
@@ -58,11 +58,9 @@ void excuse_strays(std::span<const PlacedScan> scans, std::span<const double> no
           }
         }
         if (past >= options.stray_views) {
-          std::array<char, 120> line{};
-          std::snprintf(line.data(), line.size(),
-                        "stray return in the air: %d scans look past it at the surface, %.1f mm behind", past,
-                        nearest_mm);
-          target.excuse_as(Excuse::kUnneeded, line.data());
+          target.excuse_as(Excuse::kUnneeded, "stray return in the air: " + std::to_string(past) +
+                                                  " scans look past it at the surface, " +
+                                                  fixed_text(nearest_mm, 1) + " mm behind");
           target.area_mm2 = 0;  // no surface is missing there
         }
       },

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <optional>
 
+#include "core/number_text.h"
 #include "core/units.h"
 #include "planning/clearing.h"
 #include "planning/clusters.h"
@@ -107,12 +107,9 @@ std::optional<Interpolation> interpolate(const SurfaceCover& cover, const RedTar
 }
 
 std::string describe(const Interpolation& fit, double good_to_mm) {
-  std::array<char, 160> line{};
-  std::snprintf(
-      line.data(), line.size(),
-      "gap of %.2f mm; its surroundings bend by %.0f µm from a quadric, interpolation good to %.0f µm",
-      fit.width_mm, 1000 * fit.bend_mm, 1000 * good_to_mm);
-  return line.data();
+  return "gap of " + fixed_text(fit.width_mm, 2) + " mm; its surroundings bend by " +
+         fixed_text(1000 * fit.bend_mm, 0) + " µm from a quadric, interpolation good to " +
+         fixed_text(1000 * good_to_mm, 0) + " µm";
 }
 
 }  // namespace

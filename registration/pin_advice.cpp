@@ -7,10 +7,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <optional>
 
+#include "core/number_text.h"
 #include "core/units.h"
 #include "registration/pin_matching.h"
 
@@ -116,10 +116,8 @@ class Adviser {
       return close;
     }
     if (now.turn_deg > options_.most_turn_deg || now.surface_mm > options_.most_surface_mm) {
-      char text[96];
-      std::snprintf(text, sizeof text, "the pins stand too close together: good to %.1f degrees only",
-                    now.turn_deg);
-      return move(PinFault::kBunched, text);
+      return move(PinFault::kBunched, "the pins stand too close together: good to " +
+                                          fixed_text(now.turn_deg, 1) + " degrees only");
     }
     return against_earlier();
   }
@@ -220,13 +218,11 @@ class Adviser {
     (void)best_edge(second, &error_second);
     const std::size_t moved = error_first <= error_second ? first : second;
     const std::size_t stays = moved == first ? second : first;
-    char distance[48];
-    std::snprintf(distance, sizeof distance, " (%.1f mm): move it to the ", least);
     return fault(PinFault::kTooClose, static_cast<int>(moved),
                  name(moved) +
                      (scan_.tips[stays].label >= 0 ? " stands too close to " + name(stays)
                                                    : std::string(" stands too close to another")) +
-                     distance + best_edge(moved).name);
+                     " (" + fixed_text(least, 1) + " mm): move it to the " + best_edge(moved).name);
   }
 
   /// The earlier scan that shows most of the same pins.
@@ -259,11 +255,9 @@ class Adviser {
         const double off = (best->target_from_source * at_[s] - t.position_mm).norm();
         // Beyond what putting back, the pose and a click make of it.
         if (off > std::max(options_.too_close_mm, 5.0 * std::sqrt(variance_[s]))) {
-          char text[128];
-          std::snprintf(text, sizeof text,
-                        " has moved: scan %d shows it %.1f mm away; put it back, or correct its label",
-                        best_scan->id, off);
-          return fault(PinFault::kMoved, static_cast<int>(s), name(s) + text);
+          return fault(PinFault::kMoved, static_cast<int>(s),
+                       name(s) + " has moved: scan " + std::to_string(best_scan->id) + " shows it " +
+                           fixed_text(off, 1) + " mm away; put it back, or correct its label");
         }
       }
     }

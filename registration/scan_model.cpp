@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
+#include "core/number_text.h"
 #include "registration/align_near.h"
 #include "registration/pin_advice.h"
 #include "registration/pin_detection.h"
@@ -46,11 +46,9 @@ std::string too_coarse(double spacing_mm, double scale_mm) {
   if (!(scale_mm > 0) || spacing_mm <= kCoarsestSpacing * scale_mm) {
     return {};
   }
-  char numbers[96];
-  std::snprintf(numbers, sizeof numbers, "%.2g mm, where it needs at most %.2g mm", spacing_mm,
-                kCoarsestSpacing * scale_mm);
-  return std::string("too coarse for this object: samples every ") + numbers +
-         "; scan it with a smaller spacing";
+  return "too coarse for this object: samples every " + short_text(spacing_mm, 2) +
+         " mm, where it needs at most " + short_text(kCoarsestSpacing * scale_mm, 2) +
+         " mm; scan it with a smaller spacing";
 }
 
 /// True when the pins alone leave no doubt that the first match is the right one.

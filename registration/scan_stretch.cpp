@@ -5,10 +5,10 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <memory>
 #include <utility>
 
+#include "core/number_text.h"
 #include "core/parallel.h"
 #include "registration/nearest_usable.h"
 #include "registration/twist.h"
@@ -167,11 +167,7 @@ bool ScanStretch::is_off() const {
 }
 
 std::string reason_of(const ScanStretch& stretch) {
-  const auto percent = [](double share) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.1f %%", 100.0 * std::abs(share));
-    return std::string(text);
-  };
+  const auto percent = [](double share) { return fixed_text(100.0 * std::abs(share), 1) + " %"; };
   const auto told = [&](double by, const char* larger, const char* smaller) {
     return "against the other scans it is " + percent(by) + (by > 0 ? larger : smaller) +
            "; verify the scanner, then scan it again";

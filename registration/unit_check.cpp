@@ -4,8 +4,9 @@
 
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <optional>
+
+#include "core/number_text.h"
 
 namespace dubsar {
 
@@ -78,9 +79,7 @@ std::string impossible_size(const ScanSize& scan, double least_mm, double most_m
                                         : "--unit m in place of um")
                             : (one_step ? "--unit um (micrometres) in place of mm, or --unit mm in place of m"
                                         : "--unit um in place of m");
-  char across[32];
-  std::snprintf(across, sizeof across, "%.3g", scan.scale_mm);
-  return std::string("it would be ") + across + " mm across: its unit is " + times +
+  return "it would be " + short_text(scan.scale_mm, 3) + " mm across: its unit is " + times +
          (is_small ? " times larger than was said; give " : " times smaller than was said; give ") + instead +
          " (in a file's header: `obj_info unit`)";
 }

@@ -8,12 +8,12 @@
 
 #include "acquisition/calibration_folder.h"
 #include "acquisition/rig_log.h"
+#include "core/number_text.h"
 #include "core/units.h"
 #include "formats/atomic_file.h"
 #include "formats/calibration_json.h"
 #include "formats/gray_file.h"
 #include "formats/make_folder.h"
-#include "formats/number_text.h"
 #include "formats/rig_toml.h"
 #include "station/results.h"
 #include "station/verification.h"

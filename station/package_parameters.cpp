@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <string>
 
 #include "formats/rig_json.h"
@@ -35,7 +36,10 @@ void add_spacing(const PackageContent& content, std::vector<ProvenanceValue>& va
 
 /// As its author wrote it: 0.3F is 0.3, not 0.30000001192092896.
 double as_written(float value) {
-  return std::stod(fmt::format("{}", value));
+  const std::string text = fmt::format("{}", value);
+  double out = 0;
+  std::from_chars(text.data(), text.data() + text.size(), out);
+  return out;
 }
 
 }  // namespace

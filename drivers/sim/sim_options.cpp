@@ -7,6 +7,8 @@
 #include <string>
 #include <string_view>
 
+#include "core/number_text.h"
+
 namespace dubsar::sim_driver {
 
 namespace {
@@ -50,9 +52,7 @@ std::unexpected<Error> refuse(const SettingRow& row, std::string_view value) {
     takes += std::string(" (") + row.choices + ")";
   }
   if (row.minimum <= row.maximum) {
-    char range[64];
-    std::snprintf(range, sizeof range, " (%g to %g)", row.minimum, row.maximum);
-    takes += range;
+    takes += " (" + short_text(row.minimum) + " to " + short_text(row.maximum) + ")";
   }
   return fail(ErrorKind::kUsage, "option " + std::string(row.key) + " cannot be '" + std::string(value) + "'",
               "sim:", "it is " + takes);

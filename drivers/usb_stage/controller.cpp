@@ -4,8 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <thread>
+
+#include "core/number_text.h"
 
 namespace dubsar::usb_stage {
 
@@ -24,9 +25,7 @@ constexpr double kSlack = 0.05;
 constexpr double kSpeedSlack = 3;
 
 std::string shown(const Axis& axis, double value) {
-  char text[48];
-  std::snprintf(text, sizeof text, axis.rotary ? "%.3f deg" : "%.3f mm", value / unit_of(axis.rotary));
-  return text;
+  return fixed_text(value / unit_of(axis.rotary), 3) + (axis.rotary ? " deg" : " mm");
 }
 
 /// What counts as arrived: two steps of the motor, or a micrometre where the steps are not known.

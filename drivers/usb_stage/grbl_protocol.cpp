@@ -3,9 +3,9 @@
 #include "drivers/usb_stage/grbl_protocol.h"
 
 #include <charconv>
-#include <cstdio>
 #include <utility>
 
+#include "core/number_text.h"
 #include "drivers/plugin.h"
 
 namespace dubsar::usb_stage::grbl {
@@ -151,9 +151,7 @@ std::string meaning(const Alarm& alarm) {
 }
 
 std::string move(char axis, double position, double per_minute) {
-  char text[64];
-  std::snprintf(text, sizeof text, "G90G21G53G1%c%.4fF%.3f", axis, position, per_minute);
-  return text;
+  return std::string("G90G21G53G1") + axis + fixed_text(position, 4) + "F" + fixed_text(per_minute, 3);
 }
 
 }  // namespace dubsar::usb_stage::grbl

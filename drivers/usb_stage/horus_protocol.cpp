@@ -3,8 +3,8 @@
 #include "drivers/usb_stage/horus_protocol.h"
 
 #include <algorithm>
-#include <cstdio>
 
+#include "core/number_text.h"
 #include "drivers/plugin.h"
 
 namespace dubsar::usb_stage::horus {
@@ -50,15 +50,11 @@ Line parse(std::string_view line) {
 }
 
 std::string speed(double degrees_per_second) {
-  char text[48];
-  std::snprintf(text, sizeof text, "G1F%.3f", degrees_per_second);
-  return text;
+  return "G1F" + fixed_text(degrees_per_second, 3);
 }
 
 std::string move(double degrees) {
-  char text[48];
-  std::snprintf(text, sizeof text, "G1X%.4f", degrees);
-  return text;
+  return "G1X" + fixed_text(degrees, 4);
 }
 
 std::string laser(int number, bool on) {

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cerrno>
 #include <cmath>
-#include <cstdio>
 
+#include "core/number_text.h"
 #include "drivers/v4l2/camera.h"
 
 namespace dubsar::v4l2 {
@@ -17,12 +17,6 @@ namespace {
 constexpr std::uint32_t kType = V4L2_BUF_TYPE_VIDEO_CAPTURE;
 /// Cameras count intervals in whole fractions of a second or of a clock of their own.
 constexpr double kRateTolerance = 0.01;
-
-std::string number_text(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", value);
-  return text;
-}
 
 }  // namespace
 
@@ -163,8 +157,8 @@ Status Camera::set_rate(double rate_hz) {
   const double got = mode_.rate_hz;
   if (std::abs(got / rate_hz - 1) > kRateTolerance) {
     put_rate(wanted_rate_hz());
-    return fail(ErrorKind::kUsage, "the camera does not send " + number_text(rate_hz) + " frames a second",
-                path_, "it would send " + number_text(got));
+    return fail(ErrorKind::kUsage, "the camera does not send " + short_text(rate_hz) + " frames a second",
+                path_, "it would send " + short_text(got));
   }
   rate_hz_ = rate_hz;
   return {};

@@ -5,9 +5,9 @@
 #include <linux/videodev2.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <tuple>
 
+#include "core/number_text.h"
 #include "drivers/driver.h"
 
 namespace dubsar::v4l2 {
@@ -18,12 +18,10 @@ namespace {
 constexpr double kRateTolerance = 0.01;
 
 std::string described(const Mode& mode) {
-  char text[64];
-  std::snprintf(text, sizeof text, "%s %ux%u", name_of(mode.fourcc).c_str(), mode.width, mode.height);
-  std::string out = text;
+  std::string out =
+      name_of(mode.fourcc) + " " + std::to_string(mode.width) + "x" + std::to_string(mode.height);
   if (mode.rate_hz > 0) {
-    std::snprintf(text, sizeof text, " at %g/s", mode.rate_hz);
-    out += text;
+    out += " at " + short_text(mode.rate_hz) + "/s";
   }
   return out;
 }

@@ -6,6 +6,8 @@
 
 #include <limits>
 
+#include "tests/support/comma_locale.h"
+
 namespace dubsar {
 namespace {
 
@@ -37,6 +39,8 @@ TEST(Fixed, WritesNumbersAndAdmitsWhatIsNone) {
   EXPECT_EQ(fixed(3.14159, 2), "3.14");
   EXPECT_EQ(fixed(std::numeric_limits<double>::quiet_NaN(), 2), "–");
   EXPECT_EQ(fixed(std::numeric_limits<double>::infinity(), 2), "–");
+  const test::CommaLocale comma;  // as a host program may have set it
+  EXPECT_EQ(fixed(3.14159, 2), "3.14");
 }
 
 TEST(Counted, AgreesInNumber) {

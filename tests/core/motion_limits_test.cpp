@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "core/units.h"
+#include "tests/support/comma_locale.h"
 
 namespace dubsar {
 namespace {
@@ -106,6 +107,15 @@ TEST(MotionLimits, NothingLeftOfARangeIsNamed) {
   ASSERT_FALSE(rig);
   EXPECT_EQ(rig.error().kind, ErrorKind::kBadInput);
   EXPECT_THAT(rig.error().line(), HasSubstr("rig.json: the limits exclude every view: tilt 80.00 to 90.00"));
+}
+
+TEST(MotionLimits, AreToldWithThePointWhateverTheHostsLocale) {
+  const test::CommaLocale comma;
+  if (!test::CommaLocale::is_set()) {
+    GTEST_SKIP() << "no locale with a decimal comma can be made here";
+  }
+  EXPECT_THAT(check_limits(arc_rig(), drive(0, 71), "dev").error().line(),
+              HasSubstr("from 0.00 to 70.00 deg"));
 }
 
 }  // namespace

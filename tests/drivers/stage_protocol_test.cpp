@@ -10,6 +10,7 @@
 #include "drivers/usb_stage/options.h"
 #include "drivers/usb_stage/tmcl_protocol.h"
 #include "drivers/usb_stage/usb_link.h"
+#include "tests/support/comma_locale.h"
 
 namespace dubsar::usb_stage {
 namespace {
@@ -148,6 +149,19 @@ TEST(UsbErrors, NameTheMend) {
   EXPECT_THAT(usb_error(-3, "x", "1:2").line(), HasSubstr("copy 60-dubsar.rules to /etc/udev/rules.d"));
   EXPECT_THAT(usb_error(-6, "x", "1:2").line(), HasSubstr("in use by another program"));
   EXPECT_THAT(usb_error(-4, "x", "1:2").line(), HasSubstr("unplugged"));
+}
+
+/// A stage that is told to go to "-0,45" goes to -0.
+TEST(StageProtocols, KeepThePointWhateverTheHostsLocale) {
+  const test::CommaLocale comma;
+  if (!test::CommaLocale::is_set()) {
+    GTEST_SKIP() << "no locale with a decimal comma can be made here";
+  }
+  EXPECT_EQ(grbl::move('X', -12.5, 600), "G90G21G53G1X-12.5000F600.000");
+  EXPECT_THAT(*std::get<grbl::Report>(grbl::parse("<Idle|MPos:0.000,-1.500,3.25>")).machine,
+              ElementsAre(0, -1.5, 3.25));
+  EXPECT_EQ(horus::move(-0.45), "G1X-0.4500");
+  EXPECT_EQ(horus::speed(12.5), "G1F12.500");
 }
 
 }  // namespace

@@ -3,9 +3,13 @@
 #include "formats/text_scans.h"
 
 #include <Eigen/Geometry>
+#include <limits>
+
 #include "formats/atomic_file.h"
+#include "formats/text_scanner.h"
 
 #include "tests/formats/format_support.h"
+#include "tests/support/comma_locale.h"
 
 namespace dubsar {
 namespace {
@@ -193,6 +197,23 @@ TEST(ScanFiles, AGarbledPlyIsNotTakenForSomethingElse) {
                                     "property list uchar int vertex_indices\nend_header\n"
                                     "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"));
   EXPECT_FALSE(looks_like_scan(folder / "mesh.ply"));
+}
+
+TEST(TextScanner, NumbersThatNoDoubleHoldsAreZeroOrInfinityWhateverTheHostsLocale) {
+  const auto read = [](std::string_view word) {
+    double value = -1;
+    EXPECT_TRUE(parse_number(word, value)) << word;
+    return value;
+  };
+  const auto all = [&] {
+    EXPECT_EQ(read("1.5e-400"), 0);
+    EXPECT_EQ(read("0.5e999"), std::numeric_limits<double>::infinity());
+    EXPECT_EQ(read("-2.5e999"), -std::numeric_limits<double>::infinity());
+    EXPECT_EQ(read("2.5e-5"), 2.5e-5);
+  };
+  all();
+  const test::CommaLocale comma;
+  all();
 }
 
 }  // namespace

@@ -10,8 +10,8 @@
 #include <fstream>
 
 #include "build_paths.h"
+#include "core/number_text.h"
 #include "formats/calibration_json.h"
-#include "formats/number_text.h"
 #include "sim/frame_rig.h"
 #include "sim/frame_target.h"
 #include "tests/drivers/peers/scanner_frames.h"
