@@ -2,6 +2,7 @@
 // Copyright The Dubsar developers
 // What a session's folder holds, for a skin to show before any device is there.
 #include <optional>
+#include <set>
 #include <utility>
 
 #include "acquisition/operator_log.h"
@@ -20,6 +21,30 @@
 
 namespace dubsar {
 
+namespace {
+
+/// A scan that was stored or taken out since does not count in it yet, or still does.
+bool is_of_the_same_scans(const RedMap& map, const std::vector<ScanPose>& poses) {
+  std::set<int> mapped;
+  for (const RedScan& scan : map.scans) {
+    mapped.insert(scan.id);
+  }
+  std::set<int> registered;
+  for (const ScanPose& pose : poses) {
+    if (pose.status == PoseStatus::kRegistered) {
+      registered.insert(pose.id);
+    }
+  }
+  return mapped == registered;
+}
+
+bool is_stored(const SessionStore& store, const RedMap& map) {
+  const auto differs = differs_from_stored(store, map);
+  return differs && *differs && (*differs)->empty();
+}
+
+}  // namespace
+
 void LiveSession::read_folder() {
   if (!SessionStore::is_session(options_.session)) {
     return;
@@ -32,7 +57,7 @@ void LiveSession::read_folder() {
   changed();
   const Result<SessionStore> store = SessionStore::open(options_.session, SessionStore::Access::kReadOnly);
   const auto scans = store ? store->scans() : std::unexpected(store.error());
-  const auto poses = store ? store->poses() : std::unexpected(store.error());
+  const auto poses = store ? standing_poses(*store) : std::unexpected(store.error());
   if (!scans || !poses) {
     end(std::unexpected(!scans ? scans.error() : poses.error()));
     return;
@@ -58,11 +83,14 @@ void LiveSession::read_folder() {
   show_verdict(*store);
   changed();
   const bool has_model = show_stored_model(*store, *poses);
-  // The mesh says what is sparse, not what of it is excused.
-  const bool is_shown = has_model && [this] {
+  bool is_kept = false;   // else a scan was taken out since, or moved: the verdict is worked out anew
+  bool is_shown = false;  // the mesh says what is sparse, not what of it is excused
+  {
     const std::scoped_lock lock(mutex_);
-    return state_.red_map && state_.red_map->conclusive;
-  }();
+    is_kept = has_model && state_.red_map && is_of_the_same_scans(*state_.red_map, *poses);
+    is_shown = is_kept && state_.red_map->conclusive;
+    state_.verdict_kept = is_kept;
+  }
   ScanSet set;
   for (const StoredScan& stored : *scans) {
     if (job_->cancelled() || stored.damaged) {
@@ -80,7 +108,7 @@ void LiveSession::read_folder() {
     if (Result<std::optional<Rig>> rig = session_rig(*store)) {
       set.rig = std::move(*rig);
     }
-    rebuild_model(set, *poses, has_model);
+    rebuild_model(*store, set, *poses, is_kept);
   }
 }
 
@@ -151,6 +179,14 @@ bool LiveSession::show_stored_model(const SessionStore& store, const std::vector
   return is_of_these_poses;
 }
 
+void LiveSession::verdict_after_break(const SessionStore& store) {
+  const auto poses = standing_poses(store);
+  const std::shared_ptr<const RedMap> map = state().red_map;
+  const bool kept = poses && map && is_of_the_same_scans(*map, *poses) && is_stored(store, *map);
+  const std::scoped_lock lock(mutex_);
+  state_.verdict_kept = kept;
+}
+
 std::shared_ptr<JobContext> LiveSession::begin_unasked() {
   auto job = std::make_shared<JobContext>(
       [this](std::string_view stage, double fraction) { progress(stage, fraction); });
@@ -185,7 +221,8 @@ void LiveSession::look_for_package() {
   unasked_.reset();
 }
 
-void LiveSession::rebuild_model(const ScanSet& set, const std::vector<ScanPose>& poses, bool red_alone) {
+void LiveSession::rebuild_model(const SessionStore& store, const ScanSet& set,
+                                const std::vector<ScanPose>& poses, bool red_alone) {
   const auto job = begin_unasked();
   if (!job) {
     return;
@@ -205,10 +242,11 @@ void LiveSession::rebuild_model(const ScanSet& set, const std::vector<ScanPose>&
     auto red = std::make_shared<const ColouredPoints>(planned->stage->red_points(*mesh));
     show_model(mesh, std::move(red), planned->stage->tablet_from_model(*mesh));
   }
+  const bool kept = planned && is_stored(store, planned->results.red_map);
   const std::scoped_lock lock(mutex_);
-  if (planned && !state_.red_map) {
+  if (planned) {
     state_.red_map = std::make_shared<const RedMap>(planned->results.red_map);
-    state_.verdict_kept = false;
+    state_.verdict_kept = kept;
   }
   unasked_.reset();
 }

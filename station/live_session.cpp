@@ -87,7 +87,7 @@ void LiveSession::hurry() {
   }
 }
 
-void LiveSession::launch(std::function<void()> job) {
+void LiveSession::launch(std::function<void()> job, bool error_stays) {
   {
     const std::scoped_lock lock(mutex_);
     if (unasked_ && !next_) {
@@ -106,7 +106,9 @@ void LiveSession::launch(std::function<void()> job) {
     const std::scoped_lock lock(mutex_);
     job_ = std::make_shared<JobContext>(
         [this](std::string_view stage, double fraction) { progress(stage, fraction); });
-    state_.error.reset();
+    if (!error_stays) {
+      state_.error.reset();
+    }
   }
   worker_ = std::thread([this, first = std::move(job)] {
     std::shared_ptr<CameraWatch> watch;
@@ -191,8 +193,11 @@ void LiveSession::scan_now() {
 
 void LiveSession::finish() {
   const std::scoped_lock lock(mutex_);
-  if (engine_) {
-    engine_->post(Finish{});
+  if (engine_ && engine_->post(Finish{})) {
+    finish_asked_ = true;
+    if (state_.phase == LivePhase::kWaiting) {
+      state_.phase = LivePhase::kFinishing;  // nothing is to be turned any more, and no key scans
+    }
   }
 }
 
@@ -255,7 +260,7 @@ void LiveSession::describe(const TabletRecord& record) {
       return;
     }
   }
-  launch([this, record] { keep_record(record); });
+  launch([this, record] { keep_record(record); }, true);
 }
 
 void LiveSession::keep_record(const TabletRecord& record) {
@@ -337,6 +342,7 @@ void LiveSession::run_engine(std::vector<OperatorCommand> first, bool first_scan
     engine_ = engine;
     job = job_.get();
     state_.phase = LivePhase::kOpening;
+    finish_asked_ = false;
     state_.next.reset();
     state_.signed_off = false;
     state_.package.clear();
@@ -368,6 +374,9 @@ void LiveSession::run_engine(std::vector<OperatorCommand> first, bool first_scan
   }
   if (!result) {
     end(std::unexpected(result.error()));
+    if (store) {
+      verdict_after_break(*store);
+    }
   }
   changed();
 }

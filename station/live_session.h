@@ -79,17 +79,21 @@ class LiveSession {
   [[nodiscard]] bool busy() const { return busy_; }
 
  private:
-  void launch(std::function<void()> job);
+  /// `error_stays`: of a job that mends nothing, what ended the one before is still to be read.
+  void launch(std::function<void()> job, bool error_stays = false);
   void hurry();  ///< under the mutex: something was asked for, what nobody waits for ends
   /// The job of work that nobody waits for; null where something else is wanted already.
   [[nodiscard]] std::shared_ptr<JobContext> begin_unasked();
   /// Such work: the model of these scans, or on the mesh that is shown what is red and
   /// excused.
-  void rebuild_model(const ScanSet& set, const std::vector<ScanPose>& poses, bool red_alone);
+  void rebuild_model(const SessionStore& store, const ScanSet& set, const std::vector<ScanPose>& poses,
+                     bool red_alone);
   void run_engine(std::vector<OperatorCommand> first, bool first_scan_waits);
   void read_folder();
   void look_for_broken_off();
   void look_for_package();  ///< of the signed session, in its usual place
+  /// Of a run that kept none: whether the session holds what was shown last.
+  void verdict_after_break(const SessionStore& store);
   void show_scans(const SessionStore& store, const std::vector<StoredScan>& scans);  ///< under the mutex
   void show_verdict(const SessionStore& store);                                      ///< and who signed it
   /// False where it is of other poses, or there is none.
@@ -120,6 +124,7 @@ class LiveSession {
   std::function<void()> next_;                ///< a job that was asked for meanwhile
   std::deque<OperatorCommand> later_;         ///< asked for while a job ran that takes none
   bool scan_later_ = false;                   ///< likewise
+  bool finish_asked_ = false;                 ///< of the run under way
   bool looks_ = false;                        ///< somebody, through the camera
   bool halted_ = false;                       ///< until they look no more: looking lights a rig's laser
   std::optional<TabletRecord> record_later_;  ///< likewise

@@ -187,7 +187,7 @@ void LiveSession::hear(const Event& event) {
       }
     } else if (const auto* red_map = std::get_if<RedMapChanged>(&event)) {
       state_.red_map = std::make_shared<const RedMap>(red_map->red_map);
-      state_.verdict_kept = true;
+      state_.verdict_kept = false;  // until the run has ended well
       if (red_map->red_map.conclusive) {
         state_.phase = LivePhase::kFinishing;
       }
@@ -197,7 +197,7 @@ void LiveSession::hear(const Event& event) {
     } else if (const auto* waits = std::get_if<WaitsForOperator>(&event)) {
       state_.next = waits->next;
       state_.last_not_taken_up = waits->not_taken_up;
-      state_.phase = LivePhase::kWaiting;
+      state_.phase = finish_asked_ ? LivePhase::kFinishing : LivePhase::kWaiting;
     } else if (const auto* notice = std::get_if<Notice>(&event)) {
       state_.notice = notice->text;
     }
