@@ -65,7 +65,8 @@ std::optional<double> days_since(const std::string& iso_8601) {
     return std::nullopt;
   }
   const double seconds = std::difftime(std::time(nullptr), timegm(&parts));
-  return std::max(0.0, seconds / 86400);
+  constexpr double kClocksDifferS = 600;
+  return seconds < -kClocksDifferS ? std::nullopt : std::optional(std::max(0.0, seconds / 86400));
 }
 
 RigScanner::RigScanner(const RigFile& file, const RigCalibration& calibration, Device camera, Device stage,

@@ -68,7 +68,8 @@ class RigScanner : public RigSource {
   std::unique_ptr<RowWindow> window_;  ///< of the scan that runs
 };
 
-/// Days from an ISO 8601 time in UTC until now; nothing when the text is none.
+/// Days from an ISO 8601 time in UTC until now; nothing when the text is none, or a time to come: then the
+/// clock of now or of then is wrong.
 [[nodiscard]] std::optional<double> days_since(const std::string& iso_8601);
 
 }  // namespace dubsar

@@ -123,8 +123,9 @@ struct Engine::Impl {
   std::optional<SessionStore> store;
   std::optional<RangeSource> source;
   std::optional<Rig> rig;
-  std::vector<StationScan> resumed;          ///< of an existing session
-  std::set<std::string> known_files;         ///< a replayed file that is stored already is not stored again
+  std::vector<StationScan> resumed;  ///< of an existing session
+  /// A replayed file that is stored already is not stored again: name and valid samples.
+  std::map<std::string, std::set<std::int64_t>> known_files;
   int placement_offset = 0;                  ///< a resumed session starts with a lifted tablet
   std::map<int, Placement> drives_of_scans;  ///< of the storing thread once the pipeline runs
   bool wait_for_plan = false;                ///< the session that goes on says first whether it needs more
@@ -252,6 +253,7 @@ struct Engine::Impl {
   /// What an earlier program had of a scan as it ended becomes a scan; before the session's are read.
   void take_up_left_scans();
   void keep_stored();
+  bool is_known(const RangeGrid& grid);
   bool hand_to_store(RawScan scan);  ///< false when nothing is stored any more
   void note_drive(int id, const Placement& drive);
   /// Onto the disk, and only then reported; false when it is not there.

@@ -14,7 +14,7 @@ Status Engine::Impl::load_resumed(JobContext& job) {
   }
   for (const StoredScan& scan : *stored) {
     if (!scan.source.empty() && source->capabilities().finite) {
-      known_files.insert(scan.source);
+      known_files[scan.source].insert(scan.samples);
     }
     if (scan.dropped || scan.damaged) {
       continue;

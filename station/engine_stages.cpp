@@ -24,6 +24,22 @@ void Engine::Impl::keep_half(const std::optional<Placement>& drive, std::shared_
   hand_to_store({std::move(*half), std::nullopt, drive, std::move(kept), remark_of(source->record())});
 }
 
+/// A file of the same name that holds another scan is said, and left out: a name tells a scan from others.
+bool Engine::Impl::is_known(const RangeGrid& grid) {
+  const auto known = grid.source.empty() ? known_files.end() : known_files.find(grid.source);
+  if (known == known_files.end()) {
+    return false;
+  }
+  if (!known->second.contains(static_cast<std::int64_t>(grid.valid_count()))) {
+    Error other{ErrorKind::kBadInput, "the session has another scan of this name: this one is left out",
+                grid.source, "give the file another name, then give the same command again"};
+    emit(Notice{other.line()});
+    const std::scoped_lock lock(mutex);
+    device_error = device_error ? device_error : std::move(other);
+  }
+  return true;
+}
+
 bool Engine::Impl::hand_to_store(RawScan scan) {
   const std::shared_ptr<UnfinishedScan> kept = scan.kept;
   if (kept) {
@@ -88,7 +104,7 @@ Taken Engine::Impl::take_scan(const std::optional<Placement>& drive, JobContext&
   if (!*grid) {
     return Taken::kEnd;
   }
-  if (!(*grid)->source.empty() && known_files.contains((*grid)->source)) {
+  if (is_known(**grid)) {
     return Taken::kNothing;
   }
   if ((*grid)->valid_count() == 0) {

@@ -234,5 +234,20 @@ TEST_F(BadInput, ASecondProgramOnTheSessionIsToldSo) {
   EXPECT_TRUE(second.json().contains("error")) << second.out;
 }
 
+/// Exported anew from the first number on, as other programs do it every day.
+TEST_F(BadInput, AnotherScanOfANameThatTheSessionHasIsNotLeftOutInSilence) {
+  const fs::path first = write_bumpy_scans(at("first"), 2);
+  ASSERT_EQ(scan(first, "session").status, 1);
+  const fs::path second = write_bumpy_scans(at("second"), 3);
+  fs::remove(second / scan_name(0));
+  fs::rename(second / scan_name(2), second / scan_name(1));
+  const Outcome again = scan(second, "session");
+  EXPECT_EQ(again.status, 2) << again.err;
+  EXPECT_THAT(again.err, HasSubstr(scan_name(1) + ": the session has another scan of this name"));
+  EXPECT_THAT(again.err, HasSubstr("give the file another name"));
+  EXPECT_EQ(stored_in("session"), 2);
+  EXPECT_EQ(scan(first, "session").status, 1) << "the very same files are known, and no matter";
+}
+
 }  // namespace
 }  // namespace dubsar

@@ -167,7 +167,7 @@ TEST_F(ExportOfWedges, DrawingsSayWhatTheyAreWhereTheyTravelAlone) {
         "alts = list(g.objects(None, rdflib.URIRef(\"http://purl.org/dc/elements/1.1/\" + sys.argv[2]))); "
         "values = [str(o) for a in alts for o in g.objects(a, rdflib.RDF._1)]; "
         "sys.exit(0 if len(values) == 1 and sys.argv[3] in values[0] else 1)' " +
-        quoted(at("said.rdf")) + " " + name + " " + quoted(what));
+        quoted(at("said.rdf")) + " " + name + " " + test::quoted(what));
   };
   EXPECT_EQ(says("title", "BM <1>, obverse"), 0);
   EXPECT_EQ(says("rights", "© A Museum & others; CC0"), 0);

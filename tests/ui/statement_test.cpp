@@ -283,5 +283,35 @@ TEST(Statement, WhatEndedTheRunIsToldWithItsMend) {
   EXPECT_TRUE(s.may_scan) << "it goes on with what is there";
 }
 
+/// The same key after every signature: it must not drive the scanner while the next tablet is laid down.
+TEST(Statement, AfterASignatureTheKeyLeadsToTheNextTabletConclusiveOrNot) {
+  LiveState state = with_scan(PoseStatus::kRegistered);
+  state.signed_off = true;
+  state.signed_by = "A. Reader";
+  for (const double red : {2.5, 0.0}) {
+    state.red_map = map_with(red);
+    const Statement s = statement_of(state, true, Language::kEnglish);
+    EXPECT_FALSE(s.may_scan);
+    EXPECT_TRUE(s.may_next);
+    EXPECT_TRUE(s.may_pack);
+    EXPECT_FALSE(s.may_undo) << "a stray key would void the signature";
+    EXPECT_EQ(s.scan_label, Text::kNextTablet);
+    EXPECT_EQ(s.headline, "Signed by A. Reader: make the package");
+    EXPECT_EQ(s.tone, red > 0 ? Tone::kAsk : Tone::kGood);
+    EXPECT_EQ(s.detail.find("incomplete") != std::string::npos, red > 0);
+  }
+}
+
+/// The key would take the scan before the one that the operator looks at.
+TEST(Statement, NothingIsTakenOutWhileAScanComesIn) {
+  LiveState state = with_scan(PoseStatus::kRegistered);
+  for (const LivePhase phase : {LivePhase::kWaiting, LivePhase::kMoving, LivePhase::kJudging}) {
+    state.phase = phase;
+    EXPECT_TRUE(statement_of(state, true, Language::kEnglish).may_undo);
+  }
+  state.phase = LivePhase::kScanning;
+  EXPECT_FALSE(statement_of(state, true, Language::kEnglish).may_undo);
+}
+
 }  // namespace
 }  // namespace dubsar::ui

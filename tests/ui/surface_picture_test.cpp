@@ -68,7 +68,7 @@ class Shading : public OnAWindow {
     view_->draw_whole(camera_, look_, kWidth, kHeight);
     const Image drawn = view_->read();
     if (const char* folder = std::getenv("DUBSAR_KEEP_PICTURES"); folder != nullptr) {
-      ASSERT_TRUE(write_picture(fs::path(folder) / (name + ".png"), drawn, name));
+      ASSERT_TRUE(write_picture(fs::path(folder) / (name + ".png"), drawn, {.title = name}));
     }
     const Image stored = test::read_png(fs::path(DUBSAR_SOURCE_DIR) / "tests/ui/pictures" / (name + ".png"));
     ASSERT_EQ(stored.bytes.size(), drawn.bytes.size()) << name;
@@ -133,7 +133,7 @@ TEST_F(Shading, LevelsOfDetailLookLikeTheWholeSurfaceWithoutCracks) {
     const Image whole = view_->read();
     if (const char* folder = std::getenv("DUBSAR_KEEP_PICTURES"); folder != nullptr) {
       const std::string name = "level_" + std::to_string(level) + "_zoom_" + std::to_string(zoom) + ".png";
-      ASSERT_TRUE(write_picture(fs::path(folder) / name, rough, name));
+      ASSERT_TRUE(write_picture(fs::path(folder) / name, rough, {.title = name}));
     }
     double sum = 0;
     std::size_t cracks = 0;
@@ -239,7 +239,8 @@ TEST_F(Shading, APictureDrawnTileByTileHasNoSeamsAndIsThatOfOnePiece) {
     ASSERT_EQ(tiled.width, kWide);
     ASSERT_EQ(tiled.height, kHigh);
     if (const char* folder = std::getenv("DUBSAR_KEEP_PICTURES"); folder != nullptr) {
-      ASSERT_TRUE(write_picture(fs::path(folder) / (lamp ? "tiled_lamp.png" : "tiled.png"), tiled, "tiled"));
+      ASSERT_TRUE(write_picture(fs::path(folder) / (lamp ? "tiled_lamp.png" : "tiled.png"), tiled,
+                                {.title = "tiled"}));
     }
     std::size_t other = 0;
     for (int y = 0; y < kHigh; ++y) {

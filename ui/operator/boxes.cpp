@@ -199,6 +199,13 @@ void OperatorScreen::draw_next(UiContext& ui) {
   ImGui::PushFont(ui.fonts.small);
   coloured_text(ui.colours.faint, ui.text(Text::kNextBeside));
   ImGui::PopFont();
+  const bool conclusive = state_.red_map && state_.red_map->conclusive;
+  if (state_.signed_off && !conclusive && !session_.device().empty()) {
+    if (plain_button(ui, "scan-on", ui.text(Text::kScanOn), may_leave())) {
+      session_.scan_now();
+      ImGui::CloseCurrentPopup();
+    }
+  }
   if (confirmed(ui, "next-now", Text::kNextNow, !next_folder_.empty() && may_leave())) {
     next_session_ = session_.folder().parent_path() / next_folder_;
     ImGui::CloseCurrentPopup();

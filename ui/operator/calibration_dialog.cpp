@@ -77,9 +77,11 @@ std::string care_line(const RigCare& care, Language language) {
   if (!care.last->passed) {
     return text_of(Text::kVerifiedBadly, language);
   }
-  const double days = care.age_days.value_or(0);
+  if (!care.age_days) {
+    return text_of(Text::kVerifiedSometime, language);
+  }
   return filled(text_of(care.is_due() ? Text::kVerifiedLongAgo : Text::kVerifiedToday, language),
-                care.is_due() ? days : 24 * days);
+                care.is_due() ? *care.age_days : 24 * *care.age_days);
 }
 
 void CalibrationDialog::open(const LiveState& state) {

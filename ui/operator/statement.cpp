@@ -126,7 +126,7 @@ void say_still(Statement& out, const LiveState& state, bool has_device, Wording 
   out.may_scan = has_device;
   const bool conclusive = any && state.red_map && state.red_map->conclusive && state.verdict_kept;
   out.may_pack = any && state.signed_off;
-  if (conclusive && state.signed_off) {  // another scan would undo the signature
+  if (any && state.signed_off) {  // another scan would undo the signature, or be of the next tablet
     out.may_scan = false;
     out.may_next = true;
     out.scan_label = Text::kNextTablet;
@@ -150,13 +150,17 @@ void say_still(Statement& out, const LiveState& state, bool has_device, Wording 
       out.headline = text_of(Text::kMeasureFirst, language);
       add_sentence(out.detail, text_of(failed ? Text::kVerifyHasFailed : Text::kVerifyFirst, language));
     }
-  } else if (conclusive && state.signed_off) {
+  } else if (state.signed_off) {
     const bool packed = !state.package.empty();
     out.headline =
         filled(text_of(packed ? Text::kSignedNext : Text::kSignedPack, language), state.signed_by.c_str());
-    out.detail = packed ? filled(text_of(Text::kPackageKept, language), state.package.string())
-                        : text_of(Text::kIntoItsBox, language);
-    out.tone = Tone::kGood;
+    out.detail = packed       ? filled(text_of(Text::kPackageKept, language), state.package.string())
+                 : conclusive ? text_of(Text::kIntoItsBox, language)
+                              : std::string();
+    if (!conclusive) {
+      add_sentence(out.detail, text_of(Text::kSignedIncomplete, language));
+    }
+    out.tone = conclusive ? Tone::kGood : Tone::kAsk;
   } else if (conclusive) {
     const bool warned = add_warnings(out, state, language);
     out.headline = text_of(warned ? Text::kConclusiveBut : Text::kConclusive, language);
@@ -170,11 +174,9 @@ void say_still(Statement& out, const LiveState& state, bool has_device, Wording 
     out.tone = Tone::kAsk;
     out.scan_label = Text::kGoOn;
     // As incomplete, with the reason.
-    out.may_sign = state.red_map != nullptr && state.verdict_kept && !state.signed_off;
+    out.may_sign = state.red_map != nullptr && state.verdict_kept;
     out.detail = broken_off;
-    if (state.signed_off) {
-      add_sentence(out.detail, filled(text_of(Text::kSigned, language), state.signed_by.c_str()));
-    } else if (state.red_map && !state.red_map->next.empty()) {
+    if (state.red_map && !state.red_map->next.empty()) {
       add_sentence(out.detail, what_is_next(state.red_map->next.front(), language));
     }
     add_warnings(out, state, language);
@@ -214,8 +216,11 @@ double face_mm2(const RedMap& map, Face face, RegionState state) {
 Statement statement_of(const LiveState& state, bool has_device, Wording wording) {
   const Language language = wording.language;
   Statement out;
+  // Nor while a scan comes in: the key would take the one before it. What is signed goes by a click only.
   out.may_undo = newest(state) != nullptr && state.phase != LivePhase::kReading &&
-                 state.phase != LivePhase::kSigning && state.phase != LivePhase::kPacking && has_device;
+                 state.phase != LivePhase::kScanning && state.phase != LivePhase::kSigning &&
+                 state.phase != LivePhase::kPacking && has_device &&
+                 !(state.phase == LivePhase::kStill && state.signed_off);
   out.may_stop = state.phase != LivePhase::kStill;
   const auto hands_off = [&](Text headline) {
     out.tone = Tone::kHandsOff;

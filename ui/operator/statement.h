@@ -23,7 +23,7 @@ struct Statement {
   bool may_finish = false;
   bool may_stop = false;
   bool may_pack = false;   ///< it is signed: the package
-  bool may_next = false;   ///< and conclusive: the next tablet, in place of another scan
+  bool may_next = false;   ///< likewise: the next tablet, in place of another scan
   bool may_halt = false;   ///< something moves, or a laser is lit
   bool may_point = false;  ///< places in two scans settle where the last one lies
   Text scan_label = Text::kScan;
