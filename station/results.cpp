@@ -344,7 +344,7 @@ Result<Deliverables> keep_deliverables(SessionStore& store, const ReportInput& i
   if (const Status forgotten = store.forget_files(deliverable_names()); !forgotten) {
     return std::unexpected(forgotten.error());
   }
-  const Result<FileLabel> label = tablet_label(store);
+  const Result<FileLabel> label = label_of_scans(store);
   if (!label) {
     return std::unexpected(label.error());
   }

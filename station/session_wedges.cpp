@@ -91,7 +91,7 @@ Result<std::optional<SessionWedges>> keep_wedges(SessionStore& store, const Mesh
   }
   std::vector<fs::path> made{out.json};
   if (file.text_from_model) {
-    const Result<FileLabel> label = tablet_label(store);
+    const Result<FileLabel> label = label_of_scans(store);
     if (!label) {
       return std::unexpected(label.error());
     }

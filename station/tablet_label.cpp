@@ -13,6 +13,18 @@
 
 namespace dubsar {
 
+namespace {
+
+std::vector<std::pair<std::string, std::string>> words_of_scans(const std::string& simulated) {
+  std::vector<std::pair<std::string, std::string>> words;
+  if (!simulated.empty()) {
+    words.emplace_back("SIMULATED", simulated);
+  }
+  return words;
+}
+
+}  // namespace
+
 Result<std::string> simulated_words(const SessionStore& store) {
   const Result<std::vector<StoredScan>> scans = store.scans();
   if (!scans) {
@@ -32,15 +44,20 @@ Result<FileLabel> tablet_label(const SessionStore& store) {
   }
   TabletRecord record = tablet_record_of(store);
   record.notes.clear();
-  std::vector<std::pair<std::string, std::string>> words;
-  if (!simulated->empty()) {
-    words.emplace_back("SIMULATED", *simulated);
-  }
+  std::vector<std::pair<std::string, std::string>> words = words_of_scans(*simulated);
   if (record.cdli.empty() && record.museum_number.empty()) {
     words.emplace_back("Session", session_name(store.folder()));
   }
   std::ranges::move(words_of(record), std::back_inserter(words));
   return label_of_words(std::move(words));
+}
+
+Result<FileLabel> label_of_scans(const SessionStore& store) {
+  const Result<std::string> simulated = simulated_words(store);
+  if (!simulated) {
+    return std::unexpected(simulated.error());
+  }
+  return label_of_words(words_of_scans(*simulated));
 }
 
 }  // namespace dubsar

@@ -18,4 +18,8 @@ namespace dubsar {
 /// collection, who scanned it, rights, and whether a program made it up. Notes stay with the session.
 [[nodiscard]] Result<FileLabel> tablet_label(const SessionStore& store);
 
+/// What files that stay in the session say: what its scans tell, and no more, for they can be made anew from
+/// the scans, the same to the byte, whatever was typed since and wherever the session lies.
+[[nodiscard]] Result<FileLabel> label_of_scans(const SessionStore& store);
+
 }  // namespace dubsar

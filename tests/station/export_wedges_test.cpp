@@ -204,7 +204,8 @@ TEST_F(ExportOfWedges, OnThePicturesWedgesAreWhereTheHollowsAre) {
       "/usr/bin/python3 -c 'import json, jsonschema, sys; "
       "jsonschema.validate(json.load(open(sys.argv[1])), json.load(open(sys.argv[2])))' ";
   std::size_t pages = 0;
-  for (const nlohmann::json& canvas : json("iiif/manifest.json")["items"]) {
+  const nlohmann::json manifest = json("iiif/manifest.json");
+  for (const nlohmann::json& canvas : manifest["items"]) {
     const std::string picture = canvas["items"][0]["items"][0]["body"]["id"].get<std::string>().substr(22);
     if (!canvas.contains("annotations")) {
       EXPECT_EQ(picture.find("front"), std::string::npos) << picture;

@@ -58,6 +58,8 @@ TEST_F(MainJob, EndsConclusiveWithAllThatIsPromised) {
     EXPECT_TRUE(fs::is_regular_file(json[file].get<std::string>())) << file;
   }
   EXPECT_EQ(run_command({"mesh", "check", json["mesh"].get<std::string>()}).status, 0);
+  const std::string mesh = bytes_of(json["mesh"].get<std::string>());
+  EXPECT_NE(mesh.substr(0, mesh.find("end_header")).find("comment SIMULATED: "), std::string::npos);
 }
 
 TEST_F(MainJob, PosesAreTrueToATenthOfAMillimetre) {
