@@ -36,6 +36,7 @@ std::vector<double> steps_along(double length_mm, double field_mm) {
   const double counted_mm = kCountedOn * field_mm;
   const int count = std::clamp(static_cast<int>(std::ceil(length_mm / counted_mm)), 2, kMostAlong);
   std::vector<double> out;
+  out.reserve(static_cast<std::size_t>(count));
   for (int k = 0; k < count; ++k) {
     out.push_back((length_mm - counted_mm) * (static_cast<double>(k) / (count - 1) - 0.5));
   }
@@ -80,11 +81,14 @@ std::vector<PlaceInField> places_in_field(const Rig& rig, const Eigen::Matrix3d&
     for (const double b : across) {
       const std::string first = towards(extents[0], a);
       const std::string second = towards(extents[1], b);
-      if (!first.empty() || !second.empty()) {
-        out.push_back({a * extents[0].axis + b * extents[1].axis,
-                       "lay the place " + first + (first.empty() || second.empty() ? "" : ", ") + second +
-                           " under the scanner"});
+      if (first.empty() && second.empty()) {
+        continue;
       }
+      PlaceInField& place = out.emplace_back();
+      place.offset_mm = a * extents[0].axis + b * extents[1].axis;
+      place.say = "lay the place " + first;
+      place.say += (first.empty() || second.empty() ? "" : ", ") + second;
+      place.say += " under the scanner";
     }
   }
   return out;
