@@ -69,7 +69,7 @@ TEST(SimStation, HandTurnsComeOutOffByAHandsErrorAndRestOnTheSupport) {
 /// A tablet larger than the field is pushed along: each time as far off as a hand is, and no farther.
 TEST(SimStation, APushedTabletLiesWhereItWasAskedToButForAHandsError) {
   SimStation station(rough_tablet(), coarse());
-  double worst_mm = 0;
+  int as_a_hand_does = 0;
   for (int i = 0; i < 20; ++i) {
     RigidTransform push;
     push.translation_mm = Eigen::Vector3d(i % 2 == 0 ? 30.0 : -30.0, i % 3 == 0 ? 15.0 : 0.0, 0);
@@ -77,12 +77,12 @@ TEST(SimStation, APushedTabletLiesWhereItWasAskedToButForAHandsError) {
     const double off_mm =
         (station.true_stage_from_tablet().translation_mm - push.translation_mm).head<2>().norm();
     EXPECT_LE(off_mm, 5.0 + 1e-6);
-    worst_mm = std::max(worst_mm, off_mm);
+    as_a_hand_does += off_mm > 0.3 ? 1 : 0;
     const RigidTransform nominal = station.nominal().tablet_from_scanner;
     EXPECT_LT((nominal.translation_mm + push.translation_mm).head<2>().norm(), 1e-6)
         << "the scanner looks beside";
   }
-  EXPECT_GT(worst_mm, 1.0) << "no hand is that exact";
+  EXPECT_GT(as_a_hand_does, 15) << "no hand is that exact";
 }
 
 TEST(SimStation, MotorsAreNearlyExactWithinAPlacement) {
