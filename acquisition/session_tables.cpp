@@ -32,24 +32,35 @@ std::string key_of(const Table& table) {
   return std::string(columns.substr(0, columns.find(',')));
 }
 
-void salvage_table(const Table& table, const char* order, SqlDatabase& from, SqlDatabase& to) {
+/// What can be read of a table, from its first row on and, where that ends at a damaged one, from its last
+/// row back.
+void salvage_table(const Table& table, SqlDatabase& from, SqlDatabase& to) {
   const std::string columns(table.columns);
   const std::string select = "SELECT " + columns + " FROM " + table.name + " WHERE sum = dubsar_sum(" +
-                             columns + ") ORDER BY rowid " + order;
-  Result<SqlStatement> rows = from.prepare(select.c_str());
+                             columns + ") ORDER BY rowid ";
   std::string insert = insert_sql(table);
   insert.replace(insert.find("REPLACE"), 7, "IGNORE");
-  Result<SqlStatement> put = to.prepare(insert.c_str());
-  if (!rows || !put) {
-    return;
-  }
-  for (Result<bool> row = rows->step(); row && *row; row = rows->step()) {
-    for (int column = 0; column < column_count(table); ++column) {
-      put->bind_column(column + 1, *rows, column);
+  Result<SqlStatement> put = std::unexpected(Error{});
+  for (const char* order : {"ASC", "DESC"}) {
+    Result<SqlStatement> rows = from.prepare((select + order).c_str());
+    if (rows && !put) {
+      put = to.prepare(insert.c_str());
     }
-    // A row that does not go in is lost as if it could not be read; what is missing is reported by its
-    // absence.
-    (void)put->run();
+    if (!rows || !put) {
+      return;
+    }
+    Result<bool> row = rows->step();
+    for (; row && *row; row = rows->step()) {
+      for (int column = 0; column < column_count(table); ++column) {
+        put->bind_column(column + 1, *rows, column);
+      }
+      // A row that does not go in is lost as if it could not be read; what is missing is reported by its
+      // absence.
+      (void)put->run();
+    }
+    if (row) {
+      return;
+    }
   }
 }
 
@@ -127,9 +138,7 @@ std::int64_t salvage_rows(SqlDatabase& from, SqlDatabase& to, bool results_too) 
     if (!results_too && (name == "poses" || name == "flags")) {
       continue;
     }
-    for (const char* order : {"ASC", "DESC"}) {
-      salvage_table(table, order, from, to);
-    }
+    salvage_table(table, from, to);
     // A value that is no value of its column (a text where a number should be, none for a key) becomes
     // another one as it is put there: such a row is no row of a session.
     const std::string unlike =

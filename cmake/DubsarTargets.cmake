@@ -14,10 +14,11 @@ function(dubsar_library name)
   endif()
 endfunction()
 
-# dubsar_test(NAME SOURCES a_test.cpp ... LINKS dubsar_core ... [LABEL unit] [ALONE])
-# One GoogleTest executable per module, its tests known to ctest one by one. ALONE: no other test runs beside these.
+# dubsar_test(NAME SOURCES a_test.cpp ... LINKS dubsar_core ... [LABEL unit] [ALONE] [WHOLE Suite ...])
+# One GoogleTest executable per module, its tests known to ctest one by one, each in a process of its own. ALONE: no other
+# test runs beside these. Suites that are WHOLE run in one process each: what they set up takes longer than their tests.
 function(dubsar_test name)
-  cmake_parse_arguments(ARG "ALONE" "LABEL" "SOURCES;LINKS" ${ARGN})
+  cmake_parse_arguments(ARG "ALONE" "LABEL" "SOURCES;LINKS;WHOLE" ${ARGN})
   if(NOT ARG_LABEL)
     set(ARG_LABEL unit)
   endif()
@@ -28,6 +29,13 @@ function(dubsar_test name)
   if(DUBSAR_SANITIZE)
     target_compile_definitions(${name}_test PRIVATE DUBSAR_SANITIZED)
   endif()
-  gtest_discover_tests(${name}_test DISCOVERY_MODE PRE_TEST PROPERTIES
+  list(TRANSFORM ARG_WHOLE APPEND ".*" OUTPUT_VARIABLE whole)
+  list(JOIN whole ":" whole)
+  gtest_discover_tests(${name}_test TEST_FILTER "*-${whole}" DISCOVERY_MODE PRE_TEST PROPERTIES
     LABELS ${ARG_LABEL} TIMEOUT 300 RUN_SERIAL ${ARG_ALONE})
+  foreach(suite ${ARG_WHOLE})
+    add_test(NAME ${suite} COMMAND ${name}_test --gtest_filter=${suite}.*)
+    set_tests_properties(${suite} PROPERTIES LABELS ${ARG_LABEL} TIMEOUT 900 RUN_SERIAL ${ARG_ALONE}
+      FAIL_REGULAR_EXPRESSION "Running 0 tests")
+  endforeach()
 endfunction()

@@ -9,6 +9,7 @@
 #include <fstream>
 
 #include "acquisition/session_files.h"
+#include "acquisition/session_tables.h"
 #include "acquisition/sqlite_db.h"
 #include "formats/atomic_file.h"
 #include "tests/acquisition/session_damage_support.h"
@@ -57,6 +58,18 @@ TEST_F(SessionDamageTest, RowsWithoutTheirKeyAreNotTakenIntoTheRebuiltDatabase) 
   const SessionStore again = SessionStore::open(folder_).value();
   EXPECT_THAT(again.opening().damage, IsEmpty());
   EXPECT_EQ(again.scans().value().size(), 4U);
+}
+
+TEST(SalvageRows, ARowThatCannotBePutCostsNoOtherRow) {
+  SqlDatabase from = SqlDatabase::open("from", SqlDatabase::Mode::kMemory).value();
+  ASSERT_TRUE(
+      from.execute("CREATE TABLE events(number, time_ns, kind, json, sum);"
+                   "INSERT INTO events(number) VALUES('first'),(7),('last');"
+                   "UPDATE events SET sum = dubsar_sum(number,time_ns,kind,json)"));
+  SqlDatabase to = SqlDatabase::open("to", SqlDatabase::Mode::kMemory).value();
+  ASSERT_TRUE(session::prepare_schema(to, "to"));
+  EXPECT_EQ(session::salvage_rows(from, to, true), 1);
+  EXPECT_EQ(to.integer_of("SELECT number FROM events").value(), 7);
 }
 
 TEST_F(SessionDamageTest, APipeInPlaceOfTheDatabaseIsNotWaitedFor) {
