@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <optional>
 
 #include "acquisition/stripe_fit.h"
@@ -42,6 +43,28 @@ GrayImage transposed(const GrayView& image) {
 
 int over_background(const GrayView& on, const GrayView& off, int u, int v) {
   return on.row(v)[u] - (off.empty() ? 0 : off.row(v)[u]);
+}
+
+/// The middle of the brightest three rows together, which one hot pixel does not win.
+int brightest_row(CrossSection light) {
+  std::size_t top = 0;
+  float most = -1;
+  for (std::size_t k = 1; k + 1 < light.size(); ++k) {
+    const float three = light[k - 1] + 2 * light[k] + light[k + 1];
+    if (three > most) {
+      most = three;
+      top = k;
+    }
+  }
+  return static_cast<int>(top);
+}
+
+/// From the first row that is as bright to the last.
+double rows_above(CrossSection light, float level) {
+  const auto bright = [level](float value) { return value >= level; };
+  const auto first = std::ranges::find_if(light, bright);
+  const auto last = std::find_if(light.rbegin(), std::make_reverse_iterator(first), bright);
+  return static_cast<double>(last.base() - first);
 }
 
 }  // namespace
@@ -212,12 +235,37 @@ std::optional<double> StripeExtractor::ridge_row(const GrayView& on, const GrayV
   return v + *crossing;
 }
 
+StripeExtractor::CutLight StripeExtractor::take_cut(const GrayView& on, const GrayView& off, int column,
+                                                    int row, int reach, Cut& cut) const {
+  cut.low = std::max(0, row - reach);
+  const int high = std::min(on.height - 1, row + reach);
+  cut.size = high - cut.low + 1;
+  CutLight is;
+  for (int v = cut.low; v <= high; ++v) {
+    cut.light[static_cast<std::size_t>(v - cut.low)] =
+        static_cast<float>(over_background(on, off, column, v));
+    is.saturated += on.row(v)[column] >= options_.saturated_from ? 1 : 0;
+  }
+  const std::span<float> light(cut.light.data(), static_cast<std::size_t>(cut.size));
+  if (light.size() >= 8) {
+    const auto mean3 = [&](std::size_t from) {
+      return (light[from] + light[from + 1] + light[from + 2]) / 3;
+    };
+    const float ends = std::min(mean3(0), mean3(light.size() - 3));
+    is.ground = off.empty() ? ends : std::clamp(ends, -2.0F, 2.0F);
+  }
+  for (float& value : light) {
+    value -= is.ground;
+    is.peak = std::max(is.peak, value);
+  }
+  return is;
+}
+
 void StripeExtractor::refine(const GrayView& on, const GrayView& off, int column, StripeProfile& profile) {
   const auto i = static_cast<std::size_t>(column);
   if (best_[i] < options_.least_peak) {
     return;
   }
-  // The peak's row: the brightest three rows together, which one hot pixel does not win.
   const int first = std::max(0, (best_block_[i] - 1) * kBlock);
   const int last = std::min(on.height, (best_block_[i] + 2) * kBlock);
   std::array<float, 3 * kBlock> strip{};
@@ -225,43 +273,12 @@ void StripeExtractor::refine(const GrayView& on, const GrayView& off, int column
   for (int k = 0; k < length; ++k) {
     strip[static_cast<std::size_t>(k)] = static_cast<float>(over_background(on, off, column, first + k));
   }
-  int top = 0;
-  float most = -1;
-  for (int k = 1; k + 1 < length; ++k) {
-    const auto at = static_cast<std::size_t>(k);
-    const float three = strip[at - 1] + 2 * strip[at] + strip[at + 1];
-    if (three > most) {
-      most = three;
-      top = k;
-    }
-  }
+  const int top = brightest_row({strip.data(), static_cast<std::size_t>(length)});
   const double half = std::min<double>(kMostHalf - 4, 3 * options_.sigma_px);
   const int window = static_cast<int>(std::ceil(half));
-  const int low = std::max(0, first + top - window - 3);
-  const int high = std::min(on.height - 1, first + top + window + 3);
-  Cut& around = cuts_[i];
-  std::array<float, kSide>& cut = around.light;
-  int saturated = 0;
-  for (int v = low; v <= high; ++v) {
-    cut[static_cast<std::size_t>(v - low)] = static_cast<float>(over_background(on, off, column, v));
-    saturated += on.row(v)[column] >= options_.saturated_from ? 1 : 0;
-  }
-  around.low = low;
-  around.size = high - low + 1;
-  const auto size = static_cast<std::size_t>(around.size);
-  // What is left of the background: the two ends, of which a neighbour's light may lift one.
-  const auto mean3 = [&](std::size_t from) { return (cut[from] + cut[from + 1] + cut[from + 2]) / 3; };
-  float ground = 0;
-  if (size >= 8) {
-    ground = off.empty() ? std::min(mean3(0), mean3(size - 3))
-                         : std::clamp(std::min(mean3(0), mean3(size - 3)), -2.0F, 2.0F);
-  }
-  float peak = 0;
-  for (std::size_t k = 0; k < size; ++k) {
-    cut[k] -= ground;
-    peak = std::max(peak, cut[k]);
-  }
-  const CrossSection signal(cut.data(), size);
+  Cut& cut = cuts_[i];
+  const auto [saturated, ground, peak] = take_cut(on, off, column, first + top, window + 3, cut);
+  const CrossSection signal(cut.light.data(), static_cast<std::size_t>(cut.size));
   profile.peak[i] = std::clamp(peak / 255.0F, 0.0F, 1.0F);
   if (peak < static_cast<float>(options_.least_peak)) {
     return;
@@ -282,21 +299,12 @@ void StripeExtractor::refine(const GrayView& on, const GrayView& off, int column
     profile.state[i] = StripeState::kReflection;
     return;
   }
-  const double start = first + top - low;
+  const double start = first + top - cut.low;
   std::optional<double> at = centroid_px(signal, start, half);
   if (at) {
-    // Smeared? The rows from the first to the last that are half as bright as the peak.
-    std::size_t from = size;
-    std::size_t to = 0;
-    for (std::size_t k = 0; k < size; ++k) {
-      if (cut[k] >= 0.5F * peak) {
-        from = std::min(from, k);
-        to = k;
-      }
-    }
     constexpr double kHalfHeight = 2.355;  // full width there over the standard deviation of a Gaussian
-    if (static_cast<double>(to - from + 1) > options_.widest * kHalfHeight * options_.sigma_px) {
-      profile.state[i] = StripeState::kWide;
+    if (rows_above(signal, 0.5F * peak) > options_.widest * kHalfHeight * options_.sigma_px) {
+      profile.state[i] = StripeState::kWide;  // smeared
       return;
     }
     if (options_.method == StripeMethod::kAdaptive) {
@@ -306,8 +314,8 @@ void StripeExtractor::refine(const GrayView& on, const GrayView& off, int column
     } else if (options_.method == StripeMethod::kGaussian) {
       at = gaussian_px(signal, *at, half, std::max(2.0, 0.1 * peak));
     } else if (options_.method == StripeMethod::kSteger) {
-      const std::optional<double> row = ridge_row(on, off, column, low + *at);
-      at = row ? std::optional(*row - low) : std::nullopt;
+      const std::optional<double> row = ridge_row(on, off, column, cut.low + *at);
+      at = row ? std::optional(*row - cut.low) : std::nullopt;
     }
   }
   if (!at) {
@@ -315,7 +323,7 @@ void StripeExtractor::refine(const GrayView& on, const GrayView& off, int column
     return;
   }
   profile.state[i] = StripeState::kGood;
-  profile.at_px[i] = static_cast<float>(low + *at);
+  profile.at_px[i] = static_cast<float>(cut.low + *at);
   line_.at_px[i] = profile.at_px[i];
   const float bright = std::min(1.0F, peak / (4.0F * static_cast<float>(options_.least_peak)));
   const float clipped = 1.0F - 0.15F * static_cast<float>(saturated);

@@ -89,6 +89,9 @@ class StripeExtractor {
 
  private:
   void find_peaks(const GrayView& on, const GrayView& off);
+  struct Cut;
+  struct CutLight;
+  CutLight take_cut(const GrayView& on, const GrayView& off, int column, int row, int reach, Cut& cut) const;
   void refine(const GrayView& on, const GrayView& off, int column, StripeProfile& profile);
   [[nodiscard]] std::optional<double> ridge_row(const GrayView& on, const GrayView& off, int column,
                                                 double start) const;
@@ -102,6 +105,13 @@ class StripeExtractor {
     std::array<float, kSide> light;
     int low = 0;  ///< row of the first
     int size = 0;
+  };
+  struct CutLight {
+    int saturated = 0;  ///< rows
+    /// What was left of the background, from the two ends, of which a neighbour's light may lift one. Taken
+    /// off.
+    float ground = 0;
+    float peak = 0;
   };
 
   StripeOptions options_;
