@@ -13,6 +13,7 @@
 #include "core/parallel.h"
 #include "triangulation/front.h"
 #include "triangulation/manifold.h"
+#include "triangulation/outer_rims.h"
 #include "triangulation/region.h"
 #include "triangulation/self_intersections.h"
 #include "triangulation/slivers.h"
@@ -91,8 +92,9 @@ using Walks = std::vector<std::vector<std::uint32_t>>;
 
 /// What a round of closing has left to do.
 struct Leftover {
-  Walks gaps;                         ///< around openings that should be closed and could not be
-  std::vector<std::uint32_t> others;  ///< vertices of what is pinched, or had no room
+  Walks gaps;  ///< around openings that should be closed and could not be
+  std::vector<std::uint32_t>
+      others;  ///< vertices of what is pinched, had no room, or may be a piece's outside
 
   void append(Leftover more) {
     std::move(more.gaps.begin(), more.gaps.end(), std::back_inserter(gaps));
@@ -116,9 +118,12 @@ Leftover left_open(const Front& front, const ClosingOptions& options) {
   for (const Front::Edge& edge : edges_without_room(front, options.seam)) {
     left.others.insert(left.others.end(), {edge.a, edge.b});
   }
+  OuterRims outer_rims(sheet);
   for (Front::Walk& walk : front.walks()) {
     const bool gap = !walk.leaves && is_gap(sheet, walk.vertices, options.gap);
-    if (has_room(sheet, walk.vertices, options.seam)) {
+    // Whether it is the outside of a piece shows in the next round, which sees more of it.
+    const bool outside = gap && outer_rims.contain(walk.vertices);
+    if (has_room(sheet, walk.vertices, options.seam) && !outside) {
       if (gap) {
         left.gaps.push_back(std::move(walk.vertices));
       }
@@ -255,15 +260,17 @@ Leftover close_round(Draft& draft, std::span<const std::uint8_t> near, Walks gap
 void close_around(Draft& draft, std::vector<std::uint8_t> near, const ClosingOptions& options) {
   Walks gaps;
   std::vector<std::uint32_t> before;
+  std::size_t gaps_before = 0;
   for (int round = 0; round < kTiledRounds + kTries; ++round) {
     Leftover left = close_round(draft, near, std::move(gaps), round, options);
     std::vector<std::uint32_t> seeds = left.vertices();
-    if (seeds.empty() || seeds == before) {
+    if (seeds.empty() || (seeds == before && left.gaps.size() == gaps_before)) {
       return;
     }
     near = vertices_near(draft, seeds);
     gaps = std::move(left.gaps);
     before = std::move(seeds);
+    gaps_before = gaps.size();
   }
 }
 

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <limits>
 
+#include "triangulation/outer_rims.h"
+
 namespace dubsar {
 
 namespace {
@@ -294,8 +296,9 @@ GapFillResult fill_gaps(Front& front, const SeamOptions& seam, const GapFillOpti
   result.first_interpolated = front.sheet().positions.size();
   const auto gaps = [&] {
     auto openings = front.openings();
+    OuterRims outer_rims(front.sheet());
     std::erase_if(openings, [&](const auto& o) {
-      return !is_gap(front.sheet(), o, options) || !has_room(front.sheet(), o, seam);
+      return !is_gap(front.sheet(), o, options) || !has_room(front.sheet(), o, seam) || outer_rims.contain(o);
     });
     return openings;
   };
