@@ -157,8 +157,9 @@ struct Engine::Impl {
   bool asked_once = false;  ///< the first scan of a paced run is asked for by running it
   bool at_start = false;    ///< a paced run stands where its first scan is taken from
   // Of the planning thread, round after round:
-  int misses = 0;      ///< scans in a row that were not taken up
-  bool again = false;  ///< the scan that comes is of the same view as the one before
+  std::vector<int> in_vain;     ///< scans in a row that were not taken up
+  bool laid_otherwise = false;  ///< the tablet, for the last of them
+  bool again = false;           ///< the scan that comes is of the same view as the one before
   std::set<int> taken_up;
   std::set<int> told_foreign;  ///< scans of which it was said that something is left out
   std::map<int, int> lies_as;  ///< placement by scan, of scans that motors were told of
@@ -241,7 +242,10 @@ struct Engine::Impl {
   // engine_misses.cpp
   /// Where to after a scan: by the red map when the scan was taken up; else the same view again, then one
   /// that has more in common with the others, then nothing more.
-  NextStep step_after(int id, const std::vector<ScanPose>& poses, const RedMap& red_map);
+  NextStep step_after(int id, const std::vector<ScanPose>& poses, const RedMap& red_map, JobContext& job);
+  /// Where the tablet was turned by hand since a scan was placed, only the motors' word says how it lies:
+  /// whatever way it does.
+  [[nodiscard]] StageScene unseen_and(const NextView& view) const;
   NextStep once_more();
   /// Whether the scans that were taken up until now have given way to others that lie in the same way on the
   /// stage: the two sets cannot both be the tablet.

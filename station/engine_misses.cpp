@@ -3,6 +3,7 @@
 // Scans that come in vain while the engine drives by itself: of nothing, of a hand, of another tablet. They
 // are asked for once more, then a person is.
 #include <algorithm>
+#include <iterator>
 
 #include "station/engine_impl.h"
 #include "station/scan_list.h"
@@ -11,8 +12,8 @@ namespace dubsar {
 
 namespace {
 
-/// Scans in a row that may come in vain.
-constexpr int kMostInVain = 3;
+/// Scans in a row that may come in vain, and one more where the tablet was laid otherwise for them.
+constexpr std::size_t kMostInVain = 3;
 constexpr int kMostEmpty = 2;
 
 }  // namespace
@@ -87,7 +88,17 @@ NextStep Engine::Impl::once_more() {
   return Step{.view = {}, .scene = {}, .again = true};
 }
 
-NextStep Engine::Impl::step_after(int id, const std::vector<ScanPose>& poses, const RedMap& red_map) {
+StageScene Engine::Impl::unseen_and(const NextView& view) const {
+  StageScene wide = unseen();
+  if (const auto on_stage = planning.scene_for(*rig, *view.placement)) {
+    wide.tablet_mm.extend(on_stage->tablet_mm);
+    wide.focus_mm = on_stage->focus_mm;
+  }
+  return wide;
+}
+
+NextStep Engine::Impl::step_after(int id, const std::vector<ScanPose>& poses, const RedMap& red_map,
+                                  JobContext& job) {
   std::set<int> now;
   std::string reason = "something was in the way";
   for (const ScanPose& pose : poses) {
@@ -112,7 +123,8 @@ NextStep Engine::Impl::step_after(int id, const std::vector<ScanPose>& poses, co
   const bool is_again = std::exchange(again, false);
   const bool doubtful = !is_again && planning.shows_much_more(id);
   if (now.contains(id)) {
-    misses = 0;
+    in_vain.clear();
+    laid_otherwise = false;
     if (doubtful) {
       emit(Notice{fmt::format(
           "scan {} shows much more than what is known; the same view is scanned once more, to see whether "
@@ -122,19 +134,19 @@ NextStep Engine::Impl::step_after(int id, const std::vector<ScanPose>& poses, co
     }
     return step_to(red_map);
   }
-  ++misses;
-  std::set<int> lie_as_it;
-  for (const int one : now) {
+  in_vain.push_back(id);
+  const auto lies_as_it = [&](int one) {
     const auto mine = lies_as.find(id);
     const auto other = lies_as.find(one);
-    if (mine != lies_as.end() && other != lies_as.end() && mine->second == other->second) {
-      lie_as_it.insert(one);
-    }
-  }
+    return mine != lies_as.end() && other != lies_as.end() && mine->second == other->second;
+  };
+  std::set<int> lie_as_it;
+  std::ranges::copy_if(now, std::inserter(lie_as_it, lie_as_it.end()), lies_as_it);
   const bool just_lifted = lie_as_it.empty();
+  const auto here = std::ranges::count_if(in_vain, lies_as_it);
   // One word against another: the first of the two may be the one with a hand in it.
   if (const auto first = lie_as_it.size() == 1 ? planning.drive_of(*lie_as_it.begin()) : std::nullopt;
-      first && rig && misses == 1) {
+      first && rig && in_vain.size() == 1) {
     emit(
         Notice{fmt::format("scan {} is not taken up: {}; the view of scan {} is scanned once more, to see "
                            "which of them is right",
@@ -145,26 +157,31 @@ NextStep Engine::Impl::step_after(int id, const std::vector<ScanPose>& poses, co
     return Step{.view = std::move(view), .scene = unseen(), .again = false};
   }
   // Just lifted, it mostly shows too little that is known; else something was in the way and is gone again.
-  const bool look_elsewhere = misses == (just_lifted && !doubtful && !is_again ? 1 : 2);
+  const bool shows_too_little = just_lifted && !doubtful && !is_again;
+  const bool look_elsewhere = here == (shows_too_little ? 1 : 2);
+  // Nor does any other view of it as it lies: it has to lie otherwise.
+  if (shows_too_little && here == 2 && rig && !laid_otherwise) {
+    if (const std::optional<NextView> other = planning.laid_otherwise(*rig, in_vain, job)) {
+      laid_otherwise = true;
+      emit(Notice{
+          fmt::format("scan {} is not taken up: {}; laid otherwise, the tablet shows more of what is known",
+                      id, reason)});
+      return Step{.view = *other, .scene = unseen_and(*other), .again = false};
+    }
+  }
   const std::optional<NextView> other = look_elsewhere && rig ? planning.after_miss(*rig, id) : std::nullopt;
   if (other) {
     emit(Notice{
         fmt::format("scan {} is not taken up: {}; the next view shows more of what is known", id, reason)});
-    // Where it was turned by hand meanwhile, only the motors' word says how it lies: whatever way it does.
-    StageScene wide = unseen();
-    if (const auto on_stage = planning.scene_for(*rig, *other->placement)) {
-      wide.tablet_mm.extend(on_stage->tablet_mm);
-      wide.focus_mm = on_stage->focus_mm;
-    }
-    return Step{.view = *other, .scene = wide, .again = false};
+    return Step{.view = *other, .scene = unseen_and(*other), .again = false};
   }
-  if (misses < kMostInVain) {
+  if (in_vain.size() < kMostInVain + (laid_otherwise ? 1 : 0)) {
     emit(Notice{fmt::format("scan {} is not taken up: {}; the same view is scanned once more", id, reason)});
     return once_more();
   }
   end_motion(
       {ErrorKind::kBadInput,
-       fmt::format("{} scans in a row are not taken up, scan {} because {}", misses, id, reason),
+       fmt::format("{} scans in a row are not taken up, scan {} because {}", in_vain.size(), id, reason),
        options.session.string(),
        "see that it is the right tablet, that no hand is in view and that nothing moved, then give the "
        "same command again"});

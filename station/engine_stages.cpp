@@ -343,7 +343,7 @@ void Engine::Impl::plan_all(JobContext& job) {
     }
     if (drives && item->device_waits) {
       const bool fresh = item->scan && !item->resumed;
-      NextStep step = fresh ? step_after(item->scan->id, item->poses, *red_map) : step_to(*red_map);
+      NextStep step = fresh ? step_after(item->scan->id, item->poses, *red_map, job) : step_to(*red_map);
       {
         const std::scoped_lock lock(mutex);
         changed_step.reset();

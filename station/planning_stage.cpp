@@ -8,6 +8,7 @@
 
 #include "core/tablet_frame.h"
 #include "core/units.h"
+#include "planning/clearing.h"
 #include "planning/model_faces.h"
 #include "planning/red_change.h"
 #include "planning/red_map.h"
@@ -183,6 +184,36 @@ std::optional<NextView> PlanningStage::after_miss(const Rig& rig, int id) const 
   const std::optional<PlacedScan> there = where_driven(id);
   return there ? side_view(rig, {id, *drive_of(id)}, *there, model_surface(cleared_.scans()), 0.0)
                : std::nullopt;
+}
+
+std::optional<NextView> PlanningStage::laid_otherwise(const Rig& rig, std::span<const int> in_vain,
+                                                      JobContext& job) const {
+  constexpr double kElsewhereMm = 20;
+  const double elsewhere = std::cos(rad_from_deg(25.0));
+  const int id = in_vain.back();
+  const std::optional<PlacedScan> there = where_driven(id);
+  if (!there) {
+    return std::nullopt;
+  }
+  const ModelSurface surface = model_surface(cleared_.scans());
+  std::vector<ViewCandidate> candidates = rig_candidates(rig, {id, *drive_of(id)}, *there, surface);
+  std::erase_if(candidates, [](const ViewCandidate& candidate) { return !candidate.by_hand; });
+  for (const int one : in_vain) {
+    if (const std::optional<PlacedScan> looked = where_driven(one)) {
+      const RigidTransform& from = looked->model_from_scanner;
+      std::erase_if(candidates, [&](const ViewCandidate& candidate) {
+        const RigidTransform& to = candidate.model_from_scanner;
+        return to.rotation.col(2).dot(from.rotation.col(2)) > elsewhere &&
+               (to.translation_mm - from.translation_mm).norm() < kElsewhereMm;
+      });
+    }
+  }
+  NextViewOptions options;
+  options.least_overlap = 0.5;
+  options.ranked = 1;
+  const Result<NextViews> views = next_views(candidates, ScannerModel::of(rig, noise_of(*there)), surface,
+                                             targets_.targets, options, job);
+  return views && !views->ranked.empty() ? std::optional(views->ranked.front()) : std::nullopt;
 }
 
 std::optional<NextView> PlanningStage::same_view(const Rig& rig, int id) const {

@@ -66,6 +66,11 @@ class PlanningStage {
   /// After a scan that was not taken up: the view of the tablet as it lies now that should have most in
   /// common with what is placed, by where the motors and the asked turns say that the scan is.
   [[nodiscard]] std::optional<NextView> after_miss(const Rig& rig, int id) const;
+  /// After scans in a row that were not taken up, the last of them of the tablet as it lies now, and nothing
+  /// to be had from looking at it so: the best view of it laid otherwise, with half of it known (of a view
+  /// that is planned without a miss a third is), from elsewhere than those in vain.
+  [[nodiscard]] std::optional<NextView> laid_otherwise(const Rig& rig, std::span<const int> in_vain,
+                                                       JobContext& job) const;
 
   /// The view that a scan was taken from, as the tablet lies now: the very same while it lies as it did then,
   /// else the nearest that the rig and a turn by hand allow. Nothing of a scan that no motor was driven to.

@@ -4,8 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
+#include "core/units.h"
 #include "formats/red_map_json.h"
 #include "planning/model_faces.h"
 #include "tests/station/support/bumpy_scans.h"
@@ -54,6 +56,52 @@ TEST(PlanningStage, TheWayThereDoesNotMatter) {
   wandering[1].model_from_scanner.translation_mm.x() += 0.7;
   wandering[2].status = PoseStatus::kUnsure;
   EXPECT_EQ(map_after({wandering, poses_with(0.01)}), map_after({poses_with(0.01)}));
+}
+
+/// Scans 0 and 1 lie as they were put down. Those after them, of the tablet on other sides, are not taken up.
+TEST(PlanningStage, AfterMissesTheTabletIsLaidOtherwiseAndLookedAtFromElsewhere) {
+  Rig rig;
+  rig.has_turntable = true;
+  rig.tilt_max_rad = rad_from_deg(70);
+  rig.view.laser_mm = Eigen::Vector3d(0, 0, 250);
+  rig.view.camera_mm = Eigen::Vector3d(0, 110, 250);
+  PlanningStage stage;
+  std::vector<ScanPose> poses;
+  const auto scanned = [&](int id, const RigidTransform& from, const Placement& drive, PoseStatus status) {
+    RangeGrid grid = test::bumpy_scan(id);
+    grid.nominal.emplace().tablet_from_scanner = from;
+    StationScan scan = prepare_scan(id, std::move(grid), std::nullopt);
+    scan.drive = drive;
+    stage.add(scan);
+    poses.push_back({});
+    poses.back().id = id;
+    poses.back().status = status;
+    poses.back().model_from_scanner = from;
+  };
+  scanned(0, test::bumpy_pose(0), {}, PoseStatus::kRegistered);
+  scanned(1, test::bumpy_pose(1), {}, PoseStatus::kRegistered);
+  JobContext job;
+  ASSERT_TRUE(stage.place(poses, false, job));
+  const RedMap map = stage.red_map(&rig, job).value();
+  std::vector<int> in_vain;
+  NextView asked = *std::ranges::find_if(
+      map.next, [](const NextView& view) { return view.placement && view.placement->hand_turn; });
+  for (int id = 2; id < 5; ++id) {
+    scanned(id, asked.model_from_scanner, *asked.placement, PoseStatus::kUnsure);
+    in_vain.push_back(id);
+    const std::optional<NextView> next = stage.laid_otherwise(rig, in_vain, job);
+    ASSERT_TRUE(next);
+    EXPECT_TRUE(next->placement && next->placement->hand_turn) << next->say;
+    for (const int one : in_vain) {
+      const RigidTransform& from = poses[static_cast<std::size_t>(one)].model_from_scanner;
+      const RigidTransform& to = next->model_from_scanner;
+      const double turned_rad =
+          std::acos(std::clamp(from.rotation.col(2).dot(to.rotation.col(2)), -1.0, 1.0));
+      EXPECT_TRUE(turned_rad > rad_from_deg(25.0) || (from.translation_mm - to.translation_mm).norm() > 20)
+          << one;
+    }
+    asked = *next;
+  }
 }
 
 /// A side of 44 × 50 mm; where its left and right ends crowd with vertices, it is no wider for that.

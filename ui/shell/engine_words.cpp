@@ -200,6 +200,8 @@ constexpr EnginePhrase kPhrases[] = {
      " zeigt viel mehr, als bekannt ist; dieselbe Ansicht wird noch einmal gescannt, um zu sehen, ob etwas "
      "im Weg war"},
     {"; the same view is scanned once more", "; dieselbe Ansicht wird noch einmal gescannt"},
+    {"; laid otherwise, the tablet shows more of what is known",
+     "; anders hingelegt zeigt die Tafel mehr von dem, was bekannt ist"},
     {"; the next view shows more of what is known",
      "; die nächste Ansicht zeigt mehr von dem, was bekannt ist"},
     {"; it is set aside (session restore puts it back)",
