@@ -10,13 +10,14 @@
 // With --lost also the cases of which more than this share of the samples is lost: taken where the body is,
 // with good neighbours, and farther than the spacing from the mesh.
 // Prints the cases that are not, ends with status 1 when there is one, and writes their scans and meshes to
-// FOLDER.
+// FOLDER; with --only those of that case, whatever it is.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <fstream>
 #include <set>
 #include <string>
 #include <vector>
@@ -74,7 +75,8 @@ Case make_case(std::uint64_t seed) {
   const int scans = 1 + static_cast<int>(random.uniform(0, 7));
   const double pose_error_mm = random.uniform(0, 1) < 0.5 ? 0.0 : std::pow(10.0, random.uniform(-3, 0));
   const OddScanning scanning(random);
-  out.what += ", " + scanning.name();
+  out.what +=
+      ", " + scanning.name() + (pose_error_mm > 0 ? ", poses off by " + std::to_string(pose_error_mm) : "");
   for (int k = 0; k < scans; ++k) {
     if (k > 0 && random.uniform(0, 1) < 0.08) {
       out.grids.push_back(out.grids.back());  // the same scan twice
@@ -222,6 +224,9 @@ Status keep(const std::filesystem::path& folder, const Case& one, const Mesh& me
   Status kept = write_mesh(folder / "mesh.ply", mesh);
   for (std::size_t s = 0; s < one.grids.size() && kept; ++s) {
     kept = write_grid_ply(folder / ("scan" + std::to_string(s) + ".ply"), one.grids[s]);
+    std::ofstream(folder / ("pose" + std::to_string(s) + ".txt"))
+        << one.poses[s].rotation << '\n'
+        << one.poses[s].translation_mm.transpose() << '\n';
   }
   return kept;
 }
@@ -254,11 +259,9 @@ int main(int argc, char** argv) {
       std::printf("%d: %s: %zu scans, %zu faces; %.2f %% of the samples lost\n", k, one.what.c_str(),
                   one.grids.size(), mesh.faces.size(), 100 * lost);
     }
-    if (is_sound(k, one, mesh, seed)) {
-      continue;
-    }
-    ++faulty;
-    if (args.out.empty()) {
+    const bool sound = is_sound(k, one, mesh, seed);
+    faulty += sound ? 0 : 1;
+    if (args.out.empty() || (sound && args.only < 0)) {
       continue;
     }
     if (const Status kept = keep(std::filesystem::path(args.out) / std::to_string(k), one, mesh); !kept) {
