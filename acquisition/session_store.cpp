@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "acquisition/session_impl.h"
+#include "acquisition/session_links.h"
 #include "acquisition/session_query.h"
 #include "formats/atomic_file.h"
 #include "formats/grid_file.h"
@@ -99,6 +100,9 @@ bool SessionStore::is_session(const fs::path& folder) {
 Result<SessionStore> SessionStore::open_or_create(const fs::path& folder) {
   if (Status made = session::make_folders(folder); !made) {
     return std::unexpected(made.error());
+  }
+  if (Status plain = session::check_written_names_are_no_links(folder); !plain) {
+    return std::unexpected(plain.error());
   }
   auto impl = std::make_unique<Impl>();
   impl->folder = folder;

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "acquisition/session_impl.h"
+#include "acquisition/session_links.h"
 #include "acquisition/session_log.h"
 #include "acquisition/session_query.h"
 #include "core/shell_word.h"
@@ -60,6 +61,9 @@ std::optional<Error> fault_of_file(const fs::path& folder, const std::string& na
   if (!in_a_folder && name != session::kDatabase && name != session::kBackup) {
     return Error{ErrorKind::kBadInput, "named by the tables, and no file of a session", name,
                  "bring the session back from a copy: somebody changed this one"};
+  }
+  if (std::optional<Error> link = session::link_on_the_way(folder, name)) {
+    return link;
   }
   const std::string mend = name.ends_with(".grid") ? from_a_copy(folder, ") or scan again")
                                                    : "dubsar verify --repair " + word_of(folder) +

@@ -60,6 +60,32 @@ TEST_F(SessionDamageTest, RowsWithoutTheirKeyAreNotTakenIntoTheRebuiltDatabase) 
   EXPECT_EQ(again.scans().value().size(), 4U);
 }
 
+/// A grid of another session, and a folder of somebody else's: neither read nor written through.
+TEST_F(SessionDamageTest, LinksAreNotFollowed) {
+  const fs::path elsewhere = temporary_.path() / "elsewhere";
+  fs::create_directories(elsewhere);
+  fs::rename(folder_ / "grids/002.grid", elsewhere / "002.grid");
+  fs::create_symlink(elsewhere / "002.grid", folder_ / "grids/002.grid");
+  {
+    const SessionStore store = SessionStore::open(folder_, kReadOnly).value();
+    EXPECT_TRUE(store.scans().value()[2].damaged);
+    const VerifyReport report = store.verify(job_).value();
+    ASSERT_EQ(report.damaged.size(), 1U);
+    EXPECT_EQ(report.damaged[0].where, "grids/002.grid");
+    EXPECT_THAT(report.damaged[0].what, testing::HasSubstr("a link"));
+  }
+  ASSERT_TRUE(SessionStore::open(folder_));
+  for (const char* name : {"export", "session.sqlite"}) {
+    fs::rename(folder_ / name, elsewhere / name);
+    fs::create_symlink(elsewhere / name, folder_ / name);
+    const auto refused = SessionStore::open(folder_);
+    ASSERT_FALSE(refused) << name;
+    EXPECT_THAT(refused.error().line(), testing::HasSubstr(std::string(name) + ": a link"));
+    fs::remove(folder_ / name);
+    fs::rename(elsewhere / name, folder_ / name);
+  }
+}
+
 TEST(SalvageRows, ARowThatCannotBePutCostsNoOtherRow) {
   SqlDatabase from = SqlDatabase::open("from", SqlDatabase::Mode::kMemory).value();
   ASSERT_TRUE(
