@@ -23,7 +23,7 @@ constexpr double kWide = 1.67;
 constexpr double kSteady = 0.025;
 constexpr double kUnsteady = 0.125;
 // Between two columns the stripe climbs less than this on clay that one can see; more is an edge.
-constexpr double kStep_px = 2;
+constexpr double kStepPx = 2;
 
 GrayImage transposed(const GrayView& image) {
   constexpr int kTile = 32;
@@ -161,7 +161,7 @@ void StripeExtractor::settle(StripeProfile& profile) {
       line_.mass[u] = static_cast<float>(centre->mass);
     }
   }
-  average_along(line_, averaging_width_px(noise), kStep_px + 4 * noise, profile.at_px);
+  average_along(line_, averaging_width_px(noise), kStepPx + 4 * noise, profile.at_px);
 }
 
 void StripeExtractor::find_peaks(const GrayView& on, const GrayView& off) {

@@ -27,7 +27,7 @@ struct MeshReport {
   std::size_t inconsistent_faces = 0;     ///< faces at such an edge
   std::size_t degenerate_faces = 0;       ///< a vertex twice, an index out of range, not finite, or no area
   std::size_t duplicate_faces = 0;        ///< the same three vertices as an earlier face
-  std::size_t self_intersections = 0;     ///< pairs of faces that cut through each other
+  std::size_t self_intersections = 0;     ///< pairs of faces that cut through each other, not of one plane
   std::size_t unreferenced_vertices = 0;
   double thin_share = 0;  ///< faces with an angle below 10°, of all, in [0,1]
   double min_angle_rad = 0;
