@@ -4,6 +4,7 @@
 
 #include <fcntl.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 #include <xxhash.h>
 
@@ -32,6 +33,23 @@ std::unexpected<Error> refused(const fs::path& path, const char* doing, int erro
                                                  : "choose a folder that can be written to");
 }
 
+/// The lock is emptied and written to: never through a link, nor under one name of a file that has others.
+Result<int> open_lock(const fs::path& path) {
+  const int fd = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0666);
+  if (fd < 0 && errno != ELOOP) {
+    return refused(path, "cannot lock the session", errno);
+  }
+  struct stat file {};
+  if (fd >= 0 && ::fstat(fd, &file) == 0 && S_ISREG(file.st_mode) && file.st_nlink == 1) {
+    return fd;
+  }
+  if (fd >= 0) {
+    ::close(fd);
+  }
+  return bad_input(path.string(), "a link, or no file: the session is not locked through it",
+                   "take it away while no program writes to this session: it holds nothing");
+}
+
 struct StateFreer {
   void operator()(XXH64_state_t* state) const { XXH64_freeState(state); }
 };
@@ -45,10 +63,11 @@ bool in_a_folder_of_the_session(const fs::path& name) {
 
 Result<FolderLock> FolderLock::take(const fs::path& folder) {
   const fs::path path = folder / kLock;
-  const int fd = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-  if (fd < 0) {
-    return refused(path, "cannot lock the session", errno);
+  const Result<int> opened = open_lock(path);
+  if (!opened) {
+    return std::unexpected(opened.error());
   }
+  const int fd = *opened;
   FolderLock lock(fd);
   if (::flock(fd, LOCK_EX | LOCK_NB) != 0) {
     if (errno != EWOULDBLOCK) {

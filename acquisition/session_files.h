@@ -29,7 +29,8 @@ inline constexpr const char* kFolders[] = {kGrids, "mesh", "analysis", "export"}
 /// Held by the one program that writes; the system lets go of it when that program ends, however it ends.
 class FolderLock {
  public:
-  /// kUsage with the process number when another program (or another store of this one) has it.
+  /// kUsage with the process number when another program (or another store of this one) has it. kBadInput
+  /// where a link, or what is no file, lies in place of the lock.
   [[nodiscard]] static Result<FolderLock> take(const std::filesystem::path& folder);
   FolderLock(FolderLock&& other) noexcept;
   FolderLock& operator=(FolderLock&& other) noexcept;

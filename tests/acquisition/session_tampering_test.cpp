@@ -7,6 +7,7 @@
 #include <sys/stat.h>
 
 #include <fstream>
+#include <functional>
 
 #include "acquisition/session_files.h"
 #include "acquisition/session_tables.h"
@@ -107,6 +108,33 @@ TEST_F(SessionDamageTest, APipeInPlaceOfTheDatabaseIsNotWaitedFor) {
     expect_content(store);
   }
   EXPECT_TRUE(fs::is_regular_file(folder_ / session::kDatabase));
+}
+
+// What it leads to would be emptied for the process number.
+TEST_F(SessionDamageTest, ALockThatIsAnotherFileIsNotWrittenTo) {
+  const fs::path other = temporary_.path() / "other.txt";
+  const fs::path nowhere = temporary_.path() / "nowhere";
+  const fs::path lock = folder_ / session::kLock;
+  std::ofstream(other) << "precious";
+  const std::function<void()> laid[] = {
+      [&] { fs::create_symlink("../other.txt", lock); },
+      [&] { fs::create_symlink("../nowhere", lock); },
+      [&] { fs::create_hard_link(other, lock); },
+      [&] { ASSERT_EQ(::mkfifo(lock.c_str(), 0600), 0); },
+  };
+  for (const auto& lay : laid) {
+    fs::remove(lock);
+    lay();
+    const auto store = SessionStore::open_or_create(folder_);
+    ASSERT_FALSE(store);
+    EXPECT_EQ(exit_status(store.error().kind), 2);
+    EXPECT_EQ(store.error().where, lock.string());
+    EXPECT_EQ(read_whole_file(other).value(), "precious");
+    EXPECT_FALSE(fs::exists(nowhere));
+  }
+  expect_content(SessionStore::open(folder_, kReadOnly).value());
+  fs::remove(lock);
+  expect_content(SessionStore::open(folder_).value());
 }
 
 TEST_F(SessionDamageTest, TablesThatLeadOutOfTheSessionAreNotFollowed) {
