@@ -33,6 +33,12 @@ bool is_free(const fs::path& target) {
   return !fs::exists(status) || (fs::is_directory(status) && fs::is_empty(target, ignored));
 }
 
+/// Of a folder that was there before: whoever else made it, or may write into it, could go on doing so in
+/// what is made of it.
+bool is_open_to_others(const struct stat& folder) {
+  return folder.st_uid != ::geteuid() || (folder.st_mode & S_IWOTH) != 0;
+}
+
 }  // namespace
 
 Result<StagedFolder> StagedFolder::begin(const fs::path& wanted, bool replace) {
@@ -68,6 +74,14 @@ Result<StagedFolder> StagedFolder::begin(const fs::path& wanted, bool replace) {
                                        target.string(), "wait for it, or choose another folder");
     }
     if (::fstat(lock, &mine) == 0 && ::stat(staged.c_str(), &there) == 0 && mine.st_ino == there.st_ino) {
+      if (!made && is_open_to_others(mine)) {
+        ::close(lock);
+        fs::remove_all(staged, error);
+        if (error) {
+          return storage(staged, "others may write into it, and it cannot be taken away", error.message());
+        }
+        continue;  // made anew
+      }
       for (fs::directory_iterator it(staged, error), end; !made && !error && it != end; it.increment(error)) {
         fs::remove_all(it->path(), error);
         if (error) {
@@ -82,7 +96,7 @@ Result<StagedFolder> StagedFolder::begin(const fs::path& wanted, bool replace) {
     }
     ::close(lock);
   }
-  return storage(staged, "cannot make the folder", "it vanishes again");
+  return storage(staged, "cannot make the folder", "others take it away or put theirs there");
 }
 
 StagedFolder::StagedFolder(StagedFolder&& other) noexcept

@@ -5,6 +5,7 @@
 #include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <sys/syscall.h>
 #include <unistd.h>
 
@@ -113,6 +114,47 @@ TEST(StagedFolder, ClearsWhatAKilledProgramLeft) {
   auto staged = StagedFolder::begin(folder.path() / "bag", false);
   ASSERT_TRUE(staged) << staged.error().line();
   EXPECT_TRUE(fs::is_empty(staged->path()));
+}
+
+// Whoever made it could go on writing into what becomes a package.
+TEST(StagedFolder, TakesOverNoFolderThatOthersMayWriteInto) {
+  const test::TemporaryFolder folder;
+  const fs::path left = folder.path() / (std::string(kTemporaryPrefix) + "bag");
+  constexpr ::uid_t kNobody = 65534;
+  for (const ::uid_t owner : {::geteuid(), kNobody}) {
+    fs::create_directory(left);
+    fs::permissions(left, owner == kNobody ? fs::perms(0755) : fs::perms(0777));
+    put(left / "planted", "x");
+    const int held = ::open(left.c_str(), O_RDONLY | O_DIRECTORY);
+    if (owner == kNobody && ::chown(left.c_str(), kNobody, kNobody) != 0) {
+      ::close(held);
+      GTEST_SKIP() << "only root can make a folder of another user";
+    }
+    auto staged = StagedFolder::begin(folder.path() / "bag", false);
+    ASSERT_TRUE(staged) << staged.error().line();
+    struct stat before {};
+    struct stat after {};
+    ASSERT_EQ(::fstat(held, &before), 0);
+    ASSERT_EQ(::stat(staged->path().c_str(), &after), 0);
+    ::close(held);
+    EXPECT_NE(before.st_ino, after.st_ino) << "it is made anew";
+    EXPECT_EQ(after.st_uid, ::geteuid());
+    EXPECT_EQ(after.st_mode & 0002U, 0U);
+    EXPECT_TRUE(fs::is_empty(staged->path()));
+  }
+}
+
+TEST(StagedFolder, SaysThatAFolderThatOthersMayWriteIntoCannotBeTakenAway) {
+  const test::TemporaryFolder folder;
+  const fs::path left = folder.path() / (std::string(kTemporaryPrefix) + "bag");
+  put(left / "planted", "x");
+  fs::permissions(left, fs::perms(0777));
+  refuses_to_go = "planted";
+  const auto staged = StagedFolder::begin(folder.path() / "bag", false);
+  refuses_to_go.clear();
+  ASSERT_FALSE(staged);
+  EXPECT_THAT(staged.error().line(), HasSubstr("others may write into it"));
+  EXPECT_TRUE(fs::exists(left));
 }
 
 TEST(StagedFolder, WhatItReplacesIsThereAgainWhenTheFileSystemRefusesHalfway) {

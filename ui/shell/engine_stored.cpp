@@ -159,6 +159,8 @@ constexpr EnginePhrase kStored[] = {
     {" has changed", " hat sich geändert"},
     {" has come since", " ist seither dazugekommen"},
     // packages and what goes into them
+    {"others may write into it, and it cannot be taken away",
+     "andere können hineinschreiben, und er lässt sich nicht entfernen"},
     {"free some space or choose another folder", "Platz schaffen, oder einen anderen Ordner wählen"},
     {"what lies there is no package, so it is not replaced",
      "was dort liegt, ist kein Paket, also wird es nicht ersetzt"},
