@@ -22,10 +22,8 @@ std::unexpected<Error> storage(const fs::path& path, const std::string& doing, c
               "nothing was replaced: move it elsewhere yourself, or choose another folder");
 }
 
-/// No manifest can list these: they are the last to be written.
-bool is_last_manifest(const std::string& name) {
-  return name.starts_with("tagmanifest-") && name.ends_with(".txt");
-}
+/// No manifest of ours lists it: it is the last that is written. Others under such a name are not ours.
+constexpr const char* kLastManifest = "tagmanifest-sha512.txt";
 
 Result<std::vector<fs::path>> not_listed(const fs::path& bag, const std::vector<std::string>& whole) {
   const std::set<std::string> listed(whole.begin(), whole.end());
@@ -35,7 +33,7 @@ Result<std::vector<fs::path>> not_listed(const fs::path& bag, const std::vector<
   for (fs::recursive_directory_iterator it(bag, error), end; !error && it != end; it.increment(error)) {
     const fs::path name = it->path().lexically_relative(bag);
     if ((it->is_symlink(ignored) || !it->is_directory(ignored)) && !listed.contains(name.generic_string()) &&
-        !is_last_manifest(name.generic_string())) {
+        name != kLastManifest) {
       out.push_back(name);
     }
   }

@@ -57,6 +57,8 @@ TEST_F(Export, KeepsWhatOthersPutIntoThePackageThatItReplaces) {
   EXPECT_FALSE(fs::exists(at("lent.kept-1"))) << "the package's own files are not";
   std::ofstream(bag / "data/notes.txt") << "of a curator";
   std::ofstream(bag / "letter.txt") << "beside the payload";
+  std::ofstream(bag / "tagmanifest-notes.txt") << "named as if it were a manifest";
+  std::ofstream(bag / "tagmanifest-md5.txt") << "of a program that knows no other";
   fs::create_directories(bag / "data/photos");
   std::ofstream(bag / "data/photos/one.jpg") << "a photograph";
   fs::create_symlink("/nowhere", bag / "data/photos/link");
@@ -68,9 +70,9 @@ TEST_F(Export, KeepsWhatOthersPutIntoThePackageThatItReplaces) {
   EXPECT_THAT(replaced.complaints(), SizeIs(1));
   EXPECT_THAT(replaced.err, HasSubstr(kept.string()));
   EXPECT_EQ(replaced.json()["kept"]["folder"], kept.string());
-  EXPECT_EQ(replaced.json()["kept"]["files"], 5);
-  EXPECT_THAT(files_below(kept),
-              ElementsAre("data/README.txt", "data/notes.txt", "data/photos/one.jpg", "letter.txt"));
+  EXPECT_EQ(replaced.json()["kept"]["files"], 7);
+  EXPECT_THAT(files_below(kept), ElementsAre("data/README.txt", "data/notes.txt", "data/photos/one.jpg",
+                                             "letter.txt", "tagmanifest-md5.txt", "tagmanifest-notes.txt"));
   EXPECT_EQ(fs::read_symlink(kept / "data/photos/link"), "/nowhere");
   EXPECT_EQ(bytes_of(kept / "data/notes.txt"), "of a curator");
   EXPECT_EQ(bytes_of(kept / "data/README.txt"), remarked);
