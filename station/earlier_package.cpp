@@ -2,15 +2,17 @@
 // Copyright The Dubsar developers
 #include "station/earlier_package.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
-#include "acquisition/session_store.h"
 #include "formats/atomic_file.h"
 #include "formats/bag_check.h"
+#include "formats/bag_text.h"
 #include "formats/json_node.h"
 #include "station/package.h"
 #include "station/package_source.h"
@@ -41,6 +43,21 @@ std::string text_of(const nlohmann::json& event, const char* key) {
                                                                             : std::string();
 }
 
+/// An array; empty of a package without a list of events, which tells nothing of what the session once held.
+nlohmann::json packed_events(const fs::path& package) {
+  const Result<std::string> text = read_whole_file(package / "data" / kPackedEvents, kMaxJsonBytes);
+  nlohmann::json events = nlohmann::json::parse(text.value_or(std::string()), nullptr, false);
+  return events.is_array() ? events : nlohmann::json::array();
+}
+
+bool holds(const std::vector<SessionEvent>& events, const nlohmann::json& packed) {
+  const std::string kind = text_of(packed, "kind");
+  return std::ranges::any_of(events, [&](const SessionEvent& own) {
+    return number_of(packed, "number") == own.number && number_of(packed, "time_ns") == own.time_ns &&
+           kind == own.kind;
+  });
+}
+
 /// The record of a session is only ever added to: what a package of it has and the session lacks was lost.
 Status check_record(const fs::path& package, const fs::path& session) {
   const Result<SessionStore> store = SessionStore::open(session, SessionStore::Access::kReadOnly);
@@ -55,23 +72,63 @@ Status check_record(const fs::path& package, const fs::path& session) {
   if (!kept) {
     return std::unexpected(kept.error());
   }
-  const Result<std::string> text = read_whole_file(package / "data" / kPackedEvents, kMaxJsonBytes);
-  // A package without a list of events tells nothing of what the session once held.
-  const auto packed = nlohmann::json::parse(text.value_or(std::string()), nullptr, false);
-  for (const nlohmann::json& event : packed.is_array() ? packed : nlohmann::json::array()) {
-    const std::string kind = text_of(event, "kind");
-    const bool there = std::ranges::any_of(*kept, [&](const SessionEvent& own) {
-      return number_of(event, "number") == own.number && number_of(event, "time_ns") == own.time_ns &&
-             kind == own.kind;
-    });
-    if (!there) {
-      return std::unexpected(lost("the session has lost of its record \"" + kind + "\"", package));
+  for (const nlohmann::json& event : packed_events(package)) {
+    if (!holds(*kept, event)) {
+      return std::unexpected(
+          lost("the session has lost of its record \"" + text_of(event, "kind") + "\"", package));
     }
   }
   return {};
 }
 
+/// "Bag-Software-Agent: Dubsar 0.1.0" stands in bag-info.txt.
+bool names_dubsar(const fs::path& package) {
+  const Result<std::string> info = read_whole_file(package / "bag-info.txt", kMaxBagTextBytes);
+  return info && ("\n" + *info).find("\nBag-Software-Agent: Dubsar ") != std::string::npos;
+}
+
+bool is_same_file(const fs::path& a, const fs::path& b) {
+  std::error_code error;
+  const std::uintmax_t bytes = fs::file_size(a, error);
+  if (error || fs::file_size(b, error) != bytes || error) {
+    return false;
+  }
+  const Result<std::string> of_a = read_whole_file(a);
+  return of_a && *of_a == read_whole_file(b).value_or(std::string());
+}
+
 }  // namespace
+
+Status check_is_package(const fs::path& folder) {
+  std::error_code ignored;
+  const fs::file_status lies = fs::symlink_status(folder, ignored);
+  if (!fs::exists(lies) || (fs::is_directory(lies) && fs::is_empty(folder, ignored)) ||
+      (is_bag(folder) &&
+       (names_dubsar(folder) || fs::is_regular_file(folder / "data" / kPackedEvents, ignored)))) {
+    return {};
+  }
+  return fail(ErrorKind::kUsage, "what lies there is no package of Dubsar, so it is not replaced",
+              folder.string(), "choose another folder, or remove it yourself");
+}
+
+Status check_is_of_session(const fs::path& package, const SessionStore& store) {
+  const auto packed = packed_events(package);
+  const Result<std::vector<SessionEvent>> own = store.events();
+  const Result<std::vector<StoredScan>> scans = store.scans();
+  if (packed.empty() || !own || !scans || (own->empty() && scans->empty())) {
+    return {};  // nothing tells
+  }
+  const auto same_scan = [&](const StoredScan& scan) {
+    const std::string grid = fmt::format("grids/{:03}.grid", scan.id);
+    return is_same_file(package / "data/scans" / grid, store.folder() / grid);
+  };
+  if (std::ranges::any_of(packed, [&](const nlohmann::json& event) { return holds(*own, event); }) ||
+      std::ranges::any_of(*scans, same_scan)) {
+    return {};
+  }
+  return fail(ErrorKind::kUsage, "what lies there is the package of another session, so it is not replaced",
+              package.string(), "choose another folder, or remove it yourself");
+}
 
 Result<bool> is_earlier_package(const fs::path& package, const fs::path& session, const StampedWork& now,
                                 JobContext& job) {

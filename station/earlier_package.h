@@ -4,11 +4,20 @@
 
 #include <filesystem>
 
+#include "acquisition/session_store.h"
 #include "core/job.h"
 #include "core/result.h"
 #include "station/done_stamp.h"
 
 namespace dubsar {
+
+/// kUsage unless the folder is a package that Dubsar made, whole or not: a bag that names Dubsar as what made
+/// it or holds the record of a session. Bags of others are theirs. An empty folder is nothing, and passes.
+[[nodiscard]] Status check_is_package(const std::filesystem::path& folder);
+
+/// kUsage where the package shows that it is of another session: it has a record, and neither an event of
+/// that nor a scan is one of this session's. Passes where there is no package.
+[[nodiscard]] Status check_is_of_session(const std::filesystem::path& package, const SessionStore& store);
 
 /// Whether the package may go for the one that `now` makes of the session: it is whole by its own checksums,
 /// and the stamp beside it says that it was made of this very session when that held the same scans or fewer,

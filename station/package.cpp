@@ -11,6 +11,7 @@
 #include "archive/staged_folder.h"
 #include "core/log.h"
 #include "formats/bag_check.h"
+#include "station/earlier_package.h"
 #include "station/package_content.h"
 #include "station/packed_names.h"
 #include "station/session_name.h"
@@ -129,17 +130,6 @@ Status add_all(PackageContent& content, StageTimes& timings) {
   return {};
 }
 
-/// A folder that `replace` may let go of: an earlier package, and nothing else.
-Status check_target(const fs::path& to, bool replace) {
-  std::error_code ignored;
-  if (replace && fs::exists(to, ignored) && !fs::is_empty(to, ignored) &&
-      !fs::is_regular_file(to / "bagit.txt", ignored)) {
-    return fail(ErrorKind::kUsage, "what lies there is no package, so it is not replaced", to.string(),
-                "choose another folder, or remove it yourself");
-  }
-  return {};
-}
-
 /// What is going to be replaced may hold what others put there.
 Result<KeptFiles> keep_others(const fs::path& to, JobContext& job) {
   if (!is_bag(to)) {
@@ -181,8 +171,10 @@ Result<Package> write_package(const fs::path& session, const fs::path& to, const
     return fail(ErrorKind::kUsage, "no session there", session.string(),
                 "name the folder that a scan was stored in");
   }
-  if (const Status checked = check_target(to, options.replace); !checked) {
-    return std::unexpected(checked.error());
+  if (options.replace) {
+    if (const Status ours = check_is_package(to); !ours) {
+      return std::unexpected(ours.error());
+    }
   }
   Result<StagedFolder> staged = StagedFolder::begin(to, options.replace);
   if (!staged) {
@@ -195,6 +187,11 @@ Result<Package> write_package(const fs::path& session, const fs::path& to, const
     return std::unexpected(source.error());
   }
   const SessionStore& store = source->store();
+  if (options.replace) {
+    if (const Status same = check_is_of_session(to, store); !same) {
+      return std::unexpected(same.error());
+    }
+  }
   const Mesh& mesh = source->results().mesh;
   opening.done("reading");
   PageFacts facts = page_facts_of(store);

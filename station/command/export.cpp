@@ -118,8 +118,8 @@ void add_export(CLI::App& app, Action& chosen) {
       ->check(CLI::IsMember({"black", "white"}))
       ->capture_default_str();
   verb->add_flag("--force", arguments->force,
-                 "replace a package that lies there already, done before or not; what others added to it is "
-                 "kept beside it");
+                 "replace a package of this session that lies there already, done before or not; what others "
+                 "added to it is kept beside it");
   verb->add_flag(
       "--update", arguments->update,
       "replace a package that lies there already where it is whole and its stamp says that it is of "

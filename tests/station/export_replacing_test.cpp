@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "acquisition/session_store.h"
+#include "formats/sha2.h"
 #include "tests/station/support/exported.h"
 
 namespace dubsar {
@@ -82,6 +84,76 @@ TEST_F(Export, KeepsWhatOthersPutIntoThePackageThatItReplaces) {
   ASSERT_EQ(export_to("lent", forced).status, 0);
   EXPECT_EQ(bytes_of(at("lent.kept-2") / "letter.txt"), "another");
   EXPECT_EQ(bytes_of(kept / "letter.txt"), "beside the payload");
+}
+
+/// The lines of a manifest over files below `folder`.
+std::string manifest_of(const fs::path& bag, const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) {
+    text += sha512_hex(bytes_of(bag / name)) + "  " + name + "\n";
+  }
+  return text;
+}
+
+/// As programs for bags do it after files were added: manifests and Payload-Oxum say what is there.
+void bag_anew(const fs::path& bag) {
+  std::uintmax_t bytes = 0;
+  std::vector<std::string> payload = files_below(bag / "data");
+  for (std::string& name : payload) {
+    name.insert(0, "data/");
+    bytes += fs::file_size(bag / name);
+  }
+  std::string info = bytes_of(bag / "bag-info.txt");
+  const std::size_t at = info.find("Payload-Oxum: ");
+  info.replace(at, info.find('\n', at) - at,
+               "Payload-Oxum: " + std::to_string(bytes) + "." + std::to_string(payload.size()));
+  std::ofstream(bag / "bag-info.txt") << info;
+  std::ofstream(bag / "manifest-sha512.txt") << manifest_of(bag, payload);
+  std::ofstream(bag / "tagmanifest-sha512.txt")
+      << manifest_of(bag, {"bag-info.txt", "bagit.txt", "manifest-sha512.txt"});
+}
+
+TEST_F(Export, ReplacesNoBagOfOthers) {
+  const std::vector<std::string> forced{"--without", "renderings,features,wedges,grid-ply", "--force"};
+  const fs::path photos = at("photos");
+  fs::create_directories(photos / "data");
+  std::ofstream(photos / "data/p.jpg") << "a photograph";
+  std::ofstream(photos / "bagit.txt") << "BagIt-Version: 1.0\nTag-File-Character-Encoding: UTF-8\n";
+  std::ofstream(photos / "bag-info.txt") << "Bag-Software-Agent: bagit.py v1.8.1\nPayload-Oxum: 0.0\n";
+  bag_anew(photos);
+  ASSERT_EQ(run_command({"verify", photos.string()}).status, 0);
+  const Outcome refused = export_to("photos", forced);
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_THAT(refused.complaints(), SizeIs(1));
+  EXPECT_THAT(refused.err, HasSubstr("no package of Dubsar"));
+  EXPECT_EQ(bytes_of(photos / "data/p.jpg"), "a photograph");
+  EXPECT_FALSE(fs::exists(at("photos.kept-1")));
+  fs::create_symlink("nowhere", at("shortcut"));
+  EXPECT_EQ(export_to("shortcut", forced).status, 2) << "a link that leads nowhere is somebody's too";
+  EXPECT_TRUE(fs::is_symlink(at("shortcut")));
+}
+
+TEST_F(Export, ReplacesNoPackageOfAnotherSession) {
+  const std::vector<std::string> small{"--without", "renderings,features,wedges,grid-ply"};
+  std::vector<std::string> forced = small;
+  forced.emplace_back("--force");
+  const fs::path session = at("of_another_tablet");
+  ASSERT_TRUE(SessionStore::open_or_create(session)->add_grid(test::bumpy_scan(0, 17, 1.0)));
+  const auto export_other = [&](const char* option) {
+    return run_command({"export", session.string(), "--to", at("other").string(), option, "--without",
+                        "renderings,features,wedges,grid-ply"});
+  };
+  ASSERT_EQ(export_other("--update").status, 0);
+  const Outcome refused = export_to("other", forced);
+  EXPECT_EQ(refused.status, 2) << refused.err;
+  EXPECT_THAT(refused.complaints(), SizeIs(1));
+  EXPECT_THAT(refused.err, HasSubstr("of another session"));
+  EXPECT_EQ(run_command({"verify", at("other").string()}).status, 0);
+  // A session whose record had to be made anew is known by its scans.
+  for (const char* name : {"session.sqlite", "session.backup.sqlite", "session.sums"}) {
+    fs::remove(session / name);
+  }
+  EXPECT_EQ(export_other("--force").status, 0);
 }
 
 TEST_F(Export, ReplacesAPackageOfAnEarlierStateOfItsSessionWhenAsked) {
