@@ -2,14 +2,13 @@
 // Copyright The Dubsar developers
 #include "archive/kept_files.h"
 
-#include <set>
+#include <span>
 #include <string>
 #include <system_error>
 #include <utility>
 #include <vector>
 
 #include "formats/atomic_file.h"
-#include "formats/bag_check.h"
 
 namespace dubsar {
 
@@ -22,18 +21,13 @@ std::unexpected<Error> storage(const fs::path& path, const std::string& doing, c
               "nothing was replaced: move it elsewhere yourself, or choose another folder");
 }
 
-/// No manifest of ours lists it: it is the last that is written. Others under such a name are not ours.
-constexpr const char* kLastManifest = "tagmanifest-sha512.txt";
-
-Result<std::vector<fs::path>> not_listed(const fs::path& bag, const std::vector<std::string>& whole) {
-  const std::set<std::string> listed(whole.begin(), whole.end());
+Result<std::vector<fs::path>> all_but(const std::set<std::string>& own, const fs::path& bag) {
   std::vector<fs::path> out;
   std::error_code error;
   std::error_code ignored;
   for (fs::recursive_directory_iterator it(bag, error), end; !error && it != end; it.increment(error)) {
     const fs::path name = it->path().lexically_relative(bag);
-    if ((it->is_symlink(ignored) || !it->is_directory(ignored)) && !listed.contains(name.generic_string()) &&
-        name != kLastManifest) {
+    if ((it->is_symlink(ignored) || !it->is_directory(ignored)) && !own.contains(name.generic_string())) {
       out.push_back(name);
     }
   }
@@ -122,12 +116,8 @@ std::string sentence_of(const KeptFiles& kept) {
              : "what was put into the earlier package, or changed in it, is kept in " + kept.folder.string();
 }
 
-Result<KeptFiles> keep_what_is_not_of_the_bag(const fs::path& bag, JobContext& job) {
-  const Result<BagReport> report = check_bag(bag, job);
-  if (!report) {
-    return std::unexpected(report.error());
-  }
-  const Result<std::vector<fs::path>> names = not_listed(bag, report->whole);
+Result<KeptFiles> keep_all_but(const std::set<std::string>& own, const fs::path& bag, const JobContext& job) {
+  const Result<std::vector<fs::path>> names = all_but(own, bag);
   if (!names) {
     return std::unexpected(names.error());
   }

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <set>
 #include <string>
 
 #include "core/job.h"
@@ -19,11 +20,11 @@ struct KeptFiles {
 /// Where they are, for people; empty where there was nothing to keep.
 [[nodiscard]] std::string sentence_of(const KeptFiles& kept);
 
-/// Puts everything in a bag that its manifests do not list, or list with other bytes, under the same names
-/// into a new folder beside it, so that the bag may be removed: what others added or changed is theirs. The
-/// bag itself stays as it is (the files are linked, or copied where the file system has no links). Reads
-/// every byte. Errors: kStorage, kCancelled; then no such folder stays.
-[[nodiscard]] Result<KeptFiles> keep_what_is_not_of_the_bag(const std::filesystem::path& bag,
-                                                            JobContext& job);
+/// Puts everything in a bag but what is `own` (names relative to it) under the same names into a new folder
+/// beside it, so that the bag may be removed: what others added or changed is theirs. The bag itself stays as
+/// it is (the files are linked, or copied where the file system has no links). Errors: kStorage, kCancelled;
+/// then no such folder stays.
+[[nodiscard]] Result<KeptFiles> keep_all_but(const std::set<std::string>& own,
+                                             const std::filesystem::path& bag, const JobContext& job);
 
 }  // namespace dubsar

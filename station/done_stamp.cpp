@@ -26,30 +26,6 @@ Error unreadable(const fs::path& path, int number) {
           missing ? "check the name" : "check the disk and the rights"};
 }
 
-/// Reads the file once, in pieces.
-Result<StampedFile> stamped(const fs::path& path, std::string name, const JobContext& job) {
-  const auto close_file = [](std::FILE* file) { std::fclose(file); };
-  const std::unique_ptr<std::FILE, decltype(close_file)> file(std::fopen(path.c_str(), "rb"), close_file);
-  if (!file) {
-    return std::unexpected(unreadable(path, errno));
-  }
-  Xxh128 sum;
-  StampedFile out{std::move(name), 0, {}};
-  std::vector<unsigned char> piece(std::size_t{1} << 20U);
-  while (const std::size_t count = std::fread(piece.data(), 1, piece.size(), file.get())) {
-    if (job.cancelled()) {
-      return fail(ErrorKind::kCancelled, "stopped", path.string());
-    }
-    sum.add(piece.data(), count);
-    out.bytes += count;
-  }
-  if (std::ferror(file.get()) != 0) {
-    return std::unexpected(unreadable(path, errno));
-  }
-  out.xxh128 = sum.hex();
-  return out;
-}
-
 OrderedJson json_of(const std::vector<StampedFile>& files) {
   OrderedJson out = OrderedJson::array();
   for (const StampedFile& file : files) {
@@ -102,12 +78,44 @@ Result<DoneStamp> parse_done_stamp(std::string_view text, const std::string& whe
   return out;
 }
 
+std::optional<DoneStamp> read_done_stamp(const fs::path& stamp, std::string_view verb) {
+  std::error_code error;
+  const Result<std::string> text = fs::is_regular_file(stamp, error)
+                                       ? read_whole_file(stamp, kMaxJsonBytes)
+                                       : bad_input(stamp.string(), "not a file");
+  Result<DoneStamp> known = text ? parse_done_stamp(*text, stamp.string()) : std::unexpected(text.error());
+  return known && known->verb == verb ? std::optional(std::move(*known)) : std::nullopt;
+}
+
+Result<StampedFile> stamped_file(const fs::path& path, std::string name, const JobContext& job) {
+  const auto close_file = [](std::FILE* file) { std::fclose(file); };
+  const std::unique_ptr<std::FILE, decltype(close_file)> file(std::fopen(path.c_str(), "rb"), close_file);
+  if (!file) {
+    return std::unexpected(unreadable(path, errno));
+  }
+  Xxh128 sum;
+  StampedFile out{std::move(name), 0, {}};
+  std::vector<unsigned char> piece(std::size_t{1} << 20U);
+  while (const std::size_t count = std::fread(piece.data(), 1, piece.size(), file.get())) {
+    if (job.cancelled()) {
+      return fail(ErrorKind::kCancelled, "stopped", path.string());
+    }
+    sum.add(piece.data(), count);
+    out.bytes += count;
+  }
+  if (std::ferror(file.get()) != 0) {
+    return std::unexpected(unreadable(path, errno));
+  }
+  out.xxh128 = sum.hex();
+  return out;
+}
+
 Result<StampedWork> StampedWork::begin(fs::path stamp, std::string verb, std::string parameters,
                                        const std::vector<fs::path>& inputs, const JobContext& job) {
   DoneStamp made{DUBSAR_VERSION, std::move(verb), std::move(parameters), {}, {}};
   for (const fs::path& input : inputs) {
     // The folder that a tablet lies in may be mounted elsewhere on another machine: its name does not count.
-    Result<StampedFile> read = stamped(input, input.filename().string(), job);
+    Result<StampedFile> read = stamped_file(input, input.filename().string(), job);
     if (!read) {
       return std::unexpected(read.error());
     }
@@ -117,24 +125,19 @@ Result<StampedWork> StampedWork::begin(fs::path stamp, std::string verb, std::st
 }
 
 Result<bool> StampedWork::done(const JobContext& job) const {
+  const std::optional<DoneStamp> known = read_done_stamp(stamp_, made_.verb);
+  if (!known || known->program != made_.program || known->parameters != made_.parameters ||
+      known->inputs != made_.inputs || known->outputs.empty()) {
+    return false;
+  }
   std::error_code error;
-  if (!fs::is_regular_file(stamp_, error)) {
-    return false;
-  }
-  const Result<std::string> text = read_whole_file(stamp_, kMaxJsonBytes);
-  const Result<DoneStamp> known =
-      text ? parse_done_stamp(*text, stamp_.string()) : std::unexpected(text.error());
-  if (!known || known->program != made_.program || known->verb != made_.verb ||
-      known->parameters != made_.parameters || known->inputs != made_.inputs || known->outputs.empty()) {
-    return false;
-  }
   for (const StampedFile& output : known->outputs) {
     const fs::path path = stamp_.parent_path() / output.name;
     // Bytes are counted first: what was cut short need not be read.
     if (fs::file_size(path, error) != output.bytes || error) {
       return false;
     }
-    const Result<StampedFile> there = stamped(path, output.name, job);
+    const Result<StampedFile> there = stamped_file(path, output.name, job);
     if (!there && there.error().kind == ErrorKind::kCancelled) {
       return std::unexpected(there.error());
     }
@@ -163,7 +166,7 @@ Status StampedWork::finish_staged(const std::vector<fs::path>& outputs, const fs
   const fs::path folder = folder_of(stamp_);
   for (const fs::path& output : outputs) {
     const fs::path place = staged.empty() ? output : target / output.lexically_relative(staged);
-    Result<StampedFile> written = stamped(output, output_name(place, folder), job);
+    Result<StampedFile> written = stamped_file(output, output_name(place, folder), job);
     if (!written) {
       return std::unexpected(written.error());
     }

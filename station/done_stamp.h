@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -32,6 +33,13 @@ struct DoneStamp {
 
 [[nodiscard]] std::string done_stamp_to_json(const DoneStamp& stamp);
 [[nodiscard]] Result<DoneStamp> parse_done_stamp(std::string_view text, const std::string& where);
+/// The stamp of that verb; nothing where none is there or it cannot be read, which is the same.
+[[nodiscard]] std::optional<DoneStamp> read_done_stamp(const std::filesystem::path& stamp,
+                                                       std::string_view verb);
+/// A file as a stamp remembers it, under that name. Reads it once, in pieces. Errors: kBadInput, kStorage,
+/// kCancelled.
+[[nodiscard]] Result<StampedFile> stamped_file(const std::filesystem::path& path, std::string name,
+                                               const JobContext& job);
 
 /// Work that leaves a stamp, so that whoever starts it again finds it done: a collection can be gone through
 /// by any engine, stopped anywhere and started anew. Begin before the inputs are read, ask done(), and after

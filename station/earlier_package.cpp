@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -132,17 +133,11 @@ Status check_is_of_session(const fs::path& package, const SessionStore& store) {
 
 Result<bool> is_earlier_package(const fs::path& package, const fs::path& session, const StampedWork& now,
                                 JobContext& job) {
-  std::error_code error;
-  if (!fs::is_regular_file(now.stamp(), error) || !is_bag(package)) {
-    return false;
-  }
-  const Result<std::string> text = read_whole_file(now.stamp(), kMaxJsonBytes);
-  const Result<DoneStamp> known =
-      text ? parse_done_stamp(*text, now.stamp().string()) : std::unexpected(text.error());
+  const std::optional<DoneStamp> known = read_done_stamp(now.stamp(), "export");
   const auto is_here = [&](const StampedFile& file) {
     return std::ranges::find(now.inputs(), file) != now.inputs().end();
   };
-  if (!known || known->verb != "export" || std::ranges::none_of(known->inputs, [&](const StampedFile& file) {
+  if (!known || !is_bag(package) || std::ranges::none_of(known->inputs, [&](const StampedFile& file) {
         return is_grid(file) && is_here(file);
       })) {
     return false;

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <initializer_list>
+#include <optional>
+#include <set>
 #include <utility>
 
 #include "analysis/text_frame.h"
@@ -11,7 +13,9 @@
 #include "archive/staged_folder.h"
 #include "core/log.h"
 #include "formats/bag_check.h"
+#include "station/done_stamp.h"
 #include "station/earlier_package.h"
+#include "station/own_files.h"
 #include "station/package_content.h"
 #include "station/packed_names.h"
 #include "station/session_name.h"
@@ -131,11 +135,15 @@ Status add_all(PackageContent& content, StageTimes& timings) {
 }
 
 /// What is going to be replaced may hold what others put there.
-Result<KeptFiles> keep_others(const fs::path& to, JobContext& job) {
+Result<KeptFiles> keep_others(const fs::path& to, const std::optional<DoneStamp>& stamp, JobContext& job) {
   if (!is_bag(to)) {
     return KeptFiles{};  // nothing, or an empty folder
   }
-  Result<KeptFiles> kept = keep_what_is_not_of_the_bag(whole_name(to), job);
+  const Result<std::set<std::string>> own = own_files_of(to, stamp, job);
+  if (!own) {
+    return std::unexpected(own.error());
+  }
+  Result<KeptFiles> kept = keep_all_but(*own, to, job);
   if (kept && kept->files > 0) {
     log_warning(sentence_of(*kept));
   }
@@ -252,12 +260,15 @@ Result<Package> write_package(const fs::path& session, const fs::path& to, const
   if (!size) {
     return std::unexpected(size.error());
   }
+  // That of what lies there, before the new one takes its place.
+  const fs::path place = whole_name(to);
+  const std::optional<DoneStamp> earlier = read_done_stamp(stamp_beside(place), "export");
   if (options.before_publishing) {
     if (const Status allowed = options.before_publishing(staged->path()); !allowed) {
       return std::unexpected(allowed.error());
     }
   }
-  const Result<KeptFiles> kept = keep_others(to, job);
+  const Result<KeptFiles> kept = keep_others(place, earlier, job);
   if (!kept) {
     return std::unexpected(kept.error());
   }

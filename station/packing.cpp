@@ -123,17 +123,16 @@ Result<Packing> pack_session(const PackRequest& request, JobContext& job) {
 }
 
 Result<bool> is_packed(const fs::path& session, const fs::path& package, const JobContext& job) {
-  std::error_code error;
-  if (!fs::is_regular_file(stamp_beside(whole_name(package)), error)) {
+  const std::optional<DoneStamp> known = read_done_stamp(stamp_beside(whole_name(package)), "export");
+  if (!known || known->outputs.empty()) {
     return false;
   }
   const Result<StampedWork> now = begin_work({.session = session, .to = package, .package = {}}, job);
   if (!now) {
     return std::unexpected(now.error());
   }
-  const Result<DoneStamp> known = parse_done_stamp(stamp_text(*now), now->stamp().string());
-  return known && known->verb == "export" && known->inputs == now->inputs() && !known->outputs.empty() &&
-         std::ranges::all_of(known->outputs, [&](const StampedFile& file) {
+  std::error_code error;
+  return known->inputs == now->inputs() && std::ranges::all_of(known->outputs, [&](const StampedFile& file) {
            const auto bytes = fs::file_size(now->stamp().parent_path() / file.name, error);
            return !error && bytes == file.bytes;
          });

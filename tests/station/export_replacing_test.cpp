@@ -113,6 +113,40 @@ void bag_anew(const fs::path& bag) {
       << manifest_of(bag, {"bag-info.txt", "bagit.txt", "manifest-sha512.txt"});
 }
 
+TEST_F(Export, KeepsWhatAnArchivistAddedAsTheStandardHasIt) {
+  const fs::path session = at("conserved");
+  fs::copy(at("session"), session, fs::copy_options::recursive);
+  const fs::path bag = at("catalogued");
+  const auto export_with = [&](const char* option) {
+    return run_command({"export", session.string(), "--to", bag.string(), option, "--without",
+                        "renderings,features,wedges,grid-ply"});
+  };
+  const auto add = [&] {
+    std::ofstream(bag / "data/condition.txt") << "a crack on the reverse";
+    std::ofstream(bag / "bag-info.txt", std::ios::app) << "Contact-Email: archive@example.org\n";
+    bag_anew(bag);
+    ASSERT_EQ(run_command({"verify", bag.string()}).status, 0);
+  };
+  ASSERT_EQ(export_with("--update").status, 0);
+  add();
+  ASSERT_EQ(run_command({"session", "describe", session.string(), "--notes", "cleaned"}).status, 0);
+  const Outcome updated = export_with("--update");
+  ASSERT_EQ(updated.status, 0) << updated.err;
+  EXPECT_FALSE(fs::exists(bag / "data/condition.txt"));
+  EXPECT_THAT(updated.err, HasSubstr("catalogued.kept-1"));
+  ASSERT_THAT(
+      files_below(at("catalogued.kept-1")),
+      ElementsAre("bag-info.txt", "data/condition.txt", "manifest-sha512.txt", "tagmanifest-sha512.txt"));
+  EXPECT_EQ(bytes_of(at("catalogued.kept-1") / "data/condition.txt"), "a crack on the reverse");
+  EXPECT_THAT(bytes_of(at("catalogued.kept-1") / "bag-info.txt"), HasSubstr("Contact-Email"));
+  // Without its stamp the package's own list tells what was written.
+  add();
+  fs::remove(at("catalogued.done"));
+  const Outcome forced = export_with("--force");
+  ASSERT_EQ(forced.status, 0) << forced.err;
+  ASSERT_THAT(files_below(at("catalogued.kept-2")), ElementsAre("bag-info.txt", "data/condition.txt"));
+}
+
 TEST_F(Export, ReplacesNoBagOfOthers) {
   const std::vector<std::string> forced{"--without", "renderings,features,wedges,grid-ply", "--force"};
   const fs::path photos = at("photos");
