@@ -15,6 +15,7 @@
 
 #include "formats/atomic_file.h"
 #include "formats/folder_lock.h"
+#include "formats/resolved_place.h"
 
 namespace dubsar {
 
@@ -43,10 +44,7 @@ bool is_open_to_others(const struct stat& folder) {
 
 Result<StagedFolder> StagedFolder::begin(const fs::path& wanted, bool replace) {
   std::error_code error;
-  fs::path target = fs::absolute(wanted, error).lexically_normal();
-  if (!target.has_filename()) {
-    target = target.parent_path();  // a trailing slash
-  }
+  fs::path target = resolved_place(wanted);
   if (!replace && !is_free(target)) {
     return fail(ErrorKind::kUsage, "something lies there already", target.string(),
                 "choose another folder, or replace it with --force");

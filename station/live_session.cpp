@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "station/packing.h"
-#include "station/place_outside.h"
 #include "station/signing.h"
 
 namespace dubsar {
@@ -302,10 +301,8 @@ void LiveSession::pack(const std::filesystem::path& to) {
       state_.package.clear();
     }
     changed();
-    const Status outside = check_place_of_package(to);
     const Result<Packing> packing =
-        outside ? pack_session({.session = options_.session, .to = to, .package = {}, .update = true}, *job_)
-                : std::unexpected(outside.error());
+        pack_session({.session = options_.session, .to = to, .package = {}, .update = true}, *job_);
     if (!packing) {
       end(std::unexpected(packing.error()));
       return;

@@ -261,14 +261,13 @@ Result<Package> write_package(const fs::path& session, const fs::path& to, const
     return std::unexpected(size.error());
   }
   // That of what lies there, before the new one takes its place.
-  const fs::path place = whole_name(to);
-  const std::optional<DoneStamp> earlier = read_done_stamp(stamp_beside(place), "export");
+  const std::optional<DoneStamp> earlier = read_done_stamp(stamp_beside(to), "export");
   if (options.before_publishing) {
     if (const Status allowed = options.before_publishing(staged->path()); !allowed) {
       return std::unexpected(allowed.error());
     }
   }
-  const Result<KeptFiles> kept = keep_others(place, earlier, job);
+  const Result<KeptFiles> kept = keep_others(to, earlier, job);
   if (!kept) {
     return std::unexpected(kept.error());
   }

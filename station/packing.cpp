@@ -12,8 +12,10 @@
 #include "formats/atomic_file.h"
 #include "formats/files_below.h"
 #include "formats/json_node.h"
+#include "formats/resolved_place.h"
 #include "station/done_stamp.h"
 #include "station/earlier_package.h"
+#include "station/place_outside.h"
 #include "station/session_name.h"
 
 namespace dubsar {
@@ -38,18 +40,15 @@ std::string parameters_of(const PackageOptions& options) {
 
 /// A package that is made again from the same session is found done (docs/collections.md).
 Result<StampedWork> begin_work(const PackRequest& request, const JobContext& job) {
-  const fs::path target = whole_name(request.to);
-  const auto passes_over = [&](const fs::path& file) {
+  const auto passes_over = [](const fs::path& file) {
     const std::string name = file.filename().string();
-    const fs::path normal = fs::absolute(file).lexically_normal();
-    return normal == target || normal == stamp_beside(target) || name == "session.lock" ||
-           name.ends_with("-shm") || name.starts_with(kTemporaryPrefix);
+    return name == "session.lock" || name.ends_with("-shm") || name.starts_with(kTemporaryPrefix);
   };
   const Result<std::vector<fs::path>> inputs = files_below(request.session, passes_over);
   if (!inputs) {
     return std::unexpected(inputs.error());
   }
-  return StampedWork::begin(stamp_beside(target), "export", parameters_of(request.package), *inputs, job);
+  return StampedWork::begin(stamp_beside(request.to), "export", parameters_of(request.package), *inputs, job);
 }
 
 /// The stamp as it lies there; empty where none does.
@@ -70,7 +69,12 @@ void take_back(const StampedWork& work, const std::string& before) {
 
 }  // namespace
 
-Result<Packing> pack_session(const PackRequest& request, JobContext& job) {
+Result<Packing> pack_session(const PackRequest& asked, JobContext& job) {
+  PackRequest request = asked;
+  request.to = resolved_place(asked.to);  // one place to be checked and written
+  if (const Status outside = check_place_of_package(request.to); !outside) {
+    return std::unexpected(outside.error());
+  }
   std::error_code ignored;
   std::optional<StampedWork> work;
   PackageOptions options = request.package;
@@ -93,7 +97,7 @@ Result<Packing> pack_session(const PackRequest& request, JobContext& job) {
         return std::unexpected(started.error());
       }
     } else if (request.update && !options.replace) {
-      const Result<bool> earlier = is_earlier_package(whole_name(request.to), request.session, *work, job);
+      const Result<bool> earlier = is_earlier_package(request.to, request.session, *work, job);
       if (!earlier) {
         return std::unexpected(earlier.error());
       }
@@ -109,7 +113,7 @@ Result<Packing> pack_session(const PackRequest& request, JobContext& job) {
         return std::unexpected(outputs.error());
       }
       stamped = true;
-      return work->finish_staged(*outputs, staged, whole_name(request.to), job);
+      return work->finish_staged(*outputs, staged, request.to, job);
     };
   }
   Result<Package> package = write_package(request.session, request.to, options, job);
@@ -123,11 +127,12 @@ Result<Packing> pack_session(const PackRequest& request, JobContext& job) {
 }
 
 Result<bool> is_packed(const fs::path& session, const fs::path& package, const JobContext& job) {
-  const std::optional<DoneStamp> known = read_done_stamp(stamp_beside(whole_name(package)), "export");
+  const fs::path place = resolved_place(package);
+  const std::optional<DoneStamp> known = read_done_stamp(stamp_beside(place), "export");
   if (!known || known->outputs.empty()) {
     return false;
   }
-  const Result<StampedWork> now = begin_work({.session = session, .to = package, .package = {}}, job);
+  const Result<StampedWork> now = begin_work({.session = session, .to = place, .package = {}}, job);
   if (!now) {
     return std::unexpected(now.error());
   }

@@ -7,6 +7,7 @@
 
 #include "acquisition/session_store.h"
 #include "formats/bag_check.h"
+#include "formats/resolved_place.h"
 
 namespace dubsar {
 
@@ -44,17 +45,6 @@ Status refuse_within(const std::optional<fs::path>& folder, const fs::path& outp
 }
 
 }  // namespace
-
-fs::path resolved_place(const fs::path& path) {
-  std::error_code error;
-  // A name of which nothing exists yet would stay relative, and have no folders above it.
-  const fs::path whole = fs::absolute(path, error);
-  fs::path resolved = fs::weakly_canonical(whole, error);
-  if (error) {
-    resolved = whole.lexically_normal();
-  }
-  return resolved.has_filename() ? resolved : resolved.parent_path();
-}
 
 std::optional<fs::path> checked_folder_around(const fs::path& path) {
   return around(resolved_place(path));

@@ -9,9 +9,6 @@
 
 namespace dubsar {
 
-/// Where a path leads, whether it is there yet or not: absolute, links followed, no slash at the end.
-[[nodiscard]] std::filesystem::path resolved_place(const std::filesystem::path& path);
-
 /// The session or package that a path lies in or is: every byte of it has its checksum, and whatever else is
 /// laid there makes it fail its verification. Links are followed.
 [[nodiscard]] std::optional<std::filesystem::path> checked_folder_around(const std::filesystem::path& path);

@@ -10,7 +10,6 @@
 #include "station/command/command.h"
 #include "station/command/terminal.h"
 #include "station/packing.h"
-#include "station/place_outside.h"
 
 namespace dubsar {
 
@@ -50,9 +49,6 @@ int tell_done(const ExportArguments& arguments, const CommandContext& context) {
 }
 
 Result<int> export_session(const ExportArguments& arguments, CommandContext& context) {
-  if (const Status place = check_place_of_package(arguments.to); !place) {
-    return std::unexpected(place.error());
-  }
   PackRequest request{arguments.session, arguments.to, {}, arguments.update};
   request.package.replace = arguments.force;
   request.package.base_url = arguments.base_url;

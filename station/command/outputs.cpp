@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <utility>
 
+#include "formats/resolved_place.h"
 #include "station/place_outside.h"
 
 namespace dubsar {

@@ -190,6 +190,21 @@ TEST_F(Export, ReplacesNoPackageOfAnotherSession) {
   EXPECT_EQ(export_other("--force").status, 0);
 }
 
+// The system follows the link before it goes up; what is checked is where the package goes.
+TEST_F(Export, GoesWhereALinkAndTheFolderAboveItLead) {
+  const fs::path session = at("linked_from");
+  fs::copy(at("session"), session, fs::copy_options::recursive);
+  fs::create_directories(at("elsewhere/x"));
+  fs::create_directory_symlink(at("elsewhere/x"), session / "out");
+  const std::string to = (session / "out" / ".." / "package").string();
+  const Outcome made = run_command(
+      {"export", session.string(), "--to", to, "--without", "renderings,features,wedges,grid-ply"});
+  ASSERT_EQ(made.status, 0) << made.err;
+  EXPECT_FALSE(fs::exists(session / "package"));
+  EXPECT_TRUE(fs::exists(at("elsewhere/package/bagit.txt")));
+  EXPECT_TRUE(fs::exists(at("elsewhere/package.done")));
+}
+
 TEST_F(Export, ReplacesAPackageOfAnEarlierStateOfItsSessionWhenAsked) {
   const fs::path session = at("scanned_further");
   fs::copy(at("session"), session, fs::copy_options::recursive);
