@@ -18,7 +18,8 @@ namespace {
 /// An error is one line.
 constexpr std::size_t kMostNamed = 8;
 
-constexpr const char* kSideFiles[] = {"-wal", "-shm"};
+constexpr const char* kLogSuffix = "-wal";
+constexpr const char* kSideFiles[] = {kLogSuffix, "-shm"};
 
 /// Every commit reaches the disk before it returns; a log beside the file keeps readers and the writer apart.
 constexpr const char* kDurable = "PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL;";
@@ -100,10 +101,12 @@ Result<std::int64_t> fill_from_remains(const fs::path& folder, SqlDatabase& to) 
   return rows;
 }
 
-/// Keeps the damaged files under a free name. Copies, so that there is a database at every moment.
-Result<std::string> keep_aside(const fs::path& folder) {
+/// Keeps database and log, as far as they are there, under a free name, and returns what they are now called.
+/// Copies, so that there is a database at every moment.
+Result<std::vector<std::string>> keep_aside(const fs::path& folder) {
   const std::string name = name_aside(folder / kDatabase).filename().string();
-  for (const std::string suffix : {"", "-wal"}) {
+  std::vector<std::string> out;
+  for (const std::string suffix : {"", kLogSuffix}) {
     const fs::path from = beside(folder / kDatabase, suffix);
     if (!has_content(from)) {
       continue;
@@ -115,8 +118,9 @@ Result<std::string> keep_aside(const fs::path& folder) {
     if (Status kept = write_file_atomically(beside(folder / name, suffix), std::string_view(*bytes)); !kept) {
       return std::unexpected(kept.error());
     }
+    out.push_back(name + suffix);
   }
-  return name;
+  return out;
 }
 
 Result<SqlDatabase> rebuild(const fs::path& folder, const Error& fault, SessionOpening& opening) {
@@ -137,7 +141,7 @@ Result<SqlDatabase> rebuild(const fs::path& folder, const Error& fault, SessionO
     }
     rows = *filled;
   }
-  const Result<std::string> aside = keep_aside(folder);
+  const Result<std::vector<std::string>> aside = keep_aside(folder);
   if (!aside) {
     return std::unexpected(aside.error());
   }
@@ -155,7 +159,10 @@ Result<SqlDatabase> rebuild(const fs::path& folder, const Error& fault, SessionO
     return std::unexpected(synced.error());
   }
   note_rebuilding(fault, rows, opening);
-  opening.notes.push_back("kept the damaged database as " + *aside);
+  for (const std::string& name : *aside) {
+    opening.notes.push_back(
+        (name.ends_with(kLogSuffix) ? "kept the damaged log as " : "kept the damaged database as ") + name);
+  }
   return SqlDatabase::open(folder / kDatabase, SqlDatabase::Mode::kCreate);
 }
 
@@ -171,11 +178,11 @@ Status tell_lost_commits(const fs::path& folder, SessionOpening& opening, bool k
   if (!keep) {
     return {};
   }
-  const Result<std::string> aside = keep_aside(folder);
+  const Result<std::vector<std::string>> aside = keep_aside(folder);
   if (!aside) {
     return std::unexpected(aside.error());
   }
-  opening.notes.push_back("kept the damaged log as " + *aside + "-wal");
+  opening.notes.push_back("kept the damaged log as " + aside->back());
   return {};
 }
 

@@ -15,13 +15,16 @@
 #include "acquisition/session_log.h"
 #include "acquisition/session_store.h"
 #include "tests/acquisition/session_damage_support.h"
+#include "tests/support/in_child.h"
 #include "tests/support/temporary_folder.h"
 
 namespace dubsar {
 namespace {
 
 namespace fs = std::filesystem;
+using test::be_bound_by_rights;
 using test::flip_byte;
+using test::in_child;
 using test::SessionDamageTest;
 using test::small_grid;
 using testing::HasSubstr;
@@ -103,6 +106,22 @@ TEST_F(SessionDamageTest, AnUnreadableDatabaseIsRebuiltFromBackupAndGrids) {
   expect_content(again);
 }
 
+TEST_F(SessionDamageTest, WhatIsSaidToBeKeptAsideIsThere) {
+  fs::remove(folder_ / "session.sqlite");
+  {
+    const SessionStore store = SessionStore::open(folder_).value();
+    EXPECT_THAT(store.opening().damage, testing::SizeIs(1));
+    expect_content(store);
+    EXPECT_THAT(store.opening().notes, testing::Not(testing::Contains(HasSubstr("kept the damaged"))))
+        << "there was none to keep";
+  }
+  std::ofstream(folder_ / "session.sqlite") << "no database";
+  const SessionStore store = SessionStore::open(folder_).value();
+  EXPECT_THAT(store.opening().notes,
+              testing::Contains("kept the damaged database as session.sqlite.damaged-1"));
+  EXPECT_TRUE(fs::exists(folder_ / "session.sqlite.damaged-1"));
+}
+
 TEST_F(SessionDamageTest, AnEmptiedDatabaseIsToldAndReadFromItsBackup) {
   std::ofstream(folder_ / "session.sqlite", std::ios::trunc);
   for (const auto access : {kReadOnly, SessionStore::Access::kReadWrite}) {
@@ -120,18 +139,6 @@ TEST_F(SessionDamageTest, WithoutDatabaseAndBackupTheGridsAreTakenIn) {
   EXPECT_FALSE(store.opening().damage.empty());
   ASSERT_EQ(store.scans().value().size(), 4U);
   EXPECT_EQ(store.load_grid(3).value().z, small_grid(3).z);
-}
-
-/// Runs body in a child process and returns its exit status.
-template <class Body>
-int in_child(const Body& body) {
-  const pid_t child = ::fork();
-  if (child == 0) {
-    ::_exit(body());
-  }
-  int status = 0;
-  ::waitpid(child, &status, 0);
-  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
 
 TEST_F(SessionDamageTest, AFullDiskLosesNothingThatWasStored) {
@@ -177,8 +184,7 @@ TEST_F(SessionDamageTest, AWriteProtectedFolderIsToldAndCanBeRead) {
       fs::permissions(entry.path(), entry.is_directory() ? fs::perms(0555) : fs::perms(0444));
     }
     fs::permissions(temporary_.path(), fs::perms(0555));
-    // Root may write anywhere; nobody may not.
-    if (::getuid() == 0 && ::setuid(65534) != 0) {
+    if (!be_bound_by_rights()) {
       return 9;
     }
     const auto writer = SessionStore::open(folder_);
@@ -214,7 +220,7 @@ TEST_F(SessionDamageTest, ALogOnAWriteProtectedDiskIsPlayedWhereThereIsRoom) {
   const int status = in_child([&] {
     fs::permissions(temporary_.path(), fs::perms(0555));
     fs::permissions(folder, fs::perms(0555));
-    if (::getuid() == 0 && ::setuid(65534) != 0) {
+    if (!be_bound_by_rights()) {
       return 9;
     }
     ::signal(SIGXFSZ, SIG_IGN);
