@@ -8,6 +8,7 @@
 
 #include "acquisition/session_impl.h"
 #include "acquisition/session_links.h"
+#include "acquisition/session_presence.h"
 #include "acquisition/session_query.h"
 #include "formats/atomic_file.h"
 #include "formats/grid_file.h"
@@ -126,9 +127,8 @@ Result<SessionStore> SessionStore::open_or_create(const fs::path& folder) {
 }
 
 Result<SessionStore> SessionStore::open(const fs::path& folder, Access access) {
-  if (!is_session(folder)) {
-    return fail(ErrorKind::kUsage, "no session there", folder.string(),
-                "name the folder that a scan was stored in");
+  if (Status there = check_is_session(folder); !there) {
+    return std::unexpected(there.error());
   }
   if (access == Access::kReadWrite) {
     return open_or_create(folder);

@@ -68,9 +68,11 @@ std::optional<Error> fault_of_file(const fs::path& folder, const std::string& na
   const std::string mend = name.ends_with(".grid") ? from_a_copy(folder, ") or scan again")
                                                    : "dubsar verify --repair " + word_of(folder) +
                                                          (in_a_folder ? " makes it anew" : " mends it");
-  std::error_code ignored;
-  if (!fs::exists(folder / name, ignored)) {
-    return Error{ErrorKind::kBadInput, "missing", name, mend};
+  std::error_code unknown;
+  if (!fs::exists(folder / name, unknown)) {
+    return unknown ? Error{ErrorKind::kStorage, "cannot read: " + unknown.message(), name,
+                           "look at its rights and at the disk"}
+                   : Error{ErrorKind::kBadInput, "missing", name, mend};
   }
   const Result<FileSum> sum = session::sum_of_file(folder / name, job);
   if (!sum) {

@@ -9,7 +9,8 @@
 
 #include "formats/atomic_file.h"
 #include "formats/bag_text.h"
-#include "formats/sha2.h"
+#include "formats/digest.h"
+#include "formats/files_below.h"
 
 namespace dubsar {
 
@@ -24,12 +25,9 @@ constexpr const char* kMendExtra = "see what it is, and take it out of data/";
 struct Manifest {
   std::string name;
   std::string algorithm;
+  Digest digest;
   std::vector<BagManifestLine> lines;
 };
-
-bool is_known(const std::string& algorithm) {
-  return algorithm == "sha256" || algorithm == "sha512";
-}
 
 bool is_payload(const std::string& name) {
   return name.starts_with("data/");
@@ -48,18 +46,20 @@ class Check {
   Check(const fs::path& folder, JobContext& job) : folder_(folder), job_(job) {}
 
   Result<BagReport> run() {
-    list_files();
+    list_files("");
     read_declaration();
     std::error_code ignored;
-    if (!fs::is_directory(folder_ / "data", ignored)) {
+    if (!is_hidden("data") && !fs::is_directory(folder_ / "data", ignored)) {
       say("data", "missing: a bag has its payload there");
     }
     const std::vector<Manifest> payload = manifests("manifest-");
     const std::vector<Manifest> tags = manifests("tagmanifest-");
-    const bool lists = std::ranges::any_of(
-        files_, [](const std::string& name) { return is_known(algorithm_of(name, "manifest-")); });
-    if (!lists) {
-      say("manifest-sha512.txt", "missing: without a manifest of SHA-256 or SHA-512 nothing can be checked");
+    const bool lists = std::ranges::any_of(files_, [](const std::string& name) {
+      return digest_named(algorithm_of(name, "manifest-")).has_value();
+    });
+    if (!lists && !is_hidden("manifest-sha512.txt")) {
+      say("manifest-sha512.txt",
+          "missing: without a manifest of SHA-2, SHA-1 or MD5 nothing can be checked here");
     }
     for (const Manifest& manifest : payload) {
       report_.algorithms.push_back(manifest.algorithm);
@@ -73,7 +73,7 @@ class Check {
   }
 
  private:
-  void say(const std::string& where, const std::string& what, const char* mend = kMend) {
+  void say(const std::string& where, const std::string& what, const std::string& mend = kMend) {
     report_.damaged.push_back({ErrorKind::kBadInput, what, where, mend});
   }
 
@@ -93,30 +93,48 @@ class Check {
     report_.version = std::to_string(declaration_.major) + "." + std::to_string(declaration_.minor);
   }
 
-  void list_files() {
+  /// All below a folder of the bag; its name ends with '/', the bag's own is empty.
+  void list_files(const std::string& below) {
+    if (const Status readable = check_folder_can_be_read(folder_ / below); !readable) {
+      cannot_list(below, readable.error().what, readable.error().mend);
+      return;
+    }
     std::error_code error;
     std::error_code ignored;
-    fs::recursive_directory_iterator it(folder_, fs::directory_options::skip_permission_denied, error);
-    for (const fs::recursive_directory_iterator end; !error && it != end; it.increment(error)) {
-      const std::string name = it->path().lexically_relative(folder_).generic_string();
+    fs::directory_iterator it(folder_ / below, error);
+    for (const fs::directory_iterator end; !error && it != end; it.increment(error)) {
+      const std::string name = below + it->path().filename().string();
       if (it->is_symlink(ignored)) {
         say(name, "a link: a bag holds its files itself");
         missing_.insert(name);
       } else if (it->is_regular_file(ignored)) {
         files_.insert(name);
-      } else if (!it->is_directory(ignored)) {
+      } else if (it->is_directory(ignored)) {
+        list_files(name + "/");
+      } else {
         say(name, "neither a file nor a folder");
       }
     }
     if (error) {
-      say(folder_.string(), "not all of its files can be listed: " + error.message());
+      cannot_list(below, "cannot read the folder: " + error.message(), "look at its rights and at the disk");
     }
+  }
+
+  void cannot_list(const std::string& below, const std::string& what, const std::string& mend) {
+    say(below.empty() ? folder_.string() : below, what, mend);
+    hidden_.push_back(below);
+  }
+
+  /// Whether it lies where nobody can tell what is there: that was said once, of the folder.
+  [[nodiscard]] bool is_hidden(const std::string& name) const {
+    return std::ranges::any_of(hidden_, [&](const std::string& below) { return name.starts_with(below); });
   }
 
   std::optional<std::string> text_of(const std::string& name) {
     if (!files_.contains(name)) {
-      missing_.insert(name);
-      say(name, "missing");
+      if (missing_.insert(name).second && !is_hidden(name)) {
+        say(name, "missing");
+      }
       return std::nullopt;
     }
     Result<std::string> text = read_whole_file(folder_ / name, kMaxBagTextBytes);
@@ -134,7 +152,8 @@ class Check {
       if (algorithm.empty()) {
         continue;
       }
-      if (!is_known(algorithm)) {
+      const std::optional<Digest> digest = digest_named(algorithm);
+      if (!digest) {
         report_.unchecked.push_back(name);
         continue;
       }
@@ -147,7 +166,7 @@ class Check {
         report_.damaged.push_back(lines.error());
         continue;
       }
-      out.push_back({name, algorithm, std::move(*lines)});
+      out.push_back({name, algorithm, *digest, std::move(*lines)});
     }
     return out;
   }
@@ -228,15 +247,12 @@ class Check {
         ++there.files;
       }
     }
-    if (*told && **told != there) {
+    // What nobody can look at was not counted.
+    if (hidden_.empty() && *told && **told != there) {
       say("bag-info.txt", "Payload-Oxum says " + std::to_string((*told)->bytes) + " bytes in " +
                               std::to_string((*told)->files) + " files; there are " +
                               std::to_string(there.bytes) + " in " + std::to_string(there.files));
     }
-  }
-
-  Result<std::string> sum_of(const std::string& algorithm, const fs::path& path) {
-    return algorithm == "sha512" ? sha512_of_file(path, job_) : sha256_of_file(path, job_);
   }
 
   Status check_sums(const std::vector<Manifest>& payload, const std::vector<Manifest>& tags) {
@@ -271,12 +287,12 @@ class Check {
 
   bool fits_sum(const Manifest& manifest, const BagManifestLine& line) {
     if (!files_.contains(line.path)) {
-      if (missing_.insert(line.path).second) {
+      if (missing_.insert(line.path).second && !is_hidden(line.path)) {
         say(line.path, to_fetch_.contains(line.path) ? "not here: fetch.txt says where it is" : "missing");
       }
       return false;
     }
-    const Result<std::string> sum = sum_of(manifest.algorithm, folder_ / line.path);
+    const Result<std::string> sum = digest_of_file(manifest.digest, folder_ / line.path, job_);
     if (!sum) {
       say(line.path, sum.error().what);
       return false;
@@ -292,9 +308,10 @@ class Check {
   JobContext& job_;
   BagDeclaration declaration_{.major = 1, .minor = 0};
   BagReport report_;
-  std::set<std::string> files_;     ///< regular files, relative
-  std::set<std::string> to_fetch_;  ///< of fetch.txt
-  std::set<std::string> missing_;   ///< told already
+  std::set<std::string> files_;      ///< regular files, relative
+  std::set<std::string> to_fetch_;   ///< of fetch.txt
+  std::set<std::string> missing_;    ///< told already
+  std::vector<std::string> hidden_;  ///< folders that cannot be read, each with '/' at its end
 };
 
 }  // namespace

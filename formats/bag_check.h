@@ -27,8 +27,9 @@ struct BagReport {
 [[nodiscard]] bool is_bag(const std::filesystem::path& folder);
 
 /// Whether a bag is complete and valid (RFC 8493, section 3): every payload file in every manifest and the
-/// other way round, every checksum (SHA-256 and SHA-512), the tag manifests, Payload-Oxum, and nothing that
-/// leads out of the bag. Reads every byte; changes nothing. Errors: kCancelled; all else is in the report.
+/// other way round, every checksum that digest_named() knows, the tag manifests, Payload-Oxum, and nothing
+/// that leads out of the bag. Reads every byte; changes nothing. Errors: kCancelled; all else is in the
+/// report.
 [[nodiscard]] Result<BagReport> check_bag(const std::filesystem::path& folder, JobContext& job);
 
 }  // namespace dubsar

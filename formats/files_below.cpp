@@ -2,7 +2,11 @@
 // Copyright The Dubsar developers
 #include "formats/files_below.h"
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <algorithm>
+#include <cerrno>
 #include <system_error>
 
 namespace dubsar {
@@ -35,6 +39,20 @@ Result<std::vector<fs::path>> files_below(const fs::path& folder,
   }
   std::ranges::sort(files);
   return files;
+}
+
+Status check_folder_can_be_read(const fs::path& folder) {
+  std::error_code error;
+  const fs::directory_iterator listed(folder, error);
+  if (error == std::errc::no_such_file_or_directory || error == std::errc::not_a_directory) {
+    return {};
+  }
+  if (!error && ::faccessat(AT_FDCWD, folder.c_str(), X_OK, AT_EACCESS) != 0) {
+    error.assign(errno, std::generic_category());
+  }
+  return error ? Status(fail(ErrorKind::kStorage, "cannot read the folder: " + error.message(),
+                             folder.string(), "look at its rights and at the disk"))
+               : Status();
 }
 
 }  // namespace dubsar

@@ -17,4 +17,8 @@ namespace dubsar {
     const std::filesystem::path& folder,
     const std::function<bool(const std::filesystem::path&)>& passes_over = {});
 
+/// Whether what lies in a folder can be told; so it is of a path that leads to nothing or to no folder.
+/// Errors: kStorage where it may not be listed or not be entered, or one above it, or where the disk refuses.
+[[nodiscard]] Status check_folder_can_be_read(const std::filesystem::path& folder);
+
 }  // namespace dubsar

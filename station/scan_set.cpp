@@ -10,6 +10,7 @@
 #include "acquisition/range_source.h"
 #include "core/log.h"
 #include "drivers/loader.h"
+#include "formats/files_below.h"
 #include "formats/pins_json.h"
 #include "formats/rig_json.h"
 #include "station/drives.h"
@@ -184,6 +185,9 @@ Result<ScanSet> load_scan_set(const fs::path& path, const ScanSetOptions& option
 Result<ScanSet> visit_scan_set(const fs::path& path, const ScanSetOptions& options, const ScanVisitor& visit,
                                JobContext& job) {
   ScanSet set;
+  if (const Status readable = check_folder_can_be_read(path); !readable) {
+    return std::unexpected(readable.error());
+  }
   std::error_code ignored;
   if (!fs::exists(path, ignored)) {
     return fail(ErrorKind::kUsage, "there is nothing here", path.string(),

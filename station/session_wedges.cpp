@@ -30,7 +30,7 @@ std::string digest_of(const Mesh& mesh) {
     return std::string_view(reinterpret_cast<const char*>(values.data()),
                             values.size() * sizeof(values.front()));
   };
-  Sha2Sum sum(Sha2::k256);
+  DigestSum sum(Digest::kSha256);
   sum.add(bytes(mesh.positions));
   sum.add(bytes(mesh.faces));
   return sum.hex();

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include "acquisition/session_presence.h"
 #include "acquisition/sign_off_log.h"
 #include "station/plan_again.h"
 
@@ -62,9 +63,8 @@ std::optional<Error> falls_short(const ScanSet& set, const Results& results, con
 }  // namespace
 
 Result<Signing> sign_verdict(const std::filesystem::path& session, SignOff wanted, JobContext& job) {
-  if (!SessionStore::is_session(session)) {
-    return fail(ErrorKind::kUsage, "no session there", session.string(),
-                "name the folder that a scan was stored in");
+  if (const Status there = check_is_session(session); !there) {
+    return std::unexpected(there.error());
   }
   Result<ScanSet> set = load_scan_set(session, {}, job);
   if (!set) {

@@ -122,6 +122,34 @@ TEST_F(SessionDamageTest, WhatIsSaidToBeKeptAsideIsThere) {
   EXPECT_TRUE(fs::exists(folder_ / "session.sqlite.damaged-1"));
 }
 
+TEST_F(SessionDamageTest, AFolderThatMayNotBeReadIsNotCalledMissing) {
+  { SessionStore store = SessionStore::open(folder_).value(); }
+  fs::permissions(temporary_.path(), fs::perms(0755));
+  const auto kind_of_error = [&](fs::perms perms, const fs::path& closed) {
+    fs::permissions(closed, perms);
+    const int status = in_child([&] {
+      const auto store = be_bound_by_rights() ? SessionStore::open(folder_, kReadOnly)
+                                              : fail(ErrorKind::kInternal, "root stays root");
+      if (!store) {
+        return store.error().kind == ErrorKind::kStorage &&
+                       store.error().what.find("Permission denied") != std::string::npos
+                   ? 0
+                   : 2;
+      }
+      const auto report = store->verify(job_);
+      const bool told = report && std::ranges::any_of(report->damaged, [](const Error& damage) {
+                          return damage.where == "grids/000.grid" && damage.what != "missing";
+                        });
+      return told ? 1 : 3;
+    });
+    fs::permissions(closed, fs::perms(0755));
+    return status;
+  };
+  EXPECT_EQ(kind_of_error(fs::perms(0600), folder_), 0) << "it may not be entered";
+  EXPECT_EQ(kind_of_error(fs::perms(0700), folder_), 0) << "nor listed";
+  EXPECT_EQ(kind_of_error(fs::perms(0700), folder_ / "grids"), 1);
+}
+
 TEST_F(SessionDamageTest, AnEmptiedDatabaseIsToldAndReadFromItsBackup) {
   std::ofstream(folder_ / "session.sqlite", std::ios::trunc);
   for (const auto access : {kReadOnly, SessionStore::Access::kReadWrite}) {

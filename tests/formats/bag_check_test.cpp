@@ -9,6 +9,7 @@
 
 #include "formats/bag_text.h"
 #include "formats/sha2.h"
+#include "tests/support/in_child.h"
 #include "tests/support/temporary_folder.h"
 
 namespace dubsar {
@@ -177,12 +178,47 @@ TEST_F(BagTest, OldBagsAndUnknownSumsAreUnderstood) {
   put("bagit.txt", "BagIt-Version: 0.97\r\nTag-File-Character-Encoding: UTF-8\r\n");
   put("manifest-sha512.txt", sum512("data/master.ply") + " *data/master.ply\r\n" +
                                  sum512("data/rückseite 100%.png") + " *./data/rückseite 100%.png\r\n");
-  put("manifest-md5.txt", line("data/master.ply", std::string(32, '0')));
+  put("manifest-crc32.txt", line("data/master.ply", std::string(8, '0')));
   const BagReport report = check();
   EXPECT_TRUE(report.ok()) << report.damaged.front().line();
-  EXPECT_THAT(report.unchecked, ElementsAre("manifest-md5.txt"));
+  EXPECT_THAT(report.unchecked, ElementsAre("manifest-crc32.txt"));
   fs::remove(bag() / "manifest-sha512.txt");
-  EXPECT_THAT(faults(), Contains(HasSubstr("without a manifest of SHA-256 or SHA-512")));
+  EXPECT_THAT(faults(), Contains(HasSubstr("without a manifest of SHA-2, SHA-1 or MD5")));
+}
+
+/// RFC 8493, section 3: of a valid bag every checksum of every manifest is verified.
+TEST_F(BagTest, OlderSumsCountBesideBetterOnes) {
+  const std::string picture = line("data/rückseite 100%25.png", digest_hex(Digest::kMd5, "a picture"));
+  put("manifest-md5.txt", line("data/master.ply", digest_hex(Digest::kMd5, "ply and so on\n")) + picture);
+  EXPECT_THAT(faults(), IsEmpty());
+  EXPECT_THAT(check().algorithms, Contains("md5"));
+  put("manifest-md5.txt", line("data/master.ply", std::string(32, '0')) + picture);
+  EXPECT_THAT(faults(), ElementsAre("data/master.ply: not the bytes that manifest-md5.txt says"));
+  put("manifest-sha1.txt", line("data/master.ply", digest_hex(Digest::kSha1, "ply and so on\n")));
+  EXPECT_THAT(faults(), Contains("data/rückseite 100%.png: not every manifest lists it"));
+}
+
+/// Another copy of the bag would mend nothing.
+TEST_F(BagTest, AFolderThatMayNotBeReadIsToldOnceAndItsFilesAreNotCalledMissing) {
+  fs::permissions(temporary_.path(), fs::perms(0755));
+  const auto told_in_child = [&](const fs::path& closed, const std::string& as) {
+    fs::permissions(closed, fs::perms(0700));
+    const int status = test::in_child([&] {
+      if (!test::be_bound_by_rights()) {
+        return 9;
+      }
+      const std::vector<Error> damaged = check().damaged;
+      return damaged.size() == 1 && damaged.front().where == as &&
+                     damaged.front().what == "cannot read the folder: Permission denied" &&
+                     damaged.front().mend.find("rights") != std::string::npos
+                 ? 0
+                 : 1;
+    });
+    fs::permissions(closed, fs::perms(0755));
+    return status;
+  };
+  EXPECT_EQ(told_in_child(bag() / "data", "data/"), 0);
+  EXPECT_EQ(told_in_child(bag(), bag().string()), 0);
 }
 
 TEST_F(BagTest, WhatIsStillToBeFetchedIsMissing) {

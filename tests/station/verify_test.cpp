@@ -179,6 +179,21 @@ TEST_F(Verify, TablesAreRebuiltAndTheDamagedOnesKept) {
   EXPECT_EQ(run_command({"session", "list", session_.string(), "--json"}).json()["scans"], events["scans"]);
 }
 
+TEST_F(Verify, ABagIsNotCalledValidByAManifestThatNobodyRead) {
+  const std::string bag = (folder_->path() / "bag").string();
+  ASSERT_EQ(run_command({"export", scanned().string(), "--to", bag, "--without",
+                         "renderings,features,wedges,grid-ply"})
+                .status,
+            0);
+  EXPECT_THAT(run_command({"verify", bag}).out, HasSubstr("0 faults: the bag is complete and valid\n"));
+  std::ofstream(bag + "/manifest-crc32.txt") << "00000000  data/README.txt\n";
+  const Outcome outcome = run_command({"verify", bag});
+  EXPECT_THAT(outcome.out, HasSubstr("cannot be checked here: manifest-crc32.txt\n"));
+  EXPECT_THAT(outcome.out, HasSubstr("the bag is complete, and valid by what can be checked here\n"));
+  std::ofstream(bag + "/manifest-md5.txt") << "00000000000000000000000000000000  data/README.txt\n";
+  EXPECT_EQ(run_command({"verify", bag}).status, 1);
+}
+
 TEST_F(Verify, WhatCannotBeVerifiedIsToldInOneLine) {
   const fs::path other = folder_->path() / "other";
   fs::create_directories(other);

@@ -167,6 +167,7 @@ constexpr EnginePhrase kStored[] = {
     {"what lies there is the package of another session, so it is not replaced",
      "was dort liegt, ist das Paket einer anderen Sitzung, also wird es nicht ersetzt"},
     {"choose another folder, or remove it yourself", "einen anderen Ordner wählen, oder es selbst entfernen"},
+    {"look at its rights and at the disk", "seine Rechte und den Datenträger ansehen"},
     {"look at its rights", "seine Rechte ansehen"},
     {"cannot remove the old stamp: ", "der alte Stempel lässt sich nicht entfernen: "},
     {"check the folder and its rights", "den Ordner und seine Rechte prüfen"},

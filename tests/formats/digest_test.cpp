@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright The Dubsar developers
-#include "formats/sha2.h"
+#include "formats/digest.h"
 
 #include <gtest/gtest.h>
 
 #include <fstream>
 
+#include "formats/sha2.h"
 #include "tests/support/temporary_folder.h"
 
 namespace dubsar {
@@ -37,6 +38,22 @@ TEST(Sha512, ExamplesOfTheStandard) {
             "eb009c5c2c49aa2e4eadb217ad8cc09b");
 }
 
+// RFC 1321, A.5, and FIPS 180-4's examples.
+TEST(Digest, WhatTheManifestsOfOthersGoBy) {
+  const auto of_abc = [](const char* name) {
+    const auto digest = digest_named(name);
+    return digest ? digest_hex(*digest, "abc") : "not done by this system";
+  };
+  EXPECT_EQ(of_abc("md5"), "900150983cd24fb0d6963f7d28e17f72");
+  EXPECT_EQ(of_abc("sha1"), "a9993e364706816aba3e25717850c26c9cd0d89d");
+  EXPECT_EQ(of_abc("sha224"), "23097d223405d8228642a477bda255b32aadbce4bda0b3f7e36c9da7");
+  EXPECT_EQ(
+      of_abc("sha384"),
+      "cb00753f45a35e8bb5a03d699ac65007272c32ab0eded1631a8b605a43ff5bed8086072ba1e7cc2358baeca134c825a7");
+  EXPECT_EQ(of_abc("sha256"), sha256_hex("abc"));
+  EXPECT_FALSE(digest_named("crc32"));
+}
+
 TEST(Sha2, PiecesOfAnyLengthGiveTheSame) {
   std::string text;
   for (int i = 0; i < 400; ++i) {
@@ -44,7 +61,7 @@ TEST(Sha2, PiecesOfAnyLengthGiveTheSame) {
   }
   const std::string whole = sha512_hex(text);
   for (std::size_t cut = 0; cut <= text.size(); ++cut) {
-    Sha2Sum sum(Sha2::k512);
+    DigestSum sum(Digest::kSha512);
     sum.add(std::string_view(text).substr(0, cut));
     sum.add(std::string_view(text).substr(cut));
     EXPECT_EQ(sum.hex(), whole) << cut;
