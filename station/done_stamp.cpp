@@ -111,11 +111,15 @@ Result<StampedFile> stamped_file(const fs::path& path, std::string name, const J
 }
 
 Result<StampedWork> StampedWork::begin(fs::path stamp, std::string verb, std::string parameters,
-                                       const std::vector<fs::path>& inputs, const JobContext& job) {
+                                       const std::vector<fs::path>& inputs, const JobContext& job,
+                                       bool can_do_without_some) {
   DoneStamp made{DUBSAR_VERSION, std::move(verb), std::move(parameters), {}, {}};
   for (const fs::path& input : inputs) {
     // The folder that a tablet lies in may be mounted elsewhere on another machine: its name does not count.
     Result<StampedFile> read = stamped_file(input, input.filename().string(), job);
+    if (!read && can_do_without_some && read.error().kind != ErrorKind::kCancelled) {
+      read = StampedFile{input.filename().string(), 0, {}};
+    }
     if (!read) {
       return std::unexpected(read.error());
     }

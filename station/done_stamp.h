@@ -18,7 +18,8 @@ namespace dubsar {
 struct StampedFile {
   std::string name;  ///< as given for inputs; relative to the stamp's folder for outputs
   std::uint64_t bytes = 0;
-  std::string xxh128;  ///< 32 hexadecimal digits, as `xxhsum -H2` prints them
+  std::string
+      xxh128;  ///< 32 hexadecimal digits, as `xxhsum -H2` prints them; empty of one that is unreadable
   bool operator==(const StampedFile&) const = default;
 };
 
@@ -49,12 +50,13 @@ struct DoneStamp {
 /// old stamp goes before the first output may change, the new one comes, in one step, when all are on disk.
 class StampedWork {
  public:
-  /// Reads the inputs. `stamp` is the stamp's own file, beside the outputs. Errors: kBadInput, kStorage,
-  /// kCancelled.
+  /// Reads the inputs. `stamp` is the stamp's own file, beside the outputs. Where the work can do without
+  /// some of them, those that cannot be read are noted as such. Errors: kCancelled; kBadInput and kStorage of
+  /// an input that cannot be read.
   [[nodiscard]] static Result<StampedWork> begin(std::filesystem::path stamp, std::string verb,
                                                  std::string parameters,
                                                  const std::vector<std::filesystem::path>& inputs,
-                                                 const JobContext& job);
+                                                 const JobContext& job, bool can_do_without_some = false);
 
   /// Whether the stamp counts. A stamp that is not there, is damaged or belongs to other work is none.
   /// kCancelled is its only error.

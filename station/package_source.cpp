@@ -47,6 +47,13 @@ Status PackageSource::take_kept(JobContext& job) {
   if (!whole) {
     return std::unexpected(whole.error());
   }
+  for (const Error& damage : whole->damaged) {
+    // Grids and the record are named where they are read again.
+    if (!damage.where.ends_with(".grid") && damage.where.find('/') != std::string::npos) {
+      log_warning(damage.line());
+    }
+  }
+  whole_ = whole->whole;
   Result<std::vector<ScanPose>> poses = standing_poses(store);
   if (!poses) {
     return std::unexpected(poses.error());

@@ -48,7 +48,9 @@ Result<StampedWork> begin_work(const PackRequest& request, const JobContext& job
   if (!inputs) {
     return std::unexpected(inputs.error());
   }
-  return StampedWork::begin(stamp_beside(request.to), "export", parameters_of(request.package), *inputs, job);
+  // What cannot be read is damage like any other: it is told, and the rest packed.
+  return StampedWork::begin(stamp_beside(request.to), "export", parameters_of(request.package), *inputs, job,
+                            true);
 }
 
 /// The stamp as it lies there; empty where none does.
