@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <iterator>
 
+#include "core/scan_list.h"
 #include "station/engine_impl.h"
-#include "station/scan_list.h"
 
 namespace dubsar {
 

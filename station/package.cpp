@@ -8,6 +8,7 @@
 #include <set>
 #include <utility>
 
+#include "acquisition/session_presence.h"
 #include "analysis/text_frame.h"
 #include "analysis/wedge_features.h"
 #include "archive/staged_folder.h"
@@ -109,8 +110,10 @@ Status add_all(PackageContent& content, StageTimes& timings) {
   };
   const std::vector<Step> steps = {
       {"scans", add_scans, true},
+      {"unfinished scans", add_unfinished, true},
       {"records", add_records, true},
       {"model", add_model, true},
+      {"kept files", add_kept, true},
       {"wedges", add_wedges, content.has(PackagePart::kWedges)},
       {"features", add_features, content.has(PackagePart::kFeatures)},
       {"renderings", add_renderings, content.has(PackagePart::kRenderings)},
@@ -175,9 +178,8 @@ const std::vector<PackagePart>& all_package_parts() {
 Result<Package> write_package(const fs::path& session, const fs::path& to, const PackageOptions& options,
                               JobContext& job) {
   std::error_code ignored;
-  if (!SessionStore::is_session(session)) {
-    return fail(ErrorKind::kUsage, "no session there", session.string(),
-                "name the folder that a scan was stored in");
+  if (const Status there = check_is_session(session); !there) {
+    return std::unexpected(there.error());
   }
   if (options.replace) {
     if (const Status ours = check_is_package(to); !ours) {

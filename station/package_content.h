@@ -88,8 +88,10 @@ struct PackageContent {
 // The parts, in the order of the work. Each lists what it wrote. Errors: kStorage, kCancelled, and those of
 // the stages.
 [[nodiscard]] Status add_scans(PackageContent& content);
+[[nodiscard]] Status add_unfinished(PackageContent& content);
 [[nodiscard]] Status add_records(PackageContent& content);
 [[nodiscard]] Status add_model(PackageContent& content);
+[[nodiscard]] Status add_kept(PackageContent& content);
 [[nodiscard]] Status add_wedges(PackageContent& content);
 [[nodiscard]] Status add_features(PackageContent& content);
 [[nodiscard]] Status add_renderings(PackageContent& content);

@@ -161,8 +161,9 @@ void add_steps(const PackageContent& content, const std::vector<std::string>& pa
   add_step(payload, "report/", {"report", "Pages for people", std::move(told), {}, {}, {}}, input);
   // What the session wrote down while it was scanned, and what says what lies here.
   ProvenanceStep packing{"packing", "Records of the session, and lists", std::move(grids), {}, {}, {}};
-  packing.made = files_of(payload, "session/");
-  std::ranges::copy(files_of(payload, "iiif/annotations/"), std::back_inserter(packing.made));
+  for (const char* folder : {"session/", "scans/unfinished/", "kept/", "iiif/annotations/"}) {
+    std::ranges::copy(files_of(payload, folder), std::back_inserter(packing.made));
+  }
   packing.made.emplace_back("scans/scans.json");
   packing.made.emplace_back("README.txt");
   if (!content.pictures.empty()) {

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <iterator>
 #include <optional>
 
 #include "acquisition/told_device.h"
@@ -17,6 +18,7 @@
 #include "formats/json_text.h"
 #include "formats/poses_json.h"
 #include "formats/red_map_json.h"
+#include "station/lost_scans.h"
 #include "station/package_content.h"
 #include "station/packed_names.h"
 
@@ -54,7 +56,34 @@ Status add_scan(const PackageContent& content, const StoredScan& scan) {
               : std::unexpected(grid.error());
 }
 
-OrderedJson scan_json(const PackageContent& content, const StoredScan& scan) {
+/// The poses with the files of their scans: original names may be missing, or those of two scans. A scan that
+/// is lost keeps the place that it had.
+Result<std::vector<ScanPose>> packed_poses(const PackageContent& content,
+                                           const std::vector<StoredScan>& scans) {
+  std::vector<ScanPose> poses = content.results().poses;
+  const Result<std::vector<ScanPose>> stored = content.store.poses();
+  if (!stored) {
+    return std::unexpected(stored.error());
+  }
+  const std::vector<int> lost = lost_scans(scans);
+  std::ranges::copy_if(*stored, std::back_inserter(poses),
+                       [&](const ScanPose& pose) { return std::ranges::find(lost, pose.id) != lost.end(); });
+  std::ranges::sort(poses, {}, &ScanPose::id);
+  for (ScanPose& pose : poses) {
+    const auto scan = std::ranges::find(scans, pose.id, &StoredScan::id);
+    if (scan == scans.end() || scan->damaged) {
+      continue;
+    }
+    pose.packed_as = {own_name(*scan)};
+    if (content.has(PackagePart::kGridPly)) {
+      pose.packed_as.push_back(ply_name(*scan));
+    }
+  }
+  return poses;
+}
+
+OrderedJson scan_json(const PackageContent& content, const StoredScan& scan,
+                      const std::vector<ScanPose>& poses) {
   OrderedJson json{{"id", scan.id}};
   if (!scan.damaged) {
     json["grid"] = own_name(scan);
@@ -77,9 +106,8 @@ OrderedJson scan_json(const PackageContent& content, const StoredScan& scan) {
     json["remark"] = scan.remark;
   }
   json["damaged"] = scan.damaged;
-  const auto pose = std::ranges::find(content.results().poses, scan.id, &ScanPose::id);
-  json["status"] =
-      scan.dropped || pose == content.results().poses.end() ? "not placed" : to_string(pose->status);
+  const auto pose = std::ranges::find(poses, scan.id, &ScanPose::id);
+  json["status"] = scan.dropped || pose == poses.end() ? "not placed" : to_string(pose->status);
   return json;
 }
 
@@ -95,26 +123,6 @@ std::string told(const std::string& name, std::string text) {
     }
   }
   return text_of(json);
-}
-
-/// The poses with the files of their scans: original names may be missing, or those of two scans.
-Result<std::vector<ScanPose>> packed_poses(const PackageContent& content) {
-  const Result<std::vector<StoredScan>> scans = content.store.scans();
-  if (!scans) {
-    return std::unexpected(scans.error());
-  }
-  std::vector<ScanPose> poses = content.results().poses;
-  for (ScanPose& pose : poses) {
-    const auto scan = std::ranges::find(*scans, pose.id, &StoredScan::id);
-    if (scan == scans->end() || scan->damaged) {
-      continue;
-    }
-    pose.packed_as = {own_name(*scan)};
-    if (content.has(PackagePart::kGridPly)) {
-      pose.packed_as.push_back(ply_name(*scan));
-    }
-  }
-  return poses;
 }
 
 Result<std::string> events_text(const SessionStore& store) {
@@ -172,6 +180,10 @@ Status add_scans(PackageContent& content) {
         "it, is not.",
         damage.what));
   }
+  const Result<std::vector<ScanPose>> poses = packed_poses(content, *scans);
+  if (!poses) {
+    return std::unexpected(poses.error());
+  }
   OrderedJson list = OrderedJson::array();
   for (std::size_t i = 0; i < scans->size(); ++i) {
     if (failed[i]) {
@@ -179,10 +191,13 @@ Status add_scans(PackageContent& content) {
     }
     const StoredScan& scan = (*scans)[i];
     if (scan.damaged) {
-      content.lacking.push_back(
-          fmt::format("Scan {} is damaged in the session: its samples are not here.", scan.id));
+      content.lacking.push_back(fmt::format("Scan {} is damaged in the session: its samples are not here.{}",
+                                            scan.id,
+                                            std::ranges::find(*poses, scan.id, &ScanPose::id) == poses->end()
+                                                ? ""
+                                                : " Where it lay is in scans/poses.json."));
     }
-    list.push_back(scan_json(content, scan));
+    list.push_back(scan_json(content, scan, *poses));
   }
   content.list("scans/grids/", "every scan as it was measured, lossless: formats/grid.txt");
   if (content.has(PackagePart::kGridPly)) {
@@ -196,7 +211,11 @@ Status add_scans(PackageContent& content) {
 
 Status add_records(PackageContent& content) {
   const Results& results = content.results();
-  const Result<std::vector<ScanPose>> poses = packed_poses(content);
+  const Result<std::vector<StoredScan>> scans = content.store.scans();
+  if (!scans) {
+    return std::unexpected(scans.error());
+  }
+  const Result<std::vector<ScanPose>> poses = packed_poses(content, *scans);
   if (!poses) {
     return std::unexpected(poses.error());
   }

@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/scan_list.h"
 #include "planning/sparse_flags.h"
-#include "station/scan_list.h"
 
 namespace dubsar {
 

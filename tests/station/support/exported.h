@@ -34,12 +34,15 @@ inline std::vector<std::string> files_below(const std::filesystem::path& folder)
 /// A session of three scans of one side, and its package, for all tests of a suite.
 class Export : public ::testing::Test {
  protected:
-  static void SetUpTestSuite() {
+  static void scan_session() {
     folder_ = new test::TemporaryFolder;
     const std::filesystem::path scans = test::write_bumpy_scans(at("scans"), 3);
     const test::Outcome scanned = test::run_command(
         {"scan", "--device", "replay:" + scans.string(), "--session", at("session").string(), "--json"});
     ASSERT_EQ(scanned.status, 1) << scanned.err;  // one side only: not conclusive
+  }
+  static void SetUpTestSuite() {
+    scan_session();
     whole_ = test::run_command({"export", at("session").string(), "--to", at("bag").string(), "--json",
                                 "--base-url", "https://example.org/t"});
   }

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+// dubsar export of a session that is not whole: everything that is still there is packed, and what is not is
+// told.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+
+#include "formats/poses_json.h"
+#include "tests/station/support/exported.h"
+
+namespace dubsar {
+namespace {
+
+namespace fs = std::filesystem;
+using test::bytes_of;
+using test::Outcome;
+using test::run_command;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+/// A copy of the session, to be harmed. Nobody needs its package.
+class ExportDamaged : public Export {
+ protected:
+  static void SetUpTestSuite() { scan_session(); }
+  void SetUp() override {
+    session_ = at(std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()));
+    fs::copy(at("session"), session_, fs::copy_options::recursive);
+  }
+  [[nodiscard]] Outcome pack() const {
+    return run_command({"export", session_.string(), "--to", bag().string(), "--json", "--without",
+                        "renderings,features,grid-ply,wedges"});
+  }
+  [[nodiscard]] fs::path bag() const { return session_.string() + ".bag"; }
+  [[nodiscard]] std::string packed(const std::string& file) const { return bytes_of(bag() / "data" / file); }
+  /// With what was broken into lines put together again.
+  [[nodiscard]] std::string readme() const {
+    std::string out;
+    for (const char c : packed("README.txt")) {
+      if (c != '\n' && c != ' ') {
+        out += c;
+      } else if (!out.ends_with(' ')) {
+        out += ' ';
+      }
+    }
+    return out;
+  }
+
+  fs::path session_;
+};
+
+TEST_F(ExportDamaged, RowsOfAScanThatWasNotOverAreThere) {
+  const fs::path left = session_ / "grids/unfinished/8";
+  fs::create_directories(left);
+  fs::copy(session_ / "grids/001.grid", left / "0000.grid");
+  fs::copy(session_ / "grids/001.grid", left / "0001.grid");
+  fs::resize_file(left / "0001.grid", 500);
+  const Outcome done = pack();
+  ASSERT_EQ(done.status, 0) << done.err;
+  EXPECT_EQ(done.json()["scans"], 3) << "it is no scan yet";
+  EXPECT_TRUE(packed("scans/unfinished/8/0000.grid") == bytes_of(left / "0000.grid"));
+  EXPECT_THAT(readme(), AllOf(HasSubstr("scans/unfinished/8/ "),
+                              HasSubstr("scans/unfinished/8/0001.grid is not here")));
+  EXPECT_THAT(done.err, HasSubstr("takes them in"));
+  EXPECT_THAT(packed("provenance.jsonld"), HasSubstr("scans/unfinished/8/0000.grid"));
+  EXPECT_EQ(run_command({"verify", bag().string()}).status, 0);
+}
+
+/// A file whose reading the disk refuses, whoever asks.
+void make_unreadable(const fs::path& file) {
+  fs::remove(file);
+  fs::create_symlink("/proc/self/mem", file);
+}
+
+TEST_F(ExportDamaged, AFileThatCannotBeReadIsDamageLikeAnyOther) {
+  make_unreadable(session_ / "grids/001.grid");
+  make_unreadable(session_ / "export/report.html");
+  const Outcome done = pack();
+  ASSERT_EQ(done.status, 0) << done.err;
+  EXPECT_EQ(done.json()["scans"], 2);
+  EXPECT_THAT(done.err, AllOf(HasSubstr("grids/001.grid: "), HasSubstr("export/report.html: ")));
+  EXPECT_THAT(readme(), HasSubstr("Scan 1 is damaged in the session"));
+  EXPECT_TRUE(packed("scans/grids/002.grid") == bytes_of(session_ / "grids/002.grid"));
+  EXPECT_THAT(packed("report/report.html"), HasSubstr("</html>"));
+  EXPECT_EQ(pack().json()["done_before"], true);
+}
+
+TEST_F(ExportDamaged, WhatTheSessionKeepsOfLostScansIsThere) {
+  fs::remove(session_ / "grids/000.grid");
+  const Outcome done = pack();
+  ASSERT_EQ(done.status, 0) << done.err;
+  for (const char* file : {"mesh/model.ply", "analysis/wedges.json", "export/report.html"}) {
+    ASSERT_TRUE(fs::exists(session_ / file)) << file;
+    EXPECT_TRUE(packed(std::string("kept/") + file) == bytes_of(session_ / file)) << file;
+  }
+  EXPECT_THAT(readme(),
+              AllOf(HasSubstr("kept/mesh/ the mesh, as the session keeps it, made while scan 0 could "
+                              "still be read: the only record"),
+                    HasSubstr("are of the scans that remain; what was made")));
+  EXPECT_THAT(packed("provenance.jsonld"), HasSubstr("kept/mesh/model.ply"));
+  const auto poses = read_poses(bag() / "data/scans/poses.json");
+  ASSERT_TRUE(poses);
+  ASSERT_EQ(poses->size(), 3U) << "where it lay is known";
+  EXPECT_EQ(poses->front().id, 0);
+  const auto list = nlohmann::json::parse(packed("scans/scans.json"))["scans"];
+  EXPECT_EQ(list[0]["damaged"], true);
+  EXPECT_EQ(list[0]["status"], "registered");
+  // The poses of the package still make a mesh of the scans that are in it.
+  const Outcome again =
+      run_command({"stitch", (bag() / "data/scans/grids").string(), "--poses",
+                   (bag() / "data/scans/poses.json").string(), "-o", at("again.ply").string()});
+  EXPECT_EQ(again.status, 0) << again.err;
+}
+
+}  // namespace
+}  // namespace dubsar
