@@ -7,6 +7,7 @@
 #include "archive/html.h"
 #include "archive/html_table.h"
 #include "archive/report_sections.h"
+#include "core/scan_list.h"
 #include "core/units.h"
 
 namespace dubsar {
@@ -163,6 +164,9 @@ std::string checklist_section(const ReportInput& input) {
   html += dl_entry("Scans", std::to_string(list.scans_registered) + " registered, " +
                                 std::to_string(list.scans_unsure) + " unsure, " +
                                 std::to_string(list.scans_failed) + " failed");
+  if (!list.scans_lost.empty()) {
+    html += dl_entry("Lost", listed(list.scans_lost) + ", missing or not the bytes that were stored");
+  }
   if (list.worst_sigma_scan >= 0) {
     html += dl_entry("Worst place", "scan " + std::to_string(list.worst_sigma_scan) + ", σ " +
                                         fixed(1000 * list.worst_sigma_mm, 1) + " µm");

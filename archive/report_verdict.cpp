@@ -4,6 +4,7 @@
 
 #include "archive/html.h"
 #include "archive/report_sections.h"
+#include "core/scan_list.h"
 
 namespace dubsar {
 
@@ -38,8 +39,14 @@ std::string open_points(const ReportInput& input) {
   if (list.scans_registered == 0) {
     items += item("No scan is registered.");
   }
+  if (!list.scans_lost.empty()) {
+    items += item("The session has lost " + listed(list.scans_lost) +
+                  ": what they saw is not in this verdict. A copy of the session may bring them back.");
+  }
   if (!list.store_whole) {
-    items += item("Not every stored byte was checked against its checksum.");
+    items += item(list.store_checked.empty()
+                      ? "Not every stored byte was checked against its checksum."
+                      : "Not every stored file is there and matches its checksum: dubsar verify names them.");
   }
   if (input.model.faces.empty()) {
     items += item("No surface was meshed.");

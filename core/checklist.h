@@ -76,6 +76,7 @@ struct Checklist {
   int scans_registered = 0;
   int scans_unsure = 0;
   int scans_failed = 0;
+  std::vector<int> scans_lost;        ///< ids of those that stand and cannot be read as they were stored
   double worst_sigma_mm = 0;          ///< of the registered scans
   int worst_sigma_scan = -1;          ///< its id; -1 when no scan is registered
   std::vector<ScanWarning> warnings;  ///< what is wrong with scans although they are registered
@@ -86,7 +87,7 @@ struct Checklist {
   std::optional<CalibrationCheck> calibration_check;
 
   double disk_free_gib = 0;
-  bool store_whole = false;   ///< every stored byte matched its checksum
+  bool store_whole = false;   ///< every stored byte is there and matched its checksum
   std::string store_checked;  ///< when, ISO 8601, UTC; empty when it was not
   int store_files = 0;        ///< that were read to the end for it
 

@@ -122,6 +122,9 @@ OrderedJson checklist_json(const Checklist& list) {
   root["scans_registered"] = list.scans_registered;
   root["scans_unsure"] = list.scans_unsure;
   root["scans_failed"] = list.scans_failed;
+  if (!list.scans_lost.empty()) {
+    root["scans_lost"] = list.scans_lost;
+  }
   if (list.worst_sigma_scan >= 0) {
     root["worst_sigma_mm"] = list.worst_sigma_mm;
     root["worst_sigma_scan"] = list.worst_sigma_scan;
@@ -178,6 +181,11 @@ Result<Checklist> parse_checklist(std::string_view text, const std::string& wher
   list.scans_registered = count("scans_registered");
   list.scans_unsure = count("scans_unsure");
   list.scans_failed = count("scans_failed");
+  if (const auto lost = root.find("scans_lost")) {
+    for (const JsonNode& id : lost->items()) {
+      list.scans_lost.push_back(static_cast<int>(id.integer(0, std::numeric_limits<int>::max())));
+    }
+  }
   if (const auto sigma = root.find("worst_sigma_mm")) {
     list.worst_sigma_mm = sigma->number(0);
     list.worst_sigma_scan = count("worst_sigma_scan");

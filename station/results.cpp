@@ -19,6 +19,7 @@
 #include "formats/red_map_json.h"
 #include "formats/sha2.h"
 #include "planning/checklist.h"
+#include "station/lost_scans.h"
 #include "station/range_camera_record.h"
 #include "station/session_name.h"
 #include "station/tablet_label.h"
@@ -78,12 +79,14 @@ std::vector<std::string> accuracy_sentences(const std::vector<ScanPose>& poses,
   return out;
 }
 
-/// What devices remarked on the scans that stand.
-Status tell_remarks(const SessionStore& store, Checklist& list) {
+/// What is to be said of single scans of the session: which are lost, and what devices remarked on those that
+/// stand.
+Status tell_of_scans(const SessionStore& store, Checklist& list) {
   const auto scans = store.scans();
   if (!scans) {
     return std::unexpected(scans.error());
   }
+  list.scans_lost = lost_scans(*scans);
   for (const StoredScan& scan : *scans) {
     if (!scan.dropped && !scan.damaged && !scan.remark.empty()) {
       list.remarks.push_back({scan.id, scan.remark});
@@ -146,7 +149,7 @@ Result<Checklist> checklist_of(const RedMap& red_map, const std::vector<ScanPose
   if (rig == nullptr) {
     tell_of_range_camera(*store, list);
   }
-  if (const Status told = tell_remarks(*store, list); !told) {
+  if (const Status told = tell_of_scans(*store, list); !told) {
     return std::unexpected(told.error());
   }
   list.disk_free_gib = rounded_gib(store->disk_free_gib());

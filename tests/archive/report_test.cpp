@@ -165,6 +165,23 @@ TEST_F(Report, IsRenamedWithoutBeingMadeAnew) {
   EXPECT_THAT(page_renamed(checklist, "M 2", {}), HasSubstr("<h1>M 2</h1>\n<dl>\n<dt>Made</dt>"));
 }
 
+TEST_F(Report, LostScansAreNamed) {
+  map_.conclusive = list_.conclusive = false;
+  list_.store_whole = false;
+  EXPECT_THAT(html(), HasSubstr("Not every stored byte was checked"));
+  list_.store_checked = "2026-01-02T03:04:05Z";
+  list_.scans_lost = {0, 1, 3};
+  for (const std::string& page :
+       {html(), html([](const ReportInput&all, const ReportPictures&pictures) -> Result<std::string> {
+          return checklist_html(all, pictures);
+        })}) {
+    EXPECT_THAT(page, HasSubstr("The session has lost scans 0, 1 and 3: "));
+    EXPECT_THAT(page, HasSubstr("<dt>Lost</dt><dd>scans 0, 1 and 3"));
+    EXPECT_THAT(page, HasSubstr("Not every stored file is there and matches its checksum"));
+    EXPECT_THAT(page, Not(HasSubstr("was checked")));
+  }
+}
+
 TEST_F(Report, SaysConclusiveOnlyWhenBothJudgesDo) {
   EXPECT_THAT(html(), HasSubstr("<h2>Conclusive</h2>"));
   list_.conclusive = false;

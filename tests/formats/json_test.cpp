@@ -270,6 +270,7 @@ TEST(ChecklistJson, ReadsBack) {
   checklist.store_checked = "2026-01-02T03:04:05Z";
   checklist.store_files = 31;
   checklist.scans_unsure = 2;
+  checklist.scans_lost = {0, 7};
   checklist.calibration = "bar 17";
   checklist.calibration_age_days = 3.5;
   checklist.disk_free_gib = 12.25;
@@ -282,6 +283,7 @@ TEST(ChecklistJson, ReadsBack) {
   ASSERT_EQ(back->warnings.size(), 1U);
   EXPECT_EQ(back->warnings[0].scan, 2);
   EXPECT_EQ(back->warnings[0].text, "it is 2.0 % too long");
+  EXPECT_EQ(back->scans_lost, checklist.scans_lost);
   ASSERT_EQ(back->remarks.size(), 1U);
   EXPECT_EQ(back->remarks[0].scan, 4);
   EXPECT_EQ(back->remarks[0].text, "its header says another spacing");

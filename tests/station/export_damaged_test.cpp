@@ -21,6 +21,7 @@ using test::Outcome;
 using test::run_command;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 /// A copy of the session, to be harmed. Nobody needs its package.
 class ExportDamaged : public Export {
@@ -108,6 +109,12 @@ TEST_F(ExportDamaged, WhatTheSessionKeepsOfLostScansIsThere) {
   const auto list = nlohmann::json::parse(packed("scans/scans.json"))["scans"];
   EXPECT_EQ(list[0]["damaged"], true);
   EXPECT_EQ(list[0]["status"], "registered");
+  for (const char* page : {"report/report.html", "report/checklist.html"}) {
+    EXPECT_THAT(packed(page),
+                AllOf(HasSubstr("The session has lost scan 0:"), Not(HasSubstr("was checked against"))))
+        << page;
+  }
+  EXPECT_EQ(nlohmann::json::parse(packed("verdict/checklist.json"))["scans_lost"], nlohmann::json({0}));
   // The poses of the package still make a mesh of the scans that are in it.
   const Outcome again =
       run_command({"stitch", (bag() / "data/scans/grids").string(), "--poses",
