@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <tuple>
 
 #include "core/disjoint_sets.h"
 #include "core/huge_pages.h"
@@ -46,6 +47,7 @@ HalfEdges::HalfEdges(std::span<const Triangle> faces, std::size_t vertex_count,
       }
     }
   });
+  sort_crowds();
 }
 
 std::vector<std::uint8_t> rim_vertices(std::span<const Triangle> faces, std::size_t vertex_count) {
@@ -77,16 +79,34 @@ std::vector<std::uint8_t> rim_vertices(std::span<const Triangle> faces, std::siz
   return rim;
 }
 
-int HalfEdges::count(std::uint32_t a, std::uint32_t b) const {
-  int n = 0;
-  for (const Out& out : from(a)) {
-    n += out.to == b ? 1 : 0;
+void HalfEdges::sort_crowds() {
+  for (std::uint32_t v = 0; v < vertex_count(); ++v) {
+    const std::span<const Out> outs = from(v);
+    if (outs.size() > kFew) {
+      crowds_.emplace_back(v, sorted_.size());
+      sorted_.insert(sorted_.end(), outs.begin(), outs.end());
+      std::sort(sorted_.end() - static_cast<std::ptrdiff_t>(outs.size()), sorted_.end(),
+                [](const Out& x, const Out& y) { return std::tie(x.to, x.face) < std::tie(y.to, y.face); });
+    }
   }
-  return n;
+}
+
+std::span<const HalfEdges::Out> HalfEdges::of_crowd(std::uint32_t a, std::uint32_t b) const {
+  const auto crowd = std::ranges::lower_bound(crowds_, a, {}, &std::pair<std::uint32_t, std::size_t>::first);
+  const auto all = std::span(sorted_).subspan(crowd->second, from(a).size());
+  const auto found = std::ranges::equal_range(all, b, {}, &Out::to);
+  return {found.begin(), found.end()};
+}
+
+int HalfEdges::count(std::uint32_t a, std::uint32_t b) const {
+  const std::span<const Out> outs = among(a, b);
+  return static_cast<int>(outs.size() > kFew
+                              ? outs.size()  // then all of them run there
+                              : static_cast<std::size_t>(std::ranges::count(outs, b, &Out::to)));
 }
 
 std::int64_t HalfEdges::face(std::uint32_t a, std::uint32_t b) const {
-  for (const Out& out : from(a)) {
+  for (const Out& out : among(a, b)) {
     if (out.to == b) {
       return out.face;
     }

@@ -2,10 +2,12 @@
 // Copyright The Dubsar developers
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace dubsar {
@@ -33,15 +35,34 @@ class HalfEdges {
   [[nodiscard]] std::span<const Out> from(std::uint32_t vertex) const {
     return {out_.data() + start_[vertex], out_.data() + start_[vertex + 1]};
   }
+  /// Whether test(face) holds for one of the faces that run from a to b, the lowest first.
+  template <class Test>
+  [[nodiscard]] bool any_face(std::uint32_t a, std::uint32_t b, const Test& test) const {
+    return std::ranges::any_of(among(a, b), [&](const Out& out) { return out.to == b && test(out.face); });
+  }
   /// How many faces run from a to b.
   [[nodiscard]] int count(std::uint32_t a, std::uint32_t b) const;
   /// The lowest face that runs from a to b, or -1.
   [[nodiscard]] std::int64_t face(std::uint32_t a, std::uint32_t b) const;
   [[nodiscard]] std::size_t vertex_count() const { return start_.size() - 1; }
 
+  /// Of so many half-edges around a vertex one is found by looking at them all.
+  static constexpr std::size_t kFew = 32;
+
  private:
+  /// Half-edges that leave a, all those to b among them, the lowest face first.
+  [[nodiscard]] std::span<const Out> among(std::uint32_t a, std::uint32_t b) const {
+    const std::span<const Out> outs = from(a);
+    return outs.size() <= kFew ? outs : of_crowd(a, b);
+  }
+  [[nodiscard]] std::span<const Out> of_crowd(std::uint32_t a, std::uint32_t b) const;
+  void sort_crowds();
+
   std::vector<std::uint32_t> start_;
   std::vector<Out> out_;
+  /// Of each vertex that more than kFew leave where its half-edges lie in sorted_, by vertex.
+  std::vector<std::pair<std::uint32_t, std::size_t>> crowds_;
+  std::vector<Out> sorted_;  ///< by the vertex they run to, then by face
 };
 
 /// Component number of each face (0, 1, … in order of their first face), faces being joined across edges that

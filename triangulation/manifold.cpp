@@ -9,6 +9,7 @@
 
 #include "core/parallel.h"
 #include "core/parallel_erase.h"
+#include "triangulation/vertex_fans.h"
 
 namespace dubsar {
 
@@ -23,13 +24,11 @@ bool has_repeated_half_edge(const HalfEdges& edges) {
       edges.vertex_count(), kVerticesPerChunk, false,
       [&](std::size_t begin, std::size_t end) {
         for (std::size_t v = begin; v < end; ++v) {
-          const std::span<const HalfEdges::Out> outs = edges.from(static_cast<std::uint32_t>(v));
-          for (std::size_t i = 0; i < outs.size(); ++i) {
-            for (std::size_t j = 0; j < i; ++j) {
-              if (outs[i].to == outs[j].to) {
-                return true;
-              }
-            }
+          const auto a = static_cast<std::uint32_t>(v);
+          if (std::ranges::any_of(edges.from(a), [&](const HalfEdges::Out& out) {
+                return edges.face(a, out.to) != static_cast<std::int64_t>(out.face);
+              })) {
+            return true;
           }
         }
         return false;
@@ -42,49 +41,14 @@ void drop_repeated_half_edges(const HalfEdges& edges, std::vector<Triangle>& fac
   std::vector<std::uint8_t> gone(faces.size(), 0);
   for (std::size_t i = 0; i < faces.size(); ++i) {
     for (std::size_t k = 0; k < 3; ++k) {
-      for (const HalfEdges::Out& out : edges.from(faces[i][k])) {
-        if (out.to == faces[i][(k + 1) % 3] && out.face < i && gone[out.face] == 0) {
-          gone[i] = 1;
-        }
+      if (edges.any_face(faces[i][k], faces[i][(k + 1) % 3],
+                         [&](std::uint32_t other) { return other < i && gone[other] == 0; })) {
+        gone[i] = 1;
       }
     }
   }
   std::size_t at = 0;
   std::erase_if(faces, [&](const Triangle&) { return gone[at++] != 0; });
-}
-
-/// Numbers the fans of faces around a vertex, in the order of the half-edges that leave it: fan[i] is that of
-/// the i-th. Returns how many there are. No half-edge may occur twice.
-std::uint32_t number_fans(std::span<const Triangle> faces, const HalfEdges& edges, std::uint32_t v,
-                          std::vector<std::uint32_t>& fan) {
-  const std::span<const HalfEdges::Out> outs = edges.from(v);
-  fan.assign(outs.size(), kNone);
-  const auto from = [&](std::size_t o) {  // where the half-edge that comes to v in the same face starts
-    const Triangle& f = faces[outs[o].face];
-    return f[static_cast<std::size_t>((corner_of(f, v) + 2) % 3)];
-  };
-  const auto beside = [&](std::size_t o, bool forward) {
-    for (std::size_t other = 0; other < outs.size(); ++other) {
-      if (fan[other] == kNone && (forward ? outs[other].to == from(o) : from(other) == outs[o].to)) {
-        return other;
-      }
-    }
-    return outs.size();
-  };
-  std::uint32_t fans = 0;
-  for (std::size_t first = 0; first < outs.size(); ++first) {
-    if (fan[first] != kNone) {
-      continue;
-    }
-    // Both ways round from this face; forward alone takes in the whole of a closed fan.
-    for (const bool forward : {true, false}) {
-      for (std::size_t o = first; o != outs.size(); o = beside(o, forward)) {
-        fan[o] = fans;
-      }
-    }
-    ++fans;
-  }
-  return fans;
 }
 
 /// Gives each fan but the first of the vertices that have several a vertex of its own; returns what each of

@@ -14,48 +14,13 @@
 #include "triangulation/half_edges.h"
 #include "triangulation/self_intersections.h"
 #include "triangulation/triangle_shape.h"
+#include "triangulation/vertex_fans.h"
 
 namespace dubsar {
 
 namespace {
 
 using Eigen::Vector3d;
-
-/// How many fans the faces around a vertex form, joined across edges of exactly two opposite half-edges.
-int fan_count(std::span<const Triangle> faces, const HalfEdges& edges, std::uint32_t v) {
-  const auto outs = edges.from(v);
-  int fans = 0;
-  // Each fan that is open has one face whose incoming edge has no face beyond; closed fans are found by
-  // walking from faces that no open fan reached.
-  std::vector<std::uint8_t> seen(outs.size(), 0);
-  const auto walk = [&](std::size_t at) {
-    while (seen[at] == 0) {
-      seen[at] = 1;
-      const Triangle& f = faces[outs[at].face];
-      const std::size_t corner = f[0] == v ? 0 : f[1] == v ? 1 : 2;
-      const std::uint32_t previous = f[(corner + 2) % 3];
-      for (std::size_t other = 0; other < outs.size(); ++other) {
-        if (seen[other] == 0 && outs[other].to == previous) {
-          at = other;
-          break;
-        }
-      }
-    }
-  };
-  for (std::size_t o = 0; o < outs.size(); ++o) {
-    if (edges.face(outs[o].to, v) < 0) {
-      ++fans;
-      walk(o);
-    }
-  }
-  for (std::size_t o = 0; o < outs.size(); ++o) {
-    if (seen[o] == 0) {
-      ++fans;
-      walk(o);
-    }
-  }
-  return fans;
-}
 
 constexpr std::size_t kGrain = 8192;
 
@@ -111,19 +76,13 @@ void check_shapes(const Mesh& mesh, MeshReport& report) {
   report.thin_share = all.faces == 0 ? 0 : static_cast<double>(all.thin) / static_cast<double>(all.faces);
 }
 
-/// Whether a face before this one has the same three vertices.
-bool repeats_another(std::span<const Triangle> faces, const HalfEdges& edges, std::size_t at) {
-  Triangle sorted = faces[at];
-  std::sort(sorted.begin(), sorted.end());
-  const auto outs = edges.from(sorted[0]);
-  return std::any_of(outs.begin(), outs.end(), [&](const HalfEdges::Out& out) {
-    if (out.face >= at) {
-      return false;
-    }
-    Triangle other = faces[out.face];
-    std::sort(other.begin(), other.end());
-    return other == sorted;
-  });
+/// Whether a face before this one has the same three vertices: a and b, with an edge between them, and c.
+bool repeats_another(std::span<const Triangle> faces, const HalfEdges& edges, std::size_t at, std::uint32_t a,
+                     std::uint32_t b, std::uint32_t c) {
+  const auto is_same = [&](std::uint32_t other) {
+    return other < at && std::ranges::find(faces[other], c) != faces[other].end();
+  };
+  return edges.any_face(a, b, is_same) || edges.any_face(b, a, is_same);
 }
 
 void check_edges(const Mesh& mesh, std::span<const Triangle> faces, const HalfEdges& edges,
@@ -138,11 +97,17 @@ void check_edges(const Mesh& mesh, std::span<const Triangle> faces, const HalfEd
         Edges part;
         for (std::size_t i = begin; i < end; ++i) {
           bool inconsistent = false;
+          int fewest = std::numeric_limits<int>::max();  // faces at one of its edges, from corner
+          std::size_t corner = 0;
           for (std::size_t k = 0; k < 3; ++k) {
             const std::uint32_t a = faces[i][k];
             const std::uint32_t b = faces[i][(k + 1) % 3];
             const int same = edges.count(a, b);
             const int opposite = edges.count(b, a);
+            if (same + opposite < fewest) {
+              fewest = same + opposite;
+              corner = k;
+            }
             if (same + opposite == 1) {
               ++part.boundary;
               part.boundary_mm += (mesh.positions[b] - mesh.positions[a]).cast<double>().norm();
@@ -158,7 +123,10 @@ void check_edges(const Mesh& mesh, std::span<const Triangle> faces, const HalfEd
             }
           }
           part.inconsistent_faces += inconsistent ? 1 : 0;
-          part.duplicates += repeats_another(faces, edges, i) ? 1 : 0;
+          part.duplicates += repeats_another(faces, edges, i, faces[i][corner], faces[i][(corner + 1) % 3],
+                                             faces[i][(corner + 2) % 3])
+                                 ? 1
+                                 : 0;
         }
         return part;
       },
@@ -188,13 +156,14 @@ void check_vertices(const Mesh& mesh, std::span<const Triangle> faces, const Hal
       mesh.positions.size(), kGrain, Vertices{},
       [&](std::size_t begin, std::size_t end) {
         Vertices part;
+        std::vector<std::uint32_t> fan;
         for (std::size_t i = begin; i < end; ++i) {
           const auto v = static_cast<std::uint32_t>(i);
           if (edges.from(v).empty()) {
             ++part.unreferenced;
           } else {
             part.box.extend(mesh.positions[v]);
-            part.non_manifold += fan_count(faces, edges, v) > 1 ? 1 : 0;
+            part.non_manifold += number_fans(faces, edges, v, fan) > 1 ? 1 : 0;
           }
         }
         return part;
