@@ -6,7 +6,7 @@ workflows=$1/workflows
 export DUBSAR=$2
 folder=$3
 fail() { echo "FAILED: $*" >&2; exit 1; }
-rm -rf "$folder"
+rm -rf "$folder" "$folder.far"
 mkdir -p "$folder/museum/a b" "$folder/session/grids"
 "$DUBSAR" simulate tablet --seed 1 --size 12x10x7 --spacing 0.15 -o "$folder/museum/a b" >/dev/null 2>&1
 "$DUBSAR" simulate tablet --seed 2 --size 20x16x9 --spacing 0.1 -o "$folder/museum/c" >/dev/null 2>&1
@@ -14,7 +14,20 @@ touch "$folder/session/session.sqlite" "$folder/session/grids/model.ply" "$folde
 
 listed=$("$workflows/list-tablets" "$folder")
 [ "$listed" = $'museum/a b\nmuseum/c\nsession' ] || fail "list-tablets: $listed"
-rm -r "$folder/session"
+# At any depth, below folders of any name, and through links; of a session and its results nothing but the session.
+mkdir -p "$folder"/export/one "$folder"/sub/mesh/two "$folder"/three "$folder"/session/{mesh,sub/package} \
+  "$folder"/session.results/package "$folder"/lost/mesh "$folder"/.hidden "$folder.far/session"
+touch "$folder"/export/one/tablet.ply "$folder"/sub/mesh/two/model.ply "$folder"/session/{mesh,sub/package}/model.ply \
+  "$folder"/session.results/package/tablet.ply "$folder"/lost/session.backup.sqlite "$folder"/lost/mesh/model.ply \
+  "$folder"/.hidden/model.ply "$folder.far/session/session.sqlite" "$folder.far/scan.ply"
+ln -s "$folder.far/session" "$folder/linked"
+ln -s "$folder.far/scan.ply" "$folder/three/model.ply"
+listed=$("$workflows/list-tablets" "$folder" 2>"$folder/said")
+[ "$listed" = $'export/one\nlinked\nmuseum/a b\nmuseum/c\nsession\nsub/mesh/two\nthree' ] || fail "list-tablets: $listed"
+[[ $(cat "$folder/said") == "list-tablets: lost: a session without its session.sqlite"* ]] || fail "list-tablets: $(cat "$folder/said")"
+listed=$("$workflows/list-tablets" "$folder/session")
+[ "$listed" = . ] || fail "list-tablets of a session: $listed"
+rm -r "$folder"/{export,sub,three,session,session.results,lost,.hidden,linked,said} "$folder.far"
 
 "$workflows/do-tablet" "$folder" "museum/a b"
 [ -f "$folder/museum/a b/wedges.json.done" ] || fail "no stamp"
@@ -76,6 +89,11 @@ wait $worker 2>/dev/null || true
 "$DUBSAR" -q verify "$folder/museum/s" >/dev/null 2>&1 || fail "the session was changed"
 "$DUBSAR" -q verify "$folder/museum/s.results/package" >/dev/null 2>&1 || fail "the package is not whole"
 [ -z "$(find "$folder/museum/s.results" -name '.dubsar-tmp-*')" ] || fail "something was left behind"
+# So it is where the collection is the session.
+"$workflows/do-tablet" "$folder/museum/s" . 2>/dev/null || fail "a collection that is a session"
+tail -n 1 "$folder/museum/s.results/log/..log" | grep -q ' export found-done$' || fail "a collection that is a session was done anew"
+"$workflows/check-collection" "$folder/museum/s" 2>/dev/null || fail "check-collection of a session"
+"$DUBSAR" -q verify "$folder/museum/s" >/dev/null 2>&1 || fail "the session that is a collection was changed"
 # The mesh that a session keeps is used while it is of its scans as they stand; else one is stitched beside it.
 packed() { DUBSAR_EXPORT=yes "$workflows/do-tablet" "$folder" museum/t 2>/dev/null; }
 wedges_of() { python3 -c 'import json, sys; print(len(json.load(open(sys.argv[1]))["wedges"]))' "$1"; }
