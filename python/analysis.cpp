@@ -145,7 +145,11 @@ void bind_analysis(py::module_& module) {
       .def(
           "to_json", [](const Wedges& w) { return wedges_to_json(w.file); }, "what wedges.json holds")
       .def(
-          "write", [](const Wedges& w, const fs::path& path) { value_of(write_wedges(path, w.file)); },
+          "write",
+          [](const Wedges& w, const fs::path& path) {
+            check_may_write(path);
+            value_of(write_wedges(path, w.file));
+          },
           py::arg("path"), "wedges.json; whole or not at all")
       .def("__len__", [](const Wedges& w) { return w.file.wedges.size(); })
       .def("__repr__", [](const Wedges& w) {

@@ -65,6 +65,9 @@ py::array wedge_rows(const std::vector<Wedge>& wedges);
 /// Tells numpy of the columns; once, before the first wedge_rows().
 void bind_wedge_rows();
 
+/// Raises UsageError where a file would lie in a session or a package, as no verb writes there.
+void check_may_write(const std::filesystem::path& path);
+
 /// Raises UsageError where a face names no vertex, or a place is not finite: the arrays are open to writing.
 void check_sound(const Mesh& mesh);
 

@@ -5,6 +5,7 @@
 #include <array>
 
 #include "python/binding.h"
+#include "station/place_outside.h"
 
 namespace dubsar::python {
 
@@ -76,6 +77,10 @@ void raise(const Error& error) {
     }
   }
   throw std::logic_error(error.line());
+}
+
+void check_may_write(const std::filesystem::path& path) {
+  value_of(check_outside_checked_folders(path));
 }
 
 void bind_errors(py::module_& module) {

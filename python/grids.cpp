@@ -233,6 +233,7 @@ void bind_grids(py::module_& module) {
   module.def(
       "write_grid",
       [](const fs::path& path, const GridPointer& grid) {
+        check_may_write(path);
         run_for_result(py::none(), [&](JobContext&) { return write_grid(path, *grid); });
       },
       py::arg("path"), py::arg("grid").none(false),

@@ -169,6 +169,7 @@ void bind_meshes(py::module_& module) {
       "write_mesh",
       [](const fs::path& path, const MeshPointer& mesh) {
         check_sound(*mesh);
+        check_may_write(path);
         run_for_result(py::none(), [&](JobContext&) { return write_mesh(path, *mesh); });
       },
       py::arg("path"), py::arg("mesh").none(false),

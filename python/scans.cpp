@@ -192,7 +192,10 @@ void bind_scans(py::module_& module) {
       "read_poses", [](const fs::path& path) { return value_of(read_poses(path)); }, py::arg("path"));
   module.def(
       "write_poses",
-      [](const fs::path& path, const std::vector<ScanPose>& poses) { value_of(write_poses(path, poses)); },
+      [](const fs::path& path, const std::vector<ScanPose>& poses) {
+        check_may_write(path);
+        value_of(write_poses(path, poses));
+      },
       py::arg("path"), py::arg("poses"));
 }
 

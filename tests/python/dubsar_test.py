@@ -261,6 +261,26 @@ class Pipeline(Scans):
             np.testing.assert_array_equal(one.model_from_scanner, other.model_from_scanner)
         np.testing.assert_array_equal(dubsar.stitch(self.grids, again).vertices, self.mesh.vertices)
 
+    def test_nothing_is_written_into_a_session_or_a_package(self):
+        wedges = dubsar.analyze(self.mesh)
+        with tempfile.TemporaryDirectory() as folder:
+            for checked, mark, within in (("s", "session.sqlite", "mesh"), ("p", "bagit.txt", "data")):
+                os.makedirs(os.path.join(folder, checked, within))
+                with open(os.path.join(folder, checked, mark), "w") as file:
+                    file.write(mark)
+                os.symlink(os.path.join(folder, checked, within), os.path.join(folder, "link"))
+                for call in (
+                    lambda path: dubsar.write_grid(path + ".grid", self.grids[0]),
+                    lambda path: dubsar.write_mesh(path + ".ply", self.mesh),
+                    lambda path: dubsar.write_poses(path + ".json", self.poses),
+                    lambda path: wedges.write(path + ".json"),
+                ):
+                    for path in ((checked, within, "new"), ("link", "new")):
+                        with self.assertRaisesRegex(dubsar.UsageError, "keeps a checksum of every file"):
+                            call(os.path.join(folder, *path))
+                self.assertEqual(os.listdir(os.path.join(folder, checked, within)), [])
+                os.remove(os.path.join(folder, "link"))
+
     def test_poses_file(self):
         with tempfile.TemporaryDirectory() as folder:
             path = os.path.join(folder, "poses.json")
