@@ -5,22 +5,19 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/srgb.h"
+
 namespace dubsar {
 
 namespace {
 
 constexpr int kSteps = 4096;
 
-float linear_of(int value) {
-  const double s = value / 255.0;
-  return static_cast<float>(s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4));
-}
-
 const std::array<float, 256>& linear_table() {
   static const std::array<float, 256> table = [] {
     std::array<float, 256> t{};
     for (int i = 0; i < 256; ++i) {
-      t[static_cast<std::size_t>(i)] = linear_of(i);
+      t[static_cast<std::size_t>(i)] = static_cast<float>(linear_of_srgb(i / 255.0));
     }
     return t;
   }();
@@ -33,9 +30,8 @@ const std::array<std::uint8_t, kSteps + 1>& srgb_table() {
     std::array<std::uint8_t, kSteps + 1> t{};
     for (int i = 0; i <= kSteps; ++i) {
       const double root = static_cast<double>(i) / kSteps;
-      const double light = root * root;
-      const double s = light <= 0.0031308 ? 12.92 * light : 1.055 * std::pow(light, 1.0 / 2.4) - 0.055;
-      t[static_cast<std::size_t>(i)] = static_cast<std::uint8_t>(std::lround(255.0 * s));
+      t[static_cast<std::size_t>(i)] =
+          static_cast<std::uint8_t>(std::lround(255.0 * srgb_of_linear(root * root)));
     }
     return t;
   }();

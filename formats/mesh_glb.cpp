@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright The Dubsar developers
 // glTF 2.0 (ISO/IEC 12113:2022) as far as a surface needs it: scenes, nodes with their transforms, triangles.
-// Materials and images are passed over.
+// Materials and images are passed over; colours of vertices are read.
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <limits>
 #include <vector>
 
+#include "core/srgb.h"
 #include "formats/byte_order.h"
 #include "formats/glb_container.h"
 #include "formats/json_text.h"
@@ -18,6 +21,7 @@ namespace {
 
 constexpr double kMmPerMetre = 1000.0;
 constexpr int kTriangles = 4;
+constexpr std::array<std::uint8_t, 3> kWhite{255, 255, 255};
 /// A mesh may stand in a scene several times; what comes out stays bounded by the bytes that are there.
 constexpr std::size_t kMaxItemsPerByte = 4;
 
@@ -53,6 +57,29 @@ Eigen::Affine3d transform_of(const JsonNode& node) {
   return transform;
 }
 
+/// Colours of the vertices from `first` on, which are linear there (ISO/IEC 12113:2022, 3.9.2) and may be
+/// RGB or RGBA. Vertices of other primitives without colours are white.
+void append_colours(const JsonNode& root, const JsonNode& number, std::string_view binary, std::size_t first,
+                    Mesh& mesh) {
+  const bool has_alpha = gltf_entry(root, "accessors", number).at("type").text() == "VEC4";
+  GltfAccessor colours = gltf_accessor(root, number, binary, has_alpha ? "VEC4" : "VEC3", has_alpha ? 4 : 3);
+  if (root.failed()) {
+    return;
+  }
+  if (colours.count != mesh.positions.size() - first) {
+    number.complain("has not as many colours as there are positions");
+    return;
+  }
+  colours.normalized = true;  // whole numbers always are, here
+  mesh.colours.resize(first, kWhite);
+  for (std::size_t v = 0; v < colours.count; ++v) {
+    mesh.colours.push_back({});
+    for (std::size_t k = 0; k < 3; ++k) {
+      mesh.colours.back()[k] = colour_byte(srgb_of_linear(colours.component(v, k)));
+    }
+  }
+}
+
 void append_primitive(const JsonNode& root, const JsonNode& primitive, std::string_view binary,
                       const Eigen::Affine3d& mm_from_node, std::size_t limit, Mesh& mesh) {
   if (const auto mode = primitive.find("mode")) {
@@ -65,8 +92,8 @@ void append_primitive(const JsonNode& root, const JsonNode& primitive, std::stri
       return;
     }
   }
-  const GltfAccessor positions =
-      gltf_accessor(root, primitive.at("attributes").at("POSITION"), binary, "VEC3", 3);
+  const JsonNode attributes = primitive.at("attributes");
+  const GltfAccessor positions = gltf_accessor(root, attributes.at("POSITION"), binary, "VEC3", 3);
   GltfAccessor indices;
   const auto index_number = primitive.find("indices");
   if (index_number) {
@@ -75,6 +102,10 @@ void append_primitive(const JsonNode& root, const JsonNode& primitive, std::stri
   const std::size_t corners = index_number ? indices.count : positions.count;
   if (positions.count + mesh.positions.size() > limit || corners / 3 + mesh.faces.size() > limit) {
     primitive.complain("is repeated too often");
+    return;
+  }
+  if (corners % 3 != 0) {
+    primitive.complain("has " + std::to_string(corners) + " corners, which are no whole triangles");
     return;
   }
   const auto first = static_cast<std::uint32_t>(mesh.positions.size());
@@ -86,6 +117,9 @@ void append_primitive(const JsonNode& root, const JsonNode& primitive, std::stri
       primitive.complain("has a position that is not finite: vertex " + std::to_string(v));
       return;
     }
+  }
+  if (const auto colours = attributes.find("COLOR_0")) {
+    append_colours(root, *colours, binary, first, mesh);
   }
   const bool mirrored = mm_from_node.linear().determinant() < 0;
   for (std::size_t face = 0; face < corners / 3; ++face) {
@@ -170,6 +204,14 @@ void append_scene(const JsonNode& root, std::string_view binary, double mm, std:
   }
 }
 
+/// Extensions of what is passed over, and the one that only adds number types which are read.
+bool leaves_the_surface(std::string_view extension) {
+  constexpr std::array<std::string_view, 4> kOfLooks = {"KHR_materials_", "KHR_texture_", "EXT_texture_",
+                                                        "KHR_lights_"};
+  return extension == "KHR_mesh_quantization" ||
+         std::ranges::any_of(kOfLooks, [&](std::string_view of) { return extension.starts_with(of); });
+}
+
 void check_extensions(const JsonNode& root) {
   const auto required = root.find("extensionsRequired");
   if (!required) {
@@ -179,6 +221,8 @@ void check_extensions(const JsonNode& root) {
     const std::string name = extension.text();
     if (name == "KHR_draco_mesh_compression" || name == "EXT_meshopt_compression") {
       extension.complain("is " + name + ": compressed meshes are not read");
+    } else if (!leaves_the_surface(name)) {
+      extension.complain("is " + name + ", which is not known");
     }
   }
 }
@@ -219,6 +263,7 @@ Result<Mesh> decode_mesh_glb(std::string_view bytes, const std::string& where,
   if (mesh.faces.empty()) {
     return bad_input(where, "its scene holds no triangle", "export the mesh again");
   }
+  mesh.colours.resize(mesh.colours.empty() ? 0 : mesh.positions.size(), kWhite);
   weld_equal_positions(mesh);
   return mesh;
 }
@@ -230,7 +275,7 @@ Result<std::string> encode_mesh_glb(const Mesh& mesh, const std::string& where, 
   const std::string name = label_value(label.name);
   // The name stands twice, and every byte of it as six at most ("\u0022").
   const std::uint64_t label_room = asset.dump().size() + 12 * name.size();
-  if (vertices * 28 + mesh.faces.size() * 12 + kHeaderRoom + label_room >
+  if (vertices * 32 + mesh.faces.size() * 12 + kHeaderRoom + label_room >
       std::numeric_limits<std::uint32_t>::max()) {
     return fail(ErrorKind::kUsage, "the mesh is too large for GLB (4 GiB)", where, "write .ply instead");
   }
@@ -276,14 +321,16 @@ Result<std::string> encode_mesh_glb(const Mesh& mesh, const std::string& where, 
     add_accessor(kGltfFloat, vertices, "VEC3");
   }
   if (!mesh.colours.empty()) {
-    begin_view(vertices * 4, kVertexTarget);
+    // Linear, where a byte would lose what is dark.
+    begin_view(vertices * 8, kVertexTarget);
     for (const auto& rgb : mesh.colours) {
-      for (const std::uint8_t component : {rgb[0], rgb[1], rgb[2], std::uint8_t{255}}) {
-        append(binary, component);
+      for (const std::uint8_t component : rgb) {
+        append(binary, static_cast<std::uint16_t>(std::lround(65535 * linear_of_srgb(component / 255.0))));
       }
+      append(binary, std::uint16_t{65535});
     }
     attributes["COLOR_0"] = accessors.size();
-    add_accessor(kGltfUnsignedByte, vertices, "VEC4");
+    add_accessor(kGltfUnsignedShort, vertices, "VEC4");
     accessors.back()["normalized"] = true;
   }
   begin_view(mesh.faces.size() * 12, kIndexTarget);

@@ -6,6 +6,7 @@
 
 #include "formats/atomic_file.h"
 #include "formats/mesh_formats.h"
+#include "formats/place_precision.h"
 #include "formats/ply_header.h"
 
 namespace dubsar {
@@ -44,13 +45,7 @@ MeshFormat format_of(std::string_view bytes, const std::filesystem::path& name) 
   return named == MeshFormat::kUnknown && is_binary_stl(bytes) ? MeshFormat::kStl : named;
 }
 
-}  // namespace
-
-Result<Mesh> read_mesh_bytes(std::string_view bytes, const std::string& name,
-                             const MeshReadOptions& options) {
-  if (bytes.empty()) {
-    return bad_input(name, "the file is empty", "copy or export it again");
-  }
+Result<Mesh> decode(std::string_view bytes, const std::string& name, const MeshReadOptions& options) {
   switch (format_of(bytes, name)) {
     case MeshFormat::kPly:
       return decode_mesh_ply(bytes, name, options);
@@ -64,6 +59,23 @@ Result<Mesh> read_mesh_bytes(std::string_view bytes, const std::string& name,
       break;
   }
   return bad_input(name, "not a mesh that Dubsar reads", kKnown);
+}
+
+}  // namespace
+
+Result<Mesh> read_mesh_bytes(std::string_view bytes, const std::string& name,
+                             const MeshReadOptions& options) {
+  if (bytes.empty()) {
+    return bad_input(name, "the file is empty", "copy or export it again");
+  }
+  Result<Mesh> mesh = decode(bytes, name, options);
+  const bool only_points = mesh && mesh->faces.empty() && options.may_be_points;
+  if (mesh && !only_points) {
+    if (const Status precise = check_precision(*mesh, name); !precise) {
+      return std::unexpected(precise.error());
+    }
+  }
+  return mesh;
 }
 
 Result<Mesh> read_mesh(const std::filesystem::path& path, const MeshReadOptions& options) {

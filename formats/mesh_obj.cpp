@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright The Dubsar developers
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <optional>
 #include <vector>
@@ -29,6 +30,7 @@ class ObjReader {
       const bool is_vertex = keyword == "v";
       if (is_vertex || keyword == "f") {
         any_keyword = true;
+        rest = with_what_follows(rest);
         if (const Status read = is_vertex ? read_vertex(rest) : read_face(rest); !read) {
           return std::unexpected(read.error());
         }
@@ -45,6 +47,7 @@ class ObjReader {
       return bad_input(where_, "an OBJ file without faces",
                        "give a mesh; scans become one with dubsar stitch");
     }
+    lay_colours();
     return std::move(mesh_);
   }
 
@@ -52,6 +55,19 @@ class ObjReader {
   std::string_view next_line() {
     ++line_number_;
     return text_.line();
+  }
+  /// A line that ends with a backslash goes on in the next.
+  std::string_view with_what_follows(std::string_view line) {
+    if (!line.ends_with('\\')) {
+      return line;
+    }
+    joined_.clear();
+    for (; line.ends_with('\\') && text_.remaining() > 0; line = next_line()) {
+      line.remove_suffix(1);
+      joined_ += line;
+      joined_ += ' ';
+    }
+    return joined_ += line;
   }
   [[nodiscard]] std::unexpected<Error> line_error(std::size_t line, const std::string& what) const {
     return bad_input(where_, "line " + std::to_string(line) + ": " + what, kExportAgain);
@@ -64,29 +80,49 @@ class ObjReader {
         return line_error(line_number_, in_quotes(word) + " is not a coordinate");
       }
     }
-    return append_position(mesh_, mm_ * xyz[0], mm_ * xyz[1], mm_ * xyz[2])
-               ? Status()
-               : line_error(line_number_, "a position is not finite");
+    if (!append_position(mesh_, mm_ * xyz[0], mm_ * xyz[1], mm_ * xyz[2])) {
+      return line_error(line_number_, "a position is not finite");
+    }
+    read_colour(rest);
+    return {};
   }
-  /// Corners such as "7", "7/1", "7//2" or "-1" (counted back from the last); vertices may follow later. A
-  /// line that ends with a backslash goes on in the next.
+  /// Red, green and blue behind the place, as many programs write them; one number alone is a weight.
+  void read_colour(std::string_view rest) {
+    std::array<double, 3> rgb{};
+    for (double& component : rgb) {
+      if (!parse_number(take_word(rest), component)) {
+        return;
+      }
+    }
+    constexpr std::array<float, 3> kWhite{1, 1, 1};
+    colours_.resize(mesh_.positions.size() - 1, kWhite);
+    colours_.push_back({static_cast<float>(rgb[0]), static_cast<float>(rgb[1]), static_cast<float>(rgb[2])});
+  }
+  /// From 0 to 1, or to 255 where any is larger.
+  void lay_colours() {
+    if (colours_.empty()) {
+      return;
+    }
+    const bool bytes = std::ranges::any_of(
+        colours_, [](const auto& rgb) { return std::ranges::any_of(rgb, [](float c) { return c > 1; }); });
+    mesh_.colours.resize(mesh_.positions.size(), {255, 255, 255});
+    for (std::size_t v = 0; v < colours_.size(); ++v) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        mesh_.colours[v][k] = colour_byte(static_cast<double>(colours_[v][k]) / (bytes ? 255.0 : 1.0));
+      }
+    }
+  }
+  /// Corners such as "7", "7/1", "7//2" or "-1" (counted back from the last); vertices may follow later.
   Status read_face(std::string_view rest) {
     corners_.clear();
     for (std::string_view word = take_word(rest); !word.empty() && word.front() != '#';
          word = take_word(rest)) {
-      const bool goes_on = word.back() == '\\';
-      if (goes_on) {
-        word.remove_suffix(1);
-        rest = next_line();
+      const std::optional<std::uint32_t> corner = corner_of(word);
+      if (!corner) {
+        return line_error(line_number_, in_quotes(word) + " is not one of the " +
+                                            std::to_string(mesh_.positions.size()) + " vertices so far");
       }
-      if (!word.empty()) {
-        const std::optional<std::uint32_t> corner = corner_of(word);
-        if (!corner) {
-          return line_error(line_number_, in_quotes(word) + " is not one of the " +
-                                              std::to_string(mesh_.positions.size()) + " vertices so far");
-        }
-        corners_.push_back(*corner);
-      }
+      corners_.push_back(*corner);
     }
     append_polygon(mesh_, corners_);
     return {};
@@ -109,7 +145,9 @@ class ObjReader {
   const std::string& where_;
   double mm_;
   Mesh mesh_;
+  std::vector<std::array<float, 3>> colours_;  ///< of the first vertices; empty while none has one
   std::vector<std::uint32_t> corners_;
+  std::string joined_;  ///< a line of several
   std::size_t line_number_ = 0;
   std::int64_t highest_ = 0;  ///< of the corners counted from the first vertex
   std::size_t highest_line_ = 0;

@@ -11,6 +11,7 @@
 #include "formats/mesh_formats.h"
 #include "formats/ply_body.h"
 #include "formats/ply_scan.h"
+#include "formats/scan_samples.h"
 
 namespace dubsar {
 
@@ -23,7 +24,7 @@ constexpr std::size_t kRowsAtOnce = std::size_t{1} << 16U;
 struct Columns {
   std::array<int, 3> position, normal, colour;
   int reliability, sigma, scans, flags;
-  double colour_scale = 1;
+  double largest_colour = 255;
 
   explicit Columns(const PlyElement& vertex)
       : position{vertex.scalar("x"), vertex.scalar("y"), vertex.scalar("z")},
@@ -33,8 +34,9 @@ struct Columns {
         sigma(vertex.scalar("sigma")),
         scans(vertex.scalar("scans")),
         flags(vertex.scalar("flags")) {
-    if (has(colour) && vertex.properties[static_cast<std::size_t>(colour[0])].type >= PlyType::kFloat32) {
-      colour_scale = 255;
+    if (has(colour)) {
+      const PlyType type = vertex.properties[static_cast<std::size_t>(colour[0])].type;
+      largest_colour = type >= PlyType::kFloat32 ? 1 : type == PlyType::kUint16 ? 65535 : 255;
     }
   }
   [[nodiscard]] static bool has(const std::array<int, 3>& three) {
@@ -78,7 +80,9 @@ bool put_vertex(const Columns& columns, double mm, const Value& value, std::size
   }
   if (Columns::has(columns.normal)) {
     const Eigen::Vector3f n = three(columns.normal, 1);
-    mesh.normals[v] = n.allFinite() ? n : Eigen::Vector3f::Zero();
+    // One that is unit but for rounding stays, to the bit.
+    constexpr float kRounding = 1e-6F;
+    mesh.normals[v] = std::abs(n.squaredNorm() - 1) <= kRounding ? n : unit_or_zero(n);
   }
   if (columns.reliability >= 0) {
     const double reliability = value(columns.reliability);
@@ -96,7 +100,7 @@ bool put_vertex(const Columns& columns, double mm, const Value& value, std::size
   }
   if (Columns::has(columns.colour)) {
     for (std::size_t k = 0; k < 3; ++k) {
-      mesh.colours[v][k] = byte_of(columns.colour_scale * value(columns.colour[k]));
+      mesh.colours[v][k] = colour_byte(value(columns.colour[k]) / columns.largest_colour);
     }
   }
   return true;

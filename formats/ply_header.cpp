@@ -165,11 +165,13 @@ Result<PlyHeader> parse_ply_header(std::string_view bytes, const std::string& wh
   }
   const std::string_view head = bytes.substr(0, kMaxPlyHeaderBytes);
   TextScanner scanner(head);
-  (void)scanner.line();
+  // Lines of an old Macintosh end with a carriage return alone.
+  const char line_end = head.starts_with("ply\r") && !head.starts_with("ply\r\n") ? '\r' : '\n';
+  (void)scanner.line(line_end);
   PlyHeader header;
   bool has_format = false;
   for (std::size_t line_number = 2; scanner.remaining() > 0; ++line_number) {
-    std::string_view rest = scanner.line();
+    std::string_view rest = scanner.line(line_end);
     const std::string_view keyword = take_word(rest);
     Complaint complaint;
     if (keyword == "end_header") {

@@ -10,6 +10,7 @@
 
 #include "core/number_text.h"
 #include "core/units.h"
+#include "formats/place_precision.h"
 #include "formats/ply_body.h"
 #include "formats/ply_scan_info.h"
 #include "formats/scan_samples.h"

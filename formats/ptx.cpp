@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 
+#include "formats/place_precision.h"
 #include "formats/scan_samples.h"
 #include "formats/seen_side.h"
 #include "formats/text_scanner.h"

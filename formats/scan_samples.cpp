@@ -9,17 +9,11 @@
 #include <limits>
 
 #include "formats/grid_reader.h"
+#include "formats/place_precision.h"
 
 namespace dubsar {
 
 namespace {
-
-constexpr const char* kMoveNear =
-    "export it without the offset of a map or a room, or give its unit if that is what is wrong";
-/// Rounded to an eighth of the spacing at the most, samples keep what noise leaves of them.
-constexpr double kStepsPerSpacing = 8;
-/// Whatever the spacing, rounding to a tenth of a micrometre takes nothing away.
-constexpr double kSurelyPreciseMm = 1000;
 
 bool within_bounds(double mm) {
   return std::abs(mm) <= kMaxCoordinateMm;  // false for NaN
@@ -43,27 +37,6 @@ Status ScanSamples::check_place(const std::string& name) const {
     return {};
   }
   return bad_input(name, "lies beyond 1 km from the origin (" + std::to_string(too_far) + " samples)",
-                   kMoveNear);
-}
-
-Status check_precision(const RangeGrid& grid, const std::string& name) {
-  const std::size_t count = grid.valid_count();
-  double farthest_mm = 0;
-  for (const std::vector<float>* axis : {&grid.x, &grid.y, &grid.z}) {
-    double sum = 0;
-    for (std::size_t i = 0; i < axis->size(); ++i) {
-      sum += grid.valid[i] != 0 ? static_cast<double>((*axis)[i]) : 0.0;
-    }
-    farthest_mm = std::max(farthest_mm, count == 0 ? 0.0 : std::abs(sum) / static_cast<double>(count));
-  }
-  const double step_mm = farthest_mm * static_cast<double>(std::numeric_limits<float>::epsilon());
-  if (farthest_mm < kSurelyPreciseMm || kStepsPerSpacing * step_mm <= grid.spacing_mm) {
-    return {};
-  }
-  return bad_input(name,
-                   "lies " + std::to_string(std::lround(farthest_mm / 1000.0)) +
-                       " m from the origin, too far for its samples to keep their places to a small part of "
-                       "their spacing",
                    kMoveNear);
 }
 
@@ -112,13 +85,16 @@ PointCloud cloud_from_samples(const ScanSamples& samples) {
     }
     if (!samples.normals.empty()) {
       const Eigen::Vector3f n(samples.normals[3 * i], samples.normals[3 * i + 1], samples.normals[3 * i + 2]);
-      const float length = n.norm();
-      const bool usable_normal = std::isfinite(length) && length > 1e-6F;
-      cloud.normals.push_back(usable_normal ? Eigen::Vector3f(n / length) : Eigen::Vector3f::Zero());
+      cloud.normals.push_back(unit_or_zero(n));
     }
   }
   normalise_intensity(cloud.intensity);
   return cloud;
+}
+
+Eigen::Vector3f unit_or_zero(const Eigen::Vector3f& normal) {
+  const float length = normal.norm();
+  return std::isfinite(length) && length > 1e-6F ? Eigen::Vector3f(normal / length) : Eigen::Vector3f::Zero();
 }
 
 std::string file_name_of(const std::string& path) {

@@ -2,6 +2,7 @@
 // Copyright The Dubsar developers
 #pragma once
 
+#include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -32,9 +33,6 @@ struct ScanSamples {
   [[nodiscard]] Status check_place(const std::string& name) const;
 };
 
-/// kBadInput when a grid lies so far from its origin that float coordinates blur its spacing.
-[[nodiscard]] Status check_precision(const RangeGrid& grid, const std::string& name);
-
 inline constexpr std::uint32_t kNoSample = 0xffffffffU;
 
 /// The grid whose cell i holds sample samples_of_cells[i]; an empty list takes the samples in their order.
@@ -44,6 +42,9 @@ inline constexpr std::uint32_t kNoSample = 0xffffffffU;
 
 /// The usable samples, in order.
 [[nodiscard]] PointCloud cloud_from_samples(const ScanSamples& samples);
+
+/// A normal as a file has it, of any length, as unit vector; zero where it has no direction.
+[[nodiscard]] Eigen::Vector3f unit_or_zero(const Eigen::Vector3f& normal);
 
 /// The last part of a path: what a scan is known by.
 [[nodiscard]] std::string file_name_of(const std::string& path);

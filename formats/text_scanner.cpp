@@ -70,9 +70,9 @@ bool TextScanner::integer(std::int64_t& value) {
   return false;
 }
 
-std::string_view TextScanner::line() {
+std::string_view TextScanner::line(char end) {
   const char* from = at_;
-  at_ = std::find(at_, end_, '\n');
+  at_ = std::find(at_, end_, end);
   std::string_view text(from, static_cast<std::size_t>(at_ - from));
   if (at_ != end_) {
     ++at_;

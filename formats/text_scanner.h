@@ -28,7 +28,7 @@ class TextScanner {
     }
   }
   /// The rest of the line without its end; the position moves behind it.
-  [[nodiscard]] std::string_view line();
+  [[nodiscard]] std::string_view line(char end = '\n');
   [[nodiscard]] bool at_end() {
     skip_blanks();
     return at_ == end_;

@@ -106,6 +106,21 @@ TEST(MeshPly, NamesMayBeInCapitals) {
   EXPECT_EQ(mesh->colours[2], (std::array<std::uint8_t, 3>{9, 8, 7}));
 }
 
+TEST(MeshPly, LinesMayEndAsOnAnOldMacintosh) {
+  for (const std::string& ending : {std::string("\r"), std::string("\r\n")}) {
+    std::string text = encode_mesh_ply(tetrahedron());
+    const std::size_t head = text.find("end_header\n") + 11;
+    std::string lines = text.substr(0, head);
+    for (std::size_t at = 0; (at = lines.find('\n', at)) != std::string::npos; at += ending.size()) {
+      lines.replace(at, 1, ending);
+    }
+    const auto mesh = read_mesh_bytes(lines + text.substr(head), "a.ply");
+    ASSERT_TRUE(mesh) << line_of(mesh);
+    EXPECT_EQ(mesh->positions, tetrahedron().positions);
+    EXPECT_EQ(mesh->faces, tetrahedron().faces);
+  }
+}
+
 TEST(MeshPly, ReadsTriangleStrips) {
   const auto mesh = read_mesh_bytes(
       "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty float y\nproperty float z\n"
@@ -267,7 +282,9 @@ TEST(MeshObj, ReadsLinesOfEveryKind) {
   std::ranges::replace(macintosh, '\n', '\r');
   for (const std::string& text :
        {vertices + "f 1 2 3 4 # a face\n", "\xEF\xBB\xBF" + vertices + "f 1 2 3 4\n",
-        vertices + "f 1 2 \\\n 3 4\n", vertices + "f 1 2 3\\\n4\n", "f 1 2 3 4\n" + vertices, macintosh}) {
+        vertices + "f 1 2 \\\n 3 4\n", vertices + "f 1 2 3\\\n4\n",
+        "v 0 0\\\n 0\nv 1 \\\r\n0\\\r\n0\n" + vertices.substr(16) + "f 1 2 3 4\n", "f 1 2 3 4\n" + vertices,
+        macintosh}) {
     SCOPED_TRACE(text);
     const auto mesh = read_mesh_bytes(text, "a.obj");
     ASSERT_TRUE(mesh) << line_of(mesh);
@@ -394,6 +411,11 @@ TEST(MeshHostile, Glb) {
   EXPECT_THAT(with("\"mode\": 4", "\"mode\": 5"), HasSubstr("mode is a strip or fan"));
   EXPECT_THAT(with("\"scene\": 0", "\"extensionsRequired\": [\"KHR_draco_mesh_compression\"]"),
               HasSubstr("compressed meshes are not read"));
+  EXPECT_THAT(with("\"scene\": 0", "\"extensionsRequired\": [\"ACME_warped_positions\"]"),
+              HasSubstr("extensionsRequired[0] is ACME_warped_positions, which is not known"));
+  EXPECT_EQ(with("\"scene\": 0", "\"extensionsRequired\": [\"KHR_materials_unlit\"]"), "no error");
+  EXPECT_THAT(with("\"count\": 12", "\"count\": 11"),
+              HasSubstr("has 11 corners, which are no whole triangles"));
   std::string broken_index = whole;
   broken_index[broken_index.size() - 1] = '\x7f';
   EXPECT_THAT(line_of(read_mesh_bytes(broken_index, "a.glb")),

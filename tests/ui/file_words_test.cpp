@@ -56,19 +56,20 @@ TEST(FileWords, NoFaultOfADriverIsHalfGerman) {
 
 TEST(FileWords, NoRefusalOfAReaderIsHalfGerman) {
   const int sentences = test::expect_german(
-      {"formats/json_node.cpp",        "formats/toml_document.cpp",   "formats/self_checked.cpp",
-       "formats/atomic_file.cpp",      "formats/hint_json.cpp",       "formats/pins_json.cpp",
-       "formats/ply_header.cpp",       "formats/ply_body.cpp",        "formats/ply_scan.cpp",
-       "formats/ply_scan_info.cpp",    "formats/point_text.cpp",      "formats/ptx.cpp",
-       "formats/scan_samples.cpp",     "formats/grid_file.cpp",       "formats/grid_header.cpp",
-       "formats/grid_reader.cpp",      "formats/glb_container.cpp",   "formats/mesh_glb.cpp",
-       "formats/mesh_io.cpp",          "formats/mesh_obj.cpp",        "formats/mesh_ply.cpp",
-       "formats/mesh_stl.cpp",         "formats/gray_file.cpp",       "formats/gray_jpeg.cpp",
-       "formats/calibration_json.cpp", "formats/calibration_set.cpp", "formats/artefact_toml.cpp",
-       "formats/corrections_json.cpp", "formats/selections_json.cpp", "formats/rig_json.cpp",
-       "formats/rig_toml.cpp",         "formats/rig_limits_json.cpp", "formats/red_map_json.cpp",
-       "formats/wedge_json.cpp",       "formats/search_index.cpp",    "formats/sha2.cpp",
-       "formats/writers_turn.cpp",     "formats/seen_side.cpp",       "acquisition/resample.cpp"},
+      {"formats/json_node.cpp",     "formats/toml_document.cpp",    "formats/self_checked.cpp",
+       "formats/atomic_file.cpp",   "formats/hint_json.cpp",        "formats/pins_json.cpp",
+       "formats/ply_header.cpp",    "formats/ply_body.cpp",         "formats/ply_scan.cpp",
+       "formats/ply_scan_info.cpp", "formats/point_text.cpp",       "formats/ptx.cpp",
+       "formats/scan_samples.cpp",  "formats/place_precision.cpp",  "formats/grid_file.cpp",
+       "formats/grid_header.cpp",   "formats/grid_reader.cpp",      "formats/glb_container.cpp",
+       "formats/mesh_glb.cpp",      "formats/mesh_io.cpp",          "formats/mesh_obj.cpp",
+       "formats/mesh_ply.cpp",      "formats/mesh_stl.cpp",         "formats/gray_file.cpp",
+       "formats/gray_jpeg.cpp",     "formats/calibration_json.cpp", "formats/calibration_set.cpp",
+       "formats/artefact_toml.cpp", "formats/corrections_json.cpp", "formats/selections_json.cpp",
+       "formats/rig_json.cpp",      "formats/rig_toml.cpp",         "formats/rig_limits_json.cpp",
+       "formats/red_map_json.cpp",  "formats/wedge_json.cpp",       "formats/search_index.cpp",
+       "formats/sha2.cpp",          "formats/writers_turn.cpp",     "formats/seen_side.cpp",
+       "acquisition/resample.cpp"},
       and_these({"`obj_info dubsar_direction "}));
   EXPECT_GT(sentences, 150);
 }

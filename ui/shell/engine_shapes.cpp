@@ -84,6 +84,9 @@ constexpr EnginePhrase kShapes[] = {
     {" vertices: face ", " Punkte: Fläche "},
     {"is the child of more than one node", "hängt an mehr als einem Knoten"},
     {": compressed meshes are not read", ": gepackte Netze werden nicht gelesen"},
+    {", which is not known", ", was nicht bekannt ist"},
+    {" corners, which are no whole triangles", " Ecken, was keine ganzen Dreiecke sind"},
+    {"has not as many colours as there are positions", "hat nicht so viele Farben, wie es Lagen gibt"},
     {"its scene holds no triangle", "seine Szene enthält kein Dreieck"},
     {"the mesh is too large for GLB (4 GiB)", "das Netz ist zu groß für GLB (4 GiB)"},
     {"write .ply instead", "als .ply schreiben"},
@@ -121,6 +124,9 @@ constexpr EnginePhrase kShapes[] = {
     {"lies beyond 1 km from the origin (", "liegt weiter als 1 km vom Ursprung ("},
     {" m from the origin, too far for its samples to keep their places to a small part of their spacing",
      " m vom Ursprung, zu weit: seine Messpunkte behielten ihren Ort nicht auf einen kleinen Teil ihres "
+     "Abstands"},
+    {" m from the origin, too far for its vertices to keep their places to a small part of their spacing",
+     " m vom Ursprung, zu weit: seine Punkte behielten ihren Ort nicht auf einen kleinen Teil ihres "
      "Abstands"},
     {"export it without the offset of a map or a room, or give its unit if that is what is wrong",
      "ohne den Versatz einer Karte oder eines Raums ausgeben, oder seine Einheit angeben, wenn es daran "
