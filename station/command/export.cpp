@@ -3,6 +3,8 @@
 // dubsar export: all that leaves the storeroom, as one checked package.
 
 #include <algorithm>
+#include <charconv>
+#include <cstdint>
 #include <cstdio>
 #include <memory>
 #include <string_view>
@@ -25,6 +27,34 @@ struct ExportArguments {
   bool update = false;
 };
 
+/// RFC 3986, 3.2: of what stands between // and the next slash.
+bool names_a_host(std::string_view authority) {
+  std::string_view host = authority.substr(authority.find('@') + 1);  // npos + 1 is 0
+  const std::size_t colon = host.find(':', host.starts_with('[') ? host.find(']') : 0);
+  if (colon != std::string_view::npos) {
+    const std::string_view port = host.substr(colon + 1);
+    std::uint16_t number = 0;
+    const auto [stop, error] = std::from_chars(port.data(), port.data() + port.size(), number);
+    if (error != std::errc{} || stop != port.data() + port.size()) {
+      return false;
+    }
+    host = host.substr(0, colon);
+  }
+  return host.starts_with('[') ? host.size() > 3 && host.ends_with(']')
+                               : !host.empty() && host.find_first_of("[]") == std::string_view::npos;
+}
+
+/// RFC 3986, 2.1: two hexadecimal digits behind each percent sign.
+bool escapes_are_whole(std::string_view url) {
+  constexpr std::string_view kHex = "0123456789abcdefABCDEF";
+  for (std::size_t at = url.find('%'); at != std::string_view::npos; at = url.find('%', at + 1)) {
+    if (at + 2 >= url.size() || url.substr(at + 1, 2).find_first_not_of(kHex) != std::string_view::npos) {
+      return false;
+    }
+  }
+  return true;
+}
+
 /// Why nothing can be served below this address; empty where it can.
 std::string fault_of_address(const std::string& url) {
   if (!url.starts_with("https://") && !url.starts_with("http://")) {
@@ -35,7 +65,17 @@ std::string fault_of_address(const std::string& url) {
     return static_cast<unsigned char>(c) <= ' ' || c == '\x7f' ||
            std::string_view("\"<>\\^`{|}?#").find(c) != std::string_view::npos;
   });
-  return plain ? std::string() : "an address of a folder has no blanks, quotes, brackets, ? or #";
+  if (!plain) {
+    return "an address of a folder has no blanks, quotes, brackets, ? or #";
+  }
+  if (!escapes_are_whole(url)) {
+    return "an address has two hexadecimal digits after each %";
+  }
+  std::string_view authority = url;
+  authority.remove_prefix(url.find("//") + 2);
+  return names_a_host(authority.substr(0, authority.find('/')))
+             ? std::string()
+             : "an address names a host after //, and after a colon a port up to 65535";
 }
 
 int tell_done(const ExportArguments& arguments, const CommandContext& context) {

@@ -303,7 +303,9 @@ TEST_F(Export, BadUsageIsToldInOneLine) {
   EXPECT_EQ(run_command({"export", at("nowhere").string(), "--to", at("x").string()}).status, 2);
   EXPECT_EQ(export_to("x", {"--without", "everything"}).status, 2);
   for (const char* url :
-       {"museum.example/t", "https://museum.example/a tablet/", "https://museum.example/?t="}) {
+       {"museum.example/t", "https://museum.example/a tablet/", "https://museum.example/?t=", "https://",
+        "http:///x", "https://:80/", "https://@/x", "https://museum.example/%zz", "https://museum.example/%2",
+        "https://museum.example:99999/", "https://museum.example:port/", "https://[::1/t", "https://a]b/"}) {
     const Outcome refused = export_to("x", {"--base-url", url});
     EXPECT_EQ(refused.status, 2) << url;
     EXPECT_THAT(refused.err, HasSubstr("--base-url: an address")) << url;
