@@ -159,8 +159,11 @@ Result<bool> is_earlier_package(const fs::path& package, const fs::path& session
         package.string(),
         "see what differs (dubsar verify), choose another folder, or replace it with --force");
   }
-  const auto gone = std::ranges::find_if(
-      known->inputs, [&](const StampedFile& file) { return is_grid(file) && !is_here(file); });
+  // Rows of a scan that was not over are grids, too: they went when that scan was gone on with.
+  const auto gone = std::ranges::find_if(known->inputs, [&](const StampedFile& file) {
+    std::error_code ignored;
+    return is_grid(file) && !is_here(file) && fs::exists(package / "data/scans/grids" / file.name, ignored);
+  });
   if (gone != known->inputs.end()) {
     return std::unexpected(lost("the session no longer has " + gone->name + " as it was stored", package));
   }

@@ -68,6 +68,10 @@ TEST_F(ExportDamaged, RowsOfAScanThatWasNotOverAreThere) {
   EXPECT_THAT(done.err, HasSubstr("takes them in"));
   EXPECT_THAT(packed("provenance.jsonld"), HasSubstr("scans/unfinished/8/0000.grid"));
   EXPECT_EQ(run_command({"verify", bag().string()}).status, 0);
+  fs::remove_all(left);  // as whoever goes on with that scan leaves it
+  const Outcome updated = run_command(
+      {"export", session_.string(), "--to", bag().string(), "--update", "--without", "renderings,features"});
+  EXPECT_EQ(updated.status, 0) << updated.err;
 }
 
 /// A file whose reading the disk refuses, whoever asks.
