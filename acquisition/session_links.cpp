@@ -2,6 +2,9 @@
 // Copyright The Dubsar developers
 #include "acquisition/session_links.h"
 
+#include <iterator>
+#include <vector>
+
 #include "acquisition/session_files.h"
 
 namespace dubsar::session {
@@ -22,20 +25,11 @@ std::optional<Error> link_on_the_way(const fs::path& session, const fs::path& na
 }
 
 Status check_written_names_are_no_links(const fs::path& session) {
-  const auto check = [&](const char* name) -> Status {
+  std::vector<const char*> written(std::begin(kFolders), std::end(kFolders));
+  written.insert(written.end(), {kDatabase, kBackup, kSums});  // the lock looks for itself
+  for (const char* name : written) {
     if (const auto link = link_on_the_way(session, name)) {
       return fail(link->kind, link->what, (session / link->where).string(), link->mend);
-    }
-    return {};
-  };
-  for (const char* name : kFolders) {
-    if (Status plain = check(name); !plain) {
-      return plain;
-    }
-  }
-  for (const char* name : {kDatabase, kBackup, kSums, kLock}) {
-    if (Status plain = check(name); !plain) {
-      return plain;
     }
   }
   return {};

@@ -88,16 +88,6 @@ class StripeExtractor {
   void extract(const GrayView& on, const GrayView& off, StripeProfile& profile);
 
  private:
-  void find_peaks(const GrayView& on, const GrayView& off);
-  struct Cut;
-  struct CutLight;
-  CutLight take_cut(const GrayView& on, const GrayView& off, int column, int row, int reach, Cut& cut) const;
-  void refine(const GrayView& on, const GrayView& off, int column, StripeProfile& profile);
-  [[nodiscard]] std::optional<double> ridge_row(const GrayView& on, const GrayView& off, int column,
-                                                double start) const;
-  void settle(StripeProfile& profile);
-  void keep_light(StripeProfile& profile) const;
-
   static constexpr int kMostHalf = 24;  ///< rows looked at on either side of a peak
   static constexpr int kSide = 2 * kMostHalf + 1;
   /// The rows around a column's stripe, background taken off.
@@ -113,6 +103,14 @@ class StripeExtractor {
     float ground = 0;
     float peak = 0;
   };
+
+  void find_peaks(const GrayView& on, const GrayView& off);
+  CutLight take_cut(const GrayView& on, const GrayView& off, int column, int row, int reach, Cut& cut) const;
+  void refine(const GrayView& on, const GrayView& off, int column, StripeProfile& profile);
+  [[nodiscard]] std::optional<double> ridge_row(const GrayView& on, const GrayView& off, int column,
+                                                double start) const;
+  void settle(StripeProfile& profile);
+  void keep_light(StripeProfile& profile) const;
 
   StripeOptions options_;
   RidgeDetector ridge_;

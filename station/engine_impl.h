@@ -240,8 +240,8 @@ struct Engine::Impl {
   NextStep step_to(const RedMap& red_map) const;
   [[nodiscard]] NextStep step_again(int id) const;  ///< to where a scan was taken from
   // engine_misses.cpp
-  /// Where to after a scan: by the red map when the scan was taken up; else the same view again, then one
-  /// that has more in common with the others, then nothing more.
+  /// Where to after a scan: by the red map when the scan was taken up; else the same view again, or one that
+  /// has more in common with the others, then one of the tablet laid otherwise, then nothing more.
   NextStep step_after(int id, const std::vector<ScanPose>& poses, const RedMap& red_map, JobContext& job);
   /// Where the tablet was turned by hand since a scan was placed, only the motors' word says how it lies:
   /// whatever way it does.
