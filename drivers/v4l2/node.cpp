@@ -63,7 +63,7 @@ Error error_of(int number, const std::string& doing, const std::string& path) {
     case EACCES:
     case EPERM:
       return {ErrorKind::kDevice, "no right to use the camera", path,
-              "join the group plugdev, or copy 60-dubsar.rules to /etc/udev/rules.d; then plug the camera in "
+              "join the group video, or copy 60-dubsar.rules to /etc/udev/rules.d; then plug the camera in "
               "again"};
     case EBUSY:
       return {ErrorKind::kDevice, "the camera is in use by another program", path,

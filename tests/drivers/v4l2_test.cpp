@@ -198,7 +198,7 @@ TEST_F(V4l2, ARefusalSaysWhatToDo) {
   }
   ASSERT_EQ(peer_->tell("deny"), "ok");
   EXPECT_THAT(open().error().line(),
-              HasSubstr("no right to use the camera; join the group plugdev, or copy 60-dubsar.rules"));
+              HasSubstr("no right to use the camera; join the group video, or copy 60-dubsar.rules"));
   EXPECT_EQ(open().error().kind, ErrorKind::kDevice);
   EXPECT_THAT(v4l2::find_cameras(folder_.path()),
               testing::ElementsAre(testing::Pair(node(), HasSubstr("no right to use the camera; join"))));

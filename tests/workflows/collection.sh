@@ -60,6 +60,11 @@ status=0
 "$workflows/do-tablet" "$folder" museum/broken 2>/dev/null || status=$?
 grep -q " failed status=$status {\"error\":{" "$folder/log/museum/broken.log" || fail "no reason: $(cat "$folder/log/museum/broken.log")"
 rm -r "$folder/museum/bad" "$folder/museum/broken"*
+mkdir "$folder/museum/lost"
+echo 'a copy of the tables' >"$folder/museum/lost/session.backup.sqlite"
+said=$("$workflows/check-collection" "$folder" 2>/dev/null) && fail "check-collection overlooks a session without its database"
+[[ $said == 'museum/lost: a session without its session.sqlite'* ]] || fail "check-collection: $said"
+rm -r "$folder/museum/lost"
 "$workflows/check-collection" "$folder" 2>/dev/null || fail "check-collection"
 printf 'x' >>"$folder/museum/c/wedges.json"
 said=$("$workflows/check-collection" "$folder" 2>/dev/null) && fail "check-collection overlooks damage"

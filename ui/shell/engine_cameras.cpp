@@ -18,8 +18,8 @@ constexpr EnginePhrase kCameras[] = {
      "die Kamera ist abgesteckt oder antwortet nicht mehr"},
     {"plug it in again, then go on", "wieder anstecken, dann weiter"},
     {"no right to use the camera", "kein Recht, die Kamera zu benutzen"},
-    {"join the group plugdev, or copy 60-dubsar.rules to /etc/udev/rules.d; then plug the camera in again",
-     "in die Gruppe plugdev eintreten, oder 60-dubsar.rules nach /etc/udev/rules.d kopieren; dann die Kamera "
+    {"join the group video, or copy 60-dubsar.rules to /etc/udev/rules.d; then plug the camera in again",
+     "in die Gruppe video eintreten, oder 60-dubsar.rules nach /etc/udev/rules.d kopieren; dann die Kamera "
      "neu anstecken"},
     {"the camera is in use by another program", "ein anderes Programm benutzt die Kamera"},
     {"close whatever shows its picture, then try again", "schließen, was ihr Bild zeigt, dann noch einmal"},
