@@ -8,13 +8,14 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstring>
 #include <string>
+#include <string_view>
 #include <system_error>
 #include <utility>
 
 #include "formats/atomic_file.h"
 #include "formats/folder_lock.h"
+#include "formats/refusal.h"
 #include "formats/resolved_place.h"
 
 namespace dubsar {
@@ -23,9 +24,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::unexpected<Error> storage(const fs::path& path, const std::string& doing, const std::string& why) {
-  return fail(ErrorKind::kStorage, doing + ": " + why, path.string(),
-              "free some space or choose another folder");
+std::unexpected<Error> storage(const fs::path& path, std::string_view doing, int why) {
+  return refused(path, doing, why, "choose another folder");
+}
+std::unexpected<Error> storage(const fs::path& path, std::string_view doing, const std::error_code& why) {
+  return storage(path, doing, why.value());
 }
 
 bool is_free(const fs::path& target) {
@@ -51,13 +54,13 @@ Result<StagedFolder> StagedFolder::begin(const fs::path& wanted, bool replace) {
   }
   fs::create_directories(target.parent_path(), error);
   if (error) {
-    return storage(target.parent_path(), "cannot make the folder", error.message());
+    return storage(target.parent_path(), "cannot make the folder", error);
   }
   const fs::path staged = target.parent_path() / (std::string(kTemporaryPrefix) + target.filename().string());
   for (int attempt = 0; attempt < 2; ++attempt) {
     const bool made = fs::create_directory(staged, error);
     if (error) {
-      return storage(staged, "cannot make the folder", error.message());
+      return storage(target, "cannot make the folder", error);
     }
     const int lock = ::open(staged.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC | O_NOFOLLOW);
     if (lock < 0) {
@@ -67,7 +70,7 @@ Result<StagedFolder> StagedFolder::begin(const fs::path& wanted, bool replace) {
     struct stat there {};
     if (const int why = lock_folder(lock, LOCK_EX | LOCK_NB); why != 0) {
       ::close(lock);
-      return why != EWOULDBLOCK ? storage(staged, "cannot lock the folder", std::strerror(why))
+      return why != EWOULDBLOCK ? storage(staged, "cannot lock the folder", why)
                                 : fail(ErrorKind::kUsage, "another program is writing this folder now",
                                        target.string(), "wait for it, or choose another folder");
     }
@@ -76,7 +79,7 @@ Result<StagedFolder> StagedFolder::begin(const fs::path& wanted, bool replace) {
         ::close(lock);
         fs::remove_all(staged, error);
         if (error) {
-          return storage(staged, "others may write into it, and it cannot be taken away", error.message());
+          return storage(staged, "others may write into it, and it cannot be taken away", error);
         }
         continue;  // made anew
       }
@@ -88,13 +91,14 @@ Result<StagedFolder> StagedFolder::begin(const fs::path& wanted, bool replace) {
       }
       if (error) {
         ::close(lock);
-        return storage(staged, "cannot clear what was left there", error.message());
+        return storage(staged, "cannot clear what was left there", error);
       }
       return StagedFolder(std::move(target), staged, lock);
     }
     ::close(lock);
   }
-  return storage(staged, "cannot make the folder", "others take it away or put theirs there");
+  return fail(ErrorKind::kStorage, "cannot make the folder: others take it away or put theirs there",
+              staged.string(), "choose another folder");
 }
 
 StagedFolder::StagedFolder(StagedFolder&& other) noexcept
@@ -122,7 +126,7 @@ Status StagedFolder::publish() {
     }
   }
   if (error) {
-    return storage(path_, "cannot read back what was written", error.message());
+    return storage(path_, "cannot read back what was written", error);
   }
   if (const Status synced = sync_folder(path_); !synced) {
     return synced;
@@ -130,7 +134,7 @@ Status StagedFolder::publish() {
   // rename() replaces an empty folder by itself.
   if (is_free(target_)) {
     if (::rename(path_.c_str(), target_.c_str()) != 0) {
-      return storage(target_, "cannot put the folder in its place", std::strerror(errno));
+      return storage(target_, "cannot put the folder in its place", errno);
     }
     path_.clear();
     return sync_folder(target_.parent_path());
@@ -139,12 +143,12 @@ Status StagedFolder::publish() {
     // A file system that cannot exchange: the old one steps aside under a name that says what it is.
     const fs::path aside = target_.parent_path() / (target_.filename().string() + ".replaced");
     if (::rename(target_.c_str(), aside.c_str()) != 0) {
-      return storage(aside, "cannot move the old folder there", std::strerror(errno));
+      return storage(aside, "cannot move the old folder there", errno);
     }
     if (::rename(path_.c_str(), target_.c_str()) != 0) {
       const int why = errno;
       (void)::rename(aside.c_str(), target_.c_str());
-      return storage(target_, "cannot put the folder in its place", std::strerror(why));
+      return storage(target_, "cannot put the folder in its place", why);
     }
     path_ = aside;
   }

@@ -12,6 +12,8 @@
 #include <cstring>
 #include <utility>
 
+#include "formats/refusal.h"
+
 namespace dubsar {
 
 namespace {
@@ -52,30 +54,13 @@ class Unlinker {
   std::string path_;
 };
 
-std::string mend_of(int error) {
-  switch (error) {
-    case ENOSPC:
-    case EDQUOT:
-      return "free some space on this disk and try again; what was stored before is untouched";
-    case EFBIG:
-      return "the file exceeds a size limit; store it on another disk or raise the limit";
-    case EROFS:
-    case EACCES:
-    case EPERM:
-      return "choose a folder that can be written to";
-    case ENOENT:
-    case ENOTDIR:
-      return "make the folder first";
-    case EISDIR:
-      return "name a file, not a folder";
-    default:
-      return "check the disk";
-  }
-}
+constexpr const char* kNameAFile = "name a file, not a folder";
 
 std::unexpected<Error> storage_error(const std::filesystem::path& path, const char* doing, int error) {
-  return fail(ErrorKind::kStorage, std::string(doing) + ": " + std::strerror(error), path.string(),
-              mend_of(error));
+  const char* otherwise = error == ENOENT || error == ENOTDIR ? "make the folder first"
+                          : error == EISDIR                   ? kNameAFile
+                                                              : "check the disk";
+  return refused(path, doing, error, otherwise);
 }
 
 Status write_all(int fd, const std::filesystem::path& path, std::span<const std::byte> bytes) {
@@ -113,9 +98,9 @@ Status write_file_atomically(const std::filesystem::path& path, const ByteProduc
   struct stat existing {};
   if (::stat(path.c_str(), &existing) == 0 && !S_ISREG(existing.st_mode)) {
     // Wrong words, no disk that refuses: to do it again is of no use.
-    return S_ISDIR(existing.st_mode) ? Status(fail(ErrorKind::kUsage, "cannot write: it is a folder",
-                                                   path.string(), mend_of(EISDIR)))
-                                     : write_to_device(path, produce);
+    return S_ISDIR(existing.st_mode)
+               ? Status(fail(ErrorKind::kUsage, "cannot write: it is a folder", path.string(), kNameAFile))
+               : write_to_device(path, produce);
   }
   const std::filesystem::path folder = folder_of(path);
   std::filesystem::path temporary;

@@ -2,8 +2,9 @@
 // Copyright The Dubsar developers
 #include "formats/make_folder.h"
 
-#include <cerrno>
 #include <system_error>
+
+#include "formats/refusal.h"
 
 namespace dubsar {
 
@@ -13,9 +14,7 @@ Status make_folder(const std::filesystem::path& folder) {
   if (!error) {
     return {};
   }
-  const bool full = error.value() == ENOSPC || error.value() == EDQUOT;
-  return fail(ErrorKind::kStorage, "cannot make the folder: " + error.message(), folder.string(),
-              full ? "free some space on this disk" : "choose a folder that can be written to");
+  return refused(folder, "cannot make the folder", error.value(), "choose a folder that can be written to");
 }
 
 }  // namespace dubsar

@@ -11,6 +11,7 @@
 #include "formats/atomic_file.h"
 #include "formats/json_node.h"
 #include "formats/json_text.h"
+#include "formats/refusal.h"
 #include "formats/xxh128.h"
 
 namespace dubsar {
@@ -155,11 +156,14 @@ Result<bool> StampedWork::done(const JobContext& job) const {
 Status StampedWork::start() const {
   std::error_code error;
   if (!fs::remove(stamp_, error)) {
-    if (error) {
-      return fail(ErrorKind::kStorage, "cannot remove the old stamp: " + error.message(), stamp_.string(),
-                  "check the folder and its rights");
+    if (!error) {
+      return {};  // there was none
     }
-    return {};  // there was none
+    // A disk that is write-protected refuses to remove what is not there, too.
+    std::error_code unknown;
+    const bool there = fs::exists(fs::symlink_status(stamp_, unknown));
+    return refused(stamp_, there ? "cannot remove the old stamp" : "cannot be written", error.value(),
+                   "check the folder and its rights");
   }
   return sync_folder(folder_of(stamp_));
 }

@@ -33,5 +33,12 @@ TEST(MakeFolder, SaysWhatWhereAndTheMend) {
   EXPECT_THAT(made.error().line(), HasSubstr("choose a folder that can be written to"));
 }
 
+TEST(MakeFolder, SaysThatANameIsTooLong) {
+  const test::TemporaryFolder folder;
+  const Status made = make_folder(folder.path() / std::string(300, 'x'));
+  ASSERT_FALSE(made);
+  EXPECT_THAT(made.error().line(), HasSubstr("File name too long; choose a shorter name"));
+}
+
 }  // namespace
 }  // namespace dubsar

@@ -19,6 +19,8 @@ namespace {
 
 /// Some network file systems cannot.
 bool cannot_sync_folders = false;
+/// A disk that is write-protected, which says so of names that are not there, too.
+bool write_protected = false;
 
 }  // namespace
 
@@ -30,6 +32,15 @@ extern "C" int fsync(int file) {
     return -1;
   }
   return static_cast<int>(::syscall(SYS_fsync, file));
+}
+
+extern "C" int remove(const char* name) {
+  if (write_protected) {
+    errno = EROFS;
+    return -1;
+  }
+  const auto unlinked = static_cast<int>(::syscall(SYS_unlink, name));
+  return unlinked != 0 && errno == EISDIR ? static_cast<int>(::syscall(SYS_rmdir, name)) : unlinked;
 }
 
 namespace dubsar {
@@ -173,6 +184,23 @@ TEST_F(DoneStampTest, WhatCannotBeReadOrWrittenIsTold) {
   stopped.cancel();
   EXPECT_EQ(StampedWork::begin(path("x.done"), "analyze", "", {path("in.ply")}, stopped).error().kind,
             ErrorKind::kCancelled);
+}
+
+TEST_F(DoneStampTest, AWriteProtectedDiskIsToldInOneLineWhetherThereWasAStampOrNot) {
+  const StampedWork work = begin();
+  write_protected = true;
+  const Status none = work.start();
+  put("out.json.done", "an old one");
+  const Status old = work.start();
+  write_protected = false;
+  ASSERT_FALSE(none);
+  EXPECT_THAT(none.error().line(),
+              HasSubstr("out.json.done: cannot be written: Read-only file system; choose a "
+                        "folder that can be written to"));
+  ASSERT_FALSE(old);
+  EXPECT_THAT(old.error().line(),
+              HasSubstr("out.json.done: cannot remove the old stamp: Read-only file system; "
+                        "choose a folder that can be written to"));
 }
 
 }  // namespace

@@ -22,6 +22,7 @@ constexpr std::pair<std::string_view, std::string_view> kOfTheSystem[] = {
     {"Input/output error", "Fehler beim Lesen oder Schreiben"},
     {"Read-only file system", "der Datenträger ist schreibgeschützt"},
     {"Is a directory", "es ist ein Ordner"},
+    {"File name too long", "der Name ist zu lang"},
     {"Not a directory", "es ist kein Ordner"},
     {"Too many open files", "zu viele offene Dateien"},
 };

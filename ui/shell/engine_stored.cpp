@@ -12,13 +12,23 @@ constexpr EnginePhrase kStored[] = {
     // the disk
     {"free some space on this disk and try again; what was stored before is untouched",
      "Platz auf dem Datenträger schaffen und noch einmal versuchen; was gespeichert war, ist unberührt"},
-    {"free some space on this disk", "Platz auf dem Datenträger schaffen"},
     {"the file exceeds a size limit; store it on another disk or raise the limit",
      "die Datei überschreitet eine Größengrenze; auf einem anderen Datenträger speichern, oder die Grenze "
      "heben"},
     {"choose a folder that can be written to", "einen Ordner wählen, in den geschrieben werden darf"},
+    {"choose a shorter name: what is added to it while it is written has to have room too",
+     "einen kürzeren Namen wählen: auch was beim Schreiben angehängt wird, muss Platz haben"},
+    {"close other programs, or raise the limit on open files (ulimit -n)",
+     "andere Programme schließen, oder die Grenze für offene Dateien heben (ulimit -n)"},
     {"make the folder first", "zuerst den Ordner anlegen"},
     {"check the disk", "den Datenträger prüfen"},
+    {"the system starts no more threads: a limit on processes is reached, or memory is short",
+     "das System startet keine weiteren Threads: eine Grenze für Prozesse ist erreicht, oder der Speicher "
+     "ist "
+     "knapp"},
+    {"end other programs, or raise the limit (ulimit -u; TasksMax of a service, pids of a container)",
+     "andere Programme beenden, oder die Grenze heben (ulimit -u; TasksMax eines Dienstes, pids eines "
+     "Containers)"},
     {"cannot write: it is a folder", "nicht zu schreiben: es ist ein Ordner"},
     {"cannot write", "lässt sich nicht schreiben"},
     {"cannot open", "lässt sich nicht öffnen"},
@@ -161,7 +171,7 @@ constexpr EnginePhrase kStored[] = {
     // packages and what goes into them
     {"others may write into it, and it cannot be taken away",
      "andere können hineinschreiben, und er lässt sich nicht entfernen"},
-    {"free some space or choose another folder", "Platz schaffen, oder einen anderen Ordner wählen"},
+    {"choose another folder", "einen anderen Ordner wählen"},
     {"what lies there is no package of Dubsar, so it is not replaced",
      "was dort liegt, ist kein Paket von Dubsar, also wird es nicht ersetzt"},
     {"what lies there is the package of another session, so it is not replaced",
@@ -169,7 +179,8 @@ constexpr EnginePhrase kStored[] = {
     {"choose another folder, or remove it yourself", "einen anderen Ordner wählen, oder es selbst entfernen"},
     {"look at its rights and at the disk", "seine Rechte und den Datenträger ansehen"},
     {"look at its rights", "seine Rechte ansehen"},
-    {"cannot remove the old stamp: ", "der alte Stempel lässt sich nicht entfernen: "},
+    {"cannot remove the old stamp", "der alte Stempel lässt sich nicht entfernen"},
+    {"cannot be written", "lässt sich nicht schreiben"},
     {"check the folder and its rights", "den Ordner und seine Rechte prüfen"},
     {"check the disk and the rights", "den Datenträger und die Rechte prüfen"},
     {"the font for PDF files is missing", "die Schrift für PDF-Dateien fehlt"},
