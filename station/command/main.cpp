@@ -21,6 +21,7 @@
 #include "core/file_blocks.h"
 #include "core/heap.h"
 #include "core/log.h"
+#include "core/thread_refusal.h"
 #include "station/command/command.h"
 #include "station/command/wrong_words.h"
 
@@ -111,9 +112,10 @@ int run(int argc, char** argv) {
   } catch (const std::bad_alloc&) {
     return report(
         {ErrorKind::kInternal, "out of memory", {}, "close other programs or use fewer scans at once"}, json);
-  } catch (const std::exception& defect) {
-    return report(
-        {ErrorKind::kInternal, defect.what(), {}, "this is a defect of the program: please report it"}, json);
+  } catch (const std::exception& thrown) {
+    const Error defect{
+        ErrorKind::kInternal, thrown.what(), {}, "this is a defect of the program: please report it"};
+    return report(thread_refusal(thrown).value_or(defect), json);
   }
 }
 
