@@ -2,22 +2,15 @@
 // Copyright The Dubsar developers
 #include "acquisition/session_files.h"
 
-#include <fcntl.h>
-#include <sys/file.h>
-#include <sys/stat.h>
-#include <unistd.h>
 #include <xxhash.h>
 
 #include <algorithm>
-#include <array>
-#include <cerrno>
 #include <charconv>
-#include <cstring>
 #include <memory>
 #include <sstream>
-#include <utility>
 
 #include "formats/atomic_file.h"
+#include "formats/refusal.h"
 
 namespace dubsar::session {
 
@@ -28,26 +21,7 @@ namespace {
 constexpr std::size_t kPieceBytes = std::size_t{1} << 20U;
 
 std::unexpected<Error> refused(const fs::path& path, const char* doing, int error) {
-  return fail(ErrorKind::kStorage, std::string(doing) + ": " + std::strerror(error), path.string(),
-              error == ENOSPC || error == EDQUOT ? "free some space on this disk"
-                                                 : "choose a folder that can be written to");
-}
-
-/// The lock is emptied and written to: never through a link, nor under one name of a file that has others.
-Result<int> open_lock(const fs::path& path) {
-  const int fd = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0666);
-  if (fd < 0 && errno != ELOOP) {
-    return refused(path, "cannot lock the session", errno);
-  }
-  struct stat file {};
-  if (fd >= 0 && ::fstat(fd, &file) == 0 && S_ISREG(file.st_mode) && file.st_nlink == 1) {
-    return fd;
-  }
-  if (fd >= 0) {
-    ::close(fd);
-  }
-  return bad_input(path.string(), "a link, or no file: the session is not locked through it",
-                   "take it away while no program writes to this session: it holds nothing");
+  return dubsar::refused(path, doing, error, "choose a folder that can be written to");
 }
 
 struct StateFreer {
@@ -59,47 +33,6 @@ struct StateFreer {
 bool in_a_folder_of_the_session(const fs::path& name) {
   return !name.empty() && name.is_relative() && std::ranges::find(name, fs::path("..")) == name.end() &&
          std::ranges::any_of(kFolders, [&](const char* folder) { return *name.begin() == folder; });
-}
-
-Result<FolderLock> FolderLock::take(const fs::path& folder) {
-  const fs::path path = folder / kLock;
-  const Result<int> opened = open_lock(path);
-  if (!opened) {
-    return std::unexpected(opened.error());
-  }
-  const int fd = *opened;
-  FolderLock lock(fd);
-  if (::flock(fd, LOCK_EX | LOCK_NB) != 0) {
-    if (errno != EWOULDBLOCK) {
-      return refused(path, "cannot lock the session", errno);
-    }
-    std::array<char, 32> pid{};
-    const ssize_t got = ::pread(fd, pid.data(), pid.size() - 1, 0);
-    std::string who(pid.data(), static_cast<std::size_t>(std::max<ssize_t>(0, got)));
-    who.erase(std::find_if_not(who.begin(), who.end(), [](char c) { return c >= '0' && c <= '9'; }),
-              who.end());
-    return fail(ErrorKind::kUsage,
-                "another program is writing to this session" +
-                    (who.empty() ? std::string() : " (process " + who + ")"),
-                folder.string(), "close it first, or open the session for reading only");
-  }
-  // Only for the words above: the lock itself holds without.
-  const std::string pid = std::to_string(::getpid()) + "\n";
-  if (::ftruncate(fd, 0) == 0) {
-    [[maybe_unused]] const ssize_t written = ::pwrite(fd, pid.data(), pid.size(), 0);
-  }
-  return lock;
-}
-
-FolderLock::FolderLock(FolderLock&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
-FolderLock& FolderLock::operator=(FolderLock&& other) noexcept {
-  std::swap(fd_, other.fd_);
-  return *this;
-}
-FolderLock::~FolderLock() {
-  if (fd_ >= 0) {
-    ::close(fd_);
-  }
 }
 
 Status make_folders(const fs::path& folder) {

@@ -26,23 +26,6 @@ inline constexpr const char* kFolders[] = {kGrids, "mesh", "analysis", "export"}
 /// True for a name below one of those folders. What the tables name is untrusted: it may lead elsewhere.
 [[nodiscard]] bool in_a_folder_of_the_session(const std::filesystem::path& name);
 
-/// Held by the one program that writes; the system lets go of it when that program ends, however it ends.
-class FolderLock {
- public:
-  /// kUsage with the process number when another program (or another store of this one) has it. kBadInput
-  /// where a link, or what is no file, lies in place of the lock.
-  [[nodiscard]] static Result<FolderLock> take(const std::filesystem::path& folder);
-  FolderLock(FolderLock&& other) noexcept;
-  FolderLock& operator=(FolderLock&& other) noexcept;
-  FolderLock(const FolderLock&) = delete;
-  FolderLock& operator=(const FolderLock&) = delete;
-  ~FolderLock();
-
- private:
-  explicit FolderLock(int fd) : fd_(fd) {}
-  int fd_ = -1;
-};
-
 /// Makes the session's folders, durably. Refuses a folder that holds other things and no session.
 [[nodiscard]] Status make_folders(const std::filesystem::path& folder);
 /// Removes what a killed writer left behind half-written; returns how many.

@@ -6,7 +6,7 @@
 #include <mutex>
 #include <optional>
 
-#include "acquisition/session_files.h"
+#include "acquisition/session_lock.h"
 #include "acquisition/session_store.h"
 #include "acquisition/session_tables.h"
 #include "acquisition/sqlite_db.h"

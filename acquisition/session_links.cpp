@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "acquisition/session_files.h"
+#include "formats/atomic_file.h"
 
 namespace dubsar::session {
 
@@ -22,6 +23,34 @@ std::optional<Error> link_on_the_way(const fs::path& session, const fs::path& na
     }
   }
   return std::nullopt;
+}
+
+Status take_tables_apart(const fs::path& session) {
+  const std::string tables = (session / kDatabase).string();
+  const auto is_shared = [](const fs::path& file) {
+    std::error_code none;
+    return fs::is_regular_file(fs::symlink_status(file, none)) && fs::hard_link_count(file, none) > 1 &&
+           !none;
+  };
+  for (const char* suffix : {"-wal", ""}) {
+    const fs::path file = tables + suffix;
+    if (!is_shared(file)) {
+      continue;
+    }
+    const Result<std::string> bytes = read_whole_file(file);
+    if (!bytes) {
+      return std::unexpected(bytes.error());
+    }
+    if (Status written = write_file_atomically(file, std::string_view(*bytes)); !written) {
+      return written;
+    }
+  }
+  // Made anew from the log by whoever opens it.
+  if (const fs::path index = tables + "-shm"; is_shared(index)) {
+    std::error_code ignored;
+    fs::remove(index, ignored);
+  }
+  return {};
 }
 
 Status check_written_names_are_no_links(const fs::path& session) {

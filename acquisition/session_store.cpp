@@ -112,6 +112,9 @@ Result<SessionStore> SessionStore::open_or_create(const fs::path& folder) {
     return std::unexpected(lock.error());
   }
   impl->lock = std::move(*lock);
+  if (Status apart = session::take_tables_apart(folder); !apart) {
+    return std::unexpected(apart.error());
+  }
   if (const int removed = session::remove_temporaries(folder); removed > 0) {
     impl->opening.notes.push_back("removed " + std::to_string(removed) + " half-written files");
   }

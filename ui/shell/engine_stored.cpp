@@ -41,6 +41,9 @@ constexpr EnginePhrase kStored[] = {
     {"cannot lock the folder: ", "der Ordner lässt sich nicht sperren: "},
     // opening a session
     {"cannot lock the session", "die Sitzung lässt sich nicht sperren"},
+    {"another program is writing to this session, or to one that shares its files through hard links",
+     "ein anderes Programm schreibt in diese Sitzung, oder in eine, die über harte Verweise deren Dateien "
+     "hat"},
     {"another program is writing to this session", "ein anderes Programm schreibt in diese Sitzung"},
     {" (process ", " (Prozess "},
     {"a link, or no file: the session is not locked through it",
