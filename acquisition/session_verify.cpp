@@ -9,6 +9,7 @@
 #include "acquisition/session_query.h"
 #include "core/shell_word.h"
 #include "formats/atomic_file.h"
+#include "formats/files_below.h"
 #include "formats/grid_file.h"
 #include "formats/json_node.h"
 #include "formats/self_checked.h"
@@ -88,21 +89,6 @@ std::optional<Error> fault_of_file(const fs::path& folder, const std::string& na
   return std::nullopt;
 }
 
-/// All that lies in the folder and is no folder, relative, in name order. Links are named and not followed.
-std::vector<std::string> everything_in(const fs::path& folder) {
-  std::vector<std::string> out;
-  std::error_code error;
-  std::error_code ignored;  // of one entry: the others are listed all the same
-  fs::recursive_directory_iterator it(folder, fs::directory_options::skip_permission_denied, error);
-  for (const fs::recursive_directory_iterator end; !error && it != end; it.increment(error)) {
-    if (it->is_symlink(ignored) || !it->is_directory(ignored)) {
-      out.push_back(it->path().lexically_relative(folder).generic_string());
-    }
-  }
-  std::ranges::sort(out);
-  return out;
-}
-
 /// Of a file that no table names: what a person wrote in the viewer carries its own. Of such a file that is
 /// cut off it may be gone; it is then no JSON any more.
 OwnChecksum own_checksum_in(const fs::path& file) {
@@ -123,7 +109,17 @@ void place_the_rest(const fs::path& folder, const std::vector<Recorded>& checked
   const std::string log = std::string(session::kDatabase) + "-wal";
   const std::string own[] = {session::kDatabase, session::kSums, session::kLock, log,
                              std::string(session::kDatabase) + "-shm"};
-  for (const std::string& name : everything_in(folder)) {
+  const FoundBelow found = everything_below(folder);
+  for (const Error& error : found.unreadable) {
+    const std::string name = fs::path(error.where).lexically_relative(folder).generic_string();
+    if (session::in_a_folder_of_the_session(name)) {
+      report.damaged.push_back({error.kind, error.what, name, error.mend});
+    } else {
+      report.extra.push_back(name);
+    }
+  }
+  for (const fs::path& file : found.files) {
+    const std::string name = file.lexically_relative(folder).generic_string();
     if (std::ranges::find(checked, name, &Recorded::name) != checked.end() ||
         std::ranges::find(own, name) != std::end(own)) {
       continue;

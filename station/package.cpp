@@ -66,13 +66,20 @@ Result<FoundWedges> wedges_of(const SessionStore& store, const Mesh& mesh, const
 
 /// "raw range grids, poses, report": what of the kinds of things that a package may hold is in this one.
 std::string kinds_of_things(const PackageContent& content) {
-  std::string words = "raw range grids, poses";
+  const auto is_listed = [&](std::string_view folder) {
+    return std::ranges::any_of(content.files,
+                               [&](const PackagedFile& file) { return file.path.starts_with(folder); });
+  };
+  std::string words;
   for (const auto& [word, there] : std::initializer_list<std::pair<const char*, bool>>{
+           {"raw range grids", is_listed("scans/grids/")},
+           {"rows of scans that were not over", is_listed("scans/unfinished/")},
+           {"poses", !content.results().poses.empty()},
            {"model", !content.mesh().faces.empty()},
            {"pictures", !content.pictures.empty()},
            {"wedges", content.wedges && !content.wedges->wedges.empty()},
            {"report", true}}) {
-    words += there ? std::string(", ") + word : std::string();
+    words += there ? (words.empty() ? "" : ", ") + std::string(word) : std::string();
   }
   return words;
 }
@@ -111,6 +118,7 @@ Status add_all(PackageContent& content, StageTimes& timings) {
   const std::vector<Step> steps = {
       {"scans", add_scans, true},
       {"unfinished scans", add_unfinished, true},
+      {"unreadable folders", add_unreadable, true},
       {"records", add_records, true},
       {"model", add_model, true},
       {"kept files", add_kept, true},
@@ -285,6 +293,7 @@ Result<Package> write_package(const fs::path& session, const fs::path& to, const
                   .has_mesh = !mesh.faces.empty(),
                   .scans = 0,
                   .wedges = content.wedges ? content.wedges->wedges.size() : 0,
+                  .lacking = std::move(content.lacking),
                   .timings = std::move(timings)};
   for (fs::directory_iterator it(to / "data" / "scans" / "grids", ignored), end; !ignored && it != end;
        it.increment(ignored)) {

@@ -53,15 +53,16 @@ struct Package {
   bool has_mesh = false;
   std::size_t scans = 0;  ///< whole grids, those taken out included
   std::size_t wedges = 0;
+  std::vector<std::string> lacking;  ///< what is not in it and why, one sentence each
   StageTimes timings;
 };
 
 /// Writes everything that leaves the storeroom into one folder, a BagIt 1.0 bag (docs/archives/package.md).
 /// What the session lacks (mesh, wedges) is worked out by the stages that the station uses itself; the
 /// session is only read. The folder appears when it is whole, or not at all. The verdict does not matter:
-/// what is there is packed. `to` is a resolved_place(). Errors: kUsage where something lies at `to` already
-/// (or, with `replace`, something that is no package of Dubsar, or of another session) or `session` is none,
-/// kBadInput where no scan is whole, kStorage, kCancelled.
+/// what is there is packed, without a model where no scan can be read. `to` is a resolved_place(). Errors:
+/// kUsage where something lies at `to` already (or, with `replace`, something that is no package of Dubsar,
+/// or of another session) or `session` is none, kBadInput, kStorage, kCancelled.
 [[nodiscard]] Result<Package> write_package(const std::filesystem::path& session,
                                             const std::filesystem::path& to, const PackageOptions& options,
                                             JobContext& job);

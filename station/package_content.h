@@ -89,6 +89,8 @@ struct PackageContent {
 // the stages.
 [[nodiscard]] Status add_scans(PackageContent& content);
 [[nodiscard]] Status add_unfinished(PackageContent& content);
+/// Names the session's folders that cannot be read.
+[[nodiscard]] Status add_unreadable(PackageContent& content);
 [[nodiscard]] Status add_records(PackageContent& content);
 [[nodiscard]] Status add_model(PackageContent& content);
 [[nodiscard]] Status add_kept(PackageContent& content);

@@ -94,9 +94,11 @@ Status add_kept(PackageContent& content) {
                                                          : "the verdict of kept/mesh with its pages, ") +
                      *words);
   }
+  const bool some_remain = !content.results().poses.empty();
   content.lacking.push_back(
       "Without " + listed(lost) +
-      " model, wedges, pictures, verdict and report are of the scans that remain" +
+      (some_remain ? " model, wedges, pictures, verdict and report are of the scans that remain"
+                   : " there is nothing that a model could be made of, and verdict and report say so") +
       (folders.empty() ? "." : "; what was made while they could be read is in kept/."));
   return {};
 }

@@ -2,6 +2,7 @@
 // Copyright The Dubsar developers
 // The mesh of a package, once for keeping, once for looking at and once for printing.
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <optional>
@@ -14,7 +15,12 @@ namespace dubsar {
 
 Status add_model(PackageContent& content) {
   if (content.mesh().faces.empty()) {
-    content.lacking.emplace_back("There is no model: no scan is registered, or they have no surface.");
+    content.lacking.emplace_back(
+        std::ranges::any_of(content.results().poses,
+                            [](const ScanPose& pose) { return pose.status == PoseStatus::kRegistered; })
+            ? "There is no model: the registered scans have no surface."
+            : "There is no model, nor what is made of one: no scan is registered that stands and can be "
+              "read.");
     return {};
   }
   struct Form {

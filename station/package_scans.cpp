@@ -147,8 +147,10 @@ Status add_scans(PackageContent& content) {
   if (!scans) {
     return std::unexpected(scans.error());
   }
+  const bool any = std::ranges::any_of(*scans, [](const StoredScan& scan) { return !scan.damaged; });
+  const bool as_ply = any && content.has(PackagePart::kGridPly);
   for (const char* folder : {"scans/grids/x", "scans/ply/x"}) {
-    if (folder == std::string_view("scans/ply/x") && !content.has(PackagePart::kGridPly)) {
+    if (!any || (folder == std::string_view("scans/ply/x") && !as_ply)) {
       continue;
     }
     if (const auto made = content.place(folder); !made) {
@@ -199,8 +201,10 @@ Status add_scans(PackageContent& content) {
     }
     list.push_back(scan_json(content, scan, *poses));
   }
-  content.list("scans/grids/", "every scan as it was measured, lossless: formats/grid.txt");
-  if (content.has(PackagePart::kGridPly)) {
+  if (any) {
+    content.list("scans/grids/", "every scan as it was measured, lossless: formats/grid.txt");
+  }
+  if (as_ply) {
     content.list("scans/ply/",
                  "the same scans as ordered PLY, which other programs read: formats/range_grid_ply.txt");
   }

@@ -110,11 +110,17 @@ Result<PackageSource> PackageSource::open(const fs::path& session, JobContext& j
   }
   log_info("the session's pages are not of its scans as they lie now: the verdict is worked out anew");
   source.store_.reset();
-  Result<ScanSet> set = load_scan_set(session, {.access = SessionStore::Access::kReadOnly}, job);
+  Result<ScanSet> set =
+      load_scan_set(session, {.access = SessionStore::Access::kReadOnly, .may_be_empty = true}, job);
   if (!set) {
     return std::unexpected(set.error());
   }
   source.set_ = std::move(*set);
+  if (source.set_->scans.empty()) {
+    log_warning(
+        "no scan of the session stands and can be read: there is no model to be had, nor what is made of "
+        "one; all else is packed");
+  }
   Result<PlannedAgain> planned = plan_again(*source.set_, source.set_->poses, job);
   if (!planned) {
     return std::unexpected(planned.error());

@@ -44,13 +44,14 @@ Result<StampedWork> begin_work(const PackRequest& request, const JobContext& job
     const std::string name = file.filename().string();
     return name == "session.lock" || name.ends_with("-shm") || name.starts_with(kTemporaryPrefix);
   };
-  const Result<std::vector<fs::path>> inputs = files_below(request.session, passes_over);
-  if (!inputs) {
-    return std::unexpected(inputs.error());
-  }
+  FoundBelow inputs = readable_files_below(request.session, passes_over);
   // What cannot be read is damage like any other: it is told, and the rest packed.
-  return StampedWork::begin(stamp_beside(request.to), "export", parameters_of(request.package), *inputs, job,
-                            true);
+  for (const Error& unreadable : inputs.unreadable) {
+    inputs.files.emplace_back(unreadable.where);
+  }
+  std::ranges::sort(inputs.files);
+  return StampedWork::begin(stamp_beside(request.to), "export", parameters_of(request.package), inputs.files,
+                            job, true);
 }
 
 /// The stamp as it lies there; empty where none does.

@@ -205,7 +205,7 @@ Result<ScanSet> visit_scan_set(const fs::path& path, const ScanSetOptions& optio
   if (!loaded) {
     return std::unexpected(loaded.error());
   }
-  if (set.scans.empty()) {
+  if (set.scans.empty() && !(options.may_be_empty && set.is_session())) {
     return bad_input(path.string(), "no scan in it", "give a session or a folder of range grids");
   }
   return set;

@@ -37,6 +37,8 @@ struct ScanSetOptions {
   /// A file that is going to be written: kUsage where it is one of a folder's scans, which cannot be made
   /// again.
   std::filesystem::path output{};
+  /// A session of which no scan can be read is a set without scans, not an error: the rest of it is wanted.
+  bool may_be_empty = false;
   /// The set was read before: what there is to say of its files was said.
   bool again = false;
 };

@@ -114,6 +114,7 @@ Result<int> export_session(const ExportArguments& arguments, CommandContext& con
     if (package->kept.files > 0) {
       json["kept"] = {{"folder", package->kept.folder.string()}, {"files", package->kept.files}};
     }
+    json["lacking"] = package->lacking;
     json["timings_s"] = nlohmann::ordered_json::object();
     for (const StageTiming& timing : package->timings) {
       json["timings_s"][timing.stage] = timing.seconds;

@@ -7,6 +7,7 @@
 
 #include <fstream>
 
+#include "tests/support/in_child.h"
 #include "tests/support/temporary_folder.h"
 
 namespace dubsar {
@@ -52,6 +53,26 @@ TEST_F(FilesBelow, WhatCannotBeLookedAtIsAnErrorWhateverComesAfterIt) {
     fs::remove(at(name));
   }
   EXPECT_FALSE(files_below(at("none")));
+}
+
+TEST_F(FilesBelow, WhatIsInOtherFoldersThanTheUnreadableOneIsFound) {
+  fs::permissions(folder_.path(), fs::perms(0755));
+  for (const fs::perms closed : {fs::perms(0), fs::perms(0644)}) {  // not to be listed; not to be entered
+    fs::permissions(at("b/c"), closed);
+    EXPECT_EQ(test::in_child([&] {
+                if (!test::be_bound_by_rights()) {
+                  return 9;
+                }
+                const FoundBelow found = readable_files_below(folder_.path());
+                return found.files == std::vector{at("a"), at("b/y"), at("z")} &&
+                               found.unreadable.size() == 1 &&
+                               found.unreadable[0].where == at("b/c").string() && !files_below(folder_.path())
+                           ? 0
+                           : 1;
+              }),
+              0);
+    fs::permissions(at("b/c"), fs::perms(0755));
+  }
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <string>
 
+#include "acquisition/session_store.h"
 #include "formats/poses_json.h"
 #include "tests/station/support/exported.h"
 
@@ -124,6 +125,93 @@ TEST_F(ExportDamaged, WhatTheSessionKeepsOfLostScansIsThere) {
       run_command({"stitch", (bag() / "data/scans/grids").string(), "--poses",
                    (bag() / "data/scans/poses.json").string(), "-o", at("again.ply").string()});
   EXPECT_EQ(again.status, 0) << again.err;
+}
+
+TEST_F(ExportDamaged, WithoutAWholeScanEverythingElseIsThere) {
+  for (const char* grid : {"000", "001", "002"}) {
+    fs::remove(session_ / "grids" / (std::string(grid) + ".grid"));
+  }
+  const Outcome done = run_command({"export", session_.string(), "--to", bag().string(), "--json"});
+  ASSERT_EQ(done.status, 0) << done.err;
+  EXPECT_EQ(done.json()["scans"], 0);
+  EXPECT_EQ(done.json()["mesh"], false);
+  EXPECT_EQ(done.json()["conclusive"], false);
+  EXPECT_THAT(done.err, HasSubstr("no scan of the session stands and can be read"));
+  EXPECT_THAT(readme(), AllOf(HasSubstr("There is no model, nor what is made of one"),
+                              HasSubstr("what was made while they could be read is in kept/"),
+                              Not(HasSubstr("scans/grids/ every"))));
+  EXPECT_THAT(bytes_of(bag() / "bag-info.txt"),
+              AllOf(HasSubstr("The verdict is not conclusive"), Not(HasSubstr("raw range grids"))));
+  EXPECT_THAT(packed("report/report.html"), AllOf(HasSubstr("No scan is registered."), HasSubstr("</html>")));
+  EXPECT_TRUE(packed("kept/mesh/model.ply") == bytes_of(session_ / "mesh/model.ply"));
+  EXPECT_EQ(read_poses(bag() / "data/scans/poses.json").value().size(), 3U) << "where they lay is known";
+  EXPECT_EQ(nlohmann::json::parse(packed("scans/scans.json"))["scans"].size(), 3U);
+  EXPECT_EQ(nlohmann::json::parse(packed("provenance.jsonld"), nullptr, false).is_object(), true);
+  EXPECT_EQ(run_command({"verify", bag().string()}).status, 0);
+}
+
+TEST_F(ExportDamaged, ASessionOfAnUnfinishedScanAloneIsPacked) {
+  const fs::path left = at("fresh") / "grids/unfinished/1";
+  { const auto made = SessionStore::open_or_create(at("fresh")); }
+  fs::create_directories(left);
+  fs::copy(session_ / "grids/001.grid", left / "0000.grid");
+  const Outcome done = run_command({"export", at("fresh").string(), "--to", bag().string(), "--json"});
+  ASSERT_EQ(done.status, 0) << done.err;
+  EXPECT_EQ(done.json()["scans"], 0);
+  EXPECT_TRUE(packed("scans/unfinished/1/0000.grid") == bytes_of(left / "0000.grid"));
+  EXPECT_THAT(bytes_of(bag() / "bag-info.txt"), HasSubstr("rows of scans that were not over, report"));
+  EXPECT_THAT(packed("report/report.html"), HasSubstr("Not conclusive"));
+  EXPECT_EQ(run_command({"verify", bag().string()}).status, 0);
+}
+
+TEST_F(ExportDamaged, AFolderThatCannotBeReadIsNamedAndTheRestIsThere) {
+  fs::create_directories(session_ / "grids/unfinished/8");
+  fs::copy(session_ / "grids/001.grid", session_ / "grids/unfinished/8/0000.grid");
+  for (const char* closed : {"grids/unfinished", "mesh", "analysis"}) {
+    fs::permissions(session_ / closed, fs::perms(0));
+  }
+  const Outcome done = run_command({"export", session_.string(), "--to", bag().string(), "--json",
+                                    "--without", "renderings,features,grid-ply"},
+                                   {.bound_by_rights = true});
+  const Outcome verified = run_command({"verify", session_.string()}, {.bound_by_rights = true});
+  const Outcome again = run_command({"export", session_.string(), "--to", bag().string(), "--json",
+                                     "--without", "renderings,features,grid-ply"},
+                                    {.bound_by_rights = true});
+  for (const char* closed : {"grids/unfinished", "mesh", "analysis"}) {
+    fs::permissions(session_ / closed, fs::perms(0755));
+  }
+  ASSERT_EQ(done.status, 0) << done.err;
+  EXPECT_EQ(done.json()["scans"], 3);
+  EXPECT_EQ(done.json()["mesh"], true) << "made anew of the scans";
+  for (const char* closed : {"grids/unfinished", "mesh", "analysis"}) {
+    EXPECT_THAT(done.err, HasSubstr(std::string(closed) + ": cannot read the folder: Permission denied"));
+    EXPECT_THAT(readme(), HasSubstr("The session's folder " + std::string(closed) + " could not be read"));
+  }
+  EXPECT_EQ(done.json()["lacking"].size(), 3U) << done.json()["lacking"];
+  EXPECT_EQ(again.json()["done_before"], true) << again.err;
+  EXPECT_EQ(verified.status, 1);
+  EXPECT_THAT(verified.out, HasSubstr("damaged: grids/unfinished: cannot read the folder"));
+}
+
+TEST_F(ExportDamaged, ALimitOnThreadsIsNoDefectOfTheProgram) {
+#ifdef DUBSAR_SANITIZED
+  GTEST_SKIP() << "the sanitizers have threads and stacks of their own";
+#endif
+  const Outcome planned = run_command({"plan", session_.string()}, {.refused_threads = true});
+  EXPECT_EQ(planned.status, 4);
+  EXPECT_THAT(planned.err, AllOf(HasSubstr("dubsar: the system starts no more threads"),
+                                 HasSubstr("ulimit -u"), Not(HasSubstr("defect"))));
+}
+
+TEST_F(ExportDamaged, ANameThatIsTooLongIsToldSo) {
+  for (const std::size_t bytes : {250, 253, 256}) {  // with what is added to it; with its stamp; by itself
+    const Outcome done =
+        run_command({"export", session_.string(), "--to", at(std::string(bytes, 'x')).string()});
+    EXPECT_EQ(done.status, 4);
+    EXPECT_THAT(done.err, AllOf(HasSubstr("File name too long; choose a shorter name"),
+                                Not(HasSubstr("free some space")), Not(HasSubstr("old stamp"))))
+        << bytes;
+  }
 }
 
 }  // namespace

@@ -4,11 +4,14 @@
 #include "build_paths.h"
 
 #include <fcntl.h>
+#include <linux/capability.h>
 #include <sched.h>
+#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <csignal>
 #include <fstream>
@@ -25,6 +28,17 @@ void limit_child(const CommandOptions& options) {
   if (options.largest_file > 0) {
     const rlimit limit{options.largest_file, options.largest_file};
     setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  if (options.bound_by_rights) {
+    prctl(PR_CAPBSET_DROP, CAP_DAC_OVERRIDE);
+    prctl(PR_CAPBSET_DROP, CAP_DAC_READ_SEARCH);
+  }
+  if (options.refused_threads) {
+    // No limit on processes binds root; a stack that no memory has room for stops anybody's threads.
+    rlimit stack{};
+    getrlimit(RLIMIT_STACK, &stack);
+    stack.rlim_cur = std::min(stack.rlim_max, rlim_t{1} << 47U);
+    setrlimit(RLIMIT_STACK, &stack);
   }
   if (options.one_core) {
     cpu_set_t cores;

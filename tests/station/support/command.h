@@ -23,6 +23,8 @@ struct CommandOptions {
   double timeout_s = 240;
   std::uint64_t largest_file = 0;  ///< bytes, RLIMIT_FSIZE; 0: no limit
   bool one_core = false;
+  bool bound_by_rights = false;            ///< those of files bind it, though root starts it
+  bool refused_threads = false;            ///< the system starts none for it, but those that TBB asks for
   std::vector<std::string> environment{};  ///< NAME=VALUE, besides ours
 };
 
