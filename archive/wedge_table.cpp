@@ -4,9 +4,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <string_view>
+#include <utility>
 
 #include "core/units.h"
 
@@ -27,7 +29,36 @@ constexpr int kPlaceDigits = 9;
 
 using Three = std::array<double, 3>;
 
-std::vector<Column> columns() {
+/// RFC 4180, 2.6 and 2.7: what holds a comma or a quote stands in quotes, and a quote is doubled.
+std::string cell_of(const std::string& text) {
+  const std::string line = label_value(text);
+  if (line.find_first_of(",\"") == std::string::npos) {
+    return line;
+  }
+  std::string quoted = "\"";
+  for (const char c : line) {
+    quoted.append(c == '"' ? "\"\"" : std::string(1, c));
+  }
+  return quoted + "\"";
+}
+
+/// The same on every line: what the wedges are of.
+void add_label(const FileLabel& label, std::vector<Column>* columns) {
+  const auto collection =
+      std::ranges::find(label.words, "Collection", &decltype(label.words)::value_type::first);
+  const std::pair<const char*, std::string> said[] = {
+      {"tablet", label.name},
+      {"collection", collection == label.words.end() ? std::string() : collection->second},
+      {"rights", label.rights},
+      {"simulated", label.empty()     ? ""
+                    : label.simulated ? "yes"
+                                      : "no"}};
+  for (const auto& [name, value] : said) {
+    columns->push_back({name, [cell = cell_of(value)](const Wedge&) { return cell; }});
+  }
+}
+
+std::vector<Column> columns(const FileLabel& label) {
   std::vector<Column> all;
   const auto text = [&](std::string name, std::function<std::string(const Wedge&)> value) {
     all.push_back({std::move(name), std::move(value)});
@@ -104,13 +135,14 @@ std::vector<Column> columns() {
   text("vertex_count", [](const Wedge& w) { return std::to_string(w.vertex_count); });
   text("by_hand",
        [](const Wedge& w) { return std::string(kByHandNames[static_cast<std::size_t>(w.by_hand)]); });
+  add_label(label, &all);
   return all;
 }
 
 }  // namespace
 
-std::string wedge_table(const std::vector<Wedge>& wedges) {
-  const std::vector<Column> all = columns();
+std::string wedge_table(const std::vector<Wedge>& wedges, const FileLabel& label) {
+  const std::vector<Column> all = columns(label);
   std::string csv;
   const auto line = [&](const auto& cell) {
     for (std::size_t c = 0; c < all.size(); ++c) {

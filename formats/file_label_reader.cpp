@@ -7,7 +7,6 @@
 
 #include "formats/atomic_file.h"
 #include "formats/byte_order.h"
-#include "formats/json_node.h"
 #include "formats/mesh_formats.h"
 #include "formats/ply_header.h"
 #include "formats/text_scanner.h"
@@ -63,6 +62,16 @@ Words words_in_lines(std::string_view head, std::string_view prefix, std::string
   return words;
 }
 
+Words words_in_object(const JsonNode& object) {
+  Words words;
+  for (const char* name : kNames) {
+    if (const auto value = object.find(name)) {
+      words.emplace_back(name, value->text());
+    }
+  }
+  return words;
+}
+
 Words words_in_glb(std::string_view head) {
   constexpr std::size_t kJsonAt = 20;
   constexpr std::size_t kSizeAt = 12;
@@ -79,12 +88,7 @@ Words words_in_glb(std::string_view head) {
   if (!generator || generator->text() != "Dubsar" || !extras) {
     return {};
   }
-  Words words;
-  for (const char* name : kNames) {
-    if (const auto value = extras->find(name)) {
-      words.emplace_back(name, value->text());
-    }
-  }
+  Words words = words_in_object(*extras);
   return document->root().failed() ? Words{} : words;
 }
 
@@ -124,6 +128,10 @@ FileLabel label_of_words(Words words) {
   label.simulated = !value_of(kSimulated).empty();
   label.words = std::move(words);
   return label;
+}
+
+FileLabel label_in_object(const JsonNode& object) {
+  return label_of_words(words_in_object(object));
 }
 
 FileLabel file_label_in(std::string_view head) {

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "formats/atomic_file.h"
+#include "formats/file_label_reader.h"
 #include "formats/json_node.h"
 #include "formats/json_text.h"
 #include "formats/wedge_json.h"
@@ -67,6 +68,9 @@ std::optional<WedgeProfile> profile_from(const JsonNode& node) {
 std::string wedges_to_json(const WedgeFile& file) {
   OrderedJson root;
   root["unit"] = "mm";
+  for (const auto& [name, value] : file.label.words) {
+    root["tablet"][label_value(name)] = label_value(value);
+  }
   root["mesh"] = file.mesh;
   root["exit"] = kExits[static_cast<std::size_t>(file.exits)];
   if (file.text_from_model) {
@@ -116,6 +120,9 @@ Result<WedgeFile> parse_wedges(std::string_view text, const std::string& where) 
   const JsonNode root = document->root();
   const double mm = mm_per_unit_of(root);
   WedgeFile file;
+  if (const auto tablet = root.find("tablet")) {
+    file.label = label_in_object(*tablet);
+  }
   if (const auto mesh = root.find("mesh")) {
     file.mesh = mesh->text();
   }

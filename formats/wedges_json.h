@@ -14,11 +14,13 @@
 #include "core/wedge.h"
 #include "core/wedge_correction.h"
 #include "core/wedge_profile.h"
+#include "formats/file_label.h"
 
 namespace dubsar {
 
 /// What an analysis says of one mesh: wedges.json (contract "Wedges" in design.md; docs/formats/wedges.md).
 struct WedgeFile {
+  FileLabel label;   ///< what they are of; the file may travel alone
   std::string mesh;  ///< file name of the mesh
   ExitDefinition exits = ExitDefinition::kSurface;
   std::vector<Wedge> wedges;

@@ -90,7 +90,9 @@ void MeshViewing::make_corrections(std::vector<WedgeCorrection> corrections, boo
     fs::create_directories(wedges_file_.parent_path(), error);  // what is wrong is said by the writing
     written = replace_corrections(file, corrections, {name, now});
     if (written && !in_session_) {
-      written = write_wedges(wedges_file_, wedge_file(name, analysis_options_, *analysis_));
+      WedgeFile wedges = wedge_file(name, analysis_options_, *analysis_);
+      wedges.label = label_;
+      written = write_wedges(wedges_file_, wedges);
       if (!written) {
         (void)replace_corrections(file, now, {name, corrections});
       }

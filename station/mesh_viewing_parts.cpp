@@ -120,7 +120,7 @@ void MeshViewing::write_wedges_of(MeshSelection selection, const fs::path& file)
     }
     const std::vector<Wedge> wedges = selected_wedges(*now.wedges, *now.mesh, selection);
     const Status outside = check_outside_packages(file);
-    if (const Status written = outside ? write_file_atomically(file, wedge_table(wedges)) : outside;
+    if (const Status written = outside ? write_file_atomically(file, wedge_table(wedges, label_)) : outside;
         !written) {
       complain(written.error());
       return;
@@ -144,7 +144,8 @@ void MeshViewing::analyse_part(MeshSelection selection, const fs::path& stem) {
       complain(analysis.error());
       return;
     }
-    const WedgeFile wedges = wedge_file(mesh_file.filename().string(), options, *analysis);
+    WedgeFile wedges = wedge_file(mesh_file.filename().string(), options, *analysis);
+    wedges.label = label_;
     fs::path wedges_file = stem;
     wedges_file += ".wedges.json";
     Status written = check_outside_packages(mesh_file);

@@ -15,12 +15,13 @@ Status add_wedges(PackageContent& content) {
     return {};  // add_readme() says why
   }
   WedgeFile file = *content.wedges;
+  file.label = content.label;
   file.mesh = "../model/" + content.stem + ".ply";
   file.timings_s.clear();
   for (const Status& written :
        {content.text("wedges/wedges.json", wedges_to_json(file),
                      "every measure of every wedge, with its uncertainty: formats/wedges.txt"),
-        content.text("wedges/wedges.csv", wedge_table(file.wedges),
+        content.text("wedges/wedges.csv", wedge_table(file.wedges, file.label),
                      "the same as a table, one line a wedge; millimetres and degrees; its columns: "
                      "formats/wedges.txt"),
         content.text("wedges/annotations.json",

@@ -70,14 +70,19 @@ Result<std::optional<WedgeFile>> measure_wedges(const Mesh& mesh,
 Result<std::optional<SessionWedges>> keep_wedges(SessionStore& store, const Mesh& mesh,
                                                  const JobContext& job) {
   const std::vector<WedgeCorrection> corrections = session_corrections(store);
-  const Result<std::optional<WedgeFile>> measured = measure_wedges(mesh, corrections, job);
+  Result<std::optional<WedgeFile>> measured = measure_wedges(mesh, corrections, job);
   if (!measured) {
     return std::unexpected(measured.error());
   }
   if (!*measured) {
     return std::nullopt;
   }
-  const WedgeFile& file = **measured;
+  const Result<FileLabel> label = label_of_scans(store);
+  if (!label) {
+    return std::unexpected(label.error());
+  }
+  WedgeFile& file = **measured;
+  file.label = *label;
   const fs::path folder = store.folder() / "analysis";
   if (const Status made = make_folder(folder); !made) {
     return std::unexpected(made.error());
@@ -91,12 +96,9 @@ Result<std::optional<SessionWedges>> keep_wedges(SessionStore& store, const Mesh
   }
   std::vector<fs::path> made{out.json};
   if (file.text_from_model) {
-    const Result<FileLabel> label = label_of_scans(store);
-    if (!label) {
-      return std::unexpected(label.error());
-    }
-    const auto drawings = write_wedge_drawings(folder, file.wedges, *file.text_from_model,
-                                               picture_words(*label, session_name(store.folder())), &mesh);
+    const auto drawings =
+        write_wedge_drawings(folder, file.wedges, *file.text_from_model,
+                             picture_words(file.label, session_name(store.folder())), &mesh);
     if (!drawings) {
       return std::unexpected(drawings.error());
     }

@@ -194,16 +194,16 @@ Status check_corrected(const AnalyzeArguments& arguments, const std::filesystem:
 /// tell how many corrections the outputs have in them.
 Status write_outputs(const AnalyzeArguments& arguments, const WedgeFile& file, const Mesh& mesh,
                      const Analysis& analysis, const StampedWork* work, const JobContext& job) {
-  const FileLabel label = read_file_label(arguments.in);
   if (!arguments.mesh_out.empty()) {
-    if (Status written = write_mesh(arguments.mesh_out, annotated_mesh(mesh, analysis), label); !written) {
+    if (Status written = write_mesh(arguments.mesh_out, annotated_mesh(mesh, analysis), file.label);
+        !written) {
       return written;
     }
   }
   std::vector<std::filesystem::path> drawings;
   if (!arguments.svg.empty()) {
     auto drawn = write_wedge_drawings(arguments.svg, file.wedges, *file.text_from_model,
-                                      picture_words(label, file.mesh), &mesh);
+                                      picture_words(file.label, file.mesh), &mesh);
     if (!drawn) {
       return std::unexpected(drawn.error());
     }
@@ -271,8 +271,8 @@ Result<int> analyze(const AnalyzeArguments& arguments, CommandContext& context) 
   analysis->timings_s.insert(analysis->timings_s.begin(), StageTiming{"reading", reading_s});
   const double took_s = seconds_since(start);
   analysis->timings_s.push_back({"all", took_s});
-  const WedgeFile file =
-      wedge_file(std::filesystem::path(arguments.in).filename().string(), options, *analysis);
+  WedgeFile file = wedge_file(std::filesystem::path(arguments.in).filename().string(), options, *analysis);
+  file.label = read_file_label(arguments.in);
   if (const Status started = work ? work->start() : Status(); !started) {
     return std::unexpected(started.error());
   }

@@ -159,7 +159,9 @@ Result<int> part(const MeshOptions& options, CommandContext& context) {
       return std::unexpected(all.error());
     }
     const std::vector<Wedge> wedges = selected_wedges(all->wedges, *mesh, *selection);
-    if (const Status written = write_file_atomically(options.out, wedge_table(wedges)); !written) {
+    if (const Status written =
+            write_file_atomically(options.out, wedge_table(wedges, read_file_label(options.in)));
+        !written) {
       return std::unexpected(written.error());
     }
     if (context.json) {

@@ -55,7 +55,7 @@ std::function<std::string(const std::string&)> value_in(const std::string& csv) 
 }
 
 TEST(WedgeTable, HasANameForEveryCell) {
-  const auto value = value_in(wedge_table({some_wedge()}));
+  const auto value = value_in(wedge_table({some_wedge()}, {}));
   EXPECT_EQ(value("id"), "7");
   EXPECT_EQ(value("side"), "reverse");
   EXPECT_EQ(value("line"), "2");
@@ -76,7 +76,7 @@ TEST(WedgeTable, HoldsEveryMeasureAndKeepsTheMicrometre) {
   far.sigma.edge_rad = {0, rad_from_deg(1.5), 0};
   far.sigma.face_angle_rad = {0, 0, rad_from_deg(2.5)};
   far.sigma.face_slope_rad = {rad_from_deg(0.5), 0, 0};
-  const auto value = value_in(wedge_table({far}));
+  const auto value = value_in(wedge_table({far}, {}));
   EXPECT_EQ(value("depth_point_x_mm"), "12345.6789");
   EXPECT_EQ(value("turn_deg"), "") << "nobody knows its side";
   EXPECT_EQ(value("face_normal_2_z"), "0.8");
@@ -85,6 +85,23 @@ TEST(WedgeTable, HoldsEveryMeasureAndKeepsTheMicrometre) {
   EXPECT_EQ(value("sigma_edge_1_deg"), "1.5");
   EXPECT_EQ(value("sigma_face_angle_2_deg"), "2.5");
   EXPECT_EQ(value("sigma_face_slope_0_deg"), "0.5");
+}
+
+TEST(WedgeTable, TellsOnEveryLineWhatTheWedgesAreOf) {
+  const FileLabel label{.name = "P000001, BM 12345",
+                        .rights = "© A \"Museum\"; CC0\nand more",
+                        .simulated = true,
+                        .words = {{"Collection", "Kouyunjik"}}};
+  const std::string csv = wedge_table({some_wedge(), some_wedge()}, label);
+  EXPECT_NE(csv.find(",by_hand,tablet,collection,rights,simulated\r\n"), std::string::npos);
+  const std::string end = R"(,"P000001, BM 12345",Kouyunjik,"© A ""Museum""; CC0 and more",yes)"
+                          "\r\n";
+  const std::size_t first = csv.find(end);
+  ASSERT_NE(first, std::string::npos) << csv;
+  EXPECT_EQ(csv.find(end, first + 1), csv.size() - end.size());
+  EXPECT_TRUE(wedge_table({some_wedge()}, {}).ends_with(",,,\r\n"))
+      << "of a mesh that says nothing of itself";
+  EXPECT_TRUE(wedge_table({some_wedge()}, {.name = "BM 1"}).ends_with(",BM 1,,,no\r\n"));
 }
 
 TEST(WedgeAnnotations, PointAtAClosedRingOnTheModel) {

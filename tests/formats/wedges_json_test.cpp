@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "formats/file_label_reader.h"
 #include "formats/truth_json.h"
 #include "tests/formats/format_support.h"
 
@@ -122,6 +123,18 @@ TEST(WedgesJson, VolumesAreCubicMillimetresWhateverTheUnit) {
   ASSERT_TRUE(back) << line_of(back);
   EXPECT_EQ(back->wedges[0].volume_mm3, 0.125);
   EXPECT_EQ(back->wedges[0].sigma.volume_mm3, 0.02);
+}
+
+TEST(WedgesJson, SaysWhatTheWedgesAreOf) {
+  WedgeFile file;
+  file.label =
+      label_of_words({{"SIMULATED", "No such tablet."}, {"Museum number", "BM 1"}, {"Rights", "CC0"}});
+  const auto back = parse_wedges(wedges_to_json(file), "w");
+  ASSERT_TRUE(back) << line_of(back);
+  EXPECT_EQ(back->label.name, "BM 1");
+  EXPECT_EQ(back->label.rights, "CC0");
+  EXPECT_TRUE(back->label.simulated);
+  EXPECT_TRUE(parse_wedges(R"({"tablet":"BM 2","wedges":[]})", "w")) << "as another program may say it";
 }
 
 }  // namespace

@@ -106,6 +106,16 @@ TEST_F(ExportOfWedges, EveryFormHasAsMany) {
   EXPECT_EQ(static_cast<std::size_t>(std::ranges::count(csv, '\n')), wedges.size() + 1);
 }
 
+TEST_F(ExportOfWedges, TheyTellWhatTheyAreOfWhereTheyTravelAlone) {
+  const auto tablet = json_of("wedges/wedges.json")["tablet"];
+  EXPECT_EQ(tablet["Session"], "session");
+  EXPECT_THAT(tablet["SIMULATED"].get<std::string>(), HasSubstr("there is no such tablet"));
+  EXPECT_THAT(bytes_of(data("wedges/wedges.csv")), EndsWith(",session,,,yes\r\n"));
+  EXPECT_THAT(bytes_of(at("session") / "analysis/wedges.json"), HasSubstr("there is no such tablet"));
+  ASSERT_EQ(run_command({"analyze", data("model/session.ply"), "-o", at("alone.json")}).status, 0);
+  EXPECT_EQ(nlohmann::json::parse(bytes_of(at("alone.json")))["tablet"], tablet) << "as the mesh says";
+}
+
 TEST_F(ExportOfWedges, DrawingsAreWhatW3CCallsSvg11) {
   if (!fs::is_directory("/usr/share/xml/w3c-sgml-lib/schema/dtd/REC-SVG11-20110816")) {
     FAIL() << "install libxml2-utils and w3c-sgml-lib (packages.txt) to hold the drawings against them";
