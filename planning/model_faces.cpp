@@ -46,7 +46,7 @@ Eigen::Matrix3d spread_of(const Mesh& hull) {
   return moment / area - mean * mean.transpose() / (area * area);
 }
 
-/// Of what is as wide as high, which way is up is chance: a square's corners lead to its diagonal.
+/// Of what is as wide as high, the axes in its plane are chance: a square's corners lead to its diagonal.
 constexpr double kLongerOfVariance = 1.1;  // 5 % longer
 
 /// The scanner's y axis, or its x where y runs across the faces, laid into the plane across z.
@@ -106,11 +106,12 @@ ModelFaces model_faces(std::span<const PlacedScan> scans, const Mesh& hull) {
   const Eigen::Matrix3d scanner = first->model_from_scanner.rotation;
   const Eigen::Vector3d z =
       turned_towards(axes.eigenvectors().col(0), -(scanner * first->grid->view.direction));
-  const Eigen::Vector3d height = axes.eigenvalues()[2] > kLongerOfVariance * axes.eigenvalues()[1]
-                                     ? Eigen::Vector3d(axes.eigenvectors().col(2))
-                                     : in_plane(scanner, z);
-  const bool along_y = std::abs(height.dot(scanner.col(1))) >= std::abs(height.dot(scanner.col(0)));
-  const Eigen::Vector3d y = turned_towards(height, scanner.col(along_y ? 1 : 0));
+  Eigen::Vector3d y = in_plane(scanner, z);
+  if (axes.eigenvalues()[2] > kLongerOfVariance * axes.eigenvalues()[1]) {
+    const Eigen::Vector3d longer = axes.eigenvectors().col(2);
+    const Eigen::Vector3d shorter = axes.eigenvectors().col(1);
+    y = turned_towards(std::abs(longer.dot(y)) >= std::abs(shorter.dot(y)) ? longer : shorter, y);
+  }
   faces.model_from_faces.col(0) = y.cross(z);
   faces.model_from_faces.col(1) = y;
   faces.model_from_faces.col(2) = z;

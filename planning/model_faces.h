@@ -15,10 +15,10 @@ namespace dubsar {
 /// (y) and the obverse (z).
 ///
 /// Where a scan came with a nominal pose, its tablet frame says so: the frame of the registered scan of the
-/// lowest id. Otherwise the faces follow from the shape: the thickness is the smallest extent, the height the
-/// largest; the obverse is the side that the first scan looked at, and up is the first scan's y axis or x
-/// axis, whichever runs along the height. Of what is about as wide as high (5 %) the y axis is up, or x where
-/// y runs across the faces.
+/// lowest id. Otherwise the faces follow from the shape: the thickness is the smallest extent, the obverse
+/// the side that the first scan looked at, and up, of the four directions along the edges, the one nearest to
+/// the first scan's y axis (x where y runs across the faces), as tablet_frame() has it: a tablet may be wider
+/// than high. Of what is about as wide as high (5 %) that axis itself is up.
 struct ModelFaces {
   Eigen::Matrix3d model_from_faces = Eigen::Matrix3d::Identity();
 

@@ -64,7 +64,7 @@ Result<std::optional<WedgeFile>> measure_wedges(const Mesh& mesh,
     return std::nullopt;
   }
   warn_of_lost(*analysis, kCorrections);
-  return wedge_file("model.ply", options, *analysis);
+  return wedge_file("../mesh/model.ply", options, *analysis);
 }
 
 Result<std::optional<SessionWedges>> keep_wedges(SessionStore& store, const Mesh& mesh,

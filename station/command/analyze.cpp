@@ -271,7 +271,11 @@ Result<int> analyze(const AnalyzeArguments& arguments, CommandContext& context) 
   analysis->timings_s.insert(analysis->timings_s.begin(), StageTiming{"reading", reading_s});
   const double took_s = seconds_since(start);
   analysis->timings_s.push_back({"all", took_s});
-  WedgeFile file = wedge_file(std::filesystem::path(arguments.in).filename().string(), options, *analysis);
+  std::error_code none;
+  const bool comes_again = std::filesystem::is_regular_file(arguments.in, none);  // not from a pipe
+  WedgeFile file = wedge_file(comes_again ? from_folder_of(arguments.in, arguments.out)
+                                          : std::filesystem::path(arguments.in).filename().string(),
+                              options, *analysis);
   file.label = read_file_label(arguments.in);
   if (const Status started = work ? work->start() : Status(); !started) {
     return std::unexpected(started.error());

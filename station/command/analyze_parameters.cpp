@@ -9,23 +9,10 @@
 #include "formats/json_node.h"
 #include "formats/wedges_json.h"
 #include "station/command/analyze.h"
+#include "station/command/outputs.h"
 #include "station/done_stamp.h"
 
 namespace dubsar {
-
-namespace {
-
-/// How an output lies to the main one: a tablet's folder may move. Empty for none.
-std::string place_of(const std::string& path, const std::string& main) {
-  namespace fs = std::filesystem;
-  return path.empty() ? path
-                      : fs::absolute(path)
-                            .lexically_normal()
-                            .lexically_relative(fs::absolute(main).lexically_normal().parent_path())
-                            .generic_string();
-}
-
-}  // namespace
 
 std::string parameters_of(const AnalyzeArguments& a, const CorrectionFile& said) {
   const FreeSurfaceOptions& free = a.fields.free_surface;
@@ -38,10 +25,10 @@ std::string parameters_of(const AnalyzeArguments& a, const CorrectionFile& said)
                               {"uniform_weights", a.uniform_weights},
                               {"classical_watershed", a.classical},
                               {"out", std::filesystem::path(a.out).filename().string()},
-                              {"mesh_out", place_of(a.mesh_out, a.out)},
-                              {"pictures", place_of(a.pictures, a.out)},
-                              {"svg", place_of(a.svg, a.out)},
-                              {"invariants", place_of(a.invariants, a.out)},
+                              {"mesh_out", from_folder_of(a.mesh_out, a.out)},
+                              {"pictures", from_folder_of(a.pictures, a.out)},
+                              {"svg", from_folder_of(a.svg, a.out)},
+                              {"invariants", from_folder_of(a.invariants, a.out)},
                               {"invariant_radius_mm", a.invariants.empty() ? 0.0 : a.radius_mm}};
   if (!said.corrections.empty()) {
     json["corrections"] = corrections_to_json({{}, said.corrections});

@@ -74,6 +74,14 @@ Status check_not_printed_to(const std::string& output) {
 
 }  // namespace
 
+std::string from_folder_of(const std::string& path, const std::string& output) {
+  return path.empty() ? path
+                      : fs::absolute(path)
+                            .lexically_normal()
+                            .lexically_relative(fs::absolute(output).lexically_normal().parent_path())
+                            .generic_string();
+}
+
 std::string as_folder(const std::string& path) {
   return path.empty() ? path : (fs::path(path) / "").string();
 }

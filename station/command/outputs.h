@@ -18,6 +18,9 @@ namespace dubsar {
 [[nodiscard]] Action with_safe_outputs(std::vector<std::string> outputs, Action action,
                                        std::vector<std::string> inputs = {});
 
+/// Where a file lies, from the folder of an output: both may move together. Empty for none.
+[[nodiscard]] std::string from_folder_of(const std::string& path, const std::string& output);
+
 /// For the list of outputs: a folder, which is made with all the folders that it lies in.
 [[nodiscard]] std::string as_folder(const std::string& path);
 

@@ -32,9 +32,11 @@ Eigen::Vector3d top_of(double width_mm, double height_mm, double turned_rad) {
   return model_faces({&scan, 1}, convex_hull(corners)).normal(Face::kTop);
 }
 
-TEST(ModelFaces, TheHeightIsTheLargestExtent) {
-  EXPECT_GT(top_of(44, 50, 0.2).dot(Eigen::Vector3d(-std::sin(0.2), std::cos(0.2), 0)), 0.999);
-  EXPECT_GT(top_of(50, 44, 0.2).dot(Eigen::Vector3d(std::cos(0.2), std::sin(0.2), 0)), 0.999);
+TEST(ModelFaces, UpIsAlongTheEdgesAsTheFirstScanSawItWhetherHighOrWide) {
+  const Eigen::Vector3d up(-std::sin(0.2), std::cos(0.2), 0);
+  EXPECT_GT(top_of(44, 50, 0.2).dot(up), 0.999);
+  EXPECT_GT(top_of(50, 44, 0.2).dot(up), 0.999);
+  EXPECT_GT(top_of(50, 44, 1.2).dot(Eigen::Vector3d(std::cos(1.2), std::sin(1.2), 0)), 0.999);
 }
 
 /// The principal axes are chance: they might lead along a diagonal.

@@ -36,7 +36,7 @@ TEST(AnalyzeCommand, FindsTheWedgesOfASimulatedTablet) {
   const auto truth = read_truth(at("t/truth.json"));
   ASSERT_TRUE(truth);
   EXPECT_EQ(outcome.json()["count"], file->wedges.size());
-  EXPECT_EQ(file->mesh, "tablet.ply");
+  EXPECT_EQ(file->mesh, "t/tablet.ply") << "from the folder of the file";
   int whole = 0;
   int found = 0;
   for (const Wedge& wedge : truth->wedges) {

@@ -119,7 +119,8 @@ TEST_F(ExportDamaged, WhatTheSessionKeepsOfLostScansIsThere) {
                 AllOf(HasSubstr("The session has lost scan 0:"), Not(HasSubstr("was checked against"))))
         << page;
   }
-  EXPECT_EQ(nlohmann::json::parse(packed("verdict/checklist.json"))["scans_lost"], nlohmann::json::array({0}));
+  EXPECT_EQ(nlohmann::json::parse(packed("verdict/checklist.json"))["scans_lost"],
+            nlohmann::json::array({0}));
   // The poses of the package still make a mesh of the scans that are in it.
   const Outcome again =
       run_command({"stitch", (bag() / "data/scans/grids").string(), "--poses",

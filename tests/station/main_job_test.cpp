@@ -97,6 +97,9 @@ TEST_F(MainJob, TheStagesAgainSayTheSame) {
   const Outcome verified = run_command({"verify", session, "--json"});
   EXPECT_EQ(verified.status, 0) << verified.out;
   EXPECT_EQ(verified.json()["ok"], true);
+  const fs::path wedges = at("first") / "analysis" / "wedges.json";
+  EXPECT_TRUE(
+      fs::exists(wedges.parent_path() / nlohmann::json::parse(bytes_of(wedges))["mesh"].get<std::string>()));
   const std::string mesh = at("again.ply").string();
   const Outcome stitched = run_command({"stitch", session, "-o", mesh, "--json"});
   EXPECT_EQ(stitched.status, 0) << stitched.err;
