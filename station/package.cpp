@@ -74,7 +74,7 @@ std::string kinds_of_things(const PackageContent& content) {
   for (const auto& [word, there] : std::initializer_list<std::pair<const char*, bool>>{
            {"raw range grids", is_listed("scans/grids/")},
            {"rows of scans that were not over", is_listed("scans/unfinished/")},
-           {"poses", !content.results().poses.empty()},
+           {"poses", true},
            {"model", !content.mesh().faces.empty()},
            {"pictures", !content.pictures.empty()},
            {"wedges", content.wedges && !content.wedges->wedges.empty()},

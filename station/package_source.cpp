@@ -49,7 +49,7 @@ Status PackageSource::take_kept(JobContext& job) {
   }
   for (const Error& damage : whole->damaged) {
     // Grids and the record are named where they are read again.
-    if (!damage.where.ends_with(".grid") && damage.where.find('/') != std::string::npos) {
+    if (!damage.where.ends_with(".grid") && !damage.where.starts_with("session.")) {
       log_warning(damage.line());
     }
   }

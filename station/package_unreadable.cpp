@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include "acquisition/session_files.h"
-#include "core/log.h"
 #include "formats/files_below.h"
 #include "station/package_content.h"
 
@@ -18,7 +17,6 @@ Status add_unreadable(PackageContent& content) {
     if (!session::in_a_folder_of_the_session(name)) {
       continue;  // somebody else's, which is not packed
     }
-    log_warning(folder.line());
     content.lacking.push_back(
         fmt::format("The session's folder {} could not be read when this was packed ({}): what lay in it is "
                     "here only as far as this page says so.",

@@ -10,6 +10,7 @@
 #include "formats/file_label_reader.h"
 #include "station/session_name.h"
 #include "station/tablet_record.h"
+#include "station/unfinished_scan.h"
 
 namespace dubsar {
 
@@ -30,8 +31,12 @@ Result<std::string> simulated_words(const SessionStore& store) {
   if (!scans) {
     return std::unexpected(scans.error());
   }
-  const bool simulated = std::ranges::any_of(
-      *scans, [](const StoredScan& scan) { return scan.device == "sim" || scan.device.starts_with("sim-"); });
+  const auto is_simulator = [](const std::string& device) {
+    return device == "sim" || device.starts_with("sim-");
+  };
+  const auto by_simulator = [&](const LeftScan& left) { return is_simulator(left.grid.device); };
+  const bool simulated = std::ranges::any_of(*scans, is_simulator, &StoredScan::device) ||
+                         std::ranges::any_of(left_scans(store.folder()), by_simulator);
   return simulated ? "A program made up this tablet and its scans: there is no such tablet, and nothing was "
                      "measured."
                    : "";

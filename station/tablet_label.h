@@ -10,8 +10,9 @@
 
 namespace dubsar {
 
-/// A sentence where a scan comes from the simulator, by the id that it gives its grids: an archive that
-/// outlives whoever tried the scanner must not take such a tablet for clay. Empty of clay.
+/// A sentence where a scan, or rows of one that was not over, come from the simulator, by the id that it
+/// gives its grids: an archive that outlives whoever tried the scanner must not take such a tablet for clay.
+/// Empty of clay.
 [[nodiscard]] Result<std::string> simulated_words(const SessionStore& store);
 
 /// What the files of a session's tablet say of themselves: its numbers (without any the session's name),

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "acquisition/session_store.h"
+#include "formats/grid_file.h"
 #include "formats/poses_json.h"
 #include "tests/station/support/exported.h"
 
@@ -155,12 +156,16 @@ TEST_F(ExportDamaged, ASessionOfAnUnfinishedScanAloneIsPacked) {
   const fs::path left = at("fresh") / "grids/unfinished/1";
   { const auto made = SessionStore::open_or_create(at("fresh")); }
   fs::create_directories(left);
-  fs::copy(session_ / "grids/001.grid", left / "0000.grid");
+  RangeGrid rows = read_grid_file(session_ / "grids/001.grid").value();
+  rows.device = "sim";
+  ASSERT_TRUE(write_grid_file(left / "0000.grid", rows));
   const Outcome done = run_command({"export", at("fresh").string(), "--to", bag().string(), "--json"});
   ASSERT_EQ(done.status, 0) << done.err;
   EXPECT_EQ(done.json()["scans"], 0);
   EXPECT_TRUE(packed("scans/unfinished/1/0000.grid") == bytes_of(left / "0000.grid"));
-  EXPECT_THAT(bytes_of(bag() / "bag-info.txt"), HasSubstr("rows of scans that were not over, report"));
+  EXPECT_THAT(bytes_of(bag() / "bag-info.txt"),
+              AllOf(HasSubstr("External-Description: SIMULATED. "),
+                    HasSubstr("rows of scans that were not over, poses, report")));
   EXPECT_THAT(packed("report/report.html"), HasSubstr("Not conclusive"));
   EXPECT_EQ(run_command({"verify", bag().string()}).status, 0);
 }
