@@ -55,7 +55,7 @@ std::function<std::string(const std::string&)> value_in(const std::string& csv) 
 }
 
 TEST(WedgeTable, HasANameForEveryCell) {
-  const auto value = value_in(wedge_table({some_wedge()}, {}));
+  const auto value = value_in(wedge_table({some_wedge()}, {.name = "BM 1"}));
   EXPECT_EQ(value("id"), "7");
   EXPECT_EQ(value("side"), "reverse");
   EXPECT_EQ(value("line"), "2");
@@ -76,7 +76,7 @@ TEST(WedgeTable, HoldsEveryMeasureAndKeepsTheMicrometre) {
   far.sigma.edge_rad = {0, rad_from_deg(1.5), 0};
   far.sigma.face_angle_rad = {0, 0, rad_from_deg(2.5)};
   far.sigma.face_slope_rad = {rad_from_deg(0.5), 0, 0};
-  const auto value = value_in(wedge_table({far}, {}));
+  const auto value = value_in(wedge_table({far}, {.name = "BM 1"}));
   EXPECT_EQ(value("depth_point_x_mm"), "12345.6789");
   EXPECT_EQ(value("turn_deg"), "") << "nobody knows its side";
   EXPECT_EQ(value("face_normal_2_z"), "0.8");

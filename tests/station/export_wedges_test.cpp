@@ -107,13 +107,12 @@ TEST_F(ExportOfWedges, EveryFormHasAsMany) {
 }
 
 TEST_F(ExportOfWedges, TheyTellWhatTheyAreOfWhereTheyTravelAlone) {
-  const auto tablet = json_of("wedges/wedges.json")["tablet"];
-  EXPECT_EQ(tablet["Session"], "session");
-  EXPECT_THAT(tablet["SIMULATED"].get<std::string>(), HasSubstr("there is no such tablet"));
-  EXPECT_THAT(bytes_of(data("wedges/wedges.csv")), EndsWith(",session,,,yes\r\n"));
-  EXPECT_THAT(bytes_of(at("session") / "analysis/wedges.json"), HasSubstr("there is no such tablet"));
+  const nlohmann::json of{{"Session", "session"}};
+  EXPECT_EQ(json_of("wedges/wedges.json").value("tablet", nlohmann::json()), of);
+  EXPECT_THAT(bytes_of(data("wedges/wedges.csv")), EndsWith(",session,,,no\r\n"));
   ASSERT_EQ(run_command({"analyze", data("model/session.ply"), "-o", at("alone.json")}).status, 0);
-  EXPECT_EQ(nlohmann::json::parse(bytes_of(at("alone.json")))["tablet"], tablet) << "as the mesh says";
+  const auto alone = nlohmann::json::parse(bytes_of(at("alone.json")), nullptr, false);
+  EXPECT_EQ(alone.value("tablet", nlohmann::json()), of) << "as the mesh says";
 }
 
 TEST_F(ExportOfWedges, DrawingsAreWhatW3CCallsSvg11) {

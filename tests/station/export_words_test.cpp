@@ -97,9 +97,12 @@ TEST_F(Export, MeshesAndScansSayWhatTheyAreWhereTheyTravelAlone) {
           .status,
       0);
   ASSERT_EQ(run_command({"export", session.string(), "--to", at("alone_bag").string(), "--without",
-                         "renderings,features,wedges"})
+                         "renderings,features"})
                 .status,
             0);
+  EXPECT_THAT(bytes_of(at("alone_bag") / "data/wedges/wedges.json"),
+              AllOf(HasSubstr("there is no such tablet"), HasSubstr("\"Museum number\": \"BM 12345\""),
+                    HasSubstr("\"Rights\": \"© A Museum; CC0\""), Not(HasSubstr("mine"))));
   const std::string stl = bytes_of(at("alone_bag") / "data/model/P000001.stl");
   EXPECT_THAT(stl, ::testing::StartsWith("Dubsar, mm; SIMULATED; P000001, BM 12345; (c) A Museum; CC0"));
   const std::string glb = bytes_of(at("alone_bag") / "data/model/P000001.glb");
