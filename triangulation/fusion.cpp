@@ -25,6 +25,21 @@ float pose_sigma_mm(const StitchSurface& s) {
   return std::isfinite(s.pose_sigma_mm) ? static_cast<float>(s.pose_sigma_mm / std::sqrt(3.0)) : 0.0F;
 }
 
+/// What the passes of one scan weigh together: they err by the same pose.
+struct SharedPose {
+  int id;
+  float weight;
+
+  /// Twice the weighted covariance of one more pass with those so far; 0 for another scan, which comes in
+  /// their place.
+  [[nodiscard]] float covariance_with(const StitchSurface& s, float s_weight) {
+    const float so_far = s.id == id ? weight : 0.0F;
+    id = s.id;
+    weight = so_far + s_weight;
+    return so_far == 0 ? 0.0F : 2 * so_far * s_weight * square(pose_sigma_mm(s));
+  }
+};
+
 /// How much of its say a sample keeps that is so far from the rim of its scan.
 float faded(std::uint8_t rim, float feather) {
   if (feather <= 0) {
@@ -122,7 +137,12 @@ void Averager::write_average(const Course& course, std::size_t at, FusedSamples&
   float weight_sum = from_.weight(i) * faded(from_.rim[i], feather_);
   float doubt = 1.0F - from_.reliability(i);
   bool sparse = from_.is_sparse(i);
+  std::size_t scans = 1;
+  int last = from_.id;
   for (const auto& [k, q] : found_) {
+    const int id = others_[k]->id;
+    scans += id != last && id != from_.id ? 1 : 0;  // passes of one scan follow each other
+    last = id;
     const float weight = q.weight * faded(q.rim, pairs_[k]->feather);
     shift_sum += weight * q.along_mm;
     weight_sum += weight;
@@ -135,24 +155,29 @@ void Averager::write_average(const Course& course, std::size_t at, FusedSamples&
   out.reliability[at] =
       (1.0F - doubt) / (1.0F + square(out.sigma_mm[at] / static_cast<float>(from_.spacing_mm)));
   out.sparse[at] = sparse ? 1 : 0;
-  out.scans[at] = static_cast<std::uint8_t>(std::min<std::size_t>(found_.size() + 1, 255));
+  out.scans[at] = static_cast<std::uint8_t>(std::min<std::size_t>(scans, 255));
 }
 
-/// Of the average: noise and poses of different scans are independent, but where the clay bends all other
-/// scans' triangles lie to the same side of it.
+/// Of the average: noise and poses of different scans are independent, passes of one scan share its pose, and
+/// where the clay bends all other scans' triangles lie to the same side of it.
 float Averager::sigma_mm(const Course& course, float shift_mm, float weight_sum) const {
   const auto variance_of = [](const StitchSurface& s, float weight) {
     return s.variance_of_weight / weight + square(pose_sigma_mm(s));
   };
   const float own = from_.weight(course.sample);
   const float own_variance = variance_of(from_, own);
-  float variance_sum = square(own * faded(from_.rim[course.sample], feather_)) * own_variance;
+  const float own_weight = own * faded(from_.rim[course.sample], feather_);
+  float variance_sum = square(own_weight) * own_variance;
+  SharedPose own_pose{from_.id, own_weight};
+  SharedPose last_pose{from_.id, 0};
   float bulge_sum = 0;
   float chi2 = 0;
   for (const auto& [k, q] : found_) {
     const float weight = q.weight * faded(q.rim, pairs_[k]->feather);
     const float variance = variance_of(*others_[k], q.weight);
     variance_sum += square(weight) * variance;
+    SharedPose& pose = others_[k]->id == from_.id ? own_pose : last_pose;
+    variance_sum += pose.covariance_with(*others_[k], weight);
     bulge_sum += weight * std::abs(q.bulge_mm);
     chi2 += square(course.tilt * (q.along_mm - shift_mm)) / (variance + square(q.bulge_mm));
   }

@@ -13,14 +13,18 @@
 #include "core/parallel.h"
 #include "triangulation/assembly.h"
 #include "triangulation/patch_shape.h"
+#include "triangulation/stage_passes.h"
 
 namespace dubsar {
 
 namespace {
 
+/// A scan's id, and which of its stage's passes: each is stitched as if it were a scan of its own.
+using PassKey = std::pair<int, int>;
+
 struct Entry {
   StitchSurface surface;
-  std::map<int, Pairs> pairs;  ///< by the id of the other scan; those without a pair hold no matches
+  std::map<PassKey, Pairs> pairs;  ///< by the other pass; those without a pair hold no matches
   std::vector<std::uint8_t> wanted;
   FusedSamples fused;
   /// By node: 1 where pairs have come or gone that wanted and fused do not know of yet; empty: nowhere.
@@ -76,6 +80,35 @@ Status check(const PlacedScan& scan) {
   return {};
 }
 
+/// Of each pass of the scan's stage.
+std::vector<StitchSurface> make_surfaces(const PlacedScan& scan, const StitchSurfaceOptions& options) {
+  const RangeGrid& grid = *scan.grid;
+  const double spacing_mm = grid.spacing_mm > 0 ? grid.spacing_mm : estimate_spacing_mm(grid);
+  const std::vector<StagePass> passes =
+      spacing_mm > 0 ? stage_passes(grid, spacing_mm) : std::vector<StagePass>{};
+  std::vector<StitchSurface> out;
+  if (passes.empty() || passes.front().size() == static_cast<std::size_t>(grid.rows)) {
+    out.push_back(make_scan_surface(scan, options));
+    return out;
+  }
+  for (const StagePass& pass : passes) {
+    RangeGrid part = grid_of_pass(grid, pass);
+    part.spacing_mm = spacing_mm;
+    SampleFlags flags;
+    for (const int row : pass) {
+      const auto first = static_cast<std::ptrdiff_t>(grid.index(row, 0));
+      if (scan.flags != nullptr && !scan.flags->empty()) {
+        flags.insert(flags.end(), scan.flags->begin() + first, scan.flags->begin() + first + grid.cols);
+      }
+    }
+    PlacedScan placed = scan;
+    placed.grid = &part;
+    placed.flags = &flags;
+    out.push_back(make_scan_surface(placed, options));
+  }
+  return out;
+}
+
 /// Gives memory back, as clear() and `= {}` do not.
 template <class... T>
 void release(std::vector<T>&... arrays) {
@@ -90,11 +123,11 @@ std::unexpected<Error> cancelled() {
 
 struct Stitcher::Impl {
   StitchOptions options;
-  std::map<int, Entry> entries;
-  std::set<int> unpaired;  ///< came since settle()
+  std::map<PassKey, Entry> entries;  ///< each scan has a pass 0
+  std::set<PassKey> unpaired;        ///< came since settle()
 
   [[nodiscard]] Status may_enter(const PlacedScan& scan) const {
-    if (entries.contains(scan.id)) {
+    if (entries.contains({scan.id, 0})) {
       return fail(ErrorKind::kUsage, "stitched already", name_of(scan), "remove it first");
     }
     return check(scan);
@@ -102,27 +135,34 @@ struct Stitcher::Impl {
 
   /// Checks first, as far as the first bad one; then the surfaces side by side.
   Status insert(std::span<const PlacedScan> scans) {
-    std::vector<Entry*> added;
+    std::size_t sound = 0;
     Status ok;
     for (const PlacedScan& scan : scans) {
       ok = may_enter(scan);
       if (!ok) {
         break;
       }
-      added.push_back(&entries[scan.id]);
-      unpaired.insert(scan.id);
+      entries[{scan.id, 0}];
+      ++sound;
     }
+    std::vector<std::vector<StitchSurface>> surfaces(sound);
     parallel_for_each_index(
-        added.size(),
-        [&](std::size_t k) { added[k]->surface = make_scan_surface(scans[k], options.surface); }, 1);
+        sound, [&](std::size_t k) { surfaces[k] = make_surfaces(scans[k], options.surface); }, 1);
+    for (std::size_t k = 0; k < sound; ++k) {
+      for (std::size_t pass = 0; pass < surfaces[k].size(); ++pass) {
+        const PassKey key(scans[k].id, static_cast<int>(pass));
+        entries[key].surface = std::move(surfaces[k][pass]);
+        unpaired.insert(key);
+      }
+    }
     return ok;
   }
 
-  /// Pairs the new scan with those that its box touches.
-  void pair(int id) {
-    Entry& entry = entries.at(id);
-    for (auto& [other_id, other] : entries) {
-      if (other_id == id || unpaired.contains(other_id)) {
+  /// Pairs the new pass with those that its box touches.
+  void pair(const PassKey& key) {
+    Entry& entry = entries.at(key);
+    for (auto& [other_key, other] : entries) {
+      if (other_key == key || unpaired.contains(other_key)) {
         continue;
       }
       Eigen::AlignedBox3f box = other.surface.box;
@@ -144,8 +184,8 @@ struct Stitcher::Impl {
       there.feather = back.feather = static_cast<float>(
           feather_samples(entry.surface, other.surface, step_mm(entry.surface, other.surface, reach)));
       other.mark_changed(back);
-      entry.pairs.emplace(other_id, std::move(there));
-      other.pairs.emplace(id, std::move(back));
+      entry.pairs.emplace(other_key, std::move(there));
+      other.pairs.emplace(key, std::move(back));
     }
     entry.fused = FusedSamples(entry.surface);
     entry.changed.assign(entry.surface.lattice.size(), 1);
@@ -160,9 +200,9 @@ struct Stitcher::Impl {
         return false;
       }
       job.progress("pair samples", done++ / count);
-      const int id = *unpaired.begin();
+      const PassKey key = *unpaired.begin();
       unpaired.erase(unpaired.begin());
-      pair(id);
+      pair(key);
     }
     return true;
   }
@@ -171,23 +211,23 @@ struct Stitcher::Impl {
   /// pairs have changed. Empty when cancelled.
   [[nodiscard]] std::vector<OwnedScan> owned_scans(const JobContext& job) {
     std::vector<OwnedScan> scans;
-    std::map<int, std::size_t> position;
-    for (const auto& [id, entry] : entries) {
-      position[id] = position.size();
+    std::map<PassKey, std::size_t> position;
+    for (const auto& [key, entry] : entries) {
+      position[key] = position.size();
     }
-    for (auto& [id, entry] : entries) {
+    for (auto& [key, entry] : entries) {
       OwnedScan& scan = scans.emplace_back();
       scan.surface = &entry.surface;
       scan.fused = &entry.fused;
       scan.wanted = &entry.wanted;
-      for (const auto& [other_id, pairs] : entry.pairs) {
+      for (const auto& [other_key, pairs] : entry.pairs) {
         scan.pairs.push_back(&pairs);
-        scan.other.push_back(position.at(other_id));
-        scan.other_surface.push_back(&entries.at(other_id).surface);
+        scan.other.push_back(position.at(other_key));
+        scan.other_surface.push_back(&entries.at(other_key).surface);
       }
     }
     std::size_t at = 0;
-    for (auto& [id, entry] : entries) {
+    for (auto& [key, entry] : entries) {
       if (job.cancelled()) {
         return {};
       }
@@ -218,7 +258,7 @@ struct Stitcher::Impl {
       return cancelled();
     }
     if (lets_go) {  // of what patches are not laid from
-      for (auto& [id, entry] : entries) {
+      for (auto& [key, entry] : entries) {
         entry.pairs.clear();
         StitchSurface& surface = entry.surface;
         release(entry.wanted, surface.points, surface.usable, surface.reliability_code, surface.weight_code,
@@ -230,7 +270,7 @@ struct Stitcher::Impl {
         release(scan.kept, scan.cells, scan.near_kept, scan.some_kept, scan.all_kept);
       }
       if (lets_go) {
-        for (auto& [id, entry] : entries) {
+        for (auto& [key, entry] : entries) {
           entry.fused = FusedSamples();
           release(entry.surface.normals, entry.surface.cells);
         }
@@ -244,15 +284,18 @@ struct Stitcher::Impl {
   }
 
   bool erase(int id) {
-    if (entries.erase(id) == 0) {
+    const auto is_of_scan = [id](const auto& item) { return item.first.first == id; };
+    if (std::erase_if(entries, is_of_scan) == 0) {
       return false;
     }
-    unpaired.erase(id);
-    for (auto& [other_id, other] : entries) {
-      if (const auto pairs = other.pairs.find(id); pairs != other.pairs.end()) {
-        other.mark_changed(pairs->second);
-        other.pairs.erase(pairs);
+    std::erase_if(unpaired, [id](const PassKey& key) { return key.first == id; });
+    for (auto& [other_key, other] : entries) {
+      for (const auto& [key, pairs] : other.pairs) {
+        if (key.first == id) {
+          other.mark_changed(pairs);
+        }
       }
+      std::erase_if(other.pairs, is_of_scan);
     }
     return true;
   }
@@ -281,16 +324,24 @@ bool Stitcher::remove(int id) {
 }
 
 std::vector<Stitcher::Overlap> Stitcher::overlaps() const {
-  std::vector<Overlap> out;
+  std::map<std::pair<int, int>, Overlap> found;  // of all passes of two scans together
   impl_->settle(JobContext{});
-  for (const auto& [id, entry] : impl_->entries) {
-    for (const auto& [other_id, pairs] : entry.pairs) {
-      if (id < other_id) {
-        const StitchSurface& other = impl_->entries.at(other_id).surface;
-        out.push_back({id, other_id, pairs.nodes, step_mm(entry.surface, other, pairs.reach_mm),
-                       std::max(entry.surface.spacing_mm, other.spacing_mm)});
+  for (const auto& [key, entry] : impl_->entries) {
+    for (const auto& [other_key, pairs] : entry.pairs) {
+      if (const int id = key.first, other_id = other_key.first; id < other_id) {
+        const StitchSurface& other = impl_->entries.at(other_key).surface;
+        Overlap& overlap = found[{id, other_id}];
+        overlap.id = id;
+        overlap.other_id = other_id;
+        overlap.nodes += pairs.nodes;
+        overlap.step_mm = std::max(overlap.step_mm, step_mm(entry.surface, other, pairs.reach_mm));
+        overlap.spacing_mm = std::max(entry.surface.spacing_mm, other.spacing_mm);
       }
     }
+  }
+  std::vector<Overlap> out;
+  for (const auto& [ids, overlap] : found) {
+    out.push_back(overlap);
   }
   return out;
 }
