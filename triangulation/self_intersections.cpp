@@ -13,6 +13,7 @@
 #include "core/huge_pages.h"
 #include "core/parallel.h"
 #include "core/parallel_sort.h"
+#include "triangulation/crowded_vertices.h"
 #include "triangulation/face_cut.h"
 #include "triangulation/part_cells.h"
 
@@ -284,13 +285,14 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> self_intersections(
       }
     }
   }
+  using Pairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
+  Pairs out = part_of_face.empty() ? take_cuts_at_crowded_vertices(positions, all_faces, faces) : Pairs{};
   // So that no cell number of the finest level is cut off.
   constexpr float kMostCells = 400000.0F;
   const float smallest_mm =
       std::max(static_cast<float>(2.5 * mean_mm), extent.box.sizes().maxCoeff() / kMostCells);
   const FaceCells cells(positions, all_faces, faces, part_of_face, extent.box.min(), smallest_mm);
-  using Pairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
-  Pairs out = parallel_reduce_ordered(
+  const Pairs elsewhere = parallel_reduce_ordered(
       cells.size(), 256, Pairs{},
       [&](std::size_t begin, std::size_t end) {
         Pairs found;
@@ -311,6 +313,7 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> self_intersections(
         return found;
       },
       [](Pairs& total, const Pairs& part) { total.insert(total.end(), part.begin(), part.end()); });
+  out.insert(out.end(), elsewhere.begin(), elsewhere.end());
   std::sort(out.begin(), out.end());
   return out;
 }

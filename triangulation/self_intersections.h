@@ -15,7 +15,7 @@ namespace dubsar {
 /// inside of the other. Faces that share an edge cannot; of those that share a vertex the edges opposite to
 /// it are looked at. Faces that only touch, or lie in one plane, are not counted. Faces with an index out of
 /// range or a coordinate that is not finite are passed over. Time is that of a sort for meshes of about even
-/// face size.
+/// face size, however many faces meet in a vertex.
 /// With `part_of_face` given, faces of the same part (other than 0) are known not to cut each other, and most
 /// of the work is spared.
 [[nodiscard]] std::vector<std::pair<std::uint32_t, std::uint32_t>> self_intersections(
