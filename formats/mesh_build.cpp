@@ -96,10 +96,6 @@ bool append_position(Mesh& mesh, double x_mm, double y_mm, double z_mm) {
   return true;
 }
 
-std::uint8_t colour_byte(double share) {
-  return share > 0 ? static_cast<std::uint8_t>(std::lround(255 * std::min(share, 1.0))) : std::uint8_t{0};
-}
-
 void append_polygon(Mesh& mesh, std::span<const std::uint32_t> corners) {
   // Without its places, or so long that it would take too much time, a polygon is taken for a convex one.
   constexpr std::size_t kMostClipped = 64;

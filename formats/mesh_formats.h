@@ -44,9 +44,6 @@ namespace dubsar {
 /// A vertex in millimetres, or nothing when it is not finite.
 [[nodiscard]] bool append_position(Mesh& mesh, double x_mm, double y_mm, double z_mm);
 
-/// The byte of a colour from 0 to 1; what lies outside becomes the nearest one, NaN 0.
-[[nodiscard]] std::uint8_t colour_byte(double share);
-
 /// Adds the triangles of a polygon, convex or not; fewer than three corners add nothing.
 void append_polygon(Mesh& mesh, std::span<const std::uint32_t> corners);
 

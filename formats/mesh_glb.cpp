@@ -11,6 +11,7 @@
 
 #include "core/srgb.h"
 #include "formats/byte_order.h"
+#include "formats/colour_values.h"
 #include "formats/glb_container.h"
 #include "formats/json_text.h"
 #include "formats/mesh_formats.h"

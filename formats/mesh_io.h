@@ -30,8 +30,8 @@ struct MeshReadOptions {
                                            const MeshReadOptions& options = {});
 
 /// Writes by extension, atomically. PLY keeps everything (docs/formats/mesh.md), GLB positions, normals and
-/// colours, OBJ positions, normals and faces, STL the triangles alone. All say what the label does, STL what
-/// 80 bytes hold of it.
+/// colours, OBJ positions, colours, normals and faces, STL the triangles alone. All say what the label does,
+/// STL what 80 bytes hold of it.
 [[nodiscard]] Status write_mesh(const std::filesystem::path& path, const Mesh& mesh,
                                 const FileLabel& label = {});
 

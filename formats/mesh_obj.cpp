@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/number_text.h"
+#include "formats/colour_values.h"
 #include "formats/mesh_formats.h"
 #include "formats/text_scanner.h"
 
@@ -98,13 +99,13 @@ class ObjReader {
     colours_.resize(mesh_.positions.size() - 1, kWhite);
     colours_.push_back({static_cast<float>(rgb[0]), static_cast<float>(rgb[1]), static_cast<float>(rgb[2])});
   }
-  /// From 0 to 1, or to 255 where any is larger.
+  /// From 0 to 1, or to 255 where any runs so far.
   void lay_colours() {
     if (colours_.empty()) {
       return;
     }
-    const bool bytes = std::ranges::any_of(
-        colours_, [](const auto& rgb) { return std::ranges::any_of(rgb, [](float c) { return c > 1; }); });
+    const bool bytes =
+        std::ranges::any_of(colours_, [](const auto& rgb) { return std::ranges::any_of(rgb, runs_to_255); });
     mesh_.colours.resize(mesh_.positions.size(), {255, 255, 255});
     for (std::size_t v = 0; v < colours_.size(); ++v) {
       for (std::size_t k = 0; k < 3; ++k) {
@@ -153,6 +154,16 @@ class ObjReader {
   std::size_t highest_line_ = 0;
 };
 
+/// " red green blue" behind a place, from 0 to 1 with six decimals, rounded up: whoever multiplies by 255
+/// gets the byte, rounding or cutting off.
+void append_colour(std::string& out, const std::array<std::uint8_t, 3>& rgb) {
+  constexpr std::uint32_t kDecimals = 1000000;
+  for (const std::uint8_t byte : rgb) {
+    out += ' ';
+    out += number_text(((byte * kDecimals + 254) / 255) / static_cast<double>(kDecimals));
+  }
+}
+
 }  // namespace
 
 Result<Mesh> decode_mesh_obj(std::string_view bytes, const std::string& where,
@@ -175,13 +186,17 @@ std::string encode_mesh_obj(const Mesh& mesh, const FileLabel& label) {
       out += ' ';
       append_number(out, component);
     }
-    out += '\n';
   };
-  for (const Eigen::Vector3f& position : mesh.positions) {
-    append_three("v", position);
+  for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+    append_three("v", mesh.positions[v]);
+    if (!mesh.colours.empty()) {
+      append_colour(out, mesh.colours[v]);
+    }
+    out += '\n';
   }
   for (const Eigen::Vector3f& normal : mesh.normals) {
     append_three("vn", normal);
+    out += '\n';
   }
   for (const auto& face : mesh.faces) {
     out += 'f';

@@ -8,6 +8,7 @@
 #include "core/number_text.h"
 #include "core/parallel.h"
 #include "formats/byte_order.h"
+#include "formats/colour_values.h"
 #include "formats/mesh_formats.h"
 #include "formats/ply_body.h"
 #include "formats/ply_scan.h"
@@ -22,23 +23,16 @@ constexpr std::size_t kRowsAtOnce = std::size_t{1} << 16U;
 
 /// Where the vertex properties stand; -1 for those that are absent.
 struct Columns {
-  std::array<int, 3> position, normal, colour;
+  std::array<int, 3> position, normal;
   int reliability, sigma, scans, flags;
-  double largest_colour = 255;
 
   explicit Columns(const PlyElement& vertex)
       : position{vertex.scalar("x"), vertex.scalar("y"), vertex.scalar("z")},
         normal{vertex.scalar("nx"), vertex.scalar("ny"), vertex.scalar("nz")},
-        colour{vertex.scalar("red"), vertex.scalar("green"), vertex.scalar("blue")},
         reliability(vertex.scalar("reliability")),
         sigma(vertex.scalar("sigma")),
         scans(vertex.scalar("scans")),
-        flags(vertex.scalar("flags")) {
-    if (has(colour)) {
-      const PlyType type = vertex.properties[static_cast<std::size_t>(colour[0])].type;
-      largest_colour = type >= PlyType::kFloat32 ? 1 : type == PlyType::kUint16 ? 65535 : 255;
-    }
-  }
+        flags(vertex.scalar("flags")) {}
   [[nodiscard]] static bool has(const std::array<int, 3>& three) {
     return std::all_of(three.begin(), three.end(), [](int p) { return p >= 0; });
   }
@@ -64,12 +58,12 @@ void resize_vertices(const Columns& columns, std::size_t count, Mesh& mesh) {
   mesh.sigma_mm.resize(columns.sigma >= 0 ? count : 0);
   mesh.scans.resize(columns.scans >= 0 ? count : 0);
   mesh.flags.resize(columns.flags >= 0 ? count : 0);
-  mesh.colours.resize(Columns::has(columns.colour) ? count : 0);
 }
 
 /// value(property) -> double. False where the position is not finite.
 template <class Value>
-bool put_vertex(const Columns& columns, double mm, const Value& value, std::size_t v, Mesh& mesh) {
+bool put_vertex(const Columns& columns, double mm, const Value& value, std::size_t v, Mesh& mesh,
+                PlyColours& colours) {
   const auto three = [&](const std::array<int, 3>& of, double scale) {
     return Eigen::Vector3f(static_cast<float>(scale * value(of[0])), static_cast<float>(scale * value(of[1])),
                            static_cast<float>(scale * value(of[2])));
@@ -98,18 +92,14 @@ bool put_vertex(const Columns& columns, double mm, const Value& value, std::size
   if (columns.flags >= 0) {
     mesh.flags[v] = byte_of(value(columns.flags));
   }
-  if (Columns::has(columns.colour)) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      mesh.colours[v][k] = colour_byte(value(columns.colour[k]) / columns.largest_colour);
-    }
-  }
+  colours.put(v, value);
   return true;
 }
 
 /// Vertices of one size each in a binary file, many at a time. False, and nothing is passed over, where they
 /// are not so, or one is not sound: then they are to be read one by one, for the error's sake.
 bool read_vertices_at_once(PlyBody& body, const PlyElement& vertex, const Columns& columns, double mm,
-                           Mesh& mesh) {
+                           Mesh& mesh, PlyColours& colours) {
   std::vector<std::size_t> offsets;
   std::size_t stride = 0;
   for (const PlyProperty& property : vertex.properties) {
@@ -132,7 +122,7 @@ bool read_vertices_at_once(PlyBody& body, const PlyElement& vertex, const Column
                         const auto p = static_cast<std::size_t>(property);
                         return load_as_double(row + offsets[p], vertex.properties[p].type, body.byte_order());
                       };
-                      if (!put_vertex(columns, mm, value, v, mesh)) {
+                      if (!put_vertex(columns, mm, value, v, mesh, colours)) {
                         sound = false;
                         return;
                       }
@@ -192,16 +182,20 @@ Status read_vertices(PlyBody& body, const PlyElement& vertex, double mm, const s
   }
   const auto count = static_cast<std::size_t>(vertex.count);
   resize_vertices(columns, count, mesh);
-  if (read_vertices_at_once(body, vertex, columns, mm, mesh)) {
+  PlyColours colours(vertex);
+  if (read_vertices_at_once(body, vertex, columns, mm, mesh, colours)) {
+    mesh.colours = colours.take();
     return {};
   }
-  return body.read(vertex, [&](std::uint64_t index, const PlyRow& row) -> Status {
+  const Status read = body.read(vertex, [&](std::uint64_t index, const PlyRow& row) -> Status {
     const auto value = [&](int property) { return row.value(property); };
-    if (!put_vertex(columns, mm, value, static_cast<std::size_t>(index), mesh)) {
+    if (!put_vertex(columns, mm, value, static_cast<std::size_t>(index), mesh, colours)) {
       return body.error_at(vertex, index, "its position is not finite", kExportAgain);
     }
     return {};
   });
+  mesh.colours = colours.take();
+  return read;
 }
 
 /// The property that lists vertices, or -1.

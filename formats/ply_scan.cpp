@@ -10,6 +10,7 @@
 
 #include "core/number_text.h"
 #include "core/units.h"
+#include "formats/colour_values.h"
 #include "formats/place_precision.h"
 #include "formats/ply_body.h"
 #include "formats/ply_scan_info.h"
@@ -68,10 +69,8 @@ Result<std::optional<GridSize>> read_size(const PlyHeader& header, const std::st
 /// Where the vertex properties stand.
 struct VertexColumns {
   int x, y, z, valid, intensity, confidence;
-  std::array<int, 3> rgb;
   std::array<int, 3> normal;
   double intensity_scale = 1;
-  double colour_scale = 1;
 
   explicit VertexColumns(const PlyElement& vertex)
       : x(vertex.scalar("x")),
@@ -80,7 +79,6 @@ struct VertexColumns {
         valid(vertex.scalar("valid")),
         intensity(vertex.scalar("intensity")),
         confidence(vertex.scalar("confidence")),
-        rgb{vertex.scalar("red"), vertex.scalar("green"), vertex.scalar("blue")},
         normal{vertex.scalar("nx"), vertex.scalar("ny"), vertex.scalar("nz")} {
     const auto type_of = [&](int p) { return vertex.properties[static_cast<std::size_t>(p)].type; };
     if (intensity >= 0 && type_of(intensity) == PlyType::kUint8) {
@@ -88,18 +86,11 @@ struct VertexColumns {
     } else if (intensity >= 0 && type_of(intensity) == PlyType::kUint16) {
       intensity_scale = 1.0 / 65535.0;
     }
-    if (has(rgb) && type_of(rgb[0]) >= PlyType::kFloat32) {
-      colour_scale = 255.0;
-    }
   }
   [[nodiscard]] static bool has(const std::array<int, 3>& three) {
     return three[0] >= 0 && three[1] >= 0 && three[2] >= 0;
   }
 };
-
-std::uint8_t colour_byte(double value) {
-  return value > 0 ? static_cast<std::uint8_t>(std::min(value + 0.5, 255.0)) : std::uint8_t{0};
-}
 
 Result<ScanSamples> read_vertices(PlyBody& body, const PlyElement& vertex, double mm,
                                   const std::string& name) {
@@ -123,7 +114,8 @@ Result<ScanSamples> read_vertices(PlyBody& body, const PlyElement& vertex, doubl
   samples.y.reserve(count);
   samples.z.reserve(count);
   samples.usable.reserve(count);
-  const Status done = body.read(vertex, [&](std::uint64_t, const PlyRow& row) -> Status {
+  PlyColours colours(vertex);
+  const Status done = body.read(vertex, [&](std::uint64_t index, const PlyRow& row) -> Status {
     samples.add(mm * row.value(columns.x), mm * row.value(columns.y), mm * row.value(columns.z),
                 row.value(columns.valid, 1.0) != 0.0);
     if (columns.intensity >= 0) {
@@ -133,9 +125,7 @@ Result<ScanSamples> read_vertices(PlyBody& body, const PlyElement& vertex, doubl
       const double confidence = row.value(columns.confidence);
       samples.confidence.push_back(confidence > 0 ? static_cast<float>(std::min(confidence, 1.0)) : 0.0F);
     }
-    for (std::size_t k = 0; k < 3 && VertexColumns::has(columns.rgb); ++k) {
-      samples.rgb.push_back(colour_byte(columns.colour_scale * row.value(columns.rgb[k])));
-    }
+    colours.put(static_cast<std::size_t>(index), [&](int property) { return row.value(property); });
     for (std::size_t k = 0; k < 3 && VertexColumns::has(columns.normal); ++k) {
       samples.normals.push_back(static_cast<float>(row.value(columns.normal[k])));
     }
@@ -143,6 +133,10 @@ Result<ScanSamples> read_vertices(PlyBody& body, const PlyElement& vertex, doubl
   });
   if (!done) {
     return std::unexpected(done.error());
+  }
+  samples.rgb.reserve(colours.any() ? 3 * count : 0);
+  for (const std::array<std::uint8_t, 3>& rgb : colours.take()) {
+    samples.rgb.insert(samples.rgb.end(), rgb.begin(), rgb.end());
   }
   return samples;
 }

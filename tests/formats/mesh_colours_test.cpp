@@ -2,6 +2,7 @@
 // Copyright The Dubsar developers
 // What a mesh carries beside its shape, as others write it: colours and normals of its vertices.
 #include <array>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -104,13 +105,71 @@ TEST(MeshColours, ObjHasThemBehindThePlaces) {
   EXPECT_TRUE(colours("v 0 0 0 1.0\nv 1 0 0\nv 0 1 0\n").empty());
 }
 
+TEST(MeshColours, ObjKeepsEachByte) {
+  const Mesh mesh = colourful_mesh();
+  const std::string text = encode_mesh_obj(mesh);
+  const auto back = read_mesh_bytes(text, "a.obj");
+  ASSERT_TRUE(back) << line_of(back);
+  EXPECT_EQ(back->colours, mesh.colours);
+  // Others cut off what is behind the point.
+  std::istringstream lines(text.substr(text.find("\nv ") + 1));
+  for (std::size_t v = 0; v < mesh.colours.size(); ++v) {
+    std::string keyword;
+    std::array<float, 6> numbers{};
+    lines >> keyword;
+    for (float& number : numbers) {
+      lines >> number;
+    }
+    ASSERT_EQ(keyword, "v");
+    for (std::size_t k = 0; k < 3; ++k) {
+      EXPECT_LE(numbers[3 + k], 1.0F);
+      EXPECT_EQ(static_cast<int>(numbers[3 + k] * 255.0F), int{mesh.colours[v][k]});
+    }
+  }
+}
+
+TEST(MeshColours, ObjWithoutAnyHasThreeNumbersAVertex) {
+  Mesh mesh = colourful_mesh();
+  mesh.colours.clear();
+  EXPECT_THAT(encode_mesh_obj(mesh), HasSubstr("v 0 1 0\nv 1 0 0\n"));
+}
+
+TEST(MeshColours, FloatsOfPlyMayRunTo255) {
+  const std::vector<std::string> values = {"0.25 1 0", "0.5 nan -1", "254.6 7 inf"};
+  for (const char* type : {"float", "double"}) {
+    const auto mesh = read_mesh_bytes(ply_with(colour_properties(type), values), "a.ply");
+    ASSERT_TRUE(mesh) << line_of(mesh);
+    EXPECT_EQ(mesh->colours, (Colours{{0, 1, 0}, {1, 0, 0}, {255, 7, 255}}));
+  }
+  // Only the last vertex of many tells, whichever part of the file is read first.
+  std::string binary =
+      "ply\nformat binary_little_endian 1.0\nelement vertex 200000\nproperty float x\nproperty float "
+      "y\nproperty "
+      "float z\n" +
+      colour_properties("float") + "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
+  for (int v = 0; v < 200000; ++v) {
+    const float colour = v == 199999 ? 200.0F : 1.0F;
+    for (const float number : {static_cast<float>(v), static_cast<float>(v % 2), 0.0F, colour, 0.0F, 0.0F}) {
+      append(binary, number);
+    }
+  }
+  append(binary, std::uint8_t{3});
+  for (const std::uint32_t corner : {0U, 1U, 2U}) {
+    append(binary, corner);
+  }
+  const auto large = read_mesh_bytes(binary, "a.ply");
+  ASSERT_TRUE(large) << line_of(large);
+  EXPECT_EQ(large->colours.front()[0], 1);
+  EXPECT_EQ(large->colours.back()[0], 200);
+}
+
 TEST(MeshColours, PlyHasThemOfSeveralTypes) {
   const auto colours = [](const std::string& type, const std::vector<std::string>& values) {
     return read_mesh_bytes(ply_with(colour_properties(type), values), "a.ply").value().colours;
   };
   EXPECT_EQ(colours("ushort", {"65535 32768 0", "257 0 514", "0 0 65278"}),
             (Colours{{255, 128, 0}, {1, 0, 2}, {0, 0, 254}}));
-  EXPECT_EQ(colours("float", {"1 0.015686 0", "0.5 nan -1", "2 0 0.003922"}),
+  EXPECT_EQ(colours("float", {"1 0.015686 0", "0.5 nan -1", "1.2 0 0.003922"}),
             (Colours{{255, 4, 0}, {128, 0, 0}, {255, 0, 1}}));
   EXPECT_EQ(colours("uchar", {"255 4 0", "3 2 1", "128 127 126"}),
             (Colours{{255, 4, 0}, {3, 2, 1}, {128, 127, 126}}));

@@ -183,6 +183,24 @@ TEST(PlyScan, ReadsIntensityColourAndConfidence) {
   EXPECT_EQ(grid.rgb[5], 6);
 }
 
+TEST(PlyScan, ReadsColoursAsMeshesHaveThem) {
+  const auto colours = [](const std::string& type, const std::string& first, const std::string& last) {
+    Parts parts;
+    for (const char* name : {"red", "green", "blue"}) {
+      parts.vertex += "property " + type + " " + name + "\n";
+    }
+    parts.body =
+        "0 0 0 " + first + "\n1 0 0 0 0 0\n0 1 0 0 0 0\n1 1 0 " + last + "\n1 0\n1 1\n0\n1 2\n0\n1 3\n";
+    const std::vector<std::uint8_t> rgb = grid_of(parts.text()).rgb;
+    return std::vector<std::uint8_t>(rgb.begin(), rgb.begin() + 3);
+  };
+  EXPECT_EQ(colours("float", "1 0.5 0.003922", "1.2 0 0"), (std::vector<std::uint8_t>{255, 128, 1}));
+  EXPECT_EQ(colours("float", "1 20.4 255", "0 0 0"), (std::vector<std::uint8_t>{1, 20, 255}));
+  EXPECT_EQ(colours("float", "1 0.4 0", "0 0 2"), (std::vector<std::uint8_t>{1, 0, 0}));
+  EXPECT_EQ(colours("ushort", "65535 257 32768", "0 0 0"), (std::vector<std::uint8_t>{255, 1, 128}));
+  EXPECT_EQ(colours("uchar", "1 2 3", "0 0 0"), (std::vector<std::uint8_t>{1, 2, 3}));
+}
+
 TEST(PlyScan, CoordinatesThatAreNoMeasurementAreNoReturns) {
   for (const char* bad : {"nan", "inf", "-inf", "1e30", "1e999", "-2e6"}) {
     Parts parts;
