@@ -96,6 +96,19 @@ bool append_position(Mesh& mesh, double x_mm, double y_mm, double z_mm) {
   return true;
 }
 
+std::string whole_text(const ByteProducer& produce) {
+  std::string out;
+  (void)produce([&](std::span<const std::byte> bytes) -> Status {
+    out.append(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    return {};
+  });
+  return out;
+}
+
+std::unexpected<Error> reading_stopped(const std::string& where) {
+  return fail(ErrorKind::kCancelled, "reading was stopped", where);
+}
+
 void append_polygon(Mesh& mesh, std::span<const std::uint32_t> corners) {
   // Without its places, or so long that it would take too much time, a polygon is taken for a convex one.
   constexpr std::size_t kMostClipped = 64;

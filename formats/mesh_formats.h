@@ -15,6 +15,16 @@
 
 namespace dubsar {
 
+/// What a producer that cannot fail writes, in one piece.
+[[nodiscard]] std::string whole_text(const ByteProducer& produce);
+
+/// Whether the work is to end; asked every few thousand lines or numbers.
+[[nodiscard]] inline bool is_stopped(const JobContext* job) {
+  return job != nullptr && job->cancelled();
+}
+/// The error of a file that was not read to its end for that.
+[[nodiscard]] std::unexpected<Error> reading_stopped(const std::string& where);
+
 // One encoder and one decoder per format, each in a file of its own (mesh_ply.cpp, mesh_obj.cpp, …). Decoders
 // take no more memory than a fixed multiple of the bytes given; `where` stands in errors.
 
@@ -24,6 +34,7 @@ namespace dubsar {
 [[nodiscard]] Result<Mesh> decode_mesh_ply(std::string_view bytes, const std::string& where,
                                            const MeshReadOptions& options);
 
+[[nodiscard]] Status produce_mesh_obj(const Mesh& mesh, const ByteSink& sink, const FileLabel& label = {});
 [[nodiscard]] std::string encode_mesh_obj(const Mesh& mesh, const FileLabel& label = {});
 [[nodiscard]] Result<Mesh> decode_mesh_obj(std::string_view bytes, const std::string& where,
                                            const MeshReadOptions& options);

@@ -61,6 +61,28 @@ Result<Mesh> decode(std::string_view bytes, const std::string& name, const MeshR
   return bad_input(name, "not a mesh that Dubsar reads", kKnown);
 }
 
+/// Passes on until the job is cancelled.
+ByteSink stoppable(const ByteSink& sink, const std::filesystem::path& path, const JobContext* job) {
+  return [&sink, &path, job](std::span<const std::byte> bytes) -> Status {
+    if (is_stopped(job)) {
+      return fail(ErrorKind::kCancelled, "writing was stopped", path.string());
+    }
+    return sink(bytes);
+  };
+}
+
+Status write_in_pieces(const std::filesystem::path& path, std::string_view text, const JobContext* job) {
+  constexpr std::size_t kPiece = std::size_t{1} << 20U;
+  return write_file_atomically(path, [&](const ByteSink& sink) -> Status {
+    Status passed;
+    const ByteSink into = stoppable(sink, path, job);
+    for (std::size_t at = 0; passed && at < text.size(); at += kPiece) {
+      passed = into(std::as_bytes(std::span(text.substr(at, kPiece))));
+    }
+    return passed;
+  });
+}
+
 }  // namespace
 
 Result<Mesh> read_mesh_bytes(std::string_view bytes, const std::string& name,
@@ -69,6 +91,9 @@ Result<Mesh> read_mesh_bytes(std::string_view bytes, const std::string& name,
     return bad_input(name, "the file is empty", "copy or export it again");
   }
   Result<Mesh> mesh = decode(bytes, name, options);
+  if (is_stopped(options.job)) {
+    return reading_stopped(name);
+  }
   const bool only_points = mesh && mesh->faces.empty() && options.may_be_points;
   if (mesh && !only_points) {
     if (const Status precise = check_precision(*mesh, name); !precise) {
@@ -83,18 +108,22 @@ Result<Mesh> read_mesh(const std::filesystem::path& path, const MeshReadOptions&
   return bytes ? read_mesh_bytes(*bytes, path.string(), options) : std::unexpected(bytes.error());
 }
 
-Status write_mesh(const std::filesystem::path& path, const Mesh& mesh, const FileLabel& label) {
+Status write_mesh(const std::filesystem::path& path, const Mesh& mesh, const FileLabel& label,
+                  const JobContext* job) {
   switch (format_of(path)) {
     case MeshFormat::kPly:
-      return write_file_atomically(path,
-                                   [&](const ByteSink& sink) { return produce_mesh_ply(mesh, sink, label); });
+      return write_file_atomically(path, [&](const ByteSink& sink) {
+        return produce_mesh_ply(mesh, stoppable(sink, path, job), label);
+      });
     case MeshFormat::kObj:
-      return write_file_atomically(path, encode_mesh_obj(mesh, label));
+      return write_file_atomically(path, [&](const ByteSink& sink) {
+        return produce_mesh_obj(mesh, stoppable(sink, path, job), label);
+      });
     case MeshFormat::kStl:
-      return write_file_atomically(path, encode_mesh_stl(mesh, label));
+      return write_in_pieces(path, encode_mesh_stl(mesh, label), job);
     case MeshFormat::kGlb: {
       const Result<std::string> bytes = encode_mesh_glb(mesh, path.string(), label);
-      return bytes ? write_file_atomically(path, *bytes) : std::unexpected(bytes.error());
+      return bytes ? write_in_pieces(path, *bytes, job) : std::unexpected(bytes.error());
     }
     case MeshFormat::kUnknown:
       break;

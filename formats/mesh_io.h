@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 
+#include "core/job.h"
 #include "core/mesh.h"
 #include "core/result.h"
 #include "formats/file_label.h"
@@ -19,6 +20,8 @@ struct MeshReadOptions {
   std::optional<double> mm_per_unit{};
   /// A PLY or OBJ of vertices alone gives a mesh without faces, for who only looks at it.
   bool may_be_points = false;
+  /// Reading ends soon after it is cancelled, with kCancelled; null: never.
+  const JobContext* job = nullptr;
 };
 
 /// Reads a mesh by its extension (.ply .obj .stl .glb) or, where that says nothing, by its first bytes.
@@ -31,8 +34,8 @@ struct MeshReadOptions {
 
 /// Writes by extension, atomically. PLY keeps everything (docs/formats/mesh.md), GLB positions, normals and
 /// colours, OBJ positions, colours, normals and faces, STL the triangles alone. All say what the label does,
-/// STL what 80 bytes hold of it.
+/// STL what 80 bytes hold of it. Where the job is cancelled the file stays as it was (kCancelled).
 [[nodiscard]] Status write_mesh(const std::filesystem::path& path, const Mesh& mesh,
-                                const FileLabel& label = {});
+                                const FileLabel& label = {}, const JobContext* job = nullptr);
 
 }  // namespace dubsar

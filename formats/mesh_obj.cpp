@@ -20,12 +20,16 @@ constexpr const char* kExportAgain = "export the mesh again";
 /// Reads an OBJ mesh line by line.
 class ObjReader {
  public:
-  ObjReader(std::string_view bytes, const std::string& where, double mm)
-      : text_(bytes), where_(where), mm_(mm) {}
+  ObjReader(std::string_view bytes, const std::string& where, const MeshReadOptions& options)
+      : text_(bytes), where_(where), options_(options), mm_(options.mm_per_unit.value_or(1.0)) {}
 
-  [[nodiscard]] Result<Mesh> mesh(bool may_be_points) {
+  [[nodiscard]] Result<Mesh> mesh() {
     bool any_keyword = false;
+    constexpr std::size_t kAskEvery = 4096;  // lines
     while (text_.remaining() > 0) {
+      if (line_number_ % kAskEvery == 0 && is_stopped(options_.job)) {
+        return reading_stopped(where_);
+      }
       std::string_view rest = next_line();
       const std::string_view keyword = take_word(rest);
       const bool is_vertex = keyword == "v";
@@ -44,7 +48,7 @@ class ObjReader {
       return line_error(highest_line_, in_quotes(std::to_string(highest_)) + " is not one of the " +
                                            std::to_string(mesh_.positions.size()) + " vertices");
     }
-    if (mesh_.faces.empty() && !may_be_points) {
+    if (mesh_.faces.empty() && !options_.may_be_points) {
       return bad_input(where_, "an OBJ file without faces",
                        "give a mesh; scans become one with dubsar stitch");
     }
@@ -144,6 +148,7 @@ class ObjReader {
   static constexpr std::int64_t kMostVertices = 0xfffffffe;
   TextScanner text_;
   const std::string& where_;
+  const MeshReadOptions& options_;
   double mm_;
   Mesh mesh_;
   std::vector<std::array<float, 3>> colours_;  ///< of the first vertices; empty while none has one
@@ -175,10 +180,11 @@ Result<Mesh> decode_mesh_obj(std::string_view bytes, const std::string& where,
     std::ranges::replace(in_lines, '\r', '\n');
     bytes = in_lines;
   }
-  return ObjReader(bytes, where, options.mm_per_unit.value_or(1.0)).mesh(options.may_be_points);
+  return ObjReader(bytes, where, options).mesh();
 }
 
-std::string encode_mesh_obj(const Mesh& mesh, const FileLabel& label) {
+Status produce_mesh_obj(const Mesh& mesh, const ByteSink& sink, const FileLabel& label) {
+  constexpr std::size_t kPiece = std::size_t{1} << 20U;
   std::string out = "# Mesh of Dubsar, millimetres\n" + label_lines(label, "# ");
   const auto append_three = [&](const char* keyword, const Eigen::Vector3f& v) {
     out += keyword;
@@ -187,16 +193,29 @@ std::string encode_mesh_obj(const Mesh& mesh, const FileLabel& label) {
       append_number(out, component);
     }
   };
+  const auto end_line = [&]() -> Status {
+    out += '\n';
+    if (out.size() < kPiece) {
+      return {};
+    }
+    const Status taken = sink(std::as_bytes(std::span(out)));
+    out.clear();
+    return taken;
+  };
   for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
     append_three("v", mesh.positions[v]);
     if (!mesh.colours.empty()) {
       append_colour(out, mesh.colours[v]);
     }
-    out += '\n';
+    if (const Status passed = end_line(); !passed) {
+      return passed;
+    }
   }
   for (const Eigen::Vector3f& normal : mesh.normals) {
     append_three("vn", normal);
-    out += '\n';
+    if (const Status passed = end_line(); !passed) {
+      return passed;
+    }
   }
   for (const auto& face : mesh.faces) {
     out += 'f';
@@ -209,9 +228,15 @@ std::string encode_mesh_obj(const Mesh& mesh, const FileLabel& label) {
         out += number;
       }
     }
-    out += '\n';
+    if (const Status passed = end_line(); !passed) {
+      return passed;
+    }
   }
-  return out;
+  return out.empty() ? Status() : sink(std::as_bytes(std::span(out)));
+}
+
+std::string encode_mesh_obj(const Mesh& mesh, const FileLabel& label) {
+  return whole_text([&](const ByteSink& sink) { return produce_mesh_obj(mesh, sink, label); });
 }
 
 }  // namespace dubsar

@@ -301,10 +301,13 @@ Result<Mesh> decode_mesh_ply(std::string_view bytes, const std::string& where,
     return std::unexpected(said.error());
   }
   const double mm = options.mm_per_unit ? *options.mm_per_unit : *said;
-  PlyBody body(*header, bytes, where);
+  PlyBody body(*header, bytes, where, options.job);
   Mesh mesh;
   const std::uint64_t vertices = std::min<std::uint64_t>(vertex->count, 0xffffffffU);
   for (const PlyElement& element : header->elements) {
+    if (is_stopped(options.job)) {
+      return reading_stopped(where);
+    }
     Status status;
     if (element.name == "vertex") {
       status = read_vertices(body, element, mm, where, mesh);
@@ -389,15 +392,7 @@ Status produce_mesh_ply(const Mesh& mesh, const ByteSink& sink, const FileLabel&
 }
 
 std::string encode_mesh_ply(const Mesh& mesh, const FileLabel& label) {
-  std::string out;
-  (void)produce_mesh_ply(
-      mesh,
-      [&](std::span<const std::byte> bytes) -> Status {
-        out.append(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-        return {};
-      },
-      label);
-  return out;
+  return whole_text([&](const ByteSink& sink) { return produce_mesh_ply(mesh, sink, label); });
 }
 
 }  // namespace dubsar

@@ -27,12 +27,17 @@ bool is(std::string_view word, std::string_view keyword) {
 /// Words in any case and in lines of any kind, as ASCII STL is written.
 class AsciiReader {
  public:
-  AsciiReader(std::string_view bytes, const std::string& where, double mm)
-      : bytes_(bytes), rest_(bytes), where_(where), mm_(mm) {}
+  AsciiReader(std::string_view bytes, const std::string& where, double mm, const JobContext* job)
+      : bytes_(bytes), rest_(bytes), where_(where), mm_(mm), job_(job) {}
 
   [[nodiscard]] Result<Mesh> mesh() {
-    bool within = false;  // a solid
+    bool within = false;                     // a solid
+    constexpr std::size_t kAskEvery = 4096;  // words
+    std::size_t words = 0;
     for (std::string_view word = take_word(rest_); !word.empty(); word = take_word(rest_)) {
+      if (words++ % kAskEvery == 0 && is_stopped(job_)) {
+        return reading_stopped(where_);
+      }
       Status status;
       if (is(word, "vertex")) {
         status = read_vertex();
@@ -103,6 +108,7 @@ class AsciiReader {
   std::string_view bytes_, rest_;
   const std::string& where_;
   double mm_;
+  const JobContext* job_;
   Mesh mesh_;
   std::vector<std::uint32_t> loop_;
 };
@@ -165,7 +171,7 @@ Result<Mesh> decode_mesh_stl(std::string_view bytes, const std::string& where,
   const double mm = options.mm_per_unit.value_or(1.0);
   const std::string_view text = without_byte_order_mark(bytes);
   Result<Mesh> mesh =
-      is_ascii_stl(text) ? AsciiReader(text, where, mm).mesh() : decode_binary(bytes, where, mm);
+      is_ascii_stl(text) ? AsciiReader(text, where, mm, options.job).mesh() : decode_binary(bytes, where, mm);
   if (mesh) {
     weld_equal_positions(*mesh);
   }

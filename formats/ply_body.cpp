@@ -21,8 +21,13 @@ std::size_t least_bytes(const PlyElement& element, PlyFormat format) {
 
 }  // namespace
 
-PlyBody::PlyBody(const PlyHeader& header, std::string_view file, std::string where)
-    : format_(header.format), file_(file), where_(std::move(where)), text_(file), at_(header.body_offset) {
+PlyBody::PlyBody(const PlyHeader& header, std::string_view file, std::string where, const JobContext* job)
+    : format_(header.format),
+      file_(file),
+      where_(std::move(where)),
+      job_(job),
+      text_(file),
+      at_(header.body_offset) {
   text_.seek(header.body_offset);
 }
 

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/job.h"
 #include "core/result.h"
 #include "formats/byte_order.h"
 #include "formats/ply_header.h"
@@ -54,8 +55,9 @@ struct PlyRow {
 /// no more memory than a fixed multiple of the bytes that are there, whatever the header claims.
 class PlyBody {
  public:
-  /// `file` is the whole file; both it and the header must outlive this.
-  PlyBody(const PlyHeader& header, std::string_view file, std::string where);
+  /// `file` is the whole file; both it and the header must outlive this. read() ends with kCancelled soon
+  /// after the job is cancelled.
+  PlyBody(const PlyHeader& header, std::string_view file, std::string where, const JobContext* job = nullptr);
 
   /// Calls visit(index, row) -> Status for each instance of the next element. Elements must be read (or
   /// skipped) in header order.
@@ -68,6 +70,9 @@ class PlyBody {
     row.values.resize(element.properties.size());
     row.lists.resize(element.properties.size());
     for (std::uint64_t i = 0; i < element.count; ++i) {
+      if (i % kAskEvery == 0 && job_ != nullptr && job_->cancelled()) {
+        return fail(ErrorKind::kCancelled, "reading was stopped", where_);
+      }
       if (!next(element, row)) {
         return row_error(element, i);
       }
@@ -105,9 +110,11 @@ class PlyBody {
   [[nodiscard]] std::unexpected<Error> row_error(const PlyElement& element, std::uint64_t index);
   [[nodiscard]] std::size_t remaining() const;
 
+  static constexpr std::uint64_t kAskEvery = 4096;  ///< instances
   PlyFormat format_;
   std::string_view file_;
   std::string where_;
+  const JobContext* job_;
   TextScanner text_;    ///< over the whole file, so that line numbers are the file's
   std::size_t at_ = 0;  ///< of the next byte, binary
 };

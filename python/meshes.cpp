@@ -160,9 +160,11 @@ void bind_meshes(py::module_& module) {
   module.def(
       "read_mesh",
       [](const fs::path& path, const std::optional<std::string>& unit) {
-        const MeshReadOptions options{.mm_per_unit = mm_per_unit_named(unit)};
-        return std::make_shared<Mesh>(
-            run_for_result(py::none(), [&](JobContext&) { return read_mesh(path, options); }));
+        MeshReadOptions options{.mm_per_unit = mm_per_unit_named(unit)};
+        return std::make_shared<Mesh>(run_for_result(py::none(), [&](JobContext& job) {
+          options.job = &job;
+          return read_mesh(path, options);
+        }));
       },
       py::arg("path"), py::arg("unit") = py::none(), "PLY, OBJ, STL or GLB, in millimetres.");
   module.def(
@@ -170,7 +172,7 @@ void bind_meshes(py::module_& module) {
       [](const fs::path& path, const MeshPointer& mesh) {
         check_sound(*mesh);
         check_may_write(path);
-        run_for_result(py::none(), [&](JobContext&) { return write_mesh(path, *mesh); });
+        run_for_result(py::none(), [&](JobContext& job) { return write_mesh(path, *mesh, {}, &job); });
       },
       py::arg("path"), py::arg("mesh").none(false),
       "PLY, OBJ, STL or GLB by the ending; whole or not at all.");
@@ -179,7 +181,7 @@ void bind_meshes(py::module_& module) {
       [](const MeshPointer& mesh) {
         check_sound(*mesh);
         MeshReport report;
-        run_job(py::none(), [&](JobContext&) { report = check_mesh(*mesh); });
+        run_job(py::none(), [&](JobContext& job) { report = check_mesh(*mesh, job); });
         return report_of(report);
       },
       py::arg("mesh").none(false), "Topology and size, as `dubsar mesh check` tells them.");

@@ -194,7 +194,7 @@ void check_parts(const Mesh& mesh, std::span<const Triangle> faces, const HalfEd
   }
 }
 
-MeshReport check(const Mesh& mesh, bool with_parts) {
+MeshReport check(const Mesh& mesh, bool with_parts, const JobContext& job) {
   MeshReport report;
   report.vertices = mesh.positions.size();
   report.faces = mesh.faces.size();
@@ -206,10 +206,17 @@ MeshReport check(const Mesh& mesh, bool with_parts) {
     std::copy_if(faces.begin(), faces.end(), std::back_inserter(copied), sound);
     faces = copied;
   }
+  if (job.cancelled()) {
+    return report;
+  }
   const HalfEdges edges(faces, report.vertices);
-  check_edges(mesh, faces, edges, report);
-  check_vertices(mesh, faces, edges, report);
-  if (with_parts) {
+  if (!job.cancelled()) {
+    check_edges(mesh, faces, edges, report);
+  }
+  if (!job.cancelled()) {
+    check_vertices(mesh, faces, edges, report);
+  }
+  if (with_parts && !job.cancelled()) {
     check_parts(mesh, faces, edges, report);
   }
   return report;
@@ -218,12 +225,14 @@ MeshReport check(const Mesh& mesh, bool with_parts) {
 }  // namespace
 
 MeshReport check_manifold(const Mesh& mesh) {
-  return check(mesh, false);
+  return check(mesh, false, {});
 }
 
-MeshReport check_mesh(const Mesh& mesh) {
-  MeshReport report = check(mesh, true);  // gives its memory back before what needs as much again
-  report.self_intersections = self_intersections(mesh.positions, mesh.faces).size();
+MeshReport check_mesh(const Mesh& mesh, const JobContext& job) {
+  MeshReport report = check(mesh, true, job);  // gives its memory back before what needs as much again
+  if (!job.cancelled()) {
+    report.self_intersections = self_intersections(mesh.positions, mesh.faces, {}, job).size();
+  }
   return report;
 }
 

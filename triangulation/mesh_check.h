@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 #include <cstddef>
 
+#include "core/job.h"
 #include "core/mesh.h"
 
 namespace dubsar {
@@ -42,8 +43,8 @@ struct MeshReport {
 };
 
 /// Checks any mesh, broken indices included; faces with an index out of range count as degenerate and take no
-/// further part.
-[[nodiscard]] MeshReport check_mesh(const Mesh& mesh);
+/// further part. Of a job that is cancelled the report holds what is known by then, and is none of the mesh.
+[[nodiscard]] MeshReport check_mesh(const Mesh& mesh, const JobContext& job = {});
 /// What is_manifold() goes by, in a third of the time: components, loops and self-intersections stay 0.
 [[nodiscard]] MeshReport check_manifold(const Mesh& mesh);
 

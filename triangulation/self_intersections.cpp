@@ -230,7 +230,7 @@ bool is_sound(Positions positions, const Face& f) {
 
 std::vector<std::pair<std::uint32_t, std::uint32_t>> self_intersections(
     std::span<const Vector3f> positions, std::span<const Face> all_faces,
-    std::span<const std::uint32_t> part_of_face) {
+    std::span<const std::uint32_t> part_of_face, const JobContext& job) {
   struct Extent {
     Eigen::AlignedBox3f box;
     double sizes = 0;
@@ -299,7 +299,7 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> self_intersections(
         std::vector<std::uint32_t> beside;
         std::uint32_t of_plane = kNoFace;
         FacePlane plane;
-        for (std::size_t cell = begin; cell < end; ++cell) {
+        for (std::size_t cell = begin; cell < end && !job.cancelled(); ++cell) {
           cells.for_each_touching(cell, beside, [&](std::uint32_t a, std::uint32_t b) {
             if (a != of_plane) {
               plane = FacePlane(positions, all_faces[a]);

@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/job.h"
+
 namespace dubsar {
 
 /// Pairs of faces (lower index first, sorted) that cut through each other: an edge of one passes through the
@@ -16,10 +18,11 @@ namespace dubsar {
 /// it are looked at. Faces that only touch, or lie in one plane, are not counted. Faces with an index out of
 /// range or a coordinate that is not finite are passed over. Time is that of a sort for meshes of about even
 /// face size, however many faces meet in a vertex.
+/// Of a job that is cancelled some may be missing.
 /// With `part_of_face` given, faces of the same part (other than 0) are known not to cut each other, and most
 /// of the work is spared.
 [[nodiscard]] std::vector<std::pair<std::uint32_t, std::uint32_t>> self_intersections(
     std::span<const Eigen::Vector3f> positions, std::span<const std::array<std::uint32_t, 3>> faces,
-    std::span<const std::uint32_t> part_of_face = {});
+    std::span<const std::uint32_t> part_of_face = {}, const JobContext& job = {});
 
 }  // namespace dubsar

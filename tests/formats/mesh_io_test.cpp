@@ -74,6 +74,24 @@ TEST(MeshIo, EveryFormatKeepsTheSurface) {
   EXPECT_THAT(line_of(write_mesh(folder / "a.off", mesh)), HasSubstr("use .ply, .obj, .stl or .glb"));
 }
 
+TEST(MeshIo, ACancelledJobReadsAndWritesNothing) {
+  const ScratchFolder folder;
+  JobContext job;
+  job.cancel();
+  for (const char* name : {"a.ply", "a.obj", "a.stl", "a.glb"}) {
+    SCOPED_TRACE(name);
+    ASSERT_TRUE(write_mesh(folder / name, full_mesh()));
+    const std::string before = read_whole_file(folder / name).value();
+    const auto read = read_mesh(folder / name, {.job = &job});
+    ASSERT_FALSE(read);
+    EXPECT_EQ(read.error().kind, ErrorKind::kCancelled);
+    const Status written = write_mesh(folder / name, tetrahedron(), {}, &job);
+    ASSERT_FALSE(written);
+    EXPECT_EQ(written.error().kind, ErrorKind::kCancelled);
+    EXPECT_EQ(read_whole_file(folder / name).value(), before);
+  }
+}
+
 TEST(MeshIo, UnitsScale) {
   const auto ply = read_mesh_bytes(encode_mesh_ply(tetrahedron()), "a.ply", {.mm_per_unit = 1000.0});
   EXPECT_EQ(ply.value().positions[1].x(), 10000);

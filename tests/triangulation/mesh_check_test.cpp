@@ -16,6 +16,14 @@ Mesh tetrahedron() {
   return mesh;
 }
 
+TEST(MeshCheck, ACancelledJobLooksForNoMore) {
+  JobContext job;
+  job.cancel();
+  const MeshReport report = check_mesh(tetrahedron(), job);
+  EXPECT_EQ(report.faces, 4U);
+  EXPECT_EQ(report.components, 0U);
+}
+
 TEST(MeshCheck, ClosedMesh) {
   const MeshReport report = check_mesh(tetrahedron());
   EXPECT_TRUE(report.is_closed());
