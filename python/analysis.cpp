@@ -9,6 +9,7 @@
 #include "analysis/tablet_size.h"
 #include "core/inside_out.h"
 #include "formats/wedges_json.h"
+#include "python/file_text.h"
 #include "python/jobs.h"
 #include "station/outward_faces.h"
 
@@ -52,8 +53,9 @@ Result<std::vector<std::string>> make_measurable(std::shared_ptr<const Mesh>& me
   return doubts;
 }
 
-WedgesPointer analyze(const std::shared_ptr<Mesh>& mesh, const std::string& exit, const std::string& name,
+WedgesPointer analyze(const std::shared_ptr<Mesh>& mesh, const std::string& exit, const py::str& name_text,
                       const py::object& progress) {
+  const std::string name = bytes_of(name_text);
   AnalysisOptions options;
   if (exit != "surface" && exit != "extent") {
     raise({ErrorKind::kUsage, "no exit " + exit, {}, "there are surface and extent"});

@@ -5,6 +5,7 @@
 #include <array>
 
 #include "python/binding.h"
+#include "python/file_text.h"
 #include "station/place_outside.h"
 
 namespace dubsar::python {
@@ -38,7 +39,7 @@ PyObject* scan_warning = nullptr;
 PyObject* mesh_warning = nullptr;
 
 void warn(PyObject* category, const std::string& line) {
-  if (PyErr_WarnEx(category, line.c_str(), 1) != 0) {
+  if (PyErr_WarnFormat(category, 1, "%U", text_of(line).ptr()) != 0) {
     throw py::error_already_set();
   }
 }
@@ -56,6 +57,23 @@ PyObject* add_warning(py::module_& module, const char* name, const char* help) {
 
 }  // namespace
 
+py::str text_of(const std::string& bytes) {
+  PyObject* const text =
+      PyUnicode_DecodeFSDefaultAndSize(bytes.data(), static_cast<py::ssize_t>(bytes.size()));
+  if (text == nullptr) {
+    throw py::error_already_set();
+  }
+  return py::reinterpret_steal<py::str>(text);
+}
+
+std::string bytes_of(const py::str& text) {
+  PyObject* const bytes = PyUnicode_EncodeFSDefault(text.ptr());
+  if (bytes == nullptr) {
+    throw py::error_already_set();
+  }
+  return std::string(py::reinterpret_steal<py::bytes>(bytes));
+}
+
 void warn_of_scan(const std::string& line) {
   warn(scan_warning, line);
 }
@@ -68,10 +86,10 @@ void raise(const Error& error) {
   for (const Kind& kind : kinds()) {
     if (kind.kind == error.kind) {
       const py::object type = py::reinterpret_borrow<py::object>(kind.type);
-      const py::object exception = type(py::str(error.line()));
-      exception.attr("what") = error.what;
-      exception.attr("where") = error.where;
-      exception.attr("mend") = error.mend;
+      const py::object exception = type(text_of(error.line()));
+      exception.attr("what") = text_of(error.what);
+      exception.attr("where") = text_of(error.where);
+      exception.attr("mend") = text_of(error.mend);
       PyErr_SetObject(kind.type, exception.ptr());
       throw py::error_already_set();
     }

@@ -12,6 +12,7 @@
 #include "formats/grid_file.h"
 #include "formats/grid_ply.h"
 #include "formats/grid_reader.h"
+#include "python/file_text.h"
 #include "python/jobs.h"
 
 namespace dubsar::python {
@@ -36,7 +37,7 @@ std::vector<float> floats_of(const Input<float>& array, const RangeGrid& grid, c
 
 GridPointer make_grid(const Input<float>& x, const Input<float>& y, const Input<float>& z,
                       const std::optional<Input<bool>>& valid, const MaybeFloats& intensity,
-                      const MaybeFloats& confidence, double spacing_mm, const std::string& source) {
+                      const MaybeFloats& confidence, double spacing_mm, const py::str& source) {
   constexpr py::ssize_t kMostSamples = 1 << 30;
   if (x.ndim() != 2 || x.size() == 0 || x.size() > kMostSamples) {
     raise({ErrorKind::kUsage, "x is no grid of rows x cols samples", {}, "give a two-dimensional array"});
@@ -67,7 +68,7 @@ GridPointer make_grid(const Input<float>& x, const Input<float>& y, const Input<
     grid->confidence = floats_of(*confidence, *grid, "confidence");
   }
   grid->spacing_mm = spacing_mm > 0 ? spacing_mm : estimate_spacing_mm(*grid);
-  grid->source = source;
+  grid->source = bytes_of(source);
   return grid;
 }
 
@@ -206,13 +207,17 @@ void bind_grids(py::module_& module) {
             g.spacing_mm = spacing_mm;
           },
           "nominal lateral spacing, mm; 0: not known")
-      .def_readwrite("source", &RangeGrid::source, "the scan's original file name")
-      .def_readonly("device", &RangeGrid::device)
+      .def_property(
+          "source", [](const RangeGrid& g) { return text_of(g.source); },
+          [](RangeGrid& g, const py::str& source) { g.source = bytes_of(source); },
+          "the scan's original file name")
+      .def_property_readonly("device", [](const RangeGrid& g) { return text_of(g.device); })
       .def("points", &valid_points, "[n, 3] float32, the valid samples in row order; a copy")
       .def("__len__", &RangeGrid::valid_count)
       .def("__repr__", [](const RangeGrid& g) {
-        return "<dubsar.Grid " + std::to_string(g.rows) + " x " + std::to_string(g.cols) + ", " +
-               std::to_string(g.valid_count()) + " samples" + (g.source.empty() ? "" : ", " + g.source) + ">";
+        return text_of("<dubsar.Grid " + std::to_string(g.rows) + " x " + std::to_string(g.cols) + ", " +
+                       std::to_string(g.valid_count()) + " samples" +
+                       (g.source.empty() ? "" : ", " + g.source) + ">");
       });
   module.def(
       "read_grids",

@@ -7,6 +7,7 @@
 #include "formats/pins_json.h"
 #include "formats/poses_json.h"
 #include "planning/sparse_flags.h"
+#include "python/file_text.h"
 #include "python/jobs.h"
 #include "registration/registrar.h"
 #include "station/station_scan.h"
@@ -87,11 +88,10 @@ std::optional<PinSet> pins_of(const std::optional<fs::path>& file) {
   return file ? std::optional(value_of(read_pins(*file))) : std::nullopt;
 }
 
-ScanPose make_pose(int id, const Input<double>& model_from_scanner, const std::string& file,
-                   double sigma_mm) {
+ScanPose make_pose(int id, const Input<double>& model_from_scanner, const py::str& file, double sigma_mm) {
   ScanPose pose;
   pose.id = id;
-  pose.file = file;
+  pose.file = bytes_of(file);
   pose.model_from_scanner = transform_of(model_from_scanner, "model_from_scanner");
   pose.status = PoseStatus::kRegistered;
   if (!(sigma_mm >= 0) || !std::isfinite(sigma_mm)) {
@@ -119,7 +119,7 @@ void bind_pose(py::module_& module) {
       .def(py::init(&make_pose), py::arg("id"), py::arg("model_from_scanner"), py::arg("file") = "",
            py::arg("sigma_mm") = 0.0, "A pose that is known from elsewhere: it counts as registered.")
       .def_readonly("id", &ScanPose::id, "the scan's place in the list of grids")
-      .def_readonly("file", &ScanPose::file)
+      .def_property_readonly("file", [](const ScanPose& pose) { return text_of(pose.file); })
       .def_property_readonly(
           "status", [](const ScanPose& pose) { return to_string(pose.status); },
           "'registered', 'unsure' or 'failed'")
@@ -131,13 +131,13 @@ void bind_pose(py::module_& module) {
       .def_readonly("rms_mm", &ScanPose::rms_mm)
       .def_readonly("sigma_mm", &ScanPose::sigma_mm)
       .def_readonly("overlap", &ScanPose::overlap)
-      .def_readonly("reason", &ScanPose::reason)
-      .def_readonly("warning", &ScanPose::warning)
+      .def_property_readonly("reason", [](const ScanPose& pose) { return text_of(pose.reason); })
+      .def_property_readonly("warning", [](const ScanPose& pose) { return text_of(pose.warning); })
       .def_property_readonly("covariance", &covariance_of,
                              "[6, 6] of (omega rad, v mm) about the scan's centroid, or None")
       .def("__repr__", [](const ScanPose& pose) {
-        return "<dubsar.Pose " + std::to_string(pose.id) + " " + to_string(pose.status) +
-               (pose.reason.empty() ? "" : ": " + pose.reason) + ">";
+        return text_of("<dubsar.Pose " + std::to_string(pose.id) + " " + to_string(pose.status) +
+                       (pose.reason.empty() ? "" : ": " + pose.reason) + ">");
       });
 }
 

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 __version__: str
 
-Path = Union[str, PathLike[str]]
+Path = Union[str, bytes, PathLike[str], PathLike[bytes]]
 Progress = Optional[Callable[[str, float], Optional[bool]]]
 
 class Error(Exception):

@@ -6,6 +6,7 @@ import ast
 import gc
 import json
 import os
+import pathlib
 import re
 import runpy
 import signal
@@ -39,6 +40,45 @@ class Scans(unittest.TestCase):
         cls.grids, cls.truth = dubsar.simulate_scans(cls.tablet, views=8, spacing_mm=0.15, noise_mm=0.01)
         cls.poses = dubsar.register(cls.grids)
         cls.mesh = dubsar.stitch(cls.grids, cls.poses)
+
+
+class Names(unittest.TestCase):
+    """Names of files that are no UTF-8, as os.listdir gives them."""
+
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+        self.name = os.fsdecode(b"tafel \xff\xe4")
+
+    def path(self, ending):
+        return os.path.join(self.folder.name, self.name + ending)
+
+    def test_are_paths(self):
+        mesh = dubsar.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
+        dubsar.write_mesh(self.path(".ply"), mesh)
+        self.assertEqual(os.listdir(self.folder.name), [self.name + ".ply"])
+        for path in (self.path(".ply"), os.fsencode(self.path(".ply")), pathlib.Path(self.path(".ply"))):
+            self.assertEqual(len(dubsar.read_mesh(path).faces), 1)
+
+    def test_come_back_as_they_are(self):
+        dubsar.write_grid(self.path(".grid"), plane())
+        grid = dubsar.read_grids(self.folder.name)[0]
+        grid.source = self.name
+        self.assertEqual(grid.source, self.name)
+        self.assertIn(self.name, repr(grid))
+        self.assertEqual(dubsar.Pose(0, np.eye(4), file=self.name).file, self.name)
+        y, x = np.mgrid[0:20, 0:30] * 0.1
+        self.assertEqual(dubsar.Grid(x, y, x, source=self.name).source, self.name)
+
+    def test_are_told_in_errors_and_warnings(self):
+        with self.assertRaises(dubsar.Error) as caught:
+            dubsar.read_mesh(self.path(".ply"))
+        self.assertEqual(caught.exception.where, self.path(".ply"))
+        self.assertIn(self.name, str(caught.exception))
+        turned = dubsar.simulate_tablet(seed=1, size_mm=(12, 10, 6), spacing_mm=0.4).mesh
+        turned.faces[:] = turned.faces[:, ::-1].copy()
+        with self.assertWarnsRegex(dubsar.MeshWarning, self.name):
+            dubsar.analyze(turned, name=self.name)
 
 
 class Grids(unittest.TestCase):
@@ -402,6 +442,30 @@ class Pipeline(Scans):
                 dubsar.simulate_scans(self.tablet, views=200, spacing_mm=0.05, progress=interrupt)
         finally:
             signal.signal(signal.SIGINT, previous)
+
+    def test_control_c_stops_what_has_no_progress(self):
+        y, x = np.mgrid[0:500, 0:500]
+        corner = (np.arange(499)[:, None] * 500 + np.arange(499)).ravel()
+        mesh = dubsar.Mesh(
+            np.stack([x, y, np.sin(x)], axis=-1).reshape(-1, 3) * 0.1,
+            np.concatenate([np.stack([corner, corner + 1, corner + 500], axis=-1)] * 2),
+        )
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "mesh.obj")
+            previous = signal.signal(signal.SIGALRM, signal.default_int_handler)
+            try:
+                with self.assertRaises(KeyboardInterrupt):
+                    signal.setitimer(signal.ITIMER_REAL, 0.02)
+                    dubsar.write_mesh(path, mesh)
+                self.assertEqual(os.listdir(folder), [])
+                dubsar.write_mesh(path, mesh)
+                for work in (lambda: dubsar.read_mesh(path), lambda: dubsar.check_mesh(mesh)):
+                    with self.assertRaises(KeyboardInterrupt):
+                        signal.setitimer(signal.ITIMER_REAL, 0.02)
+                        work()
+            finally:
+                signal.setitimer(signal.ITIMER_REAL, 0)
+                signal.signal(signal.SIGALRM, previous)
 
     def test_other_threads_run_meanwhile(self):
         # Each waits for the other inside its own call: with the lock held one would wait for ever.
