@@ -108,6 +108,12 @@ Result<Mesh> read_mesh(const std::filesystem::path& path, const MeshReadOptions&
   return bytes ? read_mesh_bytes(*bytes, path.string(), options) : std::unexpected(bytes.error());
 }
 
+Status check_mesh_name(const std::filesystem::path& path) {
+  return format_of(path) != MeshFormat::kUnknown ? Status()
+                                                 : fail(ErrorKind::kUsage, "cannot tell the mesh format from the name",
+                                                        path.string(), kKnown);
+}
+
 Status write_mesh(const std::filesystem::path& path, const Mesh& mesh, const FileLabel& label,
                   const JobContext* job) {
   switch (format_of(path)) {
@@ -128,7 +134,7 @@ Status write_mesh(const std::filesystem::path& path, const Mesh& mesh, const Fil
     case MeshFormat::kUnknown:
       break;
   }
-  return fail(ErrorKind::kUsage, "cannot tell the mesh format from the name", path.string(), kKnown);
+  return check_mesh_name(path);
 }
 
 }  // namespace dubsar

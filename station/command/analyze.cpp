@@ -221,6 +221,10 @@ Status write_outputs(const AnalyzeArguments& arguments, const WedgeFile& file, c
 }  // namespace
 
 Result<int> analyze(const AnalyzeArguments& arguments, CommandContext& context) {
+  if (const Status named = arguments.mesh_out.empty() ? Status() : check_mesh_name(arguments.mesh_out);
+      !named) {
+    return std::unexpected(named.error());
+  }
   const std::filesystem::path corrections_file = corrections_of(arguments);
   Result<CorrectionFile> said = read_corrections(corrections_file);
   if (!said) {

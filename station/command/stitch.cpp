@@ -339,6 +339,9 @@ Result<int> stitch_all(const ScanSetArguments& arguments, const StampedWork* wor
 }
 
 Result<int> stitch(const StitchArguments& arguments, CommandContext& context) {
+  if (const Status named = check_mesh_name(arguments.set.out); !named) {
+    return std::unexpected(named.error());
+  }
   const Result<std::optional<StampedWork>> work = begin_work(arguments, context);
   if (!work) {
     return std::unexpected(work.error());

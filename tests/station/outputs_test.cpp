@@ -170,6 +170,17 @@ TEST_F(Outputs, WithoutAFolderToLieInAreRefusedAtOnce) {
   }
 }
 
+TEST_F(Outputs, OfANameThatTellsNoFormatAreRefusedBeforeTheWork) {
+  for (const Arguments& arguments :
+       {Arguments{"stitch", session(), "-o", beside("m.foo")},
+        {"analyze", mesh(), "-o", beside("w.json"), "--mesh-out", beside("m.foo")}}) {
+    const Outcome outcome = run_command(arguments);
+    EXPECT_EQ(outcome.status, 2) << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr("cannot tell the mesh format from the name"));
+    EXPECT_THAT(outcome.err, ::testing::Not(HasSubstr("%"))) << "no work was begun";
+  }
+}
+
 TEST_F(Outputs, AndTheJsonObjectDoNotShareStandardOutput) {
   const Outcome outcome = run_command({"mesh", "convert", mesh(), beside("m.ply"), "--json"});
   EXPECT_EQ(outcome.status, 0) << outcome.err;
