@@ -6,6 +6,7 @@
 #include <mutex>
 #include <optional>
 
+#include "acquisition/session_files.h"
 #include "acquisition/session_lock.h"
 #include "acquisition/session_store.h"
 #include "acquisition/session_tables.h"
@@ -34,6 +35,8 @@ struct SessionStore::Impl {
 
 namespace session {
 
+/// What the tables say that a file was when it was stored; nothing where none names it.
+[[nodiscard]] Result<std::optional<FileSum>> recorded_sum(SqlDatabase& db, const std::string& name);
 /// Opens session.sqlite for writing, rebuilding it when it is damaged.
 [[nodiscard]] Result<SqlDatabase> open_for_writing(const std::filesystem::path& folder,
                                                    SessionOpening& opening, bool& rebuilt);

@@ -6,6 +6,8 @@
 #include "acquisition/session_impl.h"
 #include "acquisition/session_query.h"
 #include "acquisition/session_store.h"
+#include "formats/atomic_file.h"
+#include "formats/refusal.h"
 
 namespace dubsar {
 
@@ -30,6 +32,22 @@ bool may_hold(std::string_view packed, std::int64_t count) {
   return count >= 0 && count <= kMaxFlags &&
          static_cast<std::size_t>(count) <= packed.size() / kLeastBlock * kMostFromABlock &&
          ZSTD_getFrameContentSize(packed.data(), packed.size()) == static_cast<std::uint64_t>(count);
+}
+
+Result<fs::path> name_of_file(const fs::path& relative) {
+  fs::path normal = relative.lexically_normal();
+  if (!session::in_a_folder_of_the_session(normal)) {
+    return fail(ErrorKind::kUsage, "not a file of the session", relative.string());
+  }
+  return normal;
+}
+
+Status put_sum(SqlDatabase& db, const fs::path& name, const FileSum& sum) {
+  Result<SqlStatement> put = db.prepare(session::insert_sql(session::table_named("files")).c_str());
+  if (!put) {
+    return std::unexpected(put.error());
+  }
+  return put->bind(1, name.generic_string()).bind(2, sum.bytes).bind(3, sum.hash).run();
 }
 
 }  // namespace
@@ -190,40 +208,66 @@ Status SessionStore::record_file(const fs::path& relative) {
   if (Status writable = impl_->writable(); !writable) {
     return writable;
   }
-  const fs::path normal = relative.lexically_normal();
-  if (!session::in_a_folder_of_the_session(normal)) {
-    return fail(ErrorKind::kUsage, "not a file of the session", relative.string());
-  }
-  const Result<FileSum> sum = session::sum_of_file(impl_->folder / normal);
+  const Result<fs::path> name = name_of_file(relative);
+  const Result<FileSum> sum =
+      name ? session::sum_of_file(impl_->folder / *name) : std::unexpected(name.error());
   if (!sum) {
     return std::unexpected(sum.error());
   }
   const std::scoped_lock hold(impl_->mutex);
-  Result<SqlStatement> put = impl_->db->prepare(session::insert_sql(session::table_named("files")).c_str());
-  if (!put) {
-    return std::unexpected(put.error());
-  }
-  return put->bind(1, normal.generic_string()).bind(2, sum->bytes).bind(3, sum->hash).run();
+  return put_sum(*impl_->db, *name, *sum);
 }
 
-Status SessionStore::forget_files(const std::vector<std::string>& relative) {
+Status SessionStore::replace_file(const fs::path& relative,
+                                  const std::function<Status(const fs::path&)>& write) {
   if (Status writable = impl_->writable(); !writable) {
     return writable;
   }
+  const Result<fs::path> name = name_of_file(relative);
+  if (!name) {
+    return std::unexpected(name.error());
+  }
+  const fs::path file = impl_->folder / *name;
+  const fs::path staged = file.parent_path() / (std::string(kTemporaryPrefix) + file.filename().string());
+  const auto give_up = [&](Error error) -> Status {
+    std::error_code ignored;
+    fs::remove(staged, ignored);
+    if (error.where == staged.string()) {
+      error.where = file.string();
+    }
+    return std::unexpected(std::move(error));
+  };
+  if (Status written = write(staged); !written) {
+    return give_up(std::move(written.error()));
+  }
+  const Result<FileSum> sum = session::sum_of_file(staged);
+  if (!sum) {
+    return give_up(sum.error());
+  }
   const std::scoped_lock hold(impl_->mutex);
-  return session::in_transaction(*impl_->db, [&]() -> Status {
-    Result<SqlStatement> take = impl_->db->prepare(
-        "DELETE FROM files WHERE path = ?1 OR (?1 LIKE '%/' AND substr(path, 1, length(?1)) = ?1)");
-    if (!take) {
-      return std::unexpected(take.error());
+  const Result<std::optional<FileSum>> before = session::recorded_sum(*impl_->db, name->generic_string());
+  if (!before) {
+    return give_up(before.error());
+  }
+  // Between these steps the file has no checksum; with one it would look damaged after a kill.
+  Result<SqlStatement> take = impl_->db->prepare("DELETE FROM files WHERE path = ?1");
+  if (Status taken = take ? take->bind(1, name->generic_string()).run() : std::unexpected(take.error());
+      !taken) {
+    return give_up(std::move(taken.error()));
+  }
+  std::error_code error;
+  fs::rename(staged, file, error);
+  if (error) {
+    if (*before) {
+      (void)put_sum(*impl_->db, *name, **before);  // the old one stays; without its sum it is told of as such
     }
-    for (const std::string& name : relative) {
-      if (Status done = take->bind(1, fs::path(name).lexically_normal().generic_string()).run(); !done) {
-        return done;
-      }
-    }
-    return {};
-  });
+    return give_up(
+        refused(file, "cannot be written", error.value(), "check the folder and its rights").error());
+  }
+  if (Status synced = sync_folder(file.parent_path()); !synced) {
+    return synced;
+  }
+  return put_sum(*impl_->db, *name, *sum);
 }
 
 }  // namespace dubsar

@@ -14,10 +14,7 @@ namespace dubsar {
 namespace fs = std::filesystem;
 using session::FileSum;
 
-namespace {
-
-/// What the tables say that a file was when it was stored.
-Result<std::optional<FileSum>> recorded_sum(SqlDatabase& db, const std::string& name) {
+Result<std::optional<FileSum>> session::recorded_sum(SqlDatabase& db, const std::string& name) {
   Result<SqlStatement> query = db.prepare(
       "SELECT bytes, hash FROM scans WHERE file = ?1 UNION ALL SELECT bytes, hash FROM files WHERE path = "
       "?1");
@@ -31,6 +28,8 @@ Result<std::optional<FileSum>> recorded_sum(SqlDatabase& db, const std::string& 
   }
   return *row ? std::optional(FileSum{query->integer(0), query->integer(1)}) : std::nullopt;
 }
+
+namespace {
 
 /// The bytes of the copy's file, when they are those that were stored.
 std::optional<std::string> good_bytes(const fs::path& file, const std::optional<FileSum>& expected) {
@@ -82,7 +81,7 @@ Result<RepairReport> SessionStore::repair(const VerifyReport& found, const std::
       continue;  // a table: opening has seen to it
     }
     const fs::path path = impl_->folder / name;
-    const Result<std::optional<FileSum>> expected = recorded_sum(*impl_->db, name);
+    const Result<std::optional<FileSum>> expected = session::recorded_sum(*impl_->db, name);
     if (!expected) {
       return std::unexpected(expected.error());
     }

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -136,10 +137,12 @@ class SessionStore {
   /// Notes size and checksum of a finished file of the session (such as mesh/model.ply), so that verify()
   /// covers it. Relative to the folder.
   Status record_file(const std::filesystem::path& relative);
-  /// Takes the checksums of files away that are about to be written anew: a program that is killed in the
-  /// middle leaves files without a checksum, and none that looks damaged. Names without one are passed over;
-  /// one that ends with '/' stands for all files below that folder.
-  Status forget_files(const std::vector<std::string>& relative);
+  /// Makes a file of the session, or makes it anew, and notes its size and checksum. `write` gets the path to
+  /// write it to: another name beside it, with the same extension. The old file and its checksum stay until
+  /// the new one is whole. A program that is killed in the moment when one takes the other's place leaves a
+  /// file without a checksum, and none that looks damaged. Errors: those of `write`, told of the file itself.
+  Status replace_file(const std::filesystem::path& relative,
+                      const std::function<Status(const std::filesystem::path&)>& write);
 
   /// Reads every byte of the session: structure and row checksums of the database, every grid, every recorded
   /// file.

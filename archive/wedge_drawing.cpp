@@ -186,6 +186,31 @@ std::string wedge_drawing(Face side, const std::vector<Wedge>& wedges, const Rig
   return out + "</svg>\n";
 }
 
+std::vector<WedgeDrawing> wedge_drawings(const std::filesystem::path& folder,
+                                         const std::vector<Wedge>& wedges,
+                                         const RigidTransform& text_from_model, const PictureWords& words,
+                                         const Mesh* mesh) {
+  std::optional<RenderScene> scene;
+  if (mesh != nullptr) {
+    scene.emplace(*mesh);
+  }
+  std::vector<WedgeDrawing> drawings;
+  std::error_code ignored;
+  for (int f = 0; f < kFaceCount; ++f) {
+    const auto side = static_cast<Face>(f);
+    const std::string name = std::string(to_string(side)) + ".svg";
+    // One of a side that has lost its last wedge must not go on showing it.
+    if (std::ranges::none_of(wedges, [&](const Wedge& w) { return is_on(w, side); }) &&
+        !std::filesystem::exists(folder / name, ignored)) {
+      continue;
+    }
+    const std::vector<OutlineRing> outline =
+        scene ? side_outline(*scene, side, text_from_model) : std::vector<OutlineRing>();
+    drawings.push_back({name, wedge_drawing(side, wedges, text_from_model, words, outline)});
+  }
+  return drawings;
+}
+
 Result<std::vector<std::filesystem::path>> write_wedge_drawings(const std::filesystem::path& folder,
                                                                 const std::vector<Wedge>& wedges,
                                                                 const RigidTransform& text_from_model,
@@ -193,28 +218,12 @@ Result<std::vector<std::filesystem::path>> write_wedge_drawings(const std::files
   if (const Status made = make_folder(folder); !made) {
     return std::unexpected(made.error());
   }
-  std::optional<RenderScene> scene;
-  if (mesh != nullptr) {
-    scene.emplace(*mesh);
-  }
   std::vector<std::filesystem::path> files;
-  std::error_code ignored;
-  for (int f = 0; f < kFaceCount; ++f) {
-    const auto side = static_cast<Face>(f);
-    const std::filesystem::path path = folder / (std::string(to_string(side)) + ".svg");
-    // One of a side that has lost its last wedge must not go on showing it.
-    if (std::ranges::none_of(wedges, [&](const Wedge& w) { return is_on(w, side); }) &&
-        !std::filesystem::exists(path, ignored)) {
-      continue;
-    }
-    const std::vector<OutlineRing> outline =
-        scene ? side_outline(*scene, side, text_from_model) : std::vector<OutlineRing>();
-    if (const Status written =
-            write_file_atomically(path, wedge_drawing(side, wedges, text_from_model, words, outline));
-        !written) {
+  for (const WedgeDrawing& drawing : wedge_drawings(folder, wedges, text_from_model, words, mesh)) {
+    files.push_back(folder / drawing.name);
+    if (const Status written = write_file_atomically(files.back(), drawing.svg); !written) {
       return std::unexpected(written.error());
     }
-    files.push_back(path);
   }
   return files;
 }

@@ -24,8 +24,20 @@ namespace dubsar {
                                         const RigidTransform& text_from_model, PictureWords words,
                                         const std::vector<OutlineRing>& outline = {});
 
-/// Writes obverse.svg and so on for every side that has wedges, or a drawing from before, into a folder,
-/// which is made; returns the files. mesh: what the wedges are on, for the outline; null leaves it out.
+/// A drawing and the name of its file.
+struct WedgeDrawing {
+  std::string name;  ///< "obverse.svg"
+  std::string svg;
+};
+
+/// A drawing of every side that has wedges, or a drawing from before in the folder. mesh: what the wedges are
+/// on, for the outline; null leaves it out.
+[[nodiscard]] std::vector<WedgeDrawing> wedge_drawings(const std::filesystem::path& folder,
+                                                       const std::vector<Wedge>& wedges,
+                                                       const RigidTransform& text_from_model,
+                                                       const PictureWords& words, const Mesh* mesh = nullptr);
+
+/// Writes those drawings into the folder, which is made; returns the files.
 [[nodiscard]] Result<std::vector<std::filesystem::path>> write_wedge_drawings(
     const std::filesystem::path& folder, const std::vector<Wedge>& wedges,
     const RigidTransform& text_from_model, const PictureWords& words, const Mesh* mesh = nullptr);

@@ -3,9 +3,8 @@
 #pragma once
 
 #include <filesystem>
-#include <string>
-#include <vector>
 
+#include "acquisition/session_store.h"
 #include "archive/report.h"
 #include "core/job.h"
 #include "core/result.h"
@@ -23,18 +22,12 @@ struct Deliverables {
   std::filesystem::path red_map_json;  ///< export/red_map.json
   std::filesystem::path checklist;     ///< export/checklist.html
   std::filesystem::path wedges;        ///< analysis/wedges.json; not of write_deliverables()
-
-  /// Those that were written.
-  [[nodiscard]] std::vector<std::filesystem::path> all() const;
 };
 
-/// What write_deliverables() may write, relative to the session.
-[[nodiscard]] std::vector<std::string> deliverable_names();
-
-/// Writes mesh, pictures, report, checklist page, poses and red map, each atomically. An empty mesh gives no
-/// pictures. Mesh and pictures say of themselves what the label says.
-[[nodiscard]] Result<Deliverables> write_deliverables(const std::filesystem::path& session,
-                                                      const ReportInput& input, const FileLabel& label,
-                                                      JobContext& job);
+/// Writes mesh, pictures, report, checklist page, poses and red map, each atomically and with its checksum in
+/// the session; nothing before all is drawn. An empty mesh gives no pictures. Mesh and pictures say of
+/// themselves what the label says.
+[[nodiscard]] Result<Deliverables> write_deliverables(SessionStore& store, const ReportInput& input,
+                                                      const FileLabel& label, JobContext& job);
 
 }  // namespace dubsar

@@ -344,21 +344,13 @@ std::optional<RigidTransform> stored_tablet_from_model(const SessionStore& store
 }
 
 Result<Deliverables> keep_deliverables(SessionStore& store, const ReportInput& input, JobContext& job) {
-  if (const Status forgotten = store.forget_files(deliverable_names()); !forgotten) {
-    return std::unexpected(forgotten.error());
-  }
   const Result<FileLabel> label = label_of_scans(store);
   if (!label) {
     return std::unexpected(label.error());
   }
-  Result<Deliverables> files = write_deliverables(store.folder(), input, *label, job);
+  Result<Deliverables> files = write_deliverables(store, input, *label, job);
   if (!files) {
     return files;
-  }
-  for (const std::filesystem::path& file : files->all()) {
-    if (const Status s = store.record_file(file.lexically_relative(store.folder())); !s) {
-      return std::unexpected(s.error());
-    }
   }
   if (!files->mesh.empty()) {
     const Result<std::string> sum = sha256_of_file(files->mesh, job);

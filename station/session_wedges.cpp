@@ -6,6 +6,7 @@
 
 #include "archive/wedge_drawing.h"
 #include "core/log.h"
+#include "formats/atomic_file.h"
 #include "formats/corrections_json.h"
 #include "formats/json_node.h"
 #include "formats/json_text.h"
@@ -88,24 +89,18 @@ Result<std::optional<SessionWedges>> keep_wedges(SessionStore& store, const Mesh
     return std::unexpected(made.error());
   }
   SessionWedges out{folder / "wedges.json", file.wedges.size(), file.rejected.size()};
-  if (const Status forgotten = store.forget_files({"analysis/"}); !forgotten) {
-    return std::unexpected(forgotten.error());
-  }
-  if (const Status written = write_wedges(out.json, file); !written) {
-    return std::unexpected(written.error());
-  }
-  std::vector<fs::path> made{out.json};
+  std::vector<WedgeDrawing> drawings;
   if (file.text_from_model) {
-    const auto drawings =
-        write_wedge_drawings(folder, file.wedges, *file.text_from_model,
-                             picture_words(file.label, session_name(store.folder())), &mesh);
-    if (!drawings) {
-      return std::unexpected(drawings.error());
-    }
-    made.insert(made.end(), drawings->begin(), drawings->end());
+    drawings = wedge_drawings(folder, file.wedges, *file.text_from_model,
+                              picture_words(file.label, session_name(store.folder())), &mesh);
   }
-  for (const fs::path& path : made) {
-    if (const Status kept = store.record_file(path.lexically_relative(store.folder())); !kept) {
+  const auto write = [&](const fs::path& to) { return write_wedges(to, file); };
+  if (const Status kept = store.replace_file("analysis/wedges.json", write); !kept) {
+    return std::unexpected(kept.error());
+  }
+  for (const WedgeDrawing& drawing : drawings) {
+    const auto draw = [&](const fs::path& to) { return write_file_atomically(to, drawing.svg); };
+    if (const Status kept = store.replace_file(fs::path("analysis") / drawing.name, draw); !kept) {
       return std::unexpected(kept.error());
     }
   }

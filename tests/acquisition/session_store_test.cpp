@@ -11,6 +11,7 @@
 #include <fstream>
 #include <limits>
 
+#include "formats/atomic_file.h"
 #include "tests/acquisition/session_support.h"
 #include "tests/support/temporary_folder.h"
 
@@ -252,6 +253,38 @@ TEST_F(SessionStoreTest, VerifyCoversGridsDatabaseAndRecordedFiles) {
   EXPECT_EQ(changed.damaged[0].where, "mesh/model.ply");
   job.cancel();
   EXPECT_EQ(store.verify(job).error().kind, ErrorKind::kCancelled);
+}
+
+TEST_F(SessionStoreTest, AFileKeepsItsChecksumUntilANewOneTakesItsPlace) {
+  SessionStore store = open();
+  const fs::path model = store.mesh_folder() / "model.ply";
+  const auto put = [](const char* text) {
+    return [text](const fs::path& file) { return write_file_atomically(file, std::string_view(text)); };
+  };
+  JobContext job;
+  const auto whole = [&] { return store.verify(job).value().whole; };
+  ASSERT_TRUE(store.replace_file("mesh/model.ply", put("old")));
+  EXPECT_EQ(read_whole_file(model).value(), "old");
+  const Status failed = store.replace_file("mesh/model.ply", [&](const fs::path& file) -> Status {
+    EXPECT_EQ(file.extension(), ".ply");
+    EXPECT_TRUE(put("half of the ne")(file));
+    EXPECT_THAT(whole(), ElementsAre("session.sqlite", "mesh/model.ply")) << "the old one, to the last";
+    return fail(ErrorKind::kStorage, "full", file.string());
+  });
+  ASSERT_FALSE(failed);
+  EXPECT_EQ(failed.error().where, model.string());
+  EXPECT_EQ(read_whole_file(model).value(), "old");
+  EXPECT_THAT(whole(), ElementsAre("session.sqlite", "mesh/model.ply"));
+  EXPECT_THAT(store.verify(job).value().extra, IsEmpty()) << "nothing is left of the new one";
+  ASSERT_TRUE(store.replace_file("mesh/model.ply", put("new")));
+  EXPECT_EQ(read_whole_file(model).value(), "new");
+  EXPECT_THAT(whole(), ElementsAre("session.sqlite", "mesh/model.ply"));
+  EXPECT_EQ(store.replace_file("../elsewhere", put("")).error().kind, ErrorKind::kUsage);
+  // What cannot be replaced stays, with its checksum.
+  fs::remove(model);
+  fs::create_directories(model / "folder");
+  EXPECT_FALSE(store.replace_file("mesh/model.ply", put("newer")));
+  EXPECT_EQ(store.verify(job).value().damaged.at(0).where, "mesh/model.ply");
 }
 
 TEST_F(SessionStoreTest, ASessionOfANewerVersionIsLeftAlone) {

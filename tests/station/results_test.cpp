@@ -31,9 +31,8 @@ TEST(PageFacts, WhatWasPredictedAndWhatCameOfItStayInTheSession) {
   EXPECT_FALSE(read.gains[1].predicted_mm2.has_value());
 }
 
-/// Of a session without a scan: the pages alone.
-Result<Deliverables> keep_pages(SessionStore& store) {
-  const Mesh none;
+/// Of a session without a scan: the pages, and the mesh where there is one.
+Result<Deliverables> keep_pages(SessionStore& store, JobContext& job, const Mesh& mesh = {}) {
   const RedMap red_map;
   const Checklist checklist;
   const std::vector<ScanPose> poses;
@@ -42,7 +41,7 @@ Result<Deliverables> keep_pages(SessionStore& store) {
                           .tool_version = "Dubsar",
                           .when = "2026-01-01T00:00:00Z",
                           .device = "sim:",
-                          .model = none,
+                          .model = mesh,
                           .red_map = red_map,
                           .checklist = checklist,
                           .scans = poses,
@@ -52,8 +51,8 @@ Result<Deliverables> keep_pages(SessionStore& store) {
                           .accuracy = {},
                           .calibration = {},
                           .not_measured = {},
-                          .timings = {}};
-  JobContext job;
+                          .timings = {},
+                          .longest_px = 64};
   return keep_deliverables(store, input, job);
 }
 
@@ -64,9 +63,29 @@ TEST(Deliverables, AFolderThatIsALinkToAnotherDiskStaysAFolderOfTheSession) {
   ASSERT_TRUE(store) << store.error().line();
   std::filesystem::rename(session / "export", folder.path() / "disk");
   std::filesystem::create_directory_symlink(folder.path() / "disk", session / "export");
-  const Result<Deliverables> kept = keep_pages(*store);
+  JobContext job;
+  const Result<Deliverables> kept = keep_pages(*store, job);
   ASSERT_TRUE(kept) << kept.error().line();
   EXPECT_TRUE(std::filesystem::is_regular_file(folder.path() / "disk" / "report.html"));
+}
+
+TEST(Deliverables, PagesThatAreStoppedLeaveTheOldOnesTheirChecksums) {
+  const test::TemporaryFolder folder;
+  Result<SessionStore> store = SessionStore::open_or_create(folder.path() / "session");
+  ASSERT_TRUE(store) << store.error().line();
+  Mesh triangle;
+  triangle.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  triangle.faces = {{0, 1, 2}};
+  JobContext job;
+  ASSERT_TRUE(keep_pages(*store, job, triangle));
+  const std::vector<std::string> before = store->verify(job).value().whole;
+  EXPECT_EQ(before.size(), 8U) << "the database, the mesh and six files of pages";
+  JobContext stopped;
+  stopped.cancel();
+  const Result<Deliverables> none = keep_pages(*store, stopped, triangle);
+  ASSERT_FALSE(none);
+  EXPECT_EQ(none.error().kind, ErrorKind::kCancelled);
+  EXPECT_EQ(store->verify(job).value().whole, before);
 }
 
 TEST(Deliverables, AFolderThatCannotBeMadeIsSaid) {
@@ -76,7 +95,8 @@ TEST(Deliverables, AFolderThatCannotBeMadeIsSaid) {
   ASSERT_TRUE(store) << store.error().line();
   std::filesystem::remove(session / "mesh");
   test::put(session / "mesh", "no folder");
-  const Result<Deliverables> kept = keep_pages(*store);
+  JobContext job;
+  const Result<Deliverables> kept = keep_pages(*store, job);
   ASSERT_FALSE(kept);
   EXPECT_EQ(kept.error().where, (session / "mesh").string());
 }
