@@ -231,7 +231,7 @@ Result<VerifyReport> SessionStore::verify(JobContext& job) const {
       files.insert(files.end(), more->begin(), more->end());
     }
   }
-  const bool database_whole = report.damaged.empty();
+  const bool database_whole = report.damaged.empty();  // as far as its rows tell
   // Grids that cannot be read and were never listed: seen while opening, in no table.
   for (const Error& seen : impl_->opening.damage) {
     const std::string name = fs::path(seen.where).lexically_relative(folder).generic_string();
@@ -248,13 +248,21 @@ Result<VerifyReport> SessionStore::verify(JobContext& job) const {
   } else if (!sums->empty()) {
     report.whole.emplace_back(session::kSums);
   }
+  std::error_code unknown;
+  const bool being_written =
+      impl_->access == Access::kReadWrite || (fs::exists(folder / "session.sqlite-wal", unknown) &&
+                                              fs::file_size(folder / "session.sqlite-wal", unknown) > 0);
+  // Closing writes the sums before it writes the backup: a backup without sums has lost them since. The
+  // program that is about to write both anew need not be told.
+  if (impl_->access == Access::kReadOnly && fs::exists(folder / session::kBackup, unknown) &&
+      !fs::exists(folder / session::kSums, unknown) && !unknown) {
+    report.damaged.push_back({ErrorKind::kBadInput, "missing", session::kSums,
+                              "dubsar verify --repair " + word_of(folder) + " makes it anew"});
+  }
   bool database_summed = false;
   for (const char* name : {session::kDatabase, session::kBackup}) {
-    std::error_code error;
     // With a log beside it another program has written on; the file is then checked by its rows alone.
-    if (sums && sums->contains(name) &&
-        (name != std::string(session::kDatabase) ||
-         fs::file_size(folder / "session.sqlite-wal", error) == 0 || error)) {
+    if (sums && sums->contains(name) && (name != std::string(session::kDatabase) || !being_written)) {
       database_summed = database_summed || name == std::string(session::kDatabase);
       files.push_back({-1, name, sums->find(name)->second});
     }
@@ -293,7 +301,9 @@ Result<VerifyReport> SessionStore::verify(JobContext& job) const {
     }
   }
   if (database_whole && !database_summed) {
-    report.whole.insert(report.whole.begin(), session::kDatabase);
+    // A database at rest has bytes between its rows that nothing covers then.
+    auto& list = being_written ? report.whole : report.unrecorded;
+    list.insert(list.begin(), session::kDatabase);
   }
   place_the_rest(folder, files, report);
   job.progress("verify", 1.0);

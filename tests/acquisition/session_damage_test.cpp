@@ -27,6 +27,7 @@ using test::flip_byte;
 using test::in_child;
 using test::SessionDamageTest;
 using test::small_grid;
+using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
@@ -68,6 +69,39 @@ TEST_F(SessionDamageTest, VerifyNoticesAFlippedByteAnywhere) {
   const VerifyReport report = SessionStore::open(folder_, kReadOnly).value().verify(job_).value();
   EXPECT_TRUE(report.ok());
   EXPECT_EQ(report.whole.size(), 7U);
+}
+
+TEST_F(SessionDamageTest, AListOfChecksumsThatIsGoneIsTold) {
+  fs::remove(folder_ / "session.sums");
+  {
+    const VerifyReport report = SessionStore::open(folder_, kReadOnly).value().verify(job_).value();
+    ASSERT_EQ(report.damaged.size(), 1U);
+    EXPECT_EQ(report.damaged[0].where, "session.sums");
+    EXPECT_EQ(report.damaged[0].what, "missing");
+    EXPECT_THAT(report.unrecorded, ElementsAre("session.sqlite", "session.backup.sqlite"));
+  }
+  EXPECT_TRUE(SessionStore::open(folder_).value().verify(job_).value().ok()) << "it is about to be written";
+  const VerifyReport mended = SessionStore::open(folder_, kReadOnly).value().verify(job_).value();
+  EXPECT_TRUE(mended.ok());
+  EXPECT_EQ(mended.whole.size(), 7U);
+  // Nothing tells that there ever was one: a session of an early version has none either.
+  fs::remove(folder_ / "session.sums");
+  fs::remove(folder_ / "session.backup.sqlite");
+  const VerifyReport bare = SessionStore::open(folder_, kReadOnly).value().verify(job_).value();
+  EXPECT_TRUE(bare.ok());
+  EXPECT_THAT(bare.unrecorded, ElementsAre("session.sqlite"));
+}
+
+TEST_F(SessionDamageTest, ASessionThatWasNeverClosedHasLostNoListOfChecksums) {
+  const fs::path killed = temporary_.path() / "killed";
+  {
+    SessionStore store = SessionStore::open_or_create(temporary_.path() / "first").value();
+    ASSERT_TRUE(store.add_grid(small_grid(1)));
+    fs::copy(temporary_.path() / "first", killed, fs::copy_options::recursive);
+  }
+  const VerifyReport report = SessionStore::open(killed, kReadOnly).value().verify(job_).value();
+  EXPECT_TRUE(report.ok());
+  EXPECT_THAT(report.whole, ElementsAre("session.sqlite", "grids/000.grid"));
 }
 
 TEST_F(SessionDamageTest, ADatabaseWithFlippedBytesKeepsTheScans) {
