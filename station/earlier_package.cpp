@@ -8,12 +8,14 @@
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "formats/atomic_file.h"
 #include "formats/bag_check.h"
 #include "formats/bag_text.h"
+#include "formats/files_below.h"
 #include "formats/json_node.h"
 #include "station/package.h"
 #include "station/package_source.h"
@@ -32,6 +34,12 @@ bool is_grid(const StampedFile& file) {
 Error lost(const std::string& what, const fs::path& package) {
   return {ErrorKind::kBadInput, what + ", and the package that lies here holds it", package.string(),
           "mend the session (dubsar verify --repair --from COPY), or choose another folder"};
+}
+
+Error not_as_written(const std::string& name, const std::string& what, const fs::path& package) {
+  return {ErrorKind::kBadInput,
+          "the package that lies here is not what was written (" + name + ": " + what + ")", package.string(),
+          "see what differs (dubsar verify), choose another folder, or replace it with --force"};
 }
 
 std::int64_t number_of(const nlohmann::json& event, const char* key) {
@@ -131,6 +139,24 @@ Status check_is_of_session(const fs::path& package, const SessionStore& store) {
               package.string(), "choose another folder, or remove it yourself");
 }
 
+Status check_nothing_added(const fs::path& package, const DoneStamp& stamp) {
+  std::set<std::string> written;
+  for (const StampedFile& file : stamp.outputs) {
+    written.insert(file.name.substr(file.name.find('/') + 1));  // "PACKAGE/data/README.txt"
+  }
+  const FoundBelow payload = everything_below(package / "data");
+  if (!payload.unreadable.empty()) {
+    return std::unexpected(payload.unreadable.front());
+  }
+  for (const fs::path& file : payload.files) {
+    const std::string name = file.lexically_relative(package).generic_string();
+    if (!written.contains(name)) {
+      return std::unexpected(not_as_written(name, "somebody added it", package));
+    }
+  }
+  return {};
+}
+
 Result<bool> is_earlier_package(const fs::path& package, const fs::path& session, const StampedWork& now,
                                 JobContext& job) {
   const std::optional<DoneStamp> known = read_done_stamp(now.stamp(), "export");
@@ -153,11 +179,7 @@ Result<bool> is_earlier_package(const fs::path& package, const fs::path& session
     const auto file = std::ranges::find_if(
         report->damaged, [](const Error& damage) { return damage.where.starts_with("data/"); });
     const Error& damage = file == report->damaged.end() ? report->damaged.front() : *file;
-    return fail(
-        ErrorKind::kBadInput,
-        "the package that lies here is not what was written (" + damage.where + ": " + damage.what + ")",
-        package.string(),
-        "see what differs (dubsar verify), choose another folder, or replace it with --force");
+    return std::unexpected(not_as_written(damage.where, damage.what, package));
   }
   // Rows of a scan that was not over are grids, too: they went when that scan was gone on with.
   const auto gone = std::ranges::find_if(known->inputs, [&](const StampedFile& file) {

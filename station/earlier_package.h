@@ -19,6 +19,10 @@ namespace dubsar {
 /// that nor a scan is one of this session's. Passes where there is no package.
 [[nodiscard]] Status check_is_of_session(const std::filesystem::path& package, const SessionStore& store);
 
+/// kBadInput where the payload of the package, which was written as the stamp says, holds a file that
+/// somebody added: the package is no longer valid. Files beside the payload are allowed.
+[[nodiscard]] Status check_nothing_added(const std::filesystem::path& package, const DoneStamp& stamp);
+
 /// Whether the package may go for the one that `now` makes of the session: it is whole by its own checksums,
 /// and the stamp beside it says that it was made of this very session when that held the same scans or fewer,
 /// by whatever version and with whatever options. Not where nothing tells that it is of this session. Reads

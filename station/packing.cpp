@@ -92,6 +92,10 @@ Result<Packing> pack_session(const PackRequest& asked, JobContext& job) {
       return std::unexpected(done.error());
     }
     if (*done) {
+      const std::optional<DoneStamp> known = read_done_stamp(work->stamp(), "export");
+      if (const Status whole = check_nothing_added(request.to, known.value_or(DoneStamp())); !whole) {
+        return std::unexpected(whole.error());
+      }
       return Packing{.done_before = true, .package = {}};
     }
     // Whatever is replaced keeps its stamp until the new one is whole.

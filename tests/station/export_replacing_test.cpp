@@ -205,6 +205,28 @@ TEST_F(Export, GoesWhereALinkAndTheFolderAboveItLead) {
   EXPECT_TRUE(fs::exists(at("elsewhere/package.done")));
 }
 
+TEST_F(Export, FindsAPackageDoneOnlyWhileItsPayloadIsWhatWasWritten) {
+  const auto pack = [&](const char* how = nullptr) {
+    std::vector<std::string> words{"--without", "renderings,features,wedges,grid-ply"};
+    if (how != nullptr) {
+      words.emplace_back(how);
+    }
+    return export_to("added_to", words);
+  };
+  ASSERT_EQ(pack().status, 0);
+  std::ofstream(at("added_to") / "catalogue.txt") << "what the standard allows beside the payload";
+  ASSERT_EQ(pack().json()["done_before"], true);
+  std::ofstream(at("added_to") / "data" / "NOTE.txt") << "a note of mine";
+  for (const Outcome& refused : {pack(), pack("--update")}) {
+    EXPECT_EQ(refused.status, 2) << refused.out;
+    EXPECT_THAT(refused.err, HasSubstr("data/NOTE.txt: somebody added it"));
+  }
+  EXPECT_EQ(bytes_of(at("added_to") / "data" / "NOTE.txt"), "a note of mine");
+  ASSERT_EQ(pack("--force").status, 0);
+  EXPECT_FALSE(fs::exists(at("added_to") / "data" / "NOTE.txt"));
+  EXPECT_EQ(pack().json()["done_before"], true);
+}
+
 TEST_F(Export, ReplacesAPackageOfAnEarlierStateOfItsSessionWhenAsked) {
   const fs::path session = at("scanned_further");
   fs::copy(at("session"), session, fs::copy_options::recursive);

@@ -317,6 +317,11 @@ constexpr EnginePhrase kPhrases[] = {
     {"stopped while finding wedges", "beim Finden der Keile angehalten"},
     // why a package is not made
     {"something lies there already", "dort liegt schon etwas"},
+    {"the package that lies here is not what was written (",
+     "das Paket, das hier liegt, ist nicht mehr das geschriebene ("},
+    {"somebody added it", "jemand hat sie hinzugefügt"},
+    {"see what differs (dubsar verify), choose another folder, or replace it with --force",
+     "nachsehen, was anders ist (dubsar verify), oder einen anderen Ordner wählen"},
     {"choose another folder, or replace it with --force", "einen anderen Ordner wählen"},
     {"a session keeps a checksum of every file in it; nothing else is written there",
      "eine Sitzung hat eine Prüfsumme für jede ihrer Dateien; anderes wird nicht hineingeschrieben"},
