@@ -109,9 +109,9 @@ Result<Mesh> read_mesh(const std::filesystem::path& path, const MeshReadOptions&
 }
 
 Status check_mesh_name(const std::filesystem::path& path) {
-  return format_of(path) != MeshFormat::kUnknown ? Status()
-                                                 : fail(ErrorKind::kUsage, "cannot tell the mesh format from the name",
-                                                        path.string(), kKnown);
+  return format_of(path) != MeshFormat::kUnknown
+             ? Status()
+             : fail(ErrorKind::kUsage, "cannot tell the mesh format from the name", path.string(), kKnown);
 }
 
 Status write_mesh(const std::filesystem::path& path, const Mesh& mesh, const FileLabel& label,

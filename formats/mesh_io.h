@@ -32,7 +32,8 @@ struct MeshReadOptions {
 [[nodiscard]] Result<Mesh> read_mesh_bytes(std::string_view bytes, const std::string& name,
                                            const MeshReadOptions& options = {});
 
-/// Whether write_mesh() knows what to write by the extension: to be asked before the work that makes the mesh.
+/// Whether write_mesh() knows what to write by the extension: to be asked before the work that makes the
+/// mesh.
 [[nodiscard]] Status check_mesh_name(const std::filesystem::path& path);
 
 /// Writes by extension, atomically. PLY keeps everything (docs/formats/mesh.md), GLB positions, normals and

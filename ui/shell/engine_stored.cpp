@@ -22,13 +22,6 @@ constexpr EnginePhrase kStored[] = {
      "andere Programme schließen, oder die Grenze für offene Dateien heben (ulimit -n)"},
     {"make the folder first", "zuerst den Ordner anlegen"},
     {"check the disk", "den Datenträger prüfen"},
-    {"the system starts no more threads: a limit on processes is reached, or memory is short",
-     "das System startet keine weiteren Threads: eine Grenze für Prozesse ist erreicht, oder der Speicher "
-     "ist "
-     "knapp"},
-    {"end other programs, or raise the limit (ulimit -u; TasksMax of a service, pids of a container)",
-     "andere Programme beenden, oder die Grenze heben (ulimit -u; TasksMax eines Dienstes, pids eines "
-     "Containers)"},
     {"cannot write: it is a folder", "nicht zu schreiben: es ist ein Ordner"},
     {"cannot write", "lässt sich nicht schreiben"},
     {"cannot open", "lässt sich nicht öffnen"},

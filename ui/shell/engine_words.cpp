@@ -313,6 +313,7 @@ constexpr EnginePhrase kPhrases[] = {
     {"registration was stopped", "die Einpassung wurde abgebrochen"},
     {"planning was stopped", "die Planung wurde abgebrochen"},
     {"the analysis was stopped", "die Auswertung wurde abgebrochen"},
+    {"writing was stopped", "das Schreiben wurde abgebrochen"},
     {"stitching was stopped", "das Zusammenfügen wurde abgebrochen"},
     {"stopped while finding wedges", "beim Finden der Keile angehalten"},
     // why a package is not made
