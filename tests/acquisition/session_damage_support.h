@@ -3,13 +3,16 @@
 #pragma once
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "acquisition/session_store.h"
 #include "tests/acquisition/session_support.h"
+#include "tests/support/in_child.h"
 #include "tests/support/temporary_folder.h"
 
 namespace dubsar::test {
@@ -45,6 +48,20 @@ class SessionDamageTest : public testing::Test {
     }
     EXPECT_TRUE(scans[1].dropped);
     EXPECT_EQ(store.load_document("rig").value(), "{\"name\":\"bench\"}");
+  }
+
+  /// A session with a scan and twelve documents, left as a kill leaves it: most of it stands in the log
+  /// alone.
+  static void leave_with_log(const std::filesystem::path& folder) {
+    const int status = in_child([&]() -> int {
+      Result<SessionStore> store = SessionStore::open_or_create(folder);
+      bool good = store && store->add_grid(small_grid(1));
+      for (int i = 0; i < 12; ++i) {
+        good = good && store->save_document("document " + std::to_string(i), "{}");
+      }
+      ::_exit(good ? 0 : 1);
+    });
+    ASSERT_EQ(status, 0);
   }
 
   TemporaryFolder temporary_;

@@ -2,7 +2,6 @@
 // Copyright The Dubsar developers
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -201,111 +200,6 @@ TEST_F(SessionDamageTest, WithoutDatabaseAndBackupTheGridsAreTakenIn) {
   EXPECT_FALSE(store.opening().damage.empty());
   ASSERT_EQ(store.scans().value().size(), 4U);
   EXPECT_EQ(store.load_grid(3).value().z, small_grid(3).z);
-}
-
-TEST_F(SessionDamageTest, AFullDiskLosesNothingThatWasStored) {
-  const int status = in_child([&] {
-    ::signal(SIGXFSZ, SIG_IGN);
-    SessionStore store = SessionStore::open(folder_).value();
-    // No file may grow past this: small for a grid file first, then for the database's log.
-    for (const rlim_t limit : {rlim_t{512}, rlim_t{12000}}) {
-      const rlimit small{limit, RLIM_INFINITY};
-      ::setrlimit(RLIMIT_FSIZE, &small);
-      RangeGrid grid = small_grid(8);
-      if (limit > 10000) {
-        grid = RangeGrid();
-        grid.allocate(2, 2);
-        grid.source = std::string(20000, 's');
-      }
-      const Result<int> id = store.add_grid(grid);
-      if (id || id.error().kind != ErrorKind::kStorage || id.error().mend.empty()) {
-        return 1;
-      }
-      const Status document = store.save_document("big", std::string(20000, ' '));
-      if (document || document.error().kind != ErrorKind::kStorage) {
-        return 2;
-      }
-    }
-    const rlimit free{RLIM_INFINITY, RLIM_INFINITY};
-    ::setrlimit(RLIMIT_FSIZE, &free);
-    // With room again the same store goes on.
-    return store.add_grid(small_grid(4)).value_or(-1) == 4 ? 0 : 3;
-  });
-  EXPECT_EQ(status, 0);
-  const SessionStore store = SessionStore::open(folder_).value();
-  EXPECT_THAT(store.opening().damage, IsEmpty());
-  EXPECT_EQ(store.scans().value().size(), 5U);
-  EXPECT_EQ(store.load_grid(4).value().z, small_grid(4).z);
-  EXPECT_FALSE(store.load_document("big").value());
-}
-
-TEST_F(SessionDamageTest, AWriteProtectedFolderIsToldAndCanBeRead) {
-  { SessionStore store = SessionStore::open(folder_).value(); }
-  const int status = in_child([&] {
-    for (const auto& entry : fs::recursive_directory_iterator(temporary_.path())) {
-      fs::permissions(entry.path(), entry.is_directory() ? fs::perms(0555) : fs::perms(0444));
-    }
-    fs::permissions(temporary_.path(), fs::perms(0555));
-    if (!be_bound_by_rights()) {
-      return 9;
-    }
-    const auto writer = SessionStore::open(folder_);
-    if (writer || writer.error().kind != ErrorKind::kStorage || writer.error().mend.empty()) {
-      return 1;
-    }
-    const auto reader = SessionStore::open(folder_, kReadOnly);
-    return reader && reader->load_grid(3) && reader->verify(job_).value().ok() ? 0 : 2;
-  });
-  for (const fs::path& path : {temporary_.path(), folder_, folder_ / "grids", folder_ / "mesh"}) {
-    fs::permissions(path, fs::perms(0755));
-  }
-  EXPECT_EQ(status, 0);
-}
-
-/// A session with a scan and twelve documents, left as a kill leaves it: most of it stands in the log alone.
-void leave_with_log(const fs::path& folder) {
-  const int status = in_child([&]() -> int {
-    Result<SessionStore> store = SessionStore::open_or_create(folder);
-    bool good = store && store->add_grid(small_grid(1));
-    for (int i = 0; i < 12; ++i) {
-      good = good && store->save_document("document " + std::to_string(i), "{}");
-    }
-    ::_exit(good ? 0 : 1);
-  });
-  ASSERT_EQ(status, 0);
-}
-
-TEST_F(SessionDamageTest, ALogOnAWriteProtectedDiskIsPlayedWhereThereIsRoom) {
-  const fs::path folder = temporary_.path() / "logged";
-  leave_with_log(folder);
-  fs::remove(folder / "session.sqlite-shm");
-  const int status = in_child([&] {
-    fs::permissions(temporary_.path(), fs::perms(0555));
-    fs::permissions(folder, fs::perms(0555));
-    if (!be_bound_by_rights()) {
-      return 9;
-    }
-    ::signal(SIGXFSZ, SIG_IGN);
-    const rlimit small{1000, RLIM_INFINITY};
-    ::setrlimit(RLIMIT_FSIZE, &small);
-    const auto full = SessionStore::open(folder, kReadOnly);
-    const rlimit free{RLIM_INFINITY, RLIM_INFINITY};
-    ::setrlimit(RLIMIT_FSIZE, &free);
-    if (full || full.error().kind != ErrorKind::kStorage || full.error().mend.empty()) {
-      return 1;
-    }
-    const auto reader = SessionStore::open(folder, kReadOnly);
-    if (!reader || reader->document_names().value().size() != 12) {
-      return 2;
-    }
-    ::setenv("TMPDIR", "/nowhere", 1);
-    const auto nowhere = SessionStore::open(folder, kReadOnly);
-    return !nowhere && nowhere.error().kind == ErrorKind::kStorage ? 0 : 3;
-  });
-  for (const fs::path& path : {temporary_.path(), folder}) {
-    fs::permissions(path, fs::perms(0755));
-  }
-  EXPECT_EQ(status, 0);
 }
 
 TEST_F(SessionDamageTest, ALogDamagedInItsMiddleIsToldAndATornEndIsNot) {

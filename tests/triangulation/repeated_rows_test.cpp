@@ -10,9 +10,8 @@
 #include "core/random.h"
 #include "formats/mesh_formats.h"
 #include "sim/scanner.h"
-#include "sim/scene.h"
-#include "sim/tablet.h"
 #include "tests/triangulation/support/scans.h"
+#include "tests/triangulation/support/simulated_tablet.h"
 #include "triangulation/mesh_check.h"
 #include "triangulation/stage_passes.h"
 #include "triangulation/stitcher.h"
@@ -191,19 +190,12 @@ TEST(StagePasses, LaserAndCameraStandWhereThePassBegins) {
 
 TEST(StagePasses, NoiseOnSteepClayIsNoWayBack) {
   JobContext job;
-  sim::TabletOptions tablet_options;
-  tablet_options.size_mm = {10, 9, 6};
-  tablet_options.spacing_mm = 0.15;
-  const auto tablet = sim::make_tablet(tablet_options, job);
-  ASSERT_TRUE(tablet.has_value());
-  const MeshQuery truth(tablet->mesh);
-  sim::Scene scene;
-  scene.tablet = &*tablet;
-  scene.query = &truth;
+  const test::SimulatedTablet tablet({10, 9, 6});
   sim::ScannerOptions options;
   options.spacing_mm = 0.05;
   const sim::TriangulationScanner scanner(options);
-  const auto grid = scanner.scan_grid(scene, RigidTransform::from_twist({0.7, 0, 0}, {0, 0, 0}), 1, job);
+  const auto grid =
+      scanner.scan_grid(tablet.scene(), RigidTransform::from_twist({0.7, 0, 0}, {0, 0, 0}), 1, job);
   ASSERT_TRUE(grid.has_value());
   const auto passes = stage_passes(*grid, grid->spacing_mm);
   ASSERT_EQ(passes.size(), 1U);

@@ -7,9 +7,8 @@
 #include "core/grid_lookup.h"
 #include "core/mesh_query.h"
 #include "sim/scanner.h"
-#include "sim/scene.h"
-#include "sim/tablet.h"
 #include "tests/triangulation/support/scans.h"
+#include "tests/triangulation/support/simulated_tablet.h"
 #include "triangulation/mesh_check.h"
 #include "triangulation/stitcher.h"
 
@@ -33,15 +32,7 @@ RigidTransform tablet_from_scanner(int k, int count) {
 
 TEST(SimTablet, CoversWhatWasSampledAndAveragesTheNoise) {
   JobContext job;
-  sim::TabletOptions tablet_options;
-  tablet_options.size_mm = {16, 14, 8};
-  tablet_options.spacing_mm = 0.15;
-  const auto tablet = sim::make_tablet(tablet_options, job);
-  ASSERT_TRUE(tablet.has_value());
-  const MeshQuery truth(tablet->mesh);
-  sim::Scene scene;
-  scene.tablet = &*tablet;
-  scene.query = &truth;
+  const test::SimulatedTablet tablet({16, 14, 8});
   sim::ScannerOptions scanner_options;
   scanner_options.spacing_mm = 0.1;
   const sim::TriangulationScanner scanner(scanner_options);
@@ -49,7 +40,7 @@ TEST(SimTablet, CoversWhatWasSampledAndAveragesTheNoise) {
   constexpr int kScans = 16;
   for (int k = 0; k < kScans; ++k) {
     const RigidTransform pose = tablet_from_scanner(k, kScans);
-    auto grid = scanner.scan_grid(scene, pose, static_cast<std::uint64_t>(k), job);
+    auto grid = scanner.scan_grid(tablet.scene(), pose, static_cast<std::uint64_t>(k), job);
     ASSERT_TRUE(grid.has_value());
     set.add(std::move(*grid), pose);
   }
@@ -61,7 +52,7 @@ TEST(SimTablet, CoversWhatWasSampledAndAveragesTheNoise) {
 
   double sum2 = 0;
   for (const Eigen::Vector3f& p : mesh->positions) {
-    const auto closest = truth.closest(p, 1.0F);
+    const auto closest = tablet.truth().closest(p, 1.0F);
     ASSERT_TRUE(closest.has_value());
     sum2 += closest->distance_mm * closest->distance_mm;
   }
@@ -69,7 +60,7 @@ TEST(SimTablet, CoversWhatWasSampledAndAveragesTheNoise) {
   EXPECT_LT(std::sqrt(sum2 / static_cast<double>(mesh->positions.size())), 0.018);
 
   // Clay that some scan sampled well must lie under the mesh.
-  std::vector<std::uint8_t> seen(tablet->mesh.positions.size(), 0);
+  std::vector<std::uint8_t> seen(tablet.mesh().positions.size(), 0);
   for (std::size_t k = 0; k < set.placed.size(); ++k) {
     std::vector<std::uint8_t> keep(set.grids[k].size());
     for (std::size_t i = 0; i < keep.size(); ++i) {
@@ -79,7 +70,7 @@ TEST(SimTablet, CoversWhatWasSampledAndAveragesTheNoise) {
     const RigidTransform scanner_from_tablet = set.placed[k].model_from_scanner.inverse();
     for (std::size_t v = 0; v < seen.size(); ++v) {
       const Eigen::Vector3f p =
-          (scanner_from_tablet * tablet->mesh.positions[v].cast<double>()).cast<float>();
+          (scanner_from_tablet * tablet.mesh().positions[v].cast<double>()).cast<float>();
       seen[v] |= lookup.nearest(p, 0.1F) >= 0 ? 1 : 0;
     }
   }
@@ -89,7 +80,7 @@ TEST(SimTablet, CoversWhatWasSampledAndAveragesTheNoise) {
   for (std::size_t v = 0; v < seen.size(); ++v) {
     if (seen[v] != 0) {
       ++sampled;
-      covered += stitched.closest(tablet->mesh.positions[v], 0.1F).has_value() ? 1 : 0;
+      covered += stitched.closest(tablet.mesh().positions[v], 0.1F).has_value() ? 1 : 0;
     }
   }
   EXPECT_GT(static_cast<double>(sampled), 0.95 * static_cast<double>(seen.size()));

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+// Sessions on disks that are full or write-protected.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+
+#include "acquisition/session_store.h"
+#include "tests/acquisition/session_damage_support.h"
+#include "tests/support/in_child.h"
+#include "tests/support/temporary_folder.h"
+
+namespace dubsar {
+namespace {
+
+namespace fs = std::filesystem;
+using test::be_bound_by_rights;
+using test::in_child;
+using test::SessionDamageTest;
+using test::small_grid;
+using testing::IsEmpty;
+
+constexpr auto kReadOnly = SessionStore::Access::kReadOnly;
+
+TEST_F(SessionDamageTest, AFullDiskLosesNothingThatWasStored) {
+  const int status = in_child([&] {
+    ::signal(SIGXFSZ, SIG_IGN);
+    SessionStore store = SessionStore::open(folder_).value();
+    // No file may grow past this: small for a grid file first, then for the database's log.
+    for (const rlim_t limit : {rlim_t{512}, rlim_t{12000}}) {
+      const rlimit small{limit, RLIM_INFINITY};
+      ::setrlimit(RLIMIT_FSIZE, &small);
+      RangeGrid grid = small_grid(8);
+      if (limit > 10000) {
+        grid = RangeGrid();
+        grid.allocate(2, 2);
+        grid.source = std::string(20000, 's');
+      }
+      const Result<int> id = store.add_grid(grid);
+      if (id || id.error().kind != ErrorKind::kStorage || id.error().mend.empty()) {
+        return 1;
+      }
+      const Status document = store.save_document("big", std::string(20000, ' '));
+      if (document || document.error().kind != ErrorKind::kStorage) {
+        return 2;
+      }
+    }
+    const rlimit free{RLIM_INFINITY, RLIM_INFINITY};
+    ::setrlimit(RLIMIT_FSIZE, &free);
+    // With room again the same store goes on.
+    return store.add_grid(small_grid(4)).value_or(-1) == 4 ? 0 : 3;
+  });
+  EXPECT_EQ(status, 0);
+  const SessionStore store = SessionStore::open(folder_).value();
+  EXPECT_THAT(store.opening().damage, IsEmpty());
+  EXPECT_EQ(store.scans().value().size(), 5U);
+  EXPECT_EQ(store.load_grid(4).value().z, small_grid(4).z);
+  EXPECT_FALSE(store.load_document("big").value());
+}
+
+TEST_F(SessionDamageTest, AWriteProtectedFolderIsToldAndCanBeRead) {
+  { SessionStore store = SessionStore::open(folder_).value(); }
+  const int status = in_child([&] {
+    for (const auto& entry : fs::recursive_directory_iterator(temporary_.path())) {
+      fs::permissions(entry.path(), entry.is_directory() ? fs::perms(0555) : fs::perms(0444));
+    }
+    fs::permissions(temporary_.path(), fs::perms(0555));
+    if (!be_bound_by_rights()) {
+      return 9;
+    }
+    const auto writer = SessionStore::open(folder_);
+    if (writer || writer.error().kind != ErrorKind::kStorage || writer.error().mend.empty()) {
+      return 1;
+    }
+    const auto reader = SessionStore::open(folder_, kReadOnly);
+    return reader && reader->load_grid(3) && reader->verify(job_).value().ok() ? 0 : 2;
+  });
+  for (const fs::path& path : {temporary_.path(), folder_, folder_ / "grids", folder_ / "mesh"}) {
+    fs::permissions(path, fs::perms(0755));
+  }
+  EXPECT_EQ(status, 0);
+}
+
+TEST_F(SessionDamageTest, ALogOnAWriteProtectedDiskIsPlayedWhereThereIsRoom) {
+  const fs::path folder = temporary_.path() / "logged";
+  leave_with_log(folder);
+  fs::remove(folder / "session.sqlite-shm");
+  const int status = in_child([&] {
+    fs::permissions(temporary_.path(), fs::perms(0555));
+    fs::permissions(folder, fs::perms(0555));
+    if (!be_bound_by_rights()) {
+      return 9;
+    }
+    ::signal(SIGXFSZ, SIG_IGN);
+    const rlimit small{1000, RLIM_INFINITY};
+    ::setrlimit(RLIMIT_FSIZE, &small);
+    const auto full = SessionStore::open(folder, kReadOnly);
+    const rlimit free{RLIM_INFINITY, RLIM_INFINITY};
+    ::setrlimit(RLIMIT_FSIZE, &free);
+    if (full || full.error().kind != ErrorKind::kStorage || full.error().mend.empty()) {
+      return 1;
+    }
+    const auto reader = SessionStore::open(folder, kReadOnly);
+    if (!reader || reader->document_names().value().size() != 12) {
+      return 2;
+    }
+    ::setenv("TMPDIR", "/nowhere", 1);
+    const auto nowhere = SessionStore::open(folder, kReadOnly);
+    return !nowhere && nowhere.error().kind == ErrorKind::kStorage ? 0 : 3;
+  });
+  for (const fs::path& path : {temporary_.path(), folder}) {
+    fs::permissions(path, fs::perms(0755));
+  }
+  EXPECT_EQ(status, 0);
+}
+
+}  // namespace
+}  // namespace dubsar
