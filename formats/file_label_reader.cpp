@@ -31,7 +31,7 @@ bool is_known(std::string_view name) {
 }
 
 /// The lines that label_lines() wrote with that prefix, behind the one that says whose file it is.
-Words words_in_lines(std::string_view head, std::string_view prefix, std::string_view whose) {
+Words words_in_lines(std::string_view head, std::string_view prefix) {
   Words words;
   TextScanner text(head);
   bool ours = false;
@@ -49,7 +49,7 @@ Words words_in_lines(std::string_view head, std::string_view prefix, std::string
     }
     line.remove_prefix(prefix.size());
     if (!ours) {
-      ours = line.starts_with(whose);
+      ours = line.starts_with("Mesh of Dubsar") || line.starts_with("Range grid of Dubsar");
       continue;
     }
     const std::size_t colon = line.find(": ");
@@ -136,17 +136,16 @@ FileLabel label_in_object(const JsonNode& object) {
 
 FileLabel file_label_in(std::string_view head) {
   if (is_ply(head)) {
-    return label_of_words(words_in_lines(head, "comment ", "Mesh of Dubsar"));
+    return label_of_words(words_in_lines(head, "comment "));
   }
   if (is_glb(head)) {
     return label_of_words(words_in_glb(head));
   }
-  return label_of_words(head.starts_with("# ") ? words_in_lines(head, "# ", "Mesh of Dubsar")
-                                               : words_in_stl(head));
+  return label_of_words(head.starts_with("# ") ? words_in_lines(head, "# ") : words_in_stl(head));
 }
 
-FileLabel read_file_label(const std::filesystem::path& mesh) {
-  const Result<std::string> head = read_file_head(mesh, kHeadBytes);
+FileLabel read_file_label(const std::filesystem::path& file) {
+  const Result<std::string> head = read_file_head(file, kHeadBytes);
   return head ? file_label_in(*head) : FileLabel{};
 }
 

@@ -20,9 +20,10 @@ namespace dubsar {
 /// Of an object that has them by name, as GLB and wedges.json do; other names are passed over.
 [[nodiscard]] FileLabel label_in_object(const JsonNode& object);
 
-/// What a mesh in PLY, OBJ, GLB or STL that Dubsar wrote says of itself, so that what is made of it says the
-/// same; empty where that is nothing, is another program's, or cannot be read. Looks at the first MiB alone.
-[[nodiscard]] FileLabel read_file_label(const std::filesystem::path& mesh);
+/// What a mesh in PLY, OBJ, GLB or STL, or a range grid in PLY, that Dubsar wrote says of itself, so that
+/// what is made of it says the same; empty where that is nothing, is another program's, or cannot be read.
+/// Looks at the first MiB alone.
+[[nodiscard]] FileLabel read_file_label(const std::filesystem::path& file);
 [[nodiscard]] FileLabel file_label_in(std::string_view head);
 
 }  // namespace dubsar

@@ -283,6 +283,7 @@ RangeGrid grid_of(const ScanLayout& layout) {
   grid.intensity.assign(grid.size(), 0.0F);
   grid.spacing_mm = layout.spacing_mm;
   grid.view = layout.view;
+  grid.device = "sim";
   return grid;
 }
 

@@ -73,7 +73,7 @@ class TriangulationScanner {
   /// kCancelled when the job or the sink stops it.
   [[nodiscard]] Status scan(const Scene& scene, const RigidTransform& tablet_from_scanner,
                             std::uint64_t scan_number, const RowSink& sink, JobContext& job) const;
-  /// The same as a whole grid (nominal pose and names left empty).
+  /// The same as a whole grid (nominal pose and source left empty; the device is "sim").
   [[nodiscard]] Result<RangeGrid> scan_grid(const Scene& scene, const RigidTransform& tablet_from_scanner,
                                             std::uint64_t scan_number, JobContext& job) const;
   /// View of the scanner at the middle row, for Rig.
@@ -83,7 +83,8 @@ class TriangulationScanner {
   ScannerOptions options_;
 };
 
-/// An empty grid of a layout, to be filled row by row.
+/// An empty grid of a layout, to be filled row by row; its device is "sim", so that whatever comes of it is
+/// told as made up.
 [[nodiscard]] RangeGrid grid_of(const ScanLayout& layout);
 
 }  // namespace dubsar::sim

@@ -290,7 +290,6 @@ std::vector<PinTip> SimStation::clicked_tips() const {
 RangeGrid SimStation::empty_grid() const {
   RangeGrid grid = grid_of(scanner_.layout(scene_, true_tablet_from_scanner()));
   grid.nominal = nominal();
-  grid.device = "sim";
   if (pins_) {
     grid.pin_tip_diameter_mm = pins_->options().tip_diameter_mm;
   }
@@ -307,7 +306,6 @@ Result<RangeGrid> SimStation::scan_grid(JobContext& job) {
       scanner_.scan_grid(scene_, true_tablet_from_scanner(), static_cast<std::uint64_t>(scans_made_++), job);
   if (grid) {
     grid->nominal = nominal();
-    grid->device = "sim";
     grid->pin_tip_diameter_mm = pins_ ? pins_->options().tip_diameter_mm : 0.0;
   }
   return grid;

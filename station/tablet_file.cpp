@@ -8,6 +8,7 @@
 
 #include "formats/mesh_io.h"
 #include "station/outward_faces.h"
+#include "station/tablet_label.h"
 
 namespace dubsar {
 
@@ -25,7 +26,7 @@ Status write_tablet_file(const std::filesystem::path& path, const sim::SimTablet
         static_cast<std::uint8_t>(std::lround(255.0F * std::clamp(tablet.albedo[i], 0.0F, 1.0F)));
     mesh.colours[i] = {grey, grey, grey};
   }
-  return write_mesh(path, mesh);
+  return write_mesh(path, mesh, made_up_label());
 }
 
 Result<sim::SimTablet> read_tablet_file(const std::filesystem::path& path, const MeshReadOptions& options) {

@@ -16,6 +16,9 @@ namespace dubsar {
 
 namespace {
 
+constexpr const char* kMadeUp =
+    "A program made up this tablet and its scans: there is no such tablet, and nothing was measured.";
+
 std::vector<std::pair<std::string, std::string>> words_of_scans(const std::string& simulated) {
   std::vector<std::pair<std::string, std::string>> words;
   if (!simulated.empty()) {
@@ -37,9 +40,21 @@ Result<std::string> simulated_words(const SessionStore& store) {
   const auto by_simulator = [&](const LeftScan& left) { return is_simulator(left.grid.device); };
   const bool simulated = std::ranges::any_of(*scans, is_simulator, &StoredScan::device) ||
                          std::ranges::any_of(left_scans(store.folder()), by_simulator);
-  return simulated ? "A program made up this tablet and its scans: there is no such tablet, and nothing was "
-                     "measured."
-                   : "";
+  return simulated ? kMadeUp : "";
+}
+
+FileLabel made_up_label() {
+  return label_of_words(words_of_scans(kMadeUp));
+}
+
+FileLabel label_of_files(const std::vector<std::filesystem::path>& grids) {
+  std::vector<FileLabel> labels;
+  std::ranges::transform(grids, std::back_inserter(labels), read_file_label);
+  const auto others = std::ranges::adjacent_find(labels, std::ranges::not_equal_to(), &FileLabel::words);
+  if (!labels.empty() && others == labels.end()) {
+    return labels.front();
+  }
+  return std::ranges::any_of(labels, &FileLabel::simulated) ? made_up_label() : FileLabel{};
 }
 
 Result<FileLabel> tablet_label(const SessionStore& store) {

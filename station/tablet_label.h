@@ -2,7 +2,9 @@
 // Copyright The Dubsar developers
 #pragma once
 
+#include <filesystem>
 #include <string>
+#include <vector>
 
 #include "acquisition/session_store.h"
 #include "core/result.h"
@@ -14,6 +16,13 @@ namespace dubsar {
 /// gives its grids: an archive that outlives whoever tried the scanner must not take such a tablet for clay.
 /// Empty of clay.
 [[nodiscard]] Result<std::string> simulated_words(const SessionStore& store);
+
+/// Of files that the simulator makes.
+[[nodiscard]] FileLabel made_up_label();
+
+/// What a mesh of range grids that belong to no session says: what their own files say, where all say the
+/// same; else no more than that some of them were made up. Files that say nothing count, too.
+[[nodiscard]] FileLabel label_of_files(const std::vector<std::filesystem::path>& grids);
 
 /// What the files of a session's tablet say of themselves: its numbers (without any the session's name),
 /// collection, who scanned it, rights, and whether a program made it up. Notes stay with the session.

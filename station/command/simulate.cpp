@@ -28,6 +28,7 @@
 #include "station/command/simulate_rig.h"
 #include "station/command/size_option.h"
 #include "station/tablet_file.h"
+#include "station/tablet_label.h"
 
 namespace dubsar {
 
@@ -147,13 +148,20 @@ Result<int> simulate_scans(const SimulateOptions& options, CommandContext& conte
       clicked.tips[id] = sim::clicked_tips(true_tips.tips[id], 1.0, options.seed + k);
     }
     Result<RangeGrid> grid = scanner.scan_grid(scene, views[k].tablet_from_scanner, k, context.job);
+    if (!grid && grid.error().kind == ErrorKind::kCancelled) {
+      return fail(ErrorKind::kCancelled, "stopped before all scans were made", options.out,
+                  fmt::format("{} of {} are there, without truth_poses.json; the same command makes all",
+                              truth.size(), views.size()));
+    }
     if (!grid) {
       return std::unexpected(grid.error());
     }
     grid->pin_tip_diameter_mm = stand ? pin_options.tip_diameter_mm : 0;
     char name[32];
     std::snprintf(name, sizeof name, "scan_%03zu.ply", k);
-    if (const Status written = write_grid_ply(fs::path(options.out) / name, *grid); !written) {
+    if (const Status written =
+            write_grid_ply(fs::path(options.out) / name, *grid, {.label = made_up_label()});
+        !written) {
       return std::unexpected(written.error());
     }
     ScanPose pose;

@@ -264,10 +264,16 @@ int tell_done(const StitchArguments& arguments, const CommandContext& context) {
   return 0;
 }
 
-/// Of a folder nobody knows what lies in it.
-Result<FileLabel> label_of(const std::string& path) {
+Result<FileLabel> label_of(const std::string& path, const std::map<int, std::string>& names) {
   if (!SessionStore::is_session(path)) {
-    return FileLabel{};
+    std::error_code ignored;
+    const std::filesystem::path set = path;
+    const bool is_folder = std::filesystem::is_directory(set, ignored);
+    std::vector<std::filesystem::path> grids;
+    for (const auto& [id, name] : names) {
+      grids.push_back(is_folder ? set / name : set);
+    }
+    return label_of_files(grids);
   }
   const Result<SessionStore> store = SessionStore::open(path, SessionStore::Access::kReadOnly);
   return store ? tablet_label(*store) : std::unexpected(store.error());
@@ -311,7 +317,7 @@ Result<int> stitch_all(const ScanSetArguments& arguments, const StampedWork* wor
   if (const std::optional<Error> wrong_way = inside_out(*mesh, arguments.out)) {
     log_warning(wrong_way->line());
   }
-  const Result<FileLabel> label = label_of(arguments.path);
+  const Result<FileLabel> label = label_of(arguments.path, taken->names);
   if (!label) {
     return std::unexpected(label.error());
   }
@@ -369,7 +375,8 @@ void add_stitch(CLI::App& app, Action& chosen) {
       ->excludes(verb->get_option("--pins"));
   verb->callback([&chosen, arguments] {
     chosen = with_safe_outputs({arguments->set.out},
-                               [arguments](CommandContext& c) { return stitch(*arguments, c); });
+                               [arguments](CommandContext& c) { return stitch(*arguments, c); },
+                               {arguments->set.poses, arguments->set.pins});
   });
 }
 

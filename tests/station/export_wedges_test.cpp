@@ -30,6 +30,10 @@ using ::testing::EndsWith;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
+/// What the simulator writes into its scans goes all the way.
+constexpr const char* kMadeUp =
+    "A program made up this tablet and its scans: there is no such tablet, and nothing was measured.";
+
 class ExportOfWedges : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
@@ -107,9 +111,9 @@ TEST_F(ExportOfWedges, EveryFormHasAsMany) {
 }
 
 TEST_F(ExportOfWedges, TheyTellWhatTheyAreOfWhereTheyTravelAlone) {
-  const nlohmann::json of{{"Session", "session"}};
+  const nlohmann::json of{{"SIMULATED", kMadeUp}, {"Session", "session"}};
   EXPECT_EQ(json_of("wedges/wedges.json").value("tablet", nlohmann::json()), of);
-  EXPECT_THAT(bytes_of(data("wedges/wedges.csv")), EndsWith(",session,,,no\r\n"));
+  EXPECT_THAT(bytes_of(data("wedges/wedges.csv")), EndsWith(",session,,,yes\r\n"));
   ASSERT_EQ(run_command({"analyze", data("model/session.ply"), "-o", at("alone.json")}).status, 0);
   const auto alone = nlohmann::json::parse(bytes_of(at("alone.json")), nullptr, false);
   EXPECT_EQ(alone.value("tablet", nlohmann::json()), of) << "as the mesh says";

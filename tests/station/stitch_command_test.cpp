@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "acquisition/session_store.h"
+#include "formats/file_label_reader.h"
 #include "formats/mesh_io.h"
 #include "formats/poses_json.h"
 #include "tests/station/support/bumpy_scans.h"
@@ -21,8 +22,10 @@ namespace {
 namespace fs = std::filesystem;
 using test::Outcome;
 using test::run_command;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::Not;
+using ::testing::Pair;
 using ::testing::SizeIs;
 
 class StitchCommand : public ::testing::Test {
@@ -124,6 +127,25 @@ TEST_F(StitchCommand, LeavesOutFingersInSeveralScans) {
   const Outcome of_session = test::run_command({"stitch", at("session"), "-o", at("mesh.ply")});
   EXPECT_EQ(of_session.status, 0) << of_session.err;
   EXPECT_LT(highest(), of_the_field + 0.5F);
+}
+
+TEST_F(StitchCommand, AMeshOfAFolderSaysWhatAllItsScansSay) {
+  const auto labelled = [&](int number, std::vector<std::pair<std::string, std::string>> words) {
+    EXPECT_TRUE(write_grid_ply(at("scans") + "/" + test::scan_name(number), test::bumpy_scan(number),
+                               {.label = label_of_words(std::move(words))}));
+  };
+  const auto words_of_mesh = [&] {
+    EXPECT_EQ(stitched().status, 0);
+    return read_file_label(at("mesh.ply")).words;
+  };
+  for (int k = 0; k < 3; ++k) {
+    labelled(k, {{"Museum number", "BM 1"}, {"Rights", "CC0"}});
+  }
+  EXPECT_THAT(words_of_mesh(), ElementsAre(Pair("Museum number", "BM 1"), Pair("Rights", "CC0")));
+  labelled(1, {{"Museum number", "BM 2"}});
+  EXPECT_THAT(words_of_mesh(), SizeIs(0));
+  labelled(2, {{"SIMULATED", "no tablet"}});
+  EXPECT_THAT(words_of_mesh(), ElementsAre(Pair("SIMULATED", HasSubstr("there is no such tablet"))));
 }
 
 TEST_F(StitchCommand, WritesNoMeshOfNoFaces) {
