@@ -164,7 +164,9 @@ void add_calibrate(CLI::App& app, Action& chosen) {
       throw CLI::RequiredError("source");
     }
     chosen = with_safe_outputs({options->out, options->print},
-                               [options](CommandContext& c) { return calibrate(*options, c); });
+                               [options](CommandContext& c) { return calibrate(*options, c); },
+                               {options->source + "/calibration.toml", options->live.rig,
+                                options->verify.artefact, options->verify.calibration});
   });
 }
 

@@ -237,7 +237,8 @@ void add_plan(CLI::App& app, Action& chosen) {
                    "write what has become of every sample into this folder, a PLY for each scan");
   verb->callback([&chosen, arguments] {
     chosen = with_safe_outputs({arguments->set.out, arguments->page, as_folder(arguments->states)},
-                               [arguments](CommandContext& c) { return plan(*arguments, c); });
+                               [arguments](CommandContext& c) { return plan(*arguments, c); },
+                               {arguments->set.poses, arguments->set.pins});
   });
 }
 

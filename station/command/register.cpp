@@ -109,7 +109,8 @@ void add_register(CLI::App& app, Action& chosen) {
       ->check(CLI::Range(1, 1024));
   verb->callback([&chosen, arguments] {
     chosen = with_safe_outputs({arguments->out},
-                               [arguments](CommandContext& c) { return register_all(*arguments, c); });
+                               [arguments](CommandContext& c) { return register_all(*arguments, c); },
+                               {arguments->from_poses, arguments->pins});
   });
 }
 

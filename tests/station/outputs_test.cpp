@@ -147,6 +147,17 @@ TEST_F(Outputs, ReplaceNoScanOfTheFolderThatIsRead) {
     EXPECT_THAT(outcome.err, HasSubstr("a scan would be written over")) << arguments.front();
     EXPECT_TRUE(bytes_of(scan) == before) << arguments.front();
   }
+  const std::string kept = bytes_of(poses);
+  for (const Arguments& arguments : {Arguments{"stitch", scans, "--poses", poses, "-o", poses},
+                                     {"register", scans, "--from-poses", poses, "-o", poses},
+                                     {"register", scans, "--pins", poses, "-o", poses},
+                                     {"plan", scans, "--poses", poses, "-o", poses},
+                                     {"plan", scans, "--poses", poses, "--page", poses}}) {
+    const Outcome outcome = run_command(arguments);
+    EXPECT_EQ(outcome.status, 2) << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr("a name of its own")) << arguments.front();
+    EXPECT_TRUE(bytes_of(poses) == kept) << arguments.front();
+  }
   // What an earlier run left there is no scan: the same command writes it again.
   for (int run = 0; run < 2; ++run) {
     const Outcome outcome = run_command({"stitch", scans, "--poses", poses, "-o", scans / "mesh.ply"});
