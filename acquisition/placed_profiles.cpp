@@ -20,7 +20,8 @@ bool PlacedProfiles::begin(const ScanInfo& info) {
   const bool linear = scan_.motion.kind == MotionKind::kLinear;
   out.view.motion_per_row_mm = linear ? Eigen::Vector3d(scan_.step * scan_.motion.direction)
                                       : Eigen::Vector3d(Eigen::Vector3d::Zero());
-  const RigidTransform there = scan_.motion.zero_from_camera(scan_.start);
+  const RigidTransform there =
+      scan_.motion.zero_from_camera(scan_.motion.view_position(scan_.start, scan_.end()));
   for (std::optional<Eigen::Vector3d>* at : {&out.view.laser_mm, &out.view.camera_mm}) {
     if (*at) {
       *at = there * **at;

@@ -28,7 +28,7 @@ Status RangeRig::check(const RigFile& file, const std::string& where) {
     return fail(ErrorKind::kUsage, "nobody says how fast the stage is to go", where,
                 "give speed_mm_s or speed_deg_s: the camera's rate of profiles times the step");
   }
-  return {};
+  return check_turn(file, file.motion->kind, where);
 }
 
 Result<RangeRig> RangeRig::make(const RigFile& file, Device camera, Device stage, const std::string& where) {

@@ -50,7 +50,10 @@ class SinkBridge : public ProfileSink {
     out.valid = profile.valid.data();
     out.intensity = profile.intensity.data();
     out.confidence = profile.confidence.data();
+    out.rgb = profile.rgb.data();
     out.timestamp_ns = profile.timestamp_ns;
+    out.flags = profile.encoder ? DUBSAR_PROFILE_ENCODER : 0;
+    out.encoder = profile.encoder.value_or(0);
     return sink_.profile(sink_.user, &out) == 0;
   }
   void end(const ScanTally& tally) override {
@@ -71,6 +74,7 @@ class SinkBridge : public ProfileSink {
       out.code = code;
       out.profiles_sent = tally_.profiles_sent;
       out.profiles_dropped = tally_.profiles_dropped;
+      out.frames_repeated = tally_.frames_repeated;
       sink_.end(sink_.user, &out);
     }
   }

@@ -54,7 +54,7 @@ Result<StageAxis> axis_for_scan(const RigFile& file, Device& stage, MotionKind k
         "set axis to the one that carries the camera or the tablet; axes=x:deg in the stage's URI "
         "says that x turns");
   }
-  const double end = file.start + file.step * (file.rows - 1);
+  const double end = end_of(file);
   if (!axis.endless && (file.start < axis.minimum || end > axis.maximum)) {
     return fail(ErrorKind::kUsage,
                 "the scan from " + position_text(axis.rotary, file.start) + " to " +
@@ -64,6 +64,22 @@ Result<StageAxis> axis_for_scan(const RigFile& file, Device& stage, MotionKind k
                 where, "scan less, or move the limits");
   }
   return axis;
+}
+
+double end_of(const RigFile& file) {
+  return file.start + file.step * (file.rows - 1);
+}
+
+Status check_turn(const RigFile& file, MotionKind kind, const std::string& where) {
+  constexpr double kWidestDeg = 120;
+  const double turn_deg = deg_from_rad(end_of(file) - file.start);
+  if (kind != MotionKind::kTurntable || turn_deg < kWidestDeg + 1e-6) {
+    return {};
+  }
+  return fail(ErrorKind::kUsage,
+              "the scan turns the tablet by " + position_text(true, end_of(file) - file.start) +
+                  ", and what a scan sees is judged from one side",
+              where, "let it turn by 120 degrees at most, and turn the tablet between scans");
 }
 
 std::string position_text(bool rotary, double position) {

@@ -40,6 +40,14 @@ Status put_camera_settings(const RigFile& file, Device& camera, const std::strin
 [[nodiscard]] Result<StageAxis> axis_for_scan(const RigFile& file, Device& stage, MotionKind kind,
                                               const std::string& where);
 
+/// Where the scan's last row lies, mm or rad.
+[[nodiscard]] double end_of(const RigFile& file);
+
+/// kUsage: a turntable that would turn too far in one scan. A grid has one view, that of the middle of its
+/// turn, by which its samples' normals, what hides what and what is red are told: from 60° on its ends would
+/// be judged as clay that was hardly seen, and beyond 90° as seen from behind.
+[[nodiscard]] Status check_turn(const RigFile& file, MotionKind kind, const std::string& where);
+
 /// A place of an axis as people say it, in mm or degrees.
 [[nodiscard]] std::string position_text(bool rotary, double position);
 

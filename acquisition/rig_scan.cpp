@@ -90,6 +90,9 @@ Result<RigScanner> RigScanner::make(const RigFile& file, const RigCalibration& c
   if (const Result<StageAxis> axis = axis_for_scan(file, stage, calibration.motion.kind, where); !axis) {
     return std::unexpected(axis.error());
   }
+  if (Status turn = check_turn(file, calibration.motion.kind, where); !turn) {
+    return std::unexpected(turn.error());
+  }
   const Result<RigCalibration> seen =
       file.region ? seen_in(*file.region, calibration, where) : Result<RigCalibration>(calibration);
   if (!seen) {
@@ -105,7 +108,8 @@ Result<RigScanner> RigScanner::make(const RigFile& file, const RigCalibration& c
                  file.stripe_per_row ? StripeAxis::kPerRow : StripeAxis::kPerColumn);
   Rig& rig = out.rig_;
   rig.name = file.name;
-  rig.view = calibration.view(file.step);
+  const bool turns_tablet = calibration.motion.kind == MotionKind::kTurntable;
+  rig.view = calibration.view(file.step, turns_tablet ? 0.5 * (file.start + end_of(file)) : 0.0);
   rig.view.motion_per_row_mm = Eigen::Vector3d::Zero();  // positions are those of the middle row
   rig.field_x_mm = field_mm(*seen, file.stripe_per_row);
   const double row_spacing_mm = calibration.row_spacing_mm(file.step);
@@ -224,13 +228,8 @@ Status RigScanner::scan(ProfileSink& sink) {
   // On a turntable it goes by how far from the axis the clay is: by the grid's own samples.
   const bool turns_tablet = triangulator_->calibration().motion.kind == MotionKind::kTurntable;
   info.spacing_mm = turns_tablet ? 0 : rig_.spacing_mm;
-  info.view = triangulator_->calibration().view(file_.step);
-  // The view is that at row 0, which lies at the scan's start.
-  if (info.view.laser_mm && info.view.camera_mm) {
-    const Eigen::Vector3d there = file_.start / file_.step * info.view.motion_per_row_mm;
-    *info.view.laser_mm += there;
-    *info.view.camera_mm += there;
-  }
+  info.view = triangulator_->calibration().view(
+      file_.step, triangulator_->calibration().motion.view_position(file_.start, end_of(file_)));
   info.timestamp_ns = wall_clock_ns();
   info.device = device_id_;
   ScanTally tally;

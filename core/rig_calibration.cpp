@@ -70,13 +70,17 @@ RigidTransform RigCalibration::scanner_from_camera() const {
   return camera_from_scanner.inverse();
 }
 
-ScannerView RigCalibration::view(double step) const {
+ScannerView RigCalibration::view(double step, double position) const {
   const RigidTransform scanner = scanner_from_camera();
   ScannerView out;
   out.camera_mm = scanner.translation_mm;
   out.laser_mm =
       laser_source_mm ? scanner * *laser_source_mm : Eigen::Vector3d{0, 0, scanner.translation_mm.norm()};
   out.direction = -out.camera_mm->normalized();
+  const RigidTransform there = scanner * motion.zero_from_camera(position) * scanner.inverse();
+  out.camera_mm = there * *out.camera_mm;
+  out.laser_mm = there * *out.laser_mm;
+  out.direction = there.rotation * out.direction;
   if (motion.kind == MotionKind::kLinear) {
     out.motion_per_row_mm = scanner.rotation * (step * motion.direction);
   }

@@ -47,6 +47,11 @@ struct RigMotion {
 
   /// Takes what the camera sees at `position` to where it was (or would be) at position 0.
   [[nodiscard]] RigidTransform zero_from_camera(double position) const;
+  /// The position whose view a scan over these has, in one frame: row 0 where the head is carried along, as
+  /// the view says how it moves on; the middle where the tablet turns.
+  [[nodiscard]] double view_position(double start, double end) const {
+    return kind == MotionKind::kTurntable ? 0.5 * (start + end) : start;
+  }
   /// The laser plane at `position`, camera frame, from the one at position 0.
   [[nodiscard]] Plane laser_at(const Plane& at_zero, double position) const;
 };
@@ -92,9 +97,10 @@ struct RigCalibration {
   /// z in the plane towards the scanner, y across the plane the way the motion goes; origin where the
   /// camera's axis meets the laser plane.
   [[nodiscard]] RigidTransform scanner_from_camera() const;
-  /// Laser and camera at position 0 and what a row of `step` moves them by, scanner frame. A laser that
-  /// nobody measured is taken as far away as the camera, straight above the origin.
-  [[nodiscard]] ScannerView view(double step) const;
+  /// Laser and camera as they stand to what is seen at `position`, and what a row of `step` moves them by, in
+  /// the scanner frame of position 0. A laser that nobody measured is taken as far away as the camera,
+  /// straight above the origin.
+  [[nodiscard]] ScannerView view(double step, double position = 0) const;
   /// Depth that moves the stripe by one pixel, and one pixel across the field, both in the middle of the
   /// volume.
   [[nodiscard]] double depth_per_px_mm() const;

@@ -88,6 +88,21 @@ TEST(PlacedProfiles, SpacingIsOfTheStepOnASlideAndOfTheClayOnATurntable) {
   }
 }
 
+TEST(PlacedProfiles, AScanOnATurntableIsSeenFromTheMiddleOfItsTurn) {
+  PositionTrack track;
+  test::CollectGrid sink;
+  RigMotion motion;
+  motion.kind = MotionKind::kTurntable;
+  motion.direction = {1, 0, 0};
+  PlacedProfiles placed(sink, track, {motion, 0.5, 0.01, 101, "test"});
+  ScanInfo info;
+  info.cols = 1;
+  info.view.camera_mm = Eigen::Vector3d(0, 0, 200);
+  EXPECT_TRUE(placed.begin(info));
+  const RigidTransform there = motion.zero_from_camera(1.0);
+  EXPECT_LT((sink.grid().view.camera_mm.value() - there * Eigen::Vector3d(0, 0, 200)).norm(), 1e-9);
+}
+
 TEST(PlacedProfiles, PutsEachWhereTheStageWas) {
   PositionTrack track;
   ask(track, 0, 0, 0);

@@ -176,6 +176,32 @@ TEST_F(RigScan, OnATurntableTheSpacingIsThatOfTheClay) {
   EXPECT_NEAR(sink.builder->grid().spacing_mm, 0.02 * 20, 0.04);
 }
 
+TEST_F(RigScan, OnATurntableAScanIsSeenFromTheMiddleOfItsTurn) {
+  sim::FrameRigOptions size;
+  size.width = 256;
+  size.height = 200;
+  size.field_mm = 6.25;
+  size.motion = MotionKind::kTurntable;
+  bench.truth = sim::frame_rig(size);
+  file.start = 1.0;
+  file.step = 0.01;
+  Result<RigScanner> made = make();
+  ASSERT_TRUE(made.has_value()) << made.error().line();
+  Device device = device_of(std::move(*made), "rig:rig.toml");
+  Collect sink;
+  ASSERT_TRUE(device.scan(sink).has_value());
+  const double middle = file.start + 0.5 * file.step * (file.rows - 1);
+  const RigidTransform scanner = bench.truth.scanner_from_camera();
+  const RigidTransform there = scanner * bench.truth.motion.zero_from_camera(middle);
+  const Eigen::Vector3d sight = there.rotation * (scanner.inverse() * Eigen::Vector3d(0, 0, 0)).normalized();
+  for (const ScannerView& view : {sink.builder->grid().view, device.capabilities()->rig->view}) {
+    EXPECT_LT((view.camera_mm.value() - there.translation_mm).norm(), 1e-6);
+    EXPECT_LT((view.direction - sight).norm(), 1e-9);
+  }
+  file.step = 2.2 / (file.rows - 1);
+  EXPECT_NE(refusal().find("turns the tablet by 126"), std::string::npos) << refusal();
+}
+
 TEST_F(RigScan, OfAMirrorTheSpacingGoesByItsDistanceFromTheClay) {
   sim::FrameRigOptions size;
   size.motion = MotionKind::kGalvanometer;
