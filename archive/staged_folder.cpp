@@ -3,6 +3,7 @@
 #include "archive/staged_folder.h"
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -13,6 +14,7 @@
 #include <system_error>
 #include <utility>
 
+#include "core/log.h"
 #include "formats/atomic_file.h"
 #include "formats/folder_lock.h"
 #include "formats/refusal.h"
@@ -35,6 +37,17 @@ bool is_free(const fs::path& target) {
   std::error_code ignored;
   const fs::file_status status = fs::symlink_status(target, ignored);
   return !fs::exists(status) || (fs::is_directory(status) && fs::is_empty(target, ignored));
+}
+
+/// Where what is replaced steps aside. One that lies there was left by a program that was killed, maybe
+/// before the new one was in its place: it stays.
+fs::path free_name_of_replaced(const fs::path& target) {
+  const std::string name = target.filename().string() + ".replaced";
+  fs::path aside = target.parent_path() / name;
+  for (int k = 2; !is_free(aside); ++k) {
+    aside = target.parent_path() / (name + "-" + std::to_string(k));
+  }
+  return aside;
 }
 
 /// Of a folder that was there before: whoever else made it, or may write into it, could go on doing so in
@@ -139,9 +152,13 @@ Status StagedFolder::publish() {
     path_.clear();
     return sync_folder(target_.parent_path());
   }
-  if (::renameat2(AT_FDCWD, path_.c_str(), AT_FDCWD, target_.c_str(), RENAME_EXCHANGE) != 0) {
+  const auto exchange = [&] {
+    return ::renameat2(AT_FDCWD, path_.c_str(), AT_FDCWD, target_.c_str(), RENAME_EXCHANGE) == 0;
+  };
+  const bool exchanged = exchange();
+  if (!exchanged) {
     // A file system that cannot exchange: the old one steps aside under a name that says what it is.
-    const fs::path aside = target_.parent_path() / (target_.filename().string() + ".replaced");
+    const fs::path aside = free_name_of_replaced(target_);
     if (::rename(target_.c_str(), aside.c_str()) != 0) {
       return storage(aside, "cannot move the old folder there", errno);
     }
@@ -153,10 +170,16 @@ Status StagedFolder::publish() {
     path_ = aside;
   }
   if (const Status synced = sync_folder(target_.parent_path()); !synced) {
-    path_.clear();  // what was there before stays beside it
+    if (!exchanged || !exchange()) {
+      path_.clear();  // what was there before stays beside it
+    }
     return synced;
   }
   fs::remove_all(path_, error);
+  if (error) {
+    log_warning(fmt::format("{}: what was replaced cannot be taken away: {}; it is needed no more",
+                            path_.string(), error.message()));
+  }
   path_.clear();
   return {};
 }

@@ -21,6 +21,9 @@ namespace {
 /// A file system that cannot exchange two names, as not all of them can, and then one name that it refuses.
 bool cannot_exchange = false;
 std::string refuses_from;
+/// Folders cannot be synced.
+bool refuses_sync = false;
+int exchanges = 0;  ///< of names, so far
 /// A name that cannot be taken away.
 std::string refuses_to_go;
 
@@ -37,10 +40,19 @@ extern "C" int renameat2(int from_folder, const char* from, int to_folder, const
     errno = EIO;
     return -1;
   }
+  exchanges += flags != 0 ? 1 : 0;
   return static_cast<int>(::syscall(SYS_renameat2, from_folder, from, to_folder, to, flags));
 }
 extern "C" int rename(const char* from, const char* to) noexcept {
   return renameat2(AT_FDCWD, from, AT_FDCWD, to, 0);
+}
+extern "C" int fsync(int file) {
+  struct stat what {};
+  if (refuses_sync && ::fstat(file, &what) == 0 && S_ISDIR(what.st_mode) && exchanges > 0) {
+    errno = EIO;
+    return -1;
+  }
+  return static_cast<int>(::syscall(SYS_fsync, file));
 }
 extern "C" int unlinkat(int folder, const char* name, int flags) noexcept {
   if (!refuses_to_go.empty() && name == refuses_to_go) {
@@ -180,6 +192,41 @@ TEST(StagedFolder, WhatItReplacesIsThereAgainWhenTheFileSystemRefusesHalfway) {
   ASSERT_TRUE(staged->publish());
   cannot_exchange = false;
   EXPECT_EQ(text_of_file(target / "new"), "new");
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), fs::directory_iterator()), 1);
+}
+
+TEST(StagedFolder, ReplacesAgainWhereAKilledProgramLeftWhatItReplaced) {
+  const test::TemporaryFolder folder;
+  const fs::path target = folder.path() / "bag";
+  put(target / "old", "old");
+  const fs::path left = folder.path() / "bag.replaced";
+  put(left / "older", "older");
+  cannot_exchange = true;
+  auto staged = StagedFolder::begin(target, true);
+  ASSERT_TRUE(staged) << staged.error().line();
+  put(staged->path() / "new", "new");
+  const Status published = staged->publish();
+  cannot_exchange = false;
+  ASSERT_TRUE(published) << published.error().line();
+  EXPECT_EQ(text_of_file(target / "new"), "new");
+  EXPECT_EQ(text_of_file(left / "older"), "older") << "it may be the only one";
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), fs::directory_iterator()), 2);
+}
+
+TEST(StagedFolder, IsNotThereWhereItCouldNotBeSynced) {
+  const test::TemporaryFolder folder;
+  const fs::path target = folder.path() / "bag";
+  put(target / "old", "old");
+  {
+    auto staged = StagedFolder::begin(target, true);
+    ASSERT_TRUE(staged) << staged.error().line();
+    put(staged->path() / "new", "new");
+    exchanges = 0;
+    refuses_sync = true;
+    EXPECT_FALSE(staged->publish());
+    refuses_sync = false;
+  }
+  EXPECT_EQ(text_of_file(target / "old"), "old");
   EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), fs::directory_iterator()), 1);
 }
 
