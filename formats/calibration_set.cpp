@@ -112,7 +112,7 @@ Result<CalibrationSet> parse_calibration_set(std::string_view toml, const std::s
       set.stops.push_back(std::move(stop));
     }
   }
-  if (set.poses.empty()) {
+  if (set.poses.empty() && set.stops.empty()) {
     root.complain("names no pose of the board");
   }
   if (const Status status = document->status("see docs/formats/calibration.md"); !status) {

@@ -85,6 +85,9 @@ Result<CalibrateOutcome> calibrate_folder(const CalibrateRequest& request, const
                      "its pictures are of camera " + set->camera_serial + ", not of " + request.serial,
                      "leave the serial number away, or take pictures with that camera");
   }
+  if (set->poses.empty()) {
+    return bad_input(request.folder, "there is no pose of the board yet", "take pictures of the board");
+  }
   Result<CalibrationPictures> pictures = look_at_pictures(request.folder, *set, job);
   if (!pictures) {
     return std::unexpected(pictures.error());

@@ -99,6 +99,16 @@ TEST(CalibrationSet, RoundTrip) {
   EXPECT_TRUE(back->stripe_per_row);
 }
 
+TEST(CalibrationSet, MayBeginWithTheStage) {
+  CalibrationSet set;
+  set.board = "chessboard:9x6:25";
+  set.motion = MotionKind::kLinear;
+  set.stops = {{"stage_00.png", "board", 1.5}};
+  const Result<CalibrationSet> back = parse_calibration_set(calibration_set_to_toml(set), "calibration.toml");
+  ASSERT_TRUE(back.has_value()) << back.error().line();
+  EXPECT_EQ(back->stops.size(), 1U);
+}
+
 TEST(CalibrationSet, SaysWhatIsWrong) {
   const auto said = [](const std::string& text) {
     const Result<CalibrationSet> set = parse_calibration_set(text, "calibration.toml");

@@ -100,6 +100,10 @@ TEST_F(Calibrate, ABadSetIsOneLineAndNoFile) {
   Outcome refused = calibrate();
   EXPECT_EQ(refused.status, 2);
   EXPECT_THAT(refused.err, HasSubstr("the board was seen on the stage at 1 positions, 3 are the least"));
+  list(0, 3);  // the stage was looked at first
+  refused = calibrate();
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_THAT(refused.err, HasSubstr("there is no pose of the board yet"));
   list(9, 3);
   refused = calibrate({"--board", "chessboard:9x6:25"});
   EXPECT_EQ(refused.status, 2);
