@@ -241,6 +241,26 @@ OrderedJson asset_of(const FileLabel& label) {
   return asset;
 }
 
+/// As glTF asks for them (3.7.2.1), where some are not one long (another program's zero): these give way to
+/// what the faces say, and where there is no face to (0, 0, 1). Empty where all are right as they are.
+std::vector<Eigen::Vector3f> mended_normals(const Mesh& mesh) {
+  constexpr float kLeastOff = 1e-3F;
+  const auto is_unit = [](const Eigen::Vector3f& n) {
+    return std::abs(n.squaredNorm() - 1.0F) < kLeastOff;  // false of what is no number, too
+  };
+  if (std::ranges::all_of(mesh.normals, is_unit)) {
+    return {};
+  }
+  std::vector<Eigen::Vector3f> normals = mesh.normals;
+  const std::vector<Eigen::Vector3f> of_faces = vertex_normals(mesh);
+  for (std::size_t v = 0; v < normals.size(); ++v) {
+    if (!is_unit(normals[v])) {
+      normals[v] = is_unit(of_faces[v]) ? of_faces[v] : Eigen::Vector3f::UnitZ();
+    }
+  }
+  return normals;
+}
+
 }  // namespace
 
 Result<Mesh> decode_mesh_glb(std::string_view bytes, const std::string& where,
@@ -313,7 +333,8 @@ Result<std::string> encode_mesh_glb(const Mesh& mesh, const std::string& where, 
   attributes["POSITION"] = 0;
   if (!mesh.normals.empty()) {
     begin_view(vertices * 12, kVertexTarget);
-    for (const Eigen::Vector3f& n : mesh.normals) {
+    const std::vector<Eigen::Vector3f> mended = mended_normals(mesh);
+    for (const Eigen::Vector3f& n : mended.empty() ? mesh.normals : mended) {
       for (const float component : n) {
         append(binary, component);
       }

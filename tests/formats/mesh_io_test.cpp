@@ -353,6 +353,26 @@ TEST(MeshGlb, AppliesNodeTransforms) {
   EXPECT_EQ(mesh->faces[0], (std::array<std::uint32_t, 3>{0, 1, 2})) << "a mirrored face keeps its outside";
 }
 
+TEST(MeshGlb, HasNoNormalThatIsNotOneLong) {
+  Mesh mesh = tetrahedron();
+  mesh.normals = vertex_normals(mesh);
+  const Eigen::Vector3f right = mesh.normals[1];
+  mesh.positions.emplace_back(9, 9, 9);  // no face has it
+  mesh.normals.emplace_back(0, 0, 0);
+  mesh.normals[1].setZero();
+  mesh.normals[2].setConstant(std::numeric_limits<float>::quiet_NaN());
+  const std::string glb = encode_mesh_glb(mesh, "t").value();
+  const std::string_view binary = split_glb(glb, "t").value().binary;
+  std::array<Eigen::Vector3f, 5> normals;  // behind as many positions
+  ASSERT_GE(binary.size(), 2 * sizeof normals);
+  std::memcpy(normals.data(), binary.data() + sizeof normals, sizeof normals);
+  for (const Eigen::Vector3f& n : normals) {
+    EXPECT_NEAR(n.norm(), 1, 1e-6);
+  }
+  EXPECT_LT((normals[1] - right).norm(), 1e-6);
+  EXPECT_EQ(normals[4], Eigen::Vector3f::UnitZ());
+}
+
 TEST(MeshHostile, Glb) {
   const std::string whole = encode_mesh_glb(full_mesh(), "t").value();
   for (std::size_t size = 1; size < whole.size(); ++size) {
