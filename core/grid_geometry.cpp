@@ -105,13 +105,17 @@ DUBSAR_WIDE_CLONES void row_geometry(const RangeGrid& grid, int row, float step2
 }  // namespace
 
 GridGeometry grid_geometry(const RangeGrid& grid, double step_factor) {
+  return grid_geometry_within(grid, step_factor * grid.spacing_mm);
+}
+
+GridGeometry grid_geometry_within(const RangeGrid& grid, double step_mm) {
   GridGeometry out;
   resize_in_huge_pages(out.normals, grid.size());
   out.boundary.resize(grid.size());
-  const auto step_mm = static_cast<float>(step_factor * grid.spacing_mm);
+  const auto step = static_cast<float>(step_mm);
   parallel_for_each_index(
       static_cast<std::size_t>(grid.rows),
-      [&](std::size_t row) { row_geometry(grid, static_cast<int>(row), step_mm * step_mm, out); }, 8);
+      [&](std::size_t row) { row_geometry(grid, static_cast<int>(row), step * step, out); }, 8);
   return out;
 }
 

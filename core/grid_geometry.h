@@ -23,5 +23,7 @@ struct GridGeometry {
 /// distance of more than step_factor · µ between neighbours (3µ marks a slope of about 70°; seed 001, 3.3).
 /// grid.spacing_mm must be > 0.
 [[nodiscard]] GridGeometry grid_geometry(const RangeGrid& grid, double step_factor = 5.0);
+/// The same with a depth step of more than `step_mm`: the grid's own spacing may be unknown (0).
+[[nodiscard]] GridGeometry grid_geometry_within(const RangeGrid& grid, double step_mm);
 
 }  // namespace dubsar

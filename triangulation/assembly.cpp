@@ -94,6 +94,7 @@ Mesh assemble(const std::vector<OwnedScan>& scans, const AssemblyOptions& option
     mesh.flags[v] |= rim[v] != 0 ? kVertexBoundary : 0;
   }
   mesh.normals = vertex_normals(mesh);
+  job.progress("finish mesh", 1.0);
   return std::move(mesh);
 }
 

@@ -322,7 +322,7 @@ StitchSurface make_scan_surface(const PlacedScan& scan, const StitchSurfaceOptio
     out.lookup = std::make_unique<GridLookup>(grid, out.usable);
     return out;
   }
-  GridGeometry geometry = grid_geometry(grid, 5.0 * out.spacing_mm / std::max(grid.spacing_mm, 1e-12));
+  GridGeometry geometry = grid_geometry_within(grid, 5.0 * out.spacing_mm);
   std::vector<Vector3f> normals = std::move(geometry.normals);
   const std::vector<std::uint8_t> placed = place_samples(scan, out.points, normals);
   GridSurface surface = out.surface();

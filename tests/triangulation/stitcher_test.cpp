@@ -72,6 +72,17 @@ void expect_same(const Mesh& a, const Mesh& b) {
   EXPECT_EQ(a.flags, b.flags);
 }
 
+TEST(Stitcher, GridsWhoseSpacingNobodyToldAreStitchedToo) {
+  test::ScanSet set = ball();
+  for (RangeGrid& grid : set.grids) {
+    grid.spacing_mm = 0;
+  }
+  const MeshReport report = check_mesh(stitched(set));
+  EXPECT_TRUE(report.is_closed());
+  EXPECT_EQ(report.components, 1U);
+  EXPECT_NEAR(report.area_mm2, 4 * kPi * kRadius * kRadius, 0.02 * 4 * kPi * kRadius * kRadius);
+}
+
 TEST(Stitcher, SixViewsOfABallMakeOneClosedSurface) {
   const Mesh mesh = stitched(ball());
   const MeshReport report = check_mesh(mesh);
