@@ -35,6 +35,12 @@ std::vector<float> floats_of(const Input<float>& array, const RangeGrid& grid, c
   return {array.data(), array.data() + array.size()};
 }
 
+void check_spacing(double spacing_mm) {
+  if (!(spacing_mm >= 0) || !std::isfinite(spacing_mm)) {
+    raise({ErrorKind::kUsage, "spacing_mm is no length", {}, "give millimetres, or 0: not known"});
+  }
+}
+
 GridPointer make_grid(const Input<float>& x, const Input<float>& y, const Input<float>& z,
                       const std::optional<Input<bool>>& valid, const MaybeFloats& intensity,
                       const MaybeFloats& confidence, double spacing_mm, const py::str& source) {
@@ -42,6 +48,7 @@ GridPointer make_grid(const Input<float>& x, const Input<float>& y, const Input<
   if (x.ndim() != 2 || x.size() == 0 || x.size() > kMostSamples) {
     raise({ErrorKind::kUsage, "x is no grid of rows x cols samples", {}, "give a two-dimensional array"});
   }
+  check_spacing(spacing_mm);
   auto grid = std::make_shared<RangeGrid>();
   grid->rows = static_cast<int>(x.shape(0));
   grid->cols = static_cast<int>(x.shape(1));
@@ -201,9 +208,7 @@ void bind_grids(py::module_& module) {
       .def_property(
           "spacing_mm", [](const RangeGrid& g) { return g.spacing_mm; },
           [](RangeGrid& g, double spacing_mm) {
-            if (!(spacing_mm >= 0) || !std::isfinite(spacing_mm)) {
-              raise({ErrorKind::kUsage, "spacing_mm is no length", {}, "give millimetres, or 0: not known"});
-            }
+            check_spacing(spacing_mm);
             g.spacing_mm = spacing_mm;
           },
           "nominal lateral spacing, mm; 0: not known")

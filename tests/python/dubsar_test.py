@@ -268,6 +268,7 @@ class Errors(unittest.TestCase):
             lambda: dubsar.Pose(0, np.eye(4), sigma_mm=-1),
             lambda: dubsar.Pose(0, np.eye(4), sigma_mm=np.nan),
             lambda: setattr(plane(), "spacing_mm", np.nan),
+            lambda: dubsar.Grid(*np.zeros((3, 2, 2)), spacing_mm=np.inf),
             lambda: dubsar.stitch([], [dubsar.Pose(0, np.eye(4))]),
             lambda: dubsar.stitch([plane()], []),
             lambda: dubsar.register([plane()], starts=[]),
