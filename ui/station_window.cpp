@@ -49,7 +49,13 @@ class GuiScope {
     IMGUI_CHECKVERSION();
     ImGui::CreateContext();
     ImGui::GetIO().IniFilename = nullptr;  // nothing of the layout is the user's to lose
-    ImGui_ImplGlfw_InitForOpenGL(window, true);
+    glfwSetWindowUserPointer(window, &taps_);
+    glfwSetKeyCallback(window, [](GLFWwindow* of, int key, int /*code*/, int action, int /*modifiers*/) {
+      if (action != GLFW_REPEAT) {
+        static_cast<KeyTaps*>(glfwGetWindowUserPointer(of))->happened(key, action == GLFW_PRESS);
+      }
+    });
+    ImGui_ImplGlfw_InitForOpenGL(window, true);  // its own callback calls that one
     ImGui_ImplOpenGL3_Init("#version 410 core");
   }
   ~GuiScope() {
@@ -59,6 +65,21 @@ class GuiScope {
   }
   GuiScope(const GuiScope&) = delete;
   GuiScope& operator=(const GuiScope&) = delete;
+
+  void new_frame() {
+    ImGui_ImplOpenGL3_NewFrame();
+    ImGui_ImplGlfw_NewFrame();
+    ImGuiIO& io = ImGui::GetIO();
+    taps_.put_into(io.KeysDown);
+    const auto either = [&](int left, int right) { return io.KeysDown[left] || io.KeysDown[right]; };
+    io.KeyCtrl = either(GLFW_KEY_LEFT_CONTROL, GLFW_KEY_RIGHT_CONTROL);
+    io.KeyShift = either(GLFW_KEY_LEFT_SHIFT, GLFW_KEY_RIGHT_SHIFT);
+    io.KeyAlt = either(GLFW_KEY_LEFT_ALT, GLFW_KEY_RIGHT_ALT);
+    io.KeySuper = either(GLFW_KEY_LEFT_SUPER, GLFW_KEY_RIGHT_SUPER);
+  }
+
+ private:
+  KeyTaps taps_;
 };
 
 Result<std::optional<ScriptPlayer>> load_script(const std::filesystem::path& file) {
@@ -202,8 +223,7 @@ class StationWindow {
     apply_theme(ui_.preferences);
     ui_.colours = colours_of(ui_.preferences);
     ui_.time_s = now_s();
-    ImGui_ImplOpenGL3_NewFrame();
-    ImGui_ImplGlfw_NewFrame();
+    gui_.new_frame();
     if (script_) {
       script_->inject(ui_, ui_.time_s);
     }

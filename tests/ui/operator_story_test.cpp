@@ -40,7 +40,9 @@ class OperatorStory : public ::testing::Test {
   Outcome play_on(const std::string& device, const std::string& script) {
     const fs::path file = folder_.path() / "story.script";
     std::ofstream(file) << script;
-    return run_command({"station", "--session", session(), "--device", device, "--script", file.string()});
+    // As a shell completes it.
+    return run_command(
+        {"station", "--session", session() + "/", "--device", device, "--script", file.string()});
   }
   [[nodiscard]] std::string session() const { return (folder_.path() / "session").string(); }
 
@@ -133,6 +135,7 @@ TEST_F(OperatorStory, FromTheFirstKeyToASignedConclusiveTablet) {
   EXPECT_LE(presses_beyond_turns(kStory), 12);
   const Outcome played = play(std::string(kStory) + kAfterwards);
   ASSERT_EQ(played.status, 0) << played.err;
+  EXPECT_TRUE(fs::exists(session() + "-2/session.sqlite")) << "the next tablet's lies beside it";
   EXPECT_EQ(run_command({"verify", session() + ".results/package"}).status, 0);
   const auto again = run_command({"export", session(), "--to", session() + ".results/package", "--json"});
   EXPECT_EQ(again.json()["done_before"], true) << "the command makes the same";

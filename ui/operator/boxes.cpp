@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "station/session_name.h"
 #include "ui/operator/operator_screen.h"
 #include "ui/shell/sound.h"
 
@@ -207,7 +208,7 @@ void OperatorScreen::draw_next(UiContext& ui) {
     }
   }
   if (confirmed(ui, "next-now", Text::kNextNow, !next_folder_.empty() && may_leave())) {
-    next_session_ = session_.folder().parent_path() / next_folder_;
+    next_session_ = whole_name(session_.folder()).parent_path() / next_folder_;
     ImGui::CloseCurrentPopup();
   }
   end_box(ui, "next-close");

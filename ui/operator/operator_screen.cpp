@@ -275,7 +275,10 @@ void OperatorScreen::draw_model(UiContext& ui, ImVec2 size, bool asks_for_places
     return Eigen::Vector2f((at.x - origin.x - 0.5F * size.x) / (0.5F * size.y),
                            -(at.y - origin.y - 0.5F * size.y) / (0.5F * size.y));
   };
-  if (ImGui::IsItemActive() && (io.MouseDelta.x != 0 || io.MouseDelta.y != 0)) {
+  // In the frame of the press the pointer has come from anywhere: a finger taps where it did not point
+  // before.
+  const bool drags = ImGui::IsItemActive() && !ImGui::IsItemActivated();
+  if (drags && (io.MouseDelta.x != 0 || io.MouseDelta.y != 0)) {
     if (ImGui::IsMouseDown(ImGuiMouseButton_Middle) || io.KeyShift) {
       camera_.pan({io.MouseDelta.x, io.MouseDelta.y}, size.y);
     } else {

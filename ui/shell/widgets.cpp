@@ -131,8 +131,13 @@ bool text_line(UiContext& ui, const char* name, const char* label, std::string& 
 bool short_text(UiContext& ui, const char* name, std::string& value, float width) {
   ImGui::PushID(name);
   ImGui::SetNextItemWidth(width);
-  const bool changed = ImGui::InputText("##text", value.data(), value.capacity() + 1,
-                                        ImGuiInputTextFlags_CallbackResize, grow, &value);
+  const std::string typed = value;
+  bool changed = ImGui::InputText("##text", value.data(), value.capacity() + 1,
+                                  ImGuiInputTextFlags_CallbackResize, grow, &value);
+  if (ImGui::IsItemDeactivated() && ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape), false)) {
+    value = typed;  // escape leaves a line, ImGui would put back what stood there before
+    changed = true;
+  }
   ui.target(name);
   ImGui::PopID();
   return changed;
