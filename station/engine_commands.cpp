@@ -233,7 +233,8 @@ void Engine::Impl::obey_commands(JobContext& job) {
       const std::scoped_lock lock(mutex);
       last_scan_taken_up = poses.empty() || poses.back().status == PoseStatus::kRegistered;
     }
-    emit(OperatorObeyed{what, poses, drives && options.paced && queues});
+    emit(
+        OperatorObeyed{what, poses, drives && options.paced && queues, {taken_out.begin(), taken_out.end()}});
     if (!queues) {
       for (const StationScan& scan : *obeyed) {
         planning.add(scan);

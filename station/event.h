@@ -57,6 +57,7 @@ struct OperatorObeyed {
   std::vector<ScanPose> all;
   bool asks_again =
       false;  ///< a run that waits thinks the next step over, and then says anew what it waits for
+  std::vector<int> taken_out{};  ///< by the operator in this run. Who only lacks in `all` may not be read yet
 };
 struct RedMapChanged {
   RedMap red_map;

@@ -68,6 +68,7 @@ void LiveSession::set_device(std::string uri) {
     if (options_.device != uri) {
       settings_.clear();
       state_.panel.reset();
+      state_.error.reset();  // the other scanner's
     }
     options_.device = std::move(uri);
   }

@@ -46,9 +46,6 @@ void LiveSession::follow(const std::vector<ScanPose>& poses) {
       scan.pose = *pose;
       scan.dropped = scan.set_aside = false;
       scan.note.clear();
-    } else if (scan.pose) {  // it was judged, and is no longer among them
-      scan.pose.reset();
-      scan.dropped = true;
     }
   }
 }
@@ -180,6 +177,11 @@ void LiveSession::hear(const Event& event) {
       }
     } else if (const auto* obeyed = std::get_if<OperatorObeyed>(&event)) {
       follow(obeyed->all);
+      for (const int id : obeyed->taken_out) {
+        LiveScan& scan = scan_of(id);
+        scan.pose.reset();
+        scan.dropped = true;
+      }
       state_.notice = obeyed->what;
       // A key for the step that is being thought over would be one for another than the operator saw.
       if (obeyed->asks_again && state_.phase == LivePhase::kWaiting) {

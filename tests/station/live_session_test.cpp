@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
 #include <future>
 #include <thread>
@@ -198,7 +199,12 @@ TEST(LiveSession, WhatWasStoppedGoesOnWithEverythingThatWasStored) {
   EXPECT_TRUE(state.scans.front().picture);
   EXPECT_EQ(state.record.museum_number, "VAT 1");
   again.session.scan_now();
-  ASSERT_TRUE(again.wait_until([&](const LiveState& s) { return s.scans.size() > stored; }));
+  bool out = false;
+  ASSERT_TRUE(again.wait_until([&](const LiveState& s) {
+    out = out || std::ranges::any_of(s.scans, &LiveScan::dropped);
+    return s.scans.size() > stored;
+  }));
+  EXPECT_FALSE(out) << "a scan that is not read again yet is not one that was taken out";
 }
 
 TEST(LiveSession, AReopenedSessionShowsWhatIsExcusedAsBefore) {
