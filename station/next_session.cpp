@@ -20,7 +20,8 @@ fs::path next_session_name(const fs::path& session) {
     int counted = 0;
     const char* end = stem.data() + stem.size();
     const auto [rest, error] = std::from_chars(stem.data() + dash + 1, end, counted);
-    if (error == std::errc() && rest == end && counted > 0) {
+    // Four digits and more are a museum's number ("BM-12345"): the next one is another tablet's.
+    if (error == std::errc() && rest == end && counted > 0 && counted < 1000) {
       number = counted;
       stem.resize(dash);
     }

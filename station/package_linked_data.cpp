@@ -272,8 +272,11 @@ Status add_manifest(PackageContent& content) {
                               p.wedges.empty() ? std::string() : annotations_file(k)});
   }
   const std::string model = "model/" + content.stem;
-  input.rendering = {{model + ".glb", "The surface", "Model", "model/gltf-binary"},
-                     {"report/report.html", "The report", "Text", "text/html"}};
+  input.rendering = {{"report/report.html", "The report", "Text", "text/html"}};
+  if (std::ranges::find(content.files, model + ".glb", &PackagedFile::path) != content.files.end()) {
+    input.rendering.insert(input.rendering.begin(),  // not where the mesh is larger than that format can hold
+                           {model + ".glb", "The surface", "Model", "model/gltf-binary"});
+  }
   input.see_also = {{model + ".ply", "The surface, with all values by vertex", "Model", "model/ply"},
                     {"provenance.jsonld", "How it came about", "Dataset", "application/ld+json"}};
   if (content.wedges) {

@@ -16,6 +16,8 @@ TEST(NextSession, CountsOnPastWhatIsThere) {
   EXPECT_EQ(next_session_name(folder.path() / "box/"), "box-2");
   EXPECT_EQ(next_session_name(folder.path() / "box-9"), "box-10");
   EXPECT_EQ(next_session_name(folder.path() / "VAT-12-a"), "VAT-12-a-2");
+  EXPECT_EQ(next_session_name(folder.path() / "BM-12345"), "BM-12345-2");
+  EXPECT_EQ(next_session_name(folder.path() / "box-2147483647"), "box-2147483647-2");
   std::filesystem::create_directory(folder.path() / "box-2");
   EXPECT_EQ(next_session_name(folder.path() / "box"), "box-3");
   std::filesystem::create_directory(folder.path() / "box");
