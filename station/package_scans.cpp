@@ -193,11 +193,11 @@ Status add_scans(PackageContent& content) {
     }
     const StoredScan& scan = (*scans)[i];
     if (scan.damaged) {
-      content.lacking.push_back(fmt::format("Scan {} is damaged in the session: its samples are not here.{}",
-                                            scan.id,
-                                            std::ranges::find(*poses, scan.id, &ScanPose::id) == poses->end()
-                                                ? ""
-                                                : " Where it lay is in scans/poses.json."));
+      content.lacking.push_back(fmt::format(
+          "Scan {} is damaged in the session, or may not be read: its samples are not here.{}", scan.id,
+          std::ranges::find(*poses, scan.id, &ScanPose::id) == poses->end()
+              ? ""
+              : " Where it lay is in scans/poses.json."));
     }
     list.push_back(scan_json(content, scan, *poses));
   }

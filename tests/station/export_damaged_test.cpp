@@ -89,7 +89,7 @@ TEST_F(ExportDamaged, AFileThatCannotBeReadIsDamageLikeAnyOther) {
   ASSERT_EQ(done.status, 0) << done.err;
   EXPECT_EQ(done.json()["scans"], 2);
   EXPECT_THAT(done.err, AllOf(HasSubstr("grids/001.grid: "), HasSubstr("export/report.html: ")));
-  EXPECT_THAT(readme(), HasSubstr("Scan 1 is damaged in the session"));
+  EXPECT_THAT(readme(), HasSubstr("Scan 1 is damaged in the session, or may not be read:"));
   EXPECT_TRUE(packed("scans/grids/002.grid") == bytes_of(session_ / "grids/002.grid"));
   EXPECT_THAT(packed("report/report.html"), HasSubstr("</html>"));
   EXPECT_EQ(pack().json()["done_before"], true);

@@ -96,7 +96,7 @@ wait $worker 2>/dev/null || true
 [ -z "$(find "$folder/museum/s.results" -name '.dubsar-tmp-*')" ] || fail "something was left behind"
 # So it is where the collection is the session.
 "$workflows/do-tablet" "$folder/museum/s" . 2>/dev/null || fail "a collection that is a session"
-tail -n 1 "$folder/museum/s.results/log/..log" | grep -q ' export found-done$' || fail "a collection that is a session was done anew"
+tail -n 1 "$folder/museum/s.results/log/s.log" | grep -q ' export found-done$' || fail "a collection that is a session was done anew"
 "$workflows/check-collection" "$folder/museum/s" 2>/dev/null || fail "check-collection of a session"
 "$DUBSAR" -q verify "$folder/museum/s" >/dev/null 2>&1 || fail "the session that is a collection was changed"
 # The mesh that a session keeps is used while it is of its scans as they stand; else one is stitched beside it.
