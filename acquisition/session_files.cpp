@@ -199,7 +199,8 @@ Status write_sums(const fs::path& folder, const Sums& sums) {
 }
 
 bool is_set_aside(const fs::path& path) {
-  return path.filename().string().find(kAsideMark) != std::string::npos;
+  return std::ranges::any_of(
+      path, [](const fs::path& part) { return part.string().find(kAsideMark) != std::string::npos; });
 }
 
 fs::path name_aside(const fs::path& path) {
@@ -210,6 +211,20 @@ fs::path name_aside(const fs::path& path) {
       return name;
     }
   }
+}
+
+Result<fs::path> move_aside(const fs::path& path) {
+  fs::path aside = name_aside(path);
+  std::error_code error;
+  fs::rename(path, aside, error);
+  if (error) {
+    return fail(ErrorKind::kStorage, "cannot set what is damaged aside: " + error.message(), path.string(),
+                "see that the folder may be written to");
+  }
+  if (Status synced = sync_folder(path.parent_path()); !synced) {
+    return std::unexpected(std::move(synced.error()));
+  }
+  return aside;
 }
 
 Result<fs::path> copy_aside(const fs::path& path) {

@@ -59,11 +59,14 @@ using Sums = std::multimap<std::string, FileSum>;
 [[nodiscard]] std::string text_of_sums(const Sums& sums);
 [[nodiscard]] Status write_sums(const std::filesystem::path& folder, const Sums& sums);
 
-/// Damaged originals are kept beside what takes their place, as NAME.damaged-1, -2, …
+/// Damaged originals are kept beside what takes their place, as NAME.damaged-1, -2, …; so is a folder that
+/// one lies in.
 inline constexpr const char* kAsideMark = ".damaged-";
 [[nodiscard]] bool is_set_aside(const std::filesystem::path& path);
 /// The first such name that is free.
 [[nodiscard]] std::filesystem::path name_aside(const std::filesystem::path& path);
+/// Moves a damaged file, or a folder with one, to its name aside, durably, and returns that name.
+[[nodiscard]] Result<std::filesystem::path> move_aside(const std::filesystem::path& path);
 /// Copies a damaged file to its name aside, durably, and returns that name; the file itself stays.
 [[nodiscard]] Result<std::filesystem::path> copy_aside(const std::filesystem::path& path);
 

@@ -48,17 +48,13 @@ std::optional<std::string> good_bytes(const fs::path& file, const std::optional<
   return whole ? std::optional(*bytes) : std::nullopt;
 }
 
-Status move_aside(const fs::path& path) {
+Status make_room(const fs::path& path) {
   std::error_code error;
   if (!fs::exists(path, error)) {
     return {};
   }
-  fs::rename(path, session::name_aside(path), error);
-  if (error) {
-    return fail(ErrorKind::kStorage, "cannot set the damaged file aside: " + error.message(), path.string(),
-                "see that the folder may be written to");
-  }
-  return sync_folder(path.parent_path());
+  const Result<fs::path> aside = session::move_aside(path);
+  return aside ? Status() : std::unexpected(aside.error());
 }
 
 }  // namespace
@@ -86,7 +82,7 @@ Result<RepairReport> SessionStore::repair(const VerifyReport& found, const std::
       return std::unexpected(expected.error());
     }
     if (const std::optional<std::string> bytes = copy ? good_bytes(*copy / name, *expected) : std::nullopt) {
-      if (Status aside = move_aside(path); !aside) {
+      if (Status aside = make_room(path); !aside) {
         return std::unexpected(aside.error());
       }
       if (Status written = write_file_atomically(path, std::string_view(*bytes)); !written) {
@@ -95,7 +91,7 @@ Result<RepairReport> SessionStore::repair(const VerifyReport& found, const std::
       std::erase_if(impl_->damaged_grids, [&](int id) { return session::grid_name(id) == name; });
       out.restored.push_back(name);
     } else if (*expected && !name.starts_with(std::string(session::kGrids) + "/")) {
-      if (Status aside = move_aside(path); !aside) {
+      if (Status aside = make_room(path); !aside) {
         return std::unexpected(aside.error());
       }
       out.derived.push_back(name);

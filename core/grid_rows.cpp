@@ -37,6 +37,11 @@ RangeGrid rows_of(const RangeGrid& grid, int first, int count) {
   for_each_array(grid, out, copy);
   out.spacing_mm = grid.spacing_mm;
   out.view = grid.view;
+  for (std::optional<Eigen::Vector3d>* const at_first_row : {&out.view.laser_mm, &out.view.camera_mm}) {
+    if (*at_first_row) {
+      **at_first_row += first * grid.view.motion_per_row_mm;
+    }
+  }
   out.nominal = grid.nominal;
   out.pin_tip_diameter_mm = grid.pin_tip_diameter_mm;
   out.timestamp_ns = grid.timestamp_ns;

@@ -256,6 +256,9 @@ struct Engine::Impl {
   void keep_half(const std::optional<Placement>& drive, std::shared_ptr<UnfinishedScan> kept);
   /// What an earlier program had of a scan as it ended becomes a scan; before the session's are read.
   void take_up_left_scans();
+  Status store_left_rows(const RangeGrid& rows, const LeftScan& left);
+  /// Whether one of that many scans, those that were stored last, has these rows.
+  [[nodiscard]] bool is_among_newest(const RangeGrid& rows, std::size_t count) const;
   void keep_stored();
   bool is_known(const RangeGrid& grid);
   bool hand_to_store(RawScan scan);  ///< false when nothing is stored any more

@@ -40,29 +40,54 @@ Status Engine::Impl::load_resumed(JobContext& job) {
   return {};
 }
 
+bool Engine::Impl::is_among_newest(const RangeGrid& rows, std::size_t count) const {
+  const auto stored = store->scans();
+  for (std::size_t k = stored ? stored->size() : 0; k > 0 && count > 0; --k, --count) {
+    const Result<RangeGrid> grid = store->load_grid((*stored)[k - 1].id);
+    if (grid && holds(*grid, rows)) {
+      return true;
+    }
+  }
+  return false;
+}
+
+Status Engine::Impl::store_left_rows(const RangeGrid& rows, const LeftScan& left) {
+  // A program may also end between the storing of a scan and the end of its copy here.
+  if (rows.valid_count() == 0 || is_among_newest(rows, left.parts.size())) {
+    return {};
+  }
+  const Result<int> id = store->add_grid(rows, left.remark);
+  if (!id) {
+    return std::unexpected(id.error());
+  }
+  if (left.drive) {
+    note_drive(*id, *left.drive);
+  }
+  emit(ScanStored{*id, rows.source, static_cast<std::int64_t>(rows.valid_count()), left.remark});
+  emit(Notice{
+      fmt::format("a scan in whose middle the program ended is kept: {} rows, as scan {}", rows.rows, *id)});
+  return {};
+}
+
 void Engine::Impl::take_up_left_scans() {
   for (const LeftScan& left : left_scans(store->folder())) {
-    const auto stored = store->scans();
-    if (!stored) {
-      return;
-    }
-    // A program may also end between the storing of a scan and the end of its copy here.
-    const Result<RangeGrid> newest = stored->empty() ? RangeGrid{} : store->load_grid(stored->back().id);
-    if (left.grid.valid_count() > 0 && !(newest && begins_with(*newest, left.grid))) {
-      const Result<int> id = store->add_grid(left.grid, left.remark);
-      if (!id) {
-        emit(Notice{id.error().line()});
+    for (const RangeGrid& rows : left.parts) {
+      if (const Status kept = store_left_rows(rows, left); !kept) {
+        emit(Notice{kept.error().line()});
         return;
       }
-      if (left.drive) {
-        note_drive(*id, *left.drive);
-      }
-      emit(
-          ScanStored{*id, left.grid.source, static_cast<std::int64_t>(left.grid.valid_count()), left.remark});
-      emit(Notice{fmt::format("a scan in whose middle the program ended is kept: {} rows, as scan {}",
-                              left.grid.rows, *id)});
     }
-    forget(left);
+    if (left.unread.empty()) {
+      forget(left);
+      continue;
+    }
+    for (const Error& damage : left.unread) {
+      emit(Notice{"damaged: " + damage.line()});
+    }
+    const Result<std::filesystem::path> aside = set_aside(left);
+    emit(Notice{aside ? "what can be read of that scan is stored; all of its files stay in " +
+                            aside->lexically_relative(store->folder()).generic_string()
+                      : aside.error().line()});
   }
 }
 

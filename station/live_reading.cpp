@@ -115,7 +115,7 @@ void LiveSession::read_folder() {
 void LiveSession::look_for_broken_off() {
   int rows = 0;
   for (const LeftScan& left : left_scans(options_.session)) {
-    rows += left.grid.valid_count() > 0 ? left.grid.rows : 0;
+    rows += left.rows();
   }
   const std::scoped_lock lock(mutex_);
   state_.broken_off_rows = rows;

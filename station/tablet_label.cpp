@@ -37,7 +37,9 @@ Result<std::string> simulated_words(const SessionStore& store) {
   const auto is_simulator = [](const std::string& device) {
     return device == "sim" || device.starts_with("sim-");
   };
-  const auto by_simulator = [&](const LeftScan& left) { return is_simulator(left.grid.device); };
+  const auto by_simulator = [&](const LeftScan& left) {
+    return std::ranges::any_of(left.parts, is_simulator, &RangeGrid::device);
+  };
   const bool simulated = std::ranges::any_of(*scans, is_simulator, &StoredScan::device) ||
                          std::ranges::any_of(left_scans(store.folder()), by_simulator);
   return simulated ? kMadeUp : "";

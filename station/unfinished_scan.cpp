@@ -7,10 +7,12 @@
 #include <algorithm>
 #include <utility>
 
+#include "acquisition/session_files.h"
 #include "core/grid_rows.h"
 #include "core/log.h"
 #include "core/utf8.h"
 #include "formats/atomic_file.h"
+#include "formats/files_below.h"
 #include "formats/grid_file.h"
 #include "station/drives.h"
 
@@ -28,19 +30,24 @@ fs::path home_of(const fs::path& session) {
   return session / "grids" / "unfinished";
 }
 
-fs::path rows_file(const fs::path& folder, int number) {
-  return folder / fmt::format("{:04}.grid", number);
+std::string name_of_rows(int number) {
+  return fmt::format("{:04}.grid", number);
+}
+std::string name_of_scan(int number) {
+  return std::to_string(number);
 }
 
-/// Their numbers, ascending; whatever else lies there is not ours.
-std::vector<int> numbered_folders(const fs::path& home) {
+/// The numbers of what lies there under such names, ascending; whatever else does is not ours.
+std::vector<int> numbers_in(const fs::path& home, std::string (*name_of)(int)) {
   std::vector<int> out;
   std::error_code ignored;
   for (fs::directory_iterator it(home, ignored), end; !ignored && it != end; it.increment(ignored)) {
     const std::string name = it->path().filename().string();
-    if (!name.empty() && name.size() < 9 &&
-        std::ranges::all_of(name, [](char c) { return c >= '0' && c <= '9'; })) {
-      out.push_back(std::stoi(name));
+    const std::string digits = name.substr(0, name.find('.'));
+    if (!digits.empty() && digits.size() < 9 &&
+        std::ranges::all_of(digits, [](char c) { return c >= '0' && c <= '9'; }) &&
+        name_of(std::stoi(digits)) == name) {
+      out.push_back(std::stoi(digits));
     }
   }
   std::ranges::sort(out);
@@ -48,7 +55,7 @@ std::vector<int> numbered_folders(const fs::path& home) {
 }
 
 fs::path next_folder(const fs::path& session) {
-  const std::vector<int> there = numbered_folders(home_of(session));
+  const std::vector<int> there = numbers_in(home_of(session), name_of_scan);
   return home_of(session) / std::to_string(there.empty() ? 1 : there.back() + 1);
 }
 
@@ -125,7 +132,7 @@ void UnfinishedScan::write_rows(const std::stop_token& stop) {
     }
     const RangeGrid rows = std::move(*to_write_);
     lock.unlock();
-    written = write_grid_file(rows_file(folder_, number++), rows);
+    written = write_grid_file(folder_ / name_of_rows(number++), rows);
     lock.lock();
     to_write_.reset();
   }
@@ -133,41 +140,103 @@ void UnfinishedScan::write_rows(const std::stop_token& stop) {
   log_warning("the scan under way cannot be kept before its end: " + written.error().line());
 }
 
-std::vector<LeftScan> left_scans(const fs::path& session) {
-  std::vector<LeftScan> out;
-  for (const int folder_number : numbered_folders(home_of(session))) {
-    LeftScan left{.grid = {},
-                  .drive = std::nullopt,
-                  .remark = {},
-                  .folder = home_of(session) / std::to_string(folder_number)};
-    for (int number = 0;; ++number) {
-      Result<RangeGrid> rows = read_grid_file(rows_file(left.folder, number));
-      if (!rows || !append_rows(left.grid, *rows)) {
-        break;
-      }
+namespace {
+
+/// One behind what is missing or damaged, or one that is not as wide, begins a part of its own.
+void read_rows(LeftScan& left) {
+  int next = 0;
+  bool goes_on = false;
+  for (const int number : numbers_in(left.folder, name_of_rows)) {
+    if (number > next) {
+      left.unread.push_back({ErrorKind::kBadInput, "missing", (left.folder / name_of_rows(next)).string(),
+                             "bring it back from a copy"});
+      goes_on = false;
     }
-    if (const Result<std::string> text = read_whole_file(left.folder / kDrive, kSmallFileBytes)) {
-      if (auto drives = parse_drives(*text, (left.folder / kDrive).string()); drives && drives->contains(0)) {
-        left.drive = drives->at(0);
-      }
+    next = number + 1;
+    Result<RangeGrid> rows = read_grid_file(left.folder / name_of_rows(number));
+    if (!rows) {
+      left.unread.push_back(std::move(rows.error()));
+      goes_on = false;
+      continue;
     }
-    if (const Result<std::string> text = read_whole_file(left.folder / kRemark, kSmallFileBytes)) {
-      left.remark = one_line(*text);
+    if (!goes_on || !append_rows(left.parts.back(), *rows)) {
+      left.parts.push_back(std::move(*rows));
     }
-    out.push_back(std::move(left));
+    goes_on = true;
+  }
+}
+
+/// What is said of it beside the rows; nothing where nothing was.
+std::optional<std::string> text_of(LeftScan& left, const char* name) {
+  const fs::path file = left.folder / name;
+  std::error_code unknown;
+  if (!fs::exists(file, unknown) && !unknown) {
+    return std::nullopt;
+  }
+  Result<std::string> text = read_whole_file(file, kSmallFileBytes);
+  if (!text) {
+    left.unread.push_back(std::move(text.error()));
+    return std::nullopt;
+  }
+  return std::move(*text);
+}
+
+}  // namespace
+
+int LeftScan::rows() const {
+  int out = 0;
+  for (const RangeGrid& part : parts) {
+    out += part.valid_count() > 0 ? part.rows : 0;
   }
   return out;
 }
 
-bool begins_with(const RangeGrid& grid, const RangeGrid& rows) {
-  return grid.cols == rows.cols && grid.rows >= rows.rows &&
-         std::equal(rows.valid.begin(), rows.valid.end(), grid.valid.begin()) &&
-         std::equal(rows.z.begin(), rows.z.end(), grid.z.begin()) &&
-         std::equal(rows.x.begin(), rows.x.end(), grid.x.begin());
+std::vector<LeftScan> left_scans(const fs::path& session) {
+  std::vector<LeftScan> out;
+  for (const int number : numbers_in(home_of(session), name_of_scan)) {
+    LeftScan& left = out.emplace_back();
+    left.folder = home_of(session) / name_of_scan(number);
+    if (const Status readable = check_folder_can_be_read(left.folder); !readable) {
+      left.unread.push_back(readable.error());
+    }
+    read_rows(left);
+    if (const std::optional<std::string> text = text_of(left, kDrive)) {
+      auto drives = parse_drives(*text, (left.folder / kDrive).string());
+      if (!drives) {
+        left.unread.push_back(std::move(drives.error()));
+      } else if (drives->contains(0)) {
+        left.drive = drives->at(0);
+      }
+    }
+    if (const std::optional<std::string> text = text_of(left, kRemark)) {
+      left.remark = one_line(*text);
+    }
+    for (Error& error : left.unread) {
+      error.where = fs::path(error.where).lexically_relative(session).generic_string();
+    }
+  }
+  return out;
+}
+
+bool holds(const RangeGrid& grid, const RangeGrid& rows) {
+  for (int first = 0; grid.cols == rows.cols && first + rows.rows <= grid.rows; ++first) {
+    const std::ptrdiff_t begin = std::ptrdiff_t{first} * grid.cols;
+    const auto same = [begin](const auto& some, const auto& all) {
+      return std::equal(some.begin(), some.end(), all.begin() + begin);
+    };
+    if (same(rows.valid, grid.valid) && same(rows.z, grid.z) && same(rows.x, grid.x)) {
+      return true;
+    }
+  }
+  return false;
 }
 
 void forget(const LeftScan& scan) {
   take_away(scan.folder);
+}
+
+Result<fs::path> set_aside(const LeftScan& scan) {
+  return session::move_aside(scan.folder);
 }
 
 }  // namespace dubsar

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "core/range_grid.h"
+#include "core/result.h"
 #include "core/rig.h"
 
 namespace dubsar {
@@ -59,17 +60,25 @@ class UnfinishedScan {
 
 /// A scan whose program ended in the middle of it.
 struct LeftScan {
-  RangeGrid grid;  ///< the rows that are there in a row and whole
+  /// The rows that can be read, in order. Within a part none is missing; how many are between two, nobody
+  /// knows.
+  std::vector<RangeGrid> parts;
   std::optional<Placement> drive;
   std::string remark;  ///< of the device on it; empty where there was none
   std::filesystem::path folder;
+  std::vector<Error> unread;  ///< an error for each of its files that is missing or cannot be read
+
+  [[nodiscard]] int rows() const;  ///< of the parts that have a sample
 };
 
 /// By age. For a session that this program alone writes to.
 [[nodiscard]] std::vector<LeftScan> left_scans(const std::filesystem::path& session);
-/// Whether the one has the other's rows, and perhaps more below them.
-[[nodiscard]] bool begins_with(const RangeGrid& grid, const RangeGrid& rows);
-/// Once its rows are stored as a scan.
+/// Whether the one has the other's rows, and perhaps more above or below them.
+[[nodiscard]] bool holds(const RangeGrid& grid, const RangeGrid& rows);
+/// Once all its rows are stored as a scan.
 void forget(const LeftScan& scan);
+/// Once those that can be read are: whatever else its files hold stays, under a name at which nobody looks
+/// for a scan to go on with. Returns that folder. Errors: kStorage.
+[[nodiscard]] Result<std::filesystem::path> set_aside(const LeftScan& scan);
 
 }  // namespace dubsar

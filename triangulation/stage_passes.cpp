@@ -184,11 +184,6 @@ RangeGrid grid_of_pass(const RangeGrid& grid, const StagePass& pass) {
     }
     append_rows(out, rows_of(grid, pass[begin], static_cast<int>(end - begin)));
   }
-  for (std::optional<Eigen::Vector3d>* const at_row_0 : {&out.view.laser_mm, &out.view.camera_mm}) {
-    if (*at_row_0 && !pass.empty()) {
-      **at_row_0 += pass.front() * out.view.motion_per_row_mm;
-    }
-  }
   return out;
 }
 

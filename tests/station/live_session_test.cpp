@@ -257,7 +257,7 @@ TEST(LiveSession, AScanThatWasBrokenOffIsToldUntilARunHasStoredIt) {
     killed.remark("the lamp is low");
     killed.follow(rows, 0);
     for (int k = 0; k < 500 && (left_scans(folder.path() / "s").empty() ||
-                                left_scans(folder.path() / "s").front().grid.rows < 30);
+                                left_scans(folder.path() / "s").front().rows() < 30);
          ++k) {
       std::this_thread::sleep_for(std::chrono::milliseconds(20));
     }

@@ -9,6 +9,7 @@
 #include <fstream>
 
 #include "core/grid_rows.h"
+#include "formats/grid_file.h"
 #include "tests/support/temporary_folder.h"
 
 namespace dubsar {
@@ -17,6 +18,7 @@ namespace {
 using namespace std::chrono_literals;
 using ::testing::IsEmpty;
 using ::testing::SizeIs;
+using ::testing::StartsWith;
 
 constexpr int kCols = 7;
 
@@ -74,19 +76,22 @@ TEST_F(Unfinished, RowsOfAScanThatWasBrokenOffAreThereAgain) {
   const std::vector<LeftScan> left = left_scans(session_);
   ASSERT_THAT(left, SizeIs(2));
   const RangeGrid whole = grown_to(40);
-  EXPECT_EQ(left[0].grid.rows, 40);
-  EXPECT_TRUE(begins_with(whole, left[0].grid));
-  EXPECT_EQ(left[0].grid.valid, rows_of(whole, 0, left[0].grid.rows).valid);
-  EXPECT_EQ(left[0].grid.rgb, rows_of(whole, 0, left[0].grid.rows).rgb);
-  EXPECT_EQ(left[0].grid.device, "a scanner");
-  EXPECT_EQ(left[0].grid.timestamp_ns, 77);
-  EXPECT_EQ(left[0].grid.nominal.value().placement, 4);
+  ASSERT_THAT(left[0].parts, SizeIs(1));
+  const RangeGrid& grid = left[0].parts[0];
+  EXPECT_EQ(grid.rows, 40);
+  EXPECT_TRUE(holds(whole, grid));
+  EXPECT_EQ(grid.valid, whole.valid);
+  EXPECT_EQ(grid.rgb, whole.rgb);
+  EXPECT_EQ(grid.device, "a scanner");
+  EXPECT_EQ(grid.timestamp_ns, 77);
+  EXPECT_EQ(grid.nominal.value().placement, 4);
+  EXPECT_THAT(left[0].unread, IsEmpty());
   EXPECT_EQ(left[0].drive.value().turntable_rad, 0.5);
   EXPECT_FALSE(left[1].drive);
   EXPECT_EQ(left[1].remark, "");
-  EXPECT_EQ(left[1].grid.rows, 9);
-  EXPECT_TRUE(begins_with(whole, left[1].grid));
-  EXPECT_FALSE(begins_with(left[1].grid, left[0].grid));
+  EXPECT_EQ(left[1].rows(), 9);
+  EXPECT_TRUE(holds(whole, left[1].parts.at(0)));
+  EXPECT_FALSE(holds(left[1].parts.at(0), grid));
   forget(left[0]);
   EXPECT_THAT(left_scans(session_), SizeIs(1));
   forget(left[1]);
@@ -105,18 +110,38 @@ TEST_F(Unfinished, WhatTheDeviceRemarkedIsThereAgain) {
   }
   const std::vector<LeftScan> left = left_scans(session_);
   ASSERT_THAT(left, SizeIs(1));
-  EXPECT_EQ(left[0].grid.rows, 5);
+  EXPECT_EQ(left[0].rows(), 5);
   EXPECT_EQ(left[0].remark, "the lamp is low; the lid was open");
 }
 
-TEST_F(Unfinished, WhatIsDamagedEndsTheRowsThere) {
-  break_off_at(40);
+TEST_F(Unfinished, RowsAroundWhatIsDamagedOrMissingAreParts) {
   const std::filesystem::path first = session_ / "grids" / "unfinished" / "1";
+  std::filesystem::create_directories(first);
+  const RangeGrid whole = grown_to(50);
+  for (const int file : {0, 1, 2, 3, 5}) {
+    ASSERT_TRUE(
+        write_grid_file(first / ("000" + std::to_string(file) + ".grid"), rows_of(whole, 8 * file, 8)));
+  }
   std::filesystem::resize_file(first / "0001.grid", 20);
-  EXPECT_EQ(left_scans(session_).at(0).grid.rows, 20);
-  std::ofstream(session_ / "grids" / "unfinished" / "notes.txt") << "not a scan";
   std::ofstream(first / "drive.json") << "{";
-  EXPECT_THAT(left_scans(session_), SizeIs(1));
+  std::ofstream(first / "7.grid") << "not ours";
+  std::ofstream(session_ / "grids" / "unfinished" / "notes.txt") << "not a scan";
+  const std::vector<LeftScan> left = left_scans(session_);
+  ASSERT_THAT(left, SizeIs(1));
+  ASSERT_THAT(left[0].parts, SizeIs(3));
+  EXPECT_EQ(left[0].rows(), 32);
+  EXPECT_EQ(left[0].parts[1].x, rows_of(whole, 16, 16).x);
+  EXPECT_EQ(left[0].parts[2].x, rows_of(whole, 40, 8).x);
+  EXPECT_TRUE(holds(whole, left[0].parts[1]));
+  ASSERT_THAT(left[0].unread, SizeIs(3));
+  EXPECT_EQ(left[0].unread[0].where, "grids/unfinished/1/0001.grid");
+  EXPECT_EQ(left[0].unread[1].line(), "grids/unfinished/1/0004.grid: missing; bring it back from a copy");
+  EXPECT_THAT(left[0].unread[2].where, StartsWith("grids/unfinished/1/drive.json"));
+  const auto aside = set_aside(left[0]);
+  ASSERT_TRUE(aside);
+  EXPECT_EQ(*aside, session_ / "grids" / "unfinished" / "1.damaged-1");
+  EXPECT_EQ(files(), 6U);
+  EXPECT_THAT(left_scans(session_), IsEmpty());
 }
 
 TEST_F(Unfinished, AScanThatEndedInGoodOrderLeavesNothing) {
@@ -159,6 +184,20 @@ TEST(GridRows, AreCutAndPutTogether) {
   other.allocate(1, kCols + 1);
   EXPECT_FALSE(append_rows(built, other));
   EXPECT_EQ(built.rows, 11);
+}
+
+TEST(GridRows, AreSeenFromWhereTheScannerStoodForTheirFirst) {
+  RangeGrid whole = grown_to(11);
+  whole.view.camera_mm = Eigen::Vector3d(0, 1, 100);
+  whole.view.motion_per_row_mm = Eigen::Vector3d(0, 0.5, 0);
+  const RangeGrid below = rows_of(whole, 4, 7);
+  EXPECT_EQ(*below.view.camera_mm, Eigen::Vector3d(0, 3, 100));
+  EXPECT_FALSE(below.view.laser_mm);
+  const Eigen::Vector3d point(1, 2, 3);
+  EXPECT_EQ(below.view.to_camera(point, 2), whole.view.to_camera(point, 6));
+  RangeGrid built = rows_of(whole, 0, 4);
+  ASSERT_TRUE(append_rows(built, below));
+  EXPECT_EQ(*built.view.camera_mm, *whole.view.camera_mm);
 }
 
 }  // namespace

@@ -260,6 +260,11 @@ TEST(EngineWords, SentencesOfUnsureScansAreGerman) {
       "er widerspricht der Stellung des Tisches; nachsehen, ob sich die Tafel zwischen den Scans bewegt "
       "hat");
   EXPECT_EQ(translated("scan 4 is taken out", Language::kGerman), "Scan 4 ist entfernt");
+  EXPECT_EQ(translated("what can be read of that scan is stored; all of its files stay in "
+                       "grids/unfinished/1.damaged-1",
+                       Language::kGerman),
+            "was von diesem Scan lesbar ist, ist gespeichert; alle seine Dateien bleiben in "
+            "grids/unfinished/1.damaged-1");
 }
 
 }  // namespace

@@ -77,7 +77,7 @@ constexpr EnginePhrase kStored[] = {
     {"cannot put the rebuilt database in its place: ",
      "die neu gemachte Datenbank lässt sich nicht an ihren Platz setzen: "},
     {"see that the folder may be written to", "nachsehen, ob in den Ordner geschrieben werden darf"},
-    {"cannot set the damaged file aside: ", "die beschädigte Datei lässt sich nicht beiseitelegen: "},
+    {"cannot set what is damaged aside: ", "was beschädigt ist, lässt sich nicht beiseitelegen: "},
     {"the list of checksums is damaged", "die Liste der Prüfsummen ist beschädigt"},
     {"the log is damaged: ", "das Protokoll ist beschädigt: "},
     {" of its changes cannot be read (", " seiner Änderungen sind nicht lesbar ("},

@@ -229,6 +229,8 @@ constexpr EnginePhrase kPhrases[] = {
     {"a scan in whose middle the program ended is kept: ",
      "ein Scan, in dessen Mitte das Programm endete, ist aufgehoben: "},
     {" rows, as scan ", " Zeilen, als Scan "},
+    {"what can be read of that scan is stored; all of its files stay in ",
+     "was von diesem Scan lesbar ist, ist gespeichert; alle seine Dateien bleiben in "},
     {"there is no hint for scan ", "es gibt keinen Hinweis für Scan "},
     {" is not locked", " ist nicht festgehalten"},
     // why a scan is out
