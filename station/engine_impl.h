@@ -124,7 +124,7 @@ struct Engine::Impl {
   std::optional<RangeSource> source;
   std::optional<Rig> rig;
   std::vector<StationScan> resumed;  ///< of an existing session
-  /// A replayed file that is stored already is not stored again: name and valid samples.
+  /// A replayed file whose scan is in the session is not stored again: name and valid samples.
   std::map<std::string, std::set<std::int64_t>> known_files;
   int placement_offset = 0;                  ///< a resumed session starts with a lifted tablet
   std::map<int, Placement> drives_of_scans;  ///< of the storing thread once the pipeline runs

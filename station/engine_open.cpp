@@ -13,7 +13,8 @@ Status Engine::Impl::load_resumed(JobContext& job) {
     return std::unexpected(stored.error());
   }
   for (const StoredScan& scan : *stored) {
-    if (!scan.source.empty() && source->capabilities().finite) {
+    // One that stands and is damaged is taken again from its file.
+    if (!scan.source.empty() && source->capabilities().finite && (scan.dropped || !scan.damaged)) {
       known_files[scan.source].insert(scan.samples);
     }
     if (scan.dropped || scan.damaged) {

@@ -156,5 +156,31 @@ TEST(EngineStoring, PartsThatWereStoredBeforeAKillAreNotStoredAgain) {
   EXPECT_EQ(SessionStore::open(session).value().scans()->size(), 3U);
 }
 
+TEST(EngineStoring, AScanThatIsLostIsTakenFromItsFileAgain) {
+  const test::TemporaryFolder folder;
+  const auto scans = test::write_bumpy_scans(folder.path() / "scans", 3);
+  const auto session = folder.path() / "session";
+  {
+    SessionStore store = SessionStore::open_or_create(session).value();
+    for (int k = 0; k < 3; ++k) {
+      RangeGrid grid = test::bumpy_scan(k);
+      grid.source = test::scan_name(k);
+      ASSERT_TRUE(store.add_grid(grid));
+    }
+    ASSERT_TRUE(store.drop_scan(2, "a hand in it"));
+  }
+  test::flip_byte(session / "grids" / "001.grid", 1000);
+  test::flip_byte(session / "grids" / "002.grid", 1000);
+  std::optional<Result<EngineResult>> result;
+  EXPECT_THAT(run(
+                  scans, session, [](const ScanStored&) {}, result),
+              Contains("stored 3"));
+  ASSERT_TRUE(result->has_value()) << result->error().line();
+  const SessionStore store = SessionStore::open(session).value();
+  ASSERT_EQ(store.scans()->size(), 4U) << "what the operator took out stays out";
+  EXPECT_EQ(store.scans()->back().source, test::scan_name(1));
+  EXPECT_EQ(store.load_grid(3).value().z, test::bumpy_scan(1).z);
+}
+
 }  // namespace
 }  // namespace dubsar
