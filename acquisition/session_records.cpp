@@ -2,6 +2,9 @@
 // Copyright The Dubsar developers
 #include <zstd.h>
 
+#include <algorithm>
+
+#include "acquisition/lost_places.h"
 #include "acquisition/pose_json.h"
 #include "acquisition/session_impl.h"
 #include "acquisition/session_query.h"
@@ -50,36 +53,10 @@ Status put_sum(SqlDatabase& db, const fs::path& name, const FileSum& sum) {
   return put->bind(1, name.generic_string()).bind(2, sum.bytes).bind(3, sum.hash).run();
 }
 
-}  // namespace
-
-Status SessionStore::save_poses(const std::vector<ScanPose>& poses) {
-  if (Status writable = impl_->writable(); !writable) {
-    return writable;
-  }
-  const std::scoped_lock hold(impl_->mutex);
-  return in_transaction(*impl_->db, [&]() -> Status {
-    if (Status cleared = impl_->db->execute("DELETE FROM poses"); !cleared) {
-      return cleared;
-    }
-    Result<SqlStatement> put = impl_->db->prepare(session::insert_sql(session::table_named("poses")).c_str());
-    if (!put) {
-      return std::unexpected(put.error());
-    }
-    for (const ScanPose& pose : poses) {
-      put->bind(1, pose.id).bind(2, session::json_from_pose(pose));
-      if (Status done = put->run(); !done) {
-        return done;
-      }
-    }
-    return {};
-  });
-}
-
-Result<std::vector<ScanPose>> SessionStore::poses() const {
-  const std::scoped_lock hold(impl_->mutex);
+Result<std::vector<ScanPose>> stored_poses(SqlDatabase& db) {
   std::vector<ScanPose> out;
   const Status read = for_each_row(
-      *impl_->db, "SELECT id, json FROM poses WHERE sum IS dubsar_sum(id,json) ORDER BY id",
+      db, "SELECT id, json FROM poses WHERE sum IS dubsar_sum(id,json) ORDER BY id",
       [&](const SqlStatement& row) -> Status {
         Result<ScanPose> pose = session::pose_from_json(static_cast<int>(row.integer(0)), row.text(1));
         if (!pose) {
@@ -92,6 +69,62 @@ Result<std::vector<ScanPose>> SessionStore::poses() const {
     return std::unexpected(read.error());
   }
   return out;
+}
+
+/// And of scans that stand and are damaged, as they are stored.
+Result<std::vector<ScanPose>> with_those_of_lost(SqlDatabase& db, const std::vector<ScanPose>& poses,
+                                                 const std::vector<int>& damaged) {
+  if (damaged.empty()) {
+    return poses;
+  }
+  std::vector<int> lost;
+  const Status read = for_each_row(db, "SELECT id FROM scans WHERE dropped = 0 ORDER BY id",
+                                   [&](const SqlStatement& row) -> Status {
+                                     const int id = static_cast<int>(row.integer(0));
+                                     if (std::ranges::find(damaged, id) != damaged.end()) {
+                                       lost.push_back(id);
+                                     }
+                                     return {};
+                                   });
+  if (!read) {
+    return std::unexpected(read.error());
+  }
+  const Result<std::vector<ScanPose>> before = stored_poses(db);
+  return before ? session::with_lost_places(poses, *before, lost) : before;
+}
+
+}  // namespace
+
+Status SessionStore::save_poses(const std::vector<ScanPose>& poses) {
+  if (Status writable = impl_->writable(); !writable) {
+    return writable;
+  }
+  const std::scoped_lock hold(impl_->mutex);
+  return in_transaction(*impl_->db, [&]() -> Status {
+    const Result<std::vector<ScanPose>> all = with_those_of_lost(*impl_->db, poses, impl_->damaged_grids);
+    if (!all) {
+      return std::unexpected(all.error());
+    }
+    if (Status cleared = impl_->db->execute("DELETE FROM poses"); !cleared) {
+      return cleared;
+    }
+    Result<SqlStatement> put = impl_->db->prepare(session::insert_sql(session::table_named("poses")).c_str());
+    if (!put) {
+      return std::unexpected(put.error());
+    }
+    for (const ScanPose& pose : *all) {
+      put->bind(1, pose.id).bind(2, session::json_from_pose(pose));
+      if (Status done = put->run(); !done) {
+        return done;
+      }
+    }
+    return {};
+  });
+}
+
+Result<std::vector<ScanPose>> SessionStore::poses() const {
+  const std::scoped_lock hold(impl_->mutex);
+  return stored_poses(*impl_->db);
 }
 
 Status SessionStore::save_flags(int id, const SampleFlags& flags) {

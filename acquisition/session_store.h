@@ -117,7 +117,8 @@ class SessionStore {
   /// Drops the newest scan that stands and returns its id; nothing when there is none.
   Result<std::optional<int>> undo_last_scan();
 
-  /// Replaces all poses at once.
+  /// Replaces all poses at once. Scans that stand and are damaged stay where they lay beside the others;
+  /// where none of those is registered any more, their place is lost, which their pose then says.
   Status save_poses(const std::vector<ScanPose>& poses);
   [[nodiscard]] Result<std::vector<ScanPose>> poses() const;  ///< by id
 
