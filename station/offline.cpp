@@ -223,15 +223,17 @@ Result<std::vector<ScanPose>> poses_from_file(const ScanSet& set, const std::fil
   return poses;
 }
 
+bool all_judged(const ScanSet& set) {
+  return std::ranges::all_of(set.scans,
+                             [&](const StationScan& scan) { return pose_of(set.poses, scan.id) != nullptr; });
+}
+
 Result<std::vector<ScanPose>> poses_for(const ScanSet& set, const std::filesystem::path& poses_file,
                                         const std::string& unit, JobContext& job) {
   if (!poses_file.empty()) {
     return poses_from_file(set, poses_file, unit);
   }
-  // A session whose last run was stopped has scans that were never judged.
-  const bool all_judged = std::ranges::all_of(
-      set.scans, [&](const StationScan& scan) { return pose_of(set.poses, scan.id) != nullptr; });
-  return all_judged ? set.poses : register_scans(set, {}, job);
+  return all_judged(set) ? set.poses : register_scans(set, {}, job);
 }
 
 std::vector<PlacedScan> placed_scans(const ScanSet& set, const std::vector<ScanPose>& poses) {

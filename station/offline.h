@@ -45,8 +45,12 @@ struct RegisterOptions {
                                                             const std::filesystem::path& poses_file,
                                                             const std::string& unit);
 
+/// Whether the session has a pose of each scan. One whose last run was stopped has scans that were never
+/// judged.
+[[nodiscard]] bool all_judged(const ScanSet& set);
+
 /// The poses for `plan` and `stitch`: those of the file when one is named (matched by the scans' file names,
-/// else by id), those of the session when it has any, else a registration.
+/// else by id), those of the session when all_judged(), else a registration.
 [[nodiscard]] Result<std::vector<ScanPose>> poses_for(const ScanSet& set,
                                                       const std::filesystem::path& poses_file,
                                                       const std::string& unit, JobContext& job);

@@ -50,17 +50,21 @@ std::string joined(const std::vector<std::string>& parts) {
   return text;
 }
 
-/// Compares with what is stored, and stores what is new. A red map that was signed is never replaced.
-Result<Comparison> compare_and_keep(SessionStore& store, const Results& results, bool may_write) {
+/// Compares with what is stored, and stores what is new, the poses that the verdict rests on with it. A red
+/// map that was signed is never replaced.
+Result<Comparison> compare_and_keep(SessionStore& store, const Results& results, bool poses_are_new,
+                                    bool may_write) {
   const auto differs = differs_from_stored(store, results.red_map);
   Comparison out;
   if (differs && *differs) {
     out.compared = true;
     out.differs = **differs;
-    if (out.differs.empty()) {
+    if (out.differs.empty() && !poses_are_new) {
       return out;
     }
-    log_warning("the stored red map is not what its scans and poses give: " + joined(out.differs));
+    if (!out.differs.empty()) {
+      log_warning("the stored red map is not what its scans and poses give: " + joined(out.differs));
+    }
     if (results.checklist.sign_off && results.checklist.sign_off->holds()) {
       out.kept = true;
       log_warning("it was signed and is kept; `dubsar register` and `dubsar scan` make new ones");
@@ -74,6 +78,9 @@ Result<Comparison> compare_and_keep(SessionStore& store, const Results& results,
                 ": it cannot be written to, so that it keeps the verdict that it has");
     out.kept = true;
     return out;
+  }
+  if (const Status saved = poses_are_new ? store.save_poses(results.poses) : Status(); !saved) {
+    return std::unexpected(saved.error());
   }
   if (const Status kept = keep_verdict(store, results.red_map, results.checklist); !kept) {
     return std::unexpected(kept.error());
@@ -180,7 +187,7 @@ Result<int> plan(const PlanArguments& arguments, CommandContext& context) {
   Comparison comparison;
   // Poses or pins of a file judge alone: the session keeps its own verdict.
   if (set->is_session() && arguments.set.poses.empty() && arguments.set.pins.empty()) {
-    Result<Comparison> compared = compare_and_keep(*set->store, results, may_write);
+    Result<Comparison> compared = compare_and_keep(*set->store, results, !all_judged(*set), may_write);
     if (!compared) {
       return std::unexpected(compared.error());
     }

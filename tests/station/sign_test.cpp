@@ -141,6 +141,22 @@ TEST_F(HalfScanned, AStaleRedMapIsNamedAndMadeAnew) {
   EXPECT_EQ(sign({"--name", "A", "--incomplete", "why"}).status, 0);
 }
 
+TEST_F(HalfScanned, PlanKeepsThePosesOfScansThatWereNeverJudged) {
+  {
+    SessionStore store = SessionStore::open(session_).value();
+    std::vector<ScanPose> poses = store.poses().value();
+    poses.pop_back();  // as a run that was stopped leaves them
+    ASSERT_TRUE(store.save_poses(poses));
+  }
+  EXPECT_EQ(sign({"--name", "A", "--incomplete", "why"}).status, 1);
+  const Outcome plan = run_command({"plan", session_, "--json"});
+  EXPECT_EQ(plan.json()["checklist"]["scans_registered"], 3) << plan.err;
+  EXPECT_EQ(SessionStore::open(session_, SessionStore::Access::kReadOnly).value().poses()->size(), 3U);
+  EXPECT_EQ(run_command({"plan", session_, "--json"}).json()["stored"]["same"], true);
+  const Outcome made = sign({"--name", "A", "--incomplete", "why"});
+  EXPECT_EQ(made.status, 0) << made.err;
+}
+
 TEST_F(HalfScanned, EqualCountsAreNoDifference) {
   {
     Result<SessionStore> store = SessionStore::open(session_);
