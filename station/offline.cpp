@@ -71,7 +71,12 @@ Status check_only(const ScanSet& set, const std::vector<int>& only) {
   for (const int id : only) {
     const std::string name = "scan " + std::to_string(id);
     if (std::ranges::find(set.scans, id, &StationScan::id) == set.scans.end()) {
-      return fail(ErrorKind::kUsage, "there is no " + name, "--only", "see the list of scans");
+      if (const Status stands = set.store ? check_scan_stands(*set.store, id) : Status(); !stands) {
+        return stands;
+      }
+      return set.store ? bad_input(set.store->folder().string(), name + " cannot be read",
+                                   "look at the disk, or bring it back from a copy")
+                       : fail(ErrorKind::kUsage, "there is no " + name, "--only", "see the list of scans");
     }
     if (set.word.locked.contains(id)) {
       return fail(ErrorKind::kUsage, name + " is locked", "--only", "unlock it first");

@@ -25,7 +25,8 @@ struct RegisterOptions {
 };
 
 /// Registers the scans of the set, in order, with a final relaxation, as the operator's hints and locks of
-/// the set have it. kUsage when `only` names a scan that is not there or is locked; kCancelled.
+/// the set have it. kUsage when `only` names a scan that is not there or is locked, kBadInput for one that
+/// cannot be read; kCancelled.
 [[nodiscard]] Result<std::vector<ScanPose>> register_scans(const ScanSet& set, const RegisterOptions& options,
                                                            JobContext& job);
 

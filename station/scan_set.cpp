@@ -93,12 +93,17 @@ Status load_session(const fs::path& path, const ScanSetOptions& options, const S
     if (job.cancelled()) {
       return fail(ErrorKind::kCancelled, "stopped");
     }
-    if (scan.dropped || scan.damaged) {
+    if (scan.dropped) {
+      continue;
+    }
+    if (scan.damaged) {  // what is wrong with it was told above
+      set.left_out.push_back(check_scan_stands(*store, scan.id).error());
       continue;
     }
     Result<RangeGrid> grid = store->load_grid(scan.id);
     if (!grid) {
       tell(grid.error().line(), options);
+      set.left_out.push_back(grid.error());
       continue;
     }
     StationScan prepared = prepare_scan(scan.id, std::move(*grid), set.pins);
@@ -157,11 +162,10 @@ Status load_folder(const fs::path& path, const ScanSetOptions& options, const Sc
       return kept;
     }
   }
-  if (set.scans.empty() && !set.left_out.empty()) {
-    return std::unexpected(set.left_out.front());
-  }
   for (const Error& error : set.left_out) {
-    tell(error.line(), options);
+    if (!set.scans.empty()) {
+      tell(error.line(), options);
+    }
   }
   job.progress("reading scans", 1.0);
   return {};
@@ -206,7 +210,9 @@ Result<ScanSet> visit_scan_set(const fs::path& path, const ScanSetOptions& optio
     return std::unexpected(loaded.error());
   }
   if (set.scans.empty() && !(options.may_be_empty && set.is_session())) {
-    return bad_input(path.string(), "no scan in it", "give a session or a folder of range grids");
+    return set.left_out.empty()
+               ? bad_input(path.string(), "no scan in it", "give a session or a folder of range grids")
+               : std::unexpected(set.left_out.front());
   }
   return set;
 }

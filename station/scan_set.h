@@ -25,7 +25,7 @@ struct ScanSet {
   std::optional<PinSet> pins;
   std::optional<Rig> rig;
   OperatorWord word;                  ///< hints and locks of a session
-  std::vector<Error> left_out;        ///< bad files of a folder, one error each
+  std::vector<Error> left_out;        ///< scans or files that cannot be read, one error each
   std::optional<SessionStore> store;  ///< open when it is a session
   [[nodiscard]] bool is_session() const { return store.has_value(); }
 };
@@ -50,8 +50,8 @@ using ScanVisitor = std::function<Status(const ScanSet& set, StationScan scan)>;
 /// The rig that the session was scanned with last; nothing when none was known. Errors: kBadInput.
 [[nodiscard]] Result<std::optional<Rig>> session_rig(const SessionStore& store);
 
-/// Reads a session or a folder. Damaged scans of a session are named in the log and left out; so are bad
-/// files of a folder, unless none is good.
+/// Reads a session or a folder. Damaged scans of a session are named in the log and left out, and so are bad
+/// files of a folder; where none is good, that is the error.
 [[nodiscard]] Result<ScanSet> load_scan_set(const std::filesystem::path& path, const ScanSetOptions& options,
                                             JobContext& job);
 

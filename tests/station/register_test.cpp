@@ -9,7 +9,9 @@
 #include <csignal>
 #include <fstream>
 
+#include "acquisition/session_store.h"
 #include "formats/poses_json.h"
+#include "tests/acquisition/session_support.h"
 #include "tests/station/support/bumpy_scans.h"
 #include "tests/station/support/command.h"
 #include "tests/support/temporary_folder.h"
@@ -72,6 +74,32 @@ TEST_F(Register, OnlyMovesTheScansThatItNames) {
   EXPECT_THAT(unknown.complaints(), SizeIs(1)) << unknown.err;
   ASSERT_EQ(run_command({"session", "lock", at("session"), "1"}).status, 0);
   EXPECT_EQ(registered({"--only", "1"}, "session").status, 2);
+}
+
+TEST_F(Register, AScanThatCannotBeReadIsToldAndKeepsItsPlace) {
+  test::write_bumpy_scans(at("scans"), 4);
+  run_command({"scan", "--device", "replay:" + at("scans"), "--session", at("session")});
+  const auto place_of_lost = [&] {
+    const auto poses = SessionStore::open(at("session"), SessionStore::Access::kReadOnly).value().poses();
+    return poses.value().at(2).model_from_scanner.row_major();
+  };
+  const auto before = place_of_lost();
+  test::flip_byte(fs::path(at("session")) / "grids" / "002.grid", 1000);
+  const Outcome some = registered({"--only", "1"}, "session");
+  EXPECT_EQ(some.status, 1) << some.err;
+  EXPECT_EQ(place_of_lost(), before);
+  const Outcome all = registered({}, "session");
+  EXPECT_EQ(all.status, 1) << all.err;
+  ASSERT_THAT(all.json()["scans"], SizeIs(3));
+  EXPECT_EQ(all.json()["scans"][2]["status"], "registered");
+  EXPECT_EQ(place_of_lost(), before) << "the first scan keeps the frame";
+  const Outcome lost = registered({"--only", "2"}, "session");
+  EXPECT_EQ(lost.status, 2);
+  EXPECT_THAT(lost.err, HasSubstr("scan 2 is damaged"));
+  EXPECT_THAT(lost.err, ::testing::Not(HasSubstr("there is no scan 2")));
+  ASSERT_EQ(run_command({"session", "drop", at("session"), "3"}).status, 0);
+  EXPECT_THAT(registered({"--only", "3"}, "session").err, HasSubstr("scan 3 was taken out"));
+  EXPECT_THAT(registered({"--only", "9"}, "session").err, HasSubstr("there is no scan 9"));
 }
 
 TEST_F(Register, RefinesPosesOfAFileAndBelievesNone) {
