@@ -89,9 +89,18 @@ std::optional<Error> fault_of_file(const fs::path& folder, const std::string& na
   return std::nullopt;
 }
 
-/// Of a file that no table names: what a person wrote in the viewer carries its own. Of such a file that is
-/// cut off it may be gone; it is then no JSON any more.
-OwnChecksum own_checksum_in(const fs::path& file) {
+/// Of a file that no table names: rows of a scan that was not over carry their own, and what a person wrote
+/// in the viewer. Of such a text that is cut off it may be gone; it is then no JSON any more. An error where
+/// a grid cannot be read.
+Result<OwnChecksum> own_checksum_in(const fs::path& file) {
+  if (file.extension() == ".grid") {
+    const Result<std::string> bytes = read_whole_file(file);
+    if (!bytes) {
+      return std::unexpected(bytes.error());
+    }
+    return verify_grid_bytes(std::as_bytes(std::span(*bytes)), file.string()) ? OwnChecksum::kFits
+                                                                              : OwnChecksum::kFails;
+  }
   if (file.extension() != ".json") {
     return OwnChecksum::kNone;
   }
@@ -131,17 +140,16 @@ void place_the_rest(const fs::path& folder, const std::vector<Recorded>& checked
       report.set_aside.push_back(name);
     } else if (plain && !left_over &&
                (session::in_a_folder_of_the_session(name) || name == session::kBackup)) {
-      switch (own_checksum_in(folder / name)) {
-        case OwnChecksum::kFits:
-          report.whole.push_back(name);
-          break;
-        case OwnChecksum::kFails:
-          report.damaged.push_back(
-              {ErrorKind::kBadInput, "its own checksum does not fit", name, from_a_copy(folder, ")")});
-          break;
-        case OwnChecksum::kNone:
-          report.unrecorded.push_back(name);
-          break;
+      const Result<OwnChecksum> kept = own_checksum_in(folder / name);
+      if (!kept && !fs::exists(folder / name, ignored)) {
+        continue;  // rows of a scan that another program has stored meanwhile
+      }
+      if (!kept || *kept == OwnChecksum::kFails) {
+        report.damaged.push_back({kept ? ErrorKind::kBadInput : kept.error().kind,
+                                  kept ? "its own checksum does not fit" : kept.error().what, name,
+                                  from_a_copy(folder, ")")});
+      } else {
+        (*kept == OwnChecksum::kFits ? report.whole : report.unrecorded).push_back(name);
       }
     } else {
       report.extra.push_back(name);

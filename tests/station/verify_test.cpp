@@ -154,6 +154,26 @@ TEST_F(Verify, WhatAPersonWroteIsCheckedByItsOwnSumAndNeverMadeAnew) {
   EXPECT_EQ(bytes_of(session_ / name), text);
 }
 
+TEST_F(Verify, RowsOfAScanThatWasNotOverAreCheckedByTheirOwnSum) {
+  const fs::path rows = session_ / "grids/unfinished/1";
+  fs::create_directories(rows);
+  for (const char* file : {"0000.grid", "0001.grid", "0002.grid"}) {
+    fs::copy(session_ / "grids/001.grid", rows / file);
+  }
+  const auto whole = verify(0);
+  EXPECT_THAT(whole["whole"], Contains("grids/unfinished/1/0000.grid"));
+  EXPECT_THAT(whole["unrecorded"], IsEmpty());
+  const fs::path copy = folder_->path() / "copy with rows";
+  fs::copy(session_, copy, fs::copy_options::recursive);
+  test::flip_byte(rows / "0001.grid", 3000);
+  fs::resize_file(rows / "0002.grid", 0);
+  const auto report = verify(1);
+  EXPECT_THAT(places(report["damaged"]),
+              ElementsAre("grids/unfinished/1/0001.grid", "grids/unfinished/1/0002.grid"));
+  EXPECT_EQ(report["damaged"][0]["what"], "its own checksum does not fit");
+  EXPECT_EQ(verify(0, {"--repair", "--from", copy.string()})["repair"]["restored"].size(), 2U);
+}
+
 TEST_F(Verify, NoFlippedBitOfAnyFilePasses) {
   std::ofstream(session_ / "analysis/selections.json") << with_own_checksum("{\"selections\":[]}");
   const std::uint64_t seed = std::random_device()();
