@@ -80,14 +80,15 @@ Result<std::vector<StationScan>> Engine::Impl::label_pins(const LabelPins& comma
     return std::unexpected(kept.error());
   }
   Result<std::optional<PinSet>> now = session_pins(*store);
-  if (!now || !*now) {
-    return now ? std::vector<StationScan>{} : Result<std::vector<StationScan>>(std::unexpected(now.error()));
+  if (!now) {
+    return std::unexpected(now.error());
   }
-  emit(PinsKnown{std::make_shared<const PinSet>(**now)});
-  bool all_change = false;
+  emit(PinsKnown{*now ? std::make_shared<const PinSet>(**now) : nullptr});
+  bool all_change = false;  // what of a scan is a pin
   {
     const std::scoped_lock lock(mutex);
-    all_change = !pins || pins->tip_diameter_mm != command.tip_diameter_mm;
+    all_change =
+        pins.has_value() != now->has_value() || (pins && pins->tip_diameter_mm != (*now)->tip_diameter_mm);
     pins = std::move(*now);
   }
   const auto stored = store->scans();
@@ -106,7 +107,8 @@ Result<std::vector<StationScan>> Engine::Impl::label_pins(const LabelPins& comma
     }
     out.push_back(std::move(*entered));
   }
-  what = "the pins of scan " + std::to_string(command.id) + " are labelled";
+  what = "the pins of scan " + std::to_string(command.id) +
+         (command.tips.empty() ? " have no labels any more" : " are labelled");
   return out;
 }
 

@@ -78,7 +78,8 @@ struct ModelChanged {
   std::shared_ptr<const ColouredPoints> red;
   RigidTransform tablet_from_model;
 };
-/// What is known of the pins, when the run begins and whenever the operator has labelled some.
+/// What is known of the pins, when the run begins and whenever the operator has labelled some or taken labels
+/// back; nothing where none are known any more.
 struct PinsKnown {
   std::shared_ptr<const PinSet> pins;
 };

@@ -36,7 +36,7 @@ Result<std::optional<PinSet>> session_pins(const SessionStore& store) {
     return pins;
   }
   const Result<std::optional<PinSet>> clicked = load(store, kClicked);
-  if (!clicked || !*clicked) {
+  if (!clicked || !*clicked || (*clicked)->tips.empty()) {  // none there, or all taken back
     return clicked ? pins : clicked;
   }
   if (!*pins) {

@@ -11,7 +11,9 @@
 #include <thread>
 
 #include "acquisition/operator_log.h"
+#include "formats/pins_json.h"
 #include "station/engine.h"
+#include "station/session_pins.h"
 #include "tests/station/support/bumpy_scans.h"
 #include "tests/station/support/two_fold_scans.h"
 #include "tests/support/temporary_folder.h"
@@ -48,6 +50,10 @@ class RunningEngine {
     }
     return *result_;
   }
+  [[nodiscard]] std::string said() {
+    const std::scoped_lock lock(mutex_);
+    return said_;
+  }
   [[nodiscard]] int red_maps() {
     const std::scoped_lock lock(mutex_);
     return red_maps_;
@@ -78,6 +84,8 @@ class RunningEngine {
       said_ += obeyed->what + "\n";
     } else if (const auto* notice = std::get_if<Notice>(&event)) {
       said_ += notice->text + "\n";
+    } else if (const auto* pins = std::get_if<PinsKnown>(&event)) {
+      said_ += pins->pins ? "pins of " + std::to_string(pins->pins->tip_diameter_mm) + " mm\n" : "no pins\n";
     } else if (std::holds_alternative<RedMapChanged>(event)) {
       ++red_maps_;
     } else if (const auto* waits = std::get_if<WaitsForOperator>(&event)) {
@@ -222,6 +230,42 @@ TEST(EngineCommands, AHintSettlesAScanAtOnce) {
   const ScanPose& pose = result->poses.at(1);
   EXPECT_EQ(pose.status, PoseStatus::kRegistered) << pose.reason;
   EXPECT_LT((pose.model_from_scanner * given.hint.points[0].point_mm - p).norm(), 0.05);
+}
+
+TEST(EngineCommands, LabelsThatAreTakenBackAreNoPinsAnyMore) {
+  const test::TemporaryFolder folder;
+  EngineOptions options;
+  options.device = "sim:?seed=1&size=12x10x8&spacing=0.4&noise=0.02";
+  options.session = folder.path() / "session";
+  options.automatic = options.paced = true;
+  RunningEngine engine(options);
+  ASSERT_TRUE(engine.waits(1));
+  ASSERT_TRUE(engine.post(LabelPins{0, {{1, {3, 4, 5}}}, 1.5}));
+  ASSERT_TRUE(engine.says("the pins of scan 0 are labelled\n"));
+  ASSERT_TRUE(engine.post(LabelPins{0, {}, 1.5}));
+  ASSERT_TRUE(engine.says("the pins of scan 0 have no labels any more\n"));
+  const std::string said = engine.said();
+  EXPECT_THAT(said.substr(said.find("are labelled")), HasSubstr("\nno pins\n"));
+  ASSERT_TRUE(engine.post(Finish{}));
+  const Result<EngineResult>& result = engine.join();
+  ASSERT_TRUE(result.has_value()) << result.error().line();
+  const auto pins =
+      session_pins(SessionStore::open(options.session, SessionStore::Access::kReadOnly).value());
+  ASSERT_TRUE(pins);
+  EXPECT_FALSE(pins->has_value());
+}
+
+TEST(EngineCommands, TheDiameterOfTheFileHoldsAgainOnceAllLabelsAreTakenBack) {
+  const test::TemporaryFolder folder;
+  SessionStore store = SessionStore::open_or_create(folder.path() / "session").value();
+  ASSERT_TRUE(store.add_grid(test::bumpy_scan(0, 11, 4.0)));
+  ASSERT_TRUE(store.save_document("pins", pins_to_json(PinSet{2.0, {{0, {{7, {1, 2, 3}}}}}})));
+  ASSERT_TRUE(keep_pin_labels(store, 0, {{1, {3, 4, 5}}}, 1.5));
+  EXPECT_EQ(session_pins(store).value().value().tip_diameter_mm, 1.5);
+  ASSERT_TRUE(keep_pin_labels(store, 0, {}, 1.5));
+  const PinSet pins = session_pins(store).value().value();
+  EXPECT_EQ(pins.tip_diameter_mm, 2.0);
+  EXPECT_EQ(pins.tips.at(0).at(0).label, 7);
 }
 
 TEST(EngineCommands, NothingIsTakenBeforeItRuns) {
