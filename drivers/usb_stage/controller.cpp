@@ -114,6 +114,15 @@ std::unexpected<Error> Controller::stopped() const {
   return fail(ErrorKind::kCancelled, "stopped on the way", where_);
 }
 
+bool Controller::homes() const {
+  return std::ranges::any_of(axes_, &Axis::can_home);
+}
+
+std::unexpected<Error> Controller::halted() const {
+  return fail(ErrorKind::kUsage, "the emergency stop was pressed", where_,
+              homes() ? "home the stage first" : "open the device anew");
+}
+
 Status Controller::plausible(const Position& now) {
   for (std::size_t k = 0; k < now.axes.size(); ++k) {
     const Axis& axis = firmware_->axes()[k];
@@ -168,7 +177,7 @@ Status Controller::set_laser(std::size_t laser, double power) {
                 "it has " + std::to_string(power_.size()) + ", from 0");
   }
   if (power > 0 && halted_) {
-    return fail(ErrorKind::kUsage, "the emergency stop was pressed", where_, "home the stage first");
+    return halted();
   }
   if (const Status connected = connect(); !connected) {
     return connected;
@@ -220,7 +229,7 @@ Status Controller::move(std::size_t axis, double position, double speed, bool st
                   "at most " + shown(one, one.speed_maximum) + "/s");
     }
     if (halted_) {
-      return fail(ErrorKind::kUsage, "the emergency stop was pressed", where_, "home the stage first");
+      return halted();
     }
     if (const Status connected = connect(); !connected) {
       return connected;
@@ -265,7 +274,9 @@ Status Controller::wait_for(std::size_t axis, double position, double speed, std
         return fail(ErrorKind::kDevice,
                     (now->alarm ? "the stage went into alarm " : "the stage stands ") +
                         shown(axes_[axis], left) + " short of its target",
-                    where_, "see what holds it up, then home it");
+                    where_,
+                    homes() ? "see what holds it up, then home it"
+                            : "see what holds it up, then open the device anew");
       }
     }
     std::this_thread::sleep_for(kAskEvery);

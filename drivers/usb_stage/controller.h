@@ -72,6 +72,8 @@ class Controller {
   Status end_locked();  ///< the motion, and the light
   Status wait_for(std::size_t axis, double position, double speed, std::uint64_t stops);
   [[nodiscard]] std::unexpected<Error> stopped() const;
+  [[nodiscard]] std::unexpected<Error> halted() const;
+  [[nodiscard]] bool homes() const;
 
   Ways ways_;
   std::string where_;

@@ -57,7 +57,7 @@ class Grbl : public Firmware {
       numbers_.push_back(number);
     }
     homed_ = false;
-    return {};
+    return homes() ? Status{} : unlock();
   }
 
   Status start_move(std::size_t axis, double position, double speed) override {
@@ -204,6 +204,15 @@ class Grbl : public Firmware {
     return talk_.silent();
   }
 
+  /// A reset in motion leaves it in alarm, also over the next reset, and what has no switches is not homed.
+  Status unlock() {
+    std::optional<grbl::Report> report;
+    if (const Status got = ask(report); !got) {
+      return got;
+    }
+    return report->state == grbl::State::kAlarm ? command("$X", kAnswer) : Status{};
+  }
+
   /// Whatever it still has to say about the reset comes at once; some go on for ever.
   Status let_it_finish() {
     const Clock::time_point enough = Clock::now() + 200ms;
@@ -274,9 +283,12 @@ class Grbl : public Firmware {
     if (!answered || !refused) {
       return answered;
     }
-    return fail(ErrorKind::kUsage, "the controller refuses " + line + ": " + *refused, talk_.where(),
-                "home it, or keep within its limits");
+    return fail(
+        ErrorKind::kUsage, "the controller refuses " + line + ": " + *refused, talk_.where(),
+        homes() ? "home it, or keep within its limits" : "keep within its limits, or open the device anew");
   }
+
+  [[nodiscard]] bool homes() const { return setting(kHoming, 0) != 0; }
 
   [[nodiscard]] double setting(int number, double otherwise) const {
     const auto found = settings_.find(number);
@@ -289,7 +301,7 @@ class Grbl : public Firmware {
     Axis out;
     out.name = wish.name;
     out.rotary = wish.rotary;
-    out.can_home = setting(kHoming, 0) != 0;
+    out.can_home = homes();
     const double travel = setting(kTravel + number, 200) * unit;
     // A homed GRBL counts from its switch downwards.
     out.minimum = wish.limits ? wish.limits->first * unit : -travel;

@@ -225,7 +225,8 @@ TEST(Controller, ATurntableKeepsTheLimitsThatItIsGiven) {
 
 TEST(Controller, OneThatNeverStopsTalkingIsNoEndlessWait) {
   BenchLink link;
-  link.answers = {{"\x18", kBanner}, {"$$\n", "$110=3000\r\nok\r\n"}};
+  link.answers = {
+      {"\x18", kBanner}, {"$$\n", "$110=3000\r\nok\r\n"}, {"?", "<Idle|MPos:0.000,0.000,0.000>\r\n"}};
   link.babble = "[MSG:all is well]\r\n";
   const Status connected = make_grbl(link, {AxisWish{}}, "bench")->connect();
   EXPECT_TRUE(connected) << connected.error().line();

@@ -4,29 +4,39 @@
 
 #include <algorithm>
 #include <cctype>
+#include <charconv>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <numeric>
+#include <utility>
 #include <vector>
+
+#include "core/number_text.h"
 
 namespace dubsar::test {
 
 namespace {
 
+/// The number that a text begins with, and what is behind it; no firmware knows of its host's locale.
+std::pair<double, const char*> number(const char* text, const char* end) {
+  double value = 0;
+  return {value, std::from_chars(text, end, value).ptr};
+}
+
 /// GRBL 1.1: three axes of which x moves, a switch to home to, a laser that is obeyed behind the move that
 /// runs, as is every line after it.
 class GrblSim : public FirmwareSim {
  public:
-  GrblSim() { power_up(); }
+  /// Without switches ($22=0) it wakes up unlocked, and cannot be homed.
+  explicit GrblSim(bool homes) : homes_(homes) { power_up(); }
   void power_up() override {
     set(-3.5);  // it wakes up anywhere
     laser = 0;
-    alarm_ = true;
+    alarm_ = homes_;
     hold_ = homing_ = linear_ = false;
     line_.clear();
     queue_.clear();
-    out += "\r\nGrbl 1.1h ['$' for help]\r\n[MSG:'$H'|'$X' to unlock]\r\n";
+    greet();
   }
   void take(std::string_view bytes, double now) override {
     finish_homing(now);
@@ -71,6 +81,9 @@ class GrblSim : public FirmwareSim {
     laser = 0;
     line_.clear();
     queue_.clear();
+    greet();
+  }
+  void greet() {
     out += "\r\nGrbl 1.1h ['$' for help]\r\n";
     if (alarm_) {
       out += "[MSG:'$H'|'$X' to unlock]\r\n";
@@ -98,16 +111,17 @@ class GrblSim : public FirmwareSim {
     }
     asked_ = false;
     const char* state = alarm_ ? "Alarm" : hold_ ? "Hold:0" : moving(now) ? "Run" : "Idle";
-    char text[128];
     // The work offset comes with every tenth report, as the firmware does it.
     const bool offset = reports_++ % 10 == 0;
-    std::snprintf(text, sizeof text, "<%s|MPos:%.3f,0.000,0.000|Bf:15,127|FS:0,0%s>\r\n", state,
-                  impossible ? 98765.4 : at(now), offset ? "|WCO:5.000,0.000,0.000" : "");
-    out += text;
+    out += std::string("<") + state + "|MPos:" + fixed_text(impossible ? 98765.4 : at(now), 3) +
+           ",0.000,0.000|Bf:15,127|FS:0,0" + (offset ? "|WCO:5.000,0.000,0.000" : "") + ">\r\n";
   }
   void run(const std::string& line, double now) {
     if (line == "$$") {
-      out += "$22=1\r\n$30=1000\r\n$32=1\r\n$100=250.000\r\n$110=3000.000\r\n$130=200.000\r\nok\r\n";
+      out += std::string("$22=") + (homes_ ? "1" : "0");
+      out += "\r\n$30=1000\r\n$32=1\r\n$100=250.000\r\n$110=3000.000\r\n$130=200.000\r\nok\r\n";
+    } else if (line == "$H" && !homes_) {
+      out += "error:5\r\n";
     } else if (line == "$H") {
       homing_ = true;
       homed_at_ = now + 0.1;
@@ -126,11 +140,11 @@ class GrblSim : public FirmwareSim {
     double power = 0;
     int light = -1;
     bool machine = false;
-    for (const char* at_char = line.c_str(); *at_char != '\0';) {
+    const char* const line_end = line.data() + line.size();
+    for (const char* at_char = line.data(); at_char != line_end;) {
       const char letter = *at_char++;
-      char* end = nullptr;
-      const double value = std::strtod(at_char, &end);
-      if (end == at_char) {
+      const auto [value, end] = number(at_char, line_end);
+      if (end == at_char || letter < 'A' || letter > 'Z') {
         out += "error:1\r\n";
         return;
       }
@@ -157,6 +171,7 @@ class GrblSim : public FirmwareSim {
     }
     out += "ok\r\n";
   }
+  bool homes_;
   std::string line_;
   std::vector<std::string> queue_;  ///< whole lines that wait for the move
   bool alarm_ = true, hold_ = false, homing_ = false;
@@ -166,10 +181,11 @@ class GrblSim : public FirmwareSim {
   int reports_ = 0;
 };
 
-/// Horus 0.2: a turntable in degrees, two lasers. A move's ok comes when the table stands.
+/// Horus 0.2: a turntable in degrees, two lasers. Of its versions some answer `?`, and some say ok to a move
+/// when it is accepted, others when the table stands.
 class HorusSim : public FirmwareSim {
  public:
-  HorusSim() { power_up(); }
+  HorusSim(bool reports, bool ok_at_end) : reports_(reports), ok_at_end_(ok_at_end) { power_up(); }
   void power_up() override { reset(); }
   void take(std::string_view bytes, double now) override {
     finish_move(now);
@@ -177,11 +193,9 @@ class HorusSim : public FirmwareSim {
       if (c == 0x18) {
         reset();
       } else if (c == '?') {
-        char text[96];
-        const double shown = impossible ? 1e7 : at(now);
-        std::snprintf(text, sizeof text, "<%s,MPos:%.3f,WPos:%.3f>\r\n", moving(now) ? "Run" : "Idle", shown,
-                      shown);
-        out += text;
+        const std::string shown = fixed_text(impossible ? 1e7 : at(now), 3);
+        out += !reports_ ? ""
+                         : (moving(now) ? "<Run,MPos:" : "<Idle,MPos:") + shown + ",WPos:" + shown + ">\r\n";
       } else if (c == '\r' || c == '\n') {
         if (!line_.empty()) {
           queue_.push_back(line_);
@@ -210,7 +224,7 @@ class HorusSim : public FirmwareSim {
       owes_ok_ = false;
       out += "ok\r\n";
     }
-    while (!owes_ok_ && !queue_.empty()) {
+    while (!owes_ok_ && !moving(now) && !queue_.empty()) {
       const std::string line = queue_.front();
       queue_.erase(queue_.begin());
       run(line, now);
@@ -218,7 +232,7 @@ class HorusSim : public FirmwareSim {
   }
   void run(const std::string& line, double now) {
     int tool = 0;
-    const double value = line.size() > 3 ? std::atof(line.c_str() + 3) : 0;
+    const double value = line.size() > 3 ? number(line.data() + 3, line.data() + line.size()).first : 0;
     if (line.starts_with("G1F")) {
       feed_ = value;
     } else if (line.starts_with("G1X")) {
@@ -227,8 +241,10 @@ class HorusSim : public FirmwareSim {
         return;
       }
       go(value, feed_, now);
-      owes_ok_ = true;
-      return;
+      owes_ok_ = ok_at_end_;
+      if (owes_ok_) {
+        return;
+      }
     } else if (std::sscanf(line.c_str(), "M71T%d", &tool) == 1 && tool >= 1 && tool <= 2) {
       lit_[tool - 1] = 1;
     } else if (std::sscanf(line.c_str(), "M70T%d", &tool) == 1 && tool >= 1 && tool <= 2) {
@@ -240,6 +256,7 @@ class HorusSim : public FirmwareSim {
     laser = std::max(lit_[0], lit_[1]);
     out += "ok\r\n";
   }
+  bool reports_, ok_at_end_;
   std::string line_;
   double feed_ = 0;
   double lit_[2] = {};
@@ -247,14 +264,16 @@ class HorusSim : public FirmwareSim {
   std::vector<std::string> queue_;
 };
 
-/// A TMCM-6110 of a kind: motor 0 turns, output 0 is the laser.
+/// A TMCM-6110 of a kind: motors 0 and 1 turn, output 0 is the laser. A motor that is stopped keeps its
+/// target.
 class TmclSim : public FirmwareSim {
  public:
   void power_up() override {
     set(1234);
     laser = 0;
     bytes_.clear();
-    homing_until_ = -1;
+    second_ = {};
+    motors_[0] = motors_[1] = {};
   }
   void take(std::string_view bytes, double now) override {
     bytes_.append(bytes);
@@ -283,8 +302,8 @@ class TmclSim : public FirmwareSim {
       laser = status == 100 && byte(2) == 0 ? value : laser;
     } else if (byte(3) > 2) {
       status = 4;
-    } else if (byte(3) == 0) {
-      status = motor(byte(1), byte(2), value, now);
+    } else if (byte(3) < 2) {
+      status = motor(byte(3), byte(1), byte(2), value, now);
     }
     const auto word = static_cast<std::uint32_t>(value);
     std::uint8_t reply[9] = {2,
@@ -299,52 +318,71 @@ class TmclSim : public FirmwareSim {
     reply[8] = static_cast<std::uint8_t>(std::accumulate(reply, reply + 8, 0U));
     out.append(reinterpret_cast<const char*>(reply), sizeof reply);
   }
-  std::uint8_t motor(std::uint8_t command, std::uint8_t type, std::int32_t& value, double now) {
+  std::uint8_t motor(int which, std::uint8_t command, std::uint8_t type, std::int32_t& value, double now) {
+    Motor& one = motors_[which];
     switch (command) {
       case 3:
-        hold(now);
+        drive(which, where(which, now), now);
         return 100;
       case 4:
-        go(value, most_, now);
+        one.target = value;
+        drive(which, value, now);
         return 100;
       case 5:
-        most_ = type == 4 ? value : most_;
+        one.most = type == 4 ? value : one.most;
         return 100;
       case 6:
-        value = type == 0   ? static_cast<std::int32_t>(target_)
-                : type == 1 ? static_cast<std::int32_t>(impossible ? 2e9 : std::lround(at(now)))
-                : type == 3 ? static_cast<std::int32_t>(moving(now) && !stuck ? most_ : 0)
+        value = type == 0   ? one.target
+                : type == 1 ? static_cast<std::int32_t>(impossible ? 2e9 : std::lround(where(which, now)))
+                : type == 3 ? static_cast<std::int32_t>(turns(which, now) ? one.most : 0)
                             : 0;
         return 100;
       case 13:
         if (type == 0) {
-          homing_until_ = now + 0.1;
+          one.homing_until = now + 0.1;
         } else if (type == 1) {
-          homing_until_ = -1;
+          one.homing_until = -1;
         }
-        if (homing_until_ >= 0 && now >= homing_until_) {
-          homing_until_ = -1;
-          set(0);
+        if (one.homing_until >= 0 && now >= one.homing_until) {
+          one.homing_until = -1;
+          one.target = 0;
+          which == 0 ? set(0) : static_cast<void>(second_ = {});
         }
-        value = homing_until_ >= 0 ? 1 : 0;
+        value = one.homing_until >= 0 ? 1 : 0;
         return 100;
       default:
         return 2;
     }
   }
+  [[nodiscard]] double where(int which, double now) const { return which == 0 ? at(now) : second_.at(now); }
+  [[nodiscard]] bool turns(int which, double now) const {
+    return which == 0 ? moving(now) && !stuck : second_.at(now) != second_.target;
+  }
+  void drive(int which, double to, double now) {
+    if (which == 0) {
+      go(to, motors_[0].most, now);
+    } else {
+      second_ = {second_.at(now), to, motors_[1].most, now};
+    }
+  }
+  struct Motor {
+    std::int32_t target = 0;  ///< as it was asked for
+    double most = 1000;
+    double homing_until = -1;
+  };
   std::string bytes_;
-  double most_ = 1000;
-  double homing_until_ = -1;
+  Motor motors_[2];
+  StageLaw second_;  ///< way of motor 1; that of motor 0 is the board's own
 };
 
 }  // namespace
 
 std::unique_ptr<FirmwareSim> make_firmware_sim(const std::string& name) {
-  if (name == "grbl") {
-    return std::make_unique<GrblSim>();
+  if (name.starts_with("grbl")) {
+    return std::make_unique<GrblSim>(name != "grbl-without-switches");
   }
-  if (name == "horus") {
-    return std::make_unique<HorusSim>();
+  if (name.starts_with("horus")) {
+    return std::make_unique<HorusSim>(name == "horus", name != "horus-silent-quick");
   }
   auto out = std::make_unique<TmclSim>();
   out->power_up();

@@ -38,6 +38,8 @@ class FirmwareSim {
   double from_ = 0, target_ = 0, speed_ = 1, started_ = 0;
 };
 
+/// grbl, horus, tmcl; of these also grbl-without-switches, and horus-silent, which answers no `?` and says ok
+/// when the table stands, or when the move is accepted: horus-silent-quick.
 [[nodiscard]] std::unique_ptr<FirmwareSim> make_firmware_sim(const std::string& name);
 
 }  // namespace dubsar::test

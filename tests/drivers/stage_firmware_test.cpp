@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+// What a stage's firmwares do differently from one another, each of them simulated and without any line of
+// USB.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <mutex>
+#include <thread>
+#include <utility>
+
+#include "drivers/usb_stage/controller.h"
+#include "tests/drivers/peers/firmware_sims.h"
+
+namespace dubsar::usb_stage {
+namespace {
+
+using namespace std::chrono_literals;
+using testing::HasSubstr;
+
+double seconds() {
+  return std::chrono::duration<double>(Clock::now().time_since_epoch()).count();
+}
+
+/// A board on the table: it keeps its state whoever opens it.
+class Board {
+ public:
+  explicit Board(const std::string& firmware) : sim_(test::make_firmware_sim(firmware)) {}
+
+  void hear(std::string_view bytes) {
+    const std::lock_guard lock(mutex_);
+    sim_->take(bytes, seconds());
+  }
+  std::string said() {
+    hear({});
+    const std::lock_guard lock(mutex_);
+    return std::exchange(sim_->out, {});
+  }
+  [[nodiscard]] double at() const { return sim_->at(seconds()); }
+  [[nodiscard]] bool moving() const { return sim_->moving(seconds()); }
+  [[nodiscard]] double laser() const { return sim_->laser; }
+
+ private:
+  std::mutex mutex_;
+  std::unique_ptr<test::FirmwareSim> sim_;
+};
+
+class BoardLink : public Link {
+ public:
+  explicit BoardLink(Board& board) : board_(board) {}
+  Status write(std::string_view bytes) override {
+    board_.hear(bytes);
+    return {};
+  }
+  Result<std::string> read(std::chrono::milliseconds timeout) override {
+    const Clock::time_point until = Clock::now() + timeout;
+    std::string bytes = board_.said();
+    while (bytes.empty() && Clock::now() < until) {
+      std::this_thread::sleep_for(1ms);
+      bytes = board_.said();
+    }
+    return bytes;
+  }
+
+ private:
+  Board& board_;
+};
+
+using Maker = std::function<std::unique_ptr<Firmware>(Link&)>;
+
+std::unique_ptr<Firmware> grbl(Link& link) {
+  return make_grbl(link, {{.name = "x", .rotary = false, .limits = {{-150, -1}}}}, "bench");
+}
+std::unique_ptr<Controller> open(Board& board, const Maker& firmware) {
+  Result<std::unique_ptr<Controller>> opened = Controller::open(
+      {.link = [&board]() -> Result<std::unique_ptr<Link>> { return std::make_unique<BoardLink>(board); },
+       .firmware = [firmware](Link& link) -> Result<std::unique_ptr<Firmware>> { return firmware(link); },
+       .guard = {}},
+      "bench");
+  EXPECT_TRUE(opened) << opened.error().line();
+  return std::move(opened).value();
+}
+
+/// GRBL keeps its alarm over a reset: nothing but $X ends that of a stage that cannot be homed.
+TEST(StageFirmware, GrblWithoutSwitchesMovesAgainWhenItIsOpenedAnew) {
+  Board board("grbl-without-switches");
+  {
+    const auto controller = open(board, grbl);
+    ASSERT_TRUE(controller->move(0, -100, 5, true));
+    ASSERT_TRUE(controller->emergency_stop());
+    EXPECT_FALSE(board.moving());
+    for (const Status& refused : {controller->move(0, -5, 50, false), controller->set_laser(0, 1)}) {
+      ASSERT_FALSE(refused);
+      EXPECT_THAT(refused.error().line(), HasSubstr("emergency stop was pressed; open the device anew"));
+    }
+    EXPECT_THAT(controller->home().error().line(), HasSubstr("homing is not enabled in its settings"));
+  }
+  const auto controller = open(board, grbl);
+  const Status moved = controller->move(0, -5, 50, false);
+  ASSERT_TRUE(moved) << moved.error().line();
+  EXPECT_EQ(board.at(), -5);
+  EXPECT_TRUE(controller->set_laser(0, 1));
+}
+
+}  // namespace
+}  // namespace dubsar::usb_stage
