@@ -299,7 +299,7 @@ Status Controller::home() {
   last_.reset();  // where it is may have been told anew
   if (homed) {
     halted_ = false;
-  } else {
+  } else if (homed.error().kind != ErrorKind::kUsage) {  // which is a refusal that changes nothing
     std::ranges::fill(power_, 0.0);
   }
   return homed;

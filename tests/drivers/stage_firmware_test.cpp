@@ -71,6 +71,18 @@ using Maker = std::function<std::unique_ptr<Firmware>(Link&)>;
 std::unique_ptr<Firmware> grbl(Link& link) {
   return make_grbl(link, {{.name = "x", .rotary = false, .limits = {{-150, -1}}}}, "bench");
 }
+std::unique_ptr<Firmware> horus(Link& link) {
+  return make_horus(link, {{.name = "x", .rotary = true, .limits = {}}}, "bench");
+}
+/// Two axes of 1000 steps per mm, no switches.
+std::unique_ptr<Firmware> tmcl(Link& link) {
+  TmclOptions options;
+  options.steps = {1000, 1000};
+  options.speeds_max = {50, 50};
+  options.switches = false;
+  return make_tmcl(link, {AxisWish{}, AxisWish{}}, options, "bench");
+}
+
 std::unique_ptr<Controller> open(Board& board, const Maker& firmware) {
   Result<std::unique_ptr<Controller>> opened = Controller::open(
       {.link = [&board]() -> Result<std::unique_ptr<Link>> { return std::make_unique<BoardLink>(board); },
@@ -100,6 +112,18 @@ TEST(StageFirmware, GrblWithoutSwitchesMovesAgainWhenItIsOpenedAnew) {
   ASSERT_TRUE(moved) << moved.error().line();
   EXPECT_EQ(board.at(), -5);
   EXPECT_TRUE(controller->set_laser(0, 1));
+}
+
+TEST(StageFirmware, ARefusedHomingLeavesTheLaserOnAndSaysSo) {
+  for (const auto& [name, firmware] : {std::pair("horus", Maker(horus)), std::pair("tmcl", Maker(tmcl)),
+                                       std::pair("grbl-without-switches", Maker(grbl))}) {
+    Board board(name);
+    const auto controller = open(board, firmware);
+    ASSERT_TRUE(controller->set_laser(0, 1)) << name;
+    EXPECT_EQ(controller->home().error().kind, ErrorKind::kUsage) << name;
+    EXPECT_EQ(board.laser(), 1) << name;
+    EXPECT_EQ(controller->read()->power[0], 1) << name;
+  }
 }
 
 }  // namespace
