@@ -6,6 +6,7 @@
 #include <limits>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "drivers/usb_stage/firmware.h"
 #include "drivers/usb_stage/tmcl_protocol.h"
@@ -69,6 +70,7 @@ class Tmcl : public Firmware {
     if (std::abs(steps) > std::numeric_limits<std::int32_t>::max()) {
       return fail(ErrorKind::kUsage, "farther than the motor can count", where_);
     }
+    stopped_[axis] = false;
     const auto moved = ask({Command::kMoveTo, kAbsolute, motor, static_cast<std::int32_t>(steps)});
     return moved ? Status{} : std::unexpected(moved.error());
   }
@@ -91,7 +93,7 @@ class Tmcl : public Firmware {
       }
       out.axes.push_back(at / steps_per_unit(k));
       // Right after a move was asked for its speed is still 0; after a stop its target is behind it.
-      out.moving = out.moving || speed != 0 || (target != at && !stopped_);
+      out.moving = out.moving || speed != 0 || (target != at && !stopped_[k]);
     }
     const std::int64_t answered = now_ns();
     out.timestamp_ns = asked + (answered - asked) / 2;
@@ -125,7 +127,7 @@ class Tmcl : public Firmware {
       }
       k += *speed == 0 ? 1 : 0;
     }
-    stopped_ = true;
+    stopped_.assign(axes_.size(), true);
     return {};
   }
 
@@ -157,7 +159,7 @@ class Tmcl : public Firmware {
       }
     }
     homed_ = true;
-    stopped_ = true;
+    stopped_.assign(axes_.size(), true);
     return {};
   }
 
@@ -192,7 +194,6 @@ class Tmcl : public Firmware {
   }
 
   Result<std::int32_t> ask(const tmcl::Request& request) {
-    stopped_ = stopped_ && request.command != Command::kMoveTo;
     if (const Status sent = link_.write(bytes(request)); !sent) {
       return std::unexpected(sent.error());
     }
@@ -225,7 +226,7 @@ class Tmcl : public Firmware {
   std::vector<AxisWish> wishes_;
   TmclOptions options_;
   std::string where_;
-  bool stopped_ = true;  ///< the target is not where it goes
+  std::vector<bool> stopped_;  ///< of each motor: its target is not where it goes
 };
 
 }  // namespace

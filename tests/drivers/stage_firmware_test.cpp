@@ -126,5 +126,20 @@ TEST(StageFirmware, ARefusedHomingLeavesTheLaserOnAndSaysSo) {
   }
 }
 
+/// A Trinamic module that is stopped keeps the target that it no longer goes to.
+TEST(StageFirmware, AStopOfOneAxisLeavesTheOtherFreeToMove) {
+  Board board("tmcl");
+  const auto controller = open(board, tmcl);
+  ASSERT_TRUE(controller->move(1, 20, 5, true));
+  EXPECT_TRUE(controller->read()->position.moving);
+  ASSERT_TRUE(controller->stop());
+  EXPECT_FALSE(controller->read()->position.moving);
+  const Status moved = controller->move(0, 2, 50, false);
+  ASSERT_TRUE(moved) << moved.error().line();
+  EXPECT_EQ(board.at(), 2000);
+  const Status other = controller->move(1, 1, 50, false);
+  EXPECT_TRUE(other) << other.error().line();
+}
+
 }  // namespace
 }  // namespace dubsar::usb_stage
