@@ -4,6 +4,7 @@
 #include <map>
 #include <thread>
 
+#include "core/number_text.h"
 #include "drivers/usb_stage/firmware.h"
 #include "drivers/usb_stage/grbl_protocol.h"
 #include "drivers/usb_stage/line_talk.h"
@@ -96,7 +97,7 @@ class Grbl : public Firmware {
 
   Status set_laser(int /*laser*/, double power) override {
     // In laser mode ($32=1) M3 alone stays dark until a G1; without axes that moves nothing.
-    return power > 0 ? command("G1F1M3S" + std::to_string(power * laser_scale_), kAnswer)
+    return power > 0 ? command("G1F1M3S" + fixed_text(power * laser_scale_, 3), kAnswer)
                      : command("M5", kAnswer);
   }
 

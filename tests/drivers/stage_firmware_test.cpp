@@ -11,6 +11,7 @@
 
 #include "drivers/usb_stage/controller.h"
 #include "tests/drivers/peers/firmware_sims.h"
+#include "tests/support/comma_locale.h"
 
 namespace dubsar::usb_stage {
 namespace {
@@ -112,6 +113,19 @@ TEST(StageFirmware, GrblWithoutSwitchesMovesAgainWhenItIsOpenedAnew) {
   ASSERT_TRUE(moved) << moved.error().line();
   EXPECT_EQ(board.at(), -5);
   EXPECT_TRUE(controller->set_laser(0, 1));
+}
+
+/// With "S500,000" the controller knows no such command, and one that reads on lights its laser otherwise.
+TEST(StageFirmware, GrblDimsItsLaserWhateverTheHostsLocale) {
+  const test::CommaLocale comma;
+  if (!test::CommaLocale::is_set()) {
+    GTEST_SKIP() << "no locale with a decimal comma can be made here";
+  }
+  Board board("grbl-without-switches");
+  const auto controller = open(board, grbl);
+  const Status lit = controller->set_laser(0, 0.5);
+  ASSERT_TRUE(lit) << lit.error().line();
+  EXPECT_EQ(board.laser(), 0.5);
 }
 
 TEST(StageFirmware, ARefusedHomingLeavesTheLaserOnAndSaysSo) {
