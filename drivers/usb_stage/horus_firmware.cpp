@@ -53,12 +53,15 @@ class Horus : public Firmware {
     if (const Status set = command(horus::speed(deg_from_rad(speed))); !set) {
       return set;
     }
-    // Its ok comes when the move is accepted in some versions and when it has ended in others: read() looks.
-    const double way = std::abs(position - target_);
-    move_ends_ = Clock::now() + duration_of(way / speed);
+    // Its ok comes when the move is accepted in some versions and when it has ended in others: read() looks,
+    // and goes by the time that the way takes where there is no report either.
+    Status sent = talk_.send(horus::move(deg_from_rad(position)));
+    start_ = target_;
     target_ = position;
+    move_begins_ = std::max(Clock::now(), move_ends_);
+    move_ends_ = move_begins_ + duration_of(std::abs(target_ - start_) / speed);
     awaits_ok_ = true;
-    return talk_.send(horus::move(deg_from_rad(position)));
+    return sent;
   }
 
   Result<Position> read() override {
@@ -98,9 +101,9 @@ class Horus : public Firmware {
     const std::int64_t answered = now_ns();
     out.timestamp_ns = asked + (answered - asked) / 2;
     out.uncertainty_ns = (answered - asked) / 2;
-    out.moving = awaits_ok_ || (report && report->moving);
+    out.moving = awaits_ok_ || (report ? report->moving : Clock::now() < move_ends_);
     out.alarm = report && report->alarm;
-    out.axes = {report ? rad_from_deg(report->degrees) : target_};
+    out.axes = {report ? rad_from_deg(report->degrees) : asked_for_now()};
     return out;
   }
 
@@ -129,6 +132,13 @@ class Horus : public Firmware {
   [[nodiscard]] std::string panic() const override { return "\x18\r\nM70T1\r\nM70T2\r\nM18\r\n"; }
 
  private:
+  /// Along the way of the last move.
+  [[nodiscard]] double asked_for_now() const {
+    const std::chrono::duration<double> whole = move_ends_ - move_begins_;
+    const std::chrono::duration<double> gone = Clock::now() - move_begins_;
+    return gone < whole ? start_ + (target_ - start_) * std::max(gone / whole, 0.0) : target_;
+  }
+
   bool moving() {
     const Result<Position> now = read();
     return now && now->moving;
@@ -137,7 +147,8 @@ class Horus : public Firmware {
   Status restart() {
     talk_.forget();
     awaits_ok_ = false;
-    target_ = 0;
+    start_ = target_ = 0;
+    move_begins_ = move_ends_ = {};
     const Clock::time_point until = Clock::now() + kBoot;
     while (Clock::now() < until) {
       if (const Status sent = talk_.send(std::string(1, horus::kReset) + "\r"); !sent) {
@@ -187,8 +198,7 @@ class Horus : public Firmware {
     }
     std::optional<std::string> refused;
     // Answers come in order: that to a move which is still on its way stands before ours.
-    const Clock::time_point until =
-        (awaits_ok_ ? std::max(Clock::now(), move_ends_) : Clock::now()) + kAnswer;
+    const Clock::time_point until = std::max(Clock::now(), move_ends_) + kAnswer;
     const Status answered = talk_.until(until, [&](const std::string& text) {
       const horus::Line said = horus::parse(text);
       if (std::holds_alternative<horus::Ok>(said) && awaits_ok_) {
@@ -210,8 +220,8 @@ class Horus : public Firmware {
   std::vector<AxisWish> wishes_;
   bool reports_ = false;
   bool awaits_ok_ = false;
-  double target_ = 0;
-  Clock::time_point move_ends_{};
+  double start_ = 0, target_ = 0;                  ///< of the last move
+  Clock::time_point move_begins_{}, move_ends_{};  ///< as its speed has it
 };
 
 }  // namespace

@@ -155,5 +155,34 @@ TEST(StageFirmware, AStopOfOneAxisLeavesTheOtherFreeToMove) {
   EXPECT_TRUE(other) << other.error().line();
 }
 
+/// Neither a report nor an ok says when it stands: the time that the way takes does.
+TEST(StageFirmware, ATurntableThatSaysNothingOnTheWayIsWaitedFor) {
+  Board board("horus-silent-quick");
+  const auto controller = open(board, horus);
+  const Status moved = controller->move(0, rad_from_deg(30), rad_from_deg(150), false);
+  ASSERT_TRUE(moved) << moved.error().line();
+  EXPECT_FALSE(board.moving()) << board.at();
+  ASSERT_TRUE(controller->move(0, rad_from_deg(90), rad_from_deg(2), true));
+  EXPECT_TRUE(controller->read()->position.moving);
+  ASSERT_TRUE(controller->stop());
+  EXPECT_FALSE(board.moving()) << board.at();
+  EXPECT_FALSE(controller->read()->position.moving);
+}
+
+/// The time that a move may take is reckoned from what is left of it.
+TEST(StageFirmware, ATurntableThatDoesNotReportIsWhereItsSpeedHasIt) {
+  for (const char* name : {"horus-silent", "horus-silent-quick"}) {
+    Board board(name);
+    const auto controller = open(board, horus);
+    ASSERT_TRUE(controller->move(0, rad_from_deg(90), rad_from_deg(2), true));
+    const auto now = controller->read();
+    ASSERT_TRUE(now) << now.error().line();
+    EXPECT_TRUE(now->position.moving) << name;
+    EXPECT_TRUE(now->position.commanded) << name;
+    EXPECT_GT(now->position.axes[0], 0) << name;
+    EXPECT_LT(now->position.axes[0], rad_from_deg(90)) << name;
+  }
+}
+
 }  // namespace
 }  // namespace dubsar::usb_stage
