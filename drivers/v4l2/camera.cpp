@@ -127,15 +127,11 @@ Status Camera::find_again() {
       node_.reset();
       return configured;
     }
-    for (const Control& control : controls_) {
-      if (const auto set = set_here_.find(control.key); set != set_here_.end()) {
-        if (const Status written = write_control(*node_, control, set->second); !written) {
-          node_.reset();
-          return written;
-        }
-      }
+    Status written = write_again(*node_, controls_, set_here_);
+    if (!written) {
+      node_.reset();
     }
-    return {};
+    return written;
   }
   return std::unexpected(first);
 }
@@ -153,7 +149,10 @@ Status Camera::set(const Control& control, const dubsar_value& value) {
   }
   Status written = write_control(*node_, control, value);
   if (written) {
-    set_here_[control.key] = value;
+    set_here_[control.id] = value;
+    if (const std::optional<std::uint32_t> left = left_to_camera(*node_, control, value)) {
+      set_here_.erase(*left);
+    }
   }
   return written;
 }

@@ -75,7 +75,7 @@ class Camera {
   std::optional<double> rate_hz_;  ///< that was set
   std::uint32_t stride_ = 0;
   std::vector<Control> controls_;
-  std::map<std::string, dubsar_value> set_here_;  ///< set again after the camera was gone
+  std::map<std::uint32_t, dubsar_value> set_here_;  ///< by control; set again after the camera was gone
 
   mutable std::mutex mutex_;                                ///< of what give_back() and counters() look at
   std::uint32_t generation_ = 0;                            ///< of the stream

@@ -90,25 +90,64 @@ std::vector<Control> setting_of(const Node& node, const v4l2_query_ext_ctrl& que
   return {out};
 }
 
+/// Whether another control, an automatic as a rule, puts it out of use.
+bool is_inactive(const Node& node, std::uint32_t id) {
+  v4l2_query_ext_ctrl query{};
+  query.id = id;
+  return node.control(VIDIOC_QUERY_EXT_CTRL, &query) == 0 && (query.flags & V4L2_CTRL_FLAG_INACTIVE) != 0;
+}
+
 Status put(const Node& node, std::uint32_t id, std::int32_t count, const std::string& key) {
   v4l2_control set{id, count};
   if (node.control(VIDIOC_S_CTRL, &set) == 0) {
     return {};
   }
-  if (errno == ERANGE || errno == EINVAL) {
+  const int refusal = errno;
+  if (refusal == ERANGE || refusal == EINVAL) {
     return fail(ErrorKind::kUsage, "the camera refuses this value of " + key, node.path());
   }
-  return std::unexpected(error_of(errno, key + " cannot be set", node.path()));
+  // By its number alone the refusal would be one of rights (EACCES) or of the cable (EIO).
+  if (is_inactive(node, id)) {
+    return fail(ErrorKind::kUsage, "another setting puts this one out of use: " + key, node.path(),
+                "end the camera's automatic of it first");
+  }
+  return std::unexpected(error_of(refusal, key + " cannot be set", node.path()));
 }
+
+/// What a camera may set by itself.
+struct Automatic {
+  std::uint32_t of, id;
+  std::int32_t by_hand;  ///< its value when it does not
+  const char* what;
+};
+constexpr Automatic kAutomatics[] = {
+    {V4L2_CID_EXPOSURE_ABSOLUTE, V4L2_CID_EXPOSURE_AUTO, V4L2_EXPOSURE_MANUAL, "manual exposure"},
+    {V4L2_CID_GAIN, V4L2_CID_AUTOGAIN, 0, "manual gain"}};
 
 /// A value set by hand means that the camera is to leave it alone. Cameras without the automatic need
 /// nothing.
-Status end_automatic(const Node& node, std::uint32_t id, std::int32_t by_hand, const std::string& what) {
-  v4l2_control now{id, 0};
-  if (node.control(VIDIOC_G_CTRL, &now) != 0 || now.value == by_hand) {
+Status end_automatic(const Node& node, std::uint32_t of) {
+  const auto* found = std::ranges::find(kAutomatics, of, &Automatic::of);
+  v4l2_control now{found == std::end(kAutomatics) ? 0 : found->id, 0};
+  if (now.id == 0 || node.control(VIDIOC_G_CTRL, &now) != 0 || now.value == found->by_hand) {
     return {};
   }
-  return put(node, id, by_hand, what);
+  return put(node, found->id, found->by_hand, found->what);
+}
+
+Result<std::int32_t> count_of(const Node& node, const Control& control, const dubsar_value& value) {
+  if (control.type == DUBSAR_TYPE_NUMBER) {
+    return static_cast<std::int32_t>(std::llround(value.number / control.unit_per_count));
+  }
+  if (control.type != DUBSAR_TYPE_CHOICE) {
+    return static_cast<std::int32_t>(value.integer);
+  }
+  const auto choice =
+      std::ranges::find(control.choices, std::string(value.text), &std::pair<std::string, int>::first);
+  if (choice == control.choices.end()) {
+    return fail(ErrorKind::kUsage, "no such choice of " + control.key, node.path(), control.choice_words());
+  }
+  return choice->second;
 }
 
 }  // namespace
@@ -173,27 +212,44 @@ Result<dubsar_value> read_control(const Node& node, const Control& control) {
 }
 
 Status write_control(const Node& node, const Control& control, const dubsar_value& value) {
-  std::int64_t count = value.integer;
-  if (control.type == DUBSAR_TYPE_NUMBER) {
-    count = std::llround(value.number / control.unit_per_count);
-  } else if (control.type == DUBSAR_TYPE_CHOICE) {
-    const auto choice =
-        std::ranges::find(control.choices, std::string(value.text), &std::pair<std::string, int>::first);
-    if (choice == control.choices.end()) {
-      return fail(ErrorKind::kUsage, "no such choice of " + control.key, node.path(), control.choice_words());
-    }
-    count = choice->second;
+  const Result<std::int32_t> count = count_of(node, control, value);
+  if (!count) {
+    return std::unexpected(count.error());
   }
-  Status manual;
-  if (control.id == V4L2_CID_EXPOSURE_ABSOLUTE) {
-    manual = end_automatic(node, V4L2_CID_EXPOSURE_AUTO, V4L2_EXPOSURE_MANUAL, "manual exposure");
-  } else if (control.id == V4L2_CID_GAIN) {
-    manual = end_automatic(node, V4L2_CID_AUTOGAIN, 0, "manual gain");
-  }
-  if (!manual) {
+  if (const Status manual = end_automatic(node, control.id); !manual) {
     return manual;
   }
-  return put(node, control.id, static_cast<std::int32_t>(count), control.key);
+  return put(node, control.id, *count, control.key);
+}
+
+std::optional<std::uint32_t> left_to_camera(const Node& node, const Control& control,
+                                            const dubsar_value& value) {
+  const auto* automatic = std::ranges::find(kAutomatics, control.id, &Automatic::id);
+  return automatic != std::end(kAutomatics) && count_of(node, control, value) != automatic->by_hand
+             ? std::optional(automatic->of)
+             : std::nullopt;
+}
+
+Status write_again(const Node& node, std::span<const Control> controls,
+                   const std::map<std::uint32_t, dubsar_value>& values) {
+  for (const bool numbers : {false, true}) {
+    for (const Control& control : controls) {
+      const auto kept = values.find(control.id);
+      if (kept == values.end() || control.is_number() != numbers) {
+        continue;
+      }
+      if (const Status manual = end_automatic(node, control.id); !manual) {
+        return manual;
+      }
+      if (is_inactive(node, control.id)) {
+        continue;
+      }
+      if (const Status written = write_control(node, control, kept->second); !written) {
+        return written;
+      }
+    }
+  }
+  return {};
 }
 
 }  // namespace dubsar::v4l2

@@ -3,6 +3,9 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
+#include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -29,6 +32,7 @@ struct Control {
 
   /// For dubsar_setting.
   [[nodiscard]] std::string choice_words() const;
+  [[nodiscard]] bool is_number() const { return type == DUBSAR_TYPE_INTEGER || type == DUBSAR_TYPE_NUMBER; }
 };
 
 /// The controls that a camera has, exposure and gain under the keys that all cameras share; others under
@@ -37,7 +41,15 @@ struct Control {
 
 [[nodiscard]] Result<dubsar_value> read_control(const Node& node, const Control& control);
 /// Setting exposure or gain ends the camera's own automatic of it first. The value has the control's type.
+/// kUsage for a value that the camera refuses, and for a control that another one puts out of use.
 Status write_control(const Node& node, const Control& control, const dubsar_value& value);
+/// The control (of exposure or gain) whose value the camera sets by itself once this one has this value.
+[[nodiscard]] std::optional<std::uint32_t> left_to_camera(const Node& node, const Control& control,
+                                                          const dubsar_value& value);
+/// Sets what was set in the camera before, by the controls' ids: first what says who sets the numbers, then
+/// these, but for those that are out of use.
+Status write_again(const Node& node, std::span<const Control> controls,
+                   const std::map<std::uint32_t, dubsar_value>& values);
 
 /// "Gain, Automatic" -> "gain_automatic".
 [[nodiscard]] std::string key_from(const std::string& name);

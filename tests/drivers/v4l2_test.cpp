@@ -284,6 +284,48 @@ TEST_F(V4l2, UnpluggedInMidStreamAndPluggedInAgain) {
   EXPECT_THAT(other.error().line(), HasSubstr("another camera is there now: Another"));
 }
 
+/// In the order of their numbers the focus would stand before what lets it be set.
+TEST_F(V4l2, PluggedInAgainItsAutomaticsAreAsTheyWereSetLast) {
+  ASSERT_NO_FATAL_FAILURE(plug_in({"GREY:160x120@100"}));
+  if (IsSkipped()) {
+    return;
+  }
+  Device device = open().value();
+  const auto plug_in_again = [&] {
+    ASSERT_TRUE(device.start_frames());
+    ASSERT_EQ(peer_->tell("unplug"), "ok");
+    while (device.next_frame(60s)) {
+    }
+    ASSERT_EQ(peer_->tell("plug"), "ok");
+    for (int start = 0; start < 2; ++start) {
+      const Status started = device.start_frames();
+      ASSERT_TRUE(started) << started.error().line();
+      ASSERT_TRUE(device.stop_frames());
+    }
+  };
+  const auto focus = [&] { return std::get<std::int64_t>(device.get("focus_absolute").value()); };
+  const auto automatic = [&] { return std::get<bool>(device.get("focus_automatic_continuous").value()); };
+  const Status early = device.set("focus_absolute", std::int64_t{120});
+  ASSERT_FALSE(early);
+  EXPECT_EQ(early.error().kind, ErrorKind::kUsage);
+  EXPECT_THAT(early.error().line(), HasSubstr("another setting puts this one out of use: focus_absolute; end "
+                                              "the camera's automatic of it first"));
+  ASSERT_TRUE(device.set("focus_automatic_continuous", false));
+  ASSERT_TRUE(device.set("focus_absolute", std::int64_t{120}));
+  ASSERT_TRUE(device.set("exposure_us", 2500.0));
+  ASSERT_NO_FATAL_FAILURE(plug_in_again());
+  EXPECT_EQ(focus(), 120);
+  EXPECT_FALSE(automatic());
+  EXPECT_EQ(std::get<std::string>(device.get("auto_exposure").value()), "Manual Mode");
+  EXPECT_EQ(std::get<double>(device.get("exposure_us").value()), 2500.0);
+
+  ASSERT_TRUE(device.set("focus_automatic_continuous", true));
+  ASSERT_TRUE(device.set("auto_exposure", std::string("Aperture Priority Mode")));
+  ASSERT_NO_FATAL_FAILURE(plug_in_again());
+  EXPECT_TRUE(automatic());
+  EXPECT_EQ(std::get<std::string>(device.get("auto_exposure").value()), "Aperture Priority Mode");
+}
+
 TEST_F(V4l2, AStreamThatStandsStillTimesOut) {
   ASSERT_NO_FATAL_FAILURE(plug_in({"GREY:160x120@100"}));
   if (IsSkipped()) {

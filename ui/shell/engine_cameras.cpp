@@ -102,6 +102,8 @@ constexpr EnginePhrase kCameras[] = {
     {"stop the frames first", "zuerst die Bilder anhalten"},
     {" cannot be set", " lässt sich nicht stellen"},
     {" cannot be read", " lässt sich nicht lesen"},
+    {"another setting puts this one out of use: ", "eine andere Einstellung setzt diese außer Kraft: "},
+    {"end the camera's automatic of it first", "zuerst die Automatik der Kamera dafür beenden"},
     {"no such choice of ", "diese Wahl gibt es nicht: "},
     {"no such setting to change", "diese Einstellung gibt es nicht"},
     {"no such setting", "diese Einstellung gibt es nicht"},

@@ -208,6 +208,8 @@ std::string VirtualCamera::command(const std::string& line) {
     gain_ = 10;
     automatic_ = V4L2_EXPOSURE_APERTURE_PRIORITY;
     exposure_ = 50;
+    focus_ = 0;
+    automatic_focus_ = 1;
     automatic_gain_ = 1;
     crop_x_ = crop_y_ = 0;
     now_ = modes_.front();

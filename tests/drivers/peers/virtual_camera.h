@@ -67,6 +67,8 @@ class VirtualCamera {
   std::uint64_t made_ = 0, starved_ = 0, held_up_ = 0;
   int gain_ = 10;
   int exposure_ = 50;
+  int focus_ = 0;
+  int automatic_focus_ = 1;
   int automatic_gain_ = 1;
   int automatic_ = V4L2_EXPOSURE_APERTURE_PRIORITY;
   std::uint32_t crop_step_ = 0;  ///< 0: it sends its whole picture only

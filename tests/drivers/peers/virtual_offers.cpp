@@ -85,13 +85,18 @@ int VirtualCamera::settings(std::uint32_t request, void* argument) {
     const char* name;
     int type, minimum, maximum, fallback;
     int* value;
+    bool inactive = false;  ///< while an automatic has it
   };
   const Known all[] = {
       {V4L2_CID_AUTOGAIN, "Gain, Automatic", V4L2_CTRL_TYPE_BOOLEAN, 0, 1, 1, &automatic_gain_},
-      {V4L2_CID_GAIN, "Gain", V4L2_CTRL_TYPE_INTEGER, 0, 100, 10, &gain_},
+      {V4L2_CID_GAIN, "Gain", V4L2_CTRL_TYPE_INTEGER, 0, 100, 10, &gain_, automatic_gain_ != 0},
       {V4L2_CID_EXPOSURE_AUTO, "Auto Exposure", V4L2_CTRL_TYPE_MENU, 0, 3, 3, &automatic_},
-      {V4L2_CID_EXPOSURE_ABSOLUTE, "Exposure Time, Absolute", V4L2_CTRL_TYPE_INTEGER, 1, 5000, 50,
-       &exposure_}};
+      {V4L2_CID_EXPOSURE_ABSOLUTE, "Exposure Time, Absolute", V4L2_CTRL_TYPE_INTEGER, 1, 5000, 50, &exposure_,
+       automatic_ != V4L2_EXPOSURE_MANUAL},
+      {V4L2_CID_FOCUS_ABSOLUTE, "Focus, Absolute", V4L2_CTRL_TYPE_INTEGER, 0, 250, 0, &focus_,
+       automatic_focus_ != 0},
+      {V4L2_CID_FOCUS_AUTO, "Focus, Automatic Continuous", V4L2_CTRL_TYPE_BOOLEAN, 0, 1, 1,
+       &automatic_focus_}};
   const auto find = [&](std::uint32_t id) {
     const bool next = (id & V4L2_CTRL_FLAG_NEXT_CTRL) != 0;
     id &= V4L2_CTRL_ID_MASK;
@@ -111,6 +116,7 @@ int VirtualCamera::settings(std::uint32_t request, void* argument) {
     query.maximum = one->maximum;
     query.step = 1;
     query.default_value = one->fallback;
+    query.flags = one->inactive ? V4L2_CTRL_FLAG_INACTIVE : 0;
     return 0;
   }
   if (request == VIDIOC_QUERYMENU) {
@@ -132,10 +138,11 @@ int VirtualCamera::settings(std::uint32_t request, void* argument) {
     control.value = *one->value;
     return 0;
   }
-  if (control.value < one->minimum || control.value > one->maximum ||
-      (one->value == &exposure_ && automatic_ != V4L2_EXPOSURE_MANUAL) ||
-      (one->value == &gain_ && automatic_gain_ != 0)) {
+  if (control.value < one->minimum || control.value > one->maximum) {
     return -ERANGE;
+  }
+  if (one->inactive) {
+    return -EACCES;  // as uvcvideo since 6.0
   }
   *one->value = control.value;
   return 0;
