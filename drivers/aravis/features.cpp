@@ -59,6 +59,27 @@ std::vector<std::string> trigger_sources(ArvDevice* device) {
   return out;
 }
 
+/// The source that a frame waits for, as the camera spells it; empty where it runs free.
+std::string trigger_now(ArvDevice* device, GErrorHolder& error) {
+  const auto told = [&](const char* name) {
+    return text_read(error, [&](GError** e) { return arv_device_get_string_feature_value(device, name, e); });
+  };
+  const bool waits = arv_device_get_feature(device, "TriggerMode") != nullptr && told("TriggerMode") == "On";
+  return waits ? told("TriggerSource") : std::string();
+}
+
+/// Aravis knows what must be enabled for it, and ends the camera's trigger on the way, of which nobody spoke.
+void set_frame_rate(ArvCamera* camera, double rate_hz, GErrorHolder& error) {
+  const std::string trigger = trigger_now(arv_camera_get_device(camera), error);
+  if (error) {
+    return;
+  }
+  arv_camera_set_frame_rate(camera, rate_hz, error.fill());
+  if (GErrorHolder lost; !trigger.empty()) {
+    arv_camera_set_trigger(camera, trigger.c_str(), error ? lost.fill() : error.fill());
+  }
+}
+
 /// A value set by hand means that the camera is to leave it alone. Cameras without the automatic need
 /// nothing.
 void end_automatic(ArvDevice* device, const std::string& key, GErrorHolder& error) {
@@ -141,17 +162,16 @@ Result<dubsar_value> Camera::get(const Feature& feature) {
       out.integer = arv_device_get_integer_feature_value(device_, feature.name.c_str(), error.fill());
       break;
     default: {
-      const auto told = [&](const char* name) {
-        return text_read(error,
-                         [&](GError** e) { return arv_device_get_string_feature_value(device_, name, e); });
-      };
-      const bool is_trigger = feature.key == kTrigger;
-      if (is_trigger && told("TriggerMode") != "On" && !error) {
-        plugin::copy_text(out.text, "free");
-        break;
+      std::string text;
+      if (feature.key == kTrigger) {
+        text = lower(trigger_now(device_, error));
+        text = text.empty() ? "free" : text;
+      } else {
+        text = text_read(error, [&](GError** e) {
+          return arv_device_get_string_feature_value(device_, feature.name.c_str(), e);
+        });
       }
-      const std::string text = told(feature.name.c_str());
-      plugin::copy_text(out.text, is_trigger ? lower(text) : text);
+      plugin::copy_text(out.text, text);
     }
   }
   if (error) {
@@ -187,8 +207,7 @@ Status Camera::set(const Feature& feature, const dubsar_value& value) {
     }
   } else if (feature.type == DUBSAR_TYPE_NUMBER) {
     if (feature.key == "frame_rate_hz") {
-      arv_camera_set_frame_rate(camera_, value.number,
-                                error.fill());  // which knows what must be enabled for it
+      set_frame_rate(camera_, value.number, error);
     } else {
       arv_device_set_float_feature_value(device_, name, value.number, error.fill());
     }

@@ -122,6 +122,21 @@ TEST_F(Aravis, FeaturesAreTypedSettings) {
   EXPECT_EQ(frame.pixels[2] | frame.pixels[3] << 8, 300);
 }
 
+/// Aravis ends the trigger when it sets a rate; a camera that then runs free takes no notice of the line.
+TEST_F(Aravis, ARateThatIsSetLeavesTheTriggerAsItIs) {
+  Device device = open({{"format", "Mono8"}}).value();
+  ASSERT_TRUE(device.set("trigger", std::string("software")));
+  ASSERT_TRUE(device.set("frame_rate_hz", 50.0));
+  EXPECT_EQ(std::get<std::string>(device.get("trigger").value()), "software");
+  EXPECT_NEAR(std::get<double>(device.get("frame_rate_hz").value()), 50.0, 0.01);
+  ASSERT_TRUE(device.set("trigger", std::string("line0")));
+  ASSERT_TRUE(device.set("frame_rate_hz", 100.0));
+  EXPECT_EQ(std::get<std::string>(device.get("trigger").value()), "line0");
+  ASSERT_TRUE(device.set("trigger", std::string("free")));
+  ASSERT_TRUE(device.set("frame_rate_hz", 50.0));
+  EXPECT_EQ(std::get<std::string>(device.get("trigger").value()), "free");
+}
+
 // Cameras come from their maker with both on: what is set by hand would be undone with the next frame.
 TEST_F(Aravis, AValueSetByHandEndsTheCamerasAutomatic) {
   ASSERT_EQ(peer_->tell("write 2404 2"), "ok");
