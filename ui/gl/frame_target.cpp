@@ -45,6 +45,11 @@ GLuint new_texture(PixelFormat format, int width, int height) {
   return id;
 }
 
+/// How many of `count` there are when every step-th is taken, from the first.
+int taken(int count, int step) {
+  return (count + step - 1) / step;
+}
+
 /// OpenGL's first row is the lowest.
 void flip_rows(Image& image) {
   const auto row = static_cast<std::ptrdiff_t>(image.width) * image.channels;
@@ -142,13 +147,17 @@ PixelTexture::PixelTexture(PixelTexture&& other) noexcept
     : id_(std::exchange(other.id_, 0U)),
       width_(other.width_),
       height_(other.height_),
-      channels_(other.channels_) {}
+      channels_(other.channels_),
+      col_step_(other.col_step_),
+      row_step_(other.row_step_) {}
 
 PixelTexture& PixelTexture::operator=(PixelTexture&& other) noexcept {
   std::swap(id_, other.id_);
   std::swap(width_, other.width_);
   std::swap(height_, other.height_);
   std::swap(channels_, other.channels_);
+  std::swap(col_step_, other.col_step_);
+  std::swap(row_step_, other.row_step_);
   return *this;
 }
 
@@ -158,28 +167,66 @@ void PixelTexture::upload(int width, int height, int channels, const unsigned ch
   if (id_ == 0) {
     glGenTextures(1, &id_);
   }
+  width_ = width;
+  height_ = height;
+  channels_ = channels;
+  col_step_ = taken(width, finest());
+  row_step_ = taken(height, finest());
+  std::vector<unsigned char> fewer;
+  if (col_step_ > 1 || row_step_ > 1) {
+    fewer = thinned(0, height, bytes);
+    bytes = fewer.data();
+  }
   glBindTexture(GL_TEXTURE_2D, id_);
   glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
-  glTexImage2D(GL_TEXTURE_2D, 0, internal, width, height, 0, format, GL_UNSIGNED_BYTE, bytes);
+  glTexImage2D(GL_TEXTURE_2D, 0, internal, taken(width, col_step_), taken(height, row_step_), 0, format,
+               GL_UNSIGNED_BYTE, bytes);
   const GLint filter = smooth ? GL_LINEAR : GL_NEAREST;
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, filter);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, filter);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
-  width_ = width;
-  height_ = height;
-  channels_ = channels;
+}
+
+int PixelTexture::finest() {
+  GLint most = 0;
+  glGetIntegerv(GL_MAX_TEXTURE_SIZE, &most);
+  return std::max(1, most);
+}
+
+std::vector<unsigned char> PixelTexture::thinned(int first, int count, const unsigned char* bytes) const {
+  const auto each = static_cast<std::size_t>(channels_);
+  const std::size_t row_bytes = static_cast<std::size_t>(width_) * each;
+  std::vector<unsigned char> out;
+  for (int row = taken(first, row_step_) * row_step_; row < first + count; row += row_step_) {
+    const unsigned char* from = bytes + static_cast<std::size_t>(row - first) * row_bytes;
+    for (std::size_t at = 0; at < row_bytes; at += static_cast<std::size_t>(col_step_) * each) {
+      out.insert(out.end(), from + at, from + at + each);
+    }
+  }
+  return out;
 }
 
 std::size_t PixelTexture::bytes() const {
   const std::size_t each = channels_ > 1 ? 4 : 1;
-  return static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_) * each;
+  return static_cast<std::size_t>(taken(width_, col_step_)) *
+         static_cast<std::size_t>(taken(height_, row_step_)) * each;
 }
 
 void PixelTexture::put_rows(int first, int count, const unsigned char* bytes) const {
   glBindTexture(GL_TEXTURE_2D, id_);
   glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
-  glTexSubImage2D(GL_TEXTURE_2D, 0, 0, first, width_, count, GL_RGB, GL_UNSIGNED_BYTE, bytes);
+  const int above = taken(first, row_step_);  // rows of the texture
+  const int rows = taken(first + count, row_step_) - above;
+  std::vector<unsigned char> fewer;
+  if (col_step_ > 1 || row_step_ > 1) {
+    fewer = thinned(first, count, bytes);
+    bytes = fewer.data();
+  }
+  if (rows > 0) {
+    glTexSubImage2D(GL_TEXTURE_2D, 0, 0, above, taken(width_, col_step_), rows, GL_RGB, GL_UNSIGNED_BYTE,
+                    bytes);
+  }
 }
 
 Image read_window(int width, int height) {

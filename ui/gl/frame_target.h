@@ -47,7 +47,8 @@ class FrameTarget {
   int height_ = 0;
 };
 
-/// A texture of bytes that a program fills; 0 to `channels` = 1, 3 or 4. Main thread.
+/// A texture of bytes that a program fills; 0 to `channels` = 1, 3 or 4. Of a picture that is larger than the
+/// card's textures every second (third, ...) row and column is in it. Main thread.
 class PixelTexture {
  public:
   PixelTexture() = default;
@@ -57,17 +58,25 @@ class PixelTexture {
   void upload(int width, int height, int channels, const unsigned char* bytes, bool smooth);
   /// Of what was uploaded before, RGB.
   void put_rows(int first, int count, const unsigned char* bytes) const;
+  /// The most rows or columns of which each is in it.
+  [[nodiscard]] static int finest();
   [[nodiscard]] unsigned id() const { return id_; }
+  /// Of the picture.
   [[nodiscard]] int width() const { return width_; }
   [[nodiscard]] int height() const { return height_; }
   /// Of the graphics card's memory, where three channels take as much as four.
   [[nodiscard]] std::size_t bytes() const;
 
  private:
+  /// What is in the texture of `count` rows that begin with row `first`.
+  [[nodiscard]] std::vector<unsigned char> thinned(int first, int count, const unsigned char* bytes) const;
+
   unsigned id_ = 0;
   int width_ = 0;
   int height_ = 0;
   int channels_ = 0;
+  int col_step_ = 1;  ///< of the picture, from one column of the texture to the next
+  int row_step_ = 1;
 };
 
 /// The pixels of the window's own frame, as they stand, RGB.

@@ -29,8 +29,12 @@ void GrowingPicture::update(LiveSession& session, const UiContext& ui) {
   const std::size_t row_bytes = static_cast<std::size_t>(news.rows.cols) * 3;
   const bool has_room =
       texture_.id() != 0 && texture_.width() == news.rows.cols && texture_.height() >= news.total;
-  if (!has_room) {  // twice as much each time, so that a long scan is seldom moved
-    const int room = std::max(kFewestRows, 2 * news.total);
+  if (!has_room) {
+    // Twice as much each time, so that a long scan is seldom moved; not so much that the card would leave out
+    // rows for which it still has room.
+    const int most = PixelTexture::finest();
+    const int twice = std::max(kFewestRows, 2 * news.total);
+    const int room = news.total <= most ? std::min(twice, most) : twice;
     pixels_.resize(row_bytes * static_cast<std::size_t>(room));
   }
   std::ranges::copy(painted, pixels_.begin() + static_cast<std::ptrdiff_t>(row_bytes) * news.first);
