@@ -22,6 +22,7 @@
 #include "ui/gl/frame_target.h"
 #include "ui/gl/gl_window.h"
 #include "ui/operator/operator_screen.h"
+#include "ui/shell/key_taps.h"
 #include "ui/shell/script.h"
 #include "ui/viewer/pair_screen.h"
 #include "ui/viewer/viewer_screen.h"

@@ -66,8 +66,7 @@ TEST_F(LostPlaces, GoAlongIntoANewFrame) {
   const auto turned = poses[1].covariance->topLeftCorner<3, 3>();
   const Eigen::Vector3d axis = change.rotation.col(0);
   EXPECT_LT((turned - 1e-6 * axis * axis.transpose()).norm(), 1e-15);
-  EXPECT_LT(
-      (poses[1].covariance->bottomRightCorner<3, 3>() - 4e-4 * axis * axis.transpose()).norm(), 1e-12);
+  EXPECT_LT((poses[1].covariance->bottomRightCorner<3, 3>() - 4e-4 * axis * axis.transpose()).norm(), 1e-12);
 }
 
 TEST_F(LostPlaces, AreGoneWithAllThatTheyLayBeside) {

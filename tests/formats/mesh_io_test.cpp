@@ -3,6 +3,9 @@
 #include "formats/mesh_io.h"
 
 #include <algorithm>
+#include <array>
+#include <cstring>
+#include <limits>
 
 #include "formats/byte_order.h"
 #include "formats/glb_container.h"
@@ -365,7 +368,7 @@ TEST(MeshGlb, HasNoNormalThatIsNotOneLong) {
   const std::string_view binary = split_glb(glb, "t").value().binary;
   std::array<Eigen::Vector3f, 5> normals;  // behind as many positions
   ASSERT_GE(binary.size(), 2 * sizeof normals);
-  std::memcpy(normals.data(), binary.data() + sizeof normals, sizeof normals);
+  std::memcpy(static_cast<void*>(normals.data()), binary.data() + sizeof normals, sizeof normals);
   for (const Eigen::Vector3f& n : normals) {
     EXPECT_NEAR(n.norm(), 1, 1e-6);
   }

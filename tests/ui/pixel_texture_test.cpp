@@ -31,7 +31,9 @@ class PixelTextures : public OnAWindow {
     std::vector<unsigned char> out;
     for (int row = first; row < first + count; ++row) {
       for (int col = 0; col < cols; ++col) {
-        out.insert(out.end(), {static_cast<unsigned char>(row), static_cast<unsigned char>(row >> 8), mark});
+        for (const int value : {row & 0xff, (row >> 8) & 0xff, int{mark}}) {
+          out.push_back(static_cast<unsigned char>(value));
+        }
       }
     }
     return out;
