@@ -115,6 +115,8 @@ key enter
 wait scans.0
 wait idle
 expect scan
+key space
+wait scans.1 60
 quit
 )";
 

@@ -193,6 +193,7 @@ constexpr EnginePhrase kCalibration[] = {
      "das Muster von Hand in Lagen aufnehmen, bei mindestens drei Stellungen des Spiegels"},
     {"calibrate each camera in a folder of its own", "jede Kamera in einem eigenen Ordner kalibrieren"},
     {"there is no pose of the board yet", "es gibt noch keine Lage des Musters"},
+    {"take pictures of the board", "Bilder vom Muster aufnehmen"},
     {"take a picture of the board first, and leave it where it is",
      "zuerst das Muster aufnehmen, und es liegen lassen"},
     {"there is no scan in it", "es ist kein Scan darin"},
