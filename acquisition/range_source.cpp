@@ -163,8 +163,10 @@ std::optional<Error> RangeSource::halted() const {
   if (!*halted_) {
     return std::nullopt;
   }
-  return Error{ErrorKind::kDevice, "the emergency stop was pressed: lasers are off and nothing moves",
-               uri_.text(), "see that all is clear, then scan: a stage with switches is homed first"};
+  return Error{ErrorKind::kDevice,
+               "the emergency stop was pressed: lasers are off and nothing moves",
+               {},
+               "see that all is clear, then scan: a stage with switches is homed first"};
 }
 
 RangeSource::RangeSource(DeviceUri uri, Device device, DeviceCapabilities capabilities,
