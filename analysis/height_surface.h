@@ -25,7 +25,7 @@ class HeightSurface {
                 std::vector<float> distance_mm);
 
   /// Signed distance of p to the surface, negative below it (in the clay); trilinear between the nodes.
-  /// Clamped to −band_mm() deep in the clay and to half of it outside.
+  /// Clamped to −band_mm() deep in the clay and to above_mm outside.
   [[nodiscard]] float height_mm(const Eigen::Vector3f& p_mm) const;
   /// Unit, out of the clay, of the surface nearest p; zero outside the band.
   [[nodiscard]] Eigen::Vector3f normal(const Eigen::Vector3f& p_mm) const;

@@ -25,6 +25,11 @@ constexpr float kLeastReliability = 0.25F;
 /// Below this many vertices a cell edge, cells stay empty and the surface gets holes.
 constexpr float kEdgesPerCell = 2.0F;
 constexpr int kPaddingCells = 3;
+/// Of a point off the free surface before its depth is known: a hollow of any size stays bridged.
+constexpr float kFirstLookWeight = 0.002F;
+constexpr float kFirstLookCells = 2.0F;  ///< of the grid, in those of the last one
+/// Over which the surface is moved onto the free points: where it is curved it lies off them.
+constexpr float kOffsetReachMm = 3.0F;
 /// Further off than this, a point is not one that the surface should have met.
 constexpr float kMostOffsetCells = 0.75F;
 
@@ -119,29 +124,17 @@ float level_of(const std::vector<PoissonSample>& samples, const NodeGrid& grid,
   return static_cast<float>(sum / weight);
 }
 
-}  // namespace
-
-HeightSurface reconstruct_surface(const Mesh& mesh, const VertexGeometry& geometry,
-                                  const std::vector<std::uint8_t>& free_surface,
-                                  const std::vector<float>& reliability, const ReconstructionOptions& options,
-                                  const JobContext& job) {
+/// Cells are no smaller than least_cell_mm. weights: [V].
+HeightSurface surface_of(const Mesh& mesh, const VertexGeometry& geometry, const std::vector<float>& weights,
+                         float least_cell_mm, const ReconstructionOptions& options, const JobContext& job) {
   const Eigen::AlignedBox3f& box = geometry.box;
   if (box.isEmpty()) {
     return {};
   }
-  const float above_mm = 0.5F * options.band_mm;
-  const Vector3f room = box.sizes().array() + 2 * above_mm;
-  const float cell_mm = std::max({options.cell_mm, kEdgesPerCell * static_cast<float>(geometry.mean_edge_mm),
+  const Vector3f room = box.sizes().array() + 2 * options.above_mm;
+  const float cell_mm = std::max({least_cell_mm, kEdgesPerCell * static_cast<float>(geometry.mean_edge_mm),
                                   std::cbrt(room.prod() / static_cast<float>(options.most_nodes))});
-  const NodeGrid grid = grid_around(box, above_mm, cell_mm);
-  std::vector<float> weights(mesh.positions.size());
-  parallel_for_each_index(
-      weights.size(),
-      [&](std::size_t i) {
-        weights[i] = std::max(reliability[i], kLeastReliability) *
-                     (free_surface[i] != 0 ? 1.0F : options.other_weight);
-      },
-      kGrain);
+  const NodeGrid grid = grid_around(box, options.above_mm, cell_mm);
   const std::vector<CellSample> cells =
       gather_cell_samples(mesh.positions, geometry.normal, geometry.area_mm2, weights, grid);
   if (cells.empty()) {
@@ -168,11 +161,12 @@ HeightSurface reconstruct_surface(const Mesh& mesh, const VertexGeometry& geomet
   if (surface.faces.empty()) {
     return {};
   }
-  std::vector<float> distance = distances_near(surface, grid, indicator.value, options.band_mm, above_mm);
-  HeightSurface result(std::move(surface), grid, options.band_mm, above_mm, std::move(distance));
+  std::vector<float> distance =
+      distances_near(surface, grid, indicator.value, options.band_mm, options.above_mm);
+  HeightSurface result(std::move(surface), grid, options.band_mm, options.above_mm, std::move(distance));
   // Smoothing draws the surface inwards where it is curved, and what weight the impressions have draws it
   // down: it is moved so that on average the free points around lie on it.
-  LocalMean offset(box, script_mm);
+  LocalMean offset(box, std::max(kOffsetReachMm, cell_mm));
   for (const CellSample& cell : cells) {
     const float height = result.height_mm(cell.position_mm);
     if (std::abs(height) < kMostOffsetCells * cell_mm) {
@@ -182,6 +176,39 @@ HeightSurface reconstruct_surface(const Mesh& mesh, const VertexGeometry& geomet
   }
   result.shift([&](const Vector3f& p) { return offset.at(p).value_or(0.0F); });
   return result;
+}
+
+}  // namespace
+
+HeightSurface reconstruct_surface(const Mesh& mesh, const VertexGeometry& geometry,
+                                  const std::vector<std::uint8_t>& free_surface,
+                                  const std::vector<float>& reliability, const ReconstructionOptions& options,
+                                  const JobContext& job) {
+  std::vector<float> weights(mesh.positions.size());
+  const auto weigh = [&](const auto& weight_off_it) {
+    parallel_for_each_index(
+        weights.size(),
+        [&](std::size_t i) {
+          weights[i] = std::max(reliability[i], kLeastReliability) *
+                       (free_surface[i] != 0 ? 1.0F : weight_off_it(mesh.positions[i]));
+        },
+        kGrain);
+  };
+  if (options.other_weight >= 1) {
+    weigh([](const Vector3f&) { return 1.0F; });
+    return surface_of(mesh, geometry, weights, options.cell_mm, options, job);
+  }
+  weigh([](const Vector3f&) { return kFirstLookWeight; });
+  const HeightSurface first =
+      surface_of(mesh, geometry, weights, kFirstLookCells * options.cell_mm, options, job);
+  if (first.mesh().faces.empty()) {
+    return {};
+  }
+  weigh([&](const Vector3f& p) {
+    const float depth_mm = std::max(-first.height_mm(p), options.full_depth_mm);
+    return options.other_weight * options.full_depth_mm / depth_mm;
+  });
+  return surface_of(mesh, geometry, weights, options.cell_mm, options, job);
 }
 
 }  // namespace dubsar

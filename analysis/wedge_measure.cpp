@@ -54,14 +54,17 @@ void choose_directional(Wedge* wedge) {
 constexpr double kPointTogether = 1.7;
 constexpr double kEdgeTogether = 1.8;
 constexpr double kPlaneTogether = 2.4;
-/// Of the free surface above an impression, which nobody has seen: where it lies, and which way it looks.
+/// Of the free surface above an impression, which nobody has seen: where it lies, at least and as a share of
+/// the depth (its dam grows with a wedge, and so does what bridging it leaves open), and which way it looks.
 constexpr double kSurfaceMm = 0.02;
+constexpr double kSurfaceShare = 0.05;
 constexpr double kSurfaceRad = 0.013;
 
 void note_sigmas(const WedgeFaces& faces, const InnerEdges& edges, Wedge* wedge) {
   WedgeSigma& sigma = wedge->sigma;
   sigma.depth_point_mm = kPointTogether * edges.depth_point_sigma_mm;
-  sigma.depth_mm = std::hypot(sigma.depth_point_mm / std::sqrt(3.0), kSurfaceMm);
+  sigma.depth_mm = std::hypot(sigma.depth_point_mm / std::sqrt(3.0),
+                              std::max(kSurfaceMm, kSurfaceShare * wedge->depth_mm));
   const double depth = std::max(wedge->depth_mm, 0.01);
   double relative = 0;
   for (std::size_t k = 0; k < 3; ++k) {

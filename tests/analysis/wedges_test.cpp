@@ -12,6 +12,7 @@
 #include "analysis/text_frame.h"
 #include "core/units.h"
 #include "sim/tablet.h"
+#include "tests/analysis/support/pits.h"
 #include "tests/analysis/support/shapes.h"
 
 namespace dubsar {
@@ -183,6 +184,43 @@ TEST(Wedges, AreTheSameForAnyNumberOfThreads) {
     EXPECT_EQ(many.wedges[i].exit_points_mm, few.wedges[i].exit_points_mm);
     EXPECT_EQ(many.wedges[i].confidence, few.wedges[i].confidence);
   }
+}
+
+/// A wedge of the usual shape, so deep, alone on a sheet that lies askew.
+Mesh one_wedge(double depth_mm, double spacing_mm) {
+  pits::Pit pit;
+  const double scale = depth_mm / -pit.tip.z();
+  pit.tip *= scale;
+  for (Eigen::Vector3d& exit : pit.exits) {
+    exit *= scale;
+  }
+  Mesh mesh =
+      pits::sheet(6.0 * scale + 14.0, spacing_mm, [&](double x, double y) { return pit.floor(x, y); });
+  const Eigen::AngleAxisf askew(0.35F, Eigen::Vector3f(1, 0.6F, 0.3F).normalized());
+  for (Eigen::Vector3f& p : mesh.positions) {
+    p = askew * p;
+  }
+  mesh.normals.clear();
+  return mesh;
+}
+
+TEST(Wedges, OfAMillimetreAndOfFourAreAsDeepAsTheyAre) {
+  for (const double depth : {1.0, 4.0}) {
+    const WedgeSet set = wedges_of(one_wedge(depth, 0.12 + 0.04 * depth));
+    ASSERT_EQ(set.wedges.size(), 1U) << depth;
+    const Wedge& wedge = set.wedges.front();
+    EXPECT_NEAR(wedge.depth_mm, depth, 0.08 * depth);
+    EXPECT_LT(std::abs(wedge.depth_mm - depth), 2 * wedge.sigma.depth_mm) << depth;
+    EXPECT_LT(wedge.sigma.depth_mm, 0.03 + 0.06 * depth);
+  }
+}
+
+TEST(Wedges, OneDeeperThanAnyWritingIsToldToBe) {
+  EXPECT_GT(ReconstructionOptions{}.band_mm, JudgeOptions{}.max_depth_mm);
+  const WedgeSet set = wedges_of(one_wedge(6.9, 0.6));
+  EXPECT_TRUE(set.wedges.empty());
+  EXPECT_TRUE(
+      std::ranges::any_of(set.rejected, [](const RejectedWedge& r) { return r.reason == "too deep"; }));
 }
 
 TEST(Wedges, ThereAreNoneOnABlankTabletAndASphere) {
