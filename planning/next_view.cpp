@@ -174,9 +174,13 @@ Result<NextViews> next_views(std::span<const ViewCandidate> candidates, const Sc
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return worth(a) > worth(b); });
+  const auto predicted_mm2 = [&](std::size_t c) { return std::min(all_area, kSpill * gain[c]); };
+  for (std::size_t c = 0; c < candidates.size(); ++c) {
+    out.best_gain_mm2 = std::max(out.best_gain_mm2, predicted_mm2(c));
+  }
   const auto propose = [&](std::size_t c) {
-    out.ranked.push_back({candidates[c].model_from_scanner, std::min(all_area, kSpill * gain[c]),
-                          candidates[c].say, candidates[c].placement});
+    out.ranked.push_back(
+        {candidates[c].model_from_scanner, predicted_mm2(c), candidates[c].say, candidates[c].placement});
   };
   // The overlap of a candidate costs as much as its gain: asked for in order of worth, a few at a time, until
   // enough are found.

@@ -22,9 +22,11 @@ struct NextViewOptions {
   std::size_t ranked = 5;          ///< views returned
 };
 
-/// How well the candidates see each target: the greatest chance over all of them.
+/// What to do next, and what all candidates together promise: best_chance is the greatest over all of them.
 struct NextViews {
-  std::vector<NextView> ranked;    ///< best first
+  std::vector<NextView> ranked;  ///< best first
+  /// Greatest red area that any candidate is expected to clear, whether it is proposed or not.
+  double best_gain_mm2 = 0;
   std::vector<float> best_chance;  ///< [targets]; -1 for targets that are not red
 };
 

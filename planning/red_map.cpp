@@ -105,8 +105,7 @@ Result<RedMapResult> make_red_map(std::span<const PlacedScan> scans, const Mesh*
   if (rig != nullptr) {
     excuse_out_of_reach(scans, cover, views->best_chance, surface_mm2, options.excuse, out.targets);
   }
-  excuse_last_specks(scans, cover, views->ranked.empty() ? 0.0 : views->ranked.front().predicted_cleared_mm2,
-                     surface_mm2, options.excuse, out.targets);
+  excuse_last_specks(scans, cover, views->best_gain_mm2, surface_mm2, options.excuse, out.targets);
   for (const RedSampleRef& ref : out.targets.samples) {
     if (out.targets.targets[ref.target].state == RegionState::kExcused) {
       out.flags[ref.scan][ref.sample] |= kExcused;

@@ -275,6 +275,21 @@ TEST(RedMap, WhatLiesOutsideTheFieldOfAllScansWasNotLookedAt) {
   }
 }
 
+TEST(RedMap, WhatSomeViewWouldClearIsNoLastSpeckThoughNoneIsProposed) {
+  Session session;
+  session.scan(turned(0, 0));
+  session.scan(turned(60, 0));
+  RedMapOptions options;
+  options.excuse.speck_budget = 1.0;
+  options.next.least_gain_mm2 = 1e9;
+  JobContext job;
+  const Rig rig = turntable_rig();
+  const auto result = make_red_map(session.map.scans(), nullptr, &rig, options, job);
+  ASSERT_TRUE(result);
+  EXPECT_TRUE(result->map.next.empty());
+  EXPECT_FALSE(result->map.conclusive);
+}
+
 TEST(RedMap, CancelledWorkSaysSo) {
   Session session;
   session.scan(turned(0, 0));
