@@ -39,24 +39,20 @@ ScannerModel ScannerModel::of(const RangeGrid& grid, double noise_mm) {
 
 ScannerModel ScannerModel::that_took(const RangeGrid& grid, const Rig* rig, double noise_mm) {
   ScannerModel model = of(grid, noise_mm);
-  Eigen::AlignedBox2d across;
+  Eigen::AlignedBox3d field;
   if (rig != nullptr) {
-    const Eigen::AlignedBox3d field = of(*rig, noise_mm).field_mm;
-    model.field_mm = field;
-    across = {field.min().head<2>(), field.max().head<2>()};
+    field = of(*rig, noise_mm).field_mm;
   } else {
     for (std::size_t i = 0; i < grid.size(); ++i) {
       if (grid.valid[i] != 0) {
-        across.extend(Eigen::Vector2d(grid.x[i], grid.y[i]));
+        field.extend(grid.point(i).cast<double>());
       }
     }
   }
-  const double border_mm = kGapInSpacings * model.spacing_mm;
-  model.field_mm.min().head<2>() = across.min().array() + border_mm;
-  model.field_mm.max().head<2>() = across.max().array() - border_mm;
   // A slope that leaves the field in depth falls by up to three spacings a sample.
-  model.field_mm.min().z() += kGapInSpacings * border_mm;
-  model.field_mm.max().z() -= kGapInSpacings * border_mm;
+  const double border_mm = kGapInSpacings * model.spacing_mm;
+  const Eigen::Vector3d border(border_mm, border_mm, kGapInSpacings * border_mm);
+  model.field_mm = {field.min() + border, field.max() - border};
   return model;
 }
 

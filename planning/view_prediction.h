@@ -25,8 +25,9 @@ struct ScannerModel {
   [[nodiscard]] static ScannerModel of(const Rig& rig, double noise_mm);
   [[nodiscard]] static ScannerModel of(const RangeGrid& grid, double noise_mm);
   /// As of(grid, noise_mm), within what that scan certainly looked over: the rig's field; where no rig is
-  /// known, what the grid's own returns span across (how deep it saw is not known); either less the outermost
-  /// three spacings, where samples may lack neighbours for no other reason than that the field ends.
+  /// known, what the grid's own returns span, nothing where there are none; either less the outermost three
+  /// spacings (nine in depth), where samples may lack neighbours for no other reason than that the field
+  /// ends.
   [[nodiscard]] static ScannerModel that_took(const RangeGrid& grid, const Rig* rig, double noise_mm);
 };
 
