@@ -272,7 +272,8 @@ std::vector<std::uint8_t> SurfaceCover::suspect_cells(std::span<const PlacedScan
       },
       1);
   std::vector<std::uint8_t> suspect(start_.size(), 0);
-  const auto far = static_cast<float>(reach_mm());
+  // A whole cell, which is larger than the reach where the box is: one sample speaks for all of its cell.
+  const float far = coarse_mm_;
   for (const Eigen::Vector3f& p : places | std::views::join) {
     if (suspect[cell_index(p)] == 2) {
       continue;  // its surroundings are marked

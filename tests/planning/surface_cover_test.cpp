@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <memory>
@@ -120,6 +121,39 @@ TEST(SurfaceCover, ARimThatTwoScansClearedForEachOtherIsStillFound) {
     area += t.position_mm.head<2>().norm() < 3 ? t.area_mm2 : 0.0;
   }
   EXPECT_NEAR(area, 3.9, 1.5);
+}
+
+/// Holes every 2 mm, each a little off, so that the samples meet them all differently.
+constexpr double kBetweenHolesMm = 2.0;
+constexpr int kHolesAcross = 5;
+Eigen::Vector2d middle_of_hole(int row, int col) {
+  return {(col - 2) * kBetweenHolesMm + 0.05 * std::sin(3 * col + 7 * row),
+          (row - 2) * kBetweenHolesMm + 0.05 * std::cos(5 * col + row)};
+}
+
+std::function<bool(double, double)> outside_all_discs(double radius_mm) {
+  return [=](double x, double y) {
+    for (int k = 0; k < kHolesAcross * kHolesAcross; ++k) {
+      if ((Eigen::Vector2d(x, y) - middle_of_hole(k / kHolesAcross, k % kHolesAcross)).norm() <= radius_mm) {
+        return false;
+      }
+    }
+    return true;
+  };
+}
+
+TEST(SurfaceCover, HolesAreTheSameBesideSomethingFarAway) {
+  // The box around both is so large that its cells are larger than the reach.
+  const Plate plate(outside_all_discs(0.5), 0);
+  const Plate far([](double, double) { return true; }, 0);
+  PlacedScan there = far.placed(1);
+  there.model_from_scanner.translation_mm = {200, 200, 200};
+  const PlacedScan alone[] = {plate.placed(0)};
+  const PlacedScan both[] = {plate.placed(0), there};
+  const auto rims_of = [](const SurfaceCover& cover) {
+    return std::ranges::count_if(cover.rims(), [](const Rim& rim) { return rim.position_mm.norm() < 50; });
+  };
+  EXPECT_EQ(rims_of(SurfaceCover(both)), rims_of(SurfaceCover(alone)));
 }
 
 TEST(SettleClosed, SettlesWhatLiesOnClosedSurfaceAndLoneStraysOnly) {
