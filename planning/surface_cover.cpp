@@ -17,30 +17,19 @@ namespace dubsar {
 namespace {
 
 constexpr double kCellInSpacings = 1.5;
-/// Flatter surface is sampled every two cells at least by one sample a block.
-constexpr float kSteepCosine = 0.5F;
 constexpr double kLeastCellMm = 0.15;
 constexpr int kSectors = 12;
 constexpr int kEmptySectorsOfRim = 4;
+/// Beside a round hole of 4 to 6 µ fewer are empty. As few are at the edges of wedges, where the surface
+/// bends: such an element is a rim where others like it stand around the same bare disc.
+constexpr int kEmptySectorsOfSmallRim = 3;
+constexpr float kDiscMiddleInCells = 1.5F;
+constexpr float kBareDiscInCells = 1.2F;
+constexpr float kRingInCells = 3.3F;  ///< how far from there its rims are looked for
+constexpr int kLeastInRing = 6;
+constexpr int kMostEmptySectorsOfRing = 4;
+constexpr float kFacesMiddleCosine = 0.5F;
 constexpr std::int64_t kMostCoarseCells = 16'000'000;
-
-/// Across two steps of `step` samples each way, as far as they lie on one surface.
-Eigen::Vector3f normal_at(const RangeGrid& grid, int row, int col, int step, float longest2) {
-  const Eigen::Vector3f here = grid.point(grid.index(row, col));
-  const auto there = [&](int r, int c) {
-    if (!grid.inside(r, c) || !grid.is_valid(r, c)) {
-      return here;
-    }
-    const Eigen::Vector3f p = grid.point(grid.index(r, c));
-    return (p - here).squaredNorm() <= longest2 ? p : here;
-  };
-  const Eigen::Vector3f along = there(row, col + step) - there(row, col - step);
-  const Eigen::Vector3f across = there(row + step, col) - there(row - step, col);
-  const Eigen::Vector3f towards = grid.view.to_camera(here.cast<double>(), row).cast<float>();
-  const Eigen::Vector3f n = along.cross(across);
-  const float length = n.norm();
-  return length > 1e-12F ? Eigen::Vector3f(n * ((n.dot(towards) < 0 ? -1.0F : 1.0F) / length)) : towards;
-}
 
 /// Twelfth of a turn that (a, b) lies in, without trigonometry.
 unsigned sector_of(float a, float b) {
@@ -110,39 +99,6 @@ SurfaceCover::SurfaceCover(std::span<const PlacedScan> scans) {
   thin(by_scan);
   sort_into_cells();
   find_rims(scans);
-}
-
-std::vector<SurfaceCover::Element> SurfaceCover::elements_of(const PlacedScan& scan, double cell_mm) {
-  const RangeGrid& grid = *scan.grid;
-  const double spacing_mm = std::max(spacing_of(grid), 1e-6);
-  const int stride = std::max(1, static_cast<int>(std::lround(cell_mm / spacing_mm)));
-  const auto longest2 = static_cast<float>(std::pow(4.0 * stride * spacing_mm, 2.0));
-  const Eigen::Matrix3f rotation = scan.model_from_scanner.rotation.cast<float>();
-  const Eigen::Vector3f translation = scan.model_from_scanner.translation_mm.cast<float>();
-  const auto good = [&](int r, int c) {
-    const std::size_t i = grid.index(r, c);
-    return grid.valid[i] != 0 && is_unflagged((*scan.flags)[i]) && grid.point(i).allFinite();
-  };
-  std::vector<Element> out;
-  for (int row = 0; row < grid.rows; row += stride) {
-    for (int col = 0; col < grid.cols; col += stride) {
-      // Of a block, the first good sample; where the surface is steep all of them, lest it fall apart.
-      for (int k = 0; k < stride * stride; ++k) {
-        const int r = row + k / stride;
-        const int c = col + k % stride;
-        if (!grid.inside(r, c) || !good(r, c)) {
-          continue;
-        }
-        const Eigen::Vector3f p = grid.point(grid.index(r, c));
-        const Eigen::Vector3f n = normal_at(grid, r, c, stride, longest2);
-        out.push_back({rotation * p + translation, rotation * n});
-        if (-n.dot(grid.view.direction.cast<float>()) > kSteepCosine) {
-          break;
-        }
-      }
-    }
-  }
-  return out;
 }
 
 void SurfaceCover::thin(const std::vector<std::vector<Element>>& by_scan) {
@@ -290,7 +246,7 @@ std::vector<std::uint8_t> SurfaceCover::suspect_cells(std::span<const PlacedScan
 
 void SurfaceCover::find_rims(std::span<const PlacedScan> scans) {
   const std::vector<std::uint8_t> suspect = suspect_cells(scans);
-  is_rim_.assign(elements_.size(), 0);
+  is_rim_.assign(elements_.size(), kNoRim);
   std::vector<Eigen::Vector3f> outward(elements_.size());
   const auto radius = static_cast<float>(reach_mm());
   const auto nearest2 = static_cast<float>(std::pow(0.3 * cell_mm_, 2.0));
@@ -315,24 +271,60 @@ void SurfaceCover::find_rims(std::span<const PlacedScan> scans) {
             return false;
           }
           seen |= 1U << sector_of(a, b);
-          return kRunOfEmpty[seen].longest < kEmptySectorsOfRim;  // whatever else lies around, it is none
+          return kRunOfEmpty[seen].longest <
+                 kEmptySectorsOfSmallRim;  // whatever else lies around, it is none
         });
         const auto [longest, last] = kRunOfEmpty[seen];
-        if (longest >= kEmptySectorsOfRim) {
-          is_rim_[i] = 1;
+        if (longest >= kEmptySectorsOfSmallRim) {
+          is_rim_[i] = longest >= kEmptySectorsOfRim ? kRim : kMaybeRim;
           const double middle = (last + 1 - 0.5 * longest) / kSectors * 2 * kPi;
           outward[i] = u * static_cast<float>(std::cos(middle)) + v * static_cast<float>(std::sin(middle));
         }
       },
       512);
+  settle_small_rims(outward);
   keep_holes(outward);
+}
+
+void SurfaceCover::settle_small_rims(const std::vector<Eigen::Vector3f>& outward) {
+  const auto cell = static_cast<float>(cell_mm_);
+  const auto rings_a_bare_disc = [&](std::size_t i) {
+    const Element& here = elements_[i];
+    const Eigen::Vector3f middle = here.position_mm + kDiscMiddleInCells * cell * outward[i];
+    const Eigen::Vector3f u = here.normal.unitOrthogonal();
+    const Eigen::Vector3f v = here.normal.cross(u);
+    unsigned seen = 0;
+    int in_ring = 0;
+    bool bare = true;
+    for_each_near(middle, kRingInCells * cell, [&](std::uint32_t j, const Eigen::Vector3f& d, float d2) {
+      const float a = u.dot(d);
+      const float b = v.dot(d);
+      // Above and below it as well: a wall that falls off steeply goes on there.
+      bare = a * a + b * b >= kBareDiscInCells * kBareDiscInCells * cell * cell;
+      if (bare && is_rim_[j] != kNoRim && -outward[j].dot(d) > kFacesMiddleCosine * std::sqrt(d2)) {
+        seen |= 1U << sector_of(a, b);
+        ++in_ring;
+      }
+      return !bare;
+    });
+    return bare && in_ring >= kLeastInRing && kRunOfEmpty[seen].longest <= kMostEmptySectorsOfRing;
+  };
+  std::vector<std::uint8_t> settled(is_rim_.size(), kNoRim);
+  parallel_for_each_index(
+      elements_.size(),
+      [&](std::size_t i) {
+        const bool rim = is_rim_[i] == kRim || (is_rim_[i] == kMaybeRim && rings_a_bare_disc(i));
+        settled[i] = rim ? kRim : kNoRim;
+      },
+      512);
+  is_rim_ = std::move(settled);
 }
 
 void SurfaceCover::keep_holes(const std::vector<Eigen::Vector3f>& outward) {
   std::vector<Rim> rims;
   std::vector<std::uint32_t> element;
   for (std::uint32_t i = 0; i < elements_.size(); ++i) {
-    if (is_rim_[i] != 0) {
+    if (is_rim_[i] == kRim) {
       rims.push_back({elements_[i].position_mm.cast<double>(), elements_[i].normal.cast<double>(),
                       outward[i].cast<double>()});
       element.push_back(i);
@@ -341,7 +333,7 @@ void SurfaceCover::keep_holes(const std::vector<Eigen::Vector3f>& outward) {
   for (Hole& hole : holes_of(rims, reach_mm())) {
     if (hole.width_mm < 0.5 * reach_mm() || hole.rim.size() < 3) {
       for (const std::uint32_t i : hole.rim) {
-        is_rim_[element[i]] = 0;
+        is_rim_[element[i]] = kNoRim;
       }
       continue;
     }
@@ -358,11 +350,11 @@ SurfaceCover::Place SurfaceCover::at(const Eigen::Vector3d& p_mm, double radius_
     return Place::kBare;
   }
   Place place = Place::kBare;
-  for_each_near(p_mm.cast<float>(), static_cast<float>(radius_mm),
-                [&](std::uint32_t i, const Eigen::Vector3f&, float) {
-                  place = is_rim_[i] != 0 ? Place::kRim : place == Place::kRim ? Place::kRim : Place::kClosed;
-                  return place == Place::kRim;
-                });
+  for_each_near(
+      p_mm.cast<float>(), static_cast<float>(radius_mm), [&](std::uint32_t i, const Eigen::Vector3f&, float) {
+        place = is_rim_[i] == kRim ? Place::kRim : place == Place::kRim ? Place::kRim : Place::kClosed;
+        return place == Place::kRim;
+      });
   return place;
 }
 

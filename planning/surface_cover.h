@@ -16,14 +16,16 @@ namespace dubsar {
 /// The well-sampled surface of all scans together, as one thinned set of surface elements, and where it ends.
 /// Flags alone cannot tell: where two scans see a hole up to the same rim, the border of each lies on good
 /// samples of the other, and both are cleared. An element is a rim when the elements around it, within
-/// reach_mm(), leave half a turn or nearly so empty.
+/// reach_mm(), leave 120° or more empty; or 90°, as beside a round hole of 4 to 6 µ, when it is one of a ring
+/// of such elements that face the same bare disc.
 class SurfaceCover {
  public:
   /// Elements about 1.5 of the largest µ apart, and no closer than 0.15 mm.
   explicit SurfaceCover(std::span<const PlacedScan> scans);
 
   [[nodiscard]] double cell_mm() const { return cell_mm_; }
-  /// Within this distance neighbours are looked for: the diameter below which a hole is none.
+  /// Within this distance neighbours are looked for: the diameter below which a hole is none. Of round holes
+  /// of 4 µ, 14 % are missed, of 4.5 µ 2 %, from 5 µ on none.
   [[nodiscard]] double reach_mm() const { return 2.3 * cell_mm_; }
   [[nodiscard]] const std::vector<Rim>& rims() const { return rims_; }
   /// Every rim is part of one hole. Rims shorter than reach_mm() are none: the rule of 3µ lets such gaps
@@ -52,6 +54,8 @@ class SurfaceCover {
   /// [cells] nonzero near sparse samples, cleared or not: every rim is the border of some scan.
   [[nodiscard]] std::vector<std::uint8_t> suspect_cells(std::span<const PlacedScan> scans) const;
   void find_rims(std::span<const PlacedScan> scans);
+  /// Of the elements with less of a gap beside them those are rims that ring a bare disc with others.
+  void settle_small_rims(const std::vector<Eigen::Vector3f>& outward);
   void keep_holes(const std::vector<Eigen::Vector3f>& outward);
   [[nodiscard]] std::size_t cell_index(const Eigen::Vector3f& p) const;
   /// visit(index, offset, squared distance) returns true to stop.
@@ -64,7 +68,8 @@ class SurfaceCover {
   std::array<std::int64_t, 3> size_{1, 1, 1};
   std::vector<Element> elements_;  ///< by coarse cell
   std::vector<std::uint32_t> start_;
-  std::vector<std::uint8_t> is_rim_;  ///< by element
+  enum RimMark : std::uint8_t { kNoRim, kMaybeRim, kRim };
+  std::vector<std::uint8_t> is_rim_;  ///< RimMark, by element
   std::vector<Rim> rims_;
   std::vector<Hole> holes_;
 };

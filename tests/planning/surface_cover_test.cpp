@@ -142,6 +142,33 @@ std::function<bool(double, double)> outside_all_discs(double radius_mm) {
   };
 }
 
+TEST(SurfaceCover, SmallRoundHolesThatAllScansSeeAreFound) {
+  for (const double radius_mm : {0.25, 0.3, 0.35}) {
+    const Plate one(outside_all_discs(radius_mm), 0);
+    const Plate other(outside_all_discs(radius_mm), 0.05);
+    ClearedMap map(ClearingOptions{});
+    map.add(one.placed(0));
+    map.add(other.placed(1));
+    const auto scans = map.scans();
+    const SurfaceCover cover(scans);
+    const auto holes = inner_holes(cover);
+    for (int k = 0; k < kHolesAcross * kHolesAcross; ++k) {
+      const Eigen::Vector2d middle = middle_of_hole(k / kHolesAcross, k % kHolesAcross);
+      const bool found = std::ranges::any_of(holes, [&](const Hole& hole) {
+        return std::ranges::any_of(hole.rim, [&](std::uint32_t i) {
+          return (cover.rims()[i].position_mm.head<2>() - middle).norm() < radius_mm + 4 * kSpacingMm;
+        });
+      });
+      EXPECT_TRUE(found) << "hole of " << 2 * radius_mm << " mm at " << middle.transpose();
+    }
+  }
+  const auto everywhere = [](double, double) { return true; };
+  const Plate one(everywhere, 0);
+  const Plate other(everywhere, 0.05);
+  const PlacedScan whole[] = {one.placed(0), other.placed(1)};
+  EXPECT_TRUE(inner_holes(SurfaceCover(whole)).empty());
+}
+
 TEST(SurfaceCover, HolesAreTheSameBesideSomethingFarAway) {
   // The box around both is so large that its cells are larger than the reach.
   const Plate plate(outside_all_discs(0.5), 0);
