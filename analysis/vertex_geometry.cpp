@@ -169,19 +169,37 @@ void at_vertex(const Mesh& mesh, std::span<const std::uint32_t> faces, Eigen::Ve
   *area = std::isfinite(whole) ? whole / 6.0F : 0.0F;
 }
 
+/// Evenly taken from the vertices that have an area, about so many: vertices of no face, left over by another
+/// program, change nothing.
+std::vector<std::uint32_t> some_with_area(const VertexGeometry& geometry, std::size_t about) {
+  const auto count = static_cast<std::size_t>(
+      std::ranges::count_if(geometry.area_mm2, [](float area_mm2) { return area_mm2 > 0; }));
+  const std::size_t stride = std::max<std::size_t>(1, count / about);
+  std::vector<std::uint32_t> some;
+  some.reserve(count / stride + 1);
+  std::size_t k = 0;
+  for (std::size_t v = 0; v < geometry.area_mm2.size(); ++v) {
+    if (geometry.area_mm2[v] > 0 && k++ % stride == 0) {
+      some.push_back(static_cast<std::uint32_t>(v));
+    }
+  }
+  return some;
+}
+
 Eigen::AlignedBox3f box_without_strays(const Mesh& mesh, const VertexGeometry& geometry) {
   constexpr std::size_t kSampled = 200000;
   constexpr double kStray = 0.001;
   constexpr float kBeyond = 0.05F;
   Eigen::AlignedBox3f whole;
-  std::array<std::vector<float>, 3> sampled;
-  const std::size_t stride = std::max<std::size_t>(1, mesh.positions.size() / kSampled);
   for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
     if (geometry.area_mm2[v] > 0) {
       whole.extend(mesh.positions[v]);
-      for (Eigen::Index axis = 0; v % stride == 0 && axis < 3; ++axis) {
-        sampled[static_cast<std::size_t>(axis)].push_back(mesh.positions[v][axis]);
-      }
+    }
+  }
+  std::array<std::vector<float>, 3> sampled;
+  for (const std::uint32_t v : some_with_area(geometry, kSampled)) {
+    for (Eigen::Index axis = 0; axis < 3; ++axis) {
+      sampled[static_cast<std::size_t>(axis)].push_back(mesh.positions[v][axis]);
     }
   }
   Eigen::AlignedBox3f box = whole;
@@ -203,11 +221,10 @@ Eigen::AlignedBox3f box_without_strays(const Mesh& mesh, const VertexGeometry& g
 /// The standard deviation where it is noise, from the median over about kSampled vertices.
 double roughness(const Mesh& mesh, const VertexGraph& graph, const VertexGeometry& geometry) {
   constexpr std::size_t kSampled = 100000;
-  const std::size_t vertices = graph.vertex_count();
-  const std::size_t stride = std::max<std::size_t>(1, vertices / kSampled);
-  std::vector<float> away(vertices / stride);
+  const std::vector<std::uint32_t> some = some_with_area(geometry, kSampled);
+  std::vector<float> away(some.size());
   parallel_for_each_index(away.size(), [&](std::size_t k) {
-    const auto v = static_cast<std::uint32_t>(k * stride);
+    const std::uint32_t v = some[k];
     Eigen::Vector3f middle = Eigen::Vector3f::Zero();
     for (const std::uint32_t w : graph.ring(v)) {
       middle += mesh.positions[w];

@@ -51,8 +51,14 @@ ScannerModel ScannerModel::that_took(const RangeGrid& grid, const Rig* rig, doub
   }
   // A slope that leaves the field in depth falls by up to three spacings a sample.
   const double border_mm = kGapInSpacings * model.spacing_mm;
-  const Eigen::Vector3d border(border_mm, border_mm, kGapInSpacings * border_mm);
-  model.field_mm = {field.min() + border, field.max() - border};
+  Eigen::Vector3d low(border_mm, border_mm, kGapInSpacings * border_mm);
+  Eigen::Vector3d high = low;
+  if (rig == nullptr) {
+    // The nearest return is the face of a tablet, not the end of a field that nobody knows: all the writing
+    // of a face that a scan looked straight at lies that near.
+    (grid.view.direction.z() < 0 ? high : low).z() = 0;
+  }
+  model.field_mm = {field.min() + low, field.max() - high};
   return model;
 }
 
