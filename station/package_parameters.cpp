@@ -98,6 +98,8 @@ std::vector<ProvenanceValue> analysis_parameters(const PackageContent& content) 
         {"rings of faces around a fault", static_cast<double>(options.fields.reliability_iterations), ""});
     out.push_back({"weight of a point off the free surface",
                    as_written(options.fields.reconstruction.other_weight), ""});
+    out.push_back({"depth from which that weight falls, as one over the depth",
+                   as_written(options.fields.reconstruction.full_depth_mm), "mm"});
     out.push_back({"smallest hollow", options.wedges.min_basin_mm2, "mm2"});
     out.push_back({"shallowest hollow", options.wedges.min_basin_depth_mm, "mm"});
   }
