@@ -109,6 +109,7 @@ void LiveSession::launch(std::function<void()> job, bool error_stays) {
     if (!error_stays) {
       state_.error.reset();
     }
+    state_.halted = false;
   }
   worker_ = std::thread([this, first = std::move(job)] {
     std::shared_ptr<CameraWatch> watch;
@@ -213,6 +214,7 @@ void LiveSession::halt() {
   const std::scoped_lock lock(mutex_);
   scan_later_ = false;
   halted_ = looks_;
+  state_.halted = busy_;
   if (engine_) {
     engine_->halt();
     return;

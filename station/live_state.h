@@ -92,6 +92,7 @@ struct LiveState {
   std::string signed_by;
   std::filesystem::path package;  ///< of the session as it stands, made or found here; empty: none
   std::optional<Error> error;     ///< what ended the last run or job
+  bool halted = false;            ///< the emergency stop was pressed in the run or job that goes on
   std::string notice;             ///< what the operator should know; empty when a later scan has made it old
   TabletRecord record;
   std::shared_ptr<const PinSet> pins;        ///< with the operator's labels; nothing while none are known

@@ -74,6 +74,40 @@ TEST(Statement, SaysHowToTurnTheTablet) {
   EXPECT_THAT(statement_of(state, true, Language::kGerman).headline, HasSubstr("Rückseite"));
 }
 
+/// The same words for hand and motors would have the turntable turned by hand.
+TEST(Statement, WhatTheHandDoesAndWhatMotorsDoBehindItAreToldApart) {
+  LiveState state = with_scan(PoseStatus::kRegistered);
+  state.phase = LivePhase::kWaiting;
+  state.next = NextView{};
+  state.next->say = "turn the reverse towards the camera, 90°; then turntable to 60°, tilt to 70°";
+  state.next->placement = Placement{};
+  state.next->placement->hand_turn = RigidTransform{};
+  Statement s = statement_of(state, true, Language::kEnglish);
+  EXPECT_EQ(s.headline, "Turn the reverse towards the camera, 90°");
+  EXPECT_EQ(
+      s.detail,
+      "Turn the tablet as shown, then scan. The scanner goes by itself: turntable to 60°, tilt to 70°.");
+  state.phase = LivePhase::kMoving;
+  s = statement_of(state, true, Language::kEnglish);
+  EXPECT_EQ(s.headline, "Hands off: the scanner moves");
+  EXPECT_EQ(s.detail, "Turntable to 60°, tilt to 70°.");
+  state.next->say = "turn the reverse towards the camera, 90°";
+  EXPECT_EQ(statement_of(state, true, Language::kEnglish).detail, "");
+}
+
+TEST(Statement, AnEmergencyStopIsToldAtOnce) {
+  for (const LivePhase phase : {LivePhase::kOpening, LivePhase::kMoving, LivePhase::kScanning,
+                                LivePhase::kJudging, LivePhase::kWaiting, LivePhase::kFinishing}) {
+    LiveState state = with_scan(PoseStatus::kRegistered);
+    state.phase = phase;
+    state.halted = true;
+    const Statement s = statement_of(state, true, Language::kEnglish);
+    EXPECT_EQ(s.tone, Tone::kBad);
+    EXPECT_EQ(s.headline, "EMERGENCY STOP pressed");
+    EXPECT_FALSE(s.may_scan);
+  }
+}
+
 TEST(Statement, AnUnsureScanIsToldWithItsReason) {
   LiveState state = with_scan(PoseStatus::kUnsure);
   state.phase = LivePhase::kWaiting;

@@ -51,11 +51,35 @@ bool is_turned_by_hand(const NextView& next) {
   return next.placement && next.placement->hand_turn;
 }
 
+/// What the hand does, and what the motors do behind it: "turn …; then turntable to …". Either may be empty.
+struct NextSteps {
+  std::string hand, motors;
+};
+
+NextSteps steps_of(const NextView& next) {
+  constexpr std::string_view kThen = "; then ";
+  if (next.placement && !is_turned_by_hand(next)) {
+    return {{}, next.say};
+  }
+  const auto then = next.say.find(kThen);
+  return !next.placement || then == std::string::npos
+             ? NextSteps{next.say, {}}
+             : NextSteps{next.say.substr(0, then), next.say.substr(then + kThen.size())};
+}
+
+std::string goes_itself(const std::string& motors, Language language) {
+  return motors.empty() ? std::string()
+                        : filled(text_of(Text::kGoesItself, language), translated(motors, language));
+}
+
 /// What motors do is not told as if the operator were to do it.
 std::string what_is_next(const NextView& next, Language language) {
-  return next.placement && !is_turned_by_hand(next)
-             ? filled(text_of(Text::kGoesItself, language), translated(next.say, language))
-             : sentence(next.say, language);
+  const NextSteps steps = steps_of(next);
+  std::string said = steps.hand.empty() ? std::string() : sentence(steps.hand, language);
+  if (const std::string drive = goes_itself(steps.motors, language); !drive.empty()) {
+    add_sentence(said, drive);
+  }
+  return said;
 }
 
 /// The last scan is not taken up: it was set aside, or it lies nowhere for certain. False where it does.
@@ -99,8 +123,12 @@ void say_waiting(Statement& out, const LiveState& state, Wording wording) {
       out.headline = text_of(Text::kScanAsItLies, language);
       out.detail = what_is_next(*state.next, language);
     } else {
-      out.headline = capitalised(translated(state.next->say, language));
+      const NextSteps steps = steps_of(*state.next);
+      out.headline = capitalised(translated(steps.hand, language));
       out.detail = text_of(Text::kTurnThenScan, language);
+      if (const std::string drive = goes_itself(steps.motors, language); !drive.empty()) {
+        add_sentence(out.detail, drive);
+      }
     }
   } else if (last == nullptr) {
     out.headline = text_of(Text::kLayTablet, language);
@@ -226,6 +254,12 @@ Statement statement_of(const LiveState& state, bool has_device, Wording wording)
     out.tone = Tone::kHandsOff;
     out.headline = text_of(headline, language);
   };
+  if (state.halted && state.phase != LivePhase::kStill) {  // its pages are still made, perhaps
+    out.tone = Tone::kBad;
+    out.headline = text_of(Text::kHalted, language);
+    out.detail = text_of(Text::kHandsOffYet, language);
+    return out;
+  }
   out.may_halt = state.phase == LivePhase::kOpening || state.phase == LivePhase::kMoving ||
                  state.phase == LivePhase::kScanning || state.phase == LivePhase::kMeasuring;
   switch (state.phase) {
@@ -240,7 +274,10 @@ Statement statement_of(const LiveState& state, bool has_device, Wording wording)
       break;
     case LivePhase::kMoving:
       hands_off(Text::kMoving);
-      out.detail = state.next ? sentence(state.next->say, language) : std::string();
+      if (const std::string motors = state.next ? steps_of(*state.next).motors : std::string();
+          !motors.empty()) {
+        out.detail = sentence(motors, language);
+      }
       break;
     case LivePhase::kScanning:
       hands_off(Text::kScanning);

@@ -37,6 +37,7 @@ constexpr TextRow kRows[] = {
      "It is signed as incomplete: what is still missing can be scanned on (Next tablet).",
      "Unvollständig unterschrieben: was noch fehlt, lässt sich weiter scannen (Nächste Tafel)."},
     {Text::kIntoItsBox, "The tablet can go back into its box.", "Die Tafel kann zurück in ihre Schachtel."},
+    {Text::kHalted, "EMERGENCY STOP pressed", "NOT-HALT gedrückt"},
     {Text::kStopped, "Stopped: put this right, then go on", "Angehalten: in Ordnung bringen, dann weiter"},
     {Text::kUnsureScan, "Scan {} is unsure: scan on, or show same places",
      "Scan {} ist unsicher: weiter scannen oder Stellen zeigen"},

@@ -36,6 +36,7 @@ enum class Text {
   kSignedNext,
   kSignedIncomplete,
   kIntoItsBox,
+  kHalted,
   kStopped,
   kUnsureScan,
   kFailedScan,
