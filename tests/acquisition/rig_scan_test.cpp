@@ -157,13 +157,18 @@ TEST_F(RigScan, APartThatCannotBeSentOrHoldsNotTheMiddleIsRefused) {
   EXPECT_NE(refusal().find("the middle of the measuring volume"), std::string::npos);
 }
 
-TEST_F(RigScan, OnATurntableTheSpacingIsThatOfTheClay) {
+/// Its axis lies 20 mm behind the plane.
+RigCalibration small_turntable() {
   sim::FrameRigOptions size;
   size.width = 256;
   size.height = 200;
   size.field_mm = 6.25;
-  size.motion = MotionKind::kTurntable;  // its axis lies 20 mm behind the plane
-  bench.truth = sim::frame_rig(size);
+  size.motion = MotionKind::kTurntable;
+  return sim::frame_rig(size);
+}
+
+TEST_F(RigScan, OnATurntableTheSpacingIsThatOfTheClay) {
+  bench.truth = small_turntable();
   file.start = -0.1;
   file.step = 0.02;
   Result<RigScanner> made = make();
@@ -177,12 +182,7 @@ TEST_F(RigScan, OnATurntableTheSpacingIsThatOfTheClay) {
 }
 
 TEST_F(RigScan, OnATurntableAScanIsSeenFromTheMiddleOfItsTurn) {
-  sim::FrameRigOptions size;
-  size.width = 256;
-  size.height = 200;
-  size.field_mm = 6.25;
-  size.motion = MotionKind::kTurntable;
-  bench.truth = sim::frame_rig(size);
+  bench.truth = small_turntable();
   file.start = 1.0;
   file.step = 0.01;
   Result<RigScanner> made = make();

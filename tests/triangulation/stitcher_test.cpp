@@ -72,23 +72,24 @@ void expect_same(const Mesh& a, const Mesh& b) {
   EXPECT_EQ(a.flags, b.flags);
 }
 
-TEST(Stitcher, GridsWhoseSpacingNobodyToldAreStitchedToo) {
-  test::ScanSet set = ball();
-  for (RangeGrid& grid : set.grids) {
-    grid.spacing_mm = 0;
-  }
-  const MeshReport report = check_mesh(stitched(set));
+void expect_a_ball(const MeshReport& report) {
   EXPECT_TRUE(report.is_closed());
   EXPECT_EQ(report.components, 1U);
   EXPECT_NEAR(report.area_mm2, 4 * kPi * kRadius * kRadius, 0.02 * 4 * kPi * kRadius * kRadius);
 }
 
+TEST(Stitcher, GridsWhoseSpacingNobodyToldAreStitchedToo) {
+  test::ScanSet set = ball();
+  for (RangeGrid& grid : set.grids) {
+    grid.spacing_mm = 0;
+  }
+  expect_a_ball(check_mesh(stitched(set)));
+}
+
 TEST(Stitcher, SixViewsOfABallMakeOneClosedSurface) {
   const Mesh mesh = stitched(ball());
   const MeshReport report = check_mesh(mesh);
-  EXPECT_TRUE(report.is_closed());
-  EXPECT_EQ(report.components, 1U);
-  EXPECT_NEAR(report.area_mm2, 4 * kPi * kRadius * kRadius, 0.02 * 4 * kPi * kRadius * kRadius);
+  expect_a_ball(report);
   EXPECT_LT(report.thin_share, 0.01);
   // Outward everywhere, and nearer to the truth than a single sample.
   for (std::size_t v = 0; v < mesh.positions.size(); ++v) {

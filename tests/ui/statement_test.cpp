@@ -59,13 +59,18 @@ TEST(Statement, HandsOffWhileTheScannerWorks) {
   }
 }
 
-TEST(Statement, SaysHowToTurnTheTablet) {
+LiveState waits_for_a_turn(const std::string& say) {
   LiveState state = with_scan(PoseStatus::kRegistered);
   state.phase = LivePhase::kWaiting;
   state.next = NextView{};
-  state.next->say = "turn the reverse towards the camera, 90°";
+  state.next->say = say;
   state.next->placement = Placement{};
   state.next->placement->hand_turn = RigidTransform{};
+  return state;
+}
+
+TEST(Statement, SaysHowToTurnTheTablet) {
+  LiveState state = waits_for_a_turn("turn the reverse towards the camera, 90°");
   const Statement english = statement_of(state, true, Language::kEnglish);
   EXPECT_EQ(english.headline, "Turn the reverse towards the camera, 90°");
   EXPECT_THAT(english.detail, HasSubstr("as shown"));
@@ -76,12 +81,8 @@ TEST(Statement, SaysHowToTurnTheTablet) {
 
 /// The same words for hand and motors would have the turntable turned by hand.
 TEST(Statement, WhatTheHandDoesAndWhatMotorsDoBehindItAreToldApart) {
-  LiveState state = with_scan(PoseStatus::kRegistered);
-  state.phase = LivePhase::kWaiting;
-  state.next = NextView{};
-  state.next->say = "turn the reverse towards the camera, 90°; then turntable to 60°, tilt to 70°";
-  state.next->placement = Placement{};
-  state.next->placement->hand_turn = RigidTransform{};
+  LiveState state =
+      waits_for_a_turn("turn the reverse towards the camera, 90°; then turntable to 60°, tilt to 70°");
   Statement s = statement_of(state, true, Language::kEnglish);
   EXPECT_EQ(s.headline, "Turn the reverse towards the camera, 90°");
   EXPECT_EQ(
