@@ -8,6 +8,8 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "formats/json_node.h"
+
 namespace dubsar::session {
 
 namespace {
@@ -73,7 +75,7 @@ Result<ScanPose> pose_from_json(int id, std::string_view text) {
   const auto damaged = [id] {
     return bad_input("pose of scan " + std::to_string(id), "not a stored pose", "register the scan anew");
   };
-  const json in = json::parse(text, nullptr, false);
+  const json in = json_depth(text) <= kMaxJsonDepth ? json::parse(text, nullptr, false) : json();
   if (!in.is_object()) {
     return damaged();
   }

@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "formats/atomic_file.h"
+#include "formats/make_folder.h"
 #include "formats/refusal.h"
 
 namespace dubsar::session {
@@ -62,24 +63,13 @@ Status make_folders(const fs::path& folder) {
                   "name a new or an empty folder");
     }
   }
-  std::vector<fs::path> made;
-  for (fs::path up = fs::absolute(folder).lexically_normal(); !up.empty() && !fs::exists(up, error);
-       up = up.parent_path()) {
-    made.push_back(up);
-  }
-  fs::create_directories(folder, error);
-  if (error) {
-    return refused(folder, "cannot make the folder", error.value());
+  if (Status made = make_folder(folder); !made) {
+    return made;
   }
   for (const char* name : kFolders) {
     fs::create_directory(folder / name, error);
     if (error) {
       return refused(folder / name, "cannot make the folder", error.value());
-    }
-  }
-  for (const fs::path& one : made) {
-    if (Status synced = sync_folder(one.parent_path()); !synced) {
-      return synced;
     }
   }
   return sync_folder(folder);
@@ -120,7 +110,7 @@ std::vector<int> grid_ids(const fs::path& folder) {
     const std::string stem = it->path().stem().string();
     int id = -1;
     const auto [rest, problem] = std::from_chars(stem.data(), stem.data() + stem.size(), id);
-    if (problem == std::errc{} && rest == stem.data() + stem.size() && id >= 0 &&
+    if (problem == std::errc{} && rest == stem.data() + stem.size() && id >= 0 && id <= kLastScanId &&
         it->path().filename() == fs::path(grid_name(id)).filename()) {
       out.push_back(id);
     }

@@ -31,9 +31,11 @@ inline constexpr const char* kFolders[] = {kGrids, "mesh", "analysis", "export"}
 /// Removes what a killed writer left behind half-written; returns how many.
 int remove_temporaries(const std::filesystem::path& folder);
 
+/// The last number that a scan can have: eight digits, as those of scans that are not over.
+inline constexpr int kLastScanId = 99'999'999;
 /// "grids/007.grid"
 [[nodiscard]] std::string grid_name(int id);
-/// The ids of the grid files that are there, ascending.
+/// The ids of the grid files that are there, ascending, up to kLastScanId.
 [[nodiscard]] std::vector<int> grid_ids(const std::filesystem::path& folder);
 
 /// XXH64 of bytes, as SQLite keeps it.

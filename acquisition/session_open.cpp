@@ -2,11 +2,11 @@
 // Copyright The Dubsar developers
 #include <unistd.h>
 
-#include <algorithm>
 #include <cstdlib>
 
 #include "acquisition/session_impl.h"
 #include "acquisition/session_log.h"
+#include "acquisition/session_rebuild.h"
 #include "formats/atomic_file.h"
 
 namespace dubsar::session {
@@ -18,21 +18,8 @@ namespace {
 /// An error is one line.
 constexpr std::size_t kMostNamed = 8;
 
-constexpr const char* kLogSuffix = "-wal";
-constexpr const char* kSideFiles[] = {kLogSuffix, "-shm"};
-
 /// Every commit reaches the disk before it returns; a log beside the file keeps readers and the writer apart.
 constexpr const char* kDurable = "PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL;";
-
-fs::path beside(const fs::path& path, const std::string& suffix) {
-  return path.string() + suffix;
-}
-
-bool has_content(const fs::path& path) {
-  std::error_code error;
-  const auto size = fs::file_size(path, error);
-  return !error && size > 0;
-}
 
 /// No database where there was one. An empty file with nothing beside it is what a program leaves that was
 /// stopped before its first change.
@@ -67,103 +54,6 @@ std::optional<Error> fault_of(SqlDatabase& db, const std::string& where) {
     return Error{ErrorKind::kBadInput, "the database is damaged (" + list + ")", where, {}};
   }
   return std::nullopt;
-}
-
-void note_rebuilding(const Error& fault, std::int64_t rows, SessionOpening& opening) {
-  opening.damage.push_back(fault);
-  opening.notes.push_back("rebuilt the database: " + std::to_string(rows) +
-                          " rows saved from it and from its last backup");
-}
-
-/// Fills an empty database with what is readable in the damaged file and in the backup.
-Result<std::int64_t> fill_from_remains(const fs::path& folder, SqlDatabase& to) {
-  if (Status schema = prepare_schema(to, folder.string()); !schema) {
-    return std::unexpected(schema.error());
-  }
-  Result<SqlTransaction> transaction = SqlTransaction::begin(to);
-  if (!transaction) {
-    return std::unexpected(transaction.error());
-  }
-  std::int64_t rows = 0;
-  // With the log first; without it, should the log be what is damaged.
-  for (const auto mode : {SqlDatabase::Mode::kReadOnly, SqlDatabase::Mode::kImmutable}) {
-    if (Result<SqlDatabase> from = SqlDatabase::open(folder / kDatabase, mode); from) {
-      rows = salvage_rows(*from, to, true);
-    }
-  }
-  if (Result<SqlDatabase> backup = SqlDatabase::open(folder / kBackup, SqlDatabase::Mode::kImmutable);
-      backup) {
-    rows = std::max(rows, salvage_rows(*backup, to, rows == 0));
-  }
-  if (Status done = transaction->commit(); !done) {
-    return std::unexpected(done.error());
-  }
-  return rows;
-}
-
-/// Keeps database and log, as far as they are there, under a free name, and returns what they are now called.
-/// Copies, so that there is a database at every moment.
-Result<std::vector<std::string>> keep_aside(const fs::path& folder) {
-  const std::string name = name_aside(folder / kDatabase).filename().string();
-  std::vector<std::string> out;
-  for (const std::string suffix : {"", kLogSuffix}) {
-    const fs::path from = beside(folder / kDatabase, suffix);
-    if (!has_content(from)) {
-      continue;
-    }
-    const Result<std::string> bytes = read_whole_file(from);
-    if (!bytes) {
-      return std::unexpected(bytes.error());
-    }
-    if (Status kept = write_file_atomically(beside(folder / name, suffix), std::string_view(*bytes)); !kept) {
-      return std::unexpected(kept.error());
-    }
-    out.push_back(name + suffix);
-  }
-  return out;
-}
-
-Result<SqlDatabase> rebuild(const fs::path& folder, const Error& fault, SessionOpening& opening) {
-  const fs::path fresh = folder / (std::string(kTemporaryPrefix) + "rebuilt.sqlite");
-  std::error_code ignored;
-  for (const char* suffix : {"", "-wal", "-shm", "-journal"}) {
-    fs::remove(beside(fresh, suffix), ignored);
-  }
-  std::int64_t rows = 0;
-  {
-    Result<SqlDatabase> to = SqlDatabase::open(fresh, SqlDatabase::Mode::kCreate);
-    if (!to) {
-      return to;
-    }
-    const Result<std::int64_t> filled = fill_from_remains(folder, *to);
-    if (!filled) {
-      return std::unexpected(filled.error());
-    }
-    rows = *filled;
-  }
-  const Result<std::vector<std::string>> aside = keep_aside(folder);
-  if (!aside) {
-    return std::unexpected(aside.error());
-  }
-  // The old log must go before the new file takes its place: SQLite would apply it to the wrong database.
-  for (const char* suffix : kSideFiles) {
-    fs::remove(beside(folder / kDatabase, suffix), ignored);
-  }
-  std::error_code error;
-  fs::rename(fresh, folder / kDatabase, error);
-  if (error) {
-    return fail(ErrorKind::kStorage, "cannot put the rebuilt database in its place: " + error.message(),
-                folder.string(), "see that the folder may be written to");
-  }
-  if (Status synced = sync_folder(folder); !synced) {
-    return std::unexpected(synced.error());
-  }
-  note_rebuilding(fault, rows, opening);
-  for (const std::string& name : *aside) {
-    opening.notes.push_back(
-        (name.ends_with(kLogSuffix) ? "kept the damaged log as " : "kept the damaged database as ") + name);
-  }
-  return SqlDatabase::open(folder / kDatabase, SqlDatabase::Mode::kCreate);
 }
 
 /// A log with a damaged middle is played up to there and no further. Says so, and for writing keeps database

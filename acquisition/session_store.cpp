@@ -84,7 +84,12 @@ Result<int> SessionStore::Impl::next_id() {
   }
   // A damaged grid whose row is lost keeps its number too.
   const std::vector<int> there = session::grid_ids(folder);
-  return std::max(static_cast<int>(*last), there.empty() ? -1 : there.back()) + 1;
+  const std::int64_t newest = std::max<std::int64_t>(*last, there.empty() ? -1 : there.back());
+  if (newest >= session::kLastScanId) {
+    return bad_input(folder.string(), "no number is left after that of scan " + std::to_string(newest),
+                     "go on in a new session");
+  }
+  return static_cast<int>(newest) + 1;
 }
 
 SessionStore::SessionStore(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}

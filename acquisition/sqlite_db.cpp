@@ -81,9 +81,10 @@ void checksum(sqlite3_context* context, int count, sqlite3_value** values) {
   sqlite3_result_int64(context, static_cast<std::int64_t>(XXH64_digest(&state)));
 }
 
-/// A path as an SQLite URI file name.
+/// A path as an SQLite URI file name. With an empty authority: of a path that begins with two slashes the
+/// first part would be taken for one.
 std::string uri_of(const std::filesystem::path& path, const char* query) {
-  std::string out = "file:";
+  std::string out = "file://";
   for (const char c : std::filesystem::absolute(path).string()) {
     if (c == '%' || c == '?' || c == '#') {
       char escaped[4];

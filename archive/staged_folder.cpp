@@ -17,6 +17,7 @@
 #include "core/log.h"
 #include "formats/atomic_file.h"
 #include "formats/folder_lock.h"
+#include "formats/make_folder.h"
 #include "formats/refusal.h"
 #include "formats/resolved_place.h"
 
@@ -65,9 +66,8 @@ Result<StagedFolder> StagedFolder::begin(const fs::path& wanted, bool replace) {
     return fail(ErrorKind::kUsage, "something lies there already", target.string(),
                 "choose another folder, or replace it with --force");
   }
-  fs::create_directories(target.parent_path(), error);
-  if (error) {
-    return storage(target.parent_path(), "cannot make the folder", error);
+  if (Status made = make_folder(target.parent_path()); !made) {
+    return std::unexpected(std::move(made.error()));
   }
   const fs::path staged = target.parent_path() / (std::string(kTemporaryPrefix) + target.filename().string());
   for (int attempt = 0; attempt < 2; ++attempt) {

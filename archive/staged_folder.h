@@ -12,10 +12,10 @@ namespace dubsar {
 /// away again unless it was published.
 class StagedFolder {
  public:
-  /// Makes the temporary folder. What a killed program left there is removed first, the folder itself with it
-  /// where it is another user's or others may write into it; kUsage while another
-  /// program is at it, and where something lies at `target` already that `replace` does not let go (an empty
-  /// folder is nothing). kStorage where nothing can be made.
+  /// Makes the temporary folder, and durably those that it lies in. What a killed program left there is
+  /// removed first, the folder itself with it where it is another user's or others may write into it; kUsage
+  /// while another program is at it, and where something lies at `target` already that `replace` does not let
+  /// go (an empty folder is nothing). kStorage where nothing can be made.
   [[nodiscard]] static Result<StagedFolder> begin(const std::filesystem::path& target, bool replace);
 
   StagedFolder(StagedFolder&& other) noexcept;

@@ -29,8 +29,9 @@ const char* is_what(const nlohmann::json& value) {
   }
 }
 
-/// Deepest nesting of brackets outside of strings.
-int depth_of(std::string_view text) {
+}  // namespace
+
+int json_depth(std::string_view text) {
   int depth = 0;
   int deepest = 0;
   bool in_string = false;
@@ -52,8 +53,6 @@ int depth_of(std::string_view text) {
   }
   return deepest;
 }
-
-}  // namespace
 
 JsonNode JsonNode::at(const char* key) const {
   const std::string path = path_.empty() ? std::string(key) : path_ + "." + key;
@@ -268,7 +267,7 @@ Result<JsonDocument> JsonDocument::parse(std::string_view text, const std::strin
   if (text.empty()) {
     return bad_input(where, "the file is empty", "copy or write it again");
   }
-  if (depth_of(text) > kMaxJsonDepth) {
+  if (json_depth(text) > kMaxJsonDepth) {
     return bad_input(where, "nested deeper than " + std::to_string(kMaxJsonDepth) + " levels",
                      "check what the file is");
   }

@@ -20,6 +20,10 @@ namespace dubsar {
 inline constexpr std::size_t kMaxJsonBytes = std::size_t{64} << 20U;
 inline constexpr int kMaxJsonDepth = 64;
 
+/// Deepest nesting of brackets outside of strings. A parsed value is copied, compared and printed by calls
+/// within calls, level by level: ask before, where the text comes from outside.
+[[nodiscard]] int json_depth(std::string_view text);
+
 /// A value inside an outside JSON document, with its path ("scans[3].tips[0].position"). Reads of a missing
 /// or wrong-typed value give a neutral one and note the first complaint in the document; check
 /// JsonDocument::status() at the end instead of after every value.

@@ -8,7 +8,8 @@
 
 namespace dubsar {
 
-/// Makes the folder, and those that it lies in, where they are not there yet. Errors: kStorage.
+/// Makes the folder, and those that it lies in, where they are not there yet. Their names survive a power
+/// loss after this, where the file system can sync a folder at all. Errors: kStorage.
 [[nodiscard]] Status make_folder(const std::filesystem::path& folder);
 
 }  // namespace dubsar

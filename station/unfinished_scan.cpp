@@ -14,6 +14,7 @@
 #include "formats/atomic_file.h"
 #include "formats/files_below.h"
 #include "formats/grid_file.h"
+#include "formats/refusal.h"
 #include "station/drives.h"
 
 namespace dubsar {
@@ -59,6 +60,20 @@ fs::path next_folder(const fs::path& session) {
   return home_of(session) / std::to_string(there.empty() ? 1 : there.back() + 1);
 }
 
+/// The names of a scan's folder, and of the one that it lies in, survive a power loss after this. Not where
+/// they are made: rows come in meanwhile.
+Status sync_names_of(const fs::path& folder, std::error_code making) {
+  if (making) {
+    return refused(folder, "cannot make the folder", making.value(),
+                   "choose a folder that can be written to");
+  }
+  const fs::path home = folder.parent_path();
+  if (Status synced = sync_folder(home.parent_path()); !synced) {
+    return synced;
+  }
+  return sync_folder(home);
+}
+
 void take_away(const fs::path& folder) {
   std::error_code ignored;
   fs::remove_all(folder, ignored);
@@ -98,9 +113,9 @@ void UnfinishedScan::follow(const RangeGrid& grid, int placement_offset) {
   }
   copied_rows_ = grid.rows;
   if (!writer_.joinable()) {
-    std::error_code told_when_written_to;
-    fs::create_directories(folder_, told_when_written_to);  // here: the next scan takes another number
-    writer_ = std::jthread([this](const std::stop_token& stop) { write_rows(stop); });
+    std::error_code error;
+    fs::create_directories(folder_, error);  // here: the next scan takes another number
+    writer_ = std::jthread([this, error](const std::stop_token& stop) { write_rows(stop, error); });
   }
   comes_.notify_one();
 }
@@ -113,9 +128,9 @@ void UnfinishedScan::remark(const std::string& text) {
   }
 }
 
-void UnfinishedScan::write_rows(const std::stop_token& stop) {
-  Status written;
-  if (drive_) {
+void UnfinishedScan::write_rows(const std::stop_token& stop, std::error_code making) {
+  Status written = sync_names_of(folder_, making);
+  if (written && drive_) {
     written = write_file_atomically(folder_ / kDrive, std::string_view(drives_to_json({{0, *drive_}})));
   }
   std::string remarked;

@@ -10,6 +10,7 @@
 #include <optional>
 #include <stop_token>
 #include <string>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -42,7 +43,7 @@ class UnfinishedScan {
   void leave() { left_ = true; }
 
  private:
-  void write_rows(const std::stop_token& stop);
+  void write_rows(const std::stop_token& stop, std::error_code making);
 
   const std::filesystem::path folder_;
   const std::optional<Placement> drive_;

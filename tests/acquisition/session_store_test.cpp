@@ -287,6 +287,41 @@ TEST_F(SessionStoreTest, AFileKeepsItsChecksumUntilANewOneTakesItsPlace) {
   EXPECT_EQ(store.verify(job).value().damaged.at(0).where, "mesh/model.ply");
 }
 
+TEST_F(SessionStoreTest, APathMayBeginWithTwoSlashes) {
+  folder_ = "/" + folder_.string();  // as //nas/tablets
+  {
+    SessionStore store = open();
+    EXPECT_EQ(store.add_grid(small_grid(1)).value_or(-1), 0);
+  }
+  const auto store = SessionStore::open(folder_, SessionStore::Access::kReadOnly);
+  ASSERT_TRUE(store) << store.error().line();
+  EXPECT_EQ(store->scans().value().size(), 1U);
+}
+
+TEST_F(SessionStoreTest, NumbersOfScansEndBeforeTheyOverflow) {
+  {
+    SessionStore store = open();
+    ASSERT_TRUE(store.add_grid(small_grid(0)));
+  }
+  const fs::path grids = folder_ / "grids";
+  fs::copy_file(grids / "000.grid", grids / "2147483647.grid");
+  {
+    SessionStore store = open();
+    EXPECT_THAT(store.scans().value(), testing::SizeIs(1)) << "nobody's: no scan has such a number";
+    EXPECT_EQ(store.next_id().value(), 1);
+  }
+  fs::copy_file(grids / "000.grid", grids / "99999999.grid");
+  SessionStore store = open();
+  ASSERT_THAT(store.scans().value(), testing::SizeIs(2));
+  const Result<int> next = store.add_grid(small_grid(1));
+  ASSERT_FALSE(next);
+  EXPECT_EQ(next.error().kind, ErrorKind::kBadInput);
+  EXPECT_EQ(next.error().line(),
+            folder_.string() + ": no number is left after that of scan 99999999; go on in a new session");
+  EXPECT_EQ(store.load_grid(99999999).value().z, small_grid(0).z);
+  EXPECT_THAT(store.scans().value(), testing::SizeIs(2));
+}
+
 TEST_F(SessionStoreTest, ASessionOfANewerVersionIsLeftAlone) {
   { SessionStore store = open(); }
   sqlite3* database = nullptr;

@@ -11,6 +11,7 @@
 
 #include <cerrno>
 #include <cstdio>
+#include <set>
 #include <string>
 
 #include "tests/support/files.h"
@@ -24,6 +25,7 @@ std::string refuses_from;
 /// Folders cannot be synced.
 bool refuses_sync = false;
 int exchanges = 0;  ///< of names, so far
+std::set<ino_t> synced_folders;
 /// A name that cannot be taken away.
 std::string refuses_to_go;
 
@@ -48,6 +50,9 @@ extern "C" int rename(const char* from, const char* to) noexcept {
 }
 extern "C" int fsync(int file) {
   struct stat what {};
+  if (::fstat(file, &what) == 0 && S_ISDIR(what.st_mode)) {
+    synced_folders.insert(what.st_ino);
+  }
   if (refuses_sync && ::fstat(file, &what) == 0 && S_ISDIR(what.st_mode) && exchanges > 0) {
     errno = EIO;
     return -1;
@@ -104,6 +109,21 @@ TEST(StagedFolder, IsThereWholeOrNotAtAll) {
   ASSERT_TRUE(staged->publish());
   EXPECT_EQ(text_of_file(target / "file"), "y");
   EXPECT_EQ(std::distance(fs::directory_iterator(target.parent_path()), fs::directory_iterator()), 1);
+}
+
+TEST(StagedFolder, TheFoldersThatItLiesInAreThereAfterAPowerCut) {
+  const test::TemporaryFolder folder;
+  const fs::path year = folder.path() / "archive" / "2026";
+  synced_folders.clear();
+  auto staged = StagedFolder::begin(year / "bag", false);
+  ASSERT_TRUE(staged) << staged.error().line();
+  put(staged->path() / "file", "x");
+  ASSERT_TRUE(staged->publish());
+  for (const fs::path& parent : {folder.path(), folder.path() / "archive", year}) {
+    struct stat info {};
+    ASSERT_EQ(::stat(parent.c_str(), &info), 0);
+    EXPECT_TRUE(synced_folders.contains(info.st_ino)) << parent;
+  }
 }
 
 TEST(StagedFolder, ReplacesOnlyWhenTold) {

@@ -4,6 +4,7 @@
 
 #include "core/units.h"
 #include "formats/checklist_json.h"
+#include "formats/json_node.h"
 #include "formats/pins_json.h"
 #include "formats/poses_json.h"
 #include "formats/red_map_json.h"
@@ -128,6 +129,14 @@ TEST(PosesJson, NamesWhatIsWrongByItsPath) {
   EXPECT_THAT(scan(R"("rms_mm":1e999,"model_from_scanner":)" + kIdentity),
               HasSubstr("a number in it is too large"));
   EXPECT_THAT(line(std::string(100000, '[')), HasSubstr("nested deeper than 64 levels"));
+}
+
+TEST(JsonDepth, CountsBracketsOutsideOfStrings) {
+  EXPECT_EQ(json_depth(""), 0);
+  EXPECT_EQ(json_depth("[]"), 1);
+  EXPECT_EQ(json_depth(R"({"a":[{}],"b":[]})"), 3);
+  EXPECT_EQ(json_depth(R"(["[[[", "\"[[", {}])"), 2);
+  EXPECT_EQ(json_depth(std::string(100000, '[')), 100000);
 }
 
 TEST(PosesJson, WritesAFile) {

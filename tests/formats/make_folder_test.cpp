@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/files.h"
+#include "tests/support/seen_syncs.h"
 #include "tests/support/temporary_folder.h"
 
 namespace dubsar {
@@ -20,6 +21,22 @@ TEST(MakeFolder, MakesWhatIsNotThereAndLeavesWhatIs) {
   test::put(deep / "file", "kept");
   ASSERT_TRUE(make_folder(deep));
   EXPECT_EQ(test::text_of_file(deep / "file"), "kept");
+}
+
+TEST(MakeFolder, WhatItMakesIsThereAfterAPowerCut) {
+  const test::TemporaryFolder folder;
+  const std::filesystem::path deep = folder.path() / "a" / "b" / "c";
+  test::forget_syncs();
+  ASSERT_TRUE(make_folder(deep / ""));
+  for (const auto& parent : {folder.path(), folder.path() / "a", folder.path() / "a" / "b"}) {
+    EXPECT_TRUE(test::was_synced(parent)) << parent;
+  }
+  test::forget_syncs();
+  ASSERT_TRUE(make_folder(deep));
+  EXPECT_FALSE(test::was_synced(deep.parent_path())) << "there is nothing new in it";
+  const Status roundabout = make_folder(folder.path() / "d" / ".." / "e" / "." / "f");
+  ASSERT_TRUE(roundabout) << roundabout.error().line();
+  EXPECT_TRUE(test::was_synced(folder.path() / "e"));
 }
 
 TEST(MakeFolder, SaysWhatWhereAndTheMend) {

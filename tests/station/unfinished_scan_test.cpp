@@ -10,6 +10,7 @@
 
 #include "core/grid_rows.h"
 #include "formats/grid_file.h"
+#include "tests/support/seen_syncs.h"
 #include "tests/support/temporary_folder.h"
 
 namespace dubsar {
@@ -96,6 +97,14 @@ TEST_F(Unfinished, RowsOfAScanThatWasBrokenOffAreThereAgain) {
   EXPECT_THAT(left_scans(session_), SizeIs(1));
   forget(left[1]);
   EXPECT_FALSE(std::filesystem::exists(session_ / "grids" / "unfinished"));
+}
+
+TEST_F(Unfinished, ItsFolderIsThereAfterAPowerCut) {
+  test::forget_syncs();
+  break_off_at(9);
+  EXPECT_TRUE(test::was_synced(session_ / "grids")) << "or the name of unfinished/ is lost";
+  EXPECT_TRUE(test::was_synced(session_ / "grids" / "unfinished")) << "or that of the scan";
+  EXPECT_TRUE(test::was_synced(session_ / "grids" / "unfinished" / "1"));
 }
 
 TEST_F(Unfinished, WhatTheDeviceRemarkedIsThereAgain) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/files.h"
+#include "tests/support/seen_syncs.h"
 #include "tests/support/temporary_folder.h"
 #include "ui/shell/theme.h"
 
@@ -21,6 +22,26 @@ TEST(Preferences, ComeBackAsTheyWereKept) {
   kept.device = "sim:?seed=7";
   write_preferences(file, kept);
   EXPECT_EQ(read_preferences(file), kept);
+}
+
+TEST(Preferences, AreThereAfterAPowerCut) {
+  const test::TemporaryFolder folder;
+  const std::filesystem::path file = folder.path() / "dubsar" / "window.conf";
+  std::filesystem::create_directories(folder.path() / "dubsar" / "window.conf.new");  // in nobody's way
+  test::forget_syncs();
+  Preferences kept;
+  kept.operator_name = "A. Reader";
+  write_preferences(file, kept);
+  EXPECT_EQ(read_preferences(file), kept);
+  EXPECT_TRUE(test::was_synced(file)) << "before it took its name";
+  EXPECT_TRUE(test::was_synced(file.parent_path()));
+}
+
+TEST(Preferences, AreAsTheyWereWhereNothingCanBeWritten) {
+  const test::TemporaryFolder folder;
+  test::put(folder.path() / "file", "no folder");
+  write_preferences(folder.path() / "file" / "window.conf", Preferences());  // says nothing
+  EXPECT_EQ(test::text_of_file(folder.path() / "file"), "no folder");
 }
 
 TEST(Preferences, LettersWithoutASizeHaveTheUsualOne) {

@@ -10,7 +10,10 @@
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
+#include <sstream>
 #include <system_error>
+
+#include "station/settings_file.h"
 
 namespace dubsar::ui {
 
@@ -82,20 +85,12 @@ void write_preferences(const fs::path& file, const Preferences& preferences) {
   if (file.empty()) {
     return;
   }
-  std::error_code error;
-  fs::create_directories(file.parent_path(), error);
-  const fs::path next = file.string() + ".new";
-  {
-    std::ofstream out(next);
-    out << "language = " << code_of(preferences.language) << "\ndark = " << preferences.dark
-        << "\nblue_for_red = " << preferences.blue_for_red << "\nsound = " << preferences.sound
-        << "\nfont_px = " << preferences.font_px << "\noperator = " << preferences.operator_name
-        << "\ndevice = " << preferences.device << "\n";
-    if (!out.flush()) {
-      return;
-    }
-  }
-  fs::rename(next, file, error);
+  std::ostringstream out;
+  out << "language = " << code_of(preferences.language) << "\ndark = " << preferences.dark
+      << "\nblue_for_red = " << preferences.blue_for_red << "\nsound = " << preferences.sound
+      << "\nfont_px = " << preferences.font_px << "\noperator = " << preferences.operator_name
+      << "\ndevice = " << preferences.device << "\n";
+  (void)write_settings_file(file, out.view());  // the window goes on without, and the last ones stay
 }
 
 Colours colours_of(const Preferences& preferences) {
@@ -195,6 +190,7 @@ void apply_theme(const Preferences& preferences) {
   style.Colors[ImGuiCol_PopupBg] = im(c.panel);
   style.Colors[ImGuiCol_Text] = im(c.text);
   style.Colors[ImGuiCol_TextDisabled] = im(c.faint);
+  style.Colors[ImGuiCol_PlotHistogram] = im(c.strong);  // bars, whose words are read on them
   style.Colors[ImGuiCol_ModalWindowDimBg] = {0, 0, 0, 0.45F};
 }
 

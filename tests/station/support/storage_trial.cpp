@@ -2,13 +2,17 @@
 // Copyright The Dubsar developers
 #include "tests/station/support/storage_trial.h"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <chrono>
+#include <fstream>
 #include <regex>
 #include <set>
 #include <stdexcept>
 
 #include "acquisition/session_store.h"
+#include "tests/support/in_child.h"
 
 namespace dubsar::test {
 
@@ -32,6 +36,21 @@ bool is_dropped(const SessionStore& store, int id) {
   const auto scans = store.scans();
   return scans &&
          std::ranges::any_of(*scans, [&](const StoredScan& scan) { return scan.id == id && scan.dropped; });
+}
+
+/// The head of the tables, so that SQLite can neither play the log beside them nor merge it when it closes.
+void damage_tables(const fs::path& session) {
+  const int left = in_child([&] {
+    Result<SessionStore> store = SessionStore::open(session);
+    ::_exit(store && store->append_event("left in the log") ? 0 : 1);
+    return 2;
+  });
+  std::fstream file(session / "session.sqlite", std::ios::in | std::ios::out | std::ios::binary);
+  file.seekp(16);  // pages of another size
+  file.write("\x02\x00", 2);
+  if (left != 0 || !file.flush()) {
+    throw std::runtime_error("the session of a trial could not be damaged");
+  }
 }
 
 }  // namespace
@@ -75,6 +94,7 @@ std::vector<WritingVerb> writing_verbs() {
       {"stitch", {"stitch", "SESSION", "-o", "FOLDER/model.ply"}},
       {"analyze", {"analyze", "SESSION/mesh/model.ply", "-o", "FOLDER/wedges.json"}},
       {"export", {"export", "SESSION", "--to", "FOLDER/package"}},
+      {"repair", {"verify", "SESSION", "--repair"}, true, {}, true},
   };
 }
 
@@ -94,6 +114,7 @@ StorageTrials::StorageTrials(fs::path folder, std::uint64_t seed)
   for (const StoredScan& scan : scans) {
     scans_.push_back(scan.id);
   }
+  events_ = store->events().value().size();
   const std::vector<ScanPose> poses = store->poses().value();
   for (const ScanPose& pose : poses) {
     registered_ = pose.status == PoseStatus::kRegistered ? std::to_string(pose.id) : registered_;
@@ -109,6 +130,9 @@ TrialOutcome StorageTrials::run(const WritingVerb& verb, const Fault& fault) {
   fs::create_directories(folder);
   if (verb.on_a_session) {
     fs::copy(scanned_, session, fs::copy_options::recursive);
+  }
+  if (verb.damaged) {
+    damage_tables(session);
   }
   const Arguments arguments = filled_in(verb.arguments, {{"SESSION", session.string()},
                                                          {"FOLDER", folder.string()},
@@ -138,7 +162,7 @@ void StorageTrials::look(const WritingVerb& verb, const fs::path& folder, TrialO
     say("it does not open: " + store.error().line());
     return;
   }
-  for (const Error& damage : store->opening().damage) {
+  for (const Error& damage : verb.damaged ? std::vector<Error>() : store->opening().damage) {
     say("damage: " + damage.line());
   }
   const Result<std::vector<StoredScan>> scans = store->scans();
@@ -169,8 +193,12 @@ void StorageTrials::look(const WritingVerb& verb, const fs::path& folder, TrialO
   for (const std::string& name : report->extra) {
     say("nobody's: " + name);
   }
-  for (const std::string& name : report->set_aside) {
+  for (const std::string& name : verb.damaged ? std::vector<std::string>() : report->set_aside) {
     say("set aside: " + name);
+  }
+  const Result<std::vector<SessionEvent>> events = store->events();
+  if (verb.on_a_session && (!events || events->size() < events_)) {
+    say("its record is shorter than it was");
   }
 }
 

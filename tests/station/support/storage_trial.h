@@ -21,6 +21,7 @@ struct WritingVerb {
   bool on_a_session = true;  ///< on a copy of one that was scanned before; else there is none yet
   /// Whether a session shows what the verb does: asked when it has said that it is done.
   std::function<bool(const SessionStore&)> is_done = {};
+  bool damaged = false;  ///< the tables of the session, with a log beside them, before the verb begins
 };
 [[nodiscard]] std::vector<WritingVerb> writing_verbs();
 
@@ -43,6 +44,7 @@ class StorageTrials {
   std::filesystem::path folder_;
   std::filesystem::path scanned_;
   std::vector<int> scans_;  ///< of the scanned session
+  std::size_t events_ = 0;  ///< in its record
   std::string device_;
   std::string registered_;  ///< the number of a scan
   int runs_ = 0;
