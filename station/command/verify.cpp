@@ -10,6 +10,7 @@
 #include "acquisition/sign_off_log.h"
 #include "formats/atomic_file.h"
 #include "formats/bag_check.h"
+#include "formats/bag_repair.h"
 #include "formats/files_below.h"
 #include "formats/grid_file.h"
 #include "formats/sign_off_json.h"
@@ -77,27 +78,50 @@ int print_grid(const std::string& path, const CommandContext& context) {
 }
 
 Result<int> verify_bag(const Arguments& arguments, CommandContext& context) {
-  if (arguments.repair) {
+  if (arguments.repair && arguments.copy.empty()) {
     return fail(ErrorKind::kUsage, "a bag holds nothing to be mended with", arguments.path,
-                "get it again from its source, or export the session anew");
+                "name a copy of it with --from, or export the session anew");
   }
-  const Result<BagReport> report = check_bag(arguments.path, context.job);
+  Result<BagReport> report = check_bag(arguments.path, context.job);
   if (!report) {
     return std::unexpected(report.error());
   }
+  std::optional<BagRepair> mended;
+  if (arguments.repair && !report->ok()) {
+    Result<BagRepair> done = repair_bag(arguments.path, *report, arguments.copy, context.job);
+    if (!done) {
+      return std::unexpected(done.error());
+    }
+    mended = std::move(*done);
+    report = check_bag(arguments.path, context.job);
+    if (!report) {
+      return std::unexpected(report.error());
+    }
+  }
+  const std::string aside = mended && mended->set_aside ? mended->set_aside->string() : std::string();
   if (context.json) {
-    CommandContext::print({{"path", arguments.path},
-                           {"kind", "bag"},
-                           {"ok", report->ok()},
-                           {"bagit_version", report->version},
-                           {"algorithms", report->algorithms},
-                           {"whole", report->whole},
-                           {"damaged", errors_json(report->damaged)},
-                           {"unrecorded", report->unrecorded},
-                           {"unchecked", report->unchecked}});
+    Json out({{"path", arguments.path},
+              {"kind", "bag"},
+              {"ok", report->ok()},
+              {"bagit_version", report->version},
+              {"algorithms", report->algorithms},
+              {"whole", report->whole},
+              {"damaged", errors_json(report->damaged)},
+              {"unrecorded", report->unrecorded},
+              {"unchecked", report->unchecked}});
+    if (mended) {
+      out["repair"] = {{"restored", mended->restored}, {"set_aside", aside}};
+    }
+    CommandContext::print(out);
     return report->ok() ? 0 : 1;
   }
   finish_progress();
+  if (mended) {
+    print_names("brought back from the copy", mended->restored);
+  }
+  if (!aside.empty()) {
+    print_names("damaged originals, kept", {aside});
+  }
   print_damage("damaged", report->damaged);
   print_names("no checksum kept", report->unrecorded);
   print_names("cannot be checked here", report->unchecked);
@@ -212,18 +236,19 @@ Result<int> verify(const Arguments& arguments, CommandContext& context) {
   if (const Status readable = check_folder_can_be_read(arguments.copy); !readable) {
     return std::unexpected(readable.error());
   }
-  if (!arguments.copy.empty() && !SessionStore::is_session(arguments.copy)) {
-    return fail(ErrorKind::kUsage, "the copy is no session", arguments.copy,
-                "name the folder that the session was copied to");
+  const bool is_session = SessionStore::is_session(arguments.path);
+  const std::string kind = is_session ? "session" : "bag";
+  const std::string mend = "name the folder that the " + kind + " was copied to";
+  if (!arguments.copy.empty() && is_session && !SessionStore::is_session(arguments.copy)) {
+    return fail(ErrorKind::kUsage, "the copy is no session", arguments.copy, mend);
   }
   if (!arguments.copy.empty() && fs::equivalent(arguments.copy, arguments.path, error)) {
-    return fail(ErrorKind::kUsage, "the copy is the session itself", arguments.copy,
-                "name the folder that the session was copied to");
+    return fail(ErrorKind::kUsage, "the copy is the " + kind + " itself", arguments.copy, mend);
   }
   if (fs::is_regular_file(arguments.path, error) && claims_to_be_grid(arguments.path)) {
     return print_grid(arguments.path, context);
   }
-  if (SessionStore::is_session(arguments.path)) {
+  if (is_session) {
     return verify_session(arguments, context);
   }
   if (is_bag(arguments.path)) {
@@ -240,9 +265,12 @@ void add_verify(CLI::App& app, Action& chosen) {
                                       "damaged, or its sign-off no longer holds");
   const auto arguments = std::make_shared<Arguments>();
   verb->add_option("path", arguments->path, "a session folder, a bag or a .grid file")->required();
-  CLI::Option* repair = verb->add_flag("--repair", arguments->repair,
-                                       "mend a session with what it has; damaged originals are kept aside");
-  verb->add_option("--from", arguments->copy, "a copy of the session to bring damaged files back from")
+  CLI::Option* repair =
+      verb->add_flag("--repair", arguments->repair,
+                     "mend a session with what it has, or a bag from a copy; damaged originals are "
+                     "kept aside");
+  verb->add_option("--from", arguments->copy,
+                   "a copy of the session, or of the bag, to bring damaged files back from")
       ->needs(repair);
   verb->fallthrough();
   verb->callback(
