@@ -21,28 +21,38 @@ bool is_unwelcome(std::uint32_t c) {
 
 }  // namespace
 
+std::string cleaned(std::string_view text) {
+  std::string out;
+  out.reserve(text.size());
+  while (!text.empty()) {
+    const CodePoint c = first_code_point(text);
+    if (c.bytes == 0 || is_unwelcome(c.value)) {
+      out += kReplacementCharacter;
+    } else {
+      out += text.substr(0, c.bytes);
+    }
+    text.remove_prefix(c.bytes == 0 ? 1 : c.bytes);
+  }
+  return out;
+}
+
 std::string html_escaped(std::string_view text) {
   std::string out;
   out.reserve(text.size() + text.size() / 8);
-  while (!text.empty()) {
-    const CodePoint c = first_code_point(text);
-    const std::size_t bytes = c.bytes == 0 ? 1 : c.bytes;
-    if (c.bytes == 0 || is_unwelcome(c.value)) {
-      out += kReplacementCharacter;
-    } else if (c.value == '&') {
+  for (const char c : cleaned(text)) {
+    if (c == '&') {
       out += "&amp;";
-    } else if (c.value == '<') {
+    } else if (c == '<') {
       out += "&lt;";
-    } else if (c.value == '>') {
+    } else if (c == '>') {
       out += "&gt;";
-    } else if (c.value == '"') {
+    } else if (c == '"') {
       out += "&quot;";
-    } else if (c.value == '\'') {
+    } else if (c == '\'') {
       out += "&#39;";
     } else {
-      out += text.substr(0, bytes);
+      out += c;
     }
-    text.remove_prefix(bytes);
   }
   return out;
 }

@@ -7,9 +7,12 @@
 
 namespace dubsar {
 
-/// Outside text made safe for HTML, as content or inside a quoted attribute: the five special characters
-/// become entities; control characters, bytes that are not UTF-8, and marks that turn the direction of
-/// writing become U+FFFD.
+/// Outside text with U+FFFD for control characters (but tabs and line feeds), for bytes that are not UTF-8,
+/// for what is no character, and for marks that turn the direction of writing.
+[[nodiscard]] std::string cleaned(std::string_view text);
+
+/// cleaned(), and made safe for HTML, as content or inside a quoted attribute: the five special characters
+/// become entities.
 [[nodiscard]] std::string html_escaped(std::string_view text);
 
 /// "3.14" with a fixed number of decimals; an en dash for what is not a number.

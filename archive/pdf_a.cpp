@@ -66,7 +66,7 @@ std::string xmp_of(const PdfInfo& info, const std::string& producer) {
 
 Result<std::vector<std::uint8_t>> as_pdf_a(const std::vector<std::uint8_t>& pdf, const PdfInfo& info) {
   PdfAWords words;
-  words.title = info.title;
+  words.title = cleaned(info.title);  // as it stands in the XMP: archives want the two the same
   words.program = info.program;
   words.producer = fmt::format("cairo {}", cairo_version_string());
   words.date = pdf_date(info.when);

@@ -3,6 +3,7 @@
 #include "archive/rights.h"
 
 #include <algorithm>
+#include <array>
 #include <string_view>
 
 namespace dubsar {
@@ -22,11 +23,19 @@ std::string rights_address(std::string_view rights) {
 
 std::string iiif_rights(std::string_view rights) {
   std::string address = rights_address(rights);
+  address.resize(std::min(address.find_first_of("?#"), address.size()));
   if (address.starts_with("https")) {
     address.erase(4, 1);
   }
-  const bool known = address.starts_with("http://creativecommons.org/") ||
-                     address.starts_with("http://rightsstatements.org/");
+  constexpr std::string_view kPage = "http://rightsstatements.org/page/";
+  constexpr std::string_view kStatement = "http://rightsstatements.org/vocab/";
+  if (address.starts_with(kPage)) {
+    address.replace(0, kPage.size(), kStatement);
+  }
+  const bool known = std::ranges::any_of(
+      std::array<std::string_view, 3>{"http://creativecommons.org/licenses/",
+                                      "http://creativecommons.org/publicdomain/", kStatement},
+      [&](std::string_view of) { return address.starts_with(of) && address.size() > of.size(); });
   return known ? address : std::string();
 }
 

@@ -10,6 +10,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "formats/atomic_file.h"
@@ -53,10 +54,14 @@ std::string text_of(const nlohmann::json& event, const char* key) {
 }
 
 /// An array; empty of a package without a list of events, which tells nothing of what the session once held.
+/// One that is nested deeper than Dubsar writes it is none.
 nlohmann::json packed_events(const fs::path& package) {
   const Result<std::string> text = read_whole_file(package / "data" / kPackedEvents, kMaxJsonBytes);
-  nlohmann::json events = nlohmann::json::parse(text.value_or(std::string()), nullptr, false);
-  return events.is_array() ? events : nlohmann::json::array();
+  if (!text || json_depth(*text) > kMaxJsonDepth) {
+    return nlohmann::json::array();
+  }
+  nlohmann::json events = nlohmann::json::parse(*text, nullptr, false);
+  return events.is_array() ? std::move(events) : nlohmann::json::array();
 }
 
 bool holds(const std::vector<SessionEvent>& events, const nlohmann::json& packed) {

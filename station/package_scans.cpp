@@ -15,6 +15,7 @@
 #include "formats/checklist_json.h"
 #include "formats/grid_file.h"
 #include "formats/grid_ply.h"
+#include "formats/json_node.h"
 #include "formats/json_text.h"
 #include "formats/poses_json.h"
 #include "formats/red_map_json.h"
@@ -113,7 +114,9 @@ OrderedJson scan_json(const PackageContent& content, const StoredScan& scan,
 
 /// A document as it was kept, but for where the files of a device lay on that computer.
 std::string told(const std::string& name, std::string text) {
-  OrderedJson json = name == "device_settings" ? OrderedJson::parse(text, nullptr, false) : OrderedJson();
+  OrderedJson json = name == "device_settings" && json_depth(text) <= kMaxJsonDepth
+                         ? OrderedJson::parse(text, nullptr, false)
+                         : OrderedJson();
   if (!json.is_object() || !json.contains("devices")) {
     return text;
   }
@@ -125,6 +128,16 @@ std::string told(const std::string& name, std::string text) {
   return text_of(json);
 }
 
+/// What an event tells; as the text that was stored where that is no JSON, or is deeper than the list of
+/// events, with the list and the event around it, may be.
+OrderedJson what_of(const SessionEvent& event) {
+  constexpr int kAround = 2;
+  OrderedJson what = json_depth(event.json) <= kMaxJsonDepth - kAround
+                         ? OrderedJson::parse(event.json, nullptr, false)
+                         : OrderedJson(event.json);
+  return what.is_discarded() ? OrderedJson(event.json) : what;
+}
+
 Result<std::string> events_text(const SessionStore& store) {
   const Result<std::vector<SessionEvent>> events = store.events();
   if (!events) {
@@ -133,8 +146,7 @@ Result<std::string> events_text(const SessionStore& store) {
   OrderedJson list = OrderedJson::array();
   for (const SessionEvent& event : *events) {
     OrderedJson json{{"number", event.number}, {"time_ns", event.time_ns}, {"kind", event.kind}};
-    const OrderedJson said = OrderedJson::parse(event.json, nullptr, false);
-    json["what"] = said.is_discarded() ? OrderedJson(event.json) : said;
+    json["what"] = what_of(event);
     list.push_back(std::move(json));
   }
   return text_of(list);

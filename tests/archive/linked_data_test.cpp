@@ -191,6 +191,26 @@ TEST(Rights, TheAddressIsFoundInTheSentence) {
   EXPECT_EQ(rights_address("https://"), "");
 }
 
+TEST(Rights, ForIiifAreLicencesAndStatementsByTheirOwnAddress) {
+  for (const auto& [said, address] :
+       {std::pair{"In copyright, https://rightsstatements.org/page/InC/1.0/?language=en",
+                  "http://rightsstatements.org/vocab/InC/1.0/"},
+        std::pair{"http://rightsstatements.org/vocab/InC-EDU/1.0/",
+                  "http://rightsstatements.org/vocab/InC-EDU/1.0/"},
+        std::pair{"CC BY (https://creativecommons.org/licenses/by/4.0/#text)",
+                  "http://creativecommons.org/licenses/by/4.0/"},
+        std::pair{"https://creativecommons.org/publicdomain/mark/1.0/",
+                  "http://creativecommons.org/publicdomain/mark/1.0/"},
+        std::pair{"https://creativecommons.org/", ""}, std::pair{"https://creativecommons.org/licenses/", ""},
+        std::pair{"https://creativecommons.org/about/cclicenses/", ""},
+        std::pair{"https://rightsstatements.org/en/statements/", ""},
+        std::pair{"https://rightsstatements.org/page/", ""},
+        std::pair{"https://rightsstatements.org.example/vocab/InC/1.0/", ""},
+        std::pair{"http://museum.example/?of=http://creativecommons.org/licenses/by/4.0/", ""}}) {
+    EXPECT_EQ(iiif_rights(said), address) << said;
+  }
+}
+
 TEST(Rights, GoWithPicturesAndAnnotations) {
   ManifestInput input;
   input.base_url = "https://example.org/t/";

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
 
 #include "archive/base64.h"
@@ -124,6 +125,21 @@ TEST(PagePdf, IsTheSameForTheSamePage) {
   EXPECT_EQ(page_pdf(html, info).value(), *pdf);
 }
 
+void write(const std::filesystem::path& file, const std::vector<std::uint8_t>& pdf) {
+  std::ofstream(file, std::ios::binary)
+      .write(reinterpret_cast<const char*>(pdf.data()), static_cast<std::streamsize>(pdf.size()));
+}
+
+void expect_for_archives(const std::vector<std::uint8_t>& pdf) {
+  const test::TemporaryFolder folder;
+  const auto file = folder.path() / "page.pdf";
+  write(file, pdf);
+  const std::string check =
+      "sh '" DUBSAR_SOURCE_DIR "/tests/support/check_pdf_a.sh' '" + file.string() + "' >&2";
+  EXPECT_EQ(std::system(check.c_str()), 0)
+      << "PDF/A-1b; to be held against it needs Java and PDFBox's Preflight (packages.txt)";
+}
+
 TEST(PagePdf, IsForArchives) {
   Image seen_through = filled_image(40, 30, {200, 100, 50}, 4);
   for (std::size_t k = 3; k < seen_through.bytes.size(); k += 8) {
@@ -136,24 +152,16 @@ TEST(PagePdf, IsForArchives) {
                    *uri + "\"><figcaption>half there</figcaption></figure>",
                {"Tablet <ḫ> & \"others\"", "Dubsar", "2026-01-02T03:04:05Z"});
   ASSERT_TRUE(pdf) << pdf.error().line();
-  const test::TemporaryFolder folder;
-  const auto file = folder.path() / "page.pdf";
-  std::ofstream(file, std::ios::binary)
-      .write(reinterpret_cast<const char*>(pdf->data()), static_cast<std::streamsize>(pdf->size()));
-  const std::string check =
-      "sh '" DUBSAR_SOURCE_DIR "/tests/support/check_pdf_a.sh' '" + file.string() + "' >&2";
-  EXPECT_EQ(std::system(check.c_str()), 0)
-      << "PDF/A-1b; to be held against it needs Java and PDFBox's Preflight (packages.txt)";
+  expect_for_archives(*pdf);
 }
 
-/// What pdftotext reads on one page.
-std::string read_page(const std::vector<std::uint8_t>& pdf, int page) {
+/// What a program prints that is given the file.
+std::string read_by(const std::string& program, const std::vector<std::uint8_t>& pdf,
+                    const std::string& more = "") {
   const test::TemporaryFolder folder;
   const auto file = folder.path() / "page.pdf";
-  std::ofstream(file, std::ios::binary)
-      .write(reinterpret_cast<const char*>(pdf.data()), static_cast<std::streamsize>(pdf.size()));
-  const std::string number = std::to_string(page);
-  const std::string command = "pdftotext -f " + number + " -l " + number + " '" + file.string() + "' -";
+  write(file, pdf);
+  const std::string command = program + " '" + file.string() + "' " + more;
   std::FILE* from = ::popen(command.c_str(), "r");
   std::string text;
   for (int c = std::fgetc(from); c != EOF; c = std::fgetc(from)) {
@@ -161,6 +169,21 @@ std::string read_page(const std::vector<std::uint8_t>& pdf, int page) {
   }
   EXPECT_EQ(::pclose(from), 0) << "install poppler-utils (packages.txt)";
   return text;
+}
+
+std::string read_page(const std::vector<std::uint8_t>& pdf, int page) {
+  const std::string number = std::to_string(page);
+  return read_by("pdftotext -f " + number + " -l " + number, pdf, "-");
+}
+
+TEST(PagePdf, HasTheSameTitleWhereverItSaysIt) {
+  // Marks that turn the direction of writing, what is no character, a control character, a stray byte.
+  const auto pdf = page_pdf("<h1>Tablet</h1>", {"\u202aIM 4711\u202c \u2066a\uFDD0\uFFFE\x01\xFF <ḫ> & \"b\"",
+                                                "Dubsar", "2026-01-02T03:04:05Z"});
+  ASSERT_TRUE(pdf) << pdf.error().line();
+  expect_for_archives(*pdf);
+  const std::string title = "\uFFFDIM 4711\uFFFD \uFFFDa\uFFFD\uFFFD\uFFFD\uFFFD <ḫ> & \"b\"";
+  EXPECT_NE(read_by("pdfinfo -enc UTF-8", *pdf).find("Title:           " + title + "\n"), std::string::npos);
 }
 
 // A script without blanks, a number that somebody pasted: once a line of it took time with its third power.

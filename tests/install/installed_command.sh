@@ -67,19 +67,18 @@ for entry in "$share"/applications/*.desktop; do
     esac
   done
 done
-# The checkers of these formats, where they are installed.
-if command -v desktop-file-validate >/dev/null; then
-  remarks=$(desktop-file-validate "$share"/applications/*.desktop)
-  [ -z "$remarks" ] || fail "$remarks"
-fi
-if command -v update-mime-database >/dev/null; then
-  rm -rf "$2/mime" && cp -r "$share/mime" "$2/mime"
-  remarks=$(XDG_DATA_DIRS=$prefix update-mime-database "$2/mime" 2>&1)
-  [ -z "$remarks" ] || fail "$remarks"
-  grep -q '^80:application/x-dubsar-session:session.sqlite$' "$2/mime/globs2" || fail "no glob for a session"
-fi
-if command -v mandoc >/dev/null; then
-  remarks=$(gzip -dc "$share/man/man1/dubsar.1.gz" | mandoc -T lint -W error)
-  [ -z "$remarks" ] || fail "$remarks"
-fi
-! command -v zsh >/dev/null || zsh -n "$share/zsh/vendor-completions/_dubsar" || fail "zsh does not read its completion"
+# The checkers of these formats.
+for checker in desktop-file-validate:desktop-file-utils update-mime-database:shared-mime-info mandoc:mandoc zsh:zsh; do
+  command -v "${checker%:*}" >/dev/null || fail "there is no ${checker%:*} here: install ${checker#*:} (packages.txt)"
+done
+remarks=$(desktop-file-validate "$share"/applications/*.desktop) || fail "desktop-file-validate: $remarks"
+[ -z "$remarks" ] || fail "$remarks"
+rm -rf "$2/mime" && cp -r "$share/mime" "$2/mime"
+remarks=$(XDG_DATA_DIRS=$prefix update-mime-database "$2/mime" 2>&1) || fail "update-mime-database: $remarks"
+[ -z "$remarks" ] || fail "$remarks"
+grep -q '^80:application/x-dubsar-session:session.sqlite$' "$2/mime/globs2" || fail "no glob for a session"
+for page in dubsar dubsar-station; do
+  remarks=$(gzip -dc "$share/man/man1/$page.1.gz" | mandoc -T lint -W error) || fail "mandoc: $page.1: $remarks"
+  [ -z "$remarks" ] || fail "$page.1: $remarks"
+done
+zsh -n "$share/zsh/vendor-completions/_dubsar" || fail "zsh does not read its completion"

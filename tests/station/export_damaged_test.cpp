@@ -6,11 +6,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <fstream>
 #include <string>
 
 #include "acquisition/session_store.h"
 #include "formats/grid_file.h"
+#include "formats/json_node.h"
 #include "formats/poses_json.h"
 #include "tests/station/support/exported.h"
 
@@ -197,6 +200,41 @@ TEST_F(ExportDamaged, AFolderThatCannotBeReadIsNamedAndTheRestIsThere) {
   EXPECT_EQ(again.json()["done_before"], true) << again.err;
   EXPECT_EQ(verified.status, 1);
   EXPECT_THAT(verified.out, HasSubstr("damaged: grids/unfinished: cannot read the folder"));
+}
+
+// A session from elsewhere may hold what Dubsar never writes: 20 000 levels once made 400 MB of an event, and
+// 100 000 ended the program.
+TEST_F(ExportDamaged, WhatIsNestedDeeplyStaysTheTextThatItWas) {
+  const auto nested = [](std::size_t levels) { return std::string(levels, '[') + std::string(levels, ']'); };
+  {
+    auto store = SessionStore::open_or_create(session_);
+    ASSERT_TRUE(store) << store.error().line();
+    ASSERT_TRUE(store->append_event("of another program", nested(100000)));
+    ASSERT_TRUE(store->append_event("the deepest that is read", nested(62)));
+    ASSERT_TRUE(store->append_event("one level more", nested(63)));
+    ASSERT_TRUE(store->save_document("device_settings", R"({"devices":)" + nested(100000) + "}"));
+  }
+  const Outcome done = pack();
+  ASSERT_EQ(done.status, 0) << done.err;
+  EXPECT_EQ(packed("session/device_settings.json"), R"({"devices":)" + nested(100000) + "}");
+  const std::string text = packed("session/events.json");
+  EXPECT_LT(text.size(), 300000U);
+  EXPECT_LE(json_depth(text), kMaxJsonDepth);
+  const auto events = nlohmann::json::parse(text);
+  const auto what = [&](const std::string& kind) -> nlohmann::json {
+    const auto found =
+        std::ranges::find_if(events, [&](const nlohmann::json& event) { return event["kind"] == kind; });
+    return found == events.end() ? nlohmann::json() : found->at("what");
+  };
+  EXPECT_EQ(what("of another program"), nested(100000));
+  EXPECT_EQ(what("the deepest that is read"), nlohmann::json::parse(nested(62)));
+  EXPECT_EQ(what("one level more"), nested(63));
+  // Nor is the program ended by a package that somebody else wrote such a list into.
+  std::ofstream(bag() / "data/session/events.json") << nested(100000);
+  EXPECT_EQ(run_command({"export", session_.string(), "--to", bag().string(), "--force", "--without",
+                         "renderings,features,grid-ply,wedges"})
+                .status,
+            0);
 }
 
 TEST_F(ExportDamaged, ALimitOnThreadsIsNoDefectOfTheProgram) {

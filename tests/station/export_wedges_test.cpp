@@ -205,19 +205,29 @@ TEST_F(ExportOfWedges, AnnotationsHaveTheShapeOfTheStandard) {
 }
 
 TEST_F(ExportOfWedges, OnThePicturesWedgesAreWhereTheHollowsAre) {
-  const Outcome drawn = run_command({"export", at("session"), "--to", at("drawn"), "--without",
-                                     "features,grid-ply", "--base-url", "https://example.org/t"});
+  const fs::path session = at("drawn_session");
+  fs::copy(at("session"), session, fs::copy_options::recursive);
+  ASSERT_EQ(run_command({"session", "describe", session, "--rights",
+                         "In copyright, https://rightsstatements.org/page/InC/1.0/?language=en"})
+                .status,
+            0);
+  const Outcome drawn = run_command({"export", session, "--to", at("drawn"), "--without", "features,grid-ply",
+                                     "--base-url", "https://example.org/t"});
   ASSERT_EQ(drawn.status, 0) << drawn.err;
   const auto json = [](const std::string& name) {
     return nlohmann::json::parse(bytes_of(at("drawn") / "data" / name), nullptr, false);
   };
   const std::size_t wedges = json("wedges/wedges.json")["wedges"].size();
-  const fs::path schema = fs::path(DUBSAR_SOURCE_DIR) / "tests/station/schemas/canvas_annotations.json";
+  const fs::path schemas = fs::path(DUBSAR_SOURCE_DIR) / "tests/station/schemas";
   const std::string valid =
       "/usr/bin/python3 -c 'import json, jsonschema, sys; "
       "jsonschema.validate(json.load(open(sys.argv[1])), json.load(open(sys.argv[2])))' ";
   std::size_t pages = 0;
   const nlohmann::json manifest = json("iiif/manifest.json");
+  EXPECT_EQ(manifest["rights"], "http://rightsstatements.org/vocab/InC/1.0/");
+  EXPECT_EQ(shell(valid + quoted(at("drawn") / "data/iiif/manifest.json") + " " +
+                  quoted(schemas / "iiif_manifest.json")),
+            0);
   for (const nlohmann::json& canvas : manifest["items"]) {
     const std::string picture = canvas["items"][0]["items"][0]["body"]["id"].get<std::string>().substr(22);
     if (!canvas.contains("annotations")) {
@@ -229,9 +239,12 @@ TEST_F(ExportOfWedges, OnThePicturesWedgesAreWhereTheHollowsAre) {
     const std::string address = canvas["annotations"][0]["id"];
     ASSERT_THAT(address, StartsWith("https://example.org/t/iiif/annotations/"));
     const std::string file = address.substr(22);
-    EXPECT_EQ(shell(valid + quoted(at("drawn") / "data" / file) + " " + quoted(schema)), 0);
+    EXPECT_EQ(shell(valid + quoted(at("drawn") / "data" / file) + " " +
+                    quoted(schemas / "canvas_annotations.json")),
+              0);
     const nlohmann::json page = json(file);
     EXPECT_EQ(page["id"], address);
+    EXPECT_EQ(page["rights"], manifest["rights"]);
     for (const nlohmann::json& item : page["items"]) {
       EXPECT_EQ(item["target"]["source"]["id"], canvas["id"]);
     }

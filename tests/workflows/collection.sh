@@ -27,6 +27,31 @@ listed=$("$workflows/list-tablets" "$folder" 2>"$folder/said")
 [[ $(cat "$folder/said") == "list-tablets: lost: a session without its session.sqlite"* ]] || fail "list-tablets: $(cat "$folder/said")"
 listed=$("$workflows/list-tablets" "$folder/session")
 [ "$listed" = . ] || fail "list-tablets of a session: $listed"
+# What cannot be gone through is told of and keeps nobody from the rest; what lies in sessions or is hidden is not told of.
+bound=()  # root reads everything, unless it is bound
+[ "$(id -u)" != 0 ] || bound=(setpriv --bounding-set "-dac_override,-dac_read_search")
+mkdir -p "$folder"/{closed,äöü,session/closed} "$folder"/$'broken\nname' "$folder"/three/$'broken\nname' "$folder"/session/$'broken\nname'
+touch "$folder"/closed/model.ply "$folder"/$'broken\nname'/model.ply
+for loop in "museum/a b/latest" äöü/latest museum/.latest session/latest; do ln -s . "$folder/$loop"; done
+ln -s itself "$folder/itself"
+chmod 0 "$folder"/{closed,session/closed}
+status=0
+again=$("${bound[@]}" "$workflows/list-tablets" "$folder" 2>"$folder/said") || status=$?
+chmod 700 "$folder"/{closed,session/closed}
+[ "$status $again" = $'0 export/one\nlinked\nmuseum/a b\nmuseum/c\nsession\nsub/mesh/two\nthree' ] || fail "list-tablets: $status $again"
+said=$(LC_ALL=C sort "$folder/said")
+[ "$said" = "list-tablets: .: a folder in it has a line break in its name, left out; give it another
+list-tablets: closed: Permission denied, left out
+list-tablets: itself: Too many levels of symbolic links, left out
+list-tablets: lost: a session without its session.sqlite, left out; dubsar verify --repair makes it anew
+list-tablets: museum/a b/latest: a link that leads back to where it lies, left out
+list-tablets: three: a folder in it has a line break in its name, left out; give it another
+list-tablets: äöü/latest: a link that leads back to where it lies, left out" ] || fail "list-tablets says: $said"
+# A search that breaks off is no list.
+status=0
+(find() { command find "$@" >/dev/full; } && export -f find && "$workflows/list-tablets" "$folder" >/dev/null 2>&1) || status=$?
+[ $status = 2 ] || fail "list-tablets when its search breaks off: status $status"
+rm -r "$folder"/{closed,äöü,itself} "$folder"/$'broken\nname' "$folder/museum/a b/latest" "$folder/museum/.latest"
 rm -r "$folder"/{export,sub,three,session,session.results,lost,.hidden,linked,said} "$folder.far"
 
 "$workflows/do-tablet" "$folder" "museum/a b"
@@ -65,6 +90,13 @@ echo 'a copy of the tables' >"$folder/museum/lost/session.backup.sqlite"
 said=$("$workflows/check-collection" "$folder" 2>/dev/null) && fail "check-collection overlooks a session without its database"
 [[ $said == 'museum/lost: a session without its session.sqlite'* ]] || fail "check-collection: $said"
 rm -r "$folder/museum/lost"
+# A name of any bytes is one name, and does not keep the others from being looked at.
+odd=$'museum/o\xff\x0b\r\xe2\x80\xa8d'
+mkdir "$folder/$odd"
+echo 'no mesh' >"$folder/$odd/model.ply"
+said=$("$workflows/check-collection" "$folder" 2>/dev/null) && fail "check-collection overlooks a name that is no text"
+[ "$said" = "$odd: is not done" ] || fail "check-collection: $said"
+rm -r "$folder/$odd"
 "$workflows/check-collection" "$folder" 2>/dev/null || fail "check-collection"
 printf 'x' >>"$folder/museum/c/wedges.json"
 said=$("$workflows/check-collection" "$folder" 2>/dev/null) && fail "check-collection overlooks damage"
