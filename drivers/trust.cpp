@@ -5,6 +5,7 @@
 #include <grp.h>
 #include <pwd.h>
 #include <sys/stat.h>
+#include <sys/xattr.h>
 
 #include <cerrno>
 #include <cstring>
@@ -20,6 +21,21 @@ std::unexpected<Error> distrusted(const fs::path& file, const fs::path& place, c
                                   const std::string& mend) {
   const std::string what = place == file ? "it" : place.string();
   return fail(ErrorKind::kDevice, why + " " + what, file.string(), "skipped; " + mend);
+}
+
+/// Rights that the mode does not show: with an access list its group bits are the most that anybody named in
+/// the list may do.
+bool has_access_list(const fs::path& place) {
+  return ::lgetxattr(place.c_str(), "system.posix_acl_access", nullptr, 0) > 0;
+}
+
+/// Whoever is in it may install programs for everybody: root, and what Debian gives /usr/local to.
+bool may_install(gid_t group) {
+  char text[4096];
+  struct group entry {};
+  struct group* found = nullptr;
+  return group == 0 || (::getgrgid_r(group, &entry, text, sizeof text, &found) == 0 && found != nullptr &&
+                        std::strcmp(entry.gr_name, "staff") == 0);
 }
 
 /// The group that many systems give each user, with nobody else in it.
@@ -67,7 +83,13 @@ Result<fs::path> trusted_file(const fs::path& file, uid_t user) {
       return distrusted(real, place, "everybody may write to",
                         "take the right away (chmod o-w) and see who wrote it");
     }
-    if (!above && (info.st_mode & S_IWGRP) != 0 && info.st_gid != 0 && !is_private_group(info.st_gid, user)) {
+    const bool by_group = (info.st_mode & S_IWGRP) != 0 && !sticky;
+    if (by_group && has_access_list(place)) {
+      return distrusted(real, place, "by an access list others may write to",
+                        "take it away (setfacl -b) and see who wrote it");
+    }
+    const bool known_group = above ? may_install(info.st_gid) : info.st_gid == 0;
+    if (by_group && !known_group && !is_private_group(info.st_gid, user)) {
       return distrusted(real, place, "a group (" + std::to_string(info.st_gid) + ") may write to",
                         "take the right away (chmod g-w) and see who wrote it");
     }

@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <sys/xattr.h>
 #include <unistd.h>
 
 #include <fstream>
@@ -112,6 +113,31 @@ TEST(Loader, TrustsWhatOnlyTheUserAndRootCanChange) {
   EXPECT_FALSE(trusted_file(real / "odd.so", me));
   fs::permissions(folder.path(), fs::perms(01777));
   EXPECT_TRUE(trusted_file(real / "odd.so", me));
+
+  // One that a group may write to, without it: a member could put another folder in its place.
+  if (me == 0) {
+    fs::permissions(folder.path(), fs::perms(0775));
+    ASSERT_EQ(::chown(folder.path().c_str(), 0, 4242), 0);
+    EXPECT_THAT(trusted_file(real / "odd.so", me).error().line(), HasSubstr("a group (4242) may write to"));
+    fs::permissions(folder.path(), fs::perms(01775));
+    EXPECT_TRUE(trusted_file(real / "odd.so", me));
+    ASSERT_EQ(::chown(folder.path().c_str(), 0, 0), 0);
+  }
+  fs::permissions(folder.path(), fs::perms(0755));
+
+  // Whom an access list names the mode does not tell: here user 4242, to read and write.
+  constexpr unsigned char kList[] = {2,  0, 0, 0,                           // version
+                                     1,  0, 6, 0, 0xff, 0xff, 0xff, 0xff,   // owner
+                                     2,  0, 6, 0, 0x92, 0x10, 0,    0,      // 4242
+                                     4,  0, 4, 0, 0xff, 0xff, 0xff, 0xff,   // group
+                                     16, 0, 6, 0, 0xff, 0xff, 0xff, 0xff,   // mask
+                                     32, 0, 4, 0, 0xff, 0xff, 0xff, 0xff};  // others
+  if (::setxattr((real / "odd.so").c_str(), "system.posix_acl_access", kList, sizeof kList, 0) == 0) {
+    EXPECT_THAT(trusted_file(real / "odd.so", me).error().line(), HasSubstr("an access list"));
+    ASSERT_EQ(::removexattr((real / "odd.so").c_str(), "system.posix_acl_access"), 0);
+    fs::permissions(real / "odd.so", fs::perms::group_write, fs::perm_options::remove);
+    EXPECT_TRUE(trusted_file(real / "odd.so", me));
+  }
 
   if (me == 0) {
     ASSERT_EQ(::chown((real / "odd.so").c_str(), 4242, 0), 0);
