@@ -14,6 +14,7 @@ namespace {
 
 constexpr const char* kDocument = "device_settings";
 
+/// In the order in which a session was opened with them, the last one last.
 using ByDevice = std::vector<std::pair<std::string, SettingWords>>;
 
 Result<ByDevice> load(const SessionStore& store) {
@@ -90,12 +91,8 @@ Status keep_settings(SessionStore& store, const std::string& uri, const SettingW
   if (!all) {
     return std::unexpected(all.error());
   }
-  const auto known = std::ranges::find(*all, uri, &ByDevice::value_type::first);
-  if (known != all->end()) {
-    known->second = words;
-  } else {
-    all->emplace_back(uri, words);
-  }
+  std::erase_if(*all, [&](const auto& known) { return known.first == uri; });
+  all->emplace_back(uri, words);  // the last one is the session's own
   OrderedJson devices = OrderedJson::array();
   for (const auto& [device, settings] : *all) {
     OrderedJson list = OrderedJson::array();
@@ -107,6 +104,14 @@ Status keep_settings(SessionStore& store, const std::string& uri, const SettingW
   OrderedJson root;
   root["devices"] = std::move(devices);
   return store.save_document(kDocument, text_of(root));
+}
+
+Result<std::string> own_device(const SessionStore& store) {
+  const Result<ByDevice> all = load(store);
+  if (!all) {
+    return std::unexpected(all.error());
+  }
+  return all->empty() ? std::string() : all->back().first;
 }
 
 }  // namespace dubsar

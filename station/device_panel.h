@@ -33,6 +33,10 @@ void put_word(SettingWords& words, const std::string& key, const std::string& wo
 /// What was changed of a device, by its URI, in the session: put again whenever the session goes on with it.
 /// Empty where nothing was. Errors: kBadInput, and those of the store.
 [[nodiscard]] Result<SettingWords> kept_settings(const SessionStore& store, const std::string& uri);
+/// And that this device is the one that the session goes on with.
 Status keep_settings(SessionStore& store, const std::string& uri, const SettingWords& words);
+
+/// URI of the device that the session was opened with last; empty where none is kept. Errors: as above.
+[[nodiscard]] Result<std::string> own_device(const SessionStore& store);
 
 }  // namespace dubsar

@@ -34,6 +34,8 @@ Status Engine::Impl::open_settings() {
     for (const auto& [key, value] : options.settings) {
       put_word(settings, key, value);
     }
+  }
+  if (!options.settings.empty() || own_device(*store).value_or(std::string()) != options.device) {
     if (const Status saved = keep_settings(*store, options.device, settings); !saved) {
       return saved;
     }

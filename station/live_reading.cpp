@@ -45,8 +45,17 @@ bool is_stored(const SessionStore& store, const RedMap& map) {
 
 }  // namespace
 
+void LiveSession::take_own_device(const SessionStore& store) {
+  const Result<std::string> own = own_device(store);
+  const std::scoped_lock lock(mutex_);
+  if (!options_.is_device_asked && own && !own->empty()) {
+    options_.device = *own;
+  }
+}
+
 void LiveSession::read_folder() {
   if (!SessionStore::is_session(options_.session)) {
+    look_after_rig();
     return;
   }
   {
@@ -56,6 +65,10 @@ void LiveSession::read_folder() {
   }
   changed();
   const Result<SessionStore> store = SessionStore::open(options_.session, SessionStore::Access::kReadOnly);
+  if (store) {
+    take_own_device(*store);
+  }
+  look_after_rig();
   const auto scans = store ? store->scans() : std::unexpected(store.error());
   const auto poses = store ? standing_poses(*store) : std::unexpected(store.error());
   if (!scans || !poses) {

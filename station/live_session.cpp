@@ -71,6 +71,7 @@ void LiveSession::set_device(std::string uri) {
       state_.error.reset();  // the other scanner's
     }
     options_.device = std::move(uri);
+    options_.is_device_asked = true;
   }
   look_after_rig();
 }
@@ -168,7 +169,6 @@ void LiveSession::end(const Status& status) {
 
 void LiveSession::read() {
   launch([this] {
-    look_after_rig();
     read_folder();
     look_for_package();
   });

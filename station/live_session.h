@@ -30,6 +30,7 @@ class LiveSession {
     std::string device;  ///< URI
     std::filesystem::path session;
     std::optional<PinSet> pins;
+    bool is_device_asked = true;  ///< else a session that is there goes on with its own
   };
 
   /// `on_change` is called on other threads whenever there is something new to show; of the profiles of a
@@ -90,6 +91,7 @@ class LiveSession {
                      bool red_alone);
   void run_engine(std::vector<OperatorCommand> first, bool first_scan_waits);
   void read_folder();
+  void take_own_device(const SessionStore& store);
   void look_for_broken_off();
   void look_for_package();  ///< of the signed session, in its usual place
   /// Of a run that kept none: whether the session holds what was shown last.

@@ -160,6 +160,9 @@ void LiveSession::hear(const Event& event) {
       state_.pins = pins->pins;
     } else if (const auto* device = std::get_if<DeviceTells>(&event)) {
       state_.panel = device->panel;
+      if (state_.phase == LivePhase::kOpening) {  // it is open; the scans of the session come next
+        state_.phase = LivePhase::kReading;
+      }
     } else if (const auto* frame = std::get_if<CameraFrame>(&event)) {
       camera_ = frame->view;
     } else if (const auto* stored = std::get_if<ScanStored>(&event)) {

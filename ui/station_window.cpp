@@ -130,8 +130,9 @@ class StationWindow {
       viewer_ = std::make_unique<ViewerScreen>(*viewing_, std::filesystem::path("."), false);
       return;
     }
+    const bool is_asked = !options.device.empty();
     open_session(
-        {options.device.empty() ? ui_.preferences.device : options.device, options.session, options.pins});
+        {is_asked ? options.device : ui_.preferences.device, options.session, options.pins, is_asked});
   }
 
   Result<int> run(const JobContext& job) {
@@ -207,7 +208,7 @@ class StationWindow {
     if (pins) {
       pins->tips.clear();  // those were of the scans of another tablet
     }
-    open_session({session_->device(), *folder, pins});
+    open_session({session_->device(), *folder, pins, false});
   }
 
   bool draw_frame() {

@@ -78,7 +78,8 @@ void add_station(CLI::App& app, Action& chosen) {
   const auto arguments = std::make_shared<StationArguments>();
   verb->add_option("--session", arguments->session, "folder of the session; gone on with when it is there")
       ->default_val("session");
-  verb->add_option("--device", arguments->window.device, "URI of the scanner; without it the one used last");
+  verb->add_option("--device", arguments->window.device,
+                   "URI of the scanner; without it the session's own, or the one used last");
   verb->add_option("--pins", arguments->pins, "the operator's pins (pins.json)");
   verb->add_option("--mesh", arguments->mesh, "look at this mesh instead");
   add_window_options(*verb, *arguments);

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <fstream>
 #include <future>
 #include <thread>
@@ -290,6 +291,47 @@ TEST(LiveSession, WhatIsAskedForGoesBeforeTheModelOfAnInterruptedSession) {
   again.session.finish();
   ASSERT_TRUE(again.wait_for_rest());
   EXPECT_FALSE(again.session.state().error);
+}
+
+/// One tablet on two scanners by mistake would be two frames, two calibrations and two kinds of noise.
+TEST(LiveSession, AStoredSessionGoesOnWithItsOwnScanner) {
+  const test::TemporaryFolder folder;
+  Followed first(kSmallTablet, folder.path() / "s");
+  first.session.scan_now();
+  ASSERT_TRUE(first.wait_for_phase(LivePhase::kWaiting));
+  first.session.stop();
+  ASSERT_TRUE(first.wait_for_rest());
+  const std::string another = "sim:?seed=9";
+  const auto device_of = [&](const char* name, bool is_asked) {
+    LiveSession session({another, folder.path() / name, std::nullopt, is_asked}, nullptr);
+    session.read();
+    while (session.busy()) {
+      std::this_thread::yield();
+    }
+    return session.device();
+  };
+  EXPECT_EQ(device_of("s", false), kSmallTablet);
+  EXPECT_EQ(device_of("s", true), another);
+  EXPECT_EQ(device_of("new", false), another);
+}
+
+TEST(LiveSession, HandsAreKeptOffWhileTheScannerIsOpenedAndNotWhileScansAreRead) {
+  const test::TemporaryFolder folder;
+  std::atomic<bool> is_opened = false;
+  std::atomic<bool> reads_then = false;
+  LiveSession* watched = nullptr;
+  LiveSession session({kSmallTablet, folder.path() / "s", std::nullopt}, [&] {
+    const LivePhase phase = watched->state().phase;
+    is_opened = is_opened || phase == LivePhase::kOpening;
+    reads_then = reads_then || (is_opened && phase == LivePhase::kReading);
+  });
+  watched = &session;
+  session.scan_now();
+  while (session.busy() && session.state().phase != LivePhase::kWaiting) {
+    std::this_thread::yield();
+  }
+  EXPECT_TRUE(is_opened);
+  EXPECT_TRUE(reads_then);
 }
 
 TEST(LiveSession, WhatADeviceRemarksOnItsScanStays) {

@@ -37,12 +37,15 @@ class OperatorStory : public ::testing::Test {
     }
   }
   Outcome play(const std::string& script) { return play_on(kSmallTablet, script); }
+  /// Without a device: on the one that the window takes by itself.
   Outcome play_on(const std::string& device, const std::string& script) {
     const fs::path file = folder_.path() / "story.script";
     std::ofstream(file) << script;
-    // As a shell completes it.
-    return run_command(
-        {"station", "--session", session() + "/", "--device", device, "--script", file.string()});
+    std::vector<std::string> words{"station", "--session", session() + "/", "--script", file.string()};
+    if (!device.empty()) {
+      words.insert(words.end(), {"--device", device});
+    }
+    return run_command(words);  // the session as a shell completes it
   }
   [[nodiscard]] std::string session() const { return (folder_.path() / "session").string(); }
 
@@ -345,6 +348,10 @@ TEST_F(OperatorStory, TheListOfScannersBeginsWithTheOneInUse) {
   ASSERT_EQ(played.status, 0) << played.err;
   const auto list = run_command({"session", "list", session(), "--json"}).json();
   EXPECT_GE(list["scans"].size(), 1U);
+  // And when the session is opened again and nobody says which.
+  const Outcome again = play_on("", "wait idle\nclick device\nwait driver.sim\npause 0.3\nwait address." +
+                                        std::string(kSmallTablet) + "\nquit\n");
+  EXPECT_EQ(again.status, 0) << again.err;
 }
 
 TEST_F(OperatorStory, SayingWhatTabletItIsOpensNoScanner) {

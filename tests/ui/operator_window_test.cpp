@@ -107,6 +107,10 @@ TEST_F(OperatorWindow, LooksAsItsUserLikesAndSaysWhatIsNextInWhole) {
       play("wait idle\nkey space\nwait waiting-turn\nwait model-shown\nscreenshot " + in("dark.png") +
            "\nclick settings\nclick colour-blind\nkey escape\nscreenshot " + in("blue.png") +
            "\nclick settings\nclick dark\nkey escape\nscreenshot " + in("light.png") + R"(
+click face.reverse
+wait looks-at.reverse
+key 1
+wait looks-at.obverse
 click settings
 click german
 click font-larger

@@ -135,8 +135,13 @@ void OperatorScreen::draw_tablet(UiContext& ui) {
   ImGui::EndPopup();
 }
 
+std::string OperatorScreen::title_of(const UiContext& ui, Text what) const {
+  const std::string& number = state_.record.museum_number;
+  return fmt::format("{}: {}", ui.text(what), number.empty() ? session_name(session_.folder()) : number);
+}
+
 void OperatorScreen::draw_signing(UiContext& ui) {
-  if (!begin_box(ui, ui.text(Text::kSign), "###sign", open_sign_, ui.px(32))) {
+  if (!begin_box(ui, title_of(ui, Text::kSign).c_str(), "###sign", open_sign_, ui.px(32))) {
     return;
   }
   const auto says = [](const std::string& text) {
@@ -180,7 +185,7 @@ void OperatorScreen::draw_signing(UiContext& ui) {
 }
 
 void OperatorScreen::draw_package(UiContext& ui) {
-  if (!begin_box(ui, ui.text(Text::kPackage), "###package", open_package_, ui.px(36))) {
+  if (!begin_box(ui, title_of(ui, Text::kPackage).c_str(), "###package", open_package_, ui.px(36))) {
     return;
   }
   ImGui::TextWrapped("%s", ui.text(Text::kPackageHint));

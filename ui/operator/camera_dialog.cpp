@@ -54,11 +54,11 @@ std::string exposure_line(const Exposure& is, Language language) {
 void CameraDialog::draw_view(UiContext& ui, ImVec2 size) {
   const auto view = session_.camera();
   const ImVec2 origin = ImGui::GetCursorScreenPos();
-  const float line = ImGui::GetTextLineHeightWithSpacing();
   if (!view || view->width == 0) {
     ImGui::Dummy(size);
-    ImGui::GetWindowDrawList()->AddText({origin.x + ui.px(0.6F), origin.y + ui.px(0.5F)},
-                                        packed(ui.colours.faint), ui.text(Text::kNoPicture));
+    ImGui::GetWindowDrawList()->AddText(nullptr, 0, {origin.x + ui.px(0.6F), origin.y + ui.px(0.5F)},
+                                        packed(ui.colours.faint), ui.text(Text::kNoPicture), nullptr,
+                                        size.x - ui.px(1.2F));
     return;
   }
   ui.facts.insert("camera-picture");
@@ -66,7 +66,14 @@ void CameraDialog::draw_view(UiContext& ui, ImVec2 size) {
     texture_.upload(view->width, view->height, 3, hatched(*view).data(), false);
     shown_ = view;
   }
-  const float room = size.y - 2 * line;
+  // The picture has what the words below it leave, however many lines they take.
+  const std::string exposure = exposure_line(view->exposure, ui.preferences.language);
+  const auto high = [&](const ImFont* font, const char* words) {
+    return font->CalcTextSizeA(font->FontSize, 1e6F, size.x, words).y + ImGui::GetStyle().ItemSpacing.y;
+  };
+  const float words_high =
+      high(ImGui::GetFont(), exposure.c_str()) + high(ui.fonts.small, ui.text(Text::kHatchLegend));
+  const float room = std::max(size.y - words_high, 0.3F * size.y);
   const float scale =
       std::min(size.x / static_cast<float>(view->width), room / static_cast<float>(view->height));
   const ImVec2 drawn{scale * static_cast<float>(view->width), scale * static_cast<float>(view->height)};
@@ -77,8 +84,7 @@ void CameraDialog::draw_view(UiContext& ui, ImVec2 size) {
   constexpr const char* kAdvice[] = {"exposure-good", "exposure-too-long", "exposure-too-short"};
   ui.facts.insert(kAdvice[static_cast<int>(view->exposure.advice)]);
   const bool good = view->exposure.advice == ExposureAdvice::kGood;
-  coloured_text(good ? ui.colours.good : ui.colours.amber,
-                exposure_line(view->exposure, ui.preferences.language).c_str());
+  coloured_text(good ? ui.colours.good : ui.colours.amber, exposure.c_str());
   ImGui::PushFont(ui.fonts.small);
   coloured_text(ui.colours.faint, ui.text(Text::kHatchLegend));
   ImGui::PopFont();

@@ -17,6 +17,12 @@
 
 namespace dubsar::ui {
 
+namespace {
+
+constexpr float kModelAspect = 1.2F;  ///< the narrowest place for the model's picture
+
+}  // namespace
+
 std::vector<unsigned char> coloured(const GridPicture& picture, const UiContext& ui) {
   std::vector<unsigned char> out(picture.shade.size() * 3);
   const Eigen::Vector3f ground = 255 * (ui.preferences.dark ? Eigen::Vector3f(0.08F, 0.08F, 0.09F)
@@ -59,7 +65,8 @@ void OperatorScreen::take_state(UiContext& ui) {
           Eigen::Quaternionf(Eigen::Matrix3f(ready->tablet_from_model.rotation.cast<float>())));
       camera_set_ = true;
     }
-    camera_.fit(ready->whole->box_mm, 1.2F);
+    model_box_mm_ = ready->whole->box_mm;
+    camera_.fit(model_box_mm_, kModelAspect);
     giving_back_ = give_back(std::move(ready));
   }
   draws_on_ = prepared_.arrives();
@@ -104,6 +111,9 @@ void OperatorScreen::take_state(UiContext& ui) {
     ui.facts.insert(state_.care->is_due() ? "verify-due" : "verified-today");
   }
   ui.facts.insert("scans." + std::to_string(state_.scans.size()));
+  if (looked_at_) {
+    ui.facts.insert(fmt::format("looks-at.{}", to_string(*looked_at_)));
+  }
 }
 
 void OperatorScreen::sound_out(const UiContext& ui) {
@@ -114,7 +124,7 @@ void OperatorScreen::sound_out(const UiContext& ui) {
   // The operator is wanted, or it is over; a session that was only read makes no noise.
   if (state_.phase == LivePhase::kWaiting) {
     play(state_.last_not_taken_up ? Sound::kFailed : Sound::kDone);
-  } else if (state_.phase == LivePhase::kStill && before != LivePhase::kReading) {
+  } else if (state_.phase == LivePhase::kStill && (before != LivePhase::kReading || state_.error)) {
     play(state_.error ? Sound::kFailed : Sound::kDone);
   }
 }
@@ -204,9 +214,22 @@ void OperatorScreen::open_next() {
   open_next_ = true;
 }
 
+void OperatorScreen::look_at(Face face) {
+  if (!model_.empty()) {
+    camera_.eye_from_model = eye_towards(face, state_.tablet_from_model);
+    camera_.fit(model_box_mm_, kModelAspect);
+    looked_at_ = face;
+  }
+}
+
 void OperatorScreen::act(const Statement& statement, const UiContext& ui) {
   if (ImGui::GetIO().WantTextInput || ui.facts.contains("dialog")) {
     return;
+  }
+  for (int k = 0; k < kFaceCount; ++k) {
+    if (any_pressed({GLFW_KEY_1 + k})) {
+      look_at(static_cast<Face>(k));
+    }
   }
   // Keys, and what foot pedals send: F9 to F11, or page down, page up and end.
   if (statement.may_scan && any_pressed({GLFW_KEY_SPACE, GLFW_KEY_F9, GLFW_KEY_PAGE_DOWN})) {
@@ -282,6 +305,7 @@ void OperatorScreen::draw_model(UiContext& ui, ImVec2 size, bool asks_for_places
     if (ImGui::IsMouseDown(ImGuiMouseButton_Middle) || io.KeyShift) {
       camera_.pan({io.MouseDelta.x, io.MouseDelta.y}, size.y);
     } else {
+      looked_at_.reset();
       camera_.drag(part({io.MousePos.x - io.MouseDelta.x, io.MousePos.y - io.MouseDelta.y}),
                    part(io.MousePos));
     }

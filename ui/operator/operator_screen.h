@@ -67,7 +67,8 @@ class OperatorScreen {
     std::string note;
   };
   [[nodiscard]] FaceState face_state(const UiContext& ui, Face face) const;
-  void draw_faces(UiContext& ui) const;
+  void draw_face(UiContext& ui, Face which, const FaceState& face, Text name);
+  void draw_faces(UiContext& ui);
   void draw_left(UiContext& ui, ImVec2 size);
   void draw_model(UiContext& ui, ImVec2 size, bool asks_for_places);
   void draw_halt(UiContext& ui, ImVec2 model_end);
@@ -77,10 +78,13 @@ class OperatorScreen {
   void draw_scan_menu(UiContext& ui, const LiveScan& scan);
   void draw_settings(UiContext& ui);
   void draw_tablet(UiContext& ui);
+  /// What a box is for, and of which tablet: its number, or where it is kept.
+  [[nodiscard]] std::string title_of(const UiContext& ui, Text what) const;
   void draw_signing(UiContext& ui);
   void draw_package(UiContext& ui);
   void draw_next(UiContext& ui);
   void act(const Statement& statement, const UiContext& ui);
+  void look_at(Face face);
   void open_pairs();
   void undo();
   void open_signing(const UiContext& ui);
@@ -94,6 +98,8 @@ class OperatorScreen {
   SurfaceView model_;
   OrbitCamera camera_;
   bool camera_set_ = false;
+  Eigen::AlignedBox3f model_box_mm_;
+  std::optional<Face> looked_at_;  ///< until the model is turned otherwise
   PreparedModel prepared_;
   std::future<void> giving_back_;  ///< of the last one
   bool model_has_red_ = false;     ///< points; else the mesh itself says what is sparse

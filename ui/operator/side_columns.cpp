@@ -76,8 +76,20 @@ OperatorScreen::FaceState OperatorScreen::face_state(const UiContext& ui, Face f
   return out;
 }
 
+/// Its mark and its name; a click turns the model to it.
+void OperatorScreen::draw_face(UiContext& ui, Face which, const FaceState& face, Text name) {
+  ImGui::BeginGroup();
+  draw_mark(ui, face.whole, face.lacks, ImGui::GetTextLineHeight());
+  ImGui::TextUnformatted(ui.text(name));
+  ImGui::EndGroup();
+  if (ImGui::IsItemClicked()) {
+    look_at(which);
+  }
+  ui.target(fmt::format("face.{}", to_string(which)));
+}
+
 /// All six are seen at once: where letters are too large for a line each, in short first.
-void OperatorScreen::draw_faces(UiContext& ui) const {
+void OperatorScreen::draw_faces(UiContext& ui) {
   const float end = ImGui::GetCursorScreenPos().x + ImGui::GetContentRegionAvail().x;
   if (ImGui::GetContentRegionAvail().y < (kFaceCount + 1) * ImGui::GetTextLineHeightWithSpacing()) {
     constexpr int kInRow = 3;
@@ -90,9 +102,7 @@ void OperatorScreen::draw_faces(UiContext& ui) const {
       if (k % kInRow > 0) {
         ImGui::SameLine(left + static_cast<float>(k % kInRow) * wide);
       }
-      draw_mark(ui, face.whole, face.lacks, ImGui::GetTextLineHeight());
-      ImGui::TextUnformatted(ui.text(kShortFaceTexts[k]));
-      ui.target(fmt::format("face.{}", to_string(static_cast<Face>(k))));
+      draw_face(ui, static_cast<Face>(k), face, kShortFaceTexts[k]);
     }
     ImGui::PopStyleVar();
     ImGui::PopFont();
@@ -102,9 +112,7 @@ void OperatorScreen::draw_faces(UiContext& ui) const {
   for (int k = 0; k < kFaceCount; ++k) {
     const FaceState face = face_state(ui, static_cast<Face>(k));
     const float box = ImGui::GetTextLineHeight();
-    draw_mark(ui, face.whole, face.lacks, box);
-    ImGui::TextUnformatted(ui.text(kFaceTexts[k]));
-    ui.target(fmt::format("face.{}", to_string(static_cast<Face>(k))));
+    draw_face(ui, static_cast<Face>(k), face, kFaceTexts[k]);
     if (!face.note.empty()) {
       draw_note(ui, face.note, face.lacks, end, box + ImGui::GetStyle().ItemSpacing.x);
     }

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/tablet_sides.h"
+
 namespace dubsar::ui {
 
 namespace {
@@ -23,6 +25,16 @@ Eigen::Vector3f on_ball(const Eigen::Vector2f& at) {
 }
 
 }  // namespace
+
+Eigen::Quaternionf eye_towards(Face face, const RigidTransform& tablet_from_model) {
+  const SideAxes& side = side_axes(face);
+  Eigen::Matrix3d eye_from_tablet;
+  eye_from_tablet.row(0) = side.right.transpose();
+  eye_from_tablet.row(1) = side.up().transpose();
+  eye_from_tablet.row(2) = side.normal.transpose();
+  return Eigen::Quaternionf(Eigen::Matrix3f((eye_from_tablet * tablet_from_model.rotation).cast<float>()))
+      .normalized();
+}
 
 void OrbitCamera::fit(const Eigen::AlignedBox3f& box, float aspect) {
   if (box.isEmpty()) {

@@ -5,7 +5,13 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include "core/red_map.h"
+#include "core/rigid_transform.h"
+
 namespace dubsar::ui {
+
+/// From outside onto one side of a tablet, its top up.
+[[nodiscard]] Eigen::Quaternionf eye_towards(Face face, const RigidTransform& tablet_from_model);
 
 /// An orthographic look at a model, so that a millimetre is as long everywhere in the picture. Eye space: x
 /// to the right, y up, z towards the viewer; lengths in mm.

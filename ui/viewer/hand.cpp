@@ -9,16 +9,6 @@
 
 namespace dubsar::ui {
 
-Eigen::Quaternionf eye_towards(Face face, const RigidTransform& tablet_from_model) {
-  const SideAxes& side = side_axes(face);
-  Eigen::Matrix3d eye_from_tablet;
-  eye_from_tablet.row(0) = side.right.transpose();
-  eye_from_tablet.row(1) = side.up().transpose();
-  eye_from_tablet.row(2) = side.normal.transpose();
-  return Eigen::Quaternionf(Eigen::Matrix3f((eye_from_tablet * tablet_from_model.rotation).cast<float>()))
-      .normalized();
-}
-
 bool use_hand(ImVec2 origin, ImVec2 size, OrbitCamera& camera, Look& look, bool& dragged) {
   const ImGuiIO& io = ImGui::GetIO();
   bool moved_camera = false;

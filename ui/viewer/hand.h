@@ -4,16 +4,11 @@
 
 #include <imgui.h>
 
-#include "core/red_map.h"
-#include "core/rigid_transform.h"
 #include "ui/shell/widgets.h"
 #include "ui/view/orbit_camera.h"
 #include "ui/view/surface_view.h"
 
 namespace dubsar::ui {
-
-/// From outside onto one side of a tablet, its top up.
-[[nodiscard]] Eigen::Quaternionf eye_towards(Face face, const RigidTransform& tablet_from_model);
 
 /// What the hand does to the picture that was the last item: left drag turns, with shift or the middle button
 /// it moves, the wheel comes nearer, right drag moves the lamp. `dragged`: kept between the calls; whether
