@@ -189,24 +189,6 @@ std::uint32_t Draft::patch_of_face(std::size_t face) const {
   return static_cast<std::uint32_t>(next - first_face.begin());
 }
 
-std::vector<std::pair<std::uint32_t, std::uint32_t>> face_reach_of(const std::vector<Triangle>& faces) {
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> out(faces.size() / Draft::kFaceBlock);
-  parallel_for_each_index(
-      out.size(),
-      [&](std::size_t block) {
-        auto& [least, greatest] = out[block];
-        least = greatest = faces[block * Draft::kFaceBlock][0];
-        for (std::size_t k = 0; k < Draft::kFaceBlock; ++k) {
-          for (const std::uint32_t v : faces[block * Draft::kFaceBlock + k]) {
-            least = std::min(least, v);
-            greatest = std::max(greatest, v);
-          }
-        }
-      },
-      64);
-  return out;
-}
-
 Draft lay_patches(const std::vector<OwnedScan>& scans) {
   Draft draft;
   std::vector<Patch> patches;
@@ -236,7 +218,6 @@ Draft lay_patches(const std::vector<OwnedScan>& scans) {
   for (std::size_t k = 0; k < patches.size(); ++k) {
     patches[k].lay(draft.first_vertex[k], draft.first_face[k], draft);
   }
-  draft.face_reach = face_reach_of(mesh.faces);
   return draft;
 }
 

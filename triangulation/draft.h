@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <utility>
 #include <vector>
 
 #include "core/mesh.h"
@@ -24,11 +23,6 @@ struct Draft {
   /// close around the vertex as those of a grid do.
   std::vector<std::uint8_t> near_rim;
 
-  /// Least and greatest vertex of each kFaceBlock faces of the patches as they were laid (those that went
-  /// since keep to it), so that a look for the faces around few vertices passes over most; empty: not known.
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> face_reach;
-  static constexpr std::size_t kFaceBlock = 256;
-
   [[nodiscard]] float spacing_mm(std::uint32_t vertex) const;
   static constexpr std::uint8_t kAtRim = 2;
   /// The patch (1 for the first) within which a face lies, away from the rim; 0: none. Faces of one patch all
@@ -40,10 +34,6 @@ struct Draft {
 [[nodiscard]] inline bool is_gone(const Triangle& f) {
   return f[0] == f[1];
 }
-
-/// Draft::face_reach, of whole blocks alone.
-[[nodiscard]] std::vector<std::pair<std::uint32_t, std::uint32_t>> face_reach_of(
-    const std::vector<Triangle>& faces);
 
 /// The patches that assign_owners() left: vertices are the kept samples at their averaged places, faces their
 /// triangles, and two more where a grid lacks one lone sample.

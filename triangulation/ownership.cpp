@@ -245,9 +245,6 @@ bool assign_owners(std::vector<OwnedScan>& scans, const GridTriangulationOptions
       fresh[i] = 1;
     }
     drop_scattered(fresh, scan.kept, scan.surface->lattice, options.least_patch_samples);
-    if (std::ranges::none_of(uncovered, [&](std::uint32_t i) { return fresh[i] != 0; })) {
-      continue;
-    }
     for (const std::uint32_t i : uncovered) {
       if (fresh[i] != 0 && scan.fused->slot[i] == FusedSamples::kNone) {
         unfused.push_back(i);

@@ -19,12 +19,9 @@ using Eigen::Vector3f;
 /// standing apart.
 bool may_see(const ScannerView& view, const Vector3f& p, const Vector3f& normal) {
   constexpr float kMostSine = -0.2F;
-  if (!view.camera_mm) {
-    return normal.dot(Vector3f(-view.direction.cast<float>())) > kMostSine;
-  }
-  const Vector3f to_camera = view.camera_mm->cast<float>() - p;
-  // Most could, and need no root for it.
-  return normal.dot(to_camera) > 0 || normal.dot(to_camera.normalized()) > kMostSine;
+  const Vector3f to_camera = view.camera_mm ? Vector3f((view.camera_mm->cast<float>() - p).normalized())
+                                            : Vector3f(-view.direction.cast<float>());
+  return normal.dot(to_camera) > kMostSine;
 }
 
 /// The step from one column (or row) to the next around a sample, over as many as noise leaves little of:
@@ -96,9 +93,6 @@ std::int64_t nearest_sample(const StitchSurface& to, const Vector3f& p, float re
   // What is looked up is every fourth sample; the walk goes to the nearest of all.
   const auto near_mm = static_cast<float>(2.0 * to.spacing_mm);
   const Vector3f there = (to.scanner_from_model * p.cast<double>()).cast<float>();
-  if (!to.lookup->may_hold_samples(to.lookup->reach_of(there, reach_mm + near_mm))) {
-    return -1;
-  }
   const std::int64_t start = to.lookup->nearest(there, reach_mm + near_mm);
   if (start < 0) {
     return -1;

@@ -155,7 +155,6 @@ void mark_cutting(const Mesh& mesh, std::span<const Triangle> faces, std::span<c
 
 void part_fans(Draft& draft) {
   Mesh& mesh = draft.mesh;
-  draft.face_reach.clear();                         // faces get other vertices and other numbers
   std::vector<std::uint8_t> near = draft.near_rim;  // elsewhere faces are those of grids
   // Where fans go others beside them may part: until none is left, for there are fewer faces each time.
   while (true) {

@@ -4,8 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <memory>
-#include <utility>
 
 #include "core/parallel.h"
 
@@ -16,6 +14,7 @@ namespace {
 using Eigen::Vector3f;
 
 constexpr std::size_t kGrain = 16384;
+constexpr std::uint32_t kNowhere = 0xffffffffU;
 
 /// Cells of a raster over a box, as bits.
 class CellSet {
@@ -75,27 +74,6 @@ std::vector<Eigen::Array3i> steps_within(float reach) {
   return steps;
 }
 
-/// Whether any vertex of a range is near, or of the blocks that it begins and ends in.
-class NearBlocks {
- public:
-  explicit NearBlocks(std::span<const std::uint8_t> near) : before_(near.size() / kVertices + 2, 0) {
-    for (std::size_t block = 0; block + 1 < before_.size(); ++block) {
-      const auto first = near.begin() + static_cast<std::ptrdiff_t>(std::min(block * kVertices, near.size()));
-      const auto last =
-          near.begin() + static_cast<std::ptrdiff_t>(std::min((block + 1) * kVertices, near.size()));
-      before_[block + 1] =
-          before_[block] + (std::any_of(first, last, [](std::uint8_t is) { return is != 0; }) ? 1U : 0U);
-    }
-  }
-  [[nodiscard]] bool any(std::pair<std::uint32_t, std::uint32_t> reach) const {
-    return before_[reach.second / kVertices + 1] != before_[reach.first / kVertices];
-  }
-
- private:
-  static constexpr std::size_t kVertices = 64;
-  std::vector<std::uint32_t> before_;  ///< how many blocks with a near vertex come before each
-};
-
 }  // namespace
 
 std::vector<std::uint8_t> vertices_near(const Draft& draft, std::span<const std::uint32_t> seeds) {
@@ -138,12 +116,76 @@ std::vector<std::uint8_t> vertices_near(const Draft& draft, std::span<const std:
   return near;
 }
 
-template <class IsWhole>
-void Region::fill(const Draft& draft, std::span<const std::uint32_t> local_of, const IsWhole& is_whole,
-                  const Eigen::AlignedBox3f& room, std::size_t tile) {
+std::vector<Region> take_regions(const Draft& draft, std::span<const std::uint8_t> near,
+                                 const Tiling& tiling) {
+  const Mesh& mesh = draft.mesh;
+  struct Entry {
+    std::uint32_t tile, item;
+  };
+  using Entries = std::vector<Entry>;
+  const auto join = [](Entries& total, const Entries& part) {
+    total.insert(total.end(), part.begin(), part.end());
+  };
+  std::vector<std::uint32_t> tile_of(mesh.positions.size());  // kNowhere: not near
+  const Entries vertices = parallel_reduce_ordered(
+      mesh.positions.size(), kGrain, Entries{},
+      [&](std::size_t begin, std::size_t end) {
+        Entries found;
+        for (std::size_t v = begin; v < end; ++v) {
+          tile_of[v] = kNowhere;
+          if (near[v] != 0) {
+            tile_of[v] = static_cast<std::uint32_t>(tiling.tile_of(mesh.positions[v]));
+            found.push_back({tile_of[v], static_cast<std::uint32_t>(v)});
+          }
+        }
+        return found;
+      },
+      join);
+  const Entries faces = parallel_reduce_ordered(
+      mesh.faces.size(), kGrain, Entries{},
+      [&](std::size_t begin, std::size_t end) {
+        Entries found;
+        for (std::size_t i = begin; i < end; ++i) {
+          const Triangle& f = mesh.faces[i];
+          if ((near[f[0]] | near[f[1]] | near[f[2]]) == 0 || is_gone(f)) {
+            continue;
+          }
+          const std::uint32_t a = tile_of[f[0]], b = tile_of[f[1]], c = tile_of[f[2]];
+          if (a != kNowhere) {
+            found.push_back({a, static_cast<std::uint32_t>(i)});
+          }
+          if (b != kNowhere && b != a) {
+            found.push_back({b, static_cast<std::uint32_t>(i)});
+          }
+          if (c != kNowhere && c != a && c != b) {
+            found.push_back({c, static_cast<std::uint32_t>(i)});
+          }
+        }
+        return found;
+      },
+      join);
+  std::vector<Region> by_tile(tiling.size());
+  std::vector<std::uint32_t> local_of(mesh.positions.size());
+  for (const auto& [tile, v] : vertices) {
+    local_of[v] = static_cast<std::uint32_t>(by_tile[tile].vertices_.size());
+    by_tile[tile].vertices_.push_back(v);
+  }
+  for (const auto& [tile, face] : faces) {
+    by_tile[tile].faces_.push_back(face);
+  }
+  parallel_for_each_index(
+      by_tile.size(),
+      [&](std::size_t tile) { by_tile[tile].fill(draft, local_of, tile_of, tiling.box(tile), tile); }, 1);
+  std::erase_if(by_tile, [](const Region& region) { return region.faces_.empty(); });
+  return by_tile;
+}
+
+void Region::fill(const Draft& draft, std::span<const std::uint32_t> local_of,
+                  std::span<const std::uint32_t> tile_of, const Eigen::AlignedBox3f& room, std::size_t tile) {
   const Mesh& mesh = draft.mesh;
   tile_ = tile;
   whole_ = vertices_.size();
+  const auto is_whole = [&](std::uint32_t v) { return tile_of[v] == tile; };
   std::vector<std::uint32_t> rest;
   for (const std::uint32_t i : faces_) {
     for (const std::uint32_t v : mesh.faces[i]) {
@@ -188,84 +230,6 @@ void Region::fill(const Draft& draft, std::span<const std::uint32_t> local_of, c
         }
       },
       kGrain);
-}
-
-std::vector<Region> take_regions(const Draft& draft, std::span<const std::uint8_t> near,
-                                 const Tiling& tiling) {
-  const Mesh& mesh = draft.mesh;
-  struct Entry {
-    std::uint32_t tile, item;
-  };
-  using Entries = std::vector<Entry>;
-  const auto join = [](Entries& total, const Entries& part) {
-    total.insert(total.end(), part.begin(), part.end());
-  };
-  // Only what belongs to near vertices is ever filled, and read.
-  const std::size_t count = mesh.positions.size();
-  const auto tile_of = std::make_unique_for_overwrite<std::uint32_t[]>(count);
-  const auto local_of = std::make_unique_for_overwrite<std::uint32_t[]>(count);
-  const Entries vertices = parallel_reduce_ordered(
-      mesh.positions.size(), kGrain, Entries{},
-      [&](std::size_t begin, std::size_t end) {
-        Entries found;
-        for (std::size_t v = begin; v < end; ++v) {
-          if (near[v] != 0) {
-            tile_of[v] = static_cast<std::uint32_t>(tiling.tile_of(mesh.positions[v]));
-            found.push_back({tile_of[v], static_cast<std::uint32_t>(v)});
-          }
-        }
-        return found;
-      },
-      join);
-  const NearBlocks near_blocks(near);
-  const Entries faces = parallel_reduce_ordered(
-      mesh.faces.size(), kGrain, Entries{},
-      [&](std::size_t begin, std::size_t end) {
-        Entries found;
-        for (std::size_t i = begin; i < end; ++i) {
-          const std::size_t block = i / Draft::kFaceBlock;
-          if (i % Draft::kFaceBlock == 0 && block < draft.face_reach.size() &&
-              !near_blocks.any(draft.face_reach[block])) {
-            i += Draft::kFaceBlock - 1;
-            continue;
-          }
-          const Triangle& f = mesh.faces[i];
-          if ((near[f[0]] | near[f[1]] | near[f[2]]) == 0 || is_gone(f)) {
-            continue;
-          }
-          const auto is_in = [&](std::size_t k, std::uint32_t tile) {
-            return near[f[k]] != 0 && tile_of[f[k]] == tile;
-          };
-          for (std::size_t k = 0; k < 3; ++k) {
-            if (near[f[k]] == 0) {
-              continue;
-            }
-            const std::uint32_t tile = tile_of[f[k]];
-            if ((k < 1 || !is_in(0, tile)) && (k < 2 || !is_in(1, tile))) {
-              found.push_back({tile, static_cast<std::uint32_t>(i)});
-            }
-          }
-        }
-        return found;
-      },
-      join);
-  std::vector<Region> by_tile(tiling.size());
-  for (const auto& [tile, v] : vertices) {
-    local_of[v] = static_cast<std::uint32_t>(by_tile[tile].vertices_.size());
-    by_tile[tile].vertices_.push_back(v);
-  }
-  for (const auto& [tile, face] : faces) {
-    by_tile[tile].faces_.push_back(face);
-  }
-  parallel_for_each_index(
-      by_tile.size(),
-      [&](std::size_t tile) {
-        const auto is_whole = [&](std::uint32_t v) { return near[v] != 0 && tile_of[v] == tile; };
-        by_tile[tile].fill(draft, {local_of.get(), count}, is_whole, tiling.box(tile), tile);
-      },
-      1);
-  std::erase_if(by_tile, [](const Region& region) { return region.faces_.empty(); });
-  return by_tile;
 }
 
 std::uint32_t Region::local(std::uint32_t vertex) const {

@@ -37,9 +37,8 @@ class Region {
   friend std::vector<Region> take_regions(const Draft& draft, std::span<const std::uint8_t> near,
                                           const Tiling& tiling);
   /// Takes vertices_ and faces_ as they are and fills the rest; `local_of`: of its whole vertices.
-  template <class IsWhole>
-  void fill(const Draft& draft, std::span<const std::uint32_t> local_of, const IsWhole& is_whole,
-            const Eigen::AlignedBox3f& room, std::size_t tile);
+  void fill(const Draft& draft, std::span<const std::uint32_t> local_of,
+            std::span<const std::uint32_t> tile_of, const Eigen::AlignedBox3f& room, std::size_t tile);
 
   std::size_t tile_ = 0;
   std::size_t whole_ = 0;                ///< vertices all of whose faces are here: the first

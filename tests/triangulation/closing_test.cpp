@@ -10,7 +10,6 @@
 #include "tests/triangulation/support/scans.h"
 #include "triangulation/grid_triangulation.h"
 #include "triangulation/mesh_check.h"
-#include "triangulation/region.h"
 #include "triangulation/slivers.h"
 #include "triangulation/tiling.h"
 
@@ -81,42 +80,6 @@ Draft cut_sheet(int side, int piece) {
 MeshReport report_of(Draft draft) {
   std::erase_if(draft.mesh.faces, is_gone);
   return check_mesh(draft.mesh);
-}
-
-/// Blocks of faces are passed over where none of their vertices is near, and nothing else changes.
-TEST(Region, HoldsTheSameWhetherTheReachOfFacesIsKnownOrNot) {
-  Draft draft = cut_sheet(160, 40);
-  ASSERT_GT(draft.mesh.faces.size(), 20 * Draft::kFaceBlock);
-  for (std::size_t k = 0; k < draft.mesh.faces.size(); k += 97) {  // some have gone since
-    Triangle& f = draft.mesh.faces[k];
-    f[1] = f[2] = f[0];
-  }
-  draft.mesh.faces.push_back({0, 1, 2});  // and one was added
-  const auto count = static_cast<std::uint32_t>(draft.mesh.positions.size());
-  const Eigen::AlignedBox3f box(Vector3f(0, 0, -1), Vector3f(16, 16, 1));
-  for (const std::vector<std::uint32_t>& seeds :
-       {std::vector<std::uint32_t>{1}, {count / 2}, {count / 3, count - 1}}) {
-    const std::vector<std::uint8_t> near = vertices_near(draft, seeds);
-    const auto taken = [&] {
-      std::vector<std::vector<std::uint32_t>> out;
-      for (const Region& region : take_regions(draft, near, Tiling(box, 2.0F, 0))) {
-        auto& faces = out.emplace_back();
-        for (std::size_t k = 0; k < region.sheet.faces.size(); ++k) {
-          faces.push_back(region.face(k));
-          for (const std::uint32_t v : region.sheet.faces[k]) {
-            faces.push_back(region.vertex(v));
-          }
-        }
-      }
-      return out;
-    };
-    draft.face_reach.clear();
-    const auto plain = taken();
-    ASSERT_FALSE(plain.empty());
-    draft.face_reach = face_reach_of(draft.mesh.faces);
-    draft.face_reach.pop_back();
-    EXPECT_EQ(taken(), plain);
-  }
 }
 
 /// Two strips of one plane whose facing rims have each a corner that nearly lies on an edge of the other.
