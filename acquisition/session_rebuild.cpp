@@ -9,6 +9,7 @@
 #include "acquisition/session_log.h"
 #include "acquisition/session_tables.h"
 #include "formats/atomic_file.h"
+#include "formats/same_bytes.h"
 
 namespace dubsar::session {
 
@@ -77,17 +78,6 @@ Result<std::vector<std::string>> keep_aside(const fs::path& folder) {
 
 namespace {
 
-bool is_same_file(const fs::path& a, const fs::path& b) {
-  std::error_code error;
-  const std::uintmax_t bytes = fs::file_size(a, error);
-  if (error || fs::file_size(b, error) != bytes || error) {
-    return false;
-  }
-  const Result<std::string> of_a = read_whole_file(a);
-  const Result<std::string> of_b = read_whole_file(b);
-  return of_a && of_b && *of_a == *of_b;
-}
-
 /// A rebuilding that was broken off after it had taken the log away, and before it replaced the database, has
 /// left a copy of both aside: the log is put back beside the database that it belongs to.
 Status bring_back_log(const fs::path& folder) {
@@ -100,7 +90,7 @@ Status bring_back_log(const fs::path& folder) {
   }
   const fs::path log = beside(aside, kLogSuffix);
   if (aside.empty() || has_content(beside(path, kLogSuffix)) || link_on_the_way(folder, aside.filename()) ||
-      link_on_the_way(folder, log.filename()) || !is_same_file(aside, path)) {
+      link_on_the_way(folder, log.filename()) || !have_same_bytes(aside, path)) {
     return {};
   }
   if (const Result<LogState> state = read_log(log); !state || state->commits == 0) {

@@ -11,6 +11,7 @@
 #include "formats/atomic_file.h"
 #include "formats/bag_text.h"
 #include "formats/make_folder.h"
+#include "formats/same_bytes.h"
 #include "formats/sha2.h"
 
 namespace dubsar {
@@ -26,15 +27,10 @@ bool has(const std::vector<std::string>& names, const std::string& name) {
   return std::ranges::find(names, name) != names.end();
 }
 
-bool are_same(const fs::path& one, const fs::path& other) {
-  const Result<std::string> a = read_whole_file(one, kMaxBagTextBytes);
-  const Result<std::string> b = read_whole_file(other, kMaxBagTextBytes);
-  return a && b && *a == *b;
-}
-
 /// The same package: what is said of every file of it, or of that list itself, is the same here and there.
 bool is_of_one_package(const fs::path& bag, const fs::path& copy) {
-  return are_same(bag / kManifest, copy / kManifest) || are_same(bag / kTagManifest, copy / kTagManifest);
+  return have_same_bytes(bag / kManifest, copy / kManifest, kMaxBagTextBytes) ||
+         have_same_bytes(bag / kTagManifest, copy / kTagManifest, kMaxBagTextBytes);
 }
 
 /// A file of the bag itself: what a link leads to is none.

@@ -18,6 +18,7 @@
 #include "formats/bag_text.h"
 #include "formats/files_below.h"
 #include "formats/json_node.h"
+#include "formats/same_bytes.h"
 #include "station/package.h"
 #include "station/package_source.h"
 
@@ -101,16 +102,6 @@ bool names_dubsar(const fs::path& package) {
   return info && ("\n" + *info).find("\nBag-Software-Agent: Dubsar ") != std::string::npos;
 }
 
-bool is_same_file(const fs::path& a, const fs::path& b) {
-  std::error_code error;
-  const std::uintmax_t bytes = fs::file_size(a, error);
-  if (error || fs::file_size(b, error) != bytes || error) {
-    return false;
-  }
-  const Result<std::string> of_a = read_whole_file(a);
-  return of_a && *of_a == read_whole_file(b).value_or(std::string());
-}
-
 }  // namespace
 
 Status check_is_package(const fs::path& folder) {
@@ -134,7 +125,7 @@ Status check_is_of_session(const fs::path& package, const SessionStore& store) {
   }
   const auto same_scan = [&](const StoredScan& scan) {
     const std::string grid = fmt::format("grids/{:03}.grid", scan.id);
-    return is_same_file(package / "data/scans" / grid, store.folder() / grid);
+    return have_same_bytes(package / "data/scans" / grid, store.folder() / grid);
   };
   if (std::ranges::any_of(packed, [&](const nlohmann::json& event) { return holds(*own, event); }) ||
       std::ranges::any_of(*scans, same_scan)) {

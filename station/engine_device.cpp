@@ -35,7 +35,8 @@ Status Engine::Impl::open_settings() {
       put_word(settings, key, value);
     }
   }
-  if (!options.settings.empty() || own_device(*store).value_or(std::string()) != options.device) {
+  const Result<std::string> own = own_device(*store);  // where that cannot be read, it was said above
+  if (!options.settings.empty() || (own && *own != options.device)) {
     if (const Status saved = keep_settings(*store, options.device, settings); !saved) {
       return saved;
     }

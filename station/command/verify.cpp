@@ -246,6 +246,10 @@ Result<int> verify(const Arguments& arguments, CommandContext& context) {
     return fail(ErrorKind::kUsage, "the copy is the " + kind + " itself", arguments.copy, mend);
   }
   if (fs::is_regular_file(arguments.path, error) && claims_to_be_grid(arguments.path)) {
+    if (arguments.repair) {
+      return fail(ErrorKind::kUsage, "a grid by itself holds nothing to be mended with", arguments.path,
+                  "copy it again, or mend the session that it is of");
+    }
     return print_grid(arguments.path, context);
   }
   if (is_session) {

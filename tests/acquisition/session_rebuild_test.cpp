@@ -14,6 +14,7 @@
 #include "tests/acquisition/session_damage_support.h"
 #include "tests/support/files.h"
 #include "tests/support/in_child.h"
+#include "tests/support/remove_call.h"
 
 namespace {
 
@@ -28,8 +29,7 @@ extern "C" int remove(const char* name) noexcept {
     errno = EIO;
     return -1;
   }
-  const auto unlinked = static_cast<int>(::syscall(SYS_unlink, name));
-  return unlinked != 0 && errno == EISDIR ? static_cast<int>(::syscall(SYS_rmdir, name)) : unlinked;
+  return dubsar::test::remove_call(name);
 }
 
 namespace dubsar {

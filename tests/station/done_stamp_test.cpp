@@ -13,6 +13,7 @@
 #include <fstream>
 #include <functional>
 
+#include "tests/support/remove_call.h"
 #include "tests/support/temporary_folder.h"
 
 namespace {
@@ -39,8 +40,7 @@ extern "C" int remove(const char* name) {
     errno = EROFS;
     return -1;
   }
-  const auto unlinked = static_cast<int>(::syscall(SYS_unlink, name));
-  return unlinked != 0 && errno == EISDIR ? static_cast<int>(::syscall(SYS_rmdir, name)) : unlinked;
+  return dubsar::test::remove_call(name);
 }
 
 namespace dubsar {

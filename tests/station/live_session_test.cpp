@@ -313,6 +313,17 @@ TEST(LiveSession, AStoredSessionGoesOnWithItsOwnScanner) {
   EXPECT_EQ(device_of("s", false), kSmallTablet);
   EXPECT_EQ(device_of("s", true), another);
   EXPECT_EQ(device_of("new", false), another);
+  // Where nobody can tell which it is, that keeps nobody from scanning.
+  {
+    Result<SessionStore> store = SessionStore::open(folder.path() / "s");
+    ASSERT_TRUE(store && store->save_document("device_settings", "{"));
+  }
+  EXPECT_EQ(device_of("s", false), another);
+  Followed again(kSmallTablet, folder.path() / "s");
+  again.session.scan_now();
+  EXPECT_TRUE(again.wait_until(
+      [](const LiveState& s) { return s.phase == LivePhase::kWaiting || s.error.has_value(); }));
+  EXPECT_FALSE(again.session.state().error) << again.session.state().error->line();
 }
 
 TEST(LiveSession, HandsAreKeptOffWhileTheScannerIsOpenedAndNotWhileScansAreRead) {

@@ -131,6 +131,7 @@ TEST_F(Verify, AGridComesBackFromACopyAndFromNowhereElse) {
   const auto alone = verify(1, {"--repair"});
   EXPECT_THAT(places(alone["repair"]["beyond"]), ElementsAre("grids/001.grid", "mesh/model.ply"));
   EXPECT_THAT(alone["repair"]["beyond"][1]["what"].get<std::string>(), HasSubstr("without grids/001.grid"));
+  EXPECT_EQ(run_command({"verify", (session_ / "grids/001.grid").string(), "--repair"}).status, 2);
   EXPECT_TRUE(bytes_of(session_ / "grids/001.grid") == damaged) << "left as it is";
   const auto with_copy = verify(0, {"--repair", "--from", scanned().string()});
   EXPECT_EQ(with_copy["repair"]["restored"], nlohmann::json({"grids/001.grid", "mesh/model.ply"}));

@@ -342,15 +342,14 @@ TEST_F(OperatorStory, TheEmergencyStopEndsTheRunAndSpaceGoesOn) {
 
 TEST_F(OperatorStory, TheListOfScannersBeginsWithTheOneInUse) {
   // It was another, without its options, as soon as the list was looked at.
-  const Outcome played =
-      play("wait idle\nclick device\nwait driver.sim\npause 0.3\nwait address." + std::string(kSmallTablet) +
-           "\nclick use-device\nkey space\nwait waiting-turn\nquit\n");
+  const std::string finds_it =
+      "wait idle\nclick device\nwait driver.sim\npause 0.3\nwait address." + std::string(kSmallTablet);
+  const Outcome played = play(finds_it + "\nclick use-device\nkey space\nwait waiting-turn\nquit\n");
   ASSERT_EQ(played.status, 0) << played.err;
   const auto list = run_command({"session", "list", session(), "--json"}).json();
   EXPECT_GE(list["scans"].size(), 1U);
   // And when the session is opened again and nobody says which.
-  const Outcome again = play_on("", "wait idle\nclick device\nwait driver.sim\npause 0.3\nwait address." +
-                                        std::string(kSmallTablet) + "\nquit\n");
+  const Outcome again = play_on("", finds_it + "\nquit\n");
   EXPECT_EQ(again.status, 0) << again.err;
 }
 
