@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <filesystem>
 
 #include "acquisition/rig_device.h"
 
@@ -125,6 +126,21 @@ Result<DeviceUri> parse_device_uri(std::string_view text) {
     out.options.emplace_back(*key, *value);
   }
   return out;
+}
+
+std::string absolute_device(const std::string& uri) {
+  Result<DeviceUri> parts = parse_device_uri(uri);
+  const bool is_of_files = parts && (parts->scheme == "replay" || parts->scheme == "rig");
+  if (!is_of_files || parts->locator.empty() || std::filesystem::path(parts->locator).is_absolute()) {
+    return uri;
+  }
+  std::error_code failed;
+  const std::filesystem::path whole = std::filesystem::absolute(parts->locator, failed);
+  if (failed) {
+    return uri;
+  }
+  parts->locator = whole.lexically_normal().string();
+  return parts->text();
 }
 
 Result<Device> open_device(const DeviceUri& uri, const DriverRegistry& registry) {

@@ -26,6 +26,10 @@ struct DeviceUri {
 /// text, a broken percent escape, an option without '=', a key given twice.
 [[nodiscard]] Result<DeviceUri> parse_device_uri(std::string_view text);
 
+/// The same device whatever folder a program is started from: the path of a replay: or rig: is made absolute.
+/// What cannot be read as a URI stays as it is.
+[[nodiscard]] std::string absolute_device(const std::string& uri);
+
 /// Opens what the URI names; an unknown scheme or option is answered with those that there are.
 [[nodiscard]] Result<Device> open_device(const DeviceUri& uri, const DriverRegistry& registry);
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "acquisition/device_uri.h"
 #include "acquisition/setting_words.h"
 #include "formats/json_node.h"
 #include "formats/json_text.h"
@@ -33,7 +34,7 @@ Result<ByDevice> load(const SessionStore& store) {
   }
   const JsonNode root = document->root();
   for (const JsonNode& device : root.at("devices").items()) {
-    auto& [uri, words] = out.emplace_back(device.at("uri").text(), SettingWords{});
+    auto& [uri, words] = out.emplace_back(absolute_device(device.at("uri").text()), SettingWords{});
     for (const JsonNode& setting : device.at("settings").items()) {
       words.emplace_back(setting.at("key").text(), setting.at("value").text());
     }
@@ -82,7 +83,8 @@ Result<SettingWords> kept_settings(const SessionStore& store, const std::string&
   if (!all) {
     return std::unexpected(all.error());
   }
-  const auto known = std::ranges::find(*all, uri, &ByDevice::value_type::first);
+  const std::string device = absolute_device(uri);
+  const auto known = std::ranges::find(*all, device, &ByDevice::value_type::first);
   return known == all->end() ? SettingWords{} : std::move(known->second);
 }
 
@@ -91,8 +93,9 @@ Status keep_settings(SessionStore& store, const std::string& uri, const SettingW
   if (!all) {
     return std::unexpected(all.error());
   }
-  std::erase_if(*all, [&](const auto& known) { return known.first == uri; });
-  all->emplace_back(uri, words);  // the last one is the session's own
+  const std::string own = absolute_device(uri);
+  std::erase_if(*all, [&](const auto& known) { return known.first == own; });
+  all->emplace_back(own, words);  // the last one is the session's own
   OrderedJson devices = OrderedJson::array();
   for (const auto& [device, settings] : *all) {
     OrderedJson list = OrderedJson::array();

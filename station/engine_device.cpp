@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright The Dubsar developers
 // What the operator sets of the open device, and sees through its camera, between two scans.
+#include "acquisition/device_uri.h"
 #include "acquisition/setting_words.h"
 #include "station/engine_impl.h"
 
@@ -36,7 +37,7 @@ Status Engine::Impl::open_settings() {
     }
   }
   const Result<std::string> own = own_device(*store);  // where that cannot be read, it was said above
-  if (!options.settings.empty() || (own && *own != options.device)) {
+  if (!options.settings.empty() || (own && *own != absolute_device(options.device))) {
     if (const Status saved = keep_settings(*store, options.device, settings); !saved) {
       return saved;
     }

@@ -65,6 +65,19 @@ TEST(DeviceUri, RefusesWhatIsBroken) {
   }
 }
 
+TEST(DeviceUri, FilesAreTheSameOnesFromAnyFolder) {
+  const std::string here = std::filesystem::current_path().string();
+  EXPECT_EQ(parse_device_uri(absolute_device("rig:./museum.toml")).value().locator, here + "/museum.toml");
+  EXPECT_EQ(parse_device_uri(absolute_device("a/../scans")).value().locator, here + "/scans");
+  const DeviceUri scans = parse_device_uri(absolute_device("replay:my%20scans?unit=m")).value();
+  EXPECT_EQ(scans.locator, here + "/my scans");
+  EXPECT_THAT(scans.options, ElementsAre(Pair("unit", "m")));
+  for (const char* same :
+       {"replay:/data/my%20scans?unit=m", "v4l2:video0", "sim:?seed=5", "rig:", "replay:%zz"}) {
+    EXPECT_EQ(absolute_device(same), same);
+  }
+}
+
 TEST(DeviceUri, TextReadsBackTheSame) {
   const DeviceUri uri{"replay", "/a b/50%?&=#\n\xc3\xbc", {{"unit", "m&m"}, {"r", ""}}};
   const DeviceUri back = parse_device_uri(uri.text()).value();

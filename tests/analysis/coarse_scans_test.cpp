@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+// What wedges say of their errors where scans lay few samples across them.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "analysis/wedges.h"
+#include "core/mesh_query.h"
+#include "core/units.h"
+#include "sim/scanner.h"
+#include "sim/tablet.h"
+#include "tests/triangulation/support/scans.h"
+#include "triangulation/stitcher.h"
+
+namespace dubsar {
+namespace {
+
+/// From the k-th of `count` places spread evenly over the sphere.
+RigidTransform tablet_from_scanner(int k, int count) {
+  const double z = 1 - 2 * (k + 0.5) / count;
+  const double phi = k * 2.399963;
+  const double r = std::sqrt(1 - z * z);
+  const Eigen::Vector3d out(r * std::cos(phi), r * std::sin(phi), z);
+  RigidTransform pose;
+  pose.rotation.col(0) = out.unitOrthogonal();
+  pose.rotation.col(1) = out.cross(pose.rotation.col(0));
+  pose.rotation.col(2) = out;
+  return pose;
+}
+
+sim::SimTablet written_tablet() {
+  sim::TabletOptions options;
+  options.seed = 5;
+  options.size_mm = {20, 16, 9};
+  options.spacing_mm = 0.06;
+  options.damage = sim::DamageOptions::none();
+  JobContext job;
+  return sim::make_tablet(options, job).value();
+}
+
+/// Scanned at µ 0.1 mm with the noise of a real scanner, and stitched where the scans truly lay.
+Mesh coarsely_scanned(const sim::SimTablet& tablet) {
+  const MeshQuery query(tablet.mesh);
+  sim::Scene scene;
+  scene.tablet = &tablet;
+  scene.query = &query;
+  sim::ScannerOptions options;
+  options.spacing_mm = 0.1;
+  const sim::TriangulationScanner scanner(options);
+  JobContext job;
+  test::ScanSet set;
+  constexpr int kScans = 14;
+  for (int k = 0; k < kScans; ++k) {
+    const RigidTransform pose = tablet_from_scanner(k, kScans);
+    set.add(scanner.scan_grid(scene, pose, static_cast<std::uint64_t>(k), job).value(), pose);
+  }
+  return stitch(set.placed, {}, job).value();
+}
+
+std::vector<Wedge> wedges_of(const Mesh& mesh) {
+  const JobContext job;
+  const VertexGraph graph = make_vertex_graph(mesh);
+  const SurfaceFields fields = compute_surface_fields(mesh, graph, {}, job).value();
+  return find_wedges(mesh, graph, fields, {}, job).value().wedges;
+}
+
+TEST(CoarseScans, ErrorsOfEdgesAndDepthPointsLieWithinTheirSigmas) {
+  const sim::SimTablet tablet = written_tablet();
+  int points = 0, points_within = 0, edges = 0, edges_within = 0;
+  for (const Wedge& found : wedges_of(coarsely_scanned(tablet))) {
+    const auto is_near = [&](const Wedge& truth) {
+      return truth.intact >= 0.6 && (truth.depth_point_mm - found.depth_point_mm).norm() < 0.3;
+    };
+    const auto truth = std::ranges::find_if(tablet.wedges, is_near);
+    if (truth == tablet.wedges.end()) {
+      continue;
+    }
+    ++points;
+    points_within +=
+        (truth->depth_point_mm - found.depth_point_mm).norm() < 2 * found.sigma.depth_point_mm ? 1 : 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Eigen::Vector3d along = (found.exit_points_mm[k] - found.depth_point_mm).normalized();
+      double off = kPi;
+      for (const Eigen::Vector3d& exit : truth->exit_points_mm) {
+        const Eigen::Vector3d true_along = (exit - truth->depth_point_mm).normalized();
+        off = std::min(off, std::atan2(along.cross(true_along).norm(), along.dot(true_along)));
+      }
+      ++edges;
+      edges_within += off < 2 * found.sigma.edge_rad[k] ? 1 : 0;
+    }
+  }
+  ASSERT_GT(points, 100);
+  EXPECT_GT(points_within, 0.9 * points) << "of " << points;
+  EXPECT_GT(edges_within, 0.9 * edges) << "of " << edges;
+}
+
+}  // namespace
+}  // namespace dubsar
