@@ -126,8 +126,22 @@ JsonNode gltf_entry(const JsonNode& root, const char* array, const JsonNode& num
   return list.item(static_cast<std::size_t>(number.integer(0, std::int64_t{1} << 31U)));
 }
 
-GltfAccessor gltf_accessor(const JsonNode& root, const JsonNode& number, std::string_view binary,
-                           std::string_view type, std::size_t components) {
+std::string_view gltf_view(const JsonNode& root, const JsonNode& number, std::string_view binary) {
+  const JsonNode view = gltf_entry(root, "bufferViews", number);
+  const JsonNode buffer = gltf_entry(root, "buffers", view.at("buffer"));
+  if (buffer.find("uri") || view.at("buffer").integer(0, std::int64_t{1} << 31U) != 0) {
+    buffer.complain("lies outside of the file, which is not read");
+  }
+  const std::uint64_t offset = size_at(view, "byteOffset", 0);
+  const std::uint64_t bytes = size_at(view, "byteLength", 0);
+  if (bytes > binary.size() || offset > binary.size() - bytes) {
+    view.complain("reaches beyond the " + std::to_string(binary.size()) + " bytes of the binary chunk");
+    return {};
+  }
+  return binary.substr(offset, bytes);
+}
+
+JsonNode gltf_accessor_entry(const JsonNode& root, const JsonNode& number, std::string_view type) {
   const JsonNode node = gltf_entry(root, "accessors", number);
   if (node.find("sparse")) {
     node.complain("is sparse, which is not read");
@@ -135,6 +149,12 @@ GltfAccessor gltf_accessor(const JsonNode& root, const JsonNode& number, std::st
   if (node.at("type").text() != type) {
     node.at("type").complain("is not " + std::string(type));
   }
+  return node;
+}
+
+GltfAccessor gltf_accessor(const JsonNode& root, const JsonNode& number, std::string_view binary,
+                           std::string_view type, std::size_t components) {
+  const JsonNode node = gltf_accessor_entry(root, number, type);
   GltfAccessor accessor;
   const std::int64_t component_type = node.at("componentType").integer(0, 0xffff);
   const std::size_t item_bytes = components * component_bytes(component_type);
@@ -142,26 +162,18 @@ GltfAccessor gltf_accessor(const JsonNode& root, const JsonNode& number, std::st
     node.at("componentType").complain("is no component type of glTF");
     return {};
   }
-  const JsonNode view = gltf_entry(root, "bufferViews", node.at("bufferView"));
-  const JsonNode buffer = gltf_entry(root, "buffers", view.at("buffer"));
-  if (buffer.find("uri") || view.at("buffer").integer(0, std::int64_t{1} << 31U) != 0) {
-    buffer.complain("lies outside of the file, which is not read");
-  }
-  const std::uint64_t view_offset = size_at(view, "byteOffset", 0);
-  const std::uint64_t view_bytes = size_at(view, "byteLength", 0);
+  const JsonNode view_number = node.at("bufferView");
+  const std::string_view view = gltf_view(root, view_number, binary);
   const std::uint64_t offset = size_at(node, "byteOffset", 0);
   const std::uint64_t count = size_at(node, "count", 0);
-  const std::uint64_t stride = size_at(view, "byteStride", item_bytes);
-  if (view_bytes > binary.size() || view_offset > binary.size() - view_bytes) {
-    view.complain("reaches beyond the " + std::to_string(binary.size()) + " bytes of the binary chunk");
-    return {};
-  }
+  const std::uint64_t stride =
+      size_at(gltf_entry(root, "bufferViews", view_number), "byteStride", item_bytes);
   if (stride < item_bytes || stride > 252 || count == 0 || count > binary.size() ||
-      offset + (count - 1) * stride + item_bytes > view_bytes) {
+      offset + (count - 1) * stride + item_bytes > view.size()) {
     node.complain("does not fit into its buffer view");
     return {};
   }
-  accessor.data = binary.data() + view_offset + offset;
+  accessor.data = view.data() + offset;
   accessor.count = static_cast<std::size_t>(count);
   accessor.stride = static_cast<std::size_t>(stride);
   accessor.component_type = static_cast<int>(component_type);

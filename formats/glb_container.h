@@ -45,6 +45,14 @@ struct GltfAccessor {
                                          std::string_view binary, std::string_view type,
                                          std::size_t components);
 
+/// The accessor's own entry, where it is not sparse and of that type.
+[[nodiscard]] JsonNode gltf_accessor_entry(const JsonNode& root, const JsonNode& number,
+                                           std::string_view type);
+
+/// The bytes of the buffer view of that number, within the chunk; empty after a complaint.
+[[nodiscard]] std::string_view gltf_view(const JsonNode& root, const JsonNode& number,
+                                         std::string_view binary);
+
 /// The entry of a top-level array that `number` refers to.
 [[nodiscard]] JsonNode gltf_entry(const JsonNode& root, const char* array, const JsonNode& number);
 

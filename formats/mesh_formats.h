@@ -48,6 +48,11 @@ namespace dubsar {
 /// Positions stay in millimetres to the bit; the node scales them to metres.
 [[nodiscard]] Result<std::string> encode_mesh_glb(const Mesh& mesh, const std::string& where,
                                                   const FileLabel& label = {});
+/// The same by KHR_draco_mesh_compression, which a reader must know then. Positions are rounded
+/// (draco_step_mm), normals too; vertices that no face has and faces of fewer than three are left out.
+[[nodiscard]] Result<std::string> encode_mesh_draco_glb(const Mesh& mesh, const std::string& where,
+                                                        const FileLabel& label = {});
+/// Both kinds.
 [[nodiscard]] Result<Mesh> decode_mesh_glb(std::string_view bytes, const std::string& where,
                                            const MeshReadOptions& options);
 [[nodiscard]] bool is_glb(std::string_view bytes);

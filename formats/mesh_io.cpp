@@ -13,14 +13,19 @@ namespace dubsar {
 
 namespace {
 
-enum class MeshFormat { kPly, kObj, kStl, kGlb, kUnknown };
+enum class MeshFormat { kPly, kObj, kStl, kGlb, kDracoGlb, kUnknown };
 
 constexpr const char* kKnown = "use .ply, .obj, .stl or .glb";
 
+std::string small_letters(std::string text) {
+  std::ranges::transform(text, text.begin(), [](char c) {
+    return c >= 'A' && c <= 'Z' ? static_cast<char>(c + ('a' - 'A')) : c;
+  });
+  return text;
+}
+
 MeshFormat format_of(const std::filesystem::path& name) {
-  std::string extension = name.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + ('a' - 'A')) : c; });
+  const std::string extension = small_letters(name.extension().string());
   if (extension == ".ply") {
     return MeshFormat::kPly;
   }
@@ -30,7 +35,11 @@ MeshFormat format_of(const std::filesystem::path& name) {
   if (extension == ".stl") {
     return MeshFormat::kStl;
   }
-  return extension == ".glb" ? MeshFormat::kGlb : MeshFormat::kUnknown;
+  if (extension == ".glb") {
+    return small_letters(name.stem().extension().string()) == ".draco" ? MeshFormat::kDracoGlb
+                                                                       : MeshFormat::kGlb;
+  }
+  return MeshFormat::kUnknown;
 }
 
 /// The bytes decide where they can.
@@ -54,6 +63,7 @@ Result<Mesh> decode(std::string_view bytes, const std::string& name, const MeshR
     case MeshFormat::kStl:
       return decode_mesh_stl(bytes, name, options);
     case MeshFormat::kGlb:
+    case MeshFormat::kDracoGlb:
       return decode_mesh_glb(bytes, name, options);
     case MeshFormat::kUnknown:
       break;
@@ -129,6 +139,13 @@ Status write_mesh(const std::filesystem::path& path, const Mesh& mesh, const Fil
       return write_in_pieces(path, encode_mesh_stl(mesh, label), job);
     case MeshFormat::kGlb: {
       const Result<std::string> bytes = encode_mesh_glb(mesh, path.string(), label);
+      return bytes ? write_in_pieces(path, *bytes, job) : std::unexpected(bytes.error());
+    }
+    case MeshFormat::kDracoGlb: {
+      if (is_stopped(job)) {  // it cannot be while it is compressed
+        return fail(ErrorKind::kCancelled, "writing was stopped", path.string());
+      }
+      const Result<std::string> bytes = encode_mesh_draco_glb(mesh, path.string(), label);
       return bytes ? write_in_pieces(path, *bytes, job) : std::unexpected(bytes.error());
     }
     case MeshFormat::kUnknown:

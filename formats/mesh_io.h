@@ -38,7 +38,8 @@ struct MeshReadOptions {
 
 /// Writes by extension, atomically. PLY keeps everything (docs/formats/mesh.md), GLB positions, normals and
 /// colours, OBJ positions, colours, normals and faces, STL the triangles alone. All say what the label does,
-/// STL what 80 bytes hold of it. Where the job is cancelled the file stays as it was (kCancelled).
+/// STL what 80 bytes hold of it. A name that ends in .draco.glb gives GLB compressed with Draco
+/// (docs/formats/ mesh.md). Where the job is cancelled the file stays as it was (kCancelled).
 [[nodiscard]] Status write_mesh(const std::filesystem::path& path, const Mesh& mesh,
                                 const FileLabel& label = {}, const JobContext* job = nullptr);
 

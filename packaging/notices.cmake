@@ -1,7 +1,7 @@
 # cmake -DOUT=FILE -P notices.cmake: the licences of what is compiled into the programs (templates, headers and static
 # libraries of others), each as Debian tells it of the very version that was used.
 set(packages libeigen3-dev libcli11-dev nlohmann-json3-dev libtomlplusplus-dev libimgui-dev libflann-dev libfmt-dev
-  libspdlog-dev libtbb-dev libembree-dev libceres-dev libopencv-dev)
+  libspdlog-dev libtbb-dev libembree-dev libceres-dev libopencv-dev libdraco-dev)
 if(PYTHON)
   list(APPEND packages pybind11-dev)
 endif()

@@ -175,7 +175,7 @@ void bind_meshes(py::module_& module) {
         run_for_result(py::none(), [&](JobContext& job) { return write_mesh(path, *mesh, {}, &job); });
       },
       py::arg("path"), py::arg("mesh").none(false),
-      "PLY, OBJ, STL or GLB by the ending; whole or not at all.");
+      "PLY, OBJ, STL or GLB by the ending (.draco.glb compresses); whole or not at all.");
   module.def(
       "check_mesh",
       [](const MeshPointer& mesh) {

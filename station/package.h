@@ -36,6 +36,7 @@ struct PackageOptions {
   /// Empty: a name under `.invalid`, which nothing answers to.
   std::string base_url;
   bool white_ground = false;  ///< of the pictures, instead of black
+  bool draco = false;         ///< the model compressed, too: model/STEM.draco.glb
   /// Called with the whole, synced folder just before it takes its place; what it refuses is not published.
   std::function<Status(const std::filesystem::path& staged)> before_publishing;
 };

@@ -9,11 +9,13 @@
 #include <filesystem>
 #include <iterator>
 #include <string_view>
+#include <utility>
 
 #include "archive/canvas_annotations.h"
 #include "archive/iiif_manifest.h"
 #include "archive/provenance.h"
 #include "formats/atomic_file.h"
+#include "formats/draco_mesh.h"
 #include "formats/files_below.h"
 #include "station/package_content.h"
 #include "station/results.h"
@@ -25,6 +27,10 @@ namespace {
 /// Empty when it is not known.
 std::string utc(std::int64_t time_ns) {
   return time_ns > 0 ? utc_text(static_cast<std::time_t>(time_ns / 1'000'000'000)) : std::string();
+}
+
+bool is_listed(const PackageContent& content, const std::string& file) {
+  return std::ranges::find(content.files, file, &PackagedFile::path) != content.files.end();
 }
 
 std::string fate_of(const StoredScan& scan, const ScanPose* pose) {
@@ -133,7 +139,13 @@ void add_steps(const PackageContent& content, const std::vector<std::string>& pa
                       {"triangles", static_cast<double>(content.mesh().faces.size()), ""}}});
     std::vector<std::string> forms = files_of(payload, "model/");
     std::erase(forms, model);
-    steps.push_back({"conversion", "Other forms of the same surface", {model}, forms, {}, {}});
+    std::vector<ProvenanceValue> rounding;
+    if (is_listed(content, "model/" + content.stem + ".draco.glb")) {
+      rounding = {{"step of the positions in the compressed form", draco_step_mm(content.mesh()), "mm"},
+                  {"largest turn of a normal in the compressed form", kDracoNormalError_deg, "deg"}};
+    }
+    steps.push_back(
+        {"conversion", "Other forms of the same surface", {model}, forms, std::move(rounding), {}});
   }
   input.steps = std::move(steps);
   std::vector<std::string> grids = files_of(payload, "scans/grids/");
@@ -272,11 +284,13 @@ Status add_manifest(PackageContent& content) {
                               p.wedges.empty() ? std::string() : annotations_file(k)});
   }
   const std::string model = "model/" + content.stem;
-  input.rendering = {{"report/report.html", "The report", "Text", "text/html"}};
-  if (std::ranges::find(content.files, model + ".glb", &PackagedFile::path) != content.files.end()) {
-    input.rendering.insert(input.rendering.begin(),  // not where the mesh is larger than that format can hold
-                           {model + ".glb", "The surface", "Model", "model/gltf-binary"});
+  for (const auto& [file, label] : {std::pair{model + ".glb", "The surface"},
+                                    std::pair{model + ".draco.glb", "The surface, compressed (Draco)"}}) {
+    if (is_listed(content, file)) {  // not where the mesh is larger than that format can hold
+      input.rendering.push_back({file, label, "Model", "model/gltf-binary"});
+    }
   }
+  input.rendering.push_back({"report/report.html", "The report", "Text", "text/html"});
   input.see_also = {{model + ".ply", "The surface, with all values by vertex", "Model", "model/ply"},
                     {"provenance.jsonld", "How it came about", "Dataset", "application/ld+json"}};
   if (content.wedges) {

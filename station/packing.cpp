@@ -35,6 +35,9 @@ std::string parameters_of(const PackageOptions& options) {
   }
   std::ranges::sort(without);
   json["without"] = without;
+  if (options.draco) {  // said only then: stamps of before know nothing of it
+    json["draco"] = true;
+  }
   return json.dump();
 }
 

@@ -23,6 +23,7 @@ struct ExportArguments {
   std::vector<std::string> without;
   std::string base_url;
   std::string ground = "black";
+  bool draco = false;
   bool force = false;
   bool update = false;
 };
@@ -93,6 +94,7 @@ Result<int> export_session(const ExportArguments& arguments, CommandContext& con
   request.package.replace = arguments.force;
   request.package.base_url = arguments.base_url;
   request.package.white_ground = arguments.ground == "white";
+  request.package.draco = arguments.draco;
   for (const PackagePart part : all_package_parts()) {
     if (std::ranges::find(arguments.without, to_string(part)) != arguments.without.end()) {
       request.package.without.insert(part);
@@ -154,6 +156,9 @@ void add_export(CLI::App& app, Action& chosen) {
   verb->add_option("--ground", arguments->ground, "of the pictures")
       ->check(CLI::IsMember({"black", "white"}))
       ->capture_default_str();
+  verb->add_flag(
+      "--draco", arguments->draco,
+      "add the model as glTF compressed with Draco, for sending; the plain one is there all the same");
   verb->add_flag("--force", arguments->force,
                  "replace a package of this session that lies there already, done before or not; what others "
                  "added to it is kept beside it");

@@ -200,7 +200,8 @@ void add_mesh(CLI::App& app, Action& chosen) {
   CLI::App* convert_verb =
       verb->add_subcommand("convert", "From one format to another, by the names' endings");
   convert_verb->add_option("in", options->in, "PLY, OBJ, STL or GLB")->required();
-  convert_verb->add_option("out", options->out, "the same: .ply, .obj, .stl or .glb")->required();
+  convert_verb->add_option("out", options->out, "the same: .ply, .obj, .stl or .glb; .draco.glb compresses")
+      ->required();
   convert_verb->add_flag("--turn-over", options->turn_over,
                          "the faces look the other way: for one inside out");
   convert_verb->fallthrough();

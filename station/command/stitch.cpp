@@ -366,7 +366,8 @@ void add_stitch(CLI::App& app, Action& chosen) {
   CLI::App* verb = app.add_subcommand("stitch", "One mesh of all registered scans");
   const auto arguments = std::make_shared<StitchArguments>();
   arguments->set.add_to(*verb, true);
-  verb->add_option("-o,--out", arguments->set.out, "the mesh: PLY, OBJ, STL or GLB")->required();
+  verb->add_option("-o,--out", arguments->set.out, "the mesh: PLY, OBJ, STL or GLB; .draco.glb compresses")
+      ->required();
   verb->add_flag(
           "--unless-done", arguments->unless_done,
           "of a session: leave a stamp, and do nothing where it tells that the mesh is of the scans as "

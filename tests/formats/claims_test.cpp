@@ -2,12 +2,15 @@
 // Copyright The Dubsar developers
 // Small files that claim to be huge: a reader takes memory for what is there, not for what is claimed.
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <xxhash.h>
 
 #include <string>
 
 #include "formats/byte_order.h"
+#include "formats/draco_mesh.h"
+#include "formats/glb_container.h"
 #include "formats/gray_file.h"
 #include "formats/gray_jpeg.h"
 #include "formats/grid_file.h"
@@ -123,6 +126,46 @@ TEST(Claims, MeshesOfATrillionVertices) {
                                  R"("type":"VEC3"}]})"));
   mesh("nothing.glb",
        glb(start + R"("accessors":[{"componentType":5126,"count":1000000000000,"type":"VEC3"}]})"));
+}
+
+/// What a Draco stream claims in its own head, and what its tables do, where the accessors agree.
+TEST(Claims, CompressedMeshesOfABillionFaces) {
+  const auto glb = [](const std::string& draco, std::uint64_t vertices, std::uint64_t faces) {
+    const std::string length = std::to_string(draco.size());
+    return join_glb(
+        R"({"asset":{"version":"2.0"},"nodes":[{"mesh":0}],"meshes":[{"primitives":[{"attributes":{"POSITION":0},)"
+        R"("indices":1,"extensions":{"KHR_draco_mesh_compression":{"bufferView":0,"attributes":{"POSITION":0}}}}]}],)"
+        R"("buffers":[{"byteLength":)" +
+            length + R"(}],"bufferViews":[{"buffer":0,"byteLength":)" + length +
+            R"(}],"accessors":[{"componentType":5126,"count":)" + std::to_string(vertices) +
+            R"(,"type":"VEC3"},{"componentType":5125,"count":)" + std::to_string(3 * faces) +
+            R"(,"type":"SCALAR"}]})",
+        draco);
+  };
+  const std::string head("DRACO\x02\x02\x01", 8);
+  const std::string edgebreaker = head + std::string("\x01\0\0\0", 4);
+  const std::string sequential = head + std::string("\0\0\0", 3);
+  const std::string billion = "\x80\x94\xeb\xdc\x03";
+  const std::string rest(64, '\x7f');
+  const auto mesh = [](const std::string& name, const std::string& bytes) {
+    EXPECT_NE(refusal(name.c_str(), [&] { return read_mesh_bytes(bytes, name); }), "");
+  };
+  mesh("accessors.glb", glb(edgebreaker + billion + billion + rest, 1000000000, 1000000000));
+  mesh("edgebreaker.glb", glb(edgebreaker + billion + billion + rest, 1000, 1000));
+  mesh("sequential.glb", glb(sequential + billion + billion + rest, 1000, 1000));
+  mesh("seams.glb", glb(edgebreaker + "\xe8\x07\xe8\x07\xff" + rest, 1000, 1000));
+  // 20 faces whose indices are symbols of an alphabet of a billion.
+  mesh("alphabet.glb", glb(sequential + std::string("\x14\x0a\0\x01\x12", 5) + billion + rest, 10, 20));
+  // A vertex of 255 numbers.
+  Mesh small;
+  small.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  small.faces = {{0, 1, 2}};
+  std::string draco = encode_draco(small, {}, "t").value().bytes;
+  const std::size_t attribute = draco.find(std::string("\x01\0\x09\x03\0\0", 6));
+  ASSERT_NE(attribute, std::string::npos);
+  draco[attribute + 3] = '\xff';
+  EXPECT_THAT(refusal("wide.glb", [&] { return read_mesh_bytes(glb(draco, 3, 1), "wide.glb"); }),
+              ::testing::HasSubstr("holds more attributes than are read"));
 }
 
 TEST(Claims, PicturesOfATrillionPixels) {

@@ -361,8 +361,8 @@ TEST(MeshHostile, Glb) {
   EXPECT_THAT(with("\"mesh\": 0", "\"mesh\": 0, \"children\": [0]"),
               HasSubstr("is the child of more than one node"));
   EXPECT_THAT(with("\"mode\": 4", "\"mode\": 5"), HasSubstr("mode is a strip or fan"));
-  EXPECT_THAT(with("\"scene\": 0", "\"extensionsRequired\": [\"KHR_draco_mesh_compression\"]"),
-              HasSubstr("compressed meshes are not read"));
+  EXPECT_THAT(with("\"scene\": 0", "\"extensionsRequired\": [\"EXT_meshopt_compression\"]"),
+              HasSubstr("is EXT_meshopt_compression: meshes compressed so are not read"));
   EXPECT_THAT(with("\"scene\": 0", "\"extensionsRequired\": [\"ACME_warped_positions\"]"),
               HasSubstr("extensionsRequired[0] is ACME_warped_positions, which is not known"));
   EXPECT_EQ(with("\"scene\": 0", "\"extensionsRequired\": [\"KHR_materials_unlit\"]"), "no error");

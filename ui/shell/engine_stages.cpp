@@ -43,6 +43,7 @@ constexpr EnginePhrase kStages[] = {
     {"pictures", "Bilder entstehen"},
     {"packing scans", "Scans werden gepackt"},
     {"packing the model", "Modell wird gepackt"},
+    {"compressing the model", "Modell wird komprimiert"},
     {"writing results", "Ergebnisse werden geschrieben"},
     {"checksums", "Prüfsummen"},
     {"verify", "Dateien werden geprüft"},
