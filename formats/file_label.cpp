@@ -83,6 +83,14 @@ std::string label_lines(const FileLabel& label, std::string_view prefix) {
   return out;
 }
 
+std::string mesh_line(const FileLabel& label, std::string_view prefix) {
+  const std::string text =
+      label.origin.empty() ? std::string(kMeshOfDubsar) : without_commands(label_value(label.origin));
+  std::string line(prefix);
+  line.append(whole_characters(text, kMaxLabelLineBytes - prefix.size() - 1)).push_back('\n');
+  return line;
+}
+
 std::string label_in_ascii(const FileLabel& label, std::size_t bytes) {
   std::string out = label.simulated ? "SIMULATED; " : "";
   out += in_ascii(label.name);

@@ -11,17 +11,21 @@
 namespace dubsar {
 
 /// What a mesh or a scan says of itself, so that it is known where it travels without its package: any bytes
-/// that people typed. An empty label changes no file.
+/// that people typed. An empty label without an origin changes no file.
 struct FileLabel {
   std::string name{};      ///< what the tablet is called: "P123456, BM 12345"
   std::string rights{};    ///< a sentence, or empty
   bool simulated = false;  ///< a program made the tablet up
   std::vector<std::pair<std::string, std::string>>
       words{};  ///< everything, in order: "Collection", "A Museum"
+  /// How a mesh came about that Dubsar wrote and did not make: "Converted by Dubsar from a.stl". Else empty.
+  std::string origin{};
 
   [[nodiscard]] bool empty() const { return name.empty() && rights.empty() && !simulated && words.empty(); }
 };
 
+/// How the text at the head of a mesh begins that Dubsar made.
+inline constexpr std::string_view kMeshOfDubsar = "Mesh of Dubsar";
 /// More of one value than this goes into no file.
 inline constexpr std::size_t kMaxLabelBytes = 2000;
 /// No line of a header is longer: there are readers that take 256 bytes at most.
@@ -33,6 +37,9 @@ inline constexpr std::size_t kMaxLabelLineBytes = 200;
 /// For the header of a text format, each line begun with `prefix` and ended: "comment Rights: …\n". What does
 /// not fit goes on in lines whose text begins with "+ ". No line can be taken for anything but a comment.
 [[nodiscard]] std::string label_lines(const FileLabel& label, std::string_view prefix);
+
+/// The line that says whose mesh it is, begun with `prefix` and ended: "Mesh of Dubsar" or the origin.
+[[nodiscard]] std::string mesh_line(const FileLabel& label, std::string_view prefix);
 
 /// As much as fits into `bytes` of ASCII, what matters most first; other characters are "?".
 [[nodiscard]] std::string label_in_ascii(const FileLabel& label, std::size_t bytes);

@@ -30,16 +30,20 @@ bool is_known(std::string_view name) {
   return std::ranges::any_of(kNames, [&](const char* known) { return name == known; });
 }
 
-/// The lines that label_lines() wrote with that prefix, behind the one that says whose file it is.
-Words words_in_lines(std::string_view head, std::string_view prefix) {
-  Words words;
-  TextScanner text(head);
+struct Said {
   bool ours = false;
+  Words words{};
+};
+
+/// The lines that label_lines() wrote with that prefix, behind the one that says whose file it is.
+Said said_in_lines(std::string_view head, std::string_view prefix) {
+  Said said;
+  TextScanner text(head);
   bool goes_on = false;  // the last line was a word's
   while (text.remaining() > 0) {
     std::string_view line = text.line();
     if (!line.starts_with(prefix)) {
-      if (ours) {
+      if (said.ours) {
         break;  // they stand together
       }
       if (line.starts_with("end_header") || line.starts_with("v ")) {
@@ -48,18 +52,18 @@ Words words_in_lines(std::string_view head, std::string_view prefix) {
       continue;
     }
     line.remove_prefix(prefix.size());
-    if (!ours) {
-      ours = line.starts_with("Mesh of Dubsar") || line.starts_with("Range grid of Dubsar");
+    if (!said.ours) {
+      said.ours = line.starts_with(kMeshOfDubsar) || line.starts_with("Range grid of Dubsar");
       continue;
     }
     const std::size_t colon = line.find(": ");
     if (line.starts_with("+ ") && goes_on) {
-      words.back().second.append(line.substr(2));
+      said.words.back().second.append(line.substr(2));
     } else if (goes_on = colon != std::string_view::npos && is_known(line.substr(0, colon)); goes_on) {
-      words.emplace_back(line.substr(0, colon), line.substr(colon + 2));
+      said.words.emplace_back(line.substr(0, colon), line.substr(colon + 2));
     }
   }
-  return words;
+  return said;
 }
 
 Words words_in_object(const JsonNode& object) {
@@ -111,6 +115,19 @@ Words words_in_stl(std::string_view head) {
   return words;
 }
 
+/// A GLB is known as ours by its words alone.
+Said said_in(std::string_view head) {
+  if (is_ply(head)) {
+    return said_in_lines(head, "comment ");
+  }
+  if (!is_glb(head) && head.starts_with("# ")) {
+    return said_in_lines(head, "# ");
+  }
+  Said said{.words = is_glb(head) ? words_in_glb(head) : words_in_stl(head)};
+  said.ours = !said.words.empty() || head.starts_with(kMeshOfDubsar);
+  return said;
+}
+
 }  // namespace
 
 FileLabel label_of_words(Words words) {
@@ -135,18 +152,22 @@ FileLabel label_in_object(const JsonNode& object) {
 }
 
 FileLabel file_label_in(std::string_view head) {
-  if (is_ply(head)) {
-    return label_of_words(words_in_lines(head, "comment "));
-  }
-  if (is_glb(head)) {
-    return label_of_words(words_in_glb(head));
-  }
-  return label_of_words(head.starts_with("# ") ? words_in_lines(head, "# ") : words_in_stl(head));
+  return label_of_words(said_in(head).words);
 }
 
 FileLabel read_file_label(const std::filesystem::path& file) {
   const Result<std::string> head = read_file_head(file, kHeadBytes);
   return head ? file_label_in(*head) : FileLabel{};
+}
+
+FileLabel read_mesh_label(const std::filesystem::path& file) {
+  const Result<std::string> head = read_file_head(file, kHeadBytes);
+  Said said = head ? said_in(*head) : Said{};
+  FileLabel label = label_of_words(std::move(said.words));
+  if (!said.ours) {
+    label.origin = "Converted by Dubsar from " + file.filename().string();
+  }
+  return label;
 }
 
 }  // namespace dubsar

@@ -26,4 +26,8 @@ namespace dubsar {
 [[nodiscard]] FileLabel read_file_label(const std::filesystem::path& file);
 [[nodiscard]] FileLabel file_label_in(std::string_view head);
 
+/// The same of a mesh; where it does not say that Dubsar made it, what is made of it has an origin, which
+/// names the file.
+[[nodiscard]] FileLabel read_mesh_label(const std::filesystem::path& file);
+
 }  // namespace dubsar

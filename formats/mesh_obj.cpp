@@ -185,7 +185,9 @@ Result<Mesh> decode_mesh_obj(std::string_view bytes, const std::string& where,
 
 Status produce_mesh_obj(const Mesh& mesh, const ByteSink& sink, const FileLabel& label) {
   constexpr std::size_t kPiece = std::size_t{1} << 20U;
-  std::string out = "# Mesh of Dubsar, millimetres\n" + label_lines(label, "# ");
+  std::string out = mesh_line(label, "# ");
+  out.insert(out.size() - 1, ", millimetres");
+  out += label_lines(label, "# ");
   const auto append_three = [&](const char* keyword, const Eigen::Vector3f& v) {
     out += keyword;
     for (const float component : v) {

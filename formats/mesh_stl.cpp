@@ -180,7 +180,9 @@ Result<Mesh> decode_mesh_stl(std::string_view bytes, const std::string& where,
 
 std::string encode_mesh_stl(const Mesh& mesh, const FileLabel& label) {
   // Never "solid", which would be taken for the text form.
-  std::string out = label.empty() ? "Mesh of Dubsar, millimetres" : "Dubsar, mm; ";
+  std::string out = !label.empty()         ? "Dubsar, mm; "
+                    : label.origin.empty() ? "Mesh of Dubsar, millimetres"
+                                           : "Written by Dubsar, millimetres";
   out += label_in_ascii(label, kHeaderBytes - out.size());
   out.resize(kHeaderBytes, ' ');
   out.reserve(kHeaderBytes + 4 + mesh.faces.size() * kFacetBytes);

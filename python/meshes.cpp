@@ -172,10 +172,13 @@ void bind_meshes(py::module_& module) {
       [](const fs::path& path, const MeshPointer& mesh) {
         check_sound(*mesh);
         check_may_write(path);
-        run_for_result(py::none(), [&](JobContext& job) { return write_mesh(path, *mesh, {}, &job); });
+        run_for_result(py::none(), [&](JobContext& job) {
+          return write_mesh(path, *mesh, {.origin = "Written by Dubsar"}, &job);
+        });
       },
       py::arg("path"), py::arg("mesh").none(false),
-      "PLY, OBJ, STL or GLB by the ending (.draco.glb compresses); whole or not at all.");
+      "PLY, OBJ, STL or GLB by the ending (.draco.glb compresses); whole or not at all. PLY alone holds "
+      "reliability, sigma_mm, scans and flags, each where it is not None.");
   module.def(
       "check_mesh",
       [](const MeshPointer& mesh) {

@@ -27,7 +27,8 @@ constexpr float kSurfaceCurvaturePerMm = 0.3F;
 /// NAME.ply and NAME.png
 Status write_coloured(const fs::path& folder, const std::string& name, const Mesh& coloured,
                       const RigidTransform& tablet_from_model, const JobContext& job) {
-  if (const Status written = write_mesh(folder / (name + ".ply"), coloured); !written) {
+  if (const Status written = write_mesh(folder / (name + ".ply"), coloured, {.origin = kColoured});
+      !written) {
     return written;
   }
   return write_six_view_picture(folder / (name + ".png"), coloured, tablet_from_model, job);

@@ -13,6 +13,9 @@
 
 namespace dubsar {
 
+/// The origin of a mesh that is a picture.
+inline constexpr const char* kColoured = "Coloured by Dubsar";
+
 /// Draws six views, to scale on one sheet, of a mesh with its colours as they are, into a PNG. A mesh without
 /// colours is drawn as clay.
 [[nodiscard]] Status write_six_view_picture(const std::filesystem::path& png, const Mesh& mesh,

@@ -235,7 +235,7 @@ void MeshViewing::open(const fs::path& file) {
     const RigidTransform tablet_from_model = tablet_frame(*read);
     std::optional<Error> odd = odd_numbers(*read, file.filename().string());
     odd = odd ? odd : inside_out(*read, file.filename().string());
-    label_ = read_file_label(file);
+    label_ = read_mesh_label(file);
     take_mesh(std::make_shared<const Mesh>(std::move(*read)), tablet_from_model, file.filename().string());
     if (odd) {
       complain(*odd);

@@ -26,6 +26,10 @@ Status write_tablet_file(const std::filesystem::path& path, const sim::SimTablet
         static_cast<std::uint8_t>(std::lround(255.0F * std::clamp(tablet.albedo[i], 0.0F, 1.0F)));
     mesh.colours[i] = {grey, grey, grey};
   }
+  // The truth is known everywhere; no scan is behind it.
+  mesh.reliability.assign(mesh.positions.size(), 1.0F);
+  mesh.scans.assign(mesh.positions.size(), 0);
+  mesh.flags.assign(mesh.positions.size(), 0);
   return write_mesh(path, mesh, made_up_label());
 }
 

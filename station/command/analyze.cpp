@@ -53,7 +53,7 @@ Status draw_pictures(const std::filesystem::path& folder, const Mesh& mesh, cons
     return drawn;
   }
   const Mesh coloured = annotated_mesh(mesh, analysis);
-  if (Status written = write_mesh(folder / "wedges.ply", coloured); !written) {
+  if (Status written = write_mesh(folder / "wedges.ply", coloured, {.origin = kColoured}); !written) {
     return written;
   }
   return write_six_view_picture(folder / "wedges.png", coloured, lies, job);
@@ -280,7 +280,7 @@ Result<int> analyze(const AnalyzeArguments& arguments, CommandContext& context) 
   WedgeFile file = wedge_file(comes_again ? from_folder_of(arguments.in, arguments.out)
                                           : std::filesystem::path(arguments.in).filename().string(),
                               options, *analysis);
-  file.label = read_file_label(arguments.in);
+  file.label = read_mesh_label(arguments.in);
   if (const Status started = work ? work->start() : Status(); !started) {
     return std::unexpected(started.error());
   }

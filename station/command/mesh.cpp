@@ -14,6 +14,7 @@
 #include "formats/atomic_file.h"
 #include "formats/file_label_reader.h"
 #include "formats/mesh_io.h"
+#include "formats/mesh_losses.h"
 #include "formats/wedges_json.h"
 #include "station/command/command.h"
 #include "station/command/outputs.h"
@@ -40,6 +41,17 @@ struct MeshOptions {
 Result<Mesh> read(const MeshOptions& options) {
   return read_mesh(options.in,
                    {.mm_per_unit = options.unit.empty() ? std::nullopt : mm_per_unit(options.unit)});
+}
+
+/// With what the file that was read says of itself, and a word on what the new one cannot hold.
+Status write(const MeshOptions& options, const Mesh& mesh) {
+  if (const Status written = write_mesh(options.out, mesh, read_mesh_label(options.in)); !written) {
+    return written;
+  }
+  if (const std::optional<Error> lost = mesh_losses(mesh, options.out, "keep " + options.in)) {
+    log_warning(lost->line());
+  }
+  return {};
 }
 
 Result<int> check(const MeshOptions& options, CommandContext& context) {
@@ -79,7 +91,7 @@ Result<int> convert(const MeshOptions& options, CommandContext& context) {
     }
     log_warning(fault->line());
   }
-  if (const Status written = write_mesh(options.out, *mesh, read_file_label(options.in)); !written) {
+  if (const Status written = write(options, *mesh); !written) {
     return std::unexpected(written.error());
   }
   if (context.json) {
@@ -172,7 +184,7 @@ Result<int> part(const MeshOptions& options, CommandContext& context) {
     return wedges.empty() ? 1 : 0;
   }
   const Mesh out = part_of(*mesh, *selection);
-  if (const Status written = write_mesh(options.out, out, read_file_label(options.in)); !written) {
+  if (const Status written = write(options, out); !written) {
     return std::unexpected(written.error());
   }
   if (context.json) {
@@ -197,8 +209,8 @@ void add_mesh(CLI::App& app, Action& chosen) {
   check_verb->fallthrough();
   check_verb->callback(
       [&chosen, options] { chosen = [options](CommandContext& c) { return check(*options, c); }; });
-  CLI::App* convert_verb =
-      verb->add_subcommand("convert", "From one format to another, by the names' endings");
+  CLI::App* convert_verb = verb->add_subcommand(
+      "convert", "From one format to another, by the names' endings; says what the new one cannot hold");
   convert_verb->add_option("in", options->in, "PLY, OBJ, STL or GLB")->required();
   convert_verb->add_option("out", options->out, "the same: .ply, .obj, .stl or .glb; .draco.glb compresses")
       ->required();

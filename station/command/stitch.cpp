@@ -17,6 +17,7 @@
 #include "archive/html.h"
 #include "core/log.h"
 #include "formats/mesh_io.h"
+#include "formats/mesh_losses.h"
 #include "registration/registrar.h"
 #include "registration/unit_check.h"
 #include "station/command/command.h"
@@ -327,6 +328,10 @@ Result<int> stitch_all(const ScanSetArguments& arguments, const StampedWork* wor
   if (const Status written = write_mesh(arguments.out, *mesh, *label); !written) {
     return std::unexpected(written.error());
   }
+  if (const std::optional<Error> lost =
+          mesh_losses(*mesh, arguments.out, "stitch into a .ply to have them")) {
+    log_warning(lost->line());
+  }
   if (const Status kept = work != nullptr ? work->finish({arguments.out}, context.job) : Status(); !kept) {
     return std::unexpected(kept.error());
   }
@@ -366,7 +371,8 @@ void add_stitch(CLI::App& app, Action& chosen) {
   CLI::App* verb = app.add_subcommand("stitch", "One mesh of all registered scans");
   const auto arguments = std::make_shared<StitchArguments>();
   arguments->set.add_to(*verb, true);
-  verb->add_option("-o,--out", arguments->set.out, "the mesh: PLY, OBJ, STL or GLB; .draco.glb compresses")
+  verb->add_option("-o,--out", arguments->set.out,
+                   "the mesh: PLY, which holds all that is known of it, OBJ, STL or GLB; .draco.glb compresses")
       ->required();
   verb->add_flag(
           "--unless-done", arguments->unless_done,

@@ -48,7 +48,10 @@ TEST(MeshIo, PlyKeepsEverythingToTheBit) {
 }
 
 TEST(MeshIo, PlyHasTheHeaderOfTheContract) {
-  const std::string bytes = encode_mesh_ply(tetrahedron());
+  Mesh stitched = full_mesh();
+  stitched.sigma_mm.clear();
+  stitched.colours.clear();
+  const std::string bytes = encode_mesh_ply(stitched);
   EXPECT_EQ(
       bytes.substr(0, bytes.find("end_header")),
       "ply\nformat binary_little_endian 1.0\ncomment Mesh of Dubsar\nobj_info unit mm\nelement vertex 4\n"

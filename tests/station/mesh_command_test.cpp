@@ -7,6 +7,7 @@
 
 #include <fstream>
 
+#include "formats/mesh_io.h"
 #include "tests/station/support/command.h"
 #include "tests/support/temporary_folder.h"
 
@@ -17,6 +18,7 @@ namespace fs = std::filesystem;
 using test::bytes_of;
 using test::Outcome;
 using test::run_command;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::SizeIs;
 
@@ -70,6 +72,30 @@ TEST_F(MeshCommand, OfAMeshThatIsInsideOutTheNearSideIsCutAndAnalysed) {
   EXPECT_EQ(analysed.status, 0) << analysed.err;
   EXPECT_THAT(analysed.err, HasSubstr("turned over"));
   EXPECT_EQ(run_command({"mesh", "check", at("out.ply"), "--json"}).json()["inside_out"], false);
+}
+
+TEST_F(MeshCommand, WhatAFormatCannotHoldIsToldAndNotMadeUpAfterwards) {
+  Mesh mesh = read_mesh(at("tent.obj")).value();
+  mesh.reliability = {0, 0.25F, 0.5F, 0.75F, 1};
+  mesh.flags = {0, 2, 0, 0, 0};
+  ASSERT_TRUE(write_mesh(at("tent.ply"), mesh));
+  for (const char* name : {"away.obj", "away.stl", "away.glb"}) {
+    const Outcome away = run_command({"mesh", "convert", at("tent.ply"), at(name), "--json"});
+    EXPECT_EQ(away.json()["vertices"], 5) << away.err;
+    EXPECT_THAT(away.complaints(),
+                ElementsAre(HasSubstr(" holds no reliability or flags: left out; keep " + at("tent.ply"))))
+        << name;
+    const Outcome back = run_command({"mesh", "convert", at(name), at("back.ply")});
+    EXPECT_EQ(back.status, 0) << back.err;
+    EXPECT_THAT(back.complaints(), SizeIs(0)) << "there is nothing to leave out";
+    const Mesh read = read_mesh(at("back.ply")).value();
+    EXPECT_TRUE(read.reliability.empty() && read.scans.empty() && read.flags.empty()) << name;
+  }
+  EXPECT_THAT(run_command({"mesh", "convert", at("tent.ply"), at("copy.ply")}).complaints(), SizeIs(0));
+  EXPECT_EQ(read_mesh(at("copy.ply")).value().reliability, mesh.reliability);
+  EXPECT_THAT(bytes_of(at("copy.ply")), HasSubstr("\ncomment Mesh of Dubsar\n"));
+  EXPECT_EQ(run_command({"mesh", "convert", at("tent.obj"), at("theirs.ply")}).status, 0);
+  EXPECT_THAT(bytes_of(at("theirs.ply")), HasSubstr("\ncomment Converted by Dubsar from tent.obj\n"));
 }
 
 TEST_F(MeshCommand, ACutThatMeetsNothingWritesNothing) {

@@ -41,9 +41,9 @@ class StitchCommand : public ::testing::Test {
     }
   }
   [[nodiscard]] std::string at(const std::string& name) const { return (folder_.path() / name).string(); }
-  [[nodiscard]] Outcome stitched() const {
+  [[nodiscard]] Outcome stitched(const char* mesh = "mesh.ply") const {
     EXPECT_TRUE(write_poses(at("poses.json"), poses_));
-    return run_command({"stitch", at("scans"), "--poses", at("poses.json"), "-o", at("mesh.ply")});
+    return run_command({"stitch", at("scans"), "--poses", at("poses.json"), "-o", at(mesh)});
   }
   std::vector<ScanPose> poses_;
 
@@ -55,6 +55,14 @@ TEST_F(StitchCommand, SaysNothingWhereAllIsWell) {
   const Outcome outcome = stitched();
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_THAT(outcome.complaints(), SizeIs(0)) << outcome.err;
+}
+
+TEST_F(StitchCommand, SaysWhatAFormatCannotHold) {
+  const Outcome outcome = stitched("mesh.stl");
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.complaints(),
+              ElementsAre(HasSubstr("mesh.stl: STL holds no reliability, sigma, scans or flags: left out; "
+                                    "stitch into a .ply to have them")));
 }
 
 TEST_F(StitchCommand, NamesAScanThatTheFileHasNoPoseOf) {

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "core/mesh.h"
+#include "core/result.h"
+
+namespace dubsar {
+
+/// What write_mesh() leaves out of a file of that name, said in one line; nothing where the format holds all
+/// that is known of the mesh, as PLY does. Normals are no loss: they follow from the faces.
+[[nodiscard]] std::optional<Error> mesh_losses(const Mesh& mesh, const std::filesystem::path& file,
+                                               const std::string& mend);
+
+}  // namespace dubsar
