@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "analysis/inner_edges.h"
+#include "analysis/wedge_numbering.h"
 #include "core/parallel.h"
 
 namespace dubsar {
@@ -20,7 +21,8 @@ constexpr std::size_t kMostVertices = 400000;
 constexpr int kMostPerBasin = 4;
 /// Noise that is this share of the spacing turns a triangle's normal by some 8 degrees.
 constexpr double kNoisyShare = 0.1;
-constexpr std::size_t kNormalSamples = 64;
+/// Normals over a hollow that add up to less than this, of one for all, look nowhere.
+constexpr double kLeastNormal = 1e-3;
 constexpr const char* kTooLarge = "too large a hollow";
 constexpr const char* kNoSurface = "no free surface above it";
 
@@ -107,15 +109,17 @@ std::size_t HollowMeasure::least_vertices() const {
   return static_cast<std::size_t>(std::max(options_.judge.least_vertices, 1));
 }
 
-/// Mean normal of the free surface over the hollow: where a wedge runs round the tablet's rim, the one over
-/// its depth point says little of where its tail rises. Zero where there is no surface.
+/// Mean normal of the free surface over the hollow, by the area of its clay: where a wedge runs round the
+/// tablet's rim, the one over its depth point says little of where its tail rises. Of every vertex: a few of
+/// them, taken by height, are others after each rounding. Zero where there is no surface.
 Eigen::Vector3d HollowMeasure::up_over(std::span<const std::uint32_t> vertices) const {
-  const std::size_t step = 1 + vertices.size() / kNormalSamples;
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (std::size_t i = 0; i < vertices.size(); i += step) {
-    sum += fields_.surface.normal(source_.position[vertices[i]]).cast<double>();
+  double area = 0;
+  for (const std::uint32_t v : vertices) {
+    sum += areas_[v] * fields_.surface.normal(source_.position[v]).cast<double>();
+    area += areas_[v];
   }
-  return sum.norm() > 1e-3 ? Eigen::Vector3d(sum.normalized()) : Eigen::Vector3d::Zero();
+  return sum.norm() > kLeastNormal * area ? Eigen::Vector3d(sum.normalized()) : Eigen::Vector3d::Zero();
 }
 
 std::expected<WedgeCandidate, std::string> HollowMeasure::measure(
@@ -138,6 +142,7 @@ std::expected<WedgeCandidate, std::string> HollowMeasure::measure(
   }
   const InnerEdges edges = find_inner_edges(patch, *faces);
   WedgeCandidate found = measure_wedge(patch, *faces, edges, fields_.surface, areas_, options_.exits);
+  number_from_directional_edge(&found);
   if (open != nullptr) {
     leftovers(patch, *faces, least_vertices(), open);
   }

@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/units.h"
 
@@ -66,7 +67,8 @@ constexpr double kSurfaceMm = 0.02;
 constexpr double kSurfaceShare = 0.05;
 constexpr double kSurfaceRad = 0.013;
 
-void note_sigmas(const WedgeFaces& faces, const InnerEdges& edges, double spacing_mm, Wedge* wedge) {
+void note_sigmas(const WedgeFaces& faces, const InnerEdges& edges, double spacing_mm, ExitDefinition exits,
+                 Wedge* wedge) {
   WedgeSigma& sigma = wedge->sigma;
   const double depth = std::max(wedge->depth_mm, 0.01);
   const double coarse = 1.0 + kCoarseGrowth * std::max(0.0, spacing_mm / depth - kFineSpacings);
@@ -78,6 +80,7 @@ void note_sigmas(const WedgeFaces& faces, const InnerEdges& edges, double spacin
     const InnerEdge& edge = edges.edge[k];
     const double rise = std::max(edge.direction.z(), 0.03);
     sigma.edge_rad[k] = coarse * kEdgeTogether * edge.sigma_rad;
+    sigma.edge_slope_rad[k] = std::hypot(sigma.edge_rad[k], kSurfaceRad);
     sigma.length_mm[k] = std::hypot(sigma.depth_mm / rise, depth * sigma.edge_rad[k] / (rise * rise));
     sigma.opening_rad[k] =
         coarse * kPlaneTogether * std::hypot(faces.plane[(k + 2) % 3].sigma_rad, faces.plane[k].sigma_rad);
@@ -89,6 +92,12 @@ void note_sigmas(const WedgeFaces& faces, const InnerEdges& edges, double spacin
     sigma.face_angle_rad[k] = std::hypot(sigma.edge_rad[k], sigma.edge_rad[(k + 1) % 3]);
   }
   sigma.volume_mm3 = wedge->volume_mm3 * std::sqrt(relative);
+  if (exits == ExitDefinition::kExtent) {
+    // How far off the last contact point is from where the edge ended once, nobody knows.
+    constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+    sigma.length_mm = {kUnknown, kUnknown, kUnknown};
+    sigma.volume_mm3 = kUnknown;
+  }
 }
 
 /// Whether the foot of p lies in the triangle of the three exits, seen along z (patch frame).
@@ -145,7 +154,7 @@ WedgeCandidate measure_wedge(const WedgePatch& patch, const WedgeFaces& faces, c
   const std::array<Eigen::Vector3d, 3>& exit = wedge.exit_points_mm;
   wedge.volume_mm3 =
       std::abs((exit[0] - depth_point).dot((exit[1] - depth_point).cross(exit[2] - depth_point))) / 6.0;
-  note_sigmas(faces, edges, patch.spacing_mm, &wedge);
+  note_sigmas(faces, edges, patch.spacing_mm, exits, &wedge);
   choose_directional(&wedge);
 
   std::array<double, 3> seen{};

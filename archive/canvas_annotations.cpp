@@ -30,6 +30,12 @@ std::string fragment(const WedgeOnPicture& on, const AnnotatedCanvas& canvas) {
   return fmt::format("xywh={},{},{},{}", x, y, wide, high);
 }
 
+/// Of a page no two are the same: a wedge is at most once in a view.
+std::string annotation_id(const Wedge& wedge, const WedgeOnPicture& on, const AnnotationSource& source) {
+  const std::string side = on.view ? fmt::format("-{}", to_string(*on.view)) : std::string();
+  return fmt::format("{}{}#wedge-{}{}", source.base_url, source.page, wedge.id, side);
+}
+
 std::string triangle(const WedgeOnPicture& on) {
   const auto& [a, b, c] = on.corners_px;
   return fmt::format(
@@ -49,7 +55,7 @@ std::string canvas_annotations(const std::vector<Wedge>& wedges, const std::vect
                                                  {"conformsTo", "http://www.w3.org/TR/media-frags/"},
                                                  {"value", fragment(on, canvas)}},
                                                 {{"type", "SvgSelector"}, {"value", triangle(on)}}});
-    items.push_back({{"id", fmt::format("{}{}#wedge-{}", source.base_url, source.page, wedge.id)},
+    items.push_back({{"id", annotation_id(wedge, on, source)},
                      {"type", "Annotation"},
                      {"motivation", "commenting"},
                      {"created", source.when},

@@ -19,7 +19,8 @@ struct AnnotatedCanvas {
 
 /// The wedges that a canvas shows as a page of IIIF Presentation 3.0: the target of each is a part of the
 /// canvas, told both as the rectangle round it (media fragment xywh) and as its triangle (SVG), for viewers
-/// know one or the other. `source.model` is not looked at.
+/// know one or the other. Its id ends in the wedge's number, on a canvas of several views in the side too.
+/// `source.model` is not looked at.
 [[nodiscard]] std::string canvas_annotations(const std::vector<Wedge>& wedges,
                                              const std::vector<WedgeOnPicture>& shown,
                                              const AnnotatedCanvas& canvas, const AnnotationSource& source);

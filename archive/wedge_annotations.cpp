@@ -30,9 +30,13 @@ std::string wedge_in_words(const Wedge& w) {
   if (w.place.side && w.place.line > 0) {
     where += fmt::format(", line {}, number {}", w.place.line, w.place.order);
   }
+  // A picture may show the side as it lies on the tablet: the left edge upright.
+  const std::string turn =
+      w.place.side ? fmt::format(" at {:.0f} degrees as the side is read", deg_from_rad(w.place.turn_rad))
+                   : std::string();
   return fmt::format(
-      "Wedge {}{}: {:.2f} mm deep, directional edge {:.2f} mm long at {:.0f} degrees, confidence {:.2f}{}",
-      w.id, where, w.depth_mm, w.edge_lengths_mm[directional], deg_from_rad(w.place.turn_rad), w.confidence,
+      "Wedge {}{}: {:.2f} mm deep, directional edge {:.2f} mm long{}, confidence {:.2f}{}", w.id, where,
+      w.depth_mm, w.edge_lengths_mm[directional], turn, w.confidence,
       w.by_hand == ByHand::kNo
           ? std::string()
           : fmt::format("; corrected by hand: {}", kByHandNames[static_cast<std::size_t>(w.by_hand)]));

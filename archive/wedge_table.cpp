@@ -125,6 +125,8 @@ std::vector<Column> columns(const FileLabel& label) {
   three("sigma_opening_angle", "deg", deg,
         [](const Wedge& w) -> const Three& { return w.sigma.opening_rad; });
   three("sigma_edge", "deg", deg, [](const Wedge& w) -> const Three& { return w.sigma.edge_rad; });
+  three("sigma_edge_slope", "deg", deg,
+        [](const Wedge& w) -> const Three& { return w.sigma.edge_slope_rad; });
   three("sigma_face_angle", "deg", deg,
         [](const Wedge& w) -> const Three& { return w.sigma.face_angle_rad; });
   three("sigma_face_slope", "deg", deg,

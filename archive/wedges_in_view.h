@@ -5,9 +5,11 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "archive/raster.h"
+#include "core/red_map.h"
 #include "core/wedge.h"
 
 namespace dubsar {
@@ -16,6 +18,8 @@ namespace dubsar {
 struct WedgeOnPicture {
   std::size_t wedge = 0;                        ///< position in the list of wedges
   std::array<Eigen::Vector2d, 3> corners_px{};  ///< from the picture's upper left corner, right and down
+  /// On a picture of several views: the one that shows it here. A wedge near an edge is in two of them.
+  std::optional<Face> view{};
 };
 
 /// Those wedges that a picture with this framing shows, in their order: they look at the viewer (their

@@ -29,11 +29,13 @@ inline constexpr std::array<std::string_view, 3> kDirectionalByNames = {"longest
                                                                         "flattest"};
 
 /// Standard deviations of what was measured, from reliability, the scatter of the vertices and how well the
-/// free surface is known.
+/// free surface is known. No number where nobody knows: of lengths and volume with ExitDefinition::kExtent,
+/// and of what a file does not say.
 struct WedgeSigma {
   double depth_point_mm = 0;  ///< of the point, all three axes together
   double depth_mm = 0;
-  std::array<double, 3> edge_rad{};  ///< of each inner edge's direction; not all that its slope has
+  std::array<double, 3> edge_rad{};        ///< of each inner edge's direction
+  std::array<double, 3> edge_slope_rad{};  ///< which way the free surface looks included
   std::array<double, 3> opening_rad{};
   std::array<double, 3> face_angle_rad{};
   std::array<double, 3> face_slope_rad{};
@@ -59,9 +61,10 @@ inline constexpr std::array<std::string_view, 4> kByHandNames = {"no", "merged",
 }
 
 /// One wedge as an idealised tetrahedron (seed 000, 3.4; contract "Wedges" in design.md). Millimetres,
-/// radians. Inner edges and faces counter-clockwise seen from outside the clay. Face k lies between inner
-/// edges k and k+1; face_angles_rad[k] is the angle between these two edges at the depth point;
-/// opening_angles_rad[k] the dihedral angle between the two faces that meet in inner edge k.
+/// radians. Inner edges and faces counter-clockwise seen from outside the clay, of a measured wedge from the
+/// directional edge on; of one made up, or read from a file, from any. Face k lies between inner edges k and
+/// k+1; face_angles_rad[k] is the angle between these two edges at the depth point; opening_angles_rad[k] the
+/// dihedral angle between the two faces that meet in inner edge k.
 struct Wedge {
   int id = 0;
   Eigen::Vector3d depth_point_mm{0, 0, 0};
@@ -73,7 +76,7 @@ struct Wedge {
   double directional_margin = 0;  ///< by how much it leads the next, as a share: of length or of slope
   std::array<Eigen::Vector3d, 3> outer_vertices_mm = three_zeros();
   std::array<Eigen::Vector3d, 3> face_normals = three_zeros();  ///< out of the clay
-  Eigen::Vector3d surface_normal{0, 0, 0};  ///< mean of the free surface over the impression
+  Eigen::Vector3d surface_normal{0, 0, 0};  ///< mean of the free surface over the hollow, by area
   double depth_mm = 0;                      ///< of the depth point below the free surface
   std::array<double, 3> face_angles_rad{};
   std::array<double, 3> opening_angles_rad{};

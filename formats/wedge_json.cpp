@@ -15,6 +15,16 @@ namespace {
 
 using Three = std::array<double, 3>;
 
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+constexpr Three kThreeUnknown = {kUnknown, kUnknown, kUnknown};
+
+bool is_known(double value) {
+  return std::isfinite(value);
+}
+bool are_known(const Three& values) {
+  return std::ranges::all_of(values, is_known);
+}
+
 const std::vector<std::string> kDirectionalBy(kDirectionalByNames.begin(), kDirectionalByNames.end());
 
 OrderedJson degrees_json(const Three& angles_rad) {
@@ -62,32 +72,59 @@ std::array<Eigen::Vector3d, 3> points_from(const JsonNode& node, double mm) {
   return points;
 }
 
+/// Keys of what is not known are left out.
 OrderedJson sigma_json(const WedgeSigma& sigma) {
   OrderedJson json;
+  const auto add_degrees = [&json](const char* key, const Three& angles_rad) {
+    if (are_known(angles_rad)) {
+      json[key] = degrees_json(angles_rad);
+    }
+  };
   json["depth_point"] = sigma.depth_point_mm;
   json["depth"] = sigma.depth_mm;
-  json["edge_lengths"] = sigma.length_mm;
-  json["edges_deg"] = degrees_json(sigma.edge_rad);
-  json["opening_angles_deg"] = degrees_json(sigma.opening_rad);
-  json["face_angles_deg"] = degrees_json(sigma.face_angle_rad);
-  json["face_slopes_deg"] = degrees_json(sigma.face_slope_rad);
-  json["volume_mm3"] = sigma.volume_mm3;
+  if (are_known(sigma.length_mm)) {
+    json["edge_lengths"] = sigma.length_mm;
+  }
+  add_degrees("edges_deg", sigma.edge_rad);
+  add_degrees("edge_slopes_deg", sigma.edge_slope_rad);
+  add_degrees("opening_angles_deg", sigma.opening_rad);
+  add_degrees("face_angles_deg", sigma.face_angle_rad);
+  add_degrees("face_slopes_deg", sigma.face_slope_rad);
+  if (is_known(sigma.volume_mm3)) {
+    json["volume_mm3"] = sigma.volume_mm3;
+  }
   return json;
 }
 
+WedgeSigma unknown_sigma() {
+  return {.depth_point_mm = kUnknown,
+          .depth_mm = kUnknown,
+          .edge_rad = kThreeUnknown,
+          .edge_slope_rad = kThreeUnknown,
+          .opening_rad = kThreeUnknown,
+          .face_angle_rad = kThreeUnknown,
+          .face_slope_rad = kThreeUnknown,
+          .length_mm = kThreeUnknown,
+          .volume_mm3 = kUnknown};
+}
+
 WedgeSigma sigma_from(const JsonNode& node, double mm) {
-  WedgeSigma sigma;
+  WedgeSigma sigma = unknown_sigma();
   sigma.depth_point_mm = mm * node.at("depth_point").number(0);
   sigma.depth_mm = mm * node.at("depth").number(0);
-  sigma.length_mm = lengths_from(node.at("edge_lengths"), mm);
-  sigma.edge_rad = radians_from(node.at("edges_deg"));
-  sigma.opening_rad = radians_from(node.at("opening_angles_deg"));
-  if (const auto angles = node.find("face_angles_deg")) {
-    sigma.face_angle_rad = radians_from(*angles);
+  if (const auto lengths = node.find("edge_lengths")) {
+    sigma.length_mm = lengths_from(*lengths, mm);
   }
-  if (const auto slopes = node.find("face_slopes_deg")) {
-    sigma.face_slope_rad = radians_from(*slopes);
-  }
+  const auto read_degrees = [&node](const char* key, Three* angles_rad) {
+    if (const auto degrees = node.find(key)) {
+      *angles_rad = radians_from(*degrees);
+    }
+  };
+  read_degrees("edges_deg", &sigma.edge_rad);
+  read_degrees("edge_slopes_deg", &sigma.edge_slope_rad);
+  read_degrees("opening_angles_deg", &sigma.opening_rad);
+  read_degrees("face_angles_deg", &sigma.face_angle_rad);
+  read_degrees("face_slopes_deg", &sigma.face_slope_rad);
   if (const auto volume = node.find("volume_mm3")) {
     sigma.volume_mm3 = volume->number(0);
   }
@@ -119,8 +156,6 @@ WedgePlace place_from(const JsonNode& node) {
 
 /// What the contract's keys tell of the others; what they do not tell is no number.
 void derive_measures(Wedge* wedge) {
-  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-  constexpr Three kThreeUnknown = {kUnknown, kUnknown, kUnknown};
   std::array<Eigen::Vector3d, 3> edge;
   for (std::size_t k = 0; k < 3; ++k) {
     edge[k] = wedge->exit_points_mm[k] - wedge->depth_point_mm;
@@ -130,8 +165,7 @@ void derive_measures(Wedge* wedge) {
   }
   wedge->volume_mm3 = std::abs(edge[0].dot(edge[1].cross(edge[2]))) / 6.0;
   wedge->face_slopes_rad = wedge->edge_bows_mm = kThreeUnknown;
-  wedge->sigma = {kUnknown,      kUnknown,      kThreeUnknown, kThreeUnknown,
-                  kThreeUnknown, kThreeUnknown, kThreeUnknown, kUnknown};
+  wedge->sigma = unknown_sigma();
 }
 
 /// What add_measures() writes, as far as it is there.
@@ -207,14 +241,13 @@ void add_measures(const Wedge& wedge, OrderedJson* json) {
   (*json)["edge_lengths"] = wedge.edge_lengths_mm;
   (*json)["volume_mm3"] = wedge.volume_mm3;
   // Of a file with the contract's keys alone some are not known, and JSON has no word for that.
-  const auto is_known = [](double value) { return std::isfinite(value); };
-  if (std::ranges::all_of(wedge.edge_slopes_rad, is_known)) {
+  if (are_known(wedge.edge_slopes_rad)) {
     (*json)["edge_slopes_deg"] = degrees_json(wedge.edge_slopes_rad);
   }
-  if (std::ranges::all_of(wedge.face_slopes_rad, is_known)) {
+  if (are_known(wedge.face_slopes_rad)) {
     (*json)["face_slopes_deg"] = degrees_json(wedge.face_slopes_rad);
   }
-  if (std::ranges::all_of(wedge.edge_bows_mm, is_known)) {
+  if (are_known(wedge.edge_bows_mm)) {
     (*json)["edge_bows"] = wedge.edge_bows_mm;
   }
   if (is_known(wedge.sigma.depth_mm)) {

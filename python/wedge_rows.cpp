@@ -37,6 +37,7 @@ struct WedgeRow {
   double sigma_depth_point_mm;
   double sigma_depth_mm;
   double sigma_edge_rad[3];
+  double sigma_edge_slope_rad[3];
   double sigma_opening_rad[3];
   double sigma_face_angle_rad[3];
   double sigma_face_slope_rad[3];
@@ -94,6 +95,7 @@ WedgeRow row_of(const Wedge& wedge) {
   row.sigma_depth_point_mm = wedge.sigma.depth_point_mm;
   row.sigma_depth_mm = wedge.sigma.depth_mm;
   put(row.sigma_edge_rad, wedge.sigma.edge_rad);
+  put(row.sigma_edge_slope_rad, wedge.sigma.edge_slope_rad);
   put(row.sigma_opening_rad, wedge.sigma.opening_rad);
   put(row.sigma_face_angle_rad, wedge.sigma.face_angle_rad);
   put(row.sigma_face_slope_rad, wedge.sigma.face_slope_rad);
@@ -122,13 +124,13 @@ py::array wedge_rows(const std::vector<Wedge>& wedges) {
 }
 
 void bind_wedge_rows() {
-  PYBIND11_NUMPY_DTYPE(WedgeRow, id, depth_point_mm, exit_points_mm, exit_points_surface_mm,
-                       exit_points_extent_mm, outer_vertices_mm, face_normals, surface_normal,
-                       directional_edge, directional_by, directional_margin, depth_mm, face_angles_rad,
-                       opening_angles_rad, edge_lengths_mm, edge_slopes_rad, face_slopes_rad, edge_bows_mm,
-                       volume_mm3, sigma_depth_point_mm, sigma_depth_mm, sigma_edge_rad, sigma_opening_rad,
-                       sigma_face_angle_rad, sigma_face_slope_rad, sigma_length_mm, sigma_volume_mm3, side,
-                       line, order, turn_rad, reliability, confidence, vertex_count, intact, by_hand);
+  PYBIND11_NUMPY_DTYPE(
+      WedgeRow, id, depth_point_mm, exit_points_mm, exit_points_surface_mm, exit_points_extent_mm,
+      outer_vertices_mm, face_normals, surface_normal, directional_edge, directional_by, directional_margin,
+      depth_mm, face_angles_rad, opening_angles_rad, edge_lengths_mm, edge_slopes_rad, face_slopes_rad,
+      edge_bows_mm, volume_mm3, sigma_depth_point_mm, sigma_depth_mm, sigma_edge_rad, sigma_edge_slope_rad,
+      sigma_opening_rad, sigma_face_angle_rad, sigma_face_slope_rad, sigma_length_mm, sigma_volume_mm3, side,
+      line, order, turn_rad, reliability, confidence, vertex_count, intact, by_hand);
 }
 
 }  // namespace dubsar::python

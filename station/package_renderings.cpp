@@ -149,6 +149,7 @@ std::vector<WedgeOnPicture> Drawing::wedges_on_fatcross(FatcrossKind kind) const
       for (Eigen::Vector2d& corner : on.corners_px) {
         corner += corners[static_cast<std::size_t>(face)].cast<double>();
       }
+      on.view = face;
       all.push_back(on);
     }
   }

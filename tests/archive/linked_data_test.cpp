@@ -74,6 +74,7 @@ TEST(WedgeTable, HoldsEveryMeasureAndKeepsTheMicrometre) {
   far.exit_points_extent_mm[1] = {1, 2, 3.25};
   far.sigma.depth_point_mm = 0.0125;
   far.sigma.edge_rad = {0, rad_from_deg(1.5), 0};
+  far.sigma.edge_slope_rad = {0, 0, rad_from_deg(1.75)};
   far.sigma.face_angle_rad = {0, 0, rad_from_deg(2.5)};
   far.sigma.face_slope_rad = {rad_from_deg(0.5), 0, 0};
   const auto value = value_in(wedge_table({far}, {.name = "BM 1"}));
@@ -83,6 +84,7 @@ TEST(WedgeTable, HoldsEveryMeasureAndKeepsTheMicrometre) {
   EXPECT_EQ(value("exit_point_extent_1_z_mm"), "3.25");
   EXPECT_EQ(value("sigma_depth_point_mm"), "0.0125");
   EXPECT_EQ(value("sigma_edge_1_deg"), "1.5");
+  EXPECT_EQ(value("sigma_edge_slope_2_deg"), "1.75");
   EXPECT_EQ(value("sigma_face_angle_2_deg"), "2.5");
   EXPECT_EQ(value("sigma_face_slope_0_deg"), "0.5");
 }
@@ -119,6 +121,16 @@ TEST(WedgeAnnotations, PointAtAClosedRingOnTheModel) {
             "0.0000))");
 }
 
+TEST(WedgeAnnotations, SayByWhatTheTailsTurnGoes) {
+  Wedge wedge = some_wedge();
+  wedge.edge_lengths_mm[0] = 1.25;
+  wedge.place = {Face::kLeft, 1, 2, rad_from_deg(41)};
+  EXPECT_THAT(wedge_in_words(wedge),
+              ::testing::HasSubstr("directional edge 1.25 mm long at 41 degrees as the side is read, "));
+  wedge.place = {};
+  EXPECT_THAT(wedge_in_words(wedge), ::testing::HasSubstr("directional edge 1.25 mm long, confidence"));
+}
+
 TEST(WedgeAnnotations, SayThatNoClayWasMeasured) {
   AnnotationSource source{"https://example.org/t/", "a.json", "t.ply", "BM 1", "Dubsar",
                           "2026-01-02T03:04:05Z"};
@@ -150,6 +162,16 @@ TEST(CanvasAnnotations, PointAtAPartOfTheCanvas) {
   EXPECT_EQ(selectors[0]["value"], "xywh=0,20,30,20") << "what lies on the canvas, in whole pixels";
   EXPECT_EQ(selectors[1]["value"],
             R"(<svg xmlns="http://www.w3.org/2000/svg"><path d="M10.2 20.0L30.0 20.5L-1.0 41.0Z"/></svg>)");
+}
+
+TEST(CanvasAnnotations, OfAWedgeInTwoViewsOfOneSheetHaveTwoIds) {
+  const std::array<Eigen::Vector2d, 3> corners = {Eigen::Vector2d(1, 2), Eigen::Vector2d(3, 2),
+                                                  Eigen::Vector2d(1, 4)};
+  const auto page = nlohmann::json::parse(canvas_annotations(
+      {some_wedge()}, {{0, corners, Face::kObverse}, {0, corners, Face::kLeft}}, {"c", 100, 40},
+      {"https://example.org/t/", "a.json", "", "BM 1", "Dubsar", "2026-01-02T03:04:05Z"}));
+  EXPECT_EQ(page["items"][0]["id"], "https://example.org/t/a.json#wedge-7-obverse");
+  EXPECT_EQ(page["items"][1]["id"], "https://example.org/t/a.json#wedge-7-left");
 }
 
 TEST(IiifManifest, NamesThePageOfAnnotationsOfACanvas) {

@@ -3,6 +3,7 @@
 #include "formats/wedges_json.h"
 
 #include <cmath>
+#include <limits>
 
 #include "formats/file_label_reader.h"
 #include "formats/truth_json.h"
@@ -35,6 +36,7 @@ TEST(WedgesJson, ReadsBackAllThatWasMeasured) {
   wedge.sigma.depth_point_mm = 0.01;
   wedge.sigma.opening_rad = {0.1, 0.2, 0.3};
   wedge.sigma.face_slope_rad = {0.4, 0.5, 0.6};
+  wedge.sigma.edge_slope_rad = {0.7, 0.8, 0.9};
   wedge.sigma.volume_mm3 = 0.75;
   wedge.place = {Face::kReverse, 4, 17, -1.5};
   file.wedges = {wedge, Wedge{}};
@@ -66,6 +68,7 @@ TEST(WedgesJson, ReadsBackAllThatWasMeasured) {
   EXPECT_EQ(w.volume_mm3, 0.125);
   EXPECT_NEAR(w.sigma.opening_rad[2], 0.3, 1e-14);
   EXPECT_NEAR(w.sigma.face_slope_rad[1], 0.5, 1e-14);
+  EXPECT_NEAR(w.sigma.edge_slope_rad[2], 0.9, 1e-14);
   EXPECT_EQ(w.sigma.volume_mm3, 0.75);
   EXPECT_EQ(w.place.side, Face::kReverse);
   EXPECT_EQ(w.place.line, 4);
@@ -110,6 +113,31 @@ TEST(WedgesJson, OfTheContractsKeysAloneTellTheRestOrSayNothing) {
   const auto again = parse_wedges(wedges_to_json(*file), "w");
   ASSERT_TRUE(again) << line_of(again);
   EXPECT_TRUE(std::isnan(again->wedges.front().sigma.depth_mm));
+}
+
+TEST(WedgesJson, SigmasThatNobodyKnowsAreLeftOutAndMissed) {
+  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+  WedgeFile file;
+  file.exits = ExitDefinition::kExtent;
+  Wedge wedge;
+  wedge.sigma.depth_mm = 0.02;
+  wedge.sigma.edge_rad = {0.1, 0.2, 0.3};
+  wedge.sigma.length_mm = {kUnknown, kUnknown, kUnknown};
+  wedge.sigma.edge_slope_rad = wedge.sigma.length_mm;  // as in files of before they were written
+  wedge.sigma.face_angle_rad = wedge.sigma.length_mm;
+  wedge.sigma.volume_mm3 = kUnknown;
+  file.wedges = {wedge};
+  const std::string text = wedges_to_json(file);
+  EXPECT_THAT(text, ::testing::Not(HasSubstr("null")));
+  const auto back = parse_wedges(text, "w");
+  ASSERT_TRUE(back) << line_of(back);
+  const WedgeSigma& sigma = back->wedges[0].sigma;
+  EXPECT_EQ(sigma.depth_mm, 0.02);
+  EXPECT_NEAR(sigma.edge_rad[1], 0.2, 1e-14);
+  EXPECT_TRUE(std::isnan(sigma.length_mm[0]));
+  EXPECT_TRUE(std::isnan(sigma.edge_slope_rad[0]));
+  EXPECT_TRUE(std::isnan(sigma.face_angle_rad[0])) << "0 would say that it is known for sure";
+  EXPECT_TRUE(std::isnan(sigma.volume_mm3));
 }
 
 TEST(WedgesJson, VolumesAreCubicMillimetresWhateverTheUnit) {

@@ -359,6 +359,7 @@ class Pipeline(Scans):
             ("depth_point", "sigma_depth_point_mm", 1),
             ("depth", "sigma_depth_mm", 1),
             ("edges_deg", "sigma_edge_rad", np.pi / 180),
+            ("edge_slopes_deg", "sigma_edge_slope_rad", np.pi / 180),
             ("opening_angles_deg", "sigma_opening_rad", np.pi / 180),
             ("face_angles_deg", "sigma_face_angle_rad", np.pi / 180),
             ("face_slopes_deg", "sigma_face_slope_rad", np.pi / 180),
@@ -367,6 +368,9 @@ class Pipeline(Scans):
         ):
             sigmas = unit * np.array([w["sigma"][key] for w in stored["wedges"]])
             np.testing.assert_allclose(table[column], sigmas, rtol=1e-9, err_msg=column)
+        self.assertTrue((table["directional_edge"] == 0).all())
+        as_seen = dubsar.analyze(self.mesh, name="model.ply", exit="extent").table
+        self.assertTrue(np.isnan(as_seen["sigma_length_mm"]).all() and np.isnan(as_seen["sigma_volume_mm3"]).all())
         self.assertEqual(
             [w["directional_by"] for w in stored["wedges"]], [by.decode() for by in table["directional_by"]]
         )

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <fstream>
+#include <set>
 
 #include "build_paths.h"
 #include "formats/corrections_json.h"
@@ -245,8 +246,10 @@ TEST_F(ExportOfWedges, OnThePicturesWedgesAreWhereTheHollowsAre) {
     const nlohmann::json page = json(file);
     EXPECT_EQ(page["id"], address);
     EXPECT_EQ(page["rights"], manifest["rights"]);
+    std::set<std::string> ids;
     for (const nlohmann::json& item : page["items"]) {
       EXPECT_EQ(item["target"]["source"]["id"], canvas["id"]);
+      EXPECT_TRUE(ids.insert(item["id"]).second) << item["id"] << " is there twice";
     }
     if (picture.starts_with("pictures/fatcross/")) {
       EXPECT_GE(page["items"].size(), wedges * 9 / 10) << "nearly all of them are on some side";

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+// What a single hollow is measured to be.
+
+#include "analysis/hollow_measure.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "tests/analysis/support/pits.h"
+
+namespace dubsar {
+namespace {
+
+/// A wedge in clay that bends over a radius of 15 mm, and the vertices of its hollow in rising height.
+struct Hollow {
+  Mesh mesh;
+  VertexGraph graph;
+  SurfaceFields fields;
+  std::vector<float> areas;
+  std::vector<std::uint32_t> vertices;
+
+  [[nodiscard]] Wedge measured(const std::vector<std::uint32_t>& in_order,
+                               const WedgeOptions& options) const {
+    const HollowMeasure measure(mesh, graph, fields, options, areas, 0);
+    std::vector<std::int32_t> slot(mesh.positions.size(), -1);
+    const auto found = measure.measure(in_order, &slot);
+    EXPECT_TRUE(found) << found.error();
+    return found ? found->wedge : Wedge{};
+  }
+};
+
+const Hollow& hollow() {
+  static const std::unique_ptr<const Hollow> kHollow = [] {
+    auto out = std::make_unique<Hollow>();
+    const pits::Pit pit;
+    out->mesh =
+        pits::sheet(16, 0.08, [&](double x, double y) { return pit.floor(x, y) - (x * x + y * y) / 30.0; });
+    out->graph = make_vertex_graph(out->mesh);
+    out->fields = *compute_surface_fields(out->mesh, out->graph, {}, {});
+    out->areas = vertex_areas(out->mesh, out->graph);
+    for (std::uint32_t v = 0; v < out->mesh.positions.size(); ++v) {
+      const Eigen::Vector3f& p = out->mesh.positions[v];
+      if (pit.floor(p.x(), p.y()) < -0.03) {
+        out->vertices.push_back(v);
+      }
+    }
+    std::ranges::stable_sort(out->vertices, {}, [&](std::uint32_t v) { return out->fields.height_mm[v]; });
+    return out;
+  }();
+  return *kHollow;
+}
+
+TEST(HollowMeasure, TheSurfacesNormalIsTheMeanOverAllOfItsClay) {
+  const Hollow& h = hollow();
+  ASSERT_GT(h.vertices.size(), 128U);
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const std::uint32_t v : h.vertices) {
+    sum += h.areas[v] * h.fields.surface.normal(h.mesh.positions[v]).cast<double>();
+  }
+  const Wedge rising = h.measured(h.vertices, {});
+  EXPECT_LT((rising.surface_normal - sum.normalized()).norm(), 1e-6);
+  // What lies higher by a rounding comes later: that alone is to change nothing.
+  std::vector<std::uint32_t> other = h.vertices;
+  std::reverse(other.begin() + 1, other.end());
+  EXPECT_LT((h.measured(other, {}).surface_normal - rising.surface_normal).norm(), 1e-6);
+}
+
+TEST(HollowMeasure, SlopesOfEdgesAreAsUnsureAsTheirDirectionsAndTheSurface) {
+  const Wedge wedge = hollow().measured(hollow().vertices, {});
+  for (std::size_t k = 0; k < 3; ++k) {
+    EXPECT_NEAR(wedge.sigma.edge_slope_rad[k], std::hypot(wedge.sigma.edge_rad[k], 0.013), 1e-9);
+  }
+}
+
+TEST(HollowMeasure, HowFarOffTheLastContactIsNobodyKnows) {
+  WedgeOptions options;
+  options.exits = ExitDefinition::kExtent;
+  const Wedge at_surface = hollow().measured(hollow().vertices, {});
+  const Wedge seen_last = hollow().measured(hollow().vertices, options);
+  for (std::size_t k = 0; k < 3; ++k) {
+    EXPECT_GT(at_surface.sigma.length_mm[k], 0);
+    EXPECT_TRUE(std::isnan(seen_last.sigma.length_mm[k]));
+  }
+  EXPECT_GT(at_surface.sigma.volume_mm3, 0);
+  EXPECT_TRUE(std::isnan(seen_last.sigma.volume_mm3));
+  EXPECT_EQ(seen_last.sigma.depth_mm, at_surface.sigma.depth_mm);
+}
+
+}  // namespace
+}  // namespace dubsar
