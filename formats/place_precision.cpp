@@ -5,27 +5,16 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 #include <vector>
 
+#include "core/keeps_places.h"
 #include "core/order_statistics.h"
 #include "core/parallel.h"
 
 namespace dubsar {
 
 namespace {
-
-/// Rounded to an eighth of the spacing at the most, samples keep what noise leaves of them.
-constexpr double kStepsPerSpacing = 8;
-/// Whatever the spacing, rounding to a tenth of a micrometre takes nothing away.
-constexpr double kSurelyPreciseMm = 1000;
-
-/// Whether float keeps places that far from the origin to a small part of their spacing.
-bool keeps(double farthest_mm, double spacing_mm) {
-  const double step_mm = farthest_mm * static_cast<double>(std::numeric_limits<float>::epsilon());
-  return farthest_mm < kSurelyPreciseMm || kStepsPerSpacing * step_mm <= spacing_mm;
-}
 
 std::unexpected<Error> refused(double farthest_mm, const char* too_far, const std::string& name) {
   return bad_input(name, "lies " + std::to_string(std::lround(farthest_mm / 1000.0)) + too_far, kMoveNear);
@@ -71,7 +60,7 @@ Status check_precision(const RangeGrid& grid, const std::string& name) {
     }
     farthest_mm = std::max(farthest_mm, count == 0 ? 0.0 : std::abs(sum) / static_cast<double>(count));
   }
-  if (keeps(farthest_mm, grid.spacing_mm)) {
+  if (keeps_places(farthest_mm, grid.spacing_mm)) {
     return {};
   }
   return refused(farthest_mm,
@@ -83,7 +72,7 @@ Status check_precision(const RangeGrid& grid, const std::string& name) {
 Status check_precision(const Mesh& mesh, const std::string& name) {
   const double farthest_mm = farthest_of(mesh);
   // Edges are many: their median is looked for only where it matters.
-  if (keeps(farthest_mm, 0) || keeps(farthest_mm, median_edge_mm(mesh))) {
+  if (keeps_places(farthest_mm, 0) || keeps_places(farthest_mm, median_edge_mm(mesh))) {
     return {};
   }
   return refused(farthest_mm,

@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <vector>
 
+#include "core/scan_copies.h"
 #include "planning/model_faces.h"
 
 namespace dubsar {
@@ -44,6 +47,20 @@ void add_regions(const RedMap& map, Checklist& list) {
   }
 }
 
+/// The scans that are measurements of their own; of the others a warning.
+std::vector<PlacedScan> without_copies(std::span<const PlacedScan> registered, Checklist& list) {
+  const std::vector<ScanCopy> copies = copies_among(registered);
+  for (const ScanCopy& copy : copies) {
+    list.warnings.push_back({copy.id, "it has the very samples of scan " + std::to_string(copy.of_id) +
+                                          ", and counts as the same scan"});
+  }
+  std::vector<PlacedScan> once(registered.begin(), registered.end());
+  std::erase_if(once, [&](const PlacedScan& scan) {
+    return std::ranges::find(copies, scan.id, &ScanCopy::id) != copies.end();
+  });
+  return once;
+}
+
 }  // namespace
 
 Checklist make_checklist(const RedMap& map, std::span<const ScanPose> poses,
@@ -56,7 +73,8 @@ Checklist make_checklist(const RedMap& map, std::span<const ScanPose> poses,
     list.calibration_age_days = rig->calibration_age_days;
     list.calibration_check = rig->calibration_check;
   }
-  const SurfaceQuality quality = surface_quality(registered, mesh, model_faces(registered, mesh.positions));
+  const std::vector<PlacedScan> once = without_copies(registered, list);
+  const SurfaceQuality quality = surface_quality(once, mesh, model_faces(once, mesh.positions));
   list.sampling = quality.all;
   for (std::size_t face = 0; face < kFaceCount; ++face) {
     list.faces[face].seen_mm2 = quality.seen_mm2[face];

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "core/scan_copies.h"
 #include "formats/pins_json.h"
 #include "formats/poses_json.h"
 #include "planning/sparse_flags.h"
@@ -82,6 +83,19 @@ Result<Mesh> stitch_grids(const Grids& grids, const std::vector<ScanPose>& poses
     return fail(ErrorKind::kUsage, "no scan is registered", {}, "see the poses' reasons");
   }
   return stitch(placed, {}, job);
+}
+
+void warn_of_copies(const Grids& grids, const std::vector<ScanPose>& poses) {
+  std::vector<PlacedScan> placed;
+  for (const ScanPose& pose : poses) {
+    if (pose.status == PoseStatus::kRegistered) {
+      placed.push_back({pose.id, grids[static_cast<std::size_t>(pose.id)].get(), nullptr, {}});
+    }
+  }
+  for (const ScanCopy& copy : copies_among(placed)) {
+    warn_of_scan("grid " + std::to_string(copy.id) + " is left out: it has the very samples of grid " +
+                 std::to_string(copy.of_id) + ", and counts as the same scan");
+  }
 }
 
 std::optional<PinSet> pins_of(const std::optional<fs::path>& file) {
@@ -183,11 +197,14 @@ void bind_scans(py::module_& module) {
           }
         }
         const std::optional<PinSet> pins = pins_of(pins_file);
-        return std::make_shared<Mesh>(
+        auto mesh = std::make_shared<Mesh>(
             run_for_result(progress, [&](JobContext& job) { return stitch_grids(grids, poses, pins, job); }));
+        warn_of_copies(grids, poses);
+        return mesh;
       },
       py::arg("grids"), py::arg("poses"), py::arg("pins") = py::none(), py::arg("progress") = py::none(),
-      "One oriented 2-manifold of the registered scans.");
+      "One oriented 2-manifold of the registered scans. A grid with the very samples of another is left "
+      "out.");
   module.def(
       "read_poses", [](const fs::path& path) { return value_of(read_poses(path)); }, py::arg("path"));
   module.def(

@@ -13,6 +13,7 @@
 #include "formats/poses_conf.h"
 #include "formats/poses_json.h"
 #include "registration/registrar.h"
+#include "triangulation/placed_precision.h"
 
 namespace dubsar {
 
@@ -214,6 +215,11 @@ Result<std::vector<ScanPose>> poses_from_file(const ScanSet& set, const std::fil
   std::vector<ScanPose> poses;
   for (const StationScan& scan : set.scans) {
     if (const ScanPose* found = pose_in_file(*read, scan)) {
+      const PlacedScan placed{scan.id, scan.grid.get(), nullptr, found->model_from_scanner, found->sigma_mm};
+      const bool counts = found->status == PoseStatus::kRegistered;
+      if (const Status near = counts ? check_placed_precision(placed, scan.file) : Status(); !near) {
+        return std::unexpected(near.error());
+      }
       poses.push_back(*found);
       poses.back().id = scan.id;
       poses.back().file = scan.file;

@@ -41,7 +41,7 @@ struct RegisterOptions {
                                                             const std::string& unit);
 
 /// The poses of a file for scans of the set (matched by the scans' file names, else by id). kBadInput when it
-/// has none.
+/// has none, or puts a registered scan too far from the origin for float.
 [[nodiscard]] Result<std::vector<ScanPose>> poses_from_file(const ScanSet& set,
                                                             const std::filesystem::path& poses_file,
                                                             const std::string& unit);

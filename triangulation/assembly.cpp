@@ -74,10 +74,15 @@ Mesh assemble(const std::vector<OwnedScan>& scans, const AssemblyOptions& option
     });
   };
   job.progress("close seams", 0.0);
-  close_patches(draft, closing);
+  close_patches(draft, closing, job);
+  if (job.cancelled()) {
+    return {};
+  }
   job.progress("repair intersections", 0.0);
-  repair_self_intersections(draft, closing);
-
+  repair_self_intersections(draft, closing, job);
+  if (job.cancelled()) {
+    return {};
+  }
   job.progress("finish mesh", 0.0);
   Mesh& mesh = draft.mesh;
   const std::vector<Vector3f>& p = mesh.positions;

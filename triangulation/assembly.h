@@ -21,7 +21,7 @@ struct AssemblyOptions {
 
 /// One mesh of the patches that assign_owners() left: vertices are the kept samples at their averaged places,
 /// scan by scan; then seams and gaps are closed, specks removed, and what is left made an oriented
-/// 2-manifold with boundary.
+/// 2-manifold with boundary. Empty when the job was cancelled before that.
 /// `laid` is called when no more is needed of the scans than their surfaces' lookup.
 [[nodiscard]] Mesh assemble(const std::vector<OwnedScan>& scans, const AssemblyOptions& options,
                             const std::function<void()>& laid, const JobContext& job);

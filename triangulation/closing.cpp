@@ -211,9 +211,10 @@ Tiling tiling_of(const Draft& draft, std::span<const std::uint8_t> near, int rou
           0.5F * static_cast<float>(round % 2)};
 }
 
-/// One round: closes what is open around near vertices. `gaps` are those that an earlier one left.
+/// One round: closes what is open around near vertices. `gaps` are those that an earlier one left. A job that
+/// is cancelled leaves nothing over, and a draft that is no good.
 Leftover close_round(Draft& draft, std::span<const std::uint8_t> near, Walks gaps, int round,
-                     const ClosingOptions& options) {
+                     const ClosingOptions& options, const JobContext& job) {
   const Tiling tiling = tiling_of(draft, near, round, options);
   std::vector<Region> regions = take_regions(draft, near, tiling);
   std::vector<Walks> gaps_in(tiling.size());
@@ -237,9 +238,15 @@ Leftover close_round(Draft& draft, std::span<const std::uint8_t> near, Walks gap
       regions.size(),
       [&](std::size_t) {
         const std::size_t k = order[next++];
+        if (job.cancelled()) {
+          return;
+        }
         closed[k] = close_region(regions[k], gaps_in[regions[k].tile()], draft, options);
       },
       1);
+  if (job.cancelled()) {
+    return {};
+  }
   for (std::size_t k = 0; k < regions.size(); ++k) {
     const Region& region = regions[k];
     const std::size_t base = draft.mesh.positions.size();
@@ -257,12 +264,13 @@ Leftover close_round(Draft& draft, std::span<const std::uint8_t> near, Walks gap
 }
 
 /// Closes what is open around near vertices, round by round.
-void close_around(Draft& draft, std::vector<std::uint8_t> near, const ClosingOptions& options) {
+void close_around(Draft& draft, std::vector<std::uint8_t> near, const ClosingOptions& options,
+                  const JobContext& job) {
   Walks gaps;
   std::vector<std::uint32_t> before;
   std::size_t gaps_before = 0;
   for (int round = 0; round < kTiledRounds + kTries; ++round) {
-    Leftover left = close_round(draft, near, std::move(gaps), round, options);
+    Leftover left = close_round(draft, near, std::move(gaps), round, options, job);
     std::vector<std::uint32_t> seeds = left.vertices();
     if (seeds.empty() || (seeds == before && left.gaps.size() == gaps_before)) {
       return;
@@ -306,14 +314,16 @@ std::vector<std::uint32_t> corners_of(const Draft& draft, const FacePairs& pairs
 
 }  // namespace
 
-void close_patches(Draft& draft, const ClosingOptions& options) {
-  close_around(draft, draft.near_rim, options);
-  remove_slivers(draft, draft.first_face.back());
+void close_patches(Draft& draft, const ClosingOptions& options, const JobContext& job) {
+  close_around(draft, draft.near_rim, options, job);
+  if (!job.cancelled()) {
+    remove_slivers(draft, draft.first_face.back());
+  }
 }
 
-void repair_self_intersections(Draft& draft, const ClosingOptions& options) {
+void repair_self_intersections(Draft& draft, const ClosingOptions& options, const JobContext& job) {
   FacePairs pairs = all_intersections(draft);
-  for (int attempt = 0; !pairs.empty(); ++attempt) {
+  for (int attempt = 0; !pairs.empty() && !job.cancelled(); ++attempt) {
     const bool last = attempt == kRepairs;
     std::vector<std::uint32_t> corners = corners_of(draft, pairs);
     const std::vector<std::uint8_t> near = vertices_near(draft, corners);
@@ -340,7 +350,10 @@ void repair_self_intersections(Draft& draft, const ClosingOptions& options) {
       return;
     }
     const std::size_t faces_before = draft.mesh.faces.size();
-    close_around(draft, near, options);
+    close_around(draft, near, options, job);
+    if (job.cancelled()) {
+      return;
+    }
     remove_slivers(draft, faces_before);
     for (std::size_t f = faces_before; f < draft.mesh.faces.size(); ++f) {
       corners.insert(corners.end(), draft.mesh.faces[f].begin(), draft.mesh.faces[f].end());

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 
+#include "core/job.h"
 #include "triangulation/draft.h"
 #include "triangulation/gap_fill.h"
 #include "triangulation/seam_closer.h"
@@ -19,11 +20,11 @@ struct ClosingOptions {
 
 /// Closes the seams between the patches of a draft, and its gaps. Where patches touch by a corner only, the
 /// largest keeps it; around a gap that cannot be closed faces go and another try is made. What comes of it as
-/// slivers is flipped where that helps.
-void close_patches(Draft& draft, const ClosingOptions& options);
+/// slivers is flipped where that helps. A job that is cancelled leaves the draft half done.
+void close_patches(Draft& draft, const ClosingOptions& options, const JobContext& job);
 
 /// Takes out faces that cut through each other, later with those around them, and closes the place anew; what
-/// still cuts at the end goes for good.
-void repair_self_intersections(Draft& draft, const ClosingOptions& options);
+/// still cuts at the end goes for good. A job that is cancelled leaves the draft half done.
+void repair_self_intersections(Draft& draft, const ClosingOptions& options, const JobContext& job);
 
 }  // namespace dubsar

@@ -269,6 +269,12 @@ std::vector<std::uint8_t> place_samples(const PlacedScan& scan, std::vector<Vect
   return placed;
 }
 
+/// A sample of no confidence still counts for a little; one that is not a number says as little as 0.
+float told_confidence(float told) {
+  constexpr float kLeast = 0.01F;
+  return told > kLeast ? std::min(told, 1.0F) : kLeast;
+}
+
 /// Reliability and weight of the usable samples, and which of them are sparse. Returns the cosines of their
 /// angles of incidence.
 std::vector<float> weigh_samples(const PlacedScan& scan, const std::vector<Vector3f>& normals,
@@ -289,7 +295,7 @@ std::vector<float> weigh_samples(const PlacedScan& scan, const std::vector<Vecto
         out.usable[i] = is_unflagged(flags_of(scan, i)) ? kUsable : kUsable | kUsableSparse;
         const float cosine = incidence.cosine(out.points[i], normals[i], grid.row_of(i));
         cosines[i] = cosine;
-        const float confidence = grid.confidence.empty() ? 1.0F : std::clamp(grid.confidence[i], 0.01F, 1.0F);
+        const float confidence = grid.confidence.empty() ? 1.0F : told_confidence(grid.confidence[i]);
         out.reliability_code[i] = code(cosine * cosine * confidence);
         const float doubt = out.is_sparse(i) ? kSparseWeight : inner[i] == 0 ? kRimWeight : 1.0F;
         out.weight_code[i] = std::max<std::uint16_t>(code(confidence * doubt), 1);

@@ -3,9 +3,10 @@
 #include "triangulation/stitcher.h"
 
 #include <algorithm>
+#include <limits>
 #include <map>
+#include <optional>
 #include <set>
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -13,101 +14,12 @@
 #include "core/parallel.h"
 #include "triangulation/assembly.h"
 #include "triangulation/patch_shape.h"
-#include "triangulation/stage_passes.h"
+#include "triangulation/scan_surfaces.h"
+#include "triangulation/stitch_entry.h"
 
 namespace dubsar {
 
 namespace {
-
-/// A scan's id, and which of its stage's passes: each is stitched as if it were a scan of its own.
-using PassKey = std::pair<int, int>;
-
-struct Entry {
-  StitchSurface surface;
-  std::map<PassKey, Pairs> pairs;  ///< by the other pass; those without a pair hold no matches
-  std::vector<std::uint8_t> wanted;
-  FusedSamples fused;
-  /// By node: 1 where pairs have come or gone that wanted and fused do not know of yet; empty: nowhere.
-  std::vector<std::uint8_t> changed;
-
-  void mark_changed(const Pairs& at) {
-    changed.resize(at.match.size(), 0);
-    for (std::size_t node = 0; node < changed.size(); ++node) {
-      changed[node] |= at.match[node] >= 0 ? 1 : 0;
-    }
-  }
-};
-
-/// The samples that it wants and that have not been averaged yet, node by node.
-std::vector<std::uint32_t> unfused(const Entry& entry) {
-  using Samples = std::vector<std::uint32_t>;
-  const Lattice& lattice = entry.surface.lattice;
-  return parallel_reduce_ordered(
-      lattice.size(), 1024, Samples{},
-      [&](std::size_t begin, std::size_t end) {
-        Samples found;
-        for (std::size_t node = begin; node < end; ++node) {
-          lattice.for_each_sample(node, [&](std::size_t i) {
-            if (entry.wanted[i] != 0 && entry.fused.slot[i] == FusedSamples::kNone) {
-              found.push_back(static_cast<std::uint32_t>(i));
-            }
-          });
-        }
-        return found;
-      },
-      [](Samples& total, const Samples& part) { total.insert(total.end(), part.begin(), part.end()); });
-}
-
-std::string name_of(const PlacedScan& scan) {
-  return "scan " + std::to_string(scan.id);
-}
-
-Status check(const PlacedScan& scan) {
-  if (scan.grid == nullptr) {
-    return bad_input(name_of(scan), "no range grid");
-  }
-  const std::size_t cells = static_cast<std::size_t>(std::max(scan.grid->rows, 0)) *
-                            static_cast<std::size_t>(std::max(scan.grid->cols, 0));
-  if (scan.grid->size() != cells || scan.grid->valid.size() != cells) {
-    return bad_input(name_of(scan), "the grid's arrays do not fit its rows and columns");
-  }
-  if (scan.flags != nullptr && !scan.flags->empty() && scan.flags->size() != cells) {
-    return bad_input(name_of(scan), "flags and grid have different sizes", "flag the grid again");
-  }
-  if (!scan.model_from_scanner.is_rigid() || !scan.model_from_scanner.translation_mm.allFinite()) {
-    return bad_input(name_of(scan), "its pose is not a rigid transform", "register the scan again");
-  }
-  return {};
-}
-
-/// Of each pass of the scan's stage.
-std::vector<StitchSurface> make_surfaces(const PlacedScan& scan, const StitchSurfaceOptions& options) {
-  const RangeGrid& grid = *scan.grid;
-  const double spacing_mm = grid.spacing_mm > 0 ? grid.spacing_mm : estimate_spacing_mm(grid);
-  const std::vector<StagePass> passes =
-      spacing_mm > 0 ? stage_passes(grid, spacing_mm) : std::vector<StagePass>{};
-  std::vector<StitchSurface> out;
-  if (passes.empty() || passes.front().size() == static_cast<std::size_t>(grid.rows)) {
-    out.push_back(make_scan_surface(scan, options));
-    return out;
-  }
-  for (const StagePass& pass : passes) {
-    RangeGrid part = grid_of_pass(grid, pass);
-    part.spacing_mm = spacing_mm;
-    SampleFlags flags;
-    for (const int row : pass) {
-      const auto first = static_cast<std::ptrdiff_t>(grid.index(row, 0));
-      if (scan.flags != nullptr && !scan.flags->empty()) {
-        flags.insert(flags.end(), scan.flags->begin() + first, scan.flags->begin() + first + grid.cols);
-      }
-    }
-    PlacedScan placed = scan;
-    placed.grid = &part;
-    placed.flags = &flags;
-    out.push_back(make_scan_surface(placed, options));
-  }
-  return out;
-}
 
 /// Gives memory back, as clear() and `= {}` do not.
 template <class... T>
@@ -123,14 +35,15 @@ std::unexpected<Error> cancelled() {
 
 struct Stitcher::Impl {
   StitchOptions options;
-  std::map<PassKey, Entry> entries;  ///< each scan has a pass 0
+  std::map<int, Held> held;          ///< all scans
+  std::map<PassKey, Entry> entries;  ///< of those that take part: each has a pass 0
   std::set<PassKey> unpaired;        ///< came since settle()
 
   [[nodiscard]] Status may_enter(const PlacedScan& scan) const {
-    if (entries.contains({scan.id, 0})) {
-      return fail(ErrorKind::kUsage, "stitched already", name_of(scan), "remove it first");
+    if (held.contains(scan.id)) {
+      return fail(ErrorKind::kUsage, "stitched already", stitched_name(scan), "remove it first");
     }
-    return check(scan);
+    return check_stitchable(scan);
   }
 
   /// Checks first, as far as the first bad one; then the surfaces side by side.
@@ -142,20 +55,57 @@ struct Stitcher::Impl {
       if (!ok) {
         break;
       }
-      entries[{scan.id, 0}];
+      held[scan.id];
       ++sound;
     }
-    std::vector<std::vector<StitchSurface>> surfaces(sound);
+    std::vector<Held> ready(sound);
     parallel_for_each_index(
-        sound, [&](std::size_t k) { surfaces[k] = make_surfaces(scans[k], options.surface); }, 1);
+        sound,
+        [&](std::size_t k) {
+          ready[k] = {sample_digest(*scans[k].grid), surfaces_of_passes(scans[k], options.surface)};
+        },
+        1);
     for (std::size_t k = 0; k < sound; ++k) {
-      for (std::size_t pass = 0; pass < surfaces[k].size(); ++pass) {
-        const PassKey key(scans[k].id, static_cast<int>(pass));
-        entries[key].surface = std::move(surfaces[k][pass]);
-        unpaired.insert(key);
-      }
+      held[scans[k].id] = std::move(ready[k]);
+      enter(scans[k].id);
     }
     return ok;
+  }
+
+  /// The scan with the lowest id, past `after`, of those with these samples.
+  [[nodiscard]] std::optional<int> first_with(const std::optional<SampleDigest>& samples,
+                                              int after = std::numeric_limits<int>::min()) const {
+    const auto found = std::find_if(held.upper_bound(after), held.end(), [&](const auto& scan) {
+      return samples && scan.second.samples == samples;
+    });
+    return found == held.end() ? std::nullopt : std::optional(found->first);
+  }
+
+  /// Puts in a scan that waits; it goes on waiting where another with its samples has a lower id.
+  void enter(int id) {
+    const std::optional<SampleDigest>& samples = held.at(id).samples;
+    if (samples && first_with(samples) != id) {
+      return;
+    }
+    if (const std::optional<int> copy = first_with(samples, id); copy && !held.at(*copy).waits()) {
+      step_out(*copy);
+    }
+    std::vector<StitchSurface> passes = std::exchange(held.at(id).waiting, {});
+    for (std::size_t pass = 0; pass < passes.size(); ++pass) {
+      const PassKey key(id, static_cast<int>(pass));
+      entries[key].surface = std::move(passes[pass]);
+      unpaired.insert(key);
+    }
+  }
+
+  /// A scan that takes part waits from now on.
+  void step_out(int id) {
+    std::vector<StitchSurface>& waiting = held.at(id).waiting;
+    for (auto entry = entries.lower_bound({id, 0}); entry != entries.end() && entry->first.first == id;
+         ++entry) {
+      waiting.push_back(std::move(entry->second.surface));
+    }
+    erase_entries(id);
   }
 
   /// Pairs the new pass with those that its box touches.
@@ -258,6 +208,7 @@ struct Stitcher::Impl {
       return cancelled();
     }
     if (lets_go) {  // of what patches are not laid from
+      held.clear();
       for (auto& [key, entry] : entries) {
         entry.pairs.clear();
         StitchSurface& surface = entry.surface;
@@ -284,10 +235,25 @@ struct Stitcher::Impl {
   }
 
   bool erase(int id) {
-    const auto is_of_scan = [id](const auto& item) { return item.first.first == id; };
-    if (std::erase_if(entries, is_of_scan) == 0) {
+    const auto found = held.find(id);
+    if (found == held.end()) {
       return false;
     }
+    const Held gone = std::move(found->second);
+    held.erase(found);
+    if (gone.waits()) {
+      return true;
+    }
+    erase_entries(id);
+    if (const std::optional<int> copy = first_with(gone.samples)) {
+      enter(*copy);
+    }
+    return true;
+  }
+
+  void erase_entries(int id) {
+    const auto is_of_scan = [id](const auto& item) { return item.first.first == id; };
+    std::erase_if(entries, is_of_scan);
     std::erase_if(unpaired, [id](const PassKey& key) { return key.first == id; });
     for (auto& [other_key, other] : entries) {
       for (const auto& [key, pairs] : other.pairs) {
@@ -297,7 +263,6 @@ struct Stitcher::Impl {
       }
       std::erase_if(other.pairs, is_of_scan);
     }
-    return true;
   }
 };
 
@@ -321,6 +286,16 @@ Status Stitcher::add(std::span<const PlacedScan> scans, const JobContext& job) {
 
 bool Stitcher::remove(int id) {
   return impl_->erase(id);
+}
+
+std::vector<ScanCopy> Stitcher::copies() const {
+  std::vector<ScanCopy> out;
+  for (const auto& [id, scan] : impl_->held) {
+    if (scan.waits()) {
+      out.push_back({id, impl_->first_with(scan.samples).value_or(id)});
+    }
+  }
+  return out;
 }
 
 std::vector<Stitcher::Overlap> Stitcher::overlaps() const {
@@ -360,6 +335,7 @@ Result<Mesh> Stitcher::mesh(const JobContext& job) const {
 
 Result<Mesh> Stitcher::take_mesh(const JobContext& job) {
   Result<Mesh> mesh = impl_->mesh(true, job);
+  impl_->held.clear();
   impl_->entries.clear();
   impl_->unpaired.clear();
   return mesh;

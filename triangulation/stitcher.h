@@ -9,6 +9,7 @@
 #include "core/mesh.h"
 #include "core/placed_scan.h"
 #include "core/result.h"
+#include "core/scan_copies.h"
 #include "triangulation/fusion.h"
 #include "triangulation/gap_fill.h"
 #include "triangulation/grid_triangulation.h"
@@ -37,7 +38,9 @@ struct StitchOptions {
 /// Scans come one by one, in any order, and can be taken out again. add() only triangulates the scan; pairs
 /// and averages are worked out by update(), or when overlaps() or mesh() asks, and anew only where something
 /// has changed: those two are not for several threads at once, const as they are. The mesh depends on the set
-/// of scans alone, not on the order, nor on the number of threads.
+/// of scans alone, not on the order, nor on the number of threads. Scans with the very same samples are one
+/// measurement: while several are held, the one with the lowest id takes part, and the mesh is as without the
+/// others.
 class Stitcher {
  public:
   explicit Stitcher(StitchOptions options = {});
@@ -49,7 +52,8 @@ class Stitcher {
 
   /// Takes what it needs of the scan's grid and flags, 27 bytes a sample: they may go.
   /// Errors: kUsage when the id is there already, kBadInput when the scan has no grid, its flags have another
-  /// size or its pose is not rigid; kCancelled, and then the scan is not in.
+  /// size, its pose is not rigid or puts it too far from the origin for float; kCancelled, and then the scan
+  /// is not in.
   Status add(const PlacedScan& scan, const JobContext& job);
   /// All or, on an error, those before the bad one.
   Status add(std::span<const PlacedScan> scans, const JobContext& job);
@@ -58,6 +62,8 @@ class Stitcher {
   /// Brings pairs and averages up to date with the scans that have come and gone, so that mesh() has less to
   /// do; kCancelled is its only error.
   Status update(const JobContext& job);
+  /// Those held that take no part, since another has the same samples; by id.
+  [[nodiscard]] std::vector<ScanCopy> copies() const;
   /// Two scans that overlap, and how far apart their poses hold their surfaces beyond what noise explains.
   struct Overlap {
     int id = 0, other_id = 0;
@@ -67,6 +73,7 @@ class Stitcher {
     /// Far enough apart to show in the mesh.
     [[nodiscard]] bool is_off() const { return step_mm > 0.75 * spacing_mm; }
   };
+  /// Of the scans that take part.
   [[nodiscard]] std::vector<Overlap> overlaps() const;
   /// The mesh of all scans, with normals, reliability, scans and flags; kCancelled is its only error.
   [[nodiscard]] Result<Mesh> mesh(const JobContext& job) const;

@@ -10,7 +10,6 @@
 #include <map>
 #include <memory>
 #include <optional>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -23,6 +22,7 @@
 #include "station/command/command.h"
 #include "station/command/outputs.h"
 #include "station/command/scan_set_options.h"
+#include "station/command/stitch_warnings.h"
 #include "station/done_stamp.h"
 #include "station/mesh_json.h"
 #include "station/offline.h"
@@ -31,6 +31,7 @@
 #include "station/tablet_flags.h"
 #include "station/tablet_label.h"
 #include "triangulation/mesh_check.h"
+#include "triangulation/placed_precision.h"
 #include "triangulation/stitcher.h"
 
 namespace dubsar {
@@ -56,20 +57,6 @@ std::string size_fault(const RangeGrid& grid) {
 void warn_left_out(const ScanPose& pose) {
   log_warning(pose.file + " is left out: " + to_string(pose.status) +
               (pose.reason.empty() ? "" : ", " + pose.reason));
-}
-
-/// A scan that touches no other lies wrong, or alone; the mesh shows it beside the rest.
-void warn_of_strays(const Stitcher& stitcher, const std::map<int, std::string>& names) {
-  std::set<int> touching;
-  for (const Stitcher::Overlap& overlap : stitcher.overlaps()) {
-    touching.insert(overlap.id);
-    touching.insert(overlap.other_id);
-  }
-  for (const auto& [id, name] : names) {
-    if (names.size() > 1 && !touching.contains(id)) {
-      log_warning(name + " overlaps no other scan where its pose puts it; look whether that pose is right");
-    }
-  }
 }
 
 Status put(Stitcher& stitcher, const StationScan& scan, const SampleFlags& flags, const ScanPose& pose,
@@ -139,6 +126,10 @@ Result<Taken> take_scan_by_scan(const ScanSetArguments& arguments, Stitcher& sti
       named.file = scan.file;
       warn_left_out(named);
       return {};
+    }
+    const PlacedScan placed{scan.id, scan.grid.get(), nullptr, pose->model_from_scanner, pose->sigma_mm};
+    if (const Status near = check_placed_precision(placed, scan.file); !near) {
+      return near;
     }
     ++taken.scans;
     taken.names[scan.id] = scan.file;
@@ -295,15 +286,9 @@ Result<int> stitch_all(const ScanSetArguments& arguments, const StampedWork* wor
   if (taken->scans == 0) {
     return bad_input(arguments.path, "no scan is registered", "see dubsar register");
   }
-  warn_of_strays(*stitcher, taken->names);
-  for (const Stitcher::Overlap& overlap : stitcher->overlaps()) {
-    if (overlap.is_off()) {
-      log_warning(
-          fmt::format("scans {} and {} lie {:.2f} mm apart where they overlap, more than noise explains; the "
-                      "mesh is less reliable there; register them again",
-                      overlap.id, overlap.other_id, overlap.step_mm));
-    }
-  }
+  taken->scans -= stitcher->copies().size();
+  leave_out_copies(*stitcher, taken->names);
+  warn_of_places(*stitcher, taken->names);
   const Result<Mesh> mesh = stitcher->take_mesh(context.job);
   if (!mesh) {
     return std::unexpected(mesh.error());

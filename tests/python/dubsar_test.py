@@ -302,6 +302,19 @@ class Pipeline(Scans):
             np.testing.assert_array_equal(one.model_from_scanner, other.model_from_scanner)
         np.testing.assert_array_equal(dubsar.stitch(self.grids, again).vertices, self.mesh.vertices)
 
+    def test_a_grid_that_came_twice_is_left_out_and_said(self):
+        pose = dubsar.Pose(len(self.grids), self.poses[0].model_from_scanner)
+        with self.assertWarnsRegex(dubsar.ScanWarning, "grid 8 is left out: .* samples of grid 0"):
+            twice = dubsar.stitch(self.grids + [self.grids[0]], self.poses + [pose])
+        np.testing.assert_array_equal(twice.vertices, self.mesh.vertices)
+        np.testing.assert_array_equal(twice.scans, self.mesh.scans)
+
+    def test_poses_in_the_numbers_of_a_map_are_refused(self):
+        far = np.eye(4)
+        far[0, 3] = 1e6
+        with self.assertRaisesRegex(dubsar.BadInputError, "1000 m from the origin"):
+            dubsar.stitch([plane()], [dubsar.Pose(0, far)])
+
     def test_nothing_is_written_into_a_session_or_a_package(self):
         wedges = dubsar.analyze(self.mesh)
         with tempfile.TemporaryDirectory() as folder:

@@ -91,6 +91,48 @@ TEST_F(StitchCommand, NamesAScanThatLiesByItself) {
   EXPECT_THAT(outcome.err, HasSubstr(test::scan_name(1) + " overlaps no other scan"));
 }
 
+TEST_F(StitchCommand, LeavesOutAScanThatCameTwice) {
+  ASSERT_EQ(stitched().status, 0);
+  const Mesh once = read_mesh(at("mesh.ply")).value();
+  fs::copy_file(at("scans") + "/" + test::scan_name(1), at("scans") + "/scan_9.ply");
+  poses_.push_back(poses_[1]);
+  poses_.back().id = 3;
+  poses_.back().file = "scan_9.ply";
+  const Outcome outcome = stitched();
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.complaints(), SizeIs(1)) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("scan_9.ply is left out: it has the very samples of scan_1.ply"));
+  EXPECT_THAT(outcome.out, HasSubstr("faces of 3 scans"));
+  const Mesh twice = read_mesh(at("mesh.ply")).value();
+  EXPECT_EQ(twice.positions, once.positions);
+  EXPECT_EQ(twice.sigma_mm, once.sigma_mm);
+  EXPECT_EQ(twice.scans, once.scans);
+
+  const Outcome planned = run_command({"plan", at("scans"), "--poses", at("poses.json"), "--json"});
+  EXPECT_THAT(planned.err, HasSubstr("scan 3: it has the very samples of scan 1"));
+  const nlohmann::json warnings = planned.json().at("checklist").at("warnings");
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_EQ(warnings.front().at("scan"), 3);
+}
+
+TEST_F(StitchCommand, RefusesPosesInTheNumbersOfAMap) {
+  for (ScanPose& pose : poses_) {
+    pose.model_from_scanner.translation_mm.x() += 1e7;
+  }
+  const Outcome outcome = stitched();
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_THAT(outcome.complaints(), SizeIs(1)) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr(test::scan_name(0) + ": its pose puts it 10000 m from the origin"));
+  EXPECT_FALSE(fs::exists(at("mesh.ply")));
+  for (const Outcome& other :
+       {run_command({"plan", at("scans"), "--poses", at("poses.json")}),
+        run_command({"register", at("scans"), "--from-poses", at("poses.json"), "-o", at("out.json")})}) {
+    EXPECT_EQ(other.status, 2);
+    EXPECT_THAT(other.complaints(), SizeIs(1)) << other.err;
+    EXPECT_THAT(other.err, HasSubstr(test::scan_name(0) + ": its pose puts it 10000 m from the origin"));
+  }
+}
+
 /// Each of two scans has a finger of its own before it, where the others see the field.
 TEST_F(StitchCommand, LeavesOutFingersInSeveralScans) {
   const auto highest = [&]() {

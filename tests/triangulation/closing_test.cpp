@@ -134,7 +134,7 @@ TEST(Closing, TheRimOfAPatchStaysItsRimWhenASeamIsClosedAlongIt) {
     draft.near_rim[v] = rim[v] != 0 ? Draft::kAtRim : draft.near_rim[v];
   }
   const std::size_t faces = draft.mesh.faces.size();
-  close_patches(draft, {});
+  close_patches(draft, {}, JobContext{});
   ASSERT_GT(draft.mesh.faces.size(), faces + 500U);
   for (std::size_t v = 0; v < rim.size(); ++v) {
     EXPECT_TRUE(rim[v] == 0 || draft.near_rim[v] == Draft::kAtRim);
@@ -150,8 +150,8 @@ TEST(Closing, TilesLeaveNoTraceOfTheirSides) {
     ClosingOptions options;
     options.tile_spacings = tile_spacings;
     options.least_tiled_vertices = tile_spacings > 0 ? 0 : cut.mesh.positions.size() + 1;
-    close_patches(draft, options);
-    repair_self_intersections(draft, options);
+    close_patches(draft, options, JobContext{});
+    repair_self_intersections(draft, options, JobContext{});
     const MeshReport report = report_of(draft);
     EXPECT_EQ(report.components, 1U);
     EXPECT_EQ(report.boundary_loops, 1U);

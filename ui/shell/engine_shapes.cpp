@@ -144,6 +144,9 @@ constexpr EnginePhrase kShapes[] = {
     {" m from the origin, too far for its samples to keep their places to a small part of their spacing",
      " m vom Ursprung, zu weit: seine Messpunkte behielten ihren Ort nicht auf einen kleinen Teil ihres "
      "Abstands"},
+    {"its pose puts it ", "seine Lage bringt ihn "},
+    {"take the offset of a map or a room from all poses, or mend this one",
+     "allen Lagen den Versatz einer Karte oder eines Raums nehmen, oder diese berichtigen"},
     {" m from the origin, too far for its vertices to keep their places to a small part of their spacing",
      " m vom Ursprung, zu weit: seine Punkte behielten ihren Ort nicht auf einen kleinen Teil ihres "
      "Abstands"},
