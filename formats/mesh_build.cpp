@@ -166,7 +166,6 @@ void weld_equal_positions(Mesh& mesh) {
       corner = new_index[corner];
     }
   }
-  std::erase_if(mesh.faces, [](const auto& f) { return f[0] == f[1] || f[1] == f[2] || f[2] == f[0]; });
 }
 
 }  // namespace dubsar

@@ -63,8 +63,9 @@ namespace dubsar {
 /// Adds the triangles of a polygon, convex or not; fewer than three corners add nothing.
 void append_polygon(Mesh& mesh, std::span<const std::uint32_t> corners);
 
-/// Merges vertices of equal position (the first one stays, with what is known of it) and drops faces that
-/// thereby lose a corner. Normals go: those of one side of a seam are not the vertex's.
+/// Merges vertices of equal position (the first one stays, with what is known of it). Faces that thereby have
+/// a vertex twice stay, as they do where a file says so itself: the mesh check counts them. Normals go: those
+/// of one side of a seam are not the vertex's.
 void weld_equal_positions(Mesh& mesh);
 
 }  // namespace dubsar

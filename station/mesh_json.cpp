@@ -32,7 +32,7 @@ nlohmann::ordered_json mesh_report_json(const MeshReport& report) {
   if (report.box.isEmpty()) {
     json["size_mm"] = {0, 0, 0};
   } else {
-    const Eigen::Vector3f size = report.box.sizes();
+    const Eigen::Vector3d size = report.box.max().cast<double>() - report.box.min().cast<double>();
     json["size_mm"] = {size.x(), size.y(), size.z()};
   }
   return json;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
 #include <utility>
 
 #include "core/parallel.h"
@@ -183,19 +184,54 @@ Pairs joined(std::size_t count, const auto& map) {
   });
 }
 
+/// The faces at a vertex: first those at none of the edges there where at least so many meet, then those of
+/// each such edge. A face is in one only. Faces that share an edge cannot cut each other.
+std::vector<std::vector<std::uint32_t>> parted_by_edges(std::span<const Face> faces, std::uint32_t vertex,
+                                                        const std::vector<std::uint32_t>& crowd,
+                                                        std::size_t least) {
+  std::vector<std::uint32_t> ends;
+  for (const std::uint32_t face : crowd) {
+    std::ranges::copy_if(faces[face], std::back_inserter(ends), [&](std::uint32_t v) { return v != vertex; });
+  }
+  std::ranges::sort(ends);
+  std::vector<std::uint32_t> crowded;
+  for (std::size_t k = 0; k + least <= ends.size(); ++k) {
+    if (ends[k] == ends[k + least - 1] && (crowded.empty() || crowded.back() != ends[k])) {
+      crowded.push_back(ends[k]);
+    }
+  }
+  std::vector<std::vector<std::uint32_t>> out(1 + crowded.size());
+  for (const std::uint32_t face : crowd) {
+    std::size_t part = 0;
+    for (const std::uint32_t v : faces[face]) {
+      const auto found = std::ranges::lower_bound(crowded, v);
+      if (part == 0 && found != crowded.end() && *found == v) {
+        part = 1 + static_cast<std::size_t>(found - crowded.begin());
+      }
+    }
+    out[part].push_back(face);
+  }
+  return out;
+}
+
 /// Those in which one face is of the crowd at a vertex, and the other too, or of the rest.
 Pairs cuts_of_crowd(Positions positions, std::span<const Face> faces, std::uint32_t vertex,
-                    const std::vector<std::uint32_t>& crowd, const std::vector<std::uint32_t>& rest) {
+                    const std::vector<std::vector<std::uint32_t>>& crowd,
+                    const std::vector<std::uint32_t>& rest, const JobContext& job) {
   Eigen::AlignedBox3f reach;
-  std::vector<std::pair<Box, std::uint32_t>> arcs(crowd.size());
-  for (const std::uint32_t face : crowd) {
-    reach.extend(box_of(positions, faces[face]));
+  std::vector<BoxTree> trees;
+  for (const std::vector<std::uint32_t>& part : crowd) {
+    for (const std::uint32_t face : part) {
+      reach.extend(box_of(positions, faces[face]));
+    }
+    std::vector<std::pair<Box, std::uint32_t>> arcs(part.size());
+    parallel_for_each_index(part.size(), [&](std::size_t k) {
+      arcs[k] = {box_on_sphere(positions, faces[part[k]], vertex), part[k]};
+    });
+    trees.emplace_back(std::move(arcs));
   }
-  parallel_for_each_index(crowd.size(), [&](std::size_t k) {
-    arcs[k] = {box_on_sphere(positions, faces[crowd[k]], vertex), crowd[k]};
-  });
-  const BoxTree tree(std::move(arcs));
-  const auto find = [&](std::uint32_t face, const Box& box, std::size_t least, Pairs& found) {
+  const auto find = [&](const BoxTree& tree, std::uint32_t face, const Box& box, std::size_t least,
+                        Pairs& found) {
     const FacePlane plane(positions, faces[face]);
     tree.for_each_touching(box, least, [&](std::uint32_t other) {
       if (faces_cut(positions, faces[face], plane, faces[other])) {
@@ -203,18 +239,31 @@ Pairs cuts_of_crowd(Positions positions, std::span<const Face> faces, std::uint3
       }
     });
   };
-  Pairs out = joined(crowd.size(), [&](std::size_t begin, std::size_t end) {
-    Pairs found;
-    for (std::size_t k = begin; k < end; ++k) {
-      find(tree.items()[k].second, tree.items()[k].first, k + 1, found);
-    }
-    return found;
-  });
+  Pairs out;
+  for (std::size_t part = 0; part < trees.size(); ++part) {
+    const auto& items = trees[part].items();
+    const Pairs found_here = joined(items.size(), [&](std::size_t begin, std::size_t end) {
+      Pairs found;
+      for (std::size_t k = begin; k < end && !job.cancelled(); ++k) {
+        if (part == 0) {
+          find(trees[0], items[k].second, items[k].first, k + 1, found);
+        }
+        for (std::size_t before = 0; before < part; ++before) {
+          find(trees[before], items[k].second, items[k].first, 0, found);
+        }
+      }
+      return found;
+    });
+    out.insert(out.end(), found_here.begin(), found_here.end());
+  }
   const Pairs with_rest = joined(rest.size(), [&](std::size_t begin, std::size_t end) {
     Pairs found;
-    for (std::size_t k = begin; k < end; ++k) {
+    for (std::size_t k = begin; k < end && !job.cancelled(); ++k) {
       if (box_of(positions, faces[rest[k]]).intersects(reach)) {
-        find(rest[k], box_on_sphere(positions, faces[rest[k]], vertex), 0, found);
+        const Box box = box_on_sphere(positions, faces[rest[k]], vertex);
+        for (const BoxTree& tree : trees) {
+          find(tree, rest[k], box, 0, found);
+        }
       }
     }
     return found;
@@ -226,7 +275,7 @@ Pairs cuts_of_crowd(Positions positions, std::span<const Face> faces, std::uint3
 }  // namespace
 
 Pairs take_cuts_at_crowded_vertices(Positions positions, std::span<const Face> faces,
-                                    std::vector<std::uint32_t>& which) {
+                                    std::vector<std::uint32_t>& which, const JobContext& job) {
   std::vector<std::uint32_t> at_vertex(positions.size(), 0);
   for (const std::uint32_t face : which) {
     for (const std::uint32_t v : faces[face]) {
@@ -237,7 +286,7 @@ Pairs take_cuts_at_crowded_vertices(Positions positions, std::span<const Face> f
   const std::size_t least =
       std::max(kLeastCrowd, static_cast<std::size_t>(std::sqrt(static_cast<double>(which.size()) / 2)));
   Pairs out;
-  for (std::uint32_t vertex = 0; vertex < at_vertex.size(); ++vertex) {
+  for (std::uint32_t vertex = 0; vertex < at_vertex.size() && !job.cancelled(); ++vertex) {
     if (at_vertex[vertex] < least) {
       continue;
     }
@@ -253,7 +302,8 @@ Pairs take_cuts_at_crowded_vertices(Positions positions, std::span<const Face> f
         --at_vertex[v];
       }
     }
-    const Pairs found = cuts_of_crowd(positions, faces, vertex, crowd, which);
+    const Pairs found =
+        cuts_of_crowd(positions, faces, vertex, parted_by_edges(faces, vertex, crowd, least), which, job);
     out.insert(out.end(), found.begin(), found.end());
   }
   return out;

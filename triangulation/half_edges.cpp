@@ -114,15 +114,47 @@ std::int64_t HalfEdges::face(std::uint32_t a, std::uint32_t b) const {
   return -1;
 }
 
+std::size_t HalfEdges::rank(std::uint32_t a, std::uint32_t b, std::uint32_t face) const {
+  const std::span<const Out> outs = among(a, b);
+  if (outs.size() > kFew) {  // then all of them run there, the lowest face first
+    return static_cast<std::size_t>(std::ranges::lower_bound(outs, face, {}, &Out::face) - outs.begin());
+  }
+  return static_cast<std::size_t>(
+      std::ranges::count_if(outs, [&](const Out& out) { return out.to == b && out.face < face; }));
+}
+
+std::int64_t HalfEdges::face_of_rank(std::uint32_t a, std::uint32_t b, std::size_t rank) const {
+  const std::span<const Out> outs = among(a, b);
+  if (outs.size() > kFew) {
+    return rank < outs.size() ? std::int64_t{outs[rank].face} : -1;
+  }
+  for (const Out& out : outs) {
+    if (out.to == b && rank-- == 0) {
+      return out.face;
+    }
+  }
+  return -1;
+}
+
+std::int64_t HalfEdges::across(std::uint32_t face, std::uint32_t a, std::uint32_t b) const {
+  const std::size_t at = rank(a, b, face);
+  const std::int64_t opposite = face_of_rank(b, a, at);
+  const bool of_two_turned_the_same = opposite < 0 && at < 2 && count(a, b) == 2 && count(b, a) == 0;
+  return of_two_turned_the_same ? face_of_rank(a, b, 1 - at) : opposite;
+}
+
 FaceComponents face_components(std::span<const Triangle> faces, const HalfEdges& edges) {
   DisjointSets sets(faces.size());
   parallel_for_each_index(
       faces.size(),
       [&](std::size_t i) {
         for (std::size_t k = 0; k < 3; ++k) {
-          const std::int64_t other = edges.face(faces[i][(k + 1) % 3], faces[i][k]);
-          if (other >= 0) {
-            sets.unite(static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(other));
+          const std::uint32_t a = faces[i][k];
+          const std::uint32_t b = faces[i][(k + 1) % 3];
+          for (const std::int64_t other : {edges.face(b, a), edges.face(a, b)}) {
+            if (other >= 0 && static_cast<std::size_t>(other) != i) {
+              sets.unite(static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(other));
+            }
           }
         }
       },
@@ -155,52 +187,6 @@ FaceComponents face_components(std::span<const Triangle> faces, const HalfEdges&
     ++out.sizes[component];
   }
   return out;
-}
-
-std::vector<std::vector<std::uint32_t>> boundary_loops(std::span<const Triangle> faces,
-                                                       const HalfEdges& edges) {
-  std::vector<std::vector<std::uint32_t>> loops;
-  std::vector<std::uint8_t> walked(3 * faces.size(), 0);
-  using Starts = std::vector<std::size_t>;  // 3 face + corner
-  const Starts open = parallel_reduce_ordered(
-      faces.size(), kGrain, Starts{},
-      [&](std::size_t begin, std::size_t end) {
-        Starts found;
-        for (std::size_t i = begin; i < end; ++i) {
-          for (std::size_t k = 0; k < 3; ++k) {
-            if (edges.face(faces[i][(k + 1) % 3], faces[i][k]) < 0) {
-              found.push_back(3 * i + k);
-            }
-          }
-        }
-        return found;
-      },
-      [](Starts& total, const Starts& part) { total.insert(total.end(), part.begin(), part.end()); });
-  for (const std::size_t start : open) {
-    if (walked[start] == 0) {
-      std::vector<std::uint32_t> loop;
-      std::size_t face = start / 3;
-      std::size_t corner = start % 3;
-      while (walked[3 * face + corner] == 0) {
-        walked[3 * face + corner] = 1;
-        loop.push_back(faces[face][corner]);
-        // Around the end vertex, face by face, until an edge has no face on its other side.
-        const std::uint32_t pivot = faces[face][(corner + 1) % 3];
-        corner = (corner + 1) % 3;
-        for (std::size_t turn = 0; turn < faces.size(); ++turn) {
-          const std::uint32_t to = faces[face][(corner + 1) % 3];
-          const std::int64_t across = edges.face(to, pivot);
-          if (across < 0) {
-            break;
-          }
-          face = static_cast<std::size_t>(across);
-          corner = static_cast<std::size_t>(corner_of(faces[face], pivot));
-        }
-      }
-      loops.push_back(std::move(loop));
-    }
-  }
-  return loops;
 }
 
 }  // namespace dubsar

@@ -10,6 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/job.h"
+
 namespace dubsar {
 
 using Triangle = std::array<std::uint32_t, 3>;
@@ -44,6 +46,14 @@ class HalfEdges {
   [[nodiscard]] int count(std::uint32_t a, std::uint32_t b) const;
   /// The lowest face that runs from a to b, or -1.
   [[nodiscard]] std::int64_t face(std::uint32_t a, std::uint32_t b) const;
+  /// The one face at the edge between two vertices, whichever way it runs: an edge of the boundary.
+  [[nodiscard]] bool is_open(std::uint32_t a, std::uint32_t b) const {
+    return count(a, b) + count(b, a) == 1;
+  }
+  /// The face that a face goes on into across its edge from a to b, or -1. Of two faces it is the other,
+  /// whichever way that one runs; of more the n-th that runs from a to b goes on into the n-th that runs from
+  /// b to a, and the other way round, so that no face is come to from two.
+  [[nodiscard]] std::int64_t across(std::uint32_t face, std::uint32_t a, std::uint32_t b) const;
   [[nodiscard]] std::size_t vertex_count() const { return start_.size() - 1; }
 
   /// Of so many half-edges around a vertex one is found by looking at them all.
@@ -56,6 +66,9 @@ class HalfEdges {
     return outs.size() <= kFew ? outs : of_crowd(a, b);
   }
   [[nodiscard]] std::span<const Out> of_crowd(std::uint32_t a, std::uint32_t b) const;
+  /// How many of the faces that run from a to b come before this one, and which comes after so many, or -1.
+  [[nodiscard]] std::size_t rank(std::uint32_t a, std::uint32_t b, std::uint32_t face) const;
+  [[nodiscard]] std::int64_t face_of_rank(std::uint32_t a, std::uint32_t b, std::size_t rank) const;
   void sort_crowds();
 
   std::vector<std::uint32_t> start_;
@@ -65,8 +78,8 @@ class HalfEdges {
   std::vector<Out> sorted_;  ///< by the vertex they run to, then by face
 };
 
-/// Component number of each face (0, 1, … in order of their first face), faces being joined across edges that
-/// two faces share in opposite directions.
+/// Component number of each face (0, 1, … in order of their first face), faces being joined across the edges
+/// that they share, whichever way they run and however many there are.
 struct FaceComponents {
   std::vector<std::uint32_t> of_face;
   std::vector<std::size_t> sizes;  ///< faces per component
@@ -79,9 +92,18 @@ struct FaceComponents {
 [[nodiscard]] std::vector<std::uint8_t> rim_vertices(std::span<const Triangle> faces,
                                                      std::size_t vertex_count);
 
-/// Closed walks along the boundary, each as its vertices in the direction of the faces beside it. Where fans
-/// touch in one vertex each walk stays with its own fan.
-[[nodiscard]] std::vector<std::vector<std::uint32_t>> boundary_loops(std::span<const Triangle> faces,
-                                                                     const HalfEdges& edges);
+/// A walk along edges of the boundary, those with a single face.
+struct BoundaryLoop {
+  std::vector<std::uint32_t> vertices;
+  /// It comes back to its first vertex; if not, it ends where more than two faces meet in an edge.
+  bool closed = true;
+};
+
+/// Each edge of the boundary is in one of them, once. The first edge of a walk is gone in the direction of
+/// the face beside it, as all others are where faces are turned the same way. Where fans touch in one vertex
+/// each walk stays with its own fan. Time is that of the faces around the boundary. Of a job that is
+/// cancelled some are missing.
+[[nodiscard]] std::vector<BoundaryLoop> boundary_loops(std::span<const Triangle> faces,
+                                                       const HalfEdges& edges, const JobContext& job = {});
 
 }  // namespace dubsar

@@ -4,12 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <iterator>
 #include <limits>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "core/parallel.h"
+#include "core/parallel_sort.h"
 #include "core/units.h"
 #include "triangulation/half_edges.h"
 #include "triangulation/self_intersections.h"
@@ -30,7 +33,12 @@ bool has_three_corners(const Triangle& f, std::size_t vertices) {
          f[1] != f[2] && f[2] != f[0];
 }
 
-void check_shapes(const Mesh& mesh, MeshReport& report) {
+/// In doubles from the start: of floats the difference may be infinite.
+double length_mm(const Mesh& mesh, std::uint32_t a, std::uint32_t b) {
+  return (mesh.positions[b].cast<double>() - mesh.positions[a].cast<double>()).norm();
+}
+
+void check_shapes(const Mesh& mesh, const JobContext& job, MeshReport& report) {
   struct Shapes {
     std::size_t faces = 0, degenerate = 0, thin = 0;
     double area_mm2 = 0;
@@ -41,7 +49,7 @@ void check_shapes(const Mesh& mesh, MeshReport& report) {
       mesh.faces.size(), kGrain, Shapes{},
       [&](std::size_t begin, std::size_t end) {
         Shapes part;
-        for (std::size_t i = begin; i < end; ++i) {
+        for (std::size_t i = begin; i < end && !job.cancelled(); ++i) {
           const Triangle& f = mesh.faces[i];
           if (!has_three_corners(f, mesh.positions.size())) {
             ++part.degenerate;
@@ -86,7 +94,7 @@ bool repeats_another(std::span<const Triangle> faces, const HalfEdges& edges, st
 }
 
 void check_edges(const Mesh& mesh, std::span<const Triangle> faces, const HalfEdges& edges,
-                 MeshReport& report) {
+                 const JobContext& job, MeshReport& report) {
   struct Edges {
     std::size_t boundary = 0, non_manifold = 0, inconsistent = 0, inconsistent_faces = 0, duplicates = 0;
     double boundary_mm = 0;
@@ -95,7 +103,7 @@ void check_edges(const Mesh& mesh, std::span<const Triangle> faces, const HalfEd
       faces.size(), kGrain, Edges{},
       [&](std::size_t begin, std::size_t end) {
         Edges part;
-        for (std::size_t i = begin; i < end; ++i) {
+        for (std::size_t i = begin; i < end && !job.cancelled(); ++i) {
           bool inconsistent = false;
           int fewest = std::numeric_limits<int>::max();  // faces at one of its edges, from corner
           std::size_t corner = 0;
@@ -110,7 +118,7 @@ void check_edges(const Mesh& mesh, std::span<const Triangle> faces, const HalfEd
             }
             if (same + opposite == 1) {
               ++part.boundary;
-              part.boundary_mm += (mesh.positions[b] - mesh.positions[a]).cast<double>().norm();
+              part.boundary_mm += length_mm(mesh, a, b);
             }
             // Each edge is counted once: at its first half-edge, from the lower vertex where both run.
             const bool odd = same + opposite > 2 || (same == 2 && opposite == 0);
@@ -147,7 +155,7 @@ void check_edges(const Mesh& mesh, std::span<const Triangle> faces, const HalfEd
 }
 
 void check_vertices(const Mesh& mesh, std::span<const Triangle> faces, const HalfEdges& edges,
-                    MeshReport& report) {
+                    const JobContext& job, MeshReport& report) {
   struct Vertices {
     std::size_t unreferenced = 0, non_manifold = 0;
     Eigen::AlignedBox3f box;
@@ -157,13 +165,15 @@ void check_vertices(const Mesh& mesh, std::span<const Triangle> faces, const Hal
       [&](std::size_t begin, std::size_t end) {
         Vertices part;
         std::vector<std::uint32_t> fan;
-        for (std::size_t i = begin; i < end; ++i) {
+        for (std::size_t i = begin; i < end && !job.cancelled(); ++i) {
           const auto v = static_cast<std::uint32_t>(i);
           if (edges.from(v).empty()) {
             ++part.unreferenced;
           } else {
             part.box.extend(mesh.positions[v]);
-            part.non_manifold += number_fans(faces, edges, v, fan) > 1 ? 1 : 0;
+            // Where all is well the first finds one fan already, and is quicker.
+            part.non_manifold +=
+                number_fans(faces, edges, v, fan) > 1 && !is_one_fan(faces, edges, v) ? 1 : 0;
           }
         }
         return part;
@@ -179,26 +189,54 @@ void check_vertices(const Mesh& mesh, std::span<const Triangle> faces, const Hal
 }
 
 void check_parts(const Mesh& mesh, std::span<const Triangle> faces, const HalfEdges& edges,
-                 MeshReport& report) {
+                 const JobContext& job, MeshReport& report) {
   const FaceComponents parts = face_components(faces, edges);
   report.components = parts.sizes.size();
   report.largest_component =
       parts.sizes.empty() ? 0 : *std::max_element(parts.sizes.begin(), parts.sizes.end());
-  for (const auto& loop : boundary_loops(faces, edges)) {
+  for (const BoundaryLoop& loop : boundary_loops(faces, edges, job)) {
     ++report.boundary_loops;
-    double length = 0;
-    for (std::size_t i = 0; i < loop.size(); ++i) {
-      length += (mesh.positions[loop[(i + 1) % loop.size()]] - mesh.positions[loop[i]]).cast<double>().norm();
+    const std::vector<std::uint32_t>& v = loop.vertices;
+    double length = loop.closed ? length_mm(mesh, v.back(), v.front()) : 0;
+    for (std::size_t i = 1; i < v.size(); ++i) {
+      length += length_mm(mesh, v[i - 1], v[i]);
     }
     report.longest_boundary_loop_mm = std::max(report.longest_boundary_loop_mm, length);
   }
+}
+
+/// Those of faces whose three vertices are those of no face before.
+std::vector<Triangle> without_duplicates(std::span<const Triangle> faces) {
+  std::vector<std::pair<Triangle, std::uint32_t>> by_corners(faces.size());
+  parallel_for_each_index(
+      faces.size(),
+      [&](std::size_t i) {
+        Triangle corners = faces[i];
+        std::ranges::sort(corners);
+        by_corners[i] = {corners, static_cast<std::uint32_t>(i)};
+      },
+      kGrain);
+  parallel_sort(by_corners.begin(), by_corners.end(), std::less<>{});
+  std::vector<std::uint32_t> first;
+  for (std::size_t k = 0; k < by_corners.size(); ++k) {
+    if (k == 0 || by_corners[k].first != by_corners[k - 1].first) {
+      first.push_back(by_corners[k].second);
+    }
+  }
+  std::ranges::sort(first);
+  std::vector<Triangle> out;
+  out.reserve(first.size());
+  for (const std::uint32_t face : first) {
+    out.push_back(faces[face]);
+  }
+  return out;
 }
 
 MeshReport check(const Mesh& mesh, bool with_parts, const JobContext& job) {
   MeshReport report;
   report.vertices = mesh.positions.size();
   report.faces = mesh.faces.size();
-  check_shapes(mesh, report);
+  check_shapes(mesh, job, report);
   const auto sound = [&](const Triangle& f) { return has_three_corners(f, mesh.positions.size()); };
   std::vector<Triangle> copied;
   std::span<const Triangle> faces = mesh.faces;
@@ -211,13 +249,13 @@ MeshReport check(const Mesh& mesh, bool with_parts, const JobContext& job) {
   }
   const HalfEdges edges(faces, report.vertices);
   if (!job.cancelled()) {
-    check_edges(mesh, faces, edges, report);
+    check_edges(mesh, faces, edges, job, report);
   }
   if (!job.cancelled()) {
-    check_vertices(mesh, faces, edges, report);
+    check_vertices(mesh, faces, edges, job, report);
   }
   if (with_parts && !job.cancelled()) {
-    check_parts(mesh, faces, edges, report);
+    check_parts(mesh, faces, edges, job, report);
   }
   return report;
 }
@@ -231,7 +269,13 @@ MeshReport check_manifold(const Mesh& mesh) {
 MeshReport check_mesh(const Mesh& mesh, const JobContext& job) {
   MeshReport report = check(mesh, true, job);  // gives its memory back before what needs as much again
   if (!job.cancelled()) {
-    report.self_intersections = self_intersections(mesh.positions, mesh.faces, {}, job).size();
+    std::vector<Triangle> different;
+    std::span<const Triangle> faces = mesh.faces;
+    if (report.duplicate_faces > 0) {
+      different = without_duplicates(faces);
+      faces = different;
+    }
+    report.self_intersections = self_intersections(mesh.positions, faces, {}, job).size();
   }
   return report;
 }

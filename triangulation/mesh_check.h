@@ -16,19 +16,20 @@ namespace dubsar {
 struct MeshReport {
   std::size_t vertices = 0;
   std::size_t faces = 0;
-  std::size_t components = 0;         ///< of faces joined across edges
+  std::size_t components = 0;         ///< of faces joined across edges, whichever way they run
   std::size_t largest_component = 0;  ///< its faces
-  std::size_t boundary_edges = 0;
+  std::size_t boundary_edges = 0;     ///< with a single face
+  /// Walks that each of them is in once; one begins and ends where more than two faces meet, or is closed.
   std::size_t boundary_loops = 0;
   double boundary_length_mm = 0;
   double longest_boundary_loop_mm = 0;
   std::size_t non_manifold_edges = 0;     ///< with more than two faces
-  std::size_t non_manifold_vertices = 0;  ///< whose faces form more than one fan
+  std::size_t non_manifold_vertices = 0;  ///< whose faces do not all hang together across edges there
   std::size_t inconsistent_edges = 0;     ///< whose two faces run along it in the same direction
   std::size_t inconsistent_faces = 0;     ///< faces at such an edge
   std::size_t degenerate_faces = 0;       ///< a vertex twice, an index out of range, not finite, or no area
   std::size_t duplicate_faces = 0;        ///< the same three vertices as an earlier face
-  std::size_t self_intersections = 0;     ///< pairs of faces that cut through each other, not of one plane
+  std::size_t self_intersections = 0;  ///< pairs that cut through each other, not of one plane; no duplicates
   std::size_t unreferenced_vertices = 0;
   double thin_share = 0;  ///< faces with an angle below 10°, of all, in [0,1]
   double min_angle_rad = 0;

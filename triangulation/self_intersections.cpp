@@ -76,10 +76,11 @@ class FaceCells {
   /// visit(face, other face) for the faces of a cell and those of other parts whose boxes touch theirs; over
   /// all cells each pair once, those of one face one after the other. `beside` is room to work in.
   template <class Visit>
-  void for_each_touching(std::size_t at, std::vector<std::uint32_t>& beside, const Visit& visit) const {
+  void for_each_touching(std::size_t at, std::vector<std::uint32_t>& beside, const JobContext& job,
+                         const Visit& visit) const {
     const Cell& own = cells_[at];
     find_cells_beside(own, beside);
-    for (std::uint32_t k = own.first; k < own.end; ++k) {
+    for (std::uint32_t k = own.first; k < own.end && !job.cancelled(); ++k) {
       const Eigen::AlignedBox3f& box = boxes_[k];
       const std::uint32_t part = this->part(k);
       for (const std::uint32_t other : beside) {
@@ -101,6 +102,8 @@ class FaceCells {
   static constexpr unsigned kAxisBits = 19;
   static constexpr unsigned kLevelShift = 3 * kAxisBits;
   static constexpr int kMostLevel = 40;
+  /// From it on, and at the last level, all is one cell: no number of one gets infinite.
+  static constexpr float kMostCell_mm = 1e30F;
   static constexpr std::int64_t kMostCell = (std::int64_t{1} << kAxisBits) - 1;
   using Place = std::array<std::int64_t, 3>;
   struct Cell {
@@ -179,7 +182,7 @@ class FaceCells {
   [[nodiscard]] Place cell_of(const Vector3f& p, int level) const {
     const float cell = cell_mm_[static_cast<std::size_t>(level)];
     Place out{};
-    for (int k = 0; k < 3; ++k) {
+    for (int k = 0; k < 3 && level < kMostLevel && cell < kMostCell_mm; ++k) {
       const float at = std::clamp((p[k] - low_[k]) / cell, 0.0F, static_cast<float>(kMostCell - 1));
       out[static_cast<std::size_t>(k)] = static_cast<std::int64_t>(at);
     }
@@ -226,6 +229,60 @@ bool is_sound(Positions positions, const Face& f) {
                      [&](std::uint32_t v) { return v < positions.size() && positions[v].allFinite(); });
 }
 
+/// How many faces are how large: of the sizes above 0, by their power of two.
+class Sizes {
+ public:
+  void add(float size_mm) { ++count_[std::bit_cast<std::uint32_t>(size_mm) >> kMantissaBits]; }
+  void add(const Sizes& other) {
+    for (std::size_t k = 0; k < count_.size(); ++k) {
+      count_[k] += other.count_[k];
+    }
+  }
+  /// A size that so many faces, or a few more, are below: up to twice the one that they are just below.
+  [[nodiscard]] double above(std::size_t faces) const {
+    std::size_t below = 0;
+    std::size_t power = 1;  // the first holds those too small for their power
+    while (power + 1 < count_.size() && (below += count_[power]) <= faces) {
+      ++power;
+    }
+    return std::ldexp(1.0, static_cast<int>(power) - 126);
+  }
+
+ private:
+  static constexpr unsigned kMantissaBits = 23;
+  std::array<std::uint32_t, 256> count_{};
+};
+
+/// What cells are to be made for: the mean size of the faces, unless a few that are huge make that far more
+/// than most are. Then a size that hardly any are below, as larger ones have coarser cells.
+double size_to_sort_by(const Sizes& sizes, std::size_t count, double mean_mm) {
+  constexpr double kFarAboveHalf = 4.0;
+  constexpr double kFarAboveLeast = 16.0;
+  constexpr std::size_t kHardlyAny = 256;   // one of so many
+  constexpr std::size_t kMostOfOne = 4096;  // and no more, as they may all lie in one cell
+  const double least_mm = sizes.above(std::min(count / kHardlyAny, kMostOfOne));
+  return mean_mm > kFarAboveHalf * sizes.above(count / 2) || mean_mm > kFarAboveLeast * least_mm
+             ? std::min(least_mm, mean_mm)
+             : mean_mm;
+}
+
+/// About where most of the faces are: halfway along each axis, of a thousand of them.
+Vector3f middle_of(Positions positions, std::span<const Face> all_faces,
+                   std::span<const std::uint32_t> faces) {
+  const std::size_t step = faces.size() / 1000 + 1;
+  Vector3f middle;
+  for (int axis = 0; axis < 3; ++axis) {
+    std::vector<float> at;
+    for (std::size_t k = 0; k < faces.size(); k += step) {
+      at.push_back(positions[all_faces[faces[k]][0]][axis]);
+    }
+    const auto half = at.begin() + static_cast<std::ptrdiff_t>(at.size() / 2);
+    std::nth_element(at.begin(), half, at.end());
+    middle[axis] = *half;
+  }
+  return middle;
+}
+
 }  // namespace
 
 std::vector<std::pair<std::uint32_t, std::uint32_t>> self_intersections(
@@ -235,6 +292,7 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> self_intersections(
     Eigen::AlignedBox3f box;
     double sizes = 0;
     float largest = 0;
+    Sizes by_power;
     std::size_t count = 0;
     std::size_t unsound = 0;
   };
@@ -254,6 +312,7 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> self_intersections(
             part.box.extend(box);
             part.sizes += static_cast<double>(size);
             part.largest = std::max(part.largest, size);
+            part.by_power.add(size);
             ++part.count;
           }
         }
@@ -263,6 +322,7 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> self_intersections(
         total.box.extend(part.box);
         total.sizes += part.sizes;
         total.largest = std::max(total.largest, part.largest);
+        total.by_power.add(part.by_power);
         total.count += part.count;
         total.unsound += part.unsound;
       });
@@ -286,12 +346,19 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> self_intersections(
     }
   }
   using Pairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
-  Pairs out = part_of_face.empty() ? take_cuts_at_crowded_vertices(positions, all_faces, faces) : Pairs{};
-  // So that no cell number of the finest level is cut off.
+  Pairs out =
+      part_of_face.empty() ? take_cuts_at_crowded_vertices(positions, all_faces, faces, job) : Pairs{};
+  // Beyond what the numbers of the finest cells reach, all is in the last of them: that is to be few faces.
   constexpr float kMostCells = 400000.0F;
-  const float smallest_mm =
-      std::max(static_cast<float>(2.5 * mean_mm), extent.box.sizes().maxCoeff() / kMostCells);
-  const FaceCells cells(positions, all_faces, faces, part_of_face, extent.box.min(), smallest_mm);
+  constexpr double kCellOfSize = 2.5;
+  const auto smallest_mm = static_cast<float>(
+      std::min(kCellOfSize * size_to_sort_by(extent.by_power, extent.count, mean_mm), 1e29));
+  Vector3f low = extent.box.min();
+  if (extent.box.sizes().maxCoeff() > kMostCells * smallest_mm && !faces.empty()) {
+    low = low.cwiseMax(middle_of(positions, all_faces, faces) -
+                       Vector3f::Constant(0.5F * kMostCells * smallest_mm));
+  }
+  const FaceCells cells(positions, all_faces, faces, part_of_face, low, smallest_mm);
   const Pairs elsewhere = parallel_reduce_ordered(
       cells.size(), 256, Pairs{},
       [&](std::size_t begin, std::size_t end) {
@@ -300,7 +367,7 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> self_intersections(
         std::uint32_t of_plane = kNoFace;
         FacePlane plane;
         for (std::size_t cell = begin; cell < end && !job.cancelled(); ++cell) {
-          cells.for_each_touching(cell, beside, [&](std::uint32_t a, std::uint32_t b) {
+          cells.for_each_touching(cell, beside, job, [&](std::uint32_t a, std::uint32_t b) {
             if (a != of_plane) {
               plane = FacePlane(positions, all_faces[a]);
               of_plane = a;

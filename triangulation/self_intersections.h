@@ -16,8 +16,8 @@ namespace dubsar {
 /// Pairs of faces (lower index first, sorted) that cut through each other: an edge of one passes through the
 /// inside of the other. Faces that share an edge cannot; of those that share a vertex the edges opposite to
 /// it are looked at. Faces that only touch, or lie in one plane, are not counted. Faces with an index out of
-/// range or a coordinate that is not finite are passed over. Time is that of a sort for meshes of about even
-/// face size, however many faces meet in a vertex.
+/// range or a coordinate that is not finite are passed over. Time is that of a sort, however many faces meet
+/// in a vertex or an edge and whatever their sizes, unless very many lie in one place.
 /// Of a job that is cancelled some may be missing.
 /// With `part_of_face` given, faces of the same part (other than 0) are known not to cut each other, and most
 /// of the work is spared.

@@ -6,6 +6,8 @@
 #include <limits>
 #include <utility>
 
+#include "core/disjoint_sets.h"
+
 namespace dubsar {
 
 namespace {
@@ -95,6 +97,32 @@ std::uint32_t number_fans(std::span<const Triangle> faces, const HalfEdges& edge
         return outs.size();
       },
       fan);
+}
+
+bool is_one_fan(std::span<const Triangle> faces, const HalfEdges& edges, std::uint32_t v) {
+  const std::span<const HalfEdges::Out> outs = edges.from(v);
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> sides;  // vertex, number of the face
+  sides.reserve(2 * outs.size());
+  for (std::uint32_t o = 0; o < outs.size(); ++o) {
+    for (const std::uint32_t side : faces[outs[o].face]) {
+      if (side != v) {
+        sides.emplace_back(side, o);
+      }
+    }
+  }
+  std::ranges::sort(sides);
+  DisjointSets sets(outs.size());
+  for (std::size_t k = 1; k < sides.size(); ++k) {
+    if (sides[k].first == sides[k - 1].first) {
+      sets.unite(sides[k].second, sides[k - 1].second);
+    }
+  }
+  for (std::uint32_t o = 0; o < outs.size(); ++o) {
+    if (sets.root(o) != 0) {
+      return false;
+    }
+  }
+  return true;
 }
 
 }  // namespace dubsar

@@ -16,4 +16,8 @@ namespace dubsar {
 std::uint32_t number_fans(std::span<const Triangle> faces, const HalfEdges& edges, std::uint32_t v,
                           std::vector<std::uint32_t>& fan);
 
+/// Whether the faces around a vertex hang together across the edges at it, whichever way faces run along them
+/// and however many meet there.
+bool is_one_fan(std::span<const Triangle> faces, const HalfEdges& edges, std::uint32_t v);
+
 }  // namespace dubsar

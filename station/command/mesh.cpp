@@ -38,9 +38,10 @@ struct MeshOptions {
   bool turn_over = false;
 };
 
-Result<Mesh> read(const MeshOptions& options) {
-  return read_mesh(options.in,
-                   {.mm_per_unit = options.unit.empty() ? std::nullopt : mm_per_unit(options.unit)});
+Result<Mesh> read(const MeshOptions& options, const CommandContext& context) {
+  return read_mesh(
+      options.in,
+      {.mm_per_unit = options.unit.empty() ? std::nullopt : mm_per_unit(options.unit), .job = &context.job});
 }
 
 /// With what the file that was read says of itself, and a word on what the new one cannot hold.
@@ -55,11 +56,14 @@ Status write(const MeshOptions& options, const Mesh& mesh) {
 }
 
 Result<int> check(const MeshOptions& options, CommandContext& context) {
-  const Result<Mesh> mesh = read(options);
+  const Result<Mesh> mesh = read(options, context);
   if (!mesh) {
     return std::unexpected(mesh.error());
   }
-  const MeshReport report = check_mesh(*mesh);
+  const MeshReport report = check_mesh(*mesh, context.job);
+  if (context.job.cancelled()) {
+    return fail(ErrorKind::kCancelled, "the check was stopped", options.in);
+  }
   nlohmann::ordered_json json = mesh_report_json(report);
   const std::optional<Error> fault = inside_out(*mesh, options.in);
   json["inside_out"] = fault.has_value();
@@ -77,7 +81,7 @@ Result<int> check(const MeshOptions& options, CommandContext& context) {
 }
 
 Result<int> convert(const MeshOptions& options, CommandContext& context) {
-  Result<Mesh> mesh = read(options);
+  Result<Mesh> mesh = read(options, context);
   if (!mesh) {
     return std::unexpected(mesh.error());
   }
@@ -124,7 +128,7 @@ Result<int> section(const MeshOptions& options, CommandContext& context) {
       return std::unexpected(place->error());
     }
   }
-  Result<Mesh> mesh = read(options);
+  Result<Mesh> mesh = read(options, context);
   if (!mesh) {
     return std::unexpected(mesh.error());
   }
@@ -155,7 +159,7 @@ Result<int> section(const MeshOptions& options, CommandContext& context) {
 
 /// What a selection of the viewer holds: a mesh, or a table of its wedges.
 Result<int> part(const MeshOptions& options, CommandContext& context) {
-  const Result<Mesh> mesh = read(options);
+  const Result<Mesh> mesh = read(options, context);
   if (!mesh) {
     return std::unexpected(mesh.error());
   }

@@ -322,7 +322,11 @@ Result<int> stitch_all(const ScanSetArguments& arguments, const StampedWork* wor
   }
   if (context.json) {
     nlohmann::ordered_json json{{"mesh", arguments.out}, {"scans", taken->scans}};
-    json.update(mesh_report_json(check_mesh(*mesh)));
+    json.update(mesh_report_json(check_mesh(*mesh, context.job)));
+    if (context.job.cancelled()) {
+      return fail(ErrorKind::kCancelled, "its mesh is written, but the check of it was stopped",
+                  arguments.out);
+    }
     CommandContext::print(json);
   } else {
     const MeshReport report = check_manifold(*mesh);
@@ -356,8 +360,9 @@ void add_stitch(CLI::App& app, Action& chosen) {
   CLI::App* verb = app.add_subcommand("stitch", "One mesh of all registered scans");
   const auto arguments = std::make_shared<StitchArguments>();
   arguments->set.add_to(*verb, true);
-  verb->add_option("-o,--out", arguments->set.out,
-                   "the mesh: PLY, which holds all that is known of it, OBJ, STL or GLB; .draco.glb compresses")
+  verb->add_option(
+          "-o,--out", arguments->set.out,
+          "the mesh: PLY, which holds all that is known of it, OBJ, STL or GLB; .draco.glb compresses")
       ->required();
   verb->add_flag(
           "--unless-done", arguments->unless_done,

@@ -152,11 +152,48 @@ TEST(CrowdedVertices, AreTakenOutWithTheirCuts) {
   EXPECT_EQ(*std::ranges::min_element(which), 200U);
 }
 
+/// Faces between two vertices and one more each: pages of a book.
+void add_book(Mesh& mesh, std::uint32_t a, std::uint32_t b, int pages, Random& random) {
+  for (int k = 0; k < pages; ++k) {
+    mesh.faces.push_back({a, b, add_vertex(mesh, drawn(random, 4))});
+  }
+}
+
+TEST(CrowdedVertices, BooksAtOneVertex) {
+  for (std::uint64_t seed = 0; seed < 3; ++seed) {
+    Random random(seed);
+    Mesh mesh;
+    for (int k = 0; k < 3; ++k) {
+      add_vertex(mesh, drawn(random, 3));
+    }
+    add_book(mesh, 0, 1, 120, random);
+    add_book(mesh, 2, 0, 100, random);
+    add_book(mesh, 1, 2, 90, random);
+    mesh.faces.push_back({0, 1, 2});
+    for (int k = 0; k < 60; ++k) {
+      mesh.faces.push_back({add_vertex(mesh, drawn(random, 4)), 0, add_vertex(mesh, drawn(random, 4))});
+    }
+    add_loose_faces(mesh, 60, 4, random);
+    expect_all_found(mesh, 1000);
+  }
+}
+
 TEST(CrowdedVertices, TakeNoTimeOfTheirSquare) {
   const Mesh mesh = cone(20000);
   const std::clock_t start = std::clock();
   EXPECT_TRUE(self_intersections(mesh.positions, mesh.faces).empty());
   EXPECT_LT(static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC, 1.0);
+}
+
+TEST(CrowdedVertices, NorDoCrowdedEdges) {
+  Mesh mesh;
+  Random random(2);
+  add_vertex(mesh, {0, 0, 0});
+  add_vertex(mesh, {1, 0, 0});
+  add_book(mesh, 0, 1, 60000, random);
+  const std::clock_t start = std::clock();
+  EXPECT_TRUE(self_intersections(mesh.positions, mesh.faces).empty());
+  EXPECT_LT(static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC, 2.0);
 }
 
 }  // namespace

@@ -55,8 +55,9 @@ TEST(Manifold, BoundaryLoopsStayWithTheirFans) {
   const HalfEdges edges(faces, 5);
   const auto loops = boundary_loops(faces, edges);
   ASSERT_EQ(loops.size(), 2U);
-  EXPECT_EQ(loops[0], (std::vector<std::uint32_t>{0, 1, 2}));
-  EXPECT_EQ(loops[1], (std::vector<std::uint32_t>{0, 3, 4}));
+  EXPECT_EQ(loops[0].vertices, (std::vector<std::uint32_t>{0, 1, 2}));
+  EXPECT_EQ(loops[1].vertices, (std::vector<std::uint32_t>{0, 3, 4}));
+  EXPECT_TRUE(loops[0].closed && loops[1].closed);
 }
 
 TEST(Manifold, VerticesWithoutAFaceGoWithWhatTheyCarry) {

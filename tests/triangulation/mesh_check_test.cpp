@@ -4,7 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
+#include <thread>
 
 namespace dubsar {
 namespace {
@@ -22,6 +24,40 @@ TEST(MeshCheck, ACancelledJobLooksForNoMore) {
   const MeshReport report = check_mesh(tetrahedron(), job);
   EXPECT_EQ(report.faces, 4U);
   EXPECT_EQ(report.components, 0U);
+}
+
+/// Ends a check from beside it, that would take minutes: of pairs of faces all of which are compared.
+MeshReport stopped_check(const Mesh& mesh) {
+  JobContext job;
+  const std::jthread stop([&job] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    job.cancel();
+  });
+  return check_mesh(mesh, job);
+}
+
+TEST(MeshCheck, OfFacesInOnePlaceIsStopped) {
+  constexpr std::uint32_t kFaces = 400000;
+  Mesh mesh;
+  for (std::uint32_t k = 0; k < kFaces; ++k) {
+    mesh.positions.insert(mesh.positions.end(), {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
+    mesh.faces.push_back({3 * k, 3 * k + 1, 3 * k + 2});
+  }
+  EXPECT_EQ(stopped_check(mesh).faces, kFaces);
+}
+
+TEST(MeshCheck, OfFacesAcrossEachOtherAtAVertexIsStopped) {
+  constexpr std::uint32_t kFaces = 100000;
+  Mesh mesh;
+  mesh.positions = {{0, 0, 0}};
+  for (std::uint32_t k = 0; k < kFaces; ++k) {
+    const double turn_rad = 1e-5 * k;
+    const auto x = static_cast<float>(std::cos(turn_rad));
+    const auto y = static_cast<float>(std::sin(turn_rad));
+    mesh.positions.insert(mesh.positions.end(), {{x, y, 1}, {y, x, -1}});
+    mesh.faces.push_back({0, 2 * k + 1, 2 * k + 2});
+  }
+  EXPECT_EQ(stopped_check(mesh).faces, kFaces);
 }
 
 TEST(MeshCheck, ClosedMesh) {
@@ -51,6 +87,9 @@ TEST(MeshCheck, TurnedFaceIsInconsistent) {
   EXPECT_FALSE(report.is_manifold());
   EXPECT_EQ(report.inconsistent_edges, 3U);
   EXPECT_EQ(report.inconsistent_faces, 4U);
+  EXPECT_EQ(report.components, 1U);
+  EXPECT_EQ(report.boundary_loops, 0U);
+  EXPECT_EQ(report.non_manifold_vertices, 0U);
   EXPECT_EQ(report.non_manifold_edges, 0U);
 }
 
@@ -60,6 +99,11 @@ TEST(MeshCheck, ThirdFaceAtAnEdge) {
   mesh.faces.push_back({0, 1, 4});
   const MeshReport report = check_mesh(mesh);
   EXPECT_EQ(report.non_manifold_edges, 1U);
+  EXPECT_EQ(report.non_manifold_vertices, 0U);
+  EXPECT_EQ(report.components, 1U);
+  EXPECT_EQ(report.boundary_edges, 2U);
+  EXPECT_EQ(report.boundary_loops, 1U);
+  EXPECT_NEAR(report.longest_boundary_loop_mm, report.boundary_length_mm, 1e-12);
   EXPECT_FALSE(report.is_manifold());
 }
 
@@ -70,6 +114,7 @@ TEST(MeshCheck, TwoFansAtAVertex) {
   const MeshReport report = check_mesh(mesh);
   EXPECT_EQ(report.non_manifold_vertices, 1U);
   EXPECT_EQ(report.components, 2U);
+  EXPECT_EQ(report.boundary_loops, 2U);
   EXPECT_FALSE(report.is_manifold());
 }
 
@@ -91,6 +136,25 @@ TEST(MeshCheck, DegenerateDuplicateAndForeignIndices) {
   Mesh twice = tetrahedron();
   twice.faces.push_back({2, 1, 0});
   EXPECT_EQ(check_mesh(twice).duplicate_faces, 1U);
+}
+
+TEST(MeshCheck, OfDuplicatesOneCutsOthers) {
+  Mesh mesh;
+  mesh.positions = {{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {1, 1, -1}, {1, 1, 1}, {9, 9, 1}};
+  mesh.faces.assign(20000, {0, 1, 2});
+  mesh.faces.push_back({3, 4, 5});
+  const MeshReport report = check_mesh(mesh);
+  EXPECT_EQ(report.duplicate_faces, 19999U);
+  EXPECT_EQ(report.self_intersections, 1U);
+}
+
+TEST(MeshCheck, LengthsBeyondThoseOfFloats) {
+  Mesh mesh;
+  mesh.positions = {{-3e38F, 0, 0}, {3e38F, 0, 0}, {0, 1, 0}};
+  mesh.faces = {{0, 1, 2}};
+  const MeshReport report = check_mesh(mesh);
+  EXPECT_NEAR(report.boundary_length_mm, 12e38, 1e33);
+  EXPECT_NEAR(report.longest_boundary_loop_mm, 12e38, 1e33);
 }
 
 TEST(MeshCheck, SmallestAngleAndTheShareOfThinFaces) {

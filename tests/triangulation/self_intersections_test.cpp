@@ -5,10 +5,12 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <ctime>
 #include <limits>
 
 #include "core/mesh.h"
 #include "core/random.h"
+#include "triangulation/face_cut.h"
 
 namespace dubsar {
 namespace {
@@ -129,6 +131,57 @@ TEST(SelfIntersections, AgreesWithEveryPairLookedAt) {
   }
   EXPECT_GT(each.size(), 20U);
   EXPECT_EQ(intersections(mesh), each);
+}
+
+/// Two crowds of small faces a kilometre apart, and a few as long as that.
+TEST(SelfIntersections, OfHugeFacesAndFarPlacesNoneIsMissed) {
+  Random random(3);
+  Mesh mesh;
+  const auto drawn = [&](double size) { return Eigen::Vector3f((size * random.normal3()).cast<float>()); };
+  for (int k = 0; k < 1500; ++k) {
+    const Eigen::Vector3f middle = drawn(3) + Eigen::Vector3f(k % 2 == 0 ? 0.0F : 1e6F, 0, 0);
+    const Eigen::Vector3f a = middle + drawn(0.3);
+    const Eigen::Vector3f b = middle + drawn(0.3);
+    add_face(mesh, a, b, k % 300 == 7 ? Eigen::Vector3f(drawn(1e6)) : Eigen::Vector3f(middle + drawn(0.3)));
+  }
+  add_face(mesh, {-1e6F, 0, 0.1F}, {2e6F, 0, 0.1F}, {0.5e6F, 1, 0.1F});
+  Pairs each;
+  for (std::uint32_t a = 0; a < mesh.faces.size(); ++a) {
+    const FacePlane plane(mesh.positions, mesh.faces[a]);
+    for (std::uint32_t b = a + 1; b < mesh.faces.size(); ++b) {
+      if (faces_cut(mesh.positions, mesh.faces[a], plane, mesh.faces[b])) {
+        each.emplace_back(a, b);
+      }
+    }
+  }
+  EXPECT_GT(each.size(), 60U);
+  EXPECT_EQ(intersections(mesh), each);
+}
+
+/// One vertex far off must not put all faces into a few cells.
+TEST(SelfIntersections, AFarVertexTakesHardlyMoreTime) {
+  Mesh mesh = sheet(400, 0);
+  const auto seconds = [&] {
+    const std::clock_t start = std::clock();
+    EXPECT_TRUE(intersections(mesh).empty());
+    return static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+  };
+  const double without = seconds();
+  for (const float far_mm : {1e5F, 1e7F, 1e9F}) {
+    mesh.positions[200 * 401 + 200].z() = far_mm;
+    EXPECT_LT(seconds(), 0.3 + 5 * without) << far_mm;
+  }
+}
+
+TEST(SelfIntersections, CoordinatesNearTheLargestEnd) {
+  Mesh mesh = sheet(20, 0);
+  add_face(mesh, {-3e38F, 2, 3e38F}, {3e38F, 2, 3e38F}, {0, 2, -3e38F});
+  add_face(mesh, {3e38F, 3e38F, 3e38F}, {3e38F, 3e38F, 3e38F}, {3e38F, 3e38F, 3e38F});
+  const auto huge = static_cast<std::uint32_t>(mesh.faces.size() - 2);
+  for (const auto& [a, b] : intersections(mesh)) {
+    EXPECT_LT(a, huge);
+    EXPECT_EQ(b, huge);
+  }
 }
 
 TEST(SelfIntersections, BrokenMeshes) {

@@ -48,6 +48,7 @@ TEST(SimTablet, CoversWhatWasSampledAndAveragesTheNoise) {
   ASSERT_TRUE(mesh.has_value());
   const MeshReport report = check_mesh(*mesh);
   EXPECT_TRUE(report.is_manifold());
+  EXPECT_EQ(report.self_intersections, 0U);
   EXPECT_GT(static_cast<double>(report.largest_component), 0.99 * static_cast<double>(report.faces));
 
   double sum2 = 0;

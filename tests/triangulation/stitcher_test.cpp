@@ -37,6 +37,7 @@ double rms_off_ball(const Mesh& mesh) {
 void expect_a_ball(const MeshReport& report) {
   EXPECT_TRUE(report.is_closed());
   EXPECT_EQ(report.components, 1U);
+  EXPECT_EQ(report.self_intersections, 0U);
   EXPECT_NEAR(report.area_mm2, 4 * kPi * kRadius * kRadius, 0.02 * 4 * kPi * kRadius * kRadius);
 }
 
@@ -133,8 +134,7 @@ TEST(Stitcher, ADuplicatedScanChangesNoTopology) {
   again.id = 6;
   set.placed.push_back(again);
   const Mesh mesh = stitched(set);
-  EXPECT_TRUE(check_mesh(mesh).is_closed());
-  EXPECT_EQ(check_mesh(mesh).components, 1U);
+  expect_a_ball(check_mesh(mesh));
   EXPECT_LT(rms_off_ball(mesh), 0.01);
   // Nor is anything known better by it, or supported by more scans.
   expect_same(mesh, stitched(ball()));
@@ -215,8 +215,7 @@ TEST(Stitcher, ScansOfDifferentSpacing) {
             view_from(side));
   }
   const Mesh mesh = stitched(set);
-  EXPECT_TRUE(check_mesh(mesh).is_closed());
-  EXPECT_EQ(check_mesh(mesh).components, 1U);
+  expect_a_ball(check_mesh(mesh));
   EXPECT_LT(rms_off_ball(mesh), 0.01);
 }
 
