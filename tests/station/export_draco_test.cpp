@@ -66,9 +66,9 @@ TEST_F(Export, WithTheCompressedModelItIsAnotherPackage) {
   const std::vector<std::string> small{"--without", "renderings,features,grid-ply,wedges"};
   std::vector<std::string> packed = small;
   packed.emplace_back("--draco");
-  ASSERT_EQ(export_to("twice", packed).status, 0);
-  EXPECT_EQ(export_to("twice", packed).json().value("done_before", false), true);
-  const Outcome other = export_to("twice", small);
+  ASSERT_EQ(export_to("compressed", packed).status, 0);
+  EXPECT_EQ(export_to("compressed", packed).json().value("done_before", false), true);
+  const Outcome other = export_to("compressed", small);
   EXPECT_EQ(other.status, 2) << other.err;
   EXPECT_THAT(other.out + other.err, HasSubstr("something lies there already"));
 }
