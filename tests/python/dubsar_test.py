@@ -462,11 +462,13 @@ class Pipeline(Scans):
             signal.signal(signal.SIGINT, previous)
 
     def test_control_c_stops_what_has_no_progress(self):
-        y, x = np.mgrid[0:500, 0:500]
-        corner = (np.arange(499)[:, None] * 500 + np.arange(499)).ravel()
+        # Large enough that no step is over before the signal is looked for (every 50 ms).
+        side = 1000
+        y, x = np.mgrid[0:side, 0:side]
+        corner = (np.arange(side - 1)[:, None] * side + np.arange(side - 1)).ravel()
         mesh = dubsar.Mesh(
             np.stack([x, y, np.sin(x)], axis=-1).reshape(-1, 3) * 0.1,
-            np.concatenate([np.stack([corner, corner + 1, corner + 500], axis=-1)] * 2),
+            np.concatenate([np.stack([corner, corner + 1, corner + side], axis=-1)] * 2),
         )
         with tempfile.TemporaryDirectory() as folder:
             path = os.path.join(folder, "mesh.obj")
