@@ -11,24 +11,12 @@
 #include "core/units.h"
 #include "sim/scanner.h"
 #include "sim/tablet.h"
+#include "tests/triangulation/support/evenly_spread.h"
 #include "tests/triangulation/support/scans.h"
 #include "triangulation/stitcher.h"
 
 namespace dubsar {
 namespace {
-
-/// From the k-th of `count` places spread evenly over the sphere.
-RigidTransform tablet_from_scanner(int k, int count) {
-  const double z = 1 - 2 * (k + 0.5) / count;
-  const double phi = k * 2.399963;
-  const double r = std::sqrt(1 - z * z);
-  const Eigen::Vector3d out(r * std::cos(phi), r * std::sin(phi), z);
-  RigidTransform pose;
-  pose.rotation.col(0) = out.unitOrthogonal();
-  pose.rotation.col(1) = out.cross(pose.rotation.col(0));
-  pose.rotation.col(2) = out;
-  return pose;
-}
 
 sim::SimTablet written_tablet() {
   sim::TabletOptions options;
@@ -53,7 +41,7 @@ Mesh coarsely_scanned(const sim::SimTablet& tablet) {
   test::ScanSet set;
   constexpr int kScans = 14;
   for (int k = 0; k < kScans; ++k) {
-    const RigidTransform pose = tablet_from_scanner(k, kScans);
+    const RigidTransform pose = test::tablet_from_scanner(k, kScans);
     set.add(scanner.scan_grid(scene, pose, static_cast<std::uint64_t>(k), job).value(), pose);
   }
   return stitch(set.placed, {}, job).value();

@@ -7,6 +7,7 @@
 #include "core/grid_lookup.h"
 #include "core/mesh_query.h"
 #include "sim/scanner.h"
+#include "tests/triangulation/support/evenly_spread.h"
 #include "tests/triangulation/support/scans.h"
 #include "tests/triangulation/support/simulated_tablet.h"
 #include "triangulation/mesh_check.h"
@@ -14,21 +15,6 @@
 
 namespace dubsar {
 namespace {
-
-/// Scanner poses spread evenly over the sphere, all looking at the tablet's centre.
-RigidTransform tablet_from_scanner(int k, int count) {
-  const double z = 1 - 2 * (k + 0.5) / count;
-  const double phi = k * 2.399963;
-  const double r = std::sqrt(1 - z * z);
-  const Eigen::Vector3d out(r * std::cos(phi), r * std::sin(phi), z);
-  const Eigen::Vector3d x =
-      (std::abs(z) < 0.9 ? Eigen::Vector3d::UnitZ() : Eigen::Vector3d::UnitX()).cross(out).normalized();
-  RigidTransform pose;
-  pose.rotation.col(0) = x;
-  pose.rotation.col(1) = out.cross(x);
-  pose.rotation.col(2) = out;
-  return pose;
-}
 
 TEST(SimTablet, CoversWhatWasSampledAndAveragesTheNoise) {
   JobContext job;
@@ -39,7 +25,7 @@ TEST(SimTablet, CoversWhatWasSampledAndAveragesTheNoise) {
   test::ScanSet set;
   constexpr int kScans = 16;
   for (int k = 0; k < kScans; ++k) {
-    const RigidTransform pose = tablet_from_scanner(k, kScans);
+    const RigidTransform pose = test::tablet_from_scanner(k, kScans);
     auto grid = scanner.scan_grid(tablet.scene(), pose, static_cast<std::uint64_t>(k), job);
     ASSERT_TRUE(grid.has_value());
     set.add(std::move(*grid), pose);
