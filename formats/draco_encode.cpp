@@ -5,6 +5,7 @@
 #include <draco/core/encoder_buffer.h>
 #include <draco/mesh/mesh.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -142,6 +143,10 @@ Result<DracoStream> encode_draco(const Mesh& mesh, const DracoAttributes& attrib
   out.bytes.assign(buffer.data(), buffer.size());
   out.vertices = encoder.num_encoded_points();
   out.faces = encoder.num_encoded_faces();
+  if (std::max(out.vertices, out.faces) > max_packed_items(out.bytes.size())) {
+    return fail(ErrorKind::kUsage, "the mesh is so even that its compressed form would not be believed",
+                where, "write .glb or .ply instead");
+  }
   // As Draco rounds, and as its decoder has them: whole steps from the origin, each of them a float.
   const auto rounded = [&](const Eigen::Vector3f& p) -> Eigen::Vector3f {
     const Eigen::Array3f steps = (p - origin).array() * static_cast<float>(1 / step) + 0.5F;

@@ -48,7 +48,8 @@ struct DracoStream {
 
 /// Compresses; the order of vertices and faces is not kept. Takes about 100 bytes of memory a face, and once
 /// begun it cannot be stopped (half a second a million faces). Errors: kUsage for more faces than Draco
-/// counts, no proper face, and positions that are not finite.
+/// counts, no proper face, positions that are not finite, and what decode_draco() would not believe (see
+/// max_packed_items).
 [[nodiscard]] Result<DracoStream> encode_draco(const Mesh& mesh, const DracoAttributes& attributes,
                                                const std::string& where);
 
@@ -80,7 +81,7 @@ struct DracoClaim {
                                                                  const DracoClaim& claim);
 
 /// The most faces, and the most vertices, that are believed of so many bytes. A scan takes three bytes for a
-/// face, and a plane, which nothing is packed more tightly than, one for two or three faces.
+/// face, an even plane of a million and more one for five, and strips of it even less: they are not written.
 [[nodiscard]] constexpr std::uint64_t max_packed_items(std::uint64_t bytes) {
   constexpr std::uint64_t kAlways = 65536;
   constexpr std::uint64_t kItemsPerByte = 8;

@@ -107,7 +107,9 @@ void GltfPrimitive::unpack(GltfReading& reading, const JsonNode& primitive, cons
     claim.attributes.push_back(number_of("COLOR_0"));
   }
   const std::string_view bytes = gltf_view(reading.root, extension.at("bufferView"), reading.binary);
-  check_room(primitive, claim.vertices + vertices, corners + 3 * faces, reading.most_packed_items);
+  if (std::max(claim.vertices, claim.faces) <= max_packed_items(bytes.size())) {  // else it is told below
+    check_room(primitive, claim.vertices + vertices, corners + 3 * faces, reading.most_packed_items);
+  }
   if (reading.root.failed()) {
     return;
   }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <span>
 #include <string>
 #include <string_view>
@@ -14,6 +15,10 @@
 #include "formats/mesh_io.h"
 
 namespace dubsar {
+
+enum class MeshFormat : std::uint8_t { kPly, kObj, kStl, kGlb, kDracoGlb, kUnknown };
+/// By the name's ending.
+[[nodiscard]] MeshFormat format_of(const std::filesystem::path& name);
 
 /// What a producer that cannot fail writes, in one piece.
 [[nodiscard]] std::string whole_text(const ByteProducer& produce);

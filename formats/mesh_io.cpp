@@ -13,8 +13,6 @@ namespace dubsar {
 
 namespace {
 
-enum class MeshFormat { kPly, kObj, kStl, kGlb, kDracoGlb, kUnknown };
-
 constexpr const char* kKnown = "use .ply, .obj, .stl or .glb";
 
 std::string small_letters(std::string text) {
@@ -23,6 +21,8 @@ std::string small_letters(std::string text) {
   });
   return text;
 }
+
+}  // namespace
 
 MeshFormat format_of(const std::filesystem::path& name) {
   const std::string extension = small_letters(name.extension().string());
@@ -42,8 +42,10 @@ MeshFormat format_of(const std::filesystem::path& name) {
   return MeshFormat::kUnknown;
 }
 
+namespace {
+
 /// The bytes decide where they can.
-MeshFormat format_of(std::string_view bytes, const std::filesystem::path& name) {
+MeshFormat format_of_bytes(std::string_view bytes, const std::filesystem::path& name) {
   if (is_ply(bytes)) {
     return MeshFormat::kPly;
   }
@@ -55,7 +57,7 @@ MeshFormat format_of(std::string_view bytes, const std::filesystem::path& name) 
 }
 
 Result<Mesh> decode(std::string_view bytes, const std::string& name, const MeshReadOptions& options) {
-  switch (format_of(bytes, name)) {
+  switch (format_of_bytes(bytes, name)) {
     case MeshFormat::kPly:
       return decode_mesh_ply(bytes, name, options);
     case MeshFormat::kObj:

@@ -3,7 +3,10 @@
 #include "formats/mesh_losses.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <vector>
+
+#include "formats/mesh_formats.h"
 
 namespace dubsar {
 
@@ -31,6 +34,23 @@ std::string alternatives(const std::vector<std::string>& names) {
 
 }  // namespace
 
+LeftOut left_out_of(const Mesh& mesh, const std::filesystem::path& file) {
+  LeftOut out;
+  if (format_of(file) != MeshFormat::kDracoGlb) {
+    return out;
+  }
+  std::vector<std::uint8_t> used(mesh.positions.size(), 0);
+  for (const auto& [a, b, c] : mesh.faces) {
+    if (a == b || b == c || c == a) {
+      ++out.faces;
+    } else {
+      used[a] = used[b] = used[c] = 1;
+    }
+  }
+  out.vertices = static_cast<std::size_t>(std::ranges::count(used, 0));
+  return out;
+}
+
 std::optional<Error> mesh_losses(const Mesh& mesh, const std::filesystem::path& file,
                                  const std::string& mend) {
   const std::string format = format_name(file);
@@ -48,6 +68,13 @@ std::optional<Error> mesh_losses(const Mesh& mesh, const std::filesystem::path& 
   lose("scans", !mesh.scans.empty());
   lose("flags", !mesh.flags.empty());
   lose("colours", !mesh.colours.empty() && format == "STL");
+  const LeftOut out = left_out_of(mesh, file);
+  if (out.vertices > 0) {
+    lost.push_back("vertices without a face (" + std::to_string(out.vertices) + ")");
+  }
+  if (out.faces > 0) {
+    lost.push_back("faces without three different corners (" + std::to_string(out.faces) + ")");
+  }
   if (lost.empty()) {
     return std::nullopt;
   }

@@ -6,10 +6,20 @@
 #include <optional>
 #include <string>
 
+#include <cstddef>
+
 #include "core/mesh.h"
 #include "core/result.h"
 
 namespace dubsar {
+
+/// Vertices without a face and faces without three different corners, where write_mesh() leaves these out of
+/// a file of that name, as it does where it compresses.
+struct LeftOut {
+  std::size_t vertices = 0;
+  std::size_t faces = 0;
+};
+[[nodiscard]] LeftOut left_out_of(const Mesh& mesh, const std::filesystem::path& file);
 
 /// What write_mesh() leaves out of a file of that name, said in one line; nothing where the format holds all
 /// that is known of the mesh, as PLY does. Normals are no loss: they follow from the faces.

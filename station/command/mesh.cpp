@@ -98,12 +98,13 @@ Result<int> convert(const MeshOptions& options, CommandContext& context) {
   if (const Status written = write(options, *mesh); !written) {
     return std::unexpected(written.error());
   }
+  const LeftOut out = left_out_of(*mesh, options.out);
+  const std::size_t vertices = mesh->positions.size() - out.vertices;
+  const std::size_t faces = mesh->faces.size() - out.faces;
   if (context.json) {
-    CommandContext::print(
-        {{"mesh", options.out}, {"vertices", mesh->positions.size()}, {"faces", mesh->faces.size()}});
+    CommandContext::print({{"mesh", options.out}, {"vertices", vertices}, {"faces", faces}});
   } else {
-    std::printf("%s: %zu vertices, %zu faces\n", options.out.c_str(), mesh->positions.size(),
-                mesh->faces.size());
+    std::printf("%s: %zu vertices, %zu faces\n", options.out.c_str(), vertices, faces);
   }
   return 0;
 }

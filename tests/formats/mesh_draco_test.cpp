@@ -332,21 +332,33 @@ TEST(MeshDracoClaims, AreBoundByTheBytes) {
   EXPECT_FALSE(decode_draco(packed.bytes, claim));
 }
 
-TEST(MeshDracoClaims, APlaneIsBelieved) {
+/// Even squares of 1 mm in a plane, each cut in two.
+Mesh even_plane(std::uint32_t rows, std::uint32_t cols) {
   Mesh plane;
-  constexpr std::uint32_t kSide = 300;
-  for (std::uint32_t v = 0; v < kSide * kSide; ++v) {
-    plane.positions.emplace_back(static_cast<float>(v / kSide), static_cast<float>(v % kSide), 0.0F);
-    if (v / kSide + 1 < kSide && v % kSide + 1 < kSide) {
-      plane.faces.push_back({v, v + kSide, v + kSide + 1});
-      plane.faces.push_back({v, v + kSide + 1, v + 1});
+  for (std::uint32_t v = 0; v < rows * cols; ++v) {
+    plane.positions.emplace_back(static_cast<float>(v / cols), static_cast<float>(v % cols), 0.0F);
+    if (v / cols + 1 < rows && v % cols + 1 < cols) {
+      plane.faces.push_back({v, v + cols, v + cols + 1});
+      plane.faces.push_back({v, v + cols + 1, v + 1});
     }
   }
+  return plane;
+}
+
+TEST(MeshDracoClaims, APlaneIsBelieved) {
+  const Mesh plane = even_plane(300, 300);
   const std::string packed = encode_mesh_draco_glb(plane, "t").value();
   EXPECT_LT(packed.size(), plane.faces.size() / 4);
   const auto back = read_mesh_bytes(packed, "a.glb");
   ASSERT_TRUE(back) << line_of(back);
   EXPECT_EQ(back->faces.size(), plane.faces.size());
+}
+
+TEST(MeshDracoClaims, WhatWouldNotBeBelievedIsNotWritten) {
+  const auto packed = encode_mesh_draco_glb(even_plane(10, 20000), "t");
+  ASSERT_FALSE(packed);
+  EXPECT_EQ(packed.error().kind, ErrorKind::kUsage);
+  EXPECT_THAT(packed.error().line(), HasSubstr("would not be believed"));
 }
 
 }  // namespace

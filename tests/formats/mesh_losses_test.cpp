@@ -55,6 +55,24 @@ TEST(MeshLosses, WhatIsNotKnownIsNotWritten) {
   }
 }
 
+TEST(MeshLosses, CompressionLeavesOutWhatIsOfNoFaceAndSaysSo) {
+  Mesh mesh = tetrahedron();
+  mesh.positions.emplace_back(9, 9, 9);
+  mesh.normals.clear();
+  mesh.faces.push_back({0, 1, 1});
+  const ScratchFolder folder;
+  ASSERT_TRUE(write_mesh(folder / "a.draco.glb", mesh));
+  const auto back = read_mesh(folder / "a.draco.glb");
+  ASSERT_TRUE(back) << line_of(back);
+  const LeftOut out = left_out_of(mesh, "a.draco.glb");
+  EXPECT_EQ(back->positions.size(), mesh.positions.size() - out.vertices);
+  EXPECT_EQ(back->faces.size(), mesh.faces.size() - out.faces);
+  EXPECT_EQ(
+      mesh_losses(mesh, "a.draco.glb", "keep a.ply")->what,
+      "GLB holds no vertices without a face (1) or faces without three different corners (1): left out");
+  EXPECT_FALSE(mesh_losses(mesh, "a.glb", "keep a.ply"));
+}
+
 TEST(MeshLosses, PlyHasEachOfThemByItself) {
   const Mesh all = measured();
   for (int only = 0; only < 4; ++only) {
