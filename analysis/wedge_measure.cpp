@@ -93,10 +93,7 @@ void note_sigmas(const WedgeFaces& faces, const InnerEdges& edges, double spacin
   }
   sigma.volume_mm3 = wedge->volume_mm3 * std::sqrt(relative);
   if (exits == ExitDefinition::kExtent) {
-    // How far off the last contact point is from where the edge ended once, nobody knows.
-    constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-    sigma.length_mm = {kUnknown, kUnknown, kUnknown};
-    sigma.volume_mm3 = kUnknown;
+    sigma.forget_lengths();
   }
 }
 

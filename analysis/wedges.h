@@ -18,6 +18,11 @@
 
 namespace dubsar {
 
+/// Raised whenever the same mesh gives other wedges, or other words of them: what was kept by another method
+/// is measured anew. 2: edges are counted from the directional one; sigmas of slopes, and on coarse meshes
+/// larger.
+inline constexpr int kWedgeMethod = 2;
+
 struct WedgeOptions {
   ExitDefinition exits = ExitDefinition::kSurface;
   bool classical_watershed = false;

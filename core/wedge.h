@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -41,6 +42,13 @@ struct WedgeSigma {
   std::array<double, 3> face_slope_rad{};
   std::array<double, 3> length_mm{};
   double volume_mm3 = 0;
+
+  /// Of edges that end where they were seen last: how far that is from where they ended once nobody knows.
+  void forget_lengths() {
+    constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+    length_mm.fill(kUnknown);
+    volume_mm3 = kUnknown;
+  }
 };
 
 /// Where a wedge stands in the text.

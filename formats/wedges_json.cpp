@@ -135,6 +135,9 @@ Result<WedgeFile> parse_wedges(std::string_view text, const std::string& where) 
   }
   for (const JsonNode& node : root.at("wedges").items()) {
     file.wedges.push_back(wedge_from(node, mm));
+    if (file.exits == ExitDefinition::kExtent) {  // earlier versions said those of the other definition
+      file.wedges.back().sigma.forget_lengths();
+    }
   }
   if (const auto profiles = root.find("profiles")) {
     for (const JsonNode& node : profiles->items()) {

@@ -34,7 +34,7 @@ Result<ByDevice> load(const SessionStore& store) {
   }
   const JsonNode root = document->root();
   for (const JsonNode& device : root.at("devices").items()) {
-    auto& [uri, words] = out.emplace_back(absolute_device(device.at("uri").text()), SettingWords{});
+    auto& [uri, words] = out.emplace_back(device.at("uri").text(), SettingWords{});
     for (const JsonNode& setting : device.at("settings").items()) {
       words.emplace_back(setting.at("key").text(), setting.at("value").text());
     }
@@ -83,8 +83,8 @@ Result<SettingWords> kept_settings(const SessionStore& store, const std::string&
   if (!all) {
     return std::unexpected(all.error());
   }
-  const std::string device = absolute_device(uri);
-  const auto known = std::ranges::find(*all, device, &ByDevice::value_type::first);
+  const auto known = std::ranges::find(*all, absolute_device(uri),
+                                       [](const auto& one) { return absolute_device(one.first); });
   return known == all->end() ? SettingWords{} : std::move(known->second);
 }
 
@@ -94,7 +94,7 @@ Status keep_settings(SessionStore& store, const std::string& uri, const SettingW
     return std::unexpected(all.error());
   }
   const std::string own = absolute_device(uri);
-  std::erase_if(*all, [&](const auto& known) { return known.first == own; });
+  std::erase_if(*all, [&](const auto& known) { return absolute_device(known.first) == own; });
   all->emplace_back(own, words);  // the last one is the session's own
   OrderedJson devices = OrderedJson::array();
   for (const auto& [device, settings] : *all) {

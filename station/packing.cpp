@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "acquisition/session_store.h"
+#include "analysis/wedges.h"
 #include "formats/atomic_file.h"
 #include "formats/files_below.h"
 #include "formats/json_node.h"
@@ -35,6 +36,9 @@ std::string parameters_of(const PackageOptions& options) {
   }
   std::ranges::sort(without);
   json["without"] = without;
+  if (!options.without.contains(PackagePart::kWedges)) {
+    json["wedge_method"] = kWedgeMethod;
+  }
   if (options.draco) {  // said only then: stamps of before know nothing of it
     json["draco"] = true;
   }

@@ -4,6 +4,9 @@
 
 #include <fmt/format.h>
 
+#include <limits>
+
+#include "analysis/wedges.h"
 #include "archive/wedge_drawing.h"
 #include "core/log.h"
 #include "formats/atomic_file.h"
@@ -113,6 +116,7 @@ Result<std::optional<SessionWedges>> keep_wedges(SessionStore& store, const Mesh
           store.save_document(kDocument, text_of({{"file", name},
                                                   {"sha256", *sum},
                                                   {"surface_sha256", digest_of(mesh)},
+                                                  {"method", kWedgeMethod},
                                                   {"corrections", corrections_to_json({{}, corrections})}}));
       !kept) {
     return std::unexpected(kept.error());
@@ -132,9 +136,11 @@ std::optional<WedgeFile> stored_wedges(const SessionStore& store, const Mesh& me
   const std::string file = document->root().at("file").text();
   const std::string sum = document->root().at("sha256").text();
   const std::string surface = document->root().at("surface_sha256").text();
+  const auto method = document->root().find("method");
+  const bool is_of_now = method && method->integer(0, std::numeric_limits<int>::max()) == kWedgeMethod;
   const auto corrections = document->root().find("corrections");
   const std::string corrected = corrections ? corrections->text() : corrections_to_json({});
-  if (!document->status("") || surface != digest_of(mesh) ||
+  if (!document->status("") || !is_of_now || surface != digest_of(mesh) ||
       corrected != corrections_to_json({{}, session_corrections(store)})) {
     return std::nullopt;
   }

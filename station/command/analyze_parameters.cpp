@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <type_traits>
 
+#include "analysis/wedges.h"
 #include "formats/atomic_file.h"
 #include "formats/json_node.h"
 #include "formats/wedges_json.h"
@@ -16,7 +17,8 @@ namespace dubsar {
 
 std::string parameters_of(const AnalyzeArguments& a, const CorrectionFile& said) {
   const FreeSurfaceOptions& free = a.fields.free_surface;
-  nlohmann::ordered_json json{{"exit", a.exits},
+  nlohmann::ordered_json json{{"wedge_method", kWedgeMethod},
+                              {"exit", a.exits},
                               {"unit", a.unit},
                               {"free_openness", free.least_openness},
                               {"free_concave_per_mm", free.most_concave_per_mm},

@@ -8,6 +8,7 @@
 
 #include "analysis/wedges.h"
 #include "core/mesh_query.h"
+#include "core/order_statistics.h"
 #include "core/units.h"
 #include "sim/scanner.h"
 #include "sim/tablet.h"
@@ -56,6 +57,7 @@ std::vector<Wedge> wedges_of(const Mesh& mesh) {
 
 TEST(CoarseScans, ErrorsOfEdgesAndDepthPointsLieWithinTheirSigmas) {
   const sim::SimTablet tablet = written_tablet();
+  std::vector<double> point_sigmas;
   int points = 0, points_within = 0, edges = 0, edges_within = 0;
   for (const Wedge& found : wedges_of(coarsely_scanned(tablet))) {
     const auto is_near = [&](const Wedge& truth) {
@@ -66,6 +68,8 @@ TEST(CoarseScans, ErrorsOfEdgesAndDepthPointsLieWithinTheirSigmas) {
       continue;
     }
     ++points;
+    point_sigmas.push_back((truth->depth_point_mm - found.depth_point_mm).norm() /
+                           found.sigma.depth_point_mm);
     points_within +=
         (truth->depth_point_mm - found.depth_point_mm).norm() < 2 * found.sigma.depth_point_mm ? 1 : 0;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -80,6 +84,7 @@ TEST(CoarseScans, ErrorsOfEdgesAndDepthPointsLieWithinTheirSigmas) {
     }
   }
   ASSERT_GT(points, 100);
+  EXPECT_GT(median_of(point_sigmas), 0.4) << "they are not too large either";
   EXPECT_GT(points_within, 0.9 * points) << "of " << points;
   EXPECT_GT(edges_within, 0.9 * edges) << "of " << edges;
 }

@@ -37,6 +37,7 @@ TEST(WedgesJson, ReadsBackAllThatWasMeasured) {
   wedge.sigma.opening_rad = {0.1, 0.2, 0.3};
   wedge.sigma.face_slope_rad = {0.4, 0.5, 0.6};
   wedge.sigma.edge_slope_rad = {0.7, 0.8, 0.9};
+  wedge.sigma.length_mm = {0.25, 0.5, 0.75};
   wedge.sigma.volume_mm3 = 0.75;
   wedge.place = {Face::kReverse, 4, 17, -1.5};
   file.wedges = {wedge, Wedge{}};
@@ -69,7 +70,13 @@ TEST(WedgesJson, ReadsBackAllThatWasMeasured) {
   EXPECT_NEAR(w.sigma.opening_rad[2], 0.3, 1e-14);
   EXPECT_NEAR(w.sigma.face_slope_rad[1], 0.5, 1e-14);
   EXPECT_NEAR(w.sigma.edge_slope_rad[2], 0.9, 1e-14);
-  EXPECT_EQ(w.sigma.volume_mm3, 0.75);
+  EXPECT_TRUE(std::isnan(w.sigma.length_mm[1]) && std::isnan(w.sigma.volume_mm3))
+      << "nobody knows them of these exits";
+  file.exits = ExitDefinition::kSurface;
+  const auto surface = parse_wedges(wedges_to_json(file), "w");
+  ASSERT_TRUE(surface);
+  EXPECT_EQ(surface->wedges[0].sigma.length_mm, wedge.sigma.length_mm);
+  EXPECT_EQ(surface->wedges[0].sigma.volume_mm3, 0.75);
   EXPECT_EQ(w.place.side, Face::kReverse);
   EXPECT_EQ(w.place.line, 4);
   EXPECT_EQ(w.place.order, 17);

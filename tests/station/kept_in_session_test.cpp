@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+// What a session keeps beside its scans, as earlier versions left it: wedges of another method, devices as
+// given.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "acquisition/device_uri.h"
+#include "station/device_panel.h"
+#include "station/session_wedges.h"
+#include "tests/support/raster_mesh.h"
+#include "tests/support/temporary_folder.h"
+
+namespace dubsar {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::Pair;
+
+class KeptInSession : public ::testing::Test {
+ protected:
+  test::TemporaryFolder folder_;
+  SessionStore store_ = SessionStore::open_or_create(folder_.path() / "s").value();
+};
+
+/// A square of 1 mm in a plane: there is no wedge in it.
+Mesh blank() {
+  Mesh mesh;
+  for (int v = 0; v < 4; ++v) {
+    mesh.positions.emplace_back(static_cast<float>(v % 2), static_cast<float>(v / 2), 0.0F);
+  }
+  test::add_raster_faces(mesh, 0, 1);
+  return mesh;
+}
+
+TEST_F(KeptInSession, WedgesOfAnotherMethodAreMeasuredAnew) {
+  const Mesh mesh = blank();
+  ASSERT_TRUE(keep_wedges(store_, mesh, {}).value());
+  ASSERT_TRUE(stored_wedges(store_, mesh, {}));
+  nlohmann::json document = nlohmann::json::parse(store_.load_document("wedges").value().value());
+  document["method"] = document["method"].get<int>() - 1;
+  ASSERT_TRUE(store_.save_document("wedges", document.dump()));
+  EXPECT_FALSE(stored_wedges(store_, mesh, {}));
+  document.erase("method");  // before there was a second one
+  ASSERT_TRUE(store_.save_document("wedges", document.dump()));
+  EXPECT_FALSE(stored_wedges(store_, mesh, {}));
+}
+
+TEST_F(KeptInSession, DevicesStayAsEarlierVersionsKeptThem) {
+  const std::string old = R"({"devices":[
+    {"uri":"replay:scans","settings":[{"key":"rate","value":"5"}]},
+    {"uri":"replay:others","settings":[]}]})";
+  ASSERT_TRUE(store_.save_document("device_settings", old));
+  EXPECT_EQ(own_device(store_).value(), "replay:others");
+  EXPECT_THAT(kept_settings(store_, "replay:scans").value(), ElementsAre(Pair("rate", "5")));
+  EXPECT_THAT(kept_settings(store_, absolute_device("replay:scans")).value(), ElementsAre(Pair("rate", "5")));
+  // What is kept of another device says nothing new of where these two are.
+  ASSERT_TRUE(keep_settings(store_, "sim:?seed=1", {{"noise", "0"}}));
+  nlohmann::json devices = nlohmann::json::parse(store_.load_document("device_settings").value().value());
+  ASSERT_EQ(devices["devices"].size(), 3U);
+  EXPECT_EQ(devices["devices"][0]["uri"], "replay:scans");
+  EXPECT_EQ(own_device(store_).value(), "sim:?seed=1");
+  // The device itself, opened once more, takes the place of its old entry.
+  ASSERT_TRUE(keep_settings(store_, "replay:scans", {{"rate", "6"}}));
+  devices = nlohmann::json::parse(store_.load_document("device_settings").value().value());
+  ASSERT_EQ(devices["devices"].size(), 3U);
+  EXPECT_EQ(own_device(store_).value(), absolute_device("replay:scans"));
+  EXPECT_THAT(kept_settings(store_, "replay:scans").value(), ElementsAre(Pair("rate", "6")));
+}
+
+}  // namespace
+}  // namespace dubsar
