@@ -89,8 +89,7 @@ Status check_record(const fs::path& package, const fs::path& session) {
   }
   for (const nlohmann::json& event : packed_events(package)) {
     if (!holds(*kept, event)) {
-      return std::unexpected(
-          lost("the session has lost of its record \"" + text_of(event, "kind") + "\"", package));
+      return std::unexpected(lost("the session has lost of its record: " + text_of(event, "kind"), package));
     }
   }
   return {};

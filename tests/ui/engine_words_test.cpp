@@ -156,11 +156,17 @@ TEST(EngineWords, NothingOfARunIsHalfGerman) {
                                              "pins labelled",
                                              "labels of scan ",
                                              " (red map)",
-                                             "arm to the side of "};
+                                             "arm to the side of ",
+                                             "Bag-Software-Agent: Dubsar ",  // it is looked for
+                                             "\\nBag-Software-Agent: Dubsar ",
+                                             " + text_of(event, ",
+                                             "the disk refused"};
   for (const char* file :
-       {"station/engine_misses.cpp", "station/engine_commands.cpp", "station/signing.cpp",
-        "station/plan_again.cpp", "planning/motor_placements.cpp", "registration/pin_advice.cpp",
-        "registration/scan_motion.cpp", "registration/scan_stretch.cpp", "registration/second_body.cpp"}) {
+       {"station/earlier_package.cpp", "archive/staged_folder.cpp", "archive/kept_files.cpp",
+        "acquisition/session_links.cpp", "station/engine_misses.cpp", "station/engine_commands.cpp",
+        "station/signing.cpp", "station/plan_again.cpp", "planning/motor_placements.cpp",
+        "registration/pin_advice.cpp", "registration/scan_motion.cpp", "registration/scan_stretch.cpp",
+        "registration/second_body.cpp"}) {
     int sentences = 0;
     for (const std::string& sentence : sentences_in(file)) {
       if (std::ranges::find(no_sentence, sentence) != no_sentence.end()) {
@@ -173,7 +179,7 @@ TEST(EngineWords, NothingOfARunIsHalfGerman) {
         EXPECT_TRUE(is_number || translated(said, Language::kGerman) != said) << file << ": " << sentence;
       }
     }
-    EXPECT_GE(sentences, 3) << file;
+    EXPECT_GE(sentences, 2) << file;
   }
 }
 
@@ -222,14 +228,15 @@ TEST(EngineWords, WhoSetsAScanAsideSaysItInOneLanguage) {
 }
 
 TEST(EngineWords, NobodyInTheWindowIsToldToGiveACommand) {
-  for (const char* file : {"station/engine_misses.cpp", "station/engine_motion.cpp", "station/signing.cpp",
-                           "registration/unit_check.cpp", "acquisition/rig_device.cpp",
-                           "drivers/v4l2/node.cpp", "drivers/usb_stage/usb_link.cpp"}) {
+  for (const char* file :
+       {"station/earlier_package.cpp", "archive/staged_folder.cpp", "station/engine_misses.cpp",
+        "station/engine_motion.cpp", "station/signing.cpp", "registration/unit_check.cpp",
+        "acquisition/rig_device.cpp", "drivers/v4l2/node.cpp", "drivers/usb_stage/usb_link.cpp"}) {
     for (const std::string& sentence : sentences_in(file)) {
       for (const Language language : {Language::kEnglish, Language::kGerman}) {
         const std::string shown = translated(sentence, language);
-        for (const char* of_commands :
-             {"command again", "session restore", "session drop", "--", "run dubsar", "dubsar drivers"}) {
+        for (const char* of_commands : {"command again", "dubsar verify", "session restore", "session drop",
+                                        "--", "run dubsar", "dubsar drivers"}) {
           EXPECT_EQ(shown.find(of_commands), std::string::npos) << file << ": " << shown;
         }
       }

@@ -319,20 +319,10 @@ constexpr EnginePhrase kPhrases[] = {
     {"writing was stopped", "das Schreiben wurde abgebrochen"},
     {"stitching was stopped", "das Zusammenfügen wurde abgebrochen"},
     {"stopped while finding wedges", "beim Finden der Keile angehalten"},
-    // why a package is not made
-    {"something lies there already", "dort liegt schon etwas"},
-    {"the package that lies here is not what was written (",
-     "das Paket, das hier liegt, ist nicht mehr das geschriebene ("},
-    {"somebody added it", "jemand hat sie hinzugefügt"},
-    {"see what differs (dubsar verify), choose another folder, or replace it with --force",
-     "nachsehen, was anders ist (dubsar verify), oder einen anderen Ordner wählen"},
-    {"choose another folder, or replace it with --force", "einen anderen Ordner wählen"},
+    // where nothing is written
     {"a session keeps a checksum of every file in it; nothing else is written there",
      "eine Sitzung hat eine Prüfsumme für jede ihrer Dateien; anderes wird nicht hineingeschrieben"},
-    {"a package keeps a checksum of every file in it; nothing else is written there",
-     "ein Paket hat eine Prüfsumme für jede seiner Dateien; anderes wird nicht hineingeschrieben"},
     {"write it beside the session: ", "neben die Sitzung schreiben: "},
-    {"write it beside the package: ", "neben das Paket schreiben: "},
     // why a wedge is not what somebody says
     {"no wedge lies at ", "kein Keil liegt bei "},
     {" any more", " mehr"},

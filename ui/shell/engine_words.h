@@ -41,6 +41,8 @@ struct EnginePhrase {
 [[nodiscard]] std::span<const EnginePhrase> engine_shapes();
 /// Of sessions, of their disk and of signatures.
 [[nodiscard]] std::span<const EnginePhrase> engine_stored();
+/// Of packages, and of what lies where one is to go.
+[[nodiscard]] std::span<const EnginePhrase> engine_packages();
 
 /// The phrases of all these tables in the order in which they are replaced (text_table.h: translated()): the
 /// longest first, for one may hold another.

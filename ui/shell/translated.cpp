@@ -24,7 +24,10 @@ constexpr std::pair<std::string_view, std::string_view> kInWindow[] = {
      "take the wrong ones out, then go on"},
     {", then give the same command again", ", then go on"},
     {"; --max-scans allows more", ""},
+    {"see what differs (dubsar verify), choose another folder, or replace it with --force",
+     "see what differs, or choose another folder"},
     {", or replace it with --force", ""},
+    {"mend the session (dubsar verify --repair --from COPY)", "mend the session from a copy"},
     {"run dubsar register and dubsar plan on it first", "go on and finish first"},
     {"run dubsar plan on it, read what it says, and sign again",
      "go on, finish, read what it says, and sign again"},
@@ -69,9 +72,9 @@ void replace_each(std::string& text, const Pairs& pairs) {
 const std::vector<EnginePhrase>& engine_sentences() {
   static const std::vector<EnginePhrase> kSorted = [] {
     std::vector<EnginePhrase> all;
-    for (const auto& table :
-         {engine_phrases(), engine_calibration(), engine_remarks(), engine_cameras(), engine_controllers(),
-          engine_rigs(), engine_drivers(), engine_files(), engine_shapes(), engine_stored()}) {
+    for (const auto& table : {engine_phrases(), engine_calibration(), engine_remarks(), engine_cameras(),
+                              engine_controllers(), engine_rigs(), engine_drivers(), engine_files(),
+                              engine_shapes(), engine_stored(), engine_packages()}) {
       all.insert(all.end(), table.begin(), table.end());
     }
     std::ranges::stable_sort(all, std::ranges::greater(),
