@@ -40,7 +40,8 @@ struct ClearingOptions {
 /// The normals of the whole grid, sample_normal() with a step of 5µ.
 [[nodiscard]] SampleNormals normals_of(const RangeGrid& grid);
 
-/// 2µ + 3σ, σ² = both poses' variances + both scans' noise variances.
+/// 1.5µ + 3σ and at most 6µ (ClearingOptions), µ of the coarser scan, σ² = both poses' variances + both
+/// scans' noise variances.
 [[nodiscard]] double matching_radius_mm(const RangeGrid& a, double noise_a_mm, double sigma_a_mm,
                                         const RangeGrid& b, double noise_b_mm, double sigma_b_mm,
                                         const ClearingOptions& options);

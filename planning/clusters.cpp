@@ -15,8 +15,10 @@ namespace dubsar {
 
 namespace {
 
+/// What is out of reach is told by its reason: which side no pose sees, and which one was looked at in vain.
 bool alike(const RedTarget& a, const RedTarget& b) {
-  return a.state == b.state && a.excuse == b.excuse;
+  return a.state == b.state && a.excuse == b.excuse &&
+         (a.state != RegionState::kExcused || a.excuse != Excuse::kUnreachable || a.reason == b.reason);
 }
 
 void join_near(const RedTargets& red, std::span<const std::uint32_t> members, double radius_mm,

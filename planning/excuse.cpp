@@ -25,8 +25,8 @@ void excuse_strays(std::span<const PlacedScan> scans, std::span<const double> no
   std::vector<ViewPredictor> views;
   double apart_mm = options.stray_mm;
   for (std::size_t s = 0; s < scans.size(); ++s) {
-    views.emplace_back(ScannerModel::of(*scans[s].grid, noise_mm[s]), scans[s].model_from_scanner,
-                       surface.query, options.stray_mm);
+    views.emplace_back(ScannerModel::that_took(*scans[s].grid, nullptr, noise_mm[s]),
+                       scans[s].model_from_scanner, surface.query, options.stray_mm);
     apart_mm = std::max(apart_mm, 2.0 * spacing_of(*scans[s].grid));
   }
   // A scan that made the return itself is no witness against it.

@@ -27,7 +27,7 @@ struct ExcuseOptions {
   double speck_budget = 2e-4;  ///< of the surface, for all specks together
   int speck_tries = 2;
   double largest_slit_mm2 = 0.5;  ///< half the footprint of the smallest wedge, 1 mm across
-  int tries = 4;                  ///< scans that ought to have seen a place before it is given up
+  int tries = 4;  ///< scans, from so many places, that ought to have seen a place before it is given up
 };
 
 /// Unneeded: holes no wider than largest_gap_mm over which the surface is interpolated well enough. The test:
@@ -46,8 +46,8 @@ void excuse_unneeded(std::span<const PlacedScan> scans, const SurfaceCover& cove
 void excuse_specks(std::span<const PlacedScan> scans, const SurfaceCover& cover, double surface_mm2,
                    const ExcuseOptions& options, RedTargets& red);
 
-/// Unneeded: what is left when all of it together is below speck_budget of the surface and no view is
-/// expected to clear as much as a single speck.
+/// Unneeded: what is left when all of it together is below speck_budget of the surface, no view is expected
+/// to clear as much as a single speck, and what hangs together is no larger than largest_slit_mm2.
 void excuse_last_specks(std::span<const PlacedScan> scans, const SurfaceCover& cover, double best_gain_mm2,
                         double surface_mm2, const ExcuseOptions& options, RedTargets& red);
 
@@ -67,9 +67,16 @@ void excuse_out_of_reach(std::span<const PlacedScan> scans, const SurfaceCover& 
                          std::span<const float> best_chance, double surface_mm2, const ExcuseOptions& options,
                          RedTargets& red);
 
-/// By trial: at least `tries` scans ought to have seen the place by all that is known, and none brought dense
-/// samples. Applies to rig and replay alike.
+/// By trial: at least `tries` scans, no two of them from one place (full_looks_apart()), ought to have seen
+/// the place by all that is known, and none brought dense samples. Applies to rig and replay alike.
 void excuse_tried(std::span<const PlacedScan> scans, const SurfaceCover& cover, double surface_mm2,
                   const ExcuseOptions& options, RedTargets& red);
+
+/// By trial, too: at least `tries` scans, from wherever, might have seen the place, and after these looks in
+/// vain no candidate is expected to sample it any more. best_left as in NextViews; entries below 0 were not
+/// judged and stay red.
+void excuse_tried_out(std::span<const PlacedScan> scans, const SurfaceCover& cover,
+                      std::span<const float> best_left, double surface_mm2, const ExcuseOptions& options,
+                      RedTargets& red);
 
 }  // namespace dubsar

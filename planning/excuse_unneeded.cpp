@@ -229,10 +229,10 @@ void excuse_specks(std::span<const PlacedScan> scans, const SurfaceCover& cover,
       continue;
     }
     Eigen::AlignedBox3d box;
-    std::size_t tried = red.targets[group.front()].tried.size();
+    std::size_t tried = full_looks(red.targets[group.front()].tried);
     for (const std::uint32_t t : group) {
       box.extend(red.targets[t].position_mm);
-      tried = std::min(tried, red.targets[t].tried.size());
+      tried = std::min(tried, full_looks(red.targets[t].tried));
     }
     const double area_mm2 = area_of(group, red);
     const bool speck = area_mm2 <= largest_mm2 && box.diagonal().norm() <= options.largest_gap_mm;
@@ -314,7 +314,23 @@ void excuse_tried(std::span<const PlacedScan> scans, const SurfaceCover& cover, 
       scans, cover, surface_mm2, options,
       std::to_string(options.tries) +
           " scans looked at it and brought no dense samples: too deep, too dark or no surface",
-      [&](std::uint32_t i) { return red.targets[i].tried.size() >= static_cast<std::size_t>(options.tries); },
+      [&](std::uint32_t i) {
+        return full_looks_apart(red.targets[i].tried) >= static_cast<std::size_t>(options.tries);
+      },
+      red);
+}
+
+void excuse_tried_out(std::span<const PlacedScan> scans, const SurfaceCover& cover,
+                      std::span<const float> best_left, double surface_mm2, const ExcuseOptions& options,
+                      RedTargets& red) {
+  give_up(
+      scans, cover, surface_mm2, options,
+      std::to_string(options.tries) +
+          " scans and more might have sampled it and did not, and no other pose promises to",
+      [&](std::uint32_t i) {
+        return best_left[i] >= 0 && static_cast<double>(best_left[i]) < options.least_chance &&
+               red.targets[i].tried.size() >= static_cast<std::size_t>(options.tries);
+      },
       red);
 }
 
@@ -327,9 +343,13 @@ void excuse_last_specks(std::span<const PlacedScan> scans, const SurfaceCover& c
   if (all_mm2 > options.speck_budget * surface_mm2 || best_gain_mm2 > largest_speck_mm2(scans, options)) {
     return;
   }
-  for (RedTarget& t : red.targets) {
-    if (t.state == RegionState::kRed) {
-      excuse_speck(cover, "speck: no view is expected to clear as much as one such speck", t);
+  for (const auto& group : cluster_targets(red, scans, red.cell_mm, kAcrossGapsMm, true)) {
+    if (red.targets[group.front()].state != RegionState::kRed ||
+        area_of(group, red) > options.largest_slit_mm2) {
+      continue;
+    }
+    for (const std::uint32_t i : group) {
+      excuse_speck(cover, "speck: no view is expected to clear as much as one such speck", red.targets[i]);
     }
   }
 }

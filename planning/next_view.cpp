@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "core/parallel.h"
 #include "core/units.h"
@@ -13,13 +14,8 @@ namespace dubsar {
 
 namespace {
 
-/// A scan that predicts this chance ought to have seen the place.
-constexpr double kTriedChance = 0.5;
-/// Views closer than this see the same shadows.
-const double kSameSideRad = rad_from_deg(25.0);
-/// What is left of a target's worth after one look in vain from the same side, and from any side.
-constexpr double kLeftSameSide = 0.15;
-constexpr double kLeftAnySide = 0.8;
+/// Looks of less chance say nothing of a place.
+constexpr double kLeastLook = 0.02;
 /// What a view clears beside what it is certain to: a place counts as cleared when a third of it is, and good
 /// samples clear the red ones around them. Median over simulated tablets of actual over predicted.
 constexpr double kSpill = 1.15;
@@ -30,32 +26,51 @@ double clearance_of(const ModelSurface& surface) {
   return std::max(0.1, 0.6 * surface.step_mm);
 }
 
-/// What earlier looks in vain leave of the chance from this side.
-double novelty(const RedTarget& target, const Eigen::Vector3d& towards) {
-  double left = 1.0;
-  for (const Eigen::Vector3d& tried : target.tried) {
-    const double apart = std::acos(std::clamp(tried.dot(towards), -1.0, 1.0)) / kSameSideRad;
-    left *= kLeftAnySide * (1.0 - (1.0 - kLeftSameSide) * std::exp(-apart * apart));
-  }
-  return left;
-}
+struct RedOnes {
+  std::vector<std::size_t> chosen;  ///< evenly; each stands for `share` times its area
+  std::vector<std::size_t> others;
+};
 
-/// Evenly chosen red targets; each stands for `share` times its area.
-std::vector<std::size_t> thinned_red(std::span<const RedTarget> targets, std::size_t most) {
-  std::vector<std::size_t> red;
+RedOnes thinned_red(std::span<const RedTarget> targets, std::size_t most) {
+  RedOnes out;
   for (std::size_t i = 0; i < targets.size(); ++i) {
     if (targets[i].state == RegionState::kRed) {
-      red.push_back(i);
+      out.chosen.push_back(i);
     }
   }
-  if (red.size() <= most) {
-    return red;
-  }
-  std::vector<std::size_t> out;
-  for (std::size_t k = 0; k < most; ++k) {
-    out.push_back(red[k * red.size() / most]);
+  if (out.chosen.size() > most) {
+    const std::vector<std::size_t> red = std::exchange(out.chosen, {});
+    for (std::size_t k = 0; k < red.size(); ++k) {
+      const bool is_chosen = (k * most) % red.size() < most;
+      (is_chosen ? out.chosen : out.others).push_back(red[k]);
+    }
   }
   return out;
+}
+
+/// What all candidates together promise of targets that gains are not worked out for: they are asked in
+/// `order` until one has enough chance. Returns false when cancelled.
+bool ask_until_enough(std::span<const ViewPredictor> views, std::span<const std::size_t> order,
+                      std::span<const RedTarget> targets, std::span<const std::size_t> asked, double enough,
+                      NextViews& out, const JobContext& job) {
+  parallel_for_each_index(
+      asked.size(),
+      [&](std::size_t k) {
+        const std::size_t i = asked[k];
+        const RedTarget& t = targets[i];
+        double best = 0;
+        double left = 0;
+        for (std::size_t c = 0; c < order.size() && left < enough && !job.cancelled(); ++c) {
+          const ViewPredictor& view = views[order[c]];
+          const double p = view.chance(t.position_mm, t.normal);
+          best = std::max(best, p);
+          left = std::max(left, p > 0 ? p * novelty(t.tried, view.towards_scanner()) : 0.0);
+        }
+        out.best_chance[i] = static_cast<float>(best);
+        out.best_left[i] = static_cast<float>(left);
+      },
+      16);
+  return !job.cancelled();
 }
 
 double overlap_of(const ViewPredictor& view, const ModelSurface& surface) {
@@ -90,9 +105,10 @@ void note_tries(std::span<const PlacedScan> scans, const Rig* rig, std::span<con
       [&](std::size_t i) {
         targets[i].tried.clear();
         for (const ViewPredictor& view : views) {
-          if (view.facing_chance(targets[i].position_mm, targets[i].normal) > kTriedChance &&
-              view.unobstructed(targets[i].position_mm, targets[i].normal)) {
-            targets[i].tried.push_back(view.towards_scanner());
+          const double chance = view.facing_chance(targets[i].position_mm, targets[i].normal);
+          if (chance > kLeastLook && view.unobstructed(targets[i].position_mm, targets[i].normal)) {
+            targets[i].tried.push_back(
+                {view.towards_scanner(), view.towards_camera(targets[i].position_mm), chance});
           }
         }
       },
@@ -110,7 +126,7 @@ std::vector<double> clearing_chances(const ViewCandidate& candidate, const Scann
         const RedTarget& t = targets[i];
         if (t.state == RegionState::kRed) {
           const double p = view.chance(t.position_mm, t.normal);
-          chances[i] = std::min(1.0, kSpill * p * novelty(t, view.towards_scanner()));
+          chances[i] = std::min(1.0, kSpill * p * novelty(t.tried, view.towards_scanner()));
         }
       },
       16);
@@ -122,7 +138,8 @@ Result<NextViews> next_views(std::span<const ViewCandidate> candidates, const Sc
                              const NextViewOptions& options, JobContext& job) {
   NextViews out;
   out.best_chance.assign(targets.size(), -1.0F);
-  const std::vector<std::size_t> red = thinned_red(targets, options.max_targets);
+  out.best_left.assign(targets.size(), -1.0F);
+  const auto [red, others] = thinned_red(targets, options.max_targets);
   if (red.empty() || candidates.empty()) {
     return out;
   }
@@ -136,22 +153,31 @@ Result<NextViews> next_views(std::span<const ViewCandidate> candidates, const Sc
   }
   const double share = kept_area > 0 ? all_area / kept_area : 1.0;
 
+  std::vector<ViewPredictor> views;
+  views.reserve(candidates.size());
+  for (const ViewCandidate& candidate : candidates) {
+    views.emplace_back(scanner, candidate.model_from_scanner, surface.query, clearance_of(surface),
+                       candidate.hidden);
+  }
+  struct Chance {
+    float plain = 0;
+    float left = 0;  ///< looks in vain considered
+  };
   std::vector<double> gain(candidates.size(), 0.0);
-  std::vector<float> chance(candidates.size() * red.size(), 0.0F);
+  std::vector<Chance> chance(candidates.size() * red.size());
   parallel_for_each_index(
       candidates.size(),
       [&](std::size_t c) {
         if (job.cancelled()) {
           return;
         }
-        const ViewPredictor view(scanner, candidates[c].model_from_scanner, surface.query,
-                                 clearance_of(surface), candidates[c].hidden);
         for (std::size_t k = 0; k < red.size(); ++k) {
           const RedTarget& t = targets[red[k]];
-          const double p = view.chance(t.position_mm, t.normal);
+          const double p = views[c].chance(t.position_mm, t.normal);
           if (p > 0) {
-            chance[c * red.size() + k] = static_cast<float>(p);
-            gain[c] += share * t.area_mm2 * p * novelty(t, view.towards_scanner());
+            const double left = p * novelty(t.tried, views[c].towards_scanner());
+            chance[c * red.size() + k] = {static_cast<float>(p), static_cast<float>(left)};
+            gain[c] += share * t.area_mm2 * left;
           }
         }
       },
@@ -160,11 +186,13 @@ Result<NextViews> next_views(std::span<const ViewCandidate> candidates, const Sc
     return fail(ErrorKind::kCancelled, "planning was stopped");
   }
   for (std::size_t k = 0; k < red.size(); ++k) {
-    float best = 0;
+    Chance best;
     for (std::size_t c = 0; c < candidates.size(); ++c) {
-      best = std::max(best, chance[c * red.size() + k]);
+      const Chance& one = chance[c * red.size() + k];
+      best = {std::max(best.plain, one.plain), std::max(best.left, one.left)};
     }
-    out.best_chance[red[k]] = best;
+    out.best_chance[red[k]] = best.plain;
+    out.best_left[red[k]] = best.left;
   }
 
   const auto worth = [&](std::size_t c) {
@@ -174,6 +202,9 @@ Result<NextViews> next_views(std::span<const ViewCandidate> candidates, const Sc
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return worth(a) > worth(b); });
+  if (!ask_until_enough(views, order, targets, others, options.enough_chance, out, job)) {
+    return fail(ErrorKind::kCancelled, "planning was stopped");
+  }
   const auto predicted_mm2 = [&](std::size_t c) { return std::min(all_area, kSpill * gain[c]); };
   for (std::size_t c = 0; c < candidates.size(); ++c) {
     out.best_gain_mm2 = std::max(out.best_gain_mm2, predicted_mm2(c));
@@ -196,14 +227,7 @@ Result<NextViews> next_views(std::span<const ViewCandidate> candidates, const Sc
     }
     std::vector<double> overlap(end - begin);
     parallel_for_each_index(
-        end - begin,
-        [&](std::size_t k) {
-          const ViewCandidate& candidate = candidates[order[begin + k]];
-          overlap[k] = overlap_of(ViewPredictor(scanner, candidate.model_from_scanner, surface.query,
-                                                clearance_of(surface), candidate.hidden),
-                                  surface);
-        },
-        1);
+        end - begin, [&](std::size_t k) { overlap[k] = overlap_of(views[order[begin + k]], surface); }, 1);
     for (std::size_t k = begin; k < end && out.ranked.size() < options.ranked; ++k) {
       if (gain[order[k]] < options.least_gain_mm2) {
         break;

@@ -16,10 +16,12 @@ namespace dubsar {
 struct NextViewOptions {
   CandidateOptions candidates;
   std::size_t max_targets = 1500;  ///< more are thinned, their areas shared out
-  double least_overlap = 0.3;      ///< with what has been seen, to register
-  double hand_turn_cost = 0.25;    ///< of lifting the tablet, in scans
-  double least_gain_mm2 = 1e-4;    ///< a view that clears less is not proposed
-  std::size_t ranked = 5;          ///< views returned
+  /// Of targets that were thinned out it is only worked out whether some candidate has so much chance.
+  double enough_chance = 0.05;
+  double least_overlap = 0.3;    ///< with what has been seen, to register
+  double hand_turn_cost = 0.25;  ///< of lifting the tablet, in scans
+  double least_gain_mm2 = 1e-4;  ///< a view that clears less is not proposed
+  std::size_t ranked = 5;        ///< views returned
 };
 
 /// What to do next, and what all candidates together promise: best_chance is the greatest over all of them.
@@ -28,6 +30,7 @@ struct NextViews {
   /// Greatest red area that any candidate is expected to clear, whether it is proposed or not.
   double best_gain_mm2 = 0;
   std::vector<float> best_chance;  ///< [targets]; -1 for targets that are not red
+  std::vector<float> best_left;    ///< the same, looks in vain considered
 };
 
 /// Notes for each red target which of the scans ought to have seen it (red_targets() leaves that empty).

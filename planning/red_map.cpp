@@ -47,13 +47,15 @@ Result<NextViews> plan_views(std::span<const PlacedScan> scans, const ModelSurfa
                              const RedTargets& red, const Rig* rig, double noise_mm,
                              const RedMapOptions& options, JobContext& job) {
   const PlacedScan& last = last_scan(scans, options);
+  NextViewOptions next = options.next;
+  next.enough_chance = options.excuse.least_chance;
   if (rig != nullptr) {
     const StageState state = options.stage.value_or(StageState{last.id, {}});
     return next_views(rig_candidates(*rig, state, last, surface, options.next.candidates),
-                      ScannerModel::of(*rig, noise_mm), surface, red.targets, options.next, job);
+                      ScannerModel::of(*rig, noise_mm), surface, red.targets, next, job);
   }
   return next_views(free_candidates(last, surface, options.next.candidates),
-                    ScannerModel::of(*last.grid, noise_mm), surface, red.targets, options.next, job);
+                    ScannerModel::of(*last.grid, noise_mm), surface, red.targets, next, job);
 }
 
 }  // namespace
@@ -105,6 +107,7 @@ Result<RedMapResult> make_red_map(std::span<const PlacedScan> scans, const Mesh*
   if (rig != nullptr) {
     excuse_out_of_reach(scans, cover, views->best_chance, surface_mm2, options.excuse, out.targets);
   }
+  excuse_tried_out(scans, cover, views->best_left, surface_mm2, options.excuse, out.targets);
   excuse_last_specks(scans, cover, views->best_gain_mm2, surface_mm2, options.excuse, out.targets);
   for (const RedSampleRef& ref : out.targets.samples) {
     if (out.targets.targets[ref.target].state == RegionState::kExcused) {

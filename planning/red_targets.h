@@ -12,6 +12,7 @@
 #include "core/placed_scan.h"
 #include "core/red_map.h"
 #include "planning/model_surface.h"
+#include "planning/vain_look.h"
 
 namespace dubsar {
 
@@ -23,10 +24,9 @@ struct RedTarget {
   /// Mean of the red samples themselves; position_mm lies in the gap beside them.
   Eigen::Vector3d sample_mm{0, 0, 0};
   double area_mm2 = 0;
-  bool unseen = false;  ///< with no samples of its own: a patch of the closing surface, or a rim
-  bool rim = false;     ///< where the well-sampled surface ends, and no red sample marks it
-  /// Directions towards the scanner (unit, model frame) of scans that ought to have seen it and did not.
-  std::vector<Eigen::Vector3d> tried;
+  bool unseen = false;          ///< with no samples of its own: a patch of the closing surface, or a rim
+  bool rim = false;             ///< where the well-sampled surface ends, and no red sample marks it
+  std::vector<VainLook> tried;  ///< scans that might have seen it and did not
   RegionState state = RegionState::kRed;
   Excuse excuse = Excuse::kNone;
   std::string reason;

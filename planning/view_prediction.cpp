@@ -100,6 +100,14 @@ Eigen::Vector3d ViewPredictor::source(const std::optional<Eigen::Vector3d>& at_m
   return *at_mm + motion_ * motion_.dot(p_scanner_mm - laser_mm);
 }
 
+Eigen::Vector3d ViewPredictor::towards_camera(const Eigen::Vector3d& p_mm) const {
+  if (!scanner_.view.camera_mm) {
+    return towards_scanner_;
+  }
+  const Eigen::Vector3d p = scanner_from_model_ * p_mm;
+  return model_from_scanner_.rotation * (source(scanner_.view.camera_mm, p) - p).normalized();
+}
+
 double ViewPredictor::facing_chance(const Eigen::Vector3d& p_mm, const Eigen::Vector3d& normal) const {
   if (hidden_ && hidden_->normal.dot(p_mm) < hidden_->offset_mm) {
     return 0.0;

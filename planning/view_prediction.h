@@ -63,6 +63,9 @@ class ViewPredictor {
   [[nodiscard]] double looks_past_mm(const Eigen::Vector3d& p_mm) const;
   /// Unit vector from the model to the scanner.
   [[nodiscard]] const Eigen::Vector3d& towards_scanner() const { return towards_scanner_; }
+  /// Unit vector from the point to the camera when the laser meets it; towards_scanner() where the camera is
+  /// not known. Model frame.
+  [[nodiscard]] Eigen::Vector3d towards_camera(const Eigen::Vector3d& p_mm) const;
 
  private:
   [[nodiscard]] Eigen::Vector3d source(const std::optional<Eigen::Vector3d>& at_mm,

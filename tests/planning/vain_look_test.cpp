@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+// When a place is given up because scans looked at it in vain.
+#include "planning/vain_look.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/units.h"
+#include "planning/excuse.h"
+#include "planning/next_view.h"
+#include "planning/red_map.h"
+#include "tests/planning/support/pebble.h"
+
+namespace dubsar {
+namespace {
+
+using test::Session;
+using test::turned;
+using test::turntable_rig;
+using ::testing::Each;
+using ::testing::Ge;
+
+VainLook look_from(double about_x_deg, double roll_deg, double chance = 0.9) {
+  const Eigen::Matrix3d turn =
+      turned(about_x_deg, 0).rotation * Eigen::AngleAxisd(rad_from_deg(roll_deg), Eigen::Vector3d::UnitZ());
+  return {turn.col(2), turn * Eigen::Vector3d(0, std::sin(rad_from_deg(24)), std::cos(rad_from_deg(24))),
+          chance};
+}
+
+TEST(VainLook, WhoDoesNotMoveHasLookedOnce) {
+  std::vector<VainLook> looks(4, look_from(0, 0));
+  EXPECT_EQ(full_looks(looks), 4U);
+  EXPECT_EQ(full_looks_apart(looks), 1U);
+  looks.push_back(look_from(10, 0));
+  EXPECT_EQ(full_looks_apart(looks), 1U) << "nearly the same shadows";
+  looks.push_back(look_from(20, 0));
+  EXPECT_EQ(full_looks_apart(looks), 2U);
+  looks.push_back(look_from(0, 90));
+  EXPECT_EQ(full_looks_apart(looks), 3U) << "the camera stands elsewhere";
+  looks.push_back(look_from(60, 0, 0.4));
+  EXPECT_EQ(full_looks_apart(looks), 3U) << "that one need not have seen it";
+}
+
+TEST(VainLook, LooksOfLittleChanceTakeLessOfAPlacesWorth) {
+  const Eigen::Vector3d up(0, 0, 1);
+  const auto left = [&](std::vector<VainLook> looks) { return novelty(looks, up); };
+  EXPECT_EQ(left({}), 1.0);
+  EXPECT_LT(left({look_from(0, 0)}), left({look_from(0, 0, 0.2)}));
+  EXPECT_LT(left({look_from(0, 0, 0.2)}), 0.8);
+  EXPECT_GT(left({look_from(80, 0)}), 0.75) << "from elsewhere";
+}
+
+double pit_of(const RedMapResult& result, RegionState state, Excuse excuse) {
+  double area_mm2 = 0;
+  for (const RedRegion& region : result.map.regions) {
+    const bool is_there = region.center_mm.head<2>().norm() < 3 && region.center_mm.z() > 0;
+    area_mm2 += is_there && region.state == state && region.excuse == excuse ? region.area_mm2 : 0.0;
+  }
+  return area_mm2;
+}
+
+TEST(VainLook, APitIsGivenUpOnceItWasLookedAtFromFourSides) {
+  JobContext job;
+  const Rig rig = turntable_rig();
+  const auto mapped = [&](std::initializer_list<double> about_x_deg) {
+    Session session;
+    session.pit_mm = 2.5;
+    for (const double deg : about_x_deg) {
+      session.scan(turned(deg, 0));
+    }
+    return make_red_map(session.map.scans(), nullptr, &rig, {}, job).value();
+  };
+  const RedMapResult unmoved = mapped({0, 0, 0, 0, 0});
+  EXPECT_GT(pit_of(unmoved, RegionState::kRed, Excuse::kNone), 10.0);
+  EXPECT_EQ(pit_of(unmoved, RegionState::kExcused, Excuse::kUnreachable), 0.0);
+  const RedMapResult moved = mapped({0, 20, -20, 40, -40});
+  EXPECT_LT(pit_of(moved, RegionState::kRed, Excuse::kNone), 1.0);
+  EXPECT_GT(pit_of(moved, RegionState::kExcused, Excuse::kUnreachable), 10.0);
+}
+
+/// One place that faces up, and the only pose from which it can be looked at, at a slope of 69°.
+struct Grazed {
+  Session session;
+  RedTargets red;
+  std::vector<ViewCandidate> candidates{1};
+  ScannerModel scanner;
+  JobContext job;
+
+  Grazed() {
+    session.scan(turned(0, 0));
+    candidates.front().model_from_scanner = turned(68, 0);
+    RedTarget& target = red.targets.emplace_back();
+    target.position_mm = {0, 0, 5.5};
+    target.area_mm2 = 4;
+    scanner = ScannerModel::of(*session.grids.front(), 0.02);
+    scanner.view.camera_mm.reset();
+    scanner.view.laser_mm.reset();
+  }
+  [[nodiscard]] NextViews views(const NextViewOptions& options = {}) {
+    return next_views(candidates, scanner, model_surface(session.map.scans()), red.targets, options, job)
+        .value();
+  }
+};
+
+TEST(VainLook, AfterLooksOfSomeChanceNoPosePromisesAnyMore) {
+  Grazed one;
+  const double plain = one.views().best_chance.front();
+  ASSERT_GT(plain, 0.05);
+  ASSERT_LT(plain, kTriedChance);
+  const SurfaceCover cover(one.session.map.scans());
+  const auto excuse = [&] {
+    excuse_tried_out(one.session.map.scans(), cover, one.views().best_left, 500.0, {}, one.red);
+    return one.red.targets.front().excuse;
+  };
+  RedTarget& target = one.red.targets.front();
+  target.tried.assign(3, look_from(68, 0, plain));
+  EXPECT_EQ(excuse(), Excuse::kNone) << "three looks are not enough";
+  target.tried.assign(6, look_from(68, 0, plain));
+  EXPECT_EQ(one.views().best_chance.front(), static_cast<float>(plain));
+  EXPECT_EQ(excuse(), Excuse::kUnreachable);
+}
+
+TEST(VainLook, WhatIsThinnedOutIsJudgedToo) {
+  Grazed some;
+  some.red.targets.resize(7, some.red.targets.front());
+  some.red.targets[5].normal = {0, 0, -1};  // away from the only pose
+  NextViewOptions options;
+  options.max_targets = 2;
+  const NextViews views = some.views(options);
+  EXPECT_THAT(views.best_chance, Each(Ge(0.0F)));
+  EXPECT_EQ(views.best_chance[5], 0.0F);
+  EXPECT_GE(views.best_chance[4], 0.05F);
+}
+
+}  // namespace
+}  // namespace dubsar
