@@ -52,11 +52,13 @@ std::string scans_section(const ReportInput& input) {
   std::string rows;
   for (const ScanPose& scan : input.scans) {
     const RedScan* counts = find_counts(input.red_map, scan.id);
+    const std::optional<int> first = copied_from(input.red_map.copies, scan.id);
     const bool placed = scan.status != PoseStatus::kFailed;
     const std::string dash = "–";
     rows += table_row(
         {std::to_string(scan.id), html_escaped(scan.file),
-         std::string(to_string(scan.status)) + (scan.locked ? ", fixed by the operator" : ""),
+         std::string(to_string(scan.status)) + (scan.locked ? ", fixed by the operator" : "") +
+             (first ? ", a copy of scan " + std::to_string(*first) : ""),
          placed ? micrometres(scan.rms_mm) : dash, placed ? micrometres(scan.sigma_mm) : dash,
          placed ? fixed(100.0 * scan.overlap, 0) : dash, counts ? std::to_string(counts->samples) : dash,
          counts ? std::to_string(counts->sparse) : dash, counts ? std::to_string(counts->cleared) : dash,
@@ -79,7 +81,8 @@ std::string accuracy_section(const ReportInput& input) {
   std::vector<double> rms_mm;
   double worst_sigma_mm = 0;
   for (const ScanPose& scan : input.scans) {
-    if (scan.status == PoseStatus::kRegistered && std::isfinite(scan.rms_mm)) {
+    if (scan.status == PoseStatus::kRegistered && std::isfinite(scan.rms_mm) &&
+        !copied_from(input.red_map.copies, scan.id)) {
       rms_mm.push_back(scan.rms_mm);
       worst_sigma_mm = std::max(worst_sigma_mm, scan.sigma_mm);
     }

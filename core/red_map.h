@@ -10,6 +10,7 @@
 
 #include "core/rig.h"
 #include "core/rigid_transform.h"
+#include "core/scan_copy.h"
 
 namespace dubsar {
 
@@ -71,6 +72,7 @@ struct NextView {
 struct RedMap {
   bool conclusive = false;
   std::vector<RedScan> scans;
+  std::vector<ScanCopy> copies;  ///< placed scans that count as one of `scans` and are not among them; by id
   std::vector<RedRegion> regions;
   std::vector<NextView> next;
 };

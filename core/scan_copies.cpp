@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <bit>
 #include <cstddef>
-#include <map>
 
 #include "core/parallel.h"
 #include "core/random.h"
@@ -54,22 +53,26 @@ std::optional<SampleDigest> sample_digest(const RangeGrid& grid) {
   return all.samples == 0 ? std::nullopt : std::optional(all.digest);
 }
 
-std::vector<ScanCopy> copies_among(std::span<const PlacedScan> scans) {
-  std::map<SampleDigest, std::vector<int>> ids_with;
-  for (const PlacedScan& scan : scans) {
-    if (const auto samples = sample_digest(*scan.grid)) {
-      ids_with[*samples].push_back(scan.id);
-    }
-  }
+std::vector<ScanCopy> copies_among(const std::map<int, std::optional<SampleDigest>>& samples) {
+  std::map<SampleDigest, int> first_with;
   std::vector<ScanCopy> copies;
-  for (auto& [samples, ids] : ids_with) {
-    std::ranges::sort(ids);
-    for (std::size_t k = 1; k < ids.size(); ++k) {
-      copies.push_back({ids[k], ids.front()});
+  for (const auto& [id, digest] : samples) {
+    if (!digest) {
+      continue;
+    }
+    if (const auto [first, is_new] = first_with.try_emplace(*digest, id); !is_new) {
+      copies.push_back({id, first->second});
     }
   }
-  std::ranges::sort(copies);
   return copies;
+}
+
+std::vector<ScanCopy> copies_among(std::span<const PlacedScan> scans) {
+  std::map<int, std::optional<SampleDigest>> samples;
+  for (const PlacedScan& scan : scans) {
+    samples[scan.id] = sample_digest(*scan.grid);
+  }
+  return copies_among(samples);
 }
 
 }  // namespace dubsar

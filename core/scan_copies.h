@@ -4,12 +4,14 @@
 
 #include <compare>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include "core/placed_scan.h"
 #include "core/range_grid.h"
+#include "core/scan_copy.h"
 
 namespace dubsar {
 
@@ -25,16 +27,8 @@ struct SampleDigest {
 /// Nothing of a grid without a valid sample, which measures nothing.
 [[nodiscard]] std::optional<SampleDigest> sample_digest(const RangeGrid& grid);
 
-/// A scan with the very samples of another, such as a file that came twice. No two scans have the same noise:
-/// they are one measurement, wherever their poses put it, and are to count as one.
-struct ScanCopy {
-  int id = 0;
-  int of_id = 0;  ///< the lowest with these samples
-
-  auto operator<=>(const ScanCopy&) const = default;
-};
-
-/// By id; all but the first of those with the same samples.
+/// By id; all but the first of those with the same samples. `samples` by scan.
+[[nodiscard]] std::vector<ScanCopy> copies_among(const std::map<int, std::optional<SampleDigest>>& samples);
 [[nodiscard]] std::vector<ScanCopy> copies_among(std::span<const PlacedScan> scans);
 
 }  // namespace dubsar

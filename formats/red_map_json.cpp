@@ -72,6 +72,12 @@ RedScan scan_from(const JsonNode& node) {
   return scan;
 }
 
+ScanCopy copy_from(const JsonNode& node) {
+  constexpr int kMostId = std::numeric_limits<int>::max();
+  return {static_cast<int>(node.at("id").integer(0, kMostId)),
+          static_cast<int>(node.at("of").integer(0, kMostId))};
+}
+
 RedRegion region_from(const JsonNode& node) {
   RedRegion region;
   region.face = static_cast<Face>(node.at("face").one_of(face_names()));
@@ -120,6 +126,9 @@ std::string red_map_to_json(const RedMap& map) {
   for (const RedScan& scan : map.scans) {
     root["scans"].push_back(scan_json(scan));
   }
+  for (const ScanCopy& copy : map.copies) {
+    root["copies"].push_back({{"id", copy.id}, {"of", copy.of_id}});
+  }
   root["regions"] = OrderedJson::array();
   for (const RedRegion& region : map.regions) {
     root["regions"].push_back(region_json(region));
@@ -145,6 +154,11 @@ Result<RedMap> parse_red_map(std::string_view text, const std::string& where) {
   map.conclusive = root.at("conclusive").boolean();
   for (const JsonNode& node : root.at("scans").items()) {
     map.scans.push_back(scan_from(node));
+  }
+  if (const auto copies = root.find("copies")) {
+    for (const JsonNode& node : copies->items()) {
+      map.copies.push_back(copy_from(node));
+    }
   }
   for (const JsonNode& node : root.at("regions").items()) {
     map.regions.push_back(region_from(node));

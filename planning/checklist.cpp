@@ -4,18 +4,23 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "core/scan_copies.h"
 #include "planning/model_faces.h"
 
 namespace dubsar {
 
 namespace {
 
-void count_scans(std::span<const ScanPose> poses, Checklist& list) {
+void count_scans(std::span<const ScanPose> poses, std::span<const ScanCopy> copies, Checklist& list) {
   for (const ScanPose& pose : poses) {
+    if (const std::optional<int> first = copied_from(copies, pose.id)) {
+      list.warnings.push_back({pose.id, "it has the very samples of scan " + std::to_string(*first) +
+                                            ", and counts as the same scan"});
+      continue;
+    }
     list.scans_registered += pose.status == PoseStatus::kRegistered ? 1 : 0;
     list.scans_unsure += pose.status == PoseStatus::kUnsure ? 1 : 0;
     list.scans_failed += pose.status == PoseStatus::kFailed ? 1 : 0;
@@ -47,33 +52,20 @@ void add_regions(const RedMap& map, Checklist& list) {
   }
 }
 
-/// The scans that are measurements of their own; of the others a warning.
-std::vector<PlacedScan> without_copies(std::span<const PlacedScan> registered, Checklist& list) {
-  const std::vector<ScanCopy> copies = copies_among(registered);
-  for (const ScanCopy& copy : copies) {
-    list.warnings.push_back({copy.id, "it has the very samples of scan " + std::to_string(copy.of_id) +
-                                          ", and counts as the same scan"});
-  }
-  std::vector<PlacedScan> once(registered.begin(), registered.end());
-  std::erase_if(once, [&](const PlacedScan& scan) {
-    return std::ranges::find(copies, scan.id, &ScanCopy::id) != copies.end();
-  });
-  return once;
-}
-
 }  // namespace
 
 Checklist make_checklist(const RedMap& map, std::span<const ScanPose> poses,
                          std::span<const PlacedScan> registered, const Mesh& mesh, const Rig* rig) {
   Checklist list;
   list.conclusive = map.conclusive;
-  count_scans(poses, list);
+  count_scans(poses, map.copies, list);
   if (rig != nullptr) {
     list.calibration = rig->calibration;
     list.calibration_age_days = rig->calibration_age_days;
     list.calibration_check = rig->calibration_check;
   }
-  const std::vector<PlacedScan> once = without_copies(registered, list);
+  std::vector<PlacedScan> once(registered.begin(), registered.end());
+  std::erase_if(once, [&](const PlacedScan& scan) { return copied_from(map.copies, scan.id).has_value(); });
   const SurfaceQuality quality = surface_quality(once, mesh, model_faces(once, mesh.positions));
   list.sampling = quality.all;
   for (std::size_t face = 0; face < kFaceCount; ++face) {

@@ -4,7 +4,6 @@
 
 #include <cmath>
 
-#include "core/scan_copies.h"
 #include "formats/pins_json.h"
 #include "formats/poses_json.h"
 #include "planning/sparse_flags.h"
@@ -58,8 +57,13 @@ Result<std::vector<ScanPose>> register_grids(const Grids& grids, const PinSet* p
   return poses;
 }
 
-Result<Mesh> stitch_grids(const Grids& grids, const std::vector<ScanPose>& poses,
-                          const std::optional<PinSet>& pins, JobContext& job) {
+struct Stitched {
+  Mesh mesh;
+  std::vector<ScanCopy> copies;  ///< grids that were left out
+};
+
+Result<Stitched> stitch_grids(const Grids& grids, const std::vector<ScanPose>& poses,
+                              const std::optional<PinSet>& pins, JobContext& job) {
   std::vector<StationScan> scans;
   std::vector<PlacedScan> placed;
   scans.reserve(poses.size());
@@ -82,17 +86,18 @@ Result<Mesh> stitch_grids(const Grids& grids, const std::vector<ScanPose>& poses
   if (placed.empty()) {
     return fail(ErrorKind::kUsage, "no scan is registered", {}, "see the poses' reasons");
   }
-  return stitch(placed, {}, job);
+  Stitcher stitcher;
+  job.progress("triangulate grids", 0.0);
+  if (const Status added = stitcher.add(placed, job); !added) {
+    return std::unexpected(added.error());
+  }
+  std::vector<ScanCopy> copies = stitcher.copies();
+  Result<Mesh> mesh = stitcher.take_mesh(job);
+  return mesh ? Result<Stitched>({std::move(*mesh), std::move(copies)}) : std::unexpected(mesh.error());
 }
 
-void warn_of_copies(const Grids& grids, const std::vector<ScanPose>& poses) {
-  std::vector<PlacedScan> placed;
-  for (const ScanPose& pose : poses) {
-    if (pose.status == PoseStatus::kRegistered) {
-      placed.push_back({pose.id, grids[static_cast<std::size_t>(pose.id)].get(), nullptr, {}});
-    }
-  }
-  for (const ScanCopy& copy : copies_among(placed)) {
+void warn_of_copies(const std::vector<ScanCopy>& copies) {
+  for (const ScanCopy& copy : copies) {
     warn_of_scan("grid " + std::to_string(copy.id) + " is left out: it has the very samples of grid " +
                  std::to_string(copy.of_id) + ", and counts as the same scan");
   }
@@ -197,10 +202,10 @@ void bind_scans(py::module_& module) {
           }
         }
         const std::optional<PinSet> pins = pins_of(pins_file);
-        auto mesh = std::make_shared<Mesh>(
-            run_for_result(progress, [&](JobContext& job) { return stitch_grids(grids, poses, pins, job); }));
-        warn_of_copies(grids, poses);
-        return mesh;
+        Stitched stitched =
+            run_for_result(progress, [&](JobContext& job) { return stitch_grids(grids, poses, pins, job); });
+        warn_of_copies(stitched.copies);
+        return std::make_shared<Mesh>(std::move(stitched.mesh));
       },
       py::arg("grids"), py::arg("poses"), py::arg("pins") = py::none(), py::arg("progress") = py::none(),
       "One oriented 2-manifold of the registered scans. A grid with the very samples of another is left "

@@ -171,13 +171,17 @@ bool ForeignMatter::look(const Placed& own, std::span<const Placed> all) {
 
 std::vector<ForeignFound> ForeignMatter::find(std::span<const ScanPose> poses) {
   std::vector<Placed> placed;
+  std::map<int, std::optional<SampleDigest>> samples;
   for (auto& [id, witness] : witnesses_) {
     witness->matter.clear();
     const auto pose = std::ranges::find(poses, id, &ScanPose::id);
     if (pose != poses.end() && pose->status == PoseStatus::kRegistered) {
       placed.push_back({witness.get(), &*pose});
+      samples[id] = witness->samples;
     }
   }
+  copies_ = copies_among(samples);
+  std::erase_if(placed, [this](const Placed& one) { return copied_from(copies_, one.pose->id).has_value(); });
   std::vector<std::uint8_t> suspect(placed.size(), 0);
   parallel_for_each_index(
       placed.size(), [&](std::size_t k) { suspect[k] = is_suspect(placed[k], placed) ? 1 : 0; }, 1);

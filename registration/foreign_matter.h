@@ -10,6 +10,7 @@
 
 #include "core/range_grid.h"
 #include "core/sample_flags.h"
+#include "core/scan_copy.h"
 #include "core/scan_pose.h"
 
 namespace dubsar {
@@ -36,7 +37,8 @@ struct ForeignFound {
 /// it alone, not on clay that another scan shows, goes with it. What is left beside it that only this scan
 /// shows may be either, and so may what is shown as often as looked through: it is doubtful, for people to
 /// scan again. How deep a look through must go follows from how well the two scans agree elsewhere: a wrong
-/// pose makes no clay foreign.
+/// pose makes no clay foreign. Of scans with the very samples of each other the one with the lowest id counts
+/// for all: the others neither see nor are seen.
 ///
 /// Keeps a witness of each scan that is a good deal smaller than a large grid, which may go. One thread at a
 /// time.
@@ -56,6 +58,8 @@ class ForeignMatter {
   /// Holds all scans that are registered against each other; the others neither see nor are seen. The scans
   /// in which something was found, by id. Depends on scans and poses alone.
   std::vector<ForeignFound> find(std::span<const ScanPose> poses);
+  /// The registered scans that did not count in the last find(), by id.
+  [[nodiscard]] const std::vector<ScanCopy>& copies() const { return copies_; }
   /// What the last find() has found of each sample of a scan, [rows*cols]; `grid` as it was added. Empty when
   /// it found nothing there.
   [[nodiscard]] std::vector<Matter> matter(int id, const RangeGrid& grid) const;
@@ -67,6 +71,7 @@ class ForeignMatter {
   static bool look(const Placed& own, std::span<const Placed> all);
 
   std::map<int, std::unique_ptr<Witness>> witnesses_;
+  std::vector<ScanCopy> copies_;
 };
 
 }  // namespace dubsar

@@ -117,6 +117,11 @@ std::optional<std::map<int, ScanModel::WithoutForeign::Marks>> ScanModel::Withou
       out.erase(found.id);
     }
   }
+  for (const ScanCopy& copy : matter.copies()) {  // what shows in a scan shows in its copy
+    if (const auto first = out.find(copy.of_id); first != out.end()) {
+      out[copy.id] = first->second;
+    }
+  }
   return out.empty() ? std::nullopt : std::optional(std::move(out));
 }
 

@@ -24,8 +24,14 @@ std::vector<ScanPose> Engine::Impl::named_poses() const {
     if (const auto name = names.find(pose.id); name != names.end()) {
       pose.file = name->second;
     }
+    pose = judged(std::move(pose));
   }
   return poses;
+}
+
+ScanPose Engine::Impl::judged(ScanPose pose) const {
+  const auto known = precision.find(pose.id);
+  return known != precision.end() ? known->second.judged(std::move(pose)) : pose;
 }
 
 /// The final word on all scans that there are: poses, and the red map that follows from them.

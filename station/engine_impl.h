@@ -41,6 +41,7 @@
 #include "station/scan_set.h"
 #include "station/session_pins.h"
 #include "station/unfinished_scan.h"
+#include "triangulation/placed_precision.h"
 
 #include "station/engine.h"
 
@@ -143,8 +144,9 @@ struct Engine::Impl {
   Registrar registrar;
   PlanningStage planning;
   // Of the registering thread while it runs:
-  std::map<int, std::string> names;  ///< original names by id
-  std::set<int> taken_out;           ///< by the operator, perhaps before they were placed
+  std::map<int, std::string> names;          ///< original names by id
+  std::map<int, PlacedPrecision> precision;  ///< of those that were entered
+  std::set<int> taken_out;                   ///< by the operator, perhaps before they were placed
   OperatorWord word;
   IntruderFinder intruders;
 
@@ -266,7 +268,7 @@ struct Engine::Impl {
   /// Onto the disk, and only then reported; false when it is not there.
   bool store_scan(int id, const RangeGrid& grid, const std::optional<Placement>& drive,
                   const std::string& remark);
-  /// Into the model, as the operator's word on it has it.
+  /// Into the model, as the operator's word on it has it. Failed where it would lie too far from its origin.
   ScanPose register_scan(const StationScan& scan, JobContext& job);
   void register_all(JobContext& job);
   /// Takes out scans that show a hand or the like, that one included, and says so; then what they stood in
@@ -276,6 +278,7 @@ struct Engine::Impl {
   void plan_all(JobContext& job);
   void tell_foreign();  ///< what the planning stage has left out of scans, once of each
   std::vector<ScanPose> named_poses() const;
+  [[nodiscard]] ScanPose judged(ScanPose pose) const;  ///< by what the model can hold
   // engine_commands.cpp
   void obey_commands(JobContext& job);  ///< those that wait, on the thread that owns the registrar
   /// The scans that came in by it, in place of what was there of them.

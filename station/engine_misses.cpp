@@ -57,7 +57,7 @@ ScanPose Engine::Impl::set_intruders_aside(const StationScan& scan, ScanPose pos
       break;
     }
     const std::vector<ScanPose> without = registrar.poses();  // which may tell of this one otherwise now
-    pose = *std::ranges::find(without, scan.id, &ScanPose::id);
+    pose = judged(*std::ranges::find(without, scan.id, &ScanPose::id));
     if (pose.status != PoseStatus::kRegistered) {
       pose = register_scan(scan, job);
     }
@@ -141,7 +141,9 @@ NextStep Engine::Impl::step_after(int id, const std::vector<ScanPose>& poses, co
     return mine != lies_as.end() && other != lies_as.end() && mine->second == other->second;
   };
   std::set<int> lie_as_it;
-  std::ranges::copy_if(now, std::inserter(lie_as_it, lie_as_it.end()), lies_as_it);
+  std::ranges::copy_if(now, std::inserter(lie_as_it, lie_as_it.end()), [&](int one) {
+    return lies_as_it(one) && !copied_from(planning.copies(), one);  // a copy is no second word
+  });
   const bool just_lifted = lie_as_it.empty();
   const auto here = std::ranges::count_if(in_vain, lies_as_it);
   // One word against another: the first of the two may be the one with a hand in it.

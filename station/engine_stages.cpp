@@ -247,10 +247,11 @@ ScanPose Engine::Impl::register_scan(const StationScan& scan, JobContext& job) {
   const StageClock timing = clock("registration");
   const std::optional<PinSet> pins_now = known_pins();
   const PinSet* said = pins_now ? &*pins_now : nullptr;
+  precision.insert_or_assign(scan.id, PlacedPrecision(*scan.grid));
   const auto locked = word.locked.find(scan.id);
-  return locked != word.locked.end()
-             ? registrar.add_at(scan.id, scan.measured, said, locked->second, true, job)
-             : registrar.add(scan.id, scan.measured, said, job);
+  return judged(locked != word.locked.end()
+                    ? registrar.add_at(scan.id, scan.measured, said, locked->second, true, job)
+                    : registrar.add(scan.id, scan.measured, said, job));
 }
 
 void Engine::Impl::register_all(JobContext& job) {

@@ -29,6 +29,9 @@ bool is_of_the_same_scans(const RedMap& map, const std::vector<ScanPose>& poses)
   for (const RedScan& scan : map.scans) {
     mapped.insert(scan.id);
   }
+  for (const ScanCopy& copy : map.copies) {
+    mapped.insert(copy.id);
+  }
   std::set<int> registered;
   for (const ScanPose& pose : poses) {
     if (pose.status == PoseStatus::kRegistered) {
@@ -258,6 +261,7 @@ void LiveSession::rebuild_model(const SessionStore& store, const ScanSet& set,
   const bool kept = planned && is_stored(store, planned->results.red_map);
   const std::scoped_lock lock(mutex_);
   if (planned) {
+    follow(planned->results.poses);
     state_.red_map = std::make_shared<const RedMap>(planned->results.red_map);
     state_.verdict_kept = kept;
   }

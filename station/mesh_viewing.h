@@ -71,7 +71,7 @@ class MeshViewing {
   /// Keeps a selection under its name, in the place of one that has it; forgets one.
   void keep_selection(MeshSelection selection);
   void forget_selection(const std::string& name);
-  /// Writes the selected part, with what is known of its vertices, as a mesh of its own.
+  /// Writes the selected part as a mesh of its own: a .ply, which holds all that is known of its vertices.
   void write_part(MeshSelection selection, const std::filesystem::path& file);
   /// Writes the selected wedges as a table (CSV).
   void write_wedges_of(MeshSelection selection, const std::filesystem::path& file);

@@ -146,7 +146,9 @@ Result<std::vector<ScanPose>> register_scans(const ScanSet& set, const RegisterO
   }
   std::ranges::sort(poses, {}, &ScanPose::id);
   for (ScanPose& pose : poses) {
-    pose.file = std::ranges::find(set.scans, pose.id, &StationScan::id)->file;
+    const StationScan& scan = *std::ranges::find(set.scans, pose.id, &StationScan::id);
+    pose.file = scan.file;
+    pose = PlacedPrecision(*scan.grid).judged(std::move(pose));
   }
   return poses;
 }
@@ -215,9 +217,10 @@ Result<std::vector<ScanPose>> poses_from_file(const ScanSet& set, const std::fil
   std::vector<ScanPose> poses;
   for (const StationScan& scan : set.scans) {
     if (const ScanPose* found = pose_in_file(*read, scan)) {
-      const PlacedScan placed{scan.id, scan.grid.get(), nullptr, found->model_from_scanner, found->sigma_mm};
       const bool counts = found->status == PoseStatus::kRegistered;
-      if (const Status near = counts ? check_placed_precision(placed, scan.file) : Status(); !near) {
+      const PlacedPrecision precision(*scan.grid);
+      if (const Status near = counts ? precision.check(found->model_from_scanner, scan.file) : Status();
+          !near) {
         return std::unexpected(near.error());
       }
       poses.push_back(*found);

@@ -5,17 +5,27 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "core/log.h"
 #include "formats/red_map_json.h"
+#include "triangulation/placed_precision.h"
 
 namespace dubsar {
 
 namespace {
 
+/// Those of the set's scans; one that was stored registered where the model cannot hold it is failed.
 std::vector<ScanPose> poses_in(const ScanSet& set, const std::vector<ScanPose>& poses) {
   std::vector<ScanPose> out;
-  std::ranges::copy_if(poses, std::back_inserter(out), [&](const ScanPose& pose) {
-    return std::ranges::find(set.scans, pose.id, &StationScan::id) != set.scans.end();
-  });
+  for (const ScanPose& pose : poses) {
+    const auto scan = std::ranges::find(set.scans, pose.id, &StationScan::id);
+    if (scan == set.scans.end()) {
+      continue;
+    }
+    out.push_back(PlacedPrecision(*scan->grid).judged(pose));
+    if (out.back().status != pose.status) {
+      log_warning(scan->file + " is left out: " + out.back().reason);
+    }
+  }
   return out;
 }
 
@@ -94,6 +104,10 @@ Result<std::optional<std::vector<std::string>>> differs_from_stored(const Sessio
   const auto a = nlohmann::json::parse(**text, nullptr, false);
   const auto b = nlohmann::json::parse(now, nullptr, false);
   const auto differs = [&](const char* part) { return a.value(part, nlohmann::json()) != b[part]; };
+  const nlohmann::json none;
+  if (a.value("copies", none) != b.value("copies", none)) {
+    out.emplace_back("the scans that are copies of others");
+  }
   if (differs("scans")) {
     out.push_back(a["scans"].size() == b["scans"].size()
                       ? "the counts of samples"

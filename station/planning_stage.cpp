@@ -59,7 +59,7 @@ Status PlanningStage::place(const std::vector<ScanPose>& poses, bool exact, JobC
   std::map<int, PlacedScan> wanted;
   for (const ScanPose& pose : poses) {
     const auto scan = scans_.find(pose.id);
-    if (pose.status == PoseStatus::kRegistered && scan != scans_.end()) {
+    if (pose.status == PoseStatus::kRegistered && scan != scans_.end() && !copied_from(copies(), pose.id)) {
       wanted[pose.id] = {pose.id, scan->second.grid.get(), &flags_.of(pose.id), pose.model_from_scanner,
                          pose.sigma_mm};
     }
@@ -323,6 +323,7 @@ Result<RedMap> PlanningStage::red_map(const Rig* rig, JobContext& job) {
   if (!result) {
     return std::unexpected(result.error());
   }
+  result->map.copies = copies();
   last_gain_ = gain_of_new(scans);
   if (last_gain_) {
     gains_.push_back(*last_gain_);

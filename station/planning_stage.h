@@ -38,6 +38,7 @@ class PlanningStage {
   void add(const StationScan& scan);
 
   /// Follows the poses: puts in what is newly registered, takes out what no longer is, moves what has moved.
+  /// A scan with the very samples of another is that one: it is put in only when that one is taken out.
   /// `exact` moves every scan to its last digit; without it one that moved by less than a small part of µ
   /// stays, which keeps the online work small. Errors: kCancelled.
   Status place(const std::vector<ScanPose>& poses, bool exact, JobContext& job);
@@ -47,6 +48,9 @@ class PlanningStage {
 
   /// Scans in which the last place() found something that is not of the tablet, and left it out; by id.
   [[nodiscard]] const std::vector<ForeignFound>& foreign() const { return flags_.foreign(); }
+
+  /// Registered scans that the last place() left out since another has their very samples; by id.
+  [[nodiscard]] const std::vector<ScanCopy>& copies() const { return flags_.copies(); }
 
   /// How the one scan that came between the last two red maps did; nothing when none or several came.
   [[nodiscard]] const std::optional<ViewGain>& last_gain() const { return last_gain_; }

@@ -49,6 +49,7 @@ std::optional<std::string> prediction_sentence(const std::vector<ViewGain>& gain
       100 * median_of(off), off.size());
 }
 
+/// Of the scans that count.
 std::vector<std::string> accuracy_sentences(const std::vector<ScanPose>& poses,
                                             const std::vector<ViewGain>& gains) {
   double worst_sigma_mm = 0;
@@ -171,6 +172,10 @@ Result<Checklist> checklist_of(const RedMap& red_map, const std::vector<ScanPose
 }
 
 ReportInput report_input(const Results& results, const PlanningStage& stage, const PageFacts& facts) {
+  std::vector<ScanPose> counting = results.poses;
+  std::erase_if(counting, [&](const ScanPose& pose) {
+    return copied_from(results.red_map.copies, pose.id).has_value();
+  });
   return {.title = facts.title,
           .tablet = facts.tablet,
           .tool_version = program_name(),
@@ -183,7 +188,7 @@ ReportInput report_input(const Results& results, const PlanningStage& stage, con
           .red_points = stage.red_points(results.mesh),
           .tablet_from_model = stage.tablet_from_model(results.mesh),
           .wedges = facts.wedges,
-          .accuracy = accuracy_sentences(results.poses, facts.gains),
+          .accuracy = accuracy_sentences(counting, facts.gains),
           .calibration = {},
           .not_measured = facts.wedges.empty() ? std::vector<std::string>{"Wedges: they were not looked for."}
                                                : std::vector<std::string>{},

@@ -35,6 +35,8 @@ class TabletFlags {
   [[nodiscard]] const SampleFlags& of(int id) const { return *now_.at(id); }
   /// Scans in which something foreign was found, by id.
   [[nodiscard]] const std::vector<ForeignFound>& foreign() const { return foreign_; }
+  /// Registered scans with the very samples of another, as the last follow() had it: they count as that one.
+  [[nodiscard]] const std::vector<ScanCopy>& copies() const { return matter_.copies(); }
 
  private:
   std::map<int, StationScan> scans_;

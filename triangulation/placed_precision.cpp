@@ -50,14 +50,14 @@ Vector3d middle_of(const RangeGrid& grid) {
 
 }  // namespace
 
-Status check_placed_precision(const PlacedScan& scan, const std::string& name) {
-  const RangeGrid& grid = *scan.grid;
-  const double farthest_mm = (scan.model_from_scanner * middle_of(grid)).cwiseAbs().maxCoeff();
-  if (!std::isfinite(farthest_mm) || keeps_places(farthest_mm, 0)) {
-    return {};
-  }
-  const double spacing_mm = grid.spacing_mm > 0 ? grid.spacing_mm : estimate_spacing_mm(grid);
-  if (!(spacing_mm > 0) || keeps_places(farthest_mm, kShortestEdge * spacing_mm)) {
+PlacedPrecision::PlacedPrecision(const RangeGrid& grid)
+    : middle_mm_(middle_of(grid)),
+      spacing_mm_(grid.spacing_mm > 0 ? grid.spacing_mm : estimate_spacing_mm(grid)) {}
+
+Status PlacedPrecision::check(const RigidTransform& model_from_scanner, const std::string& name) const {
+  const double farthest_mm = (model_from_scanner * middle_mm_).cwiseAbs().maxCoeff();
+  if (!std::isfinite(farthest_mm) || !(spacing_mm_ > 0) ||
+      keeps_places(farthest_mm, kShortestEdge * spacing_mm_)) {
     return {};
   }
   return bad_input(name,
@@ -65,6 +65,17 @@ Status check_placed_precision(const PlacedScan& scan, const std::string& name) {
                        " m from the origin, too far for its samples to keep their places to a small "
                        "part of their spacing",
                    "take the offset of a map or a room from all poses, or mend this one");
+}
+
+ScanPose PlacedPrecision::judged(ScanPose pose) const {
+  if (pose.status != PoseStatus::kRegistered) {
+    return pose;
+  }
+  if (const Status near = check(pose.model_from_scanner, pose.file); !near) {
+    pose.status = PoseStatus::kFailed;
+    pose.reason = near.error().what + "; " + near.error().mend;
+  }
+  return pose;
 }
 
 }  // namespace dubsar

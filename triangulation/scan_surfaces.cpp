@@ -30,7 +30,7 @@ Status check_stitchable(const PlacedScan& scan) {
   if (!scan.model_from_scanner.is_rigid() || !scan.model_from_scanner.translation_mm.allFinite()) {
     return bad_input(stitched_name(scan), "its pose is not a rigid transform", "register the scan again");
   }
-  return check_placed_precision(scan, stitched_name(scan));
+  return PlacedPrecision(*scan.grid).check(scan.model_from_scanner, stitched_name(scan));
 }
 
 std::vector<StitchSurface> surfaces_of_passes(const PlacedScan& scan, const StitchSurfaceOptions& options) {

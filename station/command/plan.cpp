@@ -106,7 +106,7 @@ Status write_states(const fs::path& folder, const ScanSet& set, const PlannedAga
       return written;
     }
   }
-  if (planned.stage->placed().size() < set.scans.size()) {
+  if (planned.stage->placed().size() + planned.stage->copies().size() < set.scans.size()) {
     log_warning("scans that are not registered have no states");
   }
   return {};

@@ -4,11 +4,14 @@
 
 #include <tbb/global_control.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <memory>
 #include <optional>
 #include <utility>
 
+#include "core/log.h"
+#include "core/scan_copies.h"
 #include "core/scan_remark.h"
 #include "core/utf8.h"
 #include "formats/atomic_file.h"
@@ -29,6 +32,14 @@ struct RegisterArguments : ScanSetArguments {
   std::vector<int> only;
   std::string from_poses;
 };
+
+void warn_of_copies(const ScanSet& set, const std::vector<ScanPose>& poses) {
+  const auto name = [&](int id) { return std::ranges::find(poses, id, &ScanPose::id)->file; };
+  for (const ScanCopy& copy : copies_among(placed_scans(set, poses))) {
+    log_warning(name(copy.id) + " has the very samples of " + name(copy.of_id) +
+                ", and counts as the same scan");
+  }
+}
 
 Result<int> register_all(const RegisterArguments& arguments, CommandContext& context) {
   // The result is the same for any number of threads: this is for machines that have other work.
@@ -67,6 +78,7 @@ Result<int> register_all(const RegisterArguments& arguments, CommandContext& con
       return std::unexpected(written.error());
     }
   }
+  warn_of_copies(*set, *poses);
   finish_progress();
   if (context.json) {
     CommandContext::print(nlohmann::ordered_json::parse(poses_to_json(*poses)));

@@ -31,7 +31,6 @@
 #include "station/tablet_flags.h"
 #include "station/tablet_label.h"
 #include "triangulation/mesh_check.h"
-#include "triangulation/placed_precision.h"
 #include "triangulation/stitcher.h"
 
 namespace dubsar {
@@ -59,10 +58,15 @@ void warn_left_out(const ScanPose& pose) {
               (pose.reason.empty() ? "" : ", " + pose.reason));
 }
 
+/// What the stitcher refuses is named by its file.
 Status put(Stitcher& stitcher, const StationScan& scan, const SampleFlags& flags, const ScanPose& pose,
            const CommandContext& context) {
-  return stitcher.add({scan.id, scan.grid.get(), &flags, pose.model_from_scanner, pose.sigma_mm},
-                      context.job);
+  Status added =
+      stitcher.add({scan.id, scan.grid.get(), &flags, pose.model_from_scanner, pose.sigma_mm}, context.job);
+  if (!added && added.error().kind == ErrorKind::kBadInput) {
+    added.error().where = scan.file;
+  }
+  return added;
 }
 
 /// Which samples are foreign only all scans together tell: those that show some are read once more.
@@ -126,10 +130,6 @@ Result<Taken> take_scan_by_scan(const ScanSetArguments& arguments, Stitcher& sti
       named.file = scan.file;
       warn_left_out(named);
       return {};
-    }
-    const PlacedScan placed{scan.id, scan.grid.get(), nullptr, pose->model_from_scanner, pose->sigma_mm};
-    if (const Status near = check_placed_precision(placed, scan.file); !near) {
-      return near;
     }
     ++taken.scans;
     taken.names[scan.id] = scan.file;

@@ -312,6 +312,14 @@ TEST_F(Report, PlacesAreInTheFrameOfTheTablet) {
   EXPECT_THAT(checklist_html(all, *pictures), HasSubstr("at 11.0, 22.0, 0.0 mm"));
 }
 
+TEST_F(Report, ACopyIsToldAndCountsForNothing) {
+  scans_[1].sigma_mm = 0.5;
+  map_.copies = {{1, 0}};
+  const std::string page = html(report_html);
+  EXPECT_THAT(page, HasSubstr("<td>registered, a copy of scan 0</td>"));
+  EXPECT_THAT(page, HasSubstr("displacement of a scan by its pose is 0.0 µm"));
+}
+
 TEST_F(Report, TheChecklistPageHasWhatIsSigned) {
   map_.conclusive = list_.conclusive = false;
   RedRegion red;

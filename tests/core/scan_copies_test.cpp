@@ -66,7 +66,10 @@ TEST(ScanCopies, AllButTheFirstAreCopiesWhereverTheyLie) {
   const std::vector<PlacedScan> scans{
       {7, &one, nullptr, {}}, {4, &other, nullptr, {}}, {2, &one, nullptr, moved}, {5, &other, nullptr, {}},
       {9, &one, nullptr, {}}, {1, &empty, nullptr, {}}, {0, &empty, nullptr, {}}};
-  EXPECT_THAT(copies_among(scans), ElementsAre(ScanCopy{5, 4}, ScanCopy{7, 2}, ScanCopy{9, 2}));
+  const std::vector<ScanCopy> copies = copies_among(scans);
+  EXPECT_THAT(copies, ElementsAre(ScanCopy{5, 4}, ScanCopy{7, 2}, ScanCopy{9, 2}));
+  EXPECT_EQ(copied_from(copies, 9), 2);
+  EXPECT_FALSE(copied_from(copies, 2));
 }
 
 }  // namespace

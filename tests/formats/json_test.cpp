@@ -176,6 +176,7 @@ TEST(PinsJson, NamesWhatIsWrong) {
 RedMap sample_red_map() {
   RedMap map;
   map.scans = {{0, 100, 20, 10, 5, 1}, {2, 50000000000, 0, 0, 0, 0}};
+  map.copies = {{5, 0}, {7, 2}};
   RedRegion red;
   red.face = Face::kBottom;
   red.center_mm = {1.0 / 3, -2, 3};
@@ -202,6 +203,8 @@ TEST(RedMapJson, ReadsBack) {
   const auto back = parse_red_map(text, "r");
   ASSERT_TRUE(back) << line_of(back);
   EXPECT_EQ(back->scans[1].samples, 50000000000);
+  EXPECT_EQ(back->copies, map.copies);
+  EXPECT_EQ(red_map_to_json(RedMap{}).find("copies"), std::string::npos);
   EXPECT_EQ(back->regions[1].reason, map.regions[1].reason);
   EXPECT_EQ(back->regions[1].excuse, Excuse::kUnneeded);
   EXPECT_EQ(back->regions[0].excuse, Excuse::kNone);

@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "core/units.h"
+#include "planning/checklist.h"
 #include "planning/sparse_flags.h"
 
 namespace dubsar {
@@ -114,6 +115,50 @@ TEST_F(SurfaceQualityOfASquare, OverlapsAddUpAndTheBestAngleCounts) {
   EXPECT_NEAR(found.all.single_spacing_mm.median, 0.1, 1e-4);
   EXPECT_NEAR(deg_from_rad(found.all.incidence_rad.median), 0, 0.1);
   EXPECT_EQ(found.all.scans_share[3], 1.0);
+}
+
+void expect_same(const SamplingQuality& a, const SamplingQuality& b) {
+  EXPECT_EQ(a.places, b.places);
+  EXPECT_EQ(a.spacing_mm.median, b.spacing_mm.median);
+  EXPECT_EQ(a.spacing_mm.p95, b.spacing_mm.p95);
+  EXPECT_EQ(a.single_spacing_mm.median, b.single_spacing_mm.median);
+  EXPECT_EQ(a.scans_share, b.scans_share);
+}
+
+/// In the checklist, whether it is among the scans that are handed in or was left out before.
+TEST_F(SurfaceQualityOfASquare, ACopyCountsAsTheScanThatItIsOf) {
+  add(0.2);
+  add(0.2, rad_from_deg(40));
+  std::vector<ScanPose> poses(2);
+  poses[1].id = 1;
+  poses[0].status = poses[1].status = PoseStatus::kRegistered;
+  RedMap map;
+  const Checklist once = make_checklist(map, poses, scans_, mesh_, nullptr);
+  ASSERT_EQ(once.sampling.scans_share[2], 1.0);
+  EXPECT_TRUE(once.warnings.empty());
+
+  scans_.push_back(scans_[1]);
+  scans_[2].id = 7;
+  ASSERT_EQ(make_checklist(map, poses, scans_, mesh_, nullptr).sampling.scans_share[3], 1.0)
+      << "as a scan of its own";
+  poses.push_back(poses[1]);
+  poses[2].id = 7;
+  poses[2].sigma_mm = 3;
+  map.copies = {{7, 1}};
+  for (const bool handed_in : {true, false}) {
+    const Checklist twice = make_checklist(map, poses, scans_, mesh_, nullptr);
+    expect_same(twice.sampling, once.sampling);
+    for (std::size_t face = 0; face < kFaceCount; ++face) {
+      expect_same(twice.faces[face].sampling, once.faces[face].sampling);
+      EXPECT_EQ(twice.faces[face].seen_mm2, once.faces[face].seen_mm2);
+    }
+    EXPECT_EQ(twice.scans_registered, 2);
+    EXPECT_NE(twice.worst_sigma_scan, 7);
+    ASSERT_EQ(twice.warnings.size(), 1U) << handed_in;
+    EXPECT_EQ(twice.warnings[0].scan, 7);
+    EXPECT_EQ(twice.warnings[0].text, "it has the very samples of scan 1, and counts as the same scan");
+    scans_.pop_back();
+  }
 }
 
 TEST_F(SurfaceQualityOfASquare, FineIsFine) {

@@ -122,6 +122,15 @@ class TrueScans {
     }
     return out;
   }
+  /// The same scan once more, where it is.
+  void copy(int id, int copy_id) {
+    const RangeGrid& grid = grids.at(id);
+    ScanPose pose = *std::ranges::find(poses, id, &ScanPose::id);
+    pose.id = copy_id;
+    poses.push_back(pose);
+    matter.add(copy_id, grid, flag_sparse(grid));
+  }
+
   std::vector<ScanPose> poses;
   std::map<int, RangeGrid> grids;
   ForeignMatter matter;
@@ -256,6 +265,34 @@ TEST(ForeignMatter, OnlyRegisteredScansAreWitnesses) {
   poses = scans.poses;
   std::ranges::find(poses, 1, &ScanPose::id)->status = PoseStatus::kFailed;
   EXPECT_TRUE(scans.matter.find(poses).empty());
+}
+
+/// It would vouch for the hand that it shows as well, or look through another's as a second one.
+TEST(ForeignMatter, ACopyIsNoSecondWitness) {
+  Scenes scenes;
+  scenes.gripped = [](int view) { return view % 2 == 1; };
+  TrueScans scans(scenes);
+  const std::vector<ForeignFound> once = scans.matter.find(scans.poses);
+  EXPECT_TRUE(scans.matter.copies().empty());
+  ASSERT_EQ(once.size(), static_cast<std::size_t>(kViews / 2));
+  for (const int every : {1, 3}) {
+    for (int id = 0; id < kViews; id += every) {
+      scans.copy(id, 100 * every + id);
+    }
+  }
+  const std::vector<ForeignFound> twice = scans.matter.find(scans.poses);
+  ASSERT_EQ(scans.matter.copies().size(), static_cast<std::size_t>(kViews + kViews / 3));
+  EXPECT_EQ(scans.matter.copies().front(), (ScanCopy{100, 0}));
+  ASSERT_EQ(twice.size(), once.size());
+  for (std::size_t k = 0; k < once.size(); ++k) {
+    EXPECT_EQ(twice[k].id, once[k].id);
+    EXPECT_EQ(twice[k].foreign_mm2, once[k].foreign_mm2) << once[k].id;
+    EXPECT_EQ(twice[k].doubtful_mm2, once[k].doubtful_mm2) << once[k].id;
+    EXPECT_EQ(twice[k].witnesses, once[k].witnesses) << once[k].id;
+  }
+  // One counts as soon as the first of them is taken out.
+  std::erase_if(scans.poses, [](const ScanPose& pose) { return pose.id == 1; });
+  EXPECT_EQ(scans.matter.find(scans.poses).back().id, 101);
 }
 
 TEST(ForeignMatter, LargeGridsAreJudgedByFewerSamples) {

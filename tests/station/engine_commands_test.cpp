@@ -268,6 +268,64 @@ TEST(EngineCommands, TheDiameterOfTheFileHoldsAgainOnceAllLabelsAreTakenBack) {
   EXPECT_EQ(pins.tips.at(0).at(0).label, 7);
 }
 
+/// Fixed in the numbers of a map: that scan has no place, and the others are no worse for it.
+TEST(EngineCommands, AScanThatLiesTooFarAwayIsFailedAndTheOthersGoOn) {
+  const test::TemporaryFolder folder;
+  const auto scans = test::write_bumpy_scans(folder.path() / "scans", 4);
+  std::filesystem::remove(scans / test::scan_name(1));
+  const auto session = folder.path() / "session";
+  {
+    SessionStore store = SessionStore::open_or_create(session).value();
+    for (int k = 0; k < 3; ++k) {
+      RangeGrid grid = test::bumpy_scan(k, k == 1 ? 12 : 11);  // which nothing of the others fits
+      grid.source = test::scan_name(k);
+      ASSERT_TRUE(store.add_grid(grid));
+    }
+    RigidTransform far = test::bumpy_pose(1);
+    far.translation_mm.x() += 1e7;
+    ASSERT_TRUE(record_lock(store, 0, test::bumpy_pose(0)));
+    ASSERT_TRUE(record_lock(store, 1, far));
+  }
+  RunningEngine engine(scans, session, 1e6);
+  const Result<EngineResult>& result = engine.join();
+  ASSERT_TRUE(result.has_value()) << result.error().line();
+  ASSERT_EQ(result->poses.size(), 4U);
+  for (const ScanPose& pose : result->poses) {
+    EXPECT_EQ(pose.status, pose.id == 1 ? PoseStatus::kFailed : PoseStatus::kRegistered)
+        << pose.id << pose.reason;
+  }
+  EXPECT_THAT(result->poses[1].reason,
+              HasSubstr("its pose puts it 10000 m from the origin, too far for its samples to keep their "
+                        "places to a small part of their spacing; take the offset"));
+  EXPECT_THAT(engine.said(), HasSubstr("placed 1 failed"));
+  EXPECT_EQ(result->red_map.scans.size(), 3U);
+  EXPECT_EQ(result->checklist.scans_failed, 1);
+}
+
+/// All of them, where the device itself speaks in such numbers.
+TEST(EngineCommands, ScansThatAllLieTooFarAwayEndNoRun) {
+  const test::TemporaryFolder folder;
+  const auto session = folder.path() / "session";
+  {
+    SessionStore store = SessionStore::open_or_create(session).value();
+    for (int k = 0; k < 2; ++k) {
+      RangeGrid grid = test::bumpy_scan(k);
+      grid.source = test::scan_name(k);
+      grid.nominal.emplace().tablet_from_scanner = test::bumpy_pose(k);
+      grid.nominal->tablet_from_scanner.translation_mm.x() += 1e7;
+      ASSERT_TRUE(store.add_grid(grid));
+    }
+  }
+  RunningEngine engine(test::write_bumpy_scans(folder.path() / "scans", 2), session, 1e6);
+  const Result<EngineResult>& result = engine.join();
+  ASSERT_TRUE(result.has_value()) << result.error().line();
+  for (const ScanPose& pose : result->poses) {
+    EXPECT_EQ(pose.status, PoseStatus::kFailed);
+    EXPECT_THAT(pose.reason, HasSubstr("m from the origin, too far"));
+  }
+  EXPECT_FALSE(result->red_map.conclusive);
+}
+
 TEST(EngineCommands, NothingIsTakenBeforeItRuns) {
   const test::TemporaryFolder folder;
   Engine engine({"replay:" + folder.path().string(), folder.path() / "session", false, 0, std::nullopt}, {});

@@ -10,6 +10,7 @@
 #include "core/units.h"
 #include "formats/red_map_json.h"
 #include "planning/model_faces.h"
+#include "station/results.h"
 #include "tests/station/support/bumpy_scans.h"
 
 namespace dubsar {
@@ -56,6 +57,48 @@ TEST(PlanningStage, TheWayThereDoesNotMatter) {
   wandering[1].model_from_scanner.translation_mm.x() += 0.7;
   wandering[2].status = PoseStatus::kUnsure;
   EXPECT_EQ(map_after({wandering, poses_with(0.01)}), map_after({poses_with(0.01)}));
+}
+
+/// Red map, mesh and checklist see the scan once, and the copy is told.
+TEST(PlanningStage, ACopyIsTheScanThatItIsOf) {
+  PlanningStage stage;
+  PlanningStage alone;
+  for (int k = 0; k < 3; ++k) {
+    const StationScan scan = prepare_scan(k, test::bumpy_scan(k), std::nullopt);
+    stage.add(scan);
+    alone.add(scan);
+  }
+  stage.add(prepare_scan(3, test::bumpy_scan(1), std::nullopt));
+  JobContext job;
+  const std::vector<ScanPose> of_three = poses_with(0.01);
+  std::vector<ScanPose> of_four = of_three;
+  of_four.push_back(of_three[1]);
+  of_four[3].id = 3;
+  of_four[3].model_from_scanner.translation_mm.x() += 0.01;
+  ASSERT_TRUE(alone.place(of_three, true, job));
+  ASSERT_TRUE(stage.place(of_four, true, job));
+  EXPECT_EQ(stage.placed().size(), 3U);
+  const RedMap once = alone.red_map(nullptr, job).value();
+  RedMap twice = stage.red_map(nullptr, job).value();
+  EXPECT_TRUE(once.copies.empty());
+  ASSERT_EQ(twice.copies, (std::vector<ScanCopy>{{3, 1}}));
+  const Mesh mesh = stage.mesh(job).value();
+  EXPECT_EQ(mesh.positions, alone.mesh(job).value().positions);
+  const Checklist list = checklist_of(twice, of_four, stage, mesh, nullptr, nullptr, job).value();
+  EXPECT_EQ(list.scans_registered, 3);
+  ASSERT_EQ(list.warnings.size(), 1U);
+  EXPECT_EQ(list.warnings[0].scan, 3);
+  twice.copies.clear();
+  EXPECT_EQ(red_map_to_json(twice), red_map_to_json(once));
+
+  // It comes in where the first is taken out, and goes when that one comes back.
+  std::vector<ScanPose> without = of_four;
+  without.erase(without.begin() + 1);
+  ASSERT_TRUE(stage.place(without, true, job));
+  EXPECT_TRUE(stage.copies().empty());
+  EXPECT_EQ(stage.placed().back().id, 3);
+  ASSERT_TRUE(stage.place(of_four, true, job));
+  EXPECT_EQ(stage.placed().back().id, 2);
 }
 
 /// Scans 0 and 1 lie as they were put down. Those after them, of the tablet on other sides, are not taken up.

@@ -51,6 +51,16 @@ TEST_F(Register, GivesTheSameBytesOnEveryRunAndAnyNumberOfThreads) {
   EXPECT_EQ(registered({}).out, first.out);
 }
 
+TEST_F(Register, TellsOfAScanThatCameTwice) {
+  test::write_bumpy_scans(at("scans"), 2);
+  fs::copy_file(at("scans") + "/" + test::scan_name(1), at("scans") + "/scan_9.ply");
+  const Outcome outcome = registered({});
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.complaints(), SizeIs(1)) << outcome.err;
+  EXPECT_THAT(outcome.err,
+              HasSubstr("scan_9.ply has the very samples of scan_1.ply, and counts as the same scan"));
+}
+
 TEST_F(Register, OnlyMovesTheScansThatItNames) {
   test::write_bumpy_scans(at("scans"), 4);
   run_command({"scan", "--device", "replay:" + at("scans"), "--session", at("session")});

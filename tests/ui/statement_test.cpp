@@ -182,6 +182,23 @@ TEST(Statement, WithoutMotorsTheRedMapSaysHowToTurn) {
   EXPECT_THAT(statement_of(state, true, Language::kEnglish).headline, HasSubstr("Turn the reverse"));
 }
 
+/// The red map does not count it, and waits for no other word on it.
+TEST(Statement, ACopyIsJudgedOnceTheMapNamesIt) {
+  LiveState state = with_scan(PoseStatus::kRegistered);
+  state.phase = LivePhase::kWaiting;
+  const LiveScan& scan = state.scans.front();
+  EXPECT_THAT(statement_of(state, true, Language::kEnglish).headline, HasSubstr("Working out"));
+  EXPECT_FALSE(copy_of(state, scan));
+  auto map = std::make_shared<RedMap>(*map_with(12));
+  map->copies = {{4, 1}};
+  state.red_map = map;
+  EXPECT_THAT(statement_of(state, true, Language::kEnglish).headline,
+              ::testing::Not(HasSubstr("Working out")));
+  EXPECT_EQ(copy_of(state, scan), 1);
+  state.scans.front().dropped = true;
+  EXPECT_FALSE(copy_of(state, scan));
+}
+
 TEST(Statement, AFailedScanIsNotCalledUnsure) {
   LiveState state = with_scan(PoseStatus::kFailed);
   state.phase = LivePhase::kWaiting;

@@ -11,7 +11,7 @@ namespace dubsar::ui {
 
 namespace {
 
-Text state_text(const LiveScan& scan) {
+Text state_text(const LiveState& state, const LiveScan& scan) {
   if (scan.damaged) {
     return Text::kDamaged;
   }
@@ -20,6 +20,9 @@ Text state_text(const LiveScan& scan) {
   }
   if (!scan.pose) {
     return Text::kJudged;
+  }
+  if (copy_of(state, scan)) {
+    return Text::kCopyOf;
   }
   switch (scan.pose->status) {
     case PoseStatus::kRegistered:
@@ -37,6 +40,7 @@ Eigen::Vector4f state_colour(const UiContext& ui, Text state) {
     case Text::kRegistered:
       return ui.colours.good;
     case Text::kUnsure:
+    case Text::kCopyOf:
       return ui.colours.amber;
     case Text::kFailed:
     case Text::kDamaged:
@@ -46,10 +50,13 @@ Eigen::Vector4f state_colour(const UiContext& ui, Text state) {
   }
 }
 
-std::string words_under(const UiContext& ui, const LiveScan& scan) {
+std::string words_under(const UiContext& ui, const LiveState& state, const LiveScan& scan) {
   const bool is_warned = !scan_warning(scan, ui.preferences.language).empty();
+  const std::optional<int> first = copy_of(state, scan);
   std::string words =
-      fmt::format("{}  {}", scan.id, ui.text(is_warned ? Text::kLengthsOff : state_text(scan)));
+      fmt::format("{}  {}", scan.id,
+                  first ? filled(ui.text(Text::kCopyOf), *first)
+                        : std::string(ui.text(is_warned ? Text::kLengthsOff : state_text(state, scan))));
   if (scan.pose && scan.pose->locked) {
     words += fmt::format(", {}", ui.text(Text::kLocked));
   }
@@ -68,7 +75,7 @@ void OperatorScreen::draw_strip(UiContext& ui, ImVec2 size) {
   };
   float width = 1.35F * height;
   for (const LiveScan& scan : state_.scans) {
-    width = std::max(width, words_wide(words_under(ui, scan)));
+    width = std::max(width, words_wide(words_under(ui, state_, scan)));
   }
   const LiveScan* menu = nullptr;
   for (const LiveScan& scan : state_.scans) {
@@ -81,8 +88,10 @@ void OperatorScreen::draw_strip(UiContext& ui, ImVec2 size) {
     ui.target("scan." + std::to_string(scan.id));
     ImDrawList* draw = ImGui::GetWindowDrawList();
     const ImVec2 end{origin.x + width, origin.y + height};
-    const Text state = state_text(scan);
-    ui.facts.insert("scan." + std::to_string(scan.id) + "." + text_of(state, Language::kEnglish));
+    const Text state = state_text(state_, scan);
+    const std::optional<int> first = copy_of(state_, scan);
+    ui.facts.insert("scan." + std::to_string(scan.id) + "." +
+                    (first ? "copy" : text_of(state, Language::kEnglish)));
     if (state_.pins && state_.pins->tips.contains(scan.id)) {
       ui.facts.insert(fmt::format("scan.{}.pins.{}", scan.id, state_.pins->tips.at(scan.id).size()));
     }
@@ -112,7 +121,7 @@ void OperatorScreen::draw_strip(UiContext& ui, ImVec2 size) {
     if (scan.pose && scan.pose->locked) {
       ui.facts.insert("scan." + std::to_string(scan.id) + ".locked");
     }
-    const std::string words = words_under(ui, scan);
+    const std::string words = words_under(ui, state_, scan);
     draw->AddText(ui.fonts.small, line, {origin.x + 6, end.y - line - 3}, packed(colour), words.c_str());
     if (words_wide(words) <= width) {
       ui.facts.insert(fmt::format("scan.{}.words-whole", scan.id));
@@ -159,6 +168,11 @@ void OperatorScreen::draw_scan_menu(UiContext& ui, const LiveScan& scan) {
     coloured_text(ui.colours.amber, translated(scan.remark, ui.preferences.language).c_str());
     ImGui::PopTextWrapPos();
   }
+  if (const std::optional<int> first = copy_of(state_, scan)) {
+    ImGui::PushTextWrapPos(ui.px(22));
+    coloured_text(ui.colours.amber, filled(ui.text(Text::kCountsAs), *first).c_str());
+    ImGui::PopTextWrapPos();
+  }
   const std::string why = scan.dropped ? translated(scan.note, ui.preferences.language)
                           : scan.pose  ? translated(remark_of(*scan.pose), ui.preferences.language)
                                        : std::string();
@@ -194,9 +208,10 @@ void OperatorScreen::draw_scan_menu(UiContext& ui, const LiveScan& scan) {
   }
   offer("drop", Text::kDrop, [&] { session_.ask(DropScan{scan.id, "taken out by the operator"}); });
   offer("rescan", Text::kRescan, [&] { session_.ask(ScanAgain{scan.id}); });
-  if (fits && !scan.pose->locked) {
+  const bool is_locked = scan.pose && scan.pose->locked;
+  if (fits && !is_locked) {
     offer("lock", Text::kLock, [&] { session_.ask(LockScan{scan.id}); });
-  } else if (fits) {
+  } else if (is_locked) {  // also where its place cannot be held
     offer("unlock", Text::kUnlock, [&] { session_.ask(UnlockScan{scan.id}); });
   }
 }

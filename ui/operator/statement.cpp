@@ -105,7 +105,7 @@ bool say_not_taken_up(Statement& out, const LiveState& state, Language language)
 
 /// The red map is not one of before this scan was taken up.
 bool is_mapped(const LiveState& state, const LiveScan& scan) {
-  return scan.pose->status != PoseStatus::kRegistered ||
+  return scan.pose->status != PoseStatus::kRegistered || copy_of(state, scan) ||
          (state.red_map &&
           std::ranges::find(state.red_map->scans, scan.id, &RedScan::id) != state.red_map->scans.end());
 }
@@ -212,6 +212,11 @@ void say_still(Statement& out, const LiveState& state, bool has_device, Wording 
 }
 
 }  // namespace
+
+std::optional<int> copy_of(const LiveState& state, const LiveScan& scan) {
+  const bool counts = !scan.dropped && scan.pose && scan.pose->status == PoseStatus::kRegistered;
+  return counts && state.red_map ? copied_from(state.red_map->copies, scan.id) : std::nullopt;
+}
 
 std::string scan_warning(const LiveScan& scan, Language language) {
   if (scan.dropped || !scan.pose || scan.pose->status != PoseStatus::kRegistered ||

@@ -2,6 +2,7 @@
 // Copyright The Dubsar developers
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "station/live_state.h"
@@ -30,6 +31,10 @@ struct Statement {
 };
 
 [[nodiscard]] Statement statement_of(const LiveState& state, bool has_device, Wording wording);
+
+/// The scan whose very samples this one has, and as which it counts; nothing where it counts itself, or is
+/// not judged yet.
+[[nodiscard]] std::optional<int> copy_of(const LiveState& state, const LiveScan& scan);
 
 /// What is wrong with a scan although it is in the model, as a sentence; empty where nothing is.
 [[nodiscard]] std::string scan_warning(const LiveScan& scan, Language language);

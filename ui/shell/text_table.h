@@ -88,6 +88,8 @@ enum class Text {
   kDamaged,
   kJudged,
   kLocked,
+  kCopyOf,
+  kCountsAs,
   kLengthsOff,
   kScanSays,
   kMoreLengthsOff,
