@@ -225,7 +225,7 @@ struct GridLookup::Search {
   float w = 0;
   float off2 = 0;  ///< squared distance of p to the raster
   float best2 = 0;
-  std::int64_t best = -1;
+  const Entry* best = nullptr;
 
   /// What rounding may take from a distance to samples with coordinates up to `extent_mm`.
   [[nodiscard]] float slack(float extent_mm) const { return kRounding * (extent_mm + p_extent); }
@@ -236,11 +236,15 @@ struct GridLookup::Search {
     for (std::uint32_t k = in.row_start(row, from); k < end; ++k) {
       const Entry& entry = in.entries_[k];
       const float d2 = entry.distance2(p);
-      if (d2 < best2 || (d2 == best2 && best >= 0 && entry.sample < best)) {
+      if (d2 < best2 || (d2 == best2 && best != nullptr && entry.sample < best->sample)) {
         best2 = d2;
-        best = entry.sample;
+        best = &entry;
       }
     }
+  }
+
+  [[nodiscard]] Found found() const {
+    return best == nullptr ? Found{} : Found{best->sample, {best->x, best->y, best->z}};
   }
 
   /// Squared distance beyond which everything lies that is outside cells low..high in both directions.
@@ -283,9 +287,9 @@ struct GridLookup::Search {
   }
 };
 
-std::int64_t GridLookup::nearest(const Vector3f& p_mm, float radius_mm) const {
+GridLookup::Found GridLookup::find_nearest(const Vector3f& p_mm, float radius_mm) const {
   if (count_ == 0 || !p_mm.allFinite() || !(radius_mm > 0)) {
-    return -1;
+    return {};
   }
   Search search{*this, p_mm};
   const Vector2f uv = project(p_mm);
@@ -298,7 +302,7 @@ std::int64_t GridLookup::nearest(const Vector3f& p_mm, float radius_mm) const {
     const float off = std::max(0.0F, (uv - Vector2f(search.u, search.v)).norm() - search.slack(extent_mm_));
     search.off2 = off * off;
     if (search.off2 > search.best2) {
-      return -1;
+      return {};
     }
   }
   // Most answers lie in the bucket of the point or beside it.
@@ -314,7 +318,7 @@ std::int64_t GridLookup::nearest(const Vector3f& p_mm, float radius_mm) const {
     search.visit(row, left_u, right_u);
   }
   if (search.beyond2(cu - 1, cu + 1, cv - 1, cv + 1) > search.best2) {
-    return search.best;
+    return search.found();
   }
   const int bu = cu / kBlockCells;
   const int bv = cv / kBlockCells;
@@ -333,7 +337,7 @@ std::int64_t GridLookup::nearest(const Vector3f& p_mm, float radius_mm) const {
     const float beyond2 = search.beyond2(left * kBlockCells, (right + 1) * kBlockCells - 1,
                                          (bv - ring) * kBlockCells, (bv + ring + 1) * kBlockCells - 1);
     if (!(beyond2 <= search.best2) || beyond2 == kFar) {
-      return search.best;
+      return search.found();
     }
   }
 }

@@ -27,7 +27,30 @@ class GridLookup {
 
   /// Index of the sample nearest to p (scanner frame, mm) within radius_mm in 3D, or -1. Ties: the lower
   /// index. A miss costs about as much as a hit, whatever the radius.
-  [[nodiscard]] std::int64_t nearest(const Eigen::Vector3f& p_mm, float radius_mm) const;
+  [[nodiscard]] std::int64_t nearest(const Eigen::Vector3f& p_mm, float radius_mm) const {
+    return find_nearest(p_mm, radius_mm).sample;
+  }
+  /// The same with where that sample lies.
+  struct Found {
+    std::int64_t sample = -1;
+    Eigen::Vector3f point_mm{0, 0, 0};
+  };
+  [[nodiscard]] Found find_nearest(const Eigen::Vector3f& p_mm, float radius_mm) const;
+
+  /// Has the memory that nearest() begins with brought near: for many points that are looked for after each
+  /// other …
+  void fetch_buckets(const Eigen::Vector3f& p_mm) const {
+    for_each_row_near(p_mm, side_mm_, [&](int row, const Range& u) {
+      __builtin_prefetch(&start_[static_cast<std::size_t>(row) * static_cast<std::size_t>(width_) +
+                                 static_cast<std::size_t>(u.first)]);
+    });
+  }
+  /// … and, once that has come, what it goes on with.
+  void fetch_samples(const Eigen::Vector3f& p_mm, float radius_mm) const {
+    for_each_row_near(p_mm, std::min(radius_mm, side_mm_), [&](int row, const Range& u) {
+      __builtin_prefetch(&entries_[row_start(row, u.first)]);
+    });
+  }
 
   /// Calls visit(sample index) for each entered sample whose bucket lies within radius_mm of p across the
   /// viewing direction (a superset of those within radius_mm in 3D), in a fixed order.
@@ -152,6 +175,20 @@ class GridLookup {
                   static_cast<std::size_t>(from)];
   }
   [[nodiscard]] std::uint32_t row_end(int row, int to) const { return row_start(row, to + 1); }
+  /// Calls visit(row, cells of it) for the rows of the raster within radius_mm of p across the viewing
+  /// direction.
+  template <class Visit>
+  void for_each_row_near(const Eigen::Vector3f& p_mm, float radius_mm, const Visit& visit) const {
+    if (count_ == 0 || !p_mm.allFinite()) {
+      return;
+    }
+    const Eigen::Vector2f uv = project(p_mm);
+    const Range u = cells_between(uv.x() - radius_mm, uv.x() + radius_mm, width_);
+    const Range v = cells_between(uv.y() - radius_mm, uv.y() + radius_mm, height_);
+    for (int row = v.first; row <= v.last && u.first <= u.last; ++row) {
+      visit(row, u);
+    }
+  }
   /// Calls visit(sample, position, u, v) for what is entered among the grid's samples [begin, end).
   template <class Visit>
   void for_each_entered(const Entering& entering, std::size_t begin, std::size_t end,

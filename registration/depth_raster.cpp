@@ -75,9 +75,8 @@ DepthRaster::DepthRaster(const RangeGrid& grid, double cell_mm) {
     const auto cu = static_cast<std::size_t>(std::max(0.0F, (u_axis_.dot(p) - u_min_) * per_cell_));
     const auto cv = static_cast<std::size_t>(std::max(0.0F, (v_axis_.dot(p) - v_min_) * per_cell_));
     Cell& cell = cells_[cv * static_cast<std::size_t>(width_) + cu];
-    const float h = up_.dot(p);
-    if (cell.sample < 0 || h > cell.height_mm) {
-      cell = {h, static_cast<std::int32_t>(i)};
+    if (cell.sample < 0 || height(p) > height(cell)) {
+      cell = {p, static_cast<std::int32_t>(i)};
     }
   }
   fit_field(grid);
@@ -151,7 +150,7 @@ bool DepthRaster::seen_through(const Eigen::Vector3f& p_mm, float margin_mm, int
     for (int du = -reach; du <= reach; ++du) {
       const Cell& cell = cells_[static_cast<std::size_t>(v + dv) * static_cast<std::size_t>(width_) +
                                 static_cast<std::size_t>(u + du)];
-      if (cell.sample < 0 || cell.height_mm > limit) {
+      if (cell.sample < 0 || height(cell) > limit) {
         return false;
       }
     }

@@ -19,12 +19,13 @@ class DepthRaster {
   DepthRaster(const RangeGrid& grid, double cell_mm);
 
   struct Cell {
-    float height_mm = 0;       ///< towards the camera
-    std::int32_t sample = -1;  ///< index in the grid, -1 where nothing was seen
+    Eigen::Vector3f point_mm{0, 0, 0};  ///< of the sample: one read tells all of it
+    std::int32_t sample = -1;           ///< index in the grid, -1 where nothing was seen
   };
 
-  /// Height of p towards the camera, the measure of Cell::height_mm.
+  /// Height of p towards the camera.
   [[nodiscard]] float height(const Eigen::Vector3f& p_mm) const { return up_.dot(p_mm); }
+  [[nodiscard]] float height(const Cell& cell) const { return up_.dot(cell.point_mm); }
   /// The cell that p projects to, or nullptr outside the raster.
   [[nodiscard]] const Cell* at(const Eigen::Vector3f& p_mm) const {
     const float u = (u_axis_.dot(p_mm) - u_min_) * per_cell_;

@@ -196,7 +196,7 @@ std::size_t ForeignMatter::Witness::ask(const Witness& other, const IntoOther& i
       e.shown += same_side && !is_foreign ? 1 : 0;
       return;
     }
-    const float above_mm = other.raster.height(p) - cell->height_mm;
+    const float above_mm = other.raster.height(p) - other.raster.height(*cell);
     if (above_mm > band_mm) {
       e.front = true;
       e.free += other.raster.seen_through(p, band_mm, kNearReach) ? 1 : 0;

@@ -143,18 +143,17 @@ struct Votes {
 Votes collect_votes(const ScanFeatures& source, const ScanFeatures& target,
                     const GlobalAlignOptions& options) {
   Votes votes;
-  const auto collect = [&](const RingDescriptors& of_source, const RingDescriptors& of_target,
-                           const RingDescriptorOptions& descriptors) {
+  const auto collect = [&](const RingDescriptors& of_source, const RingDescriptors& of_target) {
     const std::size_t first = votes.all.size();
-    collect_votes(of_source, of_target, descriptors, options.most_matches, votes.all);
+    collect_votes(of_source, of_target, options.rings, options.most_matches, votes.all);
     const std::size_t end = std::min(votes.all.size(), first + static_cast<std::size_t>(options.most_seeds));
     for (std::size_t k = first; k < end; ++k) {
       votes.seeds.push_back(k);
     }
   };
-  collect(source.relief, target.relief, options.relief);
-  collect(source.tone, target.tone, options.tone);
-  collect(source.shape, target.shape, options.shape);
+  collect(source.relief, target.relief);
+  collect(source.tone, target.tone);
+  collect(source.shape, target.shape);
   return votes;
 }
 
@@ -208,10 +207,16 @@ double pose_support(double shape_score, double relief_significance) {
 ScanFeatures make_scan_features(std::shared_ptr<const ScanSurface> surface,
                                 const GlobalAlignOptions& options) {
   ScanFeatures out;
-  out.shape = RingDescriptors(*surface, surface->scale_mm, options.shape);
-  out.relief = RingDescriptors(*surface, surface->scale_mm, options.relief);
+  std::vector<RingContent> contents{RingContent::kShape, RingContent::kRelief};
   if (!surface->relief.tone.empty()) {
-    out.tone = RingDescriptors(*surface, surface->scale_mm, options.tone);
+    contents.push_back(RingContent::kTone);
+  }
+  std::vector<RingDescriptors> made =
+      RingDescriptors::make(*surface, surface->scale_mm, contents, options.rings);
+  out.shape = std::move(made[0]);
+  out.relief = std::move(made[1]);
+  if (made.size() > 2) {
+    out.tone = std::move(made[2]);
   }
   out.surface = std::move(surface);
   return out;

@@ -19,9 +19,7 @@ struct ScanFeatures {
 };
 
 struct GlobalAlignOptions {
-  RingDescriptorOptions shape{RingContent::kShape};
-  RingDescriptorOptions relief{RingContent::kRelief};
-  RingDescriptorOptions tone{RingContent::kTone};
+  RingDescriptorOptions rings;
   // Lengths are parts of the surfaces' common scale.
   int most_matches = 1600;     ///< of each content, the best ones
   int most_seeds = 700;        ///< of each content, whose poses are put to the vote

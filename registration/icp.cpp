@@ -7,6 +7,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 
@@ -44,6 +45,9 @@ constexpr double kSlopeStepSpacings = 0.5;
 constexpr std::size_t kSlopeEvery = 4;
 /// Steps that are taken with it.
 constexpr int kLastSteps = 2;
+/// Samples whose pairs are looked for together.
+constexpr std::size_t kSamplesPerPart = 512;
+
 /// Pairs each sample of `from` with the nearest usable sample of `into`. `moving_is_from` tells which side
 /// the perturbation acts on. Both frames are given in the model frame.
 void accumulate(const SurfaceLevel& from, const RigidTransform& model_from_from, const SurfaceLevel& into,
@@ -60,32 +64,38 @@ void accumulate(const SurfaceLevel& from, const RigidTransform& model_from_from,
   const auto reach = static_cast<float>(options.reach_mm);
   const auto least_cosine = static_cast<float>(options.normal_cosine);
   total.add(parallel_reduce_ordered(
-      from.samples.size(), 512, Sums{},
+      from.samples.size(), kSamplesPerPart, Sums{},
       [&](std::size_t begin, std::size_t end) {
         Sums sums;
-        for (std::size_t k = begin; k < end; k += every) {
-          const SurfaceSample& sample = from.samples[k];
-          const Eigen::Vector3f p = rotation * sample.position_mm + shift;
-          const std::int64_t found = nearest_usable(into, p, reach);
-          if (found < 0) {
+        std::array<Eigen::Vector3f, kSamplesPerPart> points;
+        std::array<GridLookup::Found, kSamplesPerPart> found;
+        const std::size_t count = (end - begin + every - 1) / every;
+        for (std::size_t i = 0; i < count; ++i) {
+          points[i] = rotation * from.samples[begin + i * every].position_mm + shift;
+        }
+        nearest_usable(into, {points.data(), count}, reach, {found.data(), count});
+        for (std::size_t i = 0; i < count; ++i) {
+          const auto& [j, q] = found[i];
+          if (j < 0) {
             continue;
           }
-          const auto j = static_cast<std::size_t>(found);
+          const std::size_t k = begin + i * every;
+          const SurfaceSample& sample = from.samples[k];
+          const Eigen::Vector3f& p = points[i];
           const Eigen::Vector3f n_from = rotation * sample.normal;
-          const Eigen::Vector3f& n_into = into.normals[j];
+          const Eigen::Vector3f& n_into = into.normals[static_cast<std::size_t>(j)];
           if (n_from.dot(n_into) < least_cosine) {
             continue;
           }
           const Eigen::Vector3f n = (n_from + n_into).normalized();
-          const double residual = static_cast<double>(n.dot(p - into.grid.point(j)));
+          const double residual = static_cast<double>(n.dot(p - q));
           const double w = static_cast<double>(sample.weight) * tukey_weight(residual, options.kernel_mm);
           if (w <= 0) {
             continue;
           }
           const Eigen::Vector3d normal = model_from_into.rotation * n.cast<double>();
           const Eigen::Vector3d arm =
-              model_from_into * Eigen::Vector3d((moving_is_from ? p : into.grid.point(j)).cast<double>()) -
-              center_mm;
+              model_from_into * Eigen::Vector3d((moving_is_from ? p : q).cast<double>()) - center_mm;
           Vector6d jacobian;
           jacobian << arm.cross(normal), normal;
           if (!moving_is_from) {

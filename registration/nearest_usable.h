@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <span>
 
 #include "registration/scan_surface.h"
 
@@ -14,6 +15,12 @@ namespace dubsar {
 /// cells are searched: the nearest sample would be one of the border.
 [[nodiscard]] std::int64_t nearest_usable(const SurfaceLevel& level, const Eigen::Vector3f& p,
                                           float reach_mm);
+
+/// The same for many points at once; `found` is as long as they are. The samples of a level are more than a
+/// processor's own memory holds, and one point waits for four reads after each other: of many, all wait for
+/// each of the four together.
+void nearest_usable(const SurfaceLevel& level, std::span<const Eigen::Vector3f> points, float reach_mm,
+                    std::span<GridLookup::Found> found);
 
 /// Tukey's weight; pairs far off say nothing.
 [[nodiscard]] inline double tukey_weight(double residual, double scale) {

@@ -30,7 +30,8 @@ float weight_at(float distance2, float radius2) {
 /// off the surface.
 std::int64_t descend(const SurfaceLevel& level, const Eigen::Vector3f& p, float band_mm) {
   const DepthRaster::Cell* cell = level.raster.at(p);
-  if (cell == nullptr || cell->sample < 0 || std::abs(level.raster.height(p) - cell->height_mm) > band_mm) {
+  if (cell == nullptr || cell->sample < 0 ||
+      std::abs(level.raster.height(p) - level.raster.height(*cell)) > band_mm) {
     return -1;
   }
   const RangeGrid& grid = level.grid;

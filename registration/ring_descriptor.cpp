@@ -19,17 +19,8 @@ constexpr int kRings = RingDescriptors::kRings;
 constexpr int kSectors = RingDescriptors::kSectors;
 constexpr int kHarmonics = RingDescriptors::kHarmonics;
 
-/// A cell that holds no sample takes what lies between those within so many spacings of its middle: cells
-/// are narrower than the spacing of coarse scans, and a narrow gap leaves some empty.
-constexpr float kBetween = 1.1F;
 /// Steeper (cosine against the frame's normal) a surface is not gone on along.
 constexpr float kLeastUp = 0.3F;
-
-using Heights = std::array<float, static_cast<std::size_t>(kRings) * kSectors>;
-
-struct Frame {
-  Eigen::Vector3f origin, normal, u, v;
-};
 
 /// Plane through the samples within radius_mm of p, oriented like `hint`. Nothing when they are too few.
 std::optional<Eigen::Vector3f> plane_normal(const SurfaceLevel& level, const Eigen::Vector3f& p,
@@ -49,80 +40,70 @@ std::optional<Eigen::Vector3f> plane_normal(const SurfaceLevel& level, const Eig
   return sum.normalized();
 }
 
-/// A sample near a frame's origin: where in its plane, what is there, and how that changes with the place.
-struct Near {
-  Eigen::Vector2f at;
-  float value;
-  Eigen::Vector2f slope;
-};
-
 /// Of a surface with this normal over the frame's plane; flat where it is too steep to go on along it.
-Eigen::Vector2f slope(const Eigen::Vector3f& normal, const Frame& frame) {
+Eigen::Vector2f slope(const Eigen::Vector3f& normal, const RingFrame& frame) {
   const float up = normal.dot(frame.normal);
   return up < kLeastUp ? Eigen::Vector2f::Zero()
                        : Eigen::Vector2f(-normal.dot(frame.u) / up, -normal.dot(frame.v) / up);
 }
 
-Eigen::Vector2f center_of(int ring, int sector, float radius_mm) {
-  const auto rho = radius_mm * (static_cast<float>(ring) + 0.5F) / static_cast<float>(kRings);
-  const auto turn = static_cast<float>(2 * kPi * (sector + 0.5) / kSectors - kPi);
-  return {rho * std::cos(turn), rho * std::sin(turn)};
-}
+/// What is read of the samples around a keypoint.
+struct Reading {
+  const ScanSurface& surface;
+  const RingFrame& frame;
+  const std::vector<float>* values;  ///< of the samples; null: their heights over the frame
 
-/// What lies at a place between the samples within reach; nothing when there are none.
-std::optional<float> between(const std::vector<Near>& around, const Eigen::Vector2f& at, float reach) {
-  float total = 0;
-  float weights = 0;
-  for (const Near& sample : around) {
-    const Eigen::Vector2f d = at - sample.at;
-    const float w = 1.0F - d.squaredNorm() / (reach * reach);
-    if (w > 0) {
-      total += w * (sample.value + sample.slope.dot(d));
-      weights += w;
-    }
+  /// NaN where it is not known.
+  [[nodiscard]] float at(const RingSurroundings::Place& place) const {
+    return values != nullptr ? (*values)[place.sample] : place.height_mm;
   }
-  return weights > 0 ? std::optional<float>(total / weights) : std::nullopt;
-}
+  /// How it changes with the place in the plane.
+  [[nodiscard]] Eigen::Vector2f slope_at(const RingSurroundings::Place& place) const {
+    return values != nullptr ? Eigen::Vector2f::Zero() : slope(surface.medium->normals[place.sample], frame);
+  }
+  /// What lies in the middle of a cell between the samples beside it; nothing when there are none.
+  [[nodiscard]] std::optional<float> between(RingSurroundings& around, std::size_t cell) const {
+    float total = 0;
+    float weights = 0;
+    for (const RingSurroundings::Beside& beside : around.beside(cell)) {
+      const RingSurroundings::Place& place = around.places()[beside.place];
+      const float value = at(place);
+      if (!std::isnan(value)) {
+        total += beside.weight * (value + slope_at(place).dot(beside.to_middle));
+        weights += beside.weight;
+      }
+    }
+    return weights > 0 ? std::optional<float>(total / weights) : std::nullopt;
+  }
+};
 
 /// Mean heights in rings × sectors, nothing when too much is missing: over the tangent plane in units of the
 /// radius, or of what is on it in units of its rms.
-std::optional<Heights> ring_heights(const ScanSurface& surface, RingContent content, const Frame& frame,
-                                    float radius_mm, double least_filled) {
-  const SurfaceLevel& level = *surface.medium;
-  const std::vector<float>* values = content == RingContent::kRelief ? &surface.relief.height_mm
-                                     : content == RingContent::kTone ? &surface.relief.tone
-                                                                     : nullptr;
+std::optional<RingHeights> ring_heights(const ScanSurface& surface, RingContent content,
+                                        const RingFrame& frame, RingSurroundings& around, float radius_mm,
+                                        double least_filled) {
+  const Reading reading{surface, frame,
+                        content == RingContent::kRelief ? &surface.relief.height_mm
+                        : content == RingContent::kTone ? &surface.relief.tone
+                                                        : nullptr};
   const double rms = content == RingContent::kTone ? surface.relief.tone_rms : surface.relief.rms_mm;
-  const float unit = values != nullptr ? std::max(static_cast<float>(rms), 1e-6F) : radius_mm;
-  Heights sum{};
-  std::array<int, static_cast<std::size_t>(kRings) * kSectors> count{};
-  std::vector<Near> around;
-  level.lookup->for_each_near(frame.origin, radius_mm, [&](std::size_t i) {
-    const Eigen::Vector3f d = level.grid.point(i) - frame.origin;
-    const float h = d.dot(frame.normal);
-    const Eigen::Vector2f at(d.dot(frame.u), d.dot(frame.v));
-    const float rho = at.norm();
-    if (rho >= radius_mm || std::abs(h) > radius_mm || (values != nullptr && std::isnan((*values)[i]))) {
-      return;
+  const float unit = reading.values != nullptr ? std::max(static_cast<float>(rms), 1e-6F) : radius_mm;
+  RingHeights sum{};
+  std::array<int, RingSurroundings::kCells> count{};
+  for (const RingSurroundings::Place& place : around.places()) {
+    const float value = reading.at(place);
+    if (!std::isnan(value)) {
+      sum[place.cell] += value;
+      ++count[place.cell];
     }
-    const int ring = std::min(static_cast<int>(rho / radius_mm * kRings), kRings - 1);
-    const float turn = (std::atan2(at.y(), at.x()) + static_cast<float>(kPi)) / static_cast<float>(2 * kPi);
-    const int sector = std::min(static_cast<int>(turn * kSectors), kSectors - 1);
-    const auto cell = static_cast<std::size_t>(ring * kSectors + sector);
-    const float value = values != nullptr ? (*values)[i] : h;
-    sum[cell] += value;
-    ++count[cell];
-    around.push_back(
-        {at, value, values != nullptr ? Eigen::Vector2f::Zero() : slope(level.normals[i], frame)});
-  });
+  }
   int filled = 0;
   int expected = 0;
-  const float reach = kBetween * static_cast<float>(level.spacing_mm);
   for (int ring = 0; ring < kRings; ++ring) {
     for (int sector = 0; sector < kSectors; ++sector) {
       const auto cell = static_cast<std::size_t>(ring * kSectors + sector);
       if (count[cell] == 0) {
-        if (const std::optional<float> value = between(around, center_of(ring, sector, radius_mm), reach)) {
+        if (const std::optional<float> value = reading.between(around, cell)) {
           sum[cell] = *value;
           count[cell] = 1;
         }
@@ -171,8 +152,9 @@ struct Basis {
 
 }  // namespace
 
-RingDescriptors::RingDescriptors(const ScanSurface& surface, double scale_mm,
-                                 const RingDescriptorOptions& options) {
+std::vector<RingDescriptors> RingDescriptors::make(const ScanSurface& surface, double scale_mm,
+                                                   std::span<const RingContent> contents,
+                                                   const RingDescriptorOptions& options) {
   const SurfaceLevel& level = *surface.medium;
   std::vector<std::uint32_t> usable;
   for (std::size_t i = 0; i < level.usable.size(); ++i) {
@@ -182,56 +164,73 @@ RingDescriptors::RingDescriptors(const ScanSurface& surface, double scale_mm,
   }
   const std::size_t wanted = std::min(usable.size(), static_cast<std::size_t>(options.keypoints));
   struct Candidate {
-    bool good = false;
     SurfaceSample keypoint;
     Eigen::Vector3f tangent;
-    Coefficients coefficients{};
+    std::vector<std::optional<Coefficients>> of_content;
   };
-  static const Basis basis;
   std::vector<Candidate> candidates(wanted);
-  parallel_for_each_index(
-      wanted,
-      [&](std::size_t k) {
-        const std::size_t i = usable[(2 * k + 1) * usable.size() / (2 * wanted)];
-        Candidate& out = candidates[k];
-        const auto inner = static_cast<float>(options.radius[0] * scale_mm);
-        const std::optional<Eigen::Vector3f> normal =
-            plane_normal(level, level.grid.point(i), level.normals[i], 0.6F * inner);
-        if (!normal) {
-          return;
-        }
-        Frame frame{level.grid.point(i), *normal, normal->unitOrthogonal(), {}};
-        frame.v = frame.normal.cross(frame.u);
-        for (int s = 0; s < kScales; ++s) {
-          const auto radius = static_cast<float>(options.radius[static_cast<std::size_t>(s)] * scale_mm);
-          const std::optional<Heights> heights =
-              ring_heights(surface, options.content, frame, radius, options.least_filled);
-          if (!heights) {
-            return;
+  parallel_chunks(wanted, 16, [&](std::size_t begin, std::size_t end) {
+    RingSurroundings around;
+    for (std::size_t k = begin; k < end; ++k) {
+      const std::size_t i = usable[(2 * k + 1) * usable.size() / (2 * wanted)];
+      const auto inner = static_cast<float>(options.radius[0] * scale_mm);
+      const std::optional<Eigen::Vector3f> normal =
+          plane_normal(level, level.grid.point(i), level.normals[i], 0.6F * inner);
+      if (!normal) {
+        continue;
+      }
+      RingFrame frame{level.grid.point(i), *normal, normal->unitOrthogonal(), {}};
+      frame.v = frame.normal.cross(frame.u);
+      Candidate& candidate = candidates[k];
+      candidate.keypoint = {frame.origin, frame.normal, 1.0F};
+      candidate.tangent = frame.u;
+      candidate.of_content.assign(contents.size(), Coefficients{});
+      for (int s = 0; s < kScales; ++s) {
+        const auto radius = static_cast<float>(options.radius[static_cast<std::size_t>(s)] * scale_mm);
+        around.look(level, frame, radius);
+        for (std::size_t c = 0; c < contents.size(); ++c) {
+          std::optional<Coefficients>& out = candidate.of_content[c];
+          const std::optional<RingHeights> heights =
+              out ? ring_heights(surface, contents[c], frame, around, radius, options.least_filled)
+                  : std::nullopt;
+          if (heights) {
+            set_scale(*out, s, *heights);
+          } else {
+            out.reset();
           }
-          for (int ring = 0; ring < kRings; ++ring) {
-            for (int h = 0; h < kHarmonics; ++h) {
-              std::complex<float> sum = 0;
-              for (int sector = 0; sector < kSectors; ++sector) {
-                sum += (*heights)[static_cast<std::size_t>(ring * kSectors + sector)] *
-                       basis.wave[static_cast<std::size_t>(h)][static_cast<std::size_t>(sector)];
-              }
-              out.coefficients[static_cast<std::size_t>((s * kRings + ring) * kHarmonics + h)] = sum;
-            }
-          }
         }
-        out.good = true;
-        out.keypoint = {frame.origin, frame.normal, 1.0F};
-        out.tangent = frame.u;
-      },
-      16);
-  for (const Candidate& c : candidates) {
-    if (c.good) {
-      keypoints_.push_back(c.keypoint);
-      tangents_.push_back(c.tangent);
-      coefficients_.push_back(c.coefficients);
+      }
+    }
+  });
+  std::vector<RingDescriptors> out(contents.size());
+  for (std::size_t c = 0; c < contents.size(); ++c) {
+    for (const Candidate& candidate : candidates) {  // nothing of one without a plane
+      if (!candidate.of_content.empty() && candidate.of_content[c]) {
+        out[c].keypoints_.push_back(candidate.keypoint);
+        out[c].tangents_.push_back(candidate.tangent);
+        out[c].coefficients_.push_back(*candidate.of_content[c]);
+      }
+    }
+    out[c].set_magnitudes();
+  }
+  return out;
+}
+
+void RingDescriptors::set_scale(Coefficients& coefficients, int scale, const RingHeights& heights) {
+  static const Basis basis;
+  for (int ring = 0; ring < kRings; ++ring) {
+    for (int h = 0; h < kHarmonics; ++h) {
+      std::complex<float> sum = 0;
+      for (int sector = 0; sector < kSectors; ++sector) {
+        sum += heights[static_cast<std::size_t>(ring * kSectors + sector)] *
+               basis.wave[static_cast<std::size_t>(h)][static_cast<std::size_t>(sector)];
+      }
+      coefficients[static_cast<std::size_t>((scale * kRings + ring) * kHarmonics + h)] = sum;
     }
   }
+}
+
+void RingDescriptors::set_magnitudes() {
   magnitudes_.resize(kLength, static_cast<Eigen::Index>(keypoints_.size()));
   for (std::size_t k = 0; k < keypoints_.size(); ++k) {
     for (int c = 0; c < kLength; ++c) {

@@ -5,9 +5,11 @@
 #include <Eigen/Core>
 #include <array>
 #include <complex>
+#include <span>
 #include <vector>
 
 #include "core/rigid_transform.h"
+#include "registration/ring_surroundings.h"
 #include "registration/scan_surface.h"
 
 namespace dubsar {
@@ -16,8 +18,10 @@ namespace dubsar {
 /// relief and its tone (relief.h) tell what is on it where the shape is the same all over.
 enum class RingContent { kShape, kRelief, kTone };
 
+/// Of rings × sectors.
+using RingHeights = std::array<float, RingSurroundings::kCells>;
+
 struct RingDescriptorOptions {
-  RingContent content = RingContent::kShape;
   int keypoints = 1200;
   std::array<double, 2> radius{0.06, 0.13};  ///< of the scale of the object
   double least_filled = 0.7;                 ///< share of a descriptor's cells that must hold samples
@@ -29,16 +33,18 @@ struct RingDescriptorOptions {
 /// phases give the turn back once two points are matched, so that one match is a whole pose.
 class RingDescriptors {
  public:
-  static constexpr int kRings = 4;
+  static constexpr int kRings = RingSurroundings::kRings;
   static constexpr int kHarmonics = 5;  ///< 0 … 4
-  static constexpr int kSectors = 16;
+  static constexpr int kSectors = RingSurroundings::kSectors;
   static constexpr int kScales = 2;
   static constexpr int kLength = kScales * kRings * kHarmonics;
 
   RingDescriptors() = default;
-  /// Keypoints spread over the medium level of the scan; `scale_mm` must be the same for all scans to be
-  /// matched.
-  RingDescriptors(const ScanSurface& surface, double scale_mm, const RingDescriptorOptions& options);
+  /// Descriptors of each of the contents, at keypoints spread over the medium level of the scan; `scale_mm`
+  /// must be the same for all scans to be matched.
+  [[nodiscard]] static std::vector<RingDescriptors> make(const ScanSurface& surface, double scale_mm,
+                                                         std::span<const RingContent> contents,
+                                                         const RingDescriptorOptions& options);
 
   [[nodiscard]] std::size_t size() const { return keypoints_.size(); }
   [[nodiscard]] const SurfaceSample& keypoint(std::size_t i) const { return keypoints_[i]; }
@@ -58,6 +64,9 @@ class RingDescriptors {
 
  private:
   using Coefficients = std::array<std::complex<float>, kScales * kRings * kHarmonics>;
+
+  static void set_scale(Coefficients& coefficients, int scale, const RingHeights& heights);
+  void set_magnitudes();
 
   std::vector<SurfaceSample> keypoints_;
   std::vector<Eigen::Vector3f> tangents_;  ///< where the sectors start

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/pose_hint.h"
+#include "registration/last_judgement.h"
 #include "registration/pin_advice.h"
 #include "registration/registrar.h"
 #include "registration/seen_pin.h"
@@ -87,6 +88,7 @@ class ScanModel {
     Matrix6d covariance = Matrix6d::Zero();
     std::set<int> tried_on;  ///< scans that it was searched on: their hypotheses are known to lead nowhere …
     std::vector<Lead> leads;  ///< … but for these, which a larger model may settle
+    LastJudgement judgement;  ///< in its group
   };
   /// a < b.
   struct Pair {
@@ -143,8 +145,16 @@ class ScanModel {
   Status relax_group(int group, const JobContext& job);
   /// The same while scans come in: a failure is logged, and the next scan or finalize() tries again.
   void settle_group(int group, const JobContext& job);
+  /// A scan among the others of its group.
+  struct InGroup {
+    PlacedSurface scan;
+    std::vector<PlacedSurface> others;
+    ModelFit fit;  ///< where it lies
+  };
+  /// Nothing where there are no others. May be asked of several scans at once.
+  [[nodiscard]] std::optional<InGroup> in_group(int id);
   void judge(int id);
-  [[nodiscard]] std::optional<Fault> fault_of(int id) const;
+  [[nodiscard]] std::optional<Fault> fault_of(int id);
   /// Marks which scans of the main group are of another size than the rest, and says so.
   void warn_of_stretched();
   [[nodiscard]] std::string name_of(int id) const;  ///< for people

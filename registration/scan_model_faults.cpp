@@ -60,21 +60,18 @@ void ScanModel::put_out_faulty(JobContext& job) {
   }
 }
 
-std::optional<ScanModel::Fault> ScanModel::fault_of(int id) const {
+std::optional<ScanModel::Fault> ScanModel::fault_of(int id) {
   const auto found = scans_.find(id);
   if (found == scans_.end() || !found->second.usable || found->second.locked) {
     return std::nullopt;
   }
-  const Scan& scan = found->second;
-  std::vector<int> others = members(scan.group);
-  std::erase(others, id);
-  if (others.empty()) {
+  const std::optional<InGroup> placed = in_group(id);
+  if (!placed) {
     return std::nullopt;
   }
-  const std::vector<ModelScan> model = model_of(others);
-  const ModelFit fit =
-      judge_in_model(*scan.features.surface, model, scan.group_from_scanner, options_.search.fit);
-  const ScanSurface& surface = *scan.features.surface;
+  const auto& [scan, others, fit] = *placed;
+  const ScanSurface& surface = *scan.surface;
+  const std::vector<ModelScan> model = model_scans(others);
   const std::optional<ScanMotion> motion = find_motion(surface, model, fit, options_.search.fit);
   if (!motion) {
     return std::nullopt;
@@ -99,15 +96,19 @@ void ScanModel::warn_of_stretched() {
   parallel_for_each_index(
       ids.size(),
       [&](std::size_t k) {
-        Scan& scan = scans_.at(ids[k]);
-        std::vector<int> others = ids;
-        std::erase(others, ids[k]);
-        const std::vector<ModelScan> model = model_of(others);
-        const ScanSurface& surface = *scan.features.surface;
-        const ModelFit fit = judge_in_model(surface, model, scan.group_from_scanner, options_.search.fit);
+        const std::optional<InGroup> placed = in_group(ids[k]);
+        if (!placed) {
+          return;
+        }
+        const ScanSurface& surface = *placed->scan.surface;
+        const std::vector<ModelScan> model = model_scans(placed->others);
+        const ModelFit& fit = placed->fit;
+        if (!may_be_stretched(surface, model, fit)) {
+          return;
+        }
         const std::optional<ScanStretch> stretch = find_stretch(surface, model, fit);
         if (stretch && stretch->is_off()) {
-          scan.warning = reason_of(*stretch);
+          scans_.at(ids[k]).warning = reason_of(*stretch);
         }
       },
       1);

@@ -3,6 +3,7 @@
 // The pairs between the scans of a group and their relaxation: the other half of ScanModel.
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/log.h"
 #include "core/parallel.h"
@@ -129,18 +130,31 @@ void ScanModel::settle_group(int group, const JobContext& job) {
   }
 }
 
-void ScanModel::judge(int id) {
+std::optional<ScanModel::InGroup> ScanModel::in_group(int id) {
   Scan& scan = scans_.at(id);
-  std::vector<int> others = members(scan.group);
-  std::erase(others, id);
+  std::vector<PlacedSurface> others;
+  for (const int other : members(scan.group)) {
+    if (other != id) {
+      others.push_back({scans_.at(other).features.surface, scans_.at(other).group_from_scanner});
+    }
+  }
   if (others.empty()) {
+    return std::nullopt;
+  }
+  const PlacedSurface placed{scan.features.surface, scan.group_from_scanner};
+  ModelFit fit = scan.judgement.of(placed, others, options_.search.fit);
+  return InGroup{placed, std::move(others), std::move(fit)};
+}
+
+void ScanModel::judge(int id) {
+  const std::optional<InGroup> placed = in_group(id);
+  if (!placed) {
     return;
   }
-  const ModelFit fit =
-      judge_in_model(*scan.features.surface, model_of(others), scan.group_from_scanner, options_.search.fit);
-  const PoseEvidence both = fit.both();
+  Scan& scan = scans_.at(id);
+  const PoseEvidence both = placed->fit.both();
   scan.rms_mm = both.close > 0 ? std::sqrt(both.sum_r2_mm2 / both.close) : 0.0;
-  scan.overlap = std::max(fit.overlap, fit.best_pair_overlap);
+  scan.overlap = std::max(placed->fit.overlap, placed->fit.best_pair_overlap);
 }
 
 Status ScanModel::finalize(JobContext& job) {

@@ -59,6 +59,26 @@ TEST(GridLookup, AgreesWithASearchThroughAll) {
   }
 }
 
+/// With fetching before, which must not read outside: where nothing is, too, and of no number.
+TEST(GridLookup, WhatIsFoundComesWithWhereItLies) {
+  const RangeGrid grid = warped_grid(4);
+  const GridLookup lookup(grid);
+  Random random(104);
+  for (int k = 0; k < 200; ++k) {
+    Eigen::Vector3f p{static_cast<float>(random.uniform(-20, 20)),
+                      static_cast<float>(random.uniform(-20, 20)), static_cast<float>(random.uniform(-3, 6))};
+    p.x() = k == 7 ? std::numeric_limits<float>::quiet_NaN() : p.x();
+    const auto radius = static_cast<float>(random.uniform(0.05, 3.0));
+    lookup.fetch_buckets(p);
+    lookup.fetch_samples(p, radius);
+    const GridLookup::Found found = lookup.find_nearest(p, radius);
+    EXPECT_EQ(found.sample, lookup.nearest(p, radius));
+    if (found.sample >= 0) {
+      EXPECT_EQ(found.point_mm, grid.point(static_cast<std::size_t>(found.sample)));
+    }
+  }
+}
+
 TEST(GridLookup, AgreesWhereSamplesAreFewAndFarApart) {
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
     RangeGrid grid = warped_grid(seed);

@@ -104,6 +104,8 @@ TEST_P(StretchedScan, IsMeasuredFromWhereItLies) {
   EXPECT_NEAR(found->along_line, static_cast<double>(GetParam().by.x()) - 1.0, 0.006);
   EXPECT_NEAR(found->along_motion, static_cast<double>(GetParam().by.y()) - 1.0, 0.006);
   EXPECT_EQ(found->is_off(), *GetParam().reason != '\0');
+  // What costs less says so beforehand.
+  EXPECT_EQ(may_be_stretched(*surfaces[kStretched], others, fit), found->is_off());
 }
 
 TEST_P(StretchedScan, IsTold) {
