@@ -10,6 +10,7 @@
 
 #include "analysis/face_labels.h"
 #include "analysis/normal_clusters.h"
+#include "analysis/plane_refit.h"
 #include "core/order_statistics.h"
 #include "core/units.h"
 
@@ -31,6 +32,8 @@ constexpr double kReachGrowth = 1.5;
 constexpr float kRimDepths = 0.1F;
 /// Normals nearer than this to the free surface's are of the rim.
 constexpr float kUpright = 0.985F;
+/// Refitted planes that move the depth point by more spacings fit something else.
+constexpr double kMostMoved = 2.0;
 
 struct Search {
   const WedgePatch& patch;
@@ -225,10 +228,7 @@ double spread_of(const Search& s) {
       }
     }
   }
-  if (off.empty()) {
-    return 0;
-  }
-  return kSigmaOfMedian * median_of(std::move(off));
+  return off.empty() ? 0.0 : kSigmaOfMedian * median_of(std::move(off));
 }
 
 /// Depth point and inner edges of the planes; what is wrong when they do not bound a pit.
@@ -363,7 +363,10 @@ std::expected<WedgeFaces, std::string> faces_from(const WedgePatch& patch, const
   if (const auto wrong = meet(options, &s.faces)) {
     return std::unexpected(*wrong);
   }
-  return std::move(s.faces);
+  WedgeFaces refitted = refit_planes(patch, s.faces, s.tolerance_mm, s.highest, options.normal_gate_deg);
+  const bool meets = !meet(options, &refitted);
+  const double moved_mm = (refitted.depth_point - s.faces.depth_point).norm();
+  return meets && moved_mm < kMostMoved * patch.spacing_mm ? std::move(refitted) : std::move(s.faces);
 }
 
 }  // namespace

@@ -49,8 +49,9 @@ struct FaceOptions {
 
 /// Three faces of the wedge whose depth point is near the patch's lowest vertex (seed 000, 3.4): normals of
 /// its surroundings clustered, weighted by reliability; planes fitted to the clusters and the clusters to the
-/// planes in turn, over ever wider surroundings; spikes and small parts discarded. Where the patch holds no
-/// such pit, what is wrong is said instead.
+/// planes in turn, over ever wider surroundings; spikes and small parts discarded; at last the planes fitted
+/// again away from their borders (refit_planes()). Where the patch holds no such pit, what is wrong is said
+/// instead.
 [[nodiscard]] std::expected<WedgeFaces, std::string> find_faces(const WedgePatch& patch,
                                                                 const FaceOptions& options);
 

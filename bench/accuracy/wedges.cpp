@@ -40,6 +40,7 @@ struct Arguments {
   double least_damage = 0;
   bool scanned = false;
   double scan_spacing_mm = 0.05;
+  double clay_spacing_mm = 0;  ///< of the mesh that is scanned; 0: by the scans' spacing
   double noise_mm = 0.02;
   int views = 14;
   std::string keep;
@@ -274,7 +275,8 @@ WedgeScore judge_seed(std::uint64_t seed, double damage, const Arguments& args) 
   sim::TabletOptions options = random_tablet(seed, "text", args.spacing_mm);
   options.damage = {damage, damage, damage, damage, 0};
   if (args.scanned) {
-    options.spacing_mm = std::max(0.04, 0.8 * args.scan_spacing_mm);
+    options.spacing_mm =
+        args.clay_spacing_mm > 0 ? args.clay_spacing_mm : std::max(0.04, 0.8 * args.scan_spacing_mm);
   }
   JobContext job;
   Result<sim::SimTablet> tablet = args.other
@@ -319,6 +321,7 @@ int main(int argc, char** argv) {
   app.add_option("--least-damage", args.least_damage, "what the first seed has, where it goes by seed");
   app.add_flag("--scanned", args.scanned, "scan each tablet in simulation and stitch the scans");
   app.add_option("--scan-spacing", args.scan_spacing_mm);
+  app.add_option("--clay-spacing", args.clay_spacing_mm, "of the mesh that is scanned, mm");
   app.add_option("--noise", args.noise_mm);
   app.add_option("--views", args.views);
   app.add_option("--keep", args.keep,
