@@ -63,7 +63,10 @@ void remove_pieces(Mesh& mesh, std::size_t least_faces) {
 Mesh assemble(const std::vector<OwnedScan>& scans, const AssemblyOptions& options,
               const std::function<void()>& laid, const JobContext& job) {
   job.progress("join patches", 0.0);
-  Draft draft = lay_patches(scans);
+  Draft draft = lay_patches(scans, job);
+  if (job.cancelled()) {
+    return {};
+  }
   laid();
   ClosingOptions closing{options.seam, options.gap};
   closing.gap.seen = [&scans](const Vector3f& p_mm, float radius_mm) {
@@ -83,23 +86,43 @@ Mesh assemble(const std::vector<OwnedScan>& scans, const AssemblyOptions& option
   if (job.cancelled()) {
     return {};
   }
-  job.progress("finish mesh", 0.0);
+  const auto goes_on = [&](int steps) {
+    if (!job.cancelled()) {
+      job.progress("finish mesh", steps / 5.0);
+    }
+    return !job.cancelled();
+  };
+  if (!goes_on(0)) {
+    return {};
+  }
   Mesh& mesh = draft.mesh;
   const std::vector<Vector3f>& p = mesh.positions;
   erase_where(mesh.faces, [&](const Triangle& f) {
     return is_gone(f) ||
            !((p[f[1]] - p[f[0]]).cast<double>().cross((p[f[2]] - p[f[0]]).cast<double>()).norm() > 0);
   });
-  part_fans(draft);
+  if (!goes_on(1)) {
+    return {};
+  }
+  part_fans(draft, job);
+  if (!goes_on(2)) {
+    return {};
+  }
   mesh.normals.clear();
   remove_pieces(mesh, static_cast<std::size_t>(std::max(options.least_component_faces, 0)));
+  if (!goes_on(3)) {
+    return {};
+  }
   // After this every vertex holds one fan: it is on the boundary when that fan is open.
   const std::vector<std::uint8_t> rim = rim_vertices(mesh.faces, mesh.positions.size());
   for (std::size_t v = 0; v < rim.size(); ++v) {
     mesh.flags[v] |= rim[v] != 0 ? kVertexBoundary : 0;
   }
+  if (!goes_on(4)) {
+    return {};
+  }
   mesh.normals = vertex_normals(mesh);
-  job.progress("finish mesh", 1.0);
+  goes_on(5);
   return std::move(mesh);
 }
 

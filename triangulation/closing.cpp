@@ -168,12 +168,20 @@ struct Closed {
   Leftover left;
 };
 
-Closed close_region(Region& region, const Walks& gaps, Draft& draft, const ClosingOptions& options) {
+/// Of a job that is cancelled no good.
+Closed close_region(Region& region, const Walks& gaps, Draft& draft, const ClosingOptions& options,
+                    const JobContext& job) {
   clear_around(region, gaps, draft);
   open_pinches(region, draft);
   Front front(region.sheet);
-  close_seams(front, options.seam);
-  const GapFillResult filled = fill_gaps(front, options.seam, options.gap);
+  close_seams(front, options.seam, job);
+  if (job.cancelled()) {
+    return {};
+  }
+  const GapFillResult filled = fill_gaps(front, options.seam, options.gap, job);
+  if (job.cancelled()) {
+    return {};
+  }
   return {filled.first_interpolated, left_open(front, options)};
 }
 
@@ -241,7 +249,7 @@ Leftover close_round(Draft& draft, std::span<const std::uint8_t> near, Walks gap
         if (job.cancelled()) {
           return;
         }
-        closed[k] = close_region(regions[k], gaps_in[regions[k].tile()], draft, options);
+        closed[k] = close_region(regions[k], gaps_in[regions[k].tile()], draft, options, job);
       },
       1);
   if (job.cancelled()) {
@@ -271,6 +279,9 @@ void close_around(Draft& draft, std::vector<std::uint8_t> near, const ClosingOpt
   std::size_t gaps_before = 0;
   for (int round = 0; round < kTiledRounds + kTries; ++round) {
     Leftover left = close_round(draft, near, std::move(gaps), round, options, job);
+    if (job.cancelled()) {
+      return;
+    }
     std::vector<std::uint32_t> seeds = left.vertices();
     if (seeds.empty() || (seeds == before && left.gaps.size() == gaps_before)) {
       return;
@@ -284,17 +295,19 @@ void close_around(Draft& draft, std::vector<std::uint8_t> near, const ClosingOpt
 
 using FacePairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
 
-FacePairs all_intersections(const Draft& draft) {
+FacePairs all_intersections(const Draft& draft, const ClosingOptions& options, const JobContext& job) {
   std::vector<std::uint32_t> patch(draft.mesh.faces.size());
   parallel_for_each_index(
       patch.size(), [&](std::size_t f) { patch[f] = draft.patch_of_face(f); }, 16384);
-  return self_intersections(draft.mesh.positions, draft.mesh.faces, patch);
+  return self_intersections(draft.mesh.positions, draft.mesh.faces, patch, job, options.counted);
 }
 
-FacePairs intersections_near(const Draft& draft, std::span<const std::uint32_t> seeds) {
+FacePairs intersections_near(const Draft& draft, std::span<const std::uint32_t> seeds,
+                             const ClosingOptions& options, const JobContext& job) {
   FacePairs pairs;
   for (const Region& region : take_regions(draft, vertices_near(draft, seeds), Tiling())) {
-    for (const auto& [a, b] : self_intersections(region.sheet.positions, region.sheet.faces)) {
+    for (const auto& [a, b] :
+         self_intersections(region.sheet.positions, region.sheet.faces, {}, job, options.counted)) {
       pairs.emplace_back(region.face(a), region.face(b));
     }
   }
@@ -317,12 +330,15 @@ std::vector<std::uint32_t> corners_of(const Draft& draft, const FacePairs& pairs
 void close_patches(Draft& draft, const ClosingOptions& options, const JobContext& job) {
   close_around(draft, draft.near_rim, options, job);
   if (!job.cancelled()) {
-    remove_slivers(draft, draft.first_face.back());
+    remove_slivers(draft, draft.first_face.back(), job);
   }
 }
 
 void repair_self_intersections(Draft& draft, const ClosingOptions& options, const JobContext& job) {
-  FacePairs pairs = all_intersections(draft);
+  if (job.cancelled()) {
+    return;
+  }
+  FacePairs pairs = all_intersections(draft, options, job);
   for (int attempt = 0; !pairs.empty() && !job.cancelled(); ++attempt) {
     const bool last = attempt == kRepairs;
     std::vector<std::uint32_t> corners = corners_of(draft, pairs);
@@ -354,11 +370,11 @@ void repair_self_intersections(Draft& draft, const ClosingOptions& options, cons
     if (job.cancelled()) {
       return;
     }
-    remove_slivers(draft, faces_before);
+    remove_slivers(draft, faces_before, job);
     for (std::size_t f = faces_before; f < draft.mesh.faces.size(); ++f) {
       corners.insert(corners.end(), draft.mesh.faces[f].begin(), draft.mesh.faces[f].end());
     }
-    pairs = intersections_near(draft, corners);
+    pairs = intersections_near(draft, corners, options, job);
   }
 }
 

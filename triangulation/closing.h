@@ -5,6 +5,7 @@
 #include <cstddef>
 
 #include "core/job.h"
+#include "triangulation/count_work.h"
 #include "triangulation/draft.h"
 #include "triangulation/gap_fill.h"
 #include "triangulation/seam_closer.h"
@@ -16,6 +17,7 @@ struct ClosingOptions {
   GapFillOptions gap;
   double tile_spacings = 300.0;  ///< × the coarsest µ: edge of the tiles that are closed side by side
   std::size_t least_tiled_vertices = 50000;  ///< near what is open; fewer are one piece of work
+  CountWork counted{};                       ///< of the search for faces that cut each other
 };
 
 /// Closes the seams between the patches of a draft, and its gaps. Where patches touch by a corner only, the

@@ -108,19 +108,22 @@ Box box_on_sphere(Positions positions, const Face& face, std::uint32_t from) {
   return {box.min() - Vector3d::Constant(kMargin), box.max() + Vector3d::Constant(kMargin)};
 }
 
-/// Boxes in a tree, each node's halves parted where its boxes' middles spread the most.
+/// Boxes in a tree, each node's halves parted where its boxes' middles spread the most. Of a job that is
+/// cancelled some are missing.
 class BoxTree {
  public:
-  explicit BoxTree(std::vector<std::pair<Box, std::uint32_t>> items) : items_(std::move(items)) {
+  BoxTree(std::vector<std::pair<Box, std::uint32_t>> items, const JobContext& job)
+      : items_(std::move(items)) {
     boxes_.resize(2 * items_.size());
-    build(0, 0, items_.size());
+    build(0, 0, items_.size(), job);
   }
   [[nodiscard]] const std::vector<std::pair<Box, std::uint32_t>>& items() const { return items_; }
 
-  /// visit(item) for the items from `least` on whose boxes touch the given one.
+  /// visit(item) for the items from `least` on whose boxes touch the given one. Returns how many boxes it was
+  /// held against.
   template <class Visit>
-  void for_each_touching(const Box& box, std::size_t least, const Visit& visit) const {
-    search(0, 0, items_.size(), box, least, visit);
+  std::size_t for_each_touching(const Box& box, std::size_t least, const Visit& visit) const {
+    return search(0, 0, items_.size(), box, least, visit);
   }
 
  private:
@@ -130,7 +133,10 @@ class BoxTree {
   /// nodes than twice its items.
   static std::size_t right_of(std::size_t node, std::size_t left_items) { return node + 2 * left_items; }
 
-  void build(std::size_t node, std::size_t begin, std::size_t end) {
+  void build(std::size_t node, std::size_t begin, std::size_t end, const JobContext& job) {
+    if (job.cancelled()) {
+      return;
+    }
     Box box;
     Box middles;
     for (std::size_t k = begin; k < end; ++k) {
@@ -151,15 +157,18 @@ class BoxTree {
     std::nth_element(at(begin), at(half), at(end), [axis](const auto& a, const auto& b) {
       return std::pair(a.first.center()[axis], a.second) < std::pair(b.first.center()[axis], b.second);
     });
-    build(node + 1, begin, half);
-    build(right_of(node, half - begin), half, end);
+    build(node + 1, begin, half, job);
+    build(right_of(node, half - begin), half, end, job);
   }
 
   template <class Visit>
-  void search(std::size_t node, std::size_t begin, std::size_t end, const Box& box, std::size_t least,
-              const Visit& visit) const {
-    if (end <= least || begin == end || !box.intersects(boxes_[node])) {
-      return;
+  std::size_t search(std::size_t node, std::size_t begin, std::size_t end, const Box& box, std::size_t least,
+                     const Visit& visit) const {
+    if (end <= least || begin == end) {
+      return 0;
+    }
+    if (!box.intersects(boxes_[node])) {
+      return 1;
     }
     if (end - begin <= kLeaf) {
       for (std::size_t k = std::max(begin, least); k < end; ++k) {
@@ -167,11 +176,11 @@ class BoxTree {
           visit(items_[k].second);
         }
       }
-      return;
+      return 1 + end - std::max(begin, least);
     }
     const std::size_t half = begin + (end - begin) / 2;
-    search(node + 1, begin, half, box, least, visit);
-    search(right_of(node, half - begin), half, end, box, least, visit);
+    return 1 + search(node + 1, begin, half, box, least, visit) +
+           search(right_of(node, half - begin), half, end, box, least, visit);
   }
 
   std::vector<std::pair<Box, std::uint32_t>> items_;
@@ -217,7 +226,7 @@ std::vector<std::vector<std::uint32_t>> parted_by_edges(std::span<const Face> fa
 /// Those in which one face is of the crowd at a vertex, and the other too, or of the rest.
 Pairs cuts_of_crowd(Positions positions, std::span<const Face> faces, std::uint32_t vertex,
                     const std::vector<std::vector<std::uint32_t>>& crowd,
-                    const std::vector<std::uint32_t>& rest, const JobContext& job) {
+                    const std::vector<std::uint32_t>& rest, const JobContext& job, const CountWork& counted) {
   Eigen::AlignedBox3f reach;
   std::vector<BoxTree> trees;
   for (const std::vector<std::uint32_t>& part : crowd) {
@@ -228,16 +237,16 @@ Pairs cuts_of_crowd(Positions positions, std::span<const Face> faces, std::uint3
     parallel_for_each_index(part.size(), [&](std::size_t k) {
       arcs[k] = {box_on_sphere(positions, faces[part[k]], vertex), part[k]};
     });
-    trees.emplace_back(std::move(arcs));
+    trees.emplace_back(std::move(arcs), job);
   }
   const auto find = [&](const BoxTree& tree, std::uint32_t face, const Box& box, std::size_t least,
                         Pairs& found) {
     const FacePlane plane(positions, faces[face]);
-    tree.for_each_touching(box, least, [&](std::uint32_t other) {
+    count_work(counted, tree.for_each_touching(box, least, [&](std::uint32_t other) {
       if (faces_cut(positions, faces[face], plane, faces[other])) {
         found.push_back(std::minmax(face, other));
       }
-    });
+    }));
   };
   Pairs out;
   for (std::size_t part = 0; part < trees.size(); ++part) {
@@ -275,10 +284,11 @@ Pairs cuts_of_crowd(Positions positions, std::span<const Face> faces, std::uint3
 }  // namespace
 
 Pairs take_cuts_at_crowded_vertices(Positions positions, std::span<const Face> faces,
-                                    std::vector<std::uint32_t>& which, const JobContext& job) {
+                                    std::vector<std::uint32_t>& which, const JobContext& job,
+                                    const CountWork& counted) {
   std::vector<std::uint32_t> at_vertex(positions.size(), 0);
-  for (const std::uint32_t face : which) {
-    for (const std::uint32_t v : faces[face]) {
+  for (std::size_t k = 0; k < which.size() && !job.cancelled(); ++k) {
+    for (const std::uint32_t v : faces[which[k]]) {
       ++at_vertex[v];
     }
   }
@@ -302,8 +312,8 @@ Pairs take_cuts_at_crowded_vertices(Positions positions, std::span<const Face> f
         --at_vertex[v];
       }
     }
-    const Pairs found =
-        cuts_of_crowd(positions, faces, vertex, parted_by_edges(faces, vertex, crowd, least), which, job);
+    const Pairs found = cuts_of_crowd(positions, faces, vertex, parted_by_edges(faces, vertex, crowd, least),
+                                      which, job, counted);
     out.insert(out.end(), found.begin(), found.end());
   }
   return out;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/job.h"
+#include "triangulation/count_work.h"
 
 namespace dubsar {
 
@@ -21,6 +22,6 @@ namespace dubsar {
 /// meet. The faces must be sound. Of a job that is cancelled some pairs are missing.
 [[nodiscard]] std::vector<std::pair<std::uint32_t, std::uint32_t>> take_cuts_at_crowded_vertices(
     std::span<const Eigen::Vector3f> positions, std::span<const std::array<std::uint32_t, 3>> faces,
-    std::vector<std::uint32_t>& which, const JobContext& job = {});
+    std::vector<std::uint32_t>& which, const JobContext& job = {}, const CountWork& counted = {});
 
 }  // namespace dubsar

@@ -189,12 +189,15 @@ std::uint32_t Draft::patch_of_face(std::size_t face) const {
   return static_cast<std::uint32_t>(next - first_face.begin());
 }
 
-Draft lay_patches(const std::vector<OwnedScan>& scans) {
+Draft lay_patches(const std::vector<OwnedScan>& scans, const JobContext& job) {
   Draft draft;
   std::vector<Patch> patches;
   draft.first_vertex.push_back(0);
   draft.first_face.push_back(0);
   for (const OwnedScan& scan : scans) {
+    if (job.cancelled()) {
+      return draft;
+    }
     const Patch& patch = patches.emplace_back(scan);
     draft.first_vertex.push_back(draft.first_vertex.back() + patch.vertex_count());
     draft.first_face.push_back(draft.first_face.back() + patch.face_count());
@@ -215,7 +218,7 @@ Draft lay_patches(const std::vector<OwnedScan>& scans) {
   lay_out(mesh.flags, vertices);
   lay_out(draft.near_rim, vertices);
   lay_out(mesh.faces, draft.first_face.back());
-  for (std::size_t k = 0; k < patches.size(); ++k) {
+  for (std::size_t k = 0; k < patches.size() && !job.cancelled(); ++k) {
     patches[k].lay(draft.first_vertex[k], draft.first_face[k], draft);
   }
   return draft;

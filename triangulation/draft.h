@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/job.h"
 #include "core/mesh.h"
 #include "triangulation/half_edges.h"
 #include "triangulation/owned_scan.h"
@@ -36,7 +37,8 @@ struct Draft {
 }
 
 /// The patches that assign_owners() left: vertices are the kept samples at their averaged places, faces their
-/// triangles, and two more where a grid lacks one lone sample.
-[[nodiscard]] Draft lay_patches(const std::vector<OwnedScan>& scans);
+/// triangles, and two more where a grid lacks one lone sample. Of a job that is cancelled some are not laid,
+/// and the draft is no good.
+[[nodiscard]] Draft lay_patches(const std::vector<OwnedScan>& scans, const JobContext& job = {});
 
 }  // namespace dubsar

@@ -235,31 +235,41 @@ void FusedSamples::forget_if(const std::function<bool(std::uint32_t)>& gone) {
     sparse[out] = sparse[at];
     scans[out++] = scans[at];
   }
-  samples.resize(out);
-  points.resize(out);
-  reliability.resize(out);
-  sigma_mm.resize(out);
-  sparse.resize(out);
-  scans.resize(out);
+  resize(out);
+}
+
+void FusedSamples::forget_from(std::size_t first) {
+  for (std::size_t at = first; at < samples.size(); ++at) {
+    slot[samples[at]] = kNone;
+  }
+  resize(first);
+}
+
+void FusedSamples::resize(std::size_t count) {
+  samples.resize(count);
+  points.resize(count);
+  reliability.resize(count);
+  sigma_mm.resize(count);
+  sparse.resize(count);
+  scans.resize(count);
 }
 
 void fuse(const StitchSurface& from, std::span<const StitchSurface* const> others,
-          std::span<const Pairs* const> pairs, std::span<const std::uint32_t> which, FusedSamples& out) {
+          std::span<const Pairs* const> pairs, std::span<const std::uint32_t> which, FusedSamples& out,
+          const JobContext& job) {
   const std::size_t first = out.samples.size();
   out.samples.insert(out.samples.end(), which.begin(), which.end());
-  const std::size_t n = out.samples.size();
-  out.points.resize(n);
-  out.reliability.resize(n);
-  out.sigma_mm.resize(n);
-  out.sparse.resize(n);
-  out.scans.resize(n);
+  out.resize(out.samples.size());
   parallel_chunks(which.size(), 2048, [&](std::size_t begin, std::size_t end) {
     Averager averager(from, others, pairs);
-    for (std::size_t at = first + begin; at < first + end; ++at) {
+    for (std::size_t at = first + begin; at < first + end && !job.cancelled(); ++at) {
       out.slot[out.samples[at]] = static_cast<std::uint32_t>(at);
       averager.average(at, out);
     }
   });
+  if (job.cancelled()) {
+    out.forget_from(first);
+  }
 }
 
 }  // namespace dubsar

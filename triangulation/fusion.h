@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "core/job.h"
 #include "triangulation/pairing.h"
 #include "triangulation/stitch_surface.h"
 
@@ -33,6 +34,10 @@ struct FusedSamples {
   explicit FusedSamples(const StitchSurface& of);
   /// Forgets the samples for which gone(sample).
   void forget_if(const std::function<bool(std::uint32_t)>& gone);
+  /// Makes room for so many; what is new is to be written.
+  void resize(std::size_t count);
+  /// Forgets all but the first so many.
+  void forget_from(std::size_t first);
   /// Of a sample that has been fused.
   [[nodiscard]] const Eigen::Vector3f& point(std::size_t sample) const { return points[slot[sample]]; }
 };
@@ -42,8 +47,9 @@ struct FusedSamples {
 /// its place is not known). A projection is as good as the samples that it lies between (their variances,
 /// interpolated). `others` and `pairs` run in parallel, in the order of scan ids. Where the other scan has no
 /// triangle nothing is counted. Appends the samples `which`, usable ones not yet in `out`; it is quickest
-/// when those of one node follow each other.
+/// when those of one node follow each other. Of a job that is cancelled it appends none.
 void fuse(const StitchSurface& from, std::span<const StitchSurface* const> others,
-          std::span<const Pairs* const> pairs, std::span<const std::uint32_t> which, FusedSamples& out);
+          std::span<const Pairs* const> pairs, std::span<const std::uint32_t> which, FusedSamples& out,
+          const JobContext& job = {});
 
 }  // namespace dubsar

@@ -291,7 +291,8 @@ std::size_t cut_ears(Front& front, const std::vector<std::uint32_t>& opening) {
   return added;
 }
 
-GapFillResult fill_gaps(Front& front, const SeamOptions& seam, const GapFillOptions& options) {
+GapFillResult fill_gaps(Front& front, const SeamOptions& seam, const GapFillOptions& options,
+                        const JobContext& job) {
   GapFillResult result;
   result.first_interpolated = front.sheet().positions.size();
   const auto gaps = [&] {
@@ -304,19 +305,22 @@ GapFillResult fill_gaps(Front& front, const SeamOptions& seam, const GapFillOpti
   };
   std::vector<std::vector<std::uint32_t>> open = gaps();
   for (const auto& opening : open) {
+    if (job.cancelled()) {
+      return result;
+    }
     if (opening_diameter_mm(front.sheet(), opening) > 2.5 * mean_spacing_mm(front.sheet(), opening)) {
       interpolate_vertices(front, opening);
     }
   }
   for (const double least_angle_rad : {seam.least_angle_rad, 0.4 * seam.least_angle_rad, 0.01}) {
-    if (open.empty()) {
+    if (open.empty() || job.cancelled()) {
       break;
     }
-    result.faces += close_openings(front, open, least_angle_rad, seam);
+    result.faces += close_openings(front, open, least_angle_rad, seam, job);
     open = gaps();
   }
   for (const auto& opening : open) {
-    if (opening.size() <= 40) {
+    if (opening.size() <= 40 && !job.cancelled()) {
       result.faces += cut_ears(front, opening);
     }
   }

@@ -52,11 +52,12 @@ std::size_t interpolate_vertices(Front& front, const std::vector<std::uint32_t>&
 std::size_t cut_ears(Front& front, const std::vector<std::uint32_t>& opening);
 
 /// Closes every gap and crack of the front that has room. Vertices from `first_interpolated` on are
-/// interpolated.
+/// interpolated. Of a job that is cancelled some stay open.
 struct GapFillResult {
   std::size_t first_interpolated = 0;
   std::size_t faces = 0;
 };
-GapFillResult fill_gaps(Front& front, const SeamOptions& seam, const GapFillOptions& options);
+GapFillResult fill_gaps(Front& front, const SeamOptions& seam, const GapFillOptions& options,
+                        const JobContext& job = {});
 
 }  // namespace dubsar

@@ -20,12 +20,12 @@ constexpr std::size_t kGrain = 16384;
 }  // namespace
 
 HalfEdges::HalfEdges(std::span<const Triangle> faces, std::size_t vertex_count,
-                     std::span<const std::uint8_t> only)
+                     std::span<const std::uint8_t> only, const JobContext& job)
     : start_(vertex_count + 1, 0) {
   const auto takes = [&](std::uint32_t v) { return only.empty() || only[v] != 0; };
   parallel_ranges(vertex_count, [&](std::size_t begin, std::size_t end) {
-    for (const Triangle& f : faces) {
-      for (const std::uint32_t v : f) {
+    for (std::size_t i = 0; i < faces.size() && !job.cancelled(); ++i) {
+      for (const std::uint32_t v : faces[i]) {
         if (v >= begin && v < end && takes(v)) {
           ++start_[v + 1];
         }
@@ -38,7 +38,7 @@ HalfEdges::HalfEdges(std::span<const Triangle> faces, std::size_t vertex_count,
   resize_in_huge_pages(out_, start_.back());
   std::vector<std::uint32_t> next(start_.begin(), start_.end() - 1);
   parallel_ranges(vertex_count, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = 0; i < faces.size(); ++i) {
+    for (std::size_t i = 0; i < faces.size() && !job.cancelled(); ++i) {
       const Triangle& f = faces[i];
       for (std::size_t k = 0; k < 3; ++k) {
         if (f[k] >= begin && f[k] < end && takes(f[k])) {
@@ -47,7 +47,13 @@ HalfEdges::HalfEdges(std::span<const Triangle> faces, std::size_t vertex_count,
       }
     }
   });
-  sort_crowds();
+  sort_crowds(job);
+  if (job.cancelled()) {
+    start_.assign(vertex_count + 1, 0);
+    out_.clear();
+    crowds_.clear();
+    sorted_.clear();
+  }
 }
 
 std::vector<std::uint8_t> rim_vertices(std::span<const Triangle> faces, std::size_t vertex_count) {
@@ -79,8 +85,8 @@ std::vector<std::uint8_t> rim_vertices(std::span<const Triangle> faces, std::siz
   return rim;
 }
 
-void HalfEdges::sort_crowds() {
-  for (std::uint32_t v = 0; v < vertex_count(); ++v) {
+void HalfEdges::sort_crowds(const JobContext& job) {
+  for (std::uint32_t v = 0; v < vertex_count() && !job.cancelled(); ++v) {
     const std::span<const Out> outs = from(v);
     if (outs.size() > kFew) {
       crowds_.emplace_back(v, sorted_.size());
@@ -143,22 +149,25 @@ std::int64_t HalfEdges::across(std::uint32_t face, std::uint32_t a, std::uint32_
   return of_two_turned_the_same ? face_of_rank(a, b, 1 - at) : opposite;
 }
 
-FaceComponents face_components(std::span<const Triangle> faces, const HalfEdges& edges) {
+FaceComponents face_components(std::span<const Triangle> faces, const HalfEdges& edges,
+                               const JobContext& job) {
   DisjointSets sets(faces.size());
-  parallel_for_each_index(
-      faces.size(),
-      [&](std::size_t i) {
-        for (std::size_t k = 0; k < 3; ++k) {
-          const std::uint32_t a = faces[i][k];
-          const std::uint32_t b = faces[i][(k + 1) % 3];
-          for (const std::int64_t other : {edges.face(b, a), edges.face(a, b)}) {
-            if (other >= 0 && static_cast<std::size_t>(other) != i) {
-              sets.unite(static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(other));
-            }
+  parallel_chunks(faces.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end && !job.cancelled(); ++i) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::uint32_t a = faces[i][k];
+        const std::uint32_t b = faces[i][(k + 1) % 3];
+        for (const std::int64_t other : {edges.face(b, a), edges.face(a, b)}) {
+          if (other >= 0 && static_cast<std::size_t>(other) != i) {
+            sets.unite(static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(other));
           }
         }
-      },
-      kGrain);
+      }
+    }
+  });
+  if (job.cancelled()) {
+    return {};
+  }
   using Roots = std::vector<std::uint32_t>;
   FaceComponents out;
   out.of_face.resize(faces.size());

@@ -23,7 +23,8 @@ using Triangle = std::array<std::uint32_t, 3>;
 
 /// Half-edges that leave each vertex, in compressed rows: for face f and corner k the half-edge from corner k
 /// to the next one. Faces must have indices below the vertex count. With `only` given, no more than those
-/// that leave vertices v with only[v] != 0.
+/// that leave vertices v with only[v] != 0. Of a job that is cancelled while they are gathered there are
+/// none.
 class HalfEdges {
  public:
   struct Out {
@@ -32,7 +33,7 @@ class HalfEdges {
   };
 
   HalfEdges(std::span<const Triangle> faces, std::size_t vertex_count,
-            std::span<const std::uint8_t> only = {});
+            std::span<const std::uint8_t> only = {}, const JobContext& job = {});
 
   [[nodiscard]] std::span<const Out> from(std::uint32_t vertex) const {
     return {out_.data() + start_[vertex], out_.data() + start_[vertex + 1]};
@@ -69,7 +70,7 @@ class HalfEdges {
   /// How many of the faces that run from a to b come before this one, and which comes after so many, or -1.
   [[nodiscard]] std::size_t rank(std::uint32_t a, std::uint32_t b, std::uint32_t face) const;
   [[nodiscard]] std::int64_t face_of_rank(std::uint32_t a, std::uint32_t b, std::size_t rank) const;
-  void sort_crowds();
+  void sort_crowds(const JobContext& job);
 
   std::vector<std::uint32_t> start_;
   std::vector<Out> out_;
@@ -79,12 +80,14 @@ class HalfEdges {
 };
 
 /// Component number of each face (0, 1, … in order of their first face), faces being joined across the edges
-/// that they share, whichever way they run and however many there are.
+/// that they share, whichever way they run and however many there are. Of a job that is cancelled there are
+/// none.
 struct FaceComponents {
   std::vector<std::uint32_t> of_face;
   std::vector<std::size_t> sizes;  ///< faces per component
 };
-[[nodiscard]] FaceComponents face_components(std::span<const Triangle> faces, const HalfEdges& edges);
+[[nodiscard]] FaceComponents face_components(std::span<const Triangle> faces, const HalfEdges& edges,
+                                             const JobContext& job = {});
 
 /// 1 for each vertex on an open edge (a half-edge a→b of a face while no face has b→a), 0 for each whose
 /// faces close around it: one pass that tells apart the few vertices where something can be wrong. Heads and

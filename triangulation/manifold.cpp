@@ -107,14 +107,14 @@ void keep_entries(std::vector<T>& values, const std::vector<std::uint32_t>& targ
 }  // namespace
 
 std::vector<std::uint32_t> make_manifold(std::vector<Triangle>& faces, std::size_t vertex_count,
-                                         std::span<const std::uint8_t> only) {
+                                         std::span<const std::uint8_t> only, const JobContext& job) {
   erase_where(faces, [](const Triangle& f) { return f[0] == f[1] || f[1] == f[2] || f[2] == f[0]; });
-  HalfEdges edges(faces, vertex_count, only);
-  if (has_repeated_half_edge(edges)) {
+  HalfEdges edges(faces, vertex_count, only, job);
+  if (!job.cancelled() && has_repeated_half_edge(edges)) {
     drop_repeated_half_edges(edges, faces);
-    edges = HalfEdges(faces, vertex_count, only);
+    edges = HalfEdges(faces, vertex_count, only, job);
   }
-  return split_fans(faces, edges);
+  return job.cancelled() ? std::vector<std::uint32_t>{} : split_fans(faces, edges);
 }
 
 void compact_vertices(Mesh& mesh) {

@@ -190,7 +190,7 @@ void check_vertices(const Mesh& mesh, std::span<const Triangle> faces, const Hal
 
 void check_parts(const Mesh& mesh, std::span<const Triangle> faces, const HalfEdges& edges,
                  const JobContext& job, MeshReport& report) {
-  const FaceComponents parts = face_components(faces, edges);
+  const FaceComponents parts = face_components(faces, edges, job);
   report.components = parts.sizes.size();
   report.largest_component =
       parts.sizes.empty() ? 0 : *std::max_element(parts.sizes.begin(), parts.sizes.end());
@@ -205,8 +205,8 @@ void check_parts(const Mesh& mesh, std::span<const Triangle> faces, const HalfEd
   }
 }
 
-/// Those of faces whose three vertices are those of no face before.
-std::vector<Triangle> without_duplicates(std::span<const Triangle> faces) {
+/// Those of faces whose three vertices are those of no face before; none of a job that is cancelled.
+std::vector<Triangle> without_duplicates(std::span<const Triangle> faces, const JobContext& job) {
   std::vector<std::pair<Triangle, std::uint32_t>> by_corners(faces.size());
   parallel_for_each_index(
       faces.size(),
@@ -216,14 +216,20 @@ std::vector<Triangle> without_duplicates(std::span<const Triangle> faces) {
         by_corners[i] = {corners, static_cast<std::uint32_t>(i)};
       },
       kGrain);
-  parallel_sort(by_corners.begin(), by_corners.end(), std::less<>{});
+  parallel_sort(by_corners.begin(), by_corners.end(), std::less<>{}, job);
+  if (job.cancelled()) {
+    return {};
+  }
   std::vector<std::uint32_t> first;
   for (std::size_t k = 0; k < by_corners.size(); ++k) {
     if (k == 0 || by_corners[k].first != by_corners[k - 1].first) {
       first.push_back(by_corners[k].second);
     }
   }
-  std::ranges::sort(first);
+  parallel_sort(first.begin(), first.end(), std::less<>{}, job);
+  if (job.cancelled()) {
+    return {};
+  }
   std::vector<Triangle> out;
   out.reserve(first.size());
   for (const std::uint32_t face : first) {
@@ -247,7 +253,7 @@ MeshReport check(const Mesh& mesh, bool with_parts, const JobContext& job) {
   if (job.cancelled()) {
     return report;
   }
-  const HalfEdges edges(faces, report.vertices);
+  const HalfEdges edges(faces, report.vertices, {}, job);
   if (!job.cancelled()) {
     check_edges(mesh, faces, edges, job, report);
   }
@@ -266,16 +272,16 @@ MeshReport check_manifold(const Mesh& mesh) {
   return check(mesh, false, {});
 }
 
-MeshReport check_mesh(const Mesh& mesh, const JobContext& job) {
+MeshReport check_mesh(const Mesh& mesh, const JobContext& job, const CountWork& counted) {
   MeshReport report = check(mesh, true, job);  // gives its memory back before what needs as much again
   if (!job.cancelled()) {
     std::vector<Triangle> different;
     std::span<const Triangle> faces = mesh.faces;
     if (report.duplicate_faces > 0) {
-      different = without_duplicates(faces);
+      different = without_duplicates(faces, job);
       faces = different;
     }
-    report.self_intersections = self_intersections(mesh.positions, faces, {}, job).size();
+    report.self_intersections = self_intersections(mesh.positions, faces, {}, job, counted).size();
   }
   return report;
 }

@@ -8,6 +8,7 @@
 
 #include "core/job.h"
 #include "core/mesh.h"
+#include "triangulation/count_work.h"
 
 namespace dubsar {
 
@@ -45,7 +46,9 @@ struct MeshReport {
 
 /// Checks any mesh, broken indices included; faces with an index out of range count as degenerate and take no
 /// further part. Of a job that is cancelled the report holds what is known by then, and is none of the mesh.
-[[nodiscard]] MeshReport check_mesh(const Mesh& mesh, const JobContext& job = {});
+/// `counted`: of the search for self-intersections.
+[[nodiscard]] MeshReport check_mesh(const Mesh& mesh, const JobContext& job = {},
+                                    const CountWork& counted = {});
 /// What is_manifold() goes by, in a third of the time: components, loops and self-intersections stay 0.
 [[nodiscard]] MeshReport check_manifold(const Mesh& mesh);
 

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "core/job.h"
 #include "triangulation/fusion.h"
 #include "triangulation/stitch_surface.h"
 
@@ -43,8 +44,9 @@ struct OwnedScan {
   std::vector<std::uint8_t> some_kept;  ///< by node: 1 where a sample of its block is kept
   std::vector<std::uint8_t> all_kept;   ///< by node: 1 where each of them is
 
-  void fuse(std::span<const std::uint32_t> which) const {
-    dubsar::fuse(*surface, other_surface, pairs, which, *fused);
+  /// Of a job that is cancelled none.
+  void fuse(std::span<const std::uint32_t> which, const JobContext& job) const {
+    dubsar::fuse(*surface, other_surface, pairs, which, *fused, job);
   }
 };
 

@@ -59,7 +59,7 @@ void LaidSamples::lay(const OwnedScan& scan, std::span<const std::uint8_t> kept,
 /// patch; then the samples they use.
 void add_samples(std::vector<OwnedScan>& scans, std::size_t self, std::vector<std::uint8_t> fresh,
                  const Contest& contest, const GridTriangulationOptions& grid,
-                 const OwnershipOptions& options, int least_patch, LaidSamples& laid) {
+                 const OwnershipOptions& options, int least_patch, LaidSamples& laid, const JobContext& job) {
   OwnedScan& scan = scans[self];
   const Lattice& lattice = scan.surface->lattice;
   GridSurface g = scan.surface->surface();
@@ -75,7 +75,7 @@ void add_samples(std::vector<OwnedScan>& scans, std::size_t self, std::vector<st
   triangulate_cells_anew(g, kept, scan.surface->mirrored, grid, laid.at_stake, cells);
   parallel_chunks(contest.any.size(), kContestGrain, [&](std::size_t begin, std::size_t end) {
     NodeContest here(scans, self, contest, options);
-    for (std::size_t node = begin; node < end; ++node) {
+    for (std::size_t node = begin; node < end && !job.cancelled(); ++node) {
       if (contest.any[node] == 0) {
         continue;
       }
@@ -104,7 +104,8 @@ void add_samples(std::vector<OwnedScan>& scans, std::size_t self, std::vector<st
 
 /// Samples that nobody keeps, nor lies over.
 std::vector<std::uint32_t> uncovered_samples(const std::vector<OwnedScan>& scans, std::size_t self,
-                                             const Contest& contest, const OwnershipOptions& options) {
+                                             const Contest& contest, const OwnershipOptions& options,
+                                             const JobContext& job) {
   const OwnedScan& scan = scans[self];
   const Lattice& lattice = scan.surface->lattice;
   using Samples = std::vector<std::uint32_t>;
@@ -113,7 +114,7 @@ std::vector<std::uint32_t> uncovered_samples(const std::vector<OwnedScan>& scans
       [&](std::size_t begin, std::size_t end) {
         Samples found;
         NodeContest here(scans, self, contest, options);
-        for (std::size_t node = begin; node < end; ++node) {
+        for (std::size_t node = begin; node < end && !job.cancelled(); ++node) {
           if (scan.surface->node_sample[node] < 0 || scan.all_kept[node] != 0) {
             continue;
           }
@@ -216,7 +217,7 @@ bool assign_owners(std::vector<OwnedScan>& scans, const GridTriangulationOptions
     std::vector<std::uint8_t> fresh = *scans[self].wanted;
     parallel_chunks(contest.any.size(), kContestGrain, [&](std::size_t begin, std::size_t end) {
       NodeContest here(scans, self, contest, options);
-      for (std::size_t node = begin; node < end; ++node) {
+      for (std::size_t node = begin; node < end && !job.cancelled(); ++node) {
         if (contest.any[node] != 0) {
           here.enter(node);
           scans[self].surface->lattice.for_each_sample(
@@ -224,8 +225,11 @@ bool assign_owners(std::vector<OwnedScan>& scans, const GridTriangulationOptions
         }
       }
     });
+    if (job.cancelled()) {
+      return false;
+    }
     add_samples(scans, self, std::move(fresh), contest, grid, options, options.least_wanted_patch_samples,
-                laid);
+                laid, job);
   }
   // What nobody keeps goes to the first scan that has it.
   for (std::size_t self = 0; self < scans.size(); ++self) {
@@ -235,7 +239,7 @@ bool assign_owners(std::vector<OwnedScan>& scans, const GridTriangulationOptions
     job.progress("cover what is left", static_cast<double>(self + scans.size()) / steps);
     OwnedScan& scan = scans[self];
     const Contest contest = contest_of(scans, self);
-    const std::vector<std::uint32_t> uncovered = uncovered_samples(scans, self, contest, options);
+    const std::vector<std::uint32_t> uncovered = uncovered_samples(scans, self, contest, options, job);
     if (uncovered.empty()) {
       continue;
     }
@@ -250,10 +254,14 @@ bool assign_owners(std::vector<OwnedScan>& scans, const GridTriangulationOptions
         unfused.push_back(i);
       }
     }
-    scan.fuse(unfused);
-    add_samples(scans, self, std::move(fresh), contest, grid, options, options.least_patch_samples, laid);
+    scan.fuse(unfused, job);
+    if (job.cancelled()) {  // then they have no places
+      return false;
+    }
+    add_samples(scans, self, std::move(fresh), contest, grid, options, options.least_patch_samples, laid,
+                job);
   }
-  return true;
+  return !job.cancelled();
 }
 
 }  // namespace dubsar

@@ -167,7 +167,7 @@ double feather_samples(const StitchSurface& a, const StitchSurface& b, double st
 }
 
 Pairs find_pairs(const StitchSurface& from, const StitchSurface& to, double reach_mm,
-                 const PairingOptions& options) {
+                 const PairingOptions& options, const JobContext& job) {
   Pairs pairs;
   pairs.other_id = to.id;
   pairs.reach_mm = static_cast<float>(reach_mm);
@@ -183,7 +183,7 @@ Pairs find_pairs(const StitchSurface& from, const StitchSurface& to, double reac
       pairs.match.size(), 512, std::size_t{0},
       [&](std::size_t begin, std::size_t end) {
         std::size_t count = 0;
-        for (std::size_t node = begin; node < end; ++node) {
+        for (std::size_t node = begin; node < end && !job.cancelled(); ++node) {
           const std::int32_t sample = from.node_sample[node];
           if (sample < 0) {
             continue;

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/job.h"
 #include "triangulation/stitch_surface.h"
 
 namespace dubsar {
@@ -47,8 +48,9 @@ struct Pairs {
 /// For Pairs::feather, from step_mm().
 [[nodiscard]] double feather_samples(const StitchSurface& a, const StitchSurface& b, double step_mm);
 
+/// Of a job that is cancelled some are missing.
 [[nodiscard]] Pairs find_pairs(const StitchSurface& from, const StitchSurface& to, double reach_mm,
-                               const PairingOptions& options);
+                               const PairingOptions& options, const JobContext& job = {});
 
 /// Where pair_of() sets out from for the samples of a node, and how the other grid goes on around there.
 struct PairStart {

@@ -135,14 +135,15 @@ void for_each_cell(const PartCells& cells, const Eigen::AlignedBox3f& box, float
 
 std::vector<std::uint32_t> faces_at_stake(Positions positions, std::span<const Face> faces,
                                           std::span<const std::uint32_t> part_of_face,
-                                          const Eigen::AlignedBox3f& all, float cell_mm) {
+                                          const Eigen::AlignedBox3f& all, float cell_mm,
+                                          const JobContext& job) {
   PartCells cells(all.min(), cell_mm);
   using Entries = std::vector<std::pair<std::uint64_t, std::uint32_t>>;
   const Entries entries = parallel_reduce_ordered(
       faces.size(), kGrain, Entries{},
       [&](std::size_t begin, std::size_t end) {
         Entries found;
-        for (std::size_t i = begin; i < end; ++i) {
+        for (std::size_t i = begin; i < end && !job.cancelled(); ++i) {
           for_each_cell(cells, box_of(positions, faces[i]), cell_mm, [&](std::uint64_t key) {
             const std::pair entry(key, part_of_face[i]);
             if (found.empty() || found.back() != entry) {  // faces beside each other mostly share theirs
@@ -153,8 +154,11 @@ std::vector<std::uint32_t> faces_at_stake(Positions positions, std::span<const F
         return found;
       },
       [](Entries& total, const Entries& part) { total.insert(total.end(), part.begin(), part.end()); });
-  for (const auto& [key, part] : entries) {
-    cells.add(key, part);
+  for (std::size_t k = 0; k < entries.size() && !job.cancelled(); ++k) {
+    cells.add(entries[k].first, entries[k].second);
+  }
+  if (job.cancelled()) {
+    return {};
   }
   std::vector<std::uint8_t> calm(cells.slot_count(), 0);
   parallel_for_each_index(
@@ -170,7 +174,7 @@ std::vector<std::uint32_t> faces_at_stake(Positions positions, std::span<const F
         Faces found;
         std::uint64_t last_key = 0;  // of no cell
         bool last_calm = false;
-        for (std::size_t i = begin; i < end; ++i) {
+        for (std::size_t i = begin; i < end && !job.cancelled(); ++i) {
           bool at_stake = false;
           for_each_cell(cells, box_of(positions, faces[i]), cell_mm, [&](std::uint64_t key) {
             last_calm = key == last_key ? last_calm : calm[cells.slot_of(key)] != 0;

@@ -139,8 +139,8 @@ std::vector<Triangle> faces_with(const Mesh& mesh, std::span<const std::uint8_t>
 
 /// Marks those of the moved vertices that a face has which cuts another.
 void mark_cutting(const Mesh& mesh, std::span<const Triangle> faces, std::span<const std::uint32_t> moved,
-                  std::vector<std::uint8_t>& marked) {
-  for (const auto& [a, b] : self_intersections(mesh.positions, faces)) {
+                  std::vector<std::uint8_t>& marked, const JobContext& job) {
+  for (const auto& [a, b] : self_intersections(mesh.positions, faces, {}, job)) {
     for (const std::uint32_t face : {a, b}) {
       for (const std::uint32_t v : faces[face]) {
         if (std::ranges::binary_search(moved, v)) {
@@ -153,12 +153,15 @@ void mark_cutting(const Mesh& mesh, std::span<const Triangle> faces, std::span<c
 
 }  // namespace
 
-void part_fans(Draft& draft) {
+void part_fans(Draft& draft, const JobContext& job) {
   Mesh& mesh = draft.mesh;
   std::vector<std::uint8_t> near = draft.near_rim;  // elsewhere faces are those of grids
   // Where fans go others beside them may part: until none is left, for there are fewer faces each time.
-  while (true) {
-    append_copies(draft, make_manifold(mesh.faces, mesh.positions.size(), near));
+  while (!job.cancelled()) {
+    append_copies(draft, make_manifold(mesh.faces, mesh.positions.size(), near, job));
+    if (job.cancelled()) {
+      return;
+    }
     const std::vector<std::uint32_t> moved = in_a_place_taken(draft);
     if (moved.empty()) {
       return;
@@ -166,7 +169,7 @@ void part_fans(Draft& draft) {
     near = vertices_near(draft, moved);
     const std::vector<Triangle> faces = faces_with(mesh, near);
     std::vector<std::uint8_t> goes = draw_apart(mesh, faces, moved);
-    mark_cutting(mesh, faces, moved, goes);
+    mark_cutting(mesh, faces, moved, goes, job);
     const std::size_t before = mesh.faces.size();
     erase_where(mesh.faces, [&](const Triangle& f) { return (goes[f[0]] | goes[f[1]] | goes[f[2]]) != 0; });
     if (mesh.faces.size() == before) {

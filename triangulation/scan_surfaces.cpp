@@ -33,17 +33,21 @@ Status check_stitchable(const PlacedScan& scan) {
   return PlacedPrecision(*scan.grid).check(scan.model_from_scanner, stitched_name(scan));
 }
 
-std::vector<StitchSurface> surfaces_of_passes(const PlacedScan& scan, const StitchSurfaceOptions& options) {
+std::vector<StitchSurface> surfaces_of_passes(const PlacedScan& scan, const StitchSurfaceOptions& options,
+                                              const JobContext& job) {
   const RangeGrid& grid = *scan.grid;
   const double spacing_mm = grid.spacing_mm > 0 ? grid.spacing_mm : estimate_spacing_mm(grid);
   const std::vector<StagePass> passes =
       spacing_mm > 0 ? stage_passes(grid, spacing_mm) : std::vector<StagePass>{};
   std::vector<StitchSurface> out;
   if (passes.empty() || passes.front().size() == static_cast<std::size_t>(grid.rows)) {
-    out.push_back(make_scan_surface(scan, options));
+    out.push_back(make_scan_surface(scan, options, job));
     return out;
   }
   for (const StagePass& pass : passes) {
+    if (job.cancelled()) {
+      break;
+    }
     RangeGrid part = grid_of_pass(grid, pass);
     part.spacing_mm = spacing_mm;
     SampleFlags flags;
@@ -56,7 +60,7 @@ std::vector<StitchSurface> surfaces_of_passes(const PlacedScan& scan, const Stit
     PlacedScan placed = scan;
     placed.grid = &part;
     placed.flags = &flags;
-    out.push_back(make_scan_surface(placed, options));
+    out.push_back(make_scan_surface(placed, options, job));
   }
   return out;
 }

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/job.h"
 #include "core/placed_scan.h"
 #include "core/result.h"
 #include "triangulation/stitch_surface.h"
@@ -19,7 +20,9 @@ namespace dubsar {
 [[nodiscard]] Status check_stitchable(const PlacedScan& scan);
 
 /// The surface of each pass of the scan's stage, one at the least, of a scan that check_stitchable() passed.
+/// Of a job that is cancelled they are no good, and some are missing.
 [[nodiscard]] std::vector<StitchSurface> surfaces_of_passes(const PlacedScan& scan,
-                                                            const StitchSurfaceOptions& options);
+                                                            const StitchSurfaceOptions& options,
+                                                            const JobContext& job = {});
 
 }  // namespace dubsar

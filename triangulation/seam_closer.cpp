@@ -232,12 +232,13 @@ struct Task {
 /// one.
 class Advance {
  public:
-  Advance(Front& front, const Limits& limits) : front_(&front), limits_(limits) {}
+  Advance(Front& front, const Limits& limits, const JobContext& job)
+      : front_(&front), limits_(limits), job_(&job) {}
 
   std::size_t run(const std::vector<Front::Edge>& edges) {
     offered_ = edges;
     std::size_t added = 0;
-    while (!offered_.empty() || !queue_.empty()) {
+    while ((!offered_.empty() || !queue_.empty()) && !job_->cancelled()) {
       take_batch();
       choose();
       added += apply();
@@ -321,6 +322,7 @@ class Advance {
 
   Front* front_;
   Limits limits_;
+  const JobContext* job_;
   std::priority_queue<Task> queue_;
   std::vector<Front::Edge> offered_;
   std::vector<Task> batch_;
@@ -329,10 +331,12 @@ class Advance {
 
 }  // namespace
 
-std::size_t close_seams(Front& front, const SeamOptions& options) {
-  return Advance(front, {static_cast<float>(options.most_edge_factor),
-                         static_cast<float>(std::sin(options.least_angle_rad)),
-                         static_cast<float>(options.min_normal_cos)})
+std::size_t close_seams(Front& front, const SeamOptions& options, const JobContext& job) {
+  return Advance(front,
+                 {static_cast<float>(options.most_edge_factor),
+                  static_cast<float>(std::sin(options.least_angle_rad)),
+                  static_cast<float>(options.min_normal_cos)},
+                 job)
       .run(front.open_edges());
 }
 
@@ -345,7 +349,7 @@ std::vector<Front::Edge> edges_without_room(const Front& front, const SeamOption
 }
 
 std::size_t close_openings(Front& front, const std::vector<std::vector<std::uint32_t>>& openings,
-                           double least_angle_rad, const SeamOptions& options) {
+                           double least_angle_rad, const SeamOptions& options, const JobContext& job) {
   std::vector<Front::Edge> edges;
   for (const auto& loop : openings) {
     for (std::size_t i = 0; i < loop.size(); ++i) {
@@ -354,7 +358,8 @@ std::size_t close_openings(Front& front, const std::vector<std::vector<std::uint
   }
   return Advance(front,
                  {static_cast<float>(options.most_gap_edge_factor),
-                  static_cast<float>(std::sin(least_angle_rad)), static_cast<float>(options.min_normal_cos)})
+                  static_cast<float>(std::sin(least_angle_rad)), static_cast<float>(options.min_normal_cos)},
+                 job)
       .run(edges);
 }
 

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "core/job.h"
 #include "triangulation/front.h"
 
 namespace dubsar {
@@ -20,7 +21,7 @@ struct SeamOptions {
 /// front, the Delaunay choice (largest angle at the third corner) in the local tangent plane, best shaped
 /// first. A triangle is refused if it would cross an open edge, hold a vertex of the front, turn away from
 /// the measured normals, or use a half-edge twice. Returns the faces added.
-std::size_t close_seams(Front& front, const SeamOptions& options);
+std::size_t close_seams(Front& front, const SeamOptions& options, const JobContext& job = {});
 
 /// Open edges at which close_seams() had no room to choose.
 [[nodiscard]] std::vector<Front::Edge> edges_without_room(const Front& front, const SeamOptions& options);
@@ -28,6 +29,6 @@ std::size_t close_seams(Front& front, const SeamOptions& options);
 /// The same for the given openings only (walks from Front::openings()), with angles down to least_angle_rad
 /// and longer edges.
 std::size_t close_openings(Front& front, const std::vector<std::vector<std::uint32_t>>& openings,
-                           double least_angle_rad, const SeamOptions& options);
+                           double least_angle_rad, const SeamOptions& options, const JobContext& job = {});
 
 }  // namespace dubsar

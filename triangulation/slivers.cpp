@@ -154,9 +154,9 @@ std::vector<std::uint32_t> slivers_from(const Draft& draft, std::size_t first_fa
 
 }  // namespace
 
-std::size_t remove_slivers(Draft& draft, std::size_t first_face) {
+std::size_t remove_slivers(Draft& draft, std::size_t first_face, const JobContext& job) {
   std::size_t all = 0;
-  for (int round = 0; round < kMostRounds; ++round) {
+  for (int round = 0; round < kMostRounds && !job.cancelled(); ++round) {
     const std::vector<std::uint32_t> slivers = slivers_from(draft, first_face);
     if (slivers.empty()) {
       break;
@@ -169,7 +169,9 @@ std::size_t remove_slivers(Draft& draft, std::size_t first_face) {
     }
     std::size_t flips = 0;
     for (Region& region : take_regions(draft, near, Tiling())) {
-      flips += flip_once(region, draft, slivers);
+      if (!job.cancelled()) {
+        flips += flip_once(region, draft, slivers);
+      }
     }
     all += flips;
     if (flips == 0) {

@@ -321,11 +321,15 @@ Eigen::AlignedBox3f box_of_usable(const StitchSurface& surface) {
 
 }  // namespace
 
-StitchSurface make_scan_surface(const PlacedScan& scan, const StitchSurfaceOptions& options) {
+StitchSurface make_scan_surface(const PlacedScan& scan, const StitchSurfaceOptions& options,
+                                const JobContext& job) {
   const RangeGrid& grid = *scan.grid;
   StitchSurface out = bare_surface(scan);
   if (!(out.spacing_mm > 0) || grid.rows < 2 || grid.cols < 2) {
     out.lookup = std::make_unique<GridLookup>(grid, out.usable);
+    return out;
+  }
+  if (job.cancelled()) {
     return out;
   }
   GridGeometry geometry = grid_geometry_within(grid, 5.0 * out.spacing_mm);
@@ -333,11 +337,20 @@ StitchSurface make_scan_surface(const PlacedScan& scan, const StitchSurfaceOptio
   const std::vector<std::uint8_t> placed = place_samples(scan, out.points, normals);
   GridSurface surface = out.surface();
   surface.normals = normals;
+  if (job.cancelled()) {
+    return out;
+  }
   out.mirrored = is_mirrored(surface, placed);
   out.cells = triangulate_cells(surface, placed, out.mirrored, options.grid);
   out.usable = corners_of_cells(out.cells, grid.rows, grid.cols);
+  if (job.cancelled()) {
+    return out;
+  }
   const std::vector<std::uint8_t> inner = inner_samples(out.cells, grid.rows, grid.cols);
   out.rim = rim_distance(out.usable, inner, grid.rows, grid.cols);
+  if (job.cancelled()) {
+    return out;
+  }
   out.noise_mm = scan.noise_mm ? *scan.noise_mm : estimate_noise_mm(grid, out.usable);
   const double systematic_mm = kSystematicOfSpacing * out.spacing_mm;
   out.weight_of_best =
@@ -345,6 +358,9 @@ StitchSurface make_scan_surface(const PlacedScan& scan, const StitchSurfaceOptio
   const double normal_noise_mm =
       std::max(noise_along_normal_mm(surface, out.usable).value_or(out.noise_mm), kLeastNoiseMm);
   out.variance_of_weight = static_cast<float>(normal_noise_mm * normal_noise_mm) * out.weight_of_best;
+  if (job.cancelled()) {
+    return out;
+  }
   lay_nodes(out, weigh_samples(scan, normals, inner, out), options);
   out.box = box_of_usable(out);
   out.lookup = std::make_unique<GridLookup>(grid, every_fourth(out.usable, grid.rows, grid.cols),

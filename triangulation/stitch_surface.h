@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/grid_lookup.h"
+#include "core/job.h"
 #include "core/placed_scan.h"
 #include "triangulation/grid_triangulation.h"
 #include "triangulation/lattice.h"
@@ -82,6 +83,8 @@ struct StitchSurface {
 };
 
 /// Never fails: a scan without a triangle has no usable sample. Keeps no reference to the grid or its flags.
-[[nodiscard]] StitchSurface make_scan_surface(const PlacedScan& scan, const StitchSurfaceOptions& options);
+/// Of a job that is cancelled it is no good.
+[[nodiscard]] StitchSurface make_scan_surface(const PlacedScan& scan, const StitchSurfaceOptions& options,
+                                              const JobContext& job = {});
 
 }  // namespace dubsar

@@ -39,33 +39,45 @@ struct Stitcher::Impl {
   std::map<PassKey, Entry> entries;  ///< of those that take part: each has a pass 0
   std::set<PassKey> unpaired;        ///< came since settle()
 
-  [[nodiscard]] Status may_enter(const PlacedScan& scan) const {
-    if (held.contains(scan.id)) {
+  /// `before`: what comes with it.
+  [[nodiscard]] Status may_enter(const PlacedScan& scan, const std::set<int>& before) const {
+    if (held.contains(scan.id) || before.contains(scan.id)) {
       return fail(ErrorKind::kUsage, "stitched already", stitched_name(scan), "remove it first");
     }
     return check_stitchable(scan);
   }
 
-  /// Checks first, as far as the first bad one; then the surfaces side by side.
-  Status insert(std::span<const PlacedScan> scans) {
-    std::size_t sound = 0;
+  /// Checks first, as far as the first bad one; then the surfaces, several side by side. Nothing is held
+  /// before all are ready.
+  Status insert(std::span<const PlacedScan> scans, const JobContext& job) {
+    constexpr std::size_t kSideBySide = 16;
+    std::set<int> ids;
     Status ok;
     for (const PlacedScan& scan : scans) {
-      ok = may_enter(scan);
+      ok = may_enter(scan, ids);
       if (!ok) {
         break;
       }
-      held[scan.id];
-      ++sound;
+      ids.insert(scan.id);
     }
-    std::vector<Held> ready(sound);
-    parallel_for_each_index(
-        sound,
-        [&](std::size_t k) {
-          ready[k] = {sample_digest(*scans[k].grid), surfaces_of_passes(scans[k], options.surface)};
-        },
-        1);
-    for (std::size_t k = 0; k < sound; ++k) {
+    std::vector<Held> ready(ids.size());
+    for (std::size_t first = 0; first < ready.size(); first += kSideBySide) {
+      if (first > 0) {
+        job.progress("triangulate grids", static_cast<double>(first) / static_cast<double>(ready.size()));
+      }
+      parallel_for_each_index(
+          std::min(kSideBySide, ready.size() - first),
+          [&](std::size_t k) {
+            if (const PlacedScan& scan = scans[first + k]; !job.cancelled()) {
+              ready[first + k] = {sample_digest(*scan.grid), surfaces_of_passes(scan, options.surface, job)};
+            }
+          },
+          1);
+      if (job.cancelled()) {
+        return cancelled();
+      }
+    }
+    for (std::size_t k = 0; k < ready.size(); ++k) {
       held[scans[k].id] = std::move(ready[k]);
       enter(scans[k].id);
     }
@@ -108,12 +120,20 @@ struct Stitcher::Impl {
     erase_entries(id);
   }
 
-  /// Pairs the new pass with those that its box touches.
-  void pair(const PassKey& key) {
+  /// Pairs the new pass with those that its box touches. False when cancelled: then nothing has changed.
+  bool pair(const PassKey& key, const JobContext& job) {
+    struct Found {
+      const PassKey* other;
+      Pairs there, back;
+    };
+    std::vector<Found> found;
     Entry& entry = entries.at(key);
     for (auto& [other_key, other] : entries) {
       if (other_key == key || unpaired.contains(other_key)) {
         continue;
+      }
+      if (job.cancelled()) {
+        return false;
       }
       Eigen::AlignedBox3f box = other.surface.box;
       const auto margin = static_cast<float>(options.pairing.most_reach_factor *
@@ -126,19 +146,27 @@ struct Stitcher::Impl {
         continue;
       }
       const double reach = pair_reach_mm(entry.surface, other.surface, options.pairing);
-      Pairs there = find_pairs(entry.surface, other.surface, reach, options.pairing);
-      Pairs back = find_pairs(other.surface, entry.surface, reach, options.pairing);
+      Pairs there = find_pairs(entry.surface, other.surface, reach, options.pairing, job);
+      Pairs back = find_pairs(other.surface, entry.surface, reach, options.pairing, job);
       if (there.nodes == 0 && back.nodes == 0) {
         continue;
       }
       there.feather = back.feather = static_cast<float>(
           feather_samples(entry.surface, other.surface, step_mm(entry.surface, other.surface, reach)));
-      other.mark_changed(back);
-      entry.pairs.emplace(other_key, std::move(there));
-      other.pairs.emplace(key, std::move(back));
+      found.push_back({&other_key, std::move(there), std::move(back)});
+    }
+    if (job.cancelled()) {
+      return false;
+    }
+    for (Found& pairs : found) {
+      Entry& other = entries.at(*pairs.other);
+      other.mark_changed(pairs.back);
+      entry.pairs.emplace(*pairs.other, std::move(pairs.there));
+      other.pairs.emplace(key, std::move(pairs.back));
     }
     entry.fused = FusedSamples(entry.surface);
     entry.changed.assign(entry.surface.lattice.size(), 1);
+    return true;
   }
 
   /// Brings pairs and averages up to date: a scan that comes and goes again costs nothing but its surface.
@@ -150,9 +178,10 @@ struct Stitcher::Impl {
         return false;
       }
       job.progress("pair samples", done++ / count);
-      const PassKey key = *unpaired.begin();
+      if (!pair(*unpaired.begin(), job)) {
+        return false;
+      }
       unpaired.erase(unpaired.begin());
-      pair(key);
     }
     return true;
   }
@@ -189,7 +218,10 @@ struct Stitcher::Impl {
         const std::vector<std::uint8_t> anew =
             dilated(entry.changed, lattice.node_rows, lattice.node_cols, 1);
         entry.fused.forget_if([&](std::uint32_t i) { return anew[lattice.node_of(i)] != 0; });
-        scans[at].fuse(unfused(entry));
+        scans[at].fuse(unfused(entry), job);
+        if (job.cancelled()) {
+          return {};
+        }
         entry.changed.clear();
       }
       // What an earlier mesh needed besides must not show in the next.
@@ -281,7 +313,7 @@ Status Stitcher::add(std::span<const PlacedScan> scans, const JobContext& job) {
   if (job.cancelled()) {
     return cancelled();
   }
-  return impl_->insert(scans);
+  return impl_->insert(scans, job);
 }
 
 bool Stitcher::remove(int id) {

@@ -55,12 +55,12 @@ class Stitcher {
   /// size, its pose is not rigid or puts it too far from the origin for float; kCancelled, and then the scan
   /// is not in.
   Status add(const PlacedScan& scan, const JobContext& job);
-  /// All or, on an error, those before the bad one.
+  /// All or, on an error, those before the bad one; none of them with kCancelled.
   Status add(std::span<const PlacedScan> scans, const JobContext& job);
   /// False when there is no such scan.
   bool remove(int id);
   /// Brings pairs and averages up to date with the scans that have come and gone, so that mesh() has less to
-  /// do; kCancelled is its only error.
+  /// do; kCancelled is its only error, and what is done by then is not done again.
   Status update(const JobContext& job);
   /// Those held that take no part, since another has the same samples; by id.
   [[nodiscard]] std::vector<ScanCopy> copies() const;
@@ -75,10 +75,12 @@ class Stitcher {
   };
   /// Of the scans that take part.
   [[nodiscard]] std::vector<Overlap> overlaps() const;
-  /// The mesh of all scans, with normals, reliability, scans and flags; kCancelled is its only error.
+  /// The mesh of all scans, with normals, reliability, scans and flags; kCancelled is its only error, and the
+  /// scans are held as before.
   [[nodiscard]] Result<Mesh> mesh(const JobContext& job) const;
   [[nodiscard]] Mesh mesh() const;
-  /// The same mesh with less memory: lets go of all scans on the way, and holds none afterwards.
+  /// The same mesh with less memory: lets go of all scans on the way, and holds none afterwards, cancelled or
+  /// not.
   [[nodiscard]] Result<Mesh> take_mesh(const JobContext& job);
 
  private:

@@ -8,14 +8,18 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
+#include <functional>
 #include <numeric>
 #include <random>
 
 #include "core/disjoint_sets.h"
 #include "core/mesh.h"
 #include "core/parallel_erase.h"
+#include "core/parallel_sort.h"
 #include "tests/support/raster_mesh.h"
 
 namespace dubsar {
@@ -106,6 +110,33 @@ TEST(Parallel, NormalsOfALargeMeshAreThoseOfOneThread) {
   for (std::size_t v = 0; v < normals.size(); ++v) {
     ASSERT_LT((normals[v] - expected[v].normalized()).norm(), 1e-6F) << v;
   }
+}
+
+TEST(Parallel, ASortOfACancelledJobEndsAtOnceAndLosesNothing) {
+  constexpr std::uint32_t kCount = 200000;
+  std::vector<std::uint32_t> numbers(kCount);
+  std::iota(numbers.rbegin(), numbers.rend(), 0U);
+  std::vector<std::uint32_t> stopped = numbers;
+  JobContext job;
+  parallel_sort(numbers.begin(), numbers.end(), std::less<>{}, job);
+  EXPECT_TRUE(std::ranges::is_sorted(numbers));
+#ifndef DUBSAR_THREAD_SANITIZER
+  std::atomic<std::size_t> comparisons{0};
+  const auto counted = [&](std::uint32_t a, std::uint32_t b) {
+    if (++comparisons == kCount) {  // well into it: there are seventeen times as many
+      job.cancel();
+    }
+    return a < b;
+  };
+  std::shuffle(stopped.begin(), stopped.end(), std::mt19937(3));
+  parallel_sort(stopped.begin(), stopped.end(), counted, job);
+  EXPECT_LT(comparisons, 3 * kCount);
+  EXPECT_FALSE(std::ranges::is_sorted(stopped));
+#endif
+  job.cancel();
+  parallel_sort(stopped.begin(), stopped.end(), std::less<>{}, job);
+  std::ranges::sort(stopped);
+  EXPECT_EQ(stopped, numbers);
 }
 
 }  // namespace

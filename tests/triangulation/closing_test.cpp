@@ -4,8 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cmath>
 
+#include "core/chunk_loop.h"
 #include "core/random.h"
 #include "tests/triangulation/support/scans.h"
 #include "triangulation/grid_triangulation.h"
@@ -160,6 +162,81 @@ TEST(Closing, TilesLeaveNoTraceOfTheirSides) {
     EXPECT_EQ(report.self_intersections, 0U);
     EXPECT_LT(report.thin_share, 0.01);
   }
+}
+
+/// Whoever looks for cuts among them and is not stopped holds each against each.
+Draft faces_in_one_place(std::uint32_t count) {
+  Draft draft;
+  draft.first_vertex = {0, 0};
+  draft.first_face = {0, 0};
+  draft.patch_spacing_mm = {1.0F};
+  for (std::uint32_t k = 0; k < count; ++k) {
+    draft.mesh.positions.insert(draft.mesh.positions.end(), {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
+    draft.mesh.faces.push_back({3 * k, 3 * k + 1, 3 * k + 2});
+  }
+  draft.near_rim.assign(draft.mesh.positions.size(), 1);
+  return draft;
+}
+
+TEST(Closing, ACancelledJobHasNothingDone) {
+  JobContext job;
+  job.cancel();
+  Draft draft = cut_sheet(60, 12);
+  const std::vector<Triangle> before = draft.mesh.faces;
+  close_patches(draft, {}, job);
+  EXPECT_EQ(draft.mesh.faces, before);
+  std::size_t comparisons = 0;
+  ClosingOptions options;
+  options.counted = [&](std::size_t more) { comparisons += more; };
+  draft = faces_in_one_place(100);
+  repair_self_intersections(draft, options, job);
+  EXPECT_EQ(comparisons, 0U);
+}
+
+TEST(Closing, ASearchForCutsEndsWhenItIsStopped) {
+  constexpr std::uint32_t kFaces = 4000;
+  Draft draft = faces_in_one_place(kFaces);
+  JobContext job;
+  std::atomic<std::size_t> comparisons{0};
+  ClosingOptions options;
+  options.counted = [&](std::size_t more) {
+    comparisons += more;
+    job.cancel();
+  };
+  repair_self_intersections(draft, options, job);
+  EXPECT_GT(comparisons, 0U);
+  EXPECT_LE(comparisons, std::size_t{2} * kFaces * chunks_at_once());
+}
+
+TEST(Closing, NoSeamNorGapIsClosedNorSliverFlippedForACancelledJob) {
+  JobContext job;
+  job.cancel();
+  Sheet sheet;
+  sheet.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1.6F, 0.8F, 0}, {0.8F, 1.6F, 0}, {1.8F, 1.8F, 0}};
+  sheet.normals.assign(6, {0, 0, 1});
+  sheet.spacing_mm.assign(6, 1.0F);
+  sheet.sigma_mm.assign(6, 0.01F);
+  sheet.whole.assign(6, 1);
+  sheet.room = {Vector3f::Constant(-100), Vector3f::Constant(100)};
+  sheet.faces = {{0, 1, 2}, {3, 5, 4}};
+  Sheet again = sheet;
+  Front front(sheet);
+  EXPECT_EQ(close_seams(front, {}, job), 0U);
+  EXPECT_EQ(fill_gaps(front, {}, {}, job).faces, 0U);
+  Front other(again);
+  EXPECT_GT(close_seams(other, {}), 0U);
+
+  Draft draft;
+  draft.mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0.5F, 0.02F, 0}, {0.5F, 0.9F, 0}};
+  draft.mesh.normals.assign(4, {0, 0, 1});
+  draft.mesh.sigma_mm.assign(4, 0.01F);
+  draft.near_rim.assign(4, 1);
+  draft.first_vertex = {0, 4};
+  draft.patch_spacing_mm = {1.0F};
+  draft.mesh.faces = {{0, 2, 3}, {2, 1, 3}, {0, 1, 2}};
+  draft.first_face = {0, 2};
+  EXPECT_EQ(remove_slivers(draft, 2, job), 0U);
+  EXPECT_EQ(draft.mesh.faces.size(), 3U);
 }
 
 }  // namespace

@@ -5,7 +5,9 @@
 #include <gtest/gtest.h>
 
 #include "core/random.h"
+#include "triangulation/draft.h"
 #include "triangulation/mesh_check.h"
+#include "triangulation/parted_fans.h"
 
 namespace dubsar {
 namespace {
@@ -69,6 +71,30 @@ TEST(Manifold, VerticesWithoutAFaceGoWithWhatTheyCarry) {
   ASSERT_EQ(mesh.positions.size(), 4U);
   EXPECT_EQ(mesh.faces, (std::vector<Triangle>{{0, 1, 2}, {1, 3, 2}}));
   EXPECT_EQ(mesh.reliability, (std::vector<float>{.3F, .4F, .5F, .6F}));
+}
+
+TEST(Manifold, OfACancelledJobNothingIsKnownAndNothingSplit) {
+  JobContext job;
+  job.cancel();
+  std::vector<Triangle> faces = {{0, 1, 2}, {0, 3, 4}};
+  const HalfEdges none(faces, 5, {}, job);
+  EXPECT_EQ(none.vertex_count(), 5U);
+  for (std::uint32_t v = 0; v < 5; ++v) {
+    EXPECT_TRUE(none.from(v).empty());
+  }
+  const HalfEdges edges(faces, 5);
+  EXPECT_EQ(face_components(faces, edges).sizes.size(), 2U);
+  EXPECT_TRUE(face_components(faces, edges, job).sizes.empty());
+  EXPECT_TRUE(make_manifold(faces, 5, {}, job).empty());
+  EXPECT_EQ(faces[1], (Triangle{0, 3, 4}));
+
+  Draft draft;
+  draft.mesh.positions.assign(5, {0, 0, 0});
+  draft.mesh.faces = faces;
+  draft.near_rim.assign(5, 1);
+  part_fans(draft, job);
+  EXPECT_EQ(draft.mesh.positions.size(), 5U);
+  EXPECT_EQ(draft.mesh.faces, faces);
 }
 
 }  // namespace

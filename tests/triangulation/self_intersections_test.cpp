@@ -5,9 +5,11 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <ctime>
+#include <atomic>
+#include <cmath>
 #include <limits>
 
+#include "core/chunk_loop.h"
 #include "core/mesh.h"
 #include "core/random.h"
 #include "triangulation/face_cut.h"
@@ -19,6 +21,29 @@ using Pairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
 
 Pairs intersections(const Mesh& mesh) {
   return self_intersections(mesh.positions, mesh.faces);
+}
+
+/// How often boxes are held against each other to find out.
+std::size_t work(const Mesh& mesh) {
+  std::atomic<std::size_t> comparisons{0};
+  EXPECT_TRUE(self_intersections(mesh.positions, mesh.faces, {}, {}, [&](std::size_t more) {
+                comparisons += more;
+              }).empty());
+  return comparisons;
+}
+
+/// Each pair of faces, looked at.
+Pairs each_pair(const Mesh& mesh) {
+  Pairs each;
+  for (std::uint32_t a = 0; a < mesh.faces.size(); ++a) {
+    const FacePlane plane(mesh.positions, mesh.faces[a]);
+    for (std::uint32_t b = a + 1; b < mesh.faces.size(); ++b) {
+      if (faces_cut(mesh.positions, mesh.faces[a], plane, mesh.faces[b])) {
+        each.emplace_back(a, b);
+      }
+    }
+  }
+  return each;
 }
 
 void add_face(Mesh& mesh, const Eigen::Vector3f& a, const Eigen::Vector3f& b, const Eigen::Vector3f& c) {
@@ -145,43 +170,129 @@ TEST(SelfIntersections, OfHugeFacesAndFarPlacesNoneIsMissed) {
     add_face(mesh, a, b, k % 300 == 7 ? Eigen::Vector3f(drawn(1e6)) : Eigen::Vector3f(middle + drawn(0.3)));
   }
   add_face(mesh, {-1e6F, 0, 0.1F}, {2e6F, 0, 0.1F}, {0.5e6F, 1, 0.1F});
-  Pairs each;
-  for (std::uint32_t a = 0; a < mesh.faces.size(); ++a) {
-    const FacePlane plane(mesh.positions, mesh.faces[a]);
-    for (std::uint32_t b = a + 1; b < mesh.faces.size(); ++b) {
-      if (faces_cut(mesh.positions, mesh.faces[a], plane, mesh.faces[b])) {
-        each.emplace_back(a, b);
-      }
-    }
-  }
+  const Pairs each = each_pair(mesh);
   EXPECT_GT(each.size(), 60U);
   EXPECT_EQ(intersections(mesh), each);
 }
 
+/// Flat faces, smaller than the steps of floats along x where they lie, and longer ones through them.
+TEST(SelfIntersections, OfFacesSmallerThanFloatsCanTellNoneIsMissed) {
+  Random random(11);
+  Mesh mesh;
+  for (const float far_mm : {1e6F, -3e7F}) {
+    const float step_mm = std::abs(std::nextafterf(far_mm, 2 * far_mm) - far_mm);
+    const auto drawn = [&](double size) {
+      return Eigen::Vector3f(far_mm + step_mm * static_cast<float>(std::floor(random.uniform(0, 20))),
+                             static_cast<float>(random.uniform(-size, size)),
+                             static_cast<float>(random.uniform(-size, size)));
+    };
+    for (int k = 0; k < 600; ++k) {
+      std::array<Eigen::Vector3f, 3> corner{drawn(0.01), drawn(0.01), drawn(0.01)};
+      if (k % 10 != 0) {
+        corner[1].x() = corner[2].x() = corner[0].x();
+      }
+      add_face(mesh, corner[0], corner[1], corner[2]);
+    }
+  }
+  const Pairs each = each_pair(mesh);
+  EXPECT_GT(each.size(), 1000U);
+  EXPECT_EQ(intersections(mesh), each);
+}
+
+TEST(SelfIntersections, IsWorkInStepWithTheFaces) {
+  const std::size_t of_small = work(sheet(100, 0));
+  EXPECT_GT(of_small, std::size_t{2} * 100 * 100);
+  EXPECT_LT(work(sheet(200, 0)), 5 * of_small);
+}
+
 /// One vertex far off must not put all faces into a few cells.
-TEST(SelfIntersections, AFarVertexTakesHardlyMoreTime) {
-  Mesh mesh = sheet(400, 0);
-  const auto seconds = [&] {
-    const std::clock_t start = std::clock();
-    EXPECT_TRUE(intersections(mesh).empty());
-    return static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
-  };
-  const double without = seconds();
-  for (const float far_mm : {1e5F, 1e7F, 1e9F}) {
-    mesh.positions[200 * 401 + 200].z() = far_mm;
-    EXPECT_LT(seconds(), 0.3 + 5 * without) << far_mm;
+TEST(SelfIntersections, AFarVertexIsHardlyMoreWork) {
+  Mesh mesh = sheet(100, 0);
+  const std::size_t without = work(mesh);
+  for (const float far_mm : {1e5F, 1e7F, 1e9F, 1e38F}) {
+    mesh.positions[50 * 101 + 50].z() = far_mm;
+    EXPECT_LT(work(mesh), 3 * without) << far_mm;  // in cells for the least
+  }
+}
+
+Mesh two_sheets(int n, const Eigen::Vector3f& apart) {
+  Mesh mesh = sheet(n, 0);
+  const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+  for (const Eigen::Vector3f& p : sheet(n, 0).positions) {
+    mesh.positions.emplace_back(p + apart);
+  }
+  for (const auto& f : sheet(n, 0).faces) {
+    mesh.faces.push_back({f[0] + first, f[1] + first, f[2] + first});
+  }
+  return mesh;
+}
+
+/// As far from each other, in sizes of their faces, as two finds in one file whose poses are those of a site.
+TEST(SelfIntersections, PartsFarApartAreNoMoreWork) {
+  const std::size_t near = work(two_sheets(100, {300, 0, 0}));
+  for (const Eigen::Vector3f& apart :
+       {Eigen::Vector3f(3e6F, 0, 0), Eigen::Vector3f(-8e6F, 8e6F, 8e6F), Eigen::Vector3f(0, 0, 1e30F)}) {
+    Mesh mesh = two_sheets(100, apart);
+    EXPECT_LT(work(mesh), 1.2 * near) << apart.transpose();
+    // Of sizes that differ, too.
+    add_face(mesh, {0, 0, -1}, apart + Eigen::Vector3f(0, 0, -1), {0, 1e7F, -1});
+    EXPECT_LT(work(mesh), 3 * near) << apart.transpose();
+  }
+}
+
+/// So many that the finest cells are made for them.
+TEST(SelfIntersections, TinyFacesMakeTheOthersNoMoreWork) {
+  Mesh mesh = sheet(100, 0);
+  const std::size_t without = work(mesh);
+  for (const float size_mm : {1e-9F, 1e-15F, 1e-37F}) {
+    Mesh with = mesh;
+    for (int k = 0; k < 200; ++k) {
+      const Eigen::Vector3f at(0, 0, -1.0F - static_cast<float>(k));
+      add_face(with, at, at + Eigen::Vector3f(size_mm, 0, 0), at + Eigen::Vector3f(0, size_mm, 0));
+    }
+    EXPECT_LT(work(with), 3 * without) << size_mm;
   }
 }
 
 TEST(SelfIntersections, CoordinatesNearTheLargestEnd) {
   Mesh mesh = sheet(20, 0);
-  add_face(mesh, {-3e38F, 2, 3e38F}, {3e38F, 2, 3e38F}, {0, 2, -3e38F});
+  add_face(mesh, {-3e38F, 2.5F, 3e38F}, {3e38F, 2.5F, 3e38F}, {0, 2.5F, -3e38F});
   add_face(mesh, {3e38F, 3e38F, 3e38F}, {3e38F, 3e38F, 3e38F}, {3e38F, 3e38F, 3e38F});
   const auto huge = static_cast<std::uint32_t>(mesh.faces.size() - 2);
-  for (const auto& [a, b] : intersections(mesh)) {
-    EXPECT_LT(a, huge);
+  const Pairs found = intersections(mesh);
+  EXPECT_EQ(found.size(), 40U);  // a row of the sheet
+  EXPECT_EQ(found, each_pair(mesh));
+  for (const auto& [a, b] : found) {
     EXPECT_EQ(b, huge);
   }
+}
+
+/// All in one place: each is held against each other, unless it is stopped.
+TEST(SelfIntersections, AreStopped) {
+  constexpr std::size_t kFaces = 4000;
+  Mesh mesh;
+  for (std::size_t k = 0; k < kFaces; ++k) {
+    add_face(mesh, {0, 0, 0}, {1, 0, 0}, {0, 1, 0});
+  }
+  JobContext job;
+  std::atomic<std::size_t> comparisons{0};
+  EXPECT_TRUE(self_intersections(mesh.positions, mesh.faces, {}, job, [&](std::size_t more) {
+                comparisons += more;
+                job.cancel();
+              }).empty());
+  EXPECT_GT(comparisons, 0U);
+  EXPECT_LE(comparisons, 2 * kFaces * chunks_at_once());
+}
+
+TEST(SelfIntersections, OfACancelledJobNoneAreLookedFor) {
+  Mesh mesh;
+  add_face(mesh, {0, 0, 0}, {4, 0, 0}, {0, 4, 0});
+  add_face(mesh, {1, 1, -1}, {1, 1, 1}, {9, 9, 1});
+  JobContext job;
+  job.cancel();
+  EXPECT_TRUE(self_intersections(mesh.positions, mesh.faces, {}, job).empty());
+  const std::vector<std::uint32_t> part = {1, 2};
+  EXPECT_TRUE(self_intersections(mesh.positions, mesh.faces, part, job).empty());
 }
 
 TEST(SelfIntersections, BrokenMeshes) {
