@@ -4,11 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "core/number_text.h"
+#include "planning/clearing.h"
 #include "planning/model_faces.h"
+#include "planning/sparse_flags.h"
 
 namespace dubsar {
 
@@ -52,6 +56,26 @@ void add_regions(const RedMap& map, Checklist& list) {
   }
 }
 
+/// A scan with samples far apart counts as good as its own spacing is: what it saw is no longer red, though
+/// the finer scans around it would tell a smaller gap.
+void warn_of_coarse_scans(std::span<const PlacedScan> scans, Checklist& list) {
+  constexpr double kMuchCoarser = 1.5;
+  double finest_mm = std::numeric_limits<double>::infinity();
+  for (const PlacedScan& scan : scans) {
+    finest_mm = std::min(finest_mm, spacing_of(*scan.grid));
+  }
+  for (const PlacedScan& scan : scans) {
+    const double spacing_mm = spacing_of(*scan.grid);
+    if (spacing_mm > kMuchCoarser * finest_mm) {
+      list.warnings.push_back(
+          {scan.id, "its samples lie " + short_text(spacing_mm, 2) + " mm apart, those of the finest scan " +
+                        short_text(finest_mm, 2) + " mm: where it looked, gaps of up to " +
+                        short_text(kGapInSpacings * spacing_mm, 2) +
+                        " mm count as sampled; take it out if that is not meant"});
+    }
+  }
+}
+
 }  // namespace
 
 Checklist make_checklist(const RedMap& map, std::span<const ScanPose> poses,
@@ -74,6 +98,7 @@ Checklist make_checklist(const RedMap& map, std::span<const ScanPose> poses,
     list.faces[face].sampling = quality.faces[face];
   }
   add_regions(map, list);
+  warn_of_coarse_scans(once, list);
   return list;
 }
 

@@ -94,7 +94,8 @@ void ScanModel::enter(int id, const RangeGrid* grid, const PinSet* pins) {
     first_spacing_mm_ = size.spacing_mm;
   }
   const ScanSize before{scale_mm_, first_spacing_mm_};
-  if (impossible.empty() && size.scale_mm > kMuchLarger * before.scale_mm && same_spacing(size, before)) {
+  if (impossible.empty() && size.scale_mm > kMuchLarger * before.scale_mm &&
+      size_is_possible(size, before, options_.most_unit_ratio) && perhaps_other_unit(size, before).empty()) {
     rescale(size.scale_mm);
   }
   ScanSurfaceOptions surface = options_.surface;
@@ -111,9 +112,7 @@ void ScanModel::enter(int id, const RangeGrid* grid, const PinSet* pins) {
   } else {
     scan.features = make_scan_features(make_scan_surface(g, ignore, surface), options_.search.align);
     scan.suspicion = perhaps_other_unit(size, before);
-    if (scan.suspicion.empty()) {
-      scan.suspicion = too_coarse(size.spacing_mm, scale_mm_);
-    }
+    scan.own_spacing_mm = size.spacing_mm;
     scan.usable = scan.features.surface->fine->samples.size() >= options_.least_samples;
     if (!scan.usable) {
       scan.reason =
@@ -335,7 +334,10 @@ ScanPose ScanModel::pose(int id) const {
     out.reason = in_group                     ? kOtherGroup
                  : !scan.fault_reason.empty() ? scan.fault_reason
                  : !scan.suspicion.empty()    ? scan.suspicion
-                                              : scan.reason;
+                                              : too_coarse(scan.own_spacing_mm, scale_mm_);
+    if (out.reason.empty()) {
+      out.reason = scan.reason;
+    }
     if (!scan.hint_reason.empty()) {
       out.reason = scan.hint_reason;
     }

@@ -71,7 +71,7 @@ class ScanModel {
     std::optional<NominalPose> nominal;
     std::vector<SeenPin> pins;
     bool pins_expected = false;
-    double own_scale_mm = 0;
+    double own_scale_mm = 0, own_spacing_mm = 0;
     bool usable = false;
     std::optional<bool> self_similar;  ///< once it was asked for
     int group = 0;
@@ -82,7 +82,7 @@ class ScanModel {
     std::string hint_reason;   ///< why its hint led to no pose
     std::string fault_reason;  ///< why it was taken out of the model when it was last in it
     std::string warning;       ///< whose lengths were off when all were in place, while it is in the model
-    std::string suspicion;     ///< what may ail it when it joins nothing; empty for nothing in particular
+    std::string suspicion;  ///< what unit it may be in when it joins nothing; empty for nothing in particular
     PoseStatus outcome = PoseStatus::kFailed;
     double rms_mm = 0, overlap = 0, stage_sigma_mm = 0;
     Matrix6d covariance = Matrix6d::Zero();

@@ -161,6 +161,19 @@ TEST_F(SurfaceQualityOfASquare, ACopyCountsAsTheScanThatItIsOf) {
   }
 }
 
+TEST_F(SurfaceQualityOfASquare, AMuchCoarserScanIsTold) {
+  add(0.1);
+  add(0.14);
+  ASSERT_TRUE(make_checklist({}, {}, scans_, mesh_, nullptr).warnings.empty());
+  add(0.5);
+  const Checklist list = make_checklist({}, {}, scans_, mesh_, nullptr);
+  ASSERT_EQ(list.warnings.size(), 1U);
+  EXPECT_EQ(list.warnings[0].scan, scans_.back().id);
+  EXPECT_EQ(list.warnings[0].text,
+            "its samples lie 0.5 mm apart, those of the finest scan 0.1 mm: where it looked, gaps of up to "
+            "1.5 mm count as sampled; take it out if that is not meant");
+}
+
 TEST_F(SurfaceQualityOfASquare, FineIsFine) {
   add(0.05);
   EXPECT_EQ(quality().all.fine_share, 0.0);

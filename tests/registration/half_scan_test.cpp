@@ -33,10 +33,28 @@ std::shared_ptr<const RangeGrid> broken_off(const RangeGrid& whole, double part)
       rows_of(whole, 0, first + static_cast<int>(part * (last - first))));
 }
 
+/// Every second row and column.
+std::shared_ptr<const RangeGrid> coarser(const RangeGrid& whole) {
+  auto out = std::make_shared<RangeGrid>();
+  out->allocate(whole.rows / 2, whole.cols / 2);
+  out->spacing_mm = 2 * whole.spacing_mm;
+  out->view = whole.view;
+  out->view.motion_per_row_mm *= 2;
+  for (std::size_t i = 0; i < out->size(); ++i) {
+    const std::size_t of = whole.index(2 * out->row_of(i), 2 * out->col_of(i));
+    out->x[i] = whole.x[of];
+    out->y[i] = whole.y[of];
+    out->z[i] = whole.z[of];
+    out->valid[i] = whole.valid[of];
+  }
+  return out;
+}
+
 struct Case {
   std::uint64_t seed;
   double part;
   bool fits;  ///< it shows enough to find its place
+  bool is_coarser = false;
 };
 
 class HalfScan : public testing::TestWithParam<Case> {};
@@ -47,6 +65,9 @@ TEST_P(HalfScan, ThatASessionBeginsWithSpoilsNothing) {
                                  {kSpacing_mm, 0.02, 12, {0, 2}, c.seed, bench::Pins::kNone, 0});
   scans.insert(scans.begin(), scans.front());
   scans.front().grid = broken_off(*scans.front().grid, c.part);
+  if (c.is_coarser) {
+    scans.front().grid = coarser(*scans.front().grid);
+  }
   ASSERT_GT(scans.front().grid->valid_count(), 100U);
   JobContext job;
   Registrar registrar;
@@ -71,9 +92,12 @@ TEST_P(HalfScan, ThatASessionBeginsWithSpoilsNothing) {
   }
 }
 INSTANTIATE_TEST_SUITE_P(Each, HalfScan,
-                         testing::Values(Case{2, 0.02, false}, Case{2, 0.05, false}, Case{4, 0.15, true}),
+                         testing::Values(Case{2, 0.02, false}, Case{2, 0.05, false}, Case{4, 0.15, true},
+                                         Case{2, 0.05, false, true}, Case{4, 0.05, false, true}),
                          [](const auto& one) {
-                           return "Of" + std::to_string(std::lround(100 * one.param.part));
+                           return "Of" + std::to_string(std::lround(100 * one.param.part)) +
+                                  (one.param.is_coarser ? "Coarser" : "") + "Seed" +
+                                  std::to_string(one.param.seed);
                          });
 
 }  // namespace
