@@ -40,8 +40,9 @@ RedOnes thinned_red(std::span<const RedTarget> targets, std::size_t most) {
   }
   if (out.chosen.size() > most) {
     const std::vector<std::size_t> red = std::exchange(out.chosen, {});
-    for (std::size_t k = 0; k < red.size(); ++k) {
-      const bool is_chosen = (k * most) % red.size() < most;
+    for (std::size_t k = 0, next = 0; k < red.size(); ++k) {
+      const bool is_chosen = k == next * red.size() / most;
+      next += is_chosen ? 1 : 0;
       (is_chosen ? out.chosen : out.others).push_back(red[k]);
     }
   }
