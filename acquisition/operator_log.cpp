@@ -3,8 +3,11 @@
 #include "acquisition/operator_log.h"
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <set>
+#include <string_view>
 
 #include "formats/hint_json.h"
 #include "formats/json_node.h"
@@ -17,6 +20,38 @@ constexpr const char* kHint = "pose hint";
 constexpr const char* kHintWithdrawn = "pose hint withdrawn";
 constexpr const char* kLock = "scan locked";
 constexpr const char* kUnlock = "scan unlocked";
+constexpr const char* kDropped = "scan dropped";
+constexpr std::array<std::string_view, 5> kKinds{kHint, kHintWithdrawn, kLock, kUnlock, kDropped};
+
+/// Of a lock that does not say its frame itself: as long as one locked scan stands, the model keeps its
+/// frame.
+std::int64_t frame_of_earlier(const SessionEvent& event, const OperatorWord& word) {
+  std::set<std::int64_t> standing;
+  for (const auto& [id, lock] : word.locked) {
+    if (lock.stood) {
+      standing.insert(lock.frame);
+    }
+  }
+  return standing.size() == 1 ? *standing.begin() : event.number;
+}
+
+ScanLock read_lock(const JsonNode& root, const SessionEvent& event, const OperatorWord& word) {
+  ScanLock lock;
+  lock.model_from_scanner = root.at("model_from_scanner").transform();
+  if (const auto frame = root.find("frame")) {
+    const std::int64_t said = frame->integer(0, event.number);
+    lock.frame = said > 0 ? said : event.number;
+  } else {
+    lock.frame = frame_of_earlier(event, word);
+  }
+  if (const auto beside = root.find("beside")) {
+    for (const JsonNode& one : beside->items()) {
+      const auto on = static_cast<int>(one.at("on").integer(0, std::numeric_limits<int>::max()));
+      lock.beside_from_scanner[on] = one.at("on_from_scanner").transform();
+    }
+  }
+  return lock;
+}
 
 Status read_event(const SessionEvent& event, OperatorWord& word) {
   const std::string where = "event " + std::to_string(event.number) + " of the session";
@@ -26,10 +61,10 @@ Status read_event(const SessionEvent& event, OperatorWord& word) {
   }
   const JsonNode root = document->root();
   const int id = static_cast<int>(root.at("id").integer(0, std::numeric_limits<int>::max()));
-  std::optional<RigidTransform> pose;
+  std::optional<ScanLock> lock;
   std::optional<PoseHint> hint;
   if (event.kind == kLock) {
-    pose = root.at("model_from_scanner").transform();
+    lock = read_lock(root, event, word);
   } else if (event.kind == kHint) {
     const Result<HintFile> file = parse_hint(root.at("hint").text(), where);
     if (!file) {
@@ -42,8 +77,12 @@ Status read_event(const SessionEvent& event, OperatorWord& word) {
   }
   if (hint) {
     word.hints[id] = std::move(*hint);
-  } else if (pose) {
-    word.locked[id] = *pose;
+  } else if (lock) {
+    word.locked[id] = std::move(*lock);
+  } else if (event.kind == kDropped) {
+    if (const auto locked = word.locked.find(id); locked != word.locked.end()) {
+      locked->second.stood = false;
+    }
   } else if (event.kind == kUnlock) {
     word.locked.erase(id);
   } else {
@@ -86,13 +125,17 @@ Status record_hint_withdrawn(SessionStore& store, int id) {
   return store.append_event(kHintWithdrawn, nlohmann::ordered_json{{"id", id}}.dump());
 }
 
-Status record_lock(SessionStore& store, int id, const RigidTransform& model_from_scanner) {
+Status record_lock(SessionStore& store, int id, const ScanLock& lock) {
   if (Status stands = check_scan_stands(store, id); !stands) {
     return stands;
   }
-  return store.append_event(
-      kLock,
-      nlohmann::ordered_json{{"id", id}, {"model_from_scanner", model_from_scanner.row_major()}}.dump());
+  nlohmann::ordered_json json{
+      {"id", id}, {"model_from_scanner", lock.model_from_scanner.row_major()}, {"frame", lock.frame}};
+  json["beside"] = nlohmann::ordered_json::array();
+  for (const auto& [on, on_from_scanner] : lock.beside_from_scanner) {
+    json["beside"].push_back({{"on", on}, {"on_from_scanner", on_from_scanner.row_major()}});
+  }
+  return store.append_event(kLock, json.dump());
 }
 
 Status record_unlock(SessionStore& store, int id) {
@@ -106,7 +149,7 @@ Result<OperatorLog> read_operator_log(const SessionStore& store) {
   }
   OperatorLog log;
   for (const SessionEvent& event : *events) {
-    if (event.kind != kHint && event.kind != kHintWithdrawn && event.kind != kLock && event.kind != kUnlock) {
+    if (std::ranges::find(kKinds, event.kind) == kKinds.end()) {
       continue;
     }
     if (const Status read = read_event(event, log.word); !read) {

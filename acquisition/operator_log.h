@@ -2,6 +2,7 @@
 // Copyright The Dubsar developers
 #pragma once
 
+#include <cstdint>
 #include <map>
 
 #include "acquisition/session_store.h"
@@ -10,10 +11,21 @@
 
 namespace dubsar {
 
+/// A scan that the operator has fixed where it was registered. The model's frame may change afterwards, while
+/// the scan is taken out: the pose alone says where it lies only among locks of one frame.
+struct ScanLock {
+  RigidTransform model_from_scanner;
+  std::int64_t frame = 0;  ///< locks of one number were made in one frame; 0 in record_lock(): in its own
+  bool stood = true;       ///< the scan was not taken out since, so that the model has kept the frame
+  /// Registered scans beside it then, by id: its pose in the frame of each. None in locks of earlier
+  /// versions.
+  std::map<int, RigidTransform> beside_from_scanner{};
+};
+
 /// What the operator has said of where scans lie, as it stands now. By scan id.
 struct OperatorWord {
   std::map<int, PoseHint> hints;
-  std::map<int, RigidTransform> locked;  ///< model_from_scanner that must not change
+  std::map<int, ScanLock> locked;
 };
 
 // The operator's word is kept in the session's record of what happened, one event each, so that it is as
@@ -21,7 +33,7 @@ struct OperatorWord {
 // scan that is not there or was taken out (`hint`, `lock`).
 Status record_hint(SessionStore& store, int id, const PoseHint& hint);  ///< replaces an earlier one
 Status record_hint_withdrawn(SessionStore& store, int id);
-Status record_lock(SessionStore& store, int id, const RigidTransform& model_from_scanner);
+Status record_lock(SessionStore& store, int id, const ScanLock& lock);
 Status record_unlock(SessionStore& store, int id);
 
 /// Goes through the record. An event that cannot be read is left out and named in `damage`.

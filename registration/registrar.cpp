@@ -38,8 +38,9 @@ bool Registrar::remove(int id, JobContext& job) {
   return there;
 }
 
-bool Registrar::set_pose(int id, const RigidTransform& model_from_scanner, bool locked) {
-  return model_from_scanner.is_rigid() && state_->place(id, model_from_scanner.orthonormalised(), locked);
+bool Registrar::set_pose(int id, const RigidTransform& model_from_scanner, bool locked, JobContext& job) {
+  return model_from_scanner.is_rigid() &&
+         state_->place(id, model_from_scanner.orthonormalised(), locked, job);
 }
 
 Status Registrar::set_hint(int id, const PoseHint& hint, JobContext& job) {
@@ -74,6 +75,10 @@ bool Registrar::set_locked(int id, bool locked) {
   return state_->set_locked(id, locked);
 }
 
+LockOutcome Registrar::lock_near(int id, const RigidTransform& model_from_scanner) {
+  return state_->lock_near(id, model_from_scanner);
+}
+
 ScanPose Registrar::add_at(int id, const std::shared_ptr<const RangeGrid>& grid, const PinSet* pins,
                            const RigidTransform& model_from_scanner, bool locked, JobContext& job) {
   state_->remove(id, job);
@@ -85,7 +90,7 @@ ScanPose Registrar::add_at(int id, const std::shared_ptr<const RangeGrid>& grid,
     // Not put onto SO(3) once more: what is fixed stays as it was to the last digit.
     state_->place(
         id, model_from_scanner.is_rigid(1e-9) ? model_from_scanner : model_from_scanner.orthonormalised(),
-        true);
+        true, job);
     return state_->pose(id);
   }
   state_->enter_at(id, model_from_scanner);

@@ -17,6 +17,9 @@
 
 namespace dubsar {
 
+/// What came of Registrar::lock_near().
+enum class LockOutcome { kLocked, kElsewhere, kNotRegistered };
+
 struct RegistrationOptions {
   ScanSurfaceOptions surface;
   PoseSearchOptions search;
@@ -55,7 +58,8 @@ class Registrar {
   /// The operator's word. Locked: the scan stays exactly there, registered, whatever the surfaces say. Not
   /// locked: a hint, good to a few degrees and millimetres, from which the scan is fitted and verified; also
   /// unlocks. False when there is no such scan, the pose is not rigid, or the hint led to no verified pose.
-  bool set_pose(int id, const RigidTransform& model_from_scanner, bool locked);
+  /// Others that it connects are tried at once; when the job is cancelled, finalize() tries them.
+  bool set_pose(int id, const RigidTransform& model_from_scanner, bool locked, JobContext& job);
   /// The operator's word on how a scan lies to another; may come before either scan is there and stands until
   /// clear_hint(), also when the scan is taken out and added again. Groups of scans that it spans are joined
   /// only where it says, and only when that pose verifies like any other; otherwise the scan is unsure, with
@@ -65,6 +69,8 @@ class Registrar {
   void clear_hint(int id);
   /// Locks a scan where it is, or unlocks it. False when there is none that could be registered.
   bool set_locked(int id, bool locked);
+  /// Locks a registered scan where it is, when that is the pose to within what its surface leaves open.
+  LockOutcome lock_near(int id, const RigidTransform& model_from_scanner);
   /// As add(), from a given pose: the scan is refined from there and verified against the others, and nothing
   /// else is looked for. Locked: it stays there, whatever the surfaces say; add such scans before the others.
   /// All poses that are given must be in one frame.

@@ -244,7 +244,7 @@ PoseHints ScanModel::hints_for(const Scan& scan, const std::vector<int>& group_i
   return hints;
 }
 
-bool ScanModel::place(int id, const RigidTransform& model_from_scanner, bool locked) {
+bool ScanModel::place(int id, const RigidTransform& model_from_scanner, bool locked, JobContext& job) {
   const auto found = scans_.find(id);
   if (found == scans_.end() || !found->second.usable) {
     return false;
@@ -252,9 +252,9 @@ bool ScanModel::place(int id, const RigidTransform& model_from_scanner, bool loc
   Scan& scan = found->second;
   const bool apart = leave(id);
   scan.fault_reason.clear();
-  int main = scan.group;
+  int main = main_group();
   for (const int group : groups_by_size()) {
-    if (group != scan.group) {
+    if (main == scan.group && group != main) {
       main = group;
       break;
     }
@@ -262,7 +262,6 @@ bool ScanModel::place(int id, const RigidTransform& model_from_scanner, bool loc
   scan.locked = locked;
   const std::vector<int> ids = scan.group == main ? std::vector<int>{} : members(main);
   const std::vector<ModelScan> model = model_of(ids);
-  JobContext job;
   if (locked || ids.empty()) {
     scan.group = main;
     scan.group_from_scanner = model_from_scanner;

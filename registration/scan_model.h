@@ -36,7 +36,7 @@ class ScanModel {
   /// since the last time: that shows with the others in place, and each that is in place may turn out to be
   /// the one.
   void put_out_faulty(JobContext& job);
-  bool place(int id, const RigidTransform& model_from_scanner, bool locked);
+  bool place(int id, const RigidTransform& model_from_scanner, bool locked, JobContext& job);
   Status finalize(JobContext& job);
 
   [[nodiscard]] ScanPose pose(int id) const;
@@ -51,6 +51,8 @@ class ScanModel {
   bool follow_hint(int id, JobContext& job);
   /// Locks a scan where it is, or unlocks it.
   bool set_locked(int id, bool locked);
+  /// Locks a scan where it is, when that is the pose.
+  LockOutcome lock_near(int id, const RigidTransform& model_from_scanner);
   /// Gives a scan that was just entered its pose, to be refined and verified when it joins; nothing else is
   /// looked for. All such poses are in one frame.
   void enter_at(int id, const RigidTransform& model_from_scanner);

@@ -15,6 +15,11 @@ namespace {
 /// Starts per fit: it refines only the best few of a batch, and the right one must not be crowded out.
 constexpr std::size_t kBatch = 6;
 
+/// A pose that was found anew is the locked one when it is no farther from it than this, over the scan: poses
+/// that the surfaces hold no better are not registered at all (scan_model.cpp).
+constexpr double kMostLockMissMm = 0.5;
+constexpr double kMostLockMissSpacings = 3.0;
+
 }  // namespace
 
 std::optional<int> ScanModel::hint_between(int a, int b) const {
@@ -203,6 +208,20 @@ bool ScanModel::set_locked(int id, bool locked) {
   }
   found->second.locked = locked;
   return true;
+}
+
+LockOutcome ScanModel::lock_near(int id, const RigidTransform& model_from_scanner) {
+  if (!scans_.contains(id) || pose(id).status != PoseStatus::kRegistered) {
+    return LockOutcome::kNotRegistered;
+  }
+  Scan& scan = scans_.at(id);
+  const ScanSurface& surface = *scan.features.surface;
+  const RigidTransform off = scan.group_from_scanner * model_from_scanner.inverse();
+  const double miss_mm =
+      (scan.group_from_scanner * surface.centroid_mm - model_from_scanner * surface.centroid_mm).norm() +
+      0.5 * surface.extent_mm * off.angle_rad();
+  scan.locked = miss_mm <= std::max(kMostLockMissMm, kMostLockMissSpacings * surface.spacing_mm);
+  return scan.locked ? LockOutcome::kLocked : LockOutcome::kElsewhere;
 }
 
 bool ScanModel::join_as_given(int id, int group, JobContext& job) {

@@ -3,6 +3,7 @@
 #include "core/heap.h"
 #include "core/thread_priority.h"
 #include "station/engine_impl.h"
+#include "station/followed_word.h"
 
 namespace dubsar {
 
@@ -26,6 +27,7 @@ std::vector<ScanPose> Engine::Impl::named_poses() const {
     }
     pose = judged(std::move(pose));
   }
+  tell_contradicted(poses, contradicted);
   return poses;
 }
 
@@ -41,9 +43,12 @@ Status Engine::Impl::settle(EngineResult& result, JobContext& job) {
     if (const Status done = registrar.finalize(job); !done) {
       return done;
     }
+    if (const Status done = hold_locks(job) ? registrar.finalize(job) : Status(); !done) {
+      return done;
+    }
   }
   result.poses = named_poses();
-  if (const Status saved = store->save_poses(result.poses); !saved) {
+  if (const Status saved = save_followed_poses(*store, result.poses); !saved) {
     return saved;
   }
   const StageClock timing = clock("final planning and meshing");

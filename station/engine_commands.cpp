@@ -3,6 +3,7 @@
 // What the operator asks of the engine while it runs. Everything is stored before it takes effect, so that a
 // session that goes on later stands where the operator left it.
 #include "station/engine_impl.h"
+#include "station/followed_word.h"
 
 namespace dubsar {
 
@@ -56,6 +57,29 @@ Result<StationScan> Engine::Impl::enter_again(int id, JobContext& job) {
   names[id] = scan.file;
   register_scan(scan, job);
   return scan;
+}
+
+Status Engine::Impl::read_word() {
+  Result<OperatorLog> log = read_operator_log(*store);
+  if (!log) {
+    return std::unexpected(log.error());
+  }
+  word = std::move(log->word);
+  lock_frame.reset();
+  for (const ScanPose& pose : registrar.poses()) {
+    const auto lock = word.locked.find(pose.id);
+    if (lock != word.locked.end() && pose.locked &&
+        pose.model_from_scanner.row_major() == lock->second.model_from_scanner.row_major()) {
+      lock_frame = lock->second.frame;
+    }
+  }
+  return {};
+}
+
+bool Engine::Impl::hold_locks(JobContext& job) {
+  SettledLocks settled = settle_locks(registrar, word.locked, job);
+  contradicted = std::move(settled.contradicted);
+  return settled.placed;
 }
 
 Result<StationScan> Engine::Impl::bring_back(int id, JobContext& job) {
@@ -178,10 +202,9 @@ Result<std::vector<StationScan>> Engine::Impl::obey(const OperatorCommand& comma
     return done(status, withdraw->id, "has no hint any more");
   }
   if (const auto* lock = std::get_if<LockScan>(&command)) {
-    const Result<RigidTransform> pose = lockable_pose(*store, lock->id);
-    const Status status = pose ? record_lock(*store, lock->id, *pose) : std::unexpected(pose.error());
+    const Result<ScanLock> here = lock_here(*store, lock->id);
+    const Status status = here ? record_lock(*store, lock->id, *here) : std::unexpected(here.error());
     if (status) {
-      word.locked[lock->id] = *pose;
       registrar.set_locked(lock->id, true);
     }
     return done(status, lock->id, "is locked");
@@ -196,7 +219,6 @@ Result<std::vector<StationScan>> Engine::Impl::obey(const OperatorCommand& comma
   }
   const Status status = record_unlock(*store, id);
   if (status) {
-    word.locked.erase(id);
     registrar.set_locked(id, false);
   }
   return done(status, id, "is unlocked");
@@ -226,8 +248,12 @@ void Engine::Impl::obey_commands(JobContext& job) {
       emit(Notice{obeyed.error().line()});
       continue;
     }
+    if (const Status read = read_word(); !read) {
+      emit(Notice{read.error().line()});
+    }
+    hold_locks(job);
     std::vector<ScanPose> poses = named_poses();
-    const Status saved = store->save_poses(poses);
+    const Status saved = save_followed_poses(*store, poses);
     if (!saved && queues) {
       give_up(saved.error());  // after the rounds, settling saves them once more and says so
     }

@@ -37,6 +37,7 @@
 #include "station/camera_watch.h"
 #include "station/drives.h"
 #include "station/intruders.h"
+#include "station/lock_places.h"
 #include "station/planning_stage.h"
 #include "station/scan_set.h"
 #include "station/session_pins.h"
@@ -148,6 +149,8 @@ struct Engine::Impl {
   std::map<int, PlacedPrecision> precision;  ///< of those that were entered
   std::set<int> taken_out;                   ///< by the operator, perhaps before they were placed
   OperatorWord word;
+  std::optional<std::int64_t> lock_frame;   ///< of the locks that the model stands fast by
+  std::map<int, std::string> contradicted;  ///< locked scans, as settle_locks() has it
   IntruderFinder intruders;
 
   // Of the acquiring thread, round after round:
@@ -284,6 +287,9 @@ struct Engine::Impl {
   /// The scans that came in by it, in place of what was there of them.
   Result<std::vector<StationScan>> obey(const OperatorCommand& command, std::string& what, JobContext& job);
   Result<StationScan> bring_back(int id, JobContext& job);
+  Status read_word();  ///< and by which locks the model still stands fast
+  /// Fixes what is locked and is not fixed yet. True when that brought a scan into place.
+  bool hold_locks(JobContext& job);
   /// Takes a stored scan in once more, as the pins are known now.
   Result<StationScan> enter_again(int id, JobContext& job);
   Result<std::vector<StationScan>> label_pins(const LabelPins& command, std::string& what, JobContext& job);

@@ -34,9 +34,13 @@ Status Engine::Impl::load_resumed(JobContext& job) {
       resumed.back().drive = drive->second;
     }
   }
+  lock_frame = frame_of_locks(
+      word.locked, [&](int id) { return std::ranges::find(resumed, id, &StationScan::id) != resumed.end(); });
   // What the operator has fixed comes first: the others are registered to it, and its frame is the model's.
-  std::ranges::stable_partition(resumed,
-                                [&](const StationScan& scan) { return word.locked.contains(scan.id); });
+  std::ranges::stable_partition(resumed, [&](const StationScan& scan) {
+    const auto locked = word.locked.find(scan.id);
+    return locked != word.locked.end() && locked->second.frame == lock_frame;
+  });
   stored_count = static_cast<int>(resumed.size());
   return {};
 }

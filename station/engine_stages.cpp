@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright The Dubsar developers
 #include "station/engine_impl.h"
+#include "station/followed_word.h"
 
 namespace dubsar {
 
@@ -249,9 +250,10 @@ ScanPose Engine::Impl::register_scan(const StationScan& scan, JobContext& job) {
   const PinSet* said = pins_now ? &*pins_now : nullptr;
   precision.insert_or_assign(scan.id, PlacedPrecision(*scan.grid));
   const auto locked = word.locked.find(scan.id);
-  return judged(locked != word.locked.end()
-                    ? registrar.add_at(scan.id, scan.measured, said, locked->second, true, job)
-                    : registrar.add(scan.id, scan.measured, said, job));
+  return judged(
+      locked != word.locked.end() && locked->second.frame == lock_frame
+          ? registrar.add_at(scan.id, scan.measured, said, locked->second.model_from_scanner, true, job)
+          : registrar.add(scan.id, scan.measured, said, job));
 }
 
 void Engine::Impl::register_all(JobContext& job) {
@@ -271,10 +273,13 @@ void Engine::Impl::register_all(JobContext& job) {
     std::vector<SetAside> aside;
     pose = set_intruders_aside(scan, std::move(pose), aside, job);
     pose.file = scan.file;
+    if (is_resumed && plan_now) {
+      hold_locks(job);
+    }
     std::vector<ScanPose> poses = named_poses();
     // Whatever ends the run, what it found until now is in the session.
     if (plan_now && !job.cancelled()) {
-      if (const Status saved = store->save_poses(poses); !saved) {
+      if (const Status saved = save_followed_poses(*store, poses); !saved) {
         give_up(saved.error());
       }
     }

@@ -13,6 +13,7 @@
 #include "formats/poses_conf.h"
 #include "formats/poses_json.h"
 #include "registration/registrar.h"
+#include "station/lock_places.h"
 #include "triangulation/placed_precision.h"
 
 namespace dubsar {
@@ -40,12 +41,20 @@ struct PlannedEntry {
   std::string why;  ///< it is left out
 };
 
-PlannedEntry plan_entry(const StationScan& scan, const ScanSet& set, const RegisterOptions& options) {
+PlannedEntry plan_entry(const StationScan& scan, const ScanSet& set, const RegisterOptions& options,
+                        std::optional<std::int64_t> frame) {
   const bool named = options.only.empty() || std::ranges::find(options.only, scan.id) != options.only.end();
-  if (const auto locked = set.word.locked.find(scan.id); locked != set.word.locked.end()) {
-    return {&scan, Entry::kLocked, locked->second, {}};
-  }
   const ScanPose* base = pose_of(options.from_poses ? *options.from_poses : set.poses, scan.id);
+  if (const auto locked = set.word.locked.find(scan.id); locked != set.word.locked.end()) {
+    if (!options.only.empty()) {  // the others stay: it stands in their frame, or is looked for
+      return base != nullptr && base->status == PoseStatus::kRegistered
+                 ? PlannedEntry{&scan, Entry::kLocked, base->model_from_scanner, {}}
+                 : PlannedEntry{&scan, Entry::kSearched, {}, {}};
+    }
+    if (locked->second.frame == frame) {
+      return {&scan, Entry::kLocked, locked->second.model_from_scanner, {}};
+    }
+  }
   if (!named) {
     return base != nullptr && base->status == PoseStatus::kRegistered
                ? PlannedEntry{&scan, Entry::kStaying, base->model_from_scanner, {}}
@@ -102,10 +111,13 @@ Result<std::vector<ScanPose>> register_scans(const ScanSet& set, const RegisterO
       log_warning(given.error().line());
     }
   }
+  const auto frame = frame_of_locks(set.word.locked, [&](int id) {
+    return std::ranges::find(set.scans, id, &StationScan::id) != set.scans.end();
+  });
   std::vector<PlannedEntry> entries;
   entries.reserve(set.scans.size());
   for (const StationScan& scan : set.scans) {
-    entries.push_back(plan_entry(scan, set, options));
+    entries.push_back(plan_entry(scan, set, options, frame));
   }
   // What stands fast comes first: the others are registered to it, and its frame is the model's.
   std::ranges::stable_partition(
@@ -129,8 +141,13 @@ Result<std::vector<ScanPose>> register_scans(const ScanSet& set, const RegisterO
   if (const Status done = registrar.finalize(job); !done) {
     return std::unexpected(done.error());
   }
+  const SettledLocks locks = settle_locks(registrar, set.word.locked, job);
+  if (const Status done = locks.placed ? registrar.finalize(job) : Status(); !done) {
+    return std::unexpected(done.error());
+  }
   job.progress("registering", 1.0);
   std::vector<ScanPose> poses = registrar.poses();
+  tell_contradicted(poses, locks.contradicted);
   for (const PlannedEntry& e : entries) {
     if (e.entry == Entry::kLeftOut) {
       ScanPose left_out;

@@ -7,8 +7,8 @@
 #include <limits>
 #include <string>
 
-#include "acquisition/operator_log.h"
 #include "registration/point_pairs.h"
+#include "station/hint_reach.h"
 
 namespace dubsar {
 
@@ -60,6 +60,11 @@ Result<PoseHint> related(const SessionStore& store, int id, const RigidTransform
   }
   for (const ScanPose& pose : *poses) {
     if (pose.id != id && pose.status == PoseStatus::kRegistered && check_scan_stands(store, pose.id)) {
+      if (const Status near =
+              check_hint_reach(store, {id, model_from_scanner}, {pose.id, pose.model_from_scanner}, where);
+          !near) {
+        return std::unexpected(near.error());
+      }
       PoseHint hint;
       hint.on = pose.id;
       hint.on_from_scanner = (pose.model_from_scanner.inverse() * model_from_scanner).orthonormalised();
@@ -68,6 +73,22 @@ Result<PoseHint> related(const SessionStore& store, int id, const RigidTransform
   }
   return fail(ErrorKind::kUsage, "no other scan has a place that the pose could be related to", where,
               "run register first, or name the scan that the pose is relative to with --on");
+}
+
+/// Scans that were taken one after the other show the same clay. Some of them may be taken out later.
+constexpr std::size_t kMostBeside = 16;
+
+std::map<int, RigidTransform> beside(const SessionStore& store, std::vector<ScanPose> poses,
+                                     const ScanPose& locked) {
+  std::ranges::stable_sort(poses, {}, [&](const ScanPose& pose) { return std::abs(pose.id - locked.id); });
+  std::map<int, RigidTransform> out;
+  for (const ScanPose& pose : poses) {
+    if (out.size() < kMostBeside && pose.id != locked.id && pose.status == PoseStatus::kRegistered &&
+        check_scan_stands(store, pose.id)) {
+      out[pose.id] = (pose.model_from_scanner.inverse() * locked.model_from_scanner).orthonormalised();
+    }
+  }
+  return out;
 }
 
 }  // namespace
@@ -107,7 +128,8 @@ Result<PoseHint> settled_hint(const SessionStore& store, int id, const GivenHint
     hint.on_from_scanner = given.model_from_scanner;  // with --on, a pose is relative to that scan
   }
   if (hint.on_from_scanner) {
-    return hint;
+    const Status near = check_hint_reach(store, {id, *hint.on_from_scanner}, {hint.on, {}}, where);
+    return near ? Result<PoseHint>(std::move(hint)) : std::unexpected(near.error());
   }
   if (const Status good = check_point_pairs(hint.points, where); !good) {
     return std::unexpected(good.error());
@@ -121,7 +143,7 @@ Result<PoseHint> settled_hint(const SessionStore& store, int id, const GivenHint
   return hint;
 }
 
-Result<RigidTransform> lockable_pose(const SessionStore& store, int id) {
+Result<ScanLock> lock_here(const SessionStore& store, int id) {
   if (const Status stands = check_scan_stands(store, id); !stands) {
     return std::unexpected(stands.error());
   }
@@ -135,7 +157,21 @@ Result<RigidTransform> lockable_pose(const SessionStore& store, int id) {
                 "scan " + std::to_string(id) + " is not registered: it has no place to keep",
                 store.folder().string(), "give a hint for it and run register");
   }
-  return pose->model_from_scanner;
+  const Result<OperatorLog> log = read_operator_log(store);
+  if (!log) {
+    return std::unexpected(log.error());
+  }
+  ScanLock lock{pose->model_from_scanner};
+  for (const auto& [other, locked] : log->word.locked) {
+    // The stored poses are of its frame as long as they have it where it was locked.
+    const ScanPose* there = registered(*poses, other);
+    if (other != id && locked.stood && there != nullptr &&
+        there->model_from_scanner.row_major() == locked.model_from_scanner.row_major()) {
+      lock.frame = locked.frame;
+    }
+  }
+  lock.beside_from_scanner = beside(store, *poses, *pose);
+  return lock;
 }
 
 }  // namespace dubsar

@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include "acquisition/operator_log.h"
 #include "acquisition/session_store.h"
 #include "core/pose_hint.h"
 #include "core/result.h"
@@ -19,11 +20,12 @@ struct GivenHint {
 /// Checks a hint for a scan of the session and brings it into the form that the session keeps: a pose in the
 /// model frame becomes one against the registered scan with the lowest number, so that it stays true when the
 /// frame changes. Errors, each naming its mend: no such scan, the only scan, a locked scan, no other scan
-/// named, points that settle nothing or that lie beside the scan's samples, no registered scan to relate a
-/// pose to.
+/// named, points that settle nothing or that lie beside the scan's samples, a pose that puts the scan away
+/// from the others (hint_reach.h), no registered scan to relate a pose to.
 [[nodiscard]] Result<PoseHint> settled_hint(const SessionStore& store, int id, const GivenHint& given);
 
-/// The pose that a scan of the session can be locked at: its stored one. kUsage unless it is registered.
-[[nodiscard]] Result<RigidTransform> lockable_pose(const SessionStore& store, int id);
+/// The lock of a scan of the session at its stored pose, with what tells later where that is (ScanLock).
+/// kUsage unless it is registered.
+[[nodiscard]] Result<ScanLock> lock_here(const SessionStore& store, int id);
 
 }  // namespace dubsar

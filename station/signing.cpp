@@ -8,6 +8,7 @@
 
 #include "acquisition/session_presence.h"
 #include "acquisition/sign_off_log.h"
+#include "station/followed_word.h"
 #include "station/plan_again.h"
 
 namespace dubsar {
@@ -21,6 +22,13 @@ std::optional<Error> stale(const ScanSet& set, const RedMap& anew, const std::st
       return Error{ErrorKind::kUsage, fmt::format("scan {} was never judged", scan.id), where,
                    "run dubsar register and dubsar plan on it first"};
     }
+  }
+  const Result<std::string> behind = not_followed_sentence(set);
+  if (!behind) {
+    return behind.error();
+  }
+  if (!behind->empty()) {
+    return Error{ErrorKind::kUsage, *behind, where, "run dubsar register and dubsar plan on it first"};
   }
   const auto differs = differs_from_stored(*set.store, anew);
   const std::string mend = "run dubsar plan on it, read what it says, and sign again";

@@ -24,8 +24,9 @@ struct Signing {
 
 /// Puts a name under the verdict of a session once it has been worked out anew from grids and poses. name,
 /// role, note and incomplete of `wanted` are the operator's; the rest is filled in here. It is refused when
-/// the stored verdict is not what the scans give, and, without `incomplete`, when it falls short. Errors:
-/// kUsage when there is no session, or nothing that an `incomplete` could mean; kCancelled, the store's.
+/// the stored verdict is not what the scans give, when the poses do not follow what was said of the scans,
+/// and, without `incomplete`, when it falls short. Errors: kUsage when there is no session, or nothing that
+/// an `incomplete` could mean; kCancelled, the store's.
 [[nodiscard]] Result<Signing> sign_verdict(const std::filesystem::path& session, SignOff wanted,
                                            JobContext& job);
 

@@ -18,6 +18,7 @@
 #include "station/command/scan_set_options.h"
 #include "station/command/scan_warnings.h"
 #include "station/command/sign_off_words.h"
+#include "station/followed_word.h"
 #include "station/offline.h"
 #include "station/plan_again.h"
 #include "station/session_name.h"
@@ -79,7 +80,7 @@ Result<Comparison> compare_and_keep(SessionStore& store, const Results& results,
     out.kept = true;
     return out;
   }
-  if (const Status saved = poses_are_new ? store.save_poses(results.poses) : Status(); !saved) {
+  if (const Status saved = poses_are_new ? save_followed_poses(store, results.poses) : Status(); !saved) {
     return std::unexpected(saved.error());
   }
   if (const Status kept = keep_verdict(store, results.red_map, results.checklist); !kept) {
@@ -185,6 +186,10 @@ Result<int> plan(const PlanArguments& arguments, CommandContext& context) {
   const Results& results = planned->results;
   log_scan_warnings(results.checklist.warnings);
   Comparison comparison;
+  if (const auto behind = not_followed_sentence(*set);
+      behind && !behind->empty() && arguments.set.poses.empty() && all_judged(*set)) {
+    log_warning(arguments.set.path + ": " + *behind + "; run dubsar register on it");
+  }
   // Poses or pins of a file judge alone: the session keeps its own verdict.
   if (set->is_session() && arguments.set.poses.empty() && arguments.set.pins.empty()) {
     Result<Comparison> compared = compare_and_keep(*set->store, results, !all_judged(*set), may_write);

@@ -19,6 +19,7 @@
 #include "station/command/command.h"
 #include "station/command/outputs.h"
 #include "station/command/scan_set_options.h"
+#include "station/followed_word.h"
 #include "station/offline.h"
 
 namespace dubsar {
@@ -69,7 +70,7 @@ Result<int> register_all(const RegisterArguments& arguments, CommandContext& con
     return std::unexpected(poses.error());
   }
   if (set->is_session()) {
-    if (const Status saved = set->store->save_poses(*poses); !saved) {
+    if (const Status saved = save_followed_poses(*set->store, *poses, options.only); !saved) {
       return std::unexpected(saved.error());
     }
   }

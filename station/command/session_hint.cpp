@@ -166,11 +166,11 @@ Result<int> lock(const HintArguments& arguments, CommandContext& context) {
   if (!store) {
     return std::unexpected(store.error());
   }
-  const Result<RigidTransform> pose = lockable_pose(*store, arguments.id);
-  if (!pose) {
-    return std::unexpected(pose.error());
+  const Result<ScanLock> lock = lock_here(*store, arguments.id);
+  if (!lock) {
+    return std::unexpected(lock.error());
   }
-  if (const Status kept = record_lock(*store, arguments.id, *pose); !kept) {
+  if (const Status kept = record_lock(*store, arguments.id, *lock); !kept) {
     return std::unexpected(kept.error());
   }
   return say(context, arguments, "it stays where it is");

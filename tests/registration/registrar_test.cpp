@@ -231,13 +231,13 @@ TEST(Registrar, LeavesLockedScansWhereTheyAre) {
   const RigidTransform truth = pose_of(6, 2, 50, {1, 2, 0});
   registrar.add(1, share(scan_field(surface, truth, second)), nullptr, job);
   const RigidTransform fixed = RigidTransform{Eigen::Matrix3d::Identity(), {0.02, 0, 0}} * truth;
-  ASSERT_TRUE(registrar.set_pose(1, fixed, true));
+  ASSERT_TRUE(registrar.set_pose(1, fixed, true, job));
   ASSERT_TRUE(registrar.finalize(job));
   const ScanPose pose = registrar.poses()[1];
   EXPECT_TRUE(pose.locked);
   EXPECT_EQ(pose.model_from_scanner.translation_mm, fixed.orthonormalised().translation_mm);
-  EXPECT_FALSE(registrar.set_pose(99, fixed, true));
-  EXPECT_FALSE(registrar.set_pose(0, pose_of(180, 0, 0, {50, 50, 50}), false));
+  EXPECT_FALSE(registrar.set_pose(99, fixed, true, job));
+  EXPECT_FALSE(registrar.set_pose(0, pose_of(180, 0, 0, {50, 50, 50}), false, job));
 }
 
 TEST(Registrar, RemovesAndReplacesScans) {
@@ -300,6 +300,19 @@ TEST(Registrar, WhatOnlyTheScanTakenOutConnectedIsNotRegisteredAnyMore) {
   EXPECT_LT(error_mm(poses[1], poses[0], scans.truth, {}), 0.02);
 }
 
+TEST(Registrar, ALockedScanThatComesBackIsNoReasonToGoOnWhenStopped) {
+  Bridged scans(0.5);
+  const RigidTransform before = scans.registrar.poses()[2].model_from_scanner;
+  ASSERT_TRUE(scans.registrar.remove(2, scans.job));
+  JobContext stopped;
+  stopped.cancel();
+  scans.registrar.add_at(2, scans.bridge, nullptr, before, true, stopped);
+  EXPECT_TRUE(scans.registrar.poses()[2].locked);
+  EXPECT_THAT(scans.registered(), ElementsAre(0, 2)) << "what it connects was looked for all the same";
+  ASSERT_TRUE(scans.registrar.finalize(scans.job));
+  EXPECT_THAT(scans.registered(), ElementsAre(0, 1, 2));
+}
+
 TEST(Registrar, WhatOverlapsStaysWhenTheScanThatJoinedItIsTakenOut) {
   Bridged scans(-2);
   ASSERT_TRUE(scans.registrar.remove(2, scans.job));
@@ -309,11 +322,11 @@ TEST(Registrar, WhatOverlapsStaysWhenTheScanThatJoinedItIsTakenOut) {
 TEST(Registrar, APoseThatLeadsNowhereIsToldAndABetterOneBringsAllBack) {
   Bridged scans(0.5);
   const RigidTransform before = scans.registrar.poses()[2].model_from_scanner;
-  EXPECT_FALSE(scans.registrar.set_pose(2, pose_of(0, 90, 0, {40, 40, 0}), false));
+  EXPECT_FALSE(scans.registrar.set_pose(2, pose_of(0, 90, 0, {40, 40, 0}), false, scans.job));
   EXPECT_THAT(scans.registered(), ElementsAre(0));
   EXPECT_FALSE(scans.registrar.poses()[1].reason.empty());
   EXPECT_FALSE(scans.registrar.poses()[2].reason.empty());
-  EXPECT_TRUE(scans.registrar.set_pose(2, before, false));
+  EXPECT_TRUE(scans.registrar.set_pose(2, before, false, scans.job));
   EXPECT_THAT(scans.registered(), ElementsAre(0, 1, 2));
 }
 

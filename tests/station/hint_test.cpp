@@ -142,6 +142,18 @@ TEST_F(OperatorWordTest, BadHintsAreTwoAndOneLine) {
   EXPECT_EQ(run_command({"verify", session()}).status, 0);
 }
 
+TEST_F(OperatorWordTest, APoseThatPutsTheScanAwayNamesTheNumber) {
+  scan_bumpy(3);
+  refused({"2", "--on", "0", "--pose", "1 0 0 1e30 0 1 0 0 0 0 1 0 0 0 0 1"}, "by number 4 of the 16: 1e+30");
+  refused({"2", "--on", "0", "--pose", "1 0 0 0 0 1 0 -200 0 0 1 0 0 0 0 1"}, "by number 8 of the 16: -200");
+  refused({"2", "--pose", "1 0 0 0 0 1 0 0 0 0 1 5000 0 0 0 1"}, "by number 12 of the 16: 5000");
+  std::ofstream(at("far.json"))
+      << R"({"unit":"m","on":0,"on_from_scanner":[1,0,0,3,0,1,0,0,0,0,1,0,0,0,0,1]})";
+  refused({"2", "--pose", at("far.json")}, "by number 4 of the 16: 3000");
+  // Beside it, as the other side of a tablet lies, is no mistake.
+  EXPECT_EQ(hint({"2", "--on", "0", "--pose", "1 0 0 30 0 1 0 0 0 0 1 -15 0 0 0 1"}).status, 0);
+}
+
 TEST_F(OperatorWordTest, ALockedScanStaysWhereItIs) {
   scan_bumpy(4);
   ASSERT_EQ(run_command({"session", "drop", session(), "0"}).status, 0);

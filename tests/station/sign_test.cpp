@@ -130,6 +130,7 @@ TEST_F(HalfScanned, PosesOfAFileJudgeAloneAndLeaveTheSessionsVerdict) {
 
 TEST_F(HalfScanned, AStaleRedMapIsNamedAndMadeAnew) {
   ASSERT_EQ(run_command({"session", "drop", session_, "2"}).status, 0);
+  ASSERT_EQ(run_command({"register", session_}).status, 0);
   const Outcome refused = sign({"--name", "A", "--incomplete", "why"});
   EXPECT_EQ(refused.status, 1);
   EXPECT_THAT(refused.json()["error"]["mend"].get<std::string>(), HasSubstr("dubsar plan"));
@@ -139,6 +140,114 @@ TEST_F(HalfScanned, AStaleRedMapIsNamedAndMadeAnew) {
   EXPECT_EQ(plan.json()["checklist"]["scans_registered"], 2);
   EXPECT_EQ(run_command({"plan", session_, "--json"}).json()["stored"]["same"], true);
   EXPECT_EQ(sign({"--name", "A", "--incomplete", "why"}).status, 0);
+}
+
+/// What was said of a scan and is not followed yet: nothing is signed over it.
+class SaidSince : public HalfScanned {
+ protected:
+  void say(const std::vector<std::string>& words) const {
+    std::vector<std::string> all{"session", words.front(), session_};
+    all.insert(all.end(), words.begin() + 1, words.end());
+    ASSERT_EQ(run_command(all).status, 0) << words.front();
+  }
+  void plan() const { run_command({"plan", session_}); }
+  void is_refused(const std::string& why) const {
+    const std::string what = "the poses do not follow yet what was said: " + why;
+    const Outcome planned = run_command({"plan", session_});
+    EXPECT_THAT(planned.complaints(), ::testing::Contains(HasSubstr(what + "; run dubsar register on it")));
+    const Outcome refused = sign({"--name", "A", "--incomplete", "why"});
+    EXPECT_EQ(refused.status, 1) << why;
+    EXPECT_EQ(refused.json()["error"]["what"], what);
+    EXPECT_THAT(refused.json()["error"]["mend"].get<std::string>(), HasSubstr("dubsar register"));
+  }
+  void is_signed() const {
+    plan();
+    EXPECT_EQ(sign({"--name", "A", "--incomplete", "why"}).status, 0);
+  }
+  const std::string elsewhere_ = "0 -1 0 1 1 0 0 2 0 0 1 0 0 0 0 1";
+};
+
+TEST_F(SaidSince, AHintOrAScanTakenOutIsFollowedFirst) {
+  say({"hint", "2", "--on", "0", "--pose", elsewhere_});
+  is_refused("scan 2 has been given a hint");
+  run_command({"register", session_, "--only", "1"});
+  is_refused("scan 2 has been given a hint");
+  run_command({"register", session_});
+  is_signed();
+  say({"hint", "2", "--withdraw"});
+  is_refused("the hint for scan 2 has been withdrawn");
+  run_command({"register", session_, "--only", "2"});
+  is_signed();
+  say({"drop", "1"});
+  is_refused("scan 1 has been taken out");
+  run_command({"register", session_});
+  is_signed();
+  say({"restore", "1"});
+  EXPECT_EQ(sign({"--name", "A", "--incomplete", "why"}).status, 1) << "it was never judged";
+  plan();
+  is_signed();
+  say({"lock", "1"});
+  say({"undo"});
+  is_refused("scan 1 has been locked, scan 2 has been taken out");
+  // What is taken back leaves nothing to follow.
+  say({"unlock", "1"});
+  say({"restore", "2"});
+  is_signed();
+}
+
+TEST_F(SaidSince, TheEngineFollowsByItself) {
+  say({"drop", "1"});
+  say({"hint", "2", "--on", "0", "--pose", elsewhere_});
+  const std::string scans = (folder_.path() / "scans").string();
+  run_command({"scan", "--device", "replay:" + scans, "--session", session_});
+  is_signed();
+}
+
+TEST_F(SaidSince, InASessionOfAnEarlierVersionThePosesTell) {
+  session_ = (folder_.path() / "earlier").string();
+  const auto keep = [&](const ScanPose& last, bool is_1_locked) {
+    SessionStore store = SessionStore::open_or_create(session_).value();
+    std::vector<ScanPose> poses(2);
+    for (int k = 0; k < 2; ++k) {
+      ScanPose& pose = poses.at(static_cast<std::size_t>(k));
+      pose.id = k;
+      pose.model_from_scanner = test::bumpy_pose(k);
+      pose.status = PoseStatus::kRegistered;
+      pose.locked = k == 1 && is_1_locked;
+    }
+    poses.push_back(last);
+    EXPECT_TRUE(store.save_poses(poses));
+  };
+  ScanPose last;
+  last.id = 2;
+  last.model_from_scanner = test::bumpy_pose(2);
+  last.status = PoseStatus::kRegistered;
+  {
+    SessionStore store = SessionStore::open_or_create(session_).value();
+    for (int k = 0; k < 3; ++k) {
+      ASSERT_TRUE(store.add_grid(test::bumpy_scan(k)));
+    }
+  }
+  keep(last, false);
+  is_signed();
+  say({"drop", "1"});
+  is_refused("scan 1 has been taken out");
+  say({"restore", "1"});
+  is_signed();
+  say({"lock", "1"});
+  is_refused("scan 1 has been locked");
+  keep(last, true);
+  is_signed();
+  say({"unlock", "1"});
+  is_refused("scan 1 has been unlocked");
+  keep(last, false);
+  is_signed();
+  say({"hint", "2", "--on", "0", "--pose", elsewhere_});
+  is_refused("scan 2 has been given a hint");
+  last.status = PoseStatus::kUnsure;
+  last.reason = "the hint leads to no certain pose: its surface is too even";
+  keep(last, false);
+  is_signed();
 }
 
 TEST_F(HalfScanned, PlanKeepsThePosesOfScansThatWereNeverJudged) {
