@@ -255,11 +255,10 @@ Status RigScanner::scan(ProfileSink& sink) {
 }
 
 Status RigScanner::start_view() {
-  const auto laser = static_cast<std::uint32_t>(file_.laser);
   if (Status started = camera_.start_frames(); !started) {
     return started;
   }
-  Status lit = stage_.set_laser(laser, file_.laser_power);
+  Status lit = light_view(true);
   if (!lit) {
     [[maybe_unused]] const Status said = camera_.stop_frames();
   }
@@ -267,9 +266,13 @@ Status RigScanner::start_view() {
 }
 
 Status RigScanner::stop_view() {
-  Status dark = stage_.set_laser(static_cast<std::uint32_t>(file_.laser), 0);
+  Status dark = light_view(false);
   const Status stopped = camera_.stop_frames();
   return dark ? stopped : dark;
+}
+
+Status RigScanner::light_view(bool lit) {
+  return stage_.set_laser(static_cast<std::uint32_t>(file_.laser), lit ? file_.laser_power : 0);
 }
 
 Status RigScanner::stop() {

@@ -40,6 +40,7 @@ class RigScanner : public RigSource {
   /// Between scans: the camera's frames as a scan would see them, the laser lit and nothing moving.
   Status start_view() override;
   Status stop_view() override;
+  Status light_view(bool lit) override;
   [[nodiscard]] Device* camera() override { return &camera_; }
   /// Ends the motion and puts the laser off; a scan that runs returns kCancelled soon.
   Status stop() override;

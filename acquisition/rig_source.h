@@ -26,6 +26,10 @@ class RigSource {
   [[nodiscard]] virtual Device* camera() { return nullptr; }
   virtual Status start_view() { return fail(ErrorKind::kUsage, "this rig has no camera to look through"); }
   virtual Status stop_view() { return {}; }
+  /// While it is looked through: its laser as a scan has it, or off.
+  virtual Status light_view(bool /*lit*/) {
+    return fail(ErrorKind::kUsage, "this rig has no camera to look through");
+  }
 };
 
 }  // namespace dubsar

@@ -159,6 +159,11 @@ std::int32_t stop_frames(dubsar_device* device, dubsar_error* error) {
   return plugin::fenced(error, [&] { return plugin::answer(device->source->stop_view(), error); });
 }
 
+/// Of the view alone: a scan sees to its laser itself, and how bright it is the rig's file says.
+std::int32_t set_laser(dubsar_device* device, std::uint32_t /*laser*/, double power, dubsar_error* error) {
+  return plugin::fenced(error, [&] { return plugin::answer(device->source->light_view(power > 0), error); });
+}
+
 std::int32_t frame_counters(dubsar_device* device, dubsar_frame_counters* counters, dubsar_error* error) {
   return plugin::fenced(error, [&]() -> std::int32_t {
     Device* const camera = device->source->camera();
@@ -194,6 +199,7 @@ void offer_view(dubsar_driver& driver) {
   driver.release_frame = release_frame;
   driver.stop_frames = stop_frames;
   driver.frame_counters = frame_counters;
+  driver.set_laser = set_laser;
 }
 
 }  // namespace dubsar

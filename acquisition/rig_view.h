@@ -20,8 +20,8 @@ struct dubsar_device {
 
 namespace dubsar {
 
-/// Lets a rig be looked through between scans: its camera's frames, with the laser lit, and its camera's
-/// settings.
+/// Lets a rig be looked through between scans: its camera's frames, with the laser lit (set_laser() of any
+/// power above 0) or off, and its camera's settings.
 void offer_view(dubsar_driver& driver);
 
 }  // namespace dubsar

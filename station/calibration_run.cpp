@@ -53,7 +53,47 @@ Result<CalibrationSet> set_for(const CalibrateRequest& request) {
   return set;
 }
 
+/// A rig whose calibration is gone measures no more, and which pictures it was made of is written nowhere.
+Status check_replaceable(const std::string& out, const std::string& serial) {
+  std::error_code ignored;
+  if (out.empty() || !fs::is_regular_file(out, ignored)) {
+    return {};
+  }
+  const Result<std::string> text = read_whole_file(out);
+  const Result<RigCalibration> there = text ? parse_calibration(*text, out) : std::unexpected(text.error());
+  if (!there || there->camera_serial.empty() || there->camera_serial == serial) {
+    return {};
+  }
+  return serial.empty()
+             ? fail(ErrorKind::kUsage,
+                    "it is the calibration of camera " + there->camera_serial +
+                        ", and nobody says of which camera the pictures are",
+                    out,
+                    "say camera_serial in the calibration.toml of the pictures, or write to another file")
+             : fail(ErrorKind::kUsage,
+                    "it is the calibration of camera " + there->camera_serial + ", the pictures are of " +
+                        serial,
+                    out, "write to another file, or move this one away when that camera is gone");
+}
+
+std::optional<RigFile> rig_of(const std::string& device_uri) {
+  const std::optional<fs::path> file = rig_file_of(device_uri);
+  if (!file) {
+    return std::nullopt;
+  }
+  const Result<std::string> text = read_whole_file(*file);
+  Result<RigFile> rig = text ? parse_rig_file(*text, file->string()) : std::unexpected(text.error());
+  return rig ? std::optional(*std::move(rig)) : std::nullopt;
+}
+
 }  // namespace
+
+std::string calibration_place_of(const std::string& device_uri) {
+  const std::optional<RigFile> rig = rig_of(device_uri);
+  return rig && !rig->calibration.empty()
+             ? (rig_file_of(device_uri)->parent_path() / rig->calibration).string()
+             : std::string();
+}
 
 MotionKind stage_kind_of(const std::string& device_uri) {
   if (const auto calibration = calibration_file_of(device_uri)) {
@@ -62,12 +102,7 @@ MotionKind stage_kind_of(const std::string& device_uri) {
       return known->motion.kind;
     }
   }
-  const std::optional<fs::path> file = rig_file_of(device_uri);
-  if (!file) {
-    return MotionKind::kLinear;
-  }
-  const Result<std::string> text = read_whole_file(*file);
-  const Result<RigFile> rig = text ? parse_rig_file(*text, file->string()) : std::unexpected(text.error());
+  const std::optional<RigFile> rig = rig_of(device_uri);
   return rig && rig->turns ? MotionKind::kTurntable : MotionKind::kLinear;
 }
 
@@ -84,6 +119,10 @@ Result<CalibrateOutcome> calibrate_folder(const CalibrateRequest& request, const
     return bad_input(request.folder,
                      "its pictures are of camera " + set->camera_serial + ", not of " + request.serial,
                      "leave the serial number away, or take pictures with that camera");
+  }
+  const std::string serial = request.serial.empty() ? set->camera_serial : request.serial;
+  if (const Status may = check_replaceable(request.out, serial); !may) {
+    return std::unexpected(may.error());
   }
   if (set->poses.empty()) {
     return bad_input(request.folder, "there is no pose of the board yet", "take pictures of the board");
@@ -109,7 +148,7 @@ Result<CalibrateOutcome> calibrate_folder(const CalibrateRequest& request, const
   }
   RigCalibration& rig = report->rig;
   rig.made_at = utc_now();
-  rig.camera_serial = request.serial.empty() ? set->camera_serial : request.serial;
+  rig.camera_serial = serial;
   rig.temperature_c = request.temperature_c ? request.temperature_c : set->temperature_c;
   rig.note = set->note;
   if (!request.out.empty()) {

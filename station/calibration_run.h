@@ -29,13 +29,18 @@ struct CalibrateOutcome {
 };
 
 /// Calibrates from the pictures of a folder. A calibration that lacks something is an outcome (`missing`);
-/// one that is worse than it may be is refused. Errors: kUsage, kBadInput, kStorage, kCancelled.
+/// one that is worse than it may be is refused, and so is one in the place of another camera's. Errors:
+/// kUsage, kBadInput, kStorage, kCancelled.
 [[nodiscard]] Result<CalibrateOutcome> calibrate_folder(const CalibrateRequest& request,
                                                         const JobContext& job);
 
 /// What the stage of a device "rig:FILE" does, as far as its files tell: its calibration, where it has one,
 /// else whether the scan is said in degrees. Linear for any other device.
 [[nodiscard]] MotionKind stage_kind_of(const std::string& device_uri);
+
+/// Where the calibration of a device "rig:FILE" belongs, as FILE says, be it there yet or not. Empty for any
+/// other device, and for a range camera, which has none.
+[[nodiscard]] std::string calibration_place_of(const std::string& device_uri);
 
 /// What the operator says of all pictures of a calibration.
 struct CalibrationWords {

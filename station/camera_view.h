@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,7 @@ struct CameraView {
   Exposure exposure;               ///< of the whole frame
   std::shared_ptr<const GrayImage> image;  ///< the whole frame
   std::string camera_serial;               ///< empty when not known
+  std::optional<bool> lit;                 ///< of a rig: its laser was on; of a camera alone nobody knows
 };
 
 /// Sides of at most `most_px`. Two bytes per pixel become one.

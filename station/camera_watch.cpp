@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "acquisition/device_uri.h"
+#include "acquisition/fresh_frame.h"
 #include "acquisition/setting_words.h"
 #include "drivers/loader.h"
 
@@ -27,16 +28,28 @@ Status CameraStream::show() {
       return started;
     }
     runs_ = true;
+    lit_ = device_.uri().starts_with("rig:") ? std::optional(true) : std::nullopt;
     const Result<DeviceCapabilities> capable = device_.capabilities();
     serial_ = capable ? capable->serial : std::string();
   }
-  const Result<std::optional<Frame>> frame = device_.next_frame(kFrameWait);
+  Result<std::optional<Frame>> frame = std::nullopt;
+  if (lit_ && *lit_ != wanted_lit_) {
+    if (const Status put = device_.set_laser(0, wanted_lit_ ? 1 : 0); !put) {
+      return put;
+    }
+    lit_ = wanted_lit_;
+    frame =
+        fresh_frame(device_, [] { return false; });  // those that wait were exposed in the light of before
+  } else {
+    frame = device_.next_frame(kFrameWait);
+  }
   if (!frame) {
     return std::unexpected(frame.error());
   }
   if (*frame && sink_) {
     CameraView view = camera_view_of(**frame);
     view.camera_serial = serial_;
+    view.lit = lit_;
     sink_(CameraFrame{std::make_shared<const CameraView>(std::move(view))});
   }
   return {};
@@ -46,6 +59,15 @@ void CameraStream::end() {
   if (std::exchange(runs_, false)) {
     [[maybe_unused]] const Status said = device_.stop_frames();
   }
+}
+
+Status CameraStream::put(const SettingWords& words, const std::string& where) {
+  const Status put = put_settings(device_, words, where);
+  if (put || !runs_) {
+    return put;
+  }
+  end();
+  return put_settings(device_, words, where);
 }
 
 CameraWatch::CameraWatch(std::string uri, SettingWords words, EventSink sink,
@@ -101,7 +123,7 @@ void CameraWatch::watch(Device& device) {
       wanted.swap(wanted_);
     }
     for (const ChangeSetting& one : wanted) {
-      const Status put = put_settings(device, {{one.key, one.word}}, uri_);
+      const Status put = stream.put({{one.key, one.word}}, uri_);
       if (put) {
         changed_(one.key, one.word);
       } else {
@@ -116,9 +138,12 @@ void CameraWatch::watch(Device& device) {
     }
     if (!panel || !panel->has_camera) {
       std::this_thread::sleep_for(kRest);
-    } else if (const Status shown = stream.show(); !shown) {
-      sink_(Notice{shown.error().line()});
-      return;
+    } else {
+      stream.light(lit_);
+      if (const Status shown = stream.show(); !shown) {
+        sink_(Notice{shown.error().line()});
+        return;
+      }
     }
   }
 }

@@ -6,6 +6,7 @@
 #include <deque>
 #include <functional>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 
@@ -29,6 +30,8 @@ class CameraWatch {
   CameraWatch& operator=(const CameraWatch&) = delete;
 
   void change(ChangeSetting wanted);
+  /// Of a rig: whether its laser is on, as it is unless said; CameraView::lit says from when on.
+  void light(bool on) { lit_ = on; }
   void stop() { stopped_ = true; }  ///< returns at once; `ended` follows
   [[nodiscard]] bool ended() const { return ended_; }
 
@@ -40,6 +43,7 @@ class CameraWatch {
   std::function<void(const std::string&, const std::string&)> changed_;
   std::mutex mutex_;
   std::deque<ChangeSetting> wanted_;
+  std::atomic<bool> lit_ = true;
   std::atomic<bool> stopped_ = false;
   std::atomic<bool> ended_ = false;
   std::thread thread_;
@@ -56,11 +60,18 @@ class CameraStream {
   /// The next frame, if one comes within a tenth of a second, as CameraFrame. Starts the stream where needed.
   Status show();
   void end();
+  /// Of a rig: with the laser on (unless said) or off, from the next show() on.
+  void light(bool on) { wanted_lit_ = on; }
+  /// Changes settings. What a camera cannot change while frames run ends them; the next show() starts them
+  /// again.
+  Status put(const SettingWords& words, const std::string& where);
 
  private:
   Device& device_;
   const EventSink& sink_;
   bool runs_ = false;
+  bool wanted_lit_ = true;
+  std::optional<bool> lit_;  ///< nothing: not of a rig
   std::string serial_;
 };
 

@@ -53,7 +53,8 @@ void Engine::Impl::change_settings() {
     asked.swap(settings_asked);
   }
   for (const ChangeSetting& one : asked) {
-    Status put = put_settings(source->device(), {{one.key, one.word}}, options.device);
+    Status put = stream ? stream->put({{one.key, one.word}}, options.device)
+                        : put_settings(source->device(), {{one.key, one.word}}, options.device);
     if (put) {
       put_word(settings, one.key, one.word);
       put = keep_settings(*store, options.device, settings);

@@ -35,6 +35,13 @@ void LiveSession::watch_camera(bool on) {
   }
 }
 
+void LiveSession::light_camera(bool on) {
+  const std::scoped_lock lock(mutex_);
+  if (watch_) {
+    watch_->light(on);
+  }
+}
+
 void LiveSession::change_setting(const std::string& key, const std::string& word) {
   const std::scoped_lock lock(mutex_);
   state_.notice.clear();  // why another word was refused

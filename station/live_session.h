@@ -67,6 +67,8 @@ class LiveSession {
   /// Looks through the camera, and opens the device for it where no run has it; to be said again and again
   /// while somebody looks, for a run may begin or end meanwhile. A run's scans go before it.
   void watch_camera(bool on);
+  /// Of a rig that no run has: whether its laser is on while its camera is looked through.
+  void light_camera(bool on);
   /// Of the open device; kept in the session, and put again whenever it goes on.
   void change_setting(const std::string& key, const std::string& word);
   void describe(const TabletRecord& record);

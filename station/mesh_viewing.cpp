@@ -16,39 +16,18 @@
 #include "core/thread_priority.h"
 #include "formats/file_label_reader.h"
 #include "formats/mesh_io.h"
-#include "formats/wedges_json.h"
 #include "station/analysis.h"
 #include "station/outward_faces.h"
 #include "station/place_outside.h"
 #include "station/section_file.h"
 #include "station/selection_store.h"
+#include "station/wedges_beside.h"
 
 namespace dubsar {
 
 namespace {
 
 namespace fs = std::filesystem;
-
-struct WedgesPlace {
-  fs::path file;  ///< that is there, or would be
-  bool in_session = false;
-};
-
-WedgesPlace wedges_beside(const fs::path& mesh) {
-  fs::path own = mesh;
-  own.replace_extension(".wedges.json");
-  const fs::path folder = fs::absolute(mesh).parent_path();
-  const fs::path of_session = folder.parent_path() / "analysis" / "wedges.json";
-  std::error_code error;
-  for (const fs::path& file : {own, folder / "wedges.json", of_session}) {
-    if (fs::is_regular_file(file, error)) {
-      return {file, file == of_session};
-    }
-  }
-  // What is found of a session's mesh is the session's.
-  return fs::is_regular_file(folder.parent_path() / "session.sqlite", error) ? WedgesPlace{of_session, true}
-                                                                             : WedgesPlace{own, false};
-}
 
 /// What somebody who measures on it has to know of its numbers.
 std::optional<Error> odd_numbers(const Mesh& mesh, const std::string& where) {
@@ -243,6 +222,9 @@ void MeshViewing::open(const fs::path& file) {
       odd_ = odd;
     }
     const WedgesPlace wedges = wedges_beside(file);
+    if (wedges.unread) {
+      complain(*wedges.unread);
+    }
     take_selections(selections_file_of(file));
     take_corrections(wedges.file, wedges.in_session);
   });

@@ -60,8 +60,8 @@ class MeshViewing {
   MeshViewing& operator=(const MeshViewing&) = delete;
 
   [[nodiscard]] ViewedMesh state() const;
-  /// Reads the mesh, and the wedges beside it (NAME.wedges.json, wedges.json, or those of the session that it
-  /// lies in). No more: a field takes all cores, and who looks at a mesh wants to see it first.
+  /// Reads the mesh, and the wedges beside it (wedges_beside()). No more: a field takes all cores, and who
+  /// looks at a mesh wants to see it first.
   void open(const std::filesystem::path& file);
   /// Looks at a mesh that is there already.
   void show(std::shared_ptr<const Mesh> mesh, const RigidTransform& tablet_from_model,

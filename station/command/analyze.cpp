@@ -14,6 +14,7 @@
 
 #include "analysis/tablet_size.h"
 #include "archive/wedge_drawing.h"
+#include "core/log.h"
 #include "core/stage_times.h"
 #include "core/units.h"
 #include "formats/file_label_reader.h"
@@ -179,6 +180,20 @@ std::vector<std::filesystem::path> outputs_of(const AnalyzeArguments& arguments,
   return out;
 }
 
+/// A mesh that was stitched or cleaned anew may have another name: then they are meant. So may a tablet that
+/// is analysed to where another one's wedges lay.
+void warn_of_others(const AnalyzeArguments& arguments, const CorrectionFile& said,
+                    const std::filesystem::path& file) {
+  const std::filesystem::path mesh = std::filesystem::path(arguments.in).filename();
+  const std::filesystem::path of = std::filesystem::path(said.mesh).filename();
+  if (!said.corrections.empty() && !of.empty() && of != mesh) {
+    log_warning(Error{ErrorKind::kBadInput,
+                      "these corrections were made on " + of.string() + " and are made on " + mesh.string(),
+                      file.string(), "if that is another tablet, give its wedges a file of their own"}
+                    .line());
+  }
+}
+
 /// Whether the correction that was asked for last could be made.
 Status check_corrected(const AnalyzeArguments& arguments, const std::filesystem::path& file,
                        const Analysis& analysis) {
@@ -271,6 +286,7 @@ Result<int> analyze(const AnalyzeArguments& arguments, CommandContext& context) 
   if (const Status made = check_corrected(arguments, corrections_file, *analysis); !made) {
     return std::unexpected(made.error());
   }
+  warn_of_others(arguments, *said, corrections_file);
   warn_of_lost(*analysis, corrections_file.string());
   analysis->timings_s.insert(analysis->timings_s.begin(), StageTiming{"reading", reading_s});
   const double took_s = seconds_since(start);

@@ -23,6 +23,7 @@
 #include "station/outward_faces.h"
 #include "station/section_file.h"
 #include "station/selection_store.h"
+#include "station/wedges_beside.h"
 #include "triangulation/mesh_check.h"
 
 namespace dubsar {
@@ -174,6 +175,14 @@ Result<int> part(const MeshOptions& options, CommandContext& context) {
     const Result<WedgeFile> all = read_wedges(options.wedges);
     if (!all) {
       return std::unexpected(all.error());
+    }
+    if (!all->mesh.empty() && !are_of(*all, options.in)) {
+      log_warning(Error{ErrorKind::kBadInput,
+                        "these wedges are of " + std::filesystem::path(all->mesh).filename().string() +
+                            ", not of " + std::filesystem::path(options.in).filename().string(),
+                        options.wedges,
+                        "name the wedges of this mesh, unless it is the same under another name"}
+                      .line());
     }
     const std::vector<Wedge> wedges = selected_wedges(all->wedges, *mesh, *selection);
     if (const Status written =

@@ -21,6 +21,7 @@
 #include "station/command/place_option.h"
 #include "station/correction_region.h"
 #include "station/selection_store.h"
+#include "station/wedges_beside.h"
 
 namespace dubsar {
 
@@ -62,6 +63,23 @@ Result<std::vector<Eigen::Vector3d>> depth_points(const std::string& wedges_json
     places.push_back(wedge->depth_point_mm);
   }
   return places;
+}
+
+/// Ids, and what was said before, are of the mesh that the wedges were found on.
+Status check_same_mesh(const AnalyzeArguments& a) {
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(a.out, ignored) || !std::filesystem::is_regular_file(a.in, ignored)) {
+    return {};
+  }
+  const Result<WedgeFile> file = read_wedges(a.out);
+  if (!file || file->mesh.empty() || are_of(*file, a.in)) {
+    return {};  // what cannot be read is said where it is used
+  }
+  return fail(
+      ErrorKind::kUsage,
+      fmt::format("these wedges are of {}, not of {}", std::filesystem::path(file->mesh).filename().string(),
+                  std::filesystem::path(a.in).filename().string()),
+      a.out, "name that mesh, or a file of this one's own, such as NAME.wedges.json");
 }
 
 /// Nothing that is said may pass unheard.
@@ -197,6 +215,9 @@ Result<int> correct(const CorrectArguments& arguments, CommandContext& context) 
   }
   if (arguments.list) {
     return list(*said, context);
+  }
+  if (const Status same_mesh = check_same_mesh(arguments.analyze); !same_mesh) {
+    return std::unexpected(same_mesh.error());
   }
   AnalyzeArguments analysis = arguments.analyze;
   analysis.known = said->corrections;

@@ -226,6 +226,11 @@ TEST_F(RigScan, IsLookedThroughWithTheLaserLitBetweenScans) {
                         static_cast<int>((*frame)->height), (*frame)->stride_bytes};
     EXPECT_TRUE(judge_exposure(view).has_stripe);
   }
+  // Its light is that of the rig's file, or none.
+  ASSERT_TRUE(device.set_laser(0, 0).has_value());
+  EXPECT_EQ(bench.laser, 0);
+  ASSERT_TRUE(device.set_laser(0, 0.01).has_value());
+  EXPECT_EQ(bench.laser, file.laser_power);
   ASSERT_TRUE(device.stop_frames().has_value());
   EXPECT_EQ(bench.laser, 0);
   Collect sink;

@@ -87,6 +87,34 @@ TEST_F(Calibrate, ATurntableWithTheTemperatureOfTheRoom) {
   EXPECT_EQ(calibrate({"--temperature", "900"}).status, 2);
 }
 
+TEST_F(Calibrate, TheCalibrationOfAnotherCameraIsNotReplaced) {
+  list(2, 3);
+  RigCalibration other = sim::frame_rig({});
+  other.made_at = "2026-01-02T03:04:05Z";
+  other.camera_serial = "CAM-A";
+  const std::string before = calibration_to_json(other);
+  ASSERT_TRUE(write_file_atomically(out(), before));
+  const Outcome refused = calibrate();
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_THAT(refused.complaints(), SizeIs(1)) << refused.err;
+  EXPECT_THAT(refused.err,
+              HasSubstr("it is the calibration of camera CAM-A, the pictures are of SIM-CAMERA"));
+  EXPECT_EQ(*read_whole_file(out()), before);
+  // Nor by pictures of which nobody knows the camera.
+  const Result<std::string> text = read_whole_file(set_ / "calibration.toml");
+  Result<CalibrationSet> set = parse_calibration_set(*text, "list");
+  ASSERT_TRUE(set);
+  set->camera_serial.clear();
+  ASSERT_TRUE(write_file_atomically(set_ / "calibration.toml", calibration_set_to_toml(*set)));
+  const Outcome unknown = calibrate();
+  EXPECT_EQ(unknown.status, 2);
+  EXPECT_THAT(unknown.err, HasSubstr("nobody says of which camera the pictures are"));
+  EXPECT_EQ(*read_whole_file(out()), before);
+  // Its own is made anew.
+  EXPECT_EQ(calibrate({"--serial", "CAM-A"}).status, 1) << "of two poses";
+  EXPECT_NE(*read_whole_file(out()), before);
+}
+
 TEST_F(Calibrate, WhatIsMissingIsSaidWithStatusOne) {
   list(2, 3);
   const Outcome few = calibrate();

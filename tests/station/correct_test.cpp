@@ -193,6 +193,30 @@ TEST_F(Correct, WhatCannotBeMadeIsOneLineAndChangesNothing) {
                !read_corrections(corrections_file_of(in("w.json")))->corrections.empty());
 }
 
+TEST_F(Correct, WedgesOfAnotherMeshAreNotThisOnes) {
+  const std::string before = bytes();
+  std::filesystem::copy_file(in("tablet.ply"), in("neighbour.ply"));
+  for (const std::vector<std::string>& what :
+       {std::vector<std::string>{"--delete", "3"}, {"--undo"}, {"--add-at", "0,0,5", "--reach", "1"}}) {
+    std::vector<std::string> words{"wedges", "correct", in("neighbour.ply"), "-o", in("w.json")};
+    words.insert(words.end(), what.begin(), what.end());
+    const Outcome refused = run_command(words);
+    EXPECT_EQ(refused.status, 2) << refused.err;
+    ASSERT_THAT(refused.complaints(), SizeIs(1)) << refused.err;
+    EXPECT_THAT(refused.complaints().front(),
+                HasSubstr("these wedges are of tablet.ply, not of neighbour.ply"));
+  }
+  EXPECT_EQ(bytes(), before);
+  // An analysis may be meant: a mesh cleaned anew has another name.
+  CorrectionFile said{"tablet.ply",
+                      {{CorrectionKind::kDelete, {wedges().wedges[3].depth_point_mm}, {}, {}, 0}}};
+  ASSERT_TRUE(write_corrections(corrections_file_of(in("n.json")), said));
+  const Outcome outcome = run_command({"analyze", in("neighbour.ply"), "-o", in("n.json")});
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("were made on tablet.ply and are made on neighbour.ply"));
+  EXPECT_EQ(read_wedges(in("n.json"))->corrections, 1U);
+}
+
 TEST_F(Correct, WhatIsAddedIsMarkedInEveryList) {
   const Wedge first = wedges().wedges[3];
   ASSERT_EQ(correct({"--delete", "3"}).status, 0);

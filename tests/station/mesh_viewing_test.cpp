@@ -20,6 +20,7 @@
 #include "formats/corrections_json.h"
 #include "formats/mesh_io.h"
 #include "formats/selections_json.h"
+#include "formats/wedges_json.h"
 #include "sim/tablet.h"
 #include "station/analysis.h"
 #include "tests/support/temporary_folder.h"
@@ -139,6 +140,8 @@ TEST_F(MeshViewingTest, NothingIsNotedWhenTheWedgesCannotBeWritten) {
 
 TEST_F(MeshViewingTest, WhatIsSaidOfASessionsMeshIsKeptWithItsWedges) {
   std::ofstream(folder_.path() / "session.sqlite") << "";
+  fs::rename(mesh_, mesh_.parent_path() / "model.ply");
+  mesh_ = mesh_.parent_path() / "model.ply";
   const fs::path kept = folder_.path() / "analysis" / "wedges.corrections.json";
   {
     Viewer viewer(mesh_);
@@ -149,6 +152,61 @@ TEST_F(MeshViewingTest, WhatIsSaidOfASessionsMeshIsKeptWithItsWedges) {
   EXPECT_EQ(std::distance(fs::directory_iterator(mesh_.parent_path()), fs::directory_iterator()), 1);
   // Also before the session has measured any.
   EXPECT_EQ(Viewer(mesh_).state().corrections, 1U);
+}
+
+TEST_F(MeshViewingTest, AnothersWedgesInTheFolderAreLeftAlone) {
+  const JobContext job;
+  const Result<Analysis> analysis = analyze_mesh(*tablet_, {}, job);
+  ASSERT_TRUE(analysis);
+  const fs::path shared = mesh_.parent_path() / "wedges.json";
+  ASSERT_TRUE(write_wedges(shared, wedge_file("../elsewhere/tablet.ply", {}, *analysis)));
+  const std::string before = *read_whole_file(shared);
+  const fs::path neighbour = mesh_.parent_path() / "neighbour.ply";
+  ASSERT_TRUE(write_mesh(neighbour, *tablet_));
+  {
+    Viewer viewer(neighbour);
+    EXPECT_FALSE(viewer.state().wedges) << "they are of tablet.ply";
+    EXPECT_FALSE(viewer.state().error);
+    viewer.remove_wedge(wedges_mm_[0]);
+    EXPECT_FALSE(viewer.state().error) << viewer.state().error->line();
+  }
+  EXPECT_EQ(*read_whole_file(shared), before);
+  EXPECT_FALSE(fs::exists(mesh_.parent_path() / "wedges.corrections.json"));
+  const Result<WedgeFile> own = read_wedges(mesh_.parent_path() / "neighbour.wedges.json");
+  ASSERT_TRUE(own);
+  EXPECT_EQ(own->mesh, "neighbour.ply");
+  EXPECT_EQ(own->corrections, 1U);
+  // Whoever they are of sees and corrects them there.
+  Viewer viewer(mesh_);
+  ASSERT_TRUE(viewer.state().wedges);
+  EXPECT_THAT(*viewer.state().wedges, SizeIs(wedges_mm_.size()));
+  viewer.remove_wedge(wedges_mm_[0]);
+  EXPECT_EQ(read_wedges(shared)->corrections, 1U);
+}
+
+TEST_F(MeshViewingTest, WedgesOfWhichNobodyKnowsTheMeshAreSaidAndLeftAlone) {
+  const fs::path shared = mesh_.parent_path() / "wedges.json";
+  std::ofstream(shared) << "{\"wedges\":[";
+  Viewer viewer(mesh_);
+  EXPECT_TRUE(viewer.state().error);
+  viewer.remove_wedge(wedges_mm_[0]);
+  EXPECT_EQ(*read_whole_file(shared), "{\"wedges\":[");
+  EXPECT_EQ(noted(), 1U) << "with a file of its own";
+}
+
+TEST_F(MeshViewingTest, AMeshBesideASessionsOwnHasWedgesOfItsOwn) {
+  std::ofstream(folder_.path() / "session.sqlite") << "";
+  const JobContext job;
+  const Result<Analysis> analysis = analyze_mesh(*tablet_, {}, job);
+  const fs::path of_session = folder_.path() / "analysis" / "wedges.json";
+  fs::create_directories(of_session.parent_path());
+  ASSERT_TRUE(write_wedges(of_session, wedge_file("../mesh/model.ply", {}, *analysis)));
+  Viewer viewer(mesh_);
+  EXPECT_FALSE(viewer.state().wedges);
+  const fs::path model = mesh_.parent_path() / "model.ply";
+  ASSERT_TRUE(write_mesh(model, *tablet_));
+  viewer.open(model);
+  EXPECT_TRUE(viewer.state().wedges);
 }
 
 TEST_F(MeshViewingTest, NothingIsLaidIntoAPackage) {

@@ -161,6 +161,34 @@ TEST_F(CalibrationBox, ARigOfARangeCameraIsAskedForAndLoggedBesideItsFile) {
   EXPECT_EQ(read_whole_file(at("rig.toml")).value(), kRangeRig);
 }
 
+TEST_F(CalibrationBox, OfTheRigBeforeNothingStaysInIt) {
+  write_scan_of_a_ball(at("ball.ply"));
+  certify(12.0);
+  fs::create_directories(at("other"));
+  ASSERT_TRUE(write_file_atomically(at("other/rig.toml"), kRig).has_value());  // not calibrated yet
+  const std::string own = at("calibration.json").string();
+  const auto change = [](const std::string& uri) {
+    return "click close-calibration\nclick device\n" + retype("uri", uri) + "click use-device\nwait idle\n";
+  };
+  const Outcome outcome =
+      play("wait idle\nwait verify-due 10\nclick calibration\nwait verifies " + own +
+           "\nclick page-calibrate\nwait keeps-to " + own + "\nclick page-verify\n" +
+           // a camera alone: its measurement is no word about that rig, its calibration not that rig's
+           change("eye:") + "click calibration\nwait verify-artefact\nexpect verifies nothing\n" +
+           retype("verify-scan", at("ball.ply").string()) +
+           "click verify-now\nwait verify-passed\nclick page-calibrate\n"
+           "wait keeps-to calibration/calibration.json\nclick page-verify\n" +
+           // a rig whose calibration is still to be made: to where its file says
+           change("rig:" + at("other/rig.toml").string()) +
+           "click calibration\nwait verify-artefact\nexpect verifies nothing\nclick page-calibrate\nwait "
+           "keeps-to " +
+           at("other/calibration.json").string() + "\nclick page-verify\n" +
+           change("rig:" + at("rig.toml").string()) + "click calibration\nwait verifies " + own +
+           "\nclick close-calibration\nquit\n");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(log(), SizeIs(0));
+}
+
 TEST_F(CalibrationBox, ACheckOfTheDayBeforeIsTooOld) {
   VerificationEntry entry;
   entry.when = "2026-01-03T00:00:00Z";

@@ -80,6 +80,13 @@ wait waiting-turn
 click camera
 wait exposure-too-long
 expect setting.flip=true
+# what cannot change while frames run: the picture goes, and comes again
+click setting.flip
+wait setting.flip=false
+wait exposure-too-long
+click setting.flip
+wait setting.flip=true
+wait exposure-too-long
 click setting.exposure_us
 key end
 key backspace

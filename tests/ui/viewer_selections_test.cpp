@@ -188,6 +188,49 @@ TEST_F(ViewerSelections, AreNamedKeptWrittenAndAnalysedAlone) {
   }
 }
 
+/// A wedge is chosen and marked, then clay that has none is looked at alone.
+constexpr const char* kBareClay = R"(wait wedges 60
+wait whole
+wait idle
+click tool-correct
+click wedge.5
+wait marked.1
+expect chosen.5
+key 6
+wait looks-at.bottom
+wait whole
+click tool-select
+click surface 0.46 0.46
+click surface 0.54 0.46
+click surface 0.54 0.54
+click surface 0.46 0.54
+click surface 0.46 0.46
+wait selected
+click tool-correct
+expect marked.1
+click tool-select
+click analyse-part
+wait part 60
+wait idle 60
+expect chosen.none
+click tool-correct
+wait marked.0
+click tool-turn
+click whole-mesh
+wait whole
+wait idle
+expect chosen.none
+quit
+)";
+
+TEST_F(ViewerSelections, WhatIsChosenGoesWithTheListThatItIsOf) {
+  const auto outcome = play(kBareClay);
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const auto alone = read_wedges(in("tablet_part_01.wedges.json"));
+  ASSERT_TRUE(alone) << alone.error().line();
+  EXPECT_EQ(alone->wedges.size(), 0U);
+}
+
 constexpr const char* kAlgebra = R"(wait wedges 60
 wait whole
 wait idle

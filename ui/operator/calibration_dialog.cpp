@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <optional>
+#include <utility>
 
+#include "station/verification.h"
 #include "ui/gl/gl_window.h"
 #include "ui/operator/camera_dialog.h"
 #include "ui/shell/typed_number.h"
@@ -15,6 +18,7 @@ namespace {
 
 constexpr const char* kPopup = "###calibration";
 constexpr const char* kUsualBoard = "chessboard:9x6:25";
+constexpr const char* kUsualPlace = "calibration/calibration.json";
 
 void say(const Eigen::Vector4f& colour, const std::string& line) {
   coloured_text(colour, line.c_str());
@@ -84,20 +88,25 @@ std::string care_line(const RigCare& care, Language language) {
                 care.is_due() ? *care.age_days : 24 * *care.age_days);
 }
 
-void CalibrationDialog::open(const LiveState& state) {
+void CalibrationDialog::open() {
   opening_ = true;
-  verify_.scan = session_.device();
-  motion_ = stage_kind_of(session_.device());
-  if (state.care) {
-    verify_.calibration = state.care->verified;
-    const std::filesystem::path beside = std::filesystem::path(state.care->verified).parent_path();
-    verify_.artefact = verify_.artefact.empty() ? (beside / "artefact.toml").string() : verify_.artefact;
-    out_ = state.care->calibration.empty() ? out_ : state.care->calibration;
+  const std::string device = session_.device();
+  const bool is_other = std::exchange(device_, device) != device;
+  verify_.scan = device;
+  motion_ = stage_kind_of(device);
+  const std::optional<RigCare> care = care_of(device);
+  if (care || is_other) {  // what was measured with this one is no word about the one before
+    verify_.calibration = care ? care->verified : std::string();
+  }
+  if (care && verify_.artefact.empty()) {
+    verify_.artefact = (std::filesystem::path(care->verified).parent_path() / "artefact.toml").string();
+  }
+  if (const std::string place = calibration_place_of(device); !place.empty() || is_other) {
+    out_ = place.empty() ? kUsualPlace : place;
   }
   if (calibrate_.board.empty()) {
     calibrate_.board = kUsualBoard;
     calibrate_.folder = "calibration";
-    out_ = out_.empty() ? "calibration/calibration.json" : out_;
   }
 }
 
@@ -110,6 +119,7 @@ void CalibrationDialog::draw_verify(UiContext& ui, const LiveState& state) {
   text_line(ui, "verify-artefact", ui.text(Text::kArtefactFile), verify_.artefact);
   text_line(ui, "verify-scan", ui.text(Text::kVerifyScan), verify_.scan);
   text_line(ui, "verify-calibration", ui.text(Text::kCalibrationFile), verify_.calibration);
+  ui.facts.insert("verifies " + (verify_.calibration.empty() ? "nothing" : verify_.calibration));
   if (plain_button(ui, "verify-now", ui.text(Text::kVerifyNow),
                    !session_.busy() && !verify_.artefact.empty() && !verify_.scan.empty())) {
     session_.verify(verify_);
@@ -139,20 +149,41 @@ void CalibrationDialog::draw_stage(UiContext& ui) {
   calibrate_.temperature_c = typed_number(temperature_);
 }
 
+/// A rig's laser is put on and off for it; how it is with a camera alone, the operator sees to.
+void CalibrationDialog::take_shot() {
+  if (!wanted_ || shooting_.valid()) {
+    return;
+  }
+  const auto view = session_.camera();
+  if (!view || !view->image) {
+    wanted_.reset();  // the camera is gone, which is said below
+    return;
+  }
+  const bool lit = wanted_->shot == CalibrationShot::kLaser;
+  if (view->lit && *view->lit != lit) {
+    session_.light_camera(lit);
+    return;
+  }
+  shooting_ = std::async(std::launch::async, [view, wanted = *wanted_] {
+    auto said = add_calibration_shot(wanted.folder, wanted.words,
+                                     {wanted.shot, *view->image, view->camera_serial, wanted.position});
+    wake_window();
+    return said;
+  });
+  wanted_.reset();
+}
+
 void CalibrationDialog::draw_shots(UiContext& ui) {
   const auto view = session_.camera();
-  const bool may = view && view->image && !shooting_.valid() && !calibrate_.folder.empty();
+  const bool may = view && view->image && !wanted_ && !shooting_.valid() && !calibrate_.folder.empty();
   const std::optional<double> position = typed_number(position_);
   const bool mirror = motion_ == MotionKind::kGalvanometer;
   const auto offer = [&](const char* name, Text text, CalibrationShot shot, bool enabled) {
     if (plain_button(ui, name, ui.text(text), may && enabled)) {
-      const CalibrationWords words{calibrate_.board, motion_, calibrate_.temperature_c};
-      shooting_ = std::async(
-          std::launch::async, [view, shot, words, folder = calibrate_.folder, at = position.value_or(0)] {
-            auto said = add_calibration_shot(folder, words, {shot, *view->image, view->camera_serial, at});
-            wake_window();
-            return said;
-          });
+      wanted_ = Shot{shot,
+                     {calibrate_.board, motion_, calibrate_.temperature_c},
+                     position.value_or(0),
+                     calibrate_.folder};
     }
   };
   offer("shot-board", Text::kShotBoard, CalibrationShot::kBoard, !mirror || position.has_value());
@@ -165,6 +196,7 @@ void CalibrationDialog::draw_shots(UiContext& ui) {
   short_text(ui, "shot-position", position_, ui.px(5));
   ImGui::SameLine();
   ImGui::TextUnformatted(mirror ? ui.text(Text::kMirrorAt) : motion_ == MotionKind::kTurntable ? "°" : "mm");
+  take_shot();
   if (shooting_.valid() && shooting_.wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
     const Result<std::string> said = shooting_.get();
     shot_failed_ = !said;
@@ -184,6 +216,7 @@ void CalibrationDialog::draw_calibrate(UiContext& ui, const LiveState& state) {
   draw_stage(ui);
   draw_shots(ui);
   text_line(ui, "calibrate-out", ui.text(Text::kCalibrationFile), out_);
+  ui.facts.insert("keeps-to " + out_);
   const bool room = temperature_.empty() || calibrate_.temperature_c;
   const bool may = !session_.busy() && !calibrate_.folder.empty() && room;
   if (plain_button(ui, "calibrate-now", ui.text(Text::kCalibrateNow), may)) {
@@ -228,12 +261,14 @@ void CalibrationDialog::draw(UiContext& ui, const LiveState& state) {
   if (!begin_wide_box(ui, ui.text(Text::kCalibration), kPopup, opening_)) {
     if (std::exchange(open_, false)) {
       session_.watch_camera(false);
+      wanted_.reset();
       shown_.reset();
     }
     return;
   }
   if (ImGui::RadioButton(ui.text(Text::kVerifyPage), verifying_)) {
     verifying_ = true;
+    wanted_.reset();
     session_.watch_camera(false);
   }
   ui.target("page-verify");

@@ -4,6 +4,7 @@
 
 #include <future>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "core/result.h"
@@ -19,7 +20,7 @@ namespace dubsar::ui {
 class CalibrationDialog {
  public:
   explicit CalibrationDialog(LiveSession& session) : session_(session) {}
-  void open(const LiveState& state);
+  void open();
   void draw(UiContext& ui, const LiveState& state);
 
  private:
@@ -27,14 +28,23 @@ class CalibrationDialog {
   void draw_calibrate(UiContext& ui, const LiveState& state);
   void draw_stage(UiContext& ui);
   void draw_shots(UiContext& ui);
+  void take_shot();
   void draw_camera(UiContext& ui, ImVec2 size);
   LiveSession& session_;
+  std::string device_;  ///< when it was opened last
   VerifyRequest verify_;
   CalibrateRequest calibrate_;
   std::string out_;
   MotionKind motion_ = MotionKind::kLinear;
   std::string position_ = "0";
   std::string temperature_;  ///< °C; may be empty
+  struct Shot {
+    CalibrationShot shot = CalibrationShot::kBoard;
+    CalibrationWords words;
+    double position = 0;
+    std::string folder;
+  };
+  std::optional<Shot> wanted_;  ///< that waits for a frame in its light
   std::future<Result<std::string>> shooting_;
   std::string shot_said_;
   bool shot_failed_ = false;

@@ -184,7 +184,7 @@ void OperatorScreen::draw_left(UiContext& ui, ImVec2 size) {
     camera_box_.open();
   }
   if (narrow("calibration", Text::kCalibration, ButtonKind::kPlain, !session_.busy())) {
-    calibration_.open(state_);
+    calibration_.open();
   }
   ImGui::SameLine();
   if (narrow("settings", Text::kSettings, ButtonKind::kPlain, true)) {

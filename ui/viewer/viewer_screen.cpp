@@ -47,6 +47,14 @@ void ViewerScreen::take_state(UiContext& ui) {
     const TimedWork timed(ui.watch, "what is known of the mesh");
     state_ = viewing_.state();
   }
+  // They may be others, and at other places in the table; also while their mesh is not shown yet.
+  if (state_.wedges != seen_wedges_) {
+    seen_wedges_ = state_.wedges;
+    wedge_ = -1;
+    marked_.clear();
+    splitting_ = false;
+    split_places_.clear();
+  }
   bool is_new = false;
   {
     const TimedWork timed(ui.watch, "a mesh to the graphics card");
@@ -72,8 +80,8 @@ void ViewerScreen::take_state(UiContext& ui) {
     }
   }
   unfinished_ = unfinished_ || prepared_.arrives();
-  if (surface_.empty() || prepared_.busy()) {
-    return;
+  if (!is_current()) {
+    return;  // what is known is of another mesh than the one that is drawn
   }
   const auto field_values = [&](MeshField field) -> std::shared_ptr<const std::vector<float>> {
     const auto known = state_.fields.find(field);
@@ -103,13 +111,6 @@ void ViewerScreen::take_state(UiContext& ui) {
   }
   if (state_.is_part) {
     ui.facts.insert("part");
-  }
-  if (state_.wedges != seen_wedges_) {  // they may be others, and at other places in the table
-    seen_wedges_ = state_.wedges;
-    wedge_ = -1;
-    marked_.clear();
-    splitting_ = false;
-    split_places_.clear();
   }
   if (state_.written != seen_written_) {
     seen_written_ = state_.written;

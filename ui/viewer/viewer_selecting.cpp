@@ -58,12 +58,15 @@ void ViewerScreen::go_on_selecting(UiContext& ui) {
     }
     return;
   }
+  if (!is_current()) {
+    return;  // what is marked is of another mesh, and goes with its picture
+  }
   if (const MeshSelecting* selecting = surface_.selection(); selecting && selecting->is_under_way()) {
     unfinished_ = true;
     if (!surface_.select_more()) {
       choose_marked(surface_.selection()->selected());
     }
-  } else if (polygon_closed_ && is_current() && surface_.whole()) {
+  } else if (polygon_closed_ && surface_.whole()) {
     unfinished_ = surface_.select(select_of_, polygon_, step_, !visible_only_) || unfinished_;
     drop_polygon();
   }

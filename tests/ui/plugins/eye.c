@@ -92,7 +92,9 @@ static int32_t get_setting(dubsar_device* device, const char* key, dubsar_value*
 
 static int32_t set_setting(dubsar_device* device, const char* key, const dubsar_value* value,
                            dubsar_error* error) {
-  (void)error;
+  if (strcmp(key, "flip") == 0 && device->runs) {
+    return plain_problem(error, DUBSAR_USAGE, "flip cannot change while frames run");
+  }
   if (strcmp(key, "exposure_us") == 0) {
     device->exposure_us = value->number;
   } else if (strcmp(key, "flip") == 0) {
