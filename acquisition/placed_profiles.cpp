@@ -4,12 +4,20 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "acquisition/rig_parts.h"
 #include "acquisition/wall_clock.h"
 
 namespace dubsar {
+
+namespace {
+
+/// Times the rows of the scan: a block of more than those has no time of its own.
+constexpr std::size_t kMostOfBlock = 4;
+
+}  // namespace
 
 PlacedProfiles::PlacedProfiles(ProfileSink& sink, PositionTrack& track, Scan scan)
     : sink_(sink), track_(track), scan_(std::move(scan)) {}
@@ -40,7 +48,18 @@ bool PlacedProfiles::begin(const ScanInfo& info) {
   return begun_;
 }
 
+bool PlacedProfiles::is_behind() const {
+  const auto scan_rows = static_cast<std::size_t>(std::max(scan_.rows, 1));
+  const bool at_rest = track_.closed_before(std::numeric_limits<std::int64_t>::max());
+  return block_.size() >= kMostOfBlock * scan_rows || (at_rest && block_.size() >= 2 * scan_rows) ||
+         track_.closed_before(block_ns_);
+}
+
 bool PlacedProfiles::profile(const Profile& profile) {
+  if (profile.timestamp_ns == 0) {
+    timeless_ = true;
+    return false;
+  }
   if (!block_.empty() && profile.timestamp_ns != block_ns_) {
     const auto rows = static_cast<double>(profile.row - block_.front().number);
     if (rows > 0) {
@@ -66,7 +85,7 @@ bool PlacedProfiles::profile(const Profile& profile) {
     row.valid.assign(row.x.size(), 1);
   }
   block_.push_back(std::move(row));
-  return true;
+  return !is_behind();
 }
 
 void PlacedProfiles::end(const ScanTally& tally) {

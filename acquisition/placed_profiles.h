@@ -39,6 +39,7 @@ class PlacedProfiles : public ProfileSink {
   [[nodiscard]] bool cancelled() const { return cancelled_; }  ///< the sink had enough
   [[nodiscard]] bool begun() const { return begun_; }
   [[nodiscard]] bool single_block() const { return !period_ns_; }  ///< nothing tells when its rows were taken
+  [[nodiscard]] bool timeless() const { return timeless_; }        ///< a profile came without any time
   [[nodiscard]] std::optional<double> position() const { return position_; }
   [[nodiscard]] const ScanTally& tally() const { return tally_; }
 
@@ -51,6 +52,8 @@ class PlacedProfiles : public ProfileSink {
   };
   bool hand_on();
   bool place(Row& row, std::int64_t timestamp_ns);
+  /// Nothing that is still to come of the block can be of the scan: it would go on for ever.
+  [[nodiscard]] bool is_behind() const;
   void count_unsure(std::int64_t row, double position);
 
   ProfileSink& sink_;
@@ -65,7 +68,7 @@ class PlacedProfiles : public ProfileSink {
   std::optional<std::pair<std::int64_t, double>>
       sure_;                          ///< the last row whose place was known, and its place
   std::vector<std::int64_t> unsure_;  ///< rows since then
-  bool begun_ = false, complete_ = false, cancelled_ = false;
+  bool begun_ = false, complete_ = false, cancelled_ = false, timeless_ = false;
   ScanTally tally_;
 };
 

@@ -98,6 +98,9 @@ Status RangeRig::run(ProfileSink& sink, std::optional<LaserGuard>& dark) {
   Status status;
   if (stopped_->load() || placed.cancelled()) {
     status = fail(ErrorKind::kCancelled, "scan cancelled", file_.name);
+  } else if (placed.timeless()) {
+    status = fail(ErrorKind::kDevice, "the camera does not tell when its profiles were taken", file_.camera,
+                  "nothing else tells where the stage was: use a camera whose driver tells their times");
   } else if (placed.complete()) {
     watch.track().wait_closed(travel.time_to_rest(scan.end()));
     status = watch.finish();

@@ -30,6 +30,9 @@ struct ScanRecord {
   std::string file{};                  ///< that a recorded scan was read from, with its folders; else empty
 };
 
+/// What of a scan was lost or came wrong, for the operator, in one line; empty where nothing was.
+[[nodiscard]] std::string losses_of(const ScanRecord& record);
+
 /// A device opened by its URI, as a source of range grids. Use from one thread at a time.
 class RangeSource {
  public:

@@ -70,13 +70,22 @@ Status CameraStream::put(const SettingWords& words, const std::string& where) {
   return put_settings(device_, words, where);
 }
 
-CameraWatch::CameraWatch(std::string uri, SettingWords words, EventSink sink,
+CameraWatch::CameraWatch(std::string uri, std::function<SettingWords()> words, EventSink sink,
                          std::function<void(const std::string&, const std::string&)> changed)
     : uri_(std::move(uri)),
       sink_(std::move(sink)),
       changed_(std::move(changed)),
       thread_([this, first = std::move(words)] {
-        run(first);
+        run(first());
+        bool is_lost = false;
+        {
+          const std::scoped_lock lock(mutex_);
+          looks_ = false;
+          is_lost = !wanted_.empty();
+        }
+        if (is_lost) {
+          sink_(Notice{kNotSet});
+        }
         for (int k = 0; k < kRestsAfterFailure && !stopped_; ++k) {
           std::this_thread::sleep_for(kRest);
         }
@@ -89,9 +98,12 @@ CameraWatch::~CameraWatch() {
   thread_.join();
 }
 
-void CameraWatch::change(ChangeSetting wanted) {
+bool CameraWatch::change(ChangeSetting wanted) {
   const std::scoped_lock lock(mutex_);
-  wanted_.push_back(std::move(wanted));
+  if (looks_) {
+    wanted_.push_back(std::move(wanted));
+  }
+  return looks_;
 }
 
 void CameraWatch::run(const SettingWords& words) {
@@ -102,8 +114,8 @@ void CameraWatch::run(const SettingWords& words) {
     sink_(Notice{device.error().line()});
     return;
   }
-  if (const Status put = put_settings(*device, words, uri_); !put) {
-    sink_(Notice{put.error().line()});
+  if (const std::string refused = put_kept(*device, words, uri_); !refused.empty()) {
+    sink_(Notice{refused});
   }
   watch(*device);
 }

@@ -21,15 +21,17 @@ namespace dubsar {
 /// gone.
 class CameraWatch {
  public:
-  /// `words` are put first. `changed` is called on the thread of the watch after a setting was changed.
-  CameraWatch(std::string uri, SettingWords words, EventSink sink,
+  /// `words` are put first; they are asked for on the thread of the watch. `changed` is called there after a
+  /// setting was changed.
+  CameraWatch(std::string uri, std::function<SettingWords()> words, EventSink sink,
               std::function<void(const std::string& key, const std::string& word)> changed);
   /// Waits until the device is closed.
   ~CameraWatch();
   CameraWatch(const CameraWatch&) = delete;
   CameraWatch& operator=(const CameraWatch&) = delete;
 
-  void change(ChangeSetting wanted);
+  /// False where it looks no more, and nothing is changed.
+  [[nodiscard]] bool change(ChangeSetting wanted);
   /// Of a rig: whether its laser is on, as it is unless said; CameraView::lit says from when on.
   void light(bool on) { lit_ = on; }
   void stop() { stopped_ = true; }  ///< returns at once; `ended` follows
@@ -43,6 +45,7 @@ class CameraWatch {
   std::function<void(const std::string&, const std::string&)> changed_;
   std::mutex mutex_;
   std::deque<ChangeSetting> wanted_;
+  bool looks_ = true;  ///< and takes what is wanted
   std::atomic<bool> lit_ = true;
   std::atomic<bool> stopped_ = false;
   std::atomic<bool> ended_ = false;

@@ -78,6 +78,16 @@ void put_word(SettingWords& words, const std::string& key, const std::string& wo
   words.emplace_back(key, word);
 }
 
+std::string put_kept(Device& device, const SettingWords& words, const std::string& uri) {
+  std::string refused;
+  for (const auto& word : words) {
+    if (const Status put = put_settings(device, {word}, uri); !put) {
+      refused += (refused.empty() ? "" : "; ") + put.error().line();
+    }
+  }
+  return refused;
+}
+
 Result<SettingWords> kept_settings(const SessionStore& store, const std::string& uri) {
   Result<ByDevice> all = load(store);
   if (!all) {

@@ -27,8 +27,17 @@ struct DevicePanel {
 
 [[nodiscard]] Result<DevicePanel> panel_of(Device& device);
 
+/// Of a setting that nobody takes now.
+inline constexpr const char* kNotSet =
+    "this is not set: nothing has the scanner that could take it; set it again once it scans or shows its "
+    "camera";
+
 /// Replaces or adds one.
 void put_word(SettingWords& words, const std::string& key, const std::string& word);
+
+/// Puts words that were kept one by one, in their order: some may be of a driver before this one, or of a
+/// camera that was changed. What could not be put, in one line; empty where all were.
+[[nodiscard]] std::string put_kept(Device& device, const SettingWords& words, const std::string& uri);
 
 /// What was changed of a device, by its URI, in the session: put again whenever the session goes on with it.
 /// Empty where nothing was. Errors: kBadInput, and those of the store.

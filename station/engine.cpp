@@ -10,6 +10,7 @@ namespace dubsar {
 Engine::Engine(EngineOptions options, EventSink sink) : impl_(std::make_unique<Impl>()) {
   impl_->options = std::move(options);
   impl_->keeps_half = impl_->options.keep_half_scan;
+  impl_->commands.assign(impl_->options.first_commands.begin(), impl_->options.first_commands.end());
   impl_->sink = std::move(sink);
 }
 Engine::~Engine() {
@@ -61,7 +62,7 @@ Status Engine::Impl::settle(EngineResult& result, JobContext& job) {
     return std::unexpected(red_map.error());
   }
   result.red_map = std::move(*red_map);
-  emit(RedMapChanged{result.red_map, std::nullopt});
+  emit(RedMapChanged{result.red_map, std::nullopt, result.red_map.conclusive});
   if (const Status stitched = planning.stitch(job); !stitched) {
     return stitched;
   }
@@ -75,7 +76,6 @@ Result<bool> Engine::Impl::run_round(NextStep step, EngineResult& result, JobCon
   {
     const std::scoped_lock lock(mutex);
     queues = std::make_unique<Queues>();
-    takes_commands = true;
     if (!commands.empty()) {
       queues->to_register.try_push(CommandsWait{});
     }
@@ -119,6 +119,7 @@ Result<EngineResult> Engine::Impl::run(JobContext& job) {
   if (const Status opened = open(job); !opened) {
     return std::unexpected(opened.error());
   }
+  settle_undoing();
   EngineResult result;
   const int resumed_count = stored_count;
   NextStep step;
@@ -159,6 +160,9 @@ Result<EngineResult> Engine::run(JobContext& job) {
   {
     const std::scoped_lock lock(impl_->mutex);
     impl_->takes_commands = false;
+  }
+  if (impl_->source && impl_->store) {
+    impl_->change_settings();  // those that came behind the last scan
   }
   if (!result && result.error().kind == ErrorKind::kCancelled) {
     const int stored = impl_->stored_count;

@@ -72,9 +72,10 @@ class Engine {
 
   [[nodiscard]] Result<EngineResult> run(JobContext& job);
 
-  /// Asks for something while run() is under way: it is done between two scans, stored, and answered by an
-  /// OperatorObeyed, or by a Notice that says why not. From any thread, never from the event sink; returns at
-  /// once. False when the engine is not running, or already writes its final results.
+  /// Asks for something: it is done between two scans, stored, and answered by an OperatorObeyed, or by a
+  /// Notice that says why not. What comes while the device is opened, or before run(), is done once the
+  /// session is read. From any thread, never from the event sink; returns at once. False when the engine
+  /// already writes its final results, or has ended.
   bool post(OperatorCommand command);
 
   /// The emergency stop, from any thread; returns at once. Lasers go off and motors stop, wherever run() is;

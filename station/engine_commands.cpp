@@ -37,6 +37,26 @@ bool Engine::post(OperatorCommand command) {
   return true;
 }
 
+void Engine::Impl::settle_undoing() {
+  std::vector<int> standing;
+  if (const auto stored = store->scans()) {
+    for (const StoredScan& scan : *stored) {
+      if (!scan.dropped) {
+        standing.push_back(scan.id);
+      }
+    }
+  }
+  const std::scoped_lock lock(mutex);
+  for (OperatorCommand& command : commands) {
+    if (auto* drop = std::get_if<DropScan>(&command)) {
+      drop->id = drop->id >= 0      ? drop->id
+                 : standing.empty() ? std::numeric_limits<int>::max()
+                                    : standing.back();
+      std::erase(standing, drop->id);
+    }
+  }
+}
+
 bool Engine::Impl::close_commands() {
   const std::scoped_lock lock(mutex);
   takes_commands = !commands.empty();

@@ -23,13 +23,15 @@ Status Engine::Impl::open_settings() {
     emit(Notice{kept.error().line()});
     kept = SettingWords{};
   }
-  // What was kept may be of a driver before this one: it is said and left.
-  if (const Status put = put_settings(source->device(), *kept, options.device); !put) {
-    emit(Notice{put.error().line()});
+  if (const std::string refused = put_kept(source->device(), *kept, options.device); !refused.empty()) {
+    emit(Notice{refused});
   }
   settings = std::move(*kept);
   if (!options.settings.empty()) {
-    if (const Status put = put_settings(source->device(), options.settings, options.device); !put) {
+    SettingWords others = options.settings;  // a window gives what is kept once more
+    std::erase_if(others,
+                  [&](const auto& one) { return std::ranges::find(settings, one) != settings.end(); });
+    if (const Status put = put_settings(source->device(), others, options.device); !put) {
       return put;
     }
     for (const auto& [key, value] : options.settings) {
@@ -53,6 +55,10 @@ void Engine::Impl::change_settings() {
     asked.swap(settings_asked);
   }
   for (const ChangeSetting& one : asked) {
+    if (source->halted()) {  // no lamp goes on because of a word from before
+      emit(Notice{kNotSet});
+      break;
+    }
     Status put = stream ? stream->put({{one.key, one.word}}, options.device)
                         : put_settings(source->device(), {{one.key, one.word}}, options.device);
     if (put) {

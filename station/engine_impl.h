@@ -176,10 +176,11 @@ struct Engine::Impl {
   int stored_count = 0;
   std::optional<PinSet> pins;  ///< options.pins, and what the operator has labelled since
   std::deque<OperatorCommand> commands;
-  bool takes_commands = false;
+  bool takes_commands = true;  ///< until the final results are written
   bool halt_asked = false;
   bool scan_asked = false;    ///< of a paced run: ScanNow since the last scan
   bool finish_asked = false;  ///< of a paced run: Finish
+  bool scanning = false;      ///< of a paced run: the device has what it takes to the next scan
   bool keeps_half = false;    ///< KeepHalfScan
   std::vector<ChangeSetting> settings_asked;
   bool watch_asked = false;              ///< WatchCamera
@@ -226,6 +227,7 @@ struct Engine::Impl {
   /// Thinks for as long as somebody holds it.
   std::shared_ptr<void> begin_thought();
   [[nodiscard]] bool must_wait(const NextStep& step) const;  ///< under the mutex
+  void end_scanning();
   void show_model(JobContext& job);
   // engine_device.cpp
   Status open_settings();  ///< puts what the session keeps and what the options say, and tells the panel
@@ -279,6 +281,10 @@ struct Engine::Impl {
   ScanPose set_intruders_aside(const StationScan& scan, ScanPose pose, std::vector<SetAside>& aside,
                                JobContext& job);
   void plan_all(JobContext& job);
+  /// Of a paced run with a device that nothing drives and that has no end: ends it once nothing is left to
+  /// do, but not before it has taken the scan that was asked for. True where no scan is under way any
+  /// more.
+  bool end_conclusive(const RedMap& red_map, const ScanToPlan& item);
   void tell_foreign();  ///< what the planning stage has left out of scans, once of each
   std::vector<ScanPose> named_poses() const;
   [[nodiscard]] ScanPose judged(ScanPose pose) const;  ///< by what the model can hold
@@ -294,6 +300,8 @@ struct Engine::Impl {
   Result<StationScan> enter_again(int id, JobContext& job);
   Result<std::vector<StationScan>> label_pins(const LabelPins& command, std::string& what, JobContext& job);
   [[nodiscard]] std::optional<PinSet> known_pins() const;
+  /// What is to be undone is of the scans that there are now, not of one that comes before it is obeyed.
+  void settle_undoing();
   bool close_commands();  ///< false when some came at the last moment: they are still to be obeyed
   Result<bool> run_round(NextStep step, EngineResult& result, JobContext& job);
   Result<EngineResult> run(JobContext& job);

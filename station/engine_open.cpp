@@ -1,11 +1,31 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright The Dubsar developers
 #include "acquisition/rig_device.h"
+#include "formats/atomic_file.h"
+#include "formats/grid_header.h"
 #include "station/calibration_record.h"
 #include "station/engine_impl.h"
 #include "station/range_camera_record.h"
 
 namespace dubsar {
+
+namespace {
+
+/// How the tablet lay for a scan that is not read: the operator may put it back. Where its file does not
+/// tell, no more often than there were scans was the tablet lifted.
+int placement_of(const SessionStore& store, const StoredScan& scan) {
+  const std::filesystem::path path = store.folder() / scan.file;
+  const Result<std::string> bytes =
+      scan.damaged ? fail(ErrorKind::kBadInput, "damaged", path.string()) : read_whole_file(path);
+  const Result<GridHeader> header =
+      bytes ? decode_grid_header(*bytes, path.string()) : std::unexpected(bytes.error());
+  if (!header) {
+    return scan.id;
+  }
+  return header->grid.nominal ? header->grid.nominal->placement : -1;
+}
+
+}  // namespace
 
 Status Engine::Impl::load_resumed(JobContext& job) {
   const auto stored = store->scans();
@@ -18,6 +38,7 @@ Status Engine::Impl::load_resumed(JobContext& job) {
       known_files[scan.source].insert(scan.samples);
     }
     if (scan.dropped || scan.damaged) {
+      placement_offset = std::max(placement_offset, placement_of(*store, scan) + 1);
       continue;
     }
     job.progress("reading the session", static_cast<double>(scan.id) / static_cast<double>(stored->size()));
@@ -191,10 +212,6 @@ Status Engine::Impl::open(JobContext& job) {
   begins_again = std::ranges::any_of(options.first_commands, [](const OperatorCommand& command) {
     return std::holds_alternative<ScanAgain>(command);
   });
-  {
-    const std::scoped_lock lock(mutex);
-    commands.insert(commands.end(), options.first_commands.begin(), options.first_commands.end());
-  }
   return {};
 }
 

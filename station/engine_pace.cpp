@@ -47,19 +47,19 @@ bool Engine::Impl::wait_for_operator(NextStep& step, const JobContext& job) {
       }
       return false;
     }
-    if (changed_step) {
+    // Of several commands only the last one's step is worth telling: a key for one before it would be lost.
+    const bool settled = !thinks_over();
+    if (settled && changed_step) {
       step = *std::exchange(changed_step, std::nullopt);
       if (!step) {
-        return false;  // what they said has settled it
+        return false;  // what they said has settled it, or the scan that was judged meanwhile
       }
       told = false;
       changed = true;  // motors must not start because a scan was taken out
     }
-    // Of several commands only the last one's step is worth telling: a key for one before it would be lost.
-    const bool settled = !thinks_over();
     if (settled && ((told && scan_asked) || !(changed || must_wait(step)))) {
       scan_asked = false;
-      asked_once = true;
+      asked_once = scanning = true;
       return true;
     }
     if (settled && !told) {
@@ -82,10 +82,27 @@ bool Engine::Impl::wait_for_operator(NextStep& step, const JobContext& job) {
     if (!showed) {
       // Cancelling a job wakes nobody.
       pace.wait_for(lock, std::chrono::milliseconds(50), [&] {
-        return finish_asked || changed_step || (!thinks_over() && (scan_asked || !told));
+        return finish_asked || (!thinks_over() && (changed_step || scan_asked || !told));
       });
     }
   }
+}
+
+void Engine::Impl::end_scanning() {
+  const std::scoped_lock lock(mutex);
+  scanning = false;
+}
+
+bool Engine::Impl::end_conclusive(const RedMap& red_map, const ScanToPlan& item) {
+  const std::scoped_lock lock(mutex);
+  const bool is_due = options.first_scan_waits || (asked_once && !item.resumed);
+  const bool ends = red_map.conclusive && is_due && !item.view_of;  // that one is to be taken again
+  changed_step.reset();
+  if (ends) {
+    changed_step.emplace(std::nullopt);
+  }
+  pace.notify_all();
+  return ends && !scanning;
 }
 
 void Engine::Impl::show_model(JobContext& job) {

@@ -8,7 +8,11 @@ namespace dubsar {
 namespace {
 
 std::string remark_of(const ScanRecord& record) {
-  return fmt::format("{}", fmt::join(record.remarks, "; "));
+  std::vector<std::string> all = record.remarks;
+  if (std::string losses = losses_of(record); !losses.empty()) {
+    all.push_back(std::move(losses));
+  }
+  return fmt::format("{}", fmt::join(all, "; "));
 }
 
 }  // namespace
@@ -163,6 +167,7 @@ void Engine::Impl::acquire(NextStep step, JobContext& job) {
       }
     }
     const Taken got = take_scan(drives ? present : std::nullopt, job);
+    end_scanning();
     if (got == Taken::kEnd) {
       break;
     }
@@ -178,6 +183,7 @@ void Engine::Impl::acquire(NextStep step, JobContext& job) {
       }
     }
   }
+  change_settings();  // what was asked for during the last scan
   end_halted();
   stop_motion_after_trouble(job);
   queues->to_store.close();
@@ -347,6 +353,7 @@ void Engine::Impl::plan_all(JobContext& job) {
       give_up(red_map.error());
       continue;
     }
+    bool ends = red_map->conclusive;
     if (drives && item->device_waits) {
       const bool fresh = item->scan && !item->resumed;
       NextStep step = fresh ? step_after(item->scan->id, item->poses, *red_map, job) : step_to(*red_map);
@@ -358,9 +365,12 @@ void Engine::Impl::plan_all(JobContext& job) {
     } else if (drives && options.paced) {
       const std::scoped_lock lock(mutex);
       changed_step = as_before ? as_before : step_to(*red_map);
+      ends = ends && !scanning;
+    } else if (!drives && options.paced && !source->capabilities().finite) {
+      ends = end_conclusive(*red_map, *item);
     }
     item->thought.reset();
-    emit(RedMapChanged{std::move(*red_map), planning.last_gain()});
+    emit(RedMapChanged{std::move(*red_map), planning.last_gain(), ends});
     // Last: the red map waits for no mesh, and the next scan is under way meanwhile.
     if (const Status stitched = planning.stitch(job); !stitched) {
       give_up(stitched.error());

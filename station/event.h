@@ -62,6 +62,7 @@ struct OperatorObeyed {
 struct RedMapChanged {
   RedMap red_map;
   std::optional<ViewGain> gain;  ///< of the scan that changed it
+  bool ends_run = false;         ///< no scan is under way, and none is taken any more
 };
 /// The rig is about to be moved, or the operator is asked for a turn.
 struct NextPlacement {

@@ -29,7 +29,7 @@ void LiveSession::watch_camera(bool on) {
       watch_->stop();
     } else if (on && !watch_ && !busy_ && !options_.device.empty()) {
       watch_ = std::make_shared<CameraWatch>(
-          options_.device, settings_, [this](const Event& event) { hear(event); },
+          options_.device, [this] { return known_settings(); }, [this](const Event& event) { hear(event); },
           [this](const std::string& key, const std::string& word) { keep_setting(key, word); });
     }
   }
@@ -45,20 +45,44 @@ void LiveSession::light_camera(bool on) {
 void LiveSession::change_setting(const std::string& key, const std::string& word) {
   const std::scoped_lock lock(mutex_);
   state_.notice.clear();  // why another word was refused
-  if (engine_) {
-    engine_->post(ChangeSetting{key, word});
-  } else if (watch_) {
-    watch_->change({key, word});
+  if (engine_ && engine_->post(ChangeSetting{key, word})) {
+    return;
+  }
+  if (engine_ || !watch_ || !watch_->change({key, word})) {
+    state_.notice = kNotSet;
   }
 }
 
-void LiveSession::keep_setting(const std::string& key, const std::string& word) {
-  SettingWords all;
+SettingWords LiveSession::known_settings() {
   std::string device;
   {
     const std::scoped_lock lock(mutex_);
-    put_word(settings_, key, word);
-    all = settings_;
+    if (settings_) {
+      return *settings_;
+    }
+    device = options_.device;
+  }
+  SettingWords kept;
+  if (SessionStore::is_session(options_.session)) {
+    const Result<SessionStore> store = SessionStore::open(options_.session, SessionStore::Access::kReadOnly);
+    Result<SettingWords> read = store ? kept_settings(*store, device) : std::unexpected(store.error());
+    end(read ? Status() : std::unexpected(read.error()));
+    kept = read ? std::move(*read) : SettingWords();
+  }
+  const std::scoped_lock lock(mutex_);
+  if (device == options_.device && !settings_) {
+    settings_ = kept;
+  }
+  return kept;
+}
+
+void LiveSession::keep_setting(const std::string& key, const std::string& word) {
+  SettingWords all = known_settings();
+  std::string device;
+  {
+    const std::scoped_lock lock(mutex_);
+    put_word(all, key, word);
+    settings_ = all;
     device = options_.device;
   }
   // Without a session it is put, and kept, by the first run.

@@ -66,7 +66,7 @@ void LiveSession::set_device(std::string uri) {
   {
     const std::scoped_lock lock(mutex_);
     if (options_.device != uri) {
-      settings_.clear();
+      settings_.reset();  // those of this one are read where they are wanted
       state_.panel.reset();
       state_.error.reset();  // the other scanner's
     }
@@ -255,6 +255,7 @@ void LiveSession::describe(const TabletRecord& record) {
     }
     state_.record = record;
     if (engine_ && engine_->post(DescribeTablet{record})) {
+      record_told_ = record;
       return;
     }
     if (busy_) {  // no engine is wanted for it: that would open the device
@@ -328,7 +329,7 @@ void LiveSession::run_engine(std::vector<OperatorCommand> first, bool first_scan
     options.device = uri = options_.device;
     options.session = options_.session;
     options.pins = options_.pins;
-    options.settings = settings_;
+    options.settings = settings_.value_or(SettingWords());  // the engine reads what is kept itself
     options.automatic = true;
     options.paced = true;
     options.yields = true;
@@ -361,6 +362,9 @@ void LiveSession::run_engine(std::vector<OperatorCommand> first, bool first_scan
     }
     engine_.reset();
     state_.next.reset();
+    // A run that has failed may not have come to it.
+    const std::optional<TabletRecord> told = std::exchange(record_told_, std::nullopt);
+    record_later_ = record_later_ || result ? record_later_ : told;
     if (result) {
       follow(result->poses);
       state_.red_map = std::make_shared<const RedMap>(result->red_map);

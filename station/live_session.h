@@ -111,6 +111,7 @@ class LiveSession {
   void show_model(std::shared_ptr<const Mesh> mesh, std::shared_ptr<const ColouredPoints> red,
                   const RigidTransform& tablet_from_model);
   void look_after_rig();
+  [[nodiscard]] SettingWords known_settings();
   void keep_setting(const std::string& key, const std::string& word);
   void end(const Status& status);  ///< of a job
   void changed() const;
@@ -132,7 +133,8 @@ class LiveSession {
   bool looks_ = false;                        ///< somebody, through the camera
   bool halted_ = false;                       ///< until they look no more: looking lights a rig's laser
   std::optional<TabletRecord> record_later_;  ///< likewise
-  SettingWords settings_;                     ///< of the device, that were changed while no run had it
+  std::optional<TabletRecord> record_told_;   ///< the last that the run under way was told of
+  std::optional<SettingWords> settings_;      ///< of the device, kept and changed; nothing: not read yet
   std::shared_ptr<const CameraView> camera_;
   std::shared_ptr<CameraWatch> watch_;
   std::atomic<bool> busy_ = false;

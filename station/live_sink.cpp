@@ -15,7 +15,8 @@ namespace {
 constexpr double kShownSamples = 250000;
 
 std::string remark_line(const LiveScan& scan) {
-  return "scan " + std::to_string(scan.id) + " (" + scan.file + "): " + scan.remark;
+  const std::string name = scan.file.empty() ? std::string() : " (" + scan.file + ")";
+  return "scan " + std::to_string(scan.id) + name + ": " + scan.remark;
 }
 
 }  // namespace
@@ -193,7 +194,7 @@ void LiveSession::hear(const Event& event) {
     } else if (const auto* red_map = std::get_if<RedMapChanged>(&event)) {
       state_.red_map = std::make_shared<const RedMap>(red_map->red_map);
       state_.verdict_kept = false;  // until the run has ended well
-      if (red_map->red_map.conclusive) {
+      if (red_map->ends_run) {
         state_.phase = LivePhase::kFinishing;
       }
     } else if (const auto* next = std::get_if<NextPlacement>(&event)) {

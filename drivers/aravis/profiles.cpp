@@ -39,6 +39,18 @@ class Scan {
     return frame.camera_restarted && frame.encoder && camera_.options().encoder_mm != 0;
   }
 
+  /// True where so much is lost before this frame, or its number is so far off, that the scan would be over
+  /// with less than half of it.
+  [[nodiscard]] bool jumps_to_the_end(const Taken& frame) const {
+    const auto rows = static_cast<std::uint64_t>(camera_.options().rows);
+    const auto next = static_cast<std::uint64_t>(next_row_);
+    return 2 * next < rows && frame.lost * meaning_.height >= rows - next;
+  }
+  /// Without a row more.
+  void lose_the_rest() {
+    end_.profiles_dropped += static_cast<std::uint64_t>(camera_.options().rows - next_row_);
+  }
+
   /// The rows of a block, as far as the scan goes. False when the sink has had enough.
   bool block(const Taken& frame) {
     const std::int64_t height = meaning_.height;
@@ -137,6 +149,14 @@ Status stream_rows(Camera& camera, Scan& scan, const std::atomic<bool>& stopped)
       return fail(ErrorKind::kDevice,
                   "the camera started anew in mid-scan, and its encoder counts from elsewhere", camera.id(),
                   "see to its power supply, then scan again");
+    }
+    if (scan.jumps_to_the_end(**frame)) {
+      camera.give_back((*frame)->lease);
+      scan.lose_the_rest();
+      return fail(ErrorKind::kDevice,
+                  "the camera lost " + std::to_string((*frame)->lost) +
+                      " frames in a row, and most of the scan with them",
+                  camera.id(), "see to its cable and its network, then scan again");
     }
     const bool goes_on = scan.block(**frame);
     camera.give_back((*frame)->lease);

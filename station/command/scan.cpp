@@ -61,7 +61,9 @@ class Narrator {
       log_info(fmt::format("scan {} stored: {} samples{}{}", stored->id, stored->samples,
                            stored->file.empty() ? "" : " of ", stored->file));
       if (!stored->remark.empty()) {
-        log_warning(stored->file + ": " + stored->remark);
+        log_warning(fmt::format("{}: {}",
+                                stored->file.empty() ? fmt::format("scan {}", stored->id) : stored->file,
+                                stored->remark));
       }
     } else if (const auto* placed = std::get_if<ScanPlaced>(&event)) {
       const ScanPose& pose = placed->pose;

@@ -133,5 +133,46 @@ TEST(PlacedProfiles, RowsWhosePlaceIsNotKnownAreLostAndCounted) {
   }
 }
 
+/// Rows until it has enough, or `most`; each of the time that `time_of` tells.
+template <class TimeOf>
+int rows_taken(PlacedProfiles& placed, int most, const TimeOf& time_of) {
+  const std::vector<float> zero{0};
+  Profile profile;
+  profile.x = profile.y = profile.z = zero;
+  for (int row = 0; row < most; ++row) {
+    profile.row = row;
+    profile.timestamp_ns = time_of(row);
+    if (!placed.profile(profile)) {
+      return row;
+    }
+  }
+  return most;
+}
+
+/// Else the laser would be lit, and rows be gathered, for as long as the camera sends any.
+TEST(PlacedProfiles, RowsWithoutATimeOfTheirOwnDoNotGoOnForEver) {
+  RigMotion motion;
+  motion.direction = {0, 1, 0};
+  ScanInfo info;
+  info.cols = 1;
+  for (const bool has_time : {false, true}) {
+    PositionTrack track;  // the stage is still under way
+    test::CollectGrid sink;
+    PlacedProfiles placed(sink, track, {motion, -60, kStep, 121, "test"});
+    EXPECT_TRUE(placed.begin(info));
+    const int taken = rows_taken(placed, 10000, [&](int) { return has_time ? kMs : 0; });
+    EXPECT_EQ(placed.timeless(), !has_time);
+    EXPECT_LT(taken, has_time ? 1000 : 1);
+    EXPECT_TRUE(placed.single_block());
+  }
+  // The stage has arrived, and this block began behind that.
+  PositionTrack track;
+  ask(track, 0, 0, 0);
+  test::CollectGrid sink;
+  PlacedProfiles placed(sink, track, {motion, -60, kStep, 121, "test"});
+  EXPECT_TRUE(placed.begin(info));
+  EXPECT_EQ(rows_taken(placed, 10000, [](int) { return 3100 * kMs; }), 0);
+}
+
 }  // namespace
 }  // namespace dubsar

@@ -82,6 +82,10 @@ TEST_F(RangeSourceTest, OddProfilesAreMadeGoodAndCounted) {
   EXPECT_EQ(record.faults.rows_lost, 1U);
   EXPECT_EQ(record.faults.rows_repeated, 1U);
   EXPECT_EQ(record.tally.profiles_dropped, 1U);
+  EXPECT_EQ(losses_of(record),
+            "not all of it came as it was measured: rows lost: 1, rows that came twice: 1, rows of another "
+            "length: 1, samples that are no places: 3");
+  EXPECT_EQ(losses_of({}), "");
 }
 
 TEST(GridBuilder, AGapThatNoMemoryHoldsIsANumberGoneWrong) {

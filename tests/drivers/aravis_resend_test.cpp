@@ -107,6 +107,20 @@ struct Interrupted : Rows {
   std::vector<std::int64_t> encoders;
 };
 
+/// A number that went wrong, or a network that was away: a few rows are no scan.
+TEST_F(Resending, AJumpToTheEndOfTheScanIsAnError) {
+  Device device = open_with({{"rows", "4000"}}).value();
+  Interrupted rows(*peer_, "skip 1000");
+  const auto outcome = device.scan(rows);
+  ASSERT_FALSE(outcome);
+  EXPECT_EQ(outcome.error().kind, ErrorKind::kDevice);
+  EXPECT_THAT(outcome.error().line(), testing::HasSubstr("frames in a row, and most of the scan with them"));
+  EXPECT_GE(rows.rows.size(), 400U);
+  EXPECT_LT(rows.rows.size(), 2000U);
+  ASSERT_TRUE(rows.tally);
+  EXPECT_EQ(rows.rows.size() + rows.tally->profiles_dropped, 4000U);
+}
+
 /// A heartbeat was missed, by the network or by this machine: the camera is there, and obeys nobody.
 TEST_F(Resending, ControlThatIsLostInMidScanIsTakenAgainAndTheRowsInBetweenAreCounted) {
   Device device = open_with({{"rows", "24000"}}).value();

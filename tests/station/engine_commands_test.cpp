@@ -14,6 +14,7 @@
 #include "formats/pins_json.h"
 #include "station/engine.h"
 #include "station/session_pins.h"
+#include "station/tablet_record.h"
 #include "tests/station/support/bumpy_scans.h"
 #include "tests/station/support/two_fold_scans.h"
 #include "tests/support/temporary_folder.h"
@@ -326,10 +327,42 @@ TEST(EngineCommands, ScansThatAllLieTooFarAwayEndNoRun) {
   EXPECT_FALSE(result->red_map.conclusive);
 }
 
-TEST(EngineCommands, NothingIsTakenBeforeItRuns) {
+// The scanner is being opened for a scan, and the operator takes back the one before: not the next.
+TEST(EngineCommands, WhatIsSaidWhileTheDeviceIsOpenedIsDoneBeforeItScans) {
   const test::TemporaryFolder folder;
-  Engine engine({"replay:" + folder.path().string(), folder.path() / "session", false, 0, std::nullopt}, {});
-  EXPECT_FALSE(engine.post(LockScan{0}));
+  const auto scans = test::write_bumpy_scans(folder.path() / "scans", 4);
+  const auto session = folder.path() / "session";
+  {
+    SessionStore store = SessionStore::open_or_create(session).value();
+    ASSERT_TRUE(store.add_grid(test::bumpy_scan(0)));
+    ASSERT_TRUE(store.add_grid(test::bumpy_scan(1)));
+  }
+  std::vector<std::string> said;
+  std::mutex mutex;
+  Engine engine({"replay:" + scans.string(), session, false, 0, std::nullopt}, [&](const Event& event) {
+    const std::scoped_lock lock(mutex);
+    if (const auto* obeyed = std::get_if<OperatorObeyed>(&event)) {
+      said.push_back(obeyed->what);
+    } else if (const auto* placed = std::get_if<ScanPlaced>(&event); placed && placed->pose.id == 2) {
+      said.emplace_back("a new scan");
+    }
+  });
+  ASSERT_TRUE(engine.post(DropScan{-1, "undone by the operator"}));
+  TabletRecord record;
+  record.museum_number = "VAT 1";
+  ASSERT_TRUE(engine.post(DescribeTablet{record}));
+  JobContext job;
+  const Result<EngineResult> result = engine.run(job);
+  ASSERT_TRUE(result.has_value()) << result.error().line();
+  EXPECT_THAT(said, ElementsAre("scan 1 is taken out", "a new scan"));
+  EXPECT_FALSE(engine.post(LockScan{0})) << "it has ended";
+  const Result<SessionStore> store = SessionStore::open(session, SessionStore::Access::kReadOnly);
+  ASSERT_TRUE(store.has_value());
+  EXPECT_EQ(tablet_record_of(*store).museum_number, "VAT 1");
+  const auto stored = store->scans();
+  for (const StoredScan& scan : *stored) {
+    EXPECT_EQ(scan.dropped, scan.id == 1) << scan.id;
+  }
 }
 
 }  // namespace

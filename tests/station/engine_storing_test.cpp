@@ -6,12 +6,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <functional>
 #include <mutex>
 
 #include "acquisition/session_store.h"
+#include "build_paths.h"
 #include "core/grid_rows.h"
 #include "formats/grid_file.h"
 #include "station/engine.h"
@@ -180,6 +182,22 @@ TEST(EngineStoring, AScanThatIsLostIsTakenFromItsFileAgain) {
   ASSERT_EQ(store.scans()->size(), 4U) << "what the operator took out stays out";
   EXPECT_EQ(store.scans()->back().source, test::scan_name(1));
   EXPECT_EQ(store.load_grid(3).value().z, test::bumpy_scan(1).z);
+}
+
+TEST(EngineStoring, WhatADeviceLostOfAScanIsSaidAndKept) {
+  const test::TemporaryFolder folder;
+  ::setenv("DUBSAR_DRIVER_PATH", DUBSAR_BINARY_DIR "/lib/dubsar/test_drivers/good", 1);
+  std::vector<std::string> remarks;
+  Engine engine({"odd:1?mode=ragged", folder.path() / "s", false, 1, std::nullopt}, [&](const Event& event) {
+    if (const auto* stored = std::get_if<ScanStored>(&event)) {
+      remarks.push_back(stored->remark);
+    }
+  });
+  JobContext job;
+  [[maybe_unused]] const auto result = engine.run(job);  // too few samples for a mesh
+  EXPECT_THAT(remarks, ElementsAre(HasSubstr("rows lost: 1, rows that came twice: 1")));
+  const SessionStore store = SessionStore::open(folder.path() / "s", SessionStore::Access::kReadOnly).value();
+  EXPECT_THAT(store.scans()->at(0).remark, HasSubstr("samples that are no places: 3"));
 }
 
 }  // namespace

@@ -365,5 +365,30 @@ TEST(Statement, NothingIsTakenOutWhileAScanComesIn) {
   EXPECT_FALSE(statement_of(state, true, Language::kEnglish).may_undo);
 }
 
+/// What *Undo* asks for is what was seen, whatever has come since.
+TEST(Statement, UndoIsOfTheNewestThatStands) {
+  LiveState state = with_scan(PoseStatus::kRegistered);
+  state.scans.push_back(state.scans.back());
+  state.scans.back().id = 5;
+  ASSERT_TRUE(newest_standing(state));
+  EXPECT_EQ(newest_standing(state)->id, 5);
+  state.scans.back().dropped = true;
+  EXPECT_EQ(newest_standing(state)->id, 4);
+  state.scans.front().dropped = true;
+  EXPECT_FALSE(newest_standing(state));
+}
+
+TEST(Statement, TheScanThatGivesTheFrameHasNoPlaceInQuestion) {
+  LiveState state = with_scan(PoseStatus::kRegistered);
+  LiveScan& scan = state.scans.back();
+  scan.pose->sigma_mm = 0.0042;
+  EXPECT_THAT(place_words(scan, Language::kEnglish), HasSubstr("4.2"));
+  scan.pose->sigma_mm = 0;
+  EXPECT_EQ(place_words(scan, Language::kEnglish), "");
+  scan.pose->sigma_mm = 1;
+  scan.pose->status = PoseStatus::kUnsure;
+  EXPECT_EQ(place_words(scan, Language::kEnglish), "");
+}
+
 }  // namespace
 }  // namespace dubsar::ui

@@ -192,7 +192,9 @@ std::vector<ShownPin> OperatorScreen::pins_on_model() const {
 }
 
 void OperatorScreen::undo() {
-  session_.ask(DropScan{-1, "undone by the operator"});
+  if (const LiveScan* last = newest_standing(state_)) {  // the one that they saw when they pressed the key
+    session_.ask(DropScan{last->id, "undone by the operator"});
+  }
 }
 
 void OperatorScreen::open_signing(const UiContext& ui) {

@@ -156,8 +156,8 @@ void OperatorScreen::draw_scan_menu(UiContext& ui, const LiveScan& scan) {
   ImGui::TextUnformatted(fmt::format("{}  {}", scan.id, scan.file).c_str());
   ImGui::PushFont(ui.fonts.small);
   coloured_text(ui.colours.faint, filled(ui.text(Text::kSamples), scan.samples).c_str());
-  if (scan.pose && scan.pose->status == PoseStatus::kRegistered) {
-    coloured_text(ui.colours.faint, filled(ui.text(Text::kUncertainty), 1000 * scan.pose->sigma_mm).c_str());
+  if (const std::string place = place_words(scan, ui.preferences.language); !place.empty()) {
+    coloured_text(ui.colours.faint, place.c_str());
   }
   if (state_.pins && state_.pins->tips.contains(scan.id)) {
     const std::size_t labelled = state_.pins->tips.at(scan.id).size();

@@ -22,12 +22,6 @@ std::string sentence(const std::string& english, Language language) {
   return fmt::format("{}.", capitalised(translated(english, language)));
 }
 
-const LiveScan* newest(const LiveState& state) {
-  const auto last = std::ranges::find_if(state.scans.rbegin(), state.scans.rend(),
-                                         [](const LiveScan& scan) { return !scan.dropped; });
-  return last == state.scans.rend() ? nullptr : &*last;
-}
-
 void add_sentence(std::string& to, const std::string& sentence) {
   to += (to.empty() ? "" : " ") + sentence;
 }
@@ -84,7 +78,7 @@ std::string what_is_next(const NextView& next, Language language) {
 
 /// The last scan is not taken up: it was set aside, or it lies nowhere for certain. False where it does.
 bool say_not_taken_up(Statement& out, const LiveState& state, Language language) {
-  const LiveScan* last = newest(state);
+  const LiveScan* last = newest_standing(state);
   if (!state.scans.empty() && state.scans.back().set_aside) {
     const LiveScan& aside = state.scans.back();
     out.headline = filled(text_of(Text::kSetAsideScan, language), aside.id);
@@ -117,7 +111,7 @@ void say_waiting(Statement& out, const LiveState& state, Wording wording) {
   if (state.last_not_taken_up && say_not_taken_up(out, state, language)) {
     return;
   }
-  const LiveScan* last = newest(state);
+  const LiveScan* last = newest_standing(state);
   if (state.next) {
     if (state.next->placement && !is_turned_by_hand(*state.next)) {
       out.headline = text_of(Text::kScanAsItLies, language);
@@ -147,7 +141,7 @@ void say_waiting(Statement& out, const LiveState& state, Wording wording) {
 
 void say_still(Statement& out, const LiveState& state, bool has_device, Wording wording) {
   const Language language = wording.language;
-  const bool any = newest(state) != nullptr;
+  const bool any = newest_standing(state) != nullptr;
   const std::string broken_off = state.broken_off_rows > 0
                                      ? filled(text_of(Text::kBrokenOff, language), state.broken_off_rows)
                                      : std::string();
@@ -218,12 +212,23 @@ std::optional<int> copy_of(const LiveState& state, const LiveScan& scan) {
   return counts && state.red_map ? copied_from(state.red_map->copies, scan.id) : std::nullopt;
 }
 
+const LiveScan* newest_standing(const LiveState& state) {
+  const auto last = std::ranges::find_if(state.scans.rbegin(), state.scans.rend(),
+                                         [](const LiveScan& scan) { return !scan.dropped; });
+  return last == state.scans.rend() ? nullptr : &*last;
+}
+
 std::string scan_warning(const LiveScan& scan, Language language) {
   if (scan.dropped || !scan.pose || scan.pose->status != PoseStatus::kRegistered ||
       scan.pose->warning.empty()) {
     return {};
   }
   return filled(text_of(Text::kScanSays, language), scan.id, translated(scan.pose->warning, language));
+}
+
+std::string place_words(const LiveScan& scan, Language language) {
+  const bool is_known = scan.pose && scan.pose->status == PoseStatus::kRegistered && scan.pose->sigma_mm > 0;
+  return is_known ? filled(text_of(Text::kUncertainty, language), 1000 * scan.pose->sigma_mm) : std::string();
 }
 
 std::string area_words(double mm2, Language language) {
@@ -250,7 +255,7 @@ Statement statement_of(const LiveState& state, bool has_device, Wording wording)
   const Language language = wording.language;
   Statement out;
   // Nor while a scan comes in: the key would take the one before it. What is signed goes by a click only.
-  out.may_undo = newest(state) != nullptr && state.phase != LivePhase::kReading &&
+  out.may_undo = newest_standing(state) != nullptr && state.phase != LivePhase::kReading &&
                  state.phase != LivePhase::kScanning && state.phase != LivePhase::kSigning &&
                  state.phase != LivePhase::kPacking && has_device &&
                  !(state.phase == LivePhase::kStill && state.signed_off);

@@ -36,8 +36,15 @@ struct Statement {
 /// not judged yet.
 [[nodiscard]] std::optional<int> copy_of(const LiveState& state, const LiveScan& scan);
 
+/// The scan that *Undo* takes out; null where none stands.
+[[nodiscard]] const LiveScan* newest_standing(const LiveState& state);
+
 /// What is wrong with a scan although it is in the model, as a sentence; empty where nothing is.
 [[nodiscard]] std::string scan_warning(const LiveScan& scan, Language language);
+
+/// How well it is known where the scan lies; empty where that is not in question: it is not registered, or it
+/// gives the frame itself.
+[[nodiscard]] std::string place_words(const LiveScan& scan, Language language);
 
 /// "0.5"; "< 0.1" where rounding would leave nothing of it.
 [[nodiscard]] std::string area_words(double mm2, Language language);

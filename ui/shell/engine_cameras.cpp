@@ -59,6 +59,16 @@ constexpr EnginePhrase kCameras[] = {
     {"the format ", "das Format "},
     {" pixels", " Pixel"},
     {"the camera sends nothing that can be used", "die Kamera sendet nichts Brauchbares"},
+    {"this is not set: nothing has the scanner that could take it; set it again once it scans or shows its "
+     "camera",
+     "das ist nicht gesetzt: nichts hat den Scanner, das es annähme; noch einmal setzen, sobald er scannt "
+     "oder "
+     "seine Kamera zeigt"},
+    {"the camera lost ", "die Kamera verlor "},
+    {" frames in a row, and most of the scan with them",
+     " Bilder hintereinander und mit ihnen das meiste vom Scan"},
+    {"see to its cable and its network, then scan again",
+     "nach ihrem Kabel und ihrem Netz sehen, dann noch einmal scannen"},
     {"the camera sends no profiles", "die Kamera sendet keine Profile"},
     {"see that its trigger or encoder runs, or give it more time with wait=",
      "nachsehen, ob ihr Auslöser oder Geber läuft, oder ihr mit wait= mehr Zeit geben"},

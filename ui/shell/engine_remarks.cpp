@@ -43,6 +43,12 @@ constexpr EnginePhrase kRemarks[] = {
      ", und kein Umriss entscheidet es: gelesen ist er entlang "},
     {"; write one of them in its header: ", "; eins davon in seinen Kopf schreiben: "},
     {" in its header", " in seinen Kopf"},
+    // what its device lost of it
+    {"not all of it came as it was measured: ", "nicht alles kam so an, wie es gemessen wurde: "},
+    {"rows lost: ", "verlorene Zeilen: "},
+    {"rows that came twice: ", "doppelte Zeilen: "},
+    {"rows of another length: ", "Zeilen anderer Länge: "},
+    {"samples that are no places: ", "Messpunkte ohne Ort: "},
     // what its numbers are
     {"by its numbers it is about ", "nach seinen Zahlen ist er ungefähr "},
     {"by its numbers it is ", "nach seinen Zahlen ist er "},

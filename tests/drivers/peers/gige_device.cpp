@@ -155,7 +155,7 @@ void GigeDevice::serve_stream() {
       std::this_thread::sleep_for(1ms);
       continue;
     }
-    const auto wanted = static_cast<std::uint16_t>(id == 65535 ? 1 : id + 1);
+    const auto wanted = static_cast<std::uint16_t>(1 + (id + skips.exchange(0)) % 65535);
     std::optional<Picture> picture = next(wanted);
     if (!picture) {
       continue;
@@ -378,6 +378,9 @@ int serve_gige(GigeDevice& device) {
     }
     if (line == "restart") {
       device.restart();
+    }
+    if (line == "skip 1000") {
+      device.skips = 1000;
     }
     if (line == "quiet") {
       device.quiet = true;

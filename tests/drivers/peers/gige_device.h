@@ -44,6 +44,7 @@ class GigeDevice {
   void restart();
 
   std::atomic<bool> quit = false, quiet = false;
+  std::atomic<int> skips = 0;                     ///< so many numbers, before the next frame
   std::atomic<bool> dies_when_taken = false;      ///< the next program that takes control has it for a moment
   std::atomic<std::uint64_t> fell_silent_ns = 0;  ///< of a camera that died so
   /// It obeys whoever has the address of the one in control, as some cameras do, and takes its time to end a
