@@ -284,8 +284,8 @@ TEST(EngineCommands, AScanThatLiesTooFarAwayIsFailedAndTheOthersGoOn) {
     }
     RigidTransform far = test::bumpy_pose(1);
     far.translation_mm.x() += 1e7;
-    ASSERT_TRUE(record_lock(store, 0, test::bumpy_pose(0)));
-    ASSERT_TRUE(record_lock(store, 1, far));
+    ASSERT_TRUE(record_lock(store, 0, {test::bumpy_pose(0), 1}));
+    ASSERT_TRUE(record_lock(store, 1, {far, 1}));
   }
   RunningEngine engine(scans, session, 1e6);
   const Result<EngineResult>& result = engine.join();
