@@ -141,15 +141,15 @@ std::string losses_of(const ScanRecord& record) {
   std::string out;
   const auto count = [&](const char* what, std::uint64_t n) {
     if (n > 0) {
-      out += (out.empty() ? "not all of it came as it was measured: " : ", ") + std::string(what) + ": " +
+      out += (out.empty() ? "not all of it came as it was measured: " : ", ") + std::string(what) +
              std::to_string(n);
     }
   };
   // A driver that counts what it dropped leaves a gap in its rows as well, but behind the last.
-  count("rows lost", std::max(record.tally.profiles_dropped, record.faults.rows_lost));
-  count("rows that came twice", record.faults.rows_repeated);
-  count("rows of another length", record.faults.odd_lengths);
-  count("samples that are no places", record.faults.bad_samples);
+  count("rows lost: ", std::max(record.tally.profiles_dropped, record.faults.rows_lost));
+  count("rows that came twice: ", record.faults.rows_repeated);
+  count("rows of another length: ", record.faults.odd_lengths);
+  count("samples that are no places: ", record.faults.bad_samples);
   return out;
 }
 

@@ -62,7 +62,8 @@ void warn_of_coarse_scans(std::span<const PlacedScan> scans, Checklist& list) {
   constexpr double kMuchCoarser = 1.5;
   double finest_mm = std::numeric_limits<double>::infinity();
   for (const PlacedScan& scan : scans) {
-    finest_mm = std::min(finest_mm, spacing_of(*scan.grid));
+    const double spacing_mm = spacing_of(*scan.grid);
+    finest_mm = spacing_mm > 0 ? std::min(finest_mm, spacing_mm) : finest_mm;
   }
   for (const PlacedScan& scan : scans) {
     const double spacing_mm = spacing_of(*scan.grid);

@@ -72,9 +72,9 @@ void excuse_out_of_reach(std::span<const PlacedScan> scans, const SurfaceCover& 
 void excuse_tried(std::span<const PlacedScan> scans, const SurfaceCover& cover, double surface_mm2,
                   const ExcuseOptions& options, RedTargets& red);
 
-/// By trial, too: at least `tries` scans, from wherever, might have seen the place, and after these looks in
-/// vain no candidate is expected to sample it any more. best_left as in NextViews; entries below 0 were not
-/// judged and stay red.
+/// By trial, too: at least `tries` scans, from wherever, might have seen the place, with the chance of a full
+/// look together (looks_worth()), and after these looks in vain no candidate is expected to sample it any
+/// more. best_left as in NextViews; entries below 0 were not judged and stay red.
 void excuse_tried_out(std::span<const PlacedScan> scans, const SurfaceCover& cover,
                       std::span<const float> best_left, double surface_mm2, const ExcuseOptions& options,
                       RedTargets& red);

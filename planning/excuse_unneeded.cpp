@@ -329,7 +329,8 @@ void excuse_tried_out(std::span<const PlacedScan> scans, const SurfaceCover& cov
           " scans and more might have sampled it and did not, and no other pose promises to",
       [&](std::uint32_t i) {
         return best_left[i] >= 0 && static_cast<double>(best_left[i]) < options.least_chance &&
-               red.targets[i].tried.size() >= static_cast<std::size_t>(options.tries);
+               red.targets[i].tried.size() >= static_cast<std::size_t>(options.tries) &&
+               looks_worth(red.targets[i].tried) >= 1.0;
       },
       red);
 }

@@ -42,13 +42,25 @@ std::size_t full_looks_apart(std::span<const VainLook> looks) {
   return counted.size();
 }
 
+double looks_worth(std::span<const VainLook> looks) {
+  double sum = 0;
+  for (const VainLook& look : looks) {
+    sum += std::min(1.0, look.chance / kTriedChance);
+  }
+  return sum;
+}
+
 double novelty(std::span<const VainLook> looks, const Eigen::Vector3d& towards_scanner) {
   double left = 1.0;
-  for (const VainLook& look : looks) {
+  for (std::size_t k = 0; k < looks.size(); ++k) {
+    const VainLook& look = looks[k];
+    const bool stood_there_before =
+        std::ranges::any_of(looks.first(k), [&](const VainLook& other) { return !stand_apart(look, other); });
     const double apart =
         std::acos(std::clamp(look.towards_scanner.dot(towards_scanner), -1.0, 1.0)) / kSameSideRad;
-    const double full = kLeftAnySide * (1.0 - (1.0 - kLeftSameSide) * std::exp(-apart * apart));
-    left *= look.chance > kTriedChance ? full : std::pow(full, look.chance / kTriedChance);
+    const double full =
+        (stood_there_before ? 1.0 : kLeftAnySide) * (1.0 - (1.0 - kLeftSameSide) * std::exp(-apart * apart));
+    left *= std::pow(full, std::min(1.0, look.chance / kTriedChance));
   }
   return left;
 }

@@ -21,11 +21,15 @@ inline constexpr double kTriedChance = 0.5;
 /// How many of them ought to have seen it.
 [[nodiscard]] std::size_t full_looks(std::span<const VainLook> looks);
 
-/// How many of those saw it from elsewhere: neither laser nor camera stood within 15° of where they stood for
-/// one that is counted already. Who looks four times without moving has looked once.
+/// How many of those saw it from elsewhere: laser or camera stood at least 15° from where it stood for each
+/// that is counted already. Who looks four times without moving has looked once.
 [[nodiscard]] std::size_t full_looks_apart(std::span<const VainLook> looks);
 
-/// What the looks leave of the chance that a scan from that side samples the place.
+/// The looks in full ones: one of less chance counts as the part of kTriedChance that it has.
+[[nodiscard]] double looks_worth(std::span<const VainLook> looks);
+
+/// What the looks leave of the chance that a scan from that side samples the place: much less each from the
+/// same side, a little less each from elsewhere, but for those that stood where another had stood.
 [[nodiscard]] double novelty(std::span<const VainLook> looks, const Eigen::Vector3d& towards_scanner);
 
 }  // namespace dubsar

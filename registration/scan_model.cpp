@@ -95,8 +95,11 @@ void ScanModel::enter(int id, const RangeGrid* grid, const PinSet* pins) {
   }
   const ScanSize before{scale_mm_, first_spacing_mm_};
   if (impossible.empty() && size.scale_mm > kMuchLarger * before.scale_mm &&
-      size_is_possible(size, before, options_.most_unit_ratio) && perhaps_other_unit(size, before).empty()) {
+      (same_spacing(size, before) ||
+       (is_all_apart() && size_is_possible(size, before, options_.most_unit_ratio) &&
+        perhaps_other_unit(size, before).empty()))) {
     rescale(size.scale_mm);
+    first_spacing_mm_ = size.spacing_mm;
   }
   ScanSurfaceOptions surface = options_.surface;
   surface.scale_mm = scale_mm_;
@@ -135,6 +138,11 @@ void ScanModel::rescale(double scale_mm) {
       scan.left_out.clear();
     }
   }
+}
+
+bool ScanModel::is_all_apart() const {
+  return std::ranges::all_of(scans_,
+                             [&](const auto& item) { return members(item.second.group).size() <= 1; });
 }
 
 std::vector<int> ScanModel::members(int group) const {

@@ -109,6 +109,7 @@ class ScanModel {
   /// Makes the surfaces of all scans anew for another scale; what was searched before is searched again.
   void rescale(double scale_mm);
   [[nodiscard]] std::vector<int> members(int group) const;  ///< ascending ids
+  [[nodiscard]] bool is_all_apart() const;                  ///< no scan has joined another
   [[nodiscard]] int main_group() const;
   /// The largest first, which is the model; of equals the one whose scan came first, but for single scans
   /// that show much less than another.
@@ -172,6 +173,7 @@ class ScanModel {
   RegistrationOptions options_;
   double scale_mm_ = 0;
   double first_spacing_mm_ = 0;
+  bool is_unsettled_ = false;  ///< a relaxation was broken off: finalize() makes up for it
   int next_group_ = 0;
   std::map<int, Scan> scans_;
   std::map<std::pair<int, int>, Pair> pairs_;

@@ -125,6 +125,7 @@ Status ScanModel::relax_group(int group, const JobContext& job) {
 
 void ScanModel::settle_group(int group, const JobContext& job) {
   const Status relaxed = relax_group(group, job);
+  is_unsettled_ = is_unsettled_ || (!relaxed && relaxed.error().kind == ErrorKind::kCancelled);
   if (!relaxed && relaxed.error().kind != ErrorKind::kCancelled) {
     log_warning(relaxed.error().line() + "; the poses stay as the fits left them");
   }
@@ -191,13 +192,14 @@ Status ScanModel::finalize(JobContext& job) {
         }
       }
     }
-    if (moved.empty()) {
+    if (moved.empty() && !is_unsettled_) {
       break;
     }
     measure_pairs(moved);
     if (const Status relaxed = relax_group(group, job); !relaxed) {
       return relaxed;
     }
+    is_unsettled_ = false;
   }
   for (const int id : ids) {
     judge(id);

@@ -38,8 +38,11 @@ Status CameraStream::show() {
       return put;
     }
     lit_ = wanted_lit_;
-    frame =
-        fresh_frame(device_, [] { return false; });  // those that wait were exposed in the light of before
+    // Those that wait were exposed in the light of before.
+    frame = fresh_frame(device_, [this] { return stopped_ && stopped_(); });
+    if (!frame && frame.error().kind == ErrorKind::kCancelled) {
+      frame = std::nullopt;
+    }
   } else {
     frame = device_.next_frame(kFrameWait);
   }
@@ -127,7 +130,7 @@ void CameraWatch::watch(Device& device) {
     return;
   }
   sink_(DeviceTells{std::make_shared<const DevicePanel>(*panel)});
-  CameraStream stream(device, sink_);
+  CameraStream stream(device, sink_, [this] { return stopped_.load(); });
   while (!stopped_) {
     std::deque<ChangeSetting> wanted;
     {

@@ -55,7 +55,9 @@ class CameraWatch {
 /// A camera's stream while a person looks at it; ends it when it goes.
 class CameraStream {
  public:
-  CameraStream(Device& device, const EventSink& sink) : device_(device), sink_(sink) {}
+  /// Once stopped() is true (if it is given), show() waits for nothing any more.
+  CameraStream(Device& device, const EventSink& sink, std::function<bool()> stopped = {})
+      : device_(device), sink_(sink), stopped_(std::move(stopped)) {}
   ~CameraStream() { end(); }
   CameraStream(const CameraStream&) = delete;
   CameraStream& operator=(const CameraStream&) = delete;
@@ -72,6 +74,7 @@ class CameraStream {
  private:
   Device& device_;
   const EventSink& sink_;
+  std::function<bool()> stopped_;
   bool runs_ = false;
   bool wanted_lit_ = true;
   std::optional<bool> lit_;  ///< nothing: not of a rig

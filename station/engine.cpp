@@ -117,6 +117,7 @@ Result<bool> Engine::Impl::run_round(NextStep step, EngineResult& result, JobCon
 
 Result<EngineResult> Engine::Impl::run(JobContext& job) {
   if (const Status opened = open(job); !opened) {
+    tell_unheeded();
     return std::unexpected(opened.error());
   }
   settle_undoing();

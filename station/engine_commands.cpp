@@ -37,6 +37,18 @@ bool Engine::post(OperatorCommand command) {
   return true;
 }
 
+void Engine::Impl::tell_unheeded() {
+  const bool any = [&] {
+    const std::scoped_lock lock(mutex);
+    return std::ranges::any_of(commands, [](const OperatorCommand& command) {
+      return !std::holds_alternative<DescribeTablet>(command);  // that is kept all the same
+    });
+  }();
+  if (any) {
+    emit(Notice{"what was said meanwhile of scans was not heeded; say it again"});
+  }
+}
+
 void Engine::Impl::settle_undoing() {
   std::vector<int> standing;
   if (const auto stored = store->scans()) {
@@ -49,9 +61,9 @@ void Engine::Impl::settle_undoing() {
   const std::scoped_lock lock(mutex);
   for (OperatorCommand& command : commands) {
     if (auto* drop = std::get_if<DropScan>(&command)) {
-      drop->id = drop->id >= 0      ? drop->id
-                 : standing.empty() ? std::numeric_limits<int>::max()
-                                    : standing.back();
+      if (drop->id < 0 && !standing.empty()) {
+        drop->id = standing.back();
+      }
       std::erase(standing, drop->id);
     }
   }
@@ -273,7 +285,8 @@ void Engine::Impl::obey_commands(JobContext& job) {
     }
     hold_locks(job);
     std::vector<ScanPose> poses = named_poses();
-    const Status saved = save_followed_poses(*store, poses);
+    // What was broken off is not followed: signing and planning must see that.
+    const Status saved = job.cancelled() ? Status() : save_followed_poses(*store, poses);
     if (!saved && queues) {
       give_up(saved.error());  // after the rounds, settling saves them once more and says so
     }

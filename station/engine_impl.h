@@ -302,6 +302,8 @@ struct Engine::Impl {
   [[nodiscard]] std::optional<PinSet> known_pins() const;
   /// What is to be undone is of the scans that there are now, not of one that comes before it is obeyed.
   void settle_undoing();
+  /// Where the scanner did not open: of words that nobody heeds.
+  void tell_unheeded();
   bool close_commands();  ///< false when some came at the last moment: they are still to be obeyed
   Result<bool> run_round(NextStep step, EngineResult& result, JobContext& job);
   Result<EngineResult> run(JobContext& job);

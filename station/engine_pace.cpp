@@ -102,7 +102,8 @@ bool Engine::Impl::end_conclusive(const RedMap& red_map, const ScanToPlan& item)
     changed_step.emplace(std::nullopt);
   }
   pace.notify_all();
-  return ends && !scanning;
+  // What was said meanwhile may take the verdict back: then there is more to wait for.
+  return ends && !scanning && commands.empty() && thoughts == (item.thought ? 1 : 0);
 }
 
 void Engine::Impl::show_model(JobContext& job) {

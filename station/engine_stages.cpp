@@ -183,9 +183,9 @@ void Engine::Impl::acquire(NextStep step, JobContext& job) {
       }
     }
   }
-  change_settings();  // what was asked for during the last scan
   end_halted();
   stop_motion_after_trouble(job);
+  change_settings();  // what was asked for during the last scan
   queues->to_store.close();
 }
 

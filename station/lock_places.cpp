@@ -97,6 +97,7 @@ void tell_contradicted(std::vector<ScanPose>& poses, const std::map<int, std::st
     if (const auto told = contradicted.find(pose.id); told != contradicted.end()) {
       pose.status = pose.status == PoseStatus::kFailed ? PoseStatus::kFailed : PoseStatus::kUnsure;
       pose.reason = told->second;
+      pose.locked = true;  // as its lock still stands, and may be taken away
     }
   }
 }

@@ -165,7 +165,7 @@ Result<ScanLock> lock_here(const SessionStore& store, int id) {
   for (const auto& [other, locked] : log->word.locked) {
     // The stored poses are of its frame as long as they have it where it was locked.
     const ScanPose* there = registered(*poses, other);
-    if (other != id && locked.stood && there != nullptr &&
+    if (other != id && there != nullptr &&
         there->model_from_scanner.row_major() == locked.model_from_scanner.row_major()) {
       lock.frame = locked.frame;
     }

@@ -49,6 +49,8 @@ TEST(VainLook, LooksOfLittleChanceTakeLessOfAPlacesWorth) {
   EXPECT_LT(left({look_from(0, 0)}), left({look_from(0, 0, 0.2)}));
   EXPECT_LT(left({look_from(0, 0, 0.2)}), 0.8);
   EXPECT_GT(left({look_from(80, 0)}), 0.75) << "from elsewhere";
+  EXPECT_GT(left(std::vector<VainLook>(20, look_from(80, 0))), 0.75) << "twenty times from there";
+  EXPECT_LT(left(std::vector<VainLook>(3, look_from(5, 0))), 0.01) << "and from here";
 }
 
 double pit_of(const RedMapResult& result, RegionState state, Excuse excuse) {
@@ -71,7 +73,7 @@ TEST(VainLook, APitIsGivenUpOnceItWasLookedAtFromFourSides) {
     }
     return make_red_map(session.map.scans(), nullptr, &rig, {}, job).value();
   };
-  const RedMapResult unmoved = mapped({0, 0, 0, 0, 0});
+  const RedMapResult unmoved = mapped({0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0});
   EXPECT_GT(pit_of(unmoved, RegionState::kRed, Excuse::kNone), 10.0);
   EXPECT_EQ(pit_of(unmoved, RegionState::kExcused, Excuse::kUnreachable), 0.0);
   const RedMapResult moved = mapped({0, 20, -20, 40, -40});

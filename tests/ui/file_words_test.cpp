@@ -84,7 +84,8 @@ TEST(FileWords, NothingSaidOfASessionIsHalfGerman) {
        "acquisition/pose_json.cpp"},
       and_these({"scan stored", "dubsar verify --repair ", "dubsar sign-off 1\\n", "dubsar sign-off 2\\n",
                  "pose hint", "pose hint withdrawn", "scan locked", "scan unlocked", "signed ",
-                 "PRAGMA integrity_check(1)", "SELECT id, file, bytes, hash FROM scans ORDER BY id",
+                 "scan dropped", "scan restored", "PRAGMA integrity_check(1)",
+                 "SELECT id, file, bytes, hash FROM scans ORDER BY id",
                  "SELECT -1, path, bytes, hash FROM files ORDER BY path"}));
   EXPECT_GT(sentences, 70);
 }

@@ -179,6 +179,8 @@ constexpr EnginePhrase kPhrases[] = {
      " Nadeln von Scan zu Scan stehen lassen, wieder an ihren Platz gestellt"},
     {"a pin at the ", "eine Nadel am "},
     // what happened
+    {"what was said meanwhile of scans was not heeded; say it again",
+     "was inzwischen zu Scans gesagt wurde, blieb unbeachtet; noch einmal sagen"},
     {"what is said of the tablet is kept", "was zur Tafel gesagt ist, ist aufgehoben"},
     {" is taken out", " ist entfernt"},
     {" is put back", " ist zurückgeholt"},
@@ -257,6 +259,8 @@ constexpr EnginePhrase kPhrases[] = {
      "das Urteil: aufgehoben ist nicht vollständig, jetzt vollständig"},
     {"the verdict: stored conclusive, now not conclusive",
      "das Urteil: aufgehoben ist vollständig, jetzt nicht vollständig"},
+    {"the scans that are copies of others", "die Scans, die Kopien anderer sind"},
+    {" is left out: ", " ist weggelassen: "},
     {"the counts of samples", "die Zahlen der Messpunkte"},
     {"the scans: stored ", "die Scans: aufgehoben "},
     {"the places or sizes of the regions", "Orte oder Größen der Stellen"},
