@@ -296,7 +296,7 @@ TEST_F(Export, DoesNotReplaceAPackageThatHoldsMoreThanADamagedSession) {
   // Opened for writing it is put together from what is left: whole again, and poorer.
   fs::remove(session / "session.backup.sqlite");
   ASSERT_EQ(run_command({"session", "describe", session.string(), "--notes", "what is left"}).status, 0);
-  expect_kept("\"scan stored\"");
+  expect_kept("lost of its record: scan stored");
 }
 
 }  // namespace
