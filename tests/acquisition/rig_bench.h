@@ -53,6 +53,18 @@ struct RigBench {
   std::vector<double> lit_us, unlit_us;  ///< exposures of the frames, by the laser
 };
 
+/// A camera of 256 x 200 pixels that sees 6.25 mm of `scene`, calibrated on the first of January.
+inline void set_up_small(RigBench& bench, const sim::Scene& scene) {
+  sim::FrameRigOptions size;
+  size.width = 256;
+  size.height = 200;
+  size.field_mm = 6.25;
+  bench.truth = sim::frame_rig(size);
+  bench.truth.made_at = "2026-01-01T00:00:00Z";
+  bench.scene = &scene;
+  bench.optics.ambient_signal = 0.05;
+}
+
 inline RigBench& bench_of(dubsar_device* device) {
   return *reinterpret_cast<RigBench*>(device);
 }

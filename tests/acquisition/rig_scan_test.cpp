@@ -38,14 +38,7 @@ class Collect : public ProfileSink {
 class RigScan : public testing::Test {
  protected:
   RigScan() {
-    sim::FrameRigOptions size;
-    size.width = 256;
-    size.height = 200;
-    size.field_mm = 6.25;
-    bench.truth = sim::frame_rig(size);
-    bench.truth.made_at = "2026-01-01T00:00:00Z";
-    bench.scene = &scene.scene;
-    bench.optics.ambient_signal = 0.05;
+    test::set_up_small(bench, scene.scene);
     file.name = "bench rig";
     file.camera = "bench_camera:";
     file.stage = "bench_stage:";

@@ -48,14 +48,7 @@ const dubsar_driver& fixed_camera_driver() {
 class CameraStreamTest : public testing::Test {
  protected:
   CameraStreamTest() {
-    sim::FrameRigOptions size;
-    size.width = 256;
-    size.height = 200;
-    size.field_mm = 6.25;
-    bench_.truth = sim::frame_rig(size);
-    bench_.truth.made_at = "2026-01-01T00:00:00Z";
-    bench_.scene = &scene_.scene;
-    bench_.optics.ambient_signal = 0.05;
+    test::set_up_small(bench_, scene_.scene);
     bench_.settable = true;
   }
   Device camera() {

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <functional>
 #include <thread>
 
 #include "acquisition/session_store.h"
@@ -21,6 +22,27 @@ TabletRecord vat_1() {
   return record;
 }
 
+/// How a run ends while whose device is opened `say` was called: on the thread of the session itself, so
+/// surely then.
+LiveState state_after(const std::string& device, const std::filesystem::path& folder,
+                      const std::function<void(LiveSession&)>& say) {
+  LiveSession* watched = nullptr;
+  std::atomic<bool> said = false;
+  LiveSession session({device, folder, std::nullopt}, [&] {
+    if (!said && watched->state().phase == LivePhase::kOpening) {
+      said = true;
+      say(*watched);
+    }
+  });
+  watched = &session;
+  session.scan_now();
+  while (session.busy()) {
+    std::this_thread::yield();
+  }
+  EXPECT_TRUE(said);
+  return session.state();
+}
+
 TEST(LiveOpening, TheScanBeforeIsTakenOutAndNotTheNext) {
   const test::TemporaryFolder folder;
   const auto scans = test::write_bumpy_scans(folder.path() / "scans", 3);
@@ -29,22 +51,11 @@ TEST(LiveOpening, TheScanBeforeIsTakenOutAndNotTheNext) {
     ASSERT_TRUE(store.add_grid(test::bumpy_scan(0)));
     ASSERT_TRUE(store.add_grid(test::bumpy_scan(1)));
   }
-  // Said on the thread of the session itself: surely while it is opened.
-  LiveSession* watched = nullptr;
-  std::atomic<bool> said = false;
-  LiveSession session({"replay:" + scans.string(), folder.path() / "s", std::nullopt}, [&] {
-    if (!said && watched->state().phase == LivePhase::kOpening) {
-      said = true;
-      watched->ask(DropScan{-1, "undone by the operator"});
-      watched->describe(vat_1());
-    }
-  });
-  watched = &session;
-  session.scan_now();
-  while (session.busy()) {
-    std::this_thread::yield();
-  }
-  EXPECT_TRUE(said);
+  const LiveState after =
+      state_after("replay:" + scans.string(), folder.path() / "s", [](LiveSession& session) {
+        session.ask(DropScan{-1, "undone by the operator"});
+        session.describe(vat_1());
+      });
   const SessionStore store = SessionStore::open(folder.path() / "s", SessionStore::Access::kReadOnly).value();
   const std::vector<StoredScan> stored = store.scans().value();
   ASSERT_EQ(stored.size(), 5U);
@@ -52,26 +63,14 @@ TEST(LiveOpening, TheScanBeforeIsTakenOutAndNotTheNext) {
     EXPECT_EQ(scan.dropped, scan.id == 1) << scan.id;
   }
   EXPECT_EQ(tablet_record_of(store).museum_number, "VAT 1");
-  EXPECT_TRUE(session.state().checklist) << "one run was enough";
+  EXPECT_TRUE(after.checklist) << "one run was enough";
 }
 
 TEST(LiveOpening, WhatIsSaidOfTheTabletIsKeptAlsoWhereTheScannerCannotBeOpened) {
   const test::TemporaryFolder folder;
-  LiveSession* watched = nullptr;
-  std::atomic<bool> said = false;
-  LiveSession session({"sim:?size=nonsense", folder.path() / "s", std::nullopt}, [&] {
-    if (!said && watched->state().phase == LivePhase::kOpening) {
-      said = true;
-      watched->describe(vat_1());
-    }
-  });
-  watched = &session;
-  session.scan_now();
-  while (session.busy()) {
-    std::this_thread::yield();
-  }
-  EXPECT_TRUE(said);
-  EXPECT_TRUE(session.state().error);
+  EXPECT_TRUE(state_after("sim:?size=nonsense", folder.path() / "s", [](LiveSession& session) {
+                session.describe(vat_1());
+              }).error);
   const Result<SessionStore> store = SessionStore::open(folder.path() / "s", SessionStore::Access::kReadOnly);
   ASSERT_TRUE(store);
   EXPECT_EQ(tablet_record_of(*store).museum_number, "VAT 1");

@@ -112,8 +112,7 @@ TEST(Closing, SliversThatAnEdgeFlipHelpsAreFlipped) {
   EXPECT_EQ(remove_slivers(draft, 3), 0U);
 }
 
-/// Where its longest edge is open nothing stands beyond it.
-TEST(Closing, ASliverOnTheRimGoes) {
+Draft with_a_sliver_on_the_rim() {
   Draft draft;
   draft.mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0.5F, 0.02F, 0}, {0.5F, 0.9F, 0}};
   draft.mesh.normals.assign(4, {0, 0, 1});
@@ -123,6 +122,12 @@ TEST(Closing, ASliverOnTheRimGoes) {
   draft.patch_spacing_mm = {1.0F};
   draft.mesh.faces = {{0, 2, 3}, {2, 1, 3}, {0, 1, 2}};
   draft.first_face = {0, 2};
+  return draft;
+}
+
+/// Where its longest edge is open nothing stands beyond it.
+TEST(Closing, ASliverOnTheRimGoes) {
+  Draft draft = with_a_sliver_on_the_rim();
   EXPECT_EQ(remove_slivers(draft, 2), 1U);
   EXPECT_EQ(report_of(draft).faces, 2U);
   EXPECT_TRUE(report_of(draft).is_manifold());
@@ -226,15 +231,7 @@ TEST(Closing, NoSeamNorGapIsClosedNorSliverFlippedForACancelledJob) {
   Front other(again);
   EXPECT_GT(close_seams(other, {}), 0U);
 
-  Draft draft;
-  draft.mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0.5F, 0.02F, 0}, {0.5F, 0.9F, 0}};
-  draft.mesh.normals.assign(4, {0, 0, 1});
-  draft.mesh.sigma_mm.assign(4, 0.01F);
-  draft.near_rim.assign(4, 1);
-  draft.first_vertex = {0, 4};
-  draft.patch_spacing_mm = {1.0F};
-  draft.mesh.faces = {{0, 2, 3}, {2, 1, 3}, {0, 1, 2}};
-  draft.first_face = {0, 2};
+  Draft draft = with_a_sliver_on_the_rim();
   EXPECT_EQ(remove_slivers(draft, 2, job), 0U);
   EXPECT_EQ(draft.mesh.faces.size(), 3U);
 }

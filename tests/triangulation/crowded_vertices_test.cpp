@@ -7,13 +7,13 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <numbers>
 #include <numeric>
 
 #include "core/mesh.h"
 #include "core/random.h"
+#include "tests/triangulation/support/comparisons_of.h"
 #include "triangulation/face_cut.h"
 #include "triangulation/self_intersections.h"
 
@@ -178,19 +178,10 @@ TEST(CrowdedVertices, BooksAtOneVertex) {
   }
 }
 
-/// How often boxes are held against each other until it is known that no face cuts another.
-std::size_t work(const Mesh& mesh) {
-  std::atomic<std::size_t> comparisons{0};
-  EXPECT_TRUE(self_intersections(mesh.positions, mesh.faces, {}, {}, [&](std::size_t more) {
-                comparisons += more;
-              }).empty());
-  return comparisons;
-}
-
 TEST(CrowdedVertices, AreNoWorkOfTheirSquare) {
-  const std::size_t half = work(cone(2000));
+  const std::size_t half = test::comparisons_of(cone(2000));
   EXPECT_GT(half, 4000U);
-  EXPECT_LT(work(cone(4000)), 2.6 * static_cast<double>(half));
+  EXPECT_LT(test::comparisons_of(cone(4000)), 2.6 * static_cast<double>(half));
 }
 
 TEST(CrowdedVertices, NorAreCrowdedEdges) {
@@ -200,7 +191,7 @@ TEST(CrowdedVertices, NorAreCrowdedEdges) {
     add_vertex(mesh, {0, 0, 0});
     add_vertex(mesh, {1, 0, 0});
     add_book(mesh, 0, 1, pages, random);
-    return work(mesh);
+    return test::comparisons_of(mesh);
   };
   EXPECT_LE(book(4000), 2.6 * static_cast<double>(book(2000)) + 1000);
 }

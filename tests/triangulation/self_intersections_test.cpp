@@ -12,6 +12,7 @@
 #include "core/chunk_loop.h"
 #include "core/mesh.h"
 #include "core/random.h"
+#include "tests/triangulation/support/comparisons_of.h"
 #include "triangulation/face_cut.h"
 
 namespace dubsar {
@@ -21,15 +22,6 @@ using Pairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
 
 Pairs intersections(const Mesh& mesh) {
   return self_intersections(mesh.positions, mesh.faces);
-}
-
-/// How often boxes are held against each other to find out.
-std::size_t work(const Mesh& mesh) {
-  std::atomic<std::size_t> comparisons{0};
-  EXPECT_TRUE(self_intersections(mesh.positions, mesh.faces, {}, {}, [&](std::size_t more) {
-                comparisons += more;
-              }).empty());
-  return comparisons;
 }
 
 /// Each pair of faces, looked at.
@@ -200,18 +192,18 @@ TEST(SelfIntersections, OfFacesSmallerThanFloatsCanTellNoneIsMissed) {
 }
 
 TEST(SelfIntersections, IsWorkInStepWithTheFaces) {
-  const std::size_t of_small = work(sheet(100, 0));
+  const std::size_t of_small = test::comparisons_of(sheet(100, 0));
   EXPECT_GT(of_small, std::size_t{2} * 100 * 100);
-  EXPECT_LT(work(sheet(200, 0)), 5 * of_small);
+  EXPECT_LT(test::comparisons_of(sheet(200, 0)), 5 * of_small);
 }
 
 /// One vertex far off must not put all faces into a few cells.
 TEST(SelfIntersections, AFarVertexIsHardlyMoreWork) {
   Mesh mesh = sheet(100, 0);
-  const std::size_t without = work(mesh);
+  const std::size_t without = test::comparisons_of(mesh);
   for (const float far_mm : {1e5F, 1e7F, 1e9F, 1e38F}) {
     mesh.positions[50 * 101 + 50].z() = far_mm;
-    EXPECT_LT(work(mesh), 3 * without) << far_mm;  // in cells for the least
+    EXPECT_LT(test::comparisons_of(mesh), 3 * without) << far_mm;  // in cells for the least
   }
 }
 
@@ -229,28 +221,28 @@ Mesh two_sheets(int n, const Eigen::Vector3f& apart) {
 
 /// As far from each other, in sizes of their faces, as two finds in one file whose poses are those of a site.
 TEST(SelfIntersections, PartsFarApartAreNoMoreWork) {
-  const std::size_t near = work(two_sheets(100, {300, 0, 0}));
+  const std::size_t near = test::comparisons_of(two_sheets(100, {300, 0, 0}));
   for (const Eigen::Vector3f& apart :
        {Eigen::Vector3f(3e6F, 0, 0), Eigen::Vector3f(-8e6F, 8e6F, 8e6F), Eigen::Vector3f(0, 0, 1e30F)}) {
     Mesh mesh = two_sheets(100, apart);
-    EXPECT_LT(work(mesh), 1.2 * near) << apart.transpose();
+    EXPECT_LT(test::comparisons_of(mesh), 1.2 * near) << apart.transpose();
     // Of sizes that differ, too.
     add_face(mesh, {0, 0, -1}, apart + Eigen::Vector3f(0, 0, -1), {0, 1e7F, -1});
-    EXPECT_LT(work(mesh), 3 * near) << apart.transpose();
+    EXPECT_LT(test::comparisons_of(mesh), 3 * near) << apart.transpose();
   }
 }
 
 /// So many that the finest cells are made for them.
 TEST(SelfIntersections, TinyFacesMakeTheOthersNoMoreWork) {
   Mesh mesh = sheet(100, 0);
-  const std::size_t without = work(mesh);
+  const std::size_t without = test::comparisons_of(mesh);
   for (const float size_mm : {1e-9F, 1e-15F, 1e-37F}) {
     Mesh with = mesh;
     for (int k = 0; k < 200; ++k) {
       const Eigen::Vector3f at(0, 0, -1.0F - static_cast<float>(k));
       add_face(with, at, at + Eigen::Vector3f(size_mm, 0, 0), at + Eigen::Vector3f(0, size_mm, 0));
     }
-    EXPECT_LT(work(with), 3 * without) << size_mm;
+    EXPECT_LT(test::comparisons_of(with), 3 * without) << size_mm;
   }
 }
 
