@@ -6,7 +6,9 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
+#include "core/parallel.h"
 #include "planning/clusters.h"
 
 namespace dubsar {
@@ -32,22 +34,71 @@ Face side_at(const Eigen::Vector3d& position_mm, const Eigen::Vector3d& normal, 
   return surface.faces.of(nearest != nullptr ? nearest->normal : normal);
 }
 
+/// The side that a target faces: a patch of what nobody has seen knows it by itself.
+Face side_of(const RedTarget& t, const ModelSurface& surface) {
+  return t.unseen && !t.rim ? surface.faces.of(t.normal) : side_at(t.position_mm, t.normal, surface);
+}
+
+/// A large place that goes round edges of the tablet, in parts that face one side each: who scans goes by
+/// sides. A scrap of a side goes with the largest part.
+std::vector<std::vector<std::uint32_t>> parts_by_side(const RedTargets& red, std::vector<std::uint32_t> group,
+                                                      const ModelSurface& surface) {
+  constexpr double kLargeMm2 = 20.0;
+  constexpr double kLeastPartMm2 = 10.0;
+  constexpr double kLeastShare = 0.1;
+  double area_mm2 = 0;
+  for (const std::uint32_t i : group) {
+    area_mm2 += red.targets[i].area_mm2;
+  }
+  if (area_mm2 < kLargeMm2) {
+    return {std::move(group)};
+  }
+  std::vector<std::size_t> side(group.size());
+  parallel_for_each_index(
+      group.size(),
+      [&](std::size_t k) { side[k] = static_cast<std::size_t>(side_of(red.targets[group[k]], surface)); },
+      64);
+  std::array<double, kFaceCount> by_side{};
+  for (std::size_t k = 0; k < group.size(); ++k) {
+    by_side[side[k]] += red.targets[group[k]].area_mm2;
+  }
+  const auto largest =
+      static_cast<std::size_t>(std::max_element(by_side.begin(), by_side.end()) - by_side.begin());
+  std::array<std::vector<std::uint32_t>, kFaceCount> parts;
+  for (std::size_t k = 0; k < group.size(); ++k) {
+    const bool scrap = by_side[side[k]] < std::max(kLeastPartMm2, kLeastShare * area_mm2);
+    parts[scrap ? largest : side[k]].push_back(group[k]);
+  }
+  std::vector<std::vector<std::uint32_t>> out;
+  for (auto& part : parts) {
+    if (!part.empty()) {
+      out.push_back(std::move(part));
+    }
+  }
+  return out;
+}
+
 RedRegion region_of(const RedTargets& red, std::span<const std::uint32_t> group,
                     const ModelSurface& surface) {
   RedRegion region;
   Eigen::Vector3d center = Eigen::Vector3d::Zero();
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();
   std::array<double, kFaceCount> by_face{};
-  constexpr std::size_t kAsked = 16;  // of a large place these say as much
-  const std::size_t stride = (group.size() + kAsked - 1) / kAsked;
-  for (std::size_t k = 0; k < group.size(); ++k) {
-    const std::uint32_t i = group[k];
+  for (const std::uint32_t i : group) {
     const RedTarget& t = red.targets[i];
     region.area_mm2 += t.area_mm2;
     center += t.area_mm2 * t.position_mm;
     normal += t.area_mm2 * t.normal;
-    if (k % stride == 0) {
-      by_face[static_cast<std::size_t>(side_at(t.position_mm, t.normal, surface))] += t.area_mm2;
+  }
+  // Patches answer at once; of many samples these say as much.
+  constexpr std::size_t kAsked = 64;
+  const std::size_t stride = (group.size() + kAsked - 1) / kAsked;
+  for (std::size_t k = 0; k < group.size(); ++k) {
+    const RedTarget& t = red.targets[group[k]];
+    const bool patch = t.unseen && !t.rim;
+    if (patch || k % stride == 0) {
+      by_face[static_cast<std::size_t>(side_of(t, surface))] +=
+          (patch ? 1.0 : static_cast<double>(stride)) * t.area_mm2;
     }
   }
   // What most of it is says why.
@@ -75,7 +126,9 @@ std::vector<RedRegion> red_regions(const RedTargets& red, std::span<const Placed
   std::vector<RedRegion> regions;
   for (const auto& group :
        cluster_targets(red, scans, std::max(2.0 * red.cell_mm, 1.8 * patch_mm), kGridReachMm, true)) {
-    regions.push_back(region_of(red, group, surface));
+    for (const auto& part : parts_by_side(red, group, surface)) {
+      regions.push_back(region_of(red, part, surface));
+    }
   }
   std::stable_sort(regions.begin(), regions.end(),
                    [](const RedRegion& a, const RedRegion& b) { return a.area_mm2 > b.area_mm2; });

@@ -62,6 +62,55 @@ TEST(RedMap, TheWallOfAWedgeIsOnTheSideThatTheWedgeIsOn) {
   EXPECT_LT((regions[0].normal - wall.normal.normalized()).norm(), 1e-9);
 }
 
+TEST(RedMap, APlaceThatGoesRoundAnEdgeIsToldByItsSides) {
+  // Forty patches of the reverse, seven of the bottom edge and one of the right one, side by side.
+  ModelSurface surface{MeshQuery(Mesh()), {}, 0.0, {0, 0, 0}, {}, {}, {}, {}};
+  RedTargets red;
+  red.cell_mm = 1.0;
+  const auto add = [&](const Eigen::Vector3d& position, const Eigen::Vector3d& normal) {
+    surface.unseen.push_back({position, normal, 2.0});
+    RedTarget target;
+    target.position_mm = position;
+    target.normal = normal;
+    target.area_mm2 = 2.0;
+    target.unseen = true;
+    red.targets.push_back(target);
+  };
+  for (int i = 0; i < 40; ++i) {
+    add({1.0 * (i % 8), 1.0 * (i / 8), -5}, {0, 0, -1});
+  }
+  for (int i = 0; i < 7; ++i) {
+    add({1.0 * i, -0.7, -4.3}, {0, -1, -0.1});
+  }
+  add({7.7, 0, -4.3}, {1, 0, 0});
+  const std::vector<RedRegion> regions = red_regions(red, {}, surface);
+  ASSERT_EQ(regions.size(), 2U);
+  EXPECT_EQ(regions[0].face, Face::kReverse);
+  EXPECT_NEAR(regions[0].area_mm2, 82.0, 1e-9);  // with the scrap of the right edge
+  EXPECT_EQ(regions[1].face, Face::kBottom);
+  EXPECT_NEAR(regions[1].area_mm2, 14.0, 1e-9);
+}
+
+TEST(RedMap, AllOfALargePlaceSaysWhichSideItIsOn) {
+  // Of every sixteenth patch, all that once were asked, each faces the bottom edge.
+  ModelSurface surface{MeshQuery(Mesh()), {}, 0.0, {0, 0, 0}, {}, {}, {}, {}};
+  RedTargets red;
+  red.cell_mm = 1.0;
+  for (int i = 0; i < 256; ++i) {
+    const Eigen::Vector3d normal = i % 16 == 0 ? Eigen::Vector3d(0, -1, 0) : Eigen::Vector3d(0, 0, -1);
+    RedTarget target;
+    target.position_mm = {0.5 * (i % 16), 0.5 * (i / 16), -5};
+    target.normal = normal;
+    target.area_mm2 = 0.06;
+    target.unseen = true;
+    red.targets.push_back(target);
+    surface.unseen.push_back({target.position_mm, normal, 0.06});
+  }
+  const std::vector<RedRegion> regions = red_regions(red, {}, surface);
+  ASSERT_EQ(regions.size(), 1U);
+  EXPECT_EQ(regions[0].face, Face::kReverse);
+}
+
 TEST(RedMap, TheUnseenUndersideIsOneLargeRegionOfTheReverse) {
   Session session;
   session.scan(turned(0, 0));

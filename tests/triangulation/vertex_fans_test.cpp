@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 #include <numbers>
 #include <vector>
 
@@ -92,14 +91,13 @@ TEST(VertexFans, HalfEdgesAreFoundInACrowd) {
 }
 
 TEST(VertexFans, ManyFacesAtAVertexTakeNoLongerThanElsewhere) {
-  Mesh mesh = cone(60000);
-  const std::clock_t begin = std::clock();
+  // Where each looked through all others a tenth as many took twenty seconds: these would take half an hour,
+  // which the time that any test is granted ends.
+  Mesh mesh = cone(600000);
   const MeshReport report = check_manifold(mesh);
   EXPECT_TRUE(report.is_manifold());
-  EXPECT_EQ(report.boundary_edges, 60000U);
+  EXPECT_EQ(report.boundary_edges, 600000U);
   EXPECT_TRUE(make_manifold(mesh.faces, mesh.positions.size()).empty());
-  // Where each looked through all others it took twenty seconds.
-  EXPECT_LT(static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC, 3.0);
 }
 
 TEST(VertexFans, OfRepeatedFacesInACrowdOneStays) {
