@@ -199,6 +199,8 @@ void drop_zero_points(ScanSamples& samples) {
 
 /// What the scanner is set to differs from what the samples show by the depth of the object in its field.
 constexpr double kSpacingWithin = 1.5;
+/// No scanner's setting is so far off; rows of the wrong length lay samples beside each other that are none.
+constexpr double kMixedUpFrom = 8.0;
 
 /// Answers with what the operator should know; empty: nothing.
 std::string settle_spacing(RangeGrid& grid, bool in_its_unit) {
@@ -209,6 +211,11 @@ std::string settle_spacing(RangeGrid& grid, bool in_its_unit) {
   } else if (measured_mm > 0 &&
              (said_mm > kSpacingWithin * measured_mm || measured_mm > kSpacingWithin * said_mm)) {
     grid.spacing_mm = measured_mm;
+    if (measured_mm > kMixedUpFrom * said_mm) {
+      return "its header says a spacing of " + short_text(said_mm, 3) +
+             " mm, but neighbours in its rows lie " + short_text(measured_mm, 3) +
+             " mm apart: its rows and columns do not fit its samples; look at num_cols and num_rows";
+    }
     return "its header says a spacing of " + short_text(said_mm, 3) + " mm, but its samples lie " +
            short_text(measured_mm, 3) +
            " mm apart, which is taken; mend or remove `obj_info dubsar_spacing_mm`";

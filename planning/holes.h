@@ -13,6 +13,7 @@ struct Rim {
   Eigen::Vector3d position_mm{0, 0, 0};  ///< model frame
   Eigen::Vector3d normal{0, 0, 1};       ///< of the surface, out of the clay
   Eigen::Vector3d outward{1, 0, 0};      ///< along the surface, to where nothing is sampled; unit
+  std::uint32_t part = 0;                ///< of the cover
 };
 
 /// A connected rim.

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "core/parallel.h"
+#include "planning/apart.h"
 #include "planning/clearing.h"
 #include "planning/red_regions.h"
 #include "planning/rim_targets.h"
@@ -85,7 +86,8 @@ Result<RedMapResult> make_red_map(std::span<const PlacedScan> scans, const Mesh*
   const SurfaceCover cover(scans);
   settle_closed(scans, cover, median_noise_mm, options.excuse.most_stray_samples, out.targets);
   excuse_strays(scans, noise_mm, surface, options.excuse, out.targets);
-  add_rim_targets(cover, options.targets.longest_gap_mm, out.targets);
+  const std::vector<std::uint8_t> apart = excuse_apart(scans, cover, out.targets);
+  add_rim_targets(cover, options.targets.longest_gap_mm, apart, out.targets);
   excuse_unneeded(scans, cover, median_noise_mm, options.excuse, out.targets);
   // Strays and interpolated gaps are no border of a hole.
   drop_unbordered_patches(scans, out.targets);

@@ -54,7 +54,8 @@ void settle_closed(std::span<const PlacedScan> scans, const SurfaceCover& cover,
   }
 }
 
-void add_rim_targets(const SurfaceCover& cover, double widest_hole_mm, RedTargets& red) {
+void add_rim_targets(const SurfaceCover& cover, double widest_hole_mm, std::span<const std::uint8_t> apart,
+                     RedTargets& red) {
   PointCells marked(2.0 * cover.reach_mm());
   for (std::uint32_t i = 0; i < red.targets.size(); ++i) {
     if (red.targets[i].state == RegionState::kRed && !red.targets[i].unseen) {
@@ -63,7 +64,11 @@ void add_rim_targets(const SurfaceCover& cover, double widest_hole_mm, RedTarget
     }
   }
   const std::vector<Rim>& rims = cover.rims();
-  for (const Hole& hole : cover.holes()) {
+  for (std::size_t h = 0; h < cover.holes().size(); ++h) {
+    if (h < apart.size() && apart[h] != 0) {
+      continue;
+    }
+    const Hole& hole = cover.holes()[h];
     const double strip_mm2 = 0.5 * cover.cell_mm() * cover.reach_mm();
     const double share_mm2 =
         hole.width_mm > widest_hole_mm

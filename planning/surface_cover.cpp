@@ -98,6 +98,7 @@ SurfaceCover::SurfaceCover(std::span<const PlacedScan> scans) {
       scans.size(), [&](std::size_t s) { by_scan[s] = elements_of(scans[s], cell_mm_); }, 1);
   thin(by_scan);
   sort_into_cells();
+  part_cells();
   find_rims(scans);
 }
 
@@ -326,7 +327,7 @@ void SurfaceCover::keep_holes(const std::vector<Eigen::Vector3f>& outward) {
   for (std::uint32_t i = 0; i < elements_.size(); ++i) {
     if (is_rim_[i] == kRim) {
       rims.push_back({elements_[i].position_mm.cast<double>(), elements_[i].normal.cast<double>(),
-                      outward[i].cast<double>()});
+                      outward[i].cast<double>(), elements_[i].part});
       element.push_back(i);
     }
   }

@@ -32,6 +32,10 @@ class SurfaceCover {
   /// pass.
   [[nodiscard]] const std::vector<Hole>& holes() const { return holes_; }
   [[nodiscard]] std::size_t size() const { return elements_.size(); }
+  /// How many elements each part has, the largest first. Elements within reach_mm() of each other, directly
+  /// or by others, are of one part; so are those of one cell of space, at most 1.8 times as far apart where
+  /// the box around all of them is not so large that cells had to grow.
+  [[nodiscard]] const std::vector<std::size_t>& parts() const { return parts_; }
 
   enum class Place {
     kBare,    ///< no well-sampled surface near
@@ -41,7 +45,10 @@ class SurfaceCover {
   struct Element {
     Eigen::Vector3f position_mm;
     Eigen::Vector3f normal;
+    std::uint32_t part = 0;  ///< of what hangs together
   };
+  /// In a fixed order.
+  [[nodiscard]] const std::vector<Element>& elements() const { return elements_; }
   /// Elements within radius_mm, in a fixed order.
   [[nodiscard]] std::vector<Element> within(const Eigen::Vector3d& p_mm, double radius_mm) const;
   /// By the elements within radius_mm.
@@ -51,6 +58,7 @@ class SurfaceCover {
   static std::vector<Element> elements_of(const PlacedScan& scan, double cell_mm);
   void thin(const std::vector<std::vector<Element>>& by_scan);
   void sort_into_cells();
+  void part_cells();
   /// [cells] nonzero near sparse samples, cleared or not: every rim is the border of some scan.
   [[nodiscard]] std::vector<std::uint8_t> suspect_cells(std::span<const PlacedScan> scans) const;
   void find_rims(std::span<const PlacedScan> scans);
@@ -68,6 +76,7 @@ class SurfaceCover {
   std::array<std::int64_t, 3> size_{1, 1, 1};
   std::vector<Element> elements_;  ///< by coarse cell
   std::vector<std::uint32_t> start_;
+  std::vector<std::size_t> parts_;
   enum RimMark : std::uint8_t { kNoRim, kMaybeRim, kRim };
   std::vector<std::uint8_t> is_rim_;  ///< RimMark, by element
   std::vector<Rim> rims_;

@@ -242,11 +242,12 @@ std::size_t Front::last_change(const Eigen::AlignedBox3f& box) const {
   return last;
 }
 
-void Front::near(const Eigen::Vector3f& p_mm, float radius_mm, std::vector<const Links*>& out) const {
+bool Front::near(const Eigen::Vector3f& p_mm, float radius_mm, std::vector<const Links*>& out) const {
   out.clear();
   const Eigen::Vector3f reach = Eigen::Vector3f::Constant(radius_mm);
   const Cell low = cell_of(p_mm - reach);
   const Cell high = cell_of(p_mm + reach);
+  std::size_t met = 0;
   for (int u = low[0]; u <= high[0]; ++u) {
     for (int v = low[1]; v <= high[1]; ++v) {
       for (int w = low[2]; w <= high[2]; ++w) {
@@ -254,6 +255,9 @@ void Front::near(const Eigen::Vector3f& p_mm, float radius_mm, std::vector<const
         for (std::uint32_t l = buckets_[slot_of({u, v, w}, key)].first; l != kNone;
              l = links_[l].next_in_bucket) {
           const Links& link = links_[l];
+          if (++met > kMostMet) {
+            return false;
+          }
           if ((link.position - p_mm).squaredNorm() <= radius_mm * radius_mm &&
               (link.free || !link.out.empty())) {
             out.push_back(&link);
@@ -262,6 +266,7 @@ void Front::near(const Eigen::Vector3f& p_mm, float radius_mm, std::vector<const
       }
     }
   }
+  return true;
 }
 
 std::vector<Front::Walk> Front::walks() const {

@@ -100,7 +100,9 @@ class Chooser {
     if (!sheet.has_room(middle, radius)) {
       return {};
     }
-    front_->near(middle, radius, near_);
+    if (!front_->near(middle, radius, near_)) {
+      return {};
+    }
 
     flat_.resize(near_.size());
     layer_.resize(near_.size());
@@ -241,6 +243,9 @@ class Advance {
     while ((!offered_.empty() || !queue_.empty()) && !job_->cancelled()) {
       take_batch();
       choose();
+      if (job_->cancelled()) {
+        break;  // not all of them have been chosen for
+      }
       added += apply();
     }
     return added;
@@ -270,7 +275,7 @@ class Advance {
     choices_.resize(batch_.size());
     parallel_chunks(batch_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
       Chooser chooser(*front_, limits_);
-      for (std::size_t i = begin; i < end; ++i) {
+      for (std::size_t i = begin; i < end && !job_->cancelled(); ++i) {
         const Task& task = batch_[i];
         const bool holds =
             task.c != kNone && front_->last_change(around(task.a, task.b, task.c)) <= task.as_of;

@@ -200,8 +200,11 @@ void lay_nodes(StitchSurface& out, const std::vector<float>& cosines, const Stit
       1024);
   box_mean(out.score, seen, lattice.node_rows, lattice.node_cols,
            options.incidence_radius_samples / Lattice::kNodeSide);
+  // Samples for a length of the surface, along which they lie widest: a scan as fine as others stands out
+  // where it looks straight at the clay, a coarse one never over a fine one that sees it well.
+  const float per_mm = out.spacing_mm > 0 ? 1.0F / static_cast<float>(out.spacing_mm) : 1.0F;
   for (std::size_t node = 0; node < seen.size(); ++node) {
-    out.score[node] *= rise[node];
+    out.score[node] *= rise[node] * per_mm;
   }
 }
 

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <functional>
 #include <memory>
+#include <numeric>
 #include <vector>
 
 #include "planning/cleared_map.h"
@@ -113,7 +114,7 @@ TEST(SurfaceCover, ARimThatTwoScansClearedForEachOtherIsStillFound) {
   const SurfaceCover cover(scans);
   ASSERT_FALSE(inner_holes(cover).empty());
   RedTargets red;
-  add_rim_targets(cover, 5.0, red);
+  add_rim_targets(cover, 5.0, {}, red);
   double area = 0;
   for (const RedTarget& t : red.targets) {
     EXPECT_TRUE(t.rim);
@@ -181,6 +182,28 @@ TEST(SurfaceCover, HolesAreTheSameBesideSomethingFarAway) {
     return std::ranges::count_if(cover.rims(), [](const Rim& rim) { return rim.position_mm.norm() < 50; });
   };
   EXPECT_EQ(rims_of(SurfaceCover(both)), rims_of(SurfaceCover(alone)));
+}
+
+TEST(SurfaceCover, PartsAreWhatHangsTogether) {
+  const Plate large([](double, double) { return true; }, 0);
+  const Plate small([](double x, double) { return x > 0; }, 0);
+  PlacedScan scans[] = {small.placed(0), large.placed(1)};
+  for (const double apart_mm : {1.0, 0.25}) {
+    scans[0].model_from_scanner.translation_mm.z() = apart_mm;
+    const SurfaceCover cover(scans);
+    ASSERT_EQ(cover.parts().size(), apart_mm > 0.5 ? 2U : 1U);
+    EXPECT_EQ(std::accumulate(cover.parts().begin(), cover.parts().end(), std::size_t{0}), cover.size());
+    EXPECT_GE(cover.parts().front(), cover.parts().back());
+    for (const SurfaceCover::Element& e : cover.elements()) {
+      EXPECT_EQ(e.part, cover.parts().size() > 1 && e.position_mm.z() > 0.1F ? 1U : 0U);
+    }
+    for (const Hole& hole : cover.holes()) {
+      for (const std::uint32_t i : hole.rim) {
+        const Rim& rim = cover.rims()[i];
+        EXPECT_EQ(rim.part, cover.parts().size() > 1 && rim.position_mm.z() > 0.1 ? 1U : 0U);
+      }
+    }
+  }
 }
 
 TEST(SettleClosed, SettlesWhatLiesOnClosedSurfaceAndLoneStraysOnly) {

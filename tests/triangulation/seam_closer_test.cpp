@@ -6,6 +6,8 @@
 
 #include <cmath>
 #include <limits>
+#include <utility>
+#include <vector>
 
 #include "core/random.h"
 #include "tests/triangulation/support/scans.h"
@@ -124,6 +126,28 @@ TEST(Front, RefusesAHalfEdgeTwice) {
   EXPECT_EQ(front.open_edges().size(), 4U);
   ASSERT_EQ(front.openings().size(), 1U);
   EXPECT_EQ(front.openings()[0].size(), 4U);
+}
+
+TEST(SeamCloser, RimsThatLieFarDenserThanTheySayAreLeftOpenInNoTime) {
+  // Each triangle of a grid whose columns were mixed up stands by itself, and its spacing is taken for 5 mm:
+  // all rims lie within reach of each. Looking at all of them for each would take longer than a test may.
+  Random random(9);
+  Sheet sheet;
+  Mesh crumbs;
+  for (std::uint32_t k = 0; k < 40000; ++k) {
+    const auto x = static_cast<float>(random.uniform());
+    const auto y = static_cast<float>(random.uniform());
+    for (const auto& [dx, dy] : {std::pair(0.0F, 0.0F), std::pair(0.001F, 0.0F), std::pair(0.0F, 0.001F)}) {
+      crumbs.positions.emplace_back(x + dx, y + dy, 0.0F);
+      crumbs.normals.emplace_back(0.0F, 0.0F, 1.0F);
+    }
+    crumbs.faces.push_back({3 * k, 3 * k + 1, 3 * k + 2});
+  }
+  append(sheet, crumbs, 5.0F);
+  Front front(sheet);
+  std::vector<const Front::Links*> near;
+  EXPECT_FALSE(front.near({0.5F, 0.5F, 0.0F}, 3.0F, near));
+  EXPECT_EQ(close_seams(front, {}), 0U);
 }
 
 }  // namespace

@@ -366,5 +366,24 @@ TEST(Stitcher, OfSeveralTheOnesBeforeABadOneAreIn) {
   expect_same(stitcher.mesh(), stitched(set));
 }
 
+TEST(Stitcher, ACoarseScanTakesNothingFromAFineOneThatSeesAsWell) {
+  // Before, scans that look equally straight stood side by side whatever their spacing: of these the coarse
+  // one's rows made the mesh.
+  const auto flat = [](double, double) { return 0.0; };
+  test::ScanSet fine;
+  fine.add(test::height_grid(61, 61, 0.1, flat), {});
+  test::ScanSet both;
+  both.add(test::height_grid(31, 31, 0.4, flat), {});
+  both.add(test::height_grid(61, 61, 0.1, flat), {});
+  const Mesh alone = stitched(fine);
+  const Mesh mesh = stitched(both);
+  std::size_t within = 0;
+  for (const Eigen::Vector3f& p : mesh.positions) {
+    within += p.head<2>().cwiseAbs().maxCoeff() < 2.5F ? 1 : 0;
+  }
+  EXPECT_GT(alone.positions.size(), 3000U);
+  EXPECT_GT(within, 2400U);  // 51 x 51; of the coarse one there are 13 x 13
+}
+
 }  // namespace
 }  // namespace dubsar

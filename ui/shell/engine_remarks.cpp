@@ -11,6 +11,9 @@ constexpr EnginePhrase kRemarks[] = {
     // what the reading of a scan remarks
     {"its header says a spacing of ", "sein Kopf nennt einen Punktabstand von "},
     {" mm, but its samples lie ", " mm, aber seine Messpunkte liegen "},
+    {" mm, but neighbours in its rows lie ", " mm, aber Nachbarn in seinen Zeilen liegen "},
+    {" mm apart: its rows and columns do not fit its samples; look at num_cols and num_rows",
+     " mm auseinander: Zeilen und Spalten passen nicht zu den Messpunkten; num_cols und num_rows prüfen"},
     {" mm apart, which is taken; mend or remove `obj_info dubsar_spacing_mm`",
      " mm auseinander, und das gilt; `obj_info dubsar_spacing_mm` berichtigen oder entfernen"},
     {"the scanner would stand at 0 0 0, in the scanned surface: which way it looked is taken from the "
