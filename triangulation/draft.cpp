@@ -21,6 +21,8 @@ constexpr std::uint8_t kBoth = kCellFirst | kCellSecond;
 constexpr std::size_t kRowsPerChunk = 16;
 /// Samples from the rim of a patch within which closing a seam may take something away.
 constexpr int kNearRimSamples = 2;
+/// Where a scan without colours is primary among scans that have some: no colour of clay, and seen as such.
+constexpr std::array<std::uint8_t, 3> kColourOfNone = {128, 128, 128};
 
 /// The two triangles over a lone sample that is not kept while the four beside it are, each joined to the
 /// next; empty elsewhere. Their common edge keeps the ridge, as that of a cell does.
@@ -106,6 +108,9 @@ class Patch {
         mesh.sigma_mm[v] = fused.sigma_mm[at];
         mesh.scans[v] = fused.scans[at];
         mesh.flags[v] = fused.sparse[at] != 0 ? kVertexSparse : 0;
+        if (!mesh.colours.empty()) {
+          mesh.colours[v] = s.colours.empty() ? kColourOfNone : s.colours[i];
+        }
         draft.near_rim[v] = rim[i] != 0 ? Draft::kAtRim : near_rim[i];
         vertex_of[i] = v++;
       }
@@ -169,6 +174,54 @@ class Patch {
 
 }  // namespace
 
+void colour_added(Draft& draft) {
+  Mesh& mesh = draft.mesh;
+  if (mesh.colours.empty()) {
+    return;
+  }
+  const std::size_t first = draft.first_vertex.back();
+  mesh.colours.resize(mesh.positions.size(), kColourOfNone);
+  struct Sum {
+    std::array<std::uint32_t, 3> of{};
+    std::uint32_t count = 0;
+  };
+  std::vector<std::uint8_t> known(mesh.positions.size() - first, 0);
+  // From the rim inwards, a ring of vertices each time.
+  for (bool any = true; any;) {
+    any = false;
+    std::vector<Sum> sums(known.size());
+    for (const Triangle& f : mesh.faces) {
+      if (std::max({f[0], f[1], f[2]}) < first || is_gone(f)) {
+        continue;
+      }
+      for (const std::uint32_t v : f) {
+        if (v < first || known[v - first] != 0) {
+          continue;
+        }
+        for (const std::uint32_t w : f) {
+          if (w >= first && known[w - first] == 0) {
+            continue;
+          }
+          for (std::size_t k = 0; k < 3; ++k) {
+            sums[v - first].of[k] += mesh.colours[w][k];
+          }
+          ++sums[v - first].count;
+        }
+      }
+    }
+    for (std::size_t k = 0; k < sums.size(); ++k) {
+      if (sums[k].count > 0) {
+        for (std::size_t c = 0; c < 3; ++c) {
+          mesh.colours[first + k][c] =
+              static_cast<std::uint8_t>((sums[k].of[c] + sums[k].count / 2) / sums[k].count);
+        }
+        known[k] = 1;
+        any = true;
+      }
+    }
+  }
+}
+
 float Draft::spacing_mm(std::uint32_t vertex) const {
   if (vertex >= first_vertex.back()) {
     return added_spacing_mm[vertex - first_vertex.back()];
@@ -216,6 +269,9 @@ Draft lay_patches(const std::vector<OwnedScan>& scans, const JobContext& job) {
   lay_out(mesh.sigma_mm, vertices);
   lay_out(mesh.scans, vertices);
   lay_out(mesh.flags, vertices);
+  if (std::ranges::any_of(scans, [](const OwnedScan& scan) { return !scan.surface->colours.empty(); })) {
+    lay_out(mesh.colours, vertices);
+  }
   lay_out(draft.near_rim, vertices);
   lay_out(mesh.faces, draft.first_face.back());
   for (std::size_t k = 0; k < patches.size() && !job.cancelled(); ++k) {

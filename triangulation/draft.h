@@ -37,8 +37,13 @@ struct Draft {
 }
 
 /// The patches that assign_owners() left: vertices are the kept samples at their averaged places, faces their
-/// triangles, and two more where a grid lacks one lone sample. Of a job that is cancelled some are not laid,
-/// and the draft is no good.
+/// triangles, and two more where a grid lacks one lone sample. Each has the colour that its own scan saw:
+/// scans are lit from elsewhere each, and averages of such colours are none. Of a job that is cancelled some
+/// are not laid, and the draft is no good.
 [[nodiscard]] Draft lay_patches(const std::vector<OwnedScan>& scans, const JobContext& job = {});
+
+/// What closed seams and gaps takes its colour from what lies round it. After that, no vertex may be added
+/// but as a copy of one.
+void colour_added(Draft& draft);
 
 }  // namespace dubsar

@@ -29,6 +29,9 @@ void append_copies(Draft& draft, std::span<const std::uint32_t> copied) {
     mesh.sigma_mm.push_back(float(mesh.sigma_mm[v]));
     mesh.scans.push_back(std::uint8_t(mesh.scans[v]));
     mesh.flags.push_back(std::uint8_t(mesh.flags[v]));
+    if (!mesh.colours.empty()) {
+      mesh.colours.push_back(std::array<std::uint8_t, 3>(mesh.colours[v]));
+    }
     draft.added_spacing_mm.push_back(draft.spacing_mm(v));
     draft.near_rim.push_back(1);
   }

@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -37,7 +38,7 @@ enum UsableBit : std::uint8_t {
 
 /// One placed scan made ready for stitching: its samples in the model frame, the triangles of its grid, and
 /// how far each sample is to be trusted. Arrays are [rows*cols] of the grid where nothing else is said. It
-/// holds all that stitching needs of a scan, 27 bytes a sample: the grid itself may go.
+/// holds all that stitching needs of a scan, 27 bytes a sample, 30 with colours: the grid itself may go.
 struct StitchSurface {
   int id = 0;
   double pose_sigma_mm = 0;
@@ -46,14 +47,15 @@ struct StitchSurface {
   /// × 1 / weight(): the variance of a sample along the normal, mm², by its noise alone.
   float variance_of_weight = 0;
   bool mirrored = false;
-  ScannerView view;                             ///< in the model frame
-  std::vector<Eigen::Vector3f> points;          ///< model frame, mm
-  std::vector<PackedNormal> normals;            ///< model frame, out of the clay; zero where undefined
-  std::vector<std::uint8_t> usable;             ///< UsableBit
-  std::vector<std::uint8_t> cells;              ///< CellBit codes
-  std::vector<std::uint16_t> reliability_code;  ///< × kCodes
-  std::vector<std::uint16_t> weight_code;       ///< × kCodes, of weight_of_best
-  float weight_of_best = 0;                     ///< 1 / mm²
+  ScannerView view;                                  ///< in the model frame
+  std::vector<Eigen::Vector3f> points;               ///< model frame, mm
+  std::vector<PackedNormal> normals;                 ///< model frame, out of the clay; zero where undefined
+  std::vector<std::uint8_t> usable;                  ///< UsableBit
+  std::vector<std::uint8_t> cells;                   ///< CellBit codes
+  std::vector<std::uint16_t> reliability_code;       ///< × kCodes
+  std::vector<std::uint16_t> weight_code;            ///< × kCodes, of weight_of_best
+  float weight_of_best = 0;                          ///< 1 / mm²
+  std::vector<std::array<std::uint8_t, 3>> colours;  ///< sRGB as the scanner gave them, or empty
   std::vector<std::uint8_t> rim;  ///< samples to the rim of the triangulated area: 1 on it, at most kMostRim
   Eigen::AlignedBox3f box;        ///< of the usable samples, model frame
   RigidTransform scanner_from_model;

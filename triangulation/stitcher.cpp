@@ -255,7 +255,7 @@ struct Stitcher::Impl {
       if (lets_go) {
         for (auto& [key, entry] : entries) {
           entry.fused = FusedSamples();
-          release(entry.surface.normals, entry.surface.cells);
+          release(entry.surface.normals, entry.surface.cells, entry.surface.colours);
         }
       }
     };
