@@ -11,6 +11,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "archive/html.h"
@@ -20,14 +21,14 @@
 #include "registration/registrar.h"
 #include "registration/unit_check.h"
 #include "station/command/command.h"
+#include "station/command/left_out_scans.h"
 #include "station/command/outputs.h"
 #include "station/command/scan_set_options.h"
+#include "station/command/stitch_stamp.h"
 #include "station/command/stitch_warnings.h"
-#include "station/done_stamp.h"
 #include "station/mesh_json.h"
 #include "station/offline.h"
 #include "station/outward_faces.h"
-#include "station/results.h"
 #include "station/tablet_flags.h"
 #include "station/tablet_label.h"
 #include "triangulation/mesh_check.h"
@@ -40,9 +41,15 @@ namespace {
 /// What a stitcher was given.
 struct Taken {
   std::size_t scans = 0;
-  std::map<int, std::string> names;  ///< of those, by id
-  bool lacks_poses = false;          ///< of a scan that has not been judged yet: then the rest was not taken
-  std::vector<ScanPose> poses;       ///< of those
+  std::map<int, std::string> names;   ///< of those, by id
+  bool lacks_poses = false;           ///< of a scan that has not been judged yet: then the rest was not taken
+  std::vector<ScanPose> poses;        ///< of those
+  std::vector<LeftOutScan> left_out;  ///< the others that stand
+
+  void leave_out(LeftOutScan scan) {
+    warn_of(scan);
+    left_out.push_back(std::move(scan));
+  }
 };
 
 /// Why the grid cannot be in the unit that was said; empty when it may be.
@@ -53,9 +60,32 @@ std::string size_fault(const RangeGrid& grid) {
                       : "";
 }
 
-void warn_left_out(const ScanPose& pose) {
-  log_warning(pose.file + " is left out: " + to_string(pose.status) +
-              (pose.reason.empty() ? "" : ", " + pose.reason));
+/// What of the set cannot be read. Whether the poses of a file, where there is one, make it a part of the
+/// mesh is not known of a file that they do not name: it may be the one that is lacking of theirs.
+Status leave_out_unread(const ScanSet& set, const std::filesystem::path& path,
+                        const std::vector<ScanPose>* file, Taken& taken) {
+  Result<std::vector<LeftOutScan>> unread = unread_scans(set);
+  if (!unread) {
+    return std::unexpected(unread.error());
+  }
+  const bool some_lack =
+      file != nullptr &&
+      std::cmp_less(taken.scans, std::ranges::count(*file, PoseStatus::kRegistered, &ScanPose::status));
+  for (LeftOutScan& one : *unread) {
+    if (file != nullptr) {
+      StationScan scan;
+      scan.id = one.id;
+      scan.file = one.file;
+      std::error_code not_there;
+      if (!set.is_session()) {
+        scan.read_from = std::filesystem::absolute(path / one.file, not_there).lexically_normal();
+      }
+      const ScanPose* pose = pose_in_file(*file, scan);
+      one.is_missed = pose != nullptr ? pose->status == PoseStatus::kRegistered : some_lack;
+    }
+    taken.leave_out(std::move(one));
+  }
+  return {};
 }
 
 /// What the stitcher refuses is named by its file.
@@ -115,7 +145,8 @@ Result<Taken> take_scan_by_scan(const ScanSetArguments& arguments, Stitcher& sti
     const ScanPose* pose = file ? pose_in_file(*file, scan) : stored == set.poses.end() ? nullptr : &*stored;
     taken.lacks_poses = taken.lacks_poses || (pose == nullptr && !file);
     if (pose == nullptr && file) {
-      log_warning(scan.file + " is left out: " + arguments.poses + " has no pose of it");
+      taken.leave_out(
+          {scan.id, scan.file, LeftOutScan::Why::kNoPose, arguments.poses + " has no pose of it"});
     }
     if (pose == nullptr || taken.lacks_poses) {
       return {};
@@ -127,8 +158,9 @@ Result<Taken> take_scan_by_scan(const ScanSetArguments& arguments, Stitcher& sti
     ++with_pose;
     if (pose->status != PoseStatus::kRegistered) {
       ScanPose named = *pose;
+      named.id = scan.id;
       named.file = scan.file;
-      warn_left_out(named);
+      taken.leave_out(left_out(named));
       return {};
     }
     ++taken.scans;
@@ -154,6 +186,11 @@ Result<Taken> take_scan_by_scan(const ScanSetArguments& arguments, Stitcher& sti
   if (file && with_pose == 0) {
     return no_pose_of_these(arguments.poses);
   }
+  const Status told =
+      taken.lacks_poses ? Status() : leave_out_unread(*set, arguments.path, file ? &*file : nullptr, taken);
+  if (!told) {
+    return std::unexpected(told.error());
+  }
   const Status left_out =
       taken.lacks_poses ? Status() : leave_out_foreign(arguments, taken, matter, stitcher, context);
   return left_out ? Result<Taken>(std::move(taken)) : std::unexpected(left_out.error());
@@ -170,12 +207,19 @@ Result<Taken> take_registered(const ScanSetArguments& arguments, Stitcher& stitc
   if (!poses) {
     return std::unexpected(poses.error());
   }
+  std::vector<PlacedScan> placed = placed_scans(*set, *poses);
+  Taken taken;
+  taken.scans = placed.size();
   for (const ScanPose& pose : *poses) {
-    if (pose.status != PoseStatus::kRegistered) {
-      warn_left_out(pose);
+    if (pose.status == PoseStatus::kRegistered) {
+      taken.names[pose.id] = pose.file;
+    } else {
+      taken.leave_out(left_out(pose));
     }
   }
-  std::vector<PlacedScan> placed = placed_scans(*set, *poses);
+  if (const Status told = leave_out_unread(*set, arguments.path, nullptr, taken); !told) {
+    return std::unexpected(told.error());
+  }
   TabletFlags flags;
   for (const StationScan& scan : set->scans) {
     flags.add(scan);
@@ -190,12 +234,6 @@ Result<Taken> take_registered(const ScanSetArguments& arguments, Stitcher& stitc
   if (const Status added = stitcher.add(placed, context.job); !added) {
     return std::unexpected(added.error());
   }
-  Taken taken{placed.size(), {}, false, {}};
-  for (const ScanPose& pose : *poses) {
-    if (pose.status == PoseStatus::kRegistered) {
-      taken.names[pose.id] = pose.file;
-    }
-  }
   return taken;
 }
 
@@ -204,56 +242,17 @@ struct StitchArguments {
   bool unless_done = false;
 };
 
-/// Stamped work is told by the grids and where the session has them lie. Nothing where that does not decide
-/// the mesh: a folder is registered anew, and so is a session with a scan that has not been judged yet.
-Result<std::optional<StampedWork>> begin_work(const StitchArguments& arguments, CommandContext& context) {
-  const std::filesystem::path session = arguments.set.path;
-  if (!arguments.unless_done || !SessionStore::is_session(session)) {
-    return std::nullopt;
-  }
-  const Result<SessionStore> store = SessionStore::open(session, SessionStore::Access::kReadOnly);
-  if (!store) {
-    return std::unexpected(store.error());
-  }
-  const auto scans = store->scans();
-  if (!scans) {
-    return std::unexpected(scans.error());
-  }
-  const Result<std::vector<ScanPose>> poses = standing_poses(*store);
-  if (!poses) {
-    return std::unexpected(poses.error());
-  }
-  std::vector<std::filesystem::path> grids;
-  for (const StoredScan& scan : *scans) {
-    if (scan.dropped || scan.damaged) {
-      continue;
-    }
-    std::error_code gone;
-    grids.push_back(session / scan.file);
-    if (std::ranges::find(*poses, scan.id, &ScanPose::id) == poses->end() ||
-        !std::filesystem::is_regular_file(grids.back(), gone)) {
-      return std::nullopt;
-    }
-  }
-  const Result<FileLabel> label = tablet_label(*store);
-  if (!label) {
-    return std::unexpected(label.error());
-  }
-  const nlohmann::ordered_json parameters{
-      {"label", label_lines(*label, "")},
-      {"out", std::filesystem::path(arguments.set.out).filename().string()},
-      {"origin", origin_of_mesh(*poses)}};
-  return StampedWork::begin(stamp_beside(arguments.set.out), "stitch", parameters.dump(), grids, context.job);
-}
-
-int tell_done(const StitchArguments& arguments, const CommandContext& context) {
+int tell_done(const StitchArguments& arguments, const std::vector<LeftOutScan>& left_out,
+              const CommandContext& context) {
+  std::ranges::for_each(left_out, warn_of);
   if (context.json) {
-    CommandContext::print({{"mesh", arguments.set.out}, {"done_before", true}});
+    CommandContext::print(
+        {{"mesh", arguments.set.out}, {"done_before", true}, {"left_out", left_out_json(left_out)}});
   } else {
     finish_progress();
     std::printf("%s: done before, of the scans as they stand\n", arguments.set.out.c_str());
   }
-  return 0;
+  return falls_short(left_out) ? 1 : 0;
 }
 
 Result<FileLabel> label_of(const std::string& path, const std::map<int, std::string>& names) {
@@ -271,7 +270,19 @@ Result<FileLabel> label_of(const std::string& path, const std::map<int, std::str
   return store ? tablet_label(*store) : std::unexpected(store.error());
 }
 
-Result<int> stitch_all(const ScanSetArguments& arguments, const StampedWork* work, CommandContext& context) {
+/// Those that only repeat another's samples.
+void leave_out_copies(const Stitcher& stitcher, Taken& taken) {
+  for (const ScanCopy& copy : stitcher.copies()) {
+    taken.leave_out(
+        {copy.id, taken.names.at(copy.id), LeftOutScan::Why::kCopy,
+         "it has the very samples of " + taken.names.at(copy.of_id) + ", and counts as the same scan"});
+  }
+  for (const ScanCopy& copy : stitcher.copies()) {
+    taken.names.erase(copy.id);
+  }
+}
+
+Result<int> stitch_all(const ScanSetArguments& arguments, const StitchStamp& stamp, CommandContext& context) {
   auto stitcher = std::make_unique<Stitcher>();
   const bool has_poses = !arguments.poses.empty() || SessionStore::is_session(arguments.path);
   Result<Taken> taken = has_poses ? take_scan_by_scan(arguments, *stitcher, context)
@@ -287,7 +298,7 @@ Result<int> stitch_all(const ScanSetArguments& arguments, const StampedWork* wor
     return bad_input(arguments.path, "no scan is registered", "see dubsar register");
   }
   taken->scans -= stitcher->copies().size();
-  leave_out_copies(*stitcher, taken->names);
+  leave_out_copies(*stitcher, *taken);
   warn_of_places(*stitcher, taken->names);
   const Result<Mesh> mesh = stitcher->take_mesh(context.job);
   if (!mesh) {
@@ -307,7 +318,7 @@ Result<int> stitch_all(const ScanSetArguments& arguments, const StampedWork* wor
   if (!label) {
     return std::unexpected(label.error());
   }
-  if (const Status started = work != nullptr ? work->start() : Status(); !started) {
+  if (const Status started = stamp.work ? stamp.work->start() : Status(); !started) {
     return std::unexpected(started.error());
   }
   if (const Status written = write_mesh(arguments.out, *mesh, *label); !written) {
@@ -317,11 +328,14 @@ Result<int> stitch_all(const ScanSetArguments& arguments, const StampedWork* wor
           mesh_losses(*mesh, arguments.out, "stitch into a .ply to have them")) {
     log_warning(lost->line());
   }
-  if (const Status kept = work != nullptr ? work->finish({arguments.out}, context.job) : Status(); !kept) {
+  // A grid that was lost meanwhile is one that the stamp says was read.
+  const bool holds = stamp.work && unreadable_of(taken->left_out) == unreadable_of(stamp.left_out);
+  if (const Status kept = holds ? stamp.work->finish({arguments.out}, context.job) : Status(); !kept) {
     return std::unexpected(kept.error());
   }
   if (context.json) {
-    nlohmann::ordered_json json{{"mesh", arguments.out}, {"scans", taken->scans}};
+    nlohmann::ordered_json json{
+        {"mesh", arguments.out}, {"scans", taken->scans}, {"left_out", left_out_json(taken->left_out)}};
     json.update(mesh_report_json(check_mesh(*mesh, context.job)));
     if (context.job.cancelled()) {
       return fail(ErrorKind::kCancelled, "its mesh is written, but the check of it was stopped",
@@ -331,33 +345,37 @@ Result<int> stitch_all(const ScanSetArguments& arguments, const StampedWork* wor
   } else {
     const MeshReport report = check_manifold(*mesh);
     finish_progress();
-    std::printf("%s: %zu vertices, %zu faces of %s, %s\n", arguments.out.c_str(), report.vertices,
+    const std::string others =
+        taken->left_out.empty() ? "" : fmt::format(" ({} left out)", taken->left_out.size());
+    std::printf("%s: %zu vertices, %zu faces of %s%s, %s\n", arguments.out.c_str(), report.vertices,
                 report.faces, counted(static_cast<long long>(taken->scans), "scan", "scans").c_str(),
-                report.is_manifold() ? "2-manifold" : "NOT 2-manifold");
+                others.c_str(), report.is_manifold() ? "2-manifold" : "NOT 2-manifold");
   }
-  return 0;
+  return falls_short(taken->left_out) ? 1 : 0;
 }
 
 Result<int> stitch(const StitchArguments& arguments, CommandContext& context) {
   if (const Status named = check_mesh_name(arguments.set.out); !named) {
     return std::unexpected(named.error());
   }
-  const Result<std::optional<StampedWork>> work = begin_work(arguments, context);
-  if (!work) {
-    return std::unexpected(work.error());
+  const Result<StitchStamp> stamp = arguments.unless_done && SessionStore::is_session(arguments.set.path)
+                                        ? begin_stitch(arguments.set.path, arguments.set.out, context.job)
+                                        : StitchStamp();
+  if (!stamp) {
+    return std::unexpected(stamp.error());
   }
-  const Result<bool> done = *work ? (*work)->done(context.job) : false;
+  const Result<bool> done = stamp->work ? stamp->work->done(context.job) : false;
   if (!done) {
     return std::unexpected(done.error());
   }
-  return *done ? tell_done(arguments, context)
-               : stitch_all(arguments.set, *work ? &**work : nullptr, context);
+  return *done ? tell_done(arguments, stamp->left_out, context) : stitch_all(arguments.set, *stamp, context);
 }
 
 }  // namespace
 
 void add_stitch(CLI::App& app, Action& chosen) {
-  CLI::App* verb = app.add_subcommand("stitch", "One mesh of all registered scans");
+  CLI::App* verb = app.add_subcommand(
+      "stitch", "One mesh of all registered scans; status 1 when one of them cannot be read");
   const auto arguments = std::make_shared<StitchArguments>();
   arguments->set.add_to(*verb, true);
   verb->add_option(

@@ -11,16 +11,6 @@
 
 namespace dubsar {
 
-void leave_out_copies(const Stitcher& stitcher, std::map<int, std::string>& names) {
-  for (const ScanCopy& copy : stitcher.copies()) {
-    log_warning(fmt::format("{} is left out: it has the very samples of {}, and counts as the same scan",
-                            names.at(copy.id), names.at(copy.of_id)));
-  }
-  for (const ScanCopy& copy : stitcher.copies()) {
-    names.erase(copy.id);
-  }
-}
-
 void warn_of_places(const Stitcher& stitcher, const std::map<int, std::string>& names) {
   std::set<int> touching;
   const std::vector<Stitcher::Overlap> overlaps = stitcher.overlaps();

@@ -9,10 +9,7 @@
 
 namespace dubsar {
 
-/// Takes the scans that only repeat another's samples out of the names (by id), and says so.
-void leave_out_copies(const Stitcher& stitcher, std::map<int, std::string>& names);
-
-/// Says which scans overlap no other, and which lie apart where they do.
+/// Says which scans (names by id) overlap no other, and which lie apart where they do.
 void warn_of_places(const Stitcher& stitcher, const std::map<int, std::string>& names);
 
 }  // namespace dubsar

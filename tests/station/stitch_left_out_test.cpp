@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+// dubsar stitch says which scans are no part of the mesh, and falls short without one that should be.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "acquisition/session_store.h"
+#include "formats/poses_json.h"
+#include "tests/station/support/bumpy_scans.h"
+#include "tests/station/support/command.h"
+#include "tests/support/temporary_folder.h"
+
+namespace dubsar {
+namespace {
+
+namespace fs = std::filesystem;
+using test::Outcome;
+using test::run_command;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using ::testing::SizeIs;
+
+/// A folder and a session of the same four scans.
+class StitchLeftOut : public ::testing::Test {
+ protected:
+  StitchLeftOut() : poses_(4) {
+    test::write_bumpy_scans(at("scans"), 4);
+    for (int k = 0; k < 4; ++k) {
+      ScanPose& pose = poses_[static_cast<std::size_t>(k)];
+      pose.id = k;
+      pose.file = test::scan_name(k);
+      pose.status = PoseStatus::kRegistered;
+      pose.model_from_scanner = test::bumpy_pose(k);
+    }
+    poses_[3].status = PoseStatus::kUnsure;
+    poses_[3].reason = "two places fit";
+    EXPECT_TRUE(write_poses(at("poses.json"), poses_));
+    SessionStore store = SessionStore::open_or_create(at("session")).value();
+    for (int k = 0; k < 4; ++k) {
+      RangeGrid grid = test::bumpy_scan(k);
+      grid.source = test::scan_name(k);
+      EXPECT_TRUE(store.add_grid(grid));
+    }
+    EXPECT_TRUE(store.save_poses(poses_));
+  }
+  [[nodiscard]] std::string at(const std::string& name) const { return (folder_.path() / name).string(); }
+  [[nodiscard]] Outcome stitched(const std::string& path, const test::Arguments& more = {}) const {
+    test::Arguments words{"stitch", at(path), "-o", at("mesh.ply"), "--json"};
+    words.insert(words.end(), more.begin(), more.end());
+    return run_command(words);
+  }
+  [[nodiscard]] Outcome with_poses() const { return stitched("scans", {"--poses", at("poses.json")}); }
+  void harm(int number) const { std::ofstream(at("scans") + "/" + test::scan_name(number)) << "no scan"; }
+  [[nodiscard]] nlohmann::json unsure() const {
+    return {{"id", 3}, {"file", test::scan_name(3)}, {"state", "unsure"}, {"reason", "two places fit"}};
+  }
+
+  std::vector<ScanPose> poses_;
+
+ private:
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(StitchLeftOut, NamesAScanThatIsUnsure) {
+  for (const Outcome& outcome : {with_poses(), stitched("session"), stitched("session", {"--unless-done"}),
+                                 stitched("session", {"--unless-done"})}) {
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_THAT(outcome.complaints(), SizeIs(1)) << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr(test::scan_name(3) + " is left out: unsure, two places fit"));
+    EXPECT_EQ(outcome.json()["left_out"], nlohmann::json::array({unsure()}));
+  }
+  ASSERT_EQ(run_command({"session", "drop", at("session"), "3"}).status, 0);
+  const Outcome outcome = stitched("session");
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_THAT(outcome.json()["left_out"], SizeIs(0)) << "it was taken out";
+}
+
+TEST_F(StitchLeftOut, NamesAScanWithoutAPoseAndACopy) {
+  fs::copy_file(at("scans") + "/" + test::scan_name(0), at("scans") + "/scan_9.ply");
+  poses_[3] = poses_[0];
+  poses_[3].file = "scan_9.ply";
+  ASSERT_TRUE(write_poses(at("poses.json"), poses_));
+  const Outcome outcome = with_poses();
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  const nlohmann::json left_out = outcome.json()["left_out"];
+  ASSERT_THAT(left_out, SizeIs(2));
+  EXPECT_EQ(left_out[0]["state"], "no_pose");
+  EXPECT_EQ(left_out[0]["file"], test::scan_name(3));
+  EXPECT_EQ(left_out[1]["state"], "copy");
+  EXPECT_EQ(left_out[1]["file"], "scan_9.ply");
+  EXPECT_THAT(left_out[1]["reason"], HasSubstr("the very samples of " + test::scan_name(0)));
+}
+
+TEST_F(StitchLeftOut, FallsShortWithoutAScanOfASession) {
+  const fs::path grid = fs::path(at("session")) / "grids/001.grid";
+  fs::rename(grid, at("aside"));
+  for (const bool again : {false, true}) {
+    const Outcome outcome = stitched("session", {"--unless-done"});
+    EXPECT_EQ(outcome.status, 1) << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr(test::scan_name(1) + " is left out: it cannot be read"));
+    const nlohmann::json said = outcome.json();
+    EXPECT_EQ(said.contains("done_before"), again) << "what falls short is not stitched for ever";
+    ASSERT_THAT(said["left_out"], SizeIs(2));
+    const nlohmann::json& lost = said["left_out"][again ? 0 : 1];
+    EXPECT_EQ(lost["id"], 1);
+    EXPECT_EQ(lost["file"], test::scan_name(1));
+    EXPECT_EQ(lost["state"], "unreadable");
+    EXPECT_THAT(lost["reason"], HasSubstr("grids/001.grid: missing"));
+  }
+  fs::rename(at("aside"), grid);
+  const Outcome mended = stitched("session", {"--unless-done"});
+  EXPECT_EQ(mended.status, 0) << mended.err;
+  EXPECT_FALSE(mended.json().contains("done_before"));
+  EXPECT_EQ(mended.json()["scans"], 3);
+}
+
+TEST_F(StitchLeftOut, AScanThatWasUnsureIsNotMissed) {
+  fs::remove(fs::path(at("session")) / "grids/003.grid");
+  const Outcome outcome = stitched("session");
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr(test::scan_name(3) + " is left out: it cannot be read"));
+  EXPECT_EQ(outcome.json()["left_out"][0]["state"], "unreadable");
+  harm(3);
+  std::ofstream(at("scans") + "/other.ply") << "no scan";
+  EXPECT_EQ(with_poses().status, 0) << "the mesh is of all that the poses have registered";
+}
+
+TEST_F(StitchLeftOut, FallsShortWithoutAFileOfAFolder) {
+  harm(1);
+  for (const Outcome& outcome : {with_poses(), stitched("scans")}) {
+    EXPECT_EQ(outcome.status, 1) << outcome.err;
+    EXPECT_THAT(outcome.err, AllOf(HasSubstr(test::scan_name(1) + " is left out: it cannot be read"),
+                                   Not(HasSubstr(test::scan_name(0) + " is left out"))));
+    const nlohmann::json left_out = outcome.json()["left_out"];
+    nlohmann::json unreadable;
+    for (const nlohmann::json& one : left_out) {
+      if (one["state"] == "unreadable") {
+        unreadable.push_back(one);
+      }
+    }
+    ASSERT_THAT(unreadable, SizeIs(1)) << outcome.out;
+    EXPECT_EQ(unreadable[0]["file"], test::scan_name(1));
+    EXPECT_FALSE(unreadable[0].contains("id"));
+  }
+}
+
+}  // namespace
+}  // namespace dubsar
