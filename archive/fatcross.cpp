@@ -7,17 +7,13 @@
 #include <cmath>
 
 #include "archive/ruler.h"
+#include "archive/scale_bar.h"
 
 namespace dubsar {
 
 namespace {
 
 constexpr double kEblGapMm = 100 * 25.4 / 600;
-
-Rgb8 ink_on(Rgb8 ground) {
-  const bool is_light = 2 * ground[0] + 5 * ground[1] + ground[2] > 4 * 255;
-  return is_light ? Rgb8{24, 24, 24} : Rgb8{235, 235, 235};
-}
 
 /// Where everything comes to lie; pixels right and down.
 struct Plan {

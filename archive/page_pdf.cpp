@@ -8,6 +8,7 @@
 #include <cmath>
 #include <utility>
 
+#include "archive/bidi.h"
 #include "archive/cross_plan.h"
 #include "archive/page_blocks.h"
 #include "archive/pdf_lines.h"
@@ -44,7 +45,7 @@ class Setter {
 
   void finish() {
     const std::string foot = foot_ + ", page " + std::to_string(sheet_.pages());
-    sheet_.text(foot, kMargin, 0.5 * kFoot, PdfFont::kPlain, 6.5, kPdfSoftGrey);
+    one_line(foot, kMargin, 0.5 * kFoot, 6.5);
   }
 
   /// next: what follows, or null.
@@ -81,6 +82,12 @@ class Setter {
   }
 
  private:
+  /// Plain and grey, its baseline at y.
+  void one_line(const std::string& words, double x, double y, double size) {
+    const PdfLines line = pdf_lines(sheet_, {{.text = words, .soft = true}}, size, kPdfOneLine);
+    draw_lines(sheet_, line, x, y + kPdfLeading * size, size, kPdfSoftGrey);
+  }
+
   void room_for(double height) {
     if (y_ - height < kFoot) {
       finish();
@@ -126,7 +133,7 @@ class Setter {
 
   void marked(const PageBlock& block, double indent) {
     room_for(kPdfLeading * kBody);
-    sheet_.text(block.mark, kMargin, y_ - kPdfLeading * kBody, PdfFont::kPlain, kBody, kPdfSoftGrey);
+    one_line(block.mark, kMargin, y_ - kPdfLeading * kBody, kBody);
     paragraph(block.text, indent);
     y_ -= 0.2 * kBody;
   }
@@ -190,11 +197,13 @@ class Setter {
     std::vector<double> widths(columns, 0.0);
     for (const auto& row : rows) {
       for (std::size_t c = 0; c < row.size(); ++c) {
-        double width = 0;
-        for (const TextRun& run : row[c]) {
-          width += sheet_.text_width(run.text, font_of(run.bold || &row == &rows.front()), size);
+        RichText text = row[c];
+        for (TextRun& run : text) {
+          run.bold = run.bold || &row == &rows.front();
         }
-        widths[c] = std::max(widths[c], width + 1);
+        for (const PdfLine& line : pdf_lines(sheet_, text, size, kPdfOneLine)) {
+          widths[c] = std::max(widths[c], line.width + 1);
+        }
       }
     }
     const double room = kColumn - gap * static_cast<double>(columns - 1);
@@ -296,7 +305,7 @@ class Setter {
       const double bar = middle + (0.5 * column_mm + kGapMm) * unit;
       const double bar_y = y_ - all_high_mm * unit + 8;
       sheet_.line(bar, bar_y, bar + bar_mm * unit, bar_y, 1.2, 0);
-      sheet_.text(words, bar, bar_y - 8, PdfFont::kPlain, 6.5, kPdfSoftGrey);
+      one_line(words, bar, bar_y - 8, 6.5);
     }
     y_ -= all_high_mm * unit + kBody;
   }
@@ -332,7 +341,8 @@ Result<std::vector<std::uint8_t>> page_pdf(std::string_view html, const PdfInfo&
   if (!sheet) {
     return std::unexpected(sheet.error());
   }
-  Setter setter(*sheet, sheet->spelt(info.title + ", " + info.when));
+  // The figures of the date beside those of an Arabic title are no part of it.
+  Setter setter(*sheet, isolated(sheet->spelt(info.title)) + ", " + sheet->spelt(info.when));
   std::vector<PageBlock> blocks = page_blocks(html);
   for (PageBlock& block : blocks) {
     spell(*sheet, block);

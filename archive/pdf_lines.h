@@ -2,6 +2,8 @@
 // Copyright The Dubsar developers
 #pragma once
 
+#include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -17,23 +19,30 @@ inline constexpr double kPdfSoftGrey = 0.4;  ///< of asides
   return bold ? PdfFont::kBold : PdfFont::kPlain;
 }
 
-/// A piece of a line that is not broken.
+/// A piece of a line that is not broken, of one direction of writing and one look.
 struct PdfWord {
   std::string text;
   bool bold = false;
   bool soft = false;
-  double width = 0;  ///< points
+  std::uint8_t level = 0;        ///< archive/bidi.h
+  bool joins = false;            ///< the piece before it, without a blank
+  std::uint8_t blank_level = 0;  ///< of the blank before it
+  double width = 0;              ///< points, without that blank
 };
+/// Words in the order in which they are read.
 struct PdfLine {
   std::vector<PdfWord> words;
   double width = 0;  ///< points
 };
 using PdfLines = std::vector<PdfLine>;
 
+inline constexpr double kPdfOneLine = std::numeric_limits<double>::infinity();  ///< a width: no breaks
+
 /// Text broken at blanks into lines of a width, points; a word wider than the line is broken within, at a
 /// character.
-[[nodiscard]] PdfLines pdf_lines(PdfSheet& sheet, const RichText& text, double size, double width);
+[[nodiscard]] PdfLines pdf_lines(const PdfSheet& sheet, const RichText& text, double size, double width);
 
+/// Each line begins at the left, its words in the order in which they are seen.
 /// The first line's baseline lies a line's height below `top`.
 void draw_lines(PdfSheet& sheet, const PdfLines& lines, double left, double top, double size, double grey);
 

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright The Dubsar developers
 // cairo embeds the letters that are used, with the table that tells what they are, so that the text can be
-// found and copied. (libharu, which is smaller, writes that table so that others cannot read it.)
+// found and copied. (libharu, which is smaller, writes that table so that others cannot read it.) HarfBuzz
+// says which forms of a font the letters of a text have; cairo's own text knows neither joined letters nor
+// those that are written to the left.
 #include "archive/pdf_sheet.h"
 
 #include <cairo-ft.h>
@@ -15,10 +17,12 @@
 #include <cmath>
 #include <cstring>
 #include <mutex>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "archive/pdf_a.h"
+#include "archive/shaper.h"
 #include "core/utf8.h"
 
 namespace dubsar {
@@ -103,6 +107,7 @@ struct PdfSheet::Impl {
   PdfInfo info;
   std::vector<std::uint8_t> bytes;
   std::array<cairo_font_face_t*, 2> font{};
+  std::vector<Shaper> shapers;  ///< likewise, one a font
   cairo_surface_t* surface = nullptr;
   cairo_t* page = nullptr;
   int pages = 1;
@@ -122,19 +127,13 @@ struct PdfSheet::Impl {
 
   /// False once anything has failed: cairo goes on, doing nothing.
   [[nodiscard]] bool good() const { return cairo_status(page) == CAIRO_STATUS_SUCCESS; }
-  [[nodiscard]] bool has(std::uint32_t code_point) const;  ///< in both fonts
-  void use(PdfFont which, double size) const {
-    cairo_set_font_face(page, font[static_cast<std::size_t>(which)]);
-    cairo_set_font_size(page, size);
+  [[nodiscard]] bool has(std::uint32_t code_point) const {  ///< in both fonts
+    return std::ranges::all_of(shapers, [&](const Shaper& shaper) { return shaper.has(code_point); });
+  }
+  [[nodiscard]] ShapedText shaped(std::string_view text, bool leftwards, PdfFont which) const {
+    return shapers[static_cast<std::size_t>(which)].shape(text, leftwards);
   }
 };
-
-bool PdfSheet::Impl::has(std::uint32_t code_point) const {
-  return std::ranges::all_of(font, [&](cairo_font_face_t* face) {
-    auto* const in_it = static_cast<FT_Face>(cairo_font_face_get_user_data(face, &kFaceOfFont));
-    return FT_Get_Char_Index(in_it, code_point) != 0;
-  });
-}
 
 PdfSheet::PdfSheet(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 PdfSheet::PdfSheet(PdfSheet&&) noexcept = default;
@@ -145,10 +144,12 @@ Result<PdfSheet> PdfSheet::make(const PdfInfo& info) {
   impl->info = info;
   for (std::size_t k = 0; k < kFontFiles.size(); ++k) {
     impl->font[k] = open_font(kFontFiles[k]);
-    if (impl->font[k] == nullptr) {
+    std::optional<Shaper> shaper = Shaper::open(kFontFiles[k]);
+    if (impl->font[k] == nullptr || !shaper) {
       return fail(ErrorKind::kUsage, "the font for PDF files is missing", kFontFiles[k],
                   "install fonts-dejavu-core");
     }
+    impl->shapers.push_back(std::move(*shaper));
   }
   impl->surface = cairo_pdf_surface_create_for_stream(append, &impl->bytes, kWidth, kHeight);
   cairo_pdf_surface_restrict_to_version(impl->surface, CAIRO_PDF_VERSION_1_4);
@@ -180,18 +181,27 @@ std::string PdfSheet::spelt(std::string_view text) const {
   return out;
 }
 
-double PdfSheet::text_width(std::string_view text, PdfFont font, double size) {
-  impl_->use(font, size);
-  cairo_text_extents_t extents{};
-  cairo_text_extents(impl_->page, terminated(text).c_str(), &extents);
-  return extents.x_advance;
+double PdfSheet::text_width(std::string_view text, bool leftwards, PdfFont font, double size) const {
+  return size * impl_->shaped(text, leftwards, font).width;
 }
 
-void PdfSheet::text(std::string_view text, double x, double y, PdfFont font, double size, double grey) {
-  impl_->use(font, size);
+void PdfSheet::text(std::string_view text, bool leftwards, double x, double y, PdfFont font, double size,
+                    double grey) {
+  const ShapedText shaped = impl_->shaped(text, leftwards, font);
+  std::string told;
+  std::vector<cairo_glyph_t> glyphs;
+  std::vector<cairo_text_cluster_t> clusters;
+  for (const ShapedGlyph& glyph : shaped.glyphs) {
+    glyphs.push_back({glyph.index, x + size * glyph.x, kHeight - y - size * glyph.y});
+    clusters.push_back({static_cast<int>(glyph.text.size()), 1});
+    told += glyph.text;
+  }
+  cairo_set_font_face(impl_->page, impl_->font[static_cast<std::size_t>(font)]);
+  cairo_set_font_size(impl_->page, size);
   cairo_set_source_rgb(impl_->page, grey, grey, grey);
-  cairo_move_to(impl_->page, x, kHeight - y);
-  cairo_show_text(impl_->page, terminated(text).c_str());
+  cairo_show_text_glyphs(impl_->page, told.data(), static_cast<int>(told.size()), glyphs.data(),
+                         static_cast<int>(glyphs.size()), clusters.data(), static_cast<int>(clusters.size()),
+                         cairo_text_cluster_flags_t{});
 }
 
 void PdfSheet::line(double x0, double y0, double x1, double y1, double width, double grey) {

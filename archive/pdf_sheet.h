@@ -40,12 +40,15 @@ class PdfSheet {
   void new_page();
   [[nodiscard]] int pages() const;
 
-  [[nodiscard]] double text_width(std::string_view text, PdfFont font, double size);
+  /// Of text of one direction (archive/bidi.h), letters joined.
+  [[nodiscard]] double text_width(std::string_view text, bool leftwards, PdfFont font, double size) const;
   /// UTF-8, each character that the fonts lack spelt out as "[U+12000]": as boxes they would look all alike,
   /// and be lost where the text is copied.
   [[nodiscard]] std::string spelt(std::string_view text) const;
-  /// Baseline at y. UTF-8, spelt() where it comes from outside. grey: 0 black to 1 white.
-  void text(std::string_view text, double x, double y, PdfFont font, double size, double grey);
+  /// Text of one direction, its left end at x, its baseline at y. UTF-8, spelt() where it comes from outside.
+  /// grey: 0 black to 1 white.
+  void text(std::string_view text, bool leftwards, double x, double y, PdfFont font, double size,
+            double grey);
   void line(double x0, double y0, double x1, double y1, double width, double grey);
   /// An entry of the document's outline that leads to a height of this page. It belongs to the last entry of
   /// a smaller level before it; levels count from 1.

@@ -12,6 +12,8 @@ html { background: var(--paper); color: var(--ink); }
 body { margin: 0; font: 17px/1.55 "Iowan Old Style", "Palatino Linotype", Palatino, "Book Antiqua", Georgia,
   "DejaVu Serif", serif; font-variant-numeric: oldstyle-nums; }
 main { max-width: 62rem; margin: 0 auto; padding: 3.5rem 1.5rem 5rem; }
+h1, h2, h3, p, li, dt, dd, th, td, figcaption { unicode-bidi: plaintext; }
+h1, h2, h3, p, li, dt, dd { text-align: left; }
 header { border-bottom: 1px solid var(--rule); padding-bottom: 1.2rem; margin-bottom: 2rem; }
 .kicker { margin: 0; color: var(--soft); font-variant-caps: all-small-caps; letter-spacing: .09em; }
 h1 { font-size: 2.3rem; line-height: 1.15; font-weight: 500; margin: .2rem 0 1rem; overflow-wrap: anywhere; }

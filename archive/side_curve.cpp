@@ -189,4 +189,14 @@ SideCurve::Place SideCurve::place(const Vector2d& p) const {
   return place;
 }
 
+double SideCurve::along_facing_mm(const Vector2d& direction) const {
+  std::size_t best = 0;
+  for (std::size_t i = 1; i < outward_.size(); ++i) {
+    if (outward_[i].dot(direction) > outward_[best].dot(direction)) {
+      best = i;
+    }
+  }
+  return static_cast<double>(best) * step_mm_;
+}
+
 }  // namespace dubsar

@@ -26,6 +26,8 @@ class SideCurve {
     Eigen::Vector2d outward{0, 1};  ///< unit normal of the curve there, (y, z)
   };
   [[nodiscard]] Place place(const Eigen::Vector2d& yz_mm) const;
+  /// Where the curve looks most in a direction, (y, z), from the beginning.
+  [[nodiscard]] double along_facing_mm(const Eigen::Vector2d& direction) const;
 
  private:
   void make_lookup();

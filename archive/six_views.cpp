@@ -8,16 +8,6 @@
 
 namespace dubsar {
 
-namespace {
-
-/// Black on a light ground, white on a dark one.
-Rgb8 ink_on(Rgb8 ground) {
-  const bool is_light = 2 * ground[0] + 5 * ground[1] + ground[2] > 4 * 255;
-  return is_light ? Rgb8{24, 24, 24} : Rgb8{235, 235, 235};
-}
-
-}  // namespace
-
 Result<SixViews> render_six_views(const RenderScene& scene, const SixViewOptions& options,
                                   const JobContext& job) {
   RenderOptions render_options = options.render;

@@ -91,10 +91,12 @@ std::string pictures_paragraph(const PackageContent& content) {
     return {};
   }
   return folded(
-      fmt::format("In that frame the model reaches from {:.4f} {:.4f} {:.4f} to {:.4f} {:.4f} {:.4f}; "
-                  "the middle of a single view is the middle of it. Which axis goes right and up in "
-                  "each view, and how a place becomes a pixel: formats/frames-and-units.txt.",
-                  box.min().x(), box.min().y(), box.min().z(), box.max().x(), box.max().y(), box.max().z()),
+      fmt::format(
+          "In that frame the model reaches from {:.4f} {:.4f} {:.4f} to {:.4f} {:.4f} {:.4f}; "
+          "the middle of a single view above the rows of its scale bar is the middle of it. Which axis "
+          "goes right and up in each view, how many rows the bar has and how a place becomes a pixel: "
+          "formats/frames-and-units.txt.",
+          box.min().x(), box.min().y(), box.min().z(), box.max().x(), box.max().y(), box.max().z()),
       2);
 }
 

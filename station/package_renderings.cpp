@@ -16,6 +16,7 @@
 #include "archive/jpeg.h"
 #include "archive/png.h"
 #include "archive/rollout.h"
+#include "archive/scale_bar.h"
 #include "archive/tiff.h"
 #include "core/parallel.h"
 #include "formats/atomic_file.h"
@@ -183,15 +184,17 @@ Status Drawing::views() {
       return std::unexpected(wedges.error());
     }
     std::vector<Task> tasks;
+    std::array<Image, looks.size()> ruled;  // the fatcross has a ruler of its own
     for (std::size_t k = 0; k < looks.size(); ++k) {
-      const Image& image = (*images)[k];
+      ruled[k] = with_scale_bar((*images)[k], ground());
+      const Image& image = ruled[k];
       const std::string path = fmt::format("pictures/{}/{}.png", looks[k].name, view_file_stem(face));
       const std::string label = fmt::format("{}, {}", to_string(face), looks[k].label);
       tasks.push_back({path, [&image, said = words(label)] { return encode_png(image, said); }});
       listed[k].push_back({path, label, "image/png", image.width, image.height, image.mm_per_px, *wedges});
     }
     tasks.push_back({fmt::format("pictures/cdli/{}_{}.jpg", content_.stem, cdli_suffix(face)),
-                     [&clay = images->front(), said = words(fmt::format("{}, clay", to_string(face)))] {
+                     [&clay = ruled.front(), said = words(fmt::format("{}, clay", to_string(face)))] {
                        return encode_jpeg(clay, said);
                      }});
     if (const Status written = write_all(content_, tasks); !written) {
@@ -204,7 +207,8 @@ Status Drawing::views() {
     content_.pictures.insert(content_.pictures.end(), listed[k].begin(), listed[k].end());
     content_.list(
         fmt::format("pictures/{}/", looks[k].name),
-        fmt::format("the six sides, {}, {} pixels to the inch of the tablet", looks[k].label, kViewDpi));
+        fmt::format("the six sides, {}, {} pixels to the inch of the tablet, below each a scale bar",
+                    looks[k].label, kViewDpi));
   }
   content_.list(
       "pictures/cdli/",
@@ -268,11 +272,8 @@ Status Drawing::fatcrosses() {
 
 Status Drawing::rollout() {
   content_.job.progress("drawing the rollout", 0.0);
-  const Result<Mesh> rolled = rolled_out(scene_, content_.tablet_from_model, content_.job);
-  if (!rolled) {
-    return std::unexpected(rolled.error());
-  }
-  Result<Image> image = render(RenderScene(*rolled), rollout_camera(), options(kViewDpi), content_.job);
+  const Result<Image> image =
+      rollout_picture(scene_, content_.tablet_from_model, options(kViewDpi), content_.job);
   if (!image && image.error().kind == ErrorKind::kUsage) {
     content_.lacking.emplace_back("Rollout: the tablet is too large for a picture of that scale.");
     return {};
@@ -287,9 +288,11 @@ Status Drawing::rollout() {
     return written;
   }
   list(path, "Rollout", "image/png", *image);
-  content_.list(path,
-                "the tablet unrolled along its side, from the obverse over the bottom edge to the reverse "
-                "and the top edge");
+  content_.list(
+      path,
+      "the tablet unrolled along its side, from the obverse over the bottom edge to the reverse "
+      "and the top edge: a tick at the right where each begins, a scale bar below; clay that would be "
+      "drawn more than three times as long as it is, as in a broken corner, is left out");
   return {};
 }
 

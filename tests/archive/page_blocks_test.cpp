@@ -206,6 +206,74 @@ TEST(PagePdf, OneLongWordIsBrokenBetweenCharacters) {
   EXPECT_TRUE(page_pdf("<p>" + word_of(100000) + "</p>", info));
 }
 
+/// Without the marks that pdftotext puts round text of a direction.
+std::string read_plain(const std::vector<std::uint8_t>& pdf) {
+  std::string text = read_page(pdf, 1);
+  for (const char* mark : {"\u202a", "\u202b", "\u202c"}) {
+    for (std::size_t at = text.find(mark); at != std::string::npos; at = text.find(mark, at)) {
+      text.erase(at, std::string(mark).size());
+    }
+  }
+  return text;
+}
+
+TEST(PagePdf, ArabicAndHebrewAreReadAsTheyAreWritten) {
+  const PdfInfo info{"المتحف العراقي ١٢٣٤٥", "Dubsar", "2026-01-02T03:04:05Z"};
+  const std::string html =
+      "<h1>المتحف العراقي ١٢٣٤٥</h1><dl><dt>Collection</dt><dd>متحف (IM 12)، بغداد</dd><dt>مكان</dt>"
+      "<dd>שלוֹם כהן, ירושלים</dd></dl><p>Signed by <b>أحمد رحيم</b> in İstanbul.</p>";
+  const auto pdf = page_pdf(html, info);
+  ASSERT_TRUE(pdf) << pdf.error().line();
+  expect_for_archives(*pdf);
+  EXPECT_EQ(page_pdf(html, info).value(), *pdf);
+  const std::string read = read_plain(*pdf);
+  for (const char* piece : {"المتحف العراقي ١٢٣٤٥\n", "متحف", "IM 12", "بغداد", "مكان", "שלוֹם כהן", "ירושלים",
+                            "Signed by", "أحمد رحيم", "in İstanbul"}) {
+    EXPECT_NE(read.find(piece), std::string::npos) << piece << "\n" << read;
+  }
+}
+
+/// Where a word stands on the pages, points from the left. Letters as they are seen from left to right.
+double left_of(const std::vector<std::uint8_t>& pdf, const std::string& word) {
+  const std::string boxes = read_by("pdftotext -bbox", pdf, "-");
+  const std::size_t at = boxes.find(">" + word + "</word>");
+  EXPECT_NE(at, std::string::npos) << word << "\n" << boxes;
+  const std::string key = "xMin=\"";
+  return at == std::string::npos ? 0 : std::stod(boxes.substr(boxes.rfind(key, at) + key.size()));
+}
+
+TEST(PagePdf, ALineIsSeenInTheOrderOfItsDirection) {
+  const PdfInfo info{"IM 1", "Dubsar", "2026-01-02T03:04:05Z"};
+  const auto pdf = page_pdf("<p>one كتب ولد two</p><p>متحف IM 55357 بغداد</p>", info);
+  ASSERT_TRUE(pdf) << pdf.error().line();
+  const auto seen = [](std::string word) {
+    for (std::size_t at = 0; at < word.size(); at += 2) {  // letters of two bytes
+      std::swap(word[at], word[at + 1]);
+    }
+    return std::string(word.rbegin(), word.rend());
+  };
+  EXPECT_LT(left_of(*pdf, "one"), left_of(*pdf, seen("ولد")));
+  EXPECT_LT(left_of(*pdf, seen("ولد")), left_of(*pdf, seen("كتب")));
+  EXPECT_LT(left_of(*pdf, seen("كتب")), left_of(*pdf, "two"));
+  EXPECT_LT(left_of(*pdf, seen("بغداد")), left_of(*pdf, "IM")) << "what begins in Arabic goes to the left";
+  EXPECT_LT(left_of(*pdf, "IM"), left_of(*pdf, "55357"));
+  EXPECT_LT(left_of(*pdf, "55357"), left_of(*pdf, seen("متحف")));
+}
+
+TEST(PagePdf, ArabicLinesAreBrokenAsTheyAreRead) {
+  std::string words;
+  for (int i = 0; i < 60; ++i) {
+    words += i == 0 ? "متحف " : i == 59 ? "بغداد" : "كتب ";
+  }
+  const auto pdf = page_pdf("<p>" + words + "</p>", {"IM 1", "Dubsar", "2026-01-02T03:04:05Z"});
+  ASSERT_TRUE(pdf) << pdf.error().line();
+  const std::string read = read_plain(*pdf);
+  EXPECT_TRUE(read.starts_with("متحف كتب")) << read;
+  EXPECT_NE(read.find("كتب بغداد\n"), std::string::npos) << read;
+  const std::string lines = read.substr(0, read.find("\n\n"));
+  EXPECT_EQ(std::count(lines.begin(), lines.end(), '\n'), 2) << read;
+}
+
 TEST(PagePdf, WhatTheFontLacksIsSpeltOut) {
   const PdfInfo info{"\xF0\x92\x80\x80 \xFF", "Dubsar", "2026-01-02T03:04:05Z"};
   const auto pdf =

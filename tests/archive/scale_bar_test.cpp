@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "archive/glyphs.h"
 
 namespace dubsar {
@@ -49,6 +51,43 @@ TEST(ScaleBar, DoesNothingWithoutAScale) {
   Image image = filled_image(50, 50, {9, 9, 9});
   draw_scale_bar(image, scale_bar_for(0, 50), 0, 0, {255, 0, 0});
   EXPECT_EQ(image.bytes, filled_image(50, 50, {9, 9, 9}).bytes);
+}
+
+TEST(ScaleBar, StandsBelowThePicture) {
+  Image picture = filled_image(600, 40, {200, 180, 160});
+  picture.mm_per_px = 25.4 / 600;
+  const Rgb8 black{0, 0, 0};
+  const Image ruled = with_scale_bar(picture, black);
+  ASSERT_EQ(ruled.width, 600);
+  ASSERT_EQ(ruled.height, 40 + 72) << "as docs/frames-and-units.md says";
+  EXPECT_EQ(ruled.mm_per_px, picture.mm_per_px);
+  EXPECT_TRUE(std::equal(picture.bytes.begin(), picture.bytes.end(), ruled.bytes.begin()));
+  int longest = 0;
+  for (int y = 40; y < ruled.height; ++y) {
+    int run = 0;
+    for (int x = 0; x < 600; ++x) {
+      run = ruled.rgb(x, y) != black ? run + 1 : 0;
+      longest = std::max(longest, run);
+    }
+  }
+  EXPECT_EQ(longest, 236) << "10 mm";
+  for (int x = 0; x < 600; ++x) {
+    EXPECT_EQ(ruled.rgb(x, 40), black) << "air";
+    EXPECT_EQ(ruled.rgb(x, ruled.height - 1), black);
+  }
+}
+
+TEST(ScaleBar, ANarrowPictureHasSmallerWordsOrNone) {
+  for (const int width : {600, 150, 60, 20, 1}) {
+    Image picture = filled_image(width, 5, {255, 255, 255});
+    picture.mm_per_px = 25.4 / 600;
+    const Image ruled = with_scale_bar(picture, {255, 255, 255});
+    EXPECT_EQ(ruled.width, width);
+    EXPECT_EQ(ruled.height, 5 + 72);
+    const bool inked = std::ranges::any_of(ruled.bytes, [](std::uint8_t sample) { return sample != 255; });
+    EXPECT_EQ(inked, width >= 60) << width;
+  }
+  EXPECT_EQ(with_scale_bar(filled_image(9, 9, {1, 2, 3}), {0, 0, 0}).height, 9) << "not to scale";
 }
 
 TEST(Glyphs, DrawInsideThePictureOnly) {

@@ -26,7 +26,8 @@ struct Picture {
   Pixels pixels;
 };
 
-Picture read_png(const std::filesystem::path& file) {
+/// Without the rows of its scale bar (docs/frames-and-units.md).
+Picture read_side(const std::filesystem::path& file) {
   png_image png{};
   png.version = PNG_IMAGE_VERSION;
   Picture out;
@@ -37,6 +38,13 @@ Picture read_png(const std::filesystem::path& file) {
   png.format = PNG_FORMAT_RGB;
   out = {png.width, png.height, Pixels(std::size_t{png.width} * png.height)};
   EXPECT_NE(png_image_finish_read(&png, nullptr, out.pixels.data(), 0, nullptr), 0) << png.message;
+  constexpr std::uint32_t kBarRows = 72;
+  EXPECT_GT(out.height, kBarRows) << file;
+  out.height -= std::min(out.height, kBarRows);
+  const auto bar = out.pixels.begin() + static_cast<std::ptrdiff_t>(std::size_t{out.width} * out.height);
+  const bool inked = std::any_of(bar, out.pixels.end(), [](const auto& p) { return p[0] > 200; });
+  EXPECT_TRUE(inked || out.width * 25.4 / 600 < 3) << file << ": no bar";
+  out.pixels.erase(bar, out.pixels.end());
   return out;
 }
 
@@ -131,8 +139,8 @@ TEST_F(Export, ItsReadmeTellsWhereAPlaceLiesInAPicture) {
   for (const Rule& rule :
        {Rule{"01_top", 0, 2, 1, -1}, Rule{"02_left", 2, 1, 1, 1}, Rule{"03_front", 0, 1, 1, 1},
         Rule{"04_right", 2, 1, -1, 1}, Rule{"05_bottom", 0, 2, 1, 1}, Rule{"06_back", 0, 1, 1, -1}}) {
-    const Picture picture = read_png(data("pictures/clay") / (std::string(rule.picture) + ".png"));
-    const Picture hollows = read_png(data("pictures/msii") / (std::string(rule.picture) + ".png"));
+    const Picture picture = read_side(data("pictures/clay") / (std::string(rule.picture) + ".png"));
+    const Picture hollows = read_side(data("pictures/msii") / (std::string(rule.picture) + ".png"));
     constexpr double kPixelMm = 25.4 / 600;
     std::size_t missed = 0;
     Correlation hollow_is_dark;
@@ -171,7 +179,7 @@ TEST_F(Export, ItsPicturesAreOfOneTabletInFourLights) {
     SCOPED_TRACE(name);
     std::array<Picture, kLights.size()> of;
     for (std::size_t k = 0; k < kLights.size(); ++k) {
-      of[k] = read_png(data("pictures") / kLights[k] / name);
+      of[k] = read_side(data("pictures") / kLights[k] / name);
       ASSERT_EQ(of[k].width, of[0].width) << kLights[k];
       ASSERT_EQ(of[k].height, of[0].height) << kLights[k];
       EXPECT_LT(share_that_one_alone_shows(of[k], of[0]), 0.0001) << kLights[k];
