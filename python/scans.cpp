@@ -3,7 +3,9 @@
 // From range grids to poses, and from grids in their places to a mesh.
 
 #include <cmath>
+#include <map>
 
+#include "core/scan_copies.h"
 #include "formats/pins_json.h"
 #include "formats/poses_json.h"
 #include "planning/sparse_flags.h"
@@ -29,9 +31,13 @@ void check_grids(const Grids& grids) {
   }
 }
 
-Result<std::vector<ScanPose>> register_grids(const Grids& grids, const PinSet* pins,
-                                             const std::vector<std::optional<RigidTransform>>& starts,
-                                             JobContext& job) {
+struct Registered {
+  std::vector<ScanPose> poses;
+  std::vector<ScanCopy> copies;  ///< grids that count as another
+};
+
+Result<Registered> register_grids(const Grids& grids, const PinSet* pins,
+                                  const std::vector<std::optional<RigidTransform>>& starts, JobContext& job) {
   Registrar registrar;
   for (std::size_t k = 0; k < grids.size(); ++k) {
     job.progress("registering", static_cast<double>(k) / static_cast<double>(grids.size() + 1));
@@ -50,11 +56,17 @@ Result<std::vector<ScanPose>> register_grids(const Grids& grids, const PinSet* p
     return std::unexpected(done.error());
   }
   job.progress("registering", 1.0);
-  std::vector<ScanPose> poses = registrar.poses();
-  for (ScanPose& pose : poses) {
-    pose.file = grids[static_cast<std::size_t>(pose.id)]->source;
+  Registered out{registrar.poses(), {}};
+  std::map<int, std::optional<SampleDigest>> samples;
+  for (ScanPose& pose : out.poses) {
+    const RangeGrid& grid = *grids[static_cast<std::size_t>(pose.id)];
+    pose.file = grid.source;
+    if (pose.status == PoseStatus::kRegistered) {
+      samples[pose.id] = sample_digest(grid);
+    }
   }
-  return poses;
+  out.copies = copies_among(samples);
+  return out;
 }
 
 struct Stitched {
@@ -96,10 +108,11 @@ Result<Stitched> stitch_grids(const Grids& grids, const std::vector<ScanPose>& p
   return mesh ? Result<Stitched>({std::move(*mesh), std::move(copies)}) : std::unexpected(mesh.error());
 }
 
-void warn_of_copies(const std::vector<ScanCopy>& copies) {
+/// `has`: what is said between the grid and whose samples it has.
+void warn_of_copies(const std::vector<ScanCopy>& copies, const std::string& has) {
   for (const ScanCopy& copy : copies) {
-    warn_of_scan("grid " + std::to_string(copy.id) + " is left out: it has the very samples of grid " +
-                 std::to_string(copy.of_id) + ", and counts as the same scan");
+    warn_of_scan("grid " + std::to_string(copy.id) + has + std::to_string(copy.of_id) +
+                 ", and counts as the same scan");
   }
 }
 
@@ -180,14 +193,17 @@ void bind_scans(py::module_& module) {
             from.push_back(start ? std::optional(transform_of(*start, "a start")) : std::nullopt);
           }
         }
-        return run_for_result(progress, [&](JobContext& job) {
+        Registered registered = run_for_result(progress, [&](JobContext& job) {
           return register_grids(grids, pins ? &*pins : nullptr, from, job);
         });
+        warn_of_copies(registered.copies, " has the very samples of grid ");
+        return std::move(registered.poses);
       },
       py::arg("grids"), py::arg("starts") = py::none(), py::arg("pins") = py::none(),
       py::arg("progress") = py::none(),
       "The poses of grids, in their order. A pose that is not certain is 'unsure' or 'failed' and says why. "
-      "starts: for each grid a [4, 4] model_from_scanner to begin with, or None. pins: a pins.json.");
+      "starts: for each grid a [4, 4] model_from_scanner to begin with, or None. pins: a pins.json. A grid "
+      "with the very samples of another has its pose, and is warned of (ScanWarning).");
   module.def(
       "stitch",
       [](const Grids& grids, const std::vector<ScanPose>& poses, const std::optional<fs::path>& pins_file,
@@ -204,7 +220,7 @@ void bind_scans(py::module_& module) {
         const std::optional<PinSet> pins = pins_of(pins_file);
         Stitched stitched =
             run_for_result(progress, [&](JobContext& job) { return stitch_grids(grids, poses, pins, job); });
-        warn_of_copies(stitched.copies);
+        warn_of_copies(stitched.copies, " is left out: it has the very samples of grid ");
         return std::make_shared<Mesh>(std::move(stitched.mesh));
       },
       py::arg("grids"), py::arg("poses"), py::arg("pins") = py::none(), py::arg("progress") = py::none(),

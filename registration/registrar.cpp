@@ -20,10 +20,10 @@ Registrar& Registrar::operator=(Registrar&&) noexcept = default;
 
 ScanPose Registrar::add(int id, const std::shared_ptr<const RangeGrid>& grid, const PinSet* pins,
                         JobContext& job) {
-  state_->remove(id, job);
-  state_->enter(id, grid.get(), pins);
-  state_->join(id, job);
-  state_->retry(job);
+  if (state_->take_in(id, grid.get(), pins, false, job)) {
+    state_->join(id, job);
+    state_->retry(job);
+  }
   state_->put_out_faulty(job);
   return state_->pose(id);
 }
@@ -45,7 +45,7 @@ bool Registrar::set_pose(int id, const RigidTransform& model_from_scanner, bool 
 
 Status Registrar::set_hint(int id, const PoseHint& hint, JobContext& job) {
   const std::string where = "hint for scan " + std::to_string(id);
-  if (hint.on == id || hint.on < 0) {
+  if (hint.on < 0 || state_->stands_as(hint.on) == state_->stands_as(id)) {
     return fail(ErrorKind::kUsage, "a hint needs another scan", where, "name the scan that it lies on");
   }
   if (hint.on_from_scanner && !hint.on_from_scanner->is_rigid()) {
@@ -56,10 +56,10 @@ Status Registrar::set_hint(int id, const PoseHint& hint, JobContext& job) {
       return good;
     }
   }
-  for (const ScanPose& pose : state_->poses()) {
-    if (pose.id == id && pose.locked) {
-      return fail(ErrorKind::kUsage, "the scan is locked", where, "unlock it first");
-    }
+  if (const std::optional<int> locked = state_->locked_as(id)) {
+    return fail(ErrorKind::kUsage,
+                *locked == id ? "the scan is locked" : "scan " + std::to_string(*locked) + " is locked",
+                where, "unlock it first");
   }
   state_->set_hint(id, hint);
   state_->follow_hint(id, job);
@@ -81,9 +81,9 @@ LockOutcome Registrar::lock_near(int id, const RigidTransform& model_from_scanne
 
 ScanPose Registrar::add_at(int id, const std::shared_ptr<const RangeGrid>& grid, const PinSet* pins,
                            const RigidTransform& model_from_scanner, bool locked, JobContext& job) {
-  state_->remove(id, job);
-  state_->enter(id, grid.get(), pins);
-  if (!model_from_scanner.is_rigid()) {
+  const bool is_rigid = model_from_scanner.is_rigid();
+  const bool is_sought = state_->take_in(id, grid.get(), pins, is_rigid && !locked, job);
+  if (!is_rigid) {
     return state_->pose(id);
   }
   if (locked) {
@@ -93,9 +93,11 @@ ScanPose Registrar::add_at(int id, const std::shared_ptr<const RangeGrid>& grid,
         true, job);
     return state_->pose(id);
   }
-  state_->enter_at(id, model_from_scanner);
-  state_->join(id, job);
-  state_->retry(job);
+  if (is_sought) {
+    state_->enter_at(id, model_from_scanner);
+    state_->join(id, job);
+    state_->retry(job);
+  }
   state_->put_out_faulty(job);
   return state_->pose(id);
 }

@@ -36,6 +36,9 @@ struct RegistrationOptions {
 /// reason and is tried again whenever the model has grown. The first scan is the model frame (with a nominal
 /// pose, the model frame is its tablet frame), unless it shows much less than a later one that does not fit
 /// it; scans that do not connect to it form groups of their own, and poses() reports those of the largest.
+/// A copy, a scan with the very samples of another (core/scan_copy.h), is no second measurement: it has the
+/// pose of that one with all that is said of it, and takes part in nothing, but for what the operator says
+/// under its id. When that one is taken out the copy takes its place, where it stood.
 /// Keeps features of each scan, not its grid. Not thread-safe; uses all cores inside. Same scans in the same
 /// order, same bytes.
 class Registrar {
@@ -61,13 +64,15 @@ class Registrar {
   /// Others that it connects are tried at once; when the job is cancelled, finalize() tries them.
   bool set_pose(int id, const RigidTransform& model_from_scanner, bool locked, JobContext& job);
   /// The operator's word on how a scan lies to another; may come before either scan is there and stands until
-  /// clear_hint(), also when the scan is taken out and added again. Groups of scans that it spans are joined
-  /// only where it says, and only when that pose verifies like any other; otherwise the scan is unsure, with
-  /// the reason. Errors: kBadInput for points that settle nothing (point_pairs.h) or a pose that is not
-  /// rigid, kUsage for a hint of a scan on itself or for a locked scan.
+  /// clear_hint(), also when the scan is taken out and added again; of a copy it is said of its original.
+  /// Groups of scans that it spans are joined only where it says, and only when that pose verifies like any
+  /// other; otherwise the scan is unsure, with the reason. Errors: kBadInput for points that settle nothing
+  /// (point_pairs.h) or a pose that is not rigid, kUsage for a hint of a scan on itself or a copy of it, or
+  /// for a locked scan.
   Status set_hint(int id, const PoseHint& hint, JobContext& job);
   void clear_hint(int id);
-  /// Locks a scan where it is, or unlocks it. False when there is none that could be registered.
+  /// Locks a scan where it is, or unlocks it. False when there is none that could be registered. A scan with
+  /// copies is fixed as long as one of them is locked; each of them says only of its own lock.
   bool set_locked(int id, bool locked);
   /// Locks a registered scan where it is, when that is the pose to within what its surface leaves open.
   LockOutcome lock_near(int id, const RigidTransform& model_from_scanner);

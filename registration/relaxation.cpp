@@ -164,6 +164,19 @@ Status check(const std::vector<RigidTransform>& start, const std::vector<bool>& 
 
 }  // namespace
 
+PairConstraint turned(const PairConstraint& pair) {
+  PairConstraint out = pair;
+  std::swap(out.a, out.b);
+  out.a_from_b = pair.a_from_b.inverse();
+  out.center_mm = out.a_from_b * pair.center_mm;
+  // The opposite motion about the same place, in the other scan's frame.
+  Matrix6d turn = Matrix6d::Zero();
+  turn.topLeftCorner<3, 3>() = out.a_from_b.rotation;
+  turn.bottomRightCorner<3, 3>() = out.a_from_b.rotation;
+  out.information = turn * pair.information * turn.transpose();
+  return out;
+}
+
 Result<std::vector<RelaxedPose>> relax(const std::vector<RigidTransform>& start,
                                        const std::vector<bool>& fixed,
                                        const std::vector<Eigen::Vector3d>& centers_mm,

@@ -23,6 +23,9 @@ struct PairConstraint {
   bool from_surfaces = true;                ///< the noise of its scans is in it, and in their other pairs
 };
 
+/// The same said of b and a.
+[[nodiscard]] PairConstraint turned(const PairConstraint& pair);
+
 struct RelaxationOptions {
   double huber_sigmas = 3.0;  ///< a pair that is off by more pulls with constant force
   int iterations = 50;

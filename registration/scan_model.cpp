@@ -189,7 +189,7 @@ int ScanModel::main_group() const {
   const std::vector<int> groups = groups_by_size();
   for (const int group : groups) {
     const std::vector<int> ids = members(group);
-    if (std::any_of(ids.begin(), ids.end(), [&](int i) { return scans_.at(i).locked; })) {
+    if (std::any_of(ids.begin(), ids.end(), [&](int i) { return scans_.at(i).is_locked(); })) {
       return group;  // what the operator has fixed is the model, however little it is
     }
   }
@@ -252,7 +252,11 @@ PoseHints ScanModel::hints_for(const Scan& scan, const std::vector<int>& group_i
   return hints;
 }
 
-bool ScanModel::place(int id, const RigidTransform& model_from_scanner, bool locked, JobContext& job) {
+bool ScanModel::place(int as, const RigidTransform& model_from_scanner, bool locked, JobContext& job) {
+  if (const std::optional<int> other = locked_as(as); other && *other != as) {
+    return locked && lock_near(as, model_from_scanner) == LockOutcome::kLocked;
+  }
+  const int id = stands_as(as);
   const auto found = scans_.find(id);
   if (found == scans_.end() || !found->second.usable) {
     return false;
@@ -267,7 +271,7 @@ bool ScanModel::place(int id, const RigidTransform& model_from_scanner, bool loc
       break;
     }
   }
-  scan.locked = locked;
+  scan.locked_as = locked ? std::set{as} : std::set<int>{};
   const std::vector<int> ids = scan.group == main ? std::vector<int>{} : members(main);
   const std::vector<ModelScan> model = model_of(ids);
   if (locked || ids.empty()) {
@@ -326,13 +330,14 @@ ScanPins ScanModel::pins_of(int id) const {
   return pins;
 }
 
-ScanPose ScanModel::pose(int id) const {
+ScanPose ScanModel::pose(int as) const {
+  const int id = stands_as(as);
   const Scan& scan = scans_.at(id);
   ScanPose out;
-  out.id = id;
-  out.file = scan.file;
+  out.id = as;
+  out.file = id == as ? scan.file : copies_.at(as).file;
   out.model_from_scanner = scan.group_from_scanner;
-  out.locked = scan.locked;
+  out.locked = scan.locked_as.contains(as);
   out.rms_mm = scan.rms_mm;
   out.overlap = scan.overlap;
   if (!scan.usable || scan.group != main_group()) {
@@ -372,19 +377,10 @@ ScanPose ScanModel::pose(int id) const {
   const double shifted = scan.covariance.bottomRightCorner<3, 3>().trace();
   const double turned = 2.0 / 3.0 * radius_mm * radius_mm * scan.covariance.topLeftCorner<3, 3>().trace();
   out.sigma_mm = std::max(std::sqrt(std::max(0.0, shifted + turned)), scan.stage_sigma_mm);
-  const bool told = scan.locked || scan.stage_sigma_mm > 0;
+  const bool told = scan.is_locked() || scan.stage_sigma_mm > 0;
   if (!told && out.sigma_mm > std::max(kLoosestMm, kLoosestSpacings * scan.features.surface->spacing_mm)) {
     out.status = PoseStatus::kUnsure;
     out.reason = too_even(turned > shifted);
-  }
-  return out;
-}
-
-std::vector<ScanPose> ScanModel::poses() const {
-  std::vector<ScanPose> out;
-  out.reserve(scans_.size());
-  for (const auto& [id, scan] : scans_) {
-    out.push_back(pose(id));
   }
   return out;
 }

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/pose_hint.h"
+#include "core/scan_copies.h"
 #include "registration/last_judgement.h"
 #include "registration/pin_advice.h"
 #include "registration/registrar.h"
@@ -19,14 +20,18 @@ namespace dubsar {
 
 /// The scans of a Registrar, the groups that they form and the pairs between them. A group is a set of scans
 /// that are registered with each other in a frame of their own; a scan that is registered with nothing is a
-/// group of one.
+/// group of one. A scan that came under several ids (scan_copies.h) is one measurement and takes part once,
+/// under the first of them; the others are names of it.
 class ScanModel {
  public:
   explicit ScanModel(const RegistrationOptions& options) : options_(options) {}
 
-  /// Takes a scan in, as a group of its own. A null grid is an empty one.
-  void enter(int id, const RangeGrid* grid, const PinSet* pins);
-  /// Takes a scan out. What only it connected is tried at once without it. False when there is none.
+  /// Takes a scan in, as a group of its own; one of the same id is replaced. A null grid is an empty one.
+  /// False when it is a copy of one that is in, and brings nothing that could place that one (pins that the
+  /// operator labelled, the stage's word; `has_start`: a pose to start from): it stands where that one does.
+  bool take_in(int id, const RangeGrid* grid, const PinSet* pins, bool has_start, JobContext& job);
+  /// Takes a scan out. What only it connected is tried at once without it; where it has a copy, that takes
+  /// its place. False when there is none.
   bool remove(int id, JobContext& job);
   /// Tries to join the scan's group with every other group. True when it joined one.
   bool join(int id, JobContext& job);
@@ -36,10 +41,10 @@ class ScanModel {
   /// since the last time: that shows with the others in place, and each that is in place may turn out to be
   /// the one.
   void put_out_faulty(JobContext& job);
-  bool place(int id, const RigidTransform& model_from_scanner, bool locked, JobContext& job);
+  bool place(int as, const RigidTransform& model_from_scanner, bool locked, JobContext& job);
   Status finalize(JobContext& job);
 
-  [[nodiscard]] ScanPose pose(int id) const;
+  [[nodiscard]] ScanPose pose(int as) const;
   [[nodiscard]] std::vector<ScanPose> poses() const;
 
   // The operator's word (scan_model_hint.cpp). A hint stands from when it is given, whether its scans are in
@@ -49,13 +54,19 @@ class ScanModel {
   /// Places a scan that is in by its hint, taking it out of a place that the hint contradicts. True when it
   /// then stands where the hint says, verified.
   bool follow_hint(int id, JobContext& job);
-  /// Locks a scan where it is, or unlocks it.
+  /// Locks a scan where it is, or unlocks it; a lock under another id of it stands.
   bool set_locked(int id, bool locked);
   /// Locks a scan where it is, when that is the pose.
   LockOutcome lock_near(int id, const RigidTransform& model_from_scanner);
   /// Gives a scan that was just entered its pose, to be refined and verified when it joins; nothing else is
   /// looked for. All such poses are in one frame.
   void enter_at(int id, const RigidTransform& model_from_scanner);
+
+  // Ids of one measurement (scan_model_copies.cpp).
+  /// The id under which the scan takes part: for a copy that of its original, else its own.
+  [[nodiscard]] int stands_as(int id) const;
+  /// Under which id it is locked: this one where it is.
+  [[nodiscard]] std::optional<int> locked_as(int id) const;
 
  private:
   class WithoutForeign;
@@ -65,8 +76,14 @@ class ScanModel {
     int on = 0;
     RigidTransform on_from_scanner;
   };
+  /// Another id of a scan.
+  struct Copy {
+    int of = 0;
+    std::string file;
+  };
   struct Scan {
     std::string file;
+    std::optional<SampleDigest> samples;
     ScanFeatures features;
     std::shared_ptr<const ScanSurface> whole;  ///< as it was entered, while something is left out of it …
     std::vector<std::uint8_t> left_out;        ///< … [cells of its fine grid]: a hand
@@ -78,11 +95,12 @@ class ScanModel {
     std::optional<bool> self_similar;  ///< once it was asked for
     int group = 0;
     RigidTransform group_from_scanner;
-    bool locked = false;
+    std::set<int> locked_as;   ///< its ids under which the operator fixed it
     bool given = false;        ///< joins from where it is or not at all
     std::string reason;        ///< why it does not join; empty when it has joined or was not tried
     std::string hint_reason;   ///< why its hint led to no pose
     std::string fault_reason;  ///< why it was taken out of the model when it was last in it
+    bool has_moved = false;    ///< while it was scanned, as found when it was last looked at in the model
     std::string warning;       ///< whose lengths were off when all were in place, while it is in the model
     std::string suspicion;  ///< what unit it may be in when it joins nothing; empty for nothing in particular
     PoseStatus outcome = PoseStatus::kFailed;
@@ -91,9 +109,14 @@ class ScanModel {
     std::set<int> tried_on;  ///< scans that it was searched on: their hypotheses are known to lead nowhere …
     std::vector<Lead> leads;  ///< … but for these, which a larger model may settle
     LastJudgement judgement;  ///< in its group
+
+    [[nodiscard]] bool is_locked() const { return !locked_as.empty(); }
   };
   /// a < b.
   struct Pair {
+    /// The same said of b and a.
+    [[nodiscard]] Pair turned() const;
+
     RigidTransform measured_from;  ///< a_from_b that the measurement started at
     RigidTransform a_from_b;
     Eigen::Vector3d center_mm{0, 0, 0};
@@ -106,6 +129,15 @@ class ScanModel {
     std::string reason;
   };
 
+  /// As a group of its own, whatever it is a copy of.
+  void enter(int id, const RangeGrid* grid, const PinSet* pins);
+  /// Whether a copy may place the scan that it is of, which stands nowhere yet.
+  [[nodiscard]] bool may_place(int original, int id, const RangeGrid& grid, const PinSet* pins,
+                               bool has_start) const;
+  /// True when the scan stays in under another id.
+  bool leaves_a_copy(int id);
+  /// One of its copies becomes the id under which the scan takes part.
+  void hand_over(int from, int to);
   /// Makes the surfaces of all scans anew for another scale; what was searched before is searched again.
   void rescale(double scale_mm);
   [[nodiscard]] std::vector<int> members(int group) const;  ///< ascending ids
@@ -176,6 +208,7 @@ class ScanModel {
   bool is_unsettled_ = false;  ///< a relaxation was broken off: finalize() makes up for it
   int next_group_ = 0;
   std::map<int, Scan> scans_;
+  std::map<int, Copy> copies_;  ///< by id; no id is in both
   std::map<std::pair<int, int>, Pair> pairs_;
   std::set<int> unchecked_;        ///< joined, or with another that joined beside it, since put_out_faulty()
   std::map<int, PoseHint> hints_;  ///< by the id of the scan that they are for

@@ -37,6 +37,7 @@ void ScanModel::put_out_faulty(JobContext& job) {
     const bool apart = leave(worst_id);
     const std::vector<int> rest = members(group);
     scan.fault_reason = worst->reason;
+    scan.has_moved = true;
     if (rest.size() == 1) {
       scan.fault_reason +=
           "; or that is wrong with " + name_of(rest.front()) + ", the only one that it was compared with";
@@ -62,7 +63,7 @@ void ScanModel::put_out_faulty(JobContext& job) {
 
 std::optional<ScanModel::Fault> ScanModel::fault_of(int id) {
   const auto found = scans_.find(id);
-  if (found == scans_.end() || !found->second.usable || found->second.locked) {
+  if (found == scans_.end() || !found->second.usable || found->second.is_locked()) {
     return std::nullopt;
   }
   const std::optional<InGroup> placed = in_group(id);
@@ -72,8 +73,10 @@ std::optional<ScanModel::Fault> ScanModel::fault_of(int id) {
   const auto& [scan, others, fit] = *placed;
   const ScanSurface& surface = *scan.surface;
   const std::vector<ModelScan> model = model_scans(others);
-  const std::optional<ScanMotion> motion = find_motion(surface, model, fit, options_.search.fit);
+  const std::optional<ScanMotion> motion =
+      find_motion(surface, model, fit, options_.search.fit, found->second.has_moved);
   if (!motion) {
+    found->second.has_moved = false;
     return std::nullopt;
   }
   // Rows that drift apart one by one look as if something had moved, too.

@@ -24,8 +24,8 @@ constexpr double kMostLockMissSpacings = 3.0;
 
 std::optional<int> ScanModel::hint_between(int a, int b) const {
   for (const auto& [id, hint] : hints_) {
-    const auto scan = scans_.find(id);
-    const auto on = scans_.find(hint.on);
+    const auto scan = scans_.find(stands_as(id));
+    const auto on = scans_.find(stands_as(hint.on));
     if (scan == scans_.end() || on == scans_.end() || !scan->second.usable || !on->second.usable) {
       continue;
     }
@@ -45,8 +45,8 @@ bool ScanModel::hints_hold(int id, int group, const RigidTransform& group_from_s
     return s.group == group ? s.group_from_scanner : group_from_own * s.group_from_scanner;
   };
   return std::all_of(hints_.begin(), hints_.end(), [&](const auto& entry) {
-    const auto hinted = scans_.find(entry.first);
-    const auto on = scans_.find(entry.second.on);
+    const auto hinted = scans_.find(stands_as(entry.first));
+    const auto on = scans_.find(stands_as(entry.second.on));
     if (hinted == scans_.end() || on == scans_.end() || !hinted->second.usable || !on->second.usable) {
       return true;
     }
@@ -108,9 +108,10 @@ bool ScanModel::join_from(int id, int group, const std::vector<RigidTransform>& 
 }
 
 bool ScanModel::join_by_hint(int hinted, JobContext& job) {
-  Scan& scan = scans_.at(hinted);
+  const int hinted_id = stands_as(hinted);
+  Scan& scan = scans_.at(hinted_id);
   const PoseHint& hint = hints_.at(hinted);
-  const Scan& on = scans_.at(hint.on);
+  Scan& on = scans_.at(stands_as(hint.on));
   const RigidTransform group_from_on = on.group_from_scanner;
   const int group = on.group;
   const auto in_group = [&](std::vector<RigidTransform> on_from_scanner) {
@@ -122,9 +123,9 @@ bool ScanModel::join_by_hint(int hinted, JobContext& job) {
   const std::vector<RigidTransform> starts =
       in_group(starts_from_hint(hint, *scan.features.surface, *on.features.surface));
   const auto joined = [&](const std::vector<RigidTransform>& from) {
-    const bool done = !from.empty() && join_from(hinted, group, from, job);
+    const bool done = !from.empty() && join_from(hinted_id, group, from, job);
     if (done) {
-      scans_.at(hint.on).hint_reason.clear();
+      on.hint_reason.clear();
     }
     return done;
   };
@@ -148,7 +149,7 @@ bool ScanModel::join_by_hint(int hinted, JobContext& job) {
   if (!job.cancelled()) {
     // Whichever of the two is left out says so.
     scan.hint_reason = "the hint leads to no certain pose: " + scan.reason;
-    scans_.at(hint.on).hint_reason = scan.hint_reason;
+    on.hint_reason = scan.hint_reason;
   }
   return false;
 }
@@ -163,7 +164,7 @@ void ScanModel::clear_hint(int id) {
     return;
   }
   for (const int either : {id, hint->second.on}) {
-    if (const auto scan = scans_.find(either); scan != scans_.end()) {
+    if (const auto scan = scans_.find(stands_as(either)); scan != scans_.end()) {
       scan->second.hint_reason.clear();
     }
   }
@@ -171,13 +172,13 @@ void ScanModel::clear_hint(int id) {
 }
 
 bool ScanModel::follow_hint(int id, JobContext& job) {
-  const auto found = scans_.find(id);
+  const auto found = scans_.find(stands_as(id));
   const auto hint = hints_.find(id);
   if (found == scans_.end() || hint == hints_.end() || !found->second.usable) {
     return false;
   }
-  const auto on = scans_.find(hint->second.on);
-  if (on == scans_.end() || !on->second.usable || hint->second.on == id) {
+  const auto on = scans_.find(stands_as(hint->second.on));
+  if (on == scans_.end() || !on->second.usable || on == found) {
     return false;
   }
   Scan& scan = found->second;
@@ -187,14 +188,14 @@ bool ScanModel::follow_hint(int id, JobContext& job) {
     if (agrees_with(hint->second, now, scan.features.surface->centroid_mm)) {
       return true;
     }
-    if (scan.locked) {
+    if (scan.is_locked()) {
       return false;
     }
     // It stands in the wrong place: out of its group, and in again where the hint says.
-    apart = leave(id);
+    apart = leave(found->first);
     scan.leads.clear();
   }
-  const bool followed = join_group(id, on->second.group, job);
+  const bool followed = join_group(found->first, on->second.group, job);
   if (followed || apart) {
     retry(job);
   }
@@ -202,26 +203,32 @@ bool ScanModel::follow_hint(int id, JobContext& job) {
 }
 
 bool ScanModel::set_locked(int id, bool locked) {
-  const auto found = scans_.find(id);
+  const auto found = scans_.find(stands_as(id));
   if (found == scans_.end() || !found->second.usable) {
     return false;
   }
-  found->second.locked = locked;
+  if (locked) {
+    found->second.locked_as.insert(id);
+  } else {
+    found->second.locked_as.erase(id);
+  }
   return true;
 }
 
 LockOutcome ScanModel::lock_near(int id, const RigidTransform& model_from_scanner) {
-  if (!scans_.contains(id) || pose(id).status != PoseStatus::kRegistered) {
+  const auto found = scans_.find(stands_as(id));
+  if (found == scans_.end() || pose(id).status != PoseStatus::kRegistered) {
     return LockOutcome::kNotRegistered;
   }
-  Scan& scan = scans_.at(id);
+  Scan& scan = found->second;
   const ScanSurface& surface = *scan.features.surface;
   const RigidTransform off = scan.group_from_scanner * model_from_scanner.inverse();
   const double miss_mm =
       (scan.group_from_scanner * surface.centroid_mm - model_from_scanner * surface.centroid_mm).norm() +
       0.5 * surface.extent_mm * off.angle_rad();
-  scan.locked = miss_mm <= std::max(kMostLockMissMm, kMostLockMissSpacings * surface.spacing_mm);
-  return scan.locked ? LockOutcome::kLocked : LockOutcome::kElsewhere;
+  const bool here = miss_mm <= std::max(kMostLockMissMm, kMostLockMissSpacings * surface.spacing_mm);
+  set_locked(id, here);
+  return here ? LockOutcome::kLocked : LockOutcome::kElsewhere;
 }
 
 bool ScanModel::join_as_given(int id, int group, JobContext& job) {

@@ -77,19 +77,20 @@ bool ScanModel::join_group(int id, int group, JobContext& job) {
     return join_unhinted(id, ids, group, job);
   }
   const bool joined = join_by_hint(*hinted, job);
-  std::erase(ids, *hinted);
-  if (joined || job.cancelled() || id == *hinted || ids.empty()) {
+  const int for_id = stands_as(*hinted);
+  std::erase(ids, for_id);
+  if (joined || job.cancelled() || id == for_id || ids.empty()) {
     scan.tried_on.insert(ids.begin(), ids.end());
-    scan.tried_on.insert(*hinted);
+    scan.tried_on.insert(for_id);
     return joined;
   }
   // It is the hinted scan that a word which leads nowhere leaves out, not the one that it was said to lie on,
   // nor those that came with either.
-  scan.tried_on.insert(*hinted);
+  scan.tried_on.insert(for_id);
   if (!join_unhinted(id, ids, group, job)) {
     return false;
   }
-  scans_.at(hints_.at(*hinted).on).hint_reason.clear();
+  scans_.at(stands_as(hints_.at(*hinted).on)).hint_reason.clear();
   follow_hint(*hinted, job);
   return true;
 }
@@ -212,7 +213,7 @@ void ScanModel::connect(int id, const ModelFit& fit, bool by_stage, const std::v
   // The larger group keeps its frame, so that what was stitched stays in place; so does one with a locked
   // scan.
   const auto locked = [&](const std::vector<int>& ids) {
-    return std::any_of(ids.begin(), ids.end(), [&](int i) { return scans_.at(i).locked; });
+    return std::any_of(ids.begin(), ids.end(), [&](int i) { return scans_.at(i).is_locked(); });
   };
   const bool own_moves = locked(own_ids) == locked(group_ids)
                              ? own_ids.size() < group_ids.size() ||

@@ -16,6 +16,9 @@ constexpr const char* kConnectionGone =
 }  // namespace
 
 bool ScanModel::remove(int id, JobContext& job) {
+  if (leaves_a_copy(id)) {
+    return true;
+  }
   if (!scans_.contains(id)) {
     return false;
   }
@@ -28,6 +31,7 @@ bool ScanModel::remove(int id, JobContext& job) {
     if (!scan.fault_reason.empty()) {
       // What contradicted it may have been the one that is gone.
       scan.fault_reason.clear();
+      scan.has_moved = false;
       scan.tried_on.clear();
       accused = true;
     }
@@ -89,7 +93,7 @@ std::vector<std::vector<int>> ScanModel::pieces_of(int group) const {
     if (scan.nominal) {
       sets.unite(place(id), place(first_of_placement.try_emplace(scan.nominal->placement, id).first->second));
     }
-    if (scan.locked) {
+    if (scan.is_locked()) {
       first_locked = first_locked.value_or(id);
       sets.unite(place(id), place(*first_locked));
     }
@@ -106,7 +110,7 @@ std::vector<std::vector<int>> ScanModel::pieces_of(int group) const {
   std::ranges::stable_sort(pieces, std::ranges::greater{}, &std::vector<int>::size);
   // What the operator fixed lies in the frame of the largest piece, connected or not.
   const auto locked = std::ranges::find_if(pieces, [&](const std::vector<int>& piece) {
-    return std::ranges::any_of(piece, [&](int id) { return scans_.at(id).locked; });
+    return std::ranges::any_of(piece, [&](int id) { return scans_.at(id).is_locked(); });
   });
   if (locked != pieces.end() && locked != pieces.begin()) {
     pieces.front().insert(pieces.front().end(), locked->begin(), locked->end());

@@ -75,7 +75,7 @@ Status ScanModel::relax_group(int group, const JobContext& job) {
     const Scan& scan = scans_.at(id);
     place[id] = start.size();
     start.push_back(scan.group_from_scanner);
-    fixed.push_back(scan.locked);
+    fixed.push_back(scan.is_locked());
     centers.push_back(scan.features.surface->centroid_mm);
   }
   std::vector<PairConstraint> constraints;

@@ -18,17 +18,27 @@ namespace {
 constexpr std::size_t kBands = 6;
 constexpr std::size_t kLeastSamples = 120;  ///< of a band, on what the others saw
 constexpr int kLeastClose = 200;            ///< counted over all scans that it is fitted to
-constexpr double kLeastSpacings = 1.5;      ///< a smaller shift is what any fit of a part leaves
-constexpr double kAgrees = 0.85;            ///< of the samples, where a band lies right
-constexpr double kLeastGain = 0.12;         ///< in agreement
 constexpr double kLeastStability = 0.002;   ///< see IcpResult; below, a band slides by itself
 // Bands of right scans agree no better anywhere, and a part of their samples shows it: where at least so much
 // agrees as the scan lies, and that part gains or loses less than so much where it fits by itself. Of 312
 // bands that were found slipped, by 1.2 to 12 spacings, none gained less than 0.107 there but for one of
 // which nothing agreed.
 constexpr double kHintAgrees = 0.5;
-constexpr double kHintOfGain = kLeastGain / 4.0;
+constexpr double kHintOfGain = 0.03;
 constexpr int kMostSkipped = 8;  ///< one sample in so many says that, where enough are left to tell by
+
+/// What makes a slip of what the bands say.
+struct Limits {
+  double least_spacings;  ///< a smaller shift is what any fit of a part leaves
+  double agrees;          ///< of the samples, where a band lies right
+  double least_gain;      ///< in agreement
+};
+constexpr Limits kLimits{1.5, 0.85, 0.12};
+/// Of a scan that was found to have slipped: so far below that the micrometres by which poses change with
+/// each other scan do not turn the verdict to and fro (2 µm changed shifts by up to 0.07 spacings, agreement
+/// by up to 0.03), and above what right scans show.
+constexpr Limits kLimitsAgain{1.25, 0.8, 0.08};
+
 // How far a band is looked for, in parts of the scale.
 constexpr double kReaches[] = {0.06, 0.02};
 
@@ -57,6 +67,7 @@ struct Fitted {
   std::span<const ModelScan> model;
   const ModelFit& fit;
   const ModelFitOptions& options;
+  const Limits& limits;
 
   [[nodiscard]] PoseEvidence evidence(const SurfaceLevel& part, const RigidTransform& pose) const {
     return evidence_of_part(part, scan, model, fit.targets, pose, options);
@@ -112,6 +123,23 @@ struct Band {
   int gained = 0;         ///< samples by that
 };
 
+/// Where to begin the fit of a band that may have moved; nothing where it agrees as the scan lies, or a part
+/// of it shows that it would elsewhere, too. `here`: the evidence of the band as the scan lies.
+std::optional<RigidTransform> start_of(const Fitted& fitted, const Band& band, const SurfaceLevel& fine,
+                                       const PoseEvidence& here) {
+  if (here.agreement() > 1.0 - fitted.limits.least_gain || here.close + here.apart < kLeastClose) {
+    return std::nullopt;  // nothing to gain, or too little to tell by
+  }
+  const RigidTransform start = fitted.near_fit(rows_of(*fitted.scan.medium, band.from, band.to));
+  if (here.agreement() >= kHintAgrees) {
+    const int every = std::min((here.close + here.apart) / kLeastClose, kMostSkipped);
+    if (std::abs(fitted.gain(thinned(fine, every), start)) < kHintOfGain) {
+      return std::nullopt;
+    }
+  }
+  return start;
+}
+
 void look_at(const Fitted& fitted, Band& band) {
   const SurfaceLevel fine = rows_of(*fitted.scan.fine, band.from, band.to);
   const RigidTransform& pose = fitted.fit.model_from_scanner;
@@ -120,25 +148,38 @@ void look_at(const Fitted& fitted, Band& band) {
   }
   band.middle_mm /= std::max<double>(1.0, static_cast<double>(fine.samples.size()));
   const PoseEvidence here = fitted.evidence(fine, pose);
-  band.settled = here.close >= kLeastClose && here.agreement() >= kAgrees;
-  if (here.agreement() > 1.0 - kLeastGain || here.close + here.apart < kLeastClose) {
-    return;  // nothing to gain, or too little to tell by
+  band.settled = here.close >= kLeastClose && here.agreement() >= fitted.limits.agrees;
+  const std::optional<RigidTransform> start = start_of(fitted, band, fine, here);
+  if (!start) {
+    return;
   }
-  const RigidTransform start = fitted.near_fit(rows_of(*fitted.scan.medium, band.from, band.to));
-  if (here.agreement() >= kHintAgrees) {
-    const int every = std::min((here.close + here.apart) / kLeastClose, kMostSkipped);
-    if (std::abs(fitted.gain(thinned(fine, every), start)) < kHintOfGain) {
-      return;
-    }
-  }
-  const IcpResult there = fitted.fine_fit(fine, start);
+  const IcpResult there = fitted.fine_fit(fine, *start);
   const PoseEvidence moved = fitted.evidence(fine, there.model_from_source);
   if (there.stability >= kLeastStability && moved.close >= std::max(kLeastClose, here.close) &&
-      moved.agreement() >= kAgrees && moved.agreement() - here.agreement() >= kLeastGain) {
+      moved.agreement() >= fitted.limits.agrees &&
+      moved.agreement() - here.agreement() >= fitted.limits.least_gain) {
     band.settled = true;
     band.motion = there.model_from_source * pose.inverse();
     band.gained = moved.close - here.close;
   }
+}
+
+/// As many bands of rows, each with as much of what the others saw, as there is enough for.
+std::vector<Band> bands_of(const Fitted& fitted) {
+  std::vector<float> rows;
+  for (const SurfaceSample& sample : fitted.scan.fine->samples) {
+    if (fitted.seen_by_others(sample)) {
+      rows.push_back(sample.row);
+    }
+  }
+  std::sort(rows.begin(), rows.end());
+  const std::size_t count = std::min(kBands, rows.size() / kLeastSamples);
+  std::vector<Band> bands(count);
+  for (std::size_t b = 0; b < count; ++b) {
+    bands[b].from = b == 0 ? 0.0F : rows[b * rows.size() / count];
+    bands[b].to = b + 1 == count ? 1.0F : rows[(b + 1) * rows.size() / count];
+  }
+  return bands;
 }
 
 /// How far apart the two bands' motions put what lies between them.
@@ -160,24 +201,22 @@ std::string reason_of(const ScanMotion& motion) {
          "; scan it again";
 }
 
+bool may_have_moved(const ScanSurface& scan, std::span<const ModelScan> model, const ModelFit& fit,
+                    const ModelFitOptions& options) {
+  const Fitted fitted{scan, model, fit, options, kLimits};
+  const std::vector<Band> bands = bands_of(fitted);
+  return std::ranges::any_of(bands, [&](const Band& band) {
+    const SurfaceLevel fine = rows_of(*scan.fine, band.from, band.to);
+    return start_of(fitted, band, fine, fitted.evidence(fine, fit.model_from_scanner)).has_value();
+  });
+}
+
 std::optional<ScanMotion> find_motion(const ScanSurface& scan, std::span<const ModelScan> model,
-                                      const ModelFit& fit, const ModelFitOptions& options) {
-  const Fitted fitted{scan, model, fit, options};
-  std::vector<float> rows;
-  for (const SurfaceSample& sample : scan.fine->samples) {
-    if (fitted.seen_by_others(sample)) {
-      rows.push_back(sample.row);
-    }
-  }
-  std::sort(rows.begin(), rows.end());
-  const std::size_t count = std::min(kBands, rows.size() / kLeastSamples);
-  std::vector<Band> bands(count);
-  for (std::size_t b = 0; b < count; ++b) {
-    bands[b].from = b == 0 ? 0.0F : rows[b * rows.size() / count];
-    bands[b].to = b + 1 == count ? 1.0F : rows[(b + 1) * rows.size() / count];
-  }
+                                      const ModelFit& fit, const ModelFitOptions& options, bool was_found) {
+  const Fitted fitted{scan, model, fit, options, was_found ? kLimitsAgain : kLimits};
+  std::vector<Band> bands = bands_of(fitted);
   parallel_for_each_index(
-      count, [&](std::size_t b) { look_at(fitted, bands[b]); }, 1);
+      bands.size(), [&](std::size_t b) { look_at(fitted, bands[b]); }, 1);
   std::erase_if(bands, [](const Band& band) { return !band.settled; });
 
   ScanMotion out;
@@ -192,7 +231,7 @@ std::optional<ScanMotion> find_motion(const ScanSurface& scan, std::span<const M
       out.row = 0.5 * static_cast<double>(bands[b - 1].to + bands[b].from);
     }
   }
-  if (out.shift_mm < kLeastSpacings * scan.fine->spacing_mm) {
+  if (out.shift_mm < fitted.limits.least_spacings * scan.fine->spacing_mm) {
     return std::nullopt;
   }
   return out;

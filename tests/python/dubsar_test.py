@@ -309,6 +309,13 @@ class Pipeline(Scans):
         np.testing.assert_array_equal(twice.vertices, self.mesh.vertices)
         np.testing.assert_array_equal(twice.scans, self.mesh.scans)
 
+    def test_a_grid_that_came_twice_is_registered_once_and_said(self):
+        with self.assertWarnsRegex(dubsar.ScanWarning, "grid 8 has the very samples of grid 3, and counts as the same"):
+            twice = dubsar.register(self.grids + [self.grids[3]])
+        for one, other in zip(twice, self.poses + [self.poses[3]]):
+            self.assertEqual((one.status, one.sigma_mm), (other.status, other.sigma_mm))
+            np.testing.assert_array_equal(one.model_from_scanner, other.model_from_scanner)
+
     def test_poses_in_the_numbers_of_a_map_are_refused(self):
         far = np.eye(4)
         far[0, 3] = 1e6

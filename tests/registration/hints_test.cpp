@@ -276,6 +276,35 @@ TEST(Hints, BadOnesAreRefused) {
   refused(stretched, "not a rigid transform");
 }
 
+/// The second scan of the two-fold surface; `asked` is the turn that was asked of the operator's hands.
+ScanPose turned_by_hand(const Height& surface, const RigidTransform& truth,
+                        const std::optional<RigidTransform>& asked) {
+  RangeGrid before = *scanned(surface, {}, 1);
+  RangeGrid after = *scanned(surface, truth, 9);
+  if (asked) {
+    before.nominal = NominalPose{};
+    after.nominal = NominalPose{.tablet_from_scanner = *asked, .placement = 1};
+  }
+  Registrar registrar;
+  JobContext job;
+  registrar.add(0, std::make_shared<const RangeGrid>(std::move(before)), nullptr, job);
+  return registrar.add(1, std::make_shared<const RangeGrid>(std::move(after)), nullptr, job);
+}
+
+TEST(HandTurns, ThatWereAskedForTellTwoPosesApart) {
+  const auto surface = two_fold();
+  const RigidTransform truth = pose_of(5, 3, 20, {1, 1, 0});
+  EXPECT_EQ(turned_by_hand(surface, truth, std::nullopt).status, PoseStatus::kUnsure);
+  for (const RigidTransform& turned : {truth, pose_of(0, 0, 180, {0, 0, 0}) * truth}) {
+    const ScanPose pose = turned_by_hand(surface, truth, pose_of(2, -2, 4, {1, -1, 0.5}) * turned);
+    EXPECT_EQ(pose.status, PoseStatus::kRegistered) << pose.reason;
+    EXPECT_LT(error_mm(pose, turned), 0.02);
+  }
+  // Asked for something in between, it tells nothing.
+  const RigidTransform neither = pose_of(0, 0, 90, {0, 0, 0}) * truth;
+  EXPECT_NE(turned_by_hand(surface, truth, neither).status, PoseStatus::kRegistered);
+}
+
 TEST(GivenPoses, AreRefinedAndNothingElseIsLookedFor) {
   const auto surface = bumpy(24);
   const std::vector<RigidTransform> truth{pose_of(0, 0, 0, {0, 0, 0}), pose_of(9, -5, 100, {2, -1, 0}),

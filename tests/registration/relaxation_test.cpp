@@ -89,6 +89,34 @@ TEST(Relaxation, OfAScanThatNothingConnectsNothingIsKnown) {
   }
 }
 
+TEST(Relaxation, APairSaysTheSameTurned) {
+  Ring r = ring(1e-3, 5);
+  Random random(6);
+  for (PairConstraint& pair : r.pairs) {  // what holds one way more than another, about a place off both
+    for (int k = 0; k < 6; ++k) {
+      Vector6d axis;
+      axis << random.normal3() * 100, random.normal3();
+      pair.information += 1e6 * axis * axis.transpose();
+    }
+    pair.center_mm = {3, -8, 12};
+  }
+  JobContext job;
+  const auto relaxed = relax(r.start, r.fixed, r.centers_mm, r.pairs, {}, job);
+  for (std::size_t k = 0; k < r.pairs.size(); k += 2) {
+    r.pairs[k] = turned(r.pairs[k]);
+  }
+  const auto again = relax(r.start, r.fixed, r.centers_mm, r.pairs, {}, job);
+  ASSERT_TRUE(relaxed);
+  ASSERT_TRUE(again);
+  for (std::size_t k = 0; k < r.truth.size(); ++k) {
+    const RelaxedPose& a = (*relaxed)[k];
+    const RelaxedPose& b = (*again)[k];
+    EXPECT_LT((a.model_from_scanner * r.centers_mm[k] - b.model_from_scanner * r.centers_mm[k]).norm(), 1e-6)
+        << k;
+    EXPECT_LE((a.covariance - b.covariance).norm(), 1e-3 * a.covariance.norm()) << k;
+  }
+}
+
 TEST(Relaxation, SaysWhatIsWrong) {
   JobContext job;
   Ring r = ring(1e-3, 3);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "bench/support/true_scans.h"
+#include "core/random.h"
 #include "registration/registrar.h"
 #include "registration/scan_motion.h"
 
@@ -104,6 +105,75 @@ TEST(ScanMotion, AStopDuringTheLastCheckIsSaidAndTheCheckIsMadeTheNextTime) {
   EXPECT_TRUE(registrar.finalize(job));
   for (const ScanPose& pose : registrar.poses()) {
     EXPECT_EQ(pose.status, PoseStatus::kRegistered) << pose.id << pose.reason;
+  }
+}
+
+/// One of the scans, slipped, among the others in their true places.
+class AmongOthers {
+ public:
+  AmongOthers(std::size_t which, const Eigen::Vector3f& shift_mm) {
+    ScanSurfaceOptions options;
+    options.scale_mm = surface_scale_mm(*still_scans().front().grid);
+    for (std::size_t k = 0; k < still_scans().size(); ++k) {
+      const auto& [grid, pose, tips, tablet] = still_scans()[k];
+      surfaces_.push_back(make_scan_surface(k == which ? *slipped(*grid, shift_mm) : *grid, {}, options));
+      if (k != which) {
+        others_.push_back({surfaces_[k].get(), pose});
+      }
+    }
+    scan_ = surfaces_[which].get();
+    ModelFitOptions close;
+    close.starts_are_close = true;
+    close.least_significance = 0;
+    const RigidTransform truth = still_scans()[which].tablet_from_scanner;
+    pose_ = fit_to_model(*scan_, others_, {&truth, 1}, close).front().model_from_scanner;
+  }
+  [[nodiscard]] bool may_have_moved() const {
+    return dubsar::may_have_moved(*scan_, others_, judge_in_model(*scan_, others_, pose_, {}), {});
+  }
+  /// Where it lies, or about as far off as its place changes with each other scan.
+  [[nodiscard]] bool has_moved(bool was_found, Random* off = nullptr) const {
+    constexpr double kOffMm = 0.002;
+    RigidTransform pose = pose_;
+    if (off != nullptr) {
+      const Eigen::Vector3d middle = pose * scan_->centroid_mm;
+      const RigidTransform turn =
+          RigidTransform::from_twist(kOffMm / (0.5 * scan_->extent_mm) * off->normal3(), {0, 0, 0});
+      pose.translation_mm = turn * (pose.translation_mm - middle) + middle + kOffMm * off->normal3();
+      pose.rotation = turn.rotation * pose.rotation;
+      pose = pose.orthonormalised();
+    }
+    return find_motion(*scan_, others_, judge_in_model(*scan_, others_, pose, {}), {}, was_found).has_value();
+  }
+
+ private:
+  std::vector<std::shared_ptr<const ScanSurface>> surfaces_;
+  std::vector<ModelScan> others_;
+  const ScanSurface* scan_ = nullptr;
+  RigidTransform pose_;
+};
+
+/// A part of the samples says which bands are worth fitting.
+TEST(ScanMotion, NothingIsFittedWholeWhereNothingMoved) {
+  for (std::size_t k = 0; k < still_scans().size(); ++k) {
+    EXPECT_FALSE(AmongOthers(k, {0, 0, 0}).may_have_moved()) << k;
+  }
+  EXPECT_TRUE(AmongOthers(1, {0, 0, 1.0F}).may_have_moved());
+  EXPECT_TRUE(AmongOthers(2, {0.7F, 0.4F, 0}).may_have_moved());
+}
+
+/// Between what is told of a scan at first and what clears it again.
+TEST(ScanMotion, MicrometresDoNotTurnTheVerdictToAndFro) {
+  const AmongOthers scan(2, {0.28F, 0, 0});
+  Random off(3);
+  EXPECT_FALSE(scan.has_moved(false));
+  EXPECT_TRUE(scan.has_moved(true));
+  for (int k = 0; k < 4; ++k) {
+    EXPECT_FALSE(scan.has_moved(false, &off));
+    EXPECT_TRUE(scan.has_moved(true, &off));
+  }
+  for (std::size_t k = 0; k < still_scans().size(); ++k) {
+    EXPECT_FALSE(AmongOthers(k, {0, 0, 0}).has_moved(true)) << "it is right, and comes in again: " << k;
   }
 }
 

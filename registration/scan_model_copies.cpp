@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+// Scans that came more than once. The same samples twice are no second measurement: they would halve the
+// variance of what they say and vouch for each other. So a copy is only another id of the scan that is in: a
+// word that the operator gives under either is said of both.
+#include <algorithm>
+
+#include "registration/scan_model.h"
+
+namespace dubsar {
+
+int ScanModel::stands_as(int id) const {
+  const auto copy = copies_.find(id);
+  return copy == copies_.end() ? id : copy->second.of;
+}
+
+std::optional<int> ScanModel::locked_as(int id) const {
+  const auto scan = scans_.find(stands_as(id));
+  if (scan == scans_.end() || !scan->second.is_locked()) {
+    return std::nullopt;
+  }
+  const std::set<int>& ids = scan->second.locked_as;
+  return ids.contains(id) ? id : *ids.begin();
+}
+
+std::vector<ScanPose> ScanModel::poses() const {
+  std::vector<ScanPose> out;
+  out.reserve(scans_.size() + copies_.size());
+  for (const auto& [id, scan] : scans_) {
+    out.push_back(pose(id));
+  }
+  for (const auto& [id, copy] : copies_) {
+    out.push_back(pose(id));
+  }
+  std::ranges::sort(out, {}, &ScanPose::id);
+  return out;
+}
+
+bool ScanModel::may_place(int original, int id, const RangeGrid& grid, const PinSet* pins,
+                          bool has_start) const {
+  const Scan& scan = scans_.at(original);
+  if (!scan.usable) {
+    return true;  // what is known of the scale may have changed since
+  }
+  const bool stands = members(scan.group).size() > 1 || pose(original).status == PoseStatus::kRegistered;
+  const bool brings_more =
+      has_start || (grid.nominal && !scan.nominal) || (pins != nullptr && pins->tips.contains(id));
+  return !stands && scan.fault_reason.empty() && brings_more;
+}
+
+bool ScanModel::take_in(int id, const RangeGrid* grid, const PinSet* pins, bool has_start, JobContext& job) {
+  const std::optional<SampleDigest> samples = grid != nullptr ? sample_digest(*grid) : std::nullopt;
+  const auto is_same = [&](const auto& entry) { return samples && entry.second.samples == samples; };
+  const auto before = scans_.find(stands_as(id));
+  const bool is_replaced = before != scans_.end() && is_same(*before);
+  remove(id, job);
+  std::map<int, Copy> others;
+  if (const auto original = std::ranges::find_if(scans_, is_same); original != scans_.end()) {
+    const auto& [of, scan] = *original;
+    if (scan.is_locked() || (!is_replaced && !may_place(of, id, *grid, pins, has_start))) {
+      copies_[id] = {of, grid->source};
+      return false;
+    }
+    // All ids of it are entered anew.
+    others[of] = {id, scan.file};
+    for (const auto& [other, copy] : copies_) {
+      if (copy.of == of) {
+        others[other] = {id, copy.file};
+      }
+    }
+    std::erase_if(copies_, [of](const auto& entry) { return entry.second.of == of; });
+    remove(of, job);
+  }
+  enter(id, grid, pins);
+  scans_.at(id).samples = samples;
+  copies_.merge(others);
+  return true;
+}
+
+bool ScanModel::leaves_a_copy(int id) {
+  if (const auto copy = copies_.find(id); copy != copies_.end()) {
+    scans_.at(copy->second.of).locked_as.erase(id);
+    copies_.erase(copy);
+    return true;
+  }
+  const auto next = std::ranges::find_if(copies_, [id](const auto& entry) { return entry.second.of == id; });
+  if (next == copies_.end()) {
+    return false;
+  }
+  hand_over(id, next->first);
+  return true;
+}
+
+ScanModel::Pair ScanModel::Pair::turned() const {
+  const PairConstraint other = dubsar::turned({0, 1, a_from_b, center_mm, information});
+  return {measured_from.inverse(), other.a_from_b, other.center_mm, other.information};
+}
+
+void ScanModel::hand_over(int from, int to) {
+  auto scan = scans_.extract(from);
+  scan.key() = to;
+  scan.mapped().file = copies_.at(to).file;
+  scan.mapped().locked_as.erase(from);
+  scans_.insert(std::move(scan));
+  copies_.erase(to);
+  for (auto& [id, copy] : copies_) {
+    copy.of = copy.of == from ? to : copy.of;
+  }
+  for (auto& [id, other] : scans_) {
+    if (other.tried_on.erase(from) > 0) {
+      other.tried_on.insert(to);
+    }
+    for (Lead& lead : other.leads) {
+      lead.on = lead.on == from ? to : lead.on;
+    }
+  }
+  if (unchecked_.erase(from) > 0) {
+    unchecked_.insert(to);
+  }
+  std::map<std::pair<int, int>, Pair> pairs;
+  for (const auto& [key, pair] : pairs_) {
+    const int a = key.first == from ? to : key.first;
+    const int b = key.second == from ? to : key.second;
+    pairs.emplace(std::minmax(a, b), a < b ? pair : pair.turned());
+  }
+  pairs_ = std::move(pairs);
+}
+
+}  // namespace dubsar
